@@ -1,0 +1,67 @@
+// THE STORY of a step: advance. One linearized implicit step of the whole hair mesh with its contacts.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+
+#include "sim/colliders.h"
+#include "sim/hair_mesh.h"
+#include "sim/hair_state.h"
+#include "sim/sim_params.h"
+
+namespace sim {
+
+// What happens around the hair during a step: poses at the step's end.
+struct StepInput {
+  std::span<const Vec3> roots;           // m, world, one per column
+  std::span<const Ellipsoid> ellipsoids;  // with the velocities that brought them there
+  double time = 0;                        // s, of the step's end (gusts are a function of it)
+};
+
+// Stages of a step, as in the paper's figure 6.
+enum Stage { kStageForces, kStageSolve, kStageCollision, kStageMinimization, kStageOther, kStageCount };
+const char* stageName(Stage stage);
+
+struct StepReport {
+  std::array<double, kStageCount> seconds{};  // filled when a clock is given to the context
+  int solver_iterations = 0, newton_iterations = 0;
+  double residual = 0;              // relative, at the end of the last linear solve
+  double residual_acceleration = 0;  // m/s^2, largest over vertices
+  bool converged = true;
+  int contacts = 0, corrected = 0;   // constrained vertices; vertices moved by position correction
+  int minimization_iterations = 0;
+  double max_penetration = 0;        // m, found before correction
+  int recoveries = 0;                // watchdog restored the last good state
+};
+
+// Scratch memory and everything derived from mesh and parameters (matrix patterns, factors). Keep one per hair; a step
+// allocates nothing once it is warm. `clock` returns seconds, for stage times (nullptr: not measured): sim has no clock.
+class StepContext {
+ public:
+  explicit StepContext(const HairMesh& mesh, double (*clock)() = nullptr);
+  ~StepContext();
+  StepContext(StepContext&&) noexcept;
+  StepContext& operator=(StepContext&&) noexcept;
+
+  struct Parts;
+  Parts& parts() { return *parts_; }
+
+ private:
+  std::unique_ptr<Parts> parts_;
+};
+
+// Advances `state` by dt seconds. Never leaves a value that is not finite in `state`.
+StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInput& input, double dt, StepContext& context,
+                   HairState& state);
+
+// The rest shape carried to world by a rigid transform, at rest or moving with `velocity` fields zero.
+HairState restState(const HairMesh& mesh, const Eigen::Isometry3d& head_to_world);
+
+// Carries a state along rigidly, keeping shape and velocity relative to the head (teleport of the second kind).
+void carryAlong(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, HairState& state);
+
+// Puts every vertex on its column's root, at rest (figure 8 of the paper).
+void collapseOntoRoots(const HairMesh& mesh, HairState& state);
+
+}  // namespace sim
