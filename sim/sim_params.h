@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace sim {
@@ -88,9 +89,15 @@ std::span<const ParamField> paramFields();
 // The field of that name, or nullptr.
 const ParamField* findParam(std::string_view name);
 
-// Sets a field from text (a number, "on"/"off", or a choice's name). Out-of-range and non-finite values are refused. Returns
-// an empty string or what is wrong and what would mend it.
-struct ParamText { bool ok; const char* fault; };
+// Sets a field from text (a number, "on"/"off", or a choice's name). Out-of-range and non-finite values are refused and change
+// nothing. `fault` says what is wrong and what would mend it; it is empty when ok.
+struct ParamText {
+  bool ok = true;
+  std::string fault;
+};
 ParamText setParam(SimParams& params, std::string_view name, std::string_view text);
+
+// Writes a field so that setParam reads the same value back: a number in its shortest exact form, "on"/"off", a choice's name.
+std::string paramText(const ParamField& field, const SimParams& params);
 
 }  // namespace sim

@@ -1,0 +1,89 @@
+#include "sim/field_text.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+namespace sim {
+
+bool parseNumber(std::string_view text, double& value) {
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  double read = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), read);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(read)) return false;
+  value = read;
+  return true;
+}
+
+bool parseSwitch(std::string_view text, bool& value) {
+  for (const std::string_view yes : {"on", "true", "yes", "1"}) {
+    if (text == yes) return value = true;
+  }
+  for (const std::string_view no : {"off", "false", "no", "0"}) {
+    if (text == no) return !(value = false);
+  }
+  return false;
+}
+
+std::string numberText(double value) {
+  char buffer[32];
+  const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value);
+  return error == std::errc{} ? std::string(buffer, end) : std::string("0");
+}
+
+namespace {
+
+// Levenshtein's edit distance, one row at a time.
+int editDistance(std::string_view a, std::string_view b) {
+  std::vector<int> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    int diagonal = row[0]++;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const int substituted = diagonal + (a[i - 1] != b[j - 1]);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
+    }
+  }
+  return row.back();
+}
+
+// Long names would make the distance quadratic in what a hostile file holds; no field's name is longer than this.
+constexpr std::size_t kLongestName = 64;
+
+}  // namespace
+
+std::string_view nearestName(std::string_view name, std::span<const std::string_view> candidates) {
+  if (name.empty() || name.size() > kLongestName) return {};
+  std::string_view best;
+  int best_distance = 1 + static_cast<int>(name.size()) / 3;
+  for (const std::string_view candidate : candidates) {
+    const int distance = editDistance(name, candidate);
+    if (distance <= best_distance) {
+      if (distance == best_distance && !best.empty()) continue;
+      best = candidate;
+      best_distance = distance;
+    }
+  }
+  // A part of a name is often what a person remembers: 'iterations' for 'max_iterations'.
+  if (best.empty() && name.size() >= 3) {
+    for (const std::string_view candidate : candidates) {
+      if (candidate.find(name) != std::string_view::npos) return candidate;
+    }
+  }
+  return best;
+}
+
+std::string nameHint(std::string_view name, std::span<const std::string_view> candidates) {
+  const std::string_view near = nearestName(name, candidates);
+  if (!near.empty()) return "did you mean '" + std::string(near) + "'?";
+  std::string list = "known are";
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    list += (i ? ", " : " ") + std::string(candidates[i]);
+  }
+  return list;
+}
+
+}  // namespace sim
