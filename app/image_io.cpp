@@ -1,0 +1,72 @@
+#include "app/image_io.h"
+
+#include <cassert>
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+
+#include "app/errors.h"
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wshadow"
+#pragma GCC diagnostic ignored "-Wsign-compare"
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#include <stb/stb_image_write.h>
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_PNG
+#include <stb/stb_image.h>
+#pragma GCC diagnostic pop
+
+namespace app {
+namespace {
+
+constexpr int kMaxSide = 16384;
+
+bool isOpaque(std::span<const unsigned char> rgba) {
+  for (std::size_t i = 3; i < rgba.size(); i += 4) {
+    if (rgba[i] != 255) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void writePng(const std::string& file, int width, int height, std::span<const unsigned char> rgba) {
+  assert(width > 0 && height > 0 && rgba.size() == static_cast<std::size_t>(width) * height * 4);
+  int written = 0;
+  if (isOpaque(rgba)) {
+    std::vector<unsigned char> rgb(static_cast<std::size_t>(width) * height * 3);
+    for (std::size_t i = 0; i < rgb.size() / 3; ++i) {
+      for (int c = 0; c < 3; ++c) rgb[3 * i + c] = rgba[4 * i + c];
+    }
+    written = stbi_write_png(file.c_str(), width, height, 3, rgb.data(), 3 * width);
+  } else {
+    written = stbi_write_png(file.c_str(), width, height, 4, rgba.data(), 4 * width);
+  }
+  if (written == 0) {
+    throw InputError(file, "output image", "cannot be written", "check that the folder exists and has room");
+  }
+}
+
+Image readPng(const std::string& file) {
+  if (!std::filesystem::is_regular_file(file)) {
+    throw InputError(file, "input image", "is not a file", "name an existing PNG file");
+  }
+  Image image;
+  int channels = 0;
+  const bool known = stbi_info(file.c_str(), &image.width, &image.height, &channels) != 0;
+  if (known && (image.width > kMaxSide || image.height > kMaxSide)) {
+    throw InputError(file, "size", "is larger than 16384 pixels a side", "scale the image down");
+  }
+  const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
+      known ? stbi_load(file.c_str(), &image.width, &image.height, &channels, 4) : nullptr, stbi_image_free);
+  if (!pixels) throw InputError(file, "image data", "is not a readable PNG", "save it again as PNG");
+  image.rgba.assign(pixels.get(), pixels.get() + static_cast<std::size_t>(image.width) * image.height * 4);
+  return image;
+}
+
+}  // namespace app
