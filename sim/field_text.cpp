@@ -52,6 +52,7 @@ int editDistance(std::string_view a, std::string_view b) {
 
 // Long names would make the distance quadratic in what a hostile file holds; no field's name is longer than this.
 constexpr std::size_t kLongestName = 64;
+constexpr std::size_t kLongestList = 24;
 
 }  // namespace
 
@@ -79,6 +80,7 @@ std::string_view nearestName(std::string_view name, std::span<const std::string_
 std::string nameHint(std::string_view name, std::span<const std::string_view> candidates) {
   const std::string_view near = nearestName(name, candidates);
   if (!near.empty()) return "did you mean '" + std::string(near) + "'?";
+  if (candidates.size() > kLongestList) return "hairmesh --parameters lists them all";
   std::string list = "known are";
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     list += (i ? ", " : " ") + std::string(candidates[i]);

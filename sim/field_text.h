@@ -19,7 +19,7 @@ std::string numberText(double value);
 // The candidate with the smallest edit distance, or an empty view when none is close enough to be what was meant.
 std::string_view nearestName(std::string_view name, std::span<const std::string_view> candidates);
 
-// "; did you mean NAME?" or the list of all when nothing is near.
+// "did you mean NAME?", or the list of all when nothing is near (of a short list; a long one is only pointed at).
 std::string nameHint(std::string_view name, std::span<const std::string_view> candidates);
 
 }  // namespace sim

@@ -20,13 +20,16 @@ namespace {
 constexpr double kShortestEdge = 1e-5;  // m; shorter ones ruin the conditioning of the solve
 constexpr double kLargestCoordinate = 1e3;
 
-std::string faceName(int f) { return "root face " + std::to_string(f); }
+std::string faceName(int f) {
+  return "root face " + std::to_string(f);
+}
 std::string vertexName(int column, int layer) {
   return "column " + std::to_string(column) + ", layer " + std::to_string(layer);
 }
 
 void checkShape(const HairMeshShape& shape) {
-  if (shape.root_faces.empty()) throw MeshError("hair mesh", "it has no root face", "add at least one triangle or quad");
+  if (shape.root_faces.empty())
+    throw MeshError("hair mesh", "it has no root face", "add at least one triangle or quad");
   if (shape.column_first.empty() || shape.column_first.front() != 0 ||
       static_cast<int>(shape.positions.size()) != shape.vertexCount()) {
     throw MeshError("hair mesh", "columns and positions do not agree in number", "give one position per vertex");
@@ -54,7 +57,8 @@ void checkRootFaces(const HairMeshShape& shape) {
   for (int f = 0; f < static_cast<int>(shape.root_faces.size()); ++f) {
     const RootFace& face = shape.root_faces[f];
     if (face.corner_count != 3 && face.corner_count != 4) {
-      throw MeshError(faceName(f), "it has " + std::to_string(face.corner_count) + " corners", "use triangles and quads");
+      throw MeshError(faceName(f), "it has " + std::to_string(face.corner_count) + " corners",
+                      "use triangles and quads");
     }
     std::vector<int> sorted(face.columns.begin(), face.columns.begin() + face.corner_count);
     for (int c : sorted) {
@@ -150,7 +154,8 @@ void addPrisms(HairMesh& mesh) {
   }
 }
 
-// What is known of a root edge while walls are collected: columns a -> b as its first face winds it, and each layer's wall.
+// What is known of a root edge while walls are collected: columns a -> b as its first face winds it, and each layer's
+// wall.
 struct RootEdge {
   int a, b;
   std::vector<Wall> walls;  // by layer
@@ -175,9 +180,6 @@ std::vector<RootEdge> collectRootEdges(HairMesh& mesh) {
           const int va = shape.column_first[a] + l, vb = shape.column_first[b] + l;
           edge.walls.push_back({{va, vb, vb + 1, va + 1}, 0, true});
           edge.users.push_back(0);
-        } else if (edge.users[l] == 0) {
-          edge.walls[l].v = {shape.column_first[a] + l, shape.column_first[b] + l, shape.column_first[b] + l + 1,
-                             shape.column_first[a] + l + 1};
         }
         ++edge.users[l];
         edge.walls[l].volume += mesh.prisms[next_prism + l].volume / face.corner_count;
@@ -196,9 +198,9 @@ double dihedral(const Vec3& m1, const Vec3& p, const Vec3& q, const Vec3& m2) {
 double checkedLength(const HairMesh& mesh, int a, int b) {
   const double length = (mesh.shape.positions[a] - mesh.shape.positions[b]).norm();
   if (length < kShortestEdge) {
-    throw MeshError(vertexName(mesh.column_of[a], mesh.layer_of[a]) + " to " +
-                        vertexName(mesh.column_of[b], mesh.layer_of[b]),
-                    "the edge is shorter than 0.01 mm", "move the vertices apart or merge the columns");
+    throw MeshError(
+        vertexName(mesh.column_of[a], mesh.layer_of[a]) + " to " + vertexName(mesh.column_of[b], mesh.layer_of[b]),
+        "the edge is shorter than 0.01 mm", "move the vertices apart or merge the columns");
   }
   return length;
 }

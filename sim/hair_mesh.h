@@ -1,11 +1,11 @@
 // The hair mesh: polygon layers extruded from the scalp, immutable once built.
 //
-// A *column* is one root vertex's chain of vertices from root to tip; a *root face* is a triangle or quadrilateral of the
-// scalp layer; the *bundle* over a root face is a stack of *prisms*, one per pair of consecutive layers. Columns may have
-// different lengths: a bundle ends where its shortest column ends.
+// A *column* is one root vertex's chain of vertices from root to tip; a *root face* is a triangle or quadrilateral of
+// the scalp layer; the *bundle* over a root face is a stack of *prisms*, one per pair of consecutive layers. Columns
+// may have different lengths: a bundle ends where its shortest column ends.
 //
-// Source: Yuksel, Schaefer, Keyser, "Hair Meshes" (2009); Wu, Yuksel, "Real-time Hair Mesh Simulation" (2016), section 3.
-// Units: metres. Frame: the head joint's (y up, z forward, x to the character's left).
+// Source: Yuksel, Schaefer, Keyser, "Hair Meshes" (2009); Wu, Yuksel, "Real-time Hair Mesh Simulation" (2016),
+// section 3. Units: metres. Frame: the head joint's (y up, z forward, x to the character's left).
 #pragma once
 
 #include <Eigen/Core>
@@ -19,8 +19,8 @@ namespace sim {
 
 using Vec3 = Eigen::Vector3d;
 
-// What is wrong with a hair mesh, in words for the person who made it. `place` names the element ("root face 12", "column 3,
-// layer 4"), `fault` what is wrong there, `mend` what would put it right.
+// What is wrong with a hair mesh, in words for the person who made it. `place` names the element ("root face 12",
+// "column 3, layer 4"), `fault` what is wrong there, `mend` what would put it right.
 struct MeshError : std::runtime_error {
   MeshError(std::string place, std::string fault, std::string mend);
   std::string place, fault, mend;
@@ -44,18 +44,20 @@ struct HairMeshShape {
   int vertexCount() const { return column_first.back(); }
 };
 
-// An edge of the hair mesh. Horizontal edges join neighbouring columns in one layer, vertical ones two layers of a column.
+// An edge of the hair mesh. Horizontal edges join neighbouring columns in one layer, vertical ones two layers of a
+// column.
 struct Edge {
-  int a, b;              // vertices; for a vertical edge a is nearer the root
-  double rest_length;    // m
-  double volume;         // m^3, the share of the adjacent prisms' volume that the edge stands for
+  int a, b;            // vertices; for a vertical edge a is nearer the root
+  double rest_length;  // m
+  double volume;       // m^3, the share of the adjacent prisms' volume that the edge stands for
 };
 
-// A wall: the quadrilateral over one root edge between layers l and l + 1. Corners (a, l), (b, l), (b, l + 1), (a, l + 1).
+// A wall: the quadrilateral over one root edge between layers l and l + 1. Corners (a, l), (b, l), (b, l + 1), (a, l +
+// 1).
 struct Wall {
   std::array<int, 4> v;
-  double volume;      // m^3, its share of the adjacent prisms
-  bool external;      // seen by one prism only
+  double volume;  // m^3, its share of the adjacent prisms
+  bool external;  // seen by one prism only
 };
 
 // Two consecutive walls over one root edge; they hinge on the horizontal edge (v[2], v[3]).
@@ -66,14 +68,16 @@ struct Hinge {
   double volume;         // m^3
 };
 
-// A corner tetrahedron: a prism's corner v[0] and its three edge neighbours, ordered so that the rest volume is positive.
+// A corner tetrahedron: a prism's corner v[0] and its three edge neighbours, ordered so that the rest volume is
+// positive.
 struct CornerTet {
   std::array<int, 4> v;
   double rest_volume;  // m^3, signed: e1 . (e2 x e3) / 6
   double volume;       // m^3, the prism's volume over its corner count
 };
 
-// A prism over a root face between layers `layer` and `layer + 1`. v: the corners of the lower layer, then of the upper.
+// A prism over a root face between layers `layer` and `layer + 1`. v: the corners of the lower layer, then of the
+// upper.
 struct Prism {
   int root_face, layer, corner_count;
   std::array<int, 8> v;
@@ -88,16 +92,16 @@ struct ExternalFace {
 
 struct HairMesh {
   HairMeshShape shape;
-  std::vector<int> bundle_layers;     // per root face: number of layers, the scalp's included (at least 2)
+  std::vector<int> bundle_layers;        // per root face: number of layers, the scalp's included (at least 2)
   std::vector<int> column_of, layer_of;  // per vertex
   std::vector<Prism> prisms;
   std::vector<Edge> horizontal_edges, vertical_edges;  // horizontal: scalp layer left out, roots are prescribed
   std::vector<Wall> walls;
   std::vector<Hinge> hinges;
   std::vector<CornerTet> tets;
-  std::vector<int> external_vertices;     // roots left out
+  std::vector<int> external_vertices;  // roots left out
   std::vector<ExternalFace> external_faces;
-  std::vector<double> vertex_volume;   // m^3 per vertex: its share of the adjacent prisms, the base of lumped mass
+  std::vector<double> vertex_volume;  // m^3 per vertex: its share of the adjacent prisms, the base of lumped mass
   double total_volume = 0;            // m^3
   double hair_length = 0;             // m, the longest column's rest length: the scale of every relative error
 
@@ -106,10 +110,10 @@ struct HairMesh {
   bool isRoot(int vertex) const { return layer_of[vertex] == 0; }
 };
 
-// Builds topology and rest quantities. Throws MeshError on: no face, a face with repeated or dangling columns, duplicate
-// faces, an edge shared by more than two root faces or wound the same way twice, a column shorter than two layers or used by
-// no face, coordinates that are not finite or beyond 1e3 m, zero-area faces, edges shorter than 1e-5 m, a corner tetrahedron
-// whose rest volume is not positive.
+// Builds topology and rest quantities. Throws MeshError on: no face, a face with repeated or dangling columns,
+// duplicate faces, an edge shared by more than two root faces or wound the same way twice, a column shorter than two
+// layers or used by no face, coordinates that are not finite or beyond 1e3 m, zero-area faces, edges shorter than 1e-5
+// m, a corner tetrahedron whose rest volume is not positive.
 HairMesh buildHairMesh(HairMeshShape shape);
 
 }  // namespace sim

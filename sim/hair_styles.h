@@ -13,14 +13,15 @@ namespace sim {
 enum class Style { kShort, kShoulder, kLong };
 enum class Resolution { kLow, kMedium, kHigh };
 
-// The head that a style grows on, in the head joint's frame turned so that y is up, z forward, x to the character's left.
-// `radius` samples the skin as distance from `center` over a latitude-longitude grid: row i is polar angle i * pi /
-// (rows - 1) from +y, column j azimuth j * 2 pi / columns from +z towards +x. Heads are star-shaped from their centre.
+// The head that a style grows on, in the head joint's frame turned so that y is up, z forward, x to the character's
+// left. `radius` samples the skin as distance from `center` over a latitude-longitude grid: row i is polar angle i * pi
+// / (rows - 1) from +y, column j azimuth j * 2 pi / columns from +z towards +x. Heads are star-shaped from their
+// centre.
 struct Scalp {
-  Vec3 center = Vec3::Zero();   // m: the middle of the cranium, level with the top of the ears
-  double head_height = 0.23;    // m, chin to crown: the scale of everything
+  Vec3 center = Vec3::Zero();  // m: the middle of the cranium, level with the top of the ears
+  double head_height = 0.23;   // m, chin to crown: the scale of everything
   int rows = 0, columns = 0;
-  std::vector<double> radius;   // m, rows x columns, row-major
+  std::vector<double> radius;  // m, rows x columns, row-major
 
   // Skin distance in a direction (need not be unit), bilinear.
   double radiusAt(const Vec3& direction) const;
@@ -29,12 +30,12 @@ struct Scalp {
 // Signed distance (m, negative inside) from a point to the body in its rest pose, in the scalp's frame.
 using BodyDistance = std::function<double(const Vec3&)>;
 
-// Grows a hair mesh: hairline at forehead, temples, around the ears and nape; side parting; columns from the parting and
-// crown outermost; ends cut along a smooth surface; nothing nearer to the body than 4 mm except at the roots.
+// Grows a hair mesh: hairline at forehead, temples, around the ears and nape; side parting; columns from the parting
+// and crown outermost; ends cut along a smooth surface; nothing nearer to the body than 4 mm except at the roots.
 // Vertex counts: short 215 / ~570 / ~1,380, shoulder and long 361 / ~900 / 2,305 (within 5 %).
 HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& scalp, const BodyDistance& body);
 
-std::string_view styleName(Style style);            // "short", "shoulder", "long"
+std::string_view styleName(Style style);                 // "short", "shoulder", "long"
 std::string_view resolutionName(Resolution resolution);  // "low", "medium", "high"
 
 }  // namespace sim

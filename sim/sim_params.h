@@ -1,5 +1,5 @@
-// Every number that a person may turn, in one table: sliders, presets, --set, the README's table and the stress run's random
-// draws all read it. A second copy of a parameter is a defect.
+// Every number that a person may turn, in one table: sliders, presets, --set, the README's table and the stress run's
+// random draws all read it. A second copy of a parameter is a defect.
 #pragma once
 
 #include <span>
@@ -18,35 +18,35 @@ enum class Integrator {
 
 // How the linear systems are solved; see linear_solver.h.
 enum class Solver {
-  kPaper,           // Modified PCG, block-diagonal preconditioner, the paper's setting
-  kDiagonal,        // Modified PCG, scalar diagonal
-  kBlockJacobi,     // Modified PCG, 3x3 blocks
-  kColumn,          // Modified PCG, one block-tridiagonal factor a column
-  kIncomplete,      // Modified PCG, incomplete Cholesky
-  kWarped,          // Modified PCG, the rest shape's factor, residuals turned into the rest frame and back
-  kDirect,          // sparse block Cholesky of the current matrix
+  kPaper,        // Modified PCG, block-diagonal preconditioner, the paper's setting
+  kDiagonal,     // Modified PCG, scalar diagonal
+  kBlockJacobi,  // Modified PCG, 3x3 blocks
+  kColumn,       // Modified PCG, one block-tridiagonal factor a column
+  kIncomplete,   // Modified PCG, incomplete Cholesky
+  kWarped,       // Modified PCG, the rest shape's factor, residuals turned into the rest frame and back
+  kDirect,       // sparse block Cholesky of the current matrix
   kCount
 };
 
 enum class Precision { kFloat, kMixed, kDouble, kCount };
 
-// Units are SI. Stiffnesses are moduli (per volume of hair), so that a value means the same at every resolution; damping is
-// a relaxation time (per second), so that it means the same at every time step.
+// Units are SI. Stiffnesses are moduli (per volume of hair), so that a value means the same at every resolution;
+// damping is a relaxation time (per second), so that it means the same at every time step.
 struct SimParams {
   // Material
-  double density = 60;             // kg/m^3 of the hair mesh's volume (hair and the air in it)
-  double stretch_along = 4.0e5;    // Pa, walls along the hair
-  double stretch_across = 6.0e3;   // Pa, walls across the hair
-  double stretch_edge = 2.0e3;     // Pa, horizontal edges
-  double shear = 2.5e3;            // Pa, walls
-  double bend = 0.6;               // Pa m^2, hinge between consecutive walls
-  double volume = 8.0e3;           // Pa, corner tetrahedra
-  double damping = 0.02;           // s, stiffness-proportional, through the condition functions' rates
-  double air_drag = 0.6;           // 1/s, velocity relative to the air lost per second
+  double density = 60;            // kg/m^3 of the hair mesh's volume (hair and the air in it)
+  double stretch_along = 4.0e5;   // Pa, walls along the hair
+  double stretch_across = 6.0e3;  // Pa, walls across the hair
+  double stretch_edge = 2.0e3;    // Pa, horizontal edges
+  double shear = 2.5e3;           // Pa, walls
+  double bend = 0.6;              // Pa m^2, hinge between consecutive walls
+  double volume = 8.0e3;          // Pa, corner tetrahedra
+  double damping = 0.02;          // s, stiffness-proportional, through the condition functions' rates
+  double air_drag = 0.6;          // 1/s, velocity relative to the air lost per second
   // World
-  double gravity = 9.81;           // m/s^2, down
+  double gravity = 9.81;                      // m/s^2, down
   double wind_x = 0, wind_y = 0, wind_z = 0;  // m/s
-  double gust = 0;                 // share of the wind that comes and goes
+  double gust = 0;                            // share of the wind that comes and goes
   // Contact
   double friction = 0.3;           // Coulomb coefficient
   double contact_offset = 0.002;   // m, contacts are held this far off the colliders
@@ -54,17 +54,17 @@ struct SimParams {
   bool collide = true;
   bool minimize_deformation = true;
   // Rest shape
-  bool sag_free = true;            // rest quantities balance gravity in the styled pose
+  bool sag_free = true;  // rest quantities balance gravity in the styled pose
   // Time
-  double time_step = 1.0 / 60;     // s
-  int max_steps_per_frame = 8;     // beyond it time slows down instead of spiralling
+  double time_step = 1.0 / 60;  // s
+  int max_steps_per_frame = 8;  // beyond it time slows down instead of spiralling
   // Numerics
   Integrator integrator = Integrator::kLinearizedEuler;
   Solver solver = Solver::kBlockJacobi;
   Precision precision = Precision::kDouble;
-  double tolerance = 1e-3;         // relative residual of the linear solve
-  int max_iterations = 400;        // of the linear solver
-  int newton_iterations = 4;       // of the nonlinear integrators
+  double tolerance = 1e-3;    // relative residual of the linear solve
+  int max_iterations = 400;   // of the linear solver
+  int newton_iterations = 4;  // of the nonlinear integrators
 };
 
 enum class FieldKind { kReal, kInteger, kSwitch, kChoice };
@@ -72,11 +72,11 @@ enum class FieldKind { kReal, kInteger, kSwitch, kChoice };
 // One field of the table. get/set convert to and from double (a switch is 0 or 1, a choice its index).
 struct ParamField {
   const char* name;
-  const char* group;         // panel heading
+  const char* group;  // panel heading
   const char* unit;
   FieldKind kind;
   double minimum, maximum, default_value;
-  bool logarithmic;           // slider and random draws in log scale
+  bool logarithmic;  // slider and random draws in log scale
   const char* help;
   double (*get)(const SimParams&);
   void (*set)(SimParams&, double);
@@ -89,15 +89,16 @@ std::span<const ParamField> paramFields();
 // The field of that name, or nullptr.
 const ParamField* findParam(std::string_view name);
 
-// Sets a field from text (a number, "on"/"off", or a choice's name). Out-of-range and non-finite values are refused and change
-// nothing. `fault` says what is wrong and what would mend it; it is empty when ok.
+// Sets a field from text (a number, "on"/"off", or a choice's name). Out-of-range and non-finite values are refused and
+// change nothing. `fault` says what is wrong and what would mend it; it is empty when ok.
 struct ParamText {
   bool ok = true;
   std::string fault;
 };
 ParamText setParam(SimParams& params, std::string_view name, std::string_view text);
 
-// Writes a field so that setParam reads the same value back: a number in its shortest exact form, "on"/"off", a choice's name.
+// Writes a field so that setParam reads the same value back: a number in its shortest exact form, "on"/"off", a
+// choice's name.
 std::string paramText(const ParamField& field, const SimParams& params);
 
 }  // namespace sim

@@ -14,7 +14,7 @@ namespace sim {
 
 // What happens around the hair during a step: poses at the step's end.
 struct StepInput {
-  std::span<const Vec3> roots;           // m, world, one per column
+  std::span<const Vec3> roots;            // m, world, one per column
   std::span<const Ellipsoid> ellipsoids;  // with the velocities that brought them there
   double time = 0;                        // s, of the step's end (gusts are a function of it)
 };
@@ -26,17 +26,18 @@ const char* stageName(Stage stage);
 struct StepReport {
   std::array<double, kStageCount> seconds{};  // filled when a clock is given to the context
   int solver_iterations = 0, newton_iterations = 0;
-  double residual = 0;              // relative, at the end of the last linear solve
+  double residual = 0;               // relative, at the end of the last linear solve
   double residual_acceleration = 0;  // m/s^2, largest over vertices
   bool converged = true;
-  int contacts = 0, corrected = 0;   // constrained vertices; vertices moved by position correction
+  int contacts = 0, corrected = 0;  // constrained vertices; vertices moved by position correction
   int minimization_iterations = 0;
-  double max_penetration = 0;        // m, found before correction
-  int recoveries = 0;                // watchdog restored the last good state
+  double max_penetration = 0;  // m, found before correction
+  int recoveries = 0;          // watchdog restored the last good state
 };
 
 // Scratch memory and everything derived from mesh and parameters (matrix patterns, factors). Keep one per hair; a step
-// allocates nothing once it is warm. `clock` returns seconds, for stage times (nullptr: not measured): sim has no clock.
+// allocates nothing once it is warm. `clock` returns seconds, for stage times (nullptr: not measured): sim has no
+// clock.
 class StepContext {
  public:
   explicit StepContext(const HairMesh& mesh, double (*clock)() = nullptr);
@@ -52,8 +53,8 @@ class StepContext {
 };
 
 // Advances `state` by dt seconds. Never leaves a value that is not finite in `state`.
-StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInput& input, double dt, StepContext& context,
-                   HairState& state);
+StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInput& input, double dt,
+                   StepContext& context, HairState& state);
 
 // The rest shape carried to world by a rigid transform, at rest or moving with `velocity` fields zero.
 HairState restState(const HairMesh& mesh, const Eigen::Isometry3d& head_to_world);

@@ -1,0 +1,49 @@
+#include "sim/block_matrix.h"
+
+#include <algorithm>
+
+namespace sim {
+
+int BlockPattern::find(int i, int j) const {
+  const auto begin = columns.begin() + row_first[i], end = columns.begin() + row_first[i + 1];
+  const auto it = std::lower_bound(begin, end, j);
+  return it != end && *it == j ? static_cast<int>(it - columns.begin()) : -1;
+}
+
+BlockPattern makePattern(int size, std::vector<std::pair<int, int>> pairs) {
+  for (auto& [i, j] : pairs) {
+    if (i < j) std::swap(i, j);
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  BlockPattern pattern;
+  pattern.size = size;
+  pattern.row_first.assign(size + 1, 0);
+  for (const auto& [i, j] : pairs) {
+    ++pattern.row_first[i + 1];
+    pattern.columns.push_back(j);
+  }
+  for (int i = 0; i < size; ++i) pattern.row_first[i + 1] += pattern.row_first[i];
+  return pattern;
+}
+
+template <class T>
+void multiply(const BlockMatrix<T>& a, std::span<const V3<T>> x, std::span<V3<T>> y) {
+  const BlockPattern& pattern = *a.pattern;
+  for (int i = 0; i < pattern.size; ++i) y[i] = a.diagonal[i] * x[i];
+  for (int i = 0; i < pattern.size; ++i) {
+    V3<T> sum{0, 0, 0};
+    const V3<T> xi = x[i];
+    for (int k = pattern.row_first[i]; k < pattern.row_first[i + 1]; ++k) {
+      const int j = pattern.columns[k];
+      sum += a.lower[k] * x[j];
+      y[j] += transposeTimes(a.lower[k], xi);
+    }
+    y[i] += sum;
+  }
+}
+
+template void multiply(const BlockMatrix<float>&, std::span<const V3<float>>, std::span<V3<float>>);
+template void multiply(const BlockMatrix<double>&, std::span<const V3<double>>, std::span<V3<double>>);
+
+}  // namespace sim

@@ -1,0 +1,46 @@
+// Symmetric sparse matrix of 3x3 blocks with a fixed pattern: the diagonal and the blocks below it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "sim/forces/vector3.h"
+
+namespace sim {
+
+// Which blocks exist. Row i's blocks below the diagonal are columns[row_first[i] .. row_first[i + 1]), ascending, all <
+// i.
+struct BlockPattern {
+  int size = 0;  // block rows
+  std::vector<int> row_first{0};
+  std::vector<int> columns;
+  int blockCount() const { return static_cast<int>(columns.size()); }
+  // Number of block (i, j), i > j; -1 when the pattern lacks it.
+  int find(int i, int j) const;
+};
+
+// The pattern with a block for every given pair of distinct vertices (either order, repeats allowed).
+BlockPattern makePattern(int size, std::vector<std::pair<int, int>> pairs);
+
+template <class T>
+struct BlockMatrix {
+  const BlockPattern* pattern = nullptr;
+  std::vector<M3<T>> diagonal;  // one per row, symmetric
+  std::vector<M3<T>> lower;     // one per pattern block
+
+  explicit BlockMatrix(const BlockPattern* p = nullptr) : pattern(p) {
+    if (p) diagonal.resize(p->size), lower.resize(p->columns.size());
+  }
+  void setZero() {
+    for (M3<T>& b : diagonal) b = M3<T>{};
+    for (M3<T>& b : lower) b = M3<T>{};
+  }
+};
+
+// y = A x.
+template <class T>
+void multiply(const BlockMatrix<T>& a, std::span<const V3<T>> x, std::span<V3<T>> y);
+
+}  // namespace sim

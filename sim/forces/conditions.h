@@ -1,0 +1,111 @@
+// The condition functions of one element, after Baraff and Witkin, "Large Steps in Cloth Simulation" (1998), and Wu and
+// Yuksel (2016), equations (1) and (2).
+//
+//   energy    E = k C^2 / 2
+//   force     f = -k C dC/dx - d (dC/dt) dC/dx         (d: damping)
+//   Hessian   K = k dC/dx dC/dx^T + (positive semi-definite part of k C d2C/dx2)
+//
+// The second term is kept only for stretch under tension, where it is positive semi-definite as it stands; for shear,
+// bend and volume it is indefinite and dropped, so that K is positive semi-definite in every state, flattened and
+// inverted ones included.
+//
+// x: positions (m). C: value; g[i]: dC/dx_i. Every function is finite for finite input, degenerate elements included.
+#pragma once
+
+#include <cmath>
+
+#include "sim/forces/vector3.h"
+
+namespace sim {
+
+template <class T, int N>
+struct Condition {
+  T value;
+  V3<T> g[N];
+};
+
+// Stretch of an edge (a wall's side): C = |x1 - x0| / L - 1. With a wall's material axes laid along its sides, Baraff
+// and Witkin's |w_u| - 1 and |w_v| - 1 are this condition on its sides, so that sides shared by walls are evaluated
+// once with the walls' summed volume. `tension_slope` is 1 / (L |x1 - x0|): k max(C, 0) times it, across the edge, is
+// the positive semi-definite part of k C d2C/dx2.
+template <class T>
+struct StretchCondition {
+  T value;
+  V3<T> direction;  // dC/dx1 = direction / L = -dC/dx0; zero for an edge without length
+  T inverse_length;
+  T tension_slope;
+};
+
+template <class T>
+StretchCondition<T> stretchCondition(const V3<T>& x0, const V3<T>& x1, T inverse_length) {
+  const V3<T> d = x1 - x0;
+  const T length = std::sqrt(dot(d, d));
+  // An edge collapsed to a millionth of its length has no direction; other forces part its ends.
+  const bool collapsed = length * inverse_length < T(1e-6);
+  const T inverse = collapsed ? T(0) : T(1) / length;
+  return {length * inverse_length - T(1), inverse * d, inverse_length, inverse_length * inverse};
+}
+
+// Shear of a wall with corners x0, x1 (lower), x2, x3 (upper): C = w_u . w_v at its centre, where w_u and w_v are the
+// derivatives of position along the hair and across it, scaled by the rest lengths.
+template <class T>
+Condition<T, 4> shearCondition(const V3<T>* x, T inverse_along, T inverse_across) {
+  const T along = T(0.5) * inverse_along, across = T(0.5) * inverse_across;
+  const V3<T> u = along * ((x[3] - x[0]) + (x[2] - x[1]));
+  const V3<T> v = across * ((x[1] - x[0]) + (x[2] - x[3]));
+  const V3<T> au = across * u, av = along * v;
+  Condition<T, 4> c;
+  c.value = dot(u, v);
+  c.g[0] = T(-1) * (au + av);
+  c.g[1] = au - av;
+  c.g[2] = au + av;
+  c.g[3] = av - au;
+  return c;
+}
+
+// Bend of two consecutive walls about their common horizontal edge x[2]-x[3]: C = (theta - theta_0) / length, the
+// change of curvature. x: (a, b) of the layer below, of the hinge, and above; the walls' far sides act through their
+// midpoints. `smallest_square` (m^4) is the square of the doubled area below which a wall counts as collapsed and its
+// pull is bounded.
+template <class T>
+Condition<T, 6> bendCondition(const V3<T>* x, T rest_angle, T inverse_length, T smallest_square) {
+  const V3<T> p = x[2], q = x[3];
+  const V3<T> m1 = T(0.5) * (x[0] + x[1]), m2 = T(0.5) * (x[4] + x[5]);
+  const V3<T> e = q - p, a = m1 - p, b = m2 - p;
+  const V3<T> n1 = cross(e, a), n2 = cross(b, e);
+  const T e2 = dot(e, e), length = std::sqrt(e2);
+  const T inverse_e = length > T(1e-9) ? T(1) / length : T(0);
+  const T pi = T(3.14159265358979323846);
+  T angle = std::atan2(dot(cross(n1, n2), e) * inverse_e, dot(n1, n2)) - rest_angle;
+  if (angle > pi) angle -= 2 * pi;
+  if (angle < -pi) angle += 2 * pi;
+  const T s1 = dot(n1, n1), s2 = dot(n2, n2);
+  const V3<T> g1 = (-length * inverse_length / (s1 > smallest_square ? s1 : smallest_square)) * n1;
+  const V3<T> g2 = (-length * inverse_length / (s2 > smallest_square ? s2 : smallest_square)) * n2;
+  const T t1 = dot(a, e) * inverse_e * inverse_e, t2 = dot(b, e) * inverse_e * inverse_e;
+  Condition<T, 6> c;
+  c.value = angle * inverse_length;
+  c.g[0] = c.g[1] = T(0.5) * g1;
+  c.g[4] = c.g[5] = T(0.5) * g2;
+  c.g[2] = (t1 - T(1)) * g1 + (t2 - T(1)) * g2;
+  c.g[3] = (-t1) * g1 + (-t2) * g2;
+  return c;
+}
+
+// The volume force's condition, equation (1): C = e1 . (e2 x e3) / 6 - V0, with equation (2)'s gradient. (The paper
+// prints the forces with the sixth taken into k; here it stays in the gradient, so that f = -k C dC/dx holds to the
+// letter.)
+template <class T>
+Condition<T, 4> volumeCondition(const V3<T>* x, T rest_volume) {
+  const V3<T> e1 = x[1] - x[0], e2 = x[2] - x[0], e3 = x[3] - x[0];
+  const T sixth = T(1) / T(6);
+  Condition<T, 4> c;
+  c.g[1] = sixth * cross(e2, e3);
+  c.g[2] = sixth * cross(e3, e1);
+  c.g[3] = sixth * cross(e1, e2);
+  c.g[0] = T(-1) * (c.g[1] + c.g[2] + c.g[3]);
+  c.value = dot(e1, c.g[1]) - rest_volume;
+  return c;
+}
+
+}  // namespace sim

@@ -1,0 +1,292 @@
+#include "sim/hair_styles_comb.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sim {
+namespace {
+
+constexpr double kRowStep = 0.006;   // m, below the hairline
+constexpr double kInnerGap = 0.006;  // m, between the body and the underside of the hair
+constexpr double kDivide = 0.35;     // hair rooted in front of this backness falls in front of the shoulders
+
+// What one style wants. Heights are in head heights above the scalp's centre.
+struct Cut {
+  double thickness;          // m, of the coat at the sides and the back
+  double front, side, back;  // height of the ends; relative to the shoulders where `from_shoulders`
+  bool from_shoulders, divides;
+};
+
+Cut cutOf(Style style) {
+  switch (style) {
+    case Style::kShort:
+      return {0.024, -0.20, -0.25, -0.40, false, false};
+    case Style::kShoulder:
+      return {0.030, 0.07, 0.07, 0.05, true, false};
+    case Style::kLong:
+      break;
+  }
+  return {0.032, -0.62, -0.85, -1.15, true, true};
+}
+
+double smoothstep(double a, double b, double x) {
+  const double t = std::clamp((x - a) / (b - a), 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+// Moves a point out of the body until it keeps `gap`.
+Vec3 keepOff(const BodyDistance& body, Vec3 p, double gap) {
+  for (int i = 0; i < 4; ++i) {
+    const double d = body(p);
+    if (d >= gap) break;
+    p += (gap - d) * bodyNormal(body, p);
+  }
+  return p;
+}
+
+// Height of the shoulders' tops beside the neck, where hair comes to rest.
+double shoulderHeight(const Scalp& scalp, const BodyDistance& body) {
+  const double unit = scalp.head_height;
+  double sum = 0;
+  for (const double side : {1.0, -1.0}) {
+    double y = -0.45 * unit;
+    while (y > -1.3 * unit && body(scalp.center + Vec3(side * 0.47 * unit, y, -0.1 * unit)) > 0) y -= 0.004;
+    sum += y;
+  }
+  return std::clamp(sum / 2, -1.15 * unit, -0.65 * unit);
+}
+
+// First place off the body on the way in from far behind (toward = 1) or before (toward = -1) at a height.
+double surfaceDepth(const Scalp& scalp, const BodyDistance& body, const Vec3& at, double toward) {
+  const double start = -toward * 1.6 * scalp.head_height;
+  double z = start;
+  for (int i = 0; i < 200; ++i) {
+    const double d = body(scalp.center + Vec3(at.x(), at.y(), z));
+    if (d < 0.004 || z * toward > 0) break;
+    z += toward * std::max(0.6 * d, 0.002);
+  }
+  return z;
+}
+
+struct Comber {
+  Style style;
+  const Scalp& scalp;
+  const BodyDistance& body;
+  const FlowLines& lines;
+  Cut cut;
+  double shoulders;  // m, height above the scalp's centre
+  Coat coat;
+
+  double backness(int sheet) const { return lines.backness(sheet); }
+  double sideOf(int sheet) const { return 2 * sheet < coat.sheets ? 1.0 : -1.0; }
+  bool inFront(int sheet) const { return cut.divides && backness(sheet) < kDivide; }
+
+  double cutHeight(int sheet) const;
+  Vec3 aim(int sheet) const;
+  void fall(int sheet);
+  void fallAll();
+  void relaxInner();
+  void raiseOuter();
+  void measure();
+};
+
+double Comber::cutHeight(int sheet) const {
+  const double q = backness(sheet), unit = scalp.head_height;
+  double height = 0;
+  if (cut.divides && q < kDivide) {
+    height = cut.front - 0.10 * smoothstep(0.0, kDivide, q);
+  } else if (cut.divides) {
+    height = cut.side + (cut.back - cut.side) * smoothstep(kDivide, 1.0, q);
+  } else {
+    height = q < 0.4 ? cut.front + (cut.side - cut.front) * smoothstep(0.0, 0.4, q)
+                     : cut.side + (cut.back - cut.side) * smoothstep(0.4, 1.0, q);
+  }
+  return height * unit + (cut.from_shoulders ? shoulders : 0.0);
+}
+
+// Where a sheet passes the height of the shoulders: in front of them, or behind.
+Vec3 Comber::aim(int sheet) const {
+  const double q = backness(sheet), unit = scalp.head_height;
+  Vec3 p(0, shoulders - 0.06 * unit, 0);
+  if (inFront(sheet)) {
+    p.x() = sideOf(sheet) * (0.36 + 0.20 * q / kDivide) * unit;
+    p.z() = surfaceDepth(scalp, body, p, -1) + 2 * kInnerGap;
+  } else {
+    const double r = (q - kDivide) / (1 - kDivide);
+    p.x() = sideOf(sheet) * 0.52 * unit * (1 - std::pow(r, 1.15));
+    p.z() = surfaceDepth(scalp, body, p, 1) - 2 * kInnerGap;
+  }
+  return scalp.center + p;
+}
+
+// Follows gravity from the hairline: stiff enough to turn gently, sliding over what is in the way.
+void Comber::fall(int sheet) {
+  const int last_skin = coat.scalp_rows - 1;
+  Vec3 p = coat.inner[coat.index(sheet, last_skin)];
+  Vec3 heading = (p - coat.inner[coat.index(sheet, last_skin - 2)]).normalized();
+  const Vec3 goal = cut.divides ? aim(sheet) : Vec3(Vec3::Zero());
+  for (int row = coat.scalp_rows; row < coat.rows; ++row) {
+    Vec3 wish(0, -1, 0);
+    const double above = p.y() - goal.y();
+    if (cut.divides && above > 0.01) {
+      Vec3 slope = (goal - p) / above;
+      slope.y() = 0;
+      wish += slope * std::min(1.0, 1.2 / std::max(slope.norm(), 1e-9));
+    }
+    heading = (0.88 * heading + 0.12 * wish.normalized()).normalized();
+    p += kRowStep * heading;
+    const double gap = kInnerGap * smoothstep(0, 5, row - last_skin);
+    const double d = body(p);
+    if (d < gap) {
+      const Vec3 n = bodyNormal(body, p);
+      p = keepOff(body, p, gap);
+      heading = (heading - std::min(0.0, heading.dot(n)) * n).normalized();
+    }
+    coat.inner[coat.index(sheet, row)] = p;
+  }
+}
+
+void Comber::fallAll() {
+  double lowest = 1e9;
+  for (int s = 0; s < coat.sheets; ++s) lowest = std::min(lowest, cutHeight(s));
+  const int below = static_cast<int>(1.25 * (0.35 * scalp.head_height - lowest) / kRowStep) + 8;
+  coat.rows = coat.scalp_rows + below;
+  coat.inner.resize(static_cast<std::size_t>(coat.sheets) * coat.rows);
+  for (int s = 0; s < coat.sheets; ++s) {
+    for (int r = 0; r < coat.scalp_rows; ++r) coat.inner[coat.index(s, r)] = lines.at(s, r);
+    fall(s);
+  }
+}
+
+// Smooths the part below the hairline along and across the sheets, and puts it back off the body. Two opposite
+// strengths in turn (Taubin 1995) smooth without pulling the curtain in around the neck.
+void Comber::relaxInner() {
+  std::vector<Vec3> next = coat.inner;
+  const int first = coat.scalp_rows;
+  const int seam_left = static_cast<int>(kDivide * (coat.sheets / 2));
+  const auto parted = [&](int s, int other, int row) {
+    if (!cut.divides || coat.inner[coat.index(s, row)].y() - scalp.center.y() > shoulders + 0.25 * scalp.head_height)
+      return false;
+    return inFront(std::clamp(s, 0, coat.sheets - 1)) != inFront(std::clamp(other, 0, coat.sheets - 1));
+  };
+  (void)seam_left;
+  for (int sweep = 0; sweep < 60; ++sweep) {
+    const double strength = sweep % 2 == 0 ? 0.5 : -0.47;
+    for (int s = 0; s < coat.sheets; ++s) {
+      for (int r = first; r < coat.rows; ++r) {
+        const Vec3& p = coat.inner[coat.index(s, r)];
+        Vec3 sum = Vec3::Zero();
+        double weight = 0;
+        if (r + 1 < coat.rows) {
+          sum += coat.inner[coat.index(s, r - 1)] + coat.inner[coat.index(s, r + 1)];
+          weight += 2;
+        }
+        if (s > 0 && s + 1 < coat.sheets && !parted(s, s - 1, r) && !parted(s, s + 1, r)) {
+          sum += coat.inner[coat.index(s - 1, r)] + coat.inner[coat.index(s + 1, r)];
+          weight += 2;
+        }
+        next[coat.index(s, r)] = weight > 0 ? Vec3(p + strength * (sum / weight - p)) : p;
+      }
+    }
+    if (strength < 0) {
+      for (int s = 0; s < coat.sheets; ++s)
+        for (int r = first; r < coat.rows; ++r) {
+          Vec3& p = next[coat.index(s, r)];
+          p = keepOff(body, p, kInnerGap * smoothstep(0, 5, r - first + 1));
+        }
+    }
+    std::swap(coat.inner, next);
+  }
+}
+
+void Comber::raiseOuter() {
+  std::vector<Vec3> normal(coat.inner.size());
+  for (int s = 0; s < coat.sheets; ++s) {
+    for (int r = 0; r < coat.rows; ++r) {
+      int before = std::max(s - 1, 0), after = std::min(s + 1, coat.sheets - 1);
+      if (cut.divides && inFront(before) != inFront(after)) {
+        if (inFront(before) != inFront(s)) before = s;
+        if (inFront(after) != inFront(s)) after = s;
+      }
+      const Vec3 across = coat.inner[coat.index(after, r)] - coat.inner[coat.index(before, r)];
+      const Vec3 down =
+          coat.inner[coat.index(s, std::min(r + 1, coat.rows - 1))] - coat.inner[coat.index(s, std::max(r - 1, 0))];
+      normal[coat.index(s, r)] = down.cross(across).normalized();
+    }
+  }
+  coat.outer = normal;
+  for (int sweep = 0; sweep < 40; ++sweep) {
+    for (int s = 0; s < coat.sheets; ++s) {
+      for (int r = 0; r < coat.rows; ++r) {
+        Vec3 sum = 2 * normal[coat.index(s, r)];
+        for (const int other : {s - 1, s + 1}) {
+          if (other >= 0 && other < coat.sheets &&
+              !(cut.divides && r > coat.scalp_rows + 8 && inFront(other) != inFront(s)))
+            sum += normal[coat.index(other, r)];
+        }
+        if (r > 0) sum += normal[coat.index(s, r - 1)];
+        if (r + 1 < coat.rows) sum += normal[coat.index(s, r + 1)];
+        coat.outer[coat.index(s, r)] = sum.normalized();
+      }
+    }
+    std::swap(normal, coat.outer);
+  }
+  for (int s = 0; s < coat.sheets; ++s) {
+    const double around = 0.42 + 0.58 * smoothstep(0.0, 0.28, backness(s));
+    for (int r = 0; r < coat.rows; ++r) {
+      const double along = 0.72 + 0.28 * smoothstep(0, coat.scalp_rows, r);
+      const Vec3& n = normal[coat.index(s, r)];
+      coat.outer[coat.index(s, r)] = coat.inner[coat.index(s, r)] + cut.thickness * around * along * n;
+    }
+  }
+}
+
+void Comber::measure() {
+  coat.travelled.assign(coat.inner.size(), 0.0);
+  coat.cut_row.assign(coat.sheets, coat.rows - 1.0);
+  coat.short_row.assign(coat.sheets, coat.rows - 1.0);
+  for (int s = 0; s < coat.sheets; ++s) {
+    const double ends = scalp.center.y() + cutHeight(s),
+                 rests = scalp.center.y() + shoulders + 0.10 * scalp.head_height;
+    bool cut_found = false, rest_found = false;
+    for (int r = 1; r < coat.rows; ++r) {
+      const Vec3 &a = coat.inner[coat.index(s, r - 1)], &b = coat.inner[coat.index(s, r)];
+      coat.travelled[coat.index(s, r)] = coat.travelled[coat.index(s, r - 1)] + (b - a).norm();
+      if (r < coat.scalp_rows + 2) continue;
+      const double drop = std::max(a.y() - b.y(), 1e-9);
+      if (!cut_found && b.y() <= ends) {
+        cut_found = true;
+        coat.cut_row[s] = r - 1 + std::clamp((a.y() - ends) / drop, 0.0, 1.0);
+      }
+      if (!rest_found && b.y() <= rests) {
+        rest_found = true;
+        coat.short_row[s] = r - 1 + std::clamp((a.y() - rests) / drop, 0.0, 1.0);
+      }
+    }
+  }
+  if (cut.divides) coat.divide = kDivide;
+}
+
+}  // namespace
+
+Vec3 bodyNormal(const BodyDistance& body, const Vec3& p) {
+  constexpr double kStep = 0.002;  // m: wide enough to look over the cells of a sampled distance
+  const Vec3 gradient(body(p + Vec3(kStep, 0, 0)) - body(p - Vec3(kStep, 0, 0)),
+                      body(p + Vec3(0, kStep, 0)) - body(p - Vec3(0, kStep, 0)),
+                      body(p + Vec3(0, 0, kStep)) - body(p - Vec3(0, 0, kStep)));
+  const double size = gradient.norm();
+  return size > 1e-12 ? Vec3(gradient / size) : Vec3::UnitY();
+}
+
+Coat combCoat(Style style, const Scalp& scalp, const BodyDistance& body, const FlowLines& lines) {
+  Comber comber{style, scalp, body, lines, cutOf(style), shoulderHeight(scalp, body), {}};
+  comber.coat.sheets = lines.sheets;
+  comber.coat.scalp_rows = lines.rows;
+  comber.fallAll();
+  comber.relaxInner();
+  comber.raiseOuter();
+  comber.measure();
+  return comber.coat;
+}
+
+}  // namespace sim

@@ -1,0 +1,163 @@
+#include "sim/hair_styles_roots.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace sim {
+namespace {
+
+constexpr int kHalfSheets = 40;
+constexpr int kRows = 33;
+
+// A bare line of scalp this wide shows along the parting.
+constexpr double kPartingHalfWidth = 0.0018;  // m
+
+struct Landmark {
+  double azimuth, elevation;  // degrees; the left side's, mirrored for the right
+};
+
+// The hairline from the temple over the ear to the nape, seen from the middle of the cranium level with the top of the
+// ears.
+constexpr std::array<Landmark, 7> kHairline{
+    {{57, 17}, {74, 9}, {95, 10}, {116, -4}, {136, -20}, {158, -30}, {180, -33}}};
+
+// Both ends of the parting: front hairline, slightly left of the middle, and crown.
+constexpr Landmark kPartingFront{15, 47};
+constexpr Landmark kCrown{176, 62};
+
+// The forehead's hairline bulges towards these.
+constexpr Landmark kForeheadLeft{43, 43};
+constexpr Landmark kForeheadRight{-36, 55};
+
+Vec3 direction(const Landmark& l) {
+  return scalpDirection(l.azimuth, l.elevation);
+}
+
+Vec3 slerp(const Vec3& a, const Vec3& b, double t) {
+  const double angle = std::acos(std::clamp(a.dot(b), -1.0, 1.0));
+  if (angle < 1e-6) return a;
+  return (std::sin((1 - t) * angle) * a + std::sin(t * angle) * b) / std::sin(angle);
+}
+
+// Uniform Catmull-Rom through the landmarks; x in [0, 1] runs over the whole hairline.
+Landmark hairlineAt(double x) {
+  const int last = static_cast<int>(kHairline.size()) - 1;
+  const double place = std::clamp(x, 0.0, 1.0) * last;
+  const int i = std::min(static_cast<int>(place), last - 1);
+  const double t = place - i;
+  const auto knot = [&](int k) -> Landmark {
+    if (k < 0)
+      return {2 * kHairline[0].azimuth - kHairline[1].azimuth, 2 * kHairline[0].elevation - kHairline[1].elevation};
+    if (k > last) return {360 - kHairline[last - 1].azimuth, kHairline[last - 1].elevation};
+    return kHairline[k];
+  };
+  const auto blend = [t](double a, double b, double c, double d) {
+    return 0.5 * (2 * b + t * (c - a) + t * t * (2 * a - 5 * b + 4 * c - d) + t * t * t * (3 * (b - c) + d - a));
+  };
+  const Landmark a = knot(i - 1), b = knot(i), c = knot(i + 1), d = knot(i + 2);
+  return {blend(a.azimuth, b.azimuth, c.azimuth, d.azimuth), blend(a.elevation, b.elevation, c.elevation, d.elevation)};
+}
+
+// Points evenly spaced by arc length along a polyline.
+std::vector<Vec3> resample(const std::vector<Vec3>& line, int count) {
+  std::vector<double> length(line.size(), 0.0);
+  for (std::size_t i = 1; i < line.size(); ++i) length[i] = length[i - 1] + (line[i] - line[i - 1]).norm();
+  std::vector<Vec3> out(count);
+  std::size_t i = 1;
+  for (int k = 0; k < count; ++k) {
+    const double want = length.back() * k / (count - 1);
+    while (i + 1 < line.size() && length[i] < want) ++i;
+    const double span = length[i] - length[i - 1];
+    const double t = span > 0 ? std::clamp((want - length[i - 1]) / span, 0.0, 1.0) : 0.0;
+    out[k] = (1 - t) * line[i - 1] + t * line[i];
+  }
+  return out;
+}
+
+// The hairline's points for one side (side = 1 left, -1 right), evenly spaced from the temple to the nape.
+std::vector<Vec3> hairlineDirections(const Scalp& scalp, double side) {
+  std::vector<Vec3> fine(121);
+  for (std::size_t i = 0; i < fine.size(); ++i) {
+    const Landmark l = hairlineAt(static_cast<double>(i) / (fine.size() - 1));
+    fine[i] = skinPoint(scalp, scalpDirection(side * l.azimuth, l.elevation));
+  }
+  std::vector<Vec3> out = resample(fine, kHalfSheets + 1);
+  for (Vec3& p : out) p = (p - scalp.center).normalized();
+  return out;
+}
+
+// One bank of the parting, from the front to the crown, where both banks meet.
+std::vector<Vec3> bankDirections(const Scalp& scalp, double side) {
+  const Vec3 front = direction(kPartingFront), crown = direction(kCrown);
+  const Vec3 across = side * crown.cross(front).normalized();
+  std::vector<Vec3> out(kHalfSheets + 1);
+  for (int i = 0; i <= kHalfSheets; ++i) {
+    const double q = static_cast<double>(i) / kHalfSheets;
+    const Vec3 middle = slerp(front, crown, q);
+    const double width = kPartingHalfWidth * std::min(1.0, (1 - q) / 0.08);
+    out[i] = (middle + across * (width / scalp.radiusAt(middle))).normalized();
+  }
+  return out;
+}
+
+// Lets the inner points of one half settle between their neighbours, so that lines leave the parting sideways and
+// spread evenly. The parting, the hairline, the forehead line and the middle line (lines 0 and kHalfSheets) stay.
+void settle(std::vector<std::vector<Vec3>>& half) {
+  for (int sweep = 0; sweep < 60; ++sweep) {
+    for (int s = 1; s < kHalfSheets; ++s) {
+      for (int r = 1; r + 1 < kRows; ++r) {
+        const Vec3 mean = half[s - 1][r] + half[s + 1][r] + half[s][r - 1] + half[s][r + 1];
+        half[s][r] = (0.4 * half[s][r] + 0.6 * mean.normalized()).normalized();
+      }
+    }
+  }
+}
+
+}  // namespace
+
+double FlowLines::backness(int sheet) const {
+  const int middle = sheets / 2;
+  return 1.0 - static_cast<double>(std::abs(sheet - middle)) / middle;
+}
+
+Vec3 scalpDirection(double azimuth, double elevation) {
+  const double a = azimuth * std::numbers::pi / 180, e = elevation * std::numbers::pi / 180;
+  return {std::cos(e) * std::sin(a), std::sin(e), std::cos(e) * std::cos(a)};
+}
+
+Vec3 skinPoint(const Scalp& scalp, const Vec3& direction) {
+  return scalp.center + direction.normalized() * scalp.radiusAt(direction);
+}
+
+FlowLines traceFlowLines(const Scalp& scalp) {
+  FlowLines lines{2 * kHalfSheets + 1, kRows, {}};
+  lines.points.resize(static_cast<std::size_t>(lines.sheets) * lines.rows);
+  for (const double side : {1.0, -1.0}) {
+    const std::vector<Vec3> bank = bankDirections(scalp, side), hairline = hairlineDirections(scalp, side);
+    const Vec3 forehead = direction(side > 0 ? kForeheadLeft : kForeheadRight);
+    std::vector<std::vector<Vec3>> half(kHalfSheets + 1, std::vector<Vec3>(kRows));
+    for (int s = 0; s <= kHalfSheets; ++s) {
+      const double q = static_cast<double>(s) / kHalfSheets;
+      const Vec3 between = slerp(bank[s], hairline[s], 0.5);
+      const Vec3 bend = slerp(forehead, between, std::min(1.0, q / 0.35));
+      for (int r = 0; r < kRows; ++r) {
+        const double t = static_cast<double>(r) / (kRows - 1);
+        half[s][r] = slerp(slerp(bank[s], bend, t), slerp(bend, hairline[s], t), t);
+      }
+    }
+    settle(half);
+    for (int s = 0; s <= kHalfSheets; ++s) {
+      for (Vec3& d : half[s]) d = skinPoint(scalp, d);
+      const std::vector<Vec3> even = resample(half[s], kRows);
+      const int sheet = side > 0 ? s : 2 * kHalfSheets - s;
+      // A chord between two skin points runs under the skin: put the samples back on it.
+      for (int r = 0; r < kRows; ++r)
+        lines.points[static_cast<std::size_t>(sheet) * kRows + r] = skinPoint(scalp, even[r] - scalp.center);
+    }
+  }
+  return lines;
+}
+
+}  // namespace sim
