@@ -1,29 +1,42 @@
 // What the command line says.
 #pragma once
 
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace app {
 
+// An option's value that cannot be used; what() is the whole message. Exit code kExitUsage.
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 struct Options {
-  std::string scene;                       // scene.json, or empty
+  std::string scene;  // scene.json, or empty
   bool headless = false;
   int frames = 120;
+  bool frames_given = false;  // a window runs on when not
   int width = 1280, height = 720;
   bool size_given = false;
   std::string out = "frames";
   std::vector<std::pair<std::string, std::string>> set;  // --set name=value
-  std::string style, resolution;           // empty: the scene's
-  std::string hair, motion, parts;         // files
-  double speed = -1, fps = -1;             // negative: the scene's
+  std::string style, resolution;                         // empty: the scene's
+  std::string hair, motion, parts, clip;                 // files; name of a clip
+  double speed = -1, fps = -1;                           // negative: the scene's
+  double start = -1;                                     // s into the clip; negative: the scene's
   int strands = -1;
-  std::string camera;                      // front, side, back, top, three-quarter or "ex,ey,ez,tx,ty,tz"
-  std::string report;                      // JSON file of timings and counters
-  std::string strand_path;                 // geometry or pulling
+  std::string camera;       // front, side, back, top, three-quarter or "ex,ey,ez,tx,ty,tz"
+  std::string framing;      // head, bust or figure
+  std::string report;       // JSON file of timings and counters
+  std::string strand_path;  // geometry or pulling
   std::string preset;
+  std::string debug;       // debug views, comma separated
+  std::string screenshot;  // PNG of the last frame, panels included
   bool no_images = false;
+  bool hide_panels = false;
+  bool travel = false;  // keep the clip's travel over the ground
 };
 
 // Parses argv with CLI11. Returns false and an exit code when the program should end (help, usage fault).

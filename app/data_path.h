@@ -1,0 +1,26 @@
+// Where the program's own files are: shaders, scenes, presets, clips, hair meshes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace app {
+
+// The data folder: the environment's HAIRMESH_DATA when set, else the source tree the program was built from.
+std::string dataFolder();
+
+// A file of the data folder, for instance dataPath("shaders").
+std::string dataPath(const std::string& relative);
+
+// Finds a file that a person named: as given when absolute, else beside `base_file` (a scene; may be empty: then the
+// working folder), then in the data folder, then in assets/`kind` of the data folder ("clips", "hair", "scenes",
+// "presets"). Returns the name as given when nothing is found, so that the reader's message shows what was asked for.
+std::string findFile(const std::string& name, const std::string& base_file, const std::string& kind);
+
+// Names of the files of assets/`kind` that end in one of `endings`, full paths, sorted.
+std::vector<std::string> listAssets(const std::string& kind, const std::vector<std::string>& endings);
+
+// "walk" of "/a/b/walk.bvh".
+std::string stem(const std::string& path);
+
+}  // namespace app

@@ -1,0 +1,132 @@
+#include "app/json_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "sim/field_text.h"
+
+namespace app {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr int kDeepest = 32;
+constexpr std::size_t kLongestQuote = 40;
+
+std::string lineAndColumn(std::string_view text, std::size_t byte) {
+  const std::string_view before = text.substr(0, std::min(byte ? byte - 1 : 0, text.size()));
+  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+  const std::size_t line_start = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
+  return "line " + std::to_string(line) + ", column " + std::to_string(before.size() - line_start + 1);
+}
+
+// The library's own words end with the reason after the last of its prefixes.
+std::string reason(const std::string& words) {
+  const std::size_t dash = words.find("- ");
+  return dash == std::string::npos ? words : words.substr(dash + 2);
+}
+
+std::string quote(const json& value) {
+  const std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
+  return text.size() <= kLongestQuote ? text : text.substr(0, kLongestQuote) + "...";
+}
+
+}  // namespace
+
+json parseJson(std::string_view text, const std::string& file) {
+  std::vector<std::vector<std::string>> open_keys;
+  const auto watch = [&](int depth, json::parse_event_t event, json& parsed) {
+    if (depth > kDeepest) {
+      throw InputError(file, "", "values are nested more than " + std::to_string(kDeepest) + " deep",
+                       "no scene or preset needs that; flatten it");
+    }
+    if (event == json::parse_event_t::object_start) open_keys.emplace_back();
+    if (event == json::parse_event_t::object_end && !open_keys.empty()) open_keys.pop_back();
+    if (event == json::parse_event_t::key) {
+      const std::string key = parsed.get<std::string>();
+      auto& keys = open_keys.back();
+      if (std::find(keys.begin(), keys.end(), key) != keys.end()) {
+        throw InputError(file, "key '" + key.substr(0, kLongestQuote) + "'", "is written twice in one object",
+                         "keep one of the two");
+      }
+      keys.push_back(key);
+    }
+    return true;
+  };
+  try {
+    return json::parse(text, watch);
+  } catch (const json::parse_error& error) {
+    throw InputError(file, lineAndColumn(text, error.byte), "not valid JSON: " + reason(error.what()),
+                     "mend the syntax there");
+  } catch (const json::exception& error) {
+    throw InputError(file, "", std::string("not usable JSON: ") + error.what(), "write numbers that fit a double");
+  }
+}
+
+void JsonPlace::refuse(const std::string& fault, const std::string& mend) const {
+  throw InputError(file_, pointer_.empty() ? "/" : pointer_, fault, mend);
+}
+
+void JsonPlace::expectObject(std::span<const std::string_view> known) const {
+  if (!value_->is_object()) refuse("is " + quote(*value_) + ", not an object", "write { ... } here");
+  for (const auto& item : value_->items()) {
+    if (std::find(known.begin(), known.end(), item.key()) == known.end()) {
+      refuse("unknown key '" + item.key().substr(0, kLongestQuote) + "'", sim::nameHint(item.key(), known));
+    }
+  }
+}
+
+std::size_t JsonPlace::arraySize(std::size_t limit) const {
+  if (!value_->is_array()) refuse("is " + quote(*value_) + ", not an array", "write [ ... ] here");
+  if (value_->size() > limit)
+    refuse("has " + std::to_string(value_->size()) + " entries", "at most " + std::to_string(limit) + " are allowed");
+  return value_->size();
+}
+
+double JsonPlace::number(double minimum, double maximum) const {
+  const std::string range = "write a number from " + sim::numberText(minimum) + " to " + sim::numberText(maximum);
+  if (!value_->is_number()) refuse("is " + quote(*value_) + ", not a number", range);
+  const double number = value_->get<double>();
+  if (!std::isfinite(number) || number < minimum || number > maximum) refuse("is " + quote(*value_), range);
+  return number;
+}
+
+bool JsonPlace::flag() const {
+  if (!value_->is_boolean()) refuse("is " + quote(*value_), "write true or false");
+  return value_->get<bool>();
+}
+
+std::string JsonPlace::text() const {
+  if (!value_->is_string()) refuse("is " + quote(*value_) + ", not a text", "write it in double quotes");
+  const std::string& text = value_->get_ref<const std::string&>();
+  if (text.find('\0') != std::string::npos) refuse("holds a zero byte", "remove it");
+  return text;
+}
+
+std::array<double, 3> JsonPlace::vector(double minimum, double maximum) const {
+  if (!value_->is_array() || value_->size() != 3) refuse("is " + quote(*value_), "write three numbers [x, y, z]");
+  return {at(0).number(minimum, maximum), at(1).number(minimum, maximum), at(2).number(minimum, maximum)};
+}
+
+std::string JsonPlace::choice(std::initializer_list<std::string_view> choices) const {
+  const std::string chosen = text();
+  if (std::find(choices.begin(), choices.end(), chosen) == choices.end()) {
+    refuse("is " + quote(*value_), sim::nameHint(chosen, {choices.begin(), choices.size()}));
+  }
+  return chosen;
+}
+
+std::string JsonPlace::fieldText() const {
+  if (value_->is_boolean()) return value_->get<bool>() ? "on" : "off";
+  if (value_->is_number()) return sim::numberText(value_->get<double>());
+  if (value_->is_string()) return text();
+  if (value_->is_array() && value_->size() == 3) {
+    const auto three = vector(-1e9, 1e9);
+    return sim::numberText(three[0]) + "," + sim::numberText(three[1]) + "," + sim::numberText(three[2]);
+  }
+  refuse("is " + quote(*value_), "write a number, true or false, a name, or three numbers");
+}
+
+}  // namespace app

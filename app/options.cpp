@@ -1,0 +1,192 @@
+#include "app/options.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <iostream>
+
+#include "app/errors.h"
+#include "app/parameter_table.h"
+#include "sim/field_text.h"
+
+namespace app {
+
+namespace {
+
+constexpr int kSmallestSide = 16, kLargestSide = 8192, kMostFrames = 1000000;
+
+// "1280x720".
+bool parseSize(const std::string& text, int& width, int& height) {
+  const std::size_t cross = text.find('x');
+  double w = 0, h = 0;
+  if (cross == std::string::npos || !sim::parseNumber(text.substr(0, cross), w) ||
+      !sim::parseNumber(text.substr(cross + 1), h)) {
+    return false;
+  }
+  const auto fits = [](double side) {
+    return side == static_cast<int>(side) && side >= kSmallestSide && side <= kLargestSide;
+  };
+  if (!(w >= kSmallestSide && w <= kLargestSide && h >= kSmallestSide && h <= kLargestSide && fits(w) && fits(h))) {
+    return false;
+  }
+  width = static_cast<int>(w);
+  height = static_cast<int>(h);
+  return true;
+}
+
+const char* const kExamples = R"(Examples:
+  hairmesh                                        the default scene in a window
+  hairmesh assets/scenes/head_shake.json          another scene
+  hairmesh --style long --resolution high --motion walk.bvh
+  hairmesh --headless --frames 240 --size 1280x720 --out frames --style short
+  hairmesh --headless --frames 600 --no-images --report timings.json
+  hairmesh --motion dance.mot --parts female-objs --speed 2 --set friction=0.6 --set solver=paper
+
+Exit codes: 0 fine, 1 OpenGL or numerical fault, 2 usage, 3 no OpenGL context, 4 a file that cannot be used.)";
+
+}  // namespace
+
+bool parseOptions(int argc, char** argv, Options& options, int& exit_code) {
+  CLI::App parser{"Real-time hair mesh simulation and rendering (Wu and Yuksel 2016), in a window or headless."};
+  parser.name("hairmesh");
+  parser.footer(kExamples);
+  parser.get_formatter()->column_width(34);
+  std::string size;
+  std::vector<std::string> sets;
+  bool list_parameters = false;
+
+  parser.add_option("scene", options.scene, "Scene file (JSON); without one the default scene is shown")
+      ->option_text("[SCENE.json]");
+
+  const char* what = "What is shown";
+  parser.add_option("--style", options.style, "Hair style: short, shoulder or long")
+      ->group(what)
+      ->option_text("NAME")
+      ->check(CLI::IsMember({"short", "shoulder", "long"}));
+  parser.add_option("--resolution", options.resolution, "Hair mesh resolution: low, medium or high")
+      ->group(what)
+      ->option_text("NAME")
+      ->check(CLI::IsMember({"low", "medium", "high"}));
+  parser.add_option("--hair", options.hair, "Hair mesh file (OBJ, one group a layer) in place of a style")
+      ->group(what)
+      ->option_text("FILE");
+  parser.add_option("--motion", options.motion, "Motion: BVH, glTF, FBX, or ARCSim .mot with --parts")
+      ->group(what)
+      ->option_text("FILE");
+  parser.add_option("--parts", options.parts, "Folder of body0000.obj ... for a .mot motion")
+      ->group(what)
+      ->option_text("DIR");
+  parser.add_option("--clip", options.clip, "Clip of a motion file that holds several")
+      ->group(what)
+      ->option_text("NAME");
+  parser.add_option("--preset", options.preset, "Preset by name or file")->group(what)->option_text("NAME");
+  parser.add_option("--set", sets, "Set a parameter of the tables; may be given many times")
+      ->group(what)
+      ->option_text("NAME=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false);
+  parser.add_flag("--parameters", list_parameters, "Print the parameter tables and end")->group(what);
+
+  const char* motion = "Playback";
+  parser.add_option("--speed", options.speed, "Playback speed of the motion, 0 to 100")
+      ->group(motion)
+      ->option_text("X")
+      ->check(CLI::Range(0.0, 100.0));
+  parser.add_option("--fps", options.fps, "Frames per second of a headless run")
+      ->group(motion)
+      ->option_text("N")
+      ->check(CLI::Range(1.0, 1000.0));
+  parser.add_option("--start", options.start, "Where in the clip to begin, seconds")
+      ->group(motion)
+      ->option_text("S")
+      ->check(CLI::Range(0.0, 1e5));
+  parser.add_flag("--travel", options.travel, "Let the figure travel over the ground as the clip does")->group(motion);
+
+  const char* picture = "Picture";
+  parser.add_option("--size", size, "Picture or window size in pixels, for instance 1280x720")
+      ->group(picture)
+      ->option_text("WxH");
+  parser
+      .add_option("--camera", options.camera,
+                  "front, three-quarter, side, back, top, or eye and target in metres: ex,ey,ez,tx,ty,tz")
+      ->group(picture)
+      ->option_text("VIEW");
+  parser.add_option("--framing", options.framing, "How much is in the picture: head, bust or figure")
+      ->group(picture)
+      ->option_text("NAME")
+      ->check(CLI::IsMember({"head", "bust", "figure"}));
+  parser.add_option("--strands", options.strands, "Strands to draw over a whole head")
+      ->group(picture)
+      ->option_text("N")
+      ->check(CLI::Range(0, 300000));
+  parser.add_option("--strand-path", options.strand_path, "Shader stage that grows strands: geometry or pulling")
+      ->group(picture)
+      ->option_text("NAME")
+      ->check(CLI::IsMember({"geometry", "pulling"}));
+  parser
+      .add_option("--debug", options.debug,
+                  "Debug views, comma separated: mesh, external, tets, ellipsoids, contacts, velocities")
+      ->group(picture)
+      ->option_text("LIST");
+
+  const char* output = "Running";
+  parser.add_flag("--headless", options.headless, "No window: render frames to PNG files (EGL, needs no display)")
+      ->group(output);
+  CLI::Option* frames =
+      parser.add_option("--frames", options.frames, "Frames of a headless run (120); a window ends after as many")
+          ->group(output)
+          ->option_text("N")
+          ->check(CLI::Range(1, kMostFrames));
+  parser.add_option("--out", options.out, "Folder for headless frames (frames)")->group(output)->option_text("DIR");
+  parser.add_flag("--no-images", options.no_images, "Headless: simulate only, create no OpenGL context")->group(output);
+  parser.add_option("--report", options.report, "Write timings per stage and counters of every frame as JSON")
+      ->group(output)
+      ->option_text("FILE.json");
+  parser.add_option("--screenshot", options.screenshot, "Write the last frame, panels included, when the run ends")
+      ->group(output)
+      ->option_text("FILE.png");
+  parser.add_flag("--hide-panels", options.hide_panels, "Start the window without panels")->group(output);
+  parser.set_version_flag("--version", "hairmesh 0.1")->group(output);
+
+  try {
+    parser.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
+      exit_code = parser.exit(error);
+      return false;
+    }
+    std::cerr << "hairmesh: " << error.what() << "; hairmesh --help lists the options\n";
+    exit_code = kExitUsage;
+    return false;
+  }
+  const auto fail = [&](const std::string& message) {
+    std::cerr << "hairmesh: " << message << "\n";
+    exit_code = kExitUsage;
+    return false;
+  };
+  if (list_parameters) {
+    std::cout << parameterTable();
+    exit_code = kExitFine;
+    return false;
+  }
+  options.frames_given = frames->count() > 0;
+  options.size_given = !size.empty();
+  if (options.size_given && !parseSize(size, options.width, options.height)) {
+    return fail("--size cannot be '" + size + "'; write WIDTHxHEIGHT with sides from " + std::to_string(kSmallestSide) +
+                " to " + std::to_string(kLargestSide) + ", for instance 1280x720");
+  }
+  for (const std::string& text : sets) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      return fail("--set cannot be '" + text + "'; write NAME=VALUE, for instance --set friction=0.5");
+    }
+    options.set.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+  }
+  if (options.no_images && !options.headless) options.headless = true;
+  if (!options.parts.empty() && options.motion.empty() && options.scene.empty()) {
+    return fail("--parts needs a .mot motion; add --motion FILE.mot");
+  }
+  return true;
+}
+
+}  // namespace app

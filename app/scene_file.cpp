@@ -1,0 +1,170 @@
+#include "app/scene_file.h"
+
+#include <filesystem>
+
+#include "app/data_path.h"
+#include "app/json_reader.h"
+#include "app/motion.h"
+#include "app/presets.h"
+
+namespace app {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kLargestFile = std::size_t{16} << 20;
+constexpr double kFarthest = 1000;  // m
+constexpr double kTurn = 2 * 3.14159265358979323846;
+
+Vec3 toVec3(const std::array<double, 3>& values) {
+  return {values[0], values[1], values[2]};
+}
+json fromVec3(const Vec3& v) {
+  return json{v.x(), v.y(), v.z()};
+}
+
+std::string readFileName(const JsonPlace& place, const std::string& kind) {
+  const std::string name = place.text();
+  return name.empty() ? name : findFile(name, place.file(), kind);
+}
+
+CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
+  place.expectObject({"motion", "parts", "clip", "style", "resolution", "hair", "position", "heading", "clip_offset",
+                      "in_place", "look"});
+  CharacterSpec spec;
+  spec.look = look;
+  if (place.has("motion")) spec.motion = place.at("motion").text();
+  if (spec.motion.empty()) place.refuse("names no motion", "give \"motion\" a BVH, glTF, FBX or .mot file");
+  spec.motion = findFile(spec.motion, place.file(), "clips");
+  if (place.has("parts")) spec.parts = readFileName(place.at("parts"), "clips");
+  if (place.has("clip")) spec.clip = place.at("clip").text();
+  if (place.has("style")) spec.style = *parseStyle(place.at("style").choice({"short", "shoulder", "long"}));
+  if (place.has("resolution")) {
+    spec.resolution = *parseResolution(place.at("resolution").choice({"low", "medium", "high"}));
+  }
+  if (place.has("hair")) spec.hair = readFileName(place.at("hair"), "hair");
+  if (place.has("position")) spec.position = toVec3(place.at("position").vector(-kFarthest, kFarthest));
+  if (place.has("heading")) spec.heading = place.at("heading").number(-kTurn, kTurn);
+  if (place.has("clip_offset")) spec.clip_offset = place.at("clip_offset").number(0, 1e5);
+  if (place.has("in_place")) spec.in_place = place.at("in_place").flag();
+  if (place.has("look")) readHairRows(place.at("look"), spec.look);
+  return spec;
+}
+
+CameraSpec readCamera(const JsonPlace& place) {
+  place.expectObject({"view", "framing", "eye", "target", "fov", "follow"});
+  CameraSpec camera;
+  if (place.has("view")) camera.view = place.at("view").choice({"front", "three-quarter", "side", "back", "top"});
+  if (place.has("framing")) camera.framing = place.at("framing").choice({"head", "bust", "figure"});
+  if (place.has("eye") != place.has("target")) place.refuse("has only one of eye and target", "give both or neither");
+  if (place.has("eye")) {
+    camera.eye = toVec3(place.at("eye").vector(-kFarthest, kFarthest));
+    camera.target = toVec3(place.at("target").vector(-kFarthest, kFarthest));
+    if ((*camera.eye - *camera.target).norm() < 1e-3) place.refuse("has its eye in its target", "move them apart");
+  }
+  if (place.has("fov")) camera.fov = place.at("fov").number(0.05, 2.5);
+  if (place.has("follow")) camera.follow = place.at("follow").flag();
+  return camera;
+}
+
+PlaybackSpec readPlayback(const JsonPlace& place) {
+  place.expectObject({"speed", "loop", "blend", "fps", "settle"});
+  PlaybackSpec playback;
+  if (place.has("speed")) playback.speed = place.at("speed").number(0, kFastestPlayback);
+  if (place.has("loop")) playback.loop = place.at("loop").flag();
+  if (place.has("blend")) playback.blend = place.at("blend").number(0, 10);
+  if (place.has("fps")) playback.fps = place.at("fps").number(kSlowestFps, kFastestFps);
+  if (place.has("settle")) playback.settle = place.at("settle").number(0, 10);
+  return playback;
+}
+
+json writeCharacter(const CharacterSpec& spec) {
+  return {{"motion", spec.motion},
+          {"parts", spec.parts},
+          {"clip", spec.clip},
+          {"style", sim::styleName(spec.style)},
+          {"resolution", sim::resolutionName(spec.resolution)},
+          {"hair", spec.hair},
+          {"position", fromVec3(spec.position)},
+          {"heading", spec.heading},
+          {"clip_offset", spec.clip_offset},
+          {"in_place", spec.in_place},
+          {"look", writeHairRows(spec.look)}};
+}
+
+}  // namespace
+
+std::optional<sim::Style> parseStyle(std::string_view name) {
+  for (const sim::Style style : {sim::Style::kShort, sim::Style::kShoulder, sim::Style::kLong}) {
+    if (name == sim::styleName(style)) return style;
+  }
+  return {};
+}
+
+std::optional<sim::Resolution> parseResolution(std::string_view name) {
+  for (const sim::Resolution resolution : {sim::Resolution::kLow, sim::Resolution::kMedium, sim::Resolution::kHigh}) {
+    if (name == sim::resolutionName(resolution)) return resolution;
+  }
+  return {};
+}
+
+Scene readScene(std::string_view text, const std::string& file) {
+  const json parsed = parseJson(text, file);
+  const JsonPlace place(parsed, file);
+  place.expectObject({"name", "characters", "camera", "light", "view", "sim", "playback", "preset"});
+  Scene scene;
+  scene.file = file;
+  scene.name = place.has("name") ? place.at("name").text() : stem(file);
+  if (!place.has("characters")) place.refuse("has no characters", "add \"characters\": [{ \"motion\": \"walk.bvh\" }]");
+  const JsonPlace characters = place.at("characters");
+  const std::size_t count = characters.arraySize(kMostCharacters);
+  if (count == 0) characters.refuse("is empty", "add a character, for instance { \"motion\": \"walk.bvh\" }");
+  // The preset comes first, so that the scene's own rows win over it.
+  CharacterLook preset_look;
+  if (place.has("preset")) {
+    std::array<CharacterLook*, 1> looks{&preset_look};
+    loadPreset(presetFile(place.at("preset").text(), file), {&scene.sim, &scene.look, looks});
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    scene.characters.push_back(readCharacter(characters.at(i), preset_look));
+  }
+  if (place.has("camera")) scene.camera = readCamera(place.at("camera"));
+  if (place.has("light")) readSceneRows(place.at("light"), scene.look, true);
+  if (place.has("view")) readSceneRows(place.at("view"), scene.look, false);
+  if (place.has("sim")) readSimRows(place.at("sim"), scene.sim);
+  if (place.has("playback")) scene.playback = readPlayback(place.at("playback"));
+  return scene;
+}
+
+Scene loadScene(const std::string& file) {
+  return readScene(readText(file, kLargestFile), file);
+}
+
+std::string writeScene(const Scene& scene) {
+  json characters = json::array();
+  for (const CharacterSpec& spec : scene.characters) characters.push_back(writeCharacter(spec));
+  json camera = {{"view", scene.camera.view},
+                 {"framing", scene.camera.framing},
+                 {"fov", scene.camera.fov},
+                 {"follow", scene.camera.follow}};
+  if (scene.camera.eye && scene.camera.target) {
+    camera["eye"] = fromVec3(*scene.camera.eye);
+    camera["target"] = fromVec3(*scene.camera.target);
+  }
+  const json text = {{"name", scene.name},
+                     {"characters", characters},
+                     {"camera", camera},
+                     {"light", writeSceneRows(scene.look, true)},
+                     {"view", writeSceneRows(scene.look, false)},
+                     {"sim", writeSimRows(scene.sim)},
+                     {"playback",
+                      {{"speed", scene.playback.speed},
+                       {"loop", scene.playback.loop},
+                       {"blend", scene.playback.blend},
+                       {"fps", scene.playback.fps},
+                       {"settle", scene.playback.settle}}}};
+  return text.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace app

@@ -1,0 +1,94 @@
+// A scene: who is in it, how they move, and everything a person may have turned. Read from JSON, written back as JSON.
+//
+// {
+//   "name": "Walk",
+//   "characters": [{
+//     "motion": "walk.bvh", "parts": "", "clip": "", "style": "shoulder", "resolution": "medium", "hair": "",
+//     "position": [0, 0, 0], "heading": 0, "clip_offset": 0, "in_place": true, "look": { a row of the hair table: value
+//     }
+//   }],
+//   "camera": { "view": "three-quarter", "framing": "bust", "eye": [..], "target": [..], "fov": 0.5, "follow": true },
+//   "light": { row: value }, "view": { row: value }, "sim": { row: value },
+//   "playback": { "speed": 1, "loop": true, "blend": 0.4, "fps": 60, "settle": 0.5 },
+//   "preset": "soft"
+// }
+// Every key but "characters" may be left out. Files are searched as findFile says.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/character.h"
+#include "app/look_params.h"
+#include "sim/hair_styles.h"
+#include "sim/sim_params.h"
+
+namespace app {
+
+struct Options;
+
+// One character of a scene, before anything is loaded.
+struct CharacterSpec {
+  std::string motion = "idle_turns.bvh";  // BVH, glTF, FBX, .mot
+  std::string parts;                      // folder of body0000.obj ..., for .mot
+  std::string clip;                       // name within a file of several clips; empty: the first
+  sim::Style style = sim::Style::kShoulder;
+  sim::Resolution resolution = sim::Resolution::kMedium;
+  std::string hair;              // hair mesh OBJ in place of the built-in style; empty: the style
+  Vec3 position = Vec3::Zero();  // m, added to the motion
+  double heading = 0;            // rad about y, counter-clockwise from above
+  double clip_offset = 0;        // s, where in the clip it begins
+  bool in_place = true;          // horizontal travel is taken out of the clip
+  CharacterLook look;
+};
+
+// Where the camera stands at the first frame. With an eye and a target given the named view is not used.
+struct CameraSpec {
+  std::string view = "three-quarter";  // front, three-quarter, side, back, top
+  std::string framing = "bust";        // head, bust, figure: how much is in the picture
+  std::optional<Vec3> eye, target;     // m
+  double fov = 0.5;                    // rad, vertical
+  bool follow = true;                  // goes along with the first character
+};
+
+struct PlaybackSpec {
+  double speed = 1;  // clip seconds per second
+  bool loop = true;
+  double blend = 0.4;   // s, at the loop's seam
+  double fps = 60;      // frames per second of a headless run
+  double settle = 0.5;  // s of simulation before the first frame
+};
+
+struct Scene {
+  std::string file;  // empty: not from a file
+  std::string name = "untitled";
+  std::vector<CharacterSpec> characters;
+  CameraSpec camera;
+  SceneLook look;
+  sim::SimParams sim;
+  PlaybackSpec playback;
+};
+
+// Bounds that a scene is held to.
+inline constexpr std::size_t kMostCharacters = 256;
+inline constexpr double kFastestPlayback = 100, kSlowestFps = 1, kFastestFps = 1000;
+
+// Reads a scene. Throws InputError naming file and place; the files that it names are only looked for.
+Scene readScene(std::string_view text, const std::string& file);
+Scene loadScene(const std::string& file);
+
+// The scene as text that readScene reads back to the same scene. File names are written as they were found.
+std::string writeScene(const Scene& scene);
+
+// The scene that the command line asks for: its scene file or the default one, then the overrides of the options.
+// Throws InputError, or UsageError for an option's value.
+Scene sceneFromOptions(const Options& options);
+
+// "short" -> Style::kShort; throws nothing, empty when unknown.
+std::optional<sim::Style> parseStyle(std::string_view name);
+std::optional<sim::Resolution> parseResolution(std::string_view name);
+
+}  // namespace app
