@@ -164,36 +164,46 @@ void readMotionHead(TextScanner& scanner, BvhText& bvh) {
   }
 }
 
+void readRow(TextScanner& scanner, BvhText& bvh, int frame) {
+  const std::string channels = std::to_string(bvh.channel_count);
+  const std::size_t row_begin = bvh.values.size();
+  for (const BvhTextJoint& joint : bvh.joints) {
+    for (const BvhChannel channel : joint.channels) {
+      if (!scanner.skipBlanksInLine()) {
+        const std::size_t found = bvh.values.size() - row_begin;
+        scanner.fail(
+            "frame " + std::to_string(frame) + " has " + std::to_string(found) + " of " + channels + " numbers",
+            "give every frame one line with a number for each channel");
+      }
+      bvh.values.push_back(isPosition(channel) ? scanner.number("a position", kLargestLength)
+                                               : scanner.number("an angle", kLargestAngle));
+    }
+  }
+  if (scanner.skipBlanksInLine()) {
+    scanner.fail("frame " + std::to_string(frame) + " has more than " + channels + " numbers",
+                 "give every frame one line with a number for each channel");
+  }
+}
+
 void readRows(TextScanner& scanner, BvhText& bvh) {
-  const auto channels = static_cast<std::size_t>(bvh.channel_count);
-  bvh.values.reserve(static_cast<std::size_t>(bvh.frame_count) * channels);
+  const std::string declared = std::to_string(bvh.frame_count);
+  const std::size_t value_count =
+      static_cast<std::size_t>(bvh.frame_count) * static_cast<std::size_t>(bvh.channel_count);
+  bvh.values.reserve(value_count);
   for (int frame = 0; frame < bvh.frame_count; ++frame) {
     if (!scanner.skipBlanks()) {
-      scanner.fail(
-          "the motion ends after " + std::to_string(frame) + " of " + std::to_string(bvh.frame_count) + " frames",
-          "correct 'Frames:' or complete the file");
+      scanner.fail("the motion ends after " + std::to_string(frame) + " of " + declared + " frames",
+                   "correct 'Frames:' or complete the file");
     }
-    for (const BvhTextJoint& joint : bvh.joints) {
-      for (const BvhChannel channel : joint.channels) {
-        if (!scanner.skipBlanksInLine()) {
-          const std::size_t found = bvh.values.size() - static_cast<std::size_t>(frame) * channels;
-          scanner.fail("frame " + std::to_string(frame) + " has " + std::to_string(found) + " of " +
-                           std::to_string(channels) + " numbers",
-                       "give every frame one line with a number for each channel");
-        }
-        bvh.values.push_back(isPosition(channel) ? scanner.number("a position", kLargestLength)
-                                                 : scanner.number("an angle", kLargestAngle));
-      }
-    }
-    if (scanner.skipBlanksInLine()) {
-      scanner.fail("frame " + std::to_string(frame) + " has more than " + std::to_string(channels) + " numbers",
-                   "give every frame one line with a number for each channel");
-    }
+    readRow(scanner, bvh, frame);
   }
-  if (scanner.skipBlanks()) {
-    scanner.fail("text after the last of " + std::to_string(bvh.frame_count) + " frames",
-                 "correct 'Frames:' or remove it");
-  }
+  // Some exporters count frames from 0 and declare one less than they write (assimp's Boxing_Toes.bvh): one more
+  // complete row is read and left out, anything else means that the count or the file is wrong.
+  if (!scanner.skipBlanks()) return;
+  readRow(scanner, bvh, bvh.frame_count);
+  bvh.values.resize(value_count);
+  bvh.has_surplus_row = true;
+  if (scanner.skipBlanks()) scanner.fail("more rows than the " + declared + " declared frames", "correct 'Frames:'");
 }
 
 }  // namespace

@@ -33,8 +33,9 @@ struct BvhText {
   int hierarchy_line = 1;            // where faults of the whole skeleton are reported
   int channel_count = 0;
   int frame_count = 0;
-  double frame_time = 0;       // s
-  std::vector<double> values;  // frames x channels: file's unit, degrees
+  double frame_time = 0;         // s
+  bool has_surplus_row = false;  // one row more than declared was left out
+  std::vector<double> values;    // frames x channels: file's unit, degrees
 };
 
 // Reads the text; memory stays below a small multiple of its length. Throws InputError naming the line.
