@@ -1,0 +1,71 @@
+#include "app/mannequin.h"
+
+#include <algorithm>
+
+#include "app/mannequin_mesh.h"
+#include "app/mannequin_skin.h"
+
+namespace app {
+
+namespace {
+
+// Fine cells for face and neck, growing down to the waist.
+MeshGrid gridFor(const BodyField& body) {
+  const Figure& f = body.figure;
+  const double s = f.height / 1.70, chin = body.head_origin.y();
+  MeshGrid grid;
+  grid.fine = 0.0165 * f.head_height;
+  grid.coarse = 0.0115 * s;
+  grid.fine_from = chin + 0.02 * f.head_height;
+  grid.coarse_from = chin - 0.42 * s;
+  grid.low = Vec3(f.pelvis.x(), f.sole, f.pelvis.z());
+  grid.high = Vec3(f.pelvis.x(), chin + 1.06 * f.head_height, f.pelvis.z());
+  const auto hold = [&](const Vec3& p, double margin) {
+    const Vec3 m = Vec3::Constant(margin * s);
+    grid.low = grid.low.cwiseMin(p - m);
+    grid.high = grid.high.cwiseMax(p + m);
+  };
+  const Vec3 head = body.head_origin + Vec3(0, 0.5 * f.head_height, 0);
+  grid.low = grid.low.cwiseMin(Vec3(head - Vec3::Constant(0.62 * f.head_height)));
+  grid.high = grid.high.cwiseMax(Vec3(head + Vec3(0.62, 0.56, 0.62) * f.head_height));
+  hold(f.neck_base, 0.12);
+  hold(f.pelvis, 0.22);
+  for (const Figure::Arm& arm : f.arms)
+    if (arm.present)
+      for (const Vec3& p :
+           {arm.shoulder, arm.elbow, arm.wrist, Vec3(arm.wrist + (arm.wrist - arm.elbow).normalized() * 0.2 * s)})
+        hold(p, 0.10);
+  for (const Figure::Leg& leg : f.legs)
+    if (leg.present)
+      for (const Vec3& p : {leg.hip, leg.knee, leg.ankle}) hold(p, 0.24);
+  grid.low.y() = std::max(grid.low.y(), f.sole - 0.01 * s);
+  for (const Figure::Appendage& appendage : f.appendages)
+    for (const Vec3& p : appendage.points) hold(p, 0.10);
+  return grid;
+}
+
+}  // namespace
+
+Mannequin growMannequin(const BvhMotion& motion, const std::string& file) {
+  StoodSkeleton stood = standSkeleton(motion, file);
+  Mannequin mannequin;
+  mannequin.field = shapeBody(stood.figure);
+  const BodyField& field = mannequin.field;
+  const Surface surface = meshSurface([&](const Vec3& p) { return field.value(p); }, gridFor(field));
+  mannequin.mesh = skinMannequin(surface, field, stood.skeleton, stood.roles);
+
+  // The rest pose faces +z: the scalp frame has the world's axes and the head joint's origin.
+  const Rigid& head = stood.skeleton.joints[stood.roles.head].rest_world;
+  Rigid scalp = Rigid::Identity();
+  scalp.translation() = head.translation();
+  mannequin.head_frame = head.inverse() * scalp;
+
+  mannequin.skeleton = std::move(stood.skeleton);
+  mannequin.roles = std::move(stood.roles);
+  mannequin.notes = std::move(stood.notes);
+  mannequin.notes.push_back("mannequin: " + std::to_string(surface.positions.size()) + " vertices, " +
+                            std::to_string(surface.triangles.size() / 3) + " triangles");
+  return mannequin;
+}
+
+}  // namespace app

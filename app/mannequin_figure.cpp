@@ -1,0 +1,325 @@
+// Stands a BVH skeleton upright. Rest offsets say nothing reliable about the pose (T, arms down, legs astride, even
+// lying), so the limbs are turned to one neutral pose: all mannequins then share one bind pose whatever the file.
+#include "app/mannequin_figure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "app/errors.h"
+
+namespace app {
+
+namespace {
+
+using Quat = Eigen::Quaterniond;
+
+constexpr double kHeadShare = 0.135;      // chin to crown over height: adults between 1/7 and 1/8
+constexpr double kSkullBaseShare = 0.30;  // skull base above the chin, over head height
+constexpr double kNeckShare = 0.058;      // C7 to skull base over height
+constexpr double kArmAngle = 0.72;        // rad from straight down: far enough that arm and flank stay apart
+
+ReferencePose restReference(const BvhMotion& motion) {
+  ReferencePose reference;
+  const auto& joints = motion.skeleton.joints;
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    reference.world.push_back(joints[j].rest_world);
+    reference.ends.push_back(joints[j].rest_world * motion.end_sites[j]);
+  }
+  return reference;
+}
+
+ReferencePose frameReference(const BvhMotion& motion, int frame) {
+  ReferencePose reference;
+  const auto& joints = motion.skeleton.joints;
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    const std::size_t k = static_cast<std::size_t>(frame) * joints.size() + j;
+    Rigid local = Rigid::Identity();
+    local.linear() = motion.clip.rotations[k].toRotationMatrix();
+    local.translation() = motion.clip.translations[k];
+    reference.world.push_back(joints[j].parent < 0 ? local : reference.world[joints[j].parent] * local);
+    reference.ends.push_back(reference.world[j] * motion.end_sites[j]);
+  }
+  return reference;
+}
+
+// How far the head rises above the root, over the figure's extent: near 0.4 for a figure that stands.
+double uprightness(const ReferencePose& reference, int head) {
+  double low = 1e30, high = -1e30, extent = 1e-9;
+  for (const Rigid& w : reference.world) {
+    low = std::min(low, w.translation().y());
+    high = std::max(high, w.translation().y());
+    extent = std::max(extent, (w.translation() - reference.world[0].translation()).norm());
+  }
+  const double rise = reference.world[head].translation().y() - reference.world[0].translation().y();
+  const double drop = reference.world[0].translation().y() - low;
+  return rise / extent + 0.25 * std::min(drop / extent, 1.0);
+}
+
+// Turns the joints of a pose one after the other, carrying what hangs from them.
+struct Poser {
+  const Skeleton& skeleton;
+  const ReferencePose& before;
+  std::vector<Quat> turn;  // world rotation applied to each joint's reference orientation
+  std::vector<bool> turn_set;
+
+  Poser(const Skeleton& s, const ReferencePose& r, const Quat& root)
+      : skeleton(s), before(r), turn(s.joints.size(), root), turn_set(s.joints.size(), false) {}
+
+  void set(int joint, const Quat& q) {
+    turn[joint] = q;
+    turn_set[joint] = true;
+  }
+
+  // Sends the bone from `joint` to `next` along `target`; the joints between and below follow until told otherwise.
+  void aim(int joint, const Vec3& next, const Vec3& target, const Quat& base) {
+    const Vec3 bone = base * (next - before.world[joint].translation());
+    if (bone.norm() < 1e-4) return;
+    set(joint, Quat::FromTwoVectors(bone, target) * base);
+  }
+
+  ReferencePose pose() {
+    ReferencePose after = before;
+    for (std::size_t j = 0; j < skeleton.joints.size(); ++j) {
+      const int parent = skeleton.joints[j].parent;
+      if (parent >= 0 && !turn_set[j]) turn[j] = turn[parent];
+      const Vec3 offset =
+          parent < 0 ? Vec3::Zero()
+                     : Vec3(turn[parent] * (before.world[j].translation() - before.world[parent].translation()));
+      after.world[j].translation() = parent < 0 ? Vec3::Zero() : Vec3(after.world[parent].translation() + offset);
+      after.world[j].linear() = (turn[j] * Quat(before.world[j].linear())).toRotationMatrix();
+      after.ends[j] = after.world[j].translation() + turn[j] * (before.ends[j] - before.world[j].translation());
+    }
+    return after;
+  }
+};
+
+Vec3 jointAt(const ReferencePose& pose, int joint) {
+  return pose.world[joint].translation();
+}
+
+void poseArms(const ReferencePose& before, const BodyRoles& roles, const Quat& root, Poser& poser) {
+  for (int s = 0; s < 2; ++s) {
+    const ArmRoles& arm = roles.arms[s];
+    if (arm.upper < 0) continue;
+    const double side = s == 0 ? 1 : -1;
+    const auto target = [&](double angle, double ahead) {
+      return Vec3(side * std::sin(angle), -std::cos(angle), ahead).normalized();
+    };
+    poser.aim(arm.upper, jointAt(before, arm.fore), target(kArmAngle, -0.02), root);
+    const Vec3 wrist = arm.hand >= 0 ? jointAt(before, arm.hand) : before.ends[arm.fore];
+    poser.aim(arm.fore, wrist, target(kArmAngle - 0.10, 0.10), root);
+    if (arm.hand >= 0) {
+      const Vec3 tip = arm.tip >= 0 ? before.ends[arm.tip] : before.ends[arm.hand];
+      poser.aim(arm.hand, tip, target(kArmAngle - 0.16, 0.14), root);
+    }
+  }
+}
+
+void poseLegs(const ReferencePose& before, const BodyRoles& roles, const Quat& root, Poser& poser) {
+  for (int s = 0; s < 2; ++s) {
+    const LegRoles& leg = roles.legs[s];
+    if (leg.upper < 0) continue;
+    const double side = s == 0 ? 1 : -1;
+    poser.aim(leg.upper, jointAt(before, leg.lower), Vec3(side * 0.055, -1, 0.02).normalized(), root);
+    const Vec3 ankle = leg.foot >= 0 ? jointAt(before, leg.foot) : before.ends[leg.lower];
+    poser.aim(leg.lower, ankle, Vec3(side * 0.03, -1, -0.03).normalized(), root);
+    if (leg.foot < 0) continue;
+    const Vec3 foot = leg.toe >= 0 ? jointAt(before, leg.toe) : before.ends[leg.foot];
+    const Vec3 bone = root * (foot - jointAt(before, leg.foot));
+    const double ahead = std::hypot(bone.x(), bone.z());
+    const Vec3 out = Vec3(side * 0.12, 0, 1).normalized();
+    // A foot without a length, or one pointing at the ground, keeps the body's turn.
+    if (ahead > 0.3 * bone.norm() && bone.norm() > 0.01)
+      poser.aim(leg.foot, foot, Vec3(out.x() * ahead, bone.y(), out.z() * ahead), root);
+    else
+      poser.set(leg.foot, root);
+    if (leg.toe >= 0 && leg.toe != leg.foot) poser.set(leg.toe, Quat::FromTwoVectors(Vec3::UnitZ(), out) * root);
+  }
+}
+
+// Straightens the trunk of a figure whose only upright pose is a frame of its motion.
+void poseSpine(const ReferencePose& before, const BodyRoles& roles, const Quat& root, Poser& poser) {
+  for (std::size_t i = 0; i + 1 < roles.spine.size(); ++i)
+    poser.aim(roles.spine[i], jointAt(before, roles.spine[i + 1]), Vec3::UnitY(), root);
+  poser.set(roles.head, root);
+}
+
+void measureLimbs(const ReferencePose& pose, const BodyRoles& roles, Figure& figure) {
+  for (int s = 0; s < 2; ++s) {
+    const ArmRoles& a = roles.arms[s];
+    Figure::Arm& arm = figure.arms[s];
+    arm.side = s == 0 ? 1 : -1;
+    if (a.upper >= 0) {
+      arm.present = true;
+      arm.shoulder = jointAt(pose, a.upper);
+      arm.elbow = jointAt(pose, a.fore);
+      arm.wrist = a.hand >= 0 ? jointAt(pose, a.hand) : pose.ends[a.fore];
+      arm.tip = a.hand >= 0 ? pose.ends[a.tip >= 0 ? a.tip : a.hand] : arm.wrist;
+    }
+    const LegRoles& l = roles.legs[s];
+    Figure::Leg& leg = figure.legs[s];
+    leg.side = arm.side;
+    if (l.upper >= 0) {
+      leg.present = true;
+      leg.hip = jointAt(pose, l.upper);
+      leg.knee = jointAt(pose, l.lower);
+      leg.ankle = l.foot >= 0 ? jointAt(pose, l.foot) : pose.ends[l.lower];
+      leg.toe = l.toe >= 0 ? pose.ends[l.toe] : (l.foot >= 0 ? pose.ends[l.foot] : leg.ankle);
+    }
+  }
+}
+
+double lowest(const ReferencePose& pose) {
+  double low = 1e30;
+  for (std::size_t j = 0; j < pose.ends.size(); ++j)
+    low = std::min({low, pose.world[j].translation().y(), pose.ends[j].y()});
+  return low;
+}
+
+// Heights first: everything else is scaled by them.
+Figure measure(const ReferencePose& pose, const BodyRoles& roles) {
+  Figure figure;
+  measureLimbs(pose, roles, figure);
+  const auto& arms = figure.arms;
+  const auto& legs = figure.legs;
+
+  const Vec3 root = jointAt(pose, roles.spine.front());
+  const Vec3 head = jointAt(pose, roles.head);
+  const bool has_legs = legs[0].present || legs[1].present;
+  figure.pelvis = root;
+  if (legs[0].present && legs[1].present) {
+    figure.pelvis = 0.5 * (legs[0].hip + legs[1].hip);
+    figure.hip_half = 0.5 * std::abs(legs[0].hip.x() - legs[1].hip.x());
+  }
+  // Trunk from hip joints to skull base is about 0.385 of the height; whole legs give the measure when there are any.
+  const double trunk = std::max(head.y() - figure.pelvis.y(), 0.05);
+  const double neck_extra = roles.head_is_neck ? kNeckShare : 0.0;
+  const double below = has_legs ? head.y() - lowest(pose) + 0.012 * trunk : trunk / 0.385 * 0.905;
+  figure.height = below / (1 - kHeadShare * (1 - kSkullBaseShare) - neck_extra);
+  figure.head_height = kHeadShare * figure.height;
+  figure.sole = has_legs ? lowest(pose) - 0.012 * trunk : figure.pelvis.y() - 0.52 * figure.height;
+  for (const Figure::Leg& leg : legs)
+    if (leg.present) figure.sole = std::min(figure.sole, leg.ankle.y() - 0.042 * figure.height);
+
+  figure.skull_base = head + Vec3(0, neck_extra * figure.height, 0.006 * figure.height * (neck_extra > 0));
+  figure.shoulder_level = figure.skull_base.y() - 0.088 * figure.height;
+  if (arms[0].present && arms[1].present) {
+    figure.shoulder_half = 0.5 * std::abs(arms[0].shoulder.x() - arms[1].shoulder.x());
+    figure.shoulder_level = 0.5 * (arms[0].shoulder.y() + arms[1].shoulder.y());
+  } else {
+    figure.shoulder_half = 0.095 * figure.height;
+  }
+  figure.shoulder_half = std::clamp(figure.shoulder_half, 0.05 * figure.height, 0.14 * figure.height);
+  figure.hip_half = std::clamp(figure.hip_half, 0.03 * figure.height, 0.08 * figure.height);
+  // The neck's root lies between shoulders and skull base; joint names disagree about it, shoulders do not.
+  const double level =
+      std::clamp(figure.shoulder_level + 0.028 * figure.height, figure.skull_base.y() - 0.075 * figure.height,
+                 figure.skull_base.y() - 0.048 * figure.height);
+  figure.neck_base = Vec3(figure.skull_base.x(), level, figure.skull_base.z() - 0.012 * figure.height);
+  return figure;
+}
+
+void addAppendages(const Skeleton& skeleton, const ReferencePose& pose, const BodyRoles& roles, Figure& figure) {
+  for (int first : roles.appendages) {
+    Figure::Appendage appendage;
+    int joint = first;
+    appendage.points.push_back(jointAt(pose, skeleton.joints[first].parent));
+    appendage.joints.push_back(skeleton.joints[first].parent);
+    while (joint >= 0) {
+      appendage.points.push_back(jointAt(pose, joint));
+      appendage.joints.push_back(joint);
+      int next = -1;
+      for (std::size_t j = 0; j < skeleton.joints.size() && next < 0; ++j)
+        if (skeleton.joints[j].parent == joint) next = static_cast<int>(j);
+      if (next < 0 && (pose.ends[joint] - jointAt(pose, joint)).norm() > 1e-4)
+        appendage.points.push_back(pose.ends[joint]);
+      joint = next;
+    }
+    figure.appendages.push_back(std::move(appendage));
+  }
+}
+
+void setRest(const ReferencePose& pose, Skeleton& skeleton) {
+  for (std::size_t j = 0; j < skeleton.joints.size(); ++j) {
+    Joint& joint = skeleton.joints[j];
+    joint.rest_world = pose.world[j];
+    joint.rest_local = joint.parent < 0 ? pose.world[j] : pose.world[joint.parent].inverse() * pose.world[j];
+  }
+}
+
+// The reference pose: the file's rest pose when it stands, else the frame that stands best.
+ReferencePose chooseReference(const BvhMotion& motion, int head, bool& from_rest, std::string& note) {
+  ReferencePose best = restReference(motion);
+  from_rest = true;
+  if (uprightness(best, head) > 0.3 || motion.clip.frameCount() == 0) return best;
+  const int frames = motion.clip.frameCount(), step = std::max(1, frames / 64);
+  double best_score = uprightness(best, head) + 0.1;
+  int best_frame = -1;
+  for (int f = 0; f < frames; f += step) {
+    ReferencePose pose = frameReference(motion, f);
+    if (const double score = uprightness(pose, head); score > best_score) {
+      best_score = score;
+      best_frame = f;
+      best = std::move(pose);
+    }
+  }
+  if (best_frame >= 0) {
+    from_rest = false;
+    note = "rest pose: the offsets do not stand upright, frame " + std::to_string(best_frame) + " was taken";
+  }
+  return best;
+}
+
+}  // namespace
+
+StoodSkeleton standSkeleton(const BvhMotion& motion, const std::string& file) {
+  StoodSkeleton stood;
+  stood.skeleton = motion.skeleton;
+  bool is_neck = false, from_rest = true;
+  ReferencePose reference = restReference(motion);
+  int head = findHeadJoint(motion.skeleton, reference, is_neck);
+  if (head < 0 && motion.clip.frameCount() > 0) {
+    reference = frameReference(motion, 0);
+    head = findHeadJoint(motion.skeleton, reference, is_neck);
+  }
+  if (head <= 0)
+    throw InputError(file, "skeleton",
+                     "no joint of " + std::to_string(motion.skeleton.joints.size()) + " can carry a head",
+                     "name the joint that turns the head 'Head' and let it hang from a root");
+  std::string note;
+  reference = chooseReference(motion, head, from_rest, note);
+  if (!note.empty()) stood.notes.push_back(note);
+
+  stood.roles = inferRoles(motion.skeleton, reference, head, is_neck);
+  std::string how;
+  const Vec3 forward = inferForward(motion.skeleton, reference, stood.roles, how);
+  orderSides(reference, forward, stood.roles);
+  const Quat root(Eigen::AngleAxisd(-std::atan2(forward.x(), forward.z()), Vec3::UnitY()));
+
+  Poser poser(motion.skeleton, reference, root);
+  if (!from_rest) poseSpine(reference, stood.roles, root, poser);
+  poseArms(reference, stood.roles, root, poser);
+  poseLegs(reference, stood.roles, root, poser);
+  ReferencePose pose = poser.pose();
+
+  stood.figure = measure(pose, stood.roles);
+  const Vec3 lift(-stood.figure.pelvis.x(), -stood.figure.sole, -stood.figure.pelvis.z());
+  for (Rigid& w : pose.world) w.translation() += lift;
+  for (Vec3& e : pose.ends) e += lift;
+  stood.figure = measure(pose, stood.roles);
+  stood.figure.sole = 0;
+  addAppendages(motion.skeleton, pose, stood.roles, stood.figure);
+  setRest(pose, stood.skeleton);
+
+  char text[200];
+  std::snprintf(text, sizeof text, "figure: %.2f m tall, %d arms, %d legs; it faces %+.2f, %+.2f (x, z), told by %s",
+                stood.figure.height, stood.figure.arms[0].present + stood.figure.arms[1].present,
+                stood.figure.legs[0].present + stood.figure.legs[1].present, forward.x(), forward.z(), how.c_str());
+  stood.notes.push_back(text);
+  stood.notes.push_back("head: joint '" + motion.skeleton.joints[head].name + "'" +
+                        (is_neck ? ", a neck that carries the skull" : ""));
+  return stood;
+}
+
+}  // namespace app

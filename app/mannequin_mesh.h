@@ -1,0 +1,28 @@
+// Polygons from an implicit function: surface nets on a grid whose cells grow away from the head.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "app/character.h"
+
+namespace app {
+
+// Rows of cells from bottom to top; a cell's edge is `fine` (m) above `fine_from` (y, m) and grows smoothly to `coarse`
+// at `coarse_from` and below.
+struct MeshGrid {
+  double fine = 0.0038, coarse = 0.0115, fine_from = 1.4, coarse_from = 1.0;
+  Vec3 low = Vec3::Zero(), high = Vec3::Ones();  // m: a box that holds the surface
+};
+
+struct Surface {
+  std::vector<Vec3> positions, normals;
+  std::vector<std::uint32_t> triangles;  // counter-clockwise from outside
+};
+
+// A closed two-manifold: every edge is shared by exactly two triangles, whatever the function. Vertices lie on the zero
+// set (within a few hundredths of a millimetre where the function is smooth); normals are its gradient.
+Surface meshSurface(const std::function<double(const Vec3&)>& field, const MeshGrid& grid);
+
+}  // namespace app
