@@ -7,20 +7,23 @@
 
 namespace sim {
 
-// A contact carried from one step to the next.
+// A contact of an external vertex with a collider, carried from one step to the next.
 struct Contact {
-  int vertex;
-  int collider;            // index into StepInput::ellipsoids
-  Vec3 normal;             // outward unit normal, world
-  Vec3 collider_velocity;  // m/s of the collider's surface at the contact
-  double pressure = 0;     // N, normal force of the last solve
-  bool sticks = false;     // all three directions constrained (static friction)
+  int vertex = 0;
+  int collider = 0;              // index into StepInput::ellipsoids
+  Vec3 normal = Vec3::UnitY();   // outward unit normal at the step's end, world
+  Vec3 velocity = Vec3::Zero();  // m/s that keeps the vertex at the contact offset and carried along with the surface
+  double pressure = 0;           // N, normal force of the last solve
+  bool sticks = false;           // static friction: all three directions are prescribed
 };
 
 struct HairState {
   std::vector<Vec3> positions;   // m, world, one per vertex
   std::vector<Vec3> velocities;  // m/s
   std::vector<Contact> contacts;
+  // The step before, for two-step integrators; empty after a restart.
+  std::vector<Vec3> previous_positions, previous_velocities;
+  double previous_dt = 0;  // s
 };
 
 }  // namespace sim

@@ -20,13 +20,13 @@ struct Cut {
 Cut cutOf(Style style) {
   switch (style) {
     case Style::kShort:
-      return {0.024, -0.20, -0.25, -0.40, false, false};
+      return {0.028, -0.20, -0.25, -0.40, false, false};
     case Style::kShoulder:
-      return {0.030, 0.07, 0.07, 0.05, true, false};
+      return {0.034, 0.07, 0.07, 0.05, true, false};
     case Style::kLong:
       break;
   }
-  return {0.032, -0.62, -0.85, -1.15, true, true};
+  return {0.036, -0.62, -0.85, -1.15, true, true};
 }
 
 double smoothstep(double a, double b, double x) {
@@ -82,6 +82,7 @@ struct Comber {
   bool inFront(int sheet) const { return cut.divides && backness(sheet) < kDivide; }
 
   double cutHeight(int sheet) const;
+  double freeBelow(int sheet) const { return scalp.center.y() + cutHeight(sheet) - 0.02; }
   Vec3 aim(int sheet) const;
   void fall(int sheet);
   void fallAll();
@@ -124,6 +125,7 @@ void Comber::fall(int sheet) {
   const int last_skin = coat.scalp_rows - 1;
   Vec3 p = coat.inner[coat.index(sheet, last_skin)];
   Vec3 heading = (p - coat.inner[coat.index(sheet, last_skin - 2)]).normalized();
+  const double lowest = freeBelow(sheet);
   const Vec3 goal = cut.divides ? aim(sheet) : Vec3(Vec3::Zero());
   for (int row = coat.scalp_rows; row < coat.rows; ++row) {
     Vec3 wish(0, -1, 0);
@@ -136,8 +138,8 @@ void Comber::fall(int sheet) {
     heading = (0.88 * heading + 0.12 * wish.normalized()).normalized();
     p += kRowStep * heading;
     const double gap = kInnerGap * smoothstep(0, 5, row - last_skin);
-    const double d = body(p);
-    if (d < gap) {
+    // What is below the cut hangs free: shoulders that the hair never reaches must not bend its ends outwards.
+    if (p.y() > lowest && body(p) < gap) {
       const Vec3 n = bodyNormal(body, p);
       p = keepOff(body, p, gap);
       heading = (heading - std::min(0.0, heading.dot(n)) * n).normalized();
@@ -192,7 +194,7 @@ void Comber::relaxInner() {
       for (int s = 0; s < coat.sheets; ++s)
         for (int r = first; r < coat.rows; ++r) {
           Vec3& p = next[coat.index(s, r)];
-          p = keepOff(body, p, kInnerGap * smoothstep(0, 5, r - first + 1));
+          if (p.y() > freeBelow(s)) p = keepOff(body, p, kInnerGap * smoothstep(0, 5, r - first + 1));
         }
     }
     std::swap(coat.inner, next);

@@ -119,6 +119,11 @@ std::vector<ParamField> makeTable() {
                            "Relative residual at which the linear solver stops."),
       field<&P::max_iterations>("max_iterations", "Numerics", "", {1, 5000, kLog},
                                 "Iterations after which the linear solver stops in any case."),
+      field<&P::acceleration_tolerance>(
+          "acceleration_tolerance", "Numerics", "m/s^2", {1e-9, 10, kLog},
+          "A linear solve also stops when no vertex's residual, as an acceleration, exceeds this."),
+      field<&P::newton_tolerance>("newton_tolerance", "Numerics", "m/s", {1e-12, 1, kLog},
+                                  "The nonlinear integrators stop when no velocity changes by more than this."),
       field<&P::newton_iterations>("newton_iterations", "Numerics", "", {1, 50},
                                    "Newton iterations of the nonlinear integrators."),
   };

@@ -62,9 +62,11 @@ struct SimParams {
   Integrator integrator = Integrator::kLinearizedEuler;
   Solver solver = Solver::kBlockJacobi;
   Precision precision = Precision::kDouble;
-  double tolerance = 1e-3;    // relative residual of the linear solve
-  int max_iterations = 400;   // of the linear solver
-  int newton_iterations = 4;  // of the nonlinear integrators
+  double tolerance = 1e-3;               // relative residual of the linear solve
+  double acceleration_tolerance = 0.01;  // m/s^2, a solve also stops when no vertex's residual exceeds it
+  int max_iterations = 400;              // of the linear solver
+  int newton_iterations = 4;             // of the nonlinear integrators
+  double newton_tolerance = 1e-4;        // m/s, the nonlinear integrators stop at a smaller change of velocity
 };
 
 enum class FieldKind { kReal, kInteger, kSwitch, kChoice };

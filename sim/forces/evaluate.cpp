@@ -20,17 +20,19 @@ void addBlock(M3<T>& m, const M3<T>& b, T sign) {
   for (int i = 0; i < 9; ++i) m.m[i] += sign * b.m[i];
 }
 
-// One element's condition: force, damping force and Gauss-Newton Hessian into the sums; returns its energy.
+// One element's condition: force, damping force and Gauss-Newton Hessian into the sums; returns its energy
+// and dissipation potential.
 template <class T, int N>
 T addCondition(const Elements<T, N>& elements, std::size_t e, const Condition<T, N>& condition,
                const Evaluation<T>& out) {
   const auto& v = elements.vertices[e];
   const T k = elements.stiffness[e], c = condition.value - elements.shift[e];
-  T pull = k * c;
+  T pull = k * c, dissipation = 0;
   if (!out.velocities.empty()) {
     T rate = 0;
     for (int p = 0; p < N; ++p) rate += dot(condition.g[p], out.velocities[v[p]]);
     pull += out.damping * k * rate;
+    dissipation = out.damping * k * rate * rate;
   }
   if (!out.force.empty()) {
     for (int p = 0; p < N; ++p) out.force[v[p]] -= pull * condition.g[p];
@@ -47,7 +49,7 @@ T addCondition(const Elements<T, N>& elements, std::size_t e, const Condition<T,
       }
     }
   }
-  return T(0.5) * k * c * c;
+  return T(0.5) * (k * c * c + dissipation);
 }
 
 template <class T, int N>
@@ -63,8 +65,12 @@ T evaluateStretch(const StretchElements<T>& elements, std::span<const V3<T>> x, 
     const StretchCondition<T> s = stretchCondition(x[a], x[b], elements.inverse_length[e]);
     const V3<T> g = s.inverse_length * s.direction;
     const T k = elements.stiffness[e], c = s.value - elements.shift[e];
-    T pull = k * c;
-    if (!out.velocities.empty()) pull += out.damping * k * dot(g, out.velocities[b] - out.velocities[a]);
+    T pull = k * c, dissipation = 0;
+    if (!out.velocities.empty()) {
+      const T rate = dot(g, out.velocities[b] - out.velocities[a]);
+      pull += out.damping * k * rate;
+      dissipation = out.damping * k * rate * rate;
+    }
     if (!out.force.empty()) {
       out.force[a] += pull * g;
       out.force[b] -= pull * g;
@@ -80,7 +86,7 @@ T evaluateStretch(const StretchElements<T>& elements, std::span<const V3<T>> x, 
       addBlock(out.matrix->diagonal[b], block, T(1));
       addBlock(out.matrix->lower[elements.slots[e][0]], block, T(-1));
     }
-    energy += T(0.5) * k * c * c;
+    energy += T(0.5) * (k * c * c + dissipation);
   }
   return energy;
 }

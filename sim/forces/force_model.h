@@ -74,7 +74,8 @@ struct Evaluation {
   T damping = 0;  // s
 };
 
-// Adds forces and Hessian at positions x (m); returns the elastic energy (J). Fixed order of summation.
+// Adds forces and Hessian at positions x (m); returns the elastic energy plus, with velocities, the dissipation
+// potential damping / 2 sum k (g . v)^2 (J). Fixed order of summation.
 template <class T>
 T evaluate(const ForceModel<T>& model, std::span<const V3<T>> x, const Evaluation<T>& out);
 

@@ -1,0 +1,60 @@
+#include "sim/hair_styles.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+#include "sim/hair_styles_comb.h"
+#include "sim/hair_styles_roots.h"
+#include "sim/hair_styles_weave.h"
+
+namespace sim {
+
+double Scalp::radiusAt(const Vec3& direction) const {
+  assert(rows >= 2 && columns >= 3 && radius.size() == static_cast<std::size_t>(rows) * columns);
+  const double length = direction.norm();
+  assert(length > 0);
+  const double polar = std::acos(std::clamp(direction.y() / length, -1.0, 1.0));
+  const double azimuth = std::atan2(direction.x(), direction.z());
+  const double turn = 2 * std::numbers::pi;
+  const double row = polar / std::numbers::pi * (rows - 1);
+  const double column = (azimuth < 0 ? azimuth + turn : azimuth) / turn * columns;
+  const int i = std::min(static_cast<int>(row), rows - 2);
+  const int j = static_cast<int>(column) % columns, k = (j + 1) % columns;
+  const double u = row - i, v = column - std::floor(column);
+  const auto at = [&](int a, int b) { return radius[static_cast<std::size_t>(a) * columns + b]; };
+  return (1 - u) * ((1 - v) * at(i, j) + v * at(i, k)) + u * ((1 - v) * at(i + 1, j) + v * at(i + 1, k));
+}
+
+HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& scalp, const BodyDistance& body) {
+  const FlowLines lines = traceFlowLines(scalp);
+  const Coat coat = combCoat(style, scalp, body, lines);
+  return weave(coat, weaveOf(style, resolution));
+}
+
+std::string_view styleName(Style style) {
+  switch (style) {
+    case Style::kShort:
+      return "short";
+    case Style::kShoulder:
+      return "shoulder";
+    case Style::kLong:
+      break;
+  }
+  return "long";
+}
+
+std::string_view resolutionName(Resolution resolution) {
+  switch (resolution) {
+    case Resolution::kLow:
+      return "low";
+    case Resolution::kMedium:
+      return "medium";
+    case Resolution::kHigh:
+      break;
+  }
+  return "high";
+}
+
+}  // namespace sim

@@ -1,0 +1,24 @@
+// From a coat of hair to a hair mesh: chooses the columns, joins them with root faces and cuts them into layers.
+#pragma once
+
+#include <vector>
+
+#include "sim/hair_styles_comb.h"
+
+namespace sim {
+
+// How finely a style is meshed. Everything is counted, not measured, so that a style has the same topology on every
+// head.
+struct Weave {
+  std::vector<double> backness;  // of the sheets of one half, 0 (temple) to 1 (nape), the nape's sheet shared
+  int front_ranks = 3,
+      back_ranks = 5;  // columns a sheet has from the hairline to the parting, at the temple and at the nape
+  int inner_layers = 4, outer_layers = 6;  // layers of the columns at the hairline and of those at the parting
+  double divided_share = 1;  // share of its layers that a column keeps where the hair divides over a shoulder
+};
+
+Weave weaveOf(Style style, Resolution resolution);
+
+HairMeshShape weave(const Coat& coat, const Weave& plan);
+
+}  // namespace sim

@@ -1,0 +1,229 @@
+#include "sim/implicit_solve.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sim {
+namespace {
+
+constexpr int kContactRounds = 3;  // solves of one linear system while contacts release or start to slide
+constexpr int kLineSearchSteps = 6;
+
+template <class T>
+V3<T> cast(const Vec3& p) {
+  return {static_cast<T>(p.x()), static_cast<T>(p.y()), static_cast<T>(p.z())};
+}
+template <class T>
+Vec3 widen(const V3<T>& p) {
+  return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
+}
+template <class T>
+M3<T> cast(const Eigen::Matrix3d& m) {
+  M3<T> out;
+  for (int k = 0; k < 9; ++k) out.m[k] = static_cast<T>(m(k / 3, k % 3));
+  return out;
+}
+
+// Lets go of contacts that would pull and decides between sticking and sliding, from the reaction (N) the solve left at
+// each. Returns whether any contact changed.
+bool updateContacts(const SimParams& params, std::vector<Contact>& contacts, const auto& reactionAt) {
+  bool changed = false;
+  for (Contact& contact : contacts) {
+    const Vec3 reaction = reactionAt(contact.vertex);
+    contact.pressure = contact.normal.dot(reaction);
+    if (contact.pressure < 0) continue;
+    const Vec3 tangential = reaction - contact.pressure * contact.normal;
+    if (contact.sticks && tangential.norm() > params.friction * contact.pressure) {
+      contact.sticks = false;
+      changed = true;
+    }
+  }
+  const auto pulling = [](const Contact& c) { return c.pressure < 0; };
+  return std::erase_if(contacts, pulling) > 0 || changed;
+}
+
+}  // namespace
+
+template <class T>
+ImplicitSolver<T>::ImplicitSolver(const HairMesh& mesh, const BlockPattern& pattern) : matrix(&pattern) {
+  const int n = mesh.vertexCount();
+  for (auto* array : {&x, &v, &trial, &force, &rhs, &velocity_step}) array->resize(n);
+  mass.resize(n), inverse_mass_dt.resize(n);
+  scratch.resize(n);
+  filter.vertices.reserve(n), filter.keep.reserve(n), constraints.reserve(n);
+}
+
+template <class T>
+void ImplicitSolver<T>::setModel(const HairMesh& mesh, const ForceModel<double>& source, double density) {
+  model = convertModel<T>(source);
+  for (int i = 0; i < mesh.vertexCount(); ++i) mass[i] = static_cast<T>(density * mesh.vertex_volume[i]);
+}
+
+// Matrix, right-hand side of A v = rhs at the current x (and v, unless the linearization is `at_start`, the paper's).
+template <class T>
+void ImplicitSolver<T>::assemble(const SimParams& params, const StepBase& base, bool at_start) {
+  const std::size_t n = x.size();
+  const T h = static_cast<T>(base.h), drag = static_cast<T>(params.air_drag), tau = static_cast<T>(params.damping);
+  const V3<T> wind = cast<T>(base.wind), gravity{0, static_cast<T>(-params.gravity), 0};
+  matrix.setZero();
+  std::fill(force.begin(), force.end(), V3<T>{0, 0, 0});
+  Evaluation<T> out;
+  out.force = force;
+  out.matrix = &matrix;
+  out.matrix_scale = h * (h + tau);
+  out.tension_scale = h * h;
+  if (!at_start) {
+    out.velocities = v;
+    out.damping = tau;
+  }
+  evaluate<T>(model, x, out);
+  for (std::size_t i = 0; i < n; ++i) {
+    const T m = mass[i], diagonal = (T(1) + h * drag) * m;
+    for (int k = 0; k < 9; k += 4) matrix.diagonal[i].m[k] += diagonal;
+  }
+  if (!at_start) multiply<T>(matrix, v, rhs);
+  for (std::size_t i = 0; i < n; ++i) {
+    const T m = mass[i];
+    const V3<T> v_hat = cast<T>(base.v_hat[i]);
+    V3<T> b = m * v_hat + h * (force[i] + m * (gravity + drag * wind));
+    if (!at_start) b += rhs[i] - ((T(1) + h * drag) * m) * v[i];
+    rhs[i] = b;
+  }
+}
+
+// The incremental potential whose minimum (for frozen damping gradients) the implicit step is: decreases along Newton
+// steps.
+template <class T>
+T ImplicitSolver<T>::merit(const SimParams& params, const StepBase& base, std::span<const V3<T>> velocities) {
+  const T h = static_cast<T>(base.h), drag = static_cast<T>(params.air_drag);
+  const V3<T> wind = cast<T>(base.wind), gravity{0, static_cast<T>(-params.gravity), 0};
+  double sum = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const V3<T> from_hat = velocities[i] - cast<T>(base.v_hat[i]), from_wind = velocities[i] - wind;
+    sum += mass[i] * (T(0.5) * dot(from_hat, from_hat) + T(0.5) * h * drag * dot(from_wind, from_wind) -
+                      h * dot(gravity, velocities[i]));
+  }
+  Evaluation<T> out;
+  out.velocities = velocities;
+  out.damping = h * static_cast<T>(params.damping);
+  return static_cast<T>(sum) + evaluate<T>(model, x, out);
+}
+
+template <class T>
+SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams& params, const StepBase& base,
+                                           std::vector<Contact>& contacts) {
+  const T h = static_cast<T>(base.h);
+  preconditioner.update(matrix, params.solver);
+  StopRule<T> stop;
+  stop.relative = params.tolerance;
+  stop.acceleration = params.acceleration_tolerance;
+  stop.inverse_mass_dt = inverse_mass_dt;
+  stop.max_iterations = params.max_iterations;
+  SolveReport total;
+  for (int round = 0; round < kContactRounds; ++round) {
+    constraints.clear();
+    constrainContacts(contacts, constraints);
+    // Kinetic friction of sliding contacts, from the pressure of the last solve.
+    for (std::size_t i = 0; i < rhs.size(); ++i) trial[i] = rhs[i];
+    for (const Contact& contact : contacts) {
+      if (contact.sticks || contact.pressure <= 0) continue;
+      Vec3 slip = widen(v[contact.vertex]) - contact.velocity;
+      slip -= slip.dot(contact.normal) * contact.normal;
+      const double speed = slip.norm(), impulse = base.h * params.friction * contact.pressure;
+      if (speed > 1e-9) trial[contact.vertex] -= cast<T>(Vec3(slip * (impulse / speed)));
+    }
+    filter.clear();
+    for (int c = 0; c < mesh.columnCount(); ++c) {
+      filter.vertices.push_back(mesh.shape.column_first[c]);
+      filter.keep.push_back(M3<T>{});
+    }
+    for (const VertexConstraint& constraint : constraints) {
+      filter.vertices.push_back(constraint.vertex);
+      filter.keep.push_back(cast<T>(constraint.keep));
+      v[constraint.vertex] = filter.keep.back() * v[constraint.vertex] + cast<T>(constraint.prescribed);
+    }
+    const SolveReport one = solveModifiedPcg<T>(matrix, trial, filter, preconditioner, stop, scratch, v);
+    total.iterations += one.iterations;
+    total.relative_residual = one.relative_residual;
+    total.residual_acceleration = one.residual_acceleration;
+    total.converged = one.converged;
+    if (contacts.empty()) break;
+    multiply<T>(matrix, v, scratch.q);
+    const auto reactionAt = [&](int i) { return Vec3(widen<T>(scratch.q[i] - rhs[i]) / static_cast<double>(h)); };
+    if (!updateContacts(params, contacts, reactionAt)) break;
+  }
+  return total;
+}
+
+template <class T>
+void ImplicitSolver<T>::solve(const HairMesh& mesh, const SimParams& params, const StepBase& base, double (*clock)(),
+                              std::vector<Contact>& contacts, std::span<Vec3> velocities, StepReport& report) {
+  const std::size_t n = x.size();
+  const bool linearized = params.integrator == Integrator::kLinearizedEuler;
+  const bool newton = params.integrator == Integrator::kImplicitEuler;
+  // Positions relative to one root: single precision keeps micrometres wherever the character stands.
+  const Vec3 origin = base.x_hat[0];
+  const auto place = [&](std::span<const V3<T>> speed) {
+    for (std::size_t i = 0; i < n; ++i)
+      x[i] = cast<T>(Vec3(base.x_hat[i] - origin)) + static_cast<T>(base.h) * speed[i];
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    v[i] = cast<T>(velocities[i]);
+    inverse_mass_dt[i] = T(1) / (mass[i] * static_cast<T>(base.h));
+  }
+  // A contact sticks when its friction could stop it within the step.
+  for (Contact& contact : contacts) {
+    Vec3 slip = velocities[contact.vertex] - contact.velocity;
+    slip -= slip.dot(contact.normal) * contact.normal;
+    const double stopping = params.friction * contact.pressure * base.h / static_cast<double>(mass[contact.vertex]);
+    contact.sticks = contact.pressure > 0 && slip.norm() <= stopping;
+  }
+  double started = clock ? clock() : 0;
+  const auto spent = [&](Stage stage) {
+    if (!clock) return;
+    const double now = clock();
+    report.seconds[stage] += now - started;
+    started = now;
+  };
+  const int most = newton ? std::max(1, params.newton_iterations) : 1;
+  for (int iteration = 0; iteration < most; ++iteration) {
+    if (linearized) {
+      for (std::size_t i = 0; i < n; ++i) x[i] = cast<T>(Vec3(base.x_hat[i] - origin));
+    } else {
+      place(v);
+    }
+    assemble(params, base, linearized);
+    spent(kStageForces);
+    std::copy(v.begin(), v.end(), velocity_step.begin());
+    const T before = newton ? merit(params, base, v) : T(0);
+    const SolveReport linear = solveLinear(mesh, params, base, contacts);
+    report.solver_iterations += linear.iterations;
+    report.residual = linear.relative_residual;
+    report.residual_acceleration = linear.residual_acceleration;
+    report.converged = linear.converged;
+    ++report.newton_iterations;
+    if (newton) {
+      // velocity_step holds the iterate before; backtrack towards it until the merit does not rise.
+      T largest = 0;
+      for (std::size_t i = 0; i < n; ++i) {
+        trial[i] = v[i] - velocity_step[i];
+        largest = std::max(largest, dot(trial[i], trial[i]));
+      }
+      place(v);
+      T step = 1;
+      for (int k = 0; k < kLineSearchSteps && iteration > 0 && merit(params, base, v) > before; ++k) {
+        step *= T(0.5);
+        for (std::size_t i = 0; i < n; ++i) v[i] = velocity_step[i] + step * trial[i];
+        place(v);
+      }
+      if (std::sqrt(largest) <= params.newton_tolerance) iteration = most;
+    }
+    spent(kStageSolve);
+  }
+  for (std::size_t i = 0; i < n; ++i) velocities[i] = widen(v[i]);
+}
+
+template struct ImplicitSolver<float>;
+template struct ImplicitSolver<double>;
+
+}  // namespace sim

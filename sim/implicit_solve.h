@@ -1,0 +1,59 @@
+// The implicit solve of a step: forces, Hessians and the constrained linear systems of the chosen integrator.
+//
+// One linear system serves all integrators. With v the velocity at the step's end, x = x_hat + h v its position and the
+// base (x_hat, v_hat, h) chosen by the integrator (implicit Euler: x0, v0, dt; BDF2: the two-step combinations and 2/3
+// dt), a Newton step from v_k reads
+//   A (v - v_k) = -r(v_k),   r(v) = M (v - v_hat) - h (f(x, v) + M g - c M (v - wind))
+//   A = (1 + h c) M + h (h + tau) K + h^2 T
+// K: sum of k g g^T over the conditions, T: the tension part of stretch, c: air drag, tau: damping time. The paper's
+// linearized step (Baraff and Witkin) takes K at x0 and one solve: A v = M v0 + h (f(x0) + M g + c M wind); its damping
+// terms cancel.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "sim/contact.h"
+#include "sim/forces/force_model.h"
+#include "sim/linear_solver.h"
+#include "sim/step.h"
+
+namespace sim {
+
+// The base of a step: x = x_hat + h v.
+struct StepBase {
+  std::span<const Vec3> x_hat, v_hat;  // m, m/s
+  double h = 0;                        // s
+  Vec3 wind = Vec3::Zero();            // m/s
+};
+
+// Everything a solve in scalar type T keeps from step to step.
+template <class T>
+struct ImplicitSolver {
+  ForceModel<T> model;
+  BlockMatrix<T> matrix;
+  Preconditioner<T> preconditioner;
+  Filter<T> filter;
+  SolverScratch<T> scratch;
+  std::vector<V3<T>> x, v, trial, force, rhs, velocity_step;
+  std::vector<T> mass, inverse_mass_dt;
+  std::vector<VertexConstraint> constraints;
+
+  ImplicitSolver(const HairMesh& mesh, const BlockPattern& pattern);
+  void setModel(const HairMesh& mesh, const ForceModel<double>& source, double density);
+
+  // Solves for the velocities at the step's end, from the guess in `velocities`, which it overwrites. Roots take the
+  // velocities given there; contacts constrain their vertices, are dropped when they would pull, and stick or slide by
+  // Coulomb's law. Reports iterations, residuals and stage times into `report`.
+  void solve(const HairMesh& mesh, const SimParams& params, const StepBase& base, double (*clock)(),
+             std::vector<Contact>& contacts, std::span<Vec3> velocities, StepReport& report);
+
+ private:
+  void assemble(const SimParams& params, const StepBase& base, bool at_start);
+  T merit(const SimParams& params, const StepBase& base, std::span<const V3<T>> velocities);
+  SolveReport solveLinear(const HairMesh& mesh, const SimParams& params, const StepBase& base,
+                          std::vector<Contact>& contacts);
+};
+
+}  // namespace sim

@@ -1,0 +1,57 @@
+// Modified preconditioned conjugate gradients with a filter per constrained vertex, after Baraff and Witkin, "Large
+// Steps in Cloth Simulation" (1998), section 5.3.
+//
+// Solves A x = b for the free directions: x keeps its value in the removed directions, where the residual is the
+// constraint's reaction. All vectors have one V3 per block row.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sim/block_matrix.h"
+#include "sim/preconditioner.h"
+
+namespace sim {
+
+// The constrained vertices, each with the projector S onto its free directions: zero (all three removed), I - n n^T, t
+// t^T or, for vertices not listed, the identity.
+template <class T>
+struct Filter {
+  std::vector<int> vertices;
+  std::vector<M3<T>> keep;
+  void clear() { vertices.clear(), keep.clear(); }
+  void apply(std::span<V3<T>> x) const {
+    for (std::size_t k = 0; k < vertices.size(); ++k) x[vertices[k]] = keep[k] * x[vertices[k]];
+  }
+};
+
+// When to stop: at the relative residual, measured in the preconditioner's norm against the first, or when no vertex's
+// residual exceeds `acceleration` (m/s^2, against `inverse_mass_dt`, 1 / (m h) per vertex), or at max_iterations.
+template <class T>
+struct StopRule {
+  double relative = 1e-3;
+  double acceleration = 0;             // 0: off
+  std::span<const T> inverse_mass_dt;  // 1/(kg s) per vertex; needed for residual_acceleration
+  int max_iterations = 400;
+};
+
+struct SolveReport {
+  int iterations = 0;
+  double relative_residual = 0;      // in the preconditioner's norm
+  double residual_acceleration = 0;  // m/s^2, largest over vertices
+  bool converged = false;
+};
+
+// Scratch of one solve; sized once.
+template <class T>
+struct SolverScratch {
+  std::vector<V3<T>> r, z, d, q;
+  void resize(int n) { r.resize(n), z.resize(n), d.resize(n), q.resize(n); }
+};
+
+template <class T>
+SolveReport solveModifiedPcg(const BlockMatrix<T>& a, std::span<const V3<T>> b, const Filter<T>& filter,
+                             Preconditioner<T>& preconditioner, const StopRule<T>& stop, SolverScratch<T>& scratch,
+                             std::span<V3<T>> x);
+
+}  // namespace sim
