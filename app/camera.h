@@ -1,0 +1,36 @@
+// The camera: orbit, pan and zoom about a target that goes along with a character.
+#pragma once
+
+#include "app/actor.h"
+#include "app/scene_file.h"
+#include "render/frame_input.h"
+
+namespace app {
+
+struct Camera {
+  Vec3 anchor = Vec3::Zero();  // m, world: the smoothed head of the followed character; fixed when not following
+  Vec3 target = Vec3::Zero();  // m, relative to the anchor
+  double yaw = 0, pitch = 0;   // rad: yaw 0 looks at the figure's front from +z, positive towards its left
+  double distance = 2;         // m
+  double fov = 0.5;            // rad, vertical
+  bool follow = true;
+};
+
+// The camera that a scene asks for, framing an actor at the start of its motion. `aspect` is width over height: narrow
+// pictures step back so that the figure keeps its room.
+Camera makeCamera(const CameraSpec& spec, const Actor& actor, double aspect);
+
+// Mouse moves in pixels; `height` is the picture's. Pitch stays short of the poles, distance between 0.15 and 50 m.
+void orbit(double dx, double dy, double height, Camera& camera);
+void pan(double dx, double dy, double height, Camera& camera);
+void zoom(double notches, Camera& camera);
+
+// Turns to a named view ("front", ...) of the way the actor faces, keeping target and distance.
+void turnTo(const std::string& view, const Actor& actor, Camera& camera);
+
+// Moves the anchor after the actor's shown head, with a lag that takes the shake out of a walk.
+void follow(const Actor& actor, double seconds, Camera& camera);
+
+render::CameraInput cameraInput(const Camera& camera);
+
+}  // namespace app

@@ -1,0 +1,168 @@
+#include "app/demo.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace app {
+
+namespace {
+
+// How many steps the frame takes: the clock's, or those asked for one by one.
+int takeSteps(double seconds, Demo& demo) {
+  const sim::SimParams& params = demo.scene.sim;
+  if (!demo.paused) return tick(seconds, params.time_step, params.max_steps_per_frame, demo.clock);
+  const int steps = std::exchange(demo.single_steps, 0);
+  demo.clock.steps += steps;
+  demo.clock.ahead = steps ? 0 : demo.clock.ahead;
+  return steps;
+}
+
+void moveActors(Demo& demo) {
+  const double step = demo.scene.sim.time_step;
+  const double time = static_cast<double>(demo.clock.steps) * step;
+  for (Actor& actor : demo.actors) {
+    const double start = now();
+    const sim::StepReport report = stepActor(demo.scene.sim, step, time, actor);
+    addStep(report, now() - start, demo.stats);
+  }
+}
+
+void handPositionsOver(Demo& demo) {
+  const double fraction = shownFraction(demo.clock, demo.scene.sim.time_step);
+  for (Actor& actor : demo.actors) showActor(fraction, actor);
+  demo.debug_geometry.lines.clear();
+  demo.debug_geometry.triangles.clear();
+  demo.debug_geometry.points.clear();
+  if (!demo.debug.any()) return;
+  for (const Actor& actor : demo.actors) addDebugViews(demo.debug, actor, demo.debug_geometry);
+}
+
+void draw(Demo& demo, const FrameTarget& target) {
+  if (!target.renderer || target.width <= 0 || target.height <= 0) return;
+  demo.aspect = static_cast<double>(target.width) / target.height;
+  const render::FrameInput input = frameInput(demo, target.width, target.height);
+  demo.stats.draw = target.pixels ? target.renderer->renderImage(input, *target.pixels, target.measure)
+                                  : target.renderer->renderFrame(input, target.framebuffer, target.measure);
+}
+
+void remember(Demo& demo) {
+  if (demo.history.size() < kHistoryLength) {
+    demo.history.push_back(demo.stats);
+  } else {
+    demo.history[demo.history_next] = demo.stats;
+  }
+  demo.history_next = (demo.history_next + 1) % kHistoryLength;
+}
+
+render::HairInput hairInput(const Actor& actor) {
+  render::HairInput input;
+  input.id = actor.id;
+  input.layout_revision = actor.layout_revision;
+  input.position_revision = actor.position_revision;
+  input.faces = actor.haircut->faces;
+  input.positions = actor.shown_positions;
+  input.strands = actor.spec.look.strands;
+  input.segments_per_layer = actor.spec.look.segments_per_layer;
+  input.look = actor.spec.look.hair;
+  return input;
+}
+
+render::BodyInput bodyInput(const Actor& actor) {
+  const SkinnedMesh& mesh = actor.body->character.mesh;
+  render::BodyInput input;
+  input.id = actor.id;
+  input.mesh_id = actor.body->id;
+  input.positions = {mesh.positions.data()->data(), 3 * mesh.positions.size()};
+  input.normals = {mesh.normals.data()->data(), 3 * mesh.normals.size()};
+  input.triangles = mesh.triangles;
+  input.joints = {mesh.joints.data()->data(), 4 * mesh.joints.size()};
+  input.weights = {mesh.weights.data()->data(), 4 * mesh.weights.size()};
+  input.joint_matrices = actor.joint_matrices;
+  input.pose_revision = actor.pose_revision;
+  input.color = actor.spec.look.body_color;
+  input.roughness = actor.spec.look.body_roughness;
+  return input;
+}
+
+}  // namespace
+
+void addStep(const sim::StepReport& report, double step_seconds, FrameStats& stats) {
+  double inside = 0;
+  for (const double stage : report.seconds) inside += stage;
+  stats.seconds[kTimeForces] += report.seconds[sim::kStageForces];
+  stats.seconds[kTimeSolve] += report.seconds[sim::kStageSolve];
+  stats.seconds[kTimeCollision] += report.seconds[sim::kStageCollision];
+  stats.seconds[kTimeMinimization] += report.seconds[sim::kStageMinimization];
+  stats.seconds[kTimeStepOther] += report.seconds[sim::kStageOther];
+  // A step of an actor is its simulation and, before that, its pose.
+  stats.seconds[kTimeCharacter] += std::max(0.0, step_seconds - inside);
+  stats.steps += 1;
+  stats.solver_iterations += report.solver_iterations;
+  stats.newton_iterations += report.newton_iterations;
+  stats.minimization_iterations += report.minimization_iterations;
+  stats.residual = std::max(stats.residual, report.residual);
+  stats.residual_acceleration = std::max(stats.residual_acceleration, report.residual_acceleration);
+  stats.converged = stats.converged && report.converged;
+  stats.contacts += report.contacts;
+  stats.corrected += report.corrected;
+  stats.recoveries += report.recoveries;
+  stats.max_penetration = std::max(stats.max_penetration, report.max_penetration);
+}
+
+Demo openScene(Scene scene, double aspect) {
+  Demo demo;
+  demo.scene = std::move(scene);
+  demo.aspect = aspect;
+  for (const CharacterSpec& spec : demo.scene.characters) {
+    Actor actor = makeActor(spec, demo.scene.playback, demo.wardrobe);
+    settleActor(demo.scene.sim, demo.scene.playback.settle, actor);
+    demo.actors.push_back(std::move(actor));
+  }
+  demo.camera = makeCamera(demo.scene.camera, demo.actors.front(), aspect);
+  return demo;
+}
+
+render::FrameInput frameInput(Demo& demo, int width, int height) {
+  demo.hair_inputs.clear();
+  demo.body_inputs.clear();
+  for (const Actor& actor : demo.actors) {
+    demo.hair_inputs.push_back(hairInput(actor));
+    demo.body_inputs.push_back(bodyInput(actor));
+  }
+  render::FrameInput input;
+  input.width = width;
+  input.height = height;
+  input.camera = cameraInput(demo.camera);
+  input.light = demo.scene.look.light;
+  input.view = demo.scene.look.view;
+  input.hairs = demo.hair_inputs;
+  input.bodies = demo.body_inputs;
+  input.debug_lines = demo.debug_geometry.lines;
+  input.debug_triangles = demo.debug_geometry.triangles;
+  input.debug_points = demo.debug_geometry.points;
+  return input;
+}
+
+void advanceFrame(Demo& demo, double seconds, const FrameTarget& target) {
+  const double start = now();
+  demo.stats = FrameStats{};
+  applyRequests(demo);
+
+  const int steps = takeSteps(seconds, demo);
+  for (int i = 0; i < steps; ++i) moveActors(demo);
+
+  timed(demo.stats.seconds[kTimeHandOver], [&] { handPositionsOver(demo); });
+  follow(demo.actors.front(), seconds, demo.camera);
+
+  timed(demo.stats.seconds[kTimeDraw], [&] { draw(demo, target); });
+  if (target.draw_panels) {
+    timed(demo.stats.seconds[kTimePanels], [&] { target.draw_panels(demo); });
+  }
+  if (!demo.paused) demo.shown_time += seconds;
+  demo.stats.shown_time = demo.shown_time;
+  demo.stats.lost = demo.clock.lost;
+  demo.stats.whole = now() - start;
+  remember(demo);
+}
+
+}  // namespace app

@@ -1,0 +1,88 @@
+// THE STORY of a frame: advanceFrame. The window and the headless run call it alike; only who makes the context and who
+// reads the pixels differs.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "app/actor.h"
+#include "app/camera.h"
+#include "app/debug_views.h"
+#include "app/fixed_clock.h"
+#include "app/frame_stats.h"
+#include "app/request.h"
+#include "app/scene_file.h"
+#include "render/renderer.h"
+
+namespace app {
+
+// Pictures that were asked for; whoever owns the context takes them after the frame.
+struct Capture {
+  bool screenshot = false;
+  std::string screenshot_file;  // empty: the next free name
+  bool recording = false;
+  std::string folder;  // of the recording
+  int recorded = 0;    // frames so far
+};
+
+struct Demo {
+  Scene scene;
+  Wardrobe wardrobe;
+  std::vector<Actor> actors;
+  int selected = 0;
+  Camera camera;
+  double aspect = 16.0 / 9;  // of the picture
+  DebugViews debug;
+  FixedClock clock;
+  double shown_time = 0;  // s
+  bool paused = false;
+  int single_steps = 0;  // asked for while paused
+
+  std::vector<Request> requests;  // applied at the start of the next frame
+  std::string message;            // the last fault or success, for the window
+  bool message_is_fault = false;
+  Capture capture;
+
+  FrameStats stats;                 // of the last frame
+  std::vector<FrameStats> history;  // ring of the last kHistoryLength frames
+  std::size_t history_next = 0;
+
+  // Scratch of the drawing, kept so that frames do not allocate.
+  DebugGeometry debug_geometry;
+  std::vector<render::HairInput> hair_inputs;
+  std::vector<render::BodyInput> body_inputs;
+};
+
+inline constexpr std::size_t kHistoryLength = 240;
+
+// Where a frame is drawn. Without a renderer nothing is.
+struct FrameTarget {
+  render::Renderer* renderer = nullptr;
+  int width = 0, height = 0;
+  unsigned framebuffer = 0;
+  std::vector<unsigned char>* pixels = nullptr;  // when given: drawn offscreen and read back, RGBA, top row first
+  bool measure = false;                          // stage times of the drawing
+  std::function<void(Demo&)> draw_panels;        // empty: there are none
+};
+
+// Loads a scene and lets the hair come to rest. Throws InputError.
+Demo openScene(Scene scene, double aspect);
+
+// Advances by `seconds` of wall time and draws. Faults of requests become the demo's message; what was loaded stays.
+void advanceFrame(Demo& demo, double seconds, const FrameTarget& target);
+
+// What advanceFrame hands to the renderer; spans point into the demo.
+render::FrameInput frameInput(Demo& demo, int width, int height);
+
+// Applies and clears demo.requests. See apply_requests.cpp.
+void applyRequests(Demo& demo);
+
+inline Actor& selectedActor(Demo& demo) {
+  return demo.actors[demo.selected];
+}
+inline const Actor& selectedActor(const Demo& demo) {
+  return demo.actors[demo.selected];
+}
+
+}  // namespace app

@@ -1,0 +1,36 @@
+#include "app/fixed_clock.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace app {
+
+namespace {
+// A step that rounding alone would ask for is not taken: sixty sixtieths make sixty steps.
+constexpr double kSlack = 1e-6;
+// Longer frames (a debugger, a laptop's lid) are not caught up with at all.
+constexpr double kLongestFrame = 10;
+}  // namespace
+
+int tick(double seconds, double step, int most, FixedClock& clock) {
+  if (!(seconds > 0)) return 0;
+  if (seconds > kLongestFrame) {
+    clock.lost += std::isfinite(seconds) ? seconds - kLongestFrame : 0;
+    seconds = kLongestFrame;
+  }
+  clock.ahead -= seconds;
+  if (clock.ahead >= -kSlack * step) return 0;
+  const int needed = static_cast<int>(std::ceil(-clock.ahead / step - kSlack));
+  const int taken = std::min(needed, most);
+  clock.ahead += needed * step;
+  clock.lost += (needed - taken) * step;
+  clock.steps += taken;
+  return taken;
+}
+
+double shownFraction(const FixedClock& clock, double step) {
+  const double fraction = 1 - clock.ahead / step;
+  return fraction > 1 - kSlack ? 1 : std::max(0.0, fraction);
+}
+
+}  // namespace app

@@ -1,0 +1,66 @@
+// What a frame cost and did, for the timings panel and the report.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <string_view>
+#include <vector>
+
+#include "render/renderer.h"
+#include "sim/step.h"
+
+namespace app {
+
+// Stages of a frame in the order of the paper's figure 6, then what the figure leaves out.
+enum FrameStage {
+  kTimeForces,
+  kTimeSolve,
+  kTimeCollision,
+  kTimeMinimization,
+  kTimeStepOther,
+  kTimeCharacter,
+  kTimeHandOver,
+  kTimeDraw,
+  kTimePanels,
+  kFrameStageCount
+};
+inline constexpr std::array<std::string_view, kFrameStageCount> kFrameStageNames{
+    "forces", "solve", "collision", "minimization", "step, other", "character", "hand over", "draw", "panels"};
+
+// Sums over all characters and steps of one frame.
+struct FrameStats {
+  std::array<double, kFrameStageCount> seconds{};
+  double whole = 0;       // s, the whole of advanceFrame
+  double shown_time = 0;  // s since the start
+  int steps = 0;
+  double lost = 0;  // s of time given up so far
+  int solver_iterations = 0, newton_iterations = 0, minimization_iterations = 0;
+  double residual = 0, residual_acceleration = 0;  // largest
+  bool converged = true;
+  int contacts = 0, corrected = 0, recoveries = 0;
+  double max_penetration = 0;  // m
+  render::FrameReport draw;
+
+  double simulation() const {
+    return seconds[kTimeForces] + seconds[kTimeSolve] + seconds[kTimeCollision] + seconds[kTimeMinimization] +
+           seconds[kTimeStepOther];
+  }
+};
+
+// Adds what a step did.
+void addStep(const sim::StepReport& report, double step_seconds, FrameStats& stats);
+
+// Seconds of a steady clock.
+inline double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// Runs `work` and adds its time to a stage.
+template <class Work>
+void timed(double& seconds, Work&& work) {
+  const double start = now();
+  work();
+  seconds += now() - start;
+}
+
+}  // namespace app

@@ -1,0 +1,82 @@
+#include "app/headless.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+
+#include "app/data_path.h"
+#include "app/debug_option.h"
+#include "app/demo.h"
+#include "app/egl_context.h"
+#include "app/errors.h"
+#include "app/image_io.h"
+#include "app/report.h"
+
+namespace app {
+
+namespace {
+
+std::string framePath(const std::string& folder, int frame) {
+  char name[32];
+  std::snprintf(name, sizeof name, "frame_%04d.png", frame);
+  return (std::filesystem::path(folder) / name).string();
+}
+
+void makeFolder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!std::filesystem::is_directory(folder)) {
+    throw InputError(folder, "", "is not a folder and cannot be made one", "choose another with --out DIR");
+  }
+}
+
+// What only a run with pictures has. The renderer goes before its context.
+struct Pictures {
+  EglContext context;
+  render::Renderer renderer{dataPath("shaders")};
+};
+
+}  // namespace
+
+int runHeadless(Scene scene, const Options& options) {
+  const double start = now();
+  const double fps = scene.playback.fps;
+  Demo demo = openScene(std::move(scene), static_cast<double>(options.width) / options.height);
+  setDebugViews(options.debug, demo.debug);
+
+  RunReport run;
+  run.fps = fps;
+  std::optional<Pictures> pictures;
+  std::vector<unsigned char> pixels;
+  FrameTarget target;
+  if (!options.no_images) {
+    makeFolder(options.out);
+    pictures.emplace();
+    run.renderer = render::rendererName();
+    target = {&pictures->renderer, options.width, options.height, 0, &pixels, !options.report.empty(), {}};
+  }
+  run.start_seconds = now() - start;
+
+  for (int frame = 0; frame < options.frames; ++frame) {
+    advanceFrame(demo, frame == 0 ? 0 : 1 / fps, target);
+    run.frames.push_back(demo.stats);
+    if (demo.stats.recoveries > 0) {
+      std::cerr << "hairmesh: frame " << frame << ": " << demo.stats.recoveries
+                << " recoveries from numerical trouble\n";
+    }
+    if (pictures) writePng(framePath(options.out, frame), options.width, options.height, pixels);
+  }
+  if (pictures && !options.screenshot.empty()) writePng(options.screenshot, options.width, options.height, pixels);
+  if (!options.report.empty()) writeReport(options.report, run, demo);
+  for (const Actor& actor : demo.actors) {
+    for (const std::string& note : actor.body->character.notes)
+      std::cout << stem(actor.spec.motion) << ": " << note << "\n";
+    if (demo.actors.size() > 1) break;
+  }
+  std::cout << summary(run);
+  if (pictures) std::cout << options.frames << " frames in " << options.out << "\n";
+  return kExitFine;
+}
+
+}  // namespace app

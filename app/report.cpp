@@ -1,0 +1,133 @@
+#include "app/report.h"
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "app/errors.h"
+
+namespace app {
+
+namespace {
+
+using nlohmann::json;
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+json milliseconds(const std::vector<double>& seconds) {
+  double sum = 0, longest = 0;
+  for (const double value : seconds) {
+    sum += value;
+    longest = std::max(longest, value);
+  }
+  return {{"median", 1e3 * median(seconds)},
+          {"mean", seconds.empty() ? 0.0 : 1e3 * sum / static_cast<double>(seconds.size())},
+          {"max", 1e3 * longest}};
+}
+
+template <class Pick>
+std::vector<double> gather(const RunReport& run, Pick&& pick) {
+  std::vector<double> values;
+  for (const FrameStats& frame : run.frames) values.push_back(pick(frame));
+  return values;
+}
+
+json frameJson(const FrameStats& stats, std::size_t index, double fps) {
+  json stages, drawing = json::object();
+  for (int s = 0; s < kFrameStageCount; ++s) stages[std::string(kFrameStageNames[s])] = 1e3 * stats.seconds[s];
+  for (const render::StageTime& stage : stats.draw.stages) drawing[stage.name] = stage.milliseconds;
+  return {{"frame", index},
+          {"time", static_cast<double>(index) / fps},
+          {"milliseconds", 1e3 * stats.whole},
+          {"simulation_milliseconds", 1e3 * stats.simulation()},
+          {"stages", stages},
+          {"drawing", drawing},
+          {"steps", stats.steps},
+          {"lost_seconds", stats.lost},
+          {"solver_iterations", stats.solver_iterations},
+          {"newton_iterations", stats.newton_iterations},
+          {"residual", stats.residual},
+          {"residual_acceleration", stats.residual_acceleration},
+          {"converged", stats.converged},
+          {"contacts", stats.contacts},
+          {"corrected", stats.corrected},
+          {"minimization_iterations", stats.minimization_iterations},
+          {"max_penetration", stats.max_penetration},
+          {"recoveries", stats.recoveries},
+          {"strands_drawn", stats.draw.strands_drawn},
+          {"draw_calls", stats.draw.draw_calls},
+          {"bytes_uploaded", stats.draw.bytes_uploaded},
+          {"gpu_bytes_hair", stats.draw.gpu_bytes_hair}};
+}
+
+json actorJson(const Actor& actor) {
+  const sim::HairMesh& mesh = actor.haircut->mesh;
+  return {{"motion", actor.spec.motion},
+          {"clip", actor.playedClip().name},
+          {"hair", actor.spec.hair.empty() ? std::string(sim::styleName(actor.spec.style)) + " " +
+                                                 std::string(sim::resolutionName(actor.spec.resolution))
+                                           : actor.spec.hair},
+          {"vertices", mesh.vertexCount()},
+          {"columns", mesh.columnCount()},
+          {"prisms", mesh.prisms.size()},
+          {"hair_length", mesh.hair_length},
+          {"strands", actor.spec.look.strands},
+          {"joints", actor.body->character.skeleton.joints.size()},
+          {"ellipsoids", actor.body->character.ellipsoids.size()},
+          {"notes", actor.body->character.notes}};
+}
+
+}  // namespace
+
+void writeReport(const std::string& file, const RunReport& run, const Demo& demo) {
+  json stages;
+  for (int s = 0; s < kFrameStageCount; ++s) {
+    stages[std::string(kFrameStageNames[s])] =
+        milliseconds(gather(run, [&](const FrameStats& f) { return f.seconds[s]; }));
+  }
+  long recoveries = 0;
+  for (const FrameStats& frame : run.frames) recoveries += frame.recoveries;
+  json characters = json::array(), frames = json::array();
+  for (const Actor& actor : demo.actors) characters.push_back(actorJson(actor));
+  for (std::size_t k = 0; k < run.frames.size(); ++k) frames.push_back(frameJson(run.frames[k], k, run.fps));
+  const json report = {
+      {"scene", demo.scene.name},
+      {"renderer", run.renderer},
+      {"characters", characters},
+      {"time_step", demo.scene.sim.time_step},
+      {"fps", run.fps},
+      {"start_milliseconds", 1e3 * run.start_seconds},
+      {"summary",
+       {{"frames", run.frames.size()},
+        {"frame_milliseconds", milliseconds(gather(run, [](const FrameStats& f) { return f.whole; }))},
+        {"simulation_milliseconds", milliseconds(gather(run, [](const FrameStats& f) { return f.simulation(); }))},
+        {"stages_milliseconds", stages},
+        {"lost_seconds", demo.clock.lost},
+        {"recoveries", recoveries}}},
+      {"frames", frames}};
+  std::ofstream stream(file, std::ios::binary);
+  stream << report.dump(1, ' ', false, json::error_handler_t::replace) << "\n";
+  stream.close();
+  if (!stream) throw InputError(file, "", "cannot be written", "choose a folder that exists and may be written to");
+}
+
+std::string summary(const RunReport& run) {
+  const auto line = [&](const char* name, auto pick) {
+    std::ostringstream text;
+    text.precision(3);
+    text << "  " << name << " " << 1e3 * median(gather(run, pick)) << " ms\n";
+    return text.str();
+  };
+  return "median of " + std::to_string(run.frames.size()) + " frames:\n" +
+         line("frame     ", [](const FrameStats& f) { return f.whole; }) +
+         line("simulation", [](const FrameStats& f) { return f.simulation(); }) +
+         line("drawing   ", [](const FrameStats& f) { return f.seconds[kTimeDraw]; });
+}
+
+}  // namespace app

@@ -1,0 +1,25 @@
+// The --report file: what every frame cost and did, and what was inferred about the characters, as JSON.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/demo.h"
+
+namespace app {
+
+// What a run of frames leaves to be written.
+struct RunReport {
+  std::string renderer;      // of the context; empty without one
+  double start_seconds = 0;  // load and settle
+  double fps = 0;
+  std::vector<FrameStats> frames;
+};
+
+// Throws InputError when the file cannot be written.
+void writeReport(const std::string& file, const RunReport& run, const Demo& demo);
+
+// One line a stage and the counters, for the terminal.
+std::string summary(const RunReport& run);
+
+}  // namespace app

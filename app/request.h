@@ -1,0 +1,47 @@
+// What a person asks of the demo, as plain values: panels, keys, dropped files and tests all speak through these, and a
+// recording of a run is a list of them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace app {
+
+enum class Ask {
+  kSetParam,     // name, text: a row of any of the three tables
+  kPause,        // value: 1 pauses simulation and motion, 0 goes on
+  kPauseMotion,  // value: 1 holds the clip while the hair goes on
+  kSingleStep,   // one simulation step while paused
+  kReset,        // hair to rest at the present pose
+  kRestart,      // all clips and hair to the start
+  kCollapse,     // every vertex onto its column's root (figure 8 of the paper)
+  kCarryAlong,   // value: s in the clip; the hair is carried along rigidly
+  kSpeed,        // value: clip seconds per second
+  kLoop,         // value
+  kBlend,        // value: s
+  kInPlace,      // value
+  kClip,         // name
+  kStyle,        // name
+  kResolution,   // name
+  kMotionFile,   // text: file
+  kHairFile,     // text: file
+  kSceneFile,    // text: file
+  kPresetFile,   // text: file
+  kSavePreset,   // text: file
+  kSaveScene,    // text: file
+  kOpenFile,     // text: any of the above, told apart by ending and content
+  kSelect,       // value: which character the panels speak of
+  kView,         // name: front, three-quarter, ...
+  kFollow,       // value
+  kDebugView,    // name, value
+  kScreenshot,   // text: file, empty for the next free name
+  kRecord        // value: 1 starts, 0 ends
+};
+
+struct Request {
+  Ask what;
+  std::string name, text;
+  double value = 0;
+};
+
+}  // namespace app

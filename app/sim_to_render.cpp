@@ -1,0 +1,69 @@
+#include "app/sim_to_render.h"
+
+#include <algorithm>
+
+namespace app {
+
+std::vector<render::HairFace> renderFaces(const sim::HairMesh& mesh) {
+  std::vector<render::HairFace> faces;
+  faces.reserve(mesh.shape.root_faces.size());
+  for (std::size_t f = 0; f < mesh.shape.root_faces.size(); ++f) {
+    const sim::RootFace& root = mesh.shape.root_faces[f];
+    render::HairFace face;
+    face.layers = mesh.bundle_layers[f];
+    for (int c = 0; c < root.corner_count; ++c) face.first_vertex[c] = mesh.shape.column_first[root.columns[c]];
+    const auto corner = [&](int c) -> const sim::Vec3& { return mesh.shape.positions[face.first_vertex[c]]; };
+    double area = 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
+    if (root.corner_count == 4) area += 0.5 * (corner(2) - corner(0)).cross(corner(3) - corner(0)).norm();
+    face.area = static_cast<float>(area);
+    faces.push_back(face);
+  }
+  return faces;
+}
+
+bool blendPositions(std::span<const sim::Vec3> from, std::span<const sim::Vec3> to, double fraction,
+                    std::vector<float>& floats) {
+  bool changed = floats.size() != 3 * to.size();
+  floats.resize(3 * to.size());
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    const sim::Vec3 p = fraction == 1 ? to[i] : sim::Vec3(from[i] + fraction * (to[i] - from[i]));
+    for (int k = 0; k < 3; ++k) {
+      const float value = static_cast<float>(p[k]);
+      changed = changed || floats[3 * i + k] != value;
+      floats[3 * i + k] = value;
+    }
+  }
+  return changed;
+}
+
+void blendPoses(const Pose& from, const Pose& to, double fraction, Pose& pose) {
+  pose.world.resize(to.world.size());
+  if (fraction == 1) {
+    std::copy(to.world.begin(), to.world.end(), pose.world.begin());
+    return;
+  }
+  for (std::size_t j = 0; j < to.world.size(); ++j) {
+    const Eigen::Quaterniond a(from.world[j].linear()), b(to.world[j].linear());
+    const Vec3 translation =
+        from.world[j].translation() + fraction * (to.world[j].translation() - from.world[j].translation());
+    pose.world[j] = Eigen::Translation3d(translation) * a.slerp(fraction, b);
+  }
+}
+
+bool jointMatrices(const Skeleton& skeleton, const Pose& pose, std::vector<render::Mat4>& matrices) {
+  bool changed = matrices.size() != pose.world.size();
+  matrices.resize(pose.world.size());
+  for (std::size_t j = 0; j < pose.world.size(); ++j) {
+    const Rigid carried = pose.world[j] * skeleton.joints[j].rest_world.inverse(Eigen::Isometry);
+    const Eigen::Matrix4f m = carried.matrix().cast<float>();
+    changed = changed || !std::equal(m.data(), m.data() + 16, matrices[j].begin());
+    std::copy(m.data(), m.data() + 16, matrices[j].begin());
+  }
+  return changed;
+}
+
+render::Float3 toFloat3(const Vec3& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
+
+}  // namespace app

@@ -1,0 +1,30 @@
+// The one place where the simulator's values become the renderer's.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <span>
+#include <vector>
+
+#include "app/character.h"
+#include "render/frame_input.h"
+#include "sim/hair_mesh.h"
+
+namespace app {
+
+// Bundles with the rest area of their root faces.
+std::vector<render::HairFace> renderFaces(const sim::HairMesh& mesh);
+
+// from + fraction (to - from), three floats a vertex. Returns whether any bit changed.
+bool blendPositions(std::span<const sim::Vec3> from, std::span<const sim::Vec3> to, double fraction,
+                    std::vector<float>& floats);
+
+// Joint by joint: translations linearly, rotations by slerp.
+void blendPoses(const Pose& from, const Pose& to, double fraction, Pose& pose);
+
+// Rest model space to world, column-major. Returns whether any bit changed.
+bool jointMatrices(const Skeleton& skeleton, const Pose& pose, std::vector<render::Mat4>& matrices);
+
+render::Float3 toFloat3(const Vec3& v);
+
+}  // namespace app
