@@ -7,9 +7,16 @@
 
 #include "sim/hair_styles_comb.h"
 #include "sim/hair_styles_roots.h"
+#include "sim/hair_styles_untangle.h"
 #include "sim/hair_styles_weave.h"
 
 namespace sim {
+namespace {
+
+constexpr double kFatness = 0.10;  // of every corner tetrahedron, see cornerFatness
+constexpr double kGap = 0.0025;    // m, of every vertex but the roots; further down the coat keeps more by itself
+
+}  // namespace
 
 double Scalp::radiusAt(const Vec3& direction) const {
   assert(rows >= 2 && columns >= 3 && radius.size() == static_cast<std::size_t>(rows) * columns);
@@ -30,7 +37,9 @@ double Scalp::radiusAt(const Vec3& direction) const {
 HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& scalp, const BodyDistance& body) {
   const FlowLines lines = traceFlowLines(scalp);
   const Coat coat = combCoat(style, scalp, body, lines);
-  return weave(coat, weaveOf(style, resolution));
+  HairMeshShape shape = weave(coat, weaveOf(style, resolution));
+  untangle(body, kFatness, kGap, shape);
+  return shape;
 }
 
 std::string_view styleName(Style style) {

@@ -7,8 +7,8 @@
 namespace sim {
 namespace {
 
-constexpr double kHairlineRise = 0.28;  // share of the coat's thickness that the hairline's own columns rise to
-constexpr double kRiseAtHairline = 0.010, kRiseAtParting = 0.04;  // m of travel over which a column leaves the scalp
+constexpr double kHairlineRise = 0.34;  // share of the coat's thickness that the hairline's own columns rise to
+constexpr double kRiseAtHairline = 0.012, kRiseAtParting = 0.04;  // m of travel over which a column leaves the scalp
 constexpr double kInStepBelowHairline = 0.04;                     // m
 
 double smoothstep(double a, double b, double x) {
@@ -49,18 +49,25 @@ double heightShare(double rank, double way) {
   return height * (1 - std::exp(-way / rise));
 }
 
-// Appends a column's vertices. The outermost column of a sheet is cut evenly; the inner ones keep in step with it, so
-// that layers lie along the scalp at first, have turned square to the hair shortly below the hairline, and stay so.
-// Without that the prisms of a coarse mesh would be turned inside out by the curvature of the head.
-void layColumn(const Coat& coat, const Plait& plait, std::vector<Vec3>& positions) {
+// Where layers are cut along the outermost columns: closer over the head, where the hair bends, than where it hangs.
+double gradedPlace(double x, double grading) {
+  return x * (1 - grading + grading * x);
+}
+
+// Appends a column's vertices. The outermost column of a sheet is cut by the grading; the inner ones keep in step with
+// it, so that layers lie along the scalp at first, have turned square to the hair shortly below the hairline, and stay
+// so. Without that the prisms of a coarse mesh would be turned inside out by the curvature of the head.
+void layColumn(const Coat& coat, const Weave& plan, const Plait& plait, std::vector<Vec3>& positions) {
   const int sheet = plait.sheet;
-  const double end =
-      sampleRow(coat, coat.travelled, sheet, plait.ends_early ? coat.short_row[sheet] : coat.cut_row[sheet]);
+  const auto placeOf = [&](int layer) { return gradedPlace(layer / (plan.outer_layers - 1.0), plan.grading); };
+  double end = sampleRow(coat, coat.travelled, sheet, coat.cut_row[sheet]);
+  if (plait.ends_early)
+    end = sampleRow(coat, coat.travelled, sheet, coat.short_row[sheet]) / placeOf(plait.full_layers - 1);
   const double hairline = coat.travelled[coat.index(sheet, coat.scalp_rows - 1)];
   const double root = (1 - plait.rank) * hairline;
   const double in_step = std::min(hairline + kInStepBelowHairline, 1.02 * end);
   for (int l = 0; l < plait.layers; ++l) {
-    const double outermost = end * l / (plait.full_layers - 1);
+    const double outermost = end * placeOf(l);
     const double behind = std::max(0.0, 1 - outermost / in_step);
     const double way = outermost + root * behind;
     const double row = rowAt(coat, sheet, way), share = heightShare(plait.rank, way - root);
@@ -78,8 +85,10 @@ RootFace triangle(int a, int b, int c) {
 
 // Joins two neighbouring sheets from the hairline up: quads while the ranks keep step, a triangle where one sheet has
 // one more.
-void joinSheets(const std::vector<Plait>& plaits, std::array<int, 2> left, std::array<int, 2> right,
+void joinSheets(const std::vector<Plait>& plaits, int crown_sheet, std::array<int, 2> left, std::array<int, 2> right,
                 std::vector<RootFace>& faces) {
+  const bool left_is_crown = plaits[left[0]].sheet == crown_sheet,
+             right_is_crown = plaits[right[0]].sheet == crown_sheet;
   int i = left[0], j = right[0];
   while (i + 1 < left[1] || j + 1 < right[1]) {
     const bool left_done = i + 1 == left[1], right_done = j + 1 == right[1];
@@ -89,7 +98,18 @@ void joinSheets(const std::vector<Plait>& plaits, std::array<int, 2> left, std::
       // The odd one goes where the two sheets' ranks have drifted apart by a third of a step.
       const double step = 1.0 / std::max(left[1] - left[0], right[1] - right[0]);
       if (left_over == right_over || std::abs(gap) < step / 3) {
-        faces.push_back(quad(i, j, j + 1, i + 1));
+        // The crown's column ends the parting: its sheet and the bank meet in a straight angle there, which two
+        // triangles halve.
+        const bool top = i + 2 == left[1] && j + 2 == right[1];
+        if (top && left_is_crown) {
+          faces.push_back(triangle(i, j, i + 1));
+          faces.push_back(triangle(j, j + 1, i + 1));
+        } else if (top && right_is_crown) {
+          faces.push_back(triangle(i, j, j + 1));
+          faces.push_back(triangle(i, j + 1, i + 1));
+        } else {
+          faces.push_back(quad(i, j, j + 1, i + 1));
+        }
         ++i, ++j;
         continue;
       }
@@ -132,18 +152,18 @@ Weave weaveOf(Style style, Resolution resolution) {
   const int level = static_cast<int>(resolution);
   switch (style) {
     case Style::kShort:
-      return std::array<Weave, 3>{Weave{even(5), 3, 5, 5, 5, 1}, Weave{even(8), 4, 6, 6, 7, 1},
-                                  Weave{even(10), 5, 9, 8, 9, 1}}[level];
+      return std::array<Weave, 3>{Weave{even(5), 3, 5, 5, 5, 0, 0}, Weave{even(8), 3, 6, 7, 7, 0, 0},
+                                  Weave{even(11), 4, 9, 8, 9, 0, 0}}[level];
     case Style::kShoulder:
-      return std::array<Weave, 3>{Weave{even(5), 3, 5, 8, 8, 1}, Weave{even(8), 4, 6, 10, 11, 1},
-                                  Weave{even(10), 6, 9, 14, 15, 1}}[level];
+      return std::array<Weave, 3>{Weave{even(5), 3, 5, 8, 8, 0, 0.2}, Weave{even(8), 3, 6, 11, 12, 0, 0.2},
+                                  Weave{even(11), 4, 9, 14, 15, 0, 0.2}}[level];
     case Style::kLong:
       break;
   }
   return std::array<Weave, 3>{
-      Weave{{0, 0.275, 0.35, 0.425, 0.7, 1}, 3, 5, 9, 9, 0.6},
-      Weave{{0, 0.15, 0.3, 0.35, 0.4, 0.6, 0.8, 1}, 4, 6, 12, 13, 0.6},
-      Weave{{0, 0.1, 0.2, 0.3, 0.35, 0.4, 0.52, 0.64, 0.76, 0.88, 1}, 6, 9, 14, 15, 0.6}}[level];
+      Weave{{0, 0.275, 0.35, 0.425, 0.7, 1}, 3, 5, 9, 9, 6, 0.4},
+      Weave{{0, 0.15, 0.3, 0.35, 0.4, 0.6, 0.8, 1}, 3, 6, 13, 14, 9, 0.4},
+      Weave{{0, 0.1, 0.2, 0.3, 0.35, 0.4, 0.52, 0.64, 0.76, 0.88, 1}, 4, 9, 16, 17, 10, 0.4}}[level];
 }
 
 HairMeshShape weave(const Coat& coat, const Weave& plan) {
@@ -160,21 +180,20 @@ HairMeshShape weave(const Coat& coat, const Weave& plan) {
     const int first = static_cast<int>(plaits.size());
     for (int r = 0; r < ranks; ++r) {
       const double rank = static_cast<double>(r) / (ranks - 1);
-      const double kept = ends_early ? plan.divided_share : 1.0;
-      const int full = static_cast<int>(std::lround(plan.outer_layers * kept));
+      const int full = ends_early ? plan.divided_layers : plan.outer_layers;
       const double fewer = (plan.outer_layers - plan.inner_layers) * std::max(0.0, 1 - rank / 0.5);
-      plaits.push_back({sheet, rank, ends_early, full, full - static_cast<int>(std::lround(fewer * kept))});
+      plaits.push_back({sheet, rank, ends_early, full, full - static_cast<int>(std::lround(fewer))});
     }
     sheets.push_back({first, first + ranks});
   }
   HairMeshShape shape;
   for (int i = 0; i + 1 < sheet_count; ++i) {
     // The right half is joined as the left one's mirror image.
-    joinSheets(plaits, sheets[i], sheets[i + 1], shape.root_faces);
+    joinSheets(plaits, coat.sheets / 2, sheets[i], sheets[i + 1], shape.root_faces);
   }
   trimLayers(shape.root_faces, plaits);
   for (const Plait& plait : plaits) {
-    layColumn(coat, plait, shape.positions);
+    layColumn(coat, plan, plait, shape.positions);
     shape.column_first.push_back(static_cast<int>(shape.positions.size()));
   }
   return shape;

@@ -14,7 +14,8 @@ struct Weave {
   int front_ranks = 3,
       back_ranks = 5;  // columns a sheet has from the hairline to the parting, at the temple and at the nape
   int inner_layers = 4, outer_layers = 6;  // layers of the columns at the hairline and of those at the parting
-  double divided_share = 1;  // share of its layers that a column keeps where the hair divides over a shoulder
+  int divided_layers = 0;                  // layers of the columns that end where the hair divides over a shoulder
+  double grading = 0;                      // 0: layers are evenly spaced; towards 1: closer over the head than below it
 };
 
 Weave weaveOf(Style style, Resolution resolution);

@@ -8,6 +8,7 @@ namespace {
 
 constexpr int kContactRounds = 3;  // solves of one linear system while contacts release or start to slide
 constexpr int kLineSearchSteps = 6;
+constexpr double kStaleRatio = 3;  // of h (h + damping): BDF2's start-up step shares its factor with the steps after it
 
 template <class T>
 V3<T> cast(const Vec3& p) {
@@ -42,10 +43,18 @@ bool updateContacts(const SimParams& params, std::vector<Contact>& contacts, con
   return std::erase_if(contacts, pulling) > 0 || changed;
 }
 
+template <class T>
+void addMass(T scale, const std::vector<T>& mass, BlockMatrix<T>& matrix) {
+  for (std::size_t i = 0; i < mass.size(); ++i) {
+    for (int k = 0; k < 9; k += 4) matrix.diagonal[i].m[k] += scale * mass[i];
+  }
+}
+
 }  // namespace
 
 template <class T>
-ImplicitSolver<T>::ImplicitSolver(const HairMesh& mesh, const BlockPattern& pattern) : matrix(&pattern) {
+ImplicitSolver<T>::ImplicitSolver(const HairMesh& mesh, const BlockPattern& pattern)
+    : matrix(&pattern), preconditioner(mesh, pattern), rest_matrix(&pattern) {
   const int n = mesh.vertexCount();
   for (auto* array : {&x, &v, &trial, &force, &rhs, &velocity_step}) array->resize(n);
   mass.resize(n), inverse_mass_dt.resize(n);
@@ -57,6 +66,28 @@ template <class T>
 void ImplicitSolver<T>::setModel(const HairMesh& mesh, const ForceModel<double>& source, double density) {
   model = convertModel<T>(source);
   for (int i = 0; i < mesh.vertexCount(); ++i) mass[i] = static_cast<T>(density * mesh.vertex_volume[i]);
+  rest_h = 0;
+}
+
+// The factor of the rest shape's matrix, for the warped preconditioner. A stale factor stays a valid preconditioner, so
+// it is made anew only when the material has changed or the time step or damping has by more than the factor below.
+template <class T>
+void ImplicitSolver<T>::refreshRestFactor(const HairMesh& mesh, const SimParams& params, double h) {
+  const double now = h * (h + params.damping), then = rest_h * (rest_h + rest_damping);
+  if (rest_h > 0 && now < kStaleRatio * then && then < kStaleRatio * now && rest_drag == params.air_drag) return;
+  const Vec3 origin = mesh.shape.positions[0];
+  for (std::size_t i = 0; i < x.size(); ++i) trial[i] = cast<T>(Vec3(mesh.shape.positions[i] - origin));
+  rest_matrix.setZero();
+  Evaluation<T> out;
+  out.matrix = &rest_matrix;
+  out.matrix_scale = static_cast<T>(now);
+  out.tension_scale = static_cast<T>(h * h);
+  evaluate<T>(model, trial, out);
+  addMass(static_cast<T>(1 + h * params.air_drag), mass, rest_matrix);
+  preconditioner.setRestMatrix(rest_matrix);
+  rest_h = h;
+  rest_damping = params.damping;
+  rest_drag = params.air_drag;
 }
 
 // Matrix, right-hand side of A v = rhs at the current x (and v, unless the linearization is `at_start`, the paper's).
@@ -77,10 +108,7 @@ void ImplicitSolver<T>::assemble(const SimParams& params, const StepBase& base, 
     out.damping = tau;
   }
   evaluate<T>(model, x, out);
-  for (std::size_t i = 0; i < n; ++i) {
-    const T m = mass[i], diagonal = (T(1) + h * drag) * m;
-    for (int k = 0; k < 9; k += 4) matrix.diagonal[i].m[k] += diagonal;
-  }
+  addMass(T(1) + h * drag, mass, matrix);
   if (!at_start) multiply<T>(matrix, v, rhs);
   for (std::size_t i = 0; i < n; ++i) {
     const T m = mass[i];
@@ -185,6 +213,7 @@ void ImplicitSolver<T>::solve(const HairMesh& mesh, const SimParams& params, con
     report.seconds[stage] += now - started;
     started = now;
   };
+  if (params.solver == Solver::kWarped) refreshRestFactor(mesh, params, base.h);
   const int most = newton ? std::max(1, params.newton_iterations) : 1;
   for (int iteration = 0; iteration < most; ++iteration) {
     if (linearized) {
@@ -193,6 +222,7 @@ void ImplicitSolver<T>::solve(const HairMesh& mesh, const SimParams& params, con
       place(v);
     }
     assemble(params, base, linearized);
+    if (params.solver == Solver::kWarped) preconditioner.updateRotations(x);
     spent(kStageForces);
     std::copy(v.begin(), v.end(), velocity_step.begin());
     const T before = newton ? merit(params, base, v) : T(0);

@@ -39,6 +39,8 @@ struct ImplicitSolver {
   std::vector<V3<T>> x, v, trial, force, rhs, velocity_step;
   std::vector<T> mass, inverse_mass_dt;
   std::vector<VertexConstraint> constraints;
+  BlockMatrix<T> rest_matrix;
+  double rest_h = 0, rest_damping = 0, rest_drag = 0;  // what the rest factor was made for; rest_h 0: none
 
   ImplicitSolver(const HairMesh& mesh, const BlockPattern& pattern);
   void setModel(const HairMesh& mesh, const ForceModel<double>& source, double density);
@@ -50,6 +52,7 @@ struct ImplicitSolver {
              std::vector<Contact>& contacts, std::span<Vec3> velocities, StepReport& report);
 
  private:
+  void refreshRestFactor(const HairMesh& mesh, const SimParams& params, double h);
   void assemble(const SimParams& params, const StepBase& base, bool at_start);
   T merit(const SimParams& params, const StepBase& base, std::span<const V3<T>> velocities);
   SolveReport solveLinear(const HairMesh& mesh, const SimParams& params, const StepBase& base,

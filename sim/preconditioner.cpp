@@ -18,19 +18,87 @@ M3<T> inverse(const M3<T>& a) {
 }
 
 template <class T>
+Preconditioner<T>::Preconditioner(const HairMesh& mesh, const BlockPattern& pattern)
+    : mesh_(&mesh), pattern_(&pattern), rotations_(mesh) {
+  free_.resize(mesh.vertexCount());
+  for (int i = 0; i < mesh.vertexCount(); ++i) free_[i] = !mesh.isRoot(i);
+  inverse_diagonal_.resize(mesh.vertexCount());
+  turned_.resize(mesh.vertexCount());
+}
+
+template <class T>
+bool Preconditioner<T>::factorColumns(const BlockMatrix<T>& a) {
+  if (!column_factor_) {
+    std::vector<std::pair<int, int>> pairs;
+    for (int c = 0; c < mesh_->columnCount(); ++c) {
+      const int first = mesh_->shape.column_first[c], length = mesh_->shape.columnLength(c);
+      for (int l = 0; l < length; ++l) {
+        for (int step = 1; step <= 2 && l + step < length; ++step) pairs.emplace_back(first + l, first + l + step);
+      }
+    }
+    column_pattern_ = makePattern(pattern_->size, std::move(pairs));
+    column_matrix_.emplace(&*column_pattern_);
+    for (int i = 0; i < pattern_->size; ++i) {
+      for (int k = column_pattern_->row_first[i]; k < column_pattern_->row_first[i + 1]; ++k) {
+        column_block_.push_back(pattern_->find(i, column_pattern_->columns[k]));
+      }
+    }
+    column_factor_.emplace();
+    column_factor_->analyze(*column_pattern_, free_);
+  }
+  column_matrix_->diagonal = a.diagonal;
+  for (std::size_t k = 0; k < column_block_.size(); ++k) {
+    column_matrix_->lower[k] = column_block_[k] < 0 ? M3<T>{} : a.lower[column_block_[k]];
+  }
+  return column_factor_->factor(*column_matrix_);
+}
+
+template <class T>
+bool Preconditioner<T>::setRestMatrix(const BlockMatrix<T>& rest) {
+  if (rest_factor_.order.empty()) rest_factor_.analyze(*pattern_, free_);
+  return rest_factor_.factor(rest);
+}
+
+template <class T>
 void Preconditioner<T>::update(const BlockMatrix<T>& a, Solver solver) {
-  kind = solver;
-  inverse_diagonal.resize(a.diagonal.size());
+  kind_ = solver;
+  if (solver == Solver::kWarped) return;
+  if (solver == Solver::kDirect) {
+    if (!direct_factor_) {
+      direct_factor_.emplace();
+      direct_factor_->analyze(*pattern_, free_);
+    }
+    if (direct_factor_->factor(a)) return;
+    kind_ = Solver::kBlockJacobi;
+  }
+  if (solver == Solver::kColumn) {
+    if (factorColumns(a)) return;
+    kind_ = Solver::kBlockJacobi;
+  }
   for (std::size_t i = 0; i < a.diagonal.size(); ++i) {
     const M3<T>& d = a.diagonal[i];
-    inverse_diagonal[i] =
+    inverse_diagonal_[i] =
         solver == Solver::kDiagonal ? M3<T>{T(1) / d.m[0], 0, 0, 0, T(1) / d.m[4], 0, 0, 0, T(1) / d.m[8]} : inverse(d);
   }
 }
 
 template <class T>
 void Preconditioner<T>::apply(std::span<const V3<T>> r, std::span<V3<T>> z) {
-  for (std::size_t i = 0; i < inverse_diagonal.size(); ++i) z[i] = inverse_diagonal[i] * r[i];
+  switch (kind_) {
+    case Solver::kWarped:
+      for (std::size_t i = 0; i < turned_.size(); ++i) turned_[i] = transposeTimes(rotations_.matrices[i], r[i]);
+      rest_factor_.solve(turned_, z);
+      for (std::size_t i = 0; i < turned_.size(); ++i) z[i] = rotations_.matrices[i] * z[i];
+      return;
+    case Solver::kDirect:
+      direct_factor_->solve(r, z);
+      return;
+    case Solver::kColumn:
+      column_factor_->solve(r, z);
+      return;
+    default:
+      for (std::size_t i = 0; i < inverse_diagonal_.size(); ++i) z[i] = inverse_diagonal_[i] * r[i];
+  }
 }
 
 template M3<float> inverse(const M3<float>&);

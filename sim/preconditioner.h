@@ -1,24 +1,57 @@
 // Preconditioners of the Modified PCG, chosen by name at run time.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "sim/block_cholesky.h"
 #include "sim/block_matrix.h"
+#include "sim/rotation.h"
 #include "sim/sim_params.h"
 
 namespace sim {
 
-// An approximate inverse of A, symmetric and positive definite.
+// An approximate inverse P of the system matrix, symmetric and positive definite.
+//
+//   paper, block-jacobi   3x3 diagonal blocks
+//   diagonal              scalar diagonal
+//   column                block-tridiagonal factor of each column
+//   warped                factor of the rest shape's matrix, residuals turned into the rest frame and back by each
+//   vertex's own
+//                         rotation: P = R (A_rest)^-1 R^T
+//   direct                factor of the current matrix
 template <class T>
 struct Preconditioner {
-  Solver kind = Solver::kBlockJacobi;
-  std::vector<M3<T>> inverse_diagonal;  // per block row: scalar diagonals or 3x3 inverses
+  explicit Preconditioner(const HairMesh& mesh, const BlockPattern& pattern);
 
-  // Refreshes from the current matrix.
+  // Refreshes what follows the current matrix. Falls back to 3x3 blocks when a factorization fails.
   void update(const BlockMatrix<T>& a, Solver solver);
+  // The warped preconditioner's two halves: the factor of the rest shape's matrix (rarely), the rotations (every step).
+  bool setRestMatrix(const BlockMatrix<T>& rest);
+  void updateRotations(std::span<const V3<T>> x) { rotations_.update(x); }
+
   // z = P r.
   void apply(std::span<const V3<T>> r, std::span<V3<T>> z);
+
+  Solver kind() const { return kind_; }
+  const BlockCholesky<T>& restFactor() const { return rest_factor_; }
+
+ private:
+  const HairMesh* mesh_;
+  const BlockPattern* pattern_;
+  Solver kind_ = Solver::kBlockJacobi;
+  std::vector<M3<T>> inverse_diagonal_;  // per block row: scalar diagonals or 3x3 inverses
+  std::vector<V3<T>> turned_;
+  VertexRotations<T> rotations_;
+  BlockCholesky<T> rest_factor_;
+  std::optional<BlockCholesky<T>> direct_factor_, column_factor_;
+  std::optional<BlockPattern> column_pattern_;
+  std::optional<BlockMatrix<T>> column_matrix_;
+  std::vector<int> column_block_;    // pattern block of each block of column_pattern_
+  std::vector<unsigned char> free_;  // not a root
+
+  bool factorColumns(const BlockMatrix<T>& a);
 };
 
 // Inverse of a symmetric positive definite 3x3 block; a singular block gives the inverse of its diagonal.

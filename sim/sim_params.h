@@ -60,8 +60,8 @@ struct SimParams {
   int max_steps_per_frame = 8;  // beyond it time slows down instead of spiralling
   // Numerics
   Integrator integrator = Integrator::kLinearizedEuler;
-  Solver solver = Solver::kBlockJacobi;
-  Precision precision = Precision::kDouble;
+  Solver solver = Solver::kWarped;
+  Precision precision = Precision::kMixed;
   double tolerance = 1e-3;               // relative residual of the linear solve
   double acceleration_tolerance = 0.01;  // m/s^2, a solve also stops when no vertex's residual exceeds it
   int max_iterations = 400;              // of the linear solver

@@ -1,8 +1,9 @@
 #include "sim/forces/force_model.h"
 
-#include <Eigen/Sparse>
-#include <Eigen/SparseCholesky>
 #include <algorithm>
+#include <cmath>
+
+#include "sim/block_cholesky.h"
 
 namespace sim {
 namespace {
@@ -88,44 +89,32 @@ void solveRestShifts(const HairMesh& mesh, const BlockPattern& pattern, const Si
   out.matrix_scale = 1;
   evaluate<double>(model, x, out);
 
-  std::vector<int> number(n, -1);
-  int free_count = 0;
-  for (int v = 0; v < n; ++v) {
-    if (!mesh.isRoot(v)) number[v] = free_count++;
-  }
-  std::vector<Eigen::Triplet<double>> triplets;
-  Eigen::VectorXd load = Eigen::VectorXd::Zero(3 * free_count);
+  std::vector<unsigned char> free_vertex(n);
+  std::vector<V3<double>> load(n, V3<double>{0, 0, 0}), y(n), residual(n), more(n);
   double scale = 0;
+  for (int i = 0; i < n; ++i) scale = std::max(scale, stiffness.diagonal[i].m[0]);
   for (int i = 0; i < n; ++i) {
-    if (number[i] < 0) continue;
-    for (int k = 0; k < 9; ++k)
-      triplets.emplace_back(3 * number[i] + k / 3, 3 * number[i] + k % 3, stiffness.diagonal[i].m[k]);
-    scale = std::max(scale, stiffness.diagonal[i].m[0]);
-    load[3 * number[i] + 1] = -params.density * mesh.vertex_volume[i] * params.gravity;
-    for (int b = pattern.row_first[i]; b < pattern.row_first[i + 1]; ++b) {
-      const int j = number[pattern.columns[b]];
-      if (j < 0) continue;
-      for (int k = 0; k < 9; ++k) triplets.emplace_back(3 * number[i] + k / 3, 3 * j + k % 3, stiffness.lower[b].m[k]);
-    }
+    free_vertex[i] = !mesh.isRoot(i);
+    if (free_vertex[i]) load[i].y = -params.density * mesh.vertex_volume[i] * params.gravity;
+    // A material without bend or shear leaves modes without stiffness; the smallest share keeps the solve defined.
+    for (int k = 0; k < 9; k += 4) stiffness.diagonal[i].m[k] += 1e-13 * scale;
   }
-  // A material without bend or shear leaves modes without stiffness; the smallest share keeps the solve defined.
-  for (int i = 0; i < 3 * free_count; ++i) triplets.emplace_back(i, i, 1e-13 * scale);
-  Eigen::SparseMatrix<double> matrix(3 * free_count, 3 * free_count);
-  matrix.setFromTriplets(triplets.begin(), triplets.end());
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> factor(matrix);
-  if (factor.info() != Eigen::Success) return;
-  Eigen::VectorXd y = factor.solve(load);
-  y += factor.solve(load - matrix.selfadjointView<Eigen::Lower>() * y);
-  if (!y.allFinite()) return;
-  const auto moved = [&](int v) {
-    return number[v] < 0 ? V3<double>{0, 0, 0}
-                         : V3<double>{y[3 * number[v]], y[3 * number[v] + 1], y[3 * number[v] + 2]};
-  };
+  BlockCholesky<double> factor;
+  factor.analyze(pattern, free_vertex);
+  if (!factor.factor(stiffness)) return;
+  factor.solve(load, y);
+  multiply<double>(stiffness, y, residual);
+  for (int i = 0; i < n; ++i) residual[i] = load[i] - residual[i];
+  factor.solve(residual, more);
+  for (int i = 0; i < n; ++i) {
+    y[i] += more[i];
+    if (!std::isfinite(dot(y[i], y[i]))) return;
+  }
   const auto bounded = [](double change, double bound) { return std::clamp(change, -bound, bound); };
   for (std::size_t e = 0; e < model.stretch.size(); ++e) {
     const auto [a, b] = model.stretch.vertices[e];
     const auto s = stretchCondition(x[a], x[b], model.stretch.inverse_length[e]);
-    model.stretch.shift[e] -= bounded(s.inverse_length * dot(s.direction, moved(b) - moved(a)), 0.5);
+    model.stretch.shift[e] -= bounded(s.inverse_length * dot(s.direction, y[b] - y[a]), 0.5);
   }
   const auto shift = [&]<int N>(Elements<double, N>& elements, const auto& conditionOf, const auto& bound) {
     for (std::size_t e = 0; e < elements.size(); ++e) {
@@ -133,7 +122,7 @@ void solveRestShifts(const HairMesh& mesh, const BlockPattern& pattern, const Si
       for (int k = 0; k < N; ++k) p[k] = x[elements.vertices[e][k]];
       const Condition<double, N> c = conditionOf(e, p);
       double change = 0;
-      for (int k = 0; k < N; ++k) change += dot(c.g[k], moved(elements.vertices[e][k]));
+      for (int k = 0; k < N; ++k) change += dot(c.g[k], y[elements.vertices[e][k]]);
       elements.shift[e] -= bounded(change, bound(e));
     }
   };

@@ -1,0 +1,299 @@
+// s: a supernode, L_ss: its triangle, L_rs: its rows below; w: its width, h: its height, both in scalars.
+#include "sim/block_cholesky.h"
+
+#include <Eigen/Dense>
+#include <Eigen/OrderingMethods>
+#include <Eigen/Sparse>
+#include <algorithm>
+#include <cmath>
+
+#include "sim/simd.h"
+
+namespace sim {
+namespace {
+
+// Elimination order of the kept rows, fill-reducing.
+std::vector<int> eliminationOrder(const BlockPattern& pattern, std::span<const unsigned char> keep) {
+  std::vector<int> number(pattern.size, -1), kept;
+  for (int i = 0; i < pattern.size; ++i) {
+    if (keep[i]) {
+      number[i] = static_cast<int>(kept.size());
+      kept.push_back(i);
+    }
+  }
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int i = 0; i < pattern.size; ++i) {
+    if (!keep[i]) continue;
+    entries.emplace_back(number[i], number[i], 1.0);
+    for (int k = pattern.row_first[i]; k < pattern.row_first[i + 1]; ++k) {
+      const int j = pattern.columns[k];
+      if (!keep[j]) continue;
+      entries.emplace_back(number[i], number[j], 1.0);
+      entries.emplace_back(number[j], number[i], 1.0);
+    }
+  }
+  const int n = static_cast<int>(kept.size());
+  Eigen::SparseMatrix<double> graph(n, n);
+  graph.setFromTriplets(entries.begin(), entries.end());
+  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
+  Eigen::AMDOrdering<int>()(graph, permutation);
+  std::vector<int> order(n);
+  for (int k = 0; k < n; ++k) order[k] = kept[permutation.indices()[k]];
+  return order;
+}
+
+// Column structures below the diagonal (elimination positions, ascending) and the elimination tree, by merging
+// children.
+void eliminate(const BlockPattern& pattern, const std::vector<int>& order, const std::vector<int>& position,
+               std::vector<std::vector<int>>& below, std::vector<int>& parent) {
+  const int n = static_cast<int>(order.size());
+  below.assign(n, {});
+  parent.assign(n, -1);
+  for (int i = 0; i < pattern.size; ++i) {
+    for (int k = pattern.row_first[i]; k < pattern.row_first[i + 1]; ++k) {
+      const int p = position[i], q = position[pattern.columns[k]];
+      if (p >= 0 && q >= 0) below[std::min(p, q)].push_back(std::max(p, q));
+    }
+  }
+  std::vector<std::vector<int>> children(n);
+  std::vector<int> mark(n, -1);
+  for (int c = 0; c < n; ++c) {
+    std::vector<int> merged;
+    mark[c] = c;
+    const auto take = [&](const std::vector<int>& rows) {
+      for (int r : rows) {
+        if (mark[r] != c) mark[r] = c, merged.push_back(r);
+      }
+    };
+    take(below[c]);
+    for (int child : children[c]) take(below[child]);
+    std::sort(merged.begin(), merged.end());
+    below[c] = std::move(merged);
+    if (!below[c].empty()) {
+      parent[c] = below[c].front();
+      children[parent[c]].push_back(c);
+    }
+  }
+}
+
+// Renumbers the columns in postorder of the elimination tree, so that the columns of a supernode are neighbours.
+void postorder(std::vector<int>& order, std::vector<int>& position, const std::vector<int>& parent) {
+  const int n = static_cast<int>(order.size());
+  std::vector<std::vector<int>> children(n + 1);
+  for (int c = 0; c < n; ++c) children[parent[c] < 0 ? n : parent[c]].push_back(c);
+  std::vector<int> sequence, stack{n};
+  std::vector<std::size_t> visited(n + 1, 0);
+  while (!stack.empty()) {
+    const int c = stack.back();
+    if (visited[c] < children[c].size()) {
+      stack.push_back(children[c][visited[c]++]);
+    } else {
+      if (c < n) sequence.push_back(c);
+      stack.pop_back();
+    }
+  }
+  std::vector<int> renumbered(n);
+  for (int k = 0; k < n; ++k) renumbered[k] = order[sequence[k]];
+  order = std::move(renumbered);
+  for (int k = 0; k < n; ++k) position[order[k]] = k;
+}
+
+}  // namespace
+
+template <class T>
+void BlockCholesky<T>::analyze(const BlockPattern& pattern, std::span<const unsigned char> keep) {
+  order = eliminationOrder(pattern, keep);
+  const int n = static_cast<int>(order.size());
+  position.assign(pattern.size, -1);
+  for (int k = 0; k < n; ++k) position[order[k]] = k;
+  std::vector<std::vector<int>> below;
+  std::vector<int> parent;
+  eliminate(pattern, order, position, below, parent);
+  postorder(order, position, parent);
+  eliminate(pattern, order, position, below, parent);
+
+  // Supernodes: a column joins the one before it when it is its parent and the zeros that this stores are few.
+  supernodes.clear();
+  row_index.clear();
+  std::vector<int> supernode_of(n, -1);
+  std::size_t at = 0, true_blocks = 0;
+  for (int c = 0; c < n;) {
+    Supernode s;
+    s.first = c;
+    s.columns = 1;
+    true_blocks = below[c].size();
+    while (c + s.columns < n && parent[c + s.columns - 1] == c + s.columns) {
+      const std::size_t next = below[c + s.columns].size();
+      const std::size_t stored =
+          static_cast<std::size_t>(s.columns + 1) * next + static_cast<std::size_t>(s.columns + 1) * s.columns / 2;
+      if (stored > (true_blocks + next) * 5 / 4 + 12) break;
+      true_blocks += next;
+      ++s.columns;
+    }
+    // The union of the structures is the last column's, since each column's parent is the next.
+    const std::vector<int>& rows = below[c + s.columns - 1];
+    s.rows_first = static_cast<int>(row_index.size());
+    s.rows = static_cast<int>(rows.size());
+    row_index.insert(row_index.end(), rows.begin(), rows.end());
+    s.values = at;
+    at += static_cast<std::size_t>(s.width()) * (s.width() + s.height());
+    for (int k = 0; k < s.columns; ++k) supernode_of[c + k] = static_cast<int>(supernodes.size());
+    c += s.columns;
+    supernodes.push_back(s);
+  }
+  values.assign(at, T(0));
+  largest_front_ = 0;
+  int tallest = 0;
+  for (Supernode& s : supernodes) {
+    s.parent = s.rows > 0 ? supernode_of[row_index[s.rows_first]] : -1;
+    largest_front_ = std::max(largest_front_, s.width() + s.height());
+    tallest = std::max(tallest, s.height());
+  }
+  work_.assign(3 * static_cast<std::size_t>(n), T(0));
+  gathered_.assign(tallest, T(0));
+  front_.assign(static_cast<std::size_t>(largest_front_) * largest_front_, T(0));
+  local_.assign(n, -1);
+  // Deepest the stack of update matrices gets: supernodes are in postorder, so children pop before their parent pushes.
+  std::vector<std::size_t> pending;
+  std::vector<int> child_count(supernodes.size(), 0);
+  for (const Supernode& s : supernodes) {
+    if (s.parent >= 0) ++child_count[s.parent];
+  }
+  std::size_t depth = 0, deepest = 0;
+  for (std::size_t k = 0; k < supernodes.size(); ++k) {
+    for (int child = 0; child < child_count[k]; ++child) {
+      depth -= pending.back();
+      pending.pop_back();
+    }
+    const Supernode& s = supernodes[k];
+    if (s.parent < 0) continue;
+    pending.push_back(static_cast<std::size_t>(s.height()) * s.height());
+    depth += pending.back();
+    deepest = std::max(deepest, depth);
+  }
+  stack_.assign(deepest, T(0));
+}
+
+template <class T>
+bool BlockCholesky<T>::factor(const BlockMatrix<T>& a) {
+  using Matrix = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
+  using Panel = Eigen::Map<Matrix, 0, Eigen::OuterStride<>>;
+  const BlockPattern& pattern = *a.pattern;
+  stack_size_ = 0;
+  struct Pending {
+    int supernode;
+    std::size_t at;
+  };
+  std::vector<Pending> pending;
+  pending.reserve(supernodes.size());
+
+  // Entries of the matrix by the column that eliminates them.
+  std::vector<std::vector<int>> blocks_of(order.size());
+  std::vector<int> row_of(pattern.columns.size());
+  for (int i = 0; i < pattern.size; ++i) {
+    for (int k = pattern.row_first[i]; k < pattern.row_first[i + 1]; ++k) {
+      row_of[k] = i;
+      const int p = position[i], q = position[pattern.columns[k]];
+      if (p >= 0 && q >= 0) blocks_of[std::min(p, q)].push_back(k);
+    }
+  }
+  for (std::size_t index = 0; index < supernodes.size(); ++index) {
+    const Supernode& s = supernodes[index];
+    const int w = s.width(), h = s.height(), size = w + h;
+    for (int k = 0; k < s.columns; ++k) local_[s.first + k] = 3 * k;
+    for (int k = 0; k < s.rows; ++k) local_[row_index[s.rows_first + k]] = w + 3 * k;
+    Panel front(front_.data(), size, size, Eigen::OuterStride<>(size));
+    front.template triangularView<Eigen::Lower>().setZero();
+    for (int c = s.first; c < s.first + s.columns; ++c) {
+      const int column = local_[c];
+      const M3<T>& d = a.diagonal[order[c]];
+      for (int k = 0; k < 9; ++k) front(column + k / 3, column + k % 3) += d.m[k];
+      for (int k : blocks_of[c]) {
+        const int p = position[row_of[k]], q = position[pattern.columns[k]];
+        const M3<T>& b = a.lower[k];
+        // The block is A(row, column) with row = row_of[k]; it is needed with its later-eliminated vertex as row.
+        const int r = local_[std::max(p, q)];
+        for (int e = 0; e < 9; ++e) front(r + (p > q ? e / 3 : e % 3), column + (p > q ? e % 3 : e / 3)) += b.m[e];
+      }
+    }
+    while (!pending.empty() && supernodes[pending.back().supernode].parent == static_cast<int>(index)) {
+      const Supernode& child = supernodes[pending.back().supernode];
+      const int ch = child.height();
+      const Panel update(stack_.data() + pending.back().at, ch, ch, Eigen::OuterStride<>(ch));
+      for (int j = 0; j < child.rows; ++j) {
+        const int column = local_[row_index[child.rows_first + j]];
+        for (int i = j; i < child.rows; ++i) {
+          const int row = local_[row_index[child.rows_first + i]];
+          front.template block<3, 3>(row, column) += update.template block<3, 3>(3 * i, 3 * j);
+        }
+      }
+      stack_size_ = pending.back().at;
+      pending.pop_back();
+    }
+    auto diagonal = front.topLeftCorner(w, w);
+    if (Eigen::internal::llt_inplace<T, Eigen::Lower>::blocked(diagonal) >= 0) return false;
+    Panel inverse(values.data() + s.values, w, w, Eigen::OuterStride<>(w));
+    inverse.setIdentity();
+    diagonal.template triangularView<Eigen::Lower>().solveInPlace(inverse);
+    if (h > 0) {
+      Panel rows(values.data() + s.values + static_cast<std::size_t>(w) * w, h, w, Eigen::OuterStride<>(h));
+      rows.noalias() = front.bottomLeftCorner(h, w) * inverse.transpose().template triangularView<Eigen::Upper>();
+      Panel update(stack_.data() + stack_size_, h, h, Eigen::OuterStride<>(h));
+      update = front.bottomRightCorner(h, h);
+      update.template selfadjointView<Eigen::Lower>().rankUpdate(rows, T(-1));
+      pending.push_back({static_cast<int>(index), stack_size_});
+      stack_size_ += static_cast<std::size_t>(h) * h;
+    }
+  }
+  return true;
+}
+
+template <class T>
+void BlockCholesky<T>::solve(std::span<const V3<T>> r, std::span<V3<T>> z) {
+  const int n = static_cast<int>(order.size());
+  T* x = work_.data();
+  for (int k = 0; k < n; ++k) {
+    const V3<T>& b = r[order[k]];
+    x[3 * k] = b.x, x[3 * k + 1] = b.y, x[3 * k + 2] = b.z;
+  }
+  for (const Supernode& s : supernodes) {
+    const int w = s.width(), h = s.height();
+    const T* inverse = values.data() + s.values;
+    const T* rows = inverse + static_cast<std::size_t>(w) * w;
+    multiplyLowerInPlace(inverse, w, x + 3 * s.first);
+    if (h == 0) continue;
+    multiplyPanel(rows, h, w, x + 3 * s.first, gathered_.data());
+    for (int k = 0; k < s.rows; ++k) {
+      T* y = x + 3 * row_index[s.rows_first + k];
+      y[0] -= gathered_[3 * k], y[1] -= gathered_[3 * k + 1], y[2] -= gathered_[3 * k + 2];
+    }
+  }
+  for (auto it = supernodes.rbegin(); it != supernodes.rend(); ++it) {
+    const Supernode& s = *it;
+    const int w = s.width(), h = s.height();
+    const T* inverse = values.data() + s.values;
+    const T* rows = inverse + static_cast<std::size_t>(w) * w;
+    if (h > 0) {
+      for (int k = 0; k < s.rows; ++k) {
+        const T* y = x + 3 * row_index[s.rows_first + k];
+        gathered_[3 * k] = y[0], gathered_[3 * k + 1] = y[1], gathered_[3 * k + 2] = y[2];
+      }
+      subtractPanelTransposed(rows, h, w, gathered_.data(), x + 3 * s.first);
+    }
+    multiplyUpperInPlace(inverse, w, x + 3 * s.first);
+  }
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    const int k = position[i];
+    z[i] = k < 0 ? V3<T>{0, 0, 0} : V3<T>{x[3 * k], x[3 * k + 1], x[3 * k + 2]};
+  }
+}
+
+template <class T>
+std::size_t BlockCholesky<T>::factorBlocks() const {
+  return values.size() / 9;
+}
+
+template struct BlockCholesky<float>;
+template struct BlockCholesky<double>;
+
+}  // namespace sim

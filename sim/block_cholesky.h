@@ -1,0 +1,52 @@
+// Sparse Cholesky factorization of a symmetric positive definite block matrix, supernodal: columns with the same
+// structure are kept as one dense panel, so that factor and solves run on dense kernels.
+//
+// Method: approximate minimum degree order of the vertex graph (Amestoy, Davis, Duff 1996, Eigen's implementation),
+// elimination tree, relaxed supernodes, multifrontal numeric factorization (Duff and Reid 1983).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sim/block_matrix.h"
+
+namespace sim {
+
+template <class T>
+struct BlockCholesky {
+  // A panel: `width` scalar columns, the dense lower triangle L_ss kept inverted, over `height` scalar rows L_rs.
+  struct Supernode {
+    int first = 0, columns = 0;    // block columns, in elimination order
+    int rows_first = 0, rows = 0;  // block rows below, in `row_index`
+    std::size_t values = 0;        // start of the panel: inverse of L_ss (width x width), then L_rs (height x width)
+    int parent = -1;
+    int width() const { return 3 * columns; }
+    int height() const { return 3 * rows; }
+  };
+  std::vector<int> order;     // elimination position -> block row of the matrix
+  std::vector<int> position;  // block row -> elimination position, or -1 for rows left out
+  std::vector<Supernode> supernodes;
+  std::vector<int> row_index;  // elimination positions of the rows below, per supernode, ascending
+  std::vector<T> values;
+
+  // Orders and lays out the factor of the rows with keep[i] != 0; the others are treated as fixed and left out.
+  void analyze(const BlockPattern& pattern, std::span<const unsigned char> keep);
+
+  // Factors the matrix; false when a pivot is not positive (the factor is then unusable). Needs analyze.
+  bool factor(const BlockMatrix<T>& a);
+
+  // z = A^-1 r over the kept rows, zero at the others.
+  void solve(std::span<const V3<T>> r, std::span<V3<T>> z);
+
+  std::size_t factorBlocks() const;  // 3x3 blocks stored
+
+ private:
+  std::vector<T> work_;           // right-hand side in elimination order
+  std::vector<T> gathered_;       // rows of one panel
+  std::vector<T> front_, stack_;  // numeric factorization
+  std::vector<int> local_;        // elimination position -> row in the front
+  std::size_t stack_size_ = 0;
+  int largest_front_ = 0;
+};
+
+}  // namespace sim
