@@ -1,0 +1,193 @@
+#include "app/ui.h"
+
+#include <imgui/imgui.h>
+
+#include <algorithm>
+
+#include "app/data_path.h"
+#include "app/ui_panels.h"
+#include "app/ui_widgets.h"
+
+namespace app {
+
+namespace {
+
+constexpr float kMargin = 12, kSidebarWidth = 348, kTimingsWidth = 286;
+constexpr double kMessageTime = 6;  // s; faults stay until clicked
+constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+                                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoBringToFrontOnFocus;
+
+void sceneRow(Demo& demo, UiState& ui) {
+  ImGui::PushFont(ui.heading);
+  ImGui::TextUnformatted("hairmesh");
+  ImGui::PopFont();
+  ImGui::SameLine(0, 12);
+  ImGui::SetNextItemWidth(-1);
+  const bool open = ImGui::BeginCombo("##scene", demo.scene.name.c_str());
+  noteItem("scene", ui);
+  if (open) {
+    for (const std::string& file : ui.scenes) {
+      if (ImGui::Selectable(readable(stem(file)).c_str(), file == demo.scene.file))
+        ask(demo, {Ask::kSceneFile, "", file});
+      noteItem("scene " + stem(file), ui);
+    }
+    ImGui::EndCombo();
+  }
+}
+
+void transportRow(Demo& demo, UiState& ui) {
+  const auto next = [] { ImGui::SameLine(0, 4); };
+  if (iconButton(demo.paused ? Icon::kPlay : Icon::kPause, "pause", demo.paused ? "Go on (Space)" : "Pause (Space)",
+                 demo.paused, ui)) {
+    ask(demo, {Ask::kPause, "", "", demo.paused ? 0.0 : 1.0});
+  }
+  next();
+  if (iconButton(Icon::kStep, "step", "One simulation step (.)", false, ui)) ask(demo, {Ask::kSingleStep, "", ""});
+  next();
+  if (iconButton(Icon::kRestart, "restart", "Everything to the start (Home)", false, ui))
+    ask(demo, {Ask::kRestart, "", ""});
+  next();
+  if (iconButton(Icon::kReset, "reset", "Hair to rest (R)", false, ui)) ask(demo, {Ask::kReset, "", ""});
+  next();
+  if (iconButton(Icon::kCollapse, "collapse", "Collapse the hair onto its roots and watch it recover (C)", false, ui)) {
+    ask(demo, {Ask::kCollapse, "", ""});
+  }
+  next();
+  if (iconButton(Icon::kPhoto, "screenshot", "Screenshot (P)", false, ui)) ask(demo, {Ask::kScreenshot, "", ""});
+  next();
+  const bool recording = demo.capture.recording;
+  if (iconButton(Icon::kRecord, "record", recording ? "Stop recording (K)" : "Record a PNG sequence (K)", recording,
+                 ui)) {
+    ask(demo, {Ask::kRecord, "", "", recording ? 0.0 : 1.0});
+  }
+  next();
+  if (iconButton(Icon::kHelp, "help", "Keys (?)", ui.help, ui)) ui.help = !ui.help;
+}
+
+void characterRow(Demo& demo, UiState& ui) {
+  if (demo.actors.size() < 2) return;
+  rowLabel("Character", "Which one the panels speak of");
+  int selected = demo.selected;
+  ImGui::SetNextItemWidth(-1);
+  if (ImGui::SliderInt("##character", &selected, 0, static_cast<int>(demo.actors.size()) - 1, "%d")) {
+    ask(demo, {Ask::kSelect, "", "", static_cast<double>(selected)});
+  }
+  noteItem("character", ui);
+}
+
+struct Tab {
+  const char* label;
+  void (*build)(Demo&, UiState&);
+};
+constexpr Tab kTabs[] = {
+    {"Simulation", simulationTab}, {"Motion", motionTab}, {"Hair", hairTab}, {"Look", lookTab}, {"Debug", debugTab}};
+
+void sidebar(Demo& demo, UiState& ui) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const float margin = kMargin * ui.text_scale;
+  ImGui::SetNextWindowPos({margin, margin});
+  ImGui::SetNextWindowSize({kSidebarWidth * ui.text_scale, std::max(120.0f, io.DisplaySize.y - 2 * margin)});
+  if (ImGui::Begin("sidebar", nullptr, kFixed)) {
+    sceneRow(demo, ui);
+    transportRow(demo, ui);
+    characterRow(demo, ui);
+    ImGui::Spacing();
+    if (ImGui::BeginTabBar("tabs")) {
+      int index = 0;
+      for (const Tab& tab : kTabs) {
+        const bool wanted = ui.open_tab == index++;
+        const bool open = ImGui::BeginTabItem(tab.label, nullptr, wanted ? ImGuiTabItemFlags_SetSelected : 0);
+        noteItem(std::string("tab ") + tab.label, ui);
+        if (!open) continue;
+        if (ImGui::BeginChild(tab.label, {0, 0}, false)) tab.build(demo, ui);
+        ImGui::EndChild();
+        ImGui::EndTabItem();
+      }
+      ui.open_tab = -1;
+      ImGui::EndTabBar();
+    }
+  }
+  ImGui::End();
+}
+
+void timings(const Demo& demo, UiState& ui) {
+  const float margin = kMargin * ui.text_scale;
+  ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x - margin, margin}, ImGuiCond_Always, {1, 0});
+  ImGui::SetNextWindowSize({kTimingsWidth * ui.text_scale, 0});
+  ImGui::SetNextWindowCollapsed(false, ImGuiCond_FirstUseEver);
+  const ImGuiWindowFlags flags =
+      ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_AlwaysAutoResize;
+  if (ImGui::Begin("Timings", nullptr, flags)) timingsPanel(demo, ui);
+  ImGui::End();
+}
+
+void message(Demo& demo, UiState& ui) {
+  if (demo.message != ui.shown_message) {
+    ui.shown_message = demo.message;
+    ui.message_since = ImGui::GetTime();
+  }
+  if (demo.message.empty()) return;
+  if (!demo.message_is_fault && ImGui::GetTime() - ui.message_since > kMessageTime) {
+    demo.message.clear();
+    return;
+  }
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({0.5f * size.x, size.y - 2 * kMargin * ui.text_scale}, ImGuiCond_Always, {0.5f, 1});
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {0.45f * size.x, 0.5f * size.y});
+  const bool fault = demo.message_is_fault;
+  if (fault) ImGui::PushStyleColor(ImGuiCol_WindowBg, ImVec4(0.30f, 0.10f, 0.09f, 0.96f));
+  const ImGuiWindowFlags flags = kFixed | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing;
+  if (ImGui::Begin("message", nullptr, flags)) {
+    ImGui::PushTextWrapPos(0.42f * size.x);
+    ImGui::TextUnformatted(demo.message.c_str());
+    ImGui::PopTextWrapPos();
+    if (fault) {
+      const bool closed = ImGui::Button("Close");
+      noteItem("close_message", ui);
+      if (closed) demo.message.clear();
+    }
+  }
+  ImGui::End();
+  if (fault) ImGui::PopStyleColor();
+}
+
+void help(UiState& ui) {
+  if (!ui.help) return;
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({0.5f * size.x, 0.5f * size.y}, ImGuiCond_Always, {0.5f, 0.5f});
+  const ImGuiWindowFlags flags =
+      ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize;
+  if (ImGui::Begin("keys", nullptr, flags)) {
+    ImGui::PushFont(ui.heading);
+    ImGui::TextUnformatted("Keys and mouse");
+    ImGui::PopFont();
+    ImGui::Separator();
+    if (ImGui::BeginTable("keys", 2)) {
+      ImGui::TableSetupColumn("key", ImGuiTableColumnFlags_WidthFixed, 110 * ui.text_scale);
+      ImGui::TableSetupColumn("what", ImGuiTableColumnFlags_WidthFixed, 290 * ui.text_scale);
+      for (const KeyHelp& key : keyHelp()) {
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        ImGui::TextColored(ImGui::GetStyleColorVec4(ImGuiCol_CheckMark), "%s", key.keys);
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(key.what);
+      }
+      ImGui::EndTable();
+    }
+  }
+  ImGui::End();
+}
+
+}  // namespace
+
+void buildUi(Demo& demo, UiState& ui) {
+  ui.items.clear();
+  if (ui.visible) {
+    sidebar(demo, ui);
+    timings(demo, ui);
+  }
+  message(demo, ui);
+  help(ui);
+}
+
+}  // namespace app

@@ -1,0 +1,55 @@
+// The panels: Dear ImGui only, no window system and no OpenGL, so that they can be tested by feeding mouse events. What
+// a person asks for goes into demo.requests; the panels change nothing themselves.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/demo.h"
+
+struct ImFont;
+
+namespace app {
+
+// A widget of the last drawn frame, for tests and scripted tours.
+struct UiItem {
+  std::string name;
+  float x = 0, y = 0, width = 0, height = 0;  // pixels
+};
+
+struct UiState {
+  bool visible = true;
+  bool help = false;
+  bool quit = false;
+  int open_tab = -1;     // asked for by a key or a test; -1: leave
+  float text_scale = 1;  // of a dense display
+  ImFont* heading = nullptr;
+  std::array<char, 512> motion_path{}, parts_path{}, hair_path{}, scene_path{};
+  std::array<char, 64> preset_name{};
+  std::string shown_message;
+  double message_since = 0;                                // s of ImGui's clock
+  std::vector<std::string> scenes, presets, clips, hairs;  // files on offer
+  std::vector<UiItem> items;
+};
+
+// Sets fonts and colours of the current ImGui context, and looks up the files on offer.
+void prepareUi(float text_scale, UiState& ui);
+
+// Builds all panels of one frame, between ImGui::NewFrame and ImGui::Render.
+void buildUi(Demo& demo, UiState& ui);
+
+// A key as its character in upper case, or one of these (the numbers are those of GLFW).
+enum UiKey { kKeyEscape = 256, kKeyTab = 258, kKeyHome = 268, kKeyF1 = 290, kKeyF12 = 301 };
+
+// What a key does. Returns whether it did something.
+bool pressKey(int key, Demo& demo, UiState& ui);
+
+struct KeyHelp {
+  const char* keys;
+  const char* what;
+};
+std::span<const KeyHelp> keyHelp();
+
+}  // namespace app

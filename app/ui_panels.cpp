@@ -1,0 +1,253 @@
+#include "app/ui_panels.h"
+
+#include <imgui/imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "app/data_path.h"
+#include "app/ui_widgets.h"
+
+namespace app {
+
+namespace {
+
+// A combo of files by their stem. Returns the chosen path, or empty.
+std::string fileCombo(const char* name, const std::string& shown, const std::vector<std::string>& files, UiState& ui) {
+  std::string chosen;
+  ImGui::SetNextItemWidth(-1);
+  const bool open = ImGui::BeginCombo(name, shown.c_str());
+  noteItem(name, ui);
+  if (!open) return chosen;
+  for (const std::string& file : files) {
+    if (ImGui::Selectable(readable(stem(file)).c_str(), stem(file) == shown)) chosen = file;
+    noteItem(std::string(name) + " " + stem(file), ui);
+  }
+  ImGui::EndCombo();
+  return chosen;
+}
+
+// A path to type; true when it was confirmed.
+template <std::size_t N>
+bool pathInput(const char* name, const char* hint, std::array<char, N>& path, UiState& ui) {
+  ImGui::SetNextItemWidth(-1);
+  const bool entered =
+      ImGui::InputTextWithHint(name, hint, path.data(), path.size(), ImGuiInputTextFlags_EnterReturnsTrue);
+  noteItem(name, ui);
+  return entered && path[0] != 0;
+}
+
+bool slider(const char* name, double low, double high, const char* format, bool logarithmic, double& value) {
+  const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp | (logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
+  return ImGui::SliderScalar(name, ImGuiDataType_Double, &value, &low, &high, format, flags);
+}
+
+void presetRow(Demo& demo, UiState& ui) {
+  rowLabel("Preset", "A set of parameters and looks");
+  if (const std::string file = fileCombo("##preset", "choose...", ui.presets, ui); !file.empty()) {
+    ask(demo, {Ask::kPresetFile, "", file});
+  }
+  rowLabel("Save as", "Writes every parameter that differs from its default to NAME.json in the working folder");
+  const float button = 52 * ui.text_scale;
+  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - button - 5);
+  ImGui::InputTextWithHint("##preset_name", "name", ui.preset_name.data(), ui.preset_name.size());
+  noteItem("preset_name", ui);
+  ImGui::SameLine(0, 5);
+  const bool saved = ImGui::Button("Save", {button, 0});
+  noteItem("save_preset", ui);
+  if (saved && ui.preset_name[0]) {
+    const std::string file = std::string(ui.preset_name.data()) + ".json";
+    ask(demo, {Ask::kSavePreset, "", file});
+    ui.presets.push_back(file);
+  }
+}
+
+void clipRows(const Actor& actor, Demo& demo, UiState& ui) {
+  rowLabel("Motion", "Clips that come with the program; or give a file below, or drop one on the window");
+  if (const std::string file = fileCombo("##motion", stem(actor.spec.motion), ui.clips, ui); !file.empty()) {
+    ask(demo, {Ask::kMotionFile, "", file});
+  }
+  const std::vector<Clip>& clips = actor.body->character.clips;
+  if (clips.size() > 1) {
+    rowLabel("Clip", "Clips within the file");
+    ImGui::SetNextItemWidth(-1);
+    if (ImGui::BeginCombo("##clip", actor.playedClip().name.c_str())) {
+      for (const Clip& clip : clips) {
+        if (ImGui::Selectable(clip.name.c_str(), &clip == &actor.playedClip())) ask(demo, {Ask::kClip, clip.name, ""});
+      }
+      ImGui::EndCombo();
+    }
+  }
+  rowLabel("File", "BVH, glTF, FBX, or ARCSim's .mot with its folder of body parts");
+  const bool is_mot = std::string(ui.motion_path.data()).ends_with(".mot");
+  bool entered = pathInput("##motion_path", "path, then Enter", ui.motion_path, ui);
+  if (is_mot) {
+    rowLabel("Body parts", "Folder of body0000.obj ...");
+    entered = pathInput("##parts_path", "folder, then Enter", ui.parts_path, ui) || entered;
+  }
+  if (entered) ask(demo, {Ask::kMotionFile, is_mot ? ui.parts_path.data() : "", ui.motion_path.data()});
+}
+
+void playbackRows(const Actor& actor, Demo& demo, UiState& ui) {
+  double speed = actor.playback.speed;
+  rowLabel("Speed", "Clip seconds per second. The paper shows 10x; the hair's own time does not change.");
+  ImGui::SetNextItemWidth(-1);
+  if (slider("##speed", 0, 20, "%.3g x", true, speed)) ask(demo, {Ask::kSpeed, "", "", speed});
+  noteItem("speed", ui);
+  rowLabel("", "");
+  static constexpr double kSpeeds[] = {0.25, 1, 2, 5, 10};
+  int chosen = -1;
+  for (int i = 0; i < 5; ++i) chosen = std::abs(speed - kSpeeds[i]) < 1e-9 ? i : chosen;
+  const int pressed = segments("speeds", {"1/4", "1x", "2x", "5x", "10x"}, chosen, ui);
+  if (pressed >= 0) ask(demo, {Ask::kSpeed, "", "", kSpeeds[pressed]});
+
+  double time = actor.playback.time;
+  rowLabel("Time", "Scrubs the clip; the hair is carried along with the head");
+  ImGui::SetNextItemWidth(-1);
+  char format[48];
+  std::snprintf(format, sizeof format, "%%.2f / %.2f s", actor.playedClip().duration());
+  if (slider("##scrub", 0, actor.playedClip().duration(), format, false, time))
+    ask(demo, {Ask::kCarryAlong, "", "", time});
+  noteItem("scrub", ui);
+
+  bool held = actor.playback.paused, loop = actor.playback.loop, in_place = actor.playback.in_place;
+  rowLabel("Hold motion", "The figure stands still while the hair goes on");
+  if (ImGui::Checkbox("##held", &held)) ask(demo, {Ask::kPauseMotion, "", "", held ? 1.0 : 0.0});
+  noteItem("hold", ui);
+  rowLabel("Loop", "Begin again at the end");
+  if (ImGui::Checkbox("##loop", &loop)) ask(demo, {Ask::kLoop, "", "", loop ? 1.0 : 0.0});
+  noteItem("loop", ui);
+  if (loop) {
+    double blend = actor.playback.blend;
+    rowLabel("Seam", "Time over which a loop leads into its start");
+    ImGui::SetNextItemWidth(-1);
+    if (slider("##blend", 0, 2, "%.2f s", false, blend)) ask(demo, {Ask::kBlend, "", "", blend});
+    noteItem("blend", ui);
+  }
+  rowLabel("In place", "Takes the figure's travel over the ground out of the clip");
+  if (ImGui::Checkbox("##in_place", &in_place)) ask(demo, {Ask::kInPlace, "", "", in_place ? 1.0 : 0.0});
+  noteItem("in_place", ui);
+}
+
+void substepRow(Demo& demo, UiState& ui) {
+  rowLabel("Steps per 1/60 s", "Sets the time step to a whole part of a sixtieth of a second");
+  static constexpr int kCounts[] = {1, 2, 4, 8};
+  int chosen = -1;
+  for (int i = 0; i < 4; ++i) chosen = std::abs(demo.scene.sim.time_step * 60 * kCounts[i] - 1) < 1e-6 ? i : chosen;
+  const int pressed = segments("substeps", {"1", "2", "4", "8"}, chosen, ui);
+  if (pressed < 0) return;
+  sim::SimParams wanted = demo.scene.sim;
+  wanted.time_step = 1.0 / (60 * kCounts[pressed]);
+  ask(demo, {Ask::kSetParam, "time_step", sim::paramText(*sim::findParam("time_step"), wanted)});
+}
+
+void fact(const char* label, const std::string& value) {
+  rowLabel(label, "");
+  ImGui::TextDisabled("%s", value.c_str());
+}
+
+std::string metres(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.0f cm", 100 * value);
+  return text;
+}
+
+}  // namespace
+
+void simulationTab(Demo& demo, UiState& ui) {
+  presetRow(demo, ui);
+  ImGui::Spacing();
+  for (const char* group : {"Material", "Contact", "World", "Rest shape", "Time", "Numerics"}) {
+    const bool open = std::string_view(group) == "Material" || std::string_view(group) == "Contact";
+    if (section(group, open)) simGroup(group, demo, ui);
+    noteItem(std::string("section ") + group, ui);
+  }
+}
+
+void motionTab(Demo& demo, UiState& ui) {
+  const Actor& actor = selectedActor(demo);
+  if (section("Clip", true)) clipRows(actor, demo, ui);
+  if (section("Playback", true)) playbackRows(actor, demo, ui);
+  if (section("Time step", true)) {
+    substepRow(demo, ui);
+    simGroup("Time", demo, ui);
+    char text[64];
+    std::snprintf(text, sizeof text, "%d this frame, %.2f s given up", demo.stats.steps, demo.stats.lost);
+    fact("Steps", text);
+  }
+  if (section("Camera", true)) {
+    static constexpr const char* kViews[] = {"front", "three-quarter", "side", "back", "top"};
+    const int pressed = segments("view", {"Front", "3/4", "Side", "Back", "Top"}, -1, ui);
+    if (pressed >= 0) ask(demo, {Ask::kView, kViews[pressed], ""});
+    bool following = demo.camera.follow;
+    rowLabel("Follow figure", "The camera goes along with the head");
+    if (ImGui::Checkbox("##follow", &following)) ask(demo, {Ask::kFollow, "", "", following ? 1.0 : 0.0});
+  }
+  if (section("What was read", false)) {
+    for (const std::string& note : actor.body->character.notes) {
+      ImGui::PushTextWrapPos(0);
+      ImGui::TextDisabled("%s", note.c_str());
+      ImGui::PopTextWrapPos();
+    }
+  }
+}
+
+void hairTab(Demo& demo, UiState& ui) {
+  const Actor& actor = selectedActor(demo);
+  if (section("Haircut", true)) {
+    const bool from_file = !actor.spec.hair.empty();
+    const int style =
+        segments("style", {"Short", "Shoulder", "Long"}, from_file ? -1 : static_cast<int>(actor.spec.style), ui);
+    static constexpr const char* kStyles[] = {"short", "shoulder", "long"};
+    if (style >= 0) ask(demo, {Ask::kStyle, kStyles[style], ""});
+    const int resolution =
+        segments("resolution", {"Low", "Medium", "High"}, from_file ? -1 : static_cast<int>(actor.spec.resolution), ui);
+    static constexpr const char* kResolutions[] = {"low", "medium", "high"};
+    if (resolution >= 0) ask(demo, {Ask::kResolution, kResolutions[resolution], ""});
+    rowLabel("Hair mesh file", "OBJ with one group a layer; see assets/hair/README.md");
+    if (pathInput("##hair_path", from_file ? stem(actor.spec.hair).c_str() : "path, then Enter", ui.hair_path, ui)) {
+      ask(demo, {Ask::kHairFile, "", ui.hair_path.data()});
+    }
+    const sim::HairMesh& mesh = actor.haircut->mesh;
+    fact("Vertices", std::to_string(mesh.vertexCount()) + " in " + std::to_string(mesh.columnCount()) + " columns");
+    fact("Prisms",
+         std::to_string(mesh.prisms.size()) + " in " + std::to_string(mesh.shape.root_faces.size()) + " bundles");
+    fact("Length", metres(mesh.hair_length));
+  }
+  for (const char* group : {"Strands", "Styling"}) {
+    if (section(group, true)) hairGroup(group, demo, ui);
+  }
+}
+
+void lookTab(Demo& demo, UiState& ui) {
+  if (section("Colour", true)) hairGroup("Colour", demo, ui);
+  if (section("Shine", true)) hairGroup("Shine", demo, ui);
+  if (section("Light", false)) sceneGroup("Light", demo, ui);
+  if (section("Shadows", true)) sceneGroup("Shadows", demo, ui);
+  if (section("Picture", false)) sceneGroup("Picture", demo, ui);
+  if (section("Body", false)) hairGroup("Body", demo, ui);
+}
+
+void debugTab(Demo& demo, UiState& ui) {
+  for (const DebugView& view : kDebugViews) {
+    bool on = demo.debug.*view.on;
+    if (ImGui::Checkbox(view.label.data(), &on))
+      ask(demo, {Ask::kDebugView, std::string(view.name), "", on ? 1.0 : 0.0});
+    noteItem(std::string("debug ") + std::string(view.name), ui);
+    ImGui::PushTextWrapPos(0);
+    ImGui::Indent(27 * ui.text_scale);
+    ImGui::TextDisabled("%s", view.help.data());
+    ImGui::Unindent(27 * ui.text_scale);
+    ImGui::PopTextWrapPos();
+    ImGui::Spacing();
+  }
+  ImGui::Separator();
+  for (const char* name : {"show_strands", "show_body", "ground"}) {
+    lookRow(*findSceneField(name), demo.scene.look, demo, ui);
+  }
+  simRow(*sim::findParam("collide"), demo, ui);
+  simRow(*sim::findParam("minimize_deformation"), demo, ui);
+}
+
+}  // namespace app

@@ -1,0 +1,18 @@
+// The tabs of the sidebar and the timings panel.
+#pragma once
+
+#include "app/demo.h"
+#include "app/ui.h"
+
+namespace app {
+
+void simulationTab(Demo& demo, UiState& ui);
+void motionTab(Demo& demo, UiState& ui);
+void hairTab(Demo& demo, UiState& ui);
+void lookTab(Demo& demo, UiState& ui);
+void debugTab(Demo& demo, UiState& ui);
+
+// Stages as a stacked bar and their history (figure 6 of the paper), solver iterations and residual.
+void timingsPanel(const Demo& demo, UiState& ui);
+
+}  // namespace app

@@ -1,0 +1,310 @@
+#include "app/ui_widgets.h"
+
+#include <imgui/imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/field_text.h"
+
+namespace app {
+
+namespace {
+
+constexpr float kLabelShare = 0.43f;
+constexpr float kResetWidth = 20;
+
+ImU32 color(ImGuiCol index, float alpha = 1) {
+  return ImGui::GetColorU32(index, alpha);
+}
+
+// A small turning arrow.
+void drawTurn(ImDrawList* list, ImVec2 middle, float radius, ImU32 ink) {
+  list->PathArcTo(middle, radius, -2.4f, 2.2f, 16);
+  list->PathStroke(ink, 0, 1.6f);
+  const ImVec2 end(middle.x + radius * std::cos(-2.4f), middle.y + radius * std::sin(-2.4f));
+  const float s = 0.75f * radius;
+  list->AddTriangleFilled({end.x - 0.7f * s, end.y - 0.25f * s}, {end.x + 0.75f * s, end.y - 0.55f * s},
+                          {end.x + 0.1f * s, end.y + 0.8f * s}, ink);
+}
+
+// The reset mark at the end of a row; returns whether it was pressed.
+bool resetMark(const char* name, const std::string& default_text, UiState& ui) {
+  ImGui::SameLine(0, 4);
+  const float height = ImGui::GetFrameHeight();
+  ImGui::PushID("reset");
+  const bool pressed = ImGui::InvisibleButton(name, {kResetWidth * ui.text_scale, height});
+  ImGui::PopID();
+  noteItem(std::string("reset ") + name, ui);
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  drawTurn(ImGui::GetWindowDrawList(), {0.5f * (low.x + high.x), 0.5f * (low.y + high.y)}, 5 * ui.text_scale,
+           color(ImGui::IsItemHovered() ? ImGuiCol_Text : ImGuiCol_CheckMark));
+  tip("Back to " + default_text);
+  return pressed;
+}
+
+struct RowText {
+  std::string name, help;
+};
+
+// A number with its unit inside the slider.
+bool numberSlider(const char* name, sim::FieldKind kind, bool logarithmic, double low, double high, const char* unit,
+                  double& value) {
+  std::string format = kind == sim::FieldKind::kInteger ? "%.0f" : "%.4g";
+  if (*unit) format += std::string(" ") + unit;
+  ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp;
+  if (logarithmic) flags |= ImGuiSliderFlags_Logarithmic;
+  return ImGui::SliderScalar(name, ImGuiDataType_Double, &value, &low, &high, format.c_str(), flags);
+}
+
+bool choiceCombo(const char* name, std::span<const char* const> choices, double& value) {
+  const auto chosen = static_cast<std::size_t>(value);
+  bool changed = false;
+  if (!ImGui::BeginCombo(name, choices[chosen])) return false;
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    if (ImGui::Selectable(choices[i], i == chosen)) {
+      value = static_cast<double>(i);
+      changed = true;
+    }
+  }
+  ImGui::EndCombo();
+  return changed;
+}
+
+std::string helpText(const std::string& name, const char* help, const std::string& range, const std::string& unit,
+                     const std::string& standard) {
+  std::string text =
+      std::string(help) + "\n\n" + name + ", " + range + (unit.empty() ? "" : " " + unit) + ", default " + standard;
+  return text;
+}
+
+std::string rangeOf(sim::FieldKind kind, double low, double high) {
+  if (kind == sim::FieldKind::kSwitch) return "on or off";
+  if (kind == sim::FieldKind::kChoice) return "a choice";
+  return sim::numberText(low) + " to " + sim::numberText(high);
+}
+
+void fillRow(bool with_reset, UiState& ui) {
+  const float room = ImGui::GetContentRegionAvail().x;
+  ImGui::SetNextItemWidth(with_reset ? room - kResetWidth * ui.text_scale - 4 : room);
+}
+
+}  // namespace
+
+void noteItem(const std::string& name, UiState& ui) {
+  const ImVec2 low = ImGui::GetItemRectMin(), size = ImGui::GetItemRectSize();
+  ui.items.push_back({name, low.x, low.y, size.x, size.y});
+}
+
+void ask(Demo& demo, Request request) {
+  demo.requests.push_back(std::move(request));
+}
+
+void tip(const std::string& text) {
+  if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) || text.empty()) return;
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(ImGui::GetFontSize() * 24);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+bool section(const char* title, bool open_at_first) {
+  ImGui::SetNextItemOpen(open_at_first, ImGuiCond_FirstUseEver);
+  return ImGui::CollapsingHeader(title);
+}
+
+void rowLabel(const std::string& text, const std::string& help) {
+  const float start = ImGui::GetCursorPosX();
+  const float width = ImGui::GetContentRegionAvail().x;
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(text.c_str());
+  tip(help);
+  ImGui::SameLine(start + kLabelShare * width);
+}
+
+std::string readable(std::string_view name) {
+  std::string text(name);
+  std::replace(text.begin(), text.end(), '_', ' ');
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
+void simRow(const sim::ParamField& field, Demo& demo, UiState& ui) {
+  const sim::SimParams& params = demo.scene.sim;
+  double value = field.get(params);
+  const std::string standard = sim::paramText(field, sim::SimParams{});
+  const std::string help =
+      helpText(field.name, field.help, rangeOf(field.kind, field.minimum, field.maximum), field.unit, standard);
+  const bool touched = value != field.default_value;
+  ImGui::PushID(field.name);
+  rowLabel(readable(field.name), help);
+  fillRow(touched, ui);
+  bool changed = false;
+  if (field.kind == sim::FieldKind::kSwitch) {
+    bool on = value != 0;
+    changed = ImGui::Checkbox("##value", &on);
+    value = on;
+  } else if (field.kind == sim::FieldKind::kChoice) {
+    changed = choiceCombo("##value", field.choices, value);
+  } else {
+    changed = numberSlider("##value", field.kind, field.logarithmic, field.minimum, field.maximum, field.unit, value);
+  }
+  noteItem(field.name, ui);
+  if (!ImGui::IsItemActive()) tip(help);
+  if (changed) {
+    sim::SimParams wanted = params;
+    field.set(wanted, value);
+    ask(demo, {Ask::kSetParam, field.name, sim::paramText(field, wanted)});
+  }
+  if (touched && resetMark(field.name, standard, ui)) ask(demo, {Ask::kSetParam, field.name, standard});
+  ImGui::PopID();
+}
+
+template <class Owner>
+void lookRow(const LookField<Owner>& field, const Owner& owner, Demo& demo, UiState& ui) {
+  LookValue value = field.get(owner);
+  const std::string standard = lookText(Owner{}, field);
+  const std::string help =
+      helpText(field.name, field.help, rangeOf(field.kind, field.minimum, field.maximum), field.unit, standard);
+  const bool touched = value != field.default_value;
+  ImGui::PushID(field.name);
+  rowLabel(readable(field.name), help);
+  fillRow(touched, ui);
+  bool changed = false;
+  if (field.shape == LookShape::kColor) {
+    float rgb[3] = {static_cast<float>(value[0]), static_cast<float>(value[1]), static_cast<float>(value[2])};
+    ImGuiColorEditFlags flags = ImGuiColorEditFlags_Float;
+    if (field.maximum > 1) flags |= ImGuiColorEditFlags_HDR;
+    changed = ImGui::ColorEdit3("##value", rgb, flags);
+    for (int i = 0; i < 3; ++i) value[i] = std::clamp(static_cast<double>(rgb[i]), field.minimum, field.maximum);
+  } else if (field.shape == LookShape::kDirection) {
+    float xyz[3] = {static_cast<float>(value[0]), static_cast<float>(value[1]), static_cast<float>(value[2])};
+    changed = ImGui::SliderFloat3("##value", xyz, -1, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp);
+    for (int i = 0; i < 3; ++i) value[i] = xyz[i];
+    changed = changed && (xyz[0] != 0 || xyz[1] != 0 || xyz[2] != 0);
+  } else if (field.kind == sim::FieldKind::kSwitch) {
+    bool on = value[0] != 0;
+    changed = ImGui::Checkbox("##value", &on);
+    value[0] = on;
+  } else if (field.kind == sim::FieldKind::kChoice) {
+    changed = choiceCombo("##value", field.choices, value[0]);
+  } else {
+    changed =
+        numberSlider("##value", field.kind, field.logarithmic, field.minimum, field.maximum, field.unit, value[0]);
+  }
+  noteItem(field.name, ui);
+  if (!ImGui::IsItemActive()) tip(help);
+  if (changed) {
+    Owner wanted = owner;
+    field.set(wanted, value);
+    ask(demo, {Ask::kSetParam, field.name, lookText(wanted, field)});
+  }
+  if (touched && resetMark(field.name, standard, ui)) ask(demo, {Ask::kSetParam, field.name, standard});
+  ImGui::PopID();
+}
+
+template void lookRow(const HairField&, const CharacterLook&, Demo&, UiState&);
+template void lookRow(const SceneField&, const SceneLook&, Demo&, UiState&);
+
+void simGroup(std::string_view group, Demo& demo, UiState& ui) {
+  for (const sim::ParamField& field : sim::paramFields()) {
+    if (group == field.group) simRow(field, demo, ui);
+  }
+}
+
+void hairGroup(std::string_view group, Demo& demo, UiState& ui) {
+  for (const HairField& field : hairFields()) {
+    if (group == field.group) lookRow(field, selectedActor(demo).spec.look, demo, ui);
+  }
+}
+
+void sceneGroup(std::string_view group, Demo& demo, UiState& ui) {
+  for (const SceneField& field : sceneFields()) {
+    if (group == field.group) lookRow(field, demo.scene.look, demo, ui);
+  }
+}
+
+bool iconButton(Icon icon, const char* name, const std::string& help, bool lit, UiState& ui) {
+  const float s = ui.text_scale;
+  const ImVec2 size(35 * s, 30 * s);
+  const bool pressed = ImGui::InvisibleButton(name, size);
+  noteItem(name, ui);
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  const ImVec2 m(0.5f * (low.x + high.x), 0.5f * (low.y + high.y));
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  const ImGuiCol back = ImGui::IsItemActive()    ? ImGuiCol_ButtonActive
+                        : ImGui::IsItemHovered() ? ImGuiCol_ButtonHovered
+                                                 : ImGuiCol_Button;
+  list->AddRectFilled(low, high, color(back), 5 * s);
+  const ImU32 ink = lit ? color(ImGuiCol_CheckMark) : color(ImGuiCol_Text, 0.9f);
+  const float r = 6 * s;
+  switch (icon) {
+    case Icon::kPlay:
+      list->AddTriangleFilled({m.x - 0.7f * r, m.y - r}, {m.x - 0.7f * r, m.y + r}, {m.x + r, m.y}, ink);
+      break;
+    case Icon::kPause:
+      list->AddRectFilled({m.x - 0.8f * r, m.y - r}, {m.x - 0.2f * r, m.y + r}, ink, 1);
+      list->AddRectFilled({m.x + 0.2f * r, m.y - r}, {m.x + 0.8f * r, m.y + r}, ink, 1);
+      break;
+    case Icon::kStep:
+      list->AddTriangleFilled({m.x - r, m.y - r}, {m.x - r, m.y + r}, {m.x + 0.45f * r, m.y}, ink);
+      list->AddRectFilled({m.x + 0.55f * r, m.y - r}, {m.x + r, m.y + r}, ink, 1);
+      break;
+    case Icon::kReset:
+      drawTurn(list, m, r, ink);
+      break;
+    case Icon::kRestart:
+      list->AddTriangleFilled({m.x + r, m.y - r}, {m.x + r, m.y + r}, {m.x - 0.45f * r, m.y}, ink);
+      list->AddRectFilled({m.x - r, m.y - r}, {m.x - 0.55f * r, m.y + r}, ink, 1);
+      break;
+    case Icon::kCollapse:
+      // Four arrows towards a point.
+      for (int k = 0; k < 4; ++k) {
+        const float a = 0.7854f + 1.5708f * static_cast<float>(k), c = std::cos(a), d = std::sin(a);
+        list->AddLine({m.x + 1.35f * r * c, m.y + 1.35f * r * d}, {m.x + 0.65f * r * c, m.y + 0.65f * r * d}, ink,
+                      1.8f);
+      }
+      list->AddCircleFilled(m, 0.32f * r, ink, 12);
+      break;
+    case Icon::kPhoto:
+      list->AddRect({m.x - 1.2f * r, m.y - 0.7f * r}, {m.x + 1.2f * r, m.y + 0.9f * r}, ink, 2, 0, 1.6f);
+      list->AddRectFilled({m.x - 0.5f * r, m.y - 1.05f * r}, {m.x + 0.5f * r, m.y - 0.6f * r}, ink, 1);
+      list->AddCircle({m.x, m.y + 0.1f * r}, 0.45f * r, ink, 16, 1.6f);
+      break;
+    case Icon::kRecord:
+      list->AddCircleFilled(m, 0.85f * r, lit ? IM_COL32(235, 70, 60, 255) : ink, 20);
+      break;
+    case Icon::kHelp:
+      const ImVec2 text = ImGui::CalcTextSize("?");
+      list->AddText({m.x - 0.5f * text.x, m.y - 0.5f * text.y}, ink, "?");
+      break;
+  }
+  tip(help);
+  return pressed;
+}
+
+int segments(const char* name, std::initializer_list<const char*> labels, int chosen, UiState& ui) {
+  int pressed = -1, index = 0;
+  const float gap = 3;
+  const float count = static_cast<float>(labels.size());
+  const float width = (ImGui::GetContentRegionAvail().x - gap * (count - 1)) / count;
+  ImGui::PushID(name);
+  for (const char* label : labels) {
+    if (index) ImGui::SameLine(0, gap);
+    const bool lit = index == chosen;
+    if (lit) {
+      ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_SliderGrabActive));
+      ImGui::PushStyleColor(ImGuiCol_ButtonHovered, ImGui::GetStyleColorVec4(ImGuiCol_SliderGrabActive));
+      ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(0.07f, 0.07f, 0.08f, 1));
+    }
+    if (ImGui::Button(label, {width, 0})) pressed = index;
+    if (lit) ImGui::PopStyleColor(3);
+    noteItem(std::string(name) + " " + label, ui);
+    ++index;
+  }
+  ImGui::PopID();
+  return pressed;
+}
+
+}  // namespace app

@@ -1,0 +1,46 @@
+// The panels' own widgets: rows of the parameter tables, icon buttons, segmented choices.
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+#include "app/look_params.h"
+#include "app/ui.h"
+
+namespace app {
+
+// Remembers where the last widget is.
+void noteItem(const std::string& name, UiState& ui);
+
+void ask(Demo& demo, Request request);
+
+// A tooltip for the last widget, after a short hover.
+void tip(const std::string& text);
+
+// A heading that folds; returns whether it is open.
+bool section(const char* title, bool open_at_first);
+
+// Name, control, and a reset mark while the value is not the default. A change becomes a request.
+void simRow(const sim::ParamField& field, Demo& demo, UiState& ui);
+template <class Owner>
+void lookRow(const LookField<Owner>& field, const Owner& owner, Demo& demo, UiState& ui);
+
+// All rows of a group of the tables.
+void simGroup(std::string_view group, Demo& demo, UiState& ui);
+void hairGroup(std::string_view group, Demo& demo, UiState& ui);
+void sceneGroup(std::string_view group, Demo& demo, UiState& ui);
+
+// A label in the left column; the control that follows fills the rest.
+void rowLabel(const std::string& text, const std::string& help);
+
+enum class Icon { kPlay, kPause, kStep, kReset, kRestart, kCollapse, kPhoto, kRecord, kHelp };
+bool iconButton(Icon icon, const char* name, const std::string& help, bool lit, UiState& ui);
+
+// Buttons side by side, one of them chosen. Returns the index pressed, or -1.
+int segments(const char* name, std::initializer_list<const char*> labels, int chosen, UiState& ui);
+
+// "stretch_along" -> "Stretch along".
+std::string readable(std::string_view name);
+
+}  // namespace app

@@ -1,0 +1,206 @@
+#include "app/window.h"
+
+// GLEW must come before anything that includes OpenGL's own header.
+#include <GL/glew.h>
+#include <GLFW/glfw3.h>
+#include <imgui/backends/imgui_impl_glfw.h>
+#include <imgui/backends/imgui_impl_opengl3.h>
+#include <imgui/imgui.h>
+
+#include <algorithm>
+#include <iostream>
+
+#include "app/capture.h"
+#include "app/data_path.h"
+#include "app/debug_option.h"
+#include "app/demo.h"
+#include "app/errors.h"
+#include "app/image_io.h"
+#include "app/report.h"
+#include "app/ui.h"
+#include "render/read_back.h"
+
+namespace app {
+
+namespace {
+
+std::string glfw_fault;  // GLFW reports through a callback without user data
+
+struct WindowSystem {
+  WindowSystem() {
+    glfwSetErrorCallback([](int, const char* words) { glfw_fault = words; });
+    if (!glfwInit()) {
+      throw ContextError("no window system answers (" + glfw_fault +
+                         "); set DISPLAY or WAYLAND_DISPLAY, or render to files with --headless");
+    }
+  }
+  ~WindowSystem() { glfwTerminate(); }
+  WindowSystem(const WindowSystem&) = delete;
+  WindowSystem& operator=(const WindowSystem&) = delete;
+};
+
+struct Window {
+  GLFWwindow* handle = nullptr;
+  Window(int width, int height) {
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+    handle = glfwCreateWindow(width, height, "hairmesh", nullptr, nullptr);
+    if (!handle) {
+      throw ContextError("no OpenGL 4.5 core context in a window (" + glfw_fault +
+                         "); update the graphics driver, or try LIBGL_ALWAYS_SOFTWARE=1 or --headless");
+    }
+    glfwMakeContextCurrent(handle);
+    glfwSwapInterval(1);
+    if (const std::string fault = render::initGl(); !fault.empty()) throw ContextError(fault);
+  }
+  ~Window() {
+    if (handle) glfwDestroyWindow(handle);
+  }
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+};
+
+// What the window's callbacks reach.
+struct Session {
+  Demo& demo;
+  UiState& ui;
+  double mouse_x = 0, mouse_y = 0;
+};
+
+Session& session(GLFWwindow* window) {
+  return *static_cast<Session*>(glfwGetWindowUserPointer(window));
+}
+
+bool pressed(GLFWwindow* window, int button) {
+  return glfwGetMouseButton(window, button) == GLFW_PRESS;
+}
+
+void onMouseMove(GLFWwindow* window, double x, double y) {
+  Session& s = session(window);
+  const double dx = x - s.mouse_x, dy = y - s.mouse_y;
+  s.mouse_x = x;
+  s.mouse_y = y;
+  if (ImGui::GetIO().WantCaptureMouse) return;
+  int width = 1, height = 1;
+  glfwGetWindowSize(window, &width, &height);
+  const bool shift = glfwGetKey(window, GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS;
+  if (pressed(window, GLFW_MOUSE_BUTTON_RIGHT) || pressed(window, GLFW_MOUSE_BUTTON_MIDDLE) ||
+      (shift && pressed(window, GLFW_MOUSE_BUTTON_LEFT))) {
+    pan(dx, dy, std::max(1, height), s.demo.camera);
+  } else if (pressed(window, GLFW_MOUSE_BUTTON_LEFT)) {
+    orbit(dx, dy, std::max(1, height), s.demo.camera);
+  }
+}
+
+void onScroll(GLFWwindow* window, double, double notches) {
+  if (!ImGui::GetIO().WantCaptureMouse) zoom(notches, session(window).demo.camera);
+}
+
+void onKey(GLFWwindow* window, int key, int, int action, int) {
+  if (action == GLFW_RELEASE || ImGui::GetIO().WantTextInput) return;
+  // Only what is meant to repeat does while a key is held.
+  if (action == GLFW_REPEAT && key != '.' && key != '-' && key != '=') return;
+  Session& s = session(window);
+  pressKey(key, s.demo, s.ui);
+}
+
+void onDrop(GLFWwindow* window, int count, const char** files) {
+  for (int i = 0; i < count; ++i) session(window).demo.requests.push_back({Ask::kOpenFile, "", files[i]});
+}
+
+// Dear ImGui's context and its two backends.
+struct PanelBackends {
+  explicit PanelBackends(GLFWwindow* window) {
+    IMGUI_CHECKVERSION();
+    ImGui::CreateContext();
+    ImGui_ImplGlfw_InitForOpenGL(window, true);
+    ImGui_ImplOpenGL3_Init("#version 450");
+  }
+  ~PanelBackends() {
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+  }
+  PanelBackends(const PanelBackends&) = delete;
+  PanelBackends& operator=(const PanelBackends&) = delete;
+};
+
+void drawPanels(Demo& demo, UiState& ui) {
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  ImGui::NewFrame();
+  buildUi(demo, ui);
+  ImGui::Render();
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+void listen(GLFWwindow* window, Session& s) {
+  glfwSetWindowUserPointer(window, &s);
+  glfwSetCursorPosCallback(window, onMouseMove);
+  glfwSetScrollCallback(window, onScroll);
+  glfwSetKeyCallback(window, onKey);
+  glfwSetDropCallback(window, onDrop);
+}
+
+float textScale(GLFWwindow* window) {
+  float x = 1, y = 1;
+  glfwGetWindowContentScale(window, &x, &y);
+  return std::clamp(x, 1.0f, 3.0f);
+}
+
+// How long the next frame is. Runs of a given number of frames and recordings go by frames, all else by the clock.
+double frameSeconds(const Options& options, const Demo& demo, double& last) {
+  const double moment = now();
+  const double passed = moment - last;
+  last = moment;
+  return options.frames_given || demo.capture.recording ? 1 / demo.scene.playback.fps : passed;
+}
+
+}  // namespace
+
+int runWindow(Scene scene, const Options& options) {
+  WindowSystem system;
+  Window window(options.width, options.height);
+  const double start = now();
+  Demo demo = openScene(std::move(scene), static_cast<double>(options.width) / options.height);
+  setDebugViews(options.debug, demo.debug);
+  UiState ui;
+  ui.visible = !options.hide_panels;
+  Session callbacks{demo, ui};
+  // The panels' backend chains to the callbacks that it finds.
+  listen(window.handle, callbacks);
+  PanelBackends backends(window.handle);
+  prepareUi(textScale(window.handle), ui);
+  render::Renderer renderer(dataPath("shaders"));
+  RunReport run;
+  run.fps = demo.scene.playback.fps;
+  run.renderer = render::rendererName();
+  run.start_seconds = now() - start;
+
+  FrameTarget target;
+  target.renderer = &renderer;
+  target.draw_panels = [&](Demo& shown) { drawPanels(shown, ui); };
+  double last = now();
+  int frame = 0;
+  for (; !glfwWindowShouldClose(window.handle) && !ui.quit; ++frame) {
+    if (options.frames_given && frame == options.frames) break;
+    glfwPollEvents();
+    glfwGetFramebufferSize(window.handle, &target.width, &target.height);
+    const double seconds = frameSeconds(options, demo, last);
+    advanceFrame(demo, frame == 0 ? 0 : seconds, target);
+    takePictures(demo, target);
+    if (!options.report.empty()) run.frames.push_back(demo.stats);
+    if (options.frames_given && frame + 1 == options.frames && !options.screenshot.empty()) {
+      std::vector<unsigned char> pixels;
+      render::readFramebuffer(0, target.width, target.height, pixels);
+      writePng(options.screenshot, target.width, target.height, pixels);
+    }
+    glfwSwapBuffers(window.handle);
+  }
+  if (!options.report.empty()) writeReport(options.report, run, demo);
+  return kExitFine;
+}
+
+}  // namespace app
