@@ -218,6 +218,7 @@ void addWallsAndEdges(HairMesh& mesh) {
   }
   for (RootEdge& edge : collectRootEdges(mesh)) {
     const int count = static_cast<int>(edge.walls.size());
+    checkedLength(mesh, edge.walls[0].v[0], edge.walls[0].v[1]);  // the scalp's own edge
     for (int l = 0; l < count; ++l) {
       edge.walls[l].external = edge.users[l] == 1;
       mesh.walls.push_back(edge.walls[l]);
