@@ -2,8 +2,6 @@
 #include "sim/block_cholesky.h"
 
 #include <Eigen/Dense>
-#include <Eigen/OrderingMethods>
-#include <Eigen/Sparse>
 #include <algorithm>
 #include <cmath>
 
@@ -11,36 +9,6 @@
 
 namespace sim {
 namespace {
-
-// Elimination order of the kept rows, fill-reducing.
-std::vector<int> eliminationOrder(const BlockPattern& pattern, std::span<const unsigned char> keep) {
-  std::vector<int> number(pattern.size, -1), kept;
-  for (int i = 0; i < pattern.size; ++i) {
-    if (keep[i]) {
-      number[i] = static_cast<int>(kept.size());
-      kept.push_back(i);
-    }
-  }
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int i = 0; i < pattern.size; ++i) {
-    if (!keep[i]) continue;
-    entries.emplace_back(number[i], number[i], 1.0);
-    for (int k = pattern.row_first[i]; k < pattern.row_first[i + 1]; ++k) {
-      const int j = pattern.columns[k];
-      if (!keep[j]) continue;
-      entries.emplace_back(number[i], number[j], 1.0);
-      entries.emplace_back(number[j], number[i], 1.0);
-    }
-  }
-  const int n = static_cast<int>(kept.size());
-  Eigen::SparseMatrix<double> graph(n, n);
-  graph.setFromTriplets(entries.begin(), entries.end());
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
-  Eigen::AMDOrdering<int>()(graph, permutation);
-  std::vector<int> order(n);
-  for (int k = 0; k < n; ++k) order[k] = kept[permutation.indices()[k]];
-  return order;
-}
 
 // Column structures below the diagonal (elimination positions, ascending) and the elimination tree, by merging
 // children.
@@ -101,8 +69,8 @@ void postorder(std::vector<int>& order, std::vector<int>& position, const std::v
 }  // namespace
 
 template <class T>
-void BlockCholesky<T>::analyze(const BlockPattern& pattern, std::span<const unsigned char> keep) {
-  order = eliminationOrder(pattern, keep);
+void BlockCholesky<T>::analyze(const BlockPattern& pattern, std::vector<int> elimination_order) {
+  order = std::move(elimination_order);
   const int n = static_cast<int>(order.size());
   position.assign(pattern.size, -1);
   for (int k = 0; k < n; ++k) position[order[k]] = k;

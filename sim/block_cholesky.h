@@ -29,8 +29,9 @@ struct BlockCholesky {
   std::vector<int> row_index;  // elimination positions of the rows below, per supernode, ascending
   std::vector<T> values;
 
-  // Orders and lays out the factor of the rows with keep[i] != 0; the others are treated as fixed and left out.
-  void analyze(const BlockPattern& pattern, std::span<const unsigned char> keep);
+  // Lays out the factor of the rows listed, eliminated in about that order (postordered within the elimination tree); rows not
+  // listed are treated as fixed and left out. See elimination_order.h.
+  void analyze(const BlockPattern& pattern, std::vector<int> elimination_order);
 
   // Factors the matrix; false when a pivot is not positive (the factor is then unusable). Needs analyze.
   bool factor(const BlockMatrix<T>& a);

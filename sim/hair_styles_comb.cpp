@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kRowStep = 0.006;   // m, below the hairline
 constexpr double kInnerGap = 0.006;  // m, between the body and the underside of the hair
+constexpr double kTautness = 0.9;      // how nearly hanging hair spans hollows as a taut string would
 constexpr double kDivide = 0.35;     // hair rooted in front of this backness falls in front of the shoulders
 
 // What one style wants. Heights are in head heights above the scalp's centre.
@@ -22,11 +23,11 @@ Cut cutOf(Style style) {
     case Style::kShort:
       return {0.028, -0.20, -0.25, -0.40, false, false};
     case Style::kShoulder:
-      return {0.034, 0.07, 0.07, 0.05, true, false};
+      return {0.034, 0.12, 0.11, 0.09, true, false};
     case Style::kLong:
       break;
   }
-  return {0.036, -0.62, -0.85, -1.15, true, true};
+  return {0.036, -0.62, -0.90, -1.08, true, true};
 }
 
 double smoothstep(double a, double b, double x) {
@@ -86,6 +87,7 @@ struct Comber {
   Vec3 aim(int sheet) const;
   void fall(int sheet);
   void fallAll();
+  void hangTaut(int sheet);
   void relaxInner();
   void raiseOuter();
   void measure();
@@ -157,6 +159,46 @@ void Comber::fallAll() {
   for (int s = 0; s < coat.sheets; ++s) {
     for (int r = 0; r < coat.scalp_rows; ++r) coat.inner[coat.index(s, r)] = lines.at(s, r);
     fall(s);
+    hangTaut(s);
+  }
+}
+
+// Hair under its own weight spans hollows (the nape above the shoulders, the small of the back) instead of lining them: below the
+// hairline, a sheet's distance from the head's vertical axis becomes the least concave curve over it.
+void Comber::hangTaut(int sheet) {
+  const Vec3 axis = scalp.center - Vec3(0, 0, 0.06 * scalp.head_height);
+  const int first = coat.scalp_rows - 1;
+  int last = first + 2;
+  while (last + 1 < coat.rows && coat.inner[coat.index(sheet, last)].y() > freeBelow(sheet)) ++last;
+  const auto radius = [&](int r) {
+    const Vec3 p = coat.inner[coat.index(sheet, r)] - axis;
+    return std::hypot(p.x(), p.z());
+  };
+  const auto height = [&](int r) { return coat.inner[coat.index(sheet, r)].y(); };
+  std::vector<int> hull;
+  for (int r = first; r <= last; ++r) {
+    const auto below = [&](int a, int b, int c) {
+      return (radius(b) - radius(a)) * (height(a) - height(c)) <= (radius(c) - radius(a)) * (height(a) - height(b));
+    };
+    while (hull.size() >= 2 && below(hull[hull.size() - 2], hull.back(), r)) hull.pop_back();
+    hull.push_back(r);
+  }
+  std::vector<double> taut(last + 1, 0.0);
+  for (std::size_t h = 0; h + 1 < hull.size(); ++h) {
+    const int a = hull[h], b = hull[h + 1];
+    for (int r = a; r <= b; ++r) {
+      const double t = (height(a) - height(r)) / std::max(height(a) - height(b), 1e-9);
+      taut[r] = radius(a) + std::clamp(t, 0.0, 1.0) * (radius(b) - radius(a));
+    }
+  }
+  for (int r = first + 1; r <= last; ++r) {
+    Vec3& p = coat.inner[coat.index(sheet, r)];
+    Vec3 out(p.x() - axis.x(), 0, p.z() - axis.z());
+    p += out.normalized() * kTautness * std::max(0.0, taut[r] - out.norm());
+  }
+  for (int r = last + 1; r < coat.rows; ++r) {
+    const Vec3& above = coat.inner[coat.index(sheet, r - 1)];
+    coat.inner[coat.index(sheet, r)] = above + (above - coat.inner[coat.index(sheet, r - 2)]).normalized() * kRowStep;
   }
 }
 
@@ -234,7 +276,7 @@ void Comber::raiseOuter() {
     std::swap(normal, coat.outer);
   }
   for (int s = 0; s < coat.sheets; ++s) {
-    const double around = 0.42 + 0.58 * smoothstep(0.0, 0.28, backness(s));
+    const double around = 0.55 + 0.45 * smoothstep(0.0, 0.28, backness(s));
     for (int r = 0; r < coat.rows; ++r) {
       const double along = 0.72 + 0.28 * smoothstep(0, coat.scalp_rows, r);
       const Vec3& n = normal[coat.index(s, r)];

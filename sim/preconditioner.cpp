@@ -1,5 +1,7 @@
 #include "sim/preconditioner.h"
 
+#include "sim/elimination_order.h"
+
 namespace sim {
 
 template <class T>
@@ -44,7 +46,7 @@ bool Preconditioner<T>::factorColumns(const BlockMatrix<T>& a) {
       }
     }
     column_factor_.emplace();
-    column_factor_->analyze(*column_pattern_, free_);
+    column_factor_->analyze(*column_pattern_, minimumDegreeOrder(*column_pattern_, free_));
   }
   column_matrix_->diagonal = a.diagonal;
   for (std::size_t k = 0; k < column_block_.size(); ++k) {
@@ -55,7 +57,9 @@ bool Preconditioner<T>::factorColumns(const BlockMatrix<T>& a) {
 
 template <class T>
 bool Preconditioner<T>::setRestMatrix(const BlockMatrix<T>& rest) {
-  if (rest_factor_.order.empty()) rest_factor_.analyze(*pattern_, free_);
+  if (rest_factor_.order.empty()) {
+    rest_factor_.analyze(*pattern_, nestedDissectionOrder(*pattern_, free_, dissectionCoordinates(*mesh_)));
+  }
   return rest_factor_.factor(rest);
 }
 
@@ -66,7 +70,7 @@ void Preconditioner<T>::update(const BlockMatrix<T>& a, Solver solver) {
   if (solver == Solver::kDirect) {
     if (!direct_factor_) {
       direct_factor_.emplace();
-      direct_factor_->analyze(*pattern_, free_);
+      direct_factor_->analyze(*pattern_, nestedDissectionOrder(*pattern_, free_, dissectionCoordinates(*mesh_)));
     }
     if (direct_factor_->factor(a)) return;
     kind_ = Solver::kBlockJacobi;
