@@ -14,22 +14,27 @@ using Mat4 = std::array<float, 16>;
 
 // A bundle as the strand shaders see it: corner columns (number of the column's first vertex) and number of layers.
 struct HairFace {
-  std::array<int, 4> first_vertex{-1, -1, -1, -1};  // corner k, layer l is vertex first_vertex[k] + l; [3] = -1: triangle
+  std::array<int, 4> first_vertex{-1, -1, -1,
+                                  -1};  // corner k, layer l is vertex first_vertex[k] + l; [3] = -1: triangle
   int layers = 0;
   float area = 0;  // m^2 of the root face: strands are dealt out in proportion
 };
 
 // How strands vary and look. Lengths in metres.
 struct HairLook {
-  float strand_radius = 40e-6f;        // m at the root, drawn hair; widened by strands_represented below
-  float taper = 0.35f;                 // tip radius over root radius
-  float length_variation = 0.10f;      // strands end up to this share of their length early
-  float offset = 0.0012f;              // m, random sideways wander that grows along the strand
-  float clump = 0.45f;                 // 0..1 pull towards the clump's centre strand, opening and closing along the length
-  float clump_size = 0.012f;           // m, typical spacing of clumps on the scalp
+  float strand_radius = 40e-6f;        // m at the root, of a real hair; drawn ones are wider, see below
+  float strands_represented = 100000;  // real hairs the drawn strands stand for: shadows carry all of them
+  float width_compensation =
+      0.5f;                   // drawn radius = strand_radius * (strands_represented / strands)^this; 0: none, 1: all
+  float least_pixels = 1.0f;  // strands thinner than this are drawn this wide and fade by coverage
+  float taper = 0.35f;        // tip radius over root radius
+  float length_variation = 0.10f;  // strands end up to this share of their length early
+  float offset = 0.0012f;          // m, random sideways wander that grows along the strand
+  float clump = 0.45f;             // 0..1 pull towards the clump's centre strand, opening and closing along the length
+  float clump_size = 0.012f;       // m, typical spacing of clumps on the scalp
   float curl_radius = 0.0f, curl_turns = 3.0f;  // m; turns over the strand
-  float frizz = 0.0006f;               // m, small-scale noise amplitude
-  float flyaways = 0.02f;              // share of strands that leave their clump
+  float frizz = 0.0006f;                        // m, small-scale noise amplitude
+  float flyaways = 0.02f;                       // share of strands that leave their clump
   // Colour: melanin (d'Eon et al. 2011 / pbrt's eumelanin and pheomelanin concentrations) or picked reflectance.
   float eumelanin = 1.1f, pheomelanin = 0.35f;
   bool use_color = false;
@@ -37,30 +42,32 @@ struct HairLook {
   float root_darkening = 0.35f, tint_variation = 0.15f;
   float beta_m = 0.28f, beta_n = 0.3f;  // longitudinal and azimuthal roughness, 0..1
   float eta = 1.55f;
-  float cuticle_angle = 0.05f;          // rad, scale tilt that shifts the R and TRT highlights
+  float cuticle_angle = 0.05f;  // rad, scale tilt that shifts the R and TRT highlights
   float specular = 1.0f, diffuse = 1.0f;
   std::uint32_t seed = 1;
+
+  bool operator==(const HairLook&) const = default;
 };
 
 struct HairInput {
-  std::uint64_t id = 0;                  // stable per hair; GPU resources are kept by it
-  std::uint64_t layout_revision = 0;     // changes when faces or vertex count change
-  std::uint64_t position_revision = 0;   // changes when positions changed
+  std::uint64_t id = 0;                 // stable per hair; GPU resources are kept by it
+  std::uint64_t layout_revision = 0;    // changes when faces or vertex count change
+  std::uint64_t position_revision = 0;  // changes when positions changed
   std::span<const HairFace> faces;
-  std::span<const float> positions;      // world, 3 floats a vertex, columns contiguous root to tip
-  int strands = 20000;                   // over the whole hair
-  int segments_per_layer = 3;            // 1..8
+  std::span<const float> positions;  // world, 3 floats a vertex, columns contiguous root to tip
+  int strands = 20000;               // over the whole hair
+  int segments_per_layer = 3;        // 1..8
   HairLook look;
 };
 
 // A skinned body. The mesh is uploaded once per mesh_id; a frame brings joint matrices only.
 struct BodyInput {
   std::uint64_t id = 0, mesh_id = 0;
-  std::span<const float> positions, normals;          // rest pose, 3 floats a vertex
+  std::span<const float> positions, normals;  // rest pose, 3 floats a vertex
   std::span<const std::uint32_t> triangles;
-  std::span<const std::uint16_t> joints;              // 4 a vertex
-  std::span<const float> weights;                     // 4 a vertex
-  std::span<const Mat4> joint_matrices;               // rest model space to world
+  std::span<const std::uint16_t> joints;  // 4 a vertex
+  std::span<const float> weights;         // 4 a vertex
+  std::span<const Mat4> joint_matrices;   // rest model space to world
   std::uint64_t pose_revision = 0;
   Float3 color{0.52f, 0.45f, 0.42f};
   float roughness = 0.55f;
@@ -72,25 +79,30 @@ struct CameraInput {
 };
 
 struct LightInput {
-  Float3 to_light{0.45f, 0.8f, 0.6f};       // key light's direction, towards the light
+  Float3 to_light{0.45f, 0.8f, 0.6f};  // key light's direction, towards the light
   Float3 key{3.0f, 2.85f, 2.6f}, fill{0.35f, 0.4f, 0.5f}, rim{1.6f, 1.7f, 2.0f};
   Float3 to_fill{-0.8f, 0.3f, 0.6f}, to_rim{-0.35f, 0.6f, -0.9f};
   Float3 ambient_sky{0.30f, 0.33f, 0.38f}, ambient_ground{0.16f, 0.14f, 0.12f};
   int shadow_size = 1024;
-  int opacity_layers = 7;                     // deep opacity map layers, 1..7 (the eighth channel takes all behind)
-  float layer_thickness = 0.0f;               // m of the first layer; 0: derived from the hair's extent
-  float shadow_strength = 1.0f;               // scales opacity
+  int shadow_strands = 12000;    // at most this many strands a hair cast shadow, standing for all; 0: all
+  int opacity_layers = 7;        // deep opacity map layers, 1..7 (the eighth channel takes all behind)
+  float layer_thickness = 0.0f;  // m of the first layer; 0: derived from the hair's extent
+  float shadow_strength = 1.0f;  // scales opacity
   bool shadows = true;
 };
 
-struct LineVertex { Float3 position; std::array<float, 4> color; };  // debug; colour with alpha, not premultiplied
+struct LineVertex {
+  Float3 position;
+  std::array<float, 4> color;
+};  // debug; colour with alpha, not premultiplied
 
 enum class StrandPath { kGeometry, kPulling };
 
 struct ViewOptions {
-  int samples = 4;                            // multisampling, clamped to what the context has
+  int samples = 4;  // multisampling, clamped to what the context has
   float exposure = 1.0f;
   Float3 backdrop_top{0.13f, 0.14f, 0.16f}, backdrop_bottom{0.36f, 0.36f, 0.37f}, ground_color{0.42f, 0.42f, 0.42f};
+  float ground_height = 0;  // m
   bool ground = true, show_strands = true, show_body = true;
   StrandPath strand_path = StrandPath::kGeometry;
 };

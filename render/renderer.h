@@ -9,7 +9,10 @@
 
 namespace render {
 
-struct StageTime { const char* name; double milliseconds; };
+struct StageTime {
+  const char* name;
+  double milliseconds;
+};
 
 // What a frame did. Times: GPU timer queries where the driver's are usable, glFinish and a steady clock on software
 // rasterizers when `measure` is asked for.
@@ -17,13 +20,13 @@ struct FrameReport {
   std::vector<StageTime> stages;
   long strands_drawn = 0, strand_vertices = 0, draw_calls = 0;
   long bytes_uploaded = 0;
-  long gpu_bytes_hair = 0;   // positions, tangents, layout: everything kept on the GPU for hair models
+  long gpu_bytes_hair = 0;  // positions, tangents, layout: everything kept on the GPU for hair models
 };
 
 class Renderer {
  public:
-  // `shader_dir`: where the shader files are. Throws std::runtime_error with file, line and the driver's words when a shader
-  // does not compile.
+  // `shader_dir`: where the shader files are. Throws std::runtime_error with file, line and the driver's words when a
+  // shader does not compile.
   explicit Renderer(std::string shader_dir);
   ~Renderer();
   Renderer(const Renderer&) = delete;
@@ -43,8 +46,8 @@ class Renderer {
   std::unique_ptr<Parts> parts_;
 };
 
-// Loads OpenGL functions through GLEW; accepts GLEW_ERROR_NO_GLX_DISPLAY, which GLX builds answer under EGL although all is
-// loaded. Returns an error message, empty when fine. Needs a current context.
+// Loads OpenGL functions through GLEW; accepts GLEW_ERROR_NO_GLX_DISPLAY, which GLX builds answer under EGL although
+// all is loaded. Returns an error message, empty when fine. Needs a current context.
 std::string initGl();
 
 // "vendor / renderer / version" of the current context.

@@ -1,0 +1,157 @@
+#include "render/hair_layout.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace render {
+namespace {
+
+using Eigen::Vector3f;
+
+// Small against the weights of real neighbours (each adds about 1 to the trace), large against rounding.
+constexpr float kPriorWeight = 1e-3f;
+
+Vector3f vertexAt(std::span<const float> positions, int vertex) {
+  return Vector3f(positions[3 * vertex], positions[3 * vertex + 1], positions[3 * vertex + 2]);
+}
+
+bool isUsable(const HairFace& face, int vertex_count) {
+  if (face.layers < 2) return false;
+  for (int k = 0; k < 4; ++k) {
+    const int first = face.first_vertex[k];
+    if (k == 3 && first < 0) continue;
+    if (first < 0 || first + face.layers > vertex_count) return false;
+  }
+  return true;
+}
+
+Vector3f faceNormal(const HairLayout& layout, const std::array<int, 4>& columns) {
+  const Vector3f a = layout.columns[columns[0]].rest, b = layout.columns[columns[1]].rest,
+                 c = layout.columns[columns[2]].rest;
+  if (columns[3] < 0) return (b - a).cross(c - a);
+  return (c - a).cross(layout.columns[columns[3]].rest - b);
+}
+
+// Turns the roots into the hair's own frame: origin at their middle, y along the mean normal, x towards the first
+// column. Only then do hashed patterns stay where they are on the head whatever the pose at the first upload was.
+Vector3f intoOwnFrame(HairLayout& layout) {
+  Vector3f middle = Vector3f::Zero(), up = Vector3f::Zero();
+  for (const HairColumn& column : layout.columns) middle += column.rest / static_cast<float>(layout.columns.size());
+  for (const auto& columns : layout.face_columns) up += faceNormal(layout, columns);
+  up = up.norm() > 1e-12f ? up.normalized().eval() : Vector3f::UnitY();
+  Vector3f ahead = layout.columns.empty() ? Vector3f::UnitX() : (layout.columns[0].rest - middle).eval();
+  ahead -= up * up.dot(ahead);
+  ahead = ahead.norm() > 1e-6f ? ahead.normalized().eval() : up.unitOrthogonal();
+  Eigen::Matrix3f turn;
+  turn << ahead.transpose(), up.transpose(), ahead.cross(up).transpose();
+  for (HairColumn& column : layout.columns) column.rest = turn * (column.rest - middle);
+  return Vector3f::UnitY();
+}
+
+void setTangentPlanes(HairLayout& layout, const Vector3f& up) {
+  std::vector<Vector3f> normals(layout.columns.size(), Vector3f::Zero());
+  for (const auto& columns : layout.face_columns) {
+    const Vector3f normal = faceNormal(layout, columns);
+    for (int column : columns) {
+      if (column >= 0) normals[column] += normal;
+    }
+  }
+  for (std::size_t i = 0; i < layout.columns.size(); ++i) {
+    const Vector3f normal = normals[i].norm() > 1e-12f ? normals[i].normalized().eval() : up;
+    // The least rotation from the crown: neighbouring columns' axes then agree, so frames blend across faces.
+    const Eigen::Quaternionf turn = Eigen::Quaternionf::FromTwoVectors(up, normal);
+    layout.columns[i].axis_u = turn * Vector3f::UnitX();
+    layout.columns[i].axis_v = turn * Vector3f::UnitZ();
+  }
+}
+
+void joinNeighbours(HairLayout& layout) {
+  std::map<std::pair<int, int>, float> strengths;  // edges count fully, diagonals of quadrilaterals a quarter
+  for (const auto& columns : layout.face_columns) {
+    const int corners = columns[3] < 0 ? 3 : 4;
+    for (int a = 0; a < corners; ++a) {
+      for (int b = 0; b < corners; ++b) {
+        if (a == b) continue;
+        float& strength = strengths[{columns[a], columns[b]}];
+        strength = std::max(strength, corners == 4 && (a + 2) % 4 == b ? 0.25f : 1.0f);
+      }
+    }
+  }
+  for (const auto& [pair, strength] : strengths) {
+    HairColumn& column = layout.columns[pair.first];
+    const Vector3f gap = layout.columns[pair.second].rest - column.rest;
+    const Eigen::Vector2f offset(gap.dot(column.axis_u), gap.dot(column.axis_v));
+    const float squared = std::max(gap.squaredNorm(), 1e-10f);
+    column.neighbours.push_back({pair.second, offset, strength / squared});
+  }
+}
+
+}  // namespace
+
+HairLayout makeHairLayout(std::span<const HairFace> faces, std::span<const float> positions) {
+  HairLayout layout;
+  layout.vertex_count = static_cast<int>(positions.size() / 3);
+  std::map<int, int> column_of_first;
+  for (const HairFace& face : faces) {
+    if (!isUsable(face, layout.vertex_count)) continue;
+    layout.faces.push_back(face);
+    layout.max_layers = std::max(layout.max_layers, face.layers);
+    std::array<int, 4>& columns = layout.face_columns.emplace_back(std::array<int, 4>{-1, -1, -1, -1});
+    for (int k = 0; k < 4 && face.first_vertex[k] >= 0; ++k) {
+      const auto [entry, added] =
+          column_of_first.try_emplace(face.first_vertex[k], static_cast<int>(layout.columns.size()));
+      if (added) {
+        HairColumn column;
+        column.first_vertex = face.first_vertex[k];
+        column.rest = vertexAt(positions, column.first_vertex);
+        layout.columns.push_back(column);
+      }
+      columns[k] = entry->second;
+      HairColumn& column = layout.columns[columns[k]];
+      column.layers = std::max(column.layers, face.layers);
+    }
+  }
+  const Vector3f up = intoOwnFrame(layout);
+  setTangentPlanes(layout, up);
+  joinNeighbours(layout);
+  return layout;
+}
+
+std::vector<int> dealStrands(const HairLayout& layout, int strands) {
+  double total = 0;
+  for (const HairFace& face : layout.faces) total += std::max(face.area, 0.0f);
+  std::vector<int> first(layout.faces.size() + 1, 0);
+  double passed = 0;
+  for (std::size_t i = 0; i < layout.faces.size(); ++i) {
+    passed += total > 0 ? std::max(layout.faces[i].area, 0.0f) / total : 1.0 / static_cast<double>(layout.faces.size());
+    first[i + 1] = static_cast<int>(std::lround(std::min(passed, 1.0) * std::max(strands, 0)));
+  }
+  return first;
+}
+
+void inLayerGradients(const HairLayout& layout, std::span<const float> positions,
+                      std::vector<Eigen::Matrix<float, 3, 2>>& gradients) {
+  gradients.assign(layout.vertex_count, Eigen::Matrix<float, 3, 2>::Zero());
+  for (const HairColumn& column : layout.columns) {
+    Eigen::Matrix<float, 3, 2> below = Eigen::Matrix<float, 3, 2>::Zero();
+    for (int layer = 0; layer < column.layers; ++layer) {
+      const Vector3f here = vertexAt(positions, column.first_vertex + layer);
+      Eigen::Matrix2f spread = kPriorWeight * Eigen::Matrix2f::Identity();
+      Eigen::Matrix<float, 3, 2> moment = kPriorWeight * below;
+      for (const ColumnNeighbour& neighbour : column.neighbours) {
+        const HairColumn& other = layout.columns[neighbour.column];
+        if (layer >= other.layers) continue;
+        const Vector3f gap = vertexAt(positions, other.first_vertex + layer) - here;
+        spread += neighbour.weight * neighbour.offset * neighbour.offset.transpose();
+        moment += neighbour.weight * gap * neighbour.offset.transpose();
+      }
+      below = moment * spread.inverse();
+      gradients[column.first_vertex + layer] = below;
+    }
+  }
+}
+
+}  // namespace render

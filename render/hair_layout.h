@@ -1,0 +1,52 @@
+// What the strand shaders know of a hair besides its positions: faces with their shares of the strands, columns with
+// their rest place on the scalp, and the in-layer gradients that make faces join smoothly. CPU only, so it is tested
+// without a context.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "render/frame_input.h"
+
+namespace render {
+
+// A column's neighbour on the scalp.
+struct ColumnNeighbour {
+  int column;
+  Eigen::Vector2f offset;  // m, in this column's rest tangent plane
+  float weight;            // 1 / m^2
+};
+
+struct HairColumn {
+  int first_vertex = 0, layers = 0;
+  Eigen::Vector3f rest =
+      Eigen::Vector3f::Zero();  // m, rest root in the hair's own frame (rigid motion leaves it alone)
+  Eigen::Vector3f axis_u = Eigen::Vector3f::UnitX(),
+                  axis_v = Eigen::Vector3f::UnitZ();  // rest tangent plane, orthonormal
+  std::vector<ColumnNeighbour> neighbours;
+};
+
+// Topology and rest geometry, made once per layout from the roots as they then stand.
+struct HairLayout {
+  std::vector<HairFace> faces;
+  std::vector<std::array<int, 4>> face_columns;  // [3] = -1: triangle
+  std::vector<HairColumn> columns;
+  int vertex_count = 0, max_layers = 0;
+};
+
+// positions: 3 floats a vertex. Faces of fewer than two layers or with vertices out of range are left out: they can
+// carry no strand, and nothing may be read past the end of the positions.
+HairLayout makeHairLayout(std::span<const HairFace> faces, std::span<const float> positions);
+
+// First strand of every face, and the total at the end: strands are dealt out by area, every face's first strands keep
+// their shape whatever the total.
+std::vector<int> dealStrands(const HairLayout& layout, int strands);
+
+// Gradient of position by the rest tangent plane, per vertex: least squares over the in-layer neighbours. Shape:
+// vertex_count matrices, column 0 by u, column 1 by v (m per m). Where a layer leaves too few neighbours, the layer
+// below fills in.
+void inLayerGradients(const HairLayout& layout, std::span<const float> positions,
+                      std::vector<Eigen::Matrix<float, 3, 2>>& gradients);
+
+}  // namespace render

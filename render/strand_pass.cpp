@@ -1,0 +1,48 @@
+#include "render/strand_pass.h"
+
+#include "shaders/shared.h"
+
+namespace render {
+
+// GL 4.5 promises this much output of one geometry shader invocation; Mesa allows more, other drivers do not.
+static_assert(2 * shared::kChunkPoints * shared::kRibbonComponents <= shared::kMaxOutputComponents);
+static_assert(shared::kChunkPoints * shared::kLineComponents <= shared::kMaxOutputComponents);
+
+StrandCount& StrandCount::operator+=(const StrandCount& other) {
+  strands += other.strands;
+  vertices += other.vertices;
+  draw_calls += other.draw_calls;
+  return *this;
+}
+
+StrandCount issueStrands(const HairResources& hair, int stride, StrandPath path, const StrandTopology& topology) {
+  const int strands = (hair.strands + stride - 1) / stride;
+  if (strands == 0) return {};
+  const long vertices = static_cast<long>(strands) * hair.pointsPerStrand() * topology.vertices_a_point;
+  if (path == StrandPath::kGeometry) {
+    glDrawArrays(GL_POINTS, 0, strands * hair.chunksPerStrand());
+  } else {
+    glDrawArraysInstanced(topology.strip, 0, hair.pointsPerStrand() * topology.vertices_a_point, strands);
+  }
+  return {strands, vertices, 1};
+}
+
+StrandPass::StrandPass(const std::string& shader_dir)
+    : geometry_(shader_dir, {{"strand.vert", "strand.geom", "strand.frag"}, {}, {}}),
+      pulling_(shader_dir, {{"strand_pull.vert", "strand.frag"}, {}, {}}),
+      no_attributes_(makeVertexArray()) {}
+
+StrandCount StrandPass::draw(HairResources& hair, int shadow_map, StrandPath path) {
+  if (!hair.drawable) return {};
+  HairStore::bind(hair, {1, shadow_map});
+  (path == StrandPath::kGeometry ? geometry_ : pulling_).use();
+  glBindVertexArray(no_attributes_.id());
+  return issueStrands(hair, 1, path, {GL_TRIANGLE_STRIP, 2});
+}
+
+std::string StrandPass::reload() {
+  const std::string first = geometry_.reloadIfChanged(), second = pulling_.reloadIfChanged();
+  return first.empty() ? second : first;
+}
+
+}  // namespace render

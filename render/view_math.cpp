@@ -1,0 +1,91 @@
+#include "render/view_math.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace render {
+
+using Eigen::Matrix4f;
+using Eigen::Vector3f;
+
+Mat4 asMat4(const Matrix4f& m) {
+  Mat4 out;
+  std::copy(m.data(), m.data() + 16, out.begin());
+  return out;
+}
+
+Vector3f directionOr(const Float3& v, const Vector3f& otherwise) {
+  const Vector3f direction = asVector(v);
+  const float length = direction.norm();
+  return std::isfinite(length) && length > 1e-12f ? (direction / length).eval() : otherwise;
+}
+
+Matrix4f lookAt(const Vector3f& eye, const Vector3f& target, const Vector3f& up) {
+  Vector3f back = eye - target;
+  back = back.norm() > 1e-9f ? back.normalized().eval() : Vector3f::UnitZ();
+  Vector3f right = up.cross(back);
+  right = right.norm() > 1e-6f ? right.normalized().eval() : back.unitOrthogonal();
+  const Vector3f above = back.cross(right);
+  Matrix4f m = Matrix4f::Identity();
+  m.block<1, 3>(0, 0) = right.transpose();
+  m.block<1, 3>(1, 0) = above.transpose();
+  m.block<1, 3>(2, 0) = back.transpose();
+  m.block<3, 1>(0, 3) = Vector3f(-right.dot(eye), -above.dot(eye), -back.dot(eye));
+  return m;
+}
+
+Matrix4f perspective(float fov_y, float aspect, float near_plane, float far_plane) {
+  const float f = 1 / std::tan(0.5f * std::clamp(fov_y, 0.01f, 3.0f));
+  Matrix4f m = Matrix4f::Zero();
+  m(0, 0) = f / aspect;
+  m(1, 1) = f;
+  m(2, 2) = (far_plane + near_plane) / (near_plane - far_plane);
+  m(2, 3) = 2 * far_plane * near_plane / (near_plane - far_plane);
+  m(3, 2) = -1;
+  return m;
+}
+
+Matrix4f cameraMatrix(const CameraInput& camera, float aspect) {
+  return perspective(camera.fov_y, aspect, camera.near_plane, camera.far_plane) *
+         lookAt(asVector(camera.eye), asVector(camera.target), asVector(camera.up));
+}
+
+void Bounds::add(const Vector3f& p) {
+  low = low.cwiseMin(p);
+  high = high.cwiseMax(p);
+}
+
+void Bounds::add(const Bounds& other) {
+  low = low.cwiseMin(other.low);
+  high = high.cwiseMax(other.high);
+}
+
+LightFrustum lightFrustum(const Bounds& bounds, const Vector3f& to_light, int texels) {
+  const Matrix4f turn =
+      lookAt(to_light, Vector3f::Zero(), std::abs(to_light.y()) > 0.9f ? Vector3f::UnitX() : Vector3f::UnitY());
+  Bounds seen;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vector3f p((corner & 1) ? bounds.high.x() : bounds.low.x(), (corner & 2) ? bounds.high.y() : bounds.low.y(),
+                     (corner & 4) ? bounds.high.z() : bounds.low.z());
+    seen.add((turn.block<3, 3>(0, 0) * p + turn.block<3, 1>(0, 3)).eval());
+  }
+  const Vector3f extent = seen.high - seen.low;
+  constexpr float kStep = 0.08f;  // m
+  LightFrustum frustum;
+  frustum.side = kStep * (std::floor(std::max(extent.x(), extent.y()) / kStep) + 1);
+  frustum.depth = kStep * (std::floor(extent.z() / kStep) + 2);
+  const float texel = frustum.side / static_cast<float>(texels);
+  const float x = texel * std::round(seen.center().x() / texel), y = texel * std::round(seen.center().y() / texel);
+  Matrix4f fit = Matrix4f::Identity();
+  fit(0, 0) = fit(1, 1) = 2 / frustum.side;
+  fit(0, 3) = -x * fit(0, 0);
+  fit(1, 3) = -y * fit(1, 1);
+  // Depth 0 at the light's side of the bounds; view space looks along -z.
+  fit(2, 2) = -2 / frustum.depth;
+  fit(2, 3) = seen.center().z() * 2 / frustum.depth;
+  frustum.clip_from_world = fit * turn;
+  return frustum;
+}
+
+}  // namespace render

@@ -1,0 +1,24 @@
+#include "shared.h"
+#include "common/shadow.glsl"
+#include "common/surface.glsl"
+layout(location = 0) in vec3 world;
+layout(location = 1) in vec3 normal;
+layout(location = 0) out vec4 color;
+
+void main() {
+  vec3 to_eye = normalize(eye.xyz - world), n = normalize(normal);
+  if (dot(n, to_eye) < 0.0) n = normalize(n - 1.02 * dot(n, to_eye) * to_eye);  // interpolated normals may tip over the rim
+  vec3 albedo = body_color.rgb;
+  float hair = 0.0, lit = 1.0;
+  if (forward.w > 0.0) {
+    hair = hairShadowOnSurface(world, 0.006);
+    lit = bodyLightOnSurface(world, n) * exp(-hair);
+  }
+  // Under hair little of the sky and of the other lights arrives either; the key light's map is the only witness.
+  float open = 0.35 + 0.65 * exp(-0.35 * hair);
+  vec3 radiance = lit * key.rgb * surfaceLight(n, to_key.xyz, to_eye, albedo, body_color.a);
+  radiance += open * fill.rgb * surfaceLight(n, to_fill.xyz, to_eye, albedo, body_color.a);
+  radiance += open * rim.rgb * surfaceLight(n, to_rim.xyz, to_eye, albedo, body_color.a);
+  radiance += open * albedo * mix(ground_light.rgb, sky.rgb, 0.5 + 0.5 * n.y);
+  color = vec4(radiance, 1.0);
+}

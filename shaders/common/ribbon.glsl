@@ -1,0 +1,24 @@
+// What both strand paths share between curve and raster: which layers a point lies in, its width and its colour.
+
+int lastPoint(in Strand strand) { return int(ceil(strand.end * float(counts.z) - 1e-4)); }
+
+int layerOf(in Strand strand, float s) { return clamp(int(s), 0, strand.layers - 2); }
+
+// Radius at `along` of the strand, and how much wider than that it must be drawn to be no thinner than the least width.
+float strandRadius(float along) { return width.x * mix(1.0, width.y, along * along); }
+
+struct RibbonPoint {
+  vec3 aside;       // half the ribbon's width, world
+  float coverage;   // share of the drawn width that is hair
+};
+
+RibbonPoint ribbonPoint(in CurvePoint point) {
+  vec3 to_eye = eye.xyz - point.position;
+  float distance_ahead = max(-dot(to_eye, forward.xyz), 1e-3);
+  float radius = strandRadius(point.along), least = 0.5 * width.w * eye.w * distance_ahead;
+  float drawn = max(radius, least);
+  RibbonPoint ribbon;
+  ribbon.aside = unitOr(cross(point.tangent, to_eye), vec3(1.0, 0.0, 0.0)) * drawn;
+  ribbon.coverage = radius / drawn;
+  return ribbon;
+}

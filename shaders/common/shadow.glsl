@@ -1,0 +1,67 @@
+// Shadows of the key light: deep opacity maps of the hairs, depth maps of the bodies.
+// Source: Yuksel and Keyser 2008, Deep Opacity Maps: opacity layers start at the depth where the light first meets hair.
+
+layout(binding = kUnitOpacityNear) uniform sampler2DArray opacity_near;  // layers 0..3
+layout(binding = kUnitOpacityFar) uniform sampler2DArray opacity_far;    // layers 4..6, all
+layout(binding = kUnitHairDepth) uniform sampler2DArray hair_depth;
+layout(binding = kUnitBodyInHairDepth) uniform sampler2DArrayShadow body_in_hair_depth;
+layout(binding = kUnitBodyDepth) uniform sampler2DShadow body_depth;
+
+// Light-space texture coordinates and depth of a world point in hair shadow map `map`; outside of [0, 1] where not covered.
+vec3 hairShadowCoordinates(int map, vec3 world) {
+  vec4 clip = hair_shadow[map] * vec4(world, 1.0);
+  return clip.xyz * 0.5 + 0.5;
+}
+
+// Optical depth (expected number of hairs crossed, weighted by strength) between the key light and a point. Within a layer it
+// grows linearly; layers thicken geometrically, since what lies deep needs less resolution.
+float hairOpticalDepth(int map, vec3 at) {
+  if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return 0.0;
+  float behind = (at.z - textureLod(hair_depth, vec3(at.xy, map), 0.0).r) * hair_shadow_size[map].z;
+  if (behind <= 0.0) return 0.0;
+  vec4 near = textureLod(opacity_near, vec3(at.xy, map), 0.0), far = textureLod(opacity_far, vec3(at.xy, map), 0.0);
+  float held[8] = float[8](near.x, near.y, near.z, near.w, far.x, far.y, far.z, far.w);
+  float start = 0.0, thickness = hair_shadow_size[map].w, before = 0.0;
+  for (int layer = 0; layer < int(opacity.x); ++layer) {
+    if (behind < start + thickness) return opacity.y * mix(before, held[layer], (behind - start) / thickness);
+    start += thickness;
+    before = held[layer];
+    thickness *= kLayerGrowth;
+  }
+  return opacity.y * mix(before, held[7], min((behind - start) / thickness, 1.0));
+}
+
+// Light left after the bodies, for a point of hair.
+float bodyLightOnHair(int map, vec3 at) {
+  if (opacity.w == 0.0) return 1.0;
+  float reference = at.z - 0.004 / hair_shadow_size[map].z;
+  return texture(body_in_hair_depth, vec4(at.xy, map, reference));
+}
+
+// Optical depth of all hairs over a point of body or ground, averaged over a small disc: strands cast soft shadows.
+float hairShadowOnSurface(vec3 world, float softness) {
+  float depth = 0.0;
+  for (int map = 0; map < int(to_key.w); ++map) {
+    vec3 at = hairShadowCoordinates(map, world);
+    if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) continue;
+    vec2 reach = softness / hair_shadow_size[map].xy;
+    float sum = 0.0;
+    for (int i = 0; i < 5; ++i) {
+      vec2 tap = i == 0 ? vec2(0.0) : vec2(i < 3 ? -1.0 : 1.0, (i & 1) == 1 ? -1.0 : 1.0);
+      sum += hairOpticalDepth(map, vec3(at.xy + tap * reach, at.z));
+    }
+    depth += sum / 5.0;
+  }
+  return depth;
+}
+
+// Light left after the bodies, for a point of body or ground: percentage-closer filtering over 3 x 3 taps.
+float bodyLightOnSurface(vec3 world, vec3 normal) {
+  if (opacity.w == 0.0) return 1.0;
+  vec3 at = (body_shadow * vec4(world + normal * 0.012, 1.0)).xyz * 0.5 + 0.5;
+  if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
+  float sum = 0.0, texel = 1.4 / opacity.z;
+  for (int y = -1; y <= 1; ++y)
+    for (int x = -1; x <= 1; ++x) sum += texture(body_depth, vec3(at.xy + vec2(x, y) * texel, at.z - 0.0012));
+  return sum / 9.0;
+}

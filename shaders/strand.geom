@@ -1,0 +1,44 @@
+// Grows one chunk of one strand as a camera-facing ribbon, shaded per point.
+#include "shared.h"
+#include "common/hash.glsl"
+#include "common/strand.glsl"
+#include "common/shadow.glsl"
+#include "common/hair_shading.glsl"
+#include "common/ribbon.glsl"
+
+layout(points) in;
+layout(triangle_strip, max_vertices = 2 * kChunkPoints) out;
+layout(location = 0) out vec4 lit;         // radiance, coverage
+layout(location = 1) flat out float dither;
+
+void main() {
+  int number = (gl_PrimitiveIDIn / draw.y) * draw.x, start = (gl_PrimitiveIDIn % draw.y) * (kChunkPoints - 1);
+  Strand strand = makeStrand(number);
+  int last = lastPoint(strand);
+  if (start >= last) return;
+  int layer = layerOf(strand, pointParameter(strand, start));
+  LayerWindow window = layerWindow(strand, layer);
+  float own_dither = randomOf(strand.key, 30u);
+  for (int index = start; index <= min(start + kChunkPoints - 1, last); ++index) {
+    float s = pointParameter(strand, index);
+    if (layerOf(strand, s) > layer) {
+      ++layer;
+      window.before = window.from.position;
+      window.from = window.to;
+      window.to.position = window.after;
+      LayerPoint next = layerPoint(strand, layer + 1);
+      window.to = next;
+      window.after = layerAfter(strand, layer + 2, window.from.position, window.to.position);
+    }
+    CurvePoint point = curvePoint(strand, window, s, s - float(layer));
+    RibbonPoint ribbon = ribbonPoint(point);
+    vec4 color = vec4(shadeStrand(strand, point), ribbon.coverage);
+    for (int side = -1; side <= 1; side += 2) {
+      lit = color;
+      dither = own_dither;
+      gl_Position = view_projection * vec4(point.position + float(side) * ribbon.aside, 1.0);
+      EmitVertex();
+    }
+  }
+  EndPrimitive();
+}

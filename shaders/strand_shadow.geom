@@ -1,0 +1,34 @@
+// Grows one chunk of one strand as a line in the light's view. Lines are a texel wide; what a hair covers of it goes along.
+#include "shared.h"
+#include "common/hash.glsl"
+#include "common/strand.glsl"
+#include "common/ribbon.glsl"
+#include "common/opacity_line.glsl"
+
+layout(points) in;
+layout(line_strip, max_vertices = kChunkPoints) out;
+layout(location = 0) flat out float strand_opacity;
+
+void main() {
+  int number = (gl_PrimitiveIDIn / draw.y) * draw.x, start = (gl_PrimitiveIDIn % draw.y) * (kChunkPoints - 1);
+  Strand strand = makeStrand(number);
+  int last = lastPoint(strand);
+  if (start >= last) return;
+  int layer = layerOf(strand, pointParameter(strand, start));
+  LayerWindow window = layerWindow(strand, layer);
+  for (int index = start; index <= min(start + kChunkPoints - 1, last); ++index) {
+    float s = pointParameter(strand, index);
+    if (layerOf(strand, s) > layer) {
+      ++layer;
+      window.before = window.from.position;
+      window.from = window.to;
+      window.to = layerPoint(strand, layer + 1);
+      window.after = layerAfter(strand, layer + 2, window.from.position, window.to.position);
+    }
+    CurvePoint point = curvePoint(strand, window, s, s - float(layer));
+    strand_opacity = lineOpacity(point.tangent);
+    gl_Position = hair_shadow[draw.w] * vec4(point.position, 1.0);
+    EmitVertex();
+  }
+  EndPrimitive();
+}
