@@ -104,19 +104,40 @@ struct SeamGap {
   Vec3 turn, turn_rate;    // rad, rad/s, rotation vector in the joint frame
 };
 
-// The four moments that say how the clip starts and ends: first frame, second, last but one, last.
-using SeamMoments = std::array<PlacedMoment, 4>;
+// The moments that say how the clip starts and ends: the first three frames, the last three (the first and last three
+// of fewer, in order). Velocities at the ends are extrapolated from two frame intervals: differences over one lie half
+// a frame off, which would read the acceleration of a clip that loops cleanly as a gap.
+using SeamMoments = std::array<PlacedMoment, 6>;
+
+SeamMoments seamMoments(const Skeleton& skeleton, const Clip& clip, const GroundTravel* ground) {
+  const int last = clip.frameCount() - 1;
+  SeamMoments moments;
+  for (int k = 0; k < 3; ++k) {
+    moments[static_cast<std::size_t>(k)] = placedMoment(skeleton, clip, ground, std::min(k, last) * clip.frame_time);
+    moments[static_cast<std::size_t>(5 - k)] =
+        placedMoment(skeleton, clip, ground, std::max(last - k, 0) * clip.frame_time);
+  }
+  return moments;
+}
+
+// Values of the two frame intervals next to an end, extrapolated to the end.
+Vec3 atEnd(const Clip& clip, const Vec3& nearest, const Vec3& next) {
+  return (clip.frameCount() > 2 ? Vec3(1.5 * nearest - 0.5 * next) : nearest) / clip.frame_time;
+}
 
 SeamGap seamGap(const Skeleton& skeleton, const Clip& clip, const SeamMoments& seam, int joint) {
-  const Rigid first = placedLocal(skeleton, clip, seam[0], joint), second = placedLocal(skeleton, clip, seam[1], joint);
-  const Rigid before = placedLocal(skeleton, clip, seam[2], joint), last = placedLocal(skeleton, clip, seam[3], joint);
-  const double rate = 1 / clip.frame_time;
+  std::array<Rigid, 6> local;
+  for (std::size_t k = 0; k < local.size(); ++k) local[k] = placedLocal(skeleton, clip, seam[k], joint);
+  const Rigid &first = local[0], &last = local[5];
+  const auto moved = [&](std::size_t k) { return Vec3(local[k + 1].translation() - local[k].translation()); };
+  const auto turned = [&](std::size_t k) {
+    return rotationVector(local[k].linear().transpose() * local[k + 1].linear());
+  };
   SeamGap gap;
   gap.shift = first.translation() - last.translation();
-  gap.shift_rate = rate * (second.translation() - first.translation() - last.translation() + before.translation());
+  gap.shift_rate = atEnd(clip, moved(0), moved(1)) - atEnd(clip, moved(4), moved(3));
   const Eigen::Matrix3d across = last.linear().transpose() * first.linear();
-  const Vec3 spin_first = rate * rotationVector(first.linear().transpose() * second.linear());
-  const Vec3 spin_last = rate * rotationVector(before.linear().transpose() * last.linear());
+  const Vec3 spin_first = atEnd(clip, turned(0), turned(1)), spin_last = atEnd(clip, turned(4), turned(3));
   gap.turn = rotationVector(across);
   gap.turn_rate = rotationVectorRate(gap.turn, spin_first - across.transpose() * spin_last);
   return gap;
@@ -142,18 +163,14 @@ void poseAt(const Skeleton& skeleton, const Clip& clip, const Playback& playback
   const double duration = clip.duration();
   const double time = std::isfinite(playback.time) ? std::clamp(playback.time, 0.0, duration) : 0;
   const GroundTravel ground = playback.in_place ? groundTravel(skeleton, clip) : GroundTravel{};
-  const auto placedAt = [&](double t) {
-    return placedMoment(skeleton, clip, playback.in_place ? &ground : nullptr, t);
-  };
-  const PlacedMoment now = placedAt(time);
+  const GroundTravel* placing = playback.in_place ? &ground : nullptr;
+  const PlacedMoment now = placedMoment(skeleton, clip, placing, time);
 
   const double blend = std::clamp(playback.blend, 0.0, duration);
   const double part = blend > 0 ? (time - (duration - blend)) / blend : 0;  // of the blend, 0 to 1
   const bool blending = playback.loop && clip.frameCount() > 1 && part > 0;
   SeamMoments seam;
-  if (blending) {
-    seam = {placedAt(0), placedAt(clip.frame_time), placedAt(duration - clip.frame_time), placedAt(duration)};
-  }
+  if (blending) seam = seamMoments(skeleton, clip, placing);
   const double value_weight = part * part * (3 - 2 * part), rate_weight = blend * part * part * (part - 1);
 
   pose.world.resize(skeleton.joints.size());

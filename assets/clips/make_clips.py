@@ -63,6 +63,7 @@ STRIDE_TIME = 1.1  # s, both steps
 WALK_SPEED = 110.0  # cm/s
 STRIDE = STRIDE_TIME * WALK_SPEED
 STRIDES = 6
+WALK_START = 0.3 * STRIDE_TIME  # one leg passes the other: no foot strikes at the loop's seam
 WALK = STRIDES * STRIDE_TIME
 STANCE = 0.62  # of the stride with the foot on the ground
 SWING_LIFT = 4.5  # cm, over the arc that leaves and arrives smoothly
@@ -84,7 +85,7 @@ def walking_foot(t, side):
     cycles = t / STRIDE_TIME + (0 if side == "Left" else 0.5)
     count = math.floor(cycles + 1e-9)
     phase = max(0.0, cycles - count)
-    struck_at = (count - (0 if side == "Left" else 0.5)) * STRIDE + REACH
+    struck_at = (count - (0 if side == "Left" else 0.5)) * STRIDE + REACH - WALK_SPEED * WALK_START
     if phase <= STANCE:
         foot = stance_foot(phase, x, yaw)
         return Foot(add(foot.ankle, (0, 0, struck_at)), yaw, foot.pitch, foot.toe)
@@ -104,10 +105,11 @@ def walking_foot(t, side):
 
 def walk(t):
     """Walking forward at 1.1 m/s: pelvis and shoulders turn against each other, the head stays level and looks around."""
+    t += WALK_START
     u = t / STRIDE_TIME
     turn, double = math.cos(TAU * u), math.cos(2 * TAU * (u - 0.04))
     look = WALK_LOOK(t)
-    pose = Pose((1.9 * math.cos(TAU * (u - 0.31)), 90.5 - 2.2 * double, WALK_SPEED * t - 1.0 * math.sin(2 * TAU * (u - 0.02))))
+    pose = Pose((1.9 * math.cos(TAU * (u - 0.31)), 90.2 - 1.9 * double, WALK_SPEED * (t - WALK_START) - 1.0 * math.sin(2 * TAU * (u - 0.02))))
     pose.turn["Hips"] = turned(-5.5 * turn, 3.0 + 0.8 * double, 3.2 * math.cos(TAU * (u - 0.20)))
     pose.bend_spine(10.5 * turn + 0.1 * look, 0.5 + 1.2 * double, -4.6 * math.cos(TAU * (u - 0.20)))
     pose.look(look + 0.8 * turn, 1.5 - 1.4 * math.cos(2 * TAU * (u - 0.12)), 0.05 * look + 0.9 * math.cos(TAU * (u - 0.25)))
