@@ -14,10 +14,10 @@ MeshGrid gridFor(const BodyField& body) {
   const Figure& f = body.figure;
   const double s = f.height / 1.70, chin = body.head_origin.y();
   MeshGrid grid;
-  grid.fine = 0.0165 * f.head_height;
-  grid.coarse = 0.0115 * s;
+  grid.fine = 0.0195 * f.head_height;
+  grid.coarse = 0.0135 * s;
   grid.fine_from = chin + 0.02 * f.head_height;
-  grid.coarse_from = chin - 0.42 * s;
+  grid.coarse_from = chin - 0.36 * s;
   grid.low = Vec3(f.pelvis.x(), f.sole, f.pelvis.z());
   grid.high = Vec3(f.pelvis.x(), chin + 1.06 * f.head_height, f.pelvis.z());
   const auto hold = [&](const Vec3& p, double margin) {

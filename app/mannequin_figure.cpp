@@ -29,33 +29,6 @@ ReferencePose restReference(const BvhMotion& motion) {
   return reference;
 }
 
-ReferencePose frameReference(const BvhMotion& motion, int frame) {
-  ReferencePose reference;
-  const auto& joints = motion.skeleton.joints;
-  for (std::size_t j = 0; j < joints.size(); ++j) {
-    const std::size_t k = static_cast<std::size_t>(frame) * joints.size() + j;
-    Rigid local = Rigid::Identity();
-    local.linear() = motion.clip.rotations[k].toRotationMatrix();
-    local.translation() = motion.clip.translations[k];
-    reference.world.push_back(joints[j].parent < 0 ? local : reference.world[joints[j].parent] * local);
-    reference.ends.push_back(reference.world[j] * motion.end_sites[j]);
-  }
-  return reference;
-}
-
-// How far the head rises above the root, over the figure's extent: near 0.4 for a figure that stands.
-double uprightness(const ReferencePose& reference, int head) {
-  double low = 1e30, high = -1e30, extent = 1e-9;
-  for (const Rigid& w : reference.world) {
-    low = std::min(low, w.translation().y());
-    high = std::max(high, w.translation().y());
-    extent = std::max(extent, (w.translation() - reference.world[0].translation()).norm());
-  }
-  const double rise = reference.world[head].translation().y() - reference.world[0].translation().y();
-  const double drop = reference.world[0].translation().y() - low;
-  return rise / extent + 0.25 * std::min(drop / extent, 1.0);
-}
-
 // Turns the joints of a pose one after the other, carrying what hangs from them.
 struct Poser {
   const Skeleton& skeleton;
@@ -138,7 +111,7 @@ void poseLegs(const ReferencePose& before, const BodyRoles& roles, const Quat& r
   }
 }
 
-// Straightens the trunk of a figure whose only upright pose is a frame of its motion.
+// Straightens a leaning trunk, as of a rest pose taken from the motion.
 void poseSpine(const ReferencePose& before, const BodyRoles& roles, const Quat& root, Poser& poser) {
   for (std::size_t i = 0; i + 1 < roles.spine.size(); ++i)
     poser.aim(roles.spine[i], jointAt(before, roles.spine[i + 1]), Vec3::UnitY(), root);
@@ -248,48 +221,18 @@ void setRest(const ReferencePose& pose, Skeleton& skeleton) {
   }
 }
 
-// The reference pose: the file's rest pose when it stands, else the frame that stands best.
-ReferencePose chooseReference(const BvhMotion& motion, int head, bool& from_rest, std::string& note) {
-  ReferencePose best = restReference(motion);
-  from_rest = true;
-  if (uprightness(best, head) > 0.3 || motion.clip.frameCount() == 0) return best;
-  const int frames = motion.clip.frameCount(), step = std::max(1, frames / 64);
-  double best_score = uprightness(best, head) + 0.1;
-  int best_frame = -1;
-  for (int f = 0; f < frames; f += step) {
-    ReferencePose pose = frameReference(motion, f);
-    if (const double score = uprightness(pose, head); score > best_score) {
-      best_score = score;
-      best_frame = f;
-      best = std::move(pose);
-    }
-  }
-  if (best_frame >= 0) {
-    from_rest = false;
-    note = "rest pose: the offsets do not stand upright, frame " + std::to_string(best_frame) + " was taken";
-  }
-  return best;
-}
-
 }  // namespace
 
 StoodSkeleton standSkeleton(const BvhMotion& motion, const std::string& file) {
   StoodSkeleton stood;
   stood.skeleton = motion.skeleton;
-  bool is_neck = false, from_rest = true;
-  ReferencePose reference = restReference(motion);
-  int head = findHeadJoint(motion.skeleton, reference, is_neck);
-  if (head < 0 && motion.clip.frameCount() > 0) {
-    reference = frameReference(motion, 0);
-    head = findHeadJoint(motion.skeleton, reference, is_neck);
-  }
+  bool is_neck = false;
+  const ReferencePose reference = restReference(motion);
+  const int head = findHeadJoint(motion.skeleton, reference, is_neck);
   if (head <= 0)
     throw InputError(file, "skeleton",
                      "no joint of " + std::to_string(motion.skeleton.joints.size()) + " can carry a head",
                      "name the joint that turns the head 'Head' and let it hang from a root");
-  std::string note;
-  reference = chooseReference(motion, head, from_rest, note);
-  if (!note.empty()) stood.notes.push_back(note);
 
   stood.roles = inferRoles(motion.skeleton, reference, head, is_neck);
   std::string how;
@@ -298,7 +241,11 @@ StoodSkeleton standSkeleton(const BvhMotion& motion, const std::string& file) {
   const Quat root(Eigen::AngleAxisd(-std::atan2(forward.x(), forward.z()), Vec3::UnitY()));
 
   Poser poser(motion.skeleton, reference, root);
-  if (!from_rest) poseSpine(reference, stood.roles, root, poser);
+  const Vec3 trunk = jointAt(reference, head) - jointAt(reference, 0);
+  if (trunk.y() < 0.94 * trunk.norm()) {
+    poseSpine(reference, stood.roles, root, poser);
+    stood.notes.push_back("rest pose: the trunk leans, it was stood upright");
+  }
   poseArms(reference, stood.roles, root, poser);
   poseLegs(reference, stood.roles, root, poser);
   ReferencePose pose = poser.pose();

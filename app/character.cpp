@@ -1,0 +1,109 @@
+#include "app/character.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include "app/character_build.h"
+#include "app/errors.h"
+#include "app/mannequin_parts.h"
+#include "app/motion.h"
+
+namespace app {
+
+namespace {
+
+enum class Kind { kBvh, kMot, kModel, kUnknown };
+
+// By ending; a text with another ending is looked into.
+Kind kindOf(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (ending == ".bvh") return Kind::kBvh;
+  if (ending == ".mot") return Kind::kMot;
+  for (const char* model : {".glb", ".gltf", ".fbx", ".dae"})
+    if (ending == model) return Kind::kModel;
+  const std::string text = readText(file);
+  if (text.find("HIERARCHY") < 256) return Kind::kBvh;
+  if (text.find("NumFrames") < 256) return Kind::kMot;
+  return Kind::kUnknown;
+}
+
+}  // namespace
+
+Character loadMannequin(const std::string& text, const std::string& file) {
+  BvhMotion motion = readBvh(text, file);
+  Mannequin mannequin = growMannequin(motion, file);
+  Character character;
+  std::vector<BodyPart> parts = mannequinParts(mannequin);
+  character.skeleton = std::move(mannequin.skeleton);
+  character.mesh = std::move(mannequin.mesh);
+  character.clips.push_back(std::move(motion.clip));
+  character.head_joint = mannequin.roles.head;
+  character.head_frame = mannequin.head_frame;
+  character.notes = std::move(motion.notes);
+  character.notes.insert(character.notes.end(), mannequin.notes.begin(), mannequin.notes.end());
+
+  const Vec3 origin = character.skeleton.joints[character.head_joint].rest_world.translation();
+  const auto inScalp = [&](const Vec3& q) {
+    return Vec3(mannequin.field.head_origin + mannequin.field.head_scale * q - origin);
+  };
+  const HeadMeasure measure{inScalp({0, 0, 0}).y(), inScalp({0, 1, 0}).y(), inScalp({0, 0.585, -0.045})};
+  sampleHead(&measure, character);
+  fitParts(std::move(parts), character);
+  return character;
+}
+
+Character loadCharacter(const std::string& motion_file, const std::string& parts_dir) {
+  const Kind kind = kindOf(motion_file);
+  if (!parts_dir.empty() && kind != Kind::kMot)
+    throw InputError(motion_file, "", "has no use for the rigid parts of '" + parts_dir + "'",
+                     "give --parts with an ARCSim .mot motion only");
+  Character character;
+  switch (kind) {
+    case Kind::kBvh:
+      character = loadMannequin(readText(motion_file), motion_file);
+      break;
+    case Kind::kMot:
+      character = loadRigidParts(readText(motion_file), motion_file, parts_dir);
+      break;
+    case Kind::kModel:
+      character = importSkinned(motion_file);
+      break;
+    case Kind::kUnknown:
+      throw InputError(motion_file, "", "is no motion or character that is known here",
+                       "give a .bvh, .mot, .glb, .gltf, .fbx or .dae file");
+  }
+  character.name = std::filesystem::path(motion_file).stem().string();
+  return character;
+}
+
+Rigid scalpToWorld(const Character& character, const Pose& pose) {
+  return pose.world[character.head_joint] * character.head_frame;
+}
+
+void poseEllipsoids(const Character& character, const Pose& pose, const Pose& previous, double dt,
+                    std::vector<sim::Ellipsoid>& ellipsoids) {
+  ellipsoids.resize(character.ellipsoids.size());
+  for (std::size_t i = 0; i < ellipsoids.size(); ++i) {
+    const BodyEllipsoid& part = character.ellipsoids[i];
+    const Rigid& now = pose.world[part.joint];
+    sim::Ellipsoid& e = ellipsoids[i];
+    e.center = now * part.center;
+    e.rotation = (Eigen::Quaterniond(now.linear()) * part.rotation).normalized();
+    e.radii = part.radii;
+    e.velocity.setZero();
+    e.angular_velocity.setZero();
+    if (!(dt > 0) || previous.world.size() != pose.world.size()) continue;
+    const Rigid& before = previous.world[part.joint];
+    e.velocity = (e.center - before * part.center) / dt;
+    // The shorter way round: of a turn and its complement, joints take the smaller.
+    const Eigen::AngleAxisd turn(
+        Eigen::Quaterniond(Eigen::Matrix3d(now.linear() * before.linear().transpose())).normalized());
+    const double angle = std::remainder(turn.angle(), 2 * EIGEN_PI);
+    e.angular_velocity = turn.axis() * (angle / dt);
+  }
+}
+
+}  // namespace app

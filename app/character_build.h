@@ -1,0 +1,52 @@
+// What every kind of character shares once its skeleton, mesh and clips are there: head, scalp and collision
+// ellipsoids.
+#pragma once
+
+#include "app/character.h"
+#include "app/character_roles.h"
+#include "app/ellipsoid_fit.h"
+#include "app/scalp_sampling.h"
+
+namespace app {
+
+// A body part to fit: its name, the joint it moves with, the vertices that belong to it, and where to start. Points and
+// start are in the model's rest pose; a part with `given_start` keeps the start's far side where no points are.
+struct BodyPart {
+  std::string name;
+  int joint = 0;
+  std::vector<FitPoint> points;
+  bool given_start = false;
+  BodyEllipsoid start;
+  double hold = 0.05;  // m, see fitEllipsoid
+};
+
+// Fits one ellipsoid a part (parts of under eight points are left out) and notes mean and largest gap, and how well
+// all of them together cover the mesh above the hips.
+void fitParts(std::vector<BodyPart> parts, Character& character);
+
+// Vertices with the area that each stands for, rest pose.
+std::vector<FitPoint> surfacePoints(const SkinnedMesh& mesh);
+
+// The joint with the largest weight of each vertex.
+std::vector<int> dominantJoints(const SkinnedMesh& mesh);
+
+// The parts of any skinned character: one a joint with enough skin, small joints (fingers, toes, face) joined to the
+// part above them, the head split into cranium and jaw.
+std::vector<BodyPart> partsByJoint(const Character& character, const BodyRoles& roles);
+
+// Samples the scalp from the triangles that hang on the head joint or below it; head_joint and head_frame must be set.
+// `measure`: landmarks where they are known, else null.
+void sampleHead(const HeadMeasure* measure, Character& character);
+
+// Largest mesh distance (m) outside all ellipsoids over vertices for which `counts` is true, and the mean over those
+// outside.
+struct Coverage {
+  double worst = 0, mean = 0;
+};
+Coverage coverage(const Character& character, const std::vector<bool>& counts);
+
+Character loadMannequin(const std::string& text, const std::string& file);
+Character loadRigidParts(const std::string& text, const std::string& file, const std::string& parts_dir);
+Character importSkinned(const std::string& file);
+
+}  // namespace app

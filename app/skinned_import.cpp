@@ -1,0 +1,399 @@
+// Characters with their own mesh: glTF, FBX and Collada through assimp.
+//
+// assimp's node tree becomes joints one for one; joints here are rigid, so scales are baked: a joint's place is the
+// node's scaled place, its orientation the node's without scale, in the rest pose as in every frame.
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <unordered_map>
+
+#include "app/character_build.h"
+#include "app/errors.h"
+#include "app/motion.h"
+
+namespace app {
+
+namespace {
+
+using Mat4 = Eigen::Matrix4d;
+
+constexpr std::size_t kMaxJoints = 2048, kMaxVertices = 4'000'000, kMaxSamples = 6'000'000;
+constexpr double kSampleRate = 60;  // frames a second at which curves are sampled
+
+Mat4 toEigen(const aiMatrix4x4& m) {
+  Mat4 e;
+  e << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2, m.d3, m.d4;
+  return e;
+}
+
+// The rotation nearest to a matrix that may scale, shear or mirror.
+Eigen::Matrix3d rotationOf(const Eigen::Matrix3d& m) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Matrix3d r = svd.matrixU() * svd.matrixV().transpose();
+  if (r.determinant() < 0) {
+    Eigen::Matrix3d u = svd.matrixU();
+    u.col(2) *= -1;
+    r = u * svd.matrixV().transpose();
+  }
+  return r;
+}
+
+Rigid rigidOf(const Mat4& m) {
+  Rigid r = Rigid::Identity();
+  r.linear() = rotationOf(m.topLeftCorner<3, 3>());
+  r.translation() = m.topRightCorner<3, 1>();
+  return r;
+}
+
+struct Node {
+  const aiNode* source;
+  int parent;
+  Mat4 rest_local, rest_world;
+};
+
+struct Import {
+  const std::string& file;
+  const aiScene* scene = nullptr;
+  std::vector<Node> nodes;
+  std::unordered_map<std::string, int> by_name;
+  Mat4 to_metres = Mat4::Identity();  // the file's world to metres, y up
+  std::vector<std::string> notes;
+
+  explicit Import(const std::string& name) : file(name) {}
+
+  [[noreturn]] void fail(const std::string& place, const std::string& fault, const std::string& mend) const {
+    throw InputError(file, place, fault, mend);
+  }
+
+  void flatten() {
+    std::vector<std::pair<const aiNode*, int>> open{{scene->mRootNode, -1}};
+    while (!open.empty()) {
+      const auto [node, parent] = open.back();
+      open.pop_back();
+      if (nodes.size() >= kMaxJoints)
+        fail("node hierarchy", "has over " + std::to_string(kMaxJoints) + " nodes", "export the character alone");
+      const Mat4 local = toEigen(node->mTransformation);
+      if (!local.allFinite())
+        fail("node '" + std::string(node->mName.C_Str()) + "'", "has a transform that is not finite",
+             "export it again");
+      const Mat4 world = parent < 0 ? local : Mat4(nodes[parent].rest_world * local);
+      const int index = static_cast<int>(nodes.size());
+      nodes.push_back({node, parent, local, world});
+      // Mesh objects are often called like the bones they hang on ('Head'); bones and curves mean the bone.
+      const auto [named, is_new] = by_name.emplace(node->mName.C_Str(), index);
+      if (!is_new && nodes[named->second].source->mNumMeshes > 0) named->second = index;
+      for (unsigned c = node->mNumChildren; c-- > 0;) open.emplace_back(node->mChildren[c], index);
+    }
+  }
+
+  int find(const aiString& name) const {
+    const auto it = by_name.find(name.C_Str());
+    return it == by_name.end() ? -1 : it->second;
+  }
+};
+
+// One vertex's influences while they are gathered.
+struct Influences {
+  std::vector<std::pair<int, double>> entries;
+};
+
+void appendMesh(const Import& import, const aiMesh& source, int node, SkinnedMesh& mesh) {
+  const std::string place = "mesh '" + std::string(source.mName.C_Str()) + "'";
+  if (mesh.positions.size() + source.mNumVertices > kMaxVertices)
+    import.fail(place, "has too many vertices", "reduce the mesh below four million");
+  std::vector<Influences> influences(source.mNumVertices);
+  std::vector<Mat4> offset(import.nodes.size(), Mat4::Identity());
+  for (unsigned b = 0; b < source.mNumBones; ++b) {
+    const aiBone& bone = *source.mBones[b];
+    const int joint = import.find(bone.mName);
+    if (joint < 0)
+      import.fail(place, "bone '" + std::string(bone.mName.C_Str()) + "' is no node",
+                  "export skeleton and mesh together");
+    offset[joint] = toEigen(bone.mOffsetMatrix);
+    for (unsigned w = 0; w < bone.mNumWeights; ++w) {
+      const aiVertexWeight& weight = bone.mWeights[w];
+      if (weight.mVertexId < source.mNumVertices && weight.mWeight > 0 && std::isfinite(weight.mWeight))
+        influences[weight.mVertexId].entries.emplace_back(joint, weight.mWeight);
+    }
+  }
+  const auto base = static_cast<std::uint32_t>(mesh.positions.size());
+  for (unsigned v = 0; v < source.mNumVertices; ++v) {
+    auto& e = influences[v].entries;
+    std::sort(e.begin(), e.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+    if (e.size() > 4) e.resize(4);
+    double total = 0;
+    for (const auto& x : e) total += x.second;
+    // Skin without a bone, and meshes without a skin, move with their node.
+    Mat4 carry = total > 0 ? Mat4(Mat4::Zero()) : import.nodes[node].rest_world;
+    std::array<std::uint16_t, 4> joints{static_cast<std::uint16_t>(node), 0, 0, 0};
+    std::array<float, 4> weights{1, 0, 0, 0};
+    for (std::size_t k = 0; k < e.size() && total > 0; ++k) {
+      joints[k] = static_cast<std::uint16_t>(e[k].first);
+      weights[k] = static_cast<float>(e[k].second / total);
+      carry += e[k].second / total * import.nodes[e[k].first].rest_world * offset[e[k].first];
+    }
+    const Mat4 place_matrix = import.to_metres * carry;
+    const aiVector3D p = source.mVertices[v];
+    const Eigen::Vector4d world = place_matrix * Eigen::Vector4d(p.x, p.y, p.z, 1);
+    if (!world.allFinite() || world.head<3>().norm() > 1e6)
+      import.fail(place + ", vertex " + std::to_string(v), "is not at a finite place", "export the mesh again");
+    Vec3 normal = Vec3::UnitY();
+    if (source.HasNormals()) {
+      const aiVector3D n = source.mNormals[v];
+      const Eigen::Matrix3d linear = place_matrix.topLeftCorner<3, 3>();
+      // Normals take the inverse transpose: scales are baked, not always uniform.
+      const Vec3 turned =
+          (std::abs(linear.determinant()) > 1e-18 ? Eigen::Matrix3d(linear.inverse().transpose()) : linear) *
+          Vec3(n.x, n.y, n.z);
+      if (turned.allFinite() && turned.norm() > 1e-12) normal = turned.normalized();
+    }
+    mesh.positions.push_back(world.head<3>().cast<float>());
+    mesh.normals.push_back(normal.cast<float>());
+    mesh.joints.push_back(joints);
+    mesh.weights.push_back(weights);
+  }
+  for (unsigned f = 0; f < source.mNumFaces; ++f) {
+    const aiFace& face = source.mFaces[f];
+    if (face.mNumIndices != 3) continue;
+    for (int k = 0; k < 3; ++k) {
+      if (face.mIndices[k] >= source.mNumVertices)
+        import.fail(place + ", face " + std::to_string(f), "names a vertex that is not there", "export the mesh again");
+      mesh.triangles.push_back(base + face.mIndices[k]);
+    }
+  }
+}
+
+SkinnedMesh gatherMesh(const Import& import) {
+  SkinnedMesh mesh;
+  for (std::size_t n = 0; n < import.nodes.size(); ++n)
+    for (unsigned m = 0; m < import.nodes[n].source->mNumMeshes; ++m)
+      appendMesh(import, *import.scene->mMeshes[import.nodes[n].source->mMeshes[m]], static_cast<int>(n), mesh);
+  if (mesh.triangles.empty())
+    import.fail("", "holds no mesh with triangles",
+                "export the character with its skinned mesh, or give a .bvh motion");
+  return mesh;
+}
+
+// Up axis and unit from the mesh in its rest pose.
+void inferUnits(const SkinnedMesh& raw, int head, Import& import) {
+  Eigen::Vector3f low = raw.positions.front(), high = low;
+  for (const auto& p : raw.positions) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const Vec3 size = (high - low).cast<double>();
+  Mat4 turn = Mat4::Identity();
+  double height = size.y();
+  // A z-up file stands its head along z; glTF and most FBX arrive with y up.
+  const Vec3 head_place = import.nodes[head].rest_world.topRightCorner<3, 1>() - low.cast<double>();
+  if (size.z() > 1.4 * size.y() && head_place.z() > 0.6 * size.z()) {
+    turn.topLeftCorner<3, 3>() = Eigen::AngleAxisd(-EIGEN_PI / 2, Vec3::UnitX()).toRotationMatrix();
+    height = size.z();
+    import.notes.push_back("up axis: z, turned to y");
+  } else {
+    import.notes.push_back("up axis: y");
+  }
+  if (!(height > 1e-6)) import.fail("", "the mesh has no height", "export the character in its rest pose");
+  char text[160];
+  double unit = 0;
+  const char* name = "";
+  constexpr std::array<std::pair<double, const char*>, 4> kUnits{
+      {{1.0, "metres"}, {0.01, "centimetres"}, {0.0254, "inches"}, {0.001, "millimetres"}}};
+  for (const auto& [candidate, unit_name] : kUnits) {
+    if (height * candidate >= 1.2 && height * candidate <= 2.2) {
+      unit = candidate;
+      name = unit_name;
+      break;
+    }
+  }
+  if (unit > 0) {
+    std::snprintf(text, sizeof text, "unit: %s (the mesh is %.2f m tall)", name, height * unit);
+  } else {
+    unit = 1.70 / height;
+    std::snprintf(text, sizeof text, "unit: unknown (the mesh is %.4g units tall), scaled to 1.70 m", height);
+  }
+  import.notes.push_back(text);
+  import.to_metres = turn;
+  import.to_metres.topLeftCorner<3, 3>() *= unit;
+}
+
+Skeleton buildSkeleton(const Import& import) {
+  Skeleton skeleton;
+  for (const Node& node : import.nodes) {
+    Joint joint;
+    joint.name = node.source->mName.C_Str();
+    joint.parent = node.parent;
+    joint.rest_world = rigidOf(import.to_metres * node.rest_world);
+    joint.rest_local =
+        node.parent < 0 ? joint.rest_world : skeleton.joints[node.parent].rest_world.inverse() * joint.rest_world;
+    skeleton.joints.push_back(std::move(joint));
+  }
+  return skeleton;
+}
+
+// Keys around a time: index of the earlier one and the share of the later.
+template <typename Key>
+std::pair<unsigned, double> keyAt(const Key* keys, unsigned count, double time) {
+  if (count < 2 || time <= keys[0].mTime) return {0, 0.0};
+  if (time >= keys[count - 1].mTime) return {count - 1, 0.0};
+  const Key* next = std::upper_bound(keys, keys + count, time, [](double t, const Key& k) { return t < k.mTime; });
+  const auto i = static_cast<unsigned>(next - keys - 1);
+  const double gap = keys[i + 1].mTime - keys[i].mTime;
+  return {i, gap > 0 ? std::clamp((time - keys[i].mTime) / gap, 0.0, 1.0) : 0.0};
+}
+
+Vec3 vectorAt(const aiVectorKey* keys, unsigned count, double time) {
+  const auto [i, share] = keyAt(keys, count, time);
+  const aiVector3D a = keys[i].mValue, b = keys[std::min(i + 1, count - 1)].mValue;
+  return (1 - share) * Vec3(a.x, a.y, a.z) + share * Vec3(b.x, b.y, b.z);
+}
+
+Mat4 channelAt(const aiNodeAnim& channel, const Mat4& rest, double time) {
+  Vec3 position = rest.topRightCorner<3, 1>();
+  Vec3 scale(rest.col(0).head<3>().norm(), rest.col(1).head<3>().norm(), rest.col(2).head<3>().norm());
+  Eigen::Quaterniond rotation(rotationOf(rest.topLeftCorner<3, 3>()));
+  if (channel.mNumPositionKeys) position = vectorAt(channel.mPositionKeys, channel.mNumPositionKeys, time);
+  if (channel.mNumScalingKeys) scale = vectorAt(channel.mScalingKeys, channel.mNumScalingKeys, time);
+  if (channel.mNumRotationKeys) {
+    const auto [i, share] = keyAt(channel.mRotationKeys, channel.mNumRotationKeys, time);
+    const aiQuaternion a = channel.mRotationKeys[i].mValue,
+                       b = channel.mRotationKeys[std::min(i + 1, channel.mNumRotationKeys - 1)].mValue;
+    const Eigen::Quaterniond qa(a.w, a.x, a.y, a.z), qb(b.w, b.x, b.y, b.z);
+    if (qa.norm() > 1e-6 && qb.norm() > 1e-6) rotation = qa.normalized().slerp(share, qb.normalized());
+  }
+  Mat4 m = Mat4::Identity();
+  m.topLeftCorner<3, 3>() = rotation.toRotationMatrix() * scale.asDiagonal();
+  m.topRightCorner<3, 1>() = position;
+  return m;
+}
+
+Clip sampleClip(const Import& import, const aiAnimation& animation, const std::string& place) {
+  double ticks = animation.mTicksPerSecond > 0 ? animation.mTicksPerSecond : 25.0;
+  double last = 0;
+  std::vector<const aiNodeAnim*> channels(import.nodes.size(), nullptr);
+  for (unsigned c = 0; c < animation.mNumChannels; ++c) {
+    const aiNodeAnim& channel = *animation.mChannels[c];
+    if (const int node = import.find(channel.mNodeName); node >= 0) channels[node] = &channel;
+    if (channel.mNumPositionKeys) last = std::max(last, channel.mPositionKeys[channel.mNumPositionKeys - 1].mTime);
+    if (channel.mNumRotationKeys) last = std::max(last, channel.mRotationKeys[channel.mNumRotationKeys - 1].mTime);
+  }
+  if (!std::isfinite(last) || !std::isfinite(ticks))
+    import.fail(place, "has a key at no finite time", "export the animation again");
+  const double seconds = last / ticks;
+  Clip clip;
+  clip.name = animation.mName.C_Str();
+  clip.frame_time = 1 / kSampleRate;
+  clip.joint_count = static_cast<int>(import.nodes.size());
+  const double wanted = seconds * kSampleRate + 1;
+  if (wanted * clip.joint_count > static_cast<double>(kMaxSamples))
+    import.fail(place,
+                "lasts " + std::to_string(static_cast<long long>(std::min(seconds, 1e15))) + " s, too long to sample",
+                "cut the clip");
+  const int frames = std::max(1, static_cast<int>(std::lround(seconds * kSampleRate)) + 1);
+  std::vector<Mat4> world(import.nodes.size());
+  std::vector<Rigid> rigid(import.nodes.size());
+  for (int f = 0; f < frames; ++f) {
+    const double time = f / kSampleRate * ticks;
+    for (std::size_t n = 0; n < import.nodes.size(); ++n) {
+      const Node& node = import.nodes[n];
+      const Mat4 local = channels[n] ? channelAt(*channels[n], node.rest_local, time) : node.rest_local;
+      world[n] = node.parent < 0 ? Mat4(import.to_metres * local) : Mat4(world[node.parent] * local);
+      if (!world[n].allFinite()) import.fail(place, "moves a node to no finite place", "export the animation again");
+      rigid[n] = rigidOf(world[n]);
+      const Rigid in_parent = node.parent < 0 ? rigid[n] : rigid[node.parent].inverse() * rigid[n];
+      Eigen::Quaterniond q(in_parent.linear());
+      if (f > 0 && q.dot(clip.rotations[clip.rotations.size() - import.nodes.size()]) < 0) q.coeffs() *= -1;
+      clip.rotations.push_back(q.normalized());
+      clip.translations.push_back(in_parent.translation());
+    }
+  }
+  return clip;
+}
+
+ReferencePose referenceOf(const Skeleton& skeleton) {
+  ReferencePose reference;
+  for (const Joint& joint : skeleton.joints) {
+    reference.world.push_back(joint.rest_world);
+    reference.ends.push_back(joint.rest_world.translation());
+  }
+  return reference;
+}
+
+Character assemble(Import& import) {
+  Character character;
+  const SkinnedMesh raw = gatherMesh(import);
+  bool is_neck = false;
+  Skeleton skeleton = buildSkeleton(import);
+  int head = findHeadJoint(skeleton, referenceOf(skeleton), is_neck);
+  if (head >= 0) head = import.by_name.at(skeleton.joints[head].name);
+  if (head < 0)
+    import.fail("skeleton", "no joint of " + std::to_string(skeleton.joints.size()) + " can carry a head",
+                "name the joint that turns the head 'Head'");
+  inferUnits(raw, head, import);
+  character.mesh = gatherMesh(import);
+  character.skeleton = skeleton = buildSkeleton(import);
+  const ReferencePose reference = referenceOf(skeleton);
+  BodyRoles roles = inferRoles(skeleton, reference, head, is_neck);
+  std::string how;
+  const Vec3 forward = inferForward(skeleton, reference, roles, how);
+  orderSides(reference, forward, roles);
+
+  character.head_joint = head;
+  Rigid scalp = Rigid::Identity();
+  scalp.linear().col(0) = Vec3::UnitY().cross(forward);
+  scalp.linear().col(1) = Vec3::UnitY();
+  scalp.linear().col(2) = forward;
+  scalp.translation() = skeleton.joints[head].rest_world.translation();
+  character.head_frame = skeleton.joints[head].rest_world.inverse() * scalp;
+
+  for (unsigned a = 0; a < import.scene->mNumAnimations; ++a)
+    character.clips.push_back(sampleClip(import, *import.scene->mAnimations[a], "animation " + std::to_string(a)));
+  if (character.clips.empty()) {
+    Clip still;
+    still.name = "rest";
+    still.joint_count = static_cast<int>(skeleton.joints.size());
+    for (const Joint& joint : skeleton.joints) {
+      still.rotations.emplace_back(joint.rest_local.linear());
+      still.translations.push_back(joint.rest_local.translation());
+    }
+    character.clips.push_back(std::move(still));
+    import.notes.push_back("animation: none, the rest pose is held");
+  }
+  character.notes = import.notes;
+  character.notes.push_back("head: joint '" + skeleton.joints[head].name + "'; facing told by " + how);
+  sampleHead(nullptr, character);
+  fitParts(partsByJoint(character, roles), character);
+  return character;
+}
+
+}  // namespace
+
+Character importSkinned(const std::string& file) {
+  // Read first: a missing or empty file gets the same message whatever its kind, and size is bounded.
+  if (readText(file).size() < 12)
+    throw InputError(file, "", "is too short to be a character", "give a complete .glb, .gltf, .fbx or .dae file");
+  Import import(file);
+  Assimp::Importer importer;
+  importer.SetPropertyBool("IMPORT_NO_SKELETON_MESHES", true);
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  try {
+    import.scene =
+        importer.ReadFile(file, aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_JoinIdenticalVertices |
+                                    aiProcess_GenSmoothNormals | aiProcess_ValidateDataStructure);
+  } catch (const std::exception& e) {
+    throw InputError(file, "", std::string("cannot be read: ") + e.what(), "export it again");
+  }
+  if (!import.scene || !import.scene->mRootNode)
+    throw InputError(file, "", std::string("cannot be read: ") + importer.GetErrorString(), "export it again");
+  if (import.scene->mNumMeshes == 0)
+    import.fail("", "holds no mesh", "export the character with its skinned mesh, or give a .bvh motion");
+  import.flatten();
+  return assemble(import);
+}
+
+}  // namespace app
