@@ -1,0 +1,104 @@
+#include "tests/bench/contact_sheet.h"
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <vector>
+
+#include "app/data_path.h"
+#include "app/demo.h"
+#include "app/egl_context.h"
+#include "app/image_io.h"
+
+namespace bench {
+namespace {
+
+constexpr int kOversampling = 2;
+constexpr std::array<const char*, 4> kViews{"front", "side", "back", "top"};
+constexpr std::array<double, 3> kMoments{1.2, 2.6, 4.1};  // s into the motion
+constexpr double kFrame = 1.0 / 60;
+
+app::Scene sceneOf(sim::Style style, sim::Resolution resolution, const std::string& motion, int strands) {
+  app::Scene scene = app::loadScene(app::dataPath("assets/scenes/default.json"));
+  app::CharacterSpec& spec = scene.characters.front();
+  spec.motion = app::findFile(motion, "", "clips");
+  spec.clip.clear();
+  spec.style = style;
+  spec.resolution = resolution;
+  spec.hair.clear();
+  spec.clip_offset = 0;
+  spec.look.strands = strands;
+  scene.characters.resize(1);
+  scene.camera = app::CameraSpec{};
+  return scene;
+}
+
+// Averages the oversampled picture into a cell of the sheet.
+void place(const std::vector<unsigned char>& picture, int column, int row, const app::Image& cell, app::Image& sheet) {
+  const int wide = cell.width * kOversampling;
+  for (int y = 0; y < cell.height; ++y) {
+    for (int x = 0; x < cell.width; ++x) {
+      for (int channel = 0; channel < 4; ++channel) {
+        int sum = 0;
+        for (int j = 0; j < kOversampling; ++j) {
+          for (int i = 0; i < kOversampling; ++i) {
+            sum +=
+                picture[4 * (static_cast<std::size_t>(y * kOversampling + j) * wide + x * kOversampling + i) + channel];
+          }
+        }
+        const std::size_t at = static_cast<std::size_t>(row * cell.height + y) * sheet.width + column * cell.width + x;
+        sheet.rgba[4 * at + channel] = static_cast<unsigned char>(sum / (kOversampling * kOversampling));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void drawContactSheets(const SheetOptions& options) {
+  std::filesystem::create_directories(options.folder);
+  app::EglContext context;
+  render::Renderer renderer(app::dataPath("shaders"));
+  app::Image cell;
+  cell.height = options.cell_height;
+  cell.width = cell.height * 4 / 5;
+  const int columns = static_cast<int>(kViews.size() + kMoments.size());
+  std::vector<unsigned char> pixels;
+  app::FrameTarget target;
+  target.renderer = &renderer;
+  target.width = cell.width * kOversampling;
+  target.height = cell.height * kOversampling;
+  target.pixels = &pixels;
+  for (const sim::Style style : {sim::Style::kShort, sim::Style::kShoulder, sim::Style::kLong}) {
+    app::Image sheet;
+    sheet.width = columns * cell.width;
+    sheet.height = 3 * cell.height;
+    sheet.rgba.assign(4 * static_cast<std::size_t>(sheet.width) * sheet.height, 255);
+    int row = 0;
+    for (const sim::Resolution resolution : {sim::Resolution::kLow, sim::Resolution::kMedium, sim::Resolution::kHigh}) {
+      const double aspect = static_cast<double>(cell.width) / cell.height;
+      int column = 0;
+      app::Demo rest = app::openScene(sceneOf(style, resolution, "idle_turns.bvh", options.strands), aspect);
+      for (const char* view : kViews) {
+        rest.requests.push_back({app::Ask::kView, view, "", 0});
+        app::advanceFrame(rest, 0, target);
+        place(pixels, column++, row, cell, sheet);
+      }
+      app::Demo moving = app::openScene(sceneOf(style, resolution, options.motion, options.strands), aspect);
+      double time = 0;
+      for (const double moment : kMoments) {
+        for (; time + 1.5 * kFrame < moment; time += kFrame) app::advanceFrame(moving, kFrame, {});
+        app::advanceFrame(moving, kFrame, target);
+        time += kFrame;
+        place(pixels, column++, row, cell, sheet);
+      }
+      ++row;
+    }
+    const std::string file =
+        (std::filesystem::path(options.folder) / ("styles_" + std::string(sim::styleName(style)) + ".png")).string();
+    app::writePng(file, sheet.width, sheet.height, sheet.rgba);
+    std::printf("%s\n", file.c_str());
+  }
+}
+
+}  // namespace bench

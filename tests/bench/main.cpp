@@ -1,0 +1,39 @@
+// hairmesh-bench: measurements and pictures that the documents quote.
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "app/errors.h"
+#include "tests/bench/contact_sheet.h"
+#include "tests/bench/styles_bench.h"
+
+int main(int argc, char** argv) {
+  CLI::App program("Measures the simulator and draws the documents' pictures. One thread; timings are medians.");
+  bench::StylesOptions styles;
+  bench::SheetOptions sheet;
+  bool run_styles = false;
+  program.add_flag("--styles", run_styles,
+                   "milliseconds a frame per stage for the nine styles, walking, beside the paper's");
+  program.add_option("--frames", styles.frames, "measured frames a style")->check(CLI::Range(10, 100000));
+  program.add_option("--motion", styles.motion, "clip to walk with")->capture_default_str();
+  program.add_option("--table", styles.table, "also write the table to this Markdown file");
+  program.add_option("--contact-sheet", sheet.folder, "draw the nine styles, at rest and in motion, into this folder");
+  program.add_option("--cell", sheet.cell_height, "height of a picture of the sheet, pixels")
+      ->check(CLI::Range(32, 2048));
+  program.add_option("--strands", sheet.strands, "strands a picture")->check(CLI::Range(1, 1000000));
+  CLI11_PARSE(program, argc, argv);
+  if (!run_styles && sheet.folder.empty()) {
+    std::cout << program.help();
+    return app::kExitUsage;
+  }
+  try {
+    if (run_styles) bench::runStyles(styles);
+    if (!sheet.folder.empty()) bench::drawContactSheets(sheet);
+  } catch (const app::ContextError& error) {
+    std::cerr << "hairmesh-bench: " << error.what() << "\n";
+    return app::kExitNoContext;
+  } catch (const app::InputError& error) {
+    std::cerr << "hairmesh-bench: " << error.what() << "\n";
+    return app::kExitBadInput;
+  }
+  return app::kExitFine;
+}
