@@ -205,8 +205,27 @@ TEST(Seam, StaysWithinTheClipsOwnSpeed) {
   }
 }
 
+// Two joints in smooth motion that ends elsewhere and at another velocity than it began.
+BvhMotion smoothMotion() {
+  app::Skeleton skeleton;
+  skeleton.joints = {{"a", -1, {}, {}}, {"b", 0, {}, {}}};
+  app::Clip clip{"smooth", 1.0 / 60, 2, {}, {}};
+  for (int f = 0; f <= 90; ++f) {
+    const double t = f * clip.frame_time;
+    const Vec3 swing(std::sin(4 * t), 0.3 * t, std::cos(3 * t)),
+        bend(0.4 * t, 1.2 * std::sin(5 * t), 0.5 * std::cos(4 * t));
+    for (const double part : {1.0, 0.7}) {
+      clip.rotations.emplace_back(Eigen::AngleAxisd(bend.norm() * part, bend.normalized()));
+      clip.translations.push_back(part * swing);
+    }
+  }
+  return {skeleton, {}, {}, clip, {}};
+}
+
 TEST(Seam, KeepsVelocity) {
-  for (const BvhMotion& motion : allClips()) {
+  std::vector<BvhMotion> clips = allClips();
+  clips.push_back(smoothMotion());
+  for (const BvhMotion& motion : clips) {
     SCOPED_TRACE(motion.clip.name);
     const Playback playback;
     const double step = 1e-5, end = motion.clip.duration();
