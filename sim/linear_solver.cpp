@@ -44,10 +44,8 @@ SolveReport solveModifiedPcg(const BlockMatrix<T>& a, std::span<const V3<T>> b, 
   double delta = innerProduct<T>(r, z);
   const double first = delta;
   report.residual_acceleration = largestAcceleration<T>(r, stop.inverse_mass_dt);
-  const auto reached = [&] {
-    return delta <= stop.relative * stop.relative * first || report.residual_acceleration <= stop.acceleration;
-  };
-  report.converged = !(first > 0) || (report.iterations == 0 && report.residual_acceleration <= stop.acceleration);
+  const auto slowEnough = [&] { return stop.acceleration > 0 && report.residual_acceleration <= stop.acceleration; };
+  report.converged = !(first > 0) || slowEnough();
   while (!report.converged && report.iterations < stop.max_iterations) {
     multiply<T>(a, d, q);
     filter.apply(q);
@@ -66,7 +64,7 @@ SolveReport solveModifiedPcg(const BlockMatrix<T>& a, std::span<const V3<T>> b, 
     delta = next;
     ++report.iterations;
     report.residual_acceleration = largestAcceleration<T>(r, stop.inverse_mass_dt);
-    report.converged = reached();
+    report.converged = delta <= stop.relative * stop.relative * first || slowEnough();
     if (!std::isfinite(delta)) break;
   }
   report.relative_residual = first > 0 ? std::sqrt(std::max(delta, 0.0) / first) : 0;
