@@ -1,4 +1,4 @@
-"""The figure whose motion make_clips.py writes: skeleton, limbs with inverse kinematics, smooth tracks and the BVH writer.
+"""The figure whose motion make_clips.py writes: skeleton, inverse kinematics, smooth tracks and the BVH writer.
 
 Python 3 standard library only. Centimetres, degrees, y up; the figure faces +z, so its left is +x. Rotations are 3x3
 matrices (tuples of rows) acting on column vectors. At rest every joint's rotation is the identity and the arms hang 45
@@ -176,7 +176,7 @@ class Pose:
         return placed
 
     def bend_spine(self, yaw=0, pitch=0, roll=0):
-        """Shares a turn of the chest against the hips among the three joints of the spine, more of the twist higher up."""
+        """Shares a turn of the chest against the hips among the three spine joints, more of the twist higher up."""
         for name, twist, bend in (("Spine", 0.22, 0.36), ("Spine1", 0.34, 0.34), ("Chest", 0.44, 0.30)):
             self.turn[name] = turned(yaw * twist, pitch * bend, roll * bend)
 
@@ -188,7 +188,7 @@ class Pose:
         self.turn["Head"] = part_of(against_chest, 0.58)
 
     def arm(self, side, flex=0, abduct=0, twist=0, elbow=0, wrist=0, shrug=0):
-        """From hanging down: flex forward, abduct sideways, twist outward, bend elbow and wrist; shrug lifts the collar."""
+        """From hanging down: flex forward, abduct sideways, twist outward; shrug lifts the collar."""
         sign = SIDES[side]
         hang = rot_z(-45 * sign)  # from the A pose to hanging straight down
         self.turn[side + "Shoulder"] = rot_z(sign * shrug)
@@ -244,8 +244,8 @@ class Pose:
 class Track:
     """A smooth curve through (time, value) keys that never overshoots them, periodic where a period is given.
 
-    Monotone cubic (Fritsch and Carlson 1980), then averaged over `soften` seconds to either side, which takes the kinks out
-    of the acceleration."""
+    Monotone cubic (Fritsch and Carlson 1980), then averaged over `soften` seconds to either side, which takes the kinks
+    out of the acceleration."""
 
     def __init__(self, keys, period=None, soften=0.06):
         self.soften, self.period = soften, period

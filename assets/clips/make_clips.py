@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes this project's own motion clips: python3 assets/clips/make_clips.py [folder]
 
-Every clip is a function from time to pose, sampled at 60 frames per second; feet stand on y = 0 by inverse kinematics and
-every clip ends in the pose and velocity it began with (walk: one stride length further on), so that it loops. The same
+Every clip is a function from time to pose, sampled at 60 frames per second; feet stand on y = 0 by inverse kinematics,
+and every clip ends in the pose and velocity it began with (walk: some strides further on), so that it loops. The same
 Python gives the same bytes: no randomness, no clock. The figure is described in figure.py. Measures are centimetres,
 degrees, seconds; yaw turns left, pitch forward, roll to the right.
 """
@@ -10,8 +10,8 @@ import math
 import os
 import sys
 
-from figure import (ANKLE_HEIGHT, BALL, HEEL, Foot, Pose, Track, add, apply, ease, grounded, hermite, mix, rot_x, rot_y,
-                    scale, sub, turned, write_bvh)
+from figure import (ANKLE_HEIGHT, BALL, HEEL, Foot, Pose, Track, add, apply, ease, grounded, hermite, mix, rot_y, scale,
+                    sub, turned, write_bvh)
 
 FPS = 60
 TAU = 2 * math.pi
@@ -32,12 +32,13 @@ def window(t, start, end, ramp):
     return ease((t - start) / ramp) * ease((end - t) / ramp)
 
 
-# ---------------------------------------------------------------------------------------------------- idle with head turns
+# ------------------------------------------------------------------------------------------------- idle with head turns
 
 IDLE = 10.0
-IDLE_YAW = Track([(0, 0), (0.6, 0), (1.5, 56), (2.2, 58), (3.5, -60), (4.3, -62), (5.4, 0), (8.2, 4), (9.2, -5), (10, 0)], IDLE)
-IDLE_PITCH = Track([(0, 0), (1.8, -6), (3.0, 6), (4.2, -4), (5.6, 0), (6.0, 24), (6.45, -8), (6.9, 22), (7.4, -3), (8, 0),
-                    (8.6, 6), (10, 0)], IDLE)
+IDLE_YAW = Track([(0, 0), (0.6, 0), (1.5, 56), (2.2, 58), (3.5, -60), (4.3, -62), (5.4, 0), (8.2, 4), (9.2, -5),
+                  (10, 0)], IDLE)
+IDLE_PITCH = Track([(0, 0), (1.8, -6), (3.0, 6), (4.2, -4), (5.6, 0), (6.0, 24), (6.45, -8), (6.9, 22), (7.4, -3),
+                    (8, 0), (8.6, 6), (10, 0)], IDLE)
 IDLE_ROLL = Track([(0, 0), (1.7, -5), (4.0, 5), (5.4, 0), (7.7, 0), (8.4, 17), (9.1, -9), (10, 0)], IDLE)
 
 
@@ -57,7 +58,7 @@ def idle_turns(t):
     return pose
 
 
-# -------------------------------------------------------------------------------------------------------------------- walk
+# ----------------------------------------------------------------------------------------------------------------- walk
 
 STRIDE_TIME = 1.1  # s, both steps
 WALK_SPEED = 110.0  # cm/s
@@ -69,8 +70,8 @@ STANCE = 0.62  # of the stride with the foot on the ground
 SWING_LIFT = 4.5  # cm, over the arc that leaves and arrives smoothly
 REACH = 29.0  # cm, flat ankle ahead of the hips at heel strike
 # Pitch of the foot over the stride: heel strike, foot flat, heel off, toe off, swing. Human gait after Winter 1991.
-WALK_PITCH = Track([(0, -17), (0.085, 0), (0.36, 0), (0.50, 20), (0.62, 54), (0.67, 58), (0.80, 12), (0.88, -8), (0.95, -18)],
-                   1.0, soften=0.012)
+WALK_PITCH = Track([(0, -17), (0.085, 0), (0.36, 0), (0.50, 20), (0.62, 54), (0.67, 58), (0.80, 12), (0.88, -8),
+                    (0.95, -18)], 1.0, soften=0.012)
 WALK_LOOK = Track([(0, 0), (1.4, 14), (3.3, -4), (4.8, -16), (6.6, 0)], WALK, soften=0.2)
 
 
@@ -104,25 +105,27 @@ def walking_foot(t, side):
 
 
 def walk(t):
-    """Walking forward at 1.1 m/s: pelvis and shoulders turn against each other, the head stays level and looks around."""
+    """Walking forward at 1.1 m/s: pelvis and shoulders turn against each other, the head looks around, level."""
     t += WALK_START
     u = t / STRIDE_TIME
     turn, double = math.cos(TAU * u), math.cos(2 * TAU * (u - 0.04))
     look = WALK_LOOK(t)
-    pose = Pose((1.9 * math.cos(TAU * (u - 0.31)), 90.2 - 1.9 * double, WALK_SPEED * (t - WALK_START) - 1.0 * math.sin(2 * TAU * (u - 0.02))))
+    pose = Pose((1.9 * math.cos(TAU * (u - 0.31)), 90.2 - 1.9 * double,
+                 WALK_SPEED * (t - WALK_START) - math.sin(2 * TAU * (u - 0.02))))
     pose.turn["Hips"] = turned(-5.5 * turn, 3.0 + 0.8 * double, 3.2 * math.cos(TAU * (u - 0.20)))
     pose.bend_spine(10.5 * turn + 0.1 * look, 0.5 + 1.2 * double, -4.6 * math.cos(TAU * (u - 0.20)))
-    pose.look(look + 0.8 * turn, 1.5 - 1.4 * math.cos(2 * TAU * (u - 0.12)), 0.05 * look + 0.9 * math.cos(TAU * (u - 0.25)))
+    pose.look(look + 0.8 * turn, 1.5 - 1.4 * math.cos(2 * TAU * (u - 0.12)),
+              0.05 * look + 0.9 * math.cos(TAU * (u - 0.25)))
     for side, sign in (("Left", 1), ("Right", -1)):
         swing = sign * math.cos(TAU * (u - 0.03))  # 1 when this side's leg is in front
         delayed = sign * math.cos(TAU * (u - 0.07))
-        pose.arm(side, flex=-1 - 21 * swing, abduct=8 + 1.5 * delayed, twist=-16, elbow=21 - 9 * delayed, wrist=4 - 4 * delayed,
-                 shrug=0.8 * double)
+        pose.arm(side, flex=-1 - 21 * swing, abduct=8 + 1.5 * delayed, twist=-16, elbow=21 - 9 * delayed,
+                 wrist=4 - 4 * delayed, shrug=0.8 * double)
         pose.leg(side, walking_foot(t, side), knee_out=1)
     return pose
 
 
-# -------------------------------------------------------------------------------------------------------------- head shake
+# ----------------------------------------------------------------------------------------------------------- head shake
 
 SHAKE = 8.0
 
@@ -140,8 +143,10 @@ def head_shake(t):
     roll = 4 * no * wave(t - 0.4, 0.5, -0.2) + 26 * circle * math.sin(angle)
     dip = bang * (1.6 + 1.4 * trail)
     pose = Pose((1.0 * circle * math.sin(angle), 92.4 - dip - 1.0 * no, -0.8 - 1.6 * bang * (1 + 0.5 * trail)))
-    pose.turn["Hips"] = turned(-5 * no * wave(t - 0.4, 0.5, -0.15), 2 + 5 * bang + 3 * bang * trail, 2 * circle * math.sin(angle - 0.5))
-    pose.bend_spine(6 * no * wave(t - 0.4, 0.5, -0.08), 3 * no + bang * (10 + 11 * trail) + circle * (4 + 7 * math.cos(angle - 0.4)),
+    pose.turn["Hips"] = turned(-5 * no * wave(t - 0.4, 0.5, -0.15), 2 + 5 * bang + 3 * bang * trail,
+                               2 * circle * math.sin(angle - 0.5))
+    pose.bend_spine(6 * no * wave(t - 0.4, 0.5, -0.08),
+                    3 * no + bang * (10 + 11 * trail) + circle * (4 + 7 * math.cos(angle - 0.4)),
                     7 * circle * math.sin(angle - 0.4))
     pose.look(yaw, pitch + 5 * bang, roll)
     for side, sign in (("Left", 1), ("Right", -1)):
@@ -153,13 +158,14 @@ def head_shake(t):
     return pose
 
 
-# --------------------------------------------------------------------------------------------------------------- jump, spin
+# ----------------------------------------------------------------------------------------------------------- jump, spin
 
 JUMP = 8.0  # a full turn to the left in the air, then its mirror image
 TAKE_OFF, FLIGHT = 1.34, 0.50
 LANDING = TAKE_OFF + FLIGHT
 FLIGHT_SPEED = 981 * FLIGHT / 2  # cm/s at take-off and landing: 31 cm of height
-JUMP_YAW = Track([(0, 0), (0.35, 0), (1.0, -34), (1.34, 36), (1.59, 182), (1.84, 330), (2.1, 366), (2.7, 360), (4, 360)], soften=0.04)
+JUMP_YAW = Track([(0, 0), (0.35, 0), (1.0, -34), (1.34, 36), (1.59, 182), (1.84, 330), (2.1, 366),
+                  (2.7, 360), (4, 360)], soften=0.04)
 JUMP_TWIST = Track([(0, 0), (0.35, 0), (1.0, -20), (1.28, 14), (1.6, 10), (1.9, -8), (2.2, 8), (2.8, 0), (4, 0)])
 JUMP_LEAN = Track([(0, 0), (0.3, 0), (0.98, 24), (1.34, 2), (1.7, 2), (1.86, 8), (2.14, 26), (3.0, 0), (4, 0)])
 JUMP_FOLD = Track([(0, 0), (1.16, 0), (1.42, 1), (1.68, 1), (1.95, 0), (4, 0)])  # arms folded on the chest
@@ -224,7 +230,8 @@ def jump_spin_left(t):
         flex = 3 + 34 * lead * winding + fold * (34 + 4 * lead) + 16 * spread
         abduct = 9 + 40 * spread - 14 * winding * (lead > 0) - 10 * fold
         elbow = 15 + 32 * winding * (lead > 0) + 100 * fold + 22 * spread
-        pose.arm(side, flex=flex, abduct=abduct, twist=-12 - 44 * fold, elbow=elbow, wrist=4 + 10 * fold, shrug=5 * spread)
+        pose.arm(side, flex=flex, abduct=abduct, twist=-12 - 44 * fold, elbow=elbow, wrist=4 + 10 * fold,
+                 shrug=5 * spread)
         pose.leg(side, jumping_foot(t, side), knee_out=6)
     return pose
 
@@ -235,11 +242,12 @@ def jump_spin(t):
     return jump_spin_left(t) if t < half else jump_spin_left(t - half).mirrored()
 
 
-# ------------------------------------------------------------------------------------------------------------------- dance
+# ---------------------------------------------------------------------------------------------------------------- dance
 
 DANCE = 8.0  # 120 beats a minute, 16 beats
 ARMS_UP = Track([(0, 0), (2.0, 0), (3.1, 1), (5.6, 1), (6.9, 0), (8, 0)], DANCE, soften=0.15)
-DANCE_YAW = Track([(0, 0), (1.0, 22), (2.0, -18), (3.0, 12), (4.2, -26), (5.4, 28), (6.6, -14), (8, 0)], DANCE, soften=0.15)
+DANCE_YAW = Track([(0, 0), (1.0, 22), (2.0, -18), (3.0, 12), (4.2, -26), (5.4, 28), (6.6, -14),
+                   (8, 0)], DANCE, soften=0.15)
 # Step-touch over two seconds: the leading foot steps out, the other closes, and back again.
 STEP_LEFT = Track([(0.06, 9), (0.44, 27), (1.56, 27), (1.94, 9)], 2.0, soften=0.03)
 STEP_RIGHT = Track([(0.56, -9), (0.94, 9), (1.06, 9), (1.44, -9)], 2.0, soften=0.03)
@@ -269,8 +277,8 @@ def dance(t):
         low_flex, low_abduct, low_elbow = 12 + 26 * swing, 16 + 5 * swing, 62 + 14 * swing
         high_flex, high_abduct, high_elbow = 12 + 5 * swing, 150 + 9 * sign * wave(t, 2.0, -0.2), 46 - 14 * swing
         pose.arm(side, flex=low_flex + (high_flex - low_flex) * up, abduct=low_abduct + (high_abduct - low_abduct) * up,
-                 twist=-14 + 62 * up, elbow=low_elbow + (high_elbow - low_elbow) * up, wrist=6 + 10 * up * sign * wave(t, 1.0),
-                 shrug=22 * up)
+                 twist=-14 + 62 * up, elbow=low_elbow + (high_elbow - low_elbow) * up,
+                 wrist=6 + 10 * up * sign * wave(t, 1.0), shrug=22 * up)
         pose.leg(side, dancing_foot(t, side), knee_out=7)
     return pose
 
@@ -284,14 +292,18 @@ CLIPS = {
 }
 
 
+SOLE = BALL[1] + ANKLE_HEIGHT  # thickness under the ball of the foot
+
+
 def lowest_point(pose):
+    """Height of the lowest of heels, balls and toe tips."""
     world = pose.world()
     heights = []
     for side in ("Left", "Right"):
         rotation, ankle = world[side + "Foot"]
-        heights += [add(ankle, apply(rotation, HEEL))[1], add(ankle, apply(rotation, BALL))[1] + BALL[1] + ANKLE_HEIGHT - 3.4]
+        heights += [add(ankle, apply(rotation, HEEL))[1], add(ankle, apply(rotation, BALL))[1] - SOLE]
         rotation, toe = world[side + "Toe"]
-        heights.append(add(toe, apply(rotation, (0, -1.7, 6)))[1])
+        heights.append(add(toe, apply(rotation, (0, -SOLE, 6)))[1])
     return min(heights)
 
 
