@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/simd.h"
+#include "sim/dense_kernels.h"
 
 namespace sim {
 namespace {

@@ -23,11 +23,11 @@ Cut cutOf(Style style) {
     case Style::kShort:
       return {0.028, -0.20, -0.25, -0.40, false, false};
     case Style::kShoulder:
-      return {0.034, 0.12, 0.11, 0.09, true, false};
+      return {0.034, 0.09, 0.08, 0.06, true, false};
     case Style::kLong:
       break;
   }
-  return {0.036, -0.62, -0.90, -1.08, true, true};
+  return {0.036, -0.50, -0.90, -1.08, true, true};
 }
 
 double smoothstep(double a, double b, double x) {
@@ -35,15 +35,6 @@ double smoothstep(double a, double b, double x) {
   return t * t * (3 - 2 * t);
 }
 
-// Moves a point out of the body until it keeps `gap`.
-Vec3 keepOff(const BodyDistance& body, Vec3 p, double gap) {
-  for (int i = 0; i < 4; ++i) {
-    const double d = body(p);
-    if (d >= gap) break;
-    p += (gap - d) * bodyNormal(body, p);
-  }
-  return p;
-}
 
 // Height of the shoulders' tops beside the neck, where hair comes to rest.
 double shoulderHeight(const Scalp& scalp, const BodyDistance& body) {
@@ -85,6 +76,7 @@ struct Comber {
   double cutHeight(int sheet) const;
   double freeBelow(int sheet) const { return scalp.center.y() + cutHeight(sheet) - 0.02; }
   Vec3 aim(int sheet) const;
+  Vec3 keepOff(int sheet, Vec3 p, double gap) const;
   void fall(int sheet);
   void fallAll();
   void hangTaut(int sheet);
@@ -97,7 +89,7 @@ double Comber::cutHeight(int sheet) const {
   const double q = backness(sheet), unit = scalp.head_height;
   double height = 0;
   if (cut.divides && q < kDivide) {
-    height = cut.front - 0.10 * smoothstep(0.0, kDivide, q);
+    height = cut.front - 0.08 * smoothstep(0.0, kDivide, q);
   } else if (cut.divides) {
     height = cut.side + (cut.back - cut.side) * smoothstep(kDivide, 1.0, q);
   } else {
@@ -112,7 +104,7 @@ Vec3 Comber::aim(int sheet) const {
   const double q = backness(sheet), unit = scalp.head_height;
   Vec3 p(0, shoulders - 0.06 * unit, 0);
   if (inFront(sheet)) {
-    p.x() = sideOf(sheet) * (0.36 + 0.20 * q / kDivide) * unit;
+    p.x() = sideOf(sheet) * (0.28 + 0.26 * q / kDivide) * unit;
     p.z() = surfaceDepth(scalp, body, p, -1) + 2 * kInnerGap;
   } else {
     const double r = (q - kDivide) / (1 - kDivide);
@@ -120,6 +112,21 @@ Vec3 Comber::aim(int sheet) const {
     p.z() = surfaceDepth(scalp, body, p, 1) - 2 * kInnerGap;
   }
   return scalp.center + p;
+}
+
+// Moves a point out of the body until it keeps `gap`. Hair that divides over the shoulders is moved straight forwards or straight
+// backwards below the jaw: sliding along a breast or a shoulder blade would gather it into a rope.
+Vec3 Comber::keepOff(int sheet, Vec3 p, double gap) const {
+  const double below_jaw = smoothstep(0.30, 0.55, (scalp.center.y() - p.y()) / scalp.head_height);
+  const Vec3 straight(0, 0, inFront(sheet) ? 1 : -1);
+  for (int i = 0; i < 8; ++i) {
+    const double d = body(p);
+    if (d >= gap) break;
+    Vec3 n = bodyNormal(body, p);
+    if (cut.divides) n = (n + 4 * below_jaw * straight).normalized();
+    p += (gap - d) * n;
+  }
+  return p;
 }
 
 // Follows gravity from the hairline: stiff enough to turn gently, sliding over what is in the way.
@@ -143,7 +150,7 @@ void Comber::fall(int sheet) {
     // What is below the cut hangs free: shoulders that the hair never reaches must not bend its ends outwards.
     if (p.y() > lowest && body(p) < gap) {
       const Vec3 n = bodyNormal(body, p);
-      p = keepOff(body, p, gap);
+      p = keepOff(sheet, p, gap);
       heading = (heading - std::min(0.0, heading.dot(n)) * n).normalized();
     }
     coat.inner[coat.index(sheet, row)] = p;
@@ -236,7 +243,7 @@ void Comber::relaxInner() {
       for (int s = 0; s < coat.sheets; ++s)
         for (int r = first; r < coat.rows; ++r) {
           Vec3& p = next[coat.index(s, r)];
-          if (p.y() > freeBelow(s)) p = keepOff(body, p, kInnerGap * smoothstep(0, 5, r - first + 1));
+          if (p.y() > freeBelow(s)) p = keepOff(s, p, kInnerGap * smoothstep(0, 5, r - first + 1));
         }
     }
     std::swap(coat.inner, next);

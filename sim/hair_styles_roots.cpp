@@ -29,7 +29,7 @@ constexpr Landmark kCrown{176, 62};
 
 // The forehead's hairline bulges towards these.
 constexpr Landmark kForeheadLeft{43, 43};
-constexpr Landmark kForeheadRight{-36, 55};
+constexpr Landmark kForeheadRight{-33, 50};
 
 Vec3 direction(const Landmark& l) {
   return scalpDirection(l.azimuth, l.elevation);

@@ -84,20 +84,21 @@ void untangle(const BodyDistance& body, double fatness, double gap, HairMeshShap
       if (sum < 1e-24) continue;
       for (int k = 0; k < 4; ++k) {
         if (root[t[k]]) continue;
-        Vec3 move = 0.6 * lacking / sum * slope[k];
+        Vec3 move = 0.8 * lacking / sum * slope[k];
         move *= std::min(1.0, kLargestMove / std::max(move.norm(), 1e-12));
         x[t[k]] += move;
       }
     }
     if (!bad) return;
-    // Spread what was moved over the neighbourhood, so that the combed shape stays smooth.
+    // Spread what was moved over the neighbourhood, so that the combed shape stays smooth; less and less, so that it ends.
+    const double spread = 0.2 * (1 - static_cast<double>(sweep) / kSweeps);
     for (std::size_t v = 0; v < x.size(); ++v) {
       moved[v] = x[v] - combed[v];
       if (root[v]) continue;
       Vec3 sum = Vec3::Zero();
       for (int i = near.first[v]; i < near.first[v + 1]; ++i) sum += x[near.list[i]] - combed[near.list[i]];
       const int count = near.first[v + 1] - near.first[v];
-      if (count > 0) moved[v] = 0.85 * moved[v] + 0.15 / count * sum;
+      if (count > 0) moved[v] = (1 - spread) * moved[v] + spread / count * sum;
     }
     for (std::size_t v = 0; v < x.size(); ++v) {
       if (root[v]) continue;

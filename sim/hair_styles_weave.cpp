@@ -43,9 +43,9 @@ double rowAt(const Coat& coat, int sheet, double way) {
 
 // How far a column stands off the inner guide after a way (m) from its root: it leaves the scalp steeply, climbs to its
 // own height in the coat and stays there. The share is of the coat's thickness.
-double heightShare(double rank, double way) {
+double heightShare(double rank, double way, double hairline) {
   const double height = kHairlineRise + (1 - kHairlineRise) * rank;
-  const double rise = kRiseAtHairline + (kRiseAtParting - kRiseAtHairline) * rank;
+  const double rise = kRiseAtHairline + (kRiseAtParting * std::min(1.0, hairline / 0.22) - kRiseAtHairline) * rank;
   return height * (1 - std::exp(-way / rise));
 }
 
@@ -70,7 +70,7 @@ void layColumn(const Coat& coat, const Weave& plan, const Plait& plait, std::vec
     const double outermost = end * placeOf(l);
     const double behind = std::max(0.0, 1 - outermost / in_step);
     const double way = outermost + root * behind;
-    const double row = rowAt(coat, sheet, way), share = heightShare(plait.rank, way - root);
+    const double row = rowAt(coat, sheet, way), share = heightShare(plait.rank, way - root, hairline);
     positions.push_back((1 - share) * sampleRow(coat, coat.inner, sheet, row) +
                         share * sampleRow(coat, coat.outer, sheet, row));
   }
@@ -152,18 +152,16 @@ Weave weaveOf(Style style, Resolution resolution) {
   const int level = static_cast<int>(resolution);
   switch (style) {
     case Style::kShort:
-      return std::array<Weave, 3>{Weave{even(5), 3, 5, 5, 5, 0, 0}, Weave{even(8), 3, 6, 7, 7, 0, 0},
-                                  Weave{even(11), 4, 9, 8, 9, 0, 0}}[level];
+      return std::array<Weave, 3>{Weave{even(5), 3, 5, 4, 5, 0, 0.0}, Weave{even(7), 4, 7, 6, 7, 0, 0.0},
+                                  Weave{even(11), 4, 9, 8, 9, 0, 0.0}}[level];
     case Style::kShoulder:
-      return std::array<Weave, 3>{Weave{even(5), 3, 5, 8, 8, 0, 0.2}, Weave{even(8), 3, 6, 11, 12, 0, 0.2},
+      return std::array<Weave, 3>{Weave{even(5), 3, 5, 8, 8, 0, 0.2}, Weave{even(8), 3, 6, 10, 12, 0, 0.2},
                                   Weave{even(11), 4, 9, 14, 15, 0, 0.2}}[level];
-    case Style::kLong:
-      break;
+    case Style::kLong: break;
   }
-  return std::array<Weave, 3>{
-      Weave{{0, 0.275, 0.35, 0.425, 0.7, 1}, 3, 5, 9, 9, 6, 0.4},
-      Weave{{0, 0.15, 0.3, 0.35, 0.4, 0.6, 0.8, 1}, 3, 6, 13, 14, 9, 0.4},
-      Weave{{0, 0.1, 0.2, 0.3, 0.35, 0.4, 0.52, 0.64, 0.76, 0.88, 1}, 4, 9, 16, 17, 10, 0.4}}[level];
+  return std::array<Weave, 3>{Weave{{0, 0.275, 0.35, 0.425, 0.7, 1}, 3, 5, 8, 9, 6, 0.4},
+                              Weave{{0, 0.15, 0.3, 0.35, 0.4, 0.6, 0.8, 1}, 4, 6, 12, 13, 9, 0.4},
+                              Weave{{0, 0.1, 0.2, 0.3, 0.35, 0.4, 0.52, 0.64, 0.76, 0.88, 1}, 4, 9, 16, 17, 10, 0.4}}[level];
 }
 
 HairMeshShape weave(const Coat& coat, const Weave& plan) {
@@ -175,7 +173,7 @@ HairMeshShape weave(const Coat& coat, const Weave& plan) {
     const int middle = coat.sheets / 2;
     const int sheet = static_cast<int>(std::lround(i <= half ? q * middle : (2 - q) * middle));
     const int ranks = static_cast<int>(
-        std::lround(plan.front_ranks + (plan.back_ranks - plan.front_ranks) * smoothstep(0.1, 0.9, q)));
+        std::lround(plan.front_ranks + (plan.back_ranks - plan.front_ranks) * smoothstep(0.0, 0.8, q)));
     const bool ends_early = coat.divide >= 0 && std::abs(q - coat.divide) < 1e-9;
     const int first = static_cast<int>(plaits.size());
     for (int r = 0; r < ranks; ++r) {

@@ -12,8 +12,6 @@
 // x: positions (m). C: value; g[i]: dC/dx_i. Every function is finite for finite input, degenerate elements included.
 #pragma once
 
-#include <cmath>
-
 #include "sim/forces/vector3.h"
 
 namespace sim {
@@ -37,73 +35,74 @@ struct StretchCondition {
 };
 
 template <class T>
-StretchCondition<T> stretchCondition(const V3<T>& x0, const V3<T>& x1, T inverse_length) {
+HAIRMESH_INLINE StretchCondition<T> stretchCondition(const V3<T>& x0, const V3<T>& x1, T inverse_length) {
+  const T zero = constant<T>(0), one = constant<T>(1);
   const V3<T> d = x1 - x0;
-  const T length = std::sqrt(dot(d, d));
+  const T length = squareRoot(dot(d, d));
   // An edge collapsed to a millionth of its length has no direction; other forces part its ends.
-  const bool collapsed = length * inverse_length < T(1e-6);
-  const T inverse = collapsed ? T(0) : T(1) / length;
-  return {length * inverse_length - T(1), inverse * d, inverse_length, inverse_length * inverse};
+  const auto collapsed = length * inverse_length < constant<T>(1e-6);
+  const T inverse = collapsed ? zero : one / (collapsed ? one : length);
+  return {length * inverse_length - one, inverse * d, inverse_length, inverse_length * inverse};
 }
 
 // Shear of a wall with corners x0, x1 (lower), x2, x3 (upper): C = w_u . w_v at its centre, where w_u and w_v are the
 // derivatives of position along the hair and across it, scaled by the rest lengths.
 template <class T>
-Condition<T, 4> shearCondition(const V3<T>* x, T inverse_along, T inverse_across) {
-  const T along = T(0.5) * inverse_along, across = T(0.5) * inverse_across;
+HAIRMESH_INLINE Condition<T, 4> shearCondition(const V3<T>* x, T inverse_along, T inverse_across) {
+  const T half = constant<T>(0.5), along = half * inverse_along, across = half * inverse_across;
   const V3<T> u = along * ((x[3] - x[0]) + (x[2] - x[1]));
   const V3<T> v = across * ((x[1] - x[0]) + (x[2] - x[3]));
   const V3<T> au = across * u, av = along * v;
   Condition<T, 4> c;
   c.value = dot(u, v);
-  c.g[0] = T(-1) * (au + av);
+  c.g[0] = constant<T>(-1) * (au + av);
   c.g[1] = au - av;
   c.g[2] = au + av;
   c.g[3] = av - au;
   return c;
 }
 
-// Bend of two consecutive walls about their common horizontal edge x[2]-x[3]: C = (theta - theta_0) / length, the
-// change of curvature. x: (a, b) of the layer below, of the hinge, and above; the walls' far sides act through their
-// midpoints. `smallest_square` (m^4) is the square of the doubled area below which a wall counts as collapsed and its
-// pull is bounded.
+// Bend of two consecutive walls about their common horizontal edge x[2]-x[3]: C = (theta - theta_0) / length, the change of
+// curvature. x: (a, b) of the layer below, of the hinge, and above; the walls' far sides act through their midpoints.
+// `smallest_square` (m^4) is the square of the doubled area below which a wall counts as collapsed and its pull is bounded.
 template <class T>
-Condition<T, 6> bendCondition(const V3<T>* x, T rest_angle, T inverse_length, T smallest_square) {
+HAIRMESH_INLINE Condition<T, 6> bendCondition(const V3<T>* x, T rest_angle, T inverse_length, T smallest_square) {
+  const T zero = constant<T>(0), one = constant<T>(1), half = constant<T>(0.5);
   const V3<T> p = x[2], q = x[3];
-  const V3<T> m1 = T(0.5) * (x[0] + x[1]), m2 = T(0.5) * (x[4] + x[5]);
+  const V3<T> m1 = half * (x[0] + x[1]), m2 = half * (x[4] + x[5]);
   const V3<T> e = q - p, a = m1 - p, b = m2 - p;
   const V3<T> n1 = cross(e, a), n2 = cross(b, e);
-  const T e2 = dot(e, e), length = std::sqrt(e2);
-  const T inverse_e = length > T(1e-9) ? T(1) / length : T(0);
-  const T pi = T(3.14159265358979323846);
-  T angle = std::atan2(dot(cross(n1, n2), e) * inverse_e, dot(n1, n2)) - rest_angle;
-  if (angle > pi) angle -= 2 * pi;
-  if (angle < -pi) angle += 2 * pi;
+  const T length = squareRoot(dot(e, e));
+  const auto collapsed = length < constant<T>(1e-9);
+  const T inverse_e = collapsed ? zero : one / (collapsed ? one : length);
+  const T pi = constant<T>(3.14159265358979323846);
+  T angle = arcTangent2<T>(dot(cross(n1, n2), e) * inverse_e, dot(n1, n2)) - rest_angle;
+  angle = angle > pi ? angle - (pi + pi) : angle;
+  angle = angle < -pi ? angle + (pi + pi) : angle;
   const T s1 = dot(n1, n1), s2 = dot(n2, n2);
   const V3<T> g1 = (-length * inverse_length / (s1 > smallest_square ? s1 : smallest_square)) * n1;
   const V3<T> g2 = (-length * inverse_length / (s2 > smallest_square ? s2 : smallest_square)) * n2;
   const T t1 = dot(a, e) * inverse_e * inverse_e, t2 = dot(b, e) * inverse_e * inverse_e;
   Condition<T, 6> c;
   c.value = angle * inverse_length;
-  c.g[0] = c.g[1] = T(0.5) * g1;
-  c.g[4] = c.g[5] = T(0.5) * g2;
-  c.g[2] = (t1 - T(1)) * g1 + (t2 - T(1)) * g2;
+  c.g[0] = c.g[1] = half * g1;
+  c.g[4] = c.g[5] = half * g2;
+  c.g[2] = (t1 - one) * g1 + (t2 - one) * g2;
   c.g[3] = (-t1) * g1 + (-t2) * g2;
   return c;
 }
 
-// The volume force's condition, equation (1): C = e1 . (e2 x e3) / 6 - V0, with equation (2)'s gradient. (The paper
-// prints the forces with the sixth taken into k; here it stays in the gradient, so that f = -k C dC/dx holds to the
-// letter.)
+// The volume force's condition, equation (1): C = e1 . (e2 x e3) / 6 - V0, with equation (2)'s gradient. (The paper prints the
+// forces with the sixth taken into k; here it stays in the gradient, so that f = -k C dC/dx holds to the letter.)
 template <class T>
-Condition<T, 4> volumeCondition(const V3<T>* x, T rest_volume) {
+HAIRMESH_INLINE Condition<T, 4> volumeCondition(const V3<T>* x, T rest_volume) {
   const V3<T> e1 = x[1] - x[0], e2 = x[2] - x[0], e3 = x[3] - x[0];
-  const T sixth = T(1) / T(6);
+  const T sixth = constant<T>(1.0 / 6.0);
   Condition<T, 4> c;
   c.g[1] = sixth * cross(e2, e3);
   c.g[2] = sixth * cross(e3, e1);
   c.g[3] = sixth * cross(e1, e2);
-  c.g[0] = T(-1) * (c.g[1] + c.g[2] + c.g[3]);
+  c.g[0] = constant<T>(-1) * (c.g[1] + c.g[2] + c.g[3]);
   c.value = dot(e1, c.g[1]) - rest_volume;
   return c;
 }

@@ -1,31 +1,24 @@
-#include "sim/simd.h"
+#include "sim/dense_kernels.h"
 
 #include <cstddef>
 
-// Function multiversioning picks the widest vectors that the processor has when the program starts. Sanitizers run the
-// resolvers too early, other compilers and processors do not know them: these get the plain code.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    defined(__OPTIMIZE__)
-#define HAIRMESH_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define HAIRMESH_CLONES
-#endif
+#include "sim/lanes.h"
 
 namespace sim {
 namespace {
 
-constexpr int kLanes = 16;
+constexpr int kSums = 16;  // partial sums of a dot product
 
 template <class T>
-[[gnu::always_inline]] inline T dotProduct(const T* a, const T* b, int n) {
-  T lanes[kLanes] = {};
+HAIRMESH_INLINE T dotProduct(const T* a, const T* b, int n) {
+  T lanes[kSums] = {};
   int i = 0;
-  for (; i + kLanes <= n; i += kLanes) {
-    for (int k = 0; k < kLanes; ++k) lanes[k] += a[i + k] * b[i + k];
+  for (; i + kSums <= n; i += kSums) {
+    for (int k = 0; k < kSums; ++k) lanes[k] += a[i + k] * b[i + k];
   }
   T sum = 0;
   for (; i < n; ++i) sum += a[i] * b[i];
-  for (int width = kLanes / 2; width > 0; width /= 2) {
+  for (int width = kSums / 2; width > 0; width /= 2) {
     for (int k = 0; k < width; ++k) lanes[k] += lanes[k + width];
   }
   return sum + lanes[0];
@@ -34,7 +27,7 @@ template <class T>
 // From the last row up, so that x can be overwritten: row i needs x[0 .. i]. Columns are walked so that memory is
 // contiguous.
 template <class T>
-[[gnu::always_inline]] inline void lowerInPlace(const T* l, int w, T* x) {
+HAIRMESH_INLINE void lowerInPlace(const T* l, int w, T* x) {
   for (int j = w - 1; j >= 0; --j) {
     const T* column = l + static_cast<std::size_t>(j) * w;
     const T xj = x[j];
@@ -44,12 +37,12 @@ template <class T>
 }
 
 template <class T>
-[[gnu::always_inline]] inline void upperInPlace(const T* l, int w, T* x) {
+HAIRMESH_INLINE void upperInPlace(const T* l, int w, T* x) {
   for (int j = 0; j < w; ++j) x[j] = dotProduct(l + static_cast<std::size_t>(j) * w + j, x + j, w - j);
 }
 
 template <class T>
-[[gnu::always_inline]] inline void panel(const T* p, int h, int w, const T* x, T* y) {
+HAIRMESH_INLINE void panel(const T* p, int h, int w, const T* x, T* y) {
   for (int i = 0; i < h; ++i) y[i] = 0;
   int j = 0;
   for (; j + 3 <= w; j += 3) {
@@ -61,7 +54,7 @@ template <class T>
 }
 
 template <class T>
-[[gnu::always_inline]] inline void panelTransposed(const T* p, int h, int w, const T* x, T* y) {
+HAIRMESH_INLINE void panelTransposed(const T* p, int h, int w, const T* x, T* y) {
   for (int j = 0; j < w; ++j) y[j] -= dotProduct(p + static_cast<std::size_t>(j) * h, x, h);
 }
 
