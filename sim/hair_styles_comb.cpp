@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kRowStep = 0.006;   // m, below the hairline
 constexpr double kInnerGap = 0.006;  // m, between the body and the underside of the hair
-constexpr double kTautness = 0.9;      // how nearly hanging hair spans hollows as a taut string would
+constexpr double kTautness = 0.9;    // how nearly hanging hair spans hollows as a taut string would
 constexpr double kDivide = 0.35;     // hair rooted in front of this backness falls in front of the shoulders
 
 // What one style wants. Heights are in head heights above the scalp's centre.
@@ -34,7 +34,6 @@ double smoothstep(double a, double b, double x) {
   const double t = std::clamp((x - a) / (b - a), 0.0, 1.0);
   return t * t * (3 - 2 * t);
 }
-
 
 // Height of the shoulders' tops beside the neck, where hair comes to rest.
 double shoulderHeight(const Scalp& scalp, const BodyDistance& body) {
@@ -114,8 +113,8 @@ Vec3 Comber::aim(int sheet) const {
   return scalp.center + p;
 }
 
-// Moves a point out of the body until it keeps `gap`. Hair that divides over the shoulders is moved straight forwards or straight
-// backwards below the jaw: sliding along a breast or a shoulder blade would gather it into a rope.
+// Moves a point out of the body until it keeps `gap`. Hair that divides over the shoulders is moved straight forwards
+// or straight backwards below the jaw: sliding along a breast or a shoulder blade would gather it into a rope.
 Vec3 Comber::keepOff(int sheet, Vec3 p, double gap) const {
   const double below_jaw = smoothstep(0.30, 0.55, (scalp.center.y() - p.y()) / scalp.head_height);
   const Vec3 straight(0, 0, inFront(sheet) ? 1 : -1);
@@ -170,8 +169,8 @@ void Comber::fallAll() {
   }
 }
 
-// Hair under its own weight spans hollows (the nape above the shoulders, the small of the back) instead of lining them: below the
-// hairline, a sheet's distance from the head's vertical axis becomes the least concave curve over it.
+// Hair under its own weight spans hollows (the nape above the shoulders, the small of the back) instead of lining them:
+// below the hairline, a sheet's distance from the head's vertical axis becomes the least concave curve over it.
 void Comber::hangTaut(int sheet) {
   const Vec3 axis = scalp.center - Vec3(0, 0, 0.06 * scalp.head_height);
   const int first = coat.scalp_rows - 1;
@@ -214,13 +213,11 @@ void Comber::hangTaut(int sheet) {
 void Comber::relaxInner() {
   std::vector<Vec3> next = coat.inner;
   const int first = coat.scalp_rows;
-  const int seam_left = static_cast<int>(kDivide * (coat.sheets / 2));
   const auto parted = [&](int s, int other, int row) {
     if (!cut.divides || coat.inner[coat.index(s, row)].y() - scalp.center.y() > shoulders + 0.25 * scalp.head_height)
       return false;
     return inFront(std::clamp(s, 0, coat.sheets - 1)) != inFront(std::clamp(other, 0, coat.sheets - 1));
   };
-  (void)seam_left;
   for (int sweep = 0; sweep < 60; ++sweep) {
     const double strength = sweep % 2 == 0 ? 0.5 : -0.47;
     for (int s = 0; s < coat.sheets; ++s) {

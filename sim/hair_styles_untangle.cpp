@@ -90,7 +90,8 @@ void untangle(const BodyDistance& body, double fatness, double gap, HairMeshShap
       }
     }
     if (!bad) return;
-    // Spread what was moved over the neighbourhood, so that the combed shape stays smooth; less and less, so that it ends.
+    // Spread what was moved over the neighbourhood, so that the combed shape stays smooth; less and less, so that it
+    // ends.
     const double spread = 0.2 * (1 - static_cast<double>(sweep) / kSweeps);
     for (std::size_t v = 0; v < x.size(); ++v) {
       moved[v] = x[v] - combed[v];

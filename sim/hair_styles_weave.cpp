@@ -157,11 +157,13 @@ Weave weaveOf(Style style, Resolution resolution) {
     case Style::kShoulder:
       return std::array<Weave, 3>{Weave{even(5), 3, 5, 8, 8, 0, 0.2}, Weave{even(8), 3, 6, 10, 12, 0, 0.2},
                                   Weave{even(11), 4, 9, 14, 15, 0, 0.2}}[level];
-    case Style::kLong: break;
+    case Style::kLong:
+      break;
   }
-  return std::array<Weave, 3>{Weave{{0, 0.275, 0.35, 0.425, 0.7, 1}, 3, 5, 8, 9, 6, 0.4},
-                              Weave{{0, 0.15, 0.3, 0.35, 0.4, 0.6, 0.8, 1}, 4, 6, 12, 13, 9, 0.4},
-                              Weave{{0, 0.1, 0.2, 0.3, 0.35, 0.4, 0.52, 0.64, 0.76, 0.88, 1}, 4, 9, 16, 17, 10, 0.4}}[level];
+  return std::array<Weave, 3>{
+      Weave{{0, 0.275, 0.35, 0.425, 0.7, 1}, 3, 5, 8, 9, 6, 0.4},
+      Weave{{0, 0.15, 0.3, 0.35, 0.4, 0.6, 0.8, 1}, 4, 6, 12, 13, 9, 0.4},
+      Weave{{0, 0.1, 0.2, 0.3, 0.35, 0.4, 0.52, 0.64, 0.76, 0.88, 1}, 4, 9, 16, 17, 10, 0.4}}[level];
 }
 
 HairMeshShape weave(const Coat& coat, const Weave& plan) {
