@@ -27,10 +27,10 @@ Loft shapeTrunk(const Figure& f, double s) {
   struct Level {
     double t, side, front, back, shift;
   };
-  const std::array<Level, 13> levels{{{-0.13, 0.085, 0.055, 0.065, -0.004},
-                                      {-0.05, 0.140, 0.082, 0.092, -0.006},
-                                      {0.04, 0.164, 0.092, 0.104, -0.008},
-                                      {0.14, 0.160, 0.094, 0.100, -0.006},
+  const std::array<Level, 13> levels{{{-0.10, 0.105, 0.066, 0.080, -0.006},
+                                      {-0.04, 0.140, 0.084, 0.098, -0.008},
+                                      {0.05, 0.158, 0.093, 0.106, -0.009},
+                                      {0.15, 0.155, 0.094, 0.099, -0.006},
                                       {0.26, 0.138, 0.090, 0.080, 0.002},
                                       {0.38, 0.113, 0.081, 0.070, 0.006},
                                       {0.50, 0.114, 0.082, 0.074, 0.002},
@@ -39,7 +39,7 @@ Loft shapeTrunk(const Figure& f, double s) {
                                       {0.86, 0.138, 0.084, 0.092, -0.012},
                                       {0.95, 0.128, 0.068, 0.080, -0.010},
                                       {1.02, 0.104, 0.052, 0.064, -0.006},
-                                      {1.08, 0.076, 0.042, 0.050, 0.000}}};
+                                      {1.06, 0.090, 0.046, 0.055, -0.002}}};
   const double span = std::max(f.shoulder_level - f.pelvis.y(), 0.15 * s);
   const auto spot = [&](double t) {
     const double u = std::clamp(t, 0.0, 1.0);
@@ -53,7 +53,7 @@ Loft shapeTrunk(const Figure& f, double s) {
     const double w = s * (hips + (chest - hips) * upper);
     sections.push_back({(l.t - lo) / (hi - lo), l.side * w, l.front * s, l.back * s, l.shift * s});
   }
-  return makeLoft(spot(lo), spot(hi), Vec3::UnitZ(), std::move(sections), {0.04 * s, 0.03 * s});
+  return makeLoft(spot(lo), spot(hi), Vec3::UnitZ(), std::move(sections), {0.055 * s, 0.06 * s});
 }
 
 void addMasses(const Figure& f, double s, BodyField& body) {
@@ -65,13 +65,13 @@ void addMasses(const Figure& f, double s, BodyField& body) {
   for (const double side : {1.0, -1.0}) {
     const Eigen::Matrix3d turned = Eigen::AngleAxisd(side * 0.28, Vec3::UnitY()).toRotationMatrix();
     const auto place = [&](double t, double x, double z) { return Vec3(centre(t) + s * Vec3(side * x, 0, z)); };
-    body.masses.push_back({place(0.735, 0.068, 0.058), turned, s * Vec3(0.057, 0.056, 0.058)});
+    body.masses.push_back({place(0.735, 0.066, 0.046), turned, s * Vec3(0.055, 0.058, 0.056)});
     body.masses.push_back({place(0.80, 0.060, -0.060), turned.transpose(), s * Vec3(0.055, 0.085, 0.038)});
     body.masses.push_back({place(0.0, 0.070, -0.060), turned.transpose(), s * Vec3(0.072, 0.080, 0.064)});
     // The yoke falls from the neck to the point of the shoulder.
     const Vec3 shoulder(f.neck_base.x() + side * f.shoulder_half, f.shoulder_level, centre(1.0).z());
     const Vec3 neck = f.neck_base + s * Vec3(side * 0.030, -0.030, -0.006);
-    body.yokes.push_back({neck, Vec3(neck + 0.90 * (shoulder - neck) + s * Vec3(0, -0.004, 0)), 0.042 * s, 0.040 * s});
+    body.yokes.push_back({neck, Vec3(neck + 0.94 * (shoulder - neck) + s * Vec3(0, -0.006, 0)), 0.044 * s, 0.036 * s});
   }
 }
 
@@ -99,11 +99,11 @@ BodyField::ArmShape shapeArm(const Figure::Arm& a, double s) {
                                {0.8, 0.033, 0.035, 0.035, 0.0},
                                {1.0, 0.0325, 0.033, 0.034, 0.0}},
                               s),
-                       {0.042 * s, 0.03 * s});
+                       {0.026 * s, 0.03 * s});
   // Flesh begins outside the joint where a skeleton's shoulders are narrow.
-  arm.deltoid = {a.shoulder + (a.elbow - a.shoulder).normalized() * 0.030 * s + s * Vec3(a.side * 0.006, 0.004, 0),
+  arm.deltoid = {a.shoulder + (a.elbow - a.shoulder).normalized() * 0.036 * s + s * Vec3(a.side * 0.004, -0.004, 0),
                  Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), a.elbow - a.shoulder).toRotationMatrix(),
-                 s * Vec3(0.047, 0.072, 0.049)};
+                 s * Vec3(0.044, 0.066, 0.047)};
   arm.fore = makeLoft(a.elbow, a.wrist, ahead,
                       scaled({{0.0, 0.032, 0.033, 0.033, 0.0},
                               {0.22, 0.0335, 0.037, 0.036, 0.0},
@@ -163,7 +163,7 @@ BodyField::LegShape shapeLeg(const Figure::Leg& l, double s, double sole) {
                               {1.0, 0.028, 0.033, 0.034, 0.0}},
                              s),
                       {0.04 * s, 0.03 * s});
-  leg.knee = {l.knee + s * Vec3(0, 0.004, 0.020), Eigen::Matrix3d::Identity(), s * Vec3(0.036, 0.048, 0.034)};
+  leg.knee = {l.knee + s * Vec3(0, 0.008, 0.012), Eigen::Matrix3d::Identity(), s * Vec3(0.030, 0.046, 0.034)};
 
   Vec3 way = l.toe - l.ankle;
   way.y() = 0;

@@ -71,9 +71,18 @@ double Loft::value(const Vec3& p) const {
   const double z = axis.dot(d), t = std::clamp(z / length, 0.0, 1.0);
   std::size_t i = 0;
   while (i + 2 < sections.size() && sections[i + 1].t <= t) ++i;
-  const Section s = mixed(sections[i], slopes[i], sections[i + 1], slopes[i + 1], t);
-  const double y = front.dot(d) - s.shift;
+  Section s = mixed(sections[i], slopes[i], sections[i + 1], slopes[i + 1], t);
   const double beyond = z < 0 ? z : std::max(z - length, 0.0);
+  if (beyond != 0) {
+    // The taper goes on into the cap, fading, or a crease would run around the seam.
+    const Section& m = z < 0 ? slopes.front() : slopes.back();
+    const double u = beyond / length;
+    s.side *= std::exp(std::clamp(m.side / s.side * u, -2.0, 1.0));
+    s.front *= std::exp(std::clamp(m.front / s.front * u, -2.0, 1.0));
+    s.back *= std::exp(std::clamp(m.back / s.back * u, -2.0, 1.0));
+    s.shift += m.shift * std::clamp(u, -0.2, 0.2);
+  }
+  const double y = front.dot(d) - s.shift;
   return scaledDistance(Vec3(side.dot(d), y, beyond), Vec3(s.side, y > 0 ? s.front : s.back, z < 0 ? cap_a : cap_b));
 }
 
@@ -102,7 +111,7 @@ double armValue(const BodyField::ArmShape& arm, const Vec3& p) {
   const Vec3 middle = arm.fore.a;
   const double reach = std::max(arm.upper.length, arm.fore.length + arm.palm.length + arm.fingers.length) + 0.12;
   if (const double gap = (p - middle).norm() - reach; gap > kFar) return gap;
-  double d = smoothMin(arm.upper.value(p), arm.fore.value(p), 0.03);
+  double d = smoothMin(arm.upper.value(p), arm.fore.value(p), 0.02);
   d = smoothMin(d, arm.deltoid.value(p), 0.04);
   double hand = smoothMin(arm.palm.value(p), arm.fingers.value(p), 0.02);
   hand = smoothMin(hand, arm.thumb.value(p), 0.018);
@@ -113,8 +122,8 @@ double legValue(const BodyField::LegShape& leg, const Vec3& p) {
   const Vec3 middle = leg.shin.a;
   const double reach = std::max(leg.thigh.length, leg.shin.length) + 0.25;
   if (const double gap = (p - middle).norm() - reach; gap > kFar) return gap;
-  double d = smoothMin(leg.thigh.value(p), leg.shin.value(p), 0.04);
-  d = smoothMin(d, leg.knee.value(p), 0.03);
+  double d = smoothMin(leg.thigh.value(p), leg.shin.value(p), 0.025);
+  d = smoothMin(d, leg.knee.value(p), 0.025);
   double foot = smoothMin(leg.foot.value(p), leg.heel.value(p), 0.035);
   foot = smoothMax(foot, leg.sole - p.y(), 0.012);
   return smoothMin(d, foot, 0.045);

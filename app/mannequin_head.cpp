@@ -2,6 +2,7 @@
 // soft features of a shop-window figure. Proportions follow the sculptor's canon: eyes half way up, nose base a third,
 // mouth two ninths above the chin.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "app/mannequin_field.h"
@@ -33,53 +34,68 @@ double cranium(const Vec3& q) {
 }
 
 const Loft& faceLoft() {
-  static const Loft loft = makeLoft(Vec3(0, 0.02, 0), Vec3(0, 0.62, 0), Vec3::UnitZ(),
-                                    {{0.00, 0.085, 0.070, 0.090, 0.290},
-                                     {0.08, 0.125, 0.090, 0.170, 0.285},
-                                     {0.20, 0.175, 0.130, 0.240, 0.245},
-                                     {0.34, 0.212, 0.170, 0.260, 0.200},
-                                     {0.50, 0.240, 0.215, 0.260, 0.158},
-                                     {0.66, 0.258, 0.245, 0.250, 0.125},
-                                     {0.82, 0.266, 0.250, 0.250, 0.112},
-                                     {1.00, 0.262, 0.250, 0.250, 0.110}},
-                                    {0.035, 0.05});
+  // Levels from chin to forehead; above the brow the face sinks into the cranium.
+  constexpr double low = 0.03, high = 0.84;
+  struct Level {
+    double y, side, front, back, shift;
+  };
+  constexpr std::array<Level, 10> levels{{{0.030, 0.080, 0.062, 0.080, 0.290},
+                                          {0.090, 0.126, 0.092, 0.140, 0.278},
+                                          {0.160, 0.164, 0.128, 0.195, 0.242},
+                                          {0.240, 0.198, 0.168, 0.240, 0.200},
+                                          {0.330, 0.229, 0.213, 0.258, 0.157},
+                                          {0.430, 0.251, 0.243, 0.252, 0.128},
+                                          {0.540, 0.258, 0.250, 0.250, 0.114},
+                                          {0.640, 0.245, 0.240, 0.245, 0.108},
+                                          {0.740, 0.205, 0.205, 0.220, 0.093},
+                                          {0.840, 0.130, 0.130, 0.150, 0.080}}};
+  static const Loft loft = [&] {
+    std::vector<Section> sections;
+    for (const Level& l : levels) sections.push_back({(l.y - low) / (high - low), l.side, l.front, l.back, l.shift});
+    return makeLoft(Vec3(0, low, 0), Vec3(0, high, 0), Vec3::UnitZ(), std::move(sections), {0.035, 0.06});
+  }();
   return loft;
 }
 
 double nose(const Vec3& q) {
-  const RoundCone bridge{Vec3(0, 0.545, 0.335), Vec3(0, 0.372, 0.437), 0.030, 0.041};
+  const RoundCone bridge{Vec3(0, 0.555, 0.342), Vec3(0, 0.388, 0.432), 0.022, 0.032};
   const Vec3 m(std::abs(q.x()), q.y(), q.z());
-  const double wing = egg(m - Vec3(0.046, 0.352, 0.392), Vec3(0.030, 0.029, 0.043));
-  return smoothMin(bridge.value(q), wing, 0.035);
+  const double wing = egg(m - Vec3(0.034, 0.364, 0.394), Vec3(0.025, 0.023, 0.036));
+  return smoothMin(bridge.value(q), wing, 0.055);
 }
 
 }  // namespace
 
 double headWithoutEars(const Vec3& q) {
   const Vec3 m(std::abs(q.x()), q.y(), q.z());  // the face is mirrored about x = 0
-  double d = smoothMin(cranium(q), faceLoft().value(q), 0.14);
-  d = smoothMin(d, egg(m - Vec3(0.165, 0.42, 0.205), Vec3(0.085, 0.075, 0.115)), 0.09);     // cheekbones
-  d = smoothMin(d, egg(q - Vec3(0, 0.075, 0.315), Vec3(0.085, 0.070, 0.070)), 0.07);        // chin
-  d = smoothMax(d, -egg(m - Vec3(0.122, 0.520, 0.435), Vec3(0.092, 0.058, 0.085)), 0.075);  // eye sockets
-  d = smoothMin(d, egg(m - Vec3(0.122, 0.512, 0.285), Vec3(0.072, 0.060, 0.070)), 0.025);   // closed lids
-  d = smoothMin(d, nose(q), 0.045);
+  double d = smoothMin(cranium(q), faceLoft().value(q), 0.16);
+  // The jaw rises from the chin to the ears.
+  static const Eigen::Matrix3d jaw_tilt = Eigen::AngleAxisd(0.50, Vec3::UnitX()).toRotationMatrix();
+  d = smoothMin(d, egg(jaw_tilt.transpose() * (q - Vec3(0, 0.195, 0.160)), Vec3(0.150, 0.105, 0.205)), 0.10);
+  d = smoothMin(d, egg(q - Vec3(0, 0.075, 0.300), Vec3(0.070, 0.066, 0.080)), 0.08);        // chin
+  d = smoothMin(d, egg(m - Vec3(0.160, 0.425, 0.200), Vec3(0.090, 0.090, 0.115)), 0.12);    // cheekbones
+  d = smoothMax(d, -egg(m - Vec3(0.125, 0.525, 0.450), Vec3(0.100, 0.056, 0.090)), 0.090);  // eye sockets
+  d = smoothMin(d, egg(m - Vec3(0.124, 0.508, 0.282), Vec3(0.082, 0.062, 0.077)), 0.040);   // closed lids
+  d = smoothMin(d, nose(q), 0.050);
   // Lips: two soft rolls that follow the curve of the teeth.
-  const double bow = 1.1 * q.x() * q.x();
-  d = smoothMin(d, egg(q - Vec3(0, 0.262 - 0.5 * bow, 0.372 - bow), Vec3(0.080, 0.024, 0.036)), 0.022);
-  d = smoothMin(d, egg(q - Vec3(0, 0.219, 0.368 - bow), Vec3(0.066, 0.027, 0.038)), 0.022);
-  return d;
+  const double bow = 1.6 * q.x() * q.x();
+  const double upper = egg(q - Vec3(0, 0.260, 0.356 - bow), Vec3(0.088, 0.026, 0.034));
+  const double lower = egg(q - Vec3(0, 0.222, 0.350 - bow), Vec3(0.074, 0.028, 0.036));
+  return smoothMin(d, smoothMin(upper, lower, 0.026), 0.046);
 }
 
 double headValue(const Vec3& q) {
-  double d = headWithoutEars(q);
+  const double d = headWithoutEars(q);
   if (std::abs(q.x()) < 0.18 || std::abs(q.z()) > 0.3) return d;
   const Vec3 m(std::abs(q.x()), q.y(), q.z());
   // Ears lean back and stand off a little; a shallow bowl keeps them from looking like buttons.
-  const Eigen::AngleAxisd lean(-0.22, Vec3::UnitX()), splay(-0.30, Vec3::UnitY());
-  const Vec3 e = (splay * lean).toRotationMatrix().transpose() * (m - Vec3(0.318, 0.455, -0.035));
-  const double shell = egg(e, Vec3(0.032, 0.128, 0.078));
-  const double bowl = egg(e - Vec3(0.040, 0.020, 0.010), Vec3(0.030, 0.075, 0.042));
-  return smoothMin(d, smoothMax(shell, -bowl, 0.03), 0.03);
+  const Eigen::AngleAxisd lean(-0.20, Vec3::UnitX()), splay(-0.26, Vec3::UnitY());
+  const Vec3 e = (splay * lean).toRotationMatrix().transpose() * (m - Vec3(0.312, 0.470, -0.040));
+  // Narrower at the lobe than at the top.
+  const Vec3 tapered(e.x(), e.y(), e.z() * (1.15 - 1.6 * e.y()));
+  const double shell = egg(tapered, Vec3(0.027, 0.112, 0.066));
+  const double bowl = egg(e - Vec3(0.030, 0.022, 0.012), Vec3(0.022, 0.060, 0.034));
+  return smoothMin(d, smoothMax(shell, -bowl, 0.025), 0.032);
 }
 
 }  // namespace app
