@@ -40,10 +40,10 @@ struct HairLook {
   bool use_color = false;
   Float3 color{0.35f, 0.2f, 0.1f};
   float root_darkening = 0.35f, tint_variation = 0.15f;
-  float beta_m = 0.28f, beta_n = 0.3f;  // longitudinal and azimuthal roughness, 0..1
+  float beta_m = 0.24f, beta_n = 0.3f;  // longitudinal and azimuthal roughness, 0..1
   float eta = 1.55f;
   float cuticle_angle = 0.05f;  // rad, scale tilt that shifts the R and TRT highlights
-  float specular = 1.0f, diffuse = 1.0f;
+  float specular = 1.5f, diffuse = 1.0f;
   std::uint32_t seed = 1;
 
   bool operator==(const HairLook&) const = default;
@@ -69,7 +69,7 @@ struct BodyInput {
   std::span<const float> weights;         // 4 a vertex
   std::span<const Mat4> joint_matrices;   // rest model space to world
   std::uint64_t pose_revision = 0;
-  Float3 color{0.52f, 0.45f, 0.42f};
+  Float3 color{0.19f, 0.162f, 0.147f};
   float roughness = 0.55f;
 };
 
@@ -80,11 +80,11 @@ struct CameraInput {
 
 struct LightInput {
   Float3 to_light{0.45f, 0.8f, 0.6f};  // key light's direction, towards the light
-  Float3 key{3.0f, 2.85f, 2.6f}, fill{0.35f, 0.4f, 0.5f}, rim{1.6f, 1.7f, 2.0f};
+  Float3 key{3.0f, 2.85f, 2.6f}, fill{0.35f, 0.4f, 0.5f}, rim{1.3f, 1.4f, 1.6f};
   Float3 to_fill{-0.8f, 0.3f, 0.6f}, to_rim{-0.35f, 0.6f, -0.9f};
   Float3 ambient_sky{0.30f, 0.33f, 0.38f}, ambient_ground{0.16f, 0.14f, 0.12f};
   int shadow_size = 1024;
-  int shadow_strands = 12000;    // at most this many strands a hair cast shadow, standing for all; 0: all
+  int shadow_strands = 8000;    // at most this many strands a hair cast shadow, standing for all; 0: all
   int opacity_layers = 7;        // deep opacity map layers, 1..7 (the eighth channel takes all behind)
   float layer_thickness = 0.0f;  // m of the first layer; 0: derived from the hair's extent
   float shadow_strength = 1.0f;  // scales opacity
@@ -100,8 +100,8 @@ enum class StrandPath { kGeometry, kPulling };
 
 struct ViewOptions {
   int samples = 4;  // multisampling, clamped to what the context has
-  float exposure = 1.0f;
-  Float3 backdrop_top{0.13f, 0.14f, 0.16f}, backdrop_bottom{0.36f, 0.36f, 0.37f}, ground_color{0.42f, 0.42f, 0.42f};
+  float exposure = 1.25f;
+  Float3 backdrop_top{0.045f, 0.05f, 0.06f}, backdrop_bottom{0.15f, 0.15f, 0.155f}, ground_color{0.2f, 0.2f, 0.205f};
   float ground_height = 0;  // m
   bool ground = true, show_strands = true, show_body = true;
   StrandPath strand_path = StrandPath::kGeometry;

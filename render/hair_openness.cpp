@@ -11,6 +11,8 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr int kGridSize = 18;
+// Light finds its way between clumps: far less is stopped than by hairs strewn evenly.
+constexpr float kClumpGaps = 0.3f;
 constexpr float kHeadDepth = 6.0f;  // optical depth of a ray through the head's middle; softened at its rim
 
 Vector3f vertexAt(std::span<const float> positions, int vertex) {
@@ -94,7 +96,7 @@ void HairOpenness::fillGrid(const HairLayout& layout, std::span<const float> pos
   double area = 0;
   for (const HairFace& face : layout.faces) area += std::max(face.area, 0.0f);
   // pi / 4: mean projected width of a cylinder over the angles it is crossed at.
-  const float per_area = area > 0 ? static_cast<float>(hair_width / area) * 0.785f / (cell_ * cell_ * cell_) : 0.0f;
+  const float per_area = area > 0 ? static_cast<float>(hair_width / area) * 0.785f * kClumpGaps / (cell_ * cell_ * cell_) : 0.0f;
   for (const HairFace& face : layout.faces) {
     const int corners = face.first_vertex[3] < 0 ? 3 : 4;
     for (int layer = 0; layer + 1 < face.layers; ++layer) {

@@ -73,10 +73,18 @@ long uploadScattering(HairResources& hair) {
   return static_cast<long>(scattering.table.size() * sizeof(float));
 }
 
+// Hairs lie in clumps and light passes between those, so shadows are as if half the hairs were strewn evenly.
+constexpr float kClumpedShare = 0.5f;
+
 // Summed projected diameter (m) of the hairs that the drawn strands stand for.
 float representedWidth(const HairLook& look, int strands) {
   return 2 * look.strand_radius * 0.5f * (1 + look.taper) *
          std::max(look.strands_represented, static_cast<float>(strands));
+}
+
+// How far (m) a strand may leave the hull of the hair mesh.
+float sidewaysReach(const HairLook& look) {
+  return 0.01f + 6 * look.offset + 1.5f * look.curl_radius + 2 * look.frizz + look.clump_size;
 }
 
 long uploadBlock(HairResources& hair) {
@@ -85,10 +93,8 @@ long uploadBlock(HairResources& hair) {
   const float represented = std::max(look.strands_represented / strands, 1.0f);
   const Float3 widths = lobeWidths(look.beta_m);
   shared::HairBlock block{};
-  block.counts = {static_cast<int>(hair.layout.faces.size()), hair.strands, hair.segments, static_cast<int>(look.seed)};
-  block.draw = {1, hair.chunksPerStrand(), hair.pointsPerStrand(), -1};
   block.width = {look.strand_radius * std::pow(represented, look.width_compensation), look.taper,
-                 representedWidth(look, hair.strands) / strands, look.least_pixels};
+                 kClumpedShare * representedWidth(look, hair.strands) / strands, look.least_pixels};
   block.shape = {look.length_variation, look.offset, look.curl_radius, look.curl_turns};
   block.clumping = {look.clump, look.clump_size, look.frizz, look.flyaways};
   block.lobe_width = {widths[0], widths[1], widths[2], look.cuticle_angle};
@@ -97,7 +103,8 @@ long uploadBlock(HairResources& hair) {
   block.backward_albedo = asVec4(hair.backward_albedo);
   block.local_back = asVec4(hair.local_back);
   const HeadBall& head = hair.openness.head();
-  block.center = asVec4(head.radius > 0 ? head.center : hair.bounds.center(), hair.bounds.diagonal());
+  block.center = asVec4(head.radius > 0 ? head.center : hair.bounds.center());
+  block.ball = asVec4(hair.bounds.center(), 0.5f * hair.bounds.diagonal() + sidewaysReach(look));
   if (!hair.block) {
     hair.block = makeBuffer();
     glNamedBufferStorage(hair.block.id(), sizeof(block), nullptr, GL_DYNAMIC_STORAGE_BIT);
@@ -108,9 +115,9 @@ long uploadBlock(HairResources& hair) {
 
 }  // namespace
 
-int HairResources::chunksPerStrand() const {
+int HairDraw::chunksPerStrand(const HairResources& hair) const {
   const int segments_a_chunk = shared::kChunkPoints - 1;
-  return (pointsPerStrand() - 1 + segments_a_chunk - 1) / segments_a_chunk;
+  return (pointsPerStrand(hair) - 1 + segments_a_chunk - 1) / segments_a_chunk;
 }
 
 long HairResources::gpuBytes() const {
@@ -193,8 +200,11 @@ long HairStore::update(std::span<const HairInput> inputs, const LightInput& ligh
 }
 
 void HairStore::bind(HairResources& hair, const HairDraw& draw) {
-  const shared::ivec4 values{draw.stride, hair.chunksPerStrand(), hair.pointsPerStrand(), draw.shadow_map};
-  glNamedBufferSubData(hair.block.id(), offsetof(shared::HairBlock, draw), sizeof(values), values.data());
+  const shared::ivec4 values[2] = {
+      {static_cast<int>(hair.layout.faces.size()), hair.strands, draw.segments, static_cast<int>(hair.look.seed)},
+      {draw.stride, draw.chunksPerStrand(hair), draw.pointsPerStrand(hair), draw.shadow_map}};
+  static_assert(offsetof(shared::HairBlock, counts) == 0 && offsetof(shared::HairBlock, draw) == sizeof(values[0]));
+  glNamedBufferSubData(hair.block.id(), 0, sizeof(values), values);
   glBindBufferBase(GL_UNIFORM_BUFFER, 1, hair.block.id());
   glBindTextureUnit(shared::kUnitVertices, hair.vertex_texture.id());
   glBindTextureUnit(shared::kUnitLayout, hair.layout_texture.id());

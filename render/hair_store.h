@@ -30,14 +30,17 @@ struct HairResources {
   GLsizeiptr vertex_bytes = 0, layout_bytes = 0;
 
   long gpuBytes() const;
-  int pointsPerStrand() const { return (layout.max_layers - 1) * segments + 1; }
-  int chunksPerStrand() const;
 };
 
 // How a pass draws a hair: filled into its uniform block before the draw.
 struct HairDraw {
   int stride = 1;       // draw every stride-th strand
+  int segments = 1;     // a layer
   int shadow_map = -1;  // the hair's own deep opacity map
+
+  int strandCount(const HairResources& hair) const { return (hair.strands + stride - 1) / stride; }
+  int pointsPerStrand(const HairResources& hair) const { return (hair.layout.max_layers - 1) * segments + 1; }
+  int chunksPerStrand(const HairResources& hair) const;
 };
 
 class HairStore {

@@ -24,7 +24,8 @@ using Eigen::Matrix4f;
 using Eigen::Vector3f;
 
 // The camera's and the lights' part of the frame block; the shadow pass adds its own.
-shared::FrameBlock frameBlock(const FrameInput& input, const Matrix4f& view_projection, const Bounds& scene) {
+shared::FrameBlock frameBlock(const FrameInput& input, const Matrix4f& view_projection, const Bounds& scene,
+                              int samples) {
   const CameraInput& camera = input.camera;
   const LightInput& light = input.light;
   const ViewOptions& view = input.view;
@@ -42,7 +43,7 @@ shared::FrameBlock frameBlock(const FrameInput& input, const Matrix4f& view_proj
   block.fill = asVec4(light.fill);
   block.to_rim = asVec4(directionOr(light.to_rim, -Vector3f::UnitZ()));
   block.rim = asVec4(light.rim);
-  block.sky = asVec4(light.ambient_sky);
+  block.sky = asVec4(light.ambient_sky, static_cast<float>(samples));
   block.ground_light = asVec4(light.ambient_ground);
   block.backdrop_top = asVec4(view.backdrop_top);
   block.backdrop_bottom = asVec4(view.backdrop_bottom);
@@ -81,21 +82,21 @@ struct Renderer::Parts {
 
   // Fits the light to the scene and brings the frame's constants to the GPU.
   Matrix4f planFrame(const FrameInput& input) {
+    radiance.prepare(input.width, input.height, std::max(input.view.samples, 1));
     const Matrix4f view_projection =
         cameraMatrix(input.camera, static_cast<float>(input.width) / static_cast<float>(input.height));
     Bounds scene = bodies.bounds();
     for (const HairResources& hair : hairs.hairs()) {
       if (hair.drawable) scene.add(hair.bounds);
     }
-    shared::FrameBlock block = frameBlock(input, view_projection, scene);
+    shared::FrameBlock block = frameBlock(input, view_projection, scene, radiance.samples());
     shadows.plan(input, hairs.hairs(), bodies, block);
     glNamedBufferSubData(frame_block.id(), 0, sizeof(block), &block);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame_block.id());
     return view_projection;
   }
 
-  void clearRadiance(const FrameInput& input) {
-    radiance.prepare(input.width, input.height, std::max(input.view.samples, 1));
+  void clearRadiance() {
     radiance.bind();
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
@@ -134,7 +135,7 @@ FrameReport Renderer::renderFrame(const FrameInput& input, unsigned framebuffer,
   p.timer.mark("hair shadows");
   p.shadows.drawBodyMap(input, p.bodies);
   p.timer.mark("body shadow");
-  p.clearRadiance(input);
+  p.clearRadiance();
   p.shadows.bindMaps();
   report.draw_calls = shadow_count.draw_calls + p.backdrop.draw(input.view.ground);
   if (input.view.show_body) report.draw_calls += p.bodies.draw(view_projection);

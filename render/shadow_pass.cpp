@@ -36,9 +36,11 @@ void compareDepth(const Texture& texture) {
   glTextureParameteri(texture.id(), GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
 }
 
-int shadowStride(const HairResources& hair, const LightInput& light) {
-  if (light.shadow_strands <= 0) return 1;
-  return std::max((hair.strands + light.shadow_strands - 1) / light.shadow_strands, 1);
+// Shadows stand fewer strands, each standing for more hairs, and coarser curves: both blur by far less than a shadow is soft.
+HairDraw shadowDraw(const HairResources& hair, const LightInput& light, int map) {
+  int stride = 1;
+  if (light.shadow_strands > 0) stride = std::max((hair.strands + light.shadow_strands - 1) / light.shadow_strands, 1);
+  return {stride, (hair.segments + 1) / 2, map};
 }
 
 // Thickness of the first deep opacity layer: small enough to resolve the outer hairs, large enough that the growing
@@ -125,7 +127,7 @@ void ShadowPass::plan(const FrameInput& input, std::span<HairResources> hairs, c
     signature.add(hair.id);
     signature.add(hair.shadow_revision);
     signature.add(body_signature_);
-    signature.add(shadowStride(hair, light));
+    signature.add(shadowDraw(hair, light, 0));
     signature.add(input.view.strand_path);
     plan.signature = signature.value;
     frame.hair_shadow[map] = asMat4(plan.frustum.clip_from_world);
@@ -139,10 +141,10 @@ void ShadowPass::plan(const FrameInput& input, std::span<HairResources> hairs, c
 }
 
 void ShadowPass::drawHairMap(int map, HairResources& hair, const FrameInput& input) {
-  const int stride = shadowStride(hair, input.light);
+  const HairDraw draw = shadowDraw(hair, input.light, map);
   const StrandPath path = input.view.strand_path;
   const bool by_geometry = path == StrandPath::kGeometry;
-  HairStore::bind(hair, {stride, map});
+  HairStore::bind(hair, draw);
   glBindVertexArray(no_attributes_.id());
   const GLuint target = framebuffer_.id();
 
@@ -154,7 +156,7 @@ void ShadowPass::drawHairMap(int map, HairResources& hair, const FrameInput& inp
   glClearNamedFramebufferfv(target, GL_DEPTH, 0, &far_away);
   glEnable(GL_DEPTH_TEST);
   (by_geometry ? depth_geometry_ : depth_pulling_).use();
-  issueStrands(hair, stride, path, {GL_LINE_STRIP, 1});
+  issueStrands(hair, draw, path, {GL_LINE_STRIP, 1});
 
   glNamedFramebufferTextureLayer(target, GL_DEPTH_ATTACHMENT, 0, 0, 0);
   glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT0, opacity_near_.id(), 0, map);
@@ -169,7 +171,7 @@ void ShadowPass::drawHairMap(int map, HairResources& hair, const FrameInput& inp
   glBlendFunc(GL_ONE, GL_ONE);
   glBindTextureUnit(shared::kUnitHairDepth, hair_depth_.id());
   (by_geometry ? opacity_geometry_ : opacity_pulling_).use();
-  issueStrands(hair, stride, path, {GL_LINE_STRIP, 1});
+  issueStrands(hair, draw, path, {GL_LINE_STRIP, 1});
   glDisable(GL_BLEND);
   glEnable(GL_DEPTH_TEST);
 }

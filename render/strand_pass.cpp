@@ -15,16 +15,16 @@ StrandCount& StrandCount::operator+=(const StrandCount& other) {
   return *this;
 }
 
-StrandCount issueStrands(const HairResources& hair, int stride, StrandPath path, const StrandTopology& topology) {
-  const int strands = (hair.strands + stride - 1) / stride;
+StrandCount issueStrands(const HairResources& hair, const HairDraw& draw, StrandPath path,
+                         const StrandTopology& topology) {
+  const int strands = draw.strandCount(hair), vertices = draw.pointsPerStrand(hair) * topology.vertices_a_point;
   if (strands == 0) return {};
-  const long vertices = static_cast<long>(strands) * hair.pointsPerStrand() * topology.vertices_a_point;
   if (path == StrandPath::kGeometry) {
-    glDrawArrays(GL_POINTS, 0, strands * hair.chunksPerStrand());
+    glDrawArrays(GL_POINTS, 0, strands * draw.chunksPerStrand(hair));
   } else {
-    glDrawArraysInstanced(topology.strip, 0, hair.pointsPerStrand() * topology.vertices_a_point, strands);
+    glDrawArraysInstanced(topology.strip, 0, vertices, strands);
   }
-  return {strands, vertices, 1};
+  return {strands, static_cast<long>(strands) * vertices, 1};
 }
 
 StrandPass::StrandPass(const std::string& shader_dir)
@@ -34,10 +34,11 @@ StrandPass::StrandPass(const std::string& shader_dir)
 
 StrandCount StrandPass::draw(HairResources& hair, int shadow_map, StrandPath path) {
   if (!hair.drawable) return {};
-  HairStore::bind(hair, {1, shadow_map});
+  const HairDraw draw{1, hair.segments, shadow_map};
+  HairStore::bind(hair, draw);
   (path == StrandPath::kGeometry ? geometry_ : pulling_).use();
   glBindVertexArray(no_attributes_.id());
-  return issueStrands(hair, 1, path, {GL_TRIANGLE_STRIP, 2});
+  return issueStrands(hair, draw, path, {GL_TRIANGLE_STRIP, 2});
 }
 
 std::string StrandPass::reload() {

@@ -22,7 +22,8 @@ struct StrandTopology {
   GLenum strip;
   int vertices_a_point;
 };
-StrandCount issueStrands(const HairResources& hair, int stride, StrandPath path, const StrandTopology& topology);
+StrandCount issueStrands(const HairResources& hair, const HairDraw& draw, StrandPath path,
+                         const StrandTopology& topology);
 
 class StrandPass {
  public:

@@ -58,7 +58,7 @@ SHARED_BLOCK(0, FrameBlock) {
   vec4 fill;
   vec4 to_rim;
   vec4 rim;
-  vec4 sky;
+  vec4 sky;       // w: samples of a pixel
   vec4 ground_light;
   vec4 backdrop_top;
   vec4 backdrop_bottom;
@@ -81,7 +81,8 @@ SHARED_BLOCK(1, HairBlock) {
   vec4 forward_albedo;   // mean forward scattering attenuation a_f (Zinke et al. 2008)
   vec4 backward_albedo;  // mean backward scattering attenuation a_b
   vec4 local_back;       // multiple backscattering A_b
-  vec4 center;    // world: the middle of the head under the hair; w: extent of the hair, m
+  vec4 center;    // world: the middle of the head under the hair
+  vec4 ball;      // world: a ball around the whole hair; w: its radius, m
 };
 
 SHARED_BLOCK(2, BodyBlock) {

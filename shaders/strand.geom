@@ -14,20 +14,18 @@ layout(location = 1) flat out float dither;
 void main() {
   int number = (gl_PrimitiveIDIn / draw.y) * draw.x, start = (gl_PrimitiveIDIn % draw.y) * (kChunkPoints - 1);
   Strand strand = makeStrand(number);
-  int last = lastPoint(strand);
+  float own_dither = strandDither(strand);
+  int last = lastShownPoint(strand, own_dither);
   if (start >= last) return;
   int layer = layerOf(strand, pointParameter(strand, start));
   LayerWindow window = layerWindow(strand, layer);
-  float own_dither = randomOf(strand.key, 30u);
   for (int index = start; index <= min(start + kChunkPoints - 1, last); ++index) {
     float s = pointParameter(strand, index);
     if (layerOf(strand, s) > layer) {
       ++layer;
       window.before = window.from.position;
       window.from = window.to;
-      window.to.position = window.after;
-      LayerPoint next = layerPoint(strand, layer + 1);
-      window.to = next;
+      window.to = layerPoint(strand, layer + 1);
       window.after = layerAfter(strand, layer + 2, window.from.position, window.to.position);
     }
     CurvePoint point = curvePoint(strand, window, s, s - float(layer));

@@ -8,6 +8,9 @@
 layout(points) in;
 layout(line_strip, max_vertices = kChunkPoints) out;
 layout(location = 0) flat out float strand_opacity;
+#ifdef CAPTURE_POINTS
+out vec4 captured;  // position, number of the strand: for tests, by transform feedback
+#endif
 
 void main() {
   int number = (gl_PrimitiveIDIn / draw.y) * draw.x, start = (gl_PrimitiveIDIn % draw.y) * (kChunkPoints - 1);
@@ -28,6 +31,9 @@ void main() {
     CurvePoint point = curvePoint(strand, window, s, s - float(layer));
     strand_opacity = lineOpacity(point.tangent);
     gl_Position = hair_shadow[draw.w] * vec4(point.position, 1.0);
+#ifdef CAPTURE_POINTS
+    captured = vec4(point.position, float(number));
+#endif
     EmitVertex();
   }
   EndPrimitive();

@@ -1,0 +1,353 @@
+// Laws of the strand curve: what the geometry stage emits, read back by transform feedback, against its definition on the CPU.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "render/fiber_scattering.h"
+#include "render/hair_layout.h"
+#include "render/hair_openness.h"
+#include "render/hair_store.h"
+#include "render/shader.h"
+#include "render/strand_pass.h"
+#include "shaders/shared.h"
+#include "tests/gl_fixture.h"
+#include "tests/strand_reference.h"
+#include "tests/synthetic_hair.h"
+
+namespace {
+
+using Eigen::Vector3f;
+using strand_reference::Reference;
+using Polyline = std::vector<Vector3f>;
+
+render::HairLook plainLook() {
+  render::HairLook look;
+  look.length_variation = look.offset = look.clump = look.curl_radius = look.frizz = look.flyaways = 0;
+  return look;
+}
+
+float lengthOf(const Polyline& line) {
+  float length = 0;
+  for (std::size_t i = 1; i < line.size(); ++i) length += (line[i] - line[i - 1]).norm();
+  return length;
+}
+
+class StrandCapture : public gl_fixture::GlTest {
+ protected:
+  // Every strand's points, in the order of the strands.
+  std::vector<Polyline> capture(const render::HairInput& input) {
+    static const render::ShaderProgram program(
+        gl_fixture::kShaderDir, {{"strand.vert", "strand_shadow.geom"}, {"CAPTURE_POINTS"}, {"captured"}});
+    render::HairStore store;
+    store.update({&input, 1}, render::LightInput{});
+    render::HairResources& hair = store.hairs()[0];
+    const render::HairDraw draw{1, hair.segments, 0};
+    render::HairStore::bind(hair, draw);
+    render::Buffer frame = render::makeBuffer(), result = render::makeBuffer();
+    glNamedBufferStorage(frame.id(), sizeof(render::shared::FrameBlock), nullptr, 0);
+    glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame.id());
+    const std::size_t most = static_cast<std::size_t>(draw.strandCount(hair)) * draw.pointsPerStrand(hair) * 2;
+    glNamedBufferStorage(result.id(), static_cast<GLsizeiptr>(most * 16), nullptr, 0);
+    glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, result.id());
+    render::VertexArray none = render::makeVertexArray();
+    render::Query query = render::makeQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
+    glBindVertexArray(none.id());
+    program.use();
+    glEnable(GL_RASTERIZER_DISCARD);
+    glBeginQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN, query.id());
+    glBeginTransformFeedback(GL_LINES);
+    render::issueStrands(hair, draw, render::StrandPath::kGeometry, {GL_LINE_STRIP, 1});
+    glEndTransformFeedback();
+    glEndQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
+    glDisable(GL_RASTERIZER_DISCARD);
+    GLuint segments = 0;
+    glGetQueryObjectuiv(query.id(), GL_QUERY_RESULT, &segments);
+    std::vector<Eigen::Vector4f> points(segments * 2);
+    glGetNamedBufferSubData(result.id(), 0, static_cast<GLsizeiptr>(points.size() * 16), points.data());
+    std::vector<Polyline> strands(static_cast<std::size_t>(input.strands));
+    for (std::size_t i = 0; i < points.size(); i += 2) {
+      Polyline& strand = strands.at(static_cast<std::size_t>(points[i].w()));
+      if (strand.empty()) strand.push_back(points[i].head<3>());
+      strand.push_back(points[i + 1].head<3>());
+    }
+    return strands;
+  }
+};
+
+TEST_F(StrandCapture, StrandsFollowTheDefinitionOfTheCurve) {
+  const synthetic::Hair hair = synthetic::makeHair();
+  render::HairInput input = synthetic::hairInput(hair, 400);
+  input.look = plainLook();
+  const auto strands = capture(input);
+  const render::HairLayout layout = render::makeHairLayout(input.faces, input.positions);
+  const Reference reference(layout, input.positions);
+  const std::vector<int> first = render::dealStrands(layout, input.strands);
+  double worst = 0;
+  for (std::size_t face = 0; face < layout.faces.size(); ++face) {
+    for (int number = first[face]; number < first[face + 1]; ++number) {
+      const auto p = Reference::facePoint(static_cast<std::uint32_t>(face), static_cast<std::uint32_t>(number - first[face]),
+                                          input.look.seed);
+      ASSERT_EQ(strands[number].size(), static_cast<std::size_t>((hair.layers - 1) * input.segments_per_layer + 1));
+      for (std::size_t i = 0; i < strands[number].size(); ++i) {
+        const double s = static_cast<double>(i) / input.segments_per_layer;
+        const auto expected = reference.curve(static_cast<int>(face), p, s);
+        worst = std::max(worst, (expected - strands[number][i].cast<double>()).norm());
+      }
+    }
+  }
+  EXPECT_LT(worst, 2e-5);  // m: single precision, and a face point rounded to 24 bits
+}
+
+TEST_F(StrandCapture, LongStrandsCutOverSeveralInvocationsAreWhole) {
+  const synthetic::Hair hair = synthetic::makeHair(18);
+  render::HairInput input = synthetic::hairInput(hair, 200);
+  input.segments_per_layer = 8;
+  input.look.length_variation = 0;
+  const std::size_t segments = 17 * 8;
+  ASSERT_GT(segments, static_cast<std::size_t>(render::shared::kChunkPoints));
+  for (const Polyline& strand : capture(input)) {
+    ASSERT_EQ(strand.size(), segments + 1);
+    const float mean = lengthOf(strand) / static_cast<float>(segments);
+    for (std::size_t i = 1; i < strand.size(); ++i) ASSERT_LT((strand[i] - strand[i - 1]).norm(), 4 * mean);
+  }
+}
+
+TEST_F(StrandCapture, RootsLieOnTheRoundScalpAndNotOnItsFlatFaces) {
+  const synthetic::Hair hair = synthetic::makeHair();
+  const auto strands = capture(synthetic::hairInput(hair, 2000));
+  const Vector3f middle(0, synthetic::kHeadHeight, 0);
+  float worst = 0, flat_worst = 0;
+  for (const Polyline& strand : strands) {
+    worst = std::max(worst, std::abs((strand[0] - middle).norm() - synthetic::kHeadRadius));
+  }
+  for (const render::HairFace& face : hair.faces) {
+    Vector3f center = Vector3f::Zero();
+    const int corners = face.first_vertex[3] < 0 ? 3 : 4;
+    for (int k = 0; k < corners; ++k) {
+      for (int axis = 0; axis < 3; ++axis) center[axis] += hair.positions[3 * face.first_vertex[k] + axis] / corners;
+    }
+    flat_worst = std::max(flat_worst, synthetic::kHeadRadius - (center - middle).norm());
+  }
+  EXPECT_GT(flat_worst, 0.006f) << "the scalp's faces are too small to tell";
+  EXPECT_LT(worst, 0.35f * flat_worst);
+}
+
+TEST_F(StrandCapture, LengthVariationShortensByNoMoreThanItsShare) {
+  const synthetic::Hair hair = synthetic::makeHair();
+  render::HairInput input = synthetic::hairInput(hair, 1000);
+  input.look = plainLook();
+  const auto full = capture(input);
+  input.look.length_variation = 0.25f;
+  const auto cut = capture(input);
+  int shorter = 0;
+  for (std::size_t i = 0; i < full.size(); ++i) {
+    const float share = lengthOf(cut[i]) / lengthOf(full[i]);
+    // The layers of this hair are evenly spaced to about a tenth, so length and parameter agree to that.
+    EXPECT_GE(share, 0.75f - 0.04f);
+    EXPECT_LE(share, 1.0001f);
+    shorter += share < 0.95f;
+  }
+  EXPECT_GT(shorter, 300);
+}
+
+TEST_F(StrandCapture, StrandsTurnSmoothly) {
+  const synthetic::Hair hair = synthetic::makeHair();
+  const auto sharpestTurn = [&](int segments) {
+    render::HairInput input = synthetic::hairInput(hair, 500);
+    input.look = plainLook();
+    input.segments_per_layer = segments;
+    float sharpest = 0;
+    for (const Polyline& strand : capture(input)) {
+      for (std::size_t i = 2; i < strand.size(); ++i) {
+        const Vector3f a = strand[i - 1] - strand[i - 2], b = strand[i] - strand[i - 1];
+        sharpest = std::max(sharpest, std::atan2(a.cross(b).norm(), a.dot(b)));
+      }
+    }
+    return sharpest;
+  };
+  // A continuous direction: twice the segments, about half the turn. A kink would keep its angle.
+  EXPECT_LT(sharpestTurn(8), 0.68f * sharpestTurn(4));
+}
+
+TEST_F(StrandCapture, VariationIsDecidedBySeedAlone) {
+  const synthetic::Hair hair = synthetic::makeHair();
+  render::HairInput input = synthetic::hairInput(hair, 300);
+  const auto once = capture(input), again = capture(input);
+  EXPECT_EQ(once, again);
+  input.look.seed = 2;
+  EXPECT_NE(once, capture(input));
+}
+
+TEST_F(StrandCapture, VariationIsTheSameWhereverTheHeadStandsAtFirst) {
+  const synthetic::Hair hair = synthetic::makeHair();
+  synthetic::Hair moved = hair;
+  const Eigen::AngleAxisf turn(0.7f, Vector3f(0.3f, 1, 0.2f).normalized());
+  const Vector3f shift(1.5f, -0.3f, 2);
+  for (std::size_t v = 0; v < hair.positions.size(); v += 3) {
+    const Vector3f p = turn * Vector3f(hair.positions[v], hair.positions[v + 1], hair.positions[v + 2]) + shift;
+    std::copy(p.data(), p.data() + 3, moved.positions.begin() + static_cast<long>(v));
+  }
+  const auto here = capture(synthetic::hairInput(hair, 300)), there = capture(synthetic::hairInput(moved, 300));
+  int apart = 0;
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    const Vector3f expected = turn * here[i].back() + shift;
+    apart += (expected - there[i].back()).norm() > 1e-4f;
+  }
+  EXPECT_LE(apart, 3);  // rounding may hand a strand on the border of two clumps to the other one
+}
+
+TEST_F(StrandCapture, AHairCollapsedOntoItsRootsStaysFinite) {
+  synthetic::Hair hair = synthetic::makeHair();
+  for (std::size_t column = 0; column < hair.positions.size() / 3 / hair.layers; ++column) {
+    for (int layer = 1; layer < hair.layers; ++layer) {
+      for (int axis = 0; axis < 3; ++axis) {
+        hair.positions[3 * (column * hair.layers + layer) + axis] = hair.positions[3 * column * hair.layers + axis];
+      }
+    }
+  }
+  for (const Polyline& strand : capture(synthetic::hairInput(hair, 200))) {
+    for (const Vector3f& point : strand) ASSERT_TRUE(point.allFinite());
+  }
+}
+
+TEST(StrandPatch, FacesMeetOnTheirSharedEdgesInEveryLayer) {
+  const synthetic::Hair hair = synthetic::makeHair();
+  const render::HairLayout layout = render::makeHairLayout(hair.faces, hair.positions);
+  const Reference reference(layout, hair.positions);
+  const auto cornerPoint = [](bool triangle, int k) {
+    if (triangle) return strand_reference::Vec2(k == 1, k == 2);
+    return strand_reference::Vec2(k == 1 || k == 2, k >= 2);
+  };
+  struct Side {
+    int face, from, to;
+  };
+  std::map<std::pair<int, int>, std::vector<Side>> sides;
+  for (int face = 0; face < static_cast<int>(layout.faces.size()); ++face) {
+    const auto& columns = layout.face_columns[face];
+    const int corners = columns[3] < 0 ? 3 : 4;
+    for (int k = 0; k < corners; ++k) {
+      const int next = (k + 1) % corners;
+      const bool turned = columns[k] > columns[next];
+      const std::pair key{std::min(columns[k], columns[next]), std::max(columns[k], columns[next])};
+      sides[key].push_back(turned ? Side{face, next, k} : Side{face, k, next});
+    }
+  }
+  int shared_edges = 0, mixed_edges = 0;
+  for (const auto& [key, pair] : sides) {
+    if (pair.size() != 2) continue;
+    ++shared_edges;
+    std::array<bool, 2> triangle{};
+    for (int i = 0; i < 2; ++i) triangle[i] = layout.face_columns[pair[i].face][3] < 0;
+    mixed_edges += triangle[0] != triangle[1];
+    for (int layer = 0; layer < hair.layers; ++layer) {
+      for (double t : {0.0, 0.2, 0.5, 0.9}) {
+        std::array<strand_reference::Vec3, 2> at;
+        for (int i = 0; i < 2; ++i) {
+          const auto p = (1 - t) * cornerPoint(triangle[i], pair[i].from) + t * cornerPoint(triangle[i], pair[i].to);
+          at[i] = reference.patch(pair[i].face, p, layer);
+        }
+        ASSERT_LT((at[0] - at[1]).norm(), 1e-7);
+      }
+    }
+  }
+  EXPECT_GT(shared_edges, 60);
+  EXPECT_EQ(mixed_edges, 10);
+}
+
+TEST(HairLayout, GradientsOfAnAffineLayerAreExact) {
+  const synthetic::Hair hair = synthetic::makeHair();
+  const render::HairLayout layout = render::makeHairLayout(hair.faces, hair.positions);
+  Eigen::Matrix<float, 3, 2> slope;
+  slope << 1.2f, 0.1f, -0.3f, 0.8f, 0.2f, 0.5f;
+  // Around every column in turn: its neighbours displaced by an affine map of their tangent plane offsets.
+  for (const render::HairColumn& column : layout.columns) {
+    std::vector<float> positions(hair.positions.size(), 0.0f);
+    for (const render::ColumnNeighbour& neighbour : column.neighbours) {
+      const Vector3f p = slope * neighbour.offset;
+      std::copy(p.data(), p.data() + 3, positions.begin() + 3 * layout.columns[neighbour.column].first_vertex);
+    }
+    std::vector<Eigen::Matrix<float, 3, 2>> gradients;
+    render::inLayerGradients(layout, positions, gradients);
+    EXPECT_LT((gradients[column.first_vertex] - slope).norm(), 0.01f * slope.norm());
+  }
+}
+
+TEST(HairLayout, StrandsAreDealtByAreaAndNoneIsLost) {
+  const synthetic::Hair hair = synthetic::makeHair();
+  const render::HairLayout layout = render::makeHairLayout(hair.faces, hair.positions);
+  float total = 0;
+  for (const render::HairFace& face : layout.faces) total += face.area;
+  for (int strands : {0, 1, 17, 20000}) {
+    const std::vector<int> first = render::dealStrands(layout, strands);
+    EXPECT_EQ(first.back(), strands);
+    for (std::size_t i = 0; i < layout.faces.size(); ++i) {
+      EXPECT_NEAR(first[i + 1] - first[i], strands * layout.faces[i].area / total, 1.001);
+    }
+  }
+}
+
+TEST(HairLayout, FacesThatCannotCarryStrandsAreLeftOut) {
+  const synthetic::Hair hair = synthetic::makeHair();
+  std::vector<render::HairFace> faces(hair.faces.begin(), hair.faces.end());
+  faces[0].layers = 1;
+  faces[1].first_vertex[2] = 1 << 20;
+  faces[2].first_vertex[0] = -5;
+  EXPECT_EQ(render::makeHairLayout(faces, hair.positions).faces.size(), hair.faces.size() - 3);
+  EXPECT_TRUE(render::makeHairLayout(hair.faces, {}).faces.empty());
+}
+
+TEST(FiberScattering, ReturnsAllLightWithoutAbsorptionAndLessWithIt) {
+  render::HairLook look;
+  look.eumelanin = look.pheomelanin = 0;
+  const auto albedoOf = [](const render::HairLook& of) {
+    const render::FiberScattering s = render::tabulateScattering(of);
+    return s.forward_albedo[1] + s.backward_albedo[1];
+  };
+  for (float roughness : {0.15f, 0.3f, 0.6f}) {
+    look.beta_n = roughness;
+    EXPECT_NEAR(albedoOf(look), 1.0f, 0.02f);
+  }
+  float before = 1.02f;
+  for (float eumelanin : {0.3f, 1.3f, 8.0f}) {
+    look.eumelanin = eumelanin;
+    const float albedo = albedoOf(look);
+    EXPECT_LT(albedo, before);
+    before = albedo;
+  }
+}
+
+TEST(FiberScattering, PickedColoursAbsorbWhatTheyLack) {
+  render::HairLook look;
+  look.use_color = true;
+  look.color = {0.8f, 0.4f, 0.1f};
+  const render::Float3 sigma = render::absorptionOf(look);
+  EXPECT_LT(sigma[0], sigma[1]);
+  EXPECT_LT(sigma[1], sigma[2]);
+  look.color = {0, 0, 0};
+  for (float s : render::absorptionOf(look)) EXPECT_TRUE(std::isfinite(s));
+}
+
+TEST(HairOpenness, FindsTheHeadAndDarkensWhatLiesDeep) {
+  const synthetic::Hair hair = synthetic::makeHair();
+  const render::HairLayout layout = render::makeHairLayout(hair.faces, hair.positions);
+  const render::HeadBall head = render::fitHead(layout, hair.positions);
+  EXPECT_NEAR(head.radius, synthetic::kHeadRadius, 1e-4f);
+  EXPECT_LT((head.center - Vector3f(0, synthetic::kHeadHeight, 0)).norm(), 1e-4f);
+  render::HairOpenness openness;
+  openness.compute(layout, hair.positions, 5.0f, Vector3f::UnitX(), -Vector3f::UnitZ());
+  // The crown's column is outermost, the last ring's roots are covered by all that falls over them.
+  const Eigen::Vector3f outer = openness.values()[4], inner = openness.values()[(hair.positions.size() / 3) - hair.layers];
+  EXPECT_GT(outer.x(), inner.x());
+  for (const Eigen::Vector3f& value : openness.values()) {
+    ASSERT_TRUE(value.allFinite());
+    ASSERT_GE(value.minCoeff(), 0.0f);
+    ASSERT_LE(value.x(), 1.0f);
+  }
+}
+
+}  // namespace
