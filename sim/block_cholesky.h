@@ -29,8 +29,8 @@ struct BlockCholesky {
   std::vector<int> row_index;  // elimination positions of the rows below, per supernode, ascending
   std::vector<T> values;
 
-  // Lays out the factor of the rows listed, eliminated in about that order (postordered within the elimination tree); rows not
-  // listed are treated as fixed and left out. See elimination_order.h.
+  // Lays out the factor of the rows listed, eliminated in about that order (postordered within the elimination tree);
+  // rows not listed are treated as fixed and left out. See elimination_order.h.
   void analyze(const BlockPattern& pattern, std::vector<int> elimination_order);
 
   // Factors the matrix; false when a pivot is not positive (the factor is then unusable). Needs analyze.

@@ -28,7 +28,7 @@ struct Graph {
 struct Dissection {
   const Graph& graph;
   std::span<const std::array<double, 4>> coordinates;
-  std::vector<int> side;   // of the split in progress: 1 below, 2 above, 3 separator, 0 elsewhere
+  std::vector<int> side;  // of the split in progress: 1 below, 2 above, 3 separator, 0 elsewhere
   std::vector<int> order;
 
   // Splits `rows` across one axis at its median; returns the parts and leaves the separator's size in `cost`.
@@ -74,7 +74,8 @@ struct Dissection {
     }
     dissect(best[0]);
     dissect(best[1]);
-    std::stable_sort(best[2].begin(), best[2].end(), [&](int a, int b) { return coordinates[a][3] > coordinates[b][3]; });
+    std::stable_sort(best[2].begin(), best[2].end(),
+                     [&](int a, int b) { return coordinates[a][3] > coordinates[b][3]; });
     order.insert(order.end(), best[2].begin(), best[2].end());
   }
 };

@@ -72,6 +72,8 @@ struct Comber {
   double sideOf(int sheet) const { return 2 * sheet < coat.sheets ? 1.0 : -1.0; }
   bool inFront(int sheet) const { return cut.divides && backness(sheet) < kDivide; }
 
+  // Whether two neighbouring sheets have gone separate ways at a row: one before, one behind the shoulder.
+  bool parted(int sheet, int other, int row) const;
   double cutHeight(int sheet) const;
   double freeBelow(int sheet) const { return scalp.center.y() + cutHeight(sheet) - 0.02; }
   Vec3 aim(int sheet) const;
@@ -83,6 +85,11 @@ struct Comber {
   void raiseOuter();
   void measure();
 };
+
+bool Comber::parted(int sheet, int other, int row) const {
+  const double height = coat.inner[coat.index(sheet, row)].y() - scalp.center.y();
+  return inFront(sheet) != inFront(other) && height < shoulders + 0.25 * scalp.head_height;
+}
 
 double Comber::cutHeight(int sheet) const {
   const double q = backness(sheet), unit = scalp.head_height;
@@ -213,11 +220,6 @@ void Comber::hangTaut(int sheet) {
 void Comber::relaxInner() {
   std::vector<Vec3> next = coat.inner;
   const int first = coat.scalp_rows;
-  const auto parted = [&](int s, int other, int row) {
-    if (!cut.divides || coat.inner[coat.index(s, row)].y() - scalp.center.y() > shoulders + 0.25 * scalp.head_height)
-      return false;
-    return inFront(std::clamp(s, 0, coat.sheets - 1)) != inFront(std::clamp(other, 0, coat.sheets - 1));
-  };
   for (int sweep = 0; sweep < 60; ++sweep) {
     const double strength = sweep % 2 == 0 ? 0.5 : -0.47;
     for (int s = 0; s < coat.sheets; ++s) {
@@ -236,7 +238,7 @@ void Comber::relaxInner() {
         next[coat.index(s, r)] = weight > 0 ? Vec3(p + strength * (sum / weight - p)) : p;
       }
     }
-    if (strength < 0) {
+    if (sweep % 6 == 5) {
       for (int s = 0; s < coat.sheets; ++s)
         for (int r = first; r < coat.rows; ++r) {
           Vec3& p = next[coat.index(s, r)];
@@ -252,10 +254,8 @@ void Comber::raiseOuter() {
   for (int s = 0; s < coat.sheets; ++s) {
     for (int r = 0; r < coat.rows; ++r) {
       int before = std::max(s - 1, 0), after = std::min(s + 1, coat.sheets - 1);
-      if (cut.divides && inFront(before) != inFront(after)) {
-        if (inFront(before) != inFront(s)) before = s;
-        if (inFront(after) != inFront(s)) after = s;
-      }
+      if (parted(s, before, r)) before = s;
+      if (parted(s, after, r)) after = s;
       const Vec3 across = coat.inner[coat.index(after, r)] - coat.inner[coat.index(before, r)];
       const Vec3 down =
           coat.inner[coat.index(s, std::min(r + 1, coat.rows - 1))] - coat.inner[coat.index(s, std::max(r - 1, 0))];
@@ -268,9 +268,7 @@ void Comber::raiseOuter() {
       for (int r = 0; r < coat.rows; ++r) {
         Vec3 sum = 2 * normal[coat.index(s, r)];
         for (const int other : {s - 1, s + 1}) {
-          if (other >= 0 && other < coat.sheets &&
-              !(cut.divides && r > coat.scalp_rows + 8 && inFront(other) != inFront(s)))
-            sum += normal[coat.index(other, r)];
+          if (other >= 0 && other < coat.sheets && !parted(s, other, r)) sum += normal[coat.index(other, r)];
         }
         if (r > 0) sum += normal[coat.index(s, r - 1)];
         if (r + 1 < coat.rows) sum += normal[coat.index(s, r + 1)];

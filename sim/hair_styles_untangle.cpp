@@ -10,7 +10,8 @@ namespace sim {
 namespace {
 
 constexpr int kSweeps = 240;
-constexpr double kLargestMove = 0.004;  // m a sweep: large steps would throw neighbours over each other
+constexpr double kShortestEdge = 0.0032;  // m: shorter ones ruin the conditioning of the simulator's systems
+constexpr double kLargestMove = 0.004;    // m a sweep: large steps would throw neighbours over each other
 
 // Corner, its two neighbours in the layer and the one along the hair, in the order that makes the volume positive.
 using Corner = std::array<int, 4>;
@@ -68,7 +69,8 @@ void untangle(const BodyDistance& body, double fatness, double gap, HairMeshShap
   for (int c = 0; c < shape.columnCount(); ++c) root[shape.column_first[c]] = true;
   std::vector<Vec3>& x = shape.positions;
   const std::vector<Vec3> combed = x;
-  std::vector<Vec3> moved(x.size());
+  std::vector<Vec3> moved(x.size()), asked_at = x;
+  std::vector<double> clearance(x.size(), -1e9);
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     bool bad = false;
     for (const Corner& t : all) {
@@ -89,6 +91,20 @@ void untangle(const BodyDistance& body, double fatness, double gap, HairMeshShap
         x[t[k]] += move;
       }
     }
+    for (std::size_t v = 0; v < x.size(); ++v) {
+      for (int i = near.first[v]; i < near.first[v + 1]; ++i) {
+        const std::size_t w = near.list[i];
+        if (w < v || (root[v] && root[w])) continue;
+        const Vec3 edge = x[w] - x[v];
+        const double length = edge.norm();
+        if (length >= kShortestEdge) continue;
+        bad = bad || length < 0.95 * kShortestEdge;
+        const Vec3 way = length > 1e-6 ? Vec3(edge / length) : Vec3((combed[w] - combed[v]).normalized());
+        const double share = root[v] || root[w] ? 1.0 : 0.5;
+        if (!root[v]) x[v] -= share * (kShortestEdge - length) * way;
+        if (!root[w]) x[w] += share * (kShortestEdge - length) * way;
+      }
+    }
     if (!bad) return;
     // Spread what was moved over the neighbourhood, so that the combed shape stays smooth; less and less, so that it
     // ends.
@@ -104,8 +120,12 @@ void untangle(const BodyDistance& body, double fatness, double gap, HairMeshShap
     for (std::size_t v = 0; v < x.size(); ++v) {
       if (root[v]) continue;
       x[v] = combed[v] + moved[v];
-      const double d = body(x[v]);
-      if (d < gap) x[v] += (gap - d) * bodyNormal(body, x[v]);
+      // The distance is the dear part: a vertex that stands clear of the body is asked again only when it may have come
+      // near.
+      if (clearance[v] - (x[v] - asked_at[v]).norm() >= gap) continue;
+      clearance[v] = body(x[v]);
+      asked_at[v] = x[v];
+      if (clearance[v] < gap) x[v] += (gap - clearance[v]) * bodyNormal(body, x[v]);
     }
   }
 }

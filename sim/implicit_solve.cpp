@@ -43,18 +43,19 @@ bool updateContacts(const SimParams& params, std::vector<Contact>& contacts, con
   return std::erase_if(contacts, pulling) > 0 || changed;
 }
 
-template <class T>
-void addMass(T scale, const std::vector<T>& mass, BlockMatrix<T>& matrix) {
-  for (std::size_t i = 0; i < mass.size(); ++i) {
-    for (int k = 0; k < 9; k += 4) matrix.diagonal[i].m[k] += scale * mass[i];
-  }
-}
-
 }  // namespace
 
 template <class T>
 ImplicitSolver<T>::ImplicitSolver(const HairMesh& mesh, const BlockPattern& pattern)
-    : matrix(&pattern), preconditioner(mesh, pattern), rest_matrix(&pattern) {
+    : layout(mesh),
+      column_pattern(mesh, layout),
+      model(mesh, layout, column_pattern),
+      matrix(layout, column_pattern),
+      product(layout),
+      packed_x(layout),
+      packed_v(layout),
+      packed_force(layout),
+      preconditioner(mesh, pattern) {
   const int n = mesh.vertexCount();
   for (auto* array : {&x, &v, &trial, &force, &rhs, &velocity_step}) array->resize(n);
   mass.resize(n), inverse_mass_dt.resize(n);
@@ -64,9 +65,21 @@ ImplicitSolver<T>::ImplicitSolver(const HairMesh& mesh, const BlockPattern& patt
 
 template <class T>
 void ImplicitSolver<T>::setModel(const HairMesh& mesh, const ForceModel<double>& source, double density) {
-  model = convertModel<T>(source);
+  model.setElements(mesh, layout, source);
   for (int i = 0; i < mesh.vertexCount(); ++i) mass[i] = static_cast<T>(density * mesh.vertex_volume[i]);
   rest_h = 0;
+}
+
+// Packs positions and velocities and runs the kernels.
+template <class T>
+T ImplicitSolver<T>::evaluateForces(std::span<const V3<T>> at, ColumnEvaluation<T> out,
+                                    std::span<const V3<T>> velocities) {
+  packed_x.pack(layout, at);
+  if (!velocities.empty()) {
+    packed_v.pack(layout, velocities);
+    out.velocity = &packed_v;
+  }
+  return evaluate<T>(model, layout, packed_x, out);
 }
 
 // The factor of the rest shape's matrix, for the warped preconditioner. A stale factor stays a valid preconditioner, so
@@ -77,14 +90,14 @@ void ImplicitSolver<T>::refreshRestFactor(const HairMesh& mesh, const SimParams&
   if (rest_h > 0 && now < kStaleRatio * then && then < kStaleRatio * now && rest_drag == params.air_drag) return;
   const Vec3 origin = mesh.shape.positions[0];
   for (std::size_t i = 0; i < x.size(); ++i) trial[i] = cast<T>(Vec3(mesh.shape.positions[i] - origin));
-  rest_matrix.setZero();
-  Evaluation<T> out;
-  out.matrix = &rest_matrix;
+  matrix.setZero();
+  ColumnEvaluation<T> out;
+  out.matrix = &matrix;
   out.matrix_scale = static_cast<T>(now);
   out.tension_scale = static_cast<T>(h * h);
-  evaluate<T>(model, trial, out);
-  addMass(static_cast<T>(1 + h * params.air_drag), mass, rest_matrix);
-  preconditioner.setRestMatrix(rest_matrix);
+  evaluateForces(trial, out, {});
+  matrix.addMass(static_cast<T>(1 + h * params.air_drag), mass);
+  preconditioner.setRestMatrix(matrix);
   rest_h = h;
   rest_damping = params.damping;
   rest_drag = params.air_drag;
@@ -97,19 +110,17 @@ void ImplicitSolver<T>::assemble(const SimParams& params, const StepBase& base, 
   const T h = static_cast<T>(base.h), drag = static_cast<T>(params.air_drag), tau = static_cast<T>(params.damping);
   const V3<T> wind = cast<T>(base.wind), gravity{0, static_cast<T>(-params.gravity), 0};
   matrix.setZero();
-  std::fill(force.begin(), force.end(), V3<T>{0, 0, 0});
-  Evaluation<T> out;
-  out.force = force;
+  packed_force.setZero();
+  ColumnEvaluation<T> out;
+  out.force = &packed_force;
   out.matrix = &matrix;
   out.matrix_scale = h * (h + tau);
   out.tension_scale = h * h;
-  if (!at_start) {
-    out.velocities = v;
-    out.damping = tau;
-  }
-  evaluate<T>(model, x, out);
-  addMass(T(1) + h * drag, mass, matrix);
-  if (!at_start) multiply<T>(matrix, v, rhs);
+  if (!at_start) out.damping = tau;
+  evaluateForces(x, out, at_start ? std::span<const V3<T>>() : std::span<const V3<T>>(v));
+  packed_force.unpack(layout, force);
+  matrix.addMass(T(1) + h * drag, mass);
+  if (!at_start) multiply<T>(matrix, product, v, rhs);
   for (std::size_t i = 0; i < n; ++i) {
     const T m = mass[i];
     const V3<T> v_hat = cast<T>(base.v_hat[i]);
@@ -131,10 +142,9 @@ T ImplicitSolver<T>::merit(const SimParams& params, const StepBase& base, std::s
     sum += mass[i] * (T(0.5) * dot(from_hat, from_hat) + T(0.5) * h * drag * dot(from_wind, from_wind) -
                       h * dot(gravity, velocities[i]));
   }
-  Evaluation<T> out;
-  out.velocities = velocities;
+  ColumnEvaluation<T> out;
   out.damping = h * static_cast<T>(params.damping);
-  return static_cast<T>(sum) + evaluate<T>(model, x, out);
+  return static_cast<T>(sum) + evaluateForces(x, out, velocities);
 }
 
 template <class T>
@@ -170,13 +180,14 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
       filter.keep.push_back(cast<T>(constraint.keep));
       v[constraint.vertex] = filter.keep.back() * v[constraint.vertex] + cast<T>(constraint.prescribed);
     }
-    const SolveReport one = solveModifiedPcg<T>(matrix, trial, filter, preconditioner, stop, scratch, v);
+    const SolveReport one =
+        solveModifiedPcg<ColumnOperator<T>>({matrix, product}, trial, filter, preconditioner, stop, scratch, v);
     total.iterations += one.iterations;
     total.relative_residual = one.relative_residual;
     total.residual_acceleration = one.residual_acceleration;
     total.converged = one.converged;
     if (contacts.empty()) break;
-    multiply<T>(matrix, v, scratch.q);
+    multiply<T>(matrix, product, v, scratch.q);
     const auto reactionAt = [&](int i) { return Vec3(widen<T>(scratch.q[i] - rhs[i]) / static_cast<double>(h)); };
     if (!updateContacts(params, contacts, reactionAt)) break;
   }

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "sim/contact.h"
-#include "sim/forces/force_model.h"
+#include "sim/forces/column_model.h"
 #include "sim/linear_solver.h"
 #include "sim/step.h"
 
@@ -31,15 +31,18 @@ struct StepBase {
 // Everything a solve in scalar type T keeps from step to step.
 template <class T>
 struct ImplicitSolver {
-  ForceModel<T> model;
-  BlockMatrix<T> matrix;
+  ColumnLayout layout;
+  ColumnPattern column_pattern;
+  ColumnModel<T> model;
+  ColumnMatrix<T> matrix;
+  ColumnProduct<T> product;
+  ColumnField<T> packed_x, packed_v, packed_force;
   Preconditioner<T> preconditioner;
   Filter<T> filter;
   SolverScratch<T> scratch;
   std::vector<V3<T>> x, v, trial, force, rhs, velocity_step;
   std::vector<T> mass, inverse_mass_dt;
   std::vector<VertexConstraint> constraints;
-  BlockMatrix<T> rest_matrix;
   double rest_h = 0, rest_damping = 0, rest_drag = 0;  // what the rest factor was made for; rest_h 0: none
 
   ImplicitSolver(const HairMesh& mesh, const BlockPattern& pattern);
@@ -52,6 +55,7 @@ struct ImplicitSolver {
              std::vector<Contact>& contacts, std::span<Vec3> velocities, StepReport& report);
 
  private:
+  T evaluateForces(std::span<const V3<T>> at, ColumnEvaluation<T> out, std::span<const V3<T>> velocities);
   void refreshRestFactor(const HairMesh& mesh, const SimParams& params, double h);
   void assemble(const SimParams& params, const StepBase& base, bool at_start);
   T merit(const SimParams& params, const StepBase& base, std::span<const V3<T>> velocities);

@@ -28,14 +28,18 @@ double largestAcceleration(std::span<const V3<T>> r, std::span<const T> inverse_
 
 }  // namespace
 
-template <class T>
-SolveReport solveModifiedPcg(const BlockMatrix<T>& a, std::span<const V3<T>> b, const Filter<T>& filter,
-                             Preconditioner<T>& preconditioner, const StopRule<T>& stop, SolverScratch<T>& scratch,
-                             std::span<V3<T>> x) {
+template <class Operator>
+SolveReport solveModifiedPcg(const Operator& a, std::span<const V3<typename Operator::Number>> b,
+                             const Filter<typename Operator::Number>& filter,
+                             Preconditioner<typename Operator::Number>& preconditioner,
+                             const StopRule<typename Operator::Number>& stop,
+                             SolverScratch<typename Operator::Number>& scratch,
+                             std::span<V3<typename Operator::Number>> x) {
+  using T = typename Operator::Number;
   const std::size_t n = b.size();
   const std::span<V3<T>> r(scratch.r), z(scratch.z), d(scratch.d), q(scratch.q);
   SolveReport report;
-  multiply<T>(a, x, q);
+  a(x, q);
   for (std::size_t i = 0; i < n; ++i) r[i] = b[i] - q[i];
   filter.apply(r);
   preconditioner.apply(r, z);
@@ -47,7 +51,7 @@ SolveReport solveModifiedPcg(const BlockMatrix<T>& a, std::span<const V3<T>> b, 
   const auto slowEnough = [&] { return stop.acceleration > 0 && report.residual_acceleration <= stop.acceleration; };
   report.converged = !(first > 0) || slowEnough();
   while (!report.converged && report.iterations < stop.max_iterations) {
-    multiply<T>(a, d, q);
+    a(d, q);
     filter.apply(q);
     const double curvature = innerProduct<T>(d, q);
     if (!(curvature > 0)) break;  // rounding has eaten the direction, or a value is not finite
@@ -71,11 +75,13 @@ SolveReport solveModifiedPcg(const BlockMatrix<T>& a, std::span<const V3<T>> b, 
   return report;
 }
 
-template SolveReport solveModifiedPcg(const BlockMatrix<float>&, std::span<const V3<float>>, const Filter<float>&,
-                                      Preconditioner<float>&, const StopRule<float>&, SolverScratch<float>&,
-                                      std::span<V3<float>>);
-template SolveReport solveModifiedPcg(const BlockMatrix<double>&, std::span<const V3<double>>, const Filter<double>&,
-                                      Preconditioner<double>&, const StopRule<double>&, SolverScratch<double>&,
-                                      std::span<V3<double>>);
+#define HAIRMESH_INSTANTIATE(Operator, T)                                                             \
+  template SolveReport solveModifiedPcg(const Operator<T>&, std::span<const V3<T>>, const Filter<T>&, \
+                                        Preconditioner<T>&, const StopRule<T>&, SolverScratch<T>&, std::span<V3<T>>)
+HAIRMESH_INSTANTIATE(BlockOperator, float);
+HAIRMESH_INSTANTIATE(BlockOperator, double);
+HAIRMESH_INSTANTIATE(ColumnOperator, float);
+HAIRMESH_INSTANTIATE(ColumnOperator, double);
+#undef HAIRMESH_INSTANTIATE
 
 }  // namespace sim

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/block_matrix.h"
+#include "sim/column_matrix.h"
 #include "sim/preconditioner.h"
 
 namespace sim {
@@ -49,9 +50,34 @@ struct SolverScratch {
   void resize(int n) { r.resize(n), z.resize(n), d.resize(n), q.resize(n); }
 };
 
+// The product with a system matrix, in either of its layouts.
+template <class T>
+struct BlockOperator {
+  using Number = T;
+  const BlockMatrix<T>& matrix;
+  void operator()(std::span<const V3<T>> x, std::span<V3<T>> y) const { multiply<T>(matrix, x, y); }
+};
+template <class T>
+struct ColumnOperator {
+  using Number = T;
+  const ColumnMatrix<T>& matrix;
+  ColumnProduct<T>& scratch;
+  void operator()(std::span<const V3<T>> x, std::span<V3<T>> y) const { multiply<T>(matrix, scratch, x, y); }
+};
+
+template <class Operator>
+SolveReport solveModifiedPcg(const Operator& a, std::span<const V3<typename Operator::Number>> b,
+                             const Filter<typename Operator::Number>& filter,
+                             Preconditioner<typename Operator::Number>& preconditioner,
+                             const StopRule<typename Operator::Number>& stop,
+                             SolverScratch<typename Operator::Number>& scratch,
+                             std::span<V3<typename Operator::Number>> x);
+
 template <class T>
 SolveReport solveModifiedPcg(const BlockMatrix<T>& a, std::span<const V3<T>> b, const Filter<T>& filter,
                              Preconditioner<T>& preconditioner, const StopRule<T>& stop, SolverScratch<T>& scratch,
-                             std::span<V3<T>> x);
+                             std::span<V3<T>> x) {
+  return solveModifiedPcg<BlockOperator<T>>({a}, b, filter, preconditioner, stop, scratch, x);
+}
 
 }  // namespace sim

@@ -79,11 +79,33 @@ void Preconditioner<T>::update(const BlockMatrix<T>& a, Solver solver) {
     if (factorColumns(a)) return;
     kind_ = Solver::kBlockJacobi;
   }
-  for (std::size_t i = 0; i < a.diagonal.size(); ++i) {
-    const M3<T>& d = a.diagonal[i];
-    inverse_diagonal_[i] =
-        solver == Solver::kDiagonal ? M3<T>{T(1) / d.m[0], 0, 0, 0, T(1) / d.m[4], 0, 0, 0, T(1) / d.m[8]} : inverse(d);
-  }
+  for (std::size_t i = 0; i < a.diagonal.size(); ++i) setDiagonal(static_cast<int>(i), a.diagonal[i]);
+}
+
+template <class T>
+void Preconditioner<T>::setDiagonal(int i, const M3<T>& d) {
+  inverse_diagonal_[i] =
+      kind_ == Solver::kDiagonal ? M3<T>{T(1) / d.m[0], 0, 0, 0, T(1) / d.m[4], 0, 0, 0, T(1) / d.m[8]} : inverse(d);
+}
+
+template <class T>
+const BlockMatrix<T>& Preconditioner<T>::toBlocks(const ColumnMatrix<T>& a) {
+  if (!blocks_) blocks_.emplace(pattern_);
+  a.toBlocks(*mesh_, *blocks_);
+  return *blocks_;
+}
+
+template <class T>
+bool Preconditioner<T>::setRestMatrix(const ColumnMatrix<T>& rest) {
+  return setRestMatrix(toBlocks(rest));
+}
+
+template <class T>
+void Preconditioner<T>::update(const ColumnMatrix<T>& a, Solver solver) {
+  kind_ = solver;
+  if (solver == Solver::kWarped) return;
+  if (solver == Solver::kDirect || solver == Solver::kColumn) return update(toBlocks(a), solver);
+  for (int i = 0; i < mesh_->vertexCount(); ++i) setDiagonal(i, a.diagonalBlock(i));
 }
 
 template <class T>

@@ -7,6 +7,7 @@
 
 #include "sim/block_cholesky.h"
 #include "sim/block_matrix.h"
+#include "sim/column_matrix.h"
 #include "sim/rotation.h"
 #include "sim/sim_params.h"
 
@@ -27,8 +28,10 @@ struct Preconditioner {
 
   // Refreshes what follows the current matrix. Falls back to 3x3 blocks when a factorization fails.
   void update(const BlockMatrix<T>& a, Solver solver);
+  void update(const ColumnMatrix<T>& a, Solver solver);
   // The warped preconditioner's two halves: the factor of the rest shape's matrix (rarely), the rotations (every step).
   bool setRestMatrix(const BlockMatrix<T>& rest);
+  bool setRestMatrix(const ColumnMatrix<T>& rest);
   void updateRotations(std::span<const V3<T>> x) { rotations_.update(x); }
 
   // z = P r.
@@ -51,7 +54,11 @@ struct Preconditioner {
   std::vector<int> column_block_;    // pattern block of each block of column_pattern_
   std::vector<unsigned char> free_;  // not a root
 
+  std::optional<BlockMatrix<T>> blocks_;  // a matrix given in column layout, for the factorizations
+
   bool factorColumns(const BlockMatrix<T>& a);
+  const BlockMatrix<T>& toBlocks(const ColumnMatrix<T>& a);
+  void setDiagonal(int i, const M3<T>& d);
 };
 
 // Inverse of a symmetric positive definite 3x3 block; a singular block gives the inverse of its diagonal.

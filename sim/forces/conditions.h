@@ -62,9 +62,10 @@ HAIRMESH_INLINE Condition<T, 4> shearCondition(const V3<T>* x, T inverse_along, 
   return c;
 }
 
-// Bend of two consecutive walls about their common horizontal edge x[2]-x[3]: C = (theta - theta_0) / length, the change of
-// curvature. x: (a, b) of the layer below, of the hinge, and above; the walls' far sides act through their midpoints.
-// `smallest_square` (m^4) is the square of the doubled area below which a wall counts as collapsed and its pull is bounded.
+// Bend of two consecutive walls about their common horizontal edge x[2]-x[3]: C = (theta - theta_0) / length, the
+// change of curvature. x: (a, b) of the layer below, of the hinge, and above; the walls' far sides act through their
+// midpoints. `smallest_square` (m^4) is the square of the doubled area below which a wall counts as collapsed and its
+// pull is bounded.
 template <class T>
 HAIRMESH_INLINE Condition<T, 6> bendCondition(const V3<T>* x, T rest_angle, T inverse_length, T smallest_square) {
   const T zero = constant<T>(0), one = constant<T>(1), half = constant<T>(0.5);
@@ -92,8 +93,9 @@ HAIRMESH_INLINE Condition<T, 6> bendCondition(const V3<T>* x, T rest_angle, T in
   return c;
 }
 
-// The volume force's condition, equation (1): C = e1 . (e2 x e3) / 6 - V0, with equation (2)'s gradient. (The paper prints the
-// forces with the sixth taken into k; here it stays in the gradient, so that f = -k C dC/dx holds to the letter.)
+// The volume force's condition, equation (1): C = e1 . (e2 x e3) / 6 - V0, with equation (2)'s gradient. (The paper
+// prints the forces with the sixth taken into k; here it stays in the gradient, so that f = -k C dC/dx holds to the
+// letter.)
 template <class T>
 HAIRMESH_INLINE Condition<T, 4> volumeCondition(const V3<T>* x, T rest_volume) {
   const V3<T> e1 = x[1] - x[0], e2 = x[2] - x[0], e3 = x[3] - x[0];

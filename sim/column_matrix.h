@@ -1,0 +1,72 @@
+// The system matrix in column layout: symmetric, 3x3 blocks, kept as block diagonals of column pairs.
+//
+// The blocks that couple layer l of column a with layer l + offset of column b, for all l, stand side by side, one
+// array a component, so that assembly and product are plain vector code along the layers.
+#pragma once
+
+#include <map>
+#include <span>
+#include <vector>
+
+#include "sim/block_matrix.h"
+#include "sim/column_layout.h"
+
+namespace sim {
+
+// One block diagonal. For a == b the offset is not negative; offset 0 is the symmetric diagonal (six components:
+// xx, xy, xz, yy, yz, zz), all others have nine, row-major.
+struct BlockDiagonal {
+  int a, b, offset;
+  int row, column;     // entries of (a, 0) and (b, offset) in a padded array
+  std::size_t values;  // start of its components, `stride` apart
+  int lanes;           // entries to be walked, a multiple of kLanes
+  bool symmetric() const { return a == b && offset == 0; }
+};
+
+// Where an element's pair of vertices adds its block: the values' start for layer 0 and whether the block is transposed
+// there.
+struct BlockPlace {
+  int at = -1;
+  bool transposed = false;
+};
+
+struct ColumnPattern {
+  int stride = 0;
+  std::vector<BlockDiagonal> diagonals;  // the columns' own offset 0 first, in column order
+  std::size_t value_count = 0;
+
+  ColumnPattern(const HairMesh& mesh, const ColumnLayout& layout);
+  // Place of the block of (column p, layer l + dp) and (column q, layer l + dq) as a function of l: element l of the
+  // arrays at `at`. The pair must be coupled by some element.
+  BlockPlace place(int p, int dp, int q, int dq) const;
+
+ private:
+  std::map<std::array<int, 3>, int> number_;  // (a, b, offset) -> diagonal
+};
+
+template <class T>
+struct ColumnMatrix {
+  const ColumnLayout* layout;
+  const ColumnPattern* pattern;
+  std::vector<T> values;
+
+  ColumnMatrix(const ColumnLayout& l, const ColumnPattern& p) : layout(&l), pattern(&p), values(p.value_count) {}
+  void setZero();
+  // Adds scale * mass to the diagonal (mass per vertex, in vertex order).
+  void addMass(T scale, std::span<const T> mass);
+  // The 3x3 block of vertex v's diagonal.
+  M3<T> diagonalBlock(int v) const;
+  // The same matrix as blocks by vertex. `to` has the mesh's system pattern.
+  void toBlocks(const HairMesh& mesh, BlockMatrix<T>& to) const;
+};
+
+// y = A x; vectors in vertex order, `scratch` two fields of the layout.
+template <class T>
+struct ColumnProduct {
+  ColumnField<T> x, y;
+  explicit ColumnProduct(const ColumnLayout& layout) : x(layout), y(layout) {}
+};
+template <class T>
+void multiply(const ColumnMatrix<T>& a, ColumnProduct<T>& scratch, std::span<const V3<T>> x, std::span<V3<T>> y);
+
+}  // namespace sim

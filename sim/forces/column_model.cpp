@@ -1,0 +1,168 @@
+#include "sim/forces/column_model.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace sim {
+namespace {
+
+int roundedUp(int count) {
+  return (std::max(count, 0) + kLanes - 1) / kLanes * kLanes;
+}
+
+using EdgeNumber = std::map<std::pair<int, int>, int>;
+
+// Root edges by their columns, oriented as their first wall is wound.
+EdgeNumber numberEdges(const HairMesh& mesh) {
+  EdgeNumber number;
+  for (const Wall& wall : mesh.walls) {
+    const int a = mesh.column_of[wall.v[0]], b = mesh.column_of[wall.v[1]];
+    if (number.contains({a, b}) || number.contains({b, a})) continue;
+    const int next = static_cast<int>(number.size());
+    number[{a, b}] = next;
+  }
+  return number;
+}
+
+}  // namespace
+
+template <class T>
+ColumnModel<T>::ColumnModel(const HairMesh& mesh, const ColumnLayout& layout, const ColumnPattern& pattern) {
+  const std::size_t stride = layout.stride;
+  for (int c = 0; c < layout.columns; ++c) {
+    diagonal.push_back(static_cast<int>(pattern.diagonals[c].values));
+    vertical_pairs.push_back(pattern.place(c, 0, c, 1));
+    vertical_lanes.push_back(roundedUp(layout.length[c] - 1));
+  }
+  const EdgeNumber number = numberEdges(mesh);
+  edges.resize(number.size());
+  std::vector<int> wall_count(number.size(), 0);
+  for (const Wall& wall : mesh.walls) {
+    const int p = mesh.column_of[wall.v[0]], q = mesh.column_of[wall.v[1]];
+    const auto it = number.contains({p, q}) ? number.find({p, q}) : number.find({q, p});
+    wall_count[it->second] = std::max(wall_count[it->second], mesh.layer_of[wall.v[0]] + 1);
+  }
+  for (const auto& [columns, e] : number) {
+    RootEdge& edge = edges[e];
+    const auto [a, b] = columns;
+    edge.a = a, edge.b = b;
+    edge.walls = roundedUp(wall_count[e]);
+    edge.hinges = roundedUp(wall_count[e] - 1);
+    edge.first = e * stride;
+    edge.rung = pattern.place(a, 0, b, 0);
+    const std::array<std::pair<int, int>, 4> corner{{{a, 0}, {b, 0}, {b, 1}, {a, 1}}};
+    for (int p = 0, pair = 0; p < 4; ++p) {
+      edge.wall_diagonal[p] = diagonal[corner[p].first] + corner[p].second;
+      for (int q = p + 1; q < 4; ++q, ++pair) {
+        edge.wall_pairs[pair] = pattern.place(corner[p].first, corner[p].second, corner[q].first, corner[q].second);
+      }
+    }
+    const std::array<std::pair<int, int>, 6> joint{{{a, 0}, {b, 0}, {a, 1}, {b, 1}, {a, 2}, {b, 2}}};
+    for (int layer = 0; layer < 3; ++layer) {
+      edge.hinge_a[layer] = diagonal[a] + layer;
+      edge.hinge_b[layer] = diagonal[b] + layer;
+    }
+    for (int p = 0, pair = 0; p < 6; ++p) {
+      for (int q = p + 1; q < 6; ++q, ++pair) {
+        edge.hinge_pairs[pair] = pattern.place(joint[p].first, joint[p].second, joint[q].first, joint[q].second);
+      }
+    }
+  }
+  std::size_t at = 0;
+  for (std::size_t f = 0; f < mesh.shape.root_faces.size(); ++f) {
+    const RootFace& root = mesh.shape.root_faces[f];
+    const int n = root.corner_count;
+    Face face{};
+    face.corner_count = n;
+    face.columns = root.columns;
+    face.prisms = roundedUp(mesh.bundle_layers[f] - 1);
+    face.first = at;
+    at += 2 * n * stride;
+    for (int k = 0; k < 2 * n; ++k) {
+      const bool upper = k >= n;
+      const int corner = k % n, next = (corner + 1) % n, previous = (corner + n - 1) % n, layer = upper ? 1 : 0;
+      // As in the mesh's corner tetrahedra: around an upper corner the in-layer neighbours swap.
+      face.columns_of[k] = {root.columns[corner], root.columns[upper ? previous : next],
+                            root.columns[upper ? next : previous], root.columns[corner]};
+      face.layers_of[k] = {layer, layer, layer, 1 - layer};
+      for (int p = 0, pair = 0; p < 4; ++p) {
+        for (int q = p + 1; q < 4; ++q, ++pair) {
+          face.pairs[k][pair] =
+              pattern.place(face.columns_of[k][p], face.layers_of[k][p], face.columns_of[k][q], face.layers_of[k][q]);
+        }
+      }
+    }
+    faces.push_back(face);
+  }
+  const std::size_t column_entries = layout.columns * stride, edge_entries = edges.size() * stride;
+  for (auto* array : {&vertical.stiffness, &vertical.inverse_length, &vertical.shift}) array->resize(column_entries);
+  for (auto* array : {&horizontal.stiffness, &horizontal.inverse_length, &horizontal.shift, &shear_stiffness,
+                      &shear_shift, &inverse_along, &inverse_across, &bend_stiffness, &bend_rest_angle,
+                      &bend_inverse_length, &bend_smallest_square}) {
+    array->resize(edge_entries);
+  }
+  for (auto* array : {&volume_stiffness, &volume_rest}) array->resize(at);
+}
+
+template <class T>
+void ColumnModel<T>::setElements(const HairMesh& mesh, const ColumnLayout& layout, const ForceModel<double>& model) {
+  const std::size_t stride = layout.stride;
+  for (auto* array :
+       {&vertical.stiffness, &horizontal.stiffness, &shear_stiffness, &bend_stiffness, &volume_stiffness}) {
+    std::fill(array->begin(), array->end(), T(0));
+  }
+  std::fill(bend_smallest_square.begin(), bend_smallest_square.end(), T(1));  // the padding divides by it
+  const EdgeNumber number = numberEdges(mesh);
+  // Entry of a root edge's element arrays and whether the element is wound against the edge.
+  const auto edgeEntry = [&](int va, int vb) {
+    const int p = mesh.column_of[va], q = mesh.column_of[vb];
+    const auto it = number.find({p, q});
+    const bool against = it == number.end();
+    return std::pair(static_cast<std::size_t>(against ? number.at({q, p}) : it->second) * stride + mesh.layer_of[va],
+                     against);
+  };
+  for (std::size_t e = 0; e < model.stretch.size(); ++e) {
+    const auto [a, b] = model.stretch.vertices[e];
+    const bool is_vertical = mesh.column_of[a] == mesh.column_of[b];
+    Stretch& to = is_vertical ? vertical : horizontal;
+    const std::size_t at = is_vertical ? mesh.column_of[a] * stride + mesh.layer_of[a] : edgeEntry(a, b).first;
+    to.stiffness[at] = static_cast<T>(model.stretch.stiffness[e]);
+    to.inverse_length[at] = static_cast<T>(model.stretch.inverse_length[e]);
+    to.shift[at] = static_cast<T>(model.stretch.shift[e]);
+  }
+  for (std::size_t e = 0; e < model.shear.size(); ++e) {
+    const auto [at, against] = edgeEntry(model.shear.vertices[e][0], model.shear.vertices[e][1]);
+    shear_stiffness[at] = static_cast<T>(model.shear.stiffness[e]);
+    inverse_along[at] = static_cast<T>(model.shear.inverse_along[e]);
+    inverse_across[at] = static_cast<T>(model.shear.inverse_across[e]);
+    // Wound the other way the wall's second axis, and with it the condition, changes sign.
+    shear_shift[at] = static_cast<T>(against ? -model.shear.shift[e] : model.shear.shift[e]);
+  }
+  for (std::size_t e = 0; e < model.bend.size(); ++e) {
+    const auto [at, against] = edgeEntry(model.bend.vertices[e][0], model.bend.vertices[e][1]);
+    const double rest = model.bend.rest_angle[e] + model.bend.shift[e] / model.bend.inverse_length[e];
+    bend_stiffness[at] = static_cast<T>(model.bend.stiffness[e]);
+    bend_rest_angle[at] = static_cast<T>(against ? -rest : rest);
+    bend_inverse_length[at] = static_cast<T>(model.bend.inverse_length[e]);
+    bend_smallest_square[at] = static_cast<T>(model.bend.smallest_square[e]);
+  }
+  if (model.volume.size() == 0) return;
+  std::size_t tet = 0;
+  for (const Face& face : faces) {
+    // The mesh's corner tetrahedra come by face, then layer, then corner.
+    const int f = static_cast<int>(&face - faces.data());
+    for (int l = 0; l + 1 < mesh.bundle_layers[f]; ++l) {
+      for (int k = 0; k < 2 * face.corner_count; ++k, ++tet) {
+        const std::size_t at = face.first + k * stride + l;
+        volume_stiffness[at] = static_cast<T>(model.volume.stiffness[tet]);
+        volume_rest[at] = static_cast<T>(model.volume.rest_volume[tet] + model.volume.shift[tet]);
+      }
+    }
+  }
+}
+
+template struct ColumnModel<float>;
+template struct ColumnModel<double>;
+
+}  // namespace sim

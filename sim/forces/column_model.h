@@ -1,0 +1,69 @@
+// The force model in column layout: the same elements as ForceModel, arranged by root edge and root face with their
+// layers along the vector lanes. This is what the simulator runs; evaluate() over ForceModel is the plain reference
+// that tests hold it to.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "sim/column_matrix.h"
+#include "sim/forces/force_model.h"
+
+namespace sim {
+
+// Element arrays are `stride` long per root edge, face corner or column; entry l belongs to layers l, l + 1 (and l + 2
+// for hinges); stiffness is zero where there is no element.
+template <class T>
+struct ColumnModel {
+  struct Stretch {
+    std::vector<T> stiffness, inverse_length, shift;
+  };
+  struct RootEdge {
+    int a, b;                                            // columns
+    int walls, hinges;                                   // entries to walk, multiples of kLanes
+    std::size_t first;                                   // of its element arrays
+    std::array<int, 4> wall_diagonal, hinge_a, hinge_b;  // places of diagonal blocks; the hinge's by layer
+    std::array<BlockPlace, 6> wall_pairs;
+    std::array<BlockPlace, 15> hinge_pairs;
+    BlockPlace rung;  // horizontal edge of layer l
+  };
+  struct Face {
+    int corner_count;
+    std::array<int, 4> columns;
+    int prisms;         // entries to walk
+    std::size_t first;  // of its element arrays: one per corner tetrahedron
+    std::array<std::array<int, 4>, 8> columns_of,
+        layers_of;  // per corner tetrahedron: column and layer offset of its vertices
+    std::array<std::array<BlockPlace, 6>, 8> pairs;
+  };
+  std::vector<RootEdge> edges;
+  std::vector<Face> faces;
+  std::vector<BlockPlace> vertical_pairs;  // per column
+  std::vector<int> diagonal;               // per column: start of its own offset 0
+  std::vector<int> vertical_lanes;         // per column
+  Stretch vertical, horizontal;
+  std::vector<T> shear_stiffness, shear_shift, inverse_along, inverse_across;
+  std::vector<T> bend_stiffness, bend_rest_angle, bend_inverse_length, bend_smallest_square;
+  std::vector<T> volume_stiffness, volume_rest;
+
+  ColumnModel(const HairMesh& mesh, const ColumnLayout& layout, const ColumnPattern& pattern);
+  // Takes over stiffnesses and rest values; the topology stays.
+  void setElements(const HairMesh& mesh, const ColumnLayout& layout, const ForceModel<double>& model);
+};
+
+// What an evaluation in column layout adds up; see Evaluation.
+template <class T>
+struct ColumnEvaluation {
+  ColumnField<T>* force = nullptr;    // added
+  ColumnMatrix<T>* matrix = nullptr;  // added
+  T matrix_scale = 0, tension_scale = 0;
+  const ColumnField<T>* velocity = nullptr;
+  T damping = 0;
+};
+
+// As evaluate() over ForceModel, within rounding.
+template <class T>
+T evaluate(const ColumnModel<T>& model, const ColumnLayout& layout, const ColumnField<T>& x,
+           const ColumnEvaluation<T>& out);
+
+}  // namespace sim
