@@ -1,0 +1,157 @@
+#include "app/obj_layers.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "app/errors.h"
+#include "app/text_scanner.h"
+
+namespace app {
+namespace {
+
+constexpr double kLargestCoordinate = 1e3;  // m
+constexpr std::string_view kLayerPrefix = "layer_", kBundlePrefix = "bundle_";
+
+bool isBlank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+}
+bool isDigit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+// Takes the first word off a line; empty at its end or at a comment.
+std::string_view takeWord(std::string_view& line) {
+  std::size_t begin = 0;
+  while (begin < line.size() && isBlank(line[begin])) ++begin;
+  std::size_t end = begin;
+  while (end < line.size() && !isBlank(line[end]) && line[end] != '#') ++end;
+  const std::string_view word = line.substr(begin, end - begin);
+  line = word.empty() ? std::string_view() : line.substr(end);
+  return word;
+}
+
+struct ObjReader {
+  const std::string& file;
+  ObjLayers out;
+  int line = 0;
+  ObjLayer* layer = nullptr;
+  std::string_view bundle;
+
+  [[noreturn]] void fail(const std::string& fault, const std::string& mend) const {
+    throw InputError(file, "line " + std::to_string(line), fault, mend);
+  }
+  double coordinate(std::string_view word) const;
+  void readVertex(std::string_view rest);
+  int corner(std::string_view word) const;
+  void readFace(std::string_view rest);
+  void enterLayer(std::string_view rest);
+  void readLine(std::string_view text);
+};
+
+double ObjReader::coordinate(std::string_view word) const {
+  if (word.empty()) fail("the vertex has fewer than three coordinates", "give x, y and z");
+  std::string_view digits = word;
+  if (digits.size() > 1 && digits[0] == '+') digits.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error == std::errc::invalid_argument || end != digits.data() + digits.size())
+    fail(quoted(word) + " is not a number", "give coordinates in metres");
+  if (error == std::errc::result_out_of_range || !std::isfinite(value) || std::abs(value) > kLargestCoordinate)
+    fail("the coordinate " + quoted(word) + " is not finite or beyond 1000 m", "give metres near the head");
+  return value;
+}
+
+void ObjReader::readVertex(std::string_view rest) {
+  sim::Vec3 p;
+  for (int k = 0; k < 3; ++k) p[k] = coordinate(takeWord(rest));
+  out.positions.push_back(p);
+  out.position_lines.push_back(line);
+}
+
+// "7", "7/1", "7//2", "7/1/2", or counted back from the last vertex: "-1". Vertices written further down are found out
+// later.
+int ObjReader::corner(std::string_view word) const {
+  const std::string_view index = word.substr(0, word.find('/'));
+  long long value = 0;
+  const auto [end, error] = std::from_chars(index.data(), index.data() + index.size(), value);
+  if (error != std::errc() || end != index.data() + index.size() || value == 0)
+    fail("the face's corner " + quoted(word) + " is not a vertex number", "count vertices from 1, or back from -1");
+  const long long count = static_cast<long long>(out.positions.size());
+  if (value < 0 ? value < -count : value > 2'000'000'000)
+    fail("the face names vertex " + std::to_string(value) + ", which does not exist",
+         std::to_string(count) + " vertices stand above it");
+  return static_cast<int>(value < 0 ? count + value : value - 1);
+}
+
+void ObjReader::readFace(std::string_view rest) {
+  if (!layer) fail("the face belongs to no layer", "put a line 'g layer_0' before the scalp's faces");
+  ObjFace face;
+  face.line = line;
+  face.bundle = bundle;
+  for (std::string_view word = takeWord(rest); !word.empty(); word = takeWord(rest)) {
+    if (face.corner_count == 4) fail("the face has more than four corners", "split it into triangles and quads");
+    face.v[face.corner_count++] = corner(word);
+  }
+  if (face.corner_count < 3) fail("the face has fewer than three corners", "give it three or four");
+  layer->faces.push_back(face);
+}
+
+// A group or an object is a layer when one of its names is layer_<n>, alone or before what a modelling tool has
+// appended.
+void ObjReader::enterLayer(std::string_view rest) {
+  for (std::string_view word = takeWord(rest); !word.empty(); word = takeWord(rest)) {
+    if (word.substr(0, kLayerPrefix.size()) != kLayerPrefix) continue;
+    word.remove_prefix(kLayerPrefix.size());
+    int number = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    if (error != std::errc() || number < 0)
+      fail("the layer's number " + quoted(word) + " is not a number", "name layers layer_0, layer_1, ...");
+    layer = &out.layers[number];
+    if (layer->line == 0) layer->line = line;
+    return;
+  }
+}
+
+void ObjReader::readLine(std::string_view text) {
+  const std::string_view keyword = takeWord(text);
+  if (keyword == "v") {
+    readVertex(text);
+  } else if (keyword == "f") {
+    readFace(text);
+  } else if (keyword == "g" || keyword == "o") {
+    enterLayer(text);
+  } else if (keyword == "usemtl") {
+    const std::string_view name = takeWord(text);
+    bundle = std::string_view();
+    if (name.size() > kBundlePrefix.size() && name.substr(0, kBundlePrefix.size()) == kBundlePrefix &&
+        isDigit(name[kBundlePrefix.size()]))
+      bundle = name;
+  }
+}
+
+}  // namespace
+
+ObjLayers readObjLayers(std::string_view text, const std::string& file) {
+  ObjReader reader{file, {}, 0, nullptr, {}};
+  while (!text.empty()) {
+    ++reader.line;
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    reader.readLine(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  const int count = static_cast<int>(reader.out.positions.size());
+  for (const auto& [number, layer] : reader.out.layers) {
+    for (const ObjFace& face : layer.faces) {
+      reader.line = face.line;
+      for (int k = 0; k < face.corner_count; ++k) {
+        if (face.v[k] >= count)
+          reader.fail("the face names vertex " + std::to_string(face.v[k] + 1LL) + ", which does not exist",
+                      "the file has " + std::to_string(count) + " vertices");
+      }
+    }
+  }
+  return std::move(reader.out);
+}
+
+}  // namespace app
