@@ -118,6 +118,64 @@ Coverage coverage(const Character& character, const std::vector<bool>& counts) {
   return c;
 }
 
+namespace {
+
+struct SurfaceSample {
+  FitPoint point;
+  std::uint32_t vertex;  // the triangle's corner that it is nearest to
+};
+
+// Points spread over the triangles, at least one each, so that a low-poly surface counts between its vertices too.
+std::vector<SurfaceSample> sampleSurface(const SkinnedMesh& mesh) {
+  double total = 0;
+  const auto corners = [&](std::size_t t) {
+    return std::array<Vec3, 3>{mesh.positions[mesh.triangles[t]].cast<double>(),
+                               mesh.positions[mesh.triangles[t + 1]].cast<double>(),
+                               mesh.positions[mesh.triangles[t + 2]].cast<double>()};
+  };
+  const auto areaOf = [](const std::array<Vec3, 3>& c) { return 0.5 * (c[1] - c[0]).cross(c[2] - c[0]).norm(); };
+  for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) total += areaOf(corners(t));
+  std::vector<SurfaceSample> samples;
+  for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
+    const auto c = corners(t);
+    const double area = areaOf(c);
+    // n rows a side give n^2 small triangles, one sample in the middle of each.
+    const int n = std::clamp(static_cast<int>(std::ceil(std::sqrt(area * 10000 / std::max(total, 1e-12)))), 1, 40);
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < 2 * (n - i) - 1; ++j) {
+        const double v = (i + (j % 2 ? 2.0 : 1.0) / 3) / n, w = (j / 2 + (j % 2 ? 2.0 : 1.0) / 3) / n, u = 1 - v - w;
+        const int nearest = u >= v && u >= w ? 0 : (v >= w ? 1 : 2);
+        samples.push_back({{u * c[0] + v * c[1] + w * c[2], area / (n * n)}, mesh.triangles[t + nearest]});
+      }
+    }
+  }
+  return samples;
+}
+
+// A part of the skull with a start read off the scalp: the middle of the skin on a level (share of head height above
+// the chin), as wide and deep as the skin is there.
+BodyPart skullPart(const std::string& name, double level, const Character& character) {
+  const sim::Scalp& scalp = character.scalp;
+  const Rigid from_scalp = character.skeleton.joints[character.head_joint].rest_world * character.head_frame;
+  const auto radius = [&](int row, int quarter) {
+    return scalp.radius[row * scalp.columns + quarter * scalp.columns / 4];
+  };
+  const int row = level > 0.5 ? scalp.rows / 2 : 5 * scalp.rows / 8;
+  const double drop = level > 0.5 ? 0 : -(0.585 - level) * scalp.head_height;
+  const double front = radius(row, 0), back = level > 0.5 ? radius(row, 2) : 0.1 * front;
+  BodyPart part;
+  part.name = name;
+  part.joint = character.head_joint;
+  part.given_start = true;
+  part.hold = 0.05 * scalp.head_height / 0.23;
+  part.start.center = from_scalp * Vec3(scalp.center + Vec3(0, drop, 0.5 * (front - back)));
+  part.start.rotation = Eigen::Quaterniond(from_scalp.linear());
+  part.start.radii = Vec3(0.5 * (radius(row, 1) + radius(row, 3)), 0.40 * scalp.head_height, 0.5 * (front + back));
+  return part;
+}
+
+}  // namespace
+
 std::vector<BodyPart> partsByJoint(const Character& character, const BodyRoles& roles) {
   const Skeleton& skeleton = character.skeleton;
   const std::vector<FitPoint> points = surfacePoints(character.mesh);
@@ -146,26 +204,33 @@ std::vector<BodyPart> partsByJoint(const Character& character, const BodyRoles& 
     return joint;
   };
 
-  const Rigid to_scalp = (skeleton.joints[character.head_joint].rest_world * character.head_frame).inverse();
-  const double chin = character.scalp.center.y() - 0.585 * character.scalp.head_height;
+  const Rigid from_scalp = skeleton.joints[character.head_joint].rest_world * character.head_frame;
+  const Rigid to_scalp = from_scalp.inverse();
+  const double size = character.scalp.head_height, chin = character.scalp.center.y() - 0.585 * size;
   std::map<int, BodyPart> by_joint;
-  BodyPart jaw;
-  jaw.name = "jaw";
-  jaw.joint = character.head_joint;
-  for (std::size_t v = 0; v < points.size(); ++v) {
-    const int joint = ownerOf(dominant[v]);
-    const double level = ((to_scalp * points[v].position).y() - chin) / character.scalp.head_height;
-    if (joint == character.head_joint && level < 0.42) {
-      if (level > 0) jaw.points.push_back(points[v]);
-      continue;
-    }
-    by_joint[joint].points.push_back(points[v]);
+  BodyPart jaw = skullPart("jaw", 0.30, character);
+  for (const SurfaceSample& sample : sampleSurface(character.mesh)) {
+    const int joint = ownerOf(dominant[sample.vertex]);
+    const Vec3 place = to_scalp * sample.point.position;
+    const double level = (place.y() - chin) / size;
+    if (joint != character.head_joint)
+      by_joint[joint].points.push_back(sample.point);
+    else if (level > 0.42)
+      by_joint[joint].points.push_back(sample.point);
+    else if (level > 0 && place.z() > character.scalp.center.z())
+      jaw.points.push_back(sample.point);
   }
   std::vector<BodyPart> parts;
   for (auto& [joint, part] : by_joint) {
     if (area[joint] < 0.004 * total) continue;
+    if (joint == character.head_joint) {
+      std::vector<FitPoint> skull = std::move(part.points);
+      part = skullPart("head", 0.60, character);
+      part.points = std::move(skull);
+    } else {
+      part.name = roleName(skeleton, roles, joint);
+    }
     part.joint = joint;
-    part.name = joint == character.head_joint ? "head" : roleName(skeleton, roles, joint);
     parts.push_back(std::move(part));
   }
   parts.push_back(std::move(jaw));

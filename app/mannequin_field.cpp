@@ -52,18 +52,22 @@ Loft makeLoft(const Vec3& a, const Vec3& b, const Vec3& front, std::vector<Secti
   loft.cap_b = caps[1];
   loft.sections = std::move(sections);
   const auto& s = loft.sections;
-  double widest = 0;
+  loft.widest = std::max(caps[0], caps[1]);
   for (std::size_t i = 0; i < s.size(); ++i) {
-    widest = std::max({widest, s[i].side, s[i].front + std::abs(s[i].shift), s[i].back + std::abs(s[i].shift)});
+    loft.widest =
+        std::max({loft.widest, s[i].side, s[i].front + std::abs(s[i].shift), s[i].back + std::abs(s[i].shift)});
     const Section& p = s[i == 0 ? 0 : i - 1];
     const Section& n = s[std::min(i + 1, s.size() - 1)];
     const double h = std::max(n.t - p.t, 1e-9);
     loft.slopes.push_back(
         {s[i].t, (n.side - p.side) / h, (n.front - p.front) / h, (n.back - p.back) / h, (n.shift - p.shift) / h});
   }
-  loft.middle = a + 0.5 * loft.length * loft.axis;
-  loft.reach = 0.5 * loft.length + std::max(caps[0], caps[1]) + widest;
   return loft;
+}
+
+double Loft::lowerBound(const Vec3& p) const {
+  const Vec3 d = p - a;
+  return (d - std::clamp(axis.dot(d), 0.0, length) * axis).norm() - 1.1 * widest;
 }
 
 double Loft::value(const Vec3& p) const {
@@ -101,65 +105,71 @@ double RoundCone::value(const Vec3& p) const {
 
 namespace {
 
-double sphereGap(const Vec3& p, const Loft& loft) {
-  return (p - loft.middle).norm() - loft.reach;
-}
-
 constexpr double kFar = 0.12;  // m: farther than every blend width, so a bound may stand for the distance
 
-double armValue(const BodyField::ArmShape& arm, const Vec3& p) {
-  const Vec3 middle = arm.fore.a;
-  const double reach = std::max(arm.upper.length, arm.fore.length + arm.palm.length + arm.fingers.length) + 0.12;
-  if (const double gap = (p - middle).norm() - reach; gap > kFar) return gap;
-  double d = smoothMin(arm.upper.value(p), arm.fore.value(p), 0.02);
-  d = smoothMin(d, arm.deltoid.value(p), 0.04);
-  double hand = smoothMin(arm.palm.value(p), arm.fingers.value(p), 0.02);
-  hand = smoothMin(hand, arm.thumb.value(p), 0.018);
-  return smoothMin(d, hand, 0.02);
+// Blends `shape` into d, unless it is too far away to matter.
+template <typename Shape>
+double joined(double d, const Shape& shape, const Vec3& p, double k) {
+  return shape.lowerBound(p) > d + k ? d : smoothMin(d, shape.value(p), k);
 }
 
-double legValue(const BodyField::LegShape& leg, const Vec3& p) {
-  const Vec3 middle = leg.shin.a;
-  const double reach = std::max(leg.thigh.length, leg.shin.length) + 0.25;
-  if (const double gap = (p - middle).norm() - reach; gap > kFar) return gap;
+// Limbs: where all of the limb lies beyond `limit`, some value beyond it.
+double armValue(const BodyField::ArmShape& arm, const Vec3& p, double limit) {
+  const double upper = arm.upper.lowerBound(p), fore = arm.fore.lowerBound(p);
+  const double hand = (p - arm.palm.a).norm() - 0.24 * (arm.upper.length + arm.fore.length) - 0.08;
+  const double bound = std::min({upper, fore, hand}) - 0.03;
+  if (bound > limit) return bound;
+  double d = smoothMin(arm.upper.value(p), arm.fore.value(p), 0.02);
+  d = joined(d, arm.deltoid, p, 0.04);
+  if (hand > d + 0.02) return d;
+  double palm = smoothMin(arm.palm.value(p), arm.fingers.value(p), 0.02);
+  palm = smoothMin(palm, arm.thumb.value(p), 0.018);
+  return smoothMin(d, palm, 0.02);
+}
+
+double legValue(const BodyField::LegShape& leg, const Vec3& p, double limit) {
+  const double foot_bound = leg.foot.lowerBound(p) - 0.03;
+  const double bound = std::min({leg.thigh.lowerBound(p), leg.shin.lowerBound(p), foot_bound}) - 0.03;
+  if (bound > limit) return bound;
   double d = smoothMin(leg.thigh.value(p), leg.shin.value(p), 0.025);
-  d = smoothMin(d, leg.knee.value(p), 0.025);
+  d = joined(d, leg.knee, p, 0.025);
+  if (foot_bound > d + 0.045) return d;
   double foot = smoothMin(leg.foot.value(p), leg.heel.value(p), 0.035);
   foot = smoothMax(foot, leg.sole - p.y(), 0.012);
   return smoothMin(d, foot, 0.045);
 }
 
 double trunkValue(const BodyField& body, const Vec3& p) {
-  if (const double gap = sphereGap(p, body.trunk); gap > kFar) return gap;
+  if (const double bound = body.trunk.lowerBound(p); bound > kFar) return bound;
   double d = body.trunk.value(p);
-  for (const RoundCone& yoke : body.yokes) d = smoothMin(d, yoke.value(p), 0.07);
-  for (const Egg& mass : body.masses) d = smoothMin(d, mass.value(p), 0.035);
+  for (const RoundCone& yoke : body.yokes) d = joined(d, yoke, p, 0.07);
+  for (const Egg& mass : body.masses) d = joined(d, mass, p, 0.035);
   return d;
 }
 
 double coneChain(const std::vector<RoundCone>& cones, const Vec3& p) {
   double d = 1e3;
-  for (const RoundCone& cone : cones) d = smoothMin(d, cone.value(p), 0.02);
+  for (const RoundCone& cone : cones) d = joined(d, cone, p, 0.02);
   return d;
 }
 
 // The head as metres; a sphere stands for it from afar.
-double headDistance(const BodyField& body, const Vec3& p) {
+double headDistance(const BodyField& body, const Vec3& p, double limit) {
   const Vec3 q = body.toHead(p);
-  const double gap = ((q - Vec3(0, 0.5, 0)).norm() - 0.75) * body.head_scale;
-  return gap > kFar ? gap : headValue(q) * body.head_scale;
+  const double gap = ((q - Vec3(0, 0.5, 0)).norm() - 0.62) * body.head_scale;
+  return gap > limit ? gap : headValue(q) * body.head_scale;
 }
 
 }  // namespace
 
 RegionValues BodyField::regions(const Vec3& p) const {
   RegionValues r;
-  r.head = headDistance(*this, p);
+  r.head = headDistance(*this, p, kFar);
   r.neck = neck.value(p);
   r.trunk = trunkValue(*this, p);
   for (int s = 0; s < 2; ++s) {
-    r.arms[s] = arms[s].present ? armValue(arms[s], p) : 1e3;
-    r.legs[s] = legs[s].present ? legValue(legs[s], p) : 1e3;
+    r.arms[s] = arms[s].present ? armValue(arms[s], p, kFar) : 1e3;
+    r.legs[s] = legs[s].present ? legValue(legs[s], p, kFar) : 1e3;
   }
   for (const auto& cones : appendages) r.appendages.push_back(coneChain(cones, p));
   return r;
@@ -168,19 +178,22 @@ RegionValues BodyField::regions(const Vec3& p) const {
 double BodyField::value(const Vec3& p) const {
   double d = trunkValue(*this, p);
   const double scale = figure.height / 1.7;
-  if (const double gap = sphereGap(p, neck); gap < kFar) d = smoothMin(d, neck.value(p), 0.06 * scale);
+  d = joined(d, neck, p, 0.06 * scale);
   for (int s = 0; s < 2; ++s) {
     // The blend narrows away from the trunk, or the limbs would grow webs to it and to each other.
     if (legs[s].present) {
       const double t = std::clamp((legs[s].thigh.along(p) - 0.05) / 0.25, 0.0, 1.0);
-      d = smoothMin(d, legValue(legs[s], p), scale * (0.07 - 0.058 * t * t * (3 - 2 * t)));
+      const double k = scale * (0.07 - 0.058 * t * t * (3 - 2 * t));
+      d = smoothMin(d, legValue(legs[s], p, d + k), k);
     }
     if (arms[s].present) {
       const double t = std::clamp((arms[s].upper.along(p) - 0.10) / 0.30, 0.0, 1.0);
-      d = smoothMin(d, armValue(arms[s], p), scale * (0.055 - 0.047 * t * t * (3 - 2 * t)));
+      const double k = scale * (0.055 - 0.047 * t * t * (3 - 2 * t));
+      d = smoothMin(d, armValue(arms[s], p, d + k), k);
     }
   }
-  d = smoothMin(d, headDistance(*this, p), 0.035 * scale);
+  const double k = 0.035 * scale;
+  d = smoothMin(d, headDistance(*this, p, d + k), k);
   for (const auto& cones : appendages) d = smoothMin(d, coneChain(cones, p), 0.05 * scale);
   return d;
 }

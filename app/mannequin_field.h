@@ -21,12 +21,13 @@ struct Section {
 };
 
 struct Loft {
-  Vec3 a = Vec3::Zero(), axis = Vec3::UnitY(), side = Vec3::UnitX(), front = Vec3::UnitZ(), middle = Vec3::Zero();
+  Vec3 a = Vec3::Zero(), axis = Vec3::UnitY(), side = Vec3::UnitX(), front = Vec3::UnitZ();
   double length = 1, cap_a = 0, cap_b = 0;
-  double reach = 0;  // m: a sphere of this radius about `middle` holds the tube
+  double widest = 0;  // m: no point of the tube lies farther from its axis
   std::vector<Section> sections, slopes;
 
   double value(const Vec3& p) const;
+  double lowerBound(const Vec3& p) const;                                 // cheap, never above the distance to the tube
   double along(const Vec3& p) const { return axis.dot(p - a) / length; }  // 0 at a, 1 at b, unclamped
 };
 
@@ -40,6 +41,7 @@ struct Egg {
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   Vec3 radii = Vec3::Ones();
   double value(const Vec3& p) const;
+  double lowerBound(const Vec3& p) const { return (p - center).norm() - radii.maxCoeff(); }
 };
 
 // A cone with spherical ends of different radii.
@@ -47,6 +49,7 @@ struct RoundCone {
   Vec3 a = Vec3::Zero(), b = Vec3::UnitY();
   double ra = 1, rb = 1;
   double value(const Vec3& p) const;
+  double lowerBound(const Vec3& p) const { return value(p); }
 };
 
 // The head in its own units: origin at the chin's level under the skull base, y = 0 chin, y = 1 crown, z forward.

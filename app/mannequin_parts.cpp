@@ -22,6 +22,12 @@ BodyEllipsoid ellipsoidAlong(const Vec3& a, const Vec3& b, double side, double o
                      Vec3(side, 0.5 * (b - a).norm() + overlap, side));
 }
 
+double nearest(const RegionValues& r) {
+  double d = std::min({r.head, r.neck, r.trunk, r.arms[0], r.arms[1], r.legs[0], r.legs[1]});
+  for (const double a : r.appendages) d = std::min(d, a);
+  return d;
+}
+
 struct Sorter {
   const Mannequin& m;
   std::vector<FitPoint> points;
@@ -95,8 +101,7 @@ struct Sorter {
       add(name, spineJoint(level(middle).y()), ellipsoidAt(level(middle), Eigen::Quaterniond::Identity(), s * radii),
           hold, [&, low, high](const Vec3& p, const RegionValues& r) {
             const double t = (p.y() - f.pelvis.y()) / span;
-            const double limbs = std::min({r.arms[0], r.arms[1], r.legs[0], r.legs[1], r.neck, r.head});
-            return t > low && t < high && r.trunk < limbs;
+            return t > low && t < high && r.trunk <= nearest(r);
           });
     };
     slice("pelvis", -0.08, 0.24, {0.165, 0.13, 0.11}, 0.04);
@@ -134,9 +139,7 @@ struct Sorter {
     const BodyField::ArmShape& arm = m.field.arms[side];
     const ArmRoles& roles = m.roles.arms[side];
     const std::string prefix = side == 0 ? "left_" : "right_";
-    const auto near = [side](const RegionValues& r) {
-      return r.arms[side] < std::min({r.trunk, r.legs[side], r.neck, r.head, r.arms[1 - side]});
-    };
+    const auto near = [side](const RegionValues& r) { return r.arms[side] <= nearest(r); };
     add(prefix + "deltoid", roles.upper,
         ellipsoidAt(arm.deltoid.center, Eigen::Quaterniond(arm.deltoid.axes), arm.deltoid.radii), 0.015,
         [&, near](const Vec3& p, const RegionValues& r) { return near(r) && arm.deltoid.value(p) < 0.008; });
@@ -162,9 +165,7 @@ struct Sorter {
     const BodyField::LegShape& leg = m.field.legs[side];
     const LegRoles& roles = m.roles.legs[side];
     const std::string prefix = side == 0 ? "left_" : "right_";
-    const auto near = [side](const RegionValues& r) {
-      return r.legs[side] < std::min({r.trunk, r.legs[1 - side], r.arms[side], r.neck, r.head});
-    };
+    const auto near = [side](const RegionValues& r) { return r.legs[side] <= nearest(r); };
     const auto end = [](const Loft& l) { return Vec3(l.a + l.axis * l.length); };
     add(prefix + "thigh", roles.upper, ellipsoidAlong(leg.thigh.a, end(leg.thigh), 0.074 * s, 0.07 * s), 0.03,
         [&, near](const Vec3& p, const RegionValues& r) {
