@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "sim/hair_styles_comb.h"
 #include "sim/hair_styles_roots.h"
@@ -15,6 +16,27 @@ namespace {
 
 constexpr double kFatness = 0.10;  // of every corner tetrahedron, see cornerFatness
 constexpr double kGap = 0.0025;    // m, of every vertex but the roots; further down the coat keeps more by itself
+
+constexpr double kLeastFatness = 0.03;
+
+// The head with its radius averaged over neighbouring directions, `rounds` times.
+Scalp rounded(Scalp scalp, int rounds) {
+  std::vector<double> next(scalp.radius.size());
+  const auto at = [&](int i, int j) {
+    return scalp.radius[static_cast<std::size_t>(std::clamp(i, 0, scalp.rows - 1)) * scalp.columns +
+                        (j + scalp.columns) % scalp.columns];
+  };
+  for (int round = 0; round < rounds; ++round) {
+    for (int i = 0; i < scalp.rows; ++i) {
+      for (int j = 0; j < scalp.columns; ++j) {
+        next[static_cast<std::size_t>(i) * scalp.columns + j] =
+            (at(i - 1, j) + at(i + 1, j) + at(i, j - 1) + at(i, j + 1) + 2 * at(i, j)) / 6;
+      }
+    }
+    std::swap(scalp.radius, next);
+  }
+  return scalp;
+}
 
 }  // namespace
 
@@ -35,10 +57,16 @@ double Scalp::radiusAt(const Vec3& direction) const {
 }
 
 HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& scalp, const BodyDistance& body) {
-  const FlowLines lines = traceFlowLines(scalp);
-  const Coat coat = combCoat(style, scalp, body, lines);
-  HairMeshShape shape = weave(coat, weaveOf(style, resolution));
-  untangle(body, kFatness, kGap, shape);
+  const Weave plan = weaveOf(style, resolution);
+  // A head with horns, or a jaw wider than the shoulders, can leave no room for a haircut. Then the hair grows on a
+  // rounded head instead, and in the end goes through the body rather than be refused.
+  const BodyDistance nothing = [](const Vec3&) { return 1.0; };
+  HairMeshShape shape;
+  for (const auto& [rounding, around] : {std::pair(0, &body), std::pair(20, &body), std::pair(60, &post)}) {
+    const Scalp head = rounded(scalp, rounding);
+    shape = weave(combCoat(style, head, *around, traceFlowLines(head)), plan);
+    if (untangle(*around, kFatness, kGap, shape) > kLeastFatness) break;
+  }
   return shape;
 }
 

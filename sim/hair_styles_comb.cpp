@@ -6,10 +6,11 @@
 namespace sim {
 namespace {
 
-constexpr double kRowStep = 0.006;   // m, below the hairline
-constexpr double kInnerGap = 0.006;  // m, between the body and the underside of the hair
-constexpr double kTautness = 0.9;    // how nearly hanging hair spans hollows as a taut string would
-constexpr double kDivide = 0.35;     // hair rooted in front of this backness falls in front of the shoulders
+constexpr double kRowStep = 0.006;      // m, below the hairline, on a head of 23 cm
+constexpr double kOrdinaryHead = 0.23;  // m from chin to crown: what the lengths here are meant for
+constexpr double kInnerGap = 0.006;     // m, between the body and the underside of the hair
+constexpr double kTautness = 0.9;       // how nearly hanging hair spans hollows as a taut string would
+constexpr double kDivide = 0.35;        // hair rooted in front of this backness falls in front of the shoulders
 
 // What one style wants. Heights are in head heights above the scalp's centre.
 struct Cut {
@@ -151,7 +152,7 @@ void Comber::fall(int sheet) {
       wish += slope * std::min(1.0, 1.2 / std::max(slope.norm(), 1e-9));
     }
     heading = (0.88 * heading + 0.12 * wish.normalized()).normalized();
-    p += kRowStep * heading;
+    p += kRowStep * coat.scale * heading;
     const double gap = kInnerGap * smoothstep(0, 5, row - last_skin);
     // What is below the cut hangs free: shoulders that the hair never reaches must not bend its ends outwards.
     if (p.y() > lowest && body(p) < gap) {
@@ -166,7 +167,7 @@ void Comber::fall(int sheet) {
 void Comber::fallAll() {
   double lowest = 1e9;
   for (int s = 0; s < coat.sheets; ++s) lowest = std::min(lowest, cutHeight(s));
-  const int below = static_cast<int>(1.25 * (0.35 * scalp.head_height - lowest) / kRowStep) + 8;
+  const int below = static_cast<int>(1.25 * (0.35 * scalp.head_height - lowest) / (kRowStep * coat.scale)) + 8;
   coat.rows = coat.scalp_rows + below;
   coat.inner.resize(static_cast<std::size_t>(coat.sheets) * coat.rows);
   for (int s = 0; s < coat.sheets; ++s) {
@@ -211,7 +212,8 @@ void Comber::hangTaut(int sheet) {
   }
   for (int r = last + 1; r < coat.rows; ++r) {
     const Vec3& above = coat.inner[coat.index(sheet, r - 1)];
-    coat.inner[coat.index(sheet, r)] = above + (above - coat.inner[coat.index(sheet, r - 2)]).normalized() * kRowStep;
+    coat.inner[coat.index(sheet, r)] =
+        above + (above - coat.inner[coat.index(sheet, r - 2)]).normalized() * kRowStep * coat.scale;
   }
 }
 
@@ -282,7 +284,7 @@ void Comber::raiseOuter() {
     for (int r = 0; r < coat.rows; ++r) {
       const double along = 0.72 + 0.28 * smoothstep(0, coat.scalp_rows, r);
       const Vec3& n = normal[coat.index(s, r)];
-      coat.outer[coat.index(s, r)] = coat.inner[coat.index(s, r)] + cut.thickness * around * along * n;
+      coat.outer[coat.index(s, r)] = coat.inner[coat.index(s, r)] + cut.thickness * coat.scale * around * along * n;
     }
   }
 }
@@ -328,6 +330,7 @@ Coat combCoat(Style style, const Scalp& scalp, const BodyDistance& body, const F
   Comber comber{style, scalp, body, lines, cutOf(style), shoulderHeight(scalp, body), {}};
   comber.coat.sheets = lines.sheets;
   comber.coat.scalp_rows = lines.rows;
+  comber.coat.scale = scalp.head_height / kOrdinaryHead;
   comber.fallAll();
   comber.relaxInner();
   comber.raiseOuter();

@@ -14,6 +14,9 @@ constexpr int kRows = 33;
 // A bare line of scalp this wide shows along the parting.
 constexpr double kPartingHalfWidth = 0.0018;  // m
 
+constexpr double kGatherAtCrown = 1.4;
+constexpr double kSidewaysAtCrown = 0.55;
+
 struct Landmark {
   double azimuth, elevation;  // degrees; the left side's, mirrored for the right
 };
@@ -94,9 +97,10 @@ std::vector<Vec3> bankDirections(const Scalp& scalp, double side) {
   const Vec3 across = side * crown.cross(front).normalized();
   std::vector<Vec3> out(kHalfSheets + 1);
   for (int i = 0; i <= kHalfSheets; ++i) {
-    const double q = static_cast<double>(i) / kHalfSheets;
-    const Vec3 middle = slerp(front, crown, q);
-    const double width = kPartingHalfWidth * std::min(1.0, (1 - q) / 0.08);
+    // Lines gather towards the crown, as they do around the end of any slit when they are to leave it sideways.
+    const double left = std::pow(1 - static_cast<double>(i) / kHalfSheets, kGatherAtCrown);
+    const Vec3 middle = slerp(front, crown, 1 - left);
+    const double width = kPartingHalfWidth * std::min(1.0, left / 0.05);
     out[i] = (middle + across * (width / scalp.radiusAt(middle))).normalized();
   }
   return out;
@@ -105,7 +109,7 @@ std::vector<Vec3> bankDirections(const Scalp& scalp, double side) {
 // Lets the inner points of one half settle between their neighbours, so that lines leave the parting sideways and
 // spread evenly. The parting, the hairline, the forehead line and the middle line (lines 0 and kHalfSheets) stay.
 void settle(std::vector<std::vector<Vec3>>& half) {
-  for (int sweep = 0; sweep < 60; ++sweep) {
+  for (int sweep = 0; sweep < 40; ++sweep) {
     for (int s = 1; s < kHalfSheets; ++s) {
       for (int r = 1; r + 1 < kRows; ++r) {
         const Vec3 mean = half[s - 1][r] + half[s + 1][r] + half[s][r - 1] + half[s][r + 1];
@@ -136,11 +140,13 @@ FlowLines traceFlowLines(const Scalp& scalp) {
   lines.points.resize(static_cast<std::size_t>(lines.sheets) * lines.rows);
   for (const double side : {1.0, -1.0}) {
     const std::vector<Vec3> bank = bankDirections(scalp, side), hairline = hairlineDirections(scalp, side);
+    const Vec3 across = side * direction(kCrown).cross(direction(kPartingFront)).normalized();
     const Vec3 forehead = direction(side > 0 ? kForeheadLeft : kForeheadRight);
     std::vector<std::vector<Vec3>> half(kHalfSheets + 1, std::vector<Vec3>(kRows));
     for (int s = 0; s <= kHalfSheets; ++s) {
       const double q = static_cast<double>(s) / kHalfSheets;
-      const Vec3 between = slerp(bank[s], hairline[s], 0.5);
+      const Vec3 between =
+          (slerp(bank[s], hairline[s], 0.4) + kSidewaysAtCrown * q * std::sqrt(1 - q) * across).normalized();
       const Vec3 bend = slerp(forehead, between, std::min(1.0, q / 0.35));
       for (int r = 0; r < kRows; ++r) {
         const double t = static_cast<double>(r) / (kRows - 1);

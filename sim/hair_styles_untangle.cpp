@@ -62,7 +62,7 @@ double cornerFatness(const Vec3& corner, const Vec3& next, const Vec3& previous,
   return a.cross(b).dot(c) / std::max(a.norm() * b.norm() * c.norm(), 1e-30);
 }
 
-void untangle(const BodyDistance& body, double fatness, double gap, HairMeshShape& shape) {
+double untangle(const BodyDistance& body, double fatness, double gap, HairMeshShape& shape) {
   const std::vector<Corner> all = corners(shape);
   const Neighbours near = neighbours(shape, all);
   std::vector<bool> root(shape.positions.size(), false);
@@ -105,7 +105,7 @@ void untangle(const BodyDistance& body, double fatness, double gap, HairMeshShap
         if (!root[w]) x[w] += share * (kShortestEdge - length) * way;
       }
     }
-    if (!bad) return;
+    if (!bad) break;
     // Spread what was moved over the neighbourhood, so that the combed shape stays smooth; less and less, so that it
     // ends.
     const double spread = 0.2 * (1 - static_cast<double>(sweep) / kSweeps);
@@ -128,6 +128,9 @@ void untangle(const BodyDistance& body, double fatness, double gap, HairMeshShap
       if (clearance[v] < gap) x[v] += (gap - clearance[v]) * bodyNormal(body, x[v]);
     }
   }
+  double worst = 1;
+  for (const Corner& t : all) worst = std::min(worst, cornerFatness(x[t[0]], x[t[1]], x[t[2]], x[t[3]]));
+  return worst;
 }
 
 }  // namespace sim
