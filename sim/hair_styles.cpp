@@ -59,8 +59,11 @@ double Scalp::radiusAt(const Vec3& direction) const {
 HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& scalp, const BodyDistance& body) {
   const Weave plan = weaveOf(style, resolution);
   // A head with horns, or a jaw wider than the shoulders, can leave no room for a haircut. Then the hair grows on a
-  // rounded head instead, and in the end goes through the body rather than be refused.
-  const BodyDistance nothing = [](const Vec3&) { return 1.0; };
+  // rounded head instead, and in the end falls around a post in place of the body rather than be refused.
+  const BodyDistance post = [&](const Vec3& p) {
+    const Vec3 above = p - scalp.center;
+    return Vec3(above.x(), std::max(0.0, above.y()), above.z()).norm() - 0.36 * scalp.head_height;
+  };
   HairMeshShape shape;
   for (const auto& [rounding, around] : {std::pair(0, &body), std::pair(20, &body), std::pair(60, &post)}) {
     const Scalp head = rounded(scalp, rounding);
