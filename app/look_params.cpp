@@ -269,7 +269,7 @@ std::string lookText(const Owner& owner, const LookField<Owner>& row) {
   if (row.kind == sim::FieldKind::kSwitch) return value[0] != 0 ? "on" : "off";
   if (row.kind == sim::FieldKind::kChoice) return row.choices[static_cast<std::size_t>(value[0])];
   std::string text = sim::numberText(value[0]);
-  for (int i = 1; i < row.components(); ++i) text += "," + sim::numberText(value[i]);
+  for (int i = 1; i < row.components(); ++i) text.append(",").append(sim::numberText(value[i]));
   return text;
 }
 

@@ -28,7 +28,7 @@ int readFrameCount(TextScanner& scanner) {
     scanner.fail("'NumFrames:' should open the file", "give an ARCSim .mot file");
   }
   const long long frames = scanner.count("NumFrames", kMostFrames);
-  if (frames == 0) scanner.fail("the motion has no frames", "give a motion with at least one frame");
+  if (frames < 2) scanner.fail("the motion has fewer than two frames", "give a motion with at least two frames");
   // A body's frame takes at least 'x y z' and 'w x y z', 14 characters with their separators: checked before
   // allocation.
   if (static_cast<unsigned long long>(frames) > scanner.left() / 14 + 1) {

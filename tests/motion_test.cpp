@@ -283,11 +283,15 @@ TEST(Bvh, ARestPoseBeforeTheMotionIsLeftOut) {
   EXPECT_EQ(app::readBvh(figure(kZxy, rows), "clip").clip.frameCount(), 8) << "an even motion keeps its first frame";
 }
 
-TEST(Bvh, ASingleFrameIsAStillClip) {
-  const BvhMotion motion = app::readBvh(figure(kZxy, {kStill}), "clip");
-  EXPECT_EQ(motion.clip.frameCount(), 1);
+TEST(Bvh, TheSameFrameTwiceIsAStillClip) {
+  const BvhMotion motion = app::readBvh(figure(kZxy, {kStill, kStill}), "clip");
+  EXPECT_EQ(motion.clip.frameCount(), 2);
   EXPECT_GT(motion.clip.duration(), 0);
   EXPECT_TRUE(poseOf(motion, 0).world[1].isApprox(poseOf(motion, 5).world[1], 0));
+}
+
+TEST(Bvh, ASingleFrameIsRefused) {
+  EXPECT_THROW(app::readBvh(figure(kZxy, {kStill}), "clip"), app::InputError);
 }
 
 TEST(Bvh, EveryFaultNamesItsLine) {
