@@ -443,7 +443,7 @@ TEST(Mot, EveryFaultNamesItsLine) {
   };
   for (const Case& c : std::vector<Case>{{"NumFrames: 2", "Frames: 2", 1},
                                          {"NumFrames: 2", "NumFrames: 0", 1},
-                                         {"NumFrames: 2", "NumFrames: 1", 4},
+                                         {"NumFrames: 2", "NumFrames: 1", 1},
                                          {"NumFrames: 2", "NumFrames: 3", 5},
                                          {"NumFrames: 2", "NumFrames: 5000000", 1},
                                          {"body[0] position", "body[-1] position", 2},
