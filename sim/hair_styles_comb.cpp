@@ -17,18 +17,19 @@ struct Cut {
   double thickness;          // m, of the coat at the sides and the back
   double front, side, back;  // height of the ends; relative to the shoulders where `from_shoulders`
   bool from_shoulders, divides;
+  double tautness;  // how nearly the outer guide hangs straight from the widest part of the head
 };
 
 Cut cutOf(Style style) {
   switch (style) {
     case Style::kShort:
-      return {0.028, -0.20, -0.25, -0.40, false, false};
+      return {0.028, -0.20, -0.25, -0.40, false, false, 0.35};
     case Style::kShoulder:
-      return {0.034, 0.09, 0.08, 0.06, true, false};
+      return {0.034, 0.09, 0.08, 0.06, true, false, 0.8};
     case Style::kLong:
       break;
   }
-  return {0.036, -0.50, -0.90, -1.08, true, true};
+  return {0.036, -0.50, -0.90, -1.08, true, true, 0.8};
 }
 
 double smoothstep(double a, double b, double x) {
@@ -81,7 +82,9 @@ struct Comber {
   Vec3 keepOff(int sheet, Vec3 p, double gap) const;
   void fall(int sheet);
   void fallAll();
-  void hangTaut(int sheet);
+  void hangTaut(std::vector<Vec3>& guide, int sheet, int first, int last, double tautness) const;
+  void hangInner(int sheet);
+  void hangOuter(int sheet);
   void relaxInner();
   void raiseOuter();
   void measure();
@@ -89,7 +92,7 @@ struct Comber {
 
 bool Comber::parted(int sheet, int other, int row) const {
   const double height = coat.inner[coat.index(sheet, row)].y() - scalp.center.y();
-  return inFront(sheet) != inFront(other) && height < shoulders + 0.25 * scalp.head_height;
+  return inFront(sheet) != inFront(other) && height < shoulders + 0.18 * scalp.head_height;
 }
 
 double Comber::cutHeight(int sheet) const {
@@ -173,47 +176,73 @@ void Comber::fallAll() {
   for (int s = 0; s < coat.sheets; ++s) {
     for (int r = 0; r < coat.scalp_rows; ++r) coat.inner[coat.index(s, r)] = lines.at(s, r);
     fall(s);
-    hangTaut(s);
+    hangInner(s);
   }
 }
 
 // Hair under its own weight spans hollows (the nape above the shoulders, the small of the back) instead of lining them:
-// below the hairline, a sheet's distance from the head's vertical axis becomes the least concave curve over it.
-void Comber::hangTaut(int sheet) {
+// over rows `first` to `last` of a guide, the distance from the head's vertical axis nears the least concave curve over
+// it.
+void Comber::hangTaut(std::vector<Vec3>& guide, int sheet, int first, int last, double tautness) const {
   const Vec3 axis = scalp.center - Vec3(0, 0, 0.06 * scalp.head_height);
+  const auto outwards = [&](int r) {
+    const Vec3& p = guide[coat.index(sheet, r)];
+    return Vec3(p.x() - axis.x(), 0, p.z() - axis.z());
+  };
+  struct Knot {
+    double height, radius;
+  };
+  std::vector<Knot> hull;
+  for (int r = first; r <= last; ++r) {
+    const Knot c{guide[coat.index(sheet, r)].y(), outwards(r).norm()};
+    const auto below = [&](const Knot& a, const Knot& b) {
+      return (b.radius - a.radius) * (a.height - c.height) <= (c.radius - a.radius) * (a.height - b.height);
+    };
+    while (hull.size() >= 2 && below(hull[hull.size() - 2], hull.back())) hull.pop_back();
+    hull.push_back(c);
+  }
+  std::size_t k = 1;
+  for (int r = first + 1; r <= last; ++r) {
+    Vec3& p = guide[coat.index(sheet, r)];
+    while (k + 1 < hull.size() && hull[k].height > p.y()) ++k;
+    const Knot &a = hull[k - 1], &b = hull[k];
+    const double t = std::clamp((a.height - p.y()) / std::max(a.height - b.height, 1e-9), 0.0, 1.0);
+    const Vec3 out = outwards(r);
+    const double lacking = a.radius + t * (b.radius - a.radius) - out.norm();
+    if (lacking > 0) p += out.normalized() * tautness * lacking;
+  }
+}
+
+// The inner guide, from the hairline to the cut; what is below the cut goes on straight.
+void Comber::hangInner(int sheet) {
   const int first = coat.scalp_rows - 1;
   int last = first + 2;
   while (last + 1 < coat.rows && coat.inner[coat.index(sheet, last)].y() > freeBelow(sheet)) ++last;
-  const auto radius = [&](int r) {
-    const Vec3 p = coat.inner[coat.index(sheet, r)] - axis;
-    return std::hypot(p.x(), p.z());
-  };
-  const auto height = [&](int r) { return coat.inner[coat.index(sheet, r)].y(); };
-  std::vector<int> hull;
-  for (int r = first; r <= last; ++r) {
-    const auto below = [&](int a, int b, int c) {
-      return (radius(b) - radius(a)) * (height(a) - height(c)) <= (radius(c) - radius(a)) * (height(a) - height(b));
-    };
-    while (hull.size() >= 2 && below(hull[hull.size() - 2], hull.back(), r)) hull.pop_back();
-    hull.push_back(r);
-  }
-  std::vector<double> taut(last + 1, 0.0);
-  for (std::size_t h = 0; h + 1 < hull.size(); ++h) {
-    const int a = hull[h], b = hull[h + 1];
-    for (int r = a; r <= b; ++r) {
-      const double t = (height(a) - height(r)) / std::max(height(a) - height(b), 1e-9);
-      taut[r] = radius(a) + std::clamp(t, 0.0, 1.0) * (radius(b) - radius(a));
-    }
-  }
-  for (int r = first + 1; r <= last; ++r) {
-    Vec3& p = coat.inner[coat.index(sheet, r)];
-    Vec3 out(p.x() - axis.x(), 0, p.z() - axis.z());
-    p += out.normalized() * kTautness * std::max(0.0, taut[r] - out.norm());
-  }
+  hangTaut(coat.inner, sheet, first, last, kTautness);
   for (int r = last + 1; r < coat.rows; ++r) {
     const Vec3& above = coat.inner[coat.index(sheet, r - 1)];
-    coat.inner[coat.index(sheet, r)] =
-        above + (above - coat.inner[coat.index(sheet, r - 2)]).normalized() * kRowStep * coat.scale;
+    const Vec3 heading = (above - coat.inner[coat.index(sheet, r - 2)]).normalized();
+    coat.inner[coat.index(sheet, r)] = above + heading * kRowStep * coat.scale;
+  }
+}
+
+// The outer guide hangs from where the head is widest.
+void Comber::hangOuter(int sheet) {
+  const Vec3 axis = scalp.center - Vec3(0, 0, 0.06 * scalp.head_height);
+  int widest = 0;
+  double widest_radius = 0;
+  for (int r = 0; r < coat.scalp_rows + 8; ++r) {
+    const Vec3 p = coat.outer[coat.index(sheet, r)] - axis;
+    const double radius = std::hypot(p.x(), p.z());
+    if (radius > widest_radius) widest = r, widest_radius = radius;
+  }
+  hangTaut(coat.outer, sheet, widest, coat.rows - 1, cut.tautness);
+  // Rounds the bend where the hair leaves the head.
+  for (int sweep = 0; sweep < 12; ++sweep) {
+    for (int r = 1; r + 1 < coat.rows; ++r) {
+      Vec3& p = coat.outer[coat.index(sheet, r)];
+      p = 0.5 * p + 0.25 * (coat.outer[coat.index(sheet, r - 1)] + coat.outer[coat.index(sheet, r + 1)]);
+    }
   }
 }
 
@@ -286,6 +315,7 @@ void Comber::raiseOuter() {
       const Vec3& n = normal[coat.index(s, r)];
       coat.outer[coat.index(s, r)] = coat.inner[coat.index(s, r)] + cut.thickness * coat.scale * around * along * n;
     }
+    hangOuter(s);
   }
 }
 
@@ -295,7 +325,7 @@ void Comber::measure() {
   coat.short_row.assign(coat.sheets, coat.rows - 1.0);
   for (int s = 0; s < coat.sheets; ++s) {
     const double ends = scalp.center.y() + cutHeight(s),
-                 rests = scalp.center.y() + shoulders + 0.10 * scalp.head_height;
+                 rests = scalp.center.y() + shoulders + 0.16 * scalp.head_height;
     bool cut_found = false, rest_found = false;
     for (int r = 1; r < coat.rows; ++r) {
       const Vec3 &a = coat.inner[coat.index(s, r - 1)], &b = coat.inner[coat.index(s, r)];
