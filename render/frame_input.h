@@ -25,7 +25,7 @@ struct HairLook {
   float strand_radius = 40e-6f;        // m at the root, of a real hair; drawn ones are wider, see below
   float strands_represented = 100000;  // real hairs the drawn strands stand for: shadows carry all of them
   float width_compensation =
-      0.5f;                   // drawn radius = strand_radius * (strands_represented / strands)^this; 0: none, 1: all
+      0.6f;                   // drawn radius = strand_radius * (strands_represented / strands)^this; 0: none, 1: all
   float least_pixels = 1.0f;  // strands thinner than this are drawn this wide and fade by coverage
   float taper = 0.35f;        // tip radius over root radius
   float length_variation = 0.10f;  // strands end up to this share of their length early
@@ -84,7 +84,7 @@ struct LightInput {
   Float3 to_fill{-0.8f, 0.3f, 0.6f}, to_rim{-0.35f, 0.6f, -0.9f};
   Float3 ambient_sky{0.30f, 0.33f, 0.38f}, ambient_ground{0.16f, 0.14f, 0.12f};
   int shadow_size = 1024;
-  int shadow_strands = 8000;    // at most this many strands a hair cast shadow, standing for all; 0: all
+  int shadow_strands = 8000;     // at most this many strands a hair cast shadow, standing for all; 0: all
   int opacity_layers = 7;        // deep opacity map layers, 1..7 (the eighth channel takes all behind)
   float layer_thickness = 0.0f;  // m of the first layer; 0: derived from the hair's extent
   float shadow_strength = 1.0f;  // scales opacity
@@ -101,7 +101,7 @@ enum class StrandPath { kGeometry, kPulling };
 struct ViewOptions {
   int samples = 4;  // multisampling, clamped to what the context has
   float exposure = 1.25f;
-  Float3 backdrop_top{0.045f, 0.05f, 0.06f}, backdrop_bottom{0.15f, 0.15f, 0.155f}, ground_color{0.2f, 0.2f, 0.205f};
+  Float3 backdrop_top{0.045f, 0.05f, 0.06f}, backdrop_bottom{0.15f, 0.15f, 0.155f}, ground_color{0.11f, 0.11f, 0.115f};
   float ground_height = 0;  // m
   bool ground = true, show_strands = true, show_body = true;
   StrandPath strand_path = StrandPath::kGeometry;

@@ -96,7 +96,8 @@ void HairOpenness::fillGrid(const HairLayout& layout, std::span<const float> pos
   double area = 0;
   for (const HairFace& face : layout.faces) area += std::max(face.area, 0.0f);
   // pi / 4: mean projected width of a cylinder over the angles it is crossed at.
-  const float per_area = area > 0 ? static_cast<float>(hair_width / area) * 0.785f * kClumpGaps / (cell_ * cell_ * cell_) : 0.0f;
+  const float per_area =
+      area > 0 ? static_cast<float>(hair_width / area) * 0.785f * kClumpGaps / (cell_ * cell_ * cell_) : 0.0f;
   for (const HairFace& face : layout.faces) {
     const int corners = face.first_vertex[3] < 0 ? 3 : 4;
     for (int layer = 0; layer + 1 < face.layers; ++layer) {

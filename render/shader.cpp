@@ -108,7 +108,7 @@ Program linkProgram(const std::vector<ShaderStage>& stages, const ProgramSource&
 }
 
 std::filesystem::file_time_type newestOf(const std::string& folder, const std::vector<std::string>& files) {
-  std::filesystem::file_time_type newest{};
+  std::filesystem::file_time_type newest = std::filesystem::file_time_type::min();
   for (const std::string& file : files) {
     std::error_code failure;
     const auto time = std::filesystem::last_write_time(folder + "/" + file, failure);

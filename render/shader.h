@@ -34,7 +34,7 @@ class ShaderProgram {
   ProgramSource source_;
   Program program_;
   std::vector<std::string> read_files_;
-  std::filesystem::file_time_type newest_{};
+  std::filesystem::file_time_type newest_ = std::filesystem::file_time_type::min();
 };
 
 }  // namespace render

@@ -36,7 +36,8 @@ void compareDepth(const Texture& texture) {
   glTextureParameteri(texture.id(), GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
 }
 
-// Shadows stand fewer strands, each standing for more hairs, and coarser curves: both blur by far less than a shadow is soft.
+// Shadows stand fewer strands, each standing for more hairs, and coarser curves: both blur by far less than a shadow is
+// soft.
 HairDraw shadowDraw(const HairResources& hair, const LightInput& light, int map) {
   int stride = 1;
   if (light.shadow_strands > 0) stride = std::max((hair.strands + light.shadow_strands - 1) / light.shadow_strands, 1);

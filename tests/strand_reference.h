@@ -1,5 +1,6 @@
-// The strand curve once more, on the CPU and in double precision, from its definition: what the shaders must grow when every
-// variation is off. Coons and Bezier patches are built from their edge curves here, not from the shaders' folded weights.
+// The strand curve once more, on the CPU and in double precision, from its definition: what the shaders must grow when
+// every variation is off. Coons and Bezier patches are built from their edge curves here, not from the shaders' folded
+// weights.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,13 +22,20 @@ inline std::uint32_t hash(std::uint32_t x) {
   const std::uint32_t word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
   return (word >> 22u) ^ word;
 }
-inline std::uint32_t hash(std::uint32_t x, std::uint32_t y) { return hash(x ^ hash(y)); }
-inline float unitFloat(std::uint32_t x) { return static_cast<float>(x >> 8u) * (1.0f / 16777216.0f); }
-inline float randomOf(std::uint32_t key, std::uint32_t n) { return unitFloat(hash(key + n * 0x9e3779b9u)); }
+inline std::uint32_t hash(std::uint32_t x, std::uint32_t y) {
+  return hash(x ^ hash(y));
+}
+inline float unitFloat(std::uint32_t x) {
+  return static_cast<float>(x >> 8u) * (1.0f / 16777216.0f);
+}
+inline float randomOf(std::uint32_t key, std::uint32_t n) {
+  return unitFloat(hash(key + n * 0x9e3779b9u));
+}
 
 class Reference {
  public:
-  Reference(const render::HairLayout& layout, std::span<const float> positions) : layout_(layout), positions_(positions) {
+  Reference(const render::HairLayout& layout, std::span<const float> positions)
+      : layout_(layout), positions_(positions) {
     render::inLayerGradients(layout, positions, gradients_);
   }
 
@@ -35,7 +43,8 @@ class Reference {
   static Vec2 facePoint(std::uint32_t face, std::uint32_t index, std::uint32_t seed) {
     const std::uint32_t key = hash(hash(face, index), seed);
     const float jitter = 0.7f / std::sqrt(static_cast<float>(index) + 1.0f);
-    const float x = unitFloat(hash(face, seed)) + unitFloat((index + 1) * 3242174889u) + (randomOf(key, 1) - 0.5f) * jitter;
+    const float x =
+        unitFloat(hash(face, seed)) + unitFloat((index + 1) * 3242174889u) + (randomOf(key, 1) - 0.5f) * jitter;
     const float y = unitFloat(hash(face + 0x51ed27u, seed)) + unitFloat((index + 1) * 2447445414u) +
                     (randomOf(key, 2) - 0.5f) * jitter;
     return Vec2(x - std::floor(x), y - std::floor(y));
@@ -45,7 +54,7 @@ class Reference {
   Vec3 patch(int face, Vec2 p, int layer) const {
     const bool triangle = layout_.face_columns[face][3] < 0;
     if (!triangle) return coons(face, p, layer);
-    if (p.x() + p.y() > 1) p = Vec2(1 - p.x(), 1 - p.y());
+    if (p.x() + p.y() > 1 + 1e-9) p = Vec2(1 - p.x(), 1 - p.y());
     return bezier(face, Vec3(1 - p.x() - p.y(), p.x(), p.y()), layer);
   }
 

@@ -1,5 +1,5 @@
-// A hair and a body that need no other part of the program: a cap of triangles and quadrilaterals on a ball, columns combed away
-// from a parting and falling around it, and an egg-shaped bust with shoulders. For the renderer's tests.
+// A hair and a body that need no other part of the program: a cap of triangles and quadrilaterals on a ball, columns
+// combed away from a parting and falling around it, and an egg-shaped bust with shoulders. For the renderer's tests.
 #pragma once
 
 #include <algorithm>
@@ -35,9 +35,12 @@ inline float smooth(float x) {
 }
 
 // Polar angle of the hairline: high over the forehead (azimuth 0), low at the nape.
-inline float hairline(float azimuth) { return 1.15f + 1.0f * smooth(std::abs(azimuth) / kPi * 1.15f); }
+inline float hairline(float azimuth) {
+  return 1.15f + 1.0f * smooth(std::abs(azimuth) / kPi * 1.15f);
+}
 
-// One column: from polar angle `polar` it follows the head, lifted the more the nearer to the crown it roots, then falls.
+// One column: from polar angle `polar` it follows the head, lifted the more the nearer to the crown it roots, then
+// falls.
 inline void growColumn(float polar, float azimuth, int layers, float length, std::vector<float>& positions) {
   const float share = polar / hairline(azimuth);
   const float lift = 0.004f + 0.022f * (1 - share);
@@ -50,8 +53,7 @@ inline void growColumn(float polar, float azimuth, int layers, float length, std
     const float raised = kHeadRadius + lift * smooth(4 * t) + 0.01f * t;
     const float radius = raised * std::sin(std::min(at_polar, 1.75f));
     const float drop = raised * std::cos(std::min(at_polar, 1.75f)) - height;
-    positions.insert(positions.end(),
-                     {radius * std::sin(around), kHeadHeight + drop, radius * std::cos(around)});
+    positions.insert(positions.end(), {radius * std::sin(around), kHeadHeight + drop, radius * std::cos(around)});
     const float step = length / static_cast<float>(layers - 1);
     const float arc = std::min(step, std::max(0.0f, 1.75f - at_polar) * raised);
     at_polar += arc / raised;
@@ -136,8 +138,17 @@ inline Body makeBody() {
     const float narrow = 1 - 0.22f * smooth(-std::cos(angle));
     head.push_back({0.094f * std::sin(angle) * narrow, kHeadHeight - 0.015f + 0.108f * std::cos(angle)});
   }
-  for (const auto& [r, y] : {std::pair{0.045f, 1.56f}, {0.048f, 1.47f}, {0.07f, 1.435f}, {0.13f, 1.41f}, {0.17f, 1.37f},
-                             {0.185f, 1.3f}, {0.17f, 1.15f}, {0.14f, 1.0f}, {0.16f, 0.85f}, {0.14f, 0.4f}, {0.1f, 0.0f}}) {
+  for (const auto& [r, y] : {std::pair{0.045f, 1.56f},
+                             {0.048f, 1.47f},
+                             {0.07f, 1.435f},
+                             {0.13f, 1.41f},
+                             {0.17f, 1.37f},
+                             {0.185f, 1.3f},
+                             {0.17f, 1.15f},
+                             {0.14f, 1.0f},
+                             {0.16f, 0.85f},
+                             {0.14f, 0.4f},
+                             {0.1f, 0.0f}}) {
     bust.push_back({r, y});
   }
   addLathe(head, 1.08f, body);
@@ -171,8 +182,8 @@ inline render::BodyInput bodyInput(const Body& body) {
 }
 
 // A frame of one hair and one body; the spans point into the arguments.
-inline render::FrameInput frameInput(std::span<const render::HairInput> hairs, std::span<const render::BodyInput> bodies,
-                                     int width, int height) {
+inline render::FrameInput frameInput(std::span<const render::HairInput> hairs,
+                                     std::span<const render::BodyInput> bodies, int width, int height) {
   render::FrameInput input;
   input.width = width;
   input.height = height;

@@ -59,7 +59,8 @@ float hairShadowOnSurface(vec3 world, float softness) {
 float bodyLightOnSurface(vec3 world, vec3 normal) {
   if (opacity.w == 0.0) return 1.0;
   vec3 at = (body_shadow * vec4(world + normal * 0.012, 1.0)).xyz * 0.5 + 0.5;
-  if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
+  if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return 1.0;
+  at.z = min(at.z, 1.0);  // the ground lies behind the frustum around the bodies, and behind every one of them
   float sum = 0.0, texel = 1.4 / opacity.z;
   for (int y = -1; y <= 1; ++y)
     for (int x = -1; x <= 1; ++x) sum += texture(body_depth, vec3(at.xy + vec2(x, y) * texel, at.z - 0.0012));
