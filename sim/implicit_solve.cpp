@@ -165,7 +165,8 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
     for (std::size_t i = 0; i < rhs.size(); ++i) trial[i] = rhs[i];
     for (const Contact& contact : contacts) {
       if (contact.sticks || contact.pressure <= 0) continue;
-      Vec3 slip = widen(v[contact.vertex]) - contact.velocity;
+      // From before the solve: a contact that has just let go was held still by the round before.
+      Vec3 slip = widen(velocity_step[contact.vertex]) - contact.velocity;
       slip -= slip.dot(contact.normal) * contact.normal;
       const double speed = slip.norm(), impulse = base.h * params.friction * contact.pressure;
       if (speed > 1e-9) trial[contact.vertex] -= cast<T>(Vec3(slip * (impulse / speed)));

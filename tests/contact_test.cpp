@@ -1,0 +1,274 @@
+// Contacts: nothing is left inside a body, contacts ride with it, friction holds and lets go where Coulomb says.
+#include "sim/contact.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/test_meshes.h"
+
+namespace {
+
+using sim::Contact;
+using sim::Ellipsoid;
+using sim::Vec3;
+using test::Hair;
+
+constexpr double kFrame = 1.0 / 60;
+
+Ellipsoid ellipsoid(const Vec3& center, const Vec3& radii) {
+  Ellipsoid e;
+  e.center = center;
+  e.radii = radii;
+  return e;
+}
+
+// Moves a body rigidly over dt, so that its pose and velocities agree.
+void move(Ellipsoid& e, const Vec3& velocity, const Vec3& spin, double dt) {
+  e.velocity = velocity;
+  e.angular_velocity = spin;
+  e.center += dt * velocity;
+  if (spin.norm() > 0)
+    e.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(spin.norm() * dt, spin.normalized())) * e.rotation;
+}
+
+// How deep the deepest external vertex lies inside a body, m.
+double deepest(const Hair& hair) {
+  double depth = 0;
+  for (int v : hair.mesh.external_vertices) {
+    for (const Ellipsoid& e : hair.bodies)
+      depth = std::max(depth, -sim::closestPoint(e, hair.state.positions[v]).distance);
+  }
+  return depth;
+}
+
+sim::SimParams quickHair() {
+  sim::SimParams params = test::tautHair();
+  params.tolerance = 1e-3, params.acceleration_tolerance = 0.01, params.max_iterations = 400;
+  return params;
+}
+
+test::PatchOptions curtain() {
+  test::PatchOptions o;
+  o.nx = 4, o.nz = 2, o.layers = 7, o.length = 0.3, o.mixed = true;
+  return o;
+}
+
+TEST(Contact, NoExternalVertexIsInsideAfterAStepWhateverTheBodiesDo) {
+  constexpr double kAllowed = 1e-4;  // m
+  struct Play {
+    const char* name;
+    void (*start)(Hair&);
+    void (*step)(Hair&, int);
+  };
+  const Play plays[] = {
+      {"slow sweep",
+       [](Hair& h) {
+         h.bodies = {ellipsoid({-0.12, -0.15, 0.02}, {0.05, 0.07, 0.06})};
+       },
+       [](Hair& h, int) {
+         move(h.bodies[0], {0.3, 0, 0}, {0, 0, 0}, kFrame);
+       }},
+      {"fast sweep, 5 m/s",
+       [](Hair& h) {
+         h.bodies = {ellipsoid({-0.3, -0.15, 0.02}, {0.05, 0.09, 0.06})};
+       },
+       [](Hair& h, int n) {
+         move(h.bodies[0], {n < 10 ? 5.0 : -5.0, 0, 0}, {0, 3, 1}, kFrame);
+       }},
+      {"spinning disc",
+       [](Hair& h) {
+         h.bodies = {ellipsoid({0.05, -0.12, -0.06}, {0.09, 0.02, 0.09})};
+       },
+       [](Hair& h, int) {
+         move(h.bodies[0], {0, 0, 0.1}, {8, 0, 5}, kFrame);
+       }},
+      {"two that overlap",
+       [](Hair& h) {
+         h.bodies = {ellipsoid({0.0, -0.2, -0.1}, {0.06, 0.06, 0.06}),
+                     ellipsoid({0.06, -0.2, -0.1}, {0.05, 0.09, 0.05})};
+       },
+       [](Hair& h, int) {
+         for (Ellipsoid& e : h.bodies) move(e, {0, 0, 0.25}, {0, 1, 0}, kFrame);
+       }},
+      {"spawned inside",
+       [](Hair& h) {
+         h.bodies = {ellipsoid({0.04, -0.2, 0.02}, {0.08, 0.1, 0.07})};
+       },
+       [](Hair& h, int) {
+         move(h.bodies[0], {0, 0, 0}, {0, 0, 0}, kFrame);
+       }},
+      {"appears and goes", [](Hair&) {},
+       [](Hair& h, int n) {
+         h.bodies.clear();
+         if (n % 7 < 4) h.bodies.push_back(ellipsoid({0.04, -0.15 - 0.01 * (n % 5), 0.0}, {0.05, 0.05, 0.05}));
+       }},
+  };
+  for (const Play& play : plays) {
+    for (const bool minimize : {true, false}) {
+      sim::SimParams params = quickHair();
+      params.minimize_deformation = minimize;
+      Hair hair(test::combedShape(curtain()), params);
+      play.start(hair);
+      double worst = 0, found = 0;
+      int recoveries = 0;
+      for (int n = 0; n < 60; ++n) {
+        play.step(hair, n);
+        const sim::StepReport report = hair.step(kFrame);
+        worst = std::max(worst, deepest(hair));
+        found = std::max(found, report.max_penetration);
+        recoveries += report.recoveries;
+      }
+      std::printf("%-20s %s: found %.1f mm deep, left %.4f mm\n", play.name, minimize ? "minimized" : "corrected",
+                  1e3 * found, 1e3 * worst);
+      EXPECT_GT(found, 1e-4) << play.name << ": the body did meet the hair";
+      EXPECT_LE(worst, kAllowed) << play.name;
+      EXPECT_EQ(recoveries, 0) << play.name;
+    }
+  }
+}
+
+TEST(Contact, SwitchedOffNothingIsCorrected) {
+  sim::SimParams params = quickHair();
+  params.collide = false;
+  Hair hair(test::combedShape(curtain()), params);
+  hair.bodies = {ellipsoid({0.04, -0.2, 0.02}, {0.08, 0.1, 0.07})};
+  const auto start = hair.state.positions;
+  for (int n = 0; n < 5; ++n) EXPECT_EQ(hair.step(kFrame).corrected, 0);
+  EXPECT_LT(test::largestDistance(hair.state.positions, start), 1e-6) << "sag-free hair at rest stays there";
+}
+
+// Figure 9: with deformation minimization inner vertices follow, and the prisms keep their volume.
+TEST(Contact, DeformationMinimizationKeepsTheVolumeThatCorrectionAloneCrushes) {
+  double smallest[2], inside[2];
+  for (const bool minimize : {false, true}) {
+    sim::SimParams params = quickHair();
+    params.minimize_deformation = minimize;
+    test::PatchOptions o;
+    o.nx = 6, o.nz = 5, o.layers = 6, o.length = 0.2, o.spacing = 0.015;
+    Hair hair(test::patchShape(o), params);
+    hair.bodies = {ellipsoid({0.045, -0.14, -0.065}, {0.06, 0.06, 0.06})};
+    double least = 1, deep = 0;
+    for (int n = 0; n < 3; ++n) {  // large steps of a fast body, as in the figure
+      move(hair.bodies[0], {0, 0, 2.0}, {0, 0, 0}, kFrame);
+      hair.step(kFrame);
+      for (const sim::CornerTet& tet : hair.mesh.tets) {
+        least = std::min(least, test::tetVolume(tet, hair.state.positions) / tet.rest_volume);
+      }
+      for (const Vec3& p : hair.state.positions) deep = std::max(deep, -sim::closestPoint(hair.bodies[0], p).distance);
+    }
+    smallest[minimize] = least, inside[minimize] = deep;
+  }
+  std::printf("smallest volume ratio %.2f without, %.2f with; deepest inner vertex %.1f mm without, %.1f mm with\n",
+              smallest[0], smallest[1], 1e3 * inside[0], 1e3 * inside[1]);
+  EXPECT_GT(smallest[1], smallest[0] + 0.2);
+  EXPECT_LT(inside[1], 0.2 * inside[0]);
+}
+
+TEST(Contact, CarriedContactKeepsItsVertexAtTheOffsetOfTheMovingBody) {
+  test::Random random(2);
+  const sim::SimParams params = test::tautHair();
+  for (int trial = 0; trial < 100; ++trial) {
+    Ellipsoid e = ellipsoid(random.vector(0.2), Vec3(random(0.05, 0.2), random(0.05, 0.2), random(0.05, 0.2)));
+    e.rotation = random.rotation();
+    sim::HairState state;
+    const sim::SurfacePoint s = sim::closestPoint(e, e.center + 0.5 * random.direction());
+    state.positions = {s.point + params.contact_offset * s.normal};
+    state.contacts = {Contact{}};
+    const Vec3 before = state.positions[0];
+    move(e, random.vector(2), random.vector(6), kFrame);
+    const std::vector<Ellipsoid> bodies{e};
+    sim::carryContacts(bodies, params, kFrame, state);
+    const Vec3 after = before + kFrame * state.contacts[0].velocity;
+    EXPECT_NEAR(sim::closestPoint(e, after).distance, params.contact_offset, 1e-9);
+    EXPECT_LT((state.contacts[0].normal - sim::closestPoint(e, after).normal).norm(), 1e-6);
+  }
+  sim::HairState state;
+  state.positions = {Vec3::Zero()};
+  state.contacts = {Contact{}};
+  sim::carryContacts({}, params, kFrame, state);
+  EXPECT_TRUE(state.contacts.empty()) << "its body is gone";
+}
+
+TEST(Contact, ConstraintsRemoveWhatTheirNormalsSpanAndPrescribeTheContactsVelocity) {
+  test::Random random(3);
+  for (int trial = 0; trial < 200; ++trial) {
+    const int count = 1 + trial % 3;
+    std::vector<Contact> contacts;
+    for (int k = 0; k < count; ++k) {
+      Contact c;
+      c.vertex = 5, c.collider = k;
+      c.normal = random.direction();
+      c.velocity = random.vector(1);
+      contacts.push_back(c);
+    }
+    Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();
+    for (int k = 0; k < count; ++k) normals.row(k) = contacts[k].normal.transpose();
+    const double independence = normals.topRows(count).jacobiSvd().singularValues().minCoeff();
+    if (independence < 0.2) continue;  // nearly parallel normals count as one
+    std::vector<sim::VertexConstraint> constraints;
+    sim::constrainContacts(contacts, constraints);
+    ASSERT_EQ(constraints.size(), 1u);
+    const sim::VertexConstraint& c = constraints[0];
+    EXPECT_EQ(c.vertex, 5);
+    EXPECT_LT((c.keep - c.keep.transpose()).norm(), 1e-12);
+    EXPECT_LT((c.keep * c.keep - c.keep).norm(), 1e-12) << "a projector";
+    EXPECT_NEAR(c.keep.trace(), 3 - count, 1e-12);
+    const Vec3 v = c.keep * random.vector(5) + c.prescribed;  // any velocity that the constraint admits
+    for (const Contact& contact : contacts) EXPECT_NEAR(contact.normal.dot(v - contact.velocity), 0, 1e-10);
+    contacts[0].sticks = true;
+    constraints.clear();
+    sim::constrainContacts(contacts, constraints);
+    EXPECT_EQ(constraints[0].keep.norm(), 0);
+    EXPECT_LT((constraints[0].prescribed - contacts[0].velocity).norm(), 1e-12) << "sticking takes all three";
+  }
+}
+
+// A particle (hair without stiffness) put at rest on a great sphere where the slope is `angle`: how fast it slides
+// along the slope after `steps`.
+double slideSpeed(double angle, double friction, int steps) {
+  sim::SimParams params = test::looseParticles();
+  params.friction = friction;
+  test::PatchOptions o;
+  o.nx = o.nz = 1, o.layers = 3, o.length = 0.1;
+  Hair hair(test::patchShape(o), params);
+  const int tip = hair.mesh.shape.column_first[1] - 1;
+  const Vec3 normal(std::sin(angle), std::cos(angle), 0), down(std::cos(angle), -std::sin(angle), 0);
+  constexpr double kRadius = 50;
+  const Vec3 foot = hair.state.positions[tip] - params.contact_offset * normal;
+  hair.bodies = {ellipsoid(foot - kRadius * normal, Vec3::Constant(kRadius))};
+  double speed = 0;
+  for (int n = 0; n < steps; ++n) {
+    const sim::StepReport report = hair.step(kFrame);
+    EXPECT_EQ(report.recoveries, 0);
+    // The other vertices are of no interest: they stay where they are.
+    for (int i = 0; i < hair.mesh.vertexCount(); ++i) {
+      if (i != tip) hair.state.positions[i] = hair.mesh.shape.positions[i], hair.state.velocities[i].setZero();
+    }
+    std::erase_if(hair.state.contacts, [&](const Contact& c) { return c.vertex != tip; });
+    speed = hair.state.velocities[tip].dot(down);
+    EXPECT_NEAR(sim::closestPoint(hair.bodies[0], hair.state.positions[tip]).distance, params.contact_offset, 2e-4);
+  }
+  return speed;
+}
+
+TEST(Friction, HoldsBelowTheFrictionAngleAndSlidesAboveItAtCoulombsRate) {
+  constexpr int kSteps = 20;
+  for (const double friction : {0.0, 0.3, 0.6}) {
+    const double limit = std::atan(friction);
+    for (const double angle : {limit - 0.1, limit + 0.1, limit + 0.3}) {
+      if (angle <= 0) continue;
+      const double speed = slideSpeed(angle, friction, kSteps);
+      const double expected = 9.81 * (std::sin(angle) - friction * std::cos(angle)) * kSteps * kFrame;
+      std::printf("friction %.1f, slope %.2f rad: slides at %.3f m/s, Coulomb %.3f\n", friction, angle, speed,
+                  std::max(0.0, expected));
+      if (angle < limit) {
+        EXPECT_LT(std::abs(speed), 1e-3);
+      } else {
+        // Friction starts a step late, since it follows from the last solve's pressure.
+        EXPECT_GT(speed, 0.98 * expected);
+        EXPECT_LT(speed, 1.02 * expected + friction * 9.81 * std::cos(angle) * kFrame);
+      }
+    }
+  }
+}
+
+}  // namespace
