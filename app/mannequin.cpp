@@ -18,29 +18,26 @@ MeshGrid gridFor(const BodyField& body) {
   grid.coarse = 0.0135 * s;
   grid.fine_from = chin + 0.02 * f.head_height;
   grid.coarse_from = chin - 0.36 * s;
-  grid.low = Vec3(f.pelvis.x(), f.sole, f.pelvis.z());
-  grid.high = Vec3(f.pelvis.x(), chin + 1.06 * f.head_height, f.pelvis.z());
-  const auto hold = [&](const Vec3& p, double margin) {
-    const Vec3 m = Vec3::Constant(margin * s);
-    grid.low = grid.low.cwiseMin(p - m);
-    grid.high = grid.high.cwiseMax(p + m);
-  };
-  const Vec3 head = body.head_origin + Vec3(0, 0.5 * f.head_height, 0);
-  grid.low = grid.low.cwiseMin(Vec3(head - Vec3::Constant(0.62 * f.head_height)));
-  grid.high = grid.high.cwiseMax(Vec3(head + Vec3(0.62, 0.56, 0.62) * f.head_height));
-  hold(f.neck_base, 0.12);
-  hold(f.pelvis, 0.22);
-  for (const Figure::Arm& arm : f.arms)
-    if (arm.present)
-      for (const Vec3& p :
-           {arm.shoulder, arm.elbow, arm.wrist, Vec3(arm.wrist + (arm.wrist - arm.elbow).normalized() * 0.2 * s)})
-        hold(p, 0.10);
-  for (const Figure::Leg& leg : f.legs)
-    if (leg.present)
-      for (const Vec3& p : {leg.hip, leg.knee, leg.ankle}) hold(p, 0.24);
-  grid.low.y() = std::max(grid.low.y(), f.sole - 0.01 * s);
+  grid.center_z = body.head_origin.z();
+  const auto hold = [&](const Vec3& p, double radius) { grid.holds.push_back({p, radius * s}); };
+  grid.holds.push_back({body.head_origin + Vec3(0, 0.5 * f.head_height, 0), 0.66 * f.head_height});
+  hold(f.neck_base, 0.15);
+  hold(f.pelvis, 0.24);
+  hold(Vec3(f.pelvis.x(), 0.5 * (f.pelvis.y() + f.shoulder_level), f.pelvis.z()), 0.22);
+  for (const double side : {-1.0, 1.0})
+    hold(Vec3(f.neck_base.x() + side * f.shoulder_half, f.shoulder_level, f.neck_base.z()), 0.10);
+  for (const Figure::Arm& arm : f.arms) {
+    if (!arm.present) continue;
+    for (const Vec3& p : {arm.shoulder, arm.elbow, arm.wrist}) hold(p, 0.10);
+    hold(arm.wrist + (arm.wrist - arm.elbow).normalized() * 0.12 * s, 0.15);
+  }
+  for (const Figure::Leg& leg : f.legs) {
+    if (!leg.present) continue;
+    for (const Vec3& p : {leg.hip, leg.knee}) hold(p, 0.14);
+    hold(Vec3(leg.ankle.x(), f.sole + 0.05 * s, leg.ankle.z()), 0.25);
+  }
   for (const Figure::Appendage& appendage : f.appendages)
-    for (const Vec3& p : appendage.points) hold(p, 0.10);
+    for (const Vec3& p : appendage.points) hold(p, 0.08);
   return grid;
 }
 

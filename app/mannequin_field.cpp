@@ -142,8 +142,13 @@ double legValue(const BodyField::LegShape& leg, const Vec3& p, double limit) {
 double trunkValue(const BodyField& body, const Vec3& p) {
   if (const double bound = body.trunk.lowerBound(p); bound > kFar) return bound;
   double d = body.trunk.value(p);
-  for (const RoundCone& yoke : body.yokes) d = joined(d, yoke, p, 0.07);
-  for (const Egg& mass : body.masses) d = joined(d, mass, p, 0.035);
+  // Left and right are joined to each other first: blending one after the other would favour one side.
+  d = smoothMin(d, smoothMin(body.yokes[0].value(p), body.yokes[1].value(p), 0.03), 0.07);
+  for (int m = 0; m < 3; ++m) {
+    const Egg &left = body.masses[m], &right = body.masses[m + 3];
+    if (std::min(left.lowerBound(p), right.lowerBound(p)) > d + 0.05) continue;
+    d = smoothMin(d, smoothMin(left.value(p), right.value(p), 0.02), 0.035);
+  }
   return d;
 }
 
@@ -179,19 +184,25 @@ double BodyField::value(const Vec3& p) const {
   double d = trunkValue(*this, p);
   const double scale = figure.height / 1.7;
   d = joined(d, neck, p, 0.06 * scale);
-  for (int s = 0; s < 2; ++s) {
-    // The blend narrows away from the trunk, or the limbs would grow webs to it and to each other.
-    if (legs[s].present) {
-      const double t = std::clamp((legs[s].thigh.along(p) - 0.05) / 0.25, 0.0, 1.0);
-      const double k = scale * (0.07 - 0.058 * t * t * (3 - 2 * t));
-      d = smoothMin(d, legValue(legs[s], p, d + k), k);
-    }
-    if (arms[s].present) {
-      const double t = std::clamp((arms[s].upper.along(p) - 0.10) / 0.30, 0.0, 1.0);
-      const double k = scale * (0.055 - 0.047 * t * t * (3 - 2 * t));
-      d = smoothMin(d, armValue(arms[s], p, d + k), k);
-    }
-  }
+  // The blend narrows away from the trunk, or the limbs would grow webs to it and to each other. Left and right join
+  // each other first, so that neither side is favoured.
+  const auto narrowed = [](double along, double start, double range, double wide, double slim) {
+    const double t = std::clamp((along - start) / range, 0.0, 1.0);
+    return wide + (slim - wide) * t * t * (3 - 2 * t);
+  };
+  const auto addPair = [&](const auto& limbs, const auto& along, const auto& distance, double wide, double start,
+                           double range) {
+    double both = 1e3, k = wide * scale;
+    for (const auto& limb : limbs)
+      if (limb.present) k = std::min(k, scale * narrowed(along(limb), start, range, wide, 0.010));
+    for (const auto& limb : limbs)
+      if (limb.present) both = smoothMin(both, distance(limb, p, d + k + 0.01), 0.010 * scale);
+    d = smoothMin(d, both, k);
+  };
+  addPair(
+      legs, [&](const LegShape& leg) { return leg.thigh.along(p); }, legValue, 0.070, 0.05, 0.25);
+  addPair(
+      arms, [&](const ArmShape& arm) { return arm.upper.along(p); }, armValue, 0.055, 0.10, 0.30);
   const double k = 0.035 * scale;
   d = smoothMin(d, headDistance(*this, p, d + k), k);
   for (const auto& cones : appendages) d = smoothMin(d, coneChain(cones, p), 0.05 * scale);

@@ -186,8 +186,12 @@ Figure measure(const ReferencePose& pose, const BodyRoles& roles) {
   figure.shoulder_half = std::clamp(figure.shoulder_half, 0.05 * figure.height, 0.14 * figure.height);
   figure.hip_half = std::clamp(figure.hip_half, 0.03 * figure.height, 0.08 * figure.height);
   // A neck joint may sit above or below the shoulders; the skull needs a neck's length of its own.
-  if (roles.head_is_neck)
-    figure.skull_base.y() = std::max(figure.skull_base.y(), figure.shoulder_level + 0.088 * figure.height);
+  if (const double least = figure.shoulder_level + 0.088 * figure.height;
+      roles.head_is_neck && figure.skull_base.y() < least) {
+    figure.skull_base.y() = least;
+    figure.height = (least - figure.sole) / (1 - kHeadShare * (1 - kSkullBaseShare));
+    figure.head_height = kHeadShare * figure.height;
+  }
   // The neck's root lies between shoulders and skull base; joint names disagree about it, shoulders do not.
   const double level =
       std::clamp(figure.shoulder_level + 0.028 * figure.height, figure.skull_base.y() - 0.075 * figure.height,

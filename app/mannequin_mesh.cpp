@@ -12,17 +12,20 @@ namespace app {
 namespace {
 
 constexpr int kBlock = 4;  // nodes a side of the blocks that are skipped when far from the surface
-constexpr std::size_t kMaxNodes = 12'000'000;
+constexpr double kMaxNodes = 12e6;
 
 struct Lattice {
   int nx = 0, ny = 0, nz = 0;
   std::vector<double> y, size;  // per row
-  double cx = 0, cz = 0;
+  double cz = 0;
   std::vector<float> value;
 
   std::size_t index(int i, int j, int k) const { return (static_cast<std::size_t>(j) * nz + k) * nx + i; }
+  bool border(int i, int j, int k) const {
+    return i == 0 || j == 0 || k == 0 || i == nx - 1 || j == ny - 1 || k == nz - 1;
+  }
   Vec3 point(double i, int j, double k) const {
-    return {cx + (i - 0.5 * (nx - 1)) * size[j], y[j], cz + (k - 0.5 * (nz - 1)) * size[j]};
+    return {(i - 0.5 * (nx - 1)) * size[j], y[j], cz + (k - 0.5 * (nz - 1)) * size[j]};
   }
 };
 
@@ -32,28 +35,34 @@ double cellSize(const MeshGrid& g, double y, double scale) {
 }
 
 Lattice layOut(const MeshGrid& g) {
+  double low = 1e30, high = -1e30;
+  for (const MeshGrid::Ball& ball : g.holds) {
+    low = std::min(low, ball.center.y() - ball.radius);
+    high = std::max(high, ball.center.y() + ball.radius);
+  }
   for (double scale = 1;; scale *= 1.3) {
     Lattice l;
-    for (double y = g.high.y(); y > g.low.y() - 2 * g.coarse * scale; y -= l.size.back()) {
+    for (double y = high; y > low - 2 * g.coarse * scale; y -= l.size.back()) {
       l.y.push_back(y);
       l.size.push_back(cellSize(g, y, scale));
     }
     std::reverse(l.y.begin(), l.y.end());
     std::reverse(l.size.begin(), l.size.end());
     l.ny = static_cast<int>(l.y.size());
-    l.cx = 0;
-    l.cz = 0.5 * (g.low.z() + g.high.z());
-    const double half_x = std::max(std::abs(g.low.x()), std::abs(g.high.x()));
-    const double half_z = 0.5 * (g.high.z() - g.low.z());
-    // The box is as wide as the widest part; rows of small cells only need to hold the head, twice over.
-    const double fine = g.fine * scale, coarse = g.coarse * scale;
-    l.nx = 2 * static_cast<int>(std::ceil(std::max(half_x / coarse, 0.15 / fine))) + 2;
-    l.nz = 2 * static_cast<int>(std::ceil(std::max(half_z / coarse, 0.17 / fine))) + 2;
-    const auto nodes = static_cast<std::size_t>(l.nx) * l.ny * l.nz;
-    if (nodes < kMaxNodes) {
-      l.value.assign(nodes, 1.0f);
-      return l;
+    l.cz = g.center_z;
+    // Rows narrow as their cells shrink: each ball has to fit into its finest row.
+    double cells_x = 1, cells_z = 1;
+    for (const MeshGrid::Ball& ball : g.holds) {
+      const double size = cellSize(g, ball.center.y() + ball.radius, scale);
+      cells_x = std::max(cells_x, (std::abs(ball.center.x()) + ball.radius) / size);
+      cells_z = std::max(cells_z, (std::abs(ball.center.z() - l.cz) + ball.radius) / size);
     }
+    const double nodes = (2 * cells_x + 4) * (2 * cells_z + 4) * l.ny;
+    if (nodes > kMaxNodes) continue;
+    l.nx = 2 * static_cast<int>(std::ceil(cells_x)) + 2;
+    l.nz = 2 * static_cast<int>(std::ceil(cells_z)) + 2;
+    l.value.assign(static_cast<std::size_t>(l.nx) * l.ny * l.nz, 1.0f);
+    return l;
   }
 }
 
@@ -81,8 +90,7 @@ void sample(const std::function<double(const Vec3&)>& field, Lattice& l) {
   for (int j = 0; j < l.ny; ++j)
     for (int k = 0; k < l.nz; ++k)
       for (int i = 0; i < l.nx; ++i)
-        if (i == 0 || j == 0 || k == 0 || i == l.nx - 1 || j == l.ny - 1 || k == l.nz - 1)
-          l.value[l.index(i, j, k)] = std::max(l.value[l.index(i, j, k)], 1e-4f);
+        if (l.border(i, j, k)) l.value[l.index(i, j, k)] = std::max(l.value[l.index(i, j, k)], 1e-4f);
 }
 
 // Corner c of a cell: bit 0 = x, bit 1 = y, bit 2 = z.
@@ -134,11 +142,13 @@ void fillDoubleSheets(Lattice& l) {
           float least = 1e30f;
           for (int c = 0; c < 8; ++c) {
             const std::size_t n = first + cells.corner_offset[c];
+            if (l.border(i + (c & 1), j + ((c >> 1) & 1), k + (c >> 2))) continue;
             if (l.value[n] >= 0 && l.value[n] < least) {
               least = l.value[n];
               best = n;
             }
           }
+          if (least == 1e30f) continue;
           l.value[best] = -1e-5f;
           changed = true;
         }

@@ -13,7 +13,12 @@ namespace app {
 // at `coarse_from` and below.
 struct MeshGrid {
   double fine = 0.0038, coarse = 0.0115, fine_from = 1.4, coarse_from = 1.0;
-  Vec3 low = Vec3::Zero(), high = Vec3::Ones();  // m: a box that holds the surface
+  struct Ball {
+    Vec3 center;
+    double radius;
+  };
+  std::vector<Ball> holds;  // m: the surface lies within their union's convex hull, row by row; at least one
+  double center_z = 0;      // m: the grid is symmetric about x = 0 and this
 };
 
 struct Surface {

@@ -324,6 +324,17 @@ ReferencePose referenceOf(const Skeleton& skeleton) {
   return reference;
 }
 
+// Whether any vertex moves with a joint or one below it.
+bool carriesSkin(const Character& character, int joint) {
+  std::vector<bool> below(character.skeleton.joints.size(), false);
+  for (std::size_t j = 0; j < below.size(); ++j) {
+    const int parent = character.skeleton.joints[j].parent;
+    below[j] = static_cast<int>(j) == joint || (parent >= 0 && below[parent]);
+  }
+  const std::vector<int> dominant = dominantJoints(character.mesh);
+  return std::any_of(dominant.begin(), dominant.end(), [&](int j) { return below[j]; });
+}
+
 Character assemble(Import& import) {
   Character character;
   const SkinnedMesh raw = gatherMesh(import);
@@ -337,6 +348,10 @@ Character assemble(Import& import) {
   inferUnits(raw, head, import);
   character.mesh = gatherMesh(import);
   character.skeleton = skeleton = buildSkeleton(import);
+  if (!carriesSkin(character, head))
+    import.fail("skeleton", "joint '" + skeleton.joints[head].name + "', taken for the head, carries no skin",
+                "name the joint that turns the head 'Head' and bind the head's mesh to it");
+
   const ReferencePose reference = referenceOf(skeleton);
   BodyRoles roles = inferRoles(skeleton, reference, head, is_neck);
   std::string how;
