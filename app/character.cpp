@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdio>
 #include <filesystem>
 
 #include "app/character_build.h"
@@ -52,6 +53,13 @@ Character loadMannequin(const std::string& text, const std::string& file) {
   const HeadMeasure measure{inScalp({0, 0, 0}).y(), inScalp({0, 1, 0}).y(), inScalp({0, 0.585, -0.045})};
   sampleHead(&measure, character);
   fitParts(std::move(parts), character);
+  const Figure& figure = mannequin.field.figure;
+  const Coverage cover =
+      coverage(character, figure.pelvis.y() + 0.5 * (figure.neck_base.y() - figure.pelvis.y()), figure.height);
+  char note[120];
+  std::snprintf(note, sizeof note, "above the waist the skin sticks out of the ellipsoids by %.0f mm at most",
+                1000 * cover.worst);
+  character.notes.push_back(note);
   return character;
 }
 

@@ -77,7 +77,7 @@ void fitParts(std::vector<BodyPart> parts, Character& character) {
     BodyEllipsoid start = part.given_start ? part.start : principalEllipsoid(points);
     start.name = part.name;
     start.joint = part.joint;
-    BodyEllipsoid fitted = fitEllipsoid(points, start, part.hold);
+    BodyEllipsoid fitted = fitEllipsoid(points, start, part.hold, part.outside);
     const FitReport report = reportFit(points, fitted);
     double part_area = 0;
     for (const FitPoint& p : points) part_area += p.weight;
@@ -98,17 +98,18 @@ void fitParts(std::vector<BodyPart> parts, Character& character) {
   character.notes.push_back(text);
 }
 
-Coverage coverage(const Character& character, const std::vector<bool>& counts) {
+Coverage coverage(const Character& character, double low, double high) {
   Coverage c;
   double outside = 0;
-  for (std::size_t v = 0; v < character.mesh.positions.size(); ++v) {
-    if (!counts[v]) continue;
+  const Rigid to_scalp = (character.skeleton.joints[character.head_joint].rest_world * character.head_frame).inverse();
+  for (const auto& position : character.mesh.positions) {
+    const Vec3 p = position.cast<double>();
+    if (p.y() < low || p.y() > high) continue;
+    const Vec3 q = (to_scalp * p - character.scalp.center) / character.scalp.head_height;
+    if (std::abs(q.y() + 0.3) < 0.33 && q.norm() < 0.8 && (q.z() > 0.3 || std::abs(q.x()) > 0.28)) continue;
     double gap = 1e9;
-    for (const BodyEllipsoid& e : character.ellipsoids) {
-      const Vec3 local =
-          character.skeleton.joints[e.joint].rest_world.inverse() * character.mesh.positions[v].cast<double>();
-      gap = std::min(gap, ellipsoidGap(e, local));
-    }
+    for (const BodyEllipsoid& e : character.ellipsoids)
+      gap = std::min(gap, ellipsoidGap(e, character.skeleton.joints[e.joint].rest_world.inverse() * p));
     if (gap <= 0) continue;
     c.worst = std::max(c.worst, gap);
     c.mean += gap;

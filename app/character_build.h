@@ -18,10 +18,10 @@ struct BodyPart {
   bool given_start = false;
   BodyEllipsoid start;
   double hold = 0.05;  // m, see fitEllipsoid
+  double outside = 1;  // see fitEllipsoid
 };
 
-// Fits one ellipsoid a part (parts of under eight points are left out) and notes mean and largest gap, and how well
-// all of them together cover the mesh above the hips.
+// Fits one ellipsoid a part (parts of under eight points are left out) and notes mean and largest gap.
 void fitParts(std::vector<BodyPart> parts, Character& character);
 
 // Vertices with the area that each stands for, rest pose.
@@ -38,12 +38,12 @@ std::vector<BodyPart> partsByJoint(const Character& character, const BodyRoles& 
 // `measure`: landmarks where they are known, else null.
 void sampleHead(const HeadMeasure* measure, Character& character);
 
-// Largest mesh distance (m) outside all ellipsoids over vertices for which `counts` is true, and the mean over those
-// outside.
+// How far (m) the rest-pose skin sticks out of all ellipsoids together, over the vertices between two heights: the
+// worst, and the mean over those that do. Face and ears stick out by nature and are left out.
 struct Coverage {
   double worst = 0, mean = 0;
 };
-Coverage coverage(const Character& character, const std::vector<bool>& counts);
+Coverage coverage(const Character& character, double low, double high);
 
 Character loadMannequin(const std::string& text, const std::string& file);
 Character loadRigidParts(const std::string& text, const std::string& file, const std::string& parts_dir);

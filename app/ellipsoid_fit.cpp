@@ -26,7 +26,7 @@ BodyEllipsoid moved(const BodyEllipsoid& start, const Params& x) {
 struct Problem {
   std::span<const FitPoint> points;
   const BodyEllipsoid& start;
-  double hold, total_weight;
+  double hold, total_weight, outside;
 
   // Residuals of the points, then of the nine parameters against the start.
   Eigen::VectorXd residuals(const Params& x) const {
@@ -39,11 +39,12 @@ struct Problem {
     return r;
   }
 
+  double share(Eigen::Index i, double gap) const { return points[i].weight / total_weight * (gap > 0 ? outside : 1); }
+
   Eigen::VectorXd weights(const Eigen::VectorXd& r) const {
     Eigen::VectorXd w(r.size());
     const auto n = static_cast<Eigen::Index>(points.size());
-    for (Eigen::Index i = 0; i < n; ++i)
-      w[i] = points[i].weight / total_weight / (1 + (r[i] / kOutlier) * (r[i] / kOutlier));
+    for (Eigen::Index i = 0; i < n; ++i) w[i] = share(i, r[i]) / (1 + (r[i] / kOutlier) * (r[i] / kOutlier));
     w.tail<9>().setConstant(1.0 / 9);
     return w;
   }
@@ -54,7 +55,7 @@ struct Problem {
     const auto n = static_cast<Eigen::Index>(points.size());
     for (Eigen::Index i = 0; i < n; ++i) {
       const double u = r[i] / kOutlier;
-      sum += points[i].weight / total_weight * std::log1p(u * u);
+      sum += share(i, r[i]) * std::log1p(u * u);
     }
     return sum + r.tail<9>().squaredNorm() / (9 * kOutlier * kOutlier);
   }
@@ -89,10 +90,10 @@ BodyEllipsoid principalEllipsoid(std::span<const FitPoint> points) {
   return e;
 }
 
-BodyEllipsoid fitEllipsoid(std::span<const FitPoint> points, const BodyEllipsoid& start, double hold) {
+BodyEllipsoid fitEllipsoid(std::span<const FitPoint> points, const BodyEllipsoid& start, double hold, double outside) {
   double total = 0;
   for (const FitPoint& p : points) total += p.weight;
-  const Problem problem{points, start, hold, std::max(total, 1e-12)};
+  const Problem problem{points, start, hold, std::max(total, 1e-12), outside};
   Params x = Params::Zero();
   Eigen::VectorXd r = problem.residuals(x);
   double cost = problem.cost(r), damping = 1e-3;

@@ -39,9 +39,9 @@ const Loft& faceLoft() {
   struct Level {
     double y, side, front, back, shift;
   };
-  constexpr std::array<Level, 10> levels{{{0.030, 0.080, 0.062, 0.080, 0.290},
-                                          {0.090, 0.126, 0.092, 0.140, 0.278},
-                                          {0.160, 0.164, 0.128, 0.195, 0.242},
+  constexpr std::array<Level, 10> levels{{{0.030, 0.072, 0.060, 0.080, 0.278},
+                                          {0.090, 0.120, 0.090, 0.140, 0.268},
+                                          {0.160, 0.162, 0.128, 0.195, 0.238},
                                           {0.240, 0.204, 0.168, 0.240, 0.200},
                                           {0.330, 0.238, 0.213, 0.258, 0.157},
                                           {0.430, 0.258, 0.243, 0.252, 0.128},
@@ -58,9 +58,9 @@ const Loft& faceLoft() {
 }
 
 double nose(const Vec3& q) {
-  const RoundCone bridge{Vec3(0, 0.555, 0.342), Vec3(0, 0.388, 0.432), 0.022, 0.032};
+  const RoundCone bridge{Vec3(0, 0.555, 0.342), Vec3(0, 0.396, 0.428), 0.021, 0.029};
   const Vec3 m(std::abs(q.x()), q.y(), q.z());
-  const double wing = egg(m - Vec3(0.034, 0.364, 0.394), Vec3(0.025, 0.023, 0.036));
+  const double wing = egg(m - Vec3(0.032, 0.374, 0.392), Vec3(0.023, 0.021, 0.034));
   return smoothMin(bridge.value(q), wing, 0.055);
 }
 
@@ -72,16 +72,16 @@ double headWithoutEars(const Vec3& q) {
   // The jaw rises from the chin to the ears.
   static const Eigen::Matrix3d jaw_tilt = Eigen::AngleAxisd(0.50, Vec3::UnitX()).toRotationMatrix();
   d = smoothMin(d, egg(jaw_tilt.transpose() * (q - Vec3(0, 0.195, 0.160)), Vec3(0.150, 0.105, 0.205)), 0.10);
-  d = smoothMin(d, egg(q - Vec3(0, 0.075, 0.300), Vec3(0.070, 0.066, 0.080)), 0.08);        // chin
-  d = smoothMin(d, egg(m - Vec3(0.150, 0.420, 0.195), Vec3(0.095, 0.100, 0.115)), 0.14);    // cheekbones
+  d = smoothMin(d, egg(q - Vec3(0, 0.074, 0.292), Vec3(0.064, 0.060, 0.072)), 0.07);        // chin
+  d = smoothMin(d, egg(m - Vec3(0.145, 0.405, 0.195), Vec3(0.100, 0.115, 0.118)), 0.15);    // cheeks
   d = smoothMax(d, -egg(m - Vec3(0.125, 0.525, 0.450), Vec3(0.100, 0.056, 0.090)), 0.090);  // eye sockets
   d = smoothMin(d, egg(m - Vec3(0.124, 0.508, 0.282), Vec3(0.082, 0.062, 0.077)), 0.040);   // closed lids
   d = smoothMin(d, nose(q), 0.050);
   // Lips: two soft rolls that follow the curve of the teeth.
-  const double bow = 1.6 * q.x() * q.x();
-  const double upper = egg(q - Vec3(0, 0.260, 0.356 - bow), Vec3(0.088, 0.026, 0.034));
-  const double lower = egg(q - Vec3(0, 0.222, 0.350 - bow), Vec3(0.074, 0.028, 0.036));
-  return smoothMin(d, smoothMin(upper, lower, 0.026), 0.046);
+  const double x2 = q.x() * q.x(), bow = 1.6 * x2, smile = 1.0 * x2;
+  const double upper = egg(q - Vec3(0, 0.272 + smile, 0.355 - bow), Vec3(0.082, 0.028, 0.036));
+  const double lower = egg(q - Vec3(0, 0.230 + smile, 0.350 - bow), Vec3(0.070, 0.031, 0.038));
+  return smoothMin(d, smoothMin(upper, lower, 0.020), 0.040);
 }
 
 double headValue(const Vec3& q) {

@@ -143,6 +143,7 @@ struct Sorter {
     add(prefix + "deltoid", roles.upper,
         ellipsoidAt(arm.deltoid.center, Eigen::Quaterniond(arm.deltoid.axes), arm.deltoid.radii), 0.015,
         [&, near](const Vec3& p, const RegionValues& r) { return near(r) && arm.deltoid.value(p) < 0.008; });
+    parts.back().outside = 4;
     const auto end = [](const Loft& l) { return Vec3(l.a + l.axis * l.length); };
     add(prefix + "upper_arm", roles.upper, ellipsoidAlong(arm.upper.a, end(arm.upper), 0.041 * s, 0.06 * s), 0.02,
         [&, near](const Vec3& p, const RegionValues& r) {
@@ -188,6 +189,9 @@ std::vector<BodyPart> mannequinParts(const Mannequin& mannequin) {
   Sorter sorter(mannequin);
   sorter.addHead();
   sorter.addTrunk();
+  // Hair lies on these: rather a little too full than cut by the skin.
+  for (BodyPart& part : sorter.parts)
+    if (part.name != "head" && part.name != "jaw") part.outside = 4;
   for (int side = 0; side < 2; ++side) {
     if (mannequin.field.arms[side].present) sorter.addArm(side);
     if (mannequin.field.legs[side].present) sorter.addLeg(side);

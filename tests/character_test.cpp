@@ -300,7 +300,8 @@ TEST(BadInput, EveryKindNamesFileFaultAndMend) {
 }
 
 TEST(RigidParts, MissingOrBrokenPartsAreNamed) {
-  const std::string mot = scratch("one.mot", "NumFrames: 1\nbody[0] position\n0 0 1\nbody[0] orientation\n1 0 0 0\n");
+  const std::string mot =
+      scratch("one.mot", "NumFrames: 2\nbody[0] position\n0 0 1\n0 0 1\nbody[0] orientation\n1 0 0 0\n1 0 0 0\n");
   expectInputError(mot, "", {"one.mot", "--parts"});
   const fs::path folder = fs::path(HAIRMESH_TEST_OUT) / "parts";
   fs::create_directories(folder);
@@ -341,7 +342,7 @@ TEST(RigidParts, PapersMannequinDancesForThreeHundredFrames) {
     app::poseEllipsoids(c, pose, before, f ? clip.frame_time : 0, e);
     for (int b = 0; b < 16; ++b) {
       ASSERT_TRUE(e[b].center.allFinite() && e[b].velocity.allFinite() && e[b].angular_velocity.allFinite());
-      ASSERT_LT((e[b].center - pose.world[b] * Vec3(0.5 * (low[b] + high[b]))).norm(), 0.05);
+      ASSERT_LT((e[b].center - pose.world[b] * Vec3(0.5 * (low[b] + high[b]))).norm(), 0.06);
       travelled += e[b].velocity.norm() * clip.frame_time;
     }
     before = pose;
