@@ -6,6 +6,7 @@
 #include "app/character_build.h"
 #include "app/errors.h"
 #include "app/motion.h"
+#include "app/text_scanner.h"
 
 namespace app {
 
@@ -43,7 +44,7 @@ struct LineReader {
     double value = 0;
     const auto [end, error] = std::from_chars(w.data(), w.data() + w.size(), value);
     if (error != std::errc() || end != w.data() + w.size() || !(std::abs(value) < 1e3))
-      fail("'" + std::string(w) + "' is no coordinate below 1000 m", "write a vertex as three numbers");
+      fail(quoted(w) + " is no coordinate below 1000 m", "write a vertex as three numbers");
     return value;
   }
   // A corner 'v', 'v/t' or 'v/t/n', negative counts from the end.
@@ -53,7 +54,7 @@ struct LineReader {
     const bool whole = end == w.data() + w.size() || *end == '/';
     if (index < 0) index += static_cast<long>(vertices) + 1;
     if (error != std::errc() || !whole || index < 1 || index > static_cast<long>(vertices))
-      fail("face corner '" + std::string(w) + "' names no vertex above it", "number vertices from 1");
+      fail("face corner " + quoted(w) + " names no vertex above it", "number vertices from 1");
     return static_cast<std::uint32_t>(index - 1);
   }
 };
