@@ -1,0 +1,182 @@
+// The command line: what it means, and what each misuse is answered with.
+#include "app/options.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "app/errors.h"
+#include "app/scene_file.h"
+#include "tests/run_program.h"
+
+namespace {
+
+using app::Options;
+using test::Outcome;
+using test::runProgram;
+
+struct Parsed {
+  bool go_on;
+  int exit_code = 0;
+  Options options;
+};
+
+Parsed parse(std::vector<std::string> words) {
+  words.insert(words.begin(), "hairmesh");
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  Parsed parsed{};
+  parsed.go_on = app::parseOptions(static_cast<int>(words.size()), argv.data(), parsed.options, parsed.exit_code);
+  return parsed;
+}
+
+// One line, with the program's name before it, no more than a person reads.
+void expectOneMessage(const Outcome& outcome, int exit_code, const std::string& what) {
+  EXPECT_EQ(outcome.exit_code, exit_code) << what << "\n" << outcome.err;
+  EXPECT_TRUE(outcome.err.starts_with("hairmesh: ")) << what << ": " << outcome.err;
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << what << ": " << outcome.err;
+  EXPECT_LT(outcome.err.size(), 1500u) << what;
+}
+
+TEST(Options, AreReadAsWritten) {
+  const Parsed parsed = parse({"scene.json", "--headless", "--frames",      "12",           "--size",   "320x200",
+                               "--out",      "o",          "--set",         "friction=0.5", "--set",    "solver=paper",
+                               "--style",    "long",       "--resolution",  "high",         "--speed",  "2.5",
+                               "--fps",      "30",         "--strands",     "1000",         "--camera", "1,2,3,0,1,0",
+                               "--report",   "r.json",     "--strand-path", "pulling",      "--preset", "soft",
+                               "--no-images"});
+  ASSERT_TRUE(parsed.go_on);
+  const Options& o = parsed.options;
+  EXPECT_EQ(o.scene, "scene.json");
+  EXPECT_TRUE(o.headless && o.frames_given && o.size_given && o.no_images);
+  EXPECT_EQ(o.frames, 12);
+  EXPECT_EQ(o.width, 320);
+  EXPECT_EQ(o.height, 200);
+  ASSERT_EQ(o.set.size(), 2u);
+  EXPECT_EQ(o.set[1], std::make_pair(std::string("solver"), std::string("paper")));
+  EXPECT_EQ(o.speed, 2.5);
+  EXPECT_EQ(o.strands, 1000);
+  EXPECT_EQ(o.camera, "1,2,3,0,1,0");
+}
+
+TEST(Options, NothingGivenLeavesAllToTheScene) {
+  const Parsed parsed = parse({});
+  ASSERT_TRUE(parsed.go_on);
+  EXPECT_FALSE(parsed.options.headless || parsed.options.frames_given);
+  EXPECT_LT(parsed.options.speed, 0);
+  EXPECT_LT(parsed.options.strands, 0);
+}
+
+TEST(Options, OverridesReachTheScene) {
+  Options options = parse({"--style", "long", "--resolution", "low", "--speed", "3", "--strands", "77", "--set",
+                           "friction=0.5", "--set", "taper=0.9", "--camera", "back", "--travel"})
+                        .options;
+  const app::Scene scene = app::sceneFromOptions(options);
+  ASSERT_EQ(scene.characters.size(), 1u);
+  EXPECT_EQ(scene.characters[0].style, sim::Style::kLong);
+  EXPECT_EQ(scene.characters[0].resolution, sim::Resolution::kLow);
+  EXPECT_EQ(scene.characters[0].look.strands, 77);
+  EXPECT_EQ(scene.characters[0].look.hair.taper, 0.9f);
+  EXPECT_FALSE(scene.characters[0].in_place);
+  EXPECT_EQ(scene.playback.speed, 3);
+  EXPECT_EQ(scene.sim.friction, 0.5);
+  EXPECT_EQ(scene.camera.view, "back");
+}
+
+TEST(Options, MisuseIsUsageAndSaysSoInOneLine) {
+  const std::vector<std::vector<std::string>> misuses{{"--nonsense"},
+                                                      {"--frames", "0"},
+                                                      {"--frames", "-5"},
+                                                      {"--frames", "99999999999999999999"},
+                                                      {"--frames", "nan"},
+                                                      {"--frames"},
+                                                      {"--size", "0x0"},
+                                                      {"--size", "1280"},
+                                                      {"--size", "1e9x1e9"},
+                                                      {"--size", "-1x5"},
+                                                      {"--size", "nanxnan"},
+                                                      {"--style", "mohawk"},
+                                                      {"--resolution", "8k"},
+                                                      {"--speed", "-1"},
+                                                      {"--speed", "nan"},
+                                                      {"--speed", "1e30"},
+                                                      {"--fps", "0"},
+                                                      {"--fps", "inf"},
+                                                      {"--strands", "-1"},
+                                                      {"--strands", "1e12"},
+                                                      {"--strand-path", "x"},
+                                                      {"--set", "friction"},
+                                                      {"--set", "=1"},
+                                                      {"--set", "fricton=1"},
+                                                      {"--set", "friction=9"},
+                                                      {"--set", "friction=nan"},
+                                                      {"--set", "solver=magic"},
+                                                      {"--camera", "nowhere"},
+                                                      {"--camera", "1,2,3"},
+                                                      {"--camera", "1,1,1,1,1,1"},
+                                                      {"--camera", "1e300,0,0,0,0,0"},
+                                                      {"--parts", "folder"},
+                                                      {"--framing", "toe"},
+                                                      {"a.json", "b.json"},
+                                                      {"--start", "-3"},
+                                                      {"--style", "long", "--hair", "x.obj"},
+                                                      {"--no-images", "--frames", "1", "--debug", "everything"}};
+  for (const auto& words : misuses) {
+    std::string all;
+    for (const std::string& word : words) all += word + " ";
+    expectOneMessage(runProgram(words), app::kExitUsage, all);
+  }
+}
+
+TEST(Options, FilesThatCannotBeUsedAreBadInput) {
+  const std::string folder = test::freshFolder("options");
+  std::ofstream(folder + "/empty.json");
+  std::ofstream(folder + "/broken.json") << "{ \"characters\": [";
+  std::ofstream(folder + "/empty.bvh");
+  std::ofstream(folder + "/words.bvh") << "HIERARCHY of needs";
+  std::ofstream(folder + "/words.obj") << "not a mesh";
+  const std::vector<std::vector<std::string>> misuses{{"missing.json"},
+                                                      {folder},
+                                                      {folder + "/empty.json"},
+                                                      {folder + "/broken.json"},
+                                                      {"--motion", "missing.bvh"},
+                                                      {"--motion", folder + "/empty.bvh"},
+                                                      {"--motion", folder + "/words.bvh"},
+                                                      {"--motion", folder},
+                                                      {"--hair", "missing.obj"},
+                                                      {"--hair", folder + "/words.obj"},
+                                                      {"--preset", "missing"},
+                                                      {"--clip", "no such clip"},
+                                                      {"--report", "/nonexistent/folder/r.json"}};
+  for (std::vector<std::string> words : misuses) {
+    const std::string all = words.back();
+    words.insert(words.end(), {"--no-images", "--frames", "1"});
+    expectOneMessage(runProgram(words), app::kExitBadInput, all);
+  }
+}
+
+TEST(Options, AFolderThatCannotBeMadeIsBadInput) {
+  expectOneMessage(runProgram({"--headless", "--frames", "1", "--out", "/proc/frames"}), app::kExitBadInput, "--out");
+}
+
+TEST(Options, HelpNamesEveryOptionAndFitsATerminal) {
+  const Outcome help = runProgram({"--help"});
+  EXPECT_EQ(help.exit_code, 0);
+  for (const char* option : {"--headless", "--frames", "--size", "--out", "--set", "--style", "--resolution", "--hair",
+                             "--motion", "--parts", "--speed", "--fps", "--strands", "--camera", "--report",
+                             "--strand-path", "--preset", "--no-images"}) {
+    EXPECT_NE(help.out.find(option), std::string::npos) << option;
+  }
+}
+
+TEST(Options, WithoutADisplayTheWindowSaysWhatToDo) {
+  const Outcome outcome = runProgram({"--frames", "1"}, "-u DISPLAY -u WAYLAND_DISPLAY");
+  expectOneMessage(outcome, app::kExitNoContext, "no display");
+  EXPECT_NE(outcome.err.find("--headless"), std::string::npos);
+}
+
+}  // namespace

@@ -1,0 +1,145 @@
+// Scene and preset files: what round-trips, and what each fault is answered with.
+#include "app/scene_file.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "app/data_path.h"
+#include "app/errors.h"
+#include "app/presets.h"
+
+namespace {
+
+using app::CharacterLook;
+using app::InputError;
+using app::Scene;
+
+std::string faultOf(const std::string& text) {
+  try {
+    app::readScene(text, "scene.json");
+  } catch (const InputError& fault) {
+    return fault.what();
+  }
+  return "";
+}
+
+TEST(SceneFile, EverySceneAndPresetThatShipsIsRead) {
+  const auto scenes = app::listAssets("scenes", {".json"});
+  EXPECT_GE(scenes.size(), 5u);
+  for (const std::string& file : scenes) EXPECT_NO_THROW(app::loadScene(file)) << file;
+  const auto presets = app::listAssets("presets", {".json"});
+  EXPECT_GE(presets.size(), 3u);
+  for (const std::string& file : presets) {
+    sim::SimParams params;
+    app::SceneLook look;
+    EXPECT_NO_THROW(app::loadPreset(file, {&params, &look, {}})) << file;
+  }
+}
+
+TEST(SceneFile, WritingAndReadingKeepsEveryRow) {
+  Scene scene = app::loadScene(app::dataPath("assets/scenes/default.json"));
+  for (const sim::ParamField& field : sim::paramFields()) {
+    field.set(scene.sim,
+              field.kind == sim::FieldKind::kReal ? 0.3 * field.minimum + 0.7 * field.maximum : field.minimum);
+  }
+  for (const app::HairField& field : app::hairFields()) {
+    const double value =
+        field.kind == sim::FieldKind::kReal ? 0.4 * field.minimum + 0.6 * field.maximum : field.maximum;
+    field.set(scene.characters[0].look, {value, value, value});
+  }
+  scene.characters[0].position = {1.25, 0, -3};
+  scene.characters[0].heading = 0.5;
+  scene.camera.eye = app::Vec3(0.1, 0.2, 0.3);
+  scene.camera.target = app::Vec3(1, 2, 3);
+  const Scene copy = app::readScene(app::writeScene(scene), scene.file);
+  for (const sim::ParamField& field : sim::paramFields())
+    EXPECT_EQ(field.get(copy.sim), field.get(scene.sim)) << field.name;
+  for (const app::HairField& field : app::hairFields()) {
+    EXPECT_EQ(field.get(copy.characters[0].look), field.get(scene.characters[0].look)) << field.name;
+  }
+  EXPECT_EQ(copy.characters[0].position, scene.characters[0].position);
+  EXPECT_EQ(*copy.camera.eye, *scene.camera.eye);
+  EXPECT_EQ(app::writeScene(copy), app::writeScene(scene));
+}
+
+TEST(SceneFile, FaultsNameFilePlaceAndMend) {
+  struct Case {
+    const char *text, *place, *mend;
+  };
+  const Case cases[] = {
+      {"", "line 1", ""},
+      {"[", "line 1", ""},
+      {"{}", "scene.json", "characters"},
+      {"[]", "/", "{ ... }"},
+      {R"({"characters": []})", "/characters", "add a character"},
+      {R"({"characters": 3})", "/characters", "[ ... ]"},
+      {R"({"charcters": []})", "charcters", "'characters'"},
+      {R"({"characters": [{"motion": 5}]})", "/characters/0/motion", "quotes"},
+      {R"({"characters": [{"motion": ""}]})", "/characters/0", "motion"},
+      {R"({"characters": [{"style": "mohawk"}]})", "/characters/0/style", "short"},
+      {R"({"characters": [{"position": [1, 2]}]})", "/characters/0/position", "three"},
+      {R"({"characters": [{"position": [1, 2, 1e30]}]})", "/characters/0/position/2", "1000"},
+      {R"({"characters": [{"position": [1, "x", 0]}]})", "/characters/0/position/1", "number"},
+      {R"({"characters": [{"look": {"tapr": 1}}]})", "/characters/0/look", "'taper'"},
+      {R"({"characters": [{"look": {"taper": 7}}]})", "/characters/0/look/taper", "range"},
+      {R"({"characters": [{}], "sim": {"friction": "wet"}})", "/sim/friction", "number"},
+      {R"({"characters": [{}], "sim": {"collide": 7}})", "/sim/collide", "on or off"},
+      {R"({"characters": [{}], "sim": {"max_iterations": 2.5}})", "/sim/max_iterations", "whole"},
+      {R"({"characters": [{}], "light": {"to_light": [0, 0, 0]}})", "/light/to_light", "length"},
+      {R"({"characters": [{}], "camera": {"eye": [0, 0, 1]}})", "/camera", "both"},
+      {R"({"characters": [{}], "camera": {"eye": [0, 0, 1], "target": [0, 0, 1]}})", "/camera", "apart"},
+      {R"({"characters": [{}], "playback": {"fps": 0}})", "/playback/fps", "from 1"},
+      {R"({"characters": [{}], "preset": "no such preset"})", "no such preset", ""},
+      {R"({"characters": [{}], "name": "a", "name": "b"})", "name", "one of the two"},
+      {"{\"characters\": [{}],\n\"sim\": {\"friction\": 1e999}}", "scene.json", "number"},
+      {"{\"characters\": [{}],\n \"sim\": {friction: 1}}", "line 2", ""},
+      {"{\"characters\": [{}], \"name\": \"\xff\xfe\"}", "line 1", ""},
+  };
+  for (const Case& c : cases) {
+    const std::string fault = faultOf(c.text);
+    ASSERT_FALSE(fault.empty()) << "accepted: " << c.text;
+    EXPECT_NE(fault.find(c.place), std::string::npos) << c.text << "\n  -> " << fault;
+    EXPECT_NE(fault.find(c.mend), std::string::npos) << c.text << "\n  -> " << fault;
+    EXPECT_LT(fault.size(), 1200u) << c.text;
+  }
+}
+
+TEST(SceneFile, DepthAndSizeAreBounded) {
+  EXPECT_NE(faultOf(std::string(1000000, '[')).find("deep"), std::string::npos);
+  std::string crowd = "{\"characters\": [{}";
+  for (int i = 0; i < 1000; ++i) crowd += ",{}";
+  EXPECT_NE(faultOf(crowd + "]}").find("at most"), std::string::npos);
+}
+
+TEST(Presets, AFaultChangesNothing) {
+  sim::SimParams params;
+  app::SceneLook scene;
+  CharacterLook look;
+  std::array<CharacterLook*, 1> looks{&look};
+  EXPECT_THROW(app::applyPreset(R"({"sim": {"friction": 0.9}, "hair": {"taper": 0.1, "clump": 9}})", "p.json",
+                                {&params, &scene, looks}),
+               InputError);
+  EXPECT_EQ(params.friction, sim::SimParams{}.friction);
+  EXPECT_EQ(look.hair.taper, CharacterLook{}.hair.taper);
+}
+
+TEST(Presets, WritingAndReadingKeepsEveryRow) {
+  sim::SimParams params, params_read;
+  app::SceneLook scene, scene_read;
+  CharacterLook look, look_read;
+  params.friction = 0.123456789012345678;
+  params.solver = sim::Solver::kWarped;
+  look.hair.color = {0.1f, 0.7f, 0.3f};
+  scene.light.shadows = false;
+  scene.view.exposure = 1.7f;
+  std::array<CharacterLook*, 1> looks{&look_read};
+  app::applyPreset(app::writePreset("mine", params, look, scene), "mine.json", {&params_read, &scene_read, looks});
+  for (const sim::ParamField& field : sim::paramFields())
+    EXPECT_EQ(field.get(params_read), field.get(params)) << field.name;
+  for (const app::HairField& field : app::hairFields()) EXPECT_EQ(field.get(look_read), field.get(look)) << field.name;
+  for (const app::SceneField& field : app::sceneFields())
+    EXPECT_EQ(field.get(scene_read), field.get(scene)) << field.name;
+}
+
+}  // namespace

@@ -1,0 +1,113 @@
+// The house holds: who may include whom, how long a file may be, and names that say nothing.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> sources(const std::vector<std::string>& folders) {
+  std::vector<fs::path> files;
+  for (const std::string& folder : folders) {
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(HAIRMESH_SOURCE_DIR) / folder)) {
+      const std::string ending = entry.path().extension().string();
+      if (ending == ".cpp" || ending == ".h") files.push_back(entry.path());
+    }
+  }
+  return files;
+}
+
+std::vector<std::string> lines(const fs::path& file) {
+  std::ifstream stream(file);
+  std::vector<std::string> all;
+  for (std::string line; std::getline(stream, line);) all.push_back(line);
+  return all;
+}
+
+// Lines of `folder` that include what `forbidden` matches.
+std::string includesOf(const std::string& folder, const std::string& forbidden) {
+  const std::regex pattern("^\\s*#\\s*include\\s*[<\"](" + forbidden + ")");
+  std::string found;
+  for (const fs::path& file : sources({folder})) {
+    for (const std::string& line : lines(file)) {
+      if (std::regex_search(line, pattern)) found += file.filename().string() + ": " + line + "\n";
+    }
+  }
+  return found;
+}
+
+TEST(Structure, TheSimulatorKnowsNoPictureNoFileAndNoClock) {
+  EXPECT_EQ(includesOf("sim",
+                       "render/|app/|GL/|GLFW|EGL|imgui|assimp|nlohmann|CLI|fstream|filesystem|chrono|random|iostream"),
+            "");
+}
+
+TEST(Structure, TheRendererKnowsNoSimulatorAndNoProgram) {
+  EXPECT_EQ(includesOf("render", "sim/|app/|GLFW|EGL|imgui|assimp|nlohmann|CLI"), "");
+}
+
+TEST(Structure, SimulatorAndRendererMeetOnlyWhereTheyShould) {
+  // Files of app that include both rooms' doors: the hand-over, the demo and its parts, and the tables over both.
+  const std::vector<std::string> allowed{"sim_to_render", "demo",       "actor",  "debug_views", "frame_stats",
+                                         "look_params",   "scene_file", "camera", "presets"};
+  for (const fs::path& file : sources({"app"})) {
+    bool sim = false, render = false;
+    for (const std::string& line : lines(file)) {
+      sim = sim || line.starts_with("#include \"sim/step.h\"") || line.starts_with("#include \"sim/hair_mesh.h\"");
+      render = render || line.starts_with("#include \"render/");
+    }
+    if (!sim || !render) continue;
+    EXPECT_NE(std::find(allowed.begin(), allowed.end(), file.stem().string()), allowed.end()) << file;
+  }
+}
+
+TEST(Structure, PanelsCallNoOpenGl) {
+  for (const fs::path& file : sources({"app"})) {
+    if (!file.filename().string().starts_with("ui")) continue;
+    for (const std::string& line : lines(file)) {
+      EXPECT_FALSE(std::regex_search(line, std::regex("#include <(GL|GLFW|EGL)|\\bgl[A-Z][a-zA-Z]+\\(")))
+          << file << ": " << line;
+    }
+  }
+}
+
+TEST(Structure, NoFileIsLongerThanFiveHundredLines) {
+  for (const fs::path& file : sources({"sim", "render", "app", "tests"})) {
+    EXPECT_LE(lines(file).size(), 500u) << file;
+  }
+}
+
+TEST(Structure, NoLineIsWiderThanTheColumnLimit) {
+  for (const fs::path& file : sources({"sim", "render", "app"})) {
+    int number = 0;
+    for (const std::string& line : lines(file)) {
+      ++number;
+      if (line.find("R\"(") == std::string::npos) EXPECT_LE(line.size(), 120u) << file << ":" << number;
+    }
+  }
+}
+
+TEST(Structure, NamesSayWhatThingsAre) {
+  const std::regex empty_names(
+      "\\b(class|struct) \\w*(Manager|Utils?|Helper)\\b|shared_ptr|\\bTODO\\b|#ifdef HEADLESS");
+  for (const fs::path& file : sources({"sim", "render", "app"})) {
+    EXPECT_FALSE(std::regex_search(file.stem().string(), std::regex("manager|utils?$|helper"))) << file;
+    for (const std::string& line : lines(file))
+      EXPECT_FALSE(std::regex_search(line, empty_names)) << file << ": " << line;
+  }
+}
+
+TEST(Structure, NoVirtualClasses) {
+  for (const fs::path& file : sources({"sim", "render", "app"})) {
+    for (const std::string& line : lines(file)) {
+      EXPECT_FALSE(std::regex_search(line, std::regex("^\\s*virtual\\b"))) << file << ": " << line;
+    }
+  }
+}
+
+}  // namespace

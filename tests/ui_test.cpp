@@ -1,0 +1,216 @@
+// The panels, driven as by a mouse but without a window: Dear ImGui is fed events and its requests are watched.
+#include "app/ui.h"
+
+#include <gtest/gtest.h>
+#include <imgui/imgui.h>
+
+#include <algorithm>
+#include <string>
+
+#include "app/data_path.h"
+#include "app/demo.h"
+
+namespace {
+
+using app::Ask;
+using app::Demo;
+using app::Request;
+using app::UiItem;
+
+// A demo with panels and no pixels.
+class Panels : public testing::Test {
+ protected:
+  void SetUp() override {
+    ImGui::CreateContext();
+    ImGuiIO& io = ImGui::GetIO();
+    io.DisplaySize = {1280, 720};
+    app::prepareUi(1, ui_);
+    unsigned char* pixels = nullptr;
+    int width = 0, height = 0;
+    io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+    app::Scene scene;
+    app::CharacterSpec spec;
+    spec.motion = app::dataPath("assets/clips/idle_turns.bvh");
+    spec.style = sim::Style::kShort;
+    spec.resolution = sim::Resolution::kLow;
+    scene.characters = {spec};
+    scene.playback.settle = 0;
+    demo_ = app::openScene(std::move(scene), 1.5);
+    app::advanceFrame(demo_, 0, {});
+    frame();
+    frame();
+  }
+  void TearDown() override { ImGui::DestroyContext(); }
+
+  // Draws the panels once; returns what was asked for.
+  std::vector<Request> frame() {
+    ImGui::GetIO().DeltaTime = 1.0f / 60;
+    ImGui::NewFrame();
+    app::buildUi(demo_, ui_);
+    ImGui::Render();
+    return std::exchange(demo_.requests, {});
+  }
+
+  const UiItem* find(const std::string& name) const {
+    const auto found =
+        std::find_if(ui_.items.begin(), ui_.items.end(), [&](const UiItem& item) { return item.name == name; });
+    return found == ui_.items.end() ? nullptr : &*found;
+  }
+
+  // Moves, presses, drags by `dx` and releases over a widget; returns all requests on the way.
+  std::vector<Request> click(const std::string& name, float share = 0.5f, float dx = 0) {
+    const UiItem* item = find(name);
+    if (!item) {
+      ADD_FAILURE() << "no widget '" << name << "'";
+      return {};
+    }
+    ImGuiIO& io = ImGui::GetIO();
+    std::vector<Request> all;
+    const auto collect = [&] {
+      const auto more = frame();
+      all.insert(all.end(), more.begin(), more.end());
+    };
+    io.MousePos = {item->x + share * item->width, item->y + 0.5f * item->height};
+    collect();
+    collect();
+    io.MouseDown[0] = true;
+    collect();
+    io.MousePos.x += dx;
+    collect();
+    io.MouseDown[0] = false;
+    collect();
+    io.MousePos = {640, 400};
+    collect();
+    return all;
+  }
+
+  void openTab(int index) {
+    ui_.open_tab = index;
+    frame();
+    frame();
+  }
+
+  bool asked(const std::vector<Request>& requests, Ask what, const std::string& name = "") const {
+    return std::any_of(requests.begin(), requests.end(),
+                       [&](const Request& r) { return r.what == what && (name.empty() || r.name == name); });
+  }
+
+  Demo demo_;
+  app::UiState ui_;
+};
+
+TEST_F(Panels, TheTransportButtonsAskForWhatTheyShow) {
+  EXPECT_TRUE(asked(click("pause"), Ask::kPause));
+  EXPECT_TRUE(asked(click("step"), Ask::kSingleStep));
+  EXPECT_TRUE(asked(click("reset"), Ask::kReset));
+  EXPECT_TRUE(asked(click("restart"), Ask::kRestart));
+  EXPECT_TRUE(asked(click("collapse"), Ask::kCollapse));
+  EXPECT_TRUE(asked(click("screenshot"), Ask::kScreenshot));
+  EXPECT_TRUE(asked(click("record"), Ask::kRecord));
+  click("help");
+  EXPECT_TRUE(ui_.help);
+}
+
+TEST_F(Panels, EveryTabOpensByAClickOnIt) {
+  for (const char* tab : {"tab Motion", "tab Hair", "tab Look", "tab Debug", "tab Simulation"}) click(tab);
+  EXPECT_NE(find("density"), nullptr);
+  click("tab Hair");
+  EXPECT_NE(find("style Short"), nullptr);
+}
+
+TEST_F(Panels, EveryRowOfTheSimulationTableIsThere) {
+  // All sections opened one after the other, by clicking on those that are closed.
+  openTab(0);
+  for (const char* group : {"World", "Rest shape", "Time", "Numerics"}) click(std::string("section ") + group, 0.3f);
+  frame();
+  for (const sim::ParamField& field : sim::paramFields()) EXPECT_NE(find(field.name), nullptr) << field.name;
+}
+
+TEST_F(Panels, DraggingASliderSetsTheParameterAndItsMarkResetsIt) {
+  openTab(0);
+  EXPECT_EQ(find("reset density"), nullptr);
+  const auto requests = click("density", 0.5f, 40);
+  ASSERT_TRUE(asked(requests, Ask::kSetParam, "density"));
+  demo_.requests = requests;
+  app::applyRequests(demo_);
+  EXPECT_NE(demo_.scene.sim.density, sim::SimParams{}.density);
+  frame();
+  const auto reset = click("reset density");
+  ASSERT_TRUE(asked(reset, Ask::kSetParam, "density"));
+  demo_.requests = reset;
+  app::applyRequests(demo_);
+  EXPECT_EQ(demo_.scene.sim.density, sim::SimParams{}.density);
+}
+
+TEST_F(Panels, StylesAndResolutionsAreButtons) {
+  openTab(2);
+  EXPECT_TRUE(asked(click("style Long"), Ask::kStyle, "long"));
+  EXPECT_TRUE(asked(click("resolution High"), Ask::kResolution, "high"));
+}
+
+TEST_F(Panels, SpeedAndScrubAreAskedFor) {
+  openTab(1);
+  EXPECT_TRUE(asked(click("speeds 10x"), Ask::kSpeed));
+  EXPECT_TRUE(asked(click("scrub", 0.4f, 30), Ask::kCarryAlong));
+  EXPECT_TRUE(asked(click("hold", 0.5f), Ask::kPauseMotion));
+  EXPECT_TRUE(asked(click("substeps 4"), Ask::kSetParam, "time_step"));
+}
+
+TEST_F(Panels, DebugViewsSwitch) {
+  openTab(4);
+  for (const app::DebugView& view : app::kDebugViews) {
+    EXPECT_TRUE(asked(click("debug " + std::string(view.name), 0.1f), Ask::kDebugView, std::string(view.name)))
+        << view.name;
+  }
+}
+
+TEST_F(Panels, AFaultIsShownUntilItIsClosed) {
+  demo_.message = "file.bvh: line 3: a fault; mend it";
+  demo_.message_is_fault = true;
+  for (int i = 0; i < 600; ++i) frame();
+  ASSERT_NE(find("close_message"), nullptr);
+  click("close_message");
+  EXPECT_TRUE(demo_.message.empty());
+}
+
+TEST_F(Panels, PanelsLeaveTheMiddleToTheFigure) {
+  for (const UiItem& item : ui_.items) {
+    const bool left = item.x + item.width <= 380, right = item.x >= 960;
+    EXPECT_TRUE(left || right) << item.name << " at " << item.x;
+  }
+}
+
+TEST_F(Panels, HiddenPanelsDrawNothing) {
+  app::pressKey(app::kKeyTab, demo_, ui_);
+  frame();
+  EXPECT_TRUE(ui_.items.empty());
+  EXPECT_EQ(ImGui::GetDrawData()->TotalVtxCount, 0);
+}
+
+TEST_F(Panels, TinyWindowsAreSurvived) {
+  for (const ImVec2 size : {ImVec2(16, 16), ImVec2(0, 0), ImVec2(300, 40), ImVec2(8000, 6000)}) {
+    ImGui::GetIO().DisplaySize = size;
+    for (int tab = 0; tab < 5; ++tab) openTab(tab);
+  }
+}
+
+TEST_F(Panels, EveryKeyOfTheListDoesSomething) {
+  for (const int key :
+       {int(' '), int('.'), int('R'), int('C'), int('1'), int('2'), int('3'),          int('4'), int('5'),
+        int('6'), int('-'), int('='), int('F'), int('S'), int('B'), int('T'),          int('Q'), int('L'),
+        int('M'), int('E'), int('V'), int('N'), int('P'), int('K'), int(app::kKeyHome)}) {
+    demo_.requests.clear();
+    EXPECT_TRUE(app::pressKey(key, demo_, ui_)) << key;
+    EXPECT_FALSE(demo_.requests.empty()) << key;
+  }
+  demo_.requests.clear();
+  app::pressKey('/', demo_, ui_);
+  EXPECT_TRUE(ui_.help);
+  app::pressKey(app::kKeyEscape, demo_, ui_);
+  EXPECT_FALSE(ui_.help || ui_.quit);
+  app::pressKey(app::kKeyEscape, demo_, ui_);
+  EXPECT_TRUE(ui_.quit);
+  EXPECT_FALSE(app::pressKey('Z', demo_, ui_));
+}
+
+}  // namespace
