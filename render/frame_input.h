@@ -28,7 +28,7 @@ struct HairLook {
       0.6f;                   // drawn radius = strand_radius * (strands_represented / strands)^this; 0: none, 1: all
   float least_pixels = 1.0f;  // strands thinner than this are drawn this wide and fade by coverage
   float taper = 0.35f;        // tip radius over root radius
-  float length_variation = 0.10f;  // strands end up to this share of their length early
+  float length_variation = 0.06f;  // strands end up to this share of their length early
   float offset = 0.0012f;          // m, random sideways wander that grows along the strand
   float clump = 0.45f;             // 0..1 pull towards the clump's centre strand, opening and closing along the length
   float clump_size = 0.012f;       // m, typical spacing of clumps on the scalp
@@ -43,7 +43,7 @@ struct HairLook {
   float beta_m = 0.24f, beta_n = 0.3f;  // longitudinal and azimuthal roughness, 0..1
   float eta = 1.55f;
   float cuticle_angle = 0.05f;  // rad, scale tilt that shifts the R and TRT highlights
-  float specular = 1.5f, diffuse = 1.0f;
+  float specular = 1.3f, diffuse = 1.0f;
   std::uint32_t seed = 1;
 
   bool operator==(const HairLook&) const = default;
@@ -80,9 +80,9 @@ struct CameraInput {
 
 struct LightInput {
   Float3 to_light{0.45f, 0.8f, 0.6f};  // key light's direction, towards the light
-  Float3 key{3.0f, 2.85f, 2.6f}, fill{0.35f, 0.4f, 0.5f}, rim{1.3f, 1.4f, 1.6f};
+  Float3 key{3.5f, 3.3f, 3.0f}, fill{0.28f, 0.32f, 0.40f}, rim{1.3f, 1.4f, 1.6f};
   Float3 to_fill{-0.8f, 0.3f, 0.6f}, to_rim{-0.35f, 0.6f, -0.9f};
-  Float3 ambient_sky{0.30f, 0.33f, 0.38f}, ambient_ground{0.16f, 0.14f, 0.12f};
+  Float3 ambient_sky{0.22f, 0.24f, 0.28f}, ambient_ground{0.11f, 0.10f, 0.09f};
   int shadow_size = 1024;
   int shadow_strands = 8000;     // at most this many strands a hair cast shadow, standing for all; 0: all
   int opacity_layers = 7;        // deep opacity map layers, 1..7 (the eighth channel takes all behind)
@@ -101,7 +101,8 @@ enum class StrandPath { kGeometry, kPulling };
 struct ViewOptions {
   int samples = 4;  // multisampling, clamped to what the context has
   float exposure = 1.25f;
-  Float3 backdrop_top{0.045f, 0.05f, 0.06f}, backdrop_bottom{0.15f, 0.15f, 0.155f}, ground_color{0.11f, 0.11f, 0.115f};
+  Float3 backdrop_top{0.022f, 0.024f, 0.029f}, backdrop_bottom{0.085f, 0.084f, 0.086f},
+      ground_color{0.085f, 0.084f, 0.086f};
   float ground_height = 0;  // m
   bool ground = true, show_strands = true, show_body = true;
   StrandPath strand_path = StrandPath::kGeometry;

@@ -38,21 +38,33 @@ float bodyLightOnHair(int map, vec3 at) {
   return texture(body_in_hair_depth, vec4(at.xy, map, reference));
 }
 
-// Optical depth of all hairs over a point of body or ground, averaged over a small disc: strands cast soft shadows.
-float hairShadowOnSurface(vec3 world, float softness) {
-  float depth = 0.0;
+// Light of the key left after all hairs, for a point of body or ground: averaged over a disc that widens with the distance from
+// the hair, as under a lamp of some size. The taps lie on a spiral of golden angles (Vogel 1979).
+float hairLightOnSurface(vec3 world) {
+  const int kTaps = 12;
+  const float kLampAngle = 0.16, kLeastRadius = 0.004;  // rad, m
+  float light = 1.0;
   for (int map = 0; map < int(to_key.w); ++map) {
     vec3 at = hairShadowCoordinates(map, world);
     if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) continue;
-    vec2 reach = softness / hair_shadow_size[map].xy;
-    float sum = 0.0;
-    for (int i = 0; i < 5; ++i) {
-      vec2 tap = i == 0 ? vec2(0.0) : vec2(i < 3 ? -1.0 : 1.0, (i & 1) == 1 ? -1.0 : 1.0);
-      sum += hairOpticalDepth(map, vec3(at.xy + tap * reach, at.z));
+    // How far above lies the hair that may shade this point? Sought in a wide ring, nearest to the point's depth first.
+    float above = 0.0;
+    for (int i = 0; i < 9; ++i) {
+      vec2 tap = i == 8 ? vec2(0.0) : 0.03 * vec2(cos(0.785398 * float(i)), sin(0.785398 * float(i)));
+      float first = textureLod(hair_depth, vec3(at.xy + tap / hair_shadow_size[map].xy, map), 0.0).r;
+      if (first < 1.0) above = max(above, (at.z - first) * hair_shadow_size[map].z);
     }
-    depth += sum / 5.0;
+    if (above <= 0.0) continue;
+    vec2 reach = (kLeastRadius + kLampAngle * 0.5 * above) / hair_shadow_size[map].xy;
+    float sum = 0.0;
+    for (int i = 0; i < kTaps; ++i) {
+      float turn = 2.399963 * float(i);
+      vec2 tap = sqrt((float(i) + 0.5) / float(kTaps)) * vec2(cos(turn), sin(turn));
+      sum += exp(-hairOpticalDepth(map, vec3(at.xy + tap * reach, at.z)));
+    }
+    light *= sum / float(kTaps);
   }
-  return depth;
+  return light;
 }
 
 // Light left after the bodies, for a point of body or ground: percentage-closer filtering over 3 x 3 taps.
