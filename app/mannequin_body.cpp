@@ -93,17 +93,18 @@ BodyField::ArmShape shapeArm(const Figure::Arm& a, double s) {
   arm.present = true;
   const Vec3 ahead = Vec3::UnitZ();
   arm.upper = makeLoft(a.shoulder, a.elbow, ahead,
-                       scaled({{0.0, 0.043, 0.045, 0.045, 0.0},
-                               {0.22, 0.0425, 0.046, 0.045, 0.0},
+                       scaled({{0.0, 0.034, 0.041, 0.041, 0.0},
+                               {0.10, 0.0395, 0.044, 0.044, 0.0},
+                               {0.24, 0.0415, 0.045, 0.044, 0.0},
                                {0.5, 0.0375, 0.041, 0.040, 0.0},
                                {0.8, 0.033, 0.035, 0.035, 0.0},
                                {1.0, 0.0325, 0.033, 0.034, 0.0}},
                               s),
-                       {0.026 * s, 0.03 * s});
+                       {0.024 * s, 0.03 * s});
   // Flesh begins outside the joint where a skeleton's shoulders are narrow.
-  arm.deltoid = {a.shoulder + (a.elbow - a.shoulder).normalized() * 0.036 * s + s * Vec3(a.side * 0.004, -0.004, 0),
+  arm.deltoid = {a.shoulder + (a.elbow - a.shoulder).normalized() * 0.045 * s + s * Vec3(a.side * 0.002, -0.006, 0),
                  Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), a.elbow - a.shoulder).toRotationMatrix(),
-                 s * Vec3(0.044, 0.066, 0.047)};
+                 s * Vec3(0.040, 0.066, 0.045)};
   arm.fore = makeLoft(a.elbow, a.wrist, ahead,
                       scaled({{0.0, 0.032, 0.033, 0.033, 0.0},
                               {0.22, 0.0335, 0.037, 0.036, 0.0},

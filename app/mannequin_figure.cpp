@@ -14,10 +14,11 @@ namespace {
 
 using Quat = Eigen::Quaterniond;
 
-constexpr double kHeadShare = 0.135;      // chin to crown over height: adults between 1/7 and 1/8
-constexpr double kSkullBaseShare = 0.30;  // skull base above the chin, over head height
-constexpr double kNeckShare = 0.058;      // C7 to skull base over height
-constexpr double kArmAngle = 0.72;        // rad from straight down: far enough that arm and flank stay apart
+constexpr double kHeadShare = 0.135;       // chin to crown over height: adults between 1/7 and 1/8
+constexpr double kSkullBaseShare = 0.30;   // skull base above the chin, over head height
+constexpr double kNeckShare = 0.058;       // C7 to skull base over height
+constexpr double kShouldersShare = 0.085;  // shoulder joints to skull base over height, at least
+constexpr double kArmAngle = 0.72;         // rad from straight down: far enough that arm and flank stay apart
 
 ReferencePose restReference(const BvhMotion& motion) {
   ReferencePose reference;
@@ -185,9 +186,8 @@ Figure measure(const ReferencePose& pose, const BodyRoles& roles) {
   }
   figure.shoulder_half = std::clamp(figure.shoulder_half, 0.05 * figure.height, 0.14 * figure.height);
   figure.hip_half = std::clamp(figure.hip_half, 0.03 * figure.height, 0.08 * figure.height);
-  // A neck joint may sit above or below the shoulders; the skull needs a neck's length of its own.
-  if (const double least = figure.shoulder_level + 0.088 * figure.height;
-      roles.head_is_neck && figure.skull_base.y() < least) {
+  // Head joints lie anywhere from the nape to the skull base; the skull needs a neck's length above the shoulders.
+  if (const double least = figure.shoulder_level + kShouldersShare * figure.height; figure.skull_base.y() < least) {
     figure.skull_base.y() = least;
     figure.height = (least - figure.sole) / (1 - kHeadShare * (1 - kSkullBaseShare));
     figure.head_height = kHeadShare * figure.height;

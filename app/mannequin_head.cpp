@@ -39,9 +39,9 @@ const Loft& faceLoft() {
   struct Level {
     double y, side, front, back, shift;
   };
-  constexpr std::array<Level, 10> levels{{{0.030, 0.072, 0.060, 0.080, 0.278},
-                                          {0.090, 0.120, 0.090, 0.140, 0.268},
-                                          {0.160, 0.162, 0.128, 0.195, 0.238},
+  constexpr std::array<Level, 10> levels{{{0.030, 0.066, 0.056, 0.080, 0.272},
+                                          {0.090, 0.113, 0.088, 0.140, 0.262},
+                                          {0.160, 0.156, 0.127, 0.195, 0.234},
                                           {0.240, 0.204, 0.168, 0.240, 0.200},
                                           {0.330, 0.238, 0.213, 0.258, 0.157},
                                           {0.430, 0.258, 0.243, 0.252, 0.128},
@@ -72,10 +72,10 @@ double headWithoutEars(const Vec3& q) {
   // The jaw rises from the chin to the ears.
   static const Eigen::Matrix3d jaw_tilt = Eigen::AngleAxisd(0.50, Vec3::UnitX()).toRotationMatrix();
   d = smoothMin(d, egg(jaw_tilt.transpose() * (q - Vec3(0, 0.195, 0.160)), Vec3(0.150, 0.105, 0.205)), 0.10);
-  d = smoothMin(d, egg(q - Vec3(0, 0.074, 0.292), Vec3(0.064, 0.060, 0.072)), 0.07);        // chin
+  d = smoothMin(d, egg(q - Vec3(0, 0.076, 0.286), Vec3(0.058, 0.056, 0.072)), 0.07);        // chin
   d = smoothMin(d, egg(m - Vec3(0.145, 0.405, 0.195), Vec3(0.100, 0.115, 0.118)), 0.15);    // cheeks
-  d = smoothMax(d, -egg(m - Vec3(0.125, 0.525, 0.450), Vec3(0.100, 0.056, 0.090)), 0.090);  // eye sockets
-  d = smoothMin(d, egg(m - Vec3(0.124, 0.508, 0.282), Vec3(0.082, 0.062, 0.077)), 0.040);   // closed lids
+  d = smoothMax(d, -egg(m - Vec3(0.125, 0.525, 0.450), Vec3(0.100, 0.058, 0.092)), 0.080);  // eye sockets
+  d = smoothMin(d, egg(m - Vec3(0.124, 0.508, 0.282), Vec3(0.080, 0.056, 0.078)), 0.030);   // closed lids
   d = smoothMin(d, nose(q), 0.050);
   // Lips: two soft rolls that follow the curve of the teeth.
   const double x2 = q.x() * q.x(), bow = 1.6 * x2, smile = 1.0 * x2;
@@ -93,9 +93,9 @@ double headValue(const Vec3& q) {
   const Vec3 e = (splay * lean).toRotationMatrix().transpose() * (m - Vec3(0.312, 0.470, -0.040));
   // Narrower at the lobe than at the top.
   const Vec3 tapered(e.x(), e.y(), e.z() * (1.15 - 1.6 * e.y()));
-  const double shell = egg(tapered, Vec3(0.027, 0.112, 0.066));
+  const double shell = egg(tapered, Vec3(0.030, 0.112, 0.068));
   const double bowl = egg(e - Vec3(0.030, 0.022, 0.012), Vec3(0.022, 0.060, 0.034));
-  return smoothMin(d, smoothMax(shell, -bowl, 0.025), 0.032);
+  return smoothMin(d, smoothMax(shell, -bowl, 0.028), 0.040);
 }
 
 }  // namespace app
