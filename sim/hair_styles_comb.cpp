@@ -25,7 +25,7 @@ Cut cutOf(Style style) {
     case Style::kShort:
       return {0.028, -0.20, -0.25, -0.40, false, false, 0.35};
     case Style::kShoulder:
-      return {0.034, 0.09, 0.08, 0.06, true, false, 0.8};
+      return {0.034, 0.05, 0.05, 0.0, true, false, 0.6};
     case Style::kLong:
       break;
   }
@@ -69,6 +69,7 @@ struct Comber {
   Cut cut;
   double shoulders;  // m, height above the scalp's centre
   Coat coat;
+  std::vector<double> ends = {};  // m, per sheet: height of the cut
 
   double backness(int sheet) const { return lines.backness(sheet); }
   double sideOf(int sheet) const { return 2 * sheet < coat.sheets ? 1.0 : -1.0; }
@@ -77,10 +78,11 @@ struct Comber {
   // Whether two neighbouring sheets have gone separate ways at a row: one before, one behind the shoulder.
   bool parted(int sheet, int other, int row) const;
   double cutHeight(int sheet) const;
-  double freeBelow(int sheet) const { return scalp.center.y() + cutHeight(sheet) - 0.02; }
+  double freeBelow(int sheet) const { return ends[sheet] - 0.01 * coat.scale; }
   Vec3 aim(int sheet) const;
   Vec3 keepOff(int sheet, Vec3 p, double gap) const;
-  void fall(int sheet);
+  bool fall(int sheet);
+  void cutAboveShoulders();
   void fallAll();
   void hangTaut(std::vector<Vec3>& guide, int sheet, int first, int last, double tautness) const;
   void hangInner(int sheet);
@@ -139,8 +141,10 @@ Vec3 Comber::keepOff(int sheet, Vec3 p, double gap) const {
   return p;
 }
 
-// Follows gravity from the hairline: stiff enough to turn gently, sliding over what is in the way.
-void Comber::fall(int sheet) {
+// Follows gravity from the hairline: stiff enough to turn gently, sliding over what is in the way. Hair that is to end
+// at the shoulders does not slide down their slope; where it comes to lie on them its end is lifted, and false is
+// returned.
+bool Comber::fall(int sheet) {
   const int last_skin = coat.scalp_rows - 1;
   Vec3 p = coat.inner[coat.index(sheet, last_skin)];
   Vec3 heading = (p - coat.inner[coat.index(sheet, last_skin - 2)]).normalized();
@@ -160,21 +164,43 @@ void Comber::fall(int sheet) {
     // What is below the cut hangs free: shoulders that the hair never reaches must not bend its ends outwards.
     if (p.y() > lowest && body(p) < gap) {
       const Vec3 n = bodyNormal(body, p);
+      if (cut.from_shoulders && !cut.divides && n.y() > 0.62 && std::abs(n.x()) > 0.9 * std::abs(n.z()) &&
+          p.y() > ends[sheet] && row > coat.scalp_rows + 6) {
+        ends[sheet] = p.y() + 0.01 * coat.scale;
+        return false;
+      }
       p = keepOff(sheet, p, gap);
       heading = (heading - std::min(0.0, heading.dot(n)) * n).normalized();
     }
     coat.inner[coat.index(sheet, row)] = p;
   }
+  return true;
+}
+
+// Lifts the cut of the sheets beside those that lie on the shoulders, so that it stays one smooth line.
+void Comber::cutAboveShoulders() {
+  constexpr double kSteepest = 0.002;  // m from one sheet to the next
+  for (int s = 1; s < coat.sheets; ++s) ends[s] = std::max(ends[s], ends[s - 1] - kSteepest * coat.scale);
+  for (int s = coat.sheets - 2; s >= 0; --s) ends[s] = std::max(ends[s], ends[s + 1] - kSteepest * coat.scale);
+  for (int sweep = 0; sweep < 30; ++sweep)
+    for (int s = 1; s + 1 < coat.sheets; ++s) ends[s] = std::max(ends[s], 0.5 * (ends[s - 1] + ends[s + 1]));
 }
 
 void Comber::fallAll() {
   double lowest = 1e9;
-  for (int s = 0; s < coat.sheets; ++s) lowest = std::min(lowest, cutHeight(s));
+  for (int s = 0; s < coat.sheets; ++s) {
+    lowest = std::min(lowest, cutHeight(s));
+    ends.push_back(scalp.center.y() + cutHeight(s));
+  }
   const int below = static_cast<int>(1.25 * (0.35 * scalp.head_height - lowest) / (kRowStep * coat.scale)) + 8;
   coat.rows = coat.scalp_rows + below;
   coat.inner.resize(static_cast<std::size_t>(coat.sheets) * coat.rows);
   for (int s = 0; s < coat.sheets; ++s) {
     for (int r = 0; r < coat.scalp_rows; ++r) coat.inner[coat.index(s, r)] = lines.at(s, r);
+    while (!fall(s)) continue;
+  }
+  if (!cut.divides && cut.from_shoulders) cutAboveShoulders();
+  for (int s = 0; s < coat.sheets; ++s) {
     fall(s);
     hangInner(s);
   }
@@ -324,17 +350,16 @@ void Comber::measure() {
   coat.cut_row.assign(coat.sheets, coat.rows - 1.0);
   coat.short_row.assign(coat.sheets, coat.rows - 1.0);
   for (int s = 0; s < coat.sheets; ++s) {
-    const double ends = scalp.center.y() + cutHeight(s),
-                 rests = scalp.center.y() + shoulders + 0.16 * scalp.head_height;
+    const double cut_height = ends[s], rests = scalp.center.y() + shoulders + 0.16 * scalp.head_height;
     bool cut_found = false, rest_found = false;
     for (int r = 1; r < coat.rows; ++r) {
       const Vec3 &a = coat.inner[coat.index(s, r - 1)], &b = coat.inner[coat.index(s, r)];
       coat.travelled[coat.index(s, r)] = coat.travelled[coat.index(s, r - 1)] + (b - a).norm();
       if (r < coat.scalp_rows + 2) continue;
       const double drop = std::max(a.y() - b.y(), 1e-9);
-      if (!cut_found && b.y() <= ends) {
+      if (!cut_found && b.y() <= cut_height) {
         cut_found = true;
-        coat.cut_row[s] = r - 1 + std::clamp((a.y() - ends) / drop, 0.0, 1.0);
+        coat.cut_row[s] = r - 1 + std::clamp((a.y() - cut_height) / drop, 0.0, 1.0);
       }
       if (!rest_found && b.y() <= rests) {
         rest_found = true;
