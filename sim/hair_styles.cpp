@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
-#include <utility>
+#include <numeric>
 
 #include "sim/hair_styles_comb.h"
 #include "sim/hair_styles_roots.h"
@@ -17,10 +17,19 @@ namespace {
 constexpr double kFatness = 0.10;  // of every corner tetrahedron, see cornerFatness
 constexpr double kGap = 0.0025;    // m, of every vertex but the roots; further down the coat keeps more by itself
 
+constexpr double kOrdinaryHead = 0.23;  // m from chin to crown
 constexpr double kLeastFatness = 0.03;
 
-// The head with its radius averaged over neighbouring directions, `rounds` times.
-Scalp rounded(Scalp scalp, int rounds) {
+Scalp scaledTo(Scalp scalp, double factor) {
+  scalp.center *= factor;
+  scalp.head_height *= factor;
+  for (double& r : scalp.radius) r *= factor;
+  return scalp;
+}
+
+// The head with its radius averaged over neighbouring directions, `rounds` times, then brought nearer to a ball of
+// ordinary size by the share `ball`.
+Scalp rounded(Scalp scalp, int rounds, double ball) {
   std::vector<double> next(scalp.radius.size());
   const auto at = [&](int i, int j) {
     return scalp.radius[static_cast<std::size_t>(std::clamp(i, 0, scalp.rows - 1)) * scalp.columns +
@@ -35,6 +44,9 @@ Scalp rounded(Scalp scalp, int rounds) {
     }
     std::swap(scalp.radius, next);
   }
+  const auto upper_half = scalp.radius.begin() + static_cast<std::ptrdiff_t>(scalp.rows / 2) * scalp.columns;
+  const double mean = std::accumulate(scalp.radius.begin(), upper_half, 0.0) / (upper_half - scalp.radius.begin());
+  for (double& r : scalp.radius) r += ball * (mean - r);
   return scalp;
 }
 
@@ -57,19 +69,29 @@ double Scalp::radiusAt(const Vec3& direction) const {
 }
 
 HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& scalp, const BodyDistance& body) {
-  const Weave plan = weaveOf(style, resolution);
+  // Hair is cut on a head of ordinary size, where lengths mean what they say, and grown or shrunk with it.
+  const double scale = scalp.head_height / kOrdinaryHead;
+  const BodyDistance scaled_body = [&](const Vec3& p) { return body(scale * p) / scale; };
   // A head with horns, or a jaw wider than the shoulders, can leave no room for a haircut. Then the hair grows on a
   // rounded head instead, and in the end falls around a post in place of the body rather than be refused.
   const BodyDistance post = [&](const Vec3& p) {
-    const Vec3 above = p - scalp.center;
-    return Vec3(above.x(), std::max(0.0, above.y()), above.z()).norm() - 0.36 * scalp.head_height;
+    const Vec3 above = p - scalp.center / scale;
+    return Vec3(above.x(), std::max(0.0, above.y()), above.z()).norm() - 0.36 * kOrdinaryHead;
   };
+  struct Attempt {
+    int rounds;
+    double ball;
+    const BodyDistance* around;
+  };
+  const Weave plan = weaveOf(style, resolution);
   HairMeshShape shape;
-  for (const auto& [rounding, around] : {std::pair(0, &body), std::pair(20, &body), std::pair(60, &post)}) {
-    const Scalp head = rounded(scalp, rounding);
-    shape = weave(combCoat(style, head, *around, traceFlowLines(head)), plan);
-    if (untangle(*around, kFatness, kGap, shape) > kLeastFatness) break;
+  for (const Attempt& attempt :
+       {Attempt{0, 0, &scaled_body}, Attempt{20, 0, &scaled_body}, Attempt{60, 0.5, &post}, Attempt{60, 1, &post}}) {
+    const Scalp head = rounded(scaledTo(scalp, 1 / scale), attempt.rounds, attempt.ball);
+    shape = weave(combCoat(style, head, *attempt.around, traceFlowLines(head)), plan);
+    if (untangle(*attempt.around, kFatness, kGap, shape) > kLeastFatness) break;
   }
+  for (Vec3& p : shape.positions) p *= scale;
   return shape;
 }
 

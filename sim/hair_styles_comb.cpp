@@ -6,11 +6,10 @@
 namespace sim {
 namespace {
 
-constexpr double kRowStep = 0.006;      // m, below the hairline, on a head of 23 cm
-constexpr double kOrdinaryHead = 0.23;  // m from chin to crown: what the lengths here are meant for
-constexpr double kInnerGap = 0.006;     // m, between the body and the underside of the hair
-constexpr double kTautness = 0.9;       // how nearly hanging hair spans hollows as a taut string would
-constexpr double kDivide = 0.35;        // hair rooted in front of this backness falls in front of the shoulders
+constexpr double kRowStep = 0.006;   // m, below the hairline
+constexpr double kInnerGap = 0.006;  // m, between the body and the underside of the hair
+constexpr double kTautness = 0.9;    // how nearly hanging hair spans hollows as a taut string would
+constexpr double kDivide = 0.35;     // hair rooted in front of this backness falls in front of the shoulders
 
 // What one style wants. Heights are in head heights above the scalp's centre.
 struct Cut {
@@ -78,7 +77,7 @@ struct Comber {
   // Whether two neighbouring sheets have gone separate ways at a row: one before, one behind the shoulder.
   bool parted(int sheet, int other, int row) const;
   double cutHeight(int sheet) const;
-  double freeBelow(int sheet) const { return ends[sheet] - 0.01 * coat.scale; }
+  double freeBelow(int sheet) const { return ends[sheet] - 0.01; }
   Vec3 aim(int sheet) const;
   Vec3 keepOff(int sheet, Vec3 p, double gap) const;
   bool fall(int sheet);
@@ -159,14 +158,14 @@ bool Comber::fall(int sheet) {
       wish += slope * std::min(1.0, 1.2 / std::max(slope.norm(), 1e-9));
     }
     heading = (0.88 * heading + 0.12 * wish.normalized()).normalized();
-    p += kRowStep * coat.scale * heading;
+    p += kRowStep * heading;
     const double gap = kInnerGap * smoothstep(0, 5, row - last_skin);
     // What is below the cut hangs free: shoulders that the hair never reaches must not bend its ends outwards.
     if (p.y() > lowest && body(p) < gap) {
       const Vec3 n = bodyNormal(body, p);
       if (cut.from_shoulders && !cut.divides && n.y() > 0.62 && std::abs(n.x()) > 0.9 * std::abs(n.z()) &&
           p.y() > ends[sheet] && row > coat.scalp_rows + 6) {
-        ends[sheet] = p.y() + 0.01 * coat.scale;
+        ends[sheet] = p.y() + 0.01;
         return false;
       }
       p = keepOff(sheet, p, gap);
@@ -180,8 +179,8 @@ bool Comber::fall(int sheet) {
 // Lifts the cut of the sheets beside those that lie on the shoulders, so that it stays one smooth line.
 void Comber::cutAboveShoulders() {
   constexpr double kSteepest = 0.002;  // m from one sheet to the next
-  for (int s = 1; s < coat.sheets; ++s) ends[s] = std::max(ends[s], ends[s - 1] - kSteepest * coat.scale);
-  for (int s = coat.sheets - 2; s >= 0; --s) ends[s] = std::max(ends[s], ends[s + 1] - kSteepest * coat.scale);
+  for (int s = 1; s < coat.sheets; ++s) ends[s] = std::max(ends[s], ends[s - 1] - kSteepest);
+  for (int s = coat.sheets - 2; s >= 0; --s) ends[s] = std::max(ends[s], ends[s + 1] - kSteepest);
   for (int sweep = 0; sweep < 30; ++sweep)
     for (int s = 1; s + 1 < coat.sheets; ++s) ends[s] = std::max(ends[s], 0.5 * (ends[s - 1] + ends[s + 1]));
 }
@@ -192,7 +191,7 @@ void Comber::fallAll() {
     lowest = std::min(lowest, cutHeight(s));
     ends.push_back(scalp.center.y() + cutHeight(s));
   }
-  const int below = static_cast<int>(1.25 * (0.35 * scalp.head_height - lowest) / (kRowStep * coat.scale)) + 8;
+  const int below = static_cast<int>(1.25 * (0.35 * scalp.head_height - lowest) / kRowStep) + 8;
   coat.rows = coat.scalp_rows + below;
   coat.inner.resize(static_cast<std::size_t>(coat.sheets) * coat.rows);
   for (int s = 0; s < coat.sheets; ++s) {
@@ -248,7 +247,7 @@ void Comber::hangInner(int sheet) {
   for (int r = last + 1; r < coat.rows; ++r) {
     const Vec3& above = coat.inner[coat.index(sheet, r - 1)];
     const Vec3 heading = (above - coat.inner[coat.index(sheet, r - 2)]).normalized();
-    coat.inner[coat.index(sheet, r)] = above + heading * kRowStep * coat.scale;
+    coat.inner[coat.index(sheet, r)] = above + heading * kRowStep;
   }
 }
 
@@ -339,7 +338,7 @@ void Comber::raiseOuter() {
     for (int r = 0; r < coat.rows; ++r) {
       const double along = 0.72 + 0.28 * smoothstep(0, coat.scalp_rows, r);
       const Vec3& n = normal[coat.index(s, r)];
-      coat.outer[coat.index(s, r)] = coat.inner[coat.index(s, r)] + cut.thickness * coat.scale * around * along * n;
+      coat.outer[coat.index(s, r)] = coat.inner[coat.index(s, r)] + cut.thickness * around * along * n;
     }
     hangOuter(s);
   }
@@ -385,7 +384,6 @@ Coat combCoat(Style style, const Scalp& scalp, const BodyDistance& body, const F
   Comber comber{style, scalp, body, lines, cutOf(style), shoulderHeight(scalp, body), {}};
   comber.coat.sheets = lines.sheets;
   comber.coat.scalp_rows = lines.rows;
-  comber.coat.scale = scalp.head_height / kOrdinaryHead;
   comber.fallAll();
   comber.relaxInner();
   comber.raiseOuter();

@@ -15,7 +15,6 @@ struct Coat {
   std::vector<double> travelled;   // m, sheets x rows: arc length of the inner guide from the parting
   std::vector<double> cut_row;     // per sheet: the row where the hair is cut
   std::vector<double> short_row;   // per sheet: the row where hair that divides over a shoulder ends
-  double scale = 1;                // of the head, 1 where it is 23 cm from chin to crown
   double divide = -1;              // backness at which the hair divides over the shoulders; negative: it does not
 
   std::size_t index(int sheet, int row) const { return static_cast<std::size_t>(sheet) * rows + row; }

@@ -65,13 +65,12 @@ void layColumn(const Coat& coat, const Weave& plan, const Plait& plait, std::vec
     end = sampleRow(coat, coat.travelled, sheet, coat.short_row[sheet]) / placeOf(plait.full_layers - 1);
   const double hairline = coat.travelled[coat.index(sheet, coat.scalp_rows - 1)];
   const double root = (1 - plait.rank) * hairline;
-  const double in_step = std::min(hairline + kInStepBelowHairline * coat.scale, 1.02 * end);
+  const double in_step = std::min(hairline + kInStepBelowHairline, 1.02 * end);
   for (int l = 0; l < plait.layers; ++l) {
     const double outermost = end * placeOf(l);
     const double behind = std::max(0.0, 1 - outermost / in_step);
     const double way = outermost + root * behind;
-    const double row = rowAt(coat, sheet, way),
-                 share = heightShare(plait.rank, (way - root) / coat.scale, hairline / coat.scale);
+    const double row = rowAt(coat, sheet, way), share = heightShare(plait.rank, (way - root), hairline);
     positions.push_back((1 - share) * sampleRow(coat, coat.inner, sheet, row) +
                         share * sampleRow(coat, coat.outer, sheet, row));
   }

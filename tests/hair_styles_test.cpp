@@ -1,0 +1,374 @@
+// The nine built-in styles: what a haircut must be on any head.
+#include "sim/hair_styles.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "app/character.h"
+#include "sim/hair_styles_untangle.h"
+#include "tests/analytic_head.h"
+
+namespace {
+
+using sim::HairMeshShape;
+using sim::Resolution;
+using sim::Style;
+using sim::Vec3;
+
+constexpr Style kStyles[] = {Style::kShort, Style::kShoulder, Style::kLong};
+constexpr Resolution kResolutions[] = {Resolution::kLow, Resolution::kMedium, Resolution::kHigh};
+
+struct Head {
+  std::string name;
+  sim::Scalp scalp;
+  sim::BodyDistance body;
+};
+
+struct Haircut {
+  std::string name;
+  Style style;
+  Resolution resolution;
+  HairMeshShape shape;
+};
+
+std::vector<Haircut> haircutsOn(const Head& head) {
+  std::vector<Haircut> out;
+  for (const Style style : kStyles)
+    for (const Resolution resolution : kResolutions)
+      out.push_back(
+          {head.name + ", " + std::string(sim::styleName(style)) + " " + std::string(sim::resolutionName(resolution)),
+           style, resolution, sim::makeStyle(style, resolution, head.scalp, head.body)});
+  return out;
+}
+
+// The analytic head, and the mannequin that the program grows around its own clip.
+const std::vector<Head>& heads() {
+  static const std::vector<Head> all = [] {
+    std::vector<Head> out{{"analytic head", tests::analyticScalp(), tests::bodyDistance}};
+    const std::string clip = std::string(HAIRMESH_SOURCE_DIR) + "/assets/clips/idle_turns.bvh";
+    if (std::filesystem::exists(clip)) {
+      const app::Character character = app::loadCharacter(clip);
+      out.push_back({"mannequin", character.scalp, app::restBodyDistance(character)});
+    }
+    return out;
+  }();
+  return all;
+}
+
+const std::vector<Haircut>& haircuts(const Head& head) {
+  static std::map<std::string, std::vector<Haircut>> all;
+  auto found = all.find(head.name);
+  if (found == all.end()) found = all.emplace(head.name, haircutsOn(head)).first;
+  return found->second;
+}
+
+int bundleLayers(const HairMeshShape& shape, const sim::RootFace& face) {
+  int layers = shape.columnLength(face.columns[0]);
+  for (int k = 1; k < face.corner_count; ++k) layers = std::min(layers, shape.columnLength(face.columns[k]));
+  return layers;
+}
+
+const Vec3& vertex(const HairMeshShape& shape, int column, int layer) {
+  return shape.positions[shape.column_first[column] + layer];
+}
+
+// Distance along a ray to a triangle, or a negative number.
+double hit(const Vec3& origin, const Vec3& ray, const Vec3& a, const Vec3& b, const Vec3& c) {
+  Eigen::Matrix3d m;
+  m << b - a, c - a, -ray;
+  if (std::abs(m.determinant()) < 1e-15) return -1;
+  const Vec3 x = m.inverse() * (origin - a);
+  return x.x() >= -1e-6 && x.y() >= -1e-6 && x.x() + x.y() <= 1 + 1e-6 ? x.z() : -1;
+}
+
+bool hitsRootFace(const HairMeshShape& shape, const Vec3& origin, const Vec3& ray) {
+  for (const sim::RootFace& face : shape.root_faces) {
+    const auto p = [&](int k) -> const Vec3& { return vertex(shape, face.columns[k], 0); };
+    if (hit(origin, ray, p(0), p(1), p(2)) > 0) return true;
+    if (face.corner_count == 4 && hit(origin, ray, p(0), p(2), p(3)) > 0) return true;
+  }
+  return false;
+}
+
+Vec3 direction(double azimuth, double elevation) {
+  const double a = azimuth * std::numbers::pi / 180, e = elevation * std::numbers::pi / 180;
+  return {std::cos(e) * std::sin(a), std::sin(e), std::cos(e) * std::cos(a)};
+}
+
+template <class Law>
+void forEveryHaircut(Law law) {
+  for (const Head& head : heads()) {
+    for (const Haircut& cut : haircuts(head)) {
+      SCOPED_TRACE(cut.name);
+      law(head, cut);
+    }
+  }
+}
+
+TEST(HairStyles, VertexCountsAreThoseOfThePaperWithinFivePercent) {
+  const std::map<std::pair<Style, Resolution>, int> wanted = {
+      {{Style::kShort, Resolution::kLow}, 215},       {{Style::kShort, Resolution::kMedium}, 570},
+      {{Style::kShort, Resolution::kHigh}, 1380},     {{Style::kShoulder, Resolution::kLow}, 361},
+      {{Style::kShoulder, Resolution::kMedium}, 900}, {{Style::kShoulder, Resolution::kHigh}, 2305},
+      {{Style::kLong, Resolution::kLow}, 361},        {{Style::kLong, Resolution::kMedium}, 900},
+      {{Style::kLong, Resolution::kHigh}, 2305}};
+  forEveryHaircut([&](const Head&, const Haircut& cut) {
+    const int count = wanted.at({cut.style, cut.resolution});
+    EXPECT_NEAR(cut.shape.vertexCount(), count, 0.05 * count);
+  });
+}
+
+TEST(HairStyles, AreValidHairMeshesOfTrianglesAndQuads) {
+  forEveryHaircut([](const Head&, const Haircut& cut) {
+    EXPECT_NO_THROW(sim::buildHairMesh(cut.shape));
+    int triangles = 0, quads = 0;
+    std::set<std::set<int>> faces;
+    for (const sim::RootFace& face : cut.shape.root_faces) {
+      (face.corner_count == 3 ? triangles : quads)++;
+      EXPECT_TRUE(faces.emplace(face.columns.begin(), face.columns.begin() + face.corner_count).second);
+    }
+    EXPECT_GT(triangles, 0);
+    EXPECT_GT(quads, triangles);
+    int shortest = 1000, longest = 0;
+    for (int c = 0; c < cut.shape.columnCount(); ++c) {
+      shortest = std::min(shortest, cut.shape.columnLength(c));
+      longest = std::max(longest, cut.shape.columnLength(c));
+    }
+    if (cut.style != Style::kShoulder || cut.resolution != Resolution::kLow) {
+      EXPECT_LT(shortest, longest);
+    }
+  });
+}
+
+TEST(HairStyles, PrismsAreFatAtEveryCorner) {
+  forEveryHaircut([](const Head&, const Haircut& cut) {
+    const HairMeshShape& s = cut.shape;
+    double thinnest = 1;
+    for (const sim::RootFace& face : s.root_faces) {
+      const int n = face.corner_count;
+      for (int l = 0; l + 1 < bundleLayers(s, face); ++l) {
+        for (int k = 0; k < n; ++k) {
+          const int here = face.columns[k], next = face.columns[(k + 1) % n], previous = face.columns[(k + n - 1) % n];
+          thinnest = std::min(thinnest, sim::cornerFatness(vertex(s, here, l), vertex(s, next, l),
+                                                           vertex(s, previous, l), vertex(s, here, l + 1)));
+          thinnest = std::min(thinnest, sim::cornerFatness(vertex(s, here, l + 1), vertex(s, previous, l + 1),
+                                                           vertex(s, next, l + 1), vertex(s, here, l)));
+        }
+      }
+    }
+    EXPECT_GT(thinnest, 0.05);
+  });
+}
+
+TEST(HairStyles, EdgesAreNeitherShortNorEndless) {
+  forEveryHaircut([](const Head&, const Haircut& cut) {
+    const sim::HairMesh mesh = sim::buildHairMesh(cut.shape);
+    for (const sim::Edge& e : mesh.horizontal_edges) EXPECT_GT(e.rest_length, 0.003);
+    for (const sim::Edge& e : mesh.vertical_edges) {
+      EXPECT_GT(e.rest_length, 0.003);
+      EXPECT_LT(e.rest_length, 0.16);
+    }
+  });
+}
+
+TEST(HairStyles, RootsAreOnTheScalpAndAllElseIsClearOfTheBody) {
+  forEveryHaircut([](const Head& head, const Haircut& cut) {
+    double farthest = 0, nearest = 1;
+    for (int c = 0; c < cut.shape.columnCount(); ++c) {
+      const Vec3 root = vertex(cut.shape, c, 0) - head.scalp.center;
+      farthest = std::max(farthest, std::abs(root.norm() - head.scalp.radiusAt(root)));
+      for (int l = 1; l < cut.shape.columnLength(c); ++l)
+        nearest = std::min(nearest, head.body(vertex(cut.shape, c, l)));
+    }
+    EXPECT_LT(farthest, 0.001);
+    EXPECT_GT(nearest, 0.002);
+  });
+}
+
+// Everything above a line from the forehead over the ears to the nape grows hair; the parting shows less than 5 mm of
+// skin.
+TEST(HairStyles, NoBaldPatch) {
+  forEveryHaircut([](const Head& head, const Haircut& cut) {
+    const auto covered = [&](const Vec3& ray) { return hitsRootFace(cut.shape, head.scalp.center, ray); };
+    for (double azimuth = -180; azimuth < 180; azimuth += 5) {
+      const double side = std::abs(azimuth);
+      const double hairline = side < 62 ? 56 : side < 105 ? 24 : side < 140 ? 8 : -14;
+      for (double elevation = hairline; elevation <= 88; elevation += 4) {
+        const Vec3 ray = direction(azimuth, elevation);
+        const Vec3 aside(0.0025 / head.scalp.radiusAt(ray), 0, 0);
+        EXPECT_TRUE(covered(ray) || covered(ray + aside) || covered(ray - aside)) << azimuth << " " << elevation;
+      }
+    }
+  });
+}
+
+// Between the temples and below the hairline nothing stands before the face, whatever the layers do.
+TEST(HairStyles, NothingHangsIntoTheFace) {
+  forEveryHaircut([](const Head& head, const Haircut& cut) {
+    const HairMeshShape& s = cut.shape;
+    for (const sim::RootFace& face : s.root_faces) {
+      for (int l = 0; l < bundleLayers(s, face); ++l) {
+        for (int k = 0; k < face.corner_count; ++k) {
+          const Vec3 p =
+              0.5 * (vertex(s, face.columns[k], l) + vertex(s, face.columns[(k + 1) % face.corner_count], l)) -
+              head.scalp.center;
+          if (p.y() > 0.02 || p.y() < -0.55 * head.scalp.head_height || p.z() < 0) continue;
+          const double azimuth = std::abs(std::atan2(p.x(), p.z())) * 180 / std::numbers::pi;
+          EXPECT_GT(azimuth, 42) << p.transpose();
+        }
+      }
+    }
+  });
+}
+
+// Over the scalp hair fans out and where long hair divides over a shoulder it parts; elsewhere neighbours run alongside
+// each other.
+TEST(HairStyles, NeighbouringColumnsAreNearlyParallel) {
+  forEveryHaircut([](const Head&, const Haircut& cut) {
+    const HairMeshShape& s = cut.shape;
+    std::vector<double> cosines;
+    for (const sim::RootFace& face : s.root_faces) {
+      for (int l = 0; l + 1 < bundleLayers(s, face); ++l) {
+        for (int k = 0; k < face.corner_count; ++k) {
+          const int a = face.columns[k], b = face.columns[(k + 1) % face.corner_count];
+          cosines.push_back((vertex(s, a, l + 1) - vertex(s, a, l))
+                                .normalized()
+                                .dot((vertex(s, b, l + 1) - vertex(s, b, l)).normalized()));
+        }
+      }
+    }
+    std::sort(cosines.begin(), cosines.end());
+    EXPECT_GT(cosines[cosines.size() / 2], std::cos(15 * std::numbers::pi / 180));
+    EXPECT_GT(cosines[cosines.size() / 20], std::cos(75 * std::numbers::pi / 180));
+  });
+}
+
+// The same haircut at every resolution: hair of one resolution ends where that of another does.
+TEST(HairStyles, ResolutionsAreTheSameHaircut) {
+  for (const Head& head : heads()) {
+    for (const Style style : kStyles) {
+      SCOPED_TRACE(head.name + " " + std::string(sim::styleName(style)));
+      std::vector<std::vector<Vec3>> tips;
+      std::vector<double> volumes, lengths;
+      for (const Haircut& cut : haircuts(head)) {
+        if (cut.style != style) continue;
+        const sim::HairMesh mesh = sim::buildHairMesh(cut.shape);
+        volumes.push_back(mesh.total_volume);
+        lengths.push_back(mesh.hair_length);
+        tips.emplace_back();
+        for (int c = 0; c < cut.shape.columnCount(); ++c)
+          tips.back().push_back(vertex(cut.shape, c, cut.shape.columnLength(c) - 1));
+      }
+      for (int coarse = 0; coarse < 2; ++coarse) {
+        EXPECT_NEAR(volumes[coarse] / volumes[2], 1, 0.35);
+        EXPECT_NEAR(lengths[coarse] / lengths[2], 1, 0.10);
+        for (const Vec3& tip : tips[coarse]) {
+          double nearest = 1;
+          for (const Vec3& other : tips[2]) nearest = std::min(nearest, (tip - other).norm());
+          EXPECT_LT(nearest, 0.05) << tip.transpose();
+        }
+      }
+    }
+  }
+}
+
+TEST(HairStyles, LengthsAreWhatTheNamesSay) {
+  for (const Head& head : heads()) {
+    std::map<Style, double> lowest;
+    for (const Haircut& cut : haircuts(head)) {
+      double y = 1;
+      for (const Vec3& p : cut.shape.positions)
+        y = std::min(y, (p.y() - head.scalp.center.y()) / head.scalp.head_height);
+      if (cut.resolution == Resolution::kHigh) lowest[cut.style] = y;
+    }
+    SCOPED_TRACE(head.name);
+    EXPECT_GT(lowest[Style::kShort], -0.50);
+    EXPECT_LT(lowest[Style::kShoulder], -0.50);
+    EXPECT_GT(lowest[Style::kShoulder], -1.00);
+    EXPECT_LT(lowest[Style::kLong], -1.50);
+  }
+}
+
+TEST(HairStyles, AreDeterministic) {
+  const Head& head = heads().front();
+  const HairMeshShape a = sim::makeStyle(Style::kLong, Resolution::kMedium, head.scalp, head.body);
+  const HairMeshShape b = sim::makeStyle(Style::kLong, Resolution::kMedium, head.scalp, head.body);
+  ASSERT_EQ(a.positions.size(), b.positions.size());
+  for (std::size_t v = 0; v < a.positions.size(); ++v) EXPECT_EQ(a.positions[v], b.positions[v]);
+}
+
+// Heads that are not heads: a ball, a giant, a child, one with horns, one that looks into a wall.
+TEST(HairStyles, ValidOnOddHeads) {
+  struct Odd {
+    const char* name;
+    double scale, horns;
+    bool wall;
+  };
+  for (const Odd& odd : {Odd{"child", 0.6, 0, false}, Odd{"giant", 3, 0, false}, Odd{"horned", 1, 0.06, false},
+                         Odd{"wall", 1, 0, true}}) {
+    SCOPED_TRACE(odd.name);
+    sim::Scalp scalp = tests::analyticScalp();
+    scalp.head_height *= odd.scale;
+    for (int i = 0; i < scalp.rows; ++i) {
+      for (int j = 0; j < scalp.columns; ++j) {
+        double& r = scalp.radius[static_cast<std::size_t>(i) * scalp.columns + j];
+        if (i > 10 && i < 16 && (j % 64) > 20 && (j % 64) < 26) r += odd.horns;
+        r *= odd.scale;
+      }
+    }
+    const sim::BodyDistance body = [&](const Vec3& p) {
+      const double head = odd.scale * tests::bodyDistance(p / odd.scale);
+      return odd.wall ? std::min(head, 0.16 + p.z()) : head;
+    };
+    for (const Style style : kStyles) {
+      for (const Resolution resolution : {Resolution::kLow, Resolution::kHigh}) {
+        EXPECT_NO_THROW(sim::buildHairMesh(sim::makeStyle(style, resolution, scalp, body)))
+            << sim::styleName(style) << " " << sim::resolutionName(resolution);
+      }
+    }
+  }
+}
+
+// Whoever is loaded gets hair: the paper's mannequin, a robot with a box for a head, a figure whose neck carries the
+// head.
+TEST(HairStyles, ValidOnEveryCharacterAtHand) {
+  const std::string shared = std::string(HAIRMESH_SOURCE_DIR) + "/../shared";
+  if (!std::filesystem::exists(shared)) GTEST_SKIP() << "needs " << shared;
+  const std::pair<const char*, const char*> files[] = {{"/arcsim/dance.mot", "/arcsim/female-objs"},
+                                                       {"/characters/robot.glb", ""},
+                                                       {"/mocap/deepmimic_cartwheel.bvh", ""}};
+  for (const auto& [motion, parts] : files) {
+    if (!std::filesystem::exists(shared + motion)) continue;
+    const app::Character character = app::loadCharacter(shared + motion, *parts ? shared + parts : "");
+    const sim::BodyDistance body = app::restBodyDistance(character);
+    for (const Style style : kStyles) {
+      for (const Resolution resolution : {Resolution::kLow, Resolution::kHigh}) {
+        EXPECT_NO_THROW(sim::buildHairMesh(sim::makeStyle(style, resolution, character.scalp, body)))
+            << motion << " " << sim::styleName(style) << " " << sim::resolutionName(resolution);
+      }
+    }
+  }
+}
+
+TEST(Scalp, RadiusIsInterpolatedAndPeriodic) {
+  sim::Scalp scalp;
+  scalp.rows = 33;
+  scalp.columns = 64;
+  scalp.radius.resize(33 * 64);
+  const auto radius = [](const Vec3& d) { return 0.1 + 0.01 * d.x() + 0.02 * d.y() - 0.015 * d.z() * d.x(); };
+  for (int i = 0; i < 33; ++i)
+    for (int j = 0; j < 64; ++j) scalp.radius[i * 64 + j] = radius(direction(j * 360.0 / 64, 90 - i * 180.0 / 32));
+  for (double azimuth = -360; azimuth <= 360; azimuth += 7.3) {
+    for (double elevation = -90; elevation <= 90; elevation += 6.1) {
+      const Vec3 d = direction(azimuth, elevation);
+      EXPECT_NEAR(scalp.radiusAt(3.7 * d), radius(d), 1.5e-4);
+    }
+  }
+}
+
+}  // namespace
