@@ -257,6 +257,30 @@ void BlockCholesky<T>::solve(std::span<const V3<T>> r, std::span<V3<T>> z) {
 }
 
 template <class T>
+void BlockCholesky<T>::solveBatch(std::span<T> x) {
+  for (const Supernode& s : supernodes) {
+    const T* inverse = values.data() + s.values;
+    const T* rows = inverse + static_cast<std::size_t>(s.width()) * s.width();
+    T* own = x.data() + static_cast<std::size_t>(3) * s.first * kBatch;
+    batchLower(inverse, s.width(), own);
+    for (int k = 0; k < s.rows; ++k) {
+      T* y = x.data() + static_cast<std::size_t>(3) * row_index[s.rows_first + k] * kBatch;
+      batchSubtractRows(rows + 3 * k, s.height(), s.width(), own, y);
+    }
+  }
+  for (auto s = supernodes.rbegin(); s != supernodes.rend(); ++s) {
+    const T* inverse = values.data() + s->values;
+    const T* rows = inverse + static_cast<std::size_t>(s->width()) * s->width();
+    T* own = x.data() + static_cast<std::size_t>(3) * s->first * kBatch;
+    for (int k = 0; k < s->rows; ++k) {
+      const T* y = x.data() + static_cast<std::size_t>(3) * row_index[s->rows_first + k] * kBatch;
+      batchSubtractRowsTransposed(rows + 3 * k, s->height(), s->width(), y, own);
+    }
+    batchUpper(inverse, s->width(), own);
+  }
+}
+
+template <class T>
 std::size_t BlockCholesky<T>::factorBlocks() const {
   return values.size() / 9;
 }

@@ -78,7 +78,7 @@ void findPenetrations(const HairMesh& mesh, std::span<const Ellipsoid> ellipsoid
 void constrainContacts(std::span<const Contact> contacts, std::vector<VertexConstraint>& constraints) {
   for (std::size_t first = 0; first < contacts.size();) {
     std::size_t last = first;
-    VertexConstraint constraint{contacts[first].vertex, Eigen::Matrix3d::Identity(), Vec3::Zero()};
+    VertexConstraint constraint{contacts[first].vertex, Eigen::Matrix3d::Identity(), Vec3::Zero(), 0, {}};
     bool sticks = false;
     for (; last < contacts.size() && contacts[last].vertex == constraint.vertex; ++last) {
       const Contact& contact = contacts[last];
@@ -86,6 +86,8 @@ void constrainContacts(std::span<const Contact> contacts, std::vector<VertexCons
         sticks = true;
         constraint.keep.setZero();
         constraint.prescribed = contact.velocity;
+        constraint.removed = 3;
+        constraint.directions = {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
       }
       if (sticks) continue;
       // Remove this normal's part that earlier normals of the vertex have left free.
@@ -96,6 +98,7 @@ void constrainContacts(std::span<const Contact> contacts, std::vector<VertexCons
       const double wanted = contact.normal.dot(contact.velocity - constraint.prescribed) / size;
       constraint.prescribed += wanted * direction;
       constraint.keep -= direction * direction.transpose();
+      constraint.directions[constraint.removed++] = direction;
     }
     constraints.push_back(constraint);
     first = last;

@@ -1,6 +1,7 @@
 // Contacts of external vertices with the colliders: find, constrain, correct.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -31,8 +32,10 @@ void findPenetrations(const HairMesh& mesh, std::span<const Ellipsoid> ellipsoid
 // The constraint of one vertex: velocity = keep * (free velocity) + prescribed.
 struct VertexConstraint {
   int vertex;
-  Eigen::Matrix3d keep;  // projector onto the free directions
-  Vec3 prescribed;       // m/s, within the removed directions
+  Eigen::Matrix3d keep;              // projector onto the free directions
+  Vec3 prescribed;                   // m/s, within the removed directions
+  int removed = 0;                   // how many directions are
+  std::array<Vec3, 3> directions{};  // orthonormal basis of them
 };
 
 // One constraint per vertex in contact (contacts are sorted by vertex): a single normal, a crease of two or three, or

@@ -46,7 +46,8 @@ SolveReport solveModifiedPcg(const Operator& a, std::span<const V3<typename Oper
   filter.apply(z);
   for (std::size_t i = 0; i < n; ++i) d[i] = z[i];
   double delta = innerProduct<T>(r, z);
-  const double first = delta;
+  report.first_norm = std::sqrt(std::max(delta, 0.0));
+  const double first = stop.first_norm > 0 ? stop.first_norm * stop.first_norm : delta;
   report.residual_acceleration = largestAcceleration<T>(r, stop.inverse_mass_dt);
   const auto slowEnough = [&] { return stop.acceleration > 0 && report.residual_acceleration <= stop.acceleration; };
   report.converged = !(first > 0) || slowEnough();

@@ -34,12 +34,15 @@ struct StopRule {
   double acceleration = 0;             // 0: off
   std::span<const T> inverse_mass_dt;  // 1/(kg s) per vertex; needed for residual_acceleration
   int max_iterations = 400;
+  double first_norm =
+      0;  // when positive, the norm that `relative` refers to in place of this solve's first: for solves continued
 };
 
 struct SolveReport {
   int iterations = 0;
   double relative_residual = 0;      // in the preconditioner's norm
   double residual_acceleration = 0;  // m/s^2, largest over vertices
+  double first_norm = 0;             // of the residual, in the preconditioner's norm
   bool converged = false;
 };
 

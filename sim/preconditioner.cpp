@@ -1,5 +1,7 @@
 #include "sim/preconditioner.h"
 
+#include <algorithm>
+
 #include "sim/elimination_order.h"
 
 namespace sim {
@@ -26,6 +28,7 @@ Preconditioner<T>::Preconditioner(const HairMesh& mesh, const BlockPattern& patt
   for (int i = 0; i < mesh.vertexCount(); ++i) free_[i] = !mesh.isRoot(i);
   inverse_diagonal_.resize(mesh.vertexCount());
   turned_.resize(mesh.vertexCount());
+  responses_.reserve(kMostCorrected);
 }
 
 template <class T>
@@ -64,8 +67,16 @@ bool Preconditioner<T>::setRestMatrix(const BlockMatrix<T>& rest) {
 }
 
 template <class T>
+void Preconditioner<T>::updateRotations(std::span<const V3<T>> x) {
+  rotations_.update(x);
+  response_count_ = 0;
+}
+
+template <class T>
 void Preconditioner<T>::update(const BlockMatrix<T>& a, Solver solver) {
   kind_ = solver;
+  removed_.clear();
+  response_count_ = 0;
   if (solver == Solver::kWarped) return;
   if (solver == Solver::kDirect) {
     if (!direct_factor_) {
@@ -103,13 +114,116 @@ bool Preconditioner<T>::setRestMatrix(const ColumnMatrix<T>& rest) {
 template <class T>
 void Preconditioner<T>::update(const ColumnMatrix<T>& a, Solver solver) {
   kind_ = solver;
+  removed_.clear();
+  response_count_ = 0;
   if (solver == Solver::kWarped) return;
   if (solver == Solver::kDirect || solver == Solver::kColumn) return update(toBlocks(a), solver);
   for (int i = 0; i < mesh_->vertexCount(); ++i) setDiagonal(i, a.diagonalBlock(i));
 }
 
 template <class T>
+int Preconditioner<T>::knownResponse(int vertex) const {
+  for (int k = 0; k < response_count_; ++k) {
+    if (responses_[k].vertex == vertex) return k;
+  }
+  return -1;
+}
+
+// Responses of the constrained vertices that have none yet, as many axes at once as a batch holds.
+template <class T>
+void Preconditioner<T>::computeResponses(std::span<const VertexConstraint> constraints) {
+  constexpr int kSides = BlockCholesky<T>::kBatch, kTogether = kSides / 3;
+  BlockCholesky<T>& factor = kind_ == Solver::kWarped ? rest_factor_ : *direct_factor_;
+  const bool warped = kind_ == Solver::kWarped;
+  const std::size_t n = turned_.size();
+  batch_.resize(3 * factor.order.size() * kSides);
+  std::size_t next = 0;
+  while (next < constraints.size() && response_count_ < kMostCorrected) {
+    const int first = response_count_;
+    for (; next < constraints.size() && response_count_ < std::min(first + kTogether, kMostCorrected); ++next) {
+      if (knownResponse(constraints[next].vertex) >= 0) continue;
+      if (response_count_ == static_cast<int>(responses_.size())) responses_.emplace_back();
+      Response& response = responses_[response_count_++];
+      response.vertex = constraints[next].vertex;
+      for (auto& column : response.columns) column.resize(n);
+    }
+    if (response_count_ == first) break;
+    std::fill(batch_.begin(), batch_.end(), T(0));
+    for (int k = first; k < response_count_; ++k) {
+      const int v = responses_[k].vertex;
+      for (int axis = 0; axis < 3; ++axis) {
+        // R^T times the axis is a row of R.
+        for (int row = 0; row < 3; ++row) {
+          const T value = warped ? rotations_.matrices[v].m[3 * axis + row] : T(axis == row);
+          batch_[(3 * static_cast<std::size_t>(factor.position[v]) + row) * kSides + 3 * (k - first) + axis] = value;
+        }
+      }
+    }
+    factor.solveBatch(batch_);
+    for (std::size_t i = 0; i < n; ++i) {
+      const int position = factor.position[i];
+      for (int k = first; k < response_count_; ++k) {
+        for (int axis = 0; axis < 3; ++axis) {
+          V3<T>& z = responses_[k].columns[axis][i];
+          z = {0, 0, 0};
+          if (position < 0) continue;
+          const T* at = batch_.data() + 3 * static_cast<std::size_t>(position) * kSides + 3 * (k - first) + axis;
+          z = {at[0], at[kSides], at[2 * kSides]};
+          if (warped) z = rotations_.matrices[i] * z;
+        }
+      }
+    }
+  }
+}
+
+template <class T>
+void Preconditioner<T>::setConstraints(std::span<const VertexConstraint> constraints) {
+  removed_.clear();
+  if (kind_ != Solver::kWarped && kind_ != Solver::kDirect) return;
+  computeResponses(constraints);
+  for (const VertexConstraint& constraint : constraints) {
+    const int response = knownResponse(constraint.vertex);
+    if (response < 0) break;
+    for (int k = 0; k < constraint.removed; ++k) {
+      const Vec3& d = constraint.directions[k];
+      removed_.push_back(
+          {constraint.vertex, response, {static_cast<T>(d.x()), static_cast<T>(d.y()), static_cast<T>(d.z())}});
+    }
+  }
+  const int count = static_cast<int>(removed_.size());
+  if (count == 0) return;
+  gram_.resize(count, count);
+  for (int i = 0; i < count; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      const Removed& n = removed_[j];
+      const auto& columns = responses_[n.response].columns;
+      const int at = removed_[i].vertex;
+      const V3<T> moved =
+          n.direction.x * columns[0][at] + n.direction.y * columns[1][at] + n.direction.z * columns[2][at];
+      gram_(i, j) = gram_(j, i) = static_cast<double>(dot(removed_[i].direction, moved));
+    }
+  }
+  gram_factor_.compute(gram_);
+  if (gram_factor_.info() != Eigen::Success) removed_.clear();  // the filter alone serves
+}
+
+template <class T>
 void Preconditioner<T>::apply(std::span<const V3<T>> r, std::span<V3<T>> z) {
+  applyUnconstrained(r, z);
+  if (removed_.empty()) return;
+  multipliers_.resize(static_cast<Eigen::Index>(removed_.size()));
+  for (std::size_t k = 0; k < removed_.size(); ++k) multipliers_[k] = dot(removed_[k].direction, z[removed_[k].vertex]);
+  gram_factor_.solveInPlace(multipliers_);
+  for (std::size_t k = 0; k < removed_.size(); ++k) {
+    const T m = static_cast<T>(multipliers_[k]);
+    const V3<T> d = m * removed_[k].direction;
+    const auto& columns = responses_[removed_[k].response].columns;
+    for (std::size_t i = 0; i < z.size(); ++i) z[i] -= d.x * columns[0][i] + d.y * columns[1][i] + d.z * columns[2][i];
+  }
+}
+
+template <class T>
+void Preconditioner<T>::applyUnconstrained(std::span<const V3<T>> r, std::span<V3<T>> z) {
   switch (kind_) {
     case Solver::kWarped:
       for (std::size_t i = 0; i < turned_.size(); ++i) turned_[i] = transposeTimes(rotations_.matrices[i], r[i]);

@@ -1,6 +1,8 @@
 // Preconditioners of the Modified PCG, chosen by name at run time.
 #pragma once
 
+#include <Eigen/Cholesky>
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -8,6 +10,7 @@
 #include "sim/block_cholesky.h"
 #include "sim/block_matrix.h"
 #include "sim/column_matrix.h"
+#include "sim/contact.h"
 #include "sim/rotation.h"
 #include "sim/sim_params.h"
 
@@ -32,7 +35,16 @@ struct Preconditioner {
   // The warped preconditioner's two halves: the factor of the rest shape's matrix (rarely), the rotations (every step).
   bool setRestMatrix(const BlockMatrix<T>& rest);
   bool setRestMatrix(const ColumnMatrix<T>& rest);
-  void updateRotations(std::span<const V3<T>> x) { rotations_.update(x); }
+  void updateRotations(std::span<const V3<T>> x);
+
+  // The constraints of the solves to come. For `warped` and `direct`, whose P knows nothing of them, the constrained P
+  // is
+  //   P - P N (N^T P N)^-1 N^T P,   N: the removed directions,
+  // a small dense correction, without which a few contacts cost tens of iterations. At most kMostCorrected vertices are
+  // corrected for; the filter alone serves the rest.
+  static constexpr int kMostCorrected = 64;
+  void setConstraints(std::span<const VertexConstraint> constraints);
+  bool knowsResponses() const { return response_count_ > 0; }  // the correction has been paid for already
 
   // z = P r.
   void apply(std::span<const V3<T>> r, std::span<V3<T>> z);
@@ -54,8 +66,28 @@ struct Preconditioner {
   std::vector<int> column_block_;    // pattern block of each block of column_pattern_
   std::vector<unsigned char> free_;  // not a root
 
+  // P applied to the three axes at constrained vertices, kept until the matrix or the rotations change.
+  struct Response {
+    int vertex = -1;
+    std::array<std::vector<V3<T>>, 3> columns;
+  };
+  std::vector<Response> responses_;
+  int response_count_ = 0;
+  // N: vertex and direction of each removed direction; its response P N, and the Cholesky factor of N^T P N.
+  struct Removed {
+    int vertex, response;
+    V3<T> direction;
+  };
+  std::vector<Removed> removed_;
+  Eigen::MatrixXd gram_;
+  Eigen::LLT<Eigen::MatrixXd> gram_factor_;
+  Eigen::VectorXd multipliers_;
+  std::vector<T> batch_;
   std::optional<BlockMatrix<T>> blocks_;  // a matrix given in column layout, for the factorizations
 
+  void applyUnconstrained(std::span<const V3<T>> r, std::span<V3<T>> z);
+  int knownResponse(int vertex) const;
+  void computeResponses(std::span<const VertexConstraint> constraints);
   bool factorColumns(const BlockMatrix<T>& a);
   const BlockMatrix<T>& toBlocks(const ColumnMatrix<T>& a);
   void setDiagonal(int i, const M3<T>& d);
