@@ -16,15 +16,18 @@ constexpr double kZoomStep = 0.9;    // per notch
 constexpr double kFullAspect = 1.0;  // narrower pictures step back
 
 struct Framing {
-  double below;   // how far the target is below the middle of the cranium, head heights
-  double height;  // what the picture shows, head heights
+  double top, bottom;  // m, heights of the picture's edges about the middle of the cranium
 };
 
-// Head heights are chin to crown; a figure is about 7.5 of them.
-Framing framing(const std::string& name) {
-  if (name == "head") return {0.25, 2.1};
-  if (name == "figure") return {3.0, 9.4};
-  return {0.72, 3.6};
+// Crown and chin are about half a head height above and 0.6 below the middle of the cranium; a figure is about 7.5
+// heads tall. A bust holds the whole hair, however long it hangs.
+Framing framing(const std::string& name, const Actor& actor, double middle) {
+  const double head = actor.body->character.scalp.head_height;
+  if (name == "head") return {0.8 * head, -1.15 * head};
+  if (name == "figure") return {1.1 * head, -8.2 * head};
+  double lowest = middle;
+  for (const sim::Vec3& p : actor.hair.positions) lowest = std::min(lowest, p.y());
+  return {0.85 * head, std::min(-1.6 * head, lowest - middle - 0.35 * head)};
 }
 
 struct Angles {
@@ -69,13 +72,12 @@ Camera makeCamera(const CameraSpec& spec, const Actor& actor, double aspect) {
     camera.pitch = std::asin(std::clamp(back.y() / camera.distance, -0.99999, 0.99999));
     return camera;
   }
-  const Framing frame = framing(spec.framing);
-  const double head_height = actor.body->character.scalp.head_height;
+  const Framing frame = framing(spec.framing, actor, camera.anchor.y());
   const Angles angles = viewAngles(spec.view);
-  camera.target = Vec3(0, -frame.below * head_height, 0);
+  camera.target = Vec3(0, 0.5 * (frame.top + frame.bottom), 0);
   camera.yaw = facing(actor, actor.pose) + angles.yaw;
   camera.pitch = angles.pitch;
-  camera.distance = 0.5 * frame.height * head_height / std::tan(0.5 * spec.fov) * std::max(1.0, kFullAspect / aspect);
+  camera.distance = 0.5 * (frame.top - frame.bottom) / std::tan(0.5 * spec.fov) * std::max(1.0, kFullAspect / aspect);
   return camera;
 }
 

@@ -37,6 +37,12 @@ void handPositionsOver(Demo& demo) {
   for (const Actor& actor : demo.actors) addDebugViews(demo.debug, actor, demo.debug_geometry);
 }
 
+void keepTime(double seconds, Demo& demo) {
+  if (!demo.paused) demo.shown_time += seconds;
+  demo.stats.shown_time = demo.shown_time;
+  demo.stats.lost = demo.clock.lost;
+}
+
 void draw(Demo& demo, const FrameTarget& target) {
   if (!target.renderer || target.width <= 0 || target.height <= 0) return;
   demo.aspect = static_cast<double>(target.width) / target.height;
@@ -154,13 +160,12 @@ void advanceFrame(Demo& demo, double seconds, const FrameTarget& target) {
   timed(demo.stats.seconds[kTimeHandOver], [&] { handPositionsOver(demo); });
   follow(demo.actors.front(), seconds, demo.camera);
 
+  keepTime(seconds, demo);
+
   timed(demo.stats.seconds[kTimeDraw], [&] { draw(demo, target); });
   if (target.draw_panels) {
     timed(demo.stats.seconds[kTimePanels], [&] { target.draw_panels(demo); });
   }
-  if (!demo.paused) demo.shown_time += seconds;
-  demo.stats.shown_time = demo.shown_time;
-  demo.stats.lost = demo.clock.lost;
   demo.stats.whole = now() - start;
   remember(demo);
 }

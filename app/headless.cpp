@@ -17,6 +17,8 @@ namespace app {
 
 namespace {
 
+constexpr double kTellEvery = 5;  // s
+
 std::string framePath(const std::string& folder, int frame) {
   char name[32];
   std::snprintf(name, sizeof name, "frame_%04d.png", frame);
@@ -58,6 +60,7 @@ int runHeadless(Scene scene, const Options& options) {
   }
   run.start_seconds = now() - start;
 
+  double told = now();
   for (int frame = 0; frame < options.frames; ++frame) {
     advanceFrame(demo, frame == 0 ? 0 : 1 / fps, target);
     run.frames.push_back(demo.stats);
@@ -65,7 +68,13 @@ int runHeadless(Scene scene, const Options& options) {
       std::cerr << "hairmesh: frame " << frame << ": " << demo.stats.recoveries
                 << " recoveries from numerical trouble\n";
     }
-    if (pictures) writePng(framePath(options.out, frame), options.width, options.height, pixels);
+    if (!pictures) continue;
+    writePng(framePath(options.out, frame), options.width, options.height, pixels);
+    // Software rasterizers take a second a frame; a person wants to see that it goes on.
+    if (now() - told > kTellEvery) {
+      std::cout << "frame " << frame + 1 << " of " << options.frames << std::endl;
+      told = now();
+    }
   }
   if (pictures && !options.screenshot.empty()) writePng(options.screenshot, options.width, options.height, pixels);
   if (!options.report.empty()) writeReport(options.report, run, demo);

@@ -50,12 +50,15 @@ bool parseOptions(int argc, char** argv, Options& options, int& exit_code) {
   parser.name("hairmesh");
   parser.footer(kExamples);
   parser.get_formatter()->column_width(34);
+  // The last of two wins, so that ./run and scripts can put their own before a person's.
+  parser.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   std::string size;
   std::vector<std::string> sets;
   bool list_parameters = false;
 
   parser.add_option("scene", options.scene, "Scene file (JSON); without one the default scene is shown")
-      ->option_text("[SCENE.json]");
+      ->option_text("[SCENE.json]")
+      ->multi_option_policy(CLI::MultiOptionPolicy::Throw);
 
   const char* what = "What is shown";
   parser.add_option("--style", options.style, "Hair style: short, shoulder or long")
@@ -145,6 +148,10 @@ bool parseOptions(int argc, char** argv, Options& options, int& exit_code) {
   parser.add_option("--screenshot", options.screenshot, "Write the last frame, panels included, when the run ends")
       ->group(output)
       ->option_text("FILE.png");
+  parser.add_option("--panel", options.panel, "Tab that is open at first: simulation, motion, hair, look or debug")
+      ->group(output)
+      ->option_text("NAME")
+      ->check(CLI::IsMember({"simulation", "motion", "hair", "look", "debug"}));
   parser.add_flag("--hide-panels", options.hide_panels, "Start the window without panels")->group(output);
   parser.set_version_flag("--version", "hairmesh 0.1")->group(output);
 

@@ -36,6 +36,7 @@ struct Options {
   std::string screenshot;  // PNG of the last frame, panels included
   bool no_images = false;
   bool hide_panels = false;
+  std::string panel;    // the tab that is open at first; empty: the first
   bool travel = false;  // keep the clip's travel over the ground
 };
 

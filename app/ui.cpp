@@ -12,7 +12,7 @@ namespace app {
 
 namespace {
 
-constexpr float kMargin = 12, kSidebarWidth = 348, kTimingsWidth = 286;
+constexpr float kMargin = 12, kSidebarWidth = 348, kTimingsWidth = 292;
 constexpr double kMessageTime = 6;  // s; faults stay until clicked
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoBringToFrontOnFocus;
@@ -179,6 +179,15 @@ void help(UiState& ui) {
 }
 
 }  // namespace
+
+int tabIndex(std::string_view name) {
+  int index = 0;
+  for (const Tab& tab : kTabs) {
+    if (readable(name) == tab.label) return index;
+    ++index;
+  }
+  return -1;
+}
 
 void buildUi(Demo& demo, UiState& ui) {
   ui.items.clear();

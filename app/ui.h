@@ -5,6 +5,7 @@
 #include <array>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/demo.h"
@@ -36,6 +37,9 @@ struct UiState {
 
 // Sets fonts and colours of the current ImGui context, and looks up the files on offer.
 void prepareUi(float text_scale, UiState& ui);
+
+// Number of the tab of that name ("motion"), for UiState::open_tab; -1 when there is none.
+int tabIndex(std::string_view name);
 
 // Builds all panels of one frame, between ImGui::NewFrame and ImGui::Render.
 void buildUi(Demo& demo, UiState& ui);

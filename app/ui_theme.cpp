@@ -51,7 +51,9 @@ void setColors(ImGuiStyle& style) {
   c[ImGuiCol_Tab] = {0, 0, 0, 0};
   c[ImGuiCol_TabHovered] = hover;
   c[ImGuiCol_TabActive] = raised;
-  c[ImGuiCol_SliderGrab] = {0.74f, 0.49f, 0.33f, 1};
+  c[ImGuiCol_TitleBg] = c[ImGuiCol_TitleBgActive] = c[ImGuiCol_TitleBgCollapsed] = ground;
+  // The value is written over the grab, so the grab stays below it in brightness.
+  c[ImGuiCol_SliderGrab] = {0.55f, 0.36f, 0.25f, 1};
   c[ImGuiCol_SliderGrabActive] = copper;
   c[ImGuiCol_CheckMark] = copper_lit;
   c[ImGuiCol_PlotHistogram] = copper;
@@ -79,11 +81,13 @@ void prepareUi(float text_scale, UiState& ui) {
   style.WindowRounding = 8;
   style.ChildRounding = style.FrameRounding = style.PopupRounding = style.GrabRounding = style.TabRounding = 4;
   style.WindowBorderSize = 1;
-  style.FrameBorderSize = 0;
+  style.FrameBorderSize = 1;
   style.WindowPadding = {12, 10};
   style.FramePadding = {7, 4};
   style.ItemSpacing = {7, 5};
   style.ScrollbarSize = 11;
+  style.GrabMinSize = 9;
+  style.WindowMenuButtonPosition = ImGuiDir_Right;
   style.ScaleAllSizes(text_scale);
   ui.scenes = listAssets("scenes", {".json"});
   ui.presets = listAssets("presets", {".json"});

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <string>
 
 #include "app/ui_panels.h"
 #include "app/ui_widgets.h"
@@ -53,12 +54,22 @@ void stackedBar(const Stages& stages, int first, int last, float height) {
   ImGui::Dummy({width, height});
 }
 
+// Three digits are all that a glance can use.
+std::string shortMilliseconds(double seconds) {
+  const double value = 1e3 * seconds;
+  char text[32];
+  std::snprintf(text, sizeof text, value < 9.995 ? "%.2f" : value < 99.95 ? "%.1f" : "%.0f", value);
+  return text;
+}
+
 void legend(const Stages& stages, int first, int last, float scale) {
-  const float column = 0.5f * ImGui::GetContentRegionAvail().x;
+  const float gap = 14 * scale;
+  const float column = 0.5f * (ImGui::GetContentRegionAvail().x + gap);
   const float left = ImGui::GetCursorPosX();
   int place = 0;
   for (int s = first; s <= last; ++s, ++place) {
-    if (place % 2) ImGui::SameLine(left + column);
+    const float start = left + (place % 2 ? column : 0);
+    if (place % 2) ImGui::SameLine(start);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float text = ImGui::GetTextLineHeight(), box = 9 * scale;
     const float y = at.y + 0.5f * (text - box);
@@ -66,8 +77,9 @@ void legend(const Stages& stages, int first, int last, float scale) {
     ImGui::Dummy({box + 2 * scale, text});
     ImGui::SameLine(0, 3);
     ImGui::TextDisabled("%s", kFrameStageNames[s].data());
-    ImGui::SameLine(left + column * (place % 2 ? 2.0f : 1.0f) - 42 * scale);
-    ImGui::Text("%.2f", 1e3 * stages[s]);
+    const std::string value = shortMilliseconds(stages[s]);
+    ImGui::SameLine(start + column - gap - ImGui::CalcTextSize(value.c_str()).x);
+    ImGui::TextUnformatted(value.c_str());
   }
 }
 
@@ -130,7 +142,7 @@ void timingsPanel(const Demo& demo, UiState& ui) {
   const float scale = ui.text_scale;
   ImGui::Text("Simulation");
   ImGui::SameLine();
-  ImGui::TextDisabled("%.2f ms a frame", 1e3 * sum(stages, kTimeForces, kTimeStepOther));
+  ImGui::TextDisabled("%s ms a frame", shortMilliseconds(sum(stages, kTimeForces, kTimeStepOther)).c_str());
   stackedBar(stages, kTimeForces, kTimeStepOther, 12 * scale);
   noteItem("stage_bar", ui);
   legend(stages, kTimeForces, kTimeStepOther, scale);
@@ -138,7 +150,7 @@ void timingsPanel(const Demo& demo, UiState& ui) {
   ImGui::Spacing();
   ImGui::Text("Frame");
   ImGui::SameLine();
-  ImGui::TextDisabled("%.2f ms", 1e3 * sum(stages, 0, kFrameStageCount - 1));
+  ImGui::TextDisabled("%s ms", shortMilliseconds(sum(stages, 0, kFrameStageCount - 1)).c_str());
   stackedBar(stages, 0, kFrameStageCount - 1, 8 * scale);
   legend(stages, kTimeCharacter, kTimePanels, scale);
   ImGui::Separator();

@@ -168,6 +168,7 @@ int runWindow(Scene scene, const Options& options) {
   setDebugViews(options.debug, demo.debug);
   UiState ui;
   ui.visible = !options.hide_panels;
+  ui.open_tab = tabIndex(options.panel);
   Session callbacks{demo, ui};
   // The panels' backend chains to the callbacks that it finds.
   listen(window.handle, callbacks);

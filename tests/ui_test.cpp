@@ -119,7 +119,9 @@ TEST_F(Panels, EveryTabOpensByAClickOnIt) {
 }
 
 TEST_F(Panels, EveryRowOfTheSimulationTableIsThere) {
-  // All sections opened one after the other, by clicking on those that are closed.
+  // All sections opened one after the other, by clicking on those that are closed; tall enough that none is below the
+  // fold.
+  ImGui::GetIO().DisplaySize = {1280, 3000};
   openTab(0);
   for (const char* group : {"World", "Rest shape", "Time", "Numerics"}) click(std::string("section ") + group, 0.3f);
   frame();

@@ -77,7 +77,7 @@ TEST(Window, ShowsFigureAndPanels) {
   if (display.name().empty()) GTEST_SKIP() << "Xvfb is not installed";
   const std::string folder = test::freshFolder("window");
   const std::string with = folder + "/panels.png", without = folder + "/bare.png";
-  const std::vector<std::string> common{"--size",    "1280x720", "--frames",     "4",
+  const std::vector<std::string> common{"--size",    "1280x720", "--frames",     "2",
                                         "--strands", "3000",     "--resolution", "low"};
   for (const bool panels : {true, false}) {
     std::vector<std::string> words = common;
