@@ -30,7 +30,7 @@ struct HairLook {
   float taper = 0.35f;        // tip radius over root radius
   float length_variation = 0.06f;  // strands end up to this share of their length early
   float offset = 0.0012f;          // m, random sideways wander that grows along the strand
-  float clump = 0.45f;             // 0..1 pull towards the clump's centre strand, opening and closing along the length
+  float clump = 0.55f;             // 0..1 pull towards the clump's centre strand, opening and closing along the length
   float clump_size = 0.012f;       // m, typical spacing of clumps on the scalp
   float curl_radius = 0.0f, curl_turns = 3.0f;  // m; turns over the strand
   float frizz = 0.0006f;                        // m, small-scale noise amplitude
@@ -39,7 +39,7 @@ struct HairLook {
   float eumelanin = 1.1f, pheomelanin = 0.35f;
   bool use_color = false;
   Float3 color{0.35f, 0.2f, 0.1f};
-  float root_darkening = 0.35f, tint_variation = 0.15f;
+  float root_darkening = 0.35f, tint_variation = 0.2f;
   float beta_m = 0.24f, beta_n = 0.3f;  // longitudinal and azimuthal roughness, 0..1
   float eta = 1.55f;
   float cuticle_angle = 0.05f;  // rad, scale tilt that shifts the R and TRT highlights
@@ -83,7 +83,7 @@ struct LightInput {
   Float3 key{3.5f, 3.3f, 3.0f}, fill{0.28f, 0.32f, 0.40f}, rim{1.3f, 1.4f, 1.6f};
   Float3 to_fill{-0.8f, 0.3f, 0.6f}, to_rim{-0.35f, 0.6f, -0.9f};
   Float3 ambient_sky{0.22f, 0.24f, 0.28f}, ambient_ground{0.11f, 0.10f, 0.09f};
-  int shadow_size = 1024;
+  int shadow_size = 512;         // pixels a side of a hair's deep opacity map; the bodies' map has twice as many
   int shadow_strands = 8000;     // at most this many strands a hair cast shadow, standing for all; 0: all
   int opacity_layers = 7;        // deep opacity map layers, 1..7 (the eighth channel takes all behind)
   float layer_thickness = 0.0f;  // m of the first layer; 0: derived from the hair's extent

@@ -112,6 +112,7 @@ HairLayout makeHairLayout(std::span<const HairFace> faces, std::span<const float
       columns[k] = entry->second;
       HairColumn& column = layout.columns[columns[k]];
       column.layers = std::max(column.layers, face.layers);
+      column.shortest_bundle = added ? face.layers : std::min(column.shortest_bundle, face.layers);
     }
   }
   const Vector3f up = intoOwnFrame(layout);

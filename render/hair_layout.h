@@ -20,6 +20,8 @@ struct ColumnNeighbour {
 
 struct HairColumn {
   int first_vertex = 0, layers = 0;
+  int shortest_bundle =
+      0;  // layers of the shortest bundle around the column: strands near it end there, so cuts have no steps
   Eigen::Vector3f rest =
       Eigen::Vector3f::Zero();  // m, rest root in the hair's own frame (rigid motion leaves it alone)
   Eigen::Vector3f axis_u = Eigen::Vector3f::UnitX(),

@@ -47,7 +47,7 @@ long uploadLayout(HairResources& hair, std::vector<float>& texels) {
                                  static_cast<float>(first[i + 1]), face.area > 0 ? 1 / face.area : 0.0f});
   }
   for (const HairColumn& column : hair.layout.columns) {
-    append(texels, column.rest, 0);
+    append(texels, column.rest, static_cast<float>(column.shortest_bundle - 1));
     append(texels, column.axis_u, 0);
     append(texels, column.axis_v, 0);
   }

@@ -44,6 +44,11 @@ HairDraw shadowDraw(const HairResources& hair, const LightInput& light, int map)
   return {stride, (hair.segments + 1) / 2, map};
 }
 
+// A body is several times as large as its hair.
+int bodyMapSize(int hair_map_size) {
+  return 2 * hair_map_size;
+}
+
 // Thickness of the first deep opacity layer: small enough to resolve the outer hairs, large enough that the growing
 // layers together reach through the hair.
 float firstThickness(const HairResources& hair, const LightInput& light) {
@@ -76,7 +81,7 @@ void ShadowPass::allocate(int size, int maps) {
   body_in_hair_depth_ = makeArray(GL_DEPTH_COMPONENT32F, size, maps, GL_LINEAR);
   compareDepth(body_in_hair_depth_);
   body_depth_ = makeTexture(GL_TEXTURE_2D);
-  glTextureStorage2D(body_depth_.id(), 1, GL_DEPTH_COMPONENT32F, size, size);
+  glTextureStorage2D(body_depth_.id(), 1, GL_DEPTH_COMPONENT32F, bodyMapSize(size), bodyMapSize(size));
   glTextureParameteri(body_depth_.id(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   glTextureParameteri(body_depth_.id(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   compareDepth(body_depth_);
@@ -103,7 +108,7 @@ void ShadowPass::plan(const FrameInput& input, std::span<HairResources> hairs, c
   has_bodies_ = !bodies.bounds().empty() && light.shadows;
   body_signature_ = 0;
   if (has_bodies_) {
-    body_frustum_ = lightFrustum(bodies.bounds(), to_light, size);
+    body_frustum_ = lightFrustum(bodies.bounds(), to_light, bodyMapSize(size));
     Signature signature;
     signature.add(body_frustum_.clip_from_world);
     signature.add(bodies.poseSignature());
@@ -214,7 +219,7 @@ void ShadowPass::drawBodyMap(const FrameInput&, BodyPass& bodies) {
   glNamedFramebufferDrawBuffer(target, GL_NONE);
   glNamedFramebufferTexture(target, GL_DEPTH_ATTACHMENT, body_depth_.id(), 0);
   glBindFramebuffer(GL_FRAMEBUFFER, target);
-  glViewport(0, 0, size_, size_);
+  glViewport(0, 0, bodyMapSize(size_), bodyMapSize(size_));
   const float far_away = 1;
   glClearNamedFramebufferfv(target, GL_DEPTH, 0, &far_away);
   glEnable(GL_DEPTH_TEST);

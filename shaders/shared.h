@@ -28,7 +28,7 @@ const float kLayerGrowth = 1.5;    // each deep opacity layer is this much thick
 // Texels of the two float buffer textures of a hair.
 const int kVertexTexels = 3;  // position + sky openness, du + depth towards fill, dv + depth towards rim
 const int kFaceTexels = 3;    // first vertices; columns; layers, first strand, end strand, 1 / area
-const int kColumnTexels = 3;  // rest position, rest axis u, rest axis v
+const int kColumnTexels = 3;  // rest position + last layer of the shortest bundle around, rest axis u, rest axis v
 
 // Texture units.
 const int kUnitVertices = 0;

@@ -161,6 +161,33 @@ TEST_F(StrandCapture, LengthVariationShortensByNoMoreThanItsShare) {
   EXPECT_GT(shorter, 300);
 }
 
+TEST_F(StrandCapture, BundlesOfDifferentLengthsAreCutAlongOneSmoothLine) {
+  synthetic::Hair hair = synthetic::makeHair();
+  // Every other quadrilateral of the last ring ends three layers early.
+  for (std::size_t face = 30; face < hair.faces.size(); face += 2) hair.faces[face].layers -= 3;
+  render::HairInput input = synthetic::hairInput(hair, 4000);
+  input.look = plainLook();
+  input.segments_per_layer = 8;
+  const auto strands = capture(input);
+  const render::HairLayout layout = render::makeHairLayout(input.faces, input.positions);
+  const std::vector<int> first = render::dealStrands(layout, input.strands);
+  float longest_between = 0, worst_edge = 0;
+  for (std::size_t face = 31; face < layout.faces.size(); face += 2) {
+    for (int number = first[face]; number < first[face + 1]; ++number) {
+      const auto p = Reference::facePoint(static_cast<std::uint32_t>(face),
+                                          static_cast<std::uint32_t>(number - first[face]), input.look.seed);
+      const float layers = static_cast<float>(strands[number].size() - 1) / 8;
+      // In these faces the shared edges with shorter neighbours are v = 0 and v = 1; only columns of short bundles
+      // remain.
+      longest_between = std::max(longest_between, layers);
+      if (p.y() < 0.05 || p.y() > 0.95) worst_edge = std::max(worst_edge, layers);
+    }
+  }
+  EXPECT_LE(worst_edge, 5.0f + 0.05f * 3 + 0.13f);
+  EXPECT_LE(longest_between, 8.0f);
+  for (int number = first[30]; number < first[31]; ++number) EXPECT_EQ(strands[number].size(), 5u * 8 + 1);
+}
+
 TEST_F(StrandCapture, StrandsTurnSmoothly) {
   const synthetic::Hair hair = synthetic::makeHair();
   const auto sharpestTurn = [&](int segments) {

@@ -20,15 +20,14 @@ float hairOpticalDepth(int map, vec3 at) {
   float behind = (at.z - textureLod(hair_depth, vec3(at.xy, map), 0.0).r) * hair_shadow_size[map].z;
   if (behind <= 0.0) return 0.0;
   vec4 near = textureLod(opacity_near, vec3(at.xy, map), 0.0), far = textureLod(opacity_far, vec3(at.xy, map), 0.0);
-  float held[8] = float[8](near.x, near.y, near.z, near.w, far.x, far.y, far.z, far.w);
-  float start = 0.0, thickness = hair_shadow_size[map].w, before = 0.0;
-  for (int layer = 0; layer < int(opacity.x); ++layer) {
-    if (behind < start + thickness) return opacity.y * mix(before, held[layer], (behind - start) / thickness);
-    start += thickness;
-    before = held[layer];
-    thickness *= kLayerGrowth;
-  }
-  return opacity.y * mix(before, held[7], min((behind - start) / thickness, 1.0));
+  // held[0] = 0 at the first hair; held[k] at the end of layer k, which lies at thickness (g^k - 1) / (g - 1).
+  float held[9] = float[9](0.0, near.x, near.y, near.z, near.w, far.x, far.y, far.z, far.w);
+  float layers = log2(1.0 + (kLayerGrowth - 1.0) * behind / hair_shadow_size[map].w) / log2(kLayerGrowth);
+  int layer = min(int(layers), int(opacity.x));
+  int next = layer == int(opacity.x) ? 8 : layer + 1;
+  float start = (pow(kLayerGrowth, float(layer)) - 1.0) / (kLayerGrowth - 1.0), span = pow(kLayerGrowth, float(layer));
+  float into = clamp((behind / hair_shadow_size[map].w - start) / span, 0.0, 1.0);
+  return opacity.y * mix(held[layer], held[next], into);
 }
 
 // Light left after the bodies, for a point of hair.
@@ -41,7 +40,7 @@ float bodyLightOnHair(int map, vec3 at) {
 // Light of the key left after all hairs, for a point of body or ground: averaged over a disc that widens with the distance from
 // the hair, as under a lamp of some size. The taps lie on a spiral of golden angles (Vogel 1979).
 float hairLightOnSurface(vec3 world) {
-  const int kTaps = 12;
+  const int kTaps = 8;
   const float kLampAngle = 0.16, kLeastRadius = 0.004;  // rad, m
   float light = 1.0;
   for (int map = 0; map < int(to_key.w); ++map) {
@@ -49,8 +48,8 @@ float hairLightOnSurface(vec3 world) {
     if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) continue;
     // How far above lies the hair that may shade this point? Sought in a wide ring, nearest to the point's depth first.
     float above = 0.0;
-    for (int i = 0; i < 9; ++i) {
-      vec2 tap = i == 8 ? vec2(0.0) : 0.03 * vec2(cos(0.785398 * float(i)), sin(0.785398 * float(i)));
+    for (int i = 0; i < 5; ++i) {
+      vec2 tap = i == 4 ? vec2(0.0) : 0.03 * vec2(i < 2 ? -1.0 : 1.0, (i & 1) == 0 ? -1.0 : 1.0);
       float first = textureLod(hair_depth, vec3(at.xy + tap / hair_shadow_size[map].xy, map), 0.0).r;
       if (first < 1.0) above = max(above, (at.z - first) * hair_shadow_size[map].z);
     }
@@ -73,7 +72,7 @@ float bodyLightOnSurface(vec3 world, vec3 normal) {
   vec3 at = (body_shadow * vec4(world + normal * 0.012, 1.0)).xyz * 0.5 + 0.5;
   if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return 1.0;
   at.z = min(at.z, 1.0);  // the ground lies behind the frustum around the bodies, and behind every one of them
-  float sum = 0.0, texel = 1.4 / opacity.z;
+  float sum = 0.0, texel = 1.4 / float(textureSize(body_depth, 0).x);
   for (int y = -1; y <= 1; ++y)
     for (int x = -1; x <= 1; ++x) sum += texture(body_depth, vec3(at.xy + vec2(x, y) * texel, at.z - 0.0012));
   return sum / 9.0;

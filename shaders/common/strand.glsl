@@ -145,7 +145,10 @@ Strand makeStrand(int number) {
   joinClump(columns, corners, columns_at, strand);
   // A clump's strands end near each other, as cut locks do; the square keeps most strands long.
   float early = mix(randomOf(strand.key, 4u), randomOf(strand.clump_key, 4u), 0.4 * clumping.x);
-  strand.end = float(strand.layers - 1) * (1.0 - shape.x * early * early);
+  float cut = 0.0;
+  for (int k = 0; k < corners; ++k)
+    cut += strand.blend[k] * texelFetch(layout_texels, columns_at + columns[k] * kColumnTexels).w;
+  strand.end = cut * (1.0 - shape.x * early * early);
   return strand;
 }
 
