@@ -7,7 +7,8 @@ layout(location = 0) out vec4 color;
 
 void main() {
   vec3 to_eye = normalize(eye.xyz - world), n = normalize(normal);
-  if (dot(n, to_eye) < 0.0) n = normalize(n - 1.02 * dot(n, to_eye) * to_eye);  // interpolated normals may tip over the rim
+  if (dot(n, to_eye) < 0.0)
+    n = normalize(n - 1.02 * dot(n, to_eye) * to_eye);  // interpolated normals may tip over the rim
   vec3 albedo = body_color.rgb;
   float through_hair = 1.0, lit = 1.0;
   if (forward.w > 0.0) {

@@ -1,4 +1,5 @@
-// Debug lines, triangles and points: colours arrive as they should look on the screen, so the film curve is undone for them.
+// Debug lines, triangles and points: colours arrive as they should look on the screen, so the film curve is undone for
+// them.
 #include "shared.h"
 #include "common/film.glsl"
 layout(location = 0) in vec3 world;

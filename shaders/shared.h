@@ -1,4 +1,5 @@
-// Constants and uniform blocks that C++ and GLSL read alike. Only vec4, ivec4 and mat4 members: std140 then equals C layout.
+// Constants and uniform blocks that C++ and GLSL read alike. Only vec4, ivec4 and mat4 members: std140 then equals C
+// layout.
 #ifdef __cplusplus
 #pragma once
 #include <array>
@@ -13,17 +14,17 @@ using mat4 = std::array<float, 16>;
 #define SHARED_ARRAY(type, name, count) type name[count]
 #endif
 
-// A geometry shader invocation emits at most kChunkPoints ribbon points; consecutive chunks of a strand share one point.
-// kRibbonComponents: gl_Position, lit colour + coverage, dither. GL 4.5 promises 1,024 components in all; Mesa does not
-// enforce it but other drivers do, so strand_pass.cpp checks it at compile time.
+// A geometry shader invocation emits at most kChunkPoints ribbon points; consecutive chunks of a strand share one
+// point. kRibbonComponents: gl_Position, lit colour + coverage, dither. GL 4.5 promises 1,024 components in all; Mesa
+// does not enforce it but other drivers do, so strand_pass.cpp checks it at compile time.
 const int kChunkPoints = 33;
 const int kRibbonComponents = 4 + 4 + 1;
 const int kLineComponents = 4 + 1;
 const int kMaxOutputComponents = 1024;
 
-const int kMaxHairShadows = 4;     // hairs (the nearest ones) that own a deep opacity map
-const int kMaxOpacityLayers = 7;   // the eighth channel takes everything
-const float kLayerGrowth = 1.5;    // each deep opacity layer is this much thicker than the one before it
+const int kMaxHairShadows = 4;    // hairs (the nearest ones) that own a deep opacity map
+const int kMaxOpacityLayers = 7;  // the eighth channel takes everything
+const float kLayerGrowth = 1.5;   // each deep opacity layer is this much thicker than the one before it
 
 // Texels of the two float buffer textures of a hair.
 const int kVertexTexels = 3;  // position + sky openness, du + depth towards fill, dv + depth towards rim
@@ -58,31 +59,32 @@ SHARED_BLOCK(0, FrameBlock) {
   vec4 fill;
   vec4 to_rim;
   vec4 rim;
-  vec4 sky;       // w: samples of a pixel
+  vec4 sky;  // w: samples of a pixel
   vec4 ground_light;
   vec4 backdrop_top;
   vec4 backdrop_bottom;
   vec4 ground_color;   // w: height of the ground, m
   vec4 ground_center;  // xyz; w: radius at which it has faded away, m
-  vec4 opacity;        // first layer's thickness is per map; x: layers, y: strength, z: map size, w: 1 when a body map exists
-  mat4 body_shadow;    // world to clip of the body's shadow map
-  SHARED_ARRAY(mat4, hair_shadow, kMaxHairShadows);    // world to clip
+  vec4 opacity;  // first layer's thickness is per map; x: layers, y: strength, z: map size, w: 1 when a body map exists
+  mat4 body_shadow;                                       // world to clip of the body's shadow map
+  SHARED_ARRAY(mat4, hair_shadow, kMaxHairShadows);       // world to clip
   SHARED_ARRAY(vec4, hair_shadow_size, kMaxHairShadows);  // m: width, height, depth range, first layer's thickness
 };
 
 SHARED_BLOCK(1, HairBlock) {
   ivec4 counts;   // faces, strands, segments a layer, seed
   ivec4 draw;     // strand stride, chunks a strand, points a strand, own shadow map or -1
-  vec4 width;     // drawn radius at the root (m), tip over root, projected diameter of the hairs one strand stands for (m), least width (pixels)
+  vec4 width;     // drawn radius at the root (m), tip over root, projected diameter of the hairs one strand stands for
+                  // (m), least width (pixels)
   vec4 shape;     // length variation, offset (m), curl radius (m), curl turns
   vec4 clumping;  // clump, clump size (m), frizz (m), share of flyaways
-  vec4 lobe_width;  // standard deviations (rad) of R, TT, TRT over the half angle; w: cuticle angle
-  vec4 gain;      // specular, diffuse, root darkening, tint variation
+  vec4 lobe_width;       // standard deviations (rad) of R, TT, TRT over the half angle; w: cuticle angle
+  vec4 gain;             // specular, diffuse, root darkening, tint variation
   vec4 forward_albedo;   // mean forward scattering attenuation a_f (Zinke et al. 2008)
   vec4 backward_albedo;  // mean backward scattering attenuation a_b
   vec4 local_back;       // multiple backscattering A_b
-  vec4 center;    // world: the middle of the head under the hair
-  vec4 ball;      // world: a ball around the whole hair; w: its radius, m
+  vec4 center;           // world: the middle of the head under the hair
+  vec4 ball;             // world: a ball around the whole hair; w: its radius, m
 };
 
 SHARED_BLOCK(2, BodyBlock) {

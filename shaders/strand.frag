@@ -1,5 +1,5 @@
-// A strand thinner than the ribbon drawn for it takes only its share of a pixel's samples: how many is rounded by a number of
-// the strand's own, which does not change from frame to frame, so thin hair fades without shimmer.
+// A strand thinner than the ribbon drawn for it takes only its share of a pixel's samples: how many is rounded by a
+// number of the strand's own, which does not change from frame to frame, so thin hair fades without shimmer.
 layout(location = 0) in vec4 lit;
 layout(location = 1) flat in float dither;
 layout(location = 0) out vec4 color;

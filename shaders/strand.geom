@@ -8,7 +8,7 @@
 
 layout(points) in;
 layout(triangle_strip, max_vertices = 2 * kChunkPoints) out;
-layout(location = 0) out vec4 lit;         // radiance, coverage
+layout(location = 0) out vec4 lit;  // radiance, coverage
 layout(location = 1) flat out float dither;
 
 void main() {

@@ -1,4 +1,5 @@
-// Grows one chunk of one strand as a line in the light's view. Lines are a texel wide; what a hair covers of it goes along.
+// Grows one chunk of one strand as a line in the light's view. Lines are a texel wide; what a hair covers of it goes
+// along.
 #include "shared.h"
 #include "common/hash.glsl"
 #include "common/strand.glsl"

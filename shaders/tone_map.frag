@@ -1,5 +1,5 @@
-// Resolves the samples and brings radiance to the screen. Samples are weighed by 1 / (1 + luminance) so that one bright glint
-// does not drown the other samples of its pixel and edges stay smooth (Karis 2013).
+// Resolves the samples and brings radiance to the screen. Samples are weighed by 1 / (1 + luminance) so that one bright
+// glint does not drown the other samples of its pixel and edges stay smooth (Karis 2013).
 #include "shared.h"
 #include "common/film.glsl"
 #include "common/hash.glsl"

@@ -9,8 +9,9 @@ int layerOf(in Strand strand, float s) { return clamp(int(s), 0, strand.layers -
 // Radius at `along` of the strand, and how much wider than that it must be drawn to be no thinner than the least width.
 float strandRadius(float along) { return width.x * mix(1.0, width.y, along * along); }
 
-// The last point whose ribbon can still take a sample (see strand.frag), taken conservatively from the nearest point of the
-// hair's ball; -1 when none can. Thin and far away, most strands end here, and nothing of the picture changes by it.
+// The last point whose ribbon can still take a sample (see strand.frag), taken conservatively from the nearest point of
+// the hair's ball; -1 when none can. Thin and far away, most strands end here, and nothing of the picture changes by
+// it.
 int lastShownPoint(in Strand strand, float dither) {
   float nearest = max(dot(ball.xyz - eye.xyz, forward.xyz) - ball.w, 1e-3);
   float needed = (1.0 - dither) / sky.w * (0.5 * width.w * eye.w * nearest) / width.x;  // share of the root's radius
@@ -20,8 +21,8 @@ int lastShownPoint(in Strand strand, float dither) {
 }
 
 struct RibbonPoint {
-  vec3 aside;       // half the ribbon's width, world
-  float coverage;   // share of the drawn width that is hair
+  vec3 aside;      // half the ribbon's width, world
+  float coverage;  // share of the drawn width that is hair
 };
 
 RibbonPoint ribbonPoint(in CurvePoint point) {

@@ -1,5 +1,6 @@
 // Shadows of the key light: deep opacity maps of the hairs, depth maps of the bodies.
-// Source: Yuksel and Keyser 2008, Deep Opacity Maps: opacity layers start at the depth where the light first meets hair.
+// Source: Yuksel and Keyser 2008, Deep Opacity Maps: opacity layers start at the depth where the light first meets
+// hair.
 
 layout(binding = kUnitOpacityNear) uniform sampler2DArray opacity_near;  // layers 0..3
 layout(binding = kUnitOpacityFar) uniform sampler2DArray opacity_far;    // layers 4..6, all
@@ -7,14 +8,15 @@ layout(binding = kUnitHairDepth) uniform sampler2DArray hair_depth;
 layout(binding = kUnitBodyInHairDepth) uniform sampler2DArrayShadow body_in_hair_depth;
 layout(binding = kUnitBodyDepth) uniform sampler2DShadow body_depth;
 
-// Light-space texture coordinates and depth of a world point in hair shadow map `map`; outside of [0, 1] where not covered.
+// Light-space texture coordinates and depth of a world point in hair shadow map `map`; outside of [0, 1] where not
+// covered.
 vec3 hairShadowCoordinates(int map, vec3 world) {
   vec4 clip = hair_shadow[map] * vec4(world, 1.0);
   return clip.xyz * 0.5 + 0.5;
 }
 
-// Optical depth (expected number of hairs crossed, weighted by strength) between the key light and a point. Within a layer it
-// grows linearly; layers thicken geometrically, since what lies deep needs less resolution.
+// Optical depth (expected number of hairs crossed, weighted by strength) between the key light and a point. Within a
+// layer it grows linearly; layers thicken geometrically, since what lies deep needs less resolution.
 float hairOpticalDepth(int map, vec3 at) {
   if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return 0.0;
   float behind = (at.z - textureLod(hair_depth, vec3(at.xy, map), 0.0).r) * hair_shadow_size[map].z;
@@ -37,8 +39,8 @@ float bodyLightOnHair(int map, vec3 at) {
   return texture(body_in_hair_depth, vec4(at.xy, map, reference));
 }
 
-// Light of the key left after all hairs, for a point of body or ground: averaged over a disc that widens with the distance from
-// the hair, as under a lamp of some size. The taps lie on a spiral of golden angles (Vogel 1979).
+// Light of the key left after all hairs, for a point of body or ground: averaged over a disc that widens with the
+// distance from the hair, as under a lamp of some size. The taps lie on a spiral of golden angles (Vogel 1979).
 float hairLightOnSurface(vec3 world) {
   const int kTaps = 8;
   const float kLampAngle = 0.16, kLeastRadius = 0.004;  // rad, m

@@ -1,12 +1,13 @@
-// The strand curve: grown from (root face, position in the face) out of the hair mesh's vertices, nothing stored per strand.
+// The strand curve: grown from (root face, position in the face) out of the hair mesh's vertices, nothing stored per
+// strand.
 //
-// Across a face every layer is one smooth patch: a bicubic Coons patch over a quadrilateral, a cubic Bezier triangle over a
-// triangle, both bounded by the same cubic Hermite edge curves, whose end tangents are G d: G the vertex's in-layer gradient
-// (two 3-vectors), d the edge in the rest scalp's tangent plane. A point of any layer is therefore one fixed linear
-// combination of the corners' positions and gradients: the weights are made once a strand. Along the strand: uniform
-// Catmull-Rom through the layers (C1).
-// Sources: Yuksel et al. 2009 (hair meshes); Farin, Curves and Surfaces for CAGD (Coons patches, cubic triangles);
-// Vlachos et al. 2001 (the centre point of the triangle); Roberts 2018 (R2 sequence).
+// Across a face every layer is one smooth patch: a bicubic Coons patch over a quadrilateral, a cubic Bezier triangle
+// over a triangle, both bounded by the same cubic Hermite edge curves, whose end tangents are G d: G the vertex's
+// in-layer gradient (two 3-vectors), d the edge in the rest scalp's tangent plane. A point of any layer is therefore
+// one fixed linear combination of the corners' positions and gradients: the weights are made once a strand. Along the
+// strand: uniform Catmull-Rom through the layers (C1). Sources: Yuksel et al. 2009 (hair meshes); Farin, Curves and
+// Surfaces for CAGD (Coons patches, cubic triangles); Vlachos et al. 2001 (the centre point of the triangle); Roberts
+// 2018 (R2 sequence).
 
 layout(binding = kUnitVertices) uniform samplerBuffer vertex_texels;
 layout(binding = kUnitLayout) uniform samplerBuffer layout_texels;
@@ -14,18 +15,18 @@ layout(binding = kUnitLayout) uniform samplerBuffer layout_texels;
 const float kPi = 3.14159265358979;
 
 struct Strand {
-  ivec4 first;      // first vertex of each corner's column; [3] repeats [2] with weight 0 in a triangle
+  ivec4 first;  // first vertex of each corner's column; [3] repeats [2] with weight 0 in a triangle
   int layers;
-  vec4 weight;      // of positions
-  vec4 along_u;     // of gradients du
-  vec4 along_v;     // of gradients dv
-  vec4 pull_u;      // what the clump adds to along_u, along_v at full strength
+  vec4 weight;   // of positions
+  vec4 along_u;  // of gradients du
+  vec4 along_v;  // of gradients dv
+  vec4 pull_u;   // what the clump adds to along_u, along_v at full strength
   vec4 pull_v;
-  vec4 blend;       // linear weights: frames and light
-  float end;        // curve parameter of the tip, in layers
-  uint key;         // hash key of the strand
-  uint clump_key;   // hash key of its clump
-  float loose;      // 1 for a flyaway, else 0
+  vec4 blend;      // linear weights: frames and light
+  float end;       // curve parameter of the tip, in layers
+  uint key;        // hash key of the strand
+  uint clump_key;  // hash key of its clump
+  float loose;     // 1 for a flyaway, else 0
 };
 
 struct LayerPoint {
@@ -36,9 +37,9 @@ struct LayerPoint {
 
 struct CurvePoint {
   vec3 position;
-  vec3 tangent;   // unit
+  vec3 tangent;  // unit
   vec3 light;
-  float along;    // 0 root .. 1 tip of this strand
+  float along;  // 0 root .. 1 tip of this strand
 };
 
 vec2 planeOffset(int from, int to, int columns_at) {
@@ -48,8 +49,8 @@ vec2 planeOffset(int from, int to, int columns_at) {
               dot(gap, texelFetch(layout_texels, columns_at + from * kColumnTexels + 2).xyz));
 }
 
-// Position in the unit square by the R2 sequence: any first n strands of a face are spread evenly. A jitter that shrinks with
-// the index hides the sequence's rows without breaking that.
+// Position in the unit square by the R2 sequence: any first n strands of a face are spread evenly. A jitter that
+// shrinks with the index hides the sequence's rows without breaking that.
 vec2 facePoint(uint face, uint index, uint key) {
   const uint seed = uint(counts.w);
   vec2 shift = vec2(unitFloat(hash(face, seed)), unitFloat(hash(face + 0x51ed27u, seed)));
@@ -112,8 +113,10 @@ void joinClump(ivec4 columns, int corners, int columns_at, inout Strand strand) 
   }
   vec3 pull = nearest * size * clumping.x * (1.0 - strand.loose) * (0.75 + 0.25 * randomOf(strand.key, 5u));
   for (int k = 0; k < corners; ++k) {
-    strand.pull_u[k] = strand.blend[k] * dot(pull, texelFetch(layout_texels, columns_at + columns[k] * kColumnTexels + 1).xyz);
-    strand.pull_v[k] = strand.blend[k] * dot(pull, texelFetch(layout_texels, columns_at + columns[k] * kColumnTexels + 2).xyz);
+    strand.pull_u[k] =
+        strand.blend[k] * dot(pull, texelFetch(layout_texels, columns_at + columns[k] * kColumnTexels + 1).xyz);
+    strand.pull_v[k] =
+        strand.blend[k] * dot(pull, texelFetch(layout_texels, columns_at + columns[k] * kColumnTexels + 2).xyz);
   }
 }
 
@@ -121,8 +124,10 @@ Strand makeStrand(int number) {
   int low = 0, high = counts.x - 1;
   while (low < high) {
     int middle = (low + high) >> 1;
-    if (texelFetch(layout_texels, middle * kFaceTexels + 2).z > float(number)) high = middle;
-    else low = middle + 1;
+    if (texelFetch(layout_texels, middle * kFaceTexels + 2).z > float(number))
+      high = middle;
+    else
+      low = middle + 1;
   }
   vec4 first = texelFetch(layout_texels, low * kFaceTexels), extent = texelFetch(layout_texels, low * kFaceTexels + 2);
   ivec4 columns = ivec4(texelFetch(layout_texels, low * kFaceTexels + 1));
@@ -140,8 +145,10 @@ Strand makeStrand(int number) {
   strand.clump_key = 0u;
   strand.loose = randomOf(strand.key, 3u) < clumping.w ? 1.0 : 0.0;
   vec2 point = facePoint(uint(low), index, strand.key);
-  if (corners == 4) weighQuad(point, columns, columns_at, strand);
-  else weighTriangle(point, columns, columns_at, strand);
+  if (corners == 4)
+    weighQuad(point, columns, columns_at, strand);
+  else
+    weighTriangle(point, columns, columns_at, strand);
   joinClump(columns, corners, columns_at, strand);
   // A clump's strands end near each other, as cut locks do; the square keeps most strands long.
   float early = mix(randomOf(strand.key, 4u), randomOf(strand.clump_key, 4u), 0.4 * clumping.x);
@@ -152,7 +159,8 @@ Strand makeStrand(int number) {
   return strand;
 }
 
-// How far a clump has closed at `t` of the bundle's length: open at the root, closed past the middle, a little open at the end.
+// How far a clump has closed at `t` of the bundle's length: open at the root, closed past the middle, a little open at
+// the end.
 float clumpClosing(float t, uint clump_key) {
   float reach = 0.3 + 0.4 * randomOf(clump_key, 6u);
   return smoothstep(0.0, reach, t) * (1.0 - 0.25 * t * randomOf(clump_key, 7u));
@@ -163,7 +171,8 @@ LayerPoint layerPoint(in Strand strand, int layer) {
   float closing = clumpClosing(float(layer) / float(strand.layers - 1), strand.clump_key);
   for (int k = 0; k < 4; ++k) {
     int at = (strand.first[k] + layer) * kVertexTexels;
-    vec4 p = texelFetch(vertex_texels, at), du = texelFetch(vertex_texels, at + 1), dv = texelFetch(vertex_texels, at + 2);
+    vec4 p = texelFetch(vertex_texels, at), du = texelFetch(vertex_texels, at + 1),
+         dv = texelFetch(vertex_texels, at + 2);
     point.position += strand.weight[k] * p.xyz + (strand.along_u[k] + closing * strand.pull_u[k]) * du.xyz +
                       (strand.along_v[k] + closing * strand.pull_v[k]) * dv.xyz;
     point.axis_u += strand.blend[k] * du.xyz;
@@ -244,7 +253,6 @@ CurvePoint curvePoint(in Strand strand, in LayerWindow window, float s, float fr
   return point;
 }
 
-// Ribbon point `index` of a strand sits at index / (segments a layer), cut at the strand's end. Both strand paths ask here.
-float pointParameter(in Strand strand, int index) {
-  return min(float(index) / float(counts.z), strand.end);
-}
+// Ribbon point `index` of a strand sits at index / (segments a layer), cut at the strand's end. Both strand paths ask
+// here.
+float pointParameter(in Strand strand, int index) { return min(float(index) / float(counts.z), strand.end); }
