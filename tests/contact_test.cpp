@@ -96,6 +96,17 @@ TEST(Contact, NoExternalVertexIsInsideAfterAStepWhateverTheBodiesDo) {
        [](Hair& h, int) {
          move(h.bodies[0], {0, 0, 0}, {0, 0, 0}, kFrame);
        }},
+      {"a crowd that overlaps",
+       [](Hair& h) {
+         test::Random random(9);
+         for (int k = 0; k < 7; ++k) {
+           h.bodies.push_back(ellipsoid(Vec3(-0.25, -0.15, 0.03) + random.vector(0.07),
+                                        Vec3(random(0.02, 0.06), random(0.02, 0.06), random(0.02, 0.06))));
+         }
+       },
+       [](Hair& h, int n) {
+         for (Ellipsoid& e : h.bodies) move(e, {n % 30 < 15 ? 2.5 : -2.5, 0, 0}, {4, 9, 2}, kFrame);
+       }},
       {"appears and goes", [](Hair&) {},
        [](Hair& h, int n) {
          h.bodies.clear();
@@ -103,9 +114,15 @@ TEST(Contact, NoExternalVertexIsInsideAfterAStepWhateverTheBodiesDo) {
        }},
   };
   for (const Play& play : plays) {
-    for (const bool minimize : {true, false}) {
+    // Without an offset there is no cushion: what a missing correction leaves is inside.
+    struct Way {
+      bool minimize;
+      double offset;
+    };
+    for (const auto& [minimize, offset] : {Way{true, 0.002}, Way{false, 0.002}, Way{true, 0}}) {
       sim::SimParams params = quickHair();
       params.minimize_deformation = minimize;
+      params.contact_offset = offset;
       Hair hair(test::combedShape(curtain()), params);
       play.start(hair);
       double worst = 0, found = 0;
@@ -117,13 +134,49 @@ TEST(Contact, NoExternalVertexIsInsideAfterAStepWhateverTheBodiesDo) {
         found = std::max(found, report.max_penetration);
         recoveries += report.recoveries;
       }
-      std::printf("%-20s %s: found %.1f mm deep, left %.4f mm\n", play.name, minimize ? "minimized" : "corrected",
+      std::printf("%-20s %s: found %.1f mm deep, left %.4f mm\n", play.name,
+                  !minimize    ? "corrected"
+                  : offset > 0 ? "minimized"
+                               : "no offset",
                   1e3 * found, 1e3 * worst);
       EXPECT_GT(found, 1e-4) << play.name << ": the body did meet the hair";
       EXPECT_LE(worst, kAllowed) << play.name;
       EXPECT_EQ(recoveries, 0) << play.name;
     }
   }
+}
+
+TEST(Contact, PenetrationsAreFoundInFullAndTheirTargetsLieOutsideEveryBody) {
+  test::Random random(6);
+  const sim::HairMesh mesh = sim::buildHairMesh(test::patchShape(curtain()));
+  int found_count = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    std::vector<Ellipsoid> bodies;  // two that overlap, their crease within the hair
+    const Vec3 middle = Vec3(0.04, -0.15, 0.02) + random.vector(0.05), apart = 0.035 * random.direction();
+    for (const double side : {-1.0, 1.0}) {
+      bodies.push_back(
+          ellipsoid(middle + side * apart, Vec3(random(0.05, 0.07), random(0.05, 0.07), random(0.05, 0.07))));
+      bodies.back().rotation = random.rotation();
+    }
+    std::vector<sim::Penetration> found;
+    sim::findPenetrations(mesh, bodies, 0.002, mesh.shape.positions, found);
+    std::vector<int> expected, vertices;
+    for (int v : mesh.external_vertices) {
+      double nearest = 1;
+      for (const Ellipsoid& e : bodies)
+        nearest = std::min(nearest, sim::closestPoint(e, mesh.shape.positions[v]).distance);
+      if (nearest < 0.002 - 1e-9) expected.push_back(v);
+    }
+    for (const sim::Penetration& hit : found) {
+      vertices.push_back(hit.vertex);
+      for (const Ellipsoid& e : bodies) EXPECT_GT(sim::closestPoint(e, hit.target).distance, 0.002 - 2e-4);
+      EXPECT_NEAR(hit.normal.norm(), 1, 1e-12);
+      EXPECT_GT(hit.depth, 0);
+    }
+    EXPECT_EQ(vertices, expected) << "all of them, in vertex order";
+    found_count += static_cast<int>(found.size());
+  }
+  EXPECT_GT(found_count, 500);
 }
 
 TEST(Contact, SwitchedOffNothingIsCorrected) {
