@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sim/dense_kernels.h"
+#include "sim/elimination_order.h"
 
 namespace sim {
 namespace {
@@ -140,6 +141,14 @@ void BlockCholesky<T>::analyze(const BlockPattern& pattern, std::vector<int> eli
     deepest = std::max(deepest, depth);
   }
   stack_.assign(deepest, T(0));
+}
+
+template <class T>
+void BlockCholesky<T>::analyze(const HairMesh& mesh, const BlockPattern& pattern, std::span<const unsigned char> keep) {
+  BlockCholesky<T> other;
+  other.analyze(pattern, nestedDissectionOrder(pattern, keep, dissectionCoordinates(mesh)));
+  analyze(pattern, minimumDegreeOrder(pattern, keep));
+  if (other.values.size() < values.size()) *this = std::move(other);
 }
 
 template <class T>

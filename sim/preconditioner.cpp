@@ -61,7 +61,7 @@ bool Preconditioner<T>::factorColumns(const BlockMatrix<T>& a) {
 template <class T>
 bool Preconditioner<T>::setRestMatrix(const BlockMatrix<T>& rest) {
   if (rest_factor_.order.empty()) {
-    rest_factor_.analyze(*pattern_, nestedDissectionOrder(*pattern_, free_, dissectionCoordinates(*mesh_)));
+    rest_factor_.analyze(*mesh_, *pattern_, free_);
   }
   return rest_factor_.factor(rest);
 }
@@ -81,7 +81,7 @@ void Preconditioner<T>::update(const BlockMatrix<T>& a, Solver solver) {
   if (solver == Solver::kDirect) {
     if (!direct_factor_) {
       direct_factor_.emplace();
-      direct_factor_->analyze(*pattern_, nestedDissectionOrder(*pattern_, free_, dissectionCoordinates(*mesh_)));
+      direct_factor_->analyze(*mesh_, *pattern_, free_);
     }
     if (direct_factor_->factor(a)) return;
     kind_ = Solver::kBlockJacobi;

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "sim/block_cholesky.h"
-#include "sim/elimination_order.h"
 
 namespace sim {
 namespace {
@@ -101,7 +100,7 @@ void solveRestShifts(const HairMesh& mesh, const BlockPattern& pattern, const Si
     for (int k = 0; k < 9; k += 4) stiffness.diagonal[i].m[k] += 1e-13 * scale;
   }
   BlockCholesky<double> factor;
-  factor.analyze(pattern, nestedDissectionOrder(pattern, free_vertex, dissectionCoordinates(mesh)));
+  factor.analyze(mesh, pattern, free_vertex);
   if (!factor.factor(stiffness)) return;
   factor.solve(load, y);
   multiply<double>(stiffness, y, residual);
