@@ -27,7 +27,7 @@ struct HairLook {
   float width_compensation =
       0.6f;                   // drawn radius = strand_radius * (strands_represented / strands)^this; 0: none, 1: all
   float least_pixels = 1.0f;  // strands thinner than this are drawn this wide and fade by coverage
-  float taper = 0.35f;        // tip radius over root radius
+  float taper = 0.7f;         // tip radius over root radius; cut hair is blunt
   float length_variation = 0.06f;  // strands end up to this share of their length early
   float offset = 0.0012f;          // m, random sideways wander that grows along the strand
   float clump = 0.55f;             // 0..1 pull towards the clump's centre strand, opening and closing along the length

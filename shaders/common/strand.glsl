@@ -151,7 +151,7 @@ Strand makeStrand(int number) {
     weighTriangle(point, columns, columns_at, strand);
   joinClump(columns, corners, columns_at, strand);
   // A clump's strands end near each other, as cut locks do; the square keeps most strands long.
-  float early = mix(randomOf(strand.key, 4u), randomOf(strand.clump_key, 4u), 0.4 * clumping.x);
+  float early = mix(randomOf(strand.key, 4u), randomOf(strand.clump_key, 4u), 0.2 * clumping.x);
   float cut = 0.0;
   for (int k = 0; k < corners; ++k)
     cut += strand.blend[k] * texelFetch(layout_texels, columns_at + columns[k] * kColumnTexels).w;
@@ -159,11 +159,12 @@ Strand makeStrand(int number) {
   return strand;
 }
 
-// How far a clump has closed at `t` of the bundle's length: open at the root, closed past the middle, a little open at
-// the end.
+// How far a clump has closed at `t` of the bundle's length: open at the root, closed past the middle, opening again
+// towards the end, or a cut would look torn into locks.
 float clumpClosing(float t, uint clump_key) {
   float reach = 0.3 + 0.4 * randomOf(clump_key, 6u);
-  return smoothstep(0.0, reach, t) * (1.0 - 0.25 * t * randomOf(clump_key, 7u));
+  float opens_again = 0.35 + 0.4 * randomOf(clump_key, 7u);
+  return smoothstep(0.0, reach, t) * (1.0 - opens_again * smoothstep(0.6, 1.0, t));
 }
 
 LayerPoint layerPoint(in Strand strand, int layer) {
