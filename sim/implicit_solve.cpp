@@ -131,21 +131,27 @@ void ImplicitSolver<T>::assemble(const SimParams& params, const StepBase& base, 
   }
 }
 
-// The incremental potential whose minimum (for frozen damping gradients) the implicit step is: decreases along Newton
-// steps.
+// Sum of |r|^2 / m over the free directions at the current x, r being the residual of the step's nonlinear equation.
+// With damping the step has no potential to descend (the damping forces follow the moving gradients), so the line
+// search goes by this.
 template <class T>
-T ImplicitSolver<T>::merit(const SimParams& params, const StepBase& base, std::span<const V3<T>> velocities) {
+double ImplicitSolver<T>::residualSquare(const SimParams& params, const StepBase& base) {
   const T h = static_cast<T>(base.h), drag = static_cast<T>(params.air_drag);
   const V3<T> wind = cast<T>(base.wind), gravity{0, static_cast<T>(-params.gravity), 0};
-  double sum = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const V3<T> from_hat = velocities[i] - cast<T>(base.v_hat[i]), from_wind = velocities[i] - wind;
-    sum += mass[i] * (T(0.5) * dot(from_hat, from_hat) + T(0.5) * h * drag * dot(from_wind, from_wind) -
-                      h * dot(gravity, velocities[i]));
-  }
+  packed_force.setZero();
   ColumnEvaluation<T> out;
-  out.damping = h * static_cast<T>(params.damping);
-  return static_cast<T>(sum) + evaluateForces(x, out, velocities);
+  out.force = &packed_force;
+  out.damping = static_cast<T>(params.damping);
+  evaluateForces(x, out, v);
+  packed_force.unpack(layout, force);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const V3<T> outer = gravity - drag * (v[i] - wind);
+    force[i] = mass[i] * (v[i] - cast<T>(base.v_hat[i])) - h * (force[i] + mass[i] * outer);
+  }
+  filter.apply(force);
+  double sum = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) sum += static_cast<double>(dot(force[i], force[i]) / mass[i]);
+  return sum;
 }
 
 template <class T>
@@ -255,7 +261,8 @@ void ImplicitSolver<T>::solve(const HairMesh& mesh, const SimParams& params, con
     if (params.solver == Solver::kWarped) preconditioner.updateRotations(x);
     spent(kStageForces);
     std::copy(v.begin(), v.end(), velocity_step.begin());
-    const T before = newton ? merit(params, base, v) : T(0);
+    // The first iterate does not yet meet the constraints: nothing to compare with.
+    const double before = newton && iteration > 0 ? residualSquare(params, base) : 0;
     const SolveReport linear = solveLinear(mesh, params, base, contacts);
     report.solver_iterations += linear.iterations;
     report.residual = linear.relative_residual;
@@ -263,7 +270,7 @@ void ImplicitSolver<T>::solve(const HairMesh& mesh, const SimParams& params, con
     report.converged = linear.converged;
     ++report.newton_iterations;
     if (newton) {
-      // velocity_step holds the iterate before; backtrack towards it until the merit does not rise.
+      // velocity_step holds the iterate before; backtrack towards it until the residual does not rise.
       T largest = 0;
       for (std::size_t i = 0; i < n; ++i) {
         trial[i] = v[i] - velocity_step[i];
@@ -271,7 +278,7 @@ void ImplicitSolver<T>::solve(const HairMesh& mesh, const SimParams& params, con
       }
       place(v);
       T step = 1;
-      for (int k = 0; k < kLineSearchSteps && iteration > 0 && merit(params, base, v) > before; ++k) {
+      for (int k = 0; k < kLineSearchSteps && iteration > 0 && residualSquare(params, base) > before; ++k) {
         step *= T(0.5);
         for (std::size_t i = 0; i < n; ++i) v[i] = velocity_step[i] + step * trial[i];
         place(v);

@@ -58,7 +58,7 @@ struct ImplicitSolver {
   T evaluateForces(std::span<const V3<T>> at, ColumnEvaluation<T> out, std::span<const V3<T>> velocities);
   void refreshRestFactor(const HairMesh& mesh, const SimParams& params, double h);
   void assemble(const SimParams& params, const StepBase& base, bool at_start);
-  T merit(const SimParams& params, const StepBase& base, std::span<const V3<T>> velocities);
+  double residualSquare(const SimParams& params, const StepBase& base);
   SolveReport solveLinear(const HairMesh& mesh, const SimParams& params, const StepBase& base,
                           std::vector<Contact>& contacts);
 };

@@ -63,7 +63,8 @@ bool Preconditioner<T>::setRestMatrix(const BlockMatrix<T>& rest) {
   if (rest_factor_.order.empty()) {
     rest_factor_.analyze(*mesh_, *pattern_, free_);
   }
-  return rest_factor_.factor(rest);
+  rest_factor_fine_ = rest_factor_.factor(rest);
+  return rest_factor_fine_;
 }
 
 template <class T>
@@ -113,6 +114,7 @@ bool Preconditioner<T>::setRestMatrix(const ColumnMatrix<T>& rest) {
 
 template <class T>
 void Preconditioner<T>::update(const ColumnMatrix<T>& a, Solver solver) {
+  if (solver == Solver::kWarped && !rest_factor_fine_) solver = Solver::kBlockJacobi;
   kind_ = solver;
   removed_.clear();
   response_count_ = 0;

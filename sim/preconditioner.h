@@ -60,6 +60,7 @@ struct Preconditioner {
   std::vector<V3<T>> turned_;
   VertexRotations<T> rotations_;
   BlockCholesky<T> rest_factor_;
+  bool rest_factor_fine_ = false;  // else 3x3 blocks stand in for `warped`
   std::optional<BlockCholesky<T>> direct_factor_, column_factor_;
   std::optional<BlockPattern> column_pattern_;
   std::optional<BlockMatrix<T>> column_matrix_;
