@@ -22,7 +22,7 @@ struct Cut {
 Cut cutOf(Style style) {
   switch (style) {
     case Style::kShort:
-      return {0.028, -0.20, -0.25, -0.40, false, false, 0.35};
+      return {0.024, -0.20, -0.25, -0.40, false, false, 0.35};
     case Style::kShoulder:
       return {0.034, 0.05, 0.05, 0.0, true, false, 0.6};
     case Style::kLong:
@@ -334,7 +334,7 @@ void Comber::raiseOuter() {
     std::swap(normal, coat.outer);
   }
   for (int s = 0; s < coat.sheets; ++s) {
-    const double around = 0.55 + 0.45 * smoothstep(0.0, 0.28, backness(s));
+    const double around = 0.42 + 0.58 * smoothstep(0.0, 0.35, backness(s));
     for (int r = 0; r < coat.rows; ++r) {
       const double along = 0.72 + 0.28 * smoothstep(0, coat.scalp_rows, r);
       const Vec3& n = normal[coat.index(s, r)];

@@ -12,10 +12,12 @@ constexpr int kHalfSheets = 40;
 constexpr int kRows = 33;
 
 // A bare line of scalp this wide shows along the parting.
-constexpr double kPartingHalfWidth = 0.0018;  // m
+constexpr double kPartingHalfWidth = 0.0014;  // m
 
 constexpr double kGatherAtCrown = 1.4;
-constexpr double kSidewaysAtCrown = 0.55;
+// Lines bend sideways as they leave the parting near the crown, and the middle one sets out the way that the parting
+// heads, so that root faces at the crown have room on both sides.
+constexpr double kSidewaysAtCrown = 0.65, kAheadAtCrown = 1.3;
 
 struct Landmark {
   double azimuth, elevation;  // degrees; the left side's, mirrored for the right
@@ -141,12 +143,15 @@ FlowLines traceFlowLines(const Scalp& scalp) {
   for (const double side : {1.0, -1.0}) {
     const std::vector<Vec3> bank = bankDirections(scalp, side), hairline = hairlineDirections(scalp, side);
     const Vec3 across = side * direction(kCrown).cross(direction(kPartingFront)).normalized();
+    // How far the middle line's way to the nape lies beside the way that the parting heads.
+    const double astray = across.dot(slerp(bank.back(), hairline.back(), 0.4));
     const Vec3 forehead = direction(side > 0 ? kForeheadLeft : kForeheadRight);
     std::vector<std::vector<Vec3>> half(kHalfSheets + 1, std::vector<Vec3>(kRows));
     for (int s = 0; s <= kHalfSheets; ++s) {
       const double q = static_cast<double>(s) / kHalfSheets;
-      const Vec3 between =
-          (slerp(bank[s], hairline[s], 0.4) + kSidewaysAtCrown * q * std::sqrt(1 - q) * across).normalized();
+      const Vec3 between = (slerp(bank[s], hairline[s], 0.4) + kSidewaysAtCrown * q * std::sqrt(1 - q) * across -
+                            kAheadAtCrown * q * q * q * astray * across)
+                               .normalized();
       const Vec3 bend = slerp(forehead, between, std::min(1.0, q / 0.35));
       for (int r = 0; r < kRows; ++r) {
         const double t = static_cast<double>(r) / (kRows - 1);

@@ -8,8 +8,8 @@ namespace sim {
 namespace {
 
 constexpr double kHairlineRise = 0.34;  // share of the coat's thickness that the hairline's own columns rise to
-constexpr double kRiseAtHairline = 0.012, kRiseAtParting = 0.04;  // m of travel over which a column leaves the scalp
-constexpr double kInStepBelowHairline = 0.04;                     // m
+constexpr double kRiseAtHairline = 0.012, kRiseAtParting = 0.048;  // m of travel over which a column leaves the scalp
+constexpr double kInStepBelowHairline = 0.04;                      // m
 
 double smoothstep(double a, double b, double x) {
   const double t = std::clamp((x - a) / (b - a), 0.0, 1.0);
