@@ -130,6 +130,7 @@ void placeActor(Actor& actor, bool rest) {
     actor.hair = sim::restState(actor.haircut->mesh, after);
   }
   actor.previous_pose = actor.pose;
+  actor.shown_pose = actor.pose;  // requests may ask for it before the first frame
   actor.previous_positions = actor.hair.positions;
   poseEllipsoids(actor.body->character, actor.pose, actor.pose, 0, actor.ellipsoids);
   followScalp(actor, actor.roots);
