@@ -5,7 +5,9 @@
 #include <iostream>
 
 #include "app/errors.h"
+#include "app/look_params.h"
 #include "app/parameter_table.h"
+#include "app/scene_file.h"
 #include "sim/field_text.h"
 
 namespace app {
@@ -31,6 +33,18 @@ bool parseSize(const std::string& text, int& width, int& height) {
   width = static_cast<int>(w);
   height = static_cast<int>(h);
   return true;
+}
+
+// CLI::Range lets NaN through, because NaN is neither below nor above.
+CLI::Validator within(double low, double high) {
+  const std::string range = sim::numberText(low) + " to " + sim::numberText(high);
+  return CLI::Validator(
+      [=](std::string& text) {
+        double value = 0;
+        const bool fine = sim::parseNumber(text, value) && value >= low && value <= high;
+        return fine ? std::string() : "'" + text.substr(0, 40) + "' is not a number from " + range;
+      },
+      "");
 }
 
 const char* const kExamples = R"(Examples:
@@ -94,15 +108,15 @@ bool parseOptions(int argc, char** argv, Options& options, int& exit_code) {
   parser.add_option("--speed", options.speed, "Playback speed of the motion, 0 to 100")
       ->group(motion)
       ->option_text("X")
-      ->check(CLI::Range(0.0, 100.0));
+      ->check(within(0, kFastestPlayback));
   parser.add_option("--fps", options.fps, "Frames per second of a headless run")
       ->group(motion)
       ->option_text("N")
-      ->check(CLI::Range(1.0, 1000.0));
+      ->check(within(kSlowestFps, kFastestFps));
   parser.add_option("--start", options.start, "Where in the clip to begin, seconds")
       ->group(motion)
       ->option_text("S")
-      ->check(CLI::Range(0.0, 1e5));
+      ->check(within(0, 1e5));
   parser.add_flag("--travel", options.travel, "Let the figure travel over the ground as the clip does")->group(motion);
 
   const char* picture = "Picture";
@@ -121,7 +135,7 @@ bool parseOptions(int argc, char** argv, Options& options, int& exit_code) {
   parser.add_option("--strands", options.strands, "Strands to draw over a whole head")
       ->group(picture)
       ->option_text("N")
-      ->check(CLI::Range(0, 300000));
+      ->check(within(0, findHairField("strands")->maximum));
   parser.add_option("--strand-path", options.strand_path, "Shader stage that grows strands: geometry or pulling")
       ->group(picture)
       ->option_text("NAME")
@@ -139,7 +153,7 @@ bool parseOptions(int argc, char** argv, Options& options, int& exit_code) {
       parser.add_option("--frames", options.frames, "Frames of a headless run (120); a window ends after as many")
           ->group(output)
           ->option_text("N")
-          ->check(CLI::Range(1, kMostFrames));
+          ->check(within(1, kMostFrames));
   parser.add_option("--out", options.out, "Folder for headless frames (frames)")->group(output)->option_text("DIR");
   parser.add_flag("--no-images", options.no_images, "Headless: simulate only, create no OpenGL context")->group(output);
   parser.add_option("--report", options.report, "Write timings per stage and counters of every frame as JSON")
