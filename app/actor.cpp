@@ -1,6 +1,7 @@
 #include "app/actor.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "app/errors.h"
@@ -16,6 +17,12 @@ namespace {
 // falls.
 constexpr double kSettlingDrag = 12;
 
+// Never the same twice in a process: the renderer keeps GPU resources by these, also across scenes opened one after another.
+std::uint64_t freshId() {
+  static std::atomic<std::uint64_t> next{1};
+  return next++;
+}
+
 LoadedBody& loadBody(const CharacterSpec& spec, Wardrobe& wardrobe) {
   const std::string key = spec.motion + "|" + spec.parts;
   for (const auto& body : wardrobe.bodies) {
@@ -24,7 +31,7 @@ LoadedBody& loadBody(const CharacterSpec& spec, Wardrobe& wardrobe) {
   auto body = std::make_unique<LoadedBody>();
   body->key = key;
   body->character = loadCharacter(spec.motion, spec.parts);
-  body->id = wardrobe.next_id++;
+  body->id = freshId();
   wardrobe.bodies.push_back(std::move(body));
   return *wardrobe.bodies.back();
 }
@@ -89,7 +96,7 @@ Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, Wardrob
   actor.body = &body;
   actor.haircut = &cutHair(spec, body, wardrobe);
   actor.clip = findClip(spec, actor.body->character);
-  actor.id = wardrobe.next_id++;
+  actor.id = freshId();
   actor.playback.time = spec.clip_offset;
   actor.playback.speed = playback.speed;
   actor.playback.loop = playback.loop;

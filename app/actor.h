@@ -35,7 +35,6 @@ struct Haircut {
 struct Wardrobe {
   std::vector<std::unique_ptr<LoadedBody>> bodies;
   std::vector<std::unique_ptr<Haircut>> haircuts;
-  std::uint64_t next_id = 1;
 };
 
 struct Actor {

@@ -12,7 +12,7 @@ constexpr int kHalfSheets = 40;
 constexpr int kRows = 33;
 
 // A bare line of scalp this wide shows along the parting.
-constexpr double kPartingHalfWidth = 0.0014;  // m
+constexpr double kPartingHalfWidth = 0.0004;  // m
 
 constexpr double kGatherAtCrown = 1.4;
 // Lines bend sideways as they leave the parting near the crown, and the middle one sets out the way that the parting
@@ -29,12 +29,12 @@ constexpr std::array<Landmark, 7> kHairline{
     {{57, 17}, {74, 9}, {95, 10}, {116, -4}, {136, -20}, {158, -30}, {180, -33}}};
 
 // Both ends of the parting: front hairline, slightly left of the middle, and crown.
-constexpr Landmark kPartingFront{15, 47};
+constexpr Landmark kPartingFront{15, 38};
 constexpr Landmark kCrown{176, 62};
 
 // The forehead's hairline bulges towards these.
-constexpr Landmark kForeheadLeft{43, 43};
-constexpr Landmark kForeheadRight{-33, 50};
+constexpr Landmark kForeheadLeft{42, 33};
+constexpr Landmark kForeheadRight{-34, 38};
 
 Vec3 direction(const Landmark& l) {
   return scalpDirection(l.azimuth, l.elevation);

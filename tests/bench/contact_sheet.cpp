@@ -30,6 +30,7 @@ app::Scene sceneOf(sim::Style style, sim::Resolution resolution, const std::stri
   spec.look.strands = strands;
   scene.characters.resize(1);
   scene.camera = app::CameraSpec{};
+  scene.camera.framing = style == sim::Style::kLong ? "bust" : "head";
   return scene;
 }
 
