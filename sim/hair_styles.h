@@ -35,7 +35,7 @@ using BodyDistance = std::function<double(const Vec3&)>;
 // ears falls in front of them. All but the roots keeps 2.5 mm off the body (on a head of 23 cm, and in proportion), 6
 // mm once the hair has left the scalp; edges are at least 3 mm. The three resolutions are one haircut, meshed more or
 // less finely, with the same topology on every head. Valid for any scalp: where a head leaves no room, the hair grows
-// on a rounded one (see the source). Vertex counts: short 209 / 569 / 1,364, shoulder 360 / 913 / 2,306, long 365 / 922
+// on a rounded one (see the source). Vertex counts: short 225 / 569 / 1,364, shoulder 360 / 913 / 2,306, long 365 / 922
 // / 2,268. Deterministic; under 0.25 s.
 HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& scalp, const BodyDistance& body);
 

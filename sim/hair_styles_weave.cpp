@@ -152,7 +152,7 @@ Weave weaveOf(Style style, Resolution resolution) {
   const int level = static_cast<int>(resolution);
   switch (style) {
     case Style::kShort:
-      return std::array<Weave, 3>{Weave{even(5), 3, 5, 4, 5, 0, 0.0}, Weave{even(7), 4, 7, 6, 7, 0, 0.0},
+      return std::array<Weave, 3>{Weave{even(5), 3, 5, 5, 5, 0, 0.0}, Weave{even(7), 4, 7, 6, 7, 0, 0.0},
                                   Weave{even(11), 4, 9, 8, 9, 0, 0.0}}[level];
     case Style::kShoulder:
       return std::array<Weave, 3>{Weave{even(5), 3, 5, 8, 8, 0, 0.2}, Weave{even(8), 3, 6, 10, 12, 0, 0.2},

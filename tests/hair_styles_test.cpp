@@ -139,7 +139,8 @@ TEST(HairStyles, AreValidHairMeshesOfTrianglesAndQuads) {
       shortest = std::min(shortest, cut.shape.columnLength(c));
       longest = std::max(longest, cut.shape.columnLength(c));
     }
-    if (cut.style != Style::kShoulder || cut.resolution != Resolution::kLow) {
+    // Columns of the coarsest shorter styles are too short to lose a layer.
+    if (cut.style == Style::kLong || cut.resolution != Resolution::kLow) {
       EXPECT_LT(shortest, longest);
     }
   });
