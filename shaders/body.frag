@@ -16,7 +16,7 @@ void main() {
     lit = bodyLightOnSurface(world, n) * through_hair;
   }
   // Under hair little of the sky and of the other lights arrives either; the key light's map is the only witness.
-  float open = 0.4 + 0.6 * through_hair;
+  float open = 0.7 + 0.3 * through_hair;
   vec3 radiance = lit * key.rgb * surfaceLight(n, to_key.xyz, to_eye, albedo, body_color.a);
   radiance += open * fill.rgb * surfaceLight(n, to_fill.xyz, to_eye, albedo, body_color.a);
   radiance += open * rim.rgb * surfaceLight(n, to_rim.xyz, to_eye, albedo, body_color.a);
