@@ -84,7 +84,7 @@ void BlockCholesky<T>::analyze(const BlockPattern& pattern, std::vector<int> eli
   // Supernodes: a column joins the one before it when it is its parent and the zeros that this stores are few.
   supernodes.clear();
   row_index.clear();
-  std::vector<int> supernode_of(n, -1);
+  supernode_of_.assign(n, -1);
   std::size_t at = 0, true_blocks = 0;
   for (int c = 0; c < n;) {
     Supernode s;
@@ -106,15 +106,16 @@ void BlockCholesky<T>::analyze(const BlockPattern& pattern, std::vector<int> eli
     row_index.insert(row_index.end(), rows.begin(), rows.end());
     s.values = at;
     at += static_cast<std::size_t>(s.width()) * (s.width() + s.height());
-    for (int k = 0; k < s.columns; ++k) supernode_of[c + k] = static_cast<int>(supernodes.size());
+    for (int k = 0; k < s.columns; ++k) supernode_of_[c + k] = static_cast<int>(supernodes.size());
     c += s.columns;
     supernodes.push_back(s);
   }
   values.assign(at, T(0));
+  reached_.assign(supernodes.size(), 0);
   largest_front_ = 0;
   int tallest = 0;
   for (Supernode& s : supernodes) {
-    s.parent = s.rows > 0 ? supernode_of[row_index[s.rows_first]] : -1;
+    s.parent = s.rows > 0 ? supernode_of_[row_index[s.rows_first]] : -1;
     largest_front_ = std::max(largest_front_, s.width() + s.height());
     tallest = std::max(tallest, s.height());
   }
@@ -266,8 +267,13 @@ void BlockCholesky<T>::solve(std::span<const V3<T>> r, std::span<V3<T>> z) {
 }
 
 template <class T>
-void BlockCholesky<T>::solveBatch(std::span<T> x) {
+void BlockCholesky<T>::solveBatch(std::span<T> x, std::span<const int> touched) {
+  // Forward, a right-hand side reaches its own supernode and that one's ancestors only.
+  std::fill(reached_.begin(), reached_.end(), 0);
+  for (const int p : touched) reached_[supernode_of_[p]] = 1;
   for (const Supernode& s : supernodes) {
+    if (!reached_[&s - supernodes.data()]) continue;
+    if (s.parent >= 0) reached_[s.parent] = 1;
     const T* inverse = values.data() + s.values;
     const T* rows = inverse + static_cast<std::size_t>(s.width()) * s.width();
     T* own = x.data() + static_cast<std::size_t>(3) * s.first * kBatch;

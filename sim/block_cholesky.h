@@ -46,15 +46,18 @@ struct BlockCholesky {
   // kBatch right-hand sides at once, in elimination order: entry (scalar row r, side k) is x[r * kBatch + k], in place.
   // The factor is read once for all, which makes a side several times cheaper than solve().
   static constexpr int kBatch = 16;
-  void solveBatch(std::span<T> x);
+  // `touched`: the elimination positions with entries that are not zero.
+  void solveBatch(std::span<T> x, std::span<const int> touched);
 
   std::size_t factorBlocks() const;  // 3x3 blocks stored
 
  private:
-  std::vector<T> work_;           // right-hand side in elimination order
-  std::vector<T> gathered_;       // rows of one panel
-  std::vector<T> front_, stack_;  // numeric factorization
-  std::vector<int> local_;        // elimination position -> row in the front
+  std::vector<T> work_;                 // right-hand side in elimination order
+  std::vector<T> gathered_;             // rows of one panel
+  std::vector<T> front_, stack_;        // numeric factorization
+  std::vector<int> supernode_of_;       // per elimination position
+  std::vector<unsigned char> reached_;  // per supernode, of the batch in progress
+  std::vector<int> local_;              // elimination position -> row in the front
   std::size_t stack_size_ = 0;
   int largest_front_ = 0;
 };

@@ -87,7 +87,8 @@ void constrainContacts(std::span<const Contact> contacts, std::vector<VertexCons
         constraint.keep.setZero();
         constraint.prescribed = contact.velocity;
         constraint.removed = 3;
-        constraint.directions = {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
+        const Vec3 tangent = contact.normal.unitOrthogonal();
+        constraint.directions = {contact.normal, tangent, contact.normal.cross(tangent)};
       }
       if (sticks) continue;
       // Remove this normal's part that earlier normals of the vertex have left free.

@@ -124,55 +124,48 @@ void Preconditioner<T>::update(const ColumnMatrix<T>& a, Solver solver) {
 }
 
 template <class T>
-int Preconditioner<T>::knownResponse(int vertex) const {
+int Preconditioner<T>::findOrAddResponse(int vertex, const V3<T>& direction) {
   for (int k = 0; k < response_count_; ++k) {
-    if (responses_[k].vertex == vertex) return k;
+    if (responses_[k].vertex == vertex && dot(responses_[k].direction, direction) > T(1 - 1e-5)) return k;
   }
-  return -1;
+  if (response_count_ == kMostCorrected) return -1;
+  if (response_count_ == static_cast<int>(responses_.size())) responses_.emplace_back();
+  responses_[response_count_].vertex = vertex;
+  responses_[response_count_].direction = direction;
+  responses_[response_count_].column.resize(turned_.size());
+  return response_count_++;
 }
 
-// Responses of the constrained vertices that have none yet, as many axes at once as a batch holds.
+// The columns from `first` on, as many at once as a batch holds.
 template <class T>
-void Preconditioner<T>::computeResponses(std::span<const VertexConstraint> constraints) {
-  constexpr int kSides = BlockCholesky<T>::kBatch, kTogether = kSides / 3;
-  BlockCholesky<T>& factor = kind_ == Solver::kWarped ? rest_factor_ : *direct_factor_;
+void Preconditioner<T>::computeResponses(int first) {
+  constexpr int kSides = BlockCholesky<T>::kBatch;
   const bool warped = kind_ == Solver::kWarped;
-  const std::size_t n = turned_.size();
+  BlockCholesky<T>& factor = warped ? rest_factor_ : *direct_factor_;
   batch_.resize(3 * factor.order.size() * kSides);
-  std::size_t next = 0;
-  while (next < constraints.size() && response_count_ < kMostCorrected) {
-    const int first = response_count_;
-    for (; next < constraints.size() && response_count_ < std::min(first + kTogether, kMostCorrected); ++next) {
-      if (knownResponse(constraints[next].vertex) >= 0) continue;
-      if (response_count_ == static_cast<int>(responses_.size())) responses_.emplace_back();
-      Response& response = responses_[response_count_++];
-      response.vertex = constraints[next].vertex;
-      for (auto& column : response.columns) column.resize(n);
-    }
-    if (response_count_ == first) break;
+  for (; first < response_count_; first += kSides) {
+    const int last = std::min(first + kSides, response_count_);
     std::fill(batch_.begin(), batch_.end(), T(0));
-    for (int k = first; k < response_count_; ++k) {
-      const int v = responses_[k].vertex;
-      for (int axis = 0; axis < 3; ++axis) {
-        // R^T times the axis is a row of R.
-        for (int row = 0; row < 3; ++row) {
-          const T value = warped ? rotations_.matrices[v].m[3 * axis + row] : T(axis == row);
-          batch_[(3 * static_cast<std::size_t>(factor.position[v]) + row) * kSides + 3 * (k - first) + axis] = value;
-        }
-      }
+    touched_.clear();
+    for (int k = first; k < last; ++k) {
+      const Response& response = responses_[k];
+      const int position = factor.position[response.vertex];
+      const V3<T> d =
+          warped ? transposeTimes(rotations_.matrices[response.vertex], response.direction) : response.direction;
+      T* at = batch_.data() + 3 * static_cast<std::size_t>(position) * kSides + (k - first);
+      at[0] = d.x, at[kSides] = d.y, at[2 * kSides] = d.z;
+      touched_.push_back(position);
     }
-    factor.solveBatch(batch_);
-    for (std::size_t i = 0; i < n; ++i) {
+    factor.solveBatch(batch_, touched_);
+    for (std::size_t i = 0; i < turned_.size(); ++i) {
       const int position = factor.position[i];
-      for (int k = first; k < response_count_; ++k) {
-        for (int axis = 0; axis < 3; ++axis) {
-          V3<T>& z = responses_[k].columns[axis][i];
-          z = {0, 0, 0};
-          if (position < 0) continue;
-          const T* at = batch_.data() + 3 * static_cast<std::size_t>(position) * kSides + 3 * (k - first) + axis;
-          z = {at[0], at[kSides], at[2 * kSides]};
-          if (warped) z = rotations_.matrices[i] * z;
-        }
+      for (int k = first; k < last; ++k) {
+        V3<T>& z = responses_[k].column[i];
+        z = {0, 0, 0};
+        if (position < 0) continue;
+        const T* at = batch_.data() + 3 * static_cast<std::size_t>(position) * kSides + (k - first);
+        z = {at[0], at[kSides], at[2 * kSides]};
+        if (warped) z = rotations_.matrices[i] * z;
       }
     }
   }
@@ -182,27 +175,23 @@ template <class T>
 void Preconditioner<T>::setConstraints(std::span<const VertexConstraint> constraints) {
   removed_.clear();
   if (kind_ != Solver::kWarped && kind_ != Solver::kDirect) return;
-  computeResponses(constraints);
+  const int known = response_count_;
   for (const VertexConstraint& constraint : constraints) {
-    const int response = knownResponse(constraint.vertex);
-    if (response < 0) break;
     for (int k = 0; k < constraint.removed; ++k) {
       const Vec3& d = constraint.directions[k];
-      removed_.push_back(
-          {constraint.vertex, response, {static_cast<T>(d.x()), static_cast<T>(d.y()), static_cast<T>(d.z())}});
+      const int response =
+          findOrAddResponse(constraint.vertex, {static_cast<T>(d.x()), static_cast<T>(d.y()), static_cast<T>(d.z())});
+      if (response >= 0) removed_.push_back(response);
     }
   }
   const int count = static_cast<int>(removed_.size());
   if (count == 0) return;
+  computeResponses(known);
   gram_.resize(count, count);
   for (int i = 0; i < count; ++i) {
+    const Response& row = responses_[removed_[i]];
     for (int j = 0; j <= i; ++j) {
-      const Removed& n = removed_[j];
-      const auto& columns = responses_[n.response].columns;
-      const int at = removed_[i].vertex;
-      const V3<T> moved =
-          n.direction.x * columns[0][at] + n.direction.y * columns[1][at] + n.direction.z * columns[2][at];
-      gram_(i, j) = gram_(j, i) = static_cast<double>(dot(removed_[i].direction, moved));
+      gram_(i, j) = gram_(j, i) = static_cast<double>(dot(row.direction, responses_[removed_[j]].column[row.vertex]));
     }
   }
   gram_factor_.compute(gram_);
@@ -214,13 +203,14 @@ void Preconditioner<T>::apply(std::span<const V3<T>> r, std::span<V3<T>> z) {
   applyUnconstrained(r, z);
   if (removed_.empty()) return;
   multipliers_.resize(static_cast<Eigen::Index>(removed_.size()));
-  for (std::size_t k = 0; k < removed_.size(); ++k) multipliers_[k] = dot(removed_[k].direction, z[removed_[k].vertex]);
+  for (std::size_t k = 0; k < removed_.size(); ++k) {
+    multipliers_[k] = dot(responses_[removed_[k]].direction, z[responses_[removed_[k]].vertex]);
+  }
   gram_factor_.solveInPlace(multipliers_);
   for (std::size_t k = 0; k < removed_.size(); ++k) {
     const T m = static_cast<T>(multipliers_[k]);
-    const V3<T> d = m * removed_[k].direction;
-    const auto& columns = responses_[removed_[k].response].columns;
-    for (std::size_t i = 0; i < z.size(); ++i) z[i] -= d.x * columns[0][i] + d.y * columns[1][i] + d.z * columns[2][i];
+    const std::vector<V3<T>>& column = responses_[removed_[k]].column;
+    for (std::size_t i = 0; i < z.size(); ++i) z[i] -= m * column[i];
   }
 }
 

@@ -40,9 +40,9 @@ struct Preconditioner {
   // The constraints of the solves to come. For `warped` and `direct`, whose P knows nothing of them, the constrained P
   // is
   //   P - P N (N^T P N)^-1 N^T P,   N: the removed directions,
-  // a small dense correction, without which a few contacts cost tens of iterations. At most kMostCorrected vertices are
-  // corrected for; the filter alone serves the rest.
-  static constexpr int kMostCorrected = 64;
+  // a small dense correction, without which a few contacts cost tens of iterations. At most kMostCorrected directions
+  // are corrected for; the filter alone serves the rest.
+  static constexpr int kMostCorrected = 96;
   void setConstraints(std::span<const VertexConstraint> constraints);
   bool knowsResponses() const { return response_count_ > 0; }  // the correction has been paid for already
 
@@ -67,28 +67,25 @@ struct Preconditioner {
   std::vector<int> column_block_;    // pattern block of each block of column_pattern_
   std::vector<unsigned char> free_;  // not a root
 
-  // P applied to the three axes at constrained vertices, kept until the matrix or the rotations change.
+  // P applied to a removed direction, kept until the matrix or the rotations change.
   struct Response {
     int vertex = -1;
-    std::array<std::vector<V3<T>>, 3> columns;
+    V3<T> direction;
+    std::vector<V3<T>> column;
   };
   std::vector<Response> responses_;
   int response_count_ = 0;
-  // N: vertex and direction of each removed direction; its response P N, and the Cholesky factor of N^T P N.
-  struct Removed {
-    int vertex, response;
-    V3<T> direction;
-  };
-  std::vector<Removed> removed_;
+  std::vector<int> removed_;  // responses of the constraints in force: the columns of P N; then the factor of N^T P N
   Eigen::MatrixXd gram_;
   Eigen::LLT<Eigen::MatrixXd> gram_factor_;
   Eigen::VectorXd multipliers_;
   std::vector<T> batch_;
+  std::vector<int> touched_;
   std::optional<BlockMatrix<T>> blocks_;  // a matrix given in column layout, for the factorizations
 
   void applyUnconstrained(std::span<const V3<T>> r, std::span<V3<T>> z);
-  int knownResponse(int vertex) const;
-  void computeResponses(std::span<const VertexConstraint> constraints);
+  int findOrAddResponse(int vertex, const V3<T>& direction);
+  void computeResponses(int first);
   bool factorColumns(const BlockMatrix<T>& a);
   const BlockMatrix<T>& toBlocks(const ColumnMatrix<T>& a);
   void setDiagonal(int i, const M3<T>& d);
