@@ -8,9 +8,9 @@ namespace {
 
 constexpr int kContactRounds = 3;  // solves of one linear system while contacts release or start to slide
 constexpr int kLineSearchSteps = 6;
-// Iterations tried before the preconditioner is corrected for contacts. A batch of five corrected vertices costs about
-// as much as four iterations, so that few contacts are corrected for soon and many only when need be.
-constexpr int kFewContacts = 12, kUncorrectedFew = 2, kUncorrectedMany = 10;
+// Where the preconditioner can be corrected for only a part of the contacts at the price of one batch of answers, so
+// many iterations are tried before the rest is paid for.
+constexpr int kUncorrectedIterations = 10;
 constexpr double kStaleRatio = 3;  // of h (h + damping): BDF2's start-up step shares its factor with the steps after it
 
 template <class T>
@@ -198,17 +198,11 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
       filter.keep.push_back(cast<T>(constraint.keep));
       v[constraint.vertex] = filter.keep.back() * v[constraint.vertex] + cast<T>(constraint.prescribed);
     }
-    // Correcting the preconditioner for contacts costs about as much as a few iterations: tried once these have not
-    // sufficed.
-    const bool patient = constraints.empty() || preconditioner.knowsResponses();
-    stop.max_iterations =
-        patient ? params.max_iterations
-                : std::min(static_cast<int>(constraints.size()) <= kFewContacts ? kUncorrectedFew : kUncorrectedMany,
-                           params.max_iterations);
-    preconditioner.setConstraints(patient ? constraints : std::span<const VertexConstraint>());
+    const bool complete = preconditioner.setConstraints(constraints, 1);
+    stop.max_iterations = complete ? params.max_iterations : std::min(kUncorrectedIterations, params.max_iterations);
     SolveReport one = runPcg(stop);
     add(one, total);
-    if (!one.converged && !patient) {
+    if (!one.converged && !complete) {
       stop.first_norm = stop.first_norm > 0 ? stop.first_norm : one.first_norm;
       stop.max_iterations = params.max_iterations;
       preconditioner.setConstraints(constraints);

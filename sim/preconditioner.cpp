@@ -28,7 +28,6 @@ Preconditioner<T>::Preconditioner(const HairMesh& mesh, const BlockPattern& patt
   for (int i = 0; i < mesh.vertexCount(); ++i) free_[i] = !mesh.isRoot(i);
   inverse_diagonal_.resize(mesh.vertexCount());
   turned_.resize(mesh.vertexCount());
-  responses_.reserve(kMostCorrected);
 }
 
 template <class T>
@@ -64,27 +63,29 @@ bool Preconditioner<T>::setRestMatrix(const BlockMatrix<T>& rest) {
     rest_factor_.analyze(*mesh_, *pattern_, free_);
   }
   rest_factor_fine_ = rest_factor_.factor(rest);
+  rest_responses_.reset(mesh_->vertexCount());
   return rest_factor_fine_;
 }
 
 template <class T>
 void Preconditioner<T>::updateRotations(std::span<const V3<T>> x) {
   rotations_.update(x);
-  response_count_ = 0;
 }
 
 template <class T>
 void Preconditioner<T>::update(const BlockMatrix<T>& a, Solver solver) {
   kind_ = solver;
-  removed_.clear();
-  response_count_ = 0;
+  rest_responses_.clear();
   if (solver == Solver::kWarped) return;
   if (solver == Solver::kDirect) {
     if (!direct_factor_) {
       direct_factor_.emplace();
       direct_factor_->analyze(*mesh_, *pattern_, free_);
     }
-    if (direct_factor_->factor(a)) return;
+    if (direct_factor_->factor(a)) {
+      direct_responses_.reset(mesh_->vertexCount());
+      return;
+    }
     kind_ = Solver::kBlockJacobi;
   }
   if (solver == Solver::kColumn) {
@@ -116,114 +117,33 @@ template <class T>
 void Preconditioner<T>::update(const ColumnMatrix<T>& a, Solver solver) {
   if (solver == Solver::kWarped && !rest_factor_fine_) solver = Solver::kBlockJacobi;
   kind_ = solver;
-  removed_.clear();
-  response_count_ = 0;
+  rest_responses_.clear();
   if (solver == Solver::kWarped) return;
   if (solver == Solver::kDirect || solver == Solver::kColumn) return update(toBlocks(a), solver);
   for (int i = 0; i < mesh_->vertexCount(); ++i) setDiagonal(i, a.diagonalBlock(i));
 }
 
 template <class T>
-int Preconditioner<T>::findOrAddResponse(int vertex, const V3<T>& direction) {
-  for (int k = 0; k < response_count_; ++k) {
-    if (responses_[k].vertex == vertex && dot(responses_[k].direction, direction) > T(1 - 1e-5)) return k;
+bool Preconditioner<T>::setConstraints(std::span<const VertexConstraint> constraints, int batches) {
+  if (kind_ == Solver::kWarped) {
+    return rest_responses_.setConstraints(rest_factor_, rotations_.matrices, constraints, batches);
   }
-  if (response_count_ == kMostCorrected) return -1;
-  if (response_count_ == static_cast<int>(responses_.size())) responses_.emplace_back();
-  responses_[response_count_].vertex = vertex;
-  responses_[response_count_].direction = direction;
-  responses_[response_count_].column.resize(turned_.size());
-  return response_count_++;
-}
-
-// The columns from `first` on, as many at once as a batch holds.
-template <class T>
-void Preconditioner<T>::computeResponses(int first) {
-  constexpr int kSides = BlockCholesky<T>::kBatch;
-  const bool warped = kind_ == Solver::kWarped;
-  BlockCholesky<T>& factor = warped ? rest_factor_ : *direct_factor_;
-  batch_.resize(3 * factor.order.size() * kSides);
-  for (; first < response_count_; first += kSides) {
-    const int last = std::min(first + kSides, response_count_);
-    std::fill(batch_.begin(), batch_.end(), T(0));
-    touched_.clear();
-    for (int k = first; k < last; ++k) {
-      const Response& response = responses_[k];
-      const int position = factor.position[response.vertex];
-      const V3<T> d =
-          warped ? transposeTimes(rotations_.matrices[response.vertex], response.direction) : response.direction;
-      T* at = batch_.data() + 3 * static_cast<std::size_t>(position) * kSides + (k - first);
-      at[0] = d.x, at[kSides] = d.y, at[2 * kSides] = d.z;
-      touched_.push_back(position);
-    }
-    factor.solveBatch(batch_, touched_);
-    for (std::size_t i = 0; i < turned_.size(); ++i) {
-      const int position = factor.position[i];
-      for (int k = first; k < last; ++k) {
-        V3<T>& z = responses_[k].column[i];
-        z = {0, 0, 0};
-        if (position < 0) continue;
-        const T* at = batch_.data() + 3 * static_cast<std::size_t>(position) * kSides + (k - first);
-        z = {at[0], at[kSides], at[2 * kSides]};
-        if (warped) z = rotations_.matrices[i] * z;
-      }
-    }
-  }
-}
-
-template <class T>
-void Preconditioner<T>::setConstraints(std::span<const VertexConstraint> constraints) {
-  removed_.clear();
-  if (kind_ != Solver::kWarped && kind_ != Solver::kDirect) return;
-  const int known = response_count_;
-  for (const VertexConstraint& constraint : constraints) {
-    for (int k = 0; k < constraint.removed; ++k) {
-      const Vec3& d = constraint.directions[k];
-      const int response =
-          findOrAddResponse(constraint.vertex, {static_cast<T>(d.x()), static_cast<T>(d.y()), static_cast<T>(d.z())});
-      if (response >= 0) removed_.push_back(response);
-    }
-  }
-  const int count = static_cast<int>(removed_.size());
-  if (count == 0) return;
-  computeResponses(known);
-  gram_.resize(count, count);
-  for (int i = 0; i < count; ++i) {
-    const Response& row = responses_[removed_[i]];
-    for (int j = 0; j <= i; ++j) {
-      gram_(i, j) = gram_(j, i) = static_cast<double>(dot(row.direction, responses_[removed_[j]].column[row.vertex]));
-    }
-  }
-  gram_factor_.compute(gram_);
-  if (gram_factor_.info() != Eigen::Success) removed_.clear();  // the filter alone serves
+  if (kind_ == Solver::kDirect) return direct_responses_.setConstraints(*direct_factor_, {}, constraints, batches);
+  return true;
 }
 
 template <class T>
 void Preconditioner<T>::apply(std::span<const V3<T>> r, std::span<V3<T>> z) {
-  applyUnconstrained(r, z);
-  if (removed_.empty()) return;
-  multipliers_.resize(static_cast<Eigen::Index>(removed_.size()));
-  for (std::size_t k = 0; k < removed_.size(); ++k) {
-    multipliers_[k] = dot(responses_[removed_[k]].direction, z[responses_[removed_[k]].vertex]);
-  }
-  gram_factor_.solveInPlace(multipliers_);
-  for (std::size_t k = 0; k < removed_.size(); ++k) {
-    const T m = static_cast<T>(multipliers_[k]);
-    const std::vector<V3<T>>& column = responses_[removed_[k]].column;
-    for (std::size_t i = 0; i < z.size(); ++i) z[i] -= m * column[i];
-  }
-}
-
-template <class T>
-void Preconditioner<T>::applyUnconstrained(std::span<const V3<T>> r, std::span<V3<T>> z) {
   switch (kind_) {
     case Solver::kWarped:
       for (std::size_t i = 0; i < turned_.size(); ++i) turned_[i] = transposeTimes(rotations_.matrices[i], r[i]);
       rest_factor_.solve(turned_, z);
+      rest_responses_.correct(z);
       for (std::size_t i = 0; i < turned_.size(); ++i) z[i] = rotations_.matrices[i] * z[i];
       return;
     case Solver::kDirect:
       direct_factor_->solve(r, z);
+      direct_responses_.correct(z);
       return;
     case Solver::kColumn:
       column_factor_->solve(r, z);

@@ -1,8 +1,6 @@
 // Preconditioners of the Modified PCG, chosen by name at run time.
 #pragma once
 
-#include <Eigen/Cholesky>
-#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -11,6 +9,7 @@
 #include "sim/block_matrix.h"
 #include "sim/column_matrix.h"
 #include "sim/contact.h"
+#include "sim/contact_response.h"
 #include "sim/rotation.h"
 #include "sim/sim_params.h"
 
@@ -37,14 +36,10 @@ struct Preconditioner {
   bool setRestMatrix(const ColumnMatrix<T>& rest);
   void updateRotations(std::span<const V3<T>> x);
 
-  // The constraints of the solves to come. For `warped` and `direct`, whose P knows nothing of them, the constrained P
-  // is
-  //   P - P N (N^T P N)^-1 N^T P,   N: the removed directions,
-  // a small dense correction, without which a few contacts cost tens of iterations. At most kMostCorrected directions
-  // are corrected for; the filter alone serves the rest.
-  static constexpr int kMostCorrected = 96;
-  void setConstraints(std::span<const VertexConstraint> constraints);
-  bool knowsResponses() const { return response_count_ > 0; }  // the correction has been paid for already
+  // The constraints of the solves to come. `warped` and `direct`, whose P knows nothing of them, correct it with what
+  // their factor answers at the constrained vertices (contact_response.h), without which a few contacts cost tens of
+  // iterations; at most `batches` batches of answers are computed anew. Returns whether all constraints are met by P.
+  bool setConstraints(std::span<const VertexConstraint> constraints, int batches = 1 << 20);
 
   // z = P r.
   void apply(std::span<const V3<T>> r, std::span<V3<T>> z);
@@ -67,25 +62,9 @@ struct Preconditioner {
   std::vector<int> column_block_;    // pattern block of each block of column_pattern_
   std::vector<unsigned char> free_;  // not a root
 
-  // P applied to a removed direction, kept until the matrix or the rotations change.
-  struct Response {
-    int vertex = -1;
-    V3<T> direction;
-    std::vector<V3<T>> column;
-  };
-  std::vector<Response> responses_;
-  int response_count_ = 0;
-  std::vector<int> removed_;  // responses of the constraints in force: the columns of P N; then the factor of N^T P N
-  Eigen::MatrixXd gram_;
-  Eigen::LLT<Eigen::MatrixXd> gram_factor_;
-  Eigen::VectorXd multipliers_;
-  std::vector<T> batch_;
-  std::vector<int> touched_;
+  ContactResponses<T> rest_responses_, direct_responses_;
   std::optional<BlockMatrix<T>> blocks_;  // a matrix given in column layout, for the factorizations
 
-  void applyUnconstrained(std::span<const V3<T>> r, std::span<V3<T>> z);
-  int findOrAddResponse(int vertex, const V3<T>& direction);
-  void computeResponses(int first);
   bool factorColumns(const BlockMatrix<T>& a);
   const BlockMatrix<T>& toBlocks(const ColumnMatrix<T>& a);
   void setDiagonal(int i, const M3<T>& d);
