@@ -90,7 +90,11 @@ T ImplicitSolver<T>::evaluateForces(std::span<const V3<T>> at, ColumnEvaluation<
 template <class T>
 void ImplicitSolver<T>::refreshRestFactor(const HairMesh& mesh, const SimParams& params, double h) {
   const double now = h * (h + params.damping), then = rest_h * (rest_h + rest_damping);
-  if (rest_h > 0 && now < kStaleRatio * then && then < kStaleRatio * now && rest_drag == params.air_drag) return;
+  const bool compact = params.precision == Precision::kMixed;
+  if (rest_h > 0 && now < kStaleRatio * then && then < kStaleRatio * now && rest_drag == params.air_drag &&
+      rest_compact == compact) {
+    return;
+  }
   const Vec3 origin = mesh.shape.positions[0];
   for (std::size_t i = 0; i < x.size(); ++i) trial[i] = cast<T>(Vec3(mesh.shape.positions[i] - origin));
   matrix.setZero();
@@ -100,8 +104,9 @@ void ImplicitSolver<T>::refreshRestFactor(const HairMesh& mesh, const SimParams&
   out.tension_scale = static_cast<T>(h * h);
   evaluateForces(trial, out, {});
   matrix.addMass(static_cast<T>(1 + h * params.air_drag), mass);
-  preconditioner.setRestMatrix(matrix);
+  preconditioner.setRestMatrix(matrix, compact);
   rest_h = h;
+  rest_compact = compact;
   rest_damping = params.damping;
   rest_drag = params.air_drag;
 }

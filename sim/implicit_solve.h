@@ -43,6 +43,7 @@ struct ImplicitSolver {
   std::vector<V3<T>> x, v, trial, force, rhs, velocity_step;
   std::vector<T> mass, inverse_mass_dt;
   std::vector<VertexConstraint> constraints;
+  bool rest_compact = false;
   double rest_h = 0, rest_damping = 0, rest_drag = 0;  // what the rest factor was made for; rest_h 0: none
 
   ImplicitSolver(const HairMesh& mesh, const BlockPattern& pattern);

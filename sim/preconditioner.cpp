@@ -1,6 +1,7 @@
 #include "sim/preconditioner.h"
 
 #include <algorithm>
+#include <type_traits>
 
 #include "sim/elimination_order.h"
 
@@ -58,12 +59,20 @@ bool Preconditioner<T>::factorColumns(const BlockMatrix<T>& a) {
 }
 
 template <class T>
-bool Preconditioner<T>::setRestMatrix(const BlockMatrix<T>& rest) {
+bool Preconditioner<T>::setRestMatrix(const BlockMatrix<T>& rest, bool compact) {
   if (rest_factor_.order.empty()) {
     rest_factor_.analyze(*mesh_, *pattern_, free_);
   }
   rest_factor_fine_ = rest_factor_.factor(rest);
   rest_responses_.reset(mesh_->vertexCount());
+  if constexpr (std::is_same_v<T, float>) {
+    if (compact && rest_factor_fine_) {
+      if (!compact_factor_) compact_factor_.emplace();
+      compact_factor_->assign(rest_factor_);
+    } else {
+      compact_factor_.reset();
+    }
+  }
   return rest_factor_fine_;
 }
 
@@ -109,8 +118,8 @@ const BlockMatrix<T>& Preconditioner<T>::toBlocks(const ColumnMatrix<T>& a) {
 }
 
 template <class T>
-bool Preconditioner<T>::setRestMatrix(const ColumnMatrix<T>& rest) {
-  return setRestMatrix(toBlocks(rest));
+bool Preconditioner<T>::setRestMatrix(const ColumnMatrix<T>& rest, bool compact) {
+  return setRestMatrix(toBlocks(rest), compact);
 }
 
 template <class T>
@@ -133,11 +142,19 @@ bool Preconditioner<T>::setConstraints(std::span<const VertexConstraint> constra
 }
 
 template <class T>
+void Preconditioner<T>::solveRest(std::span<const V3<T>> r, std::span<V3<T>> z) {
+  if constexpr (std::is_same_v<T, float>) {
+    if (compact_factor_) return compact_factor_->solve(rest_factor_, r, z);
+  }
+  rest_factor_.solve(r, z);
+}
+
+template <class T>
 void Preconditioner<T>::apply(std::span<const V3<T>> r, std::span<V3<T>> z) {
   switch (kind_) {
     case Solver::kWarped:
       for (std::size_t i = 0; i < turned_.size(); ++i) turned_[i] = transposeTimes(rotations_.matrices[i], r[i]);
-      rest_factor_.solve(turned_, z);
+      solveRest(turned_, z);
       rest_responses_.correct(z);
       for (std::size_t i = 0; i < turned_.size(); ++i) z[i] = rotations_.matrices[i] * z[i];
       return;

@@ -8,6 +8,7 @@
 #include "sim/block_cholesky.h"
 #include "sim/block_matrix.h"
 #include "sim/column_matrix.h"
+#include "sim/compact_factor.h"
 #include "sim/contact.h"
 #include "sim/contact_response.h"
 #include "sim/rotation.h"
@@ -32,8 +33,9 @@ struct Preconditioner {
   void update(const BlockMatrix<T>& a, Solver solver);
   void update(const ColumnMatrix<T>& a, Solver solver);
   // The warped preconditioner's two halves: the factor of the rest shape's matrix (rarely), the rotations (every step).
-  bool setRestMatrix(const BlockMatrix<T>& rest);
-  bool setRestMatrix(const ColumnMatrix<T>& rest);
+  // `compact`: keep the factor in 16 bits for the solves (single precision only).
+  bool setRestMatrix(const BlockMatrix<T>& rest, bool compact = false);
+  bool setRestMatrix(const ColumnMatrix<T>& rest, bool compact = false);
   void updateRotations(std::span<const V3<T>> x);
 
   // The constraints of the solves to come. `warped` and `direct`, whose P knows nothing of them, correct it with what
@@ -55,6 +57,7 @@ struct Preconditioner {
   std::vector<V3<T>> turned_;
   VertexRotations<T> rotations_;
   BlockCholesky<T> rest_factor_;
+  std::optional<CompactFactor> compact_factor_;
   bool rest_factor_fine_ = false;  // else 3x3 blocks stand in for `warped`
   std::optional<BlockCholesky<T>> direct_factor_, column_factor_;
   std::optional<BlockPattern> column_pattern_;
@@ -65,6 +68,7 @@ struct Preconditioner {
   ContactResponses<T> rest_responses_, direct_responses_;
   std::optional<BlockMatrix<T>> blocks_;  // a matrix given in column layout, for the factorizations
 
+  void solveRest(std::span<const V3<T>> r, std::span<V3<T>> z);
   bool factorColumns(const BlockMatrix<T>& a);
   const BlockMatrix<T>& toBlocks(const ColumnMatrix<T>& a);
   void setDiagonal(int i, const M3<T>& d);

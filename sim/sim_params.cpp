@@ -114,7 +114,7 @@ std::vector<ParamField> makeTable() {
       choice<&P::integrator>("integrator", "Numerics", kIntegrators,
                              "How a step is integrated in time; linearized-euler is the paper's."),
       choice<&P::solver>("solver", "Numerics", kSolvers, "How the linear systems are solved; paper is its setting."),
-      choice<&P::precision>("precision", "Numerics", kPrecisions, "Arithmetic of the linear solver."),
+      choice<&P::precision>("precision", "Numerics", kPrecisions, "Arithmetic of the linear solver; mixed: float, the rest factor in 16 bits."),
       field<&P::tolerance>("tolerance", "Numerics", "", {1e-12, 0.5, kLog},
                            "Relative residual at which the linear solver stops."),
       field<&P::max_iterations>("max_iterations", "Numerics", "", {1, 5000, kLog},

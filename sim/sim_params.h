@@ -28,6 +28,7 @@ enum class Solver {
   kCount
 };
 
+// Arithmetic of the linear solver. Mixed: single precision, with the rest factor kept in 16 bits (compact_factor.h).
 enum class Precision { kFloat, kMixed, kDouble, kCount };
 
 // Units are SI. Stiffnesses are moduli (per volume of hair), so that a value means the same at every resolution;
