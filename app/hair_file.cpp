@@ -255,7 +255,7 @@ std::string writeHairMesh(const sim::HairMeshShape& shape) {
       if (!reaches) continue;
       text += "usemtl bundle_" + std::to_string(f) + "\nf";
       for (int k = 0; k < face.corner_count; ++k)
-        text += " " + std::to_string(number[shape.column_first[face.columns[k]] + l]);
+        text.append(" ").append(std::to_string(number[shape.column_first[face.columns[k]] + l]));
       text += "\n";
     }
   }

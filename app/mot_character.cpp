@@ -44,7 +44,7 @@ struct LineReader {
     double value = 0;
     const auto [end, error] = std::from_chars(w.data(), w.data() + w.size(), value);
     if (error != std::errc() || end != w.data() + w.size() || !(std::abs(value) < 1e3))
-      fail(quoted(w) + " is no coordinate below 1000 m", "write a vertex as three numbers");
+      fail(quoted(w).append(" is no coordinate below 1000 m"), "write a vertex as three numbers");
     return value;
   }
   // A corner 'v', 'v/t' or 'v/t/n', negative counts from the end.

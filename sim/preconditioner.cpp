@@ -101,6 +101,11 @@ void Preconditioner<T>::update(const BlockMatrix<T>& a, Solver solver) {
     if (factorColumns(a)) return;
     kind_ = Solver::kBlockJacobi;
   }
+  if (solver == Solver::kIncomplete) {
+    if (!incomplete_factor_) incomplete_factor_.emplace(*pattern_, free_);
+    if (incomplete_factor_->factor(a)) return;
+    kind_ = Solver::kBlockJacobi;
+  }
   for (std::size_t i = 0; i < a.diagonal.size(); ++i) setDiagonal(static_cast<int>(i), a.diagonal[i]);
 }
 
@@ -128,7 +133,9 @@ void Preconditioner<T>::update(const ColumnMatrix<T>& a, Solver solver) {
   kind_ = solver;
   rest_responses_.clear();
   if (solver == Solver::kWarped) return;
-  if (solver == Solver::kDirect || solver == Solver::kColumn) return update(toBlocks(a), solver);
+  if (solver == Solver::kDirect || solver == Solver::kColumn || solver == Solver::kIncomplete) {
+    return update(toBlocks(a), solver);
+  }
   for (int i = 0; i < mesh_->vertexCount(); ++i) setDiagonal(i, a.diagonalBlock(i));
 }
 
@@ -164,6 +171,9 @@ void Preconditioner<T>::apply(std::span<const V3<T>> r, std::span<V3<T>> z) {
       return;
     case Solver::kColumn:
       column_factor_->solve(r, z);
+      return;
+    case Solver::kIncomplete:
+      incomplete_factor_->solve(r, z);
       return;
     default:
       for (std::size_t i = 0; i < inverse_diagonal_.size(); ++i) z[i] = inverse_diagonal_[i] * r[i];

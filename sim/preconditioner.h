@@ -11,6 +11,7 @@
 #include "sim/compact_factor.h"
 #include "sim/contact.h"
 #include "sim/contact_response.h"
+#include "sim/incomplete_cholesky.h"
 #include "sim/rotation.h"
 #include "sim/sim_params.h"
 
@@ -21,6 +22,7 @@ namespace sim {
 //   paper, block-jacobi   3x3 diagonal blocks
 //   diagonal              scalar diagonal
 //   column                block-tridiagonal factor of each column
+//   incomplete            incomplete Cholesky factor without fill, in 3x3 blocks
 //   warped                factor of the rest shape's matrix, residuals turned into the rest frame and back by each
 //   vertex's own
 //                         rotation: P = R (A_rest)^-1 R^T
@@ -60,6 +62,7 @@ struct Preconditioner {
   std::optional<CompactFactor> compact_factor_;
   bool rest_factor_fine_ = false;  // else 3x3 blocks stand in for `warped`
   std::optional<BlockCholesky<T>> direct_factor_, column_factor_;
+  std::optional<IncompleteCholesky<T>> incomplete_factor_;
   std::optional<BlockPattern> column_pattern_;
   std::optional<BlockMatrix<T>> column_matrix_;
   std::vector<int> column_block_;    // pattern block of each block of column_pattern_

@@ -160,9 +160,9 @@ struct Way {
   Solver solver;
   bool corrected;  // the factor knows the constraints
 };
-constexpr Way kWays[] = {{Solver::kPaper, false},  {Solver::kDiagonal, false}, {Solver::kBlockJacobi, false},
-                         {Solver::kColumn, false}, {Solver::kWarped, false},   {Solver::kWarped, true},
-                         {Solver::kDirect, false}, {Solver::kDirect, true}};
+constexpr Way kWays[] = {{Solver::kPaper, false},  {Solver::kDiagonal, false},   {Solver::kBlockJacobi, false},
+                         {Solver::kColumn, false}, {Solver::kIncomplete, false}, {Solver::kWarped, false},
+                         {Solver::kWarped, true},  {Solver::kDirect, false},     {Solver::kDirect, true}};
 
 template <class T>
 void comparesWithDense(double tolerance, double bound) {

@@ -142,7 +142,7 @@ TEST(Bvh, EveryChannelOrderMatchesTheMatrixProduct) {
     Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
     for (const char axis : order) {
       channels += std::string(1, axis) + "rotation ";
-      row += " " + std::to_string(angle[axis - 'X']);
+      row.append(" ").append(std::to_string(angle[axis - 'X']));
       turn = turn * Eigen::AngleAxisd(angle[axis - 'X'] * M_PI / 180, Vec3::Unit(axis - 'X')).toRotationMatrix();
     }
     row += row.substr(6) + " 0 0 0";

@@ -44,7 +44,9 @@ TEST(SimTable, DefaultsAreThoseOfTheStructAndInRange) {
     EXPECT_GE(field.default_value, field.minimum) << field.name;
     EXPECT_LE(field.default_value, field.maximum) << field.name;
     EXPECT_LT(field.minimum, field.maximum) << field.name;
-    if (field.logarithmic) EXPECT_GE(field.minimum, 0) << field.name;
+    if (field.logarithmic) {
+      EXPECT_GE(field.minimum, 0) << field.name;
+    }
     EXPECT_NE(*field.help, 0) << field.name;
     EXPECT_NE(*field.group, 0) << field.name;
   }
@@ -70,8 +72,8 @@ TEST(SimTable, EveryFieldIsSetAloneAndReadsBack) {
       ASSERT_TRUE(answer.ok) << field.name << ": " << answer.fault;
       EXPECT_EQ(sim::paramText(field, params), text) << field.name;
       for (const ParamField& other : sim::paramFields()) {
-        if (other.name != field.name)
-          EXPECT_EQ(other.get(params), other.default_value) << field.name << " moved " << other.name;
+        if (other.name == field.name) continue;
+        EXPECT_EQ(other.get(params), other.default_value) << field.name << " moved " << other.name;
       }
     }
   }
@@ -160,7 +162,7 @@ TEST(LookTables, SetAnywhereFindsTheTableThatKnowsTheName) {
 TEST(ParameterTable, NamesEveryRow) {
   const std::string text = app::parameterTable();
   for (const ParamField& field : sim::paramFields()) {
-    EXPECT_NE(text.find("`" + std::string(field.name) + "`"), std::string::npos);
+    EXPECT_NE(text.find(std::string("`").append(field.name).append("`")), std::string::npos);
   }
 }
 
