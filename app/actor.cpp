@@ -17,7 +17,8 @@ namespace {
 // falls.
 constexpr double kSettlingDrag = 12;
 
-// Never the same twice in a process: the renderer keeps GPU resources by these, also across scenes opened one after another.
+// Never the same twice in a process: the renderer keeps GPU resources by these, also across scenes opened one after
+// another.
 std::uint64_t freshId() {
   static std::atomic<std::uint64_t> next{1};
   return next++;
@@ -143,16 +144,24 @@ void placeActor(Actor& actor, bool rest) {
   followScalp(actor, actor.roots);
 }
 
-sim::StepReport stepActor(const sim::SimParams& params, double step, double time, Actor& actor) {
+void moveActor(double step, Actor& actor) {
   std::swap(actor.previous_pose, actor.pose);
   advancePlayback(actor.playedClip(), step, actor.playback);
   placedPose(actor, actor.pose);
   followScalp(actor, actor.roots);
   poseEllipsoids(actor.body->character, actor.pose, actor.previous_pose, step, actor.ellipsoids);
+}
+
+sim::StepReport simulateActor(const sim::SimParams& params, double step, double time, Actor& actor) {
   std::copy(actor.hair.positions.begin(), actor.hair.positions.end(), actor.previous_positions.begin());
   actor.last_report = sim::advance(actor.haircut->mesh, params, {actor.roots, actor.ellipsoids, time}, step,
                                    *actor.context, actor.hair);
   return actor.last_report;
+}
+
+sim::StepReport stepActor(const sim::SimParams& params, double step, double time, Actor& actor) {
+  moveActor(step, actor);
+  return simulateActor(params, step, time, actor);
 }
 
 void settleActor(const sim::SimParams& params, double seconds, Actor& actor) {

@@ -78,6 +78,9 @@ void keepMotion(const Actor& from, Actor& actor);
 void placeActor(Actor& actor, bool rest);
 
 // One step of motion and hair: playback by `step` seconds of wall time, then the simulation. `time` is the step's end.
+// moveActor and simulateActor are its two halves.
+void moveActor(double step, Actor& actor);
+sim::StepReport simulateActor(const sim::SimParams& params, double step, double time, Actor& actor);
 sim::StepReport stepActor(const sim::SimParams& params, double step, double time, Actor& actor);
 
 // Simulates `seconds` with the figure standing still and the air thick, so that the hair has come to rest on the body

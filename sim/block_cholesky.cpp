@@ -142,6 +142,22 @@ void BlockCholesky<T>::analyze(const BlockPattern& pattern, std::vector<int> eli
     deepest = std::max(deepest, depth);
   }
   stack_.assign(deepest, T(0));
+  pending_.reserve(supernodes.size());
+
+  // Entries of the matrix by the column that eliminates them.
+  entries_first_.assign(n + 1, 0);
+  entries_.clear();
+  std::vector<std::vector<Entry>> by_column(n);
+  for (int i = 0; i < pattern.size; ++i) {
+    for (int k = pattern.row_first[i]; k < pattern.row_first[i + 1]; ++k) {
+      const int p = position[i], q = position[pattern.columns[k]];
+      if (p >= 0 && q >= 0) by_column[std::min(p, q)].push_back({k, std::max(p, q), p < q});
+    }
+  }
+  for (int c = 0; c < n; ++c) {
+    entries_.insert(entries_.end(), by_column[c].begin(), by_column[c].end());
+    entries_first_[c + 1] = static_cast<int>(entries_.size());
+  }
 }
 
 template <class T>
@@ -156,25 +172,8 @@ template <class T>
 bool BlockCholesky<T>::factor(const BlockMatrix<T>& a) {
   using Matrix = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
   using Panel = Eigen::Map<Matrix, 0, Eigen::OuterStride<>>;
-  const BlockPattern& pattern = *a.pattern;
   stack_size_ = 0;
-  struct Pending {
-    int supernode;
-    std::size_t at;
-  };
-  std::vector<Pending> pending;
-  pending.reserve(supernodes.size());
-
-  // Entries of the matrix by the column that eliminates them.
-  std::vector<std::vector<int>> blocks_of(order.size());
-  std::vector<int> row_of(pattern.columns.size());
-  for (int i = 0; i < pattern.size; ++i) {
-    for (int k = pattern.row_first[i]; k < pattern.row_first[i + 1]; ++k) {
-      row_of[k] = i;
-      const int p = position[i], q = position[pattern.columns[k]];
-      if (p >= 0 && q >= 0) blocks_of[std::min(p, q)].push_back(k);
-    }
-  }
+  pending_.clear();
   for (std::size_t index = 0; index < supernodes.size(); ++index) {
     const Supernode& s = supernodes[index];
     const int w = s.width(), h = s.height(), size = w + h;
@@ -186,18 +185,19 @@ bool BlockCholesky<T>::factor(const BlockMatrix<T>& a) {
       const int column = local_[c];
       const M3<T>& d = a.diagonal[order[c]];
       for (int k = 0; k < 9; ++k) front(column + k / 3, column + k % 3) += d.m[k];
-      for (int k : blocks_of[c]) {
-        const int p = position[row_of[k]], q = position[pattern.columns[k]];
-        const M3<T>& b = a.lower[k];
-        // The block is A(row, column) with row = row_of[k]; it is needed with its later-eliminated vertex as row.
-        const int r = local_[std::max(p, q)];
-        for (int e = 0; e < 9; ++e) front(r + (p > q ? e / 3 : e % 3), column + (p > q ? e % 3 : e / 3)) += b.m[e];
+      for (int k = entries_first_[c]; k < entries_first_[c + 1]; ++k) {
+        const Entry& entry = entries_[k];
+        const M3<T>& b = a.lower[entry.block];
+        const int r = local_[entry.row];
+        for (int e = 0; e < 9; ++e) {
+          front(r + (entry.turned ? e % 3 : e / 3), column + (entry.turned ? e / 3 : e % 3)) += b.m[e];
+        }
       }
     }
-    while (!pending.empty() && supernodes[pending.back().supernode].parent == static_cast<int>(index)) {
-      const Supernode& child = supernodes[pending.back().supernode];
+    while (!pending_.empty() && supernodes[pending_.back().supernode].parent == static_cast<int>(index)) {
+      const Supernode& child = supernodes[pending_.back().supernode];
       const int ch = child.height();
-      const Panel update(stack_.data() + pending.back().at, ch, ch, Eigen::OuterStride<>(ch));
+      const Panel update(stack_.data() + pending_.back().at, ch, ch, Eigen::OuterStride<>(ch));
       for (int j = 0; j < child.rows; ++j) {
         const int column = local_[row_index[child.rows_first + j]];
         for (int i = j; i < child.rows; ++i) {
@@ -205,8 +205,8 @@ bool BlockCholesky<T>::factor(const BlockMatrix<T>& a) {
           front.template block<3, 3>(row, column) += update.template block<3, 3>(3 * i, 3 * j);
         }
       }
-      stack_size_ = pending.back().at;
-      pending.pop_back();
+      stack_size_ = pending_.back().at;
+      pending_.pop_back();
     }
     auto diagonal = front.topLeftCorner(w, w);
     if (Eigen::internal::llt_inplace<T, Eigen::Lower>::blocked(diagonal) >= 0) return false;
@@ -219,7 +219,7 @@ bool BlockCholesky<T>::factor(const BlockMatrix<T>& a) {
       Panel update(stack_.data() + stack_size_, h, h, Eigen::OuterStride<>(h));
       update = front.bottomRightCorner(h, h);
       update.template selfadjointView<Eigen::Lower>().rankUpdate(rows, T(-1));
-      pending.push_back({static_cast<int>(index), stack_size_});
+      pending_.push_back({static_cast<int>(index), stack_size_});
       stack_size_ += static_cast<std::size_t>(h) * h;
     }
   }

@@ -58,6 +58,18 @@ struct BlockCholesky {
   std::vector<int> supernode_of_;       // per elimination position
   std::vector<unsigned char> reached_;  // per supernode, of the batch in progress
   std::vector<int> local_;              // elimination position -> row in the front
+  struct Pending {
+    int supernode;
+    std::size_t at;  // in stack_
+  };
+  std::vector<Pending> pending_;  // update matrices on the stack
+  // A block of the matrix: where it lies in the column that eliminates it, and whether it is needed transposed there.
+  struct Entry {
+    int block, row;
+    bool turned;
+  };
+  std::vector<Entry> entries_;  // by elimination column
+  std::vector<int> entries_first_;
   std::size_t stack_size_ = 0;
   int largest_front_ = 0;
 };

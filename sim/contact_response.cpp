@@ -38,6 +38,7 @@ void ContactResponses<T>::reset(int vertices) {
   wanted_.clear();
   wanted_.reserve(vertices);
   touched_.reserve(kVerticesPerBatch);
+  batch_.resize(3 * static_cast<std::size_t>(vertices) * BlockCholesky<T>::kBatch);
   gram_.resize(kMostDirections, kMostDirections);
   multipliers_.resize(kMostDirections);
 }
@@ -63,7 +64,7 @@ int ContactResponses<T>::claimSlot() {
 template <class T>
 void ContactResponses<T>::computeAnswers(BlockCholesky<T>& factor, std::span<const int> vertices) {
   constexpr int kSides = BlockCholesky<T>::kBatch;
-  batch_.assign(3 * factor.order.size() * kSides, T(0));
+  std::fill(batch_.begin(), batch_.end(), T(0));
   touched_.clear();
   for (std::size_t k = 0; k < vertices.size(); ++k) {
     const std::size_t position = factor.position[vertices[k]];

@@ -63,7 +63,7 @@ struct SimParams {
   Integrator integrator = Integrator::kLinearizedEuler;
   Solver solver = Solver::kWarped;
   Precision precision = Precision::kMixed;
-  double tolerance = 1e-3;               // relative residual of the linear solve
+  double tolerance = 1e-2;               // relative residual of the linear solve; docs/accuracy.md shows why
   double acceleration_tolerance = 0.01;  // m/s^2, a solve also stops when no vertex's residual exceeds it
   int max_iterations = 400;              // of the linear solver
   int newton_iterations = 4;             // of the nonlinear integrators

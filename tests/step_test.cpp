@@ -28,6 +28,11 @@ void* operator new(std::size_t size) {
 void* operator new[](std::size_t size) {
   return countedAllocation(size);
 }
+// std::stable_sort asks for its buffer in this way.
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  if (counting) ++allocations;
+  return std::malloc(size);
+}
 void operator delete(void* p) noexcept {
   std::free(p);
 }
@@ -400,14 +405,14 @@ TEST(Step, NeverLeavesAValueThatIsNotFiniteAndCountsTheRecovery) {
 }
 
 TEST(Step, AllocatesNothingOnceWarm) {
-  for (const Solver solver : {Solver::kPaper, Solver::kDiagonal, Solver::kWarped}) {
+  for (const Solver solver :
+       {Solver::kPaper, Solver::kDiagonal, Solver::kColumn, Solver::kIncomplete, Solver::kWarped, Solver::kDirect}) {
     for (const Integrator integrator : kIntegrators) {
       sim::SimParams params = test::tautHair();
       params.solver = solver;
       params.integrator = integrator;
       params.newton_iterations = 3;
       params.tolerance = 1e-3;
-      params.collide = solver != Solver::kWarped;  // its correction for contacts grows with their number
       Hair hair(test::combedShape({}), params);
       shake(hair, 12);
       allocations = 0;
@@ -416,7 +421,7 @@ TEST(Step, AllocatesNothingOnceWarm) {
         counting = true;
         const sim::StepReport report = hair.step(kFrame);
         counting = false;
-        EXPECT_EQ(report.contacts + report.corrected > 0, params.collide) << "contacts took part";
+        EXPECT_GT(report.contacts + report.corrected, 0) << "contacts took part";
       }
       EXPECT_EQ(allocations, 0) << nameOf(integrator) << ", solver " << static_cast<int>(solver);
     }

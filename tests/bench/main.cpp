@@ -4,13 +4,15 @@
 
 #include "app/errors.h"
 #include "tests/bench/contact_sheet.h"
+#include "tests/bench/pareto.h"
 #include "tests/bench/styles_bench.h"
 
 int main(int argc, char** argv) {
   CLI::App program("Measures the simulator and draws the documents' pictures. One thread; timings are medians.");
   bench::StylesOptions styles;
   bench::SheetOptions sheet;
-  bool run_styles = false;
+  bench::ParetoOptions pareto;
+  bool run_styles = false, run_pareto = false;
   program.add_flag("--styles", run_styles,
                    "milliseconds a frame per stage for the nine styles, walking, beside the paper's");
   program.add_option("--frames", styles.frames, "measured frames a style")->check(CLI::Range(10, 100000));
@@ -20,13 +22,19 @@ int main(int argc, char** argv) {
   program.add_option("--cell", sheet.cell_height, "height of a picture of the sheet, pixels")
       ->check(CLI::Range(32, 2048));
   program.add_option("--strands", sheet.strands, "strands a picture")->check(CLI::Range(1, 1000000));
+  program.add_flag("--pareto", run_pareto, "run time against error, for every scene and way to simulate it");
+  program.add_option("--scenes", pareto.scenes, "scenes of --pareto, comma separated")->delimiter(',');
+  program.add_option("--out", pareto.folder, "folder of --pareto")->default_val("pareto");
+  program.add_option("--runs", pareto.runs, "timed runs a point")->check(CLI::Range(1, 100));
+  program.add_flag("--quick", pareto.quick, "a coarser sweep");
   CLI11_PARSE(program, argc, argv);
-  if (!run_styles && sheet.folder.empty()) {
+  if (!run_styles && !run_pareto && sheet.folder.empty()) {
     std::cout << program.help();
     return app::kExitUsage;
   }
   try {
     if (run_styles) bench::runStyles(styles);
+    if (run_pareto) bench::runPareto(pareto);
     if (!sheet.folder.empty()) bench::drawContactSheets(sheet);
   } catch (const app::ContextError& error) {
     std::cerr << "hairmesh-bench: " << error.what() << "\n";

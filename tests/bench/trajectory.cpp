@@ -1,0 +1,119 @@
+#include "tests/bench/trajectory.h"
+
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/data_path.h"
+
+namespace bench {
+namespace {
+
+// Of this thread: other work on the machine does not count.
+double cpuSeconds() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+constexpr double kSettle = 2;  // s before the start
+
+}  // namespace
+
+std::vector<TrajectoryScene> trajectoryScenes() {
+  using sim::Resolution;
+  using sim::Style;
+  return {
+      {"head_shake", "head_shake.bvh", Style::kLong, Resolution::kLow, 1, false, false, 1},
+      {"walk_contact", "walk.bvh", Style::kLong, Resolution::kLow, 1, true, false, 1},
+      {"walk_short", "walk.bvh", Style::kShort, Resolution::kLow, 1, true, false, 1},
+      {"walk_shoulder", "walk.bvh", Style::kShoulder, Resolution::kLow, 1, true, false, 1},
+      {"jump_1x", "jump_spin.bvh", Style::kLong, Resolution::kLow, 1, false, false, 1},
+      {"jump_4x", "jump_spin.bvh", Style::kLong, Resolution::kLow, 4, false, false, 0.5},
+      {"jump_10x", "jump_spin.bvh", Style::kLong, Resolution::kLow, 10, false, false, 0.3},
+      {"collapse", "idle_turns.bvh", Style::kLong, Resolution::kLow, 1, false, true, 1},
+      {"walk_high", "walk.bvh", Style::kLong, Resolution::kHigh, 1, true, false, 0.3},
+  };
+}
+
+TrajectoryStage::TrajectoryStage(const TrajectoryScene& scene) : scene_(scene) {
+  app::CharacterSpec spec;
+  spec.motion = app::findFile(scene.motion, "", "clips");
+  spec.style = scene.style;
+  spec.resolution = scene.resolution;
+  app::PlaybackSpec playback;
+  playback.speed = scene.speed;
+  actor_ = app::makeActor(spec, playback, wardrobe_);
+  sim::SimParams params;
+  params.collide = scene.collide;
+  app::settleActor(params, kSettle, actor_);
+  if (scene.collapsed) sim::collapseOntoRoots(mesh(), actor_.hair);
+  start_ = actor_.hair;
+  playback_ = actor_.playback;
+}
+
+RunResult TrajectoryStage::run(sim::SimParams params) {
+  params.collide = scene_.collide;
+  actor_.playback = playback_;
+  app::placeActor(actor_, true);
+  actor_.hair = start_;
+  RunResult result;
+  const int steps_a_sample = static_cast<int>(std::lround(1 / (kSamplesPerSecond * params.time_step)));
+  const int samples = static_cast<int>(std::lround(scene_.seconds * kSamplesPerSecond));
+  int steps = 0;
+  for (int sample = 0; sample < samples; ++sample) {
+    for (int k = 0; k < steps_a_sample; ++k, ++steps) {
+      app::moveActor(params.time_step, actor_);
+      const double started = cpuSeconds();
+      const sim::StepReport report =
+          app::simulateActor(params, params.time_step, (steps + 1) * params.time_step, actor_);
+      result.seconds += cpuSeconds() - started;
+      result.iterations += report.solver_iterations;
+      result.recoveries += report.recoveries;
+    }
+    result.trajectory.push_back(actor_.hair.positions);
+    measure(result);
+  }
+  result.iterations /= std::max(steps, 1);
+  result.volume_error /= std::max(samples, 1);
+  return result;
+}
+
+void TrajectoryStage::measure(RunResult& result) const {
+  const std::vector<sim::Vec3>& x = actor_.hair.positions;
+  for (const sim::Edge& edge : mesh().vertical_edges) {
+    const double strain = (x[edge.a] - x[edge.b]).norm() / edge.rest_length - 1;
+    result.worst_stretch = std::max(result.worst_stretch, std::abs(strain));
+  }
+  double sum = 0;
+  for (const sim::CornerTet& tet : mesh().tets) {
+    const sim::Vec3 e1 = x[tet.v[1]] - x[tet.v[0]], e2 = x[tet.v[2]] - x[tet.v[0]], e3 = x[tet.v[3]] - x[tet.v[0]];
+    sum += std::abs(e1.dot(e2.cross(e3)) / 6 / tet.rest_volume - 1);
+  }
+  result.volume_error += sum / static_cast<double>(mesh().tets.size());
+  if (!scene_.collide) return;
+  for (const int v : mesh().external_vertices) {
+    for (const sim::Ellipsoid& e : actor_.ellipsoids) {
+      if (sim::implicitValue(e, x[v]) >= 0) continue;
+      result.worst_penetration = std::max(result.worst_penetration, -sim::closestPoint(e, x[v]).distance);
+    }
+  }
+}
+
+TrajectoryError difference(const Trajectory& a, const Trajectory& b, double hair_length) {
+  TrajectoryError error;
+  double sum = 0, count = 0;
+  for (std::size_t s = 0; s < std::min(a.size(), b.size()); ++s) {
+    for (std::size_t i = 0; i < a[s].size(); ++i) {
+      const double d = (a[s][i] - b[s][i]).squaredNorm();
+      sum += d, count += 1;
+      error.most = std::max(error.most, d);
+    }
+  }
+  error.rms = std::sqrt(sum / std::max(count, 1.0)) / hair_length;
+  error.most = std::sqrt(error.most) / hair_length;
+  return error;
+}
+
+}  // namespace bench

@@ -1,0 +1,61 @@
+// Scenes whose trajectories are compared: the same motion, simulated in different ways from the same start.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/actor.h"
+
+namespace bench {
+
+// A declared scene. Times are simulated seconds; `speed` plays the clip faster while the hair lives in real time.
+struct TrajectoryScene {
+  const char* name;
+  const char* motion;
+  sim::Style style;
+  sim::Resolution resolution;
+  double speed;
+  bool collide;
+  bool collapsed;  // starts with every vertex on its root
+  double seconds;
+};
+std::vector<TrajectoryScene> trajectoryScenes();
+
+// Positions of all vertices (m) at the sample times 1/30, 2/30, ... s, which every step length in use divides.
+inline constexpr int kSamplesPerSecond = 30;
+using Trajectory = std::vector<std::vector<sim::Vec3>>;
+
+struct RunResult {
+  Trajectory trajectory;
+  double seconds = 0;            // CPU seconds of the simulation alone (motion left out)
+  double iterations = 0;         // linear iterations a step, mean
+  double worst_stretch = 0;      // largest |l / l0 - 1| along the columns at the samples
+  double volume_error = 0;       // mean |V / V0 - 1| of the corner tetrahedra at the samples
+  double worst_penetration = 0;  // m, of external vertices at the samples
+  int recoveries = 0;
+};
+
+// One scene, loaded and settled, that can be run over and over from the same state.
+class TrajectoryStage {
+ public:
+  explicit TrajectoryStage(const TrajectoryScene& scene);
+  // Simulates the scene. params.time_step must divide 1/30 s; collide follows the scene.
+  RunResult run(sim::SimParams params);
+  const sim::HairMesh& mesh() const { return actor_.haircut->mesh; }
+
+ private:
+  TrajectoryScene scene_;
+  app::Wardrobe wardrobe_;
+  app::Actor actor_;
+  sim::HairState start_;
+  app::Playback playback_;
+  void measure(RunResult& result) const;
+};
+
+// Difference of two trajectories over hair length: root mean square and largest, over vertices and samples.
+struct TrajectoryError {
+  double rms = 0, most = 0;
+};
+TrajectoryError difference(const Trajectory& a, const Trajectory& b, double hair_length);
+
+}  // namespace bench
