@@ -46,7 +46,7 @@ inline Outcome runProgram(const std::vector<std::string>& arguments, const std::
   const std::string base =
       std::string(HAIRMESH_TEST_OUT) + "/run_" + std::to_string(::getpid()) + "_" + std::to_string(number++);
   std::string command = "env " + environment + " timeout 120 " + shellQuoted(HAIRMESH_BINARY);
-  for (const std::string& argument : arguments) command += " " + shellQuoted(argument);
+  for (const std::string& argument : arguments) command.append(" ").append(shellQuoted(argument));
   command += " >" + shellQuoted(base + ".out") + " 2>" + shellQuoted(base + ".err") + " </dev/null";
   const int status = std::system(command.c_str());
   Outcome outcome;
