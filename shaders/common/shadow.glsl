@@ -23,13 +23,22 @@ float hairOpticalDepth(int map, vec3 at) {
   if (behind <= 0.0) return 0.0;
   vec4 near = textureLod(opacity_near, vec3(at.xy, map), 0.0), far = textureLod(opacity_far, vec3(at.xy, map), 0.0);
   // held[0] = 0 at the first hair; held[k] at the end of layer k, which lies at thickness (g^k - 1) / (g - 1).
-  float held[9] = float[9](0.0, near.x, near.y, near.z, near.w, far.x, far.y, far.z, far.w);
-  float layers = log2(1.0 + (kLayerGrowth - 1.0) * behind / hair_shadow_size[map].w) / log2(kLayerGrowth);
-  int layer = min(int(layers), int(opacity.x));
-  int next = layer == int(opacity.x) ? 8 : layer + 1;
-  float start = (pow(kLayerGrowth, float(layer)) - 1.0) / (kLayerGrowth - 1.0), span = pow(kLayerGrowth, float(layer));
-  float into = clamp((behind / hair_shadow_size[map].w - start) / span, 0.0, 1.0);
-  return opacity.y * mix(held[layer], held[next], into);
+  const float kRate = log2(kLayerGrowth);
+  float depth = behind / hair_shadow_size[map].w;
+  float layer = min(floor(log2(1.0 + (kLayerGrowth - 1.0) * depth) / kRate), opacity.x);
+  float span = exp2(kRate * layer);
+  float into = clamp((depth - (span - 1.0) / (kLayerGrowth - 1.0)) / span, 0.0, 1.0);
+  // The point's own layer counts in part and the one before it for the rest: weights instead of an indexed array, which
+  // software rasterizers keep in slow memory.
+  vec4 from_near = vec4(1.0, 2.0, 3.0, 4.0) - layer, from_far = from_near + 4.0;
+  vec4 in_near = max(1.0 - abs(from_near), 0.0) * (1.0 - into), in_far = max(1.0 - abs(from_far), 0.0) * (1.0 - into);
+  if (layer < opacity.x) {
+    in_near += max(1.0 - abs(from_near - 1.0), 0.0) * into;
+    in_far += max(1.0 - abs(from_far - 1.0), 0.0) * into;
+  } else {
+    in_far.w += into;
+  }
+  return opacity.y * (dot(in_near, near) + dot(in_far, far));
 }
 
 // Light left after the bodies, for a point of hair.
