@@ -27,14 +27,17 @@ int main(int argc, char** argv) {
   program.add_option("--out", pareto.folder, "folder of --pareto")->default_val("pareto");
   program.add_option("--runs", pareto.runs, "timed runs a point")->check(CLI::Range(1, 100));
   program.add_flag("--quick", pareto.quick, "a coarser sweep");
+  std::string document;
+  program.add_option("--accuracy-document", document, "put the tables of this folder's sweep into its accuracy.md");
   CLI11_PARSE(program, argc, argv);
-  if (!run_styles && !run_pareto && sheet.folder.empty()) {
+  if (!run_styles && !run_pareto && document.empty() && sheet.folder.empty()) {
     std::cout << program.help();
     return app::kExitUsage;
   }
   try {
     if (run_styles) bench::runStyles(styles);
     if (run_pareto) bench::runPareto(pareto);
+    if (!document.empty()) bench::writeAccuracyDocument(document);
     if (!sheet.folder.empty()) bench::drawContactSheets(sheet);
   } catch (const app::ContextError& error) {
     std::cerr << "hairmesh-bench: " << error.what() << "\n";

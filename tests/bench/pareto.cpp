@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "app/errors.h"
@@ -191,7 +192,102 @@ nlohmann::json toJson(const std::string& scene, const Point& p) {
           {"front", p.on_front}};
 }
 
+constexpr const char* kRegionStart = "<!-- measured by hairmesh-bench -->";
+constexpr const char* kRegionEnd = "<!-- end of the measured part -->";
+
+// The front of a scene and its default as a Markdown table.
+std::string tableOf(const nlohmann::json& rows, const std::string& scene) {
+  std::vector<nlohmann::json> shown;
+  double reference = 0;
+  for (const nlohmann::json& row : rows) {
+    if (row["scene"] != scene) continue;
+    reference = row["reference_error_rms"];
+    if (row["front"] || row["default"]) shown.push_back(row);
+  }
+  std::sort(shown.begin(), shown.end(),
+            [](const auto& a, const auto& b) { return a["ms_per_second_min"] < b["ms_per_second_min"]; });
+  char text[320];
+  std::snprintf(text, sizeof text, "### %s\n\nThe reference's own error: %.1e.\n\n", scene.c_str(), reference);
+  std::string table = text;
+  table += "![" + scene + "](accuracy_" + scene + ".svg)\n\n";
+  table +=
+      "| | integrator | step | tolerance | precision | ms/s | RMS error | largest | iterations | stretch | volume |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|\n";
+  const auto word = [](const nlohmann::json& row, const char* key) { return row[key].get<std::string>(); };
+  const auto number = [](const nlohmann::json& row, const char* key) { return row[key].get<double>(); };
+  for (const nlohmann::json& row : shown) {
+    std::snprintf(text, sizeof text, "| %s | %s%s%s | 1/%.0f | %.0e | %s | %.1f | %.1e | %.1e | %.1f | %.3f | %.3f |\n",
+                  row["default"] ? "**default**" : "", word(row, "integrator").c_str(),
+                  word(row, "solver") == "warped" ? "" : (", " + word(row, "solver")).c_str(),
+                  row["minimization"] ? "" : ", no minimization", 1 / number(row, "time_step"),
+                  number(row, "tolerance"), word(row, "precision").c_str(), number(row, "ms_per_second_min"),
+                  number(row, "error_rms"), number(row, "error_max"), number(row, "iterations"),
+                  number(row, "worst_stretch"), number(row, "volume_error"));
+    table += text;
+  }
+  return table + "\n";
+}
+
+// The default's step in every solver's hands.
+std::string solverTable(const nlohmann::json& rows) {
+  const SimParams standard;
+  std::vector<std::string> scenes, solvers;
+  std::string table = "| solver, ms/s (iterations) |";
+  const auto remember = [](std::vector<std::string>& list, const std::string& name) {
+    if (!std::count(list.begin(), list.end(), name)) list.push_back(name);
+  };
+  for (const nlohmann::json& row : rows) {
+    remember(scenes, row["scene"]);
+    remember(solvers, row["solver"]);
+  }
+  for (const std::string& scene : scenes) table += " " + scene + " |";
+  table += "\n|---|";
+  for (std::size_t k = 0; k < scenes.size(); ++k) table += "---|";
+  table += "\n";
+  for (const std::string& solver : solvers) {
+    table += "| " + solver + " |";
+    for (const std::string& scene : scenes) {
+      char text[64] = " |";
+      for (const nlohmann::json& row : rows) {
+        const bool same = row["scene"] == scene && row["solver"] == solver && row["minimization"] &&
+                          row["integrator"] == choiceName("integrator", standard) &&
+                          row["precision"] == choiceName("precision", standard) &&
+                          row["tolerance"] == standard.tolerance && row["time_step"] == standard.time_step;
+        if (!same) continue;
+        std::snprintf(text, sizeof text, " %.1f (%.1f) |", row["ms_per_second_min"].get<double>(),
+                      row["iterations"].get<double>());
+        break;
+      }
+      table += text;
+    }
+    table += "\n";
+  }
+  return table;
+}
+
 }  // namespace
+
+void writeAccuracyDocument(const std::string& folder) {
+  const std::string file = folder + "/accuracy.md", data = folder + "/pareto.json";
+  std::ifstream json_stream(data), stream(file);
+  const nlohmann::json rows = nlohmann::json::parse(json_stream, nullptr, false);
+  if (!rows.is_array()) throw app::InputError(data, "", "holds no sweep", "run hairmesh-bench --pareto first");
+  const std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  const auto start = text.find(kRegionStart), end = text.find(kRegionEnd);
+  if (start == std::string::npos || end == std::string::npos || end < start) {
+    throw app::InputError(file, "", "lacks the marks of the measured part", "restore it from the repository");
+  }
+  std::string measured = std::string(kRegionStart) + "\n\n";
+  std::vector<std::string> scenes;
+  for (const nlohmann::json& row : rows) {
+    const std::string scene = row["scene"];
+    if (std::count(scenes.begin(), scenes.end(), scene)) continue;
+    scenes.push_back(scene);
+    measured += tableOf(rows, scene);
+  }
+  measured += "### Solvers\n\n" + solverTable(rows) + "\n";
+  std::ofstream(file) << text.substr(0, start) + measured + text.substr(end);
+}
 
 void runPareto(const ParetoOptions& options) {
   std::error_code fault;

@@ -19,4 +19,7 @@ struct ParetoOptions {
 // s and reported beside them.
 void runPareto(const ParetoOptions& options);
 
+// Puts the tables of <folder>/pareto.json into the measured part of <folder>/accuracy.md.
+void writeAccuracyDocument(const std::string& folder);
+
 }  // namespace bench
