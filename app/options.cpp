@@ -68,6 +68,7 @@ bool parseOptions(int argc, char** argv, Options& options, int& exit_code) {
   parser.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   std::string size;
   std::vector<std::string> sets;
+  std::string solver;
   bool list_parameters = false;
 
   parser.add_option("scene", options.scene, "Scene file (JSON); without one the default scene is shown")
@@ -102,6 +103,12 @@ bool parseOptions(int argc, char** argv, Options& options, int& exit_code) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->allow_extra_args(false);
+  parser
+      .add_option("--solver", solver,
+                  "Linear solver; paper: the paper's own setting, one linearized step of 1/60 s by block-diagonal PCG")
+      ->group(what)
+      ->option_text("NAME")
+      ->check(CLI::IsMember({"paper", "diagonal", "block-jacobi", "column", "incomplete", "warped", "direct"}));
   parser.add_flag("--parameters", list_parameters, "Print the parameter tables and end")->group(what);
 
   const char* motion = "Playback";
@@ -195,6 +202,12 @@ bool parseOptions(int argc, char** argv, Options& options, int& exit_code) {
   if (options.size_given && !parseSize(size, options.width, options.height)) {
     return fail("--size cannot be '" + size + "'; write WIDTHxHEIGHT with sides from " + std::to_string(kSmallestSide) +
                 " to " + std::to_string(kLargestSide) + ", for instance 1280x720");
+  }
+  // Before the sets, which may still turn a part of it.
+  if (!solver.empty()) options.set.emplace_back("solver", solver);
+  if (solver == "paper") {
+    options.set.emplace_back("integrator", "linearized-euler");
+    options.set.emplace_back("time_step", "0.016666666666666666");
   }
   for (const std::string& text : sets) {
     const std::size_t equals = text.find('=');

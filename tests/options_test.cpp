@@ -109,6 +109,7 @@ TEST(Options, MisuseIsUsageAndSaysSoInOneLine) {
                                                       {"--strands", "-1"},
                                                       {"--strands", "1e12"},
                                                       {"--strand-path", "x"},
+                                                      {"--solver", "x"},
                                                       {"--set", "friction"},
                                                       {"--set", "=1"},
                                                       {"--set", "fricton=1"},
@@ -159,6 +160,17 @@ TEST(Options, FilesThatCannotBeUsedAreBadInput) {
   }
 }
 
+TEST(Options, ThePapersSettingIsOneWord) {
+  const Parsed parsed = parse({"--set", "integrator=bdf2", "--solver", "paper"});
+  ASSERT_TRUE(parsed.go_on);
+  const auto& set = parsed.options.set;
+  ASSERT_EQ(set.size(), 4u);
+  EXPECT_EQ(set[0], std::make_pair(std::string("solver"), std::string("paper")));
+  EXPECT_EQ(set[1], std::make_pair(std::string("integrator"), std::string("linearized-euler")));
+  EXPECT_EQ(set[2].first, "time_step");
+  EXPECT_EQ(set[3], std::make_pair(std::string("integrator"), std::string("bdf2"))) << "what is set by name wins";
+}
+
 TEST(Options, AFolderThatCannotBeMadeIsBadInput) {
   expectOneMessage(runProgram({"--headless", "--frames", "1", "--out", "/proc/frames"}), app::kExitBadInput, "--out");
 }
@@ -168,7 +180,7 @@ TEST(Options, HelpNamesEveryOptionAndFitsATerminal) {
   EXPECT_EQ(help.exit_code, 0);
   for (const char* option : {"--headless", "--frames", "--size", "--out", "--set", "--style", "--resolution", "--hair",
                              "--motion", "--parts", "--speed", "--fps", "--strands", "--camera", "--report",
-                             "--strand-path", "--preset", "--no-images"}) {
+                             "--strand-path", "--preset", "--solver", "--no-images"}) {
     EXPECT_NE(help.out.find(option), std::string::npos) << option;
   }
 }
