@@ -44,6 +44,8 @@ struct ImplicitSolver {
   std::vector<T> mass, inverse_mass_dt;
   std::vector<VertexConstraint> constraints;
   bool rest_compact = false;
+  bool strained = false;  // the warped factor took too many iterations when last tried
+  int strained_solves = 0;
   double rest_h = 0, rest_damping = 0, rest_drag = 0;  // what the rest factor was made for; rest_h 0: none
 
   ImplicitSolver(const HairMesh& mesh, const BlockPattern& pattern);

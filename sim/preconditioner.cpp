@@ -64,6 +64,7 @@ bool Preconditioner<T>::setRestMatrix(const BlockMatrix<T>& rest, bool compact) 
     rest_factor_.analyze(*mesh_, *pattern_, free_);
   }
   rest_factor_fine_ = rest_factor_.factor(rest);
+  if (!incomplete_factor_) incomplete_factor_.emplace(*pattern_, free_);  // its stand-in, at hand without allocation
   rest_responses_.reset(mesh_->vertexCount());
   if constexpr (std::is_same_v<T, float>) {
     if (compact && rest_factor_fine_) {
