@@ -232,7 +232,7 @@ std::string tableOf(const nlohmann::json& rows, const std::string& scene) {
 std::string solverTable(const nlohmann::json& rows) {
   const SimParams standard;
   std::vector<std::string> scenes, solvers;
-  std::string table = "| solver, ms/s (iterations) |";
+  std::string table = "| solver: ms/s (iterations; RMS error) |";
   const auto remember = [](std::vector<std::string>& list, const std::string& name) {
     if (!std::count(list.begin(), list.end(), name)) list.push_back(name);
   };
@@ -254,8 +254,8 @@ std::string solverTable(const nlohmann::json& rows) {
                           row["precision"] == choiceName("precision", standard) &&
                           row["tolerance"] == standard.tolerance && row["time_step"] == standard.time_step;
         if (!same) continue;
-        std::snprintf(text, sizeof text, " %.1f (%.1f) |", row["ms_per_second_min"].get<double>(),
-                      row["iterations"].get<double>());
+        std::snprintf(text, sizeof text, " %.1f (%.1f; %.1e) |", row["ms_per_second_min"].get<double>(),
+                      row["iterations"].get<double>(), row["error_rms"].get<double>());
         break;
       }
       table += text;
