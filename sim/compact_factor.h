@@ -12,7 +12,7 @@ namespace sim {
 
 // Each column of a panel is kept as 16-bit integers times one scale, so that an entry is wrong by at most 2^-16 of its
 // column's largest: L is then the exact factor of a matrix close by, which serves a preconditioner as well (the
-// iterations stay the same down to 12 bits, measured; 8 bits take twenty times as many).
+// iterations stay the same down to 12 bits, measured; 8 bits take over ten times as many).
 //
 // Layout: strips of sixteen rows, a strip's columns one after the other and two to a word, so that one load brings
 // sixteen rows of two columns. Supernodes as in the factor it was made from, which it needs for the structure only.
