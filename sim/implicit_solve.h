@@ -43,6 +43,7 @@ struct ImplicitSolver {
   std::vector<V3<T>> x, v, trial, force, rhs, velocity_step;
   std::vector<T> mass, inverse_mass_dt;
   std::vector<VertexConstraint> constraints;
+  std::vector<int> touched;  // vertices that were in contact when the solve began
   bool rest_compact = false;
   bool strained = false;  // the warped factor took too many iterations when last tried
   int strained_solves = 0;
@@ -62,6 +63,8 @@ struct ImplicitSolver {
   void refreshRestFactor(const HairMesh& mesh, const SimParams& params, double h);
   void assemble(const SimParams& params, const StepBase& base, bool at_start);
   double residualSquare(const SimParams& params, const StepBase& base);
+  void setContactConstraints(const HairMesh& mesh, const SimParams& params, const StepBase& base,
+                             std::span<const Contact> contacts, SolveStart start);
   SolveReport solveLinear(const HairMesh& mesh, const SimParams& params, const StepBase& base,
                           std::vector<Contact>& contacts);
 };

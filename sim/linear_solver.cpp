@@ -1,6 +1,7 @@
-// x: unknown, b: right-hand side, r: residual, z = P r, d: search direction, q = A d. S, the filter, is applied
-// wherever a vector must stay within the free directions: to r, to z and to q. Left out at one place, the method still
-// converges when only whole vertices are pinned, and diverges with partial constraints.
+// x: unknown, b: right-hand side, r: residual, z = P r, d: search direction, q = A d. S, the filter, keeps z and with
+// it d within the free directions. r stays whole, because its removed directions are the reactions of the constraints;
+// only what the preconditioner reads of it is filtered. Left out there, the method still converges when only whole
+// vertices are pinned, and diverges with partial constraints.
 #include "sim/linear_solver.h"
 
 #include <cmath>
@@ -26,6 +27,16 @@ double largestAcceleration(std::span<const V3<T>> r, std::span<const T> inverse_
   return std::sqrt(largest);
 }
 
+template <class T>
+double largestNorm(std::span<const V3<T>> z) {
+  T largest = 0;
+  for (const V3<T>& value : z) {
+    const T square = dot(value, value);
+    if (!(square <= largest)) largest = square;
+  }
+  return std::sqrt(static_cast<double>(largest));
+}
+
 }  // namespace
 
 template <class Operator>
@@ -34,51 +45,70 @@ SolveReport solveModifiedPcg(const Operator& a, std::span<const V3<typename Oper
                              Preconditioner<typename Operator::Number>& preconditioner,
                              const StopRule<typename Operator::Number>& stop,
                              SolverScratch<typename Operator::Number>& scratch,
-                             std::span<V3<typename Operator::Number>> x) {
+                             std::span<V3<typename Operator::Number>> x, SolveStart start) {
   using T = typename Operator::Number;
   const std::size_t n = b.size();
   const std::span<V3<T>> r(scratch.r), z(scratch.z), d(scratch.d), q(scratch.q);
   SolveReport report;
-  a(x, q);
-  for (std::size_t i = 0; i < n; ++i) r[i] = b[i] - q[i];
-  filter.apply(r);
-  preconditioner.apply(r, z);
-  filter.apply(z);
-  for (std::size_t i = 0; i < n; ++i) d[i] = z[i];
-  double delta = innerProduct<T>(r, z);
-  report.first_norm = std::sqrt(std::max(delta, 0.0));
-  const double first = stop.first_norm > 0 ? stop.first_norm * stop.first_norm : delta;
-  report.residual_acceleration = largestAcceleration<T>(r, stop.inverse_mass_dt);
-  const auto slowEnough = [&] { return stop.acceleration > 0 && report.residual_acceleration <= stop.acceleration; };
-  report.converged = !(first > 0) || slowEnough();
+  // z = S P S r.
+  const auto precondition = [&] {
+    scratch.removed.clear();
+    for (std::size_t k = 0; k < filter.vertices.size(); ++k) {
+      V3<T>& at = r[filter.vertices[k]];
+      const V3<T> kept = filter.keep[k] * at;
+      scratch.removed.push_back(at - kept);
+      at = kept;
+    }
+    preconditioner.apply(r, z);
+    scratch.acceleration = largestAcceleration<T>(r, stop.inverse_mass_dt);
+    for (std::size_t k = filter.vertices.size(); k-- > 0;) r[filter.vertices[k]] += scratch.removed[k];
+    filter.apply(z);
+  };
+  const auto closeEnough = [&] {
+    return !(scratch.square > stop.relative * stop.relative * scratch.first_square) ||
+           (stop.acceleration > 0 && scratch.acceleration <= stop.acceleration) ||
+           (stop.displacement > 0 && stop.h * largestNorm<T>(z) <= stop.displacement);
+  };
+  if (start == SolveStart::kFresh) {
+    a(x, q);
+    for (std::size_t i = 0; i < n; ++i) r[i] = b[i] - q[i];
+  }
+  if (start != SolveStart::kResume) {
+    precondition();
+    for (std::size_t i = 0; i < n; ++i) d[i] = z[i];
+    scratch.square = innerProduct<T>(r, z);
+    if (start == SolveStart::kFresh) scratch.first_square = scratch.square;
+  }
+  report.converged = closeEnough();
   while (!report.converged && report.iterations < stop.max_iterations) {
     a(d, q);
-    filter.apply(q);
     const double curvature = innerProduct<T>(d, q);
     if (!(curvature > 0)) break;  // rounding has eaten the direction, or a value is not finite
-    const T alpha = static_cast<T>(delta / curvature);
+    const T alpha = static_cast<T>(scratch.square / curvature);
     for (std::size_t i = 0; i < n; ++i) {
       x[i] += alpha * d[i];
       r[i] -= alpha * q[i];
     }
-    preconditioner.apply(r, z);
-    filter.apply(z);
+    precondition();
     const double next = innerProduct<T>(r, z);
-    const T beta = static_cast<T>(next / delta);
+    const T beta = static_cast<T>(next / scratch.square);
     for (std::size_t i = 0; i < n; ++i) d[i] = z[i] + beta * d[i];
-    delta = next;
+    scratch.square = next;
     ++report.iterations;
-    report.residual_acceleration = largestAcceleration<T>(r, stop.inverse_mass_dt);
-    report.converged = delta <= stop.relative * stop.relative * first || slowEnough();
-    if (!std::isfinite(delta)) break;
+    report.converged = closeEnough();
+    if (!std::isfinite(next)) break;
   }
-  report.relative_residual = first > 0 ? std::sqrt(std::max(delta, 0.0) / first) : 0;
+  if (!std::isfinite(scratch.square)) report.converged = false;
+  report.relative_residual =
+      scratch.first_square > 0 ? std::sqrt(std::max(scratch.square, 0.0) / scratch.first_square) : 0;
+  report.residual_acceleration = scratch.acceleration;
   return report;
 }
 
-#define HAIRMESH_INSTANTIATE(Operator, T)                                                             \
-  template SolveReport solveModifiedPcg(const Operator<T>&, std::span<const V3<T>>, const Filter<T>&, \
-                                        Preconditioner<T>&, const StopRule<T>&, SolverScratch<T>&, std::span<V3<T>>)
+#define HAIRMESH_INSTANTIATE(Operator, T)                                                                            \
+  template SolveReport solveModifiedPcg(const Operator<T>&, std::span<const V3<T>>, const Filter<T>&,                \
+                                        Preconditioner<T>&, const StopRule<T>&, SolverScratch<T>&, std::span<V3<T>>, \
+                                        SolveStart)
 HAIRMESH_INSTANTIATE(BlockOperator, float);
 HAIRMESH_INSTANTIATE(BlockOperator, double);
 HAIRMESH_INSTANTIATE(ColumnOperator, float);

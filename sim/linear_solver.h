@@ -26,31 +26,42 @@ struct Filter {
   }
 };
 
-// When to stop: at the relative residual, measured in the preconditioner's norm against the first, or when no vertex's
-// residual exceeds `acceleration` (m/s^2, against `inverse_mass_dt`, 1 / (m h) per vertex), or at max_iterations.
+// When to stop: at the relative residual, measured in the preconditioner's norm against the first; or when no vertex's
+// residual exceeds `acceleration` (m/s^2, against `inverse_mass_dt`, 1 / (m h) per vertex); or when no vertex would
+// move by more than `displacement` (m) in the time `h` for the velocity that the preconditioner answers to the
+// residual, which estimates the error itself where the preconditioner is near to the inverse; or at max_iterations.
 template <class T>
 struct StopRule {
   double relative = 1e-3;
   double acceleration = 0;             // 0: off
   std::span<const T> inverse_mass_dt;  // 1/(kg s) per vertex; needed for residual_acceleration
+  double displacement = 0;             // 0: off
+  double h = 0;                        // s
   int max_iterations = 400;
-  double first_norm =
-      0;  // when positive, the norm that `relative` refers to in place of this solve's first: for solves continued
 };
+
+// How a solve begins. `fresh`: from x and b. `restart`: from x and the residual in the scratch, which the caller has
+// kept true while b or the filter changed; the search directions begin anew. `resume`: where the last solve stopped,
+// nothing having changed, to go on towards a stricter rule. The last two measure progress against the fresh solve's
+// first norm.
+enum class SolveStart { kFresh, kRestart, kResume };
 
 struct SolveReport {
   int iterations = 0;
   double relative_residual = 0;      // in the preconditioner's norm
   double residual_acceleration = 0;  // m/s^2, largest over vertices
-  double first_norm = 0;             // of the residual, in the preconditioner's norm
   bool converged = false;
 };
 
-// Scratch of one solve; sized once.
+// What a solve leaves behind, sized once. `r` is b - A x in all directions: in the removed ones, minus the constraint's
+// reaction.
 template <class T>
 struct SolverScratch {
   std::vector<V3<T>> r, z, d, q;
-  void resize(int n) { r.resize(n), z.resize(n), d.resize(n), q.resize(n); }
+  std::vector<V3<T>> removed;           // of r at the filter's vertices, while the preconditioner reads it
+  double square = 0, first_square = 0;  // r . P r now and at the fresh start
+  double acceleration = 0;              // m/s^2, of the filtered residual
+  void resize(int n) { r.resize(n), z.resize(n), d.resize(n), q.resize(n), removed.reserve(n); }
 };
 
 // The product with a system matrix, in either of its layouts.
@@ -74,7 +85,7 @@ SolveReport solveModifiedPcg(const Operator& a, std::span<const V3<typename Oper
                              Preconditioner<typename Operator::Number>& preconditioner,
                              const StopRule<typename Operator::Number>& stop,
                              SolverScratch<typename Operator::Number>& scratch,
-                             std::span<V3<typename Operator::Number>> x);
+                             std::span<V3<typename Operator::Number>> x, SolveStart start = SolveStart::kFresh);
 
 template <class T>
 SolveReport solveModifiedPcg(const BlockMatrix<T>& a, std::span<const V3<T>> b, const Filter<T>& filter,

@@ -114,7 +114,8 @@ std::vector<ParamField> makeTable() {
       choice<&P::integrator>("integrator", "Numerics", kIntegrators,
                              "How a step is integrated in time; linearized-euler is the paper's."),
       choice<&P::solver>("solver", "Numerics", kSolvers, "How the linear systems are solved; paper is its setting."),
-      choice<&P::precision>("precision", "Numerics", kPrecisions, "Arithmetic of the linear solver; mixed: float, the rest factor in 16 bits."),
+      choice<&P::precision>("precision", "Numerics", kPrecisions,
+                            "Arithmetic of the linear solver; mixed: float, the rest factor in 16 bits."),
       field<&P::tolerance>("tolerance", "Numerics", "", {1e-12, 0.5, kLog},
                            "Relative residual at which the linear solver stops."),
       field<&P::max_iterations>("max_iterations", "Numerics", "", {1, 5000, kLog},
@@ -122,6 +123,9 @@ std::vector<ParamField> makeTable() {
       field<&P::acceleration_tolerance>(
           "acceleration_tolerance", "Numerics", "m/s^2", {1e-9, 10, kLog},
           "A linear solve also stops when no vertex's residual, as an acceleration, exceeds this."),
+      field<&P::displacement_tolerance>("displacement_tolerance", "Numerics", "m", {1e-9, 0.01, kLog},
+                                        "A linear solve also stops when a factor (warped, direct) estimates that no "
+                                        "vertex would end farther off than this."),
       field<&P::newton_tolerance>("newton_tolerance", "Numerics", "m/s", {1e-12, 1, kLog},
                                   "The nonlinear integrators stop when no velocity changes by more than this."),
       field<&P::newton_iterations>("newton_iterations", "Numerics", "", {1, 50},

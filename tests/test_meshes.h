@@ -109,7 +109,7 @@ inline sim::SimParams tautHair() {
   p.time_step = 1.0 / 60;
   p.integrator = sim::Integrator::kLinearizedEuler, p.solver = sim::Solver::kBlockJacobi;
   p.precision = sim::Precision::kDouble;
-  p.tolerance = 1e-8, p.acceleration_tolerance = 1e-9, p.max_iterations = 2000;
+  p.tolerance = 1e-8, p.acceleration_tolerance = 1e-9, p.displacement_tolerance = 1e-9, p.max_iterations = 2000;
   p.newton_iterations = 30, p.newton_tolerance = 1e-10;
   return p;
 }
