@@ -17,6 +17,7 @@
 #include "sim/contact.h"
 #include "sim/forces/column_model.h"
 #include "sim/linear_solver.h"
+#include "sim/preconditioner_choice.h"
 #include "sim/step.h"
 
 namespace sim {
@@ -45,8 +46,7 @@ struct ImplicitSolver {
   std::vector<VertexConstraint> constraints;
   std::vector<int> touched;  // vertices that were in contact when the solve began
   bool rest_compact = false;
-  bool strained = false;  // the warped factor took too many iterations when last tried
-  int strained_solves = 0;
+  PreconditionerChoice choice;  // between the warped factor and its stand-in
   double rest_h = 0, rest_damping = 0, rest_drag = 0;  // what the rest factor was made for; rest_h 0: none
 
   ImplicitSolver(const HairMesh& mesh, const BlockPattern& pattern);

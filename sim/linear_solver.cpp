@@ -76,8 +76,11 @@ SolveReport solveModifiedPcg(const Operator& a, std::span<const V3<typename Oper
   if (start != SolveStart::kResume) {
     precondition();
     for (std::size_t i = 0; i < n; ++i) d[i] = z[i];
+    const double before = scratch.square;
     scratch.square = innerProduct<T>(r, z);
     if (start == SolveStart::kFresh) scratch.first_square = scratch.square;
+    // In the norm of the new preconditioner the progress so far counts for as much as it did in the old one's.
+    if (start == SolveStart::kExchange && before > 0) scratch.first_square *= scratch.square / before;
   }
   report.converged = closeEnough();
   while (!report.converged && report.iterations < stop.max_iterations) {

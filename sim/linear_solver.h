@@ -40,11 +40,11 @@ struct StopRule {
   int max_iterations = 400;
 };
 
-// How a solve begins. `fresh`: from x and b. `restart`: from x and the residual in the scratch, which the caller has
-// kept true while b or the filter changed; the search directions begin anew. `resume`: where the last solve stopped,
-// nothing having changed, to go on towards a stricter rule. The last two measure progress against the fresh solve's
-// first norm.
-enum class SolveStart { kFresh, kRestart, kResume };
+// How a solve begins. `fresh`: from x and b. `restart`: from x and the residual in the scratch, which the caller has kept
+// true while b or the filter changed; the search directions begin anew. `resume`: where the last solve stopped, nothing
+// having changed, to go on towards a stricter rule. `exchange`: as restart, the preconditioner being another one. All
+// but the first measure progress from the fresh solve's first norm.
+enum class SolveStart { kFresh, kRestart, kResume, kExchange };
 
 struct SolveReport {
   int iterations = 0;

@@ -64,7 +64,6 @@ bool Preconditioner<T>::setRestMatrix(const BlockMatrix<T>& rest, bool compact) 
     rest_factor_.analyze(*mesh_, *pattern_, free_);
   }
   rest_factor_fine_ = rest_factor_.factor(rest);
-  if (!incomplete_factor_) incomplete_factor_.emplace(*pattern_, free_);  // its stand-in, at hand without allocation
   rest_responses_.reset(mesh_->vertexCount());
   if constexpr (std::is_same_v<T, float>) {
     if (compact && rest_factor_fine_) {
@@ -147,6 +146,15 @@ bool Preconditioner<T>::setConstraints(std::span<const VertexConstraint> constra
   }
   if (kind_ == Solver::kDirect) return direct_responses_.setConstraints(*direct_factor_, {}, constraints, batches);
   return true;
+}
+
+template <class T>
+double Preconditioner<T>::restFactorRatio() const {
+  constexpr double kBlockBytes = 9 * sizeof(std::int16_t);
+  const double matrix = pattern_->size + pattern_->blockCount();
+  const double factor = compact_factor_ ? static_cast<double>(compact_factor_->bytes()) / kBlockBytes
+                                        : 2.0 * static_cast<double>(rest_factor_.factorBlocks());
+  return factor / matrix;
 }
 
 template <class T>

@@ -49,6 +49,8 @@ struct Preconditioner {
   void apply(std::span<const V3<T>> r, std::span<V3<T>> z);
 
   Solver kind() const { return kind_; }
+  // Blocks of the rest factor, counted in 16 bits an entry, over those of the matrix.
+  double restFactorRatio() const;
   const BlockCholesky<T>& restFactor() const { return rest_factor_; }
 
  private:

@@ -1,6 +1,7 @@
 // The preconditioners and what they are made of: factors, rotations, the matrix.
 #include "sim/preconditioner.h"
 
+#include "sim/preconditioner_choice.h"
 #include "sim/rotation.h"
 #include "tests/linear_systems.h"
 
@@ -111,6 +112,44 @@ TEST(Preconditioners, ContactsBeyondTheCorrectedOnesAreLeftToTheFilter) {
     const Eigen::VectorXd exact = denseSolution(dense, p);
     EXPECT_LT(energyNorm(dense, stackedPoints(points) - exact) / energyNorm(dense, exact), 1e-8);
   }
+}
+
+// Total cost over solves of which the two kinds cost `factor` and `blocks`.
+double costOfSolves(sim::PreconditionerChoice& choice, int solves, double factor, double blocks) {
+  double total = 0;
+  for (int k = 0; k < solves; ++k) {
+    const auto plan = choice.begin();
+    const double wanted = plan.cheap ? blocks : factor;
+    const bool overrun = wanted > plan.budget;
+    const double cost = overrun ? plan.budget + (plan.cheap ? factor : blocks) : wanted;
+    choice.end(plan, cost, overrun);
+    total += cost;
+  }
+  return total;
+}
+
+TEST(PreconditionerChoice, IsNeverMuchDearerThanTheBetterOfTheTwo) {
+  for (const auto& [factor, blocks] : {std::pair{10.0, 100.0},
+                                       {60.0, 100.0},
+                                       {100.0, 60.0},
+                                       {400.0, 50.0},
+                                       {100.0, 1000.0},
+                                       {50.0, 400.0},
+                                       {500.0, 500.0}}) {
+    sim::PreconditionerChoice choice;
+    costOfSolves(choice, 50, factor, blocks);
+    EXPECT_LT(costOfSolves(choice, 500, factor, blocks), 1.15 * 500 * std::min(factor, blocks))
+        << factor << " " << blocks;
+  }
+}
+
+TEST(PreconditionerChoice, FollowsTheMotionAndTriesNothingWhereSolvesAreCheap) {
+  sim::PreconditionerChoice choice;
+  EXPECT_EQ(costOfSolves(choice, 100, 20, 10), 2000) << "the factor serves, and nothing else is tried";
+  costOfSolves(choice, 100, 500, 50);
+  EXPECT_TRUE(choice.cheap);
+  costOfSolves(choice, 200, 20, 50);
+  EXPECT_FALSE(choice.cheap);
 }
 
 TEST(BlockMatrix, ProductIsTheDenseOne) {

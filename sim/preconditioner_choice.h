@@ -1,0 +1,48 @@
+// Which of two preconditioners serves a solve best: the warped rest factor, few and dear iterations, or the 3x3 blocks,
+// many and cheap ones. Where hair is thrown about, the rest shape says little about the matrix and the second is
+// faster.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+namespace sim {
+
+// Decides by counted work, in iterations of the cheap one, so that the same inputs always decide alike. The other is
+// tried now and then where a solve costs more than a little, for not much more than what the one in use takes.
+struct PreconditionerChoice {
+  static constexpr double kLittle = 80;  // iterations of the cheap one: it would hardly take fewer
+  static constexpr double kOverrun = 1.5, kOutburst = 2;
+  static constexpr double kGain = 0.75;                    // of the cost, for which the cheap one comes into use
+  static constexpr double kMemory = 0.8;                   // of earlier solves in the mean
+  static constexpr int kPatience = 8, kMostPatience = 64;  // solves from one trial to the next; failing ones double it
+
+  bool cheap = false;    // the 3x3 blocks are in use
+  double mean_cost = 0;  // of a solve by the one in use
+  int wait = kPatience, patience = kPatience;
+
+  struct Plan {
+    bool cheap, trial;
+    double budget;  // beyond it the other one takes over within the solve
+  };
+  Plan begin() {
+    const bool trial = (cheap || mean_cost > kLittle) && --wait <= 0;
+    if (trial) return {!cheap, true, kOverrun * mean_cost};
+    // The cheap one in use may take what it takes: nothing better is at hand.
+    return {cheap, false, cheap ? std::numeric_limits<double>::infinity() : kOutburst * std::max(kLittle, mean_cost)};
+  }
+  // `cost`: of the whole solve; `overrun`: the budget did not suffice.
+  void end(const Plan& plan, double cost, bool overrun) {
+    if (!plan.trial && !overrun) {
+      mean_cost = mean_cost > 0 ? kMemory * mean_cost + (1 - kMemory) * cost : cost;
+    } else if (!plan.trial || (!overrun && cost < (cheap ? 1 : kGain) * mean_cost)) {
+      cheap = !cheap;
+      mean_cost = cost;
+      wait = patience = kPatience;
+    } else {
+      wait = patience = std::min(2 * patience, kMostPatience);
+    }
+  }
+};
+
+}  // namespace sim
