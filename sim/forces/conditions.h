@@ -64,8 +64,8 @@ HAIRMESH_INLINE Condition<T, 4> shearCondition(const V3<T>* x, T inverse_along, 
 
 // Bend of two consecutive walls about their common horizontal edge x[2]-x[3]: C = (theta - theta_0) / length, the
 // change of curvature. x: (a, b) of the layer below, of the hinge, and above; the walls' far sides act through their
-// midpoints. `smallest_square` (m^4) is the square of the doubled area below which a wall counts as collapsed and its
-// pull is bounded.
+// midpoints. `smallest_square` (m^4) is the square of the doubled area below which a wall counts as collapsed: the pull
+// on it is bounded, and the other wall's is reduced to the same torque, so that the hinge turns nothing as a whole.
 template <class T>
 HAIRMESH_INLINE Condition<T, 6> bendCondition(const V3<T>* x, T rest_angle, T inverse_length, T smallest_square) {
   const T zero = constant<T>(0), one = constant<T>(1), half = constant<T>(0.5);
@@ -81,8 +81,13 @@ HAIRMESH_INLINE Condition<T, 6> bendCondition(const V3<T>* x, T rest_angle, T in
   angle = angle > pi ? angle - (pi + pi) : angle;
   angle = angle < -pi ? angle + (pi + pi) : angle;
   const T s1 = dot(n1, n1), s2 = dot(n2, n2);
-  const V3<T> g1 = (-length * inverse_length / (s1 > smallest_square ? s1 : smallest_square)) * n1;
-  const V3<T> g2 = (-length * inverse_length / (s2 > smallest_square ? s2 : smallest_square)) * n2;
+  // Torques go as s1 w1 and s2 w2: the smaller share of the two holds for both.
+  const T bound1 = one / (s1 > smallest_square ? s1 : smallest_square);
+  const T bound2 = one / (s2 > smallest_square ? s2 : smallest_square);
+  const T share1 = s1 * bound1, share2 = s2 * bound2;
+  const T w1 = share2 < share1 ? share2 / s1 : bound1, w2 = share1 < share2 ? share1 / s2 : bound2;
+  const T scale = -length * inverse_length;
+  const V3<T> g1 = (scale * w1) * n1, g2 = (scale * w2) * n2;
   const T t1 = dot(a, e) * inverse_e * inverse_e, t2 = dot(b, e) * inverse_e * inverse_e;
   Condition<T, 6> c;
   c.value = angle * inverse_length;
