@@ -3,8 +3,11 @@
 #include <iostream>
 
 #include "app/errors.h"
+#include "tests/bench/accuracy_document.h"
 #include "tests/bench/contact_sheet.h"
 #include "tests/bench/pareto.h"
+#include "tests/bench/peers.h"
+#include "tests/bench/solver_chart.h"
 #include "tests/bench/styles_bench.h"
 
 int main(int argc, char** argv) {
@@ -12,7 +15,9 @@ int main(int argc, char** argv) {
   bench::StylesOptions styles;
   bench::SheetOptions sheet;
   bench::ParetoOptions pareto;
-  bool run_styles = false, run_pareto = false;
+  bench::SolverChartOptions solvers;
+  bench::PeersOptions peers;
+  bool run_styles = false, run_pareto = false, run_solvers = false, run_peers = false;
   program.add_flag("--styles", run_styles,
                    "milliseconds a frame per stage for the nine styles, walking, beside the paper's");
   program.add_option("--frames", styles.frames, "measured frames a style")->check(CLI::Range(10, 100000));
@@ -24,18 +29,25 @@ int main(int argc, char** argv) {
   program.add_option("--strands", sheet.strands, "strands a picture")->check(CLI::Range(1, 1000000));
   program.add_flag("--pareto", run_pareto, "run time against error, for every scene and way to simulate it");
   program.add_option("--scenes", pareto.scenes, "scenes of --pareto, comma separated")->delimiter(',');
-  program.add_option("--out", pareto.folder, "folder of --pareto")->default_val("pareto");
+  program.add_flag("--solvers", run_solvers, "residual against microseconds of every solver on recorded systems");
+  program.add_flag("--peers", run_peers, "Bullet's soft bodies on the same hair mesh and motion, beside ours");
+  program.add_option("--out", pareto.folder, "folder of --pareto, --solvers and --peers")->default_val("pareto");
+  program.add_option("--references", pareto.references, "folder in which --pareto keeps its reference trajectories");
   program.add_option("--runs", pareto.runs, "timed runs a point")->check(CLI::Range(1, 100));
   program.add_flag("--quick", pareto.quick, "a coarser sweep");
   std::string document;
   program.add_option("--accuracy-document", document, "put the tables of this folder's sweep into its accuracy.md");
   CLI11_PARSE(program, argc, argv);
-  if (!run_styles && !run_pareto && document.empty() && sheet.folder.empty()) {
+  if (!run_styles && !run_pareto && !run_solvers && !run_peers && document.empty() && sheet.folder.empty()) {
     std::cout << program.help();
     return app::kExitUsage;
   }
   try {
     if (run_styles) bench::runStyles(styles);
+    solvers.folder = pareto.folder;
+    peers.folder = pareto.folder;
+    if (run_peers) bench::runPeers(peers);
+    if (run_solvers) bench::runSolverChart(solvers);
     if (run_pareto) bench::runPareto(pareto);
     if (!document.empty()) bench::writeAccuracyDocument(document);
     if (!sheet.folder.empty()) bench::drawContactSheets(sheet);

@@ -1,21 +1,13 @@
 #include "tests/bench/trajectory.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "app/data_path.h"
+#include "tests/bench/cpu_clock.h"
 
 namespace bench {
 namespace {
-
-// Of this thread: other work on the machine does not count.
-double cpuSeconds() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 constexpr double kSettle = 2;  // s before the start
 
@@ -51,16 +43,39 @@ TrajectoryStage::TrajectoryStage(const TrajectoryScene& scene) : scene_(scene) {
   if (scene.collapsed) sim::collapseOntoRoots(mesh(), actor_.hair);
   start_ = actor_.hair;
   playback_ = actor_.playback;
+  model_ = sim::makeForceModel(mesh(), sim::systemPattern(mesh()), params);
 }
 
-RunResult TrajectoryStage::run(sim::SimParams params) {
-  params.collide = scene_.collide;
+int TrajectoryStage::sampleCount() const {
+  return static_cast<int>(std::lround(scene_.seconds * kSamplesPerSecond));
+}
+
+void TrajectoryStage::restart() {
   actor_.playback = playback_;
   app::placeActor(actor_, true);
   actor_.hair = start_;
+}
+
+void TrajectoryStage::visitSteps(sim::SimParams params, const Visit& visit) {
+  params.collide = scene_.collide;
+  restart();
+  const int steps = static_cast<int>(std::lround(scene_.seconds / params.time_step));
+  for (int step = 0; step < steps; ++step) {
+    app::moveActor(params.time_step, actor_);
+    visit(step, {actor_.roots, actor_.ellipsoids, (step + 1) * params.time_step}, actor_.hair);
+    app::simulateActor(params, params.time_step, (step + 1) * params.time_step, actor_);
+  }
+}
+
+RunResult TrajectoryStage::run(sim::SimParams params, int samples) {
+  params.collide = scene_.collide;
+  // Factors and tables follow the parameters in the first step: once more, so that this is not timed.
+  restart();
+  app::moveActor(params.time_step, actor_);
+  app::simulateActor(params, params.time_step, params.time_step, actor_);
+  restart();
   RunResult result;
   const int steps_a_sample = static_cast<int>(std::lround(1 / (kSamplesPerSecond * params.time_step)));
-  const int samples = static_cast<int>(std::lround(scene_.seconds * kSamplesPerSecond));
   int steps = 0;
   for (int sample = 0; sample < samples; ++sample) {
     for (int k = 0; k < steps_a_sample; ++k, ++steps) {
@@ -73,11 +88,24 @@ RunResult TrajectoryStage::run(sim::SimParams params) {
       result.recoveries += report.recoveries;
     }
     result.trajectory.push_back(actor_.hair.positions);
+    result.energy.push_back(energy());
     measure(result);
   }
   result.iterations /= std::max(steps, 1);
   result.volume_error /= std::max(samples, 1);
   return result;
+}
+
+double TrajectoryStage::energy() const {
+  const sim::SimParams params;
+  std::vector<sim::V3<double>> x;
+  for (const sim::Vec3& p : actor_.hair.positions) x.push_back({p.x(), p.y(), p.z()});
+  double sum = sim::evaluate<double>(model_, x, {});
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double mass = params.density * mesh().vertex_volume[i];
+    sum += mass * (0.5 * actor_.hair.velocities[i].squaredNorm() + params.gravity * x[i].y);
+  }
+  return sum;
 }
 
 void TrajectoryStage::measure(RunResult& result) const {
@@ -101,10 +129,10 @@ void TrajectoryStage::measure(RunResult& result) const {
   }
 }
 
-TrajectoryError difference(const Trajectory& a, const Trajectory& b, double hair_length) {
+TrajectoryError difference(const Trajectory& a, const Trajectory& b, double hair_length, int samples) {
   TrajectoryError error;
   double sum = 0, count = 0;
-  for (std::size_t s = 0; s < std::min(a.size(), b.size()); ++s) {
+  for (int s = 0; s < samples; ++s) {
     for (std::size_t i = 0; i < a[s].size(); ++i) {
       const double d = (a[s][i] - b[s][i]).squaredNorm();
       sum += d, count += 1;

@@ -1,10 +1,12 @@
 // Scenes whose trajectories are compared: the same motion, simulated in different ways from the same start.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "app/actor.h"
+#include "sim/forces/force_model.h"
 
 namespace bench {
 
@@ -27,6 +29,7 @@ using Trajectory = std::vector<std::vector<sim::Vec3>>;
 
 struct RunResult {
   Trajectory trajectory;
+  std::vector<double> energy;    // J at the samples: elastic, kinetic and in the field of gravity
   double seconds = 0;            // CPU seconds of the simulation alone (motion left out)
   double iterations = 0;         // linear iterations a step, mean
   double worst_stretch = 0;      // largest |l / l0 - 1| along the columns at the samples
@@ -39,9 +42,17 @@ struct RunResult {
 class TrajectoryStage {
  public:
   explicit TrajectoryStage(const TrajectoryScene& scene);
-  // Simulates the scene. params.time_step must divide 1/30 s; collide follows the scene.
-  RunResult run(sim::SimParams params);
+  // Simulates the scene, or its first `samples`. params.time_step must divide 1/30 s; collide follows the scene.
+  RunResult run(sim::SimParams params, int samples);
+  RunResult run(const sim::SimParams& params) { return run(params, sampleCount()); }
   const sim::HairMesh& mesh() const { return actor_.haircut->mesh; }
+  const TrajectoryScene& scene() const { return scene_; }
+  const sim::HairState& start() const { return start_; }
+  int sampleCount() const;
+
+  // Calls `visit(step, input, state)` before each step of the scene, run with `params`.
+  using Visit = std::function<void(int step, const sim::StepInput& input, const sim::HairState& state)>;
+  void visitSteps(sim::SimParams params, const Visit& visit);
 
  private:
   TrajectoryScene scene_;
@@ -49,13 +60,16 @@ class TrajectoryStage {
   app::Actor actor_;
   sim::HairState start_;
   app::Playback playback_;
+  sim::ForceModel<double> model_;  // for the energy
+  void restart();
+  double energy() const;
   void measure(RunResult& result) const;
 };
 
-// Difference of two trajectories over hair length: root mean square and largest, over vertices and samples.
+// Difference of two trajectories over hair length: root mean square and largest, over vertices and the first `samples`.
 struct TrajectoryError {
   double rms = 0, most = 0;
 };
-TrajectoryError difference(const Trajectory& a, const Trajectory& b, double hair_length);
+TrajectoryError difference(const Trajectory& a, const Trajectory& b, double hair_length, int samples);
 
 }  // namespace bench

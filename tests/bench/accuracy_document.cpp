@@ -1,0 +1,221 @@
+#include "tests/bench/accuracy_document.h"
+
+#include <algorithm>
+#include <cstdarg>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "app/errors.h"
+
+namespace bench {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string word(const Json& row, const char* key) {
+  return row[key].get<std::string>();
+}
+double number(const Json& row, const char* key) {
+  return row[key].get<double>();
+}
+
+__attribute__((format(printf, 1, 2))) std::string formatted(const char* format, ...) {
+  char text[512];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  return text;
+}
+
+// The values of `key`, each once, in the order in which they appear.
+std::vector<std::string> namesIn(const Json& rows, const char* key) {
+  std::vector<std::string> names;
+  for (const Json& row : rows) {
+    if (!std::count(names.begin(), names.end(), word(row, key))) names.push_back(word(row, key));
+  }
+  return names;
+}
+
+std::vector<Json> rowsOf(const Json& rows, const std::string& scene) {
+  std::vector<Json> some;
+  for (const Json& row : rows) {
+    if (row["scene"] == scene) some.push_back(row);
+  }
+  return some;
+}
+
+const Json& defaultOf(const std::vector<Json>& rows) {
+  return *std::find_if(rows.begin(), rows.end(), [](const Json& row) { return row["default"].get<bool>(); });
+}
+
+std::string wayOf(const Json& row) {
+  return word(row, "integrator") + (word(row, "solver") == "warped" ? "" : ", " + word(row, "solver")) +
+         (row["minimization"] ? "" : ", no minimization");
+}
+
+// One line a scene: what is compared, how well the reference is known, where the default stands.
+std::string summaryTable(const Json& rows) {
+  std::string table =
+      "| scene | compared | reference's own error | default: ms/s | RMS error | energy drift | fastest with no more "
+      "error "
+      "| times faster |\n|---|---|---|---|---|---|---|---|\n";
+  for (const std::string& scene : namesIn(rows, "scene")) {
+    const std::vector<Json> some = rowsOf(rows, scene);
+    const Json& standard = defaultOf(some);
+    const Json* fastest = &standard;
+    for (const Json& row : some) {
+      const bool no_worse =
+          number(row, "error_rms") <= number(standard, "error_rms") + number(row, "reference_error_rms");
+      if (no_worse && number(row, "ms_per_second_min") < number(*fastest, "ms_per_second_min")) fastest = &row;
+    }
+    table +=
+        formatted("| %s | %.2f of %.2f s | %.1e | %.1f | %.1e | %+.3f | %s | %.2f |\n", scene.c_str(),
+                  number(standard, "compared_seconds"), number(standard, "scene_seconds"),
+                  number(standard, "reference_error_rms"), number(standard, "ms_per_second_min"),
+                  number(standard, "error_rms"), number(standard, "energy_drift"),
+                  fastest == &standard
+                      ? "the default"
+                      : formatted("%s 1/%.0f, %.0e, %s", wayOf(*fastest).c_str(), 1 / number(*fastest, "time_step"),
+                                  number(*fastest, "tolerance"), word(*fastest, "precision").c_str())
+                            .c_str(),
+                  number(standard, "ms_per_second_min") / number(*fastest, "ms_per_second_min"));
+  }
+  return table + "\n";
+}
+
+// The front of a scene and its default.
+std::string frontTable(const std::string& scene, const std::vector<Json>& rows) {
+  std::vector<Json> shown;
+  std::copy_if(rows.begin(), rows.end(), std::back_inserter(shown),
+               [](const Json& row) { return row["front"].get<bool>() || row["default"].get<bool>(); });
+  std::sort(shown.begin(), shown.end(), [](const Json& a, const Json& b) {
+    return number(a, "ms_per_second_min") < number(b, "ms_per_second_min");
+  });
+  std::string table = "### " + scene + "\n\n![" + scene + "](accuracy_" + scene + ".svg)\n\n";
+  table +=
+      "| | way | step | tolerance | precision | ms/s, least | median | RMS error | largest | iterations | stretch | "
+      "volume "
+      "| penetration, mm | energy drift |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+  for (const Json& row : shown) {
+    table += formatted(
+        "| %s | %s | 1/%.0f | %.0e | %s | %.1f | %.1f | %.1e | %.1e | %.1f | %.3f | %.3f | %.2f | %+.3f |\n",
+        row["default"] ? "**default**" : "", wayOf(row).c_str(), 1 / number(row, "time_step"), number(row, "tolerance"),
+        word(row, "precision").c_str(), number(row, "ms_per_second_min"), number(row, "ms_per_second_median"),
+        number(row, "error_rms"), number(row, "error_max"), number(row, "iterations"), number(row, "worst_stretch"),
+        number(row, "volume_error"), 1e3 * number(row, "penetration_m"), number(row, "energy_drift"));
+  }
+  return table + "\n";
+}
+
+// The default's step in every solver's hands.
+std::string solversOfSweep(const Json& rows) {
+  const std::vector<std::string> scenes = namesIn(rows, "scene");
+  std::string table = "| solver: ms/s (iterations; RMS error) |", rule = "|---|";
+  for (const std::string& scene : scenes) table += " " + scene + " |", rule += "---|";
+  table += "\n" + rule + "\n";
+  for (const std::string& solver : namesIn(rows, "solver")) {
+    table += "| " + solver + " |";
+    for (const std::string& scene : scenes) {
+      const std::vector<Json> some = rowsOf(rows, scene);
+      const Json& standard = defaultOf(some);
+      const auto same = [&](const Json& row) {
+        return row["solver"] == solver &&
+               std::ranges::all_of(std::vector{"integrator", "precision", "tolerance", "time_step", "minimization"},
+                                   [&](const char* key) { return row[key] == standard[key]; });
+      };
+      const auto found = std::find_if(some.begin(), some.end(), same);
+      table += found == some.end() ? " |"
+                                   : formatted(" %.1f (%.1f; %.1e) |", number(*found, "ms_per_second_min"),
+                                               number(*found, "iterations"), number(*found, "error_rms"));
+    }
+    table += "\n";
+  }
+  return table + "\n";
+}
+
+std::string sweepPart(const Json& rows) {
+  std::string part = summaryTable(rows);
+  for (const std::string& scene : namesIn(rows, "scene")) part += frontTable(scene, rowsOf(rows, scene));
+  return part + "### The default's step in every solver's hands\n\n" + solversOfSweep(rows);
+}
+
+// Recorded systems: microseconds to a residual.
+std::string solversPart(const Json& rows) {
+  std::string part;
+  for (const std::string& scene : namesIn(rows, "scene")) {
+    const std::vector<Json> some = rowsOf(rows, scene);
+    part += formatted("### %s: %.0f vertices, up to %.0f contacts\n\n![%s](solvers_%s.svg)\n\n", scene.c_str(),
+                      number(some.front(), "vertices"), number(some.front(), "contacts"), scene.c_str(), scene.c_str());
+    part +=
+        "| solver | precision | from nothing, us | set-up, us | to 1e-1, us | 1e-2 | 1e-4 | 1e-8 |\n"
+        "|---|---|---|---|---|---|---|---|\n";
+    for (const Json& row : some) {
+      part += formatted("| %s | %s | %.0f | %.1f |", word(row, "solver").c_str(), word(row, "precision").c_str(),
+                        number(row, "first_microseconds"), number(row, "set_up_microseconds"));
+      for (const char* level : {"1e-01", "1e-02", "1e-04", "1e-08"}) {
+        const Json& time = row["time_to"][level];
+        part += time.is_null() ? " - |" : formatted(" %.0f |", time.get<double>());
+      }
+      part += "\n";
+    }
+    part += "\n";
+  }
+  return part;
+}
+
+// Outside peers beside the default.
+std::string peersPart(const Json& rows) {
+  std::string part;
+  for (const std::string& scene : namesIn(rows, "scene")) {
+    const std::vector<Json> some = rowsOf(rows, scene);
+    part += formatted("### %s: %.0f vertices\n\n", scene.c_str(), number(some.front(), "vertices"));
+    part +=
+        "| who | ms a frame | edge error, mean | worst | volume error, mean | worst | inverted | after a collapse | "
+        "after "
+        "the motion |\n|---|---|---|---|---|---|---|---|---|\n";
+    for (const Json& row : some) {
+      part += formatted("| %s | %.3f | %.4f | %.3f | %.4f | %.2f | %.0f | %.2e | %.2e |\n", word(row, "who").c_str(),
+                        number(row, "ms_a_frame"), number(row, "edge_error_mean"), number(row, "edge_error_max"),
+                        number(row, "volume_error_mean"), number(row, "volume_error_max"), number(row, "inverted"),
+                        number(row, "after_collapse"), number(row, "after_motion"));
+    }
+    part += "\n";
+  }
+  return part;
+}
+
+Json readRows(const std::string& file, const char* command) {
+  std::ifstream stream(file);
+  Json rows = Json::parse(stream, nullptr, false);
+  if (!rows.is_array() || rows.empty()) {
+    throw app::InputError(file, "", "holds no measurement", std::string("run hairmesh-bench ") + command + " first");
+  }
+  return rows;
+}
+
+void replacePart(const std::string& file, const std::string& name, const std::string& part, std::string& text) {
+  const std::string opening = "<!-- measured: " + name + " -->", closing = "<!-- end of " + name + " -->";
+  const auto start = text.find(opening), end = text.find(closing);
+  if (start == std::string::npos || end == std::string::npos || end < start) {
+    throw app::InputError(file, "", "lacks the marks of its part '" + name + "'", "restore it from the repository");
+  }
+  text = text.substr(0, start) + opening + "\n\n" + part + text.substr(end);
+}
+
+}  // namespace
+
+void writeAccuracyDocument(const std::string& folder) {
+  const std::string file = folder + "/accuracy.md";
+  std::ifstream stream(file);
+  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  replacePart(file, "sweep", sweepPart(readRows(folder + "/pareto.json", "--pareto")), text);
+  replacePart(file, "solvers", solversPart(readRows(folder + "/solvers.json", "--solvers")), text);
+  replacePart(file, "peers", peersPart(readRows(folder + "/peers.json", "--peers")), text);
+  std::ofstream(file) << text;
+}
+
+}  // namespace bench

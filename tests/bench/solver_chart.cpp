@@ -1,0 +1,203 @@
+#include "tests/bench/solver_chart.h"
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "app/errors.h"
+#include "tests/bench/gnuplot.h"
+#include "tests/bench/own_solvers.h"
+
+namespace bench {
+namespace {
+
+struct RecordedScene {
+  const char* scene;
+  std::vector<int> steps;
+};
+
+// Steps of 1/60 s in the middle of the motion.
+const std::vector<RecordedScene> kScenes{
+    {"head_shake", {15, 30, 45}}, {"walk_high", {5, 10, 15}}, {"jump_10x", {4, 9, 14}}};
+
+// One solver's residual and cost after so many iterations: geometric means over a scene's systems.
+struct MeanRung {
+  int iterations = 0;
+  double microseconds = 0, residual = 0, displacement = 0;
+};
+struct MeanRun {
+  std::string solver, precision;
+  double first = 0, set_up = 0;  // microseconds
+  std::vector<MeanRung> rungs;
+  std::string title() const { return solver + ", " + (precision == "mixed" ? "16-bit factor" : precision); }
+};
+
+MeanRun meanOf(const RecordedMesh& shared, const std::vector<LinearRecord>& records,
+               const std::vector<SolverRun>& runs) {
+  MeanRun mean{runs.front().solver, runs.front().precision, 0, 0, {}};
+  std::size_t rungs = runs.front().rungs.size();
+  for (const SolverRun& run : runs) {
+    mean.first += run.first_microseconds / static_cast<double>(runs.size());
+    mean.set_up += run.set_up_microseconds / static_cast<double>(runs.size());
+    rungs = std::min(rungs, run.rungs.size());
+  }
+  for (std::size_t k = 0; k < rungs; ++k) {
+    double time = 0, residual = 0, displacement = 0;
+    for (std::size_t s = 0; s < runs.size(); ++s) {
+      const SolverRung& rung = runs[s].rungs[k];
+      time += std::log(std::max(rung.microseconds, 0.01));
+      residual += std::log(std::max(relativeResidual(shared, records[s], rung.x), 1e-16));
+      displacement += std::log(std::max(displacementError(shared, records[s], rung.x), 1e-16));
+    }
+    const double count = static_cast<double>(runs.size());
+    mean.rungs.push_back({runs.front().rungs[k].iterations, std::exp(time / count), std::exp(residual / count),
+                          std::exp(displacement / count)});
+  }
+  return mean;
+}
+
+// Microseconds, set-up included, until the residual has fallen to `level` for good, between rungs as a straight line in
+// the logarithm of the residual; NaN where it does not get there.
+double timeTo(const MeanRun& run, double level) {
+  std::size_t last_above = run.rungs.size();
+  for (std::size_t k = 0; k < run.rungs.size(); ++k) {
+    if (run.rungs[k].residual > level) last_above = k;
+  }
+  if (last_above == run.rungs.size()) return run.set_up;
+  if (last_above + 1 == run.rungs.size()) return std::nan("");
+  const MeanRung &a = run.rungs[last_above], &b = run.rungs[last_above + 1];
+  const double share = std::log(a.residual / level) / std::log(a.residual / b.residual);
+  return run.set_up + a.microseconds + share * (b.microseconds - a.microseconds);
+}
+
+constexpr double kLevels[] = {1e-1, 1e-2, 1e-4, 1e-8};
+
+nlohmann::json toJson(const std::string& scene, const RecordedSystems& systems, const MeanRun& run) {
+  nlohmann::json rungs = nlohmann::json::array(), times = nlohmann::json::object();
+  for (const MeanRung& rung : run.rungs) {
+    rungs.push_back({{"iterations", rung.iterations},
+                     {"microseconds", rung.microseconds},
+                     {"residual", rung.residual},
+                     {"displacement_error_m", rung.displacement}});
+  }
+  for (const double level : kLevels) {
+    const double time = timeTo(run, level);
+    char name[16];
+    std::snprintf(name, sizeof name, "%.0e", level);
+    times[name] = std::isfinite(time) ? nlohmann::json(time) : nlohmann::json();
+  }
+  std::size_t contacts = 0;
+  for (const LinearRecord& record : systems.records) contacts = std::max(contacts, record.constraints.size());
+  return {{"scene", scene},
+          {"vertices", systems.shared->mesh.vertexCount()},
+          {"contacts", contacts},
+          {"solver", run.solver},
+          {"precision", run.precision},
+          {"first_microseconds", run.first},
+          {"set_up_microseconds", run.set_up},
+          {"time_to", times},
+          {"rungs", rungs}};
+}
+
+// The curves of a chart: every solver in the precision that the program uses it in, the two factors in double as well,
+// and the libraries'. `paper` is block-jacobi under another name.
+bool isDrawn(const MeanRun& run) {
+  if (run.solver == "paper") return false;
+  if (run.solver == "warped") return run.precision != "float";
+  if (run.solver == "direct") return run.precision != "mixed";
+  const bool of_library = run.solver.find(' ') != std::string::npos;
+  return of_library || run.precision == "float";
+}
+
+Chart chartOf(const std::string& scene, const std::vector<MeanRun>& runs) {
+  Chart chart{scene + ": one linear system, set-up included",
+              "microseconds of one thread",
+              "residual / warm start''s residual",
+              {}};
+  for (const MeanRun& run : runs) {
+    if (!isDrawn(run)) continue;
+    const bool default_solver = run.solver == "warped" && run.precision == "mixed";
+    const bool direct = run.rungs.size() < 3;
+    Series series{run.title(), default_solver ? "linespoints lw 3 lc rgb 'black'" : "linespoints", {}};
+    if (direct) series.style = "points pt 3 ps 1.6 lw 2";
+    for (const MeanRung& rung : run.rungs) {
+      if (direct && rung.iterations == 0) continue;
+      series.points.emplace_back(run.set_up + rung.microseconds, rung.residual);
+    }
+    chart.series.push_back(std::move(series));
+  }
+  return chart;
+}
+
+void writeCsv(const std::string& file, const nlohmann::json& rows) {
+  std::ofstream csv(file);
+  if (!csv) throw app::InputError(file, "", "cannot be written", "choose another folder with --out");
+  csv << "scene,vertices,contacts,solver,precision,first_us,set_up_us,iterations,solve_us,residual,displacement_m\n";
+  for (const nlohmann::json& row : rows) {
+    for (const nlohmann::json& rung : row["rungs"]) {
+      csv << row["scene"] << "," << row["vertices"] << "," << row["contacts"] << "," << row["solver"] << ","
+          << row["precision"] << "," << row["first_microseconds"] << "," << row["set_up_microseconds"] << ","
+          << rung["iterations"] << "," << rung["microseconds"] << "," << rung["residual"] << ","
+          << rung["displacement_error_m"] << "\n";
+    }
+  }
+}
+
+void printRun(const MeanRun& run) {
+  std::printf("  %-36s first %9.0f  set-up %8.1f us;  to", run.title().c_str(), run.first, run.set_up);
+  for (const double level : kLevels) std::printf("  %.0e: %8.0f", level, timeTo(run, level));
+  std::printf("\n");
+  std::fflush(stdout);
+}
+
+std::vector<MeanRun> runAll(const RecordedSystems& systems) {
+  const RecordedMesh& shared = *systems.shared;
+  std::vector<MeanRun> means;
+  const auto keep = [&](const std::vector<SolverRun>& runs) {
+    means.push_back(meanOf(shared, systems.records, runs));
+    printRun(means.back());
+  };
+  for (int solver = 0; solver < static_cast<int>(sim::Solver::kCount); ++solver) {
+    for (int precision = 0; precision < static_cast<int>(sim::Precision::kCount); ++precision) {
+      // Only the warped factor is kept in 16 bits; mixed is single precision for the others.
+      const bool warped = static_cast<sim::Solver>(solver) == sim::Solver::kWarped;
+      if (!warped && static_cast<sim::Precision>(precision) == sim::Precision::kMixed) continue;
+      std::vector<SolverRun> runs;
+      for (const LinearRecord& record : systems.records) {
+        runs.push_back(
+            runOwnSolver(shared, record, static_cast<sim::Solver>(solver), static_cast<sim::Precision>(precision)));
+      }
+      keep(runs);
+    }
+  }
+  std::vector<std::vector<SolverRun>> by_record;
+  for (const LinearRecord& record : systems.records) by_record.push_back(runLibrarySolvers(shared, record));
+  for (std::size_t k = 0; k < by_record.front().size(); ++k) {
+    std::vector<SolverRun> runs;
+    for (auto& of_record : by_record) runs.push_back(std::move(of_record[k]));
+    keep(runs);
+  }
+  return means;
+}
+
+}  // namespace
+
+void runSolverChart(const SolverChartOptions& options) {
+  std::error_code fault;
+  std::filesystem::create_directories(options.folder, fault);
+  nlohmann::json rows = nlohmann::json::array();
+  for (const RecordedScene& scene : kScenes) {
+    const RecordedSystems systems = recordSystems(scene.scene, scene.steps);
+    std::printf("\n%s: %zu systems of %d vertices\n", scene.scene, systems.records.size(),
+                systems.shared->mesh.vertexCount());
+    const std::vector<MeanRun> runs = runAll(systems);
+    for (const MeanRun& run : runs) rows.push_back(toJson(scene.scene, systems, run));
+    drawChart(options.folder, std::string("solvers_") + scene.scene, chartOf(scene.scene, runs));
+  }
+  writeCsv(options.folder + "/solvers.csv", rows);
+  std::ofstream(options.folder + "/solvers.json") << rows.dump(1) << "\n";
+}
+
+}  // namespace bench

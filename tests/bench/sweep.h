@@ -1,0 +1,56 @@
+// Ways to simulate a scene, each measured: milliseconds and error.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/sim_params.h"
+#include "tests/bench/reference.h"
+
+namespace bench {
+
+enum class SweepSize { kShort, kQuick, kFull };
+
+// The default first, then the others; none twice. All sizes: every integrator at every step length and tolerance with
+// the default solver; then at some steps of the default's integrator every solver at several tolerances; every
+// precision; minimization off. Left out: the other solvers under the other integrators and at the other steps, whose
+// solutions are the same to the tolerance, so that only their time differs, by about the ratio seen here; precision and
+// minimization away from the default, for the same reason. Full: steps 1/30 to 1/960 s, tolerances 1e-1 to 1e-8. Quick:
+// to 1/240 s and 1e-3. Short: what came near the default's place on any chart.
+std::vector<sim::SimParams> waysToRun(SweepSize size);
+
+struct Point {
+  sim::SimParams params;
+  RunResult result;  // of the last run; trajectory and energies are dropped
+  TrajectoryError error;
+  double energy_drift = 0;         // mean of E - E of the reference over the range of the latter
+  double fastest = 0, median = 0;  // ms of CPU time a simulated second, over the timed runs
+  bool is_default = false, on_front = false;
+  std::string name() const;
+};
+
+// A scene's points over the samples that can be compared; the default first.
+struct Sweep {
+  TrajectoryScene scene;
+  double reference_step = 0;    // s
+  double own_error = 0;         // of the reference, over those samples
+  double compared_seconds = 0;  // of the scene
+  std::vector<Point> points;
+};
+
+// Runs every way `runs` + 1 times, the first not timed, round after round, so that a disturbance of the machine does
+// not fall on one way alone. Ways that take over a second are timed twice only.
+Sweep sweepScene(TrajectoryStage& stage, const Reference& reference, const std::vector<sim::SimParams>& ways, int runs);
+
+// Errors that differ by less than the reference's own are equal. A point is on the front when no other has an equal or
+// smaller error in less time. Times within 2 % are equal too: repeated runs differ by as much.
+void markFront(Sweep& sweep);
+
+// How many times the fastest way with an equal or smaller error is faster than the default; that way.
+struct Lag {
+  double ratio = 1;
+  const Point* way = nullptr;
+};
+Lag lagOfDefault(const Sweep& sweep);
+
+}  // namespace bench
