@@ -150,15 +150,22 @@ std::string solversPart(const Json& rows) {
     const std::vector<Json> some = rowsOf(rows, scene);
     part += formatted("### %s: %.0f vertices, up to %.0f contacts\n\n![%s](solvers_%s.svg)\n\n", scene.c_str(),
                       number(some.front(), "vertices"), number(some.front(), "contacts"), scene.c_str(), scene.c_str());
-    part +=
-        "| solver | precision | from nothing, us | set-up, us | to 1e-1, us | 1e-2 | 1e-4 | 1e-8 |\n"
-        "|---|---|---|---|---|---|---|---|\n";
+    part += "| solver | precision | from nothing | set-up |";
+    std::string rule = "|---|---|---|---|";
+    for (const char* key : {"to_residual", "to_displacement_error"}) {
+      for (const Json& time : some.front()[key]) {
+        part += formatted(key == std::string("to_residual") ? " residual %.0e |" : " %.0e m |", number(time, "level"));
+        rule += "---|";
+      }
+    }
+    part += "\n" + rule + "\n";
     for (const Json& row : some) {
       part += formatted("| %s | %s | %.0f | %.1f |", word(row, "solver").c_str(), word(row, "precision").c_str(),
                         number(row, "first_microseconds"), number(row, "set_up_microseconds"));
-      for (const char* level : {"1e-01", "1e-02", "1e-04", "1e-08"}) {
-        const Json& time = row["time_to"][level];
-        part += time.is_null() ? " - |" : formatted(" %.0f |", time.get<double>());
+      for (const char* key : {"to_residual", "to_displacement_error"}) {
+        for (const Json& time : row[key]) {
+          part += time["microseconds"].is_null() ? " - |" : formatted(" %.0f |", number(time, "microseconds"));
+        }
       }
       part += "\n";
     }
@@ -178,8 +185,9 @@ std::string peersPart(const Json& rows) {
         "after "
         "the motion |\n|---|---|---|---|---|---|---|---|---|\n";
     for (const Json& row : some) {
-      part += formatted("| %s | %.3f | %.4f | %.3f | %.4f | %.2f | %.0f | %.2e | %.2e |\n", word(row, "who").c_str(),
-                        number(row, "ms_a_frame"), number(row, "edge_error_mean"), number(row, "edge_error_max"),
+      part += formatted("| %s | %.3f | %.4f | %.3f | %.4f | %.3f | %.4f | %.2f | %.0f | %.2e | %.2e |\n",
+                        word(row, "who").c_str(), number(row, "ms_a_frame"), number(row, "along_mean"),
+                        number(row, "along_max"), number(row, "across_mean"), number(row, "across_max"),
                         number(row, "volume_error_mean"), number(row, "volume_error_max"), number(row, "inverted"),
                         number(row, "after_collapse"), number(row, "after_motion"));
     }

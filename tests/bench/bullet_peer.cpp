@@ -49,6 +49,7 @@ struct BulletHair::Parts {
           &dispatcher, &broadphase, &deformable_constraints, &configuration, &deformable_solver);
       deformable_world->setImplicit(true);
       deformable_world->setLineSearch(false);
+      deformable_world->setUseProjection(true);  // without it, implicit bodies do not move at all (3.24)
       deformable_world->setGravity(gravity);
       deformable_world->getWorldInfo().m_gravity = gravity;
     } else {
@@ -88,6 +89,8 @@ struct BulletHair::Parts {
     stiffness /= static_cast<double>(mesh.vertical_edges.size());
     for (const sim::CornerTet& tet : mesh.tets) body->appendTetra(tet.v[0], tet.v[1], tet.v[2], tet.v[3]);
     body->initializeDmInverse();
+    body->m_tetraScratches.resize(body->m_tetras.size());
+    body->m_tetraScratchesTn.resize(body->m_tetras.size());
     const auto scalar = [](double value) { return static_cast<btScalar>(value); };
     forces.push_back(std::make_unique<btDeformableMassSpringForce>(
         scalar(stiffness), scalar(stiffness * params.damping), true, scalar(0)));

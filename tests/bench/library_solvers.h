@@ -22,6 +22,10 @@ struct SolverRun {
   std::vector<SolverRung> rungs;
 };
 
+// A run ends with the rung that takes so long: what is slower is off the chart.
+inline constexpr double kLongestSolve = 2e4;     // microseconds
+inline constexpr double kSecondsPerRung = 0.01;  // of repetitions
+
 // Numbers of iterations after which a solve is looked at.
 inline const std::vector<int> kLadder{0,  1,  2,  3,   4,   6,   8,   12,  16,  24,  32,
                                       48, 64, 96, 128, 192, 256, 384, 512, 768, 1024};

@@ -8,7 +8,6 @@
 namespace bench {
 namespace {
 
-constexpr double kSecondsPerRung = 0.02;
 constexpr int kTurnsToSettle = 20;   // the rotations follow a large turn over several steps
 constexpr double kEnough = 1e-13;    // relative residual
 constexpr double kStagnated = 1e-3;  // below it, four rungs without progress end a run
@@ -118,6 +117,7 @@ SolverRun measured(OwnSolver<T> own) {
     run.rungs.push_back(std::move(rung));
     without_progress = residual < 0.9 * best ? 0 : without_progress + 1;
     best = std::min(best, residual);
+    if (run.rungs.back().microseconds > kLongestSolve) break;
     if (best < kEnough || (best < kStagnated && without_progress > 3)) break;
   }
   return run;

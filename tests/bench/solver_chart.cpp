@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "app/errors.h"
 #include "tests/bench/gnuplot.h"
@@ -58,35 +59,41 @@ MeanRun meanOf(const RecordedMesh& shared, const std::vector<LinearRecord>& reco
   return mean;
 }
 
-// Microseconds, set-up included, until the residual has fallen to `level` for good, between rungs as a straight line in
-// the logarithm of the residual; NaN where it does not get there.
-double timeTo(const MeanRun& run, double level) {
-  std::size_t last_above = run.rungs.size();
+// Microseconds, set-up included, until the measure has fallen to `level` for good, between rungs as a straight line in
+// its logarithm; NaN where it does not get there.
+double timeTo(const MeanRun& run, double MeanRung::*measure, double level) {
+  std::size_t after = 0;  // the rung from which it stays below
   for (std::size_t k = 0; k < run.rungs.size(); ++k) {
-    if (run.rungs[k].residual > level) last_above = k;
+    if (run.rungs[k].*measure > level) after = k + 1;
   }
-  if (last_above == run.rungs.size()) return run.set_up;
-  if (last_above + 1 == run.rungs.size()) return std::nan("");
-  const MeanRung &a = run.rungs[last_above], &b = run.rungs[last_above + 1];
-  const double share = std::log(a.residual / level) / std::log(a.residual / b.residual);
+  if (after == run.rungs.size()) return std::nan("");
+  const MeanRung& b = run.rungs[after];
+  if (after == 0) return run.set_up + b.microseconds;
+  const MeanRung& a = run.rungs[after - 1];
+  const double share = std::log(a.*measure / level) / std::log(a.*measure / (b.*measure));
   return run.set_up + a.microseconds + share * (b.microseconds - a.microseconds);
 }
 
-constexpr double kLevels[] = {1e-1, 1e-2, 1e-4, 1e-8};
+constexpr double kResiduals[] = {1e-1, 1e-2, 1e-4, 1e-8};
+constexpr double kDisplacements[] = {1e-4, 1e-5, 1e-6};  // m
+
+nlohmann::json timesTo(const MeanRun& run, double MeanRung::*measure, std::span<const double> levels) {
+  nlohmann::json times = nlohmann::json::array();
+  for (const double level : levels) {
+    const double time = timeTo(run, measure, level);
+    times.push_back(
+        {{"level", level}, {"microseconds", std::isfinite(time) ? nlohmann::json(time) : nlohmann::json()}});
+  }
+  return times;
+}
 
 nlohmann::json toJson(const std::string& scene, const RecordedSystems& systems, const MeanRun& run) {
-  nlohmann::json rungs = nlohmann::json::array(), times = nlohmann::json::object();
+  nlohmann::json rungs = nlohmann::json::array();
   for (const MeanRung& rung : run.rungs) {
     rungs.push_back({{"iterations", rung.iterations},
                      {"microseconds", rung.microseconds},
                      {"residual", rung.residual},
                      {"displacement_error_m", rung.displacement}});
-  }
-  for (const double level : kLevels) {
-    const double time = timeTo(run, level);
-    char name[16];
-    std::snprintf(name, sizeof name, "%.0e", level);
-    times[name] = std::isfinite(time) ? nlohmann::json(time) : nlohmann::json();
   }
   std::size_t contacts = 0;
   for (const LinearRecord& record : systems.records) contacts = std::max(contacts, record.constraints.size());
@@ -97,14 +104,14 @@ nlohmann::json toJson(const std::string& scene, const RecordedSystems& systems, 
           {"precision", run.precision},
           {"first_microseconds", run.first},
           {"set_up_microseconds", run.set_up},
-          {"time_to", times},
+          {"to_residual", timesTo(run, &MeanRung::residual, kResiduals)},
+          {"to_displacement_error", timesTo(run, &MeanRung::displacement, kDisplacements)},
           {"rungs", rungs}};
 }
 
 // The curves of a chart: every solver in the precision that the program uses it in, the two factors in double as well,
-// and the libraries'. `paper` is block-jacobi under another name.
+// and the libraries'.
 bool isDrawn(const MeanRun& run) {
-  if (run.solver == "paper") return false;
   if (run.solver == "warped") return run.precision != "float";
   if (run.solver == "direct") return run.precision != "mixed";
   const bool of_library = run.solver.find(' ') != std::string::npos;
@@ -146,8 +153,11 @@ void writeCsv(const std::string& file, const nlohmann::json& rows) {
 }
 
 void printRun(const MeanRun& run) {
-  std::printf("  %-36s first %9.0f  set-up %8.1f us;  to", run.title().c_str(), run.first, run.set_up);
-  for (const double level : kLevels) std::printf("  %.0e: %8.0f", level, timeTo(run, level));
+  std::printf("  %-32s first %7.0f  set-up %7.1f us;", run.title().c_str(), run.first, run.set_up);
+  for (const double level : kResiduals) std::printf(" %.0e: %6.0f", level, timeTo(run, &MeanRung::residual, level));
+  for (const double level : kDisplacements) {
+    std::printf(" %.0e m: %6.0f", level, timeTo(run, &MeanRung::displacement, level));
+  }
   std::printf("\n");
   std::fflush(stdout);
 }
@@ -160,6 +170,7 @@ std::vector<MeanRun> runAll(const RecordedSystems& systems) {
     printRun(means.back());
   };
   for (int solver = 0; solver < static_cast<int>(sim::Solver::kCount); ++solver) {
+    if (static_cast<sim::Solver>(solver) == sim::Solver::kPaper) continue;  // block-jacobi under another name
     for (int precision = 0; precision < static_cast<int>(sim::Precision::kCount); ++precision) {
       // Only the warped factor is kept in 16 bits; mixed is single precision for the others.
       const bool warped = static_cast<sim::Solver>(solver) == sim::Solver::kWarped;
