@@ -1,7 +1,6 @@
 // s: a supernode, L_ss: its triangle, L_rs: its rows below; w: its width, h: its height, both in scalars.
 #include "sim/block_cholesky.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
@@ -110,7 +109,7 @@ void BlockCholesky<T>::analyze(const BlockPattern& pattern, std::vector<int> eli
     c += s.columns;
     supernodes.push_back(s);
   }
-  values.assign(at, T(0));
+  value_count_ = at;
   reached_.assign(supernodes.size(), 0);
   largest_front_ = 0;
   int tallest = 0;
@@ -121,7 +120,6 @@ void BlockCholesky<T>::analyze(const BlockPattern& pattern, std::vector<int> eli
   }
   work_.assign(3 * static_cast<std::size_t>(n), T(0));
   gathered_.assign(tallest, T(0));
-  front_.assign(static_cast<std::size_t>(largest_front_) * largest_front_, T(0));
   local_.assign(n, -1);
   // Deepest the stack of update matrices gets: supernodes are in postorder, so children pop before their parent pushes.
   std::vector<std::size_t> pending;
@@ -141,8 +139,9 @@ void BlockCholesky<T>::analyze(const BlockPattern& pattern, std::vector<int> eli
     depth += pending.back();
     deepest = std::max(deepest, depth);
   }
-  stack_.assign(deepest, T(0));
+  deepest_stack_ = deepest;
   pending_.reserve(supernodes.size());
+  at_ = {};
 
   // Entries of the matrix by the column that eliminates them.
   entries_first_.assign(n + 1, 0);
@@ -165,65 +164,19 @@ void BlockCholesky<T>::analyze(const HairMesh& mesh, const BlockPattern& pattern
   BlockCholesky<T> other;
   other.analyze(pattern, nestedDissectionOrder(pattern, keep, dissectionCoordinates(mesh)));
   analyze(pattern, minimumDegreeOrder(pattern, keep));
-  if (other.values.size() < values.size()) *this = std::move(other);
+  if (other.value_count_ < value_count_) *this = std::move(other);
 }
 
 template <class T>
-bool BlockCholesky<T>::factor(const BlockMatrix<T>& a) {
-  using Matrix = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
-  using Panel = Eigen::Map<Matrix, 0, Eigen::OuterStride<>>;
-  stack_size_ = 0;
-  pending_.clear();
-  for (std::size_t index = 0; index < supernodes.size(); ++index) {
-    const Supernode& s = supernodes[index];
-    const int w = s.width(), h = s.height(), size = w + h;
-    for (int k = 0; k < s.columns; ++k) local_[s.first + k] = 3 * k;
-    for (int k = 0; k < s.rows; ++k) local_[row_index[s.rows_first + k]] = w + 3 * k;
-    Panel front(front_.data(), size, size, Eigen::OuterStride<>(size));
-    front.template triangularView<Eigen::Lower>().setZero();
-    for (int c = s.first; c < s.first + s.columns; ++c) {
-      const int column = local_[c];
-      const M3<T>& d = a.diagonal[order[c]];
-      for (int k = 0; k < 9; ++k) front(column + k / 3, column + k % 3) += d.m[k];
-      for (int k = entries_first_[c]; k < entries_first_[c + 1]; ++k) {
-        const Entry& entry = entries_[k];
-        const M3<T>& b = a.lower[entry.block];
-        const int r = local_[entry.row];
-        for (int e = 0; e < 9; ++e) {
-          front(r + (entry.turned ? e % 3 : e / 3), column + (entry.turned ? e / 3 : e % 3)) += b.m[e];
-        }
-      }
-    }
-    while (!pending_.empty() && supernodes[pending_.back().supernode].parent == static_cast<int>(index)) {
-      const Supernode& child = supernodes[pending_.back().supernode];
-      const int ch = child.height();
-      const Panel update(stack_.data() + pending_.back().at, ch, ch, Eigen::OuterStride<>(ch));
-      for (int j = 0; j < child.rows; ++j) {
-        const int column = local_[row_index[child.rows_first + j]];
-        for (int i = j; i < child.rows; ++i) {
-          const int row = local_[row_index[child.rows_first + i]];
-          front.template block<3, 3>(row, column) += update.template block<3, 3>(3 * i, 3 * j);
-        }
-      }
-      stack_size_ = pending_.back().at;
-      pending_.pop_back();
-    }
-    auto diagonal = front.topLeftCorner(w, w);
-    if (Eigen::internal::llt_inplace<T, Eigen::Lower>::blocked(diagonal) >= 0) return false;
-    Panel inverse(values.data() + s.values, w, w, Eigen::OuterStride<>(w));
-    inverse.setIdentity();
-    diagonal.template triangularView<Eigen::Lower>().solveInPlace(inverse);
-    if (h > 0) {
-      Panel rows(values.data() + s.values + static_cast<std::size_t>(w) * w, h, w, Eigen::OuterStride<>(h));
-      rows.noalias() = front.bottomLeftCorner(h, w) * inverse.transpose().template triangularView<Eigen::Upper>();
-      Panel update(stack_.data() + stack_size_, h, h, Eigen::OuterStride<>(h));
-      update = front.bottomRightCorner(h, h);
-      update.template selfadjointView<Eigen::Lower>().rankUpdate(rows, T(-1));
-      pending_.push_back({static_cast<int>(index), stack_size_});
-      stack_size_ += static_cast<std::size_t>(h) * h;
-    }
-  }
-  return true;
+void BlockCholesky<T>::copyLayout(const BlockCholesky<T>& other) {
+  order = other.order, position = other.position, supernodes = other.supernodes, row_index = other.row_index;
+  supernode_of_ = other.supernode_of_, entries_ = other.entries_, entries_first_ = other.entries_first_;
+  value_count_ = other.value_count_, deepest_stack_ = other.deepest_stack_, largest_front_ = other.largest_front_;
+  work_.resize(other.work_.size());
+  gathered_.resize(other.gathered_.size());
+  reached_.resize(other.reached_.size());
+  local_.assign(other.local_.size(), -1);
+  pending_.reserve(supernodes.size());
 }
 
 template <class T>
@@ -297,7 +250,7 @@ void BlockCholesky<T>::solveBatch(std::span<T> x, std::span<const int> touched) 
 
 template <class T>
 std::size_t BlockCholesky<T>::factorBlocks() const {
-  return values.size() / 9;
+  return value_count_ / 9;
 }
 
 template struct BlockCholesky<float>;

@@ -37,8 +37,22 @@ struct BlockCholesky {
   // The same with whichever of minimum degree and nested dissection fills less on this mesh.
   void analyze(const HairMesh& mesh, const BlockPattern& pattern, std::span<const unsigned char> keep);
 
+  // The layout of a factor that was analyzed, of the same precision, without its values.
+  void copyLayout(const BlockCholesky<T>& other);
+
   // Factors the matrix; false when a pivot is not positive (the factor is then unusable). Needs analyze.
   bool factor(const BlockMatrix<T>& a);
+
+  // The same in slices, bit for bit, for factors that must not stall a frame: beginFactor, then continueFactor with the
+  // same matrix until the progress is not kMore. A slice does pieces of work until about `operations` floating-point
+  // operations are spent, at least one piece; a piece is at most a few tens of columns of one panel.
+  enum class Progress { kMore, kDone, kFailed };
+  void beginFactor();
+  Progress continueFactor(const BlockMatrix<T>& a, double operations);
+  double factorOperations() const;                      // of a whole factorization
+  int supernodesDone() const { return at_.supernode; }  // their panels are final
+  // Frees what beginFactor takes again; the layout stays.
+  void release();
 
   // z = A^-1 r over the kept rows, zero at the others.
   void solve(std::span<const V3<T>> r, std::span<V3<T>> z);
@@ -63,6 +77,17 @@ struct BlockCholesky {
     std::size_t at;  // in stack_
   };
   std::vector<Pending> pending_;  // update matrices on the stack
+  // Where a factorization in slices stands: what is done of a supernode is its stage, and the columns of it.
+  struct Place {
+    int supernode = 0, stage = 0, column = 0;
+  };
+  Place at_;
+  // One piece of the supernode at hand; adds the operations it took. False when a pivot is not positive.
+  bool assembleFront(const BlockMatrix<T>& a, double& spent);
+  bool factorDiagonal(double& spent);
+  bool invertDiagonal(double& spent);
+  bool computeRows(double& spent);
+  bool computeUpdate(double& spent);
   // A block of the matrix: where it lies in the column that eliminates it, and whether it is needed transposed there.
   struct Entry {
     int block, row;
@@ -70,7 +95,7 @@ struct BlockCholesky {
   };
   std::vector<Entry> entries_;  // by elimination column
   std::vector<int> entries_first_;
-  std::size_t stack_size_ = 0;
+  std::size_t stack_size_ = 0, deepest_stack_ = 0, value_count_ = 0;
   int largest_front_ = 0;
 };
 

@@ -141,13 +141,23 @@ void takeScaled(const float* x, const float* scale, int w, float* out) {
 
 }  // namespace
 
-void CompactFactor::assign(const BlockCholesky<float>& factor) {
+void CompactFactor::begin(const BlockCholesky<float>& factor) {
   values_.clear(), scales_.clear(), triangle_at_.clear(), rows_at_.clear(), scales_at_.clear();
   values_.reserve(factor.values.size() * 3 / 4);
   int widest = 0, highest = 0;
   for (const auto& s : factor.supernodes) {
+    widest = std::max(widest, s.width());
+    highest = std::max(highest, s.height());
+  }
+  x_.resize(3 * factor.order.size());
+  gathered_.assign(kRows * stripsOf(std::max(highest, widest)), 0);
+  scaled_.assign(kRows * stripsOf(widest), 0);
+}
+
+void CompactFactor::append(const BlockCholesky<float>& factor, int end) {
+  for (int k = static_cast<int>(rows_at_.size()); k < end; ++k) {
+    const auto& s = factor.supernodes[k];
     const int w = s.width(), h = s.height();
-    widest = std::max(widest, w), highest = std::max(highest, h);
     const float* inverse = factor.values.data() + s.values;
     scales_at_.push_back(scales_.size());
     triangle_at_.push_back(values_.size());
@@ -155,9 +165,11 @@ void CompactFactor::assign(const BlockCholesky<float>& factor) {
     rows_at_.push_back(values_.size());
     appendStrips(inverse + static_cast<std::size_t>(w) * w, h, w, false, values_, scales_);
   }
-  x_.resize(3 * factor.order.size());
-  gathered_.assign(kRows * stripsOf(std::max(highest, widest)), 0);
-  scaled_.assign(kRows * stripsOf(widest), 0);
+}
+
+void CompactFactor::assign(const BlockCholesky<float>& factor) {
+  begin(factor);
+  append(factor, static_cast<int>(factor.supernodes.size()));
 }
 
 void CompactFactor::solve(const BlockCholesky<float>& factor, std::span<const V3<float>> r, std::span<V3<float>> z) {

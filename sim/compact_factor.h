@@ -20,6 +20,10 @@ class CompactFactor {
  public:
   void assign(const BlockCholesky<float>& factor);
 
+  // The same a few supernodes at a time, as they become final: begin, then append up to the supernode given.
+  void begin(const BlockCholesky<float>& factor);
+  void append(const BlockCholesky<float>& factor, int end);
+
   // z = (L L^T)^-1 r over the kept rows, zero at the others. `factor`: the one given to assign.
   void solve(const BlockCholesky<float>& factor, std::span<const V3<float>> r, std::span<V3<float>> z);
 

@@ -18,6 +18,9 @@ constexpr int kUncorrectedIterations = 10;
 // matrix's (measured at 361 and 2,268 vertices: 4.3 and 8.8 times the cheap one).
 constexpr double kFactorCost = 0.9;
 constexpr double kStaleRatio = 3;  // of h (h + damping): BDF2's start-up step shares its factor with the steps after it
+constexpr double kStaleMass = 1.5;  // of 1 + h drag: the air is thick while the hair settles
+// Steps over which a new rest factor is spread, and when the old one serves badly.
+constexpr int kSlices = 24, kHurriedSlices = 6;
 
 template <class T>
 V3<T> cast(const Vec3& p) {
@@ -77,7 +80,12 @@ template <class T>
 void ImplicitSolver<T>::setModel(const HairMesh& mesh, const ForceModel<double>& source, double density) {
   model.setElements(mesh, layout, source);
   for (int i = 0; i < mesh.vertexCount(); ++i) mass[i] = static_cast<T>(density * mesh.vertex_volume[i]);
-  rest_h = 0;
+  rest_outdated = true;
+}
+
+template <class T>
+void ImplicitSolver<T>::setRestShifts(const HairMesh& mesh, const ForceModel<double>& source) {
+  model.setElements(mesh, layout, source);
 }
 
 // Packs positions and velocities and runs the kernels.
@@ -92,30 +100,47 @@ T ImplicitSolver<T>::evaluateForces(std::span<const V3<T>> at, ColumnEvaluation<
   return evaluate<T>(model, layout, packed_x, out);
 }
 
-// The factor of the rest shape's matrix, for the warped preconditioner. A stale factor stays a valid preconditioner, so
-// it is made anew only when the material has changed or the time step or damping has by more than the factor below.
 template <class T>
-void ImplicitSolver<T>::refreshRestFactor(const HairMesh& mesh, const SimParams& params, double h) {
-  const double now = h * (h + params.damping), then = rest_h * (rest_h + rest_damping);
-  const bool compact = params.precision == Precision::kMixed;
-  if (rest_h > 0 && now < kStaleRatio * then && then < kStaleRatio * now && rest_drag == params.air_drag &&
-      rest_compact == compact) {
-    return;
-  }
+void ImplicitSolver<T>::assembleRest(const HairMesh& mesh, const FactorTerms& terms) {
   const Vec3 origin = mesh.shape.positions[0];
   for (std::size_t i = 0; i < x.size(); ++i) trial[i] = cast<T>(Vec3(mesh.shape.positions[i] - origin));
   matrix.setZero();
   ColumnEvaluation<T> out;
   out.matrix = &matrix;
-  out.matrix_scale = static_cast<T>(now);
-  out.tension_scale = static_cast<T>(h * h);
+  out.matrix_scale = static_cast<T>(terms.stiffness());
+  out.tension_scale = static_cast<T>(terms.h * terms.h);
   evaluateForces(trial, out, {});
-  matrix.addMass(static_cast<T>(1 + h * params.air_drag), mass);
+  matrix.addMass(static_cast<T>(terms.mass()), mass);
+}
+
+// The factor of the rest shape's matrix, for the warped preconditioner. A stale factor stays a valid preconditioner, so
+// it is made anew only when the material has changed, or the terms of the matrix by more than the ratios below; and it
+// serves while the new one is made in slices.
+template <class T>
+void ImplicitSolver<T>::refreshRestFactor(const HairMesh& mesh, const SimParams& params, double h) {
+  const FactorTerms wanted{h, params.damping, params.air_drag};
+  const auto near = [](double a, double b, double ratio) { return a < ratio * b && b < ratio * a; };
+  const bool compact = params.precision == Precision::kMixed;
+  const bool usable = rest_terms.h > 0 && rest_compact == compact;
+  if (usable && gradual && preconditioner.restMatrixPending()) {
+    const int slices = strained ? kHurriedSlices : kSlices;
+    if (preconditioner.continueRestMatrix(slices, constraints)) rest_terms = coming_terms;
+    return;
+  }
+  if (usable && !rest_outdated && near(wanted.stiffness(), rest_terms.stiffness(), kStaleRatio) &&
+      near(wanted.mass(), rest_terms.mass(), kStaleMass)) {
+    return;
+  }
+  assembleRest(mesh, wanted);
+  rest_outdated = false;
+  if (usable && gradual && preconditioner.restFactorFine()) {
+    preconditioner.beginRestMatrix(matrix);
+    coming_terms = wanted;
+    return;
+  }
   preconditioner.setRestMatrix(matrix, compact);
-  rest_h = h;
+  rest_terms = wanted;
   rest_compact = compact;
-  rest_damping = params.damping;
-  rest_drag = params.air_drag;
 }
 
 // Matrix, right-hand side of A v = rhs at the current x (and v, unless the linearization is `at_start`, the paper's).

@@ -47,10 +47,19 @@ struct ImplicitSolver {
   std::vector<int> touched;  // vertices that were in contact when the solve began
   bool rest_compact = false;
   PreconditionerChoice choice;  // between the warped factor and its stand-in
-  double rest_h = 0, rest_damping = 0, rest_drag = 0;  // what the rest factor was made for; rest_h 0: none
+  bool rest_outdated = false;  // the material has changed since
+  bool gradual = false;        // a factor that is no longer the best is replaced in slices, not at once
+  // What the rest factor, and the one in the making, were made for; h 0: there is none.
+  struct FactorTerms {
+    double h = 0, damping = 0, drag = 0;
+    double stiffness() const { return h * (h + damping); }
+    double mass() const { return 1 + h * drag; }
+  };
+  FactorTerms rest_terms, coming_terms;
 
   ImplicitSolver(const HairMesh& mesh, const BlockPattern& pattern);
   void setModel(const HairMesh& mesh, const ForceModel<double>& source, double density);
+  void setRestShifts(const HairMesh& mesh, const ForceModel<double>& source);  // nothing else of the model changed
 
   // Solves for the velocities at the step's end, from the guess in `velocities`, which it overwrites. Roots take the
   // velocities given there; contacts constrain their vertices, are dropped when they would pull, and stick or slide by
@@ -61,6 +70,7 @@ struct ImplicitSolver {
  private:
   T evaluateForces(std::span<const V3<T>> at, ColumnEvaluation<T> out, std::span<const V3<T>> velocities);
   void refreshRestFactor(const HairMesh& mesh, const SimParams& params, double h);
+  void assembleRest(const HairMesh& mesh, const FactorTerms& terms);
   void assemble(const SimParams& params, const StepBase& base, bool at_start);
   double residualSquare(const SimParams& params, const StepBase& base);
   void setContactConstraints(const HairMesh& mesh, const SimParams& params, const StepBase& base,

@@ -1,7 +1,6 @@
 #include "sim/preconditioner.h"
 
 #include <algorithm>
-#include <type_traits>
 
 #include "sim/elimination_order.h"
 
@@ -60,20 +59,22 @@ bool Preconditioner<T>::factorColumns(const BlockMatrix<T>& a) {
 
 template <class T>
 bool Preconditioner<T>::setRestMatrix(const BlockMatrix<T>& rest, bool compact) {
-  if (rest_factor_.order.empty()) {
-    rest_factor_.analyze(*mesh_, *pattern_, free_);
-  }
-  rest_factor_fine_ = rest_factor_.factor(rest);
-  rest_responses_.reset(mesh_->vertexCount());
-  if constexpr (std::is_same_v<T, float>) {
-    if (compact && rest_factor_fine_) {
-      if (!compact_factor_) compact_factor_.emplace();
-      compact_factor_->assign(rest_factor_);
-    } else {
-      compact_factor_.reset();
-    }
-  }
-  return rest_factor_fine_;
+  if (rest_.factor.order.empty()) rest_.factor.analyze(*mesh_, *pattern_, free_);
+  making_.stage = RestFactorInMaking<T>::Stage::kIdle;
+  rest_.make(rest, compact);
+  return rest_.fine;
+}
+
+template <class T>
+void Preconditioner<T>::beginRestMatrix(const ColumnMatrix<T>& rest) {
+  if (!making_.matrix.pattern) making_.matrix = BlockMatrix<T>(pattern_);
+  rest.toBlocks(*mesh_, making_.matrix);
+  making_.begin(rest_);
+}
+
+template <class T>
+bool Preconditioner<T>::continueRestMatrix(int slices, std::span<const VertexConstraint> lasting) {
+  return making_.work(rest_.factor.factorOperations() / slices, lasting, rotations_.matrices, rest_);
 }
 
 template <class T>
@@ -84,7 +85,7 @@ void Preconditioner<T>::updateRotations(std::span<const V3<T>> x) {
 template <class T>
 void Preconditioner<T>::update(const BlockMatrix<T>& a, Solver solver) {
   kind_ = solver;
-  rest_responses_.clear();
+  rest_.responses.clear();
   if (solver == Solver::kWarped) return;
   if (solver == Solver::kDirect) {
     if (!direct_factor_) {
@@ -129,9 +130,9 @@ bool Preconditioner<T>::setRestMatrix(const ColumnMatrix<T>& rest, bool compact)
 
 template <class T>
 void Preconditioner<T>::update(const ColumnMatrix<T>& a, Solver solver) {
-  if (solver == Solver::kWarped && !rest_factor_fine_) solver = Solver::kBlockJacobi;
+  if (solver == Solver::kWarped && !rest_.fine) solver = Solver::kBlockJacobi;
   kind_ = solver;
-  rest_responses_.clear();
+  rest_.responses.clear();
   if (solver == Solver::kWarped) return;
   if (solver == Solver::kDirect || solver == Solver::kColumn || solver == Solver::kIncomplete) {
     return update(toBlocks(a), solver);
@@ -142,7 +143,7 @@ void Preconditioner<T>::update(const ColumnMatrix<T>& a, Solver solver) {
 template <class T>
 bool Preconditioner<T>::setConstraints(std::span<const VertexConstraint> constraints, int batches) {
   if (kind_ == Solver::kWarped) {
-    return rest_responses_.setConstraints(rest_factor_, rotations_.matrices, constraints, batches);
+    return rest_.responses.setConstraints(rest_.factor, rotations_.matrices, constraints, batches);
   }
   if (kind_ == Solver::kDirect) return direct_responses_.setConstraints(*direct_factor_, {}, constraints, batches);
   return true;
@@ -152,17 +153,9 @@ template <class T>
 double Preconditioner<T>::restFactorRatio() const {
   constexpr double kBlockBytes = 9 * sizeof(std::int16_t);
   const double matrix = pattern_->size + pattern_->blockCount();
-  const double factor = compact_factor_ ? static_cast<double>(compact_factor_->bytes()) / kBlockBytes
-                                        : 2.0 * static_cast<double>(rest_factor_.factorBlocks());
+  const double factor = rest_.compact ? static_cast<double>(rest_.compact->bytes()) / kBlockBytes
+                                      : 2.0 * static_cast<double>(rest_.factor.factorBlocks());
   return factor / matrix;
-}
-
-template <class T>
-void Preconditioner<T>::solveRest(std::span<const V3<T>> r, std::span<V3<T>> z) {
-  if constexpr (std::is_same_v<T, float>) {
-    if (compact_factor_) return compact_factor_->solve(rest_factor_, r, z);
-  }
-  rest_factor_.solve(r, z);
 }
 
 template <class T>
@@ -170,8 +163,7 @@ void Preconditioner<T>::apply(std::span<const V3<T>> r, std::span<V3<T>> z) {
   switch (kind_) {
     case Solver::kWarped:
       for (std::size_t i = 0; i < turned_.size(); ++i) turned_[i] = transposeTimes(rotations_.matrices[i], r[i]);
-      solveRest(turned_, z);
-      rest_responses_.correct(z);
+      rest_.solve(turned_, z);
       for (std::size_t i = 0; i < turned_.size(); ++i) z[i] = rotations_.matrices[i] * z[i];
       return;
     case Solver::kDirect:

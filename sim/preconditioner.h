@@ -8,10 +8,10 @@
 #include "sim/block_cholesky.h"
 #include "sim/block_matrix.h"
 #include "sim/column_matrix.h"
-#include "sim/compact_factor.h"
 #include "sim/contact.h"
 #include "sim/contact_response.h"
 #include "sim/incomplete_cholesky.h"
+#include "sim/rest_factor.h"
 #include "sim/rotation.h"
 #include "sim/sim_params.h"
 
@@ -40,6 +40,12 @@ struct Preconditioner {
   bool setRestMatrix(const ColumnMatrix<T>& rest, bool compact = false);
   void updateRotations(std::span<const V3<T>> x);
 
+  // The rest factor made anew off the critical path, where there is one: begin takes the matrix, each continue works
+  // for one `slices`-th of a factorization and answers whether the new factor has just taken the old one's place.
+  void beginRestMatrix(const ColumnMatrix<T>& rest);
+  bool continueRestMatrix(int slices, std::span<const VertexConstraint> lasting);
+  bool restMatrixPending() const { return making_.stage != RestFactorInMaking<T>::Stage::kIdle; }
+
   // The constraints of the solves to come. `warped` and `direct`, whose P knows nothing of them, correct it with what
   // their factor answers at the constrained vertices (contact_response.h), without which a few contacts cost tens of
   // iterations; at most `batches` batches of answers are computed anew. Returns whether all constraints are met by P.
@@ -51,7 +57,8 @@ struct Preconditioner {
   Solver kind() const { return kind_; }
   // Blocks of the rest factor, counted in 16 bits an entry, over those of the matrix.
   double restFactorRatio() const;
-  const BlockCholesky<T>& restFactor() const { return rest_factor_; }
+  bool restFactorFine() const { return rest_.fine; }
+  const BlockCholesky<T>& restFactor() const { return rest_.factor; }
 
  private:
   const HairMesh* mesh_;
@@ -60,9 +67,8 @@ struct Preconditioner {
   std::vector<M3<T>> inverse_diagonal_;  // per block row: scalar diagonals or 3x3 inverses
   std::vector<V3<T>> turned_;
   VertexRotations<T> rotations_;
-  BlockCholesky<T> rest_factor_;
-  std::optional<CompactFactor> compact_factor_;
-  bool rest_factor_fine_ = false;  // else 3x3 blocks stand in for `warped`
+  RestFactor<T> rest_;  // where it is not fine, 3x3 blocks stand in for `warped`
+  RestFactorInMaking<T> making_;
   std::optional<BlockCholesky<T>> direct_factor_, column_factor_;
   std::optional<IncompleteCholesky<T>> incomplete_factor_;
   std::optional<BlockPattern> column_pattern_;
@@ -70,10 +76,9 @@ struct Preconditioner {
   std::vector<int> column_block_;    // pattern block of each block of column_pattern_
   std::vector<unsigned char> free_;  // not a root
 
-  ContactResponses<T> rest_responses_, direct_responses_;
+  ContactResponses<T> direct_responses_;
   std::optional<BlockMatrix<T>> blocks_;  // a matrix given in column layout, for the factorizations
 
-  void solveRest(std::span<const V3<T>> r, std::span<V3<T>> z);
   bool factorColumns(const BlockMatrix<T>& a);
   const BlockMatrix<T>& toBlocks(const ColumnMatrix<T>& a);
   void setDiagonal(int i, const M3<T>& d);

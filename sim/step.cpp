@@ -6,6 +6,7 @@
 
 #include "sim/contact.h"
 #include "sim/deformation.h"
+#include "sim/forces/material.h"
 #include "sim/implicit_solve.h"
 
 namespace sim {
@@ -14,6 +15,7 @@ namespace {
 
 constexpr double kFastest = 500;      // m/s; beyond it a velocity is absurd
 constexpr double kFarthest = 4;       // hair lengths from the root; beyond it a position is absurd
+constexpr int kBalanceSlices = 40;    // steps over which the balance of gravity is solved for anew
 constexpr int kCorrectionRounds = 4;  // of position correction and deformation minimization
 
 // The parameters that stiffnesses and rest shifts depend on.
@@ -36,9 +38,9 @@ struct StepContext::Parts {
   double (*clock)();
   BlockPattern pattern;
   EdgeLaplacian laplacian;
-  ForceModel<double> model;
+  Material material;
   SimParams params;
-  bool has_model = false;
+  bool has_model = false, gradual = false;
   std::optional<ImplicitSolver<float>> single_solver;
   std::optional<ImplicitSolver<double>> double_solver;
   // Scratch of a step.
@@ -49,7 +51,7 @@ struct StepContext::Parts {
   double started = 0;
 
   Parts(const HairMesh& m, double (*c)())
-      : mesh(&m), clock(c), pattern(systemPattern(m)), laplacian(makeEdgeLaplacian(m)) {
+      : mesh(&m), clock(c), pattern(systemPattern(m)), laplacian(makeEdgeLaplacian(m)), material(m, pattern) {
     const int n = m.vertexCount();
     for (auto* array : {&x_hat, &v_hat, &start_positions, &start_velocities, &uncorrected, &displacement})
       array->resize(n);
@@ -71,6 +73,10 @@ StepContext::~StepContext() = default;
 StepContext::StepContext(StepContext&&) noexcept = default;
 StepContext& StepContext::operator=(StepContext&&) noexcept = default;
 
+void StepContext::refreshGradually(bool on) {
+  parts_->gradual = on;
+}
+
 const char* stageName(Stage stage) {
   constexpr const char* kNames[kStageCount] = {"forces", "solve", "collision", "minimization", "other"};
   return kNames[stage];
@@ -82,17 +88,29 @@ using Parts = StepContext::Parts;
 
 // Derived values follow the parameters that they depend on.
 void refreshModel(const SimParams& params, Parts& parts) {
+  const auto tell = [&](auto&& take) {
+    if (parts.single_solver) take(*parts.single_solver);
+    if (parts.double_solver) take(*parts.double_solver);
+  };
+  const auto setModel = [&](auto& solver) { solver.setModel(*parts.mesh, parts.material.model, params.density); };
   if (!parts.has_model || !sameMaterial(params, parts.params)) {
-    parts.model = makeForceModel(*parts.mesh, parts.pattern, params);
-    if (parts.single_solver) parts.single_solver->setModel(*parts.mesh, parts.model, params.density);
-    if (parts.double_solver) parts.double_solver->setModel(*parts.mesh, parts.model, params.density);
+    if (parts.has_model && parts.gradual) {
+      parts.material.follow(params);
+    } else {
+      parts.material.set(params);
+    }
     parts.has_model = true;
+    tell(setModel);
+  } else if (parts.material.work(kBalanceSlices)) {
+    tell([&](auto& solver) { solver.setRestShifts(*parts.mesh, parts.material.model); });
   }
   parts.params = params;
   const auto ready = [&](auto& solver) {
-    if (solver) return;
-    solver.emplace(*parts.mesh, parts.pattern);
-    solver->setModel(*parts.mesh, parts.model, params.density);
+    if (!solver) {
+      solver.emplace(*parts.mesh, parts.pattern);
+      setModel(*solver);
+    }
+    solver->gradual = parts.gradual;
   };
   if (params.precision == Precision::kDouble)
     ready(parts.double_solver);

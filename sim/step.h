@@ -45,6 +45,12 @@ class StepContext {
   StepContext(StepContext&&) noexcept;
   StepContext& operator=(StepContext&&) noexcept;
 
+  // When parameters change, what is derived from them at a cost (the factor of the rest shape, the balance of gravity)
+  // follows in slices over the next steps instead of at once: no step takes much longer than any other, and which step
+  // takes the new values over depends on counted work alone. Off at first. A step's result then depends on what the
+  // context went through before, within the solver's tolerance.
+  void refreshGradually(bool on);
+
   struct Parts;
   Parts& parts() { return *parts_; }
 

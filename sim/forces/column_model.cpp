@@ -106,33 +106,52 @@ ColumnModel<T>::ColumnModel(const HairMesh& mesh, const ColumnLayout& layout, co
 }
 
 template <class T>
+void ColumnModel<T>::locate(const HairMesh& mesh, const ColumnLayout& layout, const ForceModel<double>& model) {
+  const auto first = model.stretch.size() > 0 ? model.stretch.vertices.front() : std::array<int, 2>{-1, -1};
+  if (first == located_.first_stretch && located_.stretch.size() == model.stretch.size() &&
+      located_.shear.size() == model.shear.size() && located_.bend.size() == model.bend.size()) {
+    return;
+  }
+  const std::size_t stride = layout.stride;
+  const EdgeNumber number = numberEdges(mesh);
+  const auto edgeEntry = [&](int va, int vb) {
+    const int p = mesh.column_of[va], q = mesh.column_of[vb];
+    const auto it = number.find({p, q});
+    const bool against = it == number.end();
+    return Entry{static_cast<std::size_t>(against ? number.at({q, p}) : it->second) * stride + mesh.layer_of[va],
+                 against};
+  };
+  located_ = {};
+  located_.first_stretch = first;
+  for (const auto& [a, b] : model.stretch.vertices) {
+    const bool is_vertical = mesh.column_of[a] == mesh.column_of[b];
+    located_.stretch.push_back(is_vertical ? Entry{mesh.column_of[a] * stride + mesh.layer_of[a], false}
+                                           : edgeEntry(a, b));
+  }
+  for (const auto& v : model.shear.vertices) located_.shear.push_back(edgeEntry(v[0], v[1]));
+  for (const auto& v : model.bend.vertices) located_.bend.push_back(edgeEntry(v[0], v[1]));
+}
+
+template <class T>
 void ColumnModel<T>::setElements(const HairMesh& mesh, const ColumnLayout& layout, const ForceModel<double>& model) {
   const std::size_t stride = layout.stride;
+  locate(mesh, layout, model);
   for (auto* array :
        {&vertical.stiffness, &horizontal.stiffness, &shear_stiffness, &bend_stiffness, &volume_stiffness}) {
     std::fill(array->begin(), array->end(), T(0));
   }
   std::fill(bend_smallest_square.begin(), bend_smallest_square.end(), T(1));  // the padding divides by it
-  const EdgeNumber number = numberEdges(mesh);
-  // Entry of a root edge's element arrays and whether the element is wound against the edge.
-  const auto edgeEntry = [&](int va, int vb) {
-    const int p = mesh.column_of[va], q = mesh.column_of[vb];
-    const auto it = number.find({p, q});
-    const bool against = it == number.end();
-    return std::pair(static_cast<std::size_t>(against ? number.at({q, p}) : it->second) * stride + mesh.layer_of[va],
-                     against);
-  };
   for (std::size_t e = 0; e < model.stretch.size(); ++e) {
     const auto [a, b] = model.stretch.vertices[e];
     const bool is_vertical = mesh.column_of[a] == mesh.column_of[b];
     Stretch& to = is_vertical ? vertical : horizontal;
-    const std::size_t at = is_vertical ? mesh.column_of[a] * stride + mesh.layer_of[a] : edgeEntry(a, b).first;
+    const std::size_t at = located_.stretch[e].at;
     to.stiffness[at] = static_cast<T>(model.stretch.stiffness[e]);
     to.inverse_length[at] = static_cast<T>(model.stretch.inverse_length[e]);
     to.shift[at] = static_cast<T>(model.stretch.shift[e]);
   }
   for (std::size_t e = 0; e < model.shear.size(); ++e) {
-    const auto [at, against] = edgeEntry(model.shear.vertices[e][0], model.shear.vertices[e][1]);
+    const auto [at, against] = located_.shear[e];
     shear_stiffness[at] = static_cast<T>(model.shear.stiffness[e]);
     inverse_along[at] = static_cast<T>(model.shear.inverse_along[e]);
     inverse_across[at] = static_cast<T>(model.shear.inverse_across[e]);
@@ -140,7 +159,7 @@ void ColumnModel<T>::setElements(const HairMesh& mesh, const ColumnLayout& layou
     shear_shift[at] = static_cast<T>(against ? -model.shear.shift[e] : model.shear.shift[e]);
   }
   for (std::size_t e = 0; e < model.bend.size(); ++e) {
-    const auto [at, against] = edgeEntry(model.bend.vertices[e][0], model.bend.vertices[e][1]);
+    const auto [at, against] = located_.bend[e];
     const double rest = model.bend.rest_angle[e] + model.bend.shift[e] / model.bend.inverse_length[e];
     bend_stiffness[at] = static_cast<T>(model.bend.stiffness[e]);
     bend_rest_angle[at] = static_cast<T>(against ? -rest : rest);

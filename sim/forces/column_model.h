@@ -49,6 +49,20 @@ struct ColumnModel {
   ColumnModel(const HairMesh& mesh, const ColumnLayout& layout, const ColumnPattern& pattern);
   // Takes over stiffnesses and rest values; the topology stays.
   void setElements(const HairMesh& mesh, const ColumnLayout& layout, const ForceModel<double>& model);
+
+ private:
+  // Entry of an element in its arrays, and whether it is wound against the root edge. Looked up once for each set of
+  // elements: a dragged slider changes their values in every frame.
+  struct Entry {
+    std::size_t at;
+    bool against;
+  };
+  struct Located {
+    std::vector<Entry> stretch, shear, bend;
+    std::array<int, 2> first_stretch{-1, -1};  // tells sets of one size apart
+  };
+  Located located_;
+  void locate(const HairMesh& mesh, const ColumnLayout& layout, const ForceModel<double>& model);
 };
 
 // What an evaluation in column layout adds up; see Evaluation.

@@ -1,9 +1,6 @@
 #include "sim/forces/force_model.h"
 
 #include <algorithm>
-#include <cmath>
-
-#include "sim/block_cholesky.h"
 
 namespace sim {
 namespace {
@@ -75,74 +72,6 @@ void addVolume(const HairMesh& mesh, const BlockPattern& pattern, const SimParam
   }
 }
 
-// The rest shifts that let the styled pose carry gravity. With C = shift + (change) at that pose, balance asks for
-// sum k s g = M a with s the extra shift and a = -gravity up; of all solutions the one of least energy is s = -g . y,
-// where K y = M (0, -gravity, 0) and K = sum k g g^T over the free vertices: one linear solve.
-void solveRestShifts(const HairMesh& mesh, const BlockPattern& pattern, const SimParams& params,
-                     ForceModel<double>& model) {
-  const int n = mesh.vertexCount();
-  std::vector<V3<double>> x(n);
-  for (int v = 0; v < n; ++v) x[v] = plain(mesh.shape.positions[v]);
-  BlockMatrix<double> stiffness(&pattern);
-  Evaluation<double> out;
-  out.matrix = &stiffness;
-  out.matrix_scale = 1;
-  evaluate<double>(model, x, out);
-
-  std::vector<unsigned char> free_vertex(n);
-  std::vector<V3<double>> load(n, V3<double>{0, 0, 0}), y(n), residual(n), more(n);
-  double scale = 0;
-  for (int i = 0; i < n; ++i) scale = std::max(scale, stiffness.diagonal[i].m[0]);
-  for (int i = 0; i < n; ++i) {
-    free_vertex[i] = !mesh.isRoot(i);
-    if (free_vertex[i]) load[i].y = -params.density * mesh.vertex_volume[i] * params.gravity;
-    // A material without bend or shear leaves modes without stiffness; the smallest share keeps the solve defined.
-    for (int k = 0; k < 9; k += 4) stiffness.diagonal[i].m[k] += 1e-13 * scale;
-  }
-  BlockCholesky<double> factor;
-  factor.analyze(mesh, pattern, free_vertex);
-  if (!factor.factor(stiffness)) return;
-  factor.solve(load, y);
-  multiply<double>(stiffness, y, residual);
-  for (int i = 0; i < n; ++i) residual[i] = load[i] - residual[i];
-  factor.solve(residual, more);
-  for (int i = 0; i < n; ++i) {
-    y[i] += more[i];
-    if (!std::isfinite(dot(y[i], y[i]))) return;
-  }
-  const auto bounded = [](double change, double bound) { return std::clamp(change, -bound, bound); };
-  for (std::size_t e = 0; e < model.stretch.size(); ++e) {
-    const auto [a, b] = model.stretch.vertices[e];
-    const auto s = stretchCondition(x[a], x[b], model.stretch.inverse_length[e]);
-    model.stretch.shift[e] -= bounded(s.inverse_length * dot(s.direction, y[b] - y[a]), 0.5);
-  }
-  const auto shift = [&]<int N>(Elements<double, N>& elements, const auto& conditionOf, const auto& bound) {
-    for (std::size_t e = 0; e < elements.size(); ++e) {
-      V3<double> p[N];
-      for (int k = 0; k < N; ++k) p[k] = x[elements.vertices[e][k]];
-      const Condition<double, N> c = conditionOf(e, p);
-      double change = 0;
-      for (int k = 0; k < N; ++k) change += dot(c.g[k], y[elements.vertices[e][k]]);
-      elements.shift[e] -= bounded(change, bound(e));
-    }
-  };
-  shift(
-      model.shear,
-      [&](std::size_t e, const V3<double>* p) {
-        return shearCondition(p, model.shear.inverse_along[e], model.shear.inverse_across[e]);
-      },
-      [](std::size_t) { return 0.5; });
-  shift(
-      model.bend,
-      [&](std::size_t e, const V3<double>* p) {
-        return bendCondition(p, model.bend.rest_angle[e], model.bend.inverse_length[e], model.bend.smallest_square[e]);
-      },
-      [&](std::size_t e) { return 1.0 * model.bend.inverse_length[e]; });
-  shift(
-      model.volume, [&](std::size_t e, const V3<double>* p) { return volumeCondition(p, model.volume.rest_volume[e]); },
-      [&](std::size_t e) { return 0.5 * model.volume.rest_volume[e]; });
-}
-
 template <class T>
 std::vector<T> converted(const std::vector<double>& values) {
   return std::vector<T>(values.begin(), values.end());
@@ -171,14 +100,35 @@ BlockPattern systemPattern(const HairMesh& mesh) {
   return makePattern(mesh.vertexCount(), std::move(pairs));
 }
 
-ForceModel<double> makeForceModel(const HairMesh& mesh, const BlockPattern& pattern, const SimParams& params) {
+ForceModel<double> makeElements(const HairMesh& mesh, const BlockPattern& pattern, const SimParams& params) {
   ForceModel<double> model;
   addStretch(mesh, pattern, params, model);
   addShear(mesh, pattern, params, model);
   addBend(mesh, pattern, params, model);
   addVolume(mesh, pattern, params, model);
-  if (params.sag_free && params.gravity > 0) solveRestShifts(mesh, pattern, params, model);
   return model;
+}
+
+bool setStiffness(const HairMesh& mesh, const SimParams& params, ForceModel<double>& model) {
+  const auto count = [](bool on, std::size_t elements) { return on ? elements : 0; };
+  if (params.stretch_along <= 0 || params.stretch_across + params.stretch_edge <= 0 ||
+      model.stretch.size() != mesh.vertical_edges.size() + mesh.horizontal_edges.size() ||
+      model.shear.size() != count(params.shear > 0, mesh.walls.size()) ||
+      model.bend.size() != count(params.bend > 0, mesh.hinges.size()) ||
+      model.volume.size() != count(params.volume > 0, mesh.tets.size())) {
+    return false;
+  }
+  std::size_t e = 0;
+  for (const Edge& edge : mesh.vertical_edges) model.stretch.stiffness[e++] = params.stretch_along * edge.volume;
+  const double across = params.stretch_across + params.stretch_edge;
+  for (const Edge& edge : mesh.horizontal_edges) model.stretch.stiffness[e++] = across * edge.volume;
+  for (e = 0; e < model.shear.size(); ++e) model.shear.stiffness[e] = params.shear * mesh.walls[e].volume;
+  for (e = 0; e < model.bend.size(); ++e) model.bend.stiffness[e] = params.bend * mesh.hinges[e].volume;
+  for (e = 0; e < model.volume.size(); ++e) {
+    const CornerTet& tet = mesh.tets[e];
+    model.volume.stiffness[e] = params.volume * tet.volume / (tet.rest_volume * tet.rest_volume);
+  }
+  return true;
 }
 
 template <class T>

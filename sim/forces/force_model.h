@@ -59,6 +59,13 @@ BlockPattern systemPattern(const HairMesh& mesh);
 // the material is too soft to hold the style.
 ForceModel<double> makeForceModel(const HairMesh& mesh, const BlockPattern& pattern, const SimParams& params);
 
+// The elements alone, at rest in the styled pose without gravity.
+ForceModel<double> makeElements(const HairMesh& mesh, const BlockPattern& pattern, const SimParams& params);
+
+// The stiffnesses that makeElements would give, over its elements. False, and nothing changed, when other elements
+// would exist: a modulus has become zero or was.
+bool setStiffness(const HairMesh& mesh, const SimParams& params, ForceModel<double>& model);
+
 // The same in another precision.
 template <class T>
 ForceModel<T> convertModel(const ForceModel<double>& model);

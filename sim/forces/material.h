@@ -1,0 +1,63 @@
+// The force model as it follows the material parameters: at once, and cheaply where only their values change.
+//
+// Sag-free rest shifts are a linear solve with a factor of the stiffness, far too long for a frame in which a slider is
+// dragged. But what balances gravity is the product of stiffness and shift of each element: kept while the stiffness
+// changes, gravity stays balanced exactly. Only which of all balances it is, the one of least energy, needs the solve,
+// and that can come a little later, in slices.
+#pragma once
+
+#include <vector>
+
+#include "sim/block_cholesky.h"
+#include "sim/forces/force_model.h"
+
+namespace sim {
+
+// A balance of gravity in the styled pose: the change of each element's condition, and what it was solved for.
+struct RestBalance {
+  struct Share {
+    std::vector<double> change, stiffness;  // the shift is minus the change; J
+  };
+  Share stretch, shear, bend, volume;
+  double load = 0;  // density times gravity, N/m^3; 0: there is none
+};
+
+struct Material {
+  ForceModel<double> model;
+
+  Material(const HairMesh& mesh, const BlockPattern& pattern);
+
+  // As makeForceModel.
+  void set(const SimParams& params);
+
+  // Stiffnesses and weight follow at once, the balance by its products. Then outdated() until its own is solved for.
+  void follow(const SimParams& params);
+
+  // Goes on with the solve for the balance of the last parameters by one `slices`-th of its factorization; answers
+  // whether `model` has just changed. A parameter that changes meanwhile lets the solve finish and begin again.
+  bool work(int slices);
+  bool outdated() const { return outdated_ || stage_ != Stage::kIdle; }
+
+ private:
+  enum class Stage { kIdle, kFactor, kSolve, kRefine, kShifts };
+  const HairMesh* mesh_;
+  const BlockPattern* pattern_;
+  SimParams params_;
+  std::vector<double> rest_shear_;  // shifts before any balance
+  RestBalance balance_, coming_;
+  bool outdated_ = false;  // the balance is not that of params_
+  Stage stage_ = Stage::kIdle;
+  BlockCholesky<double> factor_;
+  BlockMatrix<double> stiffness_;
+  std::vector<V3<double>> x_, load_, y_, residual_, more_;
+
+  double wantedLoad() const { return params_.sag_free ? params_.density * params_.gravity : 0; }
+  void rebuild();
+  void beginBalance();
+  bool continueBalance(double operations);
+  bool refine();
+  void takeChanges();
+  void applyBalance();
+};
+
+}  // namespace sim
