@@ -9,6 +9,7 @@
 #include "app/character.h"
 #include "app/motion.h"
 #include "app/scene_file.h"
+#include "app/step_error.h"
 #include "render/frame_input.h"
 #include "sim/hair_mesh.h"
 #include "sim/hair_state.h"
@@ -53,6 +54,7 @@ struct Actor {
   std::vector<sim::Vec3> roots;
   std::unique_ptr<sim::StepContext> context;
   sim::StepReport last_report;
+  StepErrorMeter error_meter;
 
   // What the picture shows.
   Pose shown_pose;

@@ -35,6 +35,7 @@ void recast(const CharacterSpec& spec, bool same_motion, Demo& demo) {
   fresh.playback.paused = old.playback.paused;
   if (same_motion) keepMotion(old, fresh);
   settleActor(demo.scene.sim, demo.scene.playback.settle, fresh);
+  fresh.context->refreshGradually(true);
   old = std::move(fresh);
   tidy(demo.actors, demo.wardrobe);
 }
@@ -81,6 +82,7 @@ void changeScene(const std::string& file, Demo& demo) {
   Demo fresh = openScene(std::move(scene), demo.aspect);
   fresh.debug = demo.debug;
   fresh.capture = demo.capture;
+  fresh.governor.counted = demo.governor.counted;
   fresh.message = "scene " + fresh.scene.name;
   demo = std::move(fresh);
 }
@@ -221,6 +223,9 @@ void apply(const Request& request, Demo& demo) {
       demo.capture.screenshot = true;
       demo.capture.screenshot_file = request.text;
       return;
+    case Ask::kBudget:
+      playback.budget_ms = std::isfinite(request.value) ? std::clamp(request.value, 0.0, kLargestBudget) : 0;
+      return setBudget(1e-3 * playback.budget_ms, demo.governor);
     case Ask::kRecord:
       demo.capture.recording = on;
       demo.capture.recorded = 0;

@@ -9,26 +9,43 @@ namespace {
 
 // How many steps the frame takes: the clock's, or those asked for one by one.
 int takeSteps(double seconds, Demo& demo) {
-  const sim::SimParams& params = demo.scene.sim;
+  const sim::SimParams& params = demo.running;
   if (!demo.paused) return tick(seconds, params.time_step, params.max_steps_per_frame, demo.clock);
   const int steps = std::exchange(demo.single_steps, 0);
-  demo.clock.steps += steps;
-  demo.clock.ahead = steps ? 0 : demo.clock.ahead;
+  takeSingly(steps, params.time_step, demo.clock);
   return steps;
 }
 
-void moveActors(Demo& demo) {
-  const double step = demo.scene.sim.time_step;
-  const double time = static_cast<double>(demo.clock.steps) * step;
+// What the governor is told of a step.
+void weighStep(const sim::StepReport& report, const sim::SimParams& params, Actor& actor, FrameStats& stats) {
+  stats.counted_cost += countedCost(actor.haircut->mesh.vertexCount(), report);
+  stats.step_error += stepError(actor.haircut->mesh, params.integrator, actor.hair, actor.error_meter);
+}
+
+void moveActors(double time, Demo& demo) {
   for (Actor& actor : demo.actors) {
     const double start = now();
-    const sim::StepReport report = stepActor(demo.scene.sim, step, time, actor);
+    const sim::StepReport report = stepActor(demo.running, demo.running.time_step, time, actor);
     addStep(report, now() - start, demo.stats);
+    if (demo.governor.budget > 0) weighStep(report, demo.running, actor, demo.stats);
   }
 }
 
+// What the frame cost and how far it strayed, to the governor.
+void keepBudget(double seconds, int steps, Demo& demo) {
+  FrameStats& stats = demo.stats;
+  stats.rung = demo.governor.budget > 0 ? demo.governor.rung : -1;
+  if (demo.paused || stats.rung < 0) return;
+  FrameCost frame;
+  frame.shown = std::max(0.0, seconds);
+  frame.simulated = steps * demo.running.time_step;
+  frame.cost = demo.governor.counted ? stats.counted_cost : stats.simulation();
+  if (stats.steps > 0) frame.error = accumulatedError(demo.running.integrator, stats.step_error / stats.steps);
+  observe(frame, demo.governor);
+}
+
 void handPositionsOver(Demo& demo) {
-  const double fraction = shownFraction(demo.clock, demo.scene.sim.time_step);
+  const double fraction = shownFraction(demo.clock, demo.running.time_step);
   for (Actor& actor : demo.actors) showActor(fraction, actor);
   demo.debug_geometry.lines.clear();
   demo.debug_geometry.triangles.clear();
@@ -122,8 +139,11 @@ Demo openScene(Scene scene, double aspect) {
   for (const CharacterSpec& spec : demo.scene.characters) {
     Actor actor = makeActor(spec, demo.scene.playback, demo.wardrobe);
     settleActor(demo.scene.sim, demo.scene.playback.settle, actor);
+    actor.context->refreshGradually(true);
     demo.actors.push_back(std::move(actor));
   }
+  demo.running = demo.scene.sim;
+  setBudget(1e-3 * demo.scene.playback.budget_ms, demo.governor);
   demo.camera = makeCamera(demo.scene.camera, demo.actors.front(), aspect);
   return demo;
 }
@@ -154,8 +174,10 @@ void advanceFrame(Demo& demo, double seconds, const FrameTarget& target) {
   demo.stats = FrameStats{};
   applyRequests(demo);
 
+  demo.running = governed(demo.scene.sim, demo.governor);
   const int steps = takeSteps(seconds, demo);
-  for (int i = 0; i < steps; ++i) moveActors(demo);
+  for (int i = 1; i <= steps; ++i) moveActors(demo.clock.time - (steps - i) * demo.running.time_step, demo);
+  keepBudget(seconds, steps, demo);
 
   timed(demo.stats.seconds[kTimeHandOver], [&] { handPositionsOver(demo); });
   follow(demo.actors.front(), seconds, demo.camera);

@@ -11,6 +11,7 @@
 #include "app/debug_views.h"
 #include "app/fixed_clock.h"
 #include "app/frame_stats.h"
+#include "app/governor.h"
 #include "app/request.h"
 #include "app/scene_file.h"
 #include "render/renderer.h"
@@ -35,7 +36,9 @@ struct Demo {
   double aspect = 16.0 / 9;  // of the picture
   DebugViews debug;
   FixedClock clock;
-  double shown_time = 0;  // s
+  Governor governor;
+  sim::SimParams running;  // the scene's parameters as the governor lets them run
+  double shown_time = 0;   // s
   bool paused = false;
   int single_steps = 0;  // asked for while paused
 

@@ -10,6 +10,13 @@ namespace {
 constexpr double kSlack = 1e-6;
 // Longer frames (a debugger, a laptop's lid) are not caught up with at all.
 constexpr double kLongestFrame = 10;
+
+void countSteps(int steps, double step, FixedClock& clock) {
+  if (steps <= 0) return;
+  clock.steps += steps;
+  clock.time += steps * step;
+  clock.step = step;
+}
 }  // namespace
 
 int tick(double seconds, double step, int most, FixedClock& clock) {
@@ -24,12 +31,17 @@ int tick(double seconds, double step, int most, FixedClock& clock) {
   const int taken = std::min(needed, most);
   clock.ahead += needed * step;
   clock.lost += (needed - taken) * step;
-  clock.steps += taken;
+  countSteps(taken, step, clock);
   return taken;
 }
 
+void takeSingly(int steps, double step, FixedClock& clock) {
+  countSteps(steps, step, clock);
+  if (steps > 0) clock.ahead = 0;
+}
+
 double shownFraction(const FixedClock& clock, double step) {
-  const double fraction = 1 - clock.ahead / step;
+  const double fraction = 1 - clock.ahead / (clock.step > 0 ? clock.step : step);
   return fraction > 1 - kSlack ? 1 : std::max(0.0, fraction);
 }
 

@@ -9,6 +9,8 @@ struct FixedClock {
   double ahead = 0;  // s from the shown moment to the last state, 0 <= ahead < step
   double lost = 0;   // s of time given up so far because frames took more steps than allowed
   long steps = 0;    // taken so far
+  double time = 0;   // s that these make: the moment of the last state
+  double step = 0;   // s, the length of the last step
 };
 
 // Advances the shown moment by `seconds` and returns the steps of length `step` (s) to take now, at most `most`. Time
@@ -16,7 +18,11 @@ struct FixedClock {
 // count as 0.
 int tick(double seconds, double step, int most, FixedClock& clock);
 
-// Where the shown moment lies between the last state but one (0) and the last state (1).
+// Steps taken one by one while the picture stands still: they end at the shown moment.
+void takeSingly(int steps, double step, FixedClock& clock);
+
+// Where the shown moment lies between the last state but one (0) and the last state (1). `step`: for a clock that has
+// not taken any; the length of the last step counts where there is one, so that it may change without a jump.
 double shownFraction(const FixedClock& clock, double step);
 
 }  // namespace app

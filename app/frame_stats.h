@@ -39,6 +39,9 @@ struct FrameStats {
   bool converged = true;
   int contacts = 0, corrected = 0, recoveries = 0;
   double max_penetration = 0;  // m
+  int rung = -1;               // of the budget governor; -1: it is off
+  double counted_cost = 0;     // s; this and the next only where it is on
+  double step_error = 0;       // sum over steps and characters, see step_error.h
   render::FrameReport draw;
 
   double simulation() const {

@@ -124,6 +124,13 @@ bool parseOptions(int argc, char** argv, Options& options, int& exit_code) {
       ->group(motion)
       ->option_text("S")
       ->check(within(0, 1e5));
+  parser
+      .add_option("--budget-ms", options.budget_ms,
+                  "Hold the simulation to so many milliseconds a frame: integrator, time step and tolerance are then "
+                  "chosen by the governor; 0: off")
+      ->group(motion)
+      ->option_text("X")
+      ->check(within(0, kLargestBudget));
   parser.add_flag("--travel", options.travel, "Let the figure travel over the ground as the clip does")->group(motion);
 
   const char* picture = "Picture";

@@ -24,6 +24,7 @@ struct Options {
   std::vector<std::pair<std::string, std::string>> set;  // --set name=value
   std::string style, resolution;                         // empty: the scene's
   std::string hair, motion, parts, clip;                 // files; name of a clip
+  double budget_ms = -1;                                 // negative: the scene's
   double speed = -1, fps = -1;                           // negative: the scene's
   double start = -1;                                     // s into the clip; negative: the scene's
   int strands = -1;

@@ -60,6 +60,7 @@ json frameJson(const FrameStats& stats, std::size_t index, double fps) {
           {"minimization_iterations", stats.minimization_iterations},
           {"max_penetration", stats.max_penetration},
           {"recoveries", stats.recoveries},
+          {"rung", stats.rung},
           {"strands_drawn", stats.draw.strands_drawn},
           {"draw_calls", stats.draw.draw_calls},
           {"bytes_uploaded", stats.draw.bytes_uploaded},
@@ -83,6 +84,38 @@ json actorJson(const Actor& actor) {
           {"notes", actor.body->character.notes}};
 }
 
+// How the budget was held: what was promised, and what came.
+json budgetJson(const RunReport& run, const Demo& demo) {
+  const Governor& governor = demo.governor;
+  if (governor.budget <= 0) return nullptr;
+  json rungs = json::array();
+  for (int k = 0; k < static_cast<int>(ladder().size()); ++k) {
+    std::vector<double> measured, counted;
+    for (const FrameStats& frame : run.frames) {
+      if (frame.rung != k) continue;
+      measured.push_back(frame.simulation());
+      counted.push_back(frame.counted_cost);
+    }
+    if (measured.empty()) continue;
+    rungs.push_back({{"rung", k},
+                     {"name", ladder()[k].name},
+                     {"frames", measured.size()},
+                     {"predicted_error", ladder()[k].error},
+                     {"measured_milliseconds", milliseconds(measured)},
+                     {"counted_milliseconds", milliseconds(counted)}});
+  }
+  return {{"budget_milliseconds", 1e3 * governor.budget},
+          {"cost", governor.counted ? "counted work" : "measured time"},
+          {"rung", rungName(governor)},
+          {"predicted_milliseconds", 1e3 * governor.predicted_cost},
+          {"measured_milliseconds", 1e3 * governor.measured_cost},
+          {"predicted_error", predictedError(governor)},
+          {"measured_error", governor.measured_error},
+          {"changes", governor.changes},
+          {"over_budget", governor.over_budget},
+          {"rungs", rungs}};
+}
+
 }  // namespace
 
 void writeReport(const std::string& file, const RunReport& run, const Demo& demo) {
@@ -100,7 +133,8 @@ void writeReport(const std::string& file, const RunReport& run, const Demo& demo
       {"scene", demo.scene.name},
       {"renderer", run.renderer},
       {"characters", characters},
-      {"time_step", demo.scene.sim.time_step},
+      {"time_step", demo.running.time_step},
+      {"budget", budgetJson(run, demo)},
       {"fps", run.fps},
       {"start_milliseconds", 1e3 * run.start_seconds},
       {"summary",

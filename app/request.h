@@ -34,6 +34,7 @@ enum class Ask {
   kView,         // name: front, three-quarter, ...
   kFollow,       // value
   kDebugView,    // name, value
+  kBudget,       // value: ms of simulation a frame; 0: the person's own settings hold
   kScreenshot,   // text: file, empty for the next free name
   kRecord        // value: 1 starts, 0 ends
 };

@@ -69,13 +69,14 @@ CameraSpec readCamera(const JsonPlace& place) {
 }
 
 PlaybackSpec readPlayback(const JsonPlace& place) {
-  place.expectObject({"speed", "loop", "blend", "fps", "settle"});
+  place.expectObject({"speed", "loop", "blend", "fps", "settle", "budget_ms"});
   PlaybackSpec playback;
   if (place.has("speed")) playback.speed = place.at("speed").number(0, kFastestPlayback);
   if (place.has("loop")) playback.loop = place.at("loop").flag();
   if (place.has("blend")) playback.blend = place.at("blend").number(0, 10);
   if (place.has("fps")) playback.fps = place.at("fps").number(kSlowestFps, kFastestFps);
   if (place.has("settle")) playback.settle = place.at("settle").number(0, 10);
+  if (place.has("budget_ms")) playback.budget_ms = place.at("budget_ms").number(0, kLargestBudget);
   return playback;
 }
 
@@ -163,7 +164,8 @@ std::string writeScene(const Scene& scene) {
                        {"loop", scene.playback.loop},
                        {"blend", scene.playback.blend},
                        {"fps", scene.playback.fps},
-                       {"settle", scene.playback.settle}}}};
+                       {"settle", scene.playback.settle},
+                       {"budget_ms", scene.playback.budget_ms}}}};
   return text.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 

@@ -9,7 +9,7 @@
 //   }],
 //   "camera": { "view": "three-quarter", "framing": "bust", "eye": [..], "target": [..], "fov": 0.5, "follow": true },
 //   "light": { row: value }, "view": { row: value }, "sim": { row: value },
-//   "playback": { "speed": 1, "loop": true, "blend": 0.4, "fps": 60, "settle": 0.5 },
+//   "playback": { "speed": 1, "loop": true, "blend": 0.4, "fps": 60, "settle": 0.5, "budget_ms": 0 },
 //   "preset": "soft"
 // }
 // Every key but "characters" may be left out. Files are searched as findFile says.
@@ -57,9 +57,10 @@ struct CameraSpec {
 struct PlaybackSpec {
   double speed = 1;  // clip seconds per second
   bool loop = true;
-  double blend = 0.4;   // s, at the loop's seam
-  double fps = 60;      // frames per second of a headless run
-  double settle = 0.5;  // s of simulation before the first frame
+  double blend = 0.4;    // s, at the loop's seam
+  double fps = 60;       // frames per second of a headless run
+  double settle = 0.5;   // s of simulation before the first frame
+  double budget_ms = 0;  // of simulation a frame that the governor holds to; 0: it is off
 };
 
 struct Scene {
@@ -74,7 +75,7 @@ struct Scene {
 
 // Bounds that a scene is held to.
 inline constexpr std::size_t kMostCharacters = 256;
-inline constexpr double kFastestPlayback = 100, kSlowestFps = 1, kFastestFps = 1000;
+inline constexpr double kFastestPlayback = 100, kSlowestFps = 1, kFastestFps = 1000, kLargestBudget = 1000;
 
 // Reads a scene. Throws InputError naming file and place; the files that it names are only looked for.
 Scene readScene(std::string_view text, const std::string& file);

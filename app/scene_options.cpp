@@ -83,6 +83,7 @@ Scene sceneFromOptions(const Options& options) {
   if (options.strand_path == "pulling") scene.look.view.strand_path = render::StrandPath::kPulling;
   if (options.strand_path == "geometry") scene.look.view.strand_path = render::StrandPath::kGeometry;
   if (options.speed >= 0) scene.playback.speed = options.speed;
+  if (options.budget_ms >= 0) scene.playback.budget_ms = options.budget_ms;
   if (options.fps > 0) scene.playback.fps = options.fps;
   if (!options.camera.empty()) setCamera(options.camera, scene.camera);
   if (!options.framing.empty()) scene.camera.framing = options.framing;

@@ -110,7 +110,7 @@ void sidebar(Demo& demo, UiState& ui) {
   ImGui::End();
 }
 
-void timings(const Demo& demo, UiState& ui) {
+void timings(Demo& demo, UiState& ui) {
   const float margin = kMargin * ui.text_scale;
   ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x - margin, margin}, ImGuiCond_Always, {1, 0});
   ImGui::SetNextWindowSize({kTimingsWidth * ui.text_scale, 0});

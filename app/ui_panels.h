@@ -13,6 +13,9 @@ void lookTab(Demo& demo, UiState& ui);
 void debugTab(Demo& demo, UiState& ui);
 
 // Stages as a stacked bar and their history (figure 6 of the paper), solver iterations and residual.
-void timingsPanel(const Demo& demo, UiState& ui);
+void timingsPanel(Demo& demo, UiState& ui);
+
+// The frame budget: a switch, its milliseconds, and what the governor makes of them.
+void budgetLines(Demo& demo, UiState& ui);
 
 }  // namespace app

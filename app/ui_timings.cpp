@@ -137,7 +137,7 @@ void solverLines(const Demo& demo) {
 
 }  // namespace
 
-void timingsPanel(const Demo& demo, UiState& ui) {
+void timingsPanel(Demo& demo, UiState& ui) {
   const Stages stages = meanStages(demo, 30);
   const float scale = ui.text_scale;
   ImGui::Text("Simulation");
@@ -147,6 +147,7 @@ void timingsPanel(const Demo& demo, UiState& ui) {
   noteItem("stage_bar", ui);
   legend(stages, kTimeForces, kTimeStepOther, scale);
   historyPlot(demo, kTimeForces, kTimeStepOther, 58 * scale);
+  budgetLines(demo, ui);
   ImGui::Spacing();
   ImGui::Text("Frame");
   ImGui::SameLine();

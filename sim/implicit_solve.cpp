@@ -123,7 +123,7 @@ void ImplicitSolver<T>::refreshRestFactor(const HairMesh& mesh, const SimParams&
   const bool compact = params.precision == Precision::kMixed;
   const bool usable = rest_terms.h > 0 && rest_compact == compact;
   if (usable && gradual && preconditioner.restMatrixPending()) {
-    const int slices = strained ? kHurriedSlices : kSlices;
+    const int slices = choice.cheap ? kHurriedSlices : kSlices;
     if (preconditioner.continueRestMatrix(slices, constraints)) rest_terms = coming_terms;
     return;
   }

@@ -5,6 +5,7 @@
 #include "app/errors.h"
 #include "tests/bench/accuracy_document.h"
 #include "tests/bench/contact_sheet.h"
+#include "tests/bench/ladder.h"
 #include "tests/bench/pareto.h"
 #include "tests/bench/peers.h"
 #include "tests/bench/solver_chart.h"
@@ -35,10 +36,14 @@ int main(int argc, char** argv) {
   program.add_option("--references", pareto.references, "folder in which --pareto keeps its reference trajectories");
   program.add_option("--runs", pareto.runs, "timed runs a point")->check(CLI::Range(1, 100));
   program.add_flag("--quick", pareto.quick, "a coarser sweep");
+  bool run_ladder = false;
+  program.add_flag("--ladder", run_ladder,
+                   "cost and error of the budget governor's settings (app/governor_ladder.cpp)");
   std::string document;
   program.add_option("--accuracy-document", document, "put the tables of this folder's sweep into its accuracy.md");
   CLI11_PARSE(program, argc, argv);
-  if (!run_styles && !run_pareto && !run_solvers && !run_peers && document.empty() && sheet.folder.empty()) {
+  if (!run_styles && !run_pareto && !run_solvers && !run_peers && !run_ladder && document.empty() &&
+      sheet.folder.empty()) {
     std::cout << program.help();
     return app::kExitUsage;
   }
@@ -49,6 +54,7 @@ int main(int argc, char** argv) {
     if (run_peers) bench::runPeers(peers);
     if (run_solvers) bench::runSolverChart(solvers);
     if (run_pareto) bench::runPareto(pareto);
+    if (run_ladder) bench::measureLadder(pareto.runs);
     if (!document.empty()) bench::writeAccuracyDocument(document);
     if (!sheet.folder.empty()) bench::drawContactSheets(sheet);
   } catch (const app::ContextError& error) {

@@ -1,0 +1,60 @@
+// The budget governor's corner of the timings panel.
+#include <imgui/imgui.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "app/ui_panels.h"
+#include "app/ui_widgets.h"
+
+namespace app {
+
+namespace {
+
+constexpr float kSmallest = 0.05f, kLargest = 50;  // ms, of the slider; --budget-ms takes more
+constexpr double kHeadroom = 1.5;                  // of the present cost, when the governor is switched on
+
+void line(const char* name, const char* text) {
+  ImGui::TextDisabled("%s", name);
+  ImGui::SameLine(0.46f * ImGui::GetWindowWidth());
+  ImGui::TextUnformatted(text);
+}
+
+double recentSimulation(const Demo& demo) {
+  double sum = 0;
+  for (const FrameStats& frame : demo.history) sum += frame.simulation();
+  return demo.history.empty() ? 0 : sum / static_cast<double>(demo.history.size());
+}
+
+}  // namespace
+
+void budgetLines(Demo& demo, UiState& ui) {
+  const Governor& governor = demo.governor;
+  bool on = governor.budget > 0;
+  if (ImGui::Checkbox("Hold to", &on)) {
+    const double start = std::clamp(1e3 * kHeadroom * recentSimulation(demo), double(kSmallest), double(kLargest));
+    ask(demo, {Ask::kBudget, "", "", on ? start : 0.0});
+  }
+  noteItem("budget on", ui);
+  tip("Picks integrator, time step and tolerance so that the simulation takes so long a frame, and no longer");
+  if (!on) return;
+  ImGui::SameLine(0.46f * ImGui::GetWindowWidth());
+  ImGui::SetNextItemWidth(-1);
+  float budget = static_cast<float>(1e3 * governor.budget);
+  if (ImGui::SliderFloat("##budget", &budget, kSmallest, kLargest, "%.2f ms a frame", ImGuiSliderFlags_Logarithmic)) {
+    ask(demo, {Ask::kBudget, "", "", budget});
+  }
+  noteItem("budget", ui);
+  const Rung& rung = ladder()[governor.rung];
+  char text[96];
+  std::snprintf(text, sizeof text, "%s 1/%.0f, %.0e", rung.integrator == sim::Integrator::kBdf2 ? "BDF2" : "Euler",
+                rung.steps_per_second, rung.tolerance);
+  line("runs", text);
+  std::snprintf(text, sizeof text, "%.2f, expected %.2f", 1e3 * governor.measured_cost, 1e3 * governor.predicted_cost);
+  line("ms a frame", text);
+  std::snprintf(text, sizeof text, "%.1e, expected %.1e", governor.measured_error, predictedError(governor));
+  line("error / length", text);
+  if (governor.over_budget) ImGui::TextDisabled("the coarsest setting takes longer");
+}
+
+}  // namespace app

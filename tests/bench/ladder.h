@@ -1,0 +1,11 @@
+// The rungs of the budget governor, measured: what each costs against the default, and how far it strays.
+#pragma once
+
+namespace bench {
+
+// Prints, for every candidate setting, the geometric means over the calm scenes of the sweep (trajectory.h) of its cost
+// against the default's and of its error over hair length, then the rows of app/governor_ladder.cpp: those that no
+// other candidate beats in both.
+void measureLadder(int runs);
+
+}  // namespace bench
