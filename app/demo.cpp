@@ -54,6 +54,13 @@ void handPositionsOver(Demo& demo) {
   for (const Actor& actor : demo.actors) addDebugViews(demo.debug, actor, demo.debug_geometry);
 }
 
+void tellTrouble(Demo& demo) {
+  const std::string note = numericalNote(demo.stats);
+  if (note.empty()) return;
+  demo.message = note;
+  demo.message_is_fault = demo.stats.recoveries > 0;
+}
+
 void keepTime(double seconds, Demo& demo) {
   if (!demo.paused) demo.shown_time += seconds;
   demo.stats.shown_time = demo.shown_time;
@@ -129,7 +136,15 @@ void addStep(const sim::StepReport& report, double step_seconds, FrameStats& sta
   stats.contacts += report.contacts;
   stats.corrected += report.corrected;
   stats.recoveries += report.recoveries;
+  if (report.recoveries > 0) stats.trouble = report.trouble;
+  stats.carried += report.carried;
   stats.max_penetration = std::max(stats.max_penetration, report.max_penetration);
+}
+
+std::string numericalNote(const FrameStats& stats) {
+  if (stats.recoveries > 0)
+    return std::to_string(stats.recoveries) + " recoveries from numerical trouble: " + troubleText(stats.trouble);
+  return stats.carried > 0 ? "the head jumped; the hair was carried along" : "";
 }
 
 Demo openScene(Scene scene, double aspect) {
@@ -178,6 +193,7 @@ void advanceFrame(Demo& demo, double seconds, const FrameTarget& target) {
   const int steps = takeSteps(seconds, demo);
   for (int i = 1; i <= steps; ++i) moveActors(demo.clock.time - (steps - i) * demo.running.time_step, demo);
   keepBudget(seconds, steps, demo);
+  tellTrouble(demo);
 
   timed(demo.stats.seconds[kTimeHandOver], [&] { handPositionsOver(demo); });
   follow(demo.actors.front(), seconds, demo.camera);

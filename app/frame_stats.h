@@ -3,6 +3,7 @@
 
 #include <array>
 #include <chrono>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -42,6 +43,8 @@ struct FrameStats {
   int rung = -1;               // of the budget governor; -1: it is off
   double counted_cost = 0;     // s; this and the next only where it is on
   double step_error = 0;       // sum over steps and characters, see step_error.h
+  int carried = 0;             // times that roots jumped and the hair was carried along
+  sim::Trouble trouble;        // of the last recovery
   render::FrameReport draw;
 
   double simulation() const {
@@ -52,6 +55,9 @@ struct FrameStats {
 
 // Adds what a step did.
 void addStep(const sim::StepReport& report, double step_seconds, FrameStats& stats);
+
+// What the log and the window say about recoveries and teleports of a frame; empty when there were none.
+std::string numericalNote(const FrameStats& stats);
 
 // Seconds of a steady clock.
 inline double now() {

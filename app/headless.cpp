@@ -11,6 +11,7 @@
 #include "app/egl_context.h"
 #include "app/errors.h"
 #include "app/image_io.h"
+#include "app/recording.h"
 #include "app/report.h"
 
 namespace app {
@@ -43,7 +44,9 @@ struct Pictures {
 
 int runHeadless(Scene scene, const Options& options) {
   const double start = now();
+  Tape tape(options, scene);
   const double fps = scene.playback.fps;
+  const int frames = tape.frames().value_or(options.frames);
   Demo demo = openScene(std::move(scene), static_cast<double>(options.width) / options.height);
   setDebugViews(options.debug, demo.debug);
   demo.governor.counted = true;  // the same pictures on every run
@@ -62,18 +65,16 @@ int runHeadless(Scene scene, const Options& options) {
   run.start_seconds = now() - start;
 
   double told = now();
-  for (int frame = 0; frame < options.frames; ++frame) {
-    advanceFrame(demo, frame == 0 ? 0 : 1 / fps, target);
+  for (int frame = 0; frame < frames; ++frame) {
+    advanceFrame(demo, tape.turn(frame, frame == 0 ? 0 : 1 / fps, demo), target);
     run.frames.push_back(demo.stats);
-    if (demo.stats.recoveries > 0) {
-      std::cerr << "hairmesh: frame " << frame << ": " << demo.stats.recoveries
-                << " recoveries from numerical trouble\n";
-    }
+    if (const std::string trouble = numericalNote(demo.stats); !trouble.empty())
+      std::cerr << "hairmesh: frame " << frame << ": " << trouble << "\n";
     if (!pictures) continue;
     writePng(framePath(options.out, frame), options.width, options.height, pixels);
     // Software rasterizers take a second a frame; a person wants to see that it goes on.
     if (now() - told > kTellEvery) {
-      std::cout << "frame " << frame + 1 << " of " << options.frames << std::endl;
+      std::cout << "frame " << frame + 1 << " of " << frames << std::endl;
       told = now();
     }
   }
@@ -86,7 +87,9 @@ int runHeadless(Scene scene, const Options& options) {
   }
   std::cout << summary(run);
   if (pictures) std::cout << options.frames << " frames in " << options.out << "\n";
-  return kExitFine;
+  const Tape::End end = tape.end(demo);
+  std::cout << end.said;
+  return end.differs ? kExitFault : kExitFine;
 }
 
 }  // namespace app

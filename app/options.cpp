@@ -173,6 +173,12 @@ bool parseOptions(int argc, char** argv, Options& options, int& exit_code) {
   parser.add_option("--report", options.report, "Write timings per stage and counters of every frame as JSON")
       ->group(output)
       ->option_text("FILE.json");
+  parser.add_option("--record", options.record, "Write the run's inputs, so that --replay repeats it to the bit")
+      ->group(output)
+      ->option_text("FILE");
+  parser.add_option("--replay", options.replay, "Repeat a recorded run; exit code 1 when it ends in another state")
+      ->group(output)
+      ->option_text("FILE");
   parser.add_option("--screenshot", options.screenshot, "Write the last frame, panels included, when the run ends")
       ->group(output)
       ->option_text("FILE.png");
@@ -222,6 +228,9 @@ bool parseOptions(int argc, char** argv, Options& options, int& exit_code) {
       return fail("--set cannot be '" + text + "'; write NAME=VALUE, for instance --set friction=0.5");
     }
     options.set.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+  }
+  if (!options.record.empty() && options.record == options.replay) {
+    return fail("--record and --replay name one file; a recording cannot be read and written at once");
   }
   if (options.no_images && !options.headless) options.headless = true;
   if (!options.parts.empty() && options.motion.empty() && options.scene.empty()) {

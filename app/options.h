@@ -38,6 +38,7 @@ struct Options {
   bool no_images = false;
   bool hide_panels = false;
   std::string panel;    // the tab that is open at first; empty: the first
+  std::string record, replay;  // recordings of a run's inputs
   bool travel = false;  // keep the clip's travel over the ground
 };
 

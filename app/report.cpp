@@ -61,6 +61,8 @@ json frameJson(const FrameStats& stats, std::size_t index, double fps) {
           {"max_penetration", stats.max_penetration},
           {"recoveries", stats.recoveries},
           {"rung", stats.rung},
+          {"trouble", sim::troubleText(stats.trouble)},
+          {"carried", stats.carried},
           {"strands_drawn", stats.draw.strands_drawn},
           {"draw_calls", stats.draw.draw_calls},
           {"bytes_uploaded", stats.draw.bytes_uploaded},

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <limits>
 
 #include "app/capture.h"
 #include "app/data_path.h"
@@ -16,6 +17,7 @@
 #include "app/demo.h"
 #include "app/errors.h"
 #include "app/image_io.h"
+#include "app/recording.h"
 #include "app/report.h"
 #include "app/ui.h"
 #include "render/read_back.h"
@@ -23,6 +25,8 @@
 namespace app {
 
 namespace {
+
+constexpr int kEndless = std::numeric_limits<int>::max();
 
 std::string glfw_fault;  // GLFW reports through a callback without user data
 
@@ -164,6 +168,7 @@ int runWindow(Scene scene, const Options& options) {
   WindowSystem system;
   Window window(options.width, options.height);
   const double start = now();
+  Tape tape(options, scene);
   Demo demo = openScene(std::move(scene), static_cast<double>(options.width) / options.height);
   setDebugViews(options.debug, demo.debug);
   UiState ui;
@@ -185,12 +190,12 @@ int runWindow(Scene scene, const Options& options) {
   target.draw_panels = [&](Demo& shown) { drawPanels(shown, ui); };
   double last = now();
   int frame = 0;
-  for (; !glfwWindowShouldClose(window.handle) && !ui.quit; ++frame) {
-    if (options.frames_given && frame == options.frames) break;
+  const int most = tape.frames().value_or(options.frames_given ? options.frames : kEndless);
+  for (; !glfwWindowShouldClose(window.handle) && !ui.quit && frame < most; ++frame) {
     glfwPollEvents();
     glfwGetFramebufferSize(window.handle, &target.width, &target.height);
     const double seconds = frameSeconds(options, demo, last);
-    advanceFrame(demo, frame == 0 ? 0 : seconds, target);
+    advanceFrame(demo, tape.turn(frame, frame == 0 ? 0 : seconds, demo), target);
     takePictures(demo, target);
     if (!options.report.empty()) run.frames.push_back(demo.stats);
     if (options.frames_given && frame + 1 == options.frames && !options.screenshot.empty()) {
@@ -201,7 +206,9 @@ int runWindow(Scene scene, const Options& options) {
     glfwSwapBuffers(window.handle);
   }
   if (!options.report.empty()) writeReport(options.report, run, demo);
-  return kExitFine;
+  const Tape::End end = tape.end(demo);
+  std::cout << end.said;
+  return end.differs ? kExitFault : kExitFine;
 }
 
 }  // namespace app

@@ -111,6 +111,8 @@ std::vector<ParamField> makeTable() {
                            "Length of one simulation step. The frame rate does not matter to the motion; this does."),
       field<&P::max_steps_per_frame>("max_steps_per_frame", "Time", "", {1, 64},
                                      "More steps than this are not taken in one frame: time slows down instead."),
+      field<&P::teleport_speed>("teleport_speed", "Time", "m/s", {1, 1e5, kLog},
+                                "Roots that move faster within a step were teleported: the hair is carried along."),
       choice<&P::integrator>("integrator", "Numerics", kIntegrators,
                              "How a step is integrated in time; linearized-euler is the paper's."),
       choice<&P::solver>("solver", "Numerics", kSolvers, "How the linear systems are solved; paper is its setting."),

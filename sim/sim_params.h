@@ -59,6 +59,7 @@ struct SimParams {
   // Time
   double time_step = 1.0 / 60;  // s
   int max_steps_per_frame = 8;  // beyond it time slows down instead of spiralling
+  double teleport_speed = 150;  // m/s, mean of the roots: beyond it the hair is carried along, for no motion made it
   // Numerics
   Integrator integrator = Integrator::kLinearizedEuler;
   Solver solver = Solver::kWarped;

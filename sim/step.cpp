@@ -13,8 +13,6 @@ namespace sim {
 
 namespace {
 
-constexpr double kFastest = 500;      // m/s; beyond it a velocity is absurd
-constexpr double kFarthest = 4;       // hair lengths from the root; beyond it a position is absurd
 constexpr int kBalanceSlices = 40;    // steps over which the balance of gravity is solved for anew
 constexpr int kCorrectionRounds = 4;  // of position correction and deformation minimization
 
@@ -47,6 +45,10 @@ struct StepContext::Parts {
   std::vector<Vec3> x_hat, v_hat, start_positions, start_velocities, uncorrected, displacement;
   std::vector<Penetration> penetrations;
   std::vector<unsigned char> held;
+  std::vector<V3<double>> plain_positions;  // for the force model, which is plain arrays
+  std::vector<Vec3> root_positions;         // of a teleport
+  std::vector<Ellipsoid> standing;          // bodies after a teleport
+  GoodState good;                           // the last step's end
   MinimizationScratch minimization;
   double started = 0;
 
@@ -253,38 +255,58 @@ void resolvePenetrations(const SimParams& params, const StepInput& input, double
   std::sort(state.contacts.begin(), state.contacts.end(), order);
 }
 
-// Restores the step's start where a value is not finite or absurd, at rest, with the roots where they belong now.
-void guard(const StepInput& input, Parts& parts, HairState& state, StepReport& report) {
+// What was handed over: a state that something outside of the step has spoilt is healed before it spoils the rest.
+void guardGiven(const StepInput& input, Parts& parts, HairState& state, StepReport& report) {
+  Trouble trouble;
+  trouble.given = true;
+  heal(*parts.mesh, input.roots, parts.good, state, trouble);
+  report.recoveries += trouble.ailment != Ailment::kNone;
+  report.trouble = trouble;
+}
+
+// What the step made of it: where that is ill, the step's start comes back.
+void guardMade(Parts& parts, const StepInput& input, HairState& state, StepReport& report) {
+  Trouble trouble;
   const HairMesh& mesh = *parts.mesh;
-  const double reach = kFarthest * mesh.hair_length;
   bool fine = true;
-  for (int i = 0; i < mesh.vertexCount() && fine; ++i) {
-    const Vec3& root = input.roots[mesh.column_of[i]];
-    fine = state.positions[i].allFinite() && state.velocities[i].allFinite() &&
-           (state.positions[i] - root).norm() < reach && state.velocities[i].norm() < kFastest;
-  }
+  for (int i = 0; i < mesh.vertexCount() && fine; ++i) fine = examine(mesh, state, i) == Ailment::kNone;
   if (fine) return;
+  parts.plain_positions.clear();
+  for (const Vec3& x : state.positions) parts.plain_positions.push_back({x.x(), x.y(), x.z()});
+  GoodState start{parts.start_positions, parts.start_velocities};
+  heal(mesh, input.roots, start, state, trouble);
+  if (trouble.vertex >= 0) nameForce(parts.model, parts.plain_positions, trouble);
   ++report.recoveries;
-  for (int i = 0; i < mesh.vertexCount(); ++i) {
-    const int root = mesh.shape.column_first[mesh.column_of[i]];
-    const Vec3 carried = parts.start_positions[i] + input.roots[mesh.column_of[i]] - parts.start_positions[root];
-    state.positions[i] = carried.allFinite() && (carried - input.roots[mesh.column_of[i]]).norm() < reach
-                             ? carried
-                             : input.roots[mesh.column_of[i]];
-    state.velocities[i].setZero();
-  }
+  report.trouble = trouble;
+}
+
+// A jump of the roots that no motion could make is a teleport of the second kind: the hair is carried along, and the
+// bodies, which have come as far, are taken to stand where they are now.
+StepInput carryOverJump(const SimParams& params, const StepInput& input, double dt, Parts& parts, HairState& state,
+                        StepReport& report) {
+  const HairMesh& mesh = *parts.mesh;
+  if (!(rootSpeed(mesh, input.roots, dt, state) > params.teleport_speed)) return input;
+  parts.root_positions.clear();
+  for (int c = 0; c < mesh.columnCount(); ++c)
+    parts.root_positions.push_back(state.positions[mesh.shape.column_first[c]]);
+  carryAlong(Eigen::Isometry3d::Identity(), rigidMotion(parts.root_positions, input.roots), state);
   state.contacts.clear();
-  state.previous_dt = 0;
+  parts.standing.assign(input.ellipsoids.begin(), input.ellipsoids.end());
+  for (Ellipsoid& e : parts.standing) e.velocity = e.angular_velocity = Vec3::Zero();
+  report.carried = true;
+  return {input.roots, parts.standing, input.time};
 }
 
 }  // namespace
 
-StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInput& input, double dt,
+StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInput& given, double dt,
                    StepContext& context, HairState& state) {
   Parts& parts = context.parts();
   StepReport report;
   parts.start();
   refreshModel(params, parts);
+  guardGiven(given, parts, state, report);
+  const StepInput input = carryOverJump(params, given, dt, parts, state, report);
   parts.start_positions = state.positions;
   parts.start_velocities = state.velocities;
   carryContacts(input.ellipsoids, params, dt, state);
@@ -295,7 +317,7 @@ StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInpu
   solveVelocities(params, base, parts, state, report);
   parts.start();
   integratePositions(input, base, dt, mesh, parts, state);
-  guard(input, parts, state, report);
+  guardMade(parts, input, state, report);
   parts.spent(kStageOther, report);
 
   if (params.collide) {
@@ -303,8 +325,23 @@ StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInpu
     resolvePenetrations(params, input, dt, parts, state, report);
     parts.spent(kStageCollision, report);
   }
+  parts.good.positions = state.positions;
+  parts.good.velocities = state.velocities;
   report.contacts = static_cast<int>(state.contacts.size());
   return report;
+}
+
+double mechanicalEnergy(const HairMesh& mesh, const SimParams& params, StepContext& context, const HairState& state) {
+  Parts& parts = context.parts();
+  refreshModel(params, parts);
+  parts.plain_positions.resize(state.positions.size());
+  double energy = 0;
+  for (std::size_t i = 0; i < state.positions.size(); ++i) {
+    const Vec3 &x = state.positions[i], &v = state.velocities[i];
+    parts.plain_positions[i] = {x.x(), x.y(), x.z()};
+    energy += params.density * mesh.vertex_volume[i] * (0.5 * v.squaredNorm() + params.gravity * x.y());
+  }
+  return energy + evaluate<double>(parts.model, parts.plain_positions, {});
 }
 
 HairState restState(const HairMesh& mesh, const Eigen::Isometry3d& head_to_world) {

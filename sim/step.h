@@ -9,6 +9,7 @@
 #include "sim/hair_mesh.h"
 #include "sim/hair_state.h"
 #include "sim/sim_params.h"
+#include "sim/watchdog.h"
 
 namespace sim {
 
@@ -33,6 +34,8 @@ struct StepReport {
   int minimization_iterations = 0;
   double max_penetration = 0;  // m, found before correction
   int recoveries = 0;          // watchdog restored the last good state
+  Trouble trouble;             // what it found, for the log
+  bool carried = false;        // the roots had jumped as no motion could: the hair was carried along with them
 };
 
 // Scratch memory and everything derived from mesh and parameters (matrix patterns, factors). Keep one per hair; a step
@@ -61,6 +64,10 @@ class StepContext {
 // Advances `state` by dt seconds. Never leaves a value that is not finite in `state`.
 StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInput& input, double dt,
                    StepContext& context, HairState& state);
+
+// Kinetic, elastic and gravitational energy of a state (J); gravity's zero is at y = 0. `context` keeps what is derived
+// from the parameters.
+double mechanicalEnergy(const HairMesh& mesh, const SimParams& params, StepContext& context, const HairState& state);
 
 // The rest shape carried to world by a rigid transform, at rest or moving with `velocity` fields zero.
 HairState restState(const HairMesh& mesh, const Eigen::Isometry3d& head_to_world);

@@ -1,0 +1,170 @@
+#include "sim/watchdog.h"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "sim/forces/conditions.h"
+
+namespace sim {
+namespace {
+
+constexpr double kFastest = 500;  // m/s against the root; beyond it a velocity is absurd
+constexpr double kLengths = 4;    // hair lengths and
+constexpr double kFarther = 1;    // m from the root: beyond both together a position is absurd
+constexpr double kKeptVelocity = 0.5;
+
+const char* ailmentName(Ailment ailment) {
+  constexpr const char* kNames[] = {"well", "not finite", "absurdly far from its root", "absurdly fast"};
+  return kNames[static_cast<int>(ailment)];
+}
+
+int rootOf(const HairMesh& mesh, int vertex) {
+  return mesh.shape.column_first[mesh.column_of[vertex]];
+}
+
+// A value that is not finite is the largest of all.
+bool larger(double a, double b) {
+  return std::isfinite(b) && !(a <= b);
+}
+
+struct LargestForce {
+  double size = -1;
+  const char* kind = "";
+  int element = -1;
+
+  template <int N, class Gradient>
+  void look(const char* name, const Elements<double, N>& elements, int vertex, Gradient&& conditionAt) {
+    for (std::size_t e = 0; e < elements.size(); ++e) {
+      for (int p = 0; p < N; ++p) {
+        if (elements.vertices[e][p] != vertex) continue;
+        const Condition<double, N> condition = conditionAt(e);
+        const double pull = elements.stiffness[e] * (condition.value - elements.shift[e]);
+        const double force = std::abs(pull) * std::sqrt(dot(condition.g[p], condition.g[p]));
+        if (size >= 0 && !larger(force, size)) continue;
+        size = force, kind = name, element = static_cast<int>(e);
+      }
+    }
+  }
+};
+
+template <int N>
+void gather(std::span<const V3<double>> x, const std::array<int, N>& v, V3<double>* out) {
+  for (int p = 0; p < N; ++p) out[p] = x[v[p]];
+}
+
+}  // namespace
+
+std::string troubleText(const Trouble& trouble) {
+  if (trouble.ailment == Ailment::kNone) return "";
+  std::string text = "vertex " + std::to_string(trouble.vertex) + " (column " + std::to_string(trouble.column) +
+                     ", layer " + std::to_string(trouble.layer) + ") was " + ailmentName(trouble.ailment) +
+                     (trouble.given ? " before the step" : " after the step");
+  if (*trouble.force)
+    text += ", largest force there: " + std::string(trouble.force) + " element " + std::to_string(trouble.element);
+  return text + "; last good state put back at " + std::to_string(trouble.vertices) +
+         (trouble.vertices == 1 ? " vertex" : " vertices");
+}
+
+Ailment examine(const HairMesh& mesh, const HairState& state, int vertex) {
+  const int root = rootOf(mesh, vertex);
+  const Vec3 arm = state.positions[vertex] - state.positions[root];
+  const Vec3 speed = state.velocities[vertex] - state.velocities[root];
+  if (!arm.allFinite() || !speed.allFinite()) return Ailment::kNotFinite;
+  const double reach = kLengths * mesh.hair_length + kFarther;
+  if (arm.squaredNorm() > reach * reach) return Ailment::kFarAway;
+  return speed.squaredNorm() > kFastest * kFastest ? Ailment::kTooFast : Ailment::kNone;
+}
+
+Eigen::Isometry3d rigidMotion(std::span<const Vec3> from, std::span<const Vec3> to) {
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  Vec3 from_center = Vec3::Zero(), to_center = Vec3::Zero();
+  const double n = static_cast<double>(from.size());
+  for (std::size_t i = 0; i < from.size(); ++i) from_center += from[i] / n, to_center += to[i] / n;
+  Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < from.size(); ++i) moment += (to[i] - to_center) * (from[i] - from_center).transpose();
+  if (!moment.allFinite()) return motion;
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(moment, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Matrix3d turn = svd.matrixU() * svd.matrixV().transpose();
+  if (turn.determinant() < 0) turn = svd.matrixU() * Vec3(1, 1, -1).asDiagonal() * svd.matrixV().transpose();
+  motion.linear() = turn;
+  motion.translation() = to_center - turn * from_center;
+  return motion;
+}
+
+void heal(const HairMesh& mesh, std::span<const Vec3> roots, const GoodState& good, HairState& state,
+          Trouble& trouble) {
+  // Roots first: all else is measured against them.
+  for (int c = 0; c < mesh.columnCount(); ++c) {
+    const int root = mesh.shape.column_first[c];
+    if (state.positions[root].allFinite() && state.velocities[root].allFinite()) continue;
+    state.positions[root] = roots[c];
+    state.velocities[root].setZero();
+  }
+  std::vector<int> ill;
+  for (int i = 0; i < mesh.vertexCount(); ++i) {
+    const Ailment ailment = examine(mesh, state, i);
+    if (ailment == Ailment::kNone) continue;
+    ill.push_back(i);
+    if (trouble.ailment != Ailment::kNone) continue;
+    trouble.ailment = ailment;
+    trouble.vertex = i, trouble.column = mesh.column_of[i], trouble.layer = mesh.layer_of[i];
+  }
+  if (ill.empty()) return;
+  trouble.vertices += static_cast<int>(ill.size());
+
+  const bool known = good.positions.size() == state.positions.size();
+  const std::vector<Vec3>& kept = known ? good.positions : mesh.shape.positions;
+  std::vector<Vec3> then, now;
+  for (int c = 0; c < mesh.columnCount(); ++c) {
+    then.push_back(kept[mesh.shape.column_first[c]]);
+    now.push_back(state.positions[mesh.shape.column_first[c]]);
+  }
+  // Where the roots have not moved the state is put back to the bit.
+  const Eigen::Isometry3d motion = then == now ? Eigen::Isometry3d::Identity() : rigidMotion(then, now);
+  for (const int i : ill) {
+    const int root = rootOf(mesh, i);
+    state.positions[i] = motion * kept[i];
+    state.velocities[i] = state.velocities[root];
+    if (known) state.velocities[i] += kKeptVelocity * (motion.linear() * (good.velocities[i] - good.velocities[root]));
+    if (state.previous_dt <= 0) continue;
+    state.previous_velocities[i] = state.velocities[i];
+    state.previous_positions[i] = state.positions[i] - state.previous_dt * state.velocities[i];
+  }
+  std::erase_if(state.contacts, [&](const Contact& c) { return std::binary_search(ill.begin(), ill.end(), c.vertex); });
+}
+
+void nameForce(const ForceModel<double>& model, std::span<const V3<double>> x, Trouble& trouble) {
+  LargestForce largest;
+  largest.look<2>("stretch", model.stretch, trouble.vertex, [&](std::size_t e) {
+    const auto [a, b] = model.stretch.vertices[e];
+    const StretchCondition<double> s = stretchCondition(x[a], x[b], model.stretch.inverse_length[e]);
+    const V3<double> g = s.inverse_length * s.direction;
+    return Condition<double, 2>{s.value, {-1.0 * g, g}};
+  });
+  largest.look<4>("shear", model.shear, trouble.vertex, [&](std::size_t e) {
+    V3<double> p[4];
+    gather<4>(x, model.shear.vertices[e], p);
+    return shearCondition(p, model.shear.inverse_along[e], model.shear.inverse_across[e]);
+  });
+  largest.look<6>("bend", model.bend, trouble.vertex, [&](std::size_t e) {
+    V3<double> p[6];
+    gather<6>(x, model.bend.vertices[e], p);
+    return bendCondition(p, model.bend.rest_angle[e], model.bend.inverse_length[e], model.bend.smallest_square[e]);
+  });
+  largest.look<4>("volume", model.volume, trouble.vertex, [&](std::size_t e) {
+    V3<double> p[4];
+    gather<4>(x, model.volume.vertices[e], p);
+    return volumeCondition(p, model.volume.rest_volume[e]);
+  });
+  trouble.force = largest.kind;
+  trouble.element = largest.element;
+}
+
+double rootSpeed(const HairMesh& mesh, std::span<const Vec3> roots, double dt, const HairState& state) {
+  double sum = 0;
+  for (int c = 0; c < mesh.columnCount(); ++c) sum += (roots[c] - state.positions[mesh.shape.column_first[c]]).norm();
+  return sum / (mesh.columnCount() * dt);
+}
+
+}  // namespace sim

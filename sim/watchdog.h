@@ -1,0 +1,56 @@
+// The watchdog: finds values that are not finite or absurd, says where and under which force, and puts the last good
+// state back there and nowhere else. Also what it shares with teleports: the rigid motion that brings roots from one
+// place to another, and the speed at which they went.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/forces/force_model.h"
+#include "sim/hair_mesh.h"
+#include "sim/hair_state.h"
+
+namespace sim {
+
+enum class Ailment { kNone, kNotFinite, kFarAway, kTooFast };
+
+// What the watchdog found in a step, for the log. Of several vertices the first is named.
+struct Trouble {
+  Ailment ailment = Ailment::kNone;
+  bool given = false;  // in the state as it was handed over, not in what the step made of it
+  int vertex = -1, column = -1, layer = -1;
+  const char* force = "";  // the kind of element that pulls hardest there: "stretch", "shear", "bend", "volume"
+  int element = -1;        // its number within the kind
+  int vertices = 0;        // that were ill and healed
+};
+
+// One line for the log, without the line's end.
+std::string troubleText(const Trouble& trouble);
+
+// Positions (m) and velocities (m/s), one per vertex, of the last state that was good; empty before there was one.
+struct GoodState {
+  std::vector<Vec3> positions, velocities;
+};
+
+// What is wrong with a vertex: a value that is not finite, a place farther from its column's root than hair of this
+// length can be thrown, a speed against the root that nothing in a scene has.
+Ailment examine(const HairMesh& mesh, const HairState& state, int vertex);
+
+// Rigid motion that brings the points of `from` nearest to those of `to` (least squares, Kabsch 1976); the identity
+// where a point is not finite. As many of one as of the other.
+Eigen::Isometry3d rigidMotion(std::span<const Vec3> from, std::span<const Vec3> to);
+
+// Heals every ill vertex of `state`: its place becomes the good one, carried along with the roots from there to here,
+// and of the good velocity against the root half is kept. The others keep every bit. Roots take the place that `roots`
+// (m, one per column) gives them. `good` may be empty: then it is the rest shape. Counts and names into `trouble`.
+void heal(const HairMesh& mesh, std::span<const Vec3> roots, const GoodState& good, HairState& state, Trouble& trouble);
+
+// Names the element at the troubled vertex whose force is largest, or not finite, at positions `x` (m).
+void nameForce(const ForceModel<double>& model, std::span<const V3<double>> x, Trouble& trouble);
+
+// Mean speed (m/s) of the columns' roots from where `state` has them to `roots` within dt.
+double rootSpeed(const HairMesh& mesh, std::span<const Vec3> roots, double dt, const HairState& state);
+
+}  // namespace sim

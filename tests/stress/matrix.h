@@ -1,0 +1,49 @@
+// The pieces of the matrix of cases: one function a family, each adding its cases. The families' axes are issue-like
+// sentences in docs/stability.md, written from familyTitle.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tests/stress/stress_case.h"
+
+namespace stress {
+
+using Cases = std::vector<StressCase>;
+
+// Own clips, then those of the motion capture collection.
+std::span<const char* const> ownClips();
+std::span<const char* const> capturedClips();
+// The three styles in low resolution: what most cases run on.
+std::span<const HairChoice> lowStyles();
+
+// matrix_time.cpp
+void addSteps(Cases& cases);
+void addPaces(Cases& cases);
+void addSpeeds(Cases& cases);
+void addScrubs(Cases& cases);
+void addStyles(Cases& cases);
+void addSoak(Cases& cases);
+// matrix_params.cpp
+void addParameters(Cases& cases);
+void addStiffness(Cases& cases);
+void addRandomParameters(std::uint64_t seed, Cases& cases);
+void addRestless(Cases& cases);
+void addPaper(Cases& cases);
+// matrix_states.cpp
+void addStates(Cases& cases);
+void addUpsets(Cases& cases);
+void addFaults(Cases& cases);
+// matrix_mixed.cpp
+void addMixed(std::uint64_t seed, Cases& cases);
+
+// What a family of cases varies, in one sentence.
+const char* familyTitle(const std::string& family);
+
+// "1/60", "0.25": a step or a number in a case's name.
+std::string stepName(double step);
+std::string plain(double value);
+
+}  // namespace stress

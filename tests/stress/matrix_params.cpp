@@ -1,0 +1,202 @@
+// Parameters at their limits, stiffness ratios, random combinations, changes every step, and the paper's settings.
+#include <array>
+#include <cmath>
+
+#include "tests/stress/matrix.h"
+#include "tests/stress/random.h"
+#include "tests/stress/stage.h"
+
+namespace stress {
+namespace {
+
+constexpr std::array<const char*, 6> kModuli{"stretch_along", "stretch_across", "stretch_edge",
+                                             "shear",         "bend",           "volume"};
+constexpr int kRandomCombinations = 1500, kRestlessRuns = 60;
+// Of rows whose effect is a time constant: hair in thick air or with slow relaxation needs longer to come back.
+constexpr double kSlowRelease = 30;  // s
+
+double defaultOf(const char* name) {
+  return sim::findParam(name)->default_value;
+}
+
+double clamped(const sim::ParamField& field, double value) {
+  return std::min(std::max(value, field.minimum), field.maximum);
+}
+
+// The time step is an axis of its own.
+bool ownAxis(const sim::ParamField& field) {
+  return std::string_view(field.name) == "time_step";
+}
+
+double draw(const sim::ParamField& field, Random& random) {
+  switch (field.kind) {
+    case sim::FieldKind::kSwitch:
+      return random.below(2);
+    case sim::FieldKind::kChoice:
+      return random.below(static_cast<int>(field.choices.size()));
+    default:
+      break;
+  }
+  const double value =
+      field.logarithmic ? random.logarithmic(field.minimum, field.maximum) : random(field.minimum, field.maximum);
+  return field.kind == sim::FieldKind::kInteger ? clamped(field, std::round(value)) : value;
+}
+
+}  // namespace
+
+void addParameters(Cases& cases) {
+  for (const sim::ParamField& field : sim::paramFields()) {
+    if (ownAxis(field)) continue;
+    std::vector<std::pair<std::string, double>> values;
+    if (field.kind == sim::FieldKind::kChoice) {
+      for (std::size_t k = 0; k < field.choices.size(); ++k)
+        values.emplace_back(field.choices[k], static_cast<double>(k));
+    } else {
+      values = {{"min", field.minimum}, {"max", field.maximum}};
+    }
+    for (const auto& [label, value] : values) {
+      for (const HairChoice& hair : lowStyles()) {
+        if (hair.style == sim::Style::kShoulder) continue;
+        StressCase dance;
+        dance.name = std::string("param/") + field.name + "-" + label + "/dance/" + hairName(hair);
+        dance.hair = hair;
+        dance.clip = "dance.bvh";
+        dance.play = Play::kForward;
+        dance.params = {{field.name, value}};
+        dance.release = kSlowRelease;
+        dance.in_short = hair.style == sim::Style::kShort;
+        cases.push_back(dance);
+        StressCase collapsed = dance;
+        collapsed.name = std::string("param/") + field.name + "-" + label + "/collapsed/" + hairName(hair);
+        collapsed.clip = "idle_turns.bvh";
+        collapsed.play = Play::kStill;
+        collapsed.start = Start::kCollapsed;
+        collapsed.seconds = 0.5;
+        collapsed.grace = 0.2;
+        collapsed.in_short = false;
+        cases.push_back(collapsed);
+      }
+    }
+  }
+}
+
+void addStiffness(Cases& cases) {
+  std::vector<std::string> rows(kModuli.begin(), kModuli.end());
+  rows.insert(rows.end(), {"all", "density"});
+  for (const std::string& row : rows) {
+    for (int decade = -3; decade <= 3; ++decade) {
+      if (decade == 0) continue;
+      for (const HairChoice& hair : lowStyles()) {
+        for (const char* clip : {"dance.bvh", "head_shake.bvh"}) {
+          StressCase one;
+          const std::string name = clip;
+          one.name = "stiffness/" + row + "-1e" + std::to_string(decade) + "/" + name.substr(0, name.find('.')) + "/" +
+                     hairName(hair);
+          one.hair = hair;
+          one.clip = clip;
+          one.play = Play::kForward;
+          one.release = kSlowRelease;
+          const double ratio = std::pow(10.0, decade);
+          for (const char* modulus : kModuli) {
+            if (row == modulus || row == "all") one.params.emplace_back(modulus, ratio * defaultOf(modulus));
+          }
+          if (row == "density") one.params.emplace_back("density", ratio * defaultOf("density"));
+          one.in_short = std::abs(decade) == 3 && hair.style == sim::Style::kShort && name == "dance.bvh";
+          cases.push_back(one);
+        }
+      }
+    }
+  }
+}
+
+void addRandomParameters(std::uint64_t seed, Cases& cases) {
+  for (int k = 0; k < kRandomCombinations; ++k) {
+    StressCase one;
+    one.name = "random-params/" + std::to_string(k);
+    Random random(seed, one.name);
+    one.hair = lowStyles()[random.below(3)];
+    one.clip = ownClips()[random.below(5)];
+    one.play = Play::kForward;
+    const double share = random(0.1, 1);
+    for (const sim::ParamField& field : sim::paramFields()) {
+      if (!ownAxis(field) && random.chance(share)) one.params.emplace_back(field.name, draw(field, random));
+    }
+    one.seconds = 0.5;
+    one.release = kSlowRelease;
+    one.in_short = k < 60;
+    cases.push_back(one);
+  }
+}
+
+void addRestless(Cases& cases) {
+  for (int k = 0; k < kRestlessRuns; ++k) {
+    StressCase one;
+    one.name = "restless/" + std::to_string(k);
+    one.hair = lowStyles()[k % 3];
+    one.clip = ownClips()[k % 5];
+    one.play = Play::kForward;
+    one.restless = true;
+    one.in_short = k < 6;
+    cases.push_back(one);
+  }
+}
+
+void addPaper(Cases& cases) {
+  const auto claim = [&](const std::string& name, auto&& change) {
+    for (const HairChoice& hair : lowStyles()) {
+      StressCase ours;
+      ours.name = "paper/" + name + "/ours/" + hairName(hair);
+      ours.hair = hair;
+      ours.in_short = true;
+      change(ours);
+      StressCase theirs = ours;
+      theirs.name = "paper/" + name + "/its-solver/" + hairName(hair);
+      theirs.params.insert(theirs.params.end(), {{"solver", static_cast<double>(sim::Solver::kPaper)},
+                                                 {"integrator", static_cast<double>(sim::Integrator::kLinearizedEuler)},
+                                                 {"precision", static_cast<double>(sim::Precision::kFloat)}});
+      theirs.compared = true;
+      cases.push_back(ours);
+      cases.push_back(theirs);
+    }
+  };
+  for (const double speed : {10.0, 20.0, 50.0}) {
+    claim("playback-" + plain(speed) + "x", [&](StressCase& one) {
+      one.clip = "dance.bvh";
+      one.play = Play::kForward;
+      one.speed = speed;
+      one.collide = false;
+      one.seconds = 2;
+    });
+  }
+  for (const bool collide : {false, true}) {
+    claim(collide ? "collapse-with-body" : "collapse", [&](StressCase& one) {
+      one.start = Start::kCollapsed;
+      one.collide = collide;
+      one.seconds = 0.1;
+      one.grace = 0.1;
+    });
+  }
+  for (const bool minimize : {true, false}) {
+    claim(minimize ? "arm-minimized" : "arm-not-minimized", [&](StressCase& one) {
+      one.upset = Upset::kArm;
+      one.upset_size = 5;
+      one.compared = !minimize;
+      one.params = {{"minimize_deformation", minimize}};
+    });
+  }
+  for (const double step : {1.0 / 30, 0.1}) {
+    claim("step-" + stepName(step), [&](StressCase& one) {
+      one.clip = "dance.bvh";
+      one.play = Play::kForward;
+      one.step = step;
+      one.speed = 5;
+    });
+  }
+  claim("stiff-1e3", [&](StressCase& one) {
+    one.clip = "dance.bvh";
+    one.play = Play::kForward;
+    for (const char* modulus : kModuli) one.params.emplace_back(modulus, 1e3 * defaultOf(modulus));
+  });
+}
+
+}  // namespace stress

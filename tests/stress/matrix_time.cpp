@@ -1,0 +1,183 @@
+// Time steps, paces, playback speeds, scrubbing, styles and the soak.
+#include <array>
+#include <cmath>
+
+#include "sim/field_text.h"
+#include "tests/stress/matrix.h"
+#include "tests/stress/stage.h"
+
+namespace stress {
+
+std::span<const char* const> ownClips() {
+  static constexpr std::array<const char*, 5> kClips{"walk.bvh", "dance.bvh", "head_shake.bvh", "jump_spin.bvh",
+                                                     "idle_turns.bvh"};
+  return kClips;
+}
+
+std::span<const char* const> capturedClips() {
+  static constexpr std::array<const char*, 6> kClips{"cmu_02_01_walk.bvh",     "cmu_02_03_run.bvh",
+                                                     "cmu_02_04_jump.bvh",     "cmu_salsa17_spins_clean.bvh",
+                                                     "deepmimic_backflip.bvh", "deepmimic_cartwheel.bvh"};
+  return kClips;
+}
+
+std::span<const HairChoice> lowStyles() {
+  static constexpr std::array<HairChoice, 3> kStyles{
+      HairChoice{Cut::kStyle, sim::Style::kShort, sim::Resolution::kLow},
+      HairChoice{Cut::kStyle, sim::Style::kShoulder, sim::Resolution::kLow},
+      HairChoice{Cut::kStyle, sim::Style::kLong, sim::Resolution::kLow}};
+  return kStyles;
+}
+
+std::string stepName(double step) {
+  return "1-" + sim::numberText(std::round(1 / step)) + "s";
+}
+
+std::string plain(double value) {
+  return sim::numberText(value);
+}
+
+namespace {
+
+std::string clipName(const char* clip) {
+  const std::string name = clip;
+  return name.substr(0, name.find('.'));
+}
+
+constexpr std::array<double, 8> kSteps{1.0 / 480, 1.0 / 240, 1.0 / 120, 1.0 / 60, 1.0 / 30, 1.0 / 20, 1.0 / 15, 0.1};
+
+}  // namespace
+
+void addSteps(Cases& cases) {
+  for (const double step : kSteps) {
+    for (const char* clip : ownClips()) {
+      for (const HairChoice& hair : lowStyles()) {
+        StressCase one;
+        one.name = "step/" + stepName(step) + "/" + clipName(clip) + "/" + hairName(hair);
+        one.hair = hair;
+        one.clip = clip;
+        one.play = Play::kForward;
+        one.step = step;
+        one.in_short = hair.style != sim::Style::kShoulder && clipName(clip) == "dance";
+        cases.push_back(one);
+      }
+    }
+  }
+}
+
+void addPaces(Cases& cases) {
+  for (const Pace pace : {Pace::kRandomSteps, Pace::kRandomFrames}) {
+    for (const char* clip : ownClips()) {
+      for (const HairChoice& hair : lowStyles()) {
+        for (int draw = 0; draw < 10; ++draw) {
+          StressCase one;
+          one.name = std::string("pace/") + (pace == Pace::kRandomSteps ? "steps" : "frames") + "/" + clipName(clip) +
+                     "/" + hairName(hair) + "/" + std::to_string(draw);
+          one.hair = hair;
+          one.clip = clip;
+          one.play = Play::kForward;
+          one.pace = pace;
+          one.seconds = 4;
+          one.in_short = draw == 0 && hair.style == sim::Style::kLong;
+          cases.push_back(one);
+        }
+      }
+    }
+  }
+}
+
+void addSpeeds(Cases& cases) {
+  const auto add = [&](const char* clip, bool own) {
+    for (const double speed : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0}) {
+      for (const HairChoice& hair : lowStyles()) {
+        StressCase one;
+        one.name = "speed/" + plain(speed) + "x/" + clipName(clip) + "/" + hairName(hair);
+        one.hair = hair;
+        one.clip = clip;
+        one.play = Play::kForward;
+        one.speed = speed;
+        one.seconds = 2;
+        one.in_short = own && hair.style == sim::Style::kLong && clipName(clip) != "idle_turns";
+        cases.push_back(one);
+      }
+    }
+  };
+  for (const char* clip : ownClips()) add(clip, true);
+  for (const char* clip : capturedClips()) add(clip, false);
+}
+
+void addScrubs(Cases& cases) {
+  const auto add = [&](const char* clip, Play play, double speed, const std::string& what) {
+    for (const HairChoice& hair : lowStyles()) {
+      StressCase one;
+      one.name = "scrub/" + what + "/" + clipName(clip) + "/" + hairName(hair);
+      one.hair = hair;
+      one.clip = clip;
+      one.play = play;
+      one.speed = speed;
+      one.seconds = 1.5;
+      one.grace = play == Play::kCarryJumps ? 0.1 : 0;
+      one.in_short = clipName(clip) == "dance";
+      cases.push_back(one);
+    }
+  };
+  for (const auto& clips : {ownClips(), capturedClips()}) {
+    for (const char* clip : clips) {
+      for (const double speed : {1.0, 5.0, 20.0}) add(clip, Play::kBackward, speed, "back-" + plain(speed) + "x");
+      add(clip, Play::kJumps, 1, "jumps");
+      add(clip, Play::kCarryJumps, 1, "carried-jumps");
+    }
+  }
+}
+
+void addStyles(Cases& cases) {
+  std::vector<HairChoice> choices;
+  for (const sim::Style style : {sim::Style::kShort, sim::Style::kShoulder, sim::Style::kLong}) {
+    for (const auto resolution : {sim::Resolution::kLow, sim::Resolution::kMedium, sim::Resolution::kHigh})
+      choices.push_back({Cut::kStyle, style, resolution});
+    for (const Cut cut : {Cut::kUneven, Cut::kSingleBundle}) choices.push_back({cut, style, sim::Resolution::kLow});
+  }
+  choices.push_back({Cut::kTenThousand, sim::Style::kLong, sim::Resolution::kHigh});
+  for (const HairChoice& hair : choices) {
+    const bool small = hair.resolution == sim::Resolution::kLow;
+    for (const char* clip : {"dance.bvh", "jump_spin.bvh"}) {
+      StressCase one;
+      one.name = "style/" + hairName(hair) + "/" + clipName(clip);
+      one.hair = hair;
+      one.clip = clip;
+      one.play = Play::kForward;
+      one.in_short = small;
+      cases.push_back(one);
+    }
+    StressCase one;
+    one.name = "style/" + hairName(hair) + "/collapsed";
+    one.hair = hair;
+    one.start = Start::kCollapsed;
+    one.grace = 0.1;
+    one.seconds = 0.1;
+    one.in_short = small;
+    cases.push_back(one);
+  }
+}
+
+void addSoak(Cases& cases) {
+  for (const char* clip : {"dance.bvh", "walk.bvh"}) {
+    StressCase one;
+    one.name = std::string("soak/hour/") + clipName(clip);
+    one.clip = clip;
+    one.play = Play::kForward;
+    one.seconds = 3600;
+    one.soak = true;
+    cases.push_back(one);
+  }
+  StressCase minute;
+  minute.name = "soak/minute/dance";
+  minute.clip = "dance.bvh";
+  minute.play = Play::kForward;
+  minute.seconds = 60;
+  minute.in_short = true;
+  minute.soak = true;
+  cases.push_back(minute);
+}
+
+}  // namespace stress

@@ -1,0 +1,181 @@
+#include "tests/stress/report.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+
+#include "app/errors.h"
+#include "tests/stress/heat_map.h"
+#include "tests/stress/matrix.h"
+
+namespace stress {
+
+void writeCsv(const std::vector<Result>& results, const std::string& file) {
+  std::ofstream csv(file);
+  csv << "case,compared,verdict,with_body,back_after_s,distance,deepest_mm,inside,unconstrained,energy_rise,recoveries,"
+         "steps,cpu_s,fault\n";
+  for (const auto& [one, o] : results) {
+    const char* const verdicts[] = {"passed", "failed", "skipped"};
+    csv << one.name << "," << one.compared << "," << verdicts[static_cast<int>(o.verdict)] << "," << o.with_body << ","
+        << o.back_after << "," << o.distance << "," << 1e3 * o.deepest << "," << o.inside << "," << o.unconstrained
+        << "," << o.energy_rise << "," << o.recoveries << "," << o.steps << "," << o.cpu_seconds << ",\"" << o.fault
+        << "\"\n";
+  }
+  csv.close();
+  if (!csv) throw app::InputError(file, "", "cannot be written", "choose a folder that exists and may be written to");
+}
+
+namespace {
+
+std::string said(const char* format, auto... values) {
+  char text[512];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+struct FamilyCount {
+  std::string family;
+  long cases = 0, passed = 0, failed = 0, with_body = 0, inside = 0, unconstrained = 0, carried = 0, recoveries = 0;
+  double slowest = 0, deepest = 0, energy_rise = 0;
+};
+
+std::vector<FamilyCount> countFamilies(const std::vector<Result>& results) {
+  std::vector<FamilyCount> families;
+  for (const auto& [one, o] : results) {
+    if (one.compared || o.verdict == Verdict::kSkipped) continue;
+    auto known = std::find_if(families.begin(), families.end(),
+                              [&](const FamilyCount& family) { return family.family == one.family(); });
+    if (known == families.end()) {
+      families.emplace_back();
+      known = families.end() - 1;
+      known->family = one.family();
+    }
+    ++known->cases;
+    ++(o.verdict == Verdict::kPassed ? known->passed : known->failed);
+    known->with_body += o.with_body;
+    known->inside += o.inside;
+    known->unconstrained += o.unconstrained;
+    known->carried += o.carried;
+    known->recoveries += o.recoveries;
+    known->slowest = std::max(known->slowest, o.back_after);
+    known->deepest = std::max(known->deepest, o.deepest);
+    known->energy_rise = std::max(known->energy_rise, o.energy_rise);
+  }
+  return families;
+}
+
+std::string familyTable(const std::vector<FamilyCount>& families) {
+  std::string text =
+      "| family | what varies | cases | passed | failed | back on the body | slowest return, s | deepest, mm | inside "
+      "(unconstrained) | largest energy rise | carried | recoveries |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+  for (const FamilyCount& f : families) {
+    text += said("| %s | %s | %ld | %ld | %ld | %ld | %.2f | %.3f | %ld (%ld) | %.1e | %ld | %ld |\n", f.family.c_str(),
+                 familyTitle(f.family), f.cases, f.passed, f.failed, f.with_body, f.slowest, 1e3 * f.deepest, f.inside,
+                 f.unconstrained, f.energy_rise, f.carried, f.recoveries);
+  }
+  return text;
+}
+
+std::string verdictText(const Outcome& o) {
+  if (o.verdict == Verdict::kSkipped) return "not run";
+  if (o.verdict == Verdict::kFailed) return o.fault;
+  return said("back after %.2f s", o.back_after);
+}
+
+// A row for each claim and style: with our settings, with the paper's solver.
+std::string paperTable(const std::vector<Result>& results) {
+  std::string text = "| claim | hair | ours | the paper's solver |\n|---|---|---|---|\n";
+  for (const auto& [one, o] : results) {
+    const std::size_t split = one.name.find("/ours/");
+    if (one.family() != "paper" || split == std::string::npos) continue;
+    const std::string claim = one.name.substr(6, split - 6), hair = one.name.substr(split + 6);
+    const std::string other = "paper/" + claim + "/its-solver/" + hair;
+    const auto theirs =
+        std::find_if(results.begin(), results.end(), [&](const Result& r) { return r.one.name == other; });
+    text += "| " + claim + " | " + hair + " | " + verdictText(o) + " | " +
+            (theirs == results.end() ? "not run" : verdictText(theirs->outcome)) + " |\n";
+  }
+  return text;
+}
+
+std::string failureList(const std::vector<Result>& results, std::uint64_t seed) {
+  constexpr int kShown = 60;
+  std::string text;
+  int failed = 0;
+  for (const auto& [one, o] : results) {
+    if (one.compared || o.verdict != Verdict::kFailed || ++failed > kShown) continue;
+    text += "- `hairmesh-stress --case '" + one.name + "' --seed " + std::to_string(seed) + "`: " + o.fault + "\n";
+  }
+  if (failed == 0) return "None.\n";
+  if (failed > kShown) text += said("- and %d more, in stability.csv\n", failed - kShown);
+  return text;
+}
+
+}  // namespace
+
+void writeDocument(const std::vector<Result>& results, std::uint64_t seed, const std::string& folder) {
+  writeCsv(results, folder + "/stability.csv");
+  drawHeatMaps(results, folder);
+  long passed = 0, failed = 0;
+  double cpu = 0;
+  for (const auto& [one, o] : results) {
+    cpu += o.cpu_seconds;
+    if (one.compared) continue;
+    passed += o.verdict == Verdict::kPassed;
+    failed += o.verdict == Verdict::kFailed;
+  }
+  std::ofstream document(folder + "/stability.md");
+  document << R"(# Stability
+
+`hairmesh-stress` runs a declared, seeded matrix of cases over time steps, playback speeds, every parameter, styles,
+impossible states, violent motion, bodies in the way and faults, and judges each. `--short` is part of `./test`; this
+page was written by
+
+```
+)"
+           << "build/release/tests/hairmesh-stress --long --seed " << seed << R"( --document docs
+```
+
+Every case has three parts. In the *motion* the hair is treated as the case says. Then everything stands still with the
+body there. Hair that is not back by then (beside the other side of a shoulder it rests as well) is *released*: the
+colliders are taken away. A case passes when
+
+- every position and velocity is finite after every step;
+- hair and twin, the same hair put to its rest shape when the motion stopped, come within )"
+           << 100 * kBack << R"( % of the hair's length of one another, worst
+  vertex, also extrapolated by 0.1 s of velocity, within the stated time (1 s with the body and 5 s without; 30 s without where a parameter
+  row is turned to its limit, 15 s for draws over all axes);
+- no external vertex is deeper than )"
+           << 1e3 * kDeepest << R"( mm inside a collider at any frame's end; where a body appears within the hair,
+  or the hair within a body, after 0.1 or 0.2 s;
+- mechanical energy rises by no more than )"
+           << 100 * kEnergyTolerance
+           << R"( % of what the motion left in any step after everything stands still (not asked where wind blows);
+- the watchdog never steps in, but for the family that injects faults.
+
+)"
+           << said("**%ld passed, %ld failed**, seed %llu, %.0f s of CPU time.\n\n", passed, failed,
+                   static_cast<unsigned long long>(seed), cpu)
+           << familyTable(countFamilies(results)) << R"(
+"Carried" counts jumps of the head that no motion could make (faster than `teleport_speed`), over which the hair is
+carried along.
+
+![Heat maps](stability_map.svg)
+
+## The paper's claims
+
+Playback at 10 times and more without collisions (figure 7), collapse onto the roots (figure 8), an arm through the hair
+with and without deformation minimization (figure 9), large steps and stiff hair; with our default settings and with the
+paper's solver (block-diagonal Modified PCG in single precision, one linearized step). The right column is shown, not
+counted.
+
+)" << paperTable(results)
+           << "\n## Cases that fall short\n\n"
+           << failureList(results, seed);
+  document.close();
+  if (!document)
+    throw app::InputError(folder + "/stability.md", "", "cannot be written", "choose a folder that exists");
+}
+
+}  // namespace stress

@@ -1,0 +1,274 @@
+#include "tests/stress/run_case.h"
+
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+
+#include "app/fixed_clock.h"
+#include "tests/stress/start_states.h"
+#include "tests/stress/surroundings.h"
+
+namespace stress {
+namespace {
+
+constexpr double kShortestStep = 1e-3, kLongestStep = 0.5;  // s, of random paces
+constexpr double kFaultEvery = 0.1;                         // s
+constexpr double kSmallestEnergy = 0.05;                    // of the hair's weight times its length
+
+double cpuSeconds() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+std::string said(const char* format, double a, double b = 0) {
+  char text[160];
+  std::snprintf(text, sizeof text, format, a, b);
+  return text;
+}
+
+// One hair and what simulates it. Every case has its own, so that a case replays the same alone as among others.
+struct Hair {
+  const sim::HairMesh& mesh;
+  sim::StepContext context;
+  sim::HairState state;
+  explicit Hair(const sim::HairMesh& m) : mesh(m), context(m) {}
+};
+
+struct Run {
+  const StressCase& one;
+  Stage& stage;
+  Random random;
+  Surroundings around;
+  Hair hair;
+  sim::SimParams params;
+  app::FixedClock clock;
+  Outcome outcome;
+  double last_intrusion = 0;  // s
+  double next_fault = kFaultEvery;
+
+  Run(const StressCase& c, std::uint64_t seed, Stage& s)
+      : one(c), stage(s), random(seed, c.name), around(c, s, random), hair(s.mesh()) {
+    for (const auto& [name, value] : c.params) sim::findParam(name)->set(params, value);
+    params.time_step = c.step;
+    params.collide = c.collide;
+    hair.state = s.settled;
+    applyStart(c, hair.mesh, random, hair.state);
+  }
+
+  bool failed() const { return !outcome.fault.empty(); }
+  void fail(std::string fault) {
+    if (failed()) return;
+    outcome.fault = std::move(fault);
+    outcome.at = around.time();
+  }
+};
+
+sim::StepReport stepHair(const sim::SimParams& params, const Run& run, double dt, Hair& hair) {
+  return sim::advance(hair.mesh, params, {run.around.roots(), run.around.ellipsoids(), run.around.time()}, dt,
+                      hair.context, hair.state);
+}
+
+void checkFinite(Run& run) {
+  for (int i = 0; i < run.hair.mesh.vertexCount(); ++i) {
+    if (run.hair.state.positions[i].allFinite() && run.hair.state.velocities[i].allFinite()) continue;
+    return run.fail(said("vertex %.0f is not finite", i));
+  }
+}
+
+// Vertices inside a collider at a frame's end.
+void checkOutside(Run& run) {
+  if (!run.params.collide || run.around.time() < run.last_intrusion + run.one.grace) return;
+  for (const int v : run.hair.mesh.external_vertices) {
+    double depth = 0;
+    for (const sim::Ellipsoid& e : run.around.ellipsoids()) {
+      if (sim::implicitValue(e, run.hair.state.positions[v]) >= 0) continue;
+      depth = std::max(depth, -sim::closestPoint(e, run.hair.state.positions[v]).distance);
+    }
+    run.outcome.deepest = std::max(run.outcome.deepest, depth);
+    if (depth <= kDeepest) continue;
+    ++run.outcome.inside;
+    const auto& contacts = run.hair.state.contacts;
+    run.outcome.unconstrained +=
+        std::none_of(contacts.begin(), contacts.end(), [&](const sim::Contact& c) { return c.vertex == v; });
+    run.fail(said("vertex %.0f is %.2f mm inside a collider", v, 1e3 * depth));
+  }
+}
+
+void step(double dt, Run& run) {
+  const Eigen::Isometry3d head = run.around.head();
+  run.around.move(dt);
+  if (run.around.carries()) sim::carryAlong(head, run.around.head(), run.hair.state);
+  if (run.around.intrudes()) run.last_intrusion = run.around.time();
+  if (run.one.restless) {
+    for (const sim::ParamField& field : sim::paramFields()) {
+      if (field.kind != sim::FieldKind::kReal || std::string_view(field.group) == "Time") continue;
+      if (!run.random.chance(0.3)) continue;
+      const double low = field.minimum, high = field.maximum;
+      field.set(run.params, field.logarithmic ? run.random.logarithmic(low, high) : run.random(low, high));
+    }
+  }
+  if (run.one.upset == Upset::kFault && run.around.time() >= run.next_fault) {
+    injectFault(run.hair.mesh, run.random, run.hair.state);
+    run.next_fault += kFaultEvery;
+  }
+  const sim::StepReport report = stepHair(run.params, run, dt, run.hair);
+  run.outcome.recoveries += report.recoveries;
+  run.outcome.carried += report.carried;
+  if (report.recoveries > 0 && !run.one.recovers) run.fail("watchdog: " + sim::troubleText(report.trouble));
+  ++run.outcome.steps;
+  checkFinite(run);
+}
+
+void frame(Run& run) {
+  switch (run.one.pace) {
+    case Pace::kFixed:
+      step(run.one.step, run);
+      break;
+    case Pace::kRandomSteps:
+      step(run.random.logarithmic(kShortestStep, kLongestStep), run);
+      break;
+    case Pace::kRandomFrames: {
+      const double seconds = run.random.logarithmic(kShortestStep, kLongestStep);
+      const int steps = app::tick(seconds, run.one.step, run.params.max_steps_per_frame, run.clock);
+      for (int i = 0; i < steps; ++i) step(run.one.step, run);
+      break;
+    }
+  }
+  checkOutside(run);
+}
+
+// MiB of the process that are in memory.
+double residentMemory() {
+  std::ifstream statm("/proc/self/statm");
+  double all = 0, resident = 0;
+  statm >> all >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1 << 20);
+}
+
+// Memory and time a step, tenth by tenth.
+void soak(Run& run) {
+  double memory = 0, early = 0, late = 0;
+  for (int tenth = 1; tenth <= 10; ++tenth) {
+    const double started = cpuSeconds();
+    const int before = run.outcome.steps;
+    while (run.around.time() < run.one.seconds * tenth / 10 && !run.failed()) frame(run);
+    const double each = (cpuSeconds() - started) / std::max(1, run.outcome.steps - before);
+    if (tenth == 1) memory = residentMemory();
+    if (tenth == 2) early = each;
+    late = each;
+  }
+  run.outcome.memory_growth = residentMemory() - memory;
+  run.outcome.slowdown = late / early;
+  if (run.outcome.memory_growth > kMemoryGrowth) run.fail(said("memory grew by %.1f MiB", run.outcome.memory_growth));
+  if (run.outcome.slowdown > kSlowdown) run.fail(said("steps became %.2f times as slow", run.outcome.slowdown));
+}
+
+void playMotion(Run& run) {
+  run.last_intrusion = 0;
+  if (run.one.soak) return soak(run);
+  while (run.around.time() < run.one.seconds && !run.failed()) frame(run);
+}
+
+// How far hair and twin are apart, of the hair's length: the worst vertex, where it is and where it would be 0.1 s on.
+double apart(const Hair& a, const Hair& b) {
+  double worst = 0;
+  for (int i = 0; i < a.mesh.vertexCount(); ++i) {
+    worst = std::max(worst, (a.state.positions[i] - b.state.positions[i]).norm());
+    worst = std::max(worst, 0.1 * (a.state.velocities[i] - b.state.velocities[i]).norm());
+  }
+  return worst / a.mesh.hair_length;
+}
+
+bool hasInput(const sim::SimParams& params) {
+  return params.wind_x != 0 || params.wind_y != 0 || params.wind_z != 0;
+}
+
+// Mass times g times length (J): the scale of the energies that hair of this kind has at all.
+double weightOf(const Run& run) {
+  double volume = 0;
+  for (const double share : run.hair.mesh.vertex_volume) volume += share;
+  return 9.81 * run.params.density * volume * run.hair.mesh.hair_length;
+}
+
+// Everything stands still: hair and twin go on until they meet. Returns whether they do.
+bool waitUntilBack(double seconds, Run& run, Hair& twin) {
+  const double dt = run.one.pace == Pace::kFixed ? run.one.step : sim::SimParams{}.time_step;
+  const double started = run.around.time();
+  double last = 0, left = 0;
+  bool first = true;
+  while (run.around.time() < started + seconds && !run.failed()) {
+    run.around.pass(dt);
+    const sim::StepReport report = stepHair(run.params, run, dt, run.hair);
+    run.outcome.recoveries += report.recoveries;
+    if (report.recoveries > 0) run.fail("watchdog: " + sim::troubleText(report.trouble));
+    ++run.outcome.steps;
+    stepHair(run.params, run, dt, twin);
+    checkFinite(run);
+    checkOutside(run);
+    if (!hasInput(run.params) && !run.failed()) {
+      const double energy = sim::mechanicalEnergy(run.hair.mesh, run.params, run.hair.context, run.hair.state);
+      const double rest = sim::mechanicalEnergy(run.hair.mesh, run.params, twin.context, twin.state);
+      if (first) left = energy - rest;
+      const double scale = std::max(left, kSmallestEnergy * weightOf(run));
+      if (!first) {
+        run.outcome.energy_rise = std::max(run.outcome.energy_rise, (energy - last) / scale);
+        if (run.outcome.energy_rise > kEnergyTolerance)
+          run.fail(said("energy rose by %.1f %% of %.2e J with nothing moving", 100 * run.outcome.energy_rise, scale));
+      }
+      last = energy;
+      first = false;
+    }
+    run.outcome.distance = apart(run.hair, twin);
+    if (run.outcome.distance < kBack) return true;
+  }
+  return false;
+}
+
+void waitForRest(Run& run) {
+  run.around.stop();
+  run.last_intrusion = run.around.intrudes() ? run.around.time() : run.last_intrusion;
+  if (run.one.restless) {
+    run.params = {};
+    run.params.collide = run.one.collide;
+  }
+  Hair twin(run.hair.mesh);
+  twin.state = sim::restState(run.hair.mesh, run.around.head());
+  const double stopped = run.around.time();
+  bool back = waitUntilBack(run.one.rest, run, twin);
+  run.outcome.with_body = back;
+  if (!back && !run.failed()) {
+    run.params.collide = false;
+    back = waitUntilBack(run.one.release, run, twin);
+  }
+  if (back) run.outcome.back_after = run.around.time() - stopped;
+  if (!back && !run.failed()) {
+    run.fail(said("still %.1f %% of the hair's length from rest %.1f s after the motion stopped",
+                  100 * run.outcome.distance, run.one.rest + run.one.release));
+  }
+}
+
+}  // namespace
+
+Outcome runCase(const StressCase& one, std::uint64_t seed, StageStore& stages) {
+  if (findClip(one.clip).empty()) {
+    Outcome skipped;
+    skipped.verdict = Verdict::kSkipped;
+    skipped.fault = one.clip + " is not here";
+    return skipped;
+  }
+  Stage& stage = stages.stage(one);
+  const double started = cpuSeconds();
+  Run run(one, seed, stage);
+  playMotion(run);
+  if (!run.failed()) waitForRest(run);
+  run.outcome.verdict = run.failed() ? Verdict::kFailed : Verdict::kPassed;
+  run.outcome.cpu_seconds = cpuSeconds() - started;
+  return run.outcome;
+}
+
+}  // namespace stress

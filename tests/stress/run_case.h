@@ -1,0 +1,40 @@
+// Runs one case and judges it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "tests/stress/stage.h"
+#include "tests/stress/stress_case.h"
+
+namespace stress {
+
+inline constexpr double kBack = 0.01;             // of the hair's length: near enough to rest
+inline constexpr double kDeepest = 1e-4;          // m inside a collider that is still outside
+inline constexpr double kEnergyTolerance = 0.01;  // of the energy that the motion left
+inline constexpr double kMemoryGrowth = 1;        // MiB, of a soak
+inline constexpr double kSlowdown = 1.5;          // of a soak's steps
+
+enum class Verdict { kPassed, kFailed, kSkipped };
+
+struct Outcome {
+  Verdict verdict = Verdict::kPassed;
+  std::string fault;         // the first criterion that was not met, with its numbers; empty when all were
+  double at = 0;             // s into the case
+  bool with_body = false;    // back with the colliders there
+  double back_after = -1;    // s after the motion stopped; negative: not back
+  double distance = 0;       // from the twin at the end, worst vertex, of the hair's length
+  double deepest = 0;        // m inside a collider at a frame's end, outside of grace
+  long inside = 0;           // vertices deeper than kDeepest, summed over frames, outside of grace
+  long unconstrained = 0;    // of those, without a contact
+  double energy_rise = 0;    // largest rise after the motion stopped, of the energy that it left
+  double memory_growth = 0;  // MiB, of a soak after its first tenth
+  double slowdown = 1;       // of a soak: CPU time a step in its last tenth over that in its second
+  int recoveries = 0, carried = 0, steps = 0;
+  double cpu_seconds = 0;
+};
+
+// A clip that is not there makes a skipped case. `seed` is the run's.
+Outcome runCase(const StressCase& one, std::uint64_t seed, StageStore& stages);
+
+}  // namespace stress

@@ -1,0 +1,36 @@
+// A figure with its hair, loaded once and used by every case that asks for the same.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/actor.h"
+#include "tests/stress/stress_case.h"
+
+namespace stress {
+
+struct Stage {
+  std::string key;
+  app::Actor actor;
+  app::Playback start;     // at the clip's first pose
+  sim::HairState settled;  // there, with the default parameters
+  const sim::HairMesh& mesh() const { return actor.haircut->mesh; }
+};
+
+class StageStore {
+ public:
+  // The stage at the clip's first pose, its hair settled. Throws InputError when the clip is not there.
+  Stage& stage(const StressCase& one);
+
+ private:
+  app::Wardrobe wardrobe_;
+  std::vector<std::unique_ptr<Stage>> stages_;
+};
+
+// "" when no file of that name is known: clips of this project, then those beside its checkout.
+std::string findClip(const std::string& name);
+
+std::string hairName(const HairChoice& hair);
+
+}  // namespace stress

@@ -1,0 +1,108 @@
+// What a stability case is: hair, motion, disturbance, start, pace and parameters, and what it takes to pass.
+//
+// Every case has three parts. In the *motion* the hair is treated as the case says. Then everything stands still, with
+// the body there: the *rest*. If the hair is not back by then (hair that hangs on the other side of a shoulder rests as
+// well as any other), the colliders are taken away: the *release*. Back means: within 1 % of the hair's length of a
+// twin, the same hair put to its rest shape when the motion stopped, which sags, blows and settles as the parameters
+// have it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/hair_styles.h"
+#include "sim/sim_params.h"
+
+namespace stress {
+
+enum class Cut { kStyle, kUneven, kSingleBundle, kTenThousand };
+
+struct HairChoice {
+  Cut cut = Cut::kStyle;
+  sim::Style style = sim::Style::kShort;
+  sim::Resolution resolution = sim::Resolution::kLow;
+};
+
+// How a clip is played.
+enum class Play {
+  kStill,      // its first pose
+  kForward,    // at `speed`, looping
+  kBackward,   // scrubbed backwards at `speed`
+  kJumps,      // to another moment every quarter second, the hair dragged along
+  kCarryJumps  // the same with the hair carried along, as the window's slider does
+};
+
+// What is done to the figure beside its clip.
+enum class Upset {
+  kNone,
+  kTurn,      // the head turned by 180 degrees within one step, twice a second
+  kTeleport,  // the figure moved by `upset_size` m within one step, twice a second
+  kSpin,      // the figure spun at `upset_size` rad/s
+  kShake,     // the figure shaken, amplitude 0.2 m, at `upset_size` Hz
+  kNod,       // the head rolled by one radian either way at `upset_size` Hz, the body still
+  kBodyRise,  // the body's colliders pushed up through the hair by `upset_size` m and back, four times a second
+  kArm,       // an arm swung through the hair at `upset_size` m/s
+  kSwitchOn,  // an ellipsoid of radius `upset_size` m appears within the hair
+  kBury,      // an ellipsoid appears that holds the root layer and more
+  kFault      // values that are not finite or absurd written into random vertices, once every tenth of a second
+};
+
+// What state the hair starts from.
+enum class Start {
+  kSettled,
+  kCollapsed,  // every vertex on its root (figure 8 of the paper)
+  kFlattened,  // one layer onto the layer below
+  kInverted,   // layers pushed to the other side of their neighbours
+  kInsideOut,  // mirrored through the roots
+  kShuffled,   // positions exchanged among the vertices
+  kNoise,      // random offsets up to `start_size` m
+  kFast,       // random velocities of `start_size` m/s
+  kStretched   // `start_size` times as long
+};
+
+enum class Pace {
+  kFixed,        // steps of `step`
+  kRandomSteps,  // steps of 1 to 500 ms, drawn anew each time
+  kRandomFrames  // frames of 1 to 500 ms through the fixed-step clock
+};
+
+struct StressCase {
+  std::string name;  // "family/..."
+  HairChoice hair;
+  std::string clip = "idle_turns.bvh";
+  Play play = Play::kStill;
+  double speed = 1;
+  Upset upset = Upset::kNone;
+  double upset_size = 0;
+  Start start = Start::kSettled;
+  double start_size = 0;
+  Pace pace = Pace::kFixed;
+  double step = 1.0 / 60;                              // s
+  std::vector<std::pair<std::string, double>> params;  // rows of the table that differ from its defaults
+  bool restless = false;                               // parameters drawn anew every step of the motion
+  bool collide = true;
+  double seconds = 1;     // of motion
+  double rest = 1;        // s with the body there
+  double release = 5;     // s without; back within rest + release
+  double grace = 0;       // s after each start or appearance in which vertices may still be inside
+  bool recovers = false;  // the watchdog is expected to step in
+  bool compared = false;  // a peer's setting, shown beside ours and not counted
+  bool in_short = false;  // runs with --short
+  bool soak = false;      // memory and timing must stay flat
+
+  std::string family() const { return name.substr(0, name.find('/')); }
+};
+
+// All cases that a seed declares, in a fixed order. Names are unique.
+std::vector<StressCase> declareCases(std::uint64_t seed);
+
+// The `hairmesh` command line that shows the case in the window as far as options can say it; `note` tells what they
+// cannot.
+struct WindowCommand {
+  std::string command, note;
+};
+WindowCommand windowCommand(const StressCase& one);
+
+}  // namespace stress
