@@ -1,0 +1,203 @@
+// The watchdog heals what is ill and nothing else, says what it found, and tells a teleport from a motion.
+#include "sim/watchdog.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <queue>
+
+#include "tests/test_meshes.h"
+
+namespace {
+
+using sim::Vec3;
+using test::Hair;
+
+constexpr double kFrame = 1.0 / 60;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+test::PatchOptions patch() {
+  test::PatchOptions o;
+  o.nx = 4, o.nz = 3, o.layers = 7, o.length = 0.25, o.mixed = true;
+  return o;
+}
+
+sim::SimParams runningHair() {
+  sim::SimParams params = test::tautHair();
+  params.tolerance = 1e-4, params.acceleration_tolerance = 1e-3;
+  return params;
+}
+
+// Roots that sway, so that the hair is in motion.
+void sway(double time, const std::vector<Vec3>& rest, Hair& hair) {
+  for (std::size_t c = 0; c < rest.size(); ++c) hair.roots[c] = rest[c] + Vec3(0.05 * std::sin(6 * time), 0, 0);
+}
+
+// Edges of the system's pattern between each vertex and the one that is given.
+std::vector<int> distancesFrom(const sim::HairMesh& mesh, int vertex) {
+  const sim::BlockPattern pattern = sim::systemPattern(mesh);
+  std::vector<std::vector<int>> neighbours(mesh.vertexCount());
+  for (int i = 0; i < mesh.vertexCount(); ++i) {
+    for (int k = pattern.row_first[i]; k < pattern.row_first[i + 1]; ++k) {
+      neighbours[i].push_back(pattern.columns[k]);
+      neighbours[pattern.columns[k]].push_back(i);
+    }
+  }
+  std::vector<int> distance(mesh.vertexCount(), 1000);
+  std::queue<int> open;
+  distance[vertex] = 0;
+  for (open.push(vertex); !open.empty(); open.pop()) {
+    for (const int next : neighbours[open.front()]) {
+      if (distance[next] < 1000) continue;
+      distance[next] = distance[open.front()] + 1;
+      open.push(next);
+    }
+  }
+  return distance;
+}
+
+TEST(Watchdog, HealsFaultsAtRandomVerticesAndLeavesTheRestAlone) {
+  Hair hair(test::combedShape(patch()), runningHair()), twin(test::combedShape(patch()), runningHair());
+  const auto rest = hair.roots;
+  test::Random random(11);
+  const double faults[] = {kNaN, kInfinity, -kInfinity, 1e30, 1e6};
+  double time = 0;
+  int injected = 0, found = 0;
+  for (int n = 1; n <= 400; ++n) {
+    time += kFrame;
+    sway(time, rest, hair), sway(time, rest, twin);
+    int vertex = -1;
+    if (n > 20 && n % 8 == 0) {
+      twin.state = hair.state;  // what differs from here on is the fault's doing
+      do vertex = static_cast<int>(random(0, hair.mesh.vertexCount()));
+      while (hair.mesh.isRoot(vertex));
+      Vec3& value = random(0, 1) < 0.5 ? hair.state.positions[vertex] : hair.state.velocities[vertex];
+      value[static_cast<int>(random(0, 3))] = faults[static_cast<int>(random(0, 5))];
+      ++injected;
+    }
+    const sim::StepReport report = hair.step(kFrame);
+    twin.step(kFrame);
+    for (int i = 0; i < hair.mesh.vertexCount(); ++i) {
+      ASSERT_TRUE(hair.state.positions[i].allFinite() && hair.state.velocities[i].allFinite()) << i;
+    }
+    if (vertex < 0) {
+      EXPECT_EQ(report.recoveries, 0) << n;
+      continue;
+    }
+    EXPECT_EQ(report.recoveries, 1);
+    EXPECT_EQ(report.trouble.vertex, vertex);
+    EXPECT_EQ(report.trouble.vertices, 1);
+    EXPECT_TRUE(report.trouble.given);
+    const std::string text = sim::troubleText(report.trouble);
+    EXPECT_NE(text.find("vertex " + std::to_string(vertex) + " (column "), std::string::npos) << text;
+    found += report.recoveries;
+    // The healed vertex was put back where it was and lost half of its speed against its root.
+    const std::vector<int> distance = distancesFrom(hair.mesh, vertex);
+    for (int i = 0; i < hair.mesh.vertexCount(); ++i) {
+      const double moved = (hair.state.positions[i] - twin.state.positions[i]).norm() / hair.mesh.hair_length;
+      EXPECT_LT(moved, distance[i] == 0 ? 0.03 : distance[i] == 1 ? 0.02 : 0.01) << "vertex " << i;
+    }
+  }
+  EXPECT_GT(injected, 40);
+  EXPECT_EQ(found, injected);
+}
+
+TEST(Watchdog, HealsManyAtOnceAndTheHairComesBack) {
+  Hair hair(test::combedShape(patch()), runningHair());
+  test::Random random(3);
+  for (int n = 0; n < 30; ++n) hair.step(kFrame);
+  for (Vec3& x : hair.state.positions) x = Vec3(kNaN, kInfinity, 1e20);
+  for (Vec3& v : hair.state.velocities) v = Vec3(1e9, kNaN, 0);
+  const sim::StepReport report = hair.step(kFrame);
+  EXPECT_EQ(report.recoveries, 1);
+  for (int n = 0; n < 120; ++n) EXPECT_EQ(hair.step(kFrame).recoveries, 0);
+  EXPECT_LT(test::largestDistance(hair.state.positions, hair.mesh.shape.positions), 0.01 * hair.mesh.hair_length);
+}
+
+TEST(Watchdog, APlaceBeyondReachIsAbsurdAndAWildOneIsNot) {
+  Hair hair(test::patchShape(patch()), runningHair());
+  const int tip = hair.mesh.shape.column_first[1] - 1;
+  const Vec3 there = hair.state.positions[tip];
+  hair.state.positions[tip] = there + Vec3(3 * hair.mesh.hair_length, 0, 0);
+  EXPECT_EQ(sim::examine(hair.mesh, hair.state, tip), sim::Ailment::kNone);
+  hair.state.positions[tip] = there + Vec3(10, 0, 0);
+  EXPECT_EQ(sim::examine(hair.mesh, hair.state, tip), sim::Ailment::kFarAway);
+  hair.state.positions[tip] = there;
+  hair.state.velocities[tip] = Vec3(0, 100, 0);
+  EXPECT_EQ(sim::examine(hair.mesh, hair.state, tip), sim::Ailment::kNone);
+  hair.state.velocities[tip] = Vec3(0, 1e4, 0);
+  EXPECT_EQ(sim::examine(hair.mesh, hair.state, tip), sim::Ailment::kTooFast);
+  hair.state.velocities[tip] = Vec3(0, kNaN, 0);
+  EXPECT_EQ(sim::examine(hair.mesh, hair.state, tip), sim::Ailment::kNotFinite);
+}
+
+TEST(Watchdog, NamesTheElementThatPullsHardest) {
+  const Hair hair(test::patchShape(patch()), runningHair());
+  const sim::BlockPattern pattern = sim::systemPattern(hair.mesh);
+  const sim::ForceModel<double> model = sim::makeForceModel(hair.mesh, pattern, hair.params);
+  sim::Trouble trouble;
+  trouble.vertex = hair.mesh.shape.column_first[3] - 1;
+  std::vector<sim::V3<double>> x = test::plain<double>(hair.state.positions);
+  x[trouble.vertex].y -= 0.05;  // a tip pulled along its column
+  sim::nameForce(model, x, trouble);
+  EXPECT_STREQ(trouble.force, "stretch");
+  const auto& ends = model.stretch.vertices[trouble.element];
+  EXPECT_TRUE(ends[0] == trouble.vertex || ends[1] == trouble.vertex);
+}
+
+// A sequence of motions of the roots, each taken within one step.
+Eigen::Isometry3d jump(double metres, double radians) {
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  motion = Eigen::Translation3d(metres, 0.2 * metres, 0) * Eigen::AngleAxisd(radians, Vec3(1, 2, 0).normalized());
+  return motion;
+}
+
+TEST(Teleport, AJumpThatNoMotionCouldMakeCarriesTheHairAlong) {
+  Hair hair(test::combedShape(patch()), runningHair());
+  const auto rest = hair.roots;
+  for (int n = 1; n <= 30; ++n) {
+    sway(n * kFrame, rest, hair);
+    EXPECT_FALSE(hair.step(kFrame).carried);
+  }
+  const sim::HairState before = hair.state;
+  const Eigen::Isometry3d motion = jump(10, 1);
+  Hair twin(test::combedShape(patch()), runningHair());
+  twin.state = before, twin.roots = hair.roots, twin.time = hair.time;
+  // Gravity alone would tell the two worlds apart.
+  hair.params.gravity = twin.params.gravity = 0;
+  twin.step(kFrame);
+  for (Vec3& root : hair.roots) root = motion * root;
+  const sim::StepReport report = hair.step(kFrame);
+  EXPECT_TRUE(report.carried);
+  EXPECT_EQ(report.recoveries, 0);
+  // The shape of the twin that stayed.
+  for (int i = 0; i < hair.mesh.vertexCount(); ++i) {
+    EXPECT_LT((hair.state.positions[i] - motion * twin.state.positions[i]).norm(), 1e-3) << i;
+  }
+}
+
+TEST(Teleport, TheThresholdIsTheParameters) {
+  for (const double share : {0.9, 1.1}) {
+    Hair hair(test::combedShape(patch()), runningHair());
+    hair.params.teleport_speed = 40;
+    for (Vec3& root : hair.roots) root += Vec3(share * 40 * kFrame, 0, 0);
+    EXPECT_EQ(hair.step(kFrame).carried, share > 1);
+  }
+}
+
+TEST(Teleport, CarryingAlongKeepsShapeAndVelocityAgainstTheHead) {
+  Hair hair(test::combedShape(patch()), runningHair());
+  const auto rest = hair.roots;
+  for (int n = 1; n <= 20; ++n) sway(n * kFrame, rest, hair), hair.step(kFrame);
+  const sim::HairState before = hair.state;
+  const Eigen::Isometry3d from = jump(0.3, 0.2), to = jump(5, 2);
+  const Eigen::Isometry3d motion = to * from.inverse();
+  sim::carryAlong(from, to, hair.state);
+  for (int i = 0; i < hair.mesh.vertexCount(); ++i) {
+    EXPECT_LT((hair.state.positions[i] - motion * before.positions[i]).norm(), 1e-12);
+    EXPECT_LT((hair.state.velocities[i] - motion.linear() * before.velocities[i]).norm(), 1e-12);
+  }
+}
+
+}  // namespace
