@@ -110,7 +110,8 @@ void playbackRows(const Actor& actor, Demo& demo, UiState& ui) {
   if (slider("##scrub", 0, actor.playedClip().duration(), format, false, time))
     ask(demo, {Ask::kCarryAlong, "", "", time});
   noteItem("scrub", ui);
-  rowLabel("To the start", "Puts the figure to the clip's start; the hair keeps its shape and velocity against the head");
+  rowLabel("To the start",
+           "Puts the figure to the clip's start; the hair keeps its shape and velocity against the head");
   if (ImGui::Button("Carry hair along")) ask(demo, {Ask::kCarryAlong, "", "", 0});
   noteItem("carry", ui);
 
