@@ -1,5 +1,6 @@
 #include "sim/colliders.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sim {
@@ -87,6 +88,49 @@ SurfacePoint closestPoint(const Ellipsoid& e, const Vec3& p) {
 
 Vec3 surfaceVelocity(const Ellipsoid& e, const Vec3& p) {
   return e.velocity + e.angular_velocity.cross(p - e.center);
+}
+
+Vec3 carriedAlong(const Ellipsoid& e, const Vec3& start, double dt) {
+  const double angle = e.angular_velocity.norm() * dt;
+  const Vec3 arm = start - (e.center - dt * e.velocity);
+  if (angle < 1e-12) return e.center + arm;
+  return e.center + Eigen::AngleAxisd(angle, e.angular_velocity.normalized()) * arm;
+}
+
+double distanceAt(const DistanceGrid& grid, const Vec3& local) {
+  std::array<int, 3> cell;
+  Vec3 share, beyond;
+  for (int a = 0; a < 3; ++a) {
+    const double most = grid.nodes[a] - 1, at = (local[a] - grid.low[a]) / grid.spacing;
+    const double within = std::clamp(at, 0.0, most);
+    cell[a] = std::min(static_cast<int>(within), grid.nodes[a] - 2);
+    share[a] = within - cell[a];
+    beyond[a] = at - within;
+  }
+  const std::size_t row = grid.nodes[0], slice = row * grid.nodes[1];
+  const float* v = grid.values.data() + cell[2] * slice + cell[1] * row + cell[0];
+  const auto along = [&](const float* at) { return at[0] + share.x() * (at[1] - at[0]); };
+  const double near = along(v) + share.y() * (along(v + row) - along(v));
+  const double far = along(v + slice) + share.y() * (along(v + slice + row) - along(v + slice));
+  return near + share.z() * (far - near) + grid.spacing * beyond.norm();
+}
+
+SurfacePoint closestPoint(const DistancePart& part, const Vec3& p) {
+  const Ellipsoid& body = part.bounds;
+  const Vec3 local = body.rotation.conjugate() * (p - body.center);
+  const double reach = 0.5 * part.grid.spacing;
+  Vec3 slope;
+  for (int a = 0; a < 3; ++a) {
+    const Vec3 step = reach * Vec3::Unit(a);
+    slope[a] = distanceAt(part.grid, local + step) - distanceAt(part.grid, local - step);
+  }
+  SurfacePoint out;
+  out.distance = distanceAt(part.grid, local);
+  // On the ridge of the distance all ways out are equally near: away from the middle.
+  if (!(slope.squaredNorm() > 1e-12 * reach * reach)) slope = local.squaredNorm() > 0 ? local : Vec3(Vec3::UnitY());
+  out.normal = body.rotation * slope.normalized();
+  out.point = p - out.distance * out.normal;
+  return out;
 }
 
 }  // namespace sim

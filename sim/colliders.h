@@ -1,8 +1,11 @@
-// Collision ellipsoids: inside test, closest point, normal, surface velocity.
+// What hair collides with: ellipsoids, and signed distance grids of a body's parts. Inside test, closest point, normal,
+// surface velocity.
 #pragma once
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
+#include <span>
 
 #include "sim/hair_mesh.h"
 
@@ -33,5 +36,44 @@ SurfacePoint closestPoint(const Ellipsoid& e, const Vec3& p);
 
 // Velocity (m/s) of the ellipsoid's material at world point p.
 Vec3 surfaceVelocity(const Ellipsoid& e, const Vec3& p);
+
+// Where the ellipsoid's motion over the step of dt seconds carries a point that was fixed to it at the step's start.
+Vec3 carriedAlong(const Ellipsoid& e, const Vec3& start, double dt);
+
+// Signed distances (m, negative inside) at the nodes of a box, in a part's own frame; trilinear in between. Outside the
+// box the distance to it is added.
+struct DistanceGrid {
+  Vec3 low = Vec3::Zero();          // m, the first node
+  double spacing = 0;               // m
+  std::array<int, 3> nodes{};       // at least 2 each; x runs fastest
+  std::span<const float> values{};  // nodes[0] * nodes[1] * nodes[2]
+  double deepest = 0;               // m, the least value, negated: about the part's inner radius
+};
+double distanceAt(const DistanceGrid& grid, const Vec3& local);
+
+// A rigid part of a body: its grid's frame is that of `bounds`, an ellipsoid around the part that carries its pose and
+// motion and tells what is far away.
+struct DistancePart {
+  Ellipsoid bounds;
+  DistanceGrid grid;
+};
+
+// Distance from the grid, normal from its slope. Near the surface within the grid's own error of the true part.
+SurfacePoint closestPoint(const DistancePart& part, const Vec3& p);
+
+// The colliders of a step, of either kind, by index.
+struct Colliders {
+  std::span<const Ellipsoid> ellipsoids{};
+  std::span<const DistancePart> parts{};  // in place of the ellipsoids where there are any
+
+  int count() const { return static_cast<int>(parts.empty() ? ellipsoids.size() : parts.size()); }
+  // Pose, motion and bounds of collider k.
+  const Ellipsoid& body(int k) const { return parts.empty() ? ellipsoids[k] : parts[k].bounds; }
+  SurfacePoint closest(int k, const Vec3& p) const {
+    return parts.empty() ? closestPoint(ellipsoids[k], p) : closestPoint(parts[k], p);
+  }
+  // m, how far the middle of collider k lies from its surface.
+  double thickness(int k) const { return parts.empty() ? ellipsoids[k].radii.minCoeff() : parts[k].grid.deepest; }
+};
 
 }  // namespace sim

@@ -2,21 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace sim {
 namespace {
 
-constexpr int kProjections = 8;  // alternating projections between overlapping ellipsoids
+constexpr int kProjections = 8;      // alternating projections between overlapping colliders
+constexpr double kSlackShare = 0.2;  // of the contact offset
+constexpr double kRestoring = 0.2;   // share of a dip below the offset that a step closes
+constexpr double kReach = 0.01;      // m off the surface up to which a contact is kept, for it may slide over an edge
+// Paths past a collider
+constexpr double kStraight = 0.2;  // rad; a collider that turns less is passed on a straight line
+constexpr double kGrazing = 0.1;   // of its thickness; a path no deeper slides over a rounded body
+constexpr int kMostMarches = 64, kDepthSamples = 8;
+constexpr double kMet = 1e-5;  // m
 
-// Where the collider's rigid motion over the step carries a point of its start pose.
-Vec3 carriedAlong(const Ellipsoid& e, const Vec3& p, double dt) {
-  const Vec3 start_center = e.center - dt * e.velocity;
-  const double angle = e.angular_velocity.norm() * dt;
-  const Vec3 arm = p - start_center;
-  if (angle < 1e-12) return e.center + arm;
-  return e.center + Eigen::AngleAxisd(angle, e.angular_velocity.normalized()) * arm;
-}
-
+// Whether p can lie within `offset` of the surface; may say yes for a little more.
 bool mayTouch(const Ellipsoid& e, double offset, const Vec3& p) {
   const double reach = e.radii.maxCoeff() + offset;
   const Vec3 d = p - e.center;
@@ -27,49 +28,171 @@ bool mayTouch(const Ellipsoid& e, double offset, const Vec3& p) {
   return local.cwiseQuotient(e.radii + Vec3::Constant(grow)).squaredNorm() < 1;
 }
 
-}  // namespace
-
-void carryContacts(std::span<const Ellipsoid> ellipsoids, const SimParams& params, double dt, HairState& state) {
-  std::erase_if(state.contacts, [&](const Contact& c) {
-    return !params.collide || c.collider < 0 || c.collider >= static_cast<int>(ellipsoids.size());
-  });
-  for (Contact& contact : state.contacts) {
-    const Vec3& x = state.positions[contact.vertex];
-    const Ellipsoid& e = ellipsoids[contact.collider];
-    const Vec3 carried = carriedAlong(e, x, dt);
-    const SurfacePoint surface = closestPoint(e, carried);
-    contact.normal = surface.normal;
-    const double gap = params.contact_offset - surface.distance;  // positive: to be pushed out
-    const double most = params.max_depenetration * dt;
-    contact.velocity = (carried - x + std::clamp(gap, -most, most) * surface.normal) / dt;
+// Colliders whose surroundings, over the whole step, overlap the box of the vertices' paths.
+void collectNear(const ContactSearch& search, std::span<const Vec3> positions, std::vector<int>& near) {
+  near.clear();
+  Vec3 low = Vec3::Constant(INFINITY), high = -low;
+  for (const int v : search.vertices) {
+    low = low.cwiseMin(positions[v]), high = high.cwiseMax(positions[v]);
+    if (!search.start.empty()) low = low.cwiseMin(search.start[v]), high = high.cwiseMax(search.start[v]);
+  }
+  for (int k = 0; k < search.colliders.count(); ++k) {
+    const Ellipsoid& e = search.colliders.body(k);
+    const double reach = e.radii.maxCoeff() + search.margins.offset;
+    const Vec3 before = e.center - search.dt * e.velocity;
+    const Vec3 least = e.center.cwiseMin(before).array() - reach, most = e.center.cwiseMax(before).array() + reach;
+    if ((least.array() < high.array()).all() && (most.array() > low.array()).all()) near.push_back(k);
   }
 }
 
-void findPenetrations(const HairMesh& mesh, std::span<const Ellipsoid> ellipsoids, double offset,
-                      std::span<const Vec3> positions, std::vector<Penetration>& found) {
+// A vertex's way past a collider over the step, seen from the collider as it stands at the step's end.
+struct Path {
+  const Ellipsoid* body;
+  Vec3 start, end;  // m, world, at the step's start and end
+  double dt;
+
+  // m, world: where the vertex at the share t of the step would be had it moved with the collider from then on.
+  Vec3 at(double t) const {
+    const double back = (1 - t) * dt, angle = body->angular_velocity.norm() * back;
+    const Vec3 arm = start + t * (end - start) - (body->center - back * body->velocity);
+    if (angle < 1e-12) return body->center + arm;
+    return body->center + Eigen::AngleAxisd(angle, body->angular_velocity.normalized()) * arm;
+  }
+  // m per step, at most: relative speed and, far out, that of the turning.
+  double speed() const {
+    const double arm = std::max((start - (body->center - dt * body->velocity)).norm(), (end - body->center).norm());
+    return (end - start - dt * body->velocity).norm() + body->angular_velocity.norm() * dt * arm;
+  }
+};
+
+// Where the path first meets the offset surface from outside and goes in by more than `grazing`. Marches by the
+// distance, which no path at this speed can outrun.
+std::optional<Vec3> entryOf(const Path& path, const Colliders& colliders, int k, double offset, double grazing) {
+  const double speed = path.speed();
+  double t = 0;
+  for (int march = 0; march < kMostMarches && t < 1; ++march) {
+    const double gap = colliders.closest(k, path.at(t)).distance - offset;
+    if (march == 0 && gap <= 0) return {};  // began inside
+    if (gap < kMet) break;
+    t += gap / speed;
+  }
+  if (t >= 1) return {};
+  double least = 0;
+  for (int i = 1; i <= kDepthSamples; ++i) {
+    const double later = t + (1 - t) * i / kDepthSamples;
+    least = std::min(least, colliders.closest(k, path.at(later)).distance - offset);
+  }
+  if (least > -grazing) return {};
+  return path.at(t);
+}
+
+// A contact with one collider, as the step leaves it.
+struct Touch {
+  Vec3 target = Vec3::Zero(), normal = Vec3::UnitY();
+  double depth = 0;  // m, inside the offset; at most zero: none
+  bool standing = false;
+  double left = 0;  // m, how far below the offset the target lies
+};
+
+// The vertex went through the collider, or so deep that its nearest way out lies on the far side: it stays on the side
+// that it came from, at the point where it met the surface, slid along by what its motion had left tangentially.
+void sweep(const Path& path, const ContactSearch& search, int k, Touch& touch) {
+  const Vec3 carried = path.at(0), way = path.end - carried;
+  const double thin = search.colliders.thickness(k), offset = search.margins.offset;
+  if (way.squaredNorm() < 0.25 * thin * thin) return;
+  // A turning collider may be met on an arc, any other on the chord.
+  const double reach = path.body->radii.maxCoeff() + offset;
+  if (path.body->angular_velocity.norm() * path.dt < kStraight) {
+    const Vec3 from = carried - path.body->center;
+    const double t = std::clamp(-from.dot(way) / way.squaredNorm(), 0.0, 1.0);
+    if ((from + t * way).squaredNorm() >= reach * reach) return;
+  }
+  const std::optional<Vec3> entry = entryOf(path, search.colliders, k, offset, kGrazing * thin);
+  if (!entry) return;
+  const SurfacePoint met = search.colliders.closest(k, *entry);
+  if (touch.depth > 0 && touch.normal.dot(met.normal) >= 0) return;  // its way out lies on the side that it came from
+  const Vec3 rest = path.end - met.point;
+  const SurfacePoint slid = search.colliders.closest(k, met.point + rest - rest.dot(met.normal) * met.normal);
+  touch.target = slid.point + offset * slid.normal;
+  touch.normal = slid.normal;
+  touch.depth = std::max(touch.depth, (path.end - touch.target).norm());
+}
+
+// How collider k stands to a vertex at p.
+Touch touchOf(const ContactSearch& search, int k, int vertex, const Vec3& p, bool swept) {
+  Touch touch;
+  const Ellipsoid& body = search.colliders.body(k);
+  const double offset = search.margins.offset;
+  if (mayTouch(body, offset, p)) {
+    const SurfacePoint s = search.colliders.closest(k, p);
+    touch.depth = offset - s.distance;
+    touch.normal = s.normal;
+    touch.target = s.point + offset * s.normal;
+    if (touch.depth > 0 && !search.start.empty()) {
+      const Vec3 carried = carriedAlong(body, search.start[vertex], search.dt);
+      const double before = offset - search.colliders.closest(k, carried).distance;
+      if (before > search.margins.slack + kMet) {
+        // It stood inside: out by no more than the escape, and no deeper than it was.
+        touch.standing = true;
+        touch.left = std::max(0.0, before - search.margins.escape);
+        const double level = offset - touch.left;
+        touch.target = s.point + level * s.normal;
+        touch.depth = level - s.distance;
+        return touch;
+      }
+    }
+  }
+  if (swept && !search.start.empty()) sweep({&body, search.start[vertex], p, search.dt}, search, k, touch);
+  return touch;
+}
+
+}  // namespace
+
+ContactMargins contactMargins(const SimParams& params, double dt) {
+  return {params.contact_offset, kSlackShare * params.contact_offset, params.max_depenetration * dt};
+}
+
+void carryContacts(const Colliders& colliders, const SimParams& params, double dt, HairState& state) {
+  const ContactMargins margins = contactMargins(params, dt);
+  std::erase_if(state.contacts, [&](Contact& contact) {
+    if (!params.collide || contact.collider < 0 || contact.collider >= colliders.count()) return true;
+    const Vec3& x = state.positions[contact.vertex];
+    const Vec3 carried = carriedAlong(colliders.body(contact.collider), x, dt);
+    const SurfacePoint surface = colliders.closest(contact.collider, carried);
+    const double dip = margins.offset - surface.distance;
+    // What slides over a rounded body leaves it tangentially: the solve may bring it back, and lets go of it where it
+    // would have to pull.
+    const double back = dip > 0 ? kRestoring * std::min(dip, margins.slack) : std::max(dip, -margins.escape);
+    contact.normal = surface.normal;
+    contact.velocity = (carried - x + back * surface.normal) / dt;
+    return -dip > kReach;
+  });
+}
+
+void findPenetrations(const ContactSearch& search, std::span<const Vec3> positions, ContactScratch& scratch,
+                      std::vector<Penetration>& found) {
   found.clear();
-  for (int v : mesh.external_vertices) {
+  collectNear(search, positions, scratch.near);
+  if (scratch.near.empty()) return;
+  for (const int v : search.vertices) {
     Vec3 p = positions[v];
-    Penetration hit{v, -1, p, Vec3::UnitY(), 0};
+    Penetration hit{v, -1, p, Vec3::UnitY(), 0, false, 0};
     for (int round = 0; round < kProjections; ++round) {
-      double deepest = 1e-9;
-      SurfacePoint nearest;
+      Touch deepest;
+      deepest.depth = 1e-9;
       int collider = -1;
-      for (int k = 0; k < static_cast<int>(ellipsoids.size()); ++k) {
-        if (!mayTouch(ellipsoids[k], offset, p)) continue;
-        const SurfacePoint s = closestPoint(ellipsoids[k], p);
-        if (offset - s.distance > deepest) {
-          deepest = offset - s.distance;
-          nearest = s;
-          collider = k;
-        }
+      for (const int k : scratch.near) {
+        const Touch touch = touchOf(search, k, v, p, round == 0);
+        if (touch.depth > deepest.depth) deepest = touch, collider = k;
       }
       if (collider < 0) break;
-      if (hit.collider < 0) hit.depth = deepest;
-      p = nearest.point + offset * nearest.normal;
+      if (hit.collider < 0) hit.depth = deepest.depth;
+      p = deepest.target;
       hit.collider = collider;
       hit.target = p;
-      hit.normal = nearest.normal;
+      hit.normal = deepest.normal;
+      hit.standing = hit.standing || deepest.standing;
+      hit.left = std::max(hit.left, deepest.left);
     }
     if (hit.collider >= 0) found.push_back(hit);
   }

@@ -1,4 +1,4 @@
-// Contacts of external vertices with the colliders: find, constrain, correct.
+// Contacts of hair mesh vertices with the colliders: carry, find, constrain.
 #pragma once
 
 #include <array>
@@ -12,22 +12,48 @@
 
 namespace sim {
 
-// A penetration found at the end of a step: the vertex lies nearer to the collider than the contact offset.
+// A contact found at the end of a step: the vertex lies nearer to the collider than the contact offset.
 struct Penetration {
   int vertex, collider;
-  Vec3 target;   // m, where the vertex belongs: on the surface's offset
-  Vec3 normal;   // outward unit normal there
-  double depth;  // m, how far inside the offset it lay
+  Vec3 target;    // m, where the vertex belongs at the step's end
+  Vec3 normal;    // outward unit normal there
+  double depth;   // m, how far inside the offset it lay
+  bool standing;  // it lay inside before the step: the target is no farther than max_depenetration allows
+  double left;    // m, how far below the offset the target lies then
 };
 
-// Brings carried contacts to this step: normal and velocity from where the collider's motion carries the vertex, the
-// gap to the offset closed at no more than max_depenetration. Contacts with colliders that are gone are dropped.
-void carryContacts(std::span<const Ellipsoid> ellipsoids, const SimParams& params, double dt, HairState& state);
+// How near a contact may come, m.
+struct ContactMargins {
+  double offset;  // where contacts are held
+  double slack;   // a contact so much nearer is not worth a correction: it is carried out by the next steps
+  double escape;  // how far an overlap that stood before the step may be resolved in it
+};
+ContactMargins contactMargins(const SimParams& params, double dt);
 
-// Penetrations of the external vertices, each resolved against every ellipsoid it lies in (alternating projections, so
-// that a crease between two bodies is left too). Found in vertex order.
-void findPenetrations(const HairMesh& mesh, std::span<const Ellipsoid> ellipsoids, double offset,
-                      std::span<const Vec3> positions, std::vector<Penetration>& found);
+// What a search for penetrations looks at.
+struct ContactSearch {
+  std::span<const int> vertices;
+  Colliders colliders;
+  std::span<const Vec3> start;  // m, positions at the step's start; empty: nothing is swept and nothing has stood
+  double dt = 0;                // s
+  ContactMargins margins{};
+};
+
+// Scratch of the searches, sized once.
+struct ContactScratch {
+  std::vector<int> near;  // colliders that the hair may touch
+};
+
+// Brings carried contacts to this step: normal and velocity from where the collider's motion carries the vertex.
+// Contacts that are out of reach, or whose collider is gone, are dropped. Overlaps are not resolved by velocities,
+// which would outlive them, but by positions (position_correction.h); only a dip below the offset is.
+void carryContacts(const Colliders& colliders, const SimParams& params, double dt, HairState& state);
+
+// Penetrations of the vertices, each resolved against every collider it lies in (alternating projections, so that a
+// crease between two bodies is left too) or whose motion relative to it led through it within the step. In the order of
+// the vertices.
+void findPenetrations(const ContactSearch& search, std::span<const Vec3> positions, ContactScratch& scratch,
+                      std::vector<Penetration>& found);
 
 // The constraint of one vertex: velocity = keep * (free velocity) + prescribed.
 struct VertexConstraint {

@@ -14,9 +14,11 @@ constexpr std::array<const char*, 3> kIntegrators{"linearized-euler", "implicit-
 constexpr std::array<const char*, 7> kSolvers{"paper",      "diagonal", "block-jacobi", "column",
                                               "incomplete", "warped",   "direct"};
 constexpr std::array<const char*, 3> kPrecisions{"float", "mixed", "double"};
+constexpr std::array<const char*, 2> kColliders{"ellipsoids", "sdf"};
 static_assert(kIntegrators.size() == static_cast<int>(Integrator::kCount));
 static_assert(kSolvers.size() == static_cast<int>(Solver::kCount));
 static_assert(kPrecisions.size() == static_cast<int>(Precision::kCount));
+static_assert(kColliders.size() == static_cast<int>(ColliderKind::kCount));
 
 struct Range {
   double minimum, maximum;
@@ -96,6 +98,11 @@ std::vector<ParamField> makeTable() {
       field<&P::wind_z>("wind_z", "World", "m/s", {-40, 40}, "Wind towards the viewer of the front."),
       field<&P::gust>("gust", "World", "", {0, 1}, "Share of the wind that comes and goes."),
       toggle<&P::collide>("collide", "Contact", "Contacts between hair and body ellipsoids."),
+      toggle<&P::collide_inner>("collide_inner", "Contact",
+                                "Contacts of the vertices inside the hair as well, not only of the outer ones."),
+      toggle<&P::self_collide>("self_collide", "Contact", "Contacts of the hair's bundles with one another."),
+      choice<&P::collider>("collider", "Contact", kColliders,
+                           "What the hair collides with: the paper's ellipsoids, or signed distances of the skin."),
       toggle<&P::minimize_deformation>(
           "minimize_deformation", "Contact",
           "After contacts are corrected, carries the other vertices along so that edges keep "

@@ -31,6 +31,13 @@ enum class Solver {
 // Arithmetic of the linear solver. Mixed: single precision, with the rest factor kept in 16 bits (compact_factor.h).
 enum class Precision { kFloat, kMixed, kDouble, kCount };
 
+// What the hair collides with.
+enum class ColliderKind {
+  kEllipsoids,  // the paper's: ellipsoids fitted to the body
+  kSdf,         // signed distance grids of the body's parts, where the scene has them
+  kCount
+};
+
 // Units are SI. Stiffnesses are moduli (per volume of hair), so that a value means the same at every resolution;
 // damping is a relaxation time (per second), so that it means the same at every time step.
 struct SimParams {
@@ -53,6 +60,9 @@ struct SimParams {
   double contact_offset = 0.002;   // m, contacts are held this far off the colliders
   double max_depenetration = 2.0;  // m/s, speed at which overlaps found at spawn are resolved
   bool collide = true;
+  bool collide_inner = false;  // the vertices inside the hair as well
+  bool self_collide = false;   // bundles with one another
+  ColliderKind collider = ColliderKind::kEllipsoids;
   bool minimize_deformation = true;
   // Rest shape
   bool sag_free = true;  // rest quantities balance gravity in the styled pose

@@ -4,17 +4,16 @@
 #include <cmath>
 #include <optional>
 
-#include "sim/contact.h"
-#include "sim/deformation.h"
 #include "sim/forces/material.h"
 #include "sim/implicit_solve.h"
+#include "sim/position_correction.h"
+#include "sim/self_contact.h"
 
 namespace sim {
 
 namespace {
 
-constexpr int kBalanceSlices = 40;    // steps over which the balance of gravity is solved for anew
-constexpr int kCorrectionRounds = 4;  // of position correction and deformation minimization
+constexpr int kBalanceSlices = 40;  // steps over which the balance of gravity is solved for anew
 
 // The parameters that stiffnesses and rest shifts depend on.
 bool sameMaterial(const SimParams& a, const SimParams& b) {
@@ -33,40 +32,26 @@ Vec3 windAt(const SimParams& params, double time) {
 
 struct StepContext::Parts {
   const HairMesh* mesh;
-  double (*clock)();
+  StageClock clock;
   BlockPattern pattern;
-  EdgeLaplacian laplacian;
   Material material;
   SimParams params;
   bool has_model = false, gradual = false;
   std::optional<ImplicitSolver<float>> single_solver;
   std::optional<ImplicitSolver<double>> double_solver;
   // Scratch of a step.
-  std::vector<Vec3> x_hat, v_hat, start_positions, start_velocities, uncorrected, displacement;
-  std::vector<Penetration> penetrations;
-  std::vector<unsigned char> held;
+  std::vector<Vec3> x_hat, v_hat, start_positions, start_velocities;
   std::vector<V3<double>> plain_positions;  // for the force model, which is plain arrays
   std::vector<Vec3> root_positions;         // of a teleport
   std::vector<Ellipsoid> standing;          // bodies after a teleport
-  GoodState good;                           // the last step's end
-  MinimizationScratch minimization;
-  double started = 0;
+  std::vector<DistancePart> standing_parts;
+  GoodState good;  // the last step's end
+  PositionCorrection correction;
+  std::optional<SelfContact> self_contact;  // made when first asked for
 
   Parts(const HairMesh& m, double (*c)())
-      : mesh(&m), clock(c), pattern(systemPattern(m)), laplacian(makeEdgeLaplacian(m)), material(m, pattern) {
-    const int n = m.vertexCount();
-    for (auto* array : {&x_hat, &v_hat, &start_positions, &start_velocities, &uncorrected, &displacement})
-      array->resize(n);
-    held.resize(n);
-    penetrations.reserve(m.external_vertices.size());
-  }
-
-  void start() { started = clock ? clock() : 0; }
-  void spent(Stage stage, StepReport& report) {
-    if (!clock) return;
-    const double now = clock();
-    report.seconds[stage] += now - started;
-    started = now;
+      : mesh(&m), clock{c}, pattern(systemPattern(m)), material(m, pattern), correction(m) {
+    for (auto* array : {&x_hat, &v_hat, &start_positions, &start_velocities}) array->resize(m.vertexCount());
   }
 };
 
@@ -152,9 +137,9 @@ void rootsFollowScalp(const StepInput& input, const StepBase& base, const HairMe
 void solveVelocities(const SimParams& params, const StepBase& base, Parts& parts, HairState& state,
                      StepReport& report) {
   if (params.precision == Precision::kDouble) {
-    parts.double_solver->solve(*parts.mesh, params, base, parts.clock, state.contacts, state.velocities, report);
+    parts.double_solver->solve(*parts.mesh, params, base, parts.clock.clock, state.contacts, state.velocities, report);
   } else {
-    parts.single_solver->solve(*parts.mesh, params, base, parts.clock, state.contacts, state.velocities, report);
+    parts.single_solver->solve(*parts.mesh, params, base, parts.clock.clock, state.contacts, state.velocities, report);
   }
 }
 
@@ -169,90 +154,8 @@ void integratePositions(const StepInput& input, const StepBase& base, double dt,
   for (int c = 0; c < mesh.columnCount(); ++c) state.positions[mesh.shape.column_first[c]] = input.roots[c];
 }
 
-// Holds the corrected vertices, resting contacts and roots, and lets the others follow.
-void minimizeAround(double tolerance, Parts& parts, HairState& state, StepReport& report) {
-  const std::size_t n = state.positions.size();
-  report.minimization_iterations +=
-      minimizeDeformation(parts.laplacian, parts.held, tolerance, parts.minimization, parts.displacement);
-  for (std::size_t i = 0; i < n; ++i) {
-    if (!parts.held[i]) state.positions[i] += parts.displacement[i];
-  }
-}
-
-// A corrected vertex keeps the collider's normal velocity and loses tangential speed to friction; the new contact
-// constrains the next solve.
-void enterContact(const SimParams& params, const StepInput& input, const Penetration& hit, HairState& state) {
-  const Ellipsoid& e = input.ellipsoids[hit.collider];
-  Vec3& v = state.velocities[hit.vertex];
-  const Vec3 relative = v - surfaceVelocity(e, hit.target);
-  const double approach = -relative.dot(hit.normal);
-  if (approach > 0) {
-    const Vec3 slip = relative + approach * hit.normal;
-    const double speed = slip.norm();
-    const double loss = std::min(speed, params.friction * approach);
-    v += approach * hit.normal;
-    if (speed > 0) v -= slip * (loss / speed);
-  }
-  const auto known = std::find_if(state.contacts.begin(), state.contacts.end(), [&](const Contact& c) {
-    return c.vertex == hit.vertex && c.collider == hit.collider;
-  });
-  if (known == state.contacts.end()) {
-    Contact contact;
-    contact.vertex = hit.vertex;
-    contact.collider = hit.collider;
-    contact.normal = hit.normal;
-    state.contacts.push_back(contact);
-  }
-}
-
-// Position correction, deformation minimization, velocity update (figures 4 and 5 of the paper). Minimization may push
-// other external vertices in, which the paper leaves to future work: the rounds go on with these held as well, and a
-// last correction without minimization leaves nothing inside.
-void resolvePenetrations(const SimParams& params, const StepInput& input, double dt, Parts& parts, HairState& state,
-                         StepReport& report) {
-  const HairMesh& mesh = *parts.mesh;
-  if (parts.penetrations.empty()) return;
-  for (const Penetration& hit : parts.penetrations)
-    report.max_penetration = std::max(report.max_penetration, hit.depth);
-  std::fill(parts.held.begin(), parts.held.end(), 0);
-  for (int c = 0; c < mesh.columnCount(); ++c) parts.held[mesh.shape.column_first[c]] = 1;
-  for (const Contact& contact : state.contacts) parts.held[contact.vertex] = 1;
-  parts.uncorrected = state.positions;
-  for (int round = 0; round < kCorrectionRounds && !parts.penetrations.empty(); ++round) {
-    std::fill(parts.displacement.begin(), parts.displacement.end(), Vec3::Zero());
-    for (const Penetration& hit : parts.penetrations) {
-      parts.displacement[hit.vertex] = hit.target - state.positions[hit.vertex];
-      parts.held[hit.vertex] = 1;
-      state.positions[hit.vertex] = hit.target;
-      enterContact(params, input, hit, state);
-      ++report.corrected;
-    }
-    parts.spent(kStageCollision, report);
-    if (params.minimize_deformation) minimizeAround(1e-3, parts, state, report);
-    parts.spent(kStageMinimization, report);
-    findPenetrations(mesh, input.ellipsoids, params.contact_offset, state.positions, parts.penetrations);
-  }
-  for (const Penetration& hit : parts.penetrations) {
-    state.positions[hit.vertex] = hit.target;
-    enterContact(params, input, hit, state);
-    ++report.corrected;
-  }
-  // Vertices that followed take the velocity of their displacement, no more than the depenetration speed: a deep
-  // overlap must not become a kick.
-  for (std::size_t i = 0; i < state.positions.size(); ++i) {
-    if (mesh.isRoot(static_cast<int>(i))) continue;
-    const Vec3 moved = state.positions[i] - parts.uncorrected[i];
-    const double speed = moved.norm() / dt;
-    if (speed <= 0) continue;
-    if (!parts.held[i]) state.velocities[i] += moved * (std::min(speed, params.max_depenetration) / (speed * dt));
-    // The two-step history of a corrected vertex restarts, as if it had come here at its present velocity.
-    state.previous_positions[i] = state.positions[i] - dt * state.velocities[i];
-    state.previous_velocities[i] = state.velocities[i];
-  }
-  const auto order = [](const Contact& a, const Contact& b) {
-    return a.vertex != b.vertex ? a.vertex < b.vertex : a.collider < b.collider;
-  };
-  std::sort(state.contacts.begin(), state.contacts.end(), order);
+Colliders collidersOf(const SimParams& params, const StepInput& input) {
+  return {input.ellipsoids, params.collider == ColliderKind::kSdf ? input.parts : std::span<const DistancePart>()};
 }
 
 // What was handed over: a state that something outside of the step has spoilt is healed before it spoils the rest.
@@ -275,7 +178,7 @@ void guardMade(Parts& parts, const StepInput& input, HairState& state, StepRepor
   for (const Vec3& x : state.positions) parts.plain_positions.push_back({x.x(), x.y(), x.z()});
   GoodState start{parts.start_positions, parts.start_velocities};
   heal(mesh, input.roots, start, state, trouble);
-  if (trouble.vertex >= 0) nameForce(parts.model, parts.plain_positions, trouble);
+  if (trouble.vertex >= 0) nameForce(parts.material.model, parts.plain_positions, trouble);
   ++report.recoveries;
   report.trouble = trouble;
 }
@@ -294,7 +197,9 @@ StepInput carryOverJump(const SimParams& params, const StepInput& input, double 
   parts.standing.assign(input.ellipsoids.begin(), input.ellipsoids.end());
   for (Ellipsoid& e : parts.standing) e.velocity = e.angular_velocity = Vec3::Zero();
   report.carried = true;
-  return {input.roots, parts.standing, input.time};
+  parts.standing_parts.assign(input.parts.begin(), input.parts.end());
+  for (DistancePart& part : parts.standing_parts) part.bounds.velocity = part.bounds.angular_velocity = Vec3::Zero();
+  return {input.roots, parts.standing, input.time, parts.standing_parts};
 }
 
 }  // namespace
@@ -303,27 +208,33 @@ StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInpu
                    StepContext& context, HairState& state) {
   Parts& parts = context.parts();
   StepReport report;
-  parts.start();
+  parts.clock.start();
   refreshModel(params, parts);
   guardGiven(given, parts, state, report);
   const StepInput input = carryOverJump(params, given, dt, parts, state, report);
   parts.start_positions = state.positions;
   parts.start_velocities = state.velocities;
-  carryContacts(input.ellipsoids, params, dt, state);
+  const Colliders colliders = collidersOf(params, input);
+  carryContacts(colliders, params, dt, state);
   const StepBase base = integratorBase(params, input, dt, state, parts);
   rootsFollowScalp(input, base, mesh, state);
-  parts.spent(kStageOther, report);
+  parts.clock.spent(kStageOther, report);
 
   solveVelocities(params, base, parts, state, report);
-  parts.start();
+  parts.clock.start();
   integratePositions(input, base, dt, mesh, parts, state);
   guardMade(parts, input, state, report);
-  parts.spent(kStageOther, report);
+  parts.clock.spent(kStageOther, report);
 
+  if (params.self_collide) {
+    if (!parts.self_contact) parts.self_contact.emplace(mesh);
+    report.self_contacts = resolveSelfContacts(mesh, params, dt, *parts.self_contact, state);
+    parts.clock.spent(kStageCollision, report);
+  }
   if (params.collide) {
-    findPenetrations(mesh, input.ellipsoids, params.contact_offset, state.positions, parts.penetrations);
-    resolvePenetrations(params, input, dt, parts, state, report);
-    parts.spent(kStageCollision, report);
+    correctPositions({mesh, params, colliders, parts.start_positions, dt}, parts.clock, parts.correction, state,
+                     report);
+    parts.clock.spent(kStageCollision, report);
   }
   parts.good.positions = state.positions;
   parts.good.velocities = state.velocities;
@@ -341,7 +252,7 @@ double mechanicalEnergy(const HairMesh& mesh, const SimParams& params, StepConte
     parts.plain_positions[i] = {x.x(), x.y(), x.z()};
     energy += params.density * mesh.vertex_volume[i] * (0.5 * v.squaredNorm() + params.gravity * x.y());
   }
-  return energy + evaluate<double>(parts.model, parts.plain_positions, {});
+  return energy + evaluate<double>(parts.material.model, parts.plain_positions, {});
 }
 
 HairState restState(const HairMesh& mesh, const Eigen::Isometry3d& head_to_world) {

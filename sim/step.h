@@ -18,6 +18,7 @@ struct StepInput {
   std::span<const Vec3> roots;            // m, world, one per column
   std::span<const Ellipsoid> ellipsoids;  // with the velocities that brought them there
   double time = 0;                        // s, of the step's end (gusts are a function of it)
+  std::span<const DistancePart> parts{};  // the same body as signed distances, for ColliderKind::kSdf; may be none
 };
 
 // Stages of a step, as in the paper's figure 6.
@@ -32,10 +33,12 @@ struct StepReport {
   bool converged = true;
   int contacts = 0, corrected = 0;  // constrained vertices; vertices moved by position correction
   int minimization_iterations = 0;
-  double max_penetration = 0;  // m, found before correction
-  int recoveries = 0;          // watchdog restored the last good state
-  Trouble trouble;             // what it found, for the log
-  bool carried = false;        // the roots had jumped as no motion could: the hair was carried along with them
+  double max_penetration = 0;   // m, found before correction
+  double standing_overlap = 0;  // m, deepest below the offset that is left because it stood before the step
+  int self_contacts = 0;        // vertices pushed out of foreign bundles
+  int recoveries = 0;           // watchdog restored the last good state
+  Trouble trouble;              // what it found, for the log
+  bool carried = false;         // the roots had jumped as no motion could: the hair was carried along with them
 };
 
 // Scratch memory and everything derived from mesh and parameters (matrix patterns, factors). Keep one per hair; a step

@@ -137,7 +137,7 @@ void measureLadder(int runs) {
     const double standard = fastest(stage, {Integrator::kLinearizedEuler, 60, SimParams{}.tolerance}, runs, trajectory);
     for (std::size_t c = 0; c < list.size(); ++c) {
       const double seconds = fastest(stage, list[c], runs, trajectory);
-      const TrajectoryError strayed = difference(trajectory, truth, stage.hairLength());
+      const TrajectoryError strayed = difference(trajectory, truth, stage.hairLength(), static_cast<int>(truth.size()));
       cost[c] += std::log(seconds / standard);
       error[c] += std::log(std::max(strayed.rms, 1e-9));
       std::printf("%-14s %-16s 1/%-4.0f %.0e %4d  cost %6.3f  rms %.2e  most %.2e\n", scene.name,

@@ -40,7 +40,7 @@ void solveExactly(const RecordedMesh& shared, LinearRecord& record) {
 LinearRecord recordStep(const RecordedMesh& shared, sim::ImplicitSolver<double>& solver, const sim::SimParams& params,
                         const sim::StepInput& input, sim::HairState state) {
   const sim::HairMesh& mesh = shared.mesh;
-  sim::carryContacts(input.ellipsoids, params, shared.h, state);
+  sim::carryContacts({input.ellipsoids}, params, shared.h, state);
   for (int c = 0; c < mesh.columnCount(); ++c) {
     const int root = mesh.shape.column_first[c];
     state.velocities[root] = (input.roots[c] - state.positions[root]) / shared.h;

@@ -4,6 +4,7 @@
 
 #include "app/errors.h"
 #include "tests/bench/accuracy_document.h"
+#include "tests/bench/collisions.h"
 #include "tests/bench/contact_sheet.h"
 #include "tests/bench/ladder.h"
 #include "tests/bench/pareto.h"
@@ -18,7 +19,9 @@ int main(int argc, char** argv) {
   bench::ParetoOptions pareto;
   bench::SolverChartOptions solvers;
   bench::PeersOptions peers;
-  bool run_styles = false, run_pareto = false, run_solvers = false, run_peers = false;
+  bench::CollisionOptions collisions;
+  std::vector<std::string> sets;
+  bool run_styles = false, run_pareto = false, run_solvers = false, run_peers = false, run_collisions = false;
   program.add_flag("--styles", run_styles,
                    "milliseconds a frame per stage for the nine styles, walking, beside the paper's");
   program.add_option("--frames", styles.frames, "measured frames a style")->check(CLI::Range(10, 100000));
@@ -39,10 +42,15 @@ int main(int argc, char** argv) {
   bool run_ladder = false;
   program.add_flag("--ladder", run_ladder,
                    "cost and error of the budget governor's settings (app/governor_ladder.cpp)");
+  program.add_flag("--collisions", run_collisions, "what is left inside the body, contacts that come and go, rest");
+  program.add_option("--only", collisions.styles, "styles of --collisions, such as 'long low', comma separated")
+      ->delimiter(',');
+  program.add_option("--clips", collisions.clips, "clips of --collisions, comma separated")->delimiter(',');
+  program.add_option("--set", sets, "NAME=VALUE of a parameter for --collisions")->allow_extra_args(false);
   std::string document;
   program.add_option("--accuracy-document", document, "put the tables of this folder's sweep into its accuracy.md");
   CLI11_PARSE(program, argc, argv);
-  if (!run_styles && !run_pareto && !run_solvers && !run_peers && !run_ladder && document.empty() &&
+  if (!run_styles && !run_pareto && !run_solvers && !run_peers && !run_ladder && !run_collisions && document.empty() &&
       sheet.folder.empty()) {
     std::cout << program.help();
     return app::kExitUsage;
@@ -55,6 +63,14 @@ int main(int argc, char** argv) {
     if (run_solvers) bench::runSolverChart(solvers);
     if (run_pareto) bench::runPareto(pareto);
     if (run_ladder) bench::measureLadder(pareto.runs);
+    if (run_collisions) {
+      collisions.frames = styles.frames;
+      for (const std::string& text : sets) {
+        const std::size_t equals = text.find('=');
+        collisions.set.emplace_back(text.substr(0, equals), equals < text.size() ? text.substr(equals + 1) : "");
+      }
+      bench::runCollisions(collisions);
+    }
     if (!document.empty()) bench::writeAccuracyDocument(document);
     if (!sheet.folder.empty()) bench::drawContactSheets(sheet);
   } catch (const app::ContextError& error) {

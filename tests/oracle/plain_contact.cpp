@@ -17,6 +17,7 @@ using sim::SimParams;
 using sim::StepInput;
 using sim::Vec3;
 
+constexpr double kFastestFollower = 10;  // m/s that a vertex takes from following a corrected one
 constexpr int kCorrectionRounds = 4;
 constexpr double kMinimizationTolerance = 1e-3;
 
@@ -94,11 +95,12 @@ void enterContact(const SimParams& params, const StepInput& input, const Penetra
 }  // namespace
 
 void resolvePenetrations(const HairMesh& mesh, const SimParams& params, const StepInput& input, double dt,
-                         HairState& state, sim::StepReport& report) {
+                         const std::vector<Vec3>& start, HairState& state, sim::StepReport& report) {
+  const sim::ContactSearch search{
+      mesh.external_vertices, {input.ellipsoids}, start, dt, sim::contactMargins(params, dt)};
   std::vector<Penetration> found;
-  const auto find = [&] {
-    sim::findPenetrations(mesh, input.ellipsoids, params.contact_offset, state.positions, found);
-  };
+  sim::ContactScratch scratch;
+  const auto find = [&] { sim::findPenetrations(search, state.positions, scratch, found); };
   find();
   if (found.empty()) return;
   for (const Penetration& hit : found) report.max_penetration = std::max(report.max_penetration, hit.depth);
@@ -106,17 +108,22 @@ void resolvePenetrations(const HairMesh& mesh, const SimParams& params, const St
   for (int i = 0; i < mesh.vertexCount(); ++i) held[i] = mesh.isRoot(i);
   for (const Contact& contact : state.contacts) held[contact.vertex] = 1;
   const std::vector<Vec3> uncorrected = state.positions;
-  for (int round = 0; round <= kCorrectionRounds && !found.empty(); ++round) {
+  double follow_speed = 0;
+  for (int round = 0; round <= kCorrectionRounds; ++round) {
     std::vector<Vec3> displacement(mesh.vertexCount(), Vec3::Zero());
-    const bool last = round == kCorrectionRounds;
+    int corrected = 0;
     for (const Penetration& hit : found) {
-      displacement[hit.vertex] = hit.target - state.positions[hit.vertex];
-      if (!last) held[hit.vertex] = 1;
-      state.positions[hit.vertex] = hit.target;
+      if (!hit.standing) follow_speed = std::max(follow_speed, std::min(hit.depth / dt, kFastestFollower));
+      if (hit.depth > search.margins.slack || hit.standing) {
+        displacement[hit.vertex] = hit.target - state.positions[hit.vertex];
+        held[hit.vertex] = 1;
+        state.positions[hit.vertex] = hit.target;
+        ++corrected;
+      }
       enterContact(params, input, hit, state);
-      ++report.corrected;
     }
-    if (last) break;
+    report.corrected += corrected;
+    if (corrected == 0 || round == kCorrectionRounds) break;
     if (params.minimize_deformation) {
       report.minimization_iterations += minimizeDeformation(mesh, held, displacement, state.positions);
     }
@@ -126,7 +133,7 @@ void resolvePenetrations(const HairMesh& mesh, const SimParams& params, const St
     const Vec3 moved = state.positions[i] - uncorrected[i];
     const double speed = moved.norm() / dt;
     if (held[i] || speed <= 0) continue;
-    state.velocities[i] += moved / dt * std::min(1.0, params.max_depenetration / speed);
+    state.velocities[i] += moved / dt * std::min(1.0, follow_speed / speed);
   }
   std::sort(state.contacts.begin(), state.contacts.end(), [](const Contact& a, const Contact& b) {
     return a.vertex != b.vertex ? a.vertex < b.vertex : a.collider < b.collider;

@@ -8,6 +8,7 @@ namespace oracle {
 
 // What sim/step does with the penetrations that a solve has left.
 void resolvePenetrations(const sim::HairMesh& mesh, const sim::SimParams& params, const sim::StepInput& input,
-                         double dt, sim::HairState& state, sim::StepReport& report);
+                         double dt, const std::vector<sim::Vec3>& start, sim::HairState& state,
+                         sim::StepReport& report);
 
 }  // namespace oracle

@@ -236,7 +236,8 @@ sim::StepReport plainAdvance(const HairMesh& mesh, const SimParams& params, cons
     context.model = sim::makeForceModel(mesh, context.pattern, params);
     context.made_for = params;
   }
-  sim::carryContacts(input.ellipsoids, params, dt, state);
+  const std::vector<Vec3> start = state.positions;
+  sim::carryContacts({input.ellipsoids}, params, dt, state);
   std::vector<Vec3> b = assemble(mesh, params, input, dt, context, state);
   for (int c = 0; c < mesh.columnCount(); ++c) {
     const int root = mesh.shape.column_first[c];
@@ -248,7 +249,7 @@ sim::StepReport plainAdvance(const HairMesh& mesh, const SimParams& params, cons
   for (std::size_t i = 0; i < state.positions.size(); ++i) state.positions[i] += dt * state.velocities[i];
   for (int c = 0; c < mesh.columnCount(); ++c) state.positions[mesh.shape.column_first[c]] = input.roots[c];
   spent(sim::kStageOther);
-  if (params.collide) resolvePenetrations(mesh, params, input, dt, state, report);
+  if (params.collide) resolvePenetrations(mesh, params, input, dt, start, state, report);
   spent(sim::kStageCollision);
   report.contacts = static_cast<int>(state.contacts.size());
   return report;

@@ -1,0 +1,131 @@
+#include "sim/position_correction.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sim {
+namespace {
+
+constexpr int kRounds = 4;               // of position correction and deformation minimization
+constexpr double kMinimization = 1e-3;   // relative residual
+constexpr double kFastestFollower = 10;  // m/s that a vertex takes from following a corrected one
+
+// A corrected vertex keeps the collider's normal velocity and loses tangential speed to friction; the new contact
+// constrains the next solve.
+void enterContact(const CorrectedStep& step, const Penetration& hit, HairState& state) {
+  const Ellipsoid& body = step.colliders.body(hit.collider);
+  Vec3& v = state.velocities[hit.vertex];
+  const Vec3 relative = v - surfaceVelocity(body, hit.target);
+  const double approach = -relative.dot(hit.normal);
+  if (approach > 0) {
+    const Vec3 slip = relative + approach * hit.normal;
+    const double speed = slip.norm();
+    const double loss = std::min(speed, step.params.friction * approach);
+    v += approach * hit.normal;
+    if (speed > 0) v -= slip * (loss / speed);
+  }
+  const auto known = std::find_if(state.contacts.begin(), state.contacts.end(), [&](const Contact& c) {
+    return c.vertex == hit.vertex && c.collider == hit.collider;
+  });
+  if (known == state.contacts.end()) {
+    Contact contact;
+    contact.vertex = hit.vertex;
+    contact.collider = hit.collider;
+    contact.normal = hit.normal;
+    state.contacts.push_back(contact);
+  }
+}
+
+// Moves what was found onto the surface. Returns how many vertices were.
+int correctFound(const CorrectedStep& step, double slack, PositionCorrection& scratch, HairState& state) {
+  int corrected = 0;
+  for (const Penetration& hit : scratch.penetrations) {
+    if (hit.depth > slack || hit.standing) {
+      scratch.displacement[hit.vertex] = hit.target - state.positions[hit.vertex];
+      scratch.held[hit.vertex] = 1;
+      state.positions[hit.vertex] = hit.target;
+      ++corrected;
+    }
+    enterContact(step, hit, state);
+  }
+  return corrected;
+}
+
+// Speed (m/s) at which the step's own motion, not an overlap that stood before it, had to be corrected.
+double correctionSpeed(const CorrectedStep& step, const PositionCorrection& scratch) {
+  double most = 0;
+  for (const Penetration& hit : scratch.penetrations) {
+    if (!hit.standing) most = std::max(most, hit.depth);
+  }
+  return std::min(most / step.dt, kFastestFollower);
+}
+
+// Vertices that followed take the velocity of their displacement, no more than the corrections' own: an overlap that
+// stood before must not become a kick. The two-step history of all that moved restarts, as if they had come here at
+// their present velocity.
+void updateVelocities(const CorrectedStep& step, double most, const PositionCorrection& scratch, HairState& state) {
+  for (std::size_t i = 0; i < state.positions.size(); ++i) {
+    if (step.mesh.isRoot(static_cast<int>(i))) continue;
+    const Vec3 moved = state.positions[i] - scratch.uncorrected[i];
+    const double speed = moved.norm() / step.dt;
+    if (speed <= 0) continue;
+    if (!scratch.held[i]) state.velocities[i] += moved * (std::min(speed, most) / (speed * step.dt));
+    state.previous_positions[i] = state.positions[i] - step.dt * state.velocities[i];
+    state.previous_velocities[i] = state.velocities[i];
+  }
+}
+
+}  // namespace
+
+PositionCorrection::PositionCorrection(const HairMesh& mesh) : laplacian(makeEdgeLaplacian(mesh)) {
+  const int n = mesh.vertexCount();
+  uncorrected.resize(n), displacement.resize(n), held.resize(n);
+  for (int i = 0; i < n; ++i) {
+    if (!mesh.isRoot(i)) all_vertices.push_back(i);
+  }
+  penetrations.reserve(all_vertices.size());
+}
+
+void correctPositions(const CorrectedStep& step, StageClock& clock, PositionCorrection& scratch, HairState& state,
+                      StepReport& report) {
+  const HairMesh& mesh = step.mesh;
+  const ContactSearch search{step.params.collide_inner ? scratch.all_vertices : mesh.external_vertices, step.colliders,
+                             step.start, step.dt, contactMargins(step.params, step.dt)};
+  findPenetrations(search, state.positions, scratch.search, scratch.penetrations);
+  if (scratch.penetrations.empty()) return;
+  for (const Penetration& hit : scratch.penetrations)
+    report.max_penetration = std::max(report.max_penetration, hit.depth);
+  std::fill(scratch.held.begin(), scratch.held.end(), 0);
+  for (int c = 0; c < mesh.columnCount(); ++c) scratch.held[mesh.shape.column_first[c]] = 1;
+  for (const Contact& contact : state.contacts) scratch.held[contact.vertex] = 1;
+  scratch.uncorrected = state.positions;
+  double follow_speed = 0;
+  // Minimization may push other vertices in, which the paper leaves to future work: the rounds go on with these held as
+  // well, and a last one without minimization leaves nothing inside.
+  for (int round = 0; round <= kRounds; ++round) {
+    std::fill(scratch.displacement.begin(), scratch.displacement.end(), Vec3::Zero());
+    follow_speed = std::max(follow_speed, correctionSpeed(step, scratch));
+    const int corrected = correctFound(step, search.margins.slack, scratch, state);
+    for (const Penetration& hit : scratch.penetrations)
+      report.standing_overlap = std::max(report.standing_overlap, hit.left);
+    report.corrected += corrected;
+    clock.spent(kStageCollision, report);
+    if (corrected == 0 || round == kRounds) break;
+    if (step.params.minimize_deformation) {
+      report.minimization_iterations += minimizeDeformation(scratch.laplacian, scratch.held, kMinimization,
+                                                            scratch.minimization, scratch.displacement);
+      for (std::size_t i = 0; i < state.positions.size(); ++i) {
+        if (!scratch.held[i]) state.positions[i] += scratch.displacement[i];
+      }
+    }
+    clock.spent(kStageMinimization, report);
+    findPenetrations(search, state.positions, scratch.search, scratch.penetrations);
+  }
+  updateVelocities(step, follow_speed, scratch, state);
+  const auto order = [](const Contact& a, const Contact& b) {
+    return a.vertex != b.vertex ? a.vertex < b.vertex : a.collider < b.collider;
+  };
+  std::sort(state.contacts.begin(), state.contacts.end(), order);
+}
+
+}  // namespace sim

@@ -1,0 +1,141 @@
+#include "tests/bench/collisions.h"
+
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <set>
+
+#include "app/actor.h"
+#include "app/data_path.h"
+#include "app/errors.h"
+
+namespace bench {
+namespace {
+
+constexpr double kSettle = 2, kRest = 4;  // s before a clip's measured frames; s of standing before rest is measured
+
+// Of this thread: other work on the machine does not count.
+double cpuSeconds() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+app::Actor makeDancer(const std::string& clip, sim::Style style, sim::Resolution resolution, app::Wardrobe& wardrobe) {
+  app::CharacterSpec spec;
+  spec.motion = app::findFile(clip, "", "clips");
+  spec.style = style;
+  spec.resolution = resolution;
+  return app::makeActor(spec, app::PlaybackSpec{}, wardrobe);
+}
+
+double depthOf(const app::Actor& actor, int vertex) {
+  double depth = 0;
+  for (const sim::Ellipsoid& e : actor.ellipsoids) {
+    const sim::Vec3& x = actor.hair.positions[vertex];
+    if (sim::implicitValue(e, x) < 0) depth = std::max(depth, -sim::closestPoint(e, x).distance);
+  }
+  return depth;
+}
+
+struct Row {
+  double milliseconds = 0, iterations = 0, contacts = 0, entered = 0, left = 0, corrected = 0;  // per step
+  double outer = 0, inner = 0;  // m, deepest external and internal vertex after a step
+  int recoveries = 0;
+};
+
+Row measureClip(const sim::SimParams& params, int frames, app::Actor& actor) {
+  app::settleActor(params, kSettle, actor);
+  const sim::HairMesh& mesh = actor.haircut->mesh;
+  std::vector<unsigned char> external(mesh.vertexCount(), 0);
+  for (const int v : mesh.external_vertices) external[v] = 1;
+  Row row;
+  std::vector<double> times;
+  std::set<std::pair<int, int>> before;
+  for (int frame = 0; frame < frames; ++frame) {
+    app::moveActor(params.time_step, actor);
+    const double started = cpuSeconds();
+    const sim::StepReport report = app::simulateActor(params, params.time_step, frame * params.time_step, actor);
+    times.push_back(cpuSeconds() - started);
+    std::set<std::pair<int, int>> now;
+    for (const sim::Contact& c : actor.hair.contacts) now.insert({c.vertex, c.collider});
+    for (const auto& key : now) row.entered += !before.contains(key);
+    for (const auto& key : before) row.left += !now.contains(key);
+    before = std::move(now);
+    row.iterations += report.solver_iterations;
+    row.contacts += report.contacts;
+    row.corrected += report.corrected;
+    row.recoveries += report.recoveries;
+    for (int v = 0; v < mesh.vertexCount(); ++v) {
+      if (mesh.isRoot(v)) continue;
+      double& deepest = external[v] ? row.outer : row.inner;
+      deepest = std::max(deepest, depthOf(actor, v));
+    }
+  }
+  std::nth_element(times.begin(), times.begin() + times.size() / 2, times.end());
+  row.milliseconds = 1e3 * times[times.size() / 2];
+  for (double* sum : {&row.iterations, &row.contacts, &row.entered, &row.left, &row.corrected}) *sum /= frames;
+  return row;
+}
+
+// Root mean square and largest vertex speed (m/s) over a second, `kRest` seconds after the figure has stood still.
+std::pair<double, double> measureRest(const sim::SimParams& params, app::Actor& actor) {
+  app::settleActor(params, kSettle, actor);
+  double sum = 0, most = 0;
+  const int steps = static_cast<int>(1 / params.time_step), still = static_cast<int>(kRest / params.time_step);
+  for (int step = 0; step < still + steps; ++step) {
+    app::simulateActor(params, params.time_step, 0, actor);
+    if (step < still) continue;
+    double square = 0;
+    for (const sim::Vec3& v : actor.hair.velocities) square += v.squaredNorm(), most = std::max(most, v.norm());
+    sum += square / static_cast<double>(actor.hair.velocities.size());
+  }
+  return {std::sqrt(sum / steps), most};
+}
+
+}  // namespace
+
+void runCollisions(const CollisionOptions& options) {
+  sim::SimParams params;
+  for (const auto& [name, text] : options.set) {
+    const sim::ParamText done = sim::setParam(params, name, text);
+    if (!done.ok) throw app::InputError("", "--set " + name, done.fault, "");
+  }
+  std::printf(
+      "| style | clip | ms a step | iterations | contacts | entered | left | corrected | outside vertices, mm inside | "
+      "inner vertices, mm inside | recoveries |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
+  const auto each = [&](auto&& visit) {
+    for (const sim::Style style : {sim::Style::kShort, sim::Style::kShoulder, sim::Style::kLong}) {
+      for (const sim::Resolution resolution :
+           {sim::Resolution::kLow, sim::Resolution::kMedium, sim::Resolution::kHigh}) {
+        const std::string name =
+            std::string(sim::styleName(style)) + " " + std::string(sim::resolutionName(resolution));
+        const auto& wanted = options.styles;
+        if (wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end())
+          visit(name, style, resolution);
+      }
+    }
+  };
+  app::Wardrobe wardrobe;
+  for (const std::string& clip : options.clips) {
+    each([&](const std::string& name, sim::Style style, sim::Resolution resolution) {
+      app::Actor actor = makeDancer(clip, style, resolution, wardrobe);
+      const Row row = measureClip(params, options.frames, actor);
+      std::printf("| %s | %s | %.2f | %.1f | %.1f | %.2f | %.2f | %.2f | %.3f | %.1f | %d |\n", name.c_str(),
+                  clip.c_str(), row.milliseconds, row.iterations, row.contacts, row.entered, row.left, row.corrected,
+                  1e3 * row.outer, 1e3 * row.inner, row.recoveries);
+      std::fflush(stdout);
+    });
+  }
+  std::printf("\n| style | rest speed, RMS mm/s | largest mm/s | contacts |\n|---|---|---|---|\n");
+  each([&](const std::string& name, sim::Style style, sim::Resolution resolution) {
+    app::Actor actor = makeDancer("idle_turns.bvh", style, resolution, wardrobe);
+    const auto [rms, most] = measureRest(params, actor);
+    std::printf("| %s | %.3f | %.2f | %zu |\n", name.c_str(), 1e3 * rms, 1e3 * most, actor.hair.contacts.size());
+    std::fflush(stdout);
+  });
+}
+
+}  // namespace bench

@@ -1,0 +1,20 @@
+// How collisions hold: what is left inside the body, how often contacts come and go, how quietly hair rests.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace bench {
+
+struct CollisionOptions {
+  int frames = 240;  // measured per style and clip
+  std::vector<std::string> clips{"walk.bvh", "dance.bvh", "jump_spin.bvh"};
+  std::vector<std::string> styles;                       // names to measure, such as "long low"; empty: all nine
+  std::vector<std::pair<std::string, std::string>> set;  // parameters, as --set takes them
+};
+
+// Prints one row a style and clip, then the rest speed of each style on the standing figure. Throws app::InputError.
+void runCollisions(const CollisionOptions& options);
+
+}  // namespace bench
