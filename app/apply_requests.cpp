@@ -28,8 +28,14 @@ void changePreset(const std::string& name, Demo& demo) {
 }
 
 // Replaces the selected actor by one of another spec; loads first, so that a fault leaves the old one standing.
-void recast(const CharacterSpec& spec, bool same_motion, Demo& demo) {
+void recast(const CharacterSpec& spec, bool same_motion, const std::string& title, Demo& demo) {
   Actor& old = selectedActor(demo);
+  if (demo.loading.on) {
+    LoadOrder order{title, {}, demo.aspect, spec, demo.selected, same_motion, old.playback};
+    order.scene.sim = demo.scene.sim;
+    order.scene.playback = demo.scene.playback;
+    return loadLater(std::move(order), demo);
+  }
   Actor fresh = makeActor(spec, demo.scene.playback, demo.wardrobe);
   fresh.playback.speed = old.playback.speed;
   fresh.playback.paused = old.playback.paused;
@@ -38,6 +44,7 @@ void recast(const CharacterSpec& spec, bool same_motion, Demo& demo) {
   fresh.context->refreshGradually(true);
   old = std::move(fresh);
   tidy(demo.actors, demo.wardrobe);
+  tell(title, demo);
 }
 
 void changeStyle(const Request& request, Demo& demo) {
@@ -53,14 +60,14 @@ void changeStyle(const Request& request, Demo& demo) {
     spec.resolution = *resolution;
   }
   spec.hair.clear();
-  recast(spec, true, demo);
+  recast(spec, true, std::string(sim::styleName(spec.style)) + " " + std::string(sim::resolutionName(spec.resolution)),
+         demo);
 }
 
 void changeHairFile(const std::string& file, Demo& demo) {
   CharacterSpec spec = selectedActor(demo).spec;
   spec.hair = findFile(file, "", "hair");
-  recast(spec, true, demo);
-  tell("hair mesh " + stem(file), demo);
+  recast(spec, true, "hair mesh " + stem(file), demo);
 }
 
 void changeMotion(const Request& request, Demo& demo) {
@@ -73,18 +80,16 @@ void changeMotion(const Request& request, Demo& demo) {
     spec.parts = request.name;
   }
   spec.clip_offset = 0;
-  recast(spec, false, demo);
-  tell("motion " + (request.what == Ask::kClip ? request.name : stem(request.text)), demo);
+  recast(spec, false, "motion " + (request.what == Ask::kClip ? request.name : stem(request.text)), demo);
 }
 
 void changeScene(const std::string& file, Demo& demo) {
   Scene scene = loadScene(findFile(file, "", "scenes"));
-  Demo fresh = openScene(std::move(scene), demo.aspect);
-  fresh.debug = demo.debug;
-  fresh.capture = demo.capture;
-  fresh.governor.counted = demo.governor.counted;
-  fresh.message = "scene " + fresh.scene.name;
-  demo = std::move(fresh);
+  if (demo.loading.on) {
+    const std::string title = "scene " + scene.name;
+    return loadLater({title, std::move(scene), demo.aspect, {}, 0, false, {}}, demo);
+  }
+  replaceScene(openScene(std::move(scene), demo.aspect), demo);
 }
 
 void scrub(double time, Demo& demo) {
@@ -236,6 +241,7 @@ void apply(const Request& request, Demo& demo) {
 }  // namespace
 
 void applyRequests(Demo& demo) {
+  takeLoaded(demo);
   // A request may bring others; a scene replaces the demo, so what follows it is taken over by value first.
   for (int round = 0; round < 4 && !demo.requests.empty(); ++round) {
     const std::vector<Request> asked = std::exchange(demo.requests, {});

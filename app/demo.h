@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/actor.h"
+#include "app/background_load.h"
 #include "app/camera.h"
 #include "app/debug_views.h"
 #include "app/fixed_clock.h"
@@ -42,6 +43,7 @@ struct Demo {
   bool paused = false;
   int single_steps = 0;  // asked for while paused
 
+  BackgroundLoad loading;
   std::vector<Request> requests;  // applied at the start of the next frame
   std::string message;            // the last fault or success, for the window
   bool message_is_fault = false;

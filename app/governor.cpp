@@ -16,9 +16,10 @@ constexpr double kOver = 1.04;      // times the budget: mean of two windows fro
 constexpr double kFarOver = 1.25;   // of one window
 constexpr double kFitsDown = 0.98;  // predicted share of the budget that a coarser rung must fit in
 constexpr double kFitsUp = 0.90;    // and a finer one
-constexpr double kPatience = 1, kMostPatience = 32;  // s before a climb
-constexpr double kSoon = 8;                          // s
-constexpr double kLeastSteepness = 1.03, kMostSteepness = 6;
+constexpr double kPatience = 1, kMostPatience = 32;       // s before a climb
+constexpr double kSoon = 8;                               // s
+constexpr double kLeastSteepness = 1.03, kMostOff = 1.8;  // times the ladder's word
+constexpr double kForgetting = 0.002;                     // a window
 
 double steepness(int rung, const Governor& governor) {
   if (governor.steepness[rung] > 0) return governor.steepness[rung];
@@ -43,7 +44,7 @@ int finestWithin(double most, double present, const Governor& governor) {
 void changeTo(int rung, double present, double shown_per_frame, Governor& governor) {
   const double predicted = predictedAt(rung, present, governor);
   governor.left_rung = governor.rung;
-  governor.left_cost = std::abs(rung - governor.rung) == 1 ? present : 0;
+  governor.left_cost = rung == governor.rung + 1 ? present : 0;
   governor.rung = rung;
   governor.predicted_cost = predicted * shown_per_frame;
   governor.last_window = 0;
@@ -52,13 +53,22 @@ void changeTo(int rung, double present, double shown_per_frame, Governor& govern
   ++governor.changes;
 }
 
-// What the change of rung really did to the cost, for the next time it is considered.
+// What a climb really did to the cost, for the next time it is considered. Descents teach nothing: the load that forced
+// them has changed the cost as well.
 void learn(double present, Governor& governor) {
   if (governor.left_cost <= 0) return;
-  const bool climbed = governor.rung > governor.left_rung;
-  const double ratio = climbed ? present / governor.left_cost : governor.left_cost / present;
-  governor.steepness[std::min(governor.rung, governor.left_rung)] = std::clamp(ratio, kLeastSteepness, kMostSteepness);
+  const int below = governor.left_rung;
+  const double word = ladder()[below + 1].cost / ladder()[below].cost, ratio = present / governor.left_cost;
+  governor.steepness[below] = std::max(kLeastSteepness, std::clamp(ratio, word / kMostOff, word * kMostOff));
   governor.left_cost = 0;
+}
+
+// What was learned was learned under the load of its time: slowly back to the ladder's word.
+void forget(Governor& governor) {
+  double& learned = governor.steepness[governor.rung];
+  if (learned <= 0) return;
+  const double word = ladder()[governor.rung + 1].cost / ladder()[governor.rung].cost;
+  learned += kForgetting * (word - learned);
 }
 
 // A climb that is taken back soon lets the next one wait; long calm makes up for it.
@@ -128,6 +138,7 @@ bool observe(const FrameCost& frame, Governor& governor) {
   if (!two) return false;
   learn(mean, governor);
   governor.over_budget = false;
+  if (governor.rung < finest) forget(governor);
   if (governor.rung == finest || governor.since_change < governor.patience) return false;
   if (predictedAt(governor.rung + 1, std::max(mean, present), governor) > kFitsUp * budget) return false;
   changeTo(governor.rung + 1, mean, per_frame, governor);

@@ -171,6 +171,8 @@ int runWindow(Scene scene, const Options& options) {
   Tape tape(options, scene);
   Demo demo = openScene(std::move(scene), static_cast<double>(options.width) / options.height);
   setDebugViews(options.debug, demo.debug);
+  // Runs of so many frames and recordings show the same on every run.
+  demo.loading.on = !options.frames_given && options.record.empty() && options.replay.empty();
   UiState ui;
   ui.visible = !options.hide_panels;
   ui.open_tab = tabIndex(options.panel);

@@ -19,8 +19,7 @@ constexpr int kUncorrectedIterations = 10;
 constexpr double kFactorCost = 0.9;
 constexpr double kStaleRatio = 3;  // of h (h + damping): BDF2's start-up step shares its factor with the steps after it
 constexpr double kStaleMass = 1.5;  // of 1 + h drag: the air is thick while the hair settles
-// Steps over which a new rest factor is spread, and when the old one serves badly.
-constexpr int kSlices = 24, kHurriedSlices = 6;
+constexpr int kSlices = 30;         // steps over which a new rest factor is spread
 
 template <class T>
 V3<T> cast(const Vec3& p) {
@@ -123,8 +122,7 @@ void ImplicitSolver<T>::refreshRestFactor(const HairMesh& mesh, const SimParams&
   const bool compact = params.precision == Precision::kMixed;
   const bool usable = rest_terms.h > 0 && rest_compact == compact;
   if (usable && gradual && preconditioner.restMatrixPending()) {
-    const int slices = choice.cheap ? kHurriedSlices : kSlices;
-    if (preconditioner.continueRestMatrix(slices, constraints)) rest_terms = coming_terms;
+    if (preconditioner.continueRestMatrix(kSlices, constraints)) rest_terms = coming_terms;
     return;
   }
   if (usable && !rest_outdated && near(wanted.stiffness(), rest_terms.stiffness(), kStaleRatio) &&

@@ -26,7 +26,7 @@ sim::SimParams bareMaterial(Integrator integrator) {
   p.collide = false;
   p.integrator = integrator;
   p.solver = sim::Solver::kDirect;
-  p.tolerance = 1e-13, p.acceleration_tolerance = 1e-16, p.max_iterations = 5;
+  p.tolerance = 1e-13, p.acceleration_tolerance = 1e-16, p.displacement_tolerance = 0, p.max_iterations = 5;
   p.newton_iterations = 50, p.newton_tolerance = 1e-15;
   return p;
 }

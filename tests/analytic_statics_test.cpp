@@ -18,7 +18,7 @@ sim::SimParams bareMaterial() {
   p.damping = 0.02;
   p.collide = false;
   p.solver = sim::Solver::kDirect;
-  p.tolerance = 1e-13, p.acceleration_tolerance = 1e-16, p.max_iterations = 5;
+  p.tolerance = 1e-13, p.acceleration_tolerance = 1e-16, p.displacement_tolerance = 0, p.max_iterations = 5;
   return p;
 }
 

@@ -200,12 +200,12 @@ TEST(SliderDrag, AThousandfoldStiffnessStillConverges) {
   EXPECT_LT(test::largestDistance(start, hair.state.positions), 0.02);
 }
 
-// The large mesh, every slider dragged up and down in turn. The head is shaken without contacts, whose coming and going
-// makes frames of three times the median by itself. The run is made twice and a frame's time is the lesser of the two,
-// since its work is the same and the machine's other work is not.
+// The large mesh, every slider dragged up and down in turn while the head is shaken, against the same frames without a
+// drag. No contacts, whose coming and going makes frames of three times the median by itself. Each run is made twice
+// and a frame's time is the lesser of the two, since its work is the same and the machine's other work is not.
 TEST(SliderDrag, NoFrameStallsOnTheLargeMesh) {
   constexpr int kUndisturbed = 16, kFramesEach = 8;
-  constexpr double kMultiple = 2.5;  // an immediate refresh takes 28 times the median
+  constexpr double kMultiple = 4;  // an immediate refresh takes 40 times the median
   app::Wardrobe wardrobe;
   app::CharacterSpec spec;
   spec.motion = app::findFile("head_shake.bvh", "", "clips");
@@ -217,8 +217,7 @@ TEST(SliderDrag, NoFrameStallsOnTheLargeMesh) {
   app::settleActor(standard, 0.2, actor);
   const sim::HairState start = actor.hair;
   const app::Playback playback = actor.playback;
-  std::vector<double> least;
-  for (int repeat = 0; repeat < 2; ++repeat) {
+  const auto timesOf = [&](double drag) {
     actor.context = std::make_unique<sim::StepContext>(actor.haircut->mesh);
     actor.context->refreshGradually(true);
     actor.playback = playback;
@@ -235,26 +234,35 @@ TEST(SliderDrag, NoFrameStallsOnTheLargeMesh) {
       EXPECT_TRUE(report.converged);
       EXPECT_EQ(report.recoveries, 0);
     };
-    frame();  // builds the factor
-    times.clear();
-    for (int k = 0; k < kUndisturbed; ++k) frame();
+    for (int k = 0; k <= kUndisturbed; ++k) frame();  // the first builds the factor
     for (const char* name : kSliders) {
       for (int k = 0; k < kFramesEach; ++k) {
-        scale(name, k < kFramesEach / 2 ? 1.2 : 1 / 1.2, params);
+        scale(name, k < kFramesEach / 2 ? drag : 1 / drag, params);
         frame();
       }
     }
     for (int k = 0; k < kUndisturbed; ++k) frame();
-    if (least.empty()) least = times;
-    for (std::size_t k = 0; k < times.size(); ++k) least[k] = std::min(least[k], times[k]);
+    times.erase(times.begin(), times.begin() + kUndisturbed + 1);
+    return times;
+  };
+  std::vector<double> least[2];
+  for (int repeat = 0; repeat < 2; ++repeat) {
+    for (const bool drag : {false, true}) {
+      const std::vector<double> times = timesOf(drag ? 1.2 : 1);
+      if (repeat == 0) least[drag] = times;
+      for (std::size_t k = 0; k < times.size(); ++k) least[drag][k] = std::min(least[drag][k], times[k]);
+    }
   }
-  std::vector<double> calm(least.begin(), least.begin() + kUndisturbed);
-  std::nth_element(calm.begin(), calm.begin() + kUndisturbed / 2, calm.end());
-  const double median = calm[kUndisturbed / 2];
-  const auto worst = std::max_element(least.begin() + kUndisturbed, least.end());
+  std::vector<double> calm = least[0];
+  std::nth_element(calm.begin(), calm.begin() + calm.size() / 2, calm.end());
+  const double median = calm[calm.size() / 2], usual_worst = *std::max_element(calm.begin(), calm.end());
+  const auto worst = std::max_element(least[1].begin(), least[1].end());
   const double ratio = *worst / median;
-  std::printf("%d vertices: median %.2f ms, worst frame of the drags %.2f ms (frame %d): %.2f times\n",
-              actor.haircut->mesh.vertexCount(), 1e3 * median, 1e3 * *worst, int(worst - least.begin()), ratio);
+  std::printf(
+      "%d vertices: median %.2f ms and worst %.2f ms without a drag; worst frame of the drags %.2f ms (%d): "
+      "%.2f times the median\n",
+      actor.haircut->mesh.vertexCount(), 1e3 * median, 1e3 * usual_worst, 1e3 * *worst,
+      static_cast<int>(worst - least[1].begin()), ratio);
   EXPECT_LT(ratio, kMultiple);
 }
 

@@ -1,0 +1,106 @@
+#include "app/background_load.h"
+
+#include <chrono>
+#include <utility>
+
+#include "app/demo.h"
+
+namespace app {
+
+struct Loaded {
+  LoadOrder order;
+  std::optional<Demo> demo;  // of a scene
+  Wardrobe wardrobe;         // of a character
+  std::optional<Actor> actor;
+};
+
+namespace {
+
+// On the thread: touches nothing but what it makes.
+std::unique_ptr<Loaded> load(LoadOrder order) {
+  auto loaded = std::make_unique<Loaded>();
+  const PlaybackSpec& playback = order.scene.playback;
+  if (order.spec) {
+    Actor actor = makeActor(*order.spec, playback, loaded->wardrobe);
+    if (order.same_motion) {
+      actor.playback = order.playback;
+      placeActor(actor, true);
+    }
+    settleActor(order.scene.sim, playback.settle, actor);
+    actor.context->refreshGradually(true);
+    loaded->actor = std::move(actor);
+  } else {
+    loaded->demo = openScene(std::move(order.scene), order.aspect);
+  }
+  loaded->order = std::move(order);
+  return loaded;
+}
+
+void start(LoadOrder order, Demo& demo) {
+  demo.message = "loading " + order.title;
+  demo.message_is_fault = false;
+  demo.loading.running = std::async(std::launch::async, load, std::move(order));
+}
+
+// The old one has moved on since the order was given: the new one is carried to where it is now.
+void recastLoaded(Loaded& loaded, Demo& demo) {
+  if (loaded.order.actor >= static_cast<int>(demo.actors.size())) return;
+  Actor& old = demo.actors[loaded.order.actor];
+  Actor fresh = std::move(*loaded.actor);
+  for (auto& body : loaded.wardrobe.bodies) demo.wardrobe.bodies.push_back(std::move(body));
+  for (auto& haircut : loaded.wardrobe.haircuts) demo.wardrobe.haircuts.push_back(std::move(haircut));
+  fresh.playback.speed = old.playback.speed;
+  fresh.playback.paused = old.playback.paused;
+  if (loaded.order.same_motion) {
+    fresh.playback = old.playback;
+    placeActor(fresh, false);
+  }
+  old = std::move(fresh);
+  tidy(demo.actors, demo.wardrobe);
+}
+
+}  // namespace
+
+void loadLater(LoadOrder order, Demo& demo) {
+  if (demo.loading.running.valid()) {
+    demo.loading.waiting = std::move(order);
+  } else {
+    start(std::move(order), demo);
+  }
+}
+
+void takeLoaded(Demo& demo) {
+  BackgroundLoad& loading = demo.loading;
+  if (!loading.running.valid() || loading.running.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+    return;
+  try {
+    const std::unique_ptr<Loaded> loaded = loading.running.get();
+    const std::string title = loaded->order.title;
+    if (loaded->demo) {
+      replaceScene(std::move(*loaded->demo), demo);
+    } else {
+      recastLoaded(*loaded, demo);
+    }
+    demo.message = title;
+    demo.message_is_fault = false;
+  } catch (const std::exception& fault) {
+    demo.message = fault.what();
+    demo.message_is_fault = true;
+  }
+  if (!demo.loading.waiting) return;
+  LoadOrder next = std::move(*demo.loading.waiting);
+  demo.loading.waiting.reset();
+  start(std::move(next), demo);
+}
+
+void replaceScene(Demo fresh, Demo& demo) {
+  fresh.debug = demo.debug;
+  fresh.capture = demo.capture;
+  fresh.governor.counted = demo.governor.counted;
+  fresh.loading = std::move(demo.loading);
+  fresh.requests = std::move(demo.requests);
+  fresh.message = "scene " + fresh.scene.name;
+  demo = std::move(fresh);
+}
+
+}  // namespace app

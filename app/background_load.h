@@ -1,0 +1,44 @@
+// Scenes and characters loaded on a thread of their own, so that what is shown goes on meanwhile. Only the window loads
+// so; headless runs and tests load at once, between two frames.
+#pragma once
+
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "app/motion.h"
+#include "app/scene_file.h"
+
+namespace app {
+
+struct Demo;
+struct Loaded;  // what a thread brings back
+
+// A scene to open or, with `spec`, a character to replace.
+struct LoadOrder {
+  std::string title;  // for messages
+  Scene scene;        // with `spec`: its simulation and playback alone count
+  double aspect = 1;
+  std::optional<CharacterSpec> spec;
+  int actor = 0;             // that `spec` replaces
+  bool same_motion = false;  // it goes on where the old one is in its clip
+  Playback playback;         // of the old one when the order was given
+};
+
+struct BackgroundLoad {
+  bool on = false;
+  std::optional<LoadOrder> waiting;  // the latest one given while another is being loaded
+  std::future<std::unique_ptr<Loaded>> running;
+};
+
+// Starts loading, or lets the order wait in place of one that waits already.
+void loadLater(LoadOrder order, Demo& demo);
+
+// Puts in place what has been loaded, if anything has; a fault becomes the demo's message and changes nothing else.
+void takeLoaded(Demo& demo);
+
+// Opens `scene` in the demo's place; what belongs to the window rather than to the scene stays.
+void replaceScene(Demo fresh, Demo& demo);
+
+}  // namespace app

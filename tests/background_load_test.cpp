@@ -1,0 +1,99 @@
+// Scenes and styles loaded beside the frames: what is shown goes on, what cannot be loaded changes nothing.
+#include "app/background_load.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "app/data_path.h"
+#include "app/demo.h"
+#include "tests/run_program.h"
+
+namespace {
+
+using app::Ask;
+using app::Demo;
+
+Demo walking() {
+  app::Scene scene = app::loadScene(app::dataPath("assets/scenes/walk.json"));
+  scene.characters.resize(1);
+  scene.characters[0].style = sim::Style::kShort;
+  scene.characters[0].resolution = sim::Resolution::kLow;
+  Demo demo = app::openScene(std::move(scene), 1);
+  demo.loading.on = true;
+  return demo;
+}
+
+void frames(int count, Demo& demo) {
+  for (int f = 0; f < count; ++f) app::advanceFrame(demo, 1.0 / 60, {});
+}
+
+TEST(BackgroundLoad, TheOldHairGoesOnUntilTheNewStyleIsThere) {
+  Demo demo = walking();
+  frames(5, demo);
+  const std::uint64_t old = demo.actors[0].id;
+  demo.requests.push_back({Ask::kStyle, "shoulder", ""});
+  frames(1, demo);
+  ASSERT_TRUE(demo.loading.running.valid());
+  EXPECT_EQ(demo.actors[0].id, old);
+  EXPECT_EQ(demo.stats.steps, 1) << "the simulation goes on";
+  const double time = demo.actors[0].playback.time;
+  demo.loading.running.wait();
+  frames(1, demo);
+  EXPECT_NE(demo.actors[0].id, old);
+  EXPECT_EQ(demo.actors[0].spec.style, sim::Style::kShoulder);
+  EXPECT_NEAR(demo.actors[0].playback.time, time + 1.0 / 60, 1e-9) << "in step with the clip";
+  EXPECT_EQ(demo.wardrobe.haircuts.size(), 1u);
+  EXPECT_EQ(demo.wardrobe.bodies.size(), 1u);
+  int recoveries = 0;
+  for (int f = 0; f < 60; ++f) {
+    frames(1, demo);
+    recoveries += demo.stats.recoveries;
+  }
+  EXPECT_EQ(recoveries, 0);
+  EXPECT_FALSE(demo.message_is_fault);
+}
+
+TEST(BackgroundLoad, OfSeveralOrdersTheLastIsServed) {
+  Demo demo = walking();
+  demo.requests = {{Ask::kStyle, "shoulder", ""}, {Ask::kStyle, "long", ""}, {Ask::kResolution, "medium", ""}};
+  frames(1, demo);
+  ASSERT_TRUE(demo.loading.running.valid());
+  demo.loading.running.wait();
+  frames(1, demo);
+  ASSERT_TRUE(demo.loading.running.valid()) << "what waited has begun";
+  EXPECT_FALSE(demo.loading.waiting.has_value());
+  demo.loading.running.wait();
+  frames(1, demo);
+  EXPECT_EQ(demo.actors[0].spec.resolution, sim::Resolution::kMedium);
+}
+
+TEST(BackgroundLoad, ASceneTakesThePlaceOfTheOther) {
+  Demo demo = walking();
+  demo.debug = {};
+  demo.requests.push_back({Ask::kSceneFile, "", app::dataPath("assets/scenes/head_shake.json")});
+  frames(1, demo);
+  const std::string before = demo.scene.name;
+  demo.loading.running.wait();
+  frames(2, demo);
+  EXPECT_NE(demo.scene.name, before);
+  EXPECT_TRUE(demo.loading.on);
+  EXPECT_FALSE(demo.message_is_fault);
+}
+
+TEST(BackgroundLoad, AFaultIsToldAndChangesNothing) {
+  Demo demo = walking();
+  const std::string file = test::freshFolder("background") + "/broken.bvh";
+  std::ofstream(file) << "HIERARCHY\nROOT a\n{";
+  const std::uint64_t old = demo.actors[0].id;
+  demo.requests.push_back({Ask::kMotionFile, "", file});
+  frames(1, demo);
+  if (demo.loading.running.valid()) demo.loading.running.wait();
+  frames(2, demo);
+  EXPECT_TRUE(demo.message_is_fault);
+  EXPECT_NE(demo.message.find("broken.bvh"), std::string::npos) << demo.message;
+  EXPECT_EQ(demo.actors[0].id, old);
+  EXPECT_FALSE(demo.loading.running.valid());
+}
+
+}  // namespace
