@@ -88,6 +88,16 @@ void followScalp(const Actor& actor, std::vector<sim::Vec3>& roots) {
   for (int c = 0; c < shape.columnCount(); ++c) roots[c] = scalp * shape.positions[shape.column_first[c]];
 }
 
+// What the hair sees in a step that has brought the figure from its previous pose to its present one.
+sim::StepInput stepInput(const sim::SimParams& params, double step, double time, Actor& actor) {
+  if (params.collider == sim::ColliderKind::kSdf) {
+    if (!actor.body->has_parts) actor.body->parts = partDistances(actor.body->character);
+    actor.body->has_parts = true;
+    posePartDistances(actor.body->parts, actor.pose, actor.previous_pose, step, actor.parts);
+  }
+  return {actor.roots, actor.ellipsoids, time, actor.parts};
+}
+
 }  // namespace
 
 Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, Wardrobe& wardrobe) {
@@ -154,7 +164,7 @@ void moveActor(double step, Actor& actor) {
 
 sim::StepReport simulateActor(const sim::SimParams& params, double step, double time, Actor& actor) {
   std::copy(actor.hair.positions.begin(), actor.hair.positions.end(), actor.previous_positions.begin());
-  actor.last_report = sim::advance(actor.haircut->mesh, params, {actor.roots, actor.ellipsoids, time}, step,
+  actor.last_report = sim::advance(actor.haircut->mesh, params, stepInput(params, step, time, actor), step,
                                    *actor.context, actor.hair);
   return actor.last_report;
 }
@@ -169,10 +179,10 @@ void settleActor(const sim::SimParams& params, double seconds, Actor& actor) {
   thick.air_drag = std::max(params.air_drag, kSettlingDrag);
   thick.wind_x = thick.wind_y = thick.wind_z = 0;
   const int steps = static_cast<int>(seconds / params.time_step);
-  for (int i = 0; i < steps; ++i) {
-    sim::advance(actor.haircut->mesh, thick, {actor.roots, actor.ellipsoids, 0}, params.time_step, *actor.context,
-                 actor.hair);
-  }
+  if (steps == 0) return;
+  const sim::StepInput input = stepInput(thick, params.time_step, 0, actor);
+  for (int i = 0; i < steps; ++i)
+    sim::advance(actor.haircut->mesh, thick, input, params.time_step, *actor.context, actor.hair);
   actor.previous_positions = actor.hair.positions;
 }
 

@@ -8,6 +8,7 @@
 
 #include "app/character.h"
 #include "app/motion.h"
+#include "app/part_distances.h"
 #include "app/scene_file.h"
 #include "app/step_error.h"
 #include "render/frame_input.h"
@@ -23,6 +24,8 @@ struct LoadedBody {
   std::uint64_t id = 0;
   Character character;
   sim::BodyDistance distance;
+  bool has_parts = false;           // they are made when signed distances are first collided with
+  std::vector<PartDistance> parts;
 };
 
 // A hair mesh, built once whatever the number of actors that wear it.
@@ -41,7 +44,7 @@ struct Wardrobe {
 struct Actor {
   std::uint64_t id = 0;
   CharacterSpec spec;
-  const LoadedBody* body = nullptr;
+  LoadedBody* body = nullptr;  // shared; changed only by what is made on demand
   const Haircut* haircut = nullptr;
   int clip = 0;
   Playback playback;
@@ -51,6 +54,7 @@ struct Actor {
   sim::HairState hair;
   std::vector<sim::Vec3> previous_positions;
   std::vector<sim::Ellipsoid> ellipsoids;
+  std::vector<sim::DistancePart> parts;  // the same body as signed distances, where they are collided with
   std::vector<sim::Vec3> roots;
   std::unique_ptr<sim::StepContext> context;
   sim::StepReport last_report;

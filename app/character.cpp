@@ -91,27 +91,28 @@ Rigid scalpToWorld(const Character& character, const Pose& pose) {
   return pose.world[character.head_joint] * character.head_frame;
 }
 
+void poseEllipsoid(const BodyEllipsoid& part, const Pose& pose, const Pose& previous, double dt, sim::Ellipsoid& e) {
+  const Rigid& now = pose.world[part.joint];
+  e.center = now * part.center;
+  e.rotation = (Eigen::Quaterniond(now.linear()) * part.rotation).normalized();
+  e.radii = part.radii;
+  e.velocity.setZero();
+  e.angular_velocity.setZero();
+  if (!(dt > 0) || previous.world.size() != pose.world.size()) return;
+  const Rigid& before = previous.world[part.joint];
+  e.velocity = (e.center - before * part.center) / dt;
+  // The shorter way round: of a turn and its complement, joints take the smaller.
+  const Eigen::AngleAxisd turn(
+      Eigen::Quaterniond(Eigen::Matrix3d(now.linear() * before.linear().transpose())).normalized());
+  const double angle = std::remainder(turn.angle(), 2 * EIGEN_PI);
+  e.angular_velocity = turn.axis() * (angle / dt);
+}
+
 void poseEllipsoids(const Character& character, const Pose& pose, const Pose& previous, double dt,
                     std::vector<sim::Ellipsoid>& ellipsoids) {
   ellipsoids.resize(character.ellipsoids.size());
-  for (std::size_t i = 0; i < ellipsoids.size(); ++i) {
-    const BodyEllipsoid& part = character.ellipsoids[i];
-    const Rigid& now = pose.world[part.joint];
-    sim::Ellipsoid& e = ellipsoids[i];
-    e.center = now * part.center;
-    e.rotation = (Eigen::Quaterniond(now.linear()) * part.rotation).normalized();
-    e.radii = part.radii;
-    e.velocity.setZero();
-    e.angular_velocity.setZero();
-    if (!(dt > 0) || previous.world.size() != pose.world.size()) continue;
-    const Rigid& before = previous.world[part.joint];
-    e.velocity = (e.center - before * part.center) / dt;
-    // The shorter way round: of a turn and its complement, joints take the smaller.
-    const Eigen::AngleAxisd turn(
-        Eigen::Quaterniond(Eigen::Matrix3d(now.linear() * before.linear().transpose())).normalized());
-    const double angle = std::remainder(turn.angle(), 2 * EIGEN_PI);
-    e.angular_velocity = turn.axis() * (angle / dt);
-  }
+  for (std::size_t i = 0; i < ellipsoids.size(); ++i)
+    poseEllipsoid(character.ellipsoids[i], pose, previous, dt, ellipsoids[i]);
 }
 
 }  // namespace app

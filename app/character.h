@@ -91,6 +91,7 @@ sim::BodyDistance restBodyDistance(const Character& character);
 // The head's scalp-frame-to-world transform and the ellipsoids of a pose. `velocity` fields are filled from `previous` over
 // dt when dt > 0.
 Rigid scalpToWorld(const Character& character, const Pose& pose);
+void poseEllipsoid(const BodyEllipsoid& part, const Pose& pose, const Pose& previous, double dt, sim::Ellipsoid& e);
 void poseEllipsoids(const Character& character, const Pose& pose, const Pose& previous, double dt,
                     std::vector<sim::Ellipsoid>& ellipsoids);
 

@@ -68,7 +68,7 @@ bool parseOptions(int argc, char** argv, Options& options, int& exit_code) {
   parser.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   std::string size;
   std::vector<std::string> sets;
-  std::string solver;
+  std::string solver, collider;
   bool list_parameters = false;
 
   parser.add_option("scene", options.scene, "Scene file (JSON); without one the default scene is shown")
@@ -109,6 +109,12 @@ bool parseOptions(int argc, char** argv, Options& options, int& exit_code) {
       ->group(what)
       ->option_text("NAME")
       ->check(CLI::IsMember({"paper", "diagonal", "block-jacobi", "column", "incomplete", "warped", "direct"}));
+  parser
+      .add_option("--collider", collider,
+                  "What the hair collides with: ellipsoids fitted to the body, or signed distances of its skin (sdf)")
+      ->group(what)
+      ->option_text("NAME")
+      ->check(CLI::IsMember({"ellipsoids", "sdf"}));
   parser.add_flag("--parameters", list_parameters, "Print the parameter tables and end")->group(what);
 
   const char* motion = "Playback";
@@ -216,6 +222,7 @@ bool parseOptions(int argc, char** argv, Options& options, int& exit_code) {
     return fail("--size cannot be '" + size + "'; write WIDTHxHEIGHT with sides from " + std::to_string(kSmallestSide) +
                 " to " + std::to_string(kLargestSide) + ", for instance 1280x720");
   }
+  if (!collider.empty()) options.set.emplace_back("collider", collider);
   // Before the sets, which may still turn a part of it.
   if (!solver.empty()) options.set.emplace_back("solver", solver);
   if (solver == "paper") {

@@ -4,6 +4,7 @@
 
 #include "app/errors.h"
 #include "tests/bench/accuracy_document.h"
+#include "tests/bench/colliders.h"
 #include "tests/bench/collisions.h"
 #include "tests/bench/contact_sheet.h"
 #include "tests/bench/ladder.h"
@@ -21,7 +22,8 @@ int main(int argc, char** argv) {
   bench::PeersOptions peers;
   bench::CollisionOptions collisions;
   std::vector<std::string> sets;
-  bool run_styles = false, run_pareto = false, run_solvers = false, run_peers = false, run_collisions = false;
+  bool run_styles = false, run_pareto = false, run_solvers = false, run_peers = false, run_collisions = false,
+       run_colliders = false;
   program.add_flag("--styles", run_styles,
                    "milliseconds a frame per stage for the nine styles, walking, beside the paper's");
   program.add_option("--frames", styles.frames, "measured frames a style")->check(CLI::Range(10, 100000));
@@ -43,15 +45,19 @@ int main(int argc, char** argv) {
   program.add_flag("--ladder", run_ladder,
                    "cost and error of the budget governor's settings (app/governor_ladder.cpp)");
   program.add_flag("--collisions", run_collisions, "what is left inside the body, contacts that come and go, rest");
-  program.add_option("--only", collisions.styles, "styles of --collisions, such as 'long low', comma separated")
+  program.add_flag("--colliders", run_colliders, "ellipsoids and signed distances side by side, against the true skin");
+  program
+      .add_option("--only", collisions.styles,
+                  "styles of --collisions and --colliders, such as 'long low', comma separated")
       ->delimiter(',');
-  program.add_option("--clips", collisions.clips, "clips of --collisions, comma separated")->delimiter(',');
+  program.add_option("--clips", collisions.clips, "clips of --collisions and --colliders, comma separated")
+      ->delimiter(',');
   program.add_option("--set", sets, "NAME=VALUE of a parameter for --collisions")->allow_extra_args(false);
   std::string document;
   program.add_option("--accuracy-document", document, "put the tables of this folder's sweep into its accuracy.md");
   CLI11_PARSE(program, argc, argv);
-  if (!run_styles && !run_pareto && !run_solvers && !run_peers && !run_ladder && !run_collisions && document.empty() &&
-      sheet.folder.empty()) {
+  if (!run_styles && !run_pareto && !run_solvers && !run_peers && !run_ladder && !run_collisions && !run_colliders &&
+      document.empty() && sheet.folder.empty()) {
     std::cout << program.help();
     return app::kExitUsage;
   }
@@ -71,6 +77,7 @@ int main(int argc, char** argv) {
       }
       bench::runCollisions(collisions);
     }
+    if (run_colliders) bench::runColliders({styles.frames, collisions.clips, collisions.styles});
     if (!document.empty()) bench::writeAccuracyDocument(document);
     if (!sheet.folder.empty()) bench::drawContactSheets(sheet);
   } catch (const app::ContextError& error) {

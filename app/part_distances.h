@@ -1,0 +1,31 @@
+// The body as rigid parts with signed distances, for contacts closer to the skin than ellipsoids come.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/character.h"
+#include "app/signed_grid.h"
+
+namespace app {
+
+// A piece of the skin that moves with one joint, closed where it was cut off from the others. The grid's frame is the
+// joint's.
+struct PartDistance {
+  int joint = 0;
+  SignedGrid grid;
+  double deepest = 0;            // m, the least distance, negated
+  Vec3 center = Vec3::Zero();    // m, of the grid's box
+  double radius = 0;             // m, of the ball around it
+  int triangles = 0, holes = 0;  // of the skin; closed by a cap each
+};
+
+// One part for every joint that carries a collision ellipsoid, from the skin that hangs on it and on the joints below
+// it that carry none. Takes a good part of a second: called when first asked for.
+std::vector<PartDistance> partDistances(const Character& character);
+
+// The parts of a pose, with velocities from `previous` over dt when dt > 0. Spans point into `parts`.
+void posePartDistances(const std::vector<PartDistance>& parts, const Pose& pose, const Pose& previous, double dt,
+                       std::vector<sim::DistancePart>& posed);
+
+}  // namespace app
