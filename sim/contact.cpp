@@ -29,7 +29,7 @@ bool mayTouch(const Ellipsoid& e, double offset, const Vec3& p) {
 }
 
 // Colliders whose surroundings, over the whole step, overlap the box of the vertices' paths.
-void collectNear(const ContactSearch& search, std::span<const Vec3> positions, std::vector<int>& near) {
+void collectNear(const ContactSearch& search, std::span<const Vec3> positions, std::vector<NearCollider>& near) {
   near.clear();
   Vec3 low = Vec3::Constant(INFINITY), high = -low;
   for (const int v : search.vertices) {
@@ -41,40 +41,39 @@ void collectNear(const ContactSearch& search, std::span<const Vec3> positions, s
     const double reach = e.radii.maxCoeff() + search.margins.offset;
     const Vec3 before = e.center - search.dt * e.velocity;
     const Vec3 least = e.center.cwiseMin(before).array() - reach, most = e.center.cwiseMax(before).array() + reach;
-    if ((least.array() < high.array()).all() && (most.array() > low.array()).all()) near.push_back(k);
+    if (!((least.array() < high.array()).all() && (most.array() > low.array()).all())) continue;
+    const double turned = e.angular_velocity.norm() * search.dt;
+    NearCollider body{k, before, e.center, Eigen::Matrix3d::Identity(), turned, reach, search.colliders.thickness(k)};
+    if (turned > 1e-12) body.turn = Eigen::AngleAxisd(turned, e.angular_velocity.normalized()).toRotationMatrix();
+    near.push_back(body);
   }
 }
 
 // A vertex's way past a collider over the step, seen from the collider as it stands at the step's end.
 struct Path {
-  const Ellipsoid* body;
+  const NearCollider* body;
+  Vec3 axis;        // of the collider's turn
   Vec3 start, end;  // m, world, at the step's start and end
-  double dt;
+  double speed;     // m per step, at most: relative speed and, far out, that of the turning
 
   // m, world: where the vertex at the share t of the step would be had it moved with the collider from then on.
   Vec3 at(double t) const {
-    const double back = (1 - t) * dt, angle = body->angular_velocity.norm() * back;
-    const Vec3 arm = start + t * (end - start) - (body->center - back * body->velocity);
-    if (angle < 1e-12) return body->center + arm;
-    return body->center + Eigen::AngleAxisd(angle, body->angular_velocity.normalized()) * arm;
-  }
-  // m per step, at most: relative speed and, far out, that of the turning.
-  double speed() const {
-    const double arm = std::max((start - (body->center - dt * body->velocity)).norm(), (end - body->center).norm());
-    return (end - start - dt * body->velocity).norm() + body->angular_velocity.norm() * dt * arm;
+    const double back = 1 - t;
+    const Vec3 arm = start + t * (end - start) - (body->after + back * (body->before - body->after));
+    if (body->turned < 1e-12) return body->after + arm;
+    return body->after + Eigen::AngleAxisd(back * body->turned, axis) * arm;
   }
 };
 
 // Where the path first meets the offset surface from outside and goes in by more than `grazing`. Marches by the
 // distance, which no path at this speed can outrun.
 std::optional<Vec3> entryOf(const Path& path, const Colliders& colliders, int k, double offset, double grazing) {
-  const double speed = path.speed();
   double t = 0;
   for (int march = 0; march < kMostMarches && t < 1; ++march) {
     const double gap = colliders.closest(k, path.at(t)).distance - offset;
     if (march == 0 && gap <= 0) return {};  // began inside
     if (gap < kMet) break;
-    t += gap / speed;
+    t += gap / path.speed;
   }
   if (t >= 1) return {};
   double least = 0;
@@ -96,41 +95,45 @@ struct Touch {
 
 // The vertex went through the collider, or so deep that its nearest way out lies on the far side: it stays on the side
 // that it came from, at the point where it met the surface, slid along by what its motion had left tangentially.
-void sweep(const Path& path, const ContactSearch& search, int k, Touch& touch) {
-  const Vec3 carried = path.at(0), way = path.end - carried;
-  const double thin = search.colliders.thickness(k), offset = search.margins.offset;
+void sweep(const ContactSearch& search, const NearCollider& near, const Vec3& start, const Vec3& end, Touch& touch) {
+  const double from_start = (start - near.before).norm(), from_end = (end - near.after).norm();
+  const double speed = (end - start - (near.after - near.before)).norm() + near.turned * std::max(from_start, from_end);
+  if (speed < 0.5 * near.thin || from_end > near.reach + speed) return;
+  const double thin = near.thin, offset = search.margins.offset;
+  const Vec3 carried = near.carried(start), way = end - carried;
   if (way.squaredNorm() < 0.25 * thin * thin) return;
   // A turning collider may be met on an arc, any other on the chord.
-  const double reach = path.body->radii.maxCoeff() + offset;
-  if (path.body->angular_velocity.norm() * path.dt < kStraight) {
-    const Vec3 from = carried - path.body->center;
+  if (near.turned < kStraight) {
+    const Vec3 from = carried - near.after;
     const double t = std::clamp(-from.dot(way) / way.squaredNorm(), 0.0, 1.0);
-    if ((from + t * way).squaredNorm() >= reach * reach) return;
+    if ((from + t * way).squaredNorm() >= near.reach * near.reach) return;
   }
+  const int k = near.index;
+  const Vec3 axis = search.colliders.body(k).angular_velocity.normalized();
+  const Path path{&near, axis, start, end, speed};
   const std::optional<Vec3> entry = entryOf(path, search.colliders, k, offset, kGrazing * thin);
   if (!entry) return;
   const SurfacePoint met = search.colliders.closest(k, *entry);
   if (touch.depth > 0 && touch.normal.dot(met.normal) >= 0) return;  // its way out lies on the side that it came from
-  const Vec3 rest = path.end - met.point;
+  const Vec3 rest = end - met.point;
   const SurfacePoint slid = search.colliders.closest(k, met.point + rest - rest.dot(met.normal) * met.normal);
   touch.target = slid.point + offset * slid.normal;
   touch.normal = slid.normal;
-  touch.depth = std::max(touch.depth, (path.end - touch.target).norm());
+  touch.depth = std::max(touch.depth, (end - touch.target).norm());
 }
 
-// How collider k stands to a vertex at p.
-Touch touchOf(const ContactSearch& search, int k, int vertex, const Vec3& p, bool swept) {
+// How a collider stands to a vertex at p.
+Touch touchOf(const ContactSearch& search, const NearCollider& near, int vertex, const Vec3& p, bool swept) {
   Touch touch;
-  const Ellipsoid& body = search.colliders.body(k);
+  const int k = near.index;
   const double offset = search.margins.offset;
-  if (mayTouch(body, offset, p)) {
+  if (mayTouch(search.colliders.body(k), offset, p)) {
     const SurfacePoint s = search.colliders.closest(k, p);
     touch.depth = offset - s.distance;
     touch.normal = s.normal;
     touch.target = s.point + offset * s.normal;
     if (touch.depth > 0 && !search.start.empty()) {
-      const Vec3 carried = carriedAlong(body, search.start[vertex], search.dt);
-      const double before = offset - search.colliders.closest(k, carried).distance;
+      const double before = offset - search.colliders.closest(k, near.carried(search.start[vertex])).distance;
       if (before > search.margins.slack + kMet) {
         // It stood inside: out by no more than the escape, and no deeper than it was.
         touch.standing = true;
@@ -142,7 +145,7 @@ Touch touchOf(const ContactSearch& search, int k, int vertex, const Vec3& p, boo
       }
     }
   }
-  if (swept && !search.start.empty()) sweep({&body, search.start[vertex], p, search.dt}, search, k, touch);
+  if (swept && !search.start.empty()) sweep(search, near, search.start[vertex], p, touch);
   return touch;
 }
 
@@ -181,9 +184,9 @@ void findPenetrations(const ContactSearch& search, std::span<const Vec3> positio
       Touch deepest;
       deepest.depth = 1e-9;
       int collider = -1;
-      for (const int k : scratch.near) {
-        const Touch touch = touchOf(search, k, v, p, round == 0);
-        if (touch.depth > deepest.depth) deepest = touch, collider = k;
+      for (const NearCollider& near : scratch.near) {
+        const Touch touch = touchOf(search, near, v, p, round == 0);
+        if (touch.depth > deepest.depth) deepest = touch, collider = near.index;
       }
       if (collider < 0) break;
       if (hit.collider < 0) hit.depth = deepest.depth;

@@ -39,9 +39,21 @@ struct ContactSearch {
   ContactMargins margins{};
 };
 
+// A collider that the hair may touch, with the rigid motion of the step.
+struct NearCollider {
+  int index;
+  Vec3 before, after;    // m, its centre
+  Eigen::Matrix3d turn;  // by which it turned
+  double turned;         // rad
+  double reach, thin;    // m, around the centre that a contact may lie; its thickness
+
+  // Where the motion carries a point that was fixed to it at the step's start.
+  Vec3 carried(const Vec3& start) const { return after + turn * (start - before); }
+};
+
 // Scratch of the searches, sized once.
 struct ContactScratch {
-  std::vector<int> near;  // colliders that the hair may touch
+  std::vector<NearCollider> near;
 };
 
 // Brings carried contacts to this step: normal and velocity from where the collider's motion carries the vertex.

@@ -48,6 +48,7 @@ bool updateContacts(const SimParams& params, double doubt, std::vector<Contact>&
     const Vec3 tangential = reaction - contact.pressure * contact.normal;
     if (contact.sticks && tangential.norm() > params.friction * contact.pressure + doubt) {
       contact.sticks = false;
+      contact.grip = tangential.normalized();
       changed = true;
     }
   }
@@ -215,14 +216,18 @@ void ImplicitSolver<T>::setContactConstraints(const HairMesh& mesh, const SimPar
     if (restart) scratch.r[i] -= trial[i];
     trial[i] = rhs[i];
   }
-  // Kinetic friction of sliding contacts, from the pressure of the last solve, against the slip from before the solve:
-  // a contact that has just let go was held still by it.
+  // Kinetic friction of sliding contacts, from the pressure of the last solve: against the slip from before the solve,
+  // or, where a contact has just let go, still the way it held. The slip of one that crept says nothing: friction
+  // against it would throw the vertex back, and on the next step forth again.
   for (const Contact& contact : contacts) {
     if (contact.sticks || contact.pressure <= 0) continue;
-    Vec3 slip = widen(velocity_step[contact.vertex]) - contact.velocity;
-    slip -= slip.dot(contact.normal) * contact.normal;
-    const double speed = slip.norm(), impulse = base.h * params.friction * contact.pressure;
-    if (speed > 1e-9) trial[contact.vertex] -= cast<T>(Vec3(slip * (impulse / speed)));
+    Vec3 way = contact.grip;
+    if (way.isZero()) {
+      const Vec3 slip = contact.velocity - widen(velocity_step[contact.vertex]);
+      way = slip - slip.dot(contact.normal) * contact.normal;
+    }
+    const double size = way.norm(), impulse = base.h * params.friction * contact.pressure;
+    if (size > 1e-9) trial[contact.vertex] += cast<T>(Vec3(way * (impulse / size)));
   }
   for (const int i : touched) {
     if (restart) scratch.r[i] += trial[i];
@@ -327,6 +332,7 @@ void ImplicitSolver<T>::solve(const HairMesh& mesh, const SimParams& params, con
     slip -= slip.dot(contact.normal) * contact.normal;
     const double stopping = params.friction * contact.pressure * base.h / static_cast<double>(mass[contact.vertex]);
     contact.sticks = contact.pressure > 0 && slip.norm() <= stopping;
+    contact.grip.setZero();
   }
   double started = clock ? clock() : 0;
   const auto spent = [&](Stage stage) {

@@ -150,17 +150,22 @@ void chooseSticking(const HairMesh& mesh, const SimParams& params, double h, Hai
     slip -= slip.dot(contact.normal) * contact.normal;
     const double mass = params.density * mesh.vertex_volume[contact.vertex];
     contact.sticks = contact.pressure > 0 && slip.norm() <= params.friction * contact.pressure * h / mass;
+    contact.grip.setZero();
   }
 }
 
-// Friction of the sliding contacts, against the slip before the solve, by the pressure of the last one.
+// Friction of the sliding contacts by the pressure of the last solve: against the slip before it, or, where a contact
+// has just let go, still the way it held.
 void addKineticFriction(const SimParams& params, double h, const HairState& state, std::vector<Vec3>& b) {
   for (const Contact& contact : state.contacts) {
     if (contact.sticks || contact.pressure <= 0) continue;
-    Vec3 slip = state.velocities[contact.vertex] - contact.velocity;
-    slip -= slip.dot(contact.normal) * contact.normal;
-    const double speed = slip.norm();
-    if (speed > 1e-9) b[contact.vertex] -= slip * (h * params.friction * contact.pressure / speed);
+    Vec3 way = contact.grip;
+    if (way.isZero()) {
+      const Vec3 slip = contact.velocity - state.velocities[contact.vertex];
+      way = slip - slip.dot(contact.normal) * contact.normal;
+    }
+    const double size = way.norm();
+    if (size > 1e-9) b[contact.vertex] += way * (h * params.friction * contact.pressure / size);
   }
 }
 
@@ -172,9 +177,10 @@ bool updateContacts(const SimParams& params, double h, double doubt, const std::
   for (Contact& contact : contacts) {
     const Vec3 reaction = -r[contact.vertex] / h;
     contact.pressure = contact.normal.dot(reaction);
-    const double along = (reaction - contact.pressure * contact.normal).norm();
-    if (contact.pressure >= 0 && contact.sticks && along > params.friction * contact.pressure + doubt) {
+    const Vec3 along = reaction - contact.pressure * contact.normal;
+    if (contact.pressure >= 0 && contact.sticks && along.norm() > params.friction * contact.pressure + doubt) {
       contact.sticks = false;
+      contact.grip = along.normalized();
       changed = true;
     }
   }
