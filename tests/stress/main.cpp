@@ -1,8 +1,8 @@
 // hairmesh-stress: the stability gauntlet.
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <fstream>
 #include <iostream>
-#include <map>
 
 #include "app/errors.h"
 #include "app/frame_stats.h"
@@ -16,9 +16,12 @@ using stress::Result;
 using stress::StressCase;
 using stress::Verdict;
 
+constexpr double kTellEvery = 30;  // s
+
 struct Options {
-  bool short_run = false, long_run = false, list = false, verbose = false;
+  bool short_run = false, long_run = false, list = false, verbose = false, trace = false;
   std::string pattern, document, csv;
+  std::vector<std::string> sets, results;
   std::uint64_t seed = 1;
   int part = 0, parts = 1;
 };
@@ -50,43 +53,84 @@ void tellOutcome(const Result& result) {
       o.distance, 1e3 * o.deepest, o.energy_rise, o.recoveries, o.steps, 1e3 * o.cpu_seconds);
 }
 
-int runCases(const Options& options) {
-  const std::vector<StressCase> cases = stress::declareCases(options.seed);
+// Parameters given by hand come after, and so over, a case's own.
+void applySets(const std::vector<std::string>& sets, std::vector<StressCase>& cases) {
+  for (const std::string& text : sets) {
+    const std::size_t equals = std::min(text.find('='), text.size());
+    const std::string name = text.substr(0, equals);
+    sim::SimParams params;
+    const sim::ParamText answer = sim::setParam(params, name, text.substr(std::min(equals + 1, text.size())));
+    if (!answer.ok) throw app::InputError("--set", "", answer.fault, "");
+    for (StressCase& one : cases) one.params.emplace_back(name, sim::findParam(name)->get(params));
+  }
+}
+
+struct Count {
+  long passed = 0, failed = 0, skipped = 0;
+  void add(const Result& result) {
+    if (result.one.compared) return;
+    passed += result.outcome.verdict == Verdict::kPassed;
+    failed += result.outcome.verdict == Verdict::kFailed;
+    skipped += result.outcome.verdict == Verdict::kSkipped;
+  }
+};
+
+std::vector<Result> runCases(const Options& options, const std::vector<StressCase>& cases) {
   stress::StageStore stages;
   std::vector<Result> results;
-  long passed = 0, failed = 0, skipped = 0;
+  Count count;
+  std::ofstream csv;
+  if (!options.csv.empty()) {
+    csv.open(options.csv);
+    csv << stress::csvHead();
+  }
   const double started = app::now();
   double told = started;
   for (std::size_t k = 0; k < cases.size(); ++k) {
     if (!chosen(cases[k], k, options)) continue;
-    if (options.list) {
-      std::cout << cases[k].name << "\n";
-      continue;
-    }
-    Result result{cases[k], stress::runCase(cases[k], options.seed, stages)};
-    const Verdict verdict = result.outcome.verdict;
+    Result result{cases[k], stress::runCase(cases[k], options.seed, options.trace, stages)};
     if (options.verbose || !options.pattern.empty()) tellOutcome(result);
-    if (verdict == Verdict::kFailed) tellFailure(result, options.seed);
-    if (!result.one.compared) {
-      passed += verdict == Verdict::kPassed;
-      failed += verdict == Verdict::kFailed;
-      skipped += verdict == Verdict::kSkipped;
-    }
+    if (result.outcome.verdict == Verdict::kFailed) tellFailure(result, options.seed);
+    count.add(result);
+    csv << stress::csvRow(result) << std::flush;
     results.push_back(std::move(result));
-    if (app::now() - told > 30) {
+    if (app::now() - told > kTellEvery) {
       told = app::now();
-      std::cout << results.size() << " cases in " << static_cast<int>(told - started) << " s, " << failed << " failed"
-                << std::endl;
+      std::cout << results.size() << " cases in " << static_cast<int>(told - started) << " s, " << count.failed
+                << " failed" << std::endl;
     }
   }
-  if (options.list) return app::kExitFine;
-  if (passed + failed + skipped == 0 && results.empty())
+  if (!options.csv.empty() && !csv)
+    throw app::InputError(options.csv, "", "cannot be written", "choose a folder that exists and may be written to");
+  return results;
+}
+
+int run(const Options& options) {
+  std::vector<StressCase> cases = stress::declareCases(options.seed);
+  applySets(options.sets, cases);
+  if (options.list) {
+    for (std::size_t k = 0; k < cases.size(); ++k) {
+      if (chosen(cases[k], k, options)) std::cout << cases[k].name << "\n";
+    }
+    return app::kExitFine;
+  }
+  std::vector<Result> results;
+  if (options.results.empty()) {
+    results = runCases(options, cases);
+  } else {
+    for (const std::string& file : options.results) {
+      const std::vector<Result> some = stress::readCsv(file, cases);
+      results.insert(results.end(), some.begin(), some.end());
+    }
+  }
+  if (results.empty())
     throw app::InputError("", "case '" + options.pattern + "'", "is not declared", "see hairmesh-stress --list");
-  if (!options.csv.empty()) stress::writeCsv(results, options.csv);
   if (!options.document.empty()) stress::writeDocument(results, options.seed, options.document);
-  if (skipped > 0) std::cout << skipped << " skipped: their clips are not here\n";
-  std::cout << passed << " passed, " << failed << " failed" << std::endl;
-  return failed > 0 ? app::kExitFault : app::kExitFine;
+  Count count;
+  for (const Result& result : results) count.add(result);
+  if (count.skipped > 0) std::cout << count.skipped << " skipped: their clips are not here\n";
+  std::cout << count.passed << " passed, " << count.failed << " failed" << std::endl;
+  return count.failed > 0 ? app::kExitFault : app::kExitFine;
 }
 
 }  // namespace
@@ -99,20 +143,24 @@ int main(int argc, char** argv) {
   program.add_flag("--list", options.list, "print the names of the cases chosen and end");
   program.add_option("--case", options.pattern, "run one case by name, or all whose names begin as this before a '*'");
   program.add_option("--seed", options.seed, "of all random draws")->capture_default_str();
+  program.add_option("--set", options.sets,
+                     "NAME=VALUE: a parameter in every case, over what the case has; may be repeated");
+  program.add_flag("--trace", options.trace, "a line for every step");
   program.add_flag("--verbose", options.verbose, "a line for every case");
   program.add_option("--part", options.part, "run one of --parts shares of the cases, from 0")
       ->check(CLI::Range(0, 999));
   program.add_option("--parts", options.parts, "shares that the cases are dealt into")->check(CLI::Range(1, 1000));
   program.add_option("--csv", options.csv, "also write a row a case to this file");
+  program.add_option("--results", options.results, "judge what these files of --csv hold instead of running cases");
   program.add_option("--document", options.document, "write stability.md and its pictures into this folder");
   CLI11_PARSE(program, argc, argv);
   if (options.list && !options.short_run && options.pattern.empty()) options.long_run = true;
-  if (!options.short_run && !options.long_run && options.pattern.empty()) {
+  if (!options.short_run && !options.long_run && options.pattern.empty() && options.results.empty()) {
     std::cout << program.help();
     return app::kExitUsage;
   }
   try {
-    return runCases(options);
+    return run(options);
   } catch (const app::InputError& error) {
     std::cerr << "hairmesh-stress: " << error.what() << "\n";
     return app::kExitBadInput;

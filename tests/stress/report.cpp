@@ -1,29 +1,19 @@
 #include "tests/stress/report.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <fstream>
+#include <map>
+#include <sstream>
 
 #include "app/errors.h"
+#include "app/motion.h"
+#include "sim/field_text.h"
 #include "tests/stress/heat_map.h"
 #include "tests/stress/matrix.h"
 
 namespace stress {
-
-void writeCsv(const std::vector<Result>& results, const std::string& file) {
-  std::ofstream csv(file);
-  csv << "case,compared,verdict,with_body,back_after_s,distance,deepest_mm,inside,unconstrained,energy_rise,recoveries,"
-         "steps,cpu_s,fault\n";
-  for (const auto& [one, o] : results) {
-    const char* const verdicts[] = {"passed", "failed", "skipped"};
-    csv << one.name << "," << one.compared << "," << verdicts[static_cast<int>(o.verdict)] << "," << o.with_body << ","
-        << o.back_after << "," << o.distance << "," << 1e3 * o.deepest << "," << o.inside << "," << o.unconstrained
-        << "," << o.energy_rise << "," << o.recoveries << "," << o.steps << "," << o.cpu_seconds << ",\"" << o.fault
-        << "\"\n";
-  }
-  csv.close();
-  if (!csv) throw app::InputError(file, "", "cannot be written", "choose a folder that exists and may be written to");
-}
 
 namespace {
 
@@ -31,6 +21,35 @@ std::string said(const char* format, auto... values) {
   char text[512];
   std::snprintf(text, sizeof text, format, values...);
   return text;
+}
+
+constexpr const char* kVerdicts[] = {"passed", "failed", "skipped"};
+
+// The numbers of an outcome in the table's order, after the case's name and its verdict.
+std::array<double, 14> numbersOf(const Outcome& o) {
+  return {static_cast<double>(o.with_body),
+          o.back_after,
+          o.at,
+          o.distance,
+          o.deepest,
+          static_cast<double>(o.inside),
+          static_cast<double>(o.unconstrained),
+          o.energy_rise,
+          o.memory_growth,
+          o.slowdown,
+          static_cast<double>(o.recoveries),
+          static_cast<double>(o.carried),
+          static_cast<double>(o.steps),
+          o.cpu_seconds};
+}
+
+Outcome outcomeOf(const std::array<double, 14>& n) {
+  Outcome o;
+  o.with_body = n[0] != 0, o.back_after = n[1], o.at = n[2], o.distance = n[3], o.deepest = n[4];
+  o.inside = static_cast<long>(n[5]), o.unconstrained = static_cast<long>(n[6]), o.energy_rise = n[7];
+  o.memory_growth = n[8], o.slowdown = n[9], o.recoveries = static_cast<int>(n[10]);
+  o.carried = static_cast<int>(n[11]), o.steps = static_cast<int>(n[12]), o.cpu_seconds = n[13];
+  return o;
 }
 
 struct FamilyCount {
@@ -114,8 +133,51 @@ std::string failureList(const std::vector<Result>& results, std::uint64_t seed) 
 
 }  // namespace
 
+std::string csvHead() {
+  return "case,verdict,with_body,back_after_s,failed_at_s,distance,deepest_m,inside,unconstrained,energy_rise,"
+         "memory_growth_mib,slowdown,recoveries,carried,steps,cpu_s,fault\n";
+}
+
+std::string csvRow(const Result& result) {
+  std::string row = result.one.name + "," + kVerdicts[static_cast<int>(result.outcome.verdict)];
+  for (const double number : numbersOf(result.outcome)) row += said(",%.6g", number);
+  return row + "," + result.outcome.fault + "\n";
+}
+
+std::vector<Result> readCsv(const std::string& file, const std::vector<StressCase>& declared) {
+  std::map<std::string, const StressCase*> cases;
+  for (const StressCase& one : declared) cases[one.name] = &one;
+  std::vector<Result> results;
+  std::stringstream text(app::readText(file));
+  std::string line;
+  std::getline(text, line);
+  for (int number = 2; std::getline(text, line); ++number) {
+    std::stringstream fields(line);
+    std::string name, verdict, field, fault;
+    std::array<double, 14> numbers{};
+    std::getline(fields, name, ',');
+    std::getline(fields, verdict, ',');
+    bool fine = cases.contains(name);
+    for (double& value : numbers) {
+      std::getline(fields, field, ',');
+      fine = sim::parseNumber(field, value) && fine;
+    }
+    std::getline(fields, fault);
+    const auto known = std::find(std::begin(kVerdicts), std::end(kVerdicts), verdict);
+    if (!fine || known == std::end(kVerdicts))
+      throw app::InputError(file, "line " + std::to_string(number), "is no result of a declared case", "run anew");
+    results.push_back({*cases[name], outcomeOf(numbers)});
+    results.back().outcome.verdict = static_cast<Verdict>(known - std::begin(kVerdicts));
+    results.back().outcome.fault = fault;
+  }
+  return results;
+}
+
 void writeDocument(const std::vector<Result>& results, std::uint64_t seed, const std::string& folder) {
-  writeCsv(results, folder + "/stability.csv");
+  std::ofstream csv(folder + "/stability.csv");
+  csv << csvHead();
+  for (const Result& result : results) csv << csvRow(result);
+  csv.close();
   drawHeatMaps(results, folder);
   long passed = 0, failed = 0;
   double cpu = 0;

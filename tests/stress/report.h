@@ -14,8 +14,11 @@ struct Result {
   Outcome outcome;
 };
 
-// A row a case. Throws InputError when the file cannot be written.
-void writeCsv(const std::vector<Result>& results, const std::string& file);
+// A table with a row a case: its head and a row, with their line ends, and the results that such a file holds, of the
+// cases declared. Throws InputError naming the line.
+std::string csvHead();
+std::string csvRow(const Result& result);
+std::vector<Result> readCsv(const std::string& file, const std::vector<StressCase>& declared);
 
 // stability.md with its tables, and its heat maps (SVG and PNG) where gnuplot is installed.
 void writeDocument(const std::vector<Result>& results, std::uint64_t seed, const std::string& folder);

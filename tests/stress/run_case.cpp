@@ -50,6 +50,7 @@ struct Run {
   Outcome outcome;
   double last_intrusion = 0;  // s
   double next_fault = kFaultEvery;
+  bool trace = false;
 
   Run(const StressCase& c, std::uint64_t seed, Stage& s)
       : one(c), stage(s), random(seed, c.name), around(c, s, random), hair(s.mesh()) {
@@ -67,6 +68,16 @@ struct Run {
     outcome.at = around.time();
   }
 };
+
+void traceStep(const Run& run, double dt, const sim::StepReport& report, Hair& hair) {
+  double fastest = 0;
+  for (const sim::Vec3& v : hair.state.velocities) fastest = std::max(fastest, v.norm());
+  std::printf(
+      "%9.4f s  step %6.1f ms  energy %12.5e J  fastest %9.3e m/s  contacts %3d  corrected %3d  iterations %4d%s%s\n",
+      run.around.time(), 1e3 * dt, sim::mechanicalEnergy(hair.mesh, run.params, hair.context, hair.state), fastest,
+      report.contacts, report.corrected, report.solver_iterations, report.converged ? "" : " (not converged)",
+      report.carried ? " carried" : "");
+}
 
 sim::StepReport stepHair(const sim::SimParams& params, const Run& run, double dt, Hair& hair) {
   return sim::advance(hair.mesh, params, {run.around.roots(), run.around.ellipsoids(), run.around.time()}, dt,
@@ -119,6 +130,7 @@ void step(double dt, Run& run) {
   const sim::StepReport report = stepHair(run.params, run, dt, run.hair);
   run.outcome.recoveries += report.recoveries;
   run.outcome.carried += report.carried;
+  if (run.trace) traceStep(run, dt, report, run.hair);
   if (report.recoveries > 0 && !run.one.recovers) run.fail("watchdog: " + sim::troubleText(report.trouble));
   ++run.outcome.steps;
   checkFinite(run);
@@ -207,6 +219,7 @@ bool waitUntilBack(double seconds, Run& run, Hair& twin) {
     run.outcome.recoveries += report.recoveries;
     if (report.recoveries > 0) run.fail("watchdog: " + sim::troubleText(report.trouble));
     ++run.outcome.steps;
+    if (run.trace) traceStep(run, dt, report, run.hair);
     stepHair(run.params, run, dt, twin);
     checkFinite(run);
     checkOutside(run);
@@ -254,7 +267,7 @@ void waitForRest(Run& run) {
 
 }  // namespace
 
-Outcome runCase(const StressCase& one, std::uint64_t seed, StageStore& stages) {
+Outcome runCase(const StressCase& one, std::uint64_t seed, bool trace, StageStore& stages) {
   if (findClip(one.clip).empty()) {
     Outcome skipped;
     skipped.verdict = Verdict::kSkipped;
@@ -264,6 +277,7 @@ Outcome runCase(const StressCase& one, std::uint64_t seed, StageStore& stages) {
   Stage& stage = stages.stage(one);
   const double started = cpuSeconds();
   Run run(one, seed, stage);
+  run.trace = trace;
   playMotion(run);
   if (!run.failed()) waitForRest(run);
   run.outcome.verdict = run.failed() ? Verdict::kFailed : Verdict::kPassed;

@@ -34,7 +34,7 @@ struct Outcome {
   double cpu_seconds = 0;
 };
 
-// A clip that is not there makes a skipped case. `seed` is the run's.
-Outcome runCase(const StressCase& one, std::uint64_t seed, StageStore& stages);
+// A clip that is not there makes a skipped case. `seed` is the run's; `trace` prints a line a step.
+Outcome runCase(const StressCase& one, std::uint64_t seed, bool trace, StageStore& stages);
 
 }  // namespace stress
