@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "sim/energy_guard.h"
 #include "sim/forces/material.h"
 #include "sim/implicit_solve.h"
 #include "sim/position_correction.h"
@@ -46,6 +47,7 @@ struct StepContext::Parts {
   std::vector<Ellipsoid> standing;          // bodies after a teleport
   std::vector<DistancePart> standing_parts;
   GoodState good;  // the last step's end
+  EnergyGuard energy_guard;
   PositionCorrection correction;
   std::optional<SelfContact> self_contact;  // made when first asked for
 
@@ -167,6 +169,13 @@ void guardGiven(const StepInput& input, Parts& parts, HairState& state, StepRepo
   report.trouble = trouble;
 }
 
+// No step makes energy out of nothing; but the paper's setting has no such bound.
+void boundEnergy(const SimParams& params, const StepBase& base, double dt, Parts& parts, HairState& state) {
+  if (params.solver == Solver::kPaper) return;
+  limitEnergy({*parts.mesh, params, parts.material.model, parts.start_positions, parts.start_velocities, dt, base.wind},
+              parts.energy_guard, state);
+}
+
 // What the step made of it: where that is ill, the step's start comes back.
 void guardMade(Parts& parts, const StepInput& input, HairState& state, StepReport& report) {
   Trouble trouble;
@@ -223,6 +232,7 @@ StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInpu
   solveVelocities(params, base, parts, state, report);
   parts.clock.start();
   integratePositions(input, base, dt, mesh, parts, state);
+  boundEnergy(params, base, dt, parts, state);
   guardMade(parts, input, state, report);
   parts.clock.spent(kStageOther, report);
 

@@ -1,0 +1,41 @@
+// The energy guard: no step makes energy out of nothing.
+//
+// One linearized step has no bound where the hair moves by more than the forces stay linear over: hair left a metre
+// behind its roots is flung ahead by two. Seen from the roots, which carry the hair along rigidly, what a step ends
+// with can be no more than what it began with: with u the velocity of being carried along, from x to x_c = x + dt u,
+//   E(x') + 1/2 m |v' - u|^2  <=  E(x_c) + 1/2 m |v - u|^2 + work of the wind.
+// The term in v - u holds the inertia forces of any motion of the roots, exactly. A step that ends above is taken back
+// towards x_c until its potential energy fits, then slowed until the sum does: the hair is carried along more rigidly
+// instead of being stretched beyond measure.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sim/forces/force_model.h"
+#include "sim/hair_mesh.h"
+#include "sim/hair_state.h"
+
+namespace sim {
+
+// The step that was taken; its end is in the state.
+struct TakenStep {
+  const HairMesh& mesh;
+  const SimParams& params;
+  const ForceModel<double>& model;
+  std::span<const Vec3> positions, velocities;  // m, m/s, at its start
+  double dt;                                    // s
+  Vec3 wind;                                    // m/s
+};
+
+// Sized by the first violent step.
+struct EnergyGuard {
+  std::vector<Vec3> carried, roots_before, roots_after;
+  std::vector<V3<double>> plain;
+};
+
+// Does nothing to a step that is gentle, leaves no value finite that was not, or ends below its bound. Returns the
+// share of the step's motion against the roots that was kept, 1 where all was.
+double limitEnergy(const TakenStep& step, EnergyGuard& scratch, HairState& state);
+
+}  // namespace sim
