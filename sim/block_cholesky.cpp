@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/batch_kernels.h"
 #include "sim/dense_kernels.h"
 #include "sim/elimination_order.h"
 
@@ -120,6 +121,7 @@ void BlockCholesky<T>::analyze(const BlockPattern& pattern, std::vector<int> eli
   }
   work_.assign(3 * static_cast<std::size_t>(n), T(0));
   gathered_.assign(tallest, T(0));
+  batch_rows_.assign(static_cast<std::size_t>(tallest) * kBatch, T(0));
   local_.assign(n, -1);
   // Deepest the stack of update matrices gets: supernodes are in postorder, so children pop before their parent pushes.
   std::vector<std::size_t> pending;
@@ -174,6 +176,7 @@ void BlockCholesky<T>::copyLayout(const BlockCholesky<T>& other) {
   value_count_ = other.value_count_, deepest_stack_ = other.deepest_stack_, largest_front_ = other.largest_front_;
   work_.resize(other.work_.size());
   gathered_.resize(other.gathered_.size());
+  batch_rows_.resize(other.batch_rows_.size());
   reached_.resize(other.reached_.size());
   local_.assign(other.local_.size(), -1);
   pending_.reserve(supernodes.size());
@@ -231,9 +234,11 @@ void BlockCholesky<T>::solveBatch(std::span<T> x, std::span<const int> touched) 
     const T* rows = inverse + static_cast<std::size_t>(s.width()) * s.width();
     T* own = x.data() + static_cast<std::size_t>(3) * s.first * kBatch;
     batchLower(inverse, s.width(), own);
+    batchPanel(rows, s.height(), s.width(), own, batch_rows_.data());
     for (int k = 0; k < s.rows; ++k) {
       T* y = x.data() + static_cast<std::size_t>(3) * row_index[s.rows_first + k] * kBatch;
-      batchSubtractRows(rows + 3 * k, s.height(), s.width(), own, y);
+      const T* from = batch_rows_.data() + static_cast<std::size_t>(3) * k * kBatch;
+      for (int i = 0; i < 3 * kBatch; ++i) y[i] -= from[i];
     }
   }
   for (auto s = supernodes.rbegin(); s != supernodes.rend(); ++s) {
@@ -242,8 +247,9 @@ void BlockCholesky<T>::solveBatch(std::span<T> x, std::span<const int> touched) 
     T* own = x.data() + static_cast<std::size_t>(3) * s->first * kBatch;
     for (int k = 0; k < s->rows; ++k) {
       const T* y = x.data() + static_cast<std::size_t>(3) * row_index[s->rows_first + k] * kBatch;
-      batchSubtractRowsTransposed(rows + 3 * k, s->height(), s->width(), y, own);
+      std::copy_n(y, 3 * kBatch, batch_rows_.data() + static_cast<std::size_t>(3) * k * kBatch);
     }
+    batchSubtractPanelTransposed(rows, s->height(), s->width(), batch_rows_.data(), own);
     batchUpper(inverse, s->width(), own);
   }
 }

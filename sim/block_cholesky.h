@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "sim/batch_kernels.h"
 #include "sim/block_matrix.h"
 #include "sim/hair_mesh.h"
 
@@ -59,7 +60,7 @@ struct BlockCholesky {
 
   // kBatch right-hand sides at once, in elimination order: entry (scalar row r, side k) is x[r * kBatch + k], in place.
   // The factor is read once for all, which makes a side several times cheaper than solve().
-  static constexpr int kBatch = 16;
+  static constexpr int kBatch = kBatchSides;
   // `touched`: the elimination positions with entries that are not zero.
   void solveBatch(std::span<T> x, std::span<const int> touched);
 
@@ -68,6 +69,7 @@ struct BlockCholesky {
  private:
   std::vector<T> work_;                 // right-hand side in elimination order
   std::vector<T> gathered_;             // rows of one panel
+  std::vector<T> batch_rows_;           // the same of a batch
   std::vector<T> front_, stack_;        // numeric factorization
   std::vector<int> supernode_of_;       // per elimination position
   std::vector<unsigned char> reached_;  // per supernode, of the batch in progress

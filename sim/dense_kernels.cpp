@@ -58,70 +58,6 @@ HAIRMESH_INLINE void panelTransposed(const T* p, int h, int w, const T* x, T* y)
   for (int j = 0; j < w; ++j) y[j] -= dotProduct(p + static_cast<std::size_t>(j) * h, x, h);
 }
 
-// Sixteen sides of one row, as two vectors.
-template <class T>
-struct Sides {
-  Lanes<T> low, high;
-};
-template <class T>
-HAIRMESH_INLINE Sides<T> sidesAt(const T* x, int row) {
-  return {load<T>(x + row * kBatchSides), load<T>(x + row * kBatchSides + kLanes)};
-}
-template <class T>
-HAIRMESH_INLINE void storeSides(T* x, int row, const Sides<T>& s) {
-  store<T>(x + row * kBatchSides, s.low);
-  store<T>(x + row * kBatchSides + kLanes, s.high);
-}
-template <class T>
-HAIRMESH_INLINE void addScaled(Sides<T>& sum, T factor, const Sides<T>& x) {
-  sum.low += factor * x.low;
-  sum.high += factor * x.high;
-}
-
-template <class T>
-HAIRMESH_INLINE void batchLowerImpl(const T* l, int w, T* x) {
-  for (int i = w - 1; i >= 0; --i) {
-    Sides<T> sum{};
-    for (int j = 0; j <= i; ++j) addScaled(sum, l[static_cast<std::size_t>(j) * w + i], sidesAt(x, j));
-    storeSides(x, i, sum);
-  }
-}
-
-template <class T>
-HAIRMESH_INLINE void batchUpperImpl(const T* l, int w, T* x) {
-  for (int j = 0; j < w; ++j) {
-    Sides<T> sum{};
-    for (int i = j; i < w; ++i) addScaled(sum, l[static_cast<std::size_t>(j) * w + i], sidesAt(x, i));
-    storeSides(x, j, sum);
-  }
-}
-
-template <class T>
-HAIRMESH_INLINE void batchRowsImpl(const T* p, int h, int w, const T* x, T* y) {
-  Sides<T> a = sidesAt(y, 0), b = sidesAt(y, 1), c = sidesAt(y, 2);
-  for (int j = 0; j < w; ++j) {
-    const T* column = p + static_cast<std::size_t>(j) * h;
-    const Sides<T> xj = sidesAt(x, j);
-    addScaled(a, -column[0], xj);
-    addScaled(b, -column[1], xj);
-    addScaled(c, -column[2], xj);
-  }
-  storeSides(y, 0, a), storeSides(y, 1, b), storeSides(y, 2, c);
-}
-
-template <class T>
-HAIRMESH_INLINE void batchRowsTransposedImpl(const T* p, int h, int w, const T* x, T* y) {
-  const Sides<T> a = sidesAt(x, 0), b = sidesAt(x, 1), c = sidesAt(x, 2);
-  for (int j = 0; j < w; ++j) {
-    const T* column = p + static_cast<std::size_t>(j) * h;
-    Sides<T> sum = sidesAt(y, j);
-    addScaled(sum, -column[0], a);
-    addScaled(sum, -column[1], b);
-    addScaled(sum, -column[2], c);
-    storeSides(y, j, sum);
-  }
-}
-
 }  // namespace
 
 HAIRMESH_CLONES void multiplyLowerInPlace(const float* l, int w, float* x) {
@@ -147,31 +83,6 @@ HAIRMESH_CLONES void subtractPanelTransposed(const float* p, int h, int w, const
 }
 HAIRMESH_CLONES void subtractPanelTransposed(const double* p, int h, int w, const double* x, double* y) {
   panelTransposed(p, h, w, x, y);
-}
-
-HAIRMESH_CLONES void batchLower(const float* l, int w, float* x) {
-  batchLowerImpl(l, w, x);
-}
-HAIRMESH_CLONES void batchUpper(const float* l, int w, float* x) {
-  batchUpperImpl(l, w, x);
-}
-HAIRMESH_CLONES void batchSubtractRows(const float* p, int h, int w, const float* x, float* y) {
-  batchRowsImpl(p, h, w, x, y);
-}
-HAIRMESH_CLONES void batchSubtractRowsTransposed(const float* p, int h, int w, const float* x, float* y) {
-  batchRowsTransposedImpl(p, h, w, x, y);
-}
-HAIRMESH_CLONES void batchLower(const double* l, int w, double* x) {
-  batchLowerImpl(l, w, x);
-}
-HAIRMESH_CLONES void batchUpper(const double* l, int w, double* x) {
-  batchUpperImpl(l, w, x);
-}
-HAIRMESH_CLONES void batchSubtractRows(const double* p, int h, int w, const double* x, double* y) {
-  batchRowsImpl(p, h, w, x, y);
-}
-HAIRMESH_CLONES void batchSubtractRowsTransposed(const double* p, int h, int w, const double* x, double* y) {
-  batchRowsTransposedImpl(p, h, w, x, y);
 }
 
 }  // namespace sim

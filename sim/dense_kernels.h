@@ -22,16 +22,4 @@ void multiplyPanel(const double* p, int h, int w, const double* x, double* y);
 void subtractPanelTransposed(const float* p, int h, int w, const float* x, float* y);
 void subtractPanelTransposed(const double* p, int h, int w, const double* x, double* y);
 
-// The same for kBatchSides right-hand sides at once, x[row * kBatchSides + side]. Rows of a panel come three at a time
-// (one block row): y (3 rows) -= P x and y (w rows) -= P^T x, P being 3 x w with leading dimension h.
-inline constexpr int kBatchSides = 16;
-void batchLower(const float* l, int w, float* x);
-void batchLower(const double* l, int w, double* x);
-void batchUpper(const float* l, int w, float* x);
-void batchUpper(const double* l, int w, double* x);
-void batchSubtractRows(const float* p, int h, int w, const float* x, float* y);
-void batchSubtractRows(const double* p, int h, int w, const double* x, double* y);
-void batchSubtractRowsTransposed(const float* p, int h, int w, const float* x, float* y);
-void batchSubtractRowsTransposed(const double* p, int h, int w, const double* x, double* y);
-
 }  // namespace sim

@@ -244,7 +244,7 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
   bool cheap = plan.cheap, overrun = false;
   double cost = 0;
   preconditioner.update(matrix, cheap ? Solver::kBlockJacobi : params.solver);
-  const double factor_cost = 1 + kFactorCost * preconditioner.restFactorRatio();
+  const double application_cost = kFactorCost * preconditioner.restFactorRatio(), factor_cost = 1 + application_cost;
   StopRule<T> stop;
   stop.acceleration = params.acceleration_tolerance;
   stop.inverse_mass_dt = inverse_mass_dt;
@@ -252,13 +252,14 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
   const auto runSome = [&](double relative, int most, SolveStart start) {
     const bool exact = preconditioner.kind() == Solver::kWarped || preconditioner.kind() == Solver::kDirect;
     stop.displacement = exact ? params.displacement_tolerance : 0;
+    stop.foresee = exact;
     stop.h = base.h;
     stop.relative = relative;
     stop.max_iterations = most;
     const int before = total.iterations;
     total =
         solveModifiedPcg<ColumnOperator<T>>({matrix, product}, trial, filter, preconditioner, stop, scratch, v, start);
-    cost += (total.iterations + (start == SolveStart::kResume ? 0 : 1)) * (cheap ? 1 : factor_cost);
+    cost += cheap ? total.applications : total.iterations + application_cost * total.applications;
     total.iterations += before;
   };
   // Within the budget of the plan; beyond it the other preconditioner takes over, once.
@@ -271,7 +272,7 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
     overrun = true;
     cheap = !cheap;
     preconditioner.update(matrix, cheap ? Solver::kBlockJacobi : params.solver);
-    preconditioner.setConstraints(constraints, 1);
+    preconditioner.setConstraints(constraints, 3);
     runSome(relative, params.max_iterations, SolveStart::kExchange);
   };
   touched.clear();
@@ -285,7 +286,7 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
     const double target = contacts.empty() || last ? params.tolerance : kLoose * params.tolerance;
     setContactConstraints(mesh, params, base, contacts, start);
     // One batch of answers a round: what is still missing then comes with the steps to come.
-    const bool complete = preconditioner.setConstraints(constraints, 1);
+    const bool complete = preconditioner.setConstraints(constraints, 3);
     const bool pay = !complete && params.solver == Solver::kDirect;
     runPcg(target, pay ? std::min(kUncorrectedIterations, params.max_iterations) : params.max_iterations, start);
     if (!total.converged && pay) {

@@ -4,10 +4,13 @@
 // vertices are pinned, and diverges with partial constraints.
 #include "sim/linear_solver.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sim {
 namespace {
+
+constexpr double kEven = 0.5;  // gains that fall by at least so much an iteration foretell the next ones
 
 // Sums in double whatever T: single-precision sums of thousands of terms would decide the stop by rounding.
 template <class T>
@@ -50,8 +53,7 @@ SolveReport solveModifiedPcg(const Operator& a, std::span<const V3<typename Oper
   const std::size_t n = b.size();
   const std::span<V3<T>> r(scratch.r), z(scratch.z), d(scratch.d), q(scratch.q);
   SolveReport report;
-  // z = S P S r.
-  const auto precondition = [&] {
+  const auto filterResidual = [&] {
     scratch.removed.clear();
     for (std::size_t k = 0; k < filter.vertices.size(); ++k) {
       V3<T>& at = r[filter.vertices[k]];
@@ -59,51 +61,89 @@ SolveReport solveModifiedPcg(const Operator& a, std::span<const V3<typename Oper
       scratch.removed.push_back(at - kept);
       at = kept;
     }
-    preconditioner.apply(r, z);
-    scratch.acceleration = largestAcceleration<T>(r, stop.inverse_mass_dt);
+  };
+  const auto restoreResidual = [&] {
     for (std::size_t k = filter.vertices.size(); k-- > 0;) r[filter.vertices[k]] += scratch.removed[k];
+  };
+  // z = S P S r, square = r . z.
+  const auto precondition = [&] {
+    filterResidual();
+    preconditioner.apply(r, z);
+    ++report.applications;
+    scratch.acceleration = largestAcceleration<T>(r, stop.inverse_mass_dt);
+    restoreResidual();
     filter.apply(z);
+    scratch.square = innerProduct<T>(r, z);
+    scratch.preconditioned = true;
   };
   const auto closeEnough = [&] {
     return !(scratch.square > stop.relative * stop.relative * scratch.first_square) ||
            (stop.acceleration > 0 && scratch.acceleration <= stop.acceleration) ||
            (stop.displacement > 0 && stop.h * largestNorm<T>(z) <= stop.displacement);
   };
+  // Of the squared error, after the last iteration.
+  const auto foreseen = [&] { return scratch.gain * scratch.rate / (1 - scratch.rate); };
+  const auto foreseenEnough = [&] {
+    return stop.foresee && scratch.rate > 0 && scratch.rate < kEven && scratch.gain > 0 &&
+           foreseen() <= stop.relative * stop.relative * scratch.first_square;
+  };
+  const auto turn = [&](double before) {
+    const T beta = static_cast<T>(scratch.square / before);
+    for (std::size_t i = 0; i < n; ++i) d[i] = z[i] + beta * d[i];
+  };
   if (start == SolveStart::kFresh) {
     a(x, q);
     for (std::size_t i = 0; i < n; ++i) r[i] = b[i] - q[i];
+    scratch.rate = scratch.last_ratio = 0;
   }
+  const double before_start = scratch.square;
   if (start != SolveStart::kResume) {
     precondition();
     for (std::size_t i = 0; i < n; ++i) d[i] = z[i];
-    const double before = scratch.square;
-    scratch.square = innerProduct<T>(r, z);
     if (start == SolveStart::kFresh) scratch.first_square = scratch.square;
     // In the norm of the new preconditioner the progress so far counts for as much as it did in the old one's.
-    if (start == SolveStart::kExchange && before > 0) scratch.first_square *= scratch.square / before;
+    if (start == SolveStart::kExchange && before_start > 0) scratch.first_square *= scratch.square / before_start;
+    if (start == SolveStart::kExchange) scratch.rate = scratch.last_ratio = 0;
+    scratch.gain = 0;
+  } else if (!scratch.preconditioned) {
+    precondition();
+    turn(before_start);
   }
   report.converged = closeEnough();
   while (!report.converged && report.iterations < stop.max_iterations) {
     a(d, q);
     const double curvature = innerProduct<T>(d, q);
     if (!(curvature > 0)) break;  // rounding has eaten the direction, or a value is not finite
-    const T alpha = static_cast<T>(scratch.square / curvature);
+    const double step = scratch.square / curvature, before = scratch.square;
+    const T alpha = static_cast<T>(step);
     for (std::size_t i = 0; i < n; ++i) {
       x[i] += alpha * d[i];
       r[i] -= alpha * q[i];
     }
-    precondition();
-    const double next = innerProduct<T>(r, z);
-    const T beta = static_cast<T>(next / scratch.square);
-    for (std::size_t i = 0; i < n; ++i) d[i] = z[i] + beta * d[i];
-    scratch.square = next;
+    scratch.preconditioned = false;
+    const double gain = step * before;
+    if (scratch.gain > 0) {
+      const double ratio = gain / scratch.gain;
+      scratch.rate = std::max(ratio, scratch.last_ratio);
+      scratch.last_ratio = ratio;
+    }
+    scratch.gain = gain;
     ++report.iterations;
+    report.converged = foreseenEnough();
+    if (report.converged) break;
+    precondition();
+    turn(before);
     report.converged = closeEnough();
-    if (!std::isfinite(next)) break;
+    if (!std::isfinite(scratch.square)) break;
   }
   if (!std::isfinite(scratch.square)) report.converged = false;
-  report.relative_residual =
-      scratch.first_square > 0 ? std::sqrt(std::max(scratch.square, 0.0) / scratch.first_square) : 0;
+  const double left = scratch.preconditioned ? scratch.square : foreseen();
+  report.relative_residual = scratch.first_square > 0 ? std::sqrt(std::max(left, 0.0) / scratch.first_square) : 0;
+  if (!scratch.preconditioned) {
+    filterResidual();
+    scratch.acceleration = largestAcceleration<T>(r, stop.inverse_mass_dt);
+    restoreResidual();
+  }
   report.residual_acceleration = scratch.acceleration;
   return report;
 }

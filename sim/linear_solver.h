@@ -30,9 +30,14 @@ struct Filter {
 // residual exceeds `acceleration` (m/s^2, against `inverse_mass_dt`, 1 / (m h) per vertex); or when no vertex would
 // move by more than `displacement` (m) in the time `h` for the velocity that the preconditioner answers to the
 // residual, which estimates the error itself where the preconditioner is near to the inverse; or at max_iterations.
+//
+// `foresee`: the relative residual is also estimated from what the iterations have gained so far (SolverScratch::gain),
+// which saves the application of the preconditioner that would only have told that nothing more is needed. For
+// preconditioners near to the inverse, whose iterations gain evenly and whose norm is the error's energy.
 template <class T>
 struct StopRule {
   double relative = 1e-3;
+  bool foresee = false;
   double acceleration = 0;             // 0: off
   std::span<const T> inverse_mass_dt;  // 1/(kg s) per vertex; needed for residual_acceleration
   double displacement = 0;             // 0: off
@@ -40,15 +45,16 @@ struct StopRule {
   int max_iterations = 400;
 };
 
-// How a solve begins. `fresh`: from x and b. `restart`: from x and the residual in the scratch, which the caller has kept
-// true while b or the filter changed; the search directions begin anew. `resume`: where the last solve stopped, nothing
-// having changed, to go on towards a stricter rule. `exchange`: as restart, the preconditioner being another one. All
-// but the first measure progress from the fresh solve's first norm.
+// How a solve begins. `fresh`: from x and b. `restart`: from x and the residual in the scratch, which the caller has
+// kept true while b or the filter changed; the search directions begin anew. `resume`: where the last solve stopped,
+// nothing having changed, to go on towards a stricter rule. `exchange`: as restart, the preconditioner being another
+// one. All but the first measure progress from the fresh solve's first norm.
 enum class SolveStart { kFresh, kRestart, kResume, kExchange };
 
 struct SolveReport {
   int iterations = 0;
-  double relative_residual = 0;      // in the preconditioner's norm
+  int applications = 0;              // of the preconditioner
+  double relative_residual = 0;      // in the preconditioner's norm, or estimated
   double residual_acceleration = 0;  // m/s^2, largest over vertices
   bool converged = false;
 };
@@ -60,7 +66,12 @@ struct SolverScratch {
   std::vector<V3<T>> r, z, d, q;
   std::vector<V3<T>> removed;           // of r at the filter's vertices, while the preconditioner reads it
   double square = 0, first_square = 0;  // r . P r now and at the fresh start
-  double acceleration = 0;              // m/s^2, of the filtered residual
+  // The last iteration took `gain` off the squared energy norm of the error (Hestenes and Stiefel 1952), `last_ratio`
+  // times what the one before it had taken: a geometric series of gains estimates what is left (after Strakos and Tichy
+  // 2002). `rate`: the larger of the last two ratios.
+  double gain = 0, last_ratio = 0, rate = 0;
+  bool preconditioned = false;  // z, square and acceleration are those of the present r
+  double acceleration = 0;      // m/s^2, of the filtered residual
   void resize(int n) { r.resize(n), z.resize(n), d.resize(n), q.resize(n), removed.reserve(n); }
 };
 

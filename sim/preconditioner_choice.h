@@ -15,7 +15,7 @@ struct PreconditionerChoice {
   static constexpr double kOverrun = 1.5, kOutburst = 2;
   static constexpr double kGain = 0.75;                    // of the cost, for which the cheap one comes into use
   static constexpr double kMemory = 0.8;                   // of earlier solves in the mean
-  static constexpr int kPatience = 8, kMostPatience = 64;  // solves from one trial to the next; failing ones double it
+  static constexpr int kPatience = 4, kMostPatience = 16;  // solves from one trial to the next; failing ones double it
 
   bool cheap = false;    // the 3x3 blocks are in use
   double mean_cost = 0;  // of a solve by the one in use

@@ -85,6 +85,49 @@ TEST(Preconditioners, TheFactorInSixteenBitsServesAsTheFullOneDoes) {
   EXPECT_LE(iterations[1], iterations[0] + 1);
 }
 
+template <class T>
+void batchIsManySolves(double bound) {
+  const System system(0.004);
+  const BlockMatrix<T> a = system.matrixAt<T>(system.positions);
+  std::vector<unsigned char> free_vertex;
+  for (int i = 0; i < system.mesh.vertexCount(); ++i) free_vertex.push_back(!system.mesh.isRoot(i));
+  sim::BlockCholesky<T> factor;
+  factor.analyze(system.mesh, system.pattern, free_vertex);
+  ASSERT_TRUE(factor.factor(a));
+  constexpr int kSides = sim::BlockCholesky<T>::kBatch;
+  test::Random random(81);
+  std::vector<T> batch(3 * factor.order.size() * kSides, T(0));
+  std::vector<std::vector<V3<T>>> sides(kSides, std::vector<V3<T>>(system.mesh.vertexCount(), V3<T>{0, 0, 0}));
+  std::vector<int> touched;
+  for (int k = 0; k < kSides; ++k) {
+    const int position = static_cast<int>(random(0, static_cast<double>(factor.order.size()) - 1e-6));
+    touched.push_back(position);
+    const Vec3 f = random.vector(1);
+    sides[k][factor.order[position]] = {static_cast<T>(f.x()), static_cast<T>(f.y()), static_cast<T>(f.z())};
+    for (int axis = 0; axis < 3; ++axis) batch[(3 * position + axis) * kSides + k] = static_cast<T>(f[axis]);
+  }
+  factor.solveBatch(batch, touched);
+  for (int k = 0; k < kSides; ++k) {
+    std::vector<V3<T>> z(system.mesh.vertexCount());
+    factor.solve(sides[k], z);
+    double largest = 0, difference = 0;
+    for (std::size_t position = 0; position < factor.order.size(); ++position) {
+      const V3<T>& one = z[factor.order[position]];
+      const T* many = batch.data() + 3 * position * kSides + k;
+      const V3<T> gap = one - V3<T>{many[0], many[kSides], many[2 * kSides]};
+      largest = std::max(largest, std::sqrt(static_cast<double>(dot(one, one))));
+      difference = std::max(difference, std::sqrt(static_cast<double>(dot(gap, gap))));
+    }
+    EXPECT_GT(largest, 0);
+    EXPECT_LT(difference, bound * largest) << k;
+  }
+}
+
+TEST(Preconditioners, ABatchOfRightHandSidesIsAsManySolves) {
+  batchIsManySolves<float>(1e-4);
+  batchIsManySolves<double>(1e-12);
+}
+
 // More contacts than are answered for: the rest is left to the filter, and the solution stays right.
 TEST(Preconditioners, ContactsBeyondTheCorrectedOnesAreLeftToTheFilter) {
   const System system(0.004);
