@@ -56,7 +56,7 @@ void changeStyle(const Request& request, Demo& demo) {
   } else {
     const auto resolution = parseResolution(request.name);
     if (!resolution)
-      throw InputError("", "resolution '" + request.name + "'", "is unknown", "choose low, medium or high");
+      throw InputError("", "resolution '" + request.name + "'", "is unknown", "choose low, medium, high or ultra");
     spec.resolution = *resolution;
   }
   spec.hair.clear();

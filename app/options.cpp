@@ -80,10 +80,10 @@ bool parseOptions(int argc, char** argv, Options& options, int& exit_code) {
       ->group(what)
       ->option_text("NAME")
       ->check(CLI::IsMember({"short", "shoulder", "long"}));
-  parser.add_option("--resolution", options.resolution, "Hair mesh resolution: low, medium or high")
+  parser.add_option("--resolution", options.resolution, "Hair mesh resolution: low, medium, high or ultra")
       ->group(what)
       ->option_text("NAME")
-      ->check(CLI::IsMember({"low", "medium", "high"}));
+      ->check(CLI::IsMember({"low", "medium", "high", "ultra"}));
   parser.add_option("--hair", options.hair, "Hair mesh file (OBJ, one group a layer) in place of a style")
       ->group(what)
       ->option_text("FILE");

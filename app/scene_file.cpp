@@ -41,7 +41,7 @@ CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
   if (place.has("clip")) spec.clip = place.at("clip").text();
   if (place.has("style")) spec.style = *parseStyle(place.at("style").choice({"short", "shoulder", "long"}));
   if (place.has("resolution")) {
-    spec.resolution = *parseResolution(place.at("resolution").choice({"low", "medium", "high"}));
+    spec.resolution = *parseResolution(place.at("resolution").choice({"low", "medium", "high", "ultra"}));
   }
   if (place.has("hair")) spec.hair = readFileName(place.at("hair"), "hair");
   if (place.has("position")) spec.position = toVec3(place.at("position").vector(-kFarthest, kFarthest));
@@ -104,7 +104,8 @@ std::optional<sim::Style> parseStyle(std::string_view name) {
 }
 
 std::optional<sim::Resolution> parseResolution(std::string_view name) {
-  for (const sim::Resolution resolution : {sim::Resolution::kLow, sim::Resolution::kMedium, sim::Resolution::kHigh}) {
+  for (const sim::Resolution resolution :
+       {sim::Resolution::kLow, sim::Resolution::kMedium, sim::Resolution::kHigh, sim::Resolution::kUltra}) {
     if (name == sim::resolutionName(resolution)) return resolution;
   }
   return {};

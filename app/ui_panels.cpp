@@ -205,9 +205,9 @@ void hairTab(Demo& demo, UiState& ui) {
         segments("style", {"Short", "Shoulder", "Long"}, from_file ? -1 : static_cast<int>(actor.spec.style), ui);
     static constexpr const char* kStyles[] = {"short", "shoulder", "long"};
     if (style >= 0) ask(demo, {Ask::kStyle, kStyles[style], ""});
-    const int resolution =
-        segments("resolution", {"Low", "Medium", "High"}, from_file ? -1 : static_cast<int>(actor.spec.resolution), ui);
-    static constexpr const char* kResolutions[] = {"low", "medium", "high"};
+    const int resolution = segments("resolution", {"Low", "Medium", "High", "Ultra"},
+                                    from_file ? -1 : static_cast<int>(actor.spec.resolution), ui);
+    static constexpr const char* kResolutions[] = {"low", "medium", "high", "ultra"};
     if (resolution >= 0) ask(demo, {Ask::kResolution, kResolutions[resolution], ""});
     rowLabel("Hair mesh file", "OBJ with one group a layer; see assets/hair/README.md");
     if (pathInput("##hair_path", from_file ? stem(actor.spec.hair).c_str() : "path, then Enter", ui.hair_path, ui)) {

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "sim/hair_styles_comb.h"
+#include "sim/hair_styles_refine.h"
 #include "sim/hair_styles_roots.h"
 #include "sim/hair_styles_untangle.h"
 #include "sim/hair_styles_weave.h"
@@ -89,7 +90,12 @@ HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& scalp, 
        {Attempt{0, 0, &scaled_body}, Attempt{20, 0, &scaled_body}, Attempt{60, 0.5, &post}, Attempt{60, 1, &post}}) {
     const Scalp head = rounded(scaledTo(scalp, 1 / scale), attempt.rounds, attempt.ball);
     shape = weave(combCoat(style, head, *attempt.around, traceFlowLines(head)), plan);
-    if (untangle(*attempt.around, kFatness, kGap, shape) > kLeastFatness) break;
+    double fatness = untangle(*attempt.around, kFatness, kGap, shape);
+    if (resolution == Resolution::kUltra) {
+      shape = refined(shape, head);
+      fatness = untangle(*attempt.around, kFatness, kGap, shape);
+    }
+    if (fatness > kLeastFatness) break;
   }
   for (Vec3& p : shape.positions) p *= scale;
   return shape;
@@ -114,9 +120,11 @@ std::string_view resolutionName(Resolution resolution) {
     case Resolution::kMedium:
       return "medium";
     case Resolution::kHigh:
+      return "high";
+    case Resolution::kUltra:
       break;
   }
-  return "high";
+  return "ultra";
 }
 
 }  // namespace sim

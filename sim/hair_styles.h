@@ -1,4 +1,4 @@
-// Built-in hair meshes on a given scalp: {short, shoulder, long} x {low, medium, high}.
+// Built-in hair meshes on a given scalp: {short, shoulder, long} x {low, medium, high, ultra}.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@
 namespace sim {
 
 enum class Style { kShort, kShoulder, kLong };
-enum class Resolution { kLow, kMedium, kHigh };
+enum class Resolution { kLow, kMedium, kHigh, kUltra };
 
 // The head that a style grows on, in the head joint's frame turned so that y is up, z forward, x to the character's
 // left. `radius` samples the skin as distance from `center` over a latitude-longitude grid: row i is polar angle i * pi
@@ -33,13 +33,13 @@ using BodyDistance = std::function<double(const Vec3&)>;
 // Grows a hair mesh: hairline at forehead, temples, around the ears and nape; side parting; columns from the parting
 // and crown outermost; ends cut along a smooth surface. Long hair divides over the shoulders: what is rooted before the
 // ears falls in front of them. All but the roots keeps 2.5 mm off the body (on a head of 23 cm, and in proportion), 6
-// mm once the hair has left the scalp; edges are at least 3 mm. The three resolutions are one haircut, meshed more or
+// mm once the hair has left the scalp; edges are at least 3 mm. The resolutions are one haircut, meshed more or
 // less finely, with the same topology on every head. Valid for any scalp: where a head leaves no room, the hair grows
-// on a rounded one (see the source). Vertex counts: short 225 / 569 / 1,364, shoulder 360 / 913 / 2,306, long 365 / 922
-// / 2,268. Deterministic; under 0.25 s.
+// on a rounded one (see the source). Vertex counts: short 225 / 569 / 1,364 / 7,081, shoulder 360 / 913 / 2,306 /
+// 10,251, long 365 / 922 / 2,268 / 10,241. Deterministic; under 0.25 s, ultra under 0.5 s.
 HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& scalp, const BodyDistance& body);
 
 std::string_view styleName(Style style);                 // "short", "shoulder", "long"
-std::string_view resolutionName(Resolution resolution);  // "low", "medium", "high"
+std::string_view resolutionName(Resolution resolution);  // "low", "medium", "high", "ultra"
 
 }  // namespace sim

@@ -21,7 +21,7 @@ using sim::Style;
 using sim::Vec3;
 
 constexpr Style kStyles[] = {Style::kShort, Style::kShoulder, Style::kLong};
-constexpr Resolution kResolutions[] = {Resolution::kLow, Resolution::kMedium, Resolution::kHigh};
+constexpr Resolution kResolutions[] = {Resolution::kLow, Resolution::kMedium, Resolution::kHigh, Resolution::kUltra};
 
 struct Head {
   std::string name;
@@ -112,11 +112,12 @@ void forEveryHaircut(Law law) {
 
 TEST(HairStyles, VertexCountsAreThoseOfThePaperWithinFivePercent) {
   const std::map<std::pair<Style, Resolution>, int> wanted = {
-      {{Style::kShort, Resolution::kLow}, 215},       {{Style::kShort, Resolution::kMedium}, 570},
-      {{Style::kShort, Resolution::kHigh}, 1380},     {{Style::kShoulder, Resolution::kLow}, 361},
-      {{Style::kShoulder, Resolution::kMedium}, 900}, {{Style::kShoulder, Resolution::kHigh}, 2305},
-      {{Style::kLong, Resolution::kLow}, 361},        {{Style::kLong, Resolution::kMedium}, 900},
-      {{Style::kLong, Resolution::kHigh}, 2305}};
+      {{Style::kShort, Resolution::kLow}, 215},        {{Style::kShort, Resolution::kMedium}, 570},
+      {{Style::kShort, Resolution::kHigh}, 1380},      {{Style::kShoulder, Resolution::kLow}, 361},
+      {{Style::kShoulder, Resolution::kMedium}, 900},  {{Style::kShoulder, Resolution::kHigh}, 2305},
+      {{Style::kLong, Resolution::kLow}, 361},         {{Style::kLong, Resolution::kMedium}, 900},
+      {{Style::kLong, Resolution::kHigh}, 2305},       {{Style::kShort, Resolution::kUltra}, 7000},
+      {{Style::kShoulder, Resolution::kUltra}, 10000}, {{Style::kLong, Resolution::kUltra}, 10000}};
   forEveryHaircut([&](const Head&, const Haircut& cut) {
     const int count = wanted.at({cut.style, cut.resolution});
     EXPECT_NEAR(cut.shape.vertexCount(), count, 0.05 * count);
@@ -339,7 +340,8 @@ TEST(HairStyles, ValidOnOddHeads) {
       return odd.wall ? std::min(head, 0.16 + p.z()) : head;
     };
     for (const Style style : kStyles) {
-      for (const Resolution resolution : {Resolution::kLow, Resolution::kHigh}) {
+      for (const Resolution resolution : {Resolution::kLow, Resolution::kHigh, Resolution::kUltra}) {
+        if (resolution == Resolution::kUltra && style != Style::kLong) continue;  // takes its time
         EXPECT_NO_THROW(sim::buildHairMesh(sim::makeStyle(style, resolution, scalp, body)))
             << sim::styleName(style) << " " << sim::resolutionName(resolution);
       }

@@ -1,0 +1,78 @@
+#include "sim/hair_styles_refine.h"
+
+#include <algorithm>
+#include <map>
+
+namespace sim {
+namespace {
+
+struct FineColumn {
+  int a, b;        // coarse columns that it lies half-way between; the same twice for a coarse one
+  int layers = 0;  // coarse ones
+};
+
+// A column's curve half-way between its layers l and l + 1: the cubic through the four nearest, where there are four.
+Vec3 halfWay(const HairMeshShape& shape, int column, int l) {
+  const Vec3* x = &shape.positions[shape.column_first[column]];
+  if (l < 1 || l + 2 >= shape.columnLength(column)) return 0.5 * (x[l] + x[l + 1]);
+  return (9 * (x[l] + x[l + 1]) - x[l - 1] - x[l + 2]) / 16;
+}
+
+Vec3 onScalp(const Scalp& scalp, const Vec3& p) {
+  const Vec3 direction = (p - scalp.center).normalized();
+  return scalp.center + scalp.radiusAt(direction) * direction;
+}
+
+bool acrossSheets(int a, int b) {
+  return std::abs(a - b) != 1;
+}
+
+}  // namespace
+
+HairMeshShape refined(const HairMeshShape& shape, const Scalp& scalp) {
+  std::vector<FineColumn> columns;
+  for (int c = 0; c < shape.columnCount(); ++c) columns.push_back({c, c, 0});
+  std::map<std::pair<int, int>, int> between;
+  const auto middle = [&](int a, int b) {
+    const auto [place, fresh] = between.try_emplace(std::minmax(a, b), static_cast<int>(columns.size()));
+    if (fresh) columns.push_back({std::min(a, b), std::max(a, b), 0});
+    return place->second;
+  };
+  HairMeshShape fine;
+  const auto addFace = [&](std::vector<int> corners, int layers) {
+    RootFace face;
+    face.corner_count = static_cast<int>(corners.size());
+    std::copy(corners.begin(), corners.end(), face.columns.begin());
+    for (const int c : corners) columns[c].layers = std::max(columns[c].layers, layers);
+    fine.root_faces.push_back(face);
+  };
+  for (const RootFace& face : shape.root_faces) {
+    const int n = face.corner_count;
+    int layers = shape.columnLength(face.columns[0]);
+    for (int k = 1; k < n; ++k) layers = std::min(layers, shape.columnLength(face.columns[k]));
+    // Turned so that the first edge runs across the sheets and the last one within a sheet.
+    int turn = 0;
+    const auto corner = [&](int k) { return face.columns[(k + turn) % n]; };
+    while (!(acrossSheets(corner(0), corner(1)) && !acrossSheets(corner(n - 1), corner(0)))) ++turn;
+    const int near = middle(corner(0), corner(1)), far = middle(corner(n - 2), corner(n - 1));
+    addFace({corner(0), near, far, corner(n - 1)}, layers);
+    if (n == 4)
+      addFace({near, corner(1), corner(2), far}, layers);
+    else
+      addFace({near, corner(1), far}, layers);
+  }
+  for (const FineColumn& column : columns) {
+    for (int l = 0; l < 2 * column.layers - 1; ++l) {
+      const auto at = [&](int c) {
+        return l % 2 ? halfWay(shape, c, l / 2) : shape.positions[shape.column_first[c] + l / 2];
+      };
+      Vec3 p = 0.5 * (at(column.a) + at(column.b));
+      if (l == 0 && column.a != column.b) p = onScalp(scalp, p);
+      fine.positions.push_back(p);
+    }
+    fine.column_first.push_back(static_cast<int>(fine.positions.size()));
+  }
+  return fine;
+}
+
+}  // namespace sim
