@@ -1,6 +1,9 @@
 // hairmesh-bench: measurements and pictures that the documents quote.
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <functional>
 #include <iostream>
+#include <vector>
 
 #include "app/errors.h"
 #include "tests/bench/accuracy_document.h"
@@ -13,8 +16,10 @@
 #include "tests/bench/solver_chart.h"
 #include "tests/bench/styles_bench.h"
 
-int main(int argc, char** argv) {
-  CLI::App program("Measures the simulator and draws the documents' pictures. One thread; timings are medians.");
+namespace {
+
+// Everything that can be asked for on the command line.
+struct Asked {
   bench::StylesOptions styles;
   bench::SheetOptions sheet;
   bench::ParetoOptions pareto;
@@ -22,64 +27,103 @@ int main(int argc, char** argv) {
   bench::PeersOptions peers;
   bench::CollisionOptions collisions;
   std::vector<std::string> sets;
-  bool run_styles = false, run_pareto = false, run_solvers = false, run_peers = false, run_collisions = false,
-       run_colliders = false;
-  program.add_flag("--styles", run_styles,
-                   "milliseconds a frame per stage for the nine styles, walking, beside the paper's");
-  program.add_option("--frames", styles.frames, "measured frames a style")->check(CLI::Range(10, 100000));
-  program.add_option("--motion", styles.motion, "clip to walk with")->capture_default_str();
-  program.add_option("--table", styles.table, "also write the table to this Markdown file");
-  program.add_option("--contact-sheet", sheet.folder, "draw the nine styles, at rest and in motion, into this folder");
-  program.add_option("--cell", sheet.cell_height, "height of a picture of the sheet, pixels")
+  std::string document, accuracy;
+};
+
+// A measurement: its flag, what it does, and how. In the order in which they run when several are asked for.
+struct Task {
+  const char *flag, *help;
+  std::function<void(Asked&)> run;
+  bool asked = false;
+};
+
+std::vector<Task> tasks() {
+  return {
+      {"--styles", "milliseconds a frame per stage for the nine styles, walking, beside the paper's",
+       [](Asked& a) { bench::runStyles(a.styles); }},
+      {"--peers", "Bullet's soft bodies on the same hair mesh and motion, beside ours",
+       [](Asked& a) { bench::runPeers(a.peers); }},
+      {"--solvers", "residual against microseconds of every solver on recorded systems",
+       [](Asked& a) { bench::runSolverChart(a.solvers); }},
+      {"--pareto", "run time against error, for every scene and way to simulate it",
+       [](Asked& a) { bench::runPareto(a.pareto); }},
+      {"--ladder", "cost and error of the budget governor's settings (app/governor_ladder.cpp)",
+       [](Asked& a) { bench::measureLadder(a.pareto.runs); }},
+      {"--collisions", "what is left inside the body, contacts that come and go, rest",
+       [](Asked& a) { bench::runCollisions(a.collisions); }},
+      {"--colliders", "ellipsoids and signed distances side by side, against the true skin",
+       [](Asked& a) {
+         bench::runColliders({a.styles.frames, a.collisions.clips, a.collisions.styles});
+       }},
+  };
+}
+
+void addOptions(CLI::App& program, Asked& a) {
+  program.add_option("--frames", a.styles.frames, "measured frames a style")->check(CLI::Range(10, 100000));
+  program.add_option("--motion", a.styles.motion, "clip to walk with")->capture_default_str();
+  program.add_option("--table", a.styles.table, "also write the table of --styles to this Markdown file");
+  program.add_option("--contact-sheet", a.sheet.folder,
+                     "draw the nine styles, at rest and in motion, into this folder");
+  program.add_option("--cell", a.sheet.cell_height, "height of a picture of the sheet, pixels")
       ->check(CLI::Range(32, 2048));
-  program.add_option("--strands", sheet.strands, "strands a picture")->check(CLI::Range(1, 1000000));
-  program.add_flag("--pareto", run_pareto, "run time against error, for every scene and way to simulate it");
-  program.add_option("--scenes", pareto.scenes, "scenes of --pareto, comma separated")->delimiter(',');
-  program.add_flag("--solvers", run_solvers, "residual against microseconds of every solver on recorded systems");
-  program.add_flag("--peers", run_peers, "Bullet's soft bodies on the same hair mesh and motion, beside ours");
-  program.add_option("--out", pareto.folder, "folder of --pareto, --solvers and --peers")->default_val("pareto");
-  program.add_option("--references", pareto.references, "folder in which --pareto keeps its reference trajectories");
-  program.add_option("--runs", pareto.runs, "timed runs a point")->check(CLI::Range(1, 100));
-  program.add_flag("--quick", pareto.quick, "a coarser sweep");
-  bool run_ladder = false;
-  program.add_flag("--ladder", run_ladder,
-                   "cost and error of the budget governor's settings (app/governor_ladder.cpp)");
-  program.add_flag("--collisions", run_collisions, "what is left inside the body, contacts that come and go, rest");
-  program.add_flag("--colliders", run_colliders, "ellipsoids and signed distances side by side, against the true skin");
+  program.add_option("--strands", a.sheet.strands, "strands a picture")->check(CLI::Range(1, 1000000));
+  program.add_option("--scenes", a.pareto.scenes, "scenes of --pareto, comma separated")->delimiter(',');
+  program.add_option("--out", a.pareto.folder, "folder of what is written")->default_val("pareto");
+  program.add_option("--references", a.pareto.references, "folder in which --pareto keeps its reference trajectories");
+  program.add_option("--runs", a.pareto.runs, "timed runs a point")->check(CLI::Range(1, 100));
+  program.add_flag("--quick", a.pareto.quick, "a coarser sweep");
   program
-      .add_option("--only", collisions.styles,
+      .add_option("--only", a.collisions.styles,
                   "styles of --collisions and --colliders, such as 'long low', comma separated")
       ->delimiter(',');
-  program.add_option("--clips", collisions.clips, "clips of --collisions and --colliders, comma separated")
+  program.add_option("--clips", a.collisions.clips, "clips of --collisions and --colliders, comma separated")
       ->delimiter(',');
-  program.add_option("--set", sets, "NAME=VALUE of a parameter for --collisions")->allow_extra_args(false);
-  std::string document;
-  program.add_option("--accuracy-document", document, "put the tables of this folder's sweep into its accuracy.md");
+  program.add_option("--set", a.sets, "NAME=VALUE of a parameter for --collisions")->allow_extra_args(false);
+  program.add_option("--accuracy-document", a.document,
+                     "put the tables of what this folder holds into its accuracy.md");
+  program.add_option("--accuracy", a.accuracy,
+                     "all of accuracy.md in this folder: a quick sweep, solvers, peers, tables");
+}
+
+// What options mean for one another.
+void settle(std::vector<Task>& all, Asked& a) {
+  if (!a.accuracy.empty()) {
+    for (Task& task : all) {
+      for (const char* part : {"--pareto", "--solvers", "--peers"})
+        task.asked = task.asked || task.flag == std::string(part);
+    }
+    a.pareto.quick = true;
+    a.pareto.folder = a.document = a.accuracy;
+  }
+  a.solvers.folder = a.peers.folder = a.pareto.folder;
+  a.collisions.frames = a.styles.frames;
+  for (const std::string& text : a.sets) {
+    const std::size_t equals = text.find('=');
+    a.collisions.set.emplace_back(text.substr(0, equals), equals < text.size() ? text.substr(equals + 1) : "");
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App program("Measures the simulator and draws the documents' pictures. One thread; timings are medians.");
+  std::vector<Task> all = tasks();
+  Asked asked;
+  for (Task& task : all) program.add_flag(task.flag, task.asked, task.help);
+  addOptions(program, asked);
   CLI11_PARSE(program, argc, argv);
-  if (!run_styles && !run_pareto && !run_solvers && !run_peers && !run_ladder && !run_collisions && !run_colliders &&
-      document.empty() && sheet.folder.empty()) {
+  settle(all, asked);
+  const bool any = std::any_of(all.begin(), all.end(), [](const Task& task) { return task.asked; });
+  if (!any && asked.document.empty() && asked.sheet.folder.empty()) {
     std::cout << program.help();
     return app::kExitUsage;
   }
   try {
-    if (run_styles) bench::runStyles(styles);
-    solvers.folder = pareto.folder;
-    peers.folder = pareto.folder;
-    if (run_peers) bench::runPeers(peers);
-    if (run_solvers) bench::runSolverChart(solvers);
-    if (run_pareto) bench::runPareto(pareto);
-    if (run_ladder) bench::measureLadder(pareto.runs);
-    if (run_collisions) {
-      collisions.frames = styles.frames;
-      for (const std::string& text : sets) {
-        const std::size_t equals = text.find('=');
-        collisions.set.emplace_back(text.substr(0, equals), equals < text.size() ? text.substr(equals + 1) : "");
-      }
-      bench::runCollisions(collisions);
+    for (const Task& task : all) {
+      if (task.asked) task.run(asked);
     }
-    if (run_colliders) bench::runColliders({styles.frames, collisions.clips, collisions.styles});
-    if (!document.empty()) bench::writeAccuracyDocument(document);
-    if (!sheet.folder.empty()) bench::drawContactSheets(sheet);
+    if (!asked.document.empty()) bench::writeAccuracyDocument(asked.document);
+    if (!asked.sheet.folder.empty()) bench::drawContactSheets(asked.sheet);
   } catch (const app::ContextError& error) {
     std::cerr << "hairmesh-bench: " << error.what() << "\n";
     return app::kExitNoContext;

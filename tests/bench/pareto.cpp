@@ -114,7 +114,7 @@ void runPareto(const ParetoOptions& options) {
     const Reference reference = referenceOf(stage, kReferenceRate, options.references);
     const bool large = scene.resolution == sim::Resolution::kHigh;
     const SweepSize size = options.quick || large ? SweepSize::kQuick : SweepSize::kFull;
-    const Sweep sweep = sweepScene(stage, reference, waysToRun(size), options.runs);
+    const Sweep sweep = sweepScene(stage, reference, waysToRun(size, scene.collide), options.runs);
     for (const Point& p : sweep.points) rows.push_back(toJson(sweep, p));
     print(sweep);
     drawChart(options.folder, std::string("accuracy_") + scene.name, chartOf(sweep));

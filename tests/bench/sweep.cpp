@@ -25,79 +25,96 @@ bool same(const SimParams& a, const SimParams& b) {
   return std::ranges::all_of(sim::paramFields(), [&](const auto& field) { return field.get(a) == field.get(b); });
 }
 
-// A relative residual as asked for; from 1e-3 on without the stop by acceleration, which would come first, and from
-// 1e-5 on in double precision, which alone gets there.
+// A relative residual as asked for; from 1e-3 on without the stops by acceleration and displacement, which would
+// come first, and from 1e-5 on in double precision, which alone gets there.
 void setTolerance(double tolerance, SimParams& params) {
   params.tolerance = tolerance;
-  if (tolerance < 5e-3) params.acceleration_tolerance = 0;
+  if (tolerance < 5e-3) params.acceleration_tolerance = params.displacement_tolerance = 0;
   if (tolerance < 5e-5) params.precision = Precision::kDouble;
+}
+
+// The ways so far, none twice.
+struct WayList {
+  std::vector<SimParams> ways;
+  void add(const SimParams& way) {
+    if (std::none_of(ways.begin(), ways.end(), [&](const SimParams& w) { return same(w, way); })) ways.push_back(way);
+  }
+};
+
+void addIntegrators(SweepSize size, WayList& list) {
+  const std::vector<double> rates = size == SweepSize::kFull    ? std::vector<double>{30, 60, 120, 240, 480, 960}
+                                    : size == SweepSize::kQuick ? std::vector<double>{30, 60, 120, 240}
+                                                                : std::vector<double>{30, 60};
+  std::vector<double> tolerances{1e-1, 1e-2, 1e-3};
+  if (size == SweepSize::kFull) tolerances.insert(tolerances.end(), {1e-4, 1e-5, 1e-6, 1e-7, 1e-8});
+  for (int integrator = 0; integrator < static_cast<int>(Integrator::kCount); ++integrator) {
+    // Full Newton steps have never come near the default's place.
+    if (size == SweepSize::kShort && static_cast<Integrator>(integrator) == Integrator::kImplicitEuler) continue;
+    for (const double rate : rates) {
+      for (const double tolerance : tolerances) {
+        SimParams way;
+        way.integrator = static_cast<Integrator>(integrator);
+        way.time_step = 1 / rate;
+        setTolerance(tolerance, way);
+        list.add(way);
+      }
+    }
+  }
+}
+
+void addSolvers(SweepSize size, WayList& list) {
+  const bool full = size == SweepSize::kFull;
+  std::vector<double> rates{60}, tolerances{1e-1, 1e-2, 1e-3};
+  if (full) rates = {30, 60, 240}, tolerances.push_back(1e-4);
+  for (int k = 0; k < static_cast<int>(Solver::kCount); ++k) {
+    const auto solver = static_cast<Solver>(k);
+    const bool came_near = solver == Solver::kBlockJacobi || solver == Solver::kIncomplete;
+    // `paper` is block-jacobi by another name, and `warped` has been in every place already.
+    if (solver == Solver::kPaper || solver == Solver::kWarped || (size == SweepSize::kShort && !came_near)) continue;
+    for (const double rate : rates) {
+      for (const double tolerance : tolerances) {
+        if (solver == Solver::kDirect && tolerance != 1e-2) continue;  // a direct solve meets every tolerance
+        SimParams way;
+        way.solver = solver;
+        way.time_step = 1 / rate;
+        way.max_iterations = 2000;
+        setTolerance(tolerance, way);
+        list.add(way);
+      }
+    }
+  }
+}
+
+void addPrecisions(SweepSize size, WayList& list) {
+  for (int precision = 0; precision < static_cast<int>(Precision::kCount); ++precision) {
+    SimParams way;
+    way.precision = static_cast<Precision>(precision);
+    list.add(way);
+    if (size != SweepSize::kFull) continue;
+    way.acceleration_tolerance = way.displacement_tolerance = 0;
+    for (const double tolerance : {1e-4, 1e-6}) {
+      way.tolerance = tolerance;
+      list.add(way);
+    }
+  }
 }
 
 }  // namespace
 
-std::vector<SimParams> waysToRun(SweepSize size) {
-  std::vector<SimParams> ways{SimParams{}};
-  const auto add = [&](const SimParams& way) {
-    if (std::none_of(ways.begin(), ways.end(), [&](const SimParams& w) { return same(w, way); })) ways.push_back(way);
-  };
-  const bool full = size == SweepSize::kFull, quick = size == SweepSize::kQuick;
-  const std::vector<double> rates = full    ? std::vector<double>{30, 60, 120, 240, 480, 960}
-                                    : quick ? std::vector<double>{30, 60, 120, 240}
-                                            : std::vector<double>{30, 60};
-  const std::vector<double> tolerances = full    ? std::vector<double>{1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8}
-                                         : quick ? std::vector<double>{1e-1, 1e-2, 1e-3}
-                                                 : std::vector<double>{1e-1, 1e-2, 1e-3};
-  for (const Integrator integrator : {Integrator::kLinearizedEuler, Integrator::kImplicitEuler, Integrator::kBdf2}) {
-    if (size == SweepSize::kShort && integrator == Integrator::kImplicitEuler) continue;
-    for (const double rate : rates) {
-      for (const double tolerance : tolerances) {
-        SimParams way;
-        way.integrator = integrator;
-        way.time_step = 1 / rate;
-        setTolerance(tolerance, way);
-        add(way);
-      }
-    }
-  }
-  const std::vector<double> solver_rates = full ? std::vector<double>{30, 60, 240} : std::vector<double>{60};
-  const std::vector<double> solver_tolerances =
-      full ? std::vector<double>{1e-1, 1e-2, 1e-3, 1e-4} : std::vector<double>{1e-1, 1e-2, 1e-3};
-  for (int solver = 0; solver < static_cast<int>(Solver::kCount); ++solver) {
-    const auto named = static_cast<Solver>(solver);
-    // `paper` is block-jacobi by another name.
-    const bool near_default = named == Solver::kBlockJacobi || named == Solver::kIncomplete;
-    if (named == Solver::kPaper || (size == SweepSize::kShort && !near_default)) continue;
-    for (const double rate : solver_rates) {
-      for (const double tolerance : solver_tolerances) {
-        SimParams way;
-        way.solver = named;
-        way.time_step = 1 / rate;
-        way.max_iterations = 2000;
-        setTolerance(tolerance, way);
-        if (named == Solver::kWarped) way.max_iterations = SimParams{}.max_iterations;
-        // A direct solve meets every tolerance.
-        if (named != Solver::kDirect || tolerance == 1e-2) add(way);
-      }
-    }
-  }
-  for (int precision = 0; precision < static_cast<int>(Precision::kCount); ++precision) {
-    SimParams way;
-    way.precision = static_cast<Precision>(precision);
-    add(way);
-    if (!full) continue;
-    way.acceleration_tolerance = 0;
-    for (const double tolerance : {1e-4, 1e-6}) {
-      way.tolerance = tolerance;
-      add(way);
-    }
-  }
-  for (const double rate : full ? rates : std::vector<double>{60}) {
+std::vector<SimParams> waysToRun(SweepSize size, bool contacts) {
+  WayList list{{SimParams{}}};
+  addIntegrators(size, list);
+  addSolvers(size, list);
+  addPrecisions(size, list);
+  const std::vector<double> rates =
+      size == SweepSize::kFull ? std::vector<double>{30, 60, 240} : std::vector<double>{60};
+  for (const double rate : contacts ? rates : std::vector<double>{}) {
     SimParams way;
     way.minimize_deformation = false;
     way.time_step = 1 / rate;
-    add(way);
+    list.add(way);
   }
-  return ways;
+  return std::move(list.ways);
 }
 
 std::string Point::name() const {
@@ -153,6 +170,15 @@ void markFront(Sweep& sweep) {
       return q.fastest * kSameTime < p.fastest && q.error.rms <= p.error.rms + sweep.own_error;
     });
   }
+}
+
+double confirmedRatio(TrajectoryStage& stage, const SimParams& slow, const SimParams& fast, int rounds) {
+  std::vector<double> ratios;
+  for (int round = 0; round < rounds; ++round) {
+    const double before = stage.run(slow).seconds, other = stage.run(fast).seconds, after = stage.run(slow).seconds;
+    ratios.push_back(0.5 * (before + after) / other);
+  }
+  return medianOf(ratios);
 }
 
 Lag lagOfDefault(const Sweep& sweep) {

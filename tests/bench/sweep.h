@@ -13,11 +13,11 @@ enum class SweepSize { kShort, kQuick, kFull };
 
 // The default first, then the others; none twice. All sizes: every integrator at every step length and tolerance with
 // the default solver; then at some steps of the default's integrator every solver at several tolerances; every
-// precision; minimization off. Left out: the other solvers under the other integrators and at the other steps, whose
-// solutions are the same to the tolerance, so that only their time differs, by about the ratio seen here; precision and
-// minimization away from the default, for the same reason. Full: steps 1/30 to 1/960 s, tolerances 1e-1 to 1e-8. Quick:
-// to 1/240 s and 1e-3. Short: what came near the default's place on any chart.
-std::vector<sim::SimParams> waysToRun(SweepSize size);
+// precision; with `contacts` minimization off. Left out: the other solvers under the other integrators and at the other
+// steps, whose solutions are the same to the tolerance, so that only their time differs, by about the ratio seen here;
+// precision and minimization away from the default, for the same reason. Full: steps 1/30 to 1/960 s, tolerances 1e-1
+// to 1e-8. Quick: to 1/240 s and 1e-3. Short: what came near the default's place on any chart.
+std::vector<sim::SimParams> waysToRun(SweepSize size, bool contacts);
 
 struct Point {
   sim::SimParams params;
@@ -52,5 +52,8 @@ struct Lag {
   const Point* way = nullptr;
 };
 Lag lagOfDefault(const Sweep& sweep);
+
+// Time of `slow` over that of `fast`, run in turns; the median of so many rounds.
+double confirmedRatio(TrajectoryStage& stage, const sim::SimParams& slow, const sim::SimParams& fast, int rounds);
 
 }  // namespace bench
