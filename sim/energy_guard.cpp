@@ -74,6 +74,13 @@ double limitEnergy(const TakenStep& step, EnergyGuard& scratch, HairState& state
     bound += 0.5 * massOf(i) * (step.velocities[i] - carrying(i)).squaredNorm();
     kinetic += 0.5 * massOf(i) * (state.velocities[i] - carrying(i)).squaredNorm();
   }
+  // What bodies push: their pressure along its normal, and friction of at most its share.
+  for (const Contact& contact : state.contacts) {
+    const Vec3 pushed = step.dt * (contact.velocity - carrying(contact.vertex));
+    const double along = contact.normal.dot(pushed);
+    const double work = std::max(0.0, along) + step.params.friction * (pushed - along * contact.normal).norm();
+    bound += std::max(0.0, contact.pressure) * work;
+  }
   if (!std::isfinite(bound)) return 1;
 
   double kept = 1, stored = potential(step, state.positions, scratch);

@@ -3,7 +3,7 @@
 // One linearized step has no bound where the hair moves by more than the forces stay linear over: hair left a metre
 // behind its roots is flung ahead by two. Seen from the roots, which carry the hair along rigidly, what a step ends
 // with can be no more than what it began with: with u the velocity of being carried along, from x to x_c = x + dt u,
-//   E(x') + 1/2 m |v' - u|^2  <=  E(x_c) + 1/2 m |v - u|^2 + work of the wind.
+//   E(x') + 1/2 m |v' - u|^2  <=  E(x_c) + 1/2 m |v - u|^2 + work of the wind and of the bodies in contact.
 // The term in v - u holds the inertia forces of any motion of the roots, exactly. A step that ends above is taken back
 // towards x_c until its potential energy fits, then slowed until the sum does: the hair is carried along more rigidly
 // instead of being stretched beyond measure.
