@@ -16,6 +16,9 @@ constexpr double kStraight = 0.2;  // rad; a collider that turns less is passed 
 constexpr double kGrazing = 0.1;   // of its thickness; a path no deeper slides over a rounded body
 constexpr int kMostMarches = 64, kDepthSamples = 8;
 constexpr double kMet = 1e-5;  // m
+// Out of a crowd of bodies
+constexpr double kNeighbour = 0.005;  // m; bodies so near to a vertex are those that hem it in
+constexpr double kStride = 5e-4;      // m, at least
 
 // Whether p can lie within `offset` of the surface; may say yes for a little more.
 bool mayTouch(const Ellipsoid& e, double offset, const Vec3& p) {
@@ -172,6 +175,48 @@ void carryContacts(const Colliders& colliders, const SimParams& params, double d
   });
 }
 
+namespace {
+
+// Where projections go to and fro between bodies that overlap: straight away from those around p, until all are left,
+// or as it was where that is too far.
+void leaveAll(const ContactSearch& search, const ContactScratch& scratch, Penetration& hit) {
+  const auto deepestAt = [&](const Vec3& p, int& collider) {
+    double depth = 1e-9;
+    collider = -1;
+    for (const NearCollider& near : scratch.near) {
+      const double inside = search.margins.offset - search.colliders.closest(near.index, p).distance;
+      if (inside > depth) depth = inside, collider = near.index;
+    }
+    return depth;
+  };
+  Vec3 centers = Vec3::Zero();
+  int count = 0;
+  for (const NearCollider& near : scratch.near) {
+    if (search.colliders.closest(near.index, hit.target).distance >= search.margins.offset + kNeighbour) continue;
+    centers += search.colliders.body(near.index).center;
+    ++count;
+  }
+  if (count == 0) return;
+  const Vec3 away = hit.target - centers / count;
+  const Vec3 direction = away.norm() > 1e-9 ? Vec3(away.normalized()) : Vec3(Vec3::UnitY());
+  Vec3 p = hit.target;
+  int last = hit.collider;
+  for (int march = 0; march < kMostMarches; ++march) {
+    int collider = -1;
+    const double depth = deepestAt(p, collider);
+    if (collider < 0) {
+      hit.target = p;
+      hit.collider = last;
+      hit.normal = search.colliders.closest(last, p).normal;
+      return;
+    }
+    p += std::max(2 * depth, kStride) * direction;
+    last = collider;
+  }
+}
+
+}  // namespace
+
 void findPenetrations(const ContactSearch& search, std::span<const Vec3> positions, ContactScratch& scratch,
                       std::vector<Penetration>& found) {
   found.clear();
@@ -180,7 +225,8 @@ void findPenetrations(const ContactSearch& search, std::span<const Vec3> positio
   for (const int v : search.vertices) {
     Vec3 p = positions[v];
     Penetration hit{v, -1, p, Vec3::UnitY(), 0, false, 0};
-    for (int round = 0; round < kProjections; ++round) {
+    bool out = false;
+    for (int round = 0; round < kProjections && !out; ++round) {
       Touch deepest;
       deepest.depth = 1e-9;
       int collider = -1;
@@ -188,7 +234,8 @@ void findPenetrations(const ContactSearch& search, std::span<const Vec3> positio
         const Touch touch = touchOf(search, near, v, p, round == 0);
         if (touch.depth > deepest.depth) deepest = touch, collider = near.index;
       }
-      if (collider < 0) break;
+      out = collider < 0;
+      if (out) break;
       if (hit.collider < 0) hit.depth = deepest.depth;
       p = deepest.target;
       hit.collider = collider;
@@ -197,7 +244,9 @@ void findPenetrations(const ContactSearch& search, std::span<const Vec3> positio
       hit.standing = hit.standing || deepest.standing;
       hit.left = std::max(hit.left, deepest.left);
     }
-    if (hit.collider >= 0) found.push_back(hit);
+    if (hit.collider < 0) continue;
+    if (!out && !hit.standing) leaveAll(search, scratch, hit);
+    found.push_back(hit);
   }
 }
 

@@ -187,6 +187,36 @@ TEST(Contact, PenetrationsAreFoundInFullAndTheirTargetsLieOutsideEveryBody) {
   EXPECT_GT(found_count, 500);
 }
 
+// Projections between many bodies go to and fro; the targets must lie outside all the same.
+TEST(Contact, ACrowdOfBodiesIsLeftAsAWhole) {
+  test::Random random(7);
+  const sim::HairMesh mesh = sim::buildHairMesh(test::patchShape(curtain()));
+  int found_count = 0;
+  double deepest = 0;
+  for (int trial = 0; trial < 100; ++trial) {
+    std::vector<Ellipsoid> bodies;
+    const Vec3 middle = Vec3(0.04, -0.15, 0.02) + random.vector(0.05);
+    for (int k = 0; k < 8; ++k) {
+      bodies.push_back(
+          ellipsoid(middle + random.vector(0.05), Vec3(random(0.01, 0.07), random(0.01, 0.07), random(0.01, 0.07))));
+      bodies.back().rotation = random.rotation();
+    }
+    std::vector<sim::Penetration> found;
+    sim::ContactScratch scratch;
+    sim::ContactSearch search{mesh.external_vertices, {bodies}, {}, kFrame, {0.002, 0, 1}};
+    sim::findPenetrations(search, mesh.shape.positions, scratch, found);
+    for (const sim::Penetration& hit : found) {
+      // Bodies beside the hair are met by the next search, should a target lie in one.
+      for (const auto& near : scratch.near)
+        deepest = std::max(deepest, 0.002 - sim::closestPoint(bodies[near.index], hit.target).distance);
+    }
+    found_count += static_cast<int>(found.size());
+  }
+  std::printf("%d found, targets at most %.3f mm inside the offset\n", found_count, 1e3 * deepest);
+  EXPECT_GT(found_count, 300);
+  EXPECT_LT(deepest, 1e-6);
+}
+
 TEST(Contact, SwitchedOffNothingIsCorrected) {
   sim::SimParams params = quickHair();
   params.collide = false;
