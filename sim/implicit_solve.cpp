@@ -68,7 +68,8 @@ ImplicitSolver<T>::ImplicitSolver(const HairMesh& mesh, const BlockPattern& patt
       packed_x(layout),
       packed_v(layout),
       packed_force(layout),
-      preconditioner(mesh, pattern) {
+      preconditioner(mesh, pattern),
+      roughness(mesh) {
   const int n = mesh.vertexCount();
   for (auto* array : {&x, &v, &trial, &force, &rhs, &velocity_step}) array->resize(n);
   mass.resize(n), inverse_mass_dt.resize(n);
@@ -283,7 +284,7 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
   SolveStart start = SolveStart::kFresh;
   for (int round = 0; round < kContactRounds; ++round) {
     const bool last = round + 1 == kContactRounds;
-    const double target = contacts.empty() || last ? params.tolerance : kLoose * params.tolerance;
+    const double target = contacts.empty() || last ? tolerance : kLoose * tolerance;
     setContactConstraints(mesh, params, base, contacts, start);
     // One batch of answers a round: what is still missing then comes with the steps to come.
     const bool complete = preconditioner.setConstraints(constraints, 3);
@@ -301,9 +302,9 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
     for (const Contact& contact : contacts) doubt += std::abs(contact.normal.dot(reactionAt(contact.vertex)));
     doubt *= kDoubt / static_cast<double>(contacts.size());
     start = SolveStart::kRestart;
-    if (target > params.tolerance) {
+    if (target > tolerance) {
       if (updateContacts(params, doubt, contacts, reactionAt)) continue;
-      runPcg(params.tolerance, params.max_iterations, SolveStart::kResume);
+      runPcg(tolerance, params.max_iterations, SolveStart::kResume);
     }
     if (!updateContacts(params, 0, contacts, reactionAt)) break;
   }
@@ -327,6 +328,9 @@ void ImplicitSolver<T>::solve(const HairMesh& mesh, const SimParams& params, con
     v[i] = cast<T>(velocities[i]);
     inverse_mass_dt[i] = T(1) / (mass[i] * static_cast<T>(base.h));
   }
+  // The paper's setting is left as it is.
+  const double slack = params.solver == Solver::kPaper ? 0 : params.rough_slack;
+  tolerance = params.tolerance * toleranceFactor(roughness.at(mesh, velocities), slack);
   // A contact sticks when its friction could stop it within the step.
   for (Contact& contact : contacts) {
     Vec3 slip = velocities[contact.vertex] - contact.velocity;

@@ -17,6 +17,7 @@
 #include "sim/contact.h"
 #include "sim/forces/column_model.h"
 #include "sim/linear_solver.h"
+#include "sim/motion_roughness.h"
 #include "sim/preconditioner_choice.h"
 #include "sim/step.h"
 
@@ -44,11 +45,13 @@ struct ImplicitSolver {
   std::vector<V3<T>> x, v, trial, force, rhs, velocity_step;
   std::vector<T> mass, inverse_mass_dt;
   std::vector<VertexConstraint> constraints;
+  MotionRoughness roughness;
+  double tolerance = 0;      // of this step's solves
   std::vector<int> touched;  // vertices that were in contact when the solve began
   bool rest_compact = false;
   PreconditionerChoice choice;  // between the warped factor and its stand-in
-  bool rest_outdated = false;  // the material has changed since
-  bool gradual = false;        // a factor that is no longer the best is replaced in slices, not at once
+  bool rest_outdated = false;   // the material has changed since
+  bool gradual = false;         // a factor that is no longer the best is replaced in slices, not at once
   // What the rest factor, and the one in the making, were made for; h 0: there is none.
   struct FactorTerms {
     double h = 0, damping = 0, drag = 0;

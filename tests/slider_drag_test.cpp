@@ -205,7 +205,7 @@ TEST(SliderDrag, AThousandfoldStiffnessStillConverges) {
 // and a frame's time is the lesser of the two, since its work is the same and the machine's other work is not.
 TEST(SliderDrag, NoFrameStallsOnTheLargeMesh) {
   constexpr int kUndisturbed = 16, kFramesEach = 8;
-  constexpr double kMultiple = 4;  // an immediate refresh takes 40 times the median
+  constexpr double kMultiple = 2;  // of the worst frame without a drag; an immediate refresh takes 10 times as long
   app::Wardrobe wardrobe;
   app::CharacterSpec spec;
   spec.motion = app::findFile("head_shake.bvh", "", "clips");
@@ -257,10 +257,10 @@ TEST(SliderDrag, NoFrameStallsOnTheLargeMesh) {
   std::nth_element(calm.begin(), calm.begin() + calm.size() / 2, calm.end());
   const double median = calm[calm.size() / 2], usual_worst = *std::max_element(calm.begin(), calm.end());
   const auto worst = std::max_element(least[1].begin(), least[1].end());
-  const double ratio = *worst / median;
+  const double ratio = *worst / usual_worst;
   std::printf(
-      "%d vertices: median %.2f ms and worst %.2f ms without a drag; worst frame of the drags %.2f ms (%d): "
-      "%.2f times the median\n",
+      "%d vertices: median %.2f ms and worst %.2f ms without a drag; worst frame of the drags %.2f ms (%d): %.2f "
+      "times\n",
       actor.haircut->mesh.vertexCount(), 1e3 * median, 1e3 * usual_worst, 1e3 * *worst,
       static_cast<int>(worst - least[1].begin()), ratio);
   EXPECT_LT(ratio, kMultiple);
