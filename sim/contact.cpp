@@ -11,6 +11,7 @@ constexpr int kProjections = 8;      // alternating projections between overlapp
 constexpr double kSlackShare = 0.2;  // of the contact offset
 constexpr double kRestoring = 0.2;   // share of a dip below the offset that a step closes
 constexpr double kReach = 0.01;      // m off the surface up to which a contact is kept, for it may slide over an edge
+constexpr double kCreep = 1e-3, kNoSlip = 1e-9;  // m/s
 // Paths past a collider
 constexpr double kStraight = 0.2;  // rad; a collider that turns less is passed on a straight line
 constexpr double kGrazing = 0.1;   // of its thickness; a path no deeper slides over a rounded body
@@ -248,6 +249,22 @@ void findPenetrations(const ContactSearch& search, std::span<const Vec3> positio
     if (!out && !hit.standing) leaveAll(search, scratch, hit);
     found.push_back(hit);
   }
+}
+
+void chooseSticking(double friction, double mobility, const Vec3& velocity, Contact& contact) {
+  Vec3 slip = velocity - contact.velocity;
+  slip -= slip.dot(contact.normal) * contact.normal;
+  const double speed = slip.norm();
+  const bool slid = !contact.sticks && !contact.grip.isZero();
+  contact.sticks =
+      contact.pressure > 0 && (slid ? slip.dot(contact.grip) >= 0 : speed <= friction * contact.pressure * mobility);
+  if (contact.sticks || contact.pressure <= 0) contact.grip.setZero();
+  if (contact.sticks) return;
+  // The slip of one that creeps says nothing: friction against it would throw the vertex back, and the next step forth.
+  const double least = contact.grip.isZero() ? kNoSlip : kCreep;
+  if (speed > least) contact.grip = -slip / speed;
+  contact.grip -= contact.grip.dot(contact.normal) * contact.normal;
+  contact.grip.normalize();
 }
 
 void constrainContacts(std::span<const Contact> contacts, std::vector<VertexConstraint>& constraints) {

@@ -67,6 +67,11 @@ void carryContacts(const Colliders& colliders, const SimParams& params, double d
 void findPenetrations(const ContactSearch& search, std::span<const Vec3> positions, ContactScratch& scratch,
                       std::vector<Penetration>& found);
 
+// Coulomb's law at the start of a solve, from the vertex's velocity (m/s) and mobility (step over mass, s/kg). A
+// contact that slid goes on sliding, its friction against the slip, until the slip has turned; any other sticks where
+// friction could stop it within the step. So what slides and what rests is solved once, and only what changes twice.
+void chooseSticking(double friction, double mobility, const Vec3& velocity, Contact& contact);
+
 // The constraint of one vertex: velocity = keep * (free velocity) + prescribed.
 struct VertexConstraint {
   int vertex;

@@ -15,7 +15,7 @@ struct Contact {
   Vec3 velocity = Vec3::Zero();  // m/s that keeps the vertex at the contact offset and carried along with the surface
   double pressure = 0;           // N, normal force of the last solve
   bool sticks = false;           // static friction: all three directions are prescribed
-  Vec3 grip = Vec3::Zero();      // direction in which friction held it before it let go in this step; zero: it slid
+  Vec3 grip = Vec3::Zero();      // unit tangent: the way friction pushes it while it slides; zero: it has not slid
 };
 
 struct HairState {

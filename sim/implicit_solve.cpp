@@ -7,9 +7,6 @@ namespace sim {
 namespace {
 
 constexpr int kContactRounds = 4;  // solves of one linear system while contacts release or start to slide
-// Contacts change state at so many times the tolerance already, where it is beyond doubt that they must: the solve then
-// goes on with what it has. The doubt is in parts of the mean pressure.
-constexpr double kLoose = 10, kDoubt = 0.2;
 constexpr int kLineSearchSteps = 6;
 // Where the direct factor can be corrected for only a part of the contacts at the price of one batch of answers, so
 // many iterations are tried before the rest is paid for.
@@ -36,24 +33,28 @@ M3<T> cast(const Eigen::Matrix3d& m) {
   return out;
 }
 
-// Lets go of contacts that would pull and decides between sticking and sliding, from the reaction (N) that the solve
-// left at each. `doubt` (N): while the solve goes on, what violates its law by less than this may still come right.
-// Returns whether any contact changed.
-bool updateContacts(const SimParams& params, double doubt, std::vector<Contact>& contacts, const auto& reactionAt) {
+// Lets go of contacts that would pull and lets those slide that friction cannot hold, by the reaction (N) that the
+// solve left at each. One that pulls while it sticks may do so for being held sideways alone: it slides first. Returns
+// whether any contact changed. (Judging by a looser solve saves iterations, but lets go of contacts that press: the
+// vertex is then inside at the step's end, is corrected and found again, frame after frame.)
+bool updateContacts(double friction, std::vector<Contact>& contacts, const auto& reactionAt) {
   bool changed = false;
   for (Contact& contact : contacts) {
     const Vec3 reaction = reactionAt(contact.vertex);
     contact.pressure = contact.normal.dot(reaction);
-    if (contact.pressure < 0) continue;
+    if (!contact.sticks) continue;
     const Vec3 tangential = reaction - contact.pressure * contact.normal;
-    if (contact.sticks && tangential.norm() > params.friction * contact.pressure + doubt) {
+    if (contact.pressure < 0) {
+      contact.sticks = false;
+      contact.pressure = 0;
+      changed = true;
+    } else if (tangential.norm() > friction * contact.pressure) {
       contact.sticks = false;
       contact.grip = tangential.normalized();
       changed = true;
     }
   }
-  const auto pulling = [doubt](const Contact& c) { return c.pressure < -doubt; };
-  return std::erase_if(contacts, pulling) > 0 || changed;
+  return std::erase_if(contacts, [](const Contact& c) { return c.pressure < 0; }) > 0 || changed;
 }
 
 }  // namespace
@@ -217,18 +218,10 @@ void ImplicitSolver<T>::setContactConstraints(const HairMesh& mesh, const SimPar
     if (restart) scratch.r[i] -= trial[i];
     trial[i] = rhs[i];
   }
-  // Kinetic friction of sliding contacts, from the pressure of the last solve: against the slip from before the solve,
-  // or, where a contact has just let go, still the way it held. The slip of one that crept says nothing: friction
-  // against it would throw the vertex back, and on the next step forth again.
+  // Kinetic friction of sliding contacts, from the pressure of the last solve.
   for (const Contact& contact : contacts) {
     if (contact.sticks || contact.pressure <= 0) continue;
-    Vec3 way = contact.grip;
-    if (way.isZero()) {
-      const Vec3 slip = contact.velocity - widen(velocity_step[contact.vertex]);
-      way = slip - slip.dot(contact.normal) * contact.normal;
-    }
-    const double size = way.norm(), impulse = base.h * params.friction * contact.pressure;
-    if (size > 1e-9) trial[contact.vertex] += cast<T>(Vec3(way * (impulse / size)));
+    trial[contact.vertex] += cast<T>(Vec3(base.h * params.friction * contact.pressure * contact.grip));
   }
   for (const int i : touched) {
     if (restart) scratch.r[i] += trial[i];
@@ -283,30 +276,20 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
   std::copy(rhs.begin(), rhs.end(), trial.begin());
   SolveStart start = SolveStart::kFresh;
   for (int round = 0; round < kContactRounds; ++round) {
-    const bool last = round + 1 == kContactRounds;
-    const double target = contacts.empty() || last ? tolerance : kLoose * tolerance;
     setContactConstraints(mesh, params, base, contacts, start);
     // One batch of answers a round: what is still missing then comes with the steps to come.
     const bool complete = preconditioner.setConstraints(constraints, 3);
     const bool pay = !complete && params.solver == Solver::kDirect;
-    runPcg(target, pay ? std::min(kUncorrectedIterations, params.max_iterations) : params.max_iterations, start);
+    runPcg(tolerance, pay ? std::min(kUncorrectedIterations, params.max_iterations) : params.max_iterations, start);
     if (!total.converged && pay) {
       preconditioner.setConstraints(constraints);
-      runPcg(target, params.max_iterations, SolveStart::kRestart);
+      runPcg(tolerance, params.max_iterations, SolveStart::kRestart);
     }
-    if (contacts.empty()) break;
     const auto reactionAt = [&](int i) {
       return Vec3(widen<T>(trial[i] - rhs[i] - scratch.r[i]) / static_cast<double>(h));
     };
-    double doubt = 0;
-    for (const Contact& contact : contacts) doubt += std::abs(contact.normal.dot(reactionAt(contact.vertex)));
-    doubt *= kDoubt / static_cast<double>(contacts.size());
+    if (contacts.empty() || !updateContacts(params.friction, contacts, reactionAt)) break;
     start = SolveStart::kRestart;
-    if (target > tolerance) {
-      if (updateContacts(params, doubt, contacts, reactionAt)) continue;
-      runPcg(tolerance, params.max_iterations, SolveStart::kResume);
-    }
-    if (!updateContacts(params, 0, contacts, reactionAt)) break;
   }
   if (warped) choice.end(plan, cost, overrun);
   return total;
@@ -331,13 +314,9 @@ void ImplicitSolver<T>::solve(const HairMesh& mesh, const SimParams& params, con
   // The paper's setting is left as it is.
   const double slack = params.solver == Solver::kPaper ? 0 : params.rough_slack;
   tolerance = params.tolerance * toleranceFactor(roughness.at(mesh, velocities), slack);
-  // A contact sticks when its friction could stop it within the step.
   for (Contact& contact : contacts) {
-    Vec3 slip = velocities[contact.vertex] - contact.velocity;
-    slip -= slip.dot(contact.normal) * contact.normal;
-    const double stopping = params.friction * contact.pressure * base.h / static_cast<double>(mass[contact.vertex]);
-    contact.sticks = contact.pressure > 0 && slip.norm() <= stopping;
-    contact.grip.setZero();
+    const double mobility = base.h / static_cast<double>(mass[contact.vertex]);
+    chooseSticking(params.friction, mobility, velocities[contact.vertex], contact);
   }
   double started = clock ? clock() : 0;
   const auto spent = [&](Stage stage) {

@@ -23,7 +23,7 @@ using Vectors = std::vector<sim::V3<double>>;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
 constexpr int kContactRounds = 4;
-constexpr double kDoubt = 0.2;  // of the mean pressure: what violates its law by more changes first
+constexpr double kCreep = 1e-3, kNoSlip = 1e-9;  // m/s, slip that says nothing of its direction
 
 Vectors toPlain(const std::vector<Vec3>& from) {
   Vectors to;
@@ -143,48 +143,50 @@ std::vector<Vec3> residual(const sim::BlockMatrix<double>& matrix, const std::ve
   return r;
 }
 
-// A contact sticks when its friction could stop it within the step.
+// What slid goes on sliding until its slip has turned; any other contact sticks when its friction could stop it within
+// the step.
 void chooseSticking(const HairMesh& mesh, const SimParams& params, double h, HairState& state) {
   for (Contact& contact : state.contacts) {
     Vec3 slip = state.velocities[contact.vertex] - contact.velocity;
     slip -= slip.dot(contact.normal) * contact.normal;
+    const bool slid = !contact.sticks && contact.grip.norm() > 0;
     const double mass = params.density * mesh.vertex_volume[contact.vertex];
-    contact.sticks = contact.pressure > 0 && slip.norm() <= params.friction * contact.pressure * h / mass;
-    contact.grip.setZero();
+    contact.sticks = slid ? slip.dot(contact.grip) >= 0 : slip.norm() <= params.friction * contact.pressure * h / mass;
+    contact.sticks = contact.sticks && contact.pressure > 0;
+    if (contact.sticks || contact.pressure <= 0) contact.grip.setZero();
+    if (contact.sticks) continue;
+    const double least = contact.grip.norm() > 0 ? kCreep : kNoSlip;
+    if (slip.norm() > least) contact.grip = -slip.normalized();
+    contact.grip -= contact.grip.dot(contact.normal) * contact.normal;
+    if (contact.grip.norm() > 0) contact.grip.normalize();
   }
 }
 
-// Friction of the sliding contacts by the pressure of the last solve: against the slip before it, or, where a contact
-// has just let go, still the way it held.
+// Friction of the sliding contacts by the pressure of the last solve.
 void addKineticFriction(const SimParams& params, double h, const HairState& state, std::vector<Vec3>& b) {
   for (const Contact& contact : state.contacts) {
-    if (contact.sticks || contact.pressure <= 0) continue;
-    Vec3 way = contact.grip;
-    if (way.isZero()) {
-      const Vec3 slip = contact.velocity - state.velocities[contact.vertex];
-      way = slip - slip.dot(contact.normal) * contact.normal;
-    }
-    const double size = way.norm();
-    if (size > 1e-9) b[contact.vertex] += way * (h * params.friction * contact.pressure / size);
+    if (!contact.sticks && contact.pressure > 0)
+      b[contact.vertex] += h * params.friction * contact.pressure * contact.grip;
   }
 }
 
-// Lets go of contacts that would pull, lets those slide that friction cannot hold, where they violate their law by more
-// than `doubt` (N). Returns whether any changed.
-bool updateContacts(const SimParams& params, double h, double doubt, const std::vector<Vec3>& r,
-                    std::vector<Contact>& contacts) {
+// Lets those slide that friction cannot hold or that pull while they stick, and lets go of those that pull while they
+// slide. Returns whether any changed.
+bool updateContacts(const SimParams& params, double h, const std::vector<Vec3>& r, std::vector<Contact>& contacts) {
   bool changed = false;
   for (Contact& contact : contacts) {
     const Vec3 reaction = -r[contact.vertex] / h;
     contact.pressure = contact.normal.dot(reaction);
+    if (!contact.sticks) continue;
     const Vec3 along = reaction - contact.pressure * contact.normal;
-    if (contact.pressure >= 0 && contact.sticks && along.norm() > params.friction * contact.pressure + doubt) {
-      contact.sticks = false;
-      contact.grip = along.normalized();
-      changed = true;
-    }
+    const bool pulls = contact.pressure < 0;
+    if (!pulls && along.norm() <= params.friction * contact.pressure) continue;
+    if (pulls) contact.pressure = 0;
+    if (!pulls) contact.grip = along.normalized();
+    contact.sticks = false;
+    changed = true;
   }
-  return std::erase_if(contacts, [&](const Contact& c) { return c.pressure < -doubt; }) > 0 || changed;
+  return std::erase_if(contacts, [](const Contact& c) { return c.pressure < 0; }) > 0 || changed;
 }
 
 // Solves for the velocities at the step's end, in rounds while contacts release or start to slide. Each round solves
@@ -222,11 +224,7 @@ void solveVelocities(const HairMesh& mesh, const SimParams& params, double h, co
     }
     if (state.contacts.empty()) break;
     const std::vector<Vec3> left = residual(context.matrix, b, v);
-    double doubt = 0;
-    for (const Contact& contact : state.contacts) doubt += std::abs(contact.normal.dot(left[contact.vertex])) / h;
-    doubt *= kDoubt / static_cast<double>(state.contacts.size());
-    if (round + 1 < kContactRounds && updateContacts(params, h, doubt, left, state.contacts)) continue;
-    if (!updateContacts(params, h, 0, left, state.contacts)) break;
+    if (!updateContacts(params, h, left, state.contacts)) break;
   }
   state.velocities = v;
 }
