@@ -1,13 +1,12 @@
 #include "tests/bench/colliders.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <map>
 
 #include "app/actor.h"
 #include "app/data_path.h"
+#include "tests/bench/cpu_clock.h"
 #include "tests/bench/skin_distance.h"
 
 namespace bench {
@@ -16,18 +15,6 @@ namespace {
 constexpr double kSettle = 2;       // s before the measured frames
 constexpr int kFramesPerSkin = 12;  // the skin is posed and measured every so many frames
 constexpr double kReach = 0.05;     // m, as far as distances to the skin are told
-
-double cpuSeconds() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
 
 struct Row {
   std::vector<double> step, collision;  // s
@@ -64,8 +51,9 @@ Row measure(const sim::SimParams& params, int frames, app::Actor& actor) {
 
 }  // namespace
 
-void runColliders(const ColliderOptions& options) {
-  std::printf(
+void runColliders(const ColliderOptions& options, std::FILE* out) {
+  std::fprintf(
+      out,
       "| style | clip | collider | ms a step | of it contacts | deepest under the skin, mm | vertices under it | "
       "contacts' "
       "gap to the skin, median mm | 10 %% to 90 %% |\n|---|---|---|---|---|---|---|---|---|\n");
@@ -92,11 +80,11 @@ void runColliders(const ColliderOptions& options) {
           const auto part = [&](double share) {
             return row.gaps.empty() ? 0.0 : 1e3 * row.gaps[static_cast<std::size_t>(share * (row.gaps.size() - 1))];
           };
-          std::printf("| %s | %s | %s | %.2f | %.3f | %.1f | %.2f %% | %.1f | %.1f to %.1f |\n", name.c_str(),
-                      clip.c_str(), kind == sim::ColliderKind::kSdf ? "sdf" : "ellipsoids", 1e3 * median(row.step),
-                      1e3 * median(row.collision), 1e3 * row.worst_inside, 100.0 * row.inside / row.vertices, part(0.5),
-                      part(0.1), part(0.9));
-          std::fflush(stdout);
+          std::fprintf(out, "| %s | %s | %s | %.2f | %.3f | %.1f | %.2f %% | %.1f | %.1f to %.1f |\n", name.c_str(),
+                       clip.c_str(), kind == sim::ColliderKind::kSdf ? "sdf" : "ellipsoids", 1e3 * medianOf(row.step),
+                       1e3 * medianOf(row.collision), 1e3 * row.worst_inside, 100.0 * row.inside / row.vertices,
+                       part(0.5), part(0.1), part(0.9));
+          std::fflush(out);
         }
       }
     }

@@ -1,6 +1,7 @@
 // Ellipsoids and signed distances side by side: what each costs, and how far from the true skin it holds the hair.
 #pragma once
 
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,7 @@ struct ColliderOptions {
   std::vector<std::string> styles;  // such as "long low"; empty: the three of medium resolution
 };
 
-// Prints one row a style, clip and collider. Throws app::InputError.
-void runColliders(const ColliderOptions& options);
+// Writes one row a style, clip and collider. Throws app::InputError.
+void runColliders(const ColliderOptions& options, std::FILE* out);
 
 }  // namespace bench

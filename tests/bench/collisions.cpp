@@ -1,7 +1,5 @@
 #include "tests/bench/collisions.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -10,18 +8,12 @@
 #include "app/actor.h"
 #include "app/data_path.h"
 #include "app/errors.h"
+#include "tests/bench/cpu_clock.h"
 
 namespace bench {
 namespace {
 
 constexpr double kSettle = 2, kRest = 4;  // s before a clip's measured frames; s of standing before rest is measured
-
-// Of this thread: other work on the machine does not count.
-double cpuSeconds() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 app::Actor makeDancer(const std::string& clip, sim::Style style, sim::Resolution resolution, app::Wardrobe& wardrobe) {
   app::CharacterSpec spec;
@@ -97,13 +89,14 @@ std::pair<double, double> measureRest(const sim::SimParams& params, app::Actor& 
 
 }  // namespace
 
-void runCollisions(const CollisionOptions& options) {
+void runCollisions(const CollisionOptions& options, std::FILE* out) {
   sim::SimParams params;
   for (const auto& [name, text] : options.set) {
     const sim::ParamText done = sim::setParam(params, name, text);
     if (!done.ok) throw app::InputError("", "--set " + name, done.fault, "");
   }
-  std::printf(
+  std::fprintf(
+      out,
       "| style | clip | ms a step | iterations | contacts | entered | left | corrected | outside vertices, mm inside | "
       "inner vertices, mm inside | recoveries |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
   const auto each = [&](auto&& visit) {
@@ -123,18 +116,18 @@ void runCollisions(const CollisionOptions& options) {
     each([&](const std::string& name, sim::Style style, sim::Resolution resolution) {
       app::Actor actor = makeDancer(clip, style, resolution, wardrobe);
       const Row row = measureClip(params, options.frames, actor);
-      std::printf("| %s | %s | %.2f | %.1f | %.1f | %.2f | %.2f | %.2f | %.3f | %.1f | %d |\n", name.c_str(),
-                  clip.c_str(), row.milliseconds, row.iterations, row.contacts, row.entered, row.left, row.corrected,
-                  1e3 * row.outer, 1e3 * row.inner, row.recoveries);
-      std::fflush(stdout);
+      std::fprintf(out, "| %s | %s | %.2f | %.1f | %.1f | %.2f | %.2f | %.2f | %.3f | %.1f | %d |\n", name.c_str(),
+                   clip.c_str(), row.milliseconds, row.iterations, row.contacts, row.entered, row.left, row.corrected,
+                   1e3 * row.outer, 1e3 * row.inner, row.recoveries);
+      std::fflush(out);
     });
   }
-  std::printf("\n| style | rest speed, RMS mm/s | largest mm/s | contacts |\n|---|---|---|---|\n");
+  std::fprintf(out, "\n| style | rest speed, RMS mm/s | largest mm/s | contacts |\n|---|---|---|---|\n");
   each([&](const std::string& name, sim::Style style, sim::Resolution resolution) {
     app::Actor actor = makeDancer("idle_turns.bvh", style, resolution, wardrobe);
     const auto [rms, most] = measureRest(params, actor);
-    std::printf("| %s | %.3f | %.2f | %zu |\n", name.c_str(), 1e3 * rms, 1e3 * most, actor.hair.contacts.size());
-    std::fflush(stdout);
+    std::fprintf(out, "| %s | %.3f | %.2f | %zu |\n", name.c_str(), 1e3 * rms, 1e3 * most, actor.hair.contacts.size());
+    std::fflush(out);
   });
 }
 

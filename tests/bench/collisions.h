@@ -1,6 +1,7 @@
 // How collisions hold: what is left inside the body, how often contacts come and go, how quietly hair rests.
 #pragma once
 
+#include <cstdio>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,7 +15,7 @@ struct CollisionOptions {
   std::vector<std::pair<std::string, std::string>> set;  // parameters, as --set takes them
 };
 
-// Prints one row a style and clip, then the rest speed of each style on the standing figure. Throws app::InputError.
-void runCollisions(const CollisionOptions& options);
+// Writes one row a style and clip, then the rest speed of each style on the standing figure. Throws app::InputError.
+void runCollisions(const CollisionOptions& options, std::FILE* out);
 
 }  // namespace bench

@@ -8,6 +8,7 @@
 #include "app/errors.h"
 #include "tests/bench/accuracy_document.h"
 #include "tests/bench/colliders.h"
+#include "tests/bench/collision_document.h"
 #include "tests/bench/collisions.h"
 #include "tests/bench/contact_sheet.h"
 #include "tests/bench/ladder.h"
@@ -50,11 +51,13 @@ std::vector<Task> tasks() {
       {"--ladder", "cost and error of the budget governor's settings (app/governor_ladder.cpp)",
        [](Asked& a) { bench::measureLadder(a.pareto.runs); }},
       {"--collisions", "what is left inside the body, contacts that come and go, rest",
-       [](Asked& a) { bench::runCollisions(a.collisions); }},
+       [](Asked& a) { bench::runCollisions(a.collisions, stdout); }},
       {"--colliders", "ellipsoids and signed distances side by side, against the true skin",
        [](Asked& a) {
-         bench::runColliders({a.styles.frames, a.collisions.clips, a.collisions.styles});
+         bench::runColliders({a.styles.frames, a.collisions.clips, a.collisions.styles}, stdout);
        }},
+      {"--collision-document", "all that collisions claim, into the tables of collision.md in the folder of --out",
+       [](Asked& a) { bench::writeCollisionDocument(a.pareto.folder, a.styles.frames); }},
   };
 }
 

@@ -1,0 +1,48 @@
+// Hair at rest on the body: it hangs still.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "app/actor.h"
+#include "app/data_path.h"
+
+namespace {
+
+// Root mean square and largest vertex speed, m/s, over the last of `seconds` of standing still.
+std::pair<double, double> restSpeed(sim::Style style, sim::Resolution resolution, double seconds) {
+  app::CharacterSpec spec;
+  spec.motion = app::findFile("idle_turns.bvh", "", "clips");
+  spec.style = style, spec.resolution = resolution;
+  app::Wardrobe wardrobe;
+  app::Actor actor = app::makeActor(spec, app::PlaybackSpec{}, wardrobe);
+  const sim::SimParams params;
+  app::settleActor(params, 1, actor);
+  const int steps = static_cast<int>(seconds / params.time_step), last = static_cast<int>(1 / params.time_step);
+  double sum = 0, most = 0;
+  for (int step = 0; step < steps; ++step) {
+    app::simulateActor(params, params.time_step, 0, actor);
+    if (step < steps - last) continue;
+    for (const sim::Vec3& v : actor.hair.velocities) sum += v.squaredNorm(), most = std::max(most, v.norm());
+  }
+  EXPECT_FALSE(actor.hair.contacts.empty()) << "it does rest on the body";
+  return {std::sqrt(sum / (last * static_cast<double>(actor.hair.velocities.size()))), most};
+}
+
+// The vertices of the short style are so light that friction against the slip of the step before would throw them to
+// and fro without end: 10 mm/s.
+TEST(Rest, HairThatLiesOnTheBodyHangsStill) {
+  struct Case {
+    sim::Style style;
+    sim::Resolution resolution;
+  };
+  for (const Case& c :
+       {Case{sim::Style::kLong, sim::Resolution::kMedium}, Case{sim::Style::kShort, sim::Resolution::kHigh}}) {
+    const auto [rms, most] = restSpeed(c.style, c.resolution, 2);
+    std::printf("%s %s: %.4f mm/s RMS, %.3f largest\n", sim::styleName(c.style).data(),
+                sim::resolutionName(c.resolution).data(), 1e3 * rms, 1e3 * most);
+    EXPECT_LT(rms, 1e-3);
+    EXPECT_LT(most, 1e-2);
+  }
+}
+
+}  // namespace
