@@ -28,7 +28,7 @@ struct ColumnLayout {
 // A vector field on the vertices as three padded arrays, zero in the padding.
 template <class T>
 struct ColumnField {
-  std::vector<T> x, y, z;
+  LineVector<T> x, y, z;
   explicit ColumnField(const ColumnLayout& layout) : x(layout.size()), y(layout.size()), z(layout.size()) {}
   void setZero();
   void pack(const ColumnLayout& layout, std::span<const V3<T>> from);

@@ -48,7 +48,7 @@ template <class T>
 struct ColumnMatrix {
   const ColumnLayout* layout;
   const ColumnPattern* pattern;
-  std::vector<T> values;
+  LineVector<T> values;
 
   ColumnMatrix(const ColumnLayout& l, const ColumnPattern& p) : layout(&l), pattern(&p), values(p.value_count) {}
   void setZero();

@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <cstddef>
+#include <new>
 #include <type_traits>
+#include <vector>
 
 // Kernels are compiled for several instruction sets, and the widest that the processor has is picked when the program
 // starts. Sanitizers run the resolvers too early, other compilers and processors do not know them: these get the plain
@@ -55,6 +57,30 @@ template <class T>
 HAIRMESH_INLINE void addTo(T* to, const Lanes<T>& value) {
   store<T>(to, load<T>(to) + value);
 }
+
+// `now` moved up by one lane, with the last one of `before` coming in.
+template <class T>
+HAIRMESH_INLINE Lanes<T> shifted(const Lanes<T>& before, const Lanes<T>& now) {
+  return __builtin_shufflevector(before, now, 7, 8, 9, 10, 11, 12, 13, 14);
+}
+
+// A vector whose first entry starts a cache line, so that lanes at multiples of kLanes never straddle two.
+template <class T>
+struct LineAllocator {
+  using value_type = T;
+  static constexpr std::align_val_t kLine{64};
+  LineAllocator() = default;
+  template <class U>
+  LineAllocator(const LineAllocator<U>&) {}
+  T* allocate(std::size_t count) { return static_cast<T*>(::operator new(count * sizeof(T), kLine)); }
+  void deallocate(T* at, std::size_t) { ::operator delete(at, kLine); }
+  template <class U>
+  bool operator==(const LineAllocator<U>&) const {
+    return true;
+  }
+};
+template <class T>
+using LineVector = std::vector<T, LineAllocator<T>>;
 
 template <class T>
 HAIRMESH_INLINE T squareRoot(T value) {

@@ -1,7 +1,12 @@
-// The kernels: kLanes layers of one root edge, face or column at a time.
+// The kernels: kLanes layers of one column, root edge or face at a time.
 //
 // k: stiffness, c: condition with its rest shift taken off, g: its gradient; see conditions.h.
+//
+// What the elements of a wall with its hinge, or of a prism, add to one block of the matrix is summed first and added
+// to memory once. Blocks one layer apart overlap there but for one entry, and a load that overlaps a store still under
+// way waits for it: so they are added far from each other, or shifted onto each other in registers.
 #include "sim/forces/column_model.h"
+#include "sim/forces/prism_shares.h"
 
 namespace sim {
 namespace {
@@ -16,146 +21,256 @@ struct Sums {
   Lanes<T> matrix_scale, tension_scale, damping, energy;
 };
 
+// Blocks of kLanes layers: symmetric ones as xx, xy, xz, yy, yz, zz, others row by row.
 template <class T>
-HAIRMESH_INLINE void addSymmetric(T* at, std::size_t s, const V3<Lanes<T>>& a, const V3<Lanes<T>>& b) {
-  addTo<T>(at, a.x * b.x);
-  addTo<T>(at + s, a.x * b.y);
-  addTo<T>(at + 2 * s, a.x * b.z);
-  addTo<T>(at + 3 * s, a.y * b.y);
-  addTo<T>(at + 4 * s, a.y * b.z);
-  addTo<T>(at + 5 * s, a.z * b.z);
-}
-
+struct OwnBlock {
+  Lanes<T> m[6] = {};
+  HAIRMESH_INLINE void addSquare(const V3<Lanes<T>>& a) {
+    m[0] += a.x * a.x, m[1] += a.x * a.y, m[2] += a.x * a.z;
+    m[3] += a.y * a.y, m[4] += a.y * a.z, m[5] += a.z * a.z;
+  }
+  HAIRMESH_INLINE void addTo(T* at, std::size_t stride) const {
+    for (int k = 0; k < 6; ++k) sim::addTo<T>(at + k * stride, m[k]);
+  }
+};
 template <class T>
-HAIRMESH_INLINE void addOuter(T* at, std::size_t s, const V3<Lanes<T>>& a, const V3<Lanes<T>>& b) {
-  addTo<T>(at, a.x * b.x);
-  addTo<T>(at + s, a.x * b.y);
-  addTo<T>(at + 2 * s, a.x * b.z);
-  addTo<T>(at + 3 * s, a.y * b.x);
-  addTo<T>(at + 4 * s, a.y * b.y);
-  addTo<T>(at + 5 * s, a.y * b.z);
-  addTo<T>(at + 6 * s, a.z * b.x);
-  addTo<T>(at + 7 * s, a.z * b.y);
-  addTo<T>(at + 8 * s, a.z * b.z);
-}
+struct PairBlock {
+  Lanes<T> m[9] = {};
+  HAIRMESH_INLINE void addOuter(const V3<Lanes<T>>& a, const V3<Lanes<T>>& b) {
+    m[0] += a.x * b.x, m[1] += a.x * b.y, m[2] += a.x * b.z;
+    m[3] += a.y * b.x, m[4] += a.y * b.y, m[5] += a.y * b.z;
+    m[6] += a.z * b.x, m[7] += a.z * b.y, m[8] += a.z * b.z;
+  }
+  HAIRMESH_INLINE void subtract(const OwnBlock<T>& block) {
+    constexpr int kPlace[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+    for (int k = 0; k < 9; ++k) m[k] -= block.m[kPlace[k]];
+  }
+  HAIRMESH_INLINE void addTo(T* at, std::size_t stride) const {
+    for (int k = 0; k < 9; ++k) sim::addTo<T>(at + k * stride, m[k]);
+  }
+};
 
-// Force, damping and Gauss-Newton blocks of kLanes elements. at: entries of the vertices in padded fields; diagonals,
-// pairs: places of their blocks, `layer` further on.
-template <class T, int N>
-HAIRMESH_INLINE void addCondition(const Condition<Lanes<T>, N>& condition, const Lanes<T>& k, const Lanes<T>& shift,
-                                  const std::array<int, N>& at, const std::array<int, N>& diagonals,
-                                  const BlockPlace* pairs, int layer, Sums<T>& sums) {
-  const Lanes<T> c = condition.value - shift;
+// Force along -g of a condition, elastic and damping. `rate` gives dC/dt.
+template <class T>
+HAIRMESH_INLINE Lanes<T> pullOf(const Lanes<T>& c, const Lanes<T>& k, Sums<T>& sums, const auto& rate) {
   Lanes<T> pull = k * c;
   sums.energy += pull * c;
   if (sums.velocity) {
-    Lanes<T> rate = constant<Lanes<T>>(0);
-    for (int p = 0; p < N; ++p) rate += dot(condition.g[p], loadAt(*sums.velocity, at[p]));
-    const Lanes<T> resistance = sums.damping * k * rate;
+    const Lanes<T> speed = rate(), resistance = sums.damping * k * speed;
     pull += resistance;
-    sums.energy += resistance * rate;
+    sums.energy += resistance * speed;
   }
-  if (sums.force) {
-    for (int p = 0; p < N; ++p) addAt(*sums.force, at[p], -pull * condition.g[p]);
-  }
-  if (!sums.values) return;
-  const Lanes<T> s = sums.matrix_scale * k;
-  for (int p = 0, pair = 0; p < N; ++p) {
-    const V3<Lanes<T>> scaled = s * condition.g[p];
-    addSymmetric<T>(sums.values + diagonals[p] + layer, sums.stride, scaled, condition.g[p]);
-    for (int q = p + 1; q < N; ++q, ++pair) {
-      T* block = sums.values + pairs[pair].at + layer;
-      if (pairs[pair].transposed)
-        addOuter<T>(block, sums.stride, condition.g[q], scaled);
-      else
-        addOuter<T>(block, sums.stride, scaled, condition.g[q]);
-    }
-  }
+  return pull;
 }
 
 // Stretch of kLanes edges between entries a and b.
 template <class T>
-HAIRMESH_INLINE void addStretch(const typename ColumnModel<T>::Stretch& elements, std::size_t e,
-                                const ColumnField<T>& x, int a, int b, const std::array<int, 2>& diagonals,
-                                const BlockPlace& pair, int layer, Sums<T>& sums) {
+struct StretchTerms {
+  V3<Lanes<T>> push;  // force on a; that on b is the opposite
+  OwnBlock<T> block;  // of a and of b; that between them is the opposite
+};
+template <class T>
+HAIRMESH_INLINE StretchTerms<T> stretchTerms(const typename ColumnModel<T>::Stretch& elements, std::size_t e,
+                                             const ColumnField<T>& x, int a, int b, Sums<T>& sums) {
   const auto stretch = stretchCondition(loadAt(x, a), loadAt(x, b), load<T>(elements.inverse_length.data() + e));
-  const V3<Lanes<T>> g = stretch.inverse_length * stretch.direction;
+  const V3<Lanes<T>>& d = stretch.direction;
+  const V3<Lanes<T>> g = stretch.inverse_length * d;
   const Lanes<T> k = load<T>(elements.stiffness.data() + e), c = stretch.value - load<T>(elements.shift.data() + e);
-  Lanes<T> pull = k * c;
-  sums.energy += pull * c;
-  if (sums.velocity) {
-    const Lanes<T> rate = dot(g, loadAt(*sums.velocity, b) - loadAt(*sums.velocity, a));
-    const Lanes<T> resistance = sums.damping * k * rate;
-    pull += resistance;
-    sums.energy += resistance * rate;
-  }
-  if (sums.force) {
-    addAt(*sums.force, a, pull * g);
-    addAt(*sums.force, b, -pull * g);
-  }
-  if (!sums.values) return;
+  const Lanes<T> pull =
+      pullOf<T>(c, k, sums, [&] { return dot(g, loadAt(*sums.velocity, b) - loadAt(*sums.velocity, a)); });
   const Lanes<T> zero = constant<Lanes<T>>(0), tension = k * c;
   const Lanes<T> turn = (tension > zero ? tension : zero) * sums.tension_scale * stretch.tension_slope;
   const Lanes<T> axial = sums.matrix_scale * k * stretch.inverse_length * stretch.inverse_length - turn;
-  const V3<Lanes<T>>& d = stretch.direction;
   const V3<Lanes<T>> ad = axial * d;
-  const Lanes<T> xx = ad.x * d.x + turn, xy = ad.x * d.y, xz = ad.x * d.z, yy = ad.y * d.y + turn, yz = ad.y * d.z,
-                 zz = ad.z * d.z + turn;
-  const std::size_t s = sums.stride;
-  for (const int diagonal : diagonals) {
-    T* at = sums.values + diagonal + layer;
-    addTo<T>(at, xx), addTo<T>(at + s, xy), addTo<T>(at + 2 * s, xz), addTo<T>(at + 3 * s, yy),
-        addTo<T>(at + 4 * s, yz), addTo<T>(at + 5 * s, zz);
-  }
-  T* at = sums.values + pair.at + layer;
-  addTo<T>(at, -xx), addTo<T>(at + s, -xy), addTo<T>(at + 2 * s, -xz), addTo<T>(at + 3 * s, -xy),
-      addTo<T>(at + 4 * s, -yy), addTo<T>(at + 5 * s, -yz), addTo<T>(at + 6 * s, -xz), addTo<T>(at + 7 * s, -yz),
-      addTo<T>(at + 8 * s, -zz);
+  return {pull * g, {{ad.x * d.x + turn, ad.x * d.y, ad.x * d.z, ad.y * d.y + turn, ad.y * d.z, ad.z * d.z + turn}}};
 }
 
+// Every column's own edges. A vertex takes from the edge above it and, shifted by one layer, from the one below.
 template <class T>
 HAIRMESH_INLINE void addColumns(const ColumnModel<T>& model, const ColumnLayout& layout, const ColumnField<T>& x,
                                 Sums<T>& sums) {
+  const Lanes<T> zero = constant<Lanes<T>>(0);
   for (int c = 0; c < layout.columns; ++c) {
-    const int first = layout.first(c);
-    for (int l = 0; l < model.vertical_lanes[c]; l += kLanes) {
-      addStretch<T>(model.vertical, static_cast<std::size_t>(c) * layout.stride + l, x, first + l, first + l + 1,
-                    {model.diagonal[c], model.diagonal[c] + 1}, model.vertical_pairs[c], l, sums);
+    StretchTerms<T> below{{zero, zero, zero}, {}};
+    for (int l = 0; l < model.column_lanes[c]; l += kLanes) {
+      const int at = layout.first(c) + l;
+      const StretchTerms<T> terms =
+          stretchTerms<T>(model.vertical, static_cast<std::size_t>(c) * layout.stride + l, x, at, at + 1, sums);
+      if (sums.force) {
+        const V3<Lanes<T>>&p = terms.push, &q = below.push;
+        addAt(*sums.force, at, p - V3<Lanes<T>>{shifted<T>(q.x, p.x), shifted<T>(q.y, p.y), shifted<T>(q.z, p.z)});
+      }
+      if (sums.values) {
+        PairBlock<T> between;
+        between.subtract(terms.block);
+        between.addTo(sums.values + model.vertical_pairs[c].at + l, sums.stride);
+        OwnBlock<T> own = terms.block;
+        for (int k = 0; k < 6; ++k) own.m[k] += shifted<T>(below.block.m[k], terms.block.m[k]);
+        own.addTo(sums.values + model.diagonal[c] + l, sums.stride);
+      }
+      below = terms;
     }
   }
 }
 
+// The walls of kLanes layers over a root edge, each with its lower side and its hinge to the wall above.
 template <class T>
-HAIRMESH_INLINE void addRootEdges(const ColumnModel<T>& model, const ColumnLayout& layout, const ColumnField<T>& x,
-                                  Sums<T>& sums) {
+HAIRMESH_INLINE void addWalls(const ColumnModel<T>& model, const typename ColumnModel<T>::RootEdge& edge,
+                              const std::array<int, 6>& at, int layer, const ColumnField<T>& x, Sums<T>& sums) {
+  using V = V3<Lanes<T>>;
+  const std::size_t e = edge.first + layer;
+  V p[6];
+  for (int v = 0; v < 6; ++v) p[v] = loadAt(x, at[v]);
+  constexpr std::array<int, 4> kWall{0, 1, 3, 2};  // the wall's corners as wound, among the joint's vertices
+  const V wall[4] = {p[0], p[1], p[3], p[2]};
+  const auto shear =
+      shearCondition(wall, load<T>(model.inverse_along.data() + e), load<T>(model.inverse_across.data() + e));
+  const auto bend =
+      bendCondition(p, load<T>(model.bend_rest_angle.data() + e), load<T>(model.bend_inverse_length.data() + e),
+                    load<T>(model.bend_smallest_square.data() + e));
+  const Lanes<T> k_shear = load<T>(model.shear_stiffness.data() + e), k_bend = load<T>(model.bend_stiffness.data() + e);
+  const Lanes<T> shear_pull = pullOf<T>(shear.value - load<T>(model.shear_shift.data() + e), k_shear, sums, [&] {
+    Lanes<T> rate = constant<Lanes<T>>(0);
+    for (int v = 0; v < 4; ++v) rate += dot(shear.g[v], loadAt(*sums.velocity, at[kWall[v]]));
+    return rate;
+  });
+  const Lanes<T> bend_pull = pullOf<T>(bend.value, k_bend, sums, [&] {
+    Lanes<T> rate = constant<Lanes<T>>(0);
+    for (int v = 0; v < 6; ++v) rate += dot(bend.g[v], loadAt(*sums.velocity, at[v]));
+    return rate;
+  });
+  const StretchTerms<T> side = stretchTerms<T>(model.horizontal, e, x, at[0], at[1], sums);
+  if (sums.force) {
+    V push[6];
+    for (int v = 0; v < 6; ++v) push[v] = -bend_pull * bend.g[v];
+    for (int v = 0; v < 4; ++v) push[kWall[v]] -= shear_pull * shear.g[v];
+    push[0] += side.push, push[1] -= side.push;
+    for (int v = 0; v < 6; ++v) addAt(*sums.force, at[v], push[v]);
+  }
+  if (!sums.values) return;
+  // Gradients times the root of what they weigh in the matrix.
+  const Lanes<T> shear_root = squareRoot(sums.matrix_scale * k_shear),
+                 bend_root = squareRoot(sums.matrix_scale * k_bend);
+  V s[4], g[6];
+  for (int v = 0; v < 4; ++v) s[kWall[v]] = shear_root * shear.g[v];
+  for (int v = 0; v < 6; ++v) g[v] = bend_root * bend.g[v];
+  const auto addOwn = [&](int v) {
+    OwnBlock<T> block;
+    if (v < 2) block = side.block;
+    if (v < 4) block.addSquare(s[v]);
+    block.addSquare(g[v]);
+    block.addTo(sums.values + edge.own[v] + layer, sums.stride);
+  };
+  const auto addPair = [&](int pair) {
+    const BlockPlace& place = edge.pairs[pair];
+    const int u = kJointPairs[pair][place.transposed], v = kJointPairs[pair][1 - place.transposed];
+    PairBlock<T> block;
+    block.addOuter(g[u], g[v]);
+    if (u < 4 && v < 4) block.addOuter(s[u], s[v]);
+    if (pair == 0) block.subtract(side.block);
+    block.addTo(sums.values + place.at + layer, sums.stride);
+  };
+  // Lower, lower with uppermost, middle, lower with middle, uppermost, middle with uppermost.
+  for (int part = 0; part < 3; ++part) {
+    addOwn(2 * part), addOwn(2 * part + 1);
+    for (int pair = 5 * part; pair < 5 * part + 5; ++pair) addPair(pair);
+  }
+}
+
+template <class T>
+HAIRMESH_INLINE void addEdges(const ColumnModel<T>& model, const ColumnLayout& layout, const ColumnField<T>& x,
+                              Sums<T>& sums) {
   for (const typename ColumnModel<T>::RootEdge& edge : model.edges) {
     const int a = layout.first(edge.a), b = layout.first(edge.b);
-    for (int l = 0; l < layout.stride && l < edge.walls + kLanes; l += kLanes) {
-      addStretch<T>(model.horizontal, edge.first + l, x, a + l, b + l, {model.diagonal[edge.a], model.diagonal[edge.b]},
-                    edge.rung, l, sums);
-    }
     for (int l = 0; l < edge.walls; l += kLanes) {
-      const std::size_t e = edge.first + l;
-      const std::array<int, 4> at{a + l, b + l, b + l + 1, a + l + 1};
-      V3<Lanes<T>> p[4];
-      for (int k = 0; k < 4; ++k) p[k] = loadAt(x, at[k]);
-      addCondition<T, 4>(
-          shearCondition(p, load<T>(model.inverse_along.data() + e), load<T>(model.inverse_across.data() + e)),
-          load<T>(model.shear_stiffness.data() + e), load<T>(model.shear_shift.data() + e), at, edge.wall_diagonal,
-          edge.wall_pairs.data(), l, sums);
+      addWalls(model, edge, {a + l, b + l, a + l + 1, b + l + 1, a + l + 2, b + l + 2}, l, x, sums);
     }
-    for (int l = 0; l < edge.hinges; l += kLanes) {
-      const std::size_t e = edge.first + l;
-      const std::array<int, 6> at{a + l, b + l, a + l + 1, b + l + 1, a + l + 2, b + l + 2};
-      V3<Lanes<T>> p[6];
-      for (int k = 0; k < 6; ++k) p[k] = loadAt(x, at[k]);
-      addCondition<T, 6>(
-          bendCondition(p, load<T>(model.bend_rest_angle.data() + e), load<T>(model.bend_inverse_length.data() + e),
-                        load<T>(model.bend_smallest_square.data() + e)),
-          load<T>(model.bend_stiffness.data() + e), constant<Lanes<T>>(0), at,
-          {edge.hinge_a[0], edge.hinge_b[0], edge.hinge_a[1], edge.hinge_b[1], edge.hinge_a[2], edge.hinge_b[2]},
-          edge.hinge_pairs.data(), l, sums);
+    // The uppermost walls' upper sides, where they are not among the lower sides of the last kLanes.
+    for (int l = edge.walls; l < edge.sides; l += kLanes) {
+      const StretchTerms<T> side = stretchTerms<T>(model.horizontal, edge.first + l, x, a + l, b + l, sums);
+      if (sums.force) {
+        const Lanes<T> zero = constant<Lanes<T>>(0);
+        addAt(*sums.force, a + l, side.push);
+        addAt(*sums.force, b + l, V3<Lanes<T>>{zero, zero, zero} - side.push);
+      }
+      if (!sums.values) continue;
+      for (const int own : {edge.own[0], edge.own[1]}) side.block.addTo(sums.values + own + l, sums.stride);
+      PairBlock<T> between;
+      between.subtract(side.block);
+      between.addTo(sums.values + edge.pairs[0].at + l, sums.stride);
     }
+  }
+}
+
+// The corner tetrahedra of kLanes prisms over a face of N corners.
+template <class T, int N>
+HAIRMESH_INLINE void addPrisms(const ColumnModel<T>& model, const typename ColumnModel<T>::Face& face,
+                               const std::array<int, 2 * N>& at, int layer, const ColumnField<T>& x, Sums<T>& sums) {
+  using V = V3<Lanes<T>>;
+  constexpr const PrismShares<N>& shares = kPrismShares<N>;
+  constexpr int kVertices = 2 * N;
+  const Lanes<T> zero = constant<Lanes<T>>(0);
+  V p[kVertices], push[kVertices];
+  V g[4 * kVertices];  // gradients times the root of what they weigh in the matrix
+  for (int v = 0; v < kVertices; ++v) {
+    p[v] = loadAt(x, at[v]);
+    push[v] = {zero, zero, zero};
+  }
+  for (int k = 0; k < kVertices; ++k) {
+    const std::size_t e = face.first + k * sums.stride + layer;
+    const std::array<int, 4>& tet = shares.tets[k];
+    const V corners[4] = {p[tet[0]], p[tet[1]], p[tet[2]], p[tet[3]]};
+    const auto volume = volumeCondition(corners, load<T>(model.volume_rest.data() + e));
+    const Lanes<T> stiffness = load<T>(model.volume_stiffness.data() + e);
+    const Lanes<T> pull = pullOf<T>(volume.value, stiffness, sums, [&] {
+      Lanes<T> rate = zero;
+      for (int v = 0; v < 4; ++v) rate += dot(volume.g[v], loadAt(*sums.velocity, at[tet[v]]));
+      return rate;
+    });
+    const Lanes<T> root = squareRoot(sums.matrix_scale * stiffness);
+    for (int v = 0; v < 4; ++v) {
+      push[tet[v]] -= pull * volume.g[v];
+      g[4 * k + v] = root * volume.g[v];
+    }
+  }
+  if (sums.force) {
+    for (int v = 0; v < kVertices; ++v) addAt(*sums.force, at[v], push[v]);
+  }
+  if (!sums.values) return;
+  const auto addOwn = [&](int first) {
+    for (int v = first; v < first + N; ++v) {
+      OwnBlock<T> block;
+      for (const int place : shares.place_in[v]) block.addSquare(g[place]);
+      block.addTo(sums.values + model.diagonal[face.columns[v % N]] + v / N + layer, sums.stride);
+    }
+  };
+  const auto addPairs = [&](int first, int end) {
+    for (int pair = first; pair < end; ++pair) {
+      const auto& coupling = shares.pairs[pair];
+      const BlockPlace& place = face.pairs[pair];
+      PairBlock<T> block;
+      for (int k = 0; k < coupling.shares; ++k) {
+        const V& u = g[4 * coupling.share[k].tet + coupling.share[k].p];
+        const V& v = g[4 * coupling.share[k].tet + coupling.share[k].q];
+        block.addOuter(place.transposed ? v : u, place.transposed ? u : v);
+      }
+      block.addTo(sums.values + place.at + layer, sums.stride);
+    }
+  };
+  addOwn(0);
+  addPairs(0, shares.kLayerPairs);
+  addPairs(shares.kLayerPairs, shares.kPairs - shares.kLayerPairs);
+  addOwn(N);
+  addPairs(shares.kPairs - shares.kLayerPairs, shares.kPairs);
+}
+
+template <class T, int N>
+HAIRMESH_INLINE void addFace(const ColumnModel<T>& model, const ColumnLayout& layout,
+                             const typename ColumnModel<T>::Face& face, const ColumnField<T>& x, Sums<T>& sums) {
+  for (int l = 0; l < face.prisms; l += kLanes) {
+    std::array<int, 2 * N> at;
+    for (int v = 0; v < 2 * N; ++v) at[v] = layout.first(face.columns[v % N]) + v / N + l;
+    addPrisms<T, N>(model, face, at, l, x, sums);
   }
 }
 
@@ -163,21 +278,10 @@ template <class T>
 HAIRMESH_INLINE void addFaces(const ColumnModel<T>& model, const ColumnLayout& layout, const ColumnField<T>& x,
                               Sums<T>& sums) {
   for (const typename ColumnModel<T>::Face& face : model.faces) {
-    for (int l = 0; l < face.prisms; l += kLanes) {
-      for (int k = 0; k < 2 * face.corner_count; ++k) {
-        const std::size_t e = face.first + static_cast<std::size_t>(k) * layout.stride + l;
-        std::array<int, 4> at, diagonals;
-        V3<Lanes<T>> p[4];
-        for (int v = 0; v < 4; ++v) {
-          at[v] = layout.first(face.columns_of[k][v]) + face.layers_of[k][v] + l;
-          diagonals[v] = model.diagonal[face.columns_of[k][v]] + face.layers_of[k][v];
-          p[v] = loadAt(x, at[v]);
-        }
-        addCondition<T, 4>(volumeCondition(p, load<T>(model.volume_rest.data() + e)),
-                           load<T>(model.volume_stiffness.data() + e), constant<Lanes<T>>(0), at, diagonals,
-                           face.pairs[k].data(), l, sums);
-      }
-    }
+    if (face.corner_count == 4)
+      addFace<T, 4>(model, layout, face, x, sums);
+    else
+      addFace<T, 3>(model, layout, face, x, sums);
   }
 }
 
@@ -185,7 +289,7 @@ template <class T>
 HAIRMESH_INLINE void evaluateAll(const ColumnModel<T>& model, const ColumnLayout& layout, const ColumnField<T>& x,
                                  Sums<T>& sums) {
   addColumns(model, layout, x, sums);
-  addRootEdges(model, layout, x, sums);
+  addEdges(model, layout, x, sums);
   addFaces(model, layout, x, sums);
 }
 

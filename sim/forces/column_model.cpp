@@ -4,6 +4,8 @@
 #include <map>
 #include <utility>
 
+#include "sim/forces/prism_shares.h"
+
 namespace sim {
 namespace {
 
@@ -25,6 +27,14 @@ EdgeNumber numberEdges(const HairMesh& mesh) {
   return number;
 }
 
+template <int N>
+void placePairs(const ColumnPattern& pattern, const RootFace& face, std::span<BlockPlace> places) {
+  for (std::size_t k = 0; k < kPrismShares<N>.pairs.size(); ++k) {
+    const int u = kPrismShares<N>.pairs[k].u, v = kPrismShares<N>.pairs[k].v;
+    places[k] = pattern.place(face.columns[u % N], u / N, face.columns[v % N], v / N);
+  }
+}
+
 }  // namespace
 
 template <class T>
@@ -33,7 +43,7 @@ ColumnModel<T>::ColumnModel(const HairMesh& mesh, const ColumnLayout& layout, co
   for (int c = 0; c < layout.columns; ++c) {
     diagonal.push_back(static_cast<int>(pattern.diagonals[c].values));
     vertical_pairs.push_back(pattern.place(c, 0, c, 1));
-    vertical_lanes.push_back(roundedUp(layout.length[c] - 1));
+    column_lanes.push_back(roundedUp(layout.length[c]));
   }
   const EdgeNumber number = numberEdges(mesh);
   edges.resize(number.size());
@@ -48,25 +58,13 @@ ColumnModel<T>::ColumnModel(const HairMesh& mesh, const ColumnLayout& layout, co
     const auto [a, b] = columns;
     edge.a = a, edge.b = b;
     edge.walls = roundedUp(wall_count[e]);
-    edge.hinges = roundedUp(wall_count[e] - 1);
+    edge.sides = roundedUp(wall_count[e] + 1);
     edge.first = e * stride;
-    edge.rung = pattern.place(a, 0, b, 0);
-    const std::array<std::pair<int, int>, 4> corner{{{a, 0}, {b, 0}, {b, 1}, {a, 1}}};
-    for (int p = 0, pair = 0; p < 4; ++p) {
-      edge.wall_diagonal[p] = diagonal[corner[p].first] + corner[p].second;
-      for (int q = p + 1; q < 4; ++q, ++pair) {
-        edge.wall_pairs[pair] = pattern.place(corner[p].first, corner[p].second, corner[q].first, corner[q].second);
-      }
-    }
-    const std::array<std::pair<int, int>, 6> joint{{{a, 0}, {b, 0}, {a, 1}, {b, 1}, {a, 2}, {b, 2}}};
-    for (int layer = 0; layer < 3; ++layer) {
-      edge.hinge_a[layer] = diagonal[a] + layer;
-      edge.hinge_b[layer] = diagonal[b] + layer;
-    }
-    for (int p = 0, pair = 0; p < 6; ++p) {
-      for (int q = p + 1; q < 6; ++q, ++pair) {
-        edge.hinge_pairs[pair] = pattern.place(joint[p].first, joint[p].second, joint[q].first, joint[q].second);
-      }
+    const std::array<int, 6> column{a, b, a, b, a, b};
+    for (int v = 0; v < 6; ++v) edge.own[v] = diagonal[column[v]] + v / 2;
+    for (std::size_t pair = 0; pair < kJointPairs.size(); ++pair) {
+      const auto [u, v] = kJointPairs[pair];
+      edge.pairs[pair] = pattern.place(column[u], u / 2, column[v], v / 2);
     }
   }
   std::size_t at = 0;
@@ -79,20 +77,10 @@ ColumnModel<T>::ColumnModel(const HairMesh& mesh, const ColumnLayout& layout, co
     face.prisms = roundedUp(mesh.bundle_layers[f] - 1);
     face.first = at;
     at += 2 * n * stride;
-    for (int k = 0; k < 2 * n; ++k) {
-      const bool upper = k >= n;
-      const int corner = k % n, next = (corner + 1) % n, previous = (corner + n - 1) % n, layer = upper ? 1 : 0;
-      // As in the mesh's corner tetrahedra: around an upper corner the in-layer neighbours swap.
-      face.columns_of[k] = {root.columns[corner], root.columns[upper ? previous : next],
-                            root.columns[upper ? next : previous], root.columns[corner]};
-      face.layers_of[k] = {layer, layer, layer, 1 - layer};
-      for (int p = 0, pair = 0; p < 4; ++p) {
-        for (int q = p + 1; q < 4; ++q, ++pair) {
-          face.pairs[k][pair] =
-              pattern.place(face.columns_of[k][p], face.layers_of[k][p], face.columns_of[k][q], face.layers_of[k][q]);
-        }
-      }
-    }
+    if (n == 4)
+      placePairs<4>(pattern, root, face.pairs);
+    else
+      placePairs<3>(pattern, root, face.pairs);
     faces.push_back(face);
   }
   const std::size_t column_entries = layout.columns * stride, edge_entries = edges.size() * stride;

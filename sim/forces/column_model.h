@@ -11,6 +11,24 @@
 
 namespace sim {
 
+// A wall with the one above it: vertices of columns a, b in its lower layer, between the walls, in the upper layer. Its
+// pairs, the lower side first, so ordered that those one layer apart are far from each other.
+inline constexpr std::array<std::array<int, 2>, 15> kJointPairs{{{0, 1},
+                                                                 {0, 4},
+                                                                 {0, 5},
+                                                                 {1, 4},
+                                                                 {1, 5},
+                                                                 {2, 3},
+                                                                 {0, 2},
+                                                                 {0, 3},
+                                                                 {1, 2},
+                                                                 {1, 3},
+                                                                 {4, 5},
+                                                                 {2, 4},
+                                                                 {2, 5},
+                                                                 {3, 4},
+                                                                 {3, 5}}};
+
 // Element arrays are `stride` long per root edge, face corner or column; entry l belongs to layers l, l + 1 (and l + 2
 // for hinges); stiffness is zero where there is no element.
 template <class T>
@@ -19,28 +37,24 @@ struct ColumnModel {
     std::vector<T> stiffness, inverse_length, shift;
   };
   struct RootEdge {
-    int a, b;                                            // columns
-    int walls, hinges;                                   // entries to walk, multiples of kLanes
-    std::size_t first;                                   // of its element arrays
-    std::array<int, 4> wall_diagonal, hinge_a, hinge_b;  // places of diagonal blocks; the hinge's by layer
-    std::array<BlockPlace, 6> wall_pairs;
-    std::array<BlockPlace, 15> hinge_pairs;
-    BlockPlace rung;  // horizontal edge of layer l
+    int a, b;                          // columns
+    int walls, sides;                  // entries to walk, multiples of kLanes
+    std::size_t first;                 // of its element arrays
+    std::array<int, 6> own;            // places of the joint's diagonal blocks
+    std::array<BlockPlace, 15> pairs;  // of kJointPairs
   };
   struct Face {
     int corner_count;
     std::array<int, 4> columns;
-    int prisms;         // entries to walk
-    std::size_t first;  // of its element arrays: one per corner tetrahedron
-    std::array<std::array<int, 4>, 8> columns_of,
-        layers_of;  // per corner tetrahedron: column and layer offset of its vertices
-    std::array<std::array<BlockPlace, 6>, 8> pairs;
+    int prisms;                        // entries to walk
+    std::size_t first;                 // of its element arrays: one per corner tetrahedron
+    std::array<BlockPlace, 24> pairs;  // of PrismShares
   };
   std::vector<RootEdge> edges;
   std::vector<Face> faces;
   std::vector<BlockPlace> vertical_pairs;  // per column
   std::vector<int> diagonal;               // per column: start of its own offset 0
-  std::vector<int> vertical_lanes;         // per column
+  std::vector<int> column_lanes;           // per column: entries to walk
   Stretch vertical, horizontal;
   std::vector<T> shear_stiffness, shear_shift, inverse_along, inverse_across;
   std::vector<T> bend_stiffness, bend_rest_angle, bend_inverse_length, bend_smallest_square;
