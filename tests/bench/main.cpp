@@ -11,9 +11,11 @@
 #include "tests/bench/collision_document.h"
 #include "tests/bench/collisions.h"
 #include "tests/bench/contact_sheet.h"
+#include "tests/bench/gate.h"
 #include "tests/bench/ladder.h"
 #include "tests/bench/pareto.h"
 #include "tests/bench/peers.h"
+#include "tests/bench/performance.h"
 #include "tests/bench/solver_chart.h"
 #include "tests/bench/styles_bench.h"
 
@@ -28,7 +30,9 @@ struct Asked {
   bench::PeersOptions peers;
   bench::CollisionOptions collisions;
   std::vector<std::string> sets;
-  std::string document, accuracy;
+  bench::GateOptions gate;
+  std::string document, accuracy, performance;
+  bool all_hold = true;  // the gate's figures
 };
 
 // A measurement: its flag, what it does, and how. In the order in which they run when several are asked for.
@@ -58,6 +62,8 @@ std::vector<Task> tasks() {
        }},
       {"--collision-document", "all that collisions claim, into the tables of collision.md in the folder of --out",
        [](Asked& a) { bench::writeCollisionDocument(a.pareto.folder, a.styles.frames); }},
+      {"--gate", "every bound on speed and accuracy, one line each; exits 1 where one falls short",
+       [](Asked& a) { a.all_hold = bench::allHold(bench::measureFigures(a.gate)); }},
   };
 }
 
@@ -72,7 +78,8 @@ void addOptions(CLI::App& program, Asked& a) {
   program.add_option("--strands", a.sheet.strands, "strands a picture")->check(CLI::Range(1, 1000000));
   program.add_option("--scenes", a.pareto.scenes, "scenes of --pareto, comma separated")->delimiter(',');
   program.add_option("--out", a.pareto.folder, "folder of what is written")->default_val("pareto");
-  program.add_option("--references", a.pareto.references, "folder in which --pareto keeps its reference trajectories");
+  program.add_option("--references", a.pareto.references,
+                     "folder in which --pareto and --gate keep their reference trajectories");
   program.add_option("--runs", a.pareto.runs, "timed runs a point")->check(CLI::Range(1, 100));
   program.add_flag("--quick", a.pareto.quick, "a coarser sweep");
   program
@@ -82,6 +89,10 @@ void addOptions(CLI::App& program, Asked& a) {
   program.add_option("--clips", a.collisions.clips, "clips of --collisions and --colliders, comma separated")
       ->delimiter(',');
   program.add_option("--set", a.sets, "NAME=VALUE of a parameter for --collisions")->allow_extra_args(false);
+  program.add_option("--rounds", a.gate.rounds, "turns that the compared ways of --gate take")
+      ->check(CLI::Range(1, 100));
+  program.add_option("--performance-document", a.performance,
+                     "measure figures, stages, growth and start-up into this folder's performance.md");
   program.add_option("--accuracy-document", a.document,
                      "put the tables of what this folder holds into its accuracy.md");
   program.add_option("--accuracy", a.accuracy,
@@ -98,6 +109,7 @@ void settle(std::vector<Task>& all, Asked& a) {
     a.pareto.quick = true;
     a.pareto.folder = a.document = a.accuracy;
   }
+  a.gate.references = a.pareto.references;
   a.solvers.folder = a.peers.folder = a.pareto.folder;
   a.collisions.frames = a.styles.frames;
   for (const std::string& text : a.sets) {
@@ -117,7 +129,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(program, argc, argv);
   settle(all, asked);
   const bool any = std::any_of(all.begin(), all.end(), [](const Task& task) { return task.asked; });
-  if (!any && asked.document.empty() && asked.sheet.folder.empty()) {
+  if (!any && asked.document.empty() && asked.performance.empty() && asked.sheet.folder.empty()) {
     std::cout << program.help();
     return app::kExitUsage;
   }
@@ -126,6 +138,7 @@ int main(int argc, char** argv) {
       if (task.asked) task.run(asked);
     }
     if (!asked.document.empty()) bench::writeAccuracyDocument(asked.document);
+    if (!asked.performance.empty()) bench::writePerformanceDocument(asked.performance, asked.gate);
     if (!asked.sheet.folder.empty()) bench::drawContactSheets(asked.sheet);
   } catch (const app::ContextError& error) {
     std::cerr << "hairmesh-bench: " << error.what() << "\n";
@@ -134,5 +147,5 @@ int main(int argc, char** argv) {
     std::cerr << "hairmesh-bench: " << error.what() << "\n";
     return app::kExitBadInput;
   }
-  return app::kExitFine;
+  return asked.all_hold ? app::kExitFine : app::kExitFault;
 }

@@ -1,0 +1,33 @@
+// Every bound that the simulator's speed and accuracy are held to, measured in one run.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace bench {
+
+struct GateOptions {
+  int rounds = 5;          // of the interleaved comparisons, after one that is not counted
+  std::string references;  // reference trajectories are kept here; empty: computed each time, which takes minutes
+};
+
+// A figure and its bound.
+struct Figure {
+  std::string name;
+  double value = 0, bound = 0;
+  bool at_least = false;  // the value must not be below the bound; otherwise not above
+  std::string unit, note;
+  bool holds() const { return at_least ? value >= bound : value <= bound; }  // NaN falls short
+};
+
+// The figures of speed alone: all but those of the sweeps. As measureFigures.
+std::vector<Figure> measureSpeed(const GateOptions& options);
+
+// Prints one line a figure (name, value, bound, ok or short) as it is measured. Times are of
+// this thread's processor time; ratios compare runs that took turns. Throws app::InputError.
+std::vector<Figure> measureFigures(const GateOptions& options);
+
+// Whether all hold; prints how many do.
+bool allHold(const std::vector<Figure>& figures);
+
+}  // namespace bench

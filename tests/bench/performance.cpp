@@ -1,0 +1,210 @@
+#include "tests/bench/performance.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+
+#include "app/errors.h"
+#include "tests/bench/cpu_clock.h"
+#include "tests/bench/timed_scene.h"
+#include "tests/bench/waits.h"
+
+namespace bench {
+namespace {
+
+using sim::Resolution;
+using sim::SimParams;
+using sim::Style;
+
+constexpr const char* kRegionStart = "<!-- measured by hairmesh-bench -->";
+constexpr const char* kRegionEnd = "<!-- end of the measured part -->";
+constexpr double kSeconds = 0.5;  // of each scene
+
+std::string text(const char* format, auto... values) {
+  char line[300];
+  std::snprintf(line, sizeof line, format, values...);
+  return line;
+}
+
+// Who simulates.
+struct Contender {
+  const char* name;
+  sim::Solver solver;
+  Way way;
+  Resolution finest;  // it is run on: the plain implementation takes seconds a frame on finer ones
+};
+constexpr Contender kContenders[] = {
+    {"default", sim::Solver::kWarped, Way::kSimulator, Resolution::kUltra},
+    {"--solver paper", sim::Solver::kPaper, Way::kSimulator, Resolution::kUltra},
+    {"plain implementation", sim::Solver::kDiagonal, Way::kPlain, Resolution::kHigh},
+};
+
+struct Motion {
+  const char *name, *file;
+  bool collide;
+};
+constexpr Motion kMotions[] = {{"walk, with contacts", "walk.bvh", true},
+                               {"head shake, without", "head_shake.bvh", false}};
+
+struct Row {
+  const char* contender;
+  const char* motion;
+  std::string style, resolution;
+  int vertices = 0, iterations = 0, contacts = 0;
+  double total = 0, character = 0;                // ms, medians over frames
+  std::array<double, sim::kStageCount> stages{};  // ms, means: a stage that seldom runs still counts
+};
+
+Row rowOf(const TimedRun& run) {
+  Row row;
+  std::vector<double> character, iterations, contacts;
+  for (const TimedFrame& frame : run.frames) {
+    character.push_back(frame.character);
+    iterations.push_back(frame.iterations);
+    contacts.push_back(frame.contacts);
+    for (int s = 0; s < sim::kStageCount; ++s) {
+      row.stages[s] += 1e3 * frame.stages[s] / static_cast<double>(run.frames.size());
+    }
+  }
+  row.total = 1e3 * run.median();
+  row.character = 1e3 * medianOf(character);
+  row.iterations = static_cast<int>(medianOf(iterations));
+  row.contacts = static_cast<int>(medianOf(contacts));
+  return row;
+}
+
+std::vector<Row> measureStages() {
+  std::vector<Row> rows;
+  for (const Motion& motion : kMotions) {
+    for (const Style style : {Style::kShort, Style::kShoulder, Style::kLong}) {
+      for (const Resolution resolution :
+           {Resolution::kLow, Resolution::kMedium, Resolution::kHigh, Resolution::kUltra}) {
+        TimedScene scene(motion.file, style, resolution, motion.collide);
+        for (const Contender& contender : kContenders) {
+          if (resolution > contender.finest) continue;
+          SimParams params;
+          params.solver = contender.solver;
+          const bool plain = contender.way == Way::kPlain;
+          if (!plain) scene.run(params, kSeconds);
+          Row row = rowOf(scene.run(params, plain ? kSeconds / 4 : kSeconds, contender.way));
+          row.contender = contender.name, row.motion = motion.name;
+          row.style = sim::styleName(style), row.resolution = sim::resolutionName(resolution);
+          row.vertices = scene.mesh().vertexCount();
+          std::printf("%-22s %-20s %-8s %-6s %6d vertices %9.3f ms\n", row.contender, row.motion, row.style.c_str(),
+                      row.resolution.c_str(), row.vertices, row.total);
+          std::fflush(stdout);
+          rows.push_back(std::move(row));
+        }
+      }
+    }
+  }
+  return rows;
+}
+
+std::string stageTables(const std::vector<Row>& rows) {
+  std::string out;
+  for (const Contender& contender : kContenders) {
+    out += text("### Stages: %s\n\n", contender.name);
+    out +=
+        "| scene | style | vertices | ms a frame | forces | solve | collision | minimization | other | character | "
+        "iterations | contacts |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+    for (const Row& row : rows) {
+      if (row.contender != std::string(contender.name)) continue;
+      double sum = 0;
+      for (const double ms : row.stages) sum += ms;
+      out += text("| %s | %s %s | %d | %.3f |", row.motion, row.style.c_str(), row.resolution.c_str(), row.vertices,
+                  row.total);
+      for (const double ms : row.stages) out += text(" %.3f (%.0f %%) |", ms, 100 * ms / std::max(sum, 1e-12));
+      out += text(" %.3f | %d | %d |\n", row.character, row.iterations, row.contacts);
+    }
+    out += "\n";
+  }
+  return out;
+}
+
+std::string startUpTable() {
+  std::string out =
+      "### Start-up\n\n| style | parse, s | build, s | first step with factor, s | character, style and mesh grown, s "
+      "|\n|---|---|---|---|---|\n";
+  for (const Style style : {Style::kShoulder, Style::kLong}) {
+    for (const Resolution resolution : {Resolution::kLow, Resolution::kHigh, Resolution::kUltra}) {
+      const StartUp times = measureStartUp(style, resolution);
+      out += text("| %s %s | %.3f | %.3f | %.3f | %.3f |\n", std::string(sim::styleName(style)).c_str(),
+                  std::string(sim::resolutionName(resolution)).c_str(), times.parse, times.build, times.factor,
+                  times.character);
+    }
+  }
+  return out + "\n";
+}
+
+std::string figureTable(const std::vector<Figure>& figures) {
+  std::string out = "### Figures\n\n| figure | value | bound | | |\n|---|---|---|---|---|\n";
+  for (const Figure& figure : figures) {
+    out += text("| %s | %.3g %s | %s %.3g | %s | ", figure.name.c_str(), figure.value, figure.unit.c_str(),
+                figure.at_least ? "at least" : "at most", figure.bound, figure.holds() ? "ok" : "**short**");
+    out += figure.note + " |\n";
+  }
+  return out + "\n";
+}
+
+// Milliseconds against vertices, both logarithmic, one line a style and contender.
+void drawGrowth(const std::string& folder, const std::vector<Row>& rows) {
+  const std::string data = folder + "/growth.dat", script = folder + "/growth.gp";
+  std::ofstream file(data);
+  std::string plot;
+  int index = 0;
+  for (const Contender& contender : kContenders) {
+    for (const char* style : {"shoulder", "long"}) {
+      for (const Row& row : rows) {
+        if (row.contender == std::string(contender.name) && row.style == style && row.motion == kMotions[0].name) {
+          file << row.vertices << " " << row.total << "\n";
+        }
+      }
+      file << "\n\n";
+      plot += text("'%s' index %d using 1:2 with linespoints lw 2 lc %d dt %d pt %d title '%s, %s', \\\n", data.c_str(),
+                   index, 1 + index / 2, 1 + index % 2, 5 + 2 * (index % 2), contender.name, style);
+      ++index;
+    }
+  }
+  file.close();
+  for (const char* kind : {"svg", "png"}) {
+    std::ofstream(script)
+        << "set terminal "
+        << (kind == std::string("svg") ? "svg size 860,560 background rgb 'white'" : "pngcairo size 860,560")
+        << " font 'Sans,11'\nset output '" << folder << "/growth." << kind << "'\n"
+        << "set logscale xy\nset grid\nset key outside right\nset xrange [300:12000]\n"
+        << "set title 'A walk with contacts, 1/60 s a frame'\nset xlabel 'vertices'\n"
+        << "set ylabel 'ms a frame, one thread'\nplot " << plot
+        << "0.3 * (x / 361) ** 1.15 with lines lc rgb 'gray' dt 3 title '0.3 ms at 361, power 1.15'\n";
+    if (std::system(("gnuplot '" + script + "'").c_str()) != 0) {
+      std::printf("no growth.%s: gnuplot is not installed or failed\n", kind);
+    }
+  }
+  std::filesystem::remove(script);
+  std::filesystem::remove(data);
+}
+
+}  // namespace
+
+void writePerformanceDocument(const std::string& folder, const GateOptions& gate) {
+  const std::string name = folder + "/performance.md";
+  std::ifstream stream(name);
+  const std::string old((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  const auto start = old.find(kRegionStart), end = old.find(kRegionEnd);
+  if (start == std::string::npos || end == std::string::npos || end < start) {
+    throw app::InputError(name, "", "lacks the marks of the measured part", "restore it from the repository");
+  }
+  const std::vector<Figure> figures = measureSpeed(gate);
+  const std::vector<Row> rows = measureStages();
+  drawGrowth(folder, rows);
+  std::ofstream(name) << old.substr(0, start) << kRegionStart << "\n\n"
+                      << figureTable(figures) << stageTables(rows) << "### Growth\n\n![growth](growth.svg)\n\n"
+                      << startUpTable() << old.substr(end);
+}
+
+}  // namespace bench
