@@ -7,7 +7,7 @@
 namespace sim {
 namespace {
 
-constexpr int kProjections = 8;      // alternating projections between overlapping colliders
+constexpr int kProjections = 32;     // alternating projections between overlapping colliders
 constexpr double kSlackShare = 0.2;  // of the contact offset
 constexpr double kRestoring = 0.2;   // share of a dip below the offset that a step closes
 constexpr double kReach = 0.01;      // m off the surface up to which a contact is kept, for it may slide over an edge

@@ -11,12 +11,16 @@ namespace {
 // Of the hair's length: a step in which no vertex moves farther against its root is as good as linear, and costs
 // nothing more.
 constexpr double kGentle = 0.1;
+// Pa; of all forces volume's is the least linear: a step is gentle over so much less as it is stiffer.
+constexpr double kSoftVolume = 1e4;
 constexpr int kHalvings = 12;
+constexpr double kStill = 1e-3;  // m/s of a body's surface against the roots
 
 enum class Motion { kCalm, kViolent, kNotFinite };
 
 Motion judge(const TakenStep& step, const HairState& state) {
-  const double most = kGentle * step.mesh.hair_length;
+  const double soft = std::min(1.0, std::sqrt(kSoftVolume / step.params.volume));
+  const double most = kGentle * soft * step.mesh.hair_length;
   Motion motion = Motion::kCalm;
   for (int c = 0; c < step.mesh.columnCount(); ++c) {
     const int root = step.mesh.shape.column_first[c];
@@ -56,11 +60,9 @@ void carry(const TakenStep& step, const HairState& state, EnergyGuard& scratch) 
   for (int c = 0; c < mesh.columnCount(); ++c) scratch.carried[mesh.shape.column_first[c]] = scratch.roots_after[c];
 }
 
-}  // namespace
-
-double limitEnergy(const TakenStep& step, EnergyGuard& scratch, HairState& state) {
-  if (judge(step, state) != Motion::kViolent) return 1;
-  carry(step, state, scratch);
+// Brings a step whose carried positions are known below its bound, halving its motion so many times before giving it
+// up. Returns the share of the motion that was kept.
+double bringBelowBound(const TakenStep& step, int halvings, EnergyGuard& scratch, HairState& state) {
   const std::vector<Vec3>& carried = scratch.carried;
   const int n = step.mesh.vertexCount();
   const auto carrying = [&](int i) { return Vec3((carried[i] - step.positions[i]) / step.dt); };
@@ -86,7 +88,7 @@ double limitEnergy(const TakenStep& step, EnergyGuard& scratch, HairState& state
   double kept = 1, stored = potential(step, state.positions, scratch);
   if (stored + kinetic <= bound) return 1;
   for (int halving = 0; !(stored <= bound); ++halving) {
-    const double share = halving < kHalvings ? 0.5 : 0;
+    const double share = halving < halvings ? 0.5 : 0;
     for (int i = 0; i < n; ++i) state.positions[i] = carried[i] + share * (state.positions[i] - carried[i]);
     kept *= share;
     kinetic *= share * share;
@@ -100,6 +102,32 @@ double limitEnergy(const TakenStep& step, EnergyGuard& scratch, HairState& state
   }
   state.previous_dt = 0;  // what came before says nothing any more about how it goes on
   return kept;
+}
+
+// Whether every body that the hair touches moves as the roots carry it: seen from them it stands still and does no
+// work.
+bool bodiesStandStill(const TakenStep& step, const Colliders& colliders, const EnergyGuard& scratch,
+                      const HairState& state) {
+  return std::all_of(state.contacts.begin(), state.contacts.end(), [&](const Contact& contact) {
+    const Vec3& x = scratch.carried[contact.vertex];
+    const Vec3 carrying = (x - step.positions[contact.vertex]) / step.dt;
+    return (surfaceVelocity(colliders.body(contact.collider), x) - carrying).norm() < kStill;
+  });
+}
+
+}  // namespace
+
+double limitEnergy(const TakenStep& step, EnergyGuard& scratch, HairState& state) {
+  if (judge(step, state) != Motion::kViolent) return 1;
+  carry(step, state, scratch);
+  return bringBelowBound(step, kHalvings, scratch, state);
+}
+
+double limitCorrections(const TakenStep& step, const Colliders& colliders, EnergyGuard& scratch, HairState& state) {
+  carry(step, state, scratch);
+  if (!bodiesStandStill(step, colliders, scratch, state)) return 1;
+  // Halfway between two distant places outside of a body may lie its inside.
+  return bringBelowBound(step, judge(step, state) == Motion::kCalm ? kHalvings : 0, scratch, state);
 }
 
 }  // namespace sim

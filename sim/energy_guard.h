@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "sim/colliders.h"
 #include "sim/forces/force_model.h"
 #include "sim/hair_mesh.h"
 #include "sim/hair_state.h"
@@ -37,5 +38,9 @@ struct EnergyGuard {
 // Does nothing to a step that is gentle, leaves no value finite that was not, or ends below its bound. Returns the
 // share of the step's motion against the roots that was kept, 1 where all was.
 double limitEnergy(const TakenStep& step, EnergyGuard& scratch, HairState& state);
+
+// The same for a step, gentle or not, whose contacts have moved vertices: what corrections lift, and what follows them,
+// must be paid for by what the step began with, where the bodies touched stand still against the roots.
+double limitCorrections(const TakenStep& step, const Colliders& colliders, EnergyGuard& scratch, HairState& state);
 
 }  // namespace sim

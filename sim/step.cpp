@@ -169,11 +169,8 @@ void guardGiven(const StepInput& input, Parts& parts, HairState& state, StepRepo
   report.trouble = trouble;
 }
 
-// No step makes energy out of nothing; but the paper's setting has no such bound.
-void boundEnergy(const SimParams& params, const StepBase& base, double dt, Parts& parts, HairState& state) {
-  if (params.solver == Solver::kPaper) return;
-  limitEnergy({*parts.mesh, params, parts.material.model, parts.start_positions, parts.start_velocities, dt, base.wind},
-              parts.energy_guard, state);
+TakenStep takenStep(const SimParams& params, const StepBase& base, double dt, const Parts& parts) {
+  return {*parts.mesh, params, parts.material.model, parts.start_positions, parts.start_velocities, dt, base.wind};
 }
 
 // What the step made of it: where that is ill, the step's start comes back.
@@ -232,7 +229,10 @@ StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInpu
   solveVelocities(params, base, parts, state, report);
   parts.clock.start();
   integratePositions(input, base, dt, mesh, parts, state);
-  boundEnergy(params, base, dt, parts, state);
+  // No step makes energy out of nothing; but the paper's setting has no such bound.
+  const bool bounded = params.solver != Solver::kPaper;
+  const TakenStep taken = takenStep(params, base, dt, parts);
+  if (bounded) limitEnergy(taken, parts.energy_guard, state);
   guardMade(parts, input, state, report);
   parts.clock.spent(kStageOther, report);
 
@@ -244,6 +244,9 @@ StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInpu
   if (params.collide) {
     correctPositions({mesh, params, colliders, parts.start_positions, dt}, parts.clock, parts.correction, state,
                      report);
+    // Overlaps that stood before are lifted out whatever it takes.
+    if (bounded && report.corrected > 0 && report.standing_overlap == 0)
+      limitCorrections(taken, colliders, parts.energy_guard, state);
     parts.clock.spent(kStageCollision, report);
   }
   parts.good.positions = state.positions;

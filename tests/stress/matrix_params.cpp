@@ -64,6 +64,7 @@ void addParameters(Cases& cases) {
         dance.play = Play::kForward;
         dance.params = {{field.name, value}};
         dance.release = kSlowRelease;
+        dance.keeps_energy = std::string_view(field.group) != "Numerics";
         dance.in_short = hair.style == sim::Style::kShort;
         cases.push_back(dance);
         StressCase collapsed = dance;
@@ -123,6 +124,7 @@ void addRandomParameters(std::uint64_t seed, Cases& cases) {
     }
     one.seconds = 0.5;
     one.release = kSlowRelease;
+    one.keeps_energy = false;
     one.in_short = k < 60;
     cases.push_back(one);
   }

@@ -63,7 +63,7 @@ void addStates(Cases& cases) {
     for (const HairChoice& hair : lowStyles()) {
       for (const double step : {1.0 / 240, 1.0 / 60, 1.0 / 30, 0.1}) {
         for (const bool collide : {true, false}) {
-          for (int draw = 0; draw < 3; ++draw) {
+          for (int draw = 0; draw < 2; ++draw) {
             StressCase one;
             one.name = std::string("state/") + row.name + "/" + stepName(step) + "/" + hairName(hair) +
                        (collide ? "/body/" : "/free/") + std::to_string(draw);

@@ -26,8 +26,9 @@ std::string said(const char* format, auto... values) {
 constexpr const char* kVerdicts[] = {"passed", "failed", "skipped"};
 
 // The numbers of an outcome in the table's order, after the case's name and its verdict.
-std::array<double, 14> numbersOf(const Outcome& o) {
+std::array<double, 16> numbersOf(const Outcome& o) {
   return {static_cast<double>(o.with_body),
+          static_cast<double>(o.other_rest),
           o.back_after,
           o.at,
           o.distance,
@@ -35,6 +36,7 @@ std::array<double, 14> numbersOf(const Outcome& o) {
           static_cast<double>(o.inside),
           static_cast<double>(o.unconstrained),
           o.energy_rise,
+          o.energy_step,
           o.memory_growth,
           o.slowdown,
           static_cast<double>(o.recoveries),
@@ -43,19 +45,20 @@ std::array<double, 14> numbersOf(const Outcome& o) {
           o.cpu_seconds};
 }
 
-Outcome outcomeOf(const std::array<double, 14>& n) {
+Outcome outcomeOf(const std::array<double, 16>& n) {
   Outcome o;
-  o.with_body = n[0] != 0, o.back_after = n[1], o.at = n[2], o.distance = n[3], o.deepest = n[4];
-  o.inside = static_cast<long>(n[5]), o.unconstrained = static_cast<long>(n[6]), o.energy_rise = n[7];
-  o.memory_growth = n[8], o.slowdown = n[9], o.recoveries = static_cast<int>(n[10]);
-  o.carried = static_cast<int>(n[11]), o.steps = static_cast<int>(n[12]), o.cpu_seconds = n[13];
+  o.other_rest = n[1] != 0;
+  o.with_body = n[0] != 0, o.back_after = n[2], o.at = n[3], o.distance = n[4], o.deepest = n[5];
+  o.inside = static_cast<long>(n[6]), o.unconstrained = static_cast<long>(n[7]), o.energy_rise = n[8];
+  o.energy_step = n[9], o.memory_growth = n[10], o.slowdown = n[11], o.recoveries = static_cast<int>(n[12]);
+  o.carried = static_cast<int>(n[13]), o.steps = static_cast<int>(n[14]), o.cpu_seconds = n[15];
   return o;
 }
 
 struct FamilyCount {
   std::string family;
   long cases = 0, passed = 0, failed = 0, with_body = 0, inside = 0, unconstrained = 0, carried = 0, recoveries = 0;
-  double slowest = 0, deepest = 0, energy_rise = 0;
+  double slowest = 0, deepest = 0, energy_rise = 0, energy_step = 0;
 };
 
 std::vector<FamilyCount> countFamilies(const std::vector<Result>& results) {
@@ -79,6 +82,7 @@ std::vector<FamilyCount> countFamilies(const std::vector<Result>& results) {
     known->slowest = std::max(known->slowest, o.back_after);
     known->deepest = std::max(known->deepest, o.deepest);
     known->energy_rise = std::max(known->energy_rise, o.energy_rise);
+    known->energy_step = std::max(known->energy_step, o.energy_step);
   }
   return families;
 }
@@ -86,12 +90,12 @@ std::vector<FamilyCount> countFamilies(const std::vector<Result>& results) {
 std::string familyTable(const std::vector<FamilyCount>& families) {
   std::string text =
       "| family | what varies | cases | passed | failed | back on the body | slowest return, s | deepest, mm | inside "
-      "(unconstrained) | largest energy rise | carried | recoveries |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+      "(unconstrained) | energy above what was left | largest step up | carried | recoveries |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const FamilyCount& f : families) {
-    text += said("| %s | %s | %ld | %ld | %ld | %ld | %.2f | %.3f | %ld (%ld) | %.1e | %ld | %ld |\n", f.family.c_str(),
-                 familyTitle(f.family), f.cases, f.passed, f.failed, f.with_body, f.slowest, 1e3 * f.deepest, f.inside,
-                 f.unconstrained, f.energy_rise, f.carried, f.recoveries);
+    text += said("| %s | %s | %ld | %ld | %ld | %ld | %.2f | %.3f | %ld (%ld) | %.1e | %.1e | %ld | %ld |\n",
+                 f.family.c_str(), familyTitle(f.family), f.cases, f.passed, f.failed, f.with_body, f.slowest,
+                 1e3 * f.deepest, f.inside, f.unconstrained, f.energy_rise, f.energy_step, f.carried, f.recoveries);
   }
   return text;
 }
@@ -134,7 +138,9 @@ std::string failureList(const std::vector<Result>& results, std::uint64_t seed) 
 }  // namespace
 
 std::string csvHead() {
-  return "case,verdict,with_body,back_after_s,failed_at_s,distance,deepest_m,inside,unconstrained,energy_rise,"
+  return "case,verdict,with_body,other_rest,back_after_s,failed_at_s,distance,deepest_m,inside,unconstrained,energy_"
+         "rise,energy_"
+         "step,"
          "memory_growth_mib,slowdown,recoveries,carried,steps,cpu_s,fault\n";
 }
 
@@ -154,7 +160,7 @@ std::vector<Result> readCsv(const std::string& file, const std::vector<StressCas
   for (int number = 2; std::getline(text, line); ++number) {
     std::stringstream fields(line);
     std::string name, verdict, field, fault;
-    std::array<double, 14> numbers{};
+    std::array<double, 16> numbers{};
     std::getline(fields, name, ',');
     std::getline(fields, verdict, ',');
     bool fine = cases.contains(name);
@@ -206,14 +212,16 @@ colliders are taken away. A case passes when
 - every position and velocity is finite after every step;
 - hair and twin, the same hair put to its rest shape when the motion stopped, come within )"
            << 100 * kBack << R"( % of the hair's length of one another, worst
-  vertex, also extrapolated by 0.1 s of velocity, within the stated time (1 s with the body and 5 s without; 30 s without where a parameter
+  vertex, also extrapolated by 0.1 s of velocity, or hair at rest elsewhere with no more energy than
+  the twin (very soft hair sags into more shapes than one), within the stated time (1 s with the body and 5 s without; 30 s without where a parameter
   row is turned to its limit, 15 s for draws over all axes);
 - no external vertex is deeper than )"
            << 1e3 * kDeepest << R"( mm inside a collider at any frame's end; where a body appears within the hair,
   or the hair within a body, after 0.1 or 0.2 s;
-- mechanical energy rises by no more than )"
-           << 100 * kEnergyTolerance
-           << R"( % of what the motion left in any step after everything stands still (not asked where wind blows);
+- mechanical energy, once everything stands still, never exceeds what the motion left by more than )"
+           << 100 * kEnergyTolerance << R"( % (not asked where wind
+  blows, nor where rows of the numerics are turned: one iteration a solve keeps no such law). From one step to the next it may rise below that level: a contact found at a step's end lifts hair that has
+  fallen a millimetre too far, and very stiff hair trades energy between steps. The largest such rise is listed;
 - the watchdog never steps in, but for the family that injects faults.
 
 )"

@@ -23,11 +23,14 @@ struct Outcome {
   double at = 0;             // s into the case
   bool with_body = false;    // back with the colliders there
   double back_after = -1;    // s after the motion stopped; negative: not back
+  bool other_rest = false;   // at rest elsewhere than the twin, no higher in energy
+  int worst_vertex = 0;      // the one farthest from its twin
   double distance = 0;       // from the twin at the end, worst vertex, of the hair's length
   double deepest = 0;        // m inside a collider at a frame's end, outside of grace
   long inside = 0;           // vertices deeper than kDeepest, summed over frames, outside of grace
   long unconstrained = 0;    // of those, without a contact
-  double energy_rise = 0;    // largest rise after the motion stopped, of the energy that it left
+  double energy_rise = 0;    // most above what the motion left, after it stopped, of the energy that it left
+  double energy_step = 0;    // largest rise from step to step, of the same; not judged
   double memory_growth = 0;  // MiB, of a soak after its first tenth
   double slowdown = 1;       // of a soak: CPU time a step in its last tenth over that in its second
   int recoveries = 0, carried = 0, steps = 0;

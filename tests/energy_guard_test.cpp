@@ -1,0 +1,139 @@
+// No violent step makes energy out of nothing, gentle ones are left alone.
+#include "sim/energy_guard.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "sim/watchdog.h"
+#include "tests/test_meshes.h"
+
+namespace {
+
+using sim::Vec3;
+using test::Hair;
+
+constexpr double kFrame = 1.0 / 60;
+
+test::PatchOptions patch() {
+  test::PatchOptions o;
+  o.nx = 4, o.nz = 3, o.layers = 7, o.length = 0.3, o.mixed = true;
+  return o;
+}
+
+sim::SimParams hairWithoutBody() {
+  sim::SimParams params;
+  params.collide = false;
+  return params;
+}
+
+double massOf(const Hair& hair) {
+  double mass = 0;
+  for (int i = 0; i < hair.mesh.vertexCount(); ++i) {
+    if (!hair.mesh.isRoot(i)) mass += hair.params.density * hair.mesh.vertex_volume[i];
+  }
+  return mass;
+}
+
+// Energy above that of the rest shape where the roots are, J.
+double energyAboveRest(Hair& hair, const Vec3& moved) {
+  const sim::HairState rest = sim::restState(hair.mesh, Eigen::Isometry3d(Eigen::Translation3d(moved)));
+  return sim::mechanicalEnergy(hair.mesh, hair.params, hair.context, hair.state) -
+         sim::mechanicalEnergy(hair.mesh, hair.params, hair.context, rest);
+}
+
+// The largest energy, of that which being left behind is worth, after the roots were dragged along by `moved` within
+// one step and stand still.
+double worstAfterDrag(sim::SimParams params, const Vec3& moved, double dt) {
+  Hair hair(test::combedShape(patch()), params);
+  const double worth = 0.5 * massOf(hair) * moved.squaredNorm() / (dt * dt);
+  for (Vec3& root : hair.roots) root += moved;
+  double worst = 0;
+  for (int n = 0; n < 60; ++n) {
+    const sim::StepReport report = hair.step(dt);
+    EXPECT_EQ(report.recoveries, 0) << sim::troubleText(report.trouble);
+    EXPECT_FALSE(report.carried);
+    worst = std::max(worst, energyAboveRest(hair, moved) / worth);
+  }
+  return worst;
+}
+
+TEST(EnergyGuard, HairLeftBehindByItsRootsStoresNoMoreThanThatIsWorth) {
+  const Vec3 directions[] = {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(-0.3, -0.8, 0.5)};
+  for (const Vec3& direction : directions) {
+    EXPECT_LT(worstAfterDrag(hairWithoutBody(), direction, kFrame), 1.02);
+    EXPECT_LT(worstAfterDrag(hairWithoutBody(), 8 * direction, 0.1), 1.02);
+  }
+}
+
+TEST(EnergyGuard, AndComesBack) {
+  Hair hair(test::combedShape(patch()), hairWithoutBody());
+  for (Vec3& root : hair.roots) root += Vec3(2, 0, 0);
+  for (int n = 0; n < 300; ++n) hair.step(kFrame);
+  const sim::HairState rest = sim::restState(hair.mesh, Eigen::Isometry3d(Eigen::Translation3d(2, 0, 0)));
+  EXPECT_LT(test::largestDistance(hair.state.positions, rest.positions), 0.01 * hair.mesh.hair_length);
+}
+
+// A state flung away from rest within one step, and that step.
+struct Flung {
+  Hair hair{test::combedShape(patch()), hairWithoutBody()};
+  sim::HairState start = hair.state;
+  sim::ForceModel<double> model = sim::makeForceModel(hair.mesh, sim::systemPattern(hair.mesh), hair.params);
+  sim::EnergyGuard scratch;
+
+  void fling(double way) {
+    test::Random random(5);
+    for (int i = 0; i < hair.mesh.vertexCount(); ++i) {
+      if (hair.mesh.isRoot(i)) continue;
+      const Vec3 step = way * Vec3(random(-1, 1), random(-1, 1), random(-1, 1));
+      hair.state.positions[i] += step;
+      hair.state.velocities[i] = step / kFrame;
+    }
+  }
+  double limit() {
+    return sim::limitEnergy({hair.mesh, hair.params, model, start.positions, start.velocities, kFrame, Vec3::Zero()},
+                            scratch, hair.state);
+  }
+};
+
+TEST(EnergyGuard, AStepThatEndsTooHighIsTakenBackUntilItFits) {
+  Flung flung;
+  for (Vec3& v : flung.start.velocities) v = Vec3(3, 0, 0);
+  flung.fling(0.5);
+  EXPECT_LT(flung.limit(), 1);
+  const double bound = 0.5 * massOf(flung.hair) * 9;
+  EXPECT_LE(energyAboveRest(flung.hair, Vec3::Zero()), bound * (1 + 1e-9));
+  EXPECT_GT(energyAboveRest(flung.hair, Vec3::Zero()), 0.2 * bound) << "it was held back more than it need be";
+}
+
+TEST(EnergyGuard, AGentleStepKeepsEveryBit) {
+  Flung flung;
+  flung.fling(0.01);
+  const sim::HairState before = flung.hair.state;
+  EXPECT_EQ(flung.limit(), 1);
+  EXPECT_EQ(flung.hair.state.positions, before.positions);
+  EXPECT_EQ(flung.hair.state.velocities, before.velocities);
+}
+
+TEST(EnergyGuard, WhatIsNotFiniteIsLeftToTheWatchdog) {
+  Flung flung;
+  flung.fling(0.5);
+  flung.hair.state.positions[3].x() = std::numeric_limits<double>::quiet_NaN();
+  const sim::HairState before = flung.hair.state;
+  EXPECT_EQ(flung.limit(), 1);
+  EXPECT_EQ(flung.hair.state.positions[5], before.positions[5]);
+}
+
+TEST(EnergyGuard, BeingCarriedAlongAndTurnedMakesNoEnergy) {
+  Flung flung;
+  const Eigen::Isometry3d move = Eigen::Translation3d(0, 3, 1) * Eigen::AngleAxisd(2, Vec3(1, 2, 0).normalized());
+  for (int i = 0; i < flung.hair.mesh.vertexCount(); ++i) {
+    flung.hair.state.positions[i] = move * flung.start.positions[i];
+    flung.hair.state.velocities[i] = (flung.hair.state.positions[i] - flung.start.positions[i]) / kFrame;
+  }
+  const sim::HairState before = flung.hair.state;
+  EXPECT_EQ(flung.limit(), 1);
+  EXPECT_EQ(flung.hair.state.positions, before.positions);
+}
+
+}  // namespace
