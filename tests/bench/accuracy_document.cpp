@@ -1,14 +1,13 @@
 #include "tests/bench/accuracy_document.h"
 
 #include <algorithm>
-#include <cstdarg>
-#include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "app/errors.h"
+#include "tests/bench/measured_part.h"
 
 namespace bench {
 namespace {
@@ -20,15 +19,6 @@ std::string word(const Json& row, const char* key) {
 }
 double number(const Json& row, const char* key) {
   return row[key].get<double>();
-}
-
-__attribute__((format(printf, 1, 2))) std::string formatted(const char* format, ...) {
-  char text[512];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
 }
 
 // The values of `key`, each once, in the order in which they appear.
@@ -181,9 +171,8 @@ std::string peersPart(const Json& rows) {
     const std::vector<Json> some = rowsOf(rows, scene);
     part += formatted("### %s: %.0f vertices\n\n", scene.c_str(), number(some.front(), "vertices"));
     part +=
-        "| who | ms a frame | edge error, mean | worst | volume error, mean | worst | inverted | after a collapse | "
-        "after "
-        "the motion |\n|---|---|---|---|---|---|---|---|---|\n";
+        "| who | ms a frame | stretch along, mean | worst | across, mean | worst | volume error, mean | worst | "
+        "inverted | after a collapse | after the motion |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
     for (const Json& row : some) {
       part += formatted("| %s | %.3f | %.4f | %.3f | %.4f | %.3f | %.4f | %.2f | %.0f | %.2e | %.2e |\n",
                         word(row, "who").c_str(), number(row, "ms_a_frame"), number(row, "along_mean"),
@@ -205,25 +194,13 @@ Json readRows(const std::string& file, const char* command) {
   return rows;
 }
 
-void replacePart(const std::string& file, const std::string& name, const std::string& part, std::string& text) {
-  const std::string opening = "<!-- measured: " + name + " -->", closing = "<!-- end of " + name + " -->";
-  const auto start = text.find(opening), end = text.find(closing);
-  if (start == std::string::npos || end == std::string::npos || end < start) {
-    throw app::InputError(file, "", "lacks the marks of its part '" + name + "'", "restore it from the repository");
-  }
-  text = text.substr(0, start) + opening + "\n\n" + part + text.substr(end);
-}
-
 }  // namespace
 
 void writeAccuracyDocument(const std::string& folder) {
   const std::string file = folder + "/accuracy.md";
-  std::ifstream stream(file);
-  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  replacePart(file, "sweep", sweepPart(readRows(folder + "/pareto.json", "--pareto")), text);
-  replacePart(file, "solvers", solversPart(readRows(folder + "/solvers.json", "--solvers")), text);
-  replacePart(file, "peers", peersPart(readRows(folder + "/peers.json", "--peers")), text);
-  std::ofstream(file) << text;
+  writeMeasuredPart(file, "sweep", sweepPart(readRows(folder + "/pareto.json", "--pareto")));
+  writeMeasuredPart(file, "solvers", solversPart(readRows(folder + "/solvers.json", "--solvers")));
+  writeMeasuredPart(file, "peers", peersPart(readRows(folder + "/peers.json", "--peers")));
 }
 
 }  // namespace bench

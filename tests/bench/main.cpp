@@ -10,6 +10,7 @@
 #include "tests/bench/colliders.h"
 #include "tests/bench/collision_document.h"
 #include "tests/bench/collisions.h"
+#include "tests/bench/consistency.h"
 #include "tests/bench/contact_sheet.h"
 #include "tests/bench/gate.h"
 #include "tests/bench/ladder.h"
@@ -52,6 +53,8 @@ std::vector<Task> tasks() {
        [](Asked& a) { bench::runSolverChart(a.solvers); }},
       {"--pareto", "run time against error, for every scene and way to simulate it",
        [](Asked& a) { bench::runPareto(a.pareto); }},
+      {"--consistency", "whether resolutions and time steps follow the same motion; tables of consistency.md in --out",
+       [](Asked& a) { bench::runConsistency({a.pareto.folder}); }},
       {"--ladder", "cost and error of the budget governor's settings (app/governor_ladder.cpp)",
        [](Asked& a) { bench::measureLadder(a.pareto.runs); }},
       {"--collisions", "what is left inside the body, contacts that come and go, rest",

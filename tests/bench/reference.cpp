@@ -31,7 +31,8 @@ std::string keyOf(const TrajectoryStage& stage, const sim::SimParams& params) {
   std::ostringstream key;
   key.precision(17);
   const TrajectoryScene& scene = stage.scene();
-  key << scene.name << " " << scene.motion << " " << scene.speed << " " << scene.seconds << " " << scene.collide;
+  key << scene.name << " " << scene.motion << " " << scene.speed << " " << scene.seconds << " " << scene.collide << " "
+      << kSamplesPerSecond;
   for (const sim::ParamField& field : sim::paramFields()) key << " " << field.name << "=" << paramText(field, params);
   for (const sim::Vec3& p : stage.start().positions) key << " " << p.x() << " " << p.y() << " " << p.z();
   return key.str();

@@ -9,7 +9,8 @@
 namespace bench {
 namespace {
 
-constexpr double kSettle = 2;  // s before the start
+constexpr double kSettle = 2;         // s before the start
+constexpr double kSameMoment = 1e-6;  // of a step
 
 }  // namespace
 
@@ -75,24 +76,34 @@ RunResult TrajectoryStage::run(sim::SimParams params, int samples) {
   app::simulateActor(params, params.time_step, params.time_step, actor_);
   restart();
   RunResult result;
-  const int steps_a_sample = static_cast<int>(std::lround(1 / (kSamplesPerSecond * params.time_step)));
+  const double dt = params.time_step;
   int steps = 0;
-  for (int sample = 0; sample < samples; ++sample) {
-    for (int k = 0; k < steps_a_sample; ++k, ++steps) {
-      app::moveActor(params.time_step, actor_);
-      const double started = cpuSeconds();
-      const sim::StepReport report =
-          app::simulateActor(params, params.time_step, (steps + 1) * params.time_step, actor_);
-      result.seconds += cpuSeconds() - started;
-      result.iterations += report.solver_iterations;
-      result.recoveries += report.recoveries;
-    }
-    result.trajectory.push_back(actor_.hair.positions);
-    result.energy.push_back(energy());
+  std::vector<sim::Vec3> before;
+  double energy_before = energy();
+  while (static_cast<int>(result.trajectory.size()) < samples) {
+    before = actor_.hair.positions;
+    app::moveActor(dt, actor_);
+    const double started = cpuSeconds();
+    const sim::StepReport report = app::simulateActor(params, dt, ++steps * dt, actor_);
+    result.seconds += cpuSeconds() - started;
+    result.iterations += report.solver_iterations;
+    result.recoveries += report.recoveries;
+    const auto fractionOfNext = [&] {
+      return (static_cast<double>(result.trajectory.size() + 1) / kSamplesPerSecond - (steps - 1) * dt) / dt;
+    };
+    if (fractionOfNext() > 1 + kSameMoment) continue;
+    const double energy_after = energy();
     measure(result);
+    for (double f; (f = fractionOfNext()) <= 1 + kSameMoment && static_cast<int>(result.trajectory.size()) < samples;) {
+      if (f > 1 - kSameMoment) f = 1;
+      auto& sample = result.trajectory.emplace_back(actor_.hair.positions);
+      for (std::size_t i = 0; f < 1 && i < sample.size(); ++i) sample[i] = (1 - f) * before[i] + f * sample[i];
+      result.energy.push_back((1 - f) * energy_before + f * energy_after);
+    }
+    energy_before = energy_after;
   }
   result.iterations /= std::max(steps, 1);
-  result.volume_error /= std::max(samples, 1);
+  result.volume_error /= std::max(result.measured, 1);
   return result;
 }
 
@@ -114,6 +125,7 @@ void TrajectoryStage::measure(RunResult& result) const {
     const double strain = (x[edge.a] - x[edge.b]).norm() / edge.rest_length - 1;
     result.worst_stretch = std::max(result.worst_stretch, std::abs(strain));
   }
+  ++result.measured;
   double sum = 0;
   for (const sim::CornerTet& tet : mesh().tets) {
     const sim::Vec3 e1 = x[tet.v[1]] - x[tet.v[0]], e2 = x[tet.v[2]] - x[tet.v[0]], e3 = x[tet.v[3]] - x[tet.v[0]];
