@@ -8,6 +8,7 @@
 #include "app/frame_stats.h"
 #include "app/hair_file.h"
 #include "app/sim_to_render.h"
+#include "app/sleep.h"
 
 namespace app {
 
@@ -17,11 +18,31 @@ namespace {
 // falls.
 constexpr double kSettlingDrag = 12;
 
+// s, after which what the coarse shape lacks at the change-over has faded to a third: slow enough not to be seen.
+constexpr double kRemainderTime = 1;
+
 // Never the same twice in a process: the renderer keeps GPU resources by these, also across scenes opened one after
 // another.
 std::uint64_t freshId() {
   static std::atomic<std::uint64_t> next{1};
   return next++;
+}
+
+// Joints that skin, ellipsoids or the scalp hang on, and those above them.
+std::vector<unsigned char> movingJoints(const Character& character) {
+  std::vector<unsigned char> moving(character.skeleton.joints.size(), 0);
+  moving[static_cast<std::size_t>(character.head_joint)] = 1;
+  for (const BodyEllipsoid& part : character.ellipsoids) moving[static_cast<std::size_t>(part.joint)] = 1;
+  for (std::size_t v = 0; v < character.mesh.joints.size(); ++v) {
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (character.mesh.weights[v][k] > 0) moving[character.mesh.joints[v][k]] = 1;
+    }
+  }
+  for (std::size_t j = moving.size(); j-- > 0;) {
+    const int parent = character.skeleton.joints[j].parent;
+    if (moving[j] && parent >= 0) moving[static_cast<std::size_t>(parent)] = 1;
+  }
+  return moving;
 }
 
 LoadedBody& loadBody(const CharacterSpec& spec, Wardrobe& wardrobe) {
@@ -32,6 +53,7 @@ LoadedBody& loadBody(const CharacterSpec& spec, Wardrobe& wardrobe) {
   auto body = std::make_unique<LoadedBody>();
   body->key = key;
   body->character = loadCharacter(spec.motion, spec.parts);
+  body->moving_joints = movingJoints(body->character);
   body->id = freshId();
   wardrobe.bodies.push_back(std::move(body));
   return *wardrobe.bodies.back();
@@ -49,6 +71,7 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, Wardrobe& wa
   }
   auto haircut = std::make_unique<Haircut>();
   haircut->key = key;
+  haircut->id = freshId();
   // Built-in styles alone ask for the distance, and it is a grid that takes time to fill.
   if (spec.hair.empty() && !body.distance) body.distance = restBodyDistance(body.character);
   try {
@@ -60,6 +83,7 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, Wardrobe& wa
                      error.mend);
   }
   haircut->faces = renderFaces(haircut->mesh);
+  haircut->parts = sim::connectedParts(haircut->mesh);
   wardrobe.haircuts.push_back(std::move(haircut));
   return *wardrobe.haircuts.back();
 }
@@ -74,16 +98,18 @@ int findClip(const CharacterSpec& spec, const Character& character) {
   throw InputError(spec.motion, "clip '" + spec.clip + "'", "is not in the file", "choose one of " + names);
 }
 
-// The playback's pose where the scene stands the figure.
-void placedPose(const Actor& actor, Pose& pose) {
-  poseAt(actor.body->character.skeleton, actor.playedClip(), actor.playback, pose);
+// The playback's pose where the scene stands the figure; of the joints in `needed` when it is given.
+void placedPose(const Actor& actor, std::span<const unsigned char> needed, Pose& pose) {
+  poseAt(actor.body->character.skeleton, actor.playedClip(), actor.playback, pose, needed);
   const Rigid place = Eigen::Translation3d(actor.spec.position) * Eigen::AngleAxisd(actor.spec.heading, Vec3::UnitY());
-  for (Rigid& joint : pose.world) joint = place * joint;
+  for (std::size_t j = 0; j < pose.world.size(); ++j) {
+    if (needed.empty() || needed[j]) pose.world[j] = place * pose.world[j];
+  }
 }
 
-void followScalp(const Actor& actor, std::vector<sim::Vec3>& roots) {
+void followScalp(const Actor& actor, const Haircut& haircut, std::vector<sim::Vec3>& roots) {
   const Rigid scalp = scalpToWorld(actor.body->character, actor.pose);
-  const sim::HairMeshShape& shape = actor.haircut->mesh.shape;
+  const sim::HairMeshShape& shape = haircut.mesh.shape;
   roots.resize(shape.columnCount());
   for (int c = 0; c < shape.columnCount(); ++c) roots[c] = scalp * shape.positions[shape.column_first[c]];
 }
@@ -121,15 +147,40 @@ Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, Wardrob
   return actor;
 }
 
+const HaircutPair* coarsePair(const Actor& actor, Wardrobe& wardrobe) {
+  if (!actor.spec.hair.empty() || actor.spec.resolution == sim::Resolution::kLow) return nullptr;
+  for (const auto& pair : wardrobe.pairs) {
+    if (pair->fine == actor.haircut) return pair.get();
+  }
+  CharacterSpec spec = actor.spec;
+  spec.resolution = sim::Resolution::kLow;
+  auto pair = std::make_unique<HaircutPair>();
+  pair->fine = actor.haircut;
+  pair->coarse = &cutHair(spec, loadBody(spec, wardrobe), wardrobe);
+  pair->to_coarse = sim::makeShapeTransfer(pair->fine->mesh, pair->coarse->mesh);
+  pair->to_fine = sim::makeShapeTransfer(pair->coarse->mesh, pair->fine->mesh);
+  wardrobe.pairs.push_back(std::move(pair));
+  return wardrobe.pairs.back().get();
+}
+
 void tidy(const std::vector<Actor>& actors, Wardrobe& wardrobe) {
   const auto worn = [&](const auto& entry) {
     return std::any_of(actors.begin(), actors.end(), [&](const Actor& actor) {
+      const HaircutPair* pair = actor.coarse.pair;
       return static_cast<const void*>(actor.body) == entry.get() ||
-             static_cast<const void*>(actor.haircut) == entry.get();
+             static_cast<const void*>(actor.haircut) == entry.get() ||
+             (pair &&
+              (static_cast<const void*>(pair) == entry.get() || static_cast<const void*>(pair->coarse) == entry.get()));
     });
   };
+  std::erase_if(wardrobe.pairs, [&](const auto& pair) { return !worn(pair); });
   std::erase_if(wardrobe.bodies, [&](const auto& body) { return !worn(body); });
   std::erase_if(wardrobe.haircuts, [&](const auto& haircut) { return !worn(haircut); });
+}
+
+void wakeAll(Actor& actor) {
+  actor.sleep.asleep = false;
+  for (PartHair& part : actor.part_hairs) part.sleep.asleep = false;
 }
 
 void keepMotion(const Actor& from, Actor& actor) {
@@ -140,7 +191,7 @@ void keepMotion(const Actor& from, Actor& actor) {
 void placeActor(Actor& actor, bool rest) {
   const bool carried = !rest && !actor.pose.world.empty();
   const Rigid before = carried ? scalpToWorld(actor.body->character, actor.pose) : Rigid::Identity();
-  placedPose(actor, actor.pose);
+  placedPose(actor, {}, actor.pose);
   const Rigid after = scalpToWorld(actor.body->character, actor.pose);
   if (carried) {
     sim::carryAlong(before, after, actor.hair);
@@ -151,21 +202,101 @@ void placeActor(Actor& actor, bool rest) {
   actor.shown_pose = actor.pose;  // requests may ask for it before the first frame
   actor.previous_positions = actor.hair.positions;
   poseEllipsoids(actor.body->character, actor.pose, actor.pose, 0, actor.ellipsoids);
-  followScalp(actor, actor.roots);
+  followScalp(actor, *actor.haircut, actor.roots);
+  actor.posed_time = actor.playback.time;
+  actor.pose_still = false;
+  actor.span = 1;
+  actor.ahead = 0;
+  actor.coarse.active = false;
+  actor.shown_still = false;
+  wakeAll(actor);
 }
 
-void moveActor(double step, Actor& actor) {
-  std::swap(actor.previous_pose, actor.pose);
+bool moveActor(double step, Actor& actor, bool skip_still_pose, bool skip_idle_bones) {
   advancePlayback(actor.playedClip(), step, actor.playback);
-  placedPose(actor, actor.pose);
-  followScalp(actor, actor.roots);
+  const bool still = actor.playback.time == actor.posed_time;
+  if (still && actor.pose_still && skip_still_pose) return false;
+  std::swap(actor.previous_pose, actor.pose);
+  const std::span<const unsigned char> all;
+  placedPose(actor, skip_idle_bones ? std::span<const unsigned char>(actor.body->moving_joints) : all, actor.pose);
+  followScalp(actor, *actor.haircut, actor.roots);
   poseEllipsoids(actor.body->character, actor.pose, actor.previous_pose, step, actor.ellipsoids);
+  actor.pose_still = still;
+  actor.posed_time = actor.playback.time;
+  actor.shown_still = false;
+  return true;
 }
+
+void enterCoarse(const HaircutPair& pair, Actor& actor) {
+  CoarseHair& coarse = actor.coarse;
+  const sim::HairMesh &fine_mesh = pair.fine->mesh, &coarse_mesh = pair.coarse->mesh;
+  if (coarse.pair != &pair || !coarse.context) {
+    coarse.pair = &pair;
+    coarse.context = std::make_unique<sim::StepContext>(coarse_mesh, now);
+    coarse.hair.positions.resize(static_cast<std::size_t>(coarse_mesh.vertexCount()));
+    coarse.hair.velocities.resize(static_cast<std::size_t>(coarse_mesh.vertexCount()));
+    coarse.remainder.resize(static_cast<std::size_t>(fine_mesh.vertexCount()));
+  }
+  const Rigid head = scalpToWorld(actor.body->character, actor.pose);
+  sim::transferPositions(pair.to_coarse, fine_mesh, coarse_mesh, head, actor.hair.positions, coarse.hair.positions);
+  sim::transferVectors(pair.to_coarse, actor.hair.velocities, coarse.hair.velocities);
+  followScalp(actor, *pair.coarse, coarse.roots);
+  for (int c = 0; c < coarse_mesh.columnCount(); ++c)
+    coarse.hair.positions[coarse_mesh.shape.column_first[c]] = coarse.roots[c];
+  coarse.hair.contacts.clear();
+  coarse.hair.previous_dt = 0;
+  sim::transferPositions(pair.to_fine, coarse_mesh, fine_mesh, head, coarse.hair.positions, coarse.remainder);
+  for (std::size_t i = 0; i < coarse.remainder.size(); ++i)
+    coarse.remainder[i] = head.linear().transpose() * (actor.hair.positions[i] - coarse.remainder[i]);
+  coarse.active = true;
+}
+
+void leaveCoarse(Actor& actor) {
+  // Positions and velocities have been kept up to date; what only the fine mesh knows starts anew.
+  actor.hair.contacts.clear();
+  actor.hair.previous_dt = 0;
+  actor.coarse.active = false;
+}
+
+namespace {
+
+sim::StepReport simulateCoarse(const sim::SimParams& params, sim::StepInput input, double step, Actor& actor) {
+  CoarseHair& coarse = actor.coarse;
+  const sim::HairMesh &fine_mesh = coarse.pair->fine->mesh, &coarse_mesh = coarse.pair->coarse->mesh;
+  followScalp(actor, *coarse.pair->coarse, coarse.roots);
+  input.roots = coarse.roots;
+  const sim::StepReport report = sim::advance(coarse_mesh, params, input, step, *coarse.context, coarse.hair);
+  const Rigid head = scalpToWorld(actor.body->character, actor.pose);
+  sim::transferPositions(coarse.pair->to_fine, coarse_mesh, fine_mesh, head, coarse.hair.positions,
+                         actor.hair.positions);
+  sim::transferVectors(coarse.pair->to_fine, coarse.hair.velocities, actor.hair.velocities);
+  const double kept = std::exp(-step / kRemainderTime);
+  for (std::size_t i = 0; i < coarse.remainder.size(); ++i) {
+    coarse.remainder[i] *= kept;
+    actor.hair.positions[i] += head.linear() * coarse.remainder[i];
+  }
+  for (int c = 0; c < fine_mesh.columnCount(); ++c) {
+    const int root = fine_mesh.shape.column_first[c];
+    actor.hair.velocities[root] = (actor.roots[c] - actor.previous_positions[root]) / step;
+    actor.hair.positions[root] = actor.roots[c];
+  }
+  return report;
+}
+
+}  // namespace
 
 sim::StepReport simulateActor(const sim::SimParams& params, double step, double time, Actor& actor) {
   std::copy(actor.hair.positions.begin(), actor.hair.positions.end(), actor.previous_positions.begin());
-  actor.last_report = sim::advance(actor.haircut->mesh, params, stepInput(params, step, time, actor), step,
-                                   *actor.context, actor.hair);
+  actor.shown_still = false;
+  const sim::StepInput input = stepInput(params, step, time, actor);
+  const auto asleep = [](const PartHair& part) { return part.sleep.asleep; };
+  if (actor.coarse.active) {
+    actor.last_report = simulateCoarse(params, input, step, actor);
+  } else if (std::ranges::any_of(actor.part_hairs, asleep) && !actor.sleep.asleep) {
+    actor.last_report = advanceAwakeParts(params, input, step, actor);
+  } else {
+    actor.last_report = sim::advance(actor.haircut->mesh, params, input, step, *actor.context, actor.hair);
+  }
   return actor.last_report;
 }
 
@@ -175,11 +306,17 @@ sim::StepReport stepActor(const sim::SimParams& params, double step, double time
 }
 
 void settleActor(const sim::SimParams& params, double seconds, Actor& actor) {
+  wakeAll(actor);
   sim::SimParams thick = params;
   thick.air_drag = std::max(params.air_drag, kSettlingDrag);
   thick.wind_x = thick.wind_y = thick.wind_z = 0;
   const int steps = static_cast<int>(seconds / params.time_step);
   if (steps == 0) return;
+  if (actor.coarse.active) {
+    for (int i = 0; i < steps; ++i) simulateActor(thick, params.time_step, 0, actor);
+    actor.previous_positions = actor.hair.positions;
+    return;
+  }
   const sim::StepInput input = stepInput(thick, params.time_step, 0, actor);
   for (int i = 0; i < steps; ++i)
     sim::advance(actor.haircut->mesh, thick, input, params.time_step, *actor.context, actor.hair);
@@ -187,11 +324,15 @@ void settleActor(const sim::SimParams& params, double seconds, Actor& actor) {
 }
 
 void showActor(double fraction, Actor& actor) {
-  blendPoses(actor.previous_pose, actor.pose, fraction, actor.shown_pose);
-  if (blendPositions(actor.previous_positions, actor.hair.positions, fraction, actor.shown_positions)) {
+  if (actor.shown_still && !actor.shown_positions.empty()) return;
+  // Between the ends of the actor's own step, which may cover several of the clock's.
+  const double within = (actor.span - 1 - actor.ahead + fraction) / actor.span;
+  blendPoses(actor.previous_pose, actor.pose, within, actor.shown_pose);
+  if (blendPositions(actor.previous_positions, actor.hair.positions, within, actor.shown_positions)) {
     ++actor.position_revision;
   }
   if (jointMatrices(actor.body->character.skeleton, actor.shown_pose, actor.joint_matrices)) ++actor.pose_revision;
+  actor.shown_still = actor.pose_still && (actor.sleep.asleep || actor.unseen);
 }
 
 }  // namespace app

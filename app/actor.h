@@ -13,7 +13,10 @@
 #include "app/step_error.h"
 #include "render/frame_input.h"
 #include "sim/hair_mesh.h"
+#include "sim/hair_parts.h"
 #include "sim/hair_state.h"
+#include "sim/shape_transfer.h"
+#include "sim/sleep.h"
 #include "sim/step.h"
 
 namespace app {
@@ -26,19 +29,55 @@ struct LoadedBody {
   sim::BodyDistance distance;
   bool has_parts = false;           // they are made when signed distances are first collided with
   std::vector<PartDistance> parts;
+  std::vector<unsigned char> moving_joints;  // per joint: whether skin, ellipsoids or scalp hang on it or below it
 };
 
 // A hair mesh, built once whatever the number of actors that wear it.
 struct Haircut {
   std::string key;
+  std::uint64_t id = 0;
   sim::HairMesh mesh;
+  std::vector<sim::HairPart> parts;  // connected ones; empty: all of it is
   std::vector<render::HairFace> faces;
+};
+
+// Two resolutions of a style on one head, and the ways between them.
+struct HaircutPair {
+  const Haircut* fine = nullptr;
+  const Haircut* coarse = nullptr;
+  sim::ShapeTransfer to_coarse, to_fine;
 };
 
 // Owns what actors share. Addresses stay good while an entry is in use.
 struct Wardrobe {
   std::vector<std::unique_ptr<LoadedBody>> bodies;
   std::vector<std::unique_ptr<Haircut>> haircuts;
+  std::vector<std::unique_ptr<HaircutPair>> pairs;
+};
+
+// How much care the simulation takes of an actor.
+struct SimDetail {
+  int step_span = 1;    // simulation steps that one step of the actor covers
+  bool coarse = false;  // its style's low resolution is simulated in place of its own
+  bool seen = true;     // neither figure nor shadow can be in the picture otherwise
+};
+
+// The hair of an actor that is simulated at a lower resolution. Its own hair state is then filled from this one.
+struct CoarseHair {
+  const HaircutPair* pair = nullptr;
+  bool active = false;
+  sim::HairState hair;
+  std::vector<sim::Vec3> roots;
+  std::unique_ptr<sim::StepContext> context;
+  std::vector<sim::Vec3> remainder;  // m, head frame: what the coarse shape lacks, fading after the change-over
+};
+
+// One connected part of an actor's hair, stepped by itself while another one sleeps.
+struct PartHair {
+  sim::SleepState sleep;
+  sim::HairState hair;  // gathered from the actor's before each use
+  std::vector<sim::Vec3> roots;
+  std::unique_ptr<sim::StepContext> context;  // made when it is first stepped by itself
 };
 
 struct Actor {
@@ -60,6 +99,18 @@ struct Actor {
   sim::StepReport last_report;
   StepErrorMeter error_meter;
 
+  // What may be left out, and for how long.
+  SimDetail detail;
+  CoarseHair coarse;
+  sim::SleepState sleep;         // of all the hair; its parts' when there are several
+  std::vector<PartHair> part_hairs;
+  int span = 1, ahead = 0;   // steps that the last step covered; those of them that the clock has yet to take
+  double posed_time = -1;    // s, clip time of `pose`
+  bool pose_still = false;   // pose and previous pose are one
+  bool unseen = false;       // was not stepped last time
+  bool shown_still = false;  // what is shown is what there is
+  double usual_step = 0;     // s, a step's cost of late
+
   // What the picture shows.
   Pose shown_pose;
   std::vector<float> shown_positions;
@@ -73,6 +124,10 @@ struct Actor {
 // wardrobe may then hold an entry more, and nothing else changed.
 Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, Wardrobe& wardrobe);
 
+// The actor's style at its lowest resolution with the ways to it and back, made when it is first asked for; null for
+// hair from a file and for hair that is already as coarse.
+const HaircutPair* coarsePair(const Actor& actor, Wardrobe& wardrobe);
+
 // Drops what no actor wears.
 void tidy(const std::vector<Actor>& actors, Wardrobe& wardrobe);
 
@@ -84,10 +139,18 @@ void keepMotion(const Actor& from, Actor& actor);
 void placeActor(Actor& actor, bool rest);
 
 // One step of motion and hair: playback by `step` seconds of wall time, then the simulation. `time` is the step's end.
-// moveActor and simulateActor are its two halves.
-void moveActor(double step, Actor& actor);
+// moveActor and simulateActor are its two halves; moveActor returns whether anything moved.
+bool moveActor(double step, Actor& actor, bool skip_still_pose = true, bool skip_idle_bones = true);
 sim::StepReport simulateActor(const sim::SimParams& params, double step, double time, Actor& actor);
 sim::StepReport stepActor(const sim::SimParams& params, double step, double time, Actor& actor);
+
+// Goes over to the pair's coarse mesh, from the present shape and velocities of the actor's own; and back. What is
+// shown does not jump: the difference of the two shapes is kept and fades.
+void enterCoarse(const HaircutPair& pair, Actor& actor);
+void leaveCoarse(Actor& actor);
+
+// What sleeps is stepped again from the next step on.
+void wakeAll(Actor& actor);
 
 // Simulates `seconds` with the figure standing still and the air thick, so that the hair has come to rest on the body
 // before the first frame.

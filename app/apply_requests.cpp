@@ -85,6 +85,7 @@ void changeMotion(const Request& request, Demo& demo) {
 
 void changeScene(const std::string& file, Demo& demo) {
   Scene scene = loadScene(findFile(file, "", "scenes"));
+  scene.skips = demo.scene.skips;
   if (demo.loading.on) {
     const std::string title = "scene " + scene.name;
     return loadLater({title, std::move(scene), demo.aspect, {}, 0, false, {}}, demo);
@@ -177,6 +178,7 @@ void apply(const Request& request, Demo& demo) {
       return forAll(demo, [](Actor& actor) {
         sim::collapseOntoRoots(actor.haircut->mesh, actor.hair);
         actor.previous_positions = actor.hair.positions;
+        actor.coarse.active = false;
       });
     case Ask::kCarryAlong:
       return scrub(request.value, demo);
@@ -224,6 +226,10 @@ void apply(const Request& request, Demo& demo) {
       return;
     case Ask::kDebugView:
       return setDebugView(request, demo);
+    case Ask::kSkip:
+      if (const std::string fault = setSkip(request.name + (on ? "=on" : "=off"), demo.scene.skips); !fault.empty())
+        throw InputError("", "", fault, "");
+      return;
     case Ask::kScreenshot:
       demo.capture.screenshot = true;
       demo.capture.screenshot_file = request.text;
@@ -242,6 +248,9 @@ void apply(const Request& request, Demo& demo) {
 
 void applyRequests(Demo& demo) {
   takeLoaded(demo);
+  if (!demo.requests.empty()) {
+    for (Actor& actor : demo.actors) actor.shown_still = false;
+  }
   // A request may bring others; a scene replaces the demo, so what follows it is taken over by value first.
   for (int round = 0; round < 4 && !demo.requests.empty(); ++round) {
     const std::vector<Request> asked = std::exchange(demo.requests, {});

@@ -87,6 +87,7 @@ void takeLoaded(Demo& demo) {
     demo.message = fault.what();
     demo.message_is_fault = true;
   }
+  demo.shown_fraction = -1;  // what was loaded is shown though time may stand still
   if (!demo.loading.waiting) return;
   LoadOrder next = std::move(*demo.loading.waiting);
   demo.loading.waiting.reset();
@@ -96,6 +97,7 @@ void takeLoaded(Demo& demo) {
 void replaceScene(Demo fresh, Demo& demo) {
   fresh.debug = demo.debug;
   fresh.capture = demo.capture;
+  fresh.picture_height = demo.picture_height;
   fresh.governor.counted = demo.governor.counted;
   fresh.loading = std::move(demo.loading);
   fresh.requests = std::move(demo.requests);

@@ -52,12 +52,12 @@ Vec3 headOf(const Actor& actor, const Pose& pose) {
   return scalpToWorld(actor.body->character, pose) * actor.body->character.scalp.center;
 }
 
-Vec3 direction(const Camera& camera) {
+}  // namespace
+
+Vec3 viewBack(const Camera& camera) {
   return {std::cos(camera.pitch) * std::sin(camera.yaw), std::sin(camera.pitch),
           std::cos(camera.pitch) * std::cos(camera.yaw)};
 }
-
-}  // namespace
 
 Camera makeCamera(const CameraSpec& spec, const Actor& actor, double aspect) {
   Camera camera;
@@ -87,7 +87,7 @@ void orbit(double dx, double dy, double height, Camera& camera) {
 }
 
 void pan(double dx, double dy, double height, Camera& camera) {
-  const Vec3 back = direction(camera);
+  const Vec3 back = viewBack(camera);
   const Vec3 right = Vec3::UnitY().cross(back).normalized();
   const double metres = 2 * camera.distance * std::tan(0.5 * camera.fov) / height;
   camera.target += metres * (-dx * right + dy * back.cross(right));
@@ -112,7 +112,7 @@ void follow(const Actor& actor, double seconds, Camera& camera) {
 render::CameraInput cameraInput(const Camera& camera) {
   const Vec3 target = camera.anchor + camera.target;
   render::CameraInput input;
-  input.eye = toFloat3(target + camera.distance * direction(camera));
+  input.eye = toFloat3(target + camera.distance * viewBack(camera));
   input.target = toFloat3(target);
   input.fov_y = static_cast<float>(camera.fov);
   input.near_plane = static_cast<float>(std::min(0.05, 0.2 * camera.distance));

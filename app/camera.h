@@ -31,6 +31,9 @@ void turnTo(const std::string& view, const Actor& actor, Camera& camera);
 // Moves the anchor after the actor's shown head, with a lag that takes the shake out of a walk.
 void follow(const Actor& actor, double seconds, Camera& camera);
 
+// Unit vector from the target to the eye.
+Vec3 viewBack(const Camera& camera);
+
 render::CameraInput cameraInput(const Camera& camera);
 
 }  // namespace app

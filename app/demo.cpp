@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/level_of_detail.h"
+
 namespace app {
 
 namespace {
@@ -16,19 +18,8 @@ int takeSteps(double seconds, Demo& demo) {
   return steps;
 }
 
-// What the governor is told of a step.
-void weighStep(const sim::StepReport& report, const sim::SimParams& params, Actor& actor, FrameStats& stats) {
-  stats.counted_cost += countedCost(actor.haircut->mesh.vertexCount(), report);
-  stats.step_error += stepError(actor.haircut->mesh, params.integrator, actor.hair, actor.error_meter);
-}
-
 void moveActors(double time, Demo& demo) {
-  for (Actor& actor : demo.actors) {
-    const double start = now();
-    const sim::StepReport report = stepActor(demo.running, demo.running.time_step, time, actor);
-    addStep(report, now() - start, demo.stats);
-    if (demo.governor.budget > 0) weighStep(report, demo.running, actor, demo.stats);
-  }
+  for (Actor& actor : demo.actors) stepInDetail(time, demo, actor);
 }
 
 // What the frame cost and how far it strayed, to the governor.
@@ -44,9 +35,13 @@ void keepBudget(double seconds, int steps, Demo& demo) {
   observe(frame, demo.governor);
 }
 
-void handPositionsOver(Demo& demo) {
+// Nothing is handed over when neither a step nor the clock has moved since the last time.
+void handPositionsOver(bool moved, Demo& demo) {
   const double fraction = shownFraction(demo.clock, demo.running.time_step);
-  for (Actor& actor : demo.actors) showActor(fraction, actor);
+  if (moved || fraction != demo.shown_fraction || !demo.scene.skips[kSkipPose]) {
+    for (Actor& actor : demo.actors) showActor(fraction, actor);
+    demo.shown_fraction = fraction;
+  }
   demo.debug_geometry.lines.clear();
   demo.debug_geometry.triangles.clear();
   demo.debug_geometry.points.clear();
@@ -67,12 +62,29 @@ void keepTime(double seconds, Demo& demo) {
   demo.stats.lost = demo.clock.lost;
 }
 
+render::DrawSkips drawSkips(const SkipSet& skips) {
+  render::DrawSkips draw;
+  draw.frame = skips[kSkipFrame];
+  draw.rows = skips[kSkipRows];
+  draw.shadows = skips[kSkipShadows];
+  draw.view = skips[kSkipView];
+  draw.shadow_view = skips[kSkipShadowView];
+  draw.body_parts = skips[kSkipBodyParts];
+  draw.strands = skips[kSkipStrands];
+  draw.segments = skips[kSkipSegments];
+  draw.shadow_detail = skips[kSkipShadowDetail];
+  draw.openness = skips[kSkipOpenness];
+  return draw;
+}
+
 void draw(Demo& demo, const FrameTarget& target) {
   if (!target.renderer || target.width <= 0 || target.height <= 0) return;
   demo.aspect = static_cast<double>(target.width) / target.height;
+  demo.picture_height = target.height;
   const render::FrameInput input = frameInput(demo, target.width, target.height);
   demo.stats.draw = target.pixels ? target.renderer->renderImage(input, *target.pixels, target.measure)
                                   : target.renderer->renderFrame(input, target.framebuffer, target.measure);
+  addDrawing(demo.stats.draw.left_out, demo.stats.skipped);
 }
 
 void remember(Demo& demo) {
@@ -89,6 +101,7 @@ render::HairInput hairInput(const Actor& actor) {
   input.id = actor.id;
   input.layout_revision = actor.layout_revision;
   input.position_revision = actor.position_revision;
+  input.layout_id = actor.haircut->id;
   input.faces = actor.haircut->faces;
   input.positions = actor.shown_positions;
   input.strands = actor.spec.look.strands;
@@ -115,6 +128,23 @@ render::BodyInput bodyInput(const Actor& actor) {
 }
 
 }  // namespace
+
+void addDrawing(const render::DrawLeftOut& drawing, SkipTallies& tallies) {
+  const auto add = [&](SkipId id, const render::LeftOut& count) {
+    tallies[id].skipped += count.skipped;
+    tallies[id].of += count.of;
+  };
+  add(kSkipFrame, drawing.frame);
+  add(kSkipRows, drawing.rows);
+  add(kSkipShadows, drawing.shadows);
+  add(kSkipView, drawing.view);
+  add(kSkipShadowView, drawing.shadow_view);
+  add(kSkipBodyParts, drawing.body_parts);
+  add(kSkipStrands, drawing.strands);
+  add(kSkipSegments, drawing.segments);
+  add(kSkipShadowDetail, drawing.shadow_detail);
+  add(kSkipOpenness, drawing.openness);
+}
 
 void addStep(const sim::StepReport& report, double step_seconds, FrameStats& stats) {
   double inside = 0;
@@ -152,14 +182,20 @@ Demo openScene(Scene scene, double aspect) {
   demo.scene = std::move(scene);
   demo.aspect = aspect;
   for (const CharacterSpec& spec : demo.scene.characters) {
-    Actor actor = makeActor(spec, demo.scene.playback, demo.wardrobe);
-    settleActor(demo.scene.sim, demo.scene.playback.settle, actor);
-    actor.context->refreshGradually(true);
-    demo.actors.push_back(std::move(actor));
+    demo.actors.push_back(makeActor(spec, demo.scene.playback, demo.wardrobe));
   }
   demo.running = demo.scene.sim;
   setBudget(1e-3 * demo.scene.playback.budget_ms, demo.governor);
+  const double settle = demo.scene.playback.settle;
+  settleActor(demo.scene.sim, settle, demo.actors.front());
   demo.camera = makeCamera(demo.scene.camera, demo.actors.front(), aspect);
+  chooseDetail(demo);
+  for (std::size_t i = 1; i < demo.actors.size(); ++i) {
+    Actor& actor = demo.actors[i];
+    if (actor.detail.coarse) enterCoarse(*coarsePair(actor, demo.wardrobe), actor);
+    settleActor(demo.scene.sim, settle, actor);
+  }
+  for (Actor& actor : demo.actors) actor.context->refreshGradually(true);
   return demo;
 }
 
@@ -176,6 +212,7 @@ render::FrameInput frameInput(Demo& demo, int width, int height) {
   input.camera = cameraInput(demo.camera);
   input.light = demo.scene.look.light;
   input.view = demo.scene.look.view;
+  input.skips = drawSkips(demo.scene.skips);
   input.hairs = demo.hair_inputs;
   input.bodies = demo.body_inputs;
   input.debug_lines = demo.debug_geometry.lines;
@@ -187,15 +224,17 @@ render::FrameInput frameInput(Demo& demo, int width, int height) {
 void advanceFrame(Demo& demo, double seconds, const FrameTarget& target) {
   const double start = now();
   demo.stats = FrameStats{};
+  const bool asked = !demo.requests.empty();
   applyRequests(demo);
 
   demo.running = governed(demo.scene.sim, demo.governor);
   const int steps = takeSteps(seconds, demo);
+  if (steps > 0) chooseDetail(demo);
   for (int i = 1; i <= steps; ++i) moveActors(demo.clock.time - (steps - i) * demo.running.time_step, demo);
   keepBudget(seconds, steps, demo);
   tellTrouble(demo);
 
-  timed(demo.stats.seconds[kTimeHandOver], [&] { handPositionsOver(demo); });
+  timed(demo.stats.seconds[kTimeHandOver], [&] { handPositionsOver(asked || steps > 0, demo); });
   follow(demo.actors.front(), seconds, demo.camera);
 
   keepTime(seconds, demo);

@@ -34,7 +34,9 @@ struct Demo {
   std::vector<Actor> actors;
   int selected = 0;
   Camera camera;
-  double aspect = 16.0 / 9;  // of the picture
+  double aspect = 16.0 / 9;    // of the picture
+  int picture_height = 720;    // pixels; what is far is what is small in it
+  double shown_fraction = -1;  // of the step, when positions were last handed over
   DebugViews debug;
   FixedClock clock;
   Governor governor;
@@ -79,6 +81,9 @@ void advanceFrame(Demo& demo, double seconds, const FrameTarget& target);
 
 // What advanceFrame hands to the renderer; spans point into the demo.
 render::FrameInput frameInput(Demo& demo, int width, int height);
+
+// Each count of a drawn frame under its name in the ledger.
+void addDrawing(const render::DrawLeftOut& drawing, SkipTallies& tallies);
 
 // Applies and clears demo.requests. See apply_requests.cpp.
 void applyRequests(Demo& demo);

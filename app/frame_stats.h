@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/skips.h"
 #include "render/renderer.h"
 #include "sim/step.h"
 
@@ -46,6 +47,7 @@ struct FrameStats {
   int carried = 0;             // times that roots jumped and the hair was carried along
   sim::Trouble trouble;        // of the last recovery
   render::FrameReport draw;
+  SkipTallies skipped{};
 
   double simulation() const {
     return seconds[kTimeForces] + seconds[kTimeSolve] + seconds[kTimeCollision] + seconds[kTimeMinimization] +

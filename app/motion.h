@@ -59,7 +59,9 @@ void advancePlayback(const Clip& clip, double seconds, Playback& playback);
 
 // Pose of the playback. In a loop the last `blend` seconds lead into the first frame with matching pose and velocity,
 // joint by joint, and the rest of the clip is untouched: a clip that already loops is played as it is. Allocates only
-// when `pose` grows.
-void poseAt(const Skeleton& skeleton, const Clip& clip, const Playback& playback, Pose& pose);
+// when `pose` grows. With `needed` (one flag a joint, ancestors of needed joints being needed) the other joints are
+// left as they were.
+void poseAt(const Skeleton& skeleton, const Clip& clip, const Playback& playback, Pose& pose,
+            std::span<const unsigned char> needed = {});
 
 }  // namespace app

@@ -8,6 +8,7 @@
 #include "app/look_params.h"
 #include "app/parameter_table.h"
 #include "app/scene_file.h"
+#include "app/skips.h"
 #include "sim/field_text.h"
 
 namespace app {
@@ -69,7 +70,7 @@ bool parseOptions(int argc, char** argv, Options& options, int& exit_code) {
   std::string size;
   std::vector<std::string> sets;
   std::string solver, collider;
-  bool list_parameters = false;
+  bool list_parameters = false, list_skips = false;
 
   parser.add_option("scene", options.scene, "Scene file (JSON); without one the default scene is shown")
       ->option_text("[SCENE.json]")
@@ -115,6 +116,15 @@ bool parseOptions(int argc, char** argv, Options& options, int& exit_code) {
       ->group(what)
       ->option_text("NAME")
       ->check(CLI::IsMember({"ellipsoids", "sdf"}));
+  parser
+      .add_option("--skip", options.skips,
+                  "Switch a skip of the ledger, or all=off; may be given many times; --skips lists them")
+      ->group(what)
+      ->option_text("NAME=on|off")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false);
+  parser.add_flag("--skips", list_skips, "Print the ledger of skips and end")->group(what);
   parser.add_flag("--parameters", list_parameters, "Print the parameter tables and end")->group(what);
 
   const char* motion = "Playback";
@@ -211,8 +221,8 @@ bool parseOptions(int argc, char** argv, Options& options, int& exit_code) {
     exit_code = kExitUsage;
     return false;
   };
-  if (list_parameters) {
-    std::cout << parameterTable();
+  if (list_parameters || list_skips) {
+    std::cout << (list_parameters ? parameterTable() : skipLedger());
     exit_code = kExitFine;
     return false;
   }

@@ -22,6 +22,7 @@ struct Options {
   bool size_given = false;
   std::string out = "frames";
   std::vector<std::pair<std::string, std::string>> set;  // --set name=value
+  std::vector<std::string> skips;                        // --skip name=on|off
   std::string style, resolution;                         // empty: the scene's
   std::string hair, motion, parts, clip;                 // files; name of a clip
   double budget_ms = -1;                                 // negative: the scene's

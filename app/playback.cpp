@@ -158,7 +158,8 @@ void advancePlayback(const Clip& clip, double seconds, Playback& playback) {
   }
 }
 
-void poseAt(const Skeleton& skeleton, const Clip& clip, const Playback& playback, Pose& pose) {
+void poseAt(const Skeleton& skeleton, const Clip& clip, const Playback& playback, Pose& pose,
+            std::span<const unsigned char> needed) {
   assert(clip.joint_count == static_cast<int>(skeleton.joints.size()) && clip.frameCount() > 0);
   const double duration = clip.duration();
   const double time = std::isfinite(playback.time) ? std::clamp(playback.time, 0.0, duration) : 0;
@@ -173,8 +174,9 @@ void poseAt(const Skeleton& skeleton, const Clip& clip, const Playback& playback
   if (blending) seam = seamMoments(skeleton, clip, placing);
   const double value_weight = part * part * (3 - 2 * part), rate_weight = blend * part * part * (part - 1);
 
-  pose.world.resize(skeleton.joints.size());
+  pose.world.resize(skeleton.joints.size(), Rigid::Identity());
   for (std::size_t j = 0; j < skeleton.joints.size(); ++j) {
+    if (!needed.empty() && !needed[j]) continue;
     Rigid local = placedLocal(skeleton, clip, now, static_cast<int>(j));
     if (blending) {
       const SeamGap gap = seamGap(skeleton, clip, seam, static_cast<int>(j));

@@ -31,6 +31,17 @@ json milliseconds(const std::vector<double>& seconds) {
           {"max", 1e3 * longest}};
 }
 
+// What the ledger's entries left out, those that were asked at all.
+json skippedJson(const SkipTallies& tallies) {
+  json skipped = json::object();
+  for (const Skip& skip : skipTable()) {
+    const SkipTally& count = tallies[skip.id];
+    if (count.of == 0) continue;
+    skipped[skip.name] = {{"skipped", count.skipped}, {"of", count.of}, {"saved_milliseconds", 1e3 * count.seconds}};
+  }
+  return skipped;
+}
+
 template <class Pick>
 std::vector<double> gather(const RunReport& run, Pick&& pick) {
   std::vector<double> values;
@@ -66,7 +77,9 @@ json frameJson(const FrameStats& stats, std::size_t index, double fps) {
           {"strands_drawn", stats.draw.strands_drawn},
           {"draw_calls", stats.draw.draw_calls},
           {"bytes_uploaded", stats.draw.bytes_uploaded},
-          {"gpu_bytes_hair", stats.draw.gpu_bytes_hair}};
+          {"gpu_bytes_hair", stats.draw.gpu_bytes_hair},
+          {"gpu_bytes_shadows", stats.draw.gpu_bytes_shadows},
+          {"skipped", skippedJson(stats.skipped)}};
 }
 
 json actorJson(const Actor& actor) {
@@ -128,6 +141,16 @@ void writeReport(const std::string& file, const RunReport& run, const Demo& demo
   }
   long recoveries = 0;
   for (const FrameStats& frame : run.frames) recoveries += frame.recoveries;
+  SkipTallies skipped{};
+  for (const FrameStats& frame : run.frames) {
+    for (const Skip& skip : skipTable()) {
+      skipped[skip.id].skipped += frame.skipped[skip.id].skipped;
+      skipped[skip.id].of += frame.skipped[skip.id].of;
+      skipped[skip.id].seconds += frame.skipped[skip.id].seconds;
+    }
+  }
+  json switches = json::object();
+  for (const Skip& skip : skipTable()) switches[skip.name] = demo.scene.skips[skip.id];
   json characters = json::array(), frames = json::array();
   for (const Actor& actor : demo.actors) characters.push_back(actorJson(actor));
   for (std::size_t k = 0; k < run.frames.size(); ++k) frames.push_back(frameJson(run.frames[k], k, run.fps));
@@ -137,6 +160,7 @@ void writeReport(const std::string& file, const RunReport& run, const Demo& demo
       {"characters", characters},
       {"time_step", demo.running.time_step},
       {"budget", budgetJson(run, demo)},
+      {"skips", switches},
       {"fps", run.fps},
       {"start_milliseconds", 1e3 * run.start_seconds},
       {"summary",
@@ -145,6 +169,7 @@ void writeReport(const std::string& file, const RunReport& run, const Demo& demo
         {"simulation_milliseconds", milliseconds(gather(run, [](const FrameStats& f) { return f.simulation(); }))},
         {"stages_milliseconds", stages},
         {"lost_seconds", demo.clock.lost},
+        {"skipped", skippedJson(skipped)},
         {"recoveries", recoveries}}},
       {"frames", frames}};
   std::ofstream stream(file, std::ios::binary);

@@ -23,6 +23,7 @@
 
 #include "app/character.h"
 #include "app/look_params.h"
+#include "app/skips.h"
 #include "sim/hair_styles.h"
 #include "sim/sim_params.h"
 
@@ -71,6 +72,7 @@ struct Scene {
   SceneLook look;
   sim::SimParams sim;
   PlaybackSpec playback;
+  SkipSet skips;  // not of the file: a scene means the same whatever is skipped
 };
 
 // Bounds that a scene is held to.

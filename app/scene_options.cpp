@@ -77,6 +77,9 @@ Scene sceneFromOptions(const Options& options) {
       throw UsageError("--set " + name + ": " + fault);
     }
   }
+  for (const std::string& text : options.skips) {
+    if (const std::string fault = setSkip(text, scene.skips); !fault.empty()) throw UsageError("--skip " + fault);
+  }
   if (options.strands >= 0) {
     for (CharacterLook* look : looks) look->strands = options.strands;
   }

@@ -252,6 +252,8 @@ void debugTab(Demo& demo, UiState& ui) {
   }
   simRow(*sim::findParam("collide"), demo, ui);
   simRow(*sim::findParam("minimize_deformation"), demo, ui);
+  ImGui::Spacing();
+  if (section("Skips", true)) skipsSection(demo, ui);
 }
 
 }  // namespace app

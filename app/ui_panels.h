@@ -12,6 +12,9 @@ void hairTab(Demo& demo, UiState& ui);
 void lookTab(Demo& demo, UiState& ui);
 void debugTab(Demo& demo, UiState& ui);
 
+// The ledger: a switch and a count for each skip.
+void skipsSection(Demo& demo, UiState& ui);
+
 // Stages as a stacked bar and their history (figure 6 of the paper), solver iterations and residual.
 void timingsPanel(Demo& demo, UiState& ui);
 

@@ -129,6 +129,9 @@ void solverLines(const Demo& demo) {
   line("contacts", "%d", stats.contacts);
   line("corrected", "%d, deepest %.1f mm", stats.corrected, 1e3 * stats.max_penetration);
   line("recoveries", "%d", stats.recoveries);
+  double saved = 0;
+  for (const SkipTally& count : stats.skipped) saved += count.seconds;
+  line("skips save", "%.2f ms", 1e3 * saved);
   if (demo.stats.draw.strands_drawn > 0) {
     line("strands", "%ld", stats.draw.strands_drawn);
     line("hair on GPU", "%.1f KB", static_cast<double>(stats.draw.gpu_bytes_hair) / 1024);

@@ -17,6 +17,7 @@
 #include "app/demo.h"
 #include "app/errors.h"
 #include "app/image_io.h"
+#include "app/level_of_detail.h"
 #include "app/recording.h"
 #include "app/report.h"
 #include "app/ui.h"
@@ -162,6 +163,28 @@ double frameSeconds(const Options& options, const Demo& demo, double& last) {
   return options.frames_given || demo.capture.recording ? 1 / demo.scene.playback.fps : passed;
 }
 
+// Waits for events while nothing moves. Panels take a few frames to settle after each event (a hovered button, a folded
+// section), so a frame is only left out after so many that were all the same.
+class Patience {
+ public:
+  void pollOrWait(const Options& options, const Demo& demo) {
+    constexpr int kSettlingFrames = 12;
+    constexpr double kLongestWait = 0.1;  // s: within what the clock catches up with
+    still_frames_ = !options.frames_given && nothingMoves(demo) ? still_frames_ + 1 : 0;
+    if (still_frames_ <= kSettlingFrames) {
+      glfwPollEvents();
+      return;
+    }
+    const double before = now();
+    glfwWaitEventsTimeout(kLongestWait);
+    if (now() - before < 0.95 * kLongestWait) still_frames_ = 0;
+  }
+  bool waited() const { return still_frames_ > 0; }
+
+ private:
+  int still_frames_ = 0;
+};
+
 }  // namespace
 
 int runWindow(Scene scene, const Options& options) {
@@ -190,14 +213,16 @@ int runWindow(Scene scene, const Options& options) {
   FrameTarget target;
   target.renderer = &renderer;
   target.draw_panels = [&](Demo& shown) { drawPanels(shown, ui); };
+  Patience patience;
   double last = now();
   int frame = 0;
   const int most = tape.frames().value_or(options.frames_given ? options.frames : kEndless);
   for (; !glfwWindowShouldClose(window.handle) && !ui.quit && frame < most; ++frame) {
-    glfwPollEvents();
+    patience.pollOrWait(options, demo);
     glfwGetFramebufferSize(window.handle, &target.width, &target.height);
     const double seconds = frameSeconds(options, demo, last);
     advanceFrame(demo, tape.turn(frame, frame == 0 ? 0 : seconds, demo), target);
+    demo.stats.skipped[kSkipEvents] = {patience.waited(), 1, 0};
     takePictures(demo, target);
     if (!options.report.empty()) run.frames.push_back(demo.stats);
     if (options.frames_given && frame + 1 == options.frames && !options.screenshot.empty()) {

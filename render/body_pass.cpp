@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "shaders/shared.h"
 
@@ -40,6 +41,37 @@ Vector3f transformed(const Mat4& m, const Vector3f& p) {
   return out;
 }
 
+// Corners of a box moved by a matrix.
+void addMoved(const Mat4& m, const Bounds& box, Bounds& sum) {
+  for (int corner = 0; corner < 8 && !box.empty(); ++corner) {
+    sum.add(
+        transformed(m, Vector3f((corner & 1) ? box.high.x() : box.low.x(), (corner & 2) ? box.high.y() : box.low.y(),
+                                (corner & 4) ? box.high.z() : box.low.z())));
+  }
+}
+
+// The joint that moves a vertex most.
+int mainJoint(const BodyInput& input, std::size_t vertex) {
+  const float* weights = &input.weights[4 * vertex];
+  const auto largest = std::max_element(weights, weights + 4) - weights;
+  return input.joints[4 * vertex + static_cast<std::size_t>(largest)];
+}
+
+// Triangles in the order of the joint that their first corner hangs on; within a joint as they come.
+std::vector<std::uint32_t> trianglesByJoint(const BodyInput& input) {
+  std::vector<std::uint32_t> order(input.triangles.size() / 3);
+  for (std::size_t t = 0; t < order.size(); ++t) order[t] = static_cast<std::uint32_t>(t);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return mainJoint(input, input.triangles[3 * a]) < mainJoint(input, input.triangles[3 * b]);
+  });
+  std::vector<std::uint32_t> sorted;
+  sorted.reserve(input.triangles.size());
+  for (const std::uint32_t t : order) {
+    for (std::size_t k = 0; k < 3; ++k) sorted.push_back(input.triangles[3 * t + k]);
+  }
+  return sorted;
+}
+
 void attribute(GLuint array, GLuint index, GLint size, GLenum type, GLuint offset) {
   glEnableVertexArrayAttrib(array, index);
   if (type == GL_FLOAT) {
@@ -48,6 +80,18 @@ void attribute(GLuint array, GLuint index, GLint size, GLenum type, GLuint offse
     glVertexArrayAttribIFormat(array, index, size, type, offset);
   }
   glVertexArrayAttribBinding(array, index, 0);
+}
+
+// Whether a body can stand in a light's view or between it and the light. The fifth plane, the light's side, is left
+// out.
+bool lightMayMeet(const Frustum& light, const Bounds& bounds) {
+  Bounds around = bounds;
+  const float margin = 0.1f * around.diagonal();
+  around.low.array() -= margin;
+  around.high.array() += margin;
+  Frustum open = light;
+  open.planes[4] = Eigen::Vector4f(0, 0, 0, 1);
+  return open.maySee(around);
 }
 
 }  // namespace
@@ -81,12 +125,36 @@ BodyPass::Mesh* BodyPass::meshOf(const BodyInput& input, long& uploaded) {
       }
     }
   }
+  const std::vector<std::uint32_t> triangles = trianglesByJoint(input);
+  int part_joint = -1;
+  for (std::size_t t = 0; t < triangles.size(); t += 3) {
+    if (mainJoint(input, triangles[t]) != part_joint) {
+      part_joint = mainJoint(input, triangles[t]);
+      mesh.parts.emplace_back().first_index = static_cast<int>(t);
+    }
+    Part& part = mesh.parts.back();
+    part.index_count += 3;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t v = triangles[t + k];
+      for (std::size_t w = 4 * v; w < 4 * v + 4; ++w) {
+        if (input.weights[w] <= 0) continue;
+        const int joint = input.joints[w];
+        auto at = std::find(part.joints.begin(), part.joints.end(), joint) - part.joints.begin();
+        if (at == static_cast<long>(part.joints.size())) {
+          part.joints.push_back(joint);
+          part.boxes.emplace_back();
+        }
+        part.boxes[static_cast<std::size_t>(at)].add(
+            Vector3f(input.positions[3 * v], input.positions[3 * v + 1], input.positions[3 * v + 2]));
+      }
+    }
+  }
   const auto vertex_bytes = static_cast<GLsizeiptr>(vertices.size() * sizeof(BodyVertex));
   const auto index_bytes = static_cast<GLsizeiptr>(input.triangles.size_bytes());
   mesh.vertices = makeBuffer();
   mesh.indices = makeBuffer();
   glNamedBufferStorage(mesh.vertices.id(), vertex_bytes, vertices.data(), 0);
-  glNamedBufferStorage(mesh.indices.id(), index_bytes, input.triangles.data(), 0);
+  glNamedBufferStorage(mesh.indices.id(), index_bytes, triangles.data(), 0);
   uploaded += static_cast<long>(vertex_bytes + index_bytes);
   mesh.attributes = makeVertexArray();
   const GLuint array = mesh.attributes.id();
@@ -121,17 +189,12 @@ bool BodyPass::refreshPose(Body& body, const Mesh& mesh, const BodyInput& input,
   glNamedBufferSubData(body.joints.id(), 0, bytes, rows.data());
   uploaded += static_cast<long>(bytes);
   body.bounds = Bounds{};
-  for (std::size_t j = 0; j < mesh.joint_boxes.size(); ++j) {
-    const Bounds& box = mesh.joint_boxes[j];
-    for (int corner = 0; corner < 8 && !box.empty(); ++corner) {
-      const Vector3f p((corner & 1) ? box.high.x() : box.low.x(), (corner & 2) ? box.high.y() : box.low.y(),
-                       (corner & 4) ? box.high.z() : box.low.z());
-      body.bounds.add(transformed(input.joint_matrices[j], p));
-    }
-  }
+  for (std::size_t j = 0; j < mesh.joint_boxes.size(); ++j)
+    addMoved(input.joint_matrices[j], mesh.joint_boxes[j], body.bounds);
+  body.joint_matrices.assign(input.joint_matrices.begin(), input.joint_matrices.end());
   body.joint_count = joint_count;
   body.pose_revision = input.pose_revision;
-  ++changes_;
+  body.change = ++changes_;
   return true;
 }
 
@@ -149,13 +212,14 @@ long BodyPass::update(std::span<const BodyInput> inputs) {
     if (found == bodies_.end()) {
       bodies_.emplace_back().id = input.id;
       found = bodies_.end() - 1;
-      ++changes_;
+      found->change = ++changes_;
     }
     Body& body = *found;
     if (!refreshPose(body, *mesh, input, uploaded)) continue;
     body.seen = true;
     body.mesh_id = input.mesh_id;
     if (!body.block || body.color != input.color || body.roughness != input.roughness) {
+      ++look_changes_;
       body.color = input.color;
       body.roughness = input.roughness;
       shared::BodyBlock block{asVec4(input.color, std::clamp(input.roughness, 0.05f, 1.0f))};
@@ -171,28 +235,96 @@ long BodyPass::update(std::span<const BodyInput> inputs) {
   return uploaded;
 }
 
-int BodyPass::issue(const Eigen::Matrix4f& clip_from_world) {
+const BodyPass::Mesh& BodyPass::meshOf(const Body& body) const {
+  return *std::find_if(meshes_.begin(), meshes_.end(), [&](const Mesh& m) { return m.id == body.mesh_id; });
+}
+
+void BodyPass::bind(const Body& body, const Mesh& mesh) const {
+  glBindBufferBase(GL_UNIFORM_BUFFER, 2, body.block.id());
+  glBindTextureUnit(shared::kUnitJoints, body.joint_texture.id());
+  glBindVertexArray(mesh.attributes.id());
+}
+
+std::uint64_t BodyPass::poseSignature(const Eigen::Matrix4f* clip_from_world) const {
+  if (clip_from_world == nullptr) return pose_signature_;
+  const Frustum light(*clip_from_world, 0);
+  std::uint64_t signature = 1;
+  for (const Body& body : bodies_) {
+    if (lightMayMeet(light, body.bounds)) signature = (signature ^ body.change) * 1099511628211ull;
+  }
+  return signature;
+}
+
+Bounds BodyPass::boundsNear(const Eigen::Vector3f& eye) const {
+  constexpr float kFarther = 2.5f, kAlwaysNear = 3;  // times as far; m
+  const auto distance = [&](const Body& body) { return (body.bounds.center() - eye).norm(); };
+  float nearest = std::numeric_limits<float>::infinity();
+  for (const Body& body : bodies_) nearest = std::min(nearest, distance(body));
+  Bounds near;
+  for (const Body& body : bodies_) {
+    if (distance(body) <= std::max(kFarther * nearest, kAlwaysNear)) near.add(body.bounds);
+  }
+  return near;
+}
+
+int BodyPass::draw(const Eigen::Matrix4f& clip_from_world, const DrawSkips& skips, DrawLeftOut& left_out) {
+  lit_.use();
   glUniformMatrix4fv(0, 1, GL_FALSE, clip_from_world.data());
+  const Frustum frustum(clip_from_world, 0.01f);
   int calls = 0;
   for (const Body& body : bodies_) {
-    const auto mesh = std::find_if(meshes_.begin(), meshes_.end(), [&](const Mesh& m) { return m.id == body.mesh_id; });
-    glBindBufferBase(GL_UNIFORM_BUFFER, 2, body.block.id());
-    glBindTextureUnit(shared::kUnitJoints, body.joint_texture.id());
-    glBindVertexArray(mesh->attributes.id());
-    glDrawElements(GL_TRIANGLES, mesh->index_count, GL_UNSIGNED_INT, nullptr);
+    const Mesh& mesh = meshOf(body);
+    left_out.body_parts.of += mesh.index_count / 3;
+    // The bounds are of what hangs mostly on each joint: a share more holds the rest.
+    Bounds around = body.bounds;
+    const float margin = 0.1f * around.diagonal();
+    around.low.array() -= margin;
+    around.high.array() += margin;
+    if (skips.view && !frustum.maySee(around)) {
+      left_out.body_parts.skipped += mesh.index_count / 3;
+      continue;
+    }
+    counts_.clear();
+    offsets_.clear();
+    int end = -1;
+    for (const Part& part : mesh.parts) {
+      Bounds box;
+      for (std::size_t k = 0; k < part.joints.size(); ++k)
+        addMoved(body.joint_matrices[static_cast<std::size_t>(part.joints[k])], part.boxes[k], box);
+      if (skips.body_parts && !frustum.maySee(box)) {
+        left_out.body_parts.skipped += part.index_count / 3;
+        continue;
+      }
+      if (part.first_index == end) {
+        counts_.back() += part.index_count;
+      } else {
+        counts_.push_back(part.index_count);
+        offsets_.push_back(reinterpret_cast<const void*>(static_cast<std::uintptr_t>(part.first_index) * 4));
+      }
+      end = part.first_index + part.index_count;
+    }
+    if (counts_.empty()) continue;
+    bind(body, mesh);
+    glMultiDrawElements(GL_TRIANGLES, counts_.data(), GL_UNSIGNED_INT, offsets_.data(),
+                        static_cast<GLsizei>(counts_.size()));
     ++calls;
   }
   return calls;
 }
 
-int BodyPass::draw(const Eigen::Matrix4f& clip_from_world) {
-  lit_.use();
-  return issue(clip_from_world);
-}
-
-int BodyPass::drawDepth(const Eigen::Matrix4f& clip_from_world) {
+int BodyPass::drawDepth(const Eigen::Matrix4f& clip_from_world, bool cull) {
   depth_.use();
-  return issue(clip_from_world);
+  glUniformMatrix4fv(0, 1, GL_FALSE, clip_from_world.data());
+  const Frustum light(clip_from_world, 0);
+  int calls = 0;
+  for (const Body& body : bodies_) {
+    if (cull && !lightMayMeet(light, body.bounds)) continue;
+    const Mesh& mesh = meshOf(body);
+    bind(body, mesh);
+    glDrawElements(GL_TRIANGLES, mesh.index_count, GL_UNSIGNED_INT, nullptr);
+    ++calls;
+  }
+  return calls;
 }
 
 std::string BodyPass::reload() {

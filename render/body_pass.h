@@ -9,6 +9,7 @@
 
 #include "render/frame_input.h"
 #include "render/gl_object.h"
+#include "render/renderer.h"
 #include "render/shader.h"
 #include "render/view_math.h"
 
@@ -24,18 +25,31 @@ class BodyPass {
 
   // World bounds of all bodies (joint boxes, a little too large); empty without bodies.
   const Bounds& bounds() const { return bounds_; }
-  // Changes whenever what the bodies' depth shows changes.
-  std::uint64_t poseSignature() const { return pose_signature_; }
+  // Of the bodies that are not much farther from the eye than the nearest one.
+  Bounds boundsNear(const Eigen::Vector3f& eye) const;
+  // Changes whenever what the bodies' depth shows changes; with a light's matrix, only of bodies that it can show.
+  std::uint64_t poseSignature(const Eigen::Matrix4f* clip_from_world = nullptr) const;
+  // Changes whenever what the bodies' picture shows changes.
+  std::uint64_t lookSignature() const { return look_changes_; }
 
-  int draw(const Eigen::Matrix4f& clip_from_world);       // lit; returns the draw calls
-  int drawDepth(const Eigen::Matrix4f& clip_from_world);  // depth only
+  // Lit; returns the draw calls. Bodies and parts outside the view are left out as `skips` says.
+  int draw(const Eigen::Matrix4f& clip_from_world, const DrawSkips& skips, DrawLeftOut& left_out);
+  // Depth only; `cull` leaves out bodies beside or behind what the light's matrix shows.
+  int drawDepth(const Eigen::Matrix4f& clip_from_world, bool cull);
 
   std::string reload();
 
  private:
+  // Triangles whose first corner hangs mostly on one joint.
+  struct Part {
+    int first_index = 0, index_count = 0;
+    std::vector<int> joints;    // that move any of its vertices
+    std::vector<Bounds> boxes;  // of the vertices that each moves, rest pose
+  };
   struct Mesh {
     std::uint64_t id = 0;
     bool seen = false;
+    std::vector<Part> parts;
     Buffer vertices, indices;
     VertexArray attributes;
     int index_count = 0, joint_count = 0;
@@ -50,17 +64,22 @@ class BodyPass {
     Float3 color{};
     float roughness = 0;
     Bounds bounds;
+    std::uint64_t change = 0;          // of its pose or mesh
+    std::vector<Mat4> joint_matrices;  // as uploaded
   };
 
   Mesh* meshOf(const BodyInput& input, long& uploaded);
   bool refreshPose(Body& body, const Mesh& mesh, const BodyInput& input, long& uploaded);
-  int issue(const Eigen::Matrix4f& clip_from_world);
+  const Mesh& meshOf(const Body& body) const;
+  void bind(const Body& body, const Mesh& mesh) const;
 
   ShaderProgram lit_, depth_;
   std::vector<Mesh> meshes_;
   std::vector<Body> bodies_;
   Bounds bounds_;
-  std::uint64_t pose_signature_ = 0, changes_ = 0;
+  std::uint64_t pose_signature_ = 0, changes_ = 0, look_changes_ = 0;
+  std::vector<int> counts_;
+  std::vector<const void*> offsets_;
 };
 
 }  // namespace render

@@ -53,6 +53,7 @@ struct HairInput {
   std::uint64_t id = 0;                 // stable per hair; GPU resources are kept by it
   std::uint64_t layout_revision = 0;    // changes when faces or vertex count change
   std::uint64_t position_revision = 0;  // changes when positions changed
+  std::uint64_t layout_id = 0;          // hairs of one such id and revision share faces and rest shape; 0: its own
   std::span<const HairFace> faces;
   std::span<const float> positions;  // world, 3 floats a vertex, columns contiguous root to tip
   int strands = 20000;               // over the whole hair
@@ -76,6 +77,8 @@ struct BodyInput {
 struct CameraInput {
   Float3 eye{0, 1.6f, 1.2f}, target{0, 1.6f, 0}, up{0, 1, 0};
   float fov_y = 0.6f, near_plane = 0.05f, far_plane = 60.0f;
+
+  bool operator==(const CameraInput&) const = default;
 };
 
 struct LightInput {
@@ -88,7 +91,11 @@ struct LightInput {
   int opacity_layers = 7;        // deep opacity map layers, 1..7 (the eighth channel takes all behind)
   float layer_thickness = 0.0f;  // m of the first layer; 0: derived from the hair's extent
   float shadow_strength = 1.0f;  // scales opacity
+  float shadow_strands_per_pixel =
+      24.0f;  // of the hair's projected diameter: strands that cast shadow when it is small
   bool shadows = true;
+
+  bool operator==(const LightInput&) const = default;
 };
 
 struct LineVertex {
@@ -106,6 +113,26 @@ struct ViewOptions {
   float ground_height = 0;  // m
   bool ground = true, show_strands = true, show_body = true;
   StrandPath strand_path = StrandPath::kGeometry;
+  float strands_per_pixel = 40.0f;  // of the hair's projected diameter: strands drawn when it is small
+  float segment_error = 0.2f;       // pixels that a straight segment may leave its curve by
+
+  bool operator==(const ViewOptions&) const = default;
+};
+
+// Work that is left out where the picture does not need it. The first group changes no bit of the picture.
+struct DrawSkips {
+  bool frame = true;          // a frame equal to the last one is not drawn again
+  bool rows = true;           // only the rows of positions that changed are uploaded
+  bool shadows = true;        // shadow maps that still show what they should are kept
+  bool view = true;           // hairs, bundles and bodies outside the camera's view are not drawn
+  bool shadow_view = true;    // no shadow map for hair whose shadow cannot fall into the view
+  bool body_parts = true;     // parts of a body outside the view are not skinned
+  bool strands = true;        // strand count and width follow the projected size
+  bool segments = true;       // segments follow curvature and projected size
+  bool shadow_detail = true;  // shadow strands and map size follow the projected size
+  bool openness = true;       // soft light inside far hair is renewed now and then
+
+  bool operator==(const DrawSkips&) const = default;
 };
 
 struct FrameInput {
@@ -113,6 +140,7 @@ struct FrameInput {
   CameraInput camera;
   LightInput light;
   ViewOptions view;
+  DrawSkips skips;
   std::span<const HairInput> hairs;
   std::span<const BodyInput> bodies;
   std::span<const LineVertex> debug_lines;      // pairs

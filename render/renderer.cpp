@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include "render/body_pass.h"
 #include "render/debug_pass.h"
 #include "render/gpu_timer.h"
+#include "render/hair_detail.h"
 #include "render/hair_store.h"
 #include "render/render_target.h"
 #include "render/shadow_pass.h"
@@ -56,9 +58,25 @@ shared::FrameBlock frameBlock(const FrameInput& input, const Matrix4f& view_proj
 
 }  // namespace
 
+// All that a picture depends on: while it stays, so does the picture.
+struct FrameKey {
+  int width = 0, height = 0;
+  CameraInput camera;
+  LightInput light;
+  ViewOptions view;
+  DrawSkips skips;
+  std::uint64_t body_poses = 0, body_looks = 0;
+  std::vector<std::array<std::uint64_t, 2>> hairs;  // id, revision; 0 of hairs that are not in reach
+
+  bool operator==(const FrameKey&) const = default;
+};
+
 struct Renderer::Parts {
   std::string shader_dir;
   HairStore hairs;
+  HairDetail detail;
+  FrameKey key, drawn_key;
+  bool has_drawn = false;  // drawn_key says what the radiance shows
   BodyPass bodies;
   ShadowPass shadows;
   StrandPass strands;
@@ -76,24 +94,52 @@ struct Renderer::Parts {
     glNamedBufferStorage(frame_block.id(), sizeof(shared::FrameBlock), nullptr, GL_DYNAMIC_STORAGE_BIT);
   }
 
-  long uploadWhatChanged(const FrameInput& input) {
-    return hairs.update(input.hairs, input.light) + bodies.update(input.bodies);
+  // How far shadows of hair can fall: down to the ground or the lowest body, along the light.
+  static Vector3f shadowReach(const FrameInput& input) {
+    if (!input.light.shadows) return Vector3f::Zero();
+    constexpr float kFarthest = 40, kTallest = 4;  // m
+    const Vector3f to_light = directionOr(input.light.to_light, Vector3f::UnitY());
+    const float drop = std::max(to_light.y(), kTallest / kFarthest);
+    return -(kTallest / drop) * to_light;
+  }
+
+  long uploadWhatChanged(const FrameInput& input, const ViewGate& gate) {
+    const bool all = !input.skips.view || !input.skips.shadow_view;
+    return hairs.update(input.hairs, input.light, input.skips, all ? ViewGate{} : gate) + bodies.update(input.bodies);
+  }
+
+  // Whether the radiance still shows this frame; remembers the frame if not.
+  bool isDrawn(const FrameInput& input) {
+    key.width = input.width;
+    key.height = input.height;
+    key.camera = input.camera;
+    key.light = input.light;
+    key.view = input.view;
+    key.skips = input.skips;
+    key.body_poses = bodies.poseSignature();
+    key.body_looks = bodies.lookSignature();
+    key.hairs.clear();
+    for (const HairResources& hair : hairs.hairs())
+      key.hairs.push_back({hair.id, hair.in_view && hair.drawable ? hair.revision : 0});
+    const bool debug_shapes =
+        !input.debug_lines.empty() || !input.debug_triangles.empty() || !input.debug_points.empty();
+    const bool same = input.skips.frame && has_drawn && !debug_shapes && key == drawn_key;
+    has_drawn = !debug_shapes;
+    std::swap(key, drawn_key);
+    return same;
   }
 
   // Fits the light to the scene and brings the frame's constants to the GPU.
-  Matrix4f planFrame(const FrameInput& input) {
+  void planFrame(const FrameInput& input, const Matrix4f& view_projection) {
     radiance.prepare(input.width, input.height, std::max(input.view.samples, 1));
-    const Matrix4f view_projection =
-        cameraMatrix(input.camera, static_cast<float>(input.width) / static_cast<float>(input.height));
     Bounds scene = bodies.bounds();
     for (const HairResources& hair : hairs.hairs()) {
-      if (hair.drawable) scene.add(hair.bounds);
+      if (!hair.bounds.empty()) scene.add(hair.bounds);
     }
     shared::FrameBlock block = frameBlock(input, view_projection, scene, radiance.samples());
     shadows.plan(input, hairs.hairs(), bodies, block);
     glNamedBufferSubData(frame_block.id(), 0, sizeof(block), &block);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame_block.id());
-    return view_projection;
   }
 
   void clearRadiance() {
@@ -111,9 +157,34 @@ struct Renderer::Parts {
   StrandCount drawStrands(const FrameInput& input) {
     StrandCount count;
     for (std::size_t i = 0; i < hairs.hairs().size() && input.view.show_strands; ++i) {
-      count += strands.draw(hairs.hairs()[i], shadows.mapOf(i), input.view.strand_path);
+      count += strands.draw(hairs.hairs()[i], shadows.mapOf(i), input.view.strand_path, detail.table());
     }
     return count;
+  }
+
+  void drawRadiance(const FrameInput& input, const ViewGate& gate, const Matrix4f& view_projection,
+                    FrameReport& report) {
+    report.bytes_uploaded += detail.plan(input, gate, hairs.hairs(), report.left_out);
+    planFrame(input, view_projection);
+    timer.mark("upload");
+    const StrandCount shadow_count = shadows.drawHairMaps(input, hairs.hairs(), bodies, detail.table());
+    timer.mark("hair shadows");
+    shadows.drawBodyMap(input, bodies);
+    timer.mark("body shadow");
+    report.left_out.shadows = shadows.leftOut().shadows;
+    report.left_out.shadow_view = shadows.leftOut().shadow_view;
+    clearRadiance();
+    shadows.bindMaps();
+    report.draw_calls += shadow_count.draw_calls + backdrop.draw(input.view.ground);
+    if (input.view.show_body) report.draw_calls += bodies.draw(view_projection, input.skips, report.left_out);
+    timer.mark("body and ground");
+    const StrandCount drawn = drawStrands(input);
+    timer.mark("strands");
+    report.draw_calls += debug.draw(input, report.bytes_uploaded);
+    timer.mark("debug");
+    report.strands_drawn = drawn.strands;
+    report.strand_vertices = drawn.vertices;
+    report.draw_calls += drawn.draw_calls;
   }
 };
 
@@ -128,29 +199,26 @@ FrameReport Renderer::renderFrame(const FrameInput& input, unsigned framebuffer,
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_BLEND);
   p.timer.start(measure);
-  report.bytes_uploaded = p.uploadWhatChanged(input);
-  const Matrix4f view_projection = p.planFrame(input);
-  p.timer.mark("upload");
-  const StrandCount shadow_count = p.shadows.drawHairMaps(input, p.hairs.hairs(), p.bodies);
-  p.timer.mark("hair shadows");
-  p.shadows.drawBodyMap(input, p.bodies);
-  p.timer.mark("body shadow");
-  p.clearRadiance();
-  p.shadows.bindMaps();
-  report.draw_calls = shadow_count.draw_calls + p.backdrop.draw(input.view.ground);
-  if (input.view.show_body) report.draw_calls += p.bodies.draw(view_projection);
-  p.timer.mark("body and ground");
-  const StrandCount drawn = p.drawStrands(input);
-  p.timer.mark("strands");
-  report.draw_calls += p.debug.draw(input, report.bytes_uploaded);
-  p.timer.mark("debug");
+  const Matrix4f view_projection =
+      cameraMatrix(input.camera, static_cast<float>(input.width) / static_cast<float>(input.height));
+  // Two pixels wider: strands are drawn at least a pixel wide.
+  const Frustum frustum(view_projection, 4 / static_cast<float>(std::min(input.width, input.height)));
+  const ViewGate gate{&frustum, Parts::shadowReach(input)};
+  report.bytes_uploaded = p.uploadWhatChanged(input, gate);
+  report.left_out = p.hairs.leftOut();
+  const bool kept = p.isDrawn(input);
+  report.left_out.frame = {kept, 1};
+  if (kept) {
+    p.timer.mark("upload");
+  } else {
+    p.drawRadiance(input, gate, view_projection, report);
+  }
   p.tone_map.draw(p.radiance, framebuffer, input.width, input.height, input.view.exposure);
   p.timer.mark("tone map");
   report.stages = p.timer.finish();
-  report.strands_drawn = drawn.strands;
-  report.strand_vertices = drawn.vertices;
-  report.draw_calls += drawn.draw_calls + 1;
-  for (const HairResources& hair : p.hairs.hairs()) report.gpu_bytes_hair += hair.gpuBytes();
+  report.draw_calls += 1;
+  report.gpu_bytes_hair = p.hairs.gpuBytes();
+  report.gpu_bytes_shadows = p.shadows.gpuBytes();
   return report;
 }
 
@@ -165,6 +233,7 @@ FrameReport Renderer::renderImage(const FrameInput& input, std::vector<unsigned 
 
 std::string Renderer::reloadShaders() {
   std::string message;
+  parts_->has_drawn = false;
   for (const std::string& fault : {parts_->bodies.reload(), parts_->shadows.reload(), parts_->strands.reload(),
                                    parts_->backdrop.reload(), parts_->debug.reload(), parts_->tone_map.reload()}) {
     if (message.empty()) message = fault;

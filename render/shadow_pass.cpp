@@ -36,14 +36,6 @@ void compareDepth(const Texture& texture) {
   glTextureParameteri(texture.id(), GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
 }
 
-// Shadows stand fewer strands, each standing for more hairs, and coarser curves: both blur by far less than a shadow is
-// soft.
-HairDraw shadowDraw(const HairResources& hair, const LightInput& light, int map) {
-  int stride = 1;
-  if (light.shadow_strands > 0) stride = std::max((hair.strands + light.shadow_strands - 1) / light.shadow_strands, 1);
-  return {stride, (hair.segments + 1) / 2, map};
-}
-
 // A body is several times as large as its hair.
 int bodyMapSize(int hair_map_size) {
   return 2 * hair_map_size;
@@ -61,6 +53,9 @@ float firstThickness(const HairResources& hair, const LightInput& light) {
   return std::max(0.5f * hair.bounds.diagonal() / sum, 1e-4f);
 }
 
+constexpr float kTexelsPerPixel = 3;
+constexpr int kSmallestTile = 16;  // of them make a layer's side
+
 }  // namespace
 
 ShadowPass::ShadowPass(const std::string& shader_dir)
@@ -71,93 +66,191 @@ ShadowPass::ShadowPass(const std::string& shader_dir)
       no_attributes_(makeVertexArray()),
       framebuffer_(makeFramebuffer()) {}
 
-void ShadowPass::allocate(int size, int maps) {
-  if (size == size_ && maps <= maps_) return;
+void ShadowPass::allocate(int size, int layers) {
+  if (size == size_ && layers <= layers_) return;
   size_ = size;
-  maps_ = maps;
-  opacity_near_ = makeArray(GL_RGBA16F, size, maps, GL_LINEAR);
-  opacity_far_ = makeArray(GL_RGBA16F, size, maps, GL_LINEAR);
-  hair_depth_ = makeArray(GL_DEPTH_COMPONENT32F, size, maps, GL_LINEAR);
-  body_in_hair_depth_ = makeArray(GL_DEPTH_COMPONENT32F, size, maps, GL_LINEAR);
+  layers_ = layers;
+  opacity_near_ = makeArray(GL_RGBA16F, size, layers, GL_LINEAR);
+  opacity_far_ = makeArray(GL_RGBA16F, size, layers, GL_LINEAR);
+  hair_depth_ = makeArray(GL_DEPTH_COMPONENT32F, size, layers, GL_LINEAR);
+  body_in_hair_depth_ = makeArray(GL_DEPTH_COMPONENT32F, size, layers, GL_LINEAR);
   compareDepth(body_in_hair_depth_);
-  body_depth_ = makeTexture(GL_TEXTURE_2D);
-  glTextureStorage2D(body_depth_.id(), 1, GL_DEPTH_COMPONENT32F, bodyMapSize(size), bodyMapSize(size));
-  glTextureParameteri(body_depth_.id(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTextureParameteri(body_depth_.id(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  body_depth_ = makeArray(GL_DEPTH_COMPONENT32F, bodyMapSize(size), shared::kMaxBodyShadows, GL_LINEAR);
   compareDepth(body_depth_);
-  for (Plan& plan : plans_) plan.drawn = 0;
-  body_drawn_ = 0;
+  drawn_.clear();
+  drawn_before_.clear();
+  bodies_drawn_.fill(0);
+}
+
+long ShadowPass::gpuBytes() const {
+  const long texels = static_cast<long>(size_) * size_ * layers_;
+  return texels * (8 + 8 + 4 + 4) + 4L * shared::kMaxBodyShadows * bodyMapSize(size_) * bodyMapSize(size_);
+}
+
+// Texels a side: a few for every pixel of the hair, a whole layer when it is large. A tile that the hair has is kept
+// until it is off by more than a little, so that nothing switches to and fro.
+int ShadowPass::tileSide(const HairResources& hair, const FrameInput& input) const {
+  if (!input.skips.shadow_detail) return size_;
+  const auto fit = [&](float texels) {
+    int side = size_;
+    while (side > std::max(size_ / kSmallestTile, 8) && static_cast<float>(side / 2) >= texels) side /= 2;
+    return side;
+  };
+  const float wanted = kTexelsPerPixel * hair.pixels;
+  const auto before =
+      std::find_if(drawn_before_.begin(), drawn_before_.end(), [&](const Drawn& d) { return d.hair_id == hair.id; });
+  if (before != drawn_before_.end() && before->side >= fit(0.8f * wanted) && before->side <= fit(1.2f * wanted))
+    return before->side;
+  return fit(wanted);
+}
+
+// Largest tiles first, each in the place that its number has along a Z-shaped curve: sides are powers of two, so none
+// is wasted.
+void ShadowPass::placeTiles() {
+  order_.resize(plans_.size());
+  std::iota(order_.begin(), order_.end(), std::size_t{0});
+  std::stable_sort(order_.begin(), order_.end(),
+                   [&](std::size_t a, std::size_t b) { return plans_[a].tile.side > plans_[b].tile.side; });
+  const int unit = std::max(size_ / kSmallestTile, 8), across = size_ / unit;
+  long at = 0;
+  for (const std::size_t map : order_) {
+    Tile& tile = plans_[map].tile;
+    tile.layer = static_cast<int>(at / (static_cast<long>(across) * across));
+    const long within = at % (static_cast<long>(across) * across);
+    tile.x = tile.y = 0;
+    for (int bit = 0; (1 << bit) < across; ++bit) {
+      tile.x |= static_cast<int>((within >> (2 * bit)) & 1) << bit;
+      tile.y |= static_cast<int>((within >> (2 * bit + 1)) & 1) << bit;
+    }
+    tile.x *= unit;
+    tile.y *= unit;
+    const long side = tile.side / unit;
+    at += side * side;
+  }
+  const long whole = static_cast<long>(across) * across;
+  allocate(size_, std::max(static_cast<int>((at + whole - 1) / whole), 1));
+}
+
+std::uint64_t ShadowPass::signatureOf(const Plan& plan, const HairResources& hair, const FrameInput& input,
+                                      const BodyPass& bodies) const {
+  Signature signature;
+  signature.add(plan.frustum.clip_from_world);
+  signature.add(plan.tile);
+  signature.add(hair.id);
+  signature.add(hair.revision);
+  signature.add(has_bodies_ ? bodies.poseSignature(input.skips.shadow_view ? &plan.frustum.clip_from_world : nullptr)
+                            : 0);
+  const HairDraw& draw = hair.shadow_draw;
+  signature.add(draw.segments);
+  signature.add(draw.table_strands);
+  signature.add(draw.most_segments);
+  signature.add(draw.fade_to);
+  signature.add(input.view.strand_path);
+  return signature.value;
+}
+
+// One map for all bodies, and where some stand far one more, the first, for those near the camera: theirs would be
+// coarse otherwise.
+void ShadowPass::planBodyMaps(const FrameInput& input, const BodyPass& bodies) {
+  body_maps_ = 0;
+  if (!has_bodies_) return;
+  const Vector3f to_light = directionOr(input.light.to_light, Vector3f::UnitY());
+  const Bounds near = bodies.boundsNear(asVector(input.camera.eye)), all = bodies.bounds();
+  const auto add = [&](const Bounds& bounds, bool some) {
+    const auto map = static_cast<std::size_t>(body_maps_++);
+    body_frusta_[map] = lightFrustum(bounds, to_light, bodyMapSize(size_));
+    Signature signature;
+    signature.add(body_frusta_[map].clip_from_world);
+    signature.add(bodies.poseSignature(some ? &body_frusta_[map].clip_from_world : nullptr));
+    body_signatures_[map] = signature.value;
+  };
+  if (near.low != all.low || near.high != all.high) add(near, true);
+  add(all, false);
 }
 
 void ShadowPass::plan(const FrameInput& input, std::span<HairResources> hairs, const BodyPass& bodies,
                       shared::FrameBlock& frame) {
   const LightInput& light = input.light;
   const Vector3f to_light = directionOr(light.to_light, Vector3f::UnitY()), eye = asVector(input.camera.eye);
-  std::vector<std::size_t> order;
+  left_out_ = {};
+  std::vector<std::size_t>& order = order_;
+  order.clear();
   for (std::size_t i = 0; i < hairs.size() && light.shadows; ++i) {
-    if (hairs[i].drawable && input.view.show_strands) order.push_back(i);
+    if (!hairs[i].drawable || !input.view.show_strands) continue;
+    left_out_.shadow_view += {!hairs[i].casts, 1};
+    if (hairs[i].casts) order.push_back(i);
   }
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return (hairs[a].bounds.center() - eye).squaredNorm() < (hairs[b].bounds.center() - eye).squaredNorm();
-  });
-  order.resize(std::min<std::size_t>(order.size(), kMaxHairShadows));
-  // In the order of the hairs, so that a camera that turns does not shuffle maps that could be kept.
-  std::sort(order.begin(), order.end());
-  const int size = std::clamp(light.shadow_size, 64, 8192);
-  allocate(size, std::max<int>(static_cast<int>(order.size()), 1));
-  has_bodies_ = !bodies.bounds().empty() && light.shadows;
-  body_signature_ = 0;
-  if (has_bodies_) {
-    body_frustum_ = lightFrustum(bodies.bounds(), to_light, bodyMapSize(size));
-    Signature signature;
-    signature.add(body_frustum_.clip_from_world);
-    signature.add(bodies.poseSignature());
-    body_signature_ = signature.value;
+  if (order.size() > kMaxHairShadows) {
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return (hairs[a].bounds.center() - eye).squaredNorm() < (hairs[b].bounds.center() - eye).squaredNorm();
+    });
+    order.resize(kMaxHairShadows);
+    // In the order of the hairs, so that a camera that turns does not shuffle maps that could be kept.
+    std::sort(order.begin(), order.end());
   }
+  // A power of two, so that tiles divide it.
+  int size = 64;
+  while (size * 2 <= std::clamp(light.shadow_size, 64, 8192)) size *= 2;
+  allocate(size, std::max(layers_, 1));
   plans_.resize(order.size());
   map_of_hair_.assign(hairs.size(), -1);
+  drawn_before_.swap(drawn_);
+  drawn_.clear();
   for (std::size_t map = 0; map < order.size(); ++map) {
     const HairResources& hair = hairs[order[map]];
+    plans_[map].hair = order[map];
+    plans_[map].tile = {0, 0, tileSide(hair, input), 0};
+    map_of_hair_[order[map]] = static_cast<int>(map);
+  }
+  placeTiles();
+  has_bodies_ = !bodies.bounds().empty() && light.shadows;
+  planBodyMaps(input, bodies);
+  for (std::size_t map = 0; map < plans_.size(); ++map) {
     Plan& plan = plans_[map];
-    plan.hair = order[map];
+    const HairResources& hair = hairs[plan.hair];
     Bounds bounds = hair.bounds;
     const float margin = 0.01f + 4 * hair.look.offset + hair.look.curl_radius + hair.look.frizz;
     bounds.low.array() -= margin;
     bounds.high.array() += margin;
-    plan.frustum = lightFrustum(bounds, to_light, size);
-    plan.first_thickness = firstThickness(hair, light);
-    map_of_hair_[order[map]] = static_cast<int>(map);
-    Signature signature;
-    signature.add(plan.frustum.clip_from_world);
-    signature.add(plan.first_thickness);
-    signature.add(hair.id);
-    signature.add(hair.shadow_revision);
-    signature.add(body_signature_);
-    signature.add(shadowDraw(hair, light, 0));
-    signature.add(input.view.strand_path);
-    plan.signature = signature.value;
-    frame.hair_shadow[map] = asMat4(plan.frustum.clip_from_world);
-    frame.hair_shadow_size[map] = {plan.frustum.side, plan.frustum.side, plan.frustum.depth, plan.first_thickness};
+    plan.frustum = lightFrustum(bounds, to_light, plan.tile.side);
+    plan.signature = signatureOf(plan, hair, input, bodies);
+    const auto scale = 1 / static_cast<float>(size);
+    maps_.hair_shadow[map] = asMat4(plan.frustum.clip_from_world);
+    maps_.hair_shadow_size[map] = {plan.frustum.side, static_cast<float>(plan.tile.side), plan.frustum.depth,
+                                   firstThickness(hair, light)};
+    maps_.hair_shadow_tile[map] = {static_cast<float>(plan.tile.x) * scale, static_cast<float>(plan.tile.y) * scale,
+                                   static_cast<float>(plan.tile.side) * scale, static_cast<float>(plan.tile.layer)};
+    // Around the square that the map covers, wherever in its depth.
+    maps_.hair_shadow_ball[map] = asVec4(bounds.center(), 0.75f * plan.frustum.side + 0.5f * plan.frustum.depth);
   }
+  if (!block_) {
+    block_ = makeBuffer();
+    glNamedBufferStorage(block_.id(), sizeof(maps_), nullptr, GL_DYNAMIC_STORAGE_BIT);
+  }
+  if (!plans_.empty()) glNamedBufferSubData(block_.id(), 0, sizeof(maps_), &maps_);
+  glBindBufferBase(GL_UNIFORM_BUFFER, 3, block_.id());
   frame.to_key[3] = static_cast<float>(plans_.size());
   frame.forward[3] = light.shadows ? 1.0f : 0.0f;
   frame.opacity = {static_cast<float>(std::clamp(light.opacity_layers, 1, shared::kMaxOpacityLayers)),
-                   std::max(light.shadow_strength, 0.0f), static_cast<float>(size), has_bodies_ ? 1.0f : 0.0f};
-  frame.body_shadow = asMat4(body_frustum_.clip_from_world);
+                   std::max(light.shadow_strength, 0.0f), 0, static_cast<float>(body_maps_)};
+  for (std::size_t map = 0; map < body_frusta_.size(); ++map)
+    frame.body_shadow[map] = asMat4(body_frusta_[map].clip_from_world);
 }
 
-void ShadowPass::drawHairMap(int map, HairResources& hair, const FrameInput& input) {
-  const HairDraw draw = shadowDraw(hair, input.light, map);
+void ShadowPass::drawHairMap(int map, HairResources& hair, const FrameInput& input, const Texture& table) {
+  HairDraw draw = hair.shadow_draw;
+  draw.shadow_map = map;
+  const Plan& plan = plans_[static_cast<std::size_t>(map)];
   const StrandPath path = input.view.strand_path;
   const bool by_geometry = path == StrandPath::kGeometry;
-  HairStore::bind(hair, draw);
+  HairStore::bind(hair, draw, &table);
   glBindVertexArray(no_attributes_.id());
   const GLuint target = framebuffer_.id();
 
   glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT0, 0, 0, 0);
   glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT1, 0, 0, 0);
   glNamedFramebufferDrawBuffer(target, GL_NONE);
-  glNamedFramebufferTextureLayer(target, GL_DEPTH_ATTACHMENT, hair_depth_.id(), 0, map);
+  glNamedFramebufferTextureLayer(target, GL_DEPTH_ATTACHMENT, hair_depth_.id(), 0, plan.tile.layer);
   const float far_away = 1;
   glClearNamedFramebufferfv(target, GL_DEPTH, 0, &far_away);
   glEnable(GL_DEPTH_TEST);
@@ -165,8 +258,8 @@ void ShadowPass::drawHairMap(int map, HairResources& hair, const FrameInput& inp
   issueStrands(hair, draw, path, {GL_LINE_STRIP, 1});
 
   glNamedFramebufferTextureLayer(target, GL_DEPTH_ATTACHMENT, 0, 0, 0);
-  glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT0, opacity_near_.id(), 0, map);
-  glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT1, opacity_far_.id(), 0, map);
+  glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT0, opacity_near_.id(), 0, plan.tile.layer);
+  glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT1, opacity_far_.id(), 0, plan.tile.layer);
   const GLenum targets[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
   glNamedFramebufferDrawBuffers(target, 2, targets);
   const float nothing[4] = {0, 0, 0, 0};
@@ -182,49 +275,64 @@ void ShadowPass::drawHairMap(int map, HairResources& hair, const FrameInput& inp
   glEnable(GL_DEPTH_TEST);
 }
 
-StrandCount ShadowPass::drawHairMaps(const FrameInput& input, std::span<HairResources> hairs, BodyPass& bodies) {
+StrandCount ShadowPass::drawHairMaps(const FrameInput& input, std::span<HairResources> hairs, BodyPass& bodies,
+                                     const Texture& table) {
   StrandCount count;
+  glEnable(GL_SCISSOR_TEST);
   for (std::size_t map = 0; map < plans_.size(); ++map) {
-    Plan& plan = plans_[map];
-    if (plan.drawn == plan.signature) continue;
+    const Plan& plan = plans_[map];
     HairResources& hair = hairs[plan.hair];
+    drawn_.push_back({hair.id, plan.signature, plan.tile.side});
+    const auto before =
+        std::find_if(drawn_before_.begin(), drawn_before_.end(), [&](const Drawn& d) { return d.hair_id == hair.id; });
+    const bool kept = input.skips.shadows && before != drawn_before_.end() && before->signature == plan.signature;
+    left_out_.shadows += {kept, 1};
+    if (kept) continue;
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
-    glViewport(0, 0, size_, size_);
-    drawHairMap(static_cast<int>(map), hair, input);
+    glViewport(plan.tile.x, plan.tile.y, plan.tile.side, plan.tile.side);
+    glScissor(plan.tile.x, plan.tile.y, plan.tile.side, plan.tile.side);
+    drawHairMap(static_cast<int>(map), hair, input, table);
     count.draw_calls += 2;
-    if (has_bodies_) {
-      const GLuint target = framebuffer_.id();
-      glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT0, 0, 0, 0);
-      glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT1, 0, 0, 0);
-      glNamedFramebufferDrawBuffer(target, GL_NONE);
-      glNamedFramebufferTextureLayer(target, GL_DEPTH_ATTACHMENT, body_in_hair_depth_.id(), 0, static_cast<int>(map));
-      const float far_away = 1;
-      glClearNamedFramebufferfv(target, GL_DEPTH, 0, &far_away);
-      // What stands between the light and the frustum must shade too: clamped onto its near side.
-      glEnable(GL_DEPTH_CLAMP);
-      bodies.drawDepth(plan.frustum.clip_from_world);
-      glDisable(GL_DEPTH_CLAMP);
-    }
-    plan.drawn = plan.signature;
+    if (!has_bodies_) continue;
+    const GLuint target = framebuffer_.id();
+    glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT0, 0, 0, 0);
+    glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT1, 0, 0, 0);
+    glNamedFramebufferDrawBuffer(target, GL_NONE);
+    glNamedFramebufferTextureLayer(target, GL_DEPTH_ATTACHMENT, body_in_hair_depth_.id(), 0, plan.tile.layer);
+    const float far_away = 1;
+    glClearNamedFramebufferfv(target, GL_DEPTH, 0, &far_away);
+    // What stands between the light and the frustum must shade too: clamped onto its near side.
+    glEnable(GL_DEPTH_CLAMP);
+    bodies.drawDepth(plan.frustum.clip_from_world, input.skips.shadow_view);
+    glDisable(GL_DEPTH_CLAMP);
   }
+  glDisable(GL_SCISSOR_TEST);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   return count;
 }
 
-void ShadowPass::drawBodyMap(const FrameInput&, BodyPass& bodies) {
-  if (!has_bodies_ || body_drawn_ == body_signature_) return;
+void ShadowPass::drawBodyMap(const FrameInput& input, BodyPass& bodies) {
+  if (!has_bodies_) return;
   const GLuint target = framebuffer_.id();
-  glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT0, 0, 0, 0);
-  glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT1, 0, 0, 0);
-  glNamedFramebufferDrawBuffer(target, GL_NONE);
-  glNamedFramebufferTexture(target, GL_DEPTH_ATTACHMENT, body_depth_.id(), 0);
-  glBindFramebuffer(GL_FRAMEBUFFER, target);
-  glViewport(0, 0, bodyMapSize(size_), bodyMapSize(size_));
-  const float far_away = 1;
-  glClearNamedFramebufferfv(target, GL_DEPTH, 0, &far_away);
-  glEnable(GL_DEPTH_TEST);
-  bodies.drawDepth(body_frustum_.clip_from_world);
-  body_drawn_ = body_signature_;
+  for (std::size_t map = 0; map < static_cast<std::size_t>(body_maps_); ++map) {
+    const bool kept = input.skips.shadows && bodies_drawn_[map] == body_signatures_[map];
+    left_out_.shadows += {kept, 1};
+    if (kept) continue;
+    glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT0, 0, 0, 0);
+    glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT1, 0, 0, 0);
+    glNamedFramebufferDrawBuffer(target, GL_NONE);
+    glNamedFramebufferTextureLayer(target, GL_DEPTH_ATTACHMENT, body_depth_.id(), 0, static_cast<GLint>(map));
+    glBindFramebuffer(GL_FRAMEBUFFER, target);
+    glViewport(0, 0, bodyMapSize(size_), bodyMapSize(size_));
+    const float far_away = 1;
+    glClearNamedFramebufferfv(target, GL_DEPTH, 0, &far_away);
+    glEnable(GL_DEPTH_TEST);
+    // Bodies beside the near ones may stand between these and the light.
+    glEnable(GL_DEPTH_CLAMP);
+    bodies.drawDepth(body_frusta_[map].clip_from_world, map + 1 < static_cast<std::size_t>(body_maps_));
+    glDisable(GL_DEPTH_CLAMP);
+    bodies_drawn_[map] = body_signatures_[map];
+  }
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
@@ -242,7 +350,8 @@ std::string ShadowPass::reload() {
     const std::string fault = program->reloadIfChanged();
     if (message.empty()) message = fault;
   }
-  for (Plan& plan : plans_) plan.drawn = 0;
+  drawn_.clear();
+  bodies_drawn_.fill(0);
   return message;
 }
 

@@ -1,7 +1,11 @@
-// Shadow maps of the key light: a deep opacity map for each of the nearest hairs, with the bodies' depth in the same
-// view, and one depth map of all bodies. Redrawn only when the light, the hair or a body changed.
+// Shadow maps of the key light: a deep opacity map for each hair, with the bodies' depth in the same view, and one
+// depth map of all bodies, or two where some stand far. Redrawn only when the light, the hair or a body changed.
+//
+// The hairs' maps are tiles of one array of textures: a near hair has a whole layer, a far one a half, a quarter, an
+// eighth or a sixteenth of its side.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -25,11 +29,16 @@ class ShadowPass {
   void plan(const FrameInput& input, std::span<HairResources> hairs, const BodyPass& bodies, shared::FrameBlock& frame);
 
   // Draws the maps that are out of date. The frame block must be uploaded and bound. Leaves no framebuffer bound.
-  StrandCount drawHairMaps(const FrameInput& input, std::span<HairResources> hairs, BodyPass& bodies);
+  // table: of the frame's detail.
+  StrandCount drawHairMaps(const FrameInput& input, std::span<HairResources> hairs, BodyPass& bodies,
+                           const Texture& table);
   void drawBodyMap(const FrameInput& input, BodyPass& bodies);
 
   // Binds every map for the passes that read them.
   void bindMaps() const;
+
+  const DrawLeftOut& leftOut() const { return left_out_; }
+  long gpuBytes() const;
 
   // The map of hairs[i], or -1.
   int mapOf(std::size_t hair) const { return hair < map_of_hair_.size() ? map_of_hair_[hair] : -1; }
@@ -37,25 +46,44 @@ class ShadowPass {
   std::string reload();
 
  private:
+  struct Tile {
+    int x = 0, y = 0, side = 0, layer = 0;  // texels
+  };
   struct Plan {
     std::size_t hair = 0;
     LightFrustum frustum;
-    float first_thickness = 0;
-    std::uint64_t signature = 0, drawn = 0;  // of all that the map shows; drawn: what it shows now
+    Tile tile;
+    std::uint64_t signature = 0;  // of all that the map shows
+  };
+  // What a tile shows now.
+  struct Drawn {
+    std::uint64_t hair_id = 0, signature = 0;
+    int side = 0;  // of the hair's last tile: sizes change only when they are off by enough
   };
 
-  void allocate(int size, int maps);
-  void drawHairMap(int map, HairResources& hair, const FrameInput& input);
+  void allocate(int size, int layers);
+  void placeTiles();
+  void planBodyMaps(const FrameInput& input, const BodyPass& bodies);
+  std::uint64_t signatureOf(const Plan& plan, const HairResources& hair, const FrameInput& input,
+                            const BodyPass& bodies) const;
+  int tileSide(const HairResources& hair, const FrameInput& input) const;
+  void drawHairMap(int map, HairResources& hair, const FrameInput& input, const Texture& table);
 
   ShaderProgram depth_geometry_, depth_pulling_, opacity_geometry_, opacity_pulling_;
   VertexArray no_attributes_;
   Framebuffer framebuffer_;
   Texture opacity_near_, opacity_far_, hair_depth_, body_in_hair_depth_, body_depth_;
-  int size_ = 0, maps_ = 0;
+  Buffer block_;
+  int size_ = 0, layers_ = 0;
   std::vector<Plan> plans_;
+  std::vector<Drawn> drawn_, drawn_before_;
+  std::vector<std::size_t> order_;
+  shared::ShadowBlock maps_{};
+  DrawLeftOut left_out_;
   std::vector<int> map_of_hair_;
-  LightFrustum body_frustum_;
-  std::uint64_t body_signature_ = 0, body_drawn_ = 0;
+  std::array<LightFrustum, shared::kMaxBodyShadows> body_frusta_;
+  std::array<std::uint64_t, shared::kMaxBodyShadows> body_signatures_{}, bodies_drawn_{};
+  int body_maps_ = 0;
   bool has_bodies_ = false;
 };
 

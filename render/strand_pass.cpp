@@ -17,10 +17,10 @@ StrandCount& StrandCount::operator+=(const StrandCount& other) {
 
 StrandCount issueStrands(const HairResources& hair, const HairDraw& draw, StrandPath path,
                          const StrandTopology& topology) {
-  const int strands = draw.strandCount(hair), vertices = draw.pointsPerStrand(hair) * topology.vertices_a_point;
+  const int strands = hair.strandCount(draw), vertices = hair.pointsPerStrand(draw) * topology.vertices_a_point;
   if (strands == 0) return {};
   if (path == StrandPath::kGeometry) {
-    glDrawArrays(GL_POINTS, 0, strands * draw.chunksPerStrand(hair));
+    glDrawArrays(GL_POINTS, 0, strands * hair.chunksPerStrand(draw));
   } else {
     glDrawArraysInstanced(topology.strip, 0, vertices, strands);
   }
@@ -32,10 +32,11 @@ StrandPass::StrandPass(const std::string& shader_dir)
       pulling_(shader_dir, {{"strand_pull.vert", "strand.frag"}, {}, {}}),
       no_attributes_(makeVertexArray()) {}
 
-StrandCount StrandPass::draw(HairResources& hair, int shadow_map, StrandPath path) {
-  if (!hair.drawable) return {};
-  const HairDraw draw{1, hair.segments, shadow_map};
-  HairStore::bind(hair, draw);
+StrandCount StrandPass::draw(HairResources& hair, int shadow_map, StrandPath path, const Texture& table) {
+  if (!hair.drawable || !hair.in_view) return {};
+  hair.view_draw.shadow_map = shadow_map;
+  const HairDraw& draw = hair.view_draw;
+  HairStore::bind(hair, draw, &table);
   (path == StrandPath::kGeometry ? geometry_ : pulling_).use();
   glBindVertexArray(no_attributes_.id());
   return issueStrands(hair, draw, path, {GL_TRIANGLE_STRIP, 2});

@@ -29,8 +29,9 @@ class StrandPass {
  public:
   explicit StrandPass(const std::string& shader_dir);
 
-  // Reads the frame block and the shadow maps, which must be bound. shadow_map: the hair's own, or -1.
-  StrandCount draw(HairResources& hair, int shadow_map, StrandPath path);
+  // Reads the frame block and the shadow maps, which must be bound. shadow_map: the hair's own, or -1. table: of the
+  // frame's detail.
+  StrandCount draw(HairResources& hair, int shadow_map, StrandPath path, const Texture& table);
 
   std::string reload();
 

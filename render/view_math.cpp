@@ -61,6 +61,40 @@ void Bounds::add(const Bounds& other) {
   high = high.cwiseMax(other.high);
 }
 
+Frustum::Frustum(const Matrix4f& m, float margin) {
+  const Eigen::RowVector4f w = m.row(3), wide = (1 + margin) * w;
+  planes = {(wide + m.row(0)).transpose(), (wide - m.row(0)).transpose(), (wide + m.row(1)).transpose(),
+            (wide - m.row(1)).transpose(), (w + m.row(2)).transpose(),    (w - m.row(2)).transpose()};
+}
+
+namespace {
+
+// The largest value of a plane over a box, and the smallest.
+float most(const Eigen::Vector4f& plane, const Bounds& box) {
+  const Vector3f normal = plane.head<3>();
+  return normal.cwiseProduct(box.low).cwiseMax(normal.cwiseProduct(box.high)).sum() + plane.w();
+}
+float least(const Eigen::Vector4f& plane, const Bounds& box) {
+  const Vector3f normal = plane.head<3>();
+  return normal.cwiseProduct(box.low).cwiseMin(normal.cwiseProduct(box.high)).sum() + plane.w();
+}
+
+}  // namespace
+
+bool Frustum::maySee(const Bounds& box) const {
+  return std::all_of(planes.begin(), planes.end(), [&](const auto& plane) { return most(plane, box) >= 0; });
+}
+
+bool Frustum::maySeeSwept(const Bounds& box, const Vector3f& along) const {
+  return std::all_of(planes.begin(), planes.end(), [&](const auto& plane) {
+    return most(plane, box) + std::max(plane.template head<3>().dot(along), 0.0f) >= 0;
+  });
+}
+
+bool Frustum::seesAllOf(const Bounds& box) const {
+  return std::all_of(planes.begin(), planes.end(), [&](const auto& plane) { return least(plane, box) >= 0; });
+}
+
 LightFrustum lightFrustum(const Bounds& bounds, const Vector3f& to_light, int texels) {
   const Matrix4f turn =
       lookAt(to_light, Vector3f::Zero(), std::abs(to_light.y()) > 0.9f ? Vector3f::UnitX() : Vector3f::UnitY());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 
 #include "render/frame_input.h"
 
@@ -33,6 +34,19 @@ struct Bounds {
   void add(const Bounds& other);
   Eigen::Vector3f center() const { return 0.5f * (low + high); }
   float diagonal() const { return (high - low).norm(); }
+};
+
+// Where something can be seen from, as planes whose normals point inwards.
+struct Frustum {
+  std::array<Eigen::Vector4f, 6> planes;
+
+  // Of a matrix to clip space; widened by `margin`, a share of the picture's half sides.
+  Frustum(const Eigen::Matrix4f& clip_from_world, float margin);
+  // False only when nothing inside the box can be seen.
+  bool maySee(const Bounds& box) const;
+  // The same of the box and all places `along` (m) away from it: where its shadow falls.
+  bool maySeeSwept(const Bounds& box, const Eigen::Vector3f& along) const;
+  bool seesAllOf(const Bounds& box) const;
 };
 
 // A square light frustum around bounds.

@@ -6,7 +6,7 @@ layout(location = 0) out vec4 near;
 layout(location = 1) out vec4 far;
 
 void main() {
-  float first = texelFetch(hair_depth, ivec3(ivec2(gl_FragCoord.xy), draw.w), 0).r;
+  float first = texelFetch(hair_depth, ivec3(ivec2(gl_FragCoord.xy), int(hair_shadow_tile[draw.w].w)), 0).r;
   float behind = (gl_FragCoord.z - first) * hair_shadow_size[draw.w].z;
   float held[8], reach = 0.0, thickness = hair_shadow_size[draw.w].w;
   for (int layer = 0; layer < kMaxOpacityLayers; ++layer) {

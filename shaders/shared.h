@@ -22,13 +22,16 @@ const int kRibbonComponents = 4 + 4 + 1;
 const int kLineComponents = 4 + 1;
 const int kMaxOutputComponents = 1024;
 
-const int kMaxHairShadows = 4;    // hairs (the nearest ones) that own a deep opacity map
+const int kMaxHairShadows =
+    128;                        // hairs (the nearest ones) that own a deep opacity map; a block of 16 KB holds so many
+const int kMaxBodyShadows = 2;  // of the bodies near the camera, and of all
 const int kMaxOpacityLayers = 7;  // the eighth channel takes everything
 const float kLayerGrowth = 1.5;   // each deep opacity layer is this much thicker than the one before it
 
 // Texels of the two float buffer textures of a hair.
 const int kVertexTexels = 3;  // position + sky openness, du + depth towards fill, dv + depth towards rim
 const int kFaceTexels = 3;    // first vertices; columns; layers, first strand, end strand, 1 / area
+const int kTableTexels = 1;   // end strand, face, segments a layer (0: the hair's), first strand
 const int kColumnTexels = 3;  // rest position + last layer of the shortest bundle around, rest axis u, rest axis v
 
 // Texture units.
@@ -42,6 +45,7 @@ const int kUnitBodyInHairDepth = 6;
 const int kUnitBodyDepth = 7;
 const int kUnitJoints = 8;
 const int kUnitColor = 9;
+const int kUnitTable = 10;
 
 // Azimuthal scattering table: kScatterPhi angles over [0, pi], kScatterTheta cosines over [0, 1], one slice a lobe.
 const int kScatterPhi = 48;
@@ -63,17 +67,25 @@ SHARED_BLOCK(0, FrameBlock) {
   vec4 ground_light;
   vec4 backdrop_top;
   vec4 backdrop_bottom;
-  vec4 ground_color;   // w: height of the ground, m
-  vec4 ground_center;  // xyz; w: radius at which it has faded away, m
-  vec4 opacity;  // first layer's thickness is per map; x: layers, y: strength, z: map size, w: 1 when a body map exists
-  mat4 body_shadow;                                       // world to clip of the body's shadow map
-  SHARED_ARRAY(mat4, hair_shadow, kMaxHairShadows);       // world to clip
-  SHARED_ARRAY(vec4, hair_shadow_size, kMaxHairShadows);  // m: width, height, depth range, first layer's thickness
+  vec4 ground_color;                                 // w: height of the ground, m
+  vec4 ground_center;                                // xyz; w: radius at which it has faded away, m
+  vec4 opacity;                                      // layers, strength, unused, number of the bodies' maps
+  SHARED_ARRAY(mat4, body_shadow, kMaxBodyShadows);  // world to clip of the bodies' shadow maps, the near bodies' first
+};
+
+// The hairs' deep opacity maps: tiles of an array of textures.
+SHARED_BLOCK(3, ShadowBlock) {
+  SHARED_ARRAY(mat4, hair_shadow, kMaxHairShadows);  // world to clip
+  SHARED_ARRAY(vec4, hair_shadow_size,
+               kMaxHairShadows);  // m: side, texels a side, depth range, first layer's thickness
+  SHARED_ARRAY(vec4, hair_shadow_tile, kMaxHairShadows);  // in the texture: left, bottom, side; its layer
+  SHARED_ARRAY(vec4, hair_shadow_ball, kMaxHairShadows);  // world: a ball around the hair; w: its radius, m
 };
 
 SHARED_BLOCK(1, HairBlock) {
-  ivec4 counts;   // faces, strands, segments a layer, seed
-  ivec4 draw;     // strand stride, chunks a strand, points a strand, own shadow map or -1
+  ivec4 counts;   // faces, entries of the draw table, its first texel, seed
+  ivec4 draw;     // strands, chunks a strand, points a strand, own shadow map or -1
+  vec4 detail;    // strands of a rank below x are drawn, above y are not; width gain; segments a layer
   vec4 width;     // drawn radius at the root (m), tip over root, projected diameter of the hairs one strand stands for
                   // (m), least width (pixels)
   vec4 shape;     // length variation, offset (m), curl radius (m), curl turns

@@ -12,7 +12,7 @@ layout(location = 0) out vec4 lit;  // radiance, coverage
 layout(location = 1) flat out float dither;
 
 void main() {
-  int number = (gl_PrimitiveIDIn / draw.y) * draw.x, start = (gl_PrimitiveIDIn % draw.y) * (kChunkPoints - 1);
+  int number = gl_PrimitiveIDIn / draw.y, start = (gl_PrimitiveIDIn % draw.y) * (kChunkPoints - 1);
   Strand strand = makeStrand(number);
   float own_dither = strandDither(strand);
   int last = lastShownPoint(strand, own_dither);
@@ -21,15 +21,9 @@ void main() {
   LayerWindow window = layerWindow(strand, layer);
   for (int index = start; index <= min(start + kChunkPoints - 1, last); ++index) {
     float s = pointParameter(strand, index);
-    if (layerOf(strand, s) > layer) {
-      ++layer;
-      window.before = window.from.position;
-      window.from = window.to;
-      window.to = layerPoint(strand, layer + 1);
-      window.after = layerAfter(strand, layer + 2, window.from.position, window.to.position);
-    }
+    moveWindow(strand, layerOf(strand, s), layer, window);
     CurvePoint point = curvePoint(strand, window, s, s - float(layer));
-    RibbonPoint ribbon = ribbonPoint(point);
+    RibbonPoint ribbon = ribbonPoint(strand, point);
     vec4 color = vec4(shadeStrand(strand, point), ribbon.coverage);
     for (int side = -1; side <= 1; side += 2) {
       lit = color;

@@ -10,7 +10,7 @@ layout(location = 0) out vec4 lit;
 layout(location = 1) flat out float dither;
 
 void main() {
-  Strand strand = makeStrand(gl_InstanceID * draw.x);
+  Strand strand = makeStrand(gl_InstanceID);
   dither = strandDither(strand);
   lit = vec4(0.0);
   int last = lastShownPoint(strand, dither), index = min(gl_VertexID >> 1, last);
@@ -21,7 +21,7 @@ void main() {
   float s = pointParameter(strand, index);
   int layer = layerOf(strand, s);
   CurvePoint point = curvePoint(strand, layerWindow(strand, layer), s, s - float(layer));
-  RibbonPoint ribbon = ribbonPoint(point);
+  RibbonPoint ribbon = ribbonPoint(strand, point);
   lit = vec4(shadeStrand(strand, point), ribbon.coverage);
   float side = (gl_VertexID & 1) == 0 ? -1.0 : 1.0;
   gl_Position = view_projection * vec4(point.position + side * ribbon.aside, 1.0);

@@ -14,23 +14,17 @@ out vec4 captured;  // position, number of the strand: for tests, by transform f
 #endif
 
 void main() {
-  int number = (gl_PrimitiveIDIn / draw.y) * draw.x, start = (gl_PrimitiveIDIn % draw.y) * (kChunkPoints - 1);
+  int number = gl_PrimitiveIDIn / draw.y, start = (gl_PrimitiveIDIn % draw.y) * (kChunkPoints - 1);
   Strand strand = makeStrand(number);
   int last = lastPoint(strand);
-  if (start >= last) return;
+  if (start >= last || strand.gain <= 0.0) return;
   int layer = layerOf(strand, pointParameter(strand, start));
   LayerWindow window = layerWindow(strand, layer);
   for (int index = start; index <= min(start + kChunkPoints - 1, last); ++index) {
     float s = pointParameter(strand, index);
-    if (layerOf(strand, s) > layer) {
-      ++layer;
-      window.before = window.from.position;
-      window.from = window.to;
-      window.to = layerPoint(strand, layer + 1);
-      window.after = layerAfter(strand, layer + 2, window.from.position, window.to.position);
-    }
+    moveWindow(strand, layerOf(strand, s), layer, window);
     CurvePoint point = curvePoint(strand, window, s, s - float(layer));
-    strand_opacity = lineOpacity(point.tangent);
+    strand_opacity = lineOpacity(strand, point.tangent);
     gl_Position = hair_shadow[draw.w] * vec4(point.position, 1.0);
 #ifdef CAPTURE_POINTS
     captured = vec4(point.position, float(number));

@@ -8,10 +8,15 @@
 layout(location = 0) flat out float strand_opacity;
 
 void main() {
-  Strand strand = makeStrand(gl_InstanceID * draw.x);
+  Strand strand = makeStrand(gl_InstanceID);
+  if (strand.gain <= 0.0) {
+    strand_opacity = 0.0;
+    gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // all of the strand outside the view
+    return;
+  }
   float s = pointParameter(strand, min(gl_VertexID, lastPoint(strand)));
   int layer = layerOf(strand, s);
   CurvePoint point = curvePoint(strand, layerWindow(strand, layer), s, s - float(layer));
-  strand_opacity = lineOpacity(point.tangent);
+  strand_opacity = lineOpacity(strand, point.tangent);
   gl_Position = hair_shadow[draw.w] * vec4(point.position, 1.0);
 }

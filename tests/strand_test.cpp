@@ -47,12 +47,13 @@ class StrandCapture : public gl_fixture::GlTest {
     render::HairStore store;
     store.update({&input, 1}, render::LightInput{});
     render::HairResources& hair = store.hairs()[0];
-    const render::HairDraw draw{1, hair.segments, 0};
+    render::HairDraw draw;
+    draw.segments = hair.segments;
     render::HairStore::bind(hair, draw);
     render::Buffer frame = render::makeBuffer(), result = render::makeBuffer();
     glNamedBufferStorage(frame.id(), sizeof(render::shared::FrameBlock), nullptr, 0);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame.id());
-    const std::size_t most = static_cast<std::size_t>(draw.strandCount(hair)) * draw.pointsPerStrand(hair) * 2;
+    const std::size_t most = static_cast<std::size_t>(hair.strandCount(draw)) * hair.pointsPerStrand(draw) * 2;
     glNamedBufferStorage(result.id(), static_cast<GLsizeiptr>(most * 16), nullptr, 0);
     glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, result.id());
     render::VertexArray none = render::makeVertexArray();

@@ -6,7 +6,7 @@ layout(binding = kUnitOpacityNear) uniform sampler2DArray opacity_near;  // laye
 layout(binding = kUnitOpacityFar) uniform sampler2DArray opacity_far;    // layers 4..6, all
 layout(binding = kUnitHairDepth) uniform sampler2DArray hair_depth;
 layout(binding = kUnitBodyInHairDepth) uniform sampler2DArrayShadow body_in_hair_depth;
-layout(binding = kUnitBodyDepth) uniform sampler2DShadow body_depth;
+layout(binding = kUnitBodyDepth) uniform sampler2DArrayShadow body_depth;
 
 // Light-space texture coordinates and depth of a world point in hair shadow map `map`; outside of [0, 1] where not
 // covered.
@@ -15,13 +15,22 @@ vec3 hairShadowCoordinates(int map, vec3 world) {
   return clip.xyz * 0.5 + 0.5;
 }
 
+// Where a place of the map lies in the array of textures, half a texel off the tile's border so that neighbours do not
+// bleed in.
+vec3 hairShadowTexel(int map, vec2 at) {
+  float half_texel = 0.5 / hair_shadow_size[map].y;
+  vec4 tile = hair_shadow_tile[map];
+  return vec3(tile.xy + clamp(at, half_texel, 1.0 - half_texel) * tile.z, tile.w);
+}
+
 // Optical depth (expected number of hairs crossed, weighted by strength) between the key light and a point. Within a
 // layer it grows linearly; layers thicken geometrically, since what lies deep needs less resolution.
 float hairOpticalDepth(int map, vec3 at) {
   if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return 0.0;
-  float behind = (at.z - textureLod(hair_depth, vec3(at.xy, map), 0.0).r) * hair_shadow_size[map].z;
+  vec3 texel = hairShadowTexel(map, at.xy);
+  float behind = (at.z - textureLod(hair_depth, texel, 0.0).r) * hair_shadow_size[map].z;
   if (behind <= 0.0) return 0.0;
-  vec4 near = textureLod(opacity_near, vec3(at.xy, map), 0.0), far = textureLod(opacity_far, vec3(at.xy, map), 0.0);
+  vec4 near = textureLod(opacity_near, texel, 0.0), far = textureLod(opacity_far, texel, 0.0);
   // held[0] = 0 at the first hair; held[k] at the end of layer k, which lies at thickness (g^k - 1) / (g - 1).
   const float kRate = log2(kLayerGrowth);
   float depth = behind / hair_shadow_size[map].w;
@@ -45,7 +54,7 @@ float hairOpticalDepth(int map, vec3 at) {
 float bodyLightOnHair(int map, vec3 at) {
   if (opacity.w == 0.0) return 1.0;
   float reference = at.z - 0.004 / hair_shadow_size[map].z;
-  return texture(body_in_hair_depth, vec4(at.xy, map, reference));
+  return texture(body_in_hair_depth, vec4(hairShadowTexel(map, at.xy), reference));
 }
 
 // Light of the key left after all hairs, for a point of body or ground: averaged over a disc that widens with the
@@ -55,17 +64,21 @@ float hairLightOnSurface(vec3 world) {
   const float kLampAngle = 0.16, kLeastRadius = 0.004;  // rad, m
   float light = 1.0;
   for (int map = 0; map < int(to_key.w); ++map) {
+    // Hair shades what lies in the ball's shadow only.
+    vec3 from = world - hair_shadow_ball[map].xyz;
+    float down = dot(from, to_key.xyz), radius = hair_shadow_ball[map].w;
+    if (down > radius || dot(from, from) - down * down > radius * radius) continue;
     vec3 at = hairShadowCoordinates(map, world);
     if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) continue;
     // How far above lies the hair that may shade this point? Sought in a wide ring, nearest to the point's depth first.
     float above = 0.0;
     for (int i = 0; i < 5; ++i) {
       vec2 tap = i == 4 ? vec2(0.0) : 0.03 * vec2(i < 2 ? -1.0 : 1.0, (i & 1) == 0 ? -1.0 : 1.0);
-      float first = textureLod(hair_depth, vec3(at.xy + tap / hair_shadow_size[map].xy, map), 0.0).r;
+      float first = textureLod(hair_depth, hairShadowTexel(map, at.xy + tap / hair_shadow_size[map].x), 0.0).r;
       if (first < 1.0) above = max(above, (at.z - first) * hair_shadow_size[map].z);
     }
     if (above <= 0.0) continue;
-    vec2 reach = (kLeastRadius + kLampAngle * 0.5 * above) / hair_shadow_size[map].xy;
+    float reach = (kLeastRadius + kLampAngle * 0.5 * above) / hair_shadow_size[map].x;
     float sum = 0.0;
     for (int i = 0; i < kTaps; ++i) {
       float turn = 2.399963 * float(i);
@@ -77,14 +90,18 @@ float hairLightOnSurface(vec3 world) {
   return light;
 }
 
-// Light left after the bodies, for a point of body or ground: percentage-closer filtering over 3 x 3 taps.
+// Light left after the bodies, for a point of body or ground: percentage-closer filtering over 3 x 3 taps, in the first
+// map that covers the point.
 float bodyLightOnSurface(vec3 world, vec3 normal) {
-  if (opacity.w == 0.0) return 1.0;
-  vec3 at = (body_shadow * vec4(world + normal * 0.012, 1.0)).xyz * 0.5 + 0.5;
-  if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return 1.0;
-  at.z = min(at.z, 1.0);  // the ground lies behind the frustum around the bodies, and behind every one of them
-  float sum = 0.0, texel = 1.4 / float(textureSize(body_depth, 0).x);
-  for (int y = -1; y <= 1; ++y)
-    for (int x = -1; x <= 1; ++x) sum += texture(body_depth, vec3(at.xy + vec2(x, y) * texel, at.z - 0.0012));
-  return sum / 9.0;
+  for (int map = 0; map < int(opacity.w); ++map) {
+    vec3 at = (body_shadow[map] * vec4(world + normal * 0.012, 1.0)).xyz * 0.5 + 0.5;
+    if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) continue;
+    at.z = min(at.z, 1.0);  // the ground lies behind the frustum around the bodies, and behind every one of them
+    float sum = 0.0, texel = 1.4 / float(textureSize(body_depth, 0).x);
+    for (int y = -1; y <= 1; ++y)
+      for (int x = -1; x <= 1; ++x)
+        sum += texture(body_depth, vec4(at.xy + vec2(x, y) * texel, map, at.z - 0.0012));
+    return sum / 9.0;
+  }
+  return 1.0;
 }

@@ -11,6 +11,7 @@
 
 layout(binding = kUnitVertices) uniform samplerBuffer vertex_texels;
 layout(binding = kUnitLayout) uniform samplerBuffer layout_texels;
+layout(binding = kUnitTable) uniform samplerBuffer table_texels;  // which strands of which faces are drawn
 
 const float kPi = 3.14159265358979;
 
@@ -27,6 +28,8 @@ struct Strand {
   uint key;        // hash key of the strand
   uint clump_key;  // hash key of its clump
   float loose;     // 1 for a flyaway, else 0
+  float segments;  // a layer
+  float gain;      // of width and opacity: how many strands this one stands for
 };
 
 struct LayerPoint {
@@ -121,14 +124,16 @@ void joinClump(ivec4 columns, int corners, int columns_at, inout Strand strand) 
 }
 
 Strand makeStrand(int number) {
-  int low = 0, high = counts.x - 1;
-  while (low < high) {
-    int middle = (low + high) >> 1;
-    if (texelFetch(layout_texels, middle * kFaceTexels + 2).z > float(number))
+  int entry = 0, high = counts.y - 1;
+  while (entry < high) {
+    int middle = (entry + high) >> 1;
+    if (texelFetch(table_texels, counts.z + middle * kTableTexels).x > float(number))
       high = middle;
     else
-      low = middle + 1;
+      entry = middle + 1;
   }
+  vec4 dealt = texelFetch(table_texels, counts.z + entry * kTableTexels);
+  int low = int(dealt.y);
   vec4 first = texelFetch(layout_texels, low * kFaceTexels), extent = texelFetch(layout_texels, low * kFaceTexels + 2);
   ivec4 columns = ivec4(texelFetch(layout_texels, low * kFaceTexels + 1));
   int corners = first.w < 0.0 ? 3 : 4, columns_at = counts.x * kFaceTexels;
@@ -139,8 +144,12 @@ Strand makeStrand(int number) {
   Strand strand;
   strand.first = ivec4(first);
   strand.layers = int(extent.x);
-  uint index = uint(number - int(extent.y));
+  uint index = uint(number - int(dealt.w));
   strand.key = hash(hash(uint(low), index), uint(counts.w));
+  strand.segments = dealt.z > 0.0 ? dealt.z : detail.w;
+  // A face's strands leave one after another as detail falls, each fading; faces do not do so at the same moment.
+  float rank = (float(index) + unitFloat(hash(uint(low) + 0x2545f4u, uint(counts.w)))) / max(extent.z - extent.y, 1.0);
+  strand.gain = detail.z * clamp((detail.y - rank) / (detail.y - detail.x), 0.0, 1.0);
   strand.along_u = strand.along_v = strand.pull_u = strand.pull_v = vec4(0.0);
   strand.clump_key = 0u;
   strand.loose = randomOf(strand.key, 3u) < clumping.w ? 1.0 : 0.0;
@@ -256,4 +265,17 @@ CurvePoint curvePoint(in Strand strand, in LayerWindow window, float s, float fr
 
 // Ribbon point `index` of a strand sits at index / (segments a layer), cut at the strand's end. Both strand paths ask
 // here.
-float pointParameter(in Strand strand, int index) { return min(float(index) / float(counts.z), strand.end); }
+float pointParameter(in Strand strand, int index) { return min(float(index) / strand.segments, strand.end); }
+
+// Moves the window on to the layer that s lies in; with less than a segment a layer some are passed over.
+void moveWindow(in Strand strand, int wanted, inout int layer, inout LayerWindow window) {
+  if (wanted == layer + 1) {
+    window.before = window.from.position;
+    window.from = window.to;
+    window.to = layerPoint(strand, wanted + 1);
+    window.after = layerAfter(strand, wanted + 2, window.from.position, window.to.position);
+  } else if (wanted > layer) {
+    window = layerWindow(strand, wanted);
+  }
+  layer = wanted;
+}

@@ -288,9 +288,9 @@ HAIRMESH_INLINE void addFaces(const ColumnModel<T>& model, const ColumnLayout& l
 template <class T>
 HAIRMESH_INLINE void evaluateAll(const ColumnModel<T>& model, const ColumnLayout& layout, const ColumnField<T>& x,
                                  Sums<T>& sums) {
-  addColumns(model, layout, x, sums);
-  addEdges(model, layout, x, sums);
-  addFaces(model, layout, x, sums);
+  if (model.has_vertical) addColumns(model, layout, x, sums);
+  if (model.has_horizontal || model.has_shear || model.has_bend) addEdges(model, layout, x, sums);
+  if (model.has_volume) addFaces(model, layout, x, sums);
 }
 
 HAIRMESH_CLONES void run(const ColumnModel<float>& m, const ColumnLayout& l, const ColumnField<float>& x,

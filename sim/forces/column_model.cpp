@@ -154,7 +154,15 @@ void ColumnModel<T>::setElements(const HairMesh& mesh, const ColumnLayout& layou
     bend_inverse_length[at] = static_cast<T>(model.bend.inverse_length[e]);
     bend_smallest_square[at] = static_cast<T>(model.bend.smallest_square[e]);
   }
-  if (model.volume.size() == 0) return;
+  const auto any = [](const std::vector<T>& stiffness) {
+    return std::any_of(stiffness.begin(), stiffness.end(), [](T k) { return k != 0; });
+  };
+  has_vertical = any(vertical.stiffness);
+  has_horizontal = any(horizontal.stiffness);
+  has_shear = any(shear_stiffness);
+  has_bend = any(bend_stiffness);
+  has_volume = model.volume.size() > 0;
+  if (!has_volume) return;
   std::size_t tet = 0;
   for (const Face& face : faces) {
     // The mesh's corner tetrahedra come by face, then layer, then corner.

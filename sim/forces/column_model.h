@@ -59,6 +59,8 @@ struct ColumnModel {
   std::vector<T> shear_stiffness, shear_shift, inverse_along, inverse_across;
   std::vector<T> bend_stiffness, bend_rest_angle, bend_inverse_length, bend_smallest_square;
   std::vector<T> volume_stiffness, volume_rest;
+  // Whether any element of the kind has a stiffness: kinds without one are not assembled.
+  bool has_vertical = true, has_horizontal = true, has_shear = true, has_bend = true, has_volume = true;
 
   ColumnModel(const HairMesh& mesh, const ColumnLayout& layout, const ColumnPattern& pattern);
   // Takes over stiffnesses and rest values; the topology stays.

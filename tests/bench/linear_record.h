@@ -31,7 +31,7 @@ struct RecordedMesh {
 struct LinearRecord {
   std::string name;  // scene and step
   sim::BlockMatrix<double> matrix;
-  std::vector<double> column_values;  // the same in column layout
+  sim::LineVector<double> column_values;  // the same in column layout
   std::vector<Vector3> rhs;
   std::vector<Vector3> guess;      // the velocities before the step, with the constraints met: the warm start
   std::vector<Vector3> positions;  // m, relative to a root: where the matrix was taken

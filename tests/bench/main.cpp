@@ -17,6 +17,7 @@
 #include "tests/bench/pareto.h"
 #include "tests/bench/peers.h"
 #include "tests/bench/performance.h"
+#include "tests/bench/skipping.h"
 #include "tests/bench/solver_chart.h"
 #include "tests/bench/styles_bench.h"
 
@@ -33,7 +34,7 @@ struct Asked {
   std::vector<std::string> sets;
   bench::GateOptions gate;
   std::string document, accuracy, performance;
-  bool all_hold = true;  // the gate's figures
+  bool all_hold = true;  // the figures of those that have bounds
 };
 
 // A measurement: its flag, what it does, and how. In the order in which they run when several are asked for.
@@ -59,6 +60,10 @@ std::vector<Task> tasks() {
        [](Asked& a) { bench::measureLadder(a.pareto.runs); }},
       {"--collisions", "what is left inside the body, contacts that come and go, rest",
        [](Asked& a) { bench::runCollisions(a.collisions, stdout); }},
+      {"--skipping", "what every skip saves and changes on five scenes; exits 1 off its bounds",
+       [](Asked& a) {
+         if (!bench::runSkipping({a.pareto.folder, a.pareto.scenes, a.pareto.quick})) a.all_hold = false;
+       }},
       {"--colliders", "ellipsoids and signed distances side by side, against the true skin",
        [](Asked& a) {
          bench::runColliders({a.styles.frames, a.collisions.clips, a.collisions.styles}, stdout);
@@ -66,7 +71,9 @@ std::vector<Task> tasks() {
       {"--collision-document", "all that collisions claim, into the tables of collision.md in the folder of --out",
        [](Asked& a) { bench::writeCollisionDocument(a.pareto.folder, a.styles.frames); }},
       {"--gate", "every bound on speed and accuracy, one line each; exits 1 where one falls short",
-       [](Asked& a) { a.all_hold = bench::allHold(bench::measureFigures(a.gate)); }},
+       [](Asked& a) {
+         if (!bench::allHold(bench::measureFigures(a.gate))) a.all_hold = false;
+       }},
   };
 }
 

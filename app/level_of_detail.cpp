@@ -1,0 +1,184 @@
+#include "app/level_of_detail.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "app/sleep.h"
+
+namespace app {
+
+namespace {
+
+// Pixels below which an actor is simulated more coarsely; it returns at kReturn times as many.
+constexpr double kCoarseBelow = 110, kHalfRateBelow = 60, kQuarterRateBelow = 24, kReturn = 1.2;
+
+// m that a figure may move, and the camera with it, before its detail is looked at again; also what an unseen one,
+// which is not posed, may sway within its clip.
+constexpr double kMargin = 1;
+constexpr double kFarthestShadow = 30;  // m along the light
+
+// s over which a step's usual cost is averaged.
+constexpr double kCostShare = 0.1;
+
+Vec3 headOf(const Actor& actor) {
+  return scalpToWorld(actor.body->character, actor.pose).translation();
+}
+
+// m around the head within which all of the figure and its hair stay, whatever the pose.
+double figureReach(const Actor& actor) {
+  const Character& character = actor.body->character;
+  return 9 * character.scalp.head_height + actor.haircut->mesh.hair_length;
+}
+
+bool below(double size, double limit, bool already) {
+  return size < (already ? kReturn * limit : limit);
+}
+
+void tally(SkipId id, bool skipped, double seconds, Demo& demo) {
+  SkipTally& count = demo.stats.skipped[id];
+  count.skipped += skipped;
+  ++count.of;
+  count.seconds += skipped ? seconds : 0;
+}
+
+// What the governor is told of a step.
+void weighStep(const sim::StepReport& report, const sim::SimParams& params, Actor& actor, FrameStats& stats) {
+  const CoarseHair& coarse = actor.coarse;
+  const sim::HairMesh& mesh = coarse.active ? coarse.pair->coarse->mesh : actor.haircut->mesh;
+  stats.counted_cost += countedCost(mesh.vertexCount(), report);
+  stats.step_error += stepError(mesh, params.integrator, coarse.active ? coarse.hair : actor.hair, actor.error_meter);
+}
+
+// m, from tip to crown and a little more.
+double hairSize(const Actor& actor) {
+  return actor.haircut->mesh.hair_length + 2 * actor.body->character.scalp.head_height;
+}
+
+// Whether all of the actor's hair sleeps through the step.
+bool tallySleep(double step, double time, Demo& demo, Actor& actor) {
+  Sleepers sleepers;
+  if (demo.scene.skips[kSkipSleep]) {
+    sleepers = sleepersOf(demo.running, step, time, actor);
+  } else {
+    wakeAll(actor);
+  }
+  SkipTally& count = demo.stats.skipped[kSkipSleep];
+  count.skipped += sleepers.asleep;
+  count.of += sleepers.parts;
+  if (sleepers.all()) count.seconds += actor.usual_step;
+  return sleepers.all();
+}
+
+}  // namespace
+
+double projectedSize(const Demo& demo, const Actor& actor) {
+  const Vec3 eye = demo.camera.anchor + demo.camera.target + demo.camera.distance * viewBack(demo.camera);
+  const double size = hairSize(actor);
+  const double distance = std::max((headOf(actor) - eye).norm() - 0.5 * size, 0.1);
+  return size * demo.picture_height / (2 * std::tan(0.5 * demo.camera.fov) * distance);
+}
+
+bool mayBeSeen(const Demo& demo, const Actor& actor) {
+  const Vec3 back = viewBack(demo.camera);
+  const Vec3 eye = demo.camera.anchor + demo.camera.target + demo.camera.distance * back;
+  const Vec3 right = Vec3::UnitY().cross(back).normalized(), up = back.cross(right);
+  const double y = std::tan(0.5 * demo.camera.fov), x = y * demo.aspect;
+  // Planes through the eye, normals outwards.
+  const std::array<Vec3, 5> planes{back, (right + x * back).normalized(), (-right + x * back).normalized(),
+                                   (up + y * back).normalized(), (-up + y * back).normalized()};
+  const render::LightInput& light = demo.scene.look.light;
+  const Vec3 to_light(light.to_light[0], light.to_light[1], light.to_light[2]);
+  const double reach = figureReach(actor) + kMargin;
+  const Vec3 start = headOf(actor);
+  Vec3 end = start;
+  if (light.shadows && to_light.norm() > 1e-6) {
+    const Vec3 direction = to_light.normalized();
+    const double height = start.y() + reach - demo.scene.look.view.ground_height;
+    const double length = direction.y() > 1e-3 ? height / direction.y() : kFarthestShadow;
+    end -= std::clamp(length, 0.0, kFarthestShadow) * direction;
+  }
+  return std::none_of(planes.begin(), planes.end(), [&](const Vec3& normal) {
+    return normal.dot(start - eye) > reach && normal.dot(end - eye) > reach;
+  });
+}
+
+void chooseDetail(Demo& demo) {
+  const SkipSet& skips = demo.scene.skips;
+  for (Actor& actor : demo.actors) {
+    SimDetail& detail = actor.detail;
+    detail.seen = !skips[kSkipUnseen] || mayBeSeen(demo, actor);
+    const double size = projectedSize(demo, actor);
+    const bool coarse = skips[kSkipFarMesh] && below(size, kCoarseBelow, detail.coarse);
+    if (coarse != detail.coarse) detail.coarse = coarse && coarsePair(actor, demo.wardrobe) != nullptr;
+    const int before = detail.step_span;
+    detail.step_span = !skips[kSkipFarSteps]                        ? 1
+                       : below(size, kQuarterRateBelow, before > 2) ? 4
+                       : below(size, kHalfRateBelow, before > 1)    ? 2
+                                                                    : 1;
+  }
+}
+
+void stepInDetail(double time, Demo& demo, Actor& actor) {
+  const double start = now(), step = demo.running.time_step;
+  const SkipSet& skips = demo.scene.skips;
+  const bool within_own_step = actor.ahead > 0;
+  tally(kSkipFarSteps, within_own_step, actor.usual_step, demo);
+  if (within_own_step) {
+    --actor.ahead;
+    return;
+  }
+  tally(kSkipUnseen, !actor.detail.seen, actor.usual_step, demo);
+  if (!actor.detail.seen) {
+    // Travel is the one way for a figure to come into view by itself.
+    if (actor.playback.in_place) {
+      advancePlayback(actor.playedClip(), step, actor.playback);
+    } else {
+      moveActor(step, actor, skips[kSkipPose], skips[kSkipBones]);
+    }
+    actor.unseen = true;
+    demo.stats.seconds[kTimeCharacter] += now() - start;
+    return;
+  }
+  if (actor.unseen) {
+    // Steps were not taken where the head went: the hair comes along as it was.
+    if (actor.playback.in_place) placeActor(actor, false);
+    actor.unseen = false;
+  }
+  const HaircutPair* pair = actor.detail.coarse ? coarsePair(actor, demo.wardrobe) : nullptr;
+  if (actor.coarse.active && !pair) leaveCoarse(actor);
+  if (!actor.coarse.active && pair) enterCoarse(*pair, actor);
+  tally(kSkipFarMesh, actor.coarse.active, 0, demo);
+
+  const int span = actor.detail.step_span;
+  const bool moved = moveActor(span * step, actor, skips[kSkipPose], skips[kSkipBones]);
+  tally(kSkipPose, !moved, 0, demo);
+  SkipTally& bones = demo.stats.skipped[kSkipBones];
+  const std::vector<unsigned char>& needed = actor.body->moving_joints;
+  bones.of += static_cast<long>(needed.size());
+  if (moved && skips[kSkipBones]) bones.skipped += std::count(needed.begin(), needed.end(), 0);
+  actor.span = span;
+  actor.ahead = span - 1;
+  const sim::SimParams& params = demo.running;
+  if (tallySleep(span * step, time, demo, actor)) {
+    if (!actor.shown_still) actor.previous_positions = actor.hair.positions;
+    demo.stats.seconds[kTimeCharacter] += now() - start;
+    return;
+  }
+  const double before = now();
+  const sim::StepReport report = simulateActor(params, span * step, time, actor);
+  actor.usual_step += kCostShare * (now() - before - actor.usual_step);
+  addStep(report, now() - start, demo.stats);
+  if (demo.governor.budget > 0) weighStep(report, params, actor, demo.stats);
+}
+
+bool nothingMoves(const Demo& demo) {
+  if (demo.loading.running.valid()) return false;
+  if (!demo.requests.empty() || demo.single_steps > 0 || demo.capture.recording || demo.capture.screenshot)
+    return false;
+  const bool picture_stays = demo.stats.draw.left_out.frame.skipped > 0;
+  const bool all_still = std::ranges::all_of(demo.actors, [](const Actor& actor) { return actor.shown_still; });
+  return demo.scene.skips[kSkipEvents] && picture_stays && (demo.paused || all_still);
+}
+
+}  // namespace app

@@ -1,0 +1,145 @@
+#include "app/skips.h"
+
+#include <algorithm>
+#include <initializer_list>
+
+namespace app {
+
+namespace {
+
+constexpr const char* kSimulation = "simulation";
+constexpr const char* kCharacter = "character";
+constexpr const char* kDrawing = "drawing";
+
+constexpr const char* kDetailBound = "mean 4 levels of 255 over blocks of hair, 7 where the hair is under 20 pixels";
+
+// Exact skips have no bound: nothing may change.
+constexpr std::array<Skip, kSkipCount> kTable{{
+    {kSkipSleep, "sleep", kSimulation, "steps", false, "0.12 mm",
+     "Hair that hangs still over a still head is not stepped.",
+     "tests/skips_sim_test.cpp: Sleep.ComesWhenNothingThatShowsIsLeft"},
+    {kSkipUnseen, "unseen", kSimulation, "steps", false, "not in the picture",
+     "Characters whose figure and shadow cannot be in the picture are neither posed nor stepped; their hair comes back "
+     "as it hung.",
+     "tests/skips_sim_test.cpp: Unseen.NothingOfWhatIsShownChanges"},
+    {kSkipFarSteps, "far-steps", kSimulation, "steps", false, "2 pixels",
+     "A character smaller than 60 pixels takes steps twice as long, below 24 pixels four times.",
+     "tests/skips_sim_test.cpp: Far.StaysWithinItsPixels"},
+    {kSkipFarMesh, "far-mesh", kSimulation, "steps", false, "2 pixels",
+     "A character smaller than 110 pixels is simulated with its style's low resolution and drawn with its own.",
+     "tests/skips_sim_test.cpp: Far.ChangesOverWithoutAJump"},
+    {kSkipPose, "pose", kCharacter, "poses", true, "",
+     "A figure whose clip stands still is not posed again, and nothing is handed over while time stands still.",
+     "tests/skips_sim_test.cpp: Exact.PosesAndBonesChangeNoBit"},
+    {kSkipBones, "bones", kCharacter, "joints", true, "",
+     "Joints that neither skin nor ellipsoids nor the scalp hang on are not evaluated.",
+     "tests/skips_sim_test.cpp: Exact.PosesAndBonesChangeNoBit"},
+    {kSkipFrame, "frame", kDrawing, "frames", true, "",
+     "A frame that would show what the last one showed is not drawn again, only toned.",
+     "tests/skips_draw_test.cpp: SkipsDraw.AStillFrameIsKeptAndAnyChangeSeen"},
+    {kSkipRows, "rows", kDrawing, "vertices", true, "", "Only positions that changed are uploaded.",
+     "tests/skips_draw_test.cpp: SkipsDraw.ExactSkipsChangeNoByte"},
+    {kSkipShadows, "shadows", kDrawing, "maps", true, "",
+     "Deep opacity maps and the body's shadow map are kept while light, hair and bodies stay.",
+     "tests/skips_draw_test.cpp: SkipsDraw.ExactSkipsChangeNoByte"},
+    {kSkipView, "view", kDrawing, "bundles", true, "",
+     "Hairs, bundles of hair and bodies outside the camera's view are not drawn.",
+     "tests/skips_draw_test.cpp: SkipsDraw.ExactSkipsChangeNoByte"},
+    {kSkipShadowView, "shadow-view", kDrawing, "maps", true, "",
+     "Hair whose shadow cannot fall into the view gets no shadow map, and maps draw only bodies that can shade them.",
+     "tests/skips_draw_test.cpp: SkipsDraw.ExactSkipsChangeNoByte"},
+    {kSkipBodyParts, "body-parts", kDrawing, "triangles", true, "", "Parts of a body outside the view are not skinned.",
+     "tests/skips_draw_test.cpp: SkipsDraw.ExactSkipsChangeNoByte"},
+    {kSkipStrands, "strands", kDrawing, "strands", false, kDetailBound,
+     "Fewer and wider strands the smaller the hair is in the picture (strands_per_pixel).",
+     "tests/skips_draw_test.cpp: SkipsDraw.DetailStaysInItsBound"},
+    {kSkipSegments, "segments", kDrawing, "curve points", false, kDetailBound,
+     "Fewer segments the straighter and smaller the strands are in the picture (segment_error).",
+     "tests/skips_draw_test.cpp: SkipsDraw.DetailStaysInItsBound"},
+    {kSkipShadowDetail, "shadow-detail", kDrawing, "shadow strands", false, kDetailBound,
+     "Fewer strands in smaller shadow maps the smaller the hair is in the picture (shadow_strands_per_pixel).",
+     "tests/skips_draw_test.cpp: SkipsDraw.DetailStaysInItsBound"},
+    {kSkipOpenness, "openness", kDrawing, "vertices", false, kDetailBound,
+     "The soft light inside hair that is small in the picture is renewed every eighth time.",
+     "tests/skips_draw_test.cpp: SkipsDraw.DetailStaysInItsBound"},
+    {kSkipEvents, "events", "window", "waits", true, "", "The window waits for events while nothing in it moves.",
+     "tests/skips_sim_test.cpp: Exact.TheWindowWaitsOnlyWhenNothingMoves"},
+}};
+
+constexpr std::array kBuiltIn{
+    BuiltInSkip{"no contact: no position correction and no deformation minimization",
+                "tests/deformation_test.cpp: DeformationMinimization.DoesNoWorkWhenNothingTouches"},
+    BuiltInSkip{"a solve that starts within its tolerance: no iteration",
+                "tests/skips_step_test.cpp: LeftOut.ASolveThatStartsWithinToleranceTakesNoIteration"},
+    BuiltInSkip{"unchanged parameters: no new factor and no new balance of gravity",
+                "tests/skips_step_test.cpp: LeftOut.UnchangedParametersNeverRefactor"},
+    BuiltInSkip{"a kind of force without stiffness: not assembled",
+                "tests/skips_step_test.cpp: LeftOut.KindsOfForceWithoutStiffnessAreNotAssembled"},
+    BuiltInSkip{"colliders out of the hair's reach within the step: not tested",
+                "tests/skips_step_test.cpp: LeftOut.CollidersOutOfReachChangeNoBitAndCostNothing"},
+    BuiltInSkip{"paused: no step unless one is asked for", "tests/demo_test.cpp: Demo.ASingleStepIsOneStep"},
+    BuiltInSkip{"no picture asked for: no OpenGL context",
+                "tests/demo_test.cpp: Headless.ARunWithoutPicturesNeedsNoGraphicsAndReportsEveryFrame"},
+    BuiltInSkip{"hidden panels: no work for them", "tests/ui_test.cpp: Panels.HiddenPanelsDrawNothing"},
+};
+
+std::string names() {
+  std::string text;
+  for (const Skip& skip : kTable) text += (text.empty() ? "" : ", ") + std::string(skip.name);
+  return text;
+}
+
+}  // namespace
+
+std::span<const Skip> skipTable() {
+  return kTable;
+}
+
+const Skip* findSkip(std::string_view name) {
+  const auto found = std::find_if(kTable.begin(), kTable.end(), [&](const Skip& skip) { return name == skip.name; });
+  return found == kTable.end() ? nullptr : &*found;
+}
+
+std::span<const BuiltInSkip> builtInSkips() {
+  return kBuiltIn;
+}
+
+std::string setSkip(std::string_view text, SkipSet& skips) {
+  const std::size_t equals = text.find('=');
+  const std::string_view name = text.substr(0, equals);
+  const std::string_view value = equals == std::string_view::npos ? "" : text.substr(equals + 1);
+  const Skip* skip = findSkip(name);
+  std::string fault = "'";
+  if (!skip && name != "all") {
+    return fault.append(name.substr(0, 40)).append("' is no skip; choose all or one of ").append(names());
+  }
+  if (value != "on" && value != "off") {
+    fault.append(text.substr(0, 60)).append("' does not say on or off; write ");
+    return fault.append(name).append("=off");
+  }
+  if (skip) {
+    skips.on[skip->id] = value == "on";
+  } else {
+    skips.on.fill(value == "on");
+  }
+  return {};
+}
+
+std::string skipLedger() {
+  std::string text;
+  const auto addRow = [&](std::initializer_list<std::string_view> cells) {
+    text += "|";
+    for (const std::string_view cell : cells) text.append(" ").append(cell).append(" |");
+    text += "\n";
+  };
+  addRow({"skip", "part", "what is left out", "may change", "counted in", "proof"});
+  text += "|---|---|---|---|---|---|\n";
+  for (const Skip& skip : kTable) {
+    const std::string_view change = skip.exact ? "nothing" : skip.bound;
+    addRow({skip.name, skip.stage, skip.help, change, skip.counts, skip.proof});
+  }
+  for (const BuiltInSkip& skip : kBuiltIn) addRow({"(always)", "", skip.what, "nothing", "", skip.proof});
+  return text;
+}
+
+}  // namespace app

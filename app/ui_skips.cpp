@@ -1,0 +1,38 @@
+#include <imgui/imgui.h>
+
+#include <string>
+
+#include "app/ui_panels.h"
+#include "app/ui_widgets.h"
+
+namespace app {
+
+namespace {
+
+std::string countText(const SkipTally& count) {
+  if (count.of == 0) return "-";
+  return std::to_string(count.skipped) + " of " + std::to_string(count.of);
+}
+
+}  // namespace
+
+void skipsSection(Demo& demo, UiState& ui) {
+  for (const Skip& skip : skipTable()) {
+    bool on = demo.scene.skips[skip.id];
+    const std::string label = readable(skip.name);
+    if (ImGui::Checkbox(label.c_str(), &on)) ask(demo, {Ask::kSkip, skip.name, "", on ? 1.0 : 0.0});
+    noteItem(std::string("skip ") + skip.name, ui);
+    tip(std::string(skip.help) + (skip.exact ? " Changes nothing." : " May change: " + std::string(skip.bound) + "."));
+    const SkipTally& count = demo.stats.skipped[skip.id];
+    const std::string text = countText(count);
+    ImGui::SameLine(0.42f * ImGui::GetWindowWidth());
+    ImGui::TextDisabled("%s", text.c_str());
+    tip(std::string("Left out in this frame, in ") + skip.counts);
+    if (count.seconds <= 0) continue;
+    ImGui::SameLine(0.8f * ImGui::GetWindowWidth());
+    ImGui::Text("%.2f ms", 1e3 * count.seconds);
+    tip("Time saved in this frame");
+  }
+}
+
+}  // namespace app

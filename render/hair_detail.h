@@ -1,0 +1,37 @@
+// Which strands of which bundles a frame draws, and how finely: by what the camera sees of them and how large. All
+// tables of a frame live in one buffer, which is uploaded when one of them changed.
+//
+// Detail follows the hair's projected diameter in pixels continuously: strands leave one after another, fading, those
+// that stay grow wider by as much, and segments grow longer. At full detail, seen as a whole, a hair needs no table.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "render/frame_input.h"
+#include "render/hair_store.h"
+
+namespace render {
+
+class HairDetail {
+ public:
+  // Fills in_view, casts, pixels, view_draw and shadow_draw of every hair and uploads the tables. Returns the bytes
+  // uploaded. gate: of hairs and their shadows.
+  long plan(const FrameInput& input, const ViewGate& gate, std::span<HairResources> hairs, DrawLeftOut& left_out);
+
+  const Texture& table() const { return texture_; }
+
+ private:
+  void planView(const FrameInput& input, const Frustum& frustum, HairResources& hair, DrawLeftOut& left_out);
+  void planShadow(const FrameInput& input, HairResources& hair, DrawLeftOut& left_out);
+
+  std::vector<float> texels_, uploaded_;
+  std::vector<float> segments_;  // a layer, per face of the hair at hand
+  GrowingBuffer buffer_;
+  Texture texture_;
+};
+
+// Pixels that the bounds' diagonal spans at most.
+float projectedDiameter(const Bounds& bounds, const CameraInput& camera, int height);
+
+}  // namespace render

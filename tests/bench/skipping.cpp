@@ -1,0 +1,123 @@
+#include "tests/bench/skipping.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "app/data_path.h"
+#include "app/egl_context.h"
+#include "tests/bench/skipping_document.h"
+
+namespace bench {
+namespace {
+
+std::vector<SceneRun> sceneRuns(const SkippingOptions& options) {
+  const bool quick = options.quick;
+  const int width = quick ? 320 : 640, height = quick ? 180 : 360;
+  const std::vector<int> few{20, 21, 34, 35}, two{20, 21};
+  std::vector<SceneRun> runs{
+      {"still_close_up.json", 300, 240, {280, 281, 282, 283, 284}, width, height, quick ? 4000 : 0, 0},
+      {"short_shake.json", 60, 10, few, width, height, quick ? 4000 : 0, 0},
+      {"walk.json", 60, 10, few, width, height, quick ? 4000 : 0, 0},
+      {"ten_in_a_row.json", 48, 10, few, width, height, quick ? 4000 : 10000, 256},
+      {"hundred.json", 40, 10, two, width, height, quick ? 2000 : 4000, 256},
+  };
+  if (!options.scenes.empty()) {
+    std::erase_if(runs, [&](const SceneRun& run) {
+      return std::find(options.scenes.begin(), options.scenes.end(), run.file.substr(0, run.file.find('.'))) ==
+             options.scenes.end();
+    });
+  }
+  return runs;
+}
+
+nlohmann::json asJson(const SkipRow& row) {
+  nlohmann::json skipped = nlohmann::json::object();
+  for (const app::Skip& skip : app::skipTable()) {
+    const app::SkipTally& count = row.skipped[skip.id];
+    if (count.of > 0) skipped[skip.name] = {{"skipped", count.skipped}, {"of", count.of}};
+  }
+  return {{"scene", row.scene},
+          {"skips", row.skips},
+          {"setup", row.setup},
+          {"simulation_ms", row.simulation_ms},
+          {"character_ms", row.character_ms},
+          {"drawing_ms", row.drawing_ms},
+          {"simulation_error_mm", row.simulation_error_mm},
+          {"simulation_error_pixels", row.simulation_error_pixels},
+          {"image_error", row.image_error},
+          {"gpu_bytes_hair", row.gpu_bytes_hair},
+          {"gpu_bytes_shadows", row.gpu_bytes_shadows},
+          {"skipped", skipped}};
+}
+
+SkipRow fromJson(const nlohmann::json& json) {
+  SkipRow row;
+  row.scene = json.at("scene");
+  row.skips = json.at("skips");
+  row.setup = json.at("setup");
+  row.simulation_ms = json.at("simulation_ms");
+  row.character_ms = json.at("character_ms");
+  row.drawing_ms = json.at("drawing_ms");
+  row.simulation_error_mm = json.at("simulation_error_mm");
+  row.simulation_error_pixels = json.at("simulation_error_pixels");
+  row.image_error = json.at("image_error");
+  row.gpu_bytes_hair = json.at("gpu_bytes_hair");
+  row.gpu_bytes_shadows = json.at("gpu_bytes_shadows");
+  for (const auto& [name, count] : json.at("skipped").items()) {
+    if (const app::Skip* skip = app::findSkip(name)) row.skipped[skip->id] = {count.at("skipped"), count.at("of"), 0};
+  }
+  return row;
+}
+
+// The scenes that were measured before, without those of `runs`.
+SkipScenes measuredBefore(const std::string& file, const std::vector<SceneRun>& runs) {
+  SkipScenes scenes;
+  const nlohmann::json json = nlohmann::json::parse(std::ifstream(file), nullptr, false);
+  if (!json.is_array()) return scenes;
+  for (const nlohmann::json& entry : json) {
+    const SkipRow row = fromJson(entry);
+    const auto again = [&](const SceneRun& run) { return app::stem(run.file) == row.scene; };
+    if (std::any_of(runs.begin(), runs.end(), again)) continue;
+    if (scenes.empty() || scenes.back().front().scene != row.scene) scenes.emplace_back();
+    scenes.back().push_back(row);
+  }
+  return scenes;
+}
+
+}  // namespace
+
+bool runSkipping(const SkippingOptions& options) {
+  std::filesystem::create_directories(options.folder);
+  app::EglContext context;
+  const std::string file = options.folder + "/skipping.json";
+  const std::vector<SceneRun> runs = sceneRuns(options);
+  SkipScenes scenes = measuredBefore(file, runs);
+  for (const SceneRun& run : runs) {
+    scenes.push_back(measureScene(run, options.folder));
+    std::printf("%s\n%s\n", run.file.c_str(), skipTableOf(scenes.back()).c_str());
+    std::fflush(stdout);
+  }
+  // In the order of the list, whichever were measured now.
+  SkippingOptions every;
+  const std::vector<SceneRun> order = sceneRuns(every);
+  const auto place = [&](const std::vector<SkipRow>& rows) {
+    return std::find_if(order.begin(), order.end(),
+                        [&](const SceneRun& run) { return app::stem(run.file) == rows.front().scene; });
+  };
+  std::sort(scenes.begin(), scenes.end(), [&](const auto& a, const auto& b) { return place(a) < place(b); });
+  nlohmann::json json = nlohmann::json::array();
+  for (const std::vector<SkipRow>& rows : scenes) {
+    plotSkips(rows, options.folder);
+    for (const SkipRow& row : rows) json.push_back(asJson(row));
+  }
+  std::ofstream(file) << json.dump(1) << "\n";
+  const std::vector<SkipBound> held = skipBounds(scenes);
+  for (const SkipBound& bound : held) std::printf("%s\n", boundText(bound).c_str());
+  std::ofstream(options.folder + "/skipping.md") << skipDocument(scenes, held);
+  return std::all_of(held.begin(), held.end(), [](const SkipBound& bound) { return bound.holds(); });
+}
+
+}  // namespace bench

@@ -1,0 +1,27 @@
+// What the skips' measurements say: tables, plots, the bounds they are held to, the document.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tests/bench/skipping_scene.h"
+
+namespace bench {
+
+using SkipScenes = std::vector<std::vector<SkipRow>>;  // rows of each scene; none first, all last
+
+struct SkipBound {
+  std::string what;
+  double value, most;
+  bool holds() const { return value <= most; }
+};
+std::vector<SkipBound> skipBounds(const SkipScenes& scenes);
+std::string boundText(const SkipBound& bound);
+
+// Of one scene.
+std::string skipTableOf(const std::vector<SkipRow>& rows);
+void plotSkips(const std::vector<SkipRow>& rows, const std::string& folder);
+
+std::string skipDocument(const SkipScenes& scenes, const std::vector<SkipBound>& held);
+
+}  // namespace bench

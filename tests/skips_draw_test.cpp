@@ -1,0 +1,332 @@
+// The ledger of skips, its drawing part: exact ones change no byte of the picture, approximate ones stay in their
+// bound, and crowds are shadowed and small in memory.
+#include <gtest/gtest.h>
+#include <time.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "render/renderer.h"
+#include "tests/gl_fixture.h"
+#include "tests/golden_compare.h"
+#include "tests/synthetic_hair.h"
+
+namespace {
+
+constexpr int kWidth = 320, kHeight = 180;
+// Levels of 255, and where the hair is so small that a block holds it; the ledger (app/skips.cpp) states them.
+constexpr double kDetailBound = 4, kSmallBound = 7;
+
+render::DrawSkips none() {
+  render::DrawSkips skips;
+  skips.frame = skips.rows = skips.shadows = skips.view = skips.shadow_view = skips.body_parts = false;
+  skips.strands = skips.segments = skips.shadow_detail = skips.openness = false;
+  return skips;
+}
+
+// Figures in a row from (0, 0, 0) backwards, every other one a little aside.
+struct Crowd {
+  synthetic::Hair hair = synthetic::makeHair();
+  synthetic::Body body = synthetic::makeBody();
+  std::vector<std::vector<float>> positions;
+  std::vector<std::array<render::Mat4, 1>> joints;
+  std::vector<render::HairInput> hairs;
+  std::vector<render::BodyInput> bodies;
+
+  Crowd(int count, float gap, int strands) : positions(count), joints(count) {
+    for (int i = 0; i < count; ++i) {
+      joints[i] = body.joint_matrices;
+      positions[i] = hair.positions;
+      hairs.push_back(synthetic::hairInput(hair, strands));
+      bodies.push_back(synthetic::bodyInput(body));
+      hairs[i].id = bodies[i].id = static_cast<std::uint64_t>(i + 1);
+      hairs[i].layout_id = 7;
+      hairs[i].positions = positions[i];
+      bodies[i].joint_matrices = joints[i];
+      place(i, i % 2 ? 0.35f * gap : 0.0f, -gap * static_cast<float>(i));
+    }
+  }
+  Crowd(const Crowd&) = delete;
+  Crowd& operator=(const Crowd&) = delete;
+
+  void place(int i, float x, float z) {
+    const float dx = x - joints[i][0][12], dz = z - joints[i][0][14];
+    for (std::size_t v = 0; v < positions[i].size(); v += 3) {
+      positions[i][v] += dx;
+      positions[i][v + 2] += dz;
+    }
+    joints[i][0][12] = x;
+    joints[i][0][14] = z;
+    ++hairs[i].position_revision;
+    ++bodies[i].pose_revision;
+  }
+  render::FrameInput frame(const render::DrawSkips& skips) const {
+    render::FrameInput input = synthetic::frameInput(hairs, bodies, kWidth, kHeight);
+    input.skips = skips;
+    return input;
+  }
+};
+
+class SkipsDraw : public gl_fixture::GlTest {
+ protected:
+  static app::Image draw(render::Renderer& renderer, const render::FrameInput& frame,
+                         render::FrameReport* report = nullptr) {
+    app::Image image{frame.width, frame.height, {}};
+    const render::FrameReport drawn = renderer.renderImage(frame, image.rgba);
+    if (report != nullptr) *report = drawn;
+    return image;
+  }
+};
+
+struct NamedSkip {
+  const char* name;
+  bool render::DrawSkips::*on;
+  render::LeftOut render::DrawLeftOut::*count;
+};
+constexpr NamedSkip kExact[] = {
+    {"frame", &render::DrawSkips::frame, &render::DrawLeftOut::frame},
+    {"rows", &render::DrawSkips::rows, &render::DrawLeftOut::rows},
+    {"shadows", &render::DrawSkips::shadows, &render::DrawLeftOut::shadows},
+    {"view", &render::DrawSkips::view, &render::DrawLeftOut::view},
+    {"shadow_view", &render::DrawSkips::shadow_view, &render::DrawLeftOut::shadow_view},
+    {"body_parts", &render::DrawSkips::body_parts, &render::DrawLeftOut::body_parts},
+};
+
+// A sequence in which hair, bodies, light and camera move and stand still in turn, seen near and partly outside.
+TEST_F(SkipsDraw, ExactSkipsChangeNoByte) {
+  render::DrawSkips all = none();
+  for (const NamedSkip& skip : kExact) all.*skip.on = true;
+  std::vector<render::DrawSkips> sets{none(), all};
+  for (const NamedSkip& skip : kExact) sets.push_back(none()), sets.back().*skip.on = true;
+  std::vector<std::vector<app::Image>> pictures;
+  std::vector<render::DrawLeftOut> counts(sets.size());
+  for (std::size_t s = 0; s < sets.size(); ++s) {
+    render::Renderer renderer(gl_fixture::kShaderDir);
+    Crowd crowd(3, 0.5f, 300);
+    crowd.place(2, 6, 3);  // beside and behind the camera
+    std::vector<app::Image>& images = pictures.emplace_back();
+    render::FrameInput frame = crowd.frame(sets[s]);
+    const auto show = [&] {
+      render::FrameReport report;
+      images.push_back(draw(renderer, frame, &report));
+      for (const NamedSkip& skip : kExact) counts[s].*skip.count += report.left_out.*skip.count;
+    };
+    show();
+    show();
+    crowd.positions[0][400] += 0.02f;
+    ++crowd.hairs[0].position_revision;
+    show();
+    frame.camera.eye = {0.1f, 1.66f, 0.32f};  // so near that bundles and body lie outside
+    frame.camera.target = {0.02f, 1.62f, 0};
+    show();
+    crowd.place(1, 0.3f, -0.6f);
+    show();
+    frame.light.to_light = {-0.5f, 0.7f, 0.5f};
+    show();
+  }
+  for (std::size_t s = 1; s < sets.size(); ++s) {
+    for (std::size_t i = 0; i < pictures[0].size(); ++i)
+      EXPECT_EQ(pictures[s][i].rgba, pictures[0][i].rgba)
+          << (s < 2 ? "all" : kExact[s - 2].name) << ", picture " << i << ": "
+          << golden::compare(pictures[s][i], pictures[0][i], 0).outliers << " pixels";
+    if (s < 2) continue;
+    const NamedSkip& skip = kExact[s - 2];
+    EXPECT_GT((counts[s].*skip.count).skipped, 0) << skip.name << " left nothing out: the scene shows nothing of it";
+    EXPECT_LE((counts[s].*skip.count).skipped, (counts[s].*skip.count).of) << skip.name;
+    EXPECT_EQ((counts[0].*skip.count).skipped, 0) << skip.name;
+  }
+}
+
+TEST_F(SkipsDraw, AStillFrameIsKeptAndAnyChangeSeen) {
+  render::Renderer renderer(gl_fixture::kShaderDir);
+  Crowd crowd(2, 0.4f, 300);
+  render::DrawSkips skips = none();
+  skips.frame = true;
+  render::FrameInput frame = crowd.frame(skips);
+  const auto isKept = [&] {
+    render::FrameReport report;
+    draw(renderer, frame, &report);
+    return report.left_out.frame.skipped == 1;
+  };
+  EXPECT_FALSE(isKept());
+  EXPECT_TRUE(isKept());
+  frame.camera.fov_y += 0.01f;
+  EXPECT_FALSE(isKept());
+  EXPECT_TRUE(isKept());
+  frame.light.key[0] += 0.1f;
+  EXPECT_FALSE(isKept());
+  frame.view.ground = false;
+  EXPECT_FALSE(isKept());
+  crowd.place(1, 0.5f, -0.4f);
+  EXPECT_FALSE(isKept());
+  crowd.hairs[0].look.eumelanin += 0.1f;
+  EXPECT_FALSE(isKept());
+  crowd.hairs[0].strands += 10;
+  EXPECT_FALSE(isKept());
+  crowd.bodies[0].color[0] += 0.1f;
+  EXPECT_FALSE(isKept());
+  EXPECT_TRUE(isKept());
+  const std::vector<render::LineVertex> line(2);
+  frame.debug_lines = line;
+  EXPECT_FALSE(isKept());
+  EXPECT_FALSE(isKept());
+  frame.debug_lines = {};
+  EXPECT_FALSE(isKept()) << "the lines are gone";
+  frame.hairs = frame.hairs.first(1);
+  EXPECT_FALSE(isKept());
+  EXPECT_TRUE(isKept());
+  frame.width -= 2;
+  EXPECT_FALSE(isKept());
+}
+
+// Mean difference in levels over blocks of 8 x 8 pixels that hold hair (that change when the hair is taken away):
+// single strands are drawn at other places with fewer of them, so that pixels differ by noise; what a person sees is
+// their mean.
+double differenceOverHair(const app::Image& a, const app::Image& b, const app::Image& bald) {
+  constexpr int kBlock = 8;
+  double sum = 0, weight = 0;
+  for (int top = 0; top + kBlock <= a.height; top += kBlock) {
+    for (int left = 0; left + kBlock <= a.width; left += kBlock) {
+      std::array<double, 3> off{};
+      int hairy = 0;
+      for (int y = top; y < top + kBlock; ++y) {
+        for (int x = left; x < left + kBlock; ++x) {
+          const std::size_t p = 4 * (static_cast<std::size_t>(y) * a.width + x);
+          int hair = 0;
+          for (std::size_t c = 0; c < 3; ++c) {
+            hair = std::max(hair, std::abs(int(a.rgba[p + c]) - int(bald.rgba[p + c])));
+            off[c] += int(a.rgba[p + c]) - int(b.rgba[p + c]);
+          }
+          hairy += hair >= 3;
+        }
+      }
+      if (hairy == 0) continue;
+      // By the hair's share of the block: a hair of few pixels is not diluted by what surrounds it.
+      sum += (std::abs(off[0]) + std::abs(off[1]) + std::abs(off[2])) / 3;
+      weight += hairy;
+    }
+  }
+  return weight > 0 ? sum / weight : 0;
+}
+
+TEST_F(SkipsDraw, DetailStaysInItsBound) {
+  struct Detail {
+    const char* name;
+    bool render::DrawSkips::*on;
+  };
+  for (const float distance : {0.9f, 3.0f, 8.0f, 20.0f}) {
+    // The hair sways before the picture is taken, so that what is renewed now and then has become old.
+    const auto picture = [&](const render::DrawSkips& skips, bool strands = true) {
+      render::Renderer renderer(gl_fixture::kShaderDir);
+      Crowd crowd(1, 1, 6000);
+      render::FrameInput frame = crowd.frame(skips);
+      frame.camera.eye = {0.25f * distance, 1.62f, 0.97f * distance};
+      frame.view.show_strands = strands;
+      app::Image image;
+      for (int moment = 0; moment < (skips.openness ? 5 : 1); ++moment) {
+        const float sway = skips.openness ? 0.05f * static_cast<float>(moment - 4) : 0;
+        for (std::size_t v = 0; v < crowd.positions[0].size(); v += 3)
+          crowd.positions[0][v] = crowd.hair.positions[v] + sway * (1.7f - crowd.hair.positions[v + 1]);
+        ++crowd.hairs[0].position_revision;
+        image = draw(renderer, frame);
+      }
+      return image;
+    };
+    const app::Image full = picture(none()), bald = picture(none(), false);
+    for (const Detail& detail :
+         {Detail{"strands", &render::DrawSkips::strands}, Detail{"segments", &render::DrawSkips::segments},
+          Detail{"shadow detail", &render::DrawSkips::shadow_detail},
+          Detail{"openness", &render::DrawSkips::openness}}) {
+      render::DrawSkips skips = none();
+      skips.*detail.on = true;
+      const double off = differenceOverHair(full, picture(skips), bald);
+      std::printf("%s at %.1f m: %.2f levels\n", detail.name, distance, off);
+      EXPECT_LE(off, distance > 15 ? kSmallBound : kDetailBound) << detail.name << " at " << distance << " m";
+    }
+  }
+}
+
+// Where there is nothing to leave out (hair and camera move, all is in view and near), asking costs nothing that shows.
+TEST_F(SkipsDraw, AskingCostsNothing) {
+  double least[2] = {1e9, 1e9};
+  Crowd crowd(1, 1, 4000);
+  render::Renderer with(gl_fixture::kShaderDir), without(gl_fixture::kShaderDir);
+  for (int frame = 0; frame < 8; ++frame) {
+    for (std::size_t v = 0; v < crowd.positions[0].size(); v += 3) crowd.positions[0][v] += 1e-3f;
+    ++crowd.hairs[0].position_revision;
+    for (int all = 0; all < 2; ++all) {
+      timespec start{}, end{};
+      clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &start);
+      draw(all ? with : without, crowd.frame(all ? render::DrawSkips{} : none()));
+      clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &end);
+      least[all] = std::min(least[all], static_cast<double>(end.tv_sec - start.tv_sec) +
+                                            1e-9 * static_cast<double>(end.tv_nsec - start.tv_nsec));
+    }
+  }
+  std::printf("a frame: %.1f ms without, %.1f ms with\n", 1e3 * least[0], 1e3 * least[1]);
+  EXPECT_LE(least[1], 1.03 * least[0]);
+}
+
+// A fifth hair and all further ones are as dark at their inside as the first.
+TEST_F(SkipsDraw, CrowdsAllHaveShadows) {
+  render::Renderer renderer(gl_fixture::kShaderDir);
+  Crowd crowd(9, 0.45f, 400);
+  for (int i = 0; i < 9; ++i) crowd.place(i, 0.5f * static_cast<float>(i - 4), 0);
+  render::FrameInput frame = crowd.frame({});
+  frame.camera.eye = {0, 1.6f, 5};
+  frame.camera.target = {0, 1.5f, 0};
+  const app::Image with = draw(renderer, frame);
+  frame.light.shadow_strength = 0;
+  const app::Image without = draw(renderer, frame);
+  // The figures stand side by side: each one's column of the picture must have become darker.
+  for (int i = 0; i < 9; ++i) {
+    const double metre = kHeight / (2 * std::tan(0.3) * 5);
+    const int middle = static_cast<int>(kWidth / 2 + 0.5 * (i - 4) * metre);
+    long dark = 0;
+    for (int y = kHeight / 4; y < 3 * kHeight / 4; ++y) {
+      for (int x = middle - 6; x <= middle + 6; ++x) {
+        const std::size_t p = 4 * (static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x));
+        dark += int(without.rgba[p]) - int(with.rgba[p]);
+      }
+    }
+    EXPECT_GT(dark, 300) << "figure " << i;
+  }
+}
+
+TEST_F(SkipsDraw, AFurtherCharacterCostsLittleMemory) {
+  render::Renderer renderer(gl_fixture::kShaderDir);
+  const auto bytes = [&](int count) {
+    Crowd crowd(count, 3, 20000);
+    render::FrameReport report;
+    draw(renderer, crowd.frame({}), &report);
+    return report.gpu_bytes_hair + report.gpu_bytes_shadows;
+  };
+  const long ten = bytes(10), thirty = bytes(30);
+  EXPECT_LE((thirty - ten) / 20, 100 * 1024);
+}
+
+// Flicker: as the camera backs away, a frame differs from the next by no more with detail that follows than without.
+TEST_F(SkipsDraw, BackingAwayDoesNotFlicker) {
+  double change[2] = {0, 0};
+  for (int with = 0; with < 2; ++with) {
+    render::Renderer renderer(gl_fixture::kShaderDir);
+    Crowd crowd(1, 1, 6000);
+    app::Image before;
+    for (int step = 0; step < 12; ++step) {
+      render::FrameInput frame = crowd.frame(with ? render::DrawSkips{} : none());
+      const float distance = 3.5f * std::pow(1.02f, static_cast<float>(step));
+      frame.camera.eye = {0.25f * distance, 1.62f, 0.97f * distance};
+      const app::Image image = draw(renderer, frame);
+      if (step > 0) change[with] += golden::compare(before, image, 0).mean;
+      before = image;
+    }
+  }
+  std::printf("mean change a frame: %.4f levels without, %.4f with\n", change[0] / 11, change[1] / 11);
+  EXPECT_LE(change[1], 1.15 * change[0] + 0.01);
+}
+
+}  // namespace

@@ -1,0 +1,303 @@
+// The ledger of skips, its simulation and character part: what each may change, and that each has its proof.
+#include <gtest/gtest.h>
+#include <time.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "app/data_path.h"
+#include "app/level_of_detail.h"
+#include "app/options.h"
+#include "app/skips.h"
+
+namespace {
+
+using app::Demo;
+using app::SkipSet;
+
+SkipSet only(std::initializer_list<app::SkipId> ids) {
+  SkipSet skips;
+  skips.on.fill(false);
+  for (const app::SkipId id : ids) skips.on[id] = true;
+  return skips;
+}
+
+app::CharacterSpec spec(const std::string& motion, sim::Resolution resolution, sim::Style style = sim::Style::kShort) {
+  app::CharacterSpec character;
+  character.motion = app::dataPath("assets/clips/" + motion);
+  character.style = style;
+  character.resolution = resolution;
+  return character;
+}
+
+// One character seen by a camera `distance` m in front of it.
+Demo demoAt(double distance, const app::CharacterSpec& character, const SkipSet& skips) {
+  app::Scene scene;
+  scene.name = "test";
+  scene.characters.push_back(character);
+  scene.camera.eye = app::Vec3(0, 1.6, distance);
+  scene.camera.target = app::Vec3(0, 1.5, 0);
+  scene.camera.follow = false;
+  scene.playback.settle = 0.2;
+  scene.skips = skips;
+  return app::openScene(std::move(scene), 1.5);
+}
+
+void run(Demo& demo, int frames) {
+  for (int frame = 0; frame < frames; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
+}
+
+double farthest(const std::vector<float>& a, const std::vector<float>& b) {
+  double most = 0;
+  for (std::size_t i = 0; i + 2 < std::min(a.size(), b.size()); i += 3)
+    most = std::max<double>(most, std::hypot(a[i] - b[i], a[i + 1] - b[i + 1], a[i + 2] - b[i + 2]));
+  return a.size() == b.size() ? most : 1e9;
+}
+
+double mean(const std::vector<float>& a, const std::vector<float>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i + 2 < std::min(a.size(), b.size()); i += 3)
+    sum += std::hypot(a[i] - b[i], a[i + 1] - b[i + 1], a[i + 2] - b[i + 2]);
+  return 3 * sum / static_cast<double>(a.size());
+}
+
+// Whether "file: Suite.Test" names a test that exists.
+bool exists(const std::string& proof) {
+  const std::size_t colon = proof.find(": ");
+  if (colon == std::string::npos) return false;
+  std::ifstream file(std::string(HAIRMESH_SOURCE_DIR) + "/" + proof.substr(0, colon));
+  std::stringstream text;
+  text << file.rdbuf();
+  const std::string test = proof.substr(colon + 2);
+  const std::string name = test.substr(0, test.find('.')) + ", " + test.substr(test.find('.') + 1) + ")";
+  return text.str().find(name) != std::string::npos;
+}
+
+TEST(Ledger, EveryEntryHasItsProof) {
+  for (const app::Skip& skip : app::skipTable()) {
+    EXPECT_EQ(&app::skipTable()[skip.id], &skip) << skip.name;
+    EXPECT_EQ(app::findSkip(skip.name), &skip);
+    EXPECT_EQ(skip.exact, std::string(skip.bound).empty()) << skip.name << ": an approximate skip states its bound";
+    EXPECT_TRUE(exists(skip.proof)) << skip.name << ": " << skip.proof;
+  }
+  for (const app::BuiltInSkip& skip : app::builtInSkips()) EXPECT_TRUE(exists(skip.proof)) << skip.proof;
+  EXPECT_FALSE(exists("tests/skips_sim_test.cpp: Ledger.NoSuchTest"));
+}
+
+TEST(Ledger, SwitchesAreSetByNameAndRefuseNonsense) {
+  SkipSet skips;
+  EXPECT_EQ(app::setSkip("all=off", skips), "");
+  EXPECT_EQ(skips, only({}));
+  EXPECT_EQ(app::setSkip("sleep=on", skips), "");
+  EXPECT_EQ(skips, only({app::kSkipSleep}));
+  for (const char* wrong : {"", "sleep", "sleep=", "sleep=maybe", "nap=on", "=on", "sleep=on=on"}) {
+    EXPECT_NE(app::setSkip(wrong, skips), "") << wrong;
+    EXPECT_EQ(skips, only({app::kSkipSleep})) << wrong;
+  }
+  app::Options options;
+  options.skips = {"all=off", "view=on"};
+  EXPECT_EQ(app::sceneFromOptions(options).skips, only({app::kSkipView}));
+  options.skips = {"nap=on"};
+  EXPECT_THROW(app::sceneFromOptions(options), app::UsageError);
+}
+
+TEST(Ledger, ARequestTurnsASkip) {
+  Demo demo = demoAt(1, spec("idle_turns.bvh", sim::Resolution::kLow), SkipSet{});
+  demo.requests.push_back({app::Ask::kSkip, "sleep", "", 0});
+  run(demo, 1);
+  EXPECT_FALSE(demo.scene.skips[app::kSkipSleep]);
+  EXPECT_TRUE(demo.scene.skips[app::kSkipUnseen]);
+}
+
+// Hair that swings out over a figure that stands still: it falls asleep, and what it would have done afterwards stays
+// below the bound.
+TEST(Sleep, ComesWhenNothingThatShowsIsLeft) {
+  Demo sleeping = demoAt(1, spec("idle_turns.bvh", sim::Resolution::kLow), only({app::kSkipSleep}));
+  Demo awake = demoAt(1, spec("idle_turns.bvh", sim::Resolution::kLow), only({}));
+  for (Demo* demo : {&sleeping, &awake}) {
+    run(*demo, 30);
+    demo->requests.push_back({app::Ask::kPauseMotion, "", "", 1});
+  }
+  int asleep = -1;
+  double worst = 0;
+  for (int frame = 0; frame < 1200; ++frame) {
+    run(sleeping, 1);
+    run(awake, 1);
+    if (asleep < 0 && sleeping.actors[0].sleep.asleep) asleep = frame;
+    const double off = farthest(sleeping.actors[0].shown_positions, awake.actors[0].shown_positions);
+    ASSERT_TRUE(asleep >= 0 || off == 0) << frame;
+    worst = std::max(worst, off);
+  }
+  ASSERT_GE(asleep, 60) << "never within two windows";
+  EXPECT_LE(worst, sim::kSleepError);
+  EXPECT_EQ(sleeping.stats.skipped[app::kSkipSleep].skipped, 1);
+  EXPECT_GT(sleeping.stats.skipped[app::kSkipSleep].seconds, 0);
+}
+
+TEST(Sleep, WakesWithoutAPopByWhateverMovesHair) {
+  Demo demo = demoAt(1, spec("idle_turns.bvh", sim::Resolution::kLow), only({app::kSkipSleep}));
+  const auto fallAsleep = [&] {
+    demo.requests.push_back({app::Ask::kPauseMotion, "", "", 1});
+    for (int frame = 0; frame < 1500 && !demo.actors[0].sleep.asleep; ++frame) run(demo, 1);
+    ASSERT_TRUE(demo.actors[0].sleep.asleep);
+  };
+  // What is asked for moves the hair, in the first frame by no more than `most` m.
+  const auto wakes = [&](const app::Request& request, double most) {
+    fallAsleep();
+    const std::vector<float> before = demo.actors[0].shown_positions;
+    demo.requests.push_back(request);
+    run(demo, 1);
+    EXPECT_FALSE(demo.actors[0].sleep.asleep) << request.name;
+    EXPECT_LE(farthest(before, demo.actors[0].shown_positions), most) << request.name;
+    run(demo, 20);
+    EXPECT_GT(farthest(before, demo.actors[0].shown_positions), 1e-4) << request.name;
+  };
+  wakes({app::Ask::kPauseMotion, "motion", "", 0}, 5e-3);
+  wakes({app::Ask::kSetParam, "wind_x", "8", 0}, 5e-3);
+  wakes({app::Ask::kSetParam, "sag_free", "off", 0}, 5e-3);
+  wakes({app::Ask::kCollapse, "collapse", "", 0}, 1);
+}
+
+TEST(Exact, PosesAndBonesChangeNoBit) {
+  const app::CharacterSpec character = spec("head_shake.bvh", sim::Resolution::kLow);
+  Demo with = demoAt(1, character, only({app::kSkipPose, app::kSkipBones})), without = demoAt(1, character, only({}));
+  long poses = 0;
+  for (int frame = 0; frame < 90; ++frame) {
+    for (Demo* demo : {&with, &without}) {
+      if (frame == 20) demo->requests.push_back({app::Ask::kPauseMotion, "", "", 1});
+      if (frame == 40) demo->requests.push_back({app::Ask::kPauseMotion, "", "", 0});
+      if (frame == 60) demo->requests.push_back({app::Ask::kPause, "", "", 1});
+      if (frame == 70) demo->requests.push_back({app::Ask::kPause, "", "", 0});
+      run(*demo, 1);
+    }
+    const app::Actor &a = with.actors[0], &b = without.actors[0];
+    ASSERT_EQ(a.shown_positions, b.shown_positions) << frame;
+    ASSERT_EQ(a.position_revision, b.position_revision) << frame;
+    for (std::size_t j = 0; j < a.joint_matrices.size(); ++j) {
+      ASSERT_TRUE(!a.body->moving_joints[j] || a.joint_matrices[j] == b.joint_matrices[j]) << frame << " joint " << j;
+    }
+    poses += with.stats.skipped[app::kSkipPose].skipped;
+  }
+  EXPECT_GE(poses, 18) << "the held clip is not posed again";
+}
+
+// Where there is nothing to leave out (a head shaken close to the camera), asking costs nothing that shows.
+TEST(Exact, AskingCostsNothing) {
+  const app::CharacterSpec character = spec("head_shake.bvh", sim::Resolution::kLow);
+  Demo with = demoAt(1, character, SkipSet{}), without = demoAt(1, character, only({}));
+  std::vector<double> ratios;
+  for (int block = 0; block < 15; ++block) {
+    double seconds[2];
+    for (const bool all : {false, true}) {
+      timespec start{}, end{};
+      clock_gettime(CLOCK_THREAD_CPUTIME_ID, &start);
+      run(all ? with : without, 10);
+      clock_gettime(CLOCK_THREAD_CPUTIME_ID, &end);
+      seconds[all] =
+          static_cast<double>(end.tv_sec - start.tv_sec) + 1e-9 * static_cast<double>(end.tv_nsec - start.tv_nsec);
+    }
+    ratios.push_back(seconds[1] / seconds[0]);
+  }
+  std::nth_element(ratios.begin(), ratios.begin() + 7, ratios.end());
+  EXPECT_LE(ratios[7], 1.03);
+}
+
+TEST(Unseen, NothingOfWhatIsShownChanges) {
+  // The second character stands behind the camera with the light in its face: neither it nor its shadow is seen.
+  const auto scene = [](const SkipSet& skips) {
+    app::Scene made;
+    made.characters = {spec("idle_turns.bvh", sim::Resolution::kLow), spec("dance.bvh", sim::Resolution::kLow)};
+    made.characters[1].position = app::Vec3(0, 0, 14);
+    made.camera.eye = app::Vec3(0, 1.6, 1.5);
+    made.camera.target = app::Vec3(0, 1.5, 0);
+    made.camera.follow = false;
+    made.look.light.to_light = {0.2f, 0.9f, -0.4f};
+    made.playback.settle = 0.1;
+    made.skips = skips;
+    return app::openScene(std::move(made), 1.5);
+  };
+  Demo with = scene(only({app::kSkipUnseen})), without = scene(only({}));
+  for (int frame = 0; frame < 20; ++frame) {
+    run(with, 1);
+    run(without, 1);
+    ASSERT_EQ(with.actors[0].shown_positions, without.actors[0].shown_positions) << frame;
+    EXPECT_EQ(with.stats.skipped[app::kSkipUnseen].skipped, 1);
+  }
+  EXPECT_FALSE(with.actors[1].detail.seen);
+  // Turned round, it is there at once, in its place of the clip, with its hair about its head.
+  with.camera.yaw += 3.14159265;
+  run(with, 1);
+  EXPECT_TRUE(with.actors[1].detail.seen);
+  EXPECT_EQ(with.stats.skipped[app::kSkipUnseen].skipped, 0);
+  EXPECT_NEAR(with.actors[1].playback.time, without.actors[1].playback.time + 1.0 / 60, 1e-9);
+  run(without, 1);
+  EXPECT_LT(mean(with.actors[1].shown_positions, without.actors[1].shown_positions), 0.05);
+}
+
+TEST(Far, StaysWithinItsPixels) {
+  const app::CharacterSpec character = spec("walk.bvh", sim::Resolution::kMedium, sim::Style::kShoulder);
+  for (const double distance : {14.0, 30.0}) {
+    Demo with = demoAt(distance, character, only({app::kSkipFarSteps, app::kSkipFarMesh}));
+    Demo without = demoAt(distance, character, only({}));
+    double worst = 0;
+    for (int frame = 0; frame < 90; ++frame) {
+      run(with, 1);
+      run(without, 1);
+      worst = std::max(worst, mean(with.actors[0].shown_positions, without.actors[0].shown_positions));
+    }
+    const double metre = 720 / (2 * std::tan(0.25) * distance);  // pixels
+    EXPECT_LE(worst * metre, 2) << distance << " m away, off by " << 1e3 * worst << " mm";
+    EXPECT_TRUE(with.actors[0].coarse.active);
+    RecordProperty("pixels_at_" + std::to_string(static_cast<int>(distance)), std::to_string(worst * metre));
+    std::printf("at %.0f m: %.2f mm, %.3f pixels, span %d\n", distance, 1e3 * worst, worst * metre,
+                with.actors[0].detail.step_span);
+  }
+}
+
+// A camera that backs away and returns: the shown hair never moves faster between two frames than it does without.
+TEST(Far, ChangesOverWithoutAJump) {
+  app::CharacterSpec character = spec("walk.bvh", sim::Resolution::kMedium, sim::Style::kShoulder);
+  Demo with = demoAt(3, character, only({app::kSkipFarSteps, app::kSkipFarMesh}));
+  Demo without = demoAt(3, character, only({}));
+  std::vector<float> before = with.actors[0].shown_positions, before_without = without.actors[0].shown_positions;
+  double fastest = 0, fastest_without = 0;
+  int changes = 0;
+  bool coarse = false;
+  for (int frame = 0; frame < 150; ++frame) {
+    const double t = frame < 75 ? frame / 75.0 : (150 - frame) / 75.0;
+    with.camera.distance = without.camera.distance = 3 + 37 * t;
+    run(with, 1);
+    run(without, 1);
+    if (frame > 1) {
+      fastest = std::max(fastest, farthest(before, with.actors[0].shown_positions));
+      fastest_without = std::max(fastest_without, farthest(before_without, without.actors[0].shown_positions));
+    }
+    changes += coarse != with.actors[0].coarse.active;
+    coarse = with.actors[0].coarse.active;
+    before = with.actors[0].shown_positions;
+    before_without = without.actors[0].shown_positions;
+  }
+  EXPECT_EQ(changes, 2);
+  EXPECT_LT(fastest, 1.25 * fastest_without + 1e-3);
+}
+
+TEST(Exact, TheWindowWaitsOnlyWhenNothingMoves) {
+  Demo demo = demoAt(1, spec("idle_turns.bvh", sim::Resolution::kLow), SkipSet{});
+  run(demo, 1);
+  demo.stats.draw.left_out.frame = {1, 1};
+  EXPECT_FALSE(app::nothingMoves(demo)) << "the clip plays";
+  demo.paused = true;
+  EXPECT_TRUE(app::nothingMoves(demo));
+  demo.stats.draw.left_out.frame = {0, 1};
+  EXPECT_FALSE(app::nothingMoves(demo)) << "the picture changed";
+  demo.stats.draw.left_out.frame = {1, 1};
+  demo.requests.push_back({app::Ask::kPause, "", "", 0});
+  EXPECT_FALSE(app::nothingMoves(demo)) << "somebody asked for something";
+  demo.requests.clear();
+  demo.scene.skips.on[app::kSkipEvents] = false;
+  EXPECT_FALSE(app::nothingMoves(demo));
+}
+
+}  // namespace

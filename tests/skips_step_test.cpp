@@ -1,0 +1,243 @@
+// What a step leaves out: solves that have nothing to do, kinds of force without stiffness, factors that would not
+// change, colliders out of reach, parts of the hair that sleep.
+#include <gtest/gtest.h>
+#include <time.h>
+
+#include <fstream>
+
+#include "app/data_path.h"
+#include "app/demo.h"
+#include "app/hair_file.h"
+#include "app/sleep.h"
+#include "sim/forces/column_model.h"
+#include "sim/hair_parts.h"
+#include "tests/test_meshes.h"
+
+namespace {
+
+using sim::Vec3;
+using test::Hair;
+
+constexpr double kFrame = 1.0 / 60;
+
+// Least of `times` runs, so that what else the machine does counts little.
+template <class Work>
+double cpuSeconds(int times, const Work& work) {
+  double least = INFINITY;
+  for (int k = 0; k < times; ++k) {
+    timespec start{}, end{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &start);
+    work();
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &end);
+    least = std::min(least, static_cast<double>(end.tv_sec - start.tv_sec) +
+                                1e-9 * static_cast<double>(end.tv_nsec - start.tv_nsec));
+  }
+  return least;
+}
+
+test::PatchOptions coat() {
+  test::PatchOptions o;
+  o.nx = 6, o.nz = 4, o.layers = 9, o.length = 0.25, o.mixed = true;
+  return o;
+}
+
+sim::SimParams everyday() {
+  sim::SimParams params = test::tautHair();
+  const sim::SimParams defaults;
+  params.solver = sim::Solver::kWarped;
+  params.precision = defaults.precision;
+  params.tolerance = 1e-2, params.acceleration_tolerance = 0.01, params.displacement_tolerance = 1e-6;
+  return params;
+}
+
+TEST(LeftOut, ASolveThatStartsWithinToleranceTakesNoIteration) {
+  Hair hair(test::combedShape(coat()), everyday());
+  int iterations = 0;
+  for (int n = 0; n < 30; ++n) iterations += hair.step(kFrame).solver_iterations;
+  EXPECT_EQ(iterations, 0);
+  for (Vec3& root : hair.roots) root.x() += 0.01;
+  EXPECT_GT(hair.step(kFrame).solver_iterations, 0);
+}
+
+TEST(LeftOut, UnchangedParametersNeverRefactor) {
+  const sim::SimParams params = everyday();
+  double with = INFINITY;
+  const double first = cpuSeconds(3, [&] {
+    Hair hair(test::combedShape(coat()), params);
+    hair.step(kFrame);
+    with = std::min(with, cpuSeconds(5, [&] { hair.step(kFrame); }));
+  });
+  EXPECT_LT(with, 0.25 * first) << "a first step makes the factor, a later one does not";
+}
+
+template <class T>
+struct Evaluated {
+  std::vector<T> force, matrix;
+  T energy = 0;
+  bool operator==(const Evaluated&) const = default;
+};
+
+TEST(LeftOut, KindsOfForceWithoutStiffnessAreNotAssembled) {
+  using T = float;
+  const sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(coat()));
+  const sim::BlockPattern pattern = sim::systemPattern(mesh);
+  const sim::ColumnLayout layout(mesh);
+  const sim::ColumnPattern column_pattern(mesh, layout);
+  test::Random random(3);
+  std::vector<Vec3> bent = mesh.shape.positions;
+  for (Vec3& x : bent) x += random.vector(0.003);
+  sim::ColumnField<T> x(layout), force(layout);
+  x.pack(layout, std::span<const sim::V3<T>>(test::plain<T>(bent)));
+  sim::ColumnMatrix<T> matrix(layout, column_pattern);
+  const auto run = [&](const sim::ColumnModel<T>& model) {
+    force.setZero();
+    matrix.setZero();
+    sim::ColumnEvaluation<T> out;
+    out.force = &force;
+    out.matrix = &matrix;
+    out.matrix_scale = out.tension_scale = 1;
+    return sim::evaluate<T>(model, layout, x, out);
+  };
+  const auto evaluated = [&](const sim::ColumnModel<T>& model) {
+    Evaluated<T> result;
+    result.energy = run(model);
+    std::vector<sim::V3<T>> forces(bent.size());
+    force.unpack(layout, forces);
+    for (const sim::V3<T>& f : forces) result.force.insert(result.force.end(), {f.x, f.y, f.z});
+    result.matrix.assign(matrix.values.begin(), matrix.values.end());
+    return result;
+  };
+  const auto modelOf = [&](const sim::SimParams& params) {
+    sim::ColumnModel<T> model(mesh, layout, column_pattern);
+    model.setElements(mesh, layout, sim::makeForceModel(mesh, pattern, params));
+    return model;
+  };
+  sim::SimParams full = test::tautHair();
+  full.sag_free = false;
+  sim::SimParams least = full;
+  for (double sim::SimParams::*kind :
+       {&sim::SimParams::stretch_edge, &sim::SimParams::shear, &sim::SimParams::bend, &sim::SimParams::volume}) {
+    sim::SimParams params = full;
+    params.*kind = least.*kind = 0;
+    const sim::ColumnModel<T> model = modelOf(params);
+    sim::ColumnModel<T> all = model;
+    all.has_vertical = all.has_horizontal = all.has_shear = all.has_bend = true;
+    EXPECT_EQ(evaluated(all), evaluated(model));
+  }
+  const sim::ColumnModel<T> full_model = modelOf(full), least_model = modelOf(least);
+  const double dear = cpuSeconds(25, [&] { run(full_model); });
+  EXPECT_LT(cpuSeconds(25, [&] { run(least_model); }), 0.6 * dear);
+}
+
+TEST(LeftOut, CollidersOutOfReachChangeNoBitAndCostNothing) {
+  Hair without(test::combedShape(coat()), everyday()), with(test::combedShape(coat()), everyday());
+  for (Hair* hair : {&without, &with})
+    hair->bodies.push_back({Vec3(0.05, -0.3, 0), Eigen::Quaterniond::Identity(), Vec3(0.08, 0.08, 0.08)});
+  for (int k = 0; k < 40; ++k)
+    with.bodies.push_back({Vec3(2 + k, 0, 0), Eigen::Quaterniond::Identity(), Vec3(0.5, 0.4, 0.3)});
+  double least[2] = {INFINITY, INFINITY};
+  for (int n = 0; n < 60; ++n) {
+    for (Hair* hair : {&without, &with}) {
+      if (n < 10) {
+        for (Vec3& root : hair->roots) root.y() -= 0.003;
+      }
+      double& seconds = least[hair == &with];
+      seconds = std::min(seconds, cpuSeconds(1, [&] { hair->step(kFrame); }));
+    }
+    ASSERT_EQ(test::largestDistance(without.state.positions, with.state.positions), 0);
+  }
+  EXPECT_FALSE(with.state.contacts.empty());
+  EXPECT_LT(least[1], 1.1 * least[0]) << "forty bodies";
+}
+
+// Two plaits that share nothing.
+sim::HairMeshShape plaits() {
+  test::PatchOptions o;
+  o.nx = 2, o.nz = 1, o.layers = 6, o.length = 0.15;
+  sim::HairMeshShape shape = test::combedShape(o), other = shape;
+  const int columns = shape.columnCount(), vertices = shape.vertexCount();
+  for (Vec3& p : other.positions) shape.positions.push_back(p + Vec3(0.15, 0.01, 0));
+  for (std::size_t c = 1; c < other.column_first.size(); ++c)
+    shape.column_first.push_back(vertices + other.column_first[c]);
+  for (sim::RootFace& face : other.root_faces) {
+    for (int k = 0; k < face.corner_count; ++k) face.columns[k] += columns;
+    shape.root_faces.push_back(face);
+  }
+  return shape;
+}
+
+TEST(HairParts, AreWhatIsConnectedAndMoveAsTheWholeDoes) {
+  EXPECT_TRUE(sim::connectedParts(sim::buildHairMesh(test::combedShape(coat()))).empty());
+  sim::SimParams params = test::tautHair();
+  Hair hair(plaits(), params);
+  const std::vector<sim::HairPart> parts = sim::connectedParts(hair.mesh);
+  ASSERT_EQ(parts.size(), 2u);
+  EXPECT_EQ(parts[0].vertices.size() + parts[1].vertices.size(), hair.state.positions.size());
+
+  Hair other(plaits(), params);
+  std::vector<sim::StepContext> contexts;
+  for (const sim::HairPart& part : parts) contexts.emplace_back(part.mesh);
+  for (Hair* one : {&hair, &other})
+    one->bodies.push_back({Vec3(0.02, -0.13, -0.02), Eigen::Quaterniond::Identity(), Vec3(0.05, 0.05, 0.05)});
+  for (int n = 0; n < 30; ++n) {
+    for (Hair* one : {&hair, &other}) {
+      for (Vec3& root : one->roots) root += Vec3(0.002, -0.001, 0.001);
+    }
+    hair.step(kFrame);
+    other.state.previous_positions = other.state.positions;
+    other.state.previous_velocities = other.state.velocities;
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      sim::HairState state;
+      std::vector<Vec3> roots;
+      for (const int c : parts[p].columns) roots.push_back(other.roots[c]);
+      sim::gatherPart(parts[p], other.state, state);
+      sim::advance(parts[p].mesh, params, {roots, other.bodies, 0}, kFrame, contexts[p], state);
+      sim::scatterPart(parts[p], state, other.state);
+    }
+  }
+  EXPECT_FALSE(hair.state.contacts.empty());
+  EXPECT_EQ(hair.state.contacts.size(), other.state.contacts.size());
+  EXPECT_LT(test::largestDistance(hair.state.positions, other.state.positions), 1e-6);
+}
+
+// Both plaits sleep; one is pushed: it alone wakes, and the other one stays to the bit where it was.
+TEST(HairParts, SleepAndWakeOneByOne) {
+  const std::string file = testing::TempDir() + "plaits.obj";
+  sim::HairMeshShape shape = plaits();
+  for (Vec3& p : shape.positions) p += Vec3(-0.1, 0.3, 0);  // above the head: nothing touches them
+  std::ofstream(file) << app::writeHairMesh(shape);
+  app::Scene scene;
+  app::CharacterSpec spec;
+  spec.motion = app::dataPath("assets/clips/idle_turns.bvh");
+  spec.hair = file;
+  scene.characters.push_back(spec);
+  scene.playback.speed = 0;
+  scene.playback.settle = 0.5;
+  scene.sim.collide = false;
+  app::Demo demo = app::openScene(std::move(scene), 1.5);
+  app::Actor& actor = demo.actors[0];
+  ASSERT_EQ(actor.haircut->parts.size(), 2u);
+  const auto run = [&](int frames) {
+    for (int frame = 0; frame < frames; ++frame) app::advanceFrame(demo, kFrame, {});
+  };
+  for (int second = 0; second < 30 && !actor.sleep.asleep; ++second) run(60);
+  ASSERT_TRUE(actor.sleep.asleep);
+  EXPECT_EQ(demo.stats.skipped[app::kSkipSleep].skipped, 2);
+
+  const std::vector<Vec3> before = actor.hair.positions;
+  const std::vector<int>&still = actor.haircut->parts[0].vertices, &pushed = actor.haircut->parts[1].vertices;
+  for (const int v : pushed) {
+    if (!actor.haircut->mesh.isRoot(v)) actor.hair.velocities[v].x() += 0.3, actor.hair.positions[v].x() += 1e-6;
+  }
+  run(4);
+  EXPECT_FALSE(actor.sleep.asleep);
+  EXPECT_EQ(demo.stats.skipped[app::kSkipSleep].skipped, 1);
+  for (const int v : still) EXPECT_EQ(actor.hair.positions[v], before[v]);
+  double most = 0;
+  for (const int v : pushed) most = std::max(most, (actor.hair.positions[v] - before[v]).norm());
+  EXPECT_GT(most, 2e-4);
+  for (int second = 0; second < 30 && !actor.sleep.asleep; ++second) run(60);
+  EXPECT_TRUE(actor.sleep.asleep) << "it comes to rest again";
+}
+
+}  // namespace
