@@ -111,7 +111,7 @@ TEST(Oracle, EveryStepWithContactsIsThatOfThePlainImplementation) {
                 minimize ? "on" : "off", worst.contacts, worst.corrected, worst.position, worst.velocity);
     EXPECT_TRUE(worst.same_contacts);
     EXPECT_GT(worst.contacts, 2);
-    EXPECT_GT(worst.corrected, 10);
+    EXPECT_GT(worst.corrected, 4);
     // Minimization stops at a thousandth of the corrections, which are below a millimetre.
     EXPECT_LT(worst.position, minimize ? 2e-6 : 2e-8);
     EXPECT_LT(worst.velocity, minimize ? 1e-4 : 1e-6);

@@ -54,18 +54,18 @@ struct Scene {
   }
 };
 
-// Where the hair hangs behind the figure: the middle of the vertices farthest back, half way down.
-Vec3 backOfHair(const app::Actor& actor) {
-  const auto& x = actor.hair.positions;
-  Vec3 low = x[0], high = x[0];
-  for (const Vec3& p : x) low = low.cwiseMin(p), high = high.cwiseMax(p);
-  Vec3 back(0, 0, INFINITY);
-  for (const Vec3& p : x) {
-    if (std::abs(p.y() - 0.5 * (low.y() + high.y())) < 0.1 * (high.y() - low.y()) && p.z() < back.z()) back = p;
+// The hair's box half way down.
+struct HangingHair {
+  Vec3 low = Vec3::Constant(INFINITY), high = -low;
+  explicit HangingHair(const app::Actor& actor) {
+    double bottom = INFINITY, top = -INFINITY;
+    for (const Vec3& p : actor.hair.positions) bottom = std::min(bottom, p.y()), top = std::max(top, p.y());
+    for (const Vec3& p : actor.hair.positions) {
+      if (std::abs(p.y() - 0.5 * (bottom + top)) > 0.1 * (top - bottom)) continue;
+      low = low.cwiseMin(p), high = high.cwiseMax(p);
+    }
   }
-  back.x() = 0.5 * (low.x() + high.x());
-  return back;
-}
+};
 
 int insideForeign(const sim::HairMesh& mesh, const sim::SimParams& params, const sim::HairState& state) {
   sim::SelfContact self(mesh);
@@ -87,7 +87,9 @@ void writeSpawns(std::FILE* out) {
       params.max_depenetration = speed;
       app::Actor actor = makeDancer("idle_turns.bvh", style, sim::Resolution::kMedium, wardrobe);
       Ellipsoid ball;
-      ball.center = backOfHair(actor) + Vec3(0, 0, 0.02);
+      const HangingHair hair(actor);
+      ball.center = 0.5 * (hair.low + hair.high);
+      ball.center.z() = hair.low.z() + 0.02;
       ball.radii = Vec3::Constant(0.05);
       Scene scene(std::move(actor), ball);
       const double at_first = scene.deepest();
@@ -112,22 +114,25 @@ void writeCrossings(std::FILE* out) {
                "| style | direction | speed, m/s | turning, rad/s | way a step, mm | vertices met | passed through | "
                "inside afterwards, mm | recoveries |\n|---|---|---|---|---|---|---|---|---|\n");
   app::Wardrobe wardrobe;
-  const Vec3 thin(0.12, 0.02, 0.012);
+  const Vec3 thin(0.012, 0.06, 0.12);
   for (const sim::Style style : {sim::Style::kShoulder, sim::Style::kLong}) {
-    for (const double side : {-1.0, 1.0}) {  // from behind, from the front
+    for (const double side : {-1.0, 1.0}) {  // from the right, from the left
       for (const double speed : {4.0, 8.0, 16.0, 32.0}) {
         for (const double spin : {0.0, 10.0}) {
           const sim::SimParams params;
           app::Actor actor = makeDancer("idle_turns.bvh", style, sim::Resolution::kMedium, wardrobe);
           Ellipsoid arm;
           const double way = speed * params.time_step;
-          arm.center = backOfHair(actor) + Vec3(0, 0, side * (way / 2 + 0.04));
+          const HangingHair hair(actor);
+          arm.center = 0.5 * (hair.low + hair.high);
+          arm.center.x() = side < 0 ? hair.low.x() - 0.03 : hair.high.x() + 0.03;
+          arm.center.z() = hair.low.z() + 0.03;
           arm.radii = thin;
           Scene scene(std::move(actor), arm);
           const auto before = scene.actor.hair.positions;
           const Ellipsoid start = scene.guest();
           Ellipsoid& guest = scene.guest();
-          guest.velocity = Vec3(0, 0, -side * speed);
+          guest.velocity = Vec3(-side * speed, 0, 0);
           guest.angular_velocity = Vec3(0, spin, 0);
           guest.center += params.time_step * guest.velocity;
           guest.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(spin * params.time_step, Vec3::UnitY()));
@@ -138,13 +143,13 @@ void writeCrossings(std::FILE* out) {
           };
           for (const int v : scene.mesh().external_vertices) {
             const Vec3 a = local(start, before[v]), untouched = local(guest, before[v]);
-            if (a.z() * untouched.z() > 0 || (0.5 * (a + untouched)).cwiseQuotient(thin).head<2>().norm() > 0.8)
+            if (a.x() * untouched.x() > 0 || (0.5 * (a + untouched)).cwiseQuotient(thin).tail<2>().norm() > 0.8)
               continue;
             ++met;
-            passed += a.z() * local(guest, scene.actor.hair.positions[v]).z() < 0;
+            passed += a.x() * local(guest, scene.actor.hair.positions[v]).x() < 0;
           }
           std::fprintf(out, "| %s medium | %s | %.0f | %.0f | %.0f | %d | %d | %.3f | %d |\n",
-                       std::string(sim::styleName(style)).c_str(), side < 0 ? "from behind" : "from the front", speed,
+                       std::string(sim::styleName(style)).c_str(), side < 0 ? "from the right" : "from the left", speed,
                        spin, 1e3 * way, met, passed, 1e3 * scene.deepest(), recoveries);
         }
       }
