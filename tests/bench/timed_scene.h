@@ -38,7 +38,7 @@ class TimedScene {
   TimedScene(std::string motion, sim::Style style, sim::Resolution resolution, bool collide);
   ~TimedScene();
 
-  // Simulates `seconds` in steps of params.time_step, which must divide 1/30 s. The step contexts are kept from run to
+  // Simulates `seconds` in steps of params.time_step, which must divide 1/60 s. The step contexts are kept from run to
   // run, so that all but the first run are warm.
   TimedRun run(sim::SimParams params, double seconds, Way way = Way::kSimulator);
 
