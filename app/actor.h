@@ -27,7 +27,7 @@ struct LoadedBody {
   std::uint64_t id = 0;
   Character character;
   sim::BodyDistance distance;
-  bool has_parts = false;           // they are made when signed distances are first collided with
+  bool has_parts = false;  // they are made when signed distances are first collided with
   std::vector<PartDistance> parts;
   std::vector<unsigned char> moving_joints;  // per joint: whether skin, ellipsoids or scalp hang on it or below it
 };
@@ -102,9 +102,10 @@ struct Actor {
   // What may be left out, and for how long.
   SimDetail detail;
   CoarseHair coarse;
-  sim::SleepState sleep;         // of all the hair; its parts' when there are several
+  sim::SleepState sleep;  // of all the hair; its parts' when there are several
   std::vector<PartHair> part_hairs;
   int span = 1, ahead = 0;   // steps that the last step covered; those of them that the clock has yet to take
+  std::uint64_t steps = 0;   // of the clock; begins anywhere, so that long steps of a crowd spread over the frames
   double posed_time = -1;    // s, clip time of `pose`
   bool pose_still = false;   // pose and previous pose are one
   bool unseen = false;       // was not stepped last time

@@ -183,6 +183,7 @@ Demo openScene(Scene scene, double aspect) {
   demo.aspect = aspect;
   for (const CharacterSpec& spec : demo.scene.characters) {
     demo.actors.push_back(makeActor(spec, demo.scene.playback, demo.wardrobe));
+    demo.actors.back().steps = demo.actors.size();
   }
   demo.running = demo.scene.sim;
   setBudget(1e-3 * demo.scene.playback.budget_ms, demo.governor);

@@ -11,7 +11,13 @@ namespace app {
 namespace {
 
 // Pixels below which an actor is simulated more coarsely; it returns at kReturn times as many.
-constexpr double kCoarseBelow = 110, kHalfRateBelow = 60, kQuarterRateBelow = 24, kReturn = 1.2;
+constexpr double kCoarseBelow = 420, kReturn = 1.2;
+// And below which its steps are so many times as long.
+struct Rate {
+  double below;
+  int span;
+};
+constexpr std::array<Rate, 3> kRates{{{420, 2}, {300, 4}, {70, 8}}};
 
 // m that a figure may move, and the camera with it, before its detail is looked at again; also what an unseen one,
 // which is not posed, may sway within its clip.
@@ -112,16 +118,17 @@ void chooseDetail(Demo& demo) {
     const bool coarse = skips[kSkipFarMesh] && below(size, kCoarseBelow, detail.coarse);
     if (coarse != detail.coarse) detail.coarse = coarse && coarsePair(actor, demo.wardrobe) != nullptr;
     const int before = detail.step_span;
-    detail.step_span = !skips[kSkipFarSteps]                        ? 1
-                       : below(size, kQuarterRateBelow, before > 2) ? 4
-                       : below(size, kHalfRateBelow, before > 1)    ? 2
-                                                                    : 1;
+    detail.step_span = 1;
+    for (const Rate& rate : kRates) {
+      if (skips[kSkipFarSteps] && below(size, rate.below, before >= rate.span)) detail.step_span = rate.span;
+    }
   }
 }
 
 void stepInDetail(double time, Demo& demo, Actor& actor) {
   const double start = now(), step = demo.running.time_step;
   const SkipSet& skips = demo.scene.skips;
+  const std::uint64_t moment = actor.steps++;
   const bool within_own_step = actor.ahead > 0;
   tally(kSkipFarSteps, within_own_step, actor.usual_step, demo);
   if (within_own_step) {
@@ -150,7 +157,9 @@ void stepInDetail(double time, Demo& demo, Actor& actor) {
   if (!actor.coarse.active && pair) enterCoarse(*pair, actor);
   tally(kSkipFarMesh, actor.coarse.active, 0, demo);
 
-  const int span = actor.detail.step_span;
+  // Up to the next of the moments at which steps of this length end.
+  const int span =
+      actor.detail.step_span - static_cast<int>(moment % static_cast<std::uint64_t>(actor.detail.step_span));
   const bool moved = moveActor(span * step, actor, skips[kSkipPose], skips[kSkipBones]);
   tally(kSkipPose, !moved, 0, demo);
   SkipTally& bones = demo.stats.skipped[kSkipBones];

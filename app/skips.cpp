@@ -23,10 +23,11 @@ constexpr std::array<Skip, kSkipCount> kTable{{
      "as it hung.",
      "tests/skips_sim_test.cpp: Unseen.NothingOfWhatIsShownChanges"},
     {kSkipFarSteps, "far-steps", kSimulation, "steps", false, "2 pixels",
-     "A character smaller than 60 pixels takes steps twice as long, below 24 pixels four times.",
+     "A character smaller than 420 pixels takes steps twice as long, below 300 four times, below 70 eight times; the "
+     "long steps of a crowd spread over the frames.",
      "tests/skips_sim_test.cpp: Far.StaysWithinItsPixels"},
     {kSkipFarMesh, "far-mesh", kSimulation, "steps", false, "2 pixels",
-     "A character smaller than 110 pixels is simulated with its style's low resolution and drawn with its own.",
+     "A character smaller than 420 pixels is simulated with its style's low resolution and drawn with its own.",
      "tests/skips_sim_test.cpp: Far.ChangesOverWithoutAJump"},
     {kSkipPose, "pose", kCharacter, "poses", true, "",
      "A figure whose clip stands still is not posed again, and nothing is handed over while time stands still.",

@@ -15,14 +15,16 @@ namespace {
 
 std::vector<SceneRun> sceneRuns(const SkippingOptions& options) {
   const bool quick = options.quick;
-  const int width = quick ? 320 : 640, height = quick ? 180 : 360;
-  const std::vector<int> few{20, 21, 34, 35}, two{20, 21};
+  const int width = quick ? 256 : 640, height = quick ? 144 : 360;
+  const std::vector<int> few = quick ? std::vector{20, 34} : std::vector{20, 21, 34, 35};
+  const std::vector<int> two = quick ? std::vector{26} : std::vector{20, 21};
+  // Still hair needs a second to be told from slow hair; medians are of what comes after.
   std::vector<SceneRun> runs{
-      {"still_close_up.json", 300, 240, {280, 281, 282, 283, 284}, width, height, quick ? 4000 : 0, 0},
-      {"short_shake.json", 60, 10, few, width, height, quick ? 4000 : 0, 0},
-      {"walk.json", 60, 10, few, width, height, quick ? 4000 : 0, 0},
-      {"ten_in_a_row.json", 48, 10, few, width, height, quick ? 4000 : 10000, 256},
-      {"hundred.json", 40, 10, two, width, height, quick ? 2000 : 4000, 256},
+      {"still_close_up.json", 180, 120, {150, 151, 152, 153, 154}, width, height, quick ? 3000 : 0, 0},
+      {"short_shake.json", quick ? 40 : 60, 10, few, width, height, quick ? 3000 : 0, 0},
+      {"walk.json", quick ? 40 : 60, 10, few, width, height, quick ? 3000 : 0, 0},
+      {"ten_in_a_row.json", quick ? 40 : 48, 10, few, width, height, quick ? 2000 : 10000, 256},
+      {"hundred.json", quick ? 32 : 40, 8, two, width, height, quick ? 1000 : 4000, 256},
   };
   if (!options.scenes.empty()) {
     std::erase_if(runs, [&](const SceneRun& run) {

@@ -10,7 +10,7 @@
 
 namespace bench {
 
-// Medians over the frames, process time: all threads of a software rasterizer count.
+// A frame: means of the thread, for drawing medians of the process, for all threads of a software rasterizer count.
 struct SkipRow {
   std::string scene, skips;  // skips: none, all, or the one that is on
   std::string setup;         // picture and strands
