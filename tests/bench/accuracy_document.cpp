@@ -185,22 +185,26 @@ std::string peersPart(const Json& rows) {
   return part;
 }
 
-Json readRows(const std::string& file, const char* command) {
-  std::ifstream stream(file);
-  Json rows = Json::parse(stream, nullptr, false);
-  if (!rows.is_array() || rows.empty()) {
-    throw app::InputError(file, "", "holds no measurement", std::string("run hairmesh-bench ") + command + " first");
-  }
-  return rows;
+// A part is written anew where its measurement is at hand, and else stays as it is.
+bool writePart(const std::string& folder, const char* name, const char* measurement,
+               std::string (*tables)(const Json& rows)) {
+  std::ifstream stream(folder + "/" + measurement);
+  const Json rows = Json::parse(stream, nullptr, false);
+  if (!rows.is_array() || rows.empty()) return false;
+  writeMeasuredPart(folder + "/accuracy.md", name, tables(rows));
+  return true;
 }
 
 }  // namespace
 
 void writeAccuracyDocument(const std::string& folder) {
-  const std::string file = folder + "/accuracy.md";
-  writeMeasuredPart(file, "sweep", sweepPart(readRows(folder + "/pareto.json", "--pareto")));
-  writeMeasuredPart(file, "solvers", solversPart(readRows(folder + "/solvers.json", "--solvers")));
-  writeMeasuredPart(file, "peers", peersPart(readRows(folder + "/peers.json", "--peers")));
+  const bool sweep = writePart(folder, "sweep", "pareto.json", sweepPart);
+  const bool solvers = writePart(folder, "solvers", "solvers.json", solversPart);
+  const bool peers = writePart(folder, "peers", "peers.json", peersPart);
+  if (!sweep && !solvers && !peers) {
+    throw app::InputError(folder, "", "holds no measurement",
+                          "run hairmesh-bench --pareto, --solvers or --peers first");
+  }
 }
 
 }  // namespace bench
