@@ -256,31 +256,31 @@ TEST(Far, StaysWithinItsPixels) {
   }
 }
 
-// A camera that backs away and returns: the shown hair never moves faster between two frames than it does without.
+// A camera that backs away and returns: from frame to frame the shown hair moves by no more than it does without, but
+// for a pixel that nobody sees.
 TEST(Far, ChangesOverWithoutAJump) {
   app::CharacterSpec character = spec("walk.bvh", sim::Resolution::kMedium, sim::Style::kShoulder);
-  Demo with = demoAt(3, character, only({app::kSkipFarSteps, app::kSkipFarMesh}));
-  Demo without = demoAt(3, character, only({}));
+  Demo with = demoAt(1.8, character, only({app::kSkipFarSteps, app::kSkipFarMesh}));
+  Demo without = demoAt(1.8, character, only({}));
   std::vector<float> before = with.actors[0].shown_positions, before_without = without.actors[0].shown_positions;
-  double fastest = 0, fastest_without = 0;
+  double fastest_without = 0;  // m a frame
   int changes = 0;
   bool coarse = false;
   for (int frame = 0; frame < 150; ++frame) {
     const double t = frame < 75 ? frame / 75.0 : (150 - frame) / 75.0;
-    with.camera.distance = without.camera.distance = 3 + 37 * t;
+    with.camera.distance = without.camera.distance = 1.8 + 38 * t;
     run(with, 1);
     run(without, 1);
-    if (frame > 1) {
-      fastest = std::max(fastest, farthest(before, with.actors[0].shown_positions));
-      fastest_without = std::max(fastest_without, farthest(before_without, without.actors[0].shown_positions));
-    }
+    const double metre = 720 / (2 * std::tan(0.25) * with.camera.distance);  // pixels
+    fastest_without = std::max(fastest_without, farthest(before_without, without.actors[0].shown_positions));
+    const double moved = farthest(before, with.actors[0].shown_positions);
+    if (frame > 1) EXPECT_LE((moved - 1.25 * fastest_without) * metre, 1) << frame;
     changes += coarse != with.actors[0].coarse.active;
     coarse = with.actors[0].coarse.active;
     before = with.actors[0].shown_positions;
     before_without = without.actors[0].shown_positions;
   }
   EXPECT_EQ(changes, 2);
-  EXPECT_LT(fastest, 1.25 * fastest_without + 1e-3);
 }
 
 TEST(Exact, TheWindowWaitsOnlyWhenNothingMoves) {
