@@ -109,7 +109,7 @@ void drawHeatMaps(const std::vector<Result>& results, const std::string& folder)
          << "set palette defined (0 '#1a9850', 2 '#d9ef8b', 4 '#fee08b', " << kSlowest << " '#d73027', "
          << kSlowest + 0.01 << " '#222222', " << kFailedColor << " '#222222')\nset cbrange [0:" << kFailedColor
          << "]\nset cbtics 0,1," << kSlowest
-         << "\nset tics scale 0\nset xtics rotate by 35 right\nunset key\nset lmargin 19\n";
+         << "\nset tics scale 0\nset xtics rotate by 35 right\nunset key\nset lmargin 25\n";
     for (const Panel& panel : kPanels) {
       const Grid grid = gather(panel, results);
       if (!grid.rows.empty()) writePanel(panel, grid, plot);
