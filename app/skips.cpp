@@ -22,11 +22,11 @@ constexpr std::array<Skip, kSkipCount> kTable{{
      "Characters whose figure and shadow cannot be in the picture are neither posed nor stepped; their hair comes back "
      "as it hung.",
      "tests/skips_sim_test.cpp: Unseen.NothingOfWhatIsShownChanges"},
-    {kSkipFarSteps, "far-steps", kSimulation, "steps", false, "2 pixels",
+    {kSkipFarSteps, "far-steps", kSimulation, "steps", false, "3 pixels",
      "A character smaller than 420 pixels takes steps twice as long, below 300 four times, below 70 eight times; the "
      "long steps of a crowd spread over the frames.",
      "tests/skips_sim_test.cpp: Far.StaysWithinItsPixels"},
-    {kSkipFarMesh, "far-mesh", kSimulation, "steps", false, "2 pixels",
+    {kSkipFarMesh, "far-mesh", kSimulation, "steps", false, "3 pixels",
      "A character smaller than 420 pixels is simulated with its style's low resolution and drawn with its own.",
      "tests/skips_sim_test.cpp: Far.ChangesOverWithoutAJump"},
     {kSkipPose, "pose", kCharacter, "poses", true, "",

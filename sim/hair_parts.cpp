@@ -113,6 +113,7 @@ void addPart(const StepReport& part, StepReport& whole) {
   whole.corrected += part.corrected;
   whole.minimization_iterations += part.minimization_iterations;
   whole.max_penetration = std::max(whole.max_penetration, part.max_penetration);
+  whole.standing += part.standing;
   whole.standing_overlap = std::max(whole.standing_overlap, part.standing_overlap);
   whole.self_contacts += part.self_contacts;
   whole.recoveries += part.recoveries;

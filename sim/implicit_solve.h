@@ -17,7 +17,6 @@
 #include "sim/contact.h"
 #include "sim/forces/column_model.h"
 #include "sim/linear_solver.h"
-#include "sim/motion_roughness.h"
 #include "sim/preconditioner_choice.h"
 #include "sim/step.h"
 
@@ -45,8 +44,6 @@ struct ImplicitSolver {
   std::vector<V3<T>> x, v, trial, force, rhs, velocity_step;
   std::vector<T> mass, inverse_mass_dt;
   std::vector<VertexConstraint> constraints;
-  MotionRoughness roughness;
-  double tolerance = 0;      // of this step's solves
   std::vector<int> touched;  // vertices that were in contact when the solve began
   bool rest_compact = false;
   PreconditionerChoice choice;  // between the warped factor and its stand-in

@@ -106,8 +106,10 @@ void correctPositions(const CorrectedStep& step, StageClock& clock, PositionCorr
     std::fill(scratch.displacement.begin(), scratch.displacement.end(), Vec3::Zero());
     follow_speed = std::max(follow_speed, correctionSpeed(step, scratch));
     const int corrected = correctFound(step, search.margins.slack, scratch, state);
-    for (const Penetration& hit : scratch.penetrations)
+    for (const Penetration& hit : scratch.penetrations) {
+      report.standing += hit.standing;
       report.standing_overlap = std::max(report.standing_overlap, hit.left);
+    }
     report.corrected += corrected;
     clock.spent(kStageCollision, report);
     if (corrected == 0 || round == kRounds) break;

@@ -135,9 +135,6 @@ std::vector<ParamField> makeTable() {
       field<&P::displacement_tolerance>("displacement_tolerance", "Numerics", "m", {1e-9, 0.01, kLog},
                                         "A linear solve also stops when a factor (warped, direct) estimates that no "
                                         "vertex would end farther off than this."),
-      field<&P::rough_slack>("rough_slack", "Numerics", "", {0, 20},
-                             "Rough motion, whose steps err by more than the solves, is solved the more loosely; 0: "
-                             "always to the tolerance."),
       field<&P::newton_tolerance>("newton_tolerance", "Numerics", "m/s", {1e-12, 1, kLog},
                                   "The nonlinear integrators stop when no velocity changes by more than this."),
       field<&P::newton_iterations>("newton_iterations", "Numerics", "", {1, 50},

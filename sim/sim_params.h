@@ -77,10 +77,9 @@ struct SimParams {
   double tolerance = 1e-2;               // relative residual of the linear solve; docs/accuracy.md shows why
   double acceleration_tolerance = 0.01;  // m/s^2, a solve also stops when no vertex's residual exceeds it
   double displacement_tolerance = 1e-6;  // m, and when it estimates that no vertex would end up farther off than this
-  double rough_slack = 5;    // the tolerance grows by so many times itself a unit of roughness (sim/motion_roughness.h)
-  int max_iterations = 400;  // of the linear solver
-  int newton_iterations = 4;       // of the nonlinear integrators
-  double newton_tolerance = 1e-4;  // m/s, the nonlinear integrators stop at a smaller change of velocity
+  int max_iterations = 400;              // of the linear solver
+  int newton_iterations = 4;             // of the nonlinear integrators
+  double newton_tolerance = 1e-4;        // m/s, the nonlinear integrators stop at a smaller change of velocity
 };
 
 enum class FieldKind { kReal, kInteger, kSwitch, kChoice };

@@ -245,7 +245,7 @@ StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInpu
     correctPositions({mesh, params, colliders, parts.start_positions, dt}, parts.clock, parts.correction, state,
                      report);
     // Overlaps that stood before are lifted out whatever it takes.
-    if (bounded && report.corrected > 0 && report.standing_overlap == 0)
+    if (bounded && report.corrected > 0 && report.standing == 0)
       limitCorrections(taken, colliders, parts.energy_guard, state);
     parts.clock.spent(kStageCollision, report);
   }

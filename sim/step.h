@@ -34,6 +34,7 @@ struct StepReport {
   int contacts = 0, corrected = 0;  // constrained vertices; vertices moved by position correction
   int minimization_iterations = 0;
   double max_penetration = 0;   // m, found before correction
+  int standing = 0;             // vertices, counted a round, that lay inside a body before the step already
   double standing_overlap = 0;  // m, deepest below the offset that is left because it stood before the step
   int self_contacts = 0;        // vertices pushed out of foreign bundles
   int recoveries = 0;           // watchdog restored the last good state

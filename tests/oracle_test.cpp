@@ -20,7 +20,7 @@ sim::SimParams exactParams(bool collide) {
   params.precision = sim::Precision::kDouble;
   params.tolerance = 1e-10;
   params.acceleration_tolerance = 1e-12;
-  params.displacement_tolerance = params.rough_slack = 0;
+  params.displacement_tolerance = 0;
   params.max_iterations = 5000;
   params.collide = collide;
   return params;

@@ -125,8 +125,7 @@ TEST(SelfContact, KeepsMomentumAndAddsNoEnergy) {
 }
 
 TEST(SelfContact, NothingNearNothingPaidAndTheAnswerKnowsNothingOfTheList) {
-  sim::SimParams params = quickHair();
-  params.rough_slack = 0;  // the solves' tolerance does know the motion before
+  const sim::SimParams params = quickHair();
   const sim::HairMesh mesh = sim::buildHairMesh(twoCurtains(0.06));
   sim::SelfContact self(mesh);
   sim::HairState state = sim::restState(mesh, Eigen::Isometry3d::Identity());

@@ -248,7 +248,7 @@ TEST(Far, StaysWithinItsPixels) {
       worst = std::max(worst, mean(with.actors[0].shown_positions, without.actors[0].shown_positions));
     }
     const double metre = 720 / (2 * std::tan(0.25) * distance);  // pixels
-    EXPECT_LE(worst * metre, 2) << distance << " m away, off by " << 1e3 * worst << " mm";
+    EXPECT_LE(worst * metre, 3) << distance << " m away, off by " << 1e3 * worst << " mm";
     EXPECT_TRUE(with.actors[0].coarse.active);
     RecordProperty("pixels_at_" + std::to_string(static_cast<int>(distance)), std::to_string(worst * metre));
     std::printf("at %.0f m: %.2f mm, %.3f pixels, span %d\n", distance, 1e3 * worst, worst * metre,
@@ -274,7 +274,7 @@ TEST(Far, ChangesOverWithoutAJump) {
     const double metre = 720 / (2 * std::tan(0.25) * with.camera.distance);  // pixels
     fastest_without = std::max(fastest_without, farthest(before_without, without.actors[0].shown_positions));
     const double moved = farthest(before, with.actors[0].shown_positions);
-    if (frame > 1) EXPECT_LE((moved - 1.25 * fastest_without) * metre, 1) << frame;
+    EXPECT_TRUE(frame <= 1 || (moved - 1.25 * fastest_without) * metre <= 1) << frame;
     changes += coarse != with.actors[0].coarse.active;
     coarse = with.actors[0].coarse.active;
     before = with.actors[0].shown_positions;

@@ -182,11 +182,12 @@ HAIRMESH_INLINE void addEdges(const ColumnModel<T>& model, const ColumnLayout& l
                               Sums<T>& sums) {
   for (const typename ColumnModel<T>::RootEdge& edge : model.edges) {
     const int a = layout.first(edge.a), b = layout.first(edge.b);
-    for (int l = 0; l < edge.walls; l += kLanes) {
+    const int walls = model.has_shear || model.has_bend ? edge.walls : 0;
+    for (int l = 0; l < walls; l += kLanes) {
       addWalls(model, edge, {a + l, b + l, a + l + 1, b + l + 1, a + l + 2, b + l + 2}, l, x, sums);
     }
-    // The uppermost walls' upper sides, where they are not among the lower sides of the last kLanes.
-    for (int l = edge.walls; l < edge.sides; l += kLanes) {
+    // Sides without a wall: the uppermost, where they are not among the lower sides of the last kLanes.
+    for (int l = walls; l < edge.sides; l += kLanes) {
       const StretchTerms<T> side = stretchTerms<T>(model.horizontal, edge.first + l, x, a + l, b + l, sums);
       if (sums.force) {
         const Lanes<T> zero = constant<Lanes<T>>(0);

@@ -97,7 +97,7 @@ RecordedSystems recordSystems(const std::string& scene, const std::vector<int>& 
   sim::SimParams exact = params;
   exact.precision = sim::Precision::kDouble;
   exact.tolerance = 1e-10;
-  exact.acceleration_tolerance = exact.displacement_tolerance = exact.rough_slack = 0;
+  exact.acceleration_tolerance = exact.displacement_tolerance = 0;
   const RecordedMesh& shared = *systems.shared;
   sim::ImplicitSolver<double> solver(shared.mesh, shared.pattern);
   solver.setModel(shared.mesh, sim::makeForceModel(shared.mesh, shared.pattern, params), params.density);

@@ -22,7 +22,7 @@ sim::SimParams referenceParams(double step) {
   params.time_step = step;
   params.precision = sim::Precision::kDouble;
   params.tolerance = 1e-11;
-  params.acceleration_tolerance = params.displacement_tolerance = params.rough_slack = 0;
+  params.acceleration_tolerance = params.displacement_tolerance = 0;
   return params;
 }
 

@@ -29,7 +29,7 @@ bool same(const SimParams& a, const SimParams& b) {
 // come first, and from 1e-5 on in double precision, which alone gets there.
 void setTolerance(double tolerance, SimParams& params) {
   params.tolerance = tolerance;
-  if (tolerance < 5e-3) params.acceleration_tolerance = params.displacement_tolerance = params.rough_slack = 0;
+  if (tolerance < 5e-3) params.acceleration_tolerance = params.displacement_tolerance = 0;
   if (tolerance < 5e-5) params.precision = Precision::kDouble;
 }
 
@@ -91,7 +91,7 @@ void addPrecisions(SweepSize size, WayList& list) {
     way.precision = static_cast<Precision>(precision);
     list.add(way);
     if (size != SweepSize::kFull) continue;
-    way.acceleration_tolerance = way.displacement_tolerance = way.rough_slack = 0;
+    way.acceleration_tolerance = way.displacement_tolerance = 0;
     for (const double tolerance : {1e-4, 1e-6}) {
       way.tolerance = tolerance;
       list.add(way);
