@@ -17,7 +17,7 @@ constexpr double kFactorCost = 0.9;
 // A relative residual in the norm of the 3x3 blocks says less of the error than one in the factor's: hair that the
 // stand-in solved to the same figure was off by 10 % of its length where the factor's was by 1 % (head shaken, 2,268
 // vertices, against exact solves). So much lower it must be for the same.
-constexpr double kBlocksShare = 0.1;
+constexpr double kBlocksShare = 0.3;
 constexpr double kStaleRatio = 3;  // of h (h + damping): BDF2's start-up step shares its factor with the steps after it
 constexpr double kStaleMass = 1.5;  // of 1 + h drag: the air is thick while the hair settles
 constexpr int kSlices = 30;         // steps over which a new rest factor is spread
