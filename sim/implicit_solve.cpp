@@ -14,9 +14,9 @@ constexpr int kUncorrectedIterations = 10;
 // An iteration of the warped factor costs one of the 3x3 blocks and this times the ratio of the factor's blocks to the
 // matrix's (measured at 361 and 2,268 vertices: 4.3 and 8.8 times the cheap one).
 constexpr double kFactorCost = 0.9;
-// A relative residual in the norm of the 3x3 blocks says less of the error than one in the factor's: hair that the
-// stand-in solved to the same figure was off by 10 % of its length where the factor's was by 1 % (head shaken, 2,268
-// vertices, against exact solves). So much lower it must be for the same.
+// A relative residual in the norm of the 3x3 blocks says less of the error than one in the factor's: where the stand-in
+// solved to the same figure, shaken hair of 2,268 vertices strayed by 10 % of its length from exact solves, and by 1 %
+// where it solved to this share of it.
 constexpr double kBlocksShare = 0.3;
 constexpr double kStaleRatio = 3;  // of h (h + damping): BDF2's start-up step shares its factor with the steps after it
 constexpr double kStaleMass = 1.5;  // of 1 + h drag: the air is thick while the hair settles
