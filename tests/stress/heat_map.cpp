@@ -86,14 +86,16 @@ void writePanel(const Panel& panel, const Grid& grid, std::ostream& plot) {
   std::ostringstream marks;
   for (std::size_t r = 0; r < grid.rows.size(); ++r) {
     for (std::size_t c = 0; c < grid.columns.size(); ++c) {
-      plot << (grid.slowest[r][c] < 0 ? std::string("NaN") : std::to_string(grid.slowest[r][c])) << " ";
+      if (grid.slowest[r][c] >= 0) plot << c << " " << r << " " << grid.slowest[r][c] << "\n";
       if (grid.failed[r][c] == 0) continue;
       marks << "set label '" << grid.failed[r][c] << "' at " << c << "," << r
             << " center front textcolor rgb 'white'\n";
     }
-    plot << "\n";
   }
-  plot << "EOD\n" << marks.str() << "plot $cells matrix with image\n";
+  // Boxes, for an image needs two rows and columns.
+  plot << "EOD\n"
+       << marks.str()
+       << "plot $cells using 1:2:(0.5):(0.5):3 with boxxyerror fillstyle solid noborder linecolor palette\n";
 }
 
 }  // namespace

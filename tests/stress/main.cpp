@@ -125,7 +125,8 @@ int run(const Options& options) {
   }
   if (results.empty())
     throw app::InputError("", "case '" + options.pattern + "'", "is not declared", "see hairmesh-stress --list");
-  if (!options.document.empty()) stress::writeDocument(results, options.seed, options.document);
+  if (!options.document.empty())
+    stress::writeDocument(results, options.short_run ? "--short" : "--long", options.seed, options.document);
   Count count;
   for (const Result& result : results) count.add(result);
   if (count.skipped > 0) std::cout << count.skipped << " skipped: their clips are not here\n";

@@ -179,7 +179,20 @@ std::vector<Result> readCsv(const std::string& file, const std::vector<StressCas
   return results;
 }
 
-void writeDocument(const std::vector<Result>& results, std::uint64_t seed, const std::string& folder) {
+namespace {
+
+constexpr const char* kLeftOut =
+    R"(**What falls short**: kinds of cases of which some fail today are left to the long run (`fallsShort` in
+tests/stress/stress_case.cpp): steps of 1/10 s, playback at 20 and 50 times, `displacement_tolerance` at its largest, `stretch_along`
+times 1000, hair inverted, inside out or shuffled (tips stay trapped, turned over, 11 to 64 % of the hair's length from rest), a head
+shaken at 20 Hz, a body of 12 cm switched on within the hair, random parameters and draws over all axes at once.
+
+)";
+
+}  // namespace
+
+void writeDocument(const std::vector<Result>& results, const std::string& how, std::uint64_t seed,
+                   const std::string& folder) {
   std::ofstream csv(folder + "/stability.csv");
   csv << csvHead();
   for (const Result& result : results) csv << csvRow(result);
@@ -202,7 +215,7 @@ page was written by
 
 ```
 )"
-           << "build/release/tests/hairmesh-stress --long --seed " << seed << R"( --document docs
+           << "build/release/tests/hairmesh-stress " << how << " --seed " << seed << R"( --document docs
 ```
 
 Every case has three parts. In the *motion* the hair is treated as the case says. Then everything stands still with the
@@ -227,7 +240,7 @@ colliders are taken away. A case passes when
 )"
            << said("**%ld passed, %ld failed**, seed %llu, %.0f s of CPU time.\n\n", passed, failed,
                    static_cast<unsigned long long>(seed), cpu)
-           << familyTable(countFamilies(results)) << R"(
+           << (how == "--short" ? kLeftOut : "") << familyTable(countFamilies(results)) << R"(
 "Carried" counts jumps of the head that no motion could make (faster than `teleport_speed`), over which the hair is
 carried along.
 
