@@ -15,6 +15,11 @@ namespace app {
 
 namespace {
 
+std::vector<std::string> choicesOf(const char* parameter) {
+  const auto names = sim::findParam(parameter)->choices;
+  return {names.begin(), names.end()};
+}
+
 constexpr int kSmallestSide = 16, kLargestSide = 8192, kMostFrames = 1000000;
 
 // "1280x720".
@@ -109,7 +114,7 @@ bool parseOptions(int argc, char** argv, Options& options, int& exit_code) {
                   "Linear solver; paper: the paper's own setting, one linearized step of 1/60 s by block-diagonal PCG")
       ->group(what)
       ->option_text("NAME")
-      ->check(CLI::IsMember({"paper", "diagonal", "block-jacobi", "column", "incomplete", "warped", "direct"}));
+      ->check(CLI::IsMember(choicesOf("solver")));
   parser
       .add_option("--collider", collider,
                   "What the hair collides with: ellipsoids fitted to the body, or signed distances of its skin (sdf)")

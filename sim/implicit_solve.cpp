@@ -11,13 +11,16 @@ constexpr int kLineSearchSteps = 6;
 // Where the direct factor can be corrected for only a part of the contacts at the price of one batch of answers, so
 // many iterations are tried before the rest is paid for.
 constexpr int kUncorrectedIterations = 10;
-// An iteration of the warped factor costs one of the 3x3 blocks and this times the ratio of the factor's blocks to the
-// matrix's (measured at 361 and 2,268 vertices: 4.3 and 8.8 times the cheap one).
-constexpr double kFactorCost = 0.9;
-// A relative residual in the norm of the 3x3 blocks says less of the error than one in the factor's: where the stand-in
-// solved to the same figure, shaken hair of 2,268 vertices strayed by 10 % of its length from exact solves, and by 1 %
-// where it solved to this share of it.
-constexpr double kBlocksShare = 0.3;
+// `warped` makes the whole rest factor for meshes of up to so many vertices; larger ones have the two levels alone,
+// whose memory and work grow with the mesh.
+constexpr int kMostFactored = 2000;
+constexpr Solver kStandIn = Solver::kTwoLevel;
+// What an application of a preconditioner costs, in products with the matrix: the warped factor by the ratio of its
+// blocks to the matrix's (measured at 361 and 2,268 vertices), and the two levels.
+constexpr double kFactorCost = 0.9, kTwoLevelCost = 1.8;
+// A relative residual in the norm of the two levels says less of the error than one in the factor's.
+constexpr double kTwoLevelShare = 0.5;
+constexpr double kLeastCoarseWeight = 0.05;
 constexpr double kStaleRatio = 3;  // of h (h + damping): BDF2's start-up step shares its factor with the steps after it
 constexpr double kStaleMass = 1.5;  // of 1 + h drag: the air is thick while the hair settles
 constexpr int kSlices = 30;         // steps over which a new rest factor is spread
@@ -118,6 +121,11 @@ void ImplicitSolver<T>::assembleRest(const HairMesh& mesh, const FactorTerms& te
   matrix.addMass(static_cast<T>(terms.mass()), mass);
 }
 
+template <class T>
+bool ImplicitSolver<T>::factored(Solver solver) const {
+  return solver == Solver::kWarped && static_cast<int>(x.size()) <= kMostFactored;
+}
+
 // The factor of the rest shape's matrix, for the warped preconditioner. A stale factor stays a valid preconditioner, so
 // it is made anew only when the material has changed, or the terms of the matrix by more than the ratios below; and it
 // serves while the new one is made in slices.
@@ -126,7 +134,9 @@ void ImplicitSolver<T>::refreshRestFactor(const HairMesh& mesh, const SimParams&
   const FactorTerms wanted{h, params.damping, params.air_drag};
   const auto near = [](double a, double b, double ratio) { return a < ratio * b && b < ratio * a; };
   const bool compact = params.precision == Precision::kMixed;
-  const bool usable = rest_terms.h > 0 && rest_compact == compact;
+  using Part = typename Preconditioner<T>::RestPart;
+  const Part part = factored(params.solver) ? Part::kAll : Part::kTwoLevel;
+  const bool usable = rest_terms.h > 0 && rest_compact == compact && rest_part >= part;
   if (usable && gradual && preconditioner.restMatrixPending()) {
     if (preconditioner.continueRestMatrix(kSlices, constraints)) rest_terms = coming_terms;
     return;
@@ -137,12 +147,13 @@ void ImplicitSolver<T>::refreshRestFactor(const HairMesh& mesh, const SimParams&
   }
   assembleRest(mesh, wanted);
   rest_outdated = false;
-  if (usable && gradual && preconditioner.restFactorFine()) {
-    preconditioner.beginRestMatrix(matrix);
+  if (usable && gradual && (part == Part::kAll ? preconditioner.restFactorFine() : preconditioner.twoLevelFine())) {
+    preconditioner.beginRestMatrix(matrix, compact, part);
     coming_terms = wanted;
     return;
   }
-  preconditioner.setRestMatrix(matrix, compact);
+  preconditioner.setRestMatrix(matrix, compact, part);
+  rest_part = part;
   rest_terms = wanted;
   rest_compact = compact;
 }
@@ -231,17 +242,39 @@ void ImplicitSolver<T>::setContactConstraints(const HairMesh& mesh, const SimPar
   }
 }
 
+// The coarse half of the two-level preconditioner is that of the rest shape. How much stiffer the hair is now, the
+// first residual tells: the weight is the step length at which the coarse answer to it lowers the error most.
+template <class T>
+void ImplicitSolver<T>::weighCoarse() {
+  if (preconditioner.kind() != Solver::kTwoLevel) return;
+  auto &r = scratch.d, &z = scratch.z, &q = scratch.q;  // the solve's own residual stays
+  multiply<T>(matrix, product, v, q);
+  for (std::size_t i = 0; i < r.size(); ++i) r[i] = trial[i] - q[i];
+  filter.apply(r);
+  preconditioner.applyCoarse(r, z);
+  filter.apply(z);
+  multiply<T>(matrix, product, z, q);
+  double along = 0, energy = 0;
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    along += static_cast<double>(dot(z[i], r[i]));
+    energy += static_cast<double>(dot(z[i], q[i]));
+  }
+  const double weight = energy > 0 ? along / energy : 1;
+  preconditioner.setCoarseWeight(static_cast<T>(std::clamp(weight, kLeastCoarseWeight, 1.0)));
+}
+
 template <class T>
 SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams& params, const StepBase& base,
                                            std::vector<Contact>& contacts) {
   const T h = static_cast<T>(base.h);
-  // The warped factor, or its stand-in: see preconditioner_choice.h.
-  const bool warped = params.solver == Solver::kWarped;
+  // The warped factor, or its stand-in (see preconditioner_choice.h).
+  const bool warped = factored(params.solver), two_level = params.solver == Solver::kWarped && !warped;
   PreconditionerChoice::Plan plan = warped ? choice.begin() : PreconditionerChoice::Plan{};
-  bool cheap = plan.cheap, overrun = false;
+  bool cheap = plan.cheap || two_level, overrun = false;
   double cost = 0;
-  preconditioner.update(matrix, cheap ? Solver::kBlockJacobi : params.solver);
-  const double application_cost = kFactorCost * preconditioner.restFactorRatio(), factor_cost = 1 + application_cost;
+  preconditioner.update(matrix, cheap ? kStandIn : params.solver);
+  const double factor_cost = kFactorCost * preconditioner.restFactorRatio();
+  const auto applicationCost = [&] { return cheap ? kTwoLevelCost : factor_cost; };
   StopRule<T> stop;
   stop.acceleration = params.acceleration_tolerance;
   stop.inverse_mass_dt = inverse_mass_dt;
@@ -251,25 +284,26 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
     stop.displacement = exact ? params.displacement_tolerance : 0;
     stop.foresee = exact;
     stop.h = base.h;
-    stop.relative = warped && cheap ? kBlocksShare * relative : relative;
+    stop.relative = cheap ? kTwoLevelShare * relative : relative;
     stop.max_iterations = most;
     const int before = total.iterations;
     total =
         solveModifiedPcg<ColumnOperator<T>>({matrix, product}, trial, filter, preconditioner, stop, scratch, v, start);
-    cost += cheap ? total.applications : total.iterations + application_cost * total.applications;
+    cost += total.iterations + applicationCost() * total.applications;
     total.iterations += before;
   };
   // Within the budget of the plan; beyond it the other preconditioner takes over, once.
   const auto runPcg = [&](double relative, int most, SolveStart start) {
     if (!warped || overrun) return runSome(relative, most, start);
-    const double left = (plan.budget - cost) / (cheap ? 1 : factor_cost);
+    const double left = (plan.budget - cost) / (1 + applicationCost());
     const int affordable = left < most ? std::max(1, static_cast<int>(left)) : most;
     runSome(relative, affordable, start);
     if (total.converged || affordable >= most) return;
     overrun = true;
     cheap = !cheap;
-    preconditioner.update(matrix, cheap ? Solver::kBlockJacobi : params.solver);
+    preconditioner.update(matrix, cheap ? kStandIn : params.solver);
     preconditioner.setConstraints(constraints, 3);
+    weighCoarse();
     runSome(relative, params.max_iterations, SolveStart::kExchange);
   };
   touched.clear();
@@ -282,6 +316,7 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
     setContactConstraints(mesh, params, base, contacts, start);
     // One batch of answers a round: what is still missing then comes with the steps to come.
     const bool complete = preconditioner.setConstraints(constraints, 3);
+    if (start == SolveStart::kFresh) weighCoarse();
     const bool pay = !complete && params.solver == Solver::kDirect;
     runPcg(params.tolerance, pay ? std::min(kUncorrectedIterations, params.max_iterations) : params.max_iterations,
            start);
@@ -326,7 +361,8 @@ void ImplicitSolver<T>::solve(const HairMesh& mesh, const SimParams& params, con
     report.seconds[stage] += now - started;
     started = now;
   };
-  if (params.solver == Solver::kWarped) refreshRestFactor(mesh, params, base.h);
+  const bool at_rest = params.solver == Solver::kWarped || params.solver == Solver::kTwoLevel;
+  if (at_rest) refreshRestFactor(mesh, params, base.h);
   const int most = newton ? std::max(1, params.newton_iterations) : 1;
   for (int iteration = 0; iteration < most; ++iteration) {
     if (linearized) {
@@ -335,7 +371,7 @@ void ImplicitSolver<T>::solve(const HairMesh& mesh, const SimParams& params, con
       place(v);
     }
     assemble(params, base, linearized);
-    if (params.solver == Solver::kWarped) preconditioner.updateRotations(x);
+    if (at_rest) preconditioner.updateRotations(x);
     spent(kStageForces);
     std::copy(v.begin(), v.end(), velocity_step.begin());
     // The first iterate does not yet meet the constraints: nothing to compare with.

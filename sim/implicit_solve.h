@@ -46,9 +46,10 @@ struct ImplicitSolver {
   std::vector<VertexConstraint> constraints;
   std::vector<int> touched;  // vertices that were in contact when the solve began
   bool rest_compact = false;
-  PreconditionerChoice choice;  // between the warped factor and its stand-in
-  bool rest_outdated = false;   // the material has changed since
-  bool gradual = false;         // a factor that is no longer the best is replaced in slices, not at once
+  typename Preconditioner<T>::RestPart rest_part{};  // of the rest matrix that was factored
+  PreconditionerChoice choice;                       // between the warped factor and its stand-in
+  bool rest_outdated = false;                        // the material has changed since
+  bool gradual = false;  // a factor that is no longer the best is replaced in slices, not at once
   // What the rest factor, and the one in the making, were made for; h 0: there is none.
   struct FactorTerms {
     double h = 0, damping = 0, drag = 0;
@@ -69,12 +70,14 @@ struct ImplicitSolver {
 
  private:
   T evaluateForces(std::span<const V3<T>> at, ColumnEvaluation<T> out, std::span<const V3<T>> velocities);
+  bool factored(Solver solver) const;  // the whole rest factor is made and used
   void refreshRestFactor(const HairMesh& mesh, const SimParams& params, double h);
   void assembleRest(const HairMesh& mesh, const FactorTerms& terms);
   void assemble(const SimParams& params, const StepBase& base, bool at_start);
   double residualSquare(const SimParams& params, const StepBase& base);
   void setContactConstraints(const HairMesh& mesh, const SimParams& params, const StepBase& base,
                              std::span<const Contact> contacts, SolveStart start);
+  void weighCoarse();
   SolveReport solveLinear(const HairMesh& mesh, const SimParams& params, const StepBase& base,
                           std::vector<Contact>& contacts);
 };

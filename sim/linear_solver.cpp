@@ -97,18 +97,13 @@ SolveReport solveModifiedPcg(const Operator& a, std::span<const V3<typename Oper
     scratch.rate = scratch.last_ratio = 0;
   }
   const double before_start = scratch.square;
-  if (start != SolveStart::kResume) {
-    precondition();
-    for (std::size_t i = 0; i < n; ++i) d[i] = z[i];
-    if (start == SolveStart::kFresh) scratch.first_square = scratch.square;
-    // In the norm of the new preconditioner the progress so far counts for as much as it did in the old one's.
-    if (start == SolveStart::kExchange && before_start > 0) scratch.first_square *= scratch.square / before_start;
-    if (start == SolveStart::kExchange) scratch.rate = scratch.last_ratio = 0;
-    scratch.gain = 0;
-  } else if (!scratch.preconditioned) {
-    precondition();
-    turn(before_start);
-  }
+  precondition();
+  for (std::size_t i = 0; i < n; ++i) d[i] = z[i];
+  if (start == SolveStart::kFresh) scratch.first_square = scratch.square;
+  // In the norm of the new preconditioner the progress so far counts for as much as it did in the old one's.
+  if (start == SolveStart::kExchange && before_start > 0) scratch.first_square *= scratch.square / before_start;
+  if (start == SolveStart::kExchange) scratch.rate = scratch.last_ratio = 0;
+  scratch.gain = 0;
   report.converged = closeEnough();
   while (!report.converged && report.iterations < stop.max_iterations) {
     a(d, q);

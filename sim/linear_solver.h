@@ -46,10 +46,9 @@ struct StopRule {
 };
 
 // How a solve begins. `fresh`: from x and b. `restart`: from x and the residual in the scratch, which the caller has
-// kept true while b or the filter changed; the search directions begin anew. `resume`: where the last solve stopped,
-// nothing having changed, to go on towards a stricter rule. `exchange`: as restart, the preconditioner being another
-// one. All but the first measure progress from the fresh solve's first norm.
-enum class SolveStart { kFresh, kRestart, kResume, kExchange };
+// kept true while b or the filter changed; the search directions begin anew. `exchange`: as restart, the preconditioner
+// being another one. All but the first measure progress from the fresh solve's first norm.
+enum class SolveStart { kFresh, kRestart, kExchange };
 
 struct SolveReport {
   int iterations = 0;

@@ -58,7 +58,11 @@ bool Preconditioner<T>::factorColumns(const BlockMatrix<T>& a) {
 }
 
 template <class T>
-bool Preconditioner<T>::setRestMatrix(const BlockMatrix<T>& rest, bool compact) {
+bool Preconditioner<T>::setRestMatrix(const BlockMatrix<T>& rest, bool compact, RestPart part) {
+  if (!two_level_) two_level_.emplace(*mesh_, *pattern_);
+  two_level_->make(rest, compact);
+  two_level_pending_ = false;
+  if (part == RestPart::kTwoLevel) return two_level_->fine;
   if (rest_.factor.order.empty()) rest_.factor.analyze(*mesh_, *pattern_, free_);
   making_.stage = RestFactorInMaking<T>::Stage::kIdle;
   rest_.make(rest, compact);
@@ -66,14 +70,22 @@ bool Preconditioner<T>::setRestMatrix(const BlockMatrix<T>& rest, bool compact) 
 }
 
 template <class T>
-void Preconditioner<T>::beginRestMatrix(const ColumnMatrix<T>& rest) {
+void Preconditioner<T>::beginRestMatrix(const ColumnMatrix<T>& rest, bool compact, RestPart part) {
   if (!making_.matrix.pattern) making_.matrix = BlockMatrix<T>(pattern_);
   rest.toBlocks(*mesh_, making_.matrix);
-  making_.begin(rest_);
+  two_level_->begin();
+  two_level_pending_ = true;
+  two_level_compact_ = compact;
+  if (part == RestPart::kAll) making_.begin(rest_);
 }
 
 template <class T>
 bool Preconditioner<T>::continueRestMatrix(int slices, std::span<const VertexConstraint> lasting) {
+  const bool all = making_.stage != RestFactorInMaking<T>::Stage::kIdle;
+  if (two_level_pending_) {
+    two_level_pending_ = !two_level_->work(making_.matrix, two_level_compact_, slices);
+    return !two_level_pending_ && !all;
+  }
   return making_.work(rest_.factor.factorOperations() / slices, lasting, rotations_.matrices, rest_);
 }
 
@@ -107,6 +119,10 @@ void Preconditioner<T>::update(const BlockMatrix<T>& a, Solver solver) {
     if (incomplete_factor_->factor(a)) return;
     kind_ = Solver::kBlockJacobi;
   }
+  if (solver == Solver::kTwoLevel) {
+    if (twoLevelFine()) return two_level_->update(a);
+    kind_ = Solver::kBlockJacobi;
+  }
   for (std::size_t i = 0; i < a.diagonal.size(); ++i) setDiagonal(static_cast<int>(i), a.diagonal[i]);
 }
 
@@ -124,16 +140,18 @@ const BlockMatrix<T>& Preconditioner<T>::toBlocks(const ColumnMatrix<T>& a) {
 }
 
 template <class T>
-bool Preconditioner<T>::setRestMatrix(const ColumnMatrix<T>& rest, bool compact) {
-  return setRestMatrix(toBlocks(rest), compact);
+bool Preconditioner<T>::setRestMatrix(const ColumnMatrix<T>& rest, bool compact, RestPart part) {
+  return setRestMatrix(toBlocks(rest), compact, part);
 }
 
 template <class T>
 void Preconditioner<T>::update(const ColumnMatrix<T>& a, Solver solver) {
-  if (solver == Solver::kWarped && !rest_.fine) solver = Solver::kBlockJacobi;
+  if (solver == Solver::kWarped && !rest_.fine) solver = Solver::kTwoLevel;
+  if (solver == Solver::kTwoLevel && !twoLevelFine()) solver = Solver::kBlockJacobi;
   kind_ = solver;
   rest_.responses.clear();
   if (solver == Solver::kWarped) return;
+  if (solver == Solver::kTwoLevel) return two_level_->update(a);
   if (solver == Solver::kDirect || solver == Solver::kColumn || solver == Solver::kIncomplete) {
     return update(toBlocks(a), solver);
   }
@@ -165,6 +183,9 @@ void Preconditioner<T>::apply(std::span<const V3<T>> r, std::span<V3<T>> z) {
       for (std::size_t i = 0; i < turned_.size(); ++i) turned_[i] = transposeTimes(rotations_.matrices[i], r[i]);
       rest_.solve(turned_, z);
       for (std::size_t i = 0; i < turned_.size(); ++i) z[i] = rotations_.matrices[i] * z[i];
+      return;
+    case Solver::kTwoLevel:
+      two_level_->apply(rotations_.matrices, r, z);
       return;
     case Solver::kDirect:
       direct_factor_->solve(r, z);

@@ -14,6 +14,7 @@
 #include "sim/rest_factor.h"
 #include "sim/rotation.h"
 #include "sim/sim_params.h"
+#include "sim/two_level.h"
 
 namespace sim {
 
@@ -23,6 +24,7 @@ namespace sim {
 //   diagonal              scalar diagonal
 //   column                block-tridiagonal factor of each column
 //   incomplete            incomplete Cholesky factor without fill, in 3x3 blocks
+//   two-level             factors of the rest shape's layers and of its matrix on a coarse space, turned (two_level.h)
 //   warped                factor of the rest shape's matrix, residuals turned into the rest frame and back by each
 //   vertex's own
 //                         rotation: P = R (A_rest)^-1 R^T
@@ -34,17 +36,19 @@ struct Preconditioner {
   // Refreshes what follows the current matrix. Falls back to 3x3 blocks when a factorization fails.
   void update(const BlockMatrix<T>& a, Solver solver);
   void update(const ColumnMatrix<T>& a, Solver solver);
-  // The warped preconditioner's two halves: the factor of the rest shape's matrix (rarely), the rotations (every step).
-  // `compact`: keep the factor in 16 bits for the solves (single precision only).
-  bool setRestMatrix(const BlockMatrix<T>& rest, bool compact = false);
-  bool setRestMatrix(const ColumnMatrix<T>& rest, bool compact = false);
+  // What `warped` and `two-level` need of the rest shape's matrix (rarely: the factor of the whole for the first, the
+  // two levels' for both), and the rotations (every step).
+  // `compact`: keep the factors in 16 bits for the solves (single precision only).
+  enum class RestPart { kTwoLevel, kAll };
+  bool setRestMatrix(const BlockMatrix<T>& rest, bool compact = false, RestPart part = RestPart::kAll);
+  bool setRestMatrix(const ColumnMatrix<T>& rest, bool compact = false, RestPart part = RestPart::kAll);
   void updateRotations(std::span<const V3<T>> x);
 
-  // The rest factor made anew off the critical path, where there is one: begin takes the matrix, each continue works
-  // for one `slices`-th of a factorization and answers whether the new factor has just taken the old one's place.
-  void beginRestMatrix(const ColumnMatrix<T>& rest);
+  // The rest factors made anew off the critical path, where there are some: begin takes the matrix, each continue works
+  // for one `slices`-th of a factorization and answers whether the new factors have just taken the old ones' place.
+  void beginRestMatrix(const ColumnMatrix<T>& rest, bool compact, RestPart part);
   bool continueRestMatrix(int slices, std::span<const VertexConstraint> lasting);
-  bool restMatrixPending() const { return making_.stage != RestFactorInMaking<T>::Stage::kIdle; }
+  bool restMatrixPending() const { return two_level_pending_ || making_.stage != RestFactorInMaking<T>::Stage::kIdle; }
 
   // The constraints of the solves to come. `warped` and `direct`, whose P knows nothing of them, correct it with what
   // their factor answers at the constrained vertices (contact_response.h), without which a few contacts cost tens of
@@ -54,10 +58,18 @@ struct Preconditioner {
   // z = P r.
   void apply(std::span<const V3<T>> r, std::span<V3<T>> z);
 
+  // The weight of the coarse half of `two-level`, for the solves until the next update; 1 without it.
+  void setCoarseWeight(T weight) {
+    if (two_level_) two_level_->coarse_weight = weight;
+  }
+  // z = that half of P r, of weight 1. Only for kind() two-level.
+  void applyCoarse(std::span<const V3<T>> r, std::span<V3<T>> z) { two_level_->applyCoarse(rotations_.matrices, r, z); }
+
   Solver kind() const { return kind_; }
   // Blocks of the rest factor, counted in 16 bits an entry, over those of the matrix.
   double restFactorRatio() const;
   bool restFactorFine() const { return rest_.fine; }
+  bool twoLevelFine() const { return two_level_ && two_level_->fine; }
   const BlockCholesky<T>& restFactor() const { return rest_.factor; }
 
  private:
@@ -69,6 +81,8 @@ struct Preconditioner {
   VertexRotations<T> rotations_;
   RestFactor<T> rest_;  // where it is not fine, 3x3 blocks stand in for `warped`
   RestFactorInMaking<T> making_;
+  std::optional<TwoLevel<T>> two_level_;
+  bool two_level_pending_ = false, two_level_compact_ = false;
   std::optional<BlockCholesky<T>> direct_factor_, column_factor_;
   std::optional<IncompleteCholesky<T>> incomplete_factor_;
   std::optional<BlockPattern> column_pattern_;

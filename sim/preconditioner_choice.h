@@ -1,6 +1,6 @@
-// Which of two preconditioners serves a solve best: the warped rest factor, few and dear iterations, or the 3x3 blocks,
-// many and cheap ones. Where hair is thrown about, the rest shape says little about the matrix and the second is
-// faster.
+// Which of two preconditioners serves a solve best: the warped rest factor, few and dear iterations, or the two levels,
+// more and cheaper ones. Where hair is thrown about, the rest shape says little about the matrix and the second is
+// faster; on large meshes it often is.
 #pragma once
 
 #include <algorithm>
@@ -8,16 +8,16 @@
 
 namespace sim {
 
-// Decides by counted work, in iterations of the cheap one, so that the same inputs always decide alike. The other is
+// Decides by counted work, in products with the matrix, so that the same inputs always decide alike. The other is
 // tried now and then where a solve costs more than a little, for not much more than what the one in use takes.
 struct PreconditionerChoice {
-  static constexpr double kLittle = 40;  // iterations of the cheap one: it would hardly take fewer
+  static constexpr double kLittle = 40;  // the cheap one would hardly take less
   static constexpr double kOverrun = 1.5, kOutburst = 2;
   static constexpr double kGain = 0.75;                    // of the cost, for which the cheap one comes into use
   static constexpr double kMemory = 0.8;                   // of earlier solves in the mean
   static constexpr int kPatience = 4, kMostPatience = 16;  // solves from one trial to the next; failing ones double it
 
-  bool cheap = false;    // the 3x3 blocks are in use
+  bool cheap = false;    // the two levels are in use
   double mean_cost = 0;  // of a solve by the one in use
   int wait = kPatience, patience = kPatience;
 

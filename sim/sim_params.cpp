@@ -11,8 +11,8 @@ namespace sim {
 namespace {
 
 constexpr std::array<const char*, 3> kIntegrators{"linearized-euler", "implicit-euler", "bdf2"};
-constexpr std::array<const char*, 7> kSolvers{"paper",      "diagonal", "block-jacobi", "column",
-                                              "incomplete", "warped",   "direct"};
+constexpr std::array<const char*, 8> kSolvers{"paper",      "diagonal",  "block-jacobi", "column",
+                                              "incomplete", "two-level", "warped",       "direct"};
 constexpr std::array<const char*, 3> kPrecisions{"float", "mixed", "double"};
 constexpr std::array<const char*, 2> kColliders{"ellipsoids", "sdf"};
 static_assert(kIntegrators.size() == static_cast<int>(Integrator::kCount));

@@ -72,7 +72,7 @@ TEST(Oracle, HeadShakeIsThatOfThePlainImplementation) {
   app::Wardrobe wardrobe;
   app::Actor actor = actorOf("head_shake.bvh", 1, wardrobe);
   const sim::HairMesh& mesh = actor.haircut->mesh;
-  const Solver solvers[] = {Solver::kWarped, Solver::kPaper, Solver::kDirect};
+  const Solver solvers[] = {Solver::kWarped, Solver::kTwoLevel, Solver::kPaper, Solver::kDirect};
   std::vector<sim::StepContext> contexts;
   for (int k = 0; k < 3; ++k) contexts.emplace_back(mesh);
   std::vector<sim::HairState> states(3, actor.hair);

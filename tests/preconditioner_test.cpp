@@ -157,6 +157,140 @@ TEST(Preconditioners, ContactsBeyondTheCorrectedOnesAreLeftToTheFilter) {
   }
 }
 
+// The layers' factor is the direct solve of the matrix without the couplings between layers, in both layouts.
+template <class T>
+void layersAreSolvedOneByOne(double bound) {
+  test::PatchOptions o;
+  o.nx = 4, o.nz = 3, o.layers = 11, o.mixed = true;
+  sim::HairMeshShape shape = test::combedShape(o);
+  const sim::HairMesh mesh = sim::buildHairMesh(shape);
+  const sim::BlockPattern pattern = sim::systemPattern(mesh);
+  const sim::ColumnLayout layout(mesh);
+  const sim::ColumnPattern columns(mesh, layout);
+  test::Random random(91);
+  sim::ColumnMatrix<T> packed(layout, columns);
+  // Any symmetric matrix with a heavy diagonal; what lies in the padding must not matter.
+  for (T& value : packed.values) value = static_cast<T>(random(-1, 1));
+  packed.addMass(T(40), std::vector<T>(mesh.vertexCount(), T(1)));
+  BlockMatrix<T> a(&pattern);
+  packed.toBlocks(mesh, a);
+  const int n = mesh.vertexCount();
+  BlockMatrix<T> within = a;
+  for (int i = 0; i < n; ++i) {
+    for (int k = pattern.row_first[i]; k < pattern.row_first[i + 1]; ++k) {
+      if (mesh.layer_of[i] != mesh.layer_of[pattern.columns[k]]) within.lower[k] = {};
+    }
+  }
+  std::vector<V3<T>> x(n), r(n), z(n);
+  for (V3<T>& p : x) p = {static_cast<T>(random(-1, 1)), static_cast<T>(random(-1, 1)), static_cast<T>(random(-1, 1))};
+  sim::multiply<T>(within, x, r);
+  sim::LayerFactor<T> factor(mesh, layout, columns);
+  for (const bool by_blocks : {false, true}) {
+    if (by_blocks) {
+      factor.factor(a);
+    } else {
+      factor.factor(packed);
+    }
+    factor.solve(r, z);
+    double worst = 0;
+    for (int i = 0; i < n; ++i) worst = std::max(worst, std::sqrt(static_cast<double>(dot(z[i] - x[i], z[i] - x[i]))));
+    EXPECT_LT(worst, bound) << by_blocks;
+  }
+}
+
+TEST(TwoLevel, LayersAreSolvedOneByOne) {
+  layersAreSolvedOneByOne<float>(1e-4);
+  layersAreSolvedOneByOne<double>(1e-12);
+}
+
+// Of a patch fine enough to have something to leave out, columns of different lengths included.
+TEST(TwoLevel, CoarseSpaceMovesAllAlikeAndLeavesRootsInPlace) {
+  test::PatchOptions o;
+  o.nx = 9, o.nz = 9, o.layers = 12;
+  const sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(o));
+  const sim::CoarseSpace space(mesh, sim::systemPattern(mesh));
+  EXPECT_LT(space.size, mesh.vertexCount() / 8);
+  EXPECT_GT(space.size, 0);
+  for (int i = 0; i < mesh.vertexCount(); ++i) {
+    double sum = 0;
+    for (int k = space.first[i]; k < space.first[i + 1]; ++k) {
+      EXPECT_GT(space.weight[k], 0);
+      sum += space.weight[k];
+    }
+    const double wanted =
+        mesh.isRoot(i) ? 0 : std::min(1.0, static_cast<double>(mesh.layer_of[i]) / sim::CoarseSpace::kLayerStep);
+    if (mesh.isRoot(i) || mesh.layer_of[i] >= sim::CoarseSpace::kLayerStep) {
+      EXPECT_NEAR(sum, wanted, 1e-5) << "vertex " << i;
+    } else {
+      EXPECT_GT(sum, 0);
+      EXPECT_LT(sum, 1);
+    }
+  }
+}
+
+// P is symmetric and positive whatever weight the coarse half has, and beats the 3x3 blocks by more the longer the
+// hair.
+TEST(TwoLevel, IsSymmetricAndNeedsFarFewerIterationsThanBlocks) {
+  const System system(0.002);
+  const BlockMatrix<double> a = system.matrixAt<double>(system.positions);
+  auto preconditioner = system.preconditioner(a, Solver::kTwoLevel);
+  const std::size_t n = system.positions.size();
+  test::Random random(95);
+  for (const double weight : {0.05, 1.0}) {
+    preconditioner.setCoarseWeight(weight);
+    std::vector<V3<double>> r[2], z[2];
+    for (int side = 0; side < 2; ++side) {
+      std::vector<Vec3> values(n);
+      for (std::size_t i = 0; i < n; ++i)
+        values[i] = system.mesh.isRoot(static_cast<int>(i)) ? Vec3(0, 0, 0) : random.vector(1);
+      r[side] = test::plain<double>(values);
+      z[side].resize(n);
+      preconditioner.apply(r[side], z[side]);
+    }
+    double across[2] = {0, 0}, along = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      across[0] += dot(r[0][i], z[1][i]);
+      across[1] += dot(r[1][i], z[0][i]);
+      along += dot(r[0][i], z[0][i]);
+    }
+    EXPECT_GT(along, 0);
+    EXPECT_NEAR(across[0], across[1], 1e-9 * along);
+  }
+  const Problem p = makeProblem(system, 0, random);
+  sim::StopRule<double> stop;
+  stop.relative = 1e-4;
+  Eigen::VectorXd x;
+  const int blocks = solve<double>(system, a, p, Solver::kBlockJacobi, stop, x).iterations;
+  const int levels = solve<double>(system, a, p, Solver::kTwoLevel, stop, x).iterations;
+  std::printf("iterations: 3x3 blocks %d, two levels %d\n", blocks, levels);
+  EXPECT_LT(2 * levels, blocks);
+}
+
+// In pieces it comes to the same, and what was there before serves until then.
+TEST(TwoLevel, InPiecesIsTheSame) {
+  const System system(0.002);
+  const BlockMatrix<double> rest = system.matrixAt<double>(system.mesh.shape.positions);
+  const BlockMatrix<double> a = system.matrixAt<double>(system.positions);
+  sim::TwoLevel<double> whole(system.mesh, system.pattern), pieces(system.mesh, system.pattern);
+  const std::size_t n = system.positions.size();
+  whole.make(rest, false);
+  pieces.begin();
+  int count = 1;
+  while (!pieces.work(rest, false, 7)) {
+    EXPECT_FALSE(pieces.fine);
+    ++count;
+  }
+  EXPECT_GE(count, 5);
+  EXPECT_TRUE(whole.fine && pieces.fine);
+  whole.update(a), pieces.update(a);
+  const std::vector<sim::M3<double>> turn(n, sim::M3<double>{1, 0, 0, 0, 1, 0, 0, 0, 1});
+  const auto r = test::plain<double>(system.positions);
+  std::vector<V3<double>> z[2] = {std::vector<V3<double>>(n), std::vector<V3<double>>(n)};
+  whole.apply(turn, r, z[0]);
+  pieces.apply(turn, r, z[1]);
+  for (std::size_t i = 0; i < n; ++i) EXPECT_EQ(z[0][i].x, z[1][i].x);
+}
+
 // Total cost over solves of which the two kinds cost `factor` and `blocks`.
 double costOfSolves(sim::PreconditionerChoice& choice, int solves, double factor, double blocks) {
   double total = 0;

@@ -138,8 +138,8 @@ TEST(Recovery, OfSoftHairThatHardlyHoldsItsBend) {
 }
 
 TEST(Recovery, WorksWithEverySolverAndIntegrator) {
-  for (const sim::Solver solver :
-       {sim::Solver::kPaper, sim::Solver::kColumn, sim::Solver::kWarped, sim::Solver::kDirect}) {
+  for (const sim::Solver solver : {sim::Solver::kPaper, sim::Solver::kColumn, sim::Solver::kTwoLevel,
+                                   sim::Solver::kWarped, sim::Solver::kDirect}) {
     for (const auto integrator :
          {sim::Integrator::kLinearizedEuler, sim::Integrator::kImplicitEuler, sim::Integrator::kBdf2}) {
       for (const auto precision : {sim::Precision::kFloat, sim::Precision::kDouble}) {

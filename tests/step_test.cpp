@@ -324,7 +324,7 @@ bool sameBits(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 
 TEST(Step, SameInputsGiveTheSameBits) {
   for (const sim::Precision precision : {sim::Precision::kFloat, sim::Precision::kMixed, sim::Precision::kDouble}) {
-    for (const Solver solver : {Solver::kPaper, Solver::kColumn, Solver::kWarped, Solver::kDirect}) {
+    for (const Solver solver : {Solver::kPaper, Solver::kColumn, Solver::kTwoLevel, Solver::kWarped, Solver::kDirect}) {
       sim::SimParams params = test::tautHair();
       params.precision = precision;
       params.solver = solver;
@@ -343,7 +343,8 @@ TEST(Step, SameInputsGiveTheSameBits) {
 TEST(Step, SolversAndPrecisionsAgreeOnTheMotion) {
   Hair reference(test::combedShape({}), test::tautHair());
   shake(reference, 20);
-  for (const Solver solver : {Solver::kPaper, Solver::kDiagonal, Solver::kColumn, Solver::kWarped, Solver::kDirect}) {
+  for (const Solver solver :
+       {Solver::kPaper, Solver::kDiagonal, Solver::kColumn, Solver::kTwoLevel, Solver::kWarped, Solver::kDirect}) {
     sim::SimParams params = test::tautHair();
     params.solver = solver;
     Hair hair(test::combedShape({}), params);
@@ -405,8 +406,8 @@ TEST(Step, NeverLeavesAValueThatIsNotFiniteAndCountsTheRecovery) {
 }
 
 TEST(Step, AllocatesNothingOnceWarm) {
-  for (const Solver solver :
-       {Solver::kPaper, Solver::kDiagonal, Solver::kColumn, Solver::kIncomplete, Solver::kWarped, Solver::kDirect}) {
+  for (const Solver solver : {Solver::kPaper, Solver::kDiagonal, Solver::kColumn, Solver::kIncomplete,
+                              Solver::kTwoLevel, Solver::kWarped, Solver::kDirect}) {
     for (const Integrator integrator : kIntegrators) {
       sim::SimParams params = test::tautHair();
       params.solver = solver;

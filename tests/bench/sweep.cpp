@@ -68,7 +68,7 @@ void addSolvers(SweepSize size, WayList& list) {
   if (full) rates = {30, 60, 240}, tolerances.push_back(1e-4);
   for (int k = 0; k < static_cast<int>(Solver::kCount); ++k) {
     const auto solver = static_cast<Solver>(k);
-    const bool came_near = solver == Solver::kBlockJacobi || solver == Solver::kIncomplete;
+    const bool came_near = solver == Solver::kBlockJacobi || solver == Solver::kTwoLevel;
     // `paper` is block-jacobi by another name, and `warped` has been in every place already.
     if (solver == Solver::kPaper || solver == Solver::kWarped || (size == SweepSize::kShort && !came_near)) continue;
     for (const double rate : rates) {

@@ -1,0 +1,60 @@
+// Factor of the system matrix without the couplings between layers: one planar system a layer, all of one structure,
+// that of the root faces. They are eliminated side by side, one layer a vector lane.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sim/block_matrix.h"
+#include "sim/column_matrix.h"
+
+namespace sim {
+
+// Block L D L^T of every layer, columns in an order of minimum degree. A vertex without a row (padding beside a shorter
+// column) is a row of the identity.
+template <class T>
+struct LayerFactor {
+  LayerFactor(const HairMesh& mesh, const ColumnLayout& layout, const ColumnPattern& pattern);
+
+  // The blocks within layers of a positive definite matrix; a pivot block that rounding has made singular counts as its
+  // diagonal.
+  void factor(const ColumnMatrix<T>& a);
+  void factor(const BlockMatrix<T>& a);
+
+  // z = (L D L^T)^-1 r, per vertex; allocates nothing.
+  void solve(std::span<const V3<T>> r, std::span<V3<T>> z);
+
+  std::size_t blockCount() const { return below_.size() + order_.size(); }  // of 3x3, a layer
+
+ private:
+  const HairMesh* mesh_;
+  const ColumnLayout* layout_;
+  const ColumnPattern* pattern_;
+  int groups_;              // of kLanes layers
+  std::vector<int> order_;  // columns as they are eliminated
+  std::vector<int> below_first_{0},
+      below_;  // per eliminated column: the columns that its elimination couples, in order
+  // Where L_ik D_k L_jk^T goes, for all pairs j <= i of those below k: block number, or ~number of a pivot.
+  std::vector<int> updates_;
+  // Where the matrix's blocks go: block, or ~pivot; and whether as the transpose.
+  struct Source {
+    int diagonal;  // number in the pattern
+    int block;
+    bool transposed;
+  };
+  std::vector<Source> sources_;
+  std::vector<int> rows_;  // first entries of a field's columns, as they are eliminated
+  std::vector<int> rows_below_;
+  // Lane groups one after the other; of each, for every pivot in turn, its inverse (6 components) and the blocks of L
+  // below it (9 each).
+  LineVector<T> values_;
+  std::size_t group_size_ = 0;
+  std::vector<std::size_t> pivot_at_, block_at_;  // within a group
+  LineVector<T> panel_;                           // D L^T of one column
+  ColumnField<T> field_;
+
+  void clearWithIdentity();
+  void eliminate();
+};
+
+}  // namespace sim
