@@ -6,11 +6,6 @@
 namespace sim {
 namespace {
 
-struct ColumnShare {
-  int coarse;  // number among the coarse columns
-  double weight;
-};
-
 std::vector<std::vector<int>> columnNeighbours(const HairMesh& mesh) {
   std::vector<std::vector<int>> neighbours(mesh.columnCount());
   for (const RootFace& face : mesh.shape.root_faces) {
@@ -50,10 +45,9 @@ std::vector<int> chooseColumns(const std::vector<std::vector<int>>& neighbours) 
   return chosen;
 }
 
-// How a column hangs on the coarse ones around it: weights that fall with the distance of the roots and reach zero at
-// the first that is left out.
-std::vector<ColumnShare> sharesOf(const HairMesh& mesh, const std::vector<std::vector<int>>& neighbours,
-                                  const std::vector<int>& coarse_number, int column) {
+// Weights that fall with the distance of the roots and reach zero at the first coarse column that is left out.
+std::vector<CoarseSpace::Share> sharesOf(const HairMesh& mesh, const std::vector<std::vector<int>>& neighbours,
+                                         const std::vector<int>& coarse_number, int column) {
   if (coarse_number[column] >= 0) return {{coarse_number[column], 1}};
   const auto root = [&](int c) -> const Vec3& { return mesh.shape.positions[mesh.shape.column_first[c]]; };
   std::vector<std::pair<double, int>> around;
@@ -63,16 +57,18 @@ std::vector<ColumnShare> sharesOf(const HairMesh& mesh, const std::vector<std::v
   std::sort(around.begin(), around.end());
   const std::size_t count = std::min<std::size_t>(around.size(), CoarseSpace::kNearest);
   const double beyond = around.size() > count ? 1 / around[count].first : 0;
-  std::vector<ColumnShare> shares;
+  std::vector<double> weights;
   double sum = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const double weight = 1 / around[k].first - beyond;
-    if (!(weight > 0) || !std::isfinite(weight)) continue;
-    shares.push_back({around[k].second, weight});
-    sum += weight;
+    weights.push_back(std::isfinite(weight) ? std::max(0.0, weight) : 0);
+    sum += weights.back();
   }
-  if (shares.empty()) return {{around[0].second, 1}};
-  for (ColumnShare& share : shares) share.weight /= sum;
+  if (!(sum > 0)) return {{around[0].second, 1}};
+  std::vector<CoarseSpace::Share> shares;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (weights[k] > 0) shares.push_back({around[k].second, static_cast<float>(weights[k] / sum)});
+  }
   return shares;
 }
 
@@ -82,33 +78,25 @@ CoarseSpace::CoarseSpace(const HairMesh& mesh, const BlockPattern& system) {
   const std::vector<std::vector<int>> neighbours = columnNeighbours(mesh);
   const std::vector<int> chosen = chooseColumns(neighbours);
   std::vector<int> coarse_number(mesh.columnCount(), -1);
-  std::vector<int> layers, first_vertex;  // of a coarse column, the root layer left out
-  for (std::size_t k = 0; k < chosen.size(); ++k) {
-    coarse_number[chosen[k]] = static_cast<int>(k);
-    layers.push_back((mesh.shape.columnLength(chosen[k]) - 1 + kLayerStep - 1) / kLayerStep);
-    first_vertex.push_back(size);
-    size += layers.back();
-  }
+  for (std::size_t k = 0; k < chosen.size(); ++k) coarse_number[chosen[k]] = static_cast<int>(k);
+  std::vector<int> longest(chosen.size(), 0);  // of the columns that hang on a coarse one
   for (int c = 0; c < mesh.columnCount(); ++c) {
-    const std::vector<ColumnShare> shares = sharesOf(mesh, neighbours, coarse_number, c);
-    const int length = mesh.shape.columnLength(c);
-    for (int l = 0; l < length; ++l) {
-      for (const ColumnShare& share : shares) {
-        const int last = layers[share.coarse];
-        const double height = static_cast<double>(l) / (length - 1) * last;
-        const int below = std::min(static_cast<int>(height), last - 1);
-        const double part = height - below;
-        const int at = first_vertex[share.coarse] + below - 1;  // of the lower of the two; layer 0 is the root
-        const auto add = [&](int vertex, double value) {
-          if (!(value > 0)) return;
-          index.push_back(vertex);
-          weight.push_back(static_cast<float>(value));
-        };
-        if (below > 0) add(at, share.weight * (1 - part));
-        add(at + 1, share.weight * part);
-      }
-      first.push_back(static_cast<int>(index.size()));
+    for (const Share& share : sharesOf(mesh, neighbours, coarse_number, c)) {
+      shares.push_back(share);
+      longest[share.coarse] = std::max(longest[share.coarse], mesh.shape.columnLength(c));
     }
+    column_first.push_back(static_cast<int>(shares.size()));
+  }
+  for (const int length : longest) coarse_first.push_back(size() + (length - 1 + kLayerStep - 1) / kLayerStep);
+  for (int i = 0; i < mesh.vertexCount(); ++i) {
+    const int c = mesh.column_of[i], below = mesh.layer_of[i] / kLayerStep, part = mesh.layer_of[i] % kLayerStep;
+    for (int s = column_first[c]; s < column_first[c + 1]; ++s) {
+      const int at = coarse_first[shares[s].coarse] + below - 1;  // of the lower of the two; layer 0 is the root
+      const float upper = static_cast<float>(part) / kLayerStep;
+      if (below > 0) index.push_back(at), weight.push_back(shares[s].weight * (1 - upper));
+      if (part > 0) index.push_back(at + 1), weight.push_back(shares[s].weight * upper);
+    }
+    first.push_back(static_cast<int>(index.size()));
   }
   std::vector<std::pair<int, int>> pairs;
   const auto couple = [&](int i, int j) {
@@ -127,7 +115,7 @@ CoarseSpace::CoarseSpace(const HairMesh& mesh, const BlockPattern& system) {
       pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     }
   }
-  pattern = makePattern(size, std::move(pairs));
+  pattern = makePattern(size(), std::move(pairs));
 }
 
 }  // namespace sim

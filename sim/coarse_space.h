@@ -14,12 +14,24 @@ namespace sim {
 struct CoarseSpace {
   static constexpr int kColumnReach = 3, kLayerStep = 2, kNearest = 3;
 
-  int size = 0;  // coarse vertices
-  // Prolongation: vertex i of the mesh moves by the sum of weight[k] times coarse vertex index[k], k in [first[i],
-  // first[i + 1]); the weights of a vertex sum to at most 1, and to less only beside the root.
+  // How column c of the mesh hangs on the coarse ones: shares [column_first[c], column_first[c + 1]), which sum to 1.
+  struct Share {
+    int coarse;  // column
+    float weight;
+  };
+  std::vector<int> column_first{0};
+  std::vector<Share> shares;
+  // Coarse column k has vertices coarse_first[k] ... coarse_first[k + 1] - 1, the m-th (from 1) at layer m *
+  // kLayerStep; its last one may lie beyond the tip.
+  std::vector<int> coarse_first{0};
+  int coarseColumns() const { return static_cast<int>(coarse_first.size()) - 1; }
+  int size() const { return coarse_first.back(); }
+
+  // The same per vertex: vertex i of the mesh moves by the sum of weight[k] times coarse vertex index[k], k in
+  // [first[i], first[i + 1]).
   std::vector<int> first{0}, index;
   std::vector<float> weight;
-  BlockPattern pattern;  // of P^T A P
+  BlockPattern pattern;  // of Q^T A Q
 
   CoarseSpace(const HairMesh& mesh, const BlockPattern& system);
 };

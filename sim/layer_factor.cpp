@@ -256,10 +256,15 @@ void LayerFactor<T>::eliminate() {
 }
 
 template <class T>
-void LayerFactor<T>::solve(std::span<const V3<T>> r, std::span<V3<T>> z) {
+void LayerFactor<T>::solve(ColumnField<T>& x) const {
   const Structure s{below_first_, updates_, pivot_at_, block_at_, rows_, rows_below_};
+  for (int g = 0; g < groups_; ++g) runSolve(s, values_.data() + g * group_size_, g * kLanes, x);
+}
+
+template <class T>
+void LayerFactor<T>::solve(std::span<const V3<T>> r, std::span<V3<T>> z) {
   field_.pack(*layout_, r);
-  for (int g = 0; g < groups_; ++g) runSolve(s, values_.data() + g * group_size_, g * kLanes, field_);
+  solve(field_);
   field_.unpack(*layout_, z);
 }
 

@@ -21,7 +21,9 @@ struct LayerFactor {
   void factor(const ColumnMatrix<T>& a);
   void factor(const BlockMatrix<T>& a);
 
-  // z = (L D L^T)^-1 r, per vertex; allocates nothing.
+  // x = (L D L^T)^-1 x; allocates nothing.
+  void solve(ColumnField<T>& x) const;
+  // The same per vertex.
   void solve(std::span<const V3<T>> r, std::span<V3<T>> z);
 
   std::size_t blockCount() const { return below_.size() + order_.size(); }  // of 3x3, a layer

@@ -120,7 +120,7 @@ void Preconditioner<T>::update(const BlockMatrix<T>& a, Solver solver) {
     kind_ = Solver::kBlockJacobi;
   }
   if (solver == Solver::kTwoLevel) {
-    if (twoLevelFine()) return two_level_->update(a);
+    if (twoLevelFine()) return two_level_->update(a, rotations_.matrices);
     kind_ = Solver::kBlockJacobi;
   }
   for (std::size_t i = 0; i < a.diagonal.size(); ++i) setDiagonal(static_cast<int>(i), a.diagonal[i]);
@@ -151,7 +151,7 @@ void Preconditioner<T>::update(const ColumnMatrix<T>& a, Solver solver) {
   kind_ = solver;
   rest_.responses.clear();
   if (solver == Solver::kWarped) return;
-  if (solver == Solver::kTwoLevel) return two_level_->update(a);
+  if (solver == Solver::kTwoLevel) return two_level_->update(a, rotations_.matrices);
   if (solver == Solver::kDirect || solver == Solver::kColumn || solver == Solver::kIncomplete) {
     return update(toBlocks(a), solver);
   }
@@ -185,7 +185,7 @@ void Preconditioner<T>::apply(std::span<const V3<T>> r, std::span<V3<T>> z) {
       for (std::size_t i = 0; i < turned_.size(); ++i) z[i] = rotations_.matrices[i] * z[i];
       return;
     case Solver::kTwoLevel:
-      two_level_->apply(rotations_.matrices, r, z);
+      two_level_->apply(r, z);
       return;
     case Solver::kDirect:
       direct_factor_->solve(r, z);

@@ -63,7 +63,7 @@ struct Preconditioner {
     if (two_level_) two_level_->coarse_weight = weight;
   }
   // z = that half of P r, of weight 1. Only for kind() two-level.
-  void applyCoarse(std::span<const V3<T>> r, std::span<V3<T>> z) { two_level_->applyCoarse(rotations_.matrices, r, z); }
+  void applyCoarse(std::span<const V3<T>> r, std::span<V3<T>> z) { two_level_->applyCoarse(r, z); }
 
   Solver kind() const { return kind_; }
   // Blocks of the rest factor, counted in 16 bits an entry, over those of the matrix.

@@ -33,18 +33,19 @@ struct TwoLevel {
   void begin();
   bool work(const BlockMatrix<T>& rest, bool compact, int slices);
 
-  // Takes the current matrix.
+  // Takes the current matrix and the rotations of the vertices from the rest shape.
   template <class Matrix>
-  void update(const Matrix& a) {
+  void update(const Matrix& a, std::span<const M3<T>> turn) {
     layers_.factor(a);
+    setRotations(turn);
   }
 
   // The coarse half alone, of weight 1; and the weight that it has in P.
-  void applyCoarse(std::span<const M3<T>> turn, std::span<const V3<T>> r, std::span<V3<T>> z);
+  void applyCoarse(std::span<const V3<T>> r, std::span<V3<T>> z);
   T coarse_weight = 1;
 
   // z = P r.
-  void apply(std::span<const M3<T>> turn, std::span<const V3<T>> r, std::span<V3<T>> z);
+  void apply(std::span<const V3<T>> r, std::span<V3<T>> z);
 
  private:
   ColumnLayout layout_;
@@ -53,10 +54,13 @@ struct TwoLevel {
   CoarseSpace space_;
   BlockMatrix<T> coarse_matrix_;
   RestFactor<T> coarse_;
-  std::vector<V3<T>> restricted_, solved_;
-  void solveCoarse(std::span<const M3<T>> turn, std::span<const V3<T>> r);
-  V3<T> coarseAt(std::size_t vertex) const;
-  int projected_ = 0;  // rows of the system's matrix
+  ColumnField<T> field_;  // r, then z
+  LineVector<T> turn_;    // nine components, each a padded array
+  LineVector<T> across_;  // per coarse column, sums over the columns that hang on it: x, y, z by layer
+  std::vector<V3<T>> restricted_, solved_;  // per coarse vertex
+  int projected_ = 0;                       // rows of the system's matrix
+  void setRotations(std::span<const M3<T>> turn);
+  void solveCoarse();  // from field_ into across_
   void projectRow(const BlockMatrix<T>& rest, int row);
 };
 
