@@ -8,7 +8,7 @@ build_packages=(
 )
 test_packages=(libgtest-dev xvfb)
 # More tests and comparisons run where these are installed; without them they are skipped.
-optional_test_packages=(assimp-testmodels libsuitesparse-dev libbullet-dev gnuplot-nox)
+optional_test_packages=(assimp-testmodels libsuitesparse-dev libbullet-dev gnuplot-nox valgrind)
 
 installed() {
   [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]

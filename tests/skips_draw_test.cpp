@@ -1,7 +1,6 @@
 // The ledger of skips, its drawing part: exact ones change no byte of the picture, approximate ones stay in their
 // bound, and crowds are shadowed and small in memory.
 #include <gtest/gtest.h>
-#include <time.h>
 
 #include <algorithm>
 #include <array>
@@ -248,27 +247,6 @@ TEST_F(SkipsDraw, DetailStaysInItsBound) {
       EXPECT_LE(off, distance > 15 ? kSmallBound : kDetailBound) << detail.name << " at " << distance << " m";
     }
   }
-}
-
-// Where there is nothing to leave out (hair and camera move, all is in view and near), asking costs nothing that shows.
-TEST_F(SkipsDraw, AskingCostsNothing) {
-  double least[2] = {1e9, 1e9};
-  Crowd crowd(1, 1, 4000);
-  render::Renderer with(gl_fixture::kShaderDir), without(gl_fixture::kShaderDir);
-  for (int frame = 0; frame < 8; ++frame) {
-    for (std::size_t v = 0; v < crowd.positions[0].size(); v += 3) crowd.positions[0][v] += 1e-3f;
-    ++crowd.hairs[0].position_revision;
-    for (int all = 0; all < 2; ++all) {
-      timespec start{}, end{};
-      clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &start);
-      draw(all ? with : without, crowd.frame(all ? render::DrawSkips{} : none()));
-      clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &end);
-      least[all] = std::min(least[all], static_cast<double>(end.tv_sec - start.tv_sec) +
-                                            1e-9 * static_cast<double>(end.tv_nsec - start.tv_nsec));
-    }
-  }
-  std::printf("a frame: %.1f ms without, %.1f ms with\n", 1e3 * least[0], 1e3 * least[1]);
-  EXPECT_LE(least[1], 1.03 * least[0]);
 }
 
 // A fifth hair and all further ones are as dark at their inside as the first.
