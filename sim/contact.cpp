@@ -15,8 +15,9 @@ constexpr double kCreep = 1e-3, kNoSlip = 1e-9;  // m/s
 // Paths past a collider
 constexpr double kStraight = 0.2;  // rad; a collider that turns less is passed on a straight line
 constexpr double kGrazing = 0.1;   // of its thickness; a path no deeper slides over a rounded body
-constexpr int kMostMarches = 64, kDepthSamples = 8;
-constexpr double kMet = 1e-5;  // m
+constexpr int kMostMarches = 64, kDepthSamples = 8, kMostSamples = 512;
+constexpr double kSampling = 0.5;  // of its thickness, from one sample of the depth to the next
+constexpr double kMet = 1e-5;      // m
 // Out of a crowd of bodies
 constexpr double kNeighbour = 0.005;  // m; bodies so near to a vertex are those that hem it in
 constexpr double kStride = 5e-4;      // m, at least
@@ -81,8 +82,11 @@ std::optional<Vec3> entryOf(const Path& path, const Colliders& colliders, int k,
   }
   if (t >= 1) return {};
   double least = 0;
-  for (int i = 1; i <= kDepthSamples; ++i) {
-    const double later = t + (1 - t) * i / kDepthSamples;
+  // So close that none steps over a thin body.
+  const int samples =
+      std::clamp(static_cast<int>(path.speed * (1 - t) / (kSampling * path.body->thin)), kDepthSamples, kMostSamples);
+  for (int i = 1; i <= samples && least > -grazing; ++i) {
+    const double later = t + (1 - t) * i / samples;
     least = std::min(least, colliders.closest(k, path.at(later)).distance - offset);
   }
   if (least > -grazing) return {};
