@@ -117,9 +117,12 @@ void followScalp(const Actor& actor, const Haircut& haircut, std::vector<sim::Ve
 // What the hair sees in a step that has brought the figure from its previous pose to its present one.
 sim::StepInput stepInput(const sim::SimParams& params, double step, double time, Actor& actor) {
   if (params.collider == sim::ColliderKind::kSdf) {
-    if (!actor.body->has_parts) actor.body->parts = partDistances(actor.body->character);
-    actor.body->has_parts = true;
-    posePartDistances(actor.body->parts, actor.pose, actor.previous_pose, step, actor.parts);
+    LoadedBody& body = *actor.body;
+    if (!body.has_parts && !body.parts_coming.valid()) {
+      body.parts = partDistances(body.character);
+      body.has_parts = true;
+    }
+    posePartDistances(body.parts, actor.pose, actor.previous_pose, step, actor.parts);
   }
   return {actor.roots, actor.ellipsoids, time, actor.parts};
 }

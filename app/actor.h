@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <future>
 #include <memory>
 #include <string>
 #include <vector>
@@ -30,6 +31,9 @@ struct LoadedBody {
   bool has_parts = false;  // they are made when signed distances are first collided with
   std::vector<PartDistance> parts;
   std::vector<unsigned char> moving_joints;  // per joint: whether skin, ellipsoids or scalp hang on it or below it
+  // The parts while they are made beside the frames; the ellipsoids act until then. Last, so that whoever drops the
+  // body waits for the thread, which reads the character, before that goes.
+  std::future<std::vector<PartDistance>> parts_coming;
 };
 
 // A hair mesh, built once whatever the number of actors that wear it.

@@ -1,6 +1,7 @@
 #include "app/background_load.h"
 
 #include <chrono>
+#include <functional>
 #include <utility>
 
 #include "app/demo.h"
@@ -92,6 +93,32 @@ void takeLoaded(Demo& demo) {
   LoadOrder next = std::move(*demo.loading.waiting);
   demo.loading.waiting.reset();
   start(std::move(next), demo);
+}
+
+void followColliders(Demo& demo) {
+  if (!demo.loading.on || demo.scene.sim.collider != sim::ColliderKind::kSdf) return;
+  for (Actor& actor : demo.actors) {
+    LoadedBody& body = *actor.body;
+    if (body.has_parts) continue;
+    if (!body.parts_coming.valid()) {
+      body.parts_coming = std::async(std::launch::async, partDistances, std::cref(body.character));
+      demo.message = "making the signed distances of the body";
+      demo.message_is_fault = false;
+    }
+    if (body.parts_coming.wait_for(std::chrono::seconds(0)) != std::future_status::ready) continue;
+    body.has_parts = true;
+    try {
+      body.parts = body.parts_coming.get();
+      demo.message = "signed distances of the body";
+      demo.message_is_fault = false;
+    } catch (const std::exception& fault) {
+      demo.message = std::string("no signed distances, the ellipsoids stay: ") + fault.what();
+      demo.message_is_fault = true;
+    }
+    for (Actor& wearer : demo.actors) {
+      if (wearer.body == &body) wakeAll(wearer);
+    }
+  }
 }
 
 void replaceScene(Demo fresh, Demo& demo) {

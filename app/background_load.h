@@ -1,5 +1,5 @@
-// Scenes and characters loaded on a thread of their own, so that what is shown goes on meanwhile. Only the window loads
-// so; headless runs and tests load at once, between two frames.
+// Scenes, characters and the signed distances of bodies loaded on threads of their own, so that what is shown goes on
+// meanwhile. Only the window loads so; headless runs and tests load at once, between two frames.
 #pragma once
 
 #include <future>
@@ -37,6 +37,10 @@ void loadLater(LoadOrder order, Demo& demo);
 
 // Puts in place what has been loaded, if anything has; a fault becomes the demo's message and changes nothing else.
 void takeLoaded(Demo& demo);
+
+// Where signed distances are collided with: starts making those that are missing, and takes over those that are made.
+// Until then the bodies are their ellipsoids. Does nothing unless loading beside the frames is on.
+void followColliders(Demo& demo);
 
 // Opens `scene` in the demo's place; what belongs to the window rather than to the scene stays.
 void replaceScene(Demo fresh, Demo& demo);

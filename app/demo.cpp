@@ -177,7 +177,7 @@ std::string numericalNote(const FrameStats& stats) {
   return stats.carried > 0 ? "the head jumped; the hair was carried along" : "";
 }
 
-Demo openScene(Scene scene, double aspect) {
+Demo openScene(Scene scene, double aspect, bool beside) {
   Demo demo;
   demo.scene = std::move(scene);
   demo.aspect = aspect;
@@ -185,6 +185,8 @@ Demo openScene(Scene scene, double aspect) {
     demo.actors.push_back(makeActor(spec, demo.scene.playback, demo.wardrobe));
     demo.actors.back().steps = demo.actors.size();
   }
+  demo.loading.on = beside;
+  followColliders(demo);
   demo.running = demo.scene.sim;
   setBudget(1e-3 * demo.scene.playback.budget_ms, demo.governor);
   const double settle = demo.scene.playback.settle;
@@ -227,6 +229,7 @@ void advanceFrame(Demo& demo, double seconds, const FrameTarget& target) {
   demo.stats = FrameStats{};
   const bool asked = !demo.requests.empty();
   applyRequests(demo);
+  followColliders(demo);
 
   demo.running = governed(demo.scene.sim, demo.governor);
   const int steps = takeSteps(seconds, demo);

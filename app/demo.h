@@ -73,8 +73,9 @@ struct FrameTarget {
   std::function<void(Demo&)> draw_panels;        // empty: there are none
 };
 
-// Loads a scene and lets the hair come to rest. Throws InputError.
-Demo openScene(Scene scene, double aspect);
+// Loads a scene and lets the hair come to rest. With `beside`, what can follow later is loaded beside the frames from
+// now on. Throws InputError.
+Demo openScene(Scene scene, double aspect, bool beside = false);
 
 // Advances by `seconds` of wall time and draws. Faults of requests become the demo's message; what was loaded stays.
 void advanceFrame(Demo& demo, double seconds, const FrameTarget& target);

@@ -21,7 +21,8 @@ struct PartDistance {
 };
 
 // One part for every joint that carries a collision ellipsoid, from the skin that hangs on it and on the joints below
-// it that carry none. Takes a good part of a second: called when first asked for.
+// it that carry none. Takes a good part of a second: called when first asked for, by the window on a thread of its
+// own.
 std::vector<PartDistance> partDistances(const Character& character);
 
 // The parts of a pose, with velocities from `previous` over dt when dt > 0. Spans point into `parts`.

@@ -192,10 +192,10 @@ int runWindow(Scene scene, const Options& options) {
   Window window(options.width, options.height);
   const double start = now();
   Tape tape(options, scene);
-  Demo demo = openScene(std::move(scene), static_cast<double>(options.width) / options.height);
-  setDebugViews(options.debug, demo.debug);
   // Runs of so many frames and recordings show the same on every run.
-  demo.loading.on = !options.frames_given && options.record.empty() && options.replay.empty();
+  const bool beside = !options.frames_given && options.record.empty() && options.replay.empty();
+  Demo demo = openScene(std::move(scene), static_cast<double>(options.width) / options.height, beside);
+  setDebugViews(options.debug, demo.debug);
   UiState ui;
   ui.visible = !options.hide_panels;
   ui.open_tab = tabIndex(options.panel);
