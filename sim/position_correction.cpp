@@ -130,4 +130,20 @@ void correctPositions(const CorrectedStep& step, StageClock& clock, PositionCorr
   std::sort(state.contacts.begin(), state.contacts.end(), order);
 }
 
+void followPushed(const CorrectedStep& step, std::span<const Vec3> unmoved, std::span<const unsigned char> moved,
+                  PositionCorrection& scratch, HairState& state) {
+  const HairMesh& mesh = step.mesh;
+  std::copy(unmoved.begin(), unmoved.end(), scratch.uncorrected.begin());
+  std::copy(moved.begin(), moved.end(), scratch.held.begin());
+  for (int c = 0; c < mesh.columnCount(); ++c) scratch.held[mesh.shape.column_first[c]] = 1;
+  for (const Contact& contact : state.contacts) scratch.held[contact.vertex] = 1;
+  for (std::size_t i = 0; i < unmoved.size(); ++i)
+    scratch.displacement[i] = moved[i] ? Vec3(state.positions[i] - unmoved[i]) : Vec3::Zero();
+  minimizeDeformation(scratch.laplacian, scratch.held, kMinimization, scratch.minimization, scratch.displacement);
+  for (std::size_t i = 0; i < unmoved.size(); ++i) {
+    if (!scratch.held[i]) state.positions[i] += scratch.displacement[i];
+  }
+  updateVelocities(step, kFastestFollower, scratch, state);
+}
+
 }  // namespace sim

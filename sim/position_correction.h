@@ -40,4 +40,9 @@ struct CorrectedStep {
 void correctPositions(const CorrectedStep& step, StageClock& clock, PositionCorrection& scratch, HairState& state,
                       StepReport& report);
 
+// Lets all others follow the vertices that were pushed apart among the hair's own bundles, positions and velocities.
+// unmoved: m, where all were before; moved: per vertex, whether it was pushed.
+void followPushed(const CorrectedStep& step, std::span<const Vec3> unmoved, std::span<const unsigned char> moved,
+                  PositionCorrection& scratch, HairState& state);
+
 }  // namespace sim

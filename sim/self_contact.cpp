@@ -11,6 +11,10 @@ namespace {
 constexpr double kMarginShare = 0.25;  // of the mean length of the edges along the hair
 constexpr double kRestMargin = 0.002;  // m; pairs as near as this in the rest shape are no contacts
 constexpr int kPasses = 8;             // at most, over the pairs: one push may press others together
+constexpr int kOwnLayers = 1;          // a column touches no prism of its own bundles nearer than so many layers
+constexpr double kStrideShare = 0.25;  // of the mean length of the edges across; moved between looks along a path
+constexpr int kMostLooks = 32;
+constexpr int kPassesOnTheWay = 2;  // at most, between two looks
 
 struct Plane {
   Vec3 normal, middle;
@@ -29,6 +33,12 @@ struct Inside {
   Vec3 normal = Vec3::UnitY();
 };
 
+// Whether p lies beyond the mean plane of a face, or the face has none.
+bool beyond(const BoundaryPrism::Face& face, std::span<const Vec3> x, const Vec3& p) {
+  const Plane plane = planeOf(face, x);
+  return !(plane.normal.dot(plane.middle - p) >= 0);
+}
+
 // Where p lies in a prism: below all of its faces' mean planes by -margin at least. Prisms that are turned over or flat
 // have no inside.
 Inside insideOf(const BoundaryPrism& prism, std::span<const Vec3> x, const Vec3& p, double margin) {
@@ -46,6 +56,19 @@ Inside insideOf(const BoundaryPrism& prism, std::span<const Vec3> x, const Vec3&
     if (prism.faces[f].external && below < inside.depth) inside.depth = below, inside.face = f, inside.normal = normal;
   }
   return inside;
+}
+
+// The same for a pair of the list. The face that it lay beyond last time is asked first: most still do.
+Inside insideOf(SelfContact& self, SelfContact::Pair& pair, std::span<const Vec3> x) {
+  const BoundaryPrism& prism = self.prisms[pair.prism];
+  const Vec3& p = x[pair.vertex];
+  if (beyond(prism.faces[pair.apart], x, p)) return {};
+  for (int f = 0; f < prism.face_count; ++f) {
+    if (f == pair.apart || !beyond(prism.faces[f], x, p)) continue;
+    pair.apart = static_cast<signed char>(f);
+    return {};
+  }
+  return insideOf(prism, x, p, 0);
 }
 
 // Weights of a face's corners at p: barycentric in that triangle of the face that p lies over.
@@ -84,19 +107,37 @@ Frame scalpFrame(const SelfContact& self, std::span<const Vec3> x) {
   return frame;
 }
 
-bool listHolds(const SelfContact& self, std::span<const Vec3> x) {
-  if (self.listed_at.empty()) return false;
-  const Frame frame = scalpFrame(self, x);
+// What the vertices did within the step, seen from the scalp.
+struct Motion {
+  bool listed = false;  // none has left the list's margin, neither at the start nor at the end
+  double farthest = 0;  // m, from start to end
+};
+
+Motion motionOf(const SelfContact& self, std::span<const Vec3> start, std::span<const Vec3> x) {
+  const Frame before = scalpFrame(self, start), frame = scalpFrame(self, x);
   const double most = self.margin * self.margin / 4;
+  Motion motion;
+  motion.listed = !self.listed_at.empty();
+  double farthest = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
+    const Vec3 from = before.axes * (start[i] - before.origin), to = frame.axes * (x[i] - frame.origin);
+    farthest = std::max(farthest, (to - from).squaredNorm());
     // Negated, so that a position that is not finite makes a new list.
-    if (!((frame.axes * (x[i] - frame.origin) - self.listed_at[i]).squaredNorm() < most)) return false;
+    motion.listed = motion.listed && (from - self.listed_at[i]).squaredNorm() < most &&
+                    (to - self.listed_at[i]).squaredNorm() < most;
   }
-  return true;
+  motion.farthest = std::sqrt(farthest);
+  return motion;
+}
+
+// Whether a vertex and a prism of its own bundles lie so near along the hair that they always touch.
+bool alongside(int layer, const Prism& prism) {
+  return layer >= prism.layer - kOwnLayers && layer <= prism.layer + 1 + kOwnLayers;
 }
 
 // Sweep along y, in which hair hangs out longest: prisms by their lower end, vertices against those that reach them.
-void makeList(const HairMesh& mesh, std::span<const Vec3> x, SelfContact& self) {
+// Boxes are those of the ways from start to end.
+void makeList(const HairMesh& mesh, std::span<const Vec3> start, std::span<const Vec3> x, SelfContact& self) {
   ++self.rebuilds;
   self.pairs.clear();
   const Frame frame = scalpFrame(self, x);
@@ -107,8 +148,10 @@ void makeList(const HairMesh& mesh, std::span<const Vec3> x, SelfContact& self) 
   for (std::size_t k = 0; k < self.prisms.size(); ++k) {
     const Prism& prism = mesh.prisms[self.prisms[k].prism];
     Vec3 low = x[prism.v[0]], high = low;
-    for (int c = 1; c < 2 * prism.corner_count; ++c)
-      low = low.cwiseMin(x[prism.v[c]]), high = high.cwiseMax(x[prism.v[c]]);
+    for (int c = 0; c < 2 * prism.corner_count; ++c) {
+      const Vec3 &from = start[prism.v[c]], &to = x[prism.v[c]];
+      low = low.cwiseMin(from).cwiseMin(to), high = high.cwiseMax(from).cwiseMax(to);
+    }
     self.boxes[k] = {low.array() - self.margin, high.array() + self.margin, static_cast<int>(k)};
     tallest = std::max(tallest, self.boxes[k].high.y() - self.boxes[k].low.y());
   }
@@ -119,46 +162,125 @@ void makeList(const HairMesh& mesh, std::span<const Vec3> x, SelfContact& self) 
   for (const int v : mesh.external_vertices) {
     const std::size_t first = self.pairs.size();
     const unsigned char* own = self.own.data() + static_cast<std::size_t>(mesh.column_of[v]) * faces;
-    auto box = std::lower_bound(self.boxes.begin(), self.boxes.end(), x[v].y() - tallest,
+    const Vec3 low = x[v].cwiseMin(start[v]), high = x[v].cwiseMax(start[v]);
+    auto box = std::lower_bound(self.boxes.begin(), self.boxes.end(), low.y() - tallest,
                                 [](const auto& b, double y) { return b.low.y() < y; });
-    for (; box != self.boxes.end() && box->low.y() <= x[v].y(); ++box) {
-      if (!((x[v].array() >= box->low.array()).all() && (x[v].array() <= box->high.array()).all())) continue;
+    for (; box != self.boxes.end() && box->low.y() <= high.y(); ++box) {
+      if (!((high.array() >= box->low.array()).all() && (low.array() <= box->high.array()).all())) continue;
       const BoundaryPrism& prism = self.prisms[box->prism];
-      if (own[mesh.prisms[prism.prism].root_face]) continue;
+      const Prism& source = mesh.prisms[prism.prism];
+      if (own[source.root_face] && alongside(mesh.layer_of[v], source)) continue;
       if (insideOf(prism, mesh.shape.positions, mesh.shape.positions[v], kRestMargin).face >= 0) continue;
-      self.pairs.push_back({v, box->prism});
+      self.pairs.push_back({v, box->prism, 0, false});
     }
     std::sort(self.pairs.begin() + first, self.pairs.end(),
               [](const auto& a, const auto& b) { return a.prism < b.prism; });
   }
 }
 
-// Pushes vertex and face apart and takes their approach. m: kg, up to the common factor of density.
-void resolvePair(const HairMesh& mesh, const SimParams& params, double most, const BoundaryPrism::Face& face,
-                 const Inside& inside, HairState& state, int v) {
-  const std::array<double, 4> weight = cornerWeights(face, state.positions, state.positions[v]);
-  const double yield = 1 / mesh.vertex_volume[v];
-  std::array<double, 4> give{};
-  double sum = yield;
-  Vec3 relative = state.velocities[v];
-  for (int c = 0; c < face.corner_count; ++c) {
-    give[c] = mesh.isRoot(face.v[c]) ? 0 : weight[c] / mesh.vertex_volume[face.v[c]];
-    sum += weight[c] * give[c];
-    relative -= weight[c] * state.velocities[face.v[c]];
+// A vertex and a face that share a motion: how much of an impulse each takes, by their mass up to the common factor of
+// density; roots do not give way.
+struct Partners {
+  int vertex;
+  const BoundaryPrism::Face* face;
+  std::array<double, 4> weight, give{};
+  double yield, sum;
+
+  Partners(const HairMesh& mesh, const BoundaryPrism::Face& f, std::span<const Vec3> x, int v)
+      : vertex(v), face(&f), weight(cornerWeights(f, x, x[v])), yield(1 / mesh.vertex_volume[v]), sum(yield) {
+    for (int c = 0; c < f.corner_count; ++c) {
+      give[c] = mesh.isRoot(f.v[c]) ? 0 : weight[c] / mesh.vertex_volume[f.v[c]];
+      sum += weight[c] * give[c];
+    }
   }
-  const Vec3 push = std::min(inside.depth, most) / sum * inside.normal;
-  const double approach = std::max(0.0, -relative.dot(inside.normal));
-  const Vec3 slip = relative - relative.dot(inside.normal) * inside.normal;
-  const double speed = slip.norm(), loss = std::min(speed, params.friction * approach);
-  Vec3 impulse = approach * inside.normal;
-  if (speed > 0) impulse -= loss / speed * slip;
-  impulse /= sum;
-  state.positions[v] += yield * push;
-  state.velocities[v] += yield * impulse;
-  for (int c = 0; c < face.corner_count; ++c) {
-    state.positions[face.v[c]] -= give[c] * push;
-    state.velocities[face.v[c]] -= give[c] * impulse;
+
+  // Spreads a change of the difference between vertex and face.
+  void apart(const Vec3& change, std::span<Vec3> of) const {
+    of[vertex] += yield / sum * change;
+    for (int c = 0; c < face->corner_count; ++c) of[face->v[c]] -= give[c] / sum * change;
   }
+
+  // Takes the approach out of velocities or ways, and of the slip what friction takes.
+  void stop(const Vec3& normal, double friction, std::span<Vec3> of) const {
+    Vec3 relative = of[vertex];
+    for (int c = 0; c < face->corner_count; ++c) relative -= weight[c] * of[face->v[c]];
+    const double approach = std::max(0.0, -relative.dot(normal));
+    const Vec3 slip = relative - relative.dot(normal) * normal;
+    const double speed = slip.norm(), loss = std::min(speed, friction * approach);
+    Vec3 change = approach * normal;
+    if (speed > 0) change -= loss / speed * slip;
+    apart(change, of);
+  }
+};
+
+// Pushes what lies inside apart, pass by pass, since one push may press others together. `way`, where given, is what
+// the vertices have yet to go between two looks. Returns the most that were inside in one pass.
+int resolvePairs(const SelfContactStep& step, int passes, std::span<Vec3> way, SelfContact& self, HairState& state) {
+  int inside = 0;
+  const bool two_step = state.previous_positions.size() == state.positions.size();
+  // What stood inside before the step comes out gently.
+  const double gentle = step.params.max_depenetration * step.dt / (way.empty() ? 1 : self.looks);
+  for (int pass = 0; pass < passes; ++pass) {
+    int found = 0;
+    for (SelfContact::Pair& pair : self.pairs) {
+      const Inside where = insideOf(self, pair, state.positions);
+      if (where.face < 0) continue;
+      ++found;
+      const BoundaryPrism::Face& face = self.prisms[pair.prism].faces[where.face];
+      self.moved[pair.vertex] = 1;
+      for (int c = 0; c < face.corner_count; ++c) self.moved[face.v[c]] = 1;
+      const Partners partners(step.mesh, face, state.positions, pair.vertex);
+      partners.apart((pair.stood ? std::min(where.depth, gentle) : where.depth) * where.normal, state.positions);
+      partners.stop(where.normal, step.params.friction, state.velocities);
+      if (!way.empty()) partners.stop(where.normal, step.params.friction, way);
+      if (!two_step) continue;
+      // The history of what moved restarts, as if it had come here at its present velocity.
+      const auto restart = [&](int v) {
+        state.previous_positions[v] = state.positions[v] - step.dt * state.velocities[v];
+        state.previous_velocities[v] = state.velocities[v];
+      };
+      restart(pair.vertex);
+      for (int c = 0; c < face.corner_count; ++c) restart(face.v[c]);
+    }
+    inside = std::max(inside, found);
+    if (found == 0) break;
+  }
+  return inside;
+}
+
+// The first look on the way from start to end at which a pair that stood apart has met; the number of looks: none.
+int firstMeeting(std::span<const Vec3> start, std::span<const Vec3> x, SelfContact& self) {
+  for (int look = 1; look < self.looks; ++look) {
+    const double t = static_cast<double>(look) / self.looks;
+    for (std::size_t i = 0; i < x.size(); ++i) self.between[i] = start[i] + t * (x[i] - start[i]);
+    for (SelfContact::Pair& pair : self.pairs) {
+      if (!pair.stood && insideOf(self, pair, self.between).face >= 0) return look;
+    }
+  }
+  return self.looks;
+}
+
+// Plays the step's motion again from the first meeting on, in so short ways that nothing can be out on the other side
+// before it is seen; who meets goes on without the approach.
+int replay(const SelfContactStep& step, SelfContact& self, HairState& state) {
+  const std::size_t n = state.positions.size();
+  self.between.resize(n), self.way.resize(n);
+  const int meeting = firstMeeting(step.start, state.positions, self);
+  if (meeting == self.looks) return 0;
+  for (std::size_t i = 0; i < n; ++i) self.way[i] = (state.positions[i] - step.start[i]) / self.looks;
+  std::copy(self.between.begin(), self.between.end(), state.positions.begin());
+  int inside = 0;
+  for (int look = meeting;; ++look) {
+    inside = std::max(inside, resolvePairs(step, kPassesOnTheWay, self.way, self, state));
+    if (look == self.looks) break;
+    for (std::size_t i = 0; i < n; ++i) state.positions[i] += self.way[i];
+  }
+  // The roots are where the scalp has them, to the last bit.
+  for (int c = 0; c < step.mesh.columnCount(); ++c) {
+    const int root = step.mesh.shape.column_first[c];
+    state.positions[root] = self.unmoved[root];
+  }
+  return inside;
 }
 
 }  // namespace
@@ -217,37 +339,25 @@ SelfContact::SelfContact(const HairMesh& mesh) {
   double length = 0;
   for (const Edge& edge : mesh.vertical_edges) length += edge.rest_length;
   margin = kMarginShare * length / static_cast<double>(mesh.vertical_edges.size());
+  double across = 0;
+  for (const Edge& edge : mesh.horizontal_edges) across += edge.rest_length;
+  stride = kStrideShare * across / static_cast<double>(mesh.horizontal_edges.size());
   pairs.reserve(16 * mesh.external_vertices.size());
   boxes.reserve(prisms.size());
   listed_at.reserve(mesh.vertexCount());
 }
 
-int resolveSelfContacts(const HairMesh& mesh, const SimParams& params, double dt, SelfContact& self, HairState& state) {
-  if (!listHolds(self, state.positions)) makeList(mesh, state.positions, self);
-  int inside = 0;
-  const bool two_step = state.previous_positions.size() == state.positions.size();
-  for (int pass = 0; pass < kPasses; ++pass) {
-    int found = 0;
-    for (const SelfContact::Pair& pair : self.pairs) {
-      const BoundaryPrism& prism = self.prisms[pair.prism];
-      const Inside where = insideOf(prism, state.positions, state.positions[pair.vertex], 0);
-      if (where.face < 0) continue;
-      ++found;
-      const BoundaryPrism::Face& face = prism.faces[where.face];
-      resolvePair(mesh, params, params.max_depenetration * dt, face, where, state, pair.vertex);
-      if (!two_step) continue;
-      // The history of what moved restarts, as if it had come here at its present velocity.
-      const auto restart = [&](int v) {
-        state.previous_positions[v] = state.positions[v] - dt * state.velocities[v];
-        state.previous_velocities[v] = state.velocities[v];
-      };
-      restart(pair.vertex);
-      for (int c = 0; c < face.corner_count; ++c) restart(face.v[c]);
-    }
-    inside = std::max(inside, found);
-    if (found == 0) break;
-  }
-  return inside;
+int resolveSelfContacts(const SelfContactStep& step, SelfContact& self, HairState& state) {
+  const std::span<const Vec3> start = step.start.empty() ? std::span<const Vec3>(state.positions) : step.start;
+  const Motion motion = motionOf(self, start, state.positions);
+  if (!motion.listed) makeList(step.mesh, start, state.positions, self);
+  if (self.pairs.empty()) return 0;
+  self.unmoved = state.positions;
+  self.moved.assign(state.positions.size(), 0);
+  for (SelfContact::Pair& pair : self.pairs) pair.stood = insideOf(self, pair, start).face >= 0;
+  self.looks = static_cast<int>(std::min<double>(kMostLooks, std::ceil(2 * motion.farthest / self.stride)));
+  const int met = self.looks > 1 ? replay(step, self, state) : 0;
+  return std::max(met, resolvePairs(step, kPasses, {}, self, state));
 }
 
 }  // namespace sim

@@ -208,6 +208,16 @@ StepInput carryOverJump(const SimParams& params, const StepInput& input, double 
   return {input.roots, parts.standing, input.time, parts.standing_parts};
 }
 
+// Bundles that met are pushed apart, the rest of the hair follows, and who is in a foreign bundle then is pushed again.
+void partBundles(const CorrectedStep& step, Parts& parts, HairState& state, StepReport& report) {
+  if (!parts.self_contact) parts.self_contact.emplace(step.mesh);
+  SelfContact& self = *parts.self_contact;
+  report.self_contacts = resolveSelfContacts({step.mesh, step.params, step.start, step.dt}, self, state);
+  if (report.self_contacts == 0 || !step.params.minimize_deformation) return;
+  followPushed(step, self.unmoved, self.moved, parts.correction, state);
+  resolveSelfContacts({step.mesh, step.params, {}, step.dt}, self, state);
+}
+
 }  // namespace
 
 StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInput& given, double dt,
@@ -237,8 +247,7 @@ StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInpu
   parts.clock.spent(kStageOther, report);
 
   if (params.self_collide) {
-    if (!parts.self_contact) parts.self_contact.emplace(mesh);
-    report.self_contacts = resolveSelfContacts(mesh, params, dt, *parts.self_contact, state);
+    partBundles({mesh, params, colliders, parts.start_positions, dt}, parts, state, report);
     parts.clock.spent(kStageCollision, report);
   }
   if (params.collide) {

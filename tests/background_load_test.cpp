@@ -82,40 +82,41 @@ TEST(BackgroundLoad, ASceneTakesThePlaceOfTheOther) {
 }
 
 TEST(BackgroundLoad, TheEllipsoidsActUntilTheSignedDistancesAreThere) {
-  Demo demo = walking();
-  frames(2, demo);
-  demo.requests.push_back({Ask::kSetParam, "collider", "sdf"});
-  frames(1, demo);
-  const app::LoadedBody& body = *demo.actors[0].body;
-  EXPECT_EQ(demo.stats.steps, 1) << "the simulation goes on";
-  EXPECT_TRUE(demo.actors[0].parts.empty()) << "so far no part is collided with";
+  app::Scene scene = app::loadScene(app::dataPath("assets/scenes/walk.json"));
+  scene.characters.resize(1);
+  scene.characters[0].style = sim::Style::kShort;
+  scene.characters[0].resolution = sim::Resolution::kLow;
+  scene.sim.collider = sim::ColliderKind::kSdf;
+  Demo demo = app::openScene(std::move(scene), 1, true);
+  app::LoadedBody& body = *demo.actors[0].body;
+  EXPECT_FALSE(body.has_parts) << "the window does not wait for them";
+  EXPECT_TRUE(demo.actors[0].parts.empty());
   ASSERT_TRUE(body.parts_coming.valid());
-  EXPECT_FALSE(body.has_parts);
   body.parts_coming.wait();
-  frames(1, demo);
-  EXPECT_TRUE(body.has_parts);
-  EXPECT_FALSE(body.parts_coming.valid());
-  EXPECT_GT(demo.actors[0].parts.size(), 5u);
   int recoveries = 0;
   for (int f = 0; f < 30; ++f) {
     frames(1, demo);
+    EXPECT_EQ(demo.stats.steps, 1) << "the simulation goes on";
     recoveries += demo.stats.recoveries;
   }
+  EXPECT_TRUE(body.has_parts);
+  EXPECT_FALSE(body.parts_coming.valid());
+  EXPECT_GT(demo.actors[0].parts.size(), 5u);
   EXPECT_EQ(recoveries, 0);
   EXPECT_FALSE(demo.message_is_fault);
-}
 
-TEST(BackgroundLoad, AWindowOpensBeforeTheSignedDistancesAreThereAndAHeadlessRunAfterwards) {
-  for (const bool beside : {false, true}) {
-    app::Scene scene = app::loadScene(app::dataPath("assets/scenes/walk.json"));
-    scene.characters.resize(1);
-    scene.characters[0].style = sim::Style::kShort;
-    scene.characters[0].resolution = sim::Resolution::kLow;
-    scene.sim.collider = sim::ColliderKind::kSdf;
-    Demo demo = app::openScene(std::move(scene), 1, beside);
-    EXPECT_EQ(demo.actors[0].body->has_parts, !beside);
+  // Asked for by a slider, and by a headless run, which waits so that its frames repeat.
+  for (const bool beside : {true, false}) {
+    body.has_parts = false;
+    body.parts.clear();
+    demo.loading.on = beside;
+    frames(1, demo);
+    EXPECT_EQ(body.parts_coming.valid(), beside);
     EXPECT_EQ(demo.actors[0].parts.empty(), beside);
-    // Dropped while the thread still works: nothing is left behind (AddressSanitizer watches this).
+    if (!beside) continue;
+    body.parts_coming.wait();
+    frames(1, demo);
+    EXPECT_TRUE(body.has_parts);
   }
 }
 

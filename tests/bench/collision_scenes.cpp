@@ -26,31 +26,39 @@ app::Actor makeDancer(const std::string& clip, sim::Style style, sim::Resolution
   return actor;
 }
 
-// A figure that stands, with a body more.
+// A figure that stands, with a body more; its hair begins as the figure's.
 struct Scene {
-  app::Actor actor;
+  const app::Actor& actor;
+  sim::HairState hair;
+  sim::StepContext context;
   std::vector<Ellipsoid> bodies;
   const sim::HairMesh& mesh() const { return actor.haircut->mesh; }
   Ellipsoid& guest() { return bodies.back(); }
 
-  Scene(app::Actor a, const Ellipsoid& guest) : actor(std::move(a)), bodies(actor.ellipsoids) {
+  Scene(const app::Actor& a, const Ellipsoid& guest)
+      : actor(a), hair(a.hair), context(a.haircut->mesh), bodies(a.ellipsoids) {
     for (Ellipsoid& e : bodies) e.velocity = e.angular_velocity = Vec3::Zero();
     bodies.push_back(guest);
   }
   sim::StepReport step(const sim::SimParams& params) {
-    return sim::advance(mesh(), params, {actor.roots, bodies, 0}, params.time_step, *actor.context, actor.hair);
+    return sim::advance(mesh(), params, {actor.roots, bodies, 0}, params.time_step, context, hair);
   }
   double deepest() const {
     double depth = 0;
     for (const int v : mesh().external_vertices)
-      depth = std::max(depth, -sim::closestPoint(bodies.back(), actor.hair.positions[v]).distance);
+      depth = std::max(depth, -sim::closestPoint(bodies.back(), hair.positions[v]).distance);
     return depth;
   }
   double kineticEnergy(const sim::SimParams& params) const {
     double energy = 0;
     for (int v = 0; v < mesh().vertexCount(); ++v)
-      energy += 0.5 * params.density * mesh().vertex_volume[v] * actor.hair.velocities[v].squaredNorm();
+      energy += 0.5 * params.density * mesh().vertex_volume[v] * hair.velocities[v].squaredNorm();
     return energy;
+  }
+  // Whether the figure itself leaves p no room.
+  bool hemmedIn(const Vec3& p, double offset) const {
+    return std::any_of(bodies.begin(), bodies.end() - 1,
+                       [&](const Ellipsoid& e) { return sim::closestPoint(e, p).distance < offset; });
   }
 };
 
@@ -67,10 +75,56 @@ struct HangingHair {
   }
 };
 
+// What became of the vertices that a flat arm met on its way through the hair within one step.
+struct Crossing {
+  int met = 0;     // on its flat side, where the figure left them room on the side that they came from
+  int slid = 0;    // of those: over the arm's rim to the other side
+  int passed = 0;  // of those: to the other side otherwise
+  double inside = 0;
+  int recoveries = 0;
+};
+
+Crossing cross(const app::Actor& still, double side, double speed, double spin) {
+  const Vec3 radii(0.012, 0.09, 0.09);
+  constexpr double kFlat = 0.7, kRim = 0.9;  // of the radii
+  const sim::SimParams params;
+  const HangingHair hair(still);
+  Ellipsoid arm;
+  arm.center = 0.5 * (hair.low + hair.high);
+  arm.center.x() = side < 0 ? hair.low.x() - 0.03 : hair.high.x() + 0.03;
+  arm.center.z() = hair.low.z();
+  arm.radii = radii;
+  Scene scene(still, arm);
+  const auto before = scene.hair.positions;
+  Ellipsoid& guest = scene.guest();
+  guest.velocity = Vec3(-side * speed, 0, 0);
+  guest.angular_velocity = Vec3(0, spin, 0);
+  guest.center += params.time_step * guest.velocity;
+  guest.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(spin * params.time_step, Vec3::UnitY()));
+  Crossing result;
+  result.recoveries = scene.step(params).recoveries;
+  result.inside = scene.deepest();
+  const auto local = [](const Ellipsoid& e, const Vec3& p) { return Vec3(e.rotation.conjugate() * (p - e.center)); };
+  const auto share = [&](const Vec3& p) { return p.cwiseQuotient(radii).tail<2>().norm(); };
+  for (const int v : scene.mesh().external_vertices) {
+    const Vec3 a = local(arm, before[v]), untouched = local(guest, before[v]);
+    if (a.x() * untouched.x() > 0) continue;
+    Vec3 at = a + a.x() / (a.x() - untouched.x()) * (untouched - a);  // where it came to the arm's middle plane
+    if (share(at) > kFlat) continue;
+    at.x() = std::copysign(radii.x() + params.contact_offset, a.x());
+    if (scene.hemmedIn(guest.center + guest.rotation * at, params.contact_offset)) continue;
+    ++result.met;
+    const Vec3 now = local(guest, scene.hair.positions[v]);
+    if (a.x() * now.x() >= 0) continue;
+    ++(share(now) > kRim ? result.slid : result.passed);
+  }
+  return result;
+}
+
 int insideForeign(const sim::HairMesh& mesh, const sim::SimParams& params, const sim::HairState& state) {
   sim::SelfContact self(mesh);
   sim::HairState copy = state;
-  return sim::resolveSelfContacts(mesh, params, params.time_step, self, copy);
+  return sim::resolveSelfContacts({mesh, params, {}, params.time_step}, self, copy);
 }
 
 }  // namespace
@@ -82,22 +136,22 @@ void writeSpawns(std::FILE* out) {
       "most, mJ | two seconds later, mJ | recoveries |\n|---|---|---|---|---|---|---|---|\n");
   app::Wardrobe wardrobe;
   for (const sim::Style style : {sim::Style::kShoulder, sim::Style::kLong}) {
+    const app::Actor actor = makeDancer("idle_turns.bvh", style, sim::Resolution::kMedium, wardrobe);
     for (const double speed : {0.2, 0.5, 1.0, 2.0}) {
       sim::SimParams params;
       params.max_depenetration = speed;
-      app::Actor actor = makeDancer("idle_turns.bvh", style, sim::Resolution::kMedium, wardrobe);
       Ellipsoid ball;
       const HangingHair hair(actor);
       ball.center = 0.5 * (hair.low + hair.high);
       ball.center.z() = hair.low.z() + 0.02;
       ball.radii = Vec3::Constant(0.05);
-      Scene scene(std::move(actor), ball);
+      Scene scene(actor, ball);
       const double at_first = scene.deepest();
       double fastest = 0, most = 0;
       int steps = 0, recoveries = 0;
       const auto step = [&] {
         recoveries += scene.step(params).recoveries;
-        for (const Vec3& v : scene.actor.hair.velocities) fastest = std::max(fastest, v.norm());
+        for (const Vec3& v : scene.hair.velocities) fastest = std::max(fastest, v.norm());
         most = std::max(most, scene.kineticEnergy(params));
       };
       for (; steps < 600 && (steps == 0 || scene.deepest() > 1e-4); ++steps) step();
@@ -110,47 +164,21 @@ void writeSpawns(std::FILE* out) {
 }
 
 void writeCrossings(std::FILE* out) {
-  std::fprintf(out,
-               "| style | direction | speed, m/s | turning, rad/s | way a step, mm | vertices met | passed through | "
-               "inside afterwards, mm | recoveries |\n|---|---|---|---|---|---|---|---|---|\n");
+  std::fprintf(
+      out,
+      "| style | direction | speed, m/s | turning, rad/s | way a step, mm | vertices met | slid over the rim | "
+      "passed through | inside afterwards, mm | recoveries |\n|---|---|---|---|---|---|---|---|---|---|\n");
   app::Wardrobe wardrobe;
-  const Vec3 thin(0.012, 0.06, 0.12);
   for (const sim::Style style : {sim::Style::kShoulder, sim::Style::kLong}) {
+    const app::Actor actor = makeDancer("idle_turns.bvh", style, sim::Resolution::kMedium, wardrobe);
     for (const double side : {-1.0, 1.0}) {  // from the right, from the left
-      for (const double speed : {4.0, 8.0, 16.0, 32.0}) {
+      for (const double speed : {5.0, 10.0, 20.0, 40.0}) {
         for (const double spin : {0.0, 10.0}) {
-          const sim::SimParams params;
-          app::Actor actor = makeDancer("idle_turns.bvh", style, sim::Resolution::kMedium, wardrobe);
-          Ellipsoid arm;
-          const double way = speed * params.time_step;
-          const HangingHair hair(actor);
-          arm.center = 0.5 * (hair.low + hair.high);
-          arm.center.x() = side < 0 ? hair.low.x() - 0.03 : hair.high.x() + 0.03;
-          arm.center.z() = hair.low.z() + 0.03;
-          arm.radii = thin;
-          Scene scene(std::move(actor), arm);
-          const auto before = scene.actor.hair.positions;
-          const Ellipsoid start = scene.guest();
-          Ellipsoid& guest = scene.guest();
-          guest.velocity = Vec3(-side * speed, 0, 0);
-          guest.angular_velocity = Vec3(0, spin, 0);
-          guest.center += params.time_step * guest.velocity;
-          guest.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(spin * params.time_step, Vec3::UnitY()));
-          const int recoveries = scene.step(params).recoveries;
-          int met = 0, passed = 0;
-          const auto local = [](const Ellipsoid& e, const Vec3& p) {
-            return Vec3(e.rotation.conjugate() * (p - e.center));
-          };
-          for (const int v : scene.mesh().external_vertices) {
-            const Vec3 a = local(start, before[v]), untouched = local(guest, before[v]);
-            if (a.x() * untouched.x() > 0 || (0.5 * (a + untouched)).cwiseQuotient(thin).tail<2>().norm() > 0.8)
-              continue;
-            ++met;
-            passed += a.x() * local(guest, scene.actor.hair.positions[v]).x() < 0;
-          }
-          std::fprintf(out, "| %s medium | %s | %.0f | %.0f | %.0f | %d | %d | %.3f | %d |\n",
+          const Crossing crossing = cross(actor, side, speed, spin);
+          std::fprintf(out, "| %s medium | %s | %.0f | %.0f | %.0f | %d | %d | %d | %.3f | %d |\n",
                        std::string(sim::styleName(style)).c_str(), side < 0 ? "from the right" : "from the left", speed,
-                       spin, 1e3 * way, met, passed, 1e3 * scene.deepest(), recoveries);
+                       spin, 1e3 * speed * sim::SimParams{}.time_step, crossing.met, crossing.slid, crossing.passed,
+                       1e3 * crossing.inside, crossing.recoveries);
         }
       }
     }
