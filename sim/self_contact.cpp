@@ -8,11 +8,12 @@
 namespace sim {
 namespace {
 
-constexpr double kMarginShare = 0.25;  // of the mean length of the edges along the hair
-constexpr double kRestMargin = 0.002;  // m; pairs as near as this in the rest shape are no contacts
-constexpr int kPasses = 8;             // at most, over the pairs: one push may press others together
-constexpr int kOwnLayers = 1;          // a column touches no prism of its own bundles nearer than so many layers
-constexpr double kStrideShare = 0.25;  // of the mean length of the edges across; moved between looks along a path
+constexpr double kMarginShare = 0.25;   // of the mean length of the edges along the hair
+constexpr double kRestMargin = 0.002;   // m; pairs as near as this in the rest shape are no contacts
+constexpr int kPasses = 8;              // at most, over the pairs: one push may press others together
+constexpr int kOwnLayers = 1;           // a column touches no prism of its own bundles nearer than so many layers
+constexpr double kStrideShare = 0.125;  // of the mean length of the edges across; moved between looks along a path
+constexpr signed char kLeftAlone = -1;  // of a pair that overlaps in the rest shape
 constexpr int kMostLooks = 32;
 constexpr int kPassesOnTheWay = 2;  // at most, between two looks
 
@@ -59,7 +60,8 @@ Inside insideOf(const BoundaryPrism& prism, std::span<const Vec3> x, const Vec3&
 }
 
 // The same for a pair of the list. The face that it lay beyond last time is asked first: most still do.
-Inside insideOf(SelfContact& self, SelfContact::Pair& pair, std::span<const Vec3> x) {
+Inside insideOf(const HairMesh& mesh, SelfContact& self, SelfContact::Pair& pair, std::span<const Vec3> x) {
+  if (pair.apart == kLeftAlone) return {};
   const BoundaryPrism& prism = self.prisms[pair.prism];
   const Vec3& p = x[pair.vertex];
   if (beyond(prism.faces[pair.apart], x, p)) return {};
@@ -68,7 +70,12 @@ Inside insideOf(SelfContact& self, SelfContact::Pair& pair, std::span<const Vec3
     pair.apart = static_cast<signed char>(f);
     return {};
   }
-  return insideOf(prism, x, p, 0);
+  const Inside inside = insideOf(prism, x, p, 0);
+  if (inside.face < 0) return {};
+  const std::vector<Vec3>& rest = mesh.shape.positions;
+  if (insideOf(prism, rest, rest[pair.vertex], kRestMargin).face < 0) return inside;
+  pair.apart = kLeftAlone;
+  return {};
 }
 
 // Weights of a face's corners at p: barycentric in that triangle of the face that p lies over.
@@ -107,27 +114,31 @@ Frame scalpFrame(const SelfContact& self, std::span<const Vec3> x) {
   return frame;
 }
 
-// What the vertices did within the step, seen from the scalp.
-struct Motion {
-  bool listed = false;  // none has left the list's margin, neither at the start nor at the end
-  double farthest = 0;  // m, from start to end
-};
-
-Motion motionOf(const SelfContact& self, std::span<const Vec3> start, std::span<const Vec3> x) {
-  const Frame before = scalpFrame(self, start), frame = scalpFrame(self, x);
+// Whether none has left the list's margin, neither at the step's start nor at its end.
+bool listHolds(const SelfContact& self, std::span<const Vec3> start, std::span<const Vec3> x) {
+  if (self.listed_at.empty()) return false;
   const double most = self.margin * self.margin / 4;
-  Motion motion;
-  motion.listed = !self.listed_at.empty();
-  double farthest = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const Vec3 from = before.axes * (start[i] - before.origin), to = frame.axes * (x[i] - frame.origin);
-    farthest = std::max(farthest, (to - from).squaredNorm());
-    // Negated, so that a position that is not finite makes a new list.
-    motion.listed = motion.listed && (from - self.listed_at[i]).squaredNorm() < most &&
-                    (to - self.listed_at[i]).squaredNorm() < most;
+  for (const std::span<const Vec3> at : {start, x}) {
+    const Frame frame = scalpFrame(self, at);
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      // Negated, so that a position that is not finite makes a new list.
+      if (!((frame.axes * (at[i] - frame.origin) - self.listed_at[i]).squaredNorm() < most)) return false;
+    }
+    if (start.data() == x.data()) break;
   }
-  motion.farthest = std::sqrt(farthest);
-  return motion;
+  return true;
+}
+
+// m, the farthest that a vertex came against a prism within the step, by one of the prism's corners.
+double farthestNearing(const HairMesh& mesh, const SelfContact& self, std::span<const Vec3> start,
+                       std::span<const Vec3> x) {
+  double most = 0;
+  for (const SelfContact::Pair& pair : self.pairs) {
+    const int corner = mesh.prisms[self.prisms[pair.prism].prism].v[0];
+    const Vec3 nearing = x[pair.vertex] - start[pair.vertex] - (x[corner] - start[corner]);
+    most = std::max(most, nearing.squaredNorm());
+  }
+  return std::sqrt(most);
 }
 
 // Whether a vertex and a prism of its own bundles lie so near along the hair that they always touch.
@@ -170,7 +181,6 @@ void makeList(const HairMesh& mesh, std::span<const Vec3> start, std::span<const
       const BoundaryPrism& prism = self.prisms[box->prism];
       const Prism& source = mesh.prisms[prism.prism];
       if (own[source.root_face] && alongside(mesh.layer_of[v], source)) continue;
-      if (insideOf(prism, mesh.shape.positions, mesh.shape.positions[v], kRestMargin).face >= 0) continue;
       self.pairs.push_back({v, box->prism, 0, false});
     }
     std::sort(self.pairs.begin() + first, self.pairs.end(),
@@ -223,7 +233,7 @@ int resolvePairs(const SelfContactStep& step, int passes, std::span<Vec3> way, S
   for (int pass = 0; pass < passes; ++pass) {
     int found = 0;
     for (SelfContact::Pair& pair : self.pairs) {
-      const Inside where = insideOf(self, pair, state.positions);
+      const Inside where = insideOf(step.mesh, self, pair, state.positions);
       if (where.face < 0) continue;
       ++found;
       const BoundaryPrism::Face& face = self.prisms[pair.prism].faces[where.face];
@@ -248,25 +258,37 @@ int resolvePairs(const SelfContactStep& step, int passes, std::span<Vec3> way, S
   return inside;
 }
 
-// The first look on the way from start to end at which a pair that stood apart has met; the number of looks: none.
-int firstMeeting(std::span<const Vec3> start, std::span<const Vec3> x, SelfContact& self) {
+// The first look on the way from start to end, the end included, at which a pair has met that stood apart, or that
+// still stands one inside the other; negative: none.
+int firstMeeting(const HairMesh& mesh, std::span<const Vec3> start, std::span<const Vec3> x, SelfContact& self) {
+  self.between.resize(x.size());
+  bool known = false;  // which pairs stood inside
+  const auto findStanding = [&] {
+    for (SelfContact::Pair& pair : self.pairs) pair.stood = insideOf(mesh, self, pair, start).face >= 0;
+    known = true;
+  };
   for (int look = 1; look < self.looks; ++look) {
     const double t = static_cast<double>(look) / self.looks;
     for (std::size_t i = 0; i < x.size(); ++i) self.between[i] = start[i] + t * (x[i] - start[i]);
     for (SelfContact::Pair& pair : self.pairs) {
-      if (!pair.stood && insideOf(self, pair, self.between).face >= 0) return look;
+      if (insideOf(mesh, self, pair, self.between).face < 0) continue;
+      if (!known) findStanding();
+      if (!pair.stood) return look;
     }
   }
-  return self.looks;
+  for (SelfContact::Pair& pair : self.pairs) {
+    if (insideOf(mesh, self, pair, x).face < 0) continue;
+    if (!known) findStanding();
+    return std::max(self.looks, 1);
+  }
+  return -1;
 }
 
 // Plays the step's motion again from the first meeting on, in so short ways that nothing can be out on the other side
-// before it is seen; who meets goes on without the approach.
-int replay(const SelfContactStep& step, SelfContact& self, HairState& state) {
+// before it is seen; who meets goes on without the approach. `between` holds the positions of the first meeting.
+int replay(const SelfContactStep& step, int meeting, SelfContact& self, HairState& state) {
   const std::size_t n = state.positions.size();
-  self.between.resize(n), self.way.resize(n);
-  const int meeting = firstMeeting(step.start, state.positions, self);
-  if (meeting == self.looks) return 0;
+  self.way.resize(n);
   for (std::size_t i = 0; i < n; ++i) self.way[i] = (state.positions[i] - step.start[i]) / self.looks;
   std::copy(self.between.begin(), self.between.end(), state.positions.begin());
   int inside = 0;
@@ -349,14 +371,14 @@ SelfContact::SelfContact(const HairMesh& mesh) {
 
 int resolveSelfContacts(const SelfContactStep& step, SelfContact& self, HairState& state) {
   const std::span<const Vec3> start = step.start.empty() ? std::span<const Vec3>(state.positions) : step.start;
-  const Motion motion = motionOf(self, start, state.positions);
-  if (!motion.listed) makeList(step.mesh, start, state.positions, self);
-  if (self.pairs.empty()) return 0;
+  if (!listHolds(self, start, state.positions)) makeList(step.mesh, start, state.positions, self);
+  const double nearing = farthestNearing(step.mesh, self, start, state.positions);
+  self.looks = static_cast<int>(std::min<double>(kMostLooks, std::ceil(nearing / self.stride)));
+  const int meeting = firstMeeting(step.mesh, start, state.positions, self);
+  if (meeting < 0) return 0;
   self.unmoved = state.positions;
   self.moved.assign(state.positions.size(), 0);
-  for (SelfContact::Pair& pair : self.pairs) pair.stood = insideOf(self, pair, start).face >= 0;
-  self.looks = static_cast<int>(std::min<double>(kMostLooks, std::ceil(2 * motion.farthest / self.stride)));
-  const int met = self.looks > 1 ? replay(step, self, state) : 0;
+  const int met = meeting < self.looks ? replay(step, meeting, self, state) : 0;
   return std::max(met, resolvePairs(step, kPasses, {}, self, state));
 }
 

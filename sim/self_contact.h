@@ -39,7 +39,7 @@ struct SelfContact {
   // The list and what it was made for.
   struct Pair {
     int vertex, prism;  // prism: of `prisms`
-    signed char apart;  // a face of the prism that the vertex lay beyond
+    signed char apart;  // a face of the prism that the vertex lay beyond; negative: none, they overlap at rest
     bool stood;         // it lay inside before the step
   };
   std::vector<Pair> pairs;
