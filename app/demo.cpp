@@ -168,6 +168,7 @@ void addStep(const sim::StepReport& report, double step_seconds, FrameStats& sta
   stats.recoveries += report.recoveries;
   if (report.recoveries > 0) stats.trouble = report.trouble;
   stats.carried += report.carried;
+  stats.combed += report.combed;
   stats.max_penetration = std::max(stats.max_penetration, report.max_penetration);
 }
 

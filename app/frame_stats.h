@@ -44,6 +44,7 @@ struct FrameStats {
   int rung = -1;               // of the budget governor; -1: it is off
   double counted_cost = 0;     // s; this and the next only where it is on
   double step_error = 0;       // sum over steps and characters, see step_error.h
+  int combed = 0;              // columns that stayed turned over and are being led back to rest
   int carried = 0;             // times that roots jumped and the hair was carried along
   sim::Trouble trouble;        // of the last recovery
   render::FrameReport draw;

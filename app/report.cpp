@@ -74,6 +74,7 @@ json frameJson(const FrameStats& stats, std::size_t index, double fps) {
           {"rung", stats.rung},
           {"trouble", sim::troubleText(stats.trouble)},
           {"carried", stats.carried},
+          {"combed", stats.combed},
           {"strands_drawn", stats.draw.strands_drawn},
           {"draw_calls", stats.draw.draw_calls},
           {"bytes_uploaded", stats.draw.bytes_uploaded},

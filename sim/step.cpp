@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "sim/comb_out.h"
 #include "sim/energy_guard.h"
 #include "sim/forces/material.h"
 #include "sim/implicit_solve.h"
@@ -48,11 +49,12 @@ struct StepContext::Parts {
   std::vector<DistancePart> standing_parts;
   GoodState good;  // the last step's end
   EnergyGuard energy_guard;
+  Tangles tangles;
   PositionCorrection correction;
   std::optional<SelfContact> self_contact;  // made when first asked for
 
   Parts(const HairMesh& m, double (*c)())
-      : mesh(&m), clock{c}, pattern(systemPattern(m)), material(m, pattern), correction(m) {
+      : mesh(&m), clock{c}, pattern(systemPattern(m)), material(m, pattern), tangles(m), correction(m) {
     for (auto* array : {&x_hat, &v_hat, &start_positions, &start_velocities}) array->resize(m.vertexCount());
   }
 };
@@ -242,7 +244,11 @@ StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInpu
   // No step makes energy out of nothing; but the paper's setting has no such bound.
   const bool bounded = params.solver != Solver::kPaper;
   const TakenStep taken = takenStep(params, base, dt, parts);
-  if (bounded) limitEnergy(taken, parts.energy_guard, state);
+  if (bounded) {
+    limitEnergy(taken, parts.energy_guard, state);
+    // Loose particles have no shape to be led back to.
+    if (params.volume > 0) report.combed = combOut({mesh, parts.start_positions, dt}, parts.tangles, state);
+  }
   guardMade(parts, input, state, report);
   parts.clock.spent(kStageOther, report);
 

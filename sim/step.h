@@ -37,6 +37,7 @@ struct StepReport {
   int standing = 0;             // vertices, counted a round, that lay inside a body before the step already
   double standing_overlap = 0;  // m, deepest below the offset that is left because it stood before the step
   int self_contacts = 0;        // vertices pushed out of foreign bundles
+  int combed = 0;               // columns that stayed turned over and are led back to rest (comb_out.h)
   int recoveries = 0;           // watchdog restored the last good state
   Trouble trouble;              // what it found, for the log
   bool carried = false;         // the roots had jumped as no motion could: the hair was carried along with them

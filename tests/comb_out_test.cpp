@@ -1,0 +1,162 @@
+// Combing out: hair that stays turned over is led home, gently, and nothing else is touched.
+#include "sim/comb_out.h"
+
+#include <gtest/gtest.h>
+
+#include "sim/hair_styles.h"
+#include "tests/analytic_head.h"
+#include "tests/test_meshes.h"
+
+namespace {
+
+using sim::Vec3;
+using test::Hair;
+
+constexpr double kFrame = 1.0 / 60;
+
+test::PatchOptions patch() {
+  test::PatchOptions o;
+  o.nx = 4, o.nz = 3, o.layers = 5, o.length = 0.25, o.mixed = true;
+  return o;
+}
+
+// Every vertex of a column's upper half mirrored through its middle: its prisms are turned over.
+void turnOver(int column, const sim::HairMesh& mesh, sim::HairState& state) {
+  const int first = mesh.shape.column_first[column], end = mesh.shape.column_first[column + 1];
+  const int middle = (first + end) / 2;
+  for (int i = middle + 1; i < end; ++i)
+    state.positions[i] = 2 * mesh.shape.positions[middle] - mesh.shape.positions[i];
+}
+
+bool concerned(const sim::HairMesh& mesh, int column, int other) {
+  for (const sim::CornerTet& tet : mesh.tets) {
+    bool one = false, two = false;
+    for (const int v : tet.v) one |= mesh.column_of[v] == column, two |= mesh.column_of[v] == other;
+    if (one && two) return true;
+  }
+  return false;
+}
+
+struct Frozen {
+  sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(patch()));
+  sim::HairState state = sim::restState(mesh, Eigen::Isometry3d::Identity());
+  sim::Tangles tangles{mesh};
+
+  // Steps in which nothing but combing moves the hair; returns the most columns combed at once.
+  int pass(double seconds, double dt = kFrame) {
+    int most = 0;
+    for (double t = 0; t < seconds; t += dt) {
+      const std::vector<Vec3> start = state.positions;
+      most = std::max(most, sim::combOut({mesh, start, dt}, tangles, state));
+    }
+    return most;
+  }
+};
+
+TEST(CombOut, WhatStaysTurnedOverIsLedHomeAndTheRestKeepsEveryBit) {
+  Frozen hair;
+  const int column = 5;
+  for (Vec3& x : hair.state.positions) x += Vec3(1e-4, 0, 0);  // so that what is moved can be told
+  for (int c = 0; c < hair.mesh.columnCount(); ++c) {
+    hair.state.positions[hair.mesh.shape.column_first[c]] = hair.mesh.shape.positions[hair.mesh.shape.column_first[c]];
+  }
+  turnOver(column, hair.mesh, hair.state);
+  const std::vector<Vec3> before = hair.state.positions;
+  EXPECT_EQ(hair.pass(0.7 * sim::kTurnedFor), 0) << "combed before it has been turned over for long enough";
+  EXPECT_GT(hair.pass(2), 0);
+  for (int i = 0; i < hair.mesh.vertexCount(); ++i) {
+    if (hair.mesh.column_of[i] == column) {
+      EXPECT_LT((hair.state.positions[i] - hair.mesh.shape.positions[i]).norm(), 1e-9) << "vertex " << i;
+    } else if (!concerned(hair.mesh, column, hair.mesh.column_of[i])) {
+      EXPECT_EQ(hair.state.positions[i], before[i]) << "vertex " << i << " has nothing to do with it";
+    }
+  }
+}
+
+TEST(CombOut, NoVertexIsThrownAtAnyTimeStep) {
+  for (const double dt : {1.0 / 240, 1.0 / 60, 0.1, 0.5}) {
+    Frozen hair;
+    turnOver(5, hair.mesh, hair.state);
+    const double way = test::largestDistance(hair.state.positions, hair.mesh.shape.positions);
+    double fastest = 0;
+    for (double t = 0; t < 4; t += dt) {
+      hair.pass(0.5 * dt, dt);
+      for (const Vec3& v : hair.state.velocities) fastest = std::max(fastest, v.norm());
+    }
+    EXPECT_LT(test::largestDistance(hair.state.positions, hair.mesh.shape.positions), 1e-9) << "step " << dt;
+    EXPECT_LT(fastest, 1.6 * way / std::max(0.4, dt)) << "step " << dt;
+  }
+}
+
+TEST(CombOut, TheTargetTurnsWithTheHead) {
+  Frozen hair;
+  turnOver(5, hair.mesh, hair.state);
+  Eigen::Isometry3d head = Eigen::Isometry3d::Identity();
+  for (int n = 0; n < 120; ++n) {
+    const Eigen::Isometry3d motion = Eigen::Translation3d(0.01, 0, 0.02) * Eigen::AngleAxisd(0.02, Vec3::UnitY());
+    const std::vector<Vec3> start = hair.state.positions;
+    for (Vec3& x : hair.state.positions) x = motion * x;
+    head = motion * head;
+    sim::combOut({hair.mesh, start, kFrame}, hair.tangles, hair.state);
+  }
+  double worst = 0;
+  for (int i = 0; i < hair.mesh.vertexCount(); ++i)
+    worst = std::max(worst, (hair.state.positions[i] - head * hair.mesh.shape.positions[i]).norm());
+  EXPECT_LT(worst, 1e-9);
+}
+
+TEST(CombOut, HairThatABodyHoldsTurnedOverIsLeftAsItIs) {
+  Frozen hair;
+  turnOver(5, hair.mesh, hair.state);
+  for (int i = 0; i < hair.mesh.vertexCount(); ++i) {
+    sim::Contact contact{};
+    contact.vertex = i;
+    hair.state.contacts.push_back(contact);
+  }
+  const std::vector<Vec3> before = hair.state.positions;
+  EXPECT_EQ(hair.pass(5), 0);
+  EXPECT_EQ(hair.state.positions, before);
+}
+
+TEST(CombOut, WhatTurnsOverAgainIsLeftInPeaceLongerEachTime) {
+  Frozen hair;
+  std::vector<double> begun;
+  bool combing = false;
+  for (double t = 0; t < 20; t += kFrame) {
+    const std::vector<Vec3> start = hair.state.positions;
+    const bool now = sim::combOut({hair.mesh, start, kFrame}, hair.tangles, hair.state) > 0;
+    if (now && !combing) begun.push_back(t);
+    if (!now) turnOver(5, hair.mesh, hair.state);
+    combing = now;
+  }
+  ASSERT_GE(begun.size(), 4u);
+  for (std::size_t k = 3; k < begun.size(); ++k)
+    EXPECT_GT(begun[k] - begun[k - 1], 1.3 * (begun[k - 1] - begun[k - 2])) << "the " << k << "th time";
+}
+
+// Mirrored through the roots, in the shortest style: forces alone leave tips on the wrong side of their neighbours.
+double distanceAfterMirroring(bool combed, int& columns) {
+  sim::SimParams params;
+  params.collide = false;
+  if (!combed) params.solver = sim::Solver::kPaper;  // combs nothing
+  const sim::HairMeshShape shape =
+      sim::makeStyle(sim::Style::kShort, sim::Resolution::kLow, tests::analyticScalp(), tests::bodyDistance);
+  Hair hair(shape, params);
+  const std::vector<Vec3> was = hair.state.positions;
+  for (int i = 0; i < hair.mesh.vertexCount(); ++i) {
+    hair.state.positions[i] = 2 * hair.roots[hair.mesh.column_of[i]] - was[i];
+  }
+  columns = 0;
+  for (double t = 0; t < 6; t += kFrame) columns = std::max(columns, hair.step(kFrame).combed);
+  return test::largestDistance(hair.state.positions, hair.mesh.shape.positions) / hair.mesh.hair_length;
+}
+
+TEST(CombOut, HairMirroredThroughItsRootsComesHomeAndWithoutCombingDoesNot) {
+  int columns = 0;
+  EXPECT_LT(distanceAfterMirroring(true, columns), 0.01);
+  EXPECT_GT(columns, 0);
+  EXPECT_GT(distanceAfterMirroring(false, columns), 0.05);
+  EXPECT_EQ(columns, 0);
+}
+
+}  // namespace
