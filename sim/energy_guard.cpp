@@ -11,15 +11,17 @@ namespace {
 // Of the hair's length: a step in which no vertex moves farther against its root is as good as linear, and costs
 // nothing more.
 constexpr double kGentle = 0.1;
-// Pa; of all forces volume's is the least linear: a step is gentle over so much less as it is stiffer.
-constexpr double kSoftVolume = 1e4;
+// Pa; a step is gentle over so much less as the forces that are least linear are stiffer: volume's, and the walls'
+// along the hair, for what turns is also stretched, to second order.
+constexpr double kSoftVolume = 1e4, kSoftStretch = 4e5;
 constexpr int kHalvings = 12;
 constexpr double kStill = 1e-3;  // m/s of a body's surface against the roots
 
 enum class Motion { kCalm, kViolent, kNotFinite };
 
 Motion judge(const TakenStep& step, const HairState& state) {
-  const double soft = std::min(1.0, std::sqrt(kSoftVolume / step.params.volume));
+  const double soft =
+      std::sqrt(std::min({1.0, kSoftVolume / step.params.volume, kSoftStretch / step.params.stretch_along}));
   const double most = kGentle * soft * step.mesh.hair_length;
   Motion motion = Motion::kCalm;
   for (int c = 0; c < step.mesh.columnCount(); ++c) {

@@ -132,7 +132,7 @@ std::vector<ParamField> makeTable() {
       field<&P::acceleration_tolerance>(
           "acceleration_tolerance", "Numerics", "m/s^2", {1e-9, 10, kLog},
           "A linear solve also stops when no vertex's residual, as an acceleration, exceeds this."),
-      field<&P::displacement_tolerance>("displacement_tolerance", "Numerics", "m", {1e-9, 0.01, kLog},
+      field<&P::displacement_tolerance>("displacement_tolerance", "Numerics", "m", {1e-9, 0.001, kLog},
                                         "A linear solve also stops when a factor (warped, direct) estimates that no "
                                         "vertex would end farther off than this."),
       field<&P::newton_tolerance>("newton_tolerance", "Numerics", "m/s", {1e-12, 1, kLog},
