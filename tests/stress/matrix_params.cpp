@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::array<const char*, 6> kModuli{"stretch_along", "stretch_across", "stretch_edge",
                                              "shear",         "bend",           "volume"};
-constexpr int kRandomCombinations = 1500, kRestlessRuns = 60;
+constexpr int kRandomCombinations = 1000, kRestlessRuns = 60;
 // Of rows whose effect is a time constant: hair in thick air or with slow relaxation needs longer to come back.
 constexpr double kSlowRelease = 30;  // s
 

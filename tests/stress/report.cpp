@@ -23,10 +23,11 @@ std::string said(const char* format, auto... values) {
   return text;
 }
 
+constexpr std::size_t kNumbers = 19;
 constexpr const char* kVerdicts[] = {"passed", "failed", "skipped"};
 
 // The numbers of an outcome in the table's order, after the case's name and its verdict.
-std::array<double, 16> numbersOf(const Outcome& o) {
+std::array<double, kNumbers> numbersOf(const Outcome& o) {
   return {static_cast<double>(o.with_body),
           static_cast<double>(o.other_rest),
           o.back_after,
@@ -42,22 +43,27 @@ std::array<double, 16> numbersOf(const Outcome& o) {
           static_cast<double>(o.recoveries),
           static_cast<double>(o.carried),
           static_cast<double>(o.steps),
-          o.cpu_seconds};
+          o.cpu_seconds,
+          static_cast<double>(o.combed),
+          o.iterations,
+          o.unsolved};
 }
 
-Outcome outcomeOf(const std::array<double, 16>& n) {
+Outcome outcomeOf(const std::array<double, kNumbers>& n) {
   Outcome o;
   o.other_rest = n[1] != 0;
   o.with_body = n[0] != 0, o.back_after = n[2], o.at = n[3], o.distance = n[4], o.deepest = n[5];
   o.inside = static_cast<long>(n[6]), o.unconstrained = static_cast<long>(n[7]), o.energy_rise = n[8];
   o.energy_step = n[9], o.memory_growth = n[10], o.slowdown = n[11], o.recoveries = static_cast<int>(n[12]);
   o.carried = static_cast<int>(n[13]), o.steps = static_cast<int>(n[14]), o.cpu_seconds = n[15];
+  o.combed = static_cast<int>(n[16]), o.iterations = n[17], o.unsolved = n[18];
   return o;
 }
 
 struct FamilyCount {
   std::string family;
-  long cases = 0, passed = 0, failed = 0, with_body = 0, inside = 0, unconstrained = 0, carried = 0, recoveries = 0;
+  long cases = 0, passed = 0, failed = 0, with_body = 0, inside = 0, unconstrained = 0, carried = 0, combed = 0,
+       recoveries = 0;
   double slowest = 0, deepest = 0, energy_rise = 0, energy_step = 0;
 };
 
@@ -78,6 +84,7 @@ std::vector<FamilyCount> countFamilies(const std::vector<Result>& results) {
     known->inside += o.inside;
     known->unconstrained += o.unconstrained;
     known->carried += o.carried;
+    known->combed += o.combed > 0;
     known->recoveries += o.recoveries;
     known->slowest = std::max(known->slowest, o.back_after);
     known->deepest = std::max(known->deepest, o.deepest);
@@ -90,12 +97,13 @@ std::vector<FamilyCount> countFamilies(const std::vector<Result>& results) {
 std::string familyTable(const std::vector<FamilyCount>& families) {
   std::string text =
       "| family | what varies | cases | passed | failed | back on the body | slowest return, s | deepest, mm | inside "
-      "(unconstrained) | energy above what was left | largest step up | carried | recoveries |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+      "(unconstrained) | energy above what was left | largest step up | carried | combed out | recoveries |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const FamilyCount& f : families) {
-    text += said("| %s | %s | %ld | %ld | %ld | %ld | %.2f | %.3f | %ld (%ld) | %.1e | %.1e | %ld | %ld |\n",
+    text += said("| %s | %s | %ld | %ld | %ld | %ld | %.2f | %.3f | %ld (%ld) | %.1e | %.1e | %ld | %ld | %ld |\n",
                  f.family.c_str(), familyTitle(f.family), f.cases, f.passed, f.failed, f.with_body, f.slowest,
-                 1e3 * f.deepest, f.inside, f.unconstrained, f.energy_rise, f.energy_step, f.carried, f.recoveries);
+                 1e3 * f.deepest, f.inside, f.unconstrained, f.energy_rise, f.energy_step, f.carried, f.combed,
+                 f.recoveries);
   }
   return text;
 }
@@ -141,7 +149,7 @@ std::string csvHead() {
   return "case,verdict,with_body,other_rest,back_after_s,failed_at_s,distance,deepest_m,inside,unconstrained,energy_"
          "rise,energy_"
          "step,"
-         "memory_growth_mib,slowdown,recoveries,carried,steps,cpu_s,fault\n";
+         "memory_growth_mib,slowdown,recoveries,carried,steps,cpu_s,combed,iterations,unsolved,fault\n";
 }
 
 std::string csvRow(const Result& result) {
@@ -160,7 +168,7 @@ std::vector<Result> readCsv(const std::string& file, const std::vector<StressCas
   for (int number = 2; std::getline(text, line); ++number) {
     std::stringstream fields(line);
     std::string name, verdict, field, fault;
-    std::array<double, 16> numbers{};
+    std::array<double, kNumbers> numbers{};
     std::getline(fields, name, ',');
     std::getline(fields, verdict, ',');
     bool fine = cases.contains(name);

@@ -17,7 +17,9 @@ namespace {
 
 constexpr double kShortestStep = 1e-3, kLongestStep = 0.5;  // s, of random paces
 constexpr double kFaultEvery = 0.1;                         // s
+constexpr double kIntruderThere = 0.3;                      // s, when a body that appears has done so
 constexpr double kAtRest = 5e-3;                            // m/s
+constexpr double kWindow = 2, kHurry = 5;                   // s, and times its pace: see Pace of return
 constexpr double kSmallestEnergy = 0.05;                    // of the hair's weight times its length
 
 double cpuSeconds() {
@@ -51,6 +53,8 @@ struct Run {
   Outcome outcome;
   double last_intrusion = 0;  // s
   double next_fault = kFaultEvery;
+  double raised = 0;  // J, most energy since a body appeared within the hair
+  long iterations = 0, unsolved = 0;
   bool trace = false;
 
   Run(const StressCase& c, std::uint64_t seed, Stage& s)
@@ -63,6 +67,9 @@ struct Run {
   }
 
   bool failed() const { return !outcome.fault.empty(); }
+  // Whether a body stands within the hair from some time on: it lifts the hair, and goes on working where roots lie
+  // within it.
+  bool bodyWithin() const { return one.upset == Upset::kSwitchOn || one.upset == Upset::kBury; }
   void fail(std::string fault) {
     if (failed()) return;
     outcome.fault = std::move(fault);
@@ -74,10 +81,11 @@ void traceStep(const Run& run, double dt, const sim::StepReport& report, Hair& h
   double fastest = 0;
   for (const sim::Vec3& v : hair.state.velocities) fastest = std::max(fastest, v.norm());
   std::printf(
-      "%9.4f s  step %6.1f ms  energy %12.5e J  fastest %9.3e m/s  contacts %3d  corrected %3d  iterations %4d%s%s\n",
+      "%9.4f s  step %6.1f ms  energy %12.5e J  fastest %9.3e m/s  contacts %3d  corrected %3d  iterations %4d  combed "
+      "%d%s%s\n",
       run.around.time(), 1e3 * dt, sim::mechanicalEnergy(hair.mesh, run.params, hair.context, hair.state), fastest,
-      report.contacts, report.corrected, report.solver_iterations, report.converged ? "" : " (not converged)",
-      report.carried ? " carried" : "");
+      report.contacts, report.corrected, report.solver_iterations, report.combed,
+      report.converged ? "" : " (not converged)", report.carried ? " carried" : "");
 }
 
 sim::StepReport stepHair(const sim::SimParams& params, const Run& run, double dt, Hair& hair) {
@@ -111,6 +119,13 @@ void checkOutside(Run& run) {
   }
 }
 
+void countWork(const sim::StepReport& report, Run& run) {
+  ++run.outcome.steps;
+  run.outcome.combed = std::max(run.outcome.combed, report.combed);
+  run.iterations += report.solver_iterations;
+  run.unsolved += !report.converged;
+}
+
 void step(double dt, Run& run) {
   const Eigen::Isometry3d head = run.around.head();
   run.around.move(dt);
@@ -131,9 +146,12 @@ void step(double dt, Run& run) {
   const sim::StepReport report = stepHair(run.params, run, dt, run.hair);
   run.outcome.recoveries += report.recoveries;
   run.outcome.carried += report.carried;
+  countWork(report, run);
+  if (run.bodyWithin() && run.around.time() > kIntruderThere)
+    run.raised =
+        std::max(run.raised, sim::mechanicalEnergy(run.hair.mesh, run.params, run.hair.context, run.hair.state));
   if (run.trace) traceStep(run, dt, report, run.hair);
   if (report.recoveries > 0 && !run.one.recovers) run.fail("watchdog: " + sim::troubleText(report.trouble));
-  ++run.outcome.steps;
   checkFinite(run);
 }
 
@@ -220,18 +238,22 @@ double weightOf(const Run& run) {
   return 9.81 * run.params.density * volume * run.hair.mesh.hair_length;
 }
 
-// What the motion left (J), in all and above the twin's, and the energy of the last step.
+// What the motion left (J), in all and above the rest shape's, and the energy of the last step.
 struct EnergyWatch {
+  double rest = 0;
   bool begun = false;
   double left = 0, scale = 0, last = 0;
 };
 
-void checkEnergy(Hair& twin, EnergyWatch& watch, Run& run) {
+void checkEnergy(bool combed, EnergyWatch& watch, Run& run) {
   if (hasInput(run.params)) return;
   const double energy = sim::mechanicalEnergy(run.hair.mesh, run.params, run.hair.context, run.hair.state);
-  if (!watch.begun) {
-    const double rest = sim::mechanicalEnergy(run.hair.mesh, run.params, twin.context, twin.state);
-    watch = {true, energy, std::max(energy - rest, kSmallestEnergy * weightOf(run)), energy};
+  // Combing is done by a hand from outside.
+  if (!watch.begun || (combed && energy > watch.left)) {
+    watch.begun = true;
+    watch.left = std::max(energy, run.raised);
+    watch.scale = std::max(watch.left - watch.rest, kSmallestEnergy * weightOf(run));
+    watch.last = energy;
   }
   run.outcome.energy_step = std::max(run.outcome.energy_step, (energy - watch.last) / watch.scale);
   run.outcome.energy_rise = std::max(run.outcome.energy_rise, (energy - watch.left) / watch.scale);
@@ -241,25 +263,48 @@ void checkEnergy(Hair& twin, EnergyWatch& watch, Run& run) {
                 100 * run.outcome.energy_rise, watch.scale));
 }
 
+// Pace of return: what has moved so little within kWindow that it would not arrive in time at kHurry times that pace is
+// not coming.
+struct Pacer {
+  std::vector<sim::Vec3> hair, twin;
+  double since = 0;
+
+  bool hopeless(const Run& run, const Hair& other, double dt, double seconds_left) {
+    since += dt;
+    if (since < kWindow && !hair.empty()) return false;
+    double way = 0;
+    for (std::size_t i = 0; i < hair.size(); ++i) {
+      way = std::max(way, (run.hair.state.positions[i] - hair[i]).norm() + (other.state.positions[i] - twin[i]).norm());
+    }
+    const bool known = !hair.empty();
+    hair = run.hair.state.positions, twin = other.state.positions;
+    since = 0;
+    const double missing = (run.outcome.distance - kBack) * run.hair.mesh.hair_length;
+    return known && kHurry * way * seconds_left / kWindow < missing;
+  }
+};
+
 // Everything stands still: hair and twin go on until they meet. Returns whether they do.
 bool waitUntilBack(double seconds, EnergyWatch& energy, Run& run, Hair& twin) {
   const double dt = run.one.pace == Pace::kFixed ? run.one.step : sim::SimParams{}.time_step;
   const double started = run.around.time();
+  Pacer pacer;
   while (run.around.time() < started + seconds && !run.failed()) {
     run.around.pass(dt);
     const sim::StepReport report = stepHair(run.params, run, dt, run.hair);
     run.outcome.recoveries += report.recoveries;
     if (report.recoveries > 0) run.fail("watchdog: " + sim::troubleText(report.trouble));
-    ++run.outcome.steps;
+    countWork(report, run);
     if (run.trace) traceStep(run, dt, report, run.hair);
     stepHair(run.params, run, dt, twin);
     checkFinite(run);
     checkOutside(run);
-    if (!run.failed()) checkEnergy(twin, energy, run);
+    if (!run.failed()) checkEnergy(report.combed > 0, energy, run);
     const Apart worst = apart(run.hair, twin);
     run.outcome.distance = worst.distance;
     run.outcome.worst_vertex = worst.vertex;
     if (run.outcome.distance < kBack) return true;
+    if (pacer.hopeless(run, twin, dt, started + seconds - run.around.time())) return false;
   }
   return false;
 }
@@ -283,6 +328,7 @@ void waitForRest(Run& run) {
   twin.state = sim::restState(run.hair.mesh, run.around.head());
   const double stopped = run.around.time();
   EnergyWatch energy;
+  energy.rest = sim::mechanicalEnergy(run.hair.mesh, run.params, twin.context, twin.state);
   bool back = waitUntilBack(run.one.rest, energy, run, twin);
   run.outcome.with_body = back;
   if (!back && !run.failed()) {
@@ -293,7 +339,7 @@ void waitForRest(Run& run) {
   if (back) run.outcome.back_after = run.around.time() - stopped;
   if (!back && !run.failed()) {
     run.fail(said("still %.1f %% of the hair's length from rest %.1f s after the motion stopped",
-                  100 * run.outcome.distance, run.one.rest + run.one.release) +
+                  100 * run.outcome.distance, run.around.time() - stopped) +
              ", vertex " + std::to_string(run.outcome.worst_vertex));
   }
 }
@@ -313,6 +359,8 @@ Outcome runCase(const StressCase& one, std::uint64_t seed, bool trace, StageStor
   run.trace = trace;
   playMotion(run);
   if (!run.failed()) waitForRest(run);
+  run.outcome.iterations = static_cast<double>(run.iterations) / std::max(1, run.outcome.steps);
+  run.outcome.unsolved = static_cast<double>(run.unsolved) / std::max(1, run.outcome.steps);
   run.outcome.verdict = run.failed() ? Verdict::kFailed : Verdict::kPassed;
   run.outcome.cpu_seconds = cpuSeconds() - started;
   return run.outcome;

@@ -34,6 +34,9 @@ struct Outcome {
   double memory_growth = 0;  // MiB, of a soak after its first tenth
   double slowdown = 1;       // of a soak: CPU time a step in its last tenth over that in its second
   int recoveries = 0, carried = 0, steps = 0;
+  int combed = 0;         // columns combed out at once, at most
+  double iterations = 0;  // of the linear solver a step, mean
+  double unsolved = 0;    // share of the steps whose solve ended at its most iterations
   double cpu_seconds = 0;
 };
 
