@@ -1,6 +1,7 @@
 // Parameters at their limits, stiffness ratios, random combinations, changes every step, and the paper's settings.
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "tests/stress/matrix.h"
 #include "tests/stress/random.h"
@@ -144,8 +145,8 @@ void addRestless(Cases& cases) {
 }
 
 void addPaper(Cases& cases) {
-  const auto claim = [&](const std::string& name, auto&& change) {
-    for (const HairChoice& hair : lowStyles()) {
+  const auto claimOf = [&](const std::string& name, std::span<const HairChoice> hairs, auto&& change) {
+    for (const HairChoice& hair : hairs) {
       StressCase ours;
       ours.name = "paper/" + name + "/ours/" + hairName(hair);
       ours.hair = hair;
@@ -161,6 +162,7 @@ void addPaper(Cases& cases) {
       cases.push_back(theirs);
     }
   };
+  const auto claim = [&](const std::string& name, auto&& change) { claimOf(name, lowStyles(), change); };
   for (const double speed : {10.0, 20.0, 50.0}) {
     claim("playback-" + plain(speed) + "x", [&](StressCase& one) {
       one.clip = "dance.bvh";
@@ -199,6 +201,31 @@ void addPaper(Cases& cases) {
     one.play = Play::kForward;
     for (const char* modulus : kModuli) one.params.emplace_back(modulus, 1e3 * defaultOf(modulus));
   });
+  // Where it breaks.
+  for (const Start start : {Start::kInsideOut, Start::kShuffled}) {
+    claim(start == Start::kInsideOut ? "inside-out" : "shuffled", [&](StressCase& one) {
+      one.start = start;
+      one.collide = false;
+      one.seconds = 0.2;
+    });
+  }
+  claim("head-shake-20x", [&](StressCase& one) {
+    one.clip = "head_shake.bvh";
+    one.play = Play::kForward;
+    one.speed = 20;
+    one.seconds = 2;
+  });
+  // The paper does not say how many iterations it takes: on its largest mesh so many.
+  const HairChoice large{Cut::kStyle, sim::Style::kLong, sim::Resolution::kHigh};
+  for (const int most : {50, 100}) {
+    claimOf("collapse-" + plain(most) + "-iterations", std::span(&large, 1), [&](StressCase& one) {
+      one.start = Start::kCollapsed;
+      one.collide = false;
+      one.seconds = 0.1;
+      one.params = {{"max_iterations", most}};
+      one.in_short = false;
+    });
+  }
 }
 
 }  // namespace stress
