@@ -21,6 +21,16 @@ struct Signature {
   }
 };
 
+// Of the framebuffer: depth alone, into one cleared layer of an array.
+void beginDepth(GLuint target, const Texture& depth, int layer) {
+  glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT0, 0, 0, 0);
+  glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT1, 0, 0, 0);
+  glNamedFramebufferDrawBuffer(target, GL_NONE);
+  glNamedFramebufferTextureLayer(target, GL_DEPTH_ATTACHMENT, depth.id(), 0, layer);
+  const float far_away = 1;
+  glClearNamedFramebufferfv(target, GL_DEPTH, 0, &far_away);
+}
+
 Texture makeArray(GLenum format, int size, int layers, GLenum filter) {
   Texture texture = makeTexture(GL_TEXTURE_2D_ARRAY);
   glTextureStorage3D(texture.id(), 1, format, size, size, layers);
@@ -247,12 +257,7 @@ void ShadowPass::drawHairMap(int map, HairResources& hair, const FrameInput& inp
   glBindVertexArray(no_attributes_.id());
   const GLuint target = framebuffer_.id();
 
-  glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT0, 0, 0, 0);
-  glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT1, 0, 0, 0);
-  glNamedFramebufferDrawBuffer(target, GL_NONE);
-  glNamedFramebufferTextureLayer(target, GL_DEPTH_ATTACHMENT, hair_depth_.id(), 0, plan.tile.layer);
-  const float far_away = 1;
-  glClearNamedFramebufferfv(target, GL_DEPTH, 0, &far_away);
+  beginDepth(target, hair_depth_, plan.tile.layer);
   glEnable(GL_DEPTH_TEST);
   (by_geometry ? depth_geometry_ : depth_pulling_).use();
   issueStrands(hair, draw, path, {GL_LINE_STRIP, 1});
@@ -294,13 +299,7 @@ StrandCount ShadowPass::drawHairMaps(const FrameInput& input, std::span<HairReso
     drawHairMap(static_cast<int>(map), hair, input, table);
     count.draw_calls += 2;
     if (!has_bodies_) continue;
-    const GLuint target = framebuffer_.id();
-    glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT0, 0, 0, 0);
-    glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT1, 0, 0, 0);
-    glNamedFramebufferDrawBuffer(target, GL_NONE);
-    glNamedFramebufferTextureLayer(target, GL_DEPTH_ATTACHMENT, body_in_hair_depth_.id(), 0, plan.tile.layer);
-    const float far_away = 1;
-    glClearNamedFramebufferfv(target, GL_DEPTH, 0, &far_away);
+    beginDepth(framebuffer_.id(), body_in_hair_depth_, plan.tile.layer);
     // What stands between the light and the frustum must shade too: clamped onto its near side.
     glEnable(GL_DEPTH_CLAMP);
     bodies.drawDepth(plan.frustum.clip_from_world, input.skips.shadow_view);
