@@ -70,6 +70,7 @@ render::DrawSkips drawSkips(const SkipSet& skips) {
   draw.view = skips[kSkipView];
   draw.shadow_view = skips[kSkipShadowView];
   draw.body_parts = skips[kSkipBodyParts];
+  draw.body_detail = skips[kSkipBodyDetail];
   draw.strands = skips[kSkipStrands];
   draw.segments = skips[kSkipSegments];
   draw.shadow_detail = skips[kSkipShadowDetail];
@@ -140,6 +141,7 @@ void addDrawing(const render::DrawLeftOut& drawing, SkipTallies& tallies) {
   add(kSkipView, drawing.view);
   add(kSkipShadowView, drawing.shadow_view);
   add(kSkipBodyParts, drawing.body_parts);
+  add(kSkipBodyDetail, drawing.body_detail);
   add(kSkipStrands, drawing.strands);
   add(kSkipSegments, drawing.segments);
   add(kSkipShadowDetail, drawing.shadow_detail);

@@ -23,6 +23,7 @@ enum SkipId {
   kSkipView,
   kSkipShadowView,
   kSkipBodyParts,
+  kSkipBodyDetail,
   kSkipStrands,
   kSkipSegments,
   kSkipShadowDetail,

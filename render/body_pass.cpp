@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "render/body_detail.h"
 #include "shaders/shared.h"
 
 namespace render {
@@ -48,13 +49,6 @@ void addMoved(const Mat4& m, const Bounds& box, Bounds& sum) {
         transformed(m, Vector3f((corner & 1) ? box.high.x() : box.low.x(), (corner & 2) ? box.high.y() : box.low.y(),
                                 (corner & 4) ? box.high.z() : box.low.z())));
   }
-}
-
-// The joint that moves a vertex most.
-int mainJoint(const BodyInput& input, std::size_t vertex) {
-  const float* weights = &input.weights[4 * vertex];
-  const auto largest = std::max_element(weights, weights + 4) - weights;
-  return input.joints[4 * vertex + static_cast<std::size_t>(largest)];
 }
 
 // Triangles in the order of the joint that their first corner hangs on; within a joint as they come.
@@ -125,7 +119,7 @@ BodyPass::Mesh* BodyPass::meshOf(const BodyInput& input, long& uploaded) {
       }
     }
   }
-  const std::vector<std::uint32_t> triangles = trianglesByJoint(input);
+  std::vector<std::uint32_t> triangles = trianglesByJoint(input);
   int part_joint = -1;
   for (std::size_t t = 0; t < triangles.size(); t += 3) {
     if (mainJoint(input, triangles[t]) != part_joint) {
@@ -149,8 +143,14 @@ BodyPass::Mesh* BodyPass::meshOf(const BodyInput& input, long& uploaded) {
       }
     }
   }
+  mesh.levels[0] = {0, static_cast<int>(triangles.size())};
+  for (std::size_t i = 0; i < kBodyCells.size(); ++i) {
+    const std::vector<std::uint32_t> coarser = mergedTriangles(input, kBodyCells[i]);
+    mesh.levels[i + 1] = {static_cast<int>(triangles.size()), static_cast<int>(coarser.size())};
+    triangles.insert(triangles.end(), coarser.begin(), coarser.end());
+  }
   const auto vertex_bytes = static_cast<GLsizeiptr>(vertices.size() * sizeof(BodyVertex));
-  const auto index_bytes = static_cast<GLsizeiptr>(input.triangles.size_bytes());
+  const auto index_bytes = static_cast<GLsizeiptr>(triangles.size() * sizeof(std::uint32_t));
   mesh.vertices = makeBuffer();
   mesh.indices = makeBuffer();
   glNamedBufferStorage(mesh.vertices.id(), vertex_bytes, vertices.data(), 0);
@@ -235,6 +235,20 @@ long BodyPass::update(std::span<const BodyInput> inputs) {
   return uploaded;
 }
 
+void BodyPass::chooseDetail(const FrameInput& input) {
+  const Vector3f eye = asVector(input.camera.eye);
+  const float a_metre = static_cast<float>(input.height) / (2 * std::tan(0.5f * input.camera.fov_y));
+  for (Body& body : bodies_) {
+    const float distance = (body.bounds.center() - eye).norm() - 0.5f * body.bounds.diagonal();
+    const int level = input.skips.body_detail && !body.bounds.empty()
+                          ? bodyLevel(a_metre / std::max(distance, 1e-3f), body.level)
+                          : 0;
+    if (level != body.level) body.change = ++changes_;
+    body.level = level;
+  }
+  pose_signature_ = changes_;
+}
+
 const BodyPass::Mesh& BodyPass::meshOf(const Body& body) const {
   return *std::find_if(meshes_.begin(), meshes_.end(), [&](const Mesh& m) { return m.id == body.mesh_id; });
 }
@@ -267,6 +281,12 @@ Bounds BodyPass::boundsNear(const Eigen::Vector3f& eye) const {
   return near;
 }
 
+void BodyPass::drawLevel(const Body& body, const Mesh& mesh) {
+  const IndexRange& range = mesh.levels[static_cast<std::size_t>(body.level)];
+  glDrawElements(GL_TRIANGLES, range.count, GL_UNSIGNED_INT,
+                 reinterpret_cast<const void*>(static_cast<std::uintptr_t>(range.first) * 4));
+}
+
 int BodyPass::draw(const Eigen::Matrix4f& clip_from_world, const DrawSkips& skips, DrawLeftOut& left_out) {
   lit_.use();
   glUniformMatrix4fv(0, 1, GL_FALSE, clip_from_world.data());
@@ -282,6 +302,14 @@ int BodyPass::draw(const Eigen::Matrix4f& clip_from_world, const DrawSkips& skip
     around.high.array() += margin;
     if (skips.view && !frustum.maySee(around)) {
       left_out.body_parts.skipped += mesh.index_count / 3;
+      continue;
+    }
+    left_out.body_detail.of += mesh.index_count / 3;
+    if (body.level > 0) {
+      left_out.body_detail.skipped += (mesh.index_count - mesh.levels[static_cast<std::size_t>(body.level)].count) / 3;
+      bind(body, mesh);
+      drawLevel(body, mesh);
+      ++calls;
       continue;
     }
     counts_.clear();
@@ -321,7 +349,7 @@ int BodyPass::drawDepth(const Eigen::Matrix4f& clip_from_world, bool cull) {
     if (cull && !lightMayMeet(light, body.bounds)) continue;
     const Mesh& mesh = meshOf(body);
     bind(body, mesh);
-    glDrawElements(GL_TRIANGLES, mesh.index_count, GL_UNSIGNED_INT, nullptr);
+    drawLevel(body, mesh);
     ++calls;
   }
   return calls;

@@ -2,11 +2,13 @@
 // stage.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "render/body_detail.h"
 #include "render/frame_input.h"
 #include "render/gl_object.h"
 #include "render/renderer.h"
@@ -22,6 +24,9 @@ class BodyPass {
   // Uploads new meshes and changed poses, frees what the frame no longer shows. Returns the bytes uploaded. A body
   // whose spans disagree in length, whose indices point outside or whose matrices are not finite is not drawn.
   long update(std::span<const BodyInput> inputs);
+
+  // Chooses how finely each body is drawn, by its size in the picture. Call after every update.
+  void chooseDetail(const FrameInput& input);
 
   // World bounds of all bodies (joint boxes, a little too large); empty without bodies.
   const Bounds& bounds() const { return bounds_; }
@@ -46,6 +51,9 @@ class BodyPass {
     std::vector<int> joints;    // that move any of its vertices
     std::vector<Bounds> boxes;  // of the vertices that each moves, rest pose
   };
+  struct IndexRange {
+    int first = 0, count = 0;
+  };
   struct Mesh {
     std::uint64_t id = 0;
     bool seen = false;
@@ -53,7 +61,8 @@ class BodyPass {
     Buffer vertices, indices;
     VertexArray attributes;
     int index_count = 0, joint_count = 0;
-    std::vector<Bounds> joint_boxes;  // rest pose
+    std::array<IndexRange, kBodyCells.size() + 1> levels;  // full, then ever coarser
+    std::vector<Bounds> joint_boxes;                       // rest pose
   };
   struct Body {
     std::uint64_t id = 0, mesh_id = 0, pose_revision = ~std::uint64_t{0};
@@ -63,6 +72,7 @@ class BodyPass {
     int joint_count = 0;
     Float3 color{};
     float roughness = 0;
+    int level = 0;  // of detail
     Bounds bounds;
     std::uint64_t change = 0;          // of its pose or mesh
     std::vector<Mat4> joint_matrices;  // as uploaded
@@ -72,6 +82,7 @@ class BodyPass {
   bool refreshPose(Body& body, const Mesh& mesh, const BodyInput& input, long& uploaded);
   const Mesh& meshOf(const Body& body) const;
   void bind(const Body& body, const Mesh& mesh) const;
+  static void drawLevel(const Body& body, const Mesh& mesh);
 
   ShaderProgram lit_, depth_;
   std::vector<Mesh> meshes_;

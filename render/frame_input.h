@@ -127,6 +127,7 @@ struct DrawSkips {
   bool view = true;           // hairs, bundles and bodies outside the camera's view are not drawn
   bool shadow_view = true;    // no shadow map for hair whose shadow cannot fall into the view
   bool body_parts = true;     // parts of a body outside the view are not skinned
+  bool body_detail = true;    // fewer triangles of bodies that are small in the picture
   bool strands = true;        // strand count and width follow the projected size
   bool segments = true;       // segments follow curvature and projected size
   bool shadow_detail = true;  // shadow strands and map size follow the projected size

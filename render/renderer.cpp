@@ -105,7 +105,10 @@ struct Renderer::Parts {
 
   long uploadWhatChanged(const FrameInput& input, const ViewGate& gate) {
     const bool all = !input.skips.view || !input.skips.shadow_view;
-    return hairs.update(input.hairs, input.light, input.skips, all ? ViewGate{} : gate) + bodies.update(input.bodies);
+    const long uploaded =
+        hairs.update(input.hairs, input.light, input.skips, all ? ViewGate{} : gate) + bodies.update(input.bodies);
+    bodies.chooseDetail(input);
+    return uploaded;
   }
 
   // Whether the radiance still shows this frame; remembers the frame if not.

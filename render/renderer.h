@@ -26,7 +26,7 @@ struct LeftOut {
 
 // One count for each of the DrawSkips.
 struct DrawLeftOut {
-  LeftOut frame, rows, shadows, view, shadow_view, body_parts, strands, segments, shadow_detail, openness;
+  LeftOut frame, rows, shadows, view, shadow_view, body_parts, body_detail, strands, segments, shadow_detail, openness;
 };
 
 // What a frame did. Times: GPU timer queries where the driver's are usable, glFinish and a steady clock on software

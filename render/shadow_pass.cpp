@@ -4,6 +4,8 @@
 #include <cstring>
 #include <numeric>
 
+#include "render/shadow_grid.h"
+
 namespace render {
 namespace {
 
@@ -20,16 +22,6 @@ struct Signature {
     for (unsigned char byte : bytes) value = (value ^ byte) * 1099511628211ull;
   }
 };
-
-// Of the framebuffer: depth alone, into one cleared layer of an array.
-void beginDepth(GLuint target, const Texture& depth, int layer) {
-  glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT0, 0, 0, 0);
-  glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT1, 0, 0, 0);
-  glNamedFramebufferDrawBuffer(target, GL_NONE);
-  glNamedFramebufferTextureLayer(target, GL_DEPTH_ATTACHMENT, depth.id(), 0, layer);
-  const float far_away = 1;
-  glClearNamedFramebufferfv(target, GL_DEPTH, 0, &far_away);
-}
 
 Texture makeArray(GLenum format, int size, int layers, GLenum filter) {
   Texture texture = makeTexture(GL_TEXTURE_2D_ARRAY);
@@ -236,15 +228,33 @@ void ShadowPass::plan(const FrameInput& input, std::span<HairResources> hairs, c
   if (!block_) {
     block_ = makeBuffer();
     glNamedBufferStorage(block_.id(), sizeof(maps_), nullptr, GL_DYNAMIC_STORAGE_BIT);
+    grid_block_ = makeBuffer();
+    glNamedBufferStorage(grid_block_.id(), sizeof(grid_), nullptr, GL_DYNAMIC_STORAGE_BIT);
   }
-  if (!plans_.empty()) glNamedBufferSubData(block_.id(), 0, sizeof(maps_), &maps_);
+  if (!plans_.empty()) {
+    fillShadowGrid({maps_.hair_shadow_ball.data(), plans_.size()}, to_light, grid_);
+    glNamedBufferSubData(block_.id(), 0, sizeof(maps_), &maps_);
+    glNamedBufferSubData(grid_block_.id(), 0, sizeof(grid_), &grid_);
+  }
   glBindBufferBase(GL_UNIFORM_BUFFER, 3, block_.id());
+  glBindBufferBase(GL_UNIFORM_BUFFER, 4, grid_block_.id());
   frame.to_key[3] = static_cast<float>(plans_.size());
   frame.forward[3] = light.shadows ? 1.0f : 0.0f;
   frame.opacity = {static_cast<float>(std::clamp(light.opacity_layers, 1, shared::kMaxOpacityLayers)),
                    std::max(light.shadow_strength, 0.0f), 0, static_cast<float>(body_maps_)};
   for (std::size_t map = 0; map < body_frusta_.size(); ++map)
     frame.body_shadow[map] = asMat4(body_frusta_[map].clip_from_world);
+}
+
+void ShadowPass::beginDepth(const Texture& depth, int layer) {
+  const GLuint target = framebuffer_.id();
+  glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT0, 0, 0, 0);
+  glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT1, 0, 0, 0);
+  glNamedFramebufferDrawBuffer(target, GL_NONE);
+  glNamedFramebufferTextureLayer(target, GL_DEPTH_ATTACHMENT, depth.id(), 0, layer);
+  const float far_away = 1;
+  glClearNamedFramebufferfv(target, GL_DEPTH, 0, &far_away);
+  glEnable(GL_DEPTH_TEST);
 }
 
 void ShadowPass::drawHairMap(int map, HairResources& hair, const FrameInput& input, const Texture& table) {
@@ -255,13 +265,11 @@ void ShadowPass::drawHairMap(int map, HairResources& hair, const FrameInput& inp
   const bool by_geometry = path == StrandPath::kGeometry;
   HairStore::bind(hair, draw, &table);
   glBindVertexArray(no_attributes_.id());
-  const GLuint target = framebuffer_.id();
-
-  beginDepth(target, hair_depth_, plan.tile.layer);
-  glEnable(GL_DEPTH_TEST);
+  beginDepth(hair_depth_, plan.tile.layer);
   (by_geometry ? depth_geometry_ : depth_pulling_).use();
   issueStrands(hair, draw, path, {GL_LINE_STRIP, 1});
 
+  const GLuint target = framebuffer_.id();
   glNamedFramebufferTextureLayer(target, GL_DEPTH_ATTACHMENT, 0, 0, 0);
   glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT0, opacity_near_.id(), 0, plan.tile.layer);
   glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT1, opacity_far_.id(), 0, plan.tile.layer);
@@ -299,7 +307,7 @@ StrandCount ShadowPass::drawHairMaps(const FrameInput& input, std::span<HairReso
     drawHairMap(static_cast<int>(map), hair, input, table);
     count.draw_calls += 2;
     if (!has_bodies_) continue;
-    beginDepth(framebuffer_.id(), body_in_hair_depth_, plan.tile.layer);
+    beginDepth(body_in_hair_depth_, plan.tile.layer);
     // What stands between the light and the frustum must shade too: clamped onto its near side.
     glEnable(GL_DEPTH_CLAMP);
     bodies.drawDepth(plan.frustum.clip_from_world, input.skips.shadow_view);
@@ -312,20 +320,13 @@ StrandCount ShadowPass::drawHairMaps(const FrameInput& input, std::span<HairReso
 
 void ShadowPass::drawBodyMap(const FrameInput& input, BodyPass& bodies) {
   if (!has_bodies_) return;
-  const GLuint target = framebuffer_.id();
   for (std::size_t map = 0; map < static_cast<std::size_t>(body_maps_); ++map) {
     const bool kept = input.skips.shadows && bodies_drawn_[map] == body_signatures_[map];
     left_out_.shadows += {kept, 1};
     if (kept) continue;
-    glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT0, 0, 0, 0);
-    glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT1, 0, 0, 0);
-    glNamedFramebufferDrawBuffer(target, GL_NONE);
-    glNamedFramebufferTextureLayer(target, GL_DEPTH_ATTACHMENT, body_depth_.id(), 0, static_cast<GLint>(map));
-    glBindFramebuffer(GL_FRAMEBUFFER, target);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
     glViewport(0, 0, bodyMapSize(size_), bodyMapSize(size_));
-    const float far_away = 1;
-    glClearNamedFramebufferfv(target, GL_DEPTH, 0, &far_away);
-    glEnable(GL_DEPTH_TEST);
+    beginDepth(body_depth_, static_cast<GLint>(map));
     // Bodies beside the near ones may stand between these and the light.
     glEnable(GL_DEPTH_CLAMP);
     bodies.drawDepth(body_frusta_[map].clip_from_world, map + 1 < static_cast<std::size_t>(body_maps_));

@@ -67,18 +67,21 @@ class ShadowPass {
   std::uint64_t signatureOf(const Plan& plan, const HairResources& hair, const FrameInput& input,
                             const BodyPass& bodies) const;
   int tileSide(const HairResources& hair, const FrameInput& input) const;
+  // Lets the framebuffer take depth alone, into a layer of `depth`, and clears what the scissor leaves of it.
+  void beginDepth(const Texture& depth, int layer);
   void drawHairMap(int map, HairResources& hair, const FrameInput& input, const Texture& table);
 
   ShaderProgram depth_geometry_, depth_pulling_, opacity_geometry_, opacity_pulling_;
   VertexArray no_attributes_;
   Framebuffer framebuffer_;
   Texture opacity_near_, opacity_far_, hair_depth_, body_in_hair_depth_, body_depth_;
-  Buffer block_;
+  Buffer block_, grid_block_;
   int size_ = 0, layers_ = 0;
   std::vector<Plan> plans_;
   std::vector<Drawn> drawn_, drawn_before_;
   std::vector<std::size_t> order_;
   shared::ShadowBlock maps_{};
+  shared::ShadowGridBlock grid_{};
   DrawLeftOut left_out_;
   std::vector<int> map_of_hair_;
   std::array<LightFrustum, shared::kMaxBodyShadows> body_frusta_;

@@ -82,6 +82,14 @@ SHARED_BLOCK(3, ShadowBlock) {
   SHARED_ARRAY(vec4, hair_shadow_ball, kMaxHairShadows);  // world: a ball around the hair; w: its radius, m
 };
 
+// Cells across the light, each with a bit for every hair shadow map whose ball reaches into it.
+const int kShadowGrid = 28;  // cells a side: a block of 16 KB holds so many
+SHARED_BLOCK(4, ShadowGridBlock) {
+  vec4 shadow_grid_x;  // xyz: world to cells along the grid's row; w: of the world's origin
+  vec4 shadow_grid_y;
+  SHARED_ARRAY(ivec4, shadow_grid, kShadowGrid * kShadowGrid);
+};
+
 SHARED_BLOCK(1, HairBlock) {
   ivec4 counts;   // faces, entries of the draw table, its first texel, seed
   ivec4 draw;     // strands, chunks a strand, points a strand, own shadow map or -1

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "app/data_path.h"
+#include "app/demo.h"
 #include "render/renderer.h"
 #include "tests/gl_fixture.h"
 #include "tests/golden_compare.h"
@@ -18,12 +20,12 @@ namespace {
 
 constexpr int kWidth = 320, kHeight = 180;
 // Levels of 255, and where the hair is so small that a block holds it; the ledger (app/skips.cpp) states them.
-constexpr double kDetailBound = 4, kSmallBound = 7;
+constexpr double kDetailBound = 4, kSmallBound = 7, kBodyBound = 2;
 
 render::DrawSkips none() {
   render::DrawSkips skips;
   skips.frame = skips.rows = skips.shadows = skips.view = skips.shadow_view = skips.body_parts = false;
-  skips.strands = skips.segments = skips.shadow_detail = skips.openness = false;
+  skips.body_detail = skips.strands = skips.segments = skips.shadow_detail = skips.openness = false;
   return skips;
 }
 
@@ -182,10 +184,10 @@ TEST_F(SkipsDraw, AStillFrameIsKeptAndAnyChangeSeen) {
   EXPECT_FALSE(isKept());
 }
 
-// Mean difference in levels over blocks of 8 x 8 pixels that hold hair (that change when the hair is taken away):
+// Mean difference in levels over blocks of 8 x 8 pixels that hold hair (that change when it, or a body, is taken away):
 // single strands are drawn at other places with fewer of them, so that pixels differ by noise; what a person sees is
 // their mean.
-double differenceOverHair(const app::Image& a, const app::Image& b, const app::Image& bald) {
+double differenceOver(const app::Image& a, const app::Image& b, const app::Image& bald) {
   constexpr int kBlock = 8;
   double sum = 0, weight = 0;
   for (int top = 0; top + kBlock <= a.height; top += kBlock) {
@@ -242,10 +244,36 @@ TEST_F(SkipsDraw, DetailStaysInItsBound) {
           Detail{"openness", &render::DrawSkips::openness}}) {
       render::DrawSkips skips = none();
       skips.*detail.on = true;
-      const double off = differenceOverHair(full, picture(skips), bald);
+      const double off = differenceOver(full, picture(skips), bald);
       std::printf("%s at %.1f m: %.2f levels\n", detail.name, distance, off);
       EXPECT_LE(off, distance > 15 ? kSmallBound : kDetailBound) << detail.name << " at " << distance << " m";
     }
+  }
+}
+
+// The mannequin walking, near and far: what differs is its rim and the light's interpolation over its skin.
+TEST_F(SkipsDraw, BodyDetailStaysInItsBound) {
+  app::Scene scene = app::loadScene(app::dataPath("assets/scenes/walk.json"));
+  scene.camera.follow = false;
+  scene.playback.settle = 0;
+  app::Demo demo = app::openScene(std::move(scene), static_cast<double>(kWidth) / kHeight);
+  for (int frame = 0; frame < 12; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
+  render::Renderer renderer(gl_fixture::kShaderDir);
+  for (const float distance : {6.0f, 12.0f, 25.0f}) {
+    render::FrameInput frame = app::frameInput(demo, kWidth, kHeight);
+    frame.camera.target = {0, 0.9f, 0};
+    frame.camera.eye = {0.3f * distance, 1.2f, 0.95f * distance};
+    frame.skips = none();
+    const app::Image full = draw(renderer, frame);
+    frame.skips.body_detail = true;
+    render::FrameReport report;
+    const app::Image merged = draw(renderer, frame, &report);
+    frame.skips.body_detail = frame.view.show_body = false;
+    const double off = differenceOver(full, merged, draw(renderer, frame));
+    const render::LeftOut& count = report.left_out.body_detail;
+    std::printf("at %.0f m: %.2f levels, %ld of %ld triangles left out\n", distance, off, count.skipped, count.of);
+    EXPECT_LE(off, kBodyBound) << distance << " m away";
+    EXPECT_GT(count.skipped, count.of / 3) << distance << " m away";
   }
 }
 

@@ -57,35 +57,46 @@ float bodyLightOnHair(int map, vec3 at) {
   return texture(body_in_hair_depth, vec4(hairShadowTexel(map, at.xy), reference));
 }
 
-// Light of the key left after all hairs, for a point of body or ground: averaged over a disc that widens with the
+// Light of the key left after the hair of a map, for a point of body or ground: averaged over a disc that widens with the
 // distance from the hair, as under a lamp of some size. The taps lie on a spiral of golden angles (Vogel 1979).
-float hairLightOnSurface(vec3 world) {
+float lightThroughHair(int map, vec3 world) {
   const int kTaps = 8;
   const float kLampAngle = 0.16, kLeastRadius = 0.004;  // rad, m
+  // Hair shades what lies in the ball's shadow only.
+  vec3 from = world - hair_shadow_ball[map].xyz;
+  float down = dot(from, to_key.xyz), radius = hair_shadow_ball[map].w;
+  if (down > radius || dot(from, from) - down * down > radius * radius) return 1.0;
+  vec3 at = hairShadowCoordinates(map, world);
+  if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return 1.0;
+  // How far above lies the hair that may shade this point? Sought in a wide ring, nearest to the point's depth first.
+  float above = 0.0;
+  for (int i = 0; i < 5; ++i) {
+    vec2 tap = i == 4 ? vec2(0.0) : 0.03 * vec2(i < 2 ? -1.0 : 1.0, (i & 1) == 0 ? -1.0 : 1.0);
+    float first = textureLod(hair_depth, hairShadowTexel(map, at.xy + tap / hair_shadow_size[map].x), 0.0).r;
+    if (first < 1.0) above = max(above, (at.z - first) * hair_shadow_size[map].z);
+  }
+  if (above <= 0.0) return 1.0;
+  float reach = (kLeastRadius + kLampAngle * 0.5 * above) / hair_shadow_size[map].x;
+  float sum = 0.0;
+  for (int i = 0; i < kTaps; ++i) {
+    float turn = 2.399963 * float(i);
+    vec2 tap = sqrt((float(i) + 0.5) / float(kTaps)) * vec2(cos(turn), sin(turn));
+    sum += exp(-hairOpticalDepth(map, vec3(at.xy + tap * reach, at.z)));
+  }
+  return sum / float(kTaps);
+}
+
+// After all hairs that may stand above the point.
+float hairLightOnSurface(vec3 world) {
   float light = 1.0;
-  for (int map = 0; map < int(to_key.w); ++map) {
-    // Hair shades what lies in the ball's shadow only.
-    vec3 from = world - hair_shadow_ball[map].xyz;
-    float down = dot(from, to_key.xyz), radius = hair_shadow_ball[map].w;
-    if (down > radius || dot(from, from) - down * down > radius * radius) continue;
-    vec3 at = hairShadowCoordinates(map, world);
-    if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) continue;
-    // How far above lies the hair that may shade this point? Sought in a wide ring, nearest to the point's depth first.
-    float above = 0.0;
-    for (int i = 0; i < 5; ++i) {
-      vec2 tap = i == 4 ? vec2(0.0) : 0.03 * vec2(i < 2 ? -1.0 : 1.0, (i & 1) == 0 ? -1.0 : 1.0);
-      float first = textureLod(hair_depth, hairShadowTexel(map, at.xy + tap / hair_shadow_size[map].x), 0.0).r;
-      if (first < 1.0) above = max(above, (at.z - first) * hair_shadow_size[map].z);
-    }
-    if (above <= 0.0) continue;
-    float reach = (kLeastRadius + kLampAngle * 0.5 * above) / hair_shadow_size[map].x;
-    float sum = 0.0;
-    for (int i = 0; i < kTaps; ++i) {
-      float turn = 2.399963 * float(i);
-      vec2 tap = sqrt((float(i) + 0.5) / float(kTaps)) * vec2(cos(turn), sin(turn));
-      sum += exp(-hairOpticalDepth(map, vec3(at.xy + tap * reach, at.z)));
-    }
-    light *= sum / float(kTaps);
+  if (to_key.w == 0.0) return light;
+  vec2 at = vec2(dot(shadow_grid_x.xyz, world) + shadow_grid_x.w, dot(shadow_grid_y.xyz, world) + shadow_grid_y.w);
+  ivec2 cell = ivec2(floor(at));
+  if (any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, ivec2(kShadowGrid)))) return light;
+  ivec4 maps = shadow_grid[cell.y * kShadowGrid + cell.x];
+  for (int word = 0; word < 4; ++word) {
+    uint left = uint(word == 0 ? maps.x : word == 1 ? maps.y : word == 2 ? maps.z : maps.w);
+    for (; left != 0u; left &= left - 1u) light *= lightThroughHair(32 * word + findLSB(left), world);
   }
   return light;
 }
