@@ -15,6 +15,7 @@ struct SkipRow {
   std::string scene, skips;  // skips: none, all, or the one that is on
   std::string setup;         // picture and strands
   double simulation_ms = 0, character_ms = 0, drawing_ms = 0;
+  double drawing_like_close_up_ms = 0;  // of a crowd with all skips, at the close-up's strands and shadow maps
   double simulation_error_mm = 0, simulation_error_pixels = 0;  // mean over vertices, worst frame, against none
   double image_error = 0;      // levels of 255, mean over the picture, worst frame, against none
   app::SkipTallies skipped{};  // of all frames
@@ -26,11 +27,13 @@ struct SceneRun {
   std::string file;
   int frames = 40;
   int warm_up = 10;
-  std::vector<int> drawn;                                       // frames that are drawn
+  std::vector<int> drawn;                                       // frames that are drawn; times are of all but the first
   int width = 320, height = 180, strands = 0, shadow_size = 0;  // 0: the scene's
+  int close_up_strands = 0;                                     // of a crowd; 0: it is none
 };
 
-// All rows of a scene, none first. Pictures of none and all at the last drawn frame are written to `folder`.
+// All rows of a scene, none first: of skips that left something out. Pictures of none and all at the last drawn frame
+// are written to `folder`.
 std::vector<SkipRow> measureScene(const SceneRun& run, const std::string& folder);
 
 }  // namespace bench
