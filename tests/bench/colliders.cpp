@@ -13,7 +13,7 @@ namespace bench {
 namespace {
 
 constexpr double kSettle = 2;       // s before the measured frames
-constexpr int kFramesPerSkin = 12;  // the skin is posed and measured every so many frames
+constexpr int kFramesPerSkin = 20;  // the skin is posed and measured every so many frames
 constexpr double kReach = 0.05;     // m, as far as distances to the skin are told
 
 struct Row {

@@ -9,6 +9,7 @@
 #include "tests/bench/colliders.h"
 #include "tests/bench/collision_scenes.h"
 #include "tests/bench/collisions.h"
+#include "tests/bench/cpu_clock.h"
 
 namespace bench {
 namespace {
@@ -42,7 +43,12 @@ void replacePart(const std::string& file, const std::string& name, const std::st
 
 void writeCollisionDocument(const std::string& folder, int frames) {
   const std::string file = folder + "/collision.md";
-  const auto measure = [&](const std::string& name, const auto& write) { replacePart(file, name, written(write)); };
+  const auto measure = [&](const std::string& name, const auto& write) {
+    const double started = cpuSeconds();
+    replacePart(file, name, written(write));
+    std::printf("%s: %.0f s\n", name.c_str(), cpuSeconds() - started);
+    std::fflush(stdout);
+  };
   measure("spawn", [](std::FILE* out) { writeSpawns(out); });
   measure("crossing", [](std::FILE* out) { writeCrossings(out); });
   measure("self", [&](std::FILE* out) { writeSelfContacts(frames, out); });
