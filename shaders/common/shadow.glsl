@@ -57,8 +57,8 @@ float bodyLightOnHair(int map, vec3 at) {
   return texture(body_in_hair_depth, vec4(hairShadowTexel(map, at.xy), reference));
 }
 
-// Light of the key left after the hair of a map, for a point of body or ground: averaged over a disc that widens with the
-// distance from the hair, as under a lamp of some size. The taps lie on a spiral of golden angles (Vogel 1979).
+// Light of the key left after the hair of a map, for a point of body or ground: averaged over a disc that widens with
+// the distance from the hair, as under a lamp of some size. The taps lie on a spiral of golden angles (Vogel 1979).
 float lightThroughHair(int map, vec3 world) {
   const int kTaps = 8;
   const float kLampAngle = 0.16, kLeastRadius = 0.004;  // rad, m
