@@ -46,13 +46,16 @@ void look(const HairMesh& mesh, const HairState& state, double seconds, Tangles&
   std::fill(tangles.touched.begin(), tangles.touched.end(), char{0});
   for (const Contact& contact : state.contacts) tangles.touched[contact.vertex] = 1;
   // Counts how long something has been tangled, and has its columns combed when it has been long enough.
-  const auto count = [&](bool tangled, std::span<const int> vertices, double& lasted) {
+  const auto count = [&](bool tangled, bool again, std::span<const int> vertices, double& lasted) {
     lasted = tangled ? lasted + seconds : 0;
     if (!tangled) return;
     for (const int v : vertices) tangles.columns[mesh.column_of[v]].upright = 0;
     if (lasted < kTurnedFor) return;
     if (std::any_of(vertices.begin(), vertices.end(), [&](int v) { return tangles.touched[v] != 0; })) return;
-    for (const int v : vertices) begin(tangles.columns[mesh.column_of[v]]);
+    for (const int v : vertices) {
+      Tangles::Column& column = tangles.columns[mesh.column_of[v]];
+      if (again || column.patience == 0) begin(column);
+    }
   };
   const auto still = [&](int v) {
     const Vec3& root = state.velocities[mesh.shape.column_first[mesh.column_of[v]]];
@@ -62,13 +65,14 @@ void look(const HairMesh& mesh, const HairState& state, double seconds, Tangles&
     const CornerTet& tet = mesh.tets[t];
     const double share = volumeOf(tet, state.positions) / tet.rest_volume;
     const bool wound = share < kSqueezed && std::all_of(tet.v.begin(), tet.v.end(), still);
-    count(share < kTurnedOver || wound, tet.v, tangles.turned[t]);
+    // Very soft hair rests squeezed: once combed it is left so.
+    count(share < kTurnedOver || wound, share < kTurnedOver, tet.v, tangles.turned[t]);
   }
   for (int i = 0; i < mesh.vertexCount(); ++i) {
     if (mesh.layer_of[i] < 2) continue;
     const int segment[] = {i - 2, i - 1, i};
     const bool folds = cosineAt(segment, state.positions) < kFolded && cosineAt(segment, mesh.shape.positions) > 0;
-    count(folds, segment, tangles.folded[i]);
+    count(folds, true, segment, tangles.folded[i]);
   }
 }
 
