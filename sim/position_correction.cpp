@@ -7,6 +7,7 @@ namespace sim {
 namespace {
 
 constexpr int kRounds = 4;               // of position correction and deformation minimization
+constexpr int kPlainRounds = 8;          // more of correction alone
 constexpr double kMinimization = 1e-3;   // relative residual
 constexpr double kFastestFollower = 10;  // m/s that a vertex takes from following a corrected one
 
@@ -101,8 +102,9 @@ void correctPositions(const CorrectedStep& step, StageClock& clock, PositionCorr
   scratch.uncorrected = state.positions;
   double follow_speed = 0;
   // Minimization may push other vertices in, which the paper leaves to future work: the rounds go on with these held as
-  // well, and a last one without minimization leaves nothing inside.
-  for (int round = 0; round <= kRounds; ++round) {
+  // well, and those that end it are without minimization: one leaves nothing inside, but where bodies overlap each may
+  // push into the other.
+  for (int round = 0; round <= kRounds + kPlainRounds; ++round) {
     std::fill(scratch.displacement.begin(), scratch.displacement.end(), Vec3::Zero());
     follow_speed = std::max(follow_speed, correctionSpeed(step, scratch));
     const int corrected = correctFound(step, search.margins.slack, scratch, state);
@@ -112,8 +114,8 @@ void correctPositions(const CorrectedStep& step, StageClock& clock, PositionCorr
     }
     report.corrected += corrected;
     clock.spent(kStageCollision, report);
-    if (corrected == 0 || round == kRounds) break;
-    if (step.params.minimize_deformation) {
+    if (corrected == 0 || round == kRounds + kPlainRounds) break;
+    if (step.params.minimize_deformation && round < kRounds) {
       report.minimization_iterations += minimizeDeformation(scratch.laplacian, scratch.held, kMinimization,
                                                             scratch.minimization, scratch.displacement);
       for (std::size_t i = 0; i < state.positions.size(); ++i) {
