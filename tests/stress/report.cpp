@@ -198,7 +198,8 @@ namespace {
 
 constexpr const char* kLeftOut =
     R"(**What falls short**: kinds of cases of which some fail, or failed when last run, are left to the long run (`fallsShort` in
-tests/stress/stress_case.cpp): steps of 1/10 s (energy rises once), shuffled hair, a body of 12 cm switched on within the hair (it keeps
+tests/stress/stress_case.cpp): steps of 1/10 s (energy rises once), playback at 20 and 50 times (hair thrown over a shoulder may stay
+there), shuffled hair, a body of 12 cm switched on within the hair (it keeps
 lifting hair whose roots lie in it), parameters drawn at random over their whole ranges, and draws over all axes at once.
 
 )";
