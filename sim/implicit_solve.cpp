@@ -20,6 +20,8 @@ constexpr Solver kStandIn = Solver::kTwoLevel;
 constexpr double kFactorCost = 0.9, kTwoLevelCost = 1.8;
 // A relative residual in the norm of the two levels says less of the error than one in the factor's.
 constexpr double kTwoLevelShare = 0.5;
+// Nor is what they make of a residual the error itself, as with the whole factor, but less by up to an order.
+constexpr double kTwoLevelNear = 0.1;
 constexpr double kLeastCoarseWeight = 0.05;
 constexpr double kStaleRatio = 3;  // of h (h + damping): BDF2's start-up step shares its factor with the steps after it
 constexpr double kStaleMass = 1.5;  // of 1 + h drag: the air is thick while the hair settles
@@ -281,7 +283,9 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
   SolveReport total;
   const auto runSome = [&](double relative, int most, SolveStart start) {
     const bool exact = preconditioner.kind() == Solver::kWarped || preconditioner.kind() == Solver::kDirect;
-    stop.displacement = exact ? params.displacement_tolerance : 0;
+    stop.displacement = exact   ? params.displacement_tolerance
+                        : cheap ? kTwoLevelNear * params.displacement_tolerance
+                                : 0;
     stop.foresee = exact;
     stop.h = base.h;
     stop.relative = cheap ? kTwoLevelShare * relative : relative;
