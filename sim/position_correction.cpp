@@ -39,17 +39,17 @@ void enterContact(const CorrectedStep& step, const Penetration& hit, HairState& 
 
 // Moves what was found onto the surface. Returns how many vertices were.
 int correctFound(const CorrectedStep& step, double slack, PositionCorrection& scratch, HairState& state) {
-  int corrected = 0;
+  scratch.corrected.clear();
   for (const Penetration& hit : scratch.penetrations) {
     if (hit.depth > slack || hit.standing) {
       scratch.displacement[hit.vertex] = hit.target - state.positions[hit.vertex];
       scratch.held[hit.vertex] = 1;
       state.positions[hit.vertex] = hit.target;
-      ++corrected;
+      if (scratch.corrected.empty() || scratch.corrected.back() != hit.vertex) scratch.corrected.push_back(hit.vertex);
     }
     enterContact(step, hit, state);
   }
-  return corrected;
+  return static_cast<int>(scratch.corrected.size());
 }
 
 // Speed (m/s) at which the step's own motion, not an overlap that stood before it, had to be corrected.
@@ -85,13 +85,14 @@ PositionCorrection::PositionCorrection(const HairMesh& mesh) : laplacian(makeEdg
     if (!mesh.isRoot(i)) all_vertices.push_back(i);
   }
   penetrations.reserve(all_vertices.size());
+  corrected.reserve(all_vertices.size());
 }
 
 void correctPositions(const CorrectedStep& step, StageClock& clock, PositionCorrection& scratch, HairState& state,
                       StepReport& report) {
   const HairMesh& mesh = step.mesh;
-  const ContactSearch search{step.params.collide_inner ? scratch.all_vertices : mesh.external_vertices, step.colliders,
-                             step.start, step.dt, contactMargins(step.params, step.dt)};
+  ContactSearch search{step.params.collide_inner ? scratch.all_vertices : mesh.external_vertices, step.colliders,
+                       step.start, step.dt, contactMargins(step.params, step.dt)};
   findPenetrations(search, state.positions, scratch.search, scratch.penetrations);
   if (scratch.penetrations.empty()) return;
   for (const Penetration& hit : scratch.penetrations)
@@ -115,6 +116,9 @@ void correctPositions(const CorrectedStep& step, StageClock& clock, PositionCorr
     report.corrected += corrected;
     clock.spent(kStageCollision, report);
     if (corrected == 0 || round == kRounds + kPlainRounds) break;
+    // What nothing moves any more cannot have come inside. Where the way out of one body has led through another, to go
+    // back by the path would be to go to and fro: to be outside is enough.
+    if (round > kRounds) search.vertices = scratch.corrected, search.start = {};
     if (step.params.minimize_deformation && round < kRounds) {
       report.minimization_iterations += minimizeDeformation(scratch.laplacian, scratch.held, kMinimization,
                                                             scratch.minimization, scratch.displacement);

@@ -17,6 +17,7 @@ struct PositionCorrection {
   std::vector<int> all_vertices;  // but the roots
   std::vector<Vec3> uncorrected, displacement;
   std::vector<Penetration> penetrations;
+  std::vector<int> corrected;  // vertices, of the last round
   std::vector<unsigned char> held;
   ContactScratch search;
   MinimizationScratch minimization;
@@ -36,7 +37,8 @@ struct CorrectedStep {
 // Brings the vertices that lie inside a collider, or went through one within the step, back to its surface, lets the
 // others follow, and enters the contacts into the state. Afterwards no external vertex (with collide_inner: no vertex)
 // lies below the offset by more than the slack of contactMargins, but for overlaps that stood before the step: these
-// shrink by max_depenetration, and leave no velocity behind. The work is bounded by five rounds.
+// shrink by max_depenetration, and leave no velocity behind. The work is bounded: five rounds, and eight more of what
+// those corrected last.
 void correctPositions(const CorrectedStep& step, StageClock& clock, PositionCorrection& scratch, HairState& state,
                       StepReport& report);
 

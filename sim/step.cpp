@@ -257,11 +257,14 @@ StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInpu
     parts.clock.spent(kStageCollision, report);
   }
   if (params.collide) {
-    correctPositions({mesh, params, colliders, parts.start_positions, dt}, parts.clock, parts.correction, state,
-                     report);
+    const CorrectedStep corrected{mesh, params, colliders, parts.start_positions, dt};
+    correctPositions(corrected, parts.clock, parts.correction, state, report);
     // Overlaps that stood before are lifted out whatever it takes.
-    if (bounded && report.corrected > 0 && report.standing == 0)
-      limitCorrections(taken, colliders, parts.energy_guard, state);
+    if (bounded && report.corrected > 0 && report.standing == 0) {
+      // Halfway between two places outside of a body may lie its inside: that nothing is left there comes first.
+      if (limitCorrections(taken, colliders, parts.energy_guard, state) < 1)
+        correctPositions(corrected, parts.clock, parts.correction, state, report);
+    }
     parts.clock.spent(kStageCollision, report);
   }
   parts.good.positions = state.positions;
