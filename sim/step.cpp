@@ -42,7 +42,7 @@ struct StepContext::Parts {
   std::optional<ImplicitSolver<float>> single_solver;
   std::optional<ImplicitSolver<double>> double_solver;
   // Scratch of a step.
-  std::vector<Vec3> x_hat, v_hat, start_positions, start_velocities;
+  std::vector<Vec3> x_hat, v_hat, start_positions, start_velocities, limited_velocities;
   std::vector<V3<double>> plain_positions;  // for the force model, which is plain arrays
   std::vector<Vec3> root_positions;         // of a teleport
   std::vector<Ellipsoid> standing;          // bodies after a teleport
@@ -55,7 +55,8 @@ struct StepContext::Parts {
 
   Parts(const HairMesh& m, double (*c)())
       : mesh(&m), clock{c}, pattern(systemPattern(m)), material(m, pattern), tangles(m), correction(m) {
-    for (auto* array : {&x_hat, &v_hat, &start_positions, &start_velocities}) array->resize(m.vertexCount());
+    for (auto* array : {&x_hat, &v_hat, &start_positions, &start_velocities, &limited_velocities})
+      array->resize(m.vertexCount());
   }
 };
 
@@ -261,9 +262,13 @@ StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInpu
     correctPositions(corrected, parts.clock, parts.correction, state, report);
     // Overlaps that stood before are lifted out whatever it takes.
     if (bounded && report.corrected > 0 && report.standing == 0) {
-      // Halfway between two places outside of a body may lie its inside: that nothing is left there comes first.
-      if (limitCorrections(taken, colliders, parts.energy_guard, state) < 1)
+      // Halfway between two places outside of a body may lie its inside: that nothing is left there comes first, but it
+      // leaves no velocity behind.
+      if (limitCorrections(taken, colliders, parts.energy_guard, state) < 1) {
+        parts.limited_velocities = state.velocities;
         correctPositions(corrected, parts.clock, parts.correction, state, report);
+        state.velocities = parts.limited_velocities;
+      }
     }
     parts.clock.spent(kStageCollision, report);
   }
