@@ -127,7 +127,7 @@ std::vector<ParamField> makeTable() {
                             "Arithmetic of the linear solver; mixed: float, the rest factor in 16 bits."),
       field<&P::tolerance>("tolerance", "Numerics", "", {1e-12, 0.5, kLog},
                            "Relative residual at which the linear solver stops."),
-      field<&P::max_iterations>("max_iterations", "Numerics", "", {1, 5000, kLog},
+      field<&P::max_iterations>("max_iterations", "Numerics", "", {10, 5000, kLog},
                                 "Iterations after which the linear solver stops in any case."),
       field<&P::acceleration_tolerance>(
           "acceleration_tolerance", "Numerics", "m/s^2", {1e-9, 10, kLog},
