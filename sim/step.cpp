@@ -221,6 +221,21 @@ void partBundles(const CorrectedStep& step, Parts& parts, HairState& state, Step
   resolveSelfContacts({step.mesh, step.params, {}, step.dt}, self, state);
 }
 
+// Corrects what is inside of bodies, as far as the energy that the step began with pays for it (taken: null where it
+// need not).
+void keepOutside(const CorrectedStep& step, const TakenStep* taken, Parts& parts, HairState& state,
+                 StepReport& report) {
+  correctPositions(step, parts.clock, parts.correction, state, report);
+  // Overlaps that stood before are lifted out whatever it takes.
+  if (!taken || report.corrected == 0 || report.standing > 0) return;
+  if (limitCorrections(*taken, step.colliders, parts.energy_guard, state) == 1) return;
+  // Halfway between two places outside of a body may lie its inside: that nothing is left there comes first, but it
+  // leaves no velocity behind.
+  parts.limited_velocities = state.velocities;
+  correctPositions(step, parts.clock, parts.correction, state, report);
+  state.velocities = parts.limited_velocities;
+}
+
 }  // namespace
 
 StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInput& given, double dt,
@@ -258,18 +273,7 @@ StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInpu
     parts.clock.spent(kStageCollision, report);
   }
   if (params.collide) {
-    const CorrectedStep corrected{mesh, params, colliders, parts.start_positions, dt};
-    correctPositions(corrected, parts.clock, parts.correction, state, report);
-    // Overlaps that stood before are lifted out whatever it takes.
-    if (bounded && report.corrected > 0 && report.standing == 0) {
-      // Halfway between two places outside of a body may lie its inside: that nothing is left there comes first, but it
-      // leaves no velocity behind.
-      if (limitCorrections(taken, colliders, parts.energy_guard, state) < 1) {
-        parts.limited_velocities = state.velocities;
-        correctPositions(corrected, parts.clock, parts.correction, state, report);
-        state.velocities = parts.limited_velocities;
-      }
-    }
+    keepOutside({mesh, params, colliders, parts.start_positions, dt}, bounded ? &taken : nullptr, parts, state, report);
     parts.clock.spent(kStageCollision, report);
   }
   parts.good.positions = state.positions;
