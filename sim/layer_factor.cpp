@@ -139,7 +139,7 @@ HAIRMESH_CLONES void runSolve(const Structure& s, const double* values, int lane
 
 template <class T>
 LayerFactor<T>::LayerFactor(const HairMesh& mesh, const ColumnLayout& layout, const ColumnPattern& pattern)
-    : mesh_(&mesh), layout_(&layout), pattern_(&pattern), groups_(layout.stride / kLanes), field_(layout) {
+    : mesh_(&mesh), layout_(&layout), pattern_(&pattern), groups_(layout.stride / kLanes) {
   const int columns = layout.columns;
   std::vector<std::pair<int, int>> pairs;
   for (const BlockDiagonal& d : pattern.diagonals) {
@@ -259,13 +259,6 @@ template <class T>
 void LayerFactor<T>::solve(ColumnField<T>& x) const {
   const Structure s{below_first_, updates_, pivot_at_, block_at_, rows_, rows_below_};
   for (int g = 0; g < groups_; ++g) runSolve(s, values_.data() + g * group_size_, g * kLanes, x);
-}
-
-template <class T>
-void LayerFactor<T>::solve(std::span<const V3<T>> r, std::span<V3<T>> z) {
-  field_.pack(*layout_, r);
-  solve(field_);
-  field_.unpack(*layout_, z);
 }
 
 template struct LayerFactor<float>;

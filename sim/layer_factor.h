@@ -23,10 +23,6 @@ struct LayerFactor {
 
   // x = (L D L^T)^-1 x; allocates nothing.
   void solve(ColumnField<T>& x) const;
-  // The same per vertex.
-  void solve(std::span<const V3<T>> r, std::span<V3<T>> z);
-
-  std::size_t blockCount() const { return below_.size() + order_.size(); }  // of 3x3, a layer
 
  private:
   const HairMesh* mesh_;
@@ -34,8 +30,8 @@ struct LayerFactor {
   const ColumnPattern* pattern_;
   int groups_;              // of kLanes layers
   std::vector<int> order_;  // columns as they are eliminated
-  std::vector<int> below_first_{0},
-      below_;  // per eliminated column: the columns that its elimination couples, in order
+  // Per eliminated column: the columns that its elimination couples, in order.
+  std::vector<int> below_first_{0}, below_;
   // Where L_ik D_k L_jk^T goes, for all pairs j <= i of those below k: block number, or ~number of a pivot.
   std::vector<int> updates_;
   // Where the matrix's blocks go: block, or ~pivot; and whether as the transpose.
@@ -53,7 +49,6 @@ struct LayerFactor {
   std::size_t group_size_ = 0;
   std::vector<std::size_t> pivot_at_, block_at_;  // within a group
   LineVector<T> panel_;                           // D L^T of one column
-  ColumnField<T> field_;
 
   void clearWithIdentity();
   void eliminate();

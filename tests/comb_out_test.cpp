@@ -14,12 +14,6 @@ using test::Hair;
 
 constexpr double kFrame = 1.0 / 60;
 
-test::PatchOptions patch() {
-  test::PatchOptions o;
-  o.nx = 4, o.nz = 3, o.layers = 5, o.length = 0.25, o.mixed = true;
-  return o;
-}
-
 // Every vertex of a column's upper half mirrored through its middle: its prisms are turned over.
 void turnOver(int column, const sim::HairMesh& mesh, sim::HairState& state) {
   const int first = mesh.shape.column_first[column], end = mesh.shape.column_first[column + 1];
@@ -38,7 +32,7 @@ bool concerned(const sim::HairMesh& mesh, int column, int other) {
 }
 
 struct Frozen {
-  sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(patch()));
+  sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(test::mixedPatch(5, 0.25)));
   sim::HairState state = sim::restState(mesh, Eigen::Isometry3d::Identity());
   sim::Tangles tangles{mesh};
 

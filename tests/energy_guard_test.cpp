@@ -15,12 +15,6 @@ using test::Hair;
 
 constexpr double kFrame = 1.0 / 60;
 
-test::PatchOptions patch() {
-  test::PatchOptions o;
-  o.nx = 4, o.nz = 3, o.layers = 7, o.length = 0.3, o.mixed = true;
-  return o;
-}
-
 sim::SimParams hairWithoutBody() {
   sim::SimParams params;
   params.collide = false;
@@ -45,7 +39,7 @@ double energyAboveRest(Hair& hair, const Vec3& moved) {
 // The largest energy, of that which being left behind is worth, after the roots were dragged along by `moved` within
 // one step and stand still.
 double worstAfterDrag(sim::SimParams params, const Vec3& moved, double dt) {
-  Hair hair(test::combedShape(patch()), params);
+  Hair hair(test::combedShape(test::mixedPatch(7, 0.3)), params);
   const double worth = 0.5 * massOf(hair) * moved.squaredNorm() / (dt * dt);
   for (Vec3& root : hair.roots) root += moved;
   double worst = 0;
@@ -68,7 +62,7 @@ TEST(EnergyGuard, HairLeftBehindByItsRootsStoresNoMoreThanThatIsWorthTwiceAsFast
 }
 
 TEST(EnergyGuard, AndComesBack) {
-  Hair hair(test::combedShape(patch()), hairWithoutBody());
+  Hair hair(test::combedShape(test::mixedPatch(7, 0.3)), hairWithoutBody());
   for (Vec3& root : hair.roots) root += Vec3(2, 0, 0);
   for (int n = 0; n < 300; ++n) hair.step(kFrame);
   const sim::HairState rest = sim::restState(hair.mesh, Eigen::Isometry3d(Eigen::Translation3d(2, 0, 0)));
@@ -77,7 +71,7 @@ TEST(EnergyGuard, AndComesBack) {
 
 // A state flung away from rest within one step, and that step.
 struct Flung {
-  Hair hair{test::combedShape(patch()), hairWithoutBody()};
+  Hair hair{test::combedShape(test::mixedPatch(7, 0.3)), hairWithoutBody()};
   sim::HairState start = hair.state;
   sim::ForceModel<double> model = sim::makeForceModel(hair.mesh, sim::systemPattern(hair.mesh), hair.params);
   sim::EnergyGuard scratch;

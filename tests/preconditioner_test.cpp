@@ -191,7 +191,10 @@ void layersAreSolvedOneByOne(double bound) {
     } else {
       factor.factor(packed);
     }
-    factor.solve(r, z);
+    sim::ColumnField<T> field(layout);
+    field.pack(layout, r);
+    factor.solve(field);
+    field.unpack(layout, z);
     double worst = 0;
     for (int i = 0; i < n; ++i) worst = std::max(worst, std::sqrt(static_cast<double>(dot(z[i] - x[i], z[i] - x[i]))));
     EXPECT_LT(worst, bound) << by_blocks;

@@ -23,6 +23,13 @@ struct PatchOptions {
   bool mixed = false, uneven = false;
 };
 
+// Triangles and quadrilaterals, wide enough for columns that no edge bounds.
+inline PatchOptions mixedPatch(int layers, double length) {
+  PatchOptions o;
+  o.nx = 4, o.nz = 3, o.layers = layers, o.length = length, o.mixed = true;
+  return o;
+}
+
 inline sim::HairMeshShape patchShape(const PatchOptions& o) {
   sim::HairMeshShape shape;
   const auto column = [&](int i, int k) { return k * (o.nx + 1) + i; };
