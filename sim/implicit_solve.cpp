@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/vector_kernels.h"
+
 namespace sim {
 namespace {
 
@@ -78,7 +80,8 @@ ImplicitSolver<T>::ImplicitSolver(const HairMesh& mesh, const BlockPattern& patt
       packed_x(layout),
       packed_v(layout),
       packed_force(layout),
-      preconditioner(mesh, pattern) {
+      preconditioner(mesh, pattern),
+      guess(mesh.vertexCount()) {
   const int n = mesh.vertexCount();
   for (auto* array : {&x, &v, &trial, &force, &rhs, &velocity_step}) array->resize(n);
   mass.resize(n), inverse_mass_dt.resize(n);
@@ -249,20 +252,27 @@ void ImplicitSolver<T>::setContactConstraints(const HairMesh& mesh, const SimPar
 template <class T>
 void ImplicitSolver<T>::weighCoarse() {
   if (preconditioner.kind() != Solver::kTwoLevel) return;
-  auto &r = scratch.d, &z = scratch.z, &q = scratch.q;  // the solve's own residual stays
-  multiply<T>(matrix, product, v, q);
-  for (std::size_t i = 0; i < r.size(); ++i) r[i] = trial[i] - q[i];
+  auto &r = scratch.d, &z = scratch.z, &q = scratch.q;
+  std::copy(scratch.r.begin(), scratch.r.end(), r.begin());  // the solve's own stays whole
   filter.apply(r);
   preconditioner.applyCoarse(r, z);
   filter.apply(z);
   multiply<T>(matrix, product, z, q);
-  double along = 0, energy = 0;
-  for (std::size_t i = 0; i < r.size(); ++i) {
-    along += static_cast<double>(dot(z[i], r[i]));
-    energy += static_cast<double>(dot(z[i], q[i]));
-  }
+  const double along = innerProduct<T>(z, r), energy = innerProduct<T>(z, q);
   const double weight = energy > 0 ? along / energy : 1;
   preconditioner.setCoarseWeight(static_cast<T>(std::clamp(weight, kLeastCoarseWeight, 1.0)));
+}
+
+// The residual at the present v, and at a nearer one where earlier steps tell of it: returns the head start of that.
+template <class T>
+double ImplicitSolver<T>::beginSolve(const SimParams& params) {
+  multiply<T>(matrix, product, v, scratch.r);
+  for (std::size_t i = 0; i < v.size(); ++i) scratch.r[i] = trial[i] - scratch.r[i];
+  scratch.deflation = {};
+  if (params.solver == Solver::kPaper || params.solver == Solver::kDirect) return 0;
+  const double gained = guess.improve(matrix, product, filter, v, scratch.r);
+  scratch.deflation = guess.deflation();
+  return gained;
 }
 
 template <class T>
@@ -315,12 +325,15 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
     if (touched.empty() || touched.back() != contact.vertex) touched.push_back(contact.vertex);
   }
   std::copy(rhs.begin(), rhs.end(), trial.begin());
-  SolveStart start = SolveStart::kFresh;
+  SolveStart start = SolveStart::kPrepared;
   for (int round = 0; round < kContactRounds; ++round) {
     setContactConstraints(mesh, params, base, contacts, start);
     // One batch of answers a round: what is still missing then comes with the steps to come.
     const bool complete = preconditioner.setConstraints(constraints, 3);
-    if (start == SolveStart::kFresh) weighCoarse();
+    if (round == 0) {
+      stop.head_start = beginSolve(params);
+      weighCoarse();
+    }
     const bool pay = !complete && params.solver == Solver::kDirect;
     runPcg(params.tolerance, pay ? std::min(kUncorrectedIterations, params.max_iterations) : params.max_iterations,
            start);
@@ -404,6 +417,7 @@ void ImplicitSolver<T>::solve(const HairMesh& mesh, const SimParams& params, con
     }
     spent(kStageSolve);
   }
+  guess.record([&](std::size_t i) { return v[i] - cast<T>(velocities[i]); });
   for (std::size_t i = 0; i < n; ++i) velocities[i] = widen(v[i]);
 }
 

@@ -16,6 +16,7 @@
 
 #include "sim/contact.h"
 #include "sim/forces/column_model.h"
+#include "sim/initial_guess.h"
 #include "sim/linear_solver.h"
 #include "sim/preconditioner_choice.h"
 #include "sim/step.h"
@@ -41,6 +42,7 @@ struct ImplicitSolver {
   Preconditioner<T> preconditioner;
   Filter<T> filter;
   SolverScratch<T> scratch;
+  InitialGuess<T> guess;
   std::vector<V3<T>> x, v, trial, force, rhs, velocity_step;
   std::vector<T> mass, inverse_mass_dt;
   std::vector<VertexConstraint> constraints;
@@ -77,6 +79,7 @@ struct ImplicitSolver {
   double residualSquare(const SimParams& params, const StepBase& base);
   void setContactConstraints(const HairMesh& mesh, const SimParams& params, const StepBase& base,
                              std::span<const Contact> contacts, SolveStart start);
+  double beginSolve(const SimParams& params);
   void weighCoarse();
   SolveReport solveLinear(const HairMesh& mesh, const SimParams& params, const StepBase& base,
                           std::vector<Contact>& contacts);

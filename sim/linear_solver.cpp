@@ -7,18 +7,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/vector_kernels.h"
+
 namespace sim {
 namespace {
 
 constexpr double kEven = 0.5;  // gains that fall by at least so much an iteration foretell the next ones
-
-// Sums in double whatever T: single-precision sums of thousands of terms would decide the stop by rounding.
-template <class T>
-double innerProduct(std::span<const V3<T>> a, std::span<const V3<T>> b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += static_cast<double>(dot(a[i], b[i]));
-  return sum;
-}
 
 template <class T>
 double largestAcceleration(std::span<const V3<T>> r, std::span<const T> inverse_mass_dt) {
@@ -87,19 +81,36 @@ SolveReport solveModifiedPcg(const Operator& a, std::span<const V3<typename Oper
     return stop.foresee && scratch.rate > 0 && scratch.rate < kEven && scratch.gain > 0 &&
            foreseen() <= stop.relative * stop.relative * scratch.first_square;
   };
+  const auto deflate = [&] {
+    for (const Deflated<T>& one : scratch.deflation) {
+      addScaled<T>(static_cast<T>(-innerProduct<T>(one.q, z) / one.energy), one.x, d);
+    }
+  };
+  // A residual that says nothing along the deflated directions.
+  const auto lookAlongDeflated = [&] {
+    for (const Deflated<T>& one : scratch.deflation) {
+      const T step = static_cast<T>(innerProduct<T>(one.x, r) / one.energy);
+      addScaled<T>(step, one.x, x);
+      addScaled<T>(-step, one.q, r);
+    }
+  };
   const auto turn = [&](double before) {
     const T beta = static_cast<T>(scratch.square / before);
-    for (std::size_t i = 0; i < n; ++i) d[i] = z[i] + beta * d[i];
+    scaleAndAdd<T>(beta, z, d);
+    deflate();
   };
+  const bool first = start == SolveStart::kFresh || start == SolveStart::kPrepared;
   if (start == SolveStart::kFresh) {
     a(x, q);
     for (std::size_t i = 0; i < n; ++i) r[i] = b[i] - q[i];
-    scratch.rate = scratch.last_ratio = 0;
   }
+  if (first) scratch.rate = scratch.last_ratio = 0;
   const double before_start = scratch.square;
+  lookAlongDeflated();
   precondition();
-  for (std::size_t i = 0; i < n; ++i) d[i] = z[i];
-  if (start == SolveStart::kFresh) scratch.first_square = scratch.square;
+  std::copy(z.begin(), z.end(), d.begin());
+  deflate();
+  if (first) scratch.first_square = scratch.square + stop.head_start;
   // In the norm of the new preconditioner the progress so far counts for as much as it did in the old one's.
   if (start == SolveStart::kExchange && before_start > 0) scratch.first_square *= scratch.square / before_start;
   if (start == SolveStart::kExchange) scratch.rate = scratch.last_ratio = 0;
@@ -111,10 +122,8 @@ SolveReport solveModifiedPcg(const Operator& a, std::span<const V3<typename Oper
     if (!(curvature > 0)) break;  // rounding has eaten the direction, or a value is not finite
     const double step = scratch.square / curvature, before = scratch.square;
     const T alpha = static_cast<T>(step);
-    for (std::size_t i = 0; i < n; ++i) {
-      x[i] += alpha * d[i];
-      r[i] -= alpha * q[i];
-    }
+    addScaled<T>(alpha, d, x);
+    addScaled<T>(-alpha, q, r);
     scratch.preconditioned = false;
     const double gain = step * before;
     if (scratch.gain > 0) {

@@ -43,12 +43,14 @@ struct StopRule {
   double displacement = 0;             // 0: off
   double h = 0;                        // s
   int max_iterations = 400;
+  double head_start = 0;  // J: the squared energy norm by which x is nearer than what progress is measured from
 };
 
 // How a solve begins. `fresh`: from x and b. `restart`: from x and the residual in the scratch, which the caller has
 // kept true while b or the filter changed; the search directions begin anew. `exchange`: as restart, the preconditioner
-// being another one. All but the first measure progress from the fresh solve's first norm.
-enum class SolveStart { kFresh, kRestart, kExchange };
+// being another one. Both measure progress from the first solve's first norm. `prepared`: fresh, but with the residual
+// already in the scratch.
+enum class SolveStart { kFresh, kPrepared, kRestart, kExchange };
 
 struct SolveReport {
   int iterations = 0;
@@ -56,6 +58,14 @@ struct SolveReport {
   double relative_residual = 0;      // in the preconditioner's norm, or estimated
   double residual_acceleration = 0;  // m/s^2, largest over vertices
   bool converged = false;
+};
+
+// A direction x that the solve looks along anew in every iteration: q = A x, `energy` = x . q. All are within the free
+// directions and conjugate to one another.
+template <class T>
+struct Deflated {
+  std::span<const V3<T>> x, q;
+  double energy = 0;  // J, positive
 };
 
 // What a solve leaves behind, sized once. `r` is b - A x in all directions: in the removed ones, minus the constraint's
@@ -69,6 +79,9 @@ struct SolverScratch {
   // times what the one before it had taken: a geometric series of gains estimates what is left (after Strakos and Tichy
   // 2002). `rate`: the larger of the last two ratios.
   double gain = 0, last_ratio = 0, rate = 0;
+  // Search directions are kept conjugate to these, so that every iterate is the best also over them (deflated
+  // conjugate gradients, after Saad, Yeung, Erhel and Guyomarc'h 2000). Set by the caller, per solve.
+  std::span<const Deflated<T>> deflation;
   bool preconditioned = false;  // z, square and acceleration are those of the present r
   double acceleration = 0;      // m/s^2, of the filtered residual
   void resize(int n) { r.resize(n), z.resize(n), d.resize(n), q.resize(n), removed.reserve(n); }

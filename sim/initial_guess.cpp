@@ -1,0 +1,46 @@
+#include "sim/initial_guess.h"
+
+#include <algorithm>
+
+#include "sim/vector_kernels.h"
+
+namespace sim {
+
+template <class T>
+InitialGuess<T>::InitialGuess(int vertices) {
+  for (auto* fields : {&changes_, &directions_, &products_}) {
+    for (Field& field : *fields) field.resize(vertices);
+  }
+}
+
+template <class T>
+double InitialGuess<T>::improve(const ColumnMatrix<T>& a, ColumnProduct<T>& product, const Filter<T>& filter,
+                                std::span<V3<T>> x, std::span<V3<T>> r) {
+  double gained = 0;
+  used_ = 0;
+  for (int k = 0; k < recorded_; ++k) {
+    const std::span<V3<T>> d(directions_[used_]), q(products_[used_]);
+    const Field& change = changes_[(newest_ + kChanges - k) % kChanges];
+    std::copy(change.begin(), change.end(), d.begin());
+    filter.apply(d);
+    multiply<T>(a, product, d, q);
+    for (const Deflated<T>& one : deflation()) {
+      const T share = static_cast<T>(innerProduct<T>(one.x, q) / one.energy);
+      addScaled<T>(-share, one.x, d);
+      addScaled<T>(-share, one.q, q);
+    }
+    const double energy = innerProduct<T>(d, q), along = innerProduct<T>(d, r);
+    if (!(energy > 0)) continue;  // nothing has moved, or a value is not finite
+    deflated_[used_++] = {d, q, energy};
+    const T step = static_cast<T>(along / energy);
+    addScaled<T>(step, d, x);
+    addScaled<T>(-step, q, r);
+    gained += along * along / energy;
+  }
+  return gained;
+}
+
+template struct InitialGuess<float>;
+template struct InitialGuess<double>;
+
+}  // namespace sim

@@ -1,0 +1,44 @@
+// A nearer start for the linear solve of a step: motion is smooth, so the velocity changes much as it did in the steps
+// before. The start is moved by that combination of their changes of velocity which lowers the energy norm of the error
+// most (projection onto earlier solutions, after Fischer 1998). It costs a product a change and saves up to half the
+// iterations: the part of the answer that it finds is the smooth one, on which iterations are slow.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "sim/linear_solver.h"
+
+namespace sim {
+
+template <class T>
+struct InitialGuess {
+  // Measured on head shakes and walks: the second halves the error that the first leaves, more do not pay.
+  static constexpr int kChanges = 2;
+
+  explicit InitialGuess(int vertices);
+
+  // The change of velocity (m/s) that a step made of every vertex, the newest last. Earlier ones than kChanges are
+  // forgotten.
+  template <class Change>
+  void record(const Change& change) {
+    newest_ = (newest_ + 1) % kChanges;
+    for (std::size_t i = 0; i < changes_[newest_].size(); ++i) changes_[newest_][i] = change(i);
+    recorded_ = recorded_ < kChanges ? recorded_ + 1 : kChanges;
+  }
+
+  // Moves x within the filter's free directions and keeps r = b - A x true. Returns by how much (J) the squared energy
+  // norm of the error has become less. Allocates nothing.
+  double improve(const ColumnMatrix<T>& a, ColumnProduct<T>& product, const Filter<T>& filter, std::span<V3<T>> x,
+                 std::span<V3<T>> r);
+  std::span<const Deflated<T>> deflation() const { return {deflated_.data(), static_cast<std::size_t>(used_)}; }
+
+ private:
+  using Field = std::vector<V3<T>>;
+  std::array<Field, kChanges> changes_, directions_, products_;
+  std::array<Deflated<T>, kChanges> deflated_;
+  int newest_ = 0, recorded_ = 0, used_ = 0;
+};
+
+}  // namespace sim

@@ -1,0 +1,81 @@
+#include "sim/vector_kernels.h"
+
+#include "sim/lanes.h"
+
+namespace sim {
+namespace {
+
+template <class T>
+HAIRMESH_INLINE double inner(const T* a, const T* b, std::size_t n) {
+  Lanes<double> one{}, two{};  // two chains: an addition takes longer than a product comes
+  std::size_t i = 0;
+  for (; i + 2 * kLanes <= n; i += 2 * kLanes) {
+    one += __builtin_convertvector(load<T>(a + i) * load<T>(b + i), Lanes<double>);
+    two += __builtin_convertvector(load<T>(a + i + kLanes) * load<T>(b + i + kLanes), Lanes<double>);
+  }
+  one += two;
+  double sum = 0;
+  for (int k = 0; k < kLanes; ++k) sum += one[k];
+  for (; i < n; ++i) sum += static_cast<double>(a[i] * b[i]);
+  return sum;
+}
+
+template <class T>
+HAIRMESH_INLINE void add(T s, const T* __restrict x, T* __restrict y, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) y[i] += s * x[i];
+}
+template <class T>
+HAIRMESH_INLINE void scale(T s, const T* __restrict x, T* __restrict y, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) y[i] = x[i] + s * y[i];
+}
+
+HAIRMESH_CLONES double runInner(const float* a, const float* b, std::size_t n) {
+  return inner(a, b, n);
+}
+HAIRMESH_CLONES double runInner(const double* a, const double* b, std::size_t n) {
+  return inner(a, b, n);
+}
+HAIRMESH_CLONES void runAdd(float s, const float* x, float* y, std::size_t n) {
+  add(s, x, y, n);
+}
+HAIRMESH_CLONES void runAdd(double s, const double* x, double* y, std::size_t n) {
+  add(s, x, y, n);
+}
+HAIRMESH_CLONES void runScale(float s, const float* x, float* y, std::size_t n) {
+  scale(s, x, y, n);
+}
+HAIRMESH_CLONES void runScale(double s, const double* x, double* y, std::size_t n) {
+  scale(s, x, y, n);
+}
+
+// The components one after the other.
+template <class V>
+auto flat(std::span<V> v) {
+  return v.empty() ? nullptr : &v[0].x;
+}
+
+}  // namespace
+
+template <class T>
+double innerProduct(std::span<const V3<T>> a, std::span<const V3<T>> b) {
+  return runInner(flat(a), flat(b), 3 * a.size());
+}
+
+template <class T>
+void addScaled(T s, std::span<const V3<T>> x, std::span<V3<T>> y) {
+  runAdd(s, flat(x), flat(y), 3 * x.size());
+}
+
+template <class T>
+void scaleAndAdd(T s, std::span<const V3<T>> x, std::span<V3<T>> y) {
+  runScale(s, flat(x), flat(y), 3 * x.size());
+}
+
+template double innerProduct(std::span<const V3<float>>, std::span<const V3<float>>);
+template double innerProduct(std::span<const V3<double>>, std::span<const V3<double>>);
+template void addScaled(float, std::span<const V3<float>>, std::span<V3<float>>);
+template void addScaled(double, std::span<const V3<double>>, std::span<V3<double>>);
+template void scaleAndAdd(float, std::span<const V3<float>>, std::span<V3<float>>);
+template void scaleAndAdd(double, std::span<const V3<double>>, std::span<V3<double>>);
+
+}  // namespace sim
