@@ -35,9 +35,10 @@ struct ColumnField {
   void unpack(const ColumnLayout& layout, std::span<V3<T>> to) const;
 };
 
-template <class T>
-HAIRMESH_INLINE V3<Lanes<T>> loadAt(const ColumnField<T>& field, int at) {
-  return {load<T>(field.x.data() + at), load<T>(field.y.data() + at), load<T>(field.z.data() + at)};
+template <int kCount = kLanes, class T>
+HAIRMESH_INLINE V3<Lanes<T, kCount>> loadAt(const ColumnField<T>& field, int at) {
+  return {load<T, kCount>(field.x.data() + at), load<T, kCount>(field.y.data() + at),
+          load<T, kCount>(field.z.data() + at)};
 }
 template <class T>
 HAIRMESH_INLINE void addAt(ColumnField<T>& field, int at, const V3<Lanes<T>>& value) {

@@ -36,6 +36,30 @@ void ColumnField<T>::unpack(const ColumnLayout& layout, std::span<V3<T>> to) con
   }
 }
 
+namespace {
+
+// The pairs in an order in which those near to one another have no column in common.
+std::vector<std::array<int, 2>> apart(std::vector<std::array<int, 2>> pairs) {
+  constexpr std::size_t kNear = 6;
+  std::vector<std::array<int, 2>> ordered;
+  const auto clash = [&](const std::array<int, 2>& p) {
+    for (std::size_t k = ordered.size() - std::min(kNear, ordered.size()); k < ordered.size(); ++k) {
+      const auto& q = ordered[k];
+      if (p[0] == q[0] || p[0] == q[1] || p[1] == q[0] || p[1] == q[1]) return true;
+    }
+    return false;
+  };
+  while (!pairs.empty()) {
+    auto next = std::find_if_not(pairs.begin(), pairs.end(), clash);
+    if (next == pairs.end()) next = pairs.begin();
+    ordered.push_back(*next);
+    pairs.erase(next);
+  }
+  return ordered;
+}
+
+}  // namespace
+
 ColumnPattern::ColumnPattern(const HairMesh& mesh, const ColumnLayout& layout) : stride(layout.stride) {
   // Wanted block diagonals: own ones to offset 2; over root edges offsets -2 to 2 (walls and hinges); over a quad's
   // diagonals offset 0 (corner tetrahedra).
@@ -63,9 +87,11 @@ ColumnPattern::ColumnPattern(const HairMesh& mesh, const ColumnLayout& layout) :
   // By offset first: what one diagonal has stored, the next must not load again shifted by a lane or two, or the
   // processor waits for the store (a tenth of the product's time).
   for (int offset = -2; offset <= 2; ++offset) {
+    std::vector<std::array<int, 2>> pairs;
     for (const auto& [a, b, own] : wanted) {
-      if (own == offset) add(a, b, offset);
+      if (own == offset) pairs.push_back({a, b});
     }
+    for (const auto& [a, b] : apart(pairs)) add(a, b, offset);
   }
   value_count += 2 * kLanes;  // stores of elements in the padding reach past the last array
 }
@@ -118,42 +144,88 @@ void ColumnMatrix<T>::toBlocks(const HairMesh& mesh, BlockMatrix<T>& to) const {
 
 namespace {
 
+// A field as one address and the ways from there to the other components: few registers, and nothing that the compiler
+// would fetch anew after every store.
 template <class T>
-HAIRMESH_INLINE void product(const ColumnPattern& pattern, const T* values, const ColumnField<T>& x,
-                             ColumnField<T>& y) {
-  const std::size_t s = pattern.stride;
-  for (const BlockDiagonal& d : pattern.diagonals) {
-    for (int l = 0; l < d.lanes; l += kLanes) {
-      const T* at = values + d.values + l;
-      const V3<Lanes<T>> xb = loadAt(x, d.column + l);
-      if (d.symmetric()) {
-        const Lanes<T> xx = load<T>(at), xy = load<T>(at + s), xz = load<T>(at + 2 * s), yy = load<T>(at + 3 * s),
-                       yz = load<T>(at + 4 * s), zz = load<T>(at + 5 * s);
-        addAt(y, d.row + l,
-              V3<Lanes<T>>{xx * xb.x + xy * xb.y + xz * xb.z, xy * xb.x + yy * xb.y + yz * xb.z,
-                           xz * xb.x + yz * xb.y + zz * xb.z});
-        continue;
-      }
-      const V3<Lanes<T>> xa = loadAt(x, d.row + l);
-      Lanes<T> m[9];
-      for (int k = 0; k < 9; ++k) m[k] = load<T>(at + k * s);
-      addAt(y, d.row + l,
-            V3<Lanes<T>>{m[0] * xb.x + m[1] * xb.y + m[2] * xb.z, m[3] * xb.x + m[4] * xb.y + m[5] * xb.z,
-                         m[6] * xb.x + m[7] * xb.y + m[8] * xb.z});
-      addAt(y, d.column + l,
-            V3<Lanes<T>>{m[0] * xa.x + m[3] * xa.y + m[6] * xa.z, m[1] * xa.x + m[4] * xa.y + m[7] * xa.z,
-                         m[2] * xa.x + m[5] * xa.y + m[8] * xa.z});
+struct Components {
+  T* x;
+  std::ptrdiff_t y, z;
+  template <class Field>
+  explicit Components(Field& f) : x(f.x.data()), y(f.y.data() - x), z(f.z.data() - x) {}
+};
+
+template <int W, class T>
+HAIRMESH_INLINE V3<Lanes<T, W>> loadFrom(const T* at, std::ptrdiff_t y, std::ptrdiff_t z) {
+  return {load<T, W>(at), load<T, W>(at + y), load<T, W>(at + z)};
+}
+template <int W, class T>
+HAIRMESH_INLINE void addThere(T* at, std::ptrdiff_t y, std::ptrdiff_t z, const V3<Lanes<T, W>>& v) {
+  addTo<T, W>(at, v.x);
+  addTo<T, W>(at + y, v.y);
+  addTo<T, W>(at + z, v.z);
+}
+
+// kStride: the pattern's, where it is known when this is compiled; else 0.
+template <int kStride, class T>
+HAIRMESH_INLINE void product(const ColumnPattern& pattern, const T* values, const Components<const T>& from,
+                             const Components<T>& to) {
+  constexpr int W = std::is_same_v<T, float> && kStride > 0 && kStride % kWideLanes == 0 ? kWideLanes : kLanes;
+  const std::ptrdiff_t s = kStride > 0 ? kStride : pattern.stride;
+  const std::ptrdiff_t xy = from.y, xz = from.z, yy = to.y, yz = to.z;
+  const BlockDiagonal *d = pattern.diagonals.data(), *const end = d + pattern.diagonals.size();
+  for (; d < end && d->symmetric(); ++d) {
+    const T *m = values + d->values, *const stop = m + d->lanes, *x = from.x + d->row;
+    for (T* y = to.x + d->row; m < stop; m += W, x += W, y += W) {
+      const V3<Lanes<T, W>> v = loadFrom<W>(x, xy, xz);
+      const Lanes<T, W> a = load<T, W>(m), b = load<T, W>(m + s), c = load<T, W>(m + 2 * s), e = load<T, W>(m + 3 * s),
+                        f = load<T, W>(m + 4 * s), g = load<T, W>(m + 5 * s);
+      addThere<W, T>(y, yy, yz,
+                     {a * v.x + b * v.y + c * v.z, b * v.x + e * v.y + f * v.z, c * v.x + f * v.y + g * v.z});
+    }
+  }
+  for (; d < end; ++d) {
+    const T *at = values + d->values, *const stop = at + d->lanes;
+    const T *xa = from.x + d->row, *xb = from.x + d->column;
+    T *ya = to.x + d->row, *yb = to.x + d->column;
+    for (; at < stop; at += W, xa += W, xb += W, ya += W, yb += W) {
+      const V3<Lanes<T, W>> a = loadFrom<W>(xa, xy, xz), b = loadFrom<W>(xb, xy, xz);
+      Lanes<T, W> m[9];
+      for (int k = 0; k < 9; ++k) m[k] = load<T, W>(at + k * s);
+      addThere<W, T>(ya, yy, yz,
+                     {m[0] * b.x + m[1] * b.y + m[2] * b.z, m[3] * b.x + m[4] * b.y + m[5] * b.z,
+                      m[6] * b.x + m[7] * b.y + m[8] * b.z});
+      addThere<W, T>(yb, yy, yz,
+                     {m[0] * a.x + m[3] * a.y + m[6] * a.z, m[1] * a.x + m[4] * a.y + m[7] * a.z,
+                      m[2] * a.x + m[5] * a.y + m[8] * a.z});
     }
   }
 }
 
-HAIRMESH_CLONES void runProduct(const ColumnPattern& p, const float* v, const ColumnField<float>& x,
-                                ColumnField<float>& y) {
-  product(p, v, x, y);
+// With the strides of the built-in styles known, addresses cost nothing.
+template <class T>
+HAIRMESH_INLINE void productOfStride(const ColumnPattern& p, const T* v, const Components<const T>& x,
+                                     const Components<T>& y) {
+  switch (p.stride) {
+    case 8:
+      return product<8>(p, v, x, y);
+    case 16:
+      return product<16>(p, v, x, y);
+    case 32:
+      return product<32>(p, v, x, y);
+    case 40:
+      return product<40>(p, v, x, y);
+    default:
+      return product<0>(p, v, x, y);
+  }
 }
-HAIRMESH_CLONES void runProduct(const ColumnPattern& p, const double* v, const ColumnField<double>& x,
-                                ColumnField<double>& y) {
-  product(p, v, x, y);
+
+HAIRMESH_CLONES void runProduct(const ColumnPattern& p, const float* v, const Components<const float>& x,
+                                const Components<float>& y) {
+  productOfStride(p, v, x, y);
+}
+HAIRMESH_CLONES void runProduct(const ColumnPattern& p, const double* v, const Components<const double>& x,
+                                const Components<double>& y) {
+  productOfStride(p, v, x, y);
 }
 
 }  // namespace
@@ -162,7 +234,7 @@ template <class T>
 void multiply(const ColumnMatrix<T>& a, ColumnProduct<T>& scratch, std::span<const V3<T>> x, std::span<V3<T>> y) {
   scratch.x.pack(*a.layout, x);
   scratch.y.setZero();
-  runProduct(*a.pattern, a.values.data(), scratch.x, scratch.y);
+  runProduct(*a.pattern, a.values.data(), Components<const T>(scratch.x), Components<T>(scratch.y));
   scratch.y.unpack(*a.layout, y);
 }
 

@@ -94,6 +94,7 @@ void ImplicitSolver<T>::setModel(const HairMesh& mesh, const ForceModel<double>&
   model.setElements(mesh, layout, source);
   for (int i = 0; i < mesh.vertexCount(); ++i) mass[i] = static_cast<T>(density * mesh.vertex_volume[i]);
   rest_outdated = true;
+  layer_age.forget();
 }
 
 template <class T>
@@ -270,7 +271,7 @@ double ImplicitSolver<T>::beginSolve(const SimParams& params) {
   for (std::size_t i = 0; i < v.size(); ++i) scratch.r[i] = trial[i] - scratch.r[i];
   scratch.deflation = {};
   if (params.solver == Solver::kPaper || params.solver == Solver::kDirect) return 0;
-  const double gained = guess.improve(matrix, product, filter, v, scratch.r);
+  const double gained = guess.improve(ColumnOperator<T>{matrix, product}, filter, v, scratch.r);
   scratch.deflation = guess.deflation();
   return gained;
 }
@@ -284,7 +285,10 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
   PreconditionerChoice::Plan plan = warped ? choice.begin() : PreconditionerChoice::Plan{};
   bool cheap = plan.cheap || two_level, overrun = false;
   double cost = 0;
-  preconditioner.update(matrix, cheap ? kStandIn : params.solver);
+  const Solver first = cheap ? kStandIn : params.solver;
+  const FactorTerms terms{base.h, params.damping, params.air_drag};
+  const bool kept = first == Solver::kTwoLevel && layer_age.serves() && terms == layer_terms;
+  preconditioner.update(matrix, first, kept);
   const double factor_cost = kFactorCost * preconditioner.restFactorRatio();
   const auto applicationCost = [&] { return cheap ? kTwoLevelCost : factor_cost; };
   StopRule<T> stop;
@@ -316,6 +320,7 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
     overrun = true;
     cheap = !cheap;
     preconditioner.update(matrix, cheap ? kStandIn : params.solver);
+    layer_age.forget();
     preconditioner.setConstraints(constraints, 3);
     weighCoarse();
     runSome(relative, params.max_iterations, SolveStart::kExchange);
@@ -346,6 +351,10 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
     };
     if (contacts.empty() || !updateContacts(params.friction, contacts, reactionAt)) break;
     start = SolveStart::kRestart;
+  }
+  if (first == Solver::kTwoLevel && !overrun) {
+    layer_age.count(kept, total.iterations);
+    layer_terms = terms;
   }
   if (warped) choice.end(plan, cost, overrun);
   return total;

@@ -57,8 +57,10 @@ struct ImplicitSolver {
     double h = 0, damping = 0, drag = 0;
     double stiffness() const { return h * (h + damping); }
     double mass() const { return 1 + h * drag; }
+    bool operator==(const FactorTerms&) const = default;
   };
-  FactorTerms rest_terms, coming_terms;
+  FactorTerms rest_terms, coming_terms, layer_terms;
+  LayerAge layer_age;
 
   ImplicitSolver(const HairMesh& mesh, const BlockPattern& pattern);
   void setModel(const HairMesh& mesh, const ForceModel<double>& source, double density);

@@ -14,8 +14,8 @@ InitialGuess<T>::InitialGuess(int vertices) {
 }
 
 template <class T>
-double InitialGuess<T>::improve(const ColumnMatrix<T>& a, ColumnProduct<T>& product, const Filter<T>& filter,
-                                std::span<V3<T>> x, std::span<V3<T>> r) {
+template <class Operator>
+double InitialGuess<T>::improve(const Operator& a, const Filter<T>& filter, std::span<V3<T>> x, std::span<V3<T>> r) {
   double gained = 0;
   used_ = 0;
   for (int k = 0; k < recorded_; ++k) {
@@ -23,7 +23,7 @@ double InitialGuess<T>::improve(const ColumnMatrix<T>& a, ColumnProduct<T>& prod
     const Field& change = changes_[(newest_ + kChanges - k) % kChanges];
     std::copy(change.begin(), change.end(), d.begin());
     filter.apply(d);
-    multiply<T>(a, product, d, q);
+    a(d, q);
     for (const Deflated<T>& one : deflation()) {
       const T share = static_cast<T>(innerProduct<T>(one.x, q) / one.energy);
       addScaled<T>(-share, one.x, d);
@@ -42,5 +42,12 @@ double InitialGuess<T>::improve(const ColumnMatrix<T>& a, ColumnProduct<T>& prod
 
 template struct InitialGuess<float>;
 template struct InitialGuess<double>;
+#define HAIRMESH_INSTANTIATE(Operator, T) \
+  template double InitialGuess<T>::improve(const Operator<T>&, const Filter<T>&, std::span<V3<T>>, std::span<V3<T>>)
+HAIRMESH_INSTANTIATE(BlockOperator, float);
+HAIRMESH_INSTANTIATE(BlockOperator, double);
+HAIRMESH_INSTANTIATE(ColumnOperator, float);
+HAIRMESH_INSTANTIATE(ColumnOperator, double);
+#undef HAIRMESH_INSTANTIATE
 
 }  // namespace sim

@@ -1,7 +1,8 @@
 // A nearer start for the linear solve of a step: motion is smooth, so the velocity changes much as it did in the steps
 // before. The start is moved by that combination of their changes of velocity which lowers the energy norm of the error
 // most (projection onto earlier solutions, after Fischer 1998). It costs a product a change and saves up to half the
-// iterations: the part of the answer that it finds is the smooth one, on which iterations are slow.
+// iterations: the part of the answer that it finds is the smooth one, on which iterations are slow. Earlier
+// steps' errors come with it, and cost more than is won unless the solve stays conjugate to them (deflation).
 #pragma once
 
 #include <array>
@@ -19,8 +20,8 @@ struct InitialGuess {
 
   explicit InitialGuess(int vertices);
 
-  // The change of velocity (m/s) that a step made of every vertex, the newest last. Earlier ones than kChanges are
-  // forgotten.
+  // Takes the change of velocity (m/s) that a step made of every vertex, as a function of its number. All but the last
+  // kChanges are forgotten.
   template <class Change>
   void record(const Change& change) {
     newest_ = (newest_ + 1) % kChanges;
@@ -30,8 +31,10 @@ struct InitialGuess {
 
   // Moves x within the filter's free directions and keeps r = b - A x true. Returns by how much (J) the squared energy
   // norm of the error has become less. Allocates nothing.
-  double improve(const ColumnMatrix<T>& a, ColumnProduct<T>& product, const Filter<T>& filter, std::span<V3<T>> x,
-                 std::span<V3<T>> r);
+  template <class Operator>
+  double improve(const Operator& a, const Filter<T>& filter, std::span<V3<T>> x, std::span<V3<T>> r);
+  // What it looked along: for the solve, which finds the answer in fewer iterations when it goes on looking there.
+  // Valid until the next call.
   std::span<const Deflated<T>> deflation() const { return {deflated_.data(), static_cast<std::size_t>(used_)}; }
 
  private:

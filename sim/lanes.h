@@ -23,12 +23,14 @@ namespace sim {
 
 inline constexpr int kLanes = 8;
 
-template <class T>
+template <class T, int kCount = kLanes>
 struct LaneOf {
-  typedef T Type __attribute__((vector_size(kLanes * sizeof(T))));
+  typedef T Type __attribute__((vector_size(kCount * sizeof(T))));
 };
-template <class T>
-using Lanes = typename LaneOf<T>::Type;
+template <class T, int kCount = kLanes>
+using Lanes = typename LaneOf<T, kCount>::Type;
+// One register of the widest processors, two of the others: for kernels that are bound by their instructions.
+inline constexpr int kWideLanes = 16;
 
 template <class T>
 concept Scalar = std::is_floating_point_v<T>;
@@ -43,19 +45,19 @@ HAIRMESH_INLINE T constant(double value) {
   }
 }
 
-template <class T>
-HAIRMESH_INLINE Lanes<T> load(const T* from) {
-  Lanes<T> out;
+template <class T, int kCount = kLanes>
+HAIRMESH_INLINE Lanes<T, kCount> load(const T* from) {
+  Lanes<T, kCount> out;
   __builtin_memcpy(&out, from, sizeof out);
   return out;
 }
-template <class T>
-HAIRMESH_INLINE void store(T* to, const Lanes<T>& value) {
+template <class T, int kCount = kLanes>
+HAIRMESH_INLINE void store(T* to, const Lanes<T, kCount>& value) {
   __builtin_memcpy(to, &value, sizeof value);
 }
-template <class T>
-HAIRMESH_INLINE void addTo(T* to, const Lanes<T>& value) {
-  store<T>(to, load<T>(to) + value);
+template <class T, int kCount = kLanes>
+HAIRMESH_INLINE void addTo(T* to, const Lanes<T, kCount>& value) {
+  store<T, kCount>(to, load<T, kCount>(to) + value);
 }
 
 // `now` moved up by one lane, with the last one of `before` coming in.

@@ -28,11 +28,12 @@ struct LayerFactor {
   const HairMesh* mesh_;
   const ColumnLayout* layout_;
   const ColumnPattern* pattern_;
-  int groups_;              // of kLanes layers
+  int lanes_;  // of a group, one a layer
+  int groups_;
   std::vector<int> order_;  // columns as they are eliminated
   // Per eliminated column: the columns that its elimination couples, in order.
   std::vector<int> below_first_{0}, below_;
-  // Where L_ik D_k L_jk^T goes, for all pairs j <= i of those below k: block number, or ~number of a pivot.
+  // Where L_ik D_k L_jk^T goes, for all pairs j <= i of those below k: the block's number, for j = i the pivot's.
   std::vector<int> updates_;
   // Where the matrix's blocks go: block, or ~pivot; and whether as the transpose.
   struct Source {

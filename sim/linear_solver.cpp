@@ -24,14 +24,15 @@ double largestAcceleration(std::span<const V3<T>> r, std::span<const T> inverse_
   return std::sqrt(largest);
 }
 
+// Whether no vertex's squared entry, times the square of its weight where there are weights, exceeds the bound. Ends at
+// the first that does, as a rule at once.
 template <class T>
-double largestNorm(std::span<const V3<T>> z) {
-  T largest = 0;
-  for (const V3<T>& value : z) {
-    const T square = dot(value, value);
-    if (!(square <= largest)) largest = square;
+bool allWithin(double bound, std::span<const V3<T>> r, std::span<const T> weights = {}) {
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    const double weight = weights.empty() ? 1 : static_cast<double>(weights[i]);
+    if (!(static_cast<double>(dot(r[i], r[i])) * weight * weight <= bound * bound)) return false;
   }
-  return std::sqrt(static_cast<double>(largest));
+  return true;
 }
 
 }  // namespace
@@ -64,16 +65,15 @@ SolveReport solveModifiedPcg(const Operator& a, std::span<const V3<typename Oper
     filterResidual();
     preconditioner.apply(r, z);
     ++report.applications;
-    scratch.acceleration = largestAcceleration<T>(r, stop.inverse_mass_dt);
+    scratch.calm = stop.acceleration > 0 && allWithin<T>(stop.acceleration, r, stop.inverse_mass_dt);
     restoreResidual();
     filter.apply(z);
     scratch.square = innerProduct<T>(r, z);
     scratch.preconditioned = true;
   };
   const auto closeEnough = [&] {
-    return !(scratch.square > stop.relative * stop.relative * scratch.first_square) ||
-           (stop.acceleration > 0 && scratch.acceleration <= stop.acceleration) ||
-           (stop.displacement > 0 && stop.h * largestNorm<T>(z) <= stop.displacement);
+    return !(scratch.square > stop.relative * stop.relative * scratch.first_square) || scratch.calm ||
+           (stop.displacement > 0 && allWithin<T>(stop.displacement / stop.h, z));
   };
   // Of the squared error, after the last iteration.
   const auto foreseen = [&] { return scratch.gain * scratch.rate / (1 - scratch.rate); };
@@ -143,12 +143,9 @@ SolveReport solveModifiedPcg(const Operator& a, std::span<const V3<typename Oper
   if (!std::isfinite(scratch.square)) report.converged = false;
   const double left = scratch.preconditioned ? scratch.square : foreseen();
   report.relative_residual = scratch.first_square > 0 ? std::sqrt(std::max(left, 0.0) / scratch.first_square) : 0;
-  if (!scratch.preconditioned) {
-    filterResidual();
-    scratch.acceleration = largestAcceleration<T>(r, stop.inverse_mass_dt);
-    restoreResidual();
-  }
-  report.residual_acceleration = scratch.acceleration;
+  filterResidual();
+  report.residual_acceleration = largestAcceleration<T>(r, stop.inverse_mass_dt);
+  restoreResidual();
   return report;
 }
 

@@ -82,8 +82,8 @@ struct SolverScratch {
   // Search directions are kept conjugate to these, so that every iterate is the best also over them (deflated
   // conjugate gradients, after Saad, Yeung, Erhel and Guyomarc'h 2000). Set by the caller, per solve.
   std::span<const Deflated<T>> deflation;
-  bool preconditioned = false;  // z, square and acceleration are those of the present r
-  double acceleration = 0;      // m/s^2, of the filtered residual
+  bool preconditioned = false;  // z, square and calm are those of the present r
+  bool calm = false;            // no vertex's residual exceeds the bound on its acceleration
   void resize(int n) { r.resize(n), z.resize(n), d.resize(n), q.resize(n), removed.reserve(n); }
 };
 

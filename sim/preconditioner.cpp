@@ -145,13 +145,13 @@ bool Preconditioner<T>::setRestMatrix(const ColumnMatrix<T>& rest, bool compact,
 }
 
 template <class T>
-void Preconditioner<T>::update(const ColumnMatrix<T>& a, Solver solver) {
+void Preconditioner<T>::update(const ColumnMatrix<T>& a, Solver solver, bool keep_layers) {
   if (solver == Solver::kWarped && !rest_.fine) solver = Solver::kTwoLevel;
   if (solver == Solver::kTwoLevel && !twoLevelFine()) solver = Solver::kBlockJacobi;
   kind_ = solver;
   rest_.responses.clear();
   if (solver == Solver::kWarped) return;
-  if (solver == Solver::kTwoLevel) return two_level_->update(a, rotations_.matrices);
+  if (solver == Solver::kTwoLevel) return two_level_->update(a, rotations_.matrices, keep_layers);
   if (solver == Solver::kDirect || solver == Solver::kColumn || solver == Solver::kIncomplete) {
     return update(toBlocks(a), solver);
   }

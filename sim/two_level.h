@@ -33,10 +33,11 @@ struct TwoLevel {
   void begin();
   bool work(const BlockMatrix<T>& rest, bool compact, int slices);
 
-  // Takes the current matrix and the rotations of the vertices from the rest shape.
+  // Takes the current matrix and the rotations of the vertices from the rest shape. `keep`: the layers' factor of an
+  // earlier matrix serves on.
   template <class Matrix>
-  void update(const Matrix& a, std::span<const M3<T>> turn) {
-    layers_.factor(a);
+  void update(const Matrix& a, std::span<const M3<T>> turn, bool keep = false) {
+    if (!keep) layers_.factor(a);
     setRotations(turn);
   }
 

@@ -8,8 +8,8 @@
 
 namespace sim {
 
-// The sum over all entries of a . b, accumulated in double whatever T: single-precision sums of thousands of terms would
-// decide a solve's stop by rounding.
+// The sum over all entries of a . b, accumulated in double whatever T: single-precision sums of thousands of terms
+// would decide a solve's stop by rounding.
 template <class T>
 double innerProduct(std::span<const V3<T>> a, std::span<const V3<T>> b);
 

