@@ -15,15 +15,15 @@ using sim::Integrator;
 
 constexpr int kMost = 400;
 constexpr Rung kLadder[] = {
-    {"linearized-euler 1/10 s, tolerance 1e-2", Integrator::kLinearizedEuler, 10, 1e-2, kMost, 0.35, 2.4e-2},
-    {"linearized-euler 1/15 s, tolerance 1e-2", Integrator::kLinearizedEuler, 15, 1e-2, kMost, 0.41, 1.7e-2},
-    {"linearized-euler 1/20 s, tolerance 1e-2", Integrator::kLinearizedEuler, 20, 1e-2, kMost, 0.52, 1.65e-2},
-    {"linearized-euler 1/30 s, tolerance 1e-2", Integrator::kLinearizedEuler, 30, 1e-2, kMost, 0.72, 1.5e-2},
+    {"linearized-euler 1/10 s, tolerance 1e-2", Integrator::kLinearizedEuler, 10, 1e-2, kMost, 0.42, 3.3e-2},
+    {"linearized-euler 1/15 s, tolerance 1e-2", Integrator::kLinearizedEuler, 15, 1e-2, kMost, 0.5, 2.4e-2},
+    {"linearized-euler 1/20 s, tolerance 1e-2", Integrator::kLinearizedEuler, 20, 1e-2, kMost, 0.56, 1.8e-2},
+    {"linearized-euler 1/30 s, tolerance 1e-2", Integrator::kLinearizedEuler, 30, 1e-2, kMost, 0.68, 1.6e-2},
     {"linearized-euler 1/60 s, tolerance 1e-2", Integrator::kLinearizedEuler, 60, 1e-2, kMost, 1, 1.15e-2},
-    {"linearized-euler 1/120 s, tolerance 1e-2", Integrator::kLinearizedEuler, 120, 1e-2, kMost, 2.1, 8e-3},
-    {"bdf2 1/120 s, tolerance 1e-2", Integrator::kBdf2, 120, 1e-2, kMost, 2.4, 3.8e-3},
-    {"bdf2 1/240 s, tolerance 1e-2", Integrator::kBdf2, 240, 1e-2, kMost, 4.5, 2.2e-3},
-    {"bdf2 1/480 s, tolerance 1e-2", Integrator::kBdf2, 480, 1e-2, kMost, 8.8, 1.9e-3},
+    {"linearized-euler 1/120 s, tolerance 1e-2", Integrator::kLinearizedEuler, 120, 1e-2, kMost, 2.1, 8.8e-3},
+    {"bdf2 1/120 s, tolerance 1e-2", Integrator::kBdf2, 120, 1e-2, kMost, 2.35, 3.6e-3},
+    {"bdf2 1/240 s, tolerance 1e-2", Integrator::kBdf2, 240, 1e-2, kMost, 4.8, 1.8e-3},
+    {"bdf2 1/480 s, tolerance 1e-2", Integrator::kBdf2, 480, 1e-2, kMost, 8.2, 1.4e-3},
 };
 static_assert(std::size(kLadder) <= kMostRungs);
 

@@ -2,6 +2,7 @@
 #include "sim/deformation.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace sim {
@@ -84,6 +85,106 @@ int minimizeDeformation(const EdgeLaplacian& laplacian, std::span<const unsigned
     ++iterations;
   }
   return iterations;
+}
+
+DeformationMinimizer::DeformationMinimizer(const HairMesh& mesh)
+    : laplacian_(makeEdgeLaplacian(mesh)), row_(mesh.vertexCount(), -1), slot_(mesh.vertexCount(), -1) {
+  for (int v = 0; v < mesh.vertexCount(); ++v) root_.push_back(mesh.isRoot(v));
+}
+
+void DeformationMinimizer::factor() {
+  const int size = laplacian_.size();
+  std::vector<int> number(size, -1);
+  int free = 0;
+  for (int v = 0; v < size; ++v) {
+    if (!root_[v]) number[v] = free++;
+  }
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int v = 0; v < size; ++v) {
+    if (root_[v]) continue;
+    entries.emplace_back(number[v], number[v], laplacian_.degree(v));
+    for (int k = laplacian_.row_first[v]; k < laplacian_.row_first[v + 1]; ++k) {
+      const int other = number[laplacian_.neighbours[k]];
+      if (other >= 0) entries.emplace_back(number[v], other, -1);
+    }
+  }
+  Eigen::SparseMatrix<double> matrix(free, free);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  factor_.emplace(matrix);
+  for (int v = 0; v < size; ++v) {
+    if (!root_[v]) row_[v] = factor_->permutationP().indices()[number[v]];
+  }
+  kept_.resize(kMostHeld);
+  held_.reserve(size);
+  answers_.resize(free, kMostHeld);
+  gram_.resize(kMostHeld, kMostHeld);
+  pulls_.resize(kMostHeld, 3);
+  moved_.resize(free, 3);
+}
+
+int DeformationMinimizer::findAnswers() {
+  ++now_;
+  for (const int v : held_) {
+    if (slot_[v] >= 0) kept_[slot_[v]].used = now_;
+  }
+  int computed = 0;
+  for (const int v : held_) {
+    if (slot_[v] >= 0) continue;
+    const auto oldest =
+        std::min_element(kept_.begin(), kept_.end(), [](const Kept& a, const Kept& b) { return a.used < b.used; });
+    if (oldest->vertex >= 0) slot_[oldest->vertex] = -1;
+    *oldest = {v, now_};
+    slot_[v] = static_cast<int>(oldest - kept_.begin());
+    auto answer = answers_.col(slot_[v]);
+    answer.setZero();
+    answer[row_[v]] = 1;
+    factor_->matrixL().solveInPlace(answer);
+    answer.array() /= factor_->vectorD().array();
+    factor_->matrixU().solveInPlace(answer);
+    ++computed;
+  }
+  return computed;
+}
+
+int DeformationMinimizer::minimize(std::span<const unsigned char> held, double tolerance,
+                                   std::span<Vec3> displacement) {
+  const int size = laplacian_.size();
+  bool moved = false;
+  held_.clear();
+  for (int v = 0; v < size; ++v) {
+    if (!held[v] || root_[v]) continue;
+    moved = moved || !displacement[v].isZero(0);
+    held_.push_back(v);
+  }
+  const auto count = static_cast<Eigen::Index>(held_.size());
+  if (!moved || count > kMostHeld) return minimizeDeformation(laplacian_, held, tolerance, scratch_, displacement);
+  if (!factor_) factor();
+  const int computed = findAnswers();
+  for (Eigen::Index k = 0; k < count; ++k) {
+    for (Eigen::Index l = 0; l <= k; ++l) gram_(k, l) = answers_(row_[held_[k]], slot_[held_[l]]);
+    pulls_.row(k) = displacement[held_[k]];
+  }
+  // Cholesky in place.
+  auto gram = gram_.topLeftCorner(count, count);
+  auto pulls = pulls_.topRows(count);
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const double pivot = gram(j, j) - gram.row(j).head(j).squaredNorm();
+    if (!(pivot > 0)) return minimizeDeformation(laplacian_, held, tolerance, scratch_, displacement);
+    gram(j, j) = std::sqrt(pivot);
+    for (Eigen::Index i = j + 1; i < count; ++i) {
+      gram(i, j) = (gram(i, j) - gram.row(i).head(j).dot(gram.row(j).head(j))) / gram(j, j);
+    }
+  }
+  gram.triangularView<Eigen::Lower>().solveInPlace(pulls);
+  gram.triangularView<Eigen::Lower>().transpose().solveInPlace(pulls);
+  moved_.setZero();
+  for (Eigen::Index k = 0; k < count; ++k) {
+    for (int c = 0; c < 3; ++c) moved_.col(c) += pulls(k, c) * answers_.col(slot_[held_[k]]);
+  }
+  for (int v = 0; v < size; ++v) {
+    if (!held[v]) displacement[v] = moved_.row(row_[v]);
+  }
+  return computed + 1;
 }
 
 }  // namespace sim

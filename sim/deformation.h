@@ -7,6 +7,8 @@
 // is the edge connection matrix: constant, so made once.
 #pragma once
 
+#include <Eigen/SparseCholesky>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -32,5 +34,40 @@ struct MinimizationScratch {
 // Returns the iterations; zero, with no work done, when no held vertex has moved.
 int minimizeDeformation(const EdgeLaplacian& laplacian, std::span<const unsigned char> held, double tolerance,
                         MinimizationScratch& scratch, std::span<Vec3> displacement);
+
+// The same for a few held vertices, exactly and at the price of these: the matrix, only its roots held, is factored
+// once; its answers to a pull at each held vertex are kept from step to step, and a small dense system tells how hard
+// each must be pulled to go where it is to. Beyond kMostHeld vertices the iterations above serve, to `tolerance`.
+class DeformationMinimizer {
+ public:
+  static constexpr int kMostHeld = 48;  // at which the dense system costs as much as iterations on a small mesh
+
+  explicit DeformationMinimizer(const HairMesh& mesh);
+
+  // As minimizeDeformation; roots are held and stay. Returns iterations, or the answers computed anew plus one. The
+  // first call that has work to do factors the matrix; after it nothing is allocated.
+  int minimize(std::span<const unsigned char> held, double tolerance, std::span<Vec3> displacement);
+
+ private:
+  EdgeLaplacian laplacian_;
+  MinimizationScratch scratch_;
+  std::vector<unsigned char> root_;
+  std::optional<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>> factor_;
+  std::vector<int> row_;   // per vertex, in the factor's order; -1: a root
+  std::vector<int> slot_;  // per vertex: where its answer is kept, or -1
+  struct Kept {
+    int vertex = -1;
+    long used = 0;  // when last
+  };
+  std::vector<Kept> kept_;
+  long now_ = 0;
+  Eigen::MatrixXd answers_;       // a column a slot
+  Eigen::MatrixXd gram_, pulls_;  // of the held vertices
+  Eigen::MatrixXd moved_;         // a row a vertex, in the factor's order
+  std::vector<int> held_;         // vertices
+
+  void factor();
+  int findAnswers();  // of held_; the number that were computed
+};
 
 }  // namespace sim

@@ -10,7 +10,7 @@ namespace {
 
 // Of the hair's length: a step in which no vertex moves farther against its root is as good as linear, and costs
 // nothing more.
-constexpr double kGentle = 0.1;
+constexpr double kGentle = 0.05;
 // Pa; a step is gentle over so much less as the forces that are least linear are stiffer: volume's, and the walls'
 // along the hair, for what turns is also stretched, to second order.
 constexpr double kSoftVolume = 1e4, kSoftStretch = 4e5;

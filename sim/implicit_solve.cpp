@@ -21,7 +21,7 @@ constexpr Solver kStandIn = Solver::kTwoLevel;
 // blocks to the matrix's (measured at 361 and 2,268 vertices), and the two levels.
 constexpr double kFactorCost = 0.9, kTwoLevelCost = 1.8;
 // A relative residual in the norm of the two levels says less of the error than one in the factor's.
-constexpr double kTwoLevelShare = 0.5;
+constexpr double kTwoLevelShare = 0.7;
 // Nor is what they make of a residual the error itself, as with the whole factor, but less by up to an order.
 constexpr double kTwoLevelNear = 0.1;
 constexpr double kLeastCoarseWeight = 0.05;

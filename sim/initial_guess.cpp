@@ -5,6 +5,11 @@
 #include "sim/vector_kernels.h"
 
 namespace sim {
+namespace {
+
+constexpr double kIndependent = 1e-5;  // of a change's energy, that must be left when the others' share is taken out
+
+}  // namespace
 
 template <class T>
 InitialGuess<T>::InitialGuess(int vertices) {
@@ -23,14 +28,20 @@ double InitialGuess<T>::improve(const Operator& a, const Filter<T>& filter, std:
     const Field& change = changes_[(newest_ + kChanges - k) % kChanges];
     std::copy(change.begin(), change.end(), d.begin());
     filter.apply(d);
-    a(d, q);
-    for (const Deflated<T>& one : deflation()) {
-      const T share = static_cast<T>(innerProduct<T>(one.x, q) / one.energy);
-      addScaled<T>(-share, one.x, d);
-      addScaled<T>(-share, one.q, q);
+    // Conjugate to the others before the product, which then is that of what is left of it to the last bit; and once
+    // more, for where little is left, rounding has spoilt it.
+    double shared = 0;
+    for (int pass = 0; pass < 2; ++pass) {
+      for (const Deflated<T>& one : deflation()) {
+        const double along = innerProduct<T>(one.q, d);
+        addScaled<T>(static_cast<T>(-along / one.energy), one.x, d);
+        shared += along * along / one.energy;
+      }
     }
+    a(d, q);
     const double energy = innerProduct<T>(d, q), along = innerProduct<T>(d, r);
-    if (!(energy > 0)) continue;  // nothing has moved, or a value is not finite
+    // Nothing has moved, or not otherwise than before: what is left would be noise. Or a value is not finite.
+    if (!(energy > kIndependent * shared)) continue;
     deflated_[used_++] = {d, q, energy};
     const T step = static_cast<T>(along / energy);
     addScaled<T>(step, d, x);

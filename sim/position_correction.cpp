@@ -78,7 +78,7 @@ void updateVelocities(const CorrectedStep& step, double most, const PositionCorr
 
 }  // namespace
 
-PositionCorrection::PositionCorrection(const HairMesh& mesh) : laplacian(makeEdgeLaplacian(mesh)) {
+PositionCorrection::PositionCorrection(const HairMesh& mesh) : minimizer(mesh) {
   const int n = mesh.vertexCount();
   uncorrected.resize(n), displacement.resize(n), held.resize(n);
   for (int i = 0; i < n; ++i) {
@@ -120,8 +120,7 @@ void correctPositions(const CorrectedStep& step, StageClock& clock, PositionCorr
     // back by the path would be to go to and fro: to be outside is enough.
     if (round > kRounds) search.vertices = scratch.corrected, search.start = {};
     if (step.params.minimize_deformation && round < kRounds) {
-      report.minimization_iterations += minimizeDeformation(scratch.laplacian, scratch.held, kMinimization,
-                                                            scratch.minimization, scratch.displacement);
+      report.minimization_iterations += scratch.minimizer.minimize(scratch.held, kMinimization, scratch.displacement);
       for (std::size_t i = 0; i < state.positions.size(); ++i) {
         if (!scratch.held[i]) state.positions[i] += scratch.displacement[i];
       }
@@ -145,7 +144,7 @@ void followPushed(const CorrectedStep& step, std::span<const Vec3> unmoved, std:
   for (const Contact& contact : state.contacts) scratch.held[contact.vertex] = 1;
   for (std::size_t i = 0; i < unmoved.size(); ++i)
     scratch.displacement[i] = moved[i] ? Vec3(state.positions[i] - unmoved[i]) : Vec3::Zero();
-  minimizeDeformation(scratch.laplacian, scratch.held, kMinimization, scratch.minimization, scratch.displacement);
+  scratch.minimizer.minimize(scratch.held, kMinimization, scratch.displacement);
   for (std::size_t i = 0; i < unmoved.size(); ++i) {
     if (!scratch.held[i]) state.positions[i] += scratch.displacement[i];
   }

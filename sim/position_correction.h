@@ -13,14 +13,13 @@ namespace sim {
 
 // What the corrections of one hair keep from step to step: sized once.
 struct PositionCorrection {
-  EdgeLaplacian laplacian;
+  DeformationMinimizer minimizer;
   std::vector<int> all_vertices;  // but the roots
   std::vector<Vec3> uncorrected, displacement;
   std::vector<Penetration> penetrations;
   std::vector<int> corrected;  // vertices, of the last round
   std::vector<unsigned char> held;
   ContactScratch search;
-  MinimizationScratch minimization;
 
   explicit PositionCorrection(const HairMesh& mesh);
 };

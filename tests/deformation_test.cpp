@@ -35,8 +35,9 @@ struct Case {
 };
 
 // Roots held in place and some external vertices moved.
-Case makeCase(int corrected, test::Random& random) {
+Case makeCase(int corrected, test::Random& random, int cells = 2) {
   test::PatchOptions o;
+  o.nx = o.nz = cells;
   o.mixed = o.uneven = true;
   Case c{sim::buildHairMesh(test::combedShape(o)), {}, {}};
   c.held.assign(c.mesh.vertexCount(), 0);
@@ -132,6 +133,37 @@ TEST(DeformationMinimization, AgreesWithDenseLeastSquares) {
       EXPECT_GT(objective(c.mesh, nudged), least);
     }
   }
+}
+
+// By kept answers it is the minimum as well, whichever vertices were held before, and where they are too many.
+TEST(DeformationMinimization, KeptAnswersGiveTheMinimumWhateverWasHeldBefore) {
+  test::Random random(8);
+  const Case first = makeCase(1, random, 5);
+  sim::DeformationMinimizer minimizer(first.mesh);
+  int most_held = 0;
+  for (const int corrected : {1, 5, 30, 12, 2, 30, 90, 30, 5}) {
+    const Case c = makeCase(corrected, random, 5);
+    std::vector<Vec3> u = c.moved;
+    for (int v = 0; v < c.mesh.vertexCount(); ++v) {
+      if (!c.held[v]) u[v] = random.vector(0.05);  // what stands there does not matter
+    }
+    EXPECT_GT(minimizer.minimize(c.held, 1e-13, u), 0);
+    EXPECT_LT(test::largestDistance(u, denseMinimizer(c)), 1e-11) << corrected << " corrected";
+    int held = 0;
+    for (int v = 0; v < c.mesh.vertexCount(); ++v) {
+      held += c.held[v] && !c.mesh.isRoot(v);
+      if (c.held[v]) {
+        EXPECT_EQ(u[v], c.moved[v]) << "held vertices stay to the bit";
+      }
+    }
+    most_held = std::max(most_held, held);
+    if (held <= sim::DeformationMinimizer::kMostHeld) {
+      EXPECT_EQ(minimizer.minimize(c.held, 1e-13, u), 1) << "nothing is computed twice";
+    }
+  }
+  EXPECT_GT(most_held, sim::DeformationMinimizer::kMostHeld);
+  std::vector<Vec3> still(first.moved.size(), Vec3::Zero());
+  EXPECT_EQ(minimizer.minimize(first.held, 1e-3, still), 0) << "nothing has moved";
 }
 
 TEST(DeformationMinimization, ALooseToleranceStaysNearTheMinimum) {

@@ -92,6 +92,16 @@ TEST(InitialGuess, NothingRecordedOrNothingMovedLeavesTheStart) {
   EXPECT_EQ(test::stacked<double>(start.x), x);
 }
 
+TEST(InitialGuess, AChangeThatOnlyRepeatsAnotherIsLeftOut) {
+  Start start(1);
+  std::vector<Vec3> change = noise(start.x.size(), 0.1, 4);
+  start.record(change);
+  for (Vec3& c : change) c *= 1.7;
+  start.record(change);
+  start.improve();
+  EXPECT_EQ(start.guess.deflation().size(), 1u);
+}
+
 // The error is the slowest mode there is; the change has it in it, hidden under a part that iterations find at once. So
 // the start comes hardly nearer, but the deflated solve gets the slow part for nothing.
 TEST(InitialGuess, DeflatedIterationsFindTheSameAnswerSooner) {
