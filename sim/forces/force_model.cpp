@@ -6,6 +6,8 @@ namespace sim {
 namespace {
 
 constexpr double kResolvedSection = 1.5e-4;  // m^2
+constexpr double kCarrying =
+    2 * 9.81;  // m/s^2, times density and length: a modulus that still carries the hair's weight
 
 V3<double> plain(const Vec3& p) {
   return {p.x(), p.y(), p.z()};
@@ -98,7 +100,8 @@ double volumeModulus(const HairMesh& mesh, const SimParams& params) {
     section += prism.volume * prism.volume * prism.corner_count / along;
   }
   section /= mesh.total_volume;
-  return params.volume * std::min(1.0, kResolvedSection / section);
+  const double yielding = params.volume * std::min(1.0, kResolvedSection / section);
+  return std::max(yielding, std::min(params.volume, kCarrying * params.density * mesh.hair_length));
 }
 
 BlockPattern systemPattern(const HairMesh& mesh) {
