@@ -35,8 +35,9 @@ using BodyDistance = std::function<double(const Vec3&)>;
 // ears falls in front of them. All but the roots keeps 2.5 mm off the body (on a head of 23 cm, and in proportion), 6
 // mm once the hair has left the scalp; edges are at least 3 mm. The resolutions are one haircut, meshed more or
 // less finely, with the same topology on every head. Valid for any scalp: where a head leaves no room, the hair grows
-// on a rounded one (see the source). Vertex counts: short 225 / 569 / 1,364 / 7,081, shoulder 360 / 913 / 2,306 /
-// 10,251, long 365 / 922 / 2,268 / 10,241. Deterministic; under 0.25 s, ultra under 0.5 s.
+// on a rounded one (see the source). Vertex counts: short 225 / 569 / 1,339 / 7,081, shoulder 360 / 913 / 2,306 /
+// 9,617, long 366 / 922 / 2,249 / 10,241. Columns of at most 8 or 16 vertices where a plan can have them so, for whole
+// vectors of the solver's kernels. Deterministic; under 0.25 s, ultra under 0.5 s.
 HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& scalp, const BodyDistance& body);
 
 std::string_view styleName(Style style);                 // "short", "shoulder", "long"
