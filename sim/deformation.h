@@ -40,7 +40,7 @@ int minimizeDeformation(const EdgeLaplacian& laplacian, std::span<const unsigned
 // each must be pulled to go where it is to. Beyond kMostHeld vertices the iterations above serve, to `tolerance`.
 class DeformationMinimizer {
  public:
-  static constexpr int kMostHeld = 48;  // at which the dense system costs as much as iterations on a small mesh
+  static constexpr int kMostHeld = 48;  // answers kept: 0.8 MB at 2,249 vertices
 
   explicit DeformationMinimizer(const HairMesh& mesh);
 
