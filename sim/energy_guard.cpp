@@ -10,7 +10,7 @@ namespace {
 
 // Of the hair's length: a step in which no vertex moves farther against its root is as good as linear, and costs
 // nothing more.
-constexpr double kGentle = 0.05;
+constexpr double kGentle = 0.1, kGentleLong = 0.05, kLongStep = 1.0 / 50;  // s; the second in steps longer than this
 // Pa; a step is gentle over so much less as the forces that are least linear are stiffer: volume's, and the walls'
 // along the hair, for what turns is also stretched, to second order.
 constexpr double kSoftVolume = 1e4, kSoftStretch = 4e5;
@@ -22,7 +22,7 @@ enum class Motion { kCalm, kViolent, kNotFinite };
 Motion judge(const TakenStep& step, const HairState& state) {
   const double soft =
       std::sqrt(std::min({1.0, kSoftVolume / step.params.volume, kSoftStretch / step.params.stretch_along}));
-  const double most = kGentle * soft * step.mesh.hair_length;
+  const double most = (step.dt > kLongStep ? kGentleLong : kGentle) * soft * step.mesh.hair_length;
   Motion motion = Motion::kCalm;
   for (int c = 0; c < step.mesh.columnCount(); ++c) {
     const int root = step.mesh.shape.column_first[c];
