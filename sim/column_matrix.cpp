@@ -210,6 +210,8 @@ HAIRMESH_INLINE void productOfStride(const ColumnPattern& p, const T* v, const C
       return product<8>(p, v, x, y);
     case 16:
       return product<16>(p, v, x, y);
+    case 24:
+      return product<24>(p, v, x, y);
     case 32:
       return product<32>(p, v, x, y);
     case 40:

@@ -19,7 +19,7 @@ struct BlockDiagonal {
   int a, b, offset;
   int row, column;     // entries of (a, 0) and (b, offset) in a padded array
   std::size_t values;  // start of its components, `stride` apart
-  int lanes;           // entries to be walked, a multiple of kLanes
+  int lanes;           // entries to be walked, a multiple of kLanes; from there to the stride values are zero
   bool symmetric() const { return a == b && offset == 0; }
 };
 
@@ -60,12 +60,13 @@ struct ColumnMatrix {
   void toBlocks(const HairMesh& mesh, BlockMatrix<T>& to) const;
 };
 
-// y = A x; vectors in vertex order, `scratch` two fields of the layout.
+// Scratch of a product: its vectors in the layout.
 template <class T>
 struct ColumnProduct {
   ColumnField<T> x, y;
   explicit ColumnProduct(const ColumnLayout& layout) : x(layout), y(layout) {}
 };
+// y = A x; vectors in vertex order.
 template <class T>
 void multiply(const ColumnMatrix<T>& a, ColumnProduct<T>& scratch, std::span<const V3<T>> x, std::span<V3<T>> y);
 

@@ -1,9 +1,9 @@
 #include "sim/contact_response.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 
 #include "sim/lanes.h"
+#include "sim/small_cholesky.h"
 
 namespace sim {
 namespace {
@@ -144,16 +144,7 @@ bool ContactResponses<T>::factorGram() {
       gram_(i, j) = static_cast<double>(dot(row.d, z));
     }
   }
-  // In place: Cholesky, left-looking (a step allocates nothing).
-  for (int j = 0; j < count; ++j) {
-    const double pivot = gram_(j, j) - gram_.row(j).head(j).squaredNorm();
-    if (!(pivot > 0)) return false;
-    gram_(j, j) = std::sqrt(pivot);
-    for (int i = j + 1; i < count; ++i) {
-      gram_(i, j) = (gram_(i, j) - gram_.row(i).head(j).dot(gram_.row(j).head(j))) / gram_(j, j);
-    }
-  }
-  return true;
+  return factorLowerInPlace(gram_.topLeftCorner(count, count));
 }
 
 template <class T>

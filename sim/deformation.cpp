@@ -2,8 +2,10 @@
 #include "sim/deformation.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cassert>
 #include <set>
+
+#include "sim/small_cholesky.h"
 
 namespace sim {
 namespace {
@@ -90,6 +92,8 @@ int minimizeDeformation(const EdgeLaplacian& laplacian, std::span<const unsigned
 DeformationMinimizer::DeformationMinimizer(const HairMesh& mesh)
     : laplacian_(makeEdgeLaplacian(mesh)), row_(mesh.vertexCount(), -1), slot_(mesh.vertexCount(), -1) {
   for (int v = 0; v < mesh.vertexCount(); ++v) root_.push_back(mesh.isRoot(v));
+  for (auto* field : {&scratch_.r, &scratch_.z, &scratch_.d, &scratch_.q}) field->resize(mesh.vertexCount());
+  factor();
 }
 
 void DeformationMinimizer::factor() {
@@ -110,9 +114,9 @@ void DeformationMinimizer::factor() {
   }
   Eigen::SparseMatrix<double> matrix(free, free);
   matrix.setFromTriplets(entries.begin(), entries.end());
-  factor_.emplace(matrix);
+  factor_.compute(matrix);
   for (int v = 0; v < size; ++v) {
-    if (!root_[v]) row_[v] = factor_->permutationP().indices()[number[v]];
+    if (!root_[v]) row_[v] = factor_.permutationP().indices()[number[v]];
   }
   kept_.resize(kMostHeld);
   held_.reserve(size);
@@ -138,9 +142,9 @@ int DeformationMinimizer::findAnswers() {
     auto answer = answers_.col(slot_[v]);
     answer.setZero();
     answer[row_[v]] = 1;
-    factor_->matrixL().solveInPlace(answer);
-    answer.array() /= factor_->vectorD().array();
-    factor_->matrixU().solveInPlace(answer);
+    factor_.matrixL().solveInPlace(answer);
+    answer.array() /= factor_.vectorD().array();
+    factor_.matrixU().solveInPlace(answer);
     ++computed;
   }
   return computed;
@@ -152,29 +156,21 @@ int DeformationMinimizer::minimize(std::span<const unsigned char> held, double t
   bool moved = false;
   held_.clear();
   for (int v = 0; v < size; ++v) {
+    assert(held[v] || !root_[v]);
     if (!held[v] || root_[v]) continue;
     moved = moved || !displacement[v].isZero(0);
     held_.push_back(v);
   }
   const auto count = static_cast<Eigen::Index>(held_.size());
   if (!moved || count > kMostHeld) return minimizeDeformation(laplacian_, held, tolerance, scratch_, displacement);
-  if (!factor_) factor();
   const int computed = findAnswers();
   for (Eigen::Index k = 0; k < count; ++k) {
     for (Eigen::Index l = 0; l <= k; ++l) gram_(k, l) = answers_(row_[held_[k]], slot_[held_[l]]);
     pulls_.row(k) = displacement[held_[k]];
   }
-  // Cholesky in place.
   auto gram = gram_.topLeftCorner(count, count);
   auto pulls = pulls_.topRows(count);
-  for (Eigen::Index j = 0; j < count; ++j) {
-    const double pivot = gram(j, j) - gram.row(j).head(j).squaredNorm();
-    if (!(pivot > 0)) return minimizeDeformation(laplacian_, held, tolerance, scratch_, displacement);
-    gram(j, j) = std::sqrt(pivot);
-    for (Eigen::Index i = j + 1; i < count; ++i) {
-      gram(i, j) = (gram(i, j) - gram.row(i).head(j).dot(gram.row(j).head(j))) / gram(j, j);
-    }
-  }
+  if (!factorLowerInPlace(gram)) return minimizeDeformation(laplacian_, held, tolerance, scratch_, displacement);
   gram.triangularView<Eigen::Lower>().solveInPlace(pulls);
   gram.triangularView<Eigen::Lower>().transpose().solveInPlace(pulls);
   moved_.setZero();

@@ -8,7 +8,6 @@
 #pragma once
 
 #include <Eigen/SparseCholesky>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -42,17 +41,17 @@ class DeformationMinimizer {
  public:
   static constexpr int kMostHeld = 48;  // answers kept: 0.8 MB at 2,249 vertices
 
-  explicit DeformationMinimizer(const HairMesh& mesh);
+  explicit DeformationMinimizer(const HairMesh& mesh);  // factors the matrix
 
-  // As minimizeDeformation; roots are held and stay. Returns iterations, or the answers computed anew plus one. The
-  // first call that has work to do factors the matrix; after it nothing is allocated.
+  // As minimizeDeformation; roots must be held, and stay. Returns the iterations or, of the exact way, the answers
+  // computed anew plus one; zero with no work done. Allocates nothing.
   int minimize(std::span<const unsigned char> held, double tolerance, std::span<Vec3> displacement);
 
  private:
   EdgeLaplacian laplacian_;
   MinimizationScratch scratch_;
   std::vector<unsigned char> root_;
-  std::optional<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>> factor_;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
   std::vector<int> row_;   // per vertex, in the factor's order; -1: a root
   std::vector<int> slot_;  // per vertex: where its answer is kept, or -1
   struct Kept {

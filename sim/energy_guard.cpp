@@ -9,8 +9,9 @@ namespace sim {
 namespace {
 
 // Of the hair's length: a step in which no vertex moves farther against its root is as good as linear, and costs
-// nothing more.
-constexpr double kGentle = 0.1, kGentleLong = 0.05, kLongStep = 1.0 / 50;  // s; the second in steps longer than this
+// nothing more. In long steps less: under the first bound softened hair gained energy in steps of 1/20 s and more.
+constexpr double kGentle = 0.1, kGentleLong = 0.05;
+constexpr double kLongStep = 1.0 / 50;  // s
 // Pa; a step is gentle over so much less as the forces that are least linear are stiffer: volume's, and the walls'
 // along the hair, for what turns is also stretched, to second order.
 constexpr double kSoftVolume = 1e4, kSoftStretch = 4e5;

@@ -10,15 +10,13 @@ namespace {
 
 constexpr int kContactRounds = 4;  // solves of one linear system while contacts release or start to slide
 constexpr int kLineSearchSteps = 6;
-// Where the direct factor can be corrected for only a part of the contacts at the price of one batch of answers, so
-// many iterations are tried before the rest is paid for.
+constexpr int kBatchesARound = 3;  // of answers to contacts; what is still missing comes with the steps to come
+// Where the direct factor can be corrected for only a part of the contacts at the price of these, so many iterations
+// are tried before the rest is paid for.
 constexpr int kUncorrectedIterations = 10;
-// `warped` makes the whole rest factor for meshes of up to so many vertices; larger ones have the two levels alone,
-// whose memory and work grow with the mesh.
-constexpr int kMostFactored = 2000;
 constexpr Solver kStandIn = Solver::kTwoLevel;
 // What an application of a preconditioner costs, in products with the matrix: the warped factor by the ratio of its
-// blocks to the matrix's (measured at 361 and 2,268 vertices), and the two levels.
+// blocks to the matrix's (measured on meshes of 361 and 2,268 vertices), and the two levels.
 constexpr double kFactorCost = 0.9, kTwoLevelCost = 1.8;
 // A relative residual in the norm of the two levels says less of the error than one in the factor's.
 constexpr double kTwoLevelShare = 0.7;
@@ -26,8 +24,9 @@ constexpr double kTwoLevelShare = 0.7;
 constexpr double kTwoLevelNear = 0.1;
 constexpr double kLeastCoarseWeight = 0.05;
 constexpr double kStaleRatio = 3;  // of h (h + damping): BDF2's start-up step shares its factor with the steps after it
-constexpr double kStaleMass = 1.5;  // of 1 + h drag: the air is thick while the hair settles
-constexpr int kSlices = 30;         // steps over which a new rest factor is spread
+constexpr double kStaleMass = 1.5;   // of 1 + h drag: the air is thick while the hair settles
+constexpr int kSlices = 30;          // steps over which a new rest factor is spread
+constexpr double kSameSpeed = 1e-5;  // m/s, that rounding may leave between a velocity and what its constraints ask
 
 template <class T>
 V3<T> cast(const Vec3& p) {
@@ -214,10 +213,12 @@ double ImplicitSolver<T>::residualSquare(const SimParams& params, const StepBase
   return sum;
 }
 
-// Filter, constraints and friction (in `trial`, which else is the right-hand side) of the contacts as they now are. On
-// a restart the residual of the solve follows; velocities meet the constraints already, which only ever loosen.
+// Filter, constraints and friction (in `trial`, which else is the right-hand side) of the contacts as they now are, and
+// velocities that meet them. Returns whether one had to be moved for that: on a restart the constraints have only
+// loosened and none is, but where a vertex lies in a crease and one of its contacts let go, what the other prescribes
+// is not what both did. Else, on a restart, the residual of the solve follows.
 template <class T>
-void ImplicitSolver<T>::setContactConstraints(const HairMesh& mesh, const SimParams& params, const StepBase& base,
+bool ImplicitSolver<T>::setContactConstraints(const HairMesh& mesh, const SimParams& params, const StepBase& base,
                                               std::span<const Contact> contacts, SolveStart start) {
   constraints.clear();
   constrainContacts(contacts, constraints);
@@ -226,12 +227,15 @@ void ImplicitSolver<T>::setContactConstraints(const HairMesh& mesh, const SimPar
     filter.vertices.push_back(mesh.shape.column_first[c]);
     filter.keep.push_back(M3<T>{});
   }
+  bool moved = false;
   for (const VertexConstraint& constraint : constraints) {
     filter.vertices.push_back(constraint.vertex);
     filter.keep.push_back(cast<T>(constraint.keep));
-    if (start == SolveStart::kRestart) continue;
     V3<T>& speed = v[constraint.vertex];
-    speed = filter.keep.back() * speed + cast<T>(constraint.prescribed);
+    const V3<T> met = filter.keep.back() * speed + cast<T>(constraint.prescribed), by = met - speed;
+    if (start == SolveStart::kRestart && dot(by, by) <= kSameSpeed * kSameSpeed) continue;
+    speed = met;
+    moved = true;
   }
   const bool restart = start == SolveStart::kRestart;
   for (const int i : touched) {
@@ -246,6 +250,7 @@ void ImplicitSolver<T>::setContactConstraints(const HairMesh& mesh, const SimPar
   for (const int i : touched) {
     if (restart) scratch.r[i] += trial[i];
   }
+  return moved;
 }
 
 // The coarse half of the two-level preconditioner is that of the rest shape. How much stiffer the hair is now, the
@@ -264,67 +269,91 @@ void ImplicitSolver<T>::weighCoarse() {
   preconditioner.setCoarseWeight(static_cast<T>(std::clamp(weight, kLeastCoarseWeight, 1.0)));
 }
 
-// The residual at the present v, and at a nearer one where earlier steps tell of it: returns the head start of that.
 template <class T>
-double ImplicitSolver<T>::beginSolve(const SimParams& params) {
+void ImplicitSolver<T>::setResidual() {
   multiply<T>(matrix, product, v, scratch.r);
   for (std::size_t i = 0; i < v.size(); ++i) scratch.r[i] = trial[i] - scratch.r[i];
+}
+
+// The paper's setting is what the paper says, and a direct solve is done in one iteration.
+template <class T>
+bool ImplicitSolver<T>::looksBack(const SimParams& params) const {
+  return params.solver != Solver::kPaper && params.solver != Solver::kDirect;
+}
+
+// The residual at the present v, and at a nearer one where earlier steps tell of it. Returns the head start of that.
+template <class T>
+double ImplicitSolver<T>::beginSolve(const SimParams& params) {
+  setResidual();
   scratch.deflation = {};
-  if (params.solver == Solver::kPaper || params.solver == Solver::kDirect) return 0;
+  if (!looksBack(params)) return 0;
   const double gained = guess.improve(ColumnOperator<T>{matrix, product}, filter, v, scratch.r);
   scratch.deflation = guess.deflation();
-  return gained;
+  // Only near to the inverse is a preconditioner's norm of the residual the energy norm of the error.
+  const Solver kind = preconditioner.kind();
+  return kind == Solver::kWarped || kind == Solver::kTwoLevel ? gained : 0;
 }
+
+// The runs of PCG on one linear system, one after the other as its constraints change.
+template <class T>
+struct ImplicitSolver<T>::BudgetedSolve {
+  ImplicitSolver& solver;
+  const SimParams& params;
+  bool warped;  // the whole rest factor is at hand, and the plan chooses between it and its stand-in
+  PreconditionerChoice::Plan plan;
+  StopRule<T> stop;
+  SolveReport total = {};
+  double cost = 0;  // products with the matrix
+  bool overrun = false;
+
+  double applicationCost() const {
+    const auto& preconditioner = solver.preconditioner;
+    return preconditioner.kind() == Solver::kWarped ? kFactorCost * preconditioner.restFactorRatio() : kTwoLevelCost;
+  }
+
+  void runSome(int most, SolveStart start) {
+    const Solver kind = solver.preconditioner.kind();
+    const bool exact = kind == Solver::kWarped || kind == Solver::kDirect, levels = kind == Solver::kTwoLevel;
+    stop.displacement = (exact ? 1 : levels ? kTwoLevelNear : 0) * params.displacement_tolerance;
+    stop.foresee = exact;
+    stop.relative = (levels ? kTwoLevelShare : 1) * params.tolerance;
+    stop.max_iterations = most;
+    const int before = total.iterations;
+    total = solveModifiedPcg<ColumnOperator<T>>({solver.matrix, solver.product}, solver.trial, solver.filter,
+                                                solver.preconditioner, stop, solver.scratch, solver.v, start);
+    cost += total.iterations + applicationCost() * total.applications;
+    total.iterations += before;
+  }
+
+  // Within the budget of the plan; beyond it the other preconditioner takes over, once.
+  void run(int most, SolveStart start) {
+    if (!warped || overrun) return runSome(most, start);
+    const double left = (plan.budget - cost) / (1 + applicationCost());
+    const int affordable = left < most ? std::max(1, static_cast<int>(left)) : most;
+    runSome(affordable, start);
+    if (total.converged || affordable >= most) return;
+    overrun = true;
+    solver.preconditioner.update(solver.matrix, plan.cheap ? params.solver : kStandIn);
+    solver.preconditioner.setConstraints(solver.constraints, kBatchesARound);
+    solver.weighCoarse();
+    runSome(params.max_iterations, SolveStart::kExchange);
+  }
+};
 
 template <class T>
 SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams& params, const StepBase& base,
                                            std::vector<Contact>& contacts) {
-  const T h = static_cast<T>(base.h);
   // The warped factor, or its stand-in (see preconditioner_choice.h).
-  const bool warped = factored(params.solver), two_level = params.solver == Solver::kWarped && !warped;
-  PreconditionerChoice::Plan plan = warped ? choice.begin() : PreconditionerChoice::Plan{};
-  bool cheap = plan.cheap || two_level, overrun = false;
-  double cost = 0;
-  const Solver first = cheap ? kStandIn : params.solver;
+  const bool warped = factored(params.solver);
+  BudgetedSolve run{*this, params, warped, warped ? choice.begin() : PreconditionerChoice::Plan{}, {}};
+  run.stop.acceleration = params.acceleration_tolerance;
+  run.stop.inverse_mass_dt = inverse_mass_dt;
+  run.stop.h = base.h;
+  const bool stand_in = warped ? run.plan.cheap : params.solver == Solver::kWarped;
+  const Solver first = stand_in ? kStandIn : params.solver;
   const FactorTerms terms{base.h, params.damping, params.air_drag};
   const bool kept = first == Solver::kTwoLevel && layer_age.serves() && terms == layer_terms;
   preconditioner.update(matrix, first, kept);
-  const double factor_cost = kFactorCost * preconditioner.restFactorRatio();
-  const auto applicationCost = [&] { return cheap ? kTwoLevelCost : factor_cost; };
-  StopRule<T> stop;
-  stop.acceleration = params.acceleration_tolerance;
-  stop.inverse_mass_dt = inverse_mass_dt;
-  SolveReport total;
-  const auto runSome = [&](double relative, int most, SolveStart start) {
-    const bool exact = preconditioner.kind() == Solver::kWarped || preconditioner.kind() == Solver::kDirect;
-    stop.displacement = exact   ? params.displacement_tolerance
-                        : cheap ? kTwoLevelNear * params.displacement_tolerance
-                                : 0;
-    stop.foresee = exact;
-    stop.h = base.h;
-    stop.relative = cheap ? kTwoLevelShare * relative : relative;
-    stop.max_iterations = most;
-    const int before = total.iterations;
-    total =
-        solveModifiedPcg<ColumnOperator<T>>({matrix, product}, trial, filter, preconditioner, stop, scratch, v, start);
-    cost += total.iterations + applicationCost() * total.applications;
-    total.iterations += before;
-  };
-  // Within the budget of the plan; beyond it the other preconditioner takes over, once.
-  const auto runPcg = [&](double relative, int most, SolveStart start) {
-    if (!warped || overrun) return runSome(relative, most, start);
-    const double left = (plan.budget - cost) / (1 + applicationCost());
-    const int affordable = left < most ? std::max(1, static_cast<int>(left)) : most;
-    runSome(relative, affordable, start);
-    if (total.converged || affordable >= most) return;
-    overrun = true;
-    cheap = !cheap;
-    preconditioner.update(matrix, cheap ? kStandIn : params.solver);
-    layer_age.forget();
-    preconditioner.setConstraints(constraints, 3);
-    weighCoarse();
-    runSome(relative, params.max_iterations, SolveStart::kExchange);
-  };
   touched.clear();
   for (const Contact& contact : contacts) {
     if (touched.empty() || touched.back() != contact.vertex) touched.push_back(contact.vertex);
@@ -332,47 +361,52 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
   std::copy(rhs.begin(), rhs.end(), trial.begin());
   SolveStart start = SolveStart::kPrepared;
   for (int round = 0; round < kContactRounds; ++round) {
-    setContactConstraints(mesh, params, base, contacts, start);
-    // One batch of answers a round: what is still missing then comes with the steps to come.
-    const bool complete = preconditioner.setConstraints(constraints, 3);
+    const bool moved = setContactConstraints(mesh, params, base, contacts, start);
+    const bool complete = preconditioner.setConstraints(constraints, kBatchesARound);
     if (round == 0) {
-      stop.head_start = beginSolve(params);
+      run.stop.head_start = beginSolve(params);
       weighCoarse();
+    } else if (moved) {
+      setResidual();
+      scratch.deflation = {};  // not all of it lies within what is free now
     }
     const bool pay = !complete && params.solver == Solver::kDirect;
-    runPcg(params.tolerance, pay ? std::min(kUncorrectedIterations, params.max_iterations) : params.max_iterations,
-           start);
-    if (!total.converged && pay) {
+    run.run(pay ? std::min(kUncorrectedIterations, params.max_iterations) : params.max_iterations, start);
+    if (!run.total.converged && pay) {
       preconditioner.setConstraints(constraints);
-      runPcg(params.tolerance, params.max_iterations, SolveStart::kRestart);
+      run.run(params.max_iterations, SolveStart::kRestart);
     }
-    const auto reactionAt = [&](int i) {
-      return Vec3(widen<T>(trial[i] - rhs[i] - scratch.r[i]) / static_cast<double>(h));
-    };
+    const auto reactionAt = [&](int i) { return Vec3(widen<T>(trial[i] - rhs[i] - scratch.r[i]) / base.h); };
     if (contacts.empty() || !updateContacts(params.friction, contacts, reactionAt)) break;
     start = SolveStart::kRestart;
   }
-  if (first == Solver::kTwoLevel && !overrun) {
-    layer_age.count(kept, total.iterations);
+  // A factor that served to its end is as old as the solves since it was made. Solves by other preconditioners age it
+  // without telling by how much.
+  if (first == Solver::kTwoLevel && preconditioner.kind() == Solver::kTwoLevel && !run.overrun) {
+    layer_age.count(kept, run.total.iterations);
     layer_terms = terms;
+  } else {
+    layer_age.forget();
   }
-  if (warped) choice.end(plan, cost, overrun);
-  return total;
+  if (warped) choice.end(run.plan, run.cost, run.overrun);
+  return run.total;
+}
+
+// Positions at the step's end if the velocities were these, relative to one root: single precision keeps micrometres
+// wherever the character stands.
+template <class T>
+void ImplicitSolver<T>::place(const StepBase& base, std::span<const V3<T>> speed) {
+  const Vec3 origin = base.x_hat[0];
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    x[i] = cast<T>(Vec3(base.x_hat[i] - origin));
+    if (!speed.empty()) x[i] += static_cast<T>(base.h) * speed[i];
+  }
 }
 
 template <class T>
-void ImplicitSolver<T>::solve(const HairMesh& mesh, const SimParams& params, const StepBase& base, double (*clock)(),
-                              std::vector<Contact>& contacts, std::span<Vec3> velocities, StepReport& report) {
-  const std::size_t n = x.size();
-  const bool linearized = params.integrator == Integrator::kLinearizedEuler;
-  const bool newton = params.integrator == Integrator::kImplicitEuler;
-  // Positions relative to one root: single precision keeps micrometres wherever the character stands.
-  const Vec3 origin = base.x_hat[0];
-  const auto place = [&](std::span<const V3<T>> speed) {
-    for (std::size_t i = 0; i < n; ++i)
-      x[i] = cast<T>(Vec3(base.x_hat[i] - origin)) + static_cast<T>(base.h) * speed[i];
-  };
-  for (std::size_t i = 0; i < n; ++i) {
+void ImplicitSolver<T>::beginStep(const SimParams& params, const StepBase& base, std::span<const Vec3> velocities,
+                                  std::vector<Contact>& contacts) {
+  for (std::size_t i = 0; i < v.size(); ++i) {
     v[i] = cast<T>(velocities[i]);
     inverse_mass_dt[i] = T(1) / (mass[i] * static_cast<T>(base.h));
   }
@@ -380,54 +414,56 @@ void ImplicitSolver<T>::solve(const HairMesh& mesh, const SimParams& params, con
     const double mobility = base.h / static_cast<double>(mass[contact.vertex]);
     chooseSticking(params.friction, mobility, velocities[contact.vertex], contact);
   }
-  double started = clock ? clock() : 0;
-  const auto spent = [&](Stage stage) {
-    if (!clock) return;
-    const double now = clock();
-    report.seconds[stage] += now - started;
-    started = now;
-  };
+}
+
+// A Newton iterate goes back towards the one before, which is in velocity_step, until the residual is not above `most`
+// (negative: wherever it is). Returns the largest change (m/s) that the whole iterate makes.
+template <class T>
+double ImplicitSolver<T>::backtrack(const SimParams& params, const StepBase& base, double most) {
+  T largest = 0;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    trial[i] = v[i] - velocity_step[i];
+    largest = std::max(largest, dot(trial[i], trial[i]));
+  }
+  place(base, v);
+  T step = 1;
+  for (int k = 0; k < kLineSearchSteps && most >= 0 && residualSquare(params, base) > most; ++k) {
+    step *= T(0.5);
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] = velocity_step[i] + step * trial[i];
+    place(base, v);
+  }
+  return std::sqrt(static_cast<double>(largest));
+}
+
+template <class T>
+void ImplicitSolver<T>::solve(const HairMesh& mesh, const SimParams& params, const StepBase& base, StageClock& clock,
+                              std::vector<Contact>& contacts, std::span<Vec3> velocities, StepReport& report) {
+  const bool linearized = params.integrator == Integrator::kLinearizedEuler;
+  const bool newton = params.integrator == Integrator::kImplicitEuler;
   const bool at_rest = params.solver == Solver::kWarped || params.solver == Solver::kTwoLevel;
+  beginStep(params, base, velocities, contacts);
   if (at_rest) refreshRestFactor(mesh, params, base.h);
   const int most = newton ? std::max(1, params.newton_iterations) : 1;
   for (int iteration = 0; iteration < most; ++iteration) {
-    if (linearized) {
-      for (std::size_t i = 0; i < n; ++i) x[i] = cast<T>(Vec3(base.x_hat[i] - origin));
-    } else {
-      place(v);
-    }
+    place(base, linearized ? std::span<const V3<T>>() : std::span<const V3<T>>(v));
     assemble(params, base, linearized);
     if (at_rest) preconditioner.updateRotations(x);
-    spent(kStageForces);
-    std::copy(v.begin(), v.end(), velocity_step.begin());
+    clock.spent(kStageForces, report);
     // The first iterate does not yet meet the constraints: nothing to compare with.
-    const double before = newton && iteration > 0 ? residualSquare(params, base) : 0;
+    const double before = newton && iteration > 0 ? residualSquare(params, base) : -1;
+    if (newton) std::copy(v.begin(), v.end(), velocity_step.begin());
     const SolveReport linear = solveLinear(mesh, params, base, contacts);
     report.solver_iterations += linear.iterations;
     report.residual = linear.relative_residual;
     report.residual_acceleration = linear.residual_acceleration;
     report.converged = linear.converged;
     ++report.newton_iterations;
-    if (newton) {
-      // velocity_step holds the iterate before; backtrack towards it until the residual does not rise.
-      T largest = 0;
-      for (std::size_t i = 0; i < n; ++i) {
-        trial[i] = v[i] - velocity_step[i];
-        largest = std::max(largest, dot(trial[i], trial[i]));
-      }
-      place(v);
-      T step = 1;
-      for (int k = 0; k < kLineSearchSteps && iteration > 0 && residualSquare(params, base) > before; ++k) {
-        step *= T(0.5);
-        for (std::size_t i = 0; i < n; ++i) v[i] = velocity_step[i] + step * trial[i];
-        place(v);
-      }
-      if (std::sqrt(largest) <= params.newton_tolerance) iteration = most;
-    }
-    spent(kStageSolve);
+    if (newton && backtrack(params, base, before) <= params.newton_tolerance) iteration = most;
+    clock.spent(kStageSolve, report);
   }
-  guess.record([&](std::size_t i) { return v[i] - cast<T>(velocities[i]); });
-  for (std::size_t i = 0; i < n; ++i) velocities[i] = widen(v[i]);
+  if (looksBack(params)) guess.record([&](std::size_t i) { return v[i] - cast<T>(velocities[i]); });
+  for (std::size_t i = 0; i < v.size(); ++i) velocities[i] = widen(v[i]);
+  clock.spent(kStageSolve, report);
 }
 
 template struct ImplicitSolver<float>;

@@ -10,7 +10,6 @@
 // terms cancel.
 #pragma once
 
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -19,6 +18,7 @@
 #include "sim/initial_guess.h"
 #include "sim/linear_solver.h"
 #include "sim/preconditioner_choice.h"
+#include "sim/stage_clock.h"
 #include "sim/step.h"
 
 namespace sim {
@@ -46,13 +46,14 @@ struct ImplicitSolver {
   std::vector<V3<T>> x, v, trial, force, rhs, velocity_step;
   std::vector<T> mass, inverse_mass_dt;
   std::vector<VertexConstraint> constraints;
-  std::vector<int> touched;  // vertices that were in contact when the solve began
+  std::vector<int> touched;     // vertices that were in contact when the solve began
+  PreconditionerChoice choice;  // between the warped factor and its stand-in
+  // Of the rest matrix that was factored: whether in 16 bits, which part, and whether the material has changed since.
   bool rest_compact = false;
-  typename Preconditioner<T>::RestPart rest_part{};  // of the rest matrix that was factored
-  PreconditionerChoice choice;                       // between the warped factor and its stand-in
-  bool rest_outdated = false;                        // the material has changed since
+  typename Preconditioner<T>::RestPart rest_part{};
+  bool rest_outdated = false;
   bool gradual = false;  // a factor that is no longer the best is replaced in slices, not at once
-  // What the rest factor, and the one in the making, were made for; h 0: there is none.
+  // What the rest factor, the one in the making and the layers' factor were made for; h 0: there is none.
   struct FactorTerms {
     double h = 0, damping = 0, drag = 0;
     double stiffness() const { return h * (h + damping); }
@@ -68,8 +69,9 @@ struct ImplicitSolver {
 
   // Solves for the velocities at the step's end, from the guess in `velocities`, which it overwrites. Roots take the
   // velocities given there; contacts constrain their vertices, are dropped when they would pull, and stick or slide by
-  // Coulomb's law. Reports iterations, residuals and stage times into `report`.
-  void solve(const HairMesh& mesh, const SimParams& params, const StepBase& base, double (*clock)(),
+  // Coulomb's law. Reports iterations, residuals and, since the clock's last booking, stage times into
+  // `report`.
+  void solve(const HairMesh& mesh, const SimParams& params, const StepBase& base, StageClock& clock,
              std::vector<Contact>& contacts, std::span<Vec3> velocities, StepReport& report);
 
  private:
@@ -79,12 +81,19 @@ struct ImplicitSolver {
   void assembleRest(const HairMesh& mesh, const FactorTerms& terms);
   void assemble(const SimParams& params, const StepBase& base, bool at_start);
   double residualSquare(const SimParams& params, const StepBase& base);
-  void setContactConstraints(const HairMesh& mesh, const SimParams& params, const StepBase& base,
+  bool setContactConstraints(const HairMesh& mesh, const SimParams& params, const StepBase& base,
                              std::span<const Contact> contacts, SolveStart start);
+  bool looksBack(const SimParams& params) const;
+  void setResidual();
   double beginSolve(const SimParams& params);
   void weighCoarse();
+  struct BudgetedSolve;
   SolveReport solveLinear(const HairMesh& mesh, const SimParams& params, const StepBase& base,
                           std::vector<Contact>& contacts);
+  void place(const StepBase& base, std::span<const V3<T>> speed);
+  void beginStep(const SimParams& params, const StepBase& base, std::span<const Vec3> velocities,
+                 std::vector<Contact>& contacts);
+  double backtrack(const SimParams& params, const StepBase& base, double most);
 };
 
 }  // namespace sim

@@ -19,8 +19,7 @@ InitialGuess<T>::InitialGuess(int vertices) {
 }
 
 template <class T>
-template <class Operator>
-double InitialGuess<T>::improve(const Operator& a, const Filter<T>& filter, std::span<V3<T>> x, std::span<V3<T>> r) {
+double InitialGuess<T>::improve(const Product& a, const Filter<T>& filter, std::span<V3<T>> x, std::span<V3<T>> r) {
   double gained = 0;
   used_ = 0;
   for (int k = 0; k < recorded_; ++k) {
@@ -53,12 +52,5 @@ double InitialGuess<T>::improve(const Operator& a, const Filter<T>& filter, std:
 
 template struct InitialGuess<float>;
 template struct InitialGuess<double>;
-#define HAIRMESH_INSTANTIATE(Operator, T) \
-  template double InitialGuess<T>::improve(const Operator<T>&, const Filter<T>&, std::span<V3<T>>, std::span<V3<T>>)
-HAIRMESH_INSTANTIATE(BlockOperator, float);
-HAIRMESH_INSTANTIATE(BlockOperator, double);
-HAIRMESH_INSTANTIATE(ColumnOperator, float);
-HAIRMESH_INSTANTIATE(ColumnOperator, double);
-#undef HAIRMESH_INSTANTIATE
 
 }  // namespace sim

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -29,10 +30,12 @@ struct InitialGuess {
     recorded_ = recorded_ < kChanges ? recorded_ + 1 : kChanges;
   }
 
-  // Moves x within the filter's free directions and keeps r = b - A x true. Returns by how much (J) the squared energy
-  // norm of the error has become less. Allocates nothing.
-  template <class Operator>
-  double improve(const Operator& a, const Filter<T>& filter, std::span<V3<T>> x, std::span<V3<T>> r);
+  // y = A x.
+  using Product = std::function<void(std::span<const V3<T>> x, std::span<V3<T>> y)>;
+  // Moves x within the filter's free directions and keeps r = b - A x true: r then says nothing along the directions
+  // of deflation(). Returns by how much (J) the squared energy norm of the error has become less. Allocates nothing,
+  // if the making of the product does not.
+  double improve(const Product& a, const Filter<T>& filter, std::span<V3<T>> x, std::span<V3<T>> r);
   // What it looked along: for the solve, which finds the answer in fewer iterations when it goes on looking there.
   // Valid until the next call.
   std::span<const Deflated<T>> deflation() const { return {deflated_.data(), static_cast<std::size_t>(used_)}; }

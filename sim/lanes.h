@@ -1,5 +1,5 @@
-// Eight numbers at once: the compiler's vector type, and the few functions that the condition functions need of it and
-// of plain numbers alike. One source of each formula serves the scalar reference and the vectorized kernels.
+// Eight or sixteen numbers at once: the compiler's vector type, and the few functions that the condition functions need
+// of it and of plain numbers alike. One source of each formula serves the scalar reference and the vectorized kernels.
 #pragma once
 
 #include <cmath>

@@ -10,13 +10,7 @@ namespace sim {
 namespace {
 
 constexpr int kPivot = 6, kBlock = 9;  // components
-
-// What one group of lanes is walked by.
-struct Structure {
-  std::span<const int> below_first, updates;
-  std::span<const std::size_t> pivot_at, block_at;
-  std::span<const int> rows, rows_below;
-};
+using Structure = LayerStructure;
 
 template <class T, int W>
 HAIRMESH_INLINE void loadBlock(const T* from, Lanes<T, W>* m) {
@@ -176,12 +170,12 @@ LayerFactor<T>::LayerFactor(const HairMesh& mesh, const ColumnLayout& layout, co
     pivot_at_.push_back(group_size_);
     group_size_ += kPivot * lanes_;
     for (const int row : coupled[k]) {
-      block_of[{row, k}] = static_cast<int>(below_.size());
-      below_.push_back(order_[row]);
+      block_of[{row, k}] = static_cast<int>(rows_below_.size());
+      rows_below_.push_back(layout.first(order_[row]));
       block_at_.push_back(group_size_);
       group_size_ += kBlock * lanes_;
     }
-    below_first_.push_back(static_cast<int>(below_.size()));
+    below_first_.push_back(static_cast<int>(rows_below_.size()));
   }
   std::size_t most = 0;
   for (int k = 0; k < columns; ++k) {
@@ -193,7 +187,6 @@ LayerFactor<T>::LayerFactor(const HairMesh& mesh, const ColumnLayout& layout, co
     }
     rows_.push_back(layout.first(order_[k]));
   }
-  for (const int column : below_) rows_below_.push_back(layout.first(column));
   for (std::size_t n = 0; n < pattern.diagonals.size(); ++n) {
     const BlockDiagonal& d = pattern.diagonals[n];
     if (d.offset != 0) continue;
@@ -266,14 +259,19 @@ void LayerFactor<T>::factor(const BlockMatrix<T>& a) {
 }
 
 template <class T>
+LayerStructure LayerFactor<T>::structure() const {
+  return {below_first_, updates_, pivot_at_, block_at_, rows_, rows_below_};
+}
+
+template <class T>
 void LayerFactor<T>::eliminate() {
-  const Structure s{below_first_, updates_, pivot_at_, block_at_, rows_, rows_below_};
+  const Structure s = structure();
   for (int g = 0; g < groups_; ++g) runElimination(s, lanes_, values_.data() + g * group_size_, panel_.data());
 }
 
 template <class T>
 void LayerFactor<T>::solve(ColumnField<T>& x) const {
-  const Structure s{below_first_, updates_, pivot_at_, block_at_, rows_, rows_below_};
+  const Structure s = structure();
   for (int g = 0; g < groups_; ++g) runSolve(s, lanes_, values_.data() + g * group_size_, g * lanes_, x);
 }
 

@@ -10,6 +10,13 @@
 
 namespace sim {
 
+// What one group of lanes is walked by; see the members of LayerFactor.
+struct LayerStructure {
+  std::span<const int> below_first, updates;
+  std::span<const std::size_t> pivot_at, block_at;
+  std::span<const int> rows, rows_below;
+};
+
 // Block L D L^T of every layer, columns in an order of minimum degree. A vertex without a row (padding beside a shorter
 // column) is a row of the identity.
 template <class T>
@@ -31,8 +38,8 @@ struct LayerFactor {
   int lanes_;  // of a group, one a layer
   int groups_;
   std::vector<int> order_;  // columns as they are eliminated
-  // Per eliminated column: the columns that its elimination couples, in order.
-  std::vector<int> below_first_{0}, below_;
+  // Per eliminated column: where the columns that its elimination couples begin in rows_below_ and block_at_.
+  std::vector<int> below_first_{0};
   // Where L_ik D_k L_jk^T goes, for all pairs j <= i of those below k: the block's number, for j = i the pivot's.
   std::vector<int> updates_;
   // Where the matrix's blocks go: block, or ~pivot; and whether as the transpose.
@@ -42,8 +49,7 @@ struct LayerFactor {
     bool transposed;
   };
   std::vector<Source> sources_;
-  std::vector<int> rows_;  // first entries of a field's columns, as they are eliminated
-  std::vector<int> rows_below_;
+  std::vector<int> rows_, rows_below_;  // first entries of a field's columns, as they are eliminated; those coupled
   // Lane groups one after the other; of each, for every pivot in turn, its inverse (6 components) and the blocks of L
   // below it (9 each).
   LineVector<T> values_;
@@ -51,6 +57,7 @@ struct LayerFactor {
   std::vector<std::size_t> pivot_at_, block_at_;  // within a group
   LineVector<T> panel_;                           // D L^T of one column
 
+  LayerStructure structure() const;
   void clearWithIdentity();
   void eliminate();
 };

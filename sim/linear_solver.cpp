@@ -35,6 +35,40 @@ bool allWithin(double bound, std::span<const V3<T>> r, std::span<const T> weight
   return true;
 }
 
+// Keeps a search direction conjugate to the deflated ones; z: the preconditioned residual that it goes by.
+template <class T>
+void deflate(std::span<const Deflated<T>> deflation, std::span<const V3<T>> z, std::span<V3<T>> d) {
+  for (const Deflated<T>& one : deflation)
+    addScaled<T>(static_cast<T>(-innerProduct<T>(one.q, z) / one.energy), one.x, d);
+}
+
+// Moves x so that its residual says nothing along the deflated directions.
+template <class T>
+void lookAlong(std::span<const Deflated<T>> deflation, std::span<V3<T>> x, std::span<V3<T>> r) {
+  for (const Deflated<T>& one : deflation) {
+    const T step = static_cast<T>(innerProduct<T>(one.x, r) / one.energy);
+    addScaled<T>(step, one.x, x);
+    addScaled<T>(-step, one.q, r);
+  }
+}
+
+// The gain of an iteration (J, of the squared energy norm of the error) into the series that foretells the next ones.
+template <class T>
+void countGain(double gain, SolverScratch<T>& scratch) {
+  if (scratch.gain > 0) {
+    const double ratio = gain / scratch.gain;
+    scratch.rate = std::max(ratio, scratch.last_ratio);
+    scratch.last_ratio = ratio;
+  }
+  scratch.gain = gain;
+}
+
+// Of the squared error, after the last iteration.
+template <class T>
+double foreseen(const SolverScratch<T>& scratch) {
+  return scratch.gain * scratch.rate / (1 - scratch.rate);
+}
+
 }  // namespace
 
 template <class Operator>
@@ -48,72 +82,41 @@ SolveReport solveModifiedPcg(const Operator& a, std::span<const V3<typename Oper
   const std::size_t n = b.size();
   const std::span<V3<T>> r(scratch.r), z(scratch.z), d(scratch.d), q(scratch.q);
   SolveReport report;
-  const auto filterResidual = [&] {
-    scratch.removed.clear();
-    for (std::size_t k = 0; k < filter.vertices.size(); ++k) {
-      V3<T>& at = r[filter.vertices[k]];
-      const V3<T> kept = filter.keep[k] * at;
-      scratch.removed.push_back(at - kept);
-      at = kept;
-    }
-  };
-  const auto restoreResidual = [&] {
-    for (std::size_t k = filter.vertices.size(); k-- > 0;) r[filter.vertices[k]] += scratch.removed[k];
-  };
+  bool preconditioned = false;  // z, square and calm are those of the present r
+  bool calm = false;            // no vertex's residual exceeds the bound on its acceleration
   // z = S P S r, square = r . z.
   const auto precondition = [&] {
-    filterResidual();
+    filter.take(r, scratch.removed);
     preconditioner.apply(r, z);
     ++report.applications;
-    scratch.calm = stop.acceleration > 0 && allWithin<T>(stop.acceleration, r, stop.inverse_mass_dt);
-    restoreResidual();
+    calm = stop.acceleration > 0 && allWithin<T>(stop.acceleration, r, stop.inverse_mass_dt);
+    filter.putBack(scratch.removed, r);
     filter.apply(z);
     scratch.square = innerProduct<T>(r, z);
-    scratch.preconditioned = true;
+    preconditioned = true;
   };
   const auto closeEnough = [&] {
-    return !(scratch.square > stop.relative * stop.relative * scratch.first_square) || scratch.calm ||
+    return !(scratch.square > stop.relative * stop.relative * scratch.first_square) || calm ||
            (stop.displacement > 0 && allWithin<T>(stop.displacement / stop.h, z));
   };
-  // Of the squared error, after the last iteration.
-  const auto foreseen = [&] { return scratch.gain * scratch.rate / (1 - scratch.rate); };
   const auto foreseenEnough = [&] {
     return stop.foresee && scratch.rate > 0 && scratch.rate < kEven && scratch.gain > 0 &&
-           foreseen() <= stop.relative * stop.relative * scratch.first_square;
-  };
-  const auto deflate = [&] {
-    for (const Deflated<T>& one : scratch.deflation) {
-      addScaled<T>(static_cast<T>(-innerProduct<T>(one.q, z) / one.energy), one.x, d);
-    }
-  };
-  // A residual that says nothing along the deflated directions.
-  const auto lookAlongDeflated = [&] {
-    for (const Deflated<T>& one : scratch.deflation) {
-      const T step = static_cast<T>(innerProduct<T>(one.x, r) / one.energy);
-      addScaled<T>(step, one.x, x);
-      addScaled<T>(-step, one.q, r);
-    }
-  };
-  const auto turn = [&](double before) {
-    const T beta = static_cast<T>(scratch.square / before);
-    scaleAndAdd<T>(beta, z, d);
-    deflate();
+           foreseen(scratch) <= stop.relative * stop.relative * scratch.first_square;
   };
   const bool first = start == SolveStart::kFresh || start == SolveStart::kPrepared;
   if (start == SolveStart::kFresh) {
     a(x, q);
     for (std::size_t i = 0; i < n; ++i) r[i] = b[i] - q[i];
   }
-  if (first) scratch.rate = scratch.last_ratio = 0;
+  if (first || start == SolveStart::kExchange) scratch.rate = scratch.last_ratio = 0;
   const double before_start = scratch.square;
-  lookAlongDeflated();
+  if (start != SolveStart::kPrepared) lookAlong<T>(scratch.deflation, x, r);
   precondition();
   std::copy(z.begin(), z.end(), d.begin());
-  deflate();
+  deflate<T>(scratch.deflation, z, d);
   if (first) scratch.first_square = scratch.square + stop.head_start;
   // In the norm of the new preconditioner the progress so far counts for as much as it did in the old one's.
   if (start == SolveStart::kExchange && before_start > 0) scratch.first_square *= scratch.square / before_start;
-  if (start == SolveStart::kExchange) scratch.rate = scratch.last_ratio = 0;
   scratch.gain = 0;
   report.converged = closeEnough();
   while (!report.converged && report.iterations < stop.max_iterations) {
@@ -124,28 +127,23 @@ SolveReport solveModifiedPcg(const Operator& a, std::span<const V3<typename Oper
     const T alpha = static_cast<T>(step);
     addScaled<T>(alpha, d, x);
     addScaled<T>(-alpha, q, r);
-    scratch.preconditioned = false;
-    const double gain = step * before;
-    if (scratch.gain > 0) {
-      const double ratio = gain / scratch.gain;
-      scratch.rate = std::max(ratio, scratch.last_ratio);
-      scratch.last_ratio = ratio;
-    }
-    scratch.gain = gain;
+    preconditioned = false;
+    countGain(step * before, scratch);
     ++report.iterations;
     report.converged = foreseenEnough();
     if (report.converged) break;
     precondition();
-    turn(before);
+    scaleAndAdd<T>(static_cast<T>(scratch.square / before), z, d);
+    deflate<T>(scratch.deflation, z, d);
     report.converged = closeEnough();
     if (!std::isfinite(scratch.square)) break;
   }
   if (!std::isfinite(scratch.square)) report.converged = false;
-  const double left = scratch.preconditioned ? scratch.square : foreseen();
+  const double left = preconditioned ? scratch.square : foreseen(scratch);
   report.relative_residual = scratch.first_square > 0 ? std::sqrt(std::max(left, 0.0) / scratch.first_square) : 0;
-  filterResidual();
+  filter.take(r, scratch.removed);
   report.residual_acceleration = largestAcceleration<T>(r, stop.inverse_mass_dt);
-  restoreResidual();
+  filter.putBack(scratch.removed, r);
   return report;
 }
 

@@ -24,6 +24,19 @@ struct Filter {
   void apply(std::span<V3<T>> x) const {
     for (std::size_t k = 0; k < vertices.size(); ++k) x[vertices[k]] = keep[k] * x[vertices[k]];
   }
+  // As apply, and keeps what it takes away; putBack undoes it to the last bit but rounding's.
+  void take(std::span<V3<T>> x, std::vector<V3<T>>& removed) const {
+    removed.clear();
+    for (std::size_t k = 0; k < vertices.size(); ++k) {
+      V3<T>& at = x[vertices[k]];
+      const V3<T> kept = keep[k] * at;
+      removed.push_back(at - kept);
+      at = kept;
+    }
+  }
+  void putBack(std::span<const V3<T>> removed, std::span<V3<T>> x) const {
+    for (std::size_t k = vertices.size(); k-- > 0;) x[vertices[k]] += removed[k];
+  }
 };
 
 // When to stop: at the relative residual, measured in the preconditioner's norm against the first; or when no vertex's
@@ -39,7 +52,7 @@ struct StopRule {
   double relative = 1e-3;
   bool foresee = false;
   double acceleration = 0;             // 0: off
-  std::span<const T> inverse_mass_dt;  // 1/(kg s) per vertex; needed for residual_acceleration
+  std::span<const T> inverse_mass_dt;  // 1/(kg s) per vertex; needed for `acceleration` and residual_acceleration
   double displacement = 0;             // 0: off
   double h = 0;                        // s
   int max_iterations = 400;
@@ -49,7 +62,7 @@ struct StopRule {
 // How a solve begins. `fresh`: from x and b. `restart`: from x and the residual in the scratch, which the caller has
 // kept true while b or the filter changed; the search directions begin anew. `exchange`: as restart, the preconditioner
 // being another one. Both measure progress from the first solve's first norm. `prepared`: fresh, but with the residual
-// already in the scratch.
+// already in the scratch, and with nothing in it along the deflated directions (as InitialGuess leaves it).
 enum class SolveStart { kFresh, kPrepared, kRestart, kExchange };
 
 struct SolveReport {
@@ -60,8 +73,8 @@ struct SolveReport {
   bool converged = false;
 };
 
-// A direction x that the solve looks along anew in every iteration: q = A x, `energy` = x . q. All are within the free
-// directions and conjugate to one another.
+// A direction x that the solve looks along when it begins, and keeps its search directions conjugate to: q = A x,
+// `energy` = x . q. All are within the free directions and conjugate to one another.
 template <class T>
 struct Deflated {
   std::span<const V3<T>> x, q;
@@ -82,8 +95,6 @@ struct SolverScratch {
   // Search directions are kept conjugate to these, so that every iterate is the best also over them (deflated
   // conjugate gradients, after Saad, Yeung, Erhel and Guyomarc'h 2000). Set by the caller, per solve.
   std::span<const Deflated<T>> deflation;
-  bool preconditioned = false;  // z, square and calm are those of the present r
-  bool calm = false;            // no vertex's residual exceeds the bound on its acceleration
   void resize(int n) { r.resize(n), z.resize(n), d.resize(n), q.resize(n), removed.reserve(n); }
 };
 

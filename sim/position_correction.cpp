@@ -61,6 +61,21 @@ double correctionSpeed(const CorrectedStep& step, const PositionCorrection& scra
   return std::min(most / step.dt, kFastestFollower);
 }
 
+// Roots and vertices in contact do not follow.
+void holdResting(const HairMesh& mesh, const HairState& state, PositionCorrection& scratch) {
+  for (int c = 0; c < mesh.columnCount(); ++c) scratch.held[mesh.shape.column_first[c]] = 1;
+  for (const Contact& contact : state.contacts) scratch.held[contact.vertex] = 1;
+}
+
+// The others follow those held. Returns the work (StepReport::minimization_iterations).
+int letFollow(PositionCorrection& scratch, HairState& state) {
+  const int work = scratch.minimizer.minimize(scratch.held, kMinimization, scratch.displacement);
+  for (std::size_t i = 0; i < state.positions.size(); ++i) {
+    if (!scratch.held[i]) state.positions[i] += scratch.displacement[i];
+  }
+  return work;
+}
+
 // Vertices that followed take the velocity of their displacement, no more than the corrections' own: an overlap that
 // stood before must not become a kick. The two-step history of all that moved restarts, as if they had come here at
 // their present velocity.
@@ -98,8 +113,7 @@ void correctPositions(const CorrectedStep& step, StageClock& clock, PositionCorr
   for (const Penetration& hit : scratch.penetrations)
     report.max_penetration = std::max(report.max_penetration, hit.depth);
   std::fill(scratch.held.begin(), scratch.held.end(), 0);
-  for (int c = 0; c < mesh.columnCount(); ++c) scratch.held[mesh.shape.column_first[c]] = 1;
-  for (const Contact& contact : state.contacts) scratch.held[contact.vertex] = 1;
+  holdResting(mesh, state, scratch);
   scratch.uncorrected = state.positions;
   double follow_speed = 0;
   // Minimization may push other vertices in, which the paper leaves to future work: the rounds go on with these held as
@@ -119,12 +133,8 @@ void correctPositions(const CorrectedStep& step, StageClock& clock, PositionCorr
     // What nothing moves any more cannot have come inside. Where the way out of one body has led through another, to go
     // back by the path would be to go to and fro: to be outside is enough.
     if (round > kRounds) search.vertices = scratch.corrected, search.start = {};
-    if (step.params.minimize_deformation && round < kRounds) {
-      report.minimization_iterations += scratch.minimizer.minimize(scratch.held, kMinimization, scratch.displacement);
-      for (std::size_t i = 0; i < state.positions.size(); ++i) {
-        if (!scratch.held[i]) state.positions[i] += scratch.displacement[i];
-      }
-    }
+    if (step.params.minimize_deformation && round < kRounds)
+      report.minimization_iterations += letFollow(scratch, state);
     clock.spent(kStageMinimization, report);
     findPenetrations(search, state.positions, scratch.search, scratch.penetrations);
   }
@@ -137,17 +147,12 @@ void correctPositions(const CorrectedStep& step, StageClock& clock, PositionCorr
 
 void followPushed(const CorrectedStep& step, std::span<const Vec3> unmoved, std::span<const unsigned char> moved,
                   PositionCorrection& scratch, HairState& state) {
-  const HairMesh& mesh = step.mesh;
   std::copy(unmoved.begin(), unmoved.end(), scratch.uncorrected.begin());
   std::copy(moved.begin(), moved.end(), scratch.held.begin());
-  for (int c = 0; c < mesh.columnCount(); ++c) scratch.held[mesh.shape.column_first[c]] = 1;
-  for (const Contact& contact : state.contacts) scratch.held[contact.vertex] = 1;
+  holdResting(step.mesh, state, scratch);
   for (std::size_t i = 0; i < unmoved.size(); ++i)
     scratch.displacement[i] = moved[i] ? Vec3(state.positions[i] - unmoved[i]) : Vec3::Zero();
-  scratch.minimizer.minimize(scratch.held, kMinimization, scratch.displacement);
-  for (std::size_t i = 0; i < unmoved.size(); ++i) {
-    if (!scratch.held[i]) state.positions[i] += scratch.displacement[i];
-  }
+  letFollow(scratch, state);
   updateVelocities(step, kFastestFollower, scratch, state);
 }
 

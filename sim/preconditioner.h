@@ -24,10 +24,10 @@ namespace sim {
 //   diagonal              scalar diagonal
 //   column                block-tridiagonal factor of each column
 //   incomplete            incomplete Cholesky factor without fill, in 3x3 blocks
-//   two-level             factors of the rest shape's layers and of its matrix on a coarse space, turned (two_level.h)
+//   two-level             factors of the current matrix's layers, and of the rest shape's matrix on a coarse space,
+//                         turned (two_level.h)
 //   warped                factor of the rest shape's matrix, residuals turned into the rest frame and back by each
-//   vertex's own
-//                         rotation: P = R (A_rest)^-1 R^T
+//                         vertex's own rotation: P = R (A_rest)^-1 R^T
 //   direct                factor of the current matrix
 template <class T>
 struct Preconditioner {
@@ -59,7 +59,7 @@ struct Preconditioner {
   // z = P r.
   void apply(std::span<const V3<T>> r, std::span<V3<T>> z);
 
-  // The weight of the coarse half of `two-level`, for the solves until the next update; 1 without it.
+  // The weight of the coarse half of `two-level`, until it is set again; 1 at first.
   void setCoarseWeight(T weight) {
     if (two_level_) two_level_->coarse_weight = weight;
   }
@@ -71,7 +71,6 @@ struct Preconditioner {
   double restFactorRatio() const;
   bool restFactorFine() const { return rest_.fine; }
   bool twoLevelFine() const { return two_level_ && two_level_->fine; }
-  const BlockCholesky<T>& restFactor() const { return rest_.factor; }
 
  private:
   const HairMesh* mesh_;

@@ -142,9 +142,9 @@ void rootsFollowScalp(const StepInput& input, const StepBase& base, const HairMe
 void solveVelocities(const SimParams& params, const StepBase& base, Parts& parts, HairState& state,
                      StepReport& report) {
   if (params.precision == Precision::kDouble) {
-    parts.double_solver->solve(*parts.mesh, params, base, parts.clock.clock, state.contacts, state.velocities, report);
+    parts.double_solver->solve(*parts.mesh, params, base, parts.clock, state.contacts, state.velocities, report);
   } else {
-    parts.single_solver->solve(*parts.mesh, params, base, parts.clock.clock, state.contacts, state.velocities, report);
+    parts.single_solver->solve(*parts.mesh, params, base, parts.clock, state.contacts, state.velocities, report);
   }
 }
 
@@ -221,6 +221,13 @@ void partBundles(const CorrectedStep& step, Parts& parts, HairState& state, Step
   resolveSelfContacts({step.mesh, step.params, {}, step.dt}, self, state);
 }
 
+// No step makes energy out of nothing, and no hair stays turned over.
+void keepWithinBounds(const TakenStep& taken, Parts& parts, HairState& state, StepReport& report) {
+  limitEnergy(taken, parts.energy_guard, state);
+  // Loose particles have no shape to be led back to.
+  if (taken.params.volume > 0) report.combed = combOut({taken.mesh, taken.positions, taken.dt}, parts.tangles, state);
+}
+
 // Corrects what is inside of bodies, as far as the energy that the step began with pays for it (taken: null where it
 // need not).
 void keepOutside(const CorrectedStep& step, const TakenStep* taken, Parts& parts, HairState& state,
@@ -255,25 +262,20 @@ StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInpu
   parts.clock.spent(kStageOther, report);
 
   solveVelocities(params, base, parts, state, report);
-  parts.clock.start();
   integratePositions(input, base, dt, mesh, parts, state);
-  // No step makes energy out of nothing; but the paper's setting has no such bound.
-  const bool bounded = params.solver != Solver::kPaper;
+  const bool bounded = params.solver != Solver::kPaper;  // the paper's setting is what the paper says
   const TakenStep taken = takenStep(params, base, dt, parts);
-  if (bounded) {
-    limitEnergy(taken, parts.energy_guard, state);
-    // Loose particles have no shape to be led back to.
-    if (params.volume > 0) report.combed = combOut({mesh, parts.start_positions, dt}, parts.tangles, state);
-  }
+  if (bounded) keepWithinBounds(taken, parts, state, report);
   guardMade(parts, input, state, report);
   parts.clock.spent(kStageOther, report);
 
+  const CorrectedStep corrected{mesh, params, colliders, parts.start_positions, dt};
   if (params.self_collide) {
-    partBundles({mesh, params, colliders, parts.start_positions, dt}, parts, state, report);
+    partBundles(corrected, parts, state, report);
     parts.clock.spent(kStageCollision, report);
   }
   if (params.collide) {
-    keepOutside({mesh, params, colliders, parts.start_positions, dt}, bounded ? &taken : nullptr, parts, state, report);
+    keepOutside(corrected, bounded ? &taken : nullptr, parts, state, report);
     parts.clock.spent(kStageCollision, report);
   }
   parts.good.positions = state.positions;

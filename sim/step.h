@@ -32,15 +32,15 @@ struct StepReport {
   double residual_acceleration = 0;  // m/s^2, largest over vertices
   bool converged = true;
   int contacts = 0, corrected = 0;  // constrained vertices; vertices moved by position correction
-  int minimization_iterations = 0;
-  double max_penetration = 0;   // m, found before correction
-  int standing = 0;             // vertices, counted a round, that lay inside a body before the step already
-  double standing_overlap = 0;  // m, deepest below the offset that is left because it stood before the step
-  int self_contacts = 0;        // vertices pushed out of foreign bundles
-  int combed = 0;               // columns that stayed turned over and are led back to rest (comb_out.h)
-  int recoveries = 0;           // watchdog restored the last good state
-  Trouble trouble;              // what it found, for the log
-  bool carried = false;         // the roots had jumped as no motion could: the hair was carried along with them
+  int minimization_iterations = 0;  // or, of the exact way, answers computed anew plus one a correction
+  double max_penetration = 0;       // m, found before correction
+  int standing = 0;                 // vertices, counted a round, that lay inside a body before the step already
+  double standing_overlap = 0;      // m, deepest below the offset that is left because it stood before the step
+  int self_contacts = 0;            // vertices pushed out of foreign bundles
+  int combed = 0;                   // columns that stayed turned over and are led back to rest (comb_out.h)
+  int recoveries = 0;               // watchdog restored the last good state
+  Trouble trouble;                  // what it found, for the log
+  bool carried = false;             // the roots had jumped as no motion could: the hair was carried along with them
 };
 
 // Scratch memory and everything derived from mesh and parameters (matrix patterns, factors). Keep one per hair; a step
@@ -55,8 +55,7 @@ class StepContext {
 
   // When parameters change, what is derived from them at a cost (the factor of the rest shape, the balance of gravity)
   // follows in slices over the next steps instead of at once: no step takes much longer than any other, and which step
-  // takes the new values over depends on counted work alone. Off at first. A step's result then depends on what the
-  // context went through before, within the solver's tolerance.
+  // takes the new values over depends on counted work alone. Off at first.
   void refreshGradually(bool on);
 
   struct Parts;

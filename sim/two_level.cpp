@@ -29,6 +29,10 @@ struct Columns {
   // Of coarse column k, lane l: x, y and z are a stride apart.
   std::size_t across(int k, int lane) const { return static_cast<std::size_t>(3 * k) * layout.stride + lane; }
 };
+template <class T>
+Columns<T> columnsOf(const ColumnLayout& layout, const CoarseSpace& space, const LineVector<T>& turn) {
+  return {layout, space, turn.data(), static_cast<std::size_t>(layout.size())};
+}
 
 // across += what hangs on each coarse column of R^T r.
 template <class T>
@@ -162,7 +166,7 @@ template <class T>
 void TwoLevel<T>::solveCoarse() {
   constexpr int kStep = CoarseSpace::kLayerStep;
   const int stride = layout_.stride;
-  const Columns<T> columns{layout_, space_, turn_.data(), static_cast<std::size_t>(layout_.size())};
+  const Columns<T> columns = columnsOf(layout_, space_, turn_);
   std::fill(across_.begin(), across_.end(), T(0));
   runGather(columns, field_, across_.data());
   // Hat functions along the hair: coarse vertex m reaches kStep - 1 layers up and down.
@@ -192,7 +196,7 @@ template <class T>
 void TwoLevel<T>::applyCoarse(std::span<const V3<T>> r, std::span<V3<T>> z) {
   field_.pack(layout_, r);
   solveCoarse();
-  runScatter({layout_, space_, turn_.data(), static_cast<std::size_t>(layout_.size())}, across_.data(), 0, 1, field_);
+  runScatter(columnsOf(layout_, space_, turn_), across_.data(), 0, 1, field_);
   field_.unpack(layout_, z);
 }
 
@@ -201,8 +205,7 @@ void TwoLevel<T>::apply(std::span<const V3<T>> r, std::span<V3<T>> z) {
   field_.pack(layout_, r);
   solveCoarse();
   layers_.solve(field_);
-  runScatter({layout_, space_, turn_.data(), static_cast<std::size_t>(layout_.size())}, across_.data(), 1,
-             coarse_weight, field_);
+  runScatter(columnsOf(layout_, space_, turn_), across_.data(), 1, coarse_weight, field_);
   field_.unpack(layout_, z);
 }
 

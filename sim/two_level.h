@@ -1,12 +1,13 @@
 // The two-level preconditioner: P = L^-1 + w R Q C^-1 Q^T R^T.
 //
-// L: the matrix without the couplings between layers, factored anew for every matrix (layer_factor.h). C = Q^T A_rest
-// Q: the projection of the rest shape's matrix onto a coarse space of smooth displacements, which carries what goes
-// along the hair; R: the vertices' own rotations from the rest shape; w: a weight, for hair that is pulled out of its
-// rest shape is stiffer than C knows. The sum is an additive Schwarz method (Dryja and
-// Widlund 1987). Its work grows with the mesh, where that of the whole matrix's factor grows faster. Measured on a walk
-// of 2,268 vertices with contacts (from the last velocities), iterations to 3 % and 1 % of the error: 13 and 26; with the whole rest factor
-// 35 and 56, with 3x3 blocks 162 and 294; with columns in the layers' place no better than without a coarse space.
+// L: the matrix without the couplings between layers, of the current step or of one before (layer_factor.h, LayerAge).
+// C = Q^T A_rest Q: the projection of the rest shape's matrix onto a coarse space of smooth displacements, which
+// carries what goes along the hair; R: the vertices' own rotations from the rest shape; w: a weight, for hair that is
+// pulled out of its rest shape is stiffer than C knows. The sum is an additive Schwarz method (Dryja and Widlund 1987).
+// Its work grows with the mesh, where that of the whole matrix's factor grows faster. Measured on a walk of 2,268
+// vertices with contacts, solves starting from the last velocities, iterations to 3 % and 1 % of the error: 13 and 26;
+// with the whole rest factor 35 and 56, with 3x3 blocks 162 and 294; with columns in the layers' place no better than
+// without a coarse space.
 #pragma once
 
 #include <span>

@@ -56,8 +56,8 @@ BlockPattern systemPattern(const HairMesh& mesh);
 // The modulus (Pa) with which this mesh's prisms resist a change of volume: params.volume where they measure 1.5 cm^2
 // or less across the hair, and in inverse proportion less where they are wider. Hair as a whole yields to a bend by
 // widening here and narrowing there; a wide prism cannot follow within itself, and with the same modulus a coarse mesh
-// would move half as far as a fine one (docs/consistency.md). Not below what the hair's own weight asks for, twice its
-// density times 9.81 m/s^2 times its length: softer hair would not keep its shape.
+// would move 0.7 to 0.8 times as far as a fine one (docs/consistency.md). Not below what the hair's own weight asks
+// for, twice its density times 9.81 m/s^2 times its length: softer hair would not keep its shape.
 double volumeModulus(const HairMesh& mesh, const SimParams& params);
 
 // Stiffnesses from the moduli and each element's share of the hair's volume. With sag_free, rest shifts are solved for
