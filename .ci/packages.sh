@@ -8,7 +8,7 @@ build_packages=(
 )
 test_packages=(libgtest-dev xvfb)
 # More tests and comparisons run where these are installed; without them they are skipped.
-optional_test_packages=(assimp-testmodels libsuitesparse-dev libbullet-dev gnuplot-nox valgrind)
+optional_test_packages=(assimp-testmodels libsuitesparse-dev libbullet-dev gnuplot-nox valgrind clang libclang-rt-14-dev)
 
 installed() {
   [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
@@ -48,11 +48,11 @@ known_packages() {
   done
 }
 
-# configure FOLDER ON|OFF: configures a Release build, with or without the tests.
+# configure FOLDER ON|OFF [OPTION...]: configures a Release build, with or without the tests.
 configure() {
   local generator=()
   if [ ! -f "$1/CMakeCache.txt" ] && command -v ninja >/dev/null; then generator=(-G Ninja); fi
-  cmake -S . -B "$1" "${generator[@]}" -DCMAKE_BUILD_TYPE=Release -DHAIRMESH_TESTS="$2" >"$1.log" 2>&1 && return 0
+  cmake -S . -B "$1" "${generator[@]}" -DCMAKE_BUILD_TYPE=Release -DHAIRMESH_TESTS="$2" "${@:3}" >"$1.log" 2>&1 && return 0
   cat "$1.log" >&2
   return 1
 }
