@@ -429,4 +429,22 @@ TEST(Step, AllocatesNothingOnceWarm) {
   }
 }
 
+// The same where the rest factor follows the parameters in slices, inner vertices collide as well, and bundles with one
+// another.
+TEST(Step, AllocatesNothingWithEveryOptionOnceWarm) {
+  sim::SimParams params = test::tautHair();
+  params.collide_inner = params.self_collide = true;
+  Hair hair(test::combedShape({}), params);
+  hair.context.refreshGradually(true);
+  shake(hair, 12);
+  allocations = 0;
+  for (int n = 0; n < 5; ++n) {
+    hair.bodies[0].center += kFrame * hair.bodies[0].velocity;
+    counting = true;
+    hair.step(kFrame);
+    counting = false;
+  }
+  EXPECT_EQ(allocations, 0);
+}
+
 }  // namespace

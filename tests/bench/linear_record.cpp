@@ -49,7 +49,8 @@ LinearRecord recordStep(const RecordedMesh& shared, sim::ImplicitSolver<double>&
   for (const sim::Vec3& p : state.positions) record.positions.push_back(plain(p - state.positions[0]));
   for (const sim::Vec3& v : state.velocities) record.guess.push_back(plain(v));
   sim::StepReport report;
-  solver.solve(mesh, params, {state.positions, state.velocities, shared.h}, nullptr, state.contacts, state.velocities,
+  sim::StageClock no_clock;
+  solver.solve(mesh, params, {state.positions, state.velocities, shared.h}, no_clock, state.contacts, state.velocities,
                report);
   record.column_values = solver.matrix.values;
   record.matrix = sim::BlockMatrix<double>(&shared.pattern);
