@@ -13,9 +13,6 @@ constexpr int kLineSearchSteps = 6;
 // Where the direct factor can be corrected for only a part of the contacts at the price of one batch of answers, so
 // many iterations are tried before the rest is paid for.
 constexpr int kUncorrectedIterations = 10;
-// `warped` makes the whole rest factor for meshes of up to so many vertices; larger ones have the two levels alone,
-// whose memory and work grow with the mesh.
-constexpr int kMostFactored = 2000;
 constexpr Solver kStandIn = Solver::kTwoLevel;
 // What an application of a preconditioner costs, in products with the matrix: the warped factor by the ratio of its
 // blocks to the matrix's (measured at 361 and 2,268 vertices), and the two levels.

@@ -8,6 +8,10 @@
 
 namespace sim {
 
+// `warped` makes the whole rest factor for meshes of up to so many vertices; larger ones have the two levels alone,
+// whose memory and work grow with the mesh.
+inline constexpr int kMostFactored = 2000;
+
 // Decides by counted work, in products with the matrix, so that the same inputs always decide alike. The other is
 // tried now and then where a solve costs more than a little, for not much more than what the one in use takes.
 struct PreconditionerChoice {
