@@ -199,11 +199,11 @@ TEST(FixedClock, TheShownMomentGoesOnEvenlyWhenTheStepChanges) {
   EXPECT_EQ(clock.lost, 0);
 }
 
-app::Demo openWalk(double budget_ms) {
+app::Demo openWalk(double budget_ms, sim::Resolution resolution = sim::Resolution::kLow) {
   app::Scene scene = app::loadScene(app::dataPath("assets/scenes/walk.json"));
   scene.characters.resize(1);
   scene.characters[0].style = sim::Style::kLong;
-  scene.characters[0].resolution = sim::Resolution::kLow;
+  scene.characters[0].resolution = resolution;
   scene.playback.budget_ms = budget_ms;
   app::Demo demo = app::openScene(std::move(scene), 1);
   demo.governor.counted = true;
@@ -260,6 +260,60 @@ TEST(Governor, CountedCostsRepeatToTheBit) {
     EXPECT_EQ(0, std::memcmp(first.data(), demo.actors[0].shown_positions.data(), first.size() * sizeof(float)));
   }
   EXPECT_GE(changed, 1);
+}
+
+// A frame's time over its counted work, at the default's setting: the lower quartile, as other work on the machine only
+// adds to times, and more to long frames.
+double secondsForCounted(sim::Resolution resolution) {
+  app::Demo demo = openWalk(0, resolution);
+  const int vertices = demo.actors.front().haircut->mesh.vertexCount();
+  std::vector<double> ratios;
+  for (int f = 0; f < 91; ++f) {
+    app::advanceFrame(demo, 1.0 / 60, {});
+    if (f < 30 || demo.stats.steps != 1) continue;
+    sim::StepReport report;
+    report.newton_iterations = demo.stats.newton_iterations;
+    report.solver_iterations = demo.stats.solver_iterations;
+    ratios.push_back(demo.stats.simulation() / app::countedCost(vertices, report));
+  }
+  const auto quartile = ratios.begin() + static_cast<long>(ratios.size() / 4);
+  std::ranges::nth_element(ratios, quartile);
+  return ratios.empty() ? 0 : *quartile;
+}
+
+// Counted work stands for time on every mesh alike, whichever preconditioner serves it: compared within one run.
+TEST(Governor, CountedWorkStandsForTimeOnLargeMeshesAsOnSmall) {
+  const double low = secondsForCounted(sim::Resolution::kLow), high = secondsForCounted(sim::Resolution::kHigh);
+  std::printf("time over counted work: %.2f on the small mesh, %.2f on the large\n", low, high);
+  EXPECT_LT(std::abs(std::log(high / low)), std::log(2.5));
+}
+
+// Milliseconds of a walk and the iterations of a median step, as docs/performance.md had them when the model was fitted.
+TEST(Governor, CountedWorkOfEverySizeIsWithinHalfOfWhatWasMeasured) {
+  struct Measured {
+    int vertices, iterations;
+    double ms;
+  };
+  for (const Measured& m : {Measured{366, 4, 0.59},
+                            {922, 7, 1.76},
+                            {1339, 3, 2.04},
+                            {2306, 18, 5.37},
+                            {2249, 31, 7.29},
+                            {7081, 17, 22.9},
+                            {9617, 22, 33.3},
+                            {10241, 33, 57.6}}) {
+    sim::StepReport report;
+    report.newton_iterations = 1;
+    report.solver_iterations = m.iterations;
+    EXPECT_LT(std::abs(std::log(1e3 * app::countedCost(m.vertices, report) / m.ms)), std::log(1.5)) << m.vertices;
+  }
+}
+
+TEST(Governor, ALargeMeshGetsTheSettingThatItsBudgetBuys) {
+  app::Demo demo = openWalk(12, sim::Resolution::kHigh);
+  for (int f = 0; f < 150; ++f) app::advanceFrame(demo, 1.0 / 60, {});
+  EXPECT_GE(demo.governor.rung, app::defaultRung()) << "the default takes two thirds of it";
+  EXPECT_LE(1e3 * demo.governor.measured_cost, 1.1 * 12);
 }
 
 TEST(Governor, SeveralCharactersShareTheBudget) {

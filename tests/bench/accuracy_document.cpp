@@ -42,9 +42,23 @@ const Json& defaultOf(const std::vector<Json>& rows) {
   return *std::find_if(rows.begin(), rows.end(), [](const Json& row) { return row["default"].get<bool>(); });
 }
 
+bool isPapers(const Json& row) {
+  return row["solver"] == "paper";
+}
+
 std::string wayOf(const Json& row) {
-  return word(row, "integrator") + (word(row, "solver") == "warped" ? "" : ", " + word(row, "solver")) +
+  const std::string solver = word(row, "solver");
+  return word(row, "integrator") + (solver == "warped" ? "" : ", " + (isPapers(row) ? "as in the paper" : solver)) +
          (row["minimization"] ? "" : ", no minimization");
+}
+
+// An error that the reference is not good enough to rank is marked.
+std::string errorOf(const Json& row) {
+  return formatted("%s%.1e", row.value("ranked", true) ? "" : "~", number(row, "error_rms"));
+}
+
+std::string driftOf(const Json& row) {
+  return row["energy_drift"].is_null() ? "-" : formatted("%+.3f", number(row, "energy_drift"));
 }
 
 // One line a scene: what is compared, how well the reference is known, where the default stands.
@@ -63,10 +77,10 @@ std::string summaryTable(const Json& rows) {
       if (no_worse && number(row, "ms_per_second_min") < number(*fastest, "ms_per_second_min")) fastest = &row;
     }
     table +=
-        formatted("| %s | %.2f of %.2f s | %.1e | %.1f | %.1e | %+.3f | %s | %.2f |\n", scene.c_str(),
+        formatted("| %s | %.2f of %.2f s | %.1e | %.1f | %s | %s | %s | %.2f |\n", scene.c_str(),
                   number(standard, "compared_seconds"), number(standard, "scene_seconds"),
                   number(standard, "reference_error_rms"), number(standard, "ms_per_second_min"),
-                  number(standard, "error_rms"), number(standard, "energy_drift"),
+                  errorOf(standard).c_str(), driftOf(standard).c_str(),
                   fastest == &standard
                       ? "the default"
                       : formatted("%s 1/%.0f, %.0e, %s", wayOf(*fastest).c_str(), 1 / number(*fastest, "time_step"),
@@ -77,11 +91,11 @@ std::string summaryTable(const Json& rows) {
   return table + "\n";
 }
 
-// The front of a scene and its default.
+// The front of a scene, its default and the paper's setting.
 std::string frontTable(const std::string& scene, const std::vector<Json>& rows) {
   std::vector<Json> shown;
   std::copy_if(rows.begin(), rows.end(), std::back_inserter(shown),
-               [](const Json& row) { return row["front"].get<bool>() || row["default"].get<bool>(); });
+               [](const Json& row) { return row["front"].get<bool>() || row["default"].get<bool>() || isPapers(row); });
   std::sort(shown.begin(), shown.end(), [](const Json& a, const Json& b) {
     return number(a, "ms_per_second_min") < number(b, "ms_per_second_min");
   });
@@ -91,12 +105,12 @@ std::string frontTable(const std::string& scene, const std::vector<Json>& rows) 
       "volume "
       "| penetration, mm | energy drift |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const Json& row : shown) {
-    table += formatted(
-        "| %s | %s | 1/%.0f | %.0e | %s | %.1f | %.1f | %.1e | %.1e | %.1f | %.3f | %.3f | %.2f | %+.3f |\n",
-        row["default"] ? "**default**" : "", wayOf(row).c_str(), 1 / number(row, "time_step"), number(row, "tolerance"),
-        word(row, "precision").c_str(), number(row, "ms_per_second_min"), number(row, "ms_per_second_median"),
-        number(row, "error_rms"), number(row, "error_max"), number(row, "iterations"), number(row, "worst_stretch"),
-        number(row, "volume_error"), 1e3 * number(row, "penetration_m"), number(row, "energy_drift"));
+    table += formatted("| %s | %s | 1/%.0f | %.0e | %s | %.1f | %.1f | %s | %.1e | %.1f | %.3f | %.3f | %.2f | %s |\n",
+                       row["default"] ? "**default**" : (isPapers(row) ? "the paper's" : ""), wayOf(row).c_str(),
+                       1 / number(row, "time_step"), number(row, "tolerance"), word(row, "precision").c_str(),
+                       number(row, "ms_per_second_min"), number(row, "ms_per_second_median"), errorOf(row).c_str(),
+                       number(row, "error_max"), number(row, "iterations"), number(row, "worst_stretch"),
+                       number(row, "volume_error"), 1e3 * number(row, "penetration_m"), driftOf(row).c_str());
   }
   return table + "\n";
 }
@@ -108,19 +122,22 @@ std::string solversOfSweep(const Json& rows) {
   for (const std::string& scene : scenes) table += " " + scene + " |", rule += "---|";
   table += "\n" + rule + "\n";
   for (const std::string& solver : namesIn(rows, "solver")) {
-    table += "| " + solver + " |";
+    table += "| " + (solver == "paper" ? "as in the paper, float" : solver) + " |";
     for (const std::string& scene : scenes) {
       const std::vector<Json> some = rowsOf(rows, scene);
       const Json& standard = defaultOf(some);
       const auto same = [&](const Json& row) {
         return row["solver"] == solver &&
                std::ranges::all_of(std::vector{"integrator", "precision", "tolerance", "time_step", "minimization"},
-                                   [&](const char* key) { return row[key] == standard[key]; });
+                                   [&](const auto* key) {
+                                     return row[key] == standard[key] ||
+                                            (isPapers(row) && key == std::string("precision"));
+                                   });
       };
       const auto found = std::find_if(some.begin(), some.end(), same);
       table += found == some.end() ? " |"
-                                   : formatted(" %.1f (%.1f; %.1e) |", number(*found, "ms_per_second_min"),
-                                               number(*found, "iterations"), number(*found, "error_rms"));
+                                   : formatted(" %.1f (%.1f; %s) |", number(*found, "ms_per_second_min"),
+                                               number(*found, "iterations"), errorOf(*found).c_str());
     }
     table += "\n";
   }

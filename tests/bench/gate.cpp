@@ -5,7 +5,9 @@
 #include <cstdio>
 #include <memory>
 
+#include "app/errors.h"
 #include "tests/bench/cpu_clock.h"
+#include "tests/bench/gate_motion.h"
 #include "tests/bench/gate_sweep.h"
 #include "tests/bench/reference.h"
 #include "tests/bench/timed_scene.h"
@@ -148,12 +150,14 @@ std::vector<Figure> measureSpeed(const GateOptions& options) {
     startUp(style, report);
   }
   sliderDrag(report);
+  addBudgetFigures([&](const Figure& figure) { report.add(figure); });
   return std::move(report.figures);
 }
 
 std::vector<Figure> measureFigures(const GateOptions& options) {
   Report report;
   report.figures = measureSpeed(options);
+  addConsistencyFigures([&](const Figure& figure) { report.add(figure); });
   addSweepFigures(options, [&](const Figure& figure) { report.add(figure); });
   return std::move(report.figures);
 }
@@ -162,6 +166,10 @@ bool allHold(const std::vector<Figure>& figures) {
   const auto held = std::count_if(figures.begin(), figures.end(), [](const Figure& f) { return f.holds(); });
   std::printf("%d of %d figures hold\n", static_cast<int>(held), static_cast<int>(figures.size()));
   return held == static_cast<long>(figures.size());
+}
+
+int exitCodeOf(bool all_hold) {
+  return all_hold ? app::kExitFine : app::kExitFault;
 }
 
 }  // namespace bench

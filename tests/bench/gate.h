@@ -20,7 +20,7 @@ struct Figure {
   bool holds() const { return at_least ? value >= bound : value <= bound; }  // NaN falls short
 };
 
-// The figures of speed alone: all but those of the sweeps. As measureFigures.
+// The figures of speed alone: all but those of consistency and of the sweeps. As measureFigures.
 std::vector<Figure> measureSpeed(const GateOptions& options);
 
 // Prints one line a figure (name, value, bound, ok or short) as it is measured. Times are of
@@ -29,5 +29,8 @@ std::vector<Figure> measureFigures(const GateOptions& options);
 
 // Whether all hold; prints how many do.
 bool allHold(const std::vector<Figure>& figures);
+
+// What hairmesh-bench ends with: 1 where a figure falls short.
+int exitCodeOf(bool all_hold);
 
 }  // namespace bench

@@ -1,14 +1,16 @@
 #include "tests/bench/ladder.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "app/data_path.h"
+#include "app/governor.h"
+#include "tests/bench/cpu_clock.h"
+#include "tests/bench/measured_part.h"
 #include "tests/bench/trajectory.h"
 
 namespace bench {
@@ -19,12 +21,6 @@ using sim::SimParams;
 
 constexpr double kSample = 0.2, kSeconds = 2, kSettle = 2;  // s; every step length below divides a sample
 constexpr double kReferenceRate = 1920;                     // 1/s
-
-double cpuSeconds() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 struct Candidate {
   Integrator integrator;
@@ -116,16 +112,21 @@ double fastest(Stage& stage, const Candidate& candidate, int runs, Trajectory& t
   return least;
 }
 
-}  // namespace
+// What the candidates cost and how far they stray, scene by scene, and their geometric means.
+struct Measured {
+  std::vector<std::string> scenes;
+  std::vector<std::vector<double>> errors;  // [candidate][scene], over hair length
+  std::vector<double> cost, error;          // [candidate]
+};
 
-void measureLadder(int runs) {
-  const std::vector<Candidate> list = candidates();
-  std::vector<double> cost(list.size(), 0), error(list.size(), 0);  // sums of logarithms
-  int scenes = 0;
+Measured measureCandidates(const std::vector<Candidate>& list, int runs) {
+  Measured measured;
+  measured.errors.resize(list.size());
+  measured.cost.resize(list.size()), measured.error.resize(list.size());  // sums of logarithms, to begin with
   for (const TrajectoryScene& scene : trajectoryScenes()) {
     const std::string name = scene.name;
     if (name != "head_shake" && name != "walk_contact" && name != "walk_shoulder" && name != "jump_1x") continue;
-    ++scenes;
+    measured.scenes.push_back(name);
     Stage stage(scene);
     SimParams reference;
     reference.integrator = Integrator::kBdf2;
@@ -138,29 +139,67 @@ void measureLadder(int runs) {
     for (std::size_t c = 0; c < list.size(); ++c) {
       const double seconds = fastest(stage, list[c], runs, trajectory);
       const TrajectoryError strayed = difference(trajectory, truth, stage.hairLength(), static_cast<int>(truth.size()));
-      cost[c] += std::log(seconds / standard);
-      error[c] += std::log(std::max(strayed.rms, 1e-9));
+      measured.errors[c].push_back(strayed.rms);
+      measured.cost[c] += std::log(seconds / standard);
+      measured.error[c] += std::log(std::max(strayed.rms, 1e-9));
       std::printf("%-14s %-16s 1/%-4.0f %.0e %4d  cost %6.3f  rms %.2e  most %.2e\n", scene.name,
                   sim::paramText(*sim::findParam("integrator"), paramsOf(list[c])).c_str(), list[c].rate,
                   list[c].tolerance, list[c].max_iterations, seconds / standard, strayed.rms, strayed.most);
     }
   }
+  const auto scenes = static_cast<double>(measured.scenes.size());
+  for (double& sum : measured.cost) sum = std::exp(sum / scenes);
+  for (double& sum : measured.error) sum = std::exp(sum / scenes);
+  return measured;
+}
+
+void printFront(const std::vector<Candidate>& list, const Measured& measured) {
   std::printf("\nthe rows that no other beats in both:\n");
-  for (std::size_t c = 0; c < list.size(); ++c) {
-    cost[c] = std::exp(cost[c] / scenes);
-    error[c] = std::exp(error[c] / scenes);
-  }
   std::vector<std::size_t> order(list.size());
   for (std::size_t c = 0; c < order.size(); ++c) order[c] = c;
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return cost[a] < cost[b]; });
+  std::ranges::sort(order, {}, [&](std::size_t c) { return measured.cost[c]; });
   double best = 1e9;
   for (const std::size_t c : order) {
-    if (error[c] >= best) continue;
-    best = error[c];
+    if (measured.error[c] >= best) continue;
+    best = measured.error[c];
     std::printf("%-16s 1/%-4.0f tolerance %.0e, %d iterations: cost %.3f, error %.2e\n",
                 sim::paramText(*sim::findParam("integrator"), paramsOf(list[c])).c_str(), list[c].rate,
-                list[c].tolerance, list[c].max_iterations, cost[c], error[c]);
+                list[c].tolerance, list[c].max_iterations, measured.cost[c], measured.error[c]);
   }
+}
+
+bool isOf(const app::Rung& rung, const Candidate& candidate) {
+  return candidate.integrator == rung.integrator && candidate.rate == rung.steps_per_second &&
+         candidate.tolerance == rung.tolerance && candidate.max_iterations == rung.max_iterations;
+}
+
+// The rungs as they are written down and as they were measured now.
+std::string rungTable(const std::vector<Candidate>& list, const Measured& measured) {
+  std::string table = "| rung | cost, ladder's | measured | error, ladder's | measured |",
+              rule = "|---|---|---|---|---|";
+  for (const std::string& scene : measured.scenes) table += " " + scene + " |", rule += "---|";
+  table += "\n" + rule + "\n";
+  for (const app::Rung& rung : app::ladder()) {
+    const auto found = std::ranges::find_if(list, [&](const Candidate& c) { return isOf(rung, c); });
+    if (found == list.end()) continue;
+    const auto c = static_cast<std::size_t>(found - list.begin());
+    table += formatted("| %s | %.2f | %.2f | %.1e | %.1e |", rung.name, rung.cost, measured.cost[c], rung.error,
+                       measured.error[c]);
+    for (const double error : measured.errors[c]) table += formatted(" %.1e |", error);
+    table += "\n";
+  }
+  return table + "\n";
+}
+
+}  // namespace
+
+void measureLadder(int runs, const std::string& folder) {
+  const std::vector<Candidate> list = candidates();
+  const Measured measured = measureCandidates(list, runs);
+  printFront(list, measured);
+  const std::string table = rungTable(list, measured), document = folder + "/performance.md";
+  std::printf("\n%s", table.c_str());
+  if (std::filesystem::exists(document)) writeMeasuredPart(document, "ladder", table);
 }
 
 }  // namespace bench

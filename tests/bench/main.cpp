@@ -56,8 +56,8 @@ std::vector<Task> tasks() {
        [](Asked& a) { bench::runPareto(a.pareto); }},
       {"--consistency", "whether resolutions and time steps follow the same motion; tables of consistency.md in --out",
        [](Asked& a) { bench::runConsistency({a.pareto.folder}); }},
-      {"--ladder", "cost and error of the budget governor's settings (app/governor_ladder.cpp)",
-       [](Asked& a) { bench::measureLadder(a.pareto.runs); }},
+      {"--ladder", "cost and error of the budget governor's settings; a performance.md in --out gets their table",
+       [](Asked& a) { bench::measureLadder(a.pareto.runs, a.pareto.folder); }},
       {"--collisions", "what is left inside the body, contacts that come and go, rest",
        [](Asked& a) { bench::runCollisions(a.collisions, stdout); }},
       {"--skipping", "what every skip saves and changes on five scenes; exits 1 off its bounds",
@@ -157,5 +157,5 @@ int main(int argc, char** argv) {
     std::cerr << "hairmesh-bench: " << error.what() << "\n";
     return app::kExitBadInput;
   }
-  return asked.all_hold ? app::kExitFine : app::kExitFault;
+  return bench::exitCodeOf(asked.all_hold);
 }

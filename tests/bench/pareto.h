@@ -15,7 +15,7 @@ struct ParetoOptions {
 };
 
 // Writes <folder>/pareto.csv, pareto.json and, where gnuplot is installed, accuracy_<scene>.svg and .png. Prints the
-// front of each scene and where the default stands.
+// front of each scene, the paper's setting and where the default stands.
 void runPareto(const ParetoOptions& options);
 
 }  // namespace bench

@@ -127,6 +127,51 @@ std::string stageTables(const std::vector<Row>& rows) {
   return out;
 }
 
+// The first measurement of this page (2026-11-21, commit 8f47a82), ms: the default's stages in a walk, and a frame of
+// the plain implementation in the same run. How busy the machine is differs from run to run, so that only shares of that
+// frame compare; the plain implementation is still the same.
+struct FirstMeasured {
+  const char *style, *resolution;
+  int vertices, iterations;
+  double plain, total;
+  std::array<double, sim::kStageCount> stages;
+};
+constexpr FirstMeasured kFirst[] = {
+    {"long", "low", 365, 6, 2.305, 0.561, {0.088, 0.342, 0.082, 0.081, 0.015}},
+    {"long", "medium", 922, 6, 9.338, 2.144, {0.243, 1.416, 0.149, 0.206, 0.041}},
+    {"long", "high", 2268, 90, 29.486, 11.959, {0.584, 10.625, 0.273, 0.579, 0.088}},
+    {"shoulder", "low", 360, 2, 2.297, 0.284, {0.066, 0.168, 0.027, 0.009, 0.012}},
+    {"shoulder", "high", 2306, 4, 23.750, 5.392, {0.560, 4.766, 0.121, 0.000, 0.091}},
+};
+
+const Row* rowIn(const std::vector<Row>& rows, const Contender& contender, const FirstMeasured& first) {
+  const auto found = std::ranges::find_if(rows, [&](const Row& row) {
+    return row.contender == std::string(contender.name) && row.motion == kMotions[0].name && row.style == first.style &&
+           row.resolution == first.resolution;
+  });
+  return found == rows.end() ? nullptr : &*found;
+}
+
+// What became of each stage: hundredths of the plain implementation's frame, at first and now.
+std::string thenAndNowTable(const std::vector<Row>& rows) {
+  std::string out =
+      "### A walk's stages, at first and now\n\nIn hundredths of the plain implementation's frame in the same run.\n\n"
+      "| style | vertices | a frame | forces | solve | collision | minimization | other | iterations |\n"
+      "|---|---|---|---|---|---|---|---|---|\n";
+  for (const FirstMeasured& first : kFirst) {
+    const Row *ours = rowIn(rows, kContenders[0], first), *plain = rowIn(rows, kContenders[2], first);
+    if (!ours || !plain) continue;
+    const double then = 100 / first.plain, now = 100 / plain->total;
+    out += text("| %s %s | %d, %d | %.1f, now %.1f |", first.style, first.resolution, first.vertices, ours->vertices,
+                then * first.total, now * ours->total);
+    for (int s = 0; s < sim::kStageCount; ++s) {
+      out += text(" %.2f, now %.2f |", then * first.stages[s], now * ours->stages[s]);
+    }
+    out += text(" %d, now %d |\n", first.iterations, ours->iterations);
+  }
+  return out + "\n";
+}
+
 std::string startUpTable() {
   std::string out =
       "### Start-up\n\n| style | parse, s | build, s | first step with factor, s | character, style and mesh grown, s "
@@ -203,7 +248,8 @@ void writePerformanceDocument(const std::string& folder, const GateOptions& gate
   const std::vector<Row> rows = measureStages();
   drawGrowth(folder, rows);
   std::ofstream(name) << old.substr(0, start) << kRegionStart << "\n\n"
-                      << figureTable(figures) << stageTables(rows) << "### Growth\n\n![growth](growth.svg)\n\n"
+                      << figureTable(figures) << stageTables(rows) << thenAndNowTable(rows)
+                      << "### Growth\n\n![growth](growth.svg)\n\n"
                       << startUpTable() << old.substr(end);
 }
 
