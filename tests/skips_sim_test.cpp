@@ -294,7 +294,7 @@ TEST(Far, StaysWithinItsPixels) {
     }
     std::vector<Case> cases;
     for (const double distance : {begin, 3.2, 4.0, 6.0}) {
-      if (distance < begin) continue;
+      if (distance < begin || (distance > begin && distance < begin + 0.1)) continue;  // nothing, or nothing new
       cases.push_back({distance, steps, "far-steps"});
       cases.push_back({distance, mesh, "far-mesh"});
     }
