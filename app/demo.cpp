@@ -79,6 +79,7 @@ render::DrawSkips drawSkips(const SkipSet& skips) {
 }
 
 void draw(Demo& demo, const FrameTarget& target) {
+  count(!target.renderer, demo.stats.always[kNoPicture]);
   if (!target.renderer || target.width <= 0 || target.height <= 0) return;
   demo.aspect = static_cast<double>(target.width) / target.height;
   demo.picture_height = target.height;
@@ -172,6 +173,8 @@ void addStep(const sim::StepReport& report, double step_seconds, FrameStats& sta
   stats.carried += report.carried;
   stats.combed += report.combed;
   stats.max_penetration = std::max(stats.max_penetration, report.max_penetration);
+  count(report.contacts == 0 && report.corrected == 0, stats.always[kNoContact]);
+  count(report.solver_iterations == 0, stats.always[kSolvedAtStart]);
 }
 
 std::string numericalNote(const FrameStats& stats) {
@@ -236,6 +239,7 @@ void advanceFrame(Demo& demo, double seconds, const FrameTarget& target) {
 
   demo.running = governed(demo.scene.sim, demo.governor);
   const int steps = takeSteps(seconds, demo);
+  count(demo.paused && steps == 0, demo.stats.always[kPausedFrame]);
   if (steps > 0) chooseDetail(demo);
   for (int i = 1; i <= steps; ++i) moveActors(demo.clock.time - (steps - i) * demo.running.time_step, demo);
   keepBudget(seconds, steps, demo);

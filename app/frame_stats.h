@@ -49,12 +49,18 @@ struct FrameStats {
   sim::Trouble trouble;        // of the last recovery
   render::FrameReport draw;
   SkipTallies skipped{};
+  BuiltInTallies always{};  // left out without a switch
 
   double simulation() const {
     return seconds[kTimeForces] + seconds[kTimeSolve] + seconds[kTimeCollision] + seconds[kTimeMinimization] +
            seconds[kTimeStepOther];
   }
 };
+
+inline void count(bool left_out, SkipTally& tally) {
+  tally.skipped += left_out;
+  ++tally.of;
+}
 
 // Adds what a step did.
 void addStep(const sim::StepReport& report, double step_seconds, FrameStats& stats);

@@ -47,7 +47,7 @@ int runHeadless(Scene scene, const Options& options) {
   Tape tape(options, scene);
   const double fps = scene.playback.fps;
   const int frames = tape.frames().value_or(options.frames);
-  Demo demo = openScene(std::move(scene), static_cast<double>(options.width) / options.height);
+  Demo demo = openScene(std::move(scene), tape.aspect());
   setDebugViews(options.debug, demo.debug);
   demo.governor.counted = true;  // the same pictures on every run
 
@@ -86,7 +86,7 @@ int runHeadless(Scene scene, const Options& options) {
     if (demo.actors.size() > 1) break;
   }
   std::cout << summary(run);
-  if (pictures) std::cout << options.frames << " frames in " << options.out << "\n";
+  if (pictures) std::cout << frames << " frames in " << options.out << "\n";
   const Tape::End end = tape.end(demo);
   std::cout << end.said;
   return end.differs ? kExitFault : kExitFine;

@@ -183,6 +183,9 @@ void stepInDetail(double time, Demo& demo, Actor& actor) {
 
 bool nothingMoves(const Demo& demo) {
   if (demo.loading.running.valid()) return false;
+  for (const Actor& actor : demo.actors) {
+    if (actor.body->parts_coming.valid()) return false;
+  }
   if (!demo.requests.empty() || demo.single_steps > 0 || demo.capture.recording || demo.capture.screenshot)
     return false;
   const bool picture_stays = demo.stats.draw.left_out.frame.skipped > 0;

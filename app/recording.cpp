@@ -17,16 +17,18 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr std::size_t kMostRequests = 1000;                   // a frame
 constexpr double kLongestFrame = 1e6, kLargestValue = 1e300;  // s; of a request's value
+constexpr double kFarthest = 1e6, kMostTurn = 1e3;            // m, rad; of a view
+constexpr double kMostAspect = 1e5, kTallest = 1e5;
 
 struct AskName {
   Ask what;
   std::string_view name;
 };
 // What can be recorded: all but the requests that write files.
-constexpr std::array<AskName, 24> kAskNames{{{Ask::kSetParam, "set"},
+constexpr std::array<AskName, 26> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kPause, "pause"},
                                              {Ask::kPauseMotion, "pause-motion"},
                                              {Ask::kSingleStep, "single-step"},
@@ -49,7 +51,9 @@ constexpr std::array<AskName, 24> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kSelect, "select"},
                                              {Ask::kView, "view"},
                                              {Ask::kFollow, "follow"},
-                                             {Ask::kDebugView, "debug-view"}}};
+                                             {Ask::kDebugView, "debug-view"},
+                                             {Ask::kBudget, "budget"},
+                                             {Ask::kSkip, "skip"}}};
 
 std::string_view nameOf(Ask what) {
   for (const AskName& row : kAskNames) {
@@ -81,17 +85,76 @@ Request readRequest(const JsonPlace& place) {
   place.refuse("names a request that cannot be replayed", "take the line out");
 }
 
+RecordedView readView(const JsonPlace& place) {
+  place.expectObject({"target", "yaw", "pitch", "distance", "aspect", "height"});
+  if (place.value().size() != 6) place.refuse("is no view", "write target, yaw, pitch, distance, aspect and height");
+  RecordedView view;
+  const std::array<double, 3> target = place.at("target").vector(-kFarthest, kFarthest);
+  view.target = {target[0], target[1], target[2]};
+  view.yaw = place.at("yaw").number(-kMostTurn, kMostTurn);
+  view.pitch = place.at("pitch").number(-kMostTurn, kMostTurn);
+  view.distance = place.at("distance").number(1e-6, kFarthest);
+  view.aspect = place.at("aspect").number(1 / kMostAspect, kMostAspect);
+  view.height = static_cast<int>(place.at("height").number(1, kTallest));
+  return view;
+}
+
+json writeView(const RecordedView& view) {
+  return {{"target", {view.target.x(), view.target.y(), view.target.z()}},
+          {"yaw", view.yaw},
+          {"pitch", view.pitch},
+          {"distance", view.distance},
+          {"aspect", view.aspect},
+          {"height", view.height}};
+}
+
+RecordedView viewOf(const Demo& demo) {
+  const Camera& camera = demo.camera;
+  return {camera.target, camera.yaw, camera.pitch, camera.distance, demo.aspect, demo.picture_height};
+}
+
+void show(const RecordedView& view, Demo& demo) {
+  demo.camera.target = view.target;
+  demo.camera.yaw = view.yaw;
+  demo.camera.pitch = view.pitch;
+  demo.camera.distance = view.distance;
+  demo.aspect = view.aspect;
+  demo.picture_height = view.height;
+}
+
 RecordedFrame readFrame(const JsonPlace& place) {
-  const std::size_t entries = place.arraySize(kMostRequests + 1);
+  const std::size_t entries = place.arraySize(kMostRequests + 2);
   if (entries == 0) place.refuse("is no frame", "write [seconds, requests ...]");
   RecordedFrame frame;
   frame.seconds = place.at(std::size_t{0}).number(0, kLongestFrame);
-  for (std::size_t k = 1; k < entries; ++k) frame.requests.push_back(readRequest(place.at(k)));
+  std::size_t next = 1;
+  if (next < entries && place.at(next).value().is_object()) frame.view = readView(place.at(next++));
+  for (; next < entries; ++next) frame.requests.push_back(readRequest(place.at(next)));
   return frame;
 }
 
-std::string frameLine(double seconds, const std::vector<Request>& requests) {
+SkipSet readSkips(const JsonPlace& place) {
+  SkipSet skips;
+  const std::size_t count = place.arraySize(kSkipCount);
+  for (std::size_t k = 0; k < count; ++k) {
+    const Skip* skip = findSkip(place.at(k).text());
+    if (!skip) place.at(k).refuse("names no skip", "take it out");
+    skips.on[skip->id] = false;
+  }
+  return skips;
+}
+
+std::string headLine(double aspect, const SkipSet& skips) {
+  json off = json::array();
+  for (const Skip& skip : skipTable()) {
+    if (!skips[skip.id]) off.push_back(skip.name);
+  }
+  return json{{"hairmesh-recording", kVersion}, {"aspect", aspect}, {"skips_off", off}}.dump();
+}
+
+std::string frameLine(double seconds, const RecordedView* view, const std::vector<Request>& requests) {
   json line = json::array({seconds});
+  if (view) line.push_back(writeView(*view));
   for (const Request& request : requests) {
     const std::string_view name = nameOf(request.what);
     if (!name.empty()) line.push_back({name, request.name, request.text, request.value});
@@ -109,17 +172,24 @@ Recording readRecording(std::string_view text, const std::string& file) {
     return takeLine(text);
   };
   const auto named = [&] { return file + ", line " + std::to_string(line_number); };
+  Recording recording;
+  SkipSet skips;
   {
     const std::string_view line = next();
     const json head = parseJson(line, named());
     const JsonPlace place(head, named());
-    place.expectObject({"hairmesh-recording"});
+    place.expectObject({"hairmesh-recording", "aspect", "skips_off"});
     if (!place.has("hairmesh-recording")) place.refuse("is no recording", "give a file that --record wrote");
-    place.at("hairmesh-recording").number(kVersion, kVersion);
+    const double version = place.at("hairmesh-recording").number(1, kVersion);
+    if (version > 1) {
+      if (!place.has("aspect") || !place.has("skips_off")) place.refuse("lacks aspect or skips_off", "record anew");
+      recording.aspect = place.at("aspect").number(1 / kMostAspect, kMostAspect);
+      skips = readSkips(place.at("skips_off"));
+    }
   }
-  Recording recording;
   const std::string_view scene = next();
   recording.scene = readScene(scene, file);
+  recording.scene.skips = skips;
   while (!text.empty()) {
     const std::string_view line = next();
     const json value = parseJson(line, named());
@@ -161,14 +231,18 @@ std::string stateHash(const Demo& demo) {
   return text;
 }
 
-Tape::Tape(const Options& options, Scene& scene) : record_file_(options.record), replay_file_(options.replay) {
+Tape::Tape(const Options& options, Scene& scene)
+    : record_file_(options.record),
+      replay_file_(options.replay),
+      aspect_(static_cast<double>(options.width) / options.height) {
   if (!replay_file_.empty()) {
     replay_ = readRecording(readText(replay_file_), replay_file_);
     scene = replay_->scene;
+    aspect_ = replay_->aspect.value_or(aspect_);
   }
   if (record_file_.empty()) return;
   record_.open(record_file_, std::ios::binary);
-  record_ << json{{"hairmesh-recording", kVersion}}.dump() << "\n" << json::parse(writeScene(scene)).dump() << "\n";
+  record_ << headLine(aspect_, scene.skips) << "\n" << json::parse(writeScene(scene)).dump() << "\n";
 }
 
 std::optional<int> Tape::frames() const {
@@ -180,11 +254,18 @@ double Tape::turn(int frame, double seconds, Demo& demo) {
     const RecordedFrame& recorded = replay_->frames[static_cast<std::size_t>(frame)];
     demo.requests = recorded.requests;
     seconds = recorded.seconds;
+    if (recorded.view) replay_view_ = recorded.view;
+    // Every frame: the replay's own picture, and whoever drags in its window, change them.
+    if (replay_view_) show(*replay_view_, demo);
   }
   if (!record_file_.empty()) {
-    record_ << frameLine(seconds, demo.requests) << "\n";
+    const RecordedView view = viewOf(demo);
+    record_ << frameLine(seconds, view == record_view_ ? nullptr : &view, demo.requests) << "\n";
+    record_view_ = view;
     ++recorded_;
   }
+  // The clock does not repeat itself.
+  if (replay_ || !record_file_.empty()) demo.governor.counted = true;
   return seconds;
 }
 

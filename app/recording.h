@@ -1,11 +1,14 @@
-// The inputs of a run, written down and played again: the scene, the length of every frame and what was asked for in
-// it. A state is a function of these alone, so a replay ends in the recorded state to the bit.
+// The inputs of a run, written down and played again: the scene, the length of every frame, from where it was seen and
+// what was asked for in it. A state is a function of these alone, so a replay ends in the recorded state to the bit,
+// whatever the size of its own pictures: level of detail goes by the recorded view.
 //
 // A recording is text, one JSON value a line:
-//   {"hairmesh-recording": 1}
+//   {"hairmesh-recording": 2, "aspect": A, "skips_off": [name, ...]}
 //   the scene, as writeScene writes it
-//   [seconds, [what, name, text, value], ...]     one line a frame, with its requests
-//   {"frames": N, "state": "0123456789abcdef"}    FNV-1a of all positions and velocities at the end
+//   [seconds, view, [what, name, text, value], ...]    one line a frame, with its requests; the view where it changed
+//   {"frames": N, "state": "0123456789abcdef"}         FNV-1a of all positions and velocities at the end
+// A view is {"target": [x, y, z], "yaw", "pitch", "distance", "aspect", "height"}. Version 1 had neither views nor what
+// stands beside it; it is replayed as seen by the replay itself.
 #pragma once
 
 #include <fstream>
@@ -19,13 +22,26 @@
 
 namespace app {
 
+// What level of detail goes by and a person turns without a request: the camera relative to its anchor, which follows
+// from the state, and the picture.
+struct RecordedView {
+  Vec3 target = Vec3::Zero();  // m
+  double yaw = 0, pitch = 0;   // rad
+  double distance = 1;         // m
+  double aspect = 1;
+  int height = 720;  // pixels
+  bool operator==(const RecordedView&) const = default;
+};
+
 struct RecordedFrame {
   double seconds = 0;
+  std::optional<RecordedView> view;  // nothing: that of the frame before
   std::vector<Request> requests;
 };
 
 struct Recording {
   Scene scene;
+  std::optional<double> aspect;  // of the picture that the scene was opened for
   std::vector<RecordedFrame> frames;
   std::string state;  // hash at the end; empty when the recording was cut off
 };
@@ -45,8 +61,10 @@ class Tape {
 
   // Frames of the replay; nothing when none is played.
   std::optional<int> frames() const;
-  // Before frame `frame` of `seconds`: puts the recorded requests in place and returns the recorded length when a
-  // replay is played; writes both down when one is made.
+  // Of the picture to open the scene for: the recorded one, or that of the options.
+  double aspect() const { return aspect_; }
+  // Before frame `frame` of `seconds`: puts the recorded view and requests in place and returns the recorded length
+  // when a replay is played; writes them down when one is made. Either way a budget goes by counted work.
   double turn(int frame, double seconds, Demo& demo);
   // After the last frame: closes the recording, compares the replay's end. Returns what is to be said about it and
   // whether a replay ended elsewhere. Throws InputError when the recording could not be written.
@@ -60,7 +78,9 @@ class Tape {
   std::string record_file_, replay_file_;
   std::ofstream record_;
   int recorded_ = 0;
+  double aspect_ = 1;
   std::optional<Recording> replay_;
+  std::optional<RecordedView> replay_view_, record_view_;  // last read, last written
 };
 
 }  // namespace app

@@ -37,9 +37,21 @@ json skippedJson(const SkipTallies& tallies) {
   for (const Skip& skip : skipTable()) {
     const SkipTally& count = tallies[skip.id];
     if (count.of == 0) continue;
-    skipped[skip.name] = {{"skipped", count.skipped}, {"of", count.of}, {"saved_milliseconds", 1e3 * count.seconds}};
+    skipped[skip.name] = {{"skipped", count.skipped},
+                          {"of", count.of},
+                          {"saved_milliseconds", skip.timed() ? json(1e3 * count.seconds) : json()}};
   }
   return skipped;
+}
+
+// What is left out without a switch, where it is counted.
+json alwaysJson(const BuiltInTallies& tallies) {
+  json always = json::object();
+  for (const BuiltInSkip& skip : builtInSkips()) {
+    const SkipTally& count = tallies[skip.id];
+    if (count.of > 0) always[skip.name] = {{"skipped", count.skipped}, {"of", count.of}};
+  }
+  return always;
 }
 
 template <class Pick>
@@ -80,7 +92,8 @@ json frameJson(const FrameStats& stats, std::size_t index, double fps) {
           {"bytes_uploaded", stats.draw.bytes_uploaded},
           {"gpu_bytes_hair", stats.draw.gpu_bytes_hair},
           {"gpu_bytes_shadows", stats.draw.gpu_bytes_shadows},
-          {"skipped", skippedJson(stats.skipped)}};
+          {"skipped", skippedJson(stats.skipped)},
+          {"always_skipped", alwaysJson(stats.always)}};
 }
 
 json actorJson(const Actor& actor) {
@@ -143,12 +156,17 @@ void writeReport(const std::string& file, const RunReport& run, const Demo& demo
   long recoveries = 0;
   for (const FrameStats& frame : run.frames) recoveries += frame.recoveries;
   SkipTallies skipped{};
-  for (const FrameStats& frame : run.frames) {
-    for (const Skip& skip : skipTable()) {
-      skipped[skip.id].skipped += frame.skipped[skip.id].skipped;
-      skipped[skip.id].of += frame.skipped[skip.id].of;
-      skipped[skip.id].seconds += frame.skipped[skip.id].seconds;
+  BuiltInTallies always{};
+  const auto add = [](const auto& tallies, auto& sums) {
+    for (std::size_t k = 0; k < sums.size(); ++k) {
+      sums[k].skipped += tallies[k].skipped;
+      sums[k].of += tallies[k].of;
+      sums[k].seconds += tallies[k].seconds;
     }
+  };
+  for (const FrameStats& frame : run.frames) {
+    add(frame.skipped, skipped);
+    add(frame.always, always);
   }
   json switches = json::object();
   for (const Skip& skip : skipTable()) switches[skip.name] = demo.scene.skips[skip.id];
@@ -171,6 +189,7 @@ void writeReport(const std::string& file, const RunReport& run, const Demo& demo
         {"stages_milliseconds", stages},
         {"lost_seconds", demo.clock.lost},
         {"skipped", skippedJson(skipped)},
+        {"always_skipped", alwaysJson(always)},
         {"recoveries", recoveries}}},
       {"frames", frames}};
   std::ofstream stream(file, std::ios::binary);

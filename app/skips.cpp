@@ -22,13 +22,13 @@ constexpr std::array<Skip, kSkipCount> kTable{{
      "Characters whose figure and shadow cannot be in the picture are neither posed nor stepped; their hair comes back "
      "as it hung.",
      "tests/skips_sim_test.cpp: Unseen.NothingOfWhatIsShownChanges"},
-    {kSkipFarSteps, "far-steps", kSimulation, "steps", false, "3 pixels",
+    {kSkipFarSteps, "far-steps", kSimulation, "steps", false, "mean 3 pixels over the vertices",
      "A character smaller than 420 pixels takes steps twice as long, below 300 four times, below 70 eight times; the "
      "long steps of a crowd spread over the frames.",
      "tests/skips_sim_test.cpp: Far.StaysWithinItsPixels"},
-    {kSkipFarMesh, "far-mesh", kSimulation, "steps", false, "3 pixels",
+    {kSkipFarMesh, "far-mesh", kSimulation, "steps", false, "mean 3 pixels over the vertices",
      "A character smaller than 420 pixels is simulated with its style's low resolution and drawn with its own.",
-     "tests/skips_sim_test.cpp: Far.ChangesOverWithoutAJump"},
+     "tests/skips_sim_test.cpp: Far.StaysWithinItsPixels"},
     {kSkipPose, "pose", kCharacter, "poses", true, "",
      "A figure whose clip stands still is not posed again, and nothing is handed over while time stands still.",
      "tests/skips_sim_test.cpp: Exact.PosesAndBonesChangeNoBit"},
@@ -70,22 +70,24 @@ constexpr std::array<Skip, kSkipCount> kTable{{
      "tests/skips_sim_test.cpp: Exact.TheWindowWaitsOnlyWhenNothingMoves"},
 }};
 
-constexpr std::array kBuiltIn{
-    BuiltInSkip{"no contact: no position correction and no deformation minimization",
-                "tests/deformation_test.cpp: DeformationMinimization.DoesNoWorkWhenNothingTouches"},
-    BuiltInSkip{"a solve that starts within its tolerance: no iteration",
-                "tests/skips_step_test.cpp: LeftOut.ASolveThatStartsWithinToleranceTakesNoIteration"},
-    BuiltInSkip{"unchanged parameters: no new factor and no new balance of gravity",
-                "tests/skips_step_test.cpp: LeftOut.UnchangedParametersNeverRefactor"},
-    BuiltInSkip{"a kind of force without stiffness: not assembled",
-                "tests/skips_step_test.cpp: LeftOut.KindsOfForceWithoutStiffnessAreNotAssembled"},
-    BuiltInSkip{"colliders out of the hair's reach within the step: not tested",
-                "tests/skips_step_test.cpp: LeftOut.CollidersOutOfReachChangeNoBitAndCostNothing"},
-    BuiltInSkip{"paused: no step unless one is asked for", "tests/demo_test.cpp: Demo.ASingleStepIsOneStep"},
-    BuiltInSkip{"no picture asked for: no OpenGL context",
-                "tests/demo_test.cpp: Headless.ARunWithoutPicturesNeedsNoGraphicsAndReportsEveryFrame"},
-    BuiltInSkip{"hidden panels: no work for them", "tests/ui_test.cpp: Panels.HiddenPanelsDrawNothing"},
-};
+constexpr std::array<BuiltInSkip, kBuiltInCount> kBuiltIn{{
+    {kNoContact, "no-contact", "steps", "no contact: no position correction and no deformation minimization",
+     "tests/deformation_test.cpp: DeformationMinimization.DoesNoWorkWhenNothingTouches"},
+    {kSolvedAtStart, "solved-at-start", "steps", "a solve that starts within its tolerance: no iteration",
+     "tests/skips_step_test.cpp: LeftOut.ASolveThatStartsWithinToleranceTakesNoIteration"},
+    {kNoNewFactor, "no-new-factor", "", "unchanged parameters: no new factor and no new balance of gravity",
+     "tests/skips_step_test.cpp: LeftOut.UnchangedParametersNeverRefactor"},
+    {kNoStiffness, "no-stiffness", "", "a kind of force without stiffness: not assembled",
+     "tests/skips_step_test.cpp: LeftOut.KindsOfForceWithoutStiffnessAreNotAssembled"},
+    {kOutOfReach, "out-of-reach", "", "colliders out of the hair's reach within the step: not tested",
+     "tests/skips_step_test.cpp: LeftOut.CollidersOutOfReachChangeNoBitAndCostNothing"},
+    {kPausedFrame, "paused", "frames", "paused: no step unless one is asked for",
+     "tests/demo_test.cpp: Demo.ASingleStepIsOneStep"},
+    {kNoPicture, "no-picture", "frames", "no picture asked for: no OpenGL context",
+     "tests/demo_test.cpp: Headless.ARunWithoutPicturesNeedsNoGraphicsAndReportsEveryFrame"},
+    {kHiddenPanels, "hidden-panels", "", "hidden panels: no work for them",
+     "tests/ui_test.cpp: Panels.HiddenPanelsDrawNothing"},
+}};
 
 std::string names() {
   std::string text;
@@ -142,7 +144,8 @@ std::string skipLedger() {
     const std::string_view change = skip.exact ? "nothing" : skip.bound;
     addRow({skip.name, skip.stage, skip.help, change, skip.counts, skip.proof});
   }
-  for (const BuiltInSkip& skip : kBuiltIn) addRow({"(always)", "", skip.what, "nothing", "", skip.proof});
+  for (const BuiltInSkip& skip : kBuiltIn)
+    addRow({"(always)", skip.name, skip.what, "nothing", skip.counts, skip.proof});
   return text;
 }
 

@@ -42,6 +42,9 @@ struct Skip {
   const char* bound;   // of an approximate one: what it may change at most
   const char* help;
   const char* proof;  // "file: Suite.Test"
+
+  // Whether the time that it saves can be told: what it leaves out is a whole step, which has a usual cost.
+  bool timed() const { return id == kSkipSleep || id == kSkipUnseen || id == kSkipFarSteps; }
 };
 
 // In panel order; row i has id i.
@@ -49,10 +52,25 @@ std::span<const Skip> skipTable();
 const Skip* findSkip(std::string_view name);
 
 // What is never done in vain and has no switch, because no state of the program does it.
+enum BuiltInId {
+  kNoContact,
+  kSolvedAtStart,
+  kNoNewFactor,
+  kNoStiffness,
+  kOutOfReach,
+  kPausedFrame,
+  kNoPicture,
+  kHiddenPanels,
+  kBuiltInCount
+};
 struct BuiltInSkip {
+  BuiltInId id;
+  const char* name;
+  const char* counts;  // what its counter counts; empty: it has none, for nothing reports it
   const char* what;
   const char* proof;
 };
+// Row i has id i.
 std::span<const BuiltInSkip> builtInSkips();
 
 // Which skips are on.
@@ -66,12 +84,13 @@ struct SkipSet {
 // "NAME=on|off", "all=off". Returns an empty string, or what is wrong and what would mend it; then nothing changed.
 std::string setSkip(std::string_view text, SkipSet& skips);
 
-// How much a frame left out, of how much, and the time (s) that this saved, where it can be told.
+// How much a frame left out, of how much, and the time (s) that this saved where it can be told (Skip::timed).
 struct SkipTally {
   long skipped = 0, of = 0;
   double seconds = 0;
 };
 using SkipTallies = std::array<SkipTally, kSkipCount>;
+using BuiltInTallies = std::array<SkipTally, kBuiltInCount>;
 
 // The ledger as a Markdown table.
 std::string skipLedger();

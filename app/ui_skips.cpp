@@ -28,10 +28,22 @@ void skipsSection(Demo& demo, UiState& ui) {
     ImGui::SameLine(0.42f * ImGui::GetWindowWidth());
     ImGui::TextDisabled("%s", text.c_str());
     tip(std::string("Left out in this frame, in ") + skip.counts);
-    if (count.seconds <= 0) continue;
+    if (!skip.timed() || count.skipped == 0) continue;
     ImGui::SameLine(0.8f * ImGui::GetWindowWidth());
     ImGui::Text("%.2f ms", 1e3 * count.seconds);
-    tip("Time saved in this frame");
+    tip("Time saved in this frame, by what a step usually costs");
+  }
+  ImGui::Separator();
+  ImGui::TextDisabled("always");
+  for (const BuiltInSkip& skip : builtInSkips()) {
+    if (!*skip.counts) continue;
+    const std::string label = readable(skip.name);
+    ImGui::TextUnformatted(label.c_str());
+    tip(skip.what);
+    const std::string text = countText(demo.stats.always[skip.id]);
+    ImGui::SameLine(0.42f * ImGui::GetWindowWidth());
+    ImGui::TextDisabled("%s", text.c_str());
+    tip(std::string("Left out in this frame, in ") + skip.counts);
   }
 }
 

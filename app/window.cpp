@@ -18,6 +18,7 @@
 #include "app/errors.h"
 #include "app/image_io.h"
 #include "app/level_of_detail.h"
+#include "app/patience.h"
 #include "app/recording.h"
 #include "app/report.h"
 #include "app/ui.h"
@@ -163,27 +164,27 @@ double frameSeconds(const Options& options, const Demo& demo, double& last) {
   return options.frames_given || demo.capture.recording ? 1 / demo.scene.playback.fps : passed;
 }
 
-// Waits for events while nothing moves. Panels take a few frames to settle after each event (a hovered button, a folded
-// section), so a frame is only left out after so many that were all the same.
-class Patience {
- public:
-  void pollOrWait(const Options& options, const Demo& demo) {
-    constexpr int kSettlingFrames = 12;
-    constexpr double kLongestWait = 0.1;  // s: within what the clock catches up with
-    still_frames_ = !options.frames_given && nothingMoves(demo) ? still_frames_ + 1 : 0;
-    if (still_frames_ <= kSettlingFrames) {
-      glfwPollEvents();
+// Takes events in, after a wait for them where nothing moves. Time that passes while nothing is drawn is not caught up
+// with: `last` follows.
+void pollOrWait(bool may_wait, const Demo& demo, Patience& patience, double& last) {
+  // Runs of so many frames and replays go on by themselves.
+  const bool still = may_wait && nothingMoves(demo);
+  const bool fading_message = !demo.message.empty() && !demo.message_is_fault;
+  switch (patience.next(still, ImGui::GetIO().WantTextInput || fading_message)) {
+    case Wait::kNone:
+      return glfwPollEvents();
+    case Wait::kShort: {
+      const double before = now();
+      glfwWaitEventsTimeout(kShortWait);
+      if (now() - before < 0.95 * kShortWait) patience.disturb();
       return;
     }
-    const double before = now();
-    glfwWaitEventsTimeout(kLongestWait);
-    if (now() - before < 0.95 * kLongestWait) still_frames_ = 0;
+    case Wait::kEvent:
+      glfwWaitEvents();
+      patience.disturb();
+      last = std::max(last, now() - kShortWait);
   }
-  bool waited() const { return still_frames_ > 0; }
-
- private:
-  int still_frames_ = 0;
-};
+}
 
 }  // namespace
 
@@ -194,7 +195,7 @@ int runWindow(Scene scene, const Options& options) {
   Tape tape(options, scene);
   // Runs of so many frames and recordings show the same on every run.
   const bool beside = !options.frames_given && options.record.empty() && options.replay.empty();
-  Demo demo = openScene(std::move(scene), static_cast<double>(options.width) / options.height, beside);
+  Demo demo = openScene(std::move(scene), tape.aspect(), beside);
   setDebugViews(options.debug, demo.debug);
   UiState ui;
   ui.visible = !options.hide_panels;
@@ -218,7 +219,7 @@ int runWindow(Scene scene, const Options& options) {
   int frame = 0;
   const int most = tape.frames().value_or(options.frames_given ? options.frames : kEndless);
   for (; !glfwWindowShouldClose(window.handle) && !ui.quit && frame < most; ++frame) {
-    patience.pollOrWait(options, demo);
+    pollOrWait(most == kEndless, demo, patience, last);
     glfwGetFramebufferSize(window.handle, &target.width, &target.height);
     const double seconds = frameSeconds(options, demo, last);
     advanceFrame(demo, tape.turn(frame, frame == 0 ? 0 : seconds, demo), target);

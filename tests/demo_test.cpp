@@ -290,6 +290,12 @@ TEST(Headless, ARunWithoutPicturesNeedsNoGraphicsAndReportsEveryFrame) {
   }
   EXPECT_GT(report["frames"][5]["solver_iterations"].get<int>(), 0);
   EXPECT_FALSE(report["characters"][0]["notes"].empty());
+  const auto& summary = report["summary"];
+  EXPECT_TRUE(summary["skipped"]["sleep"]["saved_milliseconds"].is_number());
+  EXPECT_TRUE(summary["skipped"]["pose"]["saved_milliseconds"].is_null()) << "what cannot be told is not claimed as 0";
+  EXPECT_EQ(summary["always_skipped"]["no-picture"]["skipped"], 20);
+  EXPECT_EQ(summary["always_skipped"]["paused"]["skipped"], 0);
+  EXPECT_EQ(summary["always_skipped"]["no-contact"]["of"], 19);
 }
 
 }  // namespace

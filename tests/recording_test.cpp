@@ -41,18 +41,26 @@ std::vector<app::Request> asksOf(int frame) {
   }
 }
 
-std::string record(const std::string& file) {
+// `act` is what happens before each frame. Returns the demo as it ended.
+template <class Act>
+app::Demo recordRun(const std::string& file, app::Scene scene, Act&& act) {
   app::Options options;
   options.record = file;
-  app::Scene scene = smallScene();
+  options.width = 700;
+  options.height = 900;
   app::Tape tape(options, scene);
-  app::Demo demo = app::openScene(scene, 1.5);
+  app::Demo demo = app::openScene(scene, tape.aspect());
   for (int frame = 0; frame < 60; ++frame) {
-    demo.requests = asksOf(frame);
+    act(frame, demo);
     app::advanceFrame(demo, tape.turn(frame, 0.001 * (1 + frame * 37 % 61), demo), {});
   }
   EXPECT_FALSE(tape.end(demo).differs);
-  return app::stateHash(demo);
+  return demo;
+}
+
+std::string record(const std::string& file) {
+  return app::stateHash(
+      recordRun(file, smallScene(), [](int frame, app::Demo& demo) { demo.requests = asksOf(frame); }));
 }
 
 app::Tape::End replay(const std::string& file, std::string& state) {
@@ -60,7 +68,7 @@ app::Tape::End replay(const std::string& file, std::string& state) {
   options.replay = file;
   app::Scene scene;
   app::Tape tape(options, scene);
-  app::Demo demo = app::openScene(scene, 1.5);
+  app::Demo demo = app::openScene(scene, tape.aspect());
   for (int frame = 0; frame < tape.frames(); ++frame) app::advanceFrame(demo, tape.turn(frame, 0.5, demo), {});
   state = app::stateHash(demo);
   return tape.end(demo);
@@ -74,6 +82,80 @@ TEST(Recording, AReplayEndsInTheRecordedStateToTheBit) {
   EXPECT_EQ(replayed, recorded);
   EXPECT_FALSE(end.differs) << end.said;
   EXPECT_NE(end.said.find(recorded), std::string::npos) << end.said;
+}
+
+// Two figures of which the camera's moves make one coarse, slow or unseen for a while, and the picture's height too.
+TEST(Recording, HoldsFromWhereItWasSeen) {
+  const std::string file = test::freshFolder("recording_view") + "/run.hmr";
+  app::Scene scene = smallScene();
+  scene.characters[0].resolution = sim::Resolution::kMedium;
+  scene.characters.push_back(scene.characters[0]);
+  scene.characters[1].position = app::Vec3(1.5, 0, -12);
+  bool coarse = false, unseen = false;
+  int span = 1;
+  const auto look = [&](int frame, app::Demo& demo) {
+    if (frame >= 10 && frame < 20) app::zoom(-3, demo.camera);
+    if (frame == 25) demo.picture_height = 300;
+    if (frame >= 30 && frame < 40) app::orbit(30, 1, 300, demo.camera);
+    if (frame == 45) app::zoom(30, demo.camera), app::pan(500, 0, 300, demo.camera);
+    if (frame == 50) demo.requests = {{Ask::kSkip, "far-mesh", "", 0}, {Ask::kView, "back", "", 0}};
+    for (const app::Actor& actor : demo.actors) {
+      coarse |= actor.coarse.active;
+      unseen |= actor.unseen;
+      span = std::max(span, actor.detail.step_span);
+    }
+  };
+  const std::string recorded = app::stateHash(recordRun(file, scene, look));
+  EXPECT_TRUE(coarse && unseen && span > 1) << coarse << unseen << span;
+  std::string replayed;
+  const app::Tape::End end = replay(file, replayed);
+  EXPECT_EQ(replayed, recorded) << end.said;
+}
+
+TEST(Recording, HoldsWhichSkipsWereOff) {
+  const std::string file = test::freshFolder("recording_skips") + "/run.hmr";
+  app::Scene scene = smallScene();
+  scene.skips.on[app::kSkipFarSteps] = scene.skips.on[app::kSkipView] = false;
+  recordRun(file, scene, [](int, app::Demo&) {});
+  EXPECT_EQ(app::readRecording(test::readAll(file), file).scene.skips, scene.skips);
+}
+
+// Costs of a budget are counted, not timed, while a run is recorded or replayed.
+TEST(Recording, ABudgetRepeatsItself) {
+  const std::string file = test::freshFolder("recording_budget") + "/run.hmr";
+  app::Scene scene = smallScene();
+  scene.playback.budget_ms = 0.02;
+  const app::Demo demo = recordRun(file, scene, [](int frame, app::Demo& running) {
+    if (frame == 40) running.requests = {{Ask::kBudget, "", "", 5}};
+  });
+  EXPECT_TRUE(demo.governor.counted);
+  EXPECT_GT(demo.governor.changes, 0) << "the budget did nothing";
+  std::string replayed;
+  const app::Tape::End end = replay(file, replayed);
+  EXPECT_EQ(replayed, app::stateHash(demo)) << end.said;
+}
+
+// A small picture makes far figures coarser; a replay without pictures is as coarse.
+TEST(Recording, TheProgramReplaysInAnotherSizeAndWithoutPictures) {
+  const std::string folder = test::freshFolder("recording_size"), file = folder + "/run.hmr";
+  const test::Outcome recorded = test::runProgram(
+      {"--headless", "--out", folder, "--size", "60x120", "--frames", "12", "--style", "short", "--resolution",
+       "medium", "--strands", "100", "--camera", "0,1.6,5,0,1.5,0", "--skip", "sleep=off", "--record", file});
+  if (recorded.exit_code == 3) GTEST_SKIP() << recorded.err;
+  ASSERT_EQ(recorded.exit_code, 0) << recorded.err;
+  const test::Outcome without = test::runProgram({"--no-images", "--replay", file});
+  EXPECT_EQ(without.exit_code, 0) << without.out << without.err;
+  const test::Outcome wide = test::runProgram({"--headless", "--out", folder, "--size", "640x90", "--replay", file});
+  EXPECT_EQ(wide.exit_code, 0) << wide.out << wide.err;
+}
+
+// Version 1 held no views.
+TEST(Recording, AnOlderRecordingIsRead) {
+  const app::Recording old = app::readRecording(
+      "{\"hairmesh-recording\": 1}\n{\"characters\": [{\"motion\": \"walk.bvh\"}]}\n[0.5]\n", "old.hmr");
+  ASSERT_EQ(old.frames.size(), 1u);
+  EXPECT_FALSE(old.frames[0].view || old.aspect);
+  EXPECT_EQ(old.scene.skips, app::SkipSet{});
 }
 
 TEST(Recording, AChangedInputShowsInTheEnd) {
@@ -111,7 +193,9 @@ struct Hostile {
 
 TEST(Recording, HostileTextIsRefusedWithItsLine) {
   const std::string scene = R"({"characters": [{"motion": "walk.bvh"}]})";
-  const std::string head = "{\"hairmesh-recording\": 1}\n" + scene + "\n";
+  const std::string head = "{\"hairmesh-recording\": 2, \"aspect\": 1.5, \"skips_off\": [\"sleep\"]}\n" + scene + "\n";
+  const std::string view =
+      R"({"target": [0, 0, 0], "yaw": 0, "pitch": 0, "distance": 2, "aspect": 1.5, "height": 720})";
   const Hostile rows[] = {
       {"a frame without its length", "[]\n"},
       {"a length that is text", "[\"0.1\"]\n"},
@@ -122,6 +206,12 @@ TEST(Recording, HostileTextIsRefusedWithItsLine) {
       {"an unknown request", "[0.1, [\"explode\", \"\", \"\", 0]]\n"},
       {"a request that writes a file", "[0.1, [\"save-scene\", \"\", \"/tmp/x\", 0]]\n"},
       {"a value that is no number", "[0.1, [\"pause\", \"\", \"\", null]]\n"},
+      {"a view that lacks its rest", "[0.1, {\"yaw\": 1}]\n"},
+      {"a view with more", "[0.1, {\"yaw\": 1, \"a\": 1, \"b\": 1, \"c\": 1, \"d\": 1, \"e\": 1}]\n"},
+      {"two views", "[0.1, " + view + ", " + view + "]\n"},
+      {"a view after a request", "[0.1, [\"pause\", \"\", \"\", 1], " + view + "]\n"},
+      {"a picture without height", "[0.1, " + view.substr(0, view.size() - 4) + "0}]\n"},
+      {"a height beyond all", "[0.1, " + view.substr(0, view.size() - 4) + "1e99}]\n"},
       {"a wrong count", "[0.1]\n{\"frames\": 7, \"state\": \"0\"}\n"},
       {"an enormous count", "{\"frames\": 1e300, \"state\": \"0\"}\n"},
       {"more after the end", "{\"frames\": 0, \"state\": \"0\"}\n[0.1]\n"},
@@ -138,11 +228,14 @@ TEST(Recording, HostileTextIsRefusedWithItsLine) {
       EXPECT_NE(std::string(error.what()).find("x.hmr, line "), std::string::npos) << row.what << ": " << error.what();
     }
   }
-  for (const char* text : {"", "{}", "{\"hairmesh-recording\": 2}\n", "[]\n", "{\"hairmesh-recording\": 1}\n",
-                           "{\"hairmesh-recording\": 1}\n{}\n", "OBJ"}) {
+  for (const char* text : {"", "{}", "{\"hairmesh-recording\": 2}\n", "{\"hairmesh-recording\": 3}\n",
+                           "{\"hairmesh-recording\": 2, \"aspect\": 0, \"skips_off\": []}\n",
+                           "{\"hairmesh-recording\": 2, \"aspect\": 1, \"skips_off\": [\"nap\"]}\n", "[]\n",
+                           "{\"hairmesh-recording\": 1}\n", "{\"hairmesh-recording\": 1}\n{}\n", "OBJ"}) {
     EXPECT_THROW(app::readRecording(text, "x.hmr"), app::InputError) << text;
   }
   EXPECT_NO_THROW(app::readRecording(head + "[0]\n[0.1, [\"pause\", \"\", \"\", 1]]\n", "x.hmr"));
+  EXPECT_NO_THROW(app::readRecording(head + "[0, " + view + ", [\"pause\", \"\", \"\", 1]]\n", "x.hmr"));
 }
 
 }  // namespace

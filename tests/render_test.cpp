@@ -13,6 +13,7 @@
 #include "render/render_target.h"
 #include "render/renderer.h"
 #include "render/shadow_pass.h"
+#include "tests/draw_skips.h"
 #include "tests/gl_fixture.h"
 #include "tests/golden_compare.h"
 #include "tests/synthetic_hair.h"
@@ -90,17 +91,46 @@ TEST_F(RenderTest, GeometryAndPullingDrawTheSamePicture) {
   EXPECT_LT(difference.mean, 0.05);
 }
 
+struct View {
+  const char* name;
+  render::Float3 eye;
+};
+constexpr View kGoldenViews[] = {
+    {"hair_front", {0.25f, 1.6f, 0.85f}}, {"hair_side", {0.85f, 1.62f, 0.1f}}, {"hair_back", {-0.35f, 1.75f, -0.8f}}};
+
 TEST_F(RenderTest, EveryAngleMatchesItsGolden) {
   Scene scene(4000);
-  struct View {
-    const char* name;
-    render::Float3 eye;
-  };
-  for (const View& view : {View{"hair_front", {0.25f, 1.6f, 0.85f}}, View{"hair_side", {0.85f, 1.62f, 0.1f}},
-                           View{"hair_back", {-0.35f, 1.75f, -0.8f}}}) {
+  for (const View& view : kGoldenViews) {
     render::FrameInput frame = scene.frame();
     frame.camera.eye = view.eye;
     golden::expectGolden(draw(frame), view.name, render::rendererName());
+  }
+}
+
+// What the golden views show is the same with every exact skip as with none, also when the frame, its maps and its rows
+// are those of the frame before; all skips stay within the ledger's bound.
+TEST_F(RenderTest, EveryGoldenAngleIsTheSameWithAndWithoutSkips) {
+  Scene scene(4000);
+  const auto at = [&](const View& view, const render::DrawSkips& skips) {
+    render::FrameInput frame = scene.frame();
+    frame.camera.eye = view.eye;
+    frame.skips = skips;
+    return frame;
+  };
+  std::vector<app::Image> without;
+  for (const View& view : kGoldenViews) without.push_back(draw(at(view, draw_skips::none())));
+  for (std::size_t i = 0; i < without.size(); ++i) {
+    for (const char* again : {"", ", again"}) {
+      EXPECT_EQ(draw(at(kGoldenViews[i], draw_skips::exact())).rgba, without[i].rgba) << kGoldenViews[i].name << again;
+    }
+  }
+  for (std::size_t i = 0; i < without.size(); ++i) {
+    render::FrameInput frame = at(kGoldenViews[i], {});
+    const app::Image all = draw(frame);
+    frame.view.show_strands = false;
+    const double off = draw_skips::differenceOver(without[i], all, draw(frame));
+    std::printf("%s: %.2f levels with all skips\n", kGoldenViews[i].name, off);
+    EXPECT_LE(off, draw_skips::kDetailBound) << kGoldenViews[i].name;
   }
 }
 

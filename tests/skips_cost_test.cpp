@@ -168,4 +168,33 @@ TEST_F(CostOfDrawing, IsNoMoreWithAllSkipsInAnyScene) {
   }
 }
 
+// Of one run: a still frame near the camera costs, simulation and drawing together, at most a fiftieth of what it does
+// when nothing is left out.
+TEST_F(CostOfDrawing, OfAStillCloseUpIsNextToNothing) {
+  constexpr double kMostOfStill = 0.02;
+  render::Renderer renderer(gl_fixture::kShaderDir);
+  app::Demo demo = opened("still_close_up");
+  for (app::Actor& actor : demo.actors) actor.spec.look.strands = 4000;
+  demo.scene.look.light.shadow_size = 256;
+  std::vector<unsigned char> pixels;
+  const app::FrameTarget target{&renderer, 320, 180, 0, &pixels, false, {}};
+  const auto leastFrame = [&](int frames) {
+    double least = 1e9;
+    for (int frame = 0; frame < frames; ++frame) {
+      const double start = bench::secondsOf(CLOCK_PROCESS_CPUTIME_ID);
+      app::advanceFrame(demo, 1.0 / 60, target);
+      least = std::min(least, bench::secondsOf(CLOCK_PROCESS_CPUTIME_ID) - start);
+    }
+    return least;
+  };
+  const double without = leastFrame(3);
+  demo.scene.skips = skipping(true);
+  for (int frame = 0; frame < 3000 && !demo.actors[0].sleep.asleep; ++frame) run(demo, 1);
+  ASSERT_TRUE(demo.actors[0].sleep.asleep);
+  leastFrame(2);
+  const double with = leastFrame(8);
+  std::printf("%.2f ms of %.1f ms: %.4f\n", 1e3 * with, 1e3 * without, with / without);
+  EXPECT_LE(with, kMostOfStill * without);
+}
+
 }  // namespace

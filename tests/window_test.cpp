@@ -125,6 +125,22 @@ TEST(Window, DrawsTheSameFigureAsTheHeadlessRun) {
   EXPECT_LT(different, static_cast<int>(a.rgba.size() / 200));
 }
 
+// What a window recorded, a run without pictures repeats: its budget went by counted work, its detail by the window's
+// small picture.
+TEST(Window, RecordsWhatARunWithoutPicturesReplays) {
+  const VirtualDisplay display;
+  if (display.name().empty()) GTEST_SKIP() << "Xvfb is not installed";
+  const std::string file = test::freshFolder("window_record") + "/run.hmr";
+  const test::Outcome recorded = test::runProgram(
+      {"--size", "160x120", "--frames", "40", "--strands", "100", "--resolution", "medium", "--style", "short",
+       "--camera", "0,1.6,5,0,1.5,0", "--budget-ms", "0.02", "--hide-panels", "--record", file},
+      environmentOf(display));
+  ASSERT_EQ(recorded.exit_code, 0) << recorded.err;
+  const test::Outcome replayed = test::runProgram({"--no-images", "--replay", file});
+  EXPECT_EQ(replayed.exit_code, 0) << replayed.out << replayed.err;
+  EXPECT_NE(replayed.out.find("to the bit"), std::string::npos) << replayed.out;
+}
+
 TEST(Window, SurvivesBadShaderFolderWithAMessage) {
   const VirtualDisplay display;
   if (display.name().empty()) GTEST_SKIP() << "Xvfb is not installed";

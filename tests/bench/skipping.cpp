@@ -96,6 +96,7 @@ SkipScenes measuredBefore(const std::string& file, const std::vector<SceneRun>& 
 
 bool runSkipping(const SkippingOptions& options) {
   std::filesystem::create_directories(options.folder);
+  startSkipDocument(options.folder);
   app::EglContext context;
   const std::string file = options.folder + "/skipping.json";
   const std::vector<SceneRun> runs = sceneRuns(options);
@@ -121,7 +122,7 @@ bool runSkipping(const SkippingOptions& options) {
   std::ofstream(file) << json.dump(1) << "\n";
   const std::vector<SkipBound> held = skipBounds(scenes);
   for (const SkipBound& bound : held) std::printf("%s\n", boundText(bound).c_str());
-  std::ofstream(options.folder + "/skipping.md") << skipDocument(scenes, held);
+  writeSkipDocument(scenes, held, options.folder);
   return std::all_of(held.begin(), held.end(), [](const SkipBound& bound) { return bound.holds(); });
 }
 

@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/bench/measured_part.h"
+
 namespace bench {
 namespace {
 
@@ -112,53 +114,46 @@ std::string boundText(const SkipBound& bound) {
   return bound.what + ": " + number(bound.value) + " of at most " + number(bound.most);
 }
 
-// Measured once, when each was tried; what became of them needs no table.
-constexpr const char* kNotKept =
-    "\n## Tried, and not kept\n\n"
-    "- Bundles wholly behind the head (an ellipsoid fitted inside the skull hides a convex region, so the test is "
-    "exact "
-    "and cheap): 4 to 8 % of the bundles of short hair, 0 to 4 % of longer hair. A quarter of all vertices lies behind "
-    "the head, but their bundles reach out above or below it.\n"
-    "- Linear solves that stop at a 40th of a pixel: 3 to 7 % of the iterations of a shaken head, near or far. "
-    "Contacts "
-    "make such motion part from any other run of it by centimetres within a second, so that no bound could be "
-    "stated.\n"
-    "- Bounds of single bundles against single colliders, last frame's contacts first: all of collision is 1 to 5 % of "
-    "a step, and colliders out of reach of the whole hair are left out already.\n"
-    "- Constant blocks of the system's matrix: the masses alone are constant.\n"
-    "- One pose a frame where a frame takes several steps: each step needs the roots and colliders of its own moment; "
-    "skinning and upload happen once a frame.\n"
-    "- Shadow maps of far hair at a lower rate: a far map has a few hundred strands already, and one that is late "
-    "swims.\n";
+namespace {
 
-std::string skipDocument(const SkipScenes& scenes, const std::vector<SkipBound>& held) {
-  std::string text =
-      "# What is skipped, and what it changes\n\n"
-      "Written by `hairmesh-bench --skipping --out docs`. A still scene costs nothing, a distant crowd little, a "
-      "close-up "
-      "gets all of it. Every skip has a switch (`--skip NAME=off`), a counter (window, `--report`) and a test.\n\n"
-      "## The ledger\n\n" +
-      app::skipLedger() + "\n## Bounds\n\n| bound | measured | at most | |\n|---|---|---|---|\n";
+std::string boundTable(const std::vector<SkipBound>& held) {
+  std::string text = "| bound | measured | at most | |\n|---|---|---|---|\n";
   for (const SkipBound& bound : held)
     text += "| " + bound.what + " | " + number(bound.value) + " | " + number(bound.most) + " | " +
             (bound.holds() ? "holds" : "**fails**") + " |\n";
-  text +=
-      "\n## Scenes\n\nMeans (drawing: medians) over the frames of process time (all threads of the software rasterizer "
-      "count, so its "
-      "milliseconds are CPU time, not waiting). Every skip alone, all, none. Shapes: mean over a head's vertices, the "
-      "worst head and frame against none, and the same in pixels of a picture 720 high, for whose care the simulation "
-      "is "
-      "run. Pictures: mean over all pixels and channels, of 255, the worst frame. A skip that leaves nothing out in a "
-      "scene has no row there. Simulation bounds are held against long hair walking near the camera with all skips, "
-      "drawing bounds against its picture, the hundred then drawn with as many strands a head and as large shadow "
-      "maps.\n";
+  return text + "\n";
+}
+
+std::string sceneSections(const SkipScenes& scenes) {
+  std::string text;
   for (const std::vector<SkipRow>& rows : scenes) {
-    const std::string& scene = rows.front().scene;
-    text += "\n### " + scene + "\n\n![none](skipping_" + scene + "_none.png) ![all](skipping_" + scene +
-            "_all.png)\n\nWithout skips and with all, " + rows.front().setup + ".\n\n![times](skipping_" + scene +
-            ".svg)\n\n" + skipTableOf(rows);
+    const std::string &scene = rows.front().scene, &setup = rows.front().setup;
+    text += "### " + scene + "\n\n![none](skipping_" + scene + "_none.png) ![all](skipping_" + scene +
+            "_all.png)\n\nWithout skips and with all" + (setup.empty() ? "" : ", " + setup) +
+            ".\n\n![times](skipping_" + scene + ".svg)\n\n" + skipTableOf(rows) + "\n";
   }
-  return text + kNotKept;
+  return text;
+}
+
+// The parts' marks alone, for a folder that has no document yet.
+constexpr const char* kEmptyDocument =
+    "# What is skipped, and what it changes\n\n"
+    "## The ledger\n\n<!-- measured: ledger -->\n<!-- end of ledger -->\n\n"
+    "## Bounds\n\n<!-- measured: bounds -->\n<!-- end of bounds -->\n\n"
+    "## Scenes\n\n<!-- measured: scenes -->\n<!-- end of scenes -->\n";
+
+}  // namespace
+
+void startSkipDocument(const std::string& folder) {
+  const std::string file = folder + "/skipping.md";
+  if (!std::filesystem::exists(file)) std::ofstream(file) << kEmptyDocument;
+  writeMeasuredPart(file, "ledger", app::skipLedger() + "\n");
+}
+
+void writeSkipDocument(const SkipScenes& scenes, const std::vector<SkipBound>& held, const std::string& folder) {
+  const std::string file = folder + "/skipping.md";
+  writeMeasuredPart(file, "bounds", boundTable(held));
+  writeMeasuredPart(file, "scenes", sceneSections(scenes));
 }
 
 }  // namespace bench

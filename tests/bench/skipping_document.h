@@ -22,6 +22,9 @@ std::string boundText(const SkipBound& bound);
 std::string skipTableOf(const std::vector<SkipRow>& rows);
 void plotSkips(const std::vector<SkipRow>& rows, const std::string& folder);
 
-std::string skipDocument(const SkipScenes& scenes, const std::vector<SkipBound>& held);
+// skipping.md in `folder`: its measured parts are written anew, the prose around them is a person's. The start writes
+// the ledger, which needs no measuring. Throw InputError where a part's marks are missing.
+void startSkipDocument(const std::string& folder);
+void writeSkipDocument(const SkipScenes& scenes, const std::vector<SkipBound>& held, const std::string& folder);
 
 }  // namespace bench
