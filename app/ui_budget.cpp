@@ -54,6 +54,7 @@ void budgetLines(Demo& demo, UiState& ui) {
   line("ms a frame", text);
   std::snprintf(text, sizeof text, "%.1e, expected %.1e", governor.measured_error, predictedError(governor));
   line("error / length", text);
+  tip("Expected: the mean over the styles and motions that the setting was measured on");
   if (governor.over_budget) ImGui::TextDisabled("the coarsest setting takes longer");
 }
 
