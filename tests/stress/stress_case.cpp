@@ -74,6 +74,14 @@ std::vector<StressCase> declareCases(std::uint64_t seed) {
   return cases;
 }
 
+sim::ColliderKind colliderOf(const StressCase& one) {
+  sim::SimParams params;
+  for (const auto& [name, value] : one.params) {
+    if (name == "collider") sim::findParam(name)->set(params, value);
+  }
+  return params.collider;
+}
+
 WindowCommand windowCommand(const StressCase& one) {
   WindowCommand window;
   window.command = "hairmesh --motion " + findClip(one.clip) + " --style " +

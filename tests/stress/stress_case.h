@@ -96,6 +96,9 @@ struct StressCase {
   std::string family() const { return name.substr(0, name.find('/')); }
 };
 
+// What the case's hair collides with.
+sim::ColliderKind colliderOf(const StressCase& one);
+
 // All cases that a seed declares, in a fixed order. Names are unique.
 std::vector<StressCase> declareCases(std::uint64_t seed);
 
