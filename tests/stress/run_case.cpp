@@ -65,7 +65,7 @@ struct Run {
         hair(s.mesh()) {
     for (const auto& [name, value] : c.params) sim::findParam(name)->set(params, value);
     params.time_step = c.step;
-    params.collide = c.collide;
+    params.collide = params.collide && c.collide;  // a row may turn it off too
     hair.state = s.settled;
     applyStart(c, hair.mesh, random, hair.state);
   }
