@@ -202,7 +202,7 @@ void addPaper(Cases& cases) {
     one.play = Play::kForward;
     for (const char* modulus : kModuli) one.params.emplace_back(modulus, 1e3 * defaultOf(modulus));
   });
-  // Where it breaks.
+  // Where hair may be left tangled.
   for (const Start start : {Start::kInsideOut, Start::kShuffled}) {
     claim(start == Start::kInsideOut ? "inside-out" : "shuffled", [&](StressCase& one) {
       one.start = start;
