@@ -1,5 +1,5 @@
 // The pieces of the matrix of cases: one function a family, each adding its cases. The families' axes are issue-like
-// sentences in docs/stability.md, written from familyTitle.
+// sentences in docs/stability.md, written from familyText.
 #pragma once
 
 #include <cstdint>
@@ -21,6 +21,7 @@ std::span<const HairChoice> lowStyles();
 
 // matrix_time.cpp
 void addSteps(Cases& cases);
+void addLadder(Cases& cases);
 void addPaces(Cases& cases);
 void addSpeeds(Cases& cases);
 void addScrubs(Cases& cases);
@@ -35,12 +36,10 @@ void addPaper(Cases& cases);
 // matrix_states.cpp
 void addStates(Cases& cases);
 void addUpsets(Cases& cases);
+void addDistances(Cases& cases);
 void addFaults(Cases& cases);
 // matrix_mixed.cpp
 void addMixed(std::uint64_t seed, Cases& cases);
-
-// What a family of cases varies, in one sentence.
-const char* familyTitle(const std::string& family);
 
 // "1/60", "0.25": a step or a number in a case's name.
 std::string stepName(double step);

@@ -101,6 +101,24 @@ void addUpsets(Cases& cases) {
   }
 }
 
+// The same against signed distances of the skin: an arm that comes fast, bodies that rise and appear.
+void addDistances(Cases& cases) {
+  for (const UpsetRow& row : kUpsets) {
+    for (const HairChoice& hair : lowStyles()) {
+      StressCase one;
+      one.name = std::string("distances/") + row.name + "/" + hairName(hair);
+      one.hair = hair;
+      one.upset = row.upset;
+      one.upset_size = row.size;
+      one.grace = row.grace;
+      one.params = {{"collider", static_cast<double>(sim::ColliderKind::kSdf)}};
+      const bool body = row.upset == Upset::kBodyRise || row.upset == Upset::kArm || row.upset == Upset::kBury;
+      one.in_short = hair.style == sim::Style::kLong && (body || row.upset == Upset::kTurn);
+      cases.push_back(one);
+    }
+  }
+}
+
 void addFaults(Cases& cases) {
   for (const HairChoice& hair : lowStyles()) {
     for (int draw = 0; draw < 20; ++draw) {

@@ -1,7 +1,8 @@
-// Time steps, paces, playback speeds, scrubbing, styles and the soak.
+// Time steps, the governor's rungs, paces, playback speeds, scrubbing, styles and the soak.
 #include <array>
 #include <cmath>
 
+#include "app/governor.h"
 #include "sim/field_text.h"
 #include "tests/stress/matrix.h"
 #include "tests/stress/stage.h"
@@ -65,6 +66,34 @@ void addSteps(Cases& cases) {
   }
 }
 
+// The settings that the budget governor may choose by itself, as app::governed puts them in place.
+void addLadder(Cases& cases) {
+  for (const app::Rung& rung : app::ladder()) {
+    const double step = 1 / rung.steps_per_second;
+    const std::string name =
+        std::string(sim::findParam("integrator")->choices[static_cast<int>(rung.integrator)]) + "-" + stepName(step);
+    for (const HairChoice& hair : lowStyles()) {
+      StressCase dance;
+      dance.name = "ladder/" + name + "/dance/" + hairName(hair);
+      dance.hair = hair;
+      dance.clip = "dance.bvh";
+      dance.play = Play::kForward;
+      dance.step = step;
+      dance.params = {{"integrator", static_cast<double>(rung.integrator)},
+                      {"tolerance", rung.tolerance},
+                      {"max_iterations", rung.max_iterations}};
+      dance.in_short = hair.style == sim::Style::kLong;
+      StressCase turn = dance;
+      turn.name = "ladder/" + name + "/turn/" + hairName(hair);
+      turn.clip = "idle_turns.bvh";
+      turn.play = Play::kStill;
+      turn.upset = Upset::kTurn;
+      cases.push_back(dance);
+      cases.push_back(turn);
+    }
+  }
+}
+
 void addPaces(Cases& cases) {
   for (const Pace pace : {Pace::kRandomSteps, Pace::kRandomFrames}) {
     for (const char* clip : ownClips()) {
@@ -97,7 +126,9 @@ void addSpeeds(Cases& cases) {
         one.play = Play::kForward;
         one.speed = speed;
         one.seconds = 2;
-        one.in_short = own && hair.style == sim::Style::kLong && clipName(clip) != "idle_turns";
+        // A spin at twenty times comes back or not as rounding has it: wind of 0.1 mm/s makes it stay away.
+        const bool chance = speed == 20 && clipName(clip) == "jump_spin";
+        one.in_short = own && hair.style == sim::Style::kLong && clipName(clip) != "idle_turns" && !chance;
         cases.push_back(one);
       }
     }

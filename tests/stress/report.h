@@ -14,6 +14,12 @@ struct Result {
   Outcome outcome;
 };
 
+// Whether a case's outcome decides over the run's: those of a peer and known failures are shown beside.
+bool counts(const StressCase& one);
+
+// What runs the case again, by itself. `sets`: parameters that were given by hand over the case's own.
+std::string replayCommand(const std::string& name, std::uint64_t seed, const std::vector<std::string>& sets);
+
 // A table with a row a case: its head and a row, with their line ends, and the results that such a file holds, of the
 // cases declared. Throws InputError naming the line.
 std::string csvHead();

@@ -58,10 +58,14 @@ struct Run {
   bool trace = false;
 
   Run(const StressCase& c, std::uint64_t seed, Stage& s)
-      : one(c), stage(s), random(seed, c.name), around(c, s, random), hair(s.mesh()) {
+      : one(c),
+        stage(s),
+        random(seed, c.name),
+        around(c, colliderOf(c) == sim::ColliderKind::kSdf, s, random),
+        hair(s.mesh()) {
     for (const auto& [name, value] : c.params) sim::findParam(name)->set(params, value);
     params.time_step = c.step;
-    params.collide = c.collide;
+    params.collide = params.collide && c.collide;  // a row may turn it off too
     hair.state = s.settled;
     applyStart(c, hair.mesh, random, hair.state);
   }
@@ -89,8 +93,9 @@ void traceStep(const Run& run, double dt, const sim::StepReport& report, Hair& h
 }
 
 sim::StepReport stepHair(const sim::SimParams& params, const Run& run, double dt, Hair& hair) {
-  return sim::advance(hair.mesh, params, {run.around.roots(), run.around.ellipsoids(), run.around.time()}, dt,
-                      hair.context, hair.state);
+  const Surroundings& around = run.around;
+  const sim::StepInput input{around.roots(), around.ellipsoids(), around.time(), around.parts()};
+  return sim::advance(hair.mesh, params, input, dt, hair.context, hair.state);
 }
 
 void checkFinite(Run& run) {
@@ -100,22 +105,38 @@ void checkFinite(Run& run) {
   }
 }
 
-// Vertices inside a collider at a frame's end.
+// m that a vertex lies inside the colliders in use; zero outside.
+double depthOf(const Run& run, int vertex) {
+  const sim::Colliders colliders{run.around.ellipsoids(), run.around.parts()};
+  const sim::Vec3& p = run.hair.state.positions[vertex];
+  double depth = 0;
+  for (int k = 0; k < colliders.count(); ++k) {
+    if (colliders.parts.empty() && sim::implicitValue(colliders.ellipsoids[k], p) >= 0) continue;
+    depth = std::max(depth, -colliders.closest(k, p).distance);
+  }
+  return depth;
+}
+
+// Vertices that are held outside and lie inside a collider at a frame's end.
 void checkOutside(Run& run) {
   if (!run.params.collide || run.around.time() < run.last_intrusion + run.one.grace) return;
-  for (const int v : run.hair.mesh.external_vertices) {
-    double depth = 0;
-    for (const sim::Ellipsoid& e : run.around.ellipsoids()) {
-      if (sim::implicitValue(e, run.hair.state.positions[v]) >= 0) continue;
-      depth = std::max(depth, -sim::closestPoint(e, run.hair.state.positions[v]).distance);
-    }
+  const sim::HairMesh& mesh = run.hair.mesh;
+  const auto check = [&](int v) {
+    const double depth = depthOf(run, v);
     run.outcome.deepest = std::max(run.outcome.deepest, depth);
-    if (depth <= kDeepest) continue;
+    if (depth <= kDeepest) return;
     ++run.outcome.inside;
     const auto& contacts = run.hair.state.contacts;
     run.outcome.unconstrained +=
         std::none_of(contacts.begin(), contacts.end(), [&](const sim::Contact& c) { return c.vertex == v; });
     run.fail(said("vertex %.0f is %.2f mm inside a collider", v, 1e3 * depth));
+  };
+  if (!run.params.collide_inner) {
+    for (const int v : mesh.external_vertices) check(v);
+    return;
+  }
+  for (int v = 0; v < mesh.vertexCount(); ++v) {
+    if (!mesh.isRoot(v)) check(v);
   }
 }
 

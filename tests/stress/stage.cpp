@@ -114,8 +114,18 @@ std::string hairName(const HairChoice& hair) {
   return style;
 }
 
+const std::vector<app::PartDistance>& partsOf(Stage& stage) {
+  app::LoadedBody& body = *stage.actor.body;
+  if (!body.has_parts) body.parts = app::partDistances(body.character);
+  body.has_parts = true;
+  return body.parts;
+}
+
 Stage& StageStore::stage(const StressCase& one) {
-  const std::string key = one.clip + "|" + hairName(one.hair);
+  sim::SimParams settling;
+  settling.collider = colliderOf(one);
+  const std::string key =
+      one.clip + "|" + hairName(one.hair) + (settling.collider == sim::ColliderKind::kSdf ? "|distances" : "");
   for (const auto& known : stages_) {
     if (known->key == key) {
       known->actor.playback = known->start;
@@ -141,7 +151,7 @@ Stage& StageStore::stage(const StressCase& one) {
     stage->actor.context = std::make_unique<sim::StepContext>(stage->mesh());
     app::placeActor(stage->actor, true);
   }
-  app::settleActor({}, kSettle, stage->actor);
+  app::settleActor(settling, kSettle, stage->actor);
   stage->settled = stage->actor.hair;
   stage->start = stage->actor.playback;
   stages_.push_back(std::move(stage));

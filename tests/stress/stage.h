@@ -14,13 +14,17 @@ struct Stage {
   std::string key;
   app::Actor actor;
   app::Playback start;     // at the clip's first pose
-  sim::HairState settled;  // there, with the default parameters
+  sim::HairState settled;  // there, with the default parameters but for the kind of colliders
   const sim::HairMesh& mesh() const { return actor.haircut->mesh; }
 };
 
+// The figure as signed distances, made when first asked for: it takes a good part of a second.
+const std::vector<app::PartDistance>& partsOf(Stage& stage);
+
 class StageStore {
  public:
-  // The stage at the clip's first pose, its hair settled. Throws InputError when the clip is not there.
+  // The stage at the clip's first pose, its hair settled against the case's kind of colliders. Throws InputError when
+  // the clip is not there.
   Stage& stage(const StressCase& one);
 
  private:

@@ -83,18 +83,22 @@ struct StressCase {
   std::vector<std::pair<std::string, double>> params;  // rows of the table that differ from its defaults
   bool restless = false;                               // parameters drawn anew every step of the motion
   bool collide = true;
-  double seconds = 1;        // of motion
-  double rest = 1;           // s with the body there
-  double release = 5;        // s without; back within rest + release
-  double grace = 0;          // s after each start or appearance in which vertices may still be inside
-  bool recovers = false;     // the watchdog is expected to step in
-  bool compared = false;     // a peer's setting, shown beside ours and not counted
-  bool keeps_energy = true;  // judged by its energy too: not where the numerics are turned to their coarsest
-  bool in_short = false;     // runs with --short
-  bool soak = false;         // memory and timing must stay flat
+  double seconds = 1;                   // of motion
+  double rest = 1;                      // s with the body there
+  double release = 5;                   // s without; back within rest + release
+  double grace = 0;                     // s after each start or appearance in which vertices may still be inside
+  bool recovers = false;                // the watchdog is expected to step in
+  bool compared = false;                // a peer's setting, shown beside ours and not counted
+  bool keeps_energy = true;             // judged by its energy too: not where the numerics are turned to their coarsest
+  bool in_short = false;                // runs with --short
+  const char* known_failure = nullptr;  // why it falls short today: run and named, not counted (known_failures.h)
+  bool soak = false;                    // memory and timing must stay flat
 
   std::string family() const { return name.substr(0, name.find('/')); }
 };
+
+// What the case's hair collides with.
+sim::ColliderKind colliderOf(const StressCase& one);
 
 // All cases that a seed declares, in a fixed order. Names are unique.
 std::vector<StressCase> declareCases(std::uint64_t seed);

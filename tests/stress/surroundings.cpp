@@ -12,6 +12,7 @@ constexpr double kNodAngle = 1;                 // rad
 const sim::Vec3 kArmRadii(0.3, 0.035, 0.035);   // m
 constexpr double kArmReach = 0.6;               // m either side of the head
 constexpr double kAppears = 0.2;                // s after the start
+constexpr double kGridSpacing = 0.005;          // m, of an added body's distances; the figure's own take 7 mm
 
 Eigen::Isometry3d rotationAbout(const sim::Vec3& pivot, double angle, const sim::Vec3& axis) {
   Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();
@@ -23,15 +24,30 @@ double interval(Upset upset) {
   return upset == Upset::kBodyRise ? kQuarter : kHalf;
 }
 
+void carryBody(const Eigen::Isometry3d& place, sim::Ellipsoid& e) {
+  e.center = place * e.center;
+  e.rotation = Eigen::Quaterniond(place.linear()) * e.rotation;
+}
+
+// The motion that brought a body from its pose before to its present one; none where it is new.
+void setMotion(const sim::Ellipsoid* before, double dt, sim::Ellipsoid& e) {
+  e.velocity = e.angular_velocity = sim::Vec3::Zero();
+  if (dt <= 0 || !before) return;
+  e.velocity = (e.center - before->center) / dt;
+  const Eigen::AngleAxisd turn(e.rotation * before->rotation.conjugate());
+  e.angular_velocity = turn.angle() * turn.axis() / dt;
+}
+
 }  // namespace
 
-Surroundings::Surroundings(const StressCase& one, Stage& stage, Random& random)
-    : one_(one), stage_(stage), random_(random) {
+Surroundings::Surroundings(const StressCase& one, bool distances, Stage& stage, Random& random)
+    : one_(one), distances_(distances), stage_(stage), random_(random) {
   pose(0);
 }
 
 void Surroundings::move(double dt) {
   before_ = ellipsoids_;
+  parts_before_ = parts_;
   carries_ = intrudes_ = false;
   const double end = time_ + dt;
   playClip(dt);
@@ -41,7 +57,8 @@ void Surroundings::move(double dt) {
 }
 
 void Surroundings::stop() {
-  for (sim::Ellipsoid& e : ellipsoids_) e.velocity = e.angular_velocity = sim::Vec3::Zero();
+  for (sim::Ellipsoid& e : ellipsoids_) setMotion(nullptr, 0, e);
+  for (sim::DistancePart& part : parts_) setMotion(nullptr, 0, part.bounds);
 }
 
 void Surroundings::playClip(double dt) {
@@ -97,6 +114,12 @@ void Surroundings::disturb() {
   }
 }
 
+// Where the disturbance carries what hangs on a joint: head and body go their own ways.
+Eigen::Isometry3d Surroundings::placeOf(int joint) const {
+  if (joint == stage_.actor.body->character.head_joint) return whole_ * nod_;
+  return Eigen::Isometry3d(Eigen::Translation3d(0, rise_, 0) * whole_);
+}
+
 void Surroundings::pose(double dt) {
   const app::Character& character = stage_.actor.body->character;
   const Eigen::Isometry3d head = whole_ * nod_;
@@ -104,26 +127,22 @@ void Surroundings::pose(double dt) {
   roots_ = stage_.actor.roots;
   for (sim::Vec3& root : roots_) root = head * root;
   ellipsoids_ = stage_.actor.ellipsoids;
-  for (std::size_t k = 0; k < ellipsoids_.size(); ++k) {
-    sim::Ellipsoid& e = ellipsoids_[k];
-    const bool of_head = character.ellipsoids[k].joint == character.head_joint;
-    const Eigen::Isometry3d place = of_head ? head : Eigen::Isometry3d(Eigen::Translation3d(0, rise_, 0) * whole_);
-    e.center = place * e.center;
-    e.rotation = Eigen::Quaterniond(place.linear()) * e.rotation;
+  for (std::size_t k = 0; k < ellipsoids_.size(); ++k)
+    carryBody(placeOf(character.ellipsoids[k].joint), ellipsoids_[k]);
+  if (distances_) {
+    const std::vector<app::PartDistance>& parts = partsOf(stage_);
+    app::posePartDistances(parts, stage_.actor.pose, stage_.actor.pose, 0, parts_);
+    for (std::size_t k = 0; k < parts.size(); ++k) carryBody(placeOf(parts[k].joint), parts_[k].bounds);
   }
   addIntruder();
-  for (std::size_t k = 0; k < ellipsoids_.size(); ++k) {
-    sim::Ellipsoid& e = ellipsoids_[k];
-    e.velocity = e.angular_velocity = sim::Vec3::Zero();
-    if (dt <= 0 || k >= before_.size()) continue;
-    e.velocity = (e.center - before_[k].center) / dt;
-    const Eigen::AngleAxisd turn(e.rotation * before_[k].rotation.conjugate());
-    e.angular_velocity = turn.angle() * turn.axis() / dt;
-  }
+  for (std::size_t k = 0; k < ellipsoids_.size(); ++k)
+    setMotion(k < before_.size() ? &before_[k] : nullptr, dt, ellipsoids_[k]);
+  for (std::size_t k = 0; k < parts_.size(); ++k)
+    setMotion(k < parts_before_.size() ? &parts_before_[k].bounds : nullptr, dt, parts_[k].bounds);
 }
 
-void Surroundings::addIntruder() {
-  sim::Ellipsoid body;
+// The body that the case adds to the figure's, at this time; false when there is none.
+bool Surroundings::intruder(sim::Ellipsoid& body) const {
   switch (one_.upset) {
     case Upset::kArm: {
       // A saw: from one side to the other and back, across the hair behind the neck, along the figure's x axis.
@@ -132,24 +151,59 @@ void Surroundings::addIntruder() {
       body.center = head_ * sim::Vec3(0, -0.12, at);
       body.rotation = Eigen::Quaterniond(head_.linear());
       body.radii = kArmRadii;
-      break;
+      return true;
     }
     case Upset::kSwitchOn:
-      if (time_ < kAppears) return;
+      if (time_ < kAppears) return false;
       body.center = head_ * sim::Vec3(0.02, -0.02, -0.1);
       body.radii = sim::Vec3::Constant(one_.upset_size);
-      break;
+      return true;
     case Upset::kBury:
-      if (time_ < kAppears) return;
+      if (time_ < kAppears) return false;
       body.center = head_ * sim::Vec3(0, 0.02, 0);
       body.radii = sim::Vec3(0.13, 0.15, 0.14);
-      break;
+      return true;
     default:
-      return;
+      return false;
   }
+}
+
+void Surroundings::addIntruder() {
+  sim::Ellipsoid body;
+  if (!intruder(body)) return;
   // It was not there a step ago.
   intrudes_ = intrudes_ || before_.size() == ellipsoids_.size();
   ellipsoids_.push_back(body);
+  if (!distances_) return;
+  // Parts act in place of all ellipsoids: what is added must be one of them.
+  if (intruder_distances_.empty()) sampleIntruder(body);
+  sim::DistancePart part{body, intruder_grid_};
+  // A ball around the box, as the figure's own parts have.
+  part.bounds.radii = sim::Vec3::Constant(intruder_grid_.low.norm());
+  parts_.push_back(part);
+}
+
+// Signed distances of the ellipsoid, two nodes farther than its surface.
+void Surroundings::sampleIntruder(const sim::Ellipsoid& body) {
+  sim::Ellipsoid own;
+  own.radii = body.radii;
+  sim::DistanceGrid& grid = intruder_grid_;
+  grid.spacing = kGridSpacing;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int half = static_cast<int>(std::ceil(body.radii[axis] / kGridSpacing)) + 2;
+    grid.nodes[axis] = 2 * half + 1;
+    grid.low[axis] = -half * kGridSpacing;
+  }
+  for (int k = 0; k < grid.nodes[2]; ++k) {
+    for (int j = 0; j < grid.nodes[1]; ++j) {
+      for (int i = 0; i < grid.nodes[0]; ++i) {
+        const sim::Vec3 p = grid.low + kGridSpacing * sim::Vec3(i, j, k);
+        intruder_distances_.push_back(static_cast<float>(sim::closestPoint(own, p).distance));
+      }
+    }
+  }
+  grid.values = intruder_distances_;
+  grid.deepest = body.radii.minCoeff();
 }
 
 }  // namespace stress

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "sim/colliders.h"
 #include "tests/stress/random.h"
 #include "tests/stress/stage.h"
 
@@ -11,8 +12,9 @@ namespace stress {
 
 class Surroundings {
  public:
-  // The stage stands at its clip's first pose.
-  Surroundings(const StressCase& one, Stage& stage, Random& random);
+  // The stage stands at its clip's first pose. `distances`: the bodies are signed distances, the stage's own parts and
+  // a grid of any body that is added, in place of the ellipsoids.
+  Surroundings(const StressCase& one, bool distances, Stage& stage, Random& random);
 
   // Moves everything on by dt (s).
   void move(double dt);
@@ -23,6 +25,8 @@ class Surroundings {
 
   const std::vector<sim::Vec3>& roots() const { return roots_; }
   const std::vector<sim::Ellipsoid>& ellipsoids() const { return ellipsoids_; }
+  // None where the ellipsoids act.
+  const std::vector<sim::DistancePart>& parts() const { return parts_; }
   // Scalp frame to world, disturbance included.
   const Eigen::Isometry3d& head() const { return head_; }
   // The hair is to be carried along from where the head was before the last move.
@@ -33,6 +37,7 @@ class Surroundings {
 
  private:
   const StressCase& one_;
+  const bool distances_;
   Stage& stage_;
   Random& random_;
   double time_ = 0;
@@ -43,12 +48,18 @@ class Surroundings {
   bool carries_ = false, intrudes_ = false;
   std::vector<sim::Vec3> roots_;
   std::vector<sim::Ellipsoid> ellipsoids_, before_;
+  std::vector<sim::DistancePart> parts_, parts_before_;
+  std::vector<float> intruder_distances_;  // of the body that is added, about its own centre
+  sim::DistanceGrid intruder_grid_;
   Eigen::Isometry3d head_ = Eigen::Isometry3d::Identity();
 
   void playClip(double dt);
   void disturb();
   void pose(double dt);
+  Eigen::Isometry3d placeOf(int joint) const;
+  bool intruder(sim::Ellipsoid& body) const;
   void addIntruder();
+  void sampleIntruder(const sim::Ellipsoid& body);
 };
 
 }  // namespace stress

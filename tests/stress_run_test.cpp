@@ -1,0 +1,93 @@
+// hairmesh-stress as a person runs it: what it says and how it ends.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "tests/run_program.h"
+
+namespace {
+
+// Every test's binary lies beside it.
+const std::string kStress = std::string(HAIRMESH_TEST_OUT) + "/../hairmesh-stress";
+const std::string kCheap = "state/collapsed/1-60s/short-low/free/0";
+
+test::Outcome runStress(const std::vector<std::string>& arguments) {
+  std::filesystem::create_directories(HAIRMESH_TEST_OUT);
+  const std::string base = std::string(HAIRMESH_TEST_OUT) + "/stress_" + std::to_string(::getpid());
+  std::string command = "timeout 120 " + test::shellQuoted(kStress);
+  for (const std::string& argument : arguments) command.append(" ").append(test::shellQuoted(argument));
+  const int status = std::system(
+      (command + " >" + test::shellQuoted(base + ".out") + " 2>" + test::shellQuoted(base + ".err")).c_str());
+  test::Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, test::readAll(base + ".out"),
+                        test::readAll(base + ".err")};
+  std::filesystem::remove(base + ".out");
+  std::filesystem::remove(base + ".err");
+  return outcome;
+}
+
+class StressRun : public testing::Test {
+  void SetUp() override { ASSERT_TRUE(std::filesystem::exists(kStress)) << "build the target hairmesh-stress too"; }
+};
+
+TEST_F(StressRun, ACaseThatPassesIsCountedAndExitsWithZero) {
+  const test::Outcome outcome = runStress({"--case", kCheap});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(outcome.out.ends_with("\n1 passed, 0 failed\n")) << outcome.out;
+}
+
+// Heavy hair as slack as the table allows, in its thickest air, is nowhere near its shape in the time that it has.
+TEST_F(StressRun, AFailureExitsWithOneAndPrintsACommandThatFailsAgain) {
+  std::vector<std::string> arguments{"--case", kCheap, "--seed", "3"};
+  std::string replay = "hairmesh-stress --case '" + kCheap + "' --seed 3";
+  for (const char* set : {"density=2000", "stretch_along=100", "stretch_across=1", "stretch_edge=1", "shear=1",
+                          "bend=0.0001", "volume=1", "air_drag=50"}) {
+    arguments.insert(arguments.end(), {"--set", set});
+    replay.append(" --set ").append(set);
+  }
+  const test::Outcome outcome = runStress(arguments);
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.out;
+  EXPECT_NE(outcome.out.find("FAILED   " + kCheap), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("  " + replay + "\n"), std::string::npos) << outcome.out;
+  EXPECT_TRUE(outcome.out.ends_with("\n0 passed, 1 failed\n")) << outcome.out;
+}
+
+TEST_F(StressRun, WhatIsNotDeclaredOrNoParameterIsRefused) {
+  const test::Outcome nothing = runStress({"--case", "state/nowhere"});
+  EXPECT_EQ(nothing.exit_code, 4);
+  EXPECT_NE(nothing.err.find("state/nowhere"), std::string::npos) << nothing.err;
+  EXPECT_EQ(runStress({"--case", kCheap, "--set", "no_such=1"}).exit_code, 4);
+}
+
+// The rows of a --csv without the time that the cases took.
+std::vector<std::string> rowsOf(const std::string& file) {
+  std::vector<std::string> rows;
+  std::stringstream text(test::readAll(file));
+  std::size_t timed = 0;
+  for (std::string line; std::getline(text, line);) {
+    std::vector<std::string> fields;
+    std::stringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) fields.push_back(cell);
+    if (rows.empty())
+      timed = static_cast<std::size_t>(std::find(fields.begin(), fields.end(), "cpu_s") - fields.begin());
+    std::string row;
+    for (std::size_t k = 0; k < fields.size(); ++k) row += k == timed ? "" : fields[k] + ",";
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+TEST_F(StressRun, TheSameSeedGivesTheSameTable) {
+  const std::string folder = test::freshFolder("stress_run");
+  const std::string drawn = "state/noise-1cm/1-60s/short-low/*";
+  const auto table = [&](const std::string& name, const std::string& seed) {
+    runStress({"--case", drawn, "--seed", seed, "--csv", folder + "/" + name});
+    return rowsOf(folder + "/" + name);
+  };
+  const auto first = table("first.csv", "5"), again = table("again.csv", "5"), other = table("other.csv", "6");
+  EXPECT_EQ(first.size(), 5u) << "a head and two draws with and without the body";
+  EXPECT_EQ(first, again);
+  EXPECT_NE(first, other);
+}
+
+}  // namespace
