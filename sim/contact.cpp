@@ -12,6 +12,7 @@ constexpr double kSlackShare = 0.2;  // of the contact offset
 constexpr double kRestoring = 0.2;   // share of a dip below the offset that a step closes
 constexpr double kReach = 0.01;      // m off the surface up to which a contact is kept, for it may slide over an edge
 constexpr double kCreep = 1e-3, kNoSlip = 1e-9;  // m/s
+constexpr double kLeaving = 1;  // m/s that a body moves away from a vertex at: more than hair follows within a step
 // Paths past a collider
 constexpr double kStraight = 0.2;  // rad; a collider that turns less is passed on a straight line
 constexpr double kGrazing = 0.1;   // of its thickness; a path no deeper slides over a rounded body
@@ -176,7 +177,9 @@ void carryContacts(const Colliders& colliders, const SimParams& params, double d
     const double back = dip > 0 ? kRestoring * std::min(dip, margins.slack) : std::max(dip, -margins.escape);
     contact.normal = surface.normal;
     contact.velocity = (carried - x + back * surface.normal) / dt;
-    return -dip > kReach;
+    // The solve would let go of what a body leaves behind, but to no better than its tolerance of the body's speed.
+    const double leaving = surface.normal.dot(state.velocities[contact.vertex] - (carried - x) / dt);
+    return -dip > kReach || leaving > kLeaving;
   });
 }
 

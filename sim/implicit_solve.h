@@ -45,6 +45,7 @@ struct ImplicitSolver {
   InitialGuess<T> guess;
   std::vector<V3<T>> x, v, trial, force, rhs, velocity_step;
   std::vector<T> mass, inverse_mass_dt;
+  double hair_mass = 0;  // kg
   std::vector<VertexConstraint> constraints;
   std::vector<int> touched;     // vertices that were in contact when the solve began
   PreconditionerChoice choice;  // between the warped factor and its stand-in
@@ -86,6 +87,7 @@ struct ImplicitSolver {
   bool looksBack(const SimParams& params) const;
   void setResidual();
   double beginSolve(const SimParams& params);
+  double energyScale(const HairMesh& mesh) const;
   void weighCoarse();
   struct BudgetedSolve;
   SolveReport solveLinear(const HairMesh& mesh, const SimParams& params, const StepBase& base,

@@ -114,7 +114,7 @@ SolveReport solveModifiedPcg(const Operator& a, std::span<const V3<typename Oper
   precondition();
   std::copy(z.begin(), z.end(), d.begin());
   deflate<T>(scratch.deflation, z, d);
-  if (first) scratch.first_square = scratch.square + stop.head_start;
+  if (first) scratch.first_square = std::min(scratch.square + stop.head_start, stop.most_first);
   // In the norm of the new preconditioner the progress so far counts for as much as it did in the old one's.
   if (start == SolveStart::kExchange && before_start > 0) scratch.first_square *= scratch.square / before_start;
   scratch.gain = 0;

@@ -5,6 +5,7 @@
 // constraint's reaction. All vectors have one V3 per block row.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -57,6 +58,7 @@ struct StopRule {
   double h = 0;                        // s
   int max_iterations = 400;
   double head_start = 0;  // J: the squared energy norm by which x is nearer than what progress is measured from
+  double most_first = std::numeric_limits<double>::infinity();  // J: progress is measured from no more than this
 };
 
 // How a solve begins. `fresh`: from x and b. `restart`: from x and the residual in the scratch, which the caller has

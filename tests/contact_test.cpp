@@ -266,17 +266,34 @@ TEST(Contact, CarriedContactKeepsItsVertexAtTheOffsetOfTheMovingBody) {
     state.contacts = {Contact{}};
     const Vec3 before = state.positions[0];
     move(e, random.vector(2), random.vector(6), kFrame);
+    state.velocities = {sim::surfaceVelocity(e, before)};
     const std::vector<Ellipsoid> bodies{e};
     sim::carryContacts({bodies}, params, kFrame, state);
+    ASSERT_EQ(state.contacts.size(), 1u);
     const Vec3 after = before + kFrame * state.contacts[0].velocity;
     EXPECT_NEAR(sim::closestPoint(e, after).distance, params.contact_offset, 1e-9);
     EXPECT_LT((state.contacts[0].normal - sim::closestPoint(e, after).normal).norm(), 1e-6);
   }
   sim::HairState state;
-  state.positions = {Vec3::Zero()};
+  state.positions = state.velocities = {Vec3::Zero()};
   state.contacts = {Contact{}};
   sim::carryContacts({}, params, kFrame, state);
   EXPECT_TRUE(state.contacts.empty()) << "its body is gone";
+}
+
+TEST(Contact, WhatABodyLeavesBehindIsNotHeld) {
+  const sim::SimParams params = test::tautHair();
+  for (const double speed : {0.2, 5.0}) {
+    Ellipsoid e = ellipsoid(Vec3::Zero(), Vec3(0.1, 0.1, 0.1));
+    sim::HairState state;
+    state.positions = {Vec3(0, 0.1 + params.contact_offset, 0)};
+    state.velocities = {Vec3::Zero()};
+    state.contacts = {Contact{}};
+    move(e, Vec3(0, -speed, 0), Vec3::Zero(), 1e-3);
+    const std::vector<Ellipsoid> bodies{e};
+    sim::carryContacts({bodies}, params, 1e-3, state);
+    EXPECT_EQ(state.contacts.empty(), speed > 1) << speed << " m/s: near enough both times";
+  }
 }
 
 TEST(Contact, ConstraintsRemoveWhatTheirNormalsSpanAndPrescribeTheContactsVelocity) {

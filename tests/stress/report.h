@@ -14,9 +14,6 @@ struct Result {
   Outcome outcome;
 };
 
-// Whether a case's outcome decides over the run's: those of a peer and known failures are shown beside.
-bool counts(const StressCase& one);
-
 // What runs the case again, by itself. `sets`: parameters that were given by hand over the case's own.
 std::string replayCommand(const std::string& name, std::uint64_t seed, const std::vector<std::string>& sets);
 

@@ -110,4 +110,9 @@ struct WindowCommand {
 };
 WindowCommand windowCommand(const StressCase& one);
 
+// Whether a case's outcome decides over the run's: those of a peer and known failures are shown beside.
+inline bool counts(const StressCase& one) {
+  return !one.compared && !one.known_failure;
+}
+
 }  // namespace stress
