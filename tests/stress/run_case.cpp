@@ -408,7 +408,7 @@ Outcome runCaseByMajority(const StressCase& one, std::uint64_t seed, bool trace,
     last = runCase(other, seed, trace, stages);
     if (last.verdict != Verdict::kPassed) return first;
   }
-  last.fault = first.fault;
+  last.fault = first.fault, last.at = first.at;
   return last;
 }
 
