@@ -36,7 +36,7 @@ using BodyDistance = std::function<double(const Vec3&)>;
 // mm once the hair has left the scalp; edges are at least 3 mm. The resolutions are one haircut, meshed more or
 // less finely, with the same topology on every head. Valid for any scalp: where a head leaves no room, the hair grows
 // on a rounded one (see the source). Vertex counts: short 225 / 569 / 1,339 / 7,081, shoulder 360 / 913 / 2,306 /
-// 9,617, long 384 / 922 / 2,249 / 10,241. Columns of at most 8 or 16 vertices where a plan can have them so, for whole
+// 9,617, long 376 / 922 / 2,249 / 10,241. Columns of at most 8 or 16 vertices where a plan can have them so, for whole
 // vectors of the solver's kernels. Deterministic; under 0.25 s, ultra under 0.5 s.
 HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& scalp, const BodyDistance& body);
 

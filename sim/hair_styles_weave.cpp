@@ -162,7 +162,7 @@ Weave weaveOf(Style style, Resolution resolution) {
       break;
   }
   const std::vector<double> fine{0, 0.1, 0.2, 0.3, 0.35, 0.4, 0.52, 0.64, 0.76, 0.88, 1};
-  return std::array<Weave, 4>{Weave{{0, 0.275, 0.35, 0.425, 0.7, 1}, 3, 6, 8, 8, 6, 0.7},
+  return std::array<Weave, 4>{Weave{{0, 0.275, 0.35, 0.425, 0.7, 1}, 3, 6, 8, 8, 5, 0.7},
                               Weave{{0, 0.15, 0.3, 0.35, 0.4, 0.6, 0.8, 1}, 4, 6, 12, 13, 9, 0.4},
                               Weave{fine, 4, 10, 15, 16, 10, 0.4}, Weave{fine, 4, 9, 19, 20, 11, 0.4}}[level];
 }

@@ -235,4 +235,22 @@ TEST_P(ContactKinds, HairThatIsLiftedOffABodyLetsGo) {
   EXPECT_LT(off, 1e-3);
 }
 
+TEST(Contact, WhatABodyLeavesBehindIsNotHeld) {
+  constexpr double kStep = 1e-3;  // s
+  const sim::SimParams params = test::tautHair();
+  for (const double speed : {0.2, 5.0}) {
+    sim::Ellipsoid ball;
+    ball.radii.setConstant(0.1);
+    ball.center.y() = -speed * kStep;
+    ball.velocity = Vec3(0, -speed, 0);
+    sim::HairState state;
+    state.positions = {Vec3(0, 0.1 + params.contact_offset, 0)};
+    state.velocities = {Vec3::Zero()};
+    state.contacts = {sim::Contact{}};
+    const std::vector<sim::Ellipsoid> bodies{ball};
+    sim::carryContacts({bodies}, params, kStep, state);
+    EXPECT_EQ(state.contacts.empty(), speed > 1) << speed << " m/s: near enough both times";
+  }
+}
+
 }  // namespace

@@ -281,21 +281,6 @@ TEST(Contact, CarriedContactKeepsItsVertexAtTheOffsetOfTheMovingBody) {
   EXPECT_TRUE(state.contacts.empty()) << "its body is gone";
 }
 
-TEST(Contact, WhatABodyLeavesBehindIsNotHeld) {
-  const sim::SimParams params = test::tautHair();
-  for (const double speed : {0.2, 5.0}) {
-    Ellipsoid e = ellipsoid(Vec3::Zero(), Vec3(0.1, 0.1, 0.1));
-    sim::HairState state;
-    state.positions = {Vec3(0, 0.1 + params.contact_offset, 0)};
-    state.velocities = {Vec3::Zero()};
-    state.contacts = {Contact{}};
-    move(e, Vec3(0, -speed, 0), Vec3::Zero(), 1e-3);
-    const std::vector<Ellipsoid> bodies{e};
-    sim::carryContacts({bodies}, params, 1e-3, state);
-    EXPECT_EQ(state.contacts.empty(), speed > 1) << speed << " m/s: near enough both times";
-  }
-}
-
 TEST(Contact, ConstraintsRemoveWhatTheirNormalsSpanAndPrescribeTheContactsVelocity) {
   test::Random random(3);
   for (int trial = 0; trial < 200; ++trial) {
