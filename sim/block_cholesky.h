@@ -90,6 +90,7 @@ struct BlockCholesky {
   bool invertDiagonal(double& spent);
   bool computeRows(double& spent);
   bool computeUpdate(double& spent);
+  bool workColumn(double& spent);  // the present stage's, on the present column
   // A block of the matrix: where it lies in the column that eliminates it, and whether it is needed transposed there.
   struct Entry {
     int block, row;

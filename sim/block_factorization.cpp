@@ -150,10 +150,21 @@ void BlockCholesky<T>::beginFactor() {
 }
 
 template <class T>
+bool BlockCholesky<T>::workColumn(double& spent) {
+  switch (at_.stage) {
+    case 1:
+      return factorDiagonal(spent);
+    case 2:
+      return invertDiagonal(spent);
+    case 3:
+      return computeRows(spent);
+    default:
+      return computeUpdate(spent);
+  }
+}
+
+template <class T>
 typename BlockCholesky<T>::Progress BlockCholesky<T>::continueFactor(const BlockMatrix<T>& a, double operations) {
-  using Piece = bool (BlockCholesky<T>::*)(double&);
-  constexpr Piece kPieces[] = {&BlockCholesky<T>::factorDiagonal, &BlockCholesky<T>::invertDiagonal,
-                               &BlockCholesky<T>::computeRows, &BlockCholesky<T>::computeUpdate};
   double spent = 0;
   for (; at_.supernode < static_cast<int>(supernodes.size()); at_ = {at_.supernode + 1, 0, 0}) {
     const Supernode& s = supernodes[at_.supernode];
@@ -166,7 +177,7 @@ typename BlockCholesky<T>::Progress BlockCholesky<T>::continueFactor(const Block
       const int columns = below && s.rows == 0 ? 0 : at_.stage == 4 ? s.height() : s.width();
       while (at_.column < columns) {
         if (spent >= operations) return Progress::kMore;
-        if (!(this->*kPieces[at_.stage - 1])(spent)) return Progress::kFailed;
+        if (!workColumn(spent)) return Progress::kFailed;
       }
     }
   }
