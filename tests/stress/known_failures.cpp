@@ -12,7 +12,9 @@ struct KnownFailure {
 };
 
 constexpr std::uint64_t kSeed = 1;
-constexpr const char* kBdf2 = "bdf2 gains energy in the step in which a contact comes or goes";
+constexpr const char* kBdf2 =
+    "bdf2 in single precision gains energy in rubbing contacts; without friction, or in double, it was not seen to";
+constexpr const char* kBdf2Short = "bdf2 in steps this short is off in double and without friction too; not understood";
 constexpr const char* kBdf2Jitter =
     "bdf2 in steps this short goes on at 0.1 m/s: its solves stop after one iteration or none";
 constexpr const char* kChatter =
@@ -26,7 +28,7 @@ constexpr const char* kStrayed = "the watchdog steps in once, at a stretch eleme
 constexpr std::array<KnownFailure, 11> kKnown{{
     {"ladder/bdf2-1-120s/dance/long-low", kBdf2},
     {"ladder/bdf2-1-240s/dance/long-low", kBdf2},
-    {"ladder/bdf2-1-480s/dance/long-low", kBdf2},
+    {"ladder/bdf2-1-480s/dance/long-low", kBdf2Short},
     {"ladder/bdf2-1-480s/turn/long-low", kBdf2Jitter},
     {"ladder/linearized-euler-1-20s/turn/long-low", kTangled},
     {"paper/stiff-1e3/ours/long-low", kStiff},
