@@ -274,6 +274,27 @@ void chooseSticking(double friction, double mobility, const Vec3& velocity, Cont
   contact.grip.normalize();
 }
 
+bool updateSticking(const FrictionLaw& law, const Vec3& reaction, const Vec3& velocity, Contact& contact) {
+  const double pressed = contact.pressure;  // what the friction of this solve was made of
+  contact.pressure = contact.normal.dot(reaction);
+  if (!contact.sticks) {
+    const double back = contact.grip.dot(velocity - contact.velocity);
+    contact.sticks = pressed > 0 && contact.pressure >= 0 && law.h * law.coefficient * pressed * back > law.most_work;
+    return contact.sticks;
+  }
+  if (contact.pressure < 0) {
+    contact.sticks = false;
+    contact.pressure = 0;
+    return true;
+  }
+  // While the solve goes on, `grip` tells of one that sticks because friction threw it back.
+  const Vec3 tangential = reaction - contact.pressure * contact.normal;
+  if (!contact.grip.isZero() || tangential.norm() <= law.coefficient * contact.pressure) return false;
+  contact.sticks = false;
+  contact.grip = tangential.normalized();
+  return true;
+}
+
 void constrainContacts(std::span<const Contact> contacts, std::vector<VertexConstraint>& constraints) {
   for (std::size_t first = 0; first < contacts.size();) {
     std::size_t last = first;

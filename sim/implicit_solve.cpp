@@ -28,6 +28,10 @@ constexpr double kLeastCoarseWeight = 0.05;
 // the hair's weight and motion are worth: with 10 a walk takes as many iterations as without the bound, a jump at four
 // times its speed a fifth more; with 100 hair still gained energy.
 constexpr double kFullStart = 10;
+// s: a shorter step may be off by less, so that the acceleration it neglects stays the same. With one tolerance for all,
+// a step of 1/480 s passed over half a metre per second squared: resting hair went on at 0.1 m/s.
+constexpr double kFullTolerance = 1.0 / 60;
+constexpr double kFrictionWork = 1e-4;  // of that: what friction may add by turning a vertex back within a step
 constexpr double kStaleRatio = 3;  // of h (h + damping): BDF2's start-up step shares its factor with the steps after it
 constexpr double kStaleMass = 1.5;   // of 1 + h drag: the air is thick while the hair settles
 constexpr int kSlices = 30;          // steps over which a new rest factor is spread
@@ -48,27 +52,13 @@ M3<T> cast(const Eigen::Matrix3d& m) {
   return out;
 }
 
-// Lets go of contacts that would pull and lets those slide that friction cannot hold, by the reaction (N) that the
-// solve left at each. One that pulls while it sticks may do so for being held sideways alone: it slides first. Returns
-// whether any contact changed. (Judging by a looser solve saves iterations, but lets go of contacts that press: the
-// vertex is then inside at the step's end, is corrected and found again, frame after frame.)
-bool updateContacts(double friction, std::vector<Contact>& contacts, const auto& reactionAt) {
+// Coulomb's law after a solve, by the reaction (N) and the velocity (m/s) that it left at each contact. Returns whether
+// any contact changed.
+bool updateContacts(const FrictionLaw& law, std::vector<Contact>& contacts, const auto& reactionAt,
+                    const auto& velocityAt) {
   bool changed = false;
-  for (Contact& contact : contacts) {
-    const Vec3 reaction = reactionAt(contact.vertex);
-    contact.pressure = contact.normal.dot(reaction);
-    if (!contact.sticks) continue;
-    const Vec3 tangential = reaction - contact.pressure * contact.normal;
-    if (contact.pressure < 0) {
-      contact.sticks = false;
-      contact.pressure = 0;
-      changed = true;
-    } else if (tangential.norm() > friction * contact.pressure) {
-      contact.sticks = false;
-      contact.grip = tangential.normalized();
-      changed = true;
-    }
-  }
+  for (Contact& contact : contacts)
+    changed |= updateSticking(law, reactionAt(contact.vertex), velocityAt(contact.vertex), contact);
   return std::erase_if(contacts, [](const Contact& c) { return c.pressure < 0; }) > 0 || changed;
 }
 
@@ -323,7 +313,8 @@ struct ImplicitSolver<T>::BudgetedSolve {
   void runSome(int most, SolveStart start) {
     const Solver kind = solver.preconditioner.kind();
     const bool exact = kind == Solver::kWarped || kind == Solver::kDirect, levels = kind == Solver::kTwoLevel;
-    stop.displacement = (exact ? 1 : levels ? kTwoLevelNear : 0) * params.displacement_tolerance;
+    const double shorter = std::min(1.0, stop.h / kFullTolerance);
+    stop.displacement = (exact ? 1 : levels ? kTwoLevelNear : 0) * shorter * shorter * params.displacement_tolerance;
     stop.foresee = exact;
     stop.relative = (levels ? kTwoLevelShare : 1) * params.tolerance;
     stop.max_iterations = most;
@@ -380,6 +371,7 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
   }
   std::copy(rhs.begin(), rhs.end(), trial.begin());
   SolveStart start = SolveStart::kPrepared;
+  const FrictionLaw friction{params.friction, base.h, kFrictionWork * energyScale(mesh)};
   for (int round = 0; round < kContactRounds; ++round) {
     const bool moved = setContactConstraints(mesh, params, base, contacts, start);
     const bool complete = preconditioner.setConstraints(constraints, kBatchesARound);
@@ -397,7 +389,8 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
       run.run(params.max_iterations, SolveStart::kRestart);
     }
     const auto reactionAt = [&](int i) { return Vec3(widen<T>(trial[i] - rhs[i] - scratch.r[i]) / base.h); };
-    if (contacts.empty() || !updateContacts(params.friction, contacts, reactionAt)) break;
+    const auto velocityAt = [&](int i) { return widen<T>(v[i]); };
+    if (contacts.empty() || !updateContacts(friction, contacts, reactionAt, velocityAt)) break;
     start = SolveStart::kRestart;
   }
   // A factor that served to its end is as old as the solves since it was made. Solves by other preconditioners age it

@@ -134,7 +134,8 @@ std::vector<ParamField> makeTable() {
           "A linear solve also stops when no vertex's residual, as an acceleration, exceeds this."),
       field<&P::displacement_tolerance>("displacement_tolerance", "Numerics", "m", {1e-9, 0.001, kLog},
                                         "A linear solve also stops when a factor (warped, direct) estimates that no "
-                                        "vertex would end farther off than this."),
+                                        "vertex would end farther off than this; in steps below 1/60 s, less by the "
+                                        "square of their length."),
       field<&P::newton_tolerance>("newton_tolerance", "Numerics", "m/s", {1e-12, 1, kLog},
                                   "The nonlinear integrators stop when no velocity changes by more than this."),
       field<&P::newton_iterations>("newton_iterations", "Numerics", "", {1, 50},

@@ -1,4 +1,4 @@
-// Contacts: nothing is left inside a body, contacts ride with it, friction holds and lets go where Coulomb says.
+// Contacts: nothing is left inside a body, contacts ride with it.
 #include "sim/contact.h"
 
 #include <gtest/gtest.h>
@@ -444,55 +444,6 @@ TEST(Contact, AThinFlatArmCannotPassThroughAtAnySpeed) {
   }
   std::printf("met %d vertices, %d passed through\n", met, passed);
   EXPECT_GT(met, 600);
-}
-
-// A particle (hair without stiffness) put at rest on a great sphere where the slope is `angle`: how fast it slides
-// along the slope after `steps`.
-double slideSpeed(double angle, double friction, int steps) {
-  sim::SimParams params = test::looseParticles();
-  params.friction = friction;
-  test::PatchOptions o;
-  o.nx = o.nz = 1, o.layers = 3, o.length = 0.1;
-  Hair hair(test::patchShape(o), params);
-  const int tip = hair.mesh.shape.column_first[1] - 1;
-  const Vec3 normal(std::sin(angle), std::cos(angle), 0), down(std::cos(angle), -std::sin(angle), 0);
-  constexpr double kRadius = 50;
-  const Vec3 foot = hair.state.positions[tip] - params.contact_offset * normal;
-  hair.bodies = {ellipsoid(foot - kRadius * normal, Vec3::Constant(kRadius))};
-  double speed = 0;
-  for (int n = 0; n < steps; ++n) {
-    const sim::StepReport report = hair.step(kFrame);
-    EXPECT_EQ(report.recoveries, 0);
-    // The other vertices are of no interest: they stay where they are.
-    for (int i = 0; i < hair.mesh.vertexCount(); ++i) {
-      if (i != tip) hair.state.positions[i] = hair.mesh.shape.positions[i], hair.state.velocities[i].setZero();
-    }
-    std::erase_if(hair.state.contacts, [&](const Contact& c) { return c.vertex != tip; });
-    speed = hair.state.velocities[tip].dot(down);
-    EXPECT_NEAR(sim::closestPoint(hair.bodies[0], hair.state.positions[tip]).distance, params.contact_offset, 2e-4);
-  }
-  return speed;
-}
-
-TEST(Friction, HoldsBelowTheFrictionAngleAndSlidesAboveItAtCoulombsRate) {
-  constexpr int kSteps = 20;
-  for (const double friction : {0.0, 0.3, 0.6}) {
-    const double limit = std::atan(friction);
-    for (const double angle : {limit - 0.1, limit + 0.1, limit + 0.3}) {
-      if (angle <= 0) continue;
-      const double speed = slideSpeed(angle, friction, kSteps);
-      const double expected = 9.81 * (std::sin(angle) - friction * std::cos(angle)) * kSteps * kFrame;
-      std::printf("friction %.1f, slope %.2f rad: slides at %.3f m/s, Coulomb %.3f\n", friction, angle, speed,
-                  std::max(0.0, expected));
-      if (angle < limit) {
-        EXPECT_LT(std::abs(speed), 1e-3);
-      } else {
-        // Friction starts a step late, since it follows from the last solve's pressure.
-        EXPECT_GT(speed, 0.98 * expected);
-        EXPECT_LT(speed, 1.02 * expected + friction * 9.81 * std::cos(angle) * kFrame);
-      }
-    }
-  }
 }
 
 }  // namespace

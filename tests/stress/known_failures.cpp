@@ -12,11 +12,6 @@ struct KnownFailure {
 };
 
 constexpr std::uint64_t kSeed = 1;
-constexpr const char* kBdf2 =
-    "bdf2 in single precision gains energy in rubbing contacts; without friction, or in double, it was not seen to";
-constexpr const char* kBdf2Short = "bdf2 in steps this short is off in double and without friction too; not understood";
-constexpr const char* kBdf2Jitter =
-    "bdf2 in steps this short goes on at 0.1 m/s: its solves stop after one iteration or none";
 constexpr const char* kChatter =
     "its contacts chatter: energy goes up and down by 4 % from step to step; another rounding passes";
 constexpr const char* kTangled = "set free it rests in another shape, higher in energy, which combing out does not see";
@@ -25,11 +20,7 @@ constexpr const char* kStiff =
 constexpr const char* kLimp =
     "a thousandth as stiff for its weight, by some roundings it rests in another shape for good";
 constexpr const char* kStrayed = "the watchdog steps in once, at a stretch element; another rounding passes";
-constexpr std::array<KnownFailure, 11> kKnown{{
-    {"ladder/bdf2-1-120s/dance/long-low", kBdf2},
-    {"ladder/bdf2-1-240s/dance/long-low", kBdf2},
-    {"ladder/bdf2-1-480s/dance/long-low", kBdf2Short},
-    {"ladder/bdf2-1-480s/turn/long-low", kBdf2Jitter},
+constexpr std::array<KnownFailure, 7> kKnown{{
     {"ladder/linearized-euler-1-20s/turn/long-low", kTangled},
     {"paper/stiff-1e3/ours/long-low", kStiff},
     {"pace/frames/jump_spin/long-low/0", kChatter},
