@@ -291,6 +291,7 @@ bool updateSticking(const FrictionLaw& law, const Vec3& reaction, const Vec3& ve
   const Vec3 tangential = reaction - contact.pressure * contact.normal;
   if (!contact.grip.isZero() || tangential.norm() <= law.coefficient * contact.pressure) return false;
   contact.sticks = false;
+  contact.pressure = std::min(contact.pressure, pressed);
   contact.grip = tangential.normalized();
   return true;
 }

@@ -77,14 +77,17 @@ TEST(Friction, ThatTurnsAVertexBackHoldsItInstead) {
 
 TEST(Friction, HoldsWithinItsConeAndLetsGoBeyond) {
   const sim::FrictionLaw law{0.3, 0.01, 1e-4};
-  Contact held = sliding(0);
+  Contact held = sliding(1.5);
   held.grip.setZero();
   held.sticks = true;
   EXPECT_FALSE(sim::updateSticking(law, Vec3(0.59, 2, 0), Vec3::Zero(), held));
   EXPECT_TRUE(held.sticks);
+  EXPECT_EQ(held.pressure, 2);
+  held.pressure = 1.5;
   EXPECT_TRUE(sim::updateSticking(law, Vec3(0.61, 2, 0), Vec3::Zero(), held));
   EXPECT_FALSE(held.sticks);
   EXPECT_NEAR((held.grip - Vec3::UnitX()).norm(), 0, 1e-12);
+  EXPECT_EQ(held.pressure, 1.5) << "sticking presses harder than sliding will";
 }
 
 TEST(Friction, HoldsBelowTheFrictionAngleAndSlidesAboveItAtCoulombsRate) {
