@@ -10,8 +10,10 @@
 
 // Kernels are compiled for several instruction sets, and the widest that the processor has is picked when the program
 // starts. Sanitizers run the resolvers too early, other compilers and processors do not know them: these get the plain
-// code. All that a kernel calls must be inlined into it, else it would be compiled for the smallest set.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+// code. All that a kernel calls must be inlined into it, else it would be compiled for the smallest set. A test that
+// wants one set says so by defining the macro itself.
+#if defined(HAIRMESH_CLONES)
+#elif defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
     defined(__OPTIMIZE__)
 #define HAIRMESH_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else

@@ -12,6 +12,7 @@
 namespace sim {
 namespace {
 
+constexpr int kLookAgain = 16;  // iterations, after which rounding has left something along the deflated directions
 constexpr double kEven = 0.5;  // gains that fall by at least so much an iteration foretell the next ones
 
 template <class T>
@@ -123,15 +124,18 @@ SolveReport solveModifiedPcg(const Operator& a, std::span<const V3<typename Oper
     a(d, q);
     const double curvature = innerProduct<T>(d, q);
     if (!(curvature > 0)) break;  // rounding has eaten the direction, or a value is not finite
-    const double step = scratch.square / curvature, before = scratch.square;
+    // d . r, which without rounding were the square: what rounding leaves in r along the deflated directions counts in
+    // the one and not in the other, and steps by the square blew up in single precision.
+    const double step = innerProduct<T>(d, r) / curvature, before = scratch.square;
     const T alpha = static_cast<T>(step);
     addScaled<T>(alpha, d, x);
     addScaled<T>(-alpha, q, r);
     preconditioned = false;
-    countGain(step * before, scratch);
+    countGain(step * step * curvature, scratch);
     ++report.iterations;
     report.converged = foreseenEnough();
     if (report.converged) break;
+    if (report.iterations % kLookAgain == 0) lookAlong<T>(scratch.deflation, x, r);
     precondition();
     scaleAndAdd<T>(static_cast<T>(scratch.square / before), z, d);
     deflate<T>(scratch.deflation, z, d);
