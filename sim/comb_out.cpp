@@ -30,11 +30,13 @@ double cosineAt(const int (&segment)[3], const std::vector<Vec3>& x) {
   return lengths > 0 ? lower.dot(upper) / lengths : 0;
 }
 
-void begin(Tangles::Column& column) {
-  if (column.combed >= 0 || column.wait > 0) return;
+// Returns whether it does: one that is being combed, or has to wait, goes on with that.
+bool begin(Tangles::Column& column) {
+  if (column.combed >= 0 || column.wait > 0) return false;
   column.combed = 0;
   column.patience = std::min(kMostPatience, std::max(kFirstPatience, 2 * column.patience));
   column.wait = kCombing + column.patience;
+  return true;
 }
 
 void look(const HairMesh& mesh, const HairState& state, double seconds, Tangles& tangles) {
@@ -54,7 +56,10 @@ void look(const HairMesh& mesh, const HairState& state, double seconds, Tangles&
     if (std::any_of(vertices.begin(), vertices.end(), [&](int v) { return tangles.touched[v] != 0; })) return;
     for (const int v : vertices) {
       Tangles::Column& column = tangles.columns[mesh.column_of[v]];
-      if (again || column.patience == 0) begin(column);
+      if ((!again && column.patience > 0) || !begin(column)) continue;
+      const int c = mesh.column_of[v];
+      for (int i = mesh.shape.column_first[c]; i < mesh.shape.column_first[c + 1]; ++i)
+        tangles.target[i] = mesh.shape.positions[i];
     }
   };
   const auto still = [&](int v) {
@@ -91,6 +96,19 @@ Tangles::Tangles(const HairMesh& mesh) {
   touched.resize(mesh.vertexCount());
   for (int c = 0; c < mesh.columnCount(); ++c) rest_roots.push_back(mesh.shape.positions[mesh.shape.column_first[c]]);
   roots_before = roots_now = rest_roots;
+  target = mesh.shape.positions;
+}
+
+void leadTo(const HairMesh& mesh, const HairState& there, Tangles& tangles) {
+  for (int c = 0; c < mesh.columnCount(); ++c) tangles.roots_now[c] = there.positions[mesh.shape.column_first[c]];
+  const Eigen::Isometry3d home = rigidMotion(tangles.rest_roots, tangles.roots_now).inverse();
+  for (int c = 0; c < mesh.columnCount(); ++c) {
+    if (!begin(tangles.columns[c])) continue;
+    tangles.columns[c].upright = 0;
+    ++tangles.combing;
+    for (int i = mesh.shape.column_first[c]; i < mesh.shape.column_first[c + 1]; ++i)
+      tangles.target[i] = home * there.positions[i];
+  }
 }
 
 int combOut(const CombedStep& step, Tangles& tangles, HairState& state) {
@@ -115,7 +133,7 @@ int combOut(const CombedStep& step, Tangles& tangles, HairState& state) {
     const bool arrives = column.combed + step.dt > kCombing - kSoon;
     const double share = arrives ? 0 : left(column.combed + step.dt) / left(column.combed);
     for (int i = mesh.shape.column_first[c] + 1; i < mesh.shape.column_first[c + 1]; ++i) {
-      const Vec3& rest = mesh.shape.positions[i];
+      const Vec3& rest = tangles.target[i];
       state.positions[i] = now * (rest + share * (before * step.start[i] - rest));
       state.velocities[i] = (state.positions[i] - step.start[i]) / step.dt;
     }

@@ -33,6 +33,7 @@ struct Tangles {
   std::vector<double> folded;                             // s that the column has been folded back at each vertex
   std::vector<char> touched;                              // by a body, per vertex
   std::vector<Vec3> rest_roots, roots_before, roots_now;  // m, one per column
+  std::vector<Vec3> target;                               // m, seen from the head: where what is combed is led
   double since_look = 0;                                  // s
   int combing = 0;                                        // columns
 };
@@ -46,5 +47,8 @@ struct CombedStep {
 
 // Looks for tangles a few times a second, and moves the columns that are being combed. Returns how many these are.
 int combOut(const CombedStep& step, Tangles& tangles, HairState& state);
+
+// Has every column led to where `there` has it, over the next steps; those that are being combed go on.
+void leadTo(const HairMesh& mesh, const HairState& there, Tangles& tangles);
 
 }  // namespace sim

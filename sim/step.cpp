@@ -9,6 +9,7 @@
 #include "sim/forces/material.h"
 #include "sim/implicit_solve.h"
 #include "sim/position_correction.h"
+#include "sim/rest_check.h"
 #include "sim/self_contact.h"
 
 namespace sim {
@@ -50,11 +51,12 @@ struct StepContext::Parts {
   GoodState good;  // the last step's end
   EnergyGuard energy_guard;
   Tangles tangles;
+  RestCheck rest_check;
   PositionCorrection correction;
   std::optional<SelfContact> self_contact;  // made when first asked for
 
   Parts(const HairMesh& m, double (*c)())
-      : mesh(&m), clock{c}, pattern(systemPattern(m)), material(m, pattern), tangles(m), correction(m) {
+      : mesh(&m), clock{c}, pattern(systemPattern(m)), material(m, pattern), tangles(m), rest_check(m), correction(m) {
     for (auto* array : {&x_hat, &v_hat, &start_positions, &start_velocities, &limited_velocities})
       array->resize(m.vertexCount());
   }
@@ -243,6 +245,42 @@ void keepOutside(const CorrectedStep& step, const TakenStep* taken, Parts& parts
   state.velocities = parts.limited_velocities;
 }
 
+// Kinetic, elastic and gravitational energy, and that of the wind's push on hair that does not move (J).
+double energyOf(const SimParams& params, const Vec3& wind, const HairState& state, Parts& parts) {
+  parts.plain_positions.resize(state.positions.size());
+  double energy = 0;
+  for (std::size_t i = 0; i < state.positions.size(); ++i) {
+    const Vec3 &x = state.positions[i], &v = state.velocities[i];
+    parts.plain_positions[i] = {x.x(), x.y(), x.z()};
+    const double specific = 0.5 * v.squaredNorm() + params.gravity * x.y() - params.air_drag * wind.dot(x);
+    energy += params.density * parts.mesh->vertex_volume[i] * specific;
+  }
+  return energy + evaluate<double>(parts.material.model, parts.plain_positions, {});
+}
+
+// Hair that hangs still in another shape than its own is led home.
+void checkRest(const SimParams& params, const StepInput& input, double dt, Parts& parts, const HairState& state,
+               StepReport& report) {
+  const HairMesh& mesh = *parts.mesh;
+  RestCheck& check = parts.rest_check;
+  if (!watchRest(mesh, state, dt, parts.tangles, check)) return;
+  HairState& twin = check.twin;
+  parts.start_positions = twin.positions;
+  parts.start_velocities = twin.velocities;
+  const StepBase base = integratorBase(params, input, dt, twin, parts);
+  rootsFollowScalp(input, base, mesh, twin);
+  StepReport unseen;
+  solveVelocities(params, base, parts, twin, unseen);
+  integratePositions(input, base, dt, mesh, parts, twin);
+  limitEnergy(takenStep(params, base, dt, parts), parts.energy_guard, twin);
+  const auto energy = [&](const HairState& one) { return energyOf(params, base.wind, one, parts); };
+  double weight = 0;  // N
+  for (const double share : mesh.vertex_volume) weight += 9.81 * params.density * share;
+  judgeRest(mesh, state, weight * mesh.hair_length, energy, parts.tangles, check);
+  for (const double seconds : unseen.seconds) report.seconds[kStageOther] += seconds;
+  parts.clock.spent(kStageOther, report);
+}
+
 }  // namespace
 
 StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInput& given, double dt,
@@ -278,23 +316,17 @@ StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInpu
     keepOutside(corrected, bounded ? &taken : nullptr, parts, state, report);
     parts.clock.spent(kStageCollision, report);
   }
+  if (bounded && params.volume > 0) checkRest(params, input, dt, parts, state, report);
   parts.good.positions = state.positions;
   parts.good.velocities = state.velocities;
   report.contacts = static_cast<int>(state.contacts.size());
   return report;
 }
 
-double mechanicalEnergy(const HairMesh& mesh, const SimParams& params, StepContext& context, const HairState& state) {
+double mechanicalEnergy(const HairMesh&, const SimParams& params, StepContext& context, const HairState& state) {
   Parts& parts = context.parts();
   refreshModel(params, parts);
-  parts.plain_positions.resize(state.positions.size());
-  double energy = 0;
-  for (std::size_t i = 0; i < state.positions.size(); ++i) {
-    const Vec3 &x = state.positions[i], &v = state.velocities[i];
-    parts.plain_positions[i] = {x.x(), x.y(), x.z()};
-    energy += params.density * mesh.vertex_volume[i] * (0.5 * v.squaredNorm() + params.gravity * x.y());
-  }
-  return energy + evaluate<double>(parts.material.model, parts.plain_positions, {});
+  return energyOf(params, Vec3::Zero(), state, parts);
 }
 
 HairState restState(const HairMesh& mesh, const Eigen::Isometry3d& head_to_world) {
