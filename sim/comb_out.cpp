@@ -16,7 +16,8 @@ constexpr double kFolded = -0.5;        // cosine between a column's segments, w
 constexpr double kCombing = 0.4;        // s
 constexpr double kSoon = 1e-3;          // s before the end that count as the end
 constexpr double kFirstPatience = 0.5;  // s
-constexpr double kMostPatience = 60;    // s
+constexpr double kMostPatience = 600;   // s
+constexpr double kPatienceGrows = 4;    // times: a storm may hold hair turned over for good, and is not to be combed against
 constexpr double kForgiven = 10;        // s upright after which a column's patience begins anew
 
 double volumeOf(const CornerTet& tet, const std::vector<Vec3>& x) {
@@ -34,7 +35,7 @@ double cosineAt(const int (&segment)[3], const std::vector<Vec3>& x) {
 bool begin(Tangles::Column& column) {
   if (column.combed >= 0 || column.wait > 0) return false;
   column.combed = 0;
-  column.patience = std::min(kMostPatience, std::max(kFirstPatience, 2 * column.patience));
+  column.patience = std::min(kMostPatience, std::max(kFirstPatience, kPatienceGrows * column.patience));
   column.wait = kCombing + column.patience;
   return true;
 }
@@ -103,9 +104,9 @@ void leadTo(const HairMesh& mesh, const HairState& there, Tangles& tangles) {
   for (int c = 0; c < mesh.columnCount(); ++c) tangles.roots_now[c] = there.positions[mesh.shape.column_first[c]];
   const Eigen::Isometry3d home = rigidMotion(tangles.rest_roots, tangles.roots_now).inverse();
   for (int c = 0; c < mesh.columnCount(); ++c) {
-    if (!begin(tangles.columns[c])) continue;
-    tangles.columns[c].upright = 0;
-    ++tangles.combing;
+    Tangles::Column& column = tangles.columns[c];
+    if (column.combed < 0) ++tangles.combing;
+    column.combed = 0;
     for (int i = mesh.shape.column_first[c]; i < mesh.shape.column_first[c + 1]; ++i)
       tangles.target[i] = home * there.positions[i];
   }
@@ -115,7 +116,7 @@ int combOut(const CombedStep& step, Tangles& tangles, HairState& state) {
   const HairMesh& mesh = step.mesh;
   tangles.since_look += step.dt;
   if (tangles.since_look >= kLookEvery) {
-    look(mesh, state, tangles.since_look, tangles);
+    if (step.looks) look(mesh, state, tangles.since_look, tangles);
     tangles.since_look = 0;
     tangles.combing = static_cast<int>(
         std::count_if(tangles.columns.begin(), tangles.columns.end(), [](const auto& c) { return c.combed >= 0; }));

@@ -12,10 +12,13 @@ constexpr double kStill = 0.02;        // m/s: slower hair hangs still, unless i
 constexpr double kOnItsWay = 10;       // s, would in so long go as far as the twin is off
 constexpr double kStillFor = 0.5;      // s
 constexpr double kTwinStill = 5e-3;    // m/s
-constexpr double kMostSettling = 5;    // s, after which a twin that goes on swinging tells nothing
+constexpr double kMostSettling = 20;   // s, after which a twin that goes on swinging tells nothing
 constexpr double kElsewhere = 0.006;   // of the hair's length: what is nearer to its twin is at home
 constexpr double kHigher = 5e-5;       // of the hair's weight times its length
 constexpr double kMoving = 3 * kStill;  // m/s: hair so fast is on its way to another rest
+
+constexpr double kFirstPatience = 1, kMostPatience = 60;  // s between one time that the hair is led and the next
+constexpr double kPatienceGrows = 2;
 
 double fastest(const HairState& state) {
   double most = 0;
@@ -44,8 +47,9 @@ RestCheck::RestCheck(const HairMesh& mesh) {
 
 bool watchRest(const HairMesh& mesh, const HairState& state, double dt, const Tangles& tangles, RestCheck& check) {
   const double speed = fastest(state);
+  check.wait = std::max(0.0, check.wait - dt);
   if (speed > kMoving) check.judged = false;
-  if (check.judged) return false;
+  if (check.judged || check.wait > 0) return false;
   if (!(speed < kStill) || !state.contacts.empty() || tangles.combing > 0) {
     check.still = 0;
     check.settling = -1;
@@ -69,6 +73,8 @@ void judgeRest(const HairMesh& mesh, const HairState& state, double scale,
   if (off <= kElsewhere * mesh.hair_length) return;
   if (!(energy(state) - energy(check.twin) > kHigher * scale)) return;
   leadTo(mesh, check.twin, tangles);
+  check.patience = std::min(kMostPatience, std::max(kFirstPatience, kPatienceGrows * check.patience));
+  check.wait = check.patience;
 }
 
 }  // namespace sim

@@ -26,6 +26,7 @@ struct RestCheck {
   double still = 0;       // s that the hair has hung still
   double settling = -1;   // s since the twin left the rest shape; negative: there is none
   bool judged = false;    // nothing more to find out before the hair has moved
+  double wait = 0, patience = 0;  // s before it may be led again, and after the next time
   std::vector<Vec3> roots;  // m, scratch
 };
 
