@@ -16,7 +16,8 @@ constexpr double kFolded = -0.5;        // cosine between a column's segments, w
 constexpr double kCombing = 0.4;        // s
 constexpr double kSoon = 1e-3;          // s before the end that count as the end
 constexpr double kFirstPatience = 0.5;  // s
-constexpr double kMostPatience = 60;    // s
+constexpr double kMostPatience = 600;   // s
+constexpr double kPatienceGrows = 4;    // times: a storm may hold hair turned over for good, and is not to be combed against
 constexpr double kForgiven = 10;        // s upright after which a column's patience begins anew
 
 double volumeOf(const CornerTet& tet, const std::vector<Vec3>& x) {
@@ -30,11 +31,13 @@ double cosineAt(const int (&segment)[3], const std::vector<Vec3>& x) {
   return lengths > 0 ? lower.dot(upper) / lengths : 0;
 }
 
-void begin(Tangles::Column& column) {
-  if (column.combed >= 0 || column.wait > 0) return;
+// Returns whether it does: one that is being combed, or has to wait, goes on with that.
+bool begin(Tangles::Column& column) {
+  if (column.combed >= 0 || column.wait > 0) return false;
   column.combed = 0;
-  column.patience = std::min(kMostPatience, std::max(kFirstPatience, 2 * column.patience));
+  column.patience = std::min(kMostPatience, std::max(kFirstPatience, kPatienceGrows * column.patience));
   column.wait = kCombing + column.patience;
+  return true;
 }
 
 void look(const HairMesh& mesh, const HairState& state, double seconds, Tangles& tangles) {
@@ -54,7 +57,10 @@ void look(const HairMesh& mesh, const HairState& state, double seconds, Tangles&
     if (std::any_of(vertices.begin(), vertices.end(), [&](int v) { return tangles.touched[v] != 0; })) return;
     for (const int v : vertices) {
       Tangles::Column& column = tangles.columns[mesh.column_of[v]];
-      if (again || column.patience == 0) begin(column);
+      if ((!again && column.patience > 0) || !begin(column)) continue;
+      const int c = mesh.column_of[v];
+      for (int i = mesh.shape.column_first[c]; i < mesh.shape.column_first[c + 1]; ++i)
+        tangles.target[i] = mesh.shape.positions[i];
     }
   };
   const auto still = [&](int v) {
@@ -91,13 +97,26 @@ Tangles::Tangles(const HairMesh& mesh) {
   touched.resize(mesh.vertexCount());
   for (int c = 0; c < mesh.columnCount(); ++c) rest_roots.push_back(mesh.shape.positions[mesh.shape.column_first[c]]);
   roots_before = roots_now = rest_roots;
+  target = mesh.shape.positions;
+}
+
+void leadTo(const HairMesh& mesh, const HairState& there, Tangles& tangles) {
+  for (int c = 0; c < mesh.columnCount(); ++c) tangles.roots_now[c] = there.positions[mesh.shape.column_first[c]];
+  const Eigen::Isometry3d home = rigidMotion(tangles.rest_roots, tangles.roots_now).inverse();
+  for (int c = 0; c < mesh.columnCount(); ++c) {
+    Tangles::Column& column = tangles.columns[c];
+    if (column.combed < 0) ++tangles.combing;
+    column.combed = 0;
+    for (int i = mesh.shape.column_first[c]; i < mesh.shape.column_first[c + 1]; ++i)
+      tangles.target[i] = home * there.positions[i];
+  }
 }
 
 int combOut(const CombedStep& step, Tangles& tangles, HairState& state) {
   const HairMesh& mesh = step.mesh;
   tangles.since_look += step.dt;
   if (tangles.since_look >= kLookEvery) {
-    look(mesh, state, tangles.since_look, tangles);
+    if (step.looks) look(mesh, state, tangles.since_look, tangles);
     tangles.since_look = 0;
     tangles.combing = static_cast<int>(
         std::count_if(tangles.columns.begin(), tangles.columns.end(), [](const auto& c) { return c.combed >= 0; }));
@@ -115,7 +134,7 @@ int combOut(const CombedStep& step, Tangles& tangles, HairState& state) {
     const bool arrives = column.combed + step.dt > kCombing - kSoon;
     const double share = arrives ? 0 : left(column.combed + step.dt) / left(column.combed);
     for (int i = mesh.shape.column_first[c] + 1; i < mesh.shape.column_first[c + 1]; ++i) {
-      const Vec3& rest = mesh.shape.positions[i];
+      const Vec3& rest = tangles.target[i];
       state.positions[i] = now * (rest + share * (before * step.start[i] - rest));
       state.velocities[i] = (state.positions[i] - step.start[i]) / step.dt;
     }

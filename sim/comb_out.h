@@ -5,7 +5,7 @@
 // volume force's included, do not bring it home. So where a corner tetrahedron has been turned over for kTurnedFor, or
 // a column folded back on itself, the columns concerned are led, over kCombing and along straight lines seen from the
 // head, to where they rest. What bodies are in the way still pushes them out, and hair that a body holds turned over is
-// left as it is. Hair that turns over again where it was combed is left in peace for twice as long each time.
+// left as it is. Hair that turns over again where it was combed is left in peace for four times as long each time.
 #pragma once
 
 #include <span>
@@ -33,6 +33,7 @@ struct Tangles {
   std::vector<double> folded;                             // s that the column has been folded back at each vertex
   std::vector<char> touched;                              // by a body, per vertex
   std::vector<Vec3> rest_roots, roots_before, roots_now;  // m, one per column
+  std::vector<Vec3> target;                               // m, seen from the head: where what is combed is led
   double since_look = 0;                                  // s
   int combing = 0;                                        // columns
 };
@@ -41,10 +42,14 @@ struct Tangles {
 struct CombedStep {
   const HairMesh& mesh;
   std::span<const Vec3> start;
-  double dt;  // s
+  double dt;          // s
+  bool looks = true;  // for new tangles, too
 };
 
 // Looks for tangles a few times a second, and moves the columns that are being combed. Returns how many these are.
 int combOut(const CombedStep& step, Tangles& tangles, HairState& state);
+
+// Has every column led to where `there` has it, over the next steps.
+void leadTo(const HairMesh& mesh, const HairState& there, Tangles& tangles);
 
 }  // namespace sim

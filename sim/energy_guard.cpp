@@ -120,8 +120,9 @@ bool bodiesStandStill(const TakenStep& step, const Colliders& colliders, const E
 
 }  // namespace
 
-double limitEnergy(const TakenStep& step, EnergyGuard& scratch, HairState& state) {
-  if (judge(step, state) != Motion::kViolent) return 1;
+double limitEnergy(const TakenStep& step, bool solved, EnergyGuard& scratch, HairState& state) {
+  const Motion motion = judge(step, state);
+  if (motion == Motion::kNotFinite || (motion == Motion::kCalm && solved)) return 1;
   carry(step, state, scratch);
   return bringBelowBound(step, kHalvings, scratch, state);
 }

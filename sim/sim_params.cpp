@@ -125,18 +125,20 @@ std::vector<ParamField> makeTable() {
       choice<&P::solver>("solver", "Numerics", kSolvers, "How the linear systems are solved; paper is its setting."),
       choice<&P::precision>("precision", "Numerics", kPrecisions,
                             "Arithmetic of the linear solver; mixed: float, the rest factor in 16 bits."),
-      field<&P::tolerance>("tolerance", "Numerics", "", {1e-12, 0.5, kLog},
+      // What a solve may leave undone comes again every step, as jitter: the upper ends are where that begins to show
+      // (0.01 mm a step, 0.1 m/s^2, 1 cm/s). Beyond them hair never came to rest.
+      field<&P::tolerance>("tolerance", "Numerics", "", {1e-12, 0.1, kLog},
                            "Relative residual at which the linear solver stops."),
       field<&P::max_iterations>("max_iterations", "Numerics", "", {10, 5000, kLog},
                                 "Iterations after which the linear solver stops in any case."),
       field<&P::acceleration_tolerance>(
-          "acceleration_tolerance", "Numerics", "m/s^2", {1e-9, 10, kLog},
+          "acceleration_tolerance", "Numerics", "m/s^2", {1e-9, 0.1, kLog},
           "A linear solve also stops when no vertex's residual, as an acceleration, exceeds this."),
-      field<&P::displacement_tolerance>("displacement_tolerance", "Numerics", "m", {1e-9, 0.001, kLog},
+      field<&P::displacement_tolerance>("displacement_tolerance", "Numerics", "m", {1e-9, 1e-5, kLog},
                                         "A linear solve also stops when a factor (warped, direct) estimates that no "
                                         "vertex would end farther off than this; in steps below 1/60 s, less by the "
                                         "square of their length."),
-      field<&P::newton_tolerance>("newton_tolerance", "Numerics", "m/s", {1e-12, 1, kLog},
+      field<&P::newton_tolerance>("newton_tolerance", "Numerics", "m/s", {1e-12, 0.01, kLog},
                                   "The nonlinear integrators stop when no velocity changes by more than this."),
       field<&P::newton_iterations>("newton_iterations", "Numerics", "", {1, 50},
                                    "Newton iterations of the nonlinear integrators."),

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <optional>
 
+#include "sim/bearable.h"
 #include "sim/comb_out.h"
 #include "sim/energy_guard.h"
 #include "sim/forces/material.h"
 #include "sim/implicit_solve.h"
 #include "sim/position_correction.h"
+#include "sim/rest_check.h"
 #include "sim/self_contact.h"
 
 namespace sim {
@@ -16,6 +18,8 @@ namespace sim {
 namespace {
 
 constexpr int kBalanceSlices = 40;  // steps over which the balance of gravity is solved for anew
+constexpr double kAtOnce = 1e6;     // m/s
+constexpr double kStorm = 5;        // m/s^2 that wind presses hair with
 
 // The parameters that stiffnesses and rest shifts depend on.
 bool sameMaterial(const SimParams& a, const SimParams& b) {
@@ -38,7 +42,7 @@ struct StepContext::Parts {
   BlockPattern pattern;
   Material material;
   SimParams params;
-  bool has_model = false, gradual = false;
+  bool has_model = false, gradual = false, as_published = false;
   std::optional<ImplicitSolver<float>> single_solver;
   std::optional<ImplicitSolver<double>> double_solver;
   // Scratch of a step.
@@ -50,11 +54,12 @@ struct StepContext::Parts {
   GoodState good;  // the last step's end
   EnergyGuard energy_guard;
   Tangles tangles;
+  RestCheck rest_check;
   PositionCorrection correction;
   std::optional<SelfContact> self_contact;  // made when first asked for
 
   Parts(const HairMesh& m, double (*c)())
-      : mesh(&m), clock{c}, pattern(systemPattern(m)), material(m, pattern), tangles(m), correction(m) {
+      : mesh(&m), clock{c}, pattern(systemPattern(m)), material(m, pattern), tangles(m), rest_check(m), correction(m) {
     for (auto* array : {&x_hat, &v_hat, &start_positions, &start_velocities, &limited_velocities})
       array->resize(m.vertexCount());
   }
@@ -67,6 +72,10 @@ StepContext& StepContext::operator=(StepContext&&) noexcept = default;
 
 void StepContext::refreshGradually(bool on) {
   parts_->gradual = on;
+}
+
+void StepContext::leaveAsPublished(bool on) {
+  parts_->as_published = on;
 }
 
 const char* stageName(Stage stage) {
@@ -223,9 +232,12 @@ void partBundles(const CorrectedStep& step, Parts& parts, HairState& state, Step
 
 // No step makes energy out of nothing, and no hair stays turned over.
 void keepWithinBounds(const TakenStep& taken, Parts& parts, HairState& state, StepReport& report) {
-  limitEnergy(taken, parts.energy_guard, state);
+  limitEnergy(taken, report.converged, parts.energy_guard, state);
   // Loose particles have no shape to be led back to.
-  if (taken.params.volume > 0) report.combed = combOut({taken.mesh, taken.positions, taken.dt}, parts.tangles, state);
+  if (taken.params.volume <= 0) return;
+  // In a storm the rest shape is not where hair belongs: combed towards it, it would be thrown about for ever.
+  const bool looks = blowOf(taken.params) < kStorm;
+  report.combed = combOut({taken.mesh, taken.positions, taken.dt, looks}, parts.tangles, state);
 }
 
 // Corrects what is inside of bodies, as far as the energy that the step began with pays for it (taken: null where it
@@ -243,16 +255,55 @@ void keepOutside(const CorrectedStep& step, const TakenStep* taken, Parts& parts
   state.velocities = parts.limited_velocities;
 }
 
+// Kinetic, elastic and gravitational energy, and that of the wind's push on hair that does not move (J).
+double energyOf(const SimParams& params, const Vec3& wind, const HairState& state, Parts& parts) {
+  parts.plain_positions.resize(state.positions.size());
+  double energy = 0;
+  for (std::size_t i = 0; i < state.positions.size(); ++i) {
+    const Vec3 &x = state.positions[i], &v = state.velocities[i];
+    parts.plain_positions[i] = {x.x(), x.y(), x.z()};
+    const double specific = 0.5 * v.squaredNorm() + params.gravity * x.y() - params.air_drag * wind.dot(x);
+    energy += params.density * parts.mesh->vertex_volume[i] * specific;
+  }
+  return energy + evaluate<double>(parts.material.model, parts.plain_positions, {});
+}
+
+// Hair that hangs still in another shape than its own is led home.
+void checkRest(const SimParams& params, const StepInput& input, double dt, Parts& parts, const HairState& state,
+               StepReport& report) {
+  const HairMesh& mesh = *parts.mesh;
+  RestCheck& check = parts.rest_check;
+  if (!watchRest(mesh, state, dt, parts.tangles, check)) return;
+  HairState& twin = check.twin;
+  parts.start_positions = twin.positions;
+  parts.start_velocities = twin.velocities;
+  const StepBase base = integratorBase(params, input, dt, twin, parts);
+  rootsFollowScalp(input, base, mesh, twin);
+  StepReport unseen;
+  solveVelocities(params, base, parts, twin, unseen);
+  integratePositions(input, base, dt, mesh, parts, twin);
+  limitEnergy(takenStep(params, base, dt, parts), unseen.converged, parts.energy_guard, twin);
+  const auto energy = [&](const HairState& one) { return energyOf(params, base.wind, one, parts); };
+  double weight = 0;  // N
+  for (const double share : mesh.vertex_volume) weight += 9.81 * params.density * share;
+  judgeRest(mesh, state, weight * mesh.hair_length, energy, parts.tangles, check);
+  for (const double seconds : unseen.seconds) report.seconds[kStageOther] += seconds;
+  parts.clock.spent(kStageOther, report);
+}
+
 }  // namespace
 
-StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInput& given, double dt,
+StepReport advance(const HairMesh& mesh, const SimParams& asked, const StepInput& given, double dt,
                    StepContext& context, HairState& state) {
   Parts& parts = context.parts();
+  SimParams params = bearable(mesh, asked);
   StepReport report;
   parts.clock.start();
   refreshModel(params, parts);
   guardGiven(given, parts, state, report);
   const StepInput input = carryOverJump(params, given, dt, parts, state, report);
+  // Where the jump has put the hair into a body, nobody has seen it go there: it is out at once.
+  if (report.carried) params.max_depenetration = kAtOnce;
   parts.start_positions = state.positions;
   parts.start_velocities = state.velocities;
   const Colliders colliders = collidersOf(params, input);
@@ -263,7 +314,7 @@ StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInpu
 
   solveVelocities(params, base, parts, state, report);
   integratePositions(input, base, dt, mesh, parts, state);
-  const bool bounded = params.solver != Solver::kPaper;  // the paper's setting is what the paper says
+  const bool bounded = params.solver != Solver::kPaper || !parts.as_published;
   const TakenStep taken = takenStep(params, base, dt, parts);
   if (bounded) keepWithinBounds(taken, parts, state, report);
   guardMade(parts, input, state, report);
@@ -276,25 +327,21 @@ StepReport advance(const HairMesh& mesh, const SimParams& params, const StepInpu
   }
   if (params.collide) {
     keepOutside(corrected, bounded ? &taken : nullptr, parts, state, report);
+    if (bounded) limitSpeed(mesh, state);
     parts.clock.spent(kStageCollision, report);
   }
+  if (bounded && params.volume > 0) checkRest(params, input, dt, parts, state, report);
   parts.good.positions = state.positions;
   parts.good.velocities = state.velocities;
   report.contacts = static_cast<int>(state.contacts.size());
   return report;
 }
 
-double mechanicalEnergy(const HairMesh& mesh, const SimParams& params, StepContext& context, const HairState& state) {
+double mechanicalEnergy(const HairMesh& mesh, const SimParams& asked, StepContext& context, const HairState& state) {
   Parts& parts = context.parts();
+  const SimParams params = bearable(mesh, asked);
   refreshModel(params, parts);
-  parts.plain_positions.resize(state.positions.size());
-  double energy = 0;
-  for (std::size_t i = 0; i < state.positions.size(); ++i) {
-    const Vec3 &x = state.positions[i], &v = state.velocities[i];
-    parts.plain_positions[i] = {x.x(), x.y(), x.z()};
-    energy += params.density * mesh.vertex_volume[i] * (0.5 * v.squaredNorm() + params.gravity * x.y());
-  }
-  return energy + evaluate<double>(parts.material.model, parts.plain_positions, {});
+  return energyOf(params, Vec3::Zero(), state, parts);
 }
 
 HairState restState(const HairMesh& mesh, const Eigen::Isometry3d& head_to_world) {

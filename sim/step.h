@@ -58,6 +58,10 @@ class StepContext {
   // takes the new values over depends on counted work alone. Off at first.
   void refreshGradually(bool on);
 
+  // With Solver::kPaper: steps as published, without the energy guard, the limits of corrections, combing out and the
+  // check of the rest shape. For comparisons; off at first.
+  void leaveAsPublished(bool on);
+
   struct Parts;
   Parts& parts() { return *parts_; }
 

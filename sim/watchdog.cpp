@@ -10,6 +10,7 @@ namespace sim {
 namespace {
 
 constexpr double kFastest = 500;  // m/s against the root; beyond it a velocity is absurd
+constexpr double kFastestPushed = 100;  // m/s against the root
 constexpr double kLengths = 4;    // hair lengths and
 constexpr double kFarther = 1;    // m from the root: beyond both together a position is absurd
 constexpr double kKeptVelocity = 0.5;
@@ -74,6 +75,15 @@ Ailment examine(const HairMesh& mesh, const HairState& state, int vertex) {
   const double reach = kLengths * mesh.hair_length + kFarther;
   if (arm.squaredNorm() > reach * reach) return Ailment::kFarAway;
   return speed.squaredNorm() > kFastest * kFastest ? Ailment::kTooFast : Ailment::kNone;
+}
+
+void limitSpeed(const HairMesh& mesh, HairState& state) {
+  for (int i = 0; i < mesh.vertexCount(); ++i) {
+    const Vec3& root = state.velocities[rootOf(mesh, i)];
+    const Vec3 speed = state.velocities[i] - root;
+    const double square = speed.squaredNorm();
+    if (square > kFastestPushed * kFastestPushed) state.velocities[i] = root + kFastestPushed / std::sqrt(square) * speed;
+  }
 }
 
 Eigen::Isometry3d rigidMotion(std::span<const Vec3> from, std::span<const Vec3> to) {

@@ -38,6 +38,9 @@ struct GoodState {
 // length can be thrown, a speed against the root that nothing in a scene has.
 Ailment examine(const HairMesh& mesh, const HairState& state, int vertex);
 
+// Slows what bodies have pushed nearly as fast as would be absurd, for they may be as fast as a scene has them.
+void limitSpeed(const HairMesh& mesh, HairState& state);
+
 // Rigid motion that brings the points of `from` nearest to those of `to` (least squares, Kabsch 1976); the identity
 // where a point is not finite. As many of one as of the other.
 Eigen::Isometry3d rigidMotion(std::span<const Vec3> from, std::span<const Vec3> to);

@@ -137,6 +137,7 @@ double distanceAfterMirroring(bool combed, int& columns) {
   const sim::HairMeshShape shape =
       sim::makeStyle(sim::Style::kShort, sim::Resolution::kLow, tests::analyticScalp(), tests::bodyDistance);
   Hair hair(shape, params);
+  hair.context.leaveAsPublished(true);
   const std::vector<Vec3> was = hair.state.positions;
   for (int i = 0; i < hair.mesh.vertexCount(); ++i) {
     hair.state.positions[i] = 2 * hair.roots[hair.mesh.column_of[i]] - was[i];

@@ -86,7 +86,7 @@ struct Flung {
     }
   }
   double limit() {
-    return sim::limitEnergy({hair.mesh, hair.params, model, start.positions, start.velocities, kFrame, Vec3::Zero()},
+    return sim::limitEnergy({hair.mesh, hair.params, model, start.positions, start.velocities, kFrame, Vec3::Zero()}, true,
                             scratch, hair.state);
   }
 };

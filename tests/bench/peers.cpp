@@ -52,7 +52,9 @@ Positions restAt(const sim::HairMesh& mesh, const Positions& roots) {
 class OwnHair {
  public:
   OwnHair(const sim::HairMesh& mesh, const sim::SimParams& params)
-      : mesh_(mesh), params_(params), context_(mesh), state_(sim::restState(mesh, Eigen::Isometry3d::Identity())) {}
+      : mesh_(mesh), params_(params), context_(mesh), state_(sim::restState(mesh, Eigen::Isometry3d::Identity())) {
+    context_.leaveAsPublished(true);
+  }
   void place(std::span<const sim::Vec3> positions) {
     state_.positions.assign(positions.begin(), positions.end());
     state_.velocities.assign(positions.size(), sim::Vec3::Zero());

@@ -40,6 +40,7 @@ TimedScene::TimedScene(std::string motion, sim::Style style, sim::Resolution res
   start_ = actor_.hair;
   playback_ = actor_.playback;
   actor_.context = std::make_unique<sim::StepContext>(mesh(), cpuSeconds);
+  actor_.context->leaveAsPublished(true);
   plain_ = std::make_unique<oracle::PlainContext>(mesh(), cpuSeconds);
 }
 

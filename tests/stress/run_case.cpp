@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "app/fixed_clock.h"
+#include "sim/bearable.h"
 #include "sim/contact.h"
 #include "tests/stress/start_states.h"
 #include "tests/stress/surroundings.h"
@@ -20,6 +21,7 @@ constexpr double kShortestStep = 1e-3, kLongestStep = 0.5;  // s, of random pace
 constexpr double kFaultEvery = 0.1;                         // s
 constexpr double kIntruderThere = 0.3;                      // s, when a body that appears has done so
 constexpr double kAtRest = 5e-3;                            // m/s
+constexpr double kRested = 1;                               // s at rest elsewhere, before that counts
 constexpr double kWindow = 2, kHurry = 5;                   // s, and times its pace: see Pace of return
 constexpr double kSmallestEnergy = 0.05;                    // of the hair's weight times its length
 
@@ -67,6 +69,7 @@ struct Run {
     for (const auto& [name, value] : c.params) sim::findParam(name)->set(params, value);
     params.time_step = c.step;
     params.collide = params.collide && c.collide;  // a row may turn it off too
+    hair.context.leaveAsPublished(c.compared);
     hair.state = s.settled;
     applyStart(c, hair.mesh, random, hair.state);
   }
@@ -82,13 +85,30 @@ struct Run {
   }
 };
 
+sim::Vec3 windOf(const Run& run) {
+  const sim::SimParams params = sim::bearable(run.hair.mesh, run.params);
+  return {params.wind_x, params.wind_y, params.wind_z};
+}
+
+// Mechanical energy (J) with that of a steady wind, whose push on hair that does not move is a weight of its own
+// direction.
+double energyOf(const Run& run, Hair& hair) {
+  double energy = sim::mechanicalEnergy(run.hair.mesh, run.params, hair.context, hair.state);
+  const sim::Vec3 wind = windOf(run);
+  for (int i = 0; i < run.hair.mesh.vertexCount(); ++i) {
+    const double mass = run.params.density * run.hair.mesh.vertex_volume[i];
+    energy -= mass * run.params.air_drag * wind.dot(hair.state.positions[i]);
+  }
+  return energy;
+}
+
 void traceStep(const Run& run, double dt, const sim::StepReport& report, Hair& hair) {
   double fastest = 0;
   for (const sim::Vec3& v : hair.state.velocities) fastest = std::max(fastest, v.norm());
   std::printf(
       "%9.4f s  step %6.1f ms  energy %12.5e J  fastest %9.3e m/s  contacts %3d  corrected %3d  iterations %4d  combed "
       "%d%s%s\n",
-      run.around.time(), 1e3 * dt, sim::mechanicalEnergy(hair.mesh, run.params, hair.context, hair.state), fastest,
+      run.around.time(), 1e3 * dt, energyOf(run, hair), fastest,
       report.contacts, report.corrected, report.solver_iterations, report.combed,
       report.converged ? "" : " (not converged)", report.carried ? " carried" : "");
 }
@@ -170,8 +190,7 @@ void step(double dt, Run& run) {
   run.outcome.carried += report.carried;
   countWork(report, run);
   if (run.bodyWithin() && run.around.time() > kIntruderThere)
-    run.raised =
-        std::max(run.raised, sim::mechanicalEnergy(run.hair.mesh, run.params, run.hair.context, run.hair.state));
+    run.raised = std::max(run.raised, energyOf(run, run.hair));
   if (run.trace) traceStep(run, dt, report, run.hair);
   if (report.recoveries > 0 && !run.one.recovers) run.fail("watchdog: " + sim::troubleText(report.trouble));
   checkFinite(run);
@@ -249,15 +268,13 @@ double fastest(const Hair& hair) {
   return most;
 }
 
-bool hasInput(const sim::SimParams& params) {
-  return params.wind_x != 0 || params.wind_y != 0 || params.wind_z != 0;
-}
-
-// Mass times g times length (J): the scale of the energies that hair of this kind has at all.
+// Weight times length (J), or what gravity and wind together pull where that is more: the scale of the energies that
+// hair of this kind has at all.
 double weightOf(const Run& run) {
   double volume = 0;
   for (const double share : run.hair.mesh.vertex_volume) volume += share;
-  return 9.81 * run.params.density * volume * run.hair.mesh.hair_length;
+  const sim::Vec3 pull = run.params.air_drag * windOf(run) - sim::Vec3(0, run.params.gravity, 0);
+  return std::max(9.81, pull.norm()) * run.params.density * volume * run.hair.mesh.hair_length;
 }
 
 // What the motion left (J), in all and above the rest shape's, and the energy of the last step.
@@ -274,8 +291,7 @@ double liftOf(const Run& run, double dt) {
 }
 
 void checkEnergy(bool combed, double dt, EnergyWatch& watch, Run& run) {
-  if (hasInput(run.params)) return;
-  const double energy = sim::mechanicalEnergy(run.hair.mesh, run.params, run.hair.context, run.hair.state);
+  const double energy = energyOf(run, run.hair);
   // Combing is done by a hand from outside.
   if (!watch.begun || (combed && energy > watch.left)) {
     watch.begun = true;
@@ -313,11 +329,20 @@ struct Pacer {
   }
 };
 
+// Very soft hair sags into more shapes than one: another is as good a rest as the twin's where it is no higher in
+// energy.
+bool restsNoHigher(Hair& twin, const EnergyWatch& watch, Run& run) {
+  if (fastest(run.hair) > kAtRest || fastest(twin) > kAtRest) return false;
+  const double rest = energyOf(run, twin);
+  return watch.last - rest <= kEnergyTolerance * kSmallestEnergy * weightOf(run);
+}
+
 // Everything stands still: hair and twin go on until they meet. Returns whether they do.
 bool waitUntilBack(double seconds, EnergyWatch& energy, Run& run, Hair& twin) {
   const double dt = run.one.pace == Pace::kFixed ? run.one.step : sim::SimParams{}.time_step;
   const double started = run.around.time();
   Pacer pacer;
+  double resting = 0;  // s
   while (run.around.time() < started + seconds && !run.failed()) {
     run.around.pass(dt);
     const sim::StepReport report = stepHair(run.params, run, dt, run.hair);
@@ -333,17 +358,12 @@ bool waitUntilBack(double seconds, EnergyWatch& energy, Run& run, Hair& twin) {
     run.outcome.distance = worst.distance;
     run.outcome.worst_vertex = worst.vertex;
     if (run.outcome.distance < kBack) return true;
+    // Not with the body there: that holds hair up as well.
+    resting = !run.params.collide && !run.failed() && restsNoHigher(twin, energy, run) ? resting + dt : 0;
+    if (resting > kRested) return run.outcome.other_rest = true;
     if (pacer.hopeless(run, twin, dt, started + seconds - run.around.time())) return false;
   }
   return false;
-}
-
-// Very soft hair sags into more shapes than one: another is as good a rest as the twin's where it is no higher in
-// energy.
-bool restsNoHigher(Hair& twin, const EnergyWatch& watch, Run& run) {
-  if (hasInput(run.params) || fastest(run.hair) > kAtRest || fastest(twin) > kAtRest) return false;
-  const double rest = sim::mechanicalEnergy(run.hair.mesh, run.params, twin.context, twin.state);
-  return watch.last - rest <= kEnergyTolerance * kSmallestEnergy * weightOf(run);
 }
 
 void waitForRest(Run& run) {
@@ -353,23 +373,26 @@ void waitForRest(Run& run) {
     run.params = {};
     run.params.collide = run.one.collide;
   }
+  run.params.gust = 0;  // it is an input: as everything else, the wind becomes steady
   Hair twin(run.hair.mesh);
+  twin.context.leaveAsPublished(run.one.compared);
   twin.state = sim::restState(run.hair.mesh, run.around.head());
   const double stopped = run.around.time();
   EnergyWatch energy;
-  energy.rest = sim::mechanicalEnergy(run.hair.mesh, run.params, twin.context, twin.state);
+  energy.rest = energyOf(run, twin);
   bool back = waitUntilBack(run.one.rest, energy, run, twin);
   run.outcome.with_body = back;
   if (!back && !run.failed()) {
     run.params.collide = false;
     back = waitUntilBack(run.one.release, energy, run, twin);
   }
-  if (!back && !run.failed()) back = run.outcome.other_rest = restsNoHigher(twin, energy, run);
   if (back) run.outcome.back_after = run.around.time() - stopped;
   if (!back && !run.failed()) {
     run.fail(said("still %.1f %% of the hair's length from rest %.1f s after the motion stopped",
                   100 * run.outcome.distance, run.around.time() - stopped) +
-             ", vertex " + std::to_string(run.outcome.worst_vertex));
+             ", vertex " + std::to_string(run.outcome.worst_vertex) +
+             said(", fastest %.1e m/s (%.1e its twin)", fastest(run.hair), fastest(twin)) +
+             said(", energy above the twin's: %.1e of its weight times length", (energy.last - energyOf(run, twin)) / weightOf(run)));
   }
 }
 

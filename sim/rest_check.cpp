@@ -1,0 +1,80 @@
+#include "sim/rest_check.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/watchdog.h"
+
+namespace sim {
+namespace {
+
+constexpr double kStill = 0.02;        // m/s: slower hair hangs still, unless it
+constexpr double kOnItsWay = 10;       // s, would in so long go as far as the twin is off
+constexpr double kStillFor = 0.5;      // s
+constexpr double kTwinStill = 5e-3;    // m/s
+constexpr double kMostSettling = 20;   // s, after which a twin that goes on swinging tells nothing
+constexpr double kElsewhere = 0.006;   // of the hair's length: what is nearer to its twin is at home
+constexpr double kHigher = 5e-5;       // of the hair's weight times its length
+constexpr double kMoving = 3 * kStill;  // m/s: hair so fast is on its way to another rest
+
+constexpr double kFirstPatience = 1, kMostPatience = 60;  // s between one time that the hair is led and the next
+constexpr double kPatienceGrows = 2;
+
+double fastest(const HairState& state) {
+  double most = 0;
+  for (const Vec3& v : state.velocities) most = std::max(most, v.squaredNorm());
+  return std::sqrt(most);
+}
+
+void beginTwin(const HairMesh& mesh, const HairState& state, const Tangles& tangles, RestCheck& check) {
+  for (int c = 0; c < mesh.columnCount(); ++c) check.roots[c] = state.positions[mesh.shape.column_first[c]];
+  const Eigen::Isometry3d head = rigidMotion(tangles.rest_roots, check.roots);
+  for (int i = 0; i < mesh.vertexCount(); ++i) {
+    check.twin.positions[i] = mesh.isRoot(i) ? state.positions[i] : Vec3(head * mesh.shape.positions[i]);
+    check.twin.velocities[i].setZero();
+  }
+  check.twin.previous_dt = 0;
+  check.settling = 0;
+}
+
+}  // namespace
+
+RestCheck::RestCheck(const HairMesh& mesh) {
+  for (auto* array : {&twin.positions, &twin.velocities, &twin.previous_positions, &twin.previous_velocities})
+    array->resize(mesh.vertexCount());
+  roots.resize(mesh.columnCount());
+}
+
+bool watchRest(const HairMesh& mesh, const HairState& state, double dt, const Tangles& tangles, RestCheck& check) {
+  const double speed = fastest(state);
+  check.wait = std::max(0.0, check.wait - dt);
+  if (speed > kMoving) check.judged = false;
+  if (check.judged || check.wait > 0) return false;
+  if (!(speed < kStill) || !state.contacts.empty() || tangles.combing > 0) {
+    check.still = 0;
+    check.settling = -1;
+    return false;
+  }
+  check.still += dt;
+  if (check.settling < 0) beginTwin(mesh, state, tangles, check);
+  check.settling += dt;
+  return true;
+}
+
+void judgeRest(const HairMesh& mesh, const HairState& state, double scale,
+               const std::function<double(const HairState&)>& energy, Tangles& tangles, RestCheck& check) {
+  check.judged = check.settling > kMostSettling;
+  if (check.still < kStillFor || !(fastest(check.twin) < kTwinStill)) return;
+  double off = 0;
+  for (int i = 0; i < mesh.vertexCount(); ++i)
+    off = std::max(off, (state.positions[i] - check.twin.positions[i]).norm());
+  if (off > kElsewhere * mesh.hair_length && kOnItsWay * fastest(state) > off) return;
+  check.judged = true;
+  if (off <= kElsewhere * mesh.hair_length) return;
+  if (!(energy(state) - energy(check.twin) > kHigher * scale)) return;
+  leadTo(mesh, check.twin, tangles);
+  check.patience = std::min(kMostPatience, std::max(kFirstPatience, kPatienceGrows * check.patience));
+  check.wait = check.patience;
+}
+
+}  // namespace sim

@@ -1,0 +1,41 @@
+// Hair that has come to rest in another shape than its own.
+//
+// A style may have more than one shape in which its forces balance: a tip caught behind its neighbours, a lock bent the
+// other way. Nothing is turned over there and nothing folded, so combing out has nothing to see, and yet the hair hangs
+// a centimetre off for good. What tells it is energy: when hair hangs still and touches no body, a twin is put to the
+// rest shape and settles in the same air, under the same parameters and from the same roots. Where it comes to rest
+// elsewhere and lower, the hair is led there as if it were combed out. Soft hair that found a shape as low as its own,
+// or a lower one, is left in it.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "sim/comb_out.h"
+#include "sim/hair_mesh.h"
+#include "sim/hair_state.h"
+
+namespace sim {
+
+// What is known of a hair's rest from step to step: one per hair.
+struct RestCheck {
+  explicit RestCheck(const HairMesh& mesh);
+
+  HairState twin;
+  double still = 0;       // s that the hair has hung still
+  double settling = -1;   // s since the twin left the rest shape; negative: there is none
+  bool judged = false;    // nothing more to find out before the hair has moved
+  double wait = 0, patience = 0;  // s before it may be led again, and after the next time
+  std::vector<Vec3> roots;  // m, scratch
+};
+
+// Looks at the hair after a step of dt (s). Returns whether its twin is to take one too.
+bool watchRest(const HairMesh& mesh, const HairState& state, double dt, const Tangles& tangles, RestCheck& check);
+
+// After the twin's step: once both hang still, has the hair led to where the twin is, if that is elsewhere and lower by
+// more than a small share of `scale` (J, the hair's weight times its length). `energy`: mechanical, of a state (J).
+void judgeRest(const HairMesh& mesh, const HairState& state, double scale,
+               const std::function<double(const HairState&)>& energy, Tangles& tangles, RestCheck& check);
+
+}  // namespace sim

@@ -1,0 +1,108 @@
+// Hair that rests in another shape than its own is led home where that is lower, and nowhere else; and parameters that
+// no hair could bear do not tear it.
+#include "sim/rest_check.h"
+
+#include <gtest/gtest.h>
+
+#include "sim/bearable.h"
+#include "tests/test_meshes.h"
+
+namespace {
+
+using sim::Vec3;
+using test::Hair;
+
+constexpr double kFrame = 1.0 / 60;
+
+// Hair that hangs still, bent to the side by a share of its length.
+struct Resting {
+  sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(test::mixedPatch(5, 0.25)));
+  sim::HairState state = sim::restState(mesh, Eigen::Isometry3d::Identity());
+  sim::Tangles tangles{mesh};
+  sim::RestCheck check{mesh};
+
+  explicit Resting(double share) {
+    for (int i = 0; i < mesh.vertexCount(); ++i) {
+      if (!mesh.isRoot(i)) state.positions[i].x() += share * mesh.hair_length;
+    }
+  }
+  double off() const { return test::largestDistance(state.positions, mesh.shape.positions) / mesh.hair_length; }
+  // Steps in which nothing but being led moves the hair, whose energy is so much above its twin's. Returns whether it
+  // was led.
+  bool pass(double seconds, double higher) {
+    bool led = false;
+    for (double t = 0; t < seconds; t += kFrame) {
+      const std::vector<Vec3> start = state.positions;
+      led = sim::combOut({mesh, start, kFrame}, tangles, state) > 0 || led;
+      if (tangles.combing == 0) std::fill(state.velocities.begin(), state.velocities.end(), Vec3::Zero());
+      const auto energy = [&](const sim::HairState& one) { return &one == &state ? higher : 0; };
+      if (sim::watchRest(mesh, state, kFrame, tangles, check)) judgeRest(mesh, state, 1, energy, tangles, check);
+    }
+    return led;
+  }
+};
+
+TEST(RestCheck, HairThatRestsElsewhereAndHigherIsLedHome) {
+  Resting hair(0.05);
+  EXPECT_TRUE(hair.pass(3, 0.01));
+  EXPECT_LT(hair.off(), 1e-9);
+}
+
+TEST(RestCheck, HairThatRestsNoHigherIsLeftWhereItIs) {
+  Resting hair(0.05);
+  EXPECT_FALSE(hair.pass(3, -0.01));
+  EXPECT_NEAR(hair.off(), 0.05, 1e-12);
+}
+
+TEST(RestCheck, HairAtHomeIsLeftInPeace) {
+  Resting hair(0.001);
+  EXPECT_FALSE(hair.pass(3, 0.01));
+}
+
+TEST(RestCheck, HairThatABodyHoldsIsLeftWhereItIs) {
+  Resting hair(0.05);
+  hair.state.contacts.emplace_back();
+  EXPECT_FALSE(hair.pass(3, 0.01));
+}
+
+TEST(RestCheck, HairThatMovesIsNotJudged) {
+  Resting hair(0.05);
+  for (Vec3& v : hair.state.velocities) v = Vec3(1, 0, 0);
+  EXPECT_FALSE(sim::watchRest(hair.mesh, hair.state, kFrame, hair.tangles, hair.check));
+}
+
+double longest(const Hair& hair) {
+  double most = 0;
+  for (int i = 0; i < hair.mesh.vertexCount(); ++i) {
+    const Vec3& root = hair.state.positions[hair.mesh.shape.column_first[hair.mesh.column_of[i]]];
+    most = std::max(most, (hair.state.positions[i] - root).norm() / hair.mesh.hair_length);
+  }
+  return most;
+}
+
+TEST(Bearable, HairAsSoftAsFoamIsNotStretchedByItsWeightNorByAStorm) {
+  for (const double wind : {0.0, 40.0}) {
+    sim::SimParams params;
+    params.collide = false;
+    params.density = 2000, params.gravity = 100, params.stretch_along = 100;
+    params.wind_x = wind, params.air_drag = 50;
+    params.sag_free = false;
+    Hair hair(test::combedShape(test::mixedPatch(5, 0.25)), params);
+    double most = 0;
+    for (double t = 0; t < 3; t += kFrame) {
+      EXPECT_EQ(hair.step(kFrame).recoveries, 0);
+      most = std::max(most, longest(hair));
+    }
+    EXPECT_LT(most, 1.3) << "wind " << wind;
+  }
+}
+
+TEST(Bearable, OrdinaryHairKeepsItsParameters) {
+  const sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(test::mixedPatch(5, 0.25)));
+  sim::SimParams params;
+  params.wind_x = 10;
+  const sim::SimParams borne = sim::bearable(mesh, params);
+  for (const sim::ParamField& field : sim::paramFields()) EXPECT_EQ(field.get(borne), field.get(params)) << field.name;
+}
+
+}  // namespace
