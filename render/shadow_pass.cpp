@@ -134,8 +134,7 @@ void ShadowPass::chooseTiles(const FrameInput& input, std::span<const HairResour
   const auto place = [&](int steps_down) {
     const float texels_a_pixel = kTexelsPerPixel * std::pow(kFewerTexels, static_cast<float>(steps_down));
     for (Plan& plan : plans_) {
-      plan.tile.side =
-          input.skips.shadow_detail ? tileSide(plan, texels_a_pixel * hairs[plan.hair].pixels) : size;
+      plan.tile.side = input.skips.shadow_detail ? tileSide(plan, texels_a_pixel * hairs[plan.hair].pixels) : size;
     }
     return placeTiles();
   };
@@ -291,7 +290,8 @@ void ShadowPass::plan(const FrameInput& input, std::span<HairResources> hairs, c
   frame.forward[3] = light.shadows ? 1.0f : 0.0f;
   frame.opacity = {static_cast<float>(std::clamp(light.opacity_layers, 1, shared::kMaxOpacityLayers)),
                    std::max(light.shadow_strength, 0.0f),
-                   static_cast<float>(extent_.width) / static_cast<float>(extent_.height), static_cast<float>(body_maps_)};
+                   static_cast<float>(extent_.width) / static_cast<float>(extent_.height),
+                   static_cast<float>(body_maps_)};
   for (std::size_t map = 0; map < body_frusta_.size(); ++map)
     frame.body_shadow[map] = asMat4(body_frusta_[map].clip_from_world);
 }

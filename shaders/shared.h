@@ -67,9 +67,9 @@ SHARED_BLOCK(0, FrameBlock) {
   vec4 ground_light;
   vec4 backdrop_top;
   vec4 backdrop_bottom;
-  vec4 ground_color;                                 // w: height of the ground, m
-  vec4 ground_center;                                // xyz; w: radius at which it has faded away, m
-  vec4 opacity;                                      // layers, strength, width over height of hair maps, number of the bodies' maps
+  vec4 ground_color;   // w: height of the ground, m
+  vec4 ground_center;  // xyz; w: radius at which it has faded away, m
+  vec4 opacity;        // layers, strength, width over height of hair maps, number of the bodies' maps
   SHARED_ARRAY(mat4, body_shadow, kMaxBodyShadows);  // world to clip of the bodies' shadow maps, the near bodies' first
 };
 

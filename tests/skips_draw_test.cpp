@@ -22,7 +22,7 @@ namespace {
 constexpr int kWidth = 320, kHeight = 180;
 
 using draw_skips::differenceOver, draw_skips::kBodyBound, draw_skips::kDetailBound, draw_skips::kExact,
-    draw_skips::kSmallBound, draw_skips::NamedSkip, draw_skips::none;
+    draw_skips::kSmallBodyBound, draw_skips::kSmallBound, draw_skips::NamedSkip, draw_skips::none;
 
 // Figures in a row from (0, 0, 0) backwards, every other one a little aside.
 struct Crowd {
@@ -200,7 +200,9 @@ TEST_F(SkipsDraw, DetailStaysInItsBound) {
   }
 }
 
-// The mannequin walking, near and far: what differs is its rim and the light's interpolation over its skin.
+// The mannequin walking, near and far: what differs is its rim and the light's interpolation over its skin. Of a
+// picture with sixteen times the pixels, 6, 12 and 25 m away, the full mesh is off by 1.3, 2.5 and 4.5 levels itself,
+// the merged one by 1.4, 2.5 and 6.3.
 TEST_F(SkipsDraw, BodyDetailStaysInItsBound) {
   app::Scene scene = app::loadScene(app::dataPath("assets/scenes/walk.json"));
   scene.camera.follow = false;
@@ -221,7 +223,7 @@ TEST_F(SkipsDraw, BodyDetailStaysInItsBound) {
     const double off = differenceOver(full, merged, draw(renderer, frame));
     const render::LeftOut& count = report.left_out.body_detail;
     std::printf("at %.0f m: %.2f levels, %ld of %ld triangles left out\n", distance, off, count.skipped, count.of);
-    EXPECT_LE(off, kBodyBound) << distance << " m away";
+    EXPECT_LE(off, distance > 10 ? kSmallBodyBound : kBodyBound) << distance << " m away";
     EXPECT_GT(count.skipped, count.of / 3) << distance << " m away";
   }
 }
