@@ -107,6 +107,29 @@ void placedPose(const Actor& actor, std::span<const unsigned char> needed, Pose&
   }
 }
 
+// s, between the poses that the reach is taken from.
+constexpr double kReachInterval = 0.2;
+
+// World, around the joints at all times of the clip played in place.
+Eigen::AlignedBox3d reachOf(const Actor& actor) {
+  Actor playing;
+  playing.spec = actor.spec;
+  playing.body = actor.body;
+  playing.clip = actor.clip;
+  playing.playback = actor.playback;
+  playing.playback.in_place = true;
+  Eigen::AlignedBox3d box;
+  Pose pose;
+  const double duration = actor.playedClip().duration();
+  const int poses = static_cast<int>(std::min(duration / kReachInterval, 1000.0)) + 1;
+  for (int i = 0; i <= poses; ++i) {
+    playing.playback.time = i * duration / poses;
+    placedPose(playing, {}, pose);
+    for (const Rigid& joint : pose.world) box.extend(joint.translation());
+  }
+  return box;
+}
+
 void followScalp(const Actor& actor, const Haircut& haircut, std::vector<sim::Vec3>& roots) {
   const Rigid scalp = scalpToWorld(actor.body->character, actor.pose);
   const sim::HairMeshShape& shape = haircut.mesh.shape;
@@ -146,6 +169,7 @@ Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, Wardrob
   const double length = actor.playedClip().duration();
   if (playback.loop && length > 0) actor.playback.time = std::fmod(spec.clip_offset, length);
   actor.context = std::make_unique<sim::StepContext>(actor.haircut->mesh, now);
+  actor.reach = reachOf(actor);
   placeActor(actor, true);
   return actor;
 }

@@ -1,6 +1,7 @@
 // An actor: one character of the scene with its hair, as loaded and as it moves.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <future>
 #include <memory>
@@ -91,6 +92,7 @@ struct Actor {
   const Haircut* haircut = nullptr;
   int clip = 0;
   Playback playback;
+  Eigen::AlignedBox3d reach;  // world, around the joints at all times of the clip played in place
 
   // The last two simulated moments; the picture shows one in between.
   Pose pose, previous_pose;

@@ -17,11 +17,10 @@ struct Rate {
   double below;
   int span;
 };
-constexpr std::array<Rate, 3> kRates{{{420, 2}, {300, 4}, {70, 8}}};
+constexpr std::array<Rate, 3> kRates{{{520, 2}, {380, 4}, {100, 8}}};
 
-// m that a figure may move, and the camera with it, before its detail is looked at again; also what an unseen one,
-// which is not posed, may sway within its clip.
-constexpr double kMargin = 1;
+// m that a figure may move, and the camera with it, before its detail is looked at again.
+constexpr double kMargin = 0.3;
 constexpr double kFarthestShadow = 30;  // m along the light
 
 // s over which a step's usual cost is averaged.
@@ -31,10 +30,16 @@ Vec3 headOf(const Actor& actor) {
   return scalpToWorld(actor.body->character, actor.pose).translation();
 }
 
-// m around the head within which all of the figure and its hair stay, whatever the pose.
-double figureReach(const Actor& actor) {
+// World, around the figure and its hair. Of a figure that stays in its place whatever its clip does: what is not seen
+// is not posed.
+Eigen::AlignedBox3d boxAround(const Actor& actor) {
   const Character& character = actor.body->character;
-  return 9 * character.scalp.head_height + actor.haircut->mesh.hair_length;
+  Eigen::AlignedBox3d box;
+  for (const Rigid& joint : actor.pose.world) box.extend(joint.translation());
+  if (!actor.reach.isEmpty()) box.extend(actor.reach);
+  const Vec3 around = Vec3::Constant(std::max(character.scalp.head_height, actor.haircut->mesh.hair_length));
+  const Vec3 margin = Vec3::Constant(kMargin);
+  return {box.min() - around - margin, box.max() + around + margin};
 }
 
 bool below(double size, double limit, bool already) {
@@ -95,17 +100,17 @@ bool mayBeSeen(const Demo& demo, const Actor& actor) {
                                    (up + y * back).normalized(), (-up + y * back).normalized()};
   const render::LightInput& light = demo.scene.look.light;
   const Vec3 to_light(light.to_light[0], light.to_light[1], light.to_light[2]);
-  const double reach = figureReach(actor) + kMargin;
-  const Vec3 start = headOf(actor);
-  Vec3 end = start;
+  const Eigen::AlignedBox3d box = boxAround(actor);
+  Vec3 shadow = Vec3::Zero();
   if (light.shadows && to_light.norm() > 1e-6) {
     const Vec3 direction = to_light.normalized();
-    const double height = start.y() + reach - demo.scene.look.view.ground_height;
+    const double height = box.max().y() - demo.scene.look.view.ground_height;
     const double length = direction.y() > 1e-3 ? height / direction.y() : kFarthestShadow;
-    end -= std::clamp(length, 0.0, kFarthestShadow) * direction;
+    shadow = -std::clamp(length, 0.0, kFarthestShadow) * direction;
   }
   return std::none_of(planes.begin(), planes.end(), [&](const Vec3& normal) {
-    return normal.dot(start - eye) > reach && normal.dot(end - eye) > reach;
+    const double nearest = normal.dot(box.center() - eye) - 0.5 * normal.cwiseAbs().dot(box.sizes());
+    return nearest + std::min(normal.dot(shadow), 0.0) > 0;
   });
 }
 

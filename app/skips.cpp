@@ -21,9 +21,9 @@ constexpr std::array<Skip, kSkipCount> kTable{{
     {kSkipUnseen, "unseen", kSimulation, "steps", false, "not in the picture",
      "Characters whose figure and shadow cannot be in the picture are neither posed nor stepped; their hair comes back "
      "as it hung.",
-     "tests/skips_sim_test.cpp: Unseen.NothingOfWhatIsShownChanges"},
+     "tests/skips_sim_test.cpp: Unseen.WhoIsLeftOutIsNotInThePicture"},
     {kSkipFarSteps, "far-steps", kSimulation, "steps", false, "mean 3 pixels over the vertices",
-     "A character smaller than 420 pixels takes steps twice as long, below 300 four times, below 70 eight times; the "
+     "A character smaller than 520 pixels takes steps twice as long, below 380 four times, below 100 eight times; the "
      "long steps of a crowd spread over the frames.",
      "tests/skips_sim_test.cpp: Far.StaysWithinItsPixels"},
     {kSkipFarMesh, "far-mesh", kSimulation, "steps", false, "mean 3 pixels over the vertices",
@@ -51,8 +51,11 @@ constexpr std::array<Skip, kSkipCount> kTable{{
      "tests/skips_draw_test.cpp: SkipsDraw.ExactSkipsChangeNoByte"},
     {kSkipBodyParts, "body-parts", kDrawing, "triangles", true, "", "Parts of a body outside the view are not skinned.",
      "tests/skips_draw_test.cpp: SkipsDraw.ExactSkipsChangeNoByte"},
-    {kSkipBodyDetail, "body-detail", kDrawing, "triangles", false, "mean 2 levels of 255 over blocks of body",
-     "Fewer triangles of a body the smaller it is in the picture: vertices within a cell of a pixel are merged.",
+    {kSkipBodyDetail, "body-detail", kDrawing, "triangles", false,
+     "mean 2 levels of 255 over blocks of body, 3 where it is under 60 pixels",
+     "Fewer triangles of a body the smaller it is in the picture: vertices within a cell of a pixel are merged, and "
+     "the "
+     "light is worked out at them.",
      "tests/skips_draw_test.cpp: SkipsDraw.BodyDetailStaysInItsBound"},
     {kSkipStrands, "strands", kDrawing, "strands", false, kDetailBound,
      "Fewer and wider strands the smaller the hair is in the picture (strands_per_pixel).",

@@ -92,6 +92,7 @@ bool lightMayMeet(const Frustum& light, const Bounds& bounds) {
 
 BodyPass::BodyPass(const std::string& shader_dir)
     : lit_(shader_dir, {{"body.vert", "body.frag"}, {}, {}}),
+      lit_small_(shader_dir, {{"body_small.vert", "body_small.frag"}, {}, {}}),
       depth_(shader_dir, {{"body.vert", "depth_only.frag"}, {}, {}}) {}
 
 BodyPass::Mesh* BodyPass::meshOf(const BodyInput& input, long& uploaded) {
@@ -288,8 +289,14 @@ void BodyPass::drawLevel(const Body& body, const Mesh& mesh) {
 }
 
 int BodyPass::draw(const Eigen::Matrix4f& clip_from_world, const DrawSkips& skips, DrawLeftOut& left_out) {
-  lit_.use();
-  glUniformMatrix4fv(0, 1, GL_FALSE, clip_from_world.data());
+  for (ShaderProgram* program : {&lit_small_, &lit_}) {
+    program->use();
+    glUniformMatrix4fv(0, 1, GL_FALSE, clip_from_world.data());
+  }
+  auto choose = [&, small = false](bool wanted) mutable {
+    if (wanted != small) (wanted ? lit_small_ : lit_).use();
+    small = wanted;
+  };
   const Frustum frustum(clip_from_world, 0.01f);
   int calls = 0;
   for (const Body& body : bodies_) {
@@ -307,6 +314,7 @@ int BodyPass::draw(const Eigen::Matrix4f& clip_from_world, const DrawSkips& skip
     left_out.body_detail.of += mesh.index_count / 3;
     if (body.level > 0) {
       left_out.body_detail.skipped += (mesh.index_count - mesh.levels[static_cast<std::size_t>(body.level)].count) / 3;
+      choose(true);
       bind(body, mesh);
       drawLevel(body, mesh);
       ++calls;
@@ -332,6 +340,7 @@ int BodyPass::draw(const Eigen::Matrix4f& clip_from_world, const DrawSkips& skip
       end = part.first_index + part.index_count;
     }
     if (counts_.empty()) continue;
+    choose(false);
     bind(body, mesh);
     glMultiDrawElements(GL_TRIANGLES, counts_.data(), GL_UNSIGNED_INT, offsets_.data(),
                         static_cast<GLsizei>(counts_.size()));
@@ -356,8 +365,12 @@ int BodyPass::drawDepth(const Eigen::Matrix4f& clip_from_world, bool cull) {
 }
 
 std::string BodyPass::reload() {
-  const std::string first = lit_.reloadIfChanged(), second = depth_.reloadIfChanged();
-  return first.empty() ? second : first;
+  std::string message;
+  for (ShaderProgram* program : {&lit_, &lit_small_, &depth_}) {
+    const std::string fault = program->reloadIfChanged();
+    if (message.empty()) message = fault;
+  }
+  return message;
 }
 
 }  // namespace render

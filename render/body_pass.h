@@ -84,7 +84,7 @@ class BodyPass {
   void bind(const Body& body, const Mesh& mesh) const;
   static void drawLevel(const Body& body, const Mesh& mesh);
 
-  ShaderProgram lit_, depth_;
+  ShaderProgram lit_, lit_small_, depth_;
   std::vector<Mesh> meshes_;
   std::vector<Body> bodies_;
   Bounds bounds_;

@@ -1,6 +1,7 @@
 #include "render/shadow_pass.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <numeric>
 
@@ -23,9 +24,9 @@ struct Signature {
   }
 };
 
-Texture makeArray(GLenum format, int size, int layers, GLenum filter) {
+Texture makeArray(GLenum format, const TextureExtent& extent, GLenum filter) {
   Texture texture = makeTexture(GL_TEXTURE_2D_ARRAY);
-  glTextureStorage3D(texture.id(), 1, format, size, size, layers);
+  glTextureStorage3D(texture.id(), 1, format, extent.width, extent.height, extent.layers);
   glTextureParameteri(texture.id(), GL_TEXTURE_MIN_FILTER, static_cast<GLint>(filter));
   glTextureParameteri(texture.id(), GL_TEXTURE_MAG_FILTER, static_cast<GLint>(filter));
   glTextureParameteri(texture.id(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
@@ -55,10 +56,35 @@ float firstThickness(const HairResources& hair, const LightInput& light) {
   return std::max(0.5f * hair.bounds.diagonal() / sum, 1e-4f);
 }
 
-// Of a tile's side, at least; it is the next power of two. Twice as many cost four times the memory, and the picture
-// came no nearer to that with whole layers: the fewer strands in the map weigh more.
+// Texels of a tile's side for every pixel of the hair, while there is room. More cost memory, and the picture came no
+// nearer to that with whole tiles: the fewer strands in the map weigh more.
 constexpr float kTexelsPerPixel = 1.5f;
-constexpr int kSmallestTile = 32;  // of them make a layer's side
+constexpr float kFewerTexels = 0.84089642f;  // two to the power of -1/4: times as many, a step down
+constexpr int kMostStepsDown = 40;
+constexpr int kSmallestTile = 32;  // of them make a whole tile's side
+
+// What a hair beyond the first may add to the maps: with its positions and its body it stays below 100 KB.
+constexpr long kTexelsPerHair = 2300;
+
+// Rows come and go in eighths of a whole tile, so that textures are seldom made anew, and fill a layer up to four
+// whole ones.
+int rowsAtATime(int size) {
+  return std::max(size / 8, 8);
+}
+int mostRows(int size) {
+  return std::max(size, std::min(4 * size, 16384));
+}
+
+// Sides of tiles: a whole one's, three quarters, a half, three eighths and so on. The least that has `texels`.
+int tileFor(float texels, int size) {
+  const int least = std::max(size / kSmallestTile, 8);
+  int side = size;
+  for (int next = size / 4 * 3; next >= least && static_cast<float>(next) >= texels;) {
+    side = next;
+    next = side % 3 == 0 ? side / 3 * 2 : side / 4 * 3;
+  }
+  return side;
+}
 
 }  // namespace
 
@@ -70,69 +96,87 @@ ShadowPass::ShadowPass(const std::string& shader_dir)
       no_attributes_(makeVertexArray()),
       framebuffer_(makeFramebuffer()) {}
 
-void ShadowPass::allocate(int size, int layers) {
-  if (size == size_ && layers <= layers_) return;
-  size_ = size;
-  layers_ = layers;
-  opacity_near_ = makeArray(GL_RGBA16F, size, layers, GL_LINEAR);
-  opacity_far_ = makeArray(GL_RGBA16F, size, layers, GL_LINEAR);
-  hair_depth_ = makeArray(GL_DEPTH_COMPONENT32F, size, layers, GL_LINEAR);
-  body_in_hair_depth_ = makeArray(GL_DEPTH_COMPONENT32F, size, layers, GL_LINEAR);
+void ShadowPass::allocate(const TextureExtent& extent) {
+  const bool same_size = extent.width == extent_.width;
+  if (same_size && extent.height <= extent_.height && extent.layers <= extent_.layers) return;
+  extent_ = extent;
+  opacity_near_ = makeArray(GL_RGBA16F, extent, GL_LINEAR);
+  opacity_far_ = makeArray(GL_RGBA16F, extent, GL_LINEAR);
+  hair_depth_ = makeArray(GL_DEPTH_COMPONENT32F, extent, GL_LINEAR);
+  body_in_hair_depth_ = makeArray(GL_DEPTH_COMPONENT32F, extent, GL_LINEAR);
   compareDepth(body_in_hair_depth_);
-  body_depth_ = makeArray(GL_DEPTH_COMPONENT32F, bodyMapSize(size), shared::kMaxBodyShadows, GL_LINEAR);
-  compareDepth(body_depth_);
   drawn_.clear();
   drawn_before_.clear();
+  if (same_size) return;
+  const int side = bodyMapSize(extent.width);
+  body_depth_ = makeArray(GL_DEPTH_COMPONENT32F, {side, side, shared::kMaxBodyShadows}, GL_LINEAR);
+  compareDepth(body_depth_);
   bodies_drawn_.fill(0);
 }
 
 long ShadowPass::gpuBytes() const {
-  const long texels = static_cast<long>(size_) * size_ * layers_;
-  return texels * (8 + 8 + 4 + 4) + 4L * shared::kMaxBodyShadows * bodyMapSize(size_) * bodyMapSize(size_);
+  const long side = bodyMapSize(extent_.width);
+  return extent_.texels() * (8 + 8 + 4 + 4) + 4L * shared::kMaxBodyShadows * side * side;
 }
 
-// Texels a side: a few for every pixel of the hair, a whole layer when it is large. A tile that the hair has is kept
-// until it is off by more than a little, so that nothing switches to and fro.
-int ShadowPass::tileSide(const HairResources& hair, const FrameInput& input) const {
-  if (!input.skips.shadow_detail) return size_;
-  const auto fit = [&](float texels) {
-    int side = size_;
-    while (side > std::max(size_ / kSmallestTile, 8) && static_cast<float>(side / 2) >= texels) side /= 2;
-    return side;
+// A tile that the hair has is kept until it is off by more than a little, so that nothing switches to and fro.
+int ShadowPass::tileSide(const Plan& plan, float texels) const {
+  const int size = extent_.width;
+  if (plan.side_before >= tileFor(0.8f * texels, size) && plan.side_before <= tileFor(1.2f * texels, size))
+    return plan.side_before;
+  return tileFor(texels, size);
+}
+
+// Texels a side follow the hairs' pixels, so many for each that the further hairs' memory stays within its bound: no
+// hair is drawn finer than others at their cost.
+void ShadowPass::chooseTiles(const FrameInput& input, std::span<const HairResources> hairs) {
+  const int size = extent_.width;
+  const auto place = [&](int steps_down) {
+    const float texels_a_pixel = kTexelsPerPixel * std::pow(kFewerTexels, static_cast<float>(steps_down));
+    for (Plan& plan : plans_) {
+      plan.tile.side = input.skips.shadow_detail ? tileSide(plan, texels_a_pixel * hairs[plan.hair].pixels) : size;
+    }
+    return placeTiles();
   };
-  const float wanted = kTexelsPerPixel * hair.pixels;
-  const auto before =
-      std::find_if(drawn_before_.begin(), drawn_before_.end(), [&](const Drawn& d) { return d.hair_id == hair.id; });
-  if (before != drawn_before_.end() && before->side >= fit(0.8f * wanted) && before->side <= fit(1.2f * wanted))
-    return before->side;
-  return fit(wanted);
+  TextureExtent extent = place(0);
+  if (input.skips.shadow_detail) {
+    const long further = kTexelsPerHair * std::max<long>(static_cast<long>(plans_.size()) - 1, 0);
+    const long most = static_cast<long>(size) * size + further;
+    int steps = 0;
+    while (extent.texels() > most && steps < kMostStepsDown) extent = place(++steps);
+    // Finer by a single step is not worth that every map changes.
+    if (steps + 1 == steps_down_) extent = place(++steps);
+    steps_down_ = steps;
+  }
+  allocate(extent);
 }
 
-// Largest tiles first, each in the place that its number has along a Z-shaped curve: sides are powers of two, so none
-// is wasted.
-void ShadowPass::placeTiles() {
+// Largest tiles first, side by side in rows.
+TextureExtent ShadowPass::placeTiles() {
   order_.resize(plans_.size());
   std::iota(order_.begin(), order_.end(), std::size_t{0});
   std::stable_sort(order_.begin(), order_.end(),
                    [&](std::size_t a, std::size_t b) { return plans_[a].tile.side > plans_[b].tile.side; });
-  const int unit = std::max(size_ / kSmallestTile, 8), across = size_ / unit;
-  long at = 0;
+  const int size = extent_.width, most_rows = mostRows(size), step = rowsAtATime(size);
+  int x = 0, y = 0, row = 0, layer = 0;
   for (const std::size_t map : order_) {
     Tile& tile = plans_[map].tile;
-    tile.layer = static_cast<int>(at / (static_cast<long>(across) * across));
-    const long within = at % (static_cast<long>(across) * across);
-    tile.x = tile.y = 0;
-    for (int bit = 0; (1 << bit) < across; ++bit) {
-      tile.x |= static_cast<int>((within >> (2 * bit)) & 1) << bit;
-      tile.y |= static_cast<int>((within >> (2 * bit + 1)) & 1) << bit;
+    if (x + tile.side > size || row == 0) {
+      x = 0;
+      y += row;
+      row = tile.side;
     }
-    tile.x *= unit;
-    tile.y *= unit;
-    const long side = tile.side / unit;
-    at += side * side;
+    if (y + row > most_rows) {
+      y = 0;
+      ++layer;
+    }
+    tile.x = x;
+    tile.y = y;
+    tile.layer = layer;
+    x += tile.side;
   }
-  const long whole = static_cast<long>(across) * across;
-  allocate(size_, std::max(static_cast<int>((at + whole - 1) / whole), 1));
+  const int rows = std::max((y + row + step - 1) / step * step, size);
+  return {size, layer > 0 ? most_rows : std::min(rows, most_rows), layer + 1};
 }
 
 std::uint64_t ShadowPass::signatureOf(const Plan& plan, const HairResources& hair, const FrameInput& input,
@@ -162,7 +206,7 @@ void ShadowPass::planBodyMaps(const FrameInput& input, const BodyPass& bodies) {
   const Bounds near = bodies.boundsNear(asVector(input.camera.eye)), all = bodies.bounds();
   const auto add = [&](const Bounds& bounds, bool some) {
     const auto map = static_cast<std::size_t>(body_maps_++);
-    body_frusta_[map] = lightFrustum(bounds, to_light, bodyMapSize(size_));
+    body_frusta_[map] = lightFrustum(bounds, to_light, bodyMapSize(extent_.width));
     Signature signature;
     signature.add(body_frusta_[map].clip_from_world);
     signature.add(bodies.poseSignature(some ? &body_frusta_[map].clip_from_world : nullptr));
@@ -195,7 +239,7 @@ void ShadowPass::plan(const FrameInput& input, std::span<HairResources> hairs, c
   // A power of two, so that tiles divide it.
   int size = 64;
   while (size * 2 <= std::clamp(light.shadow_size, 64, 8192)) size *= 2;
-  allocate(size, std::max(layers_, 1));
+  if (size != extent_.width) allocate({size, size, 1});
   plans_.resize(order.size());
   map_of_hair_.assign(hairs.size(), -1);
   drawn_before_.swap(drawn_);
@@ -203,10 +247,12 @@ void ShadowPass::plan(const FrameInput& input, std::span<HairResources> hairs, c
   for (std::size_t map = 0; map < order.size(); ++map) {
     const HairResources& hair = hairs[order[map]];
     plans_[map].hair = order[map];
-    plans_[map].tile = {0, 0, tileSide(hair, input), 0};
     map_of_hair_[order[map]] = static_cast<int>(map);
+    const auto before =
+        std::find_if(drawn_before_.begin(), drawn_before_.end(), [&](const Drawn& d) { return d.hair_id == hair.id; });
+    plans_[map].side_before = before != drawn_before_.end() ? before->side : 0;
   }
-  placeTiles();
+  chooseTiles(input, hairs);
   has_bodies_ = !bodies.bounds().empty() && light.shadows;
   planBodyMaps(input, bodies);
   for (std::size_t map = 0; map < plans_.size(); ++map) {
@@ -218,11 +264,11 @@ void ShadowPass::plan(const FrameInput& input, std::span<HairResources> hairs, c
     bounds.high.array() += margin;
     plan.frustum = lightFrustum(bounds, to_light, plan.tile.side);
     plan.signature = signatureOf(plan, hair, input, bodies);
-    const auto scale = 1 / static_cast<float>(size);
+    const float scale = 1 / static_cast<float>(size), down = 1 / static_cast<float>(extent_.height);
     maps_.hair_shadow[map] = asMat4(plan.frustum.clip_from_world);
     maps_.hair_shadow_size[map] = {plan.frustum.side, static_cast<float>(plan.tile.side), plan.frustum.depth,
                                    firstThickness(hair, light)};
-    maps_.hair_shadow_tile[map] = {static_cast<float>(plan.tile.x) * scale, static_cast<float>(plan.tile.y) * scale,
+    maps_.hair_shadow_tile[map] = {static_cast<float>(plan.tile.x) * scale, static_cast<float>(plan.tile.y) * down,
                                    static_cast<float>(plan.tile.side) * scale, static_cast<float>(plan.tile.layer)};
     // Around the square that the map covers, wherever in its depth.
     maps_.hair_shadow_ball[map] = asVec4(bounds.center(), 0.75f * plan.frustum.side + 0.5f * plan.frustum.depth);
@@ -243,7 +289,9 @@ void ShadowPass::plan(const FrameInput& input, std::span<HairResources> hairs, c
   frame.to_key[3] = static_cast<float>(plans_.size());
   frame.forward[3] = light.shadows ? 1.0f : 0.0f;
   frame.opacity = {static_cast<float>(std::clamp(light.opacity_layers, 1, shared::kMaxOpacityLayers)),
-                   std::max(light.shadow_strength, 0.0f), 0, static_cast<float>(body_maps_)};
+                   std::max(light.shadow_strength, 0.0f),
+                   static_cast<float>(extent_.width) / static_cast<float>(extent_.height),
+                   static_cast<float>(body_maps_)};
   for (std::size_t map = 0; map < body_frusta_.size(); ++map)
     frame.body_shadow[map] = asMat4(body_frusta_[map].clip_from_world);
 }
@@ -327,7 +375,7 @@ void ShadowPass::drawBodyMap(const FrameInput& input, BodyPass& bodies) {
     left_out_.shadows += {kept, 1};
     if (kept) continue;
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
-    glViewport(0, 0, bodyMapSize(size_), bodyMapSize(size_));
+    glViewport(0, 0, bodyMapSize(extent_.width), bodyMapSize(extent_.width));
     beginDepth(body_depth_, static_cast<GLint>(map));
     // Bodies beside the near ones may stand between these and the light.
     glEnable(GL_DEPTH_CLAMP);

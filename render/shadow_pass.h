@@ -1,8 +1,8 @@
 // Shadow maps of the key light: a deep opacity map for each hair, with the bodies' depth in the same view, and one
 // depth map of all bodies, or two where some stand far. Redrawn only when the light, the hair or a body changed.
 //
-// The hairs' maps are tiles of one array of textures: a near hair has a whole layer, a far one a half, a quarter, an
-// eighth or a sixteenth of its side.
+// The hairs' maps are tiles of one array of textures: a near hair has a whole tile, a far one a part of its side, down
+// to a thirty-second; smaller ones too where many hairs share what a crowd may take.
 #pragma once
 
 #include <array>
@@ -19,6 +19,12 @@
 #include "shaders/shared.h"
 
 namespace render {
+
+// Texels of an array of textures.
+struct TextureExtent {
+  int width = 0, height = 0, layers = 0;
+  long texels() const { return static_cast<long>(width) * height * layers; }
+};
 
 class ShadowPass {
  public:
@@ -51,6 +57,7 @@ class ShadowPass {
   };
   struct Plan {
     std::size_t hair = 0;
+    int side_before = 0;  // of the hair's last tile; 0: it had none
     LightFrustum frustum;
     Tile tile;
     std::uint64_t signature = 0;  // of all that the map shows
@@ -61,12 +68,14 @@ class ShadowPass {
     int side = 0;  // of the hair's last tile: sizes change only when they are off by enough
   };
 
-  void allocate(int size, int layers);
-  void placeTiles();
+  void allocate(const TextureExtent& extent);
+  void chooseTiles(const FrameInput& input, std::span<const HairResources> hairs);
+  // Gives tiles of known sides their places. Returns what they take.
+  TextureExtent placeTiles();
+  int tileSide(const Plan& plan, float texels) const;
   void planBodyMaps(const FrameInput& input, const BodyPass& bodies);
   std::uint64_t signatureOf(const Plan& plan, const HairResources& hair, const FrameInput& input,
                             const BodyPass& bodies) const;
-  int tileSide(const HairResources& hair, const FrameInput& input) const;
   // Lets the framebuffer take depth alone, into a layer of `depth`, and clears what the scissor leaves of it.
   void beginDepth(const Texture& depth, int layer);
   void drawHairMap(int map, HairResources& hair, const FrameInput& input, const Texture& table);
@@ -76,7 +85,8 @@ class ShadowPass {
   Framebuffer framebuffer_;
   Texture opacity_near_, opacity_far_, hair_depth_, body_in_hair_depth_, body_depth_;
   Buffer block_, grid_block_;
-  int size_ = 0, layers_ = 0;
+  TextureExtent extent_;  // of the hairs' maps; a whole tile is as wide
+  int steps_down_ = 0;    // from as many texels a pixel as are wanted to those there is room for
   std::vector<Plan> plans_;
   std::vector<Drawn> drawn_, drawn_before_;
   std::vector<std::size_t> order_;

@@ -67,9 +67,9 @@ SHARED_BLOCK(0, FrameBlock) {
   vec4 ground_light;
   vec4 backdrop_top;
   vec4 backdrop_bottom;
-  vec4 ground_color;                                 // w: height of the ground, m
-  vec4 ground_center;                                // xyz; w: radius at which it has faded away, m
-  vec4 opacity;                                      // layers, strength, unused, number of the bodies' maps
+  vec4 ground_color;   // w: height of the ground, m
+  vec4 ground_center;  // xyz; w: radius at which it has faded away, m
+  vec4 opacity;        // layers, strength, width over height of hair maps, number of the bodies' maps
   SHARED_ARRAY(mat4, body_shadow, kMaxBodyShadows);  // world to clip of the bodies' shadow maps, the near bodies' first
 };
 
@@ -78,7 +78,7 @@ SHARED_BLOCK(3, ShadowBlock) {
   SHARED_ARRAY(mat4, hair_shadow, kMaxHairShadows);  // world to clip
   SHARED_ARRAY(vec4, hair_shadow_size,
                kMaxHairShadows);  // m: side, texels a side, depth range, first layer's thickness
-  SHARED_ARRAY(vec4, hair_shadow_tile, kMaxHairShadows);  // in the texture: left, bottom, side; its layer
+  SHARED_ARRAY(vec4, hair_shadow_tile, kMaxHairShadows);  // in the texture: left, bottom, width; its layer
   SHARED_ARRAY(vec4, hair_shadow_ball, kMaxHairShadows);  // world: a ball around the hair; w: its radius, m
 };
 

@@ -20,7 +20,7 @@ vec3 hairShadowCoordinates(int map, vec3 world) {
 vec3 hairShadowTexel(int map, vec2 at) {
   float half_texel = 0.5 / hair_shadow_size[map].y;
   vec4 tile = hair_shadow_tile[map];
-  return vec3(tile.xy + clamp(at, half_texel, 1.0 - half_texel) * tile.z, tile.w);
+  return vec3(tile.xy + clamp(at, half_texel, 1.0 - half_texel) * vec2(tile.z, tile.z * opacity.z), tile.w);
 }
 
 // Optical depth (expected number of hairs crossed, weighted by strength) between the key light and a point. Within a
