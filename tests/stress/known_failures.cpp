@@ -19,21 +19,18 @@ constexpr const char* kBdf2Jitter =
     "bdf2 in steps this short goes on at 0.1 m/s: its solves stop after one iteration or none";
 constexpr const char* kChatter =
     "its contacts chatter: energy goes up and down by 4 % from step to step; another rounding passes";
-constexpr const char* kTangled = "set free it rests in another shape, higher in energy, which combing out does not see";
 constexpr const char* kStiff =
     "by some roundings a solve in single precision raises the energy; in double, or to 1e-3, none was seen to";
 constexpr const char* kLimp =
     "a thousandth as stiff for its weight, by some roundings it rests in another shape for good";
 constexpr const char* kStrayed = "the watchdog steps in once, at a stretch element; another rounding passes";
-constexpr std::array<KnownFailure, 11> kKnown{{
+constexpr std::array<KnownFailure, 9> kKnown{{
     {"ladder/bdf2-1-120s/dance/long-low", kBdf2},
     {"ladder/bdf2-1-240s/dance/long-low", kBdf2},
     {"ladder/bdf2-1-480s/dance/long-low", kBdf2Short},
     {"ladder/bdf2-1-480s/turn/long-low", kBdf2Jitter},
-    {"ladder/linearized-euler-1-20s/turn/long-low", kTangled},
     {"paper/stiff-1e3/ours/long-low", kStiff},
     {"pace/frames/jump_spin/long-low/0", kChatter},
-    {"speed/50x/jump_spin/long-low", kTangled},
     {"stiffness/all-1e-3/dance/short-low", kLimp},
     {"stiffness/density-1e3/dance/short-low", kLimp},
     {"restless/2", kStrayed},
