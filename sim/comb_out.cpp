@@ -17,8 +17,9 @@ constexpr double kCombing = 0.4;        // s
 constexpr double kSoon = 1e-3;          // s before the end that count as the end
 constexpr double kFirstPatience = 0.5;  // s
 constexpr double kMostPatience = 600;   // s
-constexpr double kPatienceGrows = 4;    // times: a storm may hold hair turned over for good, and is not to be combed against
-constexpr double kForgiven = 10;        // s upright after which a column's patience begins anew
+// A storm may hold hair turned over for good, and is not to be combed against.
+constexpr double kPatienceGrows = 4;
+constexpr double kForgiven = 10;  // s upright after which a column's patience begins anew
 
 double volumeOf(const CornerTet& tet, const std::vector<Vec3>& x) {
   const Vec3& o = x[tet.v[0]];

@@ -8,13 +8,13 @@
 namespace sim {
 namespace {
 
-constexpr double kStill = 0.02;        // m/s: slower hair hangs still, unless it
-constexpr double kOnItsWay = 10;       // s, would in so long go as far as the twin is off
-constexpr double kStillFor = 0.5;      // s
-constexpr double kTwinStill = 5e-3;    // m/s
-constexpr double kMostSettling = 20;   // s, after which a twin that goes on swinging tells nothing
-constexpr double kElsewhere = 0.006;   // of the hair's length: what is nearer to its twin is at home
-constexpr double kHigher = 5e-5;       // of the hair's weight times its length
+constexpr double kStill = 0.02;         // m/s: slower hair hangs still, unless it
+constexpr double kOnItsWay = 10;        // s, would in so long go as far as the twin is off
+constexpr double kStillFor = 0.5;       // s
+constexpr double kTwinStill = 5e-3;     // m/s
+constexpr double kMostSettling = 20;    // s, after which a twin that goes on swinging tells nothing
+constexpr double kElsewhere = 0.006;    // of the hair's length: what is nearer to its twin is at home
+constexpr double kHigher = 5e-5;        // of the hair's weight times its length
 constexpr double kMoving = 3 * kStill;  // m/s: hair so fast is on its way to another rest
 
 constexpr double kFirstPatience = 1, kMostPatience = 60;  // s between one time that the hair is led and the next

@@ -23,11 +23,11 @@ struct RestCheck {
   explicit RestCheck(const HairMesh& mesh);
 
   HairState twin;
-  double still = 0;       // s that the hair has hung still
-  double settling = -1;   // s since the twin left the rest shape; negative: there is none
-  bool judged = false;    // nothing more to find out before the hair has moved
+  double still = 0;               // s that the hair has hung still
+  double settling = -1;           // s since the twin left the rest shape; negative: there is none
+  bool judged = false;            // nothing more to find out before the hair has moved
   double wait = 0, patience = 0;  // s before it may be led again, and after the next time
-  std::vector<Vec3> roots;  // m, scratch
+  std::vector<Vec3> roots;        // m, scratch
 };
 
 // Looks at the hair after a step of dt (s). Returns whether its twin is to take one too.

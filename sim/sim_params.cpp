@@ -76,7 +76,8 @@ std::vector<ParamField> makeTable() {
           "Mass per volume of the hair mesh, hair and the air in it. Heavier hair follows the head later."),
       field<&P::stretch_along>(
           "stretch_along", "Material", "Pa", {1e2, 1e8, kLog},
-          "Resistance of the walls to stretching along the hair. High: strands keep their length."),
+          "Resistance of the walls to stretching along the hair. High: strands keep their length. Never less "
+          "than bears the hair's weight and the wind."),
       field<&P::stretch_across>("stretch_across", "Material", "Pa", {1, 1e6, kLog},
                                 "Resistance of the walls to stretching across the hair. Low: the hair fans out."),
       field<&P::stretch_edge>("stretch_edge", "Material", "Pa", {1, 1e6, kLog},

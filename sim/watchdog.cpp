@@ -9,10 +9,10 @@
 namespace sim {
 namespace {
 
-constexpr double kFastest = 500;  // m/s against the root; beyond it a velocity is absurd
+constexpr double kFastest = 500;        // m/s against the root; beyond it a velocity is absurd
 constexpr double kFastestPushed = 100;  // m/s against the root
-constexpr double kLengths = 4;    // hair lengths and
-constexpr double kFarther = 1;    // m from the root: beyond both together a position is absurd
+constexpr double kLengths = 4;          // hair lengths and
+constexpr double kFarther = 1;          // m from the root: beyond both together a position is absurd
 constexpr double kKeptVelocity = 0.5;
 
 const char* ailmentName(Ailment ailment) {
@@ -82,7 +82,8 @@ void limitSpeed(const HairMesh& mesh, HairState& state) {
     const Vec3& root = state.velocities[rootOf(mesh, i)];
     const Vec3 speed = state.velocities[i] - root;
     const double square = speed.squaredNorm();
-    if (square > kFastestPushed * kFastestPushed) state.velocities[i] = root + kFastestPushed / std::sqrt(square) * speed;
+    if (square > kFastestPushed * kFastestPushed)
+      state.velocities[i] = root + kFastestPushed / std::sqrt(square) * speed;
   }
 }
 

@@ -86,8 +86,8 @@ struct Flung {
     }
   }
   double limit() {
-    return sim::limitEnergy({hair.mesh, hair.params, model, start.positions, start.velocities, kFrame, Vec3::Zero()}, true,
-                            scratch, hair.state);
+    return sim::limitEnergy({hair.mesh, hair.params, model, start.positions, start.velocities, kFrame, Vec3::Zero()},
+                            true, scratch, hair.state);
   }
 };
 

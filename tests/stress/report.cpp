@@ -303,7 +303,8 @@ colliders are taken away. A case passes when
   or the hair within a body, after 0.1 or 0.2 s;
 - mechanical energy, once everything stands still, never exceeds what the motion left by more than )"
       << 100 * kEnergyTolerance << R"( % and what contacts may lift it by
-  within their slack, its weight times 0.4 mm (not asked where wind blows, nor where rows of the numerics stand at a limit or are drawn at random: ten iterations a solve keep no such law).
+  within their slack, its weight times 0.4 mm (a steady wind counts as the weight that its push is, and
+  gusts end with the motion; not asked where rows of the numerics stand at a limit or are drawn at random: ten iterations a solve keep no such law).
   From one step to the next it may rise below that level: a contact found at a step's end lifts hair that has
   fallen a millimetre too far, and very stiff hair trades energy between steps. The largest such rise is listed;
 - (where a body appears within the hair, what that lifts the hair to counts as left by the motion: roots that lie within a body
@@ -319,7 +320,8 @@ colliders are taken away. A case passes when
       << familyTable(countFamilies(results)) << R"(
 "Carried" counts jumps of the head that no motion could make (faster than `teleport_speed`), over which the hair is
 carried along. "Combed out" counts cases in which columns that stayed turned over, folded back or, hanging still, squeezed
-to less than half for 0.8 s were led back to their rest shape (`sim/comb_out.h`); while that goes on it is a hand from outside, and what energy it lifts the
+to less than half for 0.8 s were led back to their rest shape (`sim/comb_out.h`), or hair that came to rest in another
+shape and higher than its own was (`sim/rest_check.h`); while that goes on it is a hand from outside, and what energy it lifts the
 hair to is what the motion is taken to have left.
 
 ![Heat maps](stability_map.svg)

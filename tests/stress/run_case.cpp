@@ -108,9 +108,9 @@ void traceStep(const Run& run, double dt, const sim::StepReport& report, Hair& h
   std::printf(
       "%9.4f s  step %6.1f ms  energy %12.5e J  fastest %9.3e m/s  contacts %3d  corrected %3d  iterations %4d  combed "
       "%d%s%s\n",
-      run.around.time(), 1e3 * dt, energyOf(run, hair), fastest,
-      report.contacts, report.corrected, report.solver_iterations, report.combed,
-      report.converged ? "" : " (not converged)", report.carried ? " carried" : "");
+      run.around.time(), 1e3 * dt, energyOf(run, hair), fastest, report.contacts, report.corrected,
+      report.solver_iterations, report.combed, report.converged ? "" : " (not converged)",
+      report.carried ? " carried" : "");
 }
 
 sim::StepReport stepHair(const sim::SimParams& params, const Run& run, double dt, Hair& hair) {
@@ -392,7 +392,8 @@ void waitForRest(Run& run) {
                   100 * run.outcome.distance, run.around.time() - stopped) +
              ", vertex " + std::to_string(run.outcome.worst_vertex) +
              said(", fastest %.1e m/s (%.1e its twin)", fastest(run.hair), fastest(twin)) +
-             said(", energy above the twin's: %.1e of its weight times length", (energy.last - energyOf(run, twin)) / weightOf(run)));
+             said(", energy above the twin's: %.1e of its weight times length",
+                  (energy.last - energyOf(run, twin)) / weightOf(run)));
   }
 }
 
