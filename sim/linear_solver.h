@@ -43,7 +43,8 @@ struct Filter {
 // When to stop: at the relative residual, measured in the preconditioner's norm against the first; or when no vertex's
 // residual exceeds `acceleration` (m/s^2, against `inverse_mass_dt`, 1 / (m h) per vertex); or when no vertex would
 // move by more than `displacement` (m) in the time `h` for the velocity that the preconditioner answers to the
-// residual, which estimates the error itself where the preconditioner is near to the inverse; or at max_iterations.
+// residual, which estimates the error itself where the preconditioner is near to the inverse; or at max_iterations. A
+// tolerance that the arithmetic does not resolve ends, not converged, where iterations change nothing but the rounding.
 //
 // `foresee`: the relative residual is also estimated from what the iterations have gained so far (SolverScratch::gain),
 // which saves the application of the preconditioner that would only have told that nothing more is needed. For
@@ -94,6 +95,7 @@ struct SolverScratch {
   // times what the one before it had taken: a geometric series of gains estimates what is left (after Strakos and Tichy
   // 2002). `rate`: the larger of the last two ratios.
   double gain = 0, last_ratio = 0, rate = 0;
+  double gained = 0;  // J, since the fresh start
   // Search directions are kept conjugate to these, so that every iterate is the best also over them (deflated
   // conjugate gradients, after Saad, Yeung, Erhel and Guyomarc'h 2000). Set by the caller, per solve.
   std::span<const Deflated<T>> deflation;

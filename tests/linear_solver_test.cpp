@@ -100,6 +100,32 @@ TEST(ModifiedPcg, TheComparisonSeesAFilterLeftOutAtAnyPlace) {
   }
 }
 
+// A tolerance that single precision cannot reach: the solve ends where its iterations no longer change anything, and
+// not before it is as near as one to what it can reach.
+TEST(ModifiedPcg, EndsWhereRoundingLeavesNothingToGain) {
+  const System system(0.004);
+  const BlockMatrix<float> a = system.matrixAt<float>(system.positions);
+  const Eigen::MatrixXd dense = test::dense(system.matrixAt<double>(system.positions));
+  test::Random random(31);
+  const Problem p = makeProblem(system, -1, random);
+  const Eigen::VectorXd exact = denseSolution(dense, p);
+  for (const Solver kind : {Solver::kDiagonal, Solver::kBlockJacobi, Solver::kColumn}) {
+    auto preconditioner = system.preconditioner(a, kind);
+    sim::SolverScratch<float> scratch;
+    scratch.resize(static_cast<int>(p.rhs.size()));
+    auto x = test::plain<float>(p.guess);
+    const auto rhs = test::plain<float>(p.rhs);
+    sim::StopRule<float> stop;
+    stop.relative = 1e-14;
+    stop.max_iterations = 100000;
+    const auto report = sim::solveModifiedPcg<float>(a, rhs, filterOf<float>(p), preconditioner, stop, scratch, x);
+    std::printf("%s: %d iterations\n", nameOf(kind), report.iterations);
+    EXPECT_FALSE(report.converged);
+    EXPECT_LT(report.iterations, 3000) << static_cast<int>(kind);
+    EXPECT_LT(energyNorm(dense, test::stacked<float>(x) - exact), 2e-4 * energyNorm(dense, exact));
+  }
+}
+
 // The ways to go on with a solve must end where a single solve ends.
 TEST(ModifiedPcg, GoesOnWhereItStoppedAndAfterConstraintsHaveLoosened) {
   const System system(0.004);
