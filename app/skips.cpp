@@ -52,7 +52,7 @@ constexpr std::array<Skip, kSkipCount> kTable{{
     {kSkipBodyParts, "body-parts", kDrawing, "triangles", true, "", "Parts of a body outside the view are not skinned.",
      "tests/skips_draw_test.cpp: SkipsDraw.ExactSkipsChangeNoByte"},
     {kSkipBodyDetail, "body-detail", kDrawing, "triangles", false,
-     "mean 2 levels of 255 over blocks of body, 3 where it is under 60 pixels",
+     "mean 2 levels of 255 over blocks of body, 3.5 where it is under 60 pixels",
      "Fewer triangles of a body the smaller it is in the picture: vertices within a cell of a pixel are merged, and "
      "the "
      "light is worked out at them.",

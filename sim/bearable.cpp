@@ -11,6 +11,7 @@ double blowOf(const SimParams& params) {
 }
 
 SimParams bearable(const HairMesh& mesh, SimParams params) {
+  if (params.volume <= 0 && params.stretch_along <= 0) return params;
   double blow = blowOf(params);
   if (blow > kHardestBlow) {
     for (double* wind : {&params.wind_x, &params.wind_y, &params.wind_z}) *wind *= kHardestBlow / blow;

@@ -22,6 +22,7 @@ inline constexpr double kHardestBlow = 100;  // m/s^2, of wind and gusts on hair
 double blowOf(const SimParams& params);
 
 // `params` with no more wind than that, and the least stretch_along (Pa) that bears density, gravity, wind and drag.
+// Loose particles, without walls and volume, are left as they are.
 SimParams bearable(const HairMesh& mesh, SimParams params);
 
 }  // namespace sim

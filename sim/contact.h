@@ -76,7 +76,7 @@ void chooseSticking(double friction, double mobility, const Vec3& velocity, Cont
 struct FrictionLaw {
   double coefficient;
   double h;          // s, the step
-  double most_work;  // J, that friction may add at a vertex by turning it back
+  double most_work;  // J, that friction may add at this vertex by turning it back
 };
 
 // Coulomb's law after a solve, from the vertex's reaction (N) and velocity (m/s). A contact that would pull slides

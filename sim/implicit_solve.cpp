@@ -31,7 +31,7 @@ constexpr double kFullStart = 10;
 // s: a shorter step may be off by less, so that the acceleration it neglects stays the same. With one tolerance for all,
 // a step of 1/480 s passed over half a metre per second squared: resting hair went on at 0.1 m/s.
 constexpr double kFullTolerance = 1.0 / 60;
-constexpr double kFrictionWork = 1e-4;  // of that: what friction may add by turning a vertex back within a step
+constexpr double kThrownBack = 0.5;  // m/s, that is worth solving again with the contact held
 constexpr double kStaleRatio = 3;  // of h (h + damping): BDF2's start-up step shares its factor with the steps after it
 constexpr double kStaleMass = 1.5;   // of 1 + h drag: the air is thick while the hair settles
 constexpr int kSlices = 30;          // steps over which a new rest factor is spread
@@ -54,11 +54,14 @@ M3<T> cast(const Eigen::Matrix3d& m) {
 
 // Coulomb's law after a solve, by the reaction (N) and the velocity (m/s) that it left at each contact. Returns whether
 // any contact changed.
-bool updateContacts(const FrictionLaw& law, std::vector<Contact>& contacts, const auto& reactionAt,
-                    const auto& velocityAt) {
+bool updateContacts(double friction, double h, std::vector<Contact>& contacts, const auto& massAt,
+                    const auto& reactionAt, const auto& velocityAt) {
   bool changed = false;
-  for (Contact& contact : contacts)
-    changed |= updateSticking(law, reactionAt(contact.vertex), velocityAt(contact.vertex), contact);
+  for (Contact& contact : contacts) {
+    const int i = contact.vertex;
+    const FrictionLaw law{friction, h, 0.5 * massAt(i) * kThrownBack * kThrownBack};
+    changed |= updateSticking(law, reactionAt(i), velocityAt(i), contact);
+  }
   return std::erase_if(contacts, [](const Contact& c) { return c.pressure < 0; }) > 0 || changed;
 }
 
@@ -371,7 +374,6 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
   }
   std::copy(rhs.begin(), rhs.end(), trial.begin());
   SolveStart start = SolveStart::kPrepared;
-  const FrictionLaw friction{params.friction, base.h, kFrictionWork * energyScale(mesh)};
   for (int round = 0; round < kContactRounds; ++round) {
     const bool moved = setContactConstraints(mesh, params, base, contacts, start);
     const bool complete = preconditioner.setConstraints(constraints, kBatchesARound);
@@ -390,7 +392,8 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
     }
     const auto reactionAt = [&](int i) { return Vec3(widen<T>(trial[i] - rhs[i] - scratch.r[i]) / base.h); };
     const auto velocityAt = [&](int i) { return widen<T>(v[i]); };
-    if (contacts.empty() || !updateContacts(friction, contacts, reactionAt, velocityAt)) break;
+    const auto massAt = [&](int i) { return static_cast<double>(mass[i]); };
+    if (contacts.empty() || !updateContacts(params.friction, base.h, contacts, massAt, reactionAt, velocityAt)) break;
     start = SolveStart::kRestart;
   }
   // A factor that served to its end is as old as the solves since it was made. Solves by other preconditioners age it

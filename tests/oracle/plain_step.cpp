@@ -24,6 +24,7 @@ using Triplets = std::vector<Eigen::Triplet<double>>;
 
 constexpr int kContactRounds = 4;
 constexpr double kCreep = 1e-3, kNoSlip = 1e-9;  // m/s, slip that says nothing of its direction
+constexpr double kThrownBack = 0.5;              // m/s
 
 Vectors toPlain(const std::vector<Vec3>& from) {
   Vectors to;
@@ -171,19 +172,33 @@ void addKineticFriction(const SimParams& params, double h, const HairState& stat
 }
 
 // Lets those slide that friction cannot hold or that pull while they stick, and lets go of those that pull while they
-// slide. Returns whether any changed.
-bool updateContacts(const SimParams& params, double h, const std::vector<Vec3>& r, std::vector<Contact>& contacts) {
+// slide. Friction that throws a vertex back faster than kThrownBack holds it for the rest of the step. Returns whether
+// any changed.
+bool updateContacts(const HairMesh& mesh, const SimParams& params, double h, const std::vector<Vec3>& r,
+                    const std::vector<Vec3>& v, std::vector<Contact>& contacts) {
   bool changed = false;
   for (Contact& contact : contacts) {
     const Vec3 reaction = -r[contact.vertex] / h;
+    const double pressed = contact.pressure;
     contact.pressure = contact.normal.dot(reaction);
-    if (!contact.sticks) continue;
     const Vec3 along = reaction - contact.pressure * contact.normal;
     const bool pulls = contact.pressure < 0;
-    if (!pulls && along.norm() <= params.friction * contact.pressure) continue;
-    if (pulls) contact.pressure = 0;
-    if (!pulls) contact.grip = along.normalized();
-    contact.sticks = false;
+    const bool beyond = along.norm() > params.friction * contact.pressure;
+    if (!contact.sticks) {
+      const double work = h * params.friction * pressed * contact.grip.dot(v[contact.vertex] - contact.velocity);
+      const double mass = params.density * mesh.vertex_volume[contact.vertex];
+      if (pressed <= 0 || pulls || work <= 0.5 * mass * kThrownBack * kThrownBack) continue;
+      contact.sticks = true;
+    } else if (pulls) {
+      contact.pressure = 0;
+      contact.sticks = false;
+    } else if (beyond && contact.grip.norm() == 0) {
+      contact.pressure = std::min(contact.pressure, pressed);
+      contact.grip = along.normalized();
+      contact.sticks = false;
+    } else {
+      continue;
+    }
     changed = true;
   }
   return std::erase_if(contacts, [](const Contact& c) { return c.pressure < 0; }) > 0 || changed;
@@ -224,7 +239,7 @@ void solveVelocities(const HairMesh& mesh, const SimParams& params, double h, co
     }
     if (state.contacts.empty()) break;
     const std::vector<Vec3> left = residual(context.matrix, b, v);
-    if (!updateContacts(params, h, left, state.contacts)) break;
+    if (!updateContacts(mesh, params, h, left, v, state.contacts)) break;
   }
   state.velocities = v;
 }
