@@ -9,7 +9,7 @@ namespace sim {
 namespace {
 
 constexpr double kStill = 0.02;         // m/s: slower hair hangs still, unless it
-constexpr double kOnItsWay = 10;        // s, would in so long go as far as the twin is off
+constexpr double kOnItsWay = 1;         // s, would in so long go as far as the twin is off
 constexpr double kStillFor = 0.5;       // s
 constexpr double kTwinStill = 5e-3;     // m/s
 constexpr double kMostSettling = 20;    // s, after which a twin that goes on swinging tells nothing
