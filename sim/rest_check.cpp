@@ -14,6 +14,7 @@ constexpr double kStillFor = 0.5;       // s
 constexpr double kTwinStill = 5e-3;     // m/s
 constexpr double kMostSettling = 20;    // s, after which a twin that goes on swinging tells nothing
 constexpr double kElsewhere = 0.006;    // of the hair's length: what is nearer to its twin is at home
+constexpr double kAtHome = 0.003;       // of the hair's length, from the rest shape itself
 constexpr double kHigher = 5e-5;        // of the hair's weight times its length
 constexpr double kMoving = 3 * kStill;  // m/s: hair so fast is on its way to another rest
 
@@ -23,6 +24,13 @@ constexpr double kPatienceGrows = 2;
 double fastest(const HairState& state) {
   double most = 0;
   for (const Vec3& v : state.velocities) most = std::max(most, v.squaredNorm());
+  return std::sqrt(most);
+}
+
+double largestDistance(const HairState& a, const HairState& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.positions.size(); ++i)
+    most = std::max(most, (a.positions[i] - b.positions[i]).squaredNorm());
   return std::sqrt(most);
 }
 
@@ -56,7 +64,14 @@ bool watchRest(const HairMesh& mesh, const HairState& state, double dt, const Ta
     return false;
   }
   check.still += dt;
-  if (check.settling < 0) beginTwin(mesh, state, tangles, check);
+  if (check.settling < 0) {
+    beginTwin(mesh, state, tangles, check);
+    // Nobody need find out where the rest shape would come to while the hair is in it and hardly moves.
+    if (largestDistance(state, check.twin) < kAtHome * mesh.hair_length) {
+      check.settling = -1;
+      return false;
+    }
+  }
   check.settling += dt;
   return true;
 }
@@ -65,9 +80,7 @@ void judgeRest(const HairMesh& mesh, const HairState& state, double scale,
                const std::function<double(const HairState&)>& energy, Tangles& tangles, RestCheck& check) {
   check.judged = check.settling > kMostSettling;
   if (check.still < kStillFor || !(fastest(check.twin) < kTwinStill)) return;
-  double off = 0;
-  for (int i = 0; i < mesh.vertexCount(); ++i)
-    off = std::max(off, (state.positions[i] - check.twin.positions[i]).norm());
+  const double off = largestDistance(state, check.twin);
   if (off > kElsewhere * mesh.hair_length && kOnItsWay * fastest(state) > off) return;
   check.judged = true;
   if (off <= kElsewhere * mesh.hair_length) return;
