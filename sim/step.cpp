@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "sim/bearable.h"
@@ -286,7 +287,8 @@ void checkRest(const SimParams& params, const StepInput& input, double dt, Parts
   const auto energy = [&](const HairState& one) { return energyOf(params, base.wind, one, parts); };
   double weight = 0;  // N
   for (const double share : mesh.vertex_volume) weight += 9.81 * params.density * share;
-  judgeRest(mesh, state, weight * mesh.hair_length, energy, parts.tangles, check);
+  // By reference: a copy within the std::function would be allocated, in a step.
+  judgeRest(mesh, state, weight * mesh.hair_length, std::cref(energy), parts.tangles, check);
   for (const double seconds : unseen.seconds) report.seconds[kStageOther] += seconds;
   parts.clock.spent(kStageOther, report);
 }
