@@ -447,4 +447,21 @@ TEST(Step, AllocatesNothingWithEveryOptionOnceWarm) {
   EXPECT_EQ(allocations, 0);
 }
 
+// Nor where hair that hangs still is watched by a twin (sim/rest_check.h), which is put to the rest shape.
+TEST(Step, AllocatesNothingWhileATwinSettles) {
+  sim::SimParams params = test::tautHair();
+  params.sag_free = false;  // so that the hair hangs still away from its rest shape
+  params.bend /= 20;
+  params.air_drag = 5;
+  Hair hair(test::combedShape({}), params);
+  for (int n = 0; n < 30; ++n) hair.step(kFrame);
+  allocations = 0;
+  for (int n = 0; n < 600; ++n) {
+    counting = true;
+    hair.step(kFrame);
+    counting = false;
+  }
+  EXPECT_EQ(allocations, 0);
+}
+
 }  // namespace
