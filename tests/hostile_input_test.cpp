@@ -11,7 +11,7 @@
 
 using Target = int(const std::uint8_t* data, std::size_t size);
 // The targets' one name, told apart where they are compiled (tests/CMakeLists.txt).
-extern "C" Target fuzz_hair_mesh, fuzz_bvh, fuzz_scene, fuzz_preset, fuzz_recording;
+extern "C" Target fuzz_hair_mesh, fuzz_bvh, fuzz_mot, fuzz_part, fuzz_scene, fuzz_preset, fuzz_recording;
 
 namespace {
 
@@ -19,10 +19,8 @@ struct Reader {
   const char* name;
   Target* target;
 };
-constexpr Reader kReaders[] = {{"hair_mesh", fuzz_hair_mesh},
-                               {"bvh", fuzz_bvh},
-                               {"scene", fuzz_scene},
-                               {"preset", fuzz_preset},
+constexpr Reader kReaders[] = {{"hair_mesh", fuzz_hair_mesh}, {"bvh", fuzz_bvh},     {"mot", fuzz_mot},
+                               {"part", fuzz_part},           {"scene", fuzz_scene}, {"preset", fuzz_preset},
                                {"recording", fuzz_recording}};
 
 // What the fuzzers begin with, and what they once found.

@@ -1,0 +1,16 @@
+// Fuzz target: an ARCSim rigid motion.
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "app/errors.h"
+#include "app/motion.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  try {
+    app::readMot(text, "fuzz.mot");
+  } catch (const app::InputError&) {
+  }
+  return 0;
+}

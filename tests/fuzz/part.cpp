@@ -1,0 +1,16 @@
+// Fuzz target: the mesh of a rigid body.
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "app/errors.h"
+#include "app/part_mesh.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  try {
+    app::readPart(text, "fuzz.obj");
+  } catch (const app::InputError&) {
+  }
+  return 0;
+}
