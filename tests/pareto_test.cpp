@@ -15,7 +15,7 @@ constexpr int kRounds = 5;              // of runs in turns, where a first look 
 struct Recorded {
   const char* scene;
   double error;  // RMS over hair length, of the default, over the samples that can be compared
-  double lag;    // how many times faster another way with no more error may be
+  double lag;    // how many times faster another way with no more error of positions may be, whatever else it is off
   const char* why;
   int reference = kCoarseReference;
 };
@@ -26,14 +26,15 @@ constexpr Recorded kRecorded[] = {
     {"walk_short", 1.4e-4, kMostLag, "on the front"},
     {"walk_shoulder", 7e-4, 1.3, "on the front, within what another processor makes of it"},
     {"jump_1x", 3.1e-3, kMostLag, "on the front"},
-    {"jump_4x", 2.0e-1, 2.0, "no way comes nearer than a sixth of the hair's length, and looser solves are as near"},
-    {"jump_10x", 3.1e-1, 2.0, "as at four times the speed, and all errors are a third of the hair's length"},
-    {"collapse", 6.0e-2, 2.7, "one sample can be compared, in which any way that unfolds the hair at all is as good"},
+    {"jump_4x", 2.0e-1, 2.0,
+     "positions are off by a fifth of the hair's length whatever is done, lengths and volumes not"},
+    {"jump_10x", 3.1e-1, 2.0, "as at four times the speed, and all positions are off by a third of the hair's length"},
+    {"collapse", 6.0e-2, 2.7, "one sample can be compared, in which any way that unfolds the hair at all is as near"},
 };
 
 class ParetoFront : public testing::TestWithParam<Recorded> {};
 
-TEST_P(ParetoFront, NoWayWithAnEqualErrorIsFasterThanTheDefaultByMoreThanIsRecorded) {
+TEST_P(ParetoFront, NoWayThatIsNoWorseIsFasterThanTheDefaultByMoreThanATenth) {
   const auto scenes = bench::trajectoryScenes();
   const auto scene =
       std::find_if(scenes.begin(), scenes.end(), [](const auto& s) { return s.name == std::string(GetParam().scene); });
@@ -45,15 +46,16 @@ TEST_P(ParetoFront, NoWayWithAnEqualErrorIsFasterThanTheDefaultByMoreThanIsRecor
   const bench::Point& standard = sweep.points.front();
   std::printf("%s: default %.1f ms/s, error %.2e; reference's own %.1e over %.2f s\n", scene->name, standard.fastest,
               standard.error.rms, sweep.own_error, sweep.compared_seconds);
-  const bench::Lag first = bench::lagOfDefault(sweep);
-  std::printf("  at first sight %.2f times faster: %s\n", first.ratio, first.way->name().c_str());
   EXPECT_LE(standard.error.rms, kMostGrowth * GetParam().error);
   for (const bench::Point& way : sweep.points) {
-    const bool no_worse = way.error.rms <= standard.error.rms + sweep.own_error;
-    if (!no_worse || way.fastest * GetParam().lag > standard.fastest) continue;
+    const bool in_any = way.errors().noWorseInAny(standard.errors(), sweep.own_error);
+    const bool in_position = way.errors().noWorseInPosition(standard.errors(), sweep.own_error);
+    const double most = in_any ? kMostLag : GetParam().lag;
+    if (!in_position || way.fastest * most > standard.fastest) continue;
     const double lag = bench::confirmedRatio(stage, standard.params, way.params, kRounds);
-    std::printf("  %.2f times faster, error %.2e: %s\n", lag, way.error.rms, way.name().c_str());
-    EXPECT_LE(lag, GetParam().lag) << way.name() << "; recorded: " << GetParam().why;
+    std::printf("  %.2f times faster, error %.2e%s: %s\n", lag, way.error.rms, in_any ? ", no worse in any" : "",
+                way.name().c_str());
+    EXPECT_LE(lag, most) << way.name() << "; by positions alone: " << GetParam().why;
   }
 }
 

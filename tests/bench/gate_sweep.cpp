@@ -24,7 +24,7 @@ void addSweepFigures(const GateOptions& options, const std::function<void(const 
       lag.ratio = confirmedRatio(stage, sweep.points.front().params, lag.way->params, options.rounds);
     }
     const std::string name = scene.name;
-    add({"fastest way with no more error over the default: " + name, lag.ratio, kBehindFront, false, "",
+    add({"fastest way with no more of any error over the default: " + name, lag.ratio, kBehindFront, false, "",
          lag.way->is_default ? "the default itself" : lag.way->name()});
     double smallest = sweep.points.front().error.rms;
     for (const Point& point : sweep.points) smallest = std::min(smallest, point.error.rms);

@@ -19,6 +19,9 @@ constexpr double kSameTime = 1.02;
 constexpr double kLongRun = 1;           // s
 constexpr double kLeastRange = 1e-6;     // J, of the reference's energy: below it there is nothing to drift over
 constexpr double kReferenceShare = 0.1;  // of an error that is ranked, at most the reference's own
+constexpr double kAlike = 1.1;           // largest errors so near to one another are the same
+constexpr double kUnseen = 0.01;         // of lengths and volumes, which does not show
+constexpr double kUnseenDepth = 1e-4;    // m
 
 std::string choiceName(const char* field, const SimParams& params) {
   return sim::paramText(*sim::findParam(field), params);
@@ -126,6 +129,16 @@ std::optional<double> energyDrift(const RunResult& run, const Reference& referen
   return sum / samples / (*most - *least);
 }
 
+Lag fastestOf(const Sweep& sweep, const auto& allowed) {
+  const Point& standard = sweep.points.front();
+  Lag lag{1, &standard};
+  for (const Point& q : sweep.points) {
+    const double ratio = standard.fastest / q.fastest;
+    if (ratio > lag.ratio && allowed(q)) lag = {ratio, &q};
+  }
+  return lag;
+}
+
 }  // namespace
 
 std::vector<SimParams> waysToRun(SweepSize size, bool contacts) {
@@ -207,14 +220,25 @@ double confirmedRatio(TrajectoryStage& stage, const SimParams& slow, const SimPa
   return medianOf(ratios);
 }
 
+bool Errors::noWorseInAny(const Errors& than, double own_error) const {
+  return noWorseInPosition(than, own_error) && most <= kAlike * than.most + own_error &&
+         stretch <= std::max(kUnseen, kAlike * than.stretch) && volume <= std::max(kUnseen, kAlike * than.volume) &&
+         penetration <= than.penetration + kUnseenDepth;
+}
+
+Errors Point::errors() const {
+  return {error.rms, error.most, result.worst_stretch, result.volume_error, result.worst_penetration};
+}
+
 Lag lagOfDefault(const Sweep& sweep) {
-  const Point& standard = sweep.points.front();
-  Lag lag{1, &standard};
-  for (const Point& q : sweep.points) {
-    const double ratio = standard.fastest / q.fastest;
-    if (q.error.rms <= standard.error.rms + sweep.own_error && ratio > lag.ratio) lag = {ratio, &q};
-  }
-  return lag;
+  return fastestOf(
+      sweep, [&](const Point& q) { return q.errors().noWorseInAny(sweep.points.front().errors(), sweep.own_error); });
+}
+
+Lag lagByPosition(const Sweep& sweep) {
+  return fastestOf(sweep, [&](const Point& q) {
+    return q.errors().noWorseInPosition(sweep.points.front().errors(), sweep.own_error);
+  });
 }
 
 }  // namespace bench

@@ -21,6 +21,21 @@ enum class SweepSize { kShort, kQuick, kFull };
 // default's place on any chart.
 std::vector<sim::SimParams> waysToRun(SweepSize size, bool contacts);
 
+// By how much a way is off, of everything that a chart reports: where hair is thrown about so that every way's
+// positions are off alike, lengths and volumes still tell one from another.
+struct Errors {
+  double rms = 0, most = 0;  // of positions, over hair length
+  double stretch = 0;        // worst, of lengths along the hair
+  double volume = 0;         // mean
+  double penetration = 0;    // m, deepest
+
+  // Not further off in the mean position than by what the reference itself may be.
+  bool noWorseInPosition(const Errors& than, double own_error) const { return rms <= than.rms + own_error; }
+  // Nor in anything else by what would show: a tenth, a hundredth of lengths and volumes, a tenth of a millimetre
+  // inside.
+  bool noWorseInAny(const Errors& than, double own_error) const;
+};
+
 struct Point {
   sim::SimParams params;
   RunResult result;  // of the last run; trajectory and energies are dropped
@@ -30,6 +45,7 @@ struct Point {
   bool is_default = false, on_front = false;
   bool ranked = true;  // the reference's own error is below a tenth of this one's
   std::string name() const;
+  Errors errors() const;
 };
 
 // A scene's points over the samples that can be compared; the default first.
@@ -49,12 +65,14 @@ Sweep sweepScene(TrajectoryStage& stage, const Reference& reference, const std::
 // smaller error in less time. Times within 2 % are equal too: repeated runs differ by as much.
 void markFront(Sweep& sweep);
 
-// How many times the fastest way with an equal or smaller error is faster than the default; that way.
+// How many times the fastest way that is no worse in any error is faster than the default; that way. And the same by
+// the mean error of positions alone.
 struct Lag {
   double ratio = 1;
   const Point* way = nullptr;
 };
 Lag lagOfDefault(const Sweep& sweep);
+Lag lagByPosition(const Sweep& sweep);
 
 // Time of `slow` over that of `fast`, run in turns; the median of so many rounds.
 double confirmedRatio(TrajectoryStage& stage, const sim::SimParams& slow, const sim::SimParams& fast, int rounds);
