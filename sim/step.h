@@ -8,6 +8,7 @@
 #include "sim/colliders.h"
 #include "sim/hair_mesh.h"
 #include "sim/hair_state.h"
+#include "sim/left_out.h"
 #include "sim/sim_params.h"
 #include "sim/watchdog.h"
 
@@ -41,6 +42,7 @@ struct StepReport {
   int recoveries = 0;               // watchdog restored the last good state
   Trouble trouble;                  // what it found, for the log
   bool carried = false;             // the roots had jumped as no motion could: the hair was carried along with them
+  LeftOut collider_tests;           // of a vertex with a collider, all searches: those that lay out of reach
 };
 
 // Scratch memory and everything derived from mesh and parameters (matrix patterns, factors). Keep one per hair; a step
