@@ -175,6 +175,13 @@ void addStep(const sim::StepReport& report, double step_seconds, FrameStats& sta
   stats.max_penetration = std::max(stats.max_penetration, report.max_penetration);
   count(report.contacts == 0 && report.corrected == 0, stats.always[kNoContact]);
   count(report.solver_iterations == 0, stats.always[kSolvedAtStart]);
+  const auto add = [&](BuiltInId id, const sim::LeftOut& left_out) {
+    stats.always[id].skipped += left_out.skipped;
+    stats.always[id].of += left_out.of;
+  };
+  add(kNoNewFactor, report.refreshes);
+  add(kNoStiffness, report.force_kinds);
+  add(kOutOfReach, report.collider_tests);
 }
 
 std::string numericalNote(const FrameStats& stats) {

@@ -66,7 +66,7 @@ enum BuiltInId {
 struct BuiltInSkip {
   BuiltInId id;
   const char* name;
-  const char* counts;  // what its counter counts; empty: it has none, for nothing reports it
+  const char* counts;  // what its counter counts
   const char* what;
   const char* proof;
 };

@@ -191,6 +191,7 @@ int tabIndex(std::string_view name) {
 
 void buildUi(Demo& demo, UiState& ui) {
   ui.items.clear();
+  count(!ui.visible, demo.stats.always[kHiddenPanels]);
   if (ui.visible) {
     sidebar(demo, ui);
     timings(demo, ui);

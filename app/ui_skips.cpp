@@ -36,7 +36,6 @@ void skipsSection(Demo& demo, UiState& ui) {
   ImGui::Separator();
   ImGui::TextDisabled("always");
   for (const BuiltInSkip& skip : builtInSkips()) {
-    if (!*skip.counts) continue;
     const std::string label = readable(skip.name);
     ImGui::TextUnformatted(label.c_str());
     tip(skip.what);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <optional>
 
 namespace sim {
@@ -19,6 +21,9 @@ constexpr double kGrazing = 0.1;   // of its thickness; a path no deeper slides 
 constexpr int kMostMarches = 64, kDepthSamples = 8, kMostSamples = 512;
 constexpr double kSampling = 0.5;  // of its thickness, from one sample of the depth to the next
 constexpr double kMet = 1e-5;      // m
+// Bounds of clusters
+constexpr int kMostClustered = 16;  // vertices of a cluster: fewer are more to bound, more reach farther
+constexpr double kRounding = 1e-6;  // m, more than rounding may make of what the tests themselves would say
 // Out of a crowd of bodies
 constexpr double kNeighbour = 0.005;  // m; bodies so near to a vertex are those that hem it in
 constexpr double kStride = 5e-4;      // m, at least
@@ -34,14 +39,37 @@ bool mayTouch(const Ellipsoid& e, double offset, const Vec3& p) {
   return local.cwiseQuotient(e.radii + Vec3::Constant(grow)).squaredNorm() < 1;
 }
 
-// Colliders whose surroundings, over the whole step, overlap the box of the vertices' paths.
-void collectNear(const ContactSearch& search, std::span<const Vec3> positions, std::vector<NearCollider>& near) {
-  near.clear();
-  Vec3 low = Vec3::Constant(INFINITY), high = -low;
-  for (const int v : search.vertices) {
-    low = low.cwiseMin(positions[v]), high = high.cwiseMax(positions[v]);
-    if (!search.start.empty()) low = low.cwiseMin(search.start[v]), high = high.cwiseMax(search.start[v]);
+// Bounds of all the vertices that are searched, and of each cluster of them.
+SweptBox boundPaths(const ContactSearch& search, std::span<const Vec3> positions, ContactScratch& scratch) {
+  const Vec3 far = Vec3::Constant(INFINITY);
+  const SweptBox none{0, {far, far}, {-far, -far}};
+  const std::span<const Vec3> start = search.start.empty() ? positions : search.start;
+  const auto add = [&](int v, SweptBox& box) {
+    ++box.vertices;
+    box.low[0] = box.low[0].cwiseMin(start[v]), box.high[0] = box.high[0].cwiseMax(start[v]);
+    box.low[1] = box.low[1].cwiseMin(positions[v]), box.high[1] = box.high[1].cwiseMax(positions[v]);
+  };
+  SweptBox whole = none;
+  if (scratch.cluster_of.empty()) {
+    for (const int v : search.vertices) add(v, whole);
+    return whole;
   }
+  std::fill(scratch.boxes.begin(), scratch.boxes.end(), none);
+  for (const int v : search.vertices) add(v, scratch.boxes[scratch.cluster_of[v]]);
+  for (const SweptBox& box : scratch.boxes) {
+    whole.vertices += box.vertices;
+    for (const int end : {0, 1}) {
+      whole.low[end] = whole.low[end].cwiseMin(box.low[end]);
+      whole.high[end] = whole.high[end].cwiseMax(box.high[end]);
+    }
+  }
+  return whole;
+}
+
+// Colliders whose surroundings, over the whole step, overlap the box of the vertices' paths.
+void collectNear(const ContactSearch& search, const SweptBox& whole, std::vector<NearCollider>& near) {
+  near.clear();
+  const Vec3 low = whole.low[0].cwiseMin(whole.low[1]), high = whole.high[0].cwiseMax(whole.high[1]);
   for (int k = 0; k < search.colliders.count(); ++k) {
     const Ellipsoid& e = search.colliders.body(k);
     const double reach = e.radii.maxCoeff() + search.margins.offset;
@@ -52,6 +80,60 @@ void collectNear(const ContactSearch& search, std::span<const Vec3> positions, s
     NearCollider body{k, before, e.center, Eigen::Matrix3d::Identity(), turned, reach, search.colliders.thickness(k)};
     if (turned > 1e-12) body.turn = Eigen::AngleAxisd(turned, e.angular_velocity.normalized()).toRotationMatrix();
     near.push_back(body);
+  }
+}
+
+// Where some vertices are at the step's end, and how far off that they have been within it: by their motion, that of
+// the whole hair (`shift`, m) left out.
+struct SweptBall {
+  Vec3 center;
+  double swept;  // m
+
+  SweptBall(const SweptBox& box, const Vec3& shift) : center(0.5 * (box.low[1] + box.high[1])) {
+    const Vec3 way = center - 0.5 * (box.low[0] + box.high[0]) - shift;
+    const double radius = 0.5 * std::max((box.high[0] - box.low[0]).norm(), (box.high[1] - box.low[1]).norm());
+    swept = radius + (1 + kStraight) * way.norm();
+  }
+  SweptBall(const Vec3& start, const Vec3& end, const Vec3& shift)
+      : center(end), swept((1 + kStraight) * (end - start - shift).norm()) {}
+};
+
+// How far the collider's own motion brings its reach. With d from its centre to a ball's, w the way of that relative to
+// the collider as if it did not turn, and a turn by t, the chord along which sweep looks for the collider is no longer
+// than |w| + t (|d| + |w|), and no vertex of the ball is farther than its radius from the ball's own chord. So neither
+// sweep nor mayTouch finds anything where |d| exceeds reach, radius and that together.
+void boundReach(const Vec3& shift, NearCollider& near) {
+  if (near.turned >= kStraight) return;  // met on arcs
+  const double way = (near.after - near.before - shift).norm();
+  near.stretch = 1 / (1 - near.turned);
+  near.margin = near.stretch * (near.reach + (1 + near.turned) * way + kRounding);
+}
+
+bool outOfReach(const SweptBall& ball, const NearCollider& near) {
+  const double far = near.margin + near.stretch * ball.swept;
+  return (ball.center - near.after).squaredNorm() > far * far;
+}
+
+// What of `near` each cluster can reach.
+void collectReached(const ContactSearch& search, const Vec3& shift, ContactScratch& scratch) {
+  std::size_t end = 0;
+  const std::size_t count = scratch.near.size(), all = search.colliders.count(), clusters = scratch.boxes.size();
+  scratch.tests.of += static_cast<long>(search.vertices.size() * all);
+  scratch.tests.skipped += static_cast<long>(search.vertices.size() * (all - count));
+  if (count == 0) return;
+  if (scratch.reached.size() < count * clusters) scratch.reached.resize(count * clusters);
+  for (std::size_t c = 0; c < clusters; ++c) {
+    const SweptBox& box = scratch.boxes[c];
+    const std::size_t first = end;
+    if (box.vertices > 0) {
+      const SweptBall ball(box, shift);
+      for (std::size_t n = 0; n < count; ++n) {
+        scratch.reached[end] = static_cast<int>(n);
+        end += !outOfReach(ball, scratch.near[n]);
+      }
+    }
+    scratch.reached_end[c] = static_cast<int>(end);
+    scratch.tests.skipped += box.vertices * static_cast<long>(count - (end - first));
   }
 }
 
@@ -223,14 +305,57 @@ void leaveAll(const ContactSearch& search, const ContactScratch& scratch, Penetr
   }
 }
 
+// Places in `near` of the colliders that the vertex's cluster reaches.
+std::span<const int> reachedBy(const ContactScratch& scratch, int vertex) {
+  const int cluster = scratch.cluster_of[vertex];
+  const int first = cluster > 0 ? scratch.reached_end[cluster - 1] : 0;
+  return {scratch.reached.data() + first, scratch.reached.data() + scratch.reached_end[cluster]};
+}
+
 }  // namespace
+
+void clusterVertices(const HairMesh& mesh, ContactScratch& scratch) {
+  std::vector<int> vertices(static_cast<std::size_t>(mesh.vertexCount()));
+  std::iota(vertices.begin(), vertices.end(), 0);
+  scratch.cluster_of.assign(vertices.size(), 0);
+  int count = 0;
+  // Halves of boxes across their longest side, down to clusters.
+  const std::function<void(std::span<int>)> split = [&](std::span<int> some) {
+    if (some.size() <= kMostClustered) {
+      for (const int v : some) scratch.cluster_of[v] = count;
+      ++count;
+      return;
+    }
+    Eigen::AlignedBox3d box;
+    for (const int v : some) box.extend(mesh.shape.positions[v]);
+    int axis = 0;
+    box.sizes().maxCoeff(&axis);
+    const std::size_t half = some.size() / 2;
+    std::nth_element(some.begin(), some.begin() + static_cast<std::ptrdiff_t>(half), some.end(), [&](int a, int b) {
+      const double x = mesh.shape.positions[a][axis], y = mesh.shape.positions[b][axis];
+      return x != y ? x < y : a < b;
+    });
+    split(some.first(half));
+    split(some.subspan(half));
+  };
+  split(vertices);
+  scratch.boxes.resize(count);
+  scratch.reached_end.resize(count);
+}
 
 void findPenetrations(const ContactSearch& search, std::span<const Vec3> positions, ContactScratch& scratch,
                       std::vector<Penetration>& found) {
   found.clear();
-  collectNear(search, positions, scratch.near);
+  const SweptBox whole = boundPaths(search, positions, scratch);
+  const Vec3 shift = 0.5 * (whole.low[1] + whole.high[1] - whole.low[0] - whole.high[0]);
+  collectNear(search, whole, scratch.near);
+  const bool clustered = !scratch.cluster_of.empty();
+  for (NearCollider& near : scratch.near) boundReach(shift, near);
+  collectReached(search, shift, scratch);
   if (scratch.near.empty()) return;
   for (const int v : search.vertices) {
+    const std::span<const int> reached = clustered ? reachedBy(scratch, v) : std::span<const int>();
+    if (clustered && reached.empty()) continue;
     Vec3 p = positions[v];
     Penetration hit{v, -1, p, Vec3::UnitY(), 0, false, 0};
     bool out = false;
@@ -238,9 +363,18 @@ void findPenetrations(const ContactSearch& search, std::span<const Vec3> positio
       Touch deepest;
       deepest.depth = 1e-9;
       int collider = -1;
-      for (const NearCollider& near : scratch.near) {
+      const auto look = [&](const NearCollider& near) {
         const Touch touch = touchOf(search, near, v, p, round == 0);
         if (touch.depth > deepest.depth) deepest = touch, collider = near.index;
+      };
+      // Bounds hold for where the step has brought the vertex, not for where a collider has moved it to since.
+      if (round == 0 && clustered) {
+        const SweptBall path(search.start.empty() ? p : search.start[v], p, shift);
+        for (const int n : reached) {
+          if (!outOfReach(path, scratch.near[n])) look(scratch.near[n]);
+        }
+      } else {
+        for (const NearCollider& near : scratch.near) look(near);
       }
       out = collider < 0;
       if (out) break;

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <span>
 #include <vector>
 
 #include "sim/colliders.h"
 #include "sim/hair_mesh.h"
 #include "sim/hair_state.h"
+#include "sim/left_out.h"
 #include "sim/sim_params.h"
 
 namespace sim {
@@ -46,15 +48,33 @@ struct NearCollider {
   Eigen::Matrix3d turn;  // by which it turned
   double turned;         // rad
   double reach, thin;    // m, around the centre that a contact may lie; its thickness
+  // What moves by s m within the step meets it from no farther than margin + stretch * s off its centre at the end.
+  double margin = INFINITY, stretch = 1;
 
   // Where the motion carries a point that was fixed to it at the step's start.
   Vec3 carried(const Vec3& start) const { return after + turn * (start - before); }
 };
 
+// Positions (m) of some vertices at the start (0) and at the end (1) of a step.
+struct SweptBox {
+  int vertices = 0;
+  std::array<Vec3, 2> low, high;
+};
+
 // Scratch of the searches, sized once.
 struct ContactScratch {
   std::vector<NearCollider> near;
+  // Clusters of neighbouring vertices: a collider out of reach of a cluster's bounds is tested with none of its
+  // vertices. None: every vertex is tested with all of `near`.
+  std::vector<int> cluster_of;   // per vertex
+  std::vector<SweptBox> boxes;   // per cluster
+  std::vector<int> reached;      // places in `near`, of one cluster after the other ...
+  std::vector<int> reached_end;  // ... up to here
+  LeftOut tests;                 // of the searches so far: of a vertex with a collider
 };
+
+// Splits the mesh into clusters by its rest shape. To be called once.
+void clusterVertices(const HairMesh& mesh, ContactScratch& scratch);
 
 // Brings carried contacts to this step: normal and velocity from where the collider's motion carries the vertex.
 // Contacts that are out of reach, or whose collider is gone, are dropped. Overlaps are not resolved by velocities,

@@ -135,9 +135,9 @@ bool ImplicitSolver<T>::factored(Solver solver) const {
 
 // The factor of the rest shape's matrix, for the warped preconditioner. A stale factor stays a valid preconditioner, so
 // it is made anew only when the material has changed, or the terms of the matrix by more than the ratios below; and it
-// serves while the new one is made in slices.
+// serves while the new one is made in slices. Returns whether one was made, or a slice of it.
 template <class T>
-void ImplicitSolver<T>::refreshRestFactor(const HairMesh& mesh, const SimParams& params, double h) {
+bool ImplicitSolver<T>::refreshRestFactor(const HairMesh& mesh, const SimParams& params, double h) {
   const FactorTerms wanted{h, params.damping, params.air_drag};
   const auto near = [](double a, double b, double ratio) { return a < ratio * b && b < ratio * a; };
   const bool compact = params.precision == Precision::kMixed;
@@ -146,23 +146,24 @@ void ImplicitSolver<T>::refreshRestFactor(const HairMesh& mesh, const SimParams&
   const bool usable = rest_terms.h > 0 && rest_compact == compact && rest_part >= part;
   if (usable && gradual && preconditioner.restMatrixPending()) {
     if (preconditioner.continueRestMatrix(kSlices, constraints)) rest_terms = coming_terms;
-    return;
+    return true;
   }
   if (usable && !rest_outdated && near(wanted.stiffness(), rest_terms.stiffness(), kStaleRatio) &&
       near(wanted.mass(), rest_terms.mass(), kStaleMass)) {
-    return;
+    return false;
   }
   assembleRest(mesh, wanted);
   rest_outdated = false;
   if (usable && gradual && (part == Part::kAll ? preconditioner.restFactorFine() : preconditioner.twoLevelFine())) {
     preconditioner.beginRestMatrix(matrix, compact, part);
     coming_terms = wanted;
-    return;
+    return true;
   }
   preconditioner.setRestMatrix(matrix, compact, part);
   rest_part = part;
   rest_terms = wanted;
   rest_compact = compact;
+  return true;
 }
 
 // Matrix, right-hand side of A v = rhs at the current x (and v, unless the linearization is `at_start`, the paper's).
@@ -458,7 +459,7 @@ void ImplicitSolver<T>::solve(const HairMesh& mesh, const SimParams& params, con
   const bool newton = params.integrator == Integrator::kImplicitEuler;
   const bool at_rest = params.solver == Solver::kWarped || params.solver == Solver::kTwoLevel;
   beginStep(params, base, velocities, contacts);
-  if (at_rest) refreshRestFactor(mesh, params, base.h);
+  if (at_rest && refreshRestFactor(mesh, params, base.h)) report.refreshes.skipped = 0;
   const int most = newton ? std::max(1, params.newton_iterations) : 1;
   for (int iteration = 0; iteration < most; ++iteration) {
     place(base, linearized ? std::span<const V3<T>>() : std::span<const V3<T>>(v));

@@ -78,7 +78,7 @@ struct ImplicitSolver {
  private:
   T evaluateForces(std::span<const V3<T>> at, ColumnEvaluation<T> out, std::span<const V3<T>> velocities);
   bool factored(Solver solver) const;  // the whole rest factor is made and used
-  void refreshRestFactor(const HairMesh& mesh, const SimParams& params, double h);
+  bool refreshRestFactor(const HairMesh& mesh, const SimParams& params, double h);
   void assembleRest(const HairMesh& mesh, const FactorTerms& terms);
   void assemble(const SimParams& params, const StepBase& base, bool at_start);
   double residualSquare(const SimParams& params, const StepBase& base);

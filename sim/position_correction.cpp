@@ -100,6 +100,7 @@ PositionCorrection::PositionCorrection(const HairMesh& mesh) : minimizer(mesh) {
     if (!mesh.isRoot(i)) all_vertices.push_back(i);
   }
   penetrations.reserve(all_vertices.size());
+  clusterVertices(mesh, search);
   corrected.reserve(all_vertices.size());
 }
 
@@ -108,7 +109,12 @@ void correctPositions(const CorrectedStep& step, StageClock& clock, PositionCorr
   const HairMesh& mesh = step.mesh;
   ContactSearch search{step.params.collide_inner ? scratch.all_vertices : mesh.external_vertices, step.colliders,
                        step.start, step.dt, contactMargins(step.params, step.dt)};
-  findPenetrations(search, state.positions, scratch.search, scratch.penetrations);
+  const auto find = [&] {
+    scratch.search.tests = {};
+    findPenetrations(search, state.positions, scratch.search, scratch.penetrations);
+    report.collider_tests += scratch.search.tests;
+  };
+  find();
   if (scratch.penetrations.empty()) return;
   for (const Penetration& hit : scratch.penetrations)
     report.max_penetration = std::max(report.max_penetration, hit.depth);
@@ -136,7 +142,7 @@ void correctPositions(const CorrectedStep& step, StageClock& clock, PositionCorr
     if (step.params.minimize_deformation && round < kRounds)
       report.minimization_iterations += letFollow(scratch, state);
     clock.spent(kStageMinimization, report);
-    findPenetrations(search, state.positions, scratch.search, scratch.penetrations);
+    find();
   }
   updateVelocities(step, follow_speed, scratch, state);
   const auto order = [](const Contact& a, const Contact& b) {

@@ -88,20 +88,21 @@ namespace {
 
 using Parts = StepContext::Parts;
 
-// Derived values follow the parameters that they depend on.
-void refreshModel(const SimParams& params, Parts& parts) {
+// Derived values follow the parameters that they depend on. Returns whether any was made, or a slice of it.
+bool refreshModel(const SimParams& params, Parts& parts) {
   const auto tell = [&](auto&& take) {
     if (parts.single_solver) take(*parts.single_solver);
     if (parts.double_solver) take(*parts.double_solver);
   };
   const auto setModel = [&](auto& solver) { solver.setModel(*parts.mesh, parts.material.model, params.density); };
+  bool made = parts.material.outdated();
   if (!parts.has_model || !sameMaterial(params, parts.params)) {
     if (parts.has_model && parts.gradual) {
       parts.material.follow(params);
     } else {
       parts.material.set(params);
     }
-    parts.has_model = true;
+    parts.has_model = made = true;
     tell(setModel);
   } else if (parts.material.work(kBalanceSlices)) {
     tell([&](auto& solver) { solver.setRestShifts(*parts.mesh, parts.material.model); });
@@ -111,6 +112,7 @@ void refreshModel(const SimParams& params, Parts& parts) {
     if (!solver) {
       solver.emplace(*parts.mesh, parts.pattern);
       setModel(*solver);
+      made = true;
     }
     solver->gradual = parts.gradual;
   };
@@ -118,6 +120,7 @@ void refreshModel(const SimParams& params, Parts& parts) {
     ready(parts.double_solver);
   else
     ready(parts.single_solver);
+  return made;
 }
 
 // The integrator's base: where the step would end, and how fast, were the new velocity zero and the forces none.
@@ -151,10 +154,14 @@ void rootsFollowScalp(const StepInput& input, const StepBase& base, const HairMe
 
 void solveVelocities(const SimParams& params, const StepBase& base, Parts& parts, HairState& state,
                      StepReport& report) {
+  const auto solve = [&](auto& solver) {
+    solver.solve(*parts.mesh, params, base, parts.clock, state.contacts, state.velocities, report);
+    report.force_kinds = solver.model.kindsLeftOut();
+  };
   if (params.precision == Precision::kDouble) {
-    parts.double_solver->solve(*parts.mesh, params, base, parts.clock, state.contacts, state.velocities, report);
+    solve(*parts.double_solver);
   } else {
-    parts.single_solver->solve(*parts.mesh, params, base, parts.clock, state.contacts, state.velocities, report);
+    solve(*parts.single_solver);
   }
 }
 
@@ -301,7 +308,7 @@ StepReport advance(const HairMesh& mesh, const SimParams& asked, const StepInput
   SimParams params = bearable(mesh, asked);
   StepReport report;
   parts.clock.start();
-  refreshModel(params, parts);
+  report.refreshes = {!refreshModel(params, parts), 1};
   guardGiven(given, parts, state, report);
   const StepInput input = carryOverJump(params, given, dt, parts, state, report);
   // Where the jump has put the hair into a body, nobody has seen it go there: it is out at once.

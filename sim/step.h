@@ -8,6 +8,7 @@
 #include "sim/colliders.h"
 #include "sim/hair_mesh.h"
 #include "sim/hair_state.h"
+#include "sim/left_out.h"
 #include "sim/sim_params.h"
 #include "sim/watchdog.h"
 
@@ -41,6 +42,10 @@ struct StepReport {
   int recoveries = 0;               // watchdog restored the last good state
   Trouble trouble;                  // what it found, for the log
   bool carried = false;             // the roots had jumped as no motion could: the hair was carried along with them
+  LeftOut refreshes;                // of what follows the parameters (the factor of the rest shape, the balance of
+                                    // gravity): 1 of 1 where nothing was made, nor a slice of it
+  LeftOut force_kinds;              // kinds of force that have no stiffness, of all
+  LeftOut collider_tests;           // of a vertex with a collider, all searches: those that lay out of reach
 };
 
 // Scratch memory and everything derived from mesh and parameters (matrix patterns, factors). Keep one per hair; a step

@@ -296,6 +296,13 @@ TEST(Headless, ARunWithoutPicturesNeedsNoGraphicsAndReportsEveryFrame) {
   EXPECT_EQ(summary["always_skipped"]["no-picture"]["skipped"], 20);
   EXPECT_EQ(summary["always_skipped"]["paused"]["skipped"], 0);
   EXPECT_EQ(summary["always_skipped"]["no-contact"]["of"], 19);
+  EXPECT_EQ(summary["always_skipped"]["no-new-factor"]["skipped"], 19);
+  EXPECT_EQ(summary["always_skipped"]["no-new-factor"]["of"], 19);
+  EXPECT_EQ(summary["always_skipped"]["no-stiffness"]["of"], 5 * 19);
+  const auto& reach = summary["always_skipped"]["out-of-reach"];
+  EXPECT_GT(reach["skipped"].get<long>(), reach["of"].get<long>() / 2);
+  EXPECT_LT(reach["skipped"].get<long>(), reach["of"].get<long>());
+  EXPECT_TRUE(report["frames"][5]["always_skipped"].contains("out-of-reach"));
 }
 
 }  // namespace

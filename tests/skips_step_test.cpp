@@ -72,6 +72,31 @@ TEST(LeftOut, UnchangedParametersNeverRefactor) {
   EXPECT_LT(later, 0.5 * first) << "a first step makes the factor, a later one does not";
 }
 
+// The counter of it, at once and in slices: steps that keep all, of steps.
+TEST(LeftOut, StepsThatKeepFactorAndBalanceAreCounted) {
+  for (const bool gradually : {false, true}) {
+    Hair hair(test::combedShape(coat()), everyday());
+    hair.params.sag_free = true;
+    hair.context.refreshGradually(gradually);
+    const auto kept = [&] {
+      const sim::LeftOut count = hair.step(kFrame).refreshes;
+      EXPECT_EQ(count.of, 1);
+      return count.skipped == 1;
+    };
+    EXPECT_FALSE(kept());
+    for (int n = 0; n < 3; ++n) EXPECT_TRUE(kept());
+    hair.params.friction *= 2;
+    EXPECT_TRUE(kept()) << "neither follows from it";
+    hair.params.bend *= 1.5;
+    int refreshing = 0;
+    while (refreshing < 200 && !kept()) ++refreshing;
+    EXPECT_TRUE(gradually ? refreshing > 5 && refreshing < 200 : refreshing == 1) << refreshing << " steps";
+    for (int n = 0; n < 3; ++n) EXPECT_TRUE(kept());
+    // Another step, so much shorter, makes the factor anew, the balance not.
+    EXPECT_EQ(hair.step(kFrame / 8).refreshes.skipped, 0);
+  }
+}
+
 template <class T>
 struct Evaluated {
   std::vector<T> force, matrix;
@@ -126,6 +151,13 @@ TEST(LeftOut, KindsOfForceWithoutStiffnessAreNotAssembled) {
     all.has_vertical = all.has_horizontal = all.has_shear = all.has_bend = true;
     EXPECT_EQ(evaluated(all), evaluated(model));
   }
+  // The counter of a step. Horizontal edges keep what stretches walls across.
+  for (const auto& [params, left_out] : {std::pair{full, 0}, {least, 3}, {test::looseParticles(), 5}}) {
+    Hair hair(test::combedShape(coat()), params);
+    const sim::LeftOut kinds = hair.step(kFrame).force_kinds;
+    EXPECT_EQ(kinds.skipped, left_out);
+    EXPECT_EQ(kinds.of, 5);
+  }
   const sim::ColumnModel<T> full_model = modelOf(full), least_model = modelOf(least);
   double dear = INFINITY, cheap = INFINITY;
   for (int round = 0; round < kMostRounds && cheap >= 0.6 * dear; ++round) {
@@ -142,16 +174,24 @@ TEST(LeftOut, CollidersOutOfReachChangeNoBitAndCostNothing) {
   for (int k = 0; k < 40; ++k)
     with.bodies.push_back({Vec3(2 + k, 0, 0), Eigen::Quaterniond::Identity(), Vec3(0.5, 0.4, 0.3)});
   double least[2] = {INFINITY, INFINITY};
+  sim::LeftOut counted[2];
+  bool looked = false;
   for (int n = 0; n < 60 || (n < 60 * kMostRounds && least[1] >= 1.1 * least[0]); ++n) {
     for (Hair* hair : {&without, &with}) {
       if (n < 10) {
         for (Vec3& root : hair->roots) root.y() -= 0.003;
       }
       double& seconds = least[hair == &with];
-      seconds = std::min(seconds, cpuSeconds(1, [&] { hair->step(kFrame); }));
+      sim::LeftOut& tests = counted[hair == &with];
+      seconds = std::min(seconds, cpuSeconds(1, [&] { tests = hair->step(kFrame).collider_tests; }));
     }
+    // All tests with the forty are left out; those with the one are not.
+    ASSERT_EQ(counted[1].of, 41 * counted[0].of);
+    ASSERT_EQ(counted[1].skipped, counted[0].skipped + 40 * counted[0].of);
+    looked = looked || counted[0].skipped < counted[0].of;
     ASSERT_EQ(test::largestDistance(without.state.positions, with.state.positions), 0);
   }
+  EXPECT_TRUE(looked);
   EXPECT_FALSE(with.state.contacts.empty());
   EXPECT_LT(least[1], 1.1 * least[0]) << "forty bodies";
 }

@@ -183,10 +183,18 @@ TEST_F(Panels, PanelsLeaveTheMiddleToTheFigure) {
 }
 
 TEST_F(Panels, HiddenPanelsDrawNothing) {
+  const app::SkipTally& hidden = demo_.stats.always[app::kHiddenPanels];
+  demo_.stats = {};
+  frame();
+  EXPECT_EQ(hidden.skipped, 0);
+  EXPECT_EQ(hidden.of, 1);
   app::pressKey(app::kKeyTab, demo_, ui_);
+  demo_.stats = {};
   frame();
   EXPECT_TRUE(ui_.items.empty());
   EXPECT_EQ(ImGui::GetDrawData()->TotalVtxCount, 0);
+  EXPECT_EQ(hidden.skipped, 1);
+  EXPECT_EQ(hidden.of, 1);
 }
 
 TEST_F(Panels, TinyWindowsAreSurvived) {

@@ -8,6 +8,7 @@
 
 #include "sim/column_matrix.h"
 #include "sim/forces/force_model.h"
+#include "sim/left_out.h"
 
 namespace sim {
 
@@ -61,6 +62,11 @@ struct ColumnModel {
   std::vector<T> volume_stiffness, volume_rest;
   // Whether any element of the kind has a stiffness: kinds without one are not assembled.
   bool has_vertical = true, has_horizontal = true, has_shear = true, has_bend = true, has_volume = true;
+
+  LeftOut kindsLeftOut() const {
+    const int assembled = has_vertical + has_horizontal + has_shear + has_bend + has_volume;
+    return {5 - assembled, 5};
+  }
 
   ColumnModel(const HairMesh& mesh, const ColumnLayout& layout, const ColumnPattern& pattern);
   // Takes over stiffnesses and rest values; the topology stays.

@@ -1,0 +1,15 @@
+// Counts of work left out.
+#pragma once
+
+namespace sim {
+
+// How much of one kind of work was left out, of how much.
+struct LeftOut {
+  long skipped = 0, of = 0;
+  LeftOut& operator+=(const LeftOut& more) {
+    skipped += more.skipped, of += more.of;
+    return *this;
+  }
+};
+
+}  // namespace sim
