@@ -121,7 +121,7 @@ void collectReached(const ContactSearch& search, const Vec3& shift, ContactScrat
   scratch.tests.of += static_cast<long>(search.vertices.size() * all);
   scratch.tests.skipped += static_cast<long>(search.vertices.size() * (all - count));
   if (count == 0) return;
-  if (scratch.reached.size() < count * clusters) scratch.reached.resize(count * clusters);
+  if (scratch.reached.size() < all * clusters) scratch.reached.resize(all * clusters);  // once, whatever comes near
   for (std::size_t c = 0; c < clusters; ++c) {
     const SweptBox& box = scratch.boxes[c];
     const std::size_t first = end;

@@ -116,6 +116,7 @@ void addPart(const StepReport& part, StepReport& whole) {
   whole.standing += part.standing;
   whole.standing_overlap = std::max(whole.standing_overlap, part.standing_overlap);
   whole.self_contacts += part.self_contacts;
+  whole.combed += part.combed;
   whole.refreshes += part.refreshes;
   whole.force_kinds += part.force_kinds;
   whole.collider_tests += part.collider_tests;

@@ -246,6 +246,20 @@ TEST(HairParts, AreWhatIsConnectedAndMoveAsTheWholeDoes) {
   EXPECT_LT(test::largestDistance(hair.state.positions, other.state.positions), 1e-6);
 }
 
+TEST(HairParts, CountWhatTheyDidTogether) {
+  sim::StepReport part, whole;
+  const auto counts = [](sim::StepReport& report) {
+    return std::array{&report.solver_iterations, &report.contacts, &report.corrected, &report.standing,
+                      &report.self_contacts,     &report.combed,   &report.recoveries};
+  };
+  int n = 0;
+  for (int* count : counts(part)) *count = ++n;
+  sim::addPart(part, whole);
+  sim::addPart(part, whole);
+  n = 0;
+  for (const int* count : counts(whole)) EXPECT_EQ(*count, 2 * ++n);
+}
+
 // Both plaits sleep; one is pushed: it alone wakes, and the other one stays to the bit where it was.
 TEST(HairParts, SleepAndWakeOneByOne) {
   const std::string file = testing::TempDir() + "plaits.obj";
