@@ -14,8 +14,9 @@ constexpr double kHeadHeight = 0.23;  // m
 constexpr double kReach = 0.008;      // m, along the skin: how far a root shades the skin around it
 constexpr double kSpacing = 0.002;    // m, between the samples of a root face
 // m between skin and root, across the skin: as good as on it up to the first, of another head from the second on.
-constexpr double kNear = 0.004, kApart = 0.012;
-constexpr double kMargin = 0.0003;  // m that the skin is drawn below the roots
+constexpr double kNear = 0.012, kApart = 0.018;
+constexpr double kOnScalp = 0.002, kOnEar = 0.006;  // m of skin above the scalp, which is without ears
+constexpr double kMargin = 0.0003;                  // m that the skin is drawn below the roots
 
 // Share of the skin around that bears roots, from which on it counts and at which it is covered. Along a straight
 // hairline it is a half.
@@ -99,7 +100,11 @@ std::vector<float> rootCover(const Character& character, const sim::HairMesh& ha
 
   // The weight (1 - d^2 / reach^2)^2 spreads each root's area; over a plane it integrates to pi reach^2 / 3.
   const double whole = EIGEN_PI * reach * reach / 3;
-  std::vector<double> share(count, 0.0), depth(count, 0.0);
+  std::vector<double> share(count, 0.0), depth(count, 0.0), on_scalp(count);
+  for (std::size_t v = 0; v < count; ++v) {
+    const Vec3 from = places[v] - character.scalp.center;
+    on_scalp[v] = smoothstep(scale * kOnEar, scale * kOnScalp, from.norm() - character.scalp.radiusAt(from));
+  }
   for (const RootSample& sample : samples) {
     cubes.around(sample.place, [&](int v) {
       const Vec3 gap = places[v] - sample.place;
@@ -108,7 +113,7 @@ std::vector<float> rootCover(const Character& character, const sim::HairMesh& ha
       if (left <= 0) return;
       const double facing = std::max(0.0, normals[v].dot(sample.normal));
       const double on_it = smoothstep(scale * kApart, scale * kNear, std::abs(above));
-      const double weight = left * left * sample.area / whole * facing * on_it;
+      const double weight = left * left * sample.area / whole * facing * on_it * on_scalp[v];
       share[v] += weight;
       depth[v] += weight * above;
     });
