@@ -12,7 +12,7 @@ namespace {
 // On a head of this height; in proportion on others.
 constexpr double kHeadHeight = 0.23;  // m
 constexpr double kReach = 0.008;      // m, along the skin: how far a root shades the skin around it
-constexpr double kSpacing = 0.002;    // m, between the samples of a root face
+constexpr double kSpacing = 0.003;    // m, between the samples of a root face
 // m between skin and root, across the skin: as good as on it up to the first, of another head from the second on.
 constexpr double kNear = 0.012, kApart = 0.018;
 constexpr double kOnScalp = 0.002, kOnEar = 0.006;  // m of skin above the scalp, which is without ears
@@ -89,22 +89,20 @@ std::vector<float> rootCover(const Character& character, const sim::HairMesh& ha
   const Rigid to_scalp = scalpToWorld(character, restPose(character.skeleton)).inverse();
   const std::size_t count = mesh.positions.size();
   std::vector<Vec3> places(count), normals(count);
+  std::vector<double> on_scalp(count), share(count, 0.0), depth(count, 0.0);
   Cubes cubes(scale * std::hypot(kReach, kApart));
   for (std::size_t v = 0; v < count; ++v) {
     places[v] = to_scalp * mesh.positions[v].cast<double>();
     normals[v] = to_scalp.linear() * mesh.normals[v].cast<double>();
-    cubes.add(places[v], static_cast<int>(v));
+    const Vec3 from = places[v] - character.scalp.center;
+    on_scalp[v] = smoothstep(scale * kOnEar, scale * kOnScalp, from.norm() - character.scalp.radiusAt(from));
+    if (on_scalp[v] > 0) cubes.add(places[v], static_cast<int>(v));
   }
   std::vector<RootSample> samples;
   for (const sim::RootFace& face : hair.shape.root_faces) addFace(hair.shape, face, scale * kSpacing, samples);
 
   // The weight (1 - d^2 / reach^2)^2 spreads each root's area; over a plane it integrates to pi reach^2 / 3.
   const double whole = EIGEN_PI * reach * reach / 3;
-  std::vector<double> share(count, 0.0), depth(count, 0.0), on_scalp(count);
-  for (std::size_t v = 0; v < count; ++v) {
-    const Vec3 from = places[v] - character.scalp.center;
-    on_scalp[v] = smoothstep(scale * kOnEar, scale * kOnScalp, from.norm() - character.scalp.radiusAt(from));
-  }
   for (const RootSample& sample : samples) {
     cubes.around(sample.place, [&](int v) {
       const Vec3 gap = places[v] - sample.place;
