@@ -236,6 +236,30 @@ TEST_F(ScalpPicture, AFarHeadIsTintedToo) {
   EXPECT_LT(brightness(tinted, 13, 54, 1), 0.8 * brightness(bare, 13, 54, 1));
 }
 
+// Hair comes out of the skin where it roots: less of the skin shows than when it is drawn where the body's mesh has it.
+TEST_F(ScalpPicture, LessSkinShowsAtThePartingWhereTheScalpIsLower) {
+  demo_->actors[0].spec.look.body_color = {0, 0.3f, 0};
+  demo_->actors[0].spec.look.strands = 20000;
+  const auto skin = [](const app::Image& image) {
+    int green = 0;  // pixels in the middle of the picture, where the parting is
+    for (std::size_t p = 0; p < image.rgba.size(); p += 4) {
+      const std::size_t x = p / 4 % kWidth, y = p / 4 / kWidth;
+      const bool middle = x > kWidth * 2 / 5 && x < kWidth * 3 / 5 && y > kHeight / 6 && y < kHeight / 2;
+      green += middle && image.rgba[p + 1] > 2 * image.rgba[p];
+    }
+    return green;
+  };
+  const int lower = skin(draw(0, 0.6));
+  app::ScalpCover level = *demo_->actors[0].scalp;
+  ++level.id;
+  for (std::size_t i = 1; i < level.cover.size(); i += 2) level.cover[i] = 0;
+  demo_->actors[0].scalp = &level;
+  const int as_meshed = skin(draw(0, 0.6));
+  std::printf("%d pixels of skin, %d with the skin as it is meshed\n", lower, as_meshed);
+  EXPECT_GT(as_meshed, 200);
+  EXPECT_LT(lower, 0.8 * as_meshed);
+}
+
 TEST_F(ScalpPicture, AScalpIsUploadedOnceAndATintAlone) {
   render::FrameReport first, again, other;
   draw(0.5f, 0.6, true, &first);
