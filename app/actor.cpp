@@ -7,6 +7,7 @@
 #include "app/errors.h"
 #include "app/frame_stats.h"
 #include "app/hair_file.h"
+#include "app/root_cover.h"
 #include "app/sim_to_render.h"
 #include "app/sleep.h"
 
@@ -88,6 +89,15 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, Wardrobe& wa
   return *wardrobe.haircuts.back();
 }
 
+const ScalpCover& coverScalp(const LoadedBody& body, const Haircut& haircut, Wardrobe& wardrobe) {
+  for (const auto& scalp : wardrobe.covers) {
+    if (scalp->body_id == body.id && scalp->haircut_id == haircut.id) return *scalp;
+  }
+  wardrobe.covers.push_back(std::make_unique<ScalpCover>(
+      ScalpCover{freshId(), body.id, haircut.id, rootCover(body.character, haircut.mesh)}));
+  return *wardrobe.covers.back();
+}
+
 int findClip(const CharacterSpec& spec, const Character& character) {
   if (spec.clip.empty()) return 0;
   std::string names;
@@ -158,6 +168,7 @@ Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, Wardrob
   LoadedBody& body = loadBody(spec, wardrobe);
   actor.body = &body;
   actor.haircut = &cutHair(spec, body, wardrobe);
+  actor.scalp = &coverScalp(body, *actor.haircut, wardrobe);
   actor.clip = findClip(spec, actor.body->character);
   actor.id = freshId();
   actor.playback.time = spec.clip_offset;
@@ -196,6 +207,7 @@ void tidy(const std::vector<Actor>& actors, Wardrobe& wardrobe) {
       const HaircutPair* pair = actor.coarse.pair;
       return static_cast<const void*>(actor.body) == entry.get() ||
              static_cast<const void*>(actor.haircut) == entry.get() ||
+             static_cast<const void*>(actor.scalp) == entry.get() ||
              (pair &&
               (static_cast<const void*>(pair) == entry.get() || static_cast<const void*>(pair->coarse) == entry.get()));
     });
@@ -203,6 +215,7 @@ void tidy(const std::vector<Actor>& actors, Wardrobe& wardrobe) {
   std::erase_if(wardrobe.pairs, [&](const auto& pair) { return !worn(pair); });
   std::erase_if(wardrobe.bodies, [&](const auto& body) { return !worn(body); });
   std::erase_if(wardrobe.haircuts, [&](const auto& haircut) { return !worn(haircut); });
+  std::erase_if(wardrobe.covers, [&](const auto& scalp) { return !worn(scalp); });
 }
 
 void wakeAll(Actor& actor) {

@@ -46,6 +46,12 @@ struct Haircut {
   std::vector<render::HairFace> faces;
 };
 
+// Where a body is scalp among the roots of a haircut; see root_cover.h.
+struct ScalpCover {
+  std::uint64_t id = 0, body_id = 0, haircut_id = 0;
+  std::vector<float> cover;
+};
+
 // Two resolutions of a style on one head, and the ways between them.
 struct HaircutPair {
   const Haircut* fine = nullptr;
@@ -58,6 +64,7 @@ struct Wardrobe {
   std::vector<std::unique_ptr<LoadedBody>> bodies;
   std::vector<std::unique_ptr<Haircut>> haircuts;
   std::vector<std::unique_ptr<HaircutPair>> pairs;
+  std::vector<std::unique_ptr<ScalpCover>> covers;
 };
 
 // How much care the simulation takes of an actor.
@@ -90,6 +97,7 @@ struct Actor {
   CharacterSpec spec;
   LoadedBody* body = nullptr;  // shared; changed only by what is made on demand
   const Haircut* haircut = nullptr;
+  const ScalpCover* scalp = nullptr;  // of this body under this haircut
   int clip = 0;
   Playback playback;
   Eigen::AlignedBox3d reach;  // world, around the joints at all times of the clip played in place

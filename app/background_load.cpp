@@ -50,6 +50,7 @@ void recastLoaded(Loaded& loaded, Demo& demo) {
   Actor fresh = std::move(*loaded.actor);
   for (auto& body : loaded.wardrobe.bodies) demo.wardrobe.bodies.push_back(std::move(body));
   for (auto& haircut : loaded.wardrobe.haircuts) demo.wardrobe.haircuts.push_back(std::move(haircut));
+  for (auto& scalp : loaded.wardrobe.covers) demo.wardrobe.covers.push_back(std::move(scalp));
   fresh.playback.speed = old.playback.speed;
   fresh.playback.paused = old.playback.paused;
   if (loaded.order.same_motion) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "app/level_of_detail.h"
+#include "render/fiber_scattering.h"
 
 namespace app {
 
@@ -112,7 +113,7 @@ render::HairInput hairInput(const Actor& actor) {
   return input;
 }
 
-render::BodyInput bodyInput(const Actor& actor) {
+render::BodyInput bodyInput(const Actor& actor, bool show_strands) {
   const SkinnedMesh& mesh = actor.body->character.mesh;
   render::BodyInput input;
   input.id = actor.id;
@@ -126,6 +127,11 @@ render::BodyInput bodyInput(const Actor& actor) {
   input.pose_revision = actor.pose_revision;
   input.color = actor.spec.look.body_color;
   input.roughness = actor.spec.look.body_roughness;
+  // A head whose hair is not drawn is bald.
+  input.scalp_id = show_strands && actor.spec.look.strands > 0 ? actor.scalp->id : 0;
+  input.root_cover = actor.scalp->cover;
+  input.scalp_tint = actor.spec.look.scalp_tint;
+  input.root_color = render::rootColor(actor.spec.look.hair);
   return input;
 }
 
@@ -220,7 +226,7 @@ render::FrameInput frameInput(Demo& demo, int width, int height) {
   demo.body_inputs.clear();
   for (const Actor& actor : demo.actors) {
     demo.hair_inputs.push_back(hairInput(actor));
-    demo.body_inputs.push_back(bodyInput(actor));
+    demo.body_inputs.push_back(bodyInput(actor, demo.scene.look.view.show_strands));
   }
   render::FrameInput input;
   input.width = width;

@@ -142,6 +142,10 @@ std::vector<HairField> makeHairTable() {
   return look.body_roughness;
 }
 > ("body_roughness", "Body", "", {0.05, 1}, "Roughness of the mannequin's surface."),
+    hair < [](auto& look) -> auto& {
+  return look.scalp_tint;
+}
+> ("scalp_tint", "Body", "", {0, 1}, "How much the roots shade and colour the skin between them, as at the parting."),
 };  // namespace
 }  // namespace app
 

@@ -18,6 +18,8 @@ struct BodyVertex {
   float weights[4];
 };
 
+constexpr GLuint kCoverAttribute = 4;  // as in skinning.glsl; from a buffer of its own
+
 bool isSound(const BodyInput& input) {
   const std::size_t vertices = input.positions.size() / 3;
   if (vertices == 0 || input.normals.size() != 3 * vertices || input.joints.size() != 4 * vertices ||
@@ -165,6 +167,8 @@ BodyPass::Mesh* BodyPass::meshOf(const BodyInput& input, long& uploaded) {
   attribute(array, 1, 3, GL_FLOAT, offsetof(BodyVertex, normal));
   attribute(array, 2, 4, GL_UNSIGNED_SHORT, offsetof(BodyVertex, joints));
   attribute(array, 3, 4, GL_FLOAT, offsetof(BodyVertex, weights));
+  glVertexArrayAttribFormat(array, kCoverAttribute, 2, GL_FLOAT, GL_FALSE, 0);
+  glVertexArrayAttribBinding(array, kCoverAttribute, 1);
   mesh.index_count = static_cast<int>(input.triangles.size());
   return &mesh;
 }
@@ -199,9 +203,40 @@ bool BodyPass::refreshPose(Body& body, const Mesh& mesh, const BodyInput& input,
   return true;
 }
 
+std::uint64_t BodyPass::scalpOf(const BodyInput& input, long& uploaded) {
+  if (input.scalp_id == 0 || input.root_cover.size() != input.positions.size() / 3 * 2) return 0;
+  auto found = std::find_if(scalps_.begin(), scalps_.end(), [&](const Scalp& scalp) {
+    return scalp.mesh_id == input.mesh_id && scalp.id == input.scalp_id;
+  });
+  if (found == scalps_.end()) {
+    const auto bytes = static_cast<GLsizeiptr>(input.root_cover.size_bytes());
+    found = scalps_.insert(found, Scalp{input.mesh_id, input.scalp_id, false, makeBuffer()});
+    glNamedBufferStorage(found->cover.id(), bytes, input.root_cover.data(), 0);
+    uploaded += static_cast<long>(bytes);
+  }
+  found->seen = true;
+  return found->id;
+}
+
+void BodyPass::refreshLook(Body& body, const BodyInput& input, long& uploaded) {
+  const std::uint64_t scalp_id = scalpOf(input, uploaded);
+  if (scalp_id != body.scalp_id) body.change = ++changes_;  // its shape is another as well
+  body.scalp_id = scalp_id;
+  const Finish finish{input.color, input.root_color, input.roughness, input.scalp_tint};
+  if (body.block && body.finish == finish) return;
+  ++look_changes_;
+  body.finish = finish;
+  const shared::BodyBlock block{asVec4(finish.color, std::clamp(finish.roughness, 0.05f, 1.0f)),
+                                asVec4(finish.root_color, std::clamp(finish.scalp_tint, 0.0f, 1.0f))};
+  body.block = makeBuffer();
+  glNamedBufferStorage(body.block.id(), sizeof(block), &block, 0);
+  uploaded += sizeof(block);
+}
+
 long BodyPass::update(std::span<const BodyInput> inputs) {
   long uploaded = 0;
   for (Mesh& mesh : meshes_) mesh.seen = false;
+  for (Scalp& scalp : scalps_) scalp.seen = false;
   for (Body& body : bodies_) body.seen = false;
   bounds_ = Bounds{};
   for (const BodyInput& input : inputs) {
@@ -219,19 +254,12 @@ long BodyPass::update(std::span<const BodyInput> inputs) {
     if (!refreshPose(body, *mesh, input, uploaded)) continue;
     body.seen = true;
     body.mesh_id = input.mesh_id;
-    if (!body.block || body.color != input.color || body.roughness != input.roughness) {
-      ++look_changes_;
-      body.color = input.color;
-      body.roughness = input.roughness;
-      shared::BodyBlock block{asVec4(input.color, std::clamp(input.roughness, 0.05f, 1.0f))};
-      body.block = makeBuffer();
-      glNamedBufferStorage(body.block.id(), sizeof(block), &block, 0);
-      uploaded += sizeof(block);
-    }
+    refreshLook(body, input, uploaded);
     bounds_.add(body.bounds);
   }
   if (std::erase_if(bodies_, [](const Body& body) { return !body.seen; }) > 0) ++changes_;
   std::erase_if(meshes_, [](const Mesh& mesh) { return !mesh.seen; });
+  std::erase_if(scalps_, [](const Scalp& scalp) { return !scalp.seen; });
   pose_signature_ = changes_;
   return uploaded;
 }
@@ -257,7 +285,17 @@ const BodyPass::Mesh& BodyPass::meshOf(const Body& body) const {
 void BodyPass::bind(const Body& body, const Mesh& mesh) const {
   glBindBufferBase(GL_UNIFORM_BUFFER, 2, body.block.id());
   glBindTextureUnit(shared::kUnitJoints, body.joint_texture.id());
-  glBindVertexArray(mesh.attributes.id());
+  const GLuint array = mesh.attributes.id();
+  const auto scalp = std::find_if(scalps_.begin(), scalps_.end(), [&](const Scalp& s) {
+    return s.mesh_id == body.mesh_id && s.id == body.scalp_id;
+  });
+  if (scalp != scalps_.end()) {
+    glVertexArrayVertexBuffer(array, 1, scalp->cover.id(), 0, 2 * sizeof(float));
+    glEnableVertexArrayAttrib(array, kCoverAttribute);
+  } else {
+    glDisableVertexArrayAttrib(array, kCoverAttribute);  // reads as 0
+  }
+  glBindVertexArray(array);
 }
 
 std::uint64_t BodyPass::poseSignature(const Eigen::Matrix4f* clip_from_world) const {

@@ -1,5 +1,5 @@
-// Skinned bodies: rest meshes uploaded once per mesh id, joint matrices when the pose changed, skinning in the vertex
-// stage.
+// Skinned bodies: rest meshes uploaded once per mesh id, root covers once per scalp id, joint matrices when the pose
+// changed; skinning in the vertex stage.
 #pragma once
 
 #include <array>
@@ -21,8 +21,9 @@ class BodyPass {
  public:
   explicit BodyPass(const std::string& shader_dir);
 
-  // Uploads new meshes and changed poses, frees what the frame no longer shows. Returns the bytes uploaded. A body
-  // whose spans disagree in length, whose indices point outside or whose matrices are not finite is not drawn.
+  // Uploads new meshes, root covers and changed poses, frees what the frame no longer shows. Returns the bytes uploaded.
+  // A body whose spans disagree in length, whose indices point outside or whose matrices are not finite is not drawn; a
+  // root cover that does not have two numbers for each vertex is left out.
   long update(std::span<const BodyInput> inputs);
 
   // Chooses how finely each body is drawn, by its size in the picture. Call after every update.
@@ -64,14 +65,26 @@ class BodyPass {
     std::array<IndexRange, kBodyCells.size() + 1> levels;  // full, then ever coarser
     std::vector<Bounds> joint_boxes;                       // rest pose
   };
+  // What hair roots cover of a mesh; bodies of one mesh under one haircut share it.
+  struct Scalp {
+    std::uint64_t mesh_id = 0, id = 0;
+    bool seen = false;
+    Buffer cover;
+  };
+  // What a body's block is made of.
+  struct Finish {
+    Float3 color{}, root_color{};
+    float roughness = 0, scalp_tint = 0;
+    bool operator==(const Finish&) const = default;
+  };
   struct Body {
     std::uint64_t id = 0, mesh_id = 0, pose_revision = ~std::uint64_t{0};
     bool seen = false;
     Buffer joints, block;
     Texture joint_texture;
     int joint_count = 0;
-    Float3 color{};
-    float roughness = 0;
+    Finish finish;
+    std::uint64_t scalp_id = 0;  // 0: bare
     int level = 0;  // of detail
     Bounds bounds;
     std::uint64_t change = 0;          // of its pose or mesh
@@ -79,6 +92,9 @@ class BodyPass {
   };
 
   Mesh* meshOf(const BodyInput& input, long& uploaded);
+  // The id of the body's scalp on the GPU; 0 where it has none.
+  std::uint64_t scalpOf(const BodyInput& input, long& uploaded);
+  void refreshLook(Body& body, const BodyInput& input, long& uploaded);
   bool refreshPose(Body& body, const Mesh& mesh, const BodyInput& input, long& uploaded);
   const Mesh& meshOf(const Body& body) const;
   void bind(const Body& body, const Mesh& mesh) const;
@@ -86,6 +102,7 @@ class BodyPass {
 
   ShaderProgram lit_, lit_small_, depth_;
   std::vector<Mesh> meshes_;
+  std::vector<Scalp> scalps_;
   std::vector<Body> bodies_;
   Bounds bounds_;
   std::uint64_t pose_signature_ = 0, changes_ = 0, look_changes_ = 0;

@@ -81,6 +81,12 @@ Float3 absorptionOf(const HairLook& look) {
   return sigma;
 }
 
+Float3 rootColor(const HairLook& look) {
+  Float3 color = absorptionOf(look);
+  for (float& c : color) c = std::exp(-2 * (kPi / 2) * c);  // pi / 2: mean chord of a circle of radius 1
+  return color;
+}
+
 Float3 lobeWidths(float beta_m) {
   const float b = std::clamp(beta_m, 0.05f, 1.0f);
   const float deviation = 0.5f * (0.726f * b + 0.812f * b * b + 3.7f * std::pow(b, 20.0f));

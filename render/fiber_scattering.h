@@ -13,6 +13,10 @@ namespace render {
 // multiple-scattering colour, for azimuthal roughness beta_n.
 Float3 absorptionOf(const HairLook& look);
 
+// What two crossings of a root leave of light, RGB: skin between roots is seen through them by light that met them on
+// its way in and on its way out.
+Float3 rootColor(const HairLook& look);
+
 // Longitudinal standard deviations of R, TT, TRT over the half angle theta_h, rad (Marschner et al. 2003's ratios 1,
 // 1/2, 2; the width from beta_m by Chiang et al. 2016).
 Float3 lobeWidths(float beta_m);

@@ -61,7 +61,8 @@ struct HairInput {
   HairLook look;
 };
 
-// A skinned body. The mesh is uploaded once per mesh_id; a frame brings joint matrices only.
+// A skinned body. The mesh is uploaded once per mesh_id, the root cover once per mesh and scalp id; a frame brings joint
+// matrices only.
 struct BodyInput {
   std::uint64_t id = 0, mesh_id = 0;
   std::span<const float> positions, normals;  // rest pose, 3 floats a vertex
@@ -72,6 +73,11 @@ struct BodyInput {
   std::uint64_t pose_revision = 0;
   Float3 color{0.19f, 0.162f, 0.147f};
   float roughness = 0.55f;
+  // Skin among the roots of a hair is shaded and coloured by them.
+  std::uint64_t scalp_id = 0;         // stable per root cover; 0: no hair grows on the body
+  std::span<const float> root_cover;  // 2 a vertex: 0 bare .. 1 among the roots; m that the skin is drawn lower
+  Float3 root_color{};                // share of light that the roots leave what is seen through them; see rootColor
+  float scalp_tint = 0;               // 0..1, strength of shade and colour
 };
 
 struct CameraInput {

@@ -2,8 +2,10 @@
 #include "common/skinning.glsl"
 layout(location = 0) out vec3 world;
 layout(location = 1) out vec3 normal;
+layout(location = 2) out float cover;
 
 void main() {
   skin(world, normal);
+  cover = root_cover.x;
   gl_Position = clip_from_world * vec4(world, 1.0);
 }

@@ -109,6 +109,7 @@ SHARED_BLOCK(1, HairBlock) {
 
 SHARED_BLOCK(2, BodyBlock) {
   vec4 body_color;  // linear; w: roughness
+  vec4 root_color;  // share of light that hair roots leave the skin between them; w: strength of their tint and shade
 };
 
 #ifdef __cplusplus

@@ -2,21 +2,32 @@
 #include "common/shadow.glsl"
 #include "common/surface.glsl"
 
-vec3 bodyRadiance(vec3 world, vec3 normal) {
+// Skin among roots: share of the light that meets them before the skin, share of what passes through them that goes on
+// to it, and share of what the skin sends on that meets them again.
+const float kRootShade = 0.65, kRootPasses = 0.6, kRootMeeting = 0.75;
+
+// cover: 0 bare skin .. 1 among the roots of a hair.
+vec3 bodyRadiance(vec3 world, vec3 normal, float cover) {
   vec3 to_eye = normalize(eye.xyz - world), n = normalize(normal);
   if (dot(n, to_eye) < 0.0)
     n = normalize(n - 1.02 * dot(n, to_eye) * to_eye);  // interpolated normals may tip over the rim
-  vec3 albedo = body_color.rgb;
+  float roots = root_color.w * cover;
+  vec3 among_roots = 1.0 - kRootShade * roots * (1.0 - kRootPasses * root_color.rgb);
+  vec3 albedo = body_color.rgb * mix(vec3(1.0), root_color.rgb, kRootMeeting * roots);
+  float roughness = mix(body_color.a, 1.0, roots);
   float through_hair = 1.0, lit = 1.0;
   if (forward.w > 0.0) {
     through_hair = hairLightOnSurface(world);
-    lit = bodyLightOnSurface(world, n) * through_hair;
+    lit = bodyLightOnSurface(world, n);
   }
+  // The maps know the roots as well, but at a parting the hair leaves sideways and light from above meets none of it:
+  // the darker of the two holds, so that no root shades twice.
+  vec3 key_light = lit * min(vec3(through_hair), among_roots) * key.rgb;
   // Under hair little of the sky and of the other lights arrives either; the key light's map is the only witness.
-  float open = 0.7 + 0.3 * through_hair;
-  vec3 radiance = lit * key.rgb * surfaceLight(n, to_key.xyz, to_eye, albedo, body_color.a);
-  radiance += open * fill.rgb * surfaceLight(n, to_fill.xyz, to_eye, albedo, body_color.a);
-  radiance += open * rim.rgb * surfaceLight(n, to_rim.xyz, to_eye, albedo, body_color.a);
+  vec3 open = min(vec3(0.7 + 0.3 * through_hair), among_roots);
+  vec3 radiance = key_light * surfaceLight(n, to_key.xyz, to_eye, albedo, roughness);
+  radiance += open * fill.rgb * surfaceLight(n, to_fill.xyz, to_eye, albedo, roughness);
+  radiance += open * rim.rgb * surfaceLight(n, to_rim.xyz, to_eye, albedo, roughness);
   radiance += open * albedo * mix(ground_light.rgb, sky.rgb, 0.5 + 0.5 * n.y);
   return radiance;
 }
