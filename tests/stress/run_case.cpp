@@ -22,6 +22,7 @@ constexpr double kFaultEvery = 0.1;                         // s
 constexpr double kIntruderThere = 0.3;                      // s, when a body that appears has done so
 constexpr double kAtRest = 5e-3;                            // m/s
 constexpr double kRested = 1;                               // s at rest elsewhere, before that counts
+constexpr double kUnrest = 3;                               // times the stated time, that its twin may take to rest
 constexpr double kWindow = 2, kHurry = 5;                   // s, and times its pace: see Pace of return
 constexpr double kSmallestEnergy = 0.05;                    // of the hair's weight times its length
 
@@ -337,13 +338,16 @@ bool restsNoHigher(Hair& twin, const EnergyWatch& watch, Run& run) {
   return watch.last - rest <= kEnergyTolerance * kSmallestEnergy * weightOf(run);
 }
 
-// Everything stands still: hair and twin go on until they meet. Returns whether they do.
-bool waitUntilBack(double seconds, EnergyWatch& energy, Run& run, Hair& twin) {
+// Everything stands still: hair and twin go on until they meet, for `seconds` from when the twin has come to rest where
+// that `may_take` long: limp hair sags and swings for a minute from its own rest shape too, and until it has done so
+// there is no rest to be back at. Returns whether they meet.
+bool waitUntilBack(double seconds, bool may_take, EnergyWatch& energy, Run& run, Hair& twin) {
   const double dt = run.one.pace == Pace::kFixed ? run.one.step : sim::SimParams{}.time_step;
   const double started = run.around.time();
+  double until = started + seconds;
   Pacer pacer;
   double resting = 0;  // s
-  while (run.around.time() < started + seconds && !run.failed()) {
+  while (run.around.time() < until && !run.failed()) {
     run.around.pass(dt);
     const sim::StepReport report = stepHair(run.params, run, dt, run.hair);
     run.outcome.recoveries += report.recoveries;
@@ -351,6 +355,7 @@ bool waitUntilBack(double seconds, EnergyWatch& energy, Run& run, Hair& twin) {
     countWork(report, run);
     if (run.trace) traceStep(run, dt, report, run.hair);
     stepHair(run.params, run, dt, twin);
+    if (may_take && fastest(twin) > kAtRest) until = std::min(run.around.time(), started + kUnrest * seconds) + seconds;
     checkFinite(run);
     checkOutside(run);
     if (!run.failed()) checkEnergy(report.combed > 0, dt, energy, run);
@@ -361,7 +366,7 @@ bool waitUntilBack(double seconds, EnergyWatch& energy, Run& run, Hair& twin) {
     // Not with the body there: that holds hair up as well.
     resting = !run.params.collide && !run.failed() && restsNoHigher(twin, energy, run) ? resting + dt : 0;
     if (resting > kRested) return run.outcome.other_rest = true;
-    if (pacer.hopeless(run, twin, dt, started + seconds - run.around.time())) return false;
+    if (pacer.hopeless(run, twin, dt, until - run.around.time())) return false;
   }
   return false;
 }
@@ -380,11 +385,11 @@ void waitForRest(Run& run) {
   const double stopped = run.around.time();
   EnergyWatch energy;
   energy.rest = energyOf(run, twin);
-  bool back = waitUntilBack(run.one.rest, energy, run, twin);
+  bool back = waitUntilBack(run.one.rest, false, energy, run, twin);
   run.outcome.with_body = back;
   if (!back && !run.failed()) {
     run.params.collide = false;
-    back = waitUntilBack(run.one.release, energy, run, twin);
+    back = waitUntilBack(run.one.release, true, energy, run, twin);
   }
   if (back) run.outcome.back_after = run.around.time() - stopped;
   if (!back && !run.failed()) {

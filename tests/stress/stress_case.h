@@ -85,7 +85,7 @@ struct StressCase {
   bool collide = true;
   double seconds = 1;                   // of motion
   double rest = 1;                      // s with the body there
-  double release = 5;                   // s without; back within rest + release
+  double release = 5;                   // s without, from when the twin rests; back within rest + release
   double grace = 0;                     // s after each start or appearance in which vertices may still be inside
   bool recovers = false;                // the watchdog is expected to step in
   bool compared = false;                // a peer's setting, shown beside ours and not counted
