@@ -105,7 +105,7 @@ void addMixed(std::uint64_t seed, Cases& cases) {
     if (one.pace != Pace::kFixed) one.step = 1.0 / 60;
     one.seconds = 0.5;
     one.rest = 0.5;
-    one.release = 15;
+    one.release = 30;
     // For the long run: violent enough that another processor's rounding may change what becomes of a draw.
     cases.push_back(one);
   }

@@ -296,7 +296,7 @@ colliders are taken away. A case passes when
       << 100 * kBack << R"( % of the hair's length of one another, worst
   vertex, also extrapolated by 0.1 s of velocity, or hair at rest elsewhere with no more energy than
   the twin (very soft hair sags into more shapes than one), within the stated time (1 s with the body and 5 s without; 30 s without where a parameter
-  row is turned to its limit, 15 s for draws over all axes; without the body counted from when the twin itself has come
+  row is turned to its limit and for random draws; without the body counted from when the twin itself has come
   to rest, which limp hair takes up to a minute for);
 - no external vertex (with `collide_inner`: no vertex) is deeper than )"
       << 1e3 * kDeepest

@@ -24,6 +24,7 @@ constexpr double kAtRest = 5e-3;                            // m/s
 constexpr double kRested = 1;                               // s at rest elsewhere, before that counts
 constexpr double kUnrest = 3;                               // times the stated time, that its twin may take to rest
 constexpr double kWindow = 2, kHurry = 5;                   // s, and times its pace: see Pace of return
+constexpr int kIdleWindows = 5;                            // in a row, of hair that is not coming
 constexpr double kSmallestEnergy = 0.05;                    // of the hair's weight times its length
 
 double cpuSeconds() {
@@ -310,10 +311,11 @@ void checkEnergy(bool combed, double dt, EnergyWatch& watch, Run& run) {
 }
 
 // Pace of return: what has moved so little within kWindow that it would not arrive in time at kHurry times that pace is
-// not coming.
+// not coming, unless it is only waiting for the simulator to find out that it rests elsewhere (sim/rest_check.h).
 struct Pacer {
   std::vector<sim::Vec3> hair, twin;
   double since = 0;
+  int idle = 0;  // windows
 
   bool hopeless(const Run& run, const Hair& other, double dt, double seconds_left) {
     since += dt;
@@ -326,7 +328,8 @@ struct Pacer {
     hair = run.hair.state.positions, twin = other.state.positions;
     since = 0;
     const double missing = (run.outcome.distance - kBack) * run.hair.mesh.hair_length;
-    return known && kHurry * way * seconds_left / kWindow < missing;
+    idle = known && kHurry * way * seconds_left / kWindow < missing ? idle + 1 : 0;
+    return idle >= kIdleWindows;
   }
 };
 
