@@ -24,7 +24,7 @@ constexpr double kAtRest = 5e-3;                            // m/s
 constexpr double kRested = 1;                               // s at rest elsewhere, before that counts
 constexpr double kUnrest = 3;                               // times the stated time, that its twin may take to rest
 constexpr double kWindow = 2, kHurry = 5;                   // s, and times its pace: see Pace of return
-constexpr int kIdleWindows = 5;                            // in a row, of hair that is not coming
+constexpr int kIdleWindows = 5;                             // in a row, of hair that is not coming
 constexpr double kSmallestEnergy = 0.05;                    // of the hair's weight times its length
 
 double cpuSeconds() {
