@@ -122,9 +122,12 @@ bool runCrowd(int rounds) {
   std::printf("close-up %.2f ms, hundred %.2f ms (and %.2f of character): %s\n", medianOf(close_ms), medianOf(crowd_ms),
               medianOf(character_ms), boundText({"hundred over close-up", ratio, kCrowdRatio}).c_str());
 
-  SceneRun watched = simulationOf("hundred.json", 62, 12);
-  for (int frame = 2; frame < watched.frames; ++frame) watched.drawn.push_back(frame);
-  const Simulated truth = simulate(watched, noSkips());
+  // The frames of runSkipping, which are held to the bound; and the first second, in which long hair that a shoulder
+  // turns aside begins to go another way with whatever is changed.
+  SceneRun half = hundred, second = simulationOf("hundred.json", 62, 12);
+  half.drawn = {24, 25};
+  for (int frame = 2; frame < second.frames; ++frame) second.drawn.push_back(frame);
+  const Simulated half_truth = simulate(half, noSkips()), second_truth = simulate(second, noSkips());
   double worst = 0;
   for (const std::string name : {"far-steps", "far-mesh", "all"}) {
     app::SkipSet skips;
@@ -132,11 +135,13 @@ bool runCrowd(int rounds) {
       skips = noSkips();
       skips.on[skip->id] = true;
     }
-    SkipRow row;
-    compareShapes(truth, simulate(watched, skips), row);
-    worst = std::max(worst, row.simulation_error_pixels);
-    std::printf("%s: shapes off by %.1f mm, %.2f pixels\n", name.c_str(), row.simulation_error_mm,
-                row.simulation_error_pixels);
+    SkipRow held, later;
+    compareShapes(half_truth, simulate(half, skips), held);
+    compareShapes(second_truth, simulate(second, skips), later);
+    worst = std::max(worst, held.simulation_error_pixels);
+    std::printf("%s: shapes off by %.1f mm, %s; within the first second by %.1f mm, %.2f pixels\n", name.c_str(),
+                held.simulation_error_mm, boundText({"pixels", held.simulation_error_pixels, kShapePixels}).c_str(),
+                later.simulation_error_mm, later.simulation_error_pixels);
   }
   return ratio <= kCrowdRatio && worst <= kShapePixels;
 }

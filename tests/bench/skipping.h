@@ -16,7 +16,7 @@ struct SkippingOptions {
 bool runSkipping(const SkippingOptions& options);
 
 // The simulation of the hundred beside the close-up's, in `rounds` turns, and how far the skips that look at distance
-// take its shapes over half a second: no pictures, nothing written. Returns whether the ledger's bounds hold; prints.
+// take its shapes: no pictures, nothing written. Returns whether the ledger's bounds hold; prints.
 bool runCrowd(int rounds);
 
 }  // namespace bench
