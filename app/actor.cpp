@@ -185,14 +185,16 @@ Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, Wardrob
   return actor;
 }
 
-const HaircutPair* coarsePair(const Actor& actor, Wardrobe& wardrobe) {
-  if (!actor.spec.hair.empty() || actor.spec.resolution == sim::Resolution::kLow) return nullptr;
+const HaircutPair* coarsePair(const Actor& actor, sim::Resolution resolution, Wardrobe& wardrobe) {
+  const sim::Resolution own = actor.spec.resolution;
+  if (!actor.spec.hair.empty() || own == resolution || own == sim::Resolution::kMinimal) return nullptr;
   for (const auto& pair : wardrobe.pairs) {
-    if (pair->fine == actor.haircut) return pair.get();
+    if (pair->fine == actor.haircut && pair->resolution == resolution) return pair.get();
   }
   CharacterSpec spec = actor.spec;
-  spec.resolution = sim::Resolution::kLow;
+  spec.resolution = resolution;
   auto pair = std::make_unique<HaircutPair>();
+  pair->resolution = resolution;
   pair->fine = actor.haircut;
   pair->coarse = &cutHair(spec, loadBody(spec, wardrobe), wardrobe);
   pair->to_coarse = sim::makeShapeTransfer(pair->fine->mesh, pair->coarse->mesh);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <future>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,7 @@ struct ScalpCover {
 struct HaircutPair {
   const Haircut* fine = nullptr;
   const Haircut* coarse = nullptr;
+  sim::Resolution resolution = sim::Resolution::kLow;  // of the coarse one
   sim::ShapeTransfer to_coarse, to_fine;
 };
 
@@ -69,9 +71,9 @@ struct Wardrobe {
 
 // How much care the simulation takes of an actor.
 struct SimDetail {
-  int step_span = 1;    // simulation steps that one step of the actor covers
-  bool coarse = false;  // its style's low resolution is simulated in place of its own
-  bool seen = true;     // neither figure nor shadow can be in the picture otherwise
+  int step_span = 1;                      // simulation steps that one step of the actor covers
+  std::optional<sim::Resolution> coarse;  // of its style, simulated in place of its own
+  bool seen = true;                       // neither figure nor shadow can be in the picture otherwise
 };
 
 // The hair of an actor that is simulated at a lower resolution. Its own hair state is then filled from this one.
@@ -139,9 +141,9 @@ struct Actor {
 // wardrobe may then hold an entry more, and nothing else changed.
 Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, Wardrobe& wardrobe);
 
-// The actor's style at its lowest resolution with the ways to it and back, made when it is first asked for; null for
-// hair from a file and for hair that is already as coarse.
-const HaircutPair* coarsePair(const Actor& actor, Wardrobe& wardrobe);
+// The actor's style at low or minimal resolution with the ways to it and back, made when it is first asked for; null
+// for hair from a file and for hair that is already as coarse.
+const HaircutPair* coarsePair(const Actor& actor, sim::Resolution resolution, Wardrobe& wardrobe);
 
 // Drops what no actor wears.
 void tidy(const std::vector<Actor>& actors, Wardrobe& wardrobe);

@@ -213,9 +213,7 @@ Demo openScene(Scene scene, double aspect, bool beside) {
   demo.camera = makeCamera(demo.scene.camera, demo.actors.front(), aspect);
   chooseDetail(demo);
   for (std::size_t i = 1; i < demo.actors.size(); ++i) {
-    Actor& actor = demo.actors[i];
-    if (actor.detail.coarse) enterCoarse(*coarsePair(actor, demo.wardrobe), actor);
-    settleActor(demo.scene.sim, settle, actor);
+    settleInDetail(settle, demo, demo.actors[i]);
   }
   for (Actor& actor : demo.actors) actor.context->refreshGradually(true);
   return demo;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "app/sleep.h"
 
@@ -10,14 +12,23 @@ namespace app {
 
 namespace {
 
-// Pixels below which an actor is simulated more coarsely; it returns at kReturn times as many.
-constexpr double kCoarseBelow = 420, kReturn = 1.2;
+// Pixels below which an actor is simulated with a coarser mesh; it returns at kReturn times as many.
+struct Coarseness {
+  double below;
+  sim::Resolution resolution;
+};
+constexpr std::array<Coarseness, 2> kMeshes{{{420, sim::Resolution::kLow}, {240, sim::Resolution::kMinimal}}};
+constexpr double kReturn = 1.2;
 // And below which its steps are so many times as long.
 struct Rate {
   double below;
   int span;
 };
 constexpr std::array<Rate, 3> kRates{{{520, 2}, {380, 4}, {100, 8}}};
+
+// Pixels from which hair that begins coarse comes to rest as it would near by, with its own mesh: long hair that the
+// shoulders turn aside finds another place with another one. Smaller hair shows less of that than it costs to load.
+constexpr double kOwnStart = 150;
 
 // m that a figure may move, and the camera with it, before its detail is looked at again.
 constexpr double kMargin = 0.3;
@@ -59,6 +70,18 @@ void weighStep(const sim::StepReport& report, const sim::SimParams& params, Acto
   const sim::HairMesh& mesh = coarse.active ? coarse.pair->coarse->mesh : actor.haircut->mesh;
   stats.counted_cost += countedCost(mesh.vertexCount(), report);
   stats.step_error += stepError(mesh, params.integrator, coarse.active ? coarse.hair : actor.hair, actor.error_meter);
+}
+
+// A mesh in use goes on up to its own way back.
+void chooseMesh(double size, Demo& demo, Actor& actor) {
+  const std::optional<sim::Resolution> before = std::exchange(actor.detail.coarse, std::nullopt);
+  if (!demo.scene.skips[kSkipFarMesh]) return;
+  bool already = before.has_value();
+  for (const Coarseness& mesh : kMeshes) {
+    if (below(size, mesh.below, already) && coarsePair(actor, mesh.resolution, demo.wardrobe))
+      actor.detail.coarse = mesh.resolution;
+    if (before == mesh.resolution) already = false;
+  }
 }
 
 // m, from tip to crown and a little more.
@@ -120,14 +143,21 @@ void chooseDetail(Demo& demo) {
     SimDetail& detail = actor.detail;
     detail.seen = !skips[kSkipUnseen] || mayBeSeen(demo, actor);
     const double size = projectedSize(demo, actor);
-    const bool coarse = skips[kSkipFarMesh] && below(size, kCoarseBelow, detail.coarse);
-    if (coarse != detail.coarse) detail.coarse = coarse && coarsePair(actor, demo.wardrobe) != nullptr;
+    chooseMesh(size, demo, actor);
     const int before = detail.step_span;
     detail.step_span = 1;
     for (const Rate& rate : kRates) {
       if (skips[kSkipFarSteps] && below(size, rate.below, before >= rate.span)) detail.step_span = rate.span;
     }
   }
+}
+
+void settleInDetail(double seconds, Demo& demo, Actor& actor) {
+  const HaircutPair* pair = actor.detail.coarse ? coarsePair(actor, *actor.detail.coarse, demo.wardrobe) : nullptr;
+  const bool own = !pair || projectedSize(demo, actor) >= kOwnStart;
+  if (own) settleActor(demo.scene.sim, seconds, actor);
+  if (pair) enterCoarse(*pair, actor);
+  if (!own) settleActor(demo.scene.sim, seconds, actor);
 }
 
 void stepInDetail(double time, Demo& demo, Actor& actor) {
@@ -157,8 +187,8 @@ void stepInDetail(double time, Demo& demo, Actor& actor) {
     if (actor.playback.in_place) placeActor(actor, false);
     actor.unseen = false;
   }
-  const HaircutPair* pair = actor.detail.coarse ? coarsePair(actor, demo.wardrobe) : nullptr;
-  if (actor.coarse.active && !pair) leaveCoarse(actor);
+  const HaircutPair* pair = actor.detail.coarse ? coarsePair(actor, *actor.detail.coarse, demo.wardrobe) : nullptr;
+  if (actor.coarse.active && pair != actor.coarse.pair) leaveCoarse(actor);
   if (!actor.coarse.active && pair) enterCoarse(*pair, actor);
   tally(kSkipFarMesh, actor.coarse.active, 0, demo);
 

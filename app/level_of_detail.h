@@ -14,6 +14,9 @@ bool mayBeSeen(const Demo& demo, const Actor& actor);
 // Chooses detail for all actors. Thresholds differ on the way in and out, so that nothing switches to and fro.
 void chooseDetail(Demo& demo);
 
+// Lets the hair of a new actor come to rest for `seconds` before the first frame, at its detail.
+void settleInDetail(double seconds, Demo& demo, Actor& actor);
+
 // One step of the clock for one actor, at its detail, with what can be left out left out. Accounts in demo.stats.
 void stepInDetail(double time, Demo& demo, Actor& actor);
 

@@ -121,6 +121,8 @@ std::string_view resolutionName(Resolution resolution) {
       return "medium";
     case Resolution::kHigh:
       return "high";
+    case Resolution::kMinimal:
+      return "minimal";
     case Resolution::kUltra:
       break;
   }

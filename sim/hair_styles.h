@@ -1,4 +1,4 @@
-// Built-in hair meshes on a given scalp: {short, shoulder, long} x {low, medium, high, ultra}.
+// Built-in hair meshes on a given scalp: {short, shoulder, long} x {low, medium, high, ultra}, and minimal.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,8 @@
 namespace sim {
 
 enum class Style { kShort, kShoulder, kLong };
-enum class Resolution { kLow, kMedium, kHigh, kUltra };
+// Minimal, the coarsest of all, is for hair that is small in the picture and is not offered by name.
+enum class Resolution { kLow, kMedium, kHigh, kUltra, kMinimal };
 
 // The head that a style grows on, in the head joint's frame turned so that y is up, z forward, x to the character's
 // left. `radius` samples the skin as distance from `center` over a latitude-longitude grid: row i is polar angle i * pi
@@ -36,8 +37,8 @@ using BodyDistance = std::function<double(const Vec3&)>;
 // mm once the hair has left the scalp; edges are at least 3 mm. The resolutions are one haircut, meshed more or
 // less finely, with the same topology on every head. Valid for any scalp: where a head leaves no room, the hair grows
 // on a rounded one (see the source). Vertex counts: short 225 / 569 / 1,339 / 7,081, shoulder 360 / 913 / 2,306 /
-// 9,617, long 376 / 922 / 2,249 / 10,241. Columns of at most 8 or 16 vertices where a plan can have them so, for whole
-// vectors of the solver's kernels. Deterministic; under 0.25 s, ultra under 0.5 s.
+// 9,617, long 376 / 922 / 2,249 / 10,241; minimal 85, 119, 174. Columns of at most 8 or 16 vertices where a
+// plan can have them so, for whole vectors of the solver's kernels. Deterministic; under 0.25 s, ultra under 0.5 s.
 HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& scalp, const BodyDistance& body);
 
 std::string_view styleName(Style style);                 // "short", "shoulder", "long"

@@ -153,18 +153,21 @@ Weave weaveOf(Style style, Resolution resolution) {
   // The finest plans are refined once more by makeStyle, which about doubles sheets and layers.
   switch (style) {
     case Style::kShort:
-      return std::array<Weave, 4>{Weave{even(5), 3, 5, 5, 5, 0, 0.0}, Weave{even(7), 4, 7, 6, 7, 0, 0.0},
-                                  Weave{even(11), 4, 10, 7, 8, 0, 0.0}, Weave{even(11), 4, 9, 11, 12, 0, 0.0}}[level];
+      return std::array<Weave, 5>{Weave{even(5), 3, 5, 5, 5, 0, 0.0}, Weave{even(7), 4, 7, 6, 7, 0, 0.0},
+                                  Weave{even(11), 4, 10, 7, 8, 0, 0.0}, Weave{even(11), 4, 9, 11, 12, 0, 0.0},
+                                  Weave{even(3), 2, 3, 5, 5, 0, 0.0}}[level];
     case Style::kShoulder:
-      return std::array<Weave, 4>{Weave{even(5), 3, 5, 8, 8, 0, 0.2}, Weave{even(8), 3, 6, 10, 12, 0, 0.2},
-                                  Weave{even(11), 4, 9, 14, 15, 0, 0.2}, Weave{even(11), 4, 9, 15, 16, 0, 0.2}}[level];
+      return std::array<Weave, 5>{Weave{even(5), 3, 5, 8, 8, 0, 0.2}, Weave{even(8), 3, 6, 10, 12, 0, 0.2},
+                                  Weave{even(11), 4, 9, 14, 15, 0, 0.2}, Weave{even(11), 4, 9, 15, 16, 0, 0.2},
+                                  Weave{even(3), 2, 3, 7, 7, 0, 0.2}}[level];
     case Style::kLong:
       break;
   }
   const std::vector<double> fine{0, 0.1, 0.2, 0.3, 0.35, 0.4, 0.52, 0.64, 0.76, 0.88, 1};
-  return std::array<Weave, 4>{Weave{{0, 0.275, 0.35, 0.425, 0.7, 1}, 3, 6, 8, 8, 5, 0.7},
+  return std::array<Weave, 5>{Weave{{0, 0.275, 0.35, 0.425, 0.7, 1}, 3, 6, 8, 8, 5, 0.7},
                               Weave{{0, 0.15, 0.3, 0.35, 0.4, 0.6, 0.8, 1}, 4, 6, 12, 13, 9, 0.4},
-                              Weave{fine, 4, 10, 15, 16, 10, 0.4}, Weave{fine, 4, 9, 19, 20, 11, 0.4}}[level];
+                              Weave{fine, 4, 10, 15, 16, 10, 0.4}, Weave{fine, 4, 9, 19, 20, 11, 0.4},
+                              Weave{{0, 0.25, 0.35, 0.45, 1}, 2, 4, 8, 8, 5, 0.7}}[level];
 }
 
 HairMeshShape weave(const Coat& coat, const Weave& plan) {

@@ -21,7 +21,8 @@ using sim::Style;
 using sim::Vec3;
 
 constexpr Style kStyles[] = {Style::kShort, Style::kShoulder, Style::kLong};
-constexpr Resolution kResolutions[] = {Resolution::kLow, Resolution::kMedium, Resolution::kHigh, Resolution::kUltra};
+constexpr Resolution kResolutions[] = {Resolution::kLow, Resolution::kMedium, Resolution::kHigh, Resolution::kUltra,
+                                       Resolution::kMinimal};
 
 struct Head {
   std::string name;
@@ -117,7 +118,9 @@ TEST(HairStyles, VertexCountsAreThoseOfThePaperWithinFivePercent) {
       {{Style::kShoulder, Resolution::kMedium}, 900},  {{Style::kShoulder, Resolution::kHigh}, 2305},
       {{Style::kLong, Resolution::kLow}, 361},         {{Style::kLong, Resolution::kMedium}, 900},
       {{Style::kLong, Resolution::kHigh}, 2305},       {{Style::kShort, Resolution::kUltra}, 7000},
-      {{Style::kShoulder, Resolution::kUltra}, 10000}, {{Style::kLong, Resolution::kUltra}, 10000}};
+      {{Style::kShoulder, Resolution::kUltra}, 10000}, {{Style::kLong, Resolution::kUltra}, 10000},
+      {{Style::kShort, Resolution::kMinimal}, 85},     {{Style::kShoulder, Resolution::kMinimal}, 119},
+      {{Style::kLong, Resolution::kMinimal}, 170}};
   forEveryHaircut([&](const Head&, const Haircut& cut) {
     const int count = wanted.at({cut.style, cut.resolution});
     EXPECT_NEAR(cut.shape.vertexCount(), count, 0.05 * count);
@@ -134,14 +137,14 @@ TEST(HairStyles, AreValidHairMeshesOfTrianglesAndQuads) {
       EXPECT_TRUE(faces.emplace(face.columns.begin(), face.columns.begin() + face.corner_count).second);
     }
     EXPECT_GT(triangles, 0);
-    EXPECT_GT(quads, triangles);
+    EXPECT_GT(quads + (cut.resolution == Resolution::kMinimal), triangles);
     int shortest = 1000, longest = 0;
     for (int c = 0; c < cut.shape.columnCount(); ++c) {
       shortest = std::min(shortest, cut.shape.columnLength(c));
       longest = std::max(longest, cut.shape.columnLength(c));
     }
     // Columns of the coarsest shorter styles are too short to lose a layer.
-    if (cut.style == Style::kLong || cut.resolution != Resolution::kLow) {
+    if (cut.style == Style::kLong || (cut.resolution != Resolution::kLow && cut.resolution != Resolution::kMinimal)) {
       EXPECT_LT(shortest, longest);
     }
   });
@@ -245,7 +248,9 @@ TEST(HairStyles, NeighbouringColumnsAreNearlyParallel) {
       }
     }
     std::sort(cosines.begin(), cosines.end());
-    EXPECT_GT(cosines[cosines.size() / 2], std::cos(15 * std::numbers::pi / 180));
+    // Columns farther apart on a round head point farther apart.
+    const double usual = cut.resolution == Resolution::kMinimal ? 18 : 15;
+    EXPECT_GT(cosines[cosines.size() / 2], std::cos(usual * std::numbers::pi / 180));
     EXPECT_GT(cosines[cosines.size() / 20], std::cos(75 * std::numbers::pi / 180));
   });
 }
@@ -271,7 +276,7 @@ TEST(HairStyles, ResolutionsAreTheSameHaircut) {
           if (cut.shape.columnLength(c) == longest) full_tips.back().push_back(tips.back().back());
         }
       }
-      for (int coarse = 0; coarse < 2; ++coarse) {
+      for (const int coarse : {0, 1, 4}) {
         EXPECT_NEAR(volumes[coarse] / volumes[2], 1, 0.35);
         EXPECT_NEAR(lengths[coarse] / lengths[2], 1, 0.10);
         const auto farthest = [](const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
@@ -340,7 +345,8 @@ TEST(HairStyles, ValidOnOddHeads) {
       return odd.wall ? std::min(head, 0.16 + p.z()) : head;
     };
     for (const Style style : kStyles) {
-      for (const Resolution resolution : {Resolution::kLow, Resolution::kHigh, Resolution::kUltra}) {
+      for (const Resolution resolution :
+           {Resolution::kMinimal, Resolution::kLow, Resolution::kHigh, Resolution::kUltra}) {
         if (resolution == Resolution::kUltra && style != Style::kLong) continue;  // takes its time
         EXPECT_NO_THROW(sim::buildHairMesh(sim::makeStyle(style, resolution, scalp, body)))
             << sim::styleName(style) << " " << sim::resolutionName(resolution);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -323,17 +324,19 @@ TEST(Far, StaysWithinItsPixels) {
   for (const sim::Style style : {sim::Style::kShort, sim::Style::kShoulder, sim::Style::kLong}) {
     const app::CharacterSpec character = spec("walk.bvh", sim::Resolution::kMedium, style);
     Demo without = demoAt(2, character, only({}));
-    double begin = 2, begin_steps = 0;
-    while (app::projectedSize(without, without.actors[0]) >= 405) {
-      without.camera.distance = begin += 0.05;
-      if (begin_steps == 0 && app::projectedSize(without, without.actors[0]) < 505) begin_steps = begin;
-    }
+    // Where the character is that small.
+    const auto distanceAt = [&](double pixels) {
+      while (app::projectedSize(without, without.actors[0]) >= pixels) without.camera.distance += 0.05;
+      return without.camera.distance;
+    };
+    const double begin_steps = distanceAt(505), begin = distanceAt(405), begin_minimal = distanceAt(235);
     std::vector<std::vector<float>> truth;
     for (int frame = 0; frame < kFrames; ++frame) {
       run(without, 1);
       truth.push_back(without.actors[0].shown_positions);
     }
-    std::vector<Case> cases{{begin_steps, steps, "far-steps"}};
+    std::vector<Case> cases{
+        {begin_steps, steps, "far-steps"}, {begin_minimal, mesh, "far-mesh"}, {begin_minimal, all, "all"}};
     for (const double distance : {begin, 3.2, 4.0, 6.0}) {
       if (distance < begin || (distance > begin && distance < begin + 0.1)) continue;  // nothing, or nothing new
       cases.push_back({distance, steps, "far-steps"});
@@ -351,6 +354,8 @@ TEST(Far, StaysWithinItsPixels) {
       EXPECT_LE(worst * metre, kBound) << sim::styleName(style) << ", " << one.name << ", " << one.distance
                                        << " m away, off by " << 1e3 * worst << " mm";
       EXPECT_TRUE(with.actors[0].coarse.active || with.actors[0].detail.step_span > 1) << one.distance;
+      const bool minimal = with.actors[0].detail.coarse == sim::Resolution::kMinimal;
+      EXPECT_EQ(minimal, one.skips[app::kSkipFarMesh] && one.distance >= begin_minimal) << one.distance;
       std::printf("%s, %s at %.2f m: %.2f mm, %.3f pixels, span %d\n", std::string(sim::styleName(style)).c_str(),
                   one.name, one.distance, 1e3 * worst, worst * metre, with.actors[0].detail.step_span);
     }
@@ -366,7 +371,7 @@ TEST(Far, ChangesOverWithoutAJump) {
   std::vector<float> before = with.actors[0].shown_positions, before_without = without.actors[0].shown_positions;
   double fastest_without = 0;  // m a frame
   int changes = 0;
-  bool coarse = false;
+  std::optional<sim::Resolution> coarse;
   for (int frame = 0; frame < 158; ++frame) {  // the last step of eight frames ends too
     const double t = frame < 75 ? frame / 75.0 : std::max(150 - frame, 0) / 75.0;
     with.camera.distance = without.camera.distance = 1.8 + 38 * t;
@@ -376,12 +381,12 @@ TEST(Far, ChangesOverWithoutAJump) {
     fastest_without = std::max(fastest_without, farthest(before_without, without.actors[0].shown_positions));
     const double moved = farthest(before, with.actors[0].shown_positions);
     EXPECT_TRUE(frame <= 1 || (moved - 1.25 * fastest_without) * metre <= 1) << frame;
-    changes += coarse != with.actors[0].coarse.active;
-    coarse = with.actors[0].coarse.active;
+    changes += coarse != with.actors[0].detail.coarse;
+    coarse = with.actors[0].detail.coarse;
     before = with.actors[0].shown_positions;
     before_without = without.actors[0].shown_positions;
   }
-  EXPECT_EQ(changes, 2);
+  EXPECT_EQ(changes, 4);
 }
 
 TEST(Exact, TheWindowWaitsOnlyWhenNothingMoves) {

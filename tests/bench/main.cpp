@@ -64,6 +64,10 @@ std::vector<Task> tasks() {
        [](Asked& a) {
          if (!bench::runSkipping({a.pareto.folder, a.pareto.scenes, a.pareto.quick})) a.all_hold = false;
        }},
+      {"--crowd", "simulation of the hundred beside the close-up's in --runs turns, and its shapes; exits 1 off bounds",
+       [](Asked& a) {
+         if (!bench::runCrowd(a.pareto.runs)) a.all_hold = false;
+       }},
       {"--colliders", "ellipsoids and signed distances side by side, against the true skin",
        [](Asked& a) {
          bench::runColliders({a.styles.frames, a.collisions.clips, a.collisions.styles}, stdout);

@@ -15,4 +15,8 @@ struct SkippingOptions {
 // Returns whether the bounds of the ledger hold; prints each.
 bool runSkipping(const SkippingOptions& options);
 
+// The simulation of the hundred beside the close-up's, in `rounds` turns, and how far the skips that look at distance
+// take its shapes: no pictures, nothing written. Returns whether the ledger's bounds hold; prints.
+bool runCrowd(int rounds);
+
 }  // namespace bench

@@ -92,8 +92,8 @@ std::vector<SkipBound> skipBounds(const SkipScenes& scenes) {
   const SkipRow *close = find(scenes, "walk", "all"), *crowd = find(scenes, "hundred", "all");
   if (without && still) all.push_back({"still close-up, all skips over none", still->frame() / without->frame(), 0.02});
   if (close && crowd) {
-    all.push_back(
-        {"simulation of the hundred over one close-up's (walk)", crowd->simulation_ms / close->simulation_ms, 6});
+    all.push_back({"simulation of the hundred over one close-up's (walk)", crowd->simulation_ms / close->simulation_ms,
+                   kCrowdRatio});
     all.push_back(
         {"drawing of the hundred over one close-up's (walk)", crowd->drawing_like_close_up_ms / close->drawing_ms, 4});
     const long more =
@@ -104,7 +104,7 @@ std::vector<SkipBound> skipBounds(const SkipScenes& scenes) {
     const SkipRow &first = rows.front(), &last = rows.back();
     double pixels = 0;
     for (const SkipRow& row : rows) pixels = std::max(pixels, row.simulation_error_pixels);
-    all.push_back({"pixels that the shapes of " + first.scene + " are off by at most", pixels, 3});
+    all.push_back({"pixels that the shapes of " + first.scene + " are off by at most", pixels, kShapePixels});
     all.push_back({"frame of " + first.scene + ", all skips over none", last.frame() / first.frame(), 1.03});
   }
   return all;

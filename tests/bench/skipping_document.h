@@ -10,6 +10,9 @@ namespace bench {
 
 using SkipScenes = std::vector<std::vector<SkipRow>>;  // rows of each scene; none first, all last
 
+inline constexpr double kCrowdRatio = 6;   // the hundred's simulation over a close-up's
+inline constexpr double kShapePixels = 3;  // that shapes may be off by
+
 struct SkipBound {
   std::string what;
   double value, most;

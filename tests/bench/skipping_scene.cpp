@@ -4,32 +4,17 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <numeric>
 
 #include "app/data_path.h"
 #include "app/demo.h"
-#include "app/level_of_detail.h"
 #include "tests/bench/cpu_clock.h"
+#include "tests/bench/skipping_simulation.h"
 
 namespace bench {
 namespace {
 
-// Pixels: the simulation takes the care that a picture of this height asks for, however small the measured ones are.
-constexpr int kSeenHeight = 720;
-
-double mean(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) /
-         static_cast<double>(std::max<std::size_t>(values.size(), 1));
-}
-
 bool isDrawing(const app::Skip& skip) {
   return std::string(skip.stage) == "drawing";
-}
-
-app::SkipSet none() {
-  app::SkipSet skips;
-  skips.on.fill(false);
-  return skips;
 }
 
 // A renderer with its own switches, fed with the frames of one run.
@@ -62,73 +47,6 @@ void draw(const SceneRun& run, app::Demo& demo, Picturing& picturing) {
   app::addDrawing(report.left_out, picturing.row.skipped);
 }
 
-// What a run of the simulation showed, per drawn frame and actor.
-using Shown = std::vector<std::vector<std::vector<float>>>;
-
-struct Simulated {
-  SkipRow row;
-  Shown shown;
-  std::vector<double> metre;  // pixels, per actor
-  std::vector<bool> seen;
-};
-
-Simulated simulate(const SceneRun& run, const app::SkipSet& skips, std::vector<Picturing*> picturing) {
-  app::Scene scene = app::loadScene(app::dataPath("assets/scenes/" + run.file));
-  scene.skips = skips;
-  for (app::CharacterSpec& spec : scene.characters) {
-    if (run.strands > 0) spec.look.strands = run.strands;
-  }
-  app::Demo demo = app::openScene(std::move(scene), static_cast<double>(run.width) / run.height);
-  demo.picture_height = kSeenHeight;
-  Simulated done;
-  std::vector<double> simulation, character;
-  for (int frame = 0; frame < run.frames; ++frame) {
-    const double start = cpuSeconds();
-    app::advanceFrame(demo, frame == 0 ? 0 : 1.0 / 60, {});
-    const double whole = cpuSeconds() - start;
-    if (frame >= run.warm_up) {
-      // The stages' shares of a steady clock, of the time that the thread had.
-      const app::FrameStats& stats = demo.stats;
-      const double share = stats.whole > 0 ? stats.simulation() / stats.whole : 0;
-      simulation.push_back(share * whole);
-      character.push_back((1 - share) * whole);
-      for (std::size_t s = 0; s < stats.skipped.size(); ++s) {
-        done.row.skipped[s].skipped += stats.skipped[s].skipped;
-        done.row.skipped[s].of += stats.skipped[s].of;
-        done.row.skipped[s].seconds += stats.skipped[s].seconds;
-      }
-    }
-    if (std::find(run.drawn.begin(), run.drawn.end(), frame) == run.drawn.end()) continue;
-    std::vector<std::vector<float>>& shown = done.shown.emplace_back();
-    for (const app::Actor& actor : demo.actors) shown.push_back(actor.shown_positions);
-    for (Picturing* one : picturing) draw(run, demo, *one);
-  }
-  for (const app::Actor& actor : demo.actors) {
-    const double size = actor.haircut->mesh.hair_length + 2 * actor.body->character.scalp.head_height;
-    done.metre.push_back(app::projectedSize(demo, actor) / size);
-    done.seen.push_back(app::mayBeSeen(demo, actor));
-  }
-  // Means: steps of a crowd fall into different frames.
-  done.row.simulation_ms = 1e3 * mean(simulation);
-  done.row.character_ms = 1e3 * mean(character);
-  return done;
-}
-
-void compareShapes(const Simulated& reference, const Simulated& other, SkipRow& row) {
-  for (std::size_t f = 0; f < reference.shown.size(); ++f) {
-    for (std::size_t a = 0; a < reference.shown[f].size(); ++a) {
-      const std::vector<float>&p = reference.shown[f][a], &q = other.shown[f][a];
-      if (!reference.seen[a] || p.size() != q.size() || p.empty()) continue;
-      double sum = 0;
-      for (std::size_t i = 0; i + 2 < p.size(); i += 3)
-        sum += std::hypot(p[i] - q[i], p[i + 1] - q[i + 1], p[i + 2] - q[i + 2]);
-      const double mean = 3 * sum / static_cast<double>(p.size());
-      row.simulation_error_mm = std::max(row.simulation_error_mm, 1e3 * mean);
-      row.simulation_error_pixels = std::max(row.simulation_error_pixels, reference.metre[a] * mean);
-    }
-  }
-}
-
 double imageError(const app::Image& a, const app::Image& b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.rgba.size(); ++i) {
@@ -158,10 +76,8 @@ std::vector<SkipRow> measureScene(const SceneRun& run, const std::string& folder
     one.row.skips = name;
     one.renderer = std::make_unique<render::Renderer>(app::dataPath("shaders"));
   };
-  const auto pictures = [&] {
-    std::vector<Picturing*> all;
-    for (Picturing& one : picturing) all.push_back(&one);
-    return all;
+  const auto pictures = [&](app::Demo& demo) {
+    for (Picturing& one : picturing) draw(run, demo, one);
   };
   const auto picture = [&](const char* name, const app::Image& image) {
     app::writePng(folder + "/skipping_" + scene + "_" + name + ".png", run.width, run.height, image.rgba);
@@ -173,7 +89,7 @@ std::vector<SkipRow> measureScene(const SceneRun& run, const std::string& folder
     add("like the close-up", app::SkipSet{});
     picturing.back().strands = run.close_up_strands;
   }
-  const Simulated all = simulate(run, app::SkipSet{}, pictures());
+  const Simulated all = simulate(run, app::SkipSet{}, pictures);
   std::printf("%s: with all skips done\n", scene.c_str());
   std::vector<Picturing> with_all = std::move(picturing);
   SkipRow& last = with_all.front().row;
@@ -185,14 +101,14 @@ std::vector<SkipRow> measureScene(const SceneRun& run, const std::string& folder
 
   // The drawing skips are shown the frames of the run without any skip.
   picturing.clear();
-  add("none", none());
+  add("none", noSkips());
   for (const app::Skip& skip : app::skipTable()) {
     if (!isDrawing(skip) || last.skipped[skip.id].skipped == 0) continue;
-    app::SkipSet one = none();
+    app::SkipSet one = noSkips();
     one.on[skip.id] = true;
     add(skip.name, one);
   }
-  const Simulated plain = simulate(run, none(), pictures());
+  const Simulated plain = simulate(run, noSkips(), pictures);
   std::printf("%s: without skips done\n", scene.c_str());
   const std::vector<app::Image> reference = picturing.front().images;
   for (Picturing& one : picturing) {
@@ -207,9 +123,9 @@ std::vector<SkipRow> measureScene(const SceneRun& run, const std::string& folder
 
   for (const app::Skip& skip : app::skipTable()) {
     if (isDrawing(skip) || skip.id == app::kSkipEvents || last.skipped[skip.id].skipped == 0) continue;
-    app::SkipSet one = none();
+    app::SkipSet one = noSkips();
     one.on[skip.id] = true;
-    Simulated alone = simulate(run, one, {});
+    Simulated alone = simulate(run, one);
     compareShapes(plain, alone, alone.row);
     alone.row.skips = skip.name;
     alone.row.drawing_ms = plain_drawing;
