@@ -35,8 +35,9 @@ struct EnergyGuard {
   std::vector<V3<double>> plain;
 };
 
-// Does nothing to a step that is gentle and whose solve was finished (`solved`), leaves no value finite that was not,
-// or ends below its bound. Returns the share of the step's motion against the roots that was kept, 1 where all was.
+// Does nothing to a step that is gentle and whose solve was finished, with the bodies of the step before (`solved`),
+// leaves no value finite that was not, or ends below its bound. Returns the share of the step's motion against the roots
+// that was kept, 1 where all was.
 double limitEnergy(const TakenStep& step, bool solved, EnergyGuard& scratch, HairState& state);
 
 // The same for a step, gentle or not, whose contacts have moved vertices: what corrections lift, and what follows them,

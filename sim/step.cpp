@@ -239,8 +239,9 @@ void partBundles(const CorrectedStep& step, Parts& parts, HairState& state, Step
 }
 
 // No step makes energy out of nothing, and no hair stays turned over.
-void keepWithinBounds(const TakenStep& taken, Parts& parts, HairState& state, StepReport& report) {
-  limitEnergy(taken, report.converged, parts.energy_guard, state);
+// `let_go`: bodies that held the hair have gone, and it springs back further than the forces stay linear over.
+void keepWithinBounds(const TakenStep& taken, bool let_go, Parts& parts, HairState& state, StepReport& report) {
+  limitEnergy(taken, report.converged && !let_go, parts.energy_guard, state);
   // Loose particles have no shape to be led back to.
   if (taken.params.volume <= 0) return;
   // In a storm the rest shape is not where hair belongs: combed towards it, it would be thrown about for ever.
@@ -316,6 +317,9 @@ StepReport advance(const HairMesh& mesh, const SimParams& asked, const StepInput
   parts.start_positions = state.positions;
   parts.start_velocities = state.velocities;
   const Colliders colliders = collidersOf(params, input);
+  const bool let_go = std::ranges::any_of(state.contacts, [&](const Contact& contact) {
+    return !params.collide || contact.collider >= colliders.count();
+  });
   carryContacts(colliders, params, dt, state);
   const StepBase base = integratorBase(params, input, dt, state, parts);
   rootsFollowScalp(input, base, mesh, state);
@@ -325,7 +329,7 @@ StepReport advance(const HairMesh& mesh, const SimParams& asked, const StepInput
   integratePositions(input, base, dt, mesh, parts, state);
   const bool bounded = params.solver != Solver::kPaper || !parts.as_published;
   const TakenStep taken = takenStep(params, base, dt, parts);
-  if (bounded) keepWithinBounds(taken, parts, state, report);
+  if (bounded) keepWithinBounds(taken, let_go, parts, state, report);
   guardMade(parts, input, state, report);
   parts.clock.spent(kStageOther, report);
 
