@@ -41,6 +41,7 @@ TrajectoryStage::TrajectoryStage(const TrajectoryScene& scene) : scene_(scene) {
   sim::SimParams params;
   params.collide = scene.collide;
   app::settleActor(params, kSettle, actor_);
+  actor_.context->leaveAsPublished(true);
   if (scene.collapsed) sim::collapseOntoRoots(mesh(), actor_.hair);
   start_ = actor_.hair;
   playback_ = actor_.playback;
