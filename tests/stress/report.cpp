@@ -164,7 +164,7 @@ std::string paperTable(const std::vector<Result>& results) {
 }
 
 std::string failureList(const std::vector<Result>& results, std::uint64_t seed) {
-  constexpr int kShown = 60;
+  constexpr int kShown = 200;
   std::string text;
   int failed = 0;
   for (const auto& [one, o] : results) {
