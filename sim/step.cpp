@@ -238,6 +238,12 @@ void partBundles(const CorrectedStep& step, Parts& parts, HairState& state, Step
   resolveSelfContacts({step.mesh, step.params, {}, step.dt}, self, state);
 }
 
+// Whether hair is in contact with a body that is there no more.
+bool bodyHasGone(const SimParams& params, const Colliders& colliders, const HairState& state) {
+  return std::ranges::any_of(
+      state.contacts, [&](const Contact& contact) { return !params.collide || contact.collider >= colliders.count(); });
+}
+
 // No step makes energy out of nothing, and no hair stays turned over.
 // `let_go`: bodies that held the hair have gone, and it springs back further than the forces stay linear over.
 void keepWithinBounds(const TakenStep& taken, bool let_go, Parts& parts, HairState& state, StepReport& report) {
@@ -317,9 +323,7 @@ StepReport advance(const HairMesh& mesh, const SimParams& asked, const StepInput
   parts.start_positions = state.positions;
   parts.start_velocities = state.velocities;
   const Colliders colliders = collidersOf(params, input);
-  const bool let_go = std::ranges::any_of(state.contacts, [&](const Contact& contact) {
-    return !params.collide || contact.collider >= colliders.count();
-  });
+  const bool let_go = bodyHasGone(params, colliders, state);
   carryContacts(colliders, params, dt, state);
   const StepBase base = integratorBase(params, input, dt, state, parts);
   rootsFollowScalp(input, base, mesh, state);
