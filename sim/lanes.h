@@ -62,6 +62,20 @@ HAIRMESH_INLINE void addTo(T* to, const Lanes<T, kCount>& value) {
   store<T, kCount>(to, load<T, kCount>(to) + value);
 }
 
+// Whether a comparison holds in any lane.
+template <class Mask>
+HAIRMESH_INLINE bool anyOf(const Mask& mask) {
+  if constexpr (std::is_same_v<Mask, bool>) {
+    return mask;
+  } else {
+    static_assert(sizeof mask % sizeof(unsigned long long) == 0);
+    unsigned long long words[sizeof mask / sizeof(unsigned long long)], any = 0;
+    __builtin_memcpy(words, &mask, sizeof mask);
+    for (const unsigned long long word : words) any |= word;
+    return any != 0;
+  }
+}
+
 // `now` moved up by one lane, with the last one of `before` coming in.
 template <class T>
 HAIRMESH_INLINE Lanes<T> shifted(const Lanes<T>& before, const Lanes<T>& now) {

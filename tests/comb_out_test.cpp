@@ -132,7 +132,7 @@ TEST(CombOut, WhatTurnsOverAgainIsLeftInPeaceLongerEachTime) {
 double distanceAfterMirroring(bool combed, int& columns) {
   sim::SimParams params;
   params.collide = false;
-  params.volume *= 4;                                // soft hair finds home by itself
+  params.volume *= 16;                               // softer hair finds home by itself
   if (!combed) params.solver = sim::Solver::kPaper;  // combs nothing
   const sim::HairMeshShape shape =
       sim::makeStyle(sim::Style::kShort, sim::Resolution::kLow, tests::analyticScalp(), tests::bodyDistance);

@@ -197,6 +197,38 @@ TEST(BendForce, OfOneHingeSumsToNothingAndTurnsNothingInEveryState) {
   EXPECT_LT(largest_pull, 1000 / (kSide * kSide));
 }
 
+// A wall that passes through having no area turns its hinge's angle by up to pi at once. Neither the energy nor the
+// pull may jump there, and the pull is the energy's slope all the way.
+TEST(BendForce, EnergyIsSmoothWhereAWallTurnsOverThroughNoArea) {
+  constexpr double kSide = 0.02, kSmallest = 0.1 * kSide * kSide, kStep = 1e-7;
+  test::Random random(31);
+  for (int trial = 0; trial < 40; ++trial) {
+    // The upper wall's far side goes through the hinge's line, somewhere along it and at some slant.
+    std::vector<Vec3> x{{0, -kSide, 0}, {kSide, -kSide, 0}, {0, 0, 0}, {kSide, 0, 0}, {}, {}};
+    const Vec3 way = Vec3(random(-0.5, 0.5), 1, random(-1.5, 1.5)).normalized() * kSide;
+    const Vec3 aside = Vec3(random(0, kSide), 0, 0);
+    const auto at = [&](double share) {
+      x[4] = aside + share * way, x[5] = x[4] + Vec3(kSide, 0, 0);
+      return sim::bendCondition(test::plain<double>(x).data(), 0.4, 1 / kSide, kSmallest * kSmallest);
+    };
+    const double whole = 0.5 * std::pow(at(0.2).value, 2), through = 0.5 * std::pow(at(-0.2).value, 2);
+    ASSERT_GT(std::abs(through - whole), 0.2 * std::max(whole, through)) << "it does turn over";
+    double last = whole, steepest = 0, worst = 0, slopes = 0;
+    for (double share = 0.2; share >= -0.2; share -= 1e-4) {
+      const auto c = at(share);
+      const double energy = 0.5 * c.value * c.value;
+      steepest = std::max(steepest, std::abs(energy - last));
+      last = energy;
+      const double slope = c.value * (test::eigen(c.g[4]) + test::eigen(c.g[5])).dot(way);
+      const double measured =
+          (std::pow(at(share + kStep).value, 2) - std::pow(at(share - kStep).value, 2)) / (4 * kStep);
+      worst = std::max(worst, std::abs(slope - measured)), slopes = std::max(slopes, std::abs(slope));
+    }
+    EXPECT_LT(steepest, 0.02 * std::max(whole, through)) << "over a ten-thousandth of the way";
+    EXPECT_LT(worst, 1e-4 * slopes);
+  }
+}
+
 TEST(VolumeForce, IsThePapersEquationsToTheLetter) {
   test::Random random(10);
   for (int trial = 0; trial < 100; ++trial) {

@@ -128,7 +128,7 @@ void ColumnModel<T>::setElements(const HairMesh& mesh, const ColumnLayout& layou
        {&vertical.stiffness, &horizontal.stiffness, &shear_stiffness, &bend_stiffness, &volume_stiffness}) {
     std::fill(array->begin(), array->end(), T(0));
   }
-  std::fill(bend_smallest_square.begin(), bend_smallest_square.end(), T(1));  // the padding divides by it
+  std::fill(bend_smallest_square.begin(), bend_smallest_square.end(), T(0));  // the padding never counts as collapsed
   for (std::size_t e = 0; e < model.stretch.size(); ++e) {
     const auto [a, b] = model.stretch.vertices[e];
     const bool is_vertical = mesh.column_of[a] == mesh.column_of[b];

@@ -62,13 +62,18 @@ HAIRMESH_INLINE Condition<T, 4> shearCondition(const V3<T>* x, T inverse_along, 
   return c;
 }
 
-// Bend of two consecutive walls about their common horizontal edge x[2]-x[3]: C = (theta - theta_0) / length, the
+// Bend of two consecutive walls about their common horizontal edge x[2]-x[3]: C = fade (theta - theta_0) / length, the
 // change of curvature. x: (a, b) of the layer below, of the hinge, and above; the walls' far sides act through their
-// midpoints. `smallest_square` (m^4) is the square of the doubled area below which a wall counts as collapsed: the pull
-// on it is bounded, and the other wall's is reduced to the same torque, so that the hinge turns nothing as a whole.
+// midpoints. theta_0 is where the hinge is at rest, its shift included, so that a hinge that folds over passes from pi
+// to -pi off it at one energy.
+//
+// A wall without area has no angle: passing through there, it jumps by anything up to pi, and so would the energy. So
+// the angle counts for less in a wall whose doubled area has a square s below `smallest_square` (m^4), by
+// t (2 - t), t = s / smallest_square: energy and forces go to nothing with the area, the pull on a wall stays bounded,
+// and, C being one function of the shape, the hinge turns and pushes nothing as a whole.
 template <class T>
 HAIRMESH_INLINE Condition<T, 6> bendCondition(const V3<T>* x, T rest_angle, T inverse_length, T smallest_square) {
-  const T zero = constant<T>(0), one = constant<T>(1), half = constant<T>(0.5);
+  const T zero = constant<T>(0), one = constant<T>(1), two = constant<T>(2), half = constant<T>(0.5);
   const V3<T> p = x[2], q = x[3];
   const V3<T> m1 = half * (x[0] + x[1]), m2 = half * (x[4] + x[5]);
   const V3<T> e = q - p, a = m1 - p, b = m2 - p;
@@ -81,20 +86,32 @@ HAIRMESH_INLINE Condition<T, 6> bendCondition(const V3<T>* x, T rest_angle, T in
   angle = angle > pi ? angle - (pi + pi) : angle;
   angle = angle < -pi ? angle + (pi + pi) : angle;
   const T s1 = dot(n1, n1), s2 = dot(n2, n2);
-  // Torques go as s1 w1 and s2 w2: the smaller share of the two holds for both.
-  const T bound1 = one / (s1 > smallest_square ? s1 : smallest_square);
-  const T bound2 = one / (s2 > smallest_square ? s2 : smallest_square);
-  const T share1 = s1 * bound1, share2 = s2 * bound2;
-  const T w1 = share2 < share1 ? share2 / s1 : bound1, w2 = share1 < share2 ? share1 / s2 : bound2;
+  const auto small1 = s1 < smallest_square, small2 = s2 < smallest_square;
+  const T bound1 = small1 ? smallest_square : s1, bound2 = small2 ? smallest_square : s2;
+  const T inverse_s1 = one / (bound1 > zero ? bound1 : one), inverse_s2 = one / (bound2 > zero ? bound2 : one);
+  const T t1 = small1 ? s1 * inverse_s1 : one, t2 = small2 ? s2 * inverse_s2 : one;
+  const T fade1 = t1 * (two - t1), fade2 = t2 * (two - t2), fade = fade1 * fade2;
+  // d theta / d x is along n / s, which grows without bound as the area goes: fade / s is finite.
+  const T w1 = (two - t1) * inverse_s1 * fade2, w2 = (two - t2) * inverse_s2 * fade1;
   const T scale = -length * inverse_length;
   const V3<T> g1 = (scale * w1) * n1, g2 = (scale * w2) * n2;
-  const T t1 = dot(a, e) * inverse_e * inverse_e, t2 = dot(b, e) * inverse_e * inverse_e;
+  const T along1 = dot(a, e) * inverse_e * inverse_e, along2 = dot(b, e) * inverse_e * inverse_e;
   Condition<T, 6> c;
-  c.value = angle * inverse_length;
+  c.value = fade * (angle * inverse_length);
   c.g[0] = c.g[1] = half * g1;
   c.g[4] = c.g[5] = half * g2;
-  c.g[2] = (t1 - one) * g1 + (t2 - one) * g2;
-  c.g[3] = (-t1) * g1 + (-t2) * g2;
+  c.g[2] = (along1 - one) * g1 + (along2 - one) * g2;
+  c.g[3] = (-along1) * g1 + (-along2) * g2;
+  if (anyOf(small1) || anyOf(small2)) {
+    // What the area's change adds: C d fade / fade, by ds1 = 2 n1 . (de x a + e x da), ds2 = 2 n2 . (db x e + b x de).
+    const T slope = constant<T>(4) * (angle * inverse_length);
+    const V3<T> r1 = (slope * (one - t1) * inverse_s1 * fade2) * n1, r2 = (slope * (one - t2) * inverse_s2 * fade1) * n2;
+    const V3<T> by_a = cross(r1, e), by_b = cross(e, r2), by_e = cross(a, r1) + cross(r2, b);
+    c.g[0] += half * by_a, c.g[1] += half * by_a;
+    c.g[4] += half * by_b, c.g[5] += half * by_b;
+    c.g[3] += by_e;
+    c.g[2] -= by_a + by_b + by_e;
+  }
   return c;
 }
 

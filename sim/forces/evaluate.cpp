@@ -1,6 +1,6 @@
 // Energy, force and Hessian of many elements.
 //
-// k: stiffness, c: condition with its rest shift taken off, g: its gradient; see conditions.h.
+// k: stiffness, c: condition with its rest shift taken off (bend has it in its rest angle), g: its gradient; see conditions.h.
 #include "sim/forces/force_model.h"
 
 namespace sim {
@@ -23,10 +23,10 @@ void addBlock(M3<T>& m, const M3<T>& b, T sign) {
 // One element's condition: force, damping force and Gauss-Newton Hessian into the sums; returns its energy
 // and dissipation potential.
 template <class T, int N>
-T addCondition(const Elements<T, N>& elements, std::size_t e, const Condition<T, N>& condition,
+T addCondition(const Elements<T, N>& elements, std::size_t e, T shift, const Condition<T, N>& condition,
                const Evaluation<T>& out) {
   const auto& v = elements.vertices[e];
-  const T k = elements.stiffness[e], c = condition.value - elements.shift[e];
+  const T k = elements.stiffness[e], c = condition.value - shift;
   T pull = k * c, dissipation = 0;
   if (!out.velocities.empty()) {
     T rate = 0;
@@ -99,20 +99,20 @@ T evaluate(const ForceModel<T>& model, std::span<const V3<T>> x, const Evaluatio
   for (std::size_t e = 0; e < model.shear.size(); ++e) {
     V3<T> p[4];
     gather<T, 4>(x, model.shear.vertices[e], p);
-    energy += addCondition(model.shear, e,
+    energy += addCondition(model.shear, e, model.shear.shift[e],
                            shearCondition(p, model.shear.inverse_along[e], model.shear.inverse_across[e]), out);
   }
   for (std::size_t e = 0; e < model.bend.size(); ++e) {
     V3<T> p[6];
     gather<T, 6>(x, model.bend.vertices[e], p);
-    energy += addCondition(
-        model.bend, e,
-        bendCondition(p, model.bend.rest_angle[e], model.bend.inverse_length[e], model.bend.smallest_square[e]), out);
+    const T rest = model.bend.rest_angle[e] + model.bend.shift[e] / model.bend.inverse_length[e];
+    energy += addCondition(model.bend, e, T(0),
+                           bendCondition(p, rest, model.bend.inverse_length[e], model.bend.smallest_square[e]), out);
   }
   for (std::size_t e = 0; e < model.volume.size(); ++e) {
     V3<T> p[4];
     gather<T, 4>(x, model.volume.vertices[e], p);
-    energy += addCondition(model.volume, e, volumeCondition(p, model.volume.rest_volume[e]), out);
+    energy += addCondition(model.volume, e, model.volume.shift[e], volumeCondition(p, model.volume.rest_volume[e]), out);
   }
   return energy;
 }

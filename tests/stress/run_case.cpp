@@ -108,10 +108,10 @@ void traceStep(const Run& run, double dt, const sim::StepReport& report, Hair& h
   double fastest = 0;
   for (const sim::Vec3& v : hair.state.velocities) fastest = std::max(fastest, v.norm());
   std::printf(
-      "%9.4f s  step %6.1f ms  energy %12.5e J  fastest %9.3e m/s  contacts %3d  corrected %3d  iterations %4d  combed "
-      "%d%s%s\n",
+      "%9.4f s  step %6.1f ms  energy %12.5e J  fastest %9.3e m/s  contacts %3d  corrected %3d  standing %3d  self %3d  "
+      "iterations %4d  combed %d%s%s\n",
       run.around.time(), 1e3 * dt, energyOf(run, hair), fastest, report.contacts, report.corrected,
-      report.solver_iterations, report.combed, report.converged ? "" : " (not converged)",
+      report.standing, report.self_contacts, report.solver_iterations, report.combed, report.converged ? "" : " (not converged)",
       report.carried ? " carried" : "");
 }
 
