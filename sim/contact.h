@@ -78,7 +78,8 @@ void clusterVertices(const HairMesh& mesh, ContactScratch& scratch);
 
 // Brings carried contacts to this step: normal and velocity from where the collider's motion carries the vertex.
 // Contacts that are out of reach, or whose collider is gone, are dropped. Overlaps are not resolved by velocities,
-// which would outlive them, but by positions (position_correction.h); only a dip below the offset is.
+// which would outlive them, but by positions (position_correction.h); only a dip below the offset is, where the contact
+// is not pressed so hard that closing it would store energy worth the name.
 void carryContacts(const Colliders& colliders, const SimParams& params, double dt, HairState& state);
 
 // Penetrations of the vertices, each resolved against every collider it lies in (alternating projections, so that a

@@ -142,7 +142,9 @@ double depthOf(const Run& run, int vertex) {
 
 // Vertices that are held outside and lie inside a collider at a frame's end.
 void checkOutside(Run& run) {
-  if (!run.params.collide || run.around.time() < run.last_intrusion + run.one.grace) return;
+  // What lies within a body comes out no faster than the parameter says; the stated time is that of its default.
+  const double gentle = std::max(1.0, sim::SimParams{}.max_depenetration / run.params.max_depenetration);
+  if (!run.params.collide || run.around.time() < run.last_intrusion + gentle * run.one.grace) return;
   const sim::HairMesh& mesh = run.hair.mesh;
   const auto check = [&](int v) {
     const double depth = depthOf(run, v);
@@ -292,10 +294,11 @@ double liftOf(const Run& run, double dt) {
   return weightOf(run) / run.hair.mesh.hair_length * sim::contactMargins(run.params, dt).slack;
 }
 
-void checkEnergy(bool combed, double dt, EnergyWatch& watch, Run& run) {
+// `lifted`: combed, which is done by a hand from outside, or out of a body that it lay within before the step (a jump in
+// time had put it there), which is the body's work.
+void checkEnergy(bool lifted, double dt, EnergyWatch& watch, Run& run) {
   const double energy = energyOf(run, run.hair);
-  // Combing is done by a hand from outside.
-  if (!watch.begun || (combed && energy > watch.left)) {
+  if (!watch.begun || (lifted && energy > watch.left)) {
     watch.begun = true;
     watch.left = std::max(energy, run.raised);
     watch.scale = std::max(watch.left - watch.rest, kSmallestEnergy * weightOf(run));
@@ -361,7 +364,7 @@ bool waitUntilBack(double seconds, bool may_take, EnergyWatch& energy, Run& run,
     if (may_take && fastest(twin) > kAtRest) until = std::min(run.around.time(), started + kUnrest * seconds) + seconds;
     checkFinite(run);
     checkOutside(run);
-    if (!run.failed()) checkEnergy(report.combed > 0, dt, energy, run);
+    if (!run.failed()) checkEnergy(report.combed > 0 || report.standing > 0, dt, energy, run);
     const Apart worst = apart(run.hair, twin);
     run.outcome.distance = worst.distance;
     run.outcome.worst_vertex = worst.vertex;
