@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <span>
 
 #include "app/fixed_clock.h"
 #include "sim/bearable.h"
@@ -316,19 +317,25 @@ void checkEnergy(bool lifted, double dt, EnergyWatch& watch, Run& run) {
 // Pace of return: what has moved so little within kWindow that it would not arrive in time at kHurry times that pace is
 // not coming, unless it is only waiting for the simulator to find out that it rests elsewhere (sim/rest_check.h).
 struct Pacer {
-  std::vector<sim::Vec3> hair, twin;
+  std::vector<std::vector<sim::Vec3>> was;  // hair's, then its twins'
   double since = 0;
   int idle = 0;  // windows
 
-  bool hopeless(const Run& run, const Hair& other, double dt, double seconds_left) {
+  bool hopeless(const Run& run, std::span<const Hair> twins, double dt, double seconds_left) {
     since += dt;
-    if (since < kWindow && !hair.empty()) return false;
+    if (since < kWindow && !was.empty()) return false;
+    std::vector<std::vector<sim::Vec3>> now{run.hair.state.positions};
+    for (const Hair& twin : twins) now.push_back(twin.state.positions);
     double way = 0;
-    for (std::size_t i = 0; i < hair.size(); ++i) {
-      way = std::max(way, (run.hair.state.positions[i] - hair[i]).norm() + (other.state.positions[i] - twin[i]).norm());
+    if (!was.empty()) {
+      for (std::size_t i = 0; i < now[0].size(); ++i) {
+        double moved = 0;
+        for (std::size_t k = 0; k < now.size(); ++k) moved += (now[k][i] - was[k][i]).norm();
+        way = std::max(way, moved);
+      }
     }
-    const bool known = !hair.empty();
-    hair = run.hair.state.positions, twin = other.state.positions;
+    const bool known = !was.empty();
+    was = std::move(now);
     since = 0;
     const double missing = (run.outcome.distance - kBack) * run.hair.mesh.hair_length;
     idle = known && kHurry * way * seconds_left / kWindow < missing ? idle + 1 : 0;
@@ -344,10 +351,10 @@ bool restsNoHigher(Hair& twin, const EnergyWatch& watch, Run& run) {
   return watch.last - rest <= kEnergyTolerance * kSmallestEnergy * weightOf(run);
 }
 
-// Everything stands still: hair and twin go on until they meet, for `seconds` from when the twin has come to rest where
-// that `may_take` long: limp hair sags and swings for a minute from its own rest shape too, and until it has done so
-// there is no rest to be back at. Returns whether they meet.
-bool waitUntilBack(double seconds, bool may_take, EnergyWatch& energy, Run& run, Hair& twin) {
+// Everything stands still: hair and twins go on until it meets one of them, for `seconds` from when the twins have come
+// to rest where that `may_take` long: limp hair sags and swings for a minute from its own rest shape too, and until it
+// has done so there is no rest to be back at. Returns whether they meet.
+bool waitUntilBack(double seconds, bool may_take, std::span<Hair> twins, EnergyWatch& energy, Run& run) {
   const double dt = run.one.pace == Pace::kFixed ? run.one.step : sim::SimParams{}.time_step;
   const double started = run.around.time();
   double until = started + seconds;
@@ -360,21 +367,35 @@ bool waitUntilBack(double seconds, bool may_take, EnergyWatch& energy, Run& run,
     if (report.recoveries > 0) run.fail("watchdog: " + sim::troubleText(report.trouble));
     countWork(report, run);
     if (run.trace) traceStep(run, dt, report, run.hair);
-    stepHair(run.params, run, dt, twin);
-    if (may_take && fastest(twin) > kAtRest) until = std::min(run.around.time(), started + kUnrest * seconds) + seconds;
+    for (Hair& twin : twins) {
+      stepHair(run.params, run, dt, twin);
+      if (may_take && fastest(twin) > kAtRest)
+        until = std::min(run.around.time(), started + kUnrest * seconds) + seconds;
+    }
     checkFinite(run);
     checkOutside(run);
     if (!run.failed()) checkEnergy(report.combed > 0 || report.standing > 0, dt, energy, run);
-    const Apart worst = apart(run.hair, twin);
-    run.outcome.distance = worst.distance;
-    run.outcome.worst_vertex = worst.vertex;
+    run.outcome.distance = INFINITY;
+    for (const Hair& twin : twins) {
+      const Apart worst = apart(run.hair, twin);
+      if (worst.distance >= run.outcome.distance) continue;
+      run.outcome.distance = worst.distance;
+      run.outcome.worst_vertex = worst.vertex;
+    }
     if (run.outcome.distance < kBack) return true;
     // Not with the body there: that holds hair up as well.
-    resting = !run.params.collide && !run.failed() && restsNoHigher(twin, energy, run) ? resting + dt : 0;
+    const auto higher = [&](Hair& twin) { return !restsNoHigher(twin, energy, run); };
+    resting = !run.params.collide && !run.failed() && !std::ranges::all_of(twins, higher) ? resting + dt : 0;
     if (resting > kRested) return run.outcome.other_rest = true;
-    if (pacer.hopeless(run, twin, dt, until - run.around.time())) return false;
+    if (pacer.hopeless(run, twins, dt, until - run.around.time())) return false;
   }
   return false;
+}
+
+void addTwin(const Run& run, std::vector<Hair>& twins) {
+  Hair& twin = twins.emplace_back(run.hair.mesh);
+  twin.context.leaveAsPublished(run.one.compared);
+  twin.state = sim::restState(run.hair.mesh, run.around.head());
 }
 
 void waitForRest(Run& run) {
@@ -385,26 +406,27 @@ void waitForRest(Run& run) {
     run.params.collide = run.one.collide;
   }
   run.params.gust = 0;  // it is an input: as everything else, the wind becomes steady
-  Hair twin(run.hair.mesh);
-  twin.context.leaveAsPublished(run.one.compared);
-  twin.state = sim::restState(run.hair.mesh, run.around.head());
+  std::vector<Hair> twins;
+  addTwin(run, twins);
   const double stopped = run.around.time();
   EnergyWatch energy;
-  energy.rest = energyOf(run, twin);
-  bool back = waitUntilBack(run.one.rest, false, energy, run, twin);
+  energy.rest = energyOf(run, twins[0]);
+  bool back = waitUntilBack(run.one.rest, false, twins, energy, run);
   run.outcome.with_body = back;
   if (!back && !run.failed()) {
+    // The body may have pushed the twin into another rest than the one from the rest shape: either is one.
+    if (run.params.collide) addTwin(run, twins);
     run.params.collide = false;
-    back = waitUntilBack(run.one.release, true, energy, run, twin);
+    back = waitUntilBack(run.one.release, true, twins, energy, run);
   }
   if (back) run.outcome.back_after = run.around.time() - stopped;
   if (!back && !run.failed()) {
     run.fail(said("still %.1f %% of the hair's length from rest %.1f s after the motion stopped",
                   100 * run.outcome.distance, run.around.time() - stopped) +
              ", vertex " + std::to_string(run.outcome.worst_vertex) +
-             said(", fastest %.1e m/s (%.1e its twin)", fastest(run.hair), fastest(twin)) +
+             said(", fastest %.1e m/s (%.1e its twin)", fastest(run.hair), fastest(twins.back())) +
              said(", energy above the twin's: %.1e of its weight times length",
-                  (energy.last - energyOf(run, twin)) / weightOf(run)));
+                  (energy.last - energyOf(run, twins.back())) / weightOf(run)));
   }
 }
 
