@@ -68,6 +68,18 @@ HAIRMESH_INLINE Lanes<T> shifted(const Lanes<T>& before, const Lanes<T>& now) {
   return __builtin_shufflevector(before, now, 7, 8, 9, 10, 11, 12, 13, 14);
 }
 
+// Whether a comparison holds in any lane.
+template <class Mask>
+HAIRMESH_INLINE bool anyOf(const Mask& mask) {
+  if constexpr (std::is_integral_v<Mask>) {
+    return mask != 0;
+  } else {
+    std::remove_cvref_t<decltype(mask[0])> any = 0;
+    for (int k = 0; k < kLanes; ++k) any |= mask[k];
+    return any != 0;
+  }
+}
+
 // A vector whose first entry starts a cache line, so that lanes at multiples of kLanes never straddle two.
 template <class T>
 struct LineAllocator {

@@ -62,10 +62,50 @@ HAIRMESH_INLINE Condition<T, 4> shearCondition(const V3<T>* x, T inverse_along, 
   return c;
 }
 
+// A hinge whose walls have collapsed: their angle is nothing then, and jumps. So that no energy jumps with it (hair that
+// wind had crushed was kept buzzing for ever by what each jump gave away), the condition goes to zero with a collapsing
+// wall's squared area s, as r (2 - r), r = s / smallest_square, for the walls together as the product of both; and the
+// gradient is that of this condition, so that what it takes to collapse a wall comes back when it is drawn out. `e`,
+// `a`, `b`: as in bendCondition; `angle`: rad from rest.
+template <class T>
+HAIRMESH_INLINE void fadeCollapsed(const V3<T>& e, const V3<T>& a, const V3<T>& b, T angle, T inverse_length,
+                                   T smallest_square, Condition<T, 6>& c) {
+  const T zero = constant<T>(0), one = constant<T>(1), two = constant<T>(2), half = constant<T>(0.5);
+  const V3<T> n1 = cross(e, a), n2 = cross(b, e);
+  const T s1 = dot(n1, n1), s2 = dot(n2, n2), inverse_square = one / smallest_square;
+  const T r1 = s1 < smallest_square ? s1 * inverse_square : one, r2 = s2 < smallest_square ? s2 * inverse_square : one;
+  const T fade1 = r1 * (two - r1), fade2 = r2 * (two - r2), fade = fade1 * fade2;
+  const T length_square = dot(e, e), length = squareRoot(length_square);
+  const T inverse_e = length_square > zero ? one / (length_square > zero ? length_square : one) : zero;
+  // Fade times the angle's gradient along the normals: a wall's share of it goes with its area, and stays finite.
+  const T per1 = s1 < smallest_square ? (two - r1) * inverse_square : one / (s1 < smallest_square ? one : s1);
+  const T per2 = s2 < smallest_square ? (two - r2) * inverse_square : one / (s2 < smallest_square ? one : s2);
+  const T scale = -length * inverse_length;
+  const V3<T> turn1 = (scale * per1 * fade2) * n1, turn2 = (scale * per2 * fade1) * n2;
+  // Angle times the fade's gradient; d s1 = 2 n1 . (de x a + e x da).
+  const T grow = constant<T>(4) * angle * inverse_length * inverse_square;
+  const T grow1 = grow * fade2 * (one - r1), grow2 = grow * fade1 * (one - r2);
+  const V3<T> area_a = grow1 * cross(n1, e), area_b = grow2 * cross(e, n2);
+  const V3<T> area_e = grow1 * cross(a, n1) + grow2 * cross(n2, b);
+  const T t1 = dot(a, e) * inverse_e, t2 = dot(b, e) * inverse_e;
+  const V3<T> g1 = turn1 + area_a, g2 = turn2 + area_b;
+  const V3<T> g[6] = {half * g1,
+                      half * g1,
+                      (t1 - one) * turn1 + (t2 - one) * turn2 - area_a - area_b - area_e,
+                      (-t1) * turn1 + (-t2) * turn2 + area_e,
+                      half * g2,
+                      half * g2};
+  const auto collapsed = (s1 < smallest_square) | (s2 < smallest_square);
+  c.value = collapsed ? fade * angle * inverse_length : c.value;
+  for (int k = 0; k < 6; ++k) {
+    c.g[k] = {collapsed ? g[k].x : c.g[k].x, collapsed ? g[k].y : c.g[k].y, collapsed ? g[k].z : c.g[k].z};
+  }
+}
+
 // Bend of two consecutive walls about their common horizontal edge x[2]-x[3]: C = (theta - theta_0) / length, the
 // change of curvature. x: (a, b) of the layer below, of the hinge, and above; the walls' far sides act through their
-// midpoints. `smallest_square` (m^4) is the square of the doubled area below which a wall counts as collapsed: the pull
-// on it is bounded, and the other wall's is reduced to the same torque, so that the hinge turns nothing as a whole.
+// midpoints. `smallest_square` (m^4) is the square of the doubled area below which a wall counts as collapsed: there the
+// condition fades.
 template <class T>
 HAIRMESH_INLINE Condition<T, 6> bendCondition(const V3<T>* x, T rest_angle, T inverse_length, T smallest_square) {
   const T zero = constant<T>(0), one = constant<T>(1), half = constant<T>(0.5);
@@ -74,18 +114,15 @@ HAIRMESH_INLINE Condition<T, 6> bendCondition(const V3<T>* x, T rest_angle, T in
   const V3<T> e = q - p, a = m1 - p, b = m2 - p;
   const V3<T> n1 = cross(e, a), n2 = cross(b, e);
   const T length = squareRoot(dot(e, e));
-  const auto collapsed = length < constant<T>(1e-9);
-  const T inverse_e = collapsed ? zero : one / (collapsed ? one : length);
+  const auto no_edge = length < constant<T>(1e-9);
+  const T inverse_e = no_edge ? zero : one / (no_edge ? one : length);
   const T pi = constant<T>(3.14159265358979323846);
   T angle = arcTangent2<T>(dot(cross(n1, n2), e) * inverse_e, dot(n1, n2)) - rest_angle;
   angle = angle > pi ? angle - (pi + pi) : angle;
   angle = angle < -pi ? angle + (pi + pi) : angle;
   const T s1 = dot(n1, n1), s2 = dot(n2, n2);
-  // Torques go as s1 w1 and s2 w2: the smaller share of the two holds for both.
-  const T bound1 = one / (s1 > smallest_square ? s1 : smallest_square);
-  const T bound2 = one / (s2 > smallest_square ? s2 : smallest_square);
-  const T share1 = s1 * bound1, share2 = s2 * bound2;
-  const T w1 = share2 < share1 ? share2 / s1 : bound1, w2 = share1 < share2 ? share1 / s2 : bound2;
+  const auto collapsed1 = s1 < smallest_square, collapsed2 = s2 < smallest_square;
+  const T w1 = one / (collapsed1 ? smallest_square : s1), w2 = one / (collapsed2 ? smallest_square : s2);
   const T scale = -length * inverse_length;
   const V3<T> g1 = (scale * w1) * n1, g2 = (scale * w2) * n2;
   const T t1 = dot(a, e) * inverse_e * inverse_e, t2 = dot(b, e) * inverse_e * inverse_e;
@@ -95,6 +132,7 @@ HAIRMESH_INLINE Condition<T, 6> bendCondition(const V3<T>* x, T rest_angle, T in
   c.g[4] = c.g[5] = half * g2;
   c.g[2] = (t1 - one) * g1 + (t2 - one) * g2;
   c.g[3] = (-t1) * g1 + (-t2) * g2;
+  if (anyOf(collapsed1 | collapsed2)) fadeCollapsed(e, a, b, angle, inverse_length, smallest_square, c);
   return c;
 }
 

@@ -24,9 +24,9 @@ void addBlock(M3<T>& m, const M3<T>& b, T sign) {
 // and dissipation potential.
 template <class T, int N>
 T addCondition(const Elements<T, N>& elements, std::size_t e, const Condition<T, N>& condition,
-               const Evaluation<T>& out) {
+               T shift, const Evaluation<T>& out) {
   const auto& v = elements.vertices[e];
-  const T k = elements.stiffness[e], c = condition.value - elements.shift[e];
+  const T k = elements.stiffness[e], c = condition.value - shift;
   T pull = k * c, dissipation = 0;
   if (!out.velocities.empty()) {
     T rate = 0;
@@ -100,19 +100,23 @@ T evaluate(const ForceModel<T>& model, std::span<const V3<T>> x, const Evaluatio
     V3<T> p[4];
     gather<T, 4>(x, model.shear.vertices[e], p);
     energy += addCondition(model.shear, e,
-                           shearCondition(p, model.shear.inverse_along[e], model.shear.inverse_across[e]), out);
+                           shearCondition(p, model.shear.inverse_along[e], model.shear.inverse_across[e]),
+                           model.shear.shift[e], out);
   }
   for (std::size_t e = 0; e < model.bend.size(); ++e) {
     V3<T> p[6];
     gather<T, 6>(x, model.bend.vertices[e], p);
-    energy += addCondition(
-        model.bend, e,
-        bendCondition(p, model.bend.rest_angle[e], model.bend.inverse_length[e], model.bend.smallest_square[e]), out);
+    // Its shift is one of the rest angle: where the angle jumps by a full turn, or means nothing any more, the energy
+    // does not.
+    const T rest = model.bend.rest_angle[e] + model.bend.shift[e] / model.bend.inverse_length[e];
+    energy += addCondition(model.bend, e,
+                           bendCondition(p, rest, model.bend.inverse_length[e], model.bend.smallest_square[e]), T(0),
+                           out);
   }
   for (std::size_t e = 0; e < model.volume.size(); ++e) {
     V3<T> p[4];
     gather<T, 4>(x, model.volume.vertices[e], p);
-    energy += addCondition(model.volume, e, volumeCondition(p, model.volume.rest_volume[e]), out);
+    energy += addCondition(model.volume, e, volumeCondition(p, model.volume.rest_volume[e]), model.volume.shift[e], out);
   }
   return energy;
 }
