@@ -62,6 +62,20 @@ HAIRMESH_INLINE Condition<T, 4> shearCondition(const V3<T>* x, T inverse_along, 
   return c;
 }
 
+// A hinge's condition, and how much stiffer a step has to take it where a wall has collapsed: `crush` (1/m^2) times the
+// stiffness, along each wall's way out of its collapse. The matrix keeps no curvature of the condition itself, and in a
+// collapsed wall that is so large that hair crushed by wind was thrown to and fro from step to step.
+template <class T>
+struct BendCondition : Condition<T, 6> {
+  T crush;
+};
+inline constexpr double kCrush = 8;  // second derivatives of fade and angle: about the squared inverse of the height left
+// What `crush` weighs between two of a hinge's vertices: both far sides' middles against the hinge's.
+constexpr double crushWeight(int u, int v) {
+  const int apart = u / 2 < v / 2 ? v / 2 - u / 2 : u / 2 - v / 2;
+  return apart == 0 ? (u / 2 == 1 ? 0.5 : 0.25) : apart == 1 ? -0.25 : 0;
+}
+
 // A hinge whose walls have collapsed: their angle is nothing then, and jumps. So that no energy jumps with it (hair that
 // wind had crushed was kept buzzing for ever by what each jump gave away), the condition goes to zero with a collapsing
 // wall's squared area s, as r (2 - r), r = s / smallest_square, for the walls together as the product of both; and the
@@ -69,7 +83,7 @@ HAIRMESH_INLINE Condition<T, 4> shearCondition(const V3<T>* x, T inverse_along, 
 // `a`, `b`: as in bendCondition; `angle`: rad from rest.
 template <class T>
 HAIRMESH_INLINE void fadeCollapsed(const V3<T>& e, const V3<T>& a, const V3<T>& b, T angle, T inverse_length,
-                                   T smallest_square, Condition<T, 6>& c) {
+                                   T smallest_square, BendCondition<T>& c) {
   const T zero = constant<T>(0), one = constant<T>(1), two = constant<T>(2), half = constant<T>(0.5);
   const V3<T> n1 = cross(e, a), n2 = cross(b, e);
   const T s1 = dot(n1, n1), s2 = dot(n2, n2), inverse_square = one / smallest_square;
@@ -97,6 +111,8 @@ HAIRMESH_INLINE void fadeCollapsed(const V3<T>& e, const V3<T>& a, const V3<T>& 
                       half * g2};
   const auto collapsed = (s1 < smallest_square) | (s2 < smallest_square);
   c.value = collapsed ? fade * angle * inverse_length : c.value;
+  const T size = c.value < zero ? -c.value : c.value;
+  c.crush = collapsed ? constant<T>(kCrush) * size * inverse_length * length_square * inverse_square : zero;
   for (int k = 0; k < 6; ++k) {
     c.g[k] = {collapsed ? g[k].x : c.g[k].x, collapsed ? g[k].y : c.g[k].y, collapsed ? g[k].z : c.g[k].z};
   }
@@ -107,7 +123,7 @@ HAIRMESH_INLINE void fadeCollapsed(const V3<T>& e, const V3<T>& a, const V3<T>& 
 // midpoints. `smallest_square` (m^4) is the square of the doubled area below which a wall counts as collapsed: there the
 // condition fades.
 template <class T>
-HAIRMESH_INLINE Condition<T, 6> bendCondition(const V3<T>* x, T rest_angle, T inverse_length, T smallest_square) {
+HAIRMESH_INLINE BendCondition<T> bendCondition(const V3<T>* x, T rest_angle, T inverse_length, T smallest_square) {
   const T zero = constant<T>(0), one = constant<T>(1), half = constant<T>(0.5);
   const V3<T> p = x[2], q = x[3];
   const V3<T> m1 = half * (x[0] + x[1]), m2 = half * (x[4] + x[5]);
@@ -126,7 +142,8 @@ HAIRMESH_INLINE Condition<T, 6> bendCondition(const V3<T>* x, T rest_angle, T in
   const T scale = -length * inverse_length;
   const V3<T> g1 = (scale * w1) * n1, g2 = (scale * w2) * n2;
   const T t1 = dot(a, e) * inverse_e * inverse_e, t2 = dot(b, e) * inverse_e * inverse_e;
-  Condition<T, 6> c;
+  BendCondition<T> c;
+  c.crush = zero;
   c.value = angle * inverse_length;
   c.g[0] = c.g[1] = half * g1;
   c.g[4] = c.g[5] = half * g2;

@@ -52,6 +52,20 @@ T addCondition(const Elements<T, N>& elements, std::size_t e, const Condition<T,
   return T(0.5) * (k * c * c + dissipation);
 }
 
+// BendCondition::crush, as a multiple of the unit matrix per pair of vertices.
+template <class T>
+void addCrush(const BendElements<T>& bend, std::size_t e, T scale, BlockMatrix<T>& matrix) {
+  int pair = 0;
+  const auto add = [&](M3<T>& block, int p, int q) {
+    const T share = scale * bend.stiffness[e] * static_cast<T>(crushWeight(p, q));
+    for (int i = 0; i < 9; i += 4) block.m[i] += share;
+  };
+  for (int p = 0; p < 6; ++p) {
+    add(matrix.diagonal[bend.vertices[e][p]], p, p);
+    for (int q = p + 1; q < 6; ++q, ++pair) add(matrix.lower[bend.slots[e][pair]], p, q);
+  }
+}
+
 template <class T, int N>
 void gather(std::span<const V3<T>> x, const std::array<int, N>& v, V3<T>* local) {
   for (int p = 0; p < N; ++p) local[p] = x[v[p]];
@@ -109,9 +123,9 @@ T evaluate(const ForceModel<T>& model, std::span<const V3<T>> x, const Evaluatio
     // Its shift is one of the rest angle: where the angle jumps by a full turn, or means nothing any more, the energy
     // does not.
     const T rest = model.bend.rest_angle[e] + model.bend.shift[e] / model.bend.inverse_length[e];
-    energy += addCondition(model.bend, e,
-                           bendCondition(p, rest, model.bend.inverse_length[e], model.bend.smallest_square[e]), T(0),
-                           out);
+    const BendCondition<T> bend = bendCondition(p, rest, model.bend.inverse_length[e], model.bend.smallest_square[e]);
+    energy += addCondition(model.bend, e, bend, T(0), out);
+    if (out.matrix && bend.crush > 0) addCrush(model.bend, e, out.tension_scale * bend.crush, *out.matrix);
   }
   for (std::size_t e = 0; e < model.volume.size(); ++e) {
     V3<T> p[4];
