@@ -138,7 +138,11 @@ HAIRMESH_INLINE BendCondition<T> bendCondition(const V3<T>* x, T rest_angle, T i
   angle = angle < -pi ? angle + (pi + pi) : angle;
   const T s1 = dot(n1, n1), s2 = dot(n2, n2);
   const auto collapsed1 = s1 < smallest_square, collapsed2 = s2 < smallest_square;
-  const T w1 = one / (collapsed1 ? smallest_square : s1), w2 = one / (collapsed2 ? smallest_square : s2);
+  // Torques go as s1 w1 and s2 w2 and are equal to the last bit: the smaller share, of one but for its rounding, holds
+  // for both.
+  const T bound1 = one / (collapsed1 ? smallest_square : s1), bound2 = one / (collapsed2 ? smallest_square : s2);
+  const T share1 = s1 * bound1, share2 = s2 * bound2;
+  const T w1 = share2 < share1 ? share2 / s1 : bound1, w2 = share1 < share2 ? share1 / s2 : bound2;
   const T scale = -length * inverse_length;
   const V3<T> g1 = (scale * w1) * n1, g2 = (scale * w2) * n2;
   const T t1 = dot(a, e) * inverse_e * inverse_e, t2 = dot(b, e) * inverse_e * inverse_e;
