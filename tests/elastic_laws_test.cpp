@@ -239,7 +239,8 @@ TEST(BendForce, LosesNoEnergyWhereTheAngleOfACollapsedWallJumps) {
   // The lower far side goes through the hinge, from one side of it to the other.
   for (int n = 0; n <= 2000; ++n) {
     const double z = kSide * (n / 1000.0 - 1);
-    const std::vector<Vec3> x{{0, -1e-6, z}, {kSide, -1e-6, z}, {0, 0, 0}, {kSide, 0, 0}, {0, kSide, 0}, {kSide, kSide, 0}};
+    const std::vector<Vec3> x{{0, -1e-6, z}, {kSide, -1e-6, z}, {0, 0, 0},
+                              {kSide, 0, 0}, {0, kSide, 0},     {kSide, kSide, 0}};
     const auto c = sim::bendCondition(test::plain<double>(x).data(), 0.3, 1 / kSide, kSmallest * kSmallest);
     const double energy = c.value * c.value;
     if (n > 0) jump = std::max(jump, std::abs(energy - before));

@@ -69,18 +69,19 @@ template <class T>
 struct BendCondition : Condition<T, 6> {
   T crush;
 };
-inline constexpr double kCrush = 8;  // second derivatives of fade and angle: about the squared inverse of the height left
+inline constexpr double kCrush =
+    8;  // second derivatives of fade and angle: about the squared inverse of the height left
 // What `crush` weighs between two of a hinge's vertices: both far sides' middles against the hinge's.
 constexpr double crushWeight(int u, int v) {
   const int apart = u / 2 < v / 2 ? v / 2 - u / 2 : u / 2 - v / 2;
   return apart == 0 ? (u / 2 == 1 ? 0.5 : 0.25) : apart == 1 ? -0.25 : 0;
 }
 
-// A hinge whose walls have collapsed: their angle is nothing then, and jumps. So that no energy jumps with it (hair that
-// wind had crushed was kept buzzing for ever by what each jump gave away), the condition goes to zero with a collapsing
-// wall's squared area s, as r (2 - r), r = s / smallest_square, for the walls together as the product of both; and the
-// gradient is that of this condition, so that what it takes to collapse a wall comes back when it is drawn out. `e`,
-// `a`, `b`: as in bendCondition; `angle`: rad from rest.
+// A hinge whose walls have collapsed: their angle is nothing then, and jumps. So that no energy jumps with it (hair
+// that wind had crushed was kept buzzing for ever by what each jump gave away), the condition goes to zero with a
+// collapsing wall's squared area s, as r (2 - r), r = s / smallest_square, for the walls together as the product of
+// both; and the gradient is that of this condition, so that what it takes to collapse a wall comes back when it is
+// drawn out. `e`, `a`, `b`: as in bendCondition; `angle`: rad from rest.
 template <class T>
 HAIRMESH_INLINE void fadeCollapsed(const V3<T>& e, const V3<T>& a, const V3<T>& b, T angle, T inverse_length,
                                    T smallest_square, BendCondition<T>& c) {
@@ -120,8 +121,8 @@ HAIRMESH_INLINE void fadeCollapsed(const V3<T>& e, const V3<T>& a, const V3<T>& 
 
 // Bend of two consecutive walls about their common horizontal edge x[2]-x[3]: C = (theta - theta_0) / length, the
 // change of curvature. x: (a, b) of the layer below, of the hinge, and above; the walls' far sides act through their
-// midpoints. `smallest_square` (m^4) is the square of the doubled area below which a wall counts as collapsed: there the
-// condition fades.
+// midpoints. `smallest_square` (m^4) is the square of the doubled area below which a wall counts as collapsed: there
+// the condition fades.
 template <class T>
 HAIRMESH_INLINE BendCondition<T> bendCondition(const V3<T>* x, T rest_angle, T inverse_length, T smallest_square) {
   const T zero = constant<T>(0), one = constant<T>(1), half = constant<T>(0.5);

@@ -23,8 +23,8 @@ void addBlock(M3<T>& m, const M3<T>& b, T sign) {
 // One element's condition: force, damping force and Gauss-Newton Hessian into the sums; returns its energy
 // and dissipation potential.
 template <class T, int N>
-T addCondition(const Elements<T, N>& elements, std::size_t e, const Condition<T, N>& condition,
-               T shift, const Evaluation<T>& out) {
+T addCondition(const Elements<T, N>& elements, std::size_t e, const Condition<T, N>& condition, T shift,
+               const Evaluation<T>& out) {
   const auto& v = elements.vertices[e];
   const T k = elements.stiffness[e], c = condition.value - shift;
   T pull = k * c, dissipation = 0;
@@ -113,9 +113,9 @@ T evaluate(const ForceModel<T>& model, std::span<const V3<T>> x, const Evaluatio
   for (std::size_t e = 0; e < model.shear.size(); ++e) {
     V3<T> p[4];
     gather<T, 4>(x, model.shear.vertices[e], p);
-    energy += addCondition(model.shear, e,
-                           shearCondition(p, model.shear.inverse_along[e], model.shear.inverse_across[e]),
-                           model.shear.shift[e], out);
+    energy +=
+        addCondition(model.shear, e, shearCondition(p, model.shear.inverse_along[e], model.shear.inverse_across[e]),
+                     model.shear.shift[e], out);
   }
   for (std::size_t e = 0; e < model.bend.size(); ++e) {
     V3<T> p[6];
@@ -130,7 +130,8 @@ T evaluate(const ForceModel<T>& model, std::span<const V3<T>> x, const Evaluatio
   for (std::size_t e = 0; e < model.volume.size(); ++e) {
     V3<T> p[4];
     gather<T, 4>(x, model.volume.vertices[e], p);
-    energy += addCondition(model.volume, e, volumeCondition(p, model.volume.rest_volume[e]), model.volume.shift[e], out);
+    energy +=
+        addCondition(model.volume, e, volumeCondition(p, model.volume.rest_volume[e]), model.volume.shift[e], out);
   }
   return energy;
 }
