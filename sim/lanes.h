@@ -65,8 +65,8 @@ HAIRMESH_INLINE void addTo(T* to, const Lanes<T, kCount>& value) {
 // Whether a comparison holds in any lane.
 template <class Mask>
 HAIRMESH_INLINE bool anyOf(const Mask& mask) {
-  if constexpr (std::is_same_v<Mask, bool>) {
-    return mask;
+  if constexpr (std::is_integral_v<Mask>) {
+    return mask != 0;
   } else {
     static_assert(sizeof mask % sizeof(unsigned long long) == 0);
     unsigned long long words[sizeof mask / sizeof(unsigned long long)], any = 0;

@@ -29,6 +29,7 @@ struct OwnBlock {
     m[0] += a.x * a.x, m[1] += a.x * a.y, m[2] += a.x * a.z;
     m[3] += a.y * a.y, m[4] += a.y * a.z, m[5] += a.z * a.z;
   }
+  HAIRMESH_INLINE void addUnit(const Lanes<T>& scale) { m[0] += scale, m[3] += scale, m[5] += scale; }
   HAIRMESH_INLINE void addTo(T* at, std::size_t stride) const {
     for (int k = 0; k < 6; ++k) sim::addTo<T>(at + k * stride, m[k]);
   }
@@ -41,6 +42,7 @@ struct PairBlock {
     m[3] += a.y * b.x, m[4] += a.y * b.y, m[5] += a.y * b.z;
     m[6] += a.z * b.x, m[7] += a.z * b.y, m[8] += a.z * b.z;
   }
+  HAIRMESH_INLINE void addUnit(const Lanes<T>& scale) { m[0] += scale, m[4] += scale, m[8] += scale; }
   HAIRMESH_INLINE void subtract(const OwnBlock<T>& block) {
     constexpr int kPlace[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
     for (int k = 0; k < 9; ++k) m[k] -= block.m[kPlace[k]];
@@ -154,11 +156,14 @@ HAIRMESH_INLINE void addWalls(const ColumnModel<T>& model, const typename Column
   V s[4], g[6];
   for (int v = 0; v < 4; ++v) s[kWall[v]] = shear_root * shear.g[v];
   for (int v = 0; v < 6; ++v) g[v] = bend_root * bend.g[v];
+  const bool crushed = anyOf(bend.crush > constant<Lanes<T>>(0));
+  const Lanes<T> crush = sums.tension_scale * k_bend * bend.crush;
   const auto addOwn = [&](int v) {
     OwnBlock<T> block;
     if (v < 2) block = side.block;
     if (v < 4) block.addSquare(s[v]);
     block.addSquare(g[v]);
+    if (crushed) block.addUnit(constant<Lanes<T>>(crushWeight(v, v)) * crush);
     block.addTo(sums.values + edge.own[v] + layer, sums.stride);
   };
   const auto addPair = [&](int pair) {
@@ -168,6 +173,7 @@ HAIRMESH_INLINE void addWalls(const ColumnModel<T>& model, const typename Column
     block.addOuter(g[u], g[v]);
     if (u < 4 && v < 4) block.addOuter(s[u], s[v]);
     if (pair == 0) block.subtract(side.block);
+    if (crushed) block.addUnit(constant<Lanes<T>>(crushWeight(u, v)) * crush);
     block.addTo(sums.values + place.at + layer, sums.stride);
   };
   // Lower, lower with uppermost, middle, lower with middle, uppermost, middle with uppermost.

@@ -62,17 +62,32 @@ HAIRMESH_INLINE Condition<T, 4> shearCondition(const V3<T>* x, T inverse_along, 
   return c;
 }
 
+// A hinge's condition, and how much stiffer a step has to take it where a wall has collapsed: `crush` (1/m^2) times the
+// stiffness, along each wall's way out of its collapse. The matrix keeps no curvature of the condition itself, and in a
+// collapsed wall that is so large that hair crushed by wind was thrown to and fro from step to step.
+template <class T>
+struct BendCondition : Condition<T, 6> {
+  T crush;
+};
+inline constexpr double kCrush = 8;  // second derivatives of fade and angle: about the squared inverse of the height left
+// What `crush` weighs between two of a hinge's vertices: both far sides' middles against the hinge's.
+constexpr double crushWeight(int u, int v) {
+  const int apart = u / 2 < v / 2 ? v / 2 - u / 2 : u / 2 - v / 2;
+  return apart == 0 ? (u / 2 == 1 ? 0.5 : 0.25) : apart == 1 ? -0.25 : 0;
+}
+
 // Bend of two consecutive walls about their common horizontal edge x[2]-x[3]: C = fade (theta - theta_0) / length, the
 // change of curvature. x: (a, b) of the layer below, of the hinge, and above; the walls' far sides act through their
 // midpoints. theta_0 is where the hinge is at rest, its shift included, so that a hinge that folds over passes from pi
 // to -pi off it at one energy.
 //
-// A wall without area has no angle: passing through there, it jumps by anything up to pi, and so would the energy. So
-// the angle counts for less in a wall whose doubled area has a square s below `smallest_square` (m^4), by
-// t (2 - t), t = s / smallest_square: energy and forces go to nothing with the area, the pull on a wall stays bounded,
-// and, C being one function of the shape, the hinge turns and pushes nothing as a whole.
+// A wall without area has no angle: passing through there, it jumps by anything up to pi, and so would the energy (hair
+// was thrown as far as the watchdog, or kept buzzing for ever by what the jumps gave away). So the angle counts for
+// less in a wall whose doubled area has a square s below `smallest_square` (m^4), by t (2 - t), t = s /
+// smallest_square: energy and forces go to nothing with the area, the pull on a wall stays bounded, and, C being one
+// function of the shape, the hinge turns and pushes nothing as a whole.
 template <class T>
-HAIRMESH_INLINE Condition<T, 6> bendCondition(const V3<T>* x, T rest_angle, T inverse_length, T smallest_square) {
+HAIRMESH_INLINE BendCondition<T> bendCondition(const V3<T>* x, T rest_angle, T inverse_length, T smallest_square) {
   const T zero = constant<T>(0), one = constant<T>(1), two = constant<T>(2), half = constant<T>(0.5);
   const V3<T> p = x[2], q = x[3];
   const V3<T> m1 = half * (x[0] + x[1]), m2 = half * (x[4] + x[5]);
@@ -96,7 +111,8 @@ HAIRMESH_INLINE Condition<T, 6> bendCondition(const V3<T>* x, T rest_angle, T in
   const T scale = -length * inverse_length;
   const V3<T> g1 = (scale * w1) * n1, g2 = (scale * w2) * n2;
   const T along1 = dot(a, e) * inverse_e * inverse_e, along2 = dot(b, e) * inverse_e * inverse_e;
-  Condition<T, 6> c;
+  BendCondition<T> c;
+  c.crush = zero;
   c.value = fade * (angle * inverse_length);
   c.g[0] = c.g[1] = half * g1;
   c.g[4] = c.g[5] = half * g2;
@@ -111,6 +127,10 @@ HAIRMESH_INLINE Condition<T, 6> bendCondition(const V3<T>* x, T rest_angle, T in
     c.g[4] += half * by_b, c.g[5] += half * by_b;
     c.g[3] += by_e;
     c.g[2] -= by_a + by_b + by_e;
+    const T size = c.value < zero ? -c.value : c.value;
+    const T crush = constant<T>(kCrush) * size * inverse_length * dot(e, e);
+    const T crush1 = small1 ? crush * inverse_s1 : zero, crush2 = small2 ? crush * inverse_s2 : zero;
+    c.crush = crush1 > crush2 ? crush1 : crush2;
   }
   return c;
 }

@@ -1,6 +1,6 @@
 // Energy, force and Hessian of many elements.
 //
-// k: stiffness, c: condition with its rest shift taken off (bend has it in its rest angle), g: its gradient; see conditions.h.
+// k: stiffness, c: condition with its rest shift taken off, g: its gradient; see conditions.h.
 #include "sim/forces/force_model.h"
 
 namespace sim {
@@ -23,7 +23,7 @@ void addBlock(M3<T>& m, const M3<T>& b, T sign) {
 // One element's condition: force, damping force and Gauss-Newton Hessian into the sums; returns its energy
 // and dissipation potential.
 template <class T, int N>
-T addCondition(const Elements<T, N>& elements, std::size_t e, T shift, const Condition<T, N>& condition,
+T addCondition(const Elements<T, N>& elements, std::size_t e, const Condition<T, N>& condition, T shift,
                const Evaluation<T>& out) {
   const auto& v = elements.vertices[e];
   const T k = elements.stiffness[e], c = condition.value - shift;
@@ -50,6 +50,20 @@ T addCondition(const Elements<T, N>& elements, std::size_t e, T shift, const Con
     }
   }
   return T(0.5) * (k * c * c + dissipation);
+}
+
+// BendCondition::crush, as a multiple of the unit matrix per pair of vertices.
+template <class T>
+void addCrush(const BendElements<T>& bend, std::size_t e, T scale, BlockMatrix<T>& matrix) {
+  int pair = 0;
+  const auto add = [&](M3<T>& block, int p, int q) {
+    const T share = scale * bend.stiffness[e] * static_cast<T>(crushWeight(p, q));
+    for (int i = 0; i < 9; i += 4) block.m[i] += share;
+  };
+  for (int p = 0; p < 6; ++p) {
+    add(matrix.diagonal[bend.vertices[e][p]], p, p);
+    for (int q = p + 1; q < 6; ++q, ++pair) add(matrix.lower[bend.slots[e][pair]], p, q);
+  }
 }
 
 template <class T, int N>
@@ -99,20 +113,25 @@ T evaluate(const ForceModel<T>& model, std::span<const V3<T>> x, const Evaluatio
   for (std::size_t e = 0; e < model.shear.size(); ++e) {
     V3<T> p[4];
     gather<T, 4>(x, model.shear.vertices[e], p);
-    energy += addCondition(model.shear, e, model.shear.shift[e],
-                           shearCondition(p, model.shear.inverse_along[e], model.shear.inverse_across[e]), out);
+    energy +=
+        addCondition(model.shear, e, shearCondition(p, model.shear.inverse_along[e], model.shear.inverse_across[e]),
+                     model.shear.shift[e], out);
   }
   for (std::size_t e = 0; e < model.bend.size(); ++e) {
     V3<T> p[6];
     gather<T, 6>(x, model.bend.vertices[e], p);
+    // Its shift is one of the rest angle: where the angle jumps by a full turn, or means nothing any more, the energy
+    // does not.
     const T rest = model.bend.rest_angle[e] + model.bend.shift[e] / model.bend.inverse_length[e];
-    energy += addCondition(model.bend, e, T(0),
-                           bendCondition(p, rest, model.bend.inverse_length[e], model.bend.smallest_square[e]), out);
+    const BendCondition<T> bend = bendCondition(p, rest, model.bend.inverse_length[e], model.bend.smallest_square[e]);
+    energy += addCondition(model.bend, e, bend, T(0), out);
+    if (out.matrix && bend.crush > 0) addCrush(model.bend, e, out.tension_scale * bend.crush, *out.matrix);
   }
   for (std::size_t e = 0; e < model.volume.size(); ++e) {
     V3<T> p[4];
     gather<T, 4>(x, model.volume.vertices[e], p);
-    energy += addCondition(model.volume, e, model.volume.shift[e], volumeCondition(p, model.volume.rest_volume[e]), out);
+    energy +=
+        addCondition(model.volume, e, volumeCondition(p, model.volume.rest_volume[e]), model.volume.shift[e], out);
   }
   return energy;
 }

@@ -62,8 +62,8 @@ void addBend(const HairMesh& mesh, const BlockPattern& pattern, const SimParams&
     addElement(model.bend, pattern, hinge.v, params.bend * hinge.volume);
     model.bend.rest_angle.push_back(hinge.rest_angle);
     model.bend.inverse_length.push_back(1 / hinge.length);
-    // Below a tenth of its rest height a wall counts as collapsed.
-    const double area = 0.1 * hinge.length * length(mesh, hinge.v[2], hinge.v[3]);
+    // Below three tenths of its rest height a wall counts as collapsed.
+    const double area = 0.3 * hinge.length * length(mesh, hinge.v[2], hinge.v[3]);
     model.bend.smallest_square.push_back(area * area);
   }
 }
