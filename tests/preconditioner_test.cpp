@@ -369,9 +369,11 @@ TEST(TwoLevel, ContactsItKnowsOfCostFewIterations) {
     const Filter<double> filter = filterOf<double>(p);
     std::vector<V3<double>> r[2], z[2];
     for (int side = 0; side < 2; ++side) {
-      for (int i = 0; i < system.mesh.vertexCount(); ++i) r[side].push_back(test::plain<double>({random.vector(1)})[0]);
+      std::vector<Vec3> values(system.positions.size());
+      for (Vec3& value : values) value = random.vector(1);
+      r[side] = test::plain<double>(values);
       filter.apply(r[side]);
-      z[side].resize(r[side].size());
+      z[side].resize(values.size());
       preconditioner.apply(r[side], z[side]);
     }
     const double along = sim::innerProduct<double>(r[0], z[0]);
