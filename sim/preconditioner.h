@@ -24,8 +24,8 @@ namespace sim {
 //   diagonal              scalar diagonal
 //   column                block-tridiagonal factor of each column
 //   incomplete            incomplete Cholesky factor without fill, in 3x3 blocks
-//   two-level             factors of the current matrix's layers, and of the rest shape's matrix on a coarse space,
-//                         turned (two_level.h)
+//   two-level             factors of the current matrix's layers and columns, without what constraints remove, and of
+//                         the rest shape's matrix on a coarse space, turned (two_level.h)
 //   warped                factor of the rest shape's matrix, residuals turned into the rest frame and back by each
 //                         vertex's own rotation: P = R (A_rest)^-1 R^T
 //   direct                factor of the current matrix
