@@ -12,7 +12,7 @@ namespace sim {
 // columns (no two within kColumnReach root edges of one another). Roots do not move. Coarse columns are coupled only to
 // columns of the same connected part.
 struct CoarseSpace {
-  static constexpr int kColumnReach = 3, kLayerStep = 2, kNearest = 3;
+  static constexpr int kColumnReach = 4, kLayerStep = 4, kNearest = 3;
 
   // How column c of the mesh hangs on the coarse ones: shares [column_first[c], column_first[c + 1]), which sum to 1.
   struct Share {

@@ -337,7 +337,7 @@ struct ImplicitSolver<T>::BudgetedSolve {
     runSome(affordable, start);
     if (total.converged || affordable >= most) return;
     overrun = true;
-    solver.preconditioner.update(solver.matrix, plan.cheap ? params.solver : kStandIn);
+    solver.preconditioner.update(solver.matrix, plan.cheap ? params.solver : kStandIn, false, solver.constraints);
     solver.preconditioner.setConstraints(solver.constraints, kBatchesARound);
     solver.weighCoarse();
     runSome(params.max_iterations, SolveStart::kExchange);
@@ -368,7 +368,6 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
   const Solver first = stand_in ? kStandIn : params.solver;
   const FactorTerms terms{base.h, params.damping, params.air_drag};
   const bool kept = first == Solver::kTwoLevel && layer_age.serves() && terms == layer_terms;
-  preconditioner.update(matrix, first, kept);
   touched.clear();
   for (const Contact& contact : contacts) {
     if (touched.empty() || touched.back() != contact.vertex) touched.push_back(contact.vertex);
@@ -377,6 +376,8 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
   SolveStart start = SolveStart::kPrepared;
   for (int round = 0; round < kContactRounds; ++round) {
     const bool moved = setContactConstraints(mesh, params, base, contacts, start);
+    // Of the first round: where contacts let go, what P leaves out are directions that hardly matter any more.
+    if (round == 0) preconditioner.update(matrix, first, kept, constraints);
     const bool complete = preconditioner.setConstraints(constraints, kBatchesARound);
     if (round == 0) {
       run.stop.head_start = beginSolve(params);

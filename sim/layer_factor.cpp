@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "sim/block_mask.h"
 #include "sim/elimination_order.h"
 
 namespace sim {
@@ -193,6 +194,13 @@ LayerFactor<T>::LayerFactor(const HairMesh& mesh, const ColumnLayout& layout, co
     const int a = position[d.a], b = position[d.b];
     sources_.push_back({static_cast<int>(n), a == b ? ~a : block_of.at({std::max(a, b), std::min(a, b)}), a < b});
   }
+  for (int c = 0; c < columns; ++c) {
+    for (std::size_t n = 0; n < sources_.size(); ++n) {
+      const BlockDiagonal& d = pattern.diagonals[sources_[n].diagonal];
+      if (d.a == c || d.b == c) sources_of_.push_back(static_cast<int>(n));
+    }
+    sources_of_first_.push_back(static_cast<int>(sources_of_.size()));
+  }
   values_.resize(group_size_ * groups_);
   panel_.resize(std::max<std::size_t>(1, most) * kBlock * lanes_);
 }
@@ -209,7 +217,7 @@ void LayerFactor<T>::clearWithIdentity() {
 }
 
 template <class T>
-void LayerFactor<T>::factor(const ColumnMatrix<T>& a) {
+void LayerFactor<T>::factor(const ColumnMatrix<T>& a, std::span<const VertexConstraint> constraints) {
   clearWithIdentity();
   const int stride = layout_->stride;
   for (const Source& source : sources_) {
@@ -226,11 +234,12 @@ void LayerFactor<T>::factor(const ColumnMatrix<T>& a) {
       }
     }
   }
+  mask(constraints);
   eliminate();
 }
 
 template <class T>
-void LayerFactor<T>::factor(const BlockMatrix<T>& a) {
+void LayerFactor<T>::factor(const BlockMatrix<T>& a, std::span<const VertexConstraint> constraints) {
   clearWithIdentity();
   for (const Source& source : sources_) {
     const BlockDiagonal& d = pattern_->diagonals[source.diagonal];
@@ -255,7 +264,27 @@ void LayerFactor<T>::factor(const BlockMatrix<T>& a) {
       }
     }
   }
+  mask(constraints);
   eliminate();
+}
+
+// What stands for the matrix in values_ loses the directions that are removed.
+template <class T>
+void LayerFactor<T>::mask(std::span<const VertexConstraint> constraints) {
+  for (const VertexConstraint& constraint : constraints) {
+    const int c = mesh_->column_of[constraint.vertex], layer = mesh_->layer_of[constraint.vertex];
+    const M3<T> keep = keptBy<T>(constraint);
+    T* const group = values_.data() + layer / lanes_ * group_size_ + layer % lanes_;
+    for (int k = sources_of_first_[c]; k < sources_of_first_[c + 1]; ++k) {
+      const Source& source = sources_[sources_of_[k]];
+      if (source.block < 0) {
+        maskPivot(group + pivot_at_[~source.block], lanes_, keep);
+        continue;
+      }
+      const BlockDiagonal& d = pattern_->diagonals[source.diagonal];
+      maskBlock(group + block_at_[source.block], lanes_, keep, (source.transposed ? d.b : d.a) == c);
+    }
+  }
 }
 
 template <class T>

@@ -7,6 +7,7 @@
 
 #include "sim/block_matrix.h"
 #include "sim/column_matrix.h"
+#include "sim/contact.h"
 
 namespace sim {
 
@@ -23,10 +24,10 @@ template <class T>
 struct LayerFactor {
   LayerFactor(const HairMesh& mesh, const ColumnLayout& layout, const ColumnPattern& pattern);
 
-  // The blocks within layers of a positive definite matrix; a pivot block that rounding has made singular counts as its
-  // diagonal.
-  void factor(const ColumnMatrix<T>& a);
-  void factor(const BlockMatrix<T>& a);
+  // The blocks within layers of a positive definite matrix, without the directions that the constraints remove; a pivot
+  // block that rounding has made singular counts as its diagonal.
+  void factor(const ColumnMatrix<T>& a, std::span<const VertexConstraint> constraints = {});
+  void factor(const BlockMatrix<T>& a, std::span<const VertexConstraint> constraints = {});
 
   // x = (L D L^T)^-1 x; allocates nothing.
   void solve(ColumnField<T>& x) const;
@@ -49,6 +50,7 @@ struct LayerFactor {
     bool transposed;
   };
   std::vector<Source> sources_;
+  std::vector<int> sources_of_first_{0}, sources_of_;  // per column: the sources that it has a share in
   std::vector<int> rows_, rows_below_;  // first entries of a field's columns, as they are eliminated; those coupled
   // Lane groups one after the other; of each, for every pivot in turn, its inverse (6 components) and the blocks of L
   // below it (9 each).
@@ -59,6 +61,7 @@ struct LayerFactor {
 
   LayerStructure structure() const;
   void clearWithIdentity();
+  void mask(std::span<const VertexConstraint> constraints);
   void eliminate();
 };
 

@@ -95,7 +95,7 @@ void Preconditioner<T>::updateRotations(std::span<const V3<T>> x) {
 }
 
 template <class T>
-void Preconditioner<T>::update(const BlockMatrix<T>& a, Solver solver) {
+void Preconditioner<T>::update(const BlockMatrix<T>& a, Solver solver, std::span<const VertexConstraint> constraints) {
   kind_ = solver;
   rest_.responses.clear();
   if (solver == Solver::kWarped) return;
@@ -120,7 +120,7 @@ void Preconditioner<T>::update(const BlockMatrix<T>& a, Solver solver) {
     kind_ = Solver::kBlockJacobi;
   }
   if (solver == Solver::kTwoLevel) {
-    if (twoLevelFine()) return two_level_->update(a, rotations_.matrices);
+    if (twoLevelFine()) return two_level_->update(a, rotations_.matrices, false, constraints);
     kind_ = Solver::kBlockJacobi;
   }
   for (std::size_t i = 0; i < a.diagonal.size(); ++i) setDiagonal(static_cast<int>(i), a.diagonal[i]);
@@ -145,13 +145,14 @@ bool Preconditioner<T>::setRestMatrix(const ColumnMatrix<T>& rest, bool compact,
 }
 
 template <class T>
-void Preconditioner<T>::update(const ColumnMatrix<T>& a, Solver solver, bool keep_layers) {
+void Preconditioner<T>::update(const ColumnMatrix<T>& a, Solver solver, bool keep_layers,
+                               std::span<const VertexConstraint> constraints) {
   if (solver == Solver::kWarped && !rest_.fine) solver = Solver::kTwoLevel;
   if (solver == Solver::kTwoLevel && !twoLevelFine()) solver = Solver::kBlockJacobi;
   kind_ = solver;
   rest_.responses.clear();
   if (solver == Solver::kWarped) return;
-  if (solver == Solver::kTwoLevel) return two_level_->update(a, rotations_.matrices, keep_layers);
+  if (solver == Solver::kTwoLevel) return two_level_->update(a, rotations_.matrices, keep_layers, constraints);
   if (solver == Solver::kDirect || solver == Solver::kColumn || solver == Solver::kIncomplete) {
     return update(toBlocks(a), solver);
   }

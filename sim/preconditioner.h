@@ -24,8 +24,8 @@ namespace sim {
 //   diagonal              scalar diagonal
 //   column                block-tridiagonal factor of each column
 //   incomplete            incomplete Cholesky factor without fill, in 3x3 blocks
-//   two-level             factors of the current matrix's layers, and of the rest shape's matrix on a coarse space,
-//                         turned (two_level.h)
+//   two-level             factors of the current matrix's layers and columns, without what constraints remove, and of
+//                         the rest shape's matrix on a coarse space, turned (two_level.h)
 //   warped                factor of the rest shape's matrix, residuals turned into the rest frame and back by each
 //                         vertex's own rotation: P = R (A_rest)^-1 R^T
 //   direct                factor of the current matrix
@@ -34,9 +34,11 @@ struct Preconditioner {
   explicit Preconditioner(const HairMesh& mesh, const BlockPattern& pattern);
 
   // Refreshes what follows the current matrix. Falls back to 3x3 blocks when a factorization fails.
-  void update(const BlockMatrix<T>& a, Solver solver);
-  // `keep_layers`: `two-level` may go on with the layers' factor that it made last.
-  void update(const ColumnMatrix<T>& a, Solver solver, bool keep_layers = false);
+  // `constraints`: those that `two-level` is to know of; its P stays symmetric and positive whatever the filter is.
+  void update(const BlockMatrix<T>& a, Solver solver, std::span<const VertexConstraint> constraints = {});
+  // `keep_layers`: `two-level` may go on with the factors that it made last.
+  void update(const ColumnMatrix<T>& a, Solver solver, bool keep_layers = false,
+              std::span<const VertexConstraint> constraints = {});
   // What `warped` and `two-level` need of the rest shape's matrix (rarely: the factor of the whole for the first, the
   // two levels' for both), and the rotations (every step).
   // `compact`: keep the factors in 16 bits for the solves (single precision only).

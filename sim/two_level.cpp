@@ -97,6 +97,7 @@ TwoLevel<T>::TwoLevel(const HairMesh& mesh, const BlockPattern& system)
     : layout_(mesh),
       columns_(mesh, layout_),
       layers_(mesh, layout_, columns_),
+      strands_(mesh, layout_, columns_),
       space_(mesh, system),
       coarse_matrix_(&space_.pattern),
       field_(layout_),
@@ -105,6 +106,7 @@ TwoLevel<T>::TwoLevel(const HairMesh& mesh, const BlockPattern& system)
       restricted_(space_.size()),
       solved_(space_.size()) {
   const std::vector<unsigned char> all(space_.size(), 1);
+  masked_.reserve(mesh.vertexCount());
   coarse_.factor.analyze(space_.pattern, minimumDegreeOrder(space_.pattern, all));
 }
 
@@ -152,6 +154,19 @@ template <class T>
 void TwoLevel<T>::make(const BlockMatrix<T>& rest, bool compact) {
   begin();
   work(rest, compact, 1);
+}
+
+// Returns whether the factors know these constraints already; if not, they are taken to from now on.
+template <class T>
+bool TwoLevel<T>::noteConstraints(std::span<const VertexConstraint> constraints) {
+  if (std::ranges::equal(constraints, masked_, [](const VertexConstraint& c, const auto& known) {
+        return c.vertex == known.first && c.removed == known.second;
+      })) {
+    return true;
+  }
+  masked_.clear();
+  for (const VertexConstraint& c : constraints) masked_.emplace_back(c.vertex, c.removed);
+  return false;
 }
 
 template <class T>
@@ -207,6 +222,7 @@ void TwoLevel<T>::apply(std::span<const V3<T>> r, std::span<V3<T>> z) {
   layers_.solve(field_);
   runScatter(columnsOf(layout_, space_, turn_), across_.data(), 1, coarse_weight, field_);
   field_.unpack(layout_, z);
+  strands_.addSolution(r, kStrandWeight, z);
 }
 
 template struct TwoLevel<float>;

@@ -3,6 +3,7 @@
 
 #include "sim/preconditioner_choice.h"
 #include "sim/rotation.h"
+#include "sim/vector_kernels.h"
 #include "tests/linear_systems.h"
 
 namespace tests {
@@ -267,6 +268,131 @@ TEST(TwoLevel, IsSymmetricAndNeedsFewerIterationsThanBlocks) {
   const int levels = solve<double>(system, a, p, Solver::kTwoLevel, stop, x).iterations;
   std::printf("iterations: 3x3 blocks %d, two levels %d\n", blocks, levels);
   EXPECT_LT(3 * levels, 2 * blocks);
+}
+
+// The factors of layers and of columns are direct solves of the matrix without the couplings between them and without
+// the directions that constraints remove, in both layouts.
+template <class T>
+void partsAreSolvedWithoutRemovedDirections(double bound) {
+  test::PatchOptions o;
+  o.nx = 4, o.nz = 3, o.layers = 11, o.mixed = o.uneven = true;
+  const sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(o));
+  const sim::BlockPattern pattern = sim::systemPattern(mesh);
+  const sim::ColumnLayout layout(mesh);
+  const sim::ColumnPattern columns(mesh, layout);
+  const int n = mesh.vertexCount();
+  test::Random random(92);
+  sim::ColumnMatrix<T> packed(layout, columns);
+  for (T& value : packed.values) value = static_cast<T>(random(-1, 1));
+  packed.addMass(T(40), std::vector<T>(n, T(1)));
+  BlockMatrix<T> a(&pattern);
+  packed.toBlocks(mesh, a);
+  std::vector<sim::VertexConstraint> constraints;
+  std::vector<Eigen::Matrix3d> keep(n, Eigen::Matrix3d::Identity());
+  for (int i = 0; i < n; ++i) {
+    const int count = mesh.isRoot(i) ? 0 : static_cast<int>(random(0, 3.999));
+    const Vec3 d = random.direction();
+    if (count == 1) keep[i] -= d * d.transpose();
+    if (count == 2) keep[i] = d * d.transpose();
+    if (count == 3) keep[i].setZero();
+    if (count > 0) constraints.push_back({i, keep[i], Vec3::Zero(), count, {}});
+  }
+  const Eigen::MatrixXd whole = test::dense(a), s = filterMatrix(keep);
+  sim::LayerFactor<T> layers(mesh, layout, columns);
+  sim::StrandFactor<T> strands(mesh, layout, columns);
+  for (const bool by_strands : {false, true}) {
+    const auto apart = [&](int i, int j) {
+      if (i == j) return false;
+      if (!by_strands) return mesh.layer_of[i] != mesh.layer_of[j];
+      return mesh.column_of[i] != mesh.column_of[j] || mesh.isRoot(i) || mesh.isRoot(j);
+    };
+    Eigen::MatrixXd part = whole;
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) {
+        if (apart(i, j)) part.block<3, 3>(3 * i, 3 * j).setZero();
+      }
+    }
+    part = (s * part * s).eval();
+    for (int i = 0; i < n; ++i) {
+      const double trace = whole.block<3, 3>(3 * i, 3 * i).trace();
+      part.block<3, 3>(3 * i, 3 * i) += trace * (Eigen::Matrix3d::Identity() - keep[i]);
+    }
+    std::vector<Vec3> wanted(n);
+    for (int i = 0; i < n; ++i) wanted[i] = by_strands && mesh.isRoot(i) ? Vec3(Vec3::Zero()) : random.vector(1);
+    const Eigen::VectorXd product = part * stackedPoints(wanted);
+    std::vector<Vec3> forces(n);
+    for (int i = 0; i < n; ++i) forces[i] = product.segment<3>(3 * i);
+    const std::vector<V3<T>> r = test::plain<T>(forces);
+    for (const bool by_blocks : {false, true}) {
+      std::vector<V3<T>> z(n, V3<T>{0, 0, 0});
+      const auto factor = [&](auto& parts) {
+        if (by_blocks) {
+          parts.factor(a, constraints);
+        } else {
+          parts.factor(packed, constraints);
+        }
+      };
+      if (by_strands) {
+        factor(strands);
+        strands.addSolution(r, T(1), z);
+      } else {
+        factor(layers);
+        sim::ColumnField<T> field(layout);
+        field.pack(layout, r);
+        layers.solve(field);
+        field.unpack(layout, z);
+      }
+      EXPECT_LT((test::stacked<T>(z) - stackedPoints(wanted)).cwiseAbs().maxCoeff(), bound) << by_strands << by_blocks;
+    }
+  }
+}
+
+TEST(TwoLevel, PartsAreSolvedWithoutRemovedDirections) {
+  partsAreSolvedWithoutRemovedDirections<float>(1e-4);
+  partsAreSolvedWithoutRemovedDirections<double>(1e-12);
+}
+
+// Contacts that P knows of leave it symmetric and positive, and cost hardly an iteration; those that it does not know
+// of cost about one each.
+TEST(TwoLevel, ContactsItKnowsOfCostFewIterations) {
+  const System system(0.002);
+  const BlockMatrix<double> a = system.matrixAt<double>(system.positions);
+  sim::StopRule<double> stop;
+  stop.relative = 1e-4;
+  sim::SolverScratch<double> scratch;
+  scratch.resize(system.mesh.vertexCount());
+  const auto iterations = [&](int removed, bool known) {
+    test::Random random(96);
+    const Problem p = makeProblem(system, removed, random);
+    auto preconditioner = system.preconditioner(a, Solver::kTwoLevel);
+    if (known) preconditioner.update(a, Solver::kTwoLevel, p.constraints);
+    const Filter<double> filter = filterOf<double>(p);
+    std::vector<V3<double>> r[2], z[2];
+    for (int side = 0; side < 2; ++side) {
+      std::vector<Vec3> values(system.positions.size());
+      for (Vec3& value : values) value = random.vector(1);
+      r[side] = test::plain<double>(values);
+      filter.apply(r[side]);
+      z[side].resize(values.size());
+      preconditioner.apply(r[side], z[side]);
+    }
+    const double along = sim::innerProduct<double>(r[0], z[0]);
+    EXPECT_GT(along, 0);
+    EXPECT_NEAR(sim::innerProduct<double>(r[0], z[1]), sim::innerProduct<double>(r[1], z[0]), 1e-9 * along);
+    auto x = test::plain<double>(p.guess);
+    const auto rhs = test::plain<double>(p.rhs);
+    const auto report = sim::solveModifiedPcg<double>(a, rhs, filter, preconditioner, stop, scratch, x);
+    EXPECT_TRUE(report.converged);
+    return report.iterations;
+  };
+  const int none = iterations(0, false);
+  for (const int removed : {1, 2, 3}) {
+    const int known = iterations(removed, true), unknown = iterations(removed, false);
+    std::printf("%d directions removed of every other vertex: %d iterations, unknown %d; without contacts %d\n",
+                removed, known, unknown, none);
+    EXPECT_LE(known, none + 2);
+    EXPECT_LT(known, unknown);
+  }
 }
 
 // In pieces it comes to the same, and what was there before serves until then.

@@ -1,0 +1,52 @@
+// Blocks of a matrix without the directions that constraints remove, for factors that keep entries of many blocks side
+// by side in lanes.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "sim/contact.h"
+#include "sim/forces/vector3.h"
+
+namespace sim {
+
+// The projector of a constraint onto its free directions.
+template <class T>
+M3<T> keptBy(const VertexConstraint& constraint) {
+  M3<T> keep;
+  for (int k = 0; k < 9; ++k) keep.m[k] = static_cast<T>(constraint.keep(k / 3, k % 3));
+  return keep;
+}
+
+// The symmetric block D (xx, xy, xz, yy, yz, zz, `apart` entries from one another) becomes S D S + (I - S) trace D: the
+// removed directions stand alone and keep their size. S: symmetric projector.
+template <class T>
+void maskPivot(T* at, std::ptrdiff_t apart, const M3<T>& s) {
+  constexpr int kEntry[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
+  T d[9], half[9];
+  for (int k = 0; k < 9; ++k) d[k] = at[kEntry[k] * apart];
+  const T trace = d[0] + d[4] + d[8];
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c)
+      half[3 * r + c] = d[3 * r] * s.m[c] + d[3 * r + 1] * s.m[3 + c] + d[3 * r + 2] * s.m[6 + c];
+  }
+  for (int r = 0; r < 3; ++r) {
+    for (int c = r; c < 3; ++c) {
+      const T kept = s.m[3 * r] * half[c] + s.m[3 * r + 1] * half[3 + c] + s.m[3 * r + 2] * half[6 + c];
+      at[kEntry[3 * r + c] * apart] = kept + trace * (T(r == c) - s.m[3 * r + c]);
+    }
+  }
+}
+
+// The block B (nine entries, row-major, `apart`) becomes S B where its row is the constrained vertex's, else B S.
+template <class T>
+void maskBlock(T* at, std::ptrdiff_t apart, const M3<T>& s, bool row) {
+  const std::ptrdiff_t along = row ? 3 * apart : apart, across = row ? apart : 3 * apart;
+  for (int k = 0; k < 3; ++k) {
+    T* const line = at + k * across;
+    const T x = line[0], y = line[along], z = line[2 * along];
+    for (int c = 0; c < 3; ++c) line[c * along] = s.m[3 * c] * x + s.m[3 * c + 1] * y + s.m[3 * c + 2] * z;
+  }
+}
+
+}  // namespace sim
