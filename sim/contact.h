@@ -113,10 +113,10 @@ bool updateSticking(const FrictionLaw& law, const Vec3& reaction, const Vec3& ve
 // The constraint of one vertex: velocity = keep * (free velocity) + prescribed.
 struct VertexConstraint {
   int vertex;
-  Eigen::Matrix3d keep;              // projector onto the free directions
-  Vec3 prescribed;                   // m/s, within the removed directions
-  int removed = 0;                   // how many directions are
-  std::array<Vec3, 3> directions{};  // orthonormal basis of them
+  Eigen::Matrix3d keep;                                                      // projector onto the free directions
+  Vec3 prescribed;                                                           // m/s, within the removed directions
+  int removed = 0;                                                           // how many directions are
+  std::array<Vec3, 3> directions{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};  // orthonormal basis of them
 };
 
 // One constraint per vertex in contact (contacts are sorted by vertex): a single normal, a crease of two or three, or

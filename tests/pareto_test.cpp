@@ -32,6 +32,11 @@ constexpr Recorded kRecorded[] = {
     {"collapse", 6.0e-2, 2.7, "one sample can be compared, in which any way that unfolds the hair at all is as near"},
 };
 
+void printErrors(const char* what, const bench::Errors& e) {
+  std::printf("    %s: rms %.3e, most %.3e, stretch %.3e, volume %.3e, penetration %.2e m\n", what, e.rms, e.most,
+              e.stretch, e.volume, e.penetration);
+}
+
 class ParetoFront : public testing::TestWithParam<Recorded> {};
 
 TEST_P(ParetoFront, NoWayThatIsNoWorseIsFasterThanTheDefaultByMoreThanATenth) {
@@ -55,6 +60,8 @@ TEST_P(ParetoFront, NoWayThatIsNoWorseIsFasterThanTheDefaultByMoreThanATenth) {
     const double lag = bench::confirmedRatio(stage, standard.params, way.params, kRounds);
     std::printf("  %.2f times faster, error %.2e%s: %s\n", lag, way.error.rms, in_any ? ", no worse in any" : "",
                 way.name().c_str());
+    printErrors("default", standard.errors());
+    printErrors("this way", way.errors());
     EXPECT_LE(lag, most) << way.name() << "; by positions alone: " << GetParam().why;
   }
 }

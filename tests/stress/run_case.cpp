@@ -109,10 +109,11 @@ void traceStep(const Run& run, double dt, const sim::StepReport& report, Hair& h
   double fastest = 0;
   for (const sim::Vec3& v : hair.state.velocities) fastest = std::max(fastest, v.norm());
   std::printf(
-      "%9.4f s  step %6.1f ms  energy %12.5e J  fastest %9.3e m/s  contacts %3d  corrected %3d  standing %3d  self %3d  "
+      "%9.4f s  step %6.1f ms  energy %12.5e J  fastest %9.3e m/s  contacts %3d  corrected %3d  standing %3d  self %3d "
+      " "
       "iterations %4d  combed %d%s%s\n",
-      run.around.time(), 1e3 * dt, energyOf(run, hair), fastest, report.contacts, report.corrected,
-      report.standing, report.self_contacts, report.solver_iterations, report.combed, report.converged ? "" : " (not converged)",
+      run.around.time(), 1e3 * dt, energyOf(run, hair), fastest, report.contacts, report.corrected, report.standing,
+      report.self_contacts, report.solver_iterations, report.combed, report.converged ? "" : " (not converged)",
       report.carried ? " carried" : "");
 }
 
@@ -295,8 +296,8 @@ double liftOf(const Run& run, double dt) {
   return weightOf(run) / run.hair.mesh.hair_length * sim::contactMargins(run.params, dt).slack;
 }
 
-// `lifted`: combed, which is done by a hand from outside, or out of a body that it lay within before the step (a jump in
-// time had put it there), which is the body's work.
+// `lifted`: combed, which is done by a hand from outside, or out of a body that it lay within before the step (a jump
+// in time had put it there), which is the body's work.
 void checkEnergy(bool lifted, double dt, EnergyWatch& watch, Run& run) {
   const double energy = energyOf(run, run.hair);
   if (!watch.begun || (lifted && energy > watch.left)) {
