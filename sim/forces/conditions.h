@@ -123,7 +123,8 @@ HAIRMESH_INLINE BendCondition<T> bendCondition(const V3<T>* x, T rest_angle, T i
   if (anyOf(small1) || anyOf(small2)) {
     // What the area's change adds: C d fade / fade, by ds1 = 2 n1 . (de x a + e x da), ds2 = 2 n2 . (db x e + b x de).
     const T slope = constant<T>(4) * (angle * inverse_length);
-    const V3<T> r1 = (slope * (one - t1) * inverse_s1 * fade2) * n1, r2 = (slope * (one - t2) * inverse_s2 * fade1) * n2;
+    const V3<T> r1 = (slope * (one - t1) * inverse_s1 * fade2) * n1,
+                r2 = (slope * (one - t2) * inverse_s2 * fade1) * n2;
     const V3<T> by_a = cross(r1, e), by_b = cross(e, r2), by_e = cross(a, r1) + cross(r2, b);
     c.g[0] += half * by_a, c.g[1] += half * by_a;
     c.g[4] += half * by_b, c.g[5] += half * by_b;
