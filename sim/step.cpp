@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "sim/bearable.h"
+#include "sim/buzz.h"
 #include "sim/comb_out.h"
 #include "sim/energy_guard.h"
 #include "sim/forces/material.h"
@@ -54,13 +55,14 @@ struct StepContext::Parts {
   std::vector<DistancePart> standing_parts;
   GoodState good;  // the last step's end
   EnergyGuard energy_guard;
+  Buzz buzz;
   Tangles tangles;
   RestCheck rest_check;
   PositionCorrection correction;
   std::optional<SelfContact> self_contact;  // made when first asked for
 
   Parts(const HairMesh& m, double (*c)())
-      : mesh(&m), clock{c}, pattern(systemPattern(m)), material(m, pattern), tangles(m), rest_check(m), correction(m) {
+      : mesh(&m), clock{c}, pattern(systemPattern(m)), material(m, pattern), buzz(m), tangles(m), rest_check(m), correction(m) {
     for (auto* array : {&x_hat, &v_hat, &start_positions, &start_velocities, &limited_velocities})
       array->resize(m.vertexCount());
   }
@@ -333,7 +335,10 @@ StepReport advance(const HairMesh& mesh, const SimParams& asked, const StepInput
   integratePositions(input, base, dt, mesh, parts, state);
   const bool bounded = params.solver != Solver::kPaper || !parts.as_published;
   const TakenStep taken = takenStep(params, base, dt, parts);
-  if (bounded) keepWithinBounds(taken, let_go, parts, state, report);
+  if (bounded) {
+    relaxBuzz(mesh, parts.start_positions, parts.buzz, state);
+    keepWithinBounds(taken, let_go, parts, state, report);
+  }
   guardMade(parts, input, state, report);
   parts.clock.spent(kStageOther, report);
 

@@ -295,7 +295,7 @@ void partsAreSolvedWithoutRemovedDirections(double bound) {
     if (count == 1) keep[i] -= d * d.transpose();
     if (count == 2) keep[i] = d * d.transpose();
     if (count == 3) keep[i].setZero();
-    if (count > 0) constraints.push_back({i, keep[i], Vec3::Zero(), count, {}});
+    if (count > 0) constraints.push_back({i, keep[i], Vec3::Zero(), count, {d, d, d}});
   }
   const Eigen::MatrixXd whole = test::dense(a), s = filterMatrix(keep);
   sim::LayerFactor<T> layers(mesh, layout, columns);
