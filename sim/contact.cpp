@@ -261,7 +261,8 @@ void carryContacts(const Colliders& colliders, const SimParams& params, double d
     // What slides over a rounded body leaves it tangentially: the solve may bring it back, and lets go of it where it
     // would have to pull.
     const bool dear = contact.pressure * dip > kLiftWork * params.density;
-    const double back = dip > 0 ? (dear ? 0 : kRestoring * std::min(dip, margins.slack)) : std::max(dip, -margins.escape);
+    const double closed = dear ? 0 : kRestoring * std::min(dip, margins.slack);
+    const double back = dip > 0 ? closed : std::max(dip, -margins.escape);
     contact.normal = surface.normal;
     contact.velocity = (carried - x + back * surface.normal) / dt;
     // The solve would let go of what a body leaves behind, but to no better than its tolerance of the body's speed.

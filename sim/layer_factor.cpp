@@ -6,6 +6,7 @@
 
 #include "sim/block_mask.h"
 #include "sim/elimination_order.h"
+#include "sim/pivot_inverse.h"
 
 namespace sim {
 namespace {
@@ -18,34 +19,16 @@ HAIRMESH_INLINE void loadBlock(const T* from, Lanes<T, W>* m) {
   for (int k = 0; k < kBlock; ++k) m[k] = load<T, W>(from + k * W);
 }
 
-// The inverse of a symmetric block (xx, xy, xz, yy, yz, zz), in place; that of its diagonal in lanes where it is
-// singular.
-template <class T, int W>
-HAIRMESH_INLINE void invert(T* at) {
-  Lanes<T, W> m[kPivot];
-  for (int k = 0; k < kPivot; ++k) m[k] = load<T, W>(at + k * W);
-  const Lanes<T, W> c0 = m[3] * m[5] - m[4] * m[4], c1 = m[4] * m[2] - m[1] * m[5], c2 = m[1] * m[4] - m[3] * m[2];
-  const Lanes<T, W> det = m[0] * c0 + m[1] * c1 + m[2] * c2, scale = m[0] + m[3] + m[5];
-  const Lanes<T, W> one = constant<Lanes<T, W>>(1), zero = constant<Lanes<T, W>>(0);
-  const auto regular = det > constant<Lanes<T, W>>(1e-9) * scale * scale * scale;
-  const Lanes<T, W> s = one / (regular ? det : one);
-  store<T, W>(at, regular ? s * c0 : one / m[0]);
-  store<T, W>(at + W, regular ? s * c1 : zero);
-  store<T, W>(at + 2 * W, regular ? s * c2 : zero);
-  store<T, W>(at + 3 * W, regular ? s * (m[0] * m[5] - m[2] * m[2]) : one / m[3]);
-  store<T, W>(at + 4 * W, regular ? s * (m[1] * m[2] - m[0] * m[4]) : zero);
-  store<T, W>(at + 5 * W, regular ? s * (m[0] * m[3] - m[1] * m[1]) : one / m[5]);
-}
-
 template <class T, int W>
 HAIRMESH_INLINE void eliminateGroup(const Structure& s, T* values, T* panel) {
   const int* update = s.updates.data();
   for (std::size_t k = 0; k < s.pivot_at.size(); ++k) {
     const int first = s.below_first[k], count = s.below_first[k + 1] - first;
     T* pivot = values + s.pivot_at[k];
-    invert<T, W>(pivot);
     Lanes<T, W> d[kPivot];
     for (int c = 0; c < kPivot; ++c) d[c] = load<T, W>(pivot + c * W);
+    invertPivot<T, W>(d, d);
+    for (int c = 0; c < kPivot; ++c) store<T, W>(pivot + c * W, d[c]);
     // The blocks below are kept as they were in the panel (D L^T, turned), and become L = U D^-1.
     for (int i = 0; i < count; ++i) {
       T* block = values + s.block_at[first + i];

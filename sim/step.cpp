@@ -62,7 +62,14 @@ struct StepContext::Parts {
   std::optional<SelfContact> self_contact;  // made when first asked for
 
   Parts(const HairMesh& m, double (*c)())
-      : mesh(&m), clock{c}, pattern(systemPattern(m)), material(m, pattern), buzz(m), tangles(m), rest_check(m), correction(m) {
+      : mesh(&m),
+        clock{c},
+        pattern(systemPattern(m)),
+        material(m, pattern),
+        buzz(m),
+        tangles(m),
+        rest_check(m),
+        correction(m) {
     for (auto* array : {&x_hat, &v_hat, &start_positions, &start_velocities, &limited_velocities})
       array->resize(m.vertexCount());
   }
@@ -246,9 +253,10 @@ bool bodyHasGone(const SimParams& params, const Colliders& colliders, const Hair
       state.contacts, [&](const Contact& contact) { return !params.collide || contact.collider >= colliders.count(); });
 }
 
-// No step makes energy out of nothing, and no hair stays turned over.
+// No vertex goes to and fro for ever, no step makes energy out of nothing, and no hair stays turned over.
 // `let_go`: bodies that held the hair have gone, and it springs back further than the forces stay linear over.
 void keepWithinBounds(const TakenStep& taken, bool let_go, Parts& parts, HairState& state, StepReport& report) {
+  relaxBuzz(taken.mesh, taken.positions, parts.buzz, state);
   limitEnergy(taken, report.converged && !let_go, parts.energy_guard, state);
   // Loose particles have no shape to be led back to.
   if (taken.params.volume <= 0) return;
@@ -335,10 +343,7 @@ StepReport advance(const HairMesh& mesh, const SimParams& asked, const StepInput
   integratePositions(input, base, dt, mesh, parts, state);
   const bool bounded = params.solver != Solver::kPaper || !parts.as_published;
   const TakenStep taken = takenStep(params, base, dt, parts);
-  if (bounded) {
-    relaxBuzz(mesh, parts.start_positions, parts.buzz, state);
-    keepWithinBounds(taken, let_go, parts, state, report);
-  }
+  if (bounded) keepWithinBounds(taken, let_go, parts, state, report);
   guardMade(parts, input, state, report);
   parts.clock.spent(kStageOther, report);
 

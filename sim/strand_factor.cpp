@@ -4,7 +4,8 @@
 #include <numeric>
 
 #include "sim/block_mask.h"
-#include "sim/lanes.h"
+#include "sim/forces/vector3.h"
+#include "sim/pivot_inverse.h"
 
 namespace sim {
 namespace {
@@ -15,22 +16,6 @@ constexpr int kRow = kPivot + kReach * kBlock;  // entries of a row, each of so 
 template <class T, int W, int kCount>
 HAIRMESH_INLINE void loadAll(const T* from, Lanes<T, W>* m) {
   for (int k = 0; k < kCount; ++k) m[k] = load<T, W>(from + k * W);
-}
-
-// d = the inverse of the symmetric block p; that of its diagonal in lanes where it is singular.
-template <class T, int W>
-HAIRMESH_INLINE void invert(const Lanes<T, W>* p, Lanes<T, W>* d) {
-  const Lanes<T, W> c0 = p[3] * p[5] - p[4] * p[4], c1 = p[4] * p[2] - p[1] * p[5], c2 = p[1] * p[4] - p[3] * p[2];
-  const Lanes<T, W> det = p[0] * c0 + p[1] * c1 + p[2] * c2, scale = p[0] + p[3] + p[5];
-  const Lanes<T, W> one = constant<Lanes<T, W>>(1), zero = constant<Lanes<T, W>>(0);
-  const auto regular = det > constant<Lanes<T, W>>(1e-9) * scale * scale * scale;
-  const Lanes<T, W> s = one / (regular ? det : one);
-  d[0] = regular ? s * c0 : one / p[0];
-  d[1] = regular ? s * c1 : zero;
-  d[2] = regular ? s * c2 : zero;
-  d[3] = regular ? s * (p[0] * p[5] - p[2] * p[2]) : one / p[3];
-  d[4] = regular ? s * (p[1] * p[2] - p[0] * p[4]) : zero;
-  d[5] = regular ? s * (p[0] * p[3] - p[1] * p[1]) : one / p[5];
 }
 
 // pivot -= l u^T, of which the upper triangle is kept.
@@ -62,7 +47,7 @@ HAIRMESH_INLINE void eliminateGroup(int rows, T* row) {
   for (int i = 0; i < rows; ++i, row += kRow * W) {
     Lanes<T, W> p[kPivot], d[kPivot], next[kBlock], second[kBlock], l[kBlock];
     loadAll<T, W, kPivot>(row, p);
-    invert<T, W>(p, d);
+    invertPivot<T, W>(p, d);
     for (int k = 0; k < kPivot; ++k) store<T, W>(row + k * W, d[k]);
     T *const next_at = row + kPivot * W, *const second_at = next_at + kBlock * W;
     loadAll<T, W, kBlock>(next_at, next);
@@ -89,18 +74,10 @@ HAIRMESH_INLINE void setVector(T* at, const V3<Lanes<T, W>>& v) {
   store<T, W>(at, v.x), store<T, W>(at + W, v.y), store<T, W>(at + 2 * W, v.z);
 }
 template <class T, int W>
-HAIRMESH_INLINE V3<Lanes<T, W>> blockTimes(const T* at, const V3<Lanes<T, W>>& v) {
-  Lanes<T, W> m[kBlock];
-  loadAll<T, W, kBlock>(at, m);
-  return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[3] * v.x + m[4] * v.y + m[5] * v.z,
-          m[6] * v.x + m[7] * v.y + m[8] * v.z};
-}
-template <class T, int W>
-HAIRMESH_INLINE V3<Lanes<T, W>> transposedTimes(const T* at, const V3<Lanes<T, W>>& v) {
-  Lanes<T, W> m[kBlock];
-  loadAll<T, W, kBlock>(at, m);
-  return {m[0] * v.x + m[3] * v.y + m[6] * v.z, m[1] * v.x + m[4] * v.y + m[7] * v.z,
-          m[2] * v.x + m[5] * v.y + m[8] * v.z};
+HAIRMESH_INLINE M3<Lanes<T, W>> blockAt(const T* at) {
+  M3<Lanes<T, W>> block;
+  loadAll<T, W, kBlock>(at, block.m);
+  return block;
 }
 
 // In place in `x`, three times W entries a row.
@@ -111,8 +88,8 @@ HAIRMESH_INLINE void solveGroup(int rows, const T* values, T* x) {
   for (int i = 0; i < rows; ++i, row += kRow * W) {
     const V3<Lanes<T, W>> y = vectorAt<T, W>(x + 3 * i * W) - before;
     setVector<T, W>(x + 3 * i * W, y);
-    before = second + blockTimes<T, W>(row + kPivot * W, y);
-    second = blockTimes<T, W>(row + (kPivot + kBlock) * W, y);
+    before = second + blockAt<T, W>(row + kPivot * W) * y;
+    second = blockAt<T, W>(row + (kPivot + kBlock) * W) * y;
   }
   V3<Lanes<T, W>> next{}, after{};
   for (int i = rows - 1; i >= 0; --i) {
@@ -122,8 +99,8 @@ HAIRMESH_INLINE void solveGroup(int rows, const T* values, T* x) {
     const V3<Lanes<T, W>> y = vectorAt<T, W>(x + 3 * i * W);
     const V3<Lanes<T, W>> own{d[0] * y.x + d[1] * y.y + d[2] * y.z, d[1] * y.x + d[3] * y.y + d[4] * y.z,
                               d[2] * y.x + d[4] * y.y + d[5] * y.z};
-    const V3<Lanes<T, W>> z = own - (transposedTimes<T, W>(row + kPivot * W, next) +
-                                     transposedTimes<T, W>(row + (kPivot + kBlock) * W, after));
+    const V3<Lanes<T, W>> z = own - (transposeTimes(blockAt<T, W>(row + kPivot * W), next) +
+                                     transposeTimes(blockAt<T, W>(row + (kPivot + kBlock) * W), after));
     setVector<T, W>(x + 3 * i * W, z);
     after = next, next = z;
   }

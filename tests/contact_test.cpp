@@ -281,6 +281,29 @@ TEST(Contact, CarriedContactKeepsItsVertexAtTheOffsetOfTheMovingBody) {
   EXPECT_TRUE(state.contacts.empty()) << "its body is gone";
 }
 
+// Closing a dip against a hundred newtons would store more than the motion of light hair had left.
+TEST(Contact, ADipIsClosedUnlessItIsPressedHard) {
+  const sim::SimParams params = test::tautHair();
+  const Ellipsoid ball = ellipsoid(Vec3::Zero(), Vec3::Constant(0.1));
+  const std::vector<Ellipsoid> bodies{ball};
+  const double dip = 0.05 * params.contact_offset;
+  for (const double pressure : {0.0, 0.01, 100.0}) {
+    sim::HairState state;
+    state.positions = {Vec3(0, 0.1 + params.contact_offset - dip, 0)};
+    state.velocities = {Vec3::Zero()};
+    state.contacts = {Contact{}};
+    state.contacts[0].pressure = pressure;
+    sim::carryContacts({bodies}, params, kFrame, state);
+    ASSERT_EQ(state.contacts.size(), 1u);
+    const double lifted = kFrame * state.contacts[0].velocity.y();
+    if (pressure < 1) {
+      EXPECT_GT(lifted, 0.1 * dip) << pressure << " N";
+    } else {
+      EXPECT_NEAR(lifted, 0, 1e-9);
+    }
+  }
+}
+
 TEST(Contact, ConstraintsRemoveWhatTheirNormalsSpanAndPrescribeTheContactsVelocity) {
   test::Random random(3);
   for (int trial = 0; trial < 200; ++trial) {

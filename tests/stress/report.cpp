@@ -301,14 +301,16 @@ colliders are taken away. A case passes when
 - no external vertex (with `collide_inner`: no vertex) is deeper than )"
       << 1e3 * kDeepest
       << R"( mm inside a collider in use, ellipsoid or signed distances, at any frame's end; where a body appears within the hair,
-  or the hair within a body, after 0.1 or 0.2 s;
+  or the hair within a body, after 0.1 or 0.2 s, and as many times longer as `max_depenetration` is below its default;
 - mechanical energy, once everything stands still, never exceeds what the motion left by more than )"
       << 100 * kEnergyTolerance << R"( % and what contacts may lift it by
   within their slack, its weight times 0.4 mm (a steady wind counts as the weight that its push is, and
   gusts end with the motion; not asked where rows of the numerics stand at a limit or are drawn at random: ten iterations a solve keep no such law).
   From one step to the next it may rise below that level: a contact found at a step's end lifts hair that has
   fallen a millimetre too far, and very stiff hair trades energy between steps. The largest such rise is listed;
-- (where a body appears within the hair, what that lifts the hair to counts as left by the motion: roots that lie within a body
+- (a second twin, put to its rest shape when the body is taken away, is a rest as well: the body may have pushed the first into another. What
+  hair is lifted to that lay within a body before the step counts as left by the motion, as does
+  what combing lifts it to. Where a body appears within the hair, what that lifts the hair to counts as left by the motion: roots that lie within a body
   keep its contacts working);
 - the watchdog never steps in, but for the family that injects faults.
 
