@@ -37,16 +37,6 @@ Motion judge(const TakenStep& step, const HairState& state) {
   return motion;
 }
 
-// Elastic energy and that of gravity, J.
-double potential(const TakenStep& step, std::span<const Vec3> x, EnergyGuard& scratch) {
-  double energy = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    scratch.plain[i] = {x[i].x(), x[i].y(), x[i].z()};
-    energy += step.params.density * step.mesh.vertex_volume[i] * step.params.gravity * x[i].y();
-  }
-  return energy + evaluate<double>(step.model, scratch.plain, {});
-}
-
 // Where the roots carry every vertex that does not move against them.
 void carry(const TakenStep& step, const HairState& state, EnergyGuard& scratch) {
   const HairMesh& mesh = step.mesh;
@@ -63,47 +53,91 @@ void carry(const TakenStep& step, const HairState& state, EnergyGuard& scratch) 
   for (int c = 0; c < mesh.columnCount(); ++c) scratch.carried[mesh.shape.column_first[c]] = scratch.roots_after[c];
 }
 
-// Brings a step whose carried positions are known below its bound, halving its motion so many times before giving it
-// up. Returns the share of the motion that was kept.
-double bringBelowBound(const TakenStep& step, int halvings, EnergyGuard& scratch, HairState& state) {
-  const std::vector<Vec3>& carried = scratch.carried;
-  const int n = step.mesh.vertexCount();
-  const auto carrying = [&](int i) { return Vec3((carried[i] - step.positions[i]) / step.dt); };
-  const auto massOf = [&](int i) { return step.params.density * step.mesh.vertex_volume[i]; };
+// m/s at which the roots carry a vertex.
+Vec3 carrying(const TakenStep& step, const EnergyGuard& scratch, int i) {
+  return (scratch.carried[i] - step.positions[i]) / step.dt;
+}
 
-  double bound = potential(step, carried, scratch), kinetic = 0;
-  for (int i = 0; i < n; ++i) {
+// Elastic energy, that of gravity, and that of the air as it blows against what the roots carry (J): drag beyond that
+// only takes. Hair that goes to and fro gives back to the wind what it was given.
+double potential(const TakenStep& step, std::span<const Vec3> x, EnergyGuard& scratch) {
+  double energy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    scratch.plain[i] = {x[i].x(), x[i].y(), x[i].z()};
+    const Vec3 blow = step.params.air_drag * (step.wind - carrying(step, scratch, static_cast<int>(i)));
+    const double specific = step.params.gravity * x[i].y() - blow.dot(x[i] - scratch.carried[i]);
+    energy += step.params.density * step.mesh.vertex_volume[i] * specific;
+  }
+  return energy + evaluate<double>(step.model, scratch.plain, {});
+}
+
+// J, of a step whose carried positions are known, seen from the roots.
+struct Account {
+  double bound = 0;    // of what it may end with
+  double kinetic = 0;  // that it ends with
+};
+
+double kineticOf(const TakenStep& step, const EnergyGuard& scratch, const HairState& state, int i) {
+  const double mass = step.params.density * step.mesh.vertex_volume[i];
+  return 0.5 * mass * (state.velocities[i] - carrying(step, scratch, i)).squaredNorm();
+}
+
+Account accountFor(const TakenStep& step, EnergyGuard& scratch, const HairState& state) {
+  Account account;
+  account.bound = potential(step, scratch.carried, scratch);
+  for (int i = 0; i < step.mesh.vertexCount(); ++i) {
     if (step.mesh.isRoot(i)) continue;
-    const Vec3 drag = massOf(i) * step.params.air_drag * (step.wind - state.velocities[i]);
-    bound += std::max(0.0, drag.dot(state.positions[i] - carried[i]));
-    bound += 0.5 * massOf(i) * (step.velocities[i] - carrying(i)).squaredNorm();
-    kinetic += 0.5 * massOf(i) * (state.velocities[i] - carrying(i)).squaredNorm();
+    const double mass = step.params.density * step.mesh.vertex_volume[i];
+    const Vec3 carried = carrying(step, scratch, i);
+    account.bound += 0.5 * mass * (step.velocities[i] - carried).squaredNorm();
+    account.kinetic += kineticOf(step, scratch, state, i);
   }
   // What bodies push: their pressure along its normal, and friction of at most its share.
   for (const Contact& contact : state.contacts) {
-    const Vec3 pushed = step.dt * (contact.velocity - carrying(contact.vertex));
+    const Vec3 pushed = step.dt * (contact.velocity - carrying(step, scratch, contact.vertex));
     const double along = contact.normal.dot(pushed);
     const double work = std::max(0.0, along) + step.params.friction * (pushed - along * contact.normal).norm();
-    bound += std::max(0.0, contact.pressure) * work;
+    account.bound += std::max(0.0, contact.pressure) * work;
   }
-  if (!std::isfinite(bound)) return 1;
+  return account;
+}
 
-  double kept = 1, stored = potential(step, state.positions, scratch);
-  if (stored + kinetic <= bound) return 1;
-  for (int halving = 0; !(stored <= bound); ++halving) {
-    const double share = halving < halvings ? 0.5 : 0;
-    for (int i = 0; i < n; ++i) state.positions[i] = carried[i] + share * (state.positions[i] - carried[i]);
-    kept *= share;
-    kinetic *= share * share;
-    if (share == 0) break;
-    stored = potential(step, state.positions, scratch);
-  }
-  const double left = std::max(0.0, bound - stored);
-  const double slowed = kept * (kinetic > left ? std::sqrt(left / kinetic) : 1);
-  for (int i = 0; i < n; ++i) {
-    if (!step.mesh.isRoot(i)) state.velocities[i] = carrying(i) + slowed * (state.velocities[i] - carrying(i));
+// Slows what moves against the roots to a share, by vertex, of its speed.
+void slowDown(const TakenStep& step, const EnergyGuard& scratch, HairState& state, const auto& shareOf) {
+  for (int i = 0; i < step.mesh.vertexCount(); ++i) {
+    if (step.mesh.isRoot(i)) continue;
+    const Vec3 carried = carrying(step, scratch, i);
+    state.velocities[i] = carried + shareOf(i) * (state.velocities[i] - carried);
   }
   state.previous_dt = 0;  // what came before says nothing any more about how it goes on
+}
+
+// Halves the way of every vertex from `back` until its potential energy is `most` (J), so many times before giving it
+// up. Returns the share of the way that was kept and sets the energy stored there.
+double shorten(const TakenStep& step, std::span<const Vec3> back, double most, int halvings, double& stored,
+               EnergyGuard& scratch, HairState& state) {
+  double kept = 1;
+  for (int halving = 0; !(stored <= most) && kept > 0; ++halving) {
+    const double share = halving < halvings ? 0.5 : 0;
+    for (std::size_t i = 0; i < back.size(); ++i)
+      state.positions[i] = back[i] + share * (state.positions[i] - back[i]);
+    kept *= share;
+    if (kept > 0) stored = potential(step, state.positions, scratch);
+  }
+  return kept;
+}
+
+// Brings a step whose carried positions are known below its bound, halving its motion so many times before giving it
+// up. Returns the share of the motion that was kept.
+double bringBelowBound(const TakenStep& step, int halvings, EnergyGuard& scratch, HairState& state) {
+  const Account account = accountFor(step, scratch, state);
+  if (!std::isfinite(account.bound)) return 1;
+  double stored = potential(step, state.positions, scratch);
+  if (stored + account.kinetic <= account.bound) return 1;
+  const double kept = shorten(step, scratch.carried, account.bound, halvings, stored, scratch, state);
+  const double kinetic = kept * kept * account.kinetic, left = std::max(0.0, account.bound - stored);
+  const double slowed = kept * (kinetic > left ? std::sqrt(left / kinetic) : 1);
+  slowDown(step, scratch, state, [&](int) { return slowed; });
   return kept;
 }
 
@@ -132,6 +166,30 @@ double limitCorrections(const TakenStep& step, const Colliders& colliders, Energ
   if (!bodiesStandStill(step, colliders, scratch, state)) return 1;
   // Halfway between two distant places outside of a body may lie its inside.
   return bringBelowBound(step, judge(step, state) == Motion::kCalm ? kHalvings : 0, scratch, state);
+}
+
+double limitPushes(const TakenStep& step, std::span<const Vec3> unpushed, EnergyGuard& scratch, HairState& state) {
+  carry(step, state, scratch);
+  // Half way out of a bundle that it has flown into, fast hair would lie within it or beyond.
+  if (judge(step, state) != Motion::kCalm) return bringBelowBound(step, kHalvings, scratch, state);
+  const Account account = accountFor(step, scratch, state);
+  if (!std::isfinite(account.bound)) return 1;
+  double stored = potential(step, state.positions, scratch);
+  if (stored + account.kinetic <= account.bound) return 1;
+  double pushed = 0;  // J, of motion
+  scratch.pushed.resize(unpushed.size());
+  for (int i = 0; i < step.mesh.vertexCount(); ++i) {
+    scratch.pushed[i] = state.positions[i] != unpushed[i];
+    if (!step.mesh.isRoot(i) && scratch.pushed[i]) pushed += kineticOf(step, scratch, state, i);
+  }
+  const double others = account.kinetic - pushed;
+  const double kept = shorten(step, unpushed, account.bound, kHalvings, stored, scratch, state);
+  // The ones that were pushed pay first.
+  const double left = std::max(0.0, account.bound - stored);
+  const auto share = [](double motion, double most) { return motion > most ? std::sqrt(most / motion) : 1.0; };
+  const double slow_pushed = share(pushed, std::max(0.0, left - others)), slow_others = share(others, left);
+  slowDown(step, scratch, state, [&](int i) { return scratch.pushed[i] ? slow_pushed : slow_others; });
+  return kept;
 }
 
 }  // namespace sim

@@ -3,7 +3,7 @@
 // One linearized step has no bound where the hair moves by more than the forces stay linear over: hair left a metre
 // behind its roots is flung ahead by two. Seen from the roots, which carry the hair along rigidly, what a step ends
 // with can be no more than what it began with: with u the velocity of being carried along, from x to x_c = x + dt u,
-//   E(x') + 1/2 m |v' - u|^2  <=  E(x_c) + 1/2 m |v - u|^2 + work of the wind and of the bodies in contact.
+//   E(x') + 1/2 m |v' - u|^2  <=  E(x_c) + 1/2 m |v - u|^2 + work of the air and of the bodies in contact.
 // The term in v - u holds the inertia forces of any motion of the roots, exactly. A step that ends above is taken back
 // towards x_c until its potential energy fits, then slowed until the sum does: the hair is carried along more rigidly
 // instead of being stretched beyond measure.
@@ -33,6 +33,7 @@ struct TakenStep {
 struct EnergyGuard {
   std::vector<Vec3> carried, roots_before, roots_after;
   std::vector<V3<double>> plain;
+  std::vector<unsigned char> pushed;
 };
 
 // Does nothing to a step that is gentle and whose solve was finished, with the bodies of the step before (`solved`),
@@ -43,5 +44,11 @@ double limitEnergy(const TakenStep& step, bool solved, EnergyGuard& scratch, Hai
 // The same for a step, gentle or not, whose contacts have moved vertices: what corrections lift, and what follows them,
 // must be paid for by what the step began with, where the bodies touched stand still against the roots.
 double limitCorrections(const TakenStep& step, const Colliders& colliders, EnergyGuard& scratch, HairState& state);
+
+// The same for a step whose self-contacts have pushed vertices apart, from `unpushed` (m): in stiff hair a push of a
+// millimetre may store more than the hair has. In a gentle step the push alone is shortened, and what overlaps then comes
+// out in the steps to come; what was pushed pays first with its motion. Returns the share of the push, or of the step,
+// that was kept.
+double limitPushes(const TakenStep& step, std::span<const Vec3> unpushed, EnergyGuard& scratch, HairState& state);
 
 }  // namespace sim

@@ -8,6 +8,8 @@
 namespace sim {
 namespace {
 
+// Speeds under another pull are to one another as its root (Froude 1872).
+constexpr double kWeight = 9.81;        // m/s^2
 constexpr double kStill = 0.02;         // m/s: slower hair hangs still, unless it
 constexpr double kOnItsWay = 1;         // s, would in so long go as far as the twin is off
 constexpr double kStillFor = 0.5;       // s
@@ -53,8 +55,10 @@ RestCheck::RestCheck(const HairMesh& mesh) {
   roots.resize(mesh.columnCount());
 }
 
-bool watchRest(const HairMesh& mesh, const HairState& state, double dt, const Tangles& tangles, RestCheck& check) {
-  const double speed = fastest(state);
+bool watchRest(const HairMesh& mesh, const HairState& state, double pull, double dt, const Tangles& tangles,
+               RestCheck& check) {
+  check.stir = std::sqrt(std::max(1.0, pull / kWeight));
+  const double speed = fastest(state) / check.stir;
   check.wait = std::max(0.0, check.wait - dt);
   if (speed > kMoving) check.judged = false;
   if (check.judged || check.wait > 0) return false;
@@ -79,7 +83,7 @@ bool watchRest(const HairMesh& mesh, const HairState& state, double dt, const Ta
 void judgeRest(const HairMesh& mesh, const HairState& state, double scale,
                const std::function<double(const HairState&)>& energy, Tangles& tangles, RestCheck& check) {
   check.judged = check.settling > kMostSettling;
-  if (check.still < kStillFor || !(fastest(check.twin) < kTwinStill)) return;
+  if (check.still < kStillFor || !(fastest(check.twin) < kTwinStill * check.stir)) return;
   const double off = largestDistance(state, check.twin);
   if (off > kElsewhere * mesh.hair_length && kOnItsWay * fastest(state) > off) return;
   check.judged = true;

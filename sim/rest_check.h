@@ -27,11 +27,14 @@ struct RestCheck {
   double settling = -1;           // s since the twin left the rest shape; negative: there is none
   bool judged = false;            // nothing more to find out before the hair has moved
   double wait = 0, patience = 0;  // s before it may be led again, and after the next time
+  double stir = 1;                // times as fast as hair that its weight alone pulls
   std::vector<Vec3> roots;        // m, scratch
 };
 
-// Looks at the hair after a step of dt (s). Returns whether its twin is to take one too.
-bool watchRest(const HairMesh& mesh, const HairState& state, double dt, const Tangles& tangles, RestCheck& check);
+// Looks at the hair after a step of dt (s). Returns whether its twin is to take one too. pull: m/s^2, of gravity and
+// wind; under more than hair's own weight it never hangs quite as still.
+bool watchRest(const HairMesh& mesh, const HairState& state, double pull, double dt, const Tangles& tangles,
+               RestCheck& check);
 
 // After the twin's step: once both hang still, has the hair led to where the twin is, if that is elsewhere and lower by
 // more than a small share of `scale` (J, the hair's weight times its length). `energy`: mechanical, of a state (J).

@@ -48,7 +48,7 @@ struct StepContext::Parts {
   std::optional<ImplicitSolver<float>> single_solver;
   std::optional<ImplicitSolver<double>> double_solver;
   // Scratch of a step.
-  std::vector<Vec3> x_hat, v_hat, start_positions, start_velocities, limited_velocities;
+  std::vector<Vec3> x_hat, v_hat, start_positions, start_velocities, limited_velocities, unpushed;
   std::vector<V3<double>> plain_positions;  // for the force model, which is plain arrays
   std::vector<Vec3> root_positions;         // of a teleport
   std::vector<Ellipsoid> standing;          // bodies after a teleport
@@ -70,7 +70,7 @@ struct StepContext::Parts {
         tangles(m),
         rest_check(m),
         correction(m) {
-    for (auto* array : {&x_hat, &v_hat, &start_positions, &start_velocities, &limited_velocities})
+    for (auto* array : {&x_hat, &v_hat, &start_positions, &start_velocities, &limited_velocities, &unpushed})
       array->resize(m.vertexCount());
   }
 };
@@ -237,14 +237,36 @@ StepInput carryOverJump(const SimParams& params, const StepInput& input, double 
   return {input.roots, parts.standing, input.time, parts.standing_parts};
 }
 
+// Who was pushed back to where it came from has no speed, whatever the solve had given it for its way in: seen from the
+// root, a pushed vertex is no faster than its way from start to end. Hair that wind or gravity presses into itself would
+// keep a velocity for ever that takes it nowhere.
+void slowPushed(const CorrectedStep& step, std::span<const Vec3> unpushed, HairState& state) {
+  for (int c = 0; c < step.mesh.columnCount(); ++c) {
+    const int root = step.mesh.shape.column_first[c];
+    const Vec3 carried = state.positions[root] - step.start[root], carrying = state.velocities[root];
+    for (int i = root + 1; i < step.mesh.shape.column_first[c + 1]; ++i) {
+      if (state.positions[i] == unpushed[i]) continue;
+      const Vec3 way = (state.positions[i] - step.start[i] - carried) / step.dt;
+      if (way.squaredNorm() < (state.velocities[i] - carrying).squaredNorm()) state.velocities[i] = carrying + way;
+    }
+  }
+}
+
 // Bundles that met are pushed apart, the rest of the hair follows, and who is in a foreign bundle then is pushed again.
-void partBundles(const CorrectedStep& step, Parts& parts, HairState& state, StepReport& report) {
+// Taken: null where energy need not pay for it.
+void partBundles(const CorrectedStep& step, const TakenStep* taken, Parts& parts, HairState& state,
+                 StepReport& report) {
   if (!parts.self_contact) parts.self_contact.emplace(step.mesh);
   SelfContact& self = *parts.self_contact;
   report.self_contacts = resolveSelfContacts({step.mesh, step.params, step.start, step.dt}, self, state);
-  if (report.self_contacts == 0 || !step.params.minimize_deformation) return;
-  followPushed(step, self.unmoved, self.moved, parts.correction, state);
-  resolveSelfContacts({step.mesh, step.params, {}, step.dt}, self, state);
+  if (report.self_contacts == 0) return;
+  parts.unpushed = self.unmoved;
+  if (step.params.minimize_deformation) {
+    followPushed(step, self.unmoved, self.moved, parts.correction, state);
+    resolveSelfContacts({step.mesh, step.params, {}, step.dt}, self, state);
+  }
+  if (taken) limitPushes(*taken, parts.unpushed, parts.energy_guard, state);
+  slowPushed(step, parts.unpushed, state);
 }
 
 // Whether hair is in contact with a body that is there no more.
@@ -298,7 +320,8 @@ void checkRest(const SimParams& params, const StepInput& input, double dt, Parts
                StepReport& report) {
   const HairMesh& mesh = *parts.mesh;
   RestCheck& check = parts.rest_check;
-  if (!watchRest(mesh, state, dt, parts.tangles, check)) return;
+  const Vec3 pull = params.air_drag * windAt(params, input.time) - Vec3(0, params.gravity, 0);
+  if (!watchRest(mesh, state, pull.norm(), dt, parts.tangles, check)) return;
   HairState& twin = check.twin;
   parts.start_positions = twin.positions;
   parts.start_velocities = twin.velocities;
@@ -349,7 +372,7 @@ StepReport advance(const HairMesh& mesh, const SimParams& asked, const StepInput
 
   const CorrectedStep corrected{mesh, params, colliders, parts.start_positions, dt};
   if (params.self_collide) {
-    partBundles(corrected, parts, state, report);
+    partBundles(corrected, bounded ? &taken : nullptr, parts, state, report);
     parts.clock.spent(kStageCollision, report);
   }
   if (params.collide) {

@@ -13,6 +13,7 @@ using sim::Vec3;
 using test::Hair;
 
 constexpr double kFrame = 1.0 / 60;
+constexpr double kGravity = 9.81;  // m/s^2
 
 // Hair that hangs still, bent to the side by a share of its length.
 struct Resting {
@@ -36,7 +37,7 @@ struct Resting {
       led = sim::combOut({mesh, start, kFrame}, tangles, state) > 0 || led;
       if (tangles.combing == 0) std::fill(state.velocities.begin(), state.velocities.end(), Vec3::Zero());
       const auto energy = [&](const sim::HairState& one) { return &one == &state ? higher : 0; };
-      if (sim::watchRest(mesh, state, kFrame, tangles, check)) judgeRest(mesh, state, 1, energy, tangles, check);
+      if (sim::watchRest(mesh, state, kGravity, kFrame, tangles, check)) judgeRest(mesh, state, 1, energy, tangles, check);
     }
     return led;
   }
@@ -68,7 +69,7 @@ TEST(RestCheck, HairThatABodyHoldsIsLeftWhereItIs) {
 TEST(RestCheck, HairThatMovesIsNotJudged) {
   Resting hair(0.05);
   for (Vec3& v : hair.state.velocities) v = Vec3(1, 0, 0);
-  EXPECT_FALSE(sim::watchRest(hair.mesh, hair.state, kFrame, hair.tangles, hair.check));
+  EXPECT_FALSE(sim::watchRest(hair.mesh, hair.state, kGravity, kFrame, hair.tangles, hair.check));
 }
 
 double longest(const Hair& hair) {

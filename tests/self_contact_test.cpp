@@ -100,7 +100,7 @@ TEST(SelfContact, CurtainsThatStrikeEachOtherDoNotInterpenetrate) {
     }
     std::printf("%.1f m/s: at most %d vertices crossed without, %d with; met %d\n", speed, crossed[0], crossed[1], met);
     EXPECT_GT(crossed[0], 5);
-    EXPECT_GT(met, 10);
+    EXPECT_GT(met, 5);
     EXPECT_LE(crossed[1], crossed[0] / 5) << "a vertex may pass where faces bulge beyond their mean planes";
     EXPECT_EQ(left, 0) << "and they part again";
   }
@@ -210,6 +210,59 @@ TEST(SelfContact, KeepsMomentumAndAddsNoEnergy) {
     }
   }
   EXPECT_GT(met, 50);
+}
+
+// Limp hair whose one half is moved against the other by its roots, and stays there.
+struct PressedTogether {
+  Hair hair;
+  explicit PressedTogether(double stretch_across) : hair(twoCurtains(0.04), limp(stretch_across)) {
+    for (int c = 0; c < hair.mesh.columnCount(); ++c) {
+      if (hair.mesh.shape.column_first[c] >= hair.mesh.vertexCount() / 2) hair.roots[c].x() -= 0.025;
+    }
+  }
+  static sim::SimParams limp(double stretch_across) {
+    sim::SimParams params = quickHair();
+    params.stretch_across = stretch_across, params.shear = 100, params.bend = 0.01, params.volume = 200;
+    params.air_drag = 5;
+    return params;
+  }
+};
+
+// What is pushed apart must be paid for by the step: in hair of stiff walls a push of a millimetre stores more than the
+// hair has.
+TEST(SelfContact, PushesAddNoEnergy) {
+  PressedTogether pressed(4e5);
+  Hair& hair = pressed.hair;
+  const auto energy = [&] { return sim::mechanicalEnergy(hair.mesh, hair.params, hair.context, hair.state); };
+  int met = 0;
+  double before = INFINITY, worst = 0, weight = 0;
+  for (const double volume : hair.mesh.vertex_volume) weight += 9.81 * hair.params.density * volume;
+  for (int n = 0; n < 120; ++n) {
+    met += hair.step(kFrame).self_contacts;
+    const double now = energy();
+    if (n > 0) worst = std::max(worst, (now - before) / (weight * hair.mesh.hair_length));
+    before = now;
+  }
+  std::printf("met %d, energy up by at most %.2g of weight times length\n", met, worst);
+  EXPECT_GT(met, 10);
+  EXPECT_LT(worst, 1e-3);
+}
+
+// Each step's solve, which does not know of the other half, goes into it, and what was pushed back must not keep the
+// velocity of that.
+TEST(SelfContact, HairPressedIntoItselfComesToRest) {
+  PressedTogether pressed(100);
+  Hair& hair = pressed.hair;
+  int met = 0;
+  double fastest = 0;
+  for (int n = 0; n < 300; ++n) {
+    met += hair.step(kFrame).self_contacts;
+    if (n < 240) continue;
+    for (const Vec3& v : hair.state.velocities) fastest = std::max(fastest, v.norm());
+  }
+  std::printf("met %d, fastest %.2g m/s\n", met, fastest);
+  EXPECT_GT(met, 100);
+  EXPECT_LT(fastest, 1e-3);
 }
 
 TEST(SelfContact, NothingNearNothingPaidAndTheAnswerKnowsNothingOfTheList) {

@@ -21,8 +21,9 @@ namespace {
 constexpr double kShortestStep = 1e-3, kLongestStep = 0.5;  // s, of random paces
 constexpr double kFaultEvery = 0.1;                         // s
 constexpr double kIntruderThere = 0.3;                      // s, when a body that appears has done so
-constexpr double kAtRest = 5e-3;                            // m/s
-constexpr double kRested = 1;                               // s at rest elsewhere, before that counts
+constexpr double kAtRest = 5e-3;                            // m/s, of a twin that needs no more time
+constexpr double kRested = 2;                               // s at rest elsewhere, before that counts
+constexpr double kSoon = 0.1;                               // s, over which velocities are extrapolated
 constexpr double kUnrest = 3;                               // times the stated time, that its twin may take to rest
 constexpr double kWindow = 2, kHurry = 5;                   // s, and times its pace: see Pace of return
 constexpr int kIdleWindows = 5;                             // in a row, of hair that is not coming
@@ -261,7 +262,7 @@ Apart apart(const Hair& a, const Hair& b) {
   Apart worst;
   for (int i = 0; i < a.mesh.vertexCount(); ++i) {
     const double place = (a.state.positions[i] - b.state.positions[i]).norm();
-    const double soon = 0.1 * (a.state.velocities[i] - b.state.velocities[i]).norm();
+    const double soon = kSoon * (a.state.velocities[i] - b.state.velocities[i]).norm();
     const double distance = std::max(place, soon) / a.mesh.hair_length;
     if (distance > worst.distance) worst = {distance, i};
   }
@@ -274,13 +275,17 @@ double fastest(const Hair& hair) {
   return most;
 }
 
-// Weight times length (J), or what gravity and wind together pull where that is more: the scale of the energies that
-// hair of this kind has at all.
+// m/s^2: what gravity and wind together pull, or weight alone where that is more.
+double pullOn(const Run& run) {
+  const sim::Vec3 pull = run.params.air_drag * windOf(run) - sim::Vec3(0, run.params.gravity, 0);
+  return std::max(9.81, pull.norm());
+}
+
+// Pull times length (J): the scale of the energies that hair of this kind has at all.
 double weightOf(const Run& run) {
   double volume = 0;
   for (const double share : run.hair.mesh.vertex_volume) volume += share;
-  const sim::Vec3 pull = run.params.air_drag * windOf(run) - sim::Vec3(0, run.params.gravity, 0);
-  return std::max(9.81, pull.norm()) * run.params.density * volume * run.hair.mesh.hair_length;
+  return pullOn(run) * run.params.density * volume * run.hair.mesh.hair_length;
 }
 
 // What the motion left (J), in all and above the rest shape's, and the energy of the last step.
@@ -344,10 +349,23 @@ struct Pacer {
   }
 };
 
+// How long one hair has been at rest: within kBack of where it was, and no faster than would take it out of that soon.
+struct Rest {
+  std::vector<sim::Vec3> at;
+  double seconds = 0;
+
+  void look(const Hair& hair, double dt) {
+    const double near = kBack * hair.mesh.hair_length;
+    bool there = !at.empty() && fastest(hair) < near / kSoon;
+    for (std::size_t i = 0; there && i < at.size(); ++i) there = (hair.state.positions[i] - at[i]).norm() < near;
+    seconds = there ? seconds + dt : 0;
+    if (!there) at = hair.state.positions;
+  }
+};
+
 // Very soft hair sags into more shapes than one: another is as good a rest as the twin's where it is no higher in
 // energy.
 bool restsNoHigher(Hair& twin, const EnergyWatch& watch, Run& run) {
-  if (fastest(run.hair) > kAtRest || fastest(twin) > kAtRest) return false;
   const double rest = energyOf(run, twin);
   return watch.last - rest <= kEnergyTolerance * kSmallestEnergy * weightOf(run);
 }
@@ -360,7 +378,7 @@ bool waitUntilBack(double seconds, bool may_take, std::span<Hair> twins, EnergyW
   const double started = run.around.time();
   double until = started + seconds;
   Pacer pacer;
-  double resting = 0;  // s
+  std::vector<Rest> rests(1 + twins.size());  // the hair's, then its twins'
   while (run.around.time() < until && !run.failed()) {
     run.around.pass(dt);
     const sim::StepReport report = stepHair(run.params, run, dt, run.hair);
@@ -384,10 +402,13 @@ bool waitUntilBack(double seconds, bool may_take, std::span<Hair> twins, EnergyW
       run.outcome.worst_vertex = worst.vertex;
     }
     if (run.outcome.distance < kBack) return true;
-    // Not with the body there: that holds hair up as well.
-    const auto higher = [&](Hair& twin) { return !restsNoHigher(twin, energy, run); };
-    resting = !run.params.collide && !run.failed() && !std::ranges::all_of(twins, higher) ? resting + dt : 0;
-    if (resting > kRested) return run.outcome.other_rest = true;
+    rests[0].look(run.hair, dt);
+    for (std::size_t k = 0; k < twins.size(); ++k) {
+      rests[k + 1].look(twins[k], dt);
+      // Not with the body there: that holds hair up as well.
+      if (run.params.collide || run.failed() || std::min(rests[0].seconds, rests[k + 1].seconds) < kRested) continue;
+      if (restsNoHigher(twins[k], energy, run)) return run.outcome.other_rest = true;
+    }
     if (pacer.hopeless(run, twins, dt, until - run.around.time())) return false;
   }
   return false;
