@@ -15,6 +15,8 @@ constexpr double kLongStep = 1.0 / 50;  // s
 // Pa; a step is gentle over so much less as the forces that are least linear are stiffer: volume's, and the walls'
 // along the hair, for what turns is also stretched, to second order.
 constexpr double kSoftVolume = 1e4, kSoftStretch = 4e5;
+// Hair whose own load strains its walls by more than this is limp: folded as it hangs, so that no step is near to linear.
+constexpr double kLimp = 1;
 constexpr int kHalvings = 12;
 constexpr double kStill = 1e-3;  // m/s of a body's surface against the roots
 
@@ -35,6 +37,13 @@ Motion judge(const TakenStep& step, const HairState& state) {
     }
   }
   return motion;
+}
+
+bool limp(const TakenStep& step) {
+  const SimParams& params = step.params;
+  const double pull = (params.air_drag * step.wind - Vec3(0, params.gravity, 0)).norm();
+  const double softest = std::min({params.stretch_across, params.stretch_edge, params.shear, params.volume});
+  return params.density * pull * step.mesh.hair_length > kLimp * softest;
 }
 
 // Where the roots carry every vertex that does not move against them.
@@ -156,7 +165,7 @@ bool bodiesStandStill(const TakenStep& step, const Colliders& colliders, const E
 
 double limitEnergy(const TakenStep& step, bool solved, EnergyGuard& scratch, HairState& state) {
   const Motion motion = judge(step, state);
-  if (motion == Motion::kNotFinite || (motion == Motion::kCalm && solved)) return 1;
+  if (motion == Motion::kNotFinite || (motion == Motion::kCalm && solved && !limp(step))) return 1;
   carry(step, state, scratch);
   return bringBelowBound(step, kHalvings, scratch, state);
 }

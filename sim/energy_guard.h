@@ -36,9 +36,9 @@ struct EnergyGuard {
   std::vector<unsigned char> pushed;
 };
 
-// Does nothing to a step that is gentle and whose solve was finished, with the bodies of the step before (`solved`),
-// leaves no value finite that was not, or ends below its bound. Returns the share of the step's motion against the roots
-// that was kept, 1 where all was.
+// Does nothing to a step that leaves a value not finite, that ends below its bound, or that is gentle, of firm hair, and
+// was solved to its end with the bodies of the step before (`solved`). Returns the share of the step's motion against
+// the roots that was kept, 1 where all was.
 double limitEnergy(const TakenStep& step, bool solved, EnergyGuard& scratch, HairState& state);
 
 // The same for a step, gentle or not, whose contacts have moved vertices: what corrections lift, and what follows them,
