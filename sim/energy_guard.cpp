@@ -12,19 +12,21 @@ namespace {
 // nothing more. In long steps less: under the first bound softened hair gained energy in steps of 1/20 s and more.
 constexpr double kGentle = 0.1, kGentleLong = 0.05;
 constexpr double kLongStep = 1.0 / 50;  // s
-// Pa; a step is gentle over so much less as the forces that are least linear are stiffer: volume's, and the walls'
-// along the hair, for what turns is also stretched, to second order.
-constexpr double kSoftVolume = 1e4, kSoftStretch = 4e5;
-// Hair whose own load strains its walls by more than this is limp: folded as it hangs, so that no step is near to linear.
-constexpr double kLimp = 1;
+// Pa; a step is gentle over so much less as the forces that are least linear are stiffer: volume's, and the walls', for
+// what turns is also stretched, to second order.
+constexpr double kSoftVolume = 1e4, kSoftAlong = 4e5, kSoftAcross = 6e4;
+// No step is near to linear of hair that is limp, folded as it hangs: its load strains its walls by more than this; or of
+// hair that is stiffer one way by this ratio than another: it buckles.
+constexpr double kLimp = 1, kUneven = 1e3;
 constexpr int kHalvings = 12;
 constexpr double kStill = 1e-3;  // m/s of a body's surface against the roots
 
 enum class Motion { kCalm, kViolent, kNotFinite };
 
 Motion judge(const TakenStep& step, const HairState& state) {
-  const double soft =
-      std::sqrt(std::min({1.0, kSoftVolume / step.params.volume, kSoftStretch / step.params.stretch_along}));
+  const SimParams& params = step.params;
+  const double soft = std::sqrt(std::min({1.0, kSoftVolume / params.volume, kSoftAlong / params.stretch_along,
+                                          kSoftAcross / params.stretch_across}));
   const double most = (step.dt > kLongStep ? kGentleLong : kGentle) * soft * step.mesh.hair_length;
   Motion motion = Motion::kCalm;
   for (int c = 0; c < step.mesh.columnCount(); ++c) {
@@ -39,11 +41,11 @@ Motion judge(const TakenStep& step, const HairState& state) {
   return motion;
 }
 
-bool limp(const TakenStep& step) {
+bool neverLinear(const TakenStep& step) {
   const SimParams& params = step.params;
   const double pull = (params.air_drag * step.wind - Vec3(0, params.gravity, 0)).norm();
   const double softest = std::min({params.stretch_across, params.stretch_edge, params.shear, params.volume});
-  return params.density * pull * step.mesh.hair_length > kLimp * softest;
+  return params.density * pull * step.mesh.hair_length > kLimp * softest || params.stretch_across > kUneven * softest;
 }
 
 // Where the roots carry every vertex that does not move against them.
@@ -165,7 +167,7 @@ bool bodiesStandStill(const TakenStep& step, const Colliders& colliders, const E
 
 double limitEnergy(const TakenStep& step, bool solved, EnergyGuard& scratch, HairState& state) {
   const Motion motion = judge(step, state);
-  if (motion == Motion::kNotFinite || (motion == Motion::kCalm && solved && !limp(step))) return 1;
+  if (motion == Motion::kNotFinite || (motion == Motion::kCalm && solved && !neverLinear(step))) return 1;
   carry(step, state, scratch);
   return bringBelowBound(step, kHalvings, scratch, state);
 }
@@ -179,8 +181,14 @@ double limitCorrections(const TakenStep& step, const Colliders& colliders, Energ
 
 double limitPushes(const TakenStep& step, std::span<const Vec3> unpushed, EnergyGuard& scratch, HairState& state) {
   carry(step, state, scratch);
-  // Half way out of a bundle that it has flown into, fast hair would lie within it or beyond.
-  if (judge(step, state) != Motion::kCalm) return bringBelowBound(step, kHalvings, scratch, state);
+  // Half way out of a bundle that it has flown into, fast hair would lie within it or beyond. But where no share of its
+  // motion fits, it would be held for ever by what it touches.
+  if (judge(step, state) != Motion::kCalm) {
+    scratch.pushed_to = state.positions;
+    const double kept = bringBelowBound(step, kHalvings, scratch, state);
+    if (kept > 0) return kept;
+    state.positions = scratch.pushed_to;
+  }
   const Account account = accountFor(step, scratch, state);
   if (!std::isfinite(account.bound)) return 1;
   double stored = potential(step, state.positions, scratch);

@@ -31,7 +31,7 @@ struct TakenStep {
 
 // Sized by the first violent step.
 struct EnergyGuard {
-  std::vector<Vec3> carried, roots_before, roots_after;
+  std::vector<Vec3> carried, roots_before, roots_after, pushed_to;
   std::vector<V3<double>> plain;
   std::vector<unsigned char> pushed;
 };

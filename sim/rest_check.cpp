@@ -14,7 +14,7 @@ constexpr double kStill = 0.02;         // m/s: slower hair hangs still, unless 
 constexpr double kOnItsWay = 1;         // s, would in so long go as far as the twin is off
 constexpr double kStillFor = 0.5;       // s
 constexpr double kTwinStill = 5e-3;     // m/s
-constexpr double kMostSettling = 20;    // s, after which a twin that goes on swinging tells nothing
+constexpr double kMostSettling = 60;    // s, after which a twin that goes on swinging is taken as it is
 constexpr double kElsewhere = 0.006;    // of the hair's length: what is nearer to its twin is at home
 constexpr double kAtHome = 0.003;       // of the hair's length, from the rest shape itself
 constexpr double kHigher = 5e-5;        // of the hair's weight times its length
@@ -82,8 +82,8 @@ bool watchRest(const HairMesh& mesh, const HairState& state, double pull, double
 
 void judgeRest(const HairMesh& mesh, const HairState& state, double scale,
                const std::function<double(const HairState&)>& energy, Tangles& tangles, RestCheck& check) {
-  check.judged = check.settling > kMostSettling;
-  if (check.still < kStillFor || !(fastest(check.twin) < kTwinStill * check.stir)) return;
+  if (check.still < kStillFor) return;
+  if (!(fastest(check.twin) < kTwinStill) && check.settling < kMostSettling) return;
   const double off = largestDistance(state, check.twin);
   if (off > kElsewhere * mesh.hair_length && kOnItsWay * fastest(state) > off) return;
   check.judged = true;
