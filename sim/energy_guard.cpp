@@ -44,7 +44,10 @@ Motion judge(const TakenStep& step, const HairState& state) {
 bool neverLinear(const TakenStep& step) {
   const SimParams& params = step.params;
   const double pull = (params.air_drag * step.wind - Vec3(0, params.gravity, 0)).norm();
-  const double softest = std::min({params.stretch_across, params.stretch_edge, params.shear, params.volume});
+  double softest = INFINITY;  // of those that there are
+  for (const double modulus : {params.stretch_across, params.stretch_edge, params.shear, params.volume}) {
+    if (modulus > 0) softest = std::min(softest, modulus);
+  }
   return params.density * pull * step.mesh.hair_length > kLimp * softest || params.stretch_across > kUneven * softest;
 }
 

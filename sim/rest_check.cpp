@@ -82,13 +82,14 @@ bool watchRest(const HairMesh& mesh, const HairState& state, double pull, double
 
 void judgeRest(const HairMesh& mesh, const HairState& state, double scale,
                const std::function<double(const HairState&)>& energy, Tangles& tangles, RestCheck& check) {
-  if (check.still < kStillFor) return;
-  if (!(fastest(check.twin) < kTwinStill) && check.settling < kMostSettling) return;
+  const double stirring = fastest(check.twin);
+  if (check.still < kStillFor || !(stirring < kTwinStill * check.stir || check.settling > kMostSettling)) return;
   const double off = largestDistance(state, check.twin);
   if (off > kElsewhere * mesh.hair_length && kOnItsWay * fastest(state) > off) return;
-  check.judged = true;
-  if (off <= kElsewhere * mesh.hair_length) return;
-  if (!(energy(state) - energy(check.twin) > kHigher * scale)) return;
+  const bool higher = energy(state) - energy(check.twin) > kHigher * scale;
+  // A twin on its way down may yet come to rest below the hair.
+  check.judged = higher || stirring < kTwinStill || check.settling > kMostSettling;
+  if (off <= kElsewhere * mesh.hair_length || !higher) return;
   leadTo(mesh, check.twin, tangles);
   check.patience = std::min(kMostPatience, std::max(kFirstPatience, kPatienceGrows * check.patience));
   check.wait = check.patience;

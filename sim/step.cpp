@@ -72,6 +72,7 @@ struct StepContext::Parts {
         correction(m) {
     for (auto* array : {&x_hat, &v_hat, &start_positions, &start_velocities, &limited_velocities, &unpushed})
       array->resize(m.vertexCount());
+    plain_positions.reserve(m.vertexCount());
   }
 };
 
