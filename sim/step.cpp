@@ -22,6 +22,7 @@ namespace {
 constexpr int kBalanceSlices = 40;  // steps over which the balance of gravity is solved for anew
 constexpr double kAtOnce = 1e6;     // m/s
 constexpr double kStorm = 5;        // m/s^2 that wind presses hair with
+constexpr double kSpringBack = 0.5;  // s, that hair takes to when the bodies that held it have gone
 
 // The parameters that stiffnesses and rest shifts depend on.
 bool sameMaterial(const SimParams& a, const SimParams& b) {
@@ -55,6 +56,7 @@ struct StepContext::Parts {
   std::vector<DistancePart> standing_parts;
   GoodState good;  // the last step's end
   EnergyGuard energy_guard;
+  double springing_back = 0;  // s, to come
   Buzz buzz;
   Tangles tangles;
   RestCheck rest_check;
@@ -277,10 +279,10 @@ bool bodyHasGone(const SimParams& params, const Colliders& colliders, const Hair
 }
 
 // No vertex goes to and fro for ever, no step makes energy out of nothing, and no hair stays turned over.
-// `let_go`: bodies that held the hair have gone, and it springs back further than the forces stay linear over.
-void keepWithinBounds(const TakenStep& taken, bool let_go, Parts& parts, HairState& state, StepReport& report) {
+// Let go by bodies that have gone, it springs back further than the forces stay linear over.
+void keepWithinBounds(const TakenStep& taken, Parts& parts, HairState& state, StepReport& report) {
   relaxBuzz(taken.mesh, taken.positions, parts.buzz, state);
-  limitEnergy(taken, report.converged && !let_go, parts.energy_guard, state);
+  limitEnergy(taken, report.converged && parts.springing_back <= 0, parts.energy_guard, state);
   // Loose particles have no shape to be led back to.
   if (taken.params.volume <= 0) return;
   // In a storm the rest shape is not where hair belongs: combed towards it, it would be thrown about for ever.
@@ -358,6 +360,7 @@ StepReport advance(const HairMesh& mesh, const SimParams& asked, const StepInput
   parts.start_velocities = state.velocities;
   const Colliders colliders = collidersOf(params, input);
   const bool let_go = bodyHasGone(params, colliders, state);
+  parts.springing_back = let_go ? kSpringBack : std::max(0.0, parts.springing_back - dt);
   carryContacts(colliders, params, dt, state);
   const StepBase base = integratorBase(params, input, dt, state, parts);
   rootsFollowScalp(input, base, mesh, state);
@@ -367,7 +370,7 @@ StepReport advance(const HairMesh& mesh, const SimParams& asked, const StepInput
   integratePositions(input, base, dt, mesh, parts, state);
   const bool bounded = params.solver != Solver::kPaper || !parts.as_published;
   const TakenStep taken = takenStep(params, base, dt, parts);
-  if (bounded) keepWithinBounds(taken, let_go, parts, state, report);
+  if (bounded) keepWithinBounds(taken, parts, state, report);
   guardMade(parts, input, state, report);
   parts.clock.spent(kStageOther, report);
 

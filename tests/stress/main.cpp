@@ -39,12 +39,10 @@ bool chosen(const StressCase& one, std::size_t index, const Options& options) {
 void tellFault(const Result& result, const Options& options) {
   const stress::WindowCommand window = stress::windowCommand(result.one);
   const char* kind = result.one.compared                          ? "compared "
-                     : result.one.known_failure                   ? "known    "
                      : result.outcome.verdict == Verdict::kFailed ? "FAILED   "
                                                                   : "rounding ";
   std::cout << kind << result.one.name << "\n  at " << result.outcome.at << " s: " << result.outcome.fault << "\n  "
             << stress::replayCommand(result.one.name, options.seed, options.sets) << "\n  " << window.command << "\n";
-  if (result.one.known_failure) std::cout << "  (" << result.one.known_failure << ")\n";
   if (!window.note.empty()) std::cout << "  (" << window.note << ")\n";
 }
 
@@ -71,15 +69,9 @@ void applySets(const std::vector<std::string>& sets, std::vector<StressCase>& ca
 
 struct Count {
   long passed = 0, failed = 0, skipped = 0;
-  long by_rounding = 0;              // of those passed: by two roundings of three
-  long expected = 0, recovered = 0;  // known failures that fell short, and that did not
+  long by_rounding = 0;  // of those passed: by two roundings of three
   void add(const Result& result) {
     if (result.one.compared) return;
-    if (result.one.known_failure) {
-      expected += result.outcome.verdict == Verdict::kFailed;
-      recovered += result.outcome.verdict == Verdict::kPassed;
-      return;
-    }
     passed += result.outcome.verdict == Verdict::kPassed;
     by_rounding += result.outcome.verdict == Verdict::kPassed && !result.outcome.fault.empty();
     failed += result.outcome.verdict == Verdict::kFailed;
@@ -142,8 +134,6 @@ int run(const Options& options) {
   Count count;
   for (const Result& result : results) count.add(result);
   if (count.skipped > 0) std::cout << count.skipped << " skipped: their clips are not here\n";
-  if (count.expected + count.recovered > 0)
-    std::cout << "known failures: " << count.expected << " fell short, " << count.recovered << " passed this time\n";
   if (count.by_rounding > 0) std::cout << count.by_rounding << " of those passed fell short by one rounding of three\n";
   std::cout << count.passed << " passed, " << count.failed << " failed" << std::endl;
   return count.failed > 0 ? app::kExitFault : app::kExitFine;

@@ -22,7 +22,7 @@ constexpr double kShortestStep = 1e-3, kLongestStep = 0.5;  // s, of random pace
 constexpr double kFaultEvery = 0.1;                         // s
 constexpr double kIntruderThere = 0.3;                      // s, when a body that appears has done so
 constexpr double kAtRest = 5e-3;                            // m/s, of a twin that needs no more time
-constexpr double kRested = 2;                               // s at rest elsewhere, before that counts
+constexpr double kRested = 1;                               // s at rest elsewhere, before that counts
 constexpr double kSoon = 0.1;                               // s, over which velocities are extrapolated
 constexpr double kUnrest = 3;                               // times the stated time, that its twin may take to rest
 constexpr double kWindow = 2, kHurry = 5;                   // s, and times its pace: see Pace of return

@@ -1,7 +1,6 @@
 #include "tests/stress/stress_case.h"
 
 #include "sim/field_text.h"
-#include "tests/stress/known_failures.h"
 #include "tests/stress/matrix.h"
 #include "tests/stress/stage.h"
 
@@ -25,7 +24,6 @@ std::vector<StressCase> declareCases(std::uint64_t seed) {
   addRandomParameters(seed, cases);
   addMixed(seed, cases);
   addSoak(cases);
-  for (StressCase& one : cases) one.known_failure = knownFailure(one.name, seed);
   return cases;
 }
 

@@ -91,7 +91,6 @@ struct StressCase {
   bool compared = false;                // a peer's setting, shown beside ours and not counted
   bool keeps_energy = true;             // judged by its energy too: not where the numerics are turned to their coarsest
   bool in_short = false;                // runs with --short
-  const char* known_failure = nullptr;  // why it falls short today: run and named, not counted (known_failures.h)
   bool soak = false;                    // memory and timing must stay flat
 
   std::string family() const { return name.substr(0, name.find('/')); }
@@ -110,9 +109,9 @@ struct WindowCommand {
 };
 WindowCommand windowCommand(const StressCase& one);
 
-// Whether a case's outcome decides over the run's: those of a peer and known failures are shown beside.
+// Whether a case's outcome decides over the run's: those of a peer are shown beside.
 inline bool counts(const StressCase& one) {
-  return !one.compared && !one.known_failure;
+  return !one.compared;
 }
 
 }  // namespace stress
