@@ -7,6 +7,10 @@
 // The term in v - u holds the inertia forces of any motion of the roots, exactly. A step that ends above is taken back
 // towards x_c until its potential energy fits, then slowed until the sum does: the hair is carried along more rigidly
 // instead of being stretched beyond measure.
+//
+// A gentle step of hair as styles have it is near to linear, and not looked at. Never near to linear is hair that hangs
+// folded because its load strains its walls by more than their length, or that is so much stiffer one way than another
+// that it buckles.
 #pragma once
 
 #include <span>

@@ -60,6 +60,8 @@ void addSteps(Cases& cases) {
         one.play = Play::kForward;
         one.step = step;
         one.in_short = hair.style != sim::Style::kShoulder && clipName(clip) == "dance";
+        // Left bent over a shoulder: when the body is taken away, it springs back for many steps.
+        one.in_short |= hair.style == sim::Style::kLong && clipName(clip) == "jump_spin" && step == 1.0 / 120;
         cases.push_back(one);
       }
     }
