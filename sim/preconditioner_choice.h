@@ -15,7 +15,7 @@ inline constexpr int kMostFactored = 2000;
 // Decides by counted work, in products with the matrix, so that the same inputs always decide alike. The other is
 // tried now and then where a solve costs more than a little, for not much more than what the one in use takes.
 struct PreconditionerChoice {
-  static constexpr double kLittle = 40;  // the cheap one would hardly take less
+  static constexpr double kLittle = 15;  // the cheap one would hardly take less
   static constexpr double kOverrun = 1.5, kOutburst = 2;
   static constexpr double kGain = 0.75;                    // of the cost, for which the cheap one comes into use
   static constexpr double kMemory = 0.8;                   // of earlier solves in the mean

@@ -451,7 +451,7 @@ TEST(PreconditionerChoice, IsNeverMuchDearerThanTheBetterOfTheTwo) {
 
 TEST(PreconditionerChoice, FollowsTheMotionAndTriesNothingWhereSolvesAreCheap) {
   sim::PreconditionerChoice choice;
-  EXPECT_EQ(costOfSolves(choice, 100, 20, 10), 2000) << "the factor serves, and nothing else is tried";
+  EXPECT_EQ(costOfSolves(choice, 100, 10, 5), 1000) << "the factor serves, and nothing else is tried";
   costOfSolves(choice, 100, 500, 50);
   EXPECT_TRUE(choice.cheap);
   costOfSolves(choice, 200, 20, 50);
