@@ -76,9 +76,14 @@ int letFollow(PositionCorrection& scratch, HairState& state) {
   return work;
 }
 
+// As if the vertex had come here at its present velocity.
+void restartHistory(const CorrectedStep& step, std::size_t i, HairState& state) {
+  state.previous_positions[i] = state.positions[i] - step.dt * state.velocities[i];
+  state.previous_velocities[i] = state.velocities[i];
+}
+
 // Vertices that followed take the velocity of their displacement, no more than the corrections' own: an overlap that
-// stood before must not become a kick. The two-step history of all that moved restarts, as if they had come here at
-// their present velocity.
+// stood before must not become a kick. The two-step history of all that moved restarts.
 void updateVelocities(const CorrectedStep& step, double most, const PositionCorrection& scratch, HairState& state) {
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
     if (step.mesh.isRoot(static_cast<int>(i))) continue;
@@ -86,8 +91,7 @@ void updateVelocities(const CorrectedStep& step, double most, const PositionCorr
     const double speed = moved.norm() / step.dt;
     if (speed <= 0) continue;
     if (!scratch.held[i]) state.velocities[i] += moved * (std::min(speed, most) / (speed * step.dt));
-    state.previous_positions[i] = state.positions[i] - step.dt * state.velocities[i];
-    state.previous_velocities[i] = state.velocities[i];
+    restartHistory(step, i, state);
   }
 }
 
@@ -160,6 +164,20 @@ void followPushed(const CorrectedStep& step, std::span<const Vec3> unmoved, std:
     scratch.displacement[i] = moved[i] ? Vec3(state.positions[i] - unmoved[i]) : Vec3::Zero();
   letFollow(scratch, state);
   updateVelocities(step, kFastestFollower, scratch, state);
+}
+
+void slowPushed(const CorrectedStep& step, std::span<const Vec3> unpushed, HairState& state) {
+  for (int c = 0; c < step.mesh.columnCount(); ++c) {
+    const int root = step.mesh.shape.column_first[c];
+    const Vec3 carried = state.positions[root] - step.start[root], carrying = state.velocities[root];
+    for (int i = root + 1; i < step.mesh.shape.column_first[c + 1]; ++i) {
+      if (state.positions[i] == unpushed[i]) continue;
+      const Vec3 way = (state.positions[i] - step.start[i] - carried) / step.dt;
+      if (way.squaredNorm() >= (state.velocities[i] - carrying).squaredNorm()) continue;
+      state.velocities[i] = carrying + way;
+      restartHistory(step, i, state);
+    }
+  }
 }
 
 }  // namespace sim

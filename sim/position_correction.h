@@ -46,4 +46,9 @@ void correctPositions(const CorrectedStep& step, StageClock& clock, PositionCorr
 void followPushed(const CorrectedStep& step, std::span<const Vec3> unmoved, std::span<const unsigned char> moved,
                   PositionCorrection& scratch, HairState& state);
 
+// Who was pushed back to where it came from has no speed, whatever the solve had given it for its way in: seen from the
+// root, a vertex that is not where it was unpushed (m) is no faster than its way from start to end. Hair that wind or
+// gravity presses into itself would keep a velocity for ever that takes it nowhere.
+void slowPushed(const CorrectedStep& step, std::span<const Vec3> unpushed, HairState& state);
+
 }  // namespace sim

@@ -240,23 +240,8 @@ StepInput carryOverJump(const SimParams& params, const StepInput& input, double 
   return {input.roots, parts.standing, input.time, parts.standing_parts};
 }
 
-// Who was pushed back to where it came from has no speed, whatever the solve had given it for its way in: seen from the
-// root, a pushed vertex is no faster than its way from start to end. Hair that wind or gravity presses into itself would
-// keep a velocity for ever that takes it nowhere.
-void slowPushed(const CorrectedStep& step, std::span<const Vec3> unpushed, HairState& state) {
-  for (int c = 0; c < step.mesh.columnCount(); ++c) {
-    const int root = step.mesh.shape.column_first[c];
-    const Vec3 carried = state.positions[root] - step.start[root], carrying = state.velocities[root];
-    for (int i = root + 1; i < step.mesh.shape.column_first[c + 1]; ++i) {
-      if (state.positions[i] == unpushed[i]) continue;
-      const Vec3 way = (state.positions[i] - step.start[i] - carried) / step.dt;
-      if (way.squaredNorm() < (state.velocities[i] - carrying).squaredNorm()) state.velocities[i] = carrying + way;
-    }
-  }
-}
-
 // Bundles that met are pushed apart, the rest of the hair follows, and who is in a foreign bundle then is pushed again.
-// Taken: null where energy need not pay for it.
+// taken: null where energy need not pay for it.
 void partBundles(const CorrectedStep& step, const TakenStep* taken, Parts& parts, HairState& state,
                  StepReport& report) {
   if (!parts.self_contact) parts.self_contact.emplace(step.mesh);

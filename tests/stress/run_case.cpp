@@ -275,17 +275,13 @@ double fastest(const Hair& hair) {
   return most;
 }
 
-// m/s^2: what gravity and wind together pull, or weight alone where that is more.
-double pullOn(const Run& run) {
-  const sim::Vec3 pull = run.params.air_drag * windOf(run) - sim::Vec3(0, run.params.gravity, 0);
-  return std::max(9.81, pull.norm());
-}
-
-// Pull times length (J): the scale of the energies that hair of this kind has at all.
+// Weight times length (J), or what gravity and wind together pull where that is more: the scale of the energies that
+// hair of this kind has at all.
 double weightOf(const Run& run) {
   double volume = 0;
   for (const double share : run.hair.mesh.vertex_volume) volume += share;
-  return pullOn(run) * run.params.density * volume * run.hair.mesh.hair_length;
+  const sim::Vec3 pull = run.params.air_drag * windOf(run) - sim::Vec3(0, run.params.gravity, 0);
+  return std::max(9.81, pull.norm()) * run.params.density * volume * run.hair.mesh.hair_length;
 }
 
 // What the motion left (J), in all and above the rest shape's, and the energy of the last step.
