@@ -22,6 +22,7 @@ namespace {
 constexpr int kBalanceSlices = 40;  // steps over which the balance of gravity is solved for anew
 constexpr double kAtOnce = 1e6;     // m/s
 constexpr double kStorm = 5;        // m/s^2 that wind presses hair with
+constexpr int kTwinIterations = 300;
 constexpr double kSpringBack = 0.5;  // s, that hair takes to when the bodies that held it have gone
 
 // The parameters that stiffnesses and rest shifts depend on.
@@ -304,10 +305,13 @@ double energyOf(const SimParams& params, const Vec3& wind, const HairState& stat
 }
 
 // Hair that hangs still in another shape than its own is led home.
-void checkRest(const SimParams& params, const StepInput& input, double dt, Parts& parts, const HairState& state,
+void checkRest(const SimParams& asked, const StepInput& input, double dt, Parts& parts, const HairState& state,
                StepReport& report) {
   const HairMesh& mesh = *parts.mesh;
   RestCheck& check = parts.rest_check;
+  SimParams params = asked;
+  // Led by solves that end early the twin might hang wherever they leave it.
+  params.max_iterations = std::max(params.max_iterations, kTwinIterations);
   const Vec3 pull = params.air_drag * windAt(params, input.time) - Vec3(0, params.gravity, 0);
   if (!watchRest(mesh, state, pull.norm(), dt, parts.tangles, check)) return;
   HairState& twin = check.twin;

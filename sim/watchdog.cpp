@@ -11,8 +11,10 @@ namespace {
 
 constexpr double kFastest = 500;        // m/s against the root; beyond it a velocity is absurd
 constexpr double kFastestPushed = 100;  // m/s against the root
-constexpr double kLengths = 4;          // hair lengths and
-constexpr double kFarther = 1;          // m from the root: beyond both together a position is absurd
+// Beyond both together a position is absurd: no hand or foot that hair could be dragged along by is two metres from the
+// head. (A backflip at twenty times its speed takes short hair a metre and a half.)
+constexpr double kLengths = 4;  // hair lengths from the root
+constexpr double kFarther = 2;  // m
 constexpr double kKeptVelocity = 0.5;
 
 const char* ailmentName(Ailment ailment) {
