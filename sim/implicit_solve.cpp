@@ -290,7 +290,9 @@ double ImplicitSolver<T>::beginSolve(const SimParams& params) {
   setResidual();
   scratch.deflation = {};
   if (!looksBack(params)) return 0;
-  const double gained = guess.improve(ColumnOperator<T>{matrix, product}, filter, v, scratch.r);
+  const ColumnOperator<T> a{matrix, product};
+  if (unfinished) guess.shorten(a, filter, v, scratch.r);
+  const double gained = guess.improve(a, filter, v, scratch.r);
   scratch.deflation = guess.deflation();
   // Only near to the inverse is a preconditioner's norm of the residual the energy norm of the error.
   const Solver kind = preconditioner.kind();
@@ -407,6 +409,7 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
     layer_age.forget();
   }
   if (warped) choice.end(run.plan, run.cost, run.overrun);
+  unfinished = !run.total.converged;
   return run.total;
 }
 

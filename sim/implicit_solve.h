@@ -43,6 +43,7 @@ struct ImplicitSolver {
   Filter<T> filter;
   SolverScratch<T> scratch;
   InitialGuess<T> guess;
+  bool unfinished = false;  // the last linear solve
   std::vector<V3<T>> x, v, trial, force, rhs, velocity_step;
   std::vector<T> mass, inverse_mass_dt;
   double hair_mass = 0;  // kg

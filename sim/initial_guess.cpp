@@ -50,6 +50,19 @@ double InitialGuess<T>::improve(const Product& a, const Filter<T>& filter, std::
   return gained;
 }
 
+template <class T>
+void InitialGuess<T>::shorten(const Product& a, const Filter<T>& filter, std::span<V3<T>> x, std::span<V3<T>> r) {
+  const std::span<V3<T>> d(directions_[0]), q(products_[0]);
+  std::copy(x.begin(), x.end(), d.begin());
+  filter.apply(d);
+  a(d, q);
+  const double energy = innerProduct<T>(d, q);
+  if (!(energy > 0)) return;
+  const T step = static_cast<T>(innerProduct<T>(d, r) / energy);
+  addScaled<T>(step, d, x);
+  addScaled<T>(-step, q, r);
+}
+
 template struct InitialGuess<float>;
 template struct InitialGuess<double>;
 

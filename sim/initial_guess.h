@@ -36,6 +36,10 @@ struct InitialGuess {
   // of deflation(). Returns by how much (J) the squared energy norm of the error has become less. Allocates nothing,
   // if the making of the product does not.
   double improve(const Product& a, const Filter<T>& filter, std::span<V3<T>> x, std::span<V3<T>> r);
+  // The same along x itself, within its free directions. What an unfinished solve leaves in a velocity, stiff hair
+  // answers with forces many times as large; begun from a velocity farther off than none at all, the next one ends
+  // with as much of it, and the hair trembles for ever.
+  void shorten(const Product& a, const Filter<T>& filter, std::span<V3<T>> x, std::span<V3<T>> r);
   // What it looked along: for the solve, which finds the answer in fewer iterations when it goes on looking there.
   // Valid until the next call.
   std::span<const Deflated<T>> deflation() const { return {deflated_.data(), static_cast<std::size_t>(used_)}; }

@@ -27,6 +27,9 @@ struct Start {
     x = test::plain<double>(problem.guess);
     const Eigen::VectorXd e = wanted - stackedPoints(problem.guess);
     for (std::size_t i = 0; i < x.size(); ++i) error.push_back(e.segment<3>(3 * i));
+    setResidual();
+  }
+  void setResidual() {
     r.resize(x.size());
     sim::multiply<double>(matrix, x, r);
     const auto b = test::plain<double>(problem.rhs);
@@ -36,6 +39,7 @@ struct Start {
     guess.record([&](std::size_t i) { return V3<double>{change[i].x(), change[i].y(), change[i].z()}; });
   }
   double improve() { return guess.improve(sim::BlockOperator<double>{matrix}, filterOf<double>(problem), x, r); }
+  void shorten() { guess.shorten(sim::BlockOperator<double>{matrix}, filterOf<double>(problem), x, r); }
   double distance() const { return energyNorm(dense, test::stacked<double>(x) - wanted); }
 };
 
@@ -77,6 +81,24 @@ TEST(InitialGuess, IsNeverFartherKeepsConstraintsAndTheResidual) {
     EXPECT_LT((residual - test::eigen(start.r[i])).norm(), 1e-12);
     const Eigen::Matrix3d removed = Eigen::Matrix3d::Identity() - start.problem.keep[i];
     EXPECT_LT((removed * (test::eigen(start.x[i]) - start.problem.guess[i])).norm(), 1e-12) << "vertex " << i;
+  }
+}
+
+TEST(InitialGuess, AStartFartherOffThanNoneIsShortened) {
+  for (const int removed : {0, 2}) {
+    for (const double times : {-1.0, 0.1, 30.0}) {
+      Start start(removed);
+      const Eigen::VectorXd x = test::stacked<double>(start.x), free = filterMatrix(start.problem.keep) * x;
+      const Eigen::VectorXd none = x - free, far_off = none + times * free;
+      for (std::size_t i = 0; i < start.x.size(); ++i)
+        start.x[i] = {far_off[3 * i], far_off[3 * i + 1], far_off[3 * i + 2]};
+      start.setResidual();
+      const double far = start.distance();
+      start.shorten();
+      // Between where it was and none there lies the least.
+      EXPECT_LT(start.distance(), far * (1 - 1e-3));
+      EXPECT_LE(start.distance(), energyNorm(start.dense, none - start.wanted) * (1 + 1e-12));
+    }
   }
 }
 
