@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "sim/block_cholesky.h"
+#include "sim/dense_kernels.h"
 
 namespace sim {
 namespace {
@@ -85,7 +86,11 @@ bool BlockCholesky<T>::factorDiagonal(double& spent) {
   if (rest > 0) {
     auto below = front.block(j + b, j, rest, b);
     own.template triangularView<Eigen::Lower>().transpose().template solveInPlace<Eigen::OnTheRight>(below);
-    front.block(j + b, j + b, rest, rest).template selfadjointView<Eigen::Lower>().rankUpdate(below, T(-1));
+    for (int k = 0; k < rest; k += kColumns) {
+      const int first = j + b + k;
+      addProduct(T(-1), &front(first, j), size, transposed(&front(first, j), size), rest - k,
+                 std::min(kColumns, rest - k), b, &front(first, first), size);
+    }
   }
   spent += product(b, b, b) / 6 + product(rest, b, b) / 2 + product(rest, rest, b) / 2;
   at_.column += b;
@@ -96,12 +101,17 @@ template <class T>
 bool BlockCholesky<T>::invertDiagonal(double& spent) {
   const Supernode& s = supernodes[at_.supernode];
   const int w = s.width(), size = w + s.height(), j = at_.column, b = std::min(kColumns, w - j);
-  const auto front = panel(front_.data(), size, size);
+  auto front = panel(front_.data(), size, size);
   auto inverse = panel(values.data() + s.values, w, w);
   inverse.middleCols(j, b).setZero();
   inverse.block(j, j, b, b).setIdentity();
-  auto columns = inverse.block(j, j, w - j, b);
-  front.block(j, j, w - j, w - j).template triangularView<Eigen::Lower>().solveInPlace(columns);
+  // Forward substitution, some rows at a time: what is known of the columns comes off them first.
+  for (int i = j; i < w; i += kColumns) {
+    const int rows = std::min(kColumns, w - i);
+    auto at = inverse.block(i, j, rows, b);
+    if (i > j) addProduct(T(-1), &front(i, j), size, plain(&inverse(j, j), w), rows, b, i - j, at.data(), w);
+    front.block(i, i, rows, rows).template triangularView<Eigen::Lower>().solveInPlace(at);
+  }
   spent += product(w - j, w - j, b) / 2;
   at_.column += b;
   return true;
@@ -111,11 +121,12 @@ template <class T>
 bool BlockCholesky<T>::computeRows(double& spent) {
   const Supernode& s = supernodes[at_.supernode];
   const int w = s.width(), h = s.height(), size = w + h, j = at_.column, b = std::min(kColumns, w - j);
-  const auto front = panel(front_.data(), size, size);
-  const auto inverse = panel(values.data() + s.values, w, w);
+  auto front = panel(front_.data(), size, size);
+  auto inverse = panel(values.data() + s.values, w, w);
   auto rows = panel(values.data() + s.values + static_cast<std::size_t>(w) * w, h, w);
+  rows.middleCols(j, b).setZero();
   // Row k of the inverse ends at column k.
-  rows.middleCols(j, b).noalias() = front.block(w, 0, h, j + b) * inverse.block(j, 0, b, j + b).transpose();
+  addProduct(T(1), &front(w, 0), size, transposed(&inverse(j, 0), w), h, b, j + b, &rows(0, j), h);
   spent += product(h, j + b, b);
   at_.column += b;
   return true;
@@ -126,10 +137,10 @@ bool BlockCholesky<T>::computeUpdate(double& spent) {
   const Supernode& s = supernodes[at_.supernode];
   const int w = s.width(), h = s.height(), size = w + h, j = at_.column, b = std::min(kColumns, h - j);
   const auto front = panel(front_.data(), size, size);
-  const auto rows = panel(values.data() + s.values + static_cast<std::size_t>(w) * w, h, w);
+  auto rows = panel(values.data() + s.values + static_cast<std::size_t>(w) * w, h, w);
   auto update = panel(stack_.data() + stack_size_, h, h).block(j, j, h - j, b);
   update = front.block(w + j, w + j, h - j, b);
-  update.noalias() -= rows.middleRows(j, h - j) * rows.middleRows(j, b).transpose();
+  addProduct(T(-1), &rows(j, 0), h, transposed(&rows(j, 0), h), h - j, b, w, update.data(), h);
   spent += product(h - j, b, w);
   at_.column += b;
   if (at_.column == h) {
