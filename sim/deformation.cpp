@@ -1,6 +1,7 @@
 // u: displacement, r: residual -A^T A u at free vertices, z: r over the degree, d: search direction, q = A^T A d.
 #include "sim/deformation.h"
 
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cassert>
 #include <set>
@@ -29,6 +30,32 @@ double innerProduct(std::span<const Vec3> a, std::span<const Vec3> b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
   return sum;
+}
+
+// What a backward substitution reads, and the four right-hand sides a row that it overwrites.
+struct Triangle {
+  std::span<const int> first, row;
+  std::span<const double> below;
+  double* x;
+};
+// Several sums, for each waits for its last addition.
+HAIRMESH_INLINE void substituteBackward(const Triangle& t) {
+  using Row = Lanes<double, 4>;
+  const int* row = t.row.data();
+  const double* below = t.below.data();
+  const auto term = [&](int k) { return below[k] * load<double, 4>(t.x + 4 * static_cast<std::size_t>(row[k])); };
+  for (int j = static_cast<int>(t.first.size()) - 2; j >= 0; --j) {
+    Row a{}, b{}, c{}, d{};
+    int k = t.first[j];
+    const int end = t.first[j + 1];
+    for (; k + 4 <= end; k += 4) a += term(k), b += term(k + 1), c += term(k + 2), d += term(k + 3);
+    for (; k < end; ++k) a += term(k);
+    double* const x = t.x + 4 * static_cast<std::size_t>(j);
+    store<double, 4>(x, load<double, 4>(x) - ((a + b) + (c + d)));
+  }
+}
+HAIRMESH_CLONES void backward(const Triangle& t) {
+  substituteBackward(t);
 }
 
 }  // namespace
@@ -114,19 +141,63 @@ void DeformationMinimizer::factor() {
   }
   Eigen::SparseMatrix<double> matrix(free, free);
   matrix.setFromTriplets(entries.begin(), entries.end());
-  factor_.compute(matrix);
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
   for (int v = 0; v < size; ++v) {
-    if (!root_[v]) row_[v] = factor_.permutationP().indices()[number[v]];
+    if (!root_[v]) row_[v] = factor.permutationP().indices()[number[v]];
+  }
+  const Eigen::SparseMatrix<double> lower = factor.matrixL();
+  inverse_d_.resize(free);
+  std::vector<int> height(free, 1);
+  int highest = 0;
+  for (int j = 0; j < free; ++j) {
+    inverse_d_[j] = 1 / factor.vectorD()[j];
+    first_.push_back(static_cast<int>(row_of_.size()));
+    for (Eigen::SparseMatrix<double>::InnerIterator at(lower, j); at; ++at) {
+      if (at.row() > j) row_of_.push_back(static_cast<int>(at.row())), below_.push_back(at.value());
+    }
+    assert(std::is_sorted(row_of_.begin() + first_[j], row_of_.end()));
+  }
+  first_.push_back(static_cast<int>(row_of_.size()));
+  for (int j = free - 1; j >= 0; --j) {
+    if (first_[j] < first_[j + 1]) height[j] = height[row_of_[first_[j]]] + 1;
+    highest = std::max(highest, height[j]);
   }
   kept_.resize(kMostHeld);
+  for (Kept& kept : kept_) kept.path.reserve(highest), kept.half.reserve(highest);
   held_.reserve(size);
-  answers_.resize(free, kMostHeld);
+  products_.resize(kMostHeld, kMostHeld);
   gram_.resize(kMostHeld, kMostHeld);
   pulls_.resize(kMostHeld, 3);
-  moved_.resize(free, 3);
+  work_.resize(free);
+  moved_.resize(4 * static_cast<std::size_t>(free));
 }
 
-int DeformationMinimizer::findAnswers() {
+void DeformationMinimizer::computePath(Kept& kept) {
+  kept.path.clear();
+  kept.half.clear();
+  int j = row_[kept.vertex];
+  work_[j] = 1;
+  for (;;) {
+    const double value = work_[j];
+    work_[j] = 0;
+    kept.path.push_back(j);
+    kept.half.push_back(value);
+    const int first = first_[j], end = first_[j + 1];
+    if (first == end) return;
+    for (int k = first; k < end; ++k) work_[row_of_[k]] -= below_[k] * value;
+    j = row_of_[first];
+  }
+}
+
+// Two paths to one top are the same from where they meet.
+double DeformationMinimizer::productOf(const Kept& a, const Kept& b) const {
+  double sum = 0;
+  for (std::size_t i = a.path.size(), k = b.path.size(); i-- > 0 && k-- > 0 && a.path[i] == b.path[k];)
+    sum += a.half[i] * b.half[k] * inverse_d_[a.path[i]];
+  return sum;
+}
+
+int DeformationMinimizer::findPaths() {
   ++now_;
   for (const int v : held_) {
     if (slot_[v] >= 0) kept_[slot_[v]].used = now_;
@@ -137,14 +208,12 @@ int DeformationMinimizer::findAnswers() {
     const auto oldest =
         std::min_element(kept_.begin(), kept_.end(), [](const Kept& a, const Kept& b) { return a.used < b.used; });
     if (oldest->vertex >= 0) slot_[oldest->vertex] = -1;
-    *oldest = {v, now_};
-    slot_[v] = static_cast<int>(oldest - kept_.begin());
-    auto answer = answers_.col(slot_[v]);
-    answer.setZero();
-    answer[row_[v]] = 1;
-    factor_.matrixL().solveInPlace(answer);
-    answer.array() /= factor_.vectorD().array();
-    factor_.matrixU().solveInPlace(answer);
+    oldest->vertex = v, oldest->used = now_;
+    const int slot = slot_[v] = static_cast<int>(oldest - kept_.begin());
+    computePath(*oldest);
+    for (int other = 0; other < kMostHeld; ++other) {
+      if (kept_[other].vertex >= 0) products_(slot, other) = products_(other, slot) = productOf(*oldest, kept_[other]);
+    }
     ++computed;
   }
   return computed;
@@ -163,9 +232,9 @@ int DeformationMinimizer::minimize(std::span<const unsigned char> held, double t
   }
   const auto count = static_cast<Eigen::Index>(held_.size());
   if (!moved || count > kMostHeld) return minimizeDeformation(laplacian_, held, tolerance, scratch_, displacement);
-  const int computed = findAnswers();
+  const int computed = findPaths();
   for (Eigen::Index k = 0; k < count; ++k) {
-    for (Eigen::Index l = 0; l <= k; ++l) gram_(k, l) = answers_(row_[held_[k]], slot_[held_[l]]);
+    for (Eigen::Index l = 0; l <= k; ++l) gram_(k, l) = products_(slot_[held_[k]], slot_[held_[l]]);
     pulls_.row(k) = displacement[held_[k]];
   }
   auto gram = gram_.topLeftCorner(count, count);
@@ -173,12 +242,17 @@ int DeformationMinimizer::minimize(std::span<const unsigned char> held, double t
   if (!factorLowerInPlace(gram)) return minimizeDeformation(laplacian_, held, tolerance, scratch_, displacement);
   gram.triangularView<Eigen::Lower>().solveInPlace(pulls);
   gram.triangularView<Eigen::Lower>().transpose().solveInPlace(pulls);
-  moved_.setZero();
+  std::fill(moved_.begin(), moved_.end(), 0);
   for (Eigen::Index k = 0; k < count; ++k) {
-    for (int c = 0; c < 3; ++c) moved_.col(c) += pulls(k, c) * answers_.col(slot_[held_[k]]);
+    const Kept& kept = kept_[slot_[held_[k]]];
+    for (std::size_t i = 0; i < kept.path.size(); ++i) {
+      const double half = kept.half[i] * inverse_d_[kept.path[i]];
+      for (int c = 0; c < 3; ++c) moved_[4 * kept.path[i] + c] += pulls(k, c) * half;
+    }
   }
+  backward({first_, row_of_, below_, moved_.data()});
   for (int v = 0; v < size; ++v) {
-    if (!held[v]) displacement[v] = moved_.row(row_[v]);
+    if (!held[v]) displacement[v] = Vec3::Map(&moved_[4 * row_[v]]);
   }
   return computed + 1;
 }

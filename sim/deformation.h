@@ -7,11 +7,12 @@
 // is the edge connection matrix: constant, so made once.
 #pragma once
 
-#include <Eigen/SparseCholesky>
+#include <Eigen/Dense>
 #include <span>
 #include <vector>
 
 #include "sim/hair_mesh.h"
+#include "sim/lanes.h"
 
 namespace sim {
 
@@ -34,16 +35,18 @@ struct MinimizationScratch {
 int minimizeDeformation(const EdgeLaplacian& laplacian, std::span<const unsigned char> held, double tolerance,
                         MinimizationScratch& scratch, std::span<Vec3> displacement);
 
-// The same for a few held vertices, exactly and at the price of these: the matrix, only its roots held, is factored
-// once; its answers to a pull at each held vertex are kept from step to step, and a small dense system tells how hard
-// each must be pulled to go where it is to. Beyond kMostHeld vertices the iterations above serve, to `tolerance`.
+// The same for some held vertices, exactly and at the price of one backward substitution: the matrix, only its roots
+// held, is factored once, A^T A = L D L^T. What a pull at a vertex makes of the forward half, L^-1 e, lies on its path
+// through the elimination tree (Gilbert and Peierls 1988) and is kept from step to step, as are the products of two
+// such, which tell how far one pull moves the other's vertex. A small dense system of these says how hard each held
+// vertex must be pulled to go where it is to. Beyond kMostHeld vertices the iterations above serve, to `tolerance`.
 class DeformationMinimizer {
  public:
-  static constexpr int kMostHeld = 48;  // answers kept: 0.8 MB at 2,249 vertices
+  static constexpr int kMostHeld = 96;  // paths kept: 0.8 MB at 10,241 vertices
 
   explicit DeformationMinimizer(const HairMesh& mesh);  // factors the matrix
 
-  // As minimizeDeformation; roots must be held, and stay. Returns the iterations or, of the exact way, the answers
+  // As minimizeDeformation; roots must be held, and stay. Returns the iterations or, of the exact way, the paths
   // computed anew plus one; zero with no work done. Allocates nothing.
   int minimize(std::span<const unsigned char> held, double tolerance, std::span<Vec3> displacement);
 
@@ -51,22 +54,30 @@ class DeformationMinimizer {
   EdgeLaplacian laplacian_;
   MinimizationScratch scratch_;
   std::vector<unsigned char> root_;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
+  // The factor: column j of L below its diagonal is below_[first_[j]] ... in the rows row_of_, ascending, so that the
+  // first of them is its parent in the tree; and the inverse of D.
+  std::vector<int> first_, row_of_;
+  std::vector<double> below_, inverse_d_;
   std::vector<int> row_;   // per vertex, in the factor's order; -1: a root
-  std::vector<int> slot_;  // per vertex: where its answer is kept, or -1
+  std::vector<int> slot_;  // per vertex: where its path is kept, or -1
   struct Kept {
     int vertex = -1;
     long used = 0;  // when last
+    std::vector<int> path;
+    std::vector<double> half;  // L^-1 e along it
   };
   std::vector<Kept> kept_;
   long now_ = 0;
-  Eigen::MatrixXd answers_;       // a column a slot
+  Eigen::MatrixXd products_;      // of two slots: e^T A^-1 e
   Eigen::MatrixXd gram_, pulls_;  // of the held vertices
-  Eigen::MatrixXd moved_;         // a row a vertex, in the factor's order
+  std::vector<double> work_;      // per row, zero between calls
+  LineVector<double> moved_;      // four a row: x, y, z and none
   std::vector<int> held_;         // vertices
 
   void factor();
-  int findAnswers();  // of held_; the number that were computed
+  int findPaths();  // of held_; the number that were computed
+  void computePath(Kept& kept);
+  double productOf(const Kept& a, const Kept& b) const;
 };
 
 }  // namespace sim
