@@ -49,7 +49,9 @@ constexpr std::array<Skip, kSkipCount> kTable{{
      "Hairs, bundles of hair and bodies outside the camera's view are not drawn.",
      "tests/skips_draw_test.cpp: SkipsDraw.ExactSkipsChangeNoByte"},
     {kSkipShadowView, "shadow-view", kDrawing, "maps", true, "",
-     "Hair whose shadow cannot fall into the view gets no shadow map, and maps draw only bodies that can shade them.",
+     "Hair whose shadow cannot fall into the view gets no shadow map, and maps draw only bodies that can shade them. "
+     "(The other maps then lie elsewhere in their texture, whose filter may round otherwise: a level or two in a "
+     "pixel or two.)",
      "tests/skips_draw_test.cpp: SkipsDraw.ExactSkipsChangeNoByte"},
     {kSkipBodyParts, "body-parts", kDrawing, "triangles", true, "", "Parts of a body outside the view are not skinned.",
      "tests/skips_draw_test.cpp: SkipsDraw.ExactSkipsChangeNoByte"},

@@ -60,7 +60,7 @@ float bodyLightOnHair(int map, vec3 at) {
 // Light of the key left after the hair of a map, for a point of body or ground: averaged over a disc that widens with
 // the distance from the hair, as under a lamp of some size. The taps lie on a spiral of golden angles (Vogel 1979).
 float lightThroughHair(int map, vec3 world) {
-  const int kTaps = 8;
+  const int kTaps = 12;
   const float kLampAngle = 0.16, kLeastRadius = 0.004;  // rad, m
   // Hair shades what lies in the ball's shadow only.
   vec3 from = world - hair_shadow_ball[map].xyz;
@@ -68,14 +68,20 @@ float lightThroughHair(int map, vec3 world) {
   if (down > radius || dot(from, from) - down * down > radius * radius) return 1.0;
   vec3 at = hairShadowCoordinates(map, world);
   if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return 1.0;
-  // How far above lies the hair that may shade this point? Sought in a wide ring, nearest to the point's depth first.
-  float above = 0.0;
-  for (int i = 0; i < 5; ++i) {
-    vec2 tap = i == 4 ? vec2(0.0) : 0.03 * vec2(i < 2 ? -1.0 : 1.0, (i & 1) == 0 ? -1.0 : 1.0);
+  // How far above lies the hair that may shade this point? Sought over a wide disc: the mean of what is found, so that
+  // it does not leap from one strand to the next; hair nearer than kNear counts less and less.
+  const float kSought = 0.03, kNear = 0.01;  // m
+  float above = 0.0, found = 0.0;
+  for (int i = 0; i < 9; ++i) {
+    float turn = 2.399963 * float(i);
+    vec2 tap = kSought * sqrt(float(i) / 8.0) * vec2(cos(turn), sin(turn));
     float first = textureLod(hair_depth, hairShadowTexel(map, at.xy + tap / hair_shadow_size[map].x), 0.0).r;
-    if (first < 1.0) above = max(above, (at.z - first) * hair_shadow_size[map].z);
+    float height = (min(at.z, 1.0) - first) * hair_shadow_size[map].z, weight = clamp(height / kNear, 0.0, 1.0);
+    above += weight * height;
+    found += weight;
   }
-  if (above <= 0.0) return 1.0;
+  if (found == 0.0) return 1.0;
+  above /= found;
   float reach = (kLeastRadius + kLampAngle * 0.5 * above) / hair_shadow_size[map].x;
   float sum = 0.0;
   for (int i = 0; i < kTaps; ++i) {
@@ -83,7 +89,7 @@ float lightThroughHair(int map, vec3 world) {
     vec2 tap = sqrt((float(i) + 0.5) / float(kTaps)) * vec2(cos(turn), sin(turn));
     sum += exp(-hairOpticalDepth(map, vec3(at.xy + tap * reach, at.z)));
   }
-  return sum / float(kTaps);
+  return mix(1.0, sum / float(kTaps), min(4.0 * found, 1.0));
 }
 
 // After all hairs that may stand above the point.
