@@ -110,7 +110,8 @@ TEST_F(SkipsDraw, ExactSkipsChangeNoByte) {
     show();
   }
   for (std::size_t s = 1; s < sets.size(); ++s) {
-    // Where a map is left out the others lie elsewhere in their texture, and its filter rounds: a level or two in a pixel or two.
+    // Where a map is left out the others lie elsewhere in their texture, and its filter rounds: a level or two in a
+    // pixel or two.
     const bool moved = s == 1 || std::string_view(kExact[s - 2].name) == "shadow_view";
     for (std::size_t i = 0; i < pictures[0].size(); ++i) {
       const golden::Difference difference = golden::compare(pictures[s][i], pictures[0][i], 0);
