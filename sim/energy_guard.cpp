@@ -17,7 +17,7 @@ constexpr double kLongStep = 1.0 / 50;  // s
 constexpr double kSoftVolume = 1e4, kSoftAlong = 4e5, kSoftAcross = 6e4;
 // No step is near to linear of hair that is limp, folded as it hangs: its load strains its walls by more than this; or of
 // hair that is stiffer one way by such a ratio than another: it buckles. Along the hair every style is stiffer.
-constexpr double kLimp = 1, kUneven = 300, kUnevenAlong = 3e4;
+constexpr double kLimp = 1, kUneven = 100, kUnevenAlong = 3e4;
 constexpr int kHalvings = 12;
 constexpr double kStill = 1e-3;  // m/s of a body's surface against the roots
 
@@ -44,12 +44,13 @@ Motion judge(const TakenStep& step, const HairState& state) {
 bool neverLinear(const TakenStep& step) {
   const SimParams& params = step.params;
   const double pull = (params.air_drag * step.wind - Vec3(0, params.gravity, 0)).norm();
+  const double segment = step.mesh.vertical_edges.front().rest_length;
   double softest = INFINITY;  // of those that there are
+  double stiffest = params.bend / (segment * segment);
   for (const double modulus : {params.stretch_across, params.stretch_edge, params.shear, params.volume}) {
     if (modulus > 0) softest = std::min(softest, modulus);
+    stiffest = std::max(stiffest, modulus);
   }
-  const double segment = step.mesh.vertical_edges.front().rest_length;
-  const double stiffest = std::max(params.stretch_across, params.bend / (segment * segment));
   return params.density * pull * step.mesh.hair_length > kLimp * softest || stiffest > kUneven * softest ||
          params.stretch_along > kUnevenAlong * softest;
 }
