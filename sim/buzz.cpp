@@ -7,24 +7,30 @@ namespace sim {
 namespace {
 
 constexpr double kOpposite = 0.5;  // of the larger of both squared speeds, that their product is below, negative
+constexpr double kForced = 0.5;    // of a vertex's speed: roots that change theirs by more make it turn back
 
 }  // namespace
 
-Buzz::Buzz(const HairMesh& mesh) : last(mesh.vertexCount(), Vec3::Zero()), turns(mesh.vertexCount(), 0) {}
+Buzz::Buzz(const HairMesh& mesh)
+    : last(mesh.vertexCount(), Vec3::Zero()),
+      carrying(mesh.columnCount(), Vec3::Zero()),
+      turns(mesh.vertexCount(), 0) {}
 
 int relaxBuzz(const HairMesh& mesh, std::span<const Vec3> start, Buzz& buzz, HairState& state) {
   int held = 0;
   for (int c = 0; c < mesh.columnCount(); ++c) {
     const int root = mesh.shape.column_first[c];
     const Vec3 carrying = state.velocities[root], carried = state.positions[root] - start[root];
+    const double jolt = (carrying - buzz.carrying[c]).squaredNorm();
+    buzz.carrying[c] = carrying;
     for (int i = root + 1; i < mesh.shape.column_first[c + 1]; ++i) {
       Vec3& v = state.velocities[i];
       const Vec3 now = v - carrying;
       Vec3& before = buzz.last[i];
       unsigned char& turns = buzz.turns[i];
       const double square = now.squaredNorm();
-      const bool back =
-          square > kBuzzing * kBuzzing && now.dot(before) < -kOpposite * std::max(square, before.squaredNorm());
+      const bool back = square > kBuzzing * kBuzzing && jolt <= kForced * kForced * square &&
+                        now.dot(before) < -kOpposite * std::max(square, before.squaredNorm());
       if (back && turns < std::numeric_limits<unsigned char>::max()) ++turns;
       if (!back && turns > 0) --turns;
       before = now;

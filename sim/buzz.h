@@ -20,6 +20,7 @@ inline constexpr double kBuzzing = 1e-3;  // m/s against its root; slower to and
 
 struct Buzz {
   std::vector<Vec3> last;            // m/s against the root, of the step before
+  std::vector<Vec3> carrying;        // m/s of the columns' roots then
   std::vector<unsigned char> turns;  // steps that turned back, less those that did not
   explicit Buzz(const HairMesh& mesh);
 };

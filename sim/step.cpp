@@ -62,7 +62,7 @@ struct StepContext::Parts {
   Tangles tangles;
   RestCheck rest_check;
   PositionCorrection correction;
-  std::optional<SelfContact> self_contact;  // made when first asked for
+  std::optional<SelfContact> self_contact, twin_contact;  // made when first asked for
 
   Parts(const HairMesh& m, double (*c)())
       : mesh(&m),
@@ -243,10 +243,10 @@ StepInput carryOverJump(const SimParams& params, const StepInput& input, double 
 
 // Bundles that met are pushed apart, the rest of the hair follows, and who is in a foreign bundle then is pushed again.
 // taken: null where energy need not pay for it.
-void partBundles(const CorrectedStep& step, const TakenStep* taken, Parts& parts, HairState& state,
-                 StepReport& report) {
-  if (!parts.self_contact) parts.self_contact.emplace(step.mesh);
-  SelfContact& self = *parts.self_contact;
+void partBundles(const CorrectedStep& step, const TakenStep* taken, std::optional<SelfContact>& made, Parts& parts,
+                 HairState& state, StepReport& report) {
+  if (!made) made.emplace(step.mesh);
+  SelfContact& self = *made;
   report.self_contacts = resolveSelfContacts({step.mesh, step.params, step.start, step.dt}, self, state);
   if (report.self_contacts == 0) return;
   parts.unpushed = self.unmoved;
@@ -267,8 +267,8 @@ bool bodyHasGone(const SimParams& params, const Colliders& colliders, const Hair
 // No vertex goes to and fro for ever, no step makes energy out of nothing, and no hair stays turned over.
 // Let go by bodies that have gone, it springs back further than the forces stay linear over.
 void keepWithinBounds(const TakenStep& taken, Parts& parts, HairState& state, StepReport& report) {
-  relaxBuzz(taken.mesh, taken.positions, parts.buzz, state);
-  limitEnergy(taken, report.converged && parts.springing_back <= 0, parts.energy_guard, state);
+  const bool held = relaxBuzz(taken.mesh, taken.positions, parts.buzz, state) > 0;
+  limitEnergy(taken, report.converged && !held && parts.springing_back <= 0, parts.energy_guard, state);
   // Loose particles have no shape to be led back to.
   if (taken.params.volume <= 0) return;
   // In a storm the rest shape is not where hair belongs: combed towards it, it would be thrown about for ever.
@@ -322,7 +322,12 @@ void checkRest(const SimParams& asked, const StepInput& input, double dt, Parts&
   StepReport unseen;
   solveVelocities(params, base, parts, twin, unseen);
   integratePositions(input, base, dt, mesh, parts, twin);
-  limitEnergy(takenStep(params, base, dt, parts), unseen.converged, parts.energy_guard, twin);
+  const TakenStep taken = takenStep(params, base, dt, parts);
+  limitEnergy(taken, unseen.converged, parts.energy_guard, twin);
+  if (params.self_collide) {
+    const Colliders none{};
+    partBundles({mesh, params, none, parts.start_positions, dt}, &taken, parts.twin_contact, parts, twin, unseen);
+  }
   const auto energy = [&](const HairState& one) { return energyOf(params, base.wind, one, parts); };
   double weight = 0;  // N
   for (const double share : mesh.vertex_volume) weight += 9.81 * params.density * share;
@@ -365,7 +370,7 @@ StepReport advance(const HairMesh& mesh, const SimParams& asked, const StepInput
 
   const CorrectedStep corrected{mesh, params, colliders, parts.start_positions, dt};
   if (params.self_collide) {
-    partBundles(corrected, bounded ? &taken : nullptr, parts, state, report);
+    partBundles(corrected, bounded ? &taken : nullptr, parts.self_contact, parts, state, report);
     parts.clock.spent(kStageCollision, report);
   }
   if (params.collide) {

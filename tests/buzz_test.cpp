@@ -70,4 +70,14 @@ TEST(Buzz, OtherMotionKeepsEveryBit) {
   EXPECT_EQ(hair.step(Vec3::Zero(), [](int, const Vec3& off) { return off; }), 0);
 }
 
+// A clip at fifty times its speed throws the head to and fro with every frame, and the hair that lags behind it.
+TEST(Buzz, HairThatTheHeadThrowsToAndFroKeepsEveryBit) {
+  Patch hair;
+  for (int n = 0; n < 60; ++n) {
+    const Vec3 head(n % 2 ? -0.02 : 0.02, 0, 0);
+    const auto lag = [&](int, const Vec3&) { return Vec3(n % 2 ? 0.0 : -0.015, 0, 0); };
+    EXPECT_EQ(hair.step(head, lag), 0) << "step " << n;
+  }
+}
+
 }  // namespace

@@ -74,6 +74,7 @@ void addStates(Cases& cases) {
             one.collide = collide;
             one.seconds = 0.2;
             one.grace = 0.2;
+            if (step > 0.05) one.release = 10;  // combing and buzzing are over after some steps, whatever their length
             one.in_short = draw == 0 && step == 1.0 / 60 && (collide || hair.style == sim::Style::kLong);
             cases.push_back(one);
           }

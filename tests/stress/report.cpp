@@ -283,8 +283,8 @@ colliders are taken away. A case passes when
       << 100 * kBack << R"( % of the hair's length of one another, worst
   vertex, also extrapolated by 0.1 s of velocity; or, without the body, both rest, apart from one another but the hair with no more
   energy than the twin (very soft hair sags into more shapes than one): within 1 % of the hair's length of where they were for a second,
-  and no faster than would take them out of that in 0.1 s. Within the stated time: 1 s with the body and 5 s without; 30 s without where a parameter
-  row is turned to its limit and for random draws; without the body counted from when the twin itself has come
+  and no faster than would take them out of that in 0.1 s. Within the stated time: 1 s with the body and 5 s without; 10 s without from
+  impossible states in steps of 1/10 s; 30 s without where a parameter row is turned to its limit and for random draws; without the body counted from when the twin itself has come
   to rest, which limp hair takes up to a minute for;
 - no external vertex (with `collide_inner`: no vertex) is deeper than )"
       << 1e3 * kDeepest
