@@ -18,11 +18,8 @@ constexpr Solver kStandIn = Solver::kTwoLevel;
 // What an application of a preconditioner costs, in products with the matrix: the warped factor by the ratio of its
 // blocks to the matrix's (measured on meshes of 361 and 2,268 vertices), and the two levels.
 constexpr double kFactorCost = 0.9, kTwoLevelCost = 1.8;
-// A relative residual in the norm of the two levels says less of the error than one in the factor's.
-constexpr double kTwoLevelShare = 0.7;
 // Nor is what they make of a residual the error itself, as with the whole factor, but less by up to an order.
 constexpr double kTwoLevelNear = 0.1;
-constexpr double kLeastCoarseWeight = 0.05;
 // Roots that stop or start within a step put hundreds of joules into the first residual, and a solve that leaves a
 // thousandth of that raises the hair's energy. What it may leave is measured against no more than so many times what
 // the hair's weight and motion are worth: with 10 a walk takes as many iterations as without the bound, a jump at four
@@ -95,7 +92,7 @@ void ImplicitSolver<T>::setModel(const HairMesh& mesh, const ForceModel<double>&
     hair_mass += density * mesh.vertex_volume[i];
   }
   rest_outdated = true;
-  layer_age.forget();
+  layer_age.forget(), patch_age.forget();
 }
 
 template <class T>
@@ -141,9 +138,7 @@ bool ImplicitSolver<T>::refreshRestFactor(const HairMesh& mesh, const SimParams&
   const FactorTerms wanted{h, params.damping, params.air_drag};
   const auto near = [](double a, double b, double ratio) { return a < ratio * b && b < ratio * a; };
   const bool compact = params.precision == Precision::kMixed;
-  using Part = typename Preconditioner<T>::RestPart;
-  const Part part = factored(params.solver) ? Part::kAll : Part::kTwoLevel;
-  const bool usable = rest_terms.h > 0 && rest_compact == compact && rest_part >= part;
+  const bool usable = rest_terms.h > 0 && rest_compact == compact;
   if (usable && gradual && preconditioner.restMatrixPending()) {
     if (preconditioner.continueRestMatrix(kSlices, constraints)) rest_terms = coming_terms;
     return true;
@@ -154,13 +149,12 @@ bool ImplicitSolver<T>::refreshRestFactor(const HairMesh& mesh, const SimParams&
   }
   assembleRest(mesh, wanted);
   rest_outdated = false;
-  if (usable && gradual && (part == Part::kAll ? preconditioner.restFactorFine() : preconditioner.twoLevelFine())) {
-    preconditioner.beginRestMatrix(matrix, compact, part);
+  if (usable && gradual && preconditioner.restFactorFine()) {
+    preconditioner.beginRestMatrix(matrix);
     coming_terms = wanted;
     return true;
   }
-  preconditioner.setRestMatrix(matrix, compact, part);
-  rest_part = part;
+  preconditioner.setRestMatrix(matrix, compact);
   rest_terms = wanted;
   rest_compact = compact;
   return true;
@@ -256,22 +250,6 @@ bool ImplicitSolver<T>::setContactConstraints(const HairMesh& mesh, const SimPar
   return moved;
 }
 
-// The coarse half of the two-level preconditioner is that of the rest shape. How much stiffer the hair is now, the
-// first residual tells: the weight is the step length at which the coarse answer to it lowers the error most.
-template <class T>
-void ImplicitSolver<T>::weighCoarse() {
-  if (preconditioner.kind() != Solver::kTwoLevel) return;
-  auto &r = scratch.d, &z = scratch.z, &q = scratch.q;
-  std::copy(scratch.r.begin(), scratch.r.end(), r.begin());  // the solve's own stays whole
-  filter.apply(r);
-  preconditioner.applyCoarse(r, z);
-  filter.apply(z);
-  multiply<T>(matrix, product, z, q);
-  const double along = innerProduct<T>(z, r), energy = innerProduct<T>(z, q);
-  const double weight = energy > 0 ? along / energy : 1;
-  preconditioner.setCoarseWeight(static_cast<T>(std::clamp(weight, kLeastCoarseWeight, 1.0)));
-}
-
 template <class T>
 void ImplicitSolver<T>::setResidual() {
   multiply<T>(matrix, product, v, scratch.r);
@@ -322,7 +300,7 @@ struct ImplicitSolver<T>::BudgetedSolve {
     const double shorter = std::min(1.0, stop.h / kFullTolerance);
     stop.displacement = (exact ? 1 : levels ? kTwoLevelNear : 0) * shorter * shorter * params.displacement_tolerance;
     stop.foresee = exact;
-    stop.relative = (levels ? kTwoLevelShare : 1) * params.tolerance;
+    stop.relative = params.tolerance;
     stop.max_iterations = most;
     const int before = total.iterations;
     total = solveModifiedPcg<ColumnOperator<T>>({solver.matrix, solver.product}, solver.trial, solver.filter,
@@ -339,9 +317,8 @@ struct ImplicitSolver<T>::BudgetedSolve {
     runSome(affordable, start);
     if (total.converged || affordable >= most) return;
     overrun = true;
-    solver.preconditioner.update(solver.matrix, plan.cheap ? params.solver : kStandIn, false, solver.constraints);
+    solver.preconditioner.update(solver.matrix, plan.cheap ? params.solver : kStandIn, {}, solver.constraints);
     solver.preconditioner.setConstraints(solver.constraints, kBatchesARound);
-    solver.weighCoarse();
     runSome(params.max_iterations, SolveStart::kExchange);
   }
 };
@@ -369,7 +346,8 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
   const bool stand_in = warped ? run.plan.cheap : params.solver == Solver::kWarped;
   const Solver first = stand_in ? kStandIn : params.solver;
   const FactorTerms terms{base.h, params.damping, params.air_drag};
-  const bool kept = first == Solver::kTwoLevel && layer_age.serves() && terms == layer_terms;
+  const bool same = first == Solver::kTwoLevel && terms == layer_terms;
+  const typename Preconditioner<T>::Keep kept{same && layer_age.serves(), same && patch_age.serves()};
   touched.clear();
   for (const Contact& contact : contacts) {
     if (touched.empty() || touched.back() != contact.vertex) touched.push_back(contact.vertex);
@@ -383,7 +361,6 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
     const bool complete = preconditioner.setConstraints(constraints, kBatchesARound);
     if (round == 0) {
       run.stop.head_start = beginSolve(params);
-      weighCoarse();
     } else if (moved) {
       setResidual();
       scratch.deflation = {};  // not all of it lies within what is free now
@@ -403,10 +380,11 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
   // A factor that served to its end is as old as the solves since it was made. Solves by other preconditioners age it
   // without telling by how much.
   if (first == Solver::kTwoLevel && preconditioner.kind() == Solver::kTwoLevel && !run.overrun) {
-    layer_age.count(kept, run.total.iterations);
+    layer_age.count(kept.factors, run.total.iterations);
+    patch_age.count(kept.patches, run.total.iterations);
     layer_terms = terms;
   } else {
-    layer_age.forget();
+    layer_age.forget(), patch_age.forget();
   }
   if (warped) choice.end(run.plan, run.cost, run.overrun);
   unfinished = !run.total.converged;
@@ -461,7 +439,7 @@ void ImplicitSolver<T>::solve(const HairMesh& mesh, const SimParams& params, con
                               std::vector<Contact>& contacts, std::span<Vec3> velocities, StepReport& report) {
   const bool linearized = params.integrator == Integrator::kLinearizedEuler;
   const bool newton = params.integrator == Integrator::kImplicitEuler;
-  const bool at_rest = params.solver == Solver::kWarped || params.solver == Solver::kTwoLevel;
+  const bool at_rest = factored(params.solver);
   beginStep(params, base, velocities, contacts);
   if (at_rest && refreshRestFactor(mesh, params, base.h)) report.refreshes.skipped = 0;
   const int most = newton ? std::max(1, params.newton_iterations) : 1;
@@ -469,6 +447,7 @@ void ImplicitSolver<T>::solve(const HairMesh& mesh, const SimParams& params, con
     place(base, linearized ? std::span<const V3<T>>() : std::span<const V3<T>>(v));
     assemble(params, base, linearized);
     if (at_rest) preconditioner.updateRotations(x);
+    preconditioner.setPositions(x);
     clock.spent(kStageForces, report);
     // The first iterate does not yet meet the constraints: nothing to compare with.
     const double before = newton && iteration > 0 ? residualSquare(params, base) : -1;

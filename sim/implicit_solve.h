@@ -50,9 +50,8 @@ struct ImplicitSolver {
   std::vector<VertexConstraint> constraints;
   std::vector<int> touched;     // vertices that were in contact when the solve began
   PreconditionerChoice choice;  // between the warped factor and its stand-in
-  // Of the rest matrix that was factored: whether in 16 bits, which part, and whether the material has changed since.
+  // Of the rest matrix that was factored: whether in 16 bits, and whether the material has changed since.
   bool rest_compact = false;
-  typename Preconditioner<T>::RestPart rest_part{};
   bool rest_outdated = false;
   bool gradual = false;  // a factor that is no longer the best is replaced in slices, not at once
   // What the rest factor, the one in the making and the layers' factor were made for; h 0: there is none.
@@ -63,7 +62,7 @@ struct ImplicitSolver {
     bool operator==(const FactorTerms&) const = default;
   };
   FactorTerms rest_terms, coming_terms, layer_terms;
-  LayerAge layer_age;
+  FactorAge layer_age{FactorAge::kLayers}, patch_age{FactorAge::kPatches};
 
   ImplicitSolver(const HairMesh& mesh, const BlockPattern& pattern);
   void setModel(const HairMesh& mesh, const ForceModel<double>& source, double density);
@@ -89,7 +88,6 @@ struct ImplicitSolver {
   void setResidual();
   double beginSolve(const SimParams& params);
   double energyScale(const HairMesh& mesh) const;
-  void weighCoarse();
   struct BudgetedSolve;
   SolveReport solveLinear(const HairMesh& mesh, const SimParams& params, const StepBase& base,
                           std::vector<Contact>& contacts);

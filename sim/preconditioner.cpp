@@ -28,6 +28,10 @@ Preconditioner<T>::Preconditioner(const HairMesh& mesh, const BlockPattern& patt
   for (int i = 0; i < mesh.vertexCount(); ++i) free_[i] = !mesh.isRoot(i);
   inverse_diagonal_.resize(mesh.vertexCount());
   turned_.resize(mesh.vertexCount());
+  for (const Vec3& at : mesh.shape.positions) {
+    const Vec3 p = at - mesh.shape.positions[0];
+    positions_.push_back({static_cast<T>(p.x()), static_cast<T>(p.y()), static_cast<T>(p.z())});
+  }
 }
 
 template <class T>
@@ -58,11 +62,14 @@ bool Preconditioner<T>::factorColumns(const BlockMatrix<T>& a) {
 }
 
 template <class T>
-bool Preconditioner<T>::setRestMatrix(const BlockMatrix<T>& rest, bool compact, RestPart part) {
-  if (!two_level_) two_level_.emplace(*mesh_, *pattern_);
-  two_level_->make(rest, compact);
-  two_level_pending_ = false;
-  if (part == RestPart::kTwoLevel) return two_level_->fine;
+TwoLevel<T>& Preconditioner<T>::twoLevel() {
+  if (!two_level_) two_level_.emplace(*mesh_);
+  return *two_level_;
+}
+
+template <class T>
+bool Preconditioner<T>::setRestMatrix(const BlockMatrix<T>& rest, bool compact) {
+  twoLevel();  // may stand in later, in a step that is to take no memory
   if (rest_.factor.order.empty()) rest_.factor.analyze(*mesh_, *pattern_, free_);
   making_.stage = RestFactorInMaking<T>::Stage::kIdle;
   rest_.make(rest, compact);
@@ -70,22 +77,14 @@ bool Preconditioner<T>::setRestMatrix(const BlockMatrix<T>& rest, bool compact, 
 }
 
 template <class T>
-void Preconditioner<T>::beginRestMatrix(const ColumnMatrix<T>& rest, bool compact, RestPart part) {
+void Preconditioner<T>::beginRestMatrix(const ColumnMatrix<T>& rest) {
   if (!making_.matrix.pattern) making_.matrix = BlockMatrix<T>(pattern_);
   rest.toBlocks(*mesh_, making_.matrix);
-  two_level_->begin();
-  two_level_pending_ = true;
-  two_level_compact_ = compact;
-  if (part == RestPart::kAll) making_.begin(rest_);
+  making_.begin(rest_);
 }
 
 template <class T>
 bool Preconditioner<T>::continueRestMatrix(int slices, std::span<const VertexConstraint> lasting) {
-  const bool all = making_.stage != RestFactorInMaking<T>::Stage::kIdle;
-  if (two_level_pending_) {
-    two_level_pending_ = !two_level_->work(making_.matrix, two_level_compact_, slices);
-    return !two_level_pending_ && !all;
-  }
   return making_.work(rest_.factor.factorOperations() / slices, lasting, rotations_.matrices, rest_);
 }
 
@@ -119,10 +118,7 @@ void Preconditioner<T>::update(const BlockMatrix<T>& a, Solver solver, std::span
     if (incomplete_factor_->factor(a)) return;
     kind_ = Solver::kBlockJacobi;
   }
-  if (solver == Solver::kTwoLevel) {
-    if (twoLevelFine()) return two_level_->update(a, rotations_.matrices, false, constraints);
-    kind_ = Solver::kBlockJacobi;
-  }
+  if (solver == Solver::kTwoLevel) return twoLevel().update(a, positions_, {}, constraints);
   for (std::size_t i = 0; i < a.diagonal.size(); ++i) setDiagonal(static_cast<int>(i), a.diagonal[i]);
 }
 
@@ -140,19 +136,18 @@ const BlockMatrix<T>& Preconditioner<T>::toBlocks(const ColumnMatrix<T>& a) {
 }
 
 template <class T>
-bool Preconditioner<T>::setRestMatrix(const ColumnMatrix<T>& rest, bool compact, RestPart part) {
-  return setRestMatrix(toBlocks(rest), compact, part);
+bool Preconditioner<T>::setRestMatrix(const ColumnMatrix<T>& rest, bool compact) {
+  return setRestMatrix(toBlocks(rest), compact);
 }
 
 template <class T>
-void Preconditioner<T>::update(const ColumnMatrix<T>& a, Solver solver, bool keep_layers,
+void Preconditioner<T>::update(const ColumnMatrix<T>& a, Solver solver, Keep keep,
                                std::span<const VertexConstraint> constraints) {
   if (solver == Solver::kWarped && !rest_.fine) solver = Solver::kTwoLevel;
-  if (solver == Solver::kTwoLevel && !twoLevelFine()) solver = Solver::kBlockJacobi;
   kind_ = solver;
   rest_.responses.clear();
   if (solver == Solver::kWarped) return;
-  if (solver == Solver::kTwoLevel) return two_level_->update(a, rotations_.matrices, keep_layers, constraints);
+  if (solver == Solver::kTwoLevel) return twoLevel().update(a, positions_, keep, constraints);
   if (solver == Solver::kDirect || solver == Solver::kColumn || solver == Solver::kIncomplete) {
     return update(toBlocks(a), solver);
   }

@@ -1,6 +1,7 @@
 // Preconditioners of the Modified PCG, chosen by name at run time.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <vector>
@@ -25,7 +26,7 @@ namespace sim {
 //   column                block-tridiagonal factor of each column
 //   incomplete            incomplete Cholesky factor without fill, in 3x3 blocks
 //   two-level             factors of the current matrix's layers and columns, without what constraints remove, and of
-//                         the rest shape's matrix on a coarse space, turned (two_level.h)
+//                         its projection onto rigid motions of patches (two_level.h)
 //   warped                factor of the rest shape's matrix, residuals turned into the rest frame and back by each
 //                         vertex's own rotation: P = R (A_rest)^-1 R^T
 //   direct                factor of the current matrix
@@ -36,22 +37,23 @@ struct Preconditioner {
   // Refreshes what follows the current matrix. Falls back to 3x3 blocks when a factorization fails.
   // `constraints`: those that `two-level` is to know of; its P stays symmetric and positive whatever the filter is.
   void update(const BlockMatrix<T>& a, Solver solver, std::span<const VertexConstraint> constraints = {});
-  // `keep_layers`: `two-level` may go on with the factors that it made last.
-  void update(const ColumnMatrix<T>& a, Solver solver, bool keep_layers = false,
+  // `keep`: of what `two-level` made last.
+  using Keep = typename TwoLevel<T>::Keep;
+  void update(const ColumnMatrix<T>& a, Solver solver, Keep keep = {},
               std::span<const VertexConstraint> constraints = {});
-  // What `warped` and `two-level` need of the rest shape's matrix (rarely: the factor of the whole for the first, the
-  // two levels' for both), and the rotations (every step).
-  // `compact`: keep the factors in 16 bits for the solves (single precision only).
-  enum class RestPart { kTwoLevel, kAll };
-  bool setRestMatrix(const BlockMatrix<T>& rest, bool compact = false, RestPart part = RestPart::kAll);
-  bool setRestMatrix(const ColumnMatrix<T>& rest, bool compact = false, RestPart part = RestPart::kAll);
+  // What `warped` needs: the factor of the rest shape's matrix (rarely), and the rotations (every step).
+  // `compact`: keep the factor in 16 bits for the solves (single precision only).
+  bool setRestMatrix(const BlockMatrix<T>& rest, bool compact = false);
+  bool setRestMatrix(const ColumnMatrix<T>& rest, bool compact = false);
   void updateRotations(std::span<const V3<T>> x);
+  // What `two-level` needs: the positions (m, relative to any point) that the matrix is of; the rest shape's at first.
+  void setPositions(std::span<const V3<T>> x) { std::copy(x.begin(), x.end(), positions_.begin()); }
 
-  // The rest factors made anew off the critical path, where there are some: begin takes the matrix, each continue works
-  // for one `slices`-th of a factorization and answers whether the new factors have just taken the old ones' place.
-  void beginRestMatrix(const ColumnMatrix<T>& rest, bool compact, RestPart part);
+  // The rest factor made anew off the critical path, where there is one: begin takes the matrix, each continue works for
+  // one `slices`-th of a factorization and answers whether the new factor has just taken the old one's place.
+  void beginRestMatrix(const ColumnMatrix<T>& rest);
   bool continueRestMatrix(int slices, std::span<const VertexConstraint> lasting);
-  bool restMatrixPending() const { return two_level_pending_ || making_.stage != RestFactorInMaking<T>::Stage::kIdle; }
+  bool restMatrixPending() const { return making_.stage != RestFactorInMaking<T>::Stage::kIdle; }
 
   // The constraints of the solves to come. `warped` and `direct`, whose P knows nothing of them, correct it with what
   // their factor answers at the constrained vertices (contact_response.h), without which a few contacts cost tens of
@@ -61,30 +63,21 @@ struct Preconditioner {
   // z = P r.
   void apply(std::span<const V3<T>> r, std::span<V3<T>> z);
 
-  // The weight of the coarse half of `two-level`, until it is set again; 1 at first.
-  void setCoarseWeight(T weight) {
-    if (two_level_) two_level_->coarse_weight = weight;
-  }
-  // z = that half of P r, of weight 1. Only for kind() two-level.
-  void applyCoarse(std::span<const V3<T>> r, std::span<V3<T>> z) { two_level_->applyCoarse(r, z); }
-
   Solver kind() const { return kind_; }
   // Blocks of the rest factor, counted in 16 bits an entry, over those of the matrix.
   double restFactorRatio() const;
   bool restFactorFine() const { return rest_.fine; }
-  bool twoLevelFine() const { return two_level_ && two_level_->fine; }
 
  private:
   const HairMesh* mesh_;
   const BlockPattern* pattern_;
   Solver kind_ = Solver::kBlockJacobi;
   std::vector<M3<T>> inverse_diagonal_;  // per block row: scalar diagonals or 3x3 inverses
-  std::vector<V3<T>> turned_;
+  std::vector<V3<T>> turned_, positions_;
   VertexRotations<T> rotations_;
   RestFactor<T> rest_;  // where it is not fine, 3x3 blocks stand in for `warped`
   RestFactorInMaking<T> making_;
   std::optional<TwoLevel<T>> two_level_;
-  bool two_level_pending_ = false, two_level_compact_ = false;
   std::optional<BlockCholesky<T>> direct_factor_, column_factor_;
   std::optional<IncompleteCholesky<T>> incomplete_factor_;
   std::optional<BlockPattern> column_pattern_;
@@ -98,6 +91,7 @@ struct Preconditioner {
   bool factorColumns(const BlockMatrix<T>& a);
   const BlockMatrix<T>& toBlocks(const ColumnMatrix<T>& a);
   void setDiagonal(int i, const M3<T>& d);
+  TwoLevel<T>& twoLevel();
 };
 
 // Inverse of a symmetric positive definite 3x3 block; a singular block gives the inverse of its diagonal.

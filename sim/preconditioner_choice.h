@@ -49,17 +49,19 @@ struct PreconditionerChoice {
   }
 };
 
-// How long the two levels' factor of the layers serves: hair changes little from one step to the next, and a factor
-// costs as much as one or two iterations.
-struct LayerAge {
-  // With a factor two steps old a walk takes no more iterations and a head shake 2 % more; four, 0 % and 35 %.
-  static constexpr int kOldest = 2;
+// How long what the two levels made serves: hair changes little from one step to the next, and a factor of the layers
+// costs as much as one or two iterations, the patches' as much as five.
+struct FactorAge {
+  // With a factor of the layers two steps old a walk takes no more iterations and a head shake 2 % more; four, 0 % and
+  // 35 %. With patches four to six steps old a walk takes 5 % more.
+  static constexpr int kLayers = 2, kPatches = 6;
   static constexpr double kRise = 1.2;  // of the iterations since it was fresh
 
-  int age = kOldest;  // solves since it was made
+  int oldest;        // solves that it serves at most
+  int age = oldest;  // since it was made
   int fresh = 0, last = 0;
-  bool serves() const { return age < kOldest && last <= kRise * fresh + 1; }
-  void forget() { age = kOldest; }
+  bool serves() const { return age < oldest && last <= kRise * fresh + 1; }
+  void forget() { age = oldest; }
   // A solve with the factor (made for it, or kept) took so many iterations.
   void count(bool kept, int iterations) {
     age = kept ? age + 1 : 1;

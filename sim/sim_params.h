@@ -23,7 +23,7 @@ enum class Solver {
   kBlockJacobi,  // Modified PCG, 3x3 blocks
   kColumn,       // Modified PCG, one block-tridiagonal factor a column
   kIncomplete,   // Modified PCG, incomplete Cholesky
-  kTwoLevel,     // Modified PCG, layers, columns and the rest shape's coarse space, turned
+  kTwoLevel,     // Modified PCG, layers, columns and rigid motions of patches
   kWarped,       // Modified PCG, the rest shape's factor, residuals turned into the rest frame and back
   kDirect,       // sparse block Cholesky of the current matrix
   kCount

@@ -62,7 +62,8 @@ struct System {
   template <class T>
   sim::Preconditioner<T> preconditioner(const BlockMatrix<T>& a, Solver solver) const {
     sim::Preconditioner<T> p(mesh, pattern);
-    if (solver == Solver::kWarped || solver == Solver::kTwoLevel) {
+    p.setPositions(test::plain<T>(positions));
+    if (solver == Solver::kWarped) {
       EXPECT_TRUE(p.setRestMatrix(matrixAt<T>(mesh.shape.positions)));
       const auto points = test::plain<T>(positions);
       for (int k = 0; k < 20; ++k) p.updateRotations(points);  // it follows a large turn over several steps

@@ -67,15 +67,14 @@ struct OwnSolver {
   }
 
   void setUp(sim::Preconditioner<T>& p) const {
+    p.setPositions(positions);
     p.update(matrix, solver);
-    if (solver == sim::Solver::kWarped || solver == sim::Solver::kTwoLevel) p.updateRotations(positions);
+    if (solver == sim::Solver::kWarped) p.updateRotations(positions);
     p.setConstraints(record.constraints);
   }
 
   void setUpFromNothing(sim::Preconditioner<T>& p) const {
-    using Part = typename sim::Preconditioner<T>::RestPart;
     if (solver == sim::Solver::kWarped) p.setRestMatrix(rest, compact);
-    if (solver == sim::Solver::kTwoLevel) p.setRestMatrix(rest, compact, Part::kTwoLevel);
     setUp(p);
   }
 
