@@ -18,6 +18,8 @@ constexpr Solver kStandIn = Solver::kTwoLevel;
 // What an application of a preconditioner costs, in products with the matrix: the warped factor by the ratio of its
 // blocks to the matrix's (measured on meshes of 361 and 2,268 vertices), and the two levels.
 constexpr double kFactorCost = 0.9, kTwoLevelCost = 1.8;
+// A relative residual in the norm of the two levels says less of the error than one in the factor's.
+constexpr double kTwoLevelShare = 0.9;
 // Nor is what they make of a residual the error itself, as with the whole factor, but less by up to an order.
 constexpr double kTwoLevelNear = 0.1;
 // Roots that stop or start within a step put hundreds of joules into the first residual, and a solve that leaves a
@@ -25,8 +27,8 @@ constexpr double kTwoLevelNear = 0.1;
 // the hair's weight and motion are worth: with 10 a walk takes as many iterations as without the bound, a jump at four
 // times its speed a fifth more; with 100 hair still gained energy.
 constexpr double kFullStart = 10;
-// s: a shorter step may be off by less, so that the acceleration it neglects stays the same. With one tolerance for all,
-// a step of 1/480 s passed over half a metre per second squared: resting hair went on at 0.1 m/s.
+// s: a shorter step may be off by less, so that the acceleration it neglects stays the same. With one tolerance for
+// all, a step of 1/480 s passed over half a metre per second squared: resting hair went on at 0.1 m/s.
 constexpr double kFullTolerance = 1.0 / 60;
 constexpr double kThrownBack = 0.5;  // m/s, that is worth solving again with the contact held
 constexpr double kStaleRatio = 3;  // of h (h + damping): BDF2's start-up step shares its factor with the steps after it
@@ -300,7 +302,7 @@ struct ImplicitSolver<T>::BudgetedSolve {
     const double shorter = std::min(1.0, stop.h / kFullTolerance);
     stop.displacement = (exact ? 1 : levels ? kTwoLevelNear : 0) * shorter * shorter * params.displacement_tolerance;
     stop.foresee = exact;
-    stop.relative = params.tolerance;
+    stop.relative = (levels ? kTwoLevelShare : 1) * params.tolerance;
     stop.max_iterations = most;
     const int before = total.iterations;
     total = solveModifiedPcg<ColumnOperator<T>>({solver.matrix, solver.product}, solver.trial, solver.filter,

@@ -142,18 +142,18 @@ M3<T> times(const M3<T>& a, const M3<T>& b) {
   return c;
 }
 
-#define HAIRMESH_KERNELS(T)                                                                                           \
-  HAIRMESH_CLONES void runProject(std::span<const BlockDiagonal> diagonals, std::span<const int> which,               \
-                                  const T* values, std::ptrdiff_t stride, const Fields<T>& f, T* sums) {              \
-    project<T>(diagonals, which, values, stride, f, sums);                                                            \
-  }                                                                                                                   \
-  HAIRMESH_CLONES void runGather(std::span<const int> columns, const ColumnLayout& layout, const Fields<T>& f,        \
-                                 const ColumnField<T>& r, T* sums) {                                                  \
-    gather<T>(columns, layout, f, r, sums);                                                                           \
-  }                                                                                                                   \
-  HAIRMESH_CLONES void runScatter(std::span<const int> columns, const ColumnLayout& layout, const Fields<T>& f,       \
-                                  const T* motion, ColumnField<T>& z) {                                               \
-    scatter<T>(columns, layout, f, motion, z);                                                                        \
+#define HAIRMESH_KERNELS(T)                                                                                     \
+  HAIRMESH_CLONES void runProject(std::span<const BlockDiagonal> diagonals, std::span<const int> which,         \
+                                  const T* values, std::ptrdiff_t stride, const Fields<T>& f, T* sums) {        \
+    project<T>(diagonals, which, values, stride, f, sums);                                                      \
+  }                                                                                                             \
+  HAIRMESH_CLONES void runGather(std::span<const int> columns, const ColumnLayout& layout, const Fields<T>& f,  \
+                                 const ColumnField<T>& r, T* sums) {                                            \
+    gather<T>(columns, layout, f, r, sums);                                                                     \
+  }                                                                                                             \
+  HAIRMESH_CLONES void runScatter(std::span<const int> columns, const ColumnLayout& layout, const Fields<T>& f, \
+                                  const T* motion, ColumnField<T>& z) {                                         \
+    scatter<T>(columns, layout, f, motion, z);                                                                  \
   }
 HAIRMESH_KERNELS(float)
 HAIRMESH_KERNELS(double)
@@ -318,7 +318,8 @@ bool PatchSpace<T>::make(const BlockMatrix<T>& a, std::span<const V3<T>> x,
   matrix_.setZero();
   const auto addBlock = [&](int i, int j, const M3<T>& m) {
     if (mesh_->isRoot(i) || mesh_->isRoot(j) || held_[i] || held_[j]) return;
-    const int p = patchOf(mesh_->column_of[i], mesh_->layer_of[i]), q = patchOf(mesh_->column_of[j], mesh_->layer_of[j]);
+    const int p = patchOf(mesh_->column_of[i], mesh_->layer_of[i]),
+              q = patchOf(mesh_->column_of[j], mesh_->layer_of[j]);
     const int at_i = layout_->slot[i], at_j = layout_->slot[j];
     const M3<T> motion_i = turnOf(V3<T>{arm_.x[at_i], arm_.y[at_i], arm_.z[at_i]});
     const M3<T> motion_j = turnOf(V3<T>{arm_.x[at_j], arm_.y[at_j], arm_.z[at_j]});

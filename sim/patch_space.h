@@ -1,12 +1,12 @@
 // A coarse space of the hair mesh: patches, a few columns wide and some layers high, each moving as a rigid body.
 //
 // What layers and columns, each solved alone, leave of an error are soft motions of many vertices at once: hair that
-// bends over a shoulder turns there, at little energy, while each of its layers and each of its columns alone would have
-// to strain against its neighbours. Translations of patches, or smooth displacements between them, cannot tell of a turn
-// but by straining, however many there are. With turns beside them (rigid body modes, as in the smoothed aggregation of
-// Vanek, Mandel and Brezina 1996, here without smoothing), and of the current matrix, solves of a walk of 10,241
-// vertices take 0.7 of the iterations to the same error that they took with smooth displacements of the rest shape, and
-// 0.63 to half that error.
+// bends over a shoulder turns there, at little energy, while each of its layers and each of its columns alone would
+// have to strain against its neighbours. Translations of patches, or smooth displacements between them, cannot tell of
+// a turn but by straining, however many there are. With turns beside them (rigid body modes, as in the smoothed
+// aggregation of Vanek, Mandel and Brezina 1996, here without smoothing), and of the current matrix, solves of a walk
+// of 10,241 vertices take 0.7 of the iterations to the same error that they took with smooth displacements of the rest
+// shape, and 0.63 to half that error.
 #pragma once
 
 #include <span>

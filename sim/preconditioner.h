@@ -49,8 +49,8 @@ struct Preconditioner {
   // What `two-level` needs: the positions (m, relative to any point) that the matrix is of; the rest shape's at first.
   void setPositions(std::span<const V3<T>> x) { std::copy(x.begin(), x.end(), positions_.begin()); }
 
-  // The rest factor made anew off the critical path, where there is one: begin takes the matrix, each continue works for
-  // one `slices`-th of a factorization and answers whether the new factor has just taken the old one's place.
+  // The rest factor made anew off the critical path, where there is one: begin takes the matrix, each continue works
+  // for one `slices`-th of a factorization and answers whether the new factor has just taken the old one's place.
   void beginRestMatrix(const ColumnMatrix<T>& rest);
   bool continueRestMatrix(int slices, std::span<const VertexConstraint> lasting);
   bool restMatrixPending() const { return making_.stage != RestFactorInMaking<T>::Stage::kIdle; }

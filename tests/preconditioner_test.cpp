@@ -263,8 +263,8 @@ void patchesAnswerBest(double bound) {
       EXPECT_EQ(dot(z[0][i], z[0][i]), T(0)) << i;
     }
   }
-  // P r of a projection: z . A z = z . r, and z moves each patch rigidly: vertices of one column keep their distances to
-  // first order.
+  // P r of a projection: z . A z = z . r, and z moves each patch rigidly: vertices of one column keep their distances
+  // to first order.
   std::vector<V3<T>> az(n);
   sim::multiply<T>(a, z[0], az);
   const double along = sim::innerProduct<T>(z[0], r), energy = sim::innerProduct<T>(z[0], az);
