@@ -5,8 +5,8 @@
 // have to strain against its neighbours. Translations of patches, or smooth displacements between them, cannot tell of
 // a turn but by straining, however many there are. With turns beside them (rigid body modes, as in the smoothed
 // aggregation of Vanek, Mandel and Brezina 1996, here without smoothing), and of the current matrix, solves of a walk
-// of 10,241 vertices, with patches of four layers, take 0.7 of the iterations to the same error that they took with smooth displacements of the rest
-// shape, and 0.63 to half that error.
+// of 10,241 vertices, with patches of four layers, take 0.7 of the iterations to the same error that they took with
+// smooth displacements of the rest shape, and 0.63 to half that error.
 #pragma once
 
 #include <span>
