@@ -46,11 +46,10 @@ bool neverLinear(const TakenStep& step) {
   const double pull = (params.air_drag * step.wind - Vec3(0, params.gravity, 0)).norm();
   const double segment = step.mesh.vertical_edges.front().rest_length;
   double softest = INFINITY;  // of those that there are
-  double stiffest = params.bend / (segment * segment);
   for (const double modulus : {params.stretch_across, params.stretch_edge, params.shear, params.volume}) {
     if (modulus > 0) softest = std::min(softest, modulus);
-    stiffest = std::max(stiffest, modulus);
   }
+  const double stiffest = std::max({params.stretch_across, params.stretch_edge, params.bend / (segment * segment)});
   return params.density * pull * step.mesh.hair_length > kLimp * softest || stiffest > kUneven * softest ||
          params.stretch_along > kUnevenAlong * softest;
 }

@@ -60,7 +60,7 @@ bool watchRest(const HairMesh& mesh, const HairState& state, double pull, double
   check.stir = std::sqrt(std::max(1.0, pull / kWeight));
   const double speed = fastest(state) / check.stir;
   check.wait = std::max(0.0, check.wait - dt);
-  if (speed > kMoving) check.judged = false;
+  if (speed > kMoving) check.judged = check.kept_apart = false;
   if (check.judged || check.wait > 0) return false;
   if (!(speed < kStill) || !state.contacts.empty() || tangles.combing > 0) {
     check.still = 0;
@@ -89,8 +89,15 @@ void judgeRest(const HairMesh& mesh, const HairState& state, double scale,
   const bool higher = energy(state) - energy(check.twin) > kHigher * scale;
   // A twin on its way down may yet come to rest below the hair.
   check.judged = higher || stirring < kTwinStill || check.settling > kMostSettling;
-  if (off <= kElsewhere * mesh.hair_length || !higher) return;
+  if (off <= kElsewhere * mesh.hair_length || !higher) {
+    if (check.judged && check.self_contact && !check.kept_apart) {
+      check.judged = false, check.kept_apart = true;
+      check.settling = -1;
+    }
+    return;
+  }
   leadTo(mesh, check.twin, tangles);
+  check.kept_apart = false;
   check.patience = std::min(kMostPatience, std::max(kFirstPatience, kPatienceGrows * check.patience));
   check.wait = check.patience;
 }

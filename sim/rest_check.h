@@ -28,7 +28,10 @@ struct RestCheck {
   bool judged = false;            // nothing more to find out before the hair has moved
   double wait = 0, patience = 0;  // s before it may be led again, and after the next time
   double stir = 1;                // times as fast as hair that its weight alone pulls
-  std::vector<Vec3> roots;        // m, scratch
+  // With self-contact the first twin runs through its own bundles, for their pushes may hold it as they hold the hair;
+  // if it finds nothing lower, a second one is kept apart, for the first may have been caught behind its neighbours.
+  bool self_contact = false, kept_apart = false;
+  std::vector<Vec3> roots;  // m, scratch
 };
 
 // Looks at the hair after a step of dt (s). Returns whether its twin is to take one too. pull: m/s^2, of gravity and

@@ -313,6 +313,7 @@ void checkRest(const SimParams& asked, const StepInput& input, double dt, Parts&
   // Led by solves that end early the twin might hang wherever they leave it.
   params.max_iterations = std::max(params.max_iterations, kTwinIterations);
   const Vec3 pull = params.air_drag * windAt(params, input.time) - Vec3(0, params.gravity, 0);
+  check.self_contact = params.self_collide;
   if (!watchRest(mesh, state, pull.norm(), dt, parts.tangles, check)) return;
   HairState& twin = check.twin;
   parts.start_positions = twin.positions;
@@ -324,7 +325,7 @@ void checkRest(const SimParams& asked, const StepInput& input, double dt, Parts&
   integratePositions(input, base, dt, mesh, parts, twin);
   const TakenStep taken = takenStep(params, base, dt, parts);
   limitEnergy(taken, unseen.converged, parts.energy_guard, twin);
-  if (params.self_collide) {
+  if (check.kept_apart) {
     const Colliders none{};
     partBundles({mesh, params, none, parts.start_positions, dt}, &taken, parts.twin_contact, parts, twin, unseen);
   }

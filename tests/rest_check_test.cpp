@@ -55,6 +55,15 @@ TEST(RestCheck, HairThatRestsNoHigherIsLeftWhereItIs) {
   EXPECT_NEAR(hair.off(), 0.05, 1e-12);
 }
 
+TEST(RestCheck, WithSelfContactATwinThatIsKeptApartIsAskedToo) {
+  Resting hair(0.05);
+  hair.check.self_contact = true;
+  for (int n = 0; n < 60 && !hair.check.kept_apart; ++n) EXPECT_FALSE(hair.pass(0.9 * kFrame, -0.01));
+  EXPECT_TRUE(hair.check.kept_apart);
+  EXPECT_TRUE(hair.pass(3, 0.01)) << "the second found something lower";
+  EXPECT_FALSE(hair.check.kept_apart);
+}
+
 TEST(RestCheck, HairAtHomeIsLeftInPeace) {
   Resting hair(0.001);
   EXPECT_FALSE(hair.pass(3, 0.01));

@@ -1,0 +1,300 @@
+// The two levels: factors of layers and columns, rigid motions of patches, and what they are together.
+#include "sim/two_level.h"
+
+#include "sim/patch_space.h"
+#include "sim/preconditioner.h"
+#include "sim/vector_kernels.h"
+#include "tests/linear_systems.h"
+
+namespace tests {
+namespace {
+
+// The layers' factor is the direct solve of the matrix without the couplings between layers, in both layouts.
+template <class T>
+void layersAreSolvedOneByOne(double bound) {
+  test::PatchOptions o;
+  o.nx = 4, o.nz = 3, o.layers = 11, o.mixed = true;
+  sim::HairMeshShape shape = test::combedShape(o);
+  const sim::HairMesh mesh = sim::buildHairMesh(shape);
+  const sim::BlockPattern pattern = sim::systemPattern(mesh);
+  const sim::ColumnLayout layout(mesh);
+  const sim::ColumnPattern columns(mesh, layout);
+  test::Random random(91);
+  sim::ColumnMatrix<T> packed(layout, columns);
+  // Any symmetric matrix with a heavy diagonal; what lies in the padding must not matter.
+  for (T& value : packed.values) value = static_cast<T>(random(-1, 1));
+  packed.addMass(T(40), std::vector<T>(mesh.vertexCount(), T(1)));
+  BlockMatrix<T> a(&pattern);
+  packed.toBlocks(mesh, a);
+  const int n = mesh.vertexCount();
+  BlockMatrix<T> within = a;
+  for (int i = 0; i < n; ++i) {
+    for (int k = pattern.row_first[i]; k < pattern.row_first[i + 1]; ++k) {
+      if (mesh.layer_of[i] != mesh.layer_of[pattern.columns[k]]) within.lower[k] = {};
+    }
+  }
+  std::vector<V3<T>> x(n), r(n), z(n);
+  for (V3<T>& p : x) p = {static_cast<T>(random(-1, 1)), static_cast<T>(random(-1, 1)), static_cast<T>(random(-1, 1))};
+  sim::multiply<T>(within, x, r);
+  sim::LayerFactor<T> factor(mesh, layout, columns);
+  for (const bool by_blocks : {false, true}) {
+    if (by_blocks) {
+      factor.factor(a);
+    } else {
+      factor.factor(packed);
+    }
+    sim::ColumnField<T> field(layout);
+    field.pack(layout, r);
+    factor.solve(field);
+    field.unpack(layout, z);
+    double worst = 0;
+    for (int i = 0; i < n; ++i) worst = std::max(worst, std::sqrt(static_cast<double>(dot(z[i] - x[i], z[i] - x[i]))));
+    EXPECT_LT(worst, bound) << by_blocks;
+  }
+}
+
+TEST(TwoLevel, LayersAreSolvedOneByOne) {
+  layersAreSolvedOneByOne<float>(1e-4);
+  layersAreSolvedOneByOne<double>(1e-12);
+}
+
+// The answer of the patches is the best of all their rigid motions: against a dense projection made by hand. They move
+// neither roots nor held vertices, and know which they held.
+template <class T>
+void patchesAnswerBest(double bound) {
+  test::PatchOptions o;
+  o.nx = 9, o.nz = 8, o.layers = 20, o.mixed = o.uneven = true;  // padding everywhere: values there are arbitrary here
+  const sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(o));
+  const sim::BlockPattern pattern = sim::systemPattern(mesh);
+  const sim::ColumnLayout layout(mesh);
+  const sim::ColumnPattern columns(mesh, layout);
+  const int n = mesh.vertexCount();
+  test::Random random(97);
+  sim::ColumnMatrix<T> packed(layout, columns);
+  for (T& value : packed.values) value = static_cast<T>(random(-1, 1));
+  packed.addMass(T(200), std::vector<T>(n, T(1)));
+  BlockMatrix<T> a(&pattern);
+  // What no element couples, at uneven tips, is zero in a true matrix.
+  for (const sim::BlockDiagonal& d : columns.diagonals) {
+    for (int l = 0; !d.symmetric() && l < columns.stride; ++l) {
+      const int m = l + d.offset;
+      const bool both = m >= 0 && l < layout.length[d.a] && m < layout.length[d.b];
+      const int i = mesh.shape.column_first[d.a] + l, j = mesh.shape.column_first[d.b] + m;
+      if (both && pattern.find(std::max(i, j), std::min(i, j)) >= 0) continue;
+      for (int k = 0; both && k < 9; ++k) packed.values[d.values + k * columns.stride + l] = 0;
+    }
+  }
+  packed.toBlocks(mesh, a);
+  std::vector<sim::VertexConstraint> constraints;
+  for (int i = 0; i < n; i += 7) {
+    if (!mesh.isRoot(i)) constraints.push_back({i, Eigen::Matrix3d::Zero(), Vec3::Zero(), 3, {}});
+  }
+  const std::vector<V3<T>> x = test::plain<T>(mesh.shape.positions);
+  sim::PatchSpace<T> patches(mesh, layout, columns);
+  EXPECT_GT(patches.patches(), 2);
+  EXPECT_LT(patches.patches(), n / 12);
+  std::vector<V3<T>> r(n), z[2] = {std::vector<V3<T>>(n), std::vector<V3<T>>(n)};
+  for (V3<T>& p : r) p = {static_cast<T>(random(-1, 1)), static_cast<T>(random(-1, 1)), static_cast<T>(random(-1, 1))};
+  for (const bool by_blocks : {false, true}) {
+    ASSERT_TRUE(by_blocks ? patches.make(a, x, constraints) : patches.make(packed, x, constraints));
+    sim::ColumnField<T> field(layout);
+    field.pack(layout, r);
+    patches.solve(field);
+    field.setZero();
+    patches.add(field);
+    field.unpack(layout, z[by_blocks]);
+  }
+  EXPECT_EQ(patches.unknown(constraints), 0);
+  std::vector<sim::VertexConstraint> more = constraints;
+  more.push_back({mesh.shape.column_first[1] + 3, Eigen::Matrix3d::Zero(), Vec3::Zero(), 3, {}});
+  EXPECT_EQ(patches.unknown(more), (mesh.shape.column_first[1] + 3) % 7 == 0 ? 0 : 1);
+  for (int i = 0; i < n; ++i) {
+    EXPECT_NEAR(static_cast<double>(z[0][i].x), static_cast<double>(z[1][i].x), bound);
+    if (mesh.isRoot(i) || i % 7 == 0) {
+      EXPECT_EQ(dot(z[0][i], z[0][i]), T(0)) << i;
+    }
+  }
+  // P r of a projection: z . A z = z . r, and z moves each patch rigidly: vertices of one column keep their distances
+  // to first order.
+  std::vector<V3<T>> az(n);
+  sim::multiply<T>(a, z[0], az);
+  const double along = sim::innerProduct<T>(z[0], r), energy = sim::innerProduct<T>(z[0], az);
+  EXPECT_GT(along, 0);
+  EXPECT_NEAR(energy / along, 1, 1e-3) << "the raised diagonal takes a little";
+  int kept = 0;
+  for (int i = 0; i + 1 < n; ++i) {
+    const bool one_patch = mesh.column_of[i] == mesh.column_of[i + 1] && !mesh.isRoot(i) &&
+                           mesh.layer_of[i] % sim::PatchSpace<T>::kLayers != 0 && i % 7 != 0 && (i + 1) % 7 != 0;
+    if (!one_patch) continue;
+    EXPECT_NEAR(static_cast<double>(dot(z[0][i + 1] - z[0][i], x[i + 1] - x[i])), 0, bound) << i;
+    ++kept;
+  }
+  EXPECT_GT(kept, n / 3);
+}
+
+TEST(TwoLevel, PatchesAnswerBest) {
+  patchesAnswerBest<float>(1e-5);
+  patchesAnswerBest<double>(1e-12);
+}
+
+// P is symmetric and positive, and beats the 3x3 blocks by more the longer the hair.
+TEST(TwoLevel, IsSymmetricAndNeedsFewerIterationsThanBlocks) {
+  const System system(0.002);
+  const BlockMatrix<double> a = system.matrixAt<double>(system.positions);
+  auto preconditioner = system.preconditioner(a, Solver::kTwoLevel);
+  const std::size_t n = system.positions.size();
+  test::Random random(95);
+  std::vector<V3<double>> r[2], z[2];
+  for (int side = 0; side < 2; ++side) {
+    std::vector<Vec3> values(n);
+    for (std::size_t i = 0; i < n; ++i)
+      values[i] = system.mesh.isRoot(static_cast<int>(i)) ? Vec3(0, 0, 0) : random.vector(1);
+    r[side] = test::plain<double>(values);
+    z[side].resize(n);
+    preconditioner.apply(r[side], z[side]);
+  }
+  double across[2] = {0, 0}, along = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    across[0] += dot(r[0][i], z[1][i]);
+    across[1] += dot(r[1][i], z[0][i]);
+    along += dot(r[0][i], z[0][i]);
+  }
+  EXPECT_GT(along, 0);
+  EXPECT_NEAR(across[0], across[1], 1e-9 * along);
+  const Problem p = makeProblem(system, 0, random);
+  sim::StopRule<double> stop;
+  stop.relative = 1e-4;
+  Eigen::VectorXd x;
+  const int blocks = solve<double>(system, a, p, Solver::kBlockJacobi, stop, x).iterations;
+  const int levels = solve<double>(system, a, p, Solver::kTwoLevel, stop, x).iterations;
+  std::printf("iterations: 3x3 blocks %d, two levels %d\n", blocks, levels);
+  EXPECT_LT(3 * levels, 2 * blocks);
+}
+
+// The factors of layers and of columns are direct solves of the matrix without the couplings between them and without
+// the directions that constraints remove, in both layouts.
+template <class T>
+void partsAreSolvedWithoutRemovedDirections(double bound) {
+  test::PatchOptions o;
+  o.nx = 4, o.nz = 3, o.layers = 11, o.mixed = o.uneven = true;
+  const sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(o));
+  const sim::BlockPattern pattern = sim::systemPattern(mesh);
+  const sim::ColumnLayout layout(mesh);
+  const sim::ColumnPattern columns(mesh, layout);
+  const int n = mesh.vertexCount();
+  test::Random random(92);
+  sim::ColumnMatrix<T> packed(layout, columns);
+  for (T& value : packed.values) value = static_cast<T>(random(-1, 1));
+  packed.addMass(T(40), std::vector<T>(n, T(1)));
+  BlockMatrix<T> a(&pattern);
+  packed.toBlocks(mesh, a);
+  std::vector<sim::VertexConstraint> constraints;
+  std::vector<Eigen::Matrix3d> keep(n, Eigen::Matrix3d::Identity());
+  for (int i = 0; i < n; ++i) {
+    const int count = mesh.isRoot(i) ? 0 : static_cast<int>(random(0, 3.999));
+    const Vec3 d = random.direction();
+    if (count == 1) keep[i] -= d * d.transpose();
+    if (count == 2) keep[i] = d * d.transpose();
+    if (count == 3) keep[i].setZero();
+    if (count > 0) constraints.push_back({i, keep[i], Vec3::Zero(), count, {d, d, d}});
+  }
+  const Eigen::MatrixXd whole = test::dense(a), s = filterMatrix(keep);
+  sim::LayerFactor<T> layers(mesh, layout, columns);
+  sim::StrandFactor<T> strands(mesh, layout, columns);
+  for (const bool by_strands : {false, true}) {
+    const auto apart = [&](int i, int j) {
+      if (i == j) return false;
+      if (!by_strands) return mesh.layer_of[i] != mesh.layer_of[j];
+      return mesh.column_of[i] != mesh.column_of[j] || mesh.isRoot(i) || mesh.isRoot(j);
+    };
+    Eigen::MatrixXd part = whole;
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) {
+        if (apart(i, j)) part.block<3, 3>(3 * i, 3 * j).setZero();
+      }
+    }
+    part = (s * part * s).eval();
+    for (int i = 0; i < n; ++i) {
+      const double trace = whole.block<3, 3>(3 * i, 3 * i).trace();
+      part.block<3, 3>(3 * i, 3 * i) += trace * (Eigen::Matrix3d::Identity() - keep[i]);
+    }
+    std::vector<Vec3> wanted(n);
+    for (int i = 0; i < n; ++i) wanted[i] = by_strands && mesh.isRoot(i) ? Vec3(Vec3::Zero()) : random.vector(1);
+    const Eigen::VectorXd product = part * stackedPoints(wanted);
+    std::vector<Vec3> forces(n);
+    for (int i = 0; i < n; ++i) forces[i] = product.segment<3>(3 * i);
+    const std::vector<V3<T>> r = test::plain<T>(forces);
+    for (const bool by_blocks : {false, true}) {
+      std::vector<V3<T>> z(n, V3<T>{0, 0, 0});
+      const auto factor = [&](auto& parts) {
+        if (by_blocks) {
+          parts.factor(a, constraints);
+        } else {
+          parts.factor(packed, constraints);
+        }
+      };
+      if (by_strands) {
+        factor(strands);
+        strands.addSolution(r, T(1), z);
+      } else {
+        factor(layers);
+        sim::ColumnField<T> field(layout);
+        field.pack(layout, r);
+        layers.solve(field);
+        field.unpack(layout, z);
+      }
+      EXPECT_LT((test::stacked<T>(z) - stackedPoints(wanted)).cwiseAbs().maxCoeff(), bound) << by_strands << by_blocks;
+    }
+  }
+}
+
+TEST(TwoLevel, PartsAreSolvedWithoutRemovedDirections) {
+  partsAreSolvedWithoutRemovedDirections<float>(1e-4);
+  partsAreSolvedWithoutRemovedDirections<double>(1e-12);
+}
+
+// Contacts that P knows of leave it symmetric and positive, and cost hardly an iteration; those that it does not know
+// of cost about one each.
+TEST(TwoLevel, ContactsItKnowsOfCostFewIterations) {
+  const System system(0.002);
+  const BlockMatrix<double> a = system.matrixAt<double>(system.positions);
+  sim::StopRule<double> stop;
+  stop.relative = 1e-4;
+  sim::SolverScratch<double> scratch;
+  scratch.resize(system.mesh.vertexCount());
+  const auto iterations = [&](int removed, bool known) {
+    test::Random random(96);
+    const Problem p = makeProblem(system, removed, random);
+    auto preconditioner = system.preconditioner(a, Solver::kTwoLevel);
+    if (known) preconditioner.update(a, Solver::kTwoLevel, p.constraints);
+    const Filter<double> filter = filterOf<double>(p);
+    std::vector<V3<double>> r[2], z[2];
+    for (int side = 0; side < 2; ++side) {
+      std::vector<Vec3> values(system.positions.size());
+      for (Vec3& value : values) value = random.vector(1);
+      r[side] = test::plain<double>(values);
+      filter.apply(r[side]);
+      z[side].resize(values.size());
+      preconditioner.apply(r[side], z[side]);
+    }
+    const double along = sim::innerProduct<double>(r[0], z[0]);
+    EXPECT_GT(along, 0);
+    EXPECT_NEAR(sim::innerProduct<double>(r[0], z[1]), sim::innerProduct<double>(r[1], z[0]), 1e-9 * along);
+    auto x = test::plain<double>(p.guess);
+    const auto rhs = test::plain<double>(p.rhs);
+    const auto report = sim::solveModifiedPcg<double>(a, rhs, filter, preconditioner, stop, scratch, x);
+    EXPECT_TRUE(report.converged);
+    return report.iterations;
+  };
+  const int none = iterations(0, false);
+  for (const int removed : {1, 2, 3}) {
+    const int known = iterations(removed, true), unknown = iterations(removed, false);
+    std::printf("%d directions removed of every other vertex: %d iterations, unknown %d; without contacts %d\n",
+                removed, known, unknown, none);
+    EXPECT_LE(known, none + 2);
+    EXPECT_LT(known, unknown);
+  }
+}
+
+}  // namespace
+}  // namespace tests
