@@ -73,6 +73,7 @@ SweptBox boundPaths(const ContactSearch& search, std::span<const Vec3> positions
 // Colliders whose surroundings, over the whole step, overlap the box of the vertices' paths.
 void collectNear(const ContactSearch& search, const SweptBox& whole, std::vector<NearCollider>& near) {
   near.clear();
+  near.reserve(search.colliders.count());
   const Vec3 low = whole.low[0].cwiseMin(whole.low[1]), high = whole.high[0].cwiseMax(whole.high[1]);
   for (int k = 0; k < search.colliders.count(); ++k) {
     const Ellipsoid& e = search.colliders.body(k);
@@ -124,8 +125,8 @@ void collectReached(const ContactSearch& search, const Vec3& shift, ContactScrat
   const std::size_t count = scratch.near.size(), all = search.colliders.count(), clusters = scratch.boxes.size();
   scratch.tests.of += static_cast<long>(search.vertices.size() * all);
   scratch.tests.skipped += static_cast<long>(search.vertices.size() * (all - count));
-  if (count == 0) return;
   if (scratch.reached.size() < all * clusters) scratch.reached.resize(all * clusters);  // once, whatever comes near
+  if (count == 0) return;
   for (std::size_t c = 0; c < clusters; ++c) {
     const SweptBox& box = scratch.boxes[c];
     const std::size_t first = end;

@@ -64,8 +64,6 @@ void carry(const TakenStep& step, const HairState& state, EnergyGuard& scratch) 
     scratch.roots_after.push_back(state.positions[root]);
   }
   const Eigen::Isometry3d motion = rigidMotion(scratch.roots_before, scratch.roots_after);
-  scratch.carried.resize(state.positions.size());
-  scratch.plain.resize(state.positions.size());
   for (std::size_t i = 0; i < state.positions.size(); ++i) scratch.carried[i] = motion * step.positions[i];
   for (int c = 0; c < mesh.columnCount(); ++c) scratch.carried[mesh.shape.column_first[c]] = scratch.roots_after[c];
 }
@@ -171,6 +169,12 @@ bool bodiesStandStill(const TakenStep& step, const Colliders& colliders, const E
 
 }  // namespace
 
+EnergyGuard::EnergyGuard(const HairMesh& mesh) {
+  const int n = mesh.vertexCount();
+  carried.resize(n), pushed_to.resize(n), plain.resize(n), pushed.resize(n);
+  roots_before.reserve(mesh.columnCount()), roots_after.reserve(mesh.columnCount());
+}
+
 double limitEnergy(const TakenStep& step, bool solved, EnergyGuard& scratch, HairState& state) {
   const Motion motion = judge(step, state);
   if (motion == Motion::kNotFinite || (motion == Motion::kCalm && solved && !neverLinear(step))) return 1;
@@ -200,7 +204,6 @@ double limitPushes(const TakenStep& step, std::span<const Vec3> unpushed, Energy
   double stored = potential(step, state.positions, scratch);
   if (stored + account.kinetic <= account.bound) return 1;
   double pushed = 0;  // J, of motion
-  scratch.pushed.resize(unpushed.size());
   for (int i = 0; i < step.mesh.vertexCount(); ++i) {
     scratch.pushed[i] = state.positions[i] != unpushed[i];
     if (!step.mesh.isRoot(i) && scratch.pushed[i]) pushed += kineticOf(step, scratch, state, i);

@@ -33,11 +33,11 @@ struct TakenStep {
   Vec3 wind;                                    // m/s
 };
 
-// Sized by the first violent step.
 struct EnergyGuard {
   std::vector<Vec3> carried, roots_before, roots_after, pushed_to;
   std::vector<V3<double>> plain;
   std::vector<unsigned char> pushed;
+  explicit EnergyGuard(const HairMesh& mesh);
 };
 
 // Does nothing to a step that leaves a value not finite, that ends below its bound, or that is gentle, of firm hair, and

@@ -18,6 +18,9 @@ struct Contact {
   Vec3 grip = Vec3::Zero();      // unit tangent: the way friction pushes it while it slides; zero: it has not slid
 };
 
+// Contacts a vertex, in the mean over all, that steps have memory for from the first: more take it when they come.
+inline constexpr int kMostTouches = 2;
+
 struct HairState {
   std::vector<Vec3> positions;   // m, world, one per vertex
   std::vector<Vec3> velocities;  // m/s

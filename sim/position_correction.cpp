@@ -103,7 +103,7 @@ PositionCorrection::PositionCorrection(const HairMesh& mesh) : minimizer(mesh) {
   for (int i = 0; i < n; ++i) {
     if (!mesh.isRoot(i)) all_vertices.push_back(i);
   }
-  penetrations.reserve(all_vertices.size());
+  penetrations.reserve(static_cast<std::size_t>(kMostTouches) * n);
   clusterVertices(mesh, search);
   corrected.reserve(all_vertices.size());
 }

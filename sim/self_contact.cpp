@@ -364,9 +364,10 @@ SelfContact::SelfContact(const HairMesh& mesh) {
   double across = 0;
   for (const Edge& edge : mesh.horizontal_edges) across += edge.rest_length;
   stride = kStrideShare * across / static_cast<double>(mesh.horizontal_edges.size());
-  pairs.reserve(16 * mesh.external_vertices.size());
+  pairs.reserve(32 * mesh.external_vertices.size());
   boxes.reserve(prisms.size());
-  listed_at.reserve(mesh.vertexCount());
+  const int n = mesh.vertexCount();
+  listed_at.reserve(n), unmoved.reserve(n), moved.reserve(n), between.reserve(n), way.reserve(n);
 }
 
 int resolveSelfContacts(const SelfContactStep& step, SelfContact& self, HairState& state) {

@@ -69,6 +69,7 @@ struct StepContext::Parts {
         clock{c},
         pattern(systemPattern(m)),
         material(m, pattern),
+        energy_guard(m),
         buzz(m),
         tangles(m),
         rest_check(m),
@@ -346,6 +347,7 @@ StepReport advance(const HairMesh& mesh, const SimParams& asked, const StepInput
   SimParams params = bearable(mesh, asked);
   StepReport report;
   parts.clock.start();
+  state.contacts.reserve(static_cast<std::size_t>(kMostTouches) * mesh.vertexCount());
   report.refreshes = {!refreshModel(params, parts), 1};
   guardGiven(given, parts, state, report);
   const StepInput input = carryOverJump(params, given, dt, parts, state, report);

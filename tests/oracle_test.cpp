@@ -74,25 +74,25 @@ TEST(Oracle, HeadShakeIsThatOfThePlainImplementation) {
   const sim::HairMesh& mesh = actor.haircut->mesh;
   const Solver solvers[] = {Solver::kWarped, Solver::kTwoLevel, Solver::kPaper, Solver::kDirect};
   std::vector<sim::StepContext> contexts;
-  for (int k = 0; k < 3; ++k) contexts.emplace_back(mesh);
-  std::vector<sim::HairState> states(3, actor.hair);
+  for (std::size_t k = 0; k < std::size(solvers); ++k) contexts.emplace_back(mesh);
+  std::vector<sim::HairState> states(std::size(solvers), actor.hair);
   oracle::PlainContext plain(mesh);
   sim::HairState other = actor.hair;
   const std::vector<sim::Vec3> start = actor.hair.positions;
   sim::SimParams params = exactParams(false);
-  Comparison worst[3];
+  Comparison worst[std::size(solvers)];
   for (int frame = 1; frame <= 16; ++frame) {
     app::moveActor(kFrame, actor);
     const sim::StepInput input{actor.roots, actor.ellipsoids, frame * kFrame};
     oracle::plainAdvance(mesh, params, input, kFrame, plain, other);
-    for (int k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < std::size(solvers); ++k) {
       params.solver = solvers[k];
       EXPECT_TRUE(sim::advance(mesh, params, input, kFrame, contexts[k], states[k]).converged);
       compareStates(states[k], other, worst[k]);
     }
   }
   EXPECT_GT(test::largestDistance(start, other.positions), 0.1);
-  for (int k = 0; k < 3; ++k) {
+  for (std::size_t k = 0; k < std::size(solvers); ++k) {
     std::printf("%s: positions differ by %.1e m, velocities by %.1e m/s\n",
                 sim::findParam("solver")->choices[static_cast<int>(solvers[k])], worst[k].position, worst[k].velocity);
     EXPECT_LT(worst[k].position, 2e-8);

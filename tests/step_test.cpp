@@ -28,6 +28,18 @@ void* operator new(std::size_t size) {
 void* operator new[](std::size_t size) {
   return countedAllocation(size);
 }
+void* operator new(std::size_t size, std::align_val_t line) {
+  if (counting) ++allocations;
+  const std::size_t at = static_cast<std::size_t>(line);
+  if (void* p = std::aligned_alloc(at, (size + at - 1) / at * at)) return p;
+  throw std::bad_alloc();
+}
+void operator delete(void* p, std::align_val_t) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
+  std::free(p);
+}
 // std::stable_sort asks for its buffer in this way.
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   if (counting) ++allocations;
@@ -445,6 +457,45 @@ TEST(Step, AllocatesNothingWithEveryOptionOnceWarm) {
     counting = false;
   }
   EXPECT_EQ(allocations, 0);
+}
+
+// Nor the first time that the head is thrown about and that bodies come from all sides, in any precision.
+TEST(Step, AllocatesNothingInTheFirstViolentStep) {
+  for (const sim::Precision precision : {sim::Precision::kFloat, sim::Precision::kMixed, sim::Precision::kDouble}) {
+    for (const bool self : {false, true}) {
+      sim::SimParams params;
+      params.precision = precision;
+      params.self_collide = self;
+      test::PatchOptions o;
+      o.layers = 12;
+      Hair hair(test::combedShape(o), params);
+      hair.bodies.resize(2);
+      for (sim::Ellipsoid& body : hair.bodies) body.center = Vec3(0, 5, 0), body.radii = Vec3(0.05, 0.08, 0.06);
+      for (int n = 0; n < 3; ++n) hair.step(kFrame);
+      const auto rest = hair.roots;
+      allocations = 0;
+      double way = 0;
+      int most = 0;
+      for (int n = 0; n < 60; ++n) {
+        const Eigen::AngleAxisd turn(2 * std::sin(1.1 * n), Vec3(1, 0.3, 0.2).normalized());
+        for (std::size_t c = 0; c < rest.size(); ++c) hair.roots[c] = turn * rest[c];
+        for (int b = 0; b < 2; ++b) {
+          const Vec3 axis(b, 0, 1 - b);
+          hair.bodies[b].velocity = 0.17 * 30 * std::cos(0.5 * n) * axis;
+          hair.bodies[b].center = Vec3(0, -0.12, 0) + 0.17 * std::sin(0.5 * n) * axis;
+        }
+        const std::vector<Vec3> before = hair.state.positions;
+        counting = true;
+        const sim::StepReport report = hair.step(kFrame);
+        counting = false;
+        way = std::max(way, test::largestDistance(before, hair.state.positions));
+        most = std::max(most, report.contacts);
+      }
+      EXPECT_EQ(allocations, 0) << "precision " << static_cast<int>(precision) << ", self-contact " << self;
+      EXPECT_GT(way, 0.3 * hair.mesh.hair_length) << "no step was violent";
+      EXPECT_GT(most, hair.mesh.columnCount());
+    }
+  }
 }
 
 // Nor where hair that hangs still is watched by a twin (sim/rest_check.h), which is put to the rest shape.
