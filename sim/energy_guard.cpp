@@ -15,8 +15,8 @@ constexpr double kLongStep = 1.0 / 50;  // s
 // Pa; a step is gentle over so much less as the forces that are least linear are stiffer: volume's, and the walls', for
 // what turns is also stretched, to second order.
 constexpr double kSoftVolume = 1e4, kSoftAlong = 4e5, kSoftAcross = 6e4;
-// No step is near to linear of hair that is limp, folded as it hangs: its load strains its walls by more than this; or of
-// hair that is stiffer one way by such a ratio than another: it buckles. Along the hair every style is stiffer.
+// No step is near to linear of hair that is limp, folded as it hangs: its load strains its walls by more than this; or
+// of hair that is stiffer one way by such a ratio than another: it buckles. Along the hair every style is stiffer.
 constexpr double kLimp = 1, kUneven = 100, kUnevenAlong = 3e4;
 constexpr int kHalvings = 12;
 constexpr double kStill = 1e-3;  // m/s of a body's surface against the roots
@@ -25,8 +25,8 @@ enum class Motion { kCalm, kViolent, kNotFinite };
 
 Motion judge(const TakenStep& step, const HairState& state) {
   const SimParams& params = step.params;
-  const double soft = std::sqrt(std::min({1.0, kSoftVolume / params.volume, kSoftAlong / params.stretch_along,
-                                          kSoftAcross / params.stretch_across}));
+  const double soft = std::sqrt(std::min(
+      {1.0, kSoftVolume / params.volume, kSoftAlong / params.stretch_along, kSoftAcross / params.stretch_across}));
   const double most = (step.dt > kLongStep ? kGentleLong : kGentle) * soft * step.mesh.hair_length;
   Motion motion = Motion::kCalm;
   for (int c = 0; c < step.mesh.columnCount(); ++c) {
@@ -134,10 +134,9 @@ double shorten(const TakenStep& step, std::span<const Vec3> back, double most, i
   double kept = 1;
   for (int halving = 0; !(stored <= most) && kept > 0; ++halving) {
     const double share = halving < halvings ? 0.5 : 0;
-    for (std::size_t i = 0; i < back.size(); ++i)
-      state.positions[i] = back[i] + share * (state.positions[i] - back[i]);
+    for (std::size_t i = 0; i < back.size(); ++i) state.positions[i] = back[i] + share * (state.positions[i] - back[i]);
     kept *= share;
-    if (kept > 0) stored = potential(step, state.positions, scratch);
+    stored = potential(step, state.positions, scratch);
   }
   return kept;
 }

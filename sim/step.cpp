@@ -199,7 +199,13 @@ void guardGiven(const StepInput& input, Parts& parts, HairState& state, StepRepo
   Trouble trouble;
   trouble.given = true;
   heal(*parts.mesh, input.roots, parts.good, state, trouble);
-  report.recoveries += trouble.ailment != Ailment::kNone;
+  if (trouble.ailment == Ailment::kNone) return;
+  ++report.recoveries;
+  // Where the hair was when it was last well: of absurd places no force says anything.
+  const std::vector<Vec3>& well = parts.good.positions.empty() ? parts.mesh->shape.positions : parts.good.positions;
+  parts.plain_positions.clear();
+  for (const Vec3& x : well) parts.plain_positions.push_back({x.x(), x.y(), x.z()});
+  nameForce(parts.material.model, parts.plain_positions, trouble);
   report.trouble = trouble;
 }
 

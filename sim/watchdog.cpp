@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kFastest = 500;        // m/s against the root; beyond it a velocity is absurd
 constexpr double kFastestPushed = 100;  // m/s against the root
+// m/s of one root against the others: a head turned round within a thousandth of a second has them 300 apart.
+constexpr double kFastestRoot = 5000;
 // Beyond both together a position is absurd: no hand or foot that hair could be dragged along by is two metres from the
 // head. (A backflip at twenty times its speed takes short hair a metre and a half.)
 constexpr double kLengths = 4;  // hair lengths from the root
@@ -18,12 +20,39 @@ constexpr double kFarther = 2;  // m
 constexpr double kKeptVelocity = 0.5;
 
 const char* ailmentName(Ailment ailment) {
-  constexpr const char* kNames[] = {"well", "not finite", "absurdly far from its root", "absurdly fast"};
+  constexpr const char* kNames[] = {"well", "not finite", "absurdly far from its root", "absurdly fast",
+                                    "a root absurdly far from the others or fast against them"};
   return kNames[static_cast<int>(ailment)];
 }
 
 int rootOf(const HairMesh& mesh, int vertex) {
   return mesh.shape.column_first[mesh.column_of[vertex]];
+}
+
+// The middle one of each coordinate, of the finite ones; what a few absurd values cannot move. Zero of none.
+Vec3 middleOf(std::vector<Vec3> values) {
+  std::erase_if(values, [](const Vec3& v) { return !v.allFinite(); });
+  Vec3 middle = Vec3::Zero();
+  if (values.empty()) return middle;
+  const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  for (int axis = 0; axis < 3; ++axis) {
+    std::nth_element(values.begin(), half, values.end(),
+                     [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });
+    middle[axis] = (*half)[axis];
+  }
+  return middle;
+}
+
+// Extent of a value over the roots, in its widest coordinate; NaN where one is not finite.
+template <class Value>
+double extentOf(const HairMesh& mesh, const Value& value) {
+  Vec3 low = value(0), high = low;
+  for (int c = 1; c < mesh.columnCount(); ++c) {
+    const Vec3 at = value(c);
+    if (!at.allFinite()) return NAN;
+    low = low.cwiseMin(at), high = high.cwiseMax(at);
+  }
+  return low.allFinite() ? (high - low).maxCoeff() : NAN;
 }
 
 // A value that is not finite is the largest of all.
@@ -105,15 +134,34 @@ Eigen::Isometry3d rigidMotion(std::span<const Vec3> from, std::span<const Vec3> 
   return motion;
 }
 
+// The scalp has them all about as far from where they are going: a root that is not is brought to where the others say.
+void healRoots(const HairMesh& mesh, std::span<const Vec3> roots, HairState& state, Trouble& trouble) {
+  const auto rootAt = [&](int c) { return mesh.shape.column_first[c]; };
+  const auto wayOf = [&](int c) { return Vec3(state.positions[rootAt(c)] - roots[c]); };
+  const auto speedOf = [&](int c) { return state.velocities[rootAt(c)]; };
+  const double reach = kLengths * mesh.hair_length + kFarther;
+  if (extentOf(mesh, wayOf) <= reach && extentOf(mesh, speedOf) <= kFastestRoot) return;
+  std::vector<Vec3> ways, speeds;
+  for (int c = 0; c < mesh.columnCount(); ++c) ways.push_back(wayOf(c)), speeds.push_back(speedOf(c));
+  const Vec3 way = middleOf(ways), speed = middleOf(speeds);
+  for (int c = 0; c < mesh.columnCount(); ++c) {
+    const double off = (ways[c] - way).cwiseAbs().maxCoeff(), fast = (speeds[c] - speed).cwiseAbs().maxCoeff();
+    const bool finite = ways[c].allFinite() && speeds[c].allFinite();
+    if (finite && off <= reach && fast <= kFastestRoot) continue;
+    const int root = rootAt(c);
+    state.positions[root] = roots[c] + way;
+    state.velocities[root] = speed;
+    ++trouble.vertices;
+    if (trouble.ailment != Ailment::kNone) continue;
+    trouble.ailment = finite ? Ailment::kOffScalp : Ailment::kNotFinite;
+    trouble.vertex = root, trouble.column = c, trouble.layer = 0;
+  }
+}
+
 void heal(const HairMesh& mesh, std::span<const Vec3> roots, const GoodState& good, HairState& state,
           Trouble& trouble) {
   // Roots first: all else is measured against them.
-  for (int c = 0; c < mesh.columnCount(); ++c) {
-    const int root = mesh.shape.column_first[c];
-    if (state.positions[root].allFinite() && state.velocities[root].allFinite()) continue;
-    state.positions[root] = roots[c];
-    state.velocities[root].setZero();
-  }
+  healRoots(mesh, roots, state, trouble);
   std::vector<int> ill;
   for (int i = 0; i < mesh.vertexCount(); ++i) {
     const Ailment ailment = examine(mesh, state, i);

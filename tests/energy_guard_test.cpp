@@ -74,7 +74,7 @@ struct Flung {
   Hair hair{test::combedShape(test::mixedPatch(7, 0.3)), hairWithoutBody()};
   sim::HairState start = hair.state;
   sim::ForceModel<double> model = sim::makeForceModel(hair.mesh, sim::systemPattern(hair.mesh), hair.params);
-  sim::EnergyGuard scratch;
+  sim::EnergyGuard scratch{hair.mesh};
 
   void fling(double way) {
     test::Random random(5);

@@ -63,15 +63,15 @@ TEST(Watchdog, HealsFaultsAtRandomVerticesAndLeavesTheRestAlone) {
   test::Random random(11);
   const double faults[] = {kNaN, kInfinity, -kInfinity, 1e30, 1e6};
   double time = 0;
-  int injected = 0, found = 0;
+  int injected = 0, found = 0, roots = 0;
   for (int n = 1; n <= 400; ++n) {
     time += kFrame;
     sway(time, rest, hair), sway(time, rest, twin);
     int vertex = -1;
     if (n > 20 && n % 8 == 0) {
       twin.state = hair.state;  // what differs from here on is the fault's doing
-      do vertex = static_cast<int>(random(0, hair.mesh.vertexCount()));
-      while (hair.mesh.isRoot(vertex));
+      vertex = static_cast<int>(random(0, hair.mesh.vertexCount()));
+      if (n % 40 == 0) vertex = hair.mesh.shape.column_first[hair.mesh.column_of[vertex]];
       Vec3& value = random(0, 1) < 0.5 ? hair.state.positions[vertex] : hair.state.velocities[vertex];
       value[static_cast<int>(random(0, 3))] = faults[static_cast<int>(random(0, 5))];
       ++injected;
@@ -91,6 +91,8 @@ TEST(Watchdog, HealsFaultsAtRandomVerticesAndLeavesTheRestAlone) {
     EXPECT_TRUE(report.trouble.given);
     const std::string text = sim::troubleText(report.trouble);
     EXPECT_NE(text.find("vertex " + std::to_string(vertex) + " (column "), std::string::npos) << text;
+    EXPECT_NE(text.find("largest force there: "), std::string::npos) << text;
+    roots += hair.mesh.isRoot(vertex);
     found += report.recoveries;
     // The healed vertex was put back where it was and lost half of its speed against its root.
     const std::vector<int> distance = distancesFrom(hair.mesh, vertex);
@@ -100,7 +102,28 @@ TEST(Watchdog, HealsFaultsAtRandomVerticesAndLeavesTheRestAlone) {
     }
   }
   EXPECT_GT(injected, 40);
+  EXPECT_GT(roots, 8);
   EXPECT_EQ(found, injected);
+}
+
+TEST(Watchdog, HealingTouchesNoBitOfTheOthers) {
+  Hair hair(test::combedShape(patch()), runningHair());
+  for (int n = 0; n < 10; ++n) hair.step(kFrame);
+  const sim::GoodState good{hair.state.positions, hair.state.velocities};
+  for (int vertex = 0; vertex < hair.mesh.vertexCount(); ++vertex) {
+    sim::HairState state = hair.state;
+    state.positions[vertex].y() = 1e6;
+    sim::Trouble trouble;
+    sim::heal(hair.mesh, hair.roots, good, state, trouble);
+    EXPECT_EQ(trouble.vertices, 1);
+    EXPECT_EQ(trouble.vertex, vertex);
+    for (int i = 0; i < hair.mesh.vertexCount(); ++i) {
+      // A root is put where the others say, to rounding.
+      const double off = (state.positions[i] - hair.state.positions[i]).norm();
+      EXPECT_LE(off, i == vertex && hair.mesh.isRoot(i) ? 1e-12 : 0) << vertex << " " << i;
+      if (i != vertex) EXPECT_EQ(state.velocities[i], hair.state.velocities[i]);
+    }
+  }
 }
 
 TEST(Watchdog, HealsManyAtOnceAndTheHairComesBack) {

@@ -33,6 +33,8 @@ void addStiffness(Cases& cases);
 void addRandomParameters(std::uint64_t seed, Cases& cases);
 void addRestless(Cases& cases);
 void addPaper(Cases& cases);
+// Any value that the parameter may have.
+double draw(const sim::ParamField& field, class Random& random);
 // matrix_states.cpp
 void addStates(Cases& cases);
 void addUpsets(Cases& cases);

@@ -29,6 +29,8 @@ bool ownAxis(const sim::ParamField& field) {
   return std::string_view(field.name) == "time_step";
 }
 
+}  // namespace
+
 double draw(const sim::ParamField& field, Random& random) {
   switch (field.kind) {
     case sim::FieldKind::kSwitch:
@@ -42,8 +44,6 @@ double draw(const sim::ParamField& field, Random& random) {
       field.logarithmic ? random.logarithmic(field.minimum, field.maximum) : random(field.minimum, field.maximum);
   return field.kind == sim::FieldKind::kInteger ? clamped(field, std::round(value)) : value;
 }
-
-}  // namespace
 
 void addParameters(Cases& cases) {
   for (const sim::ParamField& field : sim::paramFields()) {
@@ -66,6 +66,8 @@ void addParameters(Cases& cases) {
         dance.params = {{field.name, value}};
         dance.release = kSlowRelease;
         dance.keeps_energy = std::string_view(field.group) != "Numerics";
+        // Of frames that are long enough for it to matter.
+        if (std::string_view(field.name) == "max_steps_per_frame") dance.pace = Pace::kRandomFrames;
         dance.in_short = hair.style == sim::Style::kShort;
         cases.push_back(dance);
         StressCase collapsed = dance;
@@ -140,6 +142,9 @@ void addRestless(Cases& cases) {
     one.clip = ownClips()[k % 5];
     one.play = Play::kForward;
     one.restless = true;
+    // What has come inside while contacts were off is out after a while.
+    one.switches = k % 2 == 1;
+    if (one.switches) one.grace = 0.5;
     one.in_short = k < 6;
     cases.push_back(one);
   }
@@ -185,6 +190,7 @@ void addPaper(Cases& cases) {
     claim(minimize ? "arm-minimized" : "arm-not-minimized", [&](StressCase& one) {
       one.upset = Upset::kArm;
       one.upset_size = 5;
+      one.meets = true;
       one.compared = !minimize;
       one.params = {{"minimize_deformation", minimize}};
     });

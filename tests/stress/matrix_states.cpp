@@ -56,6 +56,10 @@ constexpr std::array<UpsetRow, 23> kUpsets{{{"turn-180", Upset::kTurn, 0, 0},
                                             {"switch-on-12cm", Upset::kSwitchOn, 0.12, 0.1},
                                             {"buried-roots", Upset::kBury, 0, 0.1}}};
 
+bool addsBody(Upset upset) {
+  return upset == Upset::kArm || upset == Upset::kSwitchOn || upset == Upset::kBury;
+}
+
 }  // namespace
 
 void addStates(Cases& cases) {
@@ -94,6 +98,7 @@ void addUpsets(Cases& cases) {
         one.upset = row.upset;
         one.upset_size = row.size;
         one.grace = row.grace;
+        one.meets = addsBody(row.upset);
         one.step = step;
         one.in_short = step == 1.0 / 60 && hair.style != sim::Style::kShoulder;
         cases.push_back(one);
@@ -112,6 +117,7 @@ void addDistances(Cases& cases) {
       one.upset = row.upset;
       one.upset_size = row.size;
       one.grace = row.grace;
+      one.meets = addsBody(row.upset);
       one.params = {{"collider", static_cast<double>(sim::ColliderKind::kSdf)}};
       const bool body = row.upset == Upset::kBodyRise || row.upset == Upset::kArm || row.upset == Upset::kBury;
       one.in_short = hair.style == sim::Style::kLong && (body || row.upset == Upset::kTurn);

@@ -45,7 +45,8 @@ std::string clipName(const char* clip) {
   return name.substr(0, name.find('.'));
 }
 
-constexpr std::array<double, 8> kSteps{1.0 / 480, 1.0 / 240, 1.0 / 120, 1.0 / 60, 1.0 / 30, 1.0 / 20, 1.0 / 15, 0.1};
+constexpr std::array<double, 9> kSteps{1.0 / 1000, 1.0 / 480, 1.0 / 240, 1.0 / 120, 1.0 / 60,
+                                       1.0 / 30,   1.0 / 20,  1.0 / 15,  0.1};
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <sstream>
 
@@ -187,6 +188,25 @@ std::string roundingList(const std::vector<Result>& results, std::uint64_t seed)
   return "\nPassed by two roundings of three, and fell short by the other:\n\n" + text;
 }
 
+constexpr const char *kHandStart = "<!-- by hand -->", *kHandEnd = "<!-- end of by hand -->";
+
+// What people have found out about the cases that fall short, as it stands on the page that is written anew.
+std::string byHand(const std::string& old) {
+  const auto start = old.find(kHandStart), end = old.find(kHandEnd);
+  if (start == std::string::npos || end == std::string::npos || end < start) return "";
+  return "\n" + old.substr(start, end - start) + kHandEnd + "\n";
+}
+
+// What the soaks measured: "" where none ran.
+std::string soakText(const std::vector<Result>& results) {
+  double memory = 0, slowdown = 0;
+  for (const auto& [one, o] : results) {
+    if (one.soak && o.verdict != Verdict::kSkipped)
+      memory = std::max(memory, o.memory_growth), slowdown = std::max(slowdown, o.slowdown);
+  }
+  return slowdown > 0 ? said(" (measured: %.2f MiB, %.2f times)", memory, slowdown) : "";
+}
+
 // A page of the short run speaks of the short run alone.
 std::string leftOutText(const std::string& how, std::size_t run, std::uint64_t seed) {
   if (how != "--short") return "";
@@ -261,6 +281,9 @@ void writeDocument(const std::vector<Result>& results, const std::string& how, s
     by_rounding += o.verdict == Verdict::kPassed && !o.fault.empty();
     failed += o.verdict == Verdict::kFailed;
   }
+  std::ifstream before(folder + "/stability.md");
+  const std::string old((std::istreambuf_iterator<char>(before)), std::istreambuf_iterator<char>());
+  before.close();
   std::ofstream document(folder + "/stability.md");
   document
       << R"(# Stability
@@ -274,6 +297,9 @@ page was written by
       << "build/release/tests/hairmesh-stress " << how << " --seed " << seed << R"( --document docs
 ```
 
+or, several processes beside one another, in parts: with `--parts 16 --part K --csv partK.csv` in place of `--document docs` for every K from
+0 to 15, and then with `--results part*.csv`.
+
 Every case has three parts. In the *motion* the hair is treated as the case says. Then everything stands still with the
 body there. Hair that is not back by then (beside the other side of a shoulder it rests as well) is *released*: the
 colliders are taken away. A case passes when
@@ -284,8 +310,8 @@ colliders are taken away. A case passes when
   vertex, also extrapolated by 0.1 s of velocity; or, without the body, both rest, apart from one another but the hair with no more
   energy than the twin (very soft hair sags into more shapes than one): within 1 % of the hair's length of where they were for a second,
   and no faster than would take them out of that in 0.1 s. Within the stated time: 1 s with the body and 5 s without; 10 s without from
-  impossible states in steps of 1/10 s; 30 s without where a parameter row is turned to its limit and for random draws; without the body counted from when the twin itself has come
-  to rest, which limp hair takes up to a minute for;
+  impossible states in steps of 1/10 s; 30 s without where a parameter row is turned to its limit, stiffness or mass changed by powers of ten, and for
+  random draws; without the body counted from when the twin itself has come to rest, which limp hair may take three times that for;
 - no external vertex (with `collide_inner`: no vertex) is deeper than )"
       << 1e3 * kDeepest
       << R"( mm inside a collider in use, ellipsoid or signed distances, at any frame's end; where a body appears within the hair,
@@ -300,7 +326,11 @@ colliders are taken away. A case passes when
   hair is lifted to that lay within a body before the step counts as left by the motion, as does
   what combing lifts it to. Where a body appears within the hair, what that lifts the hair to counts as left by the motion: roots that lie within a body
   keep its contacts working);
-- the watchdog never steps in, but for the family that injects faults.
+- the watchdog never steps in, but for the family that injects faults;
+- a body that a case adds (an arm, an ellipsoid switched on) comes upon the hair: else the case has tested nothing;
+- over the soak's hour of simulated time, after its first tenth, memory grows by no more than )"
+      << kMemoryGrowth << " MiB, and a step of its last tenth takes no more than " << kSlowdown
+      << R"( times one of its second)" << soakText(results) << R"(.
 
 )"
       << said(
@@ -326,7 +356,8 @@ combing out). Its columns are shown, not counted.
 
 )" << paperSummary(results)
       << paperTable(results) << "\n## Cases that fall short\n\n"
-      << failureList(results, seed) << roundingList(results, seed) << leftOutText(how, results.size(), seed);
+      << failureList(results, seed) << byHand(old) << roundingList(results, seed)
+      << leftOutText(how, results.size(), seed);
   document.close();
   if (!document)
     throw app::InputError(folder + "/stability.md", "", "cannot be written", "choose a folder that exists");

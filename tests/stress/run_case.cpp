@@ -12,6 +12,7 @@
 #include "app/fixed_clock.h"
 #include "sim/bearable.h"
 #include "sim/contact.h"
+#include "tests/stress/matrix.h"
 #include "tests/stress/start_states.h"
 #include "tests/stress/surroundings.h"
 
@@ -61,7 +62,7 @@ struct Run {
   double last_intrusion = 0;  // s
   double next_fault = kFaultEvery;
   double raised = 0;  // J, most energy since a body appeared within the hair
-  long iterations = 0, unsolved = 0;
+  long iterations = 0, unsolved = 0, met = 0;
   bool trace = false;
 
   Run(const StressCase& c, std::uint64_t seed, Stage& s)
@@ -175,17 +176,24 @@ void countWork(const sim::StepReport& report, Run& run) {
   run.unsolved += !report.converged;
 }
 
+// Contacts with the body that the case adds, which is the last.
+void countMeetings(Run& run) {
+  const int last = sim::Colliders{run.around.ellipsoids(), run.around.parts()}.count() - 1;
+  for (const sim::Contact& contact : run.hair.state.contacts) run.met += contact.collider == last;
+}
+
 void step(double dt, Run& run) {
   const Eigen::Isometry3d head = run.around.head();
   run.around.move(dt);
   if (run.around.carries()) sim::carryAlong(head, run.around.head(), run.hair.state);
-  if (run.around.intrudes()) run.last_intrusion = run.around.time();
+  if (run.around.intrudes() || run.one.switches) run.last_intrusion = run.around.time();
   if (run.one.restless) {
     for (const sim::ParamField& field : sim::paramFields()) {
-      if (field.kind != sim::FieldKind::kReal || std::string_view(field.group) == "Time") continue;
-      if (!run.random.chance(0.3)) continue;
-      const double low = field.minimum, high = field.maximum;
-      field.set(run.params, field.logarithmic ? run.random.logarithmic(low, high) : run.random(low, high));
+      // Of signed distances the surroundings have none, unless the case began with them.
+      const std::string_view name = field.name;
+      if (std::string_view(field.group) == "Time" || name == "collider") continue;
+      if (!run.one.switches && (name == "collide" || name == "collide_inner")) continue;
+      if (run.random.chance(0.3)) field.set(run.params, draw(field, run.random));
     }
   }
   if (run.one.upset == Upset::kFault && run.around.time() >= run.next_fault) {
@@ -196,6 +204,7 @@ void step(double dt, Run& run) {
   run.outcome.recoveries += report.recoveries;
   run.outcome.carried += report.carried;
   countWork(report, run);
+  if (run.one.meets) countMeetings(run);
   if (run.bodyWithin() && run.around.time() > kIntruderThere)
     run.raised = std::max(run.raised, energyOf(run, run.hair));
   if (run.trace) traceStep(run, dt, report, run.hair);
@@ -418,7 +427,7 @@ void addTwin(const Run& run, std::vector<Hair>& twins) {
 
 void waitForRest(Run& run) {
   run.around.stop();
-  run.last_intrusion = run.around.intrudes() ? run.around.time() : run.last_intrusion;
+  run.last_intrusion = run.around.intrudes() || run.one.switches ? run.around.time() : run.last_intrusion;
   if (run.one.restless) {
     run.params = {};
     run.params.collide = run.one.collide;
@@ -462,6 +471,7 @@ Outcome runCase(const StressCase& one, std::uint64_t seed, bool trace, StageStor
   Run run(one, seed, stage);
   run.trace = trace;
   playMotion(run);
+  if (one.meets && run.met == 0) run.fail("the body that was added never met the hair");
   if (!run.failed()) waitForRest(run);
   run.outcome.iterations = static_cast<double>(run.iterations) / std::max(1, run.outcome.steps);
   run.outcome.unsolved = static_cast<double>(run.unsolved) / std::max(1, run.outcome.steps);

@@ -37,7 +37,7 @@ sim::ColliderKind colliderOf(const StressCase& one) {
 
 WindowCommand windowCommand(const StressCase& one) {
   WindowCommand window;
-  window.command = "hairmesh --motion " + findClip(one.clip) + " --style " +
+  window.command = "hairmesh --motion '" + findClip(one.clip) + "' --style " +
                    std::string(sim::styleName(one.hair.style)) + " --resolution " +
                    std::string(sim::resolutionName(one.hair.resolution));
   const auto also = [&](const std::string& text) { window.note += (window.note.empty() ? "" : "; ") + text; };

@@ -1,5 +1,6 @@
 #include "tests/stress/surroundings.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -10,9 +11,10 @@ constexpr double kHalf = 0.5, kQuarter = 0.25;  // s
 constexpr double kShakeAmplitude = 0.2;         // m
 constexpr double kNodAngle = 1;                 // rad
 const sim::Vec3 kArmRadii(0.3, 0.035, 0.035);   // m
-constexpr double kArmReach = 0.6;               // m either side of the head
-constexpr double kAppears = 0.2;                // s after the start
-constexpr double kGridSpacing = 0.005;          // m, of an added body's distances; the figure's own take 7 mm
+constexpr double kArmHeight = -0.12;    // m in the head's frame, or higher, where the hair does not reach so low
+constexpr double kArmReach = 0.6;       // m either side of the head
+constexpr double kAppears = 0.2;        // s after the start
+constexpr double kGridSpacing = 0.005;  // m, of an added body's distances; the figure's own take 7 mm
 
 Eigen::Isometry3d rotationAbout(const sim::Vec3& pivot, double angle, const sim::Vec3& axis) {
   Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();
@@ -42,6 +44,11 @@ void setMotion(const sim::Ellipsoid* before, double dt, sim::Ellipsoid& e) {
 
 Surroundings::Surroundings(const StressCase& one, bool distances, Stage& stage, Random& random)
     : one_(one), distances_(distances), stage_(stage), random_(random) {
+  head_ = app::scalpToWorld(stage.actor.body->character, stage.actor.pose);
+  const Eigen::Isometry3d to_head = head_.inverse();
+  double lowest = INFINITY;
+  for (const sim::Vec3& p : stage.settled.positions) lowest = std::min(lowest, (to_head * p).y());
+  arm_height_ = std::max(kArmHeight, lowest + kArmRadii.y());
   pose(0);
 }
 
@@ -148,7 +155,7 @@ bool Surroundings::intruder(sim::Ellipsoid& body) const {
       // A saw: from one side to the other and back, across the hair behind the neck, along the figure's x axis.
       const double way = std::fmod(one_.upset_size * time_, 4 * kArmReach);
       const double at = way < 2 * kArmReach ? way - kArmReach : 3 * kArmReach - way;
-      body.center = head_ * sim::Vec3(0, -0.12, at);
+      body.center = head_ * sim::Vec3(0, arm_height_, at);
       body.rotation = Eigen::Quaterniond(head_.linear());
       body.radii = kArmRadii;
       return true;

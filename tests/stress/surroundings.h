@@ -52,6 +52,7 @@ class Surroundings {
   std::vector<float> intruder_distances_;  // of the body that is added, about its own centre
   sim::DistanceGrid intruder_grid_;
   Eigen::Isometry3d head_ = Eigen::Isometry3d::Identity();
+  double arm_height_ = 0;  // m, in the head's frame
 
   void playClip(double dt);
   void disturb();
