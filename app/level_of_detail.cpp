@@ -18,6 +18,9 @@ struct Coarseness {
   sim::Resolution resolution;
 };
 constexpr std::array<Coarseness, 2> kMeshes{{{420, sim::Resolution::kLow}, {240, sim::Resolution::kMinimal}}};
+// And of the hair's length: a coarse mesh is off by a share of that, two hundredths of long hair that rubs on
+// shoulders.
+constexpr double kHairBelow = 150;
 constexpr double kReturn = 1.2;
 // And below which its steps are so many times as long.
 struct Rate {
@@ -72,21 +75,23 @@ void weighStep(const sim::StepReport& report, const sim::SimParams& params, Acto
   stats.step_error += stepError(mesh, params.integrator, coarse.active ? coarse.hair : actor.hair, actor.error_meter);
 }
 
+// m, from tip to crown and a little more.
+double hairSize(const Actor& actor) {
+  return actor.haircut->mesh.hair_length + 2 * actor.body->character.scalp.head_height;
+}
+
 // A mesh in use goes on up to its own way back.
 void chooseMesh(double size, Demo& demo, Actor& actor) {
   const std::optional<sim::Resolution> before = std::exchange(actor.detail.coarse, std::nullopt);
   if (!demo.scene.skips[kSkipFarMesh]) return;
   bool already = before.has_value();
+  const double hair = size * actor.haircut->mesh.hair_length / hairSize(actor);
   for (const Coarseness& mesh : kMeshes) {
-    if (below(size, mesh.below, already) && coarsePair(actor, mesh.resolution, demo.wardrobe))
+    if (below(size, mesh.below, already) && below(hair, kHairBelow, already) &&
+        coarsePair(actor, mesh.resolution, demo.wardrobe))
       actor.detail.coarse = mesh.resolution;
     if (before == mesh.resolution) already = false;
   }
-}
-
-// m, from tip to crown and a little more.
-double hairSize(const Actor& actor) {
-  return actor.haircut->mesh.hair_length + 2 * actor.body->character.scalp.head_height;
 }
 
 // Whether all of the actor's hair sleeps through the step.

@@ -27,9 +27,8 @@ constexpr std::array<Skip, kSkipCount> kTable{{
      "long steps of a crowd spread over the frames.",
      "tests/skips_sim_test.cpp: Far.StaysWithinItsPixels"},
     {kSkipFarMesh, "far-mesh", kSimulation, "steps", false, "mean 3 pixels over the vertices",
-     "A character smaller than 420 pixels is simulated with its style's low resolution, below 240 with its minimal "
-     "one, "
-     "and drawn with its own.",
+     "A character smaller than 420 pixels, its hair shorter than 150, is simulated with its style's low resolution, "
+     "below 240 with its minimal one, and drawn with its own.",
      "tests/skips_sim_test.cpp: Far.StaysWithinItsPixels"},
     {kSkipPose, "pose", kCharacter, "poses", true, "",
      "A figure whose clip stands still is not posed again, and nothing is handed over while time stands still.",

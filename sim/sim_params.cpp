@@ -123,7 +123,10 @@ std::vector<ParamField> makeTable() {
                                 "Roots that move faster within a step were teleported: the hair is carried along."),
       choice<&P::integrator>("integrator", "Numerics", kIntegrators,
                              "How a step is integrated in time; linearized-euler is the paper's."),
-      choice<&P::solver>("solver", "Numerics", kSolvers, "How the linear systems are solved; paper is its setting."),
+      choice<&P::solver>(
+          "solver", "Numerics", kSolvers,
+          "How the linear systems are solved; paper is its setting. Above 2,000 vertices, and where it is the "
+          "cheaper, warped is two-level."),
       choice<&P::precision>("precision", "Numerics", kPrecisions,
                             "Arithmetic of the linear solver; mixed: float, the rest factor in 16 bits."),
       // What a solve may leave undone comes again every step, as jitter: the upper ends are where that begins to show

@@ -329,7 +329,11 @@ TEST(Far, StaysWithinItsPixels) {
       while (app::projectedSize(without, without.actors[0]) >= pixels) without.camera.distance += 0.05;
       return without.camera.distance;
     };
-    const double begin_steps = distanceAt(505), begin = distanceAt(405), begin_minimal = distanceAt(235);
+    const double begin_steps = distanceAt(505);
+    // And its hair.
+    const double length = without.actors[0].haircut->mesh.hair_length,
+                 whole = length + 2 * without.actors[0].body->character.scalp.head_height;
+    const double begin = distanceAt(std::min(405.0, 145 * whole / length)), begin_minimal = distanceAt(235);
     std::vector<std::vector<float>> truth;
     for (int frame = 0; frame < kFrames; ++frame) {
       run(without, 1);

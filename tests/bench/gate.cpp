@@ -37,7 +37,7 @@ struct Report {
 };
 
 std::string text(const char* format, auto... values) {
-  char line[200];
+  char line[400];
   std::snprintf(line, sizeof line, format, values...);
   return line;
 }
@@ -160,6 +160,16 @@ std::vector<Figure> measureFigures(const GateOptions& options) {
   addConsistencyFigures([&](const Figure& figure) { report.add(figure); });
   addSweepFigures(options, [&](const Figure& figure) { report.add(figure); });
   return std::move(report.figures);
+}
+
+std::string figureTable(const std::vector<Figure>& figures) {
+  std::string out = "| figure | value | bound | | |\n|---|---|---|---|---|\n";
+  for (const Figure& figure : figures) {
+    out += text("| %s | %.3g %s | %s %.3g | %s | ", figure.name.c_str(), figure.value, figure.unit.c_str(),
+                figure.at_least ? "at least" : "at most", figure.bound, figure.holds() ? "ok" : "**short**");
+    out += figure.note + " |\n";
+  }
+  return out;
 }
 
 bool allHold(const std::vector<Figure>& figures) {

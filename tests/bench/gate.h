@@ -27,6 +27,9 @@ std::vector<Figure> measureSpeed(const GateOptions& options);
 // this thread's processor time; ratios compare runs that took turns. Throws app::InputError.
 std::vector<Figure> measureFigures(const GateOptions& options);
 
+// As a Markdown table.
+std::string figureTable(const std::vector<Figure>& figures);
+
 // Whether all hold; prints how many do.
 bool allHold(const std::vector<Figure>& figures);
 

@@ -16,10 +16,12 @@ using sim::Resolution;
 using sim::Style;
 
 constexpr double kFrame = 1.0 / 60, kSameMoment = 1e-9;
-constexpr int kFrames = 60;                          // a second
-constexpr int kSettling = 5, kMeasured = 9;          // s
-constexpr double kHeld = 1.1;                        // of a budget, at most
-constexpr double kMotionShare = 0.3;                 // of the tips' way, that a coarser mesh may miss
+constexpr int kFrames = 60;                  // a second
+constexpr int kSettling = 5, kMeasured = 9;  // s
+constexpr double kHeld = 1.1;                // of a budget, at most
+constexpr double kMotionShare = 0.3;         // of the tips' way, that a coarser mesh may miss
+constexpr double kStepShare = 0.5;           // of the error, that a quarter of the step may leave
+constexpr double kWalkSpread = 0.02;         // of the hair's length: in a walk the tips hardly move against the head
 constexpr double kBudgets[] = {0.3, 0.6, 1.2, 2.4};  // ms, of the low resolution
 constexpr double kLargeBudgets[] = {6, 12};          // ms, of the high one
 
@@ -80,6 +82,13 @@ void addConsistencyFigures(const std::function<void(const Figure&)>& add) {
            off / spread.motion, kMotionShare, false, "",
            formatted("%.4f of a way of %.4f of the hair length", off, spread.motion)});
     }
+    add({formatted("low resolution off the limit of small steps, 1/240 s over 1/60 s: %s", name.c_str()),
+         spread.steps[3] / spread.steps[1], kStepShare, false, "",
+         formatted("%.4f and %.4f of the hair length", spread.steps[3], spread.steps[1])});
+    const ResolutionSpread walk = measureSpread(style, "walk.bvh", true, 1);
+    add({formatted("tips of the low resolution off the high one's, in a walk with contacts: %s", name.c_str()),
+         walk.low, kWalkSpread, false, "",
+         formatted("of the hair length; the medium one's %.4f, of a way of %.4f", walk.medium, walk.motion)});
   }
 }
 

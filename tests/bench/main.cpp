@@ -14,6 +14,7 @@
 #include "tests/bench/contact_sheet.h"
 #include "tests/bench/gate.h"
 #include "tests/bench/ladder.h"
+#include "tests/bench/measured_part.h"
 #include "tests/bench/pareto.h"
 #include "tests/bench/peers.h"
 #include "tests/bench/performance.h"
@@ -33,6 +34,7 @@ struct Asked {
   bench::CollisionOptions collisions;
   std::vector<std::string> sets;
   bench::GateOptions gate;
+  std::string gate_document;
   std::string document, accuracy, performance;
   bool all_hold = true;  // the figures of those that have bounds
 };
@@ -76,7 +78,10 @@ std::vector<Task> tasks() {
        [](Asked& a) { bench::writeCollisionDocument(a.pareto.folder, a.styles.frames); }},
       {"--gate", "every bound on speed and accuracy, one line each; exits 1 where one falls short",
        [](Asked& a) {
-         if (!bench::allHold(bench::measureFigures(a.gate))) a.all_hold = false;
+         const std::vector<bench::Figure> figures = bench::measureFigures(a.gate);
+         if (!bench::allHold(figures)) a.all_hold = false;
+         if (!a.gate_document.empty())
+           bench::writeMeasuredPart(a.gate_document + "/gate.md", "figures", "\n" + bench::figureTable(figures) + "\n");
        }},
   };
 }
@@ -105,6 +110,7 @@ void addOptions(CLI::App& program, Asked& a) {
   program.add_option("--set", a.sets, "NAME=VALUE of a parameter for --collisions")->allow_extra_args(false);
   program.add_option("--rounds", a.gate.rounds, "turns that the compared ways of --gate take")
       ->check(CLI::Range(1, 100));
+  program.add_option("--gate-document", a.gate_document, "also put --gate's figures into this folder's gate.md");
   program.add_option("--performance-document", a.performance,
                      "measure figures, stages, growth and start-up into this folder's performance.md");
   program.add_option("--accuracy-document", a.document,

@@ -129,8 +129,8 @@ std::string stageTables(const std::vector<Row>& rows) {
 }
 
 // The first measurement of this page (2026-11-21, commit 8f47a82), ms: the default's stages in a walk, and a frame of
-// the plain implementation in the same run. How busy the machine is differs from run to run, so that only shares of that
-// frame compare; the plain implementation is still the same.
+// the plain implementation in the same run. How busy the machine is differs from run to run, so that only shares of
+// that frame compare; the plain implementation is still the same.
 struct FirstMeasured {
   const char *style, *resolution;
   int vertices, iterations;
@@ -188,16 +188,6 @@ std::string startUpTable() {
   return out + "\n";
 }
 
-std::string figureTable(const std::vector<Figure>& figures) {
-  std::string out = "### Figures\n\n| figure | value | bound | | |\n|---|---|---|---|---|\n";
-  for (const Figure& figure : figures) {
-    out += text("| %s | %.3g %s | %s %.3g | %s | ", figure.name.c_str(), figure.value, figure.unit.c_str(),
-                figure.at_least ? "at least" : "at most", figure.bound, figure.holds() ? "ok" : "**short**");
-    out += figure.note + " |\n";
-  }
-  return out + "\n";
-}
-
 // Milliseconds against vertices, both logarithmic, one line a style and contender.
 void drawGrowth(const std::string& folder, const std::vector<Row>& rows) {
   const std::string data = folder + "/growth.dat", script = folder + "/growth.gp";
@@ -249,8 +239,9 @@ void writePerformanceDocument(const std::string& folder, const GateOptions& gate
   const std::vector<Row> rows = measureStages();
   drawGrowth(folder, rows);
   std::ofstream(name) << old.substr(0, start) << kRegionStart << "\n\n"
-                      << figureTable(figures) << stageTables(rows) << thenAndNowTable(rows)
-                      << "### Growth\n\n![growth](growth.svg)\n\n"
+                      << "### Figures\n\n"
+                      << figureTable(figures) << "\n"
+                      << stageTables(rows) << thenAndNowTable(rows) << "### Growth\n\n![growth](growth.svg)\n\n"
                       << startUpTable() << old.substr(end);
 }
 
