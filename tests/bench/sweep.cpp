@@ -50,7 +50,7 @@ struct WayList {
 void addIntegrators(SweepSize size, WayList& list) {
   const std::vector<double> rates = size == SweepSize::kFull    ? std::vector<double>{30, 60, 120, 240, 480, 960}
                                     : size == SweepSize::kQuick ? std::vector<double>{30, 60, 120, 240}
-                                                                : std::vector<double>{30, 60};
+                                                                : std::vector<double>{30, 60, 120};
   std::vector<double> tolerances{1e-1, 1e-2, 1e-3};
   if (size == SweepSize::kFull) tolerances.insert(tolerances.end(), {1e-4, 1e-5, 1e-6, 1e-7, 1e-8});
   for (int integrator = 0; integrator < static_cast<int>(Integrator::kCount); ++integrator) {

@@ -18,7 +18,7 @@ enum class SweepSize { kShort, kQuick, kFull };
 // solvers under the other integrators and at the other steps, whose solutions are the same to the tolerance, so that
 // only their time differs, by about the ratio seen here; precision and minimization away from the default, for the same
 // reason. Full: steps 1/30 to 1/960 s, tolerances 1e-1 to 1e-8. Quick: to 1/240 s and 1e-3. Short: what came near the
-// default's place on any chart, steps shorter than its own but for BDF2's left out.
+// default's place on any chart.
 std::vector<sim::SimParams> waysToRun(SweepSize size, bool contacts);
 
 // By how much a way is off, of everything that a chart reports: where hair is thrown about so that every way's
