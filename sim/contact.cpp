@@ -12,11 +12,11 @@ namespace {
 constexpr int kProjections = 32;     // alternating projections between overlapping colliders
 constexpr double kSlackShare = 0.2;  // of the contact offset
 constexpr double kRestoring = 0.2;   // share of a dip below the offset that a step closes
-// m^3 m/s^2 times the density: what closing a dip may cost, J. A stiff edge between root and body presses with a hundred
-// newtons; brought out by the tenth of a millimetre that it dips, light hair would gain more than a motion left it. A
-// coarse mesh's vertex, of 3 cm^3, is lifted by 1 cm for so much.
+// m^3 m/s^2 times the density: what closing a dip may cost, J. A stiff edge between root and body presses with a
+// hundred newtons; brought out by the tenth of a millimetre that it dips, light hair would gain more than a motion left
+// it. A coarse mesh's vertex, of 3 cm^3, is lifted by 1 cm for so much.
 constexpr double kLiftWork = 3e-7;
-constexpr double kReach = 0.01;      // m off the surface up to which a contact is kept, for it may slide over an edge
+constexpr double kReach = 0.01;  // m off the surface up to which a contact is kept, for it may slide over an edge
 constexpr double kCreep = 1e-3, kNoSlip = 1e-9;  // m/s
 constexpr double kLeaving = 1;  // m/s that a body moves away from a vertex at: more than hair follows within a step
 // Paths past a collider

@@ -40,9 +40,9 @@ struct EnergyGuard {
   explicit EnergyGuard(const HairMesh& mesh);
 };
 
-// Does nothing to a step that leaves a value not finite, that ends below its bound, or that is gentle, of firm hair, and
-// was solved to its end with the bodies of the step before (`solved`). Returns the share of the step's motion against
-// the roots that was kept, 1 where all was.
+// Does nothing to a step that leaves a value not finite, that ends below its bound, or that is gentle, of firm hair,
+// and was solved to its end with the bodies of the step before (`solved`). Returns the share of the step's motion
+// against the roots that was kept, 1 where all was.
 double limitEnergy(const TakenStep& step, bool solved, EnergyGuard& scratch, HairState& state);
 
 // The same for a step, gentle or not, whose contacts have moved vertices: what corrections lift, and what follows them,
@@ -50,9 +50,9 @@ double limitEnergy(const TakenStep& step, bool solved, EnergyGuard& scratch, Hai
 double limitCorrections(const TakenStep& step, const Colliders& colliders, EnergyGuard& scratch, HairState& state);
 
 // The same for a step whose self-contacts have pushed vertices apart, from `unpushed` (m): in stiff hair a push of a
-// millimetre may store more than the hair has. In a gentle step the push alone is shortened, and what overlaps then comes
-// out in the steps to come; what was pushed pays first with its motion. Returns the share of the push, or of the step,
-// that was kept.
+// millimetre may store more than the hair has. In a gentle step the push alone is shortened, and what overlaps then
+// comes out in the steps to come; what was pushed pays first with its motion. Returns the share of the push, or of the
+// step, that was kept.
 double limitPushes(const TakenStep& step, std::span<const Vec3> unpushed, EnergyGuard& scratch, HairState& state);
 
 }  // namespace sim

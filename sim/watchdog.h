@@ -46,8 +46,9 @@ void limitSpeed(const HairMesh& mesh, HairState& state);
 Eigen::Isometry3d rigidMotion(std::span<const Vec3> from, std::span<const Vec3> to);
 
 // Heals every ill vertex of `state`: its place becomes the good one, carried along with the roots from there to here,
-// and of the good velocity against the root half is kept. The others keep every bit. A root that is ill, or not where the
-// others are against `roots` (m, one per column, where the scalp takes them), is brought there. `good` may be empty: then it is the rest shape. Counts and names into `trouble`.
+// and of the good velocity against the root half is kept. The others keep every bit. A root that is ill, or not where
+// the others are against `roots` (m, one per column, where the scalp takes them), is brought there. `good` may be
+// empty: then it is the rest shape. Counts and names into `trouble`.
 void heal(const HairMesh& mesh, std::span<const Vec3> roots, const GoodState& good, HairState& state, Trouble& trouble);
 
 // Names the element at the troubled vertex whose force is largest, or not finite, at positions `x` (m).

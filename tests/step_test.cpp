@@ -1,62 +1,13 @@
-// Steps without contacts: free flight, drag, momentum, order of convergence, rest, determinism, watchdog, memory.
+// Steps without contacts: free flight, drag, momentum, order of convergence, rest, determinism, watchdog.
 #include "sim/step.h"
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <cstring>
 #include <limits>
-#include <new>
 
 #include "sim/forces/force_model.h"
 #include "tests/test_meshes.h"
-
-namespace {
-bool counting = false;
-long allocations = 0;
-
-void* countedAllocation(std::size_t size) {
-  if (counting) ++allocations;
-  if (void* p = std::malloc(size)) return p;
-  throw std::bad_alloc();
-}
-}  // namespace
-
-void* operator new(std::size_t size) {
-  return countedAllocation(size);
-}
-void* operator new[](std::size_t size) {
-  return countedAllocation(size);
-}
-void* operator new(std::size_t size, std::align_val_t line) {
-  if (counting) ++allocations;
-  const std::size_t at = static_cast<std::size_t>(line);
-  if (void* p = std::aligned_alloc(at, (size + at - 1) / at * at)) return p;
-  throw std::bad_alloc();
-}
-void operator delete(void* p, std::align_val_t) noexcept {
-  std::free(p);
-}
-void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
-  std::free(p);
-}
-// std::stable_sort asks for its buffer in this way.
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  if (counting) ++allocations;
-  return std::malloc(size);
-}
-void operator delete(void* p) noexcept {
-  std::free(p);
-}
-void operator delete[](void* p) noexcept {
-  std::free(p);
-}
-void operator delete(void* p, std::size_t) noexcept {
-  std::free(p);
-}
-void operator delete[](void* p, std::size_t) noexcept {
-  std::free(p);
-}
 
 namespace {
 
@@ -315,21 +266,6 @@ TEST(Step, ASwingingBundleApproachesTheFineReferenceWithEachIntegratorsOrder) {
   }
 }
 
-// A hair shaken through some steps with a body in the way.
-void shake(Hair& hair, int steps) {
-  const auto rest = hair.roots;
-  hair.bodies.resize(1);
-  for (int n = 1; n <= steps; ++n) {
-    const Eigen::AngleAxisd turn(0.5 * std::sin(0.3 * n), Vec3(0.3, 1, 0.2).normalized());
-    for (std::size_t c = 0; c < rest.size(); ++c) hair.roots[c] = turn * rest[c];
-    sim::Ellipsoid& body = hair.bodies[0];
-    body.radii = Vec3(0.05, 0.08, 0.06);
-    body.velocity = Vec3(0.3, 0, 0);
-    body.center = Vec3(-0.1 + 0.3 * n * kFrame, -0.12, 0.02);
-    hair.step(kFrame);
-  }
-}
-
 bool sameBits(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0;
 }
@@ -343,8 +279,8 @@ TEST(Step, SameInputsGiveTheSameBits) {
       params.tolerance = 1e-4;
       params.max_iterations = 200;
       Hair one(test::combedShape({}), params), other(test::combedShape({}), params);
-      shake(one, 20);
-      shake(other, 20);
+      test::shake(one, 20);
+      test::shake(other, 20);
       EXPECT_TRUE(sameBits(one.state.positions, other.state.positions));
       EXPECT_TRUE(sameBits(one.state.velocities, other.state.velocities));
       EXPECT_GT(one.state.contacts.size() + other.state.contacts.size(), 0u) << "contacts took part";
@@ -354,13 +290,13 @@ TEST(Step, SameInputsGiveTheSameBits) {
 
 TEST(Step, SolversAndPrecisionsAgreeOnTheMotion) {
   Hair reference(test::combedShape({}), test::tautHair());
-  shake(reference, 20);
+  test::shake(reference, 20);
   for (const Solver solver :
        {Solver::kPaper, Solver::kDiagonal, Solver::kColumn, Solver::kTwoLevel, Solver::kWarped, Solver::kDirect}) {
     sim::SimParams params = test::tautHair();
     params.solver = solver;
     Hair hair(test::combedShape({}), params);
-    shake(hair, 20);
+    test::shake(hair, 20);
     EXPECT_LT(test::largestDistance(hair.state.positions, reference.state.positions), 1e-4 * hair.mesh.hair_length)
         << "solver " << static_cast<int>(solver);
   }
@@ -369,7 +305,7 @@ TEST(Step, SolversAndPrecisionsAgreeOnTheMotion) {
     params.precision = precision;
     params.tolerance = 1e-5;
     Hair hair(test::combedShape({}), params);
-    shake(hair, 20);
+    test::shake(hair, 20);
     EXPECT_LT(test::largestDistance(hair.state.positions, reference.state.positions), 2e-2 * hair.mesh.hair_length)
         << "contacts may be made a step apart; precision " << static_cast<int>(precision);
   }
@@ -402,7 +338,7 @@ TEST(Step, NeverLeavesAValueThatIsNotFiniteAndCountsTheRecovery) {
       sim::SimParams params = test::tautHair();
       params.tolerance = 1e-4;
       Hair hair(test::combedShape({}), params);
-      shake(hair, 10);
+      test::shake(hair, 10);
       (in_velocity ? hair.state.velocities : hair.state.positions)[12].y() = bad;
       int recoveries = 0;
       for (int n = 0; n < 3; ++n) {
@@ -415,104 +351,6 @@ TEST(Step, NeverLeavesAValueThatIsNotFiniteAndCountsTheRecovery) {
       EXPECT_EQ(hair.step(kFrame).recoveries, 0) << "it recovers for good";
     }
   }
-}
-
-TEST(Step, AllocatesNothingOnceWarm) {
-  for (const Solver solver : {Solver::kPaper, Solver::kDiagonal, Solver::kColumn, Solver::kIncomplete,
-                              Solver::kTwoLevel, Solver::kWarped, Solver::kDirect}) {
-    for (const Integrator integrator : kIntegrators) {
-      sim::SimParams params = test::tautHair();
-      params.solver = solver;
-      params.integrator = integrator;
-      params.newton_iterations = 3;
-      params.tolerance = 1e-3;
-      Hair hair(test::combedShape({}), params);
-      shake(hair, 12);
-      allocations = 0;
-      for (int n = 0; n < 5; ++n) {
-        hair.bodies[0].center += kFrame * hair.bodies[0].velocity;
-        counting = true;
-        const sim::StepReport report = hair.step(kFrame);
-        counting = false;
-        EXPECT_GT(report.contacts + report.corrected, 0) << "contacts took part";
-      }
-      EXPECT_EQ(allocations, 0) << nameOf(integrator) << ", solver " << static_cast<int>(solver);
-    }
-  }
-}
-
-// The same where the rest factor follows the parameters in slices, inner vertices collide as well, and bundles with one
-// another.
-TEST(Step, AllocatesNothingWithEveryOptionOnceWarm) {
-  sim::SimParams params = test::tautHair();
-  params.collide_inner = params.self_collide = true;
-  Hair hair(test::combedShape({}), params);
-  hair.context.refreshGradually(true);
-  shake(hair, 12);
-  allocations = 0;
-  for (int n = 0; n < 5; ++n) {
-    hair.bodies[0].center += kFrame * hair.bodies[0].velocity;
-    counting = true;
-    hair.step(kFrame);
-    counting = false;
-  }
-  EXPECT_EQ(allocations, 0);
-}
-
-// Nor the first time that the head is thrown about and that bodies come from all sides, in any precision.
-TEST(Step, AllocatesNothingInTheFirstViolentStep) {
-  for (const sim::Precision precision : {sim::Precision::kFloat, sim::Precision::kMixed, sim::Precision::kDouble}) {
-    for (const bool self : {false, true}) {
-      sim::SimParams params;
-      params.precision = precision;
-      params.self_collide = self;
-      test::PatchOptions o;
-      o.layers = 12;
-      Hair hair(test::combedShape(o), params);
-      hair.bodies.resize(2);
-      for (sim::Ellipsoid& body : hair.bodies) body.center = Vec3(0, 5, 0), body.radii = Vec3(0.05, 0.08, 0.06);
-      for (int n = 0; n < 3; ++n) hair.step(kFrame);
-      const auto rest = hair.roots;
-      allocations = 0;
-      double way = 0;
-      int most = 0;
-      for (int n = 0; n < 60; ++n) {
-        const Eigen::AngleAxisd turn(2 * std::sin(1.1 * n), Vec3(1, 0.3, 0.2).normalized());
-        for (std::size_t c = 0; c < rest.size(); ++c) hair.roots[c] = turn * rest[c];
-        for (int b = 0; b < 2; ++b) {
-          const Vec3 axis(b, 0, 1 - b);
-          hair.bodies[b].velocity = 0.17 * 30 * std::cos(0.5 * n) * axis;
-          hair.bodies[b].center = Vec3(0, -0.12, 0) + 0.17 * std::sin(0.5 * n) * axis;
-        }
-        const std::vector<Vec3> before = hair.state.positions;
-        counting = true;
-        const sim::StepReport report = hair.step(kFrame);
-        counting = false;
-        way = std::max(way, test::largestDistance(before, hair.state.positions));
-        most = std::max(most, report.contacts);
-      }
-      EXPECT_EQ(allocations, 0) << "precision " << static_cast<int>(precision) << ", self-contact " << self;
-      EXPECT_GT(way, 0.3 * hair.mesh.hair_length) << "no step was violent";
-      EXPECT_GT(most, hair.mesh.columnCount());
-    }
-  }
-}
-
-// Nor where hair that hangs still is watched by a twin (sim/rest_check.h), which is put to the rest shape.
-TEST(Step, AllocatesNothingWhileATwinSettles) {
-  sim::SimParams params = test::tautHair();
-  params.sag_free = false;  // so that the hair hangs still away from its rest shape
-  params.bend /= 20;
-  params.air_drag = 5;
-  Hair hair(test::combedShape({}), params);
-  for (int n = 0; n < 30; ++n) hair.step(kFrame);
-  allocations = 0;
-  for (int n = 0; n < 600; ++n) {
-    counting = true;
-    hair.step(kFrame);
-    counting = false;
-  }
-  EXPECT_EQ(allocations, 0);
 }
 
 }  // namespace

@@ -155,6 +155,22 @@ struct Hair {
   }
 };
 
+// A hair shaken through some steps with a body in the way.
+inline void shake(Hair& hair, int steps) {
+  constexpr double kFrame = 1.0 / 60;
+  const auto rest = hair.roots;
+  hair.bodies.resize(1);
+  for (int n = 1; n <= steps; ++n) {
+    const Eigen::AngleAxisd turn(0.5 * std::sin(0.3 * n), sim::Vec3(0.3, 1, 0.2).normalized());
+    for (std::size_t c = 0; c < rest.size(); ++c) hair.roots[c] = turn * rest[c];
+    sim::Ellipsoid& body = hair.bodies[0];
+    body.radii = sim::Vec3(0.05, 0.08, 0.06);
+    body.velocity = sim::Vec3(0.3, 0, 0);
+    body.center = sim::Vec3(-0.1 + 0.3 * n * kFrame, -0.12, 0.02);
+    hair.step(kFrame);
+  }
+}
+
 inline double largestDistance(const std::vector<sim::Vec3>& a, const std::vector<sim::Vec3>& b) {
   double largest = a.size() == b.size() ? 0 : INFINITY;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
