@@ -77,7 +77,7 @@ struct HangingHair {
 
 // What became of the vertices that a flat arm met on its way through the hair within one step.
 struct Crossing {
-  int met = 0;     // on its flat side, where the figure left them room on the side that they came from
+  int met = 0;     // on its flat side, where the figure leaves them room before it on all of its way
   int slid = 0;    // of those: over the arm's rim to the other side
   int passed = 0;  // of those: to the other side otherwise
   double inside = 0;
@@ -106,13 +106,25 @@ Crossing cross(const app::Actor& still, double side, double speed, double spin) 
   result.inside = scene.deepest();
   const auto local = [](const Ellipsoid& e, const Vec3& p) { return Vec3(e.rotation.conjugate() * (p - e.center)); };
   const auto share = [&](const Vec3& p) { return p.cwiseQuotient(radii).tail<2>().norm(); };
+  // Whether the figure leaves no room for what the arm pushes before it, anywhere on the rest of its way.
+  const auto inTheWay = [&](const Vec3& at, double from) {
+    constexpr int kLooks = 64;
+    for (int k = 0; k <= kLooks; ++k) {
+      const double t = from + (1 - from) * k / kLooks;
+      const Vec3 center = arm.center + t * (guest.center - arm.center);
+      const Eigen::Quaterniond turn = arm.rotation.slerp(t, guest.rotation);
+      if (scene.hemmedIn(center + turn * at, params.contact_offset)) return true;
+    }
+    return false;
+  };
   for (const int v : scene.mesh().external_vertices) {
     const Vec3 a = local(arm, before[v]), untouched = local(guest, before[v]);
     if (a.x() * untouched.x() > 0) continue;
-    Vec3 at = a + a.x() / (a.x() - untouched.x()) * (untouched - a);  // where it came to the arm's middle plane
+    const double when = a.x() / (a.x() - untouched.x());
+    Vec3 at = a + when * (untouched - a);  // where it came to the arm's middle plane
     if (share(at) > kFlat) continue;
     at.x() = std::copysign(radii.x() + params.contact_offset, a.x());
-    if (scene.hemmedIn(guest.center + guest.rotation * at, params.contact_offset)) continue;
+    if (inTheWay(at, when)) continue;
     ++result.met;
     const Vec3 now = local(guest, scene.hair.positions[v]);
     if (a.x() * now.x() >= 0) continue;
