@@ -121,7 +121,9 @@ TEST(Watchdog, HealingTouchesNoBitOfTheOthers) {
       // A root is put where the others say, to rounding.
       const double off = (state.positions[i] - hair.state.positions[i]).norm();
       EXPECT_LE(off, i == vertex && hair.mesh.isRoot(i) ? 1e-12 : 0) << vertex << " " << i;
-      if (i != vertex) EXPECT_EQ(state.velocities[i], hair.state.velocities[i]);
+      if (i != vertex) {
+        EXPECT_EQ(state.velocities[i], hair.state.velocities[i]);
+      }
     }
   }
 }

@@ -37,9 +37,10 @@ sim::ColliderKind colliderOf(const StressCase& one) {
 
 WindowCommand windowCommand(const StressCase& one) {
   WindowCommand window;
-  window.command = "hairmesh --motion '" + findClip(one.clip) + "' --style " +
-                   std::string(sim::styleName(one.hair.style)) + " --resolution " +
-                   std::string(sim::resolutionName(one.hair.resolution));
+  window.command = "hairmesh --motion '";
+  window.command += findClip(one.clip);
+  window.command += "' --style " + std::string(sim::styleName(one.hair.style));
+  window.command += " --resolution " + std::string(sim::resolutionName(one.hair.resolution));
   const auto also = [&](const std::string& text) { window.note += (window.note.empty() ? "" : "; ") + text; };
   if (one.play == Play::kForward) window.command += " --speed " + sim::numberText(one.speed);
   if (one.play == Play::kStill) window.command += " --speed 0";
