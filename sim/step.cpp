@@ -194,6 +194,13 @@ Colliders collidersOf(const SimParams& params, const StepInput& input) {
   return {input.ellipsoids, params.collider == ColliderKind::kSdf ? input.parts : std::span<const DistancePart>()};
 }
 
+// As nameForce, at positions (m) as the state has them.
+void nameForceAt(std::span<const Vec3> positions, Parts& parts, Trouble& trouble) {
+  parts.plain_positions.clear();
+  for (const Vec3& x : positions) parts.plain_positions.push_back({x.x(), x.y(), x.z()});
+  nameForce(parts.material.model, parts.plain_positions, trouble);
+}
+
 // What was handed over: a state that something outside of the step has spoilt is healed before it spoils the rest.
 void guardGiven(const StepInput& input, Parts& parts, HairState& state, StepReport& report) {
   Trouble trouble;
@@ -202,10 +209,7 @@ void guardGiven(const StepInput& input, Parts& parts, HairState& state, StepRepo
   if (trouble.ailment == Ailment::kNone) return;
   ++report.recoveries;
   // Where the hair was when it was last well: of absurd places no force says anything.
-  const std::vector<Vec3>& well = parts.good.positions.empty() ? parts.mesh->shape.positions : parts.good.positions;
-  parts.plain_positions.clear();
-  for (const Vec3& x : well) parts.plain_positions.push_back({x.x(), x.y(), x.z()});
-  nameForce(parts.material.model, parts.plain_positions, trouble);
+  nameForceAt(parts.good.positions.empty() ? parts.mesh->shape.positions : parts.good.positions, parts, trouble);
   report.trouble = trouble;
 }
 
@@ -220,11 +224,10 @@ void guardMade(Parts& parts, const StepInput& input, HairState& state, StepRepor
   bool fine = true;
   for (int i = 0; i < mesh.vertexCount() && fine; ++i) fine = examine(mesh, state, i) == Ailment::kNone;
   if (fine) return;
-  parts.plain_positions.clear();
-  for (const Vec3& x : state.positions) parts.plain_positions.push_back({x.x(), x.y(), x.z()});
-  GoodState start{parts.start_positions, parts.start_velocities};
+  const std::vector<Vec3> made = state.positions;
+  const GoodState start{parts.start_positions, parts.start_velocities};
   heal(mesh, input.roots, start, state, trouble);
-  if (trouble.vertex >= 0) nameForce(parts.material.model, parts.plain_positions, trouble);
+  if (trouble.vertex >= 0) nameForceAt(made, parts, trouble);
   ++report.recoveries;
   report.trouble = trouble;
 }

@@ -25,6 +25,11 @@ const char* ailmentName(Ailment ailment) {
   return kNames[static_cast<int>(ailment)];
 }
 
+// m from a root, beyond which nothing of the hair can be.
+double reachOf(const HairMesh& mesh) {
+  return kLengths * mesh.hair_length + kFarther;
+}
+
 int rootOf(const HairMesh& mesh, int vertex) {
   return mesh.shape.column_first[mesh.column_of[vertex]];
 }
@@ -103,7 +108,7 @@ Ailment examine(const HairMesh& mesh, const HairState& state, int vertex) {
   const Vec3 arm = state.positions[vertex] - state.positions[root];
   const Vec3 speed = state.velocities[vertex] - state.velocities[root];
   if (!arm.allFinite() || !speed.allFinite()) return Ailment::kNotFinite;
-  const double reach = kLengths * mesh.hair_length + kFarther;
+  const double reach = reachOf(mesh);
   if (arm.squaredNorm() > reach * reach) return Ailment::kFarAway;
   return speed.squaredNorm() > kFastest * kFastest ? Ailment::kTooFast : Ailment::kNone;
 }
@@ -139,7 +144,7 @@ void healRoots(const HairMesh& mesh, std::span<const Vec3> roots, HairState& sta
   const auto rootAt = [&](int c) { return mesh.shape.column_first[c]; };
   const auto wayOf = [&](int c) { return Vec3(state.positions[rootAt(c)] - roots[c]); };
   const auto speedOf = [&](int c) { return state.velocities[rootAt(c)]; };
-  const double reach = kLengths * mesh.hair_length + kFarther;
+  const double reach = reachOf(mesh);
   if (extentOf(mesh, wayOf) <= reach && extentOf(mesh, speedOf) <= kFastestRoot) return;
   std::vector<Vec3> ways, speeds;
   for (int c = 0; c < mesh.columnCount(); ++c) ways.push_back(wayOf(c)), speeds.push_back(speedOf(c));

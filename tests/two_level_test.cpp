@@ -9,23 +9,41 @@
 namespace tests {
 namespace {
 
+// Any symmetric matrix with a heavy diagonal, in both layouts; what lies in the padding must not matter.
+template <class T>
+struct RandomSystem {
+  sim::HairMesh mesh;
+  sim::BlockPattern pattern = sim::systemPattern(mesh);
+  sim::ColumnLayout layout{mesh};
+  sim::ColumnPattern columns{mesh, layout};
+  test::Random random;
+  sim::ColumnMatrix<T> packed{layout, columns};
+  BlockMatrix<T> a{&pattern};
+
+  RandomSystem(const test::PatchOptions& o, int seed, double diagonal)
+      : mesh(sim::buildHairMesh(test::combedShape(o))), random(seed) {
+    for (T& value : packed.values) value = static_cast<T>(random(-1, 1));
+    packed.addMass(static_cast<T>(diagonal), std::vector<T>(mesh.vertexCount(), T(1)));
+    packed.toBlocks(mesh, a);
+  }
+  RandomSystem(const RandomSystem&) = delete;
+  RandomSystem& operator=(const RandomSystem&) = delete;
+
+  std::vector<V3<T>> vectors() {
+    const auto draw = [&] { return static_cast<T>(random(-1, 1)); };
+    std::vector<V3<T>> values(mesh.vertexCount());
+    for (V3<T>& p : values) p.x = draw(), p.y = draw(), p.z = draw();
+    return values;
+  }
+};
+
 // The layers' factor is the direct solve of the matrix without the couplings between layers, in both layouts.
 template <class T>
 void layersAreSolvedOneByOne(double bound) {
   test::PatchOptions o;
   o.nx = 4, o.nz = 3, o.layers = 11, o.mixed = true;
-  sim::HairMeshShape shape = test::combedShape(o);
-  const sim::HairMesh mesh = sim::buildHairMesh(shape);
-  const sim::BlockPattern pattern = sim::systemPattern(mesh);
-  const sim::ColumnLayout layout(mesh);
-  const sim::ColumnPattern columns(mesh, layout);
-  test::Random random(91);
-  sim::ColumnMatrix<T> packed(layout, columns);
-  // Any symmetric matrix with a heavy diagonal; what lies in the padding must not matter.
-  for (T& value : packed.values) value = static_cast<T>(random(-1, 1));
-  packed.addMass(T(40), std::vector<T>(mesh.vertexCount(), T(1)));
-  BlockMatrix<T> a(&pattern);
-  packed.toBlocks(mesh, a);
+  RandomSystem<T> system(o, 91, 40);
+  const auto& [mesh, pattern, layout, columns, random, packed, a] = system;
   const int n = mesh.vertexCount();
   BlockMatrix<T> within = a;
   for (int i = 0; i < n; ++i) {
@@ -33,8 +51,8 @@ void layersAreSolvedOneByOne(double bound) {
       if (mesh.layer_of[i] != mesh.layer_of[pattern.columns[k]]) within.lower[k] = {};
     }
   }
-  std::vector<V3<T>> x(n), r(n), z(n);
-  for (V3<T>& p : x) p = {static_cast<T>(random(-1, 1)), static_cast<T>(random(-1, 1)), static_cast<T>(random(-1, 1))};
+  const std::vector<V3<T>> x = system.vectors();
+  std::vector<V3<T>> r(n), z(n);
   sim::multiply<T>(within, x, r);
   sim::LayerFactor<T> factor(mesh, layout, columns);
   for (const bool by_blocks : {false, true}) {
@@ -64,16 +82,9 @@ template <class T>
 void patchesAnswerBest(double bound) {
   test::PatchOptions o;
   o.nx = 9, o.nz = 8, o.layers = 20, o.mixed = o.uneven = true;  // padding everywhere: values there are arbitrary here
-  const sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(o));
-  const sim::BlockPattern pattern = sim::systemPattern(mesh);
-  const sim::ColumnLayout layout(mesh);
-  const sim::ColumnPattern columns(mesh, layout);
+  RandomSystem<T> system(o, 97, 200);
+  auto& [mesh, pattern, layout, columns, random, packed, a] = system;
   const int n = mesh.vertexCount();
-  test::Random random(97);
-  sim::ColumnMatrix<T> packed(layout, columns);
-  for (T& value : packed.values) value = static_cast<T>(random(-1, 1));
-  packed.addMass(T(200), std::vector<T>(n, T(1)));
-  BlockMatrix<T> a(&pattern);
   // What no element couples, at uneven tips, is zero in a true matrix.
   for (const sim::BlockDiagonal& d : columns.diagonals) {
     for (int l = 0; !d.symmetric() && l < columns.stride; ++l) {
@@ -93,8 +104,8 @@ void patchesAnswerBest(double bound) {
   sim::PatchSpace<T> patches(mesh, layout, columns);
   EXPECT_GT(patches.patches(), 2);
   EXPECT_LT(patches.patches(), n / 12);
-  std::vector<V3<T>> r(n), z[2] = {std::vector<V3<T>>(n), std::vector<V3<T>>(n)};
-  for (V3<T>& p : r) p = {static_cast<T>(random(-1, 1)), static_cast<T>(random(-1, 1)), static_cast<T>(random(-1, 1))};
+  const std::vector<V3<T>> r = system.vectors();
+  std::vector<V3<T>> z[2] = {std::vector<V3<T>>(n), std::vector<V3<T>>(n)};
   for (const bool by_blocks : {false, true}) {
     ASSERT_TRUE(by_blocks ? patches.make(a, x, constraints) : patches.make(packed, x, constraints));
     sim::ColumnField<T> field(layout);
@@ -177,17 +188,9 @@ template <class T>
 void partsAreSolvedWithoutRemovedDirections(double bound) {
   test::PatchOptions o;
   o.nx = 4, o.nz = 3, o.layers = 11, o.mixed = o.uneven = true;
-  const sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(o));
-  const sim::BlockPattern pattern = sim::systemPattern(mesh);
-  const sim::ColumnLayout layout(mesh);
-  const sim::ColumnPattern columns(mesh, layout);
+  RandomSystem<T> system(o, 92, 40);
+  auto& [mesh, pattern, layout, columns, random, packed, a] = system;
   const int n = mesh.vertexCount();
-  test::Random random(92);
-  sim::ColumnMatrix<T> packed(layout, columns);
-  for (T& value : packed.values) value = static_cast<T>(random(-1, 1));
-  packed.addMass(T(40), std::vector<T>(n, T(1)));
-  BlockMatrix<T> a(&pattern);
-  packed.toBlocks(mesh, a);
   std::vector<sim::VertexConstraint> constraints;
   std::vector<Eigen::Matrix3d> keep(n, Eigen::Matrix3d::Identity());
   for (int i = 0; i < n; ++i) {
