@@ -176,10 +176,9 @@ void countWork(const sim::StepReport& report, Run& run) {
   run.unsolved += !report.converged;
 }
 
-// Contacts with the body that the case adds, which is the last.
+// Contacts with the body that the case adds.
 void countMeetings(Run& run) {
-  const int last = sim::Colliders{run.around.ellipsoids(), run.around.parts()}.count() - 1;
-  for (const sim::Contact& contact : run.hair.state.contacts) run.met += contact.collider == last;
+  for (const sim::Contact& contact : run.hair.state.contacts) run.met += contact.collider == run.around.intruderIndex();
 }
 
 void step(double dt, Run& run) {

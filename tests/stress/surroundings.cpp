@@ -175,6 +175,11 @@ bool Surroundings::intruder(sim::Ellipsoid& body) const {
   }
 }
 
+int Surroundings::intruderIndex() const {
+  if (ellipsoids_.size() == stage_.actor.ellipsoids.size()) return -1;
+  return static_cast<int>(distances_ ? parts_.size() : ellipsoids_.size()) - 1;
+}
+
 void Surroundings::addIntruder() {
   sim::Ellipsoid body;
   if (!intruder(body)) return;

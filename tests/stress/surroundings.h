@@ -29,6 +29,8 @@ class Surroundings {
   const std::vector<sim::DistancePart>& parts() const { return parts_; }
   // Scalp frame to world, disturbance included.
   const Eigen::Isometry3d& head() const { return head_; }
+  // Of the body that the case adds, among those in use; -1 while it is not there.
+  int intruderIndex() const;
   // The hair is to be carried along from where the head was before the last move.
   bool carries() const { return carries_; }
   // A body has appeared within the hair, or hair has been carried somewhere else, during the last move.
