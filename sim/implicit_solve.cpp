@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/vector_kernels.h"
+#include "sim/linear/vector_kernels.h"
 
 namespace sim {
 namespace {
@@ -14,7 +14,7 @@ constexpr int kBatchesARound = 3;  // of answers to contacts; what is still miss
 // Where the direct factor can be corrected for only a part of the contacts at the price of these, so many iterations
 // are tried before the rest is paid for.
 constexpr int kUncorrectedIterations = 10;
-constexpr Solver kStandIn = Solver::kTwoLevel;
+constexpr Solver kAlternative = Solver::kTwoLevel;
 // What an application of a preconditioner costs, in products with the matrix: the warped factor by the ratio of its
 // blocks to the matrix's (measured on meshes of 361 and 2,268 vertices), and the two levels.
 constexpr double kFactorCost = 0.9, kTwoLevelCost = 1.8;
@@ -129,7 +129,7 @@ void ImplicitSolver<T>::assembleRest(const HairMesh& mesh, const FactorTerms& te
 
 template <class T>
 bool ImplicitSolver<T>::factored(Solver solver) const {
-  return solver == Solver::kWarped && static_cast<int>(x.size()) <= kMostFactored;
+  return solver == Solver::kWarped && static_cast<int>(x.size()) <= kMaxFactored;
 }
 
 // The factor of the rest shape's matrix, for the warped preconditioner. A stale factor stays a valid preconditioner, so
@@ -175,7 +175,7 @@ void ImplicitSolver<T>::assemble(const SimParams& params, const StepBase& base, 
   out.matrix = &matrix;
   out.matrix_scale = h * (h + tau);
   out.tension_scale = h * h;
-  if (!at_start) out.damping = tau;
+  out.damping = tau;
   evaluateForces(x, out, at_start ? std::span<const V3<T>>() : std::span<const V3<T>>(v));
   packed_force.unpack(layout, force);
   matrix.addMass(T(1) + h * drag, mass);
@@ -221,6 +221,7 @@ bool ImplicitSolver<T>::setContactConstraints(const HairMesh& mesh, const SimPar
                                               std::span<const Contact> contacts, SolveStart start) {
   constraints.clear();
   constrainContacts(contacts, constraints);
+  constrainPinned(base.pins, base.x_hat, base.h, constraints);
   filter.clear();
   for (int c = 0; c < mesh.columnCount(); ++c) {
     filter.vertices.push_back(mesh.shape.column_first[c]);
@@ -244,7 +245,7 @@ bool ImplicitSolver<T>::setContactConstraints(const HairMesh& mesh, const SimPar
   // Kinetic friction of sliding contacts, from the pressure of the last solve.
   for (const Contact& contact : contacts) {
     if (contact.sticks || contact.pressure <= 0) continue;
-    trial[contact.vertex] += cast<T>(Vec3(base.h * params.friction * contact.pressure * contact.grip));
+    trial[contact.vertex] += cast<T>(Vec3(base.h * params.friction * contact.pressure * contact.friction_direction));
   }
   for (const int i : touched) {
     if (restart) scratch.r[i] += trial[i];
@@ -319,7 +320,7 @@ struct ImplicitSolver<T>::BudgetedSolve {
     runSome(affordable, start);
     if (total.converged || affordable >= most) return;
     overrun = true;
-    solver.preconditioner.update(solver.matrix, plan.cheap ? params.solver : kStandIn, {}, solver.constraints);
+    solver.preconditioner.update(solver.matrix, plan.cheap ? params.solver : kAlternative, {}, solver.constraints);
     solver.preconditioner.setConstraints(solver.constraints, kBatchesARound);
     runSome(params.max_iterations, SolveStart::kExchange);
   }
@@ -346,7 +347,7 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
   run.stop.h = base.h;
   if (looksBack(params)) run.stop.most_first = kFullStart * energyScale(mesh);
   const bool stand_in = warped ? run.plan.cheap : params.solver == Solver::kWarped;
-  const Solver first = stand_in ? kStandIn : params.solver;
+  const Solver first = stand_in ? kAlternative : params.solver;
   const FactorTerms terms{base.h, params.damping, params.air_drag};
   const bool same = first == Solver::kTwoLevel && terms == layer_terms;
   const typename Preconditioner<T>::Keep kept{same && layer_age.serves(), same && patch_age.serves()};
@@ -436,6 +437,16 @@ double ImplicitSolver<T>::backtrack(const SimParams& params, const StepBase& bas
   return std::sqrt(static_cast<double>(largest));
 }
 
+// N, of the firm pins.
+template <class T>
+double ImplicitSolver<T>::largestReaction(const StepBase& base) const {
+  double largest = 0;
+  for (const PinnedVertex& pin : base.pins) {
+    if (pin.firm()) largest = std::max(largest, widen(scratch.r[pin.vertex]).norm() / base.h);
+  }
+  return largest;
+}
+
 template <class T>
 void ImplicitSolver<T>::solve(const HairMesh& mesh, const SimParams& params, const StepBase& base, StageClock& clock,
                               std::vector<Contact>& contacts, std::span<Vec3> velocities, StepReport& report) {
@@ -458,6 +469,7 @@ void ImplicitSolver<T>::solve(const HairMesh& mesh, const SimParams& params, con
     report.solver_iterations += linear.iterations;
     report.residual = linear.relative_residual;
     report.residual_acceleration = linear.residual_acceleration;
+    report.pin_force = largestReaction(base);
     report.converged = linear.converged;
     ++report.newton_iterations;
     if (newton && backtrack(params, base, before) <= params.newton_tolerance) iteration = most;

@@ -13,21 +13,21 @@
 #include <span>
 #include <vector>
 
-#include "sim/contact.h"
+#include "sim/contact/contact.h"
 #include "sim/forces/column_model.h"
-#include "sim/initial_guess.h"
-#include "sim/linear_solver.h"
-#include "sim/preconditioner_choice.h"
-#include "sim/stage_clock.h"
-#include "sim/step.h"
+#include "sim/linear/modified_pcg.h"
+#include "sim/linear/preconditioner_choice.h"
+#include "sim/linear/solution_projection.h"
+#include "sim/step_report.h"
 
 namespace sim {
 
 // The base of a step: x = x_hat + h v.
 struct StepBase {
-  std::span<const Vec3> x_hat, v_hat;  // m, m/s
-  double h = 0;                        // s
-  Vec3 wind = Vec3::Zero();            // m/s
+  std::span<const Vec3> x_hat, v_hat;    // m, m/s
+  double h = 0;                          // s
+  Vec3 wind = Vec3::Zero();              // m/s
+  std::span<const PinnedVertex> pins{};  // those that hold
 };
 
 // Everything a solve in scalar type T keeps from step to step.
@@ -42,7 +42,7 @@ struct ImplicitSolver {
   Preconditioner<T> preconditioner;
   Filter<T> filter;
   SolverScratch<T> scratch;
-  InitialGuess<T> guess;
+  SolutionProjection<T> guess;
   bool unfinished = false;  // the last linear solve
   std::vector<V3<T>> x, v, trial, force, rhs, velocity_step;
   std::vector<T> mass, inverse_mass_dt;
@@ -86,6 +86,7 @@ struct ImplicitSolver {
                              std::span<const Contact> contacts, SolveStart start);
   bool looksBack(const SimParams& params) const;
   void setResidual();
+  double largestReaction(const StepBase& base) const;
   double beginSolve(const SimParams& params);
   double energyScale(const HairMesh& mesh) const;
   struct BudgetedSolve;

@@ -77,12 +77,12 @@ struct SimParams {
   Precision precision = Precision::kMixed;
   double tolerance = 1e-2;               // relative residual of the linear solve; docs/accuracy.md shows why
   double acceleration_tolerance = 0.01;  // m/s^2, a solve also stops when no vertex's residual exceeds it
-  // m, and when it estimates that no vertex would end up farther off than this, in steps shorter than 1/60 s less by the
-  // square of their length
+  // m, and when it estimates that no vertex would end up farther off than this, in steps shorter than 1/60 s less by
+  // the square of their length
   double displacement_tolerance = 1e-6;
-  int max_iterations = 400;              // of the linear solver
-  int newton_iterations = 4;             // of the nonlinear integrators
-  double newton_tolerance = 1e-4;        // m/s, the nonlinear integrators stop at a smaller change of velocity
+  int max_iterations = 400;        // of the linear solver
+  int newton_iterations = 4;       // of the nonlinear integrators
+  double newton_tolerance = 1e-4;  // m/s, the nonlinear integrators stop at a smaller change of velocity
 };
 
 enum class FieldKind { kReal, kInteger, kSwitch, kChoice };

@@ -4,9 +4,9 @@
 namespace sim {
 
 // How much of one kind of work was left out, of how much.
-struct LeftOut {
+struct SkipCount {
   long skipped = 0, of = 0;
-  LeftOut& operator+=(const LeftOut& more) {
+  SkipCount& operator+=(const SkipCount& more) {
     skipped += more.skipped, of += more.of;
     return *this;
   }

@@ -26,7 +26,13 @@ bool near(const Ellipsoid& a, const Ellipsoid& b) {
 bool inputsStayed(const StepInput& input, const SleepState& sleep) {
   return near(input.roots, sleep.roots, kStillInput) && input.ellipsoids.size() == sleep.ellipsoids.size() &&
          std::equal(input.ellipsoids.begin(), input.ellipsoids.end(), sleep.ellipsoids.begin(),
-                    [](const Ellipsoid& a, const Ellipsoid& b) { return near(a, b); });
+                    [](const Ellipsoid& a, const Ellipsoid& b) { return near(a, b); }) &&
+         input.pins.size() == sleep.pins.size() &&
+         std::equal(input.pins.begin(), input.pins.end(), sleep.pins.begin(),
+                    [](const PinnedVertex& a, const PinnedVertex& b) {
+                      return a.vertex == b.vertex && a.stiffness == b.stiffness &&
+                             (a.target - b.target).norm() <= kStillInput;
+                    });
 }
 
 bool airChanges(const SimParams& params) {
@@ -45,6 +51,7 @@ void wake(const SimParams& params, const StepInput& input, const HairState& stat
   sleep.params = params;
   sleep.roots.assign(input.roots.begin(), input.roots.end());
   sleep.ellipsoids.assign(input.ellipsoids.begin(), input.ellipsoids.end());
+  sleep.pins.assign(input.pins.begin(), input.pins.end());
   beginWindow(state, sleep);
 }
 

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "sim/hair_state.h"
+#include "sim/mesh/hair_state.h"
 #include "sim/sim_params.h"
 #include "sim/step.h"
 
@@ -27,11 +27,12 @@ struct SleepState {
   std::vector<Vec3> begin;  // m, positions where the window began; asleep: those it fell asleep with
   std::vector<Vec3> roots;  // m, when the window began or the hair fell asleep
   std::vector<Ellipsoid> ellipsoids;
+  std::vector<PinnedVertex> pins;
 };
 
 // Whether the coming step may be left out. Called before every step with what the step would get; keeps its own
-// account in `sleep`. Wakes when roots or colliders leave their place, a parameter or a position changes, or wind that
-// comes and goes is on. Allocates only when the number of vertices, roots or ellipsoids changes.
+// account in `sleep`. Wakes when roots, colliders or pins leave their place, a parameter or a position changes, or wind
+// that comes and goes is on. Allocates only when the number of vertices, roots or ellipsoids changes.
 bool maySleep(const SimParams& params, const StepInput& input, double dt, const HairState& state, SleepState& sleep);
 
 }  // namespace sim

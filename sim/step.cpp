@@ -5,32 +5,18 @@
 #include <functional>
 #include <optional>
 
-#include "sim/bearable.h"
-#include "sim/buzz.h"
-#include "sim/comb_out.h"
-#include "sim/energy_guard.h"
+#include "sim/contact/position_correction.h"
+#include "sim/contact/self_contact.h"
 #include "sim/forces/material.h"
 #include "sim/implicit_solve.h"
-#include "sim/position_correction.h"
-#include "sim/rest_check.h"
-#include "sim/self_contact.h"
+#include "sim/stabilization/parameter_limits.h"
+#include "sim/stabilization/stabilize.h"
 
 namespace sim {
 
 namespace {
 
 constexpr int kBalanceSlices = 40;  // steps over which the balance of gravity is solved for anew
-constexpr double kAtOnce = 1e6;     // m/s
-constexpr double kStorm = 5;        // m/s^2 that wind presses hair with
-constexpr int kTwinIterations = 300;
-constexpr double kSpringBack = 0.5;  // s, that hair takes to when the bodies that held it have gone
-
-// The parameters that stiffnesses and rest shifts depend on.
-bool sameMaterial(const SimParams& a, const SimParams& b) {
-  return a.density == b.density && a.stretch_along == b.stretch_along && a.stretch_across == b.stretch_across &&
-         a.stretch_edge == b.stretch_edge && a.shear == b.shear && a.bend == b.bend && a.volume == b.volume &&
-         a.sag_free == b.sag_free && (a.gravity == b.gravity || !a.sag_free);
-}
 
 Vec3 windAt(const SimParams& params, double time) {
   // Gusts: two incommensurate periods, so that they do not repeat visibly.
@@ -46,36 +32,20 @@ struct StepContext::Parts {
   BlockPattern pattern;
   Material material;
   SimParams params;
-  bool has_model = false, gradual = false, as_published = false;
+  bool has_model = false, gradual = false;
   std::optional<ImplicitSolver<float>> single_solver;
   std::optional<ImplicitSolver<double>> double_solver;
-  // Scratch of a step.
-  std::vector<Vec3> x_hat, v_hat, start_positions, start_velocities, limited_velocities, unpushed;
-  std::vector<V3<double>> plain_positions;  // for the force model, which is plain arrays
-  std::vector<Vec3> root_positions;         // of a teleport
-  std::vector<Ellipsoid> standing;          // bodies after a teleport
-  std::vector<DistancePart> standing_parts;
-  GoodState good;  // the last step's end
-  EnergyGuard energy_guard;
-  double springing_back = 0;  // s, to come
-  Buzz buzz;
-  Tangles tangles;
-  RestCheck rest_check;
+  Stabilization stabilization;
   PositionCorrection correction;
-  std::optional<SelfContact> self_contact, twin_contact;  // made when first asked for
+  std::optional<SelfContact> self_contact, reference_contact;  // made when first asked for
+  // Scratch of a step.
+  std::vector<PinnedVertex> pins;  // that hold
+  std::vector<Vec3> x_hat, v_hat, start_positions, start_velocities, unpushed;
+  std::vector<V3<double>> plain_positions;  // for the force model, which is plain arrays
 
   Parts(const HairMesh& m, double (*c)())
-      : mesh(&m),
-        clock{c},
-        pattern(systemPattern(m)),
-        material(m, pattern),
-        energy_guard(m),
-        buzz(m),
-        tangles(m),
-        rest_check(m),
-        correction(m) {
-    for (auto* array : {&x_hat, &v_hat, &start_positions, &start_velocities, &limited_velocities, &unpushed})
-      array->resize(m.vertexCount());
+      : mesh(&m), clock{c}, pattern(systemPattern(m)), material(m, pattern), stabilization(m), correction(m) {
+    for (auto* array : {&x_hat, &v_hat, &start_positions, &start_velocities, &unpushed}) array->resize(m.vertexCount());
     plain_positions.reserve(m.vertexCount());
   }
 };
@@ -89,8 +59,8 @@ void StepContext::refreshGradually(bool on) {
   parts_->gradual = on;
 }
 
-void StepContext::leaveAsPublished(bool on) {
-  parts_->as_published = on;
+SafetyNets& StepContext::safetyNets() {
+  return parts_->stabilization.nets;
 }
 
 const char* stageName(Stage stage) {
@@ -155,7 +125,28 @@ StepBase integratorBase(const SimParams& params, const StepInput& input, double 
       parts.v_hat[i] -= before * state.previous_velocities[i];
     }
   }
-  return {parts.x_hat, parts.v_hat, dt * (1 + w) / (1 + 2 * w), windAt(params, input.time)};
+  return {parts.x_hat, parts.v_hat, dt * (1 + w) / (1 + 2 * w), windAt(params, input.time), parts.pins};
+}
+
+// The pins that hold in this step. Where a vertex is firmly pinned, contacts say nothing more.
+void holdPins(const StepInput& input, double dt, Parts& parts, HairState& state, StepReport& report) {
+  report.pins_out_of_reach = holdingPins(*parts.mesh, input.pins, input.roots, dt, state, parts.pins);
+  report.pins = static_cast<int>(parts.pins.size());
+  parts.material.setMoving(parts.pins);
+  std::erase_if(state.contacts, [&](const Contact& contact) {
+    return std::ranges::any_of(parts.pins,
+                               [&](const PinnedVertex& pin) { return pin.firm() && pin.vertex == contact.vertex; });
+  });
+}
+
+// Corrections may have moved what is pinned.
+void keepPinned(Parts& parts, HairState& state, StepReport& report) {
+  placePinned(parts.pins, state);
+  for (const PinnedVertex& pin : parts.pins) {
+    if (pin.firm()) continue;
+    const double stretch = (state.positions[pin.vertex] - pin.target).norm();
+    report.pin_force = std::max(report.pin_force, pin.stiffness * stretch);
+  }
 }
 
 // Prescribed velocities: those that bring each root where the scalp carries it by the step's end.
@@ -169,9 +160,10 @@ void rootsFollowScalp(const StepInput& input, const StepBase& base, const HairMe
 void solveVelocities(const SimParams& params, const StepBase& base, Parts& parts, HairState& state,
                      StepReport& report) {
   const auto solve = [&](auto& solver) {
+    solver.model.setMoving(parts.material.model, base.x_hat[0]);
     solver.solve(*parts.mesh, params, base, parts.clock, state.contacts, state.velocities, report);
-    report.force_kinds = solver.model.kindsLeftOut();
   };
+  report.force_kinds = parts.material.model.kindsLeftOut();
   if (params.precision == Precision::kDouble) {
     solve(*parts.double_solver);
   } else {
@@ -188,72 +180,20 @@ void integratePositions(const StepInput& input, const StepBase& base, double dt,
     state.positions[i] = base.x_hat[i] + base.h * state.velocities[i];
   // Exactly on the scalp, without the rounding of the multiplication.
   for (int c = 0; c < mesh.columnCount(); ++c) state.positions[mesh.shape.column_first[c]] = input.roots[c];
+  placePinned(parts.pins, state);
 }
 
 Colliders collidersOf(const SimParams& params, const StepInput& input) {
-  return {input.ellipsoids, params.collider == ColliderKind::kSdf ? input.parts : std::span<const DistancePart>()};
-}
-
-// As nameForce, at positions (m) as the state has them.
-void nameForceAt(std::span<const Vec3> positions, Parts& parts, Trouble& trouble) {
-  parts.plain_positions.clear();
-  for (const Vec3& x : positions) parts.plain_positions.push_back({x.x(), x.y(), x.z()});
-  nameForce(parts.material.model, parts.plain_positions, trouble);
-}
-
-// What was handed over: a state that something outside of the step has spoilt is healed before it spoils the rest.
-void guardGiven(const StepInput& input, Parts& parts, HairState& state, StepReport& report) {
-  Trouble trouble;
-  trouble.given = true;
-  heal(*parts.mesh, input.roots, parts.good, state, trouble);
-  if (trouble.ailment == Ailment::kNone) return;
-  ++report.recoveries;
-  // Where the hair was when it was last well: of absurd places no force says anything.
-  nameForceAt(parts.good.positions.empty() ? parts.mesh->shape.positions : parts.good.positions, parts, trouble);
-  report.trouble = trouble;
+  return {input.ellipsoids, params.collider == ColliderKind::kSdf ? input.parts : std::span<const BodySdf>()};
 }
 
 TakenStep takenStep(const SimParams& params, const StepBase& base, double dt, const Parts& parts) {
-  return {*parts.mesh, params, parts.material.model, parts.start_positions, parts.start_velocities, dt, base.wind};
-}
-
-// What the step made of it: where that is ill, the step's start comes back.
-void guardMade(Parts& parts, const StepInput& input, HairState& state, StepReport& report) {
-  Trouble trouble;
-  const HairMesh& mesh = *parts.mesh;
-  bool fine = true;
-  for (int i = 0; i < mesh.vertexCount() && fine; ++i) fine = examine(mesh, state, i) == Ailment::kNone;
-  if (fine) return;
-  const std::vector<Vec3> made = state.positions;
-  const GoodState start{parts.start_positions, parts.start_velocities};
-  heal(mesh, input.roots, start, state, trouble);
-  if (trouble.vertex >= 0) nameForceAt(made, parts, trouble);
-  ++report.recoveries;
-  report.trouble = trouble;
-}
-
-// A jump of the roots that no motion could make is a teleport of the second kind: the hair is carried along, and the
-// bodies, which have come as far, are taken to stand where they are now.
-StepInput carryOverJump(const SimParams& params, const StepInput& input, double dt, Parts& parts, HairState& state,
-                        StepReport& report) {
-  const HairMesh& mesh = *parts.mesh;
-  if (!(rootSpeed(mesh, input.roots, dt, state) > params.teleport_speed)) return input;
-  parts.root_positions.clear();
-  for (int c = 0; c < mesh.columnCount(); ++c)
-    parts.root_positions.push_back(state.positions[mesh.shape.column_first[c]]);
-  carryAlong(Eigen::Isometry3d::Identity(), rigidMotion(parts.root_positions, input.roots), state);
-  state.contacts.clear();
-  parts.standing.assign(input.ellipsoids.begin(), input.ellipsoids.end());
-  for (Ellipsoid& e : parts.standing) e.velocity = e.angular_velocity = Vec3::Zero();
-  report.carried = true;
-  parts.standing_parts.assign(input.parts.begin(), input.parts.end());
-  for (DistancePart& part : parts.standing_parts) part.bounds.velocity = part.bounds.angular_velocity = Vec3::Zero();
-  return {input.roots, parts.standing, input.time, parts.standing_parts};
+  return {*parts.mesh, params,    parts.material.model, parts.start_positions, parts.start_velocities, dt,
+          base.wind,   parts.pins};
 }
 
 // Bundles that met are pushed apart, the rest of the hair follows, and who is in a foreign bundle then is pushed again.
-// taken: null where energy need not pay for it.
-void partBundles(const CorrectedStep& step, const TakenStep* taken, std::optional<SelfContact>& made, Parts& parts,
+void partBundles(const CorrectedStep& step, const TakenStep& taken, std::optional<SelfContact>& made, Parts& parts,
                  HairState& state, StepReport& report) {
   if (!made) made.emplace(step.mesh);
   SelfContact& self = *made;
@@ -264,41 +204,9 @@ void partBundles(const CorrectedStep& step, const TakenStep* taken, std::optiona
     followPushed(step, self.unmoved, self.moved, parts.correction, state);
     resolveSelfContacts({step.mesh, step.params, {}, step.dt}, self, state);
   }
-  if (taken) limitPushes(*taken, parts.unpushed, parts.energy_guard, state);
+  if (parts.stabilization.active.push_energy)
+    limitPushes(taken, parts.unpushed, parts.stabilization.energy_limit, state);
   slowPushed(step, parts.unpushed, state);
-}
-
-// Whether hair is in contact with a body that is there no more.
-bool bodyHasGone(const SimParams& params, const Colliders& colliders, const HairState& state) {
-  return std::ranges::any_of(
-      state.contacts, [&](const Contact& contact) { return !params.collide || contact.collider >= colliders.count(); });
-}
-
-// No vertex goes to and fro for ever, no step makes energy out of nothing, and no hair stays turned over.
-// Let go by bodies that have gone, it springs back further than the forces stay linear over.
-void keepWithinBounds(const TakenStep& taken, Parts& parts, HairState& state, StepReport& report) {
-  const bool held = relaxBuzz(taken.mesh, taken.positions, parts.buzz, state) > 0;
-  limitEnergy(taken, report.converged && !held && parts.springing_back <= 0, parts.energy_guard, state);
-  // Loose particles have no shape to be led back to.
-  if (taken.params.volume <= 0) return;
-  // In a storm the rest shape is not where hair belongs: combed towards it, it would be thrown about for ever.
-  const bool looks = blowOf(taken.params) < kStorm;
-  report.combed = combOut({taken.mesh, taken.positions, taken.dt, looks}, parts.tangles, state);
-}
-
-// Corrects what is inside of bodies, as far as the energy that the step began with pays for it (taken: null where it
-// need not).
-void keepOutside(const CorrectedStep& step, const TakenStep* taken, Parts& parts, HairState& state,
-                 StepReport& report) {
-  correctPositions(step, parts.clock, parts.correction, state, report);
-  // Overlaps that stood before are lifted out whatever it takes.
-  if (!taken || report.corrected == 0 || report.standing > 0) return;
-  if (limitCorrections(*taken, step.colliders, parts.energy_guard, state) == 1) return;
-  // Halfway between two places outside of a body may lie its inside: that nothing is left there comes first, but it
-  // leaves no velocity behind.
-  parts.limited_velocities = state.velocities;
-  correctPositions(step, parts.clock, parts.correction, state, report);
-  state.velocities = parts.limited_velocities;
 }
 
 // Kinetic, elastic and gravitational energy, and that of the wind's push on hair that does not move (J).
@@ -314,92 +222,100 @@ double energyOf(const SimParams& params, const Vec3& wind, const HairState& stat
   return energy + evaluate<double>(parts.material.model, parts.plain_positions, {});
 }
 
-// Hair that hangs still in another shape than its own is led home.
-void checkRest(const SimParams& asked, const StepInput& input, double dt, Parts& parts, const HairState& state,
-               StepReport& report) {
+// One step of the reference hair: solve, integration, energy limit and, where it is kept apart, self-contact.
+void advanceReference(const SimParams& params, const StepInput& input, double dt, Parts& parts, HairState& reference,
+                      StepReport& report) {
   const HairMesh& mesh = *parts.mesh;
-  RestCheck& check = parts.rest_check;
-  SimParams params = asked;
-  // Led by solves that end early the twin might hang wherever they leave it.
-  params.max_iterations = std::max(params.max_iterations, kTwinIterations);
-  const Vec3 pull = params.air_drag * windAt(params, input.time) - Vec3(0, params.gravity, 0);
-  check.self_contact = params.self_collide;
-  if (!watchRest(mesh, state, pull.norm(), dt, parts.tangles, check)) return;
-  HairState& twin = check.twin;
-  parts.start_positions = twin.positions;
-  parts.start_velocities = twin.velocities;
-  const StepBase base = integratorBase(params, input, dt, twin, parts);
-  rootsFollowScalp(input, base, mesh, twin);
-  StepReport unseen;
-  solveVelocities(params, base, parts, twin, unseen);
-  integratePositions(input, base, dt, mesh, parts, twin);
+  Stabilization& nets = parts.stabilization;
+  parts.start_positions = reference.positions;
+  parts.start_velocities = reference.velocities;
+  const StepBase base = integratorBase(params, input, dt, reference, parts);
+  rootsFollowScalp(input, base, mesh, reference);
+  StepReport own;
+  solveVelocities(params, base, parts, reference, own);
+  integratePositions(input, base, dt, mesh, parts, reference);
   const TakenStep taken = takenStep(params, base, dt, parts);
-  limitEnergy(taken, unseen.converged, parts.energy_guard, twin);
-  if (check.kept_apart) {
-    const Colliders none{};
-    partBundles({mesh, params, none, parts.start_positions, dt}, &taken, parts.twin_contact, parts, twin, unseen);
-  }
-  const auto energy = [&](const HairState& one) { return energyOf(params, base.wind, one, parts); };
-  double weight = 0;  // N
-  for (const double share : mesh.vertex_volume) weight += 9.81 * params.density * share;
+  if (nets.active.step_energy) limitEnergy(taken, own.converged, nets.energy_limit, reference);
+  if (nets.rest_check.kept_apart)
+    partBundles({mesh, params, {}, parts.start_positions, dt}, taken, parts.reference_contact, parts, reference, own);
+  for (const double seconds : own.seconds) report.seconds[kStageOther] += seconds;
+}
+
+SimParams limited(const HairMesh& mesh, const SimParams& asked, const Parts& parts) {
+  const bool limits = parts.stabilization.nets.parameter_limits && asked.solver != Solver::kPaper;
+  return limits ? limitedParameters(mesh, asked) : asked;
+}
+
+// Starts the clock and brings what is derived from mesh and parameters up to date. Returns the step's parameters.
+SimParams beginStep(const HairMesh& mesh, const SimParams& asked, Parts& parts, HairState& state, StepReport& report) {
+  parts.clock.start();
+  const SimParams params = limited(mesh, asked, parts);
+  parts.stabilization.active = params.solver == Solver::kPaper ? kAsPublished : parts.stabilization.nets;
+  state.contacts.reserve(static_cast<std::size_t>(kMaxTouches) * mesh.vertexCount());
+  report.refreshes = {!refreshModel(params, parts), 1};
+  return params;
+}
+
+std::span<const Vec3> rememberStart(const HairState& state, Parts& parts) {
+  parts.start_positions = state.positions;
+  parts.start_velocities = state.velocities;
+  return parts.start_positions;
+}
+
+void endStep(const TakenStep& taken, const StepInput& input, Parts& parts, HairState& state, StepReport& report) {
+  const auto advance_reference = [&](const SimParams& params, HairState& reference) {
+    advanceReference(params, input, taken.dt, parts, reference, report);
+  };
+  const auto energy = [&](const HairState& one) { return energyOf(taken.params, taken.wind, one, parts); };
+  keepPinned(parts, state, report);
   // By reference: a copy within the std::function would be allocated, in a step.
-  judgeRest(mesh, state, weight * mesh.hair_length, std::cref(energy), parts.tangles, check);
-  for (const double seconds : unseen.seconds) report.seconds[kStageOther] += seconds;
+  finishStep(taken, std::cref(advance_reference), std::cref(energy), parts.stabilization, state);
   parts.clock.spent(kStageOther, report);
+  report.contacts = static_cast<int>(state.contacts.size());
 }
 
 }  // namespace
 
+// Equations (1) to (4) are those of Wu and Yuksel (2016), BW those of Baraff and Witkin (1998).
 StepReport advance(const HairMesh& mesh, const SimParams& asked, const StepInput& given, double dt,
                    StepContext& context, HairState& state) {
   Parts& parts = context.parts();
-  SimParams params = bearable(mesh, asked);
   StepReport report;
-  parts.clock.start();
-  state.contacts.reserve(static_cast<std::size_t>(kMostTouches) * mesh.vertexCount());
-  report.refreshes = {!refreshModel(params, parts), 1};
-  guardGiven(given, parts, state, report);
-  const StepInput input = carryOverJump(params, given, dt, parts, state, report);
-  // Where the jump has put the hair into a body, nobody has seen it go there: it is out at once.
-  if (report.carried) params.max_depenetration = kAtOnce;
-  parts.start_positions = state.positions;
-  parts.start_velocities = state.velocities;
-  const Colliders colliders = collidersOf(params, input);
-  const bool let_go = bodyHasGone(params, colliders, state);
-  parts.springing_back = let_go ? kSpringBack : std::max(0.0, parts.springing_back - dt);
-  carryContacts(colliders, params, dt, state);
+  // Context: derived values follow the parameters, contacts follow the bodies.
+  SimParams params = beginStep(mesh, asked, parts, state, report);
+  const StepInput input = admitState(mesh, parts.material.model, given, dt, params, parts.stabilization, state, report);
+  const CorrectedStep step{mesh, params, collidersOf(params, input), rememberStart(state, parts), dt};
+  carryContacts(step.colliders, params, dt, state);
+  // Roots and pins.
+  holdPins(input, dt, parts, state, report);
   const StepBase base = integratorBase(params, input, dt, state, parts);
   rootsFollowScalp(input, base, mesh, state);
   parts.clock.spent(kStageOther, report);
-
+  // Forces (1), (2) and Hessians; implicit solve by Modified PCG (BW 16).
   solveVelocities(params, base, parts, state, report);
   integratePositions(input, base, dt, mesh, parts, state);
-  const bool bounded = params.solver != Solver::kPaper || !parts.as_published;
   const TakenStep taken = takenStep(params, base, dt, parts);
-  if (bounded) keepWithinBounds(taken, parts, state, report);
-  guardMade(parts, input, state, report);
+  stabilize(taken, input, report.converged, parts.stabilization, state, report);
   parts.clock.spent(kStageOther, report);
-
-  const CorrectedStep corrected{mesh, params, colliders, parts.start_positions, dt};
-  if (params.self_collide) {
-    partBundles(corrected, bounded ? &taken : nullptr, parts.self_contact, parts, state, report);
+  // Contacts: position correction and deformation minimization (3), (4), figures 4 and 5.
+  if (params.self_collide) partBundles(step, taken, parts.self_contact, parts, state, report);
+  beginCorrections(parts.correction);
+  while (params.collide && findContacts(step, parts.correction, state, report)) {
+    correctPositions(step, parts.correction, state, report);
     parts.clock.spent(kStageCollision, report);
+    minimizeDeformation(step, parts.correction, state, report);
+    parts.clock.spent(kStageMinimization, report);
   }
-  if (params.collide) {
-    keepOutside(corrected, bounded ? &taken : nullptr, parts, state, report);
-    if (bounded) limitSpeed(mesh, state);
-    parts.clock.spent(kStageCollision, report);
-  }
-  if (bounded && params.volume > 0) checkRest(params, input, dt, parts, state, report);
-  parts.good.positions = state.positions;
-  parts.good.velocities = state.velocities;
-  report.contacts = static_cast<int>(state.contacts.size());
+  updateVelocities(step, parts.correction, state);
+  limitCorrectionEnergy(taken, step, parts.correction, parts.stabilization, state, report);
+  parts.clock.spent(kStageCollision, report);
+  endStep(taken, input, parts, state, report);
   return report;
 }
 
 double mechanicalEnergy(const HairMesh& mesh, const SimParams& asked, StepContext& context, const HairState& state) {
   Parts& parts = context.parts();
-  const SimParams params = bearable(mesh, asked);
+  const SimParams params = limited(mesh, asked, parts);
   refreshModel(params, parts);
   return energyOf(params, Vec3::Zero(), state, parts);
 }

@@ -1,4 +1,4 @@
-#include "sim/colliders.h"
+#include "sim/contact/colliders.h"
 
 #include <algorithm>
 #include <cmath>
@@ -115,7 +115,7 @@ double distanceAt(const DistanceGrid& grid, const Vec3& local) {
   return near + share.z() * (far - near) + grid.spacing * beyond.norm();
 }
 
-SurfacePoint closestPoint(const DistancePart& part, const Vec3& p) {
+SurfacePoint closestPoint(const BodySdf& part, const Vec3& p) {
   const Ellipsoid& body = part.bounds;
   const Vec3 local = body.rotation.conjugate() * (p - body.center);
   const double reach = 0.5 * part.grid.spacing;

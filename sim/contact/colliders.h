@@ -7,7 +7,7 @@
 #include <array>
 #include <span>
 
-#include "sim/hair_mesh.h"
+#include "sim/mesh/hair_mesh.h"
 
 namespace sim {
 
@@ -53,18 +53,18 @@ double distanceAt(const DistanceGrid& grid, const Vec3& local);
 
 // A rigid part of a body: its grid's frame is that of `bounds`, an ellipsoid around the part that carries its pose and
 // motion and tells what is far away.
-struct DistancePart {
+struct BodySdf {
   Ellipsoid bounds;
   DistanceGrid grid;
 };
 
 // Distance from the grid, normal from its slope. Near the surface within the grid's own error of the true part.
-SurfacePoint closestPoint(const DistancePart& part, const Vec3& p);
+SurfacePoint closestPoint(const BodySdf& part, const Vec3& p);
 
 // The colliders of a step, of either kind, by index.
 struct Colliders {
   std::span<const Ellipsoid> ellipsoids{};
-  std::span<const DistancePart> parts{};  // in place of the ellipsoids where there are any
+  std::span<const BodySdf> parts{};  // in place of the ellipsoids where there are any
 
   int count() const { return static_cast<int>(parts.empty() ? ellipsoids.size() : parts.size()); }
   // Pose, motion and bounds of collider k.

@@ -1,4 +1,4 @@
-#include "sim/contact.h"
+#include "sim/contact/contact.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,11 +22,11 @@ constexpr double kLeaving = 1;  // m/s that a body moves away from a vertex at: 
 // Paths past a collider
 constexpr double kStraight = 0.2;  // rad; a collider that turns less is passed on a straight line
 constexpr double kGrazing = 0.1;   // of its thickness; a path no deeper slides over a rounded body
-constexpr int kMostMarches = 64, kDepthSamples = 8, kMostSamples = 512;
+constexpr int kMaxMarches = 64, kDepthSamples = 8, kMaxSamples = 512;
 constexpr double kSampling = 0.5;  // of its thickness, from one sample of the depth to the next
 constexpr double kMet = 1e-5;      // m
 // Bounds of clusters
-constexpr int kMostClustered = 16;  // vertices of a cluster: fewer are more to bound, more reach farther
+constexpr int kMaxClustered = 16;   // vertices of a cluster: fewer are more to bound, more reach farther
 constexpr double kRounding = 1e-6;  // m, more than rounding may make of what the tests themselves would say
 // Out of a crowd of bodies
 constexpr double kNeighbour = 0.005;  // m; bodies so near to a vertex are those that hem it in
@@ -162,7 +162,7 @@ struct Path {
 // distance, which no path at this speed can outrun.
 std::optional<Vec3> entryOf(const Path& path, const Colliders& colliders, int k, double offset, double grazing) {
   double t = 0;
-  for (int march = 0; march < kMostMarches && t < 1; ++march) {
+  for (int march = 0; march < kMaxMarches && t < 1; ++march) {
     const double gap = colliders.closest(k, path.at(t)).distance - offset;
     if (march == 0 && gap <= 0) return {};  // began inside
     if (gap < kMet) break;
@@ -172,7 +172,7 @@ std::optional<Vec3> entryOf(const Path& path, const Colliders& colliders, int k,
   double least = 0;
   // So close that none steps over a thin body.
   const int samples =
-      std::clamp(static_cast<int>(path.speed * (1 - t) / (kSampling * path.body->thin)), kDepthSamples, kMostSamples);
+      std::clamp(static_cast<int>(path.speed * (1 - t) / (kSampling * path.body->thin)), kDepthSamples, kMaxSamples);
   for (int i = 1; i <= samples && least > -grazing; ++i) {
     const double later = t + (1 - t) * i / samples;
     least = std::min(least, colliders.closest(k, path.at(later)).distance - offset);
@@ -185,7 +185,7 @@ std::optional<Vec3> entryOf(const Path& path, const Colliders& colliders, int k,
 struct Touch {
   Vec3 target = Vec3::Zero(), normal = Vec3::UnitY();
   double depth = 0;  // m, inside the offset; at most zero: none
-  bool standing = false;
+  bool initial_overlap = false;
   double left = 0;  // m, how far below the offset the target lies
 };
 
@@ -232,7 +232,7 @@ Touch touchOf(const ContactSearch& search, const NearCollider& near, int vertex,
       const double before = offset - search.colliders.closest(k, near.carried(search.start[vertex])).distance;
       if (before > search.margins.slack + kMet) {
         // It stood inside: out by no more than the escape, and no deeper than it was.
-        touch.standing = true;
+        touch.initial_overlap = true;
         touch.left = std::max(0.0, before - search.margins.escape);
         const double level = offset - touch.left;
         touch.target = s.point + level * s.normal;
@@ -298,7 +298,7 @@ void leaveAll(const ContactSearch& search, const ContactScratch& scratch, Penetr
   const Vec3 direction = away.norm() > 1e-9 ? Vec3(away.normalized()) : Vec3(Vec3::UnitY());
   Vec3 p = hit.target;
   int last = hit.collider;
-  for (int march = 0; march < kMostMarches; ++march) {
+  for (int march = 0; march < kMaxMarches; ++march) {
     int collider = -1;
     const double depth = deepestAt(p, collider);
     if (collider < 0) {
@@ -328,7 +328,7 @@ void clusterVertices(const HairMesh& mesh, ContactScratch& scratch) {
   int count = 0;
   // Halves of boxes across their longest side, down to clusters.
   const std::function<void(std::span<int>)> split = [&](std::span<int> some) {
-    if (some.size() <= kMostClustered) {
+    if (some.size() <= kMaxClustered) {
       for (const int v : some) scratch.cluster_of[v] = count;
       ++count;
       return;
@@ -390,11 +390,11 @@ void findPenetrations(const ContactSearch& search, std::span<const Vec3> positio
       hit.collider = collider;
       hit.target = p;
       hit.normal = deepest.normal;
-      hit.standing = hit.standing || deepest.standing;
+      hit.initial_overlap = hit.initial_overlap || deepest.initial_overlap;
       hit.left = std::max(hit.left, deepest.left);
     }
     if (hit.collider < 0) continue;
-    if (!out && !hit.standing) leaveAll(search, scratch, hit);
+    if (!out && !hit.initial_overlap) leaveAll(search, scratch, hit);
     found.push_back(hit);
   }
 }
@@ -403,23 +403,23 @@ void chooseSticking(double friction, double mobility, const Vec3& velocity, Cont
   Vec3 slip = velocity - contact.velocity;
   slip -= slip.dot(contact.normal) * contact.normal;
   const double speed = slip.norm();
-  const bool slid = !contact.sticks && !contact.grip.isZero();
-  contact.sticks =
-      contact.pressure > 0 && (slid ? slip.dot(contact.grip) >= 0 : speed <= friction * contact.pressure * mobility);
-  if (contact.sticks || contact.pressure <= 0) contact.grip.setZero();
+  const bool slid = !contact.sticks && !contact.friction_direction.isZero();
+  contact.sticks = contact.pressure > 0 &&
+                   (slid ? slip.dot(contact.friction_direction) >= 0 : speed <= friction * contact.pressure * mobility);
+  if (contact.sticks || contact.pressure <= 0) contact.friction_direction.setZero();
   if (contact.sticks) return;
   // The slip of one that creeps says nothing: friction against it would throw the vertex back, and the next step forth.
-  const double least = contact.grip.isZero() ? kNoSlip : kCreep;
-  if (speed > least) contact.grip = -slip / speed;
-  contact.grip -= contact.grip.dot(contact.normal) * contact.normal;
-  contact.grip.normalize();
+  const double least = contact.friction_direction.isZero() ? kNoSlip : kCreep;
+  if (speed > least) contact.friction_direction = -slip / speed;
+  contact.friction_direction -= contact.friction_direction.dot(contact.normal) * contact.normal;
+  contact.friction_direction.normalize();
 }
 
 bool updateSticking(const FrictionLaw& law, const Vec3& reaction, const Vec3& velocity, Contact& contact) {
   const double pressed = contact.pressure;  // what the friction of this solve was made of
   contact.pressure = contact.normal.dot(reaction);
   if (!contact.sticks) {
-    const double back = contact.grip.dot(velocity - contact.velocity);
+    const double back = contact.friction_direction.dot(velocity - contact.velocity);
     contact.sticks = pressed > 0 && contact.pressure >= 0 && law.h * law.coefficient * pressed * back > law.most_work;
     return contact.sticks;
   }
@@ -430,10 +430,10 @@ bool updateSticking(const FrictionLaw& law, const Vec3& reaction, const Vec3& ve
   }
   // While the solve goes on, `grip` tells of one that sticks because friction threw it back.
   const Vec3 tangential = reaction - contact.pressure * contact.normal;
-  if (!contact.grip.isZero() || tangential.norm() <= law.coefficient * contact.pressure) return false;
+  if (!contact.friction_direction.isZero() || tangential.norm() <= law.coefficient * contact.pressure) return false;
   contact.sticks = false;
   contact.pressure = std::min(contact.pressure, pressed);
-  contact.grip = tangential.normalized();
+  contact.friction_direction = tangential.normalized();
   return true;
 }
 

@@ -6,22 +6,22 @@
 #include <span>
 #include <vector>
 
-#include "sim/colliders.h"
-#include "sim/hair_mesh.h"
-#include "sim/hair_state.h"
-#include "sim/left_out.h"
+#include "sim/contact/colliders.h"
+#include "sim/mesh/hair_mesh.h"
+#include "sim/mesh/hair_state.h"
 #include "sim/sim_params.h"
+#include "sim/skip_count.h"
 
 namespace sim {
 
 // A contact found at the end of a step: the vertex lies nearer to the collider than the contact offset.
 struct Penetration {
   int vertex, collider;
-  Vec3 target;    // m, where the vertex belongs at the step's end
-  Vec3 normal;    // outward unit normal there
-  double depth;   // m, how far inside the offset it lay
-  bool standing;  // it lay inside before the step: the target is no farther than max_depenetration allows
-  double left;    // m, how far below the offset the target lies then
+  Vec3 target;           // m, where the vertex belongs at the step's end
+  Vec3 normal;           // outward unit normal there
+  double depth;          // m, how far inside the offset it lay
+  bool initial_overlap;  // it lay inside before the step: the target is no farther than max_depenetration allows
+  double left;           // m, how far below the offset the target lies then
 };
 
 // How near a contact may come, m.
@@ -70,7 +70,7 @@ struct ContactScratch {
   std::vector<SweptBox> boxes;   // per cluster
   std::vector<int> reached;      // places in `near`, of one cluster after the other ...
   std::vector<int> reached_end;  // ... up to here
-  LeftOut tests;                 // of the searches so far: of a vertex with a collider
+  SkipCount tests;               // of the searches so far: of a vertex with a collider
 };
 
 // Splits the mesh into clusters by its rest shape. To be called once.

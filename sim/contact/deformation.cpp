@@ -1,17 +1,17 @@
 // u: displacement, r: residual -A^T A u at free vertices, z: r over the degree, d: search direction, q = A^T A d.
-#include "sim/deformation.h"
+#include "sim/contact/deformation.h"
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cassert>
 #include <set>
 
-#include "sim/small_cholesky.h"
+#include "sim/linear/small_cholesky.h"
 
 namespace sim {
 namespace {
 
-constexpr int kMostIterations = 1000;
+constexpr int kMaxIterations = 1000;
 
 void applyLaplacian(const EdgeLaplacian& laplacian, std::span<const unsigned char> held, std::span<const Vec3> u,
                     std::span<Vec3> out) {
@@ -98,7 +98,7 @@ int minimizeDeformation(const EdgeLaplacian& laplacian, std::span<const unsigned
   double delta = innerProduct(r, z);
   const double goal = tolerance * tolerance * delta;
   int iterations = 0;
-  while (delta > goal && iterations < kMostIterations) {
+  while (delta > goal && iterations < kMaxIterations) {
     applyLaplacian(laplacian, held, d, q);
     const double curvature = innerProduct(d, q);
     if (!(curvature > 0)) break;
@@ -162,12 +162,12 @@ void DeformationMinimizer::factor() {
     if (first_[j] < first_[j + 1]) height[j] = height[row_of_[first_[j]]] + 1;
     highest = std::max(highest, height[j]);
   }
-  kept_.resize(kMostHeld);
+  kept_.resize(kMaxHeld);
   for (Kept& kept : kept_) kept.path.reserve(highest), kept.half.reserve(highest);
   held_.reserve(size);
-  products_.resize(kMostHeld, kMostHeld);
-  gram_.resize(kMostHeld, kMostHeld);
-  pulls_.resize(kMostHeld, 3);
+  products_.resize(kMaxHeld, kMaxHeld);
+  gram_.resize(kMaxHeld, kMaxHeld);
+  pulls_.resize(kMaxHeld, 3);
   work_.resize(free);
   moved_.resize(4 * static_cast<std::size_t>(free));
 }
@@ -211,7 +211,7 @@ int DeformationMinimizer::findPaths() {
     oldest->vertex = v, oldest->used = now_;
     const int slot = slot_[v] = static_cast<int>(oldest - kept_.begin());
     computePath(*oldest);
-    for (int other = 0; other < kMostHeld; ++other) {
+    for (int other = 0; other < kMaxHeld; ++other) {
       if (kept_[other].vertex >= 0) products_(slot, other) = products_(other, slot) = productOf(*oldest, kept_[other]);
     }
     ++computed;
@@ -231,7 +231,7 @@ int DeformationMinimizer::minimize(std::span<const unsigned char> held, double t
     held_.push_back(v);
   }
   const auto count = static_cast<Eigen::Index>(held_.size());
-  if (!moved || count > kMostHeld) return minimizeDeformation(laplacian_, held, tolerance, scratch_, displacement);
+  if (!moved || count > kMaxHeld) return minimizeDeformation(laplacian_, held, tolerance, scratch_, displacement);
   const int computed = findPaths();
   for (Eigen::Index k = 0; k < count; ++k) {
     for (Eigen::Index l = 0; l <= k; ++l) gram_(k, l) = products_(slot_[held_[k]], slot_[held_[l]]);

@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
-#include "sim/hair_mesh.h"
-#include "sim/lanes.h"
+#include "sim/linear/lanes.h"
+#include "sim/mesh/hair_mesh.h"
 
 namespace sim {
 
@@ -39,10 +39,10 @@ int minimizeDeformation(const EdgeLaplacian& laplacian, std::span<const unsigned
 // held, is factored once, A^T A = L D L^T. What a pull at a vertex makes of the forward half, L^-1 e, lies on its path
 // through the elimination tree (Gilbert and Peierls 1988) and is kept from step to step, as are the products of two
 // such, which tell how far one pull moves the other's vertex. A small dense system of these says how hard each held
-// vertex must be pulled to go where it is to. Beyond kMostHeld vertices the iterations above serve, to `tolerance`.
+// vertex must be pulled to go where it is to. Beyond kMaxHeld vertices the iterations above serve, to `tolerance`.
 class DeformationMinimizer {
  public:
-  static constexpr int kMostHeld = 96;  // paths kept: 0.8 MB at 10,241 vertices
+  static constexpr int kMaxHeld = 96;  // paths kept: 0.8 MB at 10,241 vertices
 
   explicit DeformationMinimizer(const HairMesh& mesh);  // factors the matrix
 

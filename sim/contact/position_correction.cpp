@@ -1,7 +1,8 @@
-#include "sim/position_correction.h"
+#include "sim/contact/position_correction.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace sim {
 namespace {
@@ -41,7 +42,7 @@ void enterContact(const CorrectedStep& step, const Penetration& hit, HairState& 
 int correctFound(const CorrectedStep& step, double slack, PositionCorrection& scratch, HairState& state) {
   scratch.corrected.clear();
   for (const Penetration& hit : scratch.penetrations) {
-    if (hit.depth > slack || hit.standing) {
+    if (hit.depth > slack || hit.initial_overlap) {
       scratch.displacement[hit.vertex] = hit.target - state.positions[hit.vertex];
       scratch.held[hit.vertex] = 1;
       state.positions[hit.vertex] = hit.target;
@@ -56,7 +57,7 @@ int correctFound(const CorrectedStep& step, double slack, PositionCorrection& sc
 double correctionSpeed(const CorrectedStep& step, const PositionCorrection& scratch) {
   double most = 0;
   for (const Penetration& hit : scratch.penetrations) {
-    if (!hit.standing) most = std::max(most, hit.depth);
+    if (!hit.initial_overlap) most = std::max(most, hit.depth);
   }
   return std::min(most / step.dt, kFastestFollower);
 }
@@ -84,7 +85,7 @@ void restartHistory(const CorrectedStep& step, std::size_t i, HairState& state) 
 
 // Vertices that followed take the velocity of their displacement, no more than the corrections' own: an overlap that
 // stood before must not become a kick. The two-step history of all that moved restarts.
-void updateVelocities(const CorrectedStep& step, double most, const PositionCorrection& scratch, HairState& state) {
+void followCorrections(const CorrectedStep& step, double most, const PositionCorrection& scratch, HairState& state) {
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
     if (step.mesh.isRoot(static_cast<int>(i))) continue;
     const Vec3 moved = state.positions[i] - scratch.uncorrected[i];
@@ -103,56 +104,67 @@ PositionCorrection::PositionCorrection(const HairMesh& mesh) : minimizer(mesh) {
   for (int i = 0; i < n; ++i) {
     if (!mesh.isRoot(i)) all_vertices.push_back(i);
   }
-  penetrations.reserve(static_cast<std::size_t>(kMostTouches) * n);
+  penetrations.reserve(static_cast<std::size_t>(kMaxTouches) * n);
   clusterVertices(mesh, search);
   corrected.reserve(all_vertices.size());
 }
 
-void correctPositions(const CorrectedStep& step, StageClock& clock, PositionCorrection& scratch, HairState& state,
-                      StepReport& report) {
-  const HairMesh& mesh = step.mesh;
-  ContactSearch search{step.params.collide_inner ? scratch.all_vertices : mesh.external_vertices, step.colliders,
+void beginCorrections(PositionCorrection& scratch) {
+  scratch.round = scratch.moved = 0;
+  scratch.follow_speed = 0;
+}
+
+bool findContacts(const CorrectedStep& step, PositionCorrection& scratch, const HairState& state, StepReport& report) {
+  if (scratch.round > 0 && (scratch.moved == 0 || scratch.round > kRounds + kPlainRounds)) return false;
+  ContactSearch search{step.params.collide_inner ? scratch.all_vertices : step.mesh.external_vertices, step.colliders,
                        step.start, step.dt, contactMargins(step.params, step.dt)};
-  const auto find = [&] {
-    scratch.search.tests = {};
-    findPenetrations(search, state.positions, scratch.search, scratch.penetrations);
-    report.collider_tests += scratch.search.tests;
-  };
-  find();
-  if (scratch.penetrations.empty()) return;
-  for (const Penetration& hit : scratch.penetrations)
-    report.max_penetration = std::max(report.max_penetration, hit.depth);
-  std::fill(scratch.held.begin(), scratch.held.end(), 0);
-  holdResting(mesh, state, scratch);
-  scratch.uncorrected = state.positions;
-  double follow_speed = 0;
-  // Minimization may push other vertices in, which the paper leaves to future work: the rounds go on with these held as
-  // well, and those that end it are without minimization: one leaves nothing inside, but where bodies overlap each may
-  // push into the other.
-  for (int round = 0; round <= kRounds + kPlainRounds; ++round) {
-    std::fill(scratch.displacement.begin(), scratch.displacement.end(), Vec3::Zero());
-    follow_speed = std::max(follow_speed, correctionSpeed(step, scratch));
-    const int corrected = correctFound(step, search.margins.slack, scratch, state);
-    for (const Penetration& hit : scratch.penetrations) {
-      report.standing += hit.standing;
-      report.standing_overlap = std::max(report.standing_overlap, hit.left);
-    }
-    report.corrected += corrected;
-    clock.spent(kStageCollision, report);
-    if (corrected == 0 || round == kRounds + kPlainRounds) break;
-    // What nothing moves any more cannot have come inside. Where the way out of one body has led through another, to go
-    // back by the path would be to go to and fro: to be outside is enough.
-    if (round > kRounds) search.vertices = scratch.corrected, search.start = {};
-    if (step.params.minimize_deformation && round < kRounds)
-      report.minimization_iterations += letFollow(scratch, state);
-    clock.spent(kStageMinimization, report);
-    find();
+  // Vertices that no longer move cannot have come inside. Where the way out of one body leads through another,
+  // following the path back would alternate: from here on being outside at the end is enough.
+  if (scratch.round > kRounds + 1) search.vertices = scratch.corrected, search.start = {};
+  scratch.search.tests = {};
+  findPenetrations(search, state.positions, scratch.search, scratch.penetrations);
+  report.collider_tests += scratch.search.tests;
+  if (scratch.penetrations.empty()) return false;
+  if (scratch.round == 0) {
+    for (const Penetration& hit : scratch.penetrations)
+      report.max_penetration = std::max(report.max_penetration, hit.depth);
+    std::fill(scratch.held.begin(), scratch.held.end(), 0);
+    holdResting(step.mesh, state, scratch);
+    scratch.uncorrected = state.positions;
   }
-  updateVelocities(step, follow_speed, scratch, state);
-  const auto order = [](const Contact& a, const Contact& b) {
-    return a.vertex != b.vertex ? a.vertex < b.vertex : a.collider < b.collider;
-  };
-  std::sort(state.contacts.begin(), state.contacts.end(), order);
+  return true;
+}
+
+void correctPositions(const CorrectedStep& step, PositionCorrection& scratch, HairState& state, StepReport& report) {
+  std::fill(scratch.displacement.begin(), scratch.displacement.end(), Vec3::Zero());
+  scratch.follow_speed = std::max(scratch.follow_speed, correctionSpeed(step, scratch));
+  scratch.moved = correctFound(step, contactMargins(step.params, step.dt).slack, scratch, state);
+  for (const Penetration& hit : scratch.penetrations) {
+    report.initial_overlap += hit.initial_overlap;
+    report.initial_overlap_depth = std::max(report.initial_overlap_depth, hit.left);
+  }
+  report.corrected += scratch.moved;
+  ++scratch.round;
+}
+
+void minimizeDeformation(const CorrectedStep& step, PositionCorrection& scratch, HairState& state, StepReport& report) {
+  if (!step.params.minimize_deformation || scratch.moved == 0 || scratch.round > kRounds) return;
+  report.minimization_iterations += letFollow(scratch, state);
+}
+
+void updateVelocities(const CorrectedStep& step, PositionCorrection& scratch, HairState& state) {
+  if (scratch.round == 0) return;
+  followCorrections(step, scratch.follow_speed, scratch, state);
+  std::ranges::sort(state.contacts, {}, [](const Contact& c) { return std::pair(c.vertex, c.collider); });
+}
+
+void correctContacts(const CorrectedStep& step, PositionCorrection& scratch, HairState& state, StepReport& report) {
+  beginCorrections(scratch);
+  while (findContacts(step, scratch, state, report)) {
+    correctPositions(step, scratch, state, report);
+    minimizeDeformation(step, scratch, state, report);
+  }
+  updateVelocities(step, scratch, state);
 }
 
 void followPushed(const CorrectedStep& step, std::span<const Vec3> unmoved, std::span<const unsigned char> moved,
@@ -163,7 +175,7 @@ void followPushed(const CorrectedStep& step, std::span<const Vec3> unmoved, std:
   for (std::size_t i = 0; i < unmoved.size(); ++i)
     scratch.displacement[i] = moved[i] ? Vec3(state.positions[i] - unmoved[i]) : Vec3::Zero();
   letFollow(scratch, state);
-  updateVelocities(step, kFastestFollower, scratch, state);
+  followCorrections(step, kFastestFollower, scratch, state);
 }
 
 void slowPushed(const CorrectedStep& step, std::span<const Vec3> unpushed, HairState& state) {

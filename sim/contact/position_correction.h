@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "sim/contact.h"
-#include "sim/deformation.h"
-#include "sim/stage_clock.h"
+#include "sim/contact/contact.h"
+#include "sim/contact/deformation.h"
+#include "sim/step_report.h"
 
 namespace sim {
 
@@ -20,6 +20,8 @@ struct PositionCorrection {
   std::vector<int> corrected;  // vertices, of the last round
   std::vector<unsigned char> held;
   ContactScratch search;
+  int round = 0, moved = 0;  // rounds so far; vertices that the last one moved
+  double follow_speed = 0;   // m/s, that followers take at most
 
   explicit PositionCorrection(const HairMesh& mesh);
 };
@@ -28,18 +30,35 @@ struct PositionCorrection {
 struct CorrectedStep {
   const HairMesh& mesh;
   const SimParams& params;
-  const Colliders& colliders;
+  Colliders colliders;
   std::span<const Vec3> start;  // m, positions at its start
   double dt;                    // s
 };
 
-// Brings the vertices that lie inside a collider, or went through one within the step, back to its surface, lets the
-// others follow, and enters the contacts into the state. Afterwards no external vertex (with collide_inner: no vertex)
-// lies below the offset by more than the slack of contactMargins, but for overlaps that stood before the step: these
-// shrink by max_depenetration, and leave no velocity behind. The work is bounded: five rounds, and eight more of what
-// those corrected last.
-void correctPositions(const CorrectedStep& step, StageClock& clock, PositionCorrection& scratch, HairState& state,
-                      StepReport& report);
+// Rounds of contact search, position correction and deformation minimization. Minimization may push other vertices into
+// a body, which the paper leaves to future work: kRounds rounds minimize, holding what was corrected before, and
+// kPlainRounds more correct alone. Afterwards no external vertex (with collide_inner: no vertex) lies below the contact
+// offset by more than the slack of contactMargins, except for initial overlaps: these shrink by max_depenetration a
+// step and leave no velocity.
+//
+// Usage: beginCorrections; while (findContacts) { correctPositions; minimizeDeformation }; updateVelocities.
+void beginCorrections(PositionCorrection& scratch);
+
+// Finds the vertices inside colliders, or gone through one within the step. Returns whether another round is due.
+bool findContacts(const CorrectedStep& step, PositionCorrection& scratch, const HairState& state, StepReport& report);
+
+// Moves what was found onto the surface (figure 4) and enters the contacts into the state.
+void correctPositions(const CorrectedStep& step, PositionCorrection& scratch, HairState& state, StepReport& report);
+
+// All others follow the corrected vertices so that edge vectors change least: equations (3) and (4).
+void minimizeDeformation(const CorrectedStep& step, PositionCorrection& scratch, HairState& state, StepReport& report);
+
+// Velocities follow the corrections, the contacts are sorted by vertex, and the two-step history of what moved
+// restarts.
+void updateVelocities(const CorrectedStep& step, PositionCorrection& scratch, HairState& state);
+
+// All of the above, for callers that need no times of stages.
+void correctContacts(const CorrectedStep& step, PositionCorrection& scratch, HairState& state, StepReport& report);
 
 // Lets all others follow the vertices that were pushed apart among the hair's own bundles, positions and velocities.
 // unmoved: m, where all were before; moved: per vertex, whether it was pushed.

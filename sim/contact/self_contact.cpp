@@ -1,4 +1,4 @@
-#include "sim/self_contact.h"
+#include "sim/contact/self_contact.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -14,7 +14,7 @@ constexpr int kPasses = 8;              // at most, over the pairs: one push may
 constexpr int kOwnLayers = 1;           // a column touches no prism of its own bundles nearer than so many layers
 constexpr double kStrideShare = 0.125;  // of the mean length of the edges across; moved between looks along a path
 constexpr signed char kLeftAlone = -1;  // of a pair that overlaps in the rest shape
-constexpr int kMostLooks = 32;
+constexpr int kMaxLooks = 32;
 constexpr int kPassesOnTheWay = 2;  // at most, between two looks
 
 struct Plane {
@@ -374,7 +374,7 @@ int resolveSelfContacts(const SelfContactStep& step, SelfContact& self, HairStat
   const std::span<const Vec3> start = step.start.empty() ? std::span<const Vec3>(state.positions) : step.start;
   if (!listHolds(self, start, state.positions)) makeList(step.mesh, start, state.positions, self);
   const double nearing = farthestNearing(step.mesh, self, start, state.positions);
-  self.looks = static_cast<int>(std::min<double>(kMostLooks, std::ceil(nearing / self.stride)));
+  self.looks = static_cast<int>(std::min<double>(kMaxLooks, std::ceil(nearing / self.stride)));
   const int meeting = firstMeeting(step.mesh, start, state.positions, self);
   if (meeting < 0) return 0;
   self.unmoved = state.positions;

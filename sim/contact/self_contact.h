@@ -12,8 +12,8 @@
 #include <span>
 #include <vector>
 
-#include "sim/hair_mesh.h"
-#include "sim/hair_state.h"
+#include "sim/mesh/hair_mesh.h"
+#include "sim/mesh/hair_state.h"
 #include "sim/sim_params.h"
 
 namespace sim {

@@ -1,6 +1,6 @@
 // The kernels: kLanes layers of one column, root edge or face at a time.
 //
-// k: stiffness, c: condition with its rest shift taken off, g: its gradient; see conditions.h.
+// k: stiffness, c: condition with its rest shift taken off, g: its gradient; see force_kind.h.
 //
 // What the elements of a wall with its hinge, or of a prism, add to one block of the matrix is summed first and added
 // to memory once. Blocks one layer apart overlap there but for one entry, and a load that overlaps a store still under
@@ -72,7 +72,7 @@ struct StretchTerms {
   OwnBlock<T> block;  // of a and of b; that between them is the opposite
 };
 template <class T>
-HAIRMESH_INLINE StretchTerms<T> stretchTerms(const typename ColumnModel<T>::Stretch& elements, std::size_t e,
+HAIRMESH_INLINE StretchTerms<T> stretchTerms(const typename ColumnModel<T>::StretchArrays& elements, std::size_t e,
                                              const ColumnField<T>& x, int a, int b, Sums<T>& sums) {
   const auto stretch = stretchCondition(loadAt(x, a), loadAt(x, b), load<T>(elements.inverse_length.data() + e));
   const V3<Lanes<T>>& d = stretch.direction;
@@ -326,7 +326,11 @@ T evaluate(const ColumnModel<T>& model, const ColumnLayout& layout, const Column
   run(model, layout, x, sums);
   T energy = 0;
   for (int k = 0; k < kLanes; ++k) energy += sums.energy[k];
-  return energy / 2;
+  energy /= 2;
+  model.plain.forEach([&](const auto& elements) {
+    if (elements.size() > 0) evaluateElements(elements, ColumnSums<T>{layout, x, out}, energy);
+  });
+  return energy;
 }
 
 template float evaluate(const ColumnModel<float>&, const ColumnLayout&, const ColumnField<float>&,

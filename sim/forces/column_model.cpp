@@ -95,9 +95,12 @@ ColumnModel<T>::ColumnModel(const HairMesh& mesh, const ColumnLayout& layout, co
 
 template <class T>
 void ColumnModel<T>::locate(const HairMesh& mesh, const ColumnLayout& layout, const ForceModel<double>& model) {
-  const auto first = model.stretch.size() > 0 ? model.stretch.vertices.front() : std::array<int, 2>{-1, -1};
-  if (first == located_.first_stretch && located_.stretch.size() == model.stretch.size() &&
-      located_.shear.size() == model.shear.size() && located_.bend.size() == model.bend.size()) {
+  const auto& stretch = model.of<Stretch>().vertices;
+  const auto& shear = model.of<Shear>().vertices;
+  const auto& bend = model.of<Bend>().vertices;
+  const auto first = stretch.empty() ? std::array<int, 2>{-1, -1} : stretch.front();
+  if (first == located_.first_stretch && located_.stretch.size() == stretch.size() &&
+      located_.shear.size() == shear.size() && located_.bend.size() == bend.size()) {
     return;
   }
   const std::size_t stride = layout.stride;
@@ -111,17 +114,21 @@ void ColumnModel<T>::locate(const HairMesh& mesh, const ColumnLayout& layout, co
   };
   located_ = {};
   located_.first_stretch = first;
-  for (const auto& [a, b] : model.stretch.vertices) {
+  for (const auto& [a, b] : stretch) {
     const bool is_vertical = mesh.column_of[a] == mesh.column_of[b];
     located_.stretch.push_back(is_vertical ? Entry{mesh.column_of[a] * stride + mesh.layer_of[a], false}
                                            : edgeEntry(a, b));
   }
-  for (const auto& v : model.shear.vertices) located_.shear.push_back(edgeEntry(v[0], v[1]));
-  for (const auto& v : model.bend.vertices) located_.bend.push_back(edgeEntry(v[0], v[1]));
+  for (const auto& v : shear) located_.shear.push_back(edgeEntry(v[0], v[1]));
+  for (const auto& v : bend) located_.bend.push_back(edgeEntry(v[0], v[1]));
 }
 
 template <class T>
 void ColumnModel<T>::setElements(const HairMesh& mesh, const ColumnLayout& layout, const ForceModel<double>& model) {
+  model.forEach([&]<class Kind>(const Elements<Kind, double>& elements) {
+    if constexpr (!KernelKinds::contains<Kind>() && !MovingKind<Kind>)
+      convertElements(elements, plain.template of<Kind>());
+  });
   const std::size_t stride = layout.stride;
   locate(mesh, layout, model);
   for (auto* array :
@@ -129,30 +136,33 @@ void ColumnModel<T>::setElements(const HairMesh& mesh, const ColumnLayout& layou
     std::fill(array->begin(), array->end(), T(0));
   }
   std::fill(bend_smallest_square.begin(), bend_smallest_square.end(), T(0));  // the padding never counts as collapsed
-  for (std::size_t e = 0; e < model.stretch.size(); ++e) {
-    const auto [a, b] = model.stretch.vertices[e];
+  const auto& stretch = model.of<Stretch>();
+  for (std::size_t e = 0; e < stretch.size(); ++e) {
+    const auto [a, b] = stretch.vertices[e];
     const bool is_vertical = mesh.column_of[a] == mesh.column_of[b];
-    Stretch& to = is_vertical ? vertical : horizontal;
+    StretchArrays& to = is_vertical ? vertical : horizontal;
     const std::size_t at = located_.stretch[e].at;
-    to.stiffness[at] = static_cast<T>(model.stretch.stiffness[e]);
-    to.inverse_length[at] = static_cast<T>(model.stretch.inverse_length[e]);
-    to.shift[at] = static_cast<T>(model.stretch.shift[e]);
+    to.stiffness[at] = static_cast<T>(stretch.stiffness[e]);
+    to.inverse_length[at] = static_cast<T>(stretch.rest[e][0]);
+    to.shift[at] = static_cast<T>(stretch.shift[e]);
   }
-  for (std::size_t e = 0; e < model.shear.size(); ++e) {
+  const auto& shear = model.of<Shear>();
+  for (std::size_t e = 0; e < shear.size(); ++e) {
     const auto [at, against] = located_.shear[e];
-    shear_stiffness[at] = static_cast<T>(model.shear.stiffness[e]);
-    inverse_along[at] = static_cast<T>(model.shear.inverse_along[e]);
-    inverse_across[at] = static_cast<T>(model.shear.inverse_across[e]);
+    shear_stiffness[at] = static_cast<T>(shear.stiffness[e]);
+    inverse_along[at] = static_cast<T>(shear.rest[e][0]);
+    inverse_across[at] = static_cast<T>(shear.rest[e][1]);
     // Wound the other way the wall's second axis, and with it the condition, changes sign.
-    shear_shift[at] = static_cast<T>(against ? -model.shear.shift[e] : model.shear.shift[e]);
+    shear_shift[at] = static_cast<T>(against ? -shear.shift[e] : shear.shift[e]);
   }
-  for (std::size_t e = 0; e < model.bend.size(); ++e) {
+  const auto& bend = model.of<Bend>();
+  for (std::size_t e = 0; e < bend.size(); ++e) {
     const auto [at, against] = located_.bend[e];
-    const double rest = model.bend.rest_angle[e] + model.bend.shift[e] / model.bend.inverse_length[e];
-    bend_stiffness[at] = static_cast<T>(model.bend.stiffness[e]);
+    const double rest = Bend::restAngle(bend.rest[e], bend.shift[e]);
+    bend_stiffness[at] = static_cast<T>(bend.stiffness[e]);
     bend_rest_angle[at] = static_cast<T>(against ? -rest : rest);
-    bend_inverse_length[at] = static_cast<T>(model.bend.inverse_length[e]);
-    bend_smallest_square[at] = static_cast<T>(model.bend.smallest_square[e]);
+    bend_inverse_length[at] = static_cast<T>(bend.rest[e][1]);
+    bend_smallest_square[at] = static_cast<T>(bend.rest[e][2]);
   }
   const auto any = [](const std::vector<T>& stiffness) {
     return std::any_of(stiffness.begin(), stiffness.end(), [](T k) { return k != 0; });
@@ -161,7 +171,8 @@ void ColumnModel<T>::setElements(const HairMesh& mesh, const ColumnLayout& layou
   has_horizontal = any(horizontal.stiffness);
   has_shear = any(shear_stiffness);
   has_bend = any(bend_stiffness);
-  has_volume = model.volume.size() > 0;
+  const auto& volume = model.of<Volume>();
+  has_volume = volume.size() > 0;
   if (!has_volume) return;
   std::size_t tet = 0;
   for (const Face& face : faces) {
@@ -170,11 +181,26 @@ void ColumnModel<T>::setElements(const HairMesh& mesh, const ColumnLayout& layou
     for (int l = 0; l + 1 < mesh.bundle_layers[f]; ++l) {
       for (int k = 0; k < 2 * face.corner_count; ++k, ++tet) {
         const std::size_t at = face.first + k * stride + l;
-        volume_stiffness[at] = static_cast<T>(model.volume.stiffness[tet]);
-        volume_rest[at] = static_cast<T>(model.volume.rest_volume[tet] + model.volume.shift[tet]);
+        volume_stiffness[at] = static_cast<T>(volume.stiffness[tet]);
+        volume_rest[at] = static_cast<T>(volume.rest[tet][0] + volume.shift[tet]);
       }
     }
   }
+}
+
+template <class T>
+void ColumnModel<T>::setMoving(const ForceModel<double>& model, const Vec3& origin) {
+  model.forEach([&]<class Kind>(const Elements<Kind, double>& elements) {
+    if constexpr (MovingKind<Kind>) {
+      static_assert(!KernelKinds::contains<Kind>());
+      Elements<Kind, T>& to = plain.template of<Kind>();
+      convertElements(elements, to);
+      for (std::size_t e = 0; e < elements.size(); ++e) {
+        const auto rest = Kind::relativeTo(origin, elements.rest[e]);
+        std::copy(rest.begin(), rest.end(), to.rest[e].begin());
+      }
+    }
+  });
 }
 
 template struct ColumnModel<float>;

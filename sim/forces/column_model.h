@@ -1,16 +1,19 @@
-// The force model in column layout: the same elements as ForceModel, arranged by root edge and root face with their
-// layers along the vector lanes. This is what the simulator runs; evaluate() over ForceModel is the plain reference
-// that tests hold it to.
+// The force model in column layout: the elements of the kinds that have a fast kernel, arranged by root edge and root
+// face with their layers along the vector lanes. This is what the simulator runs; evaluate() over ForceModel is the
+// plain reference that tests hold it to.
 #pragma once
 
 #include <array>
 #include <vector>
 
-#include "sim/column_matrix.h"
+#include "sim/forces/evaluate.h"
 #include "sim/forces/force_model.h"
-#include "sim/left_out.h"
+#include "sim/linear/column_matrix.h"
 
 namespace sim {
+
+// The kinds with a fast kernel. Those without run through the plain evaluation (evaluate.h).
+using KernelKinds = KindList<Stretch, Shear, Bend, Volume>;
 
 // A wall with the one above it: vertices of columns a, b in its lower layer, between the walls, in the upper layer. Its
 // pairs, the lower side first, so ordered that those one layer apart are far from each other.
@@ -34,7 +37,7 @@ inline constexpr std::array<std::array<int, 2>, 15> kJointPairs{{{0, 1},
 // for hinges); stiffness is zero where there is no element.
 template <class T>
 struct ColumnModel {
-  struct Stretch {
+  struct StretchArrays {
     std::vector<T> stiffness, inverse_length, shift;
   };
   struct RootEdge {
@@ -56,21 +59,19 @@ struct ColumnModel {
   std::vector<BlockPlace> vertical_pairs;  // per column
   std::vector<int> diagonal;               // per column: start of its own offset 0
   std::vector<int> column_lanes;           // per column: entries to walk
-  Stretch vertical, horizontal;
+  StretchArrays vertical, horizontal;
   std::vector<T> shear_stiffness, shear_shift, inverse_along, inverse_across;
   std::vector<T> bend_stiffness, bend_rest_angle, bend_inverse_length, bend_smallest_square;
   std::vector<T> volume_stiffness, volume_rest;
+  ForceModel<T> plain;  // the kinds without a kernel
   // Whether any element of the kind has a stiffness: kinds without one are not assembled.
   bool has_vertical = true, has_horizontal = true, has_shear = true, has_bend = true, has_volume = true;
-
-  LeftOut kindsLeftOut() const {
-    const int assembled = has_vertical + has_horizontal + has_shear + has_bend + has_volume;
-    return {5 - assembled, 5};
-  }
 
   ColumnModel(const HairMesh& mesh, const ColumnLayout& layout, const ColumnPattern& pattern);
   // Takes over stiffnesses and rest values; the topology stays.
   void setElements(const HairMesh& mesh, const ColumnLayout& layout, const ForceModel<double>& model);
+  // Takes over the elements that the step's input moves, for positions relative to `origin` (m).
+  void setMoving(const ForceModel<double>& model, const Vec3& origin);
 
  private:
   // Entry of an element in its arrays, and whether it is wound against the root edge. Looked up once for each set of
@@ -85,16 +86,6 @@ struct ColumnModel {
   };
   Located located_;
   void locate(const HairMesh& mesh, const ColumnLayout& layout, const ForceModel<double>& model);
-};
-
-// What an evaluation in column layout adds up; see Evaluation.
-template <class T>
-struct ColumnEvaluation {
-  ColumnField<T>* force = nullptr;    // added
-  ColumnMatrix<T>* matrix = nullptr;  // added
-  T matrix_scale = 0, tension_scale = 0;
-  const ColumnField<T>* velocity = nullptr;
-  T damping = 0;
 };
 
 // As evaluate() over ForceModel, within rounding.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/forces/evaluate.h"
+
 namespace sim {
 namespace {
 
@@ -11,28 +13,8 @@ V3<double> plain(const Vec3& p) {
   return {p.x(), p.y(), p.z()};
 }
 
-// Bounds of the shifts where the material is too soft to hold the style: strain, shear, rad, share of the volume.
-constexpr double kMostStrain = 0.5, kMostShear = 0.5, kMostAngle = 1, kMostVolume = 0.5;
-
-template <int N>
-void takeShare(const Elements<double, N>& elements, const std::vector<V3<double>>& x, const std::vector<V3<double>>& y,
-               const auto& conditionOf, RestBalance::Share& share) {
-  share.change.resize(elements.size());
-  for (std::size_t e = 0; e < elements.size(); ++e) {
-    V3<double> p[N];
-    for (int k = 0; k < N; ++k) p[k] = x[elements.vertices[e][k]];
-    const Condition<double, N> c = conditionOf(e, p);
-    double change = 0;
-    for (int k = 0; k < N; ++k) change += dot(c.g[k], y[elements.vertices[e][k]]);
-    share.change[e] = change;
-  }
-}
-
-// The share's shift of element e when its stiffness is `stiffness` and the load `scale` times as large.
-double shiftOf(const RestBalance::Share& share, std::size_t e, double stiffness, double scale, double bound) {
-  const double change = share.change[e] * (share.stiffness[e] / stiffness) * scale;
-  return -std::clamp(change, -bound, bound);
-}
+template <class Kind>
+constexpr int kIndex = ForceKinds::indexOf<Kind>();
 
 }  // namespace
 
@@ -43,16 +25,21 @@ Material::Material(const HairMesh& mesh, const BlockPattern& pattern)
   for (int v = 0; v < n; ++v) x_[v] = plain(mesh.shape.positions[v]);
 }
 
+void Material::setMoving(std::span<const PinnedVertex> pins) {
+  setMovingElements({*mesh_, params_, pins}, *pattern_, model);
+}
+
 void Material::rebuild() {
-  model = makeElements(*mesh_, *pattern_, params_);
-  rest_shear_ = model.shear.shift;
+  model = makeElements({*mesh_, params_}, *pattern_);
+  model.forEachOfMaterial(
+      [&]<class Kind>(const Elements<Kind, double>& elements) { unloaded_[kIndex<Kind>] = elements.shift; });
   balance_ = coming_ = {};
   stage_ = Stage::kIdle;
 }
 
 void Material::set(const SimParams& params) {
   params_ = params;
-  if (!setStiffness(*mesh_, params, model)) rebuild();
+  if (!setStiffness({*mesh_, params}, model)) rebuild();
   stage_ = Stage::kIdle;
   outdated_ = false;
   balance_.load = 0;
@@ -65,13 +52,14 @@ void Material::set(const SimParams& params) {
 
 void Material::follow(const SimParams& params) {
   params_ = params;
-  if (!setStiffness(*mesh_, params, model)) return set(params);
+  if (!setStiffness({*mesh_, params}, model)) return set(params);
   applyBalance();
   // Weight alone changes no more than the scale.
   const RestBalance& last = stage_ == Stage::kIdle ? balance_ : coming_;
-  const bool same = last.load > 0 && last.stretch.stiffness == model.stretch.stiffness &&
-                    last.shear.stiffness == model.shear.stiffness && last.bend.stiffness == model.bend.stiffness &&
-                    last.volume.stiffness == model.volume.stiffness;
+  bool same = last.load > 0;
+  model.forEachOfMaterial([&]<class Kind>(const Elements<Kind, double>& elements) {
+    same = same && last.stiffness[kIndex<Kind>] == elements.stiffness;
+  });
   outdated_ = wantedLoad() > 0 && !same;
 }
 
@@ -93,7 +81,10 @@ void Material::beginBalance() {
   Evaluation<double> out;
   out.matrix = &stiffness_;
   out.matrix_scale = 1;
-  evaluate<double>(model, x_, out);
+  double energy = 0;
+  model.forEachOfMaterial([&](const auto& elements) {
+    evaluateElements(elements, BlockSums<double>{x_, out}, energy);
+  });
   const int n = mesh_->vertexCount();
   double scale = 0;
   for (int i = 0; i < n; ++i) scale = std::max(scale, stiffness_.diagonal[i].m[0]);
@@ -103,10 +94,9 @@ void Material::beginBalance() {
     // A material without bend or shear leaves modes without stiffness; the smallest share keeps the solve defined.
     for (int k = 0; k < 9; k += 4) stiffness_.diagonal[i].m[k] += 1e-13 * scale;
   }
-  coming_.stretch.stiffness = model.stretch.stiffness;
-  coming_.shear.stiffness = model.shear.stiffness;
-  coming_.bend.stiffness = model.bend.stiffness;
-  coming_.volume.stiffness = model.volume.stiffness;
+  model.forEachOfMaterial([&]<class Kind>(const Elements<Kind, double>& elements) {
+    coming_.stiffness[kIndex<Kind>] = elements.stiffness;
+  });
   if (factor_.order.empty()) {
     std::vector<unsigned char> free_vertex(n);
     for (int i = 0; i < n; ++i) free_vertex[i] = !mesh_->isRoot(i);
@@ -157,50 +147,36 @@ bool Material::refine() {
 }
 
 void Material::takeChanges() {
-  coming_.stretch.change.resize(model.stretch.size());
-  for (std::size_t e = 0; e < model.stretch.size(); ++e) {
-    const auto [a, b] = model.stretch.vertices[e];
-    const auto s = stretchCondition(x_[a], x_[b], model.stretch.inverse_length[e]);
-    coming_.stretch.change[e] = s.inverse_length * dot(s.direction, y_[b] - y_[a]);
-  }
-  const auto& shear = model.shear;
-  takeShare<4>(
-      shear, x_, y_,
-      [&](std::size_t e, const V3<double>* p) {
-        return shearCondition(p, shear.inverse_along[e], shear.inverse_across[e]);
-      },
-      coming_.shear);
-  const auto& bend = model.bend;
-  takeShare<6>(
-      bend, x_, y_,
-      [&](std::size_t e, const V3<double>* p) {
-        return bendCondition(p, bend.rest_angle[e], bend.inverse_length[e], bend.smallest_square[e]);
-      },
-      coming_.bend);
-  takeShare<4>(
-      model.volume, x_, y_,
-      [&](std::size_t e, const V3<double>* p) { return volumeCondition(p, model.volume.rest_volume[e]); },
-      coming_.volume);
+  model.forEachOfMaterial([&]<class Kind>(const Elements<Kind, double>& elements) {
+    std::vector<double>& changes = coming_.change[kIndex<Kind>];
+    changes.resize(elements.size());
+    for (std::size_t e = 0; e < elements.size(); ++e) {
+      const auto& v = elements.vertices[e];
+      V3<double> p[Kind::kVertices];
+      for (int k = 0; k < Kind::kVertices; ++k) p[k] = x_[v[k]];
+      const auto c = Kind::condition(p, elements.rest[e], 0.0);
+      double change = 0;
+      for (int k = 0; k < Kind::kVertices; ++k) change += dot(c.g[k], y_[v[k]]);
+      changes[e] = change;
+    }
+  });
   std::swap(balance_, coming_);
 }
 
+// What balances gravity is the product of stiffness and shift: a balance serves other stiffnesses and loads too.
 void Material::applyBalance() {
   const double load = wantedLoad();
   const bool balanced = load > 0 && balance_.load > 0;
   const double scale = balanced ? load / balance_.load : 0;
-  const auto apply = [&](auto& elements, const RestBalance::Share& share, const auto& baseOf, const auto& boundOf) {
+  model.forEachOfMaterial([&]<class Kind>(Elements<Kind, double>& elements) {
+    const std::vector<double>&change = balance_.change[kIndex<Kind>], &stiffness = balance_.stiffness[kIndex<Kind>];
     for (std::size_t e = 0; e < elements.size(); ++e) {
-      elements.shift[e] = baseOf(e);
-      if (balanced) elements.shift[e] += shiftOf(share, e, elements.stiffness[e], scale, boundOf(e));
+      elements.shift[e] = unloaded_[kIndex<Kind>][e];
+      if (!balanced) continue;
+      const double bound = Kind::maxShift(elements.rest[e]);
+      elements.shift[e] -= std::clamp(change[e] * (stiffness[e] / elements.stiffness[e]) * scale, -bound, bound);
     }
-  };
-  const auto zero = [](std::size_t) { return 0.0; };
-  apply(model.stretch, balance_.stretch, zero, [](std::size_t) { return kMostStrain; });
-  apply(
-      model.shear, balance_.shear, [&](std::size_t e) { return rest_shear_[e]; },
-      [](std::size_t) { return kMostShear; });
-  apply(model.bend, balance_.bend, zero, [&](std::size_t e) { return kMostAngle * model.bend.inverse_length[e]; });
-  apply(model.volume, balance_.volume, zero, [&](std::size_t e) { return kMostVolume * model.volume.rest_volume[e]; });
+  });
 }
 
 ForceModel<double> makeForceModel(const HairMesh& mesh, const BlockPattern& pattern, const SimParams& params) {

@@ -8,17 +8,15 @@
 
 #include <vector>
 
-#include "sim/block_cholesky.h"
 #include "sim/forces/force_model.h"
+#include "sim/linear/block_cholesky.h"
 
 namespace sim {
 
-// A balance of gravity in the styled pose: the change of each element's condition, and what it was solved for.
+// A balance of gravity in the styled pose: the change of each element's condition, and the stiffness that it was solved
+// for; one entry a kind, one value an element. The shift is minus the change.
 struct RestBalance {
-  struct Share {
-    std::vector<double> change, stiffness;  // the shift is minus the change; J
-  };
-  Share stretch, shear, bend, volume;
+  std::array<std::vector<double>, ForceKinds::kCount> change, stiffness;
   double load = 0;  // density times gravity, N/m^3; 0: there is none
 };
 
@@ -33,6 +31,9 @@ struct Material {
   // Stiffnesses and weight follow at once, the balance by its products. Then outdated() until its own is solved for.
   void follow(const SimParams& params);
 
+  // Makes the elements anew that the step's input moves.
+  void setMoving(std::span<const PinnedVertex> pins);
+
   // Goes on with the solve for the balance of the last parameters by one `slices`-th of its factorization; answers
   // whether `model` has just changed. A parameter that changes meanwhile lets the solve finish and begin again.
   bool work(int slices);
@@ -43,7 +44,7 @@ struct Material {
   const HairMesh* mesh_;
   const BlockPattern* pattern_;
   SimParams params_;
-  std::vector<double> rest_shear_;  // shifts before any balance
+  std::array<std::vector<double>, ForceKinds::kCount> unloaded_;  // shifts before any balance
   RestBalance balance_, coming_;
   bool outdated_ = false;  // the balance is not that of params_
   Stage stage_ = Stage::kIdle;

@@ -14,14 +14,14 @@ struct PrismShares {
   // but the diagonals through a hexahedron's middle.
   static constexpr int kLayerPairs = N == 4 ? 6 : 3, kPairs = 2 * kLayerPairs + 3 * N;
   // Tetrahedra at a vertex, and most that share a pair.
-  static constexpr int kOfVertex = 4, kMostOfPair = 3;
+  static constexpr int kOfVertex = 4, kMaxOfPair = 3;
 
   struct Share {
     int tet, p, q;  // the pair's first and second vertex are its p-th and q-th
   };
   struct Pair {
     int u, v, shares = 0;
-    std::array<Share, kMostOfPair> share{};
+    std::array<Share, kMaxOfPair> share{};
   };
 
   std::array<std::array<int, 4>, kVertices> tets{};

@@ -1,8 +1,8 @@
-#include "sim/batch_kernels.h"
+#include "sim/linear/batch_kernels.h"
 
 #include <cstddef>
 
-#include "sim/lanes.h"
+#include "sim/linear/lanes.h"
 
 namespace sim {
 namespace {

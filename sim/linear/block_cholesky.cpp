@@ -1,12 +1,12 @@
 // s: a supernode, L_ss: its triangle, L_rs: its rows below; w: its width, h: its height, both in scalars.
-#include "sim/block_cholesky.h"
+#include "sim/linear/block_cholesky.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "sim/batch_kernels.h"
-#include "sim/dense_kernels.h"
-#include "sim/elimination_order.h"
+#include "sim/linear/batch_kernels.h"
+#include "sim/linear/dense_kernels.h"
+#include "sim/linear/elimination_order.h"
 
 namespace sim {
 namespace {

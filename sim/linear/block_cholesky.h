@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "sim/batch_kernels.h"
-#include "sim/block_matrix.h"
-#include "sim/hair_mesh.h"
+#include "sim/linear/batch_kernels.h"
+#include "sim/linear/block_matrix.h"
+#include "sim/mesh/hair_mesh.h"
 
 namespace sim {
 

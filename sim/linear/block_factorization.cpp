@@ -10,8 +10,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "sim/block_cholesky.h"
-#include "sim/dense_kernels.h"
+#include "sim/linear/block_cholesky.h"
+#include "sim/linear/dense_kernels.h"
 
 namespace sim {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <span>
 
-#include "sim/contact.h"
-#include "sim/forces/vector3.h"
+#include "sim/contact/contact.h"
+#include "sim/linear/vector3.h"
 
 namespace sim {
 

@@ -1,4 +1,4 @@
-#include "sim/block_matrix.h"
+#include "sim/linear/block_matrix.h"
 
 #include <algorithm>
 

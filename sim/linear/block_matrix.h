@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/forces/vector3.h"
+#include "sim/linear/vector3.h"
 
 namespace sim {
 

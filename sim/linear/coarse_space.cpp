@@ -1,11 +1,11 @@
-#include "sim/patch_space.h"
+#include "sim/linear/coarse_space.h"
 
 #include <algorithm>
 #include <array>
 #include <map>
 
-#include "sim/elimination_order.h"
-#include "sim/lanes.h"
+#include "sim/linear/elimination_order.h"
+#include "sim/linear/lanes.h"
 
 namespace sim {
 namespace {
@@ -14,7 +14,7 @@ constexpr int kEntries = 36;  // of a block between two patches: six motions of 
 // Of the largest entry on a block's diagonal: a patch of vertices on one line can turn about it without anything moving
 // but by what rounding has put them beside it.
 constexpr double kRaise = 1e-4;
-constexpr double kMostFree = 0.6;  // of a column's neighbours, that a group begins with
+constexpr double kMaxFree = 0.6;  // of a column's neighbours, that a group begins with
 
 // A column and its neighbours, in the order of the columns, where most of these have no group yet; what is left then
 // joins the neighbouring group that has most of its neighbours.
@@ -24,7 +24,7 @@ std::vector<int> groupColumns(int columns, const std::vector<std::vector<int>>& 
   const auto isFree = [&](int c) { return group[c] < 0; };
   for (int c = 0; c < columns; ++c) {
     const auto free = std::count_if(neighbours[c].begin(), neighbours[c].end(), isFree);
-    if (!isFree(c) || static_cast<double>(free) < kMostFree * static_cast<double>(neighbours[c].size())) continue;
+    if (!isFree(c) || static_cast<double>(free) < kMaxFree * static_cast<double>(neighbours[c].size())) continue;
     group[c] = groups;
     for (const int near : neighbours[c]) {
       if (isFree(near)) group[near] = groups;
@@ -162,7 +162,7 @@ HAIRMESH_KERNELS(double)
 }  // namespace
 
 template <class T>
-PatchSpace<T>::PatchSpace(const HairMesh& mesh, const ColumnLayout& layout, const ColumnPattern& pattern)
+CoarseSpace<T>::CoarseSpace(const HairMesh& mesh, const ColumnLayout& layout, const ColumnPattern& pattern)
     : mesh_(&mesh),
       layout_(&layout),
       pattern_(&pattern),
@@ -233,7 +233,7 @@ PatchSpace<T>::PatchSpace(const HairMesh& mesh, const ColumnLayout& layout, cons
 }
 
 template <class T>
-void PatchSpace<T>::setArms(std::span<const V3<T>> x, std::span<const VertexConstraint> constraints) {
+void CoarseSpace<T>::setArms(std::span<const V3<T>> x, std::span<const VertexConstraint> constraints) {
   std::fill(held_.begin(), held_.end(), 0);
   for (const VertexConstraint& c : constraints) held_[c.vertex] = 1;
   std::fill(asked_.begin(), asked_.end(), V3<T>{});  // sums of positions, and in the turn's place their number
@@ -258,7 +258,7 @@ void PatchSpace<T>::setArms(std::span<const V3<T>> x, std::span<const VertexCons
 
 // The sums over a class's lanes into the blocks of the patches.
 template <class T>
-void PatchSpace<T>::addSums(const Class& one) {
+void CoarseSpace<T>::addSums(const Class& one) {
   const int stride = layout_->stride;
   for (int k = one.target_first; k < one.target_end; ++k) {
     const Target& t = targets_[k];
@@ -289,7 +289,7 @@ void PatchSpace<T>::addSums(const Class& one) {
 }
 
 template <class T>
-bool PatchSpace<T>::factor() {
+bool CoarseSpace<T>::factor() {
   for (M3<T>& d : matrix_.diagonal) {
     const T largest = std::max({d.m[0], d.m[4], d.m[8]});
     for (int k = 0; k < 9; k += 4) d.m[k] += largest > 0 ? static_cast<T>(kRaise) * largest : T(1);
@@ -298,8 +298,8 @@ bool PatchSpace<T>::factor() {
 }
 
 template <class T>
-bool PatchSpace<T>::make(const ColumnMatrix<T>& a, std::span<const V3<T>> x,
-                         std::span<const VertexConstraint> constraints) {
+bool CoarseSpace<T>::make(const ColumnMatrix<T>& a, std::span<const V3<T>> x,
+                          std::span<const VertexConstraint> constraints) {
   setArms(x, constraints);
   matrix_.setZero();
   const Fields<T> fields{arm_, moves_.data()};
@@ -312,8 +312,8 @@ bool PatchSpace<T>::make(const ColumnMatrix<T>& a, std::span<const V3<T>> x,
 }
 
 template <class T>
-bool PatchSpace<T>::make(const BlockMatrix<T>& a, std::span<const V3<T>> x,
-                         std::span<const VertexConstraint> constraints) {
+bool CoarseSpace<T>::make(const BlockMatrix<T>& a, std::span<const V3<T>> x,
+                          std::span<const VertexConstraint> constraints) {
   setArms(x, constraints);
   matrix_.setZero();
   const auto addBlock = [&](int i, int j, const M3<T>& m) {
@@ -341,20 +341,20 @@ bool PatchSpace<T>::make(const BlockMatrix<T>& a, std::span<const V3<T>> x,
 
 // Both triangles are given; the lower one is kept.
 template <class T>
-void PatchSpace<T>::addPart(int row, int column, const M3<T>& m) {
+void CoarseSpace<T>::addPart(int row, int column, const M3<T>& m) {
   if (row < column) return;
   M3<T>& to = row == column ? matrix_.diagonal[row] : matrix_.lower[coupled_.find(row, column)];
   for (int k = 0; k < 9; ++k) to.m[k] += m.m[k];
 }
 
 template <class T>
-int PatchSpace<T>::unknown(std::span<const VertexConstraint> constraints) const {
+int CoarseSpace<T>::unknown(std::span<const VertexConstraint> constraints) const {
   return static_cast<int>(
       std::ranges::count_if(constraints, [&](const VertexConstraint& c) { return held_[c.vertex] == 0; }));
 }
 
 template <class T>
-void PatchSpace<T>::solve(const ColumnField<T>& r) {
+void CoarseSpace<T>::solve(const ColumnField<T>& r) {
   const int stride = layout_->stride;
   const Fields<T> fields{arm_, moves_.data()};
   for (std::size_t g = 0; g + 1 < group_first_.size(); ++g) {
@@ -376,7 +376,7 @@ void PatchSpace<T>::solve(const ColumnField<T>& r) {
 }
 
 template <class T>
-void PatchSpace<T>::add(ColumnField<T>& z) {
+void CoarseSpace<T>::add(ColumnField<T>& z) {
   const int stride = layout_->stride;
   const Fields<T> fields{arm_, moves_.data()};
   for (std::size_t g = 0; g + 1 < group_first_.size(); ++g) {
@@ -395,7 +395,7 @@ void PatchSpace<T>::add(ColumnField<T>& z) {
   }
 }
 
-template class PatchSpace<float>;
-template class PatchSpace<double>;
+template class CoarseSpace<float>;
+template class CoarseSpace<double>;
 
 }  // namespace sim

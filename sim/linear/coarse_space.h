@@ -12,10 +12,10 @@
 #include <span>
 #include <vector>
 
-#include "sim/block_cholesky.h"
-#include "sim/block_matrix.h"
-#include "sim/column_matrix.h"
-#include "sim/contact.h"
+#include "sim/contact/contact.h"
+#include "sim/linear/block_cholesky.h"
+#include "sim/linear/block_matrix.h"
+#include "sim/linear/column_matrix.h"
 
 namespace sim {
 
@@ -23,13 +23,13 @@ namespace sim {
 // vertices that were constrained; C = B^T A B for the matrix A that it was made of, so that the answer is the best that
 // the patches can give, and never too large.
 template <class T>
-class PatchSpace {
+class CoarseSpace {
  public:
   // Layers of a patch. With 4 a step takes a tenth fewer iterations, and the factor several times the operations:
   // along the hair the columns' own factor sees far.
   static constexpr int kLayers = 12;
 
-  PatchSpace(const HairMesh& mesh, const ColumnLayout& layout, const ColumnPattern& pattern);
+  CoarseSpace(const HairMesh& mesh, const ColumnLayout& layout, const ColumnPattern& pattern);
 
   // Takes a positive definite matrix, the positions (m, one a vertex) and the constraints; false when a pivot was not
   // positive, and it must not be used. Allocates nothing.

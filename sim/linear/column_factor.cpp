@@ -1,11 +1,11 @@
-#include "sim/strand_factor.h"
+#include "sim/linear/column_factor.h"
 
 #include <algorithm>
 #include <numeric>
 
-#include "sim/block_mask.h"
-#include "sim/forces/vector3.h"
-#include "sim/pivot_inverse.h"
+#include "sim/linear/block_mask.h"
+#include "sim/linear/pivot_inverse.h"
+#include "sim/linear/vector3.h"
 
 namespace sim {
 namespace {
@@ -122,7 +122,7 @@ HAIRMESH_CLONES void runSolve(int rows, const double* values, double* x) {
 }  // namespace
 
 template <class T>
-StrandFactor<T>::StrandFactor(const HairMesh& mesh, const ColumnLayout& layout, const ColumnPattern& pattern)
+ColumnFactor<T>::ColumnFactor(const HairMesh& mesh, const ColumnLayout& layout, const ColumnPattern& pattern)
     : mesh_(&mesh),
       layout_(&layout),
       lanes_(std::is_same_v<T, float> ? kWideLanes : kLanes),
@@ -153,14 +153,14 @@ StrandFactor<T>::StrandFactor(const HairMesh& mesh, const ColumnLayout& layout, 
 
 // Entries of a column's vertex: those of its pivot (step 0), or of the block that couples it with the `step`-th after.
 template <class T>
-T* StrandFactor<T>::at(int column, int layer, int step) {
+T* ColumnFactor<T>::at(int column, int layer, int step) {
   const Place place = place_[column];
   const int entry = (layer - 1) * kRow + (step == 0 ? 0 : kPivot + (step - 1) * kBlock);
   return values_.data() + groups_[place.group].values + static_cast<std::size_t>(entry) * lanes_ + place.lane;
 }
 
 template <class T>
-void StrandFactor<T>::clearWithIdentity() {
+void ColumnFactor<T>::clearWithIdentity() {
   std::fill(values_.begin(), values_.end(), T(0));
   for (const Group& group : groups_) {
     for (int lane = 0; lane < lanes_; ++lane) {
@@ -174,7 +174,7 @@ void StrandFactor<T>::clearWithIdentity() {
 }
 
 template <class T>
-void StrandFactor<T>::factor(const ColumnMatrix<T>& a, std::span<const VertexConstraint> constraints) {
+void ColumnFactor<T>::factor(const ColumnMatrix<T>& a, std::span<const VertexConstraint> constraints) {
   clearWithIdentity();
   const int stride = layout_->stride;
   for (int c = 0; c < layout_->columns; ++c) {
@@ -194,7 +194,7 @@ void StrandFactor<T>::factor(const ColumnMatrix<T>& a, std::span<const VertexCon
 }
 
 template <class T>
-void StrandFactor<T>::factor(const BlockMatrix<T>& a, std::span<const VertexConstraint> constraints) {
+void ColumnFactor<T>::factor(const BlockMatrix<T>& a, std::span<const VertexConstraint> constraints) {
   clearWithIdentity();
   for (int c = 0; c < layout_->columns; ++c) {
     for (int layer = 1; layer < layout_->length[c]; ++layer) {
@@ -213,7 +213,7 @@ void StrandFactor<T>::factor(const BlockMatrix<T>& a, std::span<const VertexCons
 }
 
 template <class T>
-void StrandFactor<T>::mask(std::span<const VertexConstraint> constraints) {
+void ColumnFactor<T>::mask(std::span<const VertexConstraint> constraints) {
   for (const VertexConstraint& constraint : constraints) {
     const int c = mesh_->column_of[constraint.vertex], layer = mesh_->layer_of[constraint.vertex];
     if (layer == 0) continue;
@@ -227,12 +227,12 @@ void StrandFactor<T>::mask(std::span<const VertexConstraint> constraints) {
 }
 
 template <class T>
-void StrandFactor<T>::eliminate() {
+void ColumnFactor<T>::eliminate() {
   for (const Group& group : groups_) runElimination(std::max(0, group.depth - 1), values_.data() + group.values);
 }
 
 template <class T>
-void StrandFactor<T>::addSolution(std::span<const V3<T>> r, T scale, std::span<V3<T>> z) {
+void ColumnFactor<T>::addSolution(std::span<const V3<T>> r, T scale, std::span<V3<T>> z) {
   for (const Group& group : groups_) {
     const int rows = std::max(0, group.depth - 1);
     const auto eachVertex = [&](auto&& visit) {
@@ -252,7 +252,7 @@ void StrandFactor<T>::addSolution(std::span<const V3<T>> r, T scale, std::span<V
   }
 }
 
-template struct StrandFactor<float>;
-template struct StrandFactor<double>;
+template struct ColumnFactor<float>;
+template struct ColumnFactor<double>;
 
 }  // namespace sim

@@ -7,16 +7,16 @@
 #include <span>
 #include <vector>
 
-#include "sim/block_matrix.h"
-#include "sim/column_matrix.h"
-#include "sim/contact.h"
+#include "sim/contact/contact.h"
+#include "sim/linear/block_matrix.h"
+#include "sim/linear/column_matrix.h"
 
 namespace sim {
 
 // Block L D L^T of every column. A vertex is coupled to the next two (bending). Roots do not move and have no row.
 template <class T>
-struct StrandFactor {
-  StrandFactor(const HairMesh& mesh, const ColumnLayout& layout, const ColumnPattern& pattern);
+struct ColumnFactor {
+  ColumnFactor(const HairMesh& mesh, const ColumnLayout& layout, const ColumnPattern& pattern);
 
   // The blocks within columns of a positive definite matrix, without the directions that the constraints remove; a
   // pivot block that rounding has made singular counts as its diagonal. Allocates nothing.

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "sim/forces/vector3.h"
-#include "sim/hair_mesh.h"
-#include "sim/lanes.h"
+#include "sim/linear/lanes.h"
+#include "sim/linear/vector3.h"
+#include "sim/mesh/hair_mesh.h"
 
 namespace sim {
 

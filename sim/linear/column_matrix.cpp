@@ -1,6 +1,7 @@
-#include "sim/column_matrix.h"
+#include "sim/linear/column_matrix.h"
 
 #include <algorithm>
+#include <cassert>
 #include <set>
 
 namespace sim {
@@ -116,6 +117,21 @@ void ColumnMatrix<T>::addMass(T scale, std::span<const T> mass) {
     T* at = values.data() + pattern->diagonals[entry / layout->stride].values + entry % layout->stride;
     for (const int component : {0, 3, 5}) at[component * layout->stride] += scale * mass[v];
   }
+}
+
+template <class T>
+void ColumnMatrix<T>::addBlock(int v, int w, const M3<T>& block) {
+  const int s = layout->stride, p = layout->slot[v] - ColumnLayout::kMargin,
+            q = layout->slot[w] - ColumnLayout::kMargin;
+  const BlockPlace place = pattern->place(p / s, p % s, q / s, q % s);
+  assert(place.at >= 0);
+  T* at = values.data() + place.at;
+  if (v == w) {
+    constexpr int kUpper[6] = {0, 1, 2, 4, 5, 8};
+    for (int k = 0; k < 6; ++k) at[k * s] += block.m[kUpper[k]];
+    return;
+  }
+  for (int k = 0; k < 9; ++k) at[k * s] += block.m[place.transposed ? 3 * (k % 3) + k / 3 : k];
 }
 
 template <class T>

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "sim/block_matrix.h"
-#include "sim/column_layout.h"
+#include "sim/linear/block_matrix.h"
+#include "sim/linear/column_layout.h"
 
 namespace sim {
 
@@ -54,6 +54,9 @@ struct ColumnMatrix {
   void setZero();
   // Adds scale * mass to the diagonal (mass per vertex, in vertex order).
   void addMass(T scale, std::span<const T> mass);
+  // Adds the block of vertices v and w to the matrix, which is symmetric; some element of the mesh couples them. For v
+  // == w the block is symmetric itself.
+  void addBlock(int v, int w, const M3<T>& block);
   // The 3x3 block of vertex v's diagonal.
   M3<T> diagonalBlock(int v) const;
   // The same matrix as blocks by vertex. `to` has the mesh's system pattern.

@@ -1,9 +1,9 @@
-#include "sim/compact_factor.h"
+#include "sim/linear/compact_factor.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "sim/lanes.h"
+#include "sim/linear/lanes.h"
 
 namespace sim {
 namespace {

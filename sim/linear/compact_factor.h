@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/block_cholesky.h"
+#include "sim/linear/block_cholesky.h"
 
 namespace sim {
 

@@ -1,9 +1,9 @@
-#include "sim/contact_response.h"
+#include "sim/linear/contact_response.h"
 
 #include <algorithm>
 
-#include "sim/lanes.h"
-#include "sim/small_cholesky.h"
+#include "sim/linear/lanes.h"
+#include "sim/linear/small_cholesky.h"
 
 namespace sim {
 namespace {
@@ -25,22 +25,22 @@ HAIRMESH_CLONES void subtract(double* z, const double* answers, std::size_t n, c
 
 template <class T>
 void ContactResponses<T>::reset(int vertices) {
-  slots_.resize(kMostVertices);
+  slots_.resize(kMaxVertices);
   for (Slot& slot : slots_) {
     slot.vertex = -1;
     slot.used = 0;
     slot.answers.resize(3 * static_cast<std::size_t>(vertices));
   }
   slot_of_.assign(vertices, -1);
-  forces_.resize(kMostVertices);
+  forces_.resize(kMaxVertices);
   directions_.clear();
-  directions_.reserve(kMostDirections);
+  directions_.reserve(kMaxDirections);
   wanted_.clear();
   wanted_.reserve(vertices);
   touched_.reserve(kVerticesPerBatch);
   batch_.resize(3 * static_cast<std::size_t>(vertices) * BlockCholesky<T>::kBatch);
-  gram_.resize(kMostDirections, kMostDirections);
-  multipliers_.resize(kMostDirections);
+  gram_.resize(kMaxDirections, kMaxDirections);
+  multipliers_.resize(kMaxDirections);
 }
 
 template <class T>
@@ -115,7 +115,7 @@ bool ContactResponses<T>::setConstraints(BlockCholesky<T>& factor, std::span<con
   for (const VertexConstraint& constraint : constraints) {
     const int slot = slot_of_[constraint.vertex];
     if (slot < 0) continue;
-    if (static_cast<int>(directions_.size()) + constraint.removed > kMostDirections) {
+    if (static_cast<int>(directions_.size()) + constraint.removed > kMaxDirections) {
       complete = false;
       break;
     }

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "sim/block_cholesky.h"
-#include "sim/contact.h"
+#include "sim/contact/contact.h"
+#include "sim/linear/block_cholesky.h"
 
 namespace sim {
 
@@ -16,8 +16,8 @@ namespace sim {
 // so that they are kept for as long as it lives: a contact that lasts, returns or turns costs nothing more.
 template <class T>
 struct ContactResponses {
-  static constexpr int kMostVertices = 96;     // answers kept; those unused for longest make room
-  static constexpr int kMostDirections = 160;  // corrected for; the filter alone serves the rest
+  static constexpr int kMaxVertices = 96;     // answers kept; those unused for longest make room
+  static constexpr int kMaxDirections = 160;  // corrected for; the filter alone serves the rest
   static constexpr int kVerticesPerBatch = BlockCholesky<T>::kBatch / 3;
 
   // Forgets all answers: the factor has changed. `vertices`: length of z.

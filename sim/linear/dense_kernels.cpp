@@ -1,9 +1,9 @@
-#include "sim/dense_kernels.h"
+#include "sim/linear/dense_kernels.h"
 
 #include <algorithm>
 #include <cstddef>
 
-#include "sim/lanes.h"
+#include "sim/linear/lanes.h"
 
 namespace sim {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/elimination_order.h"
+#include "sim/linear/elimination_order.h"
 
 #include <Eigen/OrderingMethods>
 #include <Eigen/Sparse>

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "sim/block_matrix.h"
-#include "sim/hair_mesh.h"
+#include "sim/linear/block_matrix.h"
+#include "sim/mesh/hair_mesh.h"
 
 namespace sim {
 

@@ -1,4 +1,4 @@
-#include "sim/incomplete_cholesky.h"
+#include "sim/linear/incomplete_cholesky.h"
 
 #include <cmath>
 

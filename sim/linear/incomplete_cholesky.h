@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/block_matrix.h"
+#include "sim/linear/block_matrix.h"
 
 namespace sim {
 

@@ -1,12 +1,12 @@
-#include "sim/layer_factor.h"
+#include "sim/linear/layer_factor.h"
 
 #include <algorithm>
 #include <map>
 #include <set>
 
-#include "sim/block_mask.h"
-#include "sim/elimination_order.h"
-#include "sim/pivot_inverse.h"
+#include "sim/linear/block_mask.h"
+#include "sim/linear/elimination_order.h"
+#include "sim/linear/pivot_inverse.h"
 
 namespace sim {
 namespace {

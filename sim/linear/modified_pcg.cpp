@@ -2,13 +2,13 @@
 // it d within the free directions. r stays whole, because its removed directions are the reactions of the constraints;
 // only what the preconditioner reads of it is filtered. Left out there, the method still converges when only whole
 // vertices are pinned, and diverges with partial constraints.
-#include "sim/linear_solver.h"
+#include "sim/linear/modified_pcg.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "sim/vector_kernels.h"
+#include "sim/linear/vector_kernels.h"
 
 namespace sim {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 constexpr int kLookAgain = 16;  // iterations, after which rounding has left something along the deflated directions
 constexpr int kLookBack = 16;   // iterations
 constexpr double kNoise = 64;   // of the squared rounding error, that so many iterations gain where there is nothing to
-constexpr double kEven = 0.5;  // gains that fall by at least so much an iteration foretell the next ones
+constexpr double kEven = 0.5;   // gains that fall by at least so much an iteration foretell the next ones
 
 template <class T>
 double largestAcceleration(std::span<const V3<T>> r, std::span<const T> inverse_mass_dt) {

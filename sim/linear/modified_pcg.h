@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
-#include "sim/block_matrix.h"
-#include "sim/column_matrix.h"
-#include "sim/preconditioner.h"
+#include "sim/linear/block_matrix.h"
+#include "sim/linear/column_matrix.h"
+#include "sim/linear/preconditioner.h"
 
 namespace sim {
 
@@ -65,7 +65,7 @@ struct StopRule {
 // How a solve begins. `fresh`: from x and b. `restart`: from x and the residual in the scratch, which the caller has
 // kept true while b or the filter changed; the search directions begin anew. `exchange`: as restart, the preconditioner
 // being another one. Both measure progress from the first solve's first norm. `prepared`: fresh, but with the residual
-// already in the scratch, and with nothing in it along the deflated directions (as InitialGuess leaves it).
+// already in the scratch, and with nothing in it along the deflated directions (as SolutionProjection leaves it).
 enum class SolveStart { kFresh, kPrepared, kRestart, kExchange };
 
 struct SolveReport {

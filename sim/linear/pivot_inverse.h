@@ -1,7 +1,7 @@
 // The inverse of many symmetric blocks at once, for the factors that eliminate side by side in lanes.
 #pragma once
 
-#include "sim/lanes.h"
+#include "sim/linear/lanes.h"
 
 namespace sim {
 

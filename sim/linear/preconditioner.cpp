@@ -1,8 +1,8 @@
-#include "sim/preconditioner.h"
+#include "sim/linear/preconditioner.h"
 
 #include <algorithm>
 
-#include "sim/elimination_order.h"
+#include "sim/linear/elimination_order.h"
 
 namespace sim {
 

@@ -6,16 +6,16 @@
 #include <span>
 #include <vector>
 
-#include "sim/block_cholesky.h"
-#include "sim/block_matrix.h"
-#include "sim/column_matrix.h"
-#include "sim/contact.h"
-#include "sim/contact_response.h"
-#include "sim/incomplete_cholesky.h"
-#include "sim/rest_factor.h"
-#include "sim/rotation.h"
+#include "sim/contact/contact.h"
+#include "sim/linear/block_cholesky.h"
+#include "sim/linear/block_matrix.h"
+#include "sim/linear/column_matrix.h"
+#include "sim/linear/contact_response.h"
+#include "sim/linear/incomplete_cholesky.h"
+#include "sim/linear/rest_factor.h"
+#include "sim/linear/rotation.h"
+#include "sim/linear/two_level.h"
 #include "sim/sim_params.h"
-#include "sim/two_level.h"
 
 namespace sim {
 

@@ -10,20 +10,20 @@ namespace sim {
 
 // `warped` makes the whole rest factor for meshes of up to so many vertices; larger ones have the two levels alone,
 // whose memory and work grow with the mesh.
-inline constexpr int kMostFactored = 2000;
+inline constexpr int kMaxFactored = 2000;
 
 // Decides by counted work, in products with the matrix, so that the same inputs always decide alike. The other is
 // tried now and then where a solve costs more than a little, for not much more than what the one in use takes.
 struct PreconditionerChoice {
   static constexpr double kLittle = 15;  // the cheap one would hardly take less
   static constexpr double kOverrun = 1.5, kOutburst = 2;
-  static constexpr double kGain = 0.75;                    // of the cost, for which the cheap one comes into use
-  static constexpr double kMemory = 0.8;                   // of earlier solves in the mean
-  static constexpr int kPatience = 4, kMostPatience = 16;  // solves from one trial to the next; failing ones double it
+  static constexpr double kGain = 0.75;                 // of the cost, for which the cheap one comes into use
+  static constexpr double kMemory = 0.8;                // of earlier solves in the mean
+  static constexpr int kBackoff = 4, kMaxBackoff = 16;  // solves from one trial to the next; failing ones double it
 
   bool cheap = false;    // the two levels are in use
   double mean_cost = 0;  // of a solve by the one in use
-  int wait = kPatience, patience = kPatience;
+  int wait = kBackoff, backoff = kBackoff;
 
   struct Plan {
     bool cheap, trial;
@@ -42,9 +42,9 @@ struct PreconditionerChoice {
     } else if (!plan.trial || (!overrun && cost < (cheap ? 1 : kGain) * mean_cost)) {
       cheap = !cheap;
       mean_cost = cost;
-      wait = patience = kPatience;
+      wait = backoff = kBackoff;
     } else {
-      wait = patience = std::min(2 * patience, kMostPatience);
+      wait = backoff = std::min(2 * backoff, kMaxBackoff);
     }
   }
 };

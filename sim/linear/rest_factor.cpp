@@ -1,4 +1,4 @@
-#include "sim/rest_factor.h"
+#include "sim/linear/rest_factor.h"
 
 #include <type_traits>
 #include <utility>
@@ -6,7 +6,7 @@
 namespace sim {
 namespace {
 
-constexpr int kMostBatches = 16;  // of answers before a new factor takes over; the rest is computed as it is needed
+constexpr int kMaxBatches = 16;  // of answers before a new factor takes over; the rest is computed as it is needed
 
 template <class T>
 int vertexCount(const BlockCholesky<T>& factor) {
@@ -85,7 +85,7 @@ bool RestFactorInMaking<T>::work(double operations, std::span<const VertexConstr
   }
   if (stage == Stage::kAnswers) {
     const bool known = next.responses.unknown(lasting) == 0;
-    if (!known && answered_++ < kMostBatches) {
+    if (!known && answered_++ < kMaxBatches) {
       next.responses.setConstraints(next.factor, turn, lasting, 1);
       return false;
     }

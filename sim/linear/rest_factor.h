@@ -4,9 +4,9 @@
 #include <optional>
 #include <span>
 
-#include "sim/block_cholesky.h"
-#include "sim/compact_factor.h"
-#include "sim/contact_response.h"
+#include "sim/linear/block_cholesky.h"
+#include "sim/linear/compact_factor.h"
+#include "sim/linear/contact_response.h"
 
 namespace sim {
 

@@ -1,5 +1,5 @@
 // q: quaternion, A: sum of (x_j - x_i)(X_j - X_i)^T, a0, a1, a2: its columns, r0, r1, r2: those of the rotation.
-#include "sim/rotation.h"
+#include "sim/linear/rotation.h"
 
 #include <algorithm>
 #include <cmath>

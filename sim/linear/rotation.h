@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "sim/block_matrix.h"
-#include "sim/column_layout.h"
+#include "sim/linear/block_matrix.h"
+#include "sim/linear/column_layout.h"
 
 namespace sim {
 

@@ -1,8 +1,8 @@
-#include "sim/initial_guess.h"
+#include "sim/linear/solution_projection.h"
 
 #include <algorithm>
 
-#include "sim/vector_kernels.h"
+#include "sim/linear/vector_kernels.h"
 
 namespace sim {
 namespace {
@@ -12,14 +12,15 @@ constexpr double kIndependent = 1e-5;  // of a change's energy, that must be lef
 }  // namespace
 
 template <class T>
-InitialGuess<T>::InitialGuess(int vertices) {
+SolutionProjection<T>::SolutionProjection(int vertices) {
   for (auto* fields : {&changes_, &directions_, &products_}) {
     for (Field& field : *fields) field.resize(vertices);
   }
 }
 
 template <class T>
-double InitialGuess<T>::improve(const Product& a, const Filter<T>& filter, std::span<V3<T>> x, std::span<V3<T>> r) {
+double SolutionProjection<T>::improve(const Product& a, const Filter<T>& filter, std::span<V3<T>> x,
+                                      std::span<V3<T>> r) {
   double gained = 0;
   used_ = 0;
   for (int k = 0; k < recorded_; ++k) {
@@ -51,7 +52,7 @@ double InitialGuess<T>::improve(const Product& a, const Filter<T>& filter, std::
 }
 
 template <class T>
-void InitialGuess<T>::shorten(const Product& a, const Filter<T>& filter, std::span<V3<T>> x, std::span<V3<T>> r) {
+void SolutionProjection<T>::shorten(const Product& a, const Filter<T>& filter, std::span<V3<T>> x, std::span<V3<T>> r) {
   const std::span<V3<T>> d(directions_[0]), q(products_[0]);
   std::copy(x.begin(), x.end(), d.begin());
   filter.apply(d);
@@ -63,7 +64,7 @@ void InitialGuess<T>::shorten(const Product& a, const Filter<T>& filter, std::sp
   addScaled<T>(-step, q, r);
 }
 
-template struct InitialGuess<float>;
-template struct InitialGuess<double>;
+template struct SolutionProjection<float>;
+template struct SolutionProjection<double>;
 
 }  // namespace sim

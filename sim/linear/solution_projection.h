@@ -10,16 +10,16 @@
 #include <span>
 #include <vector>
 
-#include "sim/linear_solver.h"
+#include "sim/linear/modified_pcg.h"
 
 namespace sim {
 
 template <class T>
-struct InitialGuess {
+struct SolutionProjection {
   // Measured on head shakes and walks: the second halves the error that the first leaves, more do not pay.
   static constexpr int kChanges = 2;
 
-  explicit InitialGuess(int vertices);
+  explicit SolutionProjection(int vertices);
 
   // Takes the change of velocity (m/s) that a step made of every vertex, as a function of its number. All but the last
   // kChanges are forgotten.

@@ -1,4 +1,4 @@
-#include "sim/two_level.h"
+#include "sim/linear/two_level.h"
 
 #include <algorithm>
 

@@ -13,11 +13,11 @@
 #include <utility>
 #include <vector>
 
-#include "sim/block_matrix.h"
-#include "sim/hair_mesh.h"
-#include "sim/layer_factor.h"
-#include "sim/patch_space.h"
-#include "sim/strand_factor.h"
+#include "sim/linear/block_matrix.h"
+#include "sim/linear/coarse_space.h"
+#include "sim/linear/column_factor.h"
+#include "sim/linear/layer_factor.h"
+#include "sim/mesh/hair_mesh.h"
 
 namespace sim {
 
@@ -38,14 +38,14 @@ struct TwoLevel {
       layers_.factor(a, constraints);
       strands_.factor(a, constraints);
     }
-    if (!patched_ || !keep.patches || patches_.unknown(constraints) > kMostUnknown)
+    if (!patched_ || !keep.patches || patches_.unknown(constraints) > kMaxUnknown)
       patched_ = patches_.make(a, x, constraints);
   }
 
   // Iterations with 0.3, 0.5 and 0.75 are the same within one in twenty.
   static constexpr T kStrandWeight = T(0.5);
   // Vertices held anew, with which the patches still serve; with thirty more they tripled a solve's iterations.
-  static constexpr int kMostUnknown = 2;
+  static constexpr int kMaxUnknown = 2;
 
   // z = P r.
   void apply(std::span<const V3<T>> r, std::span<V3<T>> z);
@@ -54,9 +54,9 @@ struct TwoLevel {
   ColumnLayout layout_;
   ColumnPattern columns_;
   LayerFactor<T> layers_;
-  StrandFactor<T> strands_;
+  ColumnFactor<T> strands_;
   std::vector<std::pair<int, int>> masked_;  // vertices that the factors know constrained, and in how many directions
-  PatchSpace<T> patches_;
+  CoarseSpace<T> patches_;
   bool patched_ = false;  // else there are none, or a pivot was not positive: P goes without
   ColumnField<T> field_;  // r, then z
   bool noteConstraints(std::span<const VertexConstraint> constraints);

@@ -2,7 +2,7 @@
 // for several instruction sets, and an inline Eigen function compiled for one must not be linked into another.
 #pragma once
 
-#include "sim/lanes.h"
+#include "sim/linear/lanes.h"
 
 namespace sim {
 

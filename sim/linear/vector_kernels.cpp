@@ -1,6 +1,6 @@
-#include "sim/vector_kernels.h"
+#include "sim/linear/vector_kernels.h"
 
-#include "sim/lanes.h"
+#include "sim/linear/lanes.h"
 
 namespace sim {
 namespace {

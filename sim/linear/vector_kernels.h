@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "sim/forces/vector3.h"
+#include "sim/linear/vector3.h"
 
 namespace sim {
 

@@ -1,4 +1,4 @@
-#include "sim/hair_parts.h"
+#include "sim/mesh/connected_components.h"
 
 #include <algorithm>
 #include <numeric>
@@ -113,15 +113,18 @@ void addPart(const StepReport& part, StepReport& whole) {
   whole.corrected += part.corrected;
   whole.minimization_iterations += part.minimization_iterations;
   whole.max_penetration = std::max(whole.max_penetration, part.max_penetration);
-  whole.standing += part.standing;
-  whole.standing_overlap = std::max(whole.standing_overlap, part.standing_overlap);
+  whole.initial_overlap += part.initial_overlap;
+  whole.initial_overlap_depth = std::max(whole.initial_overlap_depth, part.initial_overlap_depth);
   whole.self_contacts += part.self_contacts;
-  whole.combed += part.combed;
+  whole.guided += part.guided;
   whole.refreshes += part.refreshes;
+  whole.pins += part.pins;
+  whole.pins_out_of_reach += part.pins_out_of_reach;
+  whole.pin_force = std::max(whole.pin_force, part.pin_force);
   whole.force_kinds += part.force_kinds;
   whole.collider_tests += part.collider_tests;
   whole.recoveries += part.recoveries;
-  if (part.recoveries > 0) whole.trouble = part.trouble;
+  if (part.recoveries > 0) whole.fault_report = part.fault_report;
   whole.carried = whole.carried || part.carried;
 }
 

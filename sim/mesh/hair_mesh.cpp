@@ -1,4 +1,4 @@
-#include "sim/hair_mesh.h"
+#include "sim/mesh/hair_mesh.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

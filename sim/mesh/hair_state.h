@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "sim/hair_mesh.h"
+#include "sim/mesh/hair_mesh.h"
 
 namespace sim {
 
@@ -15,11 +15,12 @@ struct Contact {
   Vec3 velocity = Vec3::Zero();  // m/s that keeps the vertex at the contact offset and carried along with the surface
   double pressure = 0;           // N, normal force of the last solve
   bool sticks = false;           // static friction: all three directions are prescribed
-  Vec3 grip = Vec3::Zero();      // unit tangent: the way friction pushes it while it slides; zero: it has not slid
+  Vec3 friction_direction =
+      Vec3::Zero();  // unit tangent: the way friction pushes it while it slides; zero: it has not slid
 };
 
 // Contacts a vertex, in the mean over all, that steps have memory for from the first: more take it when they come.
-inline constexpr int kMostTouches = 2;
+inline constexpr int kMaxTouches = 2;
 
 struct HairState {
   std::vector<Vec3> positions;   // m, world, one per vertex

@@ -1,4 +1,4 @@
-#include "sim/shape_transfer.h"
+#include "sim/mesh/shape_transfer.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,9 +1,9 @@
-#include "sim/energy_guard.h"
+#include "sim/stabilization/energy_limit.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "sim/watchdog.h"
+#include "sim/stabilization/state_validation.h"
 
 namespace sim {
 namespace {
@@ -12,22 +12,27 @@ namespace {
 // nothing more. In long steps less: under the first bound softened hair gained energy in steps of 1/20 s and more.
 constexpr double kGentle = 0.1, kGentleLong = 0.05;
 constexpr double kLongStep = 1.0 / 50;  // s
-// Pa; a step is gentle over so much less as the forces that are least linear are stiffer: volume's, and the walls', for
-// what turns is also stretched, to second order.
-constexpr double kSoftVolume = 1e4, kSoftAlong = 4e5, kSoftAcross = 6e4;
 // No step is near to linear of hair that is limp, folded as it hangs: its load strains its walls by more than this; or
-// of hair that is stiffer one way by such a ratio than another: it buckles. Along the hair every style is stiffer.
-constexpr double kLimp = 1, kUneven = 100, kUnevenAlong = 3e4;
+// of hair that is stiffer one way by such a ratio than another (Modulus::uneven): it buckles.
+constexpr double kLimp = 1;
 constexpr int kHalvings = 12;
 constexpr double kStill = 1e-3;  // m/s of a body's surface against the roots
 
 enum class Motion { kCalm, kViolent, kNotFinite };
 
+void forEachModulus(const auto& f) {
+  ForceKinds::forEach([&]<class Kind>() {
+    for (const Modulus& modulus : Kind::kModuli) f(modulus);
+  });
+}
+
 Motion judge(const TakenStep& step, const HairState& state) {
   const SimParams& params = step.params;
-  const double soft = std::sqrt(std::min(
-      {1.0, kSoftVolume / params.volume, kSoftAlong / params.stretch_along, kSoftAcross / params.stretch_across}));
-  const double most = (step.dt > kLongStep ? kGentleLong : kGentle) * soft * step.mesh.hair_length;
+  // A step is gentle over so much less as the forces that are least linear are stiffer: volume's, and the walls', for
+  // what turns is also stretched, to second order.
+  double soft = 1;
+  forEachModulus([&](const Modulus& modulus) { soft = std::min(soft, modulus.gentle / (params.*modulus.param)); });
+  const double most = (step.dt > kLongStep ? kGentleLong : kGentle) * std::sqrt(soft) * step.mesh.hair_length;
   Motion motion = Motion::kCalm;
   for (int c = 0; c < step.mesh.columnCount(); ++c) {
     const int root = step.mesh.shape.column_first[c];
@@ -46,16 +51,20 @@ bool neverLinear(const TakenStep& step) {
   const double pull = (params.air_drag * step.wind - Vec3(0, params.gravity, 0)).norm();
   const double segment = step.mesh.vertical_edges.front().rest_length;
   double softest = INFINITY;  // of those that there are
-  for (const double modulus : {params.stretch_across, params.stretch_edge, params.shear, params.volume}) {
-    if (modulus > 0) softest = std::min(softest, modulus);
-  }
-  const double stiffest = std::max({params.stretch_across, params.stretch_edge, params.bend / (segment * segment)});
-  return params.density * pull * step.mesh.hair_length > kLimp * softest || stiffest > kUneven * softest ||
-         params.stretch_along > kUnevenAlong * softest;
+  forEachModulus([&](const Modulus& modulus) {
+    const double value = params.*modulus.param;
+    if (modulus.yields && value > 0) softest = std::min(softest, value);
+  });
+  bool uneven = false;
+  forEachModulus([&](const Modulus& modulus) {
+    const double value = params.*modulus.param / (modulus.over_length ? segment * segment : 1);
+    uneven = uneven || value > modulus.uneven * softest;
+  });
+  return params.density * pull * step.mesh.hair_length > kLimp * softest || uneven;
 }
 
 // Where the roots carry every vertex that does not move against them.
-void carry(const TakenStep& step, const HairState& state, EnergyGuard& scratch) {
+void carry(const TakenStep& step, const HairState& state, EnergyLimit& scratch) {
   const HairMesh& mesh = step.mesh;
   scratch.roots_before.clear(), scratch.roots_after.clear();
   for (int c = 0; c < mesh.columnCount(); ++c) {
@@ -66,16 +75,19 @@ void carry(const TakenStep& step, const HairState& state, EnergyGuard& scratch) 
   const Eigen::Isometry3d motion = rigidMotion(scratch.roots_before, scratch.roots_after);
   for (std::size_t i = 0; i < state.positions.size(); ++i) scratch.carried[i] = motion * step.positions[i];
   for (int c = 0; c < mesh.columnCount(); ++c) scratch.carried[mesh.shape.column_first[c]] = scratch.roots_after[c];
+  for (const PinnedVertex& pin : step.pins) {
+    if (pin.firm()) scratch.carried[pin.vertex] = pin.target;
+  }
 }
 
 // m/s at which the roots carry a vertex.
-Vec3 carrying(const TakenStep& step, const EnergyGuard& scratch, int i) {
+Vec3 carrying(const TakenStep& step, const EnergyLimit& scratch, int i) {
   return (scratch.carried[i] - step.positions[i]) / step.dt;
 }
 
 // Elastic energy, that of gravity, and that of the air as it blows against what the roots carry (J): drag beyond that
 // only takes. Hair that goes to and fro gives back to the wind what it was given.
-double potential(const TakenStep& step, std::span<const Vec3> x, EnergyGuard& scratch) {
+double potential(const TakenStep& step, std::span<const Vec3> x, EnergyLimit& scratch) {
   double energy = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
     scratch.plain[i] = {x[i].x(), x[i].y(), x[i].z()};
@@ -92,14 +104,39 @@ struct Account {
   double kinetic = 0;  // that it ends with
 };
 
-double kineticOf(const TakenStep& step, const EnergyGuard& scratch, const HairState& state, int i) {
+double kineticOf(const TakenStep& step, const EnergyLimit& scratch, const HairState& state, int i) {
   const double mass = step.params.density * step.mesh.vertex_volume[i];
   return 0.5 * mass * (state.velocities[i] - carrying(step, scratch, i)).squaredNorm();
 }
 
-Account accountFor(const TakenStep& step, EnergyGuard& scratch, const HairState& state) {
+// Most that the dampers of elements which the step's input moves can do (J): with r the rate of the condition where the
+// vertices are carried along and s what they add to it, their power -d k (r + s) s is at most d k r^2 / 4.
+double dampersWork(const TakenStep& step, const EnergyLimit& scratch) {
+  double work = 0;
+  step.model.forEach([&]<class Kind>(const Elements<Kind, double>& elements) {
+    if constexpr (MovingKind<Kind>) {
+      for (std::size_t e = 0; e < elements.size(); ++e) {
+        V3<double> x[Kind::kVertices];
+        for (int p = 0; p < Kind::kVertices; ++p) {
+          const Vec3& at = scratch.carried[elements.vertices[e][p]];
+          x[p] = {at.x(), at.y(), at.z()};
+        }
+        const auto c = Kind::condition(x, elements.rest[e], elements.shift[e]);
+        double rate = Kind::drift(elements.rest[e]);
+        for (int p = 0; p < Kind::kVertices; ++p) {
+          const Vec3 speed = carrying(step, scratch, elements.vertices[e][p]);
+          rate += c.g[p].x * speed.x() + c.g[p].y * speed.y() + c.g[p].z * speed.z();
+        }
+        work += step.dt * step.params.damping * elements.stiffness[e] * rate * rate / 4;
+      }
+    }
+  });
+  return work;
+}
+
+Account accountFor(const TakenStep& step, EnergyLimit& scratch, const HairState& state) {
   Account account;
-  account.bound = potential(step, scratch.carried, scratch);
+  account.bound = potential(step, scratch.carried, scratch) + dampersWork(step, scratch);
   for (int i = 0; i < step.mesh.vertexCount(); ++i) {
     if (step.mesh.isRoot(i)) continue;
     const double mass = step.params.density * step.mesh.vertex_volume[i];
@@ -118,7 +155,7 @@ Account accountFor(const TakenStep& step, EnergyGuard& scratch, const HairState&
 }
 
 // Slows what moves against the roots to a share, by vertex, of its speed.
-void slowDown(const TakenStep& step, const EnergyGuard& scratch, HairState& state, const auto& shareOf) {
+void slowDown(const TakenStep& step, const EnergyLimit& scratch, HairState& state, const auto& shareOf) {
   for (int i = 0; i < step.mesh.vertexCount(); ++i) {
     if (step.mesh.isRoot(i)) continue;
     const Vec3 carried = carrying(step, scratch, i);
@@ -130,7 +167,7 @@ void slowDown(const TakenStep& step, const EnergyGuard& scratch, HairState& stat
 // Halves the way of every vertex from `back` until its potential energy is `most` (J), so many times before giving it
 // up. Returns the share of the way that was kept and sets the energy stored there.
 double shorten(const TakenStep& step, std::span<const Vec3> back, double most, int halvings, double& stored,
-               EnergyGuard& scratch, HairState& state) {
+               EnergyLimit& scratch, HairState& state) {
   double kept = 1;
   for (int halving = 0; !(stored <= most) && kept > 0; ++halving) {
     const double share = halving < halvings ? 0.5 : 0;
@@ -143,7 +180,7 @@ double shorten(const TakenStep& step, std::span<const Vec3> back, double most, i
 
 // Brings a step whose carried positions are known below its bound, halving its motion so many times before giving it
 // up. Returns the share of the motion that was kept.
-double bringBelowBound(const TakenStep& step, int halvings, EnergyGuard& scratch, HairState& state) {
+double bringBelowBound(const TakenStep& step, int halvings, EnergyLimit& scratch, HairState& state) {
   const Account account = accountFor(step, scratch, state);
   if (!std::isfinite(account.bound)) return 1;
   double stored = potential(step, state.positions, scratch);
@@ -157,7 +194,7 @@ double bringBelowBound(const TakenStep& step, int halvings, EnergyGuard& scratch
 
 // Whether every body that the hair touches moves as the roots carry it: seen from them it stands still and does no
 // work.
-bool bodiesStandStill(const TakenStep& step, const Colliders& colliders, const EnergyGuard& scratch,
+bool bodiesStandStill(const TakenStep& step, const Colliders& colliders, const EnergyLimit& scratch,
                       const HairState& state) {
   return std::all_of(state.contacts.begin(), state.contacts.end(), [&](const Contact& contact) {
     const Vec3& x = scratch.carried[contact.vertex];
@@ -168,27 +205,27 @@ bool bodiesStandStill(const TakenStep& step, const Colliders& colliders, const E
 
 }  // namespace
 
-EnergyGuard::EnergyGuard(const HairMesh& mesh) {
+EnergyLimit::EnergyLimit(const HairMesh& mesh) {
   const int n = mesh.vertexCount();
   carried.resize(n), pushed_to.resize(n), plain.resize(n), pushed.resize(n);
   roots_before.reserve(mesh.columnCount()), roots_after.reserve(mesh.columnCount());
 }
 
-double limitEnergy(const TakenStep& step, bool solved, EnergyGuard& scratch, HairState& state) {
+double limitEnergy(const TakenStep& step, bool solved, EnergyLimit& scratch, HairState& state) {
   const Motion motion = judge(step, state);
   if (motion == Motion::kNotFinite || (motion == Motion::kCalm && solved && !neverLinear(step))) return 1;
   carry(step, state, scratch);
   return bringBelowBound(step, kHalvings, scratch, state);
 }
 
-double limitCorrections(const TakenStep& step, const Colliders& colliders, EnergyGuard& scratch, HairState& state) {
+double limitCorrections(const TakenStep& step, const Colliders& colliders, EnergyLimit& scratch, HairState& state) {
   carry(step, state, scratch);
   if (!bodiesStandStill(step, colliders, scratch, state)) return 1;
   // Halfway between two distant places outside of a body may lie its inside.
   return bringBelowBound(step, judge(step, state) == Motion::kCalm ? kHalvings : 0, scratch, state);
 }
 
-double limitPushes(const TakenStep& step, std::span<const Vec3> unpushed, EnergyGuard& scratch, HairState& state) {
+double limitPushes(const TakenStep& step, std::span<const Vec3> unpushed, EnergyLimit& scratch, HairState& state) {
   carry(step, state, scratch);
   // Half way out of a bundle that it has flown into, fast hair would lie within it or beyond. But where no share of its
   // motion fits, it would be held for ever by what it touches.

@@ -8,6 +8,9 @@
 // towards x_c until its potential energy fits, then slowed until the sum does: the hair is carried along more rigidly
 // instead of being stretched beyond measure.
 //
+// A pin's work is counted as its target's motion before the hair's: its spring is part of E, with the target where the
+// step ends; and x_c of a vertex that is pinned firmly is its target, as that of a root is where the scalp takes it.
+//
 // A gentle step of hair as styles have it is near to linear, and not looked at. Never near to linear is hair that hangs
 // folded because its load strains its walls by more than their length, or that is so much stiffer one way than another
 // that it buckles.
@@ -16,10 +19,10 @@
 #include <span>
 #include <vector>
 
-#include "sim/colliders.h"
+#include "sim/contact/colliders.h"
 #include "sim/forces/force_model.h"
-#include "sim/hair_mesh.h"
-#include "sim/hair_state.h"
+#include "sim/mesh/hair_mesh.h"
+#include "sim/mesh/hair_state.h"
 
 namespace sim {
 
@@ -31,28 +34,29 @@ struct TakenStep {
   std::span<const Vec3> positions, velocities;  // m, m/s, at its start
   double dt;                                    // s
   Vec3 wind;                                    // m/s
+  std::span<const PinnedVertex> pins{};         // that hold
 };
 
-struct EnergyGuard {
+struct EnergyLimit {
   std::vector<Vec3> carried, roots_before, roots_after, pushed_to;
   std::vector<V3<double>> plain;
   std::vector<unsigned char> pushed;
-  explicit EnergyGuard(const HairMesh& mesh);
+  explicit EnergyLimit(const HairMesh& mesh);
 };
 
 // Does nothing to a step that leaves a value not finite, that ends below its bound, or that is gentle, of firm hair,
 // and was solved to its end with the bodies of the step before (`solved`). Returns the share of the step's motion
 // against the roots that was kept, 1 where all was.
-double limitEnergy(const TakenStep& step, bool solved, EnergyGuard& scratch, HairState& state);
+double limitEnergy(const TakenStep& step, bool solved, EnergyLimit& scratch, HairState& state);
 
 // The same for a step, gentle or not, whose contacts have moved vertices: what corrections lift, and what follows them,
 // must be paid for by what the step began with, where the bodies touched stand still against the roots.
-double limitCorrections(const TakenStep& step, const Colliders& colliders, EnergyGuard& scratch, HairState& state);
+double limitCorrections(const TakenStep& step, const Colliders& colliders, EnergyLimit& scratch, HairState& state);
 
 // The same for a step whose self-contacts have pushed vertices apart, from `unpushed` (m): in stiff hair a push of a
 // millimetre may store more than the hair has. In a gentle step the push alone is shortened, and what overlaps then
 // comes out in the steps to come; what was pushed pays first with its motion. Returns the share of the push, or of the
 // step, that was kept.
-double limitPushes(const TakenStep& step, std::span<const Vec3> unpushed, EnergyGuard& scratch, HairState& state);
+double limitPushes(const TakenStep& step, std::span<const Vec3> unpushed, EnergyLimit& scratch, HairState& state);
 
 }  // namespace sim

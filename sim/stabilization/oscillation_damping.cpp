@@ -1,4 +1,4 @@
-#include "sim/buzz.h"
+#include "sim/stabilization/oscillation_damping.h"
 
 #include <algorithm>
 #include <limits>
@@ -11,12 +11,12 @@ constexpr double kForced = 0.5;    // of a vertex's speed: roots that change the
 
 }  // namespace
 
-Buzz::Buzz(const HairMesh& mesh)
+OscillationDamping::OscillationDamping(const HairMesh& mesh)
     : last(mesh.vertexCount(), Vec3::Zero()),
       carrying(mesh.columnCount(), Vec3::Zero()),
       turns(mesh.vertexCount(), 0) {}
 
-int relaxBuzz(const HairMesh& mesh, std::span<const Vec3> start, Buzz& buzz, HairState& state) {
+int dampOscillation(const HairMesh& mesh, std::span<const Vec3> start, OscillationDamping& buzz, HairState& state) {
   int held = 0;
   for (int c = 0; c < mesh.columnCount(); ++c) {
     const int root = mesh.shape.column_first[c];
@@ -29,12 +29,12 @@ int relaxBuzz(const HairMesh& mesh, std::span<const Vec3> start, Buzz& buzz, Hai
       Vec3& before = buzz.last[i];
       unsigned char& turns = buzz.turns[i];
       const double square = now.squaredNorm();
-      const bool back = square > kBuzzing * kBuzzing && jolt <= kForced * kForced * square &&
+      const bool back = square > kMinSpeed * kMinSpeed && jolt <= kForced * kForced * square &&
                         now.dot(before) < -kOpposite * std::max(square, before.squaredNorm());
       if (back && turns < std::numeric_limits<unsigned char>::max()) ++turns;
       if (!back && turns > 0) --turns;
       before = now;
-      if (turns < kTurnsOfBuzz) continue;
+      if (turns < kMinTurns) continue;
       ++held;
       const Vec3 unmoved = start[i] + carried;
       state.positions[i] = unmoved + 0.5 * (state.positions[i] - unmoved);

@@ -10,22 +10,22 @@
 #include <span>
 #include <vector>
 
-#include "sim/hair_mesh.h"
-#include "sim/hair_state.h"
+#include "sim/mesh/hair_mesh.h"
+#include "sim/mesh/hair_state.h"
 
 namespace sim {
 
-inline constexpr int kTurnsOfBuzz = 6;    // steps in a row, from which on a vertex buzzes
-inline constexpr double kBuzzing = 1e-3;  // m/s against its root; slower to and fro is not seen
+inline constexpr int kMinTurns = 6;        // steps in a row, from which on a vertex buzzes
+inline constexpr double kMinSpeed = 1e-3;  // m/s against its root; slower to and fro is not seen
 
-struct Buzz {
+struct OscillationDamping {
   std::vector<Vec3> last;            // m/s against the root, of the step before
   std::vector<Vec3> carrying;        // m/s of the columns' roots then
   std::vector<unsigned char> turns;  // steps that turned back, less those that did not
-  explicit Buzz(const HairMesh& mesh);
+  explicit OscillationDamping(const HairMesh& mesh);
 };
 
 // After a step from `start` (m). Roots stay. Returns how many vertices were held back.
-int relaxBuzz(const HairMesh& mesh, std::span<const Vec3> start, Buzz& buzz, HairState& state);
+int dampOscillation(const HairMesh& mesh, std::span<const Vec3> start, OscillationDamping& buzz, HairState& state);
 
 }  // namespace sim

@@ -8,21 +8,21 @@
 // crushes it.
 #pragma once
 
-#include "sim/hair_mesh.h"
+#include "sim/mesh/hair_mesh.h"
 #include "sim/sim_params.h"
 
 namespace sim {
 
 // Strain at the roots of hair that hangs by its walls alone.
-inline constexpr double kMostLoadStrain = 0.1;
+inline constexpr double kMaxLoadStrain = 0.1;
 
-inline constexpr double kHardestBlow = 100;  // m/s^2, of wind and gusts on hair that does not move
+inline constexpr double kMaxWindLoad = 100;  // m/s^2, of wind and gusts on hair that does not move
 
 // How hard wind and gusts press hair that does not move, m/s^2.
-double blowOf(const SimParams& params);
+double windLoad(const SimParams& params);
 
 // `params` with no more wind than that, and the least stretch_along (Pa) that bears density, gravity, wind and drag.
 // Loose particles, without walls and volume, are left as they are.
-SimParams bearable(const HairMesh& mesh, SimParams params);
+SimParams limitedParameters(const HairMesh& mesh, SimParams params);
 
 }  // namespace sim

@@ -1,16 +1,13 @@
-#include "sim/watchdog.h"
+#include "sim/stabilization/state_validation.h"
 
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
-#include "sim/forces/conditions.h"
-
 namespace sim {
 namespace {
 
-constexpr double kFastest = 500;        // m/s against the root; beyond it a velocity is absurd
-constexpr double kFastestPushed = 100;  // m/s against the root
+constexpr double kFastest = 500;  // m/s against the root; beyond it a velocity is absurd
 // m/s of one root against the others: a head turned round within a thousandth of a second has them 300 apart.
 constexpr double kFastestRoot = 5000;
 // Beyond both together a position is absurd: no hand or foot that hair could be dragged along by is two metres from the
@@ -19,10 +16,10 @@ constexpr double kLengths = 4;  // hair lengths from the root
 constexpr double kFarther = 2;  // m
 constexpr double kKeptVelocity = 0.5;
 
-const char* ailmentName(Ailment ailment) {
+const char* faultName(StateFault fault) {
   constexpr const char* kNames[] = {"well", "not finite", "absurdly far from its root", "absurdly fast",
                                     "a root absurdly far from the others or fast against them"};
-  return kNames[static_cast<int>(ailment)];
+  return kNames[static_cast<int>(fault)];
 }
 
 // m from a root, beyond which nothing of the hair can be.
@@ -65,62 +62,28 @@ bool larger(double a, double b) {
   return std::isfinite(b) && !(a <= b);
 }
 
-struct LargestForce {
-  double size = -1;
-  const char* kind = "";
-  int element = -1;
-
-  template <int N, class Gradient>
-  void look(const char* name, const Elements<double, N>& elements, int vertex, Gradient&& conditionAt) {
-    for (std::size_t e = 0; e < elements.size(); ++e) {
-      for (int p = 0; p < N; ++p) {
-        if (elements.vertices[e][p] != vertex) continue;
-        const Condition<double, N> condition = conditionAt(e);
-        const double pull = elements.stiffness[e] * (condition.value - elements.shift[e]);
-        const double force = std::abs(pull) * std::sqrt(dot(condition.g[p], condition.g[p]));
-        if (size >= 0 && !larger(force, size)) continue;
-        size = force, kind = name, element = static_cast<int>(e);
-      }
-    }
-  }
-};
-
-template <int N>
-void gather(std::span<const V3<double>> x, const std::array<int, N>& v, V3<double>* out) {
-  for (int p = 0; p < N; ++p) out[p] = x[v[p]];
-}
-
 }  // namespace
 
-std::string troubleText(const Trouble& trouble) {
-  if (trouble.ailment == Ailment::kNone) return "";
-  std::string text = "vertex " + std::to_string(trouble.vertex) + " (column " + std::to_string(trouble.column) +
-                     ", layer " + std::to_string(trouble.layer) + ") was " + ailmentName(trouble.ailment) +
-                     (trouble.given ? " before the step" : " after the step");
-  if (*trouble.force)
-    text += ", largest force there: " + std::string(trouble.force) + " element " + std::to_string(trouble.element);
-  return text + "; last good state put back at " + std::to_string(trouble.vertices) +
-         (trouble.vertices == 1 ? " vertex" : " vertices");
+std::string faultText(const FaultReport& fault_report) {
+  if (fault_report.fault == StateFault::kNone) return "";
+  std::string text = "vertex " + std::to_string(fault_report.vertex) + " (column " +
+                     std::to_string(fault_report.column) + ", layer " + std::to_string(fault_report.layer) + ") was " +
+                     faultName(fault_report.fault) + (fault_report.given ? " before the step" : " after the step");
+  if (*fault_report.force)
+    text += ", largest force there: " + std::string(fault_report.force) + " element " +
+            std::to_string(fault_report.element);
+  return text + "; last good state put back at " + std::to_string(fault_report.vertices) +
+         (fault_report.vertices == 1 ? " vertex" : " vertices");
 }
 
-Ailment examine(const HairMesh& mesh, const HairState& state, int vertex) {
+StateFault examine(const HairMesh& mesh, const HairState& state, int vertex) {
   const int root = rootOf(mesh, vertex);
   const Vec3 arm = state.positions[vertex] - state.positions[root];
   const Vec3 speed = state.velocities[vertex] - state.velocities[root];
-  if (!arm.allFinite() || !speed.allFinite()) return Ailment::kNotFinite;
+  if (!arm.allFinite() || !speed.allFinite()) return StateFault::kNotFinite;
   const double reach = reachOf(mesh);
-  if (arm.squaredNorm() > reach * reach) return Ailment::kFarAway;
-  return speed.squaredNorm() > kFastest * kFastest ? Ailment::kTooFast : Ailment::kNone;
-}
-
-void limitSpeed(const HairMesh& mesh, HairState& state) {
-  for (int i = 0; i < mesh.vertexCount(); ++i) {
-    const Vec3& root = state.velocities[rootOf(mesh, i)];
-    const Vec3 speed = state.velocities[i] - root;
-    const double square = speed.squaredNorm();
-    if (square > kFastestPushed * kFastestPushed)
-      state.velocities[i] = root + kFastestPushed / std::sqrt(square) * speed;
-  }
+  if (arm.squaredNorm() > reach * reach) return StateFault::kFarAway;
+  return speed.squaredNorm() > kFastest * kFastest ? StateFault::kTooFast : StateFault::kNone;
 }
 
 Eigen::Isometry3d rigidMotion(std::span<const Vec3> from, std::span<const Vec3> to) {
@@ -140,7 +103,7 @@ Eigen::Isometry3d rigidMotion(std::span<const Vec3> from, std::span<const Vec3> 
 }
 
 // The scalp has them all about as far from where they are going: a root that is not is brought to where the others say.
-void healRoots(const HairMesh& mesh, std::span<const Vec3> roots, HairState& state, Trouble& trouble) {
+void repairRoots(const HairMesh& mesh, std::span<const Vec3> roots, HairState& state, FaultReport& fault_report) {
   const auto rootAt = [&](int c) { return mesh.shape.column_first[c]; };
   const auto wayOf = [&](int c) { return Vec3(state.positions[rootAt(c)] - roots[c]); };
   const auto speedOf = [&](int c) { return state.velocities[rootAt(c)]; };
@@ -156,28 +119,28 @@ void healRoots(const HairMesh& mesh, std::span<const Vec3> roots, HairState& sta
     const int root = rootAt(c);
     state.positions[root] = roots[c] + way;
     state.velocities[root] = speed;
-    ++trouble.vertices;
-    if (trouble.ailment != Ailment::kNone) continue;
-    trouble.ailment = finite ? Ailment::kOffScalp : Ailment::kNotFinite;
-    trouble.vertex = root, trouble.column = c, trouble.layer = 0;
+    ++fault_report.vertices;
+    if (fault_report.fault != StateFault::kNone) continue;
+    fault_report.fault = finite ? StateFault::kOffScalp : StateFault::kNotFinite;
+    fault_report.vertex = root, fault_report.column = c, fault_report.layer = 0;
   }
 }
 
-void heal(const HairMesh& mesh, std::span<const Vec3> roots, const GoodState& good, HairState& state,
-          Trouble& trouble) {
+void repair(const HairMesh& mesh, std::span<const Vec3> roots, const GoodState& good, HairState& state,
+            FaultReport& fault_report) {
   // Roots first: all else is measured against them.
-  healRoots(mesh, roots, state, trouble);
+  repairRoots(mesh, roots, state, fault_report);
   std::vector<int> ill;
   for (int i = 0; i < mesh.vertexCount(); ++i) {
-    const Ailment ailment = examine(mesh, state, i);
-    if (ailment == Ailment::kNone) continue;
+    const StateFault fault = examine(mesh, state, i);
+    if (fault == StateFault::kNone) continue;
     ill.push_back(i);
-    if (trouble.ailment != Ailment::kNone) continue;
-    trouble.ailment = ailment;
-    trouble.vertex = i, trouble.column = mesh.column_of[i], trouble.layer = mesh.layer_of[i];
+    if (fault_report.fault != StateFault::kNone) continue;
+    fault_report.fault = fault;
+    fault_report.vertex = i, fault_report.column = mesh.column_of[i], fault_report.layer = mesh.layer_of[i];
   }
   if (ill.empty()) return;
-  trouble.vertices += static_cast<int>(ill.size());
+  fault_report.vertices += static_cast<int>(ill.size());
 
   const bool known = good.positions.size() == state.positions.size();
   const std::vector<Vec3>& kept = known ? good.positions : mesh.shape.positions;
@@ -200,31 +163,23 @@ void heal(const HairMesh& mesh, std::span<const Vec3> roots, const GoodState& go
   std::erase_if(state.contacts, [&](const Contact& c) { return std::binary_search(ill.begin(), ill.end(), c.vertex); });
 }
 
-void nameForce(const ForceModel<double>& model, std::span<const V3<double>> x, Trouble& trouble) {
-  LargestForce largest;
-  largest.look<2>("stretch", model.stretch, trouble.vertex, [&](std::size_t e) {
-    const auto [a, b] = model.stretch.vertices[e];
-    const StretchCondition<double> s = stretchCondition(x[a], x[b], model.stretch.inverse_length[e]);
-    const V3<double> g = s.inverse_length * s.direction;
-    return Condition<double, 2>{s.value, {-1.0 * g, g}};
+void nameForce(const ForceModel<double>& model, std::span<const V3<double>> x, FaultReport& fault_report) {
+  double largest_force = -1;  // N
+  model.forEach([&]<class Kind>(const Elements<Kind, double>& elements) {
+    for (std::size_t e = 0; e < elements.size(); ++e) {
+      const auto& v = elements.vertices[e];
+      const auto at = std::find(v.begin(), v.end(), fault_report.vertex);
+      if (at == v.end()) continue;
+      V3<double> p[Kind::kVertices];
+      for (int k = 0; k < Kind::kVertices; ++k) p[k] = x[v[k]];
+      const auto c = Kind::condition(p, elements.rest[e], elements.shift[e]);
+      const V3<double>& g = c.g[at - v.begin()];
+      const double force = std::abs(elements.stiffness[e] * c.value) * std::sqrt(dot(g, g));
+      if (largest_force >= 0 && !larger(force, largest_force)) continue;
+      largest_force = force;
+      fault_report.force = Kind::kName, fault_report.element = static_cast<int>(e);
+    }
   });
-  largest.look<4>("shear", model.shear, trouble.vertex, [&](std::size_t e) {
-    V3<double> p[4];
-    gather<4>(x, model.shear.vertices[e], p);
-    return shearCondition(p, model.shear.inverse_along[e], model.shear.inverse_across[e]);
-  });
-  largest.look<6>("bend", model.bend, trouble.vertex, [&](std::size_t e) {
-    V3<double> p[6];
-    gather<6>(x, model.bend.vertices[e], p);
-    return bendCondition(p, model.bend.rest_angle[e], model.bend.inverse_length[e], model.bend.smallest_square[e]);
-  });
-  largest.look<4>("volume", model.volume, trouble.vertex, [&](std::size_t e) {
-    V3<double> p[4];
-    gather<4>(x, model.volume.vertices[e], p);
-    return volumeCondition(p, model.volume.rest_volume[e]);
-  });
-  trouble.force = largest.kind;
-  trouble.element = largest.element;
 }
 
 double rootSpeed(const HairMesh& mesh, std::span<const Vec3> roots, double dt, const HairState& state) {

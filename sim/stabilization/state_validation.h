@@ -9,25 +9,25 @@
 #include <vector>
 
 #include "sim/forces/force_model.h"
-#include "sim/hair_mesh.h"
-#include "sim/hair_state.h"
+#include "sim/mesh/hair_mesh.h"
+#include "sim/mesh/hair_state.h"
 
 namespace sim {
 
-enum class Ailment { kNone, kNotFinite, kFarAway, kTooFast, kOffScalp };
+enum class StateFault { kNone, kNotFinite, kFarAway, kTooFast, kOffScalp };
 
 // What the watchdog found in a step, for the log. Of several vertices the first is named.
-struct Trouble {
-  Ailment ailment = Ailment::kNone;
+struct FaultReport {
+  StateFault fault = StateFault::kNone;
   bool given = false;  // in the state as it was handed over, not in what the step made of it
   int vertex = -1, column = -1, layer = -1;
-  const char* force = "";  // the kind of element that pulls hardest there: "stretch", "shear", "bend", "volume"
+  const char* force = "";  // the force kind that pulls hardest there
   int element = -1;        // its number within the kind
   int vertices = 0;        // that were ill and healed
 };
 
 // One line for the log, without the line's end.
-std::string troubleText(const Trouble& trouble);
+std::string faultText(const FaultReport& fault_report);
 
 // Positions (m) and velocities (m/s), one per vertex, of the last state that was good; empty before there was one.
 struct GoodState {
@@ -36,10 +36,7 @@ struct GoodState {
 
 // What is wrong with a vertex: a value that is not finite, a place farther from its column's root than hair of this
 // length can be thrown, a speed against the root that nothing in a scene has.
-Ailment examine(const HairMesh& mesh, const HairState& state, int vertex);
-
-// Slows what bodies have pushed nearly as fast as would be absurd, for they may be as fast as a scene has them.
-void limitSpeed(const HairMesh& mesh, HairState& state);
+StateFault examine(const HairMesh& mesh, const HairState& state, int vertex);
 
 // Rigid motion that brings the points of `from` nearest to those of `to` (least squares, Kabsch 1976); the identity
 // where a point is not finite. As many of one as of the other.
@@ -49,10 +46,11 @@ Eigen::Isometry3d rigidMotion(std::span<const Vec3> from, std::span<const Vec3> 
 // and of the good velocity against the root half is kept. The others keep every bit. A root that is ill, or not where
 // the others are against `roots` (m, one per column, where the scalp takes them), is brought there. `good` may be
 // empty: then it is the rest shape. Counts and names into `trouble`.
-void heal(const HairMesh& mesh, std::span<const Vec3> roots, const GoodState& good, HairState& state, Trouble& trouble);
+void repair(const HairMesh& mesh, std::span<const Vec3> roots, const GoodState& good, HairState& state,
+            FaultReport& fault_report);
 
 // Names the element at the troubled vertex whose force is largest, or not finite, at positions `x` (m).
-void nameForce(const ForceModel<double>& model, std::span<const V3<double>> x, Trouble& trouble);
+void nameForce(const ForceModel<double>& model, std::span<const V3<double>> x, FaultReport& fault_report);
 
 // Mean speed (m/s) of the columns' roots from where `state` has them to `roots` within dt.
 double rootSpeed(const HairMesh& mesh, std::span<const Vec3> roots, double dt, const HairState& state);

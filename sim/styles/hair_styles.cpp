@@ -1,4 +1,4 @@
-#include "sim/hair_styles.h"
+#include "sim/styles/hair_styles.h"
 
 #include <algorithm>
 #include <cassert>
@@ -6,11 +6,11 @@
 #include <numbers>
 #include <numeric>
 
-#include "sim/hair_styles_comb.h"
-#include "sim/hair_styles_refine.h"
-#include "sim/hair_styles_roots.h"
-#include "sim/hair_styles_untangle.h"
-#include "sim/hair_styles_weave.h"
+#include "sim/styles/style_comb.h"
+#include "sim/styles/style_refine.h"
+#include "sim/styles/style_roots.h"
+#include "sim/styles/style_untangle.h"
+#include "sim/styles/style_weave.h"
 
 namespace sim {
 namespace {
@@ -19,7 +19,7 @@ constexpr double kFatness = 0.10;  // of every corner tetrahedron, see cornerFat
 constexpr double kGap = 0.0025;    // m, of every vertex but the roots; further down the coat keeps more by itself
 
 constexpr double kOrdinaryHead = 0.23;  // m from chin to crown
-constexpr double kLeastFatness = 0.03;
+constexpr double kMinFatness = 0.03;
 
 Scalp scaledTo(Scalp scalp, double factor) {
   scalp.center *= factor;
@@ -95,7 +95,7 @@ HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& scalp, 
       shape = refined(shape, head);
       fatness = untangle(*attempt.around, kFatness, kGap, shape);
     }
-    if (fatness > kLeastFatness) break;
+    if (fatness > kMinFatness) break;
   }
   for (Vec3& p : shape.positions) p *= scale;
   return shape;

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/colliders.h"
-#include "sim/hair_mesh.h"
+#include "sim/contact/colliders.h"
+#include "sim/mesh/hair_mesh.h"
 
 namespace sim {
 

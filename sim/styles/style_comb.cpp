@@ -1,4 +1,4 @@
-#include "sim/hair_styles_comb.h"
+#include "sim/styles/style_comb.h"
 
 #include <algorithm>
 #include <cmath>

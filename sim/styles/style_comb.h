@@ -2,8 +2,8 @@
 // outer one, both followed from the parting over the hairline down to where the hair is cut.
 #pragma once
 
-#include "sim/hair_styles.h"
-#include "sim/hair_styles_roots.h"
+#include "sim/styles/hair_styles.h"
+#include "sim/styles/style_roots.h"
 
 namespace sim {
 

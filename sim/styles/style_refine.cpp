@@ -1,4 +1,4 @@
-#include "sim/hair_styles_refine.h"
+#include "sim/styles/style_refine.h"
 
 #include <algorithm>
 #include <map>

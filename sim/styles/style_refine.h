@@ -1,7 +1,7 @@
 // A finer mesh of the same haircut: twice the sheets and twice the layers.
 #pragma once
 
-#include "sim/hair_styles.h"
+#include "sim/styles/hair_styles.h"
 
 namespace sim {
 

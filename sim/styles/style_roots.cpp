@@ -1,4 +1,4 @@
-#include "sim/hair_styles_roots.h"
+#include "sim/styles/style_roots.h"
 
 #include <algorithm>
 #include <array>

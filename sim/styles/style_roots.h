@@ -7,7 +7,7 @@
 // ends at the hairline.
 #pragma once
 
-#include "sim/hair_styles.h"
+#include "sim/styles/hair_styles.h"
 
 namespace sim {
 

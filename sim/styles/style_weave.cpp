@@ -1,4 +1,4 @@
-#include "sim/hair_styles_weave.h"
+#include "sim/styles/style_weave.h"
 
 #include <algorithm>
 #include <array>

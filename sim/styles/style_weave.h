@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "sim/hair_styles_comb.h"
+#include "sim/styles/style_comb.h"
 
 namespace sim {
 

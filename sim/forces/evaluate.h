@@ -1,0 +1,108 @@
+// Plain evaluation of the elements of one kind, whatever the kind: into vectors and blocks by vertex, or in column
+// layout.
+//
+// k: stiffness, c: condition with its rest shift taken off, g: its gradient; see force_kind.h.
+#pragma once
+
+#include <span>
+
+#include "sim/forces/force_model.h"
+#include "sim/linear/column_matrix.h"
+
+namespace sim {
+
+// What an evaluation reads and adds to, by vertex. A pair's block is that of its larger vertex (row) with its smaller
+// one; `slot` is its number in the pattern.
+template <class T>
+struct BlockSums {
+  std::span<const V3<T>> x;
+  const Evaluation<T>& out;
+
+  V3<T> position(int v) const { return x[v]; }
+  V3<T> velocity(int v) const { return out.velocities[v]; }
+  bool hasVelocities() const { return !out.velocities.empty(); }
+  bool hasForce() const { return !out.force.empty(); }
+  void subtractForce(int v, const V3<T>& f) const { out.force[v] -= f; }
+  void addBlock(int row, int column, int slot, const M3<T>& block) const {
+    M3<T>& to = row == column ? out.matrix->diagonal[row] : out.matrix->lower[slot];
+    for (int i = 0; i < 9; ++i) to.m[i] += block.m[i];
+  }
+};
+
+// What an evaluation in column layout adds up; see Evaluation.
+template <class T>
+struct ColumnEvaluation {
+  ColumnField<T>* force = nullptr;    // added
+  ColumnMatrix<T>* matrix = nullptr;  // added
+  T matrix_scale = 0, tension_scale = 0;
+  const ColumnField<T>* velocity = nullptr;
+  T damping = 0;
+};
+
+template <class T>
+struct ColumnSums {
+  const ColumnLayout& layout;
+  const ColumnField<T>& x;
+  const ColumnEvaluation<T>& out;
+
+  static V3<T> at(const ColumnField<T>& field, int slot) { return {field.x[slot], field.y[slot], field.z[slot]}; }
+  V3<T> position(int v) const { return at(x, layout.slot[v]); }
+  V3<T> velocity(int v) const { return at(*out.velocity, layout.slot[v]); }
+  bool hasVelocities() const { return out.velocity != nullptr; }
+  bool hasForce() const { return out.force != nullptr; }
+  void subtractForce(int v, const V3<T>& f) const {
+    const int slot = layout.slot[v];
+    out.force->x[slot] -= f.x, out.force->y[slot] -= f.y, out.force->z[slot] -= f.z;
+  }
+  void addBlock(int row, int column, int, const M3<T>& block) const { out.matrix->addBlock(row, column, block); }
+};
+
+// The block of vertices p and q of an element.
+template <class Kind, class T>
+M3<T> hessianBlock(const auto& c, T k, int p, int q, const auto& out) {
+  const V3<T> a = (out.matrix_scale * k) * c.g[p], b = c.g[q];
+  M3<T> block{{a.x * b.x, a.x * b.y, a.x * b.z, a.y * b.x, a.y * b.y, a.y * b.z, a.z * b.x, a.z * b.y, a.z * b.z}};
+  if constexpr (Kind::kCurved) {
+    const M3<T> curvature = Kind::curvature(c, p, q);
+    for (int i = 0; i < 9; ++i) block.m[i] += out.tension_scale * k * curvature.m[i];
+  }
+  return block;
+}
+
+// Adds the elements to the sums (BlockSums or ColumnSums) and their energy and dissipation potential to `energy`.
+template <class Kind, class T>
+void evaluateElements(const Elements<Kind, T>& elements, const auto& sums, T& energy) {
+  constexpr int N = Kind::kVertices;
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    const auto& v = elements.vertices[e];
+    V3<T> x[N];
+    for (int p = 0; p < N; ++p) x[p] = sums.position(v[p]);
+    const auto c = Kind::condition(x, elements.rest[e], elements.shift[e]);
+    const T k = elements.stiffness[e];
+    T pull = k * c.value, dissipation = 0, rate = 0;
+    if constexpr (MovingKind<Kind>) {
+      rate = Kind::drift(elements.rest[e]);
+      if (!sums.hasVelocities()) pull += sums.out.damping * k * rate;
+    }
+    if (sums.hasVelocities()) {
+      for (int p = 0; p < N; ++p) rate += dot(c.g[p], sums.velocity(v[p]));
+      pull += sums.out.damping * k * rate;
+      dissipation = sums.out.damping * k * rate * rate;
+    }
+    if (sums.hasForce()) {
+      for (int p = 0; p < N; ++p) sums.subtractForce(v[p], pull * c.g[p]);
+    }
+    energy += T(0.5) * (k * c.value * c.value + dissipation);
+    if (!sums.out.matrix) continue;
+    int pair = 0;
+    for (int p = 0; p < N; ++p) {
+      sums.addBlock(v[p], v[p], -1, hessianBlock<Kind>(c, k, p, p, sums.out));
+      for (int q = p + 1; q < N; ++q, ++pair) {
+        const int row = v[p] < v[q] ? q : p, column = v[p] < v[q] ? p : q;
+        sums.addBlock(v[row], v[column], elements.slots[e][pair], hessianBlock<Kind>(c, k, row, column, sums.out));
+      }
+    }
+  }
+}
+
+}  // namespace sim

@@ -1,0 +1,149 @@
+#include "sim/stabilization/inversion_recovery.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/stabilization/state_validation.h"
+
+namespace sim {
+namespace {
+
+constexpr double kLookEvery = 0.1;        // s
+constexpr double kInvertedShare = -0.05;  // of the rest volume: beyond flat
+constexpr double kSqueezed = 0.5;         // of the rest volume, of tetrahedra at rest: wound around their neighbours
+constexpr double kStill = 0.02;           // m/s against the root
+constexpr double kFolded = -0.5;          // cosine between a column's segments, where at rest it is above zero
+constexpr double kGuideTime = 0.4;        // s
+constexpr double kSoon = 1e-3;            // s before the end that count as the end
+constexpr double kFirstBackoff = 0.5;     // s
+constexpr double kMaxBackoff = 600;       // s
+// Strong wind may hold hair inverted for good.
+constexpr double kBackoffGrowth = 4;
+constexpr double kForgiven = 10;  // s upright after which a column's backoff begins anew
+
+double volumeOf(const CornerTet& tet, const std::vector<Vec3>& x) {
+  const Vec3& o = x[tet.v[0]];
+  return (x[tet.v[1]] - o).dot((x[tet.v[2]] - o).cross(x[tet.v[3]] - o)) / 6;
+}
+
+double cosineAt(const int (&segment)[3], const std::vector<Vec3>& x) {
+  const Vec3 lower = x[segment[1]] - x[segment[0]], upper = x[segment[2]] - x[segment[1]];
+  const double lengths = std::sqrt(lower.squaredNorm() * upper.squaredNorm());
+  return lengths > 0 ? lower.dot(upper) / lengths : 0;
+}
+
+// Returns whether it does: not while the column is guided or waits.
+bool begin(InversionRecovery::Column& column) {
+  if (column.guided >= 0 || column.wait > 0) return false;
+  column.guided = 0;
+  column.backoff = std::min(kMaxBackoff, std::max(kFirstBackoff, kBackoffGrowth * column.backoff));
+  column.wait = kGuideTime + column.backoff;
+  return true;
+}
+
+void look(const HairMesh& mesh, const HairState& state, double seconds, InversionRecovery& recovery) {
+  for (InversionRecovery::Column& column : recovery.columns) {
+    column.wait = std::max(0.0, column.wait - seconds);
+    column.upright += seconds;
+    if (column.upright > kForgiven) column.backoff = 0;
+  }
+  std::fill(recovery.touched.begin(), recovery.touched.end(), char{0});
+  for (const Contact& contact : state.contacts) recovery.touched[contact.vertex] = 1;
+  const auto rests = [&](int v) {
+    const Vec3& root = state.velocities[mesh.shape.column_first[mesh.column_of[v]]];
+    return (state.velocities[v] - root).squaredNorm() < kStill * kStill;
+  };
+  // Counts how long an element has been inverted, and guides its columns when it has been long enough.
+  const auto count = [&](bool inverted, bool again, std::span<const int> vertices, double& lasted) {
+    const bool at_rest = inverted && std::all_of(vertices.begin(), vertices.end(), rests);
+    lasted = inverted ? lasted + (at_rest ? kRestWeight : 1) * seconds : 0;
+    if (!inverted) return;
+    for (const int v : vertices) recovery.columns[mesh.column_of[v]].upright = 0;
+    if (lasted < kInvertedFor) return;
+    if (std::any_of(vertices.begin(), vertices.end(), [&](int v) { return recovery.touched[v] != 0; })) return;
+    for (const int v : vertices) {
+      InversionRecovery::Column& column = recovery.columns[mesh.column_of[v]];
+      if ((!again && column.backoff > 0) || !begin(column)) continue;
+      const int c = mesh.column_of[v];
+      for (int i = mesh.shape.column_first[c]; i < mesh.shape.column_first[c + 1]; ++i)
+        recovery.target[i] = mesh.shape.positions[i];
+    }
+  };
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const CornerTet& tet = mesh.tets[t];
+    const double share = volumeOf(tet, state.positions) / tet.rest_volume;
+    const bool squeezed = share < kSqueezed && std::all_of(tet.v.begin(), tet.v.end(), rests);
+    // Very soft hair rests squeezed: guided once, it is left so.
+    count(share < kInvertedShare || squeezed, share < kInvertedShare, tet.v, recovery.turned[t]);
+  }
+  for (int i = 0; i < mesh.vertexCount(); ++i) {
+    if (mesh.layer_of[i] < 2) continue;
+    const int segment[] = {i - 2, i - 1, i};
+    const bool folds = cosineAt(segment, state.positions) < kFolded && cosineAt(segment, mesh.shape.positions) > 0;
+    count(folds, true, segment, recovery.folded[i]);
+  }
+}
+
+// The share of the way that is left so many seconds after the beginning.
+double left(double seconds) {
+  const double s = seconds / kGuideTime;
+  return 1 - s * s * (3 - 2 * s);
+}
+
+}  // namespace
+
+InversionRecovery::InversionRecovery(const HairMesh& mesh) {
+  columns.resize(mesh.columnCount());
+  turned.resize(mesh.tets.size());
+  folded.resize(mesh.vertexCount());
+  touched.resize(mesh.vertexCount());
+  for (int c = 0; c < mesh.columnCount(); ++c) rest_roots.push_back(mesh.shape.positions[mesh.shape.column_first[c]]);
+  roots_before = roots_now = rest_roots;
+  target = mesh.shape.positions;
+}
+
+void guideTo(const HairMesh& mesh, const HairState& there, InversionRecovery& recovery) {
+  for (int c = 0; c < mesh.columnCount(); ++c) recovery.roots_now[c] = there.positions[mesh.shape.column_first[c]];
+  const Eigen::Isometry3d home = rigidMotion(recovery.rest_roots, recovery.roots_now).inverse();
+  for (int c = 0; c < mesh.columnCount(); ++c) {
+    InversionRecovery::Column& column = recovery.columns[c];
+    if (column.guided < 0) ++recovery.guided_columns;
+    column.guided = 0;
+    for (int i = mesh.shape.column_first[c]; i < mesh.shape.column_first[c + 1]; ++i)
+      recovery.target[i] = home * there.positions[i];
+  }
+}
+
+int recoverInversions(const RecoveredStep& step, InversionRecovery& recovery, HairState& state) {
+  const HairMesh& mesh = step.mesh;
+  recovery.since_look += step.dt;
+  if (recovery.since_look >= kLookEvery) {
+    if (step.looks) look(mesh, state, recovery.since_look, recovery);
+    recovery.since_look = 0;
+    recovery.guided_columns = static_cast<int>(
+        std::count_if(recovery.columns.begin(), recovery.columns.end(), [](const auto& c) { return c.guided >= 0; }));
+  }
+  if (recovery.guided_columns == 0) return 0;
+  for (int c = 0; c < mesh.columnCount(); ++c) {
+    recovery.roots_before[c] = step.start[mesh.shape.column_first[c]];
+    recovery.roots_now[c] = state.positions[mesh.shape.column_first[c]];
+  }
+  const Eigen::Isometry3d before = rigidMotion(recovery.rest_roots, recovery.roots_before).inverse();
+  const Eigen::Isometry3d now = rigidMotion(recovery.rest_roots, recovery.roots_now);
+  for (int c = 0; c < mesh.columnCount(); ++c) {
+    InversionRecovery::Column& column = recovery.columns[c];
+    if (column.guided < 0) continue;
+    const bool arrives = column.guided + step.dt > kGuideTime - kSoon;
+    const double share = arrives ? 0 : left(column.guided + step.dt) / left(column.guided);
+    for (int i = mesh.shape.column_first[c] + 1; i < mesh.shape.column_first[c + 1]; ++i) {
+      const Vec3& rest = recovery.target[i];
+      state.positions[i] = now * (rest + share * (before * step.start[i] - rest));
+      state.velocities[i] = (state.positions[i] - step.start[i]) / step.dt;
+    }
+    column.guided = arrives ? -1 : column.guided + step.dt;
+  }
+  state.previous_dt = 0;  // what came before says nothing any more about how it goes on
+  return recovery.guided_columns;
+}
+
+}  // namespace sim

@@ -1,0 +1,56 @@
+// Inversion recovery: columns that rest inverted are guided to the rest shape.
+//
+// A tip thrown through its neighbours keeps the length of every edge. The way back leads through a flat prism, so the
+// mirrored shape can be an equilibrium of all forces, the volume force included. Forces come first: an element (a
+// corner tetrahedron below kInvertedShare of its rest volume, a column folded back on itself) must stay inverted for
+// kInvertedFor seconds, of which each that it spends at rest counts kRestWeight times. Then its columns move to the
+// rest shape within kGuideTime seconds, along lines that are straight as seen from the head. Bodies push them out as
+// ever, and columns that a body holds are left alone. A column that inverts again waits four times as long each time.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sim/mesh/hair_mesh.h"
+#include "sim/mesh/hair_state.h"
+
+namespace sim {
+
+inline constexpr double kInvertedFor = 6;  // s
+inline constexpr double kRestWeight = 4;   // so 1.5 s at rest
+
+// What outlives a step, and scratch: one per hair.
+struct InversionRecovery {
+  explicit InversionRecovery(const HairMesh& mesh);
+
+  struct Column {
+    double guided = -1;  // s since guiding began; negative: it is not guided
+    double wait = 0;     // s before it may be guided again
+    double backoff = 0;  // s that it waits after it was guided
+    double upright = 0;  // s since one of its elements was last inverted
+  };
+  std::vector<Column> columns;
+  std::vector<double> turned;                             // s that each corner tetrahedron has been inverted, weighted
+  std::vector<double> folded;                             // the same of columns folded back at each vertex
+  std::vector<char> touched;                              // by a body, per vertex
+  std::vector<Vec3> rest_roots, roots_before, roots_now;  // m, one per column
+  std::vector<Vec3> target;                               // m, seen from the head: where guided columns go
+  double since_look = 0;                                  // s
+  int guided_columns = 0;                                 // columns
+};
+
+// The step that was taken: positions (m) at its start; `state` holds its end.
+struct RecoveredStep {
+  const HairMesh& mesh;
+  std::span<const Vec3> start;
+  double dt;          // s
+  bool looks = true;  // for newly inverted columns, too
+};
+
+// Looks for inverted columns every 0.1 s, and moves those that are guided. Returns how many these are.
+int recoverInversions(const RecoveredStep& step, InversionRecovery& recovery, HairState& state);
+
+// Guides every column to where `there` has it, over the next steps.
+void guideTo(const HairMesh& mesh, const HairState& there, InversionRecovery& recovery);
+
+}  // namespace sim

@@ -1,0 +1,63 @@
+// The one door to the safety nets: what a step does beyond the published algorithm so that hair stays finite, bounded
+// and on its way home. Solver::kPaper uses none of them but the repair of values that are not finite or absurd.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "sim/contact/position_correction.h"
+#include "sim/stabilization/energy_limit.h"
+#include "sim/stabilization/inversion_recovery.h"
+#include "sim/stabilization/oscillation_damping.h"
+#include "sim/stabilization/reference_hair.h"
+#include "sim/stabilization/safety_nets.h"
+#include "sim/stabilization/state_validation.h"
+#include "sim/step_input.h"
+#include "sim/step_report.h"
+
+namespace sim {
+
+// What the nets of one hair keep from step to step, and their scratch. Sized once.
+struct Stabilization {
+  SafetyNets nets;    // asked for
+  SafetyNets active;  // in this step
+  GoodState good;     // the last step's end
+  OscillationDamping oscillation;
+  InversionRecovery recovery;
+  RestCheck rest_check;
+  // Scratch.
+  EnergyLimit energy_limit;
+  std::vector<Vec3> limited_velocities;
+  std::vector<V3<double>> plain_positions;
+  std::vector<Vec3> root_positions;
+  std::vector<Ellipsoid> still_bodies;
+  std::vector<BodySdf> still_parts;
+  std::vector<PinnedVertex> still_pins;
+
+  explicit Stabilization(const HairMesh& mesh);
+};
+
+// Before a step: repairs vertices of `state` that something outside of the step has spoilt (report.recoveries), and
+// carries the hair along over a teleport, a jump of the roots faster than params.teleport_speed (report.carried).
+// Returns the input of the step; after a teleport its bodies, which have come as far, stand still, and `params` let
+// position correction bring out at once what lies in them.
+StepInput admitState(const HairMesh& mesh, const ForceModel<double>& model, const StepInput& input, double dt,
+                     SimParams& params, Stabilization& memory, HairState& state, StepReport& report);
+
+// After integration: oscillation damping, energy limit, inversion recovery, repair of what is not finite or absurd.
+// `converged`: the solve did.
+void stabilize(const TakenStep& step, const StepInput& input, bool converged, Stabilization& memory, HairState& state,
+               StepReport& report);
+
+// After position correction: what it lifted is paid for by the energy that the step began with. Hair that it lifted by
+// more goes back, and is corrected once more without taking a velocity.
+void limitCorrectionEnergy(const TakenStep& step, const CorrectedStep& corrected, PositionCorrection& correction,
+                           Stabilization& memory, HairState& state, StepReport& report);
+
+// At a step's end: remembers the state as good and compares hair at rest in
+// another shape than its own with a reference hair (reference_hair.h), which takes one step by `advance_reference`.
+// `energy`: mechanical, of a state (J).
+void finishStep(const TakenStep& step, const std::function<void(const SimParams&, HairState&)>& advance_reference,
+                const std::function<double(const HairState&)>& energy, Stabilization& memory, HairState& state);
+
+}  // namespace sim

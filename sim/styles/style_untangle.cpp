@@ -1,0 +1,184 @@
+#include "sim/styles/style_untangle.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "sim/styles/style_comb.h"
+
+namespace sim {
+namespace {
+
+constexpr int kSweeps = 240;
+constexpr double kShortestEdge = 0.0032;  // m: shorter ones ruin the conditioning of the simulator's systems
+constexpr double kLargestMove = 0.004;    // m a sweep: large steps would throw neighbours over each other
+
+// Corner, its two neighbours in the layer and the one along the hair, in the order that makes the volume positive.
+using Corner = std::array<int, 4>;
+
+std::vector<Corner> corners(const HairMeshShape& shape) {
+  std::vector<Corner> out;
+  for (const RootFace& face : shape.root_faces) {
+    int layers = shape.columnLength(face.columns[0]);
+    for (int k = 1; k < face.corner_count; ++k) layers = std::min(layers, shape.columnLength(face.columns[k]));
+    const int n = face.corner_count;
+    for (int l = 0; l + 1 < layers; ++l) {
+      for (int k = 0; k < n; ++k) {
+        const int here = shape.column_first[face.columns[k]] + l;
+        const int next = shape.column_first[face.columns[(k + 1) % n]] + l;
+        const int previous = shape.column_first[face.columns[(k + n - 1) % n]] + l;
+        out.push_back({here, next, previous, here + 1});
+        out.push_back({here + 1, previous + 1, next + 1, here});
+      }
+    }
+  }
+  return out;
+}
+
+struct Neighbours {
+  std::vector<int> first{0}, list;
+};
+
+// Every vertex's neighbours along its column and in its layer.
+Neighbours neighbours(const HairMeshShape& shape, const std::vector<Corner>& all) {
+  std::vector<std::array<int, 2>> pairs;
+  for (const Corner& c : all)
+    for (int k = 1; k < 4; ++k) pairs.push_back({c[0], c[k]});
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  Neighbours out;
+  std::size_t i = 0;
+  for (int v = 0; v < shape.vertexCount(); ++v) {
+    for (; i < pairs.size() && pairs[i][0] == v; ++i) out.list.push_back(pairs[i][1]);
+    out.first.push_back(static_cast<int>(out.list.size()));
+  }
+  return out;
+}
+
+// The mesh while it is relaxed. Roots do not move.
+struct Relaxation {
+  HairMeshShape& shape;
+  const std::vector<Corner> all;
+  const Neighbours near;
+  const std::vector<Vec3> start;  // positions before the first sweep
+  std::vector<bool> root;
+  std::vector<Vec3> asked_at;     // where a vertex was when its distance to the body was last evaluated
+  std::vector<double> clearance;  // m: that distance
+
+  explicit Relaxation(HairMeshShape& relaxed)
+      : shape(relaxed),
+        all(corners(relaxed)),
+        near(neighbours(relaxed, all)),
+        start(relaxed.positions),
+        root(relaxed.positions.size(), false),
+        asked_at(relaxed.positions),
+        clearance(relaxed.positions.size(), -1e9) {
+    for (int c = 0; c < shape.columnCount(); ++c) root[shape.column_first[c]] = true;
+  }
+  bool openCorner(const Corner& t, double fatness);
+  bool openCorners(double fatness);
+  bool lengthenEdges();
+  void spreadMoves(double spread);
+  void pushOut(const BodyDistance& body, double gap);
+};
+
+// One Newton step of a corner's volume towards the fatness asked for, against the volume's gradient. Returns whether
+// the corner was clearly below it.
+bool Relaxation::openCorner(const Corner& t, double fatness) {
+  std::vector<Vec3>& x = shape.positions;
+  const Vec3 a = x[t[1]] - x[t[0]], b = x[t[2]] - x[t[0]], c = x[t[3]] - x[t[0]];
+  const double box = a.norm() * b.norm() * c.norm();
+  const double lacking = 1.15 * fatness * box - a.cross(b).dot(c);
+  if (lacking <= 0) return false;
+  std::array<Vec3, 4> slope{Vec3::Zero(), b.cross(c), c.cross(a), a.cross(b)};
+  slope[0] = -slope[1] - slope[2] - slope[3];
+  double sum = 0;
+  for (int k = 0; k < 4; ++k) sum += root[t[k]] ? 0.0 : slope[k].squaredNorm();
+  for (int k = 0; k < 4 && sum >= 1e-24; ++k) {
+    if (root[t[k]]) continue;
+    Vec3 move = 0.8 * lacking / sum * slope[k];
+    move *= std::min(1.0, kLargestMove / std::max(move.norm(), 1e-12));
+    x[t[k]] += move;
+  }
+  return lacking > 0.15 * fatness * box;
+}
+
+bool Relaxation::openCorners(double fatness) {
+  bool bad = false;
+  for (const Corner& t : all) bad = openCorner(t, fatness) || bad;
+  return bad;
+}
+
+// Moves the ends of edges that are too short apart. Returns whether one was clearly too short.
+bool Relaxation::lengthenEdges() {
+  std::vector<Vec3>& x = shape.positions;
+  bool bad = false;
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    for (int i = near.first[v]; i < near.first[v + 1]; ++i) {
+      const std::size_t w = near.list[i];
+      if (w < v || (root[v] && root[w])) continue;
+      const Vec3 edge = x[w] - x[v];
+      const double length = edge.norm();
+      if (length >= kShortestEdge) continue;
+      bad = bad || length < 0.95 * kShortestEdge;
+      const Vec3 direction = length > 1e-6 ? Vec3(edge / length) : Vec3((start[w] - start[v]).normalized());
+      const double share = root[v] || root[w] ? 1.0 : 0.5;
+      if (!root[v]) x[v] -= share * (kShortestEdge - length) * direction;
+      if (!root[w]) x[w] += share * (kShortestEdge - length) * direction;
+    }
+  }
+  return bad;
+}
+
+// Blends each vertex's move since the start with the mean of its neighbours', so that the shape stays smooth.
+void Relaxation::spreadMoves(double spread) {
+  std::vector<Vec3>& x = shape.positions;
+  std::vector<Vec3> moved(x.size());
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    moved[v] = x[v] - start[v];
+    if (root[v]) continue;
+    Vec3 sum = Vec3::Zero();
+    for (int i = near.first[v]; i < near.first[v + 1]; ++i) sum += x[near.list[i]] - start[near.list[i]];
+    const int count = near.first[v + 1] - near.first[v];
+    if (count > 0) moved[v] = (1 - spread) * moved[v] + spread / count * sum;
+  }
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    if (!root[v]) x[v] = start[v] + moved[v];
+  }
+}
+
+// Moves vertices closer to the body than `gap` out to it. The distance is expensive and changes by at most the move:
+// it is evaluated again only where the vertex may have come near.
+void Relaxation::pushOut(const BodyDistance& body, double gap) {
+  std::vector<Vec3>& x = shape.positions;
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    if (root[v] || clearance[v] - (x[v] - asked_at[v]).norm() >= gap) continue;
+    clearance[v] = body(x[v]);
+    asked_at[v] = x[v];
+    if (clearance[v] < gap) x[v] += (gap - clearance[v]) * bodyNormal(body, x[v]);
+  }
+}
+
+}  // namespace
+
+double cornerFatness(const Vec3& corner, const Vec3& next, const Vec3& previous, const Vec3& along) {
+  const Vec3 a = next - corner, b = previous - corner, c = along - corner;
+  return a.cross(b).dot(c) / std::max(a.norm() * b.norm() * c.norm(), 1e-30);
+}
+
+double untangle(const BodyDistance& body, double fatness, double gap, HairMeshShape& shape) {
+  Relaxation relaxation(shape);
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    const bool flat = relaxation.openCorners(fatness), shorter = relaxation.lengthenEdges();
+    if (!flat && !shorter) break;
+    // Less from sweep to sweep, so that it ends.
+    relaxation.spreadMoves(0.2 * (1 - static_cast<double>(sweep) / kSweeps));
+    relaxation.pushOut(body, gap);
+  }
+  const std::vector<Vec3>& x = shape.positions;
+  double worst = 1;
+  for (const Corner& t : relaxation.all) worst = std::min(worst, cornerFatness(x[t[0]], x[t[1]], x[t[2]], x[t[3]]));
+  return worst;
+}
+
+}  // namespace sim
