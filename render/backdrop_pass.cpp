@@ -1,5 +1,7 @@
 #include "render/backdrop_pass.h"
 
+#include "render/stage.h"
+
 namespace render {
 
 BackdropPass::BackdropPass(const std::string& shader_dir)
@@ -7,7 +9,8 @@ BackdropPass::BackdropPass(const std::string& shader_dir)
       ground_(shader_dir, {{"ground.vert", "ground.frag"}, {}, {}}),
       no_attributes_(makeVertexArray()) {}
 
-int BackdropPass::draw(bool ground) {
+void BackdropPass::draw(const Input& input, Stage& stage, FrameReport& report) {
+  glClear(GL_DEPTH_BUFFER_BIT);
   glBindVertexArray(no_attributes_.id());
   glDepthMask(GL_FALSE);
   glDisable(GL_DEPTH_TEST);
@@ -15,15 +18,12 @@ int BackdropPass::draw(bool ground) {
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_TRUE);
-  if (!ground) return 1;
+  report.draw_calls += 1;
+  if (!input.ground) return;
+  stage.shadows.bindMaps();
   ground_.use();
   glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-  return 2;
-}
-
-std::string BackdropPass::reload() {
-  const std::string first = backdrop_.reloadIfChanged(), second = ground_.reloadIfChanged();
-  return first.empty() ? second : first;
+  report.draw_calls += 1;
 }
 
 }  // namespace render

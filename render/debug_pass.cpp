@@ -20,10 +20,10 @@ DebugPass::DebugPass(const std::string& shader_dir)
   glVertexArrayAttribFormat(array, 1, 4, GL_FLOAT, GL_FALSE, offsetof(LineVertex, color));
 }
 
-int DebugPass::drawShape(GLenum shape, std::span<const LineVertex> vertices, long& uploaded) {
-  if (vertices.empty()) return 0;
+void DebugPass::drawShape(GLenum shape, std::span<const LineVertex> vertices, FrameReport& report) {
+  if (vertices.empty()) return;
   vertices_.upload(vertices.data(), static_cast<GLsizeiptr>(vertices.size_bytes()));
-  uploaded += static_cast<long>(vertices.size_bytes());
+  report.bytes_uploaded += static_cast<long>(vertices.size_bytes());
   glVertexArrayVertexBuffer(attributes_.id(), 0, vertices_.id(), 0, sizeof(LineVertex));
   glBindVertexArray(attributes_.id());
   const auto count = static_cast<GLsizei>(vertices.size());
@@ -33,25 +33,22 @@ int DebugPass::drawShape(GLenum shape, std::span<const LineVertex> vertices, lon
   glDepthFunc(GL_LEQUAL);
   glUniform1f(0, 1.0f);
   glDrawArrays(shape, 0, count);
-  return 2;
+  report.draw_calls += 2;
 }
 
-int DebugPass::draw(const FrameInput& input, long& uploaded) {
-  if (input.debug_lines.empty() && input.debug_triangles.empty() && input.debug_points.empty()) return 0;
+void DebugPass::draw(const Input& input, Stage&, FrameReport& report) {
+  if (!input.hasShapes()) return;
   program_.use();
-  glUniform1f(1, input.view.exposure);
+  glUniform1f(1, input.exposure);
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   glEnable(GL_PROGRAM_POINT_SIZE);
   glDepthMask(GL_FALSE);
-  const int calls = drawShape(GL_TRIANGLES, input.debug_triangles, uploaded) +
-                    drawShape(GL_LINES, input.debug_lines, uploaded) +
-                    drawShape(GL_POINTS, input.debug_points, uploaded);
+  drawShape(GL_TRIANGLES, input.triangles, report);
+  drawShape(GL_LINES, input.lines, report);
+  drawShape(GL_POINTS, input.points, report);
   glDepthMask(GL_TRUE);
-  glDepthFunc(GL_LESS);
   glDisable(GL_PROGRAM_POINT_SIZE);
-  glDisable(GL_BLEND);
-  return calls;
 }
 
 }  // namespace render

@@ -61,8 +61,8 @@ struct HairInput {
   HairLook look;
 };
 
-// A skinned body. The mesh is uploaded once per mesh_id, the root cover once per mesh and scalp id; a frame brings joint
-// matrices only.
+// A skinned body. The mesh is uploaded once per mesh_id, the root cover once per mesh and scalp id; a frame brings
+// joint matrices only.
 struct BodyInput {
   std::uint64_t id = 0, mesh_id = 0;
   std::span<const float> positions, normals;  // rest pose, 3 floats a vertex
@@ -127,17 +127,17 @@ struct ViewOptions {
 
 // Work that is left out where the picture does not need it. The first group changes no bit of the picture.
 struct DrawSkips {
-  bool frame = true;          // a frame equal to the last one is not drawn again
-  bool rows = true;           // only the rows of positions that changed are uploaded
-  bool shadows = true;        // shadow maps that still show what they should are kept
-  bool view = true;           // hairs, bundles and bodies outside the camera's view are not drawn
-  bool shadow_view = true;    // no shadow map for hair whose shadow cannot fall into the view
-  bool body_parts = true;     // parts of a body outside the view are not skinned
-  bool body_detail = true;    // fewer triangles of bodies that are small in the picture
-  bool strands = true;        // strand count and width follow the projected size
-  bool segments = true;       // segments follow curvature and projected size
-  bool shadow_detail = true;  // shadow strands and map size follow the projected size
-  bool openness = true;       // soft light inside far hair is renewed now and then
+  bool frame = true;           // a frame equal to the last one is not drawn again
+  bool rows = true;            // only the rows of positions that changed are uploaded
+  bool shadows = true;         // shadow maps that still show what they should are kept
+  bool view = true;            // hairs, bundles and bodies outside the camera's view are not drawn
+  bool shadow_view = true;     // no shadow map for hair whose shadow cannot fall into the view
+  bool body_parts = true;      // parts of a body outside the view are not skinned
+  bool body_detail = true;     // fewer triangles of bodies that are small in the picture
+  bool strands = true;         // strand count and width follow the projected size
+  bool segments = true;        // segments follow curvature and projected size
+  bool shadow_detail = true;   // shadow strands and map size follow the projected size
+  bool sky_visibility = true;  // soft light inside far hair is renewed now and then
 
   bool operator==(const DrawSkips&) const = default;
 };

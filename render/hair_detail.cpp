@@ -51,11 +51,12 @@ float projectedDiameter(const Bounds& bounds, const CameraInput& camera, int hei
   return bounds.diagonal() * static_cast<float>(height) / (2 * std::tan(0.5f * camera.fov_y) * distance);
 }
 
-void HairDetail::planView(const FrameInput& input, const Frustum& frustum, HairResources& hair, DrawLeftOut& left_out) {
+void HairDetail::planView(const PlanInput& input, const Frustum& frustum, HairResources& hair,
+                          DrawSkipCounts& skip_counts) {
   const HairLayout& layout = hair.layout();
   const std::size_t faces = layout.faces.size();
   HairDraw& draw = hair.view_draw;
-  const float wanted = std::max(input.view.strands_per_pixel * hair.pixels, kFewestStrands);
+  const float wanted = std::max(input.strands_per_pixel * hair.pixels, kFewestStrands);
   const float share = input.skips.strands ? std::min(wanted / static_cast<float>(std::max(hair.strands, 1)), 1.0f) : 1;
   fadeTo(share, draw);
 
@@ -65,7 +66,7 @@ void HairDetail::planView(const FrameInput& input, const Frustum& frustum, HairR
     const float a_metre = hair.pixels / std::max(hair.bounds.diagonal(), 1e-6f),
                 own = ownBend(hair.look, layout.max_layers);
     const float layer_pixels = hair.layer_length * a_metre;
-    const float error = std::max(input.view.segment_error, 1e-3f);
+    const float error = std::max(input.segment_error, 1e-3f);
     for (std::size_t f = 0; f < faces; ++f) {
       // A chord leaves a curve of second derivative b by b / (8 n^2); a Catmull-Rom's is at most twice its vertices'.
       const float bent = std::sqrt((2 * hair.face_bend[f] + own) * a_metre / (8 * error));
@@ -76,10 +77,10 @@ void HairDetail::planView(const FrameInput& input, const Frustum& frustum, HairR
   const bool cull = input.skips.view && !std::all_of(hair.face_bounds.begin(), hair.face_bounds.end(),
                                                      [&](const Bounds& box) { return frustum.seesAllOf(box); });
   const bool coarser = std::any_of(segments_.begin(), segments_.end(), [&](float n) { return n < full; });
-  left_out.view.of += static_cast<long>(faces);
-  left_out.strands.of += hair.strands;
+  skip_counts.view.of += static_cast<long>(faces);
+  skip_counts.strands.of += hair.strands;
   const long all_points = static_cast<long>(hair.strands) * hair.pointsPerStrand(draw);
-  left_out.segments.of += all_points;
+  skip_counts.segments.of += all_points;
   if (!cull && !coarser && share >= 1) return;
 
   draw.table_first = static_cast<int>(texels_.size() / 4);
@@ -88,12 +89,12 @@ void HairDetail::planView(const FrameInput& input, const Frustum& frustum, HairR
   for (std::size_t f = 0; f < faces; ++f) {
     const int count = hair.style->first_strand[f + 1] - hair.style->first_strand[f];
     if (cull && !frustum.maySee(hair.face_bounds[f])) {
-      ++left_out.view.skipped;
+      ++skip_counts.view.skipped;
       continue;
     }
     const int kept = keptStrands(count, draw);
-    left_out.strands.skipped += count - kept;
-    left_out.segments.skipped +=
+    skip_counts.strands.skipped += count - kept;
+    skip_counts.segments.skipped +=
         std::lround((full - segments_[f]) * static_cast<float>(kept) * static_cast<float>(layout.faces[f].layers - 1));
     if (kept == 0) continue;
     const int first = draw.table_strands;
@@ -107,7 +108,7 @@ void HairDetail::planView(const FrameInput& input, const Frustum& frustum, HairR
 
 // Shadows stand fewer strands, each standing for more hairs, and coarser curves: both blur by far less than a shadow is
 // soft.
-void HairDetail::planShadow(const FrameInput& input, HairResources& hair, DrawLeftOut& left_out) {
+void HairDetail::planShadow(const PlanInput& input, HairResources& hair, DrawSkipCounts& skip_counts) {
   const LightInput& light = input.light;
   HairDraw& draw = hair.shadow_draw;
   draw.segments = (hair.segments + 1) / 2;
@@ -118,7 +119,7 @@ void HairDetail::planShadow(const FrameInput& input, HairResources& hair, DrawLe
     wanted = std::min(wanted, std::max(light.shadow_strands_per_pixel * hair.pixels, kFewestStrands));
   const float share = std::min(wanted / strands, 1.0f);
   fadeTo(share, draw);
-  left_out.shadow_detail.of += std::lround(most);
+  skip_counts.shadow_detail.of += std::lround(most);
   if (share >= 1) return;
   const float layer_pixels = hair.layer_length * hair.pixels / std::max(hair.bounds.diagonal(), 1e-6f);
   const auto full = static_cast<float>(draw.segments);
@@ -138,11 +139,11 @@ void HairDetail::planShadow(const FrameInput& input, HairResources& hair, DrawLe
     texels_.insert(texels_.end(), {static_cast<float>(draw.table_strands), static_cast<float>(f),
                                    segments < full ? segments : 0.0f, static_cast<float>(begin)});
   }
-  left_out.shadow_detail.skipped += std::max(0L, std::lround(most) - draw.table_strands);
+  skip_counts.shadow_detail.skipped += std::max(0L, std::lround(most) - draw.table_strands);
 }
 
-long HairDetail::plan(const FrameInput& input, const ViewGate& gate, std::span<HairResources> hairs,
-                      DrawLeftOut& left_out) {
+long HairDetail::plan(const PlanInput& input, const ViewGate& gate, std::span<HairResources> hairs,
+                      DrawSkipCounts& skip_counts) {
   const Frustum& frustum = *gate.frustum;
   texels_.clear();
   for (HairResources& hair : hairs) {
@@ -152,14 +153,14 @@ long HairDetail::plan(const FrameInput& input, const ViewGate& gate, std::span<H
       hair.pixels = projectedDiameter(hair.bounds, input.camera, input.height);
       hair.in_view = !input.skips.view || std::any_of(hair.face_bounds.begin(), hair.face_bounds.end(),
                                                       [&](const Bounds& box) { return frustum.maySee(box); });
-      planShadow(input, hair, left_out);
+      planShadow(input, hair, skip_counts);
     }
     hair.casts = reached && (!input.skips.shadow_view || gate.admits(hair.around));
     if (hair.in_view) {
-      planView(input, frustum, hair, left_out);
+      planView(input, frustum, hair, skip_counts);
     } else {
       const auto faces = static_cast<long>(hair.layout().faces.size());
-      left_out.view += {faces, faces};
+      skip_counts.view += {faces, faces};
     }
   }
   if (texels_.empty() || (texels_ == uploaded_ && texture_)) return 0;

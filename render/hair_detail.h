@@ -10,6 +10,7 @@
 
 #include "render/frame_input.h"
 #include "render/hair_store.h"
+#include "render/plan_input.h"
 
 namespace render {
 
@@ -17,13 +18,13 @@ class HairDetail {
  public:
   // Fills in_view, casts, pixels, view_draw and shadow_draw of every hair and uploads the tables. Returns the bytes
   // uploaded. gate: of hairs and their shadows.
-  long plan(const FrameInput& input, const ViewGate& gate, std::span<HairResources> hairs, DrawLeftOut& left_out);
+  long plan(const PlanInput& input, const ViewGate& gate, std::span<HairResources> hairs, DrawSkipCounts& skip_counts);
 
   const Texture& table() const { return texture_; }
 
  private:
-  void planView(const FrameInput& input, const Frustum& frustum, HairResources& hair, DrawLeftOut& left_out);
-  void planShadow(const FrameInput& input, HairResources& hair, DrawLeftOut& left_out);
+  void planView(const PlanInput& input, const Frustum& frustum, HairResources& hair, DrawSkipCounts& skip_counts);
+  void planShadow(const PlanInput& input, HairResources& hair, DrawSkipCounts& skip_counts);
 
   std::vector<float> texels_, uploaded_;
   std::vector<float> segments_;  // a layer, per face of the hair at hand

@@ -51,6 +51,21 @@ Vector3f intoOwnFrame(HairLayout& layout) {
   return Vector3f::UnitY();
 }
 
+// The smallest rotation between two unit vectors; about any normal when they are opposite.
+Eigen::Quaternionf leastRotation(const Vector3f& from, const Vector3f& to) {
+  const float cosine = from.dot(to);
+  Eigen::Quaternionf turn;
+  if (cosine < -1 + 1e-5f) {
+    turn.w() = 0;
+    turn.vec() = from.unitOrthogonal();
+  } else {
+    const float twice_w = std::sqrt(2 * (1 + cosine));
+    turn.w() = 0.5f * twice_w;
+    turn.vec() = from.cross(to) * (1 / twice_w);
+  }
+  return turn;
+}
+
 void setTangentPlanes(HairLayout& layout, const Vector3f& up) {
   std::vector<Vector3f> normals(layout.columns.size(), Vector3f::Zero());
   for (const auto& columns : layout.face_columns) {
@@ -62,7 +77,7 @@ void setTangentPlanes(HairLayout& layout, const Vector3f& up) {
   for (std::size_t i = 0; i < layout.columns.size(); ++i) {
     const Vector3f normal = normals[i].norm() > 1e-12f ? normals[i].normalized().eval() : up;
     // The least rotation from the crown: neighbouring columns' axes then agree, so frames blend across faces.
-    const Eigen::Quaternionf turn = Eigen::Quaternionf::FromTwoVectors(up, normal);
+    const Eigen::Quaternionf turn = leastRotation(up, normal);
     layout.columns[i].axis_u = turn * Vector3f::UnitX();
     layout.columns[i].axis_v = turn * Vector3f::UnitZ();
   }

@@ -235,18 +235,18 @@ long HairStore::uploadVertices(HairResources& hair, std::span<const float> posit
   const HairLayout& layout = hair.layout();
   inLayerGradients(layout, positions, gradients_);
   const auto vertices = static_cast<std::size_t>(layout.vertex_count);
-  const bool far = skips.openness && hair.pixels < kSoftLightPixels && !renew_light &&
+  const bool far = skips.sky_visibility && hair.pixels < kSoftLightPixels && !renew_light &&
                    hair.soft_light.size() == vertices && hair.soft_light_age + 1 < kSoftLightEvery;
-  left_out_.openness += {far ? layout.vertex_count : 0, layout.vertex_count};
+  skip_counts_.sky_visibility += {far ? layout.vertex_count : 0, layout.vertex_count};
   if (far) {
     ++hair.soft_light_age;
     hair.head = fitHead(layout, positions);
   } else {
-    openness_.compute(layout, positions, representedWidth(hair.look, hair.strands),
-                      directionOr(to_fill_, Vector3f::UnitX()), directionOr(to_rim_, -Vector3f::UnitZ()));
-    hair.soft_light.assign(openness_.values().begin(), openness_.values().end());
+    sky_visibility_.compute(layout, positions, representedWidth(hair.look, hair.strands),
+                            directionOr(to_fill_, Vector3f::UnitX()), directionOr(to_rim_, -Vector3f::UnitZ()));
+    hair.soft_light.assign(sky_visibility_.values().begin(), sky_visibility_.values().end());
     hair.soft_light_age = 0;
-    hair.head = openness_.head();
+    hair.head = sky_visibility_.head();
   }
   texels_.clear();
   for (int v = 0; v < layout.vertex_count; ++v) {
@@ -258,7 +258,7 @@ long HairStore::uploadVertices(HairResources& hair, std::span<const float> posit
   }
   measureFaces(positions, hair);
   constexpr std::size_t kRow = 4 * shared::kVertexTexels;
-  left_out_.rows.of += layout.vertex_count;
+  skip_counts_.rows.of += layout.vertex_count;
   if (!skips.rows || hair.texels.size() != texels_.size() ||
       hair.vertex_bytes != static_cast<GLsizeiptr>(texels_.size() * sizeof(float))) {
     hair.texels = texels_;
@@ -272,7 +272,7 @@ long HairStore::uploadVertices(HairResources& hair, std::span<const float> posit
                     hair.texels.begin() + static_cast<long>(end - kRow))) {
     end -= kRow;
   }
-  left_out_.rows.skipped += layout.vertex_count - static_cast<long>((end - first) / kRow);
+  skip_counts_.rows.skipped += layout.vertex_count - static_cast<long>((end - first) / kRow);
   if (end <= first) return 0;
   std::copy(texels_.begin() + static_cast<long>(first), texels_.begin() + static_cast<long>(end),
             hair.texels.begin() + static_cast<long>(first));
@@ -319,7 +319,7 @@ long HairStore::update(std::span<const HairInput> inputs, const LightInput& ligh
   if (light.to_fill != to_fill_ || light.to_rim != to_rim_) ++light_revision_;
   to_fill_ = light.to_fill;
   to_rim_ = light.to_rim;
-  left_out_ = {};
+  skip_counts_ = {};
   for (HairResources& hair : hairs_) hair.seen = false;
   long uploaded = 0;
   for (std::size_t i = 0; i < inputs.size(); ++i) {

@@ -11,8 +11,8 @@
 #include "render/frame_input.h"
 #include "render/gl_object.h"
 #include "render/hair_layout.h"
-#include "render/hair_openness.h"
 #include "render/renderer.h"
+#include "render/sky_visibility.h"
 #include "render/view_math.h"
 
 namespace render {
@@ -56,7 +56,7 @@ struct HairResources {
   HairStyle* style = nullptr;
   HairScattering* scattering = nullptr;
   HeadBall head;
-  std::vector<Eigen::Vector3f> soft_light;  // per vertex; see hair_openness.h
+  std::vector<Eigen::Vector3f> soft_light;  // per vertex; see sky_visibility.h
   std::vector<float> texels;                // as uploaded
   std::vector<Bounds> face_bounds;          // m, around all strands of a face
   std::vector<float> face_bend;             // m, how far a face's strands turn away within a layer
@@ -100,7 +100,7 @@ class HairStore {
   // In the order of the frame's inputs.
   std::span<HairResources> hairs() { return hairs_; }
 
-  const DrawLeftOut& leftOut() const { return left_out_; }
+  const DrawSkipCounts& skipCounts() const { return skip_counts_; }
   long gpuBytes() const;
 
   // Binds the hair's textures and block for a draw; `table` holds the draw's table if it has one of its own.
@@ -117,12 +117,12 @@ class HairStore {
   std::vector<HairResources> hairs_;
   std::vector<std::unique_ptr<HairStyle>> styles_;
   std::vector<std::unique_ptr<HairScattering>> scatterings_;
-  HairOpenness openness_;
+  SkyVisibility sky_visibility_;
   std::vector<Eigen::Matrix<float, 3, 2>> gradients_;
   std::vector<float> texels_;
   Float3 to_fill_{}, to_rim_{};
   std::uint64_t light_revision_ = 1;
-  DrawLeftOut left_out_;
+  DrawSkipCounts skip_counts_;
 };
 
 // How far (m) a strand may leave the hull of the hair mesh sideways by its look.

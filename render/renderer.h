@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/frame_input.h"
+#include "render/reload.h"
 
 namespace render {
 
@@ -15,9 +16,9 @@ struct StageTime {
 };
 
 // How much of something was left out, and of how much.
-struct LeftOut {
+struct SkipCount {
   long skipped = 0, of = 0;
-  LeftOut& operator+=(const LeftOut& other) {
+  SkipCount& operator+=(const SkipCount& other) {
     skipped += other.skipped;
     of += other.of;
     return *this;
@@ -25,8 +26,9 @@ struct LeftOut {
 };
 
 // One count for each of the DrawSkips.
-struct DrawLeftOut {
-  LeftOut frame, rows, shadows, view, shadow_view, body_parts, body_detail, strands, segments, shadow_detail, openness;
+struct DrawSkipCounts {
+  SkipCount frame, rows, shadows, view, shadow_view, body_parts, body_detail, strands, segments, shadow_detail,
+      sky_visibility;
 };
 
 // What a frame did. Times: GPU timer queries where the driver's are usable, glFinish and a steady clock on software
@@ -37,7 +39,7 @@ struct FrameReport {
   long bytes_uploaded = 0;
   long gpu_bytes_hair = 0;     // positions, tangents, layout: everything kept on the GPU for hair models
   long gpu_bytes_shadows = 0;  // all shadow maps
-  DrawLeftOut left_out;
+  DrawSkipCounts skip_counts;
 };
 
 class Renderer {
@@ -55,12 +57,12 @@ class Renderer {
   // Draws into an offscreen target and reads it back: 8-bit RGBA sRGB, top row first.
   FrameReport renderImage(const FrameInput& input, std::vector<unsigned char>& rgba, bool measure = false);
 
-  // Recompiles changed shader files; on failure the old ones stay. Returns the message, empty when all is well.
-  std::string reloadShaders();
+  // Compiles shaders anew from their files. A program that fails stays as it was.
+  ReloadReport reloadShaders(Reload which);
 
  private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 // Loads OpenGL functions through GLEW; accepts GLEW_ERROR_NO_GLX_DISPLAY, which GLX builds answer under EGL although

@@ -1,13 +1,23 @@
 #include "render/shader.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <fstream>
-#include <regex>
+#include <functional>
 #include <sstream>
 #include <stdexcept>
 
 namespace render {
 namespace {
+
+// "common/strand.glsl" of the line `#include "common/strand.glsl"`, empty for any other line.
+std::string includedFile(const std::string& line) {
+  std::istringstream words(line);
+  std::string directive, name, rest;
+  words >> directive >> name >> rest;
+  const bool includes = directive == "#include" && name.size() > 2 && name.front() == '"' && name.back() == '"';
+  return includes && rest.empty() ? name.substr(1, name.size() - 2) : "";
+}
 
 // A stage's text with its includes put in, and the files it came from in the order of their #line numbers.
 struct ExpandedText {
@@ -17,11 +27,13 @@ struct ExpandedText {
 
 struct Expander {
   const std::string& folder;
+  std::function<void(const std::string&)> on_file;  // called with each file before it is read
   ExpandedText result;
 
   // Each file is put in once: included again, it is skipped, so headers need no guards.
   void append(const std::string& name, const std::string& from) {
     if (std::find(result.files.begin(), result.files.end(), name) != result.files.end()) return;
+    on_file(name);
     std::ifstream stream(folder + "/" + name);
     if (!stream) {
       const std::string path = folder + "/" + name;
@@ -31,13 +43,11 @@ struct Expander {
     }
     const std::size_t number = result.files.size();
     result.files.push_back(name);
-    static const std::regex include_line(R"re(^\s*#include\s+"([^"]+)"\s*$)re");
     std::string line;
-    std::smatch match;
     if (number > 0) result.text += "#line 1 " + std::to_string(number) + "\n";
     for (int line_number = 1; std::getline(stream, line); ++line_number) {
-      if (std::regex_match(line, match, include_line)) {
-        append(match[1], folder + "/" + name + ":" + std::to_string(line_number));
+      if (const std::string included = includedFile(line); !included.empty()) {
+        append(included, folder + "/" + name + ":" + std::to_string(line_number));
         result.text += "#line " + std::to_string(line_number + 1) + " " + std::to_string(number) + "\n";
       } else {
         result.text += line + "\n";
@@ -57,13 +67,14 @@ GLenum stageOf(const std::string& file) {
 
 // Puts file names in the place of source numbers. Mesa writes "2:14(5): error", NVIDIA "2(14) : error".
 std::string nameFiles(const std::string& log, const std::string& folder, const std::vector<std::string>& files) {
-  static const std::regex place(R"(^(\d+)[:(](\d+)\)?)");
   std::istringstream lines(log);
   std::string line, named;
-  std::smatch match;
   while (std::getline(lines, line)) {
-    if (std::regex_search(line, match, place) && std::stoul(match[1]) < files.size()) {
-      line = folder + "/" + files[std::stoul(match[1])] + ":" + match[2].str() + match.suffix().str();
+    unsigned file = 0, row = 0;
+    int length = 0;
+    if (std::sscanf(line.c_str(), "%u%*1[:(]%u%n", &file, &row, &length) == 2 && file < files.size()) {
+      if (line[length] == ')') ++length;
+      line = folder + "/" + files[file] + ":" + std::to_string(row) + line.substr(length);
     }
     if (!line.empty()) named += (named.empty() ? "" : "\n") + line;
   }
@@ -107,43 +118,64 @@ Program linkProgram(const std::vector<ShaderStage>& stages, const ProgramSource&
   throw std::runtime_error(source.files.front() + ": does not link: " + log.c_str());
 }
 
-std::filesystem::file_time_type newestOf(const std::string& folder, const std::vector<std::string>& files) {
-  std::filesystem::file_time_type newest = std::filesystem::file_time_type::min();
-  for (const std::string& file : files) {
-    std::error_code failure;
-    const auto time = std::filesystem::last_write_time(folder + "/" + file, failure);
-    if (!failure) newest = std::max(newest, time);
-  }
-  return newest;
+std::filesystem::file_time_type timeOf(const std::string& file) {
+  std::error_code failure;
+  const auto time = std::filesystem::last_write_time(file, failure);
+  return failure ? std::filesystem::file_time_type::min() : time;
 }
 
 }  // namespace
 
-ShaderProgram::ShaderProgram(std::string shader_dir, ProgramSource source)
-    : shader_dir_(std::move(shader_dir)), source_(std::move(source)) {
-  std::vector<ShaderStage> stages;
-  for (const std::string& file : source_.files) {
-    Expander expander{shader_dir_, {}};
-    expander.append(file, "");
-    stages.push_back(compileStage(shader_dir_, file, expander.result, source_.defines));
-    read_files_.insert(read_files_.end(), expander.result.files.begin(), expander.result.files.end());
-  }
-  program_ = linkProgram(stages, source_);
-  newest_ = newestOf(shader_dir_, read_files_);
+ReloadReport& ReloadReport::operator+=(const ReloadReport& other) {
+  programs += other.programs;
+  if (fault.empty()) fault = other.fault;
+  return *this;
 }
 
-std::string ShaderProgram::reloadIfChanged() {
-  const auto newest = newestOf(shader_dir_, read_files_);
-  const bool missing = std::any_of(read_files_.begin(), read_files_.end(), [&](const std::string& file) {
-    return !std::filesystem::exists(shader_dir_ + "/" + file);
-  });
-  if (newest <= newest_ && !missing) return {};
-  try {
-    *this = ShaderProgram(shader_dir_, source_);
-  } catch (const std::runtime_error& error) {
-    return error.what();
+ShaderProgram::ShaderProgram(std::string shader_dir, ProgramSource source)
+    : shader_dir_(std::move(shader_dir)), source_(std::move(source)) {
+  program_ = build(read_files_);
+}
+
+ShaderProgram::ReadFile ShaderProgram::stampOf(const std::string& name) const {
+  return {name, timeOf(shader_dir_ + "/" + name)};
+}
+
+Program ShaderProgram::build(std::vector<ReadFile>& read) const {
+  std::vector<ShaderStage> stages;
+  for (const std::string& file : source_.files) {
+    // The time is taken before the file is read: a change during the reading is found by the next look.
+    Expander expander{shader_dir_, [&](const std::string& name) { read.push_back(stampOf(name)); }, {}};
+    expander.append(file, "");
+    stages.push_back(compileStage(shader_dir_, file, expander.result, source_.defines));
   }
-  return {};
+  return linkProgram(stages, source_);
+}
+
+ReloadReport ShaderProgram::reload(Reload which) {
+  const bool changed = std::any_of(read_files_.begin(), read_files_.end(),
+                                   [&](const ReadFile& file) { return stampOf(file.name).time != file.time; });
+  if (which == Reload::kChanged && !changed) return {};
+  std::vector<ReadFile> read;
+  try {
+    program_ = build(read);
+    read_files_ = std::move(read);
+    return {1, {}};
+  } catch (const std::runtime_error& error) {
+    // Files that this attempt did not come to are watched on: one of them may mend it.
+    for (const ReadFile& file : read_files_) {
+      if (std::none_of(read.begin(), read.end(), [&](const ReadFile& r) { return r.name == file.name; }))
+        read.push_back(stampOf(file.name));
+    }
+    read_files_ = std::move(read);
+    return {0, error.what()};
+  }
+}
+
+ReloadReport reloadPrograms(std::initializer_list<ShaderProgram*> programs, Reload which) {
+  ReloadReport report;
+  for (ShaderProgram* program : programs) report += program->reload(which);
+  return report;
 }
 
 }  // namespace render

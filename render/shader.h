@@ -2,10 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
 #include "render/gl_object.h"
+#include "render/reload.h"
 
 namespace render {
 
@@ -26,15 +28,27 @@ class ShaderProgram {
   GLuint id() const { return program_.id(); }
   void use() const { glUseProgram(program_.id()); }
 
-  // Compiles again when a file has changed since; returns the message on failure (the old program stays), else empty.
-  std::string reloadIfChanged();
+  // Compiles and links again. On failure the old program stays, and is tried again when one of its files changes.
+  ReloadReport reload(Reload which);
 
  private:
+  // A file as it was when it was last read.
+  struct ReadFile {
+    std::string name;
+    std::filesystem::file_time_type time;  // min() where it is missing
+  };
+
+  // Adds the files it reads to `read`, also when it throws.
+  Program build(std::vector<ReadFile>& read) const;
+  ReadFile stampOf(const std::string& name) const;
+
   std::string shader_dir_;
   ProgramSource source_;
   Program program_;
-  std::vector<std::string> read_files_;
-  std::filesystem::file_time_type newest_ = std::filesystem::file_time_type::min();
+  std::vector<ReadFile> read_files_;
 };
+
+// Reloads each program.
+ReloadReport reloadPrograms(std::initializer_list<ShaderProgram*> programs, Reload which);
 
 }  // namespace render

@@ -1,4 +1,4 @@
-#include "render/hair_openness.h"
+#include "render/sky_visibility.h"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -67,7 +67,7 @@ HeadBall fitHead(const HairLayout& layout, std::span<const float> positions) {
   return ball;
 }
 
-void HairOpenness::splat(const Vector3f& at, float extinction) {
+void SkyVisibility::splat(const Vector3f& at, float extinction) {
   const Vector3f cell = (at - low_) / cell_ - Vector3f::Constant(0.5f);
   const Eigen::Vector3i base = cell.array().floor().cast<int>().max(0).min(kGridSize - 2);
   const Vector3f f = (cell - base.cast<float>()).cwiseMax(0.0f).cwiseMin(1.0f);
@@ -78,13 +78,13 @@ void HairOpenness::splat(const Vector3f& at, float extinction) {
   }
 }
 
-float HairOpenness::density(const Vector3f& at) const {
+float SkyVisibility::density(const Vector3f& at) const {
   const Eigen::Vector3i cell = ((at - low_) / cell_).array().floor().cast<int>();
   if ((cell.array() < 0).any() || (cell.array() >= kGridSize).any()) return 0;
   return grid_[(cell.z() * kGridSize + cell.y()) * kGridSize + cell.x()];
 }
 
-void HairOpenness::fillGrid(const HairLayout& layout, std::span<const float> positions, float hair_width) {
+void SkyVisibility::fillGrid(const HairLayout& layout, std::span<const float> positions, float hair_width) {
   Vector3f low = Vector3f::Constant(1e9f), high = Vector3f::Constant(-1e9f);
   for (int v = 0; v < layout.vertex_count; ++v) {
     low = low.cwiseMin(vertexAt(positions, v));
@@ -118,7 +118,7 @@ void HairOpenness::fillGrid(const HairLayout& layout, std::span<const float> pos
   }
 }
 
-float HairOpenness::opticalDepth(const Vector3f& from, const Vector3f& direction) const {
+float SkyVisibility::opticalDepth(const Vector3f& from, const Vector3f& direction) const {
   float depth = headDepth(head_, from, direction);
   for (int step = 1; step <= kGridSize; ++step) {
     const Vector3f at = from + (static_cast<float>(step) - 0.25f) * cell_ * direction;
@@ -127,8 +127,8 @@ float HairOpenness::opticalDepth(const Vector3f& from, const Vector3f& direction
   return depth;
 }
 
-void HairOpenness::compute(const HairLayout& layout, std::span<const float> positions, float hair_width,
-                           const Vector3f& to_fill, const Vector3f& to_rim) {
+void SkyVisibility::compute(const HairLayout& layout, std::span<const float> positions, float hair_width,
+                            const Vector3f& to_fill, const Vector3f& to_rim) {
   head_ = fitHead(layout, positions);
   fillGrid(layout, positions, hair_width);
   values_.resize(layout.vertex_count);

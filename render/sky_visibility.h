@@ -20,10 +20,10 @@ struct HeadBall {
 // Least-squares sphere through the roots.
 HeadBall fitHead(const HairLayout& layout, std::span<const float> positions);
 
-// Per vertex: x openness to the sky (0..1, mean transmittance over the upper directions), y and z optical depth towards
+// Per vertex: x sky visibility (0..1, mean transmittance over the upper directions), y and z optical depth towards
 // the two given unit directions. hair_width: summed projected diameter of all hairs, m (number of hairs times
 // diameter).
-class HairOpenness {
+class SkyVisibility {
  public:
   void compute(const HairLayout& layout, std::span<const float> positions, float hair_width,
                const Eigen::Vector3f& to_fill, const Eigen::Vector3f& to_rim);

@@ -29,7 +29,7 @@ const int kMaxOpacityLayers = 7;  // the eighth channel takes everything
 const float kLayerGrowth = 1.5;   // each deep opacity layer is this much thicker than the one before it
 
 // Texels of the two float buffer textures of a hair.
-const int kVertexTexels = 3;  // position + sky openness, du + depth towards fill, dv + depth towards rim
+const int kVertexTexels = 3;  // position + sky visibility, du + depth towards fill, dv + depth towards rim
 const int kFaceTexels = 3;    // first vertices; columns; layers, first strand, end strand, 1 / area
 const int kTableTexels = 1;   // end strand, face, segments a layer (0: the hair's), first strand
 const int kColumnTexels = 3;  // rest position + last layer of the shortest bundle around, rest axis u, rest axis v

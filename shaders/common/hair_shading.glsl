@@ -80,7 +80,7 @@ vec3 shadeStrand(in Strand strand, in CurvePoint point) {
   vec3 radiance = lit * key.rgb * scatterLight(scatterGeometry(tangent, to_key.xyz, to_eye), tau_key, tint);
   radiance += fill.rgb * scatterLight(scatterGeometry(tangent, to_fill.xyz, to_eye), point.light.y, tint);
   radiance += rim.rgb * scatterLight(scatterGeometry(tangent, to_rim.xyz, to_eye), point.light.z, tint);
-  // Ambient: the albedo of a fibre under an even sky; openness is the mean direct transmittance, raised by what is
+  // Ambient: the albedo of a fibre under an even sky; the sky visibility is the mean direct transmittance, raised by what is
   // scattered on.
   vec3 outward = unitOr(point.position - center.xyz, vec3(0.0, 1.0, 0.0));
   vec3 albedo = forward_albedo.rgb + backward_albedo.rgb;

@@ -61,7 +61,7 @@ float bodyLightOnHair(int map, vec3 at) {
 // the distance from the hair, as under a lamp of some size. The taps lie on a spiral of golden angles (Vogel 1979).
 float lightThroughHair(int map, vec3 world) {
   const int kTaps = 12;
-  const float kLampAngle = 0.16, kLeastRadius = 0.004;  // rad, m
+  const float kLampAngle = 0.16, kMinRadius = 0.004;  // rad, m
   // Hair shades what lies in the ball's shadow only.
   vec3 from = world - hair_shadow_ball[map].xyz;
   float down = dot(from, to_key.xyz), radius = hair_shadow_ball[map].w;
@@ -82,7 +82,7 @@ float lightThroughHair(int map, vec3 world) {
   }
   if (found == 0.0) return 1.0;
   above /= found;
-  float reach = (kLeastRadius + kLampAngle * 0.5 * above) / hair_shadow_size[map].x;
+  float reach = (kMinRadius + kLampAngle * 0.5 * above) / hair_shadow_size[map].x;
   float sum = 0.0;
   for (int i = 0; i < kTaps; ++i) {
     float turn = 2.399963 * float(i);

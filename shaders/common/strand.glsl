@@ -35,7 +35,7 @@ struct Strand {
 struct LayerPoint {
   vec3 position;
   vec3 axis_u, axis_v;
-  vec3 light;  // sky openness, optical depth towards fill, towards rim
+  vec3 light;  // sky visibility, optical depth towards fill, towards rim
 };
 
 struct CurvePoint {
