@@ -1,16 +1,29 @@
 #include <exception>
 #include <iostream>
 
-#include "app/errors.h"
-#include "app/headless.h"
+#include "app/files/errors.h"
+#include "app/files/hair_file.h"
+#include "app/files/output_file.h"
+#include "app/files/scene_file.h"
 #include "app/options.h"
-#include "app/scene_file.h"
-#include "app/window.h"
+#include "app/platform/headless.h"
+#include "app/platform/window.h"
+#include "app/scene/actor.h"
 
 namespace {
 
+int writeHair(const app::Scene& scene, const std::string& file) {
+  app::AssetCache asset_cache;
+  const app::Actor actor = app::makeActor(scene.characters.front(), scene.playback, asset_cache);
+  const sim::HairMesh& mesh = actor.haircut->mesh;
+  app::writeFile(file, app::writeHairMesh(mesh.shape));
+  std::cout << mesh.vertexCount() << " vertices in " << mesh.columnCount() << " columns written to " << file << "\n";
+  return app::kExitFine;
+}
+
 int run(const app::Options& options) {
   app::Scene scene = app::sceneFromOptions(options);
+  if (!options.write_hair.empty()) return writeHair(scene, options.write_hair);
   return options.headless ? app::runHeadless(std::move(scene), options) : app::runWindow(std::move(scene), options);
 }
 
@@ -25,8 +38,10 @@ int main(int argc, char** argv) {
   app::Options options;
   int exit_code = app::kExitFine;
   try {
-    if (!app::parseOptions(argc, argv, options, exit_code)) return exit_code;
-    return run(options);
+    if (app::parseOptions(argc, argv, options, exit_code)) exit_code = run(options);
+    std::cout.flush();
+    if (!std::cout) throw app::OutputError("standard output", "cannot be written", "check where it is led to");
+    return exit_code;
   } catch (const app::UsageError& fault) {
     return fail(fault, app::kExitUsage);
   } catch (const app::InputError& fault) {

@@ -14,7 +14,7 @@ struct UsageError : std::runtime_error {
 };
 
 struct Options {
-  std::string scene;  // scene.json, or empty
+  std::string scene;  // scene.json, or any other file that is opened; or empty
   bool headless = false;
   int frames = 120;
   bool frames_given = false;  // a window runs on when not
@@ -23,8 +23,11 @@ struct Options {
   std::string out = "frames";
   std::vector<std::pair<std::string, std::string>> set;  // --set name=value
   std::vector<std::string> skips;                        // --skip name=on|off
+  std::vector<std::string> pins;                         // --pin JSON, see files/pin_spec.h
   std::string style, resolution;                         // empty: the scene's
   std::string hair, motion, parts, clip;                 // files; name of a clip
+  bool reverse_faces = false;                            // of the hair file
+  std::string write_hair;                                // OBJ of the first character's hair mesh, in place of a run
   double budget_ms = -1;                                 // negative: the scene's
   double speed = -1, fps = -1;                           // negative: the scene's
   double start = -1;                                     // s into the clip; negative: the scene's
@@ -38,12 +41,14 @@ struct Options {
   std::string screenshot;  // PNG of the last frame, panels included
   bool no_images = false;
   bool hide_panels = false;
-  std::string panel;    // the tab that is open at first; empty: the first
+  double ui_scale = 1;         // of texts and panels, over the display's own
+  std::string panel;           // the tab that is open at first; empty: the first
   std::string record, replay;  // recordings of a run's inputs
-  bool travel = false;  // keep the clip's travel over the ground
+  bool travel = false;         // keep the clip's travel over the ground
 };
 
-// Parses argv with CLI11. Returns false and an exit code when the program should end (help, usage fault).
+// Parses argv with CLI11. Returns false and an exit code when the program has done what was asked (help, a listing).
+// Throws UsageError.
 bool parseOptions(int argc, char** argv, Options& options, int& exit_code);
 
 }  // namespace app

@@ -1,10 +1,11 @@
 #include <filesystem>
 
-#include "app/data_path.h"
-#include "app/errors.h"
+#include "app/files/data_path.h"
+#include "app/files/errors.h"
+#include "app/files/file_kind.h"
+#include "app/files/presets.h"
+#include "app/files/scene_file.h"
 #include "app/options.h"
-#include "app/presets.h"
-#include "app/scene_file.h"
 #include "sim/field_text.h"
 
 namespace app {
@@ -39,36 +40,80 @@ void setCamera(const std::string& text, CameraSpec& camera) {
   }
 }
 
+void fill(const char* option, std::string& value, const std::string& file) {
+  if (!value.empty()) throw UsageError(file + " and " + option + " " + value + " exclude each other; give one of them");
+  value = file;
+}
+
+// A file named without an option goes where its kind belongs. One that is not there is looked for as a scene.
+Options sortedOut(Options options) {
+  if (options.scene.empty()) return options;
+  std::string file = options.scene;
+  for (const char* kind : {"hair", "clips", "presets", "scenes"}) file = findFile(file, "", kind);
+  if (!std::filesystem::exists(file)) return options;
+  options.scene.clear();
+  switch (fileKind(file)) {
+    case FileKind::kScene:
+      options.scene = file;
+      break;
+    case FileKind::kPreset:
+      fill("--preset", options.preset, file);
+      break;
+    case FileKind::kRigidMotion:
+      if (options.parts.empty()) options.parts = partsBeside(file);
+      [[fallthrough]];
+    case FileKind::kMotion:
+      fill("--motion", options.motion, file);
+      break;
+    case FileKind::kHairMesh:
+      fill("--hair", options.hair, file);
+      break;
+  }
+  return options;
+}
+
 void checkHairAndStyle(const Options& options) {
   if (!options.hair.empty() && !options.style.empty()) {
     throw UsageError("--hair and --style exclude each other; give one of them");
   }
+  if (options.reverse_faces && options.hair.empty()) {
+    throw UsageError("--reverse-faces is about a hair mesh file; add --hair FILE");
+  }
+}
+
+void overrideCharacter(const Options& options, CharacterSpec& spec) {
+  if (!options.style.empty()) {
+    spec.style = *parseStyle(options.style);
+    spec.hair.clear();
+  }
+  if (!options.resolution.empty()) spec.resolution = *parseResolution(options.resolution);
+  if (!options.hair.empty()) {
+    spec.hair = findFile(options.hair, "", "hair");
+    spec.reverse_faces = options.reverse_faces;
+  }
+  if (!options.motion.empty()) {
+    spec.motion = findFile(options.motion, "", "clips");
+    spec.clip.clear();
+    spec.parts.clear();
+    spec.clip_offset = 0;
+  }
+  if (!options.parts.empty()) spec.parts = findFile(options.parts, "", "clips");
+  if (!options.clip.empty()) spec.clip = options.clip;
+  if (options.start >= 0) spec.clip_offset = options.start;
+  if (options.travel) spec.in_place = false;
+  for (const std::string& text : options.pins) spec.pins.push_back(pinFromText(text));
 }
 
 }  // namespace
 
-Scene sceneFromOptions(const Options& options) {
+Scene sceneFromOptions(const Options& given) {
+  const Options options = sortedOut(given);
   checkHairAndStyle(options);
   Scene scene =
       loadScene(options.scene.empty() ? dataPath("assets/scenes/default.json") : findFile(options.scene, "", "scenes"));
   std::vector<CharacterLook*> looks;
   for (CharacterSpec& spec : scene.characters) {
-    if (!options.style.empty()) {
-      spec.style = *parseStyle(options.style);
-      spec.hair.clear();
-    }
-    if (!options.resolution.empty()) spec.resolution = *parseResolution(options.resolution);
-    if (!options.hair.empty()) spec.hair = findFile(options.hair, "", "hair");
-    if (!options.motion.empty()) {
-      spec.motion = findFile(options.motion, "", "clips");
-      spec.clip.clear();
-      spec.parts.clear();
-      spec.clip_offset = 0;
-    }
-    if (!options.parts.empty()) spec.parts = findFile(options.parts, "", "clips");
-    if (!options.clip.empty()) spec.clip = options.clip;
-    if (options.start >= 0) spec.clip_offset = options.start;
-    if (options.travel) spec.in_place = false;
+    overrideCharacter(options, spec);
     looks.push_back(&spec.look);
   }
   if (!options.preset.empty()) loadPreset(presetFile(options.preset, ""), {&scene.sim, &scene.look, looks});

@@ -1,4 +1,4 @@
-#include "app/part_distances.h"
+#include "app/figure/body_sdf.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@ namespace {
 constexpr float kBelongs = 0.35f;   // share of a vertex's weights from which it belongs to a part; parts overlap
 constexpr double kFinest = 0.005;   // m, spacing of the grids
 constexpr double kNodesAlong = 64;  // at most about so many nodes along a part
-constexpr double kMostNodes = 4e5;  // of one grid
+constexpr double kMaxNodes = 4e5;   // of one grid
 constexpr int kFewestTriangles = 12;
 
 // The joint with an ellipsoid that a joint moves with: itself or the nearest above it; -1: none.
@@ -79,7 +79,7 @@ PartDistance makePart(int joint, const std::vector<std::array<int, 3>>& faces, c
   }
   const Vec3 size = high - low;
   const double spacing =
-      std::max({kFinest, size.maxCoeff() / kNodesAlong, std::cbrt(std::max(size.prod(), 1e-9) / kMostNodes)});
+      std::max({kFinest, size.maxCoeff() / kNodesAlong, std::cbrt(std::max(size.prod(), 1e-9) / kMaxNodes)});
   const Vec3 pad = Vec3::Constant(3 * spacing);
   part.grid = layOutGrid(low - pad, high + pad, spacing);
   fillGrid(triangles, 2.5 * spacing, part.grid);
@@ -120,7 +120,7 @@ std::vector<PartDistance> partDistances(const Character& character) {
 }
 
 void posePartDistances(const std::vector<PartDistance>& parts, const Pose& pose, const Pose& previous, double dt,
-                       std::vector<sim::DistancePart>& posed) {
+                       std::vector<sim::BodySdf>& posed) {
   posed.resize(parts.size());
   for (std::size_t k = 0; k < parts.size(); ++k) {
     const PartDistance& part = parts[k];

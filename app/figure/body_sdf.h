@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "app/character.h"
-#include "app/signed_grid.h"
+#include "app/figure/character.h"
+#include "app/figure/signed_grid.h"
 
 namespace app {
 
@@ -27,6 +27,6 @@ std::vector<PartDistance> partDistances(const Character& character);
 
 // The parts of a pose, with velocities from `previous` over dt when dt > 0. Spans point into `parts`.
 void posePartDistances(const std::vector<PartDistance>& parts, const Pose& pose, const Pose& previous, double dt,
-                       std::vector<sim::DistancePart>& posed);
+                       std::vector<sim::BodySdf>& posed);
 
 }  // namespace app

@@ -1,10 +1,10 @@
-#include "app/part_mesh.h"
+#include "app/figure/bone_mesh.h"
 
 #include <charconv>
 #include <cmath>
 
-#include "app/errors.h"
-#include "app/text_scanner.h"
+#include "app/files/errors.h"
+#include "app/files/text_scanner.h"
 
 namespace app {
 namespace {

@@ -1,14 +1,15 @@
-#include "app/character.h"
+#include "app/figure/character.h"
 
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
 #include <filesystem>
 
-#include "app/character_build.h"
-#include "app/errors.h"
-#include "app/mannequin_parts.h"
-#include "app/motion.h"
+#include "app/figure/character_build.h"
+#include "app/figure/mannequin_parts.h"
+#include "app/files/errors.h"
+#include "app/files/text_file.h"
+#include "app/motion/motion.h"
 
 namespace app {
 

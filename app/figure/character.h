@@ -1,4 +1,5 @@
-// A character: a skeleton, a skinned mesh, clips, collision ellipsoids and a scalp. Immutable once loaded; what moves is Pose.
+// A character: a skeleton, a skinned mesh, clips, collision ellipsoids and a scalp. Immutable once loaded; what moves
+// is Pose.
 //
 // World: metres, y up, right-handed. Every file's units and axes are converted at load and reported in `notes`.
 #pragma once
@@ -10,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/colliders.h"
-#include "sim/hair_styles.h"
+#include "sim/contact/colliders.h"
+#include "sim/styles/hair_styles.h"
 
 namespace app {
 
@@ -20,9 +21,9 @@ using Rigid = Eigen::Isometry3d;
 
 struct Joint {
   std::string name;
-  int parent = -1;                        // index of an earlier joint, or -1
-  Rigid rest_local = Rigid::Identity();   // joint to parent, rest pose
-  Rigid rest_world = Rigid::Identity();   // joint to model, rest pose (the bind pose of the mesh)
+  int parent = -1;                       // index of an earlier joint, or -1
+  Rigid rest_local = Rigid::Identity();  // joint to parent, rest pose
+  Rigid rest_world = Rigid::Identity();  // joint to model, rest pose (the bind pose of the mesh)
 };
 
 struct Skeleton {
@@ -45,7 +46,8 @@ struct Clip {
   double duration() const { return frame_time * (frameCount() > 1 ? frameCount() - 1 : 1); }
 };
 
-// Triangles with at most four joint weights a vertex (weights sum to 1). Positions and normals in the model's rest pose.
+// Triangles with at most four joint weights a vertex (weights sum to 1). Positions and normals in the model's rest
+// pose.
 struct SkinnedMesh {
   std::vector<Eigen::Vector3f> positions, normals;
   std::vector<std::uint32_t> triangles;  // three indices a triangle, counter-clockwise from outside
@@ -66,16 +68,17 @@ struct Character {
   std::string name;
   Skeleton skeleton;
   SkinnedMesh mesh;
-  std::vector<Clip> clips;               // at least one
+  std::vector<Clip> clips;  // at least one
   std::vector<BodyEllipsoid> ellipsoids;
   int head_joint = 0;
-  Rigid head_frame = Rigid::Identity();  // scalp frame (y up, z forward, x left, origin at the head joint) to head joint frame
+  Rigid head_frame =
+      Rigid::Identity();  // scalp frame (y up, z forward, x left, origin at the head joint) to head joint frame
   sim::Scalp scalp;
-  std::vector<std::string> notes;        // what was inferred: units, axes, frame rate, rest pose, head joint
+  std::vector<std::string> notes;  // what was inferred: units, axes, frame rate, rest pose, head joint
 };
 
-// Any clip and body: BVH (a mannequin is grown around it), glTF or FBX (with its own mesh), or ARCSim .mot with `parts_dir`
-// holding body0000.obj ... Chosen by the file's ending and content. Throws InputError.
+// Any clip and body: BVH (a mannequin is grown around it), glTF or FBX (with its own mesh), or ARCSim .mot with
+// `parts_dir` holding body0000.obj ... Chosen by the file's ending and content. Throws InputError.
 Character loadCharacter(const std::string& motion_file, const std::string& parts_dir = "");
 
 // Pose at `time` seconds into the clip; out-of-range times are clamped. Interpolates (slerp, lerp).
@@ -84,12 +87,12 @@ void samplePose(const Skeleton& skeleton, const Clip& clip, double time, Pose& p
 // The rest pose.
 Pose restPose(const Skeleton& skeleton);
 
-// Signed distance (m, negative inside) to the body in its rest pose, for points in the scalp frame. Exact enough to grow hair
-// on: within 2 mm near the surface.
+// Signed distance (m, negative inside) to the body in its rest pose, for points in the scalp frame. Exact enough to
+// grow hair on: within 2 mm near the surface.
 sim::BodyDistance restBodyDistance(const Character& character);
 
-// The head's scalp-frame-to-world transform and the ellipsoids of a pose. `velocity` fields are filled from `previous` over
-// dt when dt > 0.
+// The head's scalp-frame-to-world transform and the ellipsoids of a pose. `velocity` fields are filled from `previous`
+// over dt when dt > 0.
 Rigid scalpToWorld(const Character& character, const Pose& pose);
 void poseEllipsoid(const BodyEllipsoid& part, const Pose& pose, const Pose& previous, double dt, sim::Ellipsoid& e);
 void poseEllipsoids(const Character& character, const Pose& pose, const Pose& previous, double dt,

@@ -1,4 +1,4 @@
-#include "app/character_build.h"
+#include "app/figure/character_build.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,13 +9,13 @@ namespace app {
 
 namespace {
 
-constexpr std::size_t kMostFitPoints = 500;
+constexpr std::size_t kMaxFitPoints = 500;
 
 std::vector<FitPoint> thinned(const std::vector<FitPoint>& points) {
-  if (points.size() <= kMostFitPoints) return points;
+  if (points.size() <= kMaxFitPoints) return points;
   std::vector<FitPoint> some;
-  const double step = static_cast<double>(points.size()) / kMostFitPoints;
-  for (std::size_t i = 0; i < kMostFitPoints; ++i) some.push_back(points[static_cast<std::size_t>(i * step)]);
+  const double step = static_cast<double>(points.size()) / kMaxFitPoints;
+  for (std::size_t i = 0; i < kMaxFitPoints; ++i) some.push_back(points[static_cast<std::size_t>(i * step)]);
   return some;
 }
 

@@ -2,10 +2,10 @@
 // ellipsoids.
 #pragma once
 
-#include "app/character.h"
-#include "app/character_roles.h"
-#include "app/ellipsoid_fit.h"
-#include "app/scalp_sampling.h"
+#include "app/figure/character.h"
+#include "app/figure/character_roles.h"
+#include "app/figure/ellipsoid_fit.h"
+#include "app/figure/scalp_sampling.h"
 
 namespace app {
 

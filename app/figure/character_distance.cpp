@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <array>
 
-#include "app/character.h"
-#include "app/signed_grid.h"
+#include "app/figure/character.h"
+#include "app/figure/signed_grid.h"
 
 namespace app {
 

@@ -1,4 +1,4 @@
-#include "app/character_roles.h"
+#include "app/figure/character_roles.h"
 
 #include <algorithm>
 #include <cctype>

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/character.h"
+#include "app/figure/character.h"
 
 namespace app {
 

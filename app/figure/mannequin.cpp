@@ -1,9 +1,9 @@
-#include "app/mannequin.h"
+#include "app/figure/mannequin.h"
 
 #include <algorithm>
 
-#include "app/mannequin_mesh.h"
-#include "app/mannequin_skin.h"
+#include "app/figure/mannequin_mesh.h"
+#include "app/figure/mannequin_skin.h"
 
 namespace app {
 

@@ -1,8 +1,8 @@
 // A smooth shop-window mannequin grown around any skeleton.
 #pragma once
 
-#include "app/mannequin_field.h"
-#include "app/motion.h"
+#include "app/figure/mannequin_field.h"
+#include "app/motion/motion.h"
 
 namespace app {
 

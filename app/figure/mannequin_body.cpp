@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/mannequin_field.h"
+#include "app/figure/mannequin_field.h"
 
 namespace app {
 
@@ -103,7 +103,7 @@ BodyField::ArmShape shapeArm(const Figure::Arm& a, double s) {
                        {0.024 * s, 0.03 * s});
   // Flesh begins outside the joint where a skeleton's shoulders are narrow.
   arm.deltoid = {a.shoulder + (a.elbow - a.shoulder).normalized() * 0.045 * s + s * Vec3(a.side * 0.002, -0.006, 0),
-                 Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), a.elbow - a.shoulder).toRotationMatrix(),
+                 leastRotation(Vec3::UnitY(), a.elbow - a.shoulder).toRotationMatrix(),
                  s * Vec3(0.040, 0.066, 0.045)};
   arm.fore = makeLoft(a.elbow, a.wrist, ahead,
                       scaled({{0.0, 0.032, 0.033, 0.033, 0.0},

@@ -1,4 +1,4 @@
-#include "app/mannequin_field.h"
+#include "app/figure/mannequin_field.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "app/mannequin_figure.h"
+#include "app/figure/mannequin_figure.h"
 
 namespace app {
 

@@ -1,12 +1,12 @@
 // Stands a BVH skeleton upright. Rest offsets say nothing reliable about the pose (T, arms down, legs astride, even
 // lying), so the limbs are turned to one neutral pose: all mannequins then share one bind pose whatever the file.
-#include "app/mannequin_figure.h"
+#include "app/figure/mannequin_figure.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include "app/errors.h"
+#include "app/files/errors.h"
 
 namespace app {
 
@@ -49,7 +49,7 @@ struct Poser {
   void aim(int joint, const Vec3& next, const Vec3& target, const Quat& base) {
     const Vec3 bone = base * (next - before.world[joint].translation());
     if (bone.norm() < 1e-4) return;
-    set(joint, Quat::FromTwoVectors(bone, target) * base);
+    set(joint, leastRotation(bone, target) * base);
   }
 
   ReferencePose pose() {
@@ -108,7 +108,7 @@ void poseLegs(const ReferencePose& before, const BodyRoles& roles, const Quat& r
       poser.aim(leg.foot, foot, Vec3(out.x() * ahead, bone.y(), out.z() * ahead), root);
     else
       poser.set(leg.foot, root);
-    if (leg.toe >= 0 && leg.toe != leg.foot) poser.set(leg.toe, Quat::FromTwoVectors(Vec3::UnitZ(), out) * root);
+    if (leg.toe >= 0 && leg.toe != leg.foot) poser.set(leg.toe, leastRotation(Vec3::UnitZ(), out) * root);
   }
 }
 
@@ -230,6 +230,21 @@ void setRest(const ReferencePose& pose, Skeleton& skeleton) {
 
 }  // namespace
 
+Eigen::Quaterniond leastRotation(const Vec3& from, const Vec3& to) {
+  const Vec3 a = from.normalized(), b = to.normalized();
+  const double cosine = a.dot(b);
+  Quat turn;
+  if (cosine < -1 + 1e-12) {
+    turn.w() = 0;
+    turn.vec() = a.unitOrthogonal();
+  } else {
+    const double twice_w = std::sqrt(2 * (1 + cosine));
+    turn.w() = 0.5 * twice_w;
+    turn.vec() = a.cross(b) * (1 / twice_w);
+  }
+  return turn;
+}
+
 StoodSkeleton standSkeleton(const BvhMotion& motion, const std::string& file) {
   StoodSkeleton stood;
   stood.skeleton = motion.skeleton;
@@ -251,7 +266,7 @@ StoodSkeleton standSkeleton(const BvhMotion& motion, const std::string& file) {
   const Vec3 trunk = jointAt(reference, head) - jointAt(reference, 0);
   if (trunk.y() < 0.94 * trunk.norm()) {
     poseSpine(reference, stood.roles, root, poser);
-    stood.notes.push_back("rest pose: the trunk leans, it was stood upright");
+    stood.notes.emplace_back("rest pose: the trunk leans, it was stood upright");
   }
   poseArms(reference, stood.roles, root, poser);
   poseLegs(reference, stood.roles, root, poser);

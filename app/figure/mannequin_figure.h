@@ -5,10 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "app/character_roles.h"
-#include "app/motion.h"
+#include "app/figure/character_roles.h"
+#include "app/motion/motion.h"
 
 namespace app {
+
+// The smallest rotation that takes the direction of `from` to that of `to`; about any normal when they are opposite.
+// As Eigen's FromTwoVectors, whose singular value decomposition is several seconds of compile time.
+Eigen::Quaterniond leastRotation(const Vec3& from, const Vec3& to);
 
 // Everything in metres, in the canonical rest pose: y up, facing +z, left is +x, soles on y = 0, arms held away from
 // the body.

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "app/mannequin_field.h"
+#include "app/figure/mannequin_field.h"
 
 namespace app {
 

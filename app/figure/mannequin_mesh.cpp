@@ -1,7 +1,7 @@
 // Surface nets (Gibson 1998): one vertex in every cell that the surface crosses, one quadrilateral around every grid
 // edge that it crosses. Cells with more than one sheet would make edges of four triangles, so their corners are filled
 // in first.
-#include "app/mannequin_mesh.h"
+#include "app/figure/mannequin_mesh.h"
 
 #include <algorithm>
 #include <array>

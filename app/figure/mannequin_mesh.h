@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "app/character.h"
+#include "app/figure/character.h"
 
 namespace app {
 

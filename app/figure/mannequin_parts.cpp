@@ -1,8 +1,10 @@
-#include "app/mannequin_parts.h"
+#include "app/figure/mannequin_parts.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+
+#include "app/figure/mannequin_figure.h"
 
 namespace app {
 
@@ -18,7 +20,7 @@ BodyEllipsoid ellipsoidAt(const Vec3& center, const Eigen::Quaterniond& rotation
 
 // Long axis (y of the ellipsoid) from a to b.
 BodyEllipsoid ellipsoidAlong(const Vec3& a, const Vec3& b, double side, double overlap) {
-  return ellipsoidAt(0.5 * (a + b), Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), b - a),
+  return ellipsoidAt(0.5 * (a + b), leastRotation(Vec3::UnitY(), b - a),
                      Vec3(side, 0.5 * (b - a).norm() + overlap, side));
 }
 

@@ -1,8 +1,8 @@
 // The collision ellipsoids' places on a grown mannequin.
 #pragma once
 
-#include "app/character_build.h"
-#include "app/mannequin.h"
+#include "app/figure/character_build.h"
+#include "app/figure/mannequin.h"
 
 namespace app {
 

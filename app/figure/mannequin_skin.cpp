@@ -1,4 +1,4 @@
-#include "app/mannequin_skin.h"
+#include "app/figure/mannequin_skin.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // Skin weights of the grown mannequin.
 #pragma once
 
-#include "app/mannequin_field.h"
-#include "app/mannequin_mesh.h"
+#include "app/figure/mannequin_field.h"
+#include "app/figure/mannequin_mesh.h"
 
 namespace app {
 

@@ -2,10 +2,11 @@
 #include <cmath>
 #include <filesystem>
 
-#include "app/character_build.h"
-#include "app/errors.h"
-#include "app/motion.h"
-#include "app/part_mesh.h"
+#include "app/figure/bone_mesh.h"
+#include "app/figure/character_build.h"
+#include "app/files/errors.h"
+#include "app/files/text_file.h"
+#include "app/motion/motion.h"
 
 namespace app {
 
@@ -64,22 +65,18 @@ Vec3 facing(const std::vector<PartMesh>& parts, const RigidMotion& motion) {
   return forward.norm() > 1e-3 ? Vec3(forward.normalized()) : Vec3(Vec3::UnitX());
 }
 
-}  // namespace
-
-Character loadRigidParts(const std::string& text, const std::string& file, const std::string& parts_dir) {
-  if (parts_dir.empty())
-    throw InputError(file, "", "rigid body motion has no meshes of its own",
-                     "name the folder of body0000.obj, body0001.obj ... with --parts");
-  const RigidMotion motion = readMot(text, file);
+std::vector<PartMesh> readParts(const std::string& folder, int count) {
   std::vector<PartMesh> parts;
-  for (int b = 0; b < motion.body_count; ++b) {
+  for (int b = 0; b < count; ++b) {
     char name[32];
     std::snprintf(name, sizeof name, "body%04d.obj", b);
-    const std::string part = (std::filesystem::path(parts_dir) / name).string();
+    const std::string part = (std::filesystem::path(folder) / name).string();
     parts.push_back(readPart(readText(part), part));
   }
+  return parts;
+}
 
-  Character character;
+Clip clipOf(const RigidMotion& motion, const std::string& file) {
   Clip clip;
   clip.name = std::filesystem::path(file).stem().string();
   clip.frame_time = motion.frame_time;
@@ -88,8 +85,12 @@ Character loadRigidParts(const std::string& text, const std::string& file, const
     clip.rotations.emplace_back(body.linear());
     clip.translations.push_back(body.translation());
   }
+  return clip;
+}
+
+// One joint and one rigid mesh a body. The rest pose is the motion's first frame turned to face +z, over the origin.
+void addSkeleton(const RigidMotion& motion, const std::vector<PartMesh>& parts, Character& character) {
   const bool known = parts.size() == kBodyNames.size();
-  // The rest pose is the motion's first frame turned to face +z, standing over the origin.
   const Vec3 forward = facing(parts, motion);
   const Vec3 over = motion.bodies[known ? 7 : 0].translation();
   Rigid stand = Rigid::Identity();
@@ -102,15 +103,29 @@ Character loadRigidParts(const std::string& text, const std::string& file, const
     appendPart(parts[b], b, joint.rest_world, character.mesh);
     character.skeleton.joints.push_back(std::move(joint));
   }
-  character.clips.push_back(std::move(clip));
+}
 
-  // Body 0 is the head; its frame follows its own axes, not the lean of the first frame.
+// Body 0 is the head. Its frame follows its own axes, not the lean of the first frame.
+void setHeadFrame(Character& character) {
   const Rigid& head = character.skeleton.joints[0].rest_world;
   const Vec3 up = nearestAxis(head, Vec3::UnitY()), ahead = nearestAxis(head, Vec3::UnitZ());
   character.head_joint = 0;
   character.head_frame.linear().col(0) = up.cross(ahead);
   character.head_frame.linear().col(1) = up;
   character.head_frame.linear().col(2) = ahead;
+}
+
+}  // namespace
+
+Character loadRigidParts(const std::string& text, const std::string& file, const std::string& parts_dir) {
+  if (parts_dir.empty())
+    throw InputError(file, "", "rigid body motion has no meshes of its own",
+                     "name the folder of body0000.obj, body0001.obj ... with --parts");
+  const RigidMotion motion = readMot(text, file);
+  Character character;
+  addSkeleton(motion, readParts(parts_dir, motion.body_count), character);
+  character.clips.push_back(clipOf(motion, file));
+  setHeadFrame(character);
   sampleHead(nullptr, character);
 
   const std::vector<FitPoint> points = surfacePoints(character.mesh);

@@ -1,4 +1,4 @@
-#include "app/root_cover.h"
+#include "app/figure/root_cover.h"
 
 #include <algorithm>
 #include <cmath>

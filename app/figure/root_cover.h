@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "app/character.h"
-#include "sim/hair_mesh.h"
+#include "app/figure/character.h"
+#include "sim/mesh/hair_mesh.h"
 
 namespace app {
 

@@ -1,4 +1,4 @@
-#include "app/scalp_sampling.h"
+#include "app/figure/scalp_sampling.h"
 
 #include <algorithm>
 #include <cmath>

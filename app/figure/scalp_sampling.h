@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "app/character.h"
+#include "app/figure/character.h"
 
 namespace app {
 

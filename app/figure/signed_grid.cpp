@@ -1,4 +1,4 @@
-#include "app/signed_grid.h"
+#include "app/figure/signed_grid.h"
 
 #include <algorithm>
 #include <cmath>

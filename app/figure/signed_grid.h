@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "app/character.h"
+#include "app/figure/character.h"
 
 namespace app {
 

@@ -12,9 +12,10 @@
 #include <filesystem>
 #include <unordered_map>
 
-#include "app/character_build.h"
-#include "app/errors.h"
-#include "app/motion.h"
+#include "app/figure/character_build.h"
+#include "app/files/errors.h"
+#include "app/files/text_file.h"
+#include "app/motion/motion.h"
 
 namespace app {
 
@@ -97,66 +98,86 @@ struct Import {
   }
 };
 
-// One vertex's influences while they are gathered.
-struct Influences {
-  std::vector<std::pair<int, double>> entries;
+std::string meshName(const aiMesh& mesh) {
+  return "mesh '" + std::string(mesh.mName.C_Str()) + "'";
+}
+
+// A joint and its weight, of one vertex.
+using Influences = std::vector<std::pair<int, double>>;
+
+// The bones that move a mesh: what each vertex follows, and each joint's matrix from the mesh to the joint.
+struct Skin {
+  std::vector<Influences> influences;
+  std::vector<Mat4> offset;
 };
 
-void appendMesh(const Import& import, const aiMesh& source, int node, SkinnedMesh& mesh) {
-  const std::string place = "mesh '" + std::string(source.mName.C_Str()) + "'";
-  if (mesh.positions.size() + source.mNumVertices > kMaxVertices)
-    import.fail(place, "has too many vertices", "reduce the mesh below four million");
-  std::vector<Influences> influences(source.mNumVertices);
-  std::vector<Mat4> offset(import.nodes.size(), Mat4::Identity());
+Skin readSkin(const Import& import, const aiMesh& source, const std::string& place) {
+  Skin skin{std::vector<Influences>(source.mNumVertices), std::vector<Mat4>(import.nodes.size(), Mat4::Identity())};
   for (unsigned b = 0; b < source.mNumBones; ++b) {
     const aiBone& bone = *source.mBones[b];
     const int joint = import.find(bone.mName);
     if (joint < 0)
       import.fail(place, "bone '" + std::string(bone.mName.C_Str()) + "' is no node",
                   "export skeleton and mesh together");
-    offset[joint] = toEigen(bone.mOffsetMatrix);
+    skin.offset[joint] = toEigen(bone.mOffsetMatrix);
     for (unsigned w = 0; w < bone.mNumWeights; ++w) {
       const aiVertexWeight& weight = bone.mWeights[w];
       if (weight.mVertexId < source.mNumVertices && weight.mWeight > 0 && std::isfinite(weight.mWeight))
-        influences[weight.mVertexId].entries.emplace_back(joint, weight.mWeight);
+        skin.influences[weight.mVertexId].emplace_back(joint, weight.mWeight);
     }
   }
-  const auto base = static_cast<std::uint32_t>(mesh.positions.size());
-  for (unsigned v = 0; v < source.mNumVertices; ++v) {
-    auto& e = influences[v].entries;
-    std::sort(e.begin(), e.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
-    if (e.size() > 4) e.resize(4);
+  // The four strongest, weights normalized: what the shaders blend.
+  for (Influences& all : skin.influences) {
+    std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+    if (all.size() > 4) all.resize(4);
     double total = 0;
-    for (const auto& x : e) total += x.second;
-    // Skin without a bone, and meshes without a skin, move with their node.
-    Mat4 carry = total > 0 ? Mat4(Mat4::Zero()) : import.nodes[node].rest_world;
-    std::array<std::uint16_t, 4> joints{static_cast<std::uint16_t>(node), 0, 0, 0};
-    std::array<float, 4> weights{1, 0, 0, 0};
-    for (std::size_t k = 0; k < e.size() && total > 0; ++k) {
-      joints[k] = static_cast<std::uint16_t>(e[k].first);
-      weights[k] = static_cast<float>(e[k].second / total);
-      carry += e[k].second / total * import.nodes[e[k].first].rest_world * offset[e[k].first];
-    }
-    const Mat4 place_matrix = import.to_metres * carry;
-    const aiVector3D p = source.mVertices[v];
-    const Eigen::Vector4d world = place_matrix * Eigen::Vector4d(p.x, p.y, p.z, 1);
-    if (!world.allFinite() || world.head<3>().norm() > 1e6)
-      import.fail(place + ", vertex " + std::to_string(v), "is not at a finite place", "export the mesh again");
-    Vec3 normal = Vec3::UnitY();
-    if (source.HasNormals()) {
-      const aiVector3D n = source.mNormals[v];
-      const Eigen::Matrix3d linear = place_matrix.topLeftCorner<3, 3>();
-      // Normals take the inverse transpose: scales are baked, not always uniform.
-      const Vec3 turned =
-          (std::abs(linear.determinant()) > 1e-18 ? Eigen::Matrix3d(linear.inverse().transpose()) : linear) *
-          Vec3(n.x, n.y, n.z);
-      if (turned.allFinite() && turned.norm() > 1e-12) normal = turned.normalized();
-    }
-    mesh.positions.push_back(world.head<3>().cast<float>());
-    mesh.normals.push_back(normal.cast<float>());
-    mesh.joints.push_back(joints);
-    mesh.weights.push_back(weights);
+    for (const auto& [joint, weight] : all) total += weight;
+    for (auto& [joint, weight] : all) weight /= total;
   }
+  return skin;
+}
+
+// Takes the inverse transpose: scales are baked, and not always uniform.
+Vec3 transformNormal(const Mat4& to_world, const aiVector3D& n) {
+  const Eigen::Matrix3d linear = to_world.topLeftCorner<3, 3>();
+  const bool invertible = std::abs(linear.determinant()) > 1e-18;
+  const Vec3 turned = (invertible ? Eigen::Matrix3d(linear.inverse().transpose()) : linear) * Vec3(n.x, n.y, n.z);
+  return turned.allFinite() && turned.norm() > 1e-12 ? Vec3(turned.normalized()) : Vec3(Vec3::UnitY());
+}
+
+void appendVertex(const Import& import, const aiMesh& source, const Skin& skin, int node, unsigned v,
+                  SkinnedMesh& mesh) {
+  // Skin without a bone, and meshes without a skin, move with their node.
+  const Influences& influences = skin.influences[v];
+  Mat4 to_rest = influences.empty() ? import.nodes[node].rest_world : Mat4(Mat4::Zero());
+  std::array<std::uint16_t, 4> joints{static_cast<std::uint16_t>(node), 0, 0, 0};
+  std::array<float, 4> weights{1, 0, 0, 0};
+  for (std::size_t k = 0; k < influences.size(); ++k) {
+    const auto [joint, weight] = influences[k];
+    joints[k] = static_cast<std::uint16_t>(joint);
+    weights[k] = static_cast<float>(weight);
+    to_rest += weight * import.nodes[joint].rest_world * skin.offset[joint];
+  }
+  const Mat4 to_world = import.to_metres * to_rest;
+  const aiVector3D p = source.mVertices[v];
+  const Eigen::Vector4d world = to_world * Eigen::Vector4d(p.x, p.y, p.z, 1);
+  if (!world.allFinite() || world.head<3>().norm() > 1e6)
+    import.fail(meshName(source) + ", vertex " + std::to_string(v), "is not at a finite place",
+                "export the mesh again");
+  const Vec3 normal = source.HasNormals() ? transformNormal(to_world, source.mNormals[v]) : Vec3(Vec3::UnitY());
+  mesh.positions.push_back(world.head<3>().cast<float>());
+  mesh.normals.push_back(normal.cast<float>());
+  mesh.joints.push_back(joints);
+  mesh.weights.push_back(weights);
+}
+
+void appendMesh(const Import& import, const aiMesh& source, int node, SkinnedMesh& mesh) {
+  const std::string place = meshName(source);
+  if (mesh.positions.size() + source.mNumVertices > kMaxVertices)
+    import.fail(place, "has too many vertices", "reduce the mesh below four million");
+  const Skin skin = readSkin(import, source, place);
+  const auto base = static_cast<std::uint32_t>(mesh.positions.size());
+  for (unsigned v = 0; v < source.mNumVertices; ++v) appendVertex(import, source, skin, node, v, mesh);
   for (unsigned f = 0; f < source.mNumFaces; ++f) {
     const aiFace& face = source.mFaces[f];
     if (face.mNumIndices != 3) continue;

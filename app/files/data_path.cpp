@@ -1,4 +1,4 @@
-#include "app/data_path.h"
+#include "app/files/data_path.h"
 
 #include <algorithm>
 #include <cstdlib>

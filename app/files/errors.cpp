@@ -1,9 +1,10 @@
-#include "app/errors.h"
+#include "app/files/errors.h"
 
 namespace app {
 
 namespace {
-std::string message(const std::string& file, const std::string& place, const std::string& fault, const std::string& mend) {
+std::string message(const std::string& file, const std::string& place, const std::string& fault,
+                    const std::string& mend) {
   std::string text = file;
   if (!place.empty()) text += (text.empty() ? "" : ": ") + place;
   text += (text.empty() ? "" : ": ") + fault;
@@ -15,5 +16,8 @@ std::string message(const std::string& file, const std::string& place, const std
 InputError::InputError(const std::string& file, const std::string& place, const std::string& fault,
                        const std::string& mend)
     : std::runtime_error(message(file, place, fault, mend)) {}
+
+OutputError::OutputError(const std::string& file, const std::string& fault, const std::string& mend)
+    : std::runtime_error(message(file, "", fault, mend)) {}
 
 }  // namespace app

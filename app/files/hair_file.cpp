@@ -1,12 +1,12 @@
-#include "app/hair_file.h"
+#include "app/files/hair_file.h"
 
 #include <algorithm>
 #include <charconv>
 #include <unordered_map>
 #include <utility>
 
-#include "app/errors.h"
-#include "app/obj_layers.h"
+#include "app/files/errors.h"
+#include "app/files/obj_layers.h"
 
 namespace app {
 namespace {
@@ -211,9 +211,24 @@ void append(std::string& text, double value) {
   text.append(digits, error == std::errc() ? end : digits);
 }
 
+void reverse(sim::HairMeshShape& shape) {
+  for (sim::RootFace& face : shape.root_faces)
+    std::reverse(face.columns.begin(), face.columns.begin() + face.corner_count);
+}
+
+bool validReversed(sim::HairMeshShape shape) {
+  reverse(shape);
+  try {
+    sim::buildHairMesh(shape);
+  } catch (const sim::MeshError&) {
+    return false;
+  }
+  return true;
+}
+
 }  // namespace
 
-sim::HairMeshShape readHairMesh(std::string_view text, const std::string& file) {
+sim::HairMeshShape readHairMesh(std::string_view text, const std::string& file, bool reverse_faces) {
   const ObjLayers obj = readObjLayers(text, file);
   Stacker stacker{file, obj};
   stacker.checkLayers();
@@ -222,9 +237,14 @@ sim::HairMeshShape readHairMesh(std::string_view text, const std::string& file) 
   stacker.growColumns();
   stacker.checkUse();
   sim::HairMeshShape shape = stacker.shape();
+  if (reverse_faces) reverse(shape);
   try {
     sim::buildHairMesh(shape);
   } catch (const sim::MeshError& error) {
+    if (validReversed(shape)) {
+      throw InputError(file, "", "all faces are wound the other way",
+                       reverse_faces ? "leave out --reverse-faces" : "reverse the faces, or give --reverse-faces");
+    }
     throw InputError(file, stacker.placeOf(error.place), error.fault, error.mend);
   }
   return shape;

@@ -4,15 +4,15 @@
 #include <string>
 #include <string_view>
 
-#include "sim/hair_mesh.h"
+#include "sim/mesh/hair_mesh.h"
 
 namespace app {
 
 // Reads a hair mesh: metres, y up, the head's frame. Columns are numbered in the order of their vertices in layer_0,
 // root faces in the order of its faces. `file` names the text in messages. Throws InputError naming the line, the fault
 // and the mend; what it returns has passed sim::buildHairMesh. Memory used is bounded by a small multiple of the text's
-// length.
-sim::HairMeshShape readHairMesh(std::string_view text, const std::string& file);
+// length. With `reverse_faces` every face is taken to be wound the other way.
+sim::HairMeshShape readHairMesh(std::string_view text, const std::string& file, bool reverse_faces = false);
 
 // Writes a hair mesh so that readHairMesh gives back the same bits.
 std::string writeHairMesh(const sim::HairMeshShape& shape);

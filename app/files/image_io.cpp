@@ -1,11 +1,12 @@
-#include "app/image_io.h"
+#include "app/files/image_io.h"
 
 #include <cassert>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
 
-#include "app/errors.h"
+#include "app/files/errors.h"
+#include "app/files/output_file.h"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"
@@ -37,19 +38,21 @@ bool isOpaque(std::span<const unsigned char> rgba) {
 
 void writePng(const std::string& file, int width, int height, std::span<const unsigned char> rgba) {
   assert(width > 0 && height > 0 && rgba.size() == static_cast<std::size_t>(width) * height * 4);
-  int written = 0;
+  std::string png;
+  const auto append = [](void* text, void* bytes, int size) {
+    static_cast<std::string*>(text)->append(static_cast<const char*>(bytes), static_cast<std::size_t>(size));
+  };
   if (isOpaque(rgba)) {
     std::vector<unsigned char> rgb(static_cast<std::size_t>(width) * height * 3);
     for (std::size_t i = 0; i < rgb.size() / 3; ++i) {
       for (int c = 0; c < 3; ++c) rgb[3 * i + c] = rgba[4 * i + c];
     }
-    written = stbi_write_png(file.c_str(), width, height, 3, rgb.data(), 3 * width);
+    stbi_write_png_to_func(append, &png, width, height, 3, rgb.data(), 3 * width);
   } else {
-    written = stbi_write_png(file.c_str(), width, height, 4, rgba.data(), 4 * width);
+    stbi_write_png_to_func(append, &png, width, height, 4, rgba.data(), 4 * width);
   }
-  if (written == 0) {
-    throw InputError(file, "output image", "cannot be written", "check that the folder exists and has room");
-  }
+  if (png.empty()) throw OutputError(file, "cannot be encoded as PNG", "free some memory");
+  writeFile(file, png);
 }
 
 Image readPng(const std::string& file) {

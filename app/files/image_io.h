@@ -13,7 +13,7 @@ struct Image {
   std::vector<unsigned char> rgba;
 };
 
-// Writes a PNG (alpha left out when every pixel is opaque). Throws InputError when the file cannot be written.
+// Writes a PNG (alpha left out when every pixel is opaque). Throws OutputError.
 void writePng(const std::string& file, int width, int height, std::span<const unsigned char> rgba);
 
 // Reads a PNG. Throws InputError when it is missing, broken or larger than 16,384 pixels a side.

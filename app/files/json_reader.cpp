@@ -1,4 +1,4 @@
-#include "app/json_reader.h"
+#include "app/files/json_reader.h"
 
 #include <algorithm>
 #include <cmath>

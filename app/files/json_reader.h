@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "app/errors.h"
+#include "app/files/errors.h"
 
 namespace app {
 
@@ -23,6 +23,7 @@ class JsonPlace {
 
   const nlohmann::json& value() const { return *value_; }
   const std::string& file() const { return file_; }
+  const std::string& pointer() const { return pointer_; }
 
   // Refuses anything but an object whose keys are all known.
   void expectObject(std::span<const std::string_view> known) const;

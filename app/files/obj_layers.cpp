@@ -1,11 +1,11 @@
-#include "app/obj_layers.h"
+#include "app/files/obj_layers.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 
-#include "app/errors.h"
-#include "app/text_scanner.h"
+#include "app/files/errors.h"
+#include "app/files/text_scanner.h"
 
 namespace app {
 namespace {
@@ -21,7 +21,7 @@ bool isDigit(char c) {
 }
 
 // Takes the first word off a line; empty at its end or at a comment.
-std::string_view takeWord(std::string_view& line) {
+std::string_view nextWord(std::string_view& line) {
   std::size_t begin = 0;
   while (begin < line.size() && isBlank(line[begin])) ++begin;
   std::size_t end = begin;
@@ -64,7 +64,7 @@ double ObjReader::coordinate(std::string_view word) const {
 
 void ObjReader::readVertex(std::string_view rest) {
   sim::Vec3 p;
-  for (int k = 0; k < 3; ++k) p[k] = coordinate(takeWord(rest));
+  for (int k = 0; k < 3; ++k) p[k] = coordinate(nextWord(rest));
   out.positions.push_back(p);
   out.position_lines.push_back(line);
 }
@@ -89,7 +89,7 @@ void ObjReader::readFace(std::string_view rest) {
   ObjFace face;
   face.line = line;
   face.bundle = bundle;
-  for (std::string_view word = takeWord(rest); !word.empty(); word = takeWord(rest)) {
+  for (std::string_view word = nextWord(rest); !word.empty(); word = nextWord(rest)) {
     if (face.corner_count == 4) fail("the face has more than four corners", "split it into triangles and quads");
     face.v[face.corner_count++] = corner(word);
   }
@@ -100,7 +100,7 @@ void ObjReader::readFace(std::string_view rest) {
 // A group or an object is a layer when one of its names is layer_<n>, alone or before what a modelling tool has
 // appended.
 void ObjReader::enterLayer(std::string_view rest) {
-  for (std::string_view word = takeWord(rest); !word.empty(); word = takeWord(rest)) {
+  for (std::string_view word = nextWord(rest); !word.empty(); word = nextWord(rest)) {
     if (word.substr(0, kLayerPrefix.size()) != kLayerPrefix) continue;
     word.remove_prefix(kLayerPrefix.size());
     int number = 0;
@@ -114,7 +114,7 @@ void ObjReader::enterLayer(std::string_view rest) {
 }
 
 void ObjReader::readLine(std::string_view text) {
-  const std::string_view keyword = takeWord(text);
+  const std::string_view keyword = nextWord(text);
   if (keyword == "v") {
     readVertex(text);
   } else if (keyword == "f") {
@@ -122,7 +122,7 @@ void ObjReader::readLine(std::string_view text) {
   } else if (keyword == "g" || keyword == "o") {
     enterLayer(text);
   } else if (keyword == "usemtl") {
-    const std::string_view name = takeWord(text);
+    const std::string_view name = nextWord(text);
     bundle = std::string_view();
     if (name.size() > kBundlePrefix.size() && name.substr(0, kBundlePrefix.size()) == kBundlePrefix &&
         isDigit(name[kBundlePrefix.size()]))

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/hair_mesh.h"
+#include "sim/mesh/hair_mesh.h"
 
 namespace app {
 

@@ -1,10 +1,12 @@
-#include "app/presets.h"
+#include "app/files/presets.h"
 
 #include <filesystem>
+#include <set>
 #include <vector>
 
-#include "app/data_path.h"
-#include "app/motion.h"
+#include "app/files/data_path.h"
+#include "app/files/text_file.h"
+#include "app/motion/motion.h"
 #include "sim/field_text.h"
 
 namespace app {
@@ -51,13 +53,41 @@ json rowValue(const Owner& owner, const LookField<Owner>& row) {
   return value[0];
 }
 
-template <class Owner>
-json changedRows(const Owner& owner, std::span<const LookField<Owner>> table) {
+json rowValue(const sim::SimParams& params, const sim::ParamField& row) {
+  const double value = row.get(params);
+  switch (row.kind) {
+    case sim::FieldKind::kSwitch:
+      return value != 0;
+    case sim::FieldKind::kChoice:
+      return row.choices[static_cast<std::size_t>(value)];
+    case sim::FieldKind::kInteger:
+      return static_cast<long long>(value);
+    case sim::FieldKind::kReal:
+      break;
+  }
+  return value;
+}
+
+// Rows of a table by name; `all`, or those that differ from their defaults.
+template <class Owner, class Field>
+json rowsOf(const Owner& owner, std::span<const Field> table, bool all) {
   json rows = json::object();
-  for (const LookField<Owner>& row : table) {
-    if (row.get(owner) != row.default_value) rows[row.name] = rowValue(owner, row);
+  for (const Field& row : table) {
+    if (all || row.get(owner) != row.default_value) rows[row.name] = rowValue(owner, row);
   }
   return rows;
+}
+
+// Puts every row of the groups that a section names back to its default.
+template <class Owner, class Field>
+void resetNamedGroups(const JsonPlace& section, std::span<const Field> table, Owner& owner) {
+  std::set<std::string_view> groups;
+  for (const Field& row : table) {
+    if (section.value().is_object() && section.has(row.name)) groups.insert(row.group);
+  }
+  for (const Field& row : table) {
+    if (groups.contains(row.group)) row.set(owner, row.default_value);
+  }
 }
 
 }  // namespace
@@ -92,37 +122,18 @@ void readSceneRows(const JsonPlace& place, SceneLook& look, bool light) {
   }
 }
 
-json writeSimRows(const sim::SimParams& params) {
-  json rows = json::object();
-  for (const sim::ParamField& row : sim::paramFields()) {
-    const double value = row.get(params);
-    if (value == row.default_value) continue;
-    switch (row.kind) {
-      case sim::FieldKind::kSwitch:
-        rows[row.name] = value != 0;
-        break;
-      case sim::FieldKind::kChoice:
-        rows[row.name] = row.choices[static_cast<std::size_t>(value)];
-        break;
-      case sim::FieldKind::kInteger:
-        rows[row.name] = static_cast<long long>(value);
-        break;
-      case sim::FieldKind::kReal:
-        rows[row.name] = value;
-        break;
-    }
-  }
-  return rows;
+json writeSimRows(const sim::SimParams& params, bool all) {
+  return rowsOf(params, sim::paramFields(), all);
 }
 
-json writeHairRows(const CharacterLook& look) {
-  return changedRows(look, hairFields());
+json writeHairRows(const CharacterLook& look, bool all) {
+  return rowsOf(look, hairFields(), all);
 }
 
-json writeSceneRows(const SceneLook& look, bool light) {
+json writeSceneRows(const SceneLook& look, bool light, bool all) {
   json rows = json::object();
   for (const SceneField& row : sceneFields()) {
-    if (isLight(row) == light && row.get(look) != row.default_value) rows[row.name] = rowValue(look, row);
+    if (isLight(row) == light && (all || row.get(look) != row.default_value)) rows[row.name] = rowValue(look, row);
   }
   return rows;
 }
@@ -137,11 +148,20 @@ void applyPreset(std::string_view text, const std::string& file, const PresetTar
   std::vector<CharacterLook> hairs;
   for (const CharacterLook* look : target.hairs) hairs.push_back(*look);
   if (hairs.empty()) hairs.emplace_back();
-  if (place.has("sim")) readSimRows(place.at("sim"), params);
-  if (place.has("light")) readSceneRows(place.at("light"), scene, true);
-  if (place.has("view")) readSceneRows(place.at("view"), scene, false);
+  if (place.has("sim")) {
+    resetNamedGroups(place.at("sim"), sim::paramFields(), params);
+    readSimRows(place.at("sim"), params);
+  }
+  for (const bool light : {true, false}) {
+    const char* section = light ? "light" : "view";
+    if (!place.has(section)) continue;
+    resetNamedGroups(place.at(section), sceneFields(), scene);
+    readSceneRows(place.at(section), scene, light);
+  }
   for (CharacterLook& look : hairs) {
-    if (place.has("hair")) readHairRows(place.at("hair"), look);
+    if (!place.has("hair")) break;
+    resetNamedGroups(place.at("hair"), hairFields(), look);
+    readHairRows(place.at("hair"), look);
   }
   *target.sim = params;
   *target.scene = scene;
@@ -155,16 +175,21 @@ void loadPreset(const std::string& file, const PresetTarget& target) {
 std::string writePreset(const std::string& name, const sim::SimParams& params, const CharacterLook& hair,
                         const SceneLook& scene) {
   const json preset = {{"name", name},
-                       {"sim", writeSimRows(params)},
-                       {"hair", writeHairRows(hair)},
-                       {"light", writeSceneRows(scene, true)},
-                       {"view", writeSceneRows(scene, false)}};
+                       {"sim", writeSimRows(params, true)},
+                       {"hair", writeHairRows(hair, true)},
+                       {"light", writeSceneRows(scene, true, true)},
+                       {"view", writeSceneRows(scene, false, true)}};
   return preset.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
 std::string presetFile(const std::string& name, const std::string& base_file) {
   const bool bare = std::filesystem::path(name).extension().empty();
-  return findFile(bare ? name + ".json" : name, base_file, "presets");
+  const std::string file = findFile(bare ? name + ".json" : name, base_file, "presets");
+  if (!bare || std::filesystem::exists(file)) return file;
+  std::string known;
+  for (const std::string& preset : listAssets("presets", {".json"}))
+    known += (known.empty() ? "" : ", ") + stem(preset);
+  throw InputError("", "", "there is no preset '" + name + "'", "choose one of " + known + ", or name a file");
 }
 
 }  // namespace app

@@ -1,5 +1,6 @@
 // Presets: a part of the parameter tables as JSON: { "name": "soft", "sim": {row: value}, "hair": {...}, "light":
-// {...}, "view": {...} }. Rows left out keep their value.
+// {...}, "view": {...} }. Of the groups that it names a row of, the rows left out take their defaults, so that it
+// does not matter which preset was chosen before. All other groups keep their values.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,8 +8,8 @@
 #include <string>
 #include <string_view>
 
-#include "app/json_reader.h"
-#include "app/look_params.h"
+#include "app/files/json_reader.h"
+#include "app/scene/look_params.h"
 
 namespace app {
 
@@ -23,19 +24,20 @@ struct PresetTarget {
 void applyPreset(std::string_view text, const std::string& file, const PresetTarget& target);
 void loadPreset(const std::string& file, const PresetTarget& target);
 
-// All rows that differ from their defaults.
+// All rows, so that loading it brings back what was saved.
 std::string writePreset(const std::string& name, const sim::SimParams& sim, const CharacterLook& hair,
                         const SceneLook& scene);
 
-// A file of presets for a name like "soft", or the name itself when it is a file.
+// The file of the preset of a name like "soft", or the name itself when it is a file. Throws InputError for an unknown
+// name.
 std::string presetFile(const std::string& name, const std::string& base_file);
 
-// The tables' parts of scene and preset files.
+// The tables' parts of scene and preset files. Written are `all` rows, or those that differ from their defaults.
 void readSimRows(const JsonPlace& place, sim::SimParams& sim);
 void readHairRows(const JsonPlace& place, CharacterLook& look);
 void readSceneRows(const JsonPlace& place, SceneLook& look, bool light);
-nlohmann::json writeSimRows(const sim::SimParams& sim);
-nlohmann::json writeHairRows(const CharacterLook& look);
-nlohmann::json writeSceneRows(const SceneLook& look, bool light);
+nlohmann::json writeSimRows(const sim::SimParams& sim, bool all = false);
+nlohmann::json writeHairRows(const CharacterLook& look, bool all = false);
+nlohmann::json writeSceneRows(const SceneLook& look, bool light, bool all = false);
 
 }  // namespace app

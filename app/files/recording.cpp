@@ -1,4 +1,4 @@
-#include "app/recording.h"
+#include "app/files/recording.h"
 
 #include <algorithm>
 #include <array>
@@ -6,9 +6,10 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
-#include "app/errors.h"
-#include "app/json_reader.h"
-#include "app/motion.h"
+#include "app/files/errors.h"
+#include "app/files/json_reader.h"
+#include "app/files/text_file.h"
+#include "app/motion/motion.h"
 #include "sim/field_text.h"
 
 namespace app {
@@ -18,10 +19,10 @@ namespace {
 using nlohmann::json;
 
 constexpr int kVersion = 2;
-constexpr std::size_t kMostRequests = 1000;                   // a frame
+constexpr std::size_t kMaxRequests = 1000;                    // a frame
 constexpr double kLongestFrame = 1e6, kLargestValue = 1e300;  // s; of a request's value
-constexpr double kFarthest = 1e6, kMostTurn = 1e3;            // m, rad; of a view
-constexpr double kMostAspect = 1e5, kTallest = 1e5;
+constexpr double kFarthest = 1e6, kMaxTurn = 1e3;             // m, rad; of a view
+constexpr double kMaxAspect = 1e5, kTallest = 1e5;
 
 struct AskName {
   Ask what;
@@ -63,7 +64,7 @@ std::string_view nameOf(Ask what) {
 }
 
 // The next line of `text`, taken off it.
-std::string_view takeLine(std::string_view& text) {
+std::string_view nextLine(std::string_view& text) {
   const std::size_t end = std::min(text.find('\n'), text.size());
   const std::string_view line = text.substr(0, end);
   text.remove_prefix(std::min(end + 1, text.size()));
@@ -91,10 +92,10 @@ RecordedView readView(const JsonPlace& place) {
   RecordedView view;
   const std::array<double, 3> target = place.at("target").vector(-kFarthest, kFarthest);
   view.target = {target[0], target[1], target[2]};
-  view.yaw = place.at("yaw").number(-kMostTurn, kMostTurn);
-  view.pitch = place.at("pitch").number(-kMostTurn, kMostTurn);
+  view.yaw = place.at("yaw").number(-kMaxTurn, kMaxTurn);
+  view.pitch = place.at("pitch").number(-kMaxTurn, kMaxTurn);
   view.distance = place.at("distance").number(1e-6, kFarthest);
-  view.aspect = place.at("aspect").number(1 / kMostAspect, kMostAspect);
+  view.aspect = place.at("aspect").number(1 / kMaxAspect, kMaxAspect);
   view.height = static_cast<int>(place.at("height").number(1, kTallest));
   return view;
 }
@@ -123,7 +124,7 @@ void show(const RecordedView& view, Demo& demo) {
 }
 
 RecordedFrame readFrame(const JsonPlace& place) {
-  const std::size_t entries = place.arraySize(kMostRequests + 2);
+  const std::size_t entries = place.arraySize(kMaxRequests + 2);
   if (entries == 0) place.refuse("is no frame", "write [seconds, requests ...]");
   RecordedFrame frame;
   frame.seconds = place.at(std::size_t{0}).number(0, kLongestFrame);
@@ -169,7 +170,7 @@ Recording readRecording(std::string_view text, const std::string& file) {
   const auto next = [&] {
     ++line_number;
     if (text.empty()) throw InputError(file, "line " + std::to_string(line_number), "is missing", "record anew");
-    return takeLine(text);
+    return nextLine(text);
   };
   const auto named = [&] { return file + ", line " + std::to_string(line_number); };
   Recording recording;
@@ -183,7 +184,7 @@ Recording readRecording(std::string_view text, const std::string& file) {
     const double version = place.at("hairmesh-recording").number(1, kVersion);
     if (version > 1) {
       if (!place.has("aspect") || !place.has("skips_off")) place.refuse("lacks aspect or skips_off", "record anew");
-      recording.aspect = place.at("aspect").number(1 / kMostAspect, kMostAspect);
+      recording.aspect = place.at("aspect").number(1 / kMaxAspect, kMaxAspect);
       skips = readSkips(place.at("skips_off"));
     }
   }
@@ -241,8 +242,8 @@ Tape::Tape(const Options& options, Scene& scene)
     aspect_ = replay_->aspect.value_or(aspect_);
   }
   if (record_file_.empty()) return;
-  record_.open(record_file_, std::ios::binary);
-  record_ << headLine(aspect_, scene.skips) << "\n" << json::parse(writeScene(scene)).dump() << "\n";
+  record_.emplace(record_file_);
+  record_->write(headLine(aspect_, scene.skips) + "\n" + parseJson(writeScene(scene), "scene").dump() + "\n");
 }
 
 std::optional<int> Tape::frames() const {
@@ -258,35 +259,36 @@ double Tape::turn(int frame, double seconds, Demo& demo) {
     // Every frame: the replay's own picture, and whoever drags in its window, change them.
     if (replay_view_) show(*replay_view_, demo);
   }
-  if (!record_file_.empty()) {
+  if (record_) {
     const RecordedView view = viewOf(demo);
-    record_ << frameLine(seconds, view == record_view_ ? nullptr : &view, demo.requests) << "\n";
+    record_->write(frameLine(seconds, view == record_view_ ? nullptr : &view, demo.requests) + "\n");
     record_view_ = view;
-    ++recorded_;
   }
+  ++turns_;
   // The clock does not repeat itself.
-  if (replay_ || !record_file_.empty()) demo.governor.counted = true;
+  if (replay_ || record_) demo.governor.counted = true;
   return seconds;
 }
 
 Tape::End Tape::end(const Demo& demo) {
   End end;
-  const std::string state = stateHash(demo);
-  if (!record_file_.empty()) {
-    record_ << json{{"frames", recorded_}, {"state", state}}.dump() << "\n";
-    record_.close();
-    if (!record_) {
-      throw InputError(record_file_, "", "cannot be written", "choose a folder that exists and may be written to");
-    }
-    end.said = "recorded " + std::to_string(recorded_) + " frames in " + record_file_ + ", state " + state + "\n";
+  const std::string state = stateHash(demo), count = std::to_string(turns_) + " frames";
+  if (record_) {
+    record_->write(json{{"frames", turns_}, {"state", state}}.dump() + "\n");
+    record_->commit();
+    end.message = "recorded " + count + " in " + record_file_ + ", state " + state + "\n";
   }
-  if (replay_ && replay_->state.empty()) end.said += "replayed a recording without an end, state " + state + "\n";
-  if (replay_ && !replay_->state.empty()) {
+  if (!replay_) return end;
+  if (turns_ < static_cast<int>(replay_->frames.size())) {
+    end.message += "replayed " + count + " of " + std::to_string(replay_->frames.size()) + "\n";
+  } else if (replay_->state.empty()) {
+    end.message += "replayed a recording without an end, state " + state + "\n";
+  } else {
     end.differs = state != replay_->state;
-    end.said += "replayed " + std::to_string(replay_->frames.size()) + " frames, " +
-                (end.differs ? "but the state is " + state + ", not " + replay_->state
-                             : "the state is the recorded one to the bit: " + state) +
-                "\n";
+    end.message += "replayed " + count + ", " +
+                   (end.differs ? "but the state is " + state + ", not " + replay_->state
+                                : "the state is the recorded one to the bit: " + state) +
+                   "\n";
   }
   return end;
 }

@@ -11,14 +11,14 @@
 // stands beside it; it is replayed as seen by the replay itself.
 #pragma once
 
-#include <fstream>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "app/demo.h"
+#include "app/files/output_file.h"
 #include "app/options.h"
+#include "app/scene/demo.h"
 
 namespace app {
 
@@ -56,7 +56,7 @@ std::string stateHash(const Demo& demo);
 // What a run does with --record and --replay: nothing, or either, or both.
 class Tape {
  public:
-  // Opens what the options name and puts the recorded scene in place of `scene`. Throws InputError.
+  // Opens what the options name and puts the recorded scene in place of `scene`. Throws InputError and OutputError.
   Tape(const Options& options, Scene& scene);
 
   // Frames of the replay; nothing when none is played.
@@ -66,18 +66,18 @@ class Tape {
   // Before frame `frame` of `seconds`: puts the recorded view and requests in place and returns the recorded length
   // when a replay is played; writes them down when one is made. Either way a budget goes by counted work.
   double turn(int frame, double seconds, Demo& demo);
-  // After the last frame: closes the recording, compares the replay's end. Returns what is to be said about it and
-  // whether a replay ended elsewhere. Throws InputError when the recording could not be written.
+  // After the last frame: closes the recording, compares the replay's end with the recorded one if it was reached.
+  // Throws OutputError when the recording could not be written.
   struct End {
-    std::string said;
+    std::string message;  // for the terminal; empty without a recording and a replay
     bool differs = false;
   };
   End end(const Demo& demo);
 
  private:
   std::string record_file_, replay_file_;
-  std::ofstream record_;
-  int recorded_ = 0;
+  std::optional<OutputFile> record_;  // appears under its name once the run has ended
+  int turns_ = 0;
   double aspect_ = 1;
   std::optional<Recording> replay_;
   std::optional<RecordedView> replay_view_, record_view_;  // last read, last written

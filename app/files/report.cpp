@@ -1,11 +1,10 @@
-#include "app/report.h"
+#include "app/files/report.h"
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "app/errors.h"
+#include "app/files/output_file.h"
 
 namespace app {
 
@@ -31,11 +30,11 @@ json milliseconds(const std::vector<double>& seconds) {
           {"max", 1e3 * longest}};
 }
 
-// What the ledger's entries left out, those that were asked at all.
-json skippedJson(const SkipTallies& tallies) {
+// What each skip left out, of those that had anything to leave out.
+json skippedJson(const SkipCounts& counts) {
   json skipped = json::object();
   for (const Skip& skip : skipTable()) {
-    const SkipTally& count = tallies[skip.id];
+    const SkipCount& count = counts[skip.id];
     if (count.of == 0) continue;
     skipped[skip.name] = {{"skipped", count.skipped},
                           {"of", count.of},
@@ -45,10 +44,10 @@ json skippedJson(const SkipTallies& tallies) {
 }
 
 // What is left out without a switch, where it is counted.
-json alwaysJson(const BuiltInTallies& tallies) {
+json alwaysJson(const BuiltInCounts& counts) {
   json always = json::object();
   for (const BuiltInSkip& skip : builtInSkips()) {
-    const SkipTally& count = tallies[skip.id];
+    const SkipCount& count = counts[skip.id];
     if (count.of > 0) always[skip.name] = {{"skipped", count.skipped}, {"of", count.of}};
   }
   return always;
@@ -84,9 +83,9 @@ json frameJson(const FrameStats& stats, std::size_t index, double fps) {
           {"max_penetration", stats.max_penetration},
           {"recoveries", stats.recoveries},
           {"rung", stats.rung},
-          {"trouble", sim::troubleText(stats.trouble)},
+          {"trouble", sim::faultText(stats.fault_report)},
           {"carried", stats.carried},
-          {"combed", stats.combed},
+          {"combed", stats.guided},
           {"strands_drawn", stats.draw.strands_drawn},
           {"draw_calls", stats.draw.draw_calls},
           {"bytes_uploaded", stats.draw.bytes_uploaded},
@@ -155,13 +154,13 @@ void writeReport(const std::string& file, const RunReport& run, const Demo& demo
   }
   long recoveries = 0;
   for (const FrameStats& frame : run.frames) recoveries += frame.recoveries;
-  SkipTallies skipped{};
-  BuiltInTallies always{};
-  const auto add = [](const auto& tallies, auto& sums) {
+  SkipCounts skipped{};
+  BuiltInCounts always{};
+  const auto add = [](const auto& counts, auto& sums) {
     for (std::size_t k = 0; k < sums.size(); ++k) {
-      sums[k].skipped += tallies[k].skipped;
-      sums[k].of += tallies[k].of;
-      sums[k].seconds += tallies[k].seconds;
+      sums[k].skipped += counts[k].skipped;
+      sums[k].of += counts[k].of;
+      sums[k].seconds += counts[k].seconds;
     }
   };
   for (const FrameStats& frame : run.frames) {
@@ -192,10 +191,7 @@ void writeReport(const std::string& file, const RunReport& run, const Demo& demo
         {"always_skipped", alwaysJson(always)},
         {"recoveries", recoveries}}},
       {"frames", frames}};
-  std::ofstream stream(file, std::ios::binary);
-  stream << report.dump(1, ' ', false, json::error_handler_t::replace) << "\n";
-  stream.close();
-  if (!stream) throw InputError(file, "", "cannot be written", "choose a folder that exists and may be written to");
+  writeFile(file, report.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
 }
 
 std::string summary(const RunReport& run) {

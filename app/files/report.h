@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "app/demo.h"
+#include "app/scene/demo.h"
 
 namespace app {
 
@@ -16,7 +16,7 @@ struct RunReport {
   std::vector<FrameStats> frames;
 };
 
-// Throws InputError when the file cannot be written.
+// Throws OutputError.
 void writeReport(const std::string& file, const RunReport& run, const Demo& demo);
 
 // One line a stage and the counters, for the terminal.

@@ -1,11 +1,12 @@
-#include "app/scene_file.h"
+#include "app/files/scene_file.h"
 
 #include <filesystem>
 
-#include "app/data_path.h"
-#include "app/json_reader.h"
-#include "app/motion.h"
-#include "app/presets.h"
+#include "app/files/data_path.h"
+#include "app/files/json_reader.h"
+#include "app/files/presets.h"
+#include "app/files/text_file.h"
+#include "app/motion/motion.h"
 
 namespace app {
 
@@ -30,8 +31,8 @@ std::string readFileName(const JsonPlace& place, const std::string& kind) {
 }
 
 CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
-  place.expectObject({"motion", "parts", "clip", "style", "resolution", "hair", "position", "heading", "clip_offset",
-                      "in_place", "look"});
+  place.expectObject({"motion", "parts", "clip", "style", "resolution", "hair", "reverse_faces", "position", "heading",
+                      "clip_offset", "in_place", "look", "pins"});
   CharacterSpec spec;
   spec.look = look;
   if (place.has("motion")) spec.motion = place.at("motion").text();
@@ -44,11 +45,13 @@ CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
     spec.resolution = *parseResolution(place.at("resolution").choice({"low", "medium", "high", "ultra"}));
   }
   if (place.has("hair")) spec.hair = readFileName(place.at("hair"), "hair");
+  if (place.has("reverse_faces")) spec.reverse_faces = place.at("reverse_faces").flag();
   if (place.has("position")) spec.position = toVec3(place.at("position").vector(-kFarthest, kFarthest));
   if (place.has("heading")) spec.heading = place.at("heading").number(-kTurn, kTurn);
   if (place.has("clip_offset")) spec.clip_offset = place.at("clip_offset").number(0, 1e5);
   if (place.has("in_place")) spec.in_place = place.at("in_place").flag();
   if (place.has("look")) readHairRows(place.at("look"), spec.look);
+  if (place.has("pins")) spec.pins = readPins(place.at("pins"));
   return spec;
 }
 
@@ -87,11 +90,13 @@ json writeCharacter(const CharacterSpec& spec) {
           {"style", sim::styleName(spec.style)},
           {"resolution", sim::resolutionName(spec.resolution)},
           {"hair", spec.hair},
+          {"reverse_faces", spec.reverse_faces},
           {"position", fromVec3(spec.position)},
           {"heading", spec.heading},
           {"clip_offset", spec.clip_offset},
           {"in_place", spec.in_place},
-          {"look", writeHairRows(spec.look)}};
+          {"look", writeHairRows(spec.look)},
+          {"pins", writePins(spec.pins)}};
 }
 
 }  // namespace
@@ -120,7 +125,7 @@ Scene readScene(std::string_view text, const std::string& file) {
   scene.name = place.has("name") ? place.at("name").text() : stem(file);
   if (!place.has("characters")) place.refuse("has no characters", "add \"characters\": [{ \"motion\": \"walk.bvh\" }]");
   const JsonPlace characters = place.at("characters");
-  const std::size_t count = characters.arraySize(kMostCharacters);
+  const std::size_t count = characters.arraySize(kMaxCharacters);
   if (count == 0) characters.refuse("is empty", "add a character, for instance { \"motion\": \"walk.bvh\" }");
   // The preset comes first, so that the scene's own rows win over it.
   CharacterLook preset_look;

@@ -4,8 +4,9 @@
 //   "name": "Walk",
 //   "characters": [{
 //     "motion": "walk.bvh", "parts": "", "clip": "", "style": "shoulder", "resolution": "medium", "hair": "",
+//     "reverse_faces": false,
 //     "position": [0, 0, 0], "heading": 0, "clip_offset": 0, "in_place": true, "look": { a row of the hair table: value
-//     }
+//     }, "pins": [ as pin_spec.h says ]
 //   }],
 //   "camera": { "view": "three-quarter", "framing": "bust", "eye": [..], "target": [..], "fov": 0.5, "follow": true },
 //   "light": { row: value }, "view": { row: value }, "sim": { row: value },
@@ -21,11 +22,12 @@
 #include <string_view>
 #include <vector>
 
-#include "app/character.h"
-#include "app/look_params.h"
-#include "app/skips.h"
-#include "sim/hair_styles.h"
+#include "app/figure/character.h"
+#include "app/files/pin_spec.h"
+#include "app/scene/look_params.h"
+#include "app/scene/skips.h"
 #include "sim/sim_params.h"
+#include "sim/styles/hair_styles.h"
 
 namespace app {
 
@@ -39,11 +41,13 @@ struct CharacterSpec {
   sim::Style style = sim::Style::kShoulder;
   sim::Resolution resolution = sim::Resolution::kMedium;
   std::string hair;              // hair mesh OBJ in place of the built-in style; empty: the style
+  bool reverse_faces = false;    // of that file: they are wound inwards
   Vec3 position = Vec3::Zero();  // m, added to the motion
   double heading = 0;            // rad about y, counter-clockwise from above
   double clip_offset = 0;        // s, where in the clip it begins
   bool in_place = true;          // horizontal travel is taken out of the clip
   CharacterLook look;
+  std::vector<PinSpec> pins;
 };
 
 // Where the camera stands at the first frame. With an eye and a target given the named view is not used.
@@ -76,7 +80,7 @@ struct Scene {
 };
 
 // Bounds that a scene is held to.
-inline constexpr std::size_t kMostCharacters = 256;
+inline constexpr std::size_t kMaxCharacters = 256;
 inline constexpr double kFastestPlayback = 100, kSlowestFps = 1, kFastestFps = 1000, kLargestBudget = 1000;
 
 // Reads a scene. Throws InputError naming file and place; the files that it names are only looked for.

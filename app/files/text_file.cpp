@@ -1,9 +1,10 @@
+#include "app/files/text_file.h"
+
 #include <filesystem>
 #include <fstream>
 #include <system_error>
 
-#include "app/errors.h"
-#include "app/motion.h"
+#include "app/files/errors.h"
 
 namespace app {
 

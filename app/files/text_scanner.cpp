@@ -1,9 +1,9 @@
-#include "app/text_scanner.h"
+#include "app/files/text_scanner.h"
 
 #include <charconv>
 #include <cmath>
 
-#include "app/errors.h"
+#include "app/files/errors.h"
 
 namespace app {
 

@@ -8,9 +8,9 @@
 #include <filesystem>
 #include <numbers>
 
-#include "app/bvh_text.h"
-#include "app/errors.h"
-#include "app/motion.h"
+#include "app/files/errors.h"
+#include "app/motion/bvh_text.h"
+#include "app/motion/motion.h"
 
 namespace app {
 
@@ -253,12 +253,12 @@ void buildClip(const BvhText& bvh, LocalFrames&& frames, const Inference& inferr
 // would throw every limb across the body within one frame. It is taken for one when some joint moves farther from frame
 // 0 to 1 than any joint does between later frames, by a clear factor and by a clear distance.
 bool leadsWithRestPose(const BvhText& bvh, const LocalFrames& frames, double height) {
-  constexpr int kMostCompared = 600;
-  constexpr double kFactor = 4, kLeastJump = 0.08;  // the jump in figure heights
+  constexpr int kMaxCompared = 600;
+  constexpr double kFactor = 4, kMinJump = 0.08;  // the jump in figure heights
   if (bvh.frame_count < 4) return false;
   WorldFrame before = worldFrame(bvh, frames, 0);
   double jump = 0, largest_later = 0;
-  for (int f = 1; f < std::min(bvh.frame_count, kMostCompared); ++f) {
+  for (int f = 1; f < std::min(bvh.frame_count, kMaxCompared); ++f) {
     WorldFrame world = worldFrame(bvh, frames, f);
     for (std::size_t j = 0; j < bvh.joints.size(); ++j) {
       double& largest = f == 1 ? jump : largest_later;
@@ -266,7 +266,7 @@ bool leadsWithRestPose(const BvhText& bvh, const LocalFrames& frames, double hei
     }
     before = std::move(world);
   }
-  return jump > kFactor * largest_later && jump > kLeastJump * height;
+  return jump > kFactor * largest_later && jump > kMinJump * height;
 }
 
 std::vector<std::string> describe(const BvhText& bvh, const Inference& inferred) {

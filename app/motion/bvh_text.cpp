@@ -1,19 +1,19 @@
 // BVH grammar as used in the wild (Biovision's own files, the CMU conversions, motion editors' exports):
 //   HIERARCHY, ROOT name { OFFSET x y z, CHANNELS n names..., JOINT name {...}, End Site { OFFSET x y z } },
 //   MOTION, Frames: n, Frame Time: t, then one line of numbers a frame. Keywords in any case, braces on any line.
-#include "app/bvh_text.h"
+#include "app/motion/bvh_text.h"
 
 #include <array>
 
-#include "app/text_scanner.h"
+#include "app/files/text_scanner.h"
 
 namespace app {
 
 namespace {
 
 // A body has below 200 joints with all its fingers; the limit keeps hostile files cheap.
-constexpr int kMostJoints = 4096;
-constexpr int kMostFrames = 10'000'000;
+constexpr int kMaxJoints = 4096;
+constexpr int kMaxFrames = 10'000'000;
 constexpr double kLargestLength = 1e7;                        // file's units
 constexpr double kLargestAngle = 1e6;                         // degrees: unwrapped spins may count many turns
 constexpr double kShortestFrame = 1e-5, kLongestFrame = 100;  // s
@@ -78,8 +78,8 @@ void readEndSite(TextScanner& scanner, BvhTextJoint& joint) {
 }
 
 int openJoint(TextScanner& scanner, BvhText& bvh, int parent) {
-  if (bvh.joints.size() >= kMostJoints) {
-    scanner.fail("more than " + std::to_string(kMostJoints) + " joints", "leave out what is not a body's skeleton");
+  if (bvh.joints.size() >= kMaxJoints) {
+    scanner.fail("more than " + std::to_string(kMaxJoints) + " joints", "leave out what is not a body's skeleton");
   }
   BvhTextJoint joint;
   joint.name = scanner.lineUpToBrace();
@@ -134,7 +134,7 @@ void readMotionHead(TextScanner& scanner, BvhText& bvh) {
   }
   if (!sameWord(word, "Frames")) scanner.fail("'Frames:' should stand after MOTION", "add the number of frames");
   expectColon(scanner);
-  const long long frames = scanner.count("the number of Frames", kMostFrames);
+  const long long frames = scanner.count("the number of Frames", kMaxFrames);
   if (frames < 2) {
     scanner.fail(frames == 0 ? "the clip has no frames" : "the clip has a single frame, which is a pose and no motion",
                  "give a clip with at least two frames (for a still figure, the same frame twice)");
@@ -146,9 +146,9 @@ void readMotionHead(TextScanner& scanner, BvhText& bvh) {
                  "correct the number of frames or complete the file");
   }
   // Joints without channels cost no text, but memory in every frame.
-  constexpr long long kMostBytesPerCharacter = 64, kBytesPerJoint = 56;
+  constexpr long long kMaxBytesPerCharacter = 64, kBytesPerJoint = 56;
   if (frames * static_cast<long long>(bvh.joints.size()) * kBytesPerJoint >
-      kMostBytesPerCharacter * static_cast<long long>(scanner.text.size()) + (1 << 20)) {
+      kMaxBytesPerCharacter * static_cast<long long>(scanner.text.size()) + (1 << 20)) {
     scanner.fail("too many frames of too many joints without channels", "remove joints that do not move");
   }
   bvh.frame_count = static_cast<int>(frames);

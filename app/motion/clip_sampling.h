@@ -1,7 +1,7 @@
 // Local transforms of a clip between its frames.
 #pragma once
 
-#include "app/character.h"
+#include "app/figure/character.h"
 
 namespace app {
 

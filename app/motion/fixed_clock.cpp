@@ -1,4 +1,4 @@
-#include "app/fixed_clock.h"
+#include "app/motion/fixed_clock.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,7 +35,7 @@ int tick(double seconds, double step, int most, FixedClock& clock) {
   return taken;
 }
 
-void takeSingly(int steps, double step, FixedClock& clock) {
+void stepSingly(int steps, double step, FixedClock& clock) {
   countSteps(steps, step, clock);
   if (steps > 0) clock.ahead = 0;
 }

@@ -19,7 +19,7 @@ struct FixedClock {
 int tick(double seconds, double step, int most, FixedClock& clock);
 
 // Steps taken one by one while the picture stands still: they end at the shown moment.
-void takeSingly(int steps, double step, FixedClock& clock);
+void stepSingly(int steps, double step, FixedClock& clock);
 
 // Where the shown moment lies between the last state but one (0) and the last state (1). `step`: for a clock that has
 // not taken any; the length of the last step counts where there is one, so that it may change without a jump.

@@ -3,15 +3,15 @@
 #include <charconv>
 #include <numbers>
 
-#include "app/motion.h"
-#include "app/text_scanner.h"
+#include "app/files/text_scanner.h"
+#include "app/motion/motion.h"
 
 namespace app {
 
 namespace {
 
-constexpr int kMostBodies = 4096;
-constexpr int kMostFrames = 10'000'000;
+constexpr int kMaxBodies = 4096;
+constexpr int kMaxFrames = 10'000'000;
 
 struct BodyText {
   std::vector<Vec3> positions;
@@ -27,7 +27,7 @@ int readFrameCount(TextScanner& scanner) {
   if (!sameWord(word, "NumFrames:")) {
     scanner.fail("'NumFrames:' should open the file", "give an ARCSim .mot file");
   }
-  const long long frames = scanner.count("NumFrames", kMostFrames);
+  const long long frames = scanner.count("NumFrames", kMaxFrames);
   if (frames < 2) scanner.fail("the motion has fewer than two frames", "give a motion with at least two frames");
   // A body's frame takes at least 'x y z' and 'w x y z', 14 characters with their separators: checked before
   // allocation.
@@ -49,8 +49,8 @@ int readBodyIndex(TextScanner& scanner) {
     good = error == std::errc() && end == last && index >= 0;
   }
   if (!good) scanner.fail("found " + quoted(word) + " where 'body[b] position' should stand", "check NumFrames");
-  if (index >= kMostBodies)
-    scanner.fail("a body number above " + std::to_string(kMostBodies - 1), "number bodies from 0");
+  if (index >= kMaxBodies)
+    scanner.fail("a body number above " + std::to_string(kMaxBodies - 1), "number bodies from 0");
   return index;
 }
 

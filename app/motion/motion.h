@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/character.h"
+#include "app/figure/character.h"
 
 namespace app {
 
@@ -36,9 +36,6 @@ struct RigidMotion {
   std::vector<Rigid> bodies;     // frames x bodies, y up
 };
 RigidMotion readMot(std::string_view text, const std::string& file);
-
-// Reads a whole file, throwing InputError when it is missing, empty, a directory or over `limit_bytes`.
-std::string readText(const std::string& file, std::size_t limit_bytes = std::size_t{256} << 20);
 
 // Plays a clip: speed 0 to 20 (larger is allowed), pause, scrub, loop with a blend over the seam.
 struct Playback {

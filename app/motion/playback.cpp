@@ -10,8 +10,8 @@
 #include <cassert>
 #include <cmath>
 
-#include "app/clip_sampling.h"
-#include "app/motion.h"
+#include "app/motion/clip_sampling.h"
+#include "app/motion/motion.h"
 
 namespace app {
 

@@ -2,8 +2,8 @@
 #include <cassert>
 #include <cmath>
 
-#include "app/character.h"
-#include "app/clip_sampling.h"
+#include "app/figure/character.h"
+#include "app/motion/clip_sampling.h"
 
 namespace app {
 

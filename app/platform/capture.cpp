@@ -1,10 +1,10 @@
-#include "app/capture.h"
+#include "app/platform/capture.h"
 
 #include <cstdio>
 #include <filesystem>
 
-#include "app/errors.h"
-#include "app/image_io.h"
+#include "app/files/errors.h"
+#include "app/files/image_io.h"
 
 namespace app {
 
@@ -16,7 +16,7 @@ void writePicture(const std::string& file, Demo& demo, const FrameTarget& target
   writePng(file, target.width, target.height, pixels);
 }
 
-void takeScreenshot(Demo& demo, const FrameTarget& target) {
+void writeScreenshot(Demo& demo, const FrameTarget& target) {
   Capture& capture = demo.capture;
   capture.screenshot = false;
   const std::string file = capture.screenshot_file.empty() ? freeName("hairmesh", ".png") : capture.screenshot_file;
@@ -50,9 +50,9 @@ std::string freeName(const std::string& prefix, const std::string& ending) {
   }
 }
 
-void takePictures(Demo& demo, const FrameTarget& target) {
+void writePictures(Demo& demo, const FrameTarget& target) {
   try {
-    if (demo.capture.screenshot) takeScreenshot(demo, target);
+    if (demo.capture.screenshot) writeScreenshot(demo, target);
     if (demo.capture.recording) recordFrame(demo, target);
   } catch (const std::exception& fault) {
     demo.message = fault.what();

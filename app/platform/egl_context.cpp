@@ -1,4 +1,4 @@
-#include "app/egl_context.h"
+#include "app/platform/egl_context.h"
 
 #define EGL_NO_X11
 #include <EGL/egl.h>
@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/errors.h"
+#include "app/files/errors.h"
 #include "render/renderer.h"
 
 namespace app {

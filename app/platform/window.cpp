@@ -1,4 +1,4 @@
-#include "app/window.h"
+#include "app/platform/window.h"
 
 // GLEW must come before anything that includes OpenGL's own header.
 #include <GL/glew.h>
@@ -8,20 +8,25 @@
 #include <imgui/imgui.h>
 
 #include <algorithm>
+#include <functional>
 #include <iostream>
 #include <limits>
+#include <utility>
 
-#include "app/capture.h"
-#include "app/data_path.h"
 #include "app/debug_option.h"
-#include "app/demo.h"
-#include "app/errors.h"
-#include "app/image_io.h"
-#include "app/level_of_detail.h"
-#include "app/patience.h"
-#include "app/recording.h"
-#include "app/report.h"
-#include "app/ui.h"
+#include "app/files/data_path.h"
+#include "app/files/errors.h"
+#include "app/files/image_io.h"
+#include "app/files/output_file.h"
+#include "app/files/recording.h"
+#include "app/files/report.h"
+#include "app/platform/capture.h"
+#include "app/platform/interrupt.h"
+#include "app/platform/shader_reload.h"
+#include "app/scene/demo.h"
+#include "app/scene/level_of_detail.h"
+#include "app/ui/redraw_throttle.h"
+#include "app/ui/ui.h"
 #include "render/read_back.h"
 
 namespace app {
@@ -142,7 +147,7 @@ void drawPanels(Demo& demo, UiState& ui) {
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
-void listen(GLFWwindow* window, Session& s) {
+void setCallbacks(GLFWwindow* window, Session& s) {
   glfwSetWindowUserPointer(window, &s);
   glfwSetCursorPosCallback(window, onMouseMove);
   glfwSetScrollCallback(window, onScroll);
@@ -165,23 +170,28 @@ double frameSeconds(const Options& options, const Demo& demo, double& last) {
 }
 
 // Takes events in, after a wait for them where nothing moves. Time that passes while nothing is drawn is not caught up
-// with: `last` follows.
-void pollOrWait(bool may_wait, const Demo& demo, Patience& patience, double& last) {
+// with: `last` follows. `reload` is called while it waits, and ends the wait by returning true.
+void pollOrWait(bool may_wait, const Demo& demo, const std::function<bool()>& reload, RedrawThrottle& throttle,
+                double& last) {
   // Runs of so many frames and replays go on by themselves.
   const bool still = may_wait && nothingMoves(demo);
   const bool fading_message = !demo.message.empty() && !demo.message_is_fault;
-  switch (patience.next(still, ImGui::GetIO().WantTextInput || fading_message)) {
+  switch (throttle.next(still, ImGui::GetIO().WantTextInput || fading_message)) {
     case Wait::kNone:
       return glfwPollEvents();
     case Wait::kShort: {
       const double before = now();
       glfwWaitEventsTimeout(kShortWait);
-      if (now() - before < 0.95 * kShortWait) patience.disturb();
+      if (now() - before < 0.95 * kShortWait) throttle.disturb();
       return;
     }
     case Wait::kEvent:
-      glfwWaitEvents();
-      patience.disturb();
+      for (bool disturbed = false; !disturbed && !interrupted();) {
+        const double before = now();
+        glfwWaitEventsTimeout(kShaderLook);
+        disturbed = now() - before < 0.95 * kShaderLook || reload();
+      }
+      throttle.disturb();
       last = std::max(last, now() - kShortWait);
   }
 }
@@ -189,6 +199,7 @@ void pollOrWait(bool may_wait, const Demo& demo, Patience& patience, double& las
 }  // namespace
 
 int runWindow(Scene scene, const Options& options) {
+  noteInterrupts();
   WindowSystem system;
   Window window(options.width, options.height);
   const double start = now();
@@ -202,10 +213,11 @@ int runWindow(Scene scene, const Options& options) {
   ui.open_tab = tabIndex(options.panel);
   Session callbacks{demo, ui};
   // The panels' backend chains to the callbacks that it finds.
-  listen(window.handle, callbacks);
+  setCallbacks(window.handle, callbacks);
   PanelBackends backends(window.handle);
-  prepareUi(textScale(window.handle), ui);
+  prepareUi(textScale(window.handle) * static_cast<float>(options.ui_scale), ui);
   render::Renderer renderer(dataPath("shaders"));
+  if (!options.report.empty()) checkWritable(options.report);
   RunReport run;
   run.fps = demo.scene.playback.fps;
   run.renderer = render::rendererName();
@@ -214,17 +226,22 @@ int runWindow(Scene scene, const Options& options) {
   FrameTarget target;
   target.renderer = &renderer;
   target.draw_panels = [&](Demo& shown) { drawPanels(shown, ui); };
-  Patience patience;
+  ShaderWatch watch;
+  const auto reload = [&] { return reloadSavedShaders(now(), watch, renderer, demo); };
+  RedrawThrottle throttle;
   double last = now();
   int frame = 0;
   const int most = tape.frames().value_or(options.frames_given ? options.frames : kEndless);
-  for (; !glfwWindowShouldClose(window.handle) && !ui.quit && frame < most; ++frame) {
-    pollOrWait(most == kEndless, demo, patience, last);
+  const auto ended = [&] { return glfwWindowShouldClose(window.handle) || ui.quit || interrupted(); };
+  for (; !ended() && frame < most; ++frame) {
+    pollOrWait(most == kEndless, demo, reload, throttle, last);
+    watch.reload_all = std::exchange(ui.reload_shaders, false);
+    if (reload()) throttle.disturb();
     glfwGetFramebufferSize(window.handle, &target.width, &target.height);
     const double seconds = frameSeconds(options, demo, last);
     advanceFrame(demo, tape.turn(frame, frame == 0 ? 0 : seconds, demo), target);
-    demo.stats.skipped[kSkipEvents] = {patience.waited(), 1, 0};
-    takePictures(demo, target);
+    demo.stats.skipped[kSkipEvents] = {throttle.waited(), 1, 0};
+    writePictures(demo, target);
     if (!options.report.empty()) run.frames.push_back(demo.stats);
     if (options.frames_given && frame + 1 == options.frames && !options.screenshot.empty()) {
       std::vector<unsigned char> pixels;
@@ -235,7 +252,7 @@ int runWindow(Scene scene, const Options& options) {
   }
   if (!options.report.empty()) writeReport(options.report, run, demo);
   const Tape::End end = tape.end(demo);
-  std::cout << end.said;
+  std::cout << end.message;
   return end.differs ? kExitFault : kExitFine;
 }
 

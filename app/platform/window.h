@@ -1,8 +1,8 @@
 // The window: GLFW, OpenGL 4.5 core, mouse and keys, the panels' backends.
 #pragma once
 
+#include "app/files/scene_file.h"
 #include "app/options.h"
-#include "app/scene_file.h"
 
 namespace app {
 

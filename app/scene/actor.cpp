@@ -1,15 +1,16 @@
-#include "app/actor.h"
+#include "app/scene/actor.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 
-#include "app/errors.h"
-#include "app/frame_stats.h"
-#include "app/hair_file.h"
-#include "app/root_cover.h"
-#include "app/sim_to_render.h"
-#include "app/sleep.h"
+#include "app/figure/root_cover.h"
+#include "app/files/errors.h"
+#include "app/files/hair_file.h"
+#include "app/files/text_file.h"
+#include "app/scene/frame_stats.h"
+#include "app/scene/sim_to_render.h"
+#include "app/scene/sleep.h"
 
 namespace app {
 
@@ -46,9 +47,15 @@ std::vector<unsigned char> movingJoints(const Character& character) {
   return moving;
 }
 
-LoadedBody& loadBody(const CharacterSpec& spec, Wardrobe& wardrobe) {
+// A joint that hair is pinned to (-1: none), and those above it.
+void markMoving(int joint, const Skeleton& skeleton, std::vector<unsigned char>& moving) {
+  for (; joint >= 0; joint = skeleton.joints[static_cast<std::size_t>(joint)].parent)
+    moving[static_cast<std::size_t>(joint)] = 1;
+}
+
+LoadedBody& loadBody(const CharacterSpec& spec, AssetCache& asset_cache) {
   const std::string key = spec.motion + "|" + spec.parts;
-  for (const auto& body : wardrobe.bodies) {
+  for (const auto& body : asset_cache.bodies) {
     if (body->key == key) return *body;
   }
   auto body = std::make_unique<LoadedBody>();
@@ -56,18 +63,18 @@ LoadedBody& loadBody(const CharacterSpec& spec, Wardrobe& wardrobe) {
   body->character = loadCharacter(spec.motion, spec.parts);
   body->moving_joints = movingJoints(body->character);
   body->id = freshId();
-  wardrobe.bodies.push_back(std::move(body));
-  return *wardrobe.bodies.back();
+  asset_cache.bodies.push_back(std::move(body));
+  return *asset_cache.bodies.back();
 }
 
 std::string styleTitle(const CharacterSpec& spec) {
   return std::string(sim::styleName(spec.style)) + " " + std::string(sim::resolutionName(spec.resolution));
 }
 
-const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, Wardrobe& wardrobe) {
-  const std::string title = spec.hair.empty() ? styleTitle(spec) : spec.hair;
+const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& asset_cache) {
+  const std::string title = spec.hair.empty() ? styleTitle(spec) : spec.hair + (spec.reverse_faces ? " reversed" : "");
   const std::string key = spec.hair.empty() ? body.key + "|" + title : title;
-  for (const auto& haircut : wardrobe.haircuts) {
+  for (const auto& haircut : asset_cache.haircuts) {
     if (haircut->key == key) return *haircut;
   }
   auto haircut = std::make_unique<Haircut>();
@@ -78,24 +85,24 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, Wardrobe& wa
   try {
     haircut->mesh = sim::buildHairMesh(
         spec.hair.empty() ? sim::makeStyle(spec.style, spec.resolution, body.character.scalp, body.distance)
-                          : readHairMesh(readText(spec.hair), spec.hair));
+                          : readHairMesh(readText(spec.hair), spec.hair, spec.reverse_faces));
   } catch (const sim::MeshError& error) {
     throw InputError(spec.hair.empty() ? "style " + title + " on " + spec.motion : spec.hair, error.place, error.fault,
                      error.mend);
   }
   haircut->faces = renderFaces(haircut->mesh);
   haircut->parts = sim::connectedParts(haircut->mesh);
-  wardrobe.haircuts.push_back(std::move(haircut));
-  return *wardrobe.haircuts.back();
+  asset_cache.haircuts.push_back(std::move(haircut));
+  return *asset_cache.haircuts.back();
 }
 
-const ScalpCover& coverScalp(const LoadedBody& body, const Haircut& haircut, Wardrobe& wardrobe) {
-  for (const auto& scalp : wardrobe.covers) {
+const ScalpCover& coverScalp(const LoadedBody& body, const Haircut& haircut, AssetCache& asset_cache) {
+  for (const auto& scalp : asset_cache.covers) {
     if (scalp->body_id == body.id && scalp->haircut_id == haircut.id) return *scalp;
   }
-  wardrobe.covers.push_back(std::make_unique<ScalpCover>(
+  asset_cache.covers.push_back(std::make_unique<ScalpCover>(
       ScalpCover{freshId(), body.id, haircut.id, rootCover(body.character, haircut.mesh)}));
-  return *wardrobe.covers.back();
+  return *asset_cache.covers.back();
 }
 
 int findClip(const CharacterSpec& spec, const Character& character) {
@@ -157,18 +164,19 @@ sim::StepInput stepInput(const sim::SimParams& params, double step, double time,
     }
     posePartDistances(body.parts, actor.pose, actor.previous_pose, step, actor.parts);
   }
-  return {actor.roots, actor.ellipsoids, time, actor.parts};
+  posePins(actor.pins, actor.pose, actor.previous_pose, time, step, actor.pinned);
+  return {actor.roots, actor.ellipsoids, time, actor.parts, actor.pinned};
 }
 
 }  // namespace
 
-Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, Wardrobe& wardrobe) {
+Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, AssetCache& asset_cache) {
   Actor actor;
   actor.spec = spec;
-  LoadedBody& body = loadBody(spec, wardrobe);
+  LoadedBody& body = loadBody(spec, asset_cache);
   actor.body = &body;
-  actor.haircut = &cutHair(spec, body, wardrobe);
-  actor.scalp = &coverScalp(body, *actor.haircut, wardrobe);
+  actor.haircut = &cutHair(spec, body, asset_cache);
+  actor.scalp = &coverScalp(body, *actor.haircut, asset_cache);
   actor.clip = findClip(spec, actor.body->character);
   actor.id = freshId();
   actor.playback.time = spec.clip_offset;
@@ -182,13 +190,15 @@ Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, Wardrob
   actor.context = std::make_unique<sim::StepContext>(actor.haircut->mesh, now);
   actor.reach = reachOf(actor);
   placeActor(actor, true);
+  actor.pins = findPins(spec.pins, actor.haircut->mesh, body.character, actor.pose);
+  for (const ActorPin& pin : actor.pins) markMoving(pin.joint, body.character.skeleton, body.moving_joints);
   return actor;
 }
 
-const HaircutPair* coarsePair(const Actor& actor, sim::Resolution resolution, Wardrobe& wardrobe) {
+const HaircutPair* coarsePair(const Actor& actor, sim::Resolution resolution, AssetCache& asset_cache) {
   const sim::Resolution own = actor.spec.resolution;
   if (!actor.spec.hair.empty() || own == resolution || own == sim::Resolution::kMinimal) return nullptr;
-  for (const auto& pair : wardrobe.pairs) {
+  for (const auto& pair : asset_cache.pairs) {
     if (pair->fine == actor.haircut && pair->resolution == resolution) return pair.get();
   }
   CharacterSpec spec = actor.spec;
@@ -196,14 +206,14 @@ const HaircutPair* coarsePair(const Actor& actor, sim::Resolution resolution, Wa
   auto pair = std::make_unique<HaircutPair>();
   pair->resolution = resolution;
   pair->fine = actor.haircut;
-  pair->coarse = &cutHair(spec, loadBody(spec, wardrobe), wardrobe);
+  pair->coarse = &cutHair(spec, loadBody(spec, asset_cache), asset_cache);
   pair->to_coarse = sim::makeShapeTransfer(pair->fine->mesh, pair->coarse->mesh);
   pair->to_fine = sim::makeShapeTransfer(pair->coarse->mesh, pair->fine->mesh);
-  wardrobe.pairs.push_back(std::move(pair));
-  return wardrobe.pairs.back().get();
+  asset_cache.pairs.push_back(std::move(pair));
+  return asset_cache.pairs.back().get();
 }
 
-void tidy(const std::vector<Actor>& actors, Wardrobe& wardrobe) {
+void tidy(const std::vector<Actor>& actors, AssetCache& asset_cache) {
   const auto worn = [&](const auto& entry) {
     return std::any_of(actors.begin(), actors.end(), [&](const Actor& actor) {
       const HaircutPair* pair = actor.coarse.pair;
@@ -214,10 +224,10 @@ void tidy(const std::vector<Actor>& actors, Wardrobe& wardrobe) {
               (static_cast<const void*>(pair) == entry.get() || static_cast<const void*>(pair->coarse) == entry.get()));
     });
   };
-  std::erase_if(wardrobe.pairs, [&](const auto& pair) { return !worn(pair); });
-  std::erase_if(wardrobe.bodies, [&](const auto& body) { return !worn(body); });
-  std::erase_if(wardrobe.haircuts, [&](const auto& haircut) { return !worn(haircut); });
-  std::erase_if(wardrobe.covers, [&](const auto& scalp) { return !worn(scalp); });
+  std::erase_if(asset_cache.pairs, [&](const auto& pair) { return !worn(pair); });
+  std::erase_if(asset_cache.bodies, [&](const auto& body) { return !worn(body); });
+  std::erase_if(asset_cache.haircuts, [&](const auto& haircut) { return !worn(haircut); });
+  std::erase_if(asset_cache.covers, [&](const auto& scalp) { return !worn(scalp); });
 }
 
 void wakeAll(Actor& actor) {
@@ -225,7 +235,7 @@ void wakeAll(Actor& actor) {
   for (PartHair& part : actor.part_hairs) part.sleep.asleep = false;
 }
 
-void keepMotion(const Actor& from, Actor& actor) {
+void copyMotion(const Actor& from, Actor& actor) {
   actor.playback = from.playback;
   placeActor(actor, true);
 }
@@ -307,6 +317,8 @@ sim::StepReport simulateCoarse(const sim::SimParams& params, sim::StepInput inpu
   const sim::HairMesh &fine_mesh = coarse.pair->fine->mesh, &coarse_mesh = coarse.pair->coarse->mesh;
   followScalp(actor, *coarse.pair->coarse, coarse.roots);
   input.roots = coarse.roots;
+  pinsOfCoarse(fine_mesh, coarse_mesh, scalpToWorld(actor.body->character, actor.pose), actor.pinned, coarse.pins);
+  input.pins = coarse.pins;
   const sim::StepReport report = sim::advance(coarse_mesh, params, input, step, *coarse.context, coarse.hair);
   const Rigid head = scalpToWorld(actor.body->character, actor.pose);
   sim::transferPositions(coarse.pair->to_fine, coarse_mesh, fine_mesh, head, coarse.hair.positions,

@@ -9,16 +9,17 @@
 #include <string>
 #include <vector>
 
-#include "app/character.h"
-#include "app/motion.h"
-#include "app/part_distances.h"
-#include "app/scene_file.h"
-#include "app/step_error.h"
+#include "app/figure/body_sdf.h"
+#include "app/figure/character.h"
+#include "app/files/scene_file.h"
+#include "app/motion/motion.h"
+#include "app/scene/pins.h"
+#include "app/scene/step_error.h"
 #include "render/frame_input.h"
-#include "sim/hair_mesh.h"
-#include "sim/hair_parts.h"
-#include "sim/hair_state.h"
-#include "sim/shape_transfer.h"
+#include "sim/mesh/connected_components.h"
+#include "sim/mesh/hair_mesh.h"
+#include "sim/mesh/hair_state.h"
+#include "sim/mesh/shape_transfer.h"
 #include "sim/sleep.h"
 #include "sim/step.h"
 
@@ -53,7 +54,7 @@ struct ScalpCover {
   std::vector<float> cover;
 };
 
-// Two resolutions of a style on one head, and the ways between them.
+// Two resolutions of a style on one head, and the transfers between them.
 struct HaircutPair {
   const Haircut* fine = nullptr;
   const Haircut* coarse = nullptr;
@@ -62,7 +63,7 @@ struct HaircutPair {
 };
 
 // Owns what actors share. Addresses stay good while an entry is in use.
-struct Wardrobe {
+struct AssetCache {
   std::vector<std::unique_ptr<LoadedBody>> bodies;
   std::vector<std::unique_ptr<Haircut>> haircuts;
   std::vector<std::unique_ptr<HaircutPair>> pairs;
@@ -82,6 +83,7 @@ struct CoarseHair {
   bool active = false;
   sim::HairState hair;
   std::vector<sim::Vec3> roots;
+  std::vector<sim::PinnedVertex> pins;
   std::unique_ptr<sim::StepContext> context;
   std::vector<sim::Vec3> remainder;  // m, head frame: what the coarse shape lacks, fading after the change-over
 };
@@ -91,6 +93,7 @@ struct PartHair {
   sim::SleepState sleep;
   sim::HairState hair;  // gathered from the actor's before each use
   std::vector<sim::Vec3> roots;
+  std::vector<sim::PinnedVertex> pins;
   std::unique_ptr<sim::StepContext> context;  // made when it is first stepped by itself
 };
 
@@ -109,8 +112,10 @@ struct Actor {
   sim::HairState hair;
   std::vector<sim::Vec3> previous_positions;
   std::vector<sim::Ellipsoid> ellipsoids;
-  std::vector<sim::DistancePart> parts;  // the same body as signed distances, where they are collided with
+  std::vector<sim::BodySdf> parts;  // the same body as signed distances, where they are collided with
   std::vector<sim::Vec3> roots;
+  std::vector<ActorPin> pins;
+  std::vector<sim::PinnedVertex> pinned;  // those that are on, as the last step saw them
   std::unique_ptr<sim::StepContext> context;
   sim::StepReport last_report;
   StepErrorMeter error_meter;
@@ -138,18 +143,18 @@ struct Actor {
 };
 
 // Loads what `spec` names and stands the actor at the start of its clip with its hair at rest. Throws InputError; the
-// wardrobe may then hold an entry more, and nothing else changed.
-Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, Wardrobe& wardrobe);
+// asset cache may then hold an entry more, and nothing else changed.
+Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, AssetCache& asset_cache);
 
-// The actor's style at low or minimal resolution with the ways to it and back, made when it is first asked for; null
+// The actor's style at low or minimal resolution with the transfers to it and back, made on first use; null
 // for hair from a file and for hair that is already as coarse.
-const HaircutPair* coarsePair(const Actor& actor, sim::Resolution resolution, Wardrobe& wardrobe);
+const HaircutPair* coarsePair(const Actor& actor, sim::Resolution resolution, AssetCache& asset_cache);
 
 // Drops what no actor wears.
-void tidy(const std::vector<Actor>& actors, Wardrobe& wardrobe);
+void tidy(const std::vector<Actor>& actors, AssetCache& asset_cache);
 
 // Takes over the motion of `from` (time in the clip), as when only the hair was changed.
-void keepMotion(const Actor& from, Actor& actor);
+void copyMotion(const Actor& from, Actor& actor);
 
 // Poses the actor at its playback's time without moving the clock; the hair is carried along rigidly (teleport of the
 // second kind), or put to its rest shape when `rest` is set.

@@ -2,20 +2,21 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <utility>
 
-#include "app/data_path.h"
-#include "app/demo.h"
-#include "app/errors.h"
-#include "app/presets.h"
+#include "app/files/data_path.h"
+#include "app/files/errors.h"
+#include "app/files/file_kind.h"
+#include "app/files/output_file.h"
+#include "app/files/presets.h"
+#include "app/scene/demo.h"
 #include "sim/field_text.h"
 
 namespace app {
 
 namespace {
 
-void tell(const std::string& text, Demo& demo) {
+void showMessage(const std::string& text, Demo& demo) {
   demo.message = text;
   demo.message_is_fault = false;
 }
@@ -24,7 +25,7 @@ void changePreset(const std::string& name, Demo& demo) {
   std::vector<CharacterLook*> looks;
   for (Actor& actor : demo.actors) looks.push_back(&actor.spec.look);
   loadPreset(presetFile(name, ""), {&demo.scene.sim, &demo.scene.look, looks});
-  tell("preset " + stem(name), demo);
+  showMessage("preset " + stem(name), demo);
 }
 
 // Replaces the selected actor by one of another spec; loads first, so that a fault leaves the old one standing.
@@ -36,15 +37,15 @@ void recast(const CharacterSpec& spec, bool same_motion, const std::string& titl
     order.scene.playback = demo.scene.playback;
     return loadLater(std::move(order), demo);
   }
-  Actor fresh = makeActor(spec, demo.scene.playback, demo.wardrobe);
+  Actor fresh = makeActor(spec, demo.scene.playback, demo.asset_cache);
   fresh.playback.speed = old.playback.speed;
   fresh.playback.paused = old.playback.paused;
-  if (same_motion) keepMotion(old, fresh);
+  if (same_motion) copyMotion(old, fresh);
   settleActor(demo.scene.sim, demo.scene.playback.settle, fresh);
   fresh.context->refreshGradually(true);
   old = std::move(fresh);
-  tidy(demo.actors, demo.wardrobe);
-  tell(title, demo);
+  tidy(demo.actors, demo.asset_cache);
+  showMessage(title, demo);
 }
 
 void changeStyle(const Request& request, Demo& demo) {
@@ -99,13 +100,6 @@ void scrub(double time, Demo& demo) {
   placeActor(actor, false);
 }
 
-void writeText(const std::string& file, const std::string& text) {
-  std::ofstream stream(file, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream) throw InputError(file, "", "cannot be written", "choose a folder that exists and may be written to");
-}
-
 Scene presentScene(const Demo& demo) {
   Scene scene = demo.scene;
   for (std::size_t i = 0; i < demo.actors.size(); ++i) scene.characters[i] = demo.actors[i].spec;
@@ -113,24 +107,20 @@ Scene presentScene(const Demo& demo) {
 }
 
 void openAnyFile(const std::string& file, Demo& demo) {
-  std::string ending = std::filesystem::path(file).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
-  if (ending == ".obj") return changeHairFile(file, demo);
-  if (ending == ".mot") {
-    // The paper's data keeps the body parts in a folder beside the motion.
-    const auto parts = std::filesystem::path(file).parent_path() / "female-objs";
-    return changeMotion({Ask::kMotionFile, parts.string(), file}, demo);
+  switch (fileKind(file)) {
+    case FileKind::kScene:
+      demo.requests.push_back({Ask::kSceneFile, "", file});
+      return;
+    case FileKind::kPreset:
+      demo.requests.push_back({Ask::kPresetFile, "", file});
+      return;
+    case FileKind::kMotion:
+      return changeMotion({Ask::kMotionFile, "", file}, demo);
+    case FileKind::kRigidMotion:
+      return changeMotion({Ask::kMotionFile, partsBeside(file), file}, demo);
+    case FileKind::kHairMesh:
+      return changeHairFile(file, demo);
   }
-  if (ending == ".json") {
-    const bool is_scene = parseJson(readText(file), file).contains("characters");
-    demo.requests.push_back({is_scene ? Ask::kSceneFile : Ask::kPresetFile, "", file});
-    return;
-  }
-  for (const char* known : {".bvh", ".glb", ".gltf", ".fbx", ".dae"}) {
-    if (ending == known) return changeMotion({Ask::kMotionFile, "", file}, demo);
-  }
-  throw InputError(file, "", "is no kind of file that this program reads",
-                   "give a scene or preset (.json), a motion (.bvh, .glb, .gltf, .fbx, .mot) or a hair mesh (.obj)");
 }
 
 void setParameter(const Request& request, Demo& demo) {
@@ -146,108 +136,141 @@ void setDebugView(const Request& request, Demo& demo) {
   }
 }
 
-template <class Change>
-void forAll(Demo& demo, Change&& change) {
-  for (Actor& actor : demo.actors) change(actor);
+void switchSkip(const Request& request, Demo& demo) {
+  const std::string fault = setSkip(request.name + (request.value != 0 ? "=on" : "=off"), demo.scene.skips);
+  if (!fault.empty()) throw InputError("", "", fault, "");
 }
 
-void apply(const Request& request, Demo& demo) {
-  const bool on = request.value != 0;
-  PlaybackSpec& playback = demo.scene.playback;
-  switch (request.what) {
-    case Ask::kSetParam:
-      return setParameter(request, demo);
-    case Ask::kPause:
-      demo.paused = on;
-      return;
-    case Ask::kPauseMotion:
-      return forAll(demo, [&](Actor& actor) { actor.playback.paused = on; });
-    case Ask::kSingleStep:
-      demo.paused = true;
-      demo.single_steps += 1;
-      return;
-    case Ask::kReset:
-      return forAll(demo, [](Actor& actor) { placeActor(actor, true); });
-    case Ask::kRestart:
-      return forAll(demo, [&](Actor& actor) {
-        actor.playback.time = actor.spec.clip_offset;
-        placeActor(actor, true);
-        settleActor(demo.scene.sim, playback.settle, actor);
-      });
-    case Ask::kCollapse:
-      return forAll(demo, [](Actor& actor) {
-        sim::collapseOntoRoots(actor.haircut->mesh, actor.hair);
-        actor.previous_positions = actor.hair.positions;
-        actor.coarse.active = false;
-      });
-    case Ask::kCarryAlong:
-      return scrub(request.value, demo);
-    case Ask::kSpeed:
-      playback.speed = std::clamp(request.value, 0.0, kFastestPlayback);
-      return forAll(demo, [&](Actor& actor) { actor.playback.speed = playback.speed; });
-    case Ask::kLoop:
-      playback.loop = on;
-      return forAll(demo, [&](Actor& actor) { actor.playback.loop = on; });
-    case Ask::kBlend:
-      playback.blend = std::clamp(request.value, 0.0, 10.0);
-      return forAll(demo, [&](Actor& actor) { actor.playback.blend = playback.blend; });
-    case Ask::kInPlace:
-      selectedActor(demo).spec.in_place = on;
-      selectedActor(demo).playback.in_place = on;
-      return placeActor(selectedActor(demo), false);
-    case Ask::kClip:
-    case Ask::kMotionFile:
-      return changeMotion(request, demo);
-    case Ask::kStyle:
-    case Ask::kResolution:
-      return changeStyle(request, demo);
-    case Ask::kHairFile:
-      return changeHairFile(request.text, demo);
-    case Ask::kSceneFile:
-      return changeScene(request.text, demo);
-    case Ask::kPresetFile:
-      return changePreset(request.text, demo);
-    case Ask::kSavePreset:
-      writeText(request.text,
-                writePreset(stem(request.text), demo.scene.sim, selectedActor(demo).spec.look, demo.scene.look));
-      return tell("saved " + request.text, demo);
-    case Ask::kSaveScene:
-      writeText(request.text, writeScene(presentScene(demo)));
-      return tell("saved " + request.text, demo);
-    case Ask::kOpenFile:
-      return openAnyFile(request.text, demo);
-    case Ask::kSelect:
-      demo.selected = std::clamp(static_cast<int>(request.value), 0, static_cast<int>(demo.actors.size()) - 1);
-      return;
-    case Ask::kView:
-      return turnTo(request.name, demo.actors.front(), demo.camera);
-    case Ask::kFollow:
-      demo.camera.follow = on;
-      return;
-    case Ask::kDebugView:
-      return setDebugView(request, demo);
-    case Ask::kSkip:
-      if (const std::string fault = setSkip(request.name + (on ? "=on" : "=off"), demo.scene.skips); !fault.empty())
-        throw InputError("", "", fault, "");
-      return;
-    case Ask::kScreenshot:
-      demo.capture.screenshot = true;
-      demo.capture.screenshot_file = request.text;
-      return;
-    case Ask::kBudget:
-      playback.budget_ms = std::isfinite(request.value) ? std::clamp(request.value, 0.0, kLargestBudget) : 0;
-      return setBudget(1e-3 * playback.budget_ms, demo.governor);
-    case Ask::kRecord:
-      demo.capture.recording = on;
-      demo.capture.recorded = 0;
-      return;
+void restart(const Request&, Demo& demo) {
+  for (Actor& actor : demo.actors) {
+    actor.playback.time = actor.spec.clip_offset;
+    placeActor(actor, true);
+    settleActor(demo.scene.sim, demo.scene.playback.settle, actor);
   }
+}
+
+void collapse(const Request&, Demo& demo) {
+  for (Actor& actor : demo.actors) {
+    sim::collapseOntoRoots(actor.haircut->mesh, actor.hair);
+    actor.previous_positions = actor.hair.positions;
+    actor.coarse.active = false;
+  }
+}
+
+void setSpeed(const Request& request, Demo& demo) {
+  demo.scene.playback.speed = std::clamp(request.value, 0.0, kFastestPlayback);
+  for (Actor& actor : demo.actors) actor.playback.speed = demo.scene.playback.speed;
+}
+
+void setLoop(const Request& request, Demo& demo) {
+  demo.scene.playback.loop = request.value != 0;
+  for (Actor& actor : demo.actors) actor.playback.loop = demo.scene.playback.loop;
+}
+
+void setBlend(const Request& request, Demo& demo) {
+  demo.scene.playback.blend = std::clamp(request.value, 0.0, 10.0);
+  for (Actor& actor : demo.actors) actor.playback.blend = demo.scene.playback.blend;
+}
+
+void setInPlace(const Request& request, Demo& demo) {
+  Actor& actor = selectedActor(demo);
+  actor.spec.in_place = actor.playback.in_place = request.value != 0;
+  placeActor(actor, false);
+}
+
+void setBudget(const Request& request, Demo& demo) {
+  double& budget = demo.scene.playback.budget_ms;
+  budget = std::isfinite(request.value) ? std::clamp(request.value, 0.0, kLargestBudget) : 0;
+  setBudget(1e-3 * budget, demo.governor);
+}
+
+void savePreset(const Request& request, Demo& demo) {
+  writeFile(request.text,
+            writePreset(stem(request.text), demo.scene.sim, selectedActor(demo).spec.look, demo.scene.look));
+  showMessage("saved " + request.text, demo);
+}
+
+void saveScene(const Request& request, Demo& demo) {
+  writeFile(request.text, writeScene(presentScene(demo)));
+  showMessage("saved " + request.text, demo);
+}
+
+struct Action {
+  Ask what;
+  void (*apply)(const Request&, Demo&);
+};
+
+// Row k is for the request of number k.
+constexpr Action kActions[] = {
+    {Ask::kSetParam, setParameter},
+    {Ask::kPause, [](const Request& request, Demo& demo) { demo.paused = request.value != 0; }},
+    {Ask::kPauseMotion,
+     [](const Request& request, Demo& demo) {
+       for (Actor& actor : demo.actors) actor.playback.paused = request.value != 0;
+     }},
+    {Ask::kSingleStep,
+     [](const Request&, Demo& demo) {
+       demo.paused = true;
+       demo.single_steps += 1;
+     }},
+    {Ask::kReset,
+     [](const Request&, Demo& demo) {
+       for (Actor& actor : demo.actors) placeActor(actor, true);
+     }},
+    {Ask::kRestart, restart},
+    {Ask::kCollapse, collapse},
+    {Ask::kCarryAlong, [](const Request& request, Demo& demo) { scrub(request.value, demo); }},
+    {Ask::kSpeed, setSpeed},
+    {Ask::kLoop, setLoop},
+    {Ask::kBlend, setBlend},
+    {Ask::kInPlace, setInPlace},
+    {Ask::kClip, changeMotion},
+    {Ask::kStyle, changeStyle},
+    {Ask::kResolution, changeStyle},
+    {Ask::kMotionFile, changeMotion},
+    {Ask::kHairFile, [](const Request& request, Demo& demo) { changeHairFile(request.text, demo); }},
+    {Ask::kSceneFile, [](const Request& request, Demo& demo) { changeScene(request.text, demo); }},
+    {Ask::kPresetFile, [](const Request& request, Demo& demo) { changePreset(request.text, demo); }},
+    {Ask::kSavePreset, savePreset},
+    {Ask::kSaveScene, saveScene},
+    {Ask::kOpenFile, [](const Request& request, Demo& demo) { openAnyFile(request.text, demo); }},
+    {Ask::kSelect,
+     [](const Request& request, Demo& demo) {
+       demo.selected = std::clamp(static_cast<int>(request.value), 0, static_cast<int>(demo.actors.size()) - 1);
+     }},
+    {Ask::kView, [](const Request& request, Demo& demo) { turnTo(request.name, demo.actors.front(), demo.camera); }},
+    {Ask::kFollow, [](const Request& request, Demo& demo) { demo.camera.follow = request.value != 0; }},
+    {Ask::kDebugView, setDebugView},
+    {Ask::kBudget, setBudget},
+    {Ask::kSkip, switchSkip},
+    {Ask::kScreenshot,
+     [](const Request& request, Demo& demo) {
+       demo.capture.screenshot = true;
+       demo.capture.screenshot_file = request.text;
+     }},
+    {Ask::kRecord,
+     [](const Request& request, Demo& demo) {
+       demo.capture.recording = request.value != 0;
+       demo.capture.recorded = 0;
+     }},
+};
+
+constexpr bool rowsMatchRequests() {
+  for (std::size_t k = 0; k < std::size(kActions); ++k) {
+    if (kActions[k].what != static_cast<Ask>(k)) return false;
+  }
+  return std::size(kActions) == static_cast<std::size_t>(Ask::kCount);
+}
+static_assert(rowsMatchRequests());
+
+void apply(const Request& request, Demo& demo) {
+  kActions[static_cast<std::size_t>(request.what)].apply(request, demo);
 }
 
 }  // namespace
 
 void applyRequests(Demo& demo) {
-  takeLoaded(demo);
+  installLoaded(demo);
   if (!demo.requests.empty()) {
     for (Actor& actor : demo.actors) actor.shown_still = false;
   }

@@ -1,17 +1,17 @@
-#include "app/background_load.h"
+#include "app/scene/background_load.h"
 
 #include <chrono>
 #include <functional>
 #include <utility>
 
-#include "app/demo.h"
+#include "app/scene/demo.h"
 
 namespace app {
 
 struct Loaded {
   LoadOrder order;
   std::optional<Demo> demo;  // of a scene
-  Wardrobe wardrobe;         // of a character
+  AssetCache asset_cache;    // of a character
   std::optional<Actor> actor;
 };
 
@@ -22,7 +22,7 @@ std::unique_ptr<Loaded> load(LoadOrder order) {
   auto loaded = std::make_unique<Loaded>();
   const PlaybackSpec& playback = order.scene.playback;
   if (order.spec) {
-    Actor actor = makeActor(*order.spec, playback, loaded->wardrobe);
+    Actor actor = makeActor(*order.spec, playback, loaded->asset_cache);
     if (order.same_motion) {
       actor.playback = order.playback;
       placeActor(actor, true);
@@ -48,9 +48,9 @@ void recastLoaded(Loaded& loaded, Demo& demo) {
   if (loaded.order.actor >= static_cast<int>(demo.actors.size())) return;
   Actor& old = demo.actors[loaded.order.actor];
   Actor fresh = std::move(*loaded.actor);
-  for (auto& body : loaded.wardrobe.bodies) demo.wardrobe.bodies.push_back(std::move(body));
-  for (auto& haircut : loaded.wardrobe.haircuts) demo.wardrobe.haircuts.push_back(std::move(haircut));
-  for (auto& scalp : loaded.wardrobe.covers) demo.wardrobe.covers.push_back(std::move(scalp));
+  for (auto& body : loaded.asset_cache.bodies) demo.asset_cache.bodies.push_back(std::move(body));
+  for (auto& haircut : loaded.asset_cache.haircuts) demo.asset_cache.haircuts.push_back(std::move(haircut));
+  for (auto& scalp : loaded.asset_cache.covers) demo.asset_cache.covers.push_back(std::move(scalp));
   fresh.playback.speed = old.playback.speed;
   fresh.playback.paused = old.playback.paused;
   if (loaded.order.same_motion) {
@@ -58,7 +58,7 @@ void recastLoaded(Loaded& loaded, Demo& demo) {
     placeActor(fresh, false);
   }
   old = std::move(fresh);
-  tidy(demo.actors, demo.wardrobe);
+  tidy(demo.actors, demo.asset_cache);
 }
 
 }  // namespace
@@ -71,7 +71,7 @@ void loadLater(LoadOrder order, Demo& demo) {
   }
 }
 
-void takeLoaded(Demo& demo) {
+void installLoaded(Demo& demo) {
   BackgroundLoad& loading = demo.loading;
   if (!loading.running.valid() || loading.running.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
     return;

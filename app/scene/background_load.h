@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "app/motion.h"
-#include "app/scene_file.h"
+#include "app/files/scene_file.h"
+#include "app/motion/motion.h"
 
 namespace app {
 
@@ -36,7 +36,7 @@ struct BackgroundLoad {
 void loadLater(LoadOrder order, Demo& demo);
 
 // Puts in place what has been loaded, if anything has; a fault becomes the demo's message and changes nothing else.
-void takeLoaded(Demo& demo);
+void installLoaded(Demo& demo);
 
 // Where signed distances are collided with: starts making those that are missing, and takes over those that are made.
 // Until then the bodies are their ellipsoids. Does nothing unless loading beside the frames is on.

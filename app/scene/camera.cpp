@@ -1,9 +1,9 @@
-#include "app/camera.h"
+#include "app/scene/camera.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "app/sim_to_render.h"
+#include "app/scene/sim_to_render.h"
 
 namespace app {
 

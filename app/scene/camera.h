@@ -1,8 +1,8 @@
 // The camera: orbit, pan and zoom about a target that goes along with a character.
 #pragma once
 
-#include "app/actor.h"
-#include "app/scene_file.h"
+#include "app/files/scene_file.h"
+#include "app/scene/actor.h"
 #include "render/frame_input.h"
 
 namespace app {

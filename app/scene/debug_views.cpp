@@ -1,4 +1,4 @@
-#include "app/debug_views.h"
+#include "app/scene/debug_views.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +13,7 @@ using render::LineVertex;
 constexpr Color kExternalColor{0.98f, 0.82f, 0.25f, 1}, kEllipsoidColor{0.35f, 0.75f, 0.95f, 0.55f};
 constexpr Color kSlideColor{0.35f, 0.95f, 0.5f, 1}, kStickColor{1.0f, 0.3f, 0.25f, 1};
 constexpr Color kVelocityColor{0.65f, 0.85f, 1.0f, 0.9f};
+constexpr Color kPinColor{1.0f, 0.55f, 0.9f, 1};
 constexpr double kNormalLength = 0.025;     // m
 constexpr double kVelocityTime = 1.0 / 30;  // s
 constexpr double kTetShrink = 0.8;          // drawn about its middle, so that neighbours stay apart
@@ -120,6 +121,12 @@ void addDebugViews(const DebugViews& views, const Actor& actor, DebugGeometry& g
       const Color& color = contact.sticks ? kStickColor : kSlideColor;
       geometry.points.push_back(vertex(p, color));
       addLine(vertex(p, color), vertex(p + kNormalLength * contact.normal, color), geometry);
+    }
+  }
+  if (views.pins) {
+    for (const sim::PinnedVertex& pin : actor.pinned) {
+      geometry.points.push_back(vertex(pin.target, kPinColor));
+      addLine(vertex(shown(actor, pin.vertex), kPinColor), vertex(pin.target, kPinColor), geometry);
     }
   }
   if (views.velocities) {

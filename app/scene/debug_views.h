@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/actor.h"
+#include "app/scene/actor.h"
 #include "render/frame_input.h"
 
 namespace app {
@@ -18,8 +18,9 @@ struct DebugViews {
   bool ellipsoids = false;  // collision ellipsoids
   bool contacts = false;    // contacts and their normals
   bool velocities = false;  // vertex velocities over 1/30 s
+  bool pins = false;        // pins, from the vertex to its target
 
-  bool any() const { return mesh || external || tets || ellipsoids || contacts || velocities; }
+  bool any() const { return mesh || external || tets || ellipsoids || contacts || velocities || pins; }
 };
 
 // One view by name, for keys, options and check boxes.
@@ -27,7 +28,7 @@ struct DebugView {
   std::string_view name, label, help;
   bool DebugViews::*on;
 };
-inline constexpr std::array<DebugView, 6> kDebugViews{{
+inline constexpr std::array<DebugView, 7> kDebugViews{{
     {"mesh", "Hair mesh", "Edges of the hair mesh, root to tip from blue to red", &DebugViews::mesh},
     {"external", "External vertices", "Vertices that collide with the body", &DebugViews::external},
     {"tets", "Tetrahedra", "Corner tetrahedra by volume: blue squeezed, grey at rest, orange swollen, magenta inverted",
@@ -35,6 +36,7 @@ inline constexpr std::array<DebugView, 6> kDebugViews{{
     {"ellipsoids", "Ellipsoids", "The body as collisions see it", &DebugViews::ellipsoids},
     {"contacts", "Contacts", "Contact points with their normals; red where the hair sticks", &DebugViews::contacts},
     {"velocities", "Velocities", "Where each vertex goes within a thirtieth of a second", &DebugViews::velocities},
+    {"pins", "Pins", "Vertices that are pinned, each with a line to where it is drawn", &DebugViews::pins},
 }};
 
 // What the renderer is handed; kept from frame to frame so that it stops allocating.

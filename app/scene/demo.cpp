@@ -1,9 +1,9 @@
-#include "app/demo.h"
+#include "app/scene/demo.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "app/level_of_detail.h"
+#include "app/scene/level_of_detail.h"
 #include "render/fiber_scattering.h"
 
 namespace app {
@@ -11,11 +11,11 @@ namespace app {
 namespace {
 
 // How many steps the frame takes: the clock's, or those asked for one by one.
-int takeSteps(double seconds, Demo& demo) {
+int stepsToTake(double seconds, Demo& demo) {
   const sim::SimParams& params = demo.running;
   if (!demo.paused) return tick(seconds, params.time_step, params.max_steps_per_frame, demo.clock);
   const int steps = std::exchange(demo.single_steps, 0);
-  takeSingly(steps, params.time_step, demo.clock);
+  stepSingly(steps, params.time_step, demo.clock);
   return steps;
 }
 
@@ -24,7 +24,7 @@ void moveActors(double time, Demo& demo) {
 }
 
 // What the frame cost and how far it strayed, to the governor.
-void keepBudget(double seconds, int steps, Demo& demo) {
+void updateGovernor(double seconds, int steps, Demo& demo) {
   FrameStats& stats = demo.stats;
   stats.rung = demo.governor.budget > 0 ? demo.governor.rung : -1;
   if (demo.paused || stats.rung < 0) return;
@@ -37,7 +37,7 @@ void keepBudget(double seconds, int steps, Demo& demo) {
 }
 
 // Nothing is handed over when neither a step nor the clock has moved since the last time.
-void handPositionsOver(bool moved, Demo& demo) {
+void handOverPositions(bool moved, Demo& demo) {
   const double fraction = shownFraction(demo.clock, demo.running.time_step);
   if (moved || fraction != demo.shown_fraction || !demo.scene.skips[kSkipPose]) {
     for (Actor& actor : demo.actors) showActor(fraction, actor);
@@ -50,14 +50,14 @@ void handPositionsOver(bool moved, Demo& demo) {
   for (const Actor& actor : demo.actors) addDebugViews(demo.debug, actor, demo.debug_geometry);
 }
 
-void tellTrouble(Demo& demo) {
+void showFault(Demo& demo) {
   const std::string note = numericalNote(demo.stats);
   if (note.empty()) return;
   demo.message = note;
   demo.message_is_fault = demo.stats.recoveries > 0;
 }
 
-void keepTime(double seconds, Demo& demo) {
+void advanceShownTime(double seconds, Demo& demo) {
   if (!demo.paused) demo.shown_time += seconds;
   demo.stats.shown_time = demo.shown_time;
   demo.stats.lost = demo.clock.lost;
@@ -75,7 +75,7 @@ render::DrawSkips drawSkips(const SkipSet& skips) {
   draw.strands = skips[kSkipStrands];
   draw.segments = skips[kSkipSegments];
   draw.shadow_detail = skips[kSkipShadowDetail];
-  draw.openness = skips[kSkipOpenness];
+  draw.sky_visibility = skips[kSkipSkyVisibility];
   return draw;
 }
 
@@ -87,10 +87,10 @@ void draw(Demo& demo, const FrameTarget& target) {
   const render::FrameInput input = frameInput(demo, target.width, target.height);
   demo.stats.draw = target.pixels ? target.renderer->renderImage(input, *target.pixels, target.measure)
                                   : target.renderer->renderFrame(input, target.framebuffer, target.measure);
-  addDrawing(demo.stats.draw.left_out, demo.stats.skipped);
+  addDrawing(demo.stats.draw.skip_counts, demo.stats.skipped);
 }
 
-void remember(Demo& demo) {
+void addToHistory(Demo& demo) {
   if (demo.history.size() < kHistoryLength) {
     demo.history.push_back(demo.stats);
   } else {
@@ -137,10 +137,10 @@ render::BodyInput bodyInput(const Actor& actor, bool show_strands) {
 
 }  // namespace
 
-void addDrawing(const render::DrawLeftOut& drawing, SkipTallies& tallies) {
-  const auto add = [&](SkipId id, const render::LeftOut& count) {
-    tallies[id].skipped += count.skipped;
-    tallies[id].of += count.of;
+void addDrawing(const render::DrawSkipCounts& drawing, SkipCounts& counts) {
+  const auto add = [&](SkipId id, const render::SkipCount& count) {
+    counts[id].skipped += count.skipped;
+    counts[id].of += count.of;
   };
   add(kSkipFrame, drawing.frame);
   add(kSkipRows, drawing.rows);
@@ -152,7 +152,7 @@ void addDrawing(const render::DrawLeftOut& drawing, SkipTallies& tallies) {
   add(kSkipStrands, drawing.strands);
   add(kSkipSegments, drawing.segments);
   add(kSkipShadowDetail, drawing.shadow_detail);
-  add(kSkipOpenness, drawing.openness);
+  add(kSkipSkyVisibility, drawing.sky_visibility);
 }
 
 void addStep(const sim::StepReport& report, double step_seconds, FrameStats& stats) {
@@ -175,13 +175,13 @@ void addStep(const sim::StepReport& report, double step_seconds, FrameStats& sta
   stats.contacts += report.contacts;
   stats.corrected += report.corrected;
   stats.recoveries += report.recoveries;
-  if (report.recoveries > 0) stats.trouble = report.trouble;
+  if (report.recoveries > 0) stats.fault_report = report.fault_report;
   stats.carried += report.carried;
-  stats.combed += report.combed;
+  stats.guided += report.guided;
   stats.max_penetration = std::max(stats.max_penetration, report.max_penetration);
   count(report.contacts == 0 && report.corrected == 0, stats.always[kNoContact]);
   count(report.solver_iterations == 0, stats.always[kSolvedAtStart]);
-  const auto add = [&](BuiltInId id, const sim::LeftOut& left_out) {
+  const auto add = [&](BuiltInId id, const sim::SkipCount& left_out) {
     stats.always[id].skipped += left_out.skipped;
     stats.always[id].of += left_out.of;
   };
@@ -192,7 +192,7 @@ void addStep(const sim::StepReport& report, double step_seconds, FrameStats& sta
 
 std::string numericalNote(const FrameStats& stats) {
   if (stats.recoveries > 0)
-    return std::to_string(stats.recoveries) + " recoveries from numerical trouble: " + troubleText(stats.trouble);
+    return std::to_string(stats.recoveries) + " recoveries from numerical trouble: " + faultText(stats.fault_report);
   return stats.carried > 0 ? "the head jumped; the hair was carried along" : "";
 }
 
@@ -201,7 +201,7 @@ Demo openScene(Scene scene, double aspect, bool beside) {
   demo.scene = std::move(scene);
   demo.aspect = aspect;
   for (const CharacterSpec& spec : demo.scene.characters) {
-    demo.actors.push_back(makeActor(spec, demo.scene.playback, demo.wardrobe));
+    demo.actors.push_back(makeActor(spec, demo.scene.playback, demo.asset_cache));
     demo.actors.back().steps = demo.actors.size();
   }
   demo.loading.on = beside;
@@ -249,24 +249,24 @@ void advanceFrame(Demo& demo, double seconds, const FrameTarget& target) {
   followColliders(demo);
 
   demo.running = governed(demo.scene.sim, demo.governor);
-  const int steps = takeSteps(seconds, demo);
+  const int steps = stepsToTake(seconds, demo);
   count(demo.paused && steps == 0, demo.stats.always[kPausedFrame]);
   if (steps > 0) chooseDetail(demo);
   for (int i = 1; i <= steps; ++i) moveActors(demo.clock.time - (steps - i) * demo.running.time_step, demo);
-  keepBudget(seconds, steps, demo);
-  tellTrouble(demo);
+  updateGovernor(seconds, steps, demo);
+  showFault(demo);
 
-  timed(demo.stats.seconds[kTimeHandOver], [&] { handPositionsOver(asked || steps > 0, demo); });
+  timed(demo.stats.seconds[kTimeHandOver], [&] { handOverPositions(asked || steps > 0, demo); });
   follow(demo.actors.front(), seconds, demo.camera);
 
-  keepTime(seconds, demo);
+  advanceShownTime(seconds, demo);
 
   timed(demo.stats.seconds[kTimeDraw], [&] { draw(demo, target); });
   if (target.draw_panels) {
     timed(demo.stats.seconds[kTimePanels], [&] { target.draw_panels(demo); });
   }
   demo.stats.whole = now() - start;
-  remember(demo);
+  addToHistory(demo);
 }
 
 }  // namespace app

@@ -6,15 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "app/actor.h"
-#include "app/background_load.h"
-#include "app/camera.h"
-#include "app/debug_views.h"
-#include "app/fixed_clock.h"
-#include "app/frame_stats.h"
-#include "app/governor.h"
-#include "app/request.h"
-#include "app/scene_file.h"
+#include "app/files/scene_file.h"
+#include "app/motion/fixed_clock.h"
+#include "app/scene/actor.h"
+#include "app/scene/background_load.h"
+#include "app/scene/camera.h"
+#include "app/scene/debug_views.h"
+#include "app/scene/frame_stats.h"
+#include "app/scene/governor.h"
+#include "app/scene/request.h"
 #include "render/renderer.h"
 
 namespace app {
@@ -30,7 +30,7 @@ struct Capture {
 
 struct Demo {
   Scene scene;
-  Wardrobe wardrobe;
+  AssetCache asset_cache;
   std::vector<Actor> actors;
   int selected = 0;
   Camera camera;
@@ -83,8 +83,8 @@ void advanceFrame(Demo& demo, double seconds, const FrameTarget& target);
 // What advanceFrame hands to the renderer; spans point into the demo.
 render::FrameInput frameInput(Demo& demo, int width, int height);
 
-// Each count of a drawn frame under its name in the ledger.
-void addDrawing(const render::DrawLeftOut& drawing, SkipTallies& tallies);
+// Adds each count of a drawn frame to its row of the table of skips.
+void addDrawing(const render::DrawSkipCounts& drawing, SkipCounts& counts);
 
 // Applies and clears demo.requests. See apply_requests.cpp.
 void applyRequests(Demo& demo);

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/skips.h"
+#include "app/scene/skips.h"
 #include "render/renderer.h"
 #include "sim/step.h"
 
@@ -40,16 +40,16 @@ struct FrameStats {
   double residual = 0, residual_acceleration = 0;  // largest
   bool converged = true;
   int contacts = 0, corrected = 0, recoveries = 0;
-  double max_penetration = 0;  // m
-  int rung = -1;               // of the budget governor; -1: it is off
-  double counted_cost = 0;     // s; this and the next only where it is on
-  double step_error = 0;       // sum over steps and characters, see step_error.h
-  int combed = 0;              // columns that stayed turned over and are being led back to rest
-  int carried = 0;             // times that roots jumped and the hair was carried along
-  sim::Trouble trouble;        // of the last recovery
+  double max_penetration = 0;     // m
+  int rung = -1;                  // of the budget governor; -1: it is off
+  double counted_cost = 0;        // s; this and the next only where it is on
+  double step_error = 0;          // sum over steps and characters, see step_error.h
+  int guided = 0;                 // columns that stayed turned over and are being led back to rest
+  int carried = 0;                // times that roots jumped and the hair was carried along
+  sim::FaultReport fault_report;  // of the last recovery
   render::FrameReport draw;
-  SkipTallies skipped{};
-  BuiltInTallies always{};  // left out without a switch
+  SkipCounts skipped{};
+  BuiltInCounts always{};  // left out without a switch
 
   double simulation() const {
     return seconds[kTimeForces] + seconds[kTimeSolve] + seconds[kTimeCollision] + seconds[kTimeMinimization] +
@@ -57,9 +57,9 @@ struct FrameStats {
   }
 };
 
-inline void count(bool left_out, SkipTally& tally) {
-  tally.skipped += left_out;
-  ++tally.of;
+inline void count(bool left_out, SkipCount& skip_count) {
+  skip_count.skipped += left_out;
+  ++skip_count.of;
 }
 
 // Adds what a step did.

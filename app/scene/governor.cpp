@@ -1,4 +1,4 @@
-#include "app/governor.h"
+#include "app/scene/governor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,10 +16,10 @@ constexpr double kOver = 1.04;      // times the budget: mean of two windows fro
 constexpr double kFarOver = 1.25;   // of one window
 constexpr double kFitsDown = 0.98;  // predicted share of the budget that a coarser rung must fit in
 constexpr double kFitsUp = 0.90;    // and a finer one
-constexpr double kPatience = 1, kMostPatience = 32;       // s before a climb
-constexpr double kSoon = 8;                               // s
-constexpr double kLeastSteepness = 1.03, kMostOff = 1.8;  // times the ladder's word
-constexpr double kForgetting = 0.002;                     // a window
+constexpr double kBackoff = 1, kMaxBackoff = 32;       // s before a climb
+constexpr double kSoon = 8;                            // s
+constexpr double kMinSteepness = 1.03, kMaxOff = 1.8;  // times the ladder's word
+constexpr double kForgetting = 0.002;                  // a window
 
 double steepness(int rung, const Governor& governor) {
   if (governor.steepness[rung] > 0) return governor.steepness[rung];
@@ -59,7 +59,7 @@ void learn(double present, Governor& governor) {
   if (governor.left_cost <= 0) return;
   const int below = governor.left_rung;
   const double word = ladder()[below + 1].cost / ladder()[below].cost, ratio = present / governor.left_cost;
-  governor.steepness[below] = std::max(kLeastSteepness, std::clamp(ratio, word / kMostOff, word * kMostOff));
+  governor.steepness[below] = std::max(kMinSteepness, std::clamp(ratio, word / kMaxOff, word * kMaxOff));
   governor.left_cost = 0;
 }
 
@@ -74,7 +74,7 @@ void forget(Governor& governor) {
 // A climb that is taken back soon lets the next one wait; long calm makes up for it.
 void judgeLastChange(Governor& governor) {
   const bool taken_back = governor.changes > 0 && governor.rung > governor.left_rung && governor.since_change < kSoon;
-  governor.patience = std::clamp(governor.patience * (taken_back ? 2 : 0.5), kPatience, kMostPatience);
+  governor.backoff = std::clamp(governor.backoff * (taken_back ? 2 : 0.5), kBackoff, kMaxBackoff);
 }
 
 }  // namespace
@@ -88,7 +88,7 @@ void setBudget(double seconds, Governor& governor) {
   governor.left_cost = 0;
   governor.calibrated = false;
   governor.over_budget = false;
-  governor.patience = kPatience;
+  governor.backoff = kBackoff;
   governor.since_change = 0;
   governor.settle = kSettle;
 }
@@ -139,7 +139,7 @@ bool observe(const FrameCost& frame, Governor& governor) {
   learn(mean, governor);
   governor.over_budget = false;
   if (governor.rung < finest) forget(governor);
-  if (governor.rung == finest || governor.since_change < governor.patience) return false;
+  if (governor.rung == finest || governor.since_change < governor.backoff) return false;
   if (predictedAt(governor.rung + 1, std::max(mean, present), governor) > kFitsUp * budget) return false;
   changeTo(governor.rung + 1, mean, per_frame, governor);
   return true;

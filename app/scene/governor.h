@@ -31,7 +31,7 @@ struct Rung {
 // From coarse to fine; costs rise and errors fall. See governor_ladder.cpp for how it was measured.
 std::span<const Rung> ladder();
 int defaultRung();
-inline constexpr int kMostRungs = 16;
+inline constexpr int kMaxRungs = 16;
 
 // What a frame did, as the governor sees it.
 struct FrameCost {
@@ -57,13 +57,13 @@ struct Governor {
     double shown = 0, simulated = 0, cost = 0, error = 0;
     int frames = 0;
   } window;
-  double last_window = 0;                      // cost of a simulated second in the window before; 0: none at this rung
-  double settle = 0;                           // simulated s to let pass before measuring
-  double since_change = 0, patience = 0;       // shown s; of waiting before a climb
-  bool calibrated = false;                     // a first window has been seen
-  int left_rung = 0;                           // where the last change came from
-  double left_cost = 0;                        // of a simulated second there; 0: learned from already, or a jump
-  std::array<double, kMostRungs> steepness{};  // learned cost of rung k + 1 over rung k; 0: the ladder's
+  double last_window = 0;                     // cost of a simulated second in the window before; 0: none at this rung
+  double settle = 0;                          // simulated s to let pass before measuring
+  double since_change = 0, backoff = 0;       // shown s; of waiting before a climb
+  bool calibrated = false;                    // a first window has been seen
+  int left_rung = 0;                          // where the last change came from
+  double left_cost = 0;                       // of a simulated second there; 0: learned from already, or a jump
+  std::array<double, kMaxRungs> steepness{};  // learned cost of rung k + 1 over rung k; 0: the ladder's
 };
 
 // Starts governing at `seconds` a frame, or ends it with 0. What was learned of the ladder stays.

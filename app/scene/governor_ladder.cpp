@@ -7,8 +7,8 @@
 // differ too, which it does not learn. docs/performance.md holds the measurement.
 #include <cmath>
 
-#include "app/governor.h"
-#include "sim/preconditioner_choice.h"
+#include "app/scene/governor.h"
+#include "sim/linear/preconditioner_choice.h"
 
 namespace app {
 
@@ -28,7 +28,7 @@ constexpr Rung kLadder[] = {
     {"bdf2 1/240 s, tolerance 1e-2", Integrator::kBdf2, 240, 1e-2, kMost, 4.7, 2.5e-3},
     {"bdf2 1/480 s, tolerance 1e-2", Integrator::kBdf2, 480, 1e-2, kMost, 9, 1.8e-3},
 };
-static_assert(std::size(kLadder) <= kMostRungs);
+static_assert(std::size(kLadder) <= kMaxRungs);
 
 // s: of a step, an evaluation of forces and Hessian, and an iteration, each a vertex, of the default solver. Fitted to
 // hairmesh-bench --styles.
@@ -38,7 +38,7 @@ constexpr double kPerStep = 3e-8, kPerEvaluation = 3.8e-7;
 // none, and theirs grows as matrix and factors leave the caches (1.0e-7 at 2,300 vertices, 1.4 to 1.7e-7 from 7,000 to
 // 10,000).
 double perIteration(int vertices) {
-  if (vertices <= sim::kMostFactored) return 1.9e-7 * std::pow(vertices / 365.0, 0.45);
+  if (vertices <= sim::kMaxFactored) return 1.9e-7 * std::pow(vertices / 365.0, 0.45);
   return 1.0e-7 * std::pow(vertices / 2300.0, 0.3);
 }
 

@@ -1,4 +1,4 @@
-#include "app/level_of_detail.h"
+#include "app/scene/level_of_detail.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "app/sleep.h"
+#include "app/scene/sleep.h"
 
 namespace app {
 
@@ -60,8 +60,8 @@ bool below(double size, double limit, bool already) {
   return size < (already ? kReturn * limit : limit);
 }
 
-void tally(SkipId id, bool skipped, double seconds, Demo& demo) {
-  SkipTally& count = demo.stats.skipped[id];
+void skip_count(SkipId id, bool skipped, double seconds, Demo& demo) {
+  SkipCount& count = demo.stats.skipped[id];
   count.skipped += skipped;
   ++count.of;
   count.seconds += skipped ? seconds : 0;
@@ -88,21 +88,21 @@ void chooseMesh(double size, Demo& demo, Actor& actor) {
   const double hair = size * actor.haircut->mesh.hair_length / hairSize(actor);
   for (const Coarseness& mesh : kMeshes) {
     if (below(size, mesh.below, already) && below(hair, kHairBelow, already) &&
-        coarsePair(actor, mesh.resolution, demo.wardrobe))
+        coarsePair(actor, mesh.resolution, demo.asset_cache))
       actor.detail.coarse = mesh.resolution;
     if (before == mesh.resolution) already = false;
   }
 }
 
 // Whether all of the actor's hair sleeps through the step.
-bool tallySleep(double step, double time, Demo& demo, Actor& actor) {
+bool countSleep(double step, double time, Demo& demo, Actor& actor) {
   Sleepers sleepers;
   if (demo.scene.skips[kSkipSleep]) {
     sleepers = sleepersOf(demo.running, step, time, actor);
   } else {
     wakeAll(actor);
   }
-  SkipTally& count = demo.stats.skipped[kSkipSleep];
+  SkipCount& count = demo.stats.skipped[kSkipSleep];
   count.skipped += sleepers.asleep;
   count.of += sleepers.parts;
   if (sleepers.all()) count.seconds += actor.usual_step;
@@ -158,7 +158,7 @@ void chooseDetail(Demo& demo) {
 }
 
 void settleInDetail(double seconds, Demo& demo, Actor& actor) {
-  const HaircutPair* pair = actor.detail.coarse ? coarsePair(actor, *actor.detail.coarse, demo.wardrobe) : nullptr;
+  const HaircutPair* pair = actor.detail.coarse ? coarsePair(actor, *actor.detail.coarse, demo.asset_cache) : nullptr;
   const bool own = !pair || projectedSize(demo, actor) >= kOwnStart;
   if (own) settleActor(demo.scene.sim, seconds, actor);
   if (pair) enterCoarse(*pair, actor);
@@ -170,12 +170,12 @@ void stepInDetail(double time, Demo& demo, Actor& actor) {
   const SkipSet& skips = demo.scene.skips;
   const std::uint64_t moment = actor.steps++;
   const bool within_own_step = actor.ahead > 0;
-  tally(kSkipFarSteps, within_own_step, actor.usual_step, demo);
+  skip_count(kSkipFarSteps, within_own_step, actor.usual_step, demo);
   if (within_own_step) {
     --actor.ahead;
     return;
   }
-  tally(kSkipUnseen, !actor.detail.seen, actor.usual_step, demo);
+  skip_count(kSkipUnseen, !actor.detail.seen, actor.usual_step, demo);
   if (!actor.detail.seen) {
     // Travel is the one way for a figure to come into view by itself.
     if (actor.playback.in_place) {
@@ -192,24 +192,24 @@ void stepInDetail(double time, Demo& demo, Actor& actor) {
     if (actor.playback.in_place) placeActor(actor, false);
     actor.unseen = false;
   }
-  const HaircutPair* pair = actor.detail.coarse ? coarsePair(actor, *actor.detail.coarse, demo.wardrobe) : nullptr;
+  const HaircutPair* pair = actor.detail.coarse ? coarsePair(actor, *actor.detail.coarse, demo.asset_cache) : nullptr;
   if (actor.coarse.active && pair != actor.coarse.pair) leaveCoarse(actor);
   if (!actor.coarse.active && pair) enterCoarse(*pair, actor);
-  tally(kSkipFarMesh, actor.coarse.active, 0, demo);
+  skip_count(kSkipFarMesh, actor.coarse.active, 0, demo);
 
   // Up to the next of the moments at which steps of this length end.
   const int span =
       actor.detail.step_span - static_cast<int>(moment % static_cast<std::uint64_t>(actor.detail.step_span));
   const bool moved = moveActor(span * step, actor, skips[kSkipPose], skips[kSkipBones]);
-  tally(kSkipPose, !moved, 0, demo);
-  SkipTally& bones = demo.stats.skipped[kSkipBones];
+  skip_count(kSkipPose, !moved, 0, demo);
+  SkipCount& bones = demo.stats.skipped[kSkipBones];
   const std::vector<unsigned char>& needed = actor.body->moving_joints;
   bones.of += static_cast<long>(needed.size());
   if (moved && skips[kSkipBones]) bones.skipped += std::count(needed.begin(), needed.end(), 0);
   actor.span = span;
   actor.ahead = span - 1;
   const sim::SimParams& params = demo.running;
-  if (tallySleep(span * step, time, demo, actor)) {
+  if (countSleep(span * step, time, demo, actor)) {
     if (!actor.shown_still) actor.previous_positions = actor.hair.positions;
     demo.stats.seconds[kTimeCharacter] += now() - start;
     return;
@@ -228,7 +228,7 @@ bool nothingMoves(const Demo& demo) {
   }
   if (!demo.requests.empty() || demo.single_steps > 0 || demo.capture.recording || demo.capture.screenshot)
     return false;
-  const bool picture_stays = demo.stats.draw.left_out.frame.skipped > 0;
+  const bool picture_stays = demo.stats.draw.skip_counts.frame.skipped > 0;
   const bool all_still = std::ranges::all_of(demo.actors, [](const Actor& actor) { return actor.shown_still; });
   return demo.scene.skips[kSkipEvents] && picture_stays && (demo.paused || all_still);
 }

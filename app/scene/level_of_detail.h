@@ -1,7 +1,7 @@
 // How much care the simulation takes of each actor: by its size in the picture, and whether it can be in the picture.
 #pragma once
 
-#include "app/demo.h"
+#include "app/scene/demo.h"
 
 namespace app {
 

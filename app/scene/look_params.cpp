@@ -1,4 +1,4 @@
-#include "app/look_params.h"
+#include "app/scene/look_params.h"
 
 #include <charconv>
 #include <cmath>
@@ -141,8 +141,7 @@ std::vector<HairField> makeHairTable() {
     hair < [](auto& look) -> auto& {
   return look.body_roughness;
 }
-> ("body_roughness", "Body", "", {0.05, 1}, "Roughness of the mannequin's surface."),
-    hair < [](auto& look) -> auto& {
+> ("body_roughness", "Body", "", {0.05, 1}, "Roughness of the mannequin's surface."), hair < [](auto& look) -> auto& {
   return look.scalp_tint;
 }
 > ("scalp_tint", "Body", "", {0, 1}, "How much the roots shade and colour the skin between them, as at the parting."),

@@ -1,8 +1,8 @@
-#include "app/parameter_table.h"
+#include "app/scene/parameter_table.h"
 
 #include <string_view>
 
-#include "app/look_params.h"
+#include "app/scene/look_params.h"
 #include "sim/field_text.h"
 
 namespace app {

@@ -37,7 +37,8 @@ enum class Ask {
   kBudget,       // value: ms of simulation a frame; 0: the person's own settings hold
   kSkip,         // name, value
   kScreenshot,   // text: file, empty for the next free name
-  kRecord        // value: 1 starts, 0 ends
+  kRecord,       // value: 1 starts, 0 ends
+  kCount
 };
 
 struct Request {

@@ -1,4 +1,4 @@
-#include "app/sim_to_render.h"
+#include "app/scene/sim_to_render.h"
 
 #include <algorithm>
 

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "app/character.h"
+#include "app/figure/character.h"
 #include "render/frame_input.h"
-#include "sim/hair_mesh.h"
+#include "sim/mesh/hair_mesh.h"
 
 namespace app {
 

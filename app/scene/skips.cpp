@@ -1,4 +1,4 @@
-#include "app/skips.h"
+#include "app/scene/skips.h"
 
 #include <algorithm>
 #include <initializer_list>
@@ -17,84 +17,84 @@ constexpr const char* kDetailBound = "mean 4 levels of 255 over blocks of hair, 
 constexpr std::array<Skip, kSkipCount> kTable{{
     {kSkipSleep, "sleep", kSimulation, "steps", false, "0.12 mm",
      "Hair that hangs still over a still head is not stepped.",
-     "tests/skips_sim_test.cpp: Sleep.ComesWhenNothingThatShowsIsLeft"},
+     "tests/sim/skips_sim_test.cpp: Sleep.ComesWhenNothingThatShowsIsLeft"},
     {kSkipUnseen, "unseen", kSimulation, "steps", false, "not in the picture",
      "Characters whose figure and shadow cannot be in the picture are neither posed nor stepped; their hair comes back "
      "as it hung.",
-     "tests/skips_sim_test.cpp: Unseen.WhoIsLeftOutIsNotInThePicture"},
+     "tests/sim/skips_sim_test.cpp: Unseen.WhoIsLeftOutIsNotInThePicture"},
     {kSkipFarSteps, "far-steps", kSimulation, "steps", false, "mean 3 pixels over the vertices",
      "A character smaller than 520 pixels takes steps twice as long, below 380 four times, below 100 eight times; the "
      "long steps of a crowd spread over the frames.",
-     "tests/skips_sim_test.cpp: Far.StaysWithinItsPixels"},
+     "tests/sim/skips_sim_test.cpp: Far.StaysWithinItsPixels"},
     {kSkipFarMesh, "far-mesh", kSimulation, "steps", false, "mean 3 pixels over the vertices",
      "A character smaller than 420 pixels, its hair shorter than 150, is simulated with its style's low resolution, "
      "below 240 with its minimal one, and drawn with its own.",
-     "tests/skips_sim_test.cpp: Far.StaysWithinItsPixels"},
+     "tests/sim/skips_sim_test.cpp: Far.StaysWithinItsPixels"},
     {kSkipPose, "pose", kCharacter, "poses", true, "",
      "A figure whose clip stands still is not posed again, and nothing is handed over while time stands still.",
-     "tests/skips_sim_test.cpp: Exact.PosesAndBonesChangeNoBit"},
+     "tests/sim/skips_sim_test.cpp: Exact.PosesAndBonesChangeNoBit"},
     {kSkipBones, "bones", kCharacter, "joints", true, "",
      "Joints that neither skin nor ellipsoids nor the scalp hang on are not evaluated.",
-     "tests/skips_sim_test.cpp: Exact.PosesAndBonesChangeNoBit"},
+     "tests/sim/skips_sim_test.cpp: Exact.PosesAndBonesChangeNoBit"},
     {kSkipFrame, "frame", kDrawing, "frames", true, "",
      "A frame that would show what the last one showed is not drawn again, only toned.",
-     "tests/skips_draw_test.cpp: SkipsDraw.AStillFrameIsKeptAndAnyChangeSeen"},
+     "tests/render/skips_draw_test.cpp: SkipsDraw.AStillFrameIsKeptAndAnyChangeSeen"},
     {kSkipRows, "rows", kDrawing, "vertices", true, "", "Only positions that changed are uploaded.",
-     "tests/skips_draw_test.cpp: SkipsDraw.ExactSkipsChangeNoByte"},
+     "tests/render/skips_draw_test.cpp: SkipsDraw.ExactSkipsChangeNoByte"},
     {kSkipShadows, "shadows", kDrawing, "maps", true, "",
      "Deep opacity maps and the body's shadow map are kept while light, hair and bodies stay.",
-     "tests/skips_draw_test.cpp: SkipsDraw.ExactSkipsChangeNoByte"},
+     "tests/render/skips_draw_test.cpp: SkipsDraw.ExactSkipsChangeNoByte"},
     {kSkipView, "view", kDrawing, "bundles", true, "",
      "Hairs, bundles of hair and bodies outside the camera's view are not drawn.",
-     "tests/skips_draw_test.cpp: SkipsDraw.ExactSkipsChangeNoByte"},
+     "tests/render/skips_draw_test.cpp: SkipsDraw.ExactSkipsChangeNoByte"},
     {kSkipShadowView, "shadow-view", kDrawing, "maps", true, "",
      "Hair whose shadow cannot fall into the view gets no shadow map, and maps draw only bodies that can shade them. "
      "(The other maps then lie elsewhere in their texture, whose filter may round otherwise: a level or two in a "
      "pixel or two.)",
-     "tests/skips_draw_test.cpp: SkipsDraw.ExactSkipsChangeNoByte"},
+     "tests/render/skips_draw_test.cpp: SkipsDraw.ExactSkipsChangeNoByte"},
     {kSkipBodyParts, "body-parts", kDrawing, "triangles", true, "", "Parts of a body outside the view are not skinned.",
-     "tests/skips_draw_test.cpp: SkipsDraw.ExactSkipsChangeNoByte"},
+     "tests/render/skips_draw_test.cpp: SkipsDraw.ExactSkipsChangeNoByte"},
     {kSkipBodyDetail, "body-detail", kDrawing, "triangles", false,
      "mean 2 levels of 255 over blocks of body, 3.5 where it is under 60 pixels",
      "Fewer triangles of a body the smaller it is in the picture: vertices within a cell of a pixel are merged, and "
      "the "
      "light is worked out at them.",
-     "tests/skips_draw_test.cpp: SkipsDraw.BodyDetailStaysInItsBound"},
+     "tests/render/skips_draw_test.cpp: SkipsDraw.BodyDetailStaysInItsBound"},
     {kSkipStrands, "strands", kDrawing, "strands", false, kDetailBound,
      "Fewer and wider strands the smaller the hair is in the picture (strands_per_pixel).",
-     "tests/skips_draw_test.cpp: SkipsDraw.DetailStaysInItsBound"},
+     "tests/render/skips_draw_test.cpp: SkipsDraw.DetailStaysInItsBound"},
     {kSkipSegments, "segments", kDrawing, "curve points", false, kDetailBound,
      "Fewer segments the straighter and smaller the strands are in the picture (segment_error).",
-     "tests/skips_draw_test.cpp: SkipsDraw.DetailStaysInItsBound"},
+     "tests/render/skips_draw_test.cpp: SkipsDraw.DetailStaysInItsBound"},
     {kSkipShadowDetail, "shadow-detail", kDrawing, "shadow strands", false, kDetailBound,
      "Fewer strands in smaller shadow maps the smaller the hair is in the picture (shadow_strands_per_pixel).",
-     "tests/skips_draw_test.cpp: SkipsDraw.DetailStaysInItsBound"},
-    {kSkipOpenness, "openness", kDrawing, "vertices", false, kDetailBound,
+     "tests/render/skips_draw_test.cpp: SkipsDraw.DetailStaysInItsBound"},
+    {kSkipSkyVisibility, "sky-visibility", kDrawing, "vertices", false, kDetailBound,
      "The soft light inside hair that is small in the picture is renewed every eighth time.",
-     "tests/skips_draw_test.cpp: SkipsDraw.DetailStaysInItsBound"},
+     "tests/render/skips_draw_test.cpp: SkipsDraw.DetailStaysInItsBound"},
     {kSkipEvents, "events", "window", "waits", true, "", "The window waits for events while nothing in it moves.",
-     "tests/skips_sim_test.cpp: Exact.TheWindowWaitsOnlyWhenNothingMoves"},
+     "tests/sim/skips_sim_test.cpp: Exact.TheWindowWaitsOnlyWhenNothingMoves"},
 }};
 
 constexpr std::array<BuiltInSkip, kBuiltInCount> kBuiltIn{{
     {kNoContact, "no-contact", "steps", "no contact: no position correction and no deformation minimization",
-     "tests/deformation_test.cpp: DeformationMinimization.DoesNoWorkWhenNothingTouches"},
+     "tests/sim/contact/deformation_test.cpp: DeformationMinimization.DoesNoWorkWhenNothingTouches"},
     {kSolvedAtStart, "solved-at-start", "steps", "a solve that starts within its tolerance: no iteration",
-     "tests/skips_step_test.cpp: LeftOut.ASolveThatStartsWithinToleranceTakesNoIteration"},
+     "tests/sim/skips_step_test.cpp: SkipCount.ASolveThatStartsWithinToleranceTakesNoIteration"},
     {kNoNewFactor, "no-new-factor", "steps",
      "unchanged parameters: no new factor of the rest shape and no new balance of gravity",
-     "tests/skips_step_test.cpp: LeftOut.UnchangedParametersNeverRefactor"},
+     "tests/sim/skips_step_test.cpp: SkipCount.UnchangedParametersNeverRefactor"},
     {kNoStiffness, "no-stiffness", "kinds of force", "a kind of force without stiffness: not assembled",
-     "tests/skips_step_test.cpp: LeftOut.KindsOfForceWithoutStiffnessAreNotAssembled"},
+     "tests/sim/skips_step_test.cpp: SkipCount.KindsOfForceWithoutStiffnessAreNotAssembled"},
     {kOutOfReach, "out-of-reach", "tests of a vertex with a collider",
      "colliders out of reach, within the step, of the whole hair or of a cluster of its vertices: not tested",
-     "tests/reach_test.cpp: Reach.RandomBodiesAreFoundToTheBit"},
+     "tests/sim/reach_test.cpp: Reach.RandomBodiesAreFoundToTheBit"},
     {kPausedFrame, "paused", "frames", "paused: no step unless one is asked for",
-     "tests/demo_test.cpp: Demo.ASingleStepIsOneStep"},
+     "tests/app/scene/demo_test.cpp: Demo.ASingleStepIsOneStep"},
     {kNoPicture, "no-picture", "frames", "no picture asked for: no OpenGL context",
-     "tests/demo_test.cpp: Headless.ARunWithoutPicturesNeedsNoGraphicsAndReportsEveryFrame"},
+     "tests/app/scene/demo_test.cpp: Headless.ARunWithoutPicturesNeedsNoGraphicsAndReportsEveryFrame"},
     {kHiddenPanels, "hidden-panels", "frames", "hidden panels: no work for them",
-     "tests/ui_test.cpp: Panels.HiddenPanelsDrawNothing"},
+     "tests/app/ui/ui_test.cpp: Panels.HiddenPanelsDrawNothing"},
 }};
 
 std::string names() {
@@ -139,7 +139,7 @@ std::string setSkip(std::string_view text, SkipSet& skips) {
   return {};
 }
 
-std::string skipLedger() {
+std::string skipTableText() {
   std::string text;
   const auto addRow = [&](std::initializer_list<std::string_view> cells) {
     text += "|";

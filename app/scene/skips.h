@@ -1,4 +1,4 @@
-// The ledger of skips: what a frame leaves out because nothing needs it. Each has a name, a switch, a counter, a bound
+// The table of skips: what a frame leaves out because nothing needs it. Each has a name, a switch, a counter, a bound
 // on what it may change, and the test that holds it to that bound. The command line (--skip), the window and the
 // reports go by this table alone.
 #pragma once
@@ -27,12 +27,12 @@ enum SkipId {
   kSkipStrands,
   kSkipSegments,
   kSkipShadowDetail,
-  kSkipOpenness,
+  kSkipSkyVisibility,
   kSkipEvents,
   kSkipCount
 };
 
-// One row of the ledger.
+// One row of the table.
 struct Skip {
   SkipId id;
   const char* name;
@@ -85,14 +85,14 @@ struct SkipSet {
 std::string setSkip(std::string_view text, SkipSet& skips);
 
 // How much a frame left out, of how much, and the time (s) that this saved where it can be told (Skip::timed).
-struct SkipTally {
+struct SkipCount {
   long skipped = 0, of = 0;
   double seconds = 0;
 };
-using SkipTallies = std::array<SkipTally, kSkipCount>;
-using BuiltInTallies = std::array<SkipTally, kBuiltInCount>;
+using SkipCounts = std::array<SkipCount, kSkipCount>;
+using BuiltInCounts = std::array<SkipCount, kBuiltInCount>;
 
-// The ledger as a Markdown table.
-std::string skipLedger();
+// The table of skips in Markdown.
+std::string skipTableText();
 
 }  // namespace app

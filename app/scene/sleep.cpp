@@ -1,8 +1,8 @@
-#include "app/sleep.h"
+#include "app/scene/sleep.h"
 
 #include <algorithm>
 
-#include "app/frame_stats.h"
+#include "app/scene/frame_stats.h"
 
 namespace app {
 
@@ -12,16 +12,19 @@ void gather(const Actor& actor, const sim::HairPart& part, PartHair& hair) {
   sim::gatherPart(part, actor.hair, hair.hair);
   hair.roots.clear();
   for (const int column : part.columns) hair.roots.push_back(actor.roots[column]);
+  pinsOfPart(part, actor.pinned, hair.pins);
 }
 
 }  // namespace
 
 Sleepers sleepersOf(const sim::SimParams& params, double step, double time, Actor& actor) {
   const std::vector<sim::HairPart>& parts = actor.haircut->parts;
+  posePins(actor.pins, actor.pose, actor.previous_pose, time, step, actor.pinned);
   // Bundles of different parts meet when hair collides with itself: then they sleep together or not at all.
   if (parts.empty() || params.self_collide || actor.coarse.active) {
     for (PartHair& part : actor.part_hairs) part.sleep.asleep = false;
-    actor.sleep.asleep = sim::maySleep(params, {actor.roots, actor.ellipsoids, time}, step, actor.hair, actor.sleep);
+    actor.sleep.asleep =
+        sim::maySleep(params, {actor.roots, actor.ellipsoids, time, {}, actor.pinned}, step, actor.hair, actor.sleep);
     return {actor.sleep.asleep, 1};
   }
   actor.part_hairs.resize(parts.size());
@@ -29,7 +32,8 @@ Sleepers sleepersOf(const sim::SimParams& params, double step, double time, Acto
   for (std::size_t p = 0; p < parts.size(); ++p) {
     PartHair& part = actor.part_hairs[p];
     gather(actor, parts[p], part);
-    sleepers.asleep += sim::maySleep(params, {part.roots, actor.ellipsoids, time}, step, part.hair, part.sleep);
+    sleepers.asleep +=
+        sim::maySleep(params, {part.roots, actor.ellipsoids, time, {}, part.pins}, step, part.hair, part.sleep);
   }
   actor.sleep.asleep = sleepers.all();
   return sleepers;
@@ -49,6 +53,7 @@ sim::StepReport advanceAwakeParts(const sim::SimParams& params, sim::StepInput i
       part.context->refreshGradually(true);
     }
     input.roots = part.roots;
+    input.pins = part.pins;
     sim::addPart(sim::advance(source.mesh, params, input, step, *part.context, part.hair), report);
     sim::scatterPart(source, part.hair, whole);
   }

@@ -1,7 +1,7 @@
 // Sleep of an actor's hair: all of it, or those connected parts of it that hang still.
 #pragma once
 
-#include "app/actor.h"
+#include "app/scene/actor.h"
 
 namespace app {
 

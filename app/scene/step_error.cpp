@@ -1,4 +1,4 @@
-#include "app/step_error.h"
+#include "app/scene/step_error.h"
 
 #include <cmath>
 

@@ -12,7 +12,7 @@ inline constexpr double kShortWait = 0.1;  // s: within what the clock catches u
 
 // Panels take a few frames to settle after each event (a hovered button, a folded section), and for about a second some
 // tell more by themselves (a tip that opens late). So frames become rare first and end only then.
-class Patience {
+class RedrawThrottle {
  public:
   // `still`: the next frame would show what the last one showed. `alive`: the panels change by themselves (a caret that
   // blinks, a message that is to go).

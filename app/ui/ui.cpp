@@ -1,18 +1,20 @@
-#include "app/ui.h"
+#include "app/ui/ui.h"
 
 #include <imgui/imgui.h>
+#include <imgui/imgui_internal.h>
 
 #include <algorithm>
 
-#include "app/data_path.h"
-#include "app/ui_panels.h"
-#include "app/ui_widgets.h"
+#include "app/files/data_path.h"
+#include "app/ui/ui_panels.h"
+#include "app/ui/ui_widgets.h"
 
 namespace app {
 
 namespace {
 
 constexpr float kMargin = 12, kSidebarWidth = 348, kTimingsWidth = 292;
+constexpr float kMessageWidth = 520, kLeastMessageWidth = 240;
 constexpr double kMessageTime = 6;  // s; faults stay until clicked
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoBringToFrontOnFocus;
@@ -28,7 +30,7 @@ void sceneRow(Demo& demo, UiState& ui) {
   if (open) {
     for (const std::string& file : ui.scenes) {
       if (ImGui::Selectable(readable(stem(file)).c_str(), file == demo.scene.file))
-        ask(demo, {Ask::kSceneFile, "", file});
+        postRequest(demo, {Ask::kSceneFile, "", file});
       noteItem("scene " + stem(file), ui);
     }
     ImGui::EndCombo();
@@ -39,26 +41,28 @@ void transportRow(Demo& demo, UiState& ui) {
   const auto next = [] { ImGui::SameLine(0, 4); };
   if (iconButton(demo.paused ? Icon::kPlay : Icon::kPause, "pause", demo.paused ? "Go on (Space)" : "Pause (Space)",
                  demo.paused, ui)) {
-    ask(demo, {Ask::kPause, "", "", demo.paused ? 0.0 : 1.0});
+    postRequest(demo, {Ask::kPause, "", "", demo.paused ? 0.0 : 1.0});
   }
   next();
-  if (iconButton(Icon::kStep, "step", "One simulation step (.)", false, ui)) ask(demo, {Ask::kSingleStep, "", ""});
+  if (iconButton(Icon::kStep, "step", "One simulation step (.)", false, ui))
+    postRequest(demo, {Ask::kSingleStep, "", ""});
   next();
   if (iconButton(Icon::kRestart, "restart", "Everything to the start (Home)", false, ui))
-    ask(demo, {Ask::kRestart, "", ""});
+    postRequest(demo, {Ask::kRestart, "", ""});
   next();
-  if (iconButton(Icon::kReset, "reset", "Hair to rest (R)", false, ui)) ask(demo, {Ask::kReset, "", ""});
+  if (iconButton(Icon::kReset, "reset", "Hair to rest (R)", false, ui)) postRequest(demo, {Ask::kReset, "", ""});
   next();
   if (iconButton(Icon::kCollapse, "collapse", "Collapse the hair onto its roots and watch it recover (C)", false, ui)) {
-    ask(demo, {Ask::kCollapse, "", ""});
+    postRequest(demo, {Ask::kCollapse, "", ""});
   }
   next();
-  if (iconButton(Icon::kPhoto, "screenshot", "Screenshot (P)", false, ui)) ask(demo, {Ask::kScreenshot, "", ""});
+  if (iconButton(Icon::kPhoto, "screenshot", "Screenshot (P)", false, ui))
+    postRequest(demo, {Ask::kScreenshot, "", ""});
   next();
   const bool recording = demo.capture.recording;
   if (iconButton(Icon::kRecord, "record", recording ? "Stop recording (K)" : "Record a PNG sequence (K)", recording,
                  ui)) {
-    ask(demo, {Ask::kRecord, "", "", recording ? 0.0 : 1.0});
+    postRequest(demo, {Ask::kRecord, "", "", recording ? 0.0 : 1.0});
   }
   next();
   if (iconButton(Icon::kHelp, "help", "Keys (?)", ui.help, ui)) ui.help = !ui.help;
@@ -70,7 +74,7 @@ void characterRow(Demo& demo, UiState& ui) {
   int selected = demo.selected;
   ImGui::SetNextItemWidth(-1);
   if (ImGui::SliderInt("##character", &selected, 0, static_cast<int>(demo.actors.size()) - 1, "%d")) {
-    ask(demo, {Ask::kSelect, "", "", static_cast<double>(selected)});
+    postRequest(demo, {Ask::kSelect, "", "", static_cast<double>(selected)});
   }
   noteItem("character", ui);
 }
@@ -82,11 +86,16 @@ struct Tab {
 constexpr Tab kTabs[] = {
     {"Simulation", simulationTab}, {"Motion", motionTab}, {"Hair", hairTab}, {"Look", lookTab}, {"Debug", debugTab}};
 
+// Never wider than the window.
+float sidebarWidth(const UiState& ui) {
+  return std::min(kSidebarWidth * ui.text_scale, ImGui::GetIO().DisplaySize.x - 2 * kMargin * ui.text_scale);
+}
+
 void sidebar(Demo& demo, UiState& ui) {
   const ImGuiIO& io = ImGui::GetIO();
   const float margin = kMargin * ui.text_scale;
   ImGui::SetNextWindowPos({margin, margin});
-  ImGui::SetNextWindowSize({kSidebarWidth * ui.text_scale, std::max(120.0f, io.DisplaySize.y - 2 * margin)});
+  ImGui::SetNextWindowSize({sidebarWidth(ui), std::max(120.0f, io.DisplaySize.y - 2 * margin)});
   if (ImGui::Begin("sidebar", nullptr, kFixed)) {
     sceneRow(demo, ui);
     transportRow(demo, ui);
@@ -112,6 +121,8 @@ void sidebar(Demo& demo, UiState& ui) {
 
 void timings(Demo& demo, UiState& ui) {
   const float margin = kMargin * ui.text_scale;
+  // Panels do not cover one another: without room beside the sidebar this one is left out.
+  if (ImGui::GetIO().DisplaySize.x < sidebarWidth(ui) + kTimingsWidth * ui.text_scale + 3 * margin) return;
   ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x - margin, margin}, ImGuiCond_Always, {1, 0});
   ImGui::SetNextWindowSize({kTimingsWidth * ui.text_scale, 0});
   ImGui::SetNextWindowCollapsed(false, ImGuiCond_FirstUseEver);
@@ -131,14 +142,20 @@ void message(Demo& demo, UiState& ui) {
     demo.message.clear();
     return;
   }
+  // In the middle of what the sidebar leaves free; over it where that is too narrow to read.
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({0.5f * size.x, size.y - 2 * kMargin * ui.text_scale}, ImGuiCond_Always, {0.5f, 1});
-  ImGui::SetNextWindowSizeConstraints({0, 0}, {0.45f * size.x, 0.5f * size.y});
+  const float margin = kMargin * ui.text_scale, taken = ui.visible ? sidebarWidth(ui) + margin : 0;
+  const bool beside = size.x - taken > kLeastMessageWidth * ui.text_scale;
+  const float left = (beside ? taken : 0) + margin, width = size.x - left - margin;
+  ImGui::SetNextWindowPos({left + 0.5f * width, size.y - 2 * margin}, ImGuiCond_Always, {0.5f, 1});
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {width, 0.8f * size.y});
   const bool fault = demo.message_is_fault;
   if (fault) ImGui::PushStyleColor(ImGuiCol_WindowBg, ImVec4(0.30f, 0.10f, 0.09f, 0.96f));
   const ImGuiWindowFlags flags = kFixed | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing;
-  if (ImGui::Begin("message", nullptr, flags)) {
-    ImGui::PushTextWrapPos(0.42f * size.x);
+  // The sidebar and the timings stay where they are in the order of windows; this one comes to the front.
+  if (ImGui::Begin("message", nullptr, flags & ~ImGuiWindowFlags_NoBringToFrontOnFocus)) {
+    ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
+    ImGui::PushTextWrapPos(std::min(kMessageWidth * ui.text_scale, width - 2 * margin));
     ImGui::TextUnformatted(demo.message.c_str());
     ImGui::PopTextWrapPos();
     if (fault) {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/demo.h"
+#include "app/scene/demo.h"
 
 struct ImFont;
 
@@ -24,11 +24,15 @@ struct UiState {
   bool visible = true;
   bool help = false;
   bool quit = false;
-  int open_tab = -1;     // asked for by a key or a test; -1: leave
-  float text_scale = 1;  // of a dense display
+  bool reload_shaders = false;  // asked for by a key
+  int open_tab = -1;            // asked for by a key or a test; -1: leave
+  float text_scale = 1;         // of a dense display
   ImFont* heading = nullptr;
   std::array<char, 512> motion_path{}, parts_path{}, hair_path{}, scene_path{};
-  std::array<char, 64> preset_name{};
+  std::array<char, 64> preset_name{}, search{};
+  std::string chosen_preset;  // file; empty: none yet
+  std::string to_replace;     // a file that is there already and is written on the second press
+  bool leaving = false;       // Esc was pressed once
   std::string shown_message;
   double message_since = 0;                                // s of ImGui's clock
   std::vector<std::string> scenes, presets, clips, hairs;  // files on offer
@@ -45,7 +49,7 @@ int tabIndex(std::string_view name);
 void buildUi(Demo& demo, UiState& ui);
 
 // A key as its character in upper case, or one of these (the numbers are those of GLFW).
-enum UiKey { kKeyEscape = 256, kKeyTab = 258, kKeyHome = 268, kKeyF1 = 290, kKeyF12 = 301 };
+enum UiKey { kKeyEscape = 256, kKeyTab = 258, kKeyHome = 268, kKeyF1 = 290, kKeyF5 = 294, kKeyF12 = 301 };
 
 // What a key does. Returns whether it did something.
 bool pressKey(int key, Demo& demo, UiState& ui);

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "app/ui_panels.h"
-#include "app/ui_widgets.h"
+#include "app/ui/ui_panels.h"
+#include "app/ui/ui_widgets.h"
 
 namespace app {
 
@@ -33,7 +33,7 @@ void budgetLines(Demo& demo, UiState& ui) {
   bool on = governor.budget > 0;
   if (ImGui::Checkbox("Hold to", &on)) {
     const double start = std::clamp(1e3 * kHeadroom * recentSimulation(demo), double(kSmallest), double(kLargest));
-    ask(demo, {Ask::kBudget, "", "", on ? start : 0.0});
+    postRequest(demo, {Ask::kBudget, "", "", on ? start : 0.0});
   }
   noteItem("budget on", ui);
   tip("Picks integrator, time step and tolerance so that the simulation takes so long a frame, and no longer");
@@ -42,7 +42,7 @@ void budgetLines(Demo& demo, UiState& ui) {
   ImGui::SetNextItemWidth(-1);
   float budget = static_cast<float>(1e3 * governor.budget);
   if (ImGui::SliderFloat("##budget", &budget, kSmallest, kLargest, "%.2f ms a frame", ImGuiSliderFlags_Logarithmic)) {
-    ask(demo, {Ask::kBudget, "", "", budget});
+    postRequest(demo, {Ask::kBudget, "", "", budget});
   }
   noteItem("budget", ui);
   const Rung& rung = ladder()[governor.rung];

@@ -1,13 +1,14 @@
-#include "app/ui_panels.h"
+#include "app/ui/ui_panels.h"
 
 #include <imgui/imgui.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 
-#include "app/data_path.h"
-#include "app/ui_widgets.h"
+#include "app/files/data_path.h"
+#include "app/ui/ui_widgets.h"
 
 namespace app {
 
@@ -43,30 +44,73 @@ bool slider(const char* name, double low, double high, const char* format, bool 
   return ImGui::SliderScalar(name, ImGuiDataType_Double, &value, &low, &high, format, flags);
 }
 
-void presetRow(Demo& demo, UiState& ui) {
-  rowLabel("Preset", "A set of parameters and looks");
-  if (const std::string file = fileCombo("##preset", "choose...", ui.presets, ui); !file.empty()) {
-    ask(demo, {Ask::kPresetFile, "", file});
+// Saves under the name that was typed; a file that is there already only when asked a second time.
+void savePreset(Demo& demo, UiState& ui) {
+  const std::string file = std::string(ui.preset_name.data()) + ".json";
+  std::error_code ignored;
+  if (std::filesystem::exists(file, ignored) && ui.to_replace != file) {
+    ui.to_replace = file;
+    return;
   }
-  rowLabel("Save as", "Writes every parameter that differs from its default to NAME.json in the working folder");
-  const float button = 52 * ui.text_scale;
+  ui.to_replace.clear();
+  ui.chosen_preset = file;
+  postRequest(demo, {Ask::kSavePreset, "", file});
+  if (std::find(ui.presets.begin(), ui.presets.end(), file) == ui.presets.end()) ui.presets.push_back(file);
+}
+
+void presetRow(Demo& demo, UiState& ui) {
+  rowLabel("Preset", "Sets the groups of parameters that it names: what it leaves out of them takes its default");
+  const std::string shown = ui.chosen_preset.empty() ? "choose..." : stem(ui.chosen_preset);
+  if (const std::string file = fileCombo("##preset", shown, ui.presets, ui); !file.empty()) {
+    ui.chosen_preset = file;
+    postRequest(demo, {Ask::kPresetFile, "", file});
+  }
+  rowLabel("Save as", "Writes every parameter to NAME.json in the working folder");
+  const bool replaces = !ui.to_replace.empty() && ui.to_replace == std::string(ui.preset_name.data()) + ".json";
+  const float button = (replaces ? 72 : 52) * ui.text_scale;
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - button - 5);
-  ImGui::InputTextWithHint("##preset_name", "name", ui.preset_name.data(), ui.preset_name.size());
+  const bool entered = ImGui::InputTextWithHint("##preset_name", "name, then Enter", ui.preset_name.data(),
+                                                ui.preset_name.size(), ImGuiInputTextFlags_EnterReturnsTrue);
   noteItem("preset_name", ui);
   ImGui::SameLine(0, 5);
-  const bool saved = ImGui::Button("Save", {button, 0});
+  const bool pressed = ImGui::Button(replaces ? "Replace" : "Save", {button, 0});
   noteItem("save_preset", ui);
-  if (saved && ui.preset_name[0]) {
-    const std::string file = std::string(ui.preset_name.data()) + ".json";
-    ask(demo, {Ask::kSavePreset, "", file});
-    ui.presets.push_back(file);
+  if (replaces) tip("A file of this name is there already");
+  if ((entered || pressed) && ui.preset_name[0]) savePreset(demo, ui);
+}
+
+bool contains(std::string text, std::string_view part) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text.find(part) != std::string::npos;
+}
+
+// Rows of all three tables whose name or help has what was typed. Returns whether anything was.
+bool searchResults(Demo& demo, UiState& ui) {
+  ImGui::SetNextItemWidth(-1);
+  ImGui::InputTextWithHint("##search", "search all parameters", ui.search.data(), ui.search.size());
+  noteItem("search", ui);
+  std::string wanted = ui.search.data();
+  if (wanted.empty()) return false;
+  std::transform(wanted.begin(), wanted.end(), wanted.begin(), [](unsigned char c) { return std::tolower(c); });
+  const auto found = [&](const auto& row) {
+    return contains(row.name, wanted) || contains(rowTitle(row.name), wanted) || contains(row.help, wanted);
+  };
+  for (const sim::ParamField& row : sim::paramFields()) {
+    if (found(row)) simRow(row, demo, ui);
   }
+  for (const HairField& row : hairFields()) {
+    if (found(row)) lookRow(row, selectedActor(demo).spec.look, demo, ui);
+  }
+  for (const SceneField& row : sceneFields()) {
+    if (found(row)) lookRow(row, demo.scene.look, demo, ui);
+  }
+  return true;
 }
 
 void clipRows(const Actor& actor, Demo& demo, UiState& ui) {
   rowLabel("Motion", "Clips that come with the program; or give a file below, or drop one on the window");
   if (const std::string file = fileCombo("##motion", stem(actor.spec.motion), ui.clips, ui); !file.empty()) {
-    ask(demo, {Ask::kMotionFile, "", file});
+    postRequest(demo, {Ask::kMotionFile, "", file});
   }
   const std::vector<Clip>& clips = actor.body->character.clips;
   if (clips.size() > 1) {
@@ -74,7 +118,8 @@ void clipRows(const Actor& actor, Demo& demo, UiState& ui) {
     ImGui::SetNextItemWidth(-1);
     if (ImGui::BeginCombo("##clip", actor.playedClip().name.c_str())) {
       for (const Clip& clip : clips) {
-        if (ImGui::Selectable(clip.name.c_str(), &clip == &actor.playedClip())) ask(demo, {Ask::kClip, clip.name, ""});
+        if (ImGui::Selectable(clip.name.c_str(), &clip == &actor.playedClip()))
+          postRequest(demo, {Ask::kClip, clip.name, ""});
       }
       ImGui::EndCombo();
     }
@@ -86,21 +131,21 @@ void clipRows(const Actor& actor, Demo& demo, UiState& ui) {
     rowLabel("Body parts", "Folder of body0000.obj ...");
     entered = pathInput("##parts_path", "folder, then Enter", ui.parts_path, ui) || entered;
   }
-  if (entered) ask(demo, {Ask::kMotionFile, is_mot ? ui.parts_path.data() : "", ui.motion_path.data()});
+  if (entered) postRequest(demo, {Ask::kMotionFile, is_mot ? ui.parts_path.data() : "", ui.motion_path.data()});
 }
 
 void playbackRows(const Actor& actor, Demo& demo, UiState& ui) {
   double speed = actor.playback.speed;
   rowLabel("Speed", "Clip seconds per second. The paper shows 10x; the hair's own time does not change.");
   ImGui::SetNextItemWidth(-1);
-  if (slider("##speed", 0, 20, "%.3g x", true, speed)) ask(demo, {Ask::kSpeed, "", "", speed});
+  if (slider("##speed", 0, 20, "%.3g x", true, speed)) postRequest(demo, {Ask::kSpeed, "", "", speed});
   noteItem("speed", ui);
   rowLabel("", "");
   static constexpr double kSpeeds[] = {0.25, 1, 2, 5, 10};
   int chosen = -1;
   for (int i = 0; i < 5; ++i) chosen = std::abs(speed - kSpeeds[i]) < 1e-9 ? i : chosen;
   const int pressed = segments("speeds", {"1/4", "1x", "2x", "5x", "10x"}, chosen, ui);
-  if (pressed >= 0) ask(demo, {Ask::kSpeed, "", "", kSpeeds[pressed]});
+  if (pressed >= 0) postRequest(demo, {Ask::kSpeed, "", "", kSpeeds[pressed]});
 
   double time = actor.playback.time;
   rowLabel("Time", "Scrubs the clip; the hair is carried along with the head");
@@ -108,29 +153,29 @@ void playbackRows(const Actor& actor, Demo& demo, UiState& ui) {
   char format[48];
   std::snprintf(format, sizeof format, "%%.2f / %.2f s", actor.playedClip().duration());
   if (slider("##scrub", 0, actor.playedClip().duration(), format, false, time))
-    ask(demo, {Ask::kCarryAlong, "", "", time});
+    postRequest(demo, {Ask::kCarryAlong, "", "", time});
   noteItem("scrub", ui);
   rowLabel("To the start",
            "Puts the figure to the clip's start; the hair keeps its shape and velocity against the head");
-  if (ImGui::Button("Carry hair along")) ask(demo, {Ask::kCarryAlong, "", "", 0});
+  if (ImGui::Button("Carry hair along")) postRequest(demo, {Ask::kCarryAlong, "", "", 0});
   noteItem("carry", ui);
 
   bool held = actor.playback.paused, loop = actor.playback.loop, in_place = actor.playback.in_place;
   rowLabel("Hold motion", "The figure stands still while the hair goes on");
-  if (ImGui::Checkbox("##held", &held)) ask(demo, {Ask::kPauseMotion, "", "", held ? 1.0 : 0.0});
+  if (ImGui::Checkbox("##held", &held)) postRequest(demo, {Ask::kPauseMotion, "", "", held ? 1.0 : 0.0});
   noteItem("hold", ui);
   rowLabel("Loop", "Begin again at the end");
-  if (ImGui::Checkbox("##loop", &loop)) ask(demo, {Ask::kLoop, "", "", loop ? 1.0 : 0.0});
+  if (ImGui::Checkbox("##loop", &loop)) postRequest(demo, {Ask::kLoop, "", "", loop ? 1.0 : 0.0});
   noteItem("loop", ui);
   if (loop) {
     double blend = actor.playback.blend;
     rowLabel("Seam", "Time over which a loop leads into its start");
     ImGui::SetNextItemWidth(-1);
-    if (slider("##blend", 0, 2, "%.2f s", false, blend)) ask(demo, {Ask::kBlend, "", "", blend});
+    if (slider("##blend", 0, 2, "%.2f s", false, blend)) postRequest(demo, {Ask::kBlend, "", "", blend});
     noteItem("blend", ui);
   }
   rowLabel("In place", "Takes the figure's travel over the ground out of the clip");
-  if (ImGui::Checkbox("##in_place", &in_place)) ask(demo, {Ask::kInPlace, "", "", in_place ? 1.0 : 0.0});
+  if (ImGui::Checkbox("##in_place", &in_place)) postRequest(demo, {Ask::kInPlace, "", "", in_place ? 1.0 : 0.0});
   noteItem("in_place", ui);
 }
 
@@ -143,7 +188,7 @@ void substepRow(Demo& demo, UiState& ui) {
   if (pressed < 0) return;
   sim::SimParams wanted = demo.scene.sim;
   wanted.time_step = 1.0 / (60 * kCounts[pressed]);
-  ask(demo, {Ask::kSetParam, "time_step", sim::paramText(*sim::findParam("time_step"), wanted)});
+  postRequest(demo, {Ask::kSetParam, "time_step", sim::paramText(*sim::findParam("time_step"), wanted)});
 }
 
 void fact(const char* label, const std::string& value) {
@@ -160,6 +205,7 @@ std::string metres(double value) {
 }  // namespace
 
 void simulationTab(Demo& demo, UiState& ui) {
+  if (searchResults(demo, ui)) return;
   presetRow(demo, ui);
   ImGui::Spacing();
   for (const char* group : {"Material", "Contact", "World", "Rest shape", "Time", "Numerics"}) {
@@ -183,10 +229,10 @@ void motionTab(Demo& demo, UiState& ui) {
   if (section("Camera", true)) {
     static constexpr const char* kViews[] = {"front", "three-quarter", "side", "back", "top"};
     const int pressed = segments("view", {"Front", "3/4", "Side", "Back", "Top"}, -1, ui);
-    if (pressed >= 0) ask(demo, {Ask::kView, kViews[pressed], ""});
+    if (pressed >= 0) postRequest(demo, {Ask::kView, kViews[pressed], ""});
     bool following = demo.camera.follow;
     rowLabel("Follow figure", "The camera goes along with the head");
-    if (ImGui::Checkbox("##follow", &following)) ask(demo, {Ask::kFollow, "", "", following ? 1.0 : 0.0});
+    if (ImGui::Checkbox("##follow", &following)) postRequest(demo, {Ask::kFollow, "", "", following ? 1.0 : 0.0});
   }
   if (section("What was read", false)) {
     for (const std::string& note : actor.body->character.notes) {
@@ -204,14 +250,14 @@ void hairTab(Demo& demo, UiState& ui) {
     const int style =
         segments("style", {"Short", "Shoulder", "Long"}, from_file ? -1 : static_cast<int>(actor.spec.style), ui);
     static constexpr const char* kStyles[] = {"short", "shoulder", "long"};
-    if (style >= 0) ask(demo, {Ask::kStyle, kStyles[style], ""});
+    if (style >= 0) postRequest(demo, {Ask::kStyle, kStyles[style], ""});
     const int resolution = segments("resolution", {"Low", "Medium", "High", "Ultra"},
                                     from_file ? -1 : static_cast<int>(actor.spec.resolution), ui);
     static constexpr const char* kResolutions[] = {"low", "medium", "high", "ultra"};
-    if (resolution >= 0) ask(demo, {Ask::kResolution, kResolutions[resolution], ""});
+    if (resolution >= 0) postRequest(demo, {Ask::kResolution, kResolutions[resolution], ""});
     rowLabel("Hair mesh file", "OBJ with one group a layer; see assets/hair/README.md");
     if (pathInput("##hair_path", from_file ? stem(actor.spec.hair).c_str() : "path, then Enter", ui.hair_path, ui)) {
-      ask(demo, {Ask::kHairFile, "", ui.hair_path.data()});
+      postRequest(demo, {Ask::kHairFile, "", ui.hair_path.data()});
     }
     const sim::HairMesh& mesh = actor.haircut->mesh;
     fact("Vertices", std::to_string(mesh.vertexCount()) + " in " + std::to_string(mesh.columnCount()) + " columns");
@@ -237,7 +283,7 @@ void debugTab(Demo& demo, UiState& ui) {
   for (const DebugView& view : kDebugViews) {
     bool on = demo.debug.*view.on;
     if (ImGui::Checkbox(view.label.data(), &on))
-      ask(demo, {Ask::kDebugView, std::string(view.name), "", on ? 1.0 : 0.0});
+      postRequest(demo, {Ask::kDebugView, std::string(view.name), "", on ? 1.0 : 0.0});
     noteItem(std::string("debug ") + std::string(view.name), ui);
     ImGui::PushTextWrapPos(0);
     ImGui::Indent(27 * ui.text_scale);

@@ -1,8 +1,8 @@
 // The tabs of the sidebar and the timings panel.
 #pragma once
 
-#include "app/demo.h"
-#include "app/ui.h"
+#include "app/scene/demo.h"
+#include "app/ui/ui.h"
 
 namespace app {
 
@@ -12,7 +12,7 @@ void hairTab(Demo& demo, UiState& ui);
 void lookTab(Demo& demo, UiState& ui);
 void debugTab(Demo& demo, UiState& ui);
 
-// The ledger: a switch and a count for each skip.
+// The table of skips: a switch and a count for each.
 void skipsSection(Demo& demo, UiState& ui);
 
 // Stages as a stacked bar and their history (figure 6 of the paper), solver iterations and residual.

@@ -2,14 +2,14 @@
 
 #include <string>
 
-#include "app/ui_panels.h"
-#include "app/ui_widgets.h"
+#include "app/ui/ui_panels.h"
+#include "app/ui/ui_widgets.h"
 
 namespace app {
 
 namespace {
 
-std::string countText(const SkipTally& count) {
+std::string countText(const SkipCount& count) {
   if (count.of == 0) return "-";
   return std::to_string(count.skipped) + " of " + std::to_string(count.of);
 }
@@ -20,10 +20,10 @@ void skipsSection(Demo& demo, UiState& ui) {
   for (const Skip& skip : skipTable()) {
     bool on = demo.scene.skips[skip.id];
     const std::string label = readable(skip.name);
-    if (ImGui::Checkbox(label.c_str(), &on)) ask(demo, {Ask::kSkip, skip.name, "", on ? 1.0 : 0.0});
+    if (ImGui::Checkbox(label.c_str(), &on)) postRequest(demo, {Ask::kSkip, skip.name, "", on ? 1.0 : 0.0});
     noteItem(std::string("skip ") + skip.name, ui);
     tip(std::string(skip.help) + (skip.exact ? " Changes nothing." : " May change: " + std::string(skip.bound) + "."));
-    const SkipTally& count = demo.stats.skipped[skip.id];
+    const SkipCount& count = demo.stats.skipped[skip.id];
     const std::string text = countText(count);
     ImGui::SameLine(0.42f * ImGui::GetWindowWidth());
     ImGui::TextDisabled("%s", text.c_str());

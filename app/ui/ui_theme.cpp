@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "app/data_path.h"
-#include "app/ui.h"
+#include "app/files/data_path.h"
+#include "app/ui/ui.h"
 
 namespace app {
 

@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <string>
 
-#include "app/ui_panels.h"
-#include "app/ui_widgets.h"
+#include "app/ui/ui_panels.h"
+#include "app/ui/ui_widgets.h"
 
 namespace app {
 
@@ -130,7 +130,7 @@ void solverLines(const Demo& demo) {
   line("corrected", "%d, deepest %.1f mm", stats.corrected, 1e3 * stats.max_penetration);
   line("recoveries", "%d", stats.recoveries);
   double saved = 0;
-  for (const SkipTally& count : stats.skipped) saved += count.seconds;
+  for (const SkipCount& count : stats.skipped) saved += count.seconds;
   line("skips save", "%.2f ms", 1e3 * saved);
   if (demo.stats.draw.strands_drawn > 0) {
     line("strands", "%ld", stats.draw.strands_drawn);

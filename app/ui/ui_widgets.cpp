@@ -1,4 +1,4 @@
-#include "app/ui_widgets.h"
+#include "app/ui/ui_widgets.h"
 
 #include <imgui/imgui.h>
 
@@ -96,7 +96,7 @@ void noteItem(const std::string& name, UiState& ui) {
   ui.items.push_back({name, low.x, low.y, size.x, size.y});
 }
 
-void ask(Demo& demo, Request request) {
+void postRequest(Demo& demo, Request request) {
   demo.requests.push_back(std::move(request));
 }
 
@@ -123,6 +123,58 @@ void rowLabel(const std::string& text, const std::string& help) {
   ImGui::SameLine(start + kLabelShare * width);
 }
 
+namespace {
+
+struct Label {
+  std::string_view name, label;
+};
+// Rows whose name in files says too little in a panel.
+constexpr Label kLabels[] = {{"beta_m", "Roughness along"},
+                             {"beta_n", "Roughness around"},
+                             {"eta", "Refractive index"},
+                             {"key", "Key light"},
+                             {"to_light", "Key direction"},
+                             {"fill", "Fill light"},
+                             {"to_fill", "Fill direction"},
+                             {"rim", "Rim light"},
+                             {"to_rim", "Rim direction"},
+                             {"clump", "Clumping"},
+                             {"offset", "Wander"},
+                             {"color", "Picked colour"},
+                             {"use_color", "Use picked colour"}};
+
+}  // namespace
+
+std::string rowTitle(std::string_view name) {
+  for (const Label& row : kLabels) {
+    if (row.name == name) return std::string(row.label);
+  }
+  return readable(name);
+}
+
+// A row that another one makes idle is grey: moving it would show nothing.
+bool hasEffect(std::string_view name, const CharacterLook& look) {
+  if (name == "color") return look.hair.use_color;
+  if (name == "eumelanin" || name == "pheomelanin") return !look.hair.use_color;
+  if (name == "curl_turns") return look.hair.curl_radius > 0;
+  if (name == "clump_size") return look.hair.clump > 0;
+  return true;
+}
+
+bool hasEffect(std::string_view name, const SceneLook& look) {
+  const bool of_shadows = name.starts_with("shadow_") || name == "opacity_layers" || name == "layer_thickness";
+  if (of_shadows) return look.light.shadows;
+  if (name == "strand_path") return look.view.show_strands;
+  return name != "ground_color" || look.view.ground;
+}
+
+bool hasEffect(const sim::ParamField& row, const sim::SimParams& params) {
+  const std::string_view name = row.name, group = row.group;
+  if (name == "gust") return params.wind_x != 0 || params.wind_y != 0 || params.wind_z != 0;
+  if (name.starts_with("newton_")) return params.integrator != sim::Integrator::kLinearizedEuler;
+  return params.collide || group != "Contact" || name == "collide" || name == "self_collide";
+}
+
 std::string readable(std::string_view name) {
   std::string text(name);
   std::replace(text.begin(), text.end(), '_', ' ');
@@ -138,8 +190,9 @@ void simRow(const sim::ParamField& field, Demo& demo, UiState& ui) {
       helpText(field.name, field.help, rangeOf(field.kind, field.minimum, field.maximum), field.unit, standard);
   const bool touched = value != field.default_value;
   ImGui::PushID(field.name);
-  rowLabel(readable(field.name), help);
+  rowLabel(rowTitle(field.name), help);
   fillRow(touched, ui);
+  ImGui::BeginDisabled(!hasEffect(field, params));
   bool changed = false;
   if (field.kind == sim::FieldKind::kSwitch) {
     bool on = value != 0;
@@ -150,14 +203,15 @@ void simRow(const sim::ParamField& field, Demo& demo, UiState& ui) {
   } else {
     changed = numberSlider("##value", field.kind, field.logarithmic, field.minimum, field.maximum, field.unit, value);
   }
+  ImGui::EndDisabled();
   noteItem(field.name, ui);
   if (!ImGui::IsItemActive()) tip(help);
   if (changed) {
     sim::SimParams wanted = params;
     field.set(wanted, value);
-    ask(demo, {Ask::kSetParam, field.name, sim::paramText(field, wanted)});
+    postRequest(demo, {Ask::kSetParam, field.name, sim::paramText(field, wanted)});
   }
-  if (touched && resetMark(field.name, standard, ui)) ask(demo, {Ask::kSetParam, field.name, standard});
+  if (touched && resetMark(field.name, standard, ui)) postRequest(demo, {Ask::kSetParam, field.name, standard});
   ImGui::PopID();
 }
 
@@ -169,8 +223,9 @@ void lookRow(const LookField<Owner>& field, const Owner& owner, Demo& demo, UiSt
       helpText(field.name, field.help, rangeOf(field.kind, field.minimum, field.maximum), field.unit, standard);
   const bool touched = value != field.default_value;
   ImGui::PushID(field.name);
-  rowLabel(readable(field.name), help);
+  rowLabel(rowTitle(field.name), help);
   fillRow(touched, ui);
+  ImGui::BeginDisabled(!hasEffect(field.name, owner));
   bool changed = false;
   if (field.shape == LookShape::kColor) {
     float rgb[3] = {static_cast<float>(value[0]), static_cast<float>(value[1]), static_cast<float>(value[2])};
@@ -193,14 +248,15 @@ void lookRow(const LookField<Owner>& field, const Owner& owner, Demo& demo, UiSt
     changed =
         numberSlider("##value", field.kind, field.logarithmic, field.minimum, field.maximum, field.unit, value[0]);
   }
+  ImGui::EndDisabled();
   noteItem(field.name, ui);
   if (!ImGui::IsItemActive()) tip(help);
   if (changed) {
     Owner wanted = owner;
     field.set(wanted, value);
-    ask(demo, {Ask::kSetParam, field.name, lookText(wanted, field)});
+    postRequest(demo, {Ask::kSetParam, field.name, lookText(wanted, field)});
   }
-  if (touched && resetMark(field.name, standard, ui)) ask(demo, {Ask::kSetParam, field.name, standard});
+  if (touched && resetMark(field.name, standard, ui)) postRequest(demo, {Ask::kSetParam, field.name, standard});
   ImGui::PopID();
 }
 

@@ -5,15 +5,15 @@
 #include <string>
 #include <string_view>
 
-#include "app/look_params.h"
-#include "app/ui.h"
+#include "app/scene/look_params.h"
+#include "app/ui/ui.h"
 
 namespace app {
 
 // Remembers where the last widget is.
 void noteItem(const std::string& name, UiState& ui);
 
-void ask(Demo& demo, Request request);
+void postRequest(Demo& demo, Request request);
 
 // A tooltip for the last widget, after a short hover.
 void tip(const std::string& text);
@@ -39,6 +39,9 @@ bool iconButton(Icon icon, const char* name, const std::string& help, bool lit, 
 
 // Buttons side by side, one of them chosen. Returns the index pressed, or -1.
 int segments(const char* name, std::initializer_list<const char*> labels, int chosen, UiState& ui);
+
+// What a parameter row is called in the panels.
+std::string rowTitle(std::string_view name);
 
 // "stretch_along" -> "Stretch along".
 std::string readable(std::string_view name);

@@ -1,0 +1,16 @@
+// What a file is that a person named without saying so: on the command line or by dropping it on the window.
+#pragma once
+
+#include <string>
+
+namespace app {
+
+enum class FileKind { kScene, kPreset, kMotion, kRigidMotion, kHairMesh };
+
+// By its ending; scenes and presets, both JSON, by their content. Throws InputError for any other file.
+FileKind fileKind(const std::string& file);
+
+// The folder of body parts that ARCSim's data keeps beside a .mot motion.
+std::string partsBeside(const std::string& motion_file);
+
+}  // namespace app

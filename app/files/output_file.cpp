@@ -1,0 +1,70 @@
+#include "app/files/output_file.h"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include "app/files/errors.h"
+
+namespace app {
+
+namespace fs = std::filesystem;
+
+OutputFile::OutputFile(const std::string& file) : file_(file), target_(file) {
+  std::error_code ignored;
+  if (fs::is_symlink(file, ignored)) {
+    const fs::path target = fs::weakly_canonical(file, ignored);
+    if (!target.empty()) target_ = target.string();
+  }
+  if (fs::is_directory(target_, ignored)) fail(EISDIR);
+  const bool direct = fs::exists(target_, ignored) && !fs::is_regular_file(target_, ignored);
+  if (!direct) temporary_ = target_ + ".part";
+  stream_ = std::fopen((direct ? target_ : temporary_).c_str(), "wb");
+  if (stream_) return;
+  temporary_.clear();  // there is none to remove
+  fail(errno);
+}
+
+OutputFile::~OutputFile() {
+  if (stream_) std::fclose(stream_);
+  std::error_code ignored;
+  if (!temporary_.empty()) fs::remove(temporary_, ignored);
+}
+
+void OutputFile::write(std::string_view bytes) {
+  if (std::fwrite(bytes.data(), 1, bytes.size(), stream_) != bytes.size()) fail(errno);
+}
+
+void OutputFile::flush() {
+  if (std::fflush(stream_) != 0) fail(errno);
+}
+
+void OutputFile::commit() {
+  flush();
+  // Some file systems report a full disk only here.
+  if (std::fclose(std::exchange(stream_, nullptr)) != 0) fail(errno);
+  if (temporary_.empty()) return;
+  std::error_code error;
+  fs::rename(temporary_, target_, error);
+  if (error) fail(error.value());
+  temporary_.clear();
+}
+
+void OutputFile::fail(int error) {
+  const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG;
+  throw OutputError(file_, std::string("cannot be written: ") + std::strerror(error),
+                    full ? "make room, or choose another folder" : "choose a folder that exists and may be written to");
+}
+
+void writeFile(const std::string& file, std::string_view bytes) {
+  OutputFile output(file);
+  output.write(bytes);
+  output.commit();
+}
+
+void checkWritable(const std::string& file) {
+  const OutputFile output(file);
+}
+
+}  // namespace app

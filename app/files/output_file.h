@@ -1,0 +1,41 @@
+// Files that the program writes: whole or not at all.
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+namespace app {
+
+// Written to FILE.part beside it, and renamed once all of it is on the disk: whatever fails, FILE is what it was before
+// or all of the new one. Devices and pipes are written directly.
+class OutputFile {
+ public:
+  // Throws OutputError where the file cannot be made.
+  explicit OutputFile(const std::string& file);
+  // Without commit nothing is left behind.
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  // Each throws OutputError when the bytes could not be written.
+  void write(std::string_view bytes);
+  void flush();
+  void commit();
+
+ private:
+  [[noreturn]] void fail(int error);
+
+  std::string file_;       // as a person named it
+  std::string target_;     // what a link leads to
+  std::string temporary_;  // empty: written directly
+  std::FILE* stream_ = nullptr;
+};
+
+// The whole of a file at once. Throws OutputError.
+void writeFile(const std::string& file, std::string_view bytes);
+
+// Throws OutputError when the file cannot be written, before a long run finds that out at its end. What is there stays.
+void checkWritable(const std::string& file);
+
+}  // namespace app

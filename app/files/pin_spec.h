@@ -1,0 +1,42 @@
+// Pins as a scene file has them: hair mesh vertices fastened to joints, to the scalp or to the scene.
+//
+//   "pins": [{ "vertex": 41, or "column": 3 and "layer": -1 (the tip),
+//              "to": "LeftHand", "scalp" or "scene", "at": [x, y, z], "stiffness": 40 or "infinite", "from": 0,
+//              "until": 5 }]
+// "at" is in metres in the frame of what it is fastened to; left out, it is where the vertex is at rest. Every key but
+// the vertex may be left out: then the pin is firm, to the scalp, for all the time.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/files/json_reader.h"
+#include "sim/mesh/hair_mesh.h"
+
+namespace app {
+
+struct PinSpec {
+  static constexpr double kForever = std::numeric_limits<double>::infinity();
+  int vertex = -1;                    // or a column and a layer of it
+  int column = -1, layer = -1;        // layer -1: the tip
+  std::string to = "scalp";           // a joint's name, "scalp" or "scene"
+  std::optional<sim::Vec3> at;        // m
+  double stiffness = kForever;        // N/m
+  double from = 0, until = kForever;  // s of simulated time
+  std::string file, place;            // that it was read from, for messages
+};
+
+inline constexpr std::size_t kMaxPins = 256;
+inline constexpr double kStiffestPin = 1e5;  // N/m; beyond it a pin is as good as firm
+
+// Throws InputError. Whether vertex and joint exist is known only where hair and figure are (app/scene/pins.h).
+std::vector<PinSpec> readPins(const JsonPlace& place);
+nlohmann::json writePins(const std::vector<PinSpec>& pins);
+
+// One pin from the command line, as JSON.
+PinSpec pinFromText(std::string_view text);
+
+}  // namespace app

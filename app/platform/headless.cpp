@@ -1,0 +1,144 @@
+#include "app/platform/headless.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+
+#include "app/debug_option.h"
+#include "app/files/data_path.h"
+#include "app/files/errors.h"
+#include "app/files/image_io.h"
+#include "app/files/output_file.h"
+#include "app/files/recording.h"
+#include "app/files/report.h"
+#include "app/platform/egl_context.h"
+#include "app/platform/interrupt.h"
+#include "app/scene/demo.h"
+
+namespace app {
+
+namespace {
+
+constexpr double kLineEvery = 5;  // s
+
+std::string framePath(const std::string& folder, int frame) {
+  char name[32];
+  std::snprintf(name, sizeof name, "frame_%04d.png", frame);
+  return (std::filesystem::path(folder) / name).string();
+}
+
+void makeFolder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!std::filesystem::is_directory(folder)) {
+    throw OutputError(folder, "is not a folder and cannot be made one", "choose another with --out DIR");
+  }
+}
+
+// What only a run with pictures has. The renderer goes before its context.
+struct Pictures {
+  EglContext context;
+  render::Renderer renderer{dataPath("shaders")};
+};
+
+// One run from the first frame to the last, to an interrupt, or to a picture that cannot be written.
+struct Run {
+  const Options& options;
+  Tape tape;
+  Demo demo;
+  RunReport report;
+  std::optional<Pictures> pictures;
+  std::vector<unsigned char> pixels;
+  int frames = 0;
+
+  Run(Scene scene, const Options& run_options);
+  void drawFrames();
+  void reportDone();
+  int finish();
+};
+
+Demo openForPictures(Scene scene, const Options& options, double aspect) {
+  Demo demo = openScene(std::move(scene), aspect);
+  setDebugViews(options.debug, demo.debug);
+  demo.governor.counted = true;  // the same pictures on every run
+  return demo;
+}
+
+Run::Run(Scene scene, const Options& run_options) : options(run_options), tape(options, scene) {
+  const double start = now();
+  report.fps = scene.playback.fps;
+  frames = tape.frames().value_or(options.frames);
+  if (!options.report.empty()) checkWritable(options.report);
+  if (!options.screenshot.empty()) checkWritable(options.screenshot);
+  if (!options.no_images) makeFolder(options.out);
+  demo = openForPictures(std::move(scene), options, tape.aspect());
+  if (!options.no_images) {
+    pictures.emplace();
+    report.renderer = render::rendererName();
+  }
+  report.start_seconds = now() - start;
+}
+
+void Run::drawFrames() {
+  FrameTarget target;
+  if (pictures) target = {&pictures->renderer, options.width, options.height, 0, &pixels, !options.report.empty(), {}};
+  double last_line = now();
+  for (int frame = 0; frame < frames && !interrupted(); ++frame) {
+    advanceFrame(demo, tape.turn(frame, frame == 0 ? 0 : 1 / report.fps, demo), target);
+    report.frames.push_back(demo.stats);
+    if (const std::string note = numericalNote(demo.stats); !note.empty())
+      std::cerr << "hairmesh: frame " << frame << ": " << note << "\n";
+    if (!pictures) continue;
+    writePng(framePath(options.out, frame), options.width, options.height, pixels);
+    // Software rasterizers take a second a frame; a person wants to see that it goes on.
+    if (now() - last_line > kLineEvery) {
+      std::cout << "frame " << frame + 1 << " of " << frames << std::endl;
+      last_line = now();
+    }
+  }
+  if (pictures && !pixels.empty() && !options.screenshot.empty())
+    writePng(options.screenshot, options.width, options.height, pixels);
+}
+
+// After a fault: where the report cannot be written either, the first fault counts.
+void Run::reportDone() {
+  try {
+    if (!options.report.empty()) writeReport(options.report, report, demo);
+  } catch (const OutputError&) {
+  }
+}
+
+int Run::finish() {
+  if (!options.report.empty()) writeReport(options.report, report, demo);
+  for (const Actor& actor : demo.actors) {
+    for (const std::string& note : actor.body->character.notes)
+      std::cout << stem(actor.spec.motion) << ": " << note << "\n";
+    if (demo.actors.size() > 1) break;
+  }
+  std::cout << summary(report);
+  if (pictures) std::cout << report.frames.size() << " frames in " << options.out << "\n";
+  const Tape::End end = tape.end(demo);
+  std::cout << end.message;
+  if (static_cast<int>(report.frames.size()) < frames && interrupted()) {
+    std::cout << "interrupted after " << report.frames.size() << " of " << frames << " frames\n";
+    return kExitInterrupted;
+  }
+  return end.differs ? kExitFault : kExitFine;
+}
+
+}  // namespace
+
+int runHeadless(Scene scene, const Options& options) {
+  noteInterrupts();
+  Run run(std::move(scene), options);
+  try {
+    run.drawFrames();
+  } catch (const OutputError&) {
+    run.reportDone();
+    throw;
+  }
+  return run.finish();
+}
+
+}  // namespace app

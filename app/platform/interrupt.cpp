@@ -1,0 +1,29 @@
+#include "app/platform/interrupt.h"
+
+#include <signal.h>
+
+namespace app {
+
+namespace {
+
+volatile sig_atomic_t came = 0;
+
+void note(int) {
+  came = 1;
+}
+
+}  // namespace
+
+void noteInterrupts() {
+  struct sigaction action {};
+  action.sa_handler = note;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+bool interrupted() {
+  return came != 0;
+}
+
+}  // namespace app

@@ -1,0 +1,12 @@
+// Ctrl-C and a request to terminate end a run after the frame in work, so that its files are whole and its report is
+// written. A second one ends the program at once.
+#pragma once
+
+namespace app {
+
+// From now on SIGINT and SIGTERM are noted.
+void noteInterrupts();
+// Whether one has come.
+bool interrupted();
+
+}  // namespace app

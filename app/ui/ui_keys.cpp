@@ -1,0 +1,118 @@
+// Keys, and the list of them that ? shows.
+#include <utility>
+
+#include "app/ui/ui.h"
+#include "app/ui/ui_widgets.h"
+
+namespace app {
+
+namespace {
+
+constexpr KeyHelp kKeyHelp[] = {
+    {"Space", "pause or go on"},
+    {".", "one simulation step"},
+    {"R", "hair to rest"},
+    {"Home", "everything to the start"},
+    {"C", "collapse the hair onto its roots"},
+    {"1  2  3", "short, shoulder, long hair"},
+    {"4  5  6", "low, medium, high resolution"},
+    {"-  +", "playback slower, faster"},
+    {"F  S  B  T  Q", "view from front, side, back, top, three quarters"},
+    {"L", "camera follows the figure"},
+    {"M  E  V  N", "hair mesh, ellipsoids, tetrahedra, contacts"},
+    {"P", "screenshot"},
+    {"K", "record a PNG sequence"},
+    {"F5", "reload the shaders (also reloaded when saved)"},
+    {"Tab", "hide or show the panels"},
+    {"?  F1", "this list"},
+    {"Esc", "close this list; pressed twice, leave"},
+    {"left drag", "orbit"},
+    {"right drag", "pan"},
+    {"wheel", "zoom"},
+    {"drop a file", "scene, preset, motion or hair mesh"},
+};
+
+struct KeyAction {
+  int key;
+  void (*press)(Demo&, UiState&);
+};
+
+void send(Ask what, const char* name, Demo& demo) {
+  postRequest(demo, {what, name, ""});
+}
+
+void toggleView(const char* name, Demo& demo) {
+  for (const DebugView& view : kDebugViews) {
+    if (view.name == name) postRequest(demo, {Ask::kDebugView, name, "", demo.debug.*view.on ? 0.0 : 1.0});
+  }
+}
+
+void toggle(Ask what, bool on, Demo& demo) {
+  postRequest(demo, {what, "", "", on ? 0.0 : 1.0});
+}
+
+void changeSpeed(double factor, Demo& demo) {
+  const double speed = demo.scene.playback.speed;
+  postRequest(demo, {Ask::kSpeed, "", "", speed == 0 ? 0.25 : speed * factor});
+}
+
+// Closes the list of keys; then asks; then leaves.
+void pressEscape(Demo& demo, UiState& ui) {
+  if (std::exchange(ui.help, false)) return;
+  ui.quit = std::exchange(ui.leaving, true);
+  demo.message = "Esc again leaves; what was not saved is lost";
+  demo.message_is_fault = false;
+}
+
+constexpr KeyAction kKeyActions[] = {
+    {' ', [](Demo& demo, UiState&) { toggle(Ask::kPause, demo.paused, demo); }},
+    {'.', [](Demo& demo, UiState&) { send(Ask::kSingleStep, "", demo); }},
+    {'R', [](Demo& demo, UiState&) { send(Ask::kReset, "", demo); }},
+    {kKeyHome, [](Demo& demo, UiState&) { send(Ask::kRestart, "", demo); }},
+    {'C', [](Demo& demo, UiState&) { send(Ask::kCollapse, "", demo); }},
+    {'1', [](Demo& demo, UiState&) { send(Ask::kStyle, "short", demo); }},
+    {'2', [](Demo& demo, UiState&) { send(Ask::kStyle, "shoulder", demo); }},
+    {'3', [](Demo& demo, UiState&) { send(Ask::kStyle, "long", demo); }},
+    {'4', [](Demo& demo, UiState&) { send(Ask::kResolution, "low", demo); }},
+    {'5', [](Demo& demo, UiState&) { send(Ask::kResolution, "medium", demo); }},
+    {'6', [](Demo& demo, UiState&) { send(Ask::kResolution, "high", demo); }},
+    {'-', [](Demo& demo, UiState&) { changeSpeed(0.8, demo); }},
+    {'=', [](Demo& demo, UiState&) { changeSpeed(1.25, demo); }},
+    {'F', [](Demo& demo, UiState&) { send(Ask::kView, "front", demo); }},
+    {'S', [](Demo& demo, UiState&) { send(Ask::kView, "side", demo); }},
+    {'B', [](Demo& demo, UiState&) { send(Ask::kView, "back", demo); }},
+    {'T', [](Demo& demo, UiState&) { send(Ask::kView, "top", demo); }},
+    {'Q', [](Demo& demo, UiState&) { send(Ask::kView, "three-quarter", demo); }},
+    {'L', [](Demo& demo, UiState&) { toggle(Ask::kFollow, demo.camera.follow, demo); }},
+    {'M', [](Demo& demo, UiState&) { toggleView("mesh", demo); }},
+    {'E', [](Demo& demo, UiState&) { toggleView("ellipsoids", demo); }},
+    {'V', [](Demo& demo, UiState&) { toggleView("tets", demo); }},
+    {'N', [](Demo& demo, UiState&) { toggleView("contacts", demo); }},
+    {'P', [](Demo& demo, UiState&) { send(Ask::kScreenshot, "", demo); }},
+    {kKeyF12, [](Demo& demo, UiState&) { send(Ask::kScreenshot, "", demo); }},
+    {'K', [](Demo& demo, UiState&) { toggle(Ask::kRecord, demo.capture.recording, demo); }},
+    {kKeyTab, [](Demo&, UiState& ui) { ui.visible = !ui.visible; }},
+    {'/', [](Demo&, UiState& ui) { ui.help = !ui.help; }},
+    {'?', [](Demo&, UiState& ui) { ui.help = !ui.help; }},
+    {kKeyF1, [](Demo&, UiState& ui) { ui.help = !ui.help; }},
+    {kKeyF5, [](Demo&, UiState& ui) { ui.reload_shaders = true; }},
+    {kKeyEscape, pressEscape},
+};
+
+}  // namespace
+
+std::span<const KeyHelp> keyHelp() {
+  return kKeyHelp;
+}
+
+bool pressKey(int key, Demo& demo, UiState& ui) {
+  for (const KeyAction& row : kKeyActions) {
+    if (row.key != key) continue;
+    if (key != kKeyEscape) ui.leaving = false;
+    row.press(demo, ui);
+    return true;
+  }
+  return false;
+}
+
+}  // namespace app
