@@ -5,33 +5,33 @@
 #include <array>
 #include <cstdlib>
 
-#include "app/image_io.h"
+#include "app/files/image_io.h"
 #include "render/renderer.h"
 
 namespace draw_skips {
 
-// Levels of 255, and where the hair is so small that a block holds it; the ledger (app/skips.cpp) states them.
+// Levels of 255, and where the hair is so small that a block holds it; the table (app/scene/skips.cpp) states them.
 constexpr double kDetailBound = 4, kSmallBound = 7, kBodyBound = 2, kSmallBodyBound = 3.5;
 
 inline render::DrawSkips none() {
   render::DrawSkips skips;
   skips.frame = skips.rows = skips.shadows = skips.view = skips.shadow_view = skips.body_parts = false;
-  skips.body_detail = skips.strands = skips.segments = skips.shadow_detail = skips.openness = false;
+  skips.body_detail = skips.strands = skips.segments = skips.shadow_detail = skips.sky_visibility = false;
   return skips;
 }
 
 struct NamedSkip {
   const char* name;
   bool render::DrawSkips::*on;
-  render::LeftOut render::DrawLeftOut::*count;
+  render::SkipCount render::DrawSkipCounts::*count;
 };
 constexpr NamedSkip kExact[] = {
-    {"frame", &render::DrawSkips::frame, &render::DrawLeftOut::frame},
-    {"rows", &render::DrawSkips::rows, &render::DrawLeftOut::rows},
-    {"shadows", &render::DrawSkips::shadows, &render::DrawLeftOut::shadows},
-    {"view", &render::DrawSkips::view, &render::DrawLeftOut::view},
-    {"shadow_view", &render::DrawSkips::shadow_view, &render::DrawLeftOut::shadow_view},
-    {"body_parts", &render::DrawSkips::body_parts, &render::DrawLeftOut::body_parts},
+    {"frame", &render::DrawSkips::frame, &render::DrawSkipCounts::frame},
+    {"rows", &render::DrawSkips::rows, &render::DrawSkipCounts::rows},
+    {"shadows", &render::DrawSkips::shadows, &render::DrawSkipCounts::shadows},
+    {"view", &render::DrawSkips::view, &render::DrawSkipCounts::view},
+    {"shadow_view", &render::DrawSkips::shadow_view, &render::DrawSkipCounts::shadow_view},
+    {"body_parts", &render::DrawSkips::body_parts, &render::DrawSkipCounts::body_parts},
 };
 
 inline render::DrawSkips exact() {

@@ -7,8 +7,8 @@
 #include <memory>
 #include <string>
 
-#include "app/egl_context.h"
-#include "app/errors.h"
+#include "app/files/errors.h"
+#include "app/platform/egl_context.h"
 
 namespace gl_fixture {
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "app/image_io.h"
+#include "app/files/image_io.h"
 
 namespace golden {
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/forces/force_model.h"
-#include "sim/linear_solver.h"
+#include "sim/linear/modified_pcg.h"
 #include "tests/test_meshes.h"
 
 namespace tests {

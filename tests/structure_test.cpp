@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <regex>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -59,7 +61,7 @@ TEST(Structure, SimulatorAndRendererMeetOnlyWhereTheyShould) {
   for (const fs::path& file : sources({"app"})) {
     bool sim = false, render = false;
     for (const std::string& line : lines(file)) {
-      sim = sim || line.starts_with("#include \"sim/step.h\"") || line.starts_with("#include \"sim/hair_mesh.h\"");
+      sim = sim || line.starts_with("#include \"sim/step.h\"") || line.starts_with("#include \"sim/mesh/hair_mesh.h\"");
       render = render || line.starts_with("#include \"render/");
     }
     if (!sim || !render) continue;
@@ -70,7 +72,7 @@ TEST(Structure, SimulatorAndRendererMeetOnlyWhereTheyShould) {
 TEST(Structure, PanelsCallNoOpenGl) {
   const std::regex call("#include <(GL|GLFW|EGL)|\\bgl[A-Z][a-zA-Z]+\\(");
   for (const fs::path& file : sources({"app"})) {
-    if (!file.filename().string().starts_with("ui")) continue;
+    if (file.parent_path().filename() != "ui") continue;
     for (const std::string& line : lines(file)) {
       EXPECT_FALSE(std::regex_search(line, call)) << file << ": " << line;
     }
@@ -81,6 +83,43 @@ TEST(Structure, NoFileIsLongerThanFiveHundredLines) {
   for (const fs::path& file : sources({"sim", "render", "app", "tests"})) {
     EXPECT_LE(lines(file).size(), 500u) << file;
   }
+}
+
+struct Function {
+  std::string head;
+  std::size_t lines = 0;
+  bool table = false;  // all of it after the first lines is one list that it returns
+};
+
+// Functions of a file in this project's format: each ends with a brace where its first line begins.
+std::vector<Function> functionsOf(const fs::path& file) {
+  const std::regex type("^ *(namespace|struct|class|enum|union)\\b.*");
+  std::vector<Function> functions;
+  const std::vector<std::string> text = lines(file);
+  for (const std::string indent : {"", "  "}) {
+    std::size_t first = text.size();
+    for (std::size_t n = 0; n < text.size(); ++n) {
+      const bool here = text[n].starts_with(indent) && text[n].size() > indent.size() && text[n][indent.size()] != ' ';
+      if (!here) continue;
+      if (text[n] == indent + "}" && first < n && text[first].find('(') != std::string::npos &&
+          !std::regex_match(text[first], type)) {
+        functions.push_back({text[first], n - first + 1, text[n - 1] == indent + "  };"});
+      }
+      first = n;
+    }
+  }
+  return functions;
+}
+
+TEST(Structure, NoFunctionIsLongerThanSixtyLinesOutsideOfTables) {
+  std::size_t found = 0;
+  for (const fs::path& file : sources({"app", "tests", "sim/styles", "sim/mesh"})) {
+    for (const Function& function : functionsOf(file)) {
+      ++found;
+      EXPECT_TRUE(function.lines <= 60 || function.table) << file << ": " << function.lines << ": " << function.head;
+    }
+  }
+  EXPECT_GT(found, 1000u) << "functions are not recognized";
 }
 
 bool hasAny(const std::string& text, std::initializer_list<const char*> words) {
@@ -103,6 +142,25 @@ TEST(Structure, NoVirtualClasses) {
   for (const fs::path& file : sources({"sim", "render", "app"})) {
     for (const std::string& line : lines(file)) EXPECT_FALSE(line.starts_with("  virtual ")) << file << ": " << line;
   }
+}
+
+// Names of parameterized tests are words: no bytes of a structure, no bare number. As every built program lists them.
+TEST(Structure, TestNamesAreWords) {
+  const std::regex bytes("-byte object|^ +[^ ]*/[0-9]+( |$)");
+  std::istringstream programs(HAIRMESH_TEST_PROGRAMS);
+  std::size_t found = 0;
+  for (std::string program; std::getline(programs, program, ':');) {
+    if (!fs::exists(program)) continue;  // a part of the tests can be built alone
+    FILE* pipe = popen(("'" + program + "' --gtest_list_tests").c_str(), "r");
+    ASSERT_NE(pipe, nullptr);
+    for (char text[1024]; std::fgets(text, sizeof text, pipe);) {
+      const std::string line(text, std::string(text).find_last_not_of('\n') + 1);
+      ++found;
+      EXPECT_FALSE(std::regex_search(line, bytes)) << program << ": " << line;
+    }
+    EXPECT_EQ(pclose(pipe), 0) << program;
+  }
+  EXPECT_GT(found, 5u);
 }
 
 }  // namespace

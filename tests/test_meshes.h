@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "sim/block_matrix.h"
-#include "sim/hair_mesh.h"
+#include "sim/linear/block_matrix.h"
+#include "sim/mesh/hair_mesh.h"
 #include "sim/step.h"
 
 namespace test {
@@ -121,6 +121,15 @@ inline sim::SimParams tautHair() {
   return p;
 }
 
+// Springs on some vertices, at rest in the styled pose.
+inline std::vector<sim::PinnedVertex> pinnedWhereTheyAre(const sim::HairMesh& mesh) {
+  std::vector<sim::PinnedVertex> pins;
+  for (int i = 0; i < mesh.vertexCount(); i += 3) {
+    if (!mesh.isRoot(i)) pins.push_back({i, mesh.shape.positions[i], sim::Vec3::Zero(), 20});
+  }
+  return pins;
+}
+
 // Hair without any stiffness: every vertex is a particle of its own.
 inline sim::SimParams looseParticles() {
   sim::SimParams p = tautHair();
@@ -138,6 +147,7 @@ struct Hair {
   sim::HairState state;
   std::vector<sim::Vec3> roots;
   std::vector<sim::Ellipsoid> bodies;
+  std::vector<sim::PinnedVertex> pins;
   double time = 0;
 
   Hair(sim::HairMeshShape shape, const sim::SimParams& p)
@@ -151,7 +161,7 @@ struct Hair {
 
   sim::StepReport step(double dt) {
     time += dt;
-    return sim::advance(mesh, params, {roots, bodies, time}, dt, context, state);
+    return sim::advance(mesh, params, {roots, bodies, time, {}, pins}, dt, context, state);
   }
 };
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "app/errors.h"
-#include "app/scene_file.h"
+#include "app/files/errors.h"
+#include "app/files/scene_file.h"
 #include "tests/run_program.h"
 
 namespace {
@@ -125,6 +125,7 @@ TEST(Options, MisuseIsUsageAndSaysSoInOneLine) {
                                                       {"a.json", "b.json"},
                                                       {"--start", "-3"},
                                                       {"--style", "long", "--hair", "x.obj"},
+                                                      {"--reverse-faces"},
                                                       {"--no-images", "--frames", "1", "--debug", "everything"}};
   for (const auto& words : misuses) {
     std::string all;
@@ -151,8 +152,7 @@ TEST(Options, FilesThatCannotBeUsedAreBadInput) {
                                                       {"--hair", "missing.obj"},
                                                       {"--hair", folder + "/words.obj"},
                                                       {"--preset", "missing"},
-                                                      {"--clip", "no such clip"},
-                                                      {"--report", "/nonexistent/folder/r.json"}};
+                                                      {"--clip", "no such clip"}};
   for (std::vector<std::string> words : misuses) {
     const std::string all = words.back();
     words.insert(words.end(), {"--no-images", "--frames", "1"});
@@ -171,8 +171,51 @@ TEST(Options, ThePapersSettingIsOneWord) {
   EXPECT_EQ(set[3], std::make_pair(std::string("integrator"), std::string("bdf2"))) << "what is set by name wins";
 }
 
-TEST(Options, AFolderThatCannotBeMadeIsBadInput) {
-  expectOneMessage(runProgram({"--headless", "--frames", "1", "--out", "/proc/frames"}), app::kExitBadInput, "--out");
+TEST(Options, AnUnknownPresetIsAnsweredWithThoseThereAre) {
+  const Outcome outcome = runProgram({"--preset", "foo", "--no-images", "--frames", "1"});
+  expectOneMessage(outcome, app::kExitBadInput, "--preset foo");
+  EXPECT_NE(outcome.err.find("'foo'; choose one of auburn, black"), std::string::npos) << outcome.err;
+}
+
+TEST(Options, AFileNamedWithoutAnOptionGoesWhereItsKindBelongs) {
+  EXPECT_EQ(app::sceneFromOptions(parse({"trio.json"}).options).characters.size(), 3u);
+  const app::Scene walk = app::sceneFromOptions(parse({"walk.bvh"}).options);
+  EXPECT_TRUE(walk.characters[0].motion.ends_with("walk.bvh"));
+  const app::Scene bob = app::sceneFromOptions(parse({"bob_example.obj"}).options);
+  EXPECT_TRUE(bob.characters[0].hair.ends_with("bob_example.obj"));
+  const app::Scene soft = app::sceneFromOptions(parse({"soft.json"}).options);
+  EXPECT_NE(soft.sim.bend, sim::SimParams{}.bend);
+  EXPECT_THROW(app::sceneFromOptions(parse({"walk.bvh", "--motion", "dance.bvh"}).options), app::UsageError);
+  EXPECT_THROW(app::sceneFromOptions(parse({"bob_example.obj", "--style", "long"}).options), app::UsageError);
+  EXPECT_THROW(app::sceneFromOptions(parse({"README.md"}).options), app::InputError);
+}
+
+TEST(Options, TheHairMeshThatIsShownIsWrittenAndShownAgain) {
+  const std::string folder = test::freshFolder("write_hair"), file = folder + "/long.obj";
+  ASSERT_EQ(runProgram({"--style", "long", "--resolution", "low", "--write-hair", file}).exit_code, app::kExitFine);
+  const auto state = [](const std::vector<std::string>& hair) {
+    std::vector<std::string> words{"--no-images", "--frames", "3", "--record", "/dev/null"};
+    words.insert(words.end(), hair.begin(), hair.end());
+    const std::string out = runProgram(words).out;
+    return out.substr(out.find("state "), 22);
+  };
+  const std::string from_file = state({file});
+  EXPECT_EQ(from_file.substr(0, 6), "state ");
+  EXPECT_EQ(from_file, state({"--style", "long", "--resolution", "low"}));
+  EXPECT_NE(from_file, state({"--style", "long", "--resolution", "medium"}));
+}
+
+TEST(Options, WhatCannotBeWrittenIsAFaultBeforeTheFirstFrame) {
+  const std::vector<std::vector<std::string>> faults{{"--headless", "--out", "/proc/frames"},
+                                                     {"--headless", "--screenshot", "/nonexistent/folder/s.png"},
+                                                     {"--no-images", "--report", "/nonexistent/folder/r.json"},
+                                                     {"--no-images", "--report", "/proc"},
+                                                     {"--no-images", "--record", "/nonexistent/folder/r.hmr"}};
+  for (std::vector<std::string> words : faults) {
+    words.insert(words.end(), {"--frames", "1000000"});
+    expectOneMessage(runProgram(words), app::kExitFault, words[1]);
+  }
+  expectOneMessage(runProgram({"--parameters"}, "sh -c 'exec \"$@\" >/dev/full' sh"), app::kExitFault, "stdout");
 }
 
 TEST(Options, HelpNamesEveryOptionAndFitsATerminal) {

@@ -1,14 +1,16 @@
 #include "tests/bench/accuracy_document.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "app/errors.h"
+#include "app/files/errors.h"
 #include "tests/bench/measured_part.h"
 #include "tests/bench/sweep.h"
+#include "tests/bench/table.h"
 
 namespace bench {
 namespace {
@@ -67,7 +69,7 @@ Errors errorsOf(const Json& row) {
           number(row, "penetration_m")};
 }
 
-// The fastest of the allowed ways of a scene, and how many times faster it is than the default.
+// The fastest of the allowed configurations of a scene, and how many times faster it is than the default.
 std::string fastestCells(const std::vector<Json>& rows, const auto& allowed) {
   const Json& standard = defaultOf(rows);
   const Json* fastest = &standard;
@@ -87,7 +89,8 @@ std::string fastestCells(const std::vector<Json>& rows, const auto& allowed) {
 std::string summaryTable(const Json& rows) {
   std::string table =
       "| scene | compared | reference's own error | default: ms/s | RMS error | energy drift | fastest with no more "
-      "of any error | times faster | by positions alone | times faster |\n|---|---|---|---|---|---|---|---|---|---|\n";
+      "of any error | times faster | by positions alone | times faster by positions "
+      "|\n|---|---|---|---|---|---|---|---|---|---|\n";
   for (const std::string& scene : namesIn(rows, "scene")) {
     const std::vector<Json> some = rowsOf(rows, scene);
     const Json& standard = defaultOf(some);
@@ -98,30 +101,6 @@ std::string summaryTable(const Json& rows) {
                        number(standard, "ms_per_second_min"), errorOf(standard).c_str(), driftOf(standard).c_str());
     table += fastestCells(some, [&](const Json& row) { return errorsOf(row).noWorseInAny(known, own); });
     table += fastestCells(some, [&](const Json& row) { return errorsOf(row).noWorseInPosition(known, own); }) + "\n";
-  }
-  return table + "\n";
-}
-
-// The front of a scene, its default and the paper's setting.
-std::string frontTable(const std::string& scene, const std::vector<Json>& rows) {
-  std::vector<Json> shown;
-  std::copy_if(rows.begin(), rows.end(), std::back_inserter(shown),
-               [](const Json& row) { return row["front"].get<bool>() || row["default"].get<bool>() || isPapers(row); });
-  std::sort(shown.begin(), shown.end(), [](const Json& a, const Json& b) {
-    return number(a, "ms_per_second_min") < number(b, "ms_per_second_min");
-  });
-  std::string table = "### " + scene + "\n\n![" + scene + "](accuracy_" + scene + ".svg)\n\n";
-  table +=
-      "| | way | step | tolerance | precision | ms/s, least | median | RMS error | largest | iterations | stretch | "
-      "volume "
-      "| penetration, mm | energy drift |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
-  for (const Json& row : shown) {
-    table += formatted("| %s | %s | 1/%.0f | %.0e | %s | %.1f | %.1f | %s | %.1e | %.1f | %.3f | %.3f | %.2f | %s |\n",
-                       row["default"] ? "**default**" : (isPapers(row) ? "the paper's" : ""), wayOf(row).c_str(),
-                       1 / number(row, "time_step"), number(row, "tolerance"), word(row, "precision").c_str(),
-                       number(row, "ms_per_second_min"), number(row, "ms_per_second_median"), errorOf(row).c_str(),
-                       number(row, "error_max"), number(row, "iterations"), number(row, "worst_stretch"),
-                       number(row, "volume_error"), 1e3 * number(row, "penetration_m"), driftOf(row).c_str());
   }
   return table + "\n";
 }
@@ -155,71 +134,91 @@ std::string solversOfSweep(const Json& rows) {
   return table + "\n";
 }
 
-std::string sweepPart(const Json& rows) {
-  std::string part = summaryTable(rows);
-  for (const std::string& scene : namesIn(rows, "scene")) part += frontTable(scene, rowsOf(rows, scene));
-  return part + "### The default's step in every solver's hands\n\n" + solversOfSweep(rows);
+// The page shows where the default stands; all points are in pareto.csv, which the sweep itself writes.
+std::string sweepPart(const std::string& folder, const Json& rows) {
+  const Table summary = tableOf(summaryTable(rows));
+  writeTable(folder, "accuracy_scenes", summary);
+  writeTable(folder, "accuracy_solvers", tableOf(solversOfSweep(rows)));
+  return columns(summary, {"scene", "compared", "reference's own error", "default: ms/s", "RMS error",
+                           "fastest with no more of any error", "times faster"})
+      .markdown();
 }
 
-// Recorded systems: microseconds to a residual.
-std::string solversPart(const Json& rows) {
-  std::string part;
-  for (const std::string& scene : namesIn(rows, "scene")) {
-    const std::vector<Json> some = rowsOf(rows, scene);
-    part += formatted("### %s: %.0f vertices, up to %.0f contacts\n\n![%s](solvers_%s.svg)\n\n", scene.c_str(),
-                      number(some.front(), "vertices"), number(some.front(), "contacts"), scene.c_str(), scene.c_str());
-    part += "| solver | precision | from nothing | set-up |";
-    std::string rule = "|---|---|---|---|";
-    for (const char* key : {"to_residual", "to_displacement_error"}) {
-      for (const Json& time : some.front()[key]) {
-        part += formatted(key == std::string("to_residual") ? " residual %.0e |" : " %.0e m |", number(time, "level"));
-        rule += "---|";
-      }
-    }
-    part += "\n" + rule + "\n";
-    for (const Json& row : some) {
-      part += formatted("| %s | %s | %.0f | %.1f |", word(row, "solver").c_str(), word(row, "precision").c_str(),
-                        number(row, "first_microseconds"), number(row, "set_up_microseconds"));
-      for (const char* key : {"to_residual", "to_displacement_error"}) {
-        for (const Json& time : row[key]) {
-          part += time["microseconds"].is_null() ? " - |" : formatted(" %.0f |", number(time, "microseconds"));
-        }
-      }
-      part += "\n";
-    }
-    part += "\n";
+std::string levelText(const Json& time, bool residual) {
+  return formatted(residual ? "residual %.0e" : "%.0e m", number(time, "level"));
+}
+
+// Recorded systems: microseconds to a residual and to an error of position, all precisions.
+Table solverTimes(const Json& rows) {
+  Table table{{"scene", "vertices", "contacts", "solver", "precision", "from nothing", "set-up"}, {}};
+  for (const bool residual : {true, false}) {
+    for (const Json& time : rows.front()[residual ? "to_residual" : "to_displacement_error"])
+      table.head.push_back(levelText(time, residual));
   }
-  return part;
+  for (const Json& row : rows) {
+    table.rows.push_back({word(row, "scene"), formatted("%.0f", number(row, "vertices")),
+                          formatted("%.0f", number(row, "contacts")), word(row, "solver"), word(row, "precision"),
+                          formatted("%.0f", number(row, "first_microseconds")),
+                          formatted("%.1f", number(row, "set_up_microseconds"))});
+    for (const char* key : {"to_residual", "to_displacement_error"}) {
+      for (const Json& time : row[key]) {
+        const bool reached = !time["microseconds"].is_null();
+        table.rows.back().push_back(reached ? formatted("%.0f", number(time, "microseconds")) : "-");
+      }
+    }
+  }
+  return table;
+}
+
+// Each solver's least microseconds, over its precisions, to a residual of 1e-2; a column for each scene.
+std::string solversPart(const std::string& folder, const Json& rows) {
+  const Table times = solverTimes(rows);
+  writeTable(folder, "solver_times", times);
+  Table shown{{"solver"}, {}};
+  for (const std::string& name : namesIn(rows, "solver")) shown.rows.push_back({name});
+  for (const std::string& scene : namesIn(rows, "scene")) {
+    const Table some = rowsWith(times, "scene", scene);
+    shown.head.push_back(scene + ", " + some.rows.front()[1] + " vertices");
+    for (auto& row : shown.rows) {
+      std::string least = "-";
+      const Table reached = columns(rowsWith(some, "solver", row.front()), {"residual 1e-02"});
+      for (const auto& cell : reached.rows) {
+        const double time = std::atof(cell.front().c_str());
+        if (cell.front() != "-" && (least == "-" || time < std::atof(least.c_str()))) least = cell.front();
+      }
+      row.push_back(least);
+    }
+  }
+  return shown.markdown();
 }
 
 // Outside peers beside the default.
-std::string peersPart(const Json& rows) {
-  std::string part;
-  for (const std::string& scene : namesIn(rows, "scene")) {
-    const std::vector<Json> some = rowsOf(rows, scene);
-    part += formatted("### %s: %.0f vertices\n\n", scene.c_str(), number(some.front(), "vertices"));
-    part +=
-        "| who | ms a frame | stretch along, mean | worst | across, mean | worst | volume error, mean | worst | "
-        "inverted | after a collapse | after the motion |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
-    for (const Json& row : some) {
-      part += formatted("| %s | %.3f | %.4f | %.3f | %.4f | %.3f | %.4f | %.2f | %.0f | %.2e | %.2e |\n",
-                        word(row, "who").c_str(), number(row, "ms_a_frame"), number(row, "along_mean"),
-                        number(row, "along_max"), number(row, "across_mean"), number(row, "across_max"),
-                        number(row, "volume_error_mean"), number(row, "volume_error_max"), number(row, "inverted"),
-                        number(row, "after_collapse"), number(row, "after_motion"));
-    }
-    part += "\n";
+std::string peersPart(const std::string& folder, const Json& rows) {
+  std::string text =
+      "| vertices | who | ms a frame | stretch along, mean | stretch along, worst | across, mean | across, worst | "
+      "volume error, mean | volume error, worst | inverted | after a collapse | after the motion "
+      "|\n|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+  for (const Json& row : rows) {
+    text += formatted("| %.0f | %s | %.3f | %.4f | %.3f | %.4f | %.3f | %.4f | %.2f | %.0f | %.2e | %.2e |\n",
+                      number(row, "vertices"), word(row, "who").c_str(), number(row, "ms_a_frame"),
+                      number(row, "along_mean"), number(row, "along_max"), number(row, "across_mean"),
+                      number(row, "across_max"), number(row, "volume_error_mean"), number(row, "volume_error_max"),
+                      number(row, "inverted"), number(row, "after_collapse"), number(row, "after_motion"));
   }
-  return part;
+  const Table table = tableOf(text);
+  writeTable(folder, "peers", table);
+  return columns(table, {"vertices", "who", "ms a frame", "stretch along, mean", "stretch along, worst",
+                         "volume error, mean", "inverted", "after a collapse"})
+      .markdown();
 }
 
 // A part is written anew where its measurement is at hand, and else stays as it is.
 bool writePart(const std::string& folder, const char* name, const char* measurement,
-               std::string (*tables)(const Json& rows)) {
-  std::ifstream stream(folder + "/" + measurement);
+               std::string (*tables)(const std::string& folder, const Json& rows)) {
+  std::ifstream stream(dataFolder(folder) + "/" + measurement);
   const Json rows = Json::parse(stream, nullptr, false);
   if (!rows.is_array() || rows.empty()) return false;
-  writeMeasuredPart(folder + "/accuracy.md", name, tables(rows));
+  writeMeasuredPart(folder + "/accuracy.md", name, tables(folder, rows));
   return true;
 }
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/hair_mesh.h"
+#include "sim/mesh/hair_mesh.h"
 #include "sim/sim_params.h"
 
 namespace bench {

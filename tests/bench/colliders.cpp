@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <map>
 
-#include "app/actor.h"
-#include "app/data_path.h"
+#include "app/files/data_path.h"
+#include "app/scene/actor.h"
 #include "tests/bench/cpu_clock.h"
 #include "tests/bench/skin_distance.h"
 
@@ -57,7 +57,7 @@ void runColliders(const ColliderOptions& options, std::FILE* out) {
       "| style | clip | collider | ms a step | of it contacts | deepest under the skin, mm | vertices under it | "
       "contacts' "
       "gap to the skin, median mm | 10 %% to 90 %% |\n|---|---|---|---|---|---|---|---|---|\n");
-  app::Wardrobe wardrobe;
+  app::AssetCache asset_cache;
   for (const std::string& clip : options.clips) {
     for (const sim::Style style : {sim::Style::kShort, sim::Style::kShoulder, sim::Style::kLong}) {
       for (const sim::Resolution resolution :
@@ -72,7 +72,7 @@ void runColliders(const ColliderOptions& options, std::FILE* out) {
           app::CharacterSpec spec;
           spec.motion = app::findFile(clip, "", "clips");
           spec.style = style, spec.resolution = resolution;
-          app::Actor actor = app::makeActor(spec, app::PlaybackSpec{}, wardrobe);
+          app::Actor actor = app::makeActor(spec, app::PlaybackSpec{}, asset_cache);
           sim::SimParams params;
           params.collider = kind;
           Row row = measure(params, options.frames, actor);

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <string>
 
-#include "app/actor.h"
-#include "app/data_path.h"
-#include "sim/self_contact.h"
+#include "app/files/data_path.h"
+#include "app/scene/actor.h"
+#include "sim/contact/self_contact.h"
 #include "tests/bench/cpu_clock.h"
 
 namespace bench {
@@ -17,11 +17,12 @@ using sim::Vec3;
 
 constexpr double kSettle = 2;  // s
 
-app::Actor makeDancer(const std::string& clip, sim::Style style, sim::Resolution resolution, app::Wardrobe& wardrobe) {
+app::Actor makeDancer(const std::string& clip, sim::Style style, sim::Resolution resolution,
+                      app::AssetCache& asset_cache) {
   app::CharacterSpec spec;
   spec.motion = app::findFile(clip, "", "clips");
   spec.style = style, spec.resolution = resolution;
-  app::Actor actor = app::makeActor(spec, app::PlaybackSpec{}, wardrobe);
+  app::Actor actor = app::makeActor(spec, app::PlaybackSpec{}, asset_cache);
   app::settleActor(sim::SimParams{}, kSettle, actor);
   return actor;
 }
@@ -147,9 +148,9 @@ void writeSpawns(std::FILE* out) {
       "| style | speed allowed, m/s | deepest at first, mm | out after, s | fastest vertex, m/s | kinetic energy, "
       "most, mJ | total energy, before, mJ | when out | most afterwards | two seconds later | recoveries |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|\n");
-  app::Wardrobe wardrobe;
+  app::AssetCache asset_cache;
   for (const sim::Style style : {sim::Style::kShoulder, sim::Style::kLong}) {
-    const app::Actor actor = makeDancer("idle_turns.bvh", style, sim::Resolution::kMedium, wardrobe);
+    const app::Actor actor = makeDancer("idle_turns.bvh", style, sim::Resolution::kMedium, asset_cache);
     for (const double speed : {0.2, 0.5, 1.0, 2.0}) {
       sim::SimParams params;
       params.max_depenetration = speed;
@@ -187,9 +188,9 @@ void writeCrossings(std::FILE* out) {
       out,
       "| style | direction | speed, m/s | turning, rad/s | way a step, mm | vertices met | slid over the rim | "
       "passed through | inside afterwards, mm | recoveries |\n|---|---|---|---|---|---|---|---|---|---|\n");
-  app::Wardrobe wardrobe;
+  app::AssetCache asset_cache;
   for (const sim::Style style : {sim::Style::kShoulder, sim::Style::kLong}) {
-    const app::Actor actor = makeDancer("idle_turns.bvh", style, sim::Resolution::kMedium, wardrobe);
+    const app::Actor actor = makeDancer("idle_turns.bvh", style, sim::Resolution::kMedium, asset_cache);
     for (const double side : {-1.0, 1.0}) {  // from the right, from the left
       for (const double speed : {5.0, 10.0, 20.0, 40.0}) {
         for (const double spin : {0.0, 10.0}) {
@@ -205,15 +206,17 @@ void writeCrossings(std::FILE* out) {
 }
 
 void writeSelfContacts(int frames, std::FILE* out) {
-  std::fprintf(out,
-               "| style | clip | ms a step, off | on | on, against off | vertices inside foreign bundles, off | on | "
-               "most, off | on | recoveries |\n|---|---|---|---|---|---|---|---|---|---|\n");
-  app::Wardrobe wardrobe;
+  std::fprintf(
+      out,
+      "| style | clip | ms a step, off | ms a step, on | on, against off | vertices inside foreign bundles, off "
+      "| vertices inside foreign bundles, on | most, off | most, on | recoveries "
+      "|\n|---|---|---|---|---|---|---|---|---|---|\n");
+  app::AssetCache asset_cache;
   for (const sim::Style style : {sim::Style::kShort, sim::Style::kShoulder, sim::Style::kLong}) {
     for (const char* clip : {"walk.bvh", "jump_spin.bvh"}) {
       // Both go side by side, frame by frame, so that whatever else the machine does falls on both.
-      app::Actor actors[2] = {makeDancer(clip, style, sim::Resolution::kMedium, wardrobe),
-                              makeDancer(clip, style, sim::Resolution::kMedium, wardrobe)};
+      app::Actor actors[2] = {makeDancer(clip, style, sim::Resolution::kMedium, asset_cache),
+                              makeDancer(clip, style, sim::Resolution::kMedium, asset_cache)};
       std::vector<double> times[2];
       long sum[2] = {0, 0};
       int most[2] = {0, 0}, recoveries = 0;

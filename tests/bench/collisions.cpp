@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <set>
 
-#include "app/actor.h"
-#include "app/data_path.h"
-#include "app/errors.h"
+#include "app/files/data_path.h"
+#include "app/files/errors.h"
+#include "app/scene/actor.h"
 #include "tests/bench/cpu_clock.h"
 
 namespace bench {
@@ -15,12 +15,13 @@ namespace {
 
 constexpr double kSettle = 2, kRest = 4;  // s before a clip's measured frames; s of standing before rest is measured
 
-app::Actor makeDancer(const std::string& clip, sim::Style style, sim::Resolution resolution, app::Wardrobe& wardrobe) {
+app::Actor makeDancer(const std::string& clip, sim::Style style, sim::Resolution resolution,
+                      app::AssetCache& asset_cache) {
   app::CharacterSpec spec;
   spec.motion = app::findFile(clip, "", "clips");
   spec.style = style;
   spec.resolution = resolution;
-  return app::makeActor(spec, app::PlaybackSpec{}, wardrobe);
+  return app::makeActor(spec, app::PlaybackSpec{}, asset_cache);
 }
 
 double depthOf(const app::Actor& actor, int vertex) {
@@ -87,34 +88,39 @@ std::pair<double, double> measureRest(const sim::SimParams& params, app::Actor& 
   return {std::sqrt(sum / steps), most};
 }
 
-}  // namespace
-
-void runCollisions(const CollisionOptions& options, std::FILE* out) {
+sim::SimParams paramsOf(const CollisionOptions& options) {
   sim::SimParams params;
   for (const auto& [name, text] : options.set) {
     const sim::ParamText done = sim::setParam(params, name, text);
     if (!done.ok) throw app::InputError("", "--set " + name, done.fault, "");
   }
+  return params;
+}
+
+// Calls visit(name, style, resolution) for the wanted ones.
+void eachStyle(const CollisionOptions& options, auto&& visit) {
+  for (const sim::Style style : {sim::Style::kShort, sim::Style::kShoulder, sim::Style::kLong}) {
+    for (const sim::Resolution resolution : {sim::Resolution::kLow, sim::Resolution::kMedium, sim::Resolution::kHigh}) {
+      const std::string name = std::string(sim::styleName(style)) + " " + std::string(sim::resolutionName(resolution));
+      const auto& wanted = options.styles;
+      if (wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end())
+        visit(name, style, resolution);
+    }
+  }
+}
+
+}  // namespace
+
+void writeClips(const CollisionOptions& options, std::FILE* out) {
+  const sim::SimParams params = paramsOf(options);
   std::fprintf(
       out,
       "| style | clip | ms a step | iterations | contacts | entered | left | corrected | outside vertices, mm inside | "
       "inner vertices, mm inside | recoveries |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
-  const auto each = [&](auto&& visit) {
-    for (const sim::Style style : {sim::Style::kShort, sim::Style::kShoulder, sim::Style::kLong}) {
-      for (const sim::Resolution resolution :
-           {sim::Resolution::kLow, sim::Resolution::kMedium, sim::Resolution::kHigh}) {
-        const std::string name =
-            std::string(sim::styleName(style)) + " " + std::string(sim::resolutionName(resolution));
-        const auto& wanted = options.styles;
-        if (wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end())
-          visit(name, style, resolution);
-      }
-    }
-  };
-  app::Wardrobe wardrobe;
+  app::AssetCache asset_cache;
   for (const std::string& clip : options.clips) {
-    each([&](const std::string& name, sim::Style style, sim::Resolution resolution) {
-      app::Actor actor = makeDancer(clip, style, resolution, wardrobe);
+    eachStyle(options, [&](const std::string& name, sim::Style style, sim::Resolution resolution) {
+      app::Actor actor = makeDancer(clip, style, resolution, asset_cache);
       const Row row = measureClip(params, options.frames, actor);
       std::fprintf(out, "| %s | %s | %.2f | %.1f | %.1f | %.2f | %.2f | %.2f | %.3f | %.1f | %d |\n", name.c_str(),
                    clip.c_str(), row.milliseconds, row.iterations, row.contacts, row.entered, row.left, row.corrected,
@@ -122,9 +128,14 @@ void runCollisions(const CollisionOptions& options, std::FILE* out) {
       std::fflush(out);
     });
   }
-  std::fprintf(out, "\n| style | rest speed, RMS mm/s | largest mm/s | contacts |\n|---|---|---|---|\n");
-  each([&](const std::string& name, sim::Style style, sim::Resolution resolution) {
-    app::Actor actor = makeDancer("idle_turns.bvh", style, resolution, wardrobe);
+}
+
+void writeRests(const CollisionOptions& options, std::FILE* out) {
+  const sim::SimParams params = paramsOf(options);
+  std::fprintf(out, "| style | rest speed, RMS mm/s | largest mm/s | contacts |\n|---|---|---|---|\n");
+  app::AssetCache asset_cache;
+  eachStyle(options, [&](const std::string& name, sim::Style style, sim::Resolution resolution) {
+    app::Actor actor = makeDancer("idle_turns.bvh", style, resolution, asset_cache);
     const auto [rms, most] = measureRest(params, actor);
     std::fprintf(out, "| %s | %.3f | %.2f | %zu |\n", name.c_str(), 1e3 * rms, 1e3 * most, actor.hair.contacts.size());
     std::fflush(out);

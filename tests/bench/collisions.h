@@ -15,7 +15,10 @@ struct CollisionOptions {
   std::vector<std::pair<std::string, std::string>> set;  // parameters, as --set takes them
 };
 
-// Writes one row a style and clip, then the rest speed of each style on the standing figure. Throws app::InputError.
-void runCollisions(const CollisionOptions& options, std::FILE* out);
+// Writes one row a style and clip. Throws app::InputError.
+void writeClips(const CollisionOptions& options, std::FILE* out);
+
+// Writes the rest speed of each style on the standing figure. Throws app::InputError.
+void writeRests(const CollisionOptions& options, std::FILE* out);
 
 }  // namespace bench

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "sim/watchdog.h"
+#include "sim/stabilization/state_validation.h"
 #include "tests/bench/material_points.h"
 #include "tests/bench/measured_part.h"
 

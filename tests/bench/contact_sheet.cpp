@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <vector>
 
-#include "app/data_path.h"
-#include "app/demo.h"
-#include "app/egl_context.h"
-#include "app/image_io.h"
+#include "app/files/data_path.h"
+#include "app/files/image_io.h"
+#include "app/platform/egl_context.h"
+#include "app/scene/demo.h"
 
 namespace bench {
 namespace {

@@ -5,11 +5,13 @@
 #include <cstdio>
 #include <memory>
 
-#include "app/errors.h"
+#include "app/files/errors.h"
 #include "tests/bench/cpu_clock.h"
 #include "tests/bench/gate_motion.h"
 #include "tests/bench/gate_sweep.h"
+#include "tests/bench/measured_part.h"
 #include "tests/bench/reference.h"
+#include "tests/bench/table.h"
 #include "tests/bench/timed_scene.h"
 #include "tests/bench/waits.h"
 
@@ -60,7 +62,7 @@ void compareWithPlain(Style style, Resolution resolution, const Bounds& bounds, 
   const int plain_rounds = std::max(2, rounds / 2);
   for (int round = 0; round <= rounds; ++round) {
     our_run = scene.run(params, kWalk);
-    if (round <= plain_rounds) plain_run = scene.run(params, kWalk, Way::kPlain);
+    if (round <= plain_rounds) plain_run = scene.run(params, kWalk, Method::kPlain);
     if (round == 0) continue;
     ours.push_back(our_run.total());
     frame.push_back(our_run.median());
@@ -87,7 +89,7 @@ void compareWithPlain(Style style, Resolution resolution, const Bounds& bounds, 
   double tight_error = plain_error, tight_time = medianOf(plain);
   while (tight_error > our_error + own && tight.tolerance > kTightest) {
     tight.tolerance /= 10;
-    plain_run = scene.run(tight, kWalk, Way::kPlain);
+    plain_run = scene.run(tight, kWalk, Method::kPlain);
     tight_time = plain_run.total();
     tight_error = difference(plain_run.trajectory, reference.trajectory, length, samples).rms;
   }
@@ -139,10 +141,8 @@ void sliderDrag(Report& report) {
   }
 }
 
-}  // namespace
-
-std::vector<Figure> measureSpeed(const GateOptions& options) {
-  Report report;
+// The figures of speed alone.
+void addSpeedFigures(const GateOptions& options, Report& report) {
   for (const Style style : {Style::kLong, Style::kShoulder}) {
     compareWithPlain(style, Resolution::kLow, {20, 0.3}, options, report);
     compareWithPlain(style, Resolution::kHigh, {10, 2.5}, options, report);
@@ -151,25 +151,28 @@ std::vector<Figure> measureSpeed(const GateOptions& options) {
   }
   sliderDrag(report);
   addBudgetFigures([&](const Figure& figure) { report.add(figure); });
-  return std::move(report.figures);
 }
+
+}  // namespace
 
 std::vector<Figure> measureFigures(const GateOptions& options) {
   Report report;
-  report.figures = measureSpeed(options);
+  addSpeedFigures(options, report);
   addConsistencyFigures([&](const Figure& figure) { report.add(figure); });
   addSweepFigures(options, [&](const Figure& figure) { report.add(figure); });
   return std::move(report.figures);
 }
 
-std::string figureTable(const std::vector<Figure>& figures) {
-  std::string out = "| figure | value | bound | | |\n|---|---|---|---|---|\n";
+void writeGateDocument(const std::vector<Figure>& figures, const std::string& folder) {
+  Table table{{"figure", "value", "bound", "holds", "note"}, {}};
   for (const Figure& figure : figures) {
-    out += text("| %s | %.3g %s | %s %.3g | %s | ", figure.name.c_str(), figure.value, figure.unit.c_str(),
-                figure.at_least ? "at least" : "at most", figure.bound, figure.holds() ? "ok" : "**short**");
-    out += figure.note + " |\n";
+    table.rows.push_back({figure.name,
+                          text("%.3g%s%s", figure.value, figure.unit.empty() ? "" : " ", figure.unit.c_str()),
+                          text("%s %.3g", figure.at_least ? "at least" : "at most", figure.bound),
+                          figure.holds() ? "yes" : "**no**", figure.note});
   }
-  return out;
+  writeTable(folder, "gate", table);
+  writeMeasuredPart(folder + "/gate.md", "figures", columns(table, {"figure", "value", "bound", "holds"}).markdown());
 }
 
 bool allHold(const std::vector<Figure>& figures) {

@@ -20,15 +20,13 @@ struct Figure {
   bool holds() const { return at_least ? value >= bound : value <= bound; }  // NaN falls short
 };
 
-// The figures of speed alone: all but those of consistency and of the sweeps. As measureFigures.
-std::vector<Figure> measureSpeed(const GateOptions& options);
-
 // Prints one line a figure (name, value, bound, ok or short) as it is measured. Times are of
 // this thread's processor time; ratios compare runs that took turns. Throws app::InputError.
 std::vector<Figure> measureFigures(const GateOptions& options);
 
-// As a Markdown table.
-std::string figureTable(const std::vector<Figure>& figures);
+// Puts the figures into the measured part of <folder>/gate.md and, with their notes, into <folder>/data/gate.csv.
+// Throws app::InputError.
+void writeGateDocument(const std::vector<Figure>& figures, const std::string& folder);
 
 // Whether all hold; prints how many do.
 bool allHold(const std::vector<Figure>& figures);

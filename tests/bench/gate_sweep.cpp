@@ -17,15 +17,15 @@ void addSweepFigures(const GateOptions& options, const std::function<void(const 
   for (const TrajectoryScene& scene : trajectoryScenes()) {
     TrajectoryStage stage(scene);
     const Reference reference = referenceOf(stage, kReferenceRate, options.references);
-    const std::vector<sim::SimParams> ways = waysToRun(SweepSize::kShort, scene.collide);
-    const Sweep sweep = sweepScene(stage, reference, ways, std::min(3, options.rounds));
+    const std::vector<sim::SimParams> configurations = configurationsToRun(SweepSize::kShort, scene.collide);
+    const Sweep sweep = sweepScene(stage, reference, configurations, std::min(3, options.rounds));
     Lag lag = lagOfDefault(sweep);
     if (lag.ratio > kBehindFront) {
-      lag.ratio = confirmedRatio(stage, sweep.points.front().params, lag.way->params, options.rounds);
+      lag.ratio = confirmedRatio(stage, sweep.points.front().params, lag.configuration->params, options.rounds);
     }
     const std::string name = scene.name;
     add({"fastest way with no more of any error over the default: " + name, lag.ratio, kBehindFront, false, "",
-         lag.way->is_default ? "the default itself" : lag.way->name()});
+         lag.configuration->is_default ? "the default itself" : lag.configuration->name()});
     double smallest = sweep.points.front().error.rms;
     for (const Point& point : sweep.points) smallest = std::min(smallest, point.error.rms);
     char note[100];

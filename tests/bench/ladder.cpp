@@ -7,10 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "app/data_path.h"
-#include "app/governor.h"
+#include "app/files/data_path.h"
+#include "app/scene/governor.h"
 #include "tests/bench/cpu_clock.h"
 #include "tests/bench/measured_part.h"
+#include "tests/bench/table.h"
 #include "tests/bench/trajectory.h"
 
 namespace bench {
@@ -56,7 +57,7 @@ class Stage {
     spec.motion = app::findFile(scene.motion, "", "clips");
     spec.style = scene.style;
     spec.resolution = scene.resolution;
-    actor_ = app::makeActor(spec, {}, wardrobe_);
+    actor_ = app::makeActor(spec, {}, asset_cache_);
     SimParams params;
     params.collide = collide_;
     app::settleActor(params, kSettle, actor_);
@@ -88,7 +89,7 @@ class Stage {
 
  private:
   bool collide_;
-  app::Wardrobe wardrobe_;
+  app::AssetCache asset_cache_;
   app::Actor actor_;
   sim::HairState start_;
   app::Playback playback_;
@@ -175,7 +176,7 @@ bool isOf(const app::Rung& rung, const Candidate& candidate) {
 
 // The rungs as they are written down and as they were measured now.
 std::string rungTable(const std::vector<Candidate>& list, const Measured& measured) {
-  std::string table = "| rung | cost, ladder's | measured | error, ladder's | measured |",
+  std::string table = "| rung | cost, ladder's | cost, measured | error, ladder's | error, measured |",
               rule = "|---|---|---|---|---|";
   for (const std::string& scene : measured.scenes) table += " " + scene + " |", rule += "---|";
   table += "\n" + rule + "\n";
@@ -199,7 +200,12 @@ void measureLadder(int runs, const std::string& folder) {
   printFront(list, measured);
   const std::string table = rungTable(list, measured), document = folder + "/performance.md";
   std::printf("\n%s", table.c_str());
-  if (std::filesystem::exists(document)) writeMeasuredPart(document, "ladder", table);
+  if (!std::filesystem::exists(document)) return;
+  writeTable(folder, "ladder", tableOf(table));
+  writeMeasuredPart(
+      document, "ladder",
+      columns(tableOf(table), {"rung", "cost, ladder's", "cost, measured", "error, ladder's", "error, measured"})
+          .markdown());
 }
 
 }  // namespace bench

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "app/errors.h"
+#include "app/files/errors.h"
 #include "sim/implicit_solve.h"
 
 namespace bench {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "sim/block_matrix.h"
-#include "sim/column_matrix.h"
-#include "sim/contact.h"
+#include "sim/contact/contact.h"
+#include "sim/linear/block_matrix.h"
+#include "sim/linear/column_matrix.h"
 #include "tests/bench/trajectory.h"
 
 namespace bench {

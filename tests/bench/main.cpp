@@ -1,11 +1,12 @@
 // hairmesh-bench: measurements and pictures that the documents quote.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdio>
 #include <functional>
 #include <iostream>
 #include <vector>
 
-#include "app/errors.h"
+#include "app/files/errors.h"
 #include "tests/bench/accuracy_document.h"
 #include "tests/bench/colliders.h"
 #include "tests/bench/collision_document.h"
@@ -14,13 +15,13 @@
 #include "tests/bench/contact_sheet.h"
 #include "tests/bench/gate.h"
 #include "tests/bench/ladder.h"
-#include "tests/bench/measured_part.h"
 #include "tests/bench/pareto.h"
 #include "tests/bench/peers.h"
 #include "tests/bench/performance.h"
 #include "tests/bench/skipping.h"
 #include "tests/bench/solver_chart.h"
 #include "tests/bench/styles_bench.h"
+#include "tests/bench/table.h"
 
 namespace {
 
@@ -61,12 +62,16 @@ std::vector<Task> tasks() {
       {"--ladder", "cost and error of the budget governor's settings; a performance.md in --out gets their table",
        [](Asked& a) { bench::measureLadder(a.pareto.runs, a.pareto.folder); }},
       {"--collisions", "what is left inside the body, contacts that come and go, rest",
-       [](Asked& a) { bench::runCollisions(a.collisions, stdout); }},
+       [](Asked& a) {
+         bench::writeClips(a.collisions, stdout);
+         std::printf("\n");
+         bench::writeRests(a.collisions, stdout);
+       }},
       {"--skipping", "what every skip saves and changes on five scenes; exits 1 off its bounds",
        [](Asked& a) {
          if (!bench::runSkipping({a.pareto.folder, a.pareto.scenes, a.pareto.quick})) a.all_hold = false;
        }},
-      {"--crowd", "simulation of the hundred beside the close-up's in --runs turns, and its shapes; exits 1 off bounds",
+      {"--crowd", "the crowd's simulation beside the close-up's in --runs turns, and its shapes; exits 1 off bounds",
        [](Asked& a) {
          if (!bench::runCrowd(a.pareto.runs)) a.all_hold = false;
        }},
@@ -80,8 +85,7 @@ std::vector<Task> tasks() {
        [](Asked& a) {
          const std::vector<bench::Figure> figures = bench::measureFigures(a.gate);
          if (!bench::allHold(figures)) a.all_hold = false;
-         if (!a.gate_document.empty())
-           bench::writeMeasuredPart(a.gate_document + "/gate.md", "figures", "\n" + bench::figureTable(figures) + "\n");
+         if (!a.gate_document.empty()) bench::writeGateDocument(figures, a.gate_document);
        }},
   };
 }
@@ -112,9 +116,9 @@ void addOptions(CLI::App& program, Asked& a) {
       ->check(CLI::Range(1, 100));
   program.add_option("--gate-document", a.gate_document, "also put --gate's figures into this folder's gate.md");
   program.add_option("--performance-document", a.performance,
-                     "measure figures, stages, growth and start-up into this folder's performance.md");
+                     "measure stages, growth and start-up into this folder's performance.md");
   program.add_option("--accuracy-document", a.document,
-                     "put the tables of what this folder holds into its accuracy.md");
+                     "put the tables of what this folder's data holds into its accuracy.md");
   program.add_option("--accuracy", a.accuracy,
                      "all of accuracy.md in this folder: a quick sweep, solvers, peers, tables");
 }
@@ -127,7 +131,8 @@ void settle(std::vector<Task>& all, Asked& a) {
         task.asked = task.asked || task.flag == std::string(part);
     }
     a.pareto.quick = true;
-    a.pareto.folder = a.document = a.accuracy;
+    a.document = a.accuracy;
+    a.pareto.folder = bench::dataFolder(a.accuracy);
   }
   a.gate.references = a.pareto.references;
   a.solvers.folder = a.peers.folder = a.pareto.folder;
@@ -158,7 +163,7 @@ int main(int argc, char** argv) {
       if (task.asked) task.run(asked);
     }
     if (!asked.document.empty()) bench::writeAccuracyDocument(asked.document);
-    if (!asked.performance.empty()) bench::writePerformanceDocument(asked.performance, asked.gate);
+    if (!asked.performance.empty()) bench::writePerformanceDocument(asked.performance);
     if (!asked.sheet.folder.empty()) bench::drawContactSheets(asked.sheet);
   } catch (const app::ContextError& error) {
     std::cerr << "hairmesh-bench: " << error.what() << "\n";

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "app/errors.h"
+#include "app/files/errors.h"
 
 namespace bench {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "sim/linear_solver.h"
+#include "sim/linear/modified_pcg.h"
 #include "tests/bench/cpu_clock.h"
 
 namespace bench {

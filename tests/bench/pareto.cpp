@@ -7,7 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "app/errors.h"
+#include "app/files/errors.h"
 #include "tests/bench/gnuplot.h"
 #include "tests/bench/sweep.h"
 
@@ -104,12 +104,12 @@ void print(const Sweep& sweep) {
     std::printf("%s %-64s %9.2f ms/s  rms %s%.2e max %.2e  %5.1f its\n", p.is_default ? "*" : " ", p.name().c_str(),
                 p.fastest, p.ranked ? "" : "~", p.error.rms, p.error.most, p.result.iterations);
   }
-  const auto tell = [](const char* what, const Lag& lag) {
-    std::printf("  the fastest way with no more %s than the default is %.2f times faster: %s\n", what, lag.ratio,
-                lag.way->name().c_str());
+  const auto showMessage = [](const char* what, const Lag& lag) {
+    std::printf("  the fastest configuration with no more %s than the default is %.2f times faster: %s\n", what,
+                lag.ratio, lag.configuration->name().c_str());
   };
-  tell("of any error", lagOfDefault(sweep));
-  tell("error of positions", lagByPosition(sweep));
+  showMessage("of any error", lagOfDefault(sweep));
+  showMessage("error of positions", lagByPosition(sweep));
   std::fflush(stdout);
 }
 
@@ -126,7 +126,7 @@ void runPareto(const ParetoOptions& options) {
     const Reference reference = referenceOf(stage, kReferenceRate, options.references);
     const bool large = scene.resolution == sim::Resolution::kHigh;
     const SweepSize size = options.quick || large ? SweepSize::kQuick : SweepSize::kFull;
-    const Sweep sweep = sweepScene(stage, reference, waysToRun(size, scene.collide), options.runs);
+    const Sweep sweep = sweepScene(stage, reference, configurationsToRun(size, scene.collide), options.runs);
     for (const Point& p : sweep.points) rows.push_back(toJson(sweep, p));
     print(sweep);
     drawChart(options.folder, std::string("accuracy_") + scene.name, chartOf(sweep));

@@ -1,4 +1,4 @@
-// Run time against error, over the ways that a scene can be simulated.
+// Run time against error, over the configurations that a scene can be simulated with.
 #pragma once
 
 #include <string>

@@ -15,7 +15,7 @@
 namespace bench {
 namespace {
 
-constexpr int kMostOfImplicit = 1000;  // vertices
+constexpr int kMaxOfImplicit = 1000;  // vertices
 
 constexpr double kFrame = 1.0 / 60;
 constexpr int kStill = 180;  // frames in which to recover
@@ -53,7 +53,6 @@ class OwnHair {
  public:
   OwnHair(const sim::HairMesh& mesh, const sim::SimParams& params)
       : mesh_(mesh), params_(params), context_(mesh), state_(sim::restState(mesh, Eigen::Isometry3d::Identity())) {
-    context_.leaveAsPublished(true);
   }
   void place(std::span<const sim::Vec3> positions) {
     state_.positions.assign(positions.begin(), positions.end());
@@ -201,7 +200,7 @@ std::vector<PeerFigures> measureAll(const PeerScenes& scenes) {
   const Positions rest = restAt(scenes.mesh, scenes.shake.front());
   for (const BulletMethod method : {BulletMethod::kPositions10, BulletMethod::kPositions50, BulletMethod::kImplicit}) {
     // On the large mesh the implicit body, which comes apart on the small one, would take most of an hour.
-    if (method == BulletMethod::kImplicit && scenes.mesh.vertexCount() > kMostOfImplicit) continue;
+    if (method == BulletMethod::kImplicit && scenes.mesh.vertexCount() > kMaxOfImplicit) continue;
     add(bulletMethodName(method), BulletHair(scenes.mesh, standard, rest, method));
   }
 #endif

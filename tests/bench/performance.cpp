@@ -9,8 +9,9 @@
 #include <iterator>
 #include <memory>
 
-#include "app/errors.h"
 #include "tests/bench/cpu_clock.h"
+#include "tests/bench/measured_part.h"
+#include "tests/bench/table.h"
 #include "tests/bench/timed_scene.h"
 #include "tests/bench/waits.h"
 
@@ -21,8 +22,6 @@ using sim::Resolution;
 using sim::SimParams;
 using sim::Style;
 
-constexpr const char* kRegionStart = "<!-- measured by hairmesh-bench -->";
-constexpr const char* kRegionEnd = "<!-- end of the measured part -->";
 constexpr double kSeconds = 0.5;  // of each scene
 
 std::string text(const char* format, auto... values) {
@@ -35,13 +34,13 @@ std::string text(const char* format, auto... values) {
 struct Contender {
   const char* name;
   sim::Solver solver;
-  Way way;
+  Method method;
   Resolution finest;  // it is run on: the plain implementation takes seconds a frame on finer ones
 };
 constexpr Contender kContenders[] = {
-    {"default", sim::Solver::kWarped, Way::kSimulator, Resolution::kUltra},
-    {"--solver paper", sim::Solver::kPaper, Way::kSimulator, Resolution::kUltra},
-    {"plain implementation", sim::Solver::kDiagonal, Way::kPlain, Resolution::kHigh},
+    {"default", sim::Solver::kWarped, Method::kSimulator, Resolution::kUltra},
+    {"--solver paper", sim::Solver::kPaper, Method::kSimulator, Resolution::kUltra},
+    {"plain implementation", sim::Solver::kDiagonal, Method::kPlain, Resolution::kHigh},
 };
 
 struct Motion {
@@ -90,9 +89,9 @@ std::vector<Row> measureStages() {
           SimParams params;
           params.solver = contender.solver;
           // The first run makes what the others keep: force model, factors, memory.
-          const double seconds = contender.way == Way::kPlain ? kSeconds / 4 : kSeconds;
-          scene.run(params, seconds, contender.way);
-          Row row = rowOf(scene.run(params, seconds, contender.way));
+          const double seconds = contender.method == Method::kPlain ? kSeconds / 4 : kSeconds;
+          scene.run(params, seconds, contender.method);
+          Row row = rowOf(scene.run(params, seconds, contender.method));
           row.contender = contender.name, row.motion = motion.name;
           row.style = sim::styleName(style), row.resolution = sim::resolutionName(resolution);
           row.vertices = scene.mesh().vertexCount();
@@ -107,75 +106,38 @@ std::vector<Row> measureStages() {
   return rows;
 }
 
-std::string stageTables(const std::vector<Row>& rows) {
-  std::string out;
+Table stageTable(const std::vector<Row>& rows) {
+  Table table{{"contender", "scene", "style", "vertices", "ms a frame", "forces", "solve", "collision", "minimization",
+               "other", "character", "iterations", "contacts"},
+              {}};
+  for (const Row& row : rows) {
+    table.rows.push_back({row.contender, row.motion, row.style + " " + row.resolution, std::to_string(row.vertices),
+                          text("%.3f", row.total)});
+    std::vector<std::string>& cells = table.rows.back();
+    for (const double ms : row.stages) cells.push_back(text("%.3f", ms));
+    cells.insert(cells.end(),
+                 {text("%.3f", row.character), std::to_string(row.iterations), std::to_string(row.contacts)});
+  }
+  return table;
+}
+
+// A frame of a walk by every contender, and the default's stages.
+Table walkTable(const Table& stages) {
+  const Table walk = rowsWith(stages, "scene", kMotions[0].name);
+  Table table = columns(rowsWith(walk, "contender", kContenders[0].name), {"style", "vertices"});
   for (const Contender& contender : kContenders) {
-    out += text("### Stages: %s\n\n", contender.name);
-    out +=
-        "| scene | style | vertices | ms a frame | forces | solve | collision | minimization | other | character | "
-        "iterations | contacts |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n";
-    for (const Row& row : rows) {
-      if (row.contender != std::string(contender.name)) continue;
-      double sum = 0;
-      for (const double ms : row.stages) sum += ms;
-      out += text("| %s | %s %s | %d | %.3f |", row.motion, row.style.c_str(), row.resolution.c_str(), row.vertices,
-                  row.total);
-      for (const double ms : row.stages) out += text(" %.3f (%.0f %%) |", ms, 100 * ms / std::max(sum, 1e-12));
-      out += text(" %.3f | %d | %d |\n", row.character, row.iterations, row.contacts);
-    }
-    out += "\n";
+    Table frame = columns(rowsWith(walk, "contender", contender.name), {"style", "ms a frame"});
+    frame.head.back() = contender.name;
+    table = joined(table, frame, "style");
   }
-  return out;
-}
-
-// The first measurement of this page (2026-11-21, commit 8f47a82), ms: the default's stages in a walk, and a frame of
-// the plain implementation in the same run. How busy the machine is differs from run to run, so that only shares of
-// that frame compare; the plain implementation is still the same.
-struct FirstMeasured {
-  const char *style, *resolution;
-  int vertices, iterations;
-  double plain, total;
-  std::array<double, sim::kStageCount> stages;
-};
-constexpr FirstMeasured kFirst[] = {
-    {"long", "low", 365, 6, 2.305, 0.561, {0.088, 0.342, 0.082, 0.081, 0.015}},
-    {"long", "medium", 922, 6, 9.338, 2.144, {0.243, 1.416, 0.149, 0.206, 0.041}},
-    {"long", "high", 2268, 90, 29.486, 11.959, {0.584, 10.625, 0.273, 0.579, 0.088}},
-    {"shoulder", "low", 360, 2, 2.297, 0.284, {0.066, 0.168, 0.027, 0.009, 0.012}},
-    {"shoulder", "high", 2306, 4, 23.750, 5.392, {0.560, 4.766, 0.121, 0.000, 0.091}},
-};
-
-const Row* rowIn(const std::vector<Row>& rows, const Contender& contender, const FirstMeasured& first) {
-  const auto found = std::ranges::find_if(rows, [&](const Row& row) {
-    return row.contender == std::string(contender.name) && row.motion == kMotions[0].name && row.style == first.style &&
-           row.resolution == first.resolution;
-  });
-  return found == rows.end() ? nullptr : &*found;
-}
-
-// What became of each stage: hundredths of the plain implementation's frame, at first and now.
-std::string thenAndNowTable(const std::vector<Row>& rows) {
-  std::string out =
-      "### A walk's stages, at first and now\n\nIn hundredths of the plain implementation's frame in the same run.\n\n"
-      "| style | vertices | a frame | forces | solve | collision | minimization | other | iterations |\n"
-      "|---|---|---|---|---|---|---|---|---|\n";
-  for (const FirstMeasured& first : kFirst) {
-    const Row *ours = rowIn(rows, kContenders[0], first), *plain = rowIn(rows, kContenders[2], first);
-    if (!ours || !plain) continue;
-    const double then = 100 / first.plain, now = 100 / plain->total;
-    out += text("| %s %s | %d, %d | %.1f, now %.1f |", first.style, first.resolution, first.vertices, ours->vertices,
-                then * first.total, now * ours->total);
-    for (int s = 0; s < sim::kStageCount; ++s) {
-      out += text(" %.2f, now %.2f |", then * first.stages[s], now * ours->stages[s]);
-    }
-    out += text(" %d, now %d |\n", first.iterations, ours->iterations);
-  }
-  return out + "\n";
+  const Table ours = columns(rowsWith(walk, "contender", kContenders[0].name),
+                             {"style", "forces", "solve", "collision", "minimization", "other", "iterations"});
+  return joined(table, ours, "style");
 }
 
 std::string startUpTable() {
   std::string out =
-      "### Start-up\n\n| style | parse, s | build, s | first step with factor, s | character, style and mesh grown, s "
+      "| style | parse, s | build, s | first step with factor, s | character, style and mesh grown, s "
       "|\n|---|---|---|---|---|\n";
   for (const Style style : {Style::kShoulder, Style::kLong}) {
     for (const Resolution resolution : {Resolution::kLow, Resolution::kHigh, Resolution::kUltra}) {
@@ -227,22 +189,14 @@ void drawGrowth(const std::string& folder, const std::vector<Row>& rows) {
 
 }  // namespace
 
-void writePerformanceDocument(const std::string& folder, const GateOptions& gate) {
+void writePerformanceDocument(const std::string& folder) {
   const std::string name = folder + "/performance.md";
-  std::ifstream stream(name);
-  const std::string old((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  const auto start = old.find(kRegionStart), end = old.find(kRegionEnd);
-  if (start == std::string::npos || end == std::string::npos || end < start) {
-    throw app::InputError(name, "", "lacks the marks of the measured part", "restore it from the repository");
-  }
-  const std::vector<Figure> figures = measureSpeed(gate);
   const std::vector<Row> rows = measureStages();
-  drawGrowth(folder, rows);
-  std::ofstream(name) << old.substr(0, start) << kRegionStart << "\n\n"
-                      << "### Figures\n\n"
-                      << figureTable(figures) << "\n"
-                      << stageTables(rows) << thenAndNowTable(rows) << "### Growth\n\n![growth](growth.svg)\n\n"
-                      << startUpTable() << old.substr(end);
+  drawGrowth(dataFolder(folder), rows);
+  const Table stages = stageTable(rows);
+  writeTable(folder, "stages", stages);
+  writeMeasuredPart(name, "walk", walkTable(stages).markdown());
+  writeMeasuredPart(name, "start-up", startUpTable());
 }
 
 }  // namespace bench

@@ -28,8 +28,8 @@ inline constexpr int kReferenceRate = 3840;
 // the last bit.
 Reference referenceOf(TrajectoryStage& stage, int steps_a_second, const std::string& cache);
 
-// Up to which sample two ways to run the scene can be told apart: the longest time over which the reference's own error
-// is below a tenth of `trajectory`'s. At least one sample.
+// Up to which sample two configurations to run the scene can be told apart: the longest time over which the reference's
+// own error is below a tenth of `trajectory`'s. At least one sample.
 int comparableSamples(const Reference& reference, const Trajectory& trajectory, double hair_length);
 
 }  // namespace bench

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "app/character.h"
+#include "app/figure/character.h"
 
 namespace bench {
 

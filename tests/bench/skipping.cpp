@@ -6,11 +6,12 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "app/data_path.h"
-#include "app/egl_context.h"
+#include "app/files/data_path.h"
+#include "app/platform/egl_context.h"
 #include "tests/bench/cpu_clock.h"
 #include "tests/bench/skipping_document.h"
 #include "tests/bench/skipping_simulation.h"
+#include "tests/bench/table.h"
 
 namespace bench {
 namespace {
@@ -27,7 +28,7 @@ std::vector<SceneRun> sceneRuns(const SkippingOptions& options) {
       {"short_shake.json", quick ? 40 : 60, 10, few, width, height, near, 0, 0},
       {"walk.json", quick ? 40 : 60, 10, few, width, height, near, 0, 0},
       {"ten_in_a_row.json", quick ? 36 : 48, 12, two, width, height, quick ? 1000 : 10000, 256, near},
-      {"hundred.json", quick ? 28 : 40, 12, two, width, height, quick ? 500 : 4000, 128, near},
+      {"crowd.json", quick ? 28 : 40, 12, two, width, height, quick ? 500 : 4000, 128, near},
   };
   if (!options.scenes.empty()) {
     std::erase_if(runs, [&](const SceneRun& run) {
@@ -41,7 +42,7 @@ std::vector<SceneRun> sceneRuns(const SkippingOptions& options) {
 nlohmann::json asJson(const SkipRow& row) {
   nlohmann::json skipped = nlohmann::json::object();
   for (const app::Skip& skip : app::skipTable()) {
-    const app::SkipTally& count = row.skipped[skip.id];
+    const app::SkipCount& count = row.skipped[skip.id];
     if (count.of > 0) skipped[skip.name] = {{"skipped", count.skipped}, {"of", count.of}};
   }
   return {{"scene", row.scene},
@@ -106,12 +107,12 @@ SceneRun simulationOf(const char* file, int frames, int warm_up) {
 }  // namespace
 
 bool runCrowd(int rounds) {
-  const SceneRun close = simulationOf("walk.json", 40, 10), hundred = simulationOf("hundred.json", 28, 12);
+  const SceneRun close = simulationOf("walk.json", 40, 10), crowd_run = simulationOf("crowd.json", 28, 12);
   std::vector<double> ratios, crowd_ms, character_ms, close_ms;
   for (int round = 0; round < rounds; ++round) {
     // The close-up before and after, for what else the machine does comes and goes.
     const double before = simulate(close, app::SkipSet{}).row.simulation_ms;
-    const SkipRow crowd = simulate(hundred, app::SkipSet{}).row;
+    const SkipRow crowd = simulate(crowd_run, app::SkipSet{}).row;
     const double after = simulate(close, app::SkipSet{}).row.simulation_ms;
     close_ms.push_back(0.5 * (before + after));
     crowd_ms.push_back(crowd.simulation_ms);
@@ -119,12 +120,12 @@ bool runCrowd(int rounds) {
     ratios.push_back(crowd_ms.back() / close_ms.back());
   }
   const double ratio = medianOf(ratios);
-  std::printf("close-up %.2f ms, hundred %.2f ms (and %.2f of character): %s\n", medianOf(close_ms), medianOf(crowd_ms),
-              medianOf(character_ms), boundText({"hundred over close-up", ratio, kCrowdRatio}).c_str());
+  std::printf("close-up %.2f ms, crowd %.2f ms (and %.2f of character): %s\n", medianOf(close_ms), medianOf(crowd_ms),
+              medianOf(character_ms), boundText({"crowd over close-up", ratio, kCrowdRatio}).c_str());
 
   // The frames of runSkipping, which are held to the bound; and the first second, in which long hair that a shoulder
   // turns aside begins to go another way with whatever is changed.
-  SceneRun half = hundred, second = simulationOf("hundred.json", 62, 12);
+  SceneRun half = crowd_run, second = simulationOf("crowd.json", 62, 12);
   half.drawn = {24, 25};
   for (int frame = 2; frame < second.frames; ++frame) second.drawn.push_back(frame);
   const Simulated half_truth = simulate(half, noSkips()), second_truth = simulate(second, noSkips());
@@ -149,12 +150,13 @@ bool runCrowd(int rounds) {
 bool runSkipping(const SkippingOptions& options) {
   std::filesystem::create_directories(options.folder);
   startSkipDocument(options.folder);
+  const std::string data = dataFolder(options.folder);
   app::EglContext context;
-  const std::string file = options.folder + "/skipping.json";
+  const std::string file = data + "/skipping.json";
   const std::vector<SceneRun> runs = sceneRuns(options);
   SkipScenes scenes = measuredBefore(file, runs);
   for (const SceneRun& run : runs) {
-    scenes.push_back(measureScene(run, options.folder));
+    scenes.push_back(measureScene(run, data));
     std::printf("%s\n%s\n", run.file.c_str(), skipTableOf(scenes.back()).c_str());
     std::fflush(stdout);
   }
@@ -168,7 +170,7 @@ bool runSkipping(const SkippingOptions& options) {
   std::sort(scenes.begin(), scenes.end(), [&](const auto& a, const auto& b) { return place(a) < place(b); });
   nlohmann::json json = nlohmann::json::array();
   for (const std::vector<SkipRow>& rows : scenes) {
-    plotSkips(rows, options.folder);
+    plotSkips(rows, data);
     for (const SkipRow& row : rows) json.push_back(asJson(row));
   }
   std::ofstream(file) << json.dump(1) << "\n";

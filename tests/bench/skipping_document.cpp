@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "tests/bench/measured_part.h"
+#include "tests/bench/table.h"
 
 namespace bench {
 namespace {
@@ -27,7 +28,7 @@ std::string number(double value) {
 std::string counters(const SkipRow& row) {
   std::string text;
   for (const app::Skip& skip : app::skipTable()) {
-    const app::SkipTally& count = row.skipped[skip.id];
+    const app::SkipCount& count = row.skipped[skip.id];
     if (count.skipped == 0 || count.of == 0 || (row.skips != "all" && row.skips != skip.name)) continue;
     char part[96];
     std::snprintf(part, sizeof part, "%s%.0f %% of %s", text.empty() ? "" : ", ",
@@ -89,16 +90,16 @@ void plotSkips(const std::vector<SkipRow>& rows, const std::string& folder) {
 std::vector<SkipBound> skipBounds(const SkipScenes& scenes) {
   std::vector<SkipBound> all;
   const SkipRow *without = find(scenes, "still_close_up", "none"), *still = find(scenes, "still_close_up", "all");
-  const SkipRow *close = find(scenes, "walk", "all"), *crowd = find(scenes, "hundred", "all");
+  const SkipRow *close = find(scenes, "walk", "all"), *crowd = find(scenes, "crowd", "all");
   if (without && still) all.push_back({"still close-up, all skips over none", still->frame() / without->frame(), 0.02});
   if (close && crowd) {
-    all.push_back({"simulation of the hundred over one close-up's (walk)", crowd->simulation_ms / close->simulation_ms,
+    all.push_back({"simulation of the crowd over one close-up's (walk)", crowd->simulation_ms / close->simulation_ms,
                    kCrowdRatio});
     all.push_back(
-        {"drawing of the hundred over one close-up's (walk)", crowd->drawing_like_close_up_ms / close->drawing_ms, 4});
+        {"drawing of the crowd over one close-up's (walk)", crowd->drawing_like_close_up_ms / close->drawing_ms, 4});
     const long more =
         crowd->gpu_bytes_hair + crowd->gpu_bytes_shadows - close->gpu_bytes_hair - close->gpu_bytes_shadows;
-    all.push_back({"KB on the GPU for each of the hundred beyond the close-up's one", more / 1024.0 / 99, 100});
+    all.push_back({"KB on the GPU for each of the crowd beyond the close-up's one", more / 1024.0 / 99, 100});
   }
   for (const std::vector<SkipRow>& rows : scenes) {
     const SkipRow &first = rows.front(), &last = rows.back();
@@ -124,36 +125,40 @@ std::string boundTable(const std::vector<SkipBound>& held) {
   return text + "\n";
 }
 
-std::string sceneSections(const SkipScenes& scenes) {
-  std::string text;
+// Rows of every scene, under its name: every skip alone, all and none; or, of `ends`, none and all.
+Table sceneTable(const SkipScenes& scenes, bool ends) {
+  Table table;
   for (const std::vector<SkipRow>& rows : scenes) {
-    const std::string &scene = rows.front().scene, &setup = rows.front().setup;
-    text += "### " + scene + "\n\n![none](skipping_" + scene + "_none.png) ![all](skipping_" + scene +
-            "_all.png)\n\nWithout skips and with all" + (setup.empty() ? "" : ", " + setup) +
-            ".\n\n![times](skipping_" + scene + ".svg)\n\n" + skipTableOf(rows) + "\n";
+    const std::string text = ends ? skipTableOf({rows.front(), rows.back()}) : skipTableOf(rows);
+    append(withColumn("scene", rows.front().scene, tableOf(text)), table);
   }
-  return text;
+  return table;
 }
 
-// The parts' marks alone, for a folder that has no document yet.
+// The parts' marks alone, for a folder that has no page yet.
 constexpr const char* kEmptyDocument =
     "# What is skipped, and what it changes\n\n"
-    "## The ledger\n\n<!-- measured: ledger -->\n<!-- end of ledger -->\n\n"
-    "## Bounds\n\n<!-- measured: bounds -->\n<!-- end of bounds -->\n\n"
-    "## Scenes\n\n<!-- measured: scenes -->\n<!-- end of scenes -->\n";
+    "## Result\n\n<!-- measured: scenes -->\n<!-- end of scenes -->\n\n"
+    "## Bounds\n\n<!-- measured: bounds -->\n<!-- end of bounds -->\n";
+constexpr const char* kEmptyTable = "# The table of skips\n\n<!-- measured: skips -->\n<!-- end of skips -->\n";
 
 }  // namespace
 
 void startSkipDocument(const std::string& folder) {
-  const std::string file = folder + "/skipping.md";
-  if (!std::filesystem::exists(file)) std::ofstream(file) << kEmptyDocument;
-  writeMeasuredPart(file, "ledger", app::skipLedger() + "\n");
+  const std::string page = folder + "/skipping.md", table = dataFolder(folder) + "/skips.md";
+  if (!std::filesystem::exists(page)) std::ofstream(page) << kEmptyDocument;
+  if (!std::filesystem::exists(table)) std::ofstream(table) << kEmptyTable;
+  writeMeasuredPart(table, "skips", app::skipTableText() + "\n");
 }
 
 void writeSkipDocument(const SkipScenes& scenes, const std::vector<SkipBound>& held, const std::string& folder) {
   const std::string file = folder + "/skipping.md";
+  writeTable(folder, "skipping", sceneTable(scenes, false));
   writeMeasuredPart(file, "bounds", boundTable(held));
-  writeMeasuredPart(file, "scenes", sceneSections(scenes));
+  writeMeasuredPart(file, "scenes",
+                    columns(sceneTable(scenes, true), {"scene", "skips", "simulation ms", "drawing ms", "frame ms",
+                                                       "shape off by mm (pixels)", "picture off by levels"})
+                        .markdown());
 }
 
 }  // namespace bench

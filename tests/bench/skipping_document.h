@@ -10,7 +10,7 @@ namespace bench {
 
 using SkipScenes = std::vector<std::vector<SkipRow>>;  // rows of each scene; none first, all last
 
-inline constexpr double kCrowdRatio = 6;   // the hundred's simulation over a close-up's
+inline constexpr double kCrowdRatio = 6;   // the crowd's simulation over a close-up's
 inline constexpr double kShapePixels = 3;  // that shapes may be off by
 
 struct SkipBound {
@@ -26,7 +26,7 @@ std::string skipTableOf(const std::vector<SkipRow>& rows);
 void plotSkips(const std::vector<SkipRow>& rows, const std::string& folder);
 
 // skipping.md in `folder`: its measured parts are written anew, the prose around them is a person's. The start writes
-// the ledger, which needs no measuring. Throw InputError where a part's marks are missing.
+// the table of skips, data/skips.md, which needs no measuring. Throw InputError where a part's marks are missing.
 void startSkipDocument(const std::string& folder);
 void writeSkipDocument(const SkipScenes& scenes, const std::vector<SkipBound>& held, const std::string& folder);
 

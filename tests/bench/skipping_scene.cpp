@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <memory>
 
-#include "app/data_path.h"
-#include "app/demo.h"
+#include "app/files/data_path.h"
+#include "app/scene/demo.h"
 #include "tests/bench/cpu_clock.h"
 #include "tests/bench/skipping_simulation.h"
 
@@ -44,7 +44,7 @@ void draw(const SceneRun& run, app::Demo& demo, Picturing& picturing) {
   picturing.images.push_back(std::move(image));
   picturing.row.gpu_bytes_hair = report.gpu_bytes_hair;
   picturing.row.gpu_bytes_shadows = report.gpu_bytes_shadows;
-  app::addDrawing(report.left_out, picturing.row.skipped);
+  app::addDrawing(report.skip_counts, picturing.row.skipped);
 }
 
 double imageError(const app::Image& a, const app::Image& b) {
@@ -64,75 +64,100 @@ void finish(const std::vector<app::Image>& reference, Picturing& picturing) {
     picturing.row.image_error = std::max(picturing.row.image_error, imageError(reference[i], picturing.images[i]));
 }
 
-}  // namespace
+// A renderer for each set of skips, all fed with the frames of one simulation.
+struct Pictures {
+  std::vector<Picturing> all;
 
-std::vector<SkipRow> measureScene(const SceneRun& run, const std::string& folder) {
-  std::vector<SkipRow> rows;
-  const std::string scene = app::stem(run.file);
-  std::vector<Picturing> picturing;
-  const auto add = [&](const char* name, const app::SkipSet& skips) {
-    Picturing& one = picturing.emplace_back();
+  Picturing& add(const char* name, const app::SkipSet& skips) {
+    Picturing& one = all.emplace_back();
     one.skips = skips;
     one.row.skips = name;
     one.renderer = std::make_unique<render::Renderer>(app::dataPath("shaders"));
-  };
-  const auto pictures = [&](app::Demo& demo) {
-    for (Picturing& one : picturing) draw(run, demo, one);
-  };
-  const auto picture = [&](const char* name, const app::Image& image) {
-    app::writePng(folder + "/skipping_" + scene + "_" + name + ".png", run.width, run.height, image.rgba);
-  };
-
-  // With all of them first: it shows which leave anything out here. The others are not measured alone.
-  add("all", app::SkipSet{});
-  if (run.close_up_strands > 0) {
-    add("like the close-up", app::SkipSet{});
-    picturing.back().strands = run.close_up_strands;
+    return one;
   }
-  const Simulated all = simulate(run, app::SkipSet{}, pictures);
-  std::printf("%s: with all skips done\n", scene.c_str());
-  std::vector<Picturing> with_all = std::move(picturing);
-  SkipRow& last = with_all.front().row;
-  for (std::size_t s = 0; s < last.skipped.size(); ++s) {
-    if (last.skipped[s].of == 0) last.skipped[s] = all.row.skipped[s];
+  Simulated simulate(const SceneRun& run, const app::SkipSet& skips) {
+    return bench::simulate(run, skips, [&](app::Demo& demo) {
+      for (Picturing& one : all) draw(run, demo, one);
+    });
   }
-  picture("all", with_all.front().images.back());
-  for (Picturing& one : with_all) one.renderer.reset();
+};
 
-  // The drawing skips are shown the frames of the run without any skip.
-  picturing.clear();
-  add("none", noSkips());
+app::SkipSet onlySkip(app::SkipId id) {
+  app::SkipSet skips = noSkips();
+  skips.on[id] = true;
+  return skips;
+}
+
+void writeLast(const SceneRun& run, const std::string& folder, const char* name, const Picturing& picturing) {
+  app::writePng(folder + "/skipping_" + app::stem(run.file) + "_" + name + ".png", run.width, run.height,
+                picturing.images.back().rgba);
+}
+
+// With all skips on: which of them leave anything out here. The others are not measured alone.
+Simulated simulateWithAll(const SceneRun& run, Pictures& pictures) {
+  pictures.add("all", app::SkipSet{});
+  if (run.close_up_strands > 0) pictures.add("like the close-up", app::SkipSet{}).strands = run.close_up_strands;
+  Simulated all = pictures.simulate(run, app::SkipSet{});
+  SkipRow& row = pictures.all.front().row;
+  for (std::size_t s = 0; s < row.skipped.size(); ++s) {
+    if (row.skipped[s].of == 0) row.skipped[s] = all.row.skipped[s];
+  }
+  for (Picturing& one : pictures.all) one.renderer.reset();
+  return all;
+}
+
+// Each drawing skip alone, on the frames of the run without any skip, and that run first.
+Simulated simulateWithout(const SceneRun& run, const app::SkipCounts& used, Pictures& pictures) {
+  pictures.add("none", noSkips());
   for (const app::Skip& skip : app::skipTable()) {
-    if (!isDrawing(skip) || last.skipped[skip.id].skipped == 0) continue;
-    app::SkipSet one = noSkips();
-    one.on[skip.id] = true;
-    add(skip.name, one);
+    if (isDrawing(skip) && used[skip.id].skipped > 0) pictures.add(skip.name, onlySkip(skip.id));
   }
-  const Simulated plain = simulate(run, noSkips(), pictures);
-  std::printf("%s: without skips done\n", scene.c_str());
-  const std::vector<app::Image> reference = picturing.front().images;
-  for (Picturing& one : picturing) {
-    finish(reference, one);
-    one.row.simulation_ms = plain.row.simulation_ms;
-    one.row.character_ms = plain.row.character_ms;
-    rows.push_back(one.row);
-  }
-  picture("none", reference.back());
+  return pictures.simulate(run, noSkips());
+}
+
+// Each simulation and character skip alone.
+void measureSimulationSkips(const SceneRun& run, const app::SkipCounts& used, const Simulated& plain,
+                            std::vector<SkipRow>& rows) {
   const double plain_drawing = rows.front().drawing_ms;
-  picturing.clear();
-
   for (const app::Skip& skip : app::skipTable()) {
-    if (isDrawing(skip) || skip.id == app::kSkipEvents || last.skipped[skip.id].skipped == 0) continue;
-    app::SkipSet one = noSkips();
-    one.on[skip.id] = true;
-    Simulated alone = simulate(run, one);
+    if (isDrawing(skip) || skip.id == app::kSkipEvents || used[skip.id].skipped == 0) continue;
+    Simulated alone = simulate(run, onlySkip(skip.id));
     compareShapes(plain, alone, alone.row);
     alone.row.skips = skip.name;
     alone.row.drawing_ms = plain_drawing;
     rows.push_back(alone.row);
   }
-  for (Picturing& one : with_all) finish(reference, one);
-  if (with_all.size() > 1) last.drawing_like_close_up_ms = with_all.back().row.drawing_ms;
+}
+
+}  // namespace
+
+std::vector<SkipRow> measureScene(const SceneRun& run, const std::string& folder) {
+  const std::string scene = app::stem(run.file);
+  Pictures with_all;
+  const Simulated all = simulateWithAll(run, with_all);
+  std::printf("%s: with all skips done\n", scene.c_str());
+  writeLast(run, folder, "all", with_all.all.front());
+  SkipRow& last = with_all.all.front().row;
+
+  std::vector<SkipRow> rows;
+  std::vector<app::Image> reference;
+  Simulated plain;
+  {
+    Pictures without;
+    plain = simulateWithout(run, last.skipped, without);
+    std::printf("%s: without skips done\n", scene.c_str());
+    writeLast(run, folder, "none", without.all.front());
+    reference = without.all.front().images;
+    for (Picturing& one : without.all) {
+      finish(reference, one);
+      one.row.simulation_ms = plain.row.simulation_ms;
+      one.row.character_ms = plain.row.character_ms;
+      rows.push_back(one.row);
+    }
+  }
+  measureSimulationSkips(run, last.skipped, plain, rows);
+  for (Picturing& one : with_all.all) finish(reference, one);
+  if (with_all.all.size() > 1) last.drawing_like_close_up_ms = with_all.all.back().row.drawing_ms;
   last.simulation_ms = all.row.simulation_ms;
   last.character_ms = all.row.character_ms;
   compareShapes(plain, all, last);

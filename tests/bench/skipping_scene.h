@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "app/image_io.h"
-#include "app/scene_file.h"
-#include "app/skips.h"
+#include "app/files/image_io.h"
+#include "app/files/scene_file.h"
+#include "app/scene/skips.h"
 
 namespace bench {
 
@@ -17,8 +17,8 @@ struct SkipRow {
   double simulation_ms = 0, character_ms = 0, drawing_ms = 0;
   double drawing_like_close_up_ms = 0;  // of a crowd with all skips, at the close-up's strands and shadow maps
   double simulation_error_mm = 0, simulation_error_pixels = 0;  // mean over vertices, worst frame, against none
-  double image_error = 0;      // levels of 255, mean over the picture, worst frame, against none
-  app::SkipTallies skipped{};  // of all frames
+  double image_error = 0;     // levels of 255, mean over the picture, worst frame, against none
+  app::SkipCounts skipped{};  // of all frames
   long gpu_bytes_hair = 0, gpu_bytes_shadows = 0;
   double frame() const { return simulation_ms + character_ms + drawing_ms; }
 };

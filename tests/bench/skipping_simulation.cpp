@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "app/data_path.h"
-#include "app/level_of_detail.h"
+#include "app/files/data_path.h"
+#include "app/scene/level_of_detail.h"
 #include "tests/bench/cpu_clock.h"
 
 namespace bench {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "app/demo.h"
+#include "app/scene/demo.h"
 #include "tests/bench/skipping_scene.h"
 
 namespace bench {

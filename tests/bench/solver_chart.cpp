@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "app/errors.h"
-#include "sim/preconditioner_choice.h"
+#include "app/files/errors.h"
+#include "sim/linear/preconditioner_choice.h"
 #include "tests/bench/gnuplot.h"
 #include "tests/bench/own_solvers.h"
 
@@ -121,7 +121,7 @@ bool isDrawn(const MeanRun& run) {
 
 // The default is drawn bold: the two levels above the size that has a whole factor.
 Chart chartOf(const std::string& scene, int vertices, const std::vector<MeanRun>& runs) {
-  const bool large = vertices > sim::kMostFactored;
+  const bool large = vertices > sim::kMaxFactored;
   Chart chart{scene + ": one linear system, set-up included",
               "microseconds of one thread",
               "residual / warm start''s residual",

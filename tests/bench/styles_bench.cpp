@@ -7,9 +7,9 @@
 #include <sstream>
 #include <vector>
 
-#include "app/data_path.h"
-#include "app/demo.h"
-#include "app/errors.h"
+#include "app/files/data_path.h"
+#include "app/files/errors.h"
+#include "app/scene/demo.h"
 
 namespace bench {
 namespace {

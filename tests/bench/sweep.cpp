@@ -17,7 +17,7 @@ using sim::Solver;
 
 constexpr double kSameTime = 1.02;
 constexpr double kLongRun = 1;           // s
-constexpr double kLeastRange = 1e-6;     // J, of the reference's energy: below it there is nothing to drift over
+constexpr double kMinRange = 1e-6;       // J, of the reference's energy: below it there is nothing to drift over
 constexpr double kReferenceShare = 0.1;  // of an error that is ranked, at most the reference's own
 constexpr double kAlike = 1.1;           // largest errors so near to one another are the same
 constexpr double kUnseen = 0.01;         // of lengths and volumes, which does not show
@@ -40,14 +40,16 @@ void setTolerance(double tolerance, SimParams& params) {
 }
 
 // The ways so far, none twice.
-struct WayList {
-  std::vector<SimParams> ways;
-  void add(const SimParams& way) {
-    if (std::none_of(ways.begin(), ways.end(), [&](const SimParams& w) { return same(w, way); })) ways.push_back(way);
+struct ConfigurationList {
+  std::vector<SimParams> configurations;
+  void add(const SimParams& configuration) {
+    if (std::none_of(configurations.begin(), configurations.end(),
+                     [&](const SimParams& w) { return same(w, configuration); }))
+      configurations.push_back(configuration);
   }
 };
 
-void addIntegrators(SweepSize size, WayList& list) {
+void addIntegrators(SweepSize size, ConfigurationList& list) {
   const std::vector<double> rates = size == SweepSize::kFull    ? std::vector<double>{30, 60, 120, 240, 480, 960}
                                     : size == SweepSize::kQuick ? std::vector<double>{30, 60, 120, 240}
                                                                 : std::vector<double>{30, 60, 120};
@@ -58,17 +60,17 @@ void addIntegrators(SweepSize size, WayList& list) {
     if (size == SweepSize::kShort && static_cast<Integrator>(integrator) == Integrator::kImplicitEuler) continue;
     for (const double rate : rates) {
       for (const double tolerance : tolerances) {
-        SimParams way;
-        way.integrator = static_cast<Integrator>(integrator);
-        way.time_step = 1 / rate;
-        setTolerance(tolerance, way);
-        list.add(way);
+        SimParams configuration;
+        configuration.integrator = static_cast<Integrator>(integrator);
+        configuration.time_step = 1 / rate;
+        setTolerance(tolerance, configuration);
+        list.add(configuration);
       }
     }
   }
 }
 
-void addSolvers(SweepSize size, WayList& list) {
+void addSolvers(SweepSize size, ConfigurationList& list) {
   const bool full = size == SweepSize::kFull;
   std::vector<double> rates{60}, tolerances{1e-1, 1e-2, 1e-3};
   if (full) rates = {30, 60, 240}, tolerances.push_back(1e-4);
@@ -80,12 +82,12 @@ void addSolvers(SweepSize size, WayList& list) {
     for (const double rate : rates) {
       for (const double tolerance : tolerances) {
         if (solver == Solver::kDirect && tolerance != 1e-2) continue;  // a direct solve meets every tolerance
-        SimParams way;
-        way.solver = solver;
-        way.time_step = 1 / rate;
-        way.max_iterations = 2000;
-        setTolerance(tolerance, way);
-        list.add(way);
+        SimParams configuration;
+        configuration.solver = solver;
+        configuration.time_step = 1 / rate;
+        configuration.max_iterations = 2000;
+        setTolerance(tolerance, configuration);
+        list.add(configuration);
       }
     }
   }
@@ -93,28 +95,28 @@ void addSolvers(SweepSize size, WayList& list) {
 
 // The paper's setting (assets/presets/paper.json) in its time's precision: 3x3 blocks, and none of what the other
 // solvers have around them: a guess from earlier steps, the bound on a step's energy, the limits of corrections.
-void addPaper(SweepSize size, WayList& list) {
+void addPaper(SweepSize size, ConfigurationList& list) {
   if (size == SweepSize::kShort) return;
   for (const double tolerance : {1e-2, 1e-3}) {
-    SimParams way;
-    way.solver = Solver::kPaper;
-    way.precision = Precision::kFloat;
-    way.max_iterations = 2000;
-    setTolerance(tolerance, way);
-    list.add(way);
+    SimParams configuration;
+    configuration.solver = Solver::kPaper;
+    configuration.precision = Precision::kFloat;
+    configuration.max_iterations = 2000;
+    setTolerance(tolerance, configuration);
+    list.add(configuration);
   }
 }
 
-void addPrecisions(SweepSize size, WayList& list) {
+void addPrecisions(SweepSize size, ConfigurationList& list) {
   for (int precision = 0; precision < static_cast<int>(Precision::kCount); ++precision) {
-    SimParams way;
-    way.precision = static_cast<Precision>(precision);
-    list.add(way);
+    SimParams configuration;
+    configuration.precision = static_cast<Precision>(precision);
+    list.add(configuration);
     if (size != SweepSize::kFull) continue;
-    way.acceleration_tolerance = way.displacement_tolerance = 0;
+    configuration.acceleration_tolerance = configuration.displacement_tolerance = 0;
     for (const double tolerance : {1e-4, 1e-6}) {
-      way.tolerance = tolerance;
-      list.add(way);
+      configuration.tolerance = tolerance;
+      list.add(configuration);
     }
   }
 }
@@ -123,7 +125,7 @@ void addPrecisions(SweepSize size, WayList& list) {
 // sample.
 std::optional<double> energyDrift(const RunResult& run, const Reference& reference, int samples) {
   const auto [least, most] = std::minmax_element(reference.energy.begin(), reference.energy.begin() + samples);
-  if (*most - *least < kLeastRange) return {};
+  if (*most - *least < kMinRange) return {};
   double sum = 0;
   for (int s = 0; s < samples; ++s) sum += run.energy[s] - reference.energy[s];
   return sum / samples / (*most - *least);
@@ -141,8 +143,8 @@ Lag fastestOf(const Sweep& sweep, const auto& allowed) {
 
 }  // namespace
 
-std::vector<SimParams> waysToRun(SweepSize size, bool contacts) {
-  WayList list{{SimParams{}}};
+std::vector<SimParams> configurationsToRun(SweepSize size, bool contacts) {
+  ConfigurationList list{{SimParams{}}};
   addIntegrators(size, list);
   addSolvers(size, list);
   addPaper(size, list);
@@ -150,12 +152,12 @@ std::vector<SimParams> waysToRun(SweepSize size, bool contacts) {
   const std::vector<double> rates =
       size == SweepSize::kFull ? std::vector<double>{30, 60, 240} : std::vector<double>{60};
   for (const double rate : contacts ? rates : std::vector<double>{}) {
-    SimParams way;
-    way.minimize_deformation = false;
-    way.time_step = 1 / rate;
-    list.add(way);
+    SimParams configuration;
+    configuration.minimize_deformation = false;
+    configuration.time_step = 1 / rate;
+    list.add(configuration);
   }
-  return std::move(list.ways);
+  return std::move(list.configurations);
 }
 
 std::string Point::name() const {
@@ -166,7 +168,8 @@ std::string Point::name() const {
   return text;
 }
 
-Sweep sweepScene(TrajectoryStage& stage, const Reference& reference, const std::vector<SimParams>& ways, int runs) {
+Sweep sweepScene(TrajectoryStage& stage, const Reference& reference, const std::vector<SimParams>& configurations,
+                 int runs) {
   Sweep sweep;
   sweep.scene = stage.scene();
   sweep.reference_step = reference.step;
@@ -174,11 +177,11 @@ Sweep sweepScene(TrajectoryStage& stage, const Reference& reference, const std::
   const double seconds = sweep.scene.seconds;
   // An untimed run of each gives its error; the default's says over which samples errors mean something.
   int samples = 0;
-  std::vector<std::vector<double>> times(ways.size());
-  for (const SimParams& way : ways) {
+  std::vector<std::vector<double>> times(configurations.size());
+  for (const SimParams& configuration : configurations) {
     Point point;
-    point.params = way;
-    point.result = stage.run(way);
+    point.params = configuration;
+    point.result = stage.run(configuration);
     if (sweep.points.empty()) samples = comparableSamples(reference, point.result.trajectory, length);
     point.error = difference(point.result.trajectory, reference.trajectory, length, samples);
     point.energy_drift = energyDrift(point.result, reference, samples);
@@ -190,12 +193,12 @@ Sweep sweepScene(TrajectoryStage& stage, const Reference& reference, const std::
   sweep.own_error = reference.ownErrorOver(samples);
   sweep.compared_seconds = static_cast<double>(samples) / kSamplesPerSecond;
   for (int round = 0; round < runs; ++round) {
-    for (std::size_t k = 0; k < ways.size(); ++k) {
+    for (std::size_t k = 0; k < configurations.size(); ++k) {
       if (round >= 2 && sweep.points[k].result.seconds > kLongRun) continue;
-      times[k].push_back(1e3 * stage.run(ways[k]).seconds / seconds);
+      times[k].push_back(1e3 * stage.run(configurations[k]).seconds / seconds);
     }
   }
-  for (std::size_t k = 0; k < ways.size(); ++k) {
+  for (std::size_t k = 0; k < configurations.size(); ++k) {
     sweep.points[k].fastest = *std::min_element(times[k].begin(), times[k].end());
     sweep.points[k].median = medianOf(times[k]);
   }

@@ -1,4 +1,4 @@
-// Ways to simulate a scene, each measured: milliseconds and error.
+// Configurations to simulate a scene, each measured: milliseconds and error.
 #pragma once
 
 #include <optional>
@@ -19,10 +19,10 @@ enum class SweepSize { kShort, kQuick, kFull };
 // only their time differs, by about the ratio seen here; precision and minimization away from the default, for the same
 // reason. Full: steps 1/30 to 1/960 s, tolerances 1e-1 to 1e-8. Quick: to 1/240 s and 1e-3. Short: what came near the
 // default's place on any chart.
-std::vector<sim::SimParams> waysToRun(SweepSize size, bool contacts);
+std::vector<sim::SimParams> configurationsToRun(SweepSize size, bool contacts);
 
-// By how much a way is off, of everything that a chart reports: where hair is thrown about so that every way's
-// positions are off alike, lengths and volumes still tell one from another.
+// By how much a configuration is off, of everything that a chart reports: where hair is thrown about so that every
+// configuration's positions are off alike, lengths and volumes still tell one from another.
 struct Errors {
   double rms = 0, most = 0;  // of positions, over hair length
   double stretch = 0;        // worst, of lengths along the hair
@@ -57,19 +57,20 @@ struct Sweep {
   std::vector<Point> points;
 };
 
-// Runs every way `runs` + 1 times, the first not timed, round after round, so that a disturbance of the machine does
-// not fall on one way alone. Ways that take over a second are timed twice only.
-Sweep sweepScene(TrajectoryStage& stage, const Reference& reference, const std::vector<sim::SimParams>& ways, int runs);
+// Runs every configuration `runs` + 1 times, the first not timed, round after round, so that a disturbance of the
+// machine does not fall on one configuration alone. Configurations that take over a second are timed twice only.
+Sweep sweepScene(TrajectoryStage& stage, const Reference& reference, const std::vector<sim::SimParams>& configurations,
+                 int runs);
 
 // Errors that differ by less than the reference's own are equal. A point is on the front when no other has an equal or
 // smaller error in less time. Times within 2 % are equal too: repeated runs differ by as much.
 void markFront(Sweep& sweep);
 
-// How many times the fastest way that is no worse in any error is faster than the default; that way. And the same by
-// the mean error of positions alone.
+// How many times the fastest configuration that is no worse in any error is faster than the default; that
+// configuration. And the same by the mean error of positions alone.
 struct Lag {
   double ratio = 1;
-  const Point* way = nullptr;
+  const Point* configuration = nullptr;
 };
 Lag lagOfDefault(const Sweep& sweep);
 Lag lagByPosition(const Sweep& sweep);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/data_path.h"
+#include "app/files/data_path.h"
 #include "tests/bench/cpu_clock.h"
 #include "tests/oracle/plain_step.h"
 
@@ -33,14 +33,13 @@ TimedScene::TimedScene(std::string motion, sim::Style style, sim::Resolution res
   spec.motion = app::findFile(motion, "", "clips");
   spec.style = style;
   spec.resolution = resolution;
-  actor_ = app::makeActor(spec, {}, wardrobe_);
+  actor_ = app::makeActor(spec, {}, asset_cache_);
   sim::SimParams params;
   params.collide = collide;
   app::settleActor(params, kSettle, actor_);
   start_ = actor_.hair;
   playback_ = actor_.playback;
   actor_.context = std::make_unique<sim::StepContext>(mesh(), cpuSeconds);
-  actor_.context->leaveAsPublished(true);
   plain_ = std::make_unique<oracle::PlainContext>(mesh(), cpuSeconds);
 }
 
@@ -52,7 +51,7 @@ void TimedScene::restart() {
   actor_.hair = start_;
 }
 
-TimedRun TimedScene::run(sim::SimParams params, double seconds, Way way) {
+TimedRun TimedScene::run(sim::SimParams params, double seconds, Method method) {
   params.collide = collide_;
   restart();
   const double dt = params.time_step;
@@ -64,9 +63,10 @@ TimedRun TimedScene::run(sim::SimParams params, double seconds, Way way) {
     app::moveActor(dt, actor_);
     const double moved = cpuSeconds();
     const sim::StepReport report =
-        way == Way::kSimulator ? app::simulateActor(params, dt, step * dt, actor_)
-                               : oracle::plainAdvance(mesh(), params, {actor_.roots, actor_.ellipsoids, step * dt}, dt,
-                                                      *plain_, actor_.hair);
+        method == Method::kSimulator
+            ? app::simulateActor(params, dt, step * dt, actor_)
+            : oracle::plainAdvance(mesh(), params, {actor_.roots, actor_.ellipsoids, step * dt}, dt, *plain_,
+                                   actor_.hair);
     const double done = cpuSeconds();
     result.frames.push_back({report.seconds, moved - started, done - moved, report.solver_iterations, report.contacts});
     result.recoveries += report.recoveries;

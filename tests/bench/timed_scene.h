@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/actor.h"
+#include "app/scene/actor.h"
 #include "tests/bench/trajectory.h"
 
 namespace oracle {
@@ -30,7 +30,7 @@ struct TimedRun {
   double total() const;   // s, of all frames' simulation
 };
 
-enum class Way { kSimulator, kPlain };
+enum class Method { kSimulator, kPlain };
 
 class TimedScene {
  public:
@@ -40,7 +40,7 @@ class TimedScene {
 
   // Simulates `seconds` in steps of params.time_step, which must divide 1/60 s. The step contexts are kept from run to
   // run, so that all but the first run are warm.
-  TimedRun run(sim::SimParams params, double seconds, Way way = Way::kSimulator);
+  TimedRun run(sim::SimParams params, double seconds, Method method = Method::kSimulator);
 
   const sim::HairMesh& mesh() const { return actor_.haircut->mesh; }
   const std::string& name() const { return name_; }  // "long high"
@@ -50,7 +50,7 @@ class TimedScene {
  private:
   std::string name_;
   bool collide_;
-  app::Wardrobe wardrobe_;
+  app::AssetCache asset_cache_;
   app::Actor actor_;
   sim::HairState start_;
   app::Playback playback_;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/data_path.h"
+#include "app/files/data_path.h"
 #include "tests/bench/cpu_clock.h"
 
 namespace bench {
@@ -37,11 +37,10 @@ TrajectoryStage::TrajectoryStage(const TrajectoryScene& scene) : scene_(scene) {
   spec.resolution = scene.resolution;
   app::PlaybackSpec playback;
   playback.speed = scene.speed;
-  actor_ = app::makeActor(spec, playback, wardrobe_);
+  actor_ = app::makeActor(spec, playback, asset_cache_);
   sim::SimParams params;
   params.collide = scene.collide;
   app::settleActor(params, kSettle, actor_);
-  actor_.context->leaveAsPublished(true);
   if (scene.collapsed) sim::collapseOntoRoots(mesh(), actor_.hair);
   start_ = actor_.hair;
   playback_ = actor_.playback;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/actor.h"
+#include "app/scene/actor.h"
 #include "sim/forces/force_model.h"
 
 namespace bench {
@@ -58,7 +58,7 @@ class TrajectoryStage {
 
  private:
   TrajectoryScene scene_;
-  app::Wardrobe wardrobe_;
+  app::AssetCache asset_cache_;
   app::Actor actor_;
   sim::HairState start_;
   app::Playback playback_;

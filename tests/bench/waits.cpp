@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/data_path.h"
-#include "app/hair_file.h"
+#include "app/files/data_path.h"
+#include "app/files/hair_file.h"
 #include "tests/bench/cpu_clock.h"
 
 namespace bench {
@@ -27,8 +27,8 @@ StartUp measureStartUp(sim::Style style, sim::Resolution resolution) {
   spec.motion = app::findFile("walk.bvh", "", "clips");
   spec.style = style;
   spec.resolution = resolution;
-  app::Wardrobe wardrobe;
-  app::Actor actor = app::makeActor(spec, {}, wardrobe);
+  app::AssetCache asset_cache;
+  app::Actor actor = app::makeActor(spec, {}, asset_cache);
   times.character = lap();
   const std::string text = app::writeHairMesh(actor.haircut->mesh.shape);
   lap();

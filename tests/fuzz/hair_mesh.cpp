@@ -1,12 +1,12 @@
 // Fuzz target: a hair mesh OBJ, read and built.
-#include "sim/hair_mesh.h"
+#include "sim/mesh/hair_mesh.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
 
-#include "app/errors.h"
-#include "app/hair_file.h"
+#include "app/files/errors.h"
+#include "app/files/hair_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);

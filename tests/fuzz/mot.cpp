@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "app/errors.h"
-#include "app/motion.h"
+#include "app/files/errors.h"
+#include "app/motion/motion.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);

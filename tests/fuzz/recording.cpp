@@ -1,11 +1,11 @@
 // Fuzz target: a recording of a run.
-#include "app/recording.h"
+#include "app/files/recording.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
 
-#include "app/errors.h"
+#include "app/files/errors.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);

@@ -4,7 +4,7 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 
-#include "sim/contact.h"
+#include "sim/contact/contact.h"
 
 namespace oracle {
 namespace {
@@ -113,8 +113,8 @@ void resolvePenetrations(const HairMesh& mesh, const SimParams& params, const St
     std::vector<Vec3> displacement(mesh.vertexCount(), Vec3::Zero());
     int corrected = 0;
     for (const Penetration& hit : found) {
-      if (!hit.standing) follow_speed = std::max(follow_speed, std::min(hit.depth / dt, kFastestFollower));
-      if (hit.depth > search.margins.slack || hit.standing) {
+      if (!hit.initial_overlap) follow_speed = std::max(follow_speed, std::min(hit.depth / dt, kFastestFollower));
+      if (hit.depth > search.margins.slack || hit.initial_overlap) {
         displacement[hit.vertex] = hit.target - state.positions[hit.vertex];
         held[hit.vertex] = 1;
         state.positions[hit.vertex] = hit.target;

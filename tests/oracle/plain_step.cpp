@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/contact.h"
+#include "sim/contact/contact.h"
 #include "tests/oracle/plain_contact.h"
 
 namespace oracle {
@@ -36,12 +36,6 @@ Vec3 toEigen(const sim::V3<double>& p) {
 }
 Eigen::Matrix3d toEigen(const sim::M3<double>& m) {
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(m.m);
-}
-
-bool sameMaterial(const SimParams& a, const SimParams& b) {
-  return a.density == b.density && a.stretch_along == b.stretch_along && a.stretch_across == b.stretch_across &&
-         a.stretch_edge == b.stretch_edge && a.shear == b.shear && a.bend == b.bend && a.volume == b.volume &&
-         a.sag_free == b.sag_free && a.gravity == b.gravity;
 }
 
 Vec3 windAt(const SimParams& params, double time) {
@@ -150,16 +144,17 @@ void chooseSticking(const HairMesh& mesh, const SimParams& params, double h, Hai
   for (Contact& contact : state.contacts) {
     Vec3 slip = state.velocities[contact.vertex] - contact.velocity;
     slip -= slip.dot(contact.normal) * contact.normal;
-    const bool slid = !contact.sticks && contact.grip.norm() > 0;
+    const bool slid = !contact.sticks && contact.friction_direction.norm() > 0;
     const double mass = params.density * mesh.vertex_volume[contact.vertex];
-    contact.sticks = slid ? slip.dot(contact.grip) >= 0 : slip.norm() <= params.friction * contact.pressure * h / mass;
+    contact.sticks =
+        slid ? slip.dot(contact.friction_direction) >= 0 : slip.norm() <= params.friction * contact.pressure * h / mass;
     contact.sticks = contact.sticks && contact.pressure > 0;
-    if (contact.sticks || contact.pressure <= 0) contact.grip.setZero();
+    if (contact.sticks || contact.pressure <= 0) contact.friction_direction.setZero();
     if (contact.sticks) continue;
-    const double least = contact.grip.norm() > 0 ? kCreep : kNoSlip;
-    if (slip.norm() > least) contact.grip = -slip.normalized();
-    contact.grip -= contact.grip.dot(contact.normal) * contact.normal;
-    if (contact.grip.norm() > 0) contact.grip.normalize();
+    const double least = contact.friction_direction.norm() > 0 ? kCreep : kNoSlip;
+    if (slip.norm() > least) contact.friction_direction = -slip.normalized();
+    contact.friction_direction -= contact.friction_direction.dot(contact.normal) * contact.normal;
+    if (contact.friction_direction.norm() > 0) contact.friction_direction.normalize();
   }
 }
 
@@ -167,7 +162,7 @@ void chooseSticking(const HairMesh& mesh, const SimParams& params, double h, Hai
 void addKineticFriction(const SimParams& params, double h, const HairState& state, std::vector<Vec3>& b) {
   for (const Contact& contact : state.contacts) {
     if (!contact.sticks && contact.pressure > 0)
-      b[contact.vertex] += h * params.friction * contact.pressure * contact.grip;
+      b[contact.vertex] += h * params.friction * contact.pressure * contact.friction_direction;
   }
 }
 
@@ -185,16 +180,17 @@ bool updateContacts(const HairMesh& mesh, const SimParams& params, double h, con
     const bool pulls = contact.pressure < 0;
     const bool beyond = along.norm() > params.friction * contact.pressure;
     if (!contact.sticks) {
-      const double work = h * params.friction * pressed * contact.grip.dot(v[contact.vertex] - contact.velocity);
+      const double work =
+          h * params.friction * pressed * contact.friction_direction.dot(v[contact.vertex] - contact.velocity);
       const double mass = params.density * mesh.vertex_volume[contact.vertex];
       if (pressed <= 0 || pulls || work <= 0.5 * mass * kThrownBack * kThrownBack) continue;
       contact.sticks = true;
     } else if (pulls) {
       contact.pressure = 0;
       contact.sticks = false;
-    } else if (beyond && contact.grip.norm() == 0) {
+    } else if (beyond && contact.friction_direction.norm() == 0) {
       contact.pressure = std::min(contact.pressure, pressed);
-      contact.grip = along.normalized();
+      contact.friction_direction = along.normalized();
       contact.sticks = false;
     } else {
       continue;
@@ -259,7 +255,7 @@ sim::StepReport plainAdvance(const HairMesh& mesh, const SimParams& params, cons
     report.seconds[stage] += now - started;
     started = now;
   };
-  if (!context.made_for || !sameMaterial(params, *context.made_for)) {
+  if (!context.made_for || !sim::sameMaterial(params, *context.made_for)) {
     context.model = sim::makeForceModel(mesh, context.pattern, params);
     context.made_for = params;
   }

@@ -3,8 +3,8 @@
 //
 // Plain: the reference force model element by element, triplets into an Eigen::SparseMatrix, constraints by
 // elimination, Eigen's ConjugateGradient with its diagonal preconditioner. Shared with the simulator are the element
-// formulas (sim/forces), the rest state, the geometry of the colliders, and what a contact is (sim/contact); nothing of
-// its layouts, solvers, preconditioners, filters and factors.
+// formulas (sim/forces), the rest state, the geometry of the colliders, and what a contact is (sim/contact/contact);
+// nothing of its layouts, solvers, preconditioners, filters and factors.
 #pragma once
 
 #include <optional>

@@ -8,11 +8,11 @@
 #include <limits>
 #include <stdexcept>
 
-#include "render/body_pass.h"
-#include "render/hair_store.h"
+#include "render/plan_pass.h"
 #include "render/render_target.h"
 #include "render/renderer.h"
 #include "render/shadow_pass.h"
+#include "render/stage.h"
 #include "tests/draw_skips.h"
 #include "tests/gl_fixture.h"
 #include "tests/golden_compare.h"
@@ -108,7 +108,7 @@ TEST_F(RenderTest, EveryAngleMatchesItsGolden) {
 }
 
 // What the golden views show is the same with every exact skip as with none, also when the frame, its maps and its rows
-// are those of the frame before; all skips stay within the ledger's bound.
+// are those of the frame before; all skips stay within the bounds of the table of skips.
 TEST_F(RenderTest, EveryGoldenAngleIsTheSameWithAndWithoutSkips) {
   Scene scene(4000);
   const auto at = [&](const View& view, const render::DrawSkips& skips) {
@@ -336,6 +336,41 @@ struct Slab {
   }
 };
 
+constexpr int kDepths = 33;
+constexpr float kTop = 0.004f, kReach = Slab::kThickness + 0.008f;  // m: probes start above the slab and end below it
+
+// Optical depth down the slab, averaged over many places. The shadow maps are bound.
+std::array<double, kDepths> meanOpticalDepth(const std::string& shaders) {
+  constexpr int kPlaces = 64;
+  const render::ShaderProgram probe(shaders, {{"probe.vert"}, {}, {"tau"}});
+  render::Buffer result = render::makeBuffer();
+  glNamedBufferStorage(result.id(), kDepths * 4, nullptr, 0);
+  render::ImageTarget target;
+  target.prepare(4, 4);
+  glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer());
+  render::VertexArray none = render::makeVertexArray();
+  glBindVertexArray(none.id());
+  std::array<double, kDepths> mean{};
+  probe.use();
+  glEnable(GL_RASTERIZER_DISCARD);
+  for (int place = 0; place < kPlaces; ++place) {
+    const float x = Slab::kSide * (0.2f + 0.6f * static_cast<float>(place % 8) / 7.1f);
+    const float z = Slab::kSide * (0.2f + 0.6f * static_cast<float>(place / 8) / 7.1f);
+    glUniform4f(0, x, kTop, z, 0);
+    glUniform4f(1, 0, -kReach / (kDepths - 1), 0, 0);
+    glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, result.id());
+    glBeginTransformFeedback(GL_POINTS);
+    glDrawArrays(GL_POINTS, 0, kDepths);
+    glEndTransformFeedback();
+    std::array<float, kDepths> tau{};
+    glGetNamedBufferSubData(result.id(), 0, sizeof(tau), tau.data());
+    for (int i = 1; i < kDepths; ++i) EXPECT_GE(tau[i], tau[i - 1] - 1e-3f) << "light cannot return";
+    for (int i = 0; i < kDepths; ++i) mean[i] += tau[i] / kPlaces;
+  }
+  glDisable(GL_RASTERIZER_DISCARD);
+  return mean;
+}
+
 TEST_F(RenderTest, DeepOpacityFallsMonotonicallyAndMatchesTheHairCrossed) {
   const std::string folder = gl_fixture::copyShaders("probe_shaders");
   std::ofstream(folder + "/probe.vert") << R"(#include "shared.h"
@@ -360,48 +395,18 @@ void main() { tau = hairOpticalDepth(0, hairShadowCoordinates(0, first.xyz + flo
   input.light.shadow_strands = 0;
   input.light.layer_thickness = 0.002f;
   input.light.shadow_size = 256;
+  input.skips = draw_skips::none();
 
-  render::HairStore store;
-  render::BodyPass bodies(folder);
-  render::ShadowPass shadows(folder);
-  store.update(input.hairs, input.light);
-  render::shared::FrameBlock block{};
-  shadows.plan(input, store.hairs(), bodies, block);
-  render::Buffer frame = render::makeBuffer();
-  glNamedBufferStorage(frame.id(), sizeof(block), &block, 0);
-  glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame.id());
-  shadows.drawHairMaps(input, store.hairs(), bodies, render::Texture{});
-  shadows.bindMaps();
+  render::Stage stage;
+  render::PlanPass plan(folder);
+  render::HairShadowPass shadows(folder);
+  render::FrameReport report;
+  stage.update(input, report);
+  plan.draw(render::PlanPass::inputOf(input), stage, report);
+  shadows.draw(render::HairShadowPass::inputOf(input), stage, report);
+  stage.shadows.bindMaps();
 
-  // Lines of probes from above the slab to below it, averaged over many places.
-  constexpr int kDepths = 33, kPlaces = 64;
-  constexpr float kTop = 0.004f, kReach = Slab::kThickness + 0.008f;
-  const render::ShaderProgram probe(folder, {{"probe.vert"}, {}, {"tau"}});
-  render::Buffer result = render::makeBuffer();
-  glNamedBufferStorage(result.id(), kDepths * 4, nullptr, 0);
-  render::ImageTarget target;
-  target.prepare(4, 4);
-  glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer());
-  render::VertexArray none = render::makeVertexArray();
-  glBindVertexArray(none.id());
-  std::array<double, kDepths> mean{};
-  probe.use();
-  glEnable(GL_RASTERIZER_DISCARD);
-  for (int place = 0; place < kPlaces; ++place) {
-    const float x = Slab::kSide * (0.2f + 0.6f * static_cast<float>(place % 8) / 7.1f);
-    const float z = Slab::kSide * (0.2f + 0.6f * static_cast<float>(place / 8) / 7.1f);
-    glUniform4f(0, x, kTop, z, 0);
-    glUniform4f(1, 0, -kReach / (kDepths - 1), 0, 0);
-    glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, result.id());
-    glBeginTransformFeedback(GL_POINTS);
-    glDrawArrays(GL_POINTS, 0, kDepths);
-    glEndTransformFeedback();
-    std::array<float, kDepths> tau{};
-    glGetNamedBufferSubData(result.id(), 0, sizeof(tau), tau.data());
-    for (int i = 1; i < kDepths; ++i) ASSERT_GE(tau[i], tau[i - 1] - 1e-3f) << "light cannot return";
-    for (int i = 0; i < kDepths; ++i) mean[i] += tau[i] / kPlaces;
-  }
-  glDisable(GL_RASTERIZER_DISCARD);
+  const std::array<double, kDepths> mean = meanOpticalDepth(folder);
   // Even hairs stop light by diameter x count / (width x thickness) per metre; clumped ones, as the renderer takes
   // them, by half.
   const double extinction = 0.5 * hair.strands * 2 * hair.look.strand_radius / (Slab::kSide * Slab::kThickness);
@@ -435,25 +440,6 @@ TEST_F(RenderTest, ABrokenShaderNamesItsFileAndLine) {
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("film.glsl"), std::string::npos) << error.what();
   }
-}
-
-TEST_F(RenderTest, AFailedReloadKeepsTheOldProgram) {
-  Scene scene;
-  const std::string folder = gl_fixture::copyShaders("reloaded_shaders");
-  render::Renderer reloading(folder);
-  app::Image before{kWidth, kHeight, {}}, after = before;
-  reloading.renderImage(scene.frame(), before.rgba);
-  const auto change = [&](const std::string& text) {
-    std::ofstream(folder + "/body.frag", std::ios::app) << text;
-    std::filesystem::last_write_time(folder + "/body.frag",
-                                     std::filesystem::file_time_type::clock::now() + std::chrono::seconds(5));
-  };
-  EXPECT_EQ(reloading.reloadShaders(), "");
-  change("\nthis is no shader\n");
-  const std::string message = reloading.reloadShaders();
-  EXPECT_NE(message.find("body.frag:"), std::string::npos) << message;
-  reloading.renderImage(scene.frame(), after.rgba);
-  EXPECT_EQ(before.rgba, after.rgba);
 }
 
 TEST_F(RenderTest, TenThousandStrandsAreReportedWithTheirTimes) {

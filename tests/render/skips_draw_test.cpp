@@ -1,4 +1,4 @@
-// The ledger of skips, its drawing part: exact ones change no byte of the picture, approximate ones stay in their
+// The table of skips, its drawing part: exact ones change no byte of the picture, approximate ones stay in their
 // bound, and crowds are shadowed and small in memory.
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "app/data_path.h"
-#include "app/demo.h"
+#include "app/files/data_path.h"
+#include "app/scene/demo.h"
 #include "render/renderer.h"
 #include "tests/draw_skips.h"
 #include "tests/gl_fixture.h"
@@ -84,7 +84,7 @@ TEST_F(SkipsDraw, ExactSkipsChangeNoByte) {
   std::vector<render::DrawSkips> sets{none(), draw_skips::exact()};
   for (const NamedSkip& skip : kExact) sets.push_back(none()), sets.back().*skip.on = true;
   std::vector<std::vector<app::Image>> pictures;
-  std::vector<render::DrawLeftOut> counts(sets.size());
+  std::vector<render::DrawSkipCounts> counts(sets.size());
   for (std::size_t s = 0; s < sets.size(); ++s) {
     render::Renderer renderer(gl_fixture::kShaderDir);
     Crowd crowd(3, 0.5f, 300);
@@ -94,7 +94,7 @@ TEST_F(SkipsDraw, ExactSkipsChangeNoByte) {
     const auto show = [&] {
       render::FrameReport report;
       images.push_back(draw(renderer, frame, &report));
-      for (const NamedSkip& skip : kExact) counts[s].*skip.count += report.left_out.*skip.count;
+      for (const NamedSkip& skip : kExact) counts[s].*skip.count += report.skip_counts.*skip.count;
     };
     show();
     show();
@@ -136,7 +136,7 @@ TEST_F(SkipsDraw, AStillFrameIsKeptAndAnyChangeSeen) {
   const auto isKept = [&] {
     render::FrameReport report;
     draw(renderer, frame, &report);
-    return report.left_out.frame.skipped == 1;
+    return report.skip_counts.frame.skipped == 1;
   };
   EXPECT_FALSE(isKept());
   EXPECT_TRUE(isKept());
@@ -183,8 +183,8 @@ TEST_F(SkipsDraw, DetailStaysInItsBound) {
       frame.camera.eye = {0.25f * distance, 1.62f, 0.97f * distance};
       frame.view.show_strands = strands;
       app::Image image;
-      for (int moment = 0; moment < (skips.openness ? 5 : 1); ++moment) {
-        const float sway = skips.openness ? 0.05f * static_cast<float>(moment - 4) : 0;
+      for (int moment = 0; moment < (skips.sky_visibility ? 5 : 1); ++moment) {
+        const float sway = skips.sky_visibility ? 0.05f * static_cast<float>(moment - 4) : 0;
         for (std::size_t v = 0; v < crowd.positions[0].size(); v += 3)
           crowd.positions[0][v] = crowd.hair.positions[v] + sway * (1.7f - crowd.hair.positions[v + 1]);
         ++crowd.hairs[0].position_revision;
@@ -196,7 +196,7 @@ TEST_F(SkipsDraw, DetailStaysInItsBound) {
     for (const Detail& detail :
          {Detail{"strands", &render::DrawSkips::strands}, Detail{"segments", &render::DrawSkips::segments},
           Detail{"shadow detail", &render::DrawSkips::shadow_detail},
-          Detail{"openness", &render::DrawSkips::openness}}) {
+          Detail{"sky-visibility", &render::DrawSkips::sky_visibility}}) {
       render::DrawSkips skips = none();
       skips.*detail.on = true;
       const double off = differenceOver(full, picture(skips), bald);
@@ -227,7 +227,7 @@ TEST_F(SkipsDraw, BodyDetailStaysInItsBound) {
     const app::Image merged = draw(renderer, frame, &report);
     frame.skips.body_detail = frame.view.show_body = false;
     const double off = differenceOver(full, merged, draw(renderer, frame));
-    const render::LeftOut& count = report.left_out.body_detail;
+    const render::SkipCount& count = report.skip_counts.body_detail;
     std::printf("at %.0f m: %.2f levels, %ld of %ld triangles left out\n", distance, off, count.skipped, count.of);
     EXPECT_LE(off, distance > 10 ? kSmallBodyBound : kBodyBound) << distance << " m away";
     EXPECT_GT(count.skipped, count.of / 3) << distance << " m away";
@@ -272,7 +272,7 @@ TEST_F(SkipsDraw, AFurtherCharacterCostsLittleMemory) {
   EXPECT_LE((thirty - ten) / 20, 100 * 1024);
 }
 
-// The hundred's places (assets/scenes/hundred.json): one near, ten to a row behind it. Shadow maps follow the sizes in
+// The crowd's places (assets/scenes/crowd.json): one near, ten to a row behind it. Shadow maps follow the sizes in
 // the picture, which is all that is drawn of it here: a strip as narrow as there is, in which all hairs' shadows may
 // fall.
 TEST_F(SkipsDraw, AFurtherCharacterCostsLittleMemoryInTallPictures) {

@@ -10,10 +10,10 @@
 
 #include "render/fiber_scattering.h"
 #include "render/hair_layout.h"
-#include "render/hair_openness.h"
 #include "render/hair_store.h"
 #include "render/render_target.h"
 #include "render/shader.h"
+#include "render/sky_visibility.h"
 #include "render/strand_pass.h"
 #include "shaders/shared.h"
 #include "tests/gl_fixture.h"
@@ -368,19 +368,19 @@ TEST(FiberScattering, PickedColoursAbsorbWhatTheyLack) {
   for (float s : render::absorptionOf(look)) EXPECT_TRUE(std::isfinite(s));
 }
 
-TEST(HairOpenness, FindsTheHeadAndDarkensWhatLiesDeep) {
+TEST(SkyVisibility, FindsTheHeadAndDarkensWhatLiesDeep) {
   const synthetic::Hair hair = synthetic::makeHair();
   const render::HairLayout layout = render::makeHairLayout(hair.faces, hair.positions);
   const render::HeadBall head = render::fitHead(layout, hair.positions);
   EXPECT_NEAR(head.radius, synthetic::kHeadRadius, 1e-4f);
   EXPECT_LT((head.center - Vector3f(0, synthetic::kHeadHeight, 0)).norm(), 1e-4f);
-  render::HairOpenness openness;
-  openness.compute(layout, hair.positions, 5.0f, Vector3f::UnitX(), -Vector3f::UnitZ());
+  render::SkyVisibility sky_visibility;
+  sky_visibility.compute(layout, hair.positions, 5.0f, Vector3f::UnitX(), -Vector3f::UnitZ());
   // The crown's column is outermost, the last ring's roots are covered by all that falls over them.
-  const Eigen::Vector3f outer = openness.values()[4],
-                        inner = openness.values()[(hair.positions.size() / 3) - hair.layers];
+  const Eigen::Vector3f outer = sky_visibility.values()[4],
+                        inner = sky_visibility.values()[(hair.positions.size() / 3) - hair.layers];
   EXPECT_GT(outer.x(), inner.x());
-  for (const Eigen::Vector3f& value : openness.values()) {
+  for (const Eigen::Vector3f& value : sky_visibility.values()) {
     ASSERT_TRUE(value.allFinite());
     ASSERT_GE(value.minCoeff(), 0.0f);
     ASSERT_LE(value.x(), 1.0f);

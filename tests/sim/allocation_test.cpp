@@ -108,6 +108,26 @@ TEST(Allocation, NoneWithEveryOptionOnceWarm) {
   EXPECT_EQ(allocations, 0);
 }
 
+// Nor where pins come and go.
+TEST(Allocation, NoneWithPinsOnceWarm) {
+  for (const sim::Precision precision : {sim::Precision::kMixed, sim::Precision::kDouble}) {
+    sim::SimParams params;
+    params.precision = precision;
+    Hair hair(test::combedShape({}), params);
+    const auto pins = test::pinnedWhereTheyAre(hair.mesh);
+    allocations = 0;
+    for (int n = 0; n < 40; ++n) {
+      hair.pins.assign(pins.begin(), pins.begin() + (n % 4 < 2 ? 3 : 0));
+      for (std::size_t p = 0; p < hair.pins.size(); p += 2) hair.pins[p].stiffness = INFINITY;
+      counting = n >= 8;
+      const sim::StepReport report = hair.step(kFrame);
+      counting = false;
+      EXPECT_EQ(report.pins, static_cast<int>(hair.pins.size()));
+    }
+    EXPECT_EQ(allocations, 0) << "precision " << static_cast<int>(precision);
+  }
+}
+
 // Nor the first time that the head is thrown about and that bodies come from all sides, in any precision.
 TEST(Allocation, NoneInTheFirstViolentStep) {
   for (const sim::Precision precision : {sim::Precision::kFloat, sim::Precision::kMixed, sim::Precision::kDouble}) {
@@ -147,7 +167,8 @@ TEST(Allocation, NoneInTheFirstViolentStep) {
   }
 }
 
-// Nor where hair that hangs still is watched by a twin (sim/rest_check.h), which is put to the rest shape.
+// Nor where hair that hangs still is watched by a twin (sim/stabilization/reference_hair.h), which is put to the rest
+// shape.
 TEST(Allocation, NoneWhileATwinSettles) {
   sim::SimParams params = test::tautHair();
   params.sag_free = false;  // so that the hair hangs still away from its rest shape

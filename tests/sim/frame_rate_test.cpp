@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "app/data_path.h"
-#include "app/demo.h"
+#include "app/files/data_path.h"
+#include "app/scene/demo.h"
 #include "tests/test_meshes.h"
 
 namespace {

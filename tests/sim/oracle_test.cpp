@@ -3,8 +3,8 @@
 
 #include <cstdio>
 
-#include "app/actor.h"
-#include "app/data_path.h"
+#include "app/files/data_path.h"
+#include "app/scene/actor.h"
 #include "tests/oracle/plain_step.h"
 #include "tests/test_meshes.h"
 
@@ -27,13 +27,13 @@ sim::SimParams exactParams(bool collide) {
 }
 
 // `start`: s into the clip.
-app::Actor actorOf(const char* motion, double start, app::Wardrobe& wardrobe) {
+app::Actor actorOf(const char* motion, double start, app::AssetCache& asset_cache) {
   app::CharacterSpec spec;
   spec.motion = app::findFile(motion, "", "clips");
   spec.clip_offset = start;
   spec.style = sim::Style::kLong;
   spec.resolution = sim::Resolution::kLow;
-  return app::makeActor(spec, {}, wardrobe);
+  return app::makeActor(spec, {}, asset_cache);
 }
 
 struct Comparison {
@@ -69,8 +69,8 @@ Comparison compare(const sim::SimParams& params, app::Actor& actor, int frames) 
 }
 
 TEST(Oracle, HeadShakeIsThatOfThePlainImplementation) {
-  app::Wardrobe wardrobe;
-  app::Actor actor = actorOf("head_shake.bvh", 1, wardrobe);
+  app::AssetCache asset_cache;
+  app::Actor actor = actorOf("head_shake.bvh", 1, asset_cache);
   const sim::HairMesh& mesh = actor.haircut->mesh;
   const Solver solvers[] = {Solver::kWarped, Solver::kTwoLevel, Solver::kPaper, Solver::kDirect};
   std::vector<sim::StepContext> contexts;
@@ -102,8 +102,8 @@ TEST(Oracle, HeadShakeIsThatOfThePlainImplementation) {
 
 TEST(Oracle, EveryStepWithContactsIsThatOfThePlainImplementation) {
   for (const bool minimize : {false, true}) {
-    app::Wardrobe wardrobe;
-    app::Actor actor = actorOf("walk.bvh", 0, wardrobe);
+    app::AssetCache asset_cache;
+    app::Actor actor = actorOf("walk.bvh", 0, asset_cache);
     sim::SimParams params = exactParams(true);
     params.minimize_deformation = minimize;
     const Comparison worst = compare(params, actor, 30);
@@ -120,8 +120,8 @@ TEST(Oracle, EveryStepWithContactsIsThatOfThePlainImplementation) {
 }
 
 TEST(Oracle, MakesNoDifferenceBetweenSameInputs) {
-  app::Wardrobe wardrobe;
-  app::Actor actor = actorOf("walk.bvh", 0, wardrobe);
+  app::AssetCache asset_cache;
+  app::Actor actor = actorOf("walk.bvh", 0, asset_cache);
   const sim::HairMesh& mesh = actor.haircut->mesh;
   oracle::PlainContext one(mesh), two(mesh);
   sim::HairState a = actor.hair, b = actor.hair;

@@ -1,5 +1,5 @@
-// The default's place among the ways to simulate: a short version of the sweep behind docs/accuracy.md. Times are
-// compared within one run only.
+// The default's place among the configurations to simulate: a short version of the sweep behind docs/accuracy.md. Times
+// are compared within one run only.
 #include <gtest/gtest.h>
 
 #include "tests/bench/sweep.h"
@@ -7,29 +7,34 @@
 namespace {
 
 constexpr int kCoarseReference = 1920;  // steps a second: errors of the sweep are above its own
-constexpr double kMostLag = 1.10;       // at equal error, on the front
-constexpr double kMostGrowth = 1.10;    // of an error over its recorded figure: rounding differs between machines
+constexpr double kMaxLag = 1.10;        // at equal error, on the front
+constexpr double kMaxGrowth = 1.10;     // of an error over its recorded figure: rounding differs between machines
 constexpr int kRounds = 5;              // of runs in turns, where a first look suspects a lag
 
 // What is known of the default's place in a scene: more than this is a regression.
 struct Recorded {
   const char* scene;
   double error;  // RMS over hair length, of the default, over the samples that can be compared
-  double lag;    // how many times faster another way with no more error of positions may be, whatever else it is off
+  double lag;    // how many times faster another configuration with no more error of positions may be, whatever else it
+                 // is off
   const char* why;
   int reference = kCoarseReference;
 };
+void PrintTo(const Recorded& recorded, std::ostream* out) {
+  *out << recorded.scene;
+}
 constexpr Recorded kRecorded[] = {
     {"head_shake", 2.4e-2, 1.25, "the two levels do as well as the whole factor of this mesh, within a tenth"},
     // By the coarse reference only the first 0.4 s could be compared.
-    {"walk_contact", 3.2e-3, kMostLag, "on the front", bench::kReferenceRate},
-    {"walk_short", 1e-4, kMostLag, "on the front"},
+    {"walk_contact", 3.2e-3, kMaxLag, "on the front", bench::kReferenceRate},
+    {"walk_short", 1e-4, kMaxLag, "on the front"},
     {"walk_shoulder", 5.2e-4, 1.3, "on the front, within what another processor makes of it"},
-    {"jump_1x", 3.4e-3, kMostLag, "on the front"},
+    {"jump_1x", 3.4e-3, kMaxLag, "on the front"},
     {"jump_4x", 2.0e-1, 2.0,
      "positions are off by a fifth of the hair's length whatever is done, lengths and volumes not"},
     {"jump_10x", 3.1e-1, 2.0, "as at four times the speed, and all positions are off by a third of the hair's length"},
-    {"collapse", 6.2e-2, 2.7, "one sample can be compared, in which any way that unfolds the hair at all is as near"},
+    {"collapse", 6.2e-2, 2.7,
+     "one sample can be compared, in which any configuration that unfolds the hair at all is as near"},
 };
 
 void printErrors(const char* what, const bench::Errors& e) {
@@ -46,23 +51,23 @@ TEST_P(ParetoFront, NoWayThatIsNoWorseIsFasterThanTheDefaultByMoreThanATenth) {
   ASSERT_NE(scene, scenes.end());
   bench::TrajectoryStage stage(*scene);
   const bench::Reference reference = bench::referenceOf(stage, GetParam().reference, "");
-  const auto ways = bench::waysToRun(bench::SweepSize::kShort, scene->collide);
-  const bench::Sweep sweep = bench::sweepScene(stage, reference, ways, 2);
+  const auto configurations = bench::configurationsToRun(bench::SweepSize::kShort, scene->collide);
+  const bench::Sweep sweep = bench::sweepScene(stage, reference, configurations, 2);
   const bench::Point& standard = sweep.points.front();
   std::printf("%s: default %.1f ms/s, error %.2e; reference's own %.1e over %.2f s\n", scene->name, standard.fastest,
               standard.error.rms, sweep.own_error, sweep.compared_seconds);
-  EXPECT_LE(standard.error.rms, kMostGrowth * GetParam().error);
-  for (const bench::Point& way : sweep.points) {
-    const bool in_any = way.errors().noWorseInAny(standard.errors(), sweep.own_error);
-    const bool in_position = way.errors().noWorseInPosition(standard.errors(), sweep.own_error);
-    const double most = in_any ? kMostLag : GetParam().lag;
-    if (!in_position || way.fastest * most > standard.fastest) continue;
-    const double lag = bench::confirmedRatio(stage, standard.params, way.params, kRounds);
-    std::printf("  %.2f times faster, error %.2e%s: %s\n", lag, way.error.rms, in_any ? ", no worse in any" : "",
-                way.name().c_str());
+  EXPECT_LE(standard.error.rms, kMaxGrowth * GetParam().error);
+  for (const bench::Point& configuration : sweep.points) {
+    const bool in_any = configuration.errors().noWorseInAny(standard.errors(), sweep.own_error);
+    const bool in_position = configuration.errors().noWorseInPosition(standard.errors(), sweep.own_error);
+    const double most = in_any ? kMaxLag : GetParam().lag;
+    if (!in_position || configuration.fastest * most > standard.fastest) continue;
+    const double lag = bench::confirmedRatio(stage, standard.params, configuration.params, kRounds);
+    std::printf("  %.2f times faster, error %.2e%s: %s\n", lag, configuration.error.rms,
+                in_any ? ", no worse in any" : "", configuration.name().c_str());
     printErrors("default", standard.errors());
-    printErrors("this way", way.errors());
-    EXPECT_LE(lag, most) << way.name() << "; by positions alone: " << GetParam().why;
+    printErrors("this configuration", configuration.errors());
+    EXPECT_LE(lag, most) << configuration.name() << "; by positions alone: " << GetParam().why;
   }
 }
 

@@ -3,10 +3,18 @@
 // that jump and spin.
 #include <gtest/gtest.h>
 
-#include "app/data_path.h"
-#include "app/demo.h"
-#include "sim/position_correction.h"
+#include "app/files/data_path.h"
+#include "app/scene/demo.h"
+#include "sim/contact/position_correction.h"
 #include "tests/test_meshes.h"
+
+namespace sim {
+
+inline void PrintTo(ColliderKind kind, std::ostream* out) {
+  *out << (kind == ColliderKind::kSdf ? "SignedDistances" : "Ellipsoids");
+}
+
+}  // namespace sim
 
 namespace {
 
@@ -17,7 +25,7 @@ constexpr double kFrame = 1.0 / 60;
 
 bool same(const sim::Penetration& a, const sim::Penetration& b) {
   return a.vertex == b.vertex && a.collider == b.collider && a.target == b.target && a.normal == b.normal &&
-         a.depth == b.depth && a.standing == b.standing && a.left == b.left;
+         a.depth == b.depth && a.initial_overlap == b.initial_overlap && a.left == b.left;
 }
 
 bool same(const sim::Contact& a, const sim::Contact& b) {
@@ -80,7 +88,7 @@ TEST(Reach, RandomBodiesAreFoundToTheBit) {
     ASSERT_NO_FATAL_FAILURE(searches.compare(search, end)) << "trial " << trial;
     found += static_cast<long>(searches.found.size());
   }
-  const sim::LeftOut &left = searches.clustered.tests, &plain = searches.plain.tests;
+  const sim::SkipCount &left = searches.clustered.tests, &plain = searches.plain.tests;
   std::printf("%ld found; of %ld tests %ld left out, %ld by the whole hair's bounds\n", found, left.of, left.skipped,
               plain.skipped);
   EXPECT_GT(found, 10000);
@@ -109,7 +117,7 @@ TEST(Reach, CountsTheTestsThatWereLeftOut) {
   EXPECT_EQ(count({away, away}).skipped, 2 * vertices);
   EXPECT_EQ(count({around, away}).skipped, vertices);
   beside.radii.y() = 0.05;
-  const sim::LeftOut part = count({beside});
+  const sim::SkipCount part = count({beside});
   EXPECT_GT(part.skipped, 0);
   EXPECT_LE(part.skipped, part.of);
 }
@@ -134,13 +142,12 @@ TEST_P(Walk, IsCorrectedToTheBit) {
   sim::PositionCorrection clustered(mesh), plain(mesh);
   plain.search.cluster_of.clear(), plain.search.boxes.clear();
   test::Random random(5);
-  sim::StageClock clock;
   sim::StepReport report, expected;
   for (int frame = 0; frame < 90; ++frame) {
     actor.playback.speed = frame < 60 ? 1 : 8;
     app::advanceFrame(demo, kFrame, {});
     const bool grids = GetParam() == sim::ColliderKind::kSdf;
-    const sim::Colliders colliders{actor.ellipsoids, grids ? actor.parts : std::span<const sim::DistancePart>()};
+    const sim::Colliders colliders{actor.ellipsoids, grids ? actor.parts : std::span<const sim::BodySdf>()};
     ASSERT_EQ(colliders.parts.empty(), !grids);
     // Softly, as hair sways, and across half of the head within one step.
     const Vec3 thrown = random.vector(frame % 3 == 0 ? 0.15 : 0.01);
@@ -153,8 +160,8 @@ TEST_P(Walk, IsCorrectedToTheBit) {
     sim::HairState other = state;
     params.collide_inner = frame % 2 == 0;
     const sim::CorrectedStep step{mesh, params, colliders, start, kFrame};
-    sim::correctPositions(step, clock, clustered, state, report);
-    sim::correctPositions(step, clock, plain, other, expected);
+    sim::correctContacts(step, clustered, state, report);
+    sim::correctContacts(step, plain, other, expected);
     ASSERT_EQ(state.positions, other.positions) << "frame " << frame;
     ASSERT_EQ(state.velocities, other.velocities) << "frame " << frame;
     ASSERT_TRUE(std::ranges::equal(state.contacts, other.contacts, [](auto& a, auto& b) { return same(a, b); }));
@@ -167,8 +174,6 @@ TEST_P(Walk, IsCorrectedToTheBit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Reach, Walk, testing::Values(sim::ColliderKind::kEllipsoids, sim::ColliderKind::kSdf),
-                         [](const auto& kind) {
-                           return kind.param == sim::ColliderKind::kSdf ? "SignedDistances" : "Ellipsoids";
-                         });
+                         testing::PrintToStringParamName());
 
 }  // namespace

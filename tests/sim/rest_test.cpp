@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "app/actor.h"
-#include "app/data_path.h"
+#include "app/files/data_path.h"
+#include "app/scene/actor.h"
 
 namespace {
 
@@ -15,8 +15,8 @@ std::pair<double, double> restSpeed(sim::Style style, sim::Resolution resolution
   app::CharacterSpec spec;
   spec.motion = app::findFile("idle_turns.bvh", "", "clips");
   spec.style = style, spec.resolution = resolution;
-  app::Wardrobe wardrobe;
-  app::Actor actor = app::makeActor(spec, app::PlaybackSpec{}, wardrobe);
+  app::AssetCache asset_cache;
+  app::Actor actor = app::makeActor(spec, app::PlaybackSpec{}, asset_cache);
   app::settleActor({}, 1, actor);
   for (int i = 0; i < actor.haircut->mesh.vertexCount(); ++i) {
     if (!actor.haircut->mesh.isRoot(i)) actor.hair.velocities[i].x() += thrown;

@@ -1,4 +1,4 @@
-// The ledger of skips, its simulation and character part: what each may change, and that each has its proof.
+// The table of skips, its simulation and character part: what each may change, and that each has its proof.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,11 +7,11 @@
 #include <sstream>
 #include <string>
 
-#include "app/data_path.h"
-#include "app/level_of_detail.h"
+#include "app/files/data_path.h"
 #include "app/options.h"
-#include "app/patience.h"
-#include "app/skips.h"
+#include "app/scene/level_of_detail.h"
+#include "app/scene/skips.h"
+#include "app/ui/redraw_throttle.h"
 
 namespace {
 
@@ -76,7 +76,7 @@ bool exists(const std::string& proof) {
   return text.str().find(name) != std::string::npos;
 }
 
-TEST(Ledger, EveryEntryHasItsProof) {
+TEST(SkipTable, EveryEntryHasItsProof) {
   for (const app::Skip& skip : app::skipTable()) {
     EXPECT_EQ(&app::skipTable()[skip.id], &skip) << skip.name;
     EXPECT_EQ(app::findSkip(skip.name), &skip);
@@ -87,18 +87,18 @@ TEST(Ledger, EveryEntryHasItsProof) {
     EXPECT_EQ(&app::builtInSkips()[skip.id], &skip) << skip.name;
     EXPECT_TRUE(exists(skip.proof)) << skip.proof;
   }
-  EXPECT_FALSE(exists("tests/skips_sim_test.cpp: Ledger.NoSuchTest"));
+  EXPECT_FALSE(exists("tests/sim/skips_sim_test.cpp: Exact.NoSuchTest"));
 }
 
-TEST(Ledger, StandsInItsDocument) {
-  std::ifstream file(std::string(HAIRMESH_SOURCE_DIR) + "/docs/skipping.md");
+TEST(SkipTable, StandsInItsDocument) {
+  std::ifstream file(std::string(HAIRMESH_SOURCE_DIR) + "/docs/data/skips.md");
   std::stringstream text;
   text << file.rdbuf();
-  EXPECT_NE(text.str().find(app::skipLedger()), std::string::npos)
-      << "put what hairmesh --skips prints between the marks of docs/skipping.md";
+  EXPECT_NE(text.str().find(app::skipTableText()), std::string::npos)
+      << "put what hairmesh --skips prints between the marks of docs/data/skips.md";
 }
 
-TEST(Ledger, SwitchesAreSetByNameAndRefuseNonsense) {
+TEST(SkipTable, SwitchesAreSetByNameAndRefuseNonsense) {
   SkipSet skips;
   EXPECT_EQ(app::setSkip("all=off", skips), "");
   EXPECT_EQ(skips, only({}));
@@ -115,7 +115,7 @@ TEST(Ledger, SwitchesAreSetByNameAndRefuseNonsense) {
   EXPECT_THROW(app::sceneFromOptions(options), app::UsageError);
 }
 
-TEST(Ledger, ARequestTurnsASkip) {
+TEST(SkipTable, ARequestTurnsASkip) {
   Demo demo = demoAt(1, spec("idle_turns.bvh", sim::Resolution::kLow), SkipSet{});
   demo.requests.push_back({app::Ask::kSkip, "sleep", "", 0});
   run(demo, 1);
@@ -271,10 +271,10 @@ TEST(Unseen, NothingOfWhatIsShownChanges) {
   EXPECT_LT(mean(with.actors[1].shown_positions, without.actors[1].shown_positions), 0.05);
 }
 
-// Of the hundred, with the figures as they move when all are simulated: no joint and no hair of those that would be
+// Of the crowd scene, with the figures as they move when all are simulated: no joint and no hair of those that would be
 // left out lies in the picture, nor does the shadow on the ground of any.
 TEST(Unseen, WhoIsLeftOutIsNotInThePicture) {
-  app::Scene made = app::loadScene(app::dataPath("assets/scenes/hundred.json"));
+  app::Scene made = app::loadScene(app::dataPath("assets/scenes/crowd.json"));
   made.characters.resize(40);
   made.playback.settle = 0;
   made.skips = only({app::kSkipFarSteps, app::kSkipFarMesh});
@@ -312,7 +312,7 @@ TEST(Unseen, WhoIsLeftOutIsNotInThePicture) {
 // Mean over the vertices, the worst frame, in pixels of a picture 720 high: with each skip alone from where it begins
 // to leave something out, and with both further away.
 TEST(Far, StaysWithinItsPixels) {
-  constexpr double kBound = 3;  // the ledger's
+  constexpr double kBound = 3;  // the table's
   constexpr int kFrames = 90;
   struct Case {
     double distance;  // m; 0: where the character becomes small enough
@@ -396,13 +396,13 @@ TEST(Far, ChangesOverWithoutAJump) {
 TEST(Exact, TheWindowWaitsOnlyWhenNothingMoves) {
   Demo demo = demoAt(1, spec("idle_turns.bvh", sim::Resolution::kLow), SkipSet{});
   run(demo, 1);
-  demo.stats.draw.left_out.frame = {1, 1};
+  demo.stats.draw.skip_counts.frame = {1, 1};
   EXPECT_FALSE(app::nothingMoves(demo)) << "the clip plays";
   demo.paused = true;
   EXPECT_TRUE(app::nothingMoves(demo));
-  demo.stats.draw.left_out.frame = {0, 1};
+  demo.stats.draw.skip_counts.frame = {0, 1};
   EXPECT_FALSE(app::nothingMoves(demo)) << "the picture changed";
-  demo.stats.draw.left_out.frame = {1, 1};
+  demo.stats.draw.skip_counts.frame = {1, 1};
   demo.requests.push_back({app::Ask::kPause, "", "", 0});
   EXPECT_FALSE(app::nothingMoves(demo)) << "somebody asked for something";
   demo.requests.clear();
@@ -412,21 +412,21 @@ TEST(Exact, TheWindowWaitsOnlyWhenNothingMoves) {
 
 // Of an idle window, as its loop asks: panels settle, frames become rare, then none is drawn until an event.
 TEST(Exact, AnIdleWindowDrawsNoFrames) {
-  app::Patience patience;
+  app::RedrawThrottle backoff;
   int frames = 0, rare = 0;
   app::Wait wait = app::Wait::kNone;
-  while (frames < 1000 && (wait = patience.next(true, false)) != app::Wait::kEvent) {
+  while (frames < 1000 && (wait = backoff.next(true, false)) != app::Wait::kEvent) {
     ++frames;
     rare += wait == app::Wait::kShort;
-    EXPECT_EQ(patience.waited(), wait == app::Wait::kShort);
+    EXPECT_EQ(backoff.waited(), wait == app::Wait::kShort);
   }
   EXPECT_LE(frames, 30);
   EXPECT_LE(rare * app::kShortWait, 1.0);
-  EXPECT_EQ(patience.next(true, false), app::Wait::kEvent) << "it goes on waiting";
-  EXPECT_EQ(patience.next(true, true), app::Wait::kShort) << "a caret blinks";
-  patience.disturb();
-  EXPECT_EQ(patience.next(true, false), app::Wait::kNone) << "somebody did something";
-  for (int frame = 0; frame < 100; ++frame) EXPECT_EQ(patience.next(false, false), app::Wait::kNone);
+  EXPECT_EQ(backoff.next(true, false), app::Wait::kEvent) << "it goes on waiting";
+  EXPECT_EQ(backoff.next(true, true), app::Wait::kShort) << "a caret blinks";
+  backoff.disturb();
+  EXPECT_EQ(backoff.next(true, false), app::Wait::kNone) << "somebody did something";
+  for (int frame = 0; frame < 100; ++frame) EXPECT_EQ(backoff.next(false, false), app::Wait::kNone);
 }
 
 }  // namespace

@@ -5,12 +5,12 @@
 
 #include <fstream>
 
-#include "app/data_path.h"
-#include "app/demo.h"
-#include "app/hair_file.h"
-#include "app/sleep.h"
+#include "app/files/data_path.h"
+#include "app/files/hair_file.h"
+#include "app/scene/demo.h"
+#include "app/scene/sleep.h"
 #include "sim/forces/column_model.h"
-#include "sim/hair_parts.h"
+#include "sim/mesh/connected_components.h"
 #include "tests/test_meshes.h"
 
 namespace {
@@ -19,7 +19,7 @@ using sim::Vec3;
 using test::Hair;
 
 constexpr double kFrame = 1.0 / 60;
-constexpr int kMostRounds = 12;  // of times that are compared: the first that holds ends them
+constexpr int kMaxRounds = 12;  // of times that are compared: the first that holds ends them
 
 // Least of `times` runs, so that what else the machine does counts little.
 template <class Work>
@@ -51,7 +51,7 @@ sim::SimParams everyday() {
   return params;
 }
 
-TEST(LeftOut, ASolveThatStartsWithinToleranceTakesNoIteration) {
+TEST(SkipCount, ASolveThatStartsWithinToleranceTakesNoIteration) {
   Hair hair(test::combedShape(coat()), everyday());
   int iterations = 0;
   for (int n = 0; n < 30; ++n) iterations += hair.step(kFrame).solver_iterations;
@@ -60,10 +60,10 @@ TEST(LeftOut, ASolveThatStartsWithinToleranceTakesNoIteration) {
   EXPECT_GT(hair.step(kFrame).solver_iterations, 0);
 }
 
-TEST(LeftOut, UnchangedParametersNeverRefactor) {
+TEST(SkipCount, UnchangedParametersNeverRefactor) {
   const sim::SimParams params = everyday();
   double first = INFINITY, later = INFINITY;
-  for (int round = 0; round < kMostRounds && later >= 0.5 * first; ++round) {
+  for (int round = 0; round < kMaxRounds && later >= 0.5 * first; ++round) {
     Hair hair(test::combedShape(coat()), params);
     first = std::min(first, cpuSeconds(1, [&] { hair.step(kFrame); }));
     later = std::min(later, cpuSeconds(5, [&] { hair.step(kFrame); }));
@@ -73,13 +73,13 @@ TEST(LeftOut, UnchangedParametersNeverRefactor) {
 }
 
 // The counter of it, at once and in slices: steps that keep all, of steps.
-TEST(LeftOut, StepsThatKeepFactorAndBalanceAreCounted) {
+TEST(SkipCount, StepsThatKeepFactorAndBalanceAreCounted) {
   for (const bool gradually : {false, true}) {
     Hair hair(test::combedShape(coat()), everyday());
     hair.params.sag_free = true;
     hair.context.refreshGradually(gradually);
     const auto kept = [&] {
-      const sim::LeftOut count = hair.step(kFrame).refreshes;
+      const sim::SkipCount count = hair.step(kFrame).refreshes;
       EXPECT_EQ(count.of, 1);
       return count.skipped == 1;
     };
@@ -104,7 +104,7 @@ struct Evaluated {
   bool operator==(const Evaluated&) const = default;
 };
 
-TEST(LeftOut, KindsOfForceWithoutStiffnessAreNotAssembled) {
+TEST(SkipCount, KindsOfForceWithoutStiffnessAreNotAssembled) {
   using T = float;
   const sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(coat()));
   const sim::BlockPattern pattern = sim::systemPattern(mesh);
@@ -151,38 +151,45 @@ TEST(LeftOut, KindsOfForceWithoutStiffnessAreNotAssembled) {
     all.has_vertical = all.has_horizontal = all.has_shear = all.has_bend = true;
     EXPECT_EQ(evaluated(all), evaluated(model));
   }
-  // The counter of a step. Horizontal edges keep what stretches walls across.
-  for (const auto& [params, left_out] : {std::pair{full, 0}, {least, 3}, {test::looseParticles(), 5}}) {
-    Hair hair(test::combedShape(coat()), params);
-    const sim::LeftOut kinds = hair.step(kFrame).force_kinds;
-    EXPECT_EQ(kinds.skipped, left_out);
-    EXPECT_EQ(kinds.of, 5);
-  }
   const sim::ColumnModel<T> full_model = modelOf(full), least_model = modelOf(least);
   double dear = INFINITY, cheap = INFINITY;
-  for (int round = 0; round < kMostRounds && cheap >= 0.6 * dear; ++round) {
+  for (int round = 0; round < kMaxRounds && cheap >= 0.6 * dear; ++round) {
     dear = std::min(dear, cpuSeconds(25, [&] { run(full_model); }));
     cheap = std::min(cheap, cpuSeconds(25, [&] { run(least_model); }));
   }
   EXPECT_LT(cheap, 0.6 * dear);
 }
 
-TEST(LeftOut, CollidersOutOfReachChangeNoBitAndCostNothing) {
+TEST(SkipCount, AStepCountsTheKindsWithoutStiffness) {
+  sim::SimParams full = test::tautHair();
+  full.sag_free = false;
+  sim::SimParams least = full;
+  least.stretch_edge = least.shear = least.bend = least.volume = 0;
+  // Nothing is pinned; stretch along the hair stays.
+  for (const auto& [params, left_out] : {std::pair{full, 1}, {least, 4}, {test::looseParticles(), 5}}) {
+    Hair hair(test::combedShape(coat()), params);
+    const sim::SkipCount kinds = hair.step(kFrame).force_kinds;
+    EXPECT_EQ(kinds.skipped, left_out);
+    EXPECT_EQ(kinds.of, sim::ForceKinds::kCount);
+  }
+}
+
+TEST(SkipCount, CollidersOutOfReachChangeNoBitAndCostNothing) {
   Hair without(test::combedShape(coat()), everyday()), with(test::combedShape(coat()), everyday());
   for (Hair* hair : {&without, &with})
     hair->bodies.push_back({Vec3(0.05, -0.3, 0), Eigen::Quaterniond::Identity(), Vec3(0.08, 0.08, 0.08)});
   for (int k = 0; k < 40; ++k)
     with.bodies.push_back({Vec3(2 + k, 0, 0), Eigen::Quaterniond::Identity(), Vec3(0.5, 0.4, 0.3)});
   double least[2] = {INFINITY, INFINITY};
-  sim::LeftOut counted[2];
+  sim::SkipCount counted[2];
   bool looked = false;
-  for (int n = 0; n < 60 || (n < 60 * kMostRounds && least[1] >= 1.1 * least[0]); ++n) {
+  for (int n = 0; n < 60 || (n < 60 * kMaxRounds && least[1] >= 1.1 * least[0]); ++n) {
     for (Hair* hair : {&without, &with}) {
       if (n < 10) {
         for (Vec3& root : hair->roots) root.y() -= 0.003;
       }
       double& seconds = least[hair == &with];
-      sim::LeftOut& tests = counted[hair == &with];
+      sim::SkipCount& tests = counted[hair == &with];
       seconds = std::min(seconds, cpuSeconds(1, [&] { tests = hair->step(kFrame).collider_tests; }));
     }
     // All tests with the forty are left out; those with the one are not.
@@ -249,8 +256,8 @@ TEST(HairParts, AreWhatIsConnectedAndMoveAsTheWholeDoes) {
 TEST(HairParts, CountWhatTheyDidTogether) {
   sim::StepReport part, whole;
   const auto counts = [](sim::StepReport& report) {
-    return std::array{&report.solver_iterations, &report.contacts, &report.corrected, &report.standing,
-                      &report.self_contacts,     &report.combed,   &report.recoveries};
+    return std::array{&report.solver_iterations, &report.contacts, &report.corrected, &report.initial_overlap,
+                      &report.self_contacts,     &report.guided,   &report.recoveries};
   };
   int n = 0;
   for (int* count : counts(part)) *count = ++n;

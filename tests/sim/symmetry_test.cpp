@@ -1,7 +1,19 @@
 // The mirror image of a scene moves as the mirror image of the motion.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <ostream>
+
 #include "tests/test_meshes.h"
+
+namespace sim {
+
+inline void PrintTo(Integrator integrator, std::ostream* out) {
+  constexpr std::array kNames{"LinearizedEuler", "ImplicitEuler", "Bdf2"};
+  *out << kNames.at(static_cast<std::size_t>(integrator));
+}
+
+}  // namespace sim
 
 namespace {
 
@@ -71,6 +83,6 @@ TEST_P(Symmetry, MirrorImagesMoveAlike) {
 INSTANTIATE_TEST_SUITE_P(Integrators, Symmetry,
                          testing::Values(sim::Integrator::kLinearizedEuler, sim::Integrator::kImplicitEuler,
                                          sim::Integrator::kBdf2),
-                         [](const auto& integrator) { return "Integrator" + std::to_string(int(integrator.param)); });
+                         testing::PrintToStringParamName());
 
 }  // namespace

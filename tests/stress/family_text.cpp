@@ -94,7 +94,7 @@ std::string styleText(Some cases) {
   return joined(parts);
 }
 
-std::string soakText(Some cases) {
+std::string enduranceText(Some cases) {
   const auto played = distinct(cases, [](const StressCase& one) {
     return plain(one.seconds) + " s of " + one.clip.substr(0, one.clip.find('.'));
   });
@@ -122,7 +122,7 @@ std::string familyText(std::span<const StressCase* const> cases) {
   if (family == "step") return "fixed time steps of " + range(cases, &StressCase::step, stepText) + " s";
   if (family == "speed") return speedText(cases);
   if (family == "style") return styleText(cases);
-  if (family == "soak") return soakText(cases);
+  if (family == "soak") return enduranceText(cases);
   if (family == "state") return joined(distinct(cases, secondName));
   if (family == "stiffness") return stiffnessText(cases);
   if (family == "ladder") return ladderText(cases);

@@ -1,12 +1,13 @@
-// hairmesh-stress: the stability gauntlet.
+// hairmesh-stress: the stability stress test.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
 
-#include "app/errors.h"
-#include "app/frame_stats.h"
-#include "tests/stress/report.h"
+#include "app/files/errors.h"
+#include "app/scene/frame_stats.h"
+#include "tests/stress/ablation.h"
+#include "tests/stress/document.h"
 #include "tests/stress/run_case.h"
 
 namespace {
@@ -20,7 +21,7 @@ constexpr double kTellEvery = 30;  // s
 
 struct Options {
   bool short_run = false, long_run = false, list = false, verbose = false, trace = false;
-  std::string pattern, document, csv;
+  std::string pattern, document, csv, ablate;
   std::vector<std::string> sets, results;
   std::uint64_t seed = 1;
   int part = 0, parts = 1;
@@ -36,7 +37,7 @@ bool chosen(const StressCase& one, std::size_t index, const Options& options) {
   return options.long_run || one.in_short;
 }
 
-void tellFault(const Result& result, const Options& options) {
+void printFault(const Result& result, const Options& options) {
   const stress::WindowCommand window = stress::windowCommand(result.one);
   const char* kind = result.one.compared                          ? "compared "
                      : result.outcome.verdict == Verdict::kFailed ? "FAILED   "
@@ -46,7 +47,7 @@ void tellFault(const Result& result, const Options& options) {
   if (!window.note.empty()) std::cout << "  (" << window.note << ")\n";
 }
 
-void tellOutcome(const Result& result) {
+void printOutcome(const Result& result) {
   const Outcome& o = result.outcome;
   std::printf(
       "%-60s %s  back after %.2f s%s, distance %.4f, deepest %.3f mm, energy rise %.2e, recoveries %d, %d steps, "
@@ -93,8 +94,8 @@ std::vector<Result> runCases(const Options& options, const std::vector<StressCas
   for (std::size_t k = 0; k < cases.size(); ++k) {
     if (!chosen(cases[k], k, options)) continue;
     Result result{cases[k], stress::runCaseByMajority(cases[k], options.seed, options.trace, stages)};
-    if (options.verbose || !options.pattern.empty()) tellOutcome(result);
-    if (!result.outcome.fault.empty()) tellFault(result, options);
+    if (options.verbose || !options.pattern.empty()) printOutcome(result);
+    if (!result.outcome.fault.empty()) printFault(result, options);
     count.add(result);
     csv << stress::csvRow(result) << std::flush;
     results.push_back(std::move(result));
@@ -109,6 +110,37 @@ std::vector<Result> runCases(const Options& options, const std::vector<StressCas
   return results;
 }
 
+// Every chosen case without each net in turn.
+int ablate(const Options& options, const std::vector<StressCase>& cases) {
+  std::vector<stress::Ablation> rows;
+  std::vector<Verdict> with_all;
+  for (const std::string& net : stress::ablationsOf(options.ablate)) {
+    stress::StageStore stages;
+    stress::Ablation row{net};
+    const std::vector<StressCase> all = stress::without(net, cases);
+    for (std::size_t k = 0, n = 0; k < all.size(); ++k) {
+      if (!chosen(all[k], k, options) || all[k].compared || all[k].endurance) continue;
+      const Outcome outcome = stress::runCaseByMajority(all[k], options.seed, false, stages);
+      if (rows.empty()) with_all.push_back(outcome.verdict);
+      const bool failed = outcome.verdict == Verdict::kFailed, failed_before = with_all[n++] == Verdict::kFailed;
+      ++row.cases;
+      row.failed += failed;
+      row.lost += failed && !failed_before;
+      row.gained += !failed && failed_before;
+      row.guided += outcome.guided > 0;
+      row.seconds += outcome.cpu_seconds;
+      if (failed && !failed_before) std::cout << net << " lost " << all[k].name << ": " << outcome.fault << std::endl;
+    }
+    rows.push_back(row);
+    std::cout << stress::ablationTable({&row, 1}) << std::flush;
+  }
+  const std::string table = stress::ablationTable(rows);
+  std::cout << table;
+  if (!options.csv.empty() && !(std::ofstream(options.csv) << table << std::flush))
+    throw app::InputError(options.csv, "", "cannot be written", "choose a folder that exists and may be written to");
+  return app::kExitFine;
+}
+
 int run(const Options& options) {
   std::vector<StressCase> cases = stress::declareCases(options.seed);
   applySets(options.sets, cases);
@@ -118,6 +150,7 @@ int run(const Options& options) {
     }
     return app::kExitFine;
   }
+  if (!options.ablate.empty()) return ablate(options, cases);
   std::vector<Result> results;
   if (options.results.empty()) {
     results = runCases(options, cases);
@@ -142,7 +175,7 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App program("Stability gauntlet: runs a seeded matrix of cases and judges each. Exit code 1 on a failure.");
+  CLI::App program("Stability stress test: runs a seeded matrix of cases and judges each. Exit code 1 on a failure.");
   Options options;
   program.add_flag("--short", options.short_run, "the cases of the test suite, about two minutes");
   program.add_flag("--long", options.long_run, "all cases");
@@ -151,6 +184,10 @@ int main(int argc, char** argv) {
   program.add_option("--seed", options.seed, "of all random draws")->capture_default_str();
   program.add_option("--set", options.sets,
                      "NAME=VALUE: a parameter in every case, over what the case has; may be repeated");
+  program.add_option(
+      "--ablate", options.ablate,
+      "run the cases with all safety nets and without this one (or all, one after the other); --csv takes "
+      "the table");
   program.add_flag("--trace", options.trace, "a line for every step");
   program.add_flag("--verbose", options.verbose, "a line for every case");
   program.add_option("--part", options.part, "run one of --parts shares of the cases, from 0")
@@ -158,7 +195,8 @@ int main(int argc, char** argv) {
   program.add_option("--parts", options.parts, "shares that the cases are dealt into")->check(CLI::Range(1, 1000));
   program.add_option("--csv", options.csv, "also write a row a case to this file");
   program.add_option("--results", options.results, "judge what these files of --csv hold instead of running cases");
-  program.add_option("--document", options.document, "write stability.md and its pictures into this folder");
+  program.add_option("--document", options.document,
+                     "write the tables of stability.md, and its data, into this folder");
   CLI11_PARSE(program, argc, argv);
   if (options.list && !options.short_run && options.pattern.empty()) options.long_run = true;
   if (!options.short_run && !options.long_run && options.pattern.empty() && options.results.empty()) {

@@ -26,12 +26,12 @@ void addPaces(Cases& cases);
 void addSpeeds(Cases& cases);
 void addScrubs(Cases& cases);
 void addStyles(Cases& cases);
-void addSoak(Cases& cases);
+void addEndurance(Cases& cases);
 // matrix_params.cpp
 void addParameters(Cases& cases);
 void addStiffness(Cases& cases);
 void addRandomParameters(std::uint64_t seed, Cases& cases);
-void addRestless(Cases& cases);
+void addRedrawnParameters(Cases& cases);
 void addPaper(Cases& cases);
 // Any value that the parameter may have.
 double draw(const sim::ParamField& field, class Random& random);

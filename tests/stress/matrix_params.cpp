@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array<const char*, 6> kModuli{"stretch_along", "stretch_across", "stretch_edge",
                                              "shear",         "bend",           "volume"};
-constexpr int kRandomCombinations = 1000, kRestlessRuns = 60;
+constexpr int kRandomCombinations = 1000, kRedrawnRuns = 60;
 // Of rows whose effect is a time constant: hair in thick air or with slow relaxation needs longer to come back.
 constexpr double kSlowRelease = 30;  // s
 
@@ -134,14 +134,14 @@ void addRandomParameters(std::uint64_t seed, Cases& cases) {
   }
 }
 
-void addRestless(Cases& cases) {
-  for (int k = 0; k < kRestlessRuns; ++k) {
+void addRedrawnParameters(Cases& cases) {
+  for (int k = 0; k < kRedrawnRuns; ++k) {
     StressCase one;
     one.name = "restless/" + std::to_string(k);
     one.hair = lowStyles()[k % 3];
     one.clip = ownClips()[k % 5];
     one.play = Play::kForward;
-    one.restless = true;
+    one.redraws_parameters = true;
     // What has come inside while contacts were off is out after a while.
     one.switches = k % 2 == 1;
     if (one.switches) one.grace = 0.5;
@@ -150,27 +150,32 @@ void addRestless(Cases& cases) {
   }
 }
 
-void addPaper(Cases& cases) {
-  const auto claimOf = [&](const std::string& name, std::span<const HairChoice> hairs, auto&& change) {
-    for (const HairChoice& hair : hairs) {
-      StressCase ours;
-      ours.name = "paper/" + name + "/ours/" + hairName(hair);
-      ours.hair = hair;
-      ours.in_short = true;
-      change(ours);
-      StressCase theirs = ours;
-      theirs.name = "paper/" + name + "/its-solver/" + hairName(hair);
-      theirs.params.insert(theirs.params.end(), {{"solver", static_cast<double>(sim::Solver::kPaper)},
-                                                 {"integrator", static_cast<double>(sim::Integrator::kLinearizedEuler)},
-                                                 {"precision", static_cast<double>(sim::Precision::kFloat)}});
-      theirs.compared = true;
-      cases.push_back(ours);
-      cases.push_back(theirs);
-    }
-  };
-  const auto claim = [&](const std::string& name, auto&& change) { claimOf(name, lowStyles(), change); };
+namespace {
+
+// A claim of the paper, with our settings and with its solver. `change` makes the case.
+template <class Change>
+void addClaim(Cases& cases, const std::string& name, Change&& change, std::span<const HairChoice> hairs = lowStyles()) {
+  for (const HairChoice& hair : hairs) {
+    StressCase ours;
+    ours.name = "paper/" + name + "/ours/" + hairName(hair);
+    ours.hair = hair;
+    ours.in_short = true;
+    change(ours);
+    StressCase theirs = ours;
+    theirs.name = "paper/" + name + "/its-solver/" + hairName(hair);
+    theirs.params.insert(theirs.params.end(), {{"solver", static_cast<double>(sim::Solver::kPaper)},
+                                               {"integrator", static_cast<double>(sim::Integrator::kLinearizedEuler)},
+                                               {"precision", static_cast<double>(sim::Precision::kFloat)}});
+    theirs.compared = true;
+    cases.push_back(ours);
+    cases.push_back(theirs);
+  }
+}
+
+// Figures 7 to 9: fast playback, collapse, an arm through the hair.
+void addPaperFigures(Cases& cases) {
   for (const double speed : {10.0, 20.0, 50.0}) {
-    claim("playback-" + plain(speed) + "x", [&](StressCase& one) {
+    addClaim(cases, "playback-" + plain(speed) + "x", [&](StressCase& one) {
       one.clip = "dance.bvh";
       one.play = Play::kForward;
       one.speed = speed;
@@ -179,7 +184,7 @@ void addPaper(Cases& cases) {
     });
   }
   for (const bool collide : {false, true}) {
-    claim(collide ? "collapse-with-body" : "collapse", [&](StressCase& one) {
+    addClaim(cases, collide ? "collapse-with-body" : "collapse", [&](StressCase& one) {
       one.start = Start::kCollapsed;
       one.collide = collide;
       one.seconds = 0.1;
@@ -187,7 +192,7 @@ void addPaper(Cases& cases) {
     });
   }
   for (const bool minimize : {true, false}) {
-    claim(minimize ? "arm-minimized" : "arm-not-minimized", [&](StressCase& one) {
+    addClaim(cases, minimize ? "arm-minimized" : "arm-not-minimized", [&](StressCase& one) {
       one.upset = Upset::kArm;
       one.upset_size = 5;
       one.meets = true;
@@ -195,28 +200,32 @@ void addPaper(Cases& cases) {
       one.params = {{"minimize_deformation", minimize}};
     });
   }
+}
+
+// What its text claims beside them: large steps, stiff hair, impossible states, violent motion, few iterations.
+void addPaperText(Cases& cases) {
   for (const double step : {1.0 / 30, 0.1}) {
-    claim("step-" + stepName(step), [&](StressCase& one) {
+    addClaim(cases, "step-" + stepName(step), [&](StressCase& one) {
       one.clip = "dance.bvh";
       one.play = Play::kForward;
       one.step = step;
       one.speed = 5;
     });
   }
-  claim("stiff-1e3", [&](StressCase& one) {
+  addClaim(cases, "stiff-1e3", [&](StressCase& one) {
     one.clip = "dance.bvh";
     one.play = Play::kForward;
     for (const char* modulus : kModuli) one.params.emplace_back(modulus, 1e3 * defaultOf(modulus));
   });
   // Where hair may be left tangled.
   for (const Start start : {Start::kInsideOut, Start::kShuffled}) {
-    claim(start == Start::kInsideOut ? "inside-out" : "shuffled", [&](StressCase& one) {
+    addClaim(cases, start == Start::kInsideOut ? "inside-out" : "shuffled", [&](StressCase& one) {
       one.start = start;
       one.collide = false;
       one.seconds = 0.2;
     });
   }
-  claim("head-shake-20x", [&](StressCase& one) {
+  addClaim(cases, "head-shake-20x", [&](StressCase& one) {
     one.clip = "head_shake.bvh";
     one.play = Play::kForward;
     one.speed = 20;
@@ -225,14 +234,24 @@ void addPaper(Cases& cases) {
   // The paper does not say how many iterations it takes: on its largest mesh so many.
   const HairChoice large{Cut::kStyle, sim::Style::kLong, sim::Resolution::kHigh};
   for (const int most : {50, 100}) {
-    claimOf("collapse-" + plain(most) + "-iterations", std::span(&large, 1), [&](StressCase& one) {
-      one.start = Start::kCollapsed;
-      one.collide = false;
-      one.seconds = 0.1;
-      one.params = {{"max_iterations", most}};
-      one.in_short = false;
-    });
+    addClaim(
+        cases, "collapse-" + plain(most) + "-iterations",
+        [&](StressCase& one) {
+          one.start = Start::kCollapsed;
+          one.collide = false;
+          one.seconds = 0.1;
+          one.params = {{"max_iterations", most}};
+          one.in_short = false;
+        },
+        std::span(&large, 1));
   }
+}
+
+}  // namespace
+
+void addPaper(Cases& cases) {
+  addPaperFigures(cases);
+  addPaperText(cases);
 }
 
 }  // namespace stress

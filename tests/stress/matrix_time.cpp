@@ -1,8 +1,8 @@
-// Time steps, the governor's rungs, paces, playback speeds, scrubbing, styles and the soak.
+// Time steps, the governor's rungs, paces, playback speeds, scrubbing, styles and the endurance runs.
 #include <array>
 #include <cmath>
 
-#include "app/governor.h"
+#include "app/scene/governor.h"
 #include "sim/field_text.h"
 #include "tests/stress/matrix.h"
 #include "tests/stress/stage.h"
@@ -194,14 +194,14 @@ void addStyles(Cases& cases) {
   }
 }
 
-void addSoak(Cases& cases) {
+void addEndurance(Cases& cases) {
   for (const char* clip : {"dance.bvh", "walk.bvh"}) {
     StressCase one;
     one.name = std::string("soak/hour/") + clipName(clip);
     one.clip = clip;
     one.play = Play::kForward;
     one.seconds = 3600;
-    one.soak = true;
+    one.endurance = true;
     cases.push_back(one);
   }
   StressCase brief;
@@ -210,7 +210,7 @@ void addSoak(Cases& cases) {
   brief.play = Play::kForward;
   brief.seconds = 20;
   brief.in_short = true;
-  brief.soak = true;
+  brief.endurance = true;
   cases.push_back(brief);
 }
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "sim/hair_mesh.h"
+#include "sim/mesh/hair_mesh.h"
 
 namespace stress {
 

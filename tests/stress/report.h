@@ -23,9 +23,4 @@ std::string csvHead();
 std::string csvRow(const Result& result);
 std::vector<Result> readCsv(const std::string& file, const std::vector<StressCase>& declared);
 
-// stability.md with its tables, and its heat maps (SVG and PNG) where gnuplot is installed.
-// `how`: the option that chose the cases, as the page quotes it.
-void writeDocument(const std::vector<Result>& results, const std::string& how, std::uint64_t seed,
-                   const std::string& folder);
-
 }  // namespace stress

@@ -1,6 +1,5 @@
 #include "tests/stress/run_case.h"
 
-#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,9 +8,10 @@
 #include <fstream>
 #include <span>
 
-#include "app/fixed_clock.h"
-#include "sim/bearable.h"
-#include "sim/contact.h"
+#include "app/motion/fixed_clock.h"
+#include "sim/contact/contact.h"
+#include "sim/stabilization/parameter_limits.h"
+#include "tests/bench/cpu_clock.h"
 #include "tests/stress/matrix.h"
 #include "tests/stress/start_states.h"
 #include "tests/stress/surroundings.h"
@@ -29,12 +29,6 @@ constexpr double kUnrest = 3;                               // times the stated 
 constexpr double kWindow = 2, kHurry = 5;                   // s, and times its pace: see Pace of return
 constexpr int kIdleWindows = 5;                             // in a row, of hair that is not coming
 constexpr double kSmallestEnergy = 0.05;                    // of the hair's weight times its length
-
-double cpuSeconds() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 std::string said(const char* format, double a, double b = 0) {
   char text[160];
@@ -74,7 +68,7 @@ struct Run {
     for (const auto& [name, value] : c.params) sim::findParam(name)->set(params, value);
     params.time_step = c.step;
     params.collide = params.collide && c.collide;  // a row may turn it off too
-    hair.context.leaveAsPublished(c.compared);
+    hair.context.safetyNets() = c.nets;
     hair.state = s.settled;
     applyStart(c, hair.mesh, random, hair.state);
   }
@@ -91,7 +85,7 @@ struct Run {
 };
 
 sim::Vec3 windOf(const Run& run) {
-  const sim::SimParams params = sim::bearable(run.hair.mesh, run.params);
+  const sim::SimParams params = sim::limitedParameters(run.hair.mesh, run.params);
   return {params.wind_x, params.wind_y, params.wind_z};
 }
 
@@ -114,9 +108,9 @@ void traceStep(const Run& run, double dt, const sim::StepReport& report, Hair& h
       "%9.4f s  step %6.1f ms  energy %12.5e J  fastest %9.3e m/s  contacts %3d  corrected %3d  standing %3d  self %3d "
       " "
       "iterations %4d  combed %d%s%s\n",
-      run.around.time(), 1e3 * dt, energyOf(run, hair), fastest, report.contacts, report.corrected, report.standing,
-      report.self_contacts, report.solver_iterations, report.combed, report.converged ? "" : " (not converged)",
-      report.carried ? " carried" : "");
+      run.around.time(), 1e3 * dt, energyOf(run, hair), fastest, report.contacts, report.corrected,
+      report.initial_overlap, report.self_contacts, report.solver_iterations, report.guided,
+      report.converged ? "" : " (not converged)", report.carried ? " carried" : "");
 }
 
 sim::StepReport stepHair(const sim::SimParams& params, const Run& run, double dt, Hair& hair) {
@@ -171,7 +165,7 @@ void checkOutside(Run& run) {
 
 void countWork(const sim::StepReport& report, Run& run) {
   ++run.outcome.steps;
-  run.outcome.combed = std::max(run.outcome.combed, report.combed);
+  run.outcome.guided = std::max(run.outcome.guided, report.guided);
   run.iterations += report.solver_iterations;
   run.unsolved += !report.converged;
 }
@@ -186,7 +180,7 @@ void step(double dt, Run& run) {
   run.around.move(dt);
   if (run.around.carries()) sim::carryAlong(head, run.around.head(), run.hair.state);
   if (run.around.intrudes() || run.one.switches) run.last_intrusion = run.around.time();
-  if (run.one.restless) {
+  if (run.one.redraws_parameters) {
     for (const sim::ParamField& field : sim::paramFields()) {
       // Of signed distances the surroundings have none, unless the case began with them.
       const std::string_view name = field.name;
@@ -207,7 +201,7 @@ void step(double dt, Run& run) {
   if (run.bodyWithin() && run.around.time() > kIntruderThere)
     run.raised = std::max(run.raised, energyOf(run, run.hair));
   if (run.trace) traceStep(run, dt, report, run.hair);
-  if (report.recoveries > 0 && !run.one.recovers) run.fail("watchdog: " + sim::troubleText(report.trouble));
+  if (report.recoveries > 0 && !run.one.recovers) run.fail("state fault: " + sim::faultText(report.fault_report));
   checkFinite(run);
 }
 
@@ -238,13 +232,13 @@ double residentMemory() {
 }
 
 // Memory and time a step, tenth by tenth.
-void soak(Run& run) {
+void endurance(Run& run) {
   double memory = 0, early = 0, late = 0;
   for (int tenth = 1; tenth <= 10; ++tenth) {
-    const double started = cpuSeconds();
+    const double started = bench::cpuSeconds();
     const int before = run.outcome.steps;
     while (run.around.time() < run.one.seconds * tenth / 10 && !run.failed()) frame(run);
-    const double each = (cpuSeconds() - started) / std::max(1, run.outcome.steps - before);
+    const double each = (bench::cpuSeconds() - started) / std::max(1, run.outcome.steps - before);
     if (tenth == 1) memory = residentMemory();
     if (tenth == 2) early = each;
     late = each;
@@ -257,7 +251,7 @@ void soak(Run& run) {
 
 void playMotion(Run& run) {
   run.last_intrusion = 0;
-  if (run.one.soak) return soak(run);
+  if (run.one.endurance) return endurance(run);
   while (run.around.time() < run.one.seconds && !run.failed()) frame(run);
 }
 
@@ -325,17 +319,18 @@ void checkEnergy(bool lifted, double dt, EnergyWatch& watch, Run& run) {
 }
 
 // Pace of return: what has moved so little within kWindow that it would not arrive in time at kHurry times that pace is
-// not coming, unless it is only waiting for the simulator to find out that it rests elsewhere (sim/rest_check.h).
+// not coming, unless it is only waiting for the simulator to find out that it rests elsewhere
+// (sim/stabilization/reference_hair.h).
 struct Pacer {
   std::vector<std::vector<sim::Vec3>> was;  // hair's, then its twins'
   double since = 0;
   int idle = 0;  // windows
 
-  bool hopeless(const Run& run, std::span<const Hair> twins, double dt, double seconds_left) {
+  bool hopeless(const Run& run, std::span<const Hair> references, double dt, double seconds_left) {
     since += dt;
     if (since < kWindow && !was.empty()) return false;
     std::vector<std::vector<sim::Vec3>> now{run.hair.state.positions};
-    for (const Hair& twin : twins) now.push_back(twin.state.positions);
+    for (const Hair& reference : references) now.push_back(reference.state.positions);
     double way = 0;
     if (!was.empty()) {
       for (std::size_t i = 0; i < now[0].size(); ++i) {
@@ -369,90 +364,90 @@ struct Rest {
 
 // Very soft hair sags into more shapes than one: another is as good a rest as the twin's where it is no higher in
 // energy.
-bool restsNoHigher(Hair& twin, const EnergyWatch& watch, Run& run) {
-  const double rest = energyOf(run, twin);
+bool restsNoHigher(Hair& reference, const EnergyWatch& watch, Run& run) {
+  const double rest = energyOf(run, reference);
   return watch.last - rest <= kEnergyTolerance * kSmallestEnergy * weightOf(run);
 }
 
 // Everything stands still: hair and twins go on until it meets one of them, for `seconds` from when the twins have come
 // to rest where that `may_take` long: limp hair sags and swings for a minute from its own rest shape too, and until it
 // has done so there is no rest to be back at. Returns whether they meet.
-bool waitUntilBack(double seconds, bool may_take, std::span<Hair> twins, EnergyWatch& energy, Run& run) {
+bool waitUntilBack(double seconds, bool may_take, std::span<Hair> references, EnergyWatch& energy, Run& run) {
   const double dt = run.one.pace == Pace::kFixed ? run.one.step : sim::SimParams{}.time_step;
   const double started = run.around.time();
   double until = started + seconds;
   Pacer pacer;
-  std::vector<Rest> rests(1 + twins.size());  // the hair's, then its twins'
+  std::vector<Rest> rests(1 + references.size());  // the hair's, then its twins'
   while (run.around.time() < until && !run.failed()) {
     run.around.pass(dt);
     const sim::StepReport report = stepHair(run.params, run, dt, run.hair);
     run.outcome.recoveries += report.recoveries;
-    if (report.recoveries > 0) run.fail("watchdog: " + sim::troubleText(report.trouble));
+    if (report.recoveries > 0) run.fail("state fault: " + sim::faultText(report.fault_report));
     countWork(report, run);
     if (run.trace) traceStep(run, dt, report, run.hair);
-    for (Hair& twin : twins) {
-      stepHair(run.params, run, dt, twin);
-      if (may_take && fastest(twin) > kAtRest)
+    for (Hair& reference : references) {
+      stepHair(run.params, run, dt, reference);
+      if (may_take && fastest(reference) > kAtRest)
         until = std::min(run.around.time(), started + kUnrest * seconds) + seconds;
     }
     checkFinite(run);
     checkOutside(run);
-    if (!run.failed()) checkEnergy(report.combed > 0 || report.standing > 0, dt, energy, run);
+    if (!run.failed()) checkEnergy(report.guided > 0 || report.initial_overlap > 0, dt, energy, run);
     run.outcome.distance = INFINITY;
-    for (const Hair& twin : twins) {
-      const Apart worst = apart(run.hair, twin);
+    for (const Hair& reference : references) {
+      const Apart worst = apart(run.hair, reference);
       if (worst.distance >= run.outcome.distance) continue;
       run.outcome.distance = worst.distance;
       run.outcome.worst_vertex = worst.vertex;
     }
     if (run.outcome.distance < kBack) return true;
     rests[0].look(run.hair, dt);
-    for (std::size_t k = 0; k < twins.size(); ++k) {
-      rests[k + 1].look(twins[k], dt);
+    for (std::size_t k = 0; k < references.size(); ++k) {
+      rests[k + 1].look(references[k], dt);
       // Not with the body there: that holds hair up as well.
       if (run.params.collide || run.failed() || std::min(rests[0].seconds, rests[k + 1].seconds) < kRested) continue;
-      if (restsNoHigher(twins[k], energy, run)) return run.outcome.other_rest = true;
+      if (restsNoHigher(references[k], energy, run)) return run.outcome.other_rest = true;
     }
-    if (pacer.hopeless(run, twins, dt, until - run.around.time())) return false;
+    if (pacer.hopeless(run, references, dt, until - run.around.time())) return false;
   }
   return false;
 }
 
-void addTwin(const Run& run, std::vector<Hair>& twins) {
-  Hair& twin = twins.emplace_back(run.hair.mesh);
-  twin.context.leaveAsPublished(run.one.compared);
-  twin.state = sim::restState(run.hair.mesh, run.around.head());
+void addTwin(const Run& run, std::vector<Hair>& references) {
+  Hair& reference = references.emplace_back(run.hair.mesh);
+  reference.context.safetyNets() = run.one.nets;
+  reference.state = sim::restState(run.hair.mesh, run.around.head());
 }
 
 void waitForRest(Run& run) {
   run.around.stop();
   run.last_intrusion = run.around.intrudes() || run.one.switches ? run.around.time() : run.last_intrusion;
-  if (run.one.restless) {
+  if (run.one.redraws_parameters) {
     run.params = {};
     run.params.collide = run.one.collide;
   }
   run.params.gust = 0;  // it is an input: as everything else, the wind becomes steady
-  std::vector<Hair> twins;
-  addTwin(run, twins);
+  std::vector<Hair> references;
+  addTwin(run, references);
   const double stopped = run.around.time();
   EnergyWatch energy;
-  energy.rest = energyOf(run, twins[0]);
-  bool back = waitUntilBack(run.one.rest, false, twins, energy, run);
+  energy.rest = energyOf(run, references[0]);
+  bool back = waitUntilBack(run.one.rest, false, references, energy, run);
   run.outcome.with_body = back;
   if (!back && !run.failed()) {
     // The body may have pushed the twin into another rest than the one from the rest shape: either is one.
-    if (run.params.collide) addTwin(run, twins);
+    if (run.params.collide) addTwin(run, references);
     run.params.collide = false;
-    back = waitUntilBack(run.one.release, true, twins, energy, run);
+    back = waitUntilBack(run.one.release, true, references, energy, run);
   }
   if (back) run.outcome.back_after = run.around.time() - stopped;
   if (!back && !run.failed()) {
     run.fail(said("still %.1f %% of the hair's length from rest %.1f s after the motion stopped",
                   100 * run.outcome.distance, run.around.time() - stopped) +
              ", vertex " + std::to_string(run.outcome.worst_vertex) +
-             said(", fastest %.1e m/s (%.1e its twin)", fastest(run.hair), fastest(twins.back())) +
+             said(", fastest %.1e m/s (%.1e its twin)", fastest(run.hair), fastest(references.back())) +
              said(", energy above the twin's: %.1e of its weight times length",
-                  (energy.last - energyOf(run, twins.back())) / weightOf(run)));
+                  (energy.last - energyOf(run, references.back())) / weightOf(run)));
   }
 }
 
@@ -466,7 +461,7 @@ Outcome runCase(const StressCase& one, std::uint64_t seed, bool trace, StageStor
     return skipped;
   }
   Stage& stage = stages.stage(one);
-  const double started = cpuSeconds();
+  const double started = bench::cpuSeconds();
   Run run(one, seed, stage);
   run.trace = trace;
   playMotion(run);
@@ -475,7 +470,7 @@ Outcome runCase(const StressCase& one, std::uint64_t seed, bool trace, StageStor
   run.outcome.iterations = static_cast<double>(run.iterations) / std::max(1, run.outcome.steps);
   run.outcome.unsolved = static_cast<double>(run.unsolved) / std::max(1, run.outcome.steps);
   run.outcome.verdict = run.failed() ? Verdict::kFailed : Verdict::kPassed;
-  run.outcome.cpu_seconds = cpuSeconds() - started;
+  run.outcome.cpu_seconds = bench::cpuSeconds() - started;
   return run.outcome;
 }
 

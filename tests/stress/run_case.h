@@ -12,8 +12,8 @@ namespace stress {
 inline constexpr double kBack = 0.01;             // of the hair's length: near enough to rest
 inline constexpr double kDeepest = 1e-4;          // m inside a collider that is still outside
 inline constexpr double kEnergyTolerance = 0.01;  // of the energy that the motion left
-inline constexpr double kMemoryGrowth = 1;        // MiB, of a soak
-inline constexpr double kSlowdown = 1.5;          // of a soak's steps
+inline constexpr double kMemoryGrowth = 1;        // MiB, of an endurance run
+inline constexpr double kSlowdown = 1.5;          // of an endurance run's steps
 
 enum class Verdict { kPassed, kFailed, kSkipped };
 
@@ -32,10 +32,10 @@ struct Outcome {
   long unconstrained = 0;    // of those, without a contact
   double energy_rise = 0;    // most above what the motion left, after it stopped, of the energy that it left
   double energy_step = 0;    // largest rise from step to step, of the same; not judged
-  double memory_growth = 0;  // MiB, of a soak after its first tenth
-  double slowdown = 1;       // of a soak: CPU time a step in its last tenth over that in its second
+  double memory_growth = 0;  // MiB, of an endurance run after its first tenth
+  double slowdown = 1;       // of an endurance run: CPU time a step in its last tenth over that in its second
   int recoveries = 0, carried = 0, steps = 0;
-  int combed = 0;         // columns combed out at once, at most
+  int guided = 0;         // columns combed out at once, at most
   double iterations = 0;  // of the linear solver a step, mean
   double unsolved = 0;    // share of the steps whose solve ended at its most iterations
   double cpu_seconds = 0;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "app/data_path.h"
-#include "app/errors.h"
+#include "app/files/data_path.h"
+#include "app/files/errors.h"
 #include "tests/stress/random.h"
 
 namespace stress {
@@ -141,13 +141,13 @@ Stage& StageStore::stage(const StressCase& one) {
   spec.resolution = one.hair.resolution;
   auto stage = std::make_unique<Stage>();
   stage->key = key;
-  stage->actor = app::makeActor(spec, {}, wardrobe_);
+  stage->actor = app::makeActor(spec, {}, asset_cache_);
   if (one.hair.cut != Cut::kStyle) {
     auto haircut = std::make_unique<app::Haircut>();
     haircut->key = key;
     haircut->mesh = sim::buildHairMesh(recut(one.hair.cut, stage->actor.haircut->mesh.shape));
     stage->actor.haircut = haircut.get();
-    wardrobe_.haircuts.push_back(std::move(haircut));
+    asset_cache_.haircuts.push_back(std::move(haircut));
     stage->actor.context = std::make_unique<sim::StepContext>(stage->mesh());
     app::placeActor(stage->actor, true);
   }

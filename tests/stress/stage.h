@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/actor.h"
+#include "app/scene/actor.h"
 #include "tests/stress/stress_case.h"
 
 namespace stress {
@@ -28,7 +28,7 @@ class StageStore {
   Stage& stage(const StressCase& one);
 
  private:
-  app::Wardrobe wardrobe_;
+  app::AssetCache asset_cache_;
   std::vector<std::unique_ptr<Stage>> stages_;
 };
 

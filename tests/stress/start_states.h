@@ -1,7 +1,7 @@
 // States that no motion leads to.
 #pragma once
 
-#include "sim/hair_state.h"
+#include "sim/mesh/hair_state.h"
 #include "tests/stress/random.h"
 #include "tests/stress/stress_case.h"
 

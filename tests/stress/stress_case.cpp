@@ -20,10 +20,10 @@ std::vector<StressCase> declareCases(std::uint64_t seed) {
   addUpsets(cases);
   addDistances(cases);
   addFaults(cases);
-  addRestless(cases);
+  addRedrawnParameters(cases);
   addRandomParameters(seed, cases);
   addMixed(seed, cases);
-  addSoak(cases);
+  addEndurance(cases);
   return cases;
 }
 
@@ -61,7 +61,7 @@ WindowCommand windowCommand(const StressCase& one) {
     also("the start state is the stress run's own");
   if (one.upset != Upset::kNone) also("the disturbance is the stress run's own");
   if (one.pace != Pace::kFixed) also("the pace is the stress run's own");
-  if (one.restless) also("parameters are drawn anew every step");
+  if (one.redraws_parameters) also("parameters are drawn anew every step");
   return window;
 }
 

@@ -12,8 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "sim/hair_styles.h"
 #include "sim/sim_params.h"
+#include "sim/stabilization/safety_nets.h"
+#include "sim/styles/hair_styles.h"
 
 namespace stress {
 
@@ -81,19 +82,20 @@ struct StressCase {
   Pace pace = Pace::kFixed;
   double step = 1.0 / 60;                              // s
   std::vector<std::pair<std::string, double>> params;  // rows of the table that differ from its defaults
-  bool restless = false;                               // parameters drawn anew every step of the motion
-  bool switches = false;                               // of a restless one: contacts on and off as well
+  bool redraws_parameters = false;                     // parameters drawn anew every step of the motion
+  bool switches = false;                               // contacts on and off as well
   bool collide = true;
   double seconds = 1;        // of motion
   double rest = 1;           // s with the body there
   double release = 5;        // s without, from when the twin rests; back within rest + release
   double grace = 0;          // s after each start or appearance in which vertices may still be inside
   bool recovers = false;     // the watchdog is expected to step in
+  sim::SafetyNets nets;      // in use; less than all to measure what one saves
   bool compared = false;     // a peer's setting, shown beside ours and not counted
   bool keeps_energy = true;  // judged by its energy too: not where the numerics are turned to their coarsest
   bool meets = false;        // the body that is added must come upon the hair
   bool in_short = false;     // runs with --short
-  bool soak = false;         // memory and timing must stay flat
+  bool endurance = false;    // memory and timing must stay flat
 
   std::string family() const { return name.substr(0, name.find('/')); }
 };

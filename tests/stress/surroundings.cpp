@@ -65,7 +65,7 @@ void Surroundings::move(double dt) {
 
 void Surroundings::stop() {
   for (sim::Ellipsoid& e : ellipsoids_) setMotion(nullptr, 0, e);
-  for (sim::DistancePart& part : parts_) setMotion(nullptr, 0, part.bounds);
+  for (sim::BodySdf& part : parts_) setMotion(nullptr, 0, part.bounds);
 }
 
 void Surroundings::playClip(double dt) {
@@ -189,7 +189,7 @@ void Surroundings::addIntruder() {
   if (!distances_) return;
   // Parts act in place of all ellipsoids: what is added must be one of them.
   if (intruder_distances_.empty()) sampleIntruder(body);
-  sim::DistancePart part{body, intruder_grid_};
+  sim::BodySdf part{body, intruder_grid_};
   // A ball around the box, as the figure's own parts have.
   part.bounds.radii = sim::Vec3::Constant(intruder_grid_.low.norm());
   parts_.push_back(part);

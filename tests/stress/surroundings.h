@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "sim/colliders.h"
+#include "sim/contact/colliders.h"
 #include "tests/stress/random.h"
 #include "tests/stress/stage.h"
 
@@ -26,7 +26,7 @@ class Surroundings {
   const std::vector<sim::Vec3>& roots() const { return roots_; }
   const std::vector<sim::Ellipsoid>& ellipsoids() const { return ellipsoids_; }
   // None where the ellipsoids act.
-  const std::vector<sim::DistancePart>& parts() const { return parts_; }
+  const std::vector<sim::BodySdf>& parts() const { return parts_; }
   // Scalp frame to world, disturbance included.
   const Eigen::Isometry3d& head() const { return head_; }
   // Of the body that the case adds, among those in use; -1 while it is not there.
@@ -50,7 +50,7 @@ class Surroundings {
   bool carries_ = false, intrudes_ = false;
   std::vector<sim::Vec3> roots_;
   std::vector<sim::Ellipsoid> ellipsoids_, before_;
-  std::vector<sim::DistancePart> parts_, parts_before_;
+  std::vector<sim::BodySdf> parts_, parts_before_;
   std::vector<float> intruder_distances_;  // of the body that is added, about its own centre
   sim::DistanceGrid intruder_grid_;
   Eigen::Isometry3d head_ = Eigen::Isometry3d::Identity();

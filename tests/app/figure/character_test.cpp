@@ -1,5 +1,5 @@
 // Laws of loaded characters: imported models, ARCSim's mannequin, ellipsoids, scalp, distance to the body, bad input.
-#include "app/character.h"
+#include "app/figure/character.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,10 @@
 #include <fstream>
 #include <random>
 
-#include "app/character_build.h"
-#include "app/errors.h"
-#include "app/motion.h"
+#include "app/figure/character_build.h"
+#include "app/files/errors.h"
+#include "app/files/text_file.h"
+#include "app/motion/motion.h"
 
 namespace {
 

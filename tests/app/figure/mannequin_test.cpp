@@ -1,15 +1,16 @@
 // Laws of the grown mannequin: closed and well wound, symmetric on symmetric skeletons, sanely skinned, facing forward,
 // covered by its ellipsoids; and of the parts it is made of.
-#include "app/mannequin.h"
+#include "app/figure/mannequin.h"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <map>
 
-#include "app/character_build.h"
-#include "app/errors.h"
-#include "app/mannequin_mesh.h"
+#include "app/figure/character_build.h"
+#include "app/figure/mannequin_mesh.h"
+#include "app/files/errors.h"
+#include "app/files/text_file.h"
 
 namespace {
 

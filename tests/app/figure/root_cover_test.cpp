@@ -1,5 +1,5 @@
 // The scalp under hair: where it is, how deep the roots lie in it, and what the picture makes of it.
-#include "app/root_cover.h"
+#include "app/figure/root_cover.h"
 
 #include <gtest/gtest.h>
 
@@ -9,12 +9,12 @@
 #include <memory>
 #include <vector>
 
-#include "app/data_path.h"
-#include "app/demo.h"
-#include "app/sim_to_render.h"
+#include "app/files/data_path.h"
+#include "app/scene/demo.h"
+#include "app/scene/sim_to_render.h"
 #include "render/fiber_scattering.h"
 #include "render/renderer.h"
-#include "sim/hair_styles_roots.h"
+#include "sim/styles/style_roots.h"
 #include "tests/gl_fixture.h"
 #include "tests/golden_compare.h"
 
@@ -145,9 +145,9 @@ TEST(RootCover, IsSharedByAllOfOneBodyUnderOneHaircut) {
   EXPECT_EQ(demo.actors[0].scalp, demo.actors[1].scalp);
   EXPECT_NE(demo.actors[0].scalp, demo.actors[2].scalp);
   demo.actors.pop_back();
-  app::tidy(demo.actors, demo.wardrobe);
-  ASSERT_EQ(demo.wardrobe.covers.size(), 1u);
-  EXPECT_EQ(demo.wardrobe.covers[0].get(), demo.actors[0].scalp);
+  app::tidy(demo.actors, demo.asset_cache);
+  ASSERT_EQ(demo.asset_cache.covers.size(), 1u);
+  EXPECT_EQ(demo.asset_cache.covers[0].get(), demo.actors[0].scalp);
 }
 
 // The head from in front and above, close or far.
@@ -232,7 +232,7 @@ TEST_F(ScalpPicture, ThePartingIsDarkerThanTheFaceAndTheFaceStaysAsItIs) {
 TEST_F(ScalpPicture, AFarHeadIsTintedToo) {
   render::FrameReport report;
   const app::Image bare = draw(0, 8, false), tinted = draw(0.8f, 8, false, &report);
-  ASSERT_GT(report.left_out.body_detail.skipped, 0);
+  ASSERT_GT(report.skip_counts.body_detail.skipped, 0);
   EXPECT_LT(brightness(tinted, 13, 54, 1), 0.8 * brightness(bare, 13, 54, 1));
 }
 

@@ -1,5 +1,5 @@
 // The OBJ convention of hair meshes: what is written comes back bit for bit; what is broken is refused with its line.
-#include "app/hair_file.h"
+#include "app/files/hair_file.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "app/errors.h"
+#include "app/files/errors.h"
 #include "tests/analytic_head.h"
 
 namespace {
@@ -230,6 +230,21 @@ TEST(HairFile, ExampleInAssetsIsValid) {
   const sim::HairMeshShape shape = app::readHairMesh(text.str(), file);
   EXPECT_GT(shape.vertexCount(), 100);
   EXPECT_EQ(app::writeHairMesh(shape), text.str());
+}
+
+TEST(HairFile, FacesThatAreAllWoundTheOtherWayAreNamedAndReversed) {
+  std::string text = kTwoBundles;
+  for (const auto& [outward, inward] : {std::pair{"f 1 2 3 4", "f 4 3 2 1"},
+                                        {"f 2 5 3", "f 3 5 2"},
+                                        {"f 6 7 8 9", "f 9 8 7 6"},
+                                        {"f 7 10 8", "f 8 10 7"},
+                                        {"f 11 12 13 14", "f 14 13 12 11"}})
+    text = replaced(text, outward, inward);
+  EXPECT_EQ(messageOf(text), "bob.obj: all faces are wound the other way; reverse the faces, or give --reverse-faces");
+  expectSame(app::readHairMesh(text, "bob.obj", true), app::readHairMesh(kTwoBundles, "bob.obj"));
+  EXPECT_THROW(app::readHairMesh(kTwoBundles, "bob.obj", true), app::InputError);
+  // One face wound the other way is named by its place.
+  EXPECT_NE(messageOf(replaced(text, "f 4 3 2 1", "f 1 2 3 4")).find("line "), std::string::npos);
 }
 
 }  // namespace

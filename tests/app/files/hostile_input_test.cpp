@@ -19,6 +19,9 @@ struct Reader {
   const char* name;
   Target* target;
 };
+void PrintTo(const Reader& reader, std::ostream* out) {
+  *out << reader.name;
+}
 constexpr Reader kReaders[] = {{"hair_mesh", fuzz_hair_mesh}, {"bvh", fuzz_bvh},     {"mot", fuzz_mot},
                                {"part", fuzz_part},           {"scene", fuzz_scene}, {"preset", fuzz_preset},
                                {"recording", fuzz_recording}};

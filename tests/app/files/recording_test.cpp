@@ -1,10 +1,10 @@
 // A recorded run repeats itself to the bit, whatever was asked for in it; a hostile recording is refused with its line.
-#include "app/recording.h"
+#include "app/files/recording.h"
 
 #include <gtest/gtest.h>
 
-#include "app/data_path.h"
-#include "app/errors.h"
+#include "app/files/data_path.h"
+#include "app/files/errors.h"
 #include "tests/run_program.h"
 
 namespace {
@@ -23,7 +23,7 @@ app::Scene smallScene() {
   return scene;
 }
 
-// What a restless person does in 60 frames of uneven length.
+// What a person in a hurry does in 60 frames of uneven length.
 std::vector<app::Request> asksOf(int frame) {
   switch (frame) {
     case 5:
@@ -80,8 +80,8 @@ TEST(Recording, AReplayEndsInTheRecordedStateToTheBit) {
   std::string replayed;
   const app::Tape::End end = replay(file, replayed);
   EXPECT_EQ(replayed, recorded);
-  EXPECT_FALSE(end.differs) << end.said;
-  EXPECT_NE(end.said.find(recorded), std::string::npos) << end.said;
+  EXPECT_FALSE(end.differs) << end.message;
+  EXPECT_NE(end.message.find(recorded), std::string::npos) << end.message;
 }
 
 // Two figures of which the camera's moves make one coarse, slow or unseen for a while, and the picture's height too.
@@ -109,7 +109,7 @@ TEST(Recording, HoldsFromWhereItWasSeen) {
   EXPECT_TRUE(coarse && unseen && span > 1) << coarse << unseen << span;
   std::string replayed;
   const app::Tape::End end = replay(file, replayed);
-  EXPECT_EQ(replayed, recorded) << end.said;
+  EXPECT_EQ(replayed, recorded) << end.message;
 }
 
 TEST(Recording, HoldsWhichSkipsWereOff) {
@@ -132,7 +132,7 @@ TEST(Recording, ABudgetRepeatsItself) {
   EXPECT_GT(demo.governor.changes, 0) << "the budget did nothing";
   std::string replayed;
   const app::Tape::End end = replay(file, replayed);
-  EXPECT_EQ(replayed, app::stateHash(demo)) << end.said;
+  EXPECT_EQ(replayed, app::stateHash(demo)) << end.message;
 }
 
 // A small picture makes far figures coarser; a replay without pictures is as coarse.

@@ -1,13 +1,14 @@
 // Scene and preset files: what round-trips, and what each fault is answered with.
-#include "app/scene_file.h"
+#include "app/files/scene_file.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "app/data_path.h"
-#include "app/errors.h"
-#include "app/presets.h"
+#include "app/files/data_path.h"
+#include "app/files/errors.h"
+#include "app/files/presets.h"
+#include "app/files/text_file.h"
 
 namespace {
 
@@ -140,6 +141,63 @@ TEST(Presets, WritingAndReadingKeepsEveryRow) {
   for (const app::HairField& field : app::hairFields()) EXPECT_EQ(field.get(look_read), field.get(look)) << field.name;
   for (const app::SceneField& field : app::sceneFields())
     EXPECT_EQ(field.get(scene_read), field.get(scene)) << field.name;
+}
+
+// Everything that a preset may set.
+struct Tables {
+  sim::SimParams params;
+  app::SceneLook scene;
+  CharacterLook look;
+
+  void load(const std::string& text, const std::string& file) {
+    std::array<CharacterLook*, 1> looks{&look};
+    app::applyPreset(text, file, {&params, &scene, looks});
+  }
+  void choose(const std::string& name) {
+    const std::string file = app::presetFile(name, "");
+    load(app::readText(file), file);
+  }
+  std::string text() const { return app::writePreset("", params, look, scene); }
+};
+
+TEST(Presets, WhichOneWasChosenBeforeDoesNotMatter) {
+  const std::vector<std::vector<std::string>> families{{"soft", "stiff", "bouncy", "wet", "windy"},
+                                                       {"auburn", "black", "blond"}};
+  for (const auto& family : families) {
+    for (const std::string& before : family) {
+      for (const std::string& after : family) {
+        Tables alone, both;
+        alone.choose(after);
+        both.choose(before);
+        both.choose(after);
+        EXPECT_EQ(both.text(), alone.text()) << before << ", then " << after;
+      }
+    }
+  }
+}
+
+TEST(Presets, GroupsThatAreNotNamedStay) {
+  Tables tables;
+  tables.params.gravity = 3;
+  tables.params.bend = 3;
+  tables.params.shear = 77;
+  tables.look.hair.eumelanin = 4;
+  tables.load(R"({"sim": {"bend": 2}})", "p.json");
+  EXPECT_EQ(tables.params.bend, 2);
+  EXPECT_EQ(tables.params.shear, sim::SimParams{}.shear);
+  EXPECT_EQ(tables.params.gravity, 3);
+  EXPECT_EQ(tables.look.hair.eumelanin, 4);
+}
+
+TEST(Presets, WhatWasSavedComesBackOverAnything) {
+  const std::string defaults = Tables{}.text();
+  Tables tables;
+  for (const sim::ParamField& field : sim::paramFields()) field.set(tables.params, field.maximum);
+  for (const app::HairField& field : app::hairFields())
+    field.set(tables.look, {field.maximum, field.maximum, field.maximum});
+  EXPECT_NE(tables.text(), defaults);
+  tables.load(defaults, "saved.json");
+  EXPECT_EQ(tables.text(), defaults);
 }
 
 }  // namespace

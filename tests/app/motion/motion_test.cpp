@@ -1,5 +1,5 @@
 // The readers of motion: BVH as it is found in the wild, and ARCSim's .mot.
-#include "app/motion.h"
+#include "app/motion/motion.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,8 @@
 #include <random>
 #include <sstream>
 
-#include "app/errors.h"
+#include "app/files/errors.h"
+#include "app/files/text_file.h"
 
 namespace {
 
@@ -294,55 +295,57 @@ TEST(Bvh, ASingleFrameIsRefused) {
   EXPECT_THROW(app::readBvh(figure(kZxy, {kStill}), "clip"), app::InputError);
 }
 
+// What is put in place of what, and the line that the message must name.
+struct BvhFault {
+  std::string from, to;
+  int line;
+};
+const std::vector<BvhFault> kBvhFaults = {
+    {"HIERARCHY", "MESH", 1},
+    {"ROOT Hips", "Hips", 2},
+    {"OFFSET 0 60.000000 0", "OFFSET 0 nan 0", 8},
+    {"OFFSET 0 60.000000 0", "OFFSET 0 -inf 0", 8},
+    {"OFFSET 0 60.000000 0", "OFFSET 0 1e30 0", 8},
+    {"OFFSET 0 60.000000 0", "OFFSET 0 1e999 0", 8},
+    {"OFFSET 0 60.000000 0", "OFFSET 0 60", 9},
+    {"OFFSET 0 60.000000 0", "OFFSET 0 6,0 0", 8},
+    {"OFFSET 0 60.000000 0", "OFFSET 0 0x10 0", 8},
+    {"CHANNELS 6", "CHANNELS 7", 5},
+    {"CHANNELS 6", "CHANNELS -1", 5},
+    {"CHANNELS 6", "CHANNELS 5", 5},
+    {"CHANNELS 6", "CHANNELS 99999999999999999999", 5},
+    {"Xposition", "Wposition", 5},
+    {"JOINT Head", "BONE Head", 6},
+    {"   OFFSET 0 15.000000 0", "   SIZE 15", 12},
+    {"}\nMOTION", "}\n}\nMOTION", 25},
+    {"}\nMOTION", "\nMOTION", 25},
+    {"}\nMOTION", "}\nROOT Second\n{\n}\nMOTION", 25},
+    {"Frames: 2", "Frames: 0", 26},
+    {"Frames: 2", "Frames: -3", 26},
+    {"Frames: 2", "Frames: 2.5", 26},
+    {"Frames: 2", "Frames: 3", 30},
+    {"Frames: 2", "Frames: 9999999", 26},
+    {"Frames: 2", "Frames: 999999999999999999999999", 26},
+    {"Frames: 2", "2", 26},
+    {"Frame Time: 0.02", "Frame Time: 0", 27},
+    {"Frame Time: 0.02", "Frame Time: -0.02", 27},
+    {"Frame Time: 0.02", "Frame Time: 1e-30", 27},
+    {"Frame Time: 0.02", "Frame Time: nan", 27},
+    {"Frame Time: 0.02", "Frame Time: soon", 27},
+    {"Frame Time: 0.02", "0.02", 27},
+    {kStill + "\n" + kStill, kStill + "\n0 95 0", 29},
+    {kStill + "\n" + kStill, kStill + " 1\n" + kStill, 28},
+    {kStill + "\n" + kStill, kStill + "\n0 95 0 0 0 0 0 0 x 0 0 0", 29},
+    {kStill + "\n" + kStill, kStill + "\n0 95 0 0 0 0 0 0 1e30 0 0 0", 29},
+    {kStill + "\n" + kStill, kStill + "\n0 1e9 0 0 0 0 0 0 0 0 0 0", 29},
+    {kStill + "\n" + kStill, kStill + "\n" + kStill + "\n" + kStill + "\n" + kStill, 31},
+    {kStill + "\n" + kStill, kStill + "\n" + kStill + "\nthe end", 30},
+};
+
 TEST(Bvh, EveryFaultNamesItsLine) {
   const std::string good = figure(kZxy, {kStill, kStill});
-  struct Case {
-    std::string from, to;
-    int line;
-  };
-  const std::vector<Case> cases = {
-      {"HIERARCHY", "MESH", 1},
-      {"ROOT Hips", "Hips", 2},
-      {"OFFSET 0 60.000000 0", "OFFSET 0 nan 0", 8},
-      {"OFFSET 0 60.000000 0", "OFFSET 0 -inf 0", 8},
-      {"OFFSET 0 60.000000 0", "OFFSET 0 1e30 0", 8},
-      {"OFFSET 0 60.000000 0", "OFFSET 0 1e999 0", 8},
-      {"OFFSET 0 60.000000 0", "OFFSET 0 60", 9},
-      {"OFFSET 0 60.000000 0", "OFFSET 0 6,0 0", 8},
-      {"OFFSET 0 60.000000 0", "OFFSET 0 0x10 0", 8},
-      {"CHANNELS 6", "CHANNELS 7", 5},
-      {"CHANNELS 6", "CHANNELS -1", 5},
-      {"CHANNELS 6", "CHANNELS 5", 5},
-      {"CHANNELS 6", "CHANNELS 99999999999999999999", 5},
-      {"Xposition", "Wposition", 5},
-      {"JOINT Head", "BONE Head", 6},
-      {"   OFFSET 0 15.000000 0", "   SIZE 15", 12},
-      {"}\nMOTION", "}\n}\nMOTION", 25},
-      {"}\nMOTION", "\nMOTION", 25},
-      {"}\nMOTION", "}\nROOT Second\n{\n}\nMOTION", 25},
-      {"Frames: 2", "Frames: 0", 26},
-      {"Frames: 2", "Frames: -3", 26},
-      {"Frames: 2", "Frames: 2.5", 26},
-      {"Frames: 2", "Frames: 3", 30},
-      {"Frames: 2", "Frames: 9999999", 26},
-      {"Frames: 2", "Frames: 999999999999999999999999", 26},
-      {"Frames: 2", "2", 26},
-      {"Frame Time: 0.02", "Frame Time: 0", 27},
-      {"Frame Time: 0.02", "Frame Time: -0.02", 27},
-      {"Frame Time: 0.02", "Frame Time: 1e-30", 27},
-      {"Frame Time: 0.02", "Frame Time: nan", 27},
-      {"Frame Time: 0.02", "Frame Time: soon", 27},
-      {"Frame Time: 0.02", "0.02", 27},
-      {kStill + "\n" + kStill, kStill + "\n0 95 0", 29},
-      {kStill + "\n" + kStill, kStill + " 1\n" + kStill, 28},
-      {kStill + "\n" + kStill, kStill + "\n0 95 0 0 0 0 0 0 x 0 0 0", 29},
-      {kStill + "\n" + kStill, kStill + "\n0 95 0 0 0 0 0 0 1e30 0 0 0", 29},
-      {kStill + "\n" + kStill, kStill + "\n0 1e9 0 0 0 0 0 0 0 0 0 0", 29},
-      {kStill + "\n" + kStill, kStill + "\n" + kStill + "\n" + kStill + "\n" + kStill, 31},
-      {kStill + "\n" + kStill, kStill + "\n" + kStill + "\nthe end", 30},
-  };
   ASSERT_EQ(faultOf(good), "");
-  for (const Case& c : cases) {
+  for (const BvhFault& c : kBvhFaults) {
     const std::string text = replaced(good, c.from, c.to);
     ASSERT_NE(text, good) << c.from;
     const std::string wanted = "clip.bvh: line " + std::to_string(c.line) + ": ", said = faultOf(text);

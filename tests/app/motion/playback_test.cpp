@@ -5,7 +5,8 @@
 #include <filesystem>
 #include <limits>
 
-#include "app/motion.h"
+#include "app/files/text_file.h"
+#include "app/motion/motion.h"
 
 namespace {
 

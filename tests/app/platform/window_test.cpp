@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <string>
 
-#include "app/image_io.h"
+#include "app/files/image_io.h"
 #include "tests/run_program.h"
 
 namespace {

@@ -1,12 +1,12 @@
 // Scenes and styles loaded beside the frames: what is shown goes on, what cannot be loaded changes nothing.
-#include "app/background_load.h"
+#include "app/scene/background_load.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "app/data_path.h"
-#include "app/demo.h"
+#include "app/files/data_path.h"
+#include "app/scene/demo.h"
 #include "tests/run_program.h"
 
 namespace {
@@ -43,8 +43,8 @@ TEST(BackgroundLoad, TheOldHairGoesOnUntilTheNewStyleIsThere) {
   EXPECT_NE(demo.actors[0].id, old);
   EXPECT_EQ(demo.actors[0].spec.style, sim::Style::kShoulder);
   EXPECT_NEAR(demo.actors[0].playback.time, time + 1.0 / 60, 1e-9) << "in step with the clip";
-  EXPECT_EQ(demo.wardrobe.haircuts.size(), 1u);
-  EXPECT_EQ(demo.wardrobe.bodies.size(), 1u);
+  EXPECT_EQ(demo.asset_cache.haircuts.size(), 1u);
+  EXPECT_EQ(demo.asset_cache.bodies.size(), 1u);
   int recoveries = 0;
   for (int f = 0; f < 60; ++f) {
     frames(1, demo);

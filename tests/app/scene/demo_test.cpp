@@ -1,5 +1,5 @@
 // The frame's story: the clock, the requests, and runs that repeat themselves to the bit.
-#include "app/demo.h"
+#include "app/scene/demo.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "app/data_path.h"
+#include "app/files/data_path.h"
 #include "tests/run_program.h"
 
 namespace {
@@ -183,7 +183,7 @@ TEST(Demo, ChangingTheStyleKeepsTheRest) {
   EXPECT_NE(demo.actors[0].haircut->mesh.vertexCount(), vertices);
   EXPECT_EQ(demo.actors[0].playback.time, time);
   EXPECT_EQ(demo.scene.sim.friction, 0.77);
-  EXPECT_EQ(demo.wardrobe.haircuts.size(), 1u) << "the old haircut should be gone";
+  EXPECT_EQ(demo.asset_cache.haircuts.size(), 1u) << "the old haircut should be gone";
   demo.requests = {{Ask::kPause, "", "", 0}};
   for (int frame = 0; frame < 10; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
   expectFinite(demo);

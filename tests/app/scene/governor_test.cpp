@@ -1,6 +1,6 @@
 // The budget governor against cost models that it does not know: budgets are held, errors fall as budgets grow, nothing
 // swings; and with real hair: no pop, no recovery, the same frames on every run.
-#include "app/governor.h"
+#include "app/scene/governor.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <cmath>
 #include <cstring>
 
-#include "app/data_path.h"
-#include "app/demo.h"
-#include "app/step_error.h"
+#include "app/files/data_path.h"
+#include "app/scene/demo.h"
+#include "app/scene/step_error.h"
 #include "tests/test_meshes.h"
 
 namespace {
@@ -291,7 +291,8 @@ TEST(Governor, CountedWorkStandsForTimeOnLargeMeshesAsOnSmall) {
   EXPECT_LT(std::abs(std::log(high / low)), std::log(2.5));
 }
 
-// Milliseconds of a walk and the iterations of a median step, as docs/performance.md had them when the model was fitted.
+// Milliseconds of a walk and the iterations of a median step, as docs/performance.md had them when the model was
+// fitted.
 TEST(Governor, CountedWorkOfEverySizeIsWithinHalfOfWhatWasMeasured) {
   struct Measured {
     int vertices, iterations;

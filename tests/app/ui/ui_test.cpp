@@ -1,14 +1,16 @@
 // The panels, driven as by a mouse but without a window: Dear ImGui is fed events and its requests are watched.
-#include "app/ui.h"
+#include "app/ui/ui.h"
 
 #include <gtest/gtest.h>
 #include <imgui/imgui.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <string>
 
-#include "app/data_path.h"
-#include "app/demo.h"
+#include "app/files/data_path.h"
+#include "app/scene/demo.h"
 
 namespace {
 
@@ -183,7 +185,7 @@ TEST_F(Panels, PanelsLeaveTheMiddleToTheFigure) {
 }
 
 TEST_F(Panels, HiddenPanelsDrawNothing) {
-  const app::SkipTally& hidden = demo_.stats.always[app::kHiddenPanels];
+  const app::SkipCount& hidden = demo_.stats.always[app::kHiddenPanels];
   demo_.stats = {};
   frame();
   EXPECT_EQ(hidden.skipped, 0);
@@ -218,9 +220,74 @@ TEST_F(Panels, EveryKeyOfTheListDoesSomething) {
   EXPECT_TRUE(ui_.help);
   app::pressKey(app::kKeyEscape, demo_, ui_);
   EXPECT_FALSE(ui_.help || ui_.quit);
+  EXPECT_FALSE(app::pressKey('Z', demo_, ui_));
+}
+
+TEST_F(Panels, EscapeAsksBeforeItLeaves) {
+  app::pressKey(app::kKeyEscape, demo_, ui_);
+  EXPECT_FALSE(ui_.quit);
+  EXPECT_NE(demo_.message.find("Esc again"), std::string::npos);
+  app::pressKey('F', demo_, ui_);
+  app::pressKey(app::kKeyEscape, demo_, ui_);
+  EXPECT_FALSE(ui_.quit) << "another key between the two";
   app::pressKey(app::kKeyEscape, demo_, ui_);
   EXPECT_TRUE(ui_.quit);
-  EXPECT_FALSE(app::pressKey('Z', demo_, ui_));
+}
+
+TEST_F(Panels, APresetThatIsThereAlreadyIsReplacedOnASecondPress) {
+  openTab(0);
+  const std::string name = "ui_test_preset";
+  std::copy(name.begin(), name.end(), ui_.preset_name.begin());
+  EXPECT_TRUE(asked(click("save_preset"), Ask::kSavePreset));
+  std::ofstream(name + ".json") << "{}";
+  EXPECT_FALSE(asked(click("save_preset"), Ask::kSavePreset));
+  EXPECT_TRUE(asked(click("save_preset"), Ask::kSavePreset));
+  std::filesystem::remove(name + ".json");
+}
+
+TEST_F(Panels, ARowThatAnotherOneMakesIdleDoesNotMove) {
+  demo_.actors[0].spec.look.hair.curl_radius = 0;
+  openTab(2);
+  ImGui::GetIO().DisplaySize = {1280, 3000};
+  frame();
+  frame();
+  EXPECT_FALSE(asked(click("curl_turns", 0.5f, 40), Ask::kSetParam));
+  demo_.actors[0].spec.look.hair.curl_radius = 0.01f;
+  frame();
+  EXPECT_TRUE(asked(click("curl_turns", 0.5f, 40), Ask::kSetParam, "curl_turns"));
+}
+
+TEST_F(Panels, SearchFindsRowsOfAllTables) {
+  openTab(0);
+  const std::string_view wanted = "rough";
+  std::copy(wanted.begin(), wanted.end(), ui_.search.begin());
+  frame();
+  frame();
+  EXPECT_NE(find("beta_m"), nullptr);
+  EXPECT_NE(find("body_roughness"), nullptr);
+  EXPECT_EQ(find("density"), nullptr);
+}
+
+bool overlap(const UiItem& a, const UiItem& b) {
+  return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
+}
+
+TEST_F(Panels, AFaultCanBeReadAndClosedInWindowsOfAnySize) {
+  for (const ImVec2 size : {ImVec2(1280, 720), ImVec2(960, 600), ImVec2(400, 300)}) {
+    ImGui::GetIO().DisplaySize = size;
+    demo_.message = "/a/rather/long/path/to/a/file/that/cannot/be/used.bvh: line 5: it has 7 channels; give it 3 or 6";
+    demo_.message_is_fault = true;
+    for (int k = 0; k < 4; ++k) frame();
+    const UiItem* close = find("close_message");
+    ASSERT_NE(close, nullptr);
+    EXPECT_TRUE(close->x >= 0 && close->y >= 0 && close->x + close->width <= size.x &&
+                close->y + close->height <= size.y)
+        << size.x;
+    click("close_message");
+    EXPECT_TRUE(demo_.message.empty()) << size.x << "x" << size.y;
+    const UiItem *bar = find("stage_bar"), *sidebar = find("tab Debug");
+    if (bar && sidebar) EXPECT_FALSE(overlap(*bar, *sidebar)) << size.x;
+  }
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // The ellipsoid's closest point against brute force and against points whose answer is known by construction.
-#include "sim/colliders.h"
+#include "sim/contact/colliders.h"
 
 #include <gtest/gtest.h>
 

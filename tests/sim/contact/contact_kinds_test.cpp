@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "sim/contact.h"
+#include "sim/contact/contact.h"
 #include "tests/test_meshes.h"
 
 namespace {
@@ -19,16 +19,16 @@ struct Kind {
   bool inner;
 };
 
-std::string kindName(const testing::TestParamInfo<Kind>& info) {
-  return std::string(info.param.collider == sim::ColliderKind::kSdf ? "SignedDistances" : "Ellipsoids") +
-         (info.param.inner ? "OfAllVertices" : "OfOuterVertices");
+void PrintTo(const Kind& kind, std::ostream* out) {
+  *out << (kind.collider == sim::ColliderKind::kSdf ? "SignedDistances" : "Ellipsoids")
+       << (kind.inner ? "OfAllVertices" : "OfOuterVertices");
 }
 
 // A body of either kind, of the same shape: an ellipsoid, or its signed distances about its centre.
 struct Body {
   Ellipsoid shape;
   std::vector<float> distances;
-  std::vector<sim::DistancePart> parts;
+  std::vector<sim::BodySdf> parts;
 
   Body(const Vec3& center, const Vec3& radii, sim::ColliderKind kind) {
     shape.center = center;
@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(Contact, ContactKinds,
                          testing::Values(Kind{sim::ColliderKind::kEllipsoids, false},
                                          Kind{sim::ColliderKind::kEllipsoids, true},
                                          Kind{sim::ColliderKind::kSdf, false}, Kind{sim::ColliderKind::kSdf, true}),
-                         kindName);
+                         testing::PrintToStringParamName());
 
 TEST_P(ContactKinds, NothingThatIsHeldOutsideIsInsideAfterAStep) {
   constexpr double kAllowed = 1e-4;  // m
@@ -143,8 +143,8 @@ TEST_P(ContactKinds, NothingThatIsHeldOutsideIsInsideAfterAStep) {
       body.move(n / play.turns % 2 == 0 ? play.velocity : Vec3(-play.velocity), play.spin);
       const sim::StepReport report = step(&body, hair);
       // What stood inside before the step is brought out gently.
-      const double standing = std::max(0.0, report.standing_overlap - hair.params.contact_offset);
-      worst = std::max(worst, deepest(body, GetParam().inner, hair) - standing);
+      const double initial_overlap = std::max(0.0, report.initial_overlap_depth - hair.params.contact_offset);
+      worst = std::max(worst, deepest(body, GetParam().inner, hair) - initial_overlap);
       inner_depth = std::max(inner_depth, deepest(body, true, hair));
       found = std::max(found, report.max_penetration);
       recoveries += report.recoveries;

@@ -1,5 +1,5 @@
 // Deformation minimization against a dense least-squares solve over the edges.
-#include "sim/deformation.h"
+#include "sim/contact/deformation.h"
 
 #include <gtest/gtest.h>
 
@@ -157,11 +157,11 @@ TEST(DeformationMinimization, KeptAnswersGiveTheMinimumWhateverWasHeldBefore) {
       }
     }
     most_held = std::max(most_held, held);
-    if (held <= sim::DeformationMinimizer::kMostHeld) {
+    if (held <= sim::DeformationMinimizer::kMaxHeld) {
       EXPECT_EQ(minimizer.minimize(c.held, 1e-13, u), 1) << "nothing is computed twice";
     }
   }
-  EXPECT_GT(most_held, sim::DeformationMinimizer::kMostHeld);
+  EXPECT_GT(most_held, sim::DeformationMinimizer::kMaxHeld);
   std::vector<Vec3> still(first.moved.size(), Vec3::Zero());
   EXPECT_EQ(minimizer.minimize(first.held, 1e-3, still), 0) << "nothing has moved";
 }

@@ -1,7 +1,7 @@
 // Coulomb friction at contacts: it holds and lets go where the law says, and only ever takes energy.
 #include <gtest/gtest.h>
 
-#include "sim/contact.h"
+#include "sim/contact/contact.h"
 #include "tests/test_meshes.h"
 
 namespace {
@@ -47,7 +47,7 @@ double slideSpeed(double angle, double friction, int steps) {
 Contact sliding(double pressure) {
   Contact contact;
   contact.normal = Vec3::UnitY();
-  contact.grip = -Vec3::UnitX();
+  contact.friction_direction = -Vec3::UnitX();
   contact.pressure = pressure;
   return contact;
 }
@@ -78,7 +78,7 @@ TEST(Friction, ThatTurnsAVertexBackHoldsItInstead) {
 TEST(Friction, HoldsWithinItsConeAndLetsGoBeyond) {
   const sim::FrictionLaw law{0.3, 0.01, 1e-4};
   Contact held = sliding(1.5);
-  held.grip.setZero();
+  held.friction_direction.setZero();
   held.sticks = true;
   EXPECT_FALSE(sim::updateSticking(law, Vec3(0.59, 2, 0), Vec3::Zero(), held));
   EXPECT_TRUE(held.sticks);
@@ -86,7 +86,7 @@ TEST(Friction, HoldsWithinItsConeAndLetsGoBeyond) {
   held.pressure = 1.5;
   EXPECT_TRUE(sim::updateSticking(law, Vec3(0.61, 2, 0), Vec3::Zero(), held));
   EXPECT_FALSE(held.sticks);
-  EXPECT_NEAR((held.grip - Vec3::UnitX()).norm(), 0, 1e-12);
+  EXPECT_NEAR((held.friction_direction - Vec3::UnitX()).norm(), 0, 1e-12);
   EXPECT_EQ(held.pressure, 1.5) << "sticking presses harder than sliding will";
 }
 

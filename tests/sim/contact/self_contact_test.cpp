@@ -1,9 +1,9 @@
 // Self-collision: bundles that strike each other stay apart, momentum is kept, nothing near costs nothing.
-#include "sim/forces/force_model.h"
-#include "sim/self_contact.h"
+#include "sim/contact/self_contact.h"
 
 #include <gtest/gtest.h>
 
+#include "sim/forces/force_model.h"
 #include "tests/test_meshes.h"
 
 namespace {

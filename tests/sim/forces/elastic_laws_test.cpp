@@ -311,11 +311,11 @@ TEST(VolumeForce, AFlattenedOrInvertedTetrahedronFlowsBackToItsVolume) {
 }
 
 TEST(SagFree, TheStyledPoseCarriesItsWeight) {
-  test::PatchOptions hanging, standing;
+  test::PatchOptions hanging, initial_overlap;
   hanging.mixed = hanging.uneven = true;
-  standing.direction = Vec3(0, 1, 0);
-  standing.length = 0.1;
-  for (const test::PatchOptions& o : {hanging, standing}) {
+  initial_overlap.direction = Vec3(0, 1, 0);
+  initial_overlap.length = 0.1;
+  for (const test::PatchOptions& o : {hanging, initial_overlap}) {
     const sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(o));
     const sim::SimParams params = test::tautHair();
     const ForceModel<double> model = sim::makeForceModel(mesh, sim::systemPattern(mesh), params);

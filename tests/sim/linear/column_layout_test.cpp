@@ -35,8 +35,31 @@ std::vector<Vec3> stateOf(const sim::HairMesh& mesh, int kind, test::Random& ran
   return x;
 }
 
+// Mass, diagonal blocks and product: of the packed matrix as of the plain one.
 template <class T>
-void expectSame(const sim::HairMesh& mesh, double bound) {
+void expectSameMatrix(const sim::HairMesh& mesh, const sim::ColumnLayout& layout, double bound, test::Random& random,
+                      sim::ColumnMatrix<T>& columns, sim::BlockMatrix<T>& matrix) {
+  const std::size_t n = mesh.shape.positions.size();
+  std::vector<V3<T>> w, product(n), column_product(n);
+  for (std::size_t i = 0; i < n; ++i) w.push_back(test::plain<T>(random.vector(1)));
+  const double norm = test::dense(matrix).norm();
+  std::vector<T> mass;
+  for (double volume : mesh.vertex_volume) mass.push_back(static_cast<T>(60 * volume));
+  columns.addMass(T(2), mass);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (int k = 0; k < 9; k += 4) matrix.diagonal[i].m[k] += T(2) * mass[i];
+    const Eigen::Matrix3d block = test::eigen(columns.diagonalBlock(static_cast<int>(i)));
+    EXPECT_LE((block - test::eigen(matrix.diagonal[i])).norm(), bound * norm);
+  }
+  sim::ColumnProduct<T> scratch(layout);
+  sim::multiply<T>(columns, scratch, w, column_product);
+  sim::multiply<T>(matrix, w, product);
+  const Eigen::VectorXd y = test::stacked<T>(product), cy = test::stacked<T>(column_product);
+  EXPECT_LE((cy - y).norm(), bound * norm * test::stacked<T>(w).norm());
+}
+
+template <class T>
+void expectSameEvaluation(const sim::HairMesh& mesh, double bound) {
   const sim::BlockPattern pattern = sim::systemPattern(mesh);
   const sim::ColumnLayout layout(mesh);
   const sim::ColumnPattern column_pattern(mesh, layout);
@@ -52,9 +75,8 @@ void expectSame(const sim::HairMesh& mesh, double bound) {
     const sim::ForceModel<T> plain_model = sim::convertModel<T>(source);
     column_model.setElements(mesh, layout, source);
     const auto x = test::plain<T>(stateOf(mesh, kind, random));
-    std::vector<V3<T>> v, w, force(n, V3<T>{0, 0, 0}), column_force(n), product(n), column_product(n);
+    std::vector<V3<T>> v, force(n, V3<T>{0, 0, 0}), column_force(n);
     for (std::size_t i = 0; i < n; ++i) v.push_back(test::plain<T>(random.vector(1)));
-    for (std::size_t i = 0; i < n; ++i) w.push_back(test::plain<T>(random.vector(1)));
 
     sim::BlockMatrix<T> matrix(&pattern), column_blocks(&pattern);
     matrix.setZero();
@@ -82,30 +104,53 @@ void expectSame(const sim::HairMesh& mesh, double bound) {
     EXPECT_LE((cf - f).norm(), bound * f.norm()) << "state " << kind;
     const Eigen::MatrixXd a = test::dense(matrix), ca = test::dense(column_blocks);
     EXPECT_LE((ca - a).norm(), bound * a.norm()) << "state " << kind;
-
-    // Mass, diagonal blocks and product.
-    std::vector<T> mass;
-    for (double volume : mesh.vertex_volume) mass.push_back(static_cast<T>(60 * volume));
-    columns.addMass(T(2), mass);
-    for (std::size_t i = 0; i < n; ++i) {
-      for (int k = 0; k < 9; k += 4) matrix.diagonal[i].m[k] += T(2) * mass[i];
-      const Eigen::Matrix3d block = test::eigen(columns.diagonalBlock(static_cast<int>(i)));
-      EXPECT_LE((block - test::eigen(matrix.diagonal[i])).norm(), bound * a.norm());
-    }
-    sim::ColumnProduct<T> scratch(layout);
-    sim::multiply<T>(columns, scratch, w, column_product);
-    sim::multiply<T>(matrix, w, product);
-    const Eigen::VectorXd y = test::stacked<T>(product), cy = test::stacked<T>(column_product);
-    EXPECT_LE((cy - y).norm(), bound * a.norm() * test::stacked<T>(w).norm()) << "state " << kind;
+    expectSameMatrix<T>(mesh, layout, bound, random, columns, matrix);
   }
 }
 
 TEST(ColumnLayout, EvaluatesAndMultipliesAsThePlainModelInDouble) {
-  for (const sim::HairMesh& mesh : meshes()) expectSame<double>(mesh, 1e-12);
+  for (const sim::HairMesh& mesh : meshes()) expectSameEvaluation<double>(mesh, 1e-12);
 }
 
 TEST(ColumnLayout, EvaluatesAndMultipliesAsThePlainModelInFloat) {
-  for (const sim::HairMesh& mesh : meshes()) expectSame<float>(mesh, 2e-4);
+  for (const sim::HairMesh& mesh : meshes()) expectSameEvaluation<float>(mesh, 2e-4);
+}
+
+// As every kind runs that has no kernel.
+TEST(ColumnLayout, PlainElementsOfAnyKindAddUpInColumnsAsByVertex) {
+  test::Random random(7);
+  for (const sim::HairMesh& mesh : meshes()) {
+    const sim::BlockPattern pattern = sim::systemPattern(mesh);
+    const sim::ColumnLayout layout(mesh);
+    const sim::ColumnPattern column_pattern(mesh, layout);
+    const sim::ForceModel<double> model =
+        sim::makeElements({mesh, test::tautHair(), test::pinnedWhereTheyAre(mesh)}, pattern);
+    const std::size_t n = mesh.shape.positions.size();
+    const auto x = test::plain<double>(stateOf(mesh, 1, random)), v = test::plain<double>(stateOf(mesh, 2, random));
+    sim::ColumnField<double> packed_x(layout), packed_v(layout), packed_force(layout);
+    packed_x.pack(layout, x);
+    packed_v.pack(layout, v);
+    model.forEach([&]<class Kind>(const sim::Elements<Kind, double>& elements) {
+      std::vector<V3<double>> force(n, V3<double>{0, 0, 0}), column_force(n);
+      sim::BlockMatrix<double> matrix(&pattern), column_blocks(&pattern);
+      matrix.setZero();
+      const sim::Evaluation<double> out{force, &matrix, 0.7, 0.3, v, 0.05};
+      double energy = 0, column_energy = 0;
+      sim::evaluateElements(elements, sim::BlockSums<double>{x, out}, energy);
+
+      sim::ColumnMatrix<double> columns(layout, column_pattern);
+      columns.setZero();
+      packed_force.setZero();
+      const sim::ColumnEvaluation<double> column_out{&packed_force, &columns, 0.7, 0.3, &packed_v, 0.05};
+      sim::evaluateElements(elements, sim::ColumnSums<double>{layout, packed_x, column_out}, column_energy);
+      packed_force.unpack(layout, column_force);
+      columns.toBlocks(mesh, column_blocks);
+      EXPECT_EQ(column_energy, energy) << Kind::kName;
+      EXPECT_EQ(test::stacked<double>(column_force), test::stacked<double>(force)) << Kind::kName;
+      const Eigen::MatrixXd sum = test::dense(matrix), column_sum = test::dense(column_blocks);
+      EXPECT_LE((column_sum - sum).norm(), 1e-14 * sum.norm()) << Kind::kName;  // rounding of mirrored blocks
+    });
+  }
 }
 
 TEST(ColumnLayout, PackingKeepsEveryVertexAndLeavesThePaddingZero) {

@@ -1,5 +1,5 @@
 // The dense kernels of factor and triangular solves against Eigen, for sizes with and without remainders.
-#include "sim/dense_kernels.h"
+#include "sim/linear/dense_kernels.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Modified PCG with every preconditioner against dense constrained solves, in both precisions.
-#include "sim/linear_solver.h"
+#include "sim/linear/modified_pcg.h"
 
 #include "tests/linear_systems.h"
 

@@ -1,9 +1,9 @@
 // The preconditioners and what they are made of: factors, rotations, the matrix.
-#include "sim/preconditioner.h"
+#include "sim/linear/preconditioner.h"
 
-#include "sim/preconditioner_choice.h"
-#include "sim/rotation.h"
-#include "sim/vector_kernels.h"
+#include "sim/linear/preconditioner_choice.h"
+#include "sim/linear/rotation.h"
+#include "sim/linear/vector_kernels.h"
 #include "tests/linear_systems.h"
 
 namespace tests {

@@ -1,9 +1,9 @@
 // The start of a solve from what earlier steps did, and the solve that stays conjugate to it.
-#include "sim/initial_guess.h"
+#include "sim/linear/solution_projection.h"
 
 #include <gtest/gtest.h>
 
-#include "sim/vector_kernels.h"
+#include "sim/linear/vector_kernels.h"
 #include "tests/linear_systems.h"
 
 namespace {
@@ -18,7 +18,7 @@ struct Start {
   Eigen::VectorXd wanted;        // the solution
   std::vector<V3<double>> x, r;  // the guess and its residual
   std::vector<Vec3> error;       // of the guess
-  sim::InitialGuess<double> guess{system.mesh.vertexCount()};
+  sim::SolutionProjection<double> guess{system.mesh.vertexCount()};
 
   explicit Start(int removed) {
     test::Random random(17);
@@ -50,7 +50,7 @@ std::vector<Vec3> noise(std::size_t n, double size, unsigned seed) {
   return values;
 }
 
-TEST(InitialGuess, FindsWhatIsACombinationOfTheChangesAndSaysHowFarItWas) {
+TEST(SolutionProjection, FindsWhatIsACombinationOfTheChangesAndSaysHowFarItWas) {
   for (const int removed : {0, 2}) {
     Start start(removed);
     std::vector<Vec3> one = noise(start.x.size(), 0.1, 3), two;
@@ -65,7 +65,7 @@ TEST(InitialGuess, FindsWhatIsACombinationOfTheChangesAndSaysHowFarItWas) {
   }
 }
 
-TEST(InitialGuess, IsNeverFartherKeepsConstraintsAndTheResidual) {
+TEST(SolutionProjection, IsNeverFartherKeepsConstraintsAndTheResidual) {
   Start start(2);
   start.record(noise(start.x.size(), 1, 5));
   start.record(noise(start.x.size(), 1e-3, 6));
@@ -73,7 +73,7 @@ TEST(InitialGuess, IsNeverFartherKeepsConstraintsAndTheResidual) {
   const double before = start.distance(), gained = start.improve(), after = start.distance();
   EXPECT_LE(after, before);
   EXPECT_NEAR(after * after, before * before - gained, 1e-9 * before * before);
-  EXPECT_EQ(start.guess.deflation().size(), static_cast<std::size_t>(sim::InitialGuess<double>::kChanges));
+  EXPECT_EQ(start.guess.deflation().size(), static_cast<std::size_t>(sim::SolutionProjection<double>::kChanges));
   std::vector<V3<double>> product(start.x.size());
   sim::multiply<double>(start.matrix, start.x, product);
   for (std::size_t i = 0; i < product.size(); ++i) {
@@ -84,7 +84,7 @@ TEST(InitialGuess, IsNeverFartherKeepsConstraintsAndTheResidual) {
   }
 }
 
-TEST(InitialGuess, AStartFartherOffThanNoneIsShortened) {
+TEST(SolutionProjection, AStartFartherOffThanNoneIsShortened) {
   for (const int removed : {0, 2}) {
     for (const double times : {-1.0, 0.1, 30.0}) {
       Start start(removed);
@@ -102,7 +102,7 @@ TEST(InitialGuess, AStartFartherOffThanNoneIsShortened) {
   }
 }
 
-TEST(InitialGuess, NothingRecordedOrNothingMovedLeavesTheStart) {
+TEST(SolutionProjection, NothingRecordedOrNothingMovedLeavesTheStart) {
   Start start(0);
   const auto x = test::stacked<double>(start.x);
   EXPECT_EQ(start.improve(), 0);
@@ -114,7 +114,7 @@ TEST(InitialGuess, NothingRecordedOrNothingMovedLeavesTheStart) {
   EXPECT_EQ(test::stacked<double>(start.x), x);
 }
 
-TEST(InitialGuess, AChangeThatOnlyRepeatsAnotherIsLeftOut) {
+TEST(SolutionProjection, AChangeThatOnlyRepeatsAnotherIsLeftOut) {
   Start start(1);
   std::vector<Vec3> change = noise(start.x.size(), 0.1, 4);
   start.record(change);
@@ -126,7 +126,7 @@ TEST(InitialGuess, AChangeThatOnlyRepeatsAnotherIsLeftOut) {
 
 // The error is the slowest mode there is; the change has it in it, hidden under a part that iterations find at once. So
 // the start comes hardly nearer, but the deflated solve gets the slow part for nothing.
-TEST(InitialGuess, DeflatedIterationsFindTheSameAnswerSooner) {
+TEST(SolutionProjection, DeflatedIterationsFindTheSameAnswerSooner) {
   int iterations[2];
   for (const bool deflated : {false, true}) {
     Start start(1);
@@ -171,7 +171,7 @@ TEST(InitialGuess, DeflatedIterationsFindTheSameAnswerSooner) {
 
 // Rounding leaves something in the residual along the directions that the iterations are conjugate to. Steps that
 // counted it blew up once a solve in single precision went on to a millionth: 2 cm off within three steps.
-TEST(InitialGuess, SolvesInSinglePrecisionGoAsFarAsTheyAreAsked) {
+TEST(SolutionProjection, SolvesInSinglePrecisionGoAsFarAsTheyAreAsked) {
   const auto positions = [](sim::Solver solver, sim::Precision precision) {
     sim::SimParams params;
     params.solver = solver, params.precision = precision;

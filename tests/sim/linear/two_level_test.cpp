@@ -1,9 +1,9 @@
 // The two levels: factors of layers and columns, rigid motions of patches, and what they are together.
-#include "sim/two_level.h"
+#include "sim/linear/two_level.h"
 
-#include "sim/patch_space.h"
-#include "sim/preconditioner.h"
-#include "sim/vector_kernels.h"
+#include "sim/linear/coarse_space.h"
+#include "sim/linear/preconditioner.h"
+#include "sim/linear/vector_kernels.h"
 #include "tests/linear_systems.h"
 
 namespace tests {
@@ -76,16 +76,10 @@ TEST(TwoLevel, LayersAreSolvedOneByOne) {
   layersAreSolvedOneByOne<double>(1e-12);
 }
 
-// The answer of the patches is the best of all their rigid motions: against a dense projection made by hand. They move
-// neither roots nor held vertices, and know which they held.
+// What no element couples, at uneven tips, is zero in a true matrix.
 template <class T>
-void patchesAnswerBest(double bound) {
-  test::PatchOptions o;
-  o.nx = 9, o.nz = 8, o.layers = 20, o.mixed = o.uneven = true;  // padding everywhere: values there are arbitrary here
-  RandomSystem<T> system(o, 97, 200);
+void clearUncoupled(RandomSystem<T>& system) {
   auto& [mesh, pattern, layout, columns, random, packed, a] = system;
-  const int n = mesh.vertexCount();
-  // What no element couples, at uneven tips, is zero in a true matrix.
   for (const sim::BlockDiagonal& d : columns.diagonals) {
     for (int l = 0; !d.symmetric() && l < columns.stride; ++l) {
       const int m = l + d.offset;
@@ -96,12 +90,48 @@ void patchesAnswerBest(double bound) {
     }
   }
   packed.toBlocks(mesh, a);
+}
+
+// P r of a projection: z . A z = z . r, and z moves each patch rigidly: vertices of one column keep their distances to
+// first order. Every seventh vertex is held.
+template <class T>
+void expectRigidProjection(const RandomSystem<T>& system, const std::vector<V3<T>>& r, const std::vector<V3<T>>& z,
+                           double bound) {
+  const auto& mesh = system.mesh;
+  const int n = mesh.vertexCount();
+  const std::vector<V3<T>> x = test::plain<T>(mesh.shape.positions);
+  std::vector<V3<T>> az(n);
+  sim::multiply<T>(system.a, z, az);
+  const double along = sim::innerProduct<T>(z, r), energy = sim::innerProduct<T>(z, az);
+  EXPECT_GT(along, 0);
+  EXPECT_NEAR(energy / along, 1, 1e-3) << "the raised diagonal takes a little";
+  int kept = 0;
+  for (int i = 0; i + 1 < n; ++i) {
+    const bool one_patch = mesh.column_of[i] == mesh.column_of[i + 1] && !mesh.isRoot(i) &&
+                           mesh.layer_of[i] % sim::CoarseSpace<T>::kLayers != 0 && i % 7 != 0 && (i + 1) % 7 != 0;
+    if (!one_patch) continue;
+    EXPECT_NEAR(static_cast<double>(dot(z[i + 1] - z[i], x[i + 1] - x[i])), 0, bound) << i;
+    ++kept;
+  }
+  EXPECT_GT(kept, n / 3);
+}
+
+// The answer of the patches is the best of all their rigid motions: against a dense projection made by hand. They move
+// neither roots nor held vertices, and know which they held.
+template <class T>
+void patchesAnswerBest(double bound) {
+  test::PatchOptions o;
+  o.nx = 9, o.nz = 8, o.layers = 20, o.mixed = o.uneven = true;  // padding everywhere: values there are arbitrary here
+  RandomSystem<T> system(o, 97, 200);
+  auto& [mesh, pattern, layout, columns, random, packed, a] = system;
+  const int n = mesh.vertexCount();
+  clearUncoupled(system);
   std::vector<sim::VertexConstraint> constraints;
   for (int i = 0; i < n; i += 7) {
     if (!mesh.isRoot(i)) constraints.push_back({i, Eigen::Matrix3d::Zero(), Vec3::Zero(), 3, {}});
   }
   const std::vector<V3<T>> x = test::plain<T>(mesh.shape.positions);
-  sim::PatchSpace<T> patches(mesh, layout, columns);
+  sim::CoarseSpace<T> patches(mesh, layout, columns);
   EXPECT_GT(patches.patches(), 2);
   EXPECT_LT(patches.patches(), n / 12);
   const std::vector<V3<T>> r = system.vectors();
@@ -125,22 +155,7 @@ void patchesAnswerBest(double bound) {
       EXPECT_EQ(dot(z[0][i], z[0][i]), T(0)) << i;
     }
   }
-  // P r of a projection: z . A z = z . r, and z moves each patch rigidly: vertices of one column keep their distances
-  // to first order.
-  std::vector<V3<T>> az(n);
-  sim::multiply<T>(a, z[0], az);
-  const double along = sim::innerProduct<T>(z[0], r), energy = sim::innerProduct<T>(z[0], az);
-  EXPECT_GT(along, 0);
-  EXPECT_NEAR(energy / along, 1, 1e-3) << "the raised diagonal takes a little";
-  int kept = 0;
-  for (int i = 0; i + 1 < n; ++i) {
-    const bool one_patch = mesh.column_of[i] == mesh.column_of[i + 1] && !mesh.isRoot(i) &&
-                           mesh.layer_of[i] % sim::PatchSpace<T>::kLayers != 0 && i % 7 != 0 && (i + 1) % 7 != 0;
-    if (!one_patch) continue;
-    EXPECT_NEAR(static_cast<double>(dot(z[0][i + 1] - z[0][i], x[i + 1] - x[i])), 0, bound) << i;
-    ++kept;
-  }
-  EXPECT_GT(kept, n / 3);
+  expectRigidProjection(system, r, z[0], bound);
 }
 
 TEST(TwoLevel, PatchesAnswerBest) {
@@ -182,6 +197,32 @@ TEST(TwoLevel, IsSymmetricAndNeedsFewerIterationsThanBlocks) {
   EXPECT_LT(3 * levels, 2 * blocks);
 }
 
+// The matrix that a part solves: without couplings between layers (or columns) and without removed directions, whose
+// diagonal is the trace of the whole block.
+template <class T>
+Eigen::MatrixXd filteredPart(const sim::HairMesh& mesh, const sim::BlockMatrix<T>& a,
+                             const std::vector<Eigen::Matrix3d>& keep, bool by_strands) {
+  const Eigen::MatrixXd whole = test::dense(a), s = filterMatrix(keep);
+  const int n = mesh.vertexCount();
+  const auto apart = [&](int i, int j) {
+    if (i == j) return false;
+    if (!by_strands) return mesh.layer_of[i] != mesh.layer_of[j];
+    return mesh.column_of[i] != mesh.column_of[j] || mesh.isRoot(i) || mesh.isRoot(j);
+  };
+  Eigen::MatrixXd part = whole;
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      if (apart(i, j)) part.block<3, 3>(3 * i, 3 * j).setZero();
+    }
+  }
+  part = (s * part * s).eval();
+  for (int i = 0; i < n; ++i) {
+    const double trace = whole.block<3, 3>(3 * i, 3 * i).trace();
+    part.block<3, 3>(3 * i, 3 * i) += trace * (Eigen::Matrix3d::Identity() - keep[i]);
+  }
+  return part;
+}
+
 // The factors of layers and of columns are direct solves of the matrix without the couplings between them and without
 // the directions that constraints remove, in both layouts.
 template <class T>
@@ -201,26 +242,10 @@ void partsAreSolvedWithoutRemovedDirections(double bound) {
     if (count == 3) keep[i].setZero();
     if (count > 0) constraints.push_back({i, keep[i], Vec3::Zero(), count, {d, d, d}});
   }
-  const Eigen::MatrixXd whole = test::dense(a), s = filterMatrix(keep);
   sim::LayerFactor<T> layers(mesh, layout, columns);
-  sim::StrandFactor<T> strands(mesh, layout, columns);
+  sim::ColumnFactor<T> strands(mesh, layout, columns);
   for (const bool by_strands : {false, true}) {
-    const auto apart = [&](int i, int j) {
-      if (i == j) return false;
-      if (!by_strands) return mesh.layer_of[i] != mesh.layer_of[j];
-      return mesh.column_of[i] != mesh.column_of[j] || mesh.isRoot(i) || mesh.isRoot(j);
-    };
-    Eigen::MatrixXd part = whole;
-    for (int i = 0; i < n; ++i) {
-      for (int j = 0; j < n; ++j) {
-        if (apart(i, j)) part.block<3, 3>(3 * i, 3 * j).setZero();
-      }
-    }
-    part = (s * part * s).eval();
-    for (int i = 0; i < n; ++i) {
-      const double trace = whole.block<3, 3>(3 * i, 3 * i).trace();
-      part.block<3, 3>(3 * i, 3 * i) += trace * (Eigen::Matrix3d::Identity() - keep[i]);
-    }
+    const Eigen::MatrixXd part = filteredPart(mesh, a, keep, by_strands);
     std::vector<Vec3> wanted(n);
     for (int i = 0; i < n; ++i) wanted[i] = by_strands && mesh.isRoot(i) ? Vec3(Vec3::Zero()) : random.vector(1);
     const Eigen::VectorXd product = part * stackedPoints(wanted);

@@ -1,5 +1,5 @@
 // The hair mesh: its counts, its closed surface, its volumes, and a message for every fault.
-#include "sim/hair_mesh.h"
+#include "sim/mesh/hair_mesh.h"
 
 #include <gtest/gtest.h>
 
@@ -138,8 +138,8 @@ TEST(HairMesh, AColumnInsideTheHairIsExternalAtItsTipOnly) {
 
 TEST(HairMesh, VolumesArePositiveAndEveryShareSumsToTheWhole) {
   for (PatchOptions o : patches()) {
-    for (const bool combed : {false, true}) {
-      const HairMesh mesh = sim::buildHairMesh(combed ? test::combedShape(o) : test::patchShape(o));
+    for (const bool guided : {false, true}) {
+      const HairMesh mesh = sim::buildHairMesh(guided ? test::combedShape(o) : test::patchShape(o));
       double prisms = 0, tets = 0, vertices = 0, walls = 0, vertical = 0, horizontal = 0;
       for (const sim::Prism& prism : mesh.prisms) {
         EXPECT_GT(prism.volume, 0);
@@ -167,7 +167,7 @@ TEST(HairMesh, VolumesArePositiveAndEveryShareSumsToTheWhole) {
       double lowest = 0;
       for (const sim::Wall& wall : mesh.walls) lowest += mesh.layer_of[wall.v[0]] == 0 ? wall.volume / 2 : 0;
       EXPECT_NEAR(horizontal, total - lowest, small);
-      if (!combed) {
+      if (!guided) {
         int cells = o.nx * o.nz * (o.layers - 1) - (o.uneven ? o.nx : 0);
         EXPECT_NEAR(total, cells * o.spacing * o.spacing * o.length / (o.layers - 1), small) << "straight prisms";
       }

@@ -1,11 +1,11 @@
 // No violent step makes energy out of nothing, gentle ones are left alone.
-#include "sim/energy_guard.h"
+#include "sim/stabilization/energy_limit.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "sim/watchdog.h"
+#include "sim/stabilization/state_validation.h"
 #include "tests/test_meshes.h"
 
 namespace {
@@ -45,14 +45,14 @@ double worstAfterDrag(sim::SimParams params, const Vec3& moved, double dt) {
   double worst = 0;
   for (int n = 0; n < 60; ++n) {
     const sim::StepReport report = hair.step(dt);
-    EXPECT_EQ(report.recoveries, 0) << sim::troubleText(report.trouble);
+    EXPECT_EQ(report.recoveries, 0) << sim::faultText(report.fault_report);
     EXPECT_FALSE(report.carried);
     worst = std::max(worst, energyAboveRest(hair, moved) / worth);
   }
   return worst;
 }
 
-TEST(EnergyGuard, HairLeftBehindByItsRootsStoresNoMoreThanThatIsWorthTwiceAsFast) {
+TEST(EnergyLimit, HairLeftBehindByItsRootsStoresNoMoreThanThatIsWorthTwiceAsFast) {
   // It may rebound at the roots' own speed just before they stop.
   const Vec3 directions[] = {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(-0.3, -0.8, 0.5)};
   for (const Vec3& direction : directions) {
@@ -61,7 +61,7 @@ TEST(EnergyGuard, HairLeftBehindByItsRootsStoresNoMoreThanThatIsWorthTwiceAsFast
   }
 }
 
-TEST(EnergyGuard, AndComesBack) {
+TEST(EnergyLimit, AndComesBack) {
   Hair hair(test::combedShape(test::mixedPatch(7, 0.3)), hairWithoutBody());
   for (Vec3& root : hair.roots) root += Vec3(2, 0, 0);
   for (int n = 0; n < 300; ++n) hair.step(kFrame);
@@ -74,7 +74,7 @@ struct Flung {
   Hair hair{test::combedShape(test::mixedPatch(7, 0.3)), hairWithoutBody()};
   sim::HairState start = hair.state;
   sim::ForceModel<double> model = sim::makeForceModel(hair.mesh, sim::systemPattern(hair.mesh), hair.params);
-  sim::EnergyGuard scratch{hair.mesh};
+  sim::EnergyLimit scratch{hair.mesh};
 
   void fling(double way) {
     test::Random random(5);
@@ -91,7 +91,7 @@ struct Flung {
   }
 };
 
-TEST(EnergyGuard, AStepThatEndsTooHighIsTakenBackUntilItFits) {
+TEST(EnergyLimit, AStepThatEndsTooHighIsTakenBackUntilItFits) {
   Flung flung;
   for (Vec3& v : flung.start.velocities) v = Vec3(3, 0, 0);
   flung.fling(0.5);
@@ -103,7 +103,7 @@ TEST(EnergyGuard, AStepThatEndsTooHighIsTakenBackUntilItFits) {
 
 // Hair with hardly a shear or volume force is folded by a wind that its stiff hinges bear: its motion is slow, and
 // still its forces are not linear over a step.
-TEST(EnergyGuard, LimpHairInTheWindOnlyLosesEnergyAndComesToRest) {
+TEST(EnergyLimit, LimpHairInTheWindOnlyLosesEnergyAndComesToRest) {
   sim::SimParams params = hairWithoutBody();
   params.shear = 1.35, params.volume = 8.9, params.bend = 630;
   params.wind_x = 30, params.wind_z = 18;
@@ -120,7 +120,7 @@ TEST(EnergyGuard, LimpHairInTheWindOnlyLosesEnergyAndComesToRest) {
   };
   double before = energy(), risen = 0, fastest = 0;
   for (int n = 0; n < 900; ++n) {
-    const bool led = hair.step(kFrame).combed > 0;  // home, by a hand from outside
+    const bool led = hair.step(kFrame).guided > 0;  // home, by a hand from outside
     const double now = energy();
     if (!led) risen = std::max(risen, now - before);
     before = now;
@@ -133,7 +133,7 @@ TEST(EnergyGuard, LimpHairInTheWindOnlyLosesEnergyAndComesToRest) {
   EXPECT_LT(fastest, 0.01);
 }
 
-TEST(EnergyGuard, AGentleStepKeepsEveryBit) {
+TEST(EnergyLimit, AGentleStepKeepsEveryBit) {
   Flung flung;
   flung.fling(0.01);
   const sim::HairState before = flung.hair.state;
@@ -143,7 +143,7 @@ TEST(EnergyGuard, AGentleStepKeepsEveryBit) {
 }
 
 // Hair pressed out of shape by a body, and the body gone from one step to the next.
-TEST(EnergyGuard, HairLetGoByItsBodyMakesNoEnergyOfWhatItHeld) {
+TEST(EnergyLimit, HairLetGoByItsBodyMakesNoEnergyOfWhatItHeld) {
   for (const double rise : {0.1, 0.14, 0.18}) {
     sim::SimParams params;
     params.damping = 0;
@@ -177,7 +177,7 @@ TEST(EnergyGuard, HairLetGoByItsBodyMakesNoEnergyOfWhatItHeld) {
   }
 }
 
-TEST(EnergyGuard, WhatIsNotFiniteIsLeftToTheWatchdog) {
+TEST(EnergyLimit, WhatIsNotFiniteIsLeftToTheWatchdog) {
   Flung flung;
   flung.fling(0.5);
   flung.hair.state.positions[3].x() = std::numeric_limits<double>::quiet_NaN();
@@ -186,7 +186,7 @@ TEST(EnergyGuard, WhatIsNotFiniteIsLeftToTheWatchdog) {
   EXPECT_EQ(flung.hair.state.positions[5], before.positions[5]);
 }
 
-TEST(EnergyGuard, BeingCarriedAlongAndTurnedMakesNoEnergy) {
+TEST(EnergyLimit, BeingCarriedAlongAndTurnedMakesNoEnergy) {
   Flung flung;
   const Eigen::Isometry3d move = Eigen::Translation3d(0, 3, 1) * Eigen::AngleAxisd(2, Vec3(1, 2, 0).normalized());
   for (int i = 0; i < flung.hair.mesh.vertexCount(); ++i) {

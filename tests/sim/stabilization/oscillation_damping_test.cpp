@@ -1,5 +1,5 @@
 // Buzzing: vertices that go to and fro with every step are brought to their balance, and no other motion is touched.
-#include "sim/buzz.h"
+#include "sim/stabilization/oscillation_damping.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ constexpr double kFrame = 1.0 / 60;
 struct Patch {
   sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(test::mixedPatch(5, 0.25)));
   sim::HairState state = sim::restState(mesh, Eigen::Isometry3d::Identity());
-  sim::Buzz buzz{mesh};
+  sim::OscillationDamping buzz{mesh};
 
   // A step that takes every vertex but the roots where `to` says, from where it is off its rest; roots and rest go
   // along with the head.
@@ -27,7 +27,7 @@ struct Patch {
       state.velocities[i] = (state.positions[i] - start[i]) / kFrame;
     }
     gone += head;
-    return sim::relaxBuzz(mesh, start, buzz, state);
+    return sim::dampOscillation(mesh, start, buzz, state);
   }
   double furthest() const {
     double most = 0;
@@ -38,7 +38,7 @@ struct Patch {
   Vec3 gone = Vec3::Zero();
 };
 
-TEST(Buzz, WhatGoesToAndFroWithEveryStepComesToRestUnderAMovingHeadToo) {
+TEST(OscillationDamping, WhatGoesToAndFroWithEveryStepComesToRestUnderAMovingHeadToo) {
   for (const double eigenvalue : {-1.0, -1.5, -2.5}) {
     for (const double speed : {0.0, 1.0}) {
       Patch hair;
@@ -59,7 +59,7 @@ TEST(Buzz, WhatGoesToAndFroWithEveryStepComesToRestUnderAMovingHeadToo) {
   }
 }
 
-TEST(Buzz, OtherMotionKeepsEveryBit) {
+TEST(OscillationDamping, OtherMotionKeepsEveryBit) {
   Patch hair;
   for (int n = 0; n < 300; ++n) {
     // The fastest swing that so long steps show as one: five there and five back, the head with it or not.
@@ -71,7 +71,7 @@ TEST(Buzz, OtherMotionKeepsEveryBit) {
 }
 
 // A clip at fifty times its speed throws the head to and fro with every frame, and the hair that lags behind it.
-TEST(Buzz, HairThatTheHeadThrowsToAndFroKeepsEveryBit) {
+TEST(OscillationDamping, HairThatTheHeadThrowsToAndFroKeepsEveryBit) {
   Patch hair;
   for (int n = 0; n < 60; ++n) {
     const Vec3 head(n % 2 ? -0.02 : 0.02, 0, 0);

@@ -1,10 +1,10 @@
 // Hair that rests in another shape than its own is led home where that is lower, and nowhere else; and parameters that
 // no hair could bear do not tear it.
-#include "sim/rest_check.h"
+#include "sim/stabilization/reference_hair.h"
 
 #include <gtest/gtest.h>
 
-#include "sim/bearable.h"
+#include "sim/stabilization/parameter_limits.h"
 #include "tests/test_meshes.h"
 
 namespace {
@@ -19,7 +19,7 @@ constexpr double kGravity = 9.81;  // m/s^2
 struct Resting {
   sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(test::mixedPatch(5, 0.25)));
   sim::HairState state = sim::restState(mesh, Eigen::Isometry3d::Identity());
-  sim::Tangles tangles{mesh};
+  sim::InversionRecovery recovery{mesh};
   sim::RestCheck check{mesh};
 
   explicit Resting(double share) {
@@ -34,10 +34,11 @@ struct Resting {
     bool led = false;
     for (double t = 0; t < seconds; t += kFrame) {
       const std::vector<Vec3> start = state.positions;
-      led = sim::combOut({mesh, start, kFrame}, tangles, state) > 0 || led;
-      if (tangles.combing == 0) std::fill(state.velocities.begin(), state.velocities.end(), Vec3::Zero());
+      led = sim::recoverInversions({mesh, start, kFrame}, recovery, state) > 0 || led;
+      if (recovery.guided_columns == 0) std::fill(state.velocities.begin(), state.velocities.end(), Vec3::Zero());
       const auto energy = [&](const sim::HairState& one) { return &one == &state ? higher : 0; };
-      if (sim::watchRest(mesh, state, kGravity, kFrame, tangles, check)) judgeRest(mesh, state, 1, energy, tangles, check);
+      if (sim::watchRest(mesh, state, kGravity, kFrame, recovery, check))
+        judgeRest(mesh, state, 1, energy, recovery, check);
     }
     return led;
   }
@@ -78,7 +79,7 @@ TEST(RestCheck, HairThatABodyHoldsIsLeftWhereItIs) {
 TEST(RestCheck, HairThatMovesIsNotJudged) {
   Resting hair(0.05);
   for (Vec3& v : hair.state.velocities) v = Vec3(1, 0, 0);
-  EXPECT_FALSE(sim::watchRest(hair.mesh, hair.state, kGravity, kFrame, hair.tangles, hair.check));
+  EXPECT_FALSE(sim::watchRest(hair.mesh, hair.state, kGravity, kFrame, hair.recovery, hair.check));
 }
 
 double longest(const Hair& hair) {
@@ -111,7 +112,7 @@ TEST(Bearable, OrdinaryHairKeepsItsParameters) {
   const sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(test::mixedPatch(5, 0.25)));
   sim::SimParams params;
   params.wind_x = 10;
-  const sim::SimParams borne = sim::bearable(mesh, params);
+  const sim::SimParams borne = sim::limitedParameters(mesh, params);
   for (const sim::ParamField& field : sim::paramFields()) EXPECT_EQ(field.get(borne), field.get(params)) << field.name;
 }
 

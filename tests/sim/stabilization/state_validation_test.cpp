@@ -1,5 +1,5 @@
 // The watchdog heals what is ill and nothing else, says what it found, and tells a teleport from a motion.
-#include "sim/watchdog.h"
+#include "sim/stabilization/state_validation.h"
 
 #include <gtest/gtest.h>
 
@@ -58,7 +58,7 @@ std::vector<int> distancesFrom(const sim::HairMesh& mesh, int vertex) {
 }
 
 TEST(Watchdog, HealsFaultsAtRandomVerticesAndLeavesTheRestAlone) {
-  Hair hair(test::combedShape(patch()), runningHair()), twin(test::combedShape(patch()), runningHair());
+  Hair hair(test::combedShape(patch()), runningHair()), reference(test::combedShape(patch()), runningHair());
   const auto rest = hair.roots;
   test::Random random(11);
   const double faults[] = {kNaN, kInfinity, -kInfinity, 1e30, 1e6};
@@ -66,10 +66,10 @@ TEST(Watchdog, HealsFaultsAtRandomVerticesAndLeavesTheRestAlone) {
   int injected = 0, found = 0, roots = 0;
   for (int n = 1; n <= 400; ++n) {
     time += kFrame;
-    sway(time, rest, hair), sway(time, rest, twin);
+    sway(time, rest, hair), sway(time, rest, reference);
     int vertex = -1;
     if (n > 20 && n % 8 == 0) {
-      twin.state = hair.state;  // what differs from here on is the fault's doing
+      reference.state = hair.state;  // what differs from here on is the fault's doing
       vertex = static_cast<int>(random(0, hair.mesh.vertexCount()));
       if (n % 40 == 0) vertex = hair.mesh.shape.column_first[hair.mesh.column_of[vertex]];
       Vec3& value = random(0, 1) < 0.5 ? hair.state.positions[vertex] : hair.state.velocities[vertex];
@@ -77,7 +77,7 @@ TEST(Watchdog, HealsFaultsAtRandomVerticesAndLeavesTheRestAlone) {
       ++injected;
     }
     const sim::StepReport report = hair.step(kFrame);
-    twin.step(kFrame);
+    reference.step(kFrame);
     for (int i = 0; i < hair.mesh.vertexCount(); ++i) {
       ASSERT_TRUE(hair.state.positions[i].allFinite() && hair.state.velocities[i].allFinite()) << i;
     }
@@ -86,10 +86,10 @@ TEST(Watchdog, HealsFaultsAtRandomVerticesAndLeavesTheRestAlone) {
       continue;
     }
     EXPECT_EQ(report.recoveries, 1);
-    EXPECT_EQ(report.trouble.vertex, vertex);
-    EXPECT_EQ(report.trouble.vertices, 1);
-    EXPECT_TRUE(report.trouble.given);
-    const std::string text = sim::troubleText(report.trouble);
+    EXPECT_EQ(report.fault_report.vertex, vertex);
+    EXPECT_EQ(report.fault_report.vertices, 1);
+    EXPECT_TRUE(report.fault_report.given);
+    const std::string text = sim::faultText(report.fault_report);
     EXPECT_NE(text.find("vertex " + std::to_string(vertex) + " (column "), std::string::npos) << text;
     EXPECT_NE(text.find("largest force there: "), std::string::npos) << text;
     roots += hair.mesh.isRoot(vertex);
@@ -97,7 +97,7 @@ TEST(Watchdog, HealsFaultsAtRandomVerticesAndLeavesTheRestAlone) {
     // The healed vertex was put back where it was and lost half of its speed against its root.
     const std::vector<int> distance = distancesFrom(hair.mesh, vertex);
     for (int i = 0; i < hair.mesh.vertexCount(); ++i) {
-      const double moved = (hair.state.positions[i] - twin.state.positions[i]).norm() / hair.mesh.hair_length;
+      const double moved = (hair.state.positions[i] - reference.state.positions[i]).norm() / hair.mesh.hair_length;
       EXPECT_LT(moved, distance[i] == 0 ? 0.03 : distance[i] == 1 ? 0.02 : 0.01) << "vertex " << i;
     }
   }
@@ -113,10 +113,10 @@ TEST(Watchdog, HealingTouchesNoBitOfTheOthers) {
   for (int vertex = 0; vertex < hair.mesh.vertexCount(); ++vertex) {
     sim::HairState state = hair.state;
     state.positions[vertex].y() = 1e6;
-    sim::Trouble trouble;
-    sim::heal(hair.mesh, hair.roots, good, state, trouble);
-    EXPECT_EQ(trouble.vertices, 1);
-    EXPECT_EQ(trouble.vertex, vertex);
+    sim::FaultReport fault_report;
+    sim::repair(hair.mesh, hair.roots, good, state, fault_report);
+    EXPECT_EQ(fault_report.vertices, 1);
+    EXPECT_EQ(fault_report.vertex, vertex);
     for (int i = 0; i < hair.mesh.vertexCount(); ++i) {
       // A root is put where the others say, to rounding.
       const double off = (state.positions[i] - hair.state.positions[i]).norm();
@@ -145,32 +145,32 @@ TEST(Watchdog, APlaceBeyondReachIsAbsurdAndAWildOneIsNot) {
   const int tip = hair.mesh.shape.column_first[1] - 1;
   const Vec3 there = hair.state.positions[tip];
   hair.state.positions[tip] = there + Vec3(3 * hair.mesh.hair_length, 0, 0);
-  EXPECT_EQ(sim::examine(hair.mesh, hair.state, tip), sim::Ailment::kNone);
+  EXPECT_EQ(sim::examine(hair.mesh, hair.state, tip), sim::StateFault::kNone);
   hair.state.positions[tip] = there + Vec3(1.5, 0, 0);  // as a foot in a fast backflip may take it
-  EXPECT_EQ(sim::examine(hair.mesh, hair.state, tip), sim::Ailment::kNone);
+  EXPECT_EQ(sim::examine(hair.mesh, hair.state, tip), sim::StateFault::kNone);
   hair.state.positions[tip] = there + Vec3(10, 0, 0);
-  EXPECT_EQ(sim::examine(hair.mesh, hair.state, tip), sim::Ailment::kFarAway);
+  EXPECT_EQ(sim::examine(hair.mesh, hair.state, tip), sim::StateFault::kFarAway);
   hair.state.positions[tip] = there;
   hair.state.velocities[tip] = Vec3(0, 100, 0);
-  EXPECT_EQ(sim::examine(hair.mesh, hair.state, tip), sim::Ailment::kNone);
+  EXPECT_EQ(sim::examine(hair.mesh, hair.state, tip), sim::StateFault::kNone);
   hair.state.velocities[tip] = Vec3(0, 1e4, 0);
-  EXPECT_EQ(sim::examine(hair.mesh, hair.state, tip), sim::Ailment::kTooFast);
+  EXPECT_EQ(sim::examine(hair.mesh, hair.state, tip), sim::StateFault::kTooFast);
   hair.state.velocities[tip] = Vec3(0, kNaN, 0);
-  EXPECT_EQ(sim::examine(hair.mesh, hair.state, tip), sim::Ailment::kNotFinite);
+  EXPECT_EQ(sim::examine(hair.mesh, hair.state, tip), sim::StateFault::kNotFinite);
 }
 
 TEST(Watchdog, NamesTheElementThatPullsHardest) {
   const Hair hair(test::patchShape(patch()), runningHair());
   const sim::BlockPattern pattern = sim::systemPattern(hair.mesh);
   const sim::ForceModel<double> model = sim::makeForceModel(hair.mesh, pattern, hair.params);
-  sim::Trouble trouble;
-  trouble.vertex = hair.mesh.shape.column_first[3] - 1;
+  sim::FaultReport fault_report;
+  fault_report.vertex = hair.mesh.shape.column_first[3] - 1;
   std::vector<sim::V3<double>> x = test::plain<double>(hair.state.positions);
-  x[trouble.vertex].y -= 0.05;  // a tip pulled along its column
-  sim::nameForce(model, x, trouble);
-  EXPECT_STREQ(trouble.force, "stretch");
-  const auto& ends = model.stretch.vertices[trouble.element];
-  EXPECT_TRUE(ends[0] == trouble.vertex || ends[1] == trouble.vertex);
+  x[fault_report.vertex].y -= 0.05;  // a tip pulled along its column
+  sim::nameForce(model, x, fault_report);
+  EXPECT_STREQ(fault_report.force, "stretch");
+  const auto& ends = model.of<sim::Stretch>().vertices[fault_report.element];
+  EXPECT_TRUE(ends[0] == fault_report.vertex || ends[1] == fault_report.vertex);
 }
 
 // A sequence of motions of the roots, each taken within one step.
@@ -189,18 +189,18 @@ TEST(Teleport, AJumpThatNoMotionCouldMakeCarriesTheHairAlong) {
   }
   const sim::HairState before = hair.state;
   const Eigen::Isometry3d motion = jump(10, 1);
-  Hair twin(test::combedShape(patch()), runningHair());
-  twin.state = before, twin.roots = hair.roots, twin.time = hair.time;
+  Hair reference(test::combedShape(patch()), runningHair());
+  reference.state = before, reference.roots = hair.roots, reference.time = hair.time;
   // Gravity alone would tell the two worlds apart.
-  hair.params.gravity = twin.params.gravity = 0;
-  twin.step(kFrame);
+  hair.params.gravity = reference.params.gravity = 0;
+  reference.step(kFrame);
   for (Vec3& root : hair.roots) root = motion * root;
   const sim::StepReport report = hair.step(kFrame);
   EXPECT_TRUE(report.carried);
   EXPECT_EQ(report.recoveries, 0);
   // The shape of the twin that stayed.
   for (int i = 0; i < hair.mesh.vertexCount(); ++i) {
-    EXPECT_LT((hair.state.positions[i] - motion * twin.state.positions[i]).norm(), 1e-3) << i;
+    EXPECT_LT((hair.state.positions[i] - motion * reference.state.positions[i]).norm(), 1e-3) << i;
   }
 }
 

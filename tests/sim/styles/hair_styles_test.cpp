@@ -1,5 +1,5 @@
 // The nine built-in styles: what a haircut must be on any head.
-#include "sim/hair_styles.h"
+#include "sim/styles/hair_styles.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <map>
 #include <set>
 
-#include "app/character.h"
-#include "sim/hair_styles_untangle.h"
+#include "app/figure/character.h"
+#include "sim/styles/style_untangle.h"
 #include "tests/analytic_head.h"
 
 namespace {

@@ -1,0 +1,187 @@
+// Files that the program writes are whole or not there: on a full disk, over a limit, after Ctrl-C.
+#include "app/files/output_file.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/mount.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "app/files/errors.h"
+#include "app/files/image_io.h"
+#include "app/files/recording.h"
+#include "tests/run_program.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using test::readAll;
+
+std::vector<std::string> filesIn(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string faultOf(const std::string& file, std::string_view bytes) {
+  try {
+    app::writeFile(file, bytes);
+  } catch (const app::OutputError& fault) {
+    return fault.what();
+  }
+  return "";
+}
+
+TEST(OutputFile, ReplacesWhatWasThereAndLeavesNothingBeside) {
+  const std::string folder = test::freshFolder("output_file"), file = folder + "/a.txt";
+  app::writeFile(file, std::string(100000, 'x'));
+  app::writeFile(file, "new");
+  EXPECT_EQ(readAll(file), "new");
+  EXPECT_EQ(filesIn(folder), std::vector<std::string>{"a.txt"});
+}
+
+TEST(OutputFile, WritesWhereALinkLeads) {
+  const std::string folder = test::freshFolder("output_link");
+  app::writeFile(folder + "/real.txt", "old");
+  fs::create_symlink("real.txt", folder + "/link.txt");
+  app::writeFile(folder + "/link.txt", "new");
+  EXPECT_TRUE(fs::is_symlink(folder + "/link.txt"));
+  EXPECT_EQ(readAll(folder + "/real.txt"), "new");
+}
+
+TEST(OutputFile, WithoutACommitTheOldOneStays) {
+  const std::string folder = test::freshFolder("output_dropped"), file = folder + "/a.txt";
+  app::writeFile(file, "old");
+  {
+    app::OutputFile output(file);
+    output.write("half of the ne");
+    output.flush();
+    EXPECT_EQ(readAll(file), "old");
+  }
+  app::checkWritable(file);
+  EXPECT_EQ(readAll(file), "old");
+  EXPECT_EQ(filesIn(folder), std::vector<std::string>{"a.txt"});
+}
+
+TEST(OutputFile, FaultsNameTheFileTheReasonAndTheMend) {
+  const std::string folder = test::freshFolder("output_faults");
+  EXPECT_NE(faultOf(folder + "/none/a.txt", "x").find("No such file or directory; choose a folder"), std::string::npos);
+  EXPECT_NE(faultOf(folder, "x").find(folder + ": cannot be written: Is a directory"), std::string::npos);
+  EXPECT_NE(faultOf("/dev/full", "x").find("/dev/full: cannot be written: No space left on device; make room"),
+            std::string::npos);
+  EXPECT_EQ(faultOf("/dev/null", "x"), "");
+}
+
+// Puts a process under a limit of 8 KB a file, with the signal of passing it ignored: writes beyond it fail as on a
+// full disk.
+const std::string kSmallFiles = "sh -c 'trap \"\" XFSZ; ulimit -f 16; exec \"$@\"' sh";
+
+TEST(OutputFile, AFileThatDoesNotFitLeavesNothingAndEndsTheRun) {
+  const std::string folder = test::freshFolder("output_limit"), report = folder + "/r.json", tape = folder + "/r.hmr";
+  for (const char* option : {"--report", "--record"}) {
+    const test::Outcome outcome = test::runProgram(
+        {"--no-images", "--frames", "40", option, folder + "/file", "--style", "short", "--resolution", "low", "--set",
+         "wind_x=1"},
+        option == std::string("--report") ? kSmallFiles : "sh -c 'trap \"\" XFSZ; ulimit -f 1; exec \"$@\"' sh");
+    EXPECT_EQ(outcome.exit_code, app::kExitFault) << option << outcome.err;
+    EXPECT_NE(outcome.err.find("/file: cannot be written: File too large"), std::string::npos) << outcome.err;
+    EXPECT_EQ(filesIn(folder), std::vector<std::string>{}) << option;
+  }
+}
+
+struct SmallDisk {
+  std::string folder;
+  bool mounted;
+  explicit SmallDisk(const char* options)
+      : folder(test::freshFolder("small_disk")), mounted(::mount("none", folder.c_str(), "tmpfs", 0, options) == 0) {}
+  ~SmallDisk() {
+    if (mounted) ::umount2(folder.c_str(), MNT_DETACH);
+  }
+};
+
+const std::vector<std::string> kPictures{"--headless", "--frames", "6",     "--size",       "160x120", "--strands",
+                                         "500",        "--style",  "short", "--resolution", "low"};
+
+std::vector<std::string> with(std::vector<std::string> words, const std::vector<std::string>& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+TEST(OutputFile, AFullDiskEndsARunAndTheFramesOnItAreWhole) {
+  const SmallDisk disk("size=24k");
+  if (!disk.mounted) GTEST_SKIP() << "mounting a small disk needs root";
+  const std::string report = test::freshFolder("full_disk") + "/r.json";
+  const test::Outcome outcome = test::runProgram(with(kPictures, {"--out", disk.folder, "--report", report}));
+  if (outcome.exit_code == app::kExitNoContext) GTEST_SKIP() << outcome.err;
+  EXPECT_EQ(outcome.exit_code, app::kExitFault) << outcome.err;
+  EXPECT_NE(outcome.err.find("No space left on device; make room"), std::string::npos) << outcome.err;
+  const std::vector<std::string> names = filesIn(disk.folder);
+  EXPECT_LT(names.size(), 6u);
+  for (const std::string& name : names) EXPECT_EQ(app::readPng(disk.folder + "/" + name).width, 160) << name;
+  // The frame that could not be written is in the report: it was simulated and drawn.
+  EXPECT_EQ(nlohmann::json::parse(readAll(report))["frames"].size(), names.size() + 1);
+}
+
+// A run in a process of its own.
+struct Child {
+  pid_t pid = 0;
+  explicit Child(std::vector<std::string> words) {
+    words.insert(words.begin(), HAIRMESH_BINARY);
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    EXPECT_EQ(::posix_spawn(&pid, HAIRMESH_BINARY, nullptr, nullptr, argv.data(), environ), 0);
+  }
+  bool ended() { return ::waitpid(pid, &status, WNOHANG) == pid; }
+  // Waits for `file` to have at least `size` bytes.
+  bool waitFor(const std::string& file, std::uintmax_t size) {
+    std::error_code ignored;
+    for (int tenth = 0; tenth < 1000; ++tenth) {
+      if (ended()) return false;
+      if (fs::exists(file, ignored) && fs::file_size(file, ignored) >= size) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    return false;
+  }
+  int interrupt() {
+    ::kill(pid, SIGINT);
+    ::waitpid(pid, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  int status = 0;
+};
+
+TEST(OutputFile, AnInterruptedRunWritesItsReportAndAWholeRecording) {
+  const std::string folder = test::freshFolder("interrupted"), report = folder + "/r.json", tape = folder + "/r.hmr";
+  Child run({"--no-images", "--frames", "1000000", "--report", report, "--record", tape, "--style", "short",
+             "--resolution", "low"});
+  ASSERT_TRUE(run.waitFor(tape + ".part", 8192)) << "the run ended by itself";
+  EXPECT_EQ(run.interrupt(), app::kExitInterrupted);
+  EXPECT_EQ(filesIn(folder), (std::vector<std::string>{"r.hmr", "r.json"}));
+  const std::size_t frames = nlohmann::json::parse(readAll(report))["frames"].size();
+  EXPECT_GT(frames, 0u);
+  const app::Recording recording = app::readRecording(readAll(tape), tape);
+  EXPECT_EQ(recording.frames.size(), frames);
+  EXPECT_FALSE(recording.state.empty());
+}
+
+TEST(OutputFile, FramesOfAnInterruptedRunAreWhole) {
+  const std::string folder = test::freshFolder("interrupted_frames"), out = folder + "/frames";
+  std::vector<std::string> words = with(kPictures, {"--out", out, "--frames", "100000"});
+  Child run(words);
+  if (!run.waitFor(out + "/frame_0002.png", 1)) {
+    ASSERT_EQ(WEXITSTATUS(run.status), app::kExitNoContext);
+    GTEST_SKIP() << "no OpenGL context";
+  }
+  EXPECT_EQ(run.interrupt(), app::kExitInterrupted);
+  const std::vector<std::string> names = filesIn(out);
+  EXPECT_GE(names.size(), 3u);
+  for (const std::string& name : names) EXPECT_EQ(app::readPng(out + "/" + name).width, 160) << name;
+}
+
+}  // namespace

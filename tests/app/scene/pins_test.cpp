@@ -1,0 +1,137 @@
+// Pins of a scene: what a file may say, what each fault is answered with, and that hair stays where it is pinned.
+#include "app/scene/pins.h"
+
+#include <gtest/gtest.h>
+
+#include "app/files/errors.h"
+#include "app/scene/actor.h"
+#include "app/scene/sleep.h"
+
+namespace {
+
+using app::PinSpec;
+using app::Vec3;
+
+constexpr double kFrame = 1.0 / 60;
+
+std::string scenes(const std::string& pins) {
+  return R"({"characters": [{"motion": "head_shake.bvh", "style": "long", "resolution": "low", "pins": [)" + pins +
+         "]}]}";
+}
+
+app::CharacterSpec specOf(const std::string& pins) {
+  return app::readScene(scenes(pins), "scene.json").characters[0];
+}
+
+std::string faultOf(const std::string& pins, app::AssetCache& cache) {
+  try {
+    app::makeActor(specOf(pins), {}, cache);
+  } catch (const app::InputError& fault) {
+    return fault.what();
+  }
+  return "";
+}
+
+TEST(Pins, FaultsNameFilePlaceAndMend) {
+  struct Case {
+    const char *pins, *place, *fault, *mend;
+  };
+  const Case cases[] = {
+      {R"({"to": "Head"})", "/characters/0/pins/0", "no vertex", "\"column\""},
+      {R"({"vertex": 9, "column": 1})", "/characters/0/pins/0", "two", "\"column\""},
+      {R"({"vertex": 9, "layer": 1})", "/characters/0/pins/0", "no column", "\"column\""},
+      {R"({"vertex": 2.5})", "/characters/0/pins/0/vertex", "whole", "one"},
+      {R"({"vertex": -1})", "/characters/0/pins/0/vertex", "-1", "0 to"},
+      {R"({"vertex": 99999})", "/characters/0/pins/0/vertex", "99999", "0 to"},
+      {R"({"vertex": 5}, {"column": 999})", "/characters/0/pins/1/column", "999", "0 to"},
+      {R"({"column": 1, "layer": 500})", "/characters/0/pins/0/layer", "500", "-1 for the tip"},
+      {R"({"vertex": 0})", "/characters/0/pins/0", "root", "layer from 1"},
+      {R"({"column": 1, "to": "LeftHnd"})", "/characters/0/pins/0/to", "LeftHnd", "LeftHand"},
+      {R"({"column": 1, "at": [1, 2]})", "/characters/0/pins/0/at", "[1,2]", "three"},
+      {R"({"column": 1, "stiffness": "hard"})", "/characters/0/pins/0/stiffness", "hard", "infinite"},
+      {R"({"column": 1, "stiffness": -1})", "/characters/0/pins/0/stiffness", "-1", "0 to"},
+      {R"({"column": 1, "from": 3, "until": 2})", "/characters/0/pins/0", "before", "until"},
+      {R"({"column": 1, "too": "Head"})", "/characters/0/pins/0", "too", "'to'"},
+  };
+  app::AssetCache cache;
+  for (const Case& c : cases) {
+    const std::string fault = faultOf(c.pins, cache);
+    EXPECT_EQ(fault.find("scene.json"), 0u) << c.pins << "\n  -> " << fault;
+    for (const char* part : {c.place, c.fault, c.mend}) {
+      EXPECT_NE(fault.find(part), std::string::npos) << c.pins << " lacks " << part << "\n  -> " << fault;
+    }
+  }
+}
+
+TEST(Pins, WritingAndReadingKeepsThem) {
+  const app::Scene scene = app::readScene(
+      scenes(R"({"vertex": 41, "to": "LeftHand", "at": [0.1, 0.25, -3], "stiffness": 40, "from": 1, "until": 2.5},
+                {"column": 3, "layer": 4, "stiffness": "infinite"})"),
+      "scene.json");
+  const app::Scene copy = app::readScene(app::writeScene(scene), "scene.json");
+  ASSERT_EQ(copy.characters[0].pins.size(), 2u);
+  const PinSpec &first = copy.characters[0].pins[0], &second = copy.characters[0].pins[1];
+  EXPECT_EQ(first.vertex, 41);
+  EXPECT_EQ(first.to, "LeftHand");
+  EXPECT_EQ(*first.at, Vec3(0.1, 0.25, -3));
+  EXPECT_EQ(first.stiffness, 40);
+  EXPECT_EQ(first.from, 1);
+  EXPECT_EQ(first.until, 2.5);
+  EXPECT_EQ(second.column, 3);
+  EXPECT_EQ(second.layer, 4);
+  EXPECT_EQ(second.to, "scalp");
+  EXPECT_EQ(second.stiffness, PinSpec::kForever);
+  EXPECT_EQ(app::writeScene(copy), app::writeScene(scene));
+}
+
+// Firm ones at the scalp and at a joint through a clip; the scene's stays, one that is off pulls nothing.
+TEST(Pins, HairStaysWhereItIsPinnedThroughAClip) {
+  app::AssetCache cache;
+  app::Actor actor = app::makeActor(
+      specOf(R"({"column": 3}, {"column": 8, "to": "Neck"}, {"column": 20, "layer": 4, "to": "scene", "stiffness": 5},
+                {"column": 30, "from": 0.5, "until": 1})"),
+      {}, cache);
+  const sim::SimParams params;
+  const Vec3 scene = actor.pins[2].at;
+  double moved = 0;
+  for (int k = 1; k <= 120; ++k) {
+    const double time = k * kFrame;
+    const sim::StepReport report = app::stepActor(params, kFrame, time, actor);
+    EXPECT_EQ(report.pins, time >= 0.5 && time < 1 ? 4 : 3) << time;
+    EXPECT_EQ(report.pins_out_of_reach + report.recoveries, 0) << time;
+    for (const sim::PinnedVertex& pin : actor.pinned) {
+      if (!pin.firm() || pin.vertex == actor.pins[3].vertex) continue;
+      EXPECT_LT((actor.hair.positions[pin.vertex] - pin.target).norm(), 1e-6) << time;
+      moved = std::max(moved, pin.velocity.norm() * kFrame);
+    }
+    EXPECT_EQ(actor.pinned[2].target, scene);
+  }
+  EXPECT_GT(moved, 1e-3) << "the clip moved what hair is pinned to";
+}
+
+TEST(Pins, HoldOnTheCoarseMeshAndWakeWhatSleeps) {
+  app::AssetCache cache;
+  app::CharacterSpec spec = specOf(R"({"column": 3, "stiffness": 50})");
+  spec.resolution = sim::Resolution::kMedium;
+  app::Actor actor = app::makeActor(spec, {}, cache);
+  const app::HaircutPair* pair = app::coarsePair(actor, sim::Resolution::kLow, cache);
+  ASSERT_NE(pair, nullptr);
+  app::enterCoarse(*pair, actor);
+  const sim::SimParams params;
+  EXPECT_EQ(app::stepActor(params, kFrame, kFrame, actor).pins, 1);
+  app::leaveCoarse(actor);
+  actor.playback.speed = 0;
+  double time = 0;
+  for (int k = 0; k < 1800 && !actor.sleep.asleep; ++k) {
+    time += kFrame;
+    app::moveActor(kFrame, actor);
+    if (app::sleepersOf(params, kFrame, time, actor).all()) break;
+    app::simulateActor(params, kFrame, time, actor);
+  }
+  ASSERT_TRUE(actor.sleep.asleep);
+  actor.pins[0].until = time;
+  app::sleepersOf(params, kFrame, time + kFrame, actor);
+  EXPECT_FALSE(actor.sleep.asleep) << "the pin has let go";
+}
+
+}  // namespace
