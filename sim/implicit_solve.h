@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "sim/contact/contact.h"
-#include "sim/forces/column_model.h"
+#include "sim/forces/kernels.h"
 #include "sim/linear/modified_pcg.h"
 #include "sim/linear/preconditioner_choice.h"
 #include "sim/linear/solution_projection.h"

@@ -7,7 +7,7 @@
 
 #include "sim/contact/position_correction.h"
 #include "sim/contact/self_contact.h"
-#include "sim/forces/material.h"
+#include "sim/forces/rest_balance.h"
 #include "sim/implicit_solve.h"
 #include "sim/stabilization/parameter_limits.h"
 #include "sim/stabilization/stabilize.h"

@@ -6,7 +6,7 @@
 
 #include <span>
 
-#include "sim/forces/force_model.h"
+#include "sim/forces/model.h"
 #include "sim/linear/column_matrix.h"
 
 namespace sim {

@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "sim/contact/colliders.h"
-#include "sim/forces/force_model.h"
+#include "sim/forces/model.h"
 #include "sim/mesh/hair_mesh.h"
 #include "sim/mesh/hair_state.h"
 

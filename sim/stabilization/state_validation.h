@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/forces/force_model.h"
+#include "sim/forces/model.h"
 #include "sim/mesh/hair_mesh.h"
 #include "sim/mesh/hair_state.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/scene/actor.h"
-#include "sim/forces/force_model.h"
+#include "sim/forces/model.h"
 
 namespace bench {
 

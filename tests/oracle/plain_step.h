@@ -9,7 +9,7 @@
 
 #include <optional>
 
-#include "sim/forces/force_model.h"
+#include "sim/forces/model.h"
 #include "sim/step.h"
 
 namespace oracle {

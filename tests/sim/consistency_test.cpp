@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/forces/force_model.h"
+#include "sim/forces/model.h"
 #include "tests/bench/material_points.h"
 #include "tests/test_meshes.h"
 

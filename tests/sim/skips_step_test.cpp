@@ -9,7 +9,7 @@
 #include "app/files/hair_file.h"
 #include "app/scene/demo.h"
 #include "app/scene/sleep.h"
-#include "sim/forces/column_model.h"
+#include "sim/forces/kernels.h"
 #include "sim/mesh/connected_components.h"
 #include "tests/test_meshes.h"
 

@@ -9,7 +9,7 @@
 
 #include "app/files/data_path.h"
 #include "app/scene/actor.h"
-#include "sim/forces/material.h"
+#include "sim/forces/rest_balance.h"
 #include "sim/sim_params.h"
 #include "tests/test_meshes.h"
 

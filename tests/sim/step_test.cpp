@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 
-#include "sim/forces/force_model.h"
+#include "sim/forces/model.h"
 #include "tests/test_meshes.h"
 
 namespace {

@@ -5,7 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <limits>
 
-#include "sim/forces/force_model.h"
+#include "sim/forces/model.h"
 #include "tests/test_meshes.h"
 
 namespace {

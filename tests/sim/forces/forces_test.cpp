@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "sim/forces/force_model.h"
+#include "sim/forces/model.h"
 #include "tests/test_meshes.h"
 
 namespace {
@@ -52,7 +52,8 @@ std::vector<Element> elementsOf() {
   const sim::HairMesh mesh = combedMesh();
   std::vector<sim::ElementOf<Kind>> all;
   const std::vector<sim::PinnedVertex> pins = test::pinnedWhereTheyAre(mesh);
-  Kind::collect(sim::ForceSource{mesh, withoutSagFree(), pins}, [&](const sim::ElementOf<Kind>& e) { all.push_back(e); });
+  Kind::collect(sim::ForceSource{mesh, withoutSagFree(), pins},
+                [&](const sim::ElementOf<Kind>& e) { all.push_back(e); });
   EXPECT_GE(static_cast<int>(all.size()), kElementsOfAKind) << Kind::kName << ": give the test mesh some elements";
   std::vector<Element> some;
   for (int k = 0; k < kElementsOfAKind && !all.empty(); ++k) {

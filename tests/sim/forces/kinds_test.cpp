@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string>
 
-#include "sim/forces/material.h"
+#include "sim/forces/rest_balance.h"
 #include "sim/stabilization/state_validation.h"
 #include "tests/test_meshes.h"
 

@@ -1,7 +1,7 @@
 // Pins: springs and firm holds from hair mesh vertices to points that move.
 #include <gtest/gtest.h>
 
-#include "sim/forces/force_model.h"
+#include "sim/forces/model.h"
 #include "tests/test_meshes.h"
 
 namespace {

@@ -1,7 +1,7 @@
 // The column layout that the simulator runs on against the plain elements and block matrix by vertex.
 #include <gtest/gtest.h>
 
-#include "sim/forces/column_model.h"
+#include "sim/forces/kernels.h"
 #include "tests/test_meshes.h"
 
 namespace {

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "sim/forces/force_model.h"
+#include "sim/forces/model.h"
 #include "sim/linear/block_cholesky.h"
 
 namespace sim {

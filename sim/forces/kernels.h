@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/forces/evaluate.h"
-#include "sim/forces/force_model.h"
+#include "sim/forces/model.h"
 #include "sim/linear/column_matrix.h"
 
 namespace sim {

@@ -1,4 +1,4 @@
-#include "sim/forces/force_model.h"
+#include "sim/forces/model.h"
 
 #include <algorithm>
 

@@ -1,9 +1,8 @@
-#include "sim/forces/column_model.h"
-
 #include <algorithm>
 #include <map>
 #include <utility>
 
+#include "sim/forces/kernels.h"
 #include "sim/forces/prism_shares.h"
 
 namespace sim {

@@ -1,4 +1,4 @@
-#include "sim/forces/material.h"
+#include "sim/forces/rest_balance.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,8 @@
 // What the elements of a wall with its hinge, or of a prism, add to one block of the matrix is summed first and added
 // to memory once. Blocks one layer apart overlap there but for one entry, and a load that overlaps a store still under
 // way waits for it: so they are added far from each other, or shifted onto each other in registers.
-#include "sim/forces/column_model.h"
+#include "sim/forces/kernels.h"
+
 #include "sim/forces/prism_shares.h"
 
 namespace sim {
