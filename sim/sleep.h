@@ -1,8 +1,7 @@
-// Sleep: hair that hangs still over a head that stands still is not stepped.
+// Sleep: hair at rest over a head at rest is not stepped.
 //
-// Quiet is judged by path, not by speed: a pendulum at its turning point is slow too. Over two windows of half a second
-// no vertex may leave the place where the window began by more than kQuietPath, and what it moved in the second window
-// must be no more than in the first, so that the rest of the way, were it a decaying creep, is short as well.
+// Hair is at rest if in two windows of kQuietWindow in a row no vertex leaves the place where the window began by more
+// than kQuietPath. Speed would not do: a pendulum is slow at its turning point.
 #pragma once
 
 #include <vector>
@@ -15,8 +14,8 @@ namespace sim {
 
 inline constexpr double kQuietPath = 5e-5;     // m, within a window
 inline constexpr double kQuietWindow = 0.5;    // s
-inline constexpr double kStillInput = 2e-5;    // m, roots and colliders may creep so far before the hair wakes
-inline constexpr double kSleepError = 1.2e-4;  // m: the rest of the way, and the inputs' creep
+inline constexpr double kStillInput = 2e-5;    // m, roots and colliders that move less do not wake the hair
+inline constexpr double kSleepError = 1.2e-4;  // m, bound of the error by sleeping
 
 struct SleepState {
   bool asleep = false;
@@ -30,9 +29,9 @@ struct SleepState {
   std::vector<PinnedVertex> pins;
 };
 
-// Whether the coming step may be left out. Called before every step with what the step would get; keeps its own
-// account in `sleep`. Wakes when roots, colliders or pins leave their place, a parameter or a position changes, or wind
-// that comes and goes is on. Allocates only when the number of vertices, roots or ellipsoids changes.
+// Whether the coming step may be left out. Call before every step with its input. Wakes when roots, colliders or pins
+// move, a parameter or a position changes, or gusts are on. Allocates only when the number of vertices, roots or
+// ellipsoids changes.
 bool maySleep(const SimParams& params, const StepInput& input, double dt, const HairState& state, SleepState& sleep);
 
 }  // namespace sim

@@ -1,5 +1,5 @@
-// The connected parts of a hair mesh: bundles that share no column, as two plaits do, act on one another through
-// contacts alone, and may be stepped one by one.
+// Connected components of a hair mesh. Bundles that share no column, as in two plaits, interact through contacts alone,
+// so components are stepped one by one.
 #pragma once
 
 #include <vector>

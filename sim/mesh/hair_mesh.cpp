@@ -96,10 +96,9 @@ std::vector<int> bundleLayers(const HairMeshShape& shape) {
   std::vector<int> layers;
   std::vector<int> reached(shape.columnCount(), 0);
   for (const RootFace& face : shape.root_faces) {
-    int shortest = shape.columnLength(face.columns[0]);
-    for (int k = 1; k < face.corner_count; ++k) shortest = std::min(shortest, shape.columnLength(face.columns[k]));
-    layers.push_back(shortest);
-    for (int k = 0; k < face.corner_count; ++k) reached[face.columns[k]] = std::max(reached[face.columns[k]], shortest);
+    layers.push_back(shape.bundleLayers(face));
+    for (int k = 0; k < face.corner_count; ++k)
+      reached[face.columns[k]] = std::max(reached[face.columns[k]], layers.back());
   }
   for (int c = 0; c < shape.columnCount(); ++c) {
     if (reached[c] < shape.columnLength(c)) {
@@ -124,13 +123,9 @@ void addPrisms(HairMesh& mesh) {
       std::array<CornerTet, 8> tets;
       double sum = 0;
       for (int k = 0; k < 2 * n; ++k) {
-        const bool upper = k >= n;
-        const int base = upper ? n : 0;
-        const int next = base + (k - base + 1) % n, previous = base + (k - base + n - 1) % n;
-        const int along = upper ? k - n : k + n;
         CornerTet& tet = tets[k];
-        // Around an upper corner the two in-layer neighbours swap, so that all rest volumes come out positive.
-        tet.v = {prism.v[k], prism.v[upper ? previous : next], prism.v[upper ? next : previous], prism.v[along]};
+        const std::array<int, 4> corners = cornerTetOf(k, n);
+        for (int i = 0; i < 4; ++i) tet.v[i] = prism.v[corners[i]];
         const Vec3& x0 = shape.positions[tet.v[0]];
         tet.rest_volume = (shape.positions[tet.v[1]] - x0)
                               .dot((shape.positions[tet.v[2]] - x0).cross(shape.positions[tet.v[3]] - x0)) /

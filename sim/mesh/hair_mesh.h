@@ -9,6 +9,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <span>
 #include <stdexcept>
@@ -42,6 +43,12 @@ struct HairMeshShape {
   int columnCount() const { return static_cast<int>(column_first.size()) - 1; }
   int columnLength(int c) const { return column_first[c + 1] - column_first[c]; }
   int vertexCount() const { return column_first.back(); }
+  // Layers of the bundle over a root face: those of its shortest column.
+  int bundleLayers(const RootFace& face) const {
+    int layers = columnLength(face.columns[0]);
+    for (int k = 1; k < face.corner_count; ++k) layers = std::min(layers, columnLength(face.columns[k]));
+    return layers;
+  }
 };
 
 // An edge of the hair mesh. Horizontal edges join neighbouring columns in one layer, vertical ones two layers of a
@@ -75,6 +82,15 @@ struct CornerTet {
   double rest_volume;  // m^3, signed: e1 . (e2 x e3) / 6
   double volume;       // m^3, the prism's volume over its corner count
 };
+
+// The corner tetrahedron at corner k of a prism over a face of n corners, by the prism's vertices: the corner, its two
+// neighbours in the layer and the vertex above or below it. Around an upper corner the neighbours swap, so that the
+// volume stays positive.
+constexpr std::array<int, 4> cornerTetOf(int k, int n) {
+  const int layer = k < n ? 0 : n, corner = k - layer;
+  const int next = layer + (corner + 1) % n, previous = layer + (corner + n - 1) % n;
+  return {k, layer ? previous : next, layer ? next : previous, n - layer + corner};
+}
 
 // A prism over a root face between layers `layer` and `layer + 1`. v: the corners of the lower layer, then of the
 // upper.

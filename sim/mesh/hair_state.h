@@ -29,6 +29,12 @@ struct HairState {
   // The step before, for two-step integrators; empty after a restart.
   std::vector<Vec3> previous_positions, previous_velocities;
   double previous_dt = 0;  // s
+
+  // Restarts the two-step history of a vertex: as if it had come here at its present velocity in a step of dt (s).
+  void restartHistory(int vertex, double dt) {
+    previous_positions[vertex] = positions[vertex] - dt * velocities[vertex];
+    previous_velocities[vertex] = velocities[vertex];
+  }
 };
 
 }  // namespace sim

@@ -8,9 +8,7 @@ namespace sim {
 
 namespace {
 
-struct RootTriangle {
-  std::array<int, 3> columns;
-};
+using RootTriangle = std::array<int, 3>;  // columns
 
 struct RootPlace {
   std::array<int, 3> columns{};
@@ -20,8 +18,8 @@ struct RootPlace {
 std::vector<RootTriangle> rootTriangles(const HairMesh& mesh) {
   std::vector<RootTriangle> triangles;
   for (const RootFace& face : mesh.shape.root_faces) {
-    triangles.push_back({{face.columns[0], face.columns[1], face.columns[2]}});
-    if (face.corner_count == 4) triangles.push_back({{face.columns[0], face.columns[2], face.columns[3]}});
+    triangles.push_back({face.columns[0], face.columns[1], face.columns[2]});
+    if (face.corner_count == 4) triangles.push_back({face.columns[0], face.columns[2], face.columns[3]});
   }
   return triangles;
 }
@@ -46,12 +44,12 @@ RootPlace placeOnScalp(const HairMesh& mesh, std::span<const RootTriangle> trian
   RootPlace best;
   double nearest = std::numeric_limits<double>::infinity();
   for (const RootTriangle& triangle : triangles) {
-    const Vec3 &a = at(triangle.columns[0]), &b = at(triangle.columns[1]), &c = at(triangle.columns[2]);
+    const Vec3 &a = at(triangle[0]), &b = at(triangle[1]), &c = at(triangle[2]);
     const Vec3 weights = weightsAt(a, b, c, root);
     const double distance = (weights[0] * a + weights[1] * b + weights[2] * c - root).squaredNorm();
     if (distance < nearest) {
       nearest = distance;
-      best = {triangle.columns, weights};
+      best = {triangle, weights};
     }
   }
   return best;

@@ -1,8 +1,7 @@
-// Carries the shape of hair from one hair mesh to another on the same scalp: a style at two resolutions.
+// Transfers the shape of hair between hair meshes on one scalp: a style at two resolutions.
 //
-// A vertex of the target finds the source's root triangle nearest to its column's root, and the same share of the
-// length along the three columns of it. Its displacement from rest, seen from the head, is the weighted one of those
-// six vertices.
+// A target vertex takes the source's root triangle nearest to its column's root, and on its three columns the same share
+// of the length. Its displacement from rest, in the head's frame, is the weighted mean of those six vertices'.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -1,6 +1,7 @@
 #include "sim/styles/hair_styles.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <numbers>
@@ -102,31 +103,13 @@ HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& scalp, 
 }
 
 std::string_view styleName(Style style) {
-  switch (style) {
-    case Style::kShort:
-      return "short";
-    case Style::kShoulder:
-      return "shoulder";
-    case Style::kLong:
-      break;
-  }
-  return "long";
+  constexpr std::array<std::string_view, 3> kNames{"short", "shoulder", "long"};
+  return kNames[static_cast<std::size_t>(style)];
 }
 
 std::string_view resolutionName(Resolution resolution) {
-  switch (resolution) {
-    case Resolution::kLow:
-      return "low";
-    case Resolution::kMedium:
-      return "medium";
-    case Resolution::kHigh:
-      return "high";
-    case Resolution::kMinimal:
-      return "minimal";
-    case Resolution::kUltra:
-      break;
-  }
-  return "ultra";
+  constexpr std::array<std::string_view, 5> kNames{"low", "medium", "high", "ultra", "minimal"};
+  return kNames[static_cast<std::size_t>(resolution)];
 }
 
 }  // namespace sim

@@ -1,6 +1,7 @@
 #include "sim/styles/style_comb.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace sim {
@@ -19,22 +20,9 @@ struct Cut {
   double tautness;  // how nearly the outer guide hangs straight from the widest part of the head
 };
 
-Cut cutOf(Style style) {
-  switch (style) {
-    case Style::kShort:
-      return {0.024, -0.20, -0.25, -0.40, false, false, 0.35};
-    case Style::kShoulder:
-      return {0.034, 0.05, 0.05, 0.0, true, false, 0.6};
-    case Style::kLong:
-      break;
-  }
-  return {0.036, -0.50, -0.90, -1.08, true, true, 0.8};
-}
-
-double smoothstep(double a, double b, double x) {
-  const double t = std::clamp((x - a) / (b - a), 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
+constexpr std::array kCuts{Cut{0.024, -0.20, -0.25, -0.40, false, false, 0.35},  // by Style
+                           Cut{0.034, 0.05, 0.05, 0.0, true, false, 0.6},
+                           Cut{0.036, -0.50, -0.90, -1.08, true, true, 0.8}};
 
 // Height of the shoulders' tops beside the neck, where hair comes to rest.
 double shoulderHeight(const Scalp& scalp, const BodyDistance& body) {
@@ -88,6 +76,7 @@ struct Comber {
   void hangOuter(int sheet);
   void relaxInner();
   void raiseOuter();
+  double rowAtHeight(int sheet, double height) const;
   void measure();
 };
 
@@ -344,27 +333,24 @@ void Comber::raiseOuter() {
   }
 }
 
+// The row at which a sheet's inner guide first falls to a height, below the hairline; the last row if it does not.
+double Comber::rowAtHeight(int sheet, double height) const {
+  for (int r = coat.scalp_rows + 2; r < coat.rows; ++r) {
+    const double above = coat.inner[coat.index(sheet, r - 1)].y(), here = coat.inner[coat.index(sheet, r)].y();
+    if (here <= height) return r - 1 + std::clamp((above - height) / std::max(above - here, 1e-9), 0.0, 1.0);
+  }
+  return coat.rows - 1.0;
+}
+
 void Comber::measure() {
   coat.travelled.assign(coat.inner.size(), 0.0);
-  coat.cut_row.assign(coat.sheets, coat.rows - 1.0);
-  coat.short_row.assign(coat.sheets, coat.rows - 1.0);
   for (int s = 0; s < coat.sheets; ++s) {
-    const double cut_height = ends[s], rests = scalp.center.y() + shoulders + 0.16 * scalp.head_height;
-    bool cut_found = false, rest_found = false;
     for (int r = 1; r < coat.rows; ++r) {
-      const Vec3 &a = coat.inner[coat.index(s, r - 1)], &b = coat.inner[coat.index(s, r)];
-      coat.travelled[coat.index(s, r)] = coat.travelled[coat.index(s, r - 1)] + (b - a).norm();
-      if (r < coat.scalp_rows + 2) continue;
-      const double drop = std::max(a.y() - b.y(), 1e-9);
-      if (!cut_found && b.y() <= cut_height) {
-        cut_found = true;
-        coat.cut_row[s] = r - 1 + std::clamp((a.y() - cut_height) / drop, 0.0, 1.0);
-      }
-      if (!rest_found && b.y() <= rests) {
-        rest_found = true;
-        coat.short_row[s] = r - 1 + std::clamp((a.y() - rests) / drop, 0.0, 1.0);
-      }
+      const double way = (coat.inner[coat.index(s, r)] - coat.inner[coat.index(s, r - 1)]).norm();
+      coat.travelled[coat.index(s, r)] = coat.travelled[coat.index(s, r - 1)] + way;
     }
+    coat.cut_row.push_back(rowAtHeight(s, ends[s]));
+    coat.short_row.push_back(rowAtHeight(s, scalp.center.y() + shoulders + 0.16 * scalp.head_height));
   }
   if (cut.divides) coat.divide = kDivide;
 }
@@ -381,7 +367,7 @@ Vec3 bodyNormal(const BodyDistance& body, const Vec3& p) {
 }
 
 Coat combCoat(Style style, const Scalp& scalp, const BodyDistance& body, const FlowLines& lines) {
-  Comber comber{style, scalp, body, lines, cutOf(style), shoulderHeight(scalp, body), {}};
+  Comber comber{style, scalp, body, lines, kCuts[static_cast<std::size_t>(style)], shoulderHeight(scalp, body), {}};
   comber.coat.sheets = lines.sheets;
   comber.coat.scalp_rows = lines.rows;
   comber.fallAll();

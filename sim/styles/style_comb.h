@@ -2,6 +2,8 @@
 // outer one, both followed from the parting over the hairline down to where the hair is cut.
 #pragma once
 
+#include <algorithm>
+
 #include "sim/styles/hair_styles.h"
 #include "sim/styles/style_roots.h"
 
@@ -19,6 +21,12 @@ struct Coat {
 
   std::size_t index(int sheet, int row) const { return static_cast<std::size_t>(sheet) * rows + row; }
 };
+
+// 0 below a, 1 above b, a cubic between.
+inline double smoothstep(double a, double b, double x) {
+  const double t = std::clamp((x - a) / (b - a), 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
 
 Coat combCoat(Style style, const Scalp& scalp, const BodyDistance& body, const FlowLines& lines);
 

@@ -48,18 +48,14 @@ HairMeshShape refined(const HairMeshShape& shape, const Scalp& scalp) {
   };
   for (const RootFace& face : shape.root_faces) {
     const int n = face.corner_count;
-    int layers = shape.columnLength(face.columns[0]);
-    for (int k = 1; k < n; ++k) layers = std::min(layers, shape.columnLength(face.columns[k]));
+    const int layers = shape.bundleLayers(face);
     // Turned so that the first edge runs across the sheets and the last one within a sheet.
     int turn = 0;
     const auto corner = [&](int k) { return face.columns[(k + turn) % n]; };
     while (!(acrossSheets(corner(0), corner(1)) && !acrossSheets(corner(n - 1), corner(0)))) ++turn;
     const int near = middle(corner(0), corner(1)), far = middle(corner(n - 2), corner(n - 1));
     addFace({corner(0), near, far, corner(n - 1)}, layers);
-    if (n == 4)
-      addFace({near, corner(1), corner(2), far}, layers);
-    else
-      addFace({near, corner(1), far}, layers);
+    addFace(n == 4 ? std::vector{near, corner(1), corner(2), far} : std::vector{near, corner(1), far}, layers);
   }
   for (const FineColumn& column : columns) {
     for (int l = 0; l < 2 * column.layers - 1; ++l) {

@@ -13,22 +13,18 @@ constexpr int kSweeps = 240;
 constexpr double kShortestEdge = 0.0032;  // m: shorter ones ruin the conditioning of the simulator's systems
 constexpr double kLargestMove = 0.004;    // m a sweep: large steps would throw neighbours over each other
 
-// Corner, its two neighbours in the layer and the one along the hair, in the order that makes the volume positive.
-using Corner = std::array<int, 4>;
+using Corner = std::array<int, 4>;  // vertices, as CornerTet::v
 
 std::vector<Corner> corners(const HairMeshShape& shape) {
   std::vector<Corner> out;
   for (const RootFace& face : shape.root_faces) {
-    int layers = shape.columnLength(face.columns[0]);
-    for (int k = 1; k < face.corner_count; ++k) layers = std::min(layers, shape.columnLength(face.columns[k]));
     const int n = face.corner_count;
-    for (int l = 0; l + 1 < layers; ++l) {
+    for (int l = 0; l + 1 < shape.bundleLayers(face); ++l) {
       for (int k = 0; k < n; ++k) {
-        const int here = shape.column_first[face.columns[k]] + l;
-        const int next = shape.column_first[face.columns[(k + 1) % n]] + l;
-        const int previous = shape.column_first[face.columns[(k + n - 1) % n]] + l;
-        out.push_back({here, next, previous, here + 1});
-        out.push_back({here + 1, previous + 1, next + 1, here});
+        for (const int corner : {k, n + k}) {
+          Corner& vertices = out.emplace_back(cornerTetOf(corner, n));
+          for (int& v : vertices) v = shape.column_first[face.columns[v % n]] + l + v / n;
+        }
       }
     }
   }

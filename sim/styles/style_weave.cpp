@@ -11,11 +11,6 @@ constexpr double kHairlineRise = 0.34;  // share of the coat's thickness that th
 constexpr double kRiseAtHairline = 0.012, kRiseAtParting = 0.048;  // m of travel over which a column leaves the scalp
 constexpr double kInStepBelowHairline = 0.04;                      // m
 
-double smoothstep(double a, double b, double x) {
-  const double t = std::clamp((x - a) / (b - a), 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
-
 // A column to be: the sheet it runs in and its rank, 0 at the hairline to 1 at the parting.
 struct Plait {
   int sheet;

@@ -37,9 +37,7 @@ sim::HairMeshShape uneven(const sim::HairMeshShape& shape) {
   Random random(7);
   std::vector<int> lengths(static_cast<std::size_t>(shape.columnCount()), 2);
   for (const sim::RootFace& face : shape.root_faces) {
-    int most = shape.columnLength(face.columns[0]);
-    for (int k = 1; k < face.corner_count; ++k) most = std::min(most, shape.columnLength(face.columns[k]));
-    const int layers = std::max(2, static_cast<int>(random(0.4, 1.0) * most + 0.5));
+    const int layers = std::max(2, static_cast<int>(random(0.4, 1.0) * shape.bundleLayers(face) + 0.5));
     for (int k = 0; k < face.corner_count; ++k) lengths[face.columns[k]] = std::max(lengths[face.columns[k]], layers);
   }
   return trimmed(shape, lengths, shape.root_faces);
@@ -47,8 +45,7 @@ sim::HairMeshShape uneven(const sim::HairMeshShape& shape) {
 
 sim::HairMeshShape singleBundle(const sim::HairMeshShape& shape) {
   const sim::RootFace& face = shape.root_faces[shape.root_faces.size() / 2];
-  int layers = shape.columnLength(face.columns[0]);
-  for (int k = 1; k < face.corner_count; ++k) layers = std::min(layers, shape.columnLength(face.columns[k]));
+  const int layers = shape.bundleLayers(face);
   std::vector<int> lengths(static_cast<std::size_t>(shape.columnCount()), 0);
   for (int k = 0; k < face.corner_count; ++k) lengths[face.columns[k]] = layers;
   return trimmed(shape, lengths, {face});
