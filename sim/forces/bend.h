@@ -3,26 +3,24 @@
 // midpoints. theta_0 is where the hinge is at rest, its shift included, so that a hinge that folds over passes from pi
 // to -pi off it at one energy.
 //
-// A wall without area has no angle: passing through there, the angle jumps by anything up to pi, and so would the
-// energy. So the angle counts for less in a wall whose doubled area has a square s below `smallest_square` (m^4), by
-// t (2 - t), t = s / smallest_square: energy and forces vanish with the area, the pull on a wall stays bounded, and, C
-// being one function of the shape, the hinge neither turns nor pushes anything as a whole.
+// A wall without area has no angle. Let s be the square of a wall's doubled area: below `smallest_square` (m^4) the
+// angle fades by t (2 - t), t = s / smallest_square, so that energy and forces vanish with the area and stay bounded.
 #pragma once
 
 #include "sim/forces/force_kind.h"
 
 namespace sim {
 
-// A hinge's condition, and the bound of its curvature where a wall has collapsed: `crush` (1/m^2) times the stiffness,
-// along each wall's way out of its collapse. Without it hair crushed by wind is thrown to and fro from step to step.
+// `crush` (1/m^2): bound of C d2C/dx2 where a wall has collapsed. Without it hair crushed by wind oscillates from step
+// to step.
 template <class T>
 struct BendCondition : Condition<T, 6> {
   T crush;
 };
-// Second derivatives of fade and angle are some times the squared inverse of the height left. With 8 limp hair comes to
-// rest no more often, and violent motion falls so far short that loose solves look as good as the default's.
+// Times the squared inverse of the height left, the scale of the second derivatives of fade and angle. 8 makes violent
+// motion too stiff.
 inline constexpr double kCrush = 2;
-// What `crush` weighs between two of a hinge's vertices: both far sides' middles against the hinge's.
+// Weight of `crush` between two of a hinge's vertices: the middles of both far sides against the hinge's.
 constexpr double crushWeight(int u, int v) {
   const int apart = u / 2 < v / 2 ? v / 2 - u / 2 : u / 2 - v / 2;
   return apart == 0 ? (u / 2 == 1 ? 0.5 : 0.25) : apart == 1 ? -0.25 : 0;
@@ -48,7 +46,7 @@ HAIRMESH_INLINE BendCondition<T> bendCondition(const V3<T>* x, T rest_angle, T i
   const T inverse_s1 = one / (bound1 > zero ? bound1 : one), inverse_s2 = one / (bound2 > zero ? bound2 : one);
   const T t1 = small1 ? s1 * inverse_s1 : one, t2 = small2 ? s2 * inverse_s2 : one;
   const T fade1 = t1 * (two - t1), fade2 = t2 * (two - t2), fade = fade1 * fade2;
-  // d theta / d x is along n / s, which grows without bound as the area goes: fade / s is finite.
+  // d theta / d x is along n / s, unbounded as the area vanishes; fade / s is finite.
   const T w1 = (two - t1) * inverse_s1 * fade2, w2 = (two - t2) * inverse_s2 * fade1;
   const T scale = -length * inverse_length;
   const V3<T> g1 = (scale * w1) * n1, g2 = (scale * w2) * n2;
@@ -61,7 +59,7 @@ HAIRMESH_INLINE BendCondition<T> bendCondition(const V3<T>* x, T rest_angle, T i
   c.g[2] = (along1 - one) * g1 + (along2 - one) * g2;
   c.g[3] = (-along1) * g1 + (-along2) * g2;
   if (anyOf(small1) || anyOf(small2)) {
-    // What the area's change adds: C d fade / fade, by ds1 = 2 n1 . (de x a + e x da), ds2 = 2 n2 . (db x e + b x de).
+    // The fade's derivative, C d fade / fade, by ds1 = 2 n1 . (de x a + e x da), ds2 = 2 n2 . (db x e + b x de).
     const T slope = constant<T>(4) * (angle * inverse_length);
     const V3<T> r1 = (slope * (one - t1) * inverse_s1 * fade2) * n1,
                 r2 = (slope * (one - t2) * inverse_s2 * fade1) * n2;
@@ -87,14 +85,14 @@ struct Bend {
 
   static void collect(const ForceSource& source, const auto& add) {
     for (const Hinge& hinge : source.mesh.hinges) {
-      // Below three tenths of its rest height a wall counts as collapsed.
+      // A wall below three tenths of its rest height has collapsed.
       const double area = 0.3 * hinge.length * restLength(source.mesh, hinge.v[2], hinge.v[3]);
       add(ElementOf<Bend>{
           hinge.v, source.params.bend * hinge.volume, {hinge.rest_angle, 1 / hinge.length, area * area}});
     }
   }
 
-  // The shift is one of the rest angle: where the angle jumps by a full turn, the energy does not.
+  // The shift is one of the rest angle, so that the energy is continuous where the angle jumps by a full turn.
   template <class T>
   static T restAngle(const std::array<T, kRest>& rest, T shift) {
     return rest[0] + shift / rest[1];

@@ -1,7 +1,6 @@
-// Plain evaluation of the elements of one kind, whatever the kind: into vectors and blocks by vertex, or in column
-// layout.
+// Plain evaluation of the elements of any kind, by vertex or in column layout.
 //
-// k: stiffness, c: condition with its rest shift taken off, g: its gradient; see force_kind.h.
+// k: stiffness, c: condition less its shift, g: its gradient; see force_kind.h.
 #pragma once
 
 #include <span>
@@ -11,8 +10,7 @@
 
 namespace sim {
 
-// What an evaluation reads and adds to, by vertex. A pair's block is that of its larger vertex (row) with its smaller
-// one; `slot` is its number in the pattern.
+// Positions and sums by vertex. A pair's block has the larger vertex as its row; `slot`: its number in the pattern.
 template <class T>
 struct BlockSums {
   std::span<const V3<T>> x;
@@ -29,7 +27,7 @@ struct BlockSums {
   }
 };
 
-// What an evaluation in column layout adds up; see Evaluation.
+// Evaluation in column layout.
 template <class T>
 struct ColumnEvaluation {
   ColumnField<T>* force = nullptr;    // added

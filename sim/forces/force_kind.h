@@ -1,15 +1,14 @@
-// What a force kind is. One header a kind, one line in kinds.h; all else loops over that list.
+// Force kinds: one header a kind, one line in kinds.h; all else loops over that list.
 //
-// An element's energy is that of a condition function C of its vertices, after Baraff and Witkin, "Large Steps in Cloth
-// Simulation" (1998), and Wu and Yuksel (2016), equations (1) and (2):
+// An element has a condition function C of its vertices (Baraff and Witkin, "Large Steps in Cloth Simulation" (1998);
+// Wu and Yuksel (2016), equations (1) and (2)):
 //
 //   energy    E = k (C - s)^2 / 2                      (s: shift, the value at which the element is at rest)
 //   force     f = -k (C - s) dC/dx - d (dC/dt) dC/dx   (d: damping)
 //   Hessian   K = k dC/dx dC/dx^T + (positive semi-definite part of k (C - s) d2C/dx2)
 //
-// The second term of K is a kind's `curvature`. Only stretch under tension has one that is positive semi-definite as it
-// stands; shear and volume are indefinite there and drop it, bend has a bound of it. So K is positive semi-definite in
-// every state, flattened and inverted ones included.
+// The second term of K is a kind's `curvature`: exact for stretch under tension, dropped by shear and volume, where it
+// is indefinite, a bound for bend. K is positive semi-definite in every state, flattened and inverted ones included.
 #pragma once
 
 #include <array>
@@ -31,40 +30,40 @@ struct Condition {
   V3<T> g[N];
 };
 
-// What elements are made from. Of a step's input only kinds that move may make elements.
+// The source of elements. Only moving kinds make elements of a step's input.
 struct ForceSource {
   const HairMesh& mesh;
   const SimParams& params;
   std::span<const PinnedVertex> pins{};
 };
 
-// One element as its kind makes it. `rest`: the constants of its condition, as the kind's header names them.
+// One element. `rest`: the constants of its condition, as the kind's header names them.
 template <class Kind>
 struct ElementOf {
   std::array<int, Kind::kVertices> vertices;
-  double stiffness = 0;  // J over the square of the condition's unit; an element without stiffness is left out
+  double stiffness = 0;  // J over the square of the condition's unit; elements of zero stiffness are left out
   std::array<double, Kind::kRest> rest{};
-  double shift = 0;  // at which it is at rest before gravity is balanced
+  double shift = 0;  // C at rest, before gravity is balanced
 };
 
-// A parameter that stiffnesses follow, and what the energy limit (stabilization/energy_limit.h) concludes from it.
+// A parameter that stiffnesses follow, and its place in the energy limit (stabilization/energy_limit.h).
 struct Modulus {
   double SimParams::*param;
-  // Pa: a step stays near to linear over a way shorter by sqrt(gentle / modulus) where the modulus is larger.
-  double gentle = INFINITY;
-  bool yields = false;       // among the moduli of which the softest decides whether hair is limp
-  double uneven = INFINITY;  // times the softest: hair that is stiffer than that buckles
-  bool over_length = false;  // Pa m^2, counted over the square of a segment's length
+  double gentle = INFINITY;  // Pa; above, the way over which a step is near to linear shrinks by sqrt(gentle / modulus)
+  bool yields = false;       // the softest of these decides whether hair is limp
+  double uneven = INFINITY;  // times the softest: stiffer hair buckles
+  bool over_length = false;  // Pa m^2, divided by the square of a segment's length
 };
 
 // A kind has all of this, or kinds.h does not compile:
-//   kName, kUnit         of the kind; of its condition ("1" for none)
-//   kVertices, kRest     how many vertices and how many constants an element has
-//   kModuli              the parameters that its stiffnesses follow, beside the density
-//   collect(source, add) calls add(ElementOf<Kind>) for every element, always in the same order
-//   condition(x, rest, shift)         C - s and its gradient, or a type derived from Condition that tells curvature
-//   more maxShift(rest)                    bound of what the balance of gravity may add to the shift kCurved whether
-//   there is curvature(condition, p, q)        the part of (C - s) d2C/dx_p dx_q that the Hessian keeps
+//   kName, kUnit                of the kind; of its condition ("1" for none)
+//   kVertices, kRest            number of vertices and of constants of an element
+//   kModuli                     the parameters that its stiffnesses follow, beside the density
+//   collect(source, add)        calls add(ElementOf<Kind>) for every element, always in the same order
+//   condition(x, rest, shift)   C - s and its gradient; a type derived from Condition may carry more for `curvature`
+//   maxShift(rest)              bound of the balance of gravity's share of the shift
+//   kCurved                     whether there is a curvature
+//   curvature(condition, p, q)  the part of (C - s) d2C/dx_p dx_q that the Hessian keeps
 template <class Kind>
 concept ForceKind = requires(const ForceSource& source, const V3<double>* x, const V3<float>* y,
                              const std::array<double, Kind::kRest>& rest, const std::array<float, Kind::kRest>& low) {
@@ -82,10 +81,9 @@ concept ForceKind = requires(const ForceSource& source, const V3<double>* x, con
   };
 };
 
-// A kind whose elements are made anew in every step, of the step's input. They are at rest where the input says, and
-// take no share in the balance of gravity.
-//   drift(rest)                       dC/dt with the vertices still
-//   relativeTo(origin, rest)          the constants where positions are relative to `origin` (m)
+// A kind whose elements are made anew in every step, of the step's input. It has no part in the balance of gravity.
+//   drift(rest)               dC/dt with the vertices still
+//   relativeTo(origin, rest)  the constants for positions relative to `origin` (m)
 template <class Kind>
 concept MovingKind = ForceKind<Kind> && requires(const std::array<double, Kind::kRest>& rest, const Vec3& origin) {
   { Kind::drift(rest) } -> std::same_as<double>;

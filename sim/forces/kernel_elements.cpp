@@ -14,7 +14,7 @@ int roundedUp(int count) {
 
 using EdgeNumber = std::map<std::pair<int, int>, int>;
 
-// Root edges by their columns, oriented as their first wall is wound.
+// Root edges by their columns, in the direction of their first wall.
 EdgeNumber numberEdges(const HairMesh& mesh) {
   EdgeNumber number;
   for (const Wall& wall : mesh.walls) {
@@ -123,38 +123,27 @@ void ColumnModel<T>::locate(const HairMesh& mesh, const ColumnLayout& layout, co
 }
 
 template <class T>
-void ColumnModel<T>::setElements(const HairMesh& mesh, const ColumnLayout& layout, const ForceModel<double>& model) {
-  model.forEach([&]<class Kind>(const Elements<Kind, double>& elements) {
-    if constexpr (!KernelKinds::contains<Kind>() && !MovingKind<Kind>)
-      convertElements(elements, plain.template of<Kind>());
-  });
-  const std::size_t stride = layout.stride;
-  locate(mesh, layout, model);
-  for (auto* array :
-       {&vertical.stiffness, &horizontal.stiffness, &shear_stiffness, &bend_stiffness, &volume_stiffness}) {
-    std::fill(array->begin(), array->end(), T(0));
-  }
-  std::fill(bend_smallest_square.begin(), bend_smallest_square.end(), T(0));  // the padding never counts as collapsed
-  const auto& stretch = model.of<Stretch>();
+void ColumnModel<T>::setStretch(const HairMesh& mesh, const Elements<Stretch, double>& stretch) {
   for (std::size_t e = 0; e < stretch.size(); ++e) {
     const auto [a, b] = stretch.vertices[e];
-    const bool is_vertical = mesh.column_of[a] == mesh.column_of[b];
-    StretchArrays& to = is_vertical ? vertical : horizontal;
+    StretchArrays& to = mesh.column_of[a] == mesh.column_of[b] ? vertical : horizontal;
     const std::size_t at = located_.stretch[e].at;
     to.stiffness[at] = static_cast<T>(stretch.stiffness[e]);
     to.inverse_length[at] = static_cast<T>(stretch.rest[e][0]);
     to.shift[at] = static_cast<T>(stretch.shift[e]);
   }
-  const auto& shear = model.of<Shear>();
+}
+
+// A wall or hinge that is wound against its root edge has a condition of the opposite sign.
+template <class T>
+void ColumnModel<T>::setWalls(const Elements<Shear, double>& shear, const Elements<Bend, double>& bend) {
   for (std::size_t e = 0; e < shear.size(); ++e) {
     const auto [at, against] = located_.shear[e];
     shear_stiffness[at] = static_cast<T>(shear.stiffness[e]);
     inverse_along[at] = static_cast<T>(shear.rest[e][0]);
     inverse_across[at] = static_cast<T>(shear.rest[e][1]);
-    // Wound the other way the wall's second axis, and with it the condition, changes sign.
     shear_shift[at] = static_cast<T>(against ? -shear.shift[e] : shear.shift[e]);
   }
-  const auto& bend = model.of<Bend>();
   for (std::size_t e = 0; e < bend.size(); ++e) {
     const auto [at, against] = located_.bend[e];
     const double rest = Bend::restAngle(bend.rest[e], bend.shift[e]);
@@ -163,6 +152,39 @@ void ColumnModel<T>::setElements(const HairMesh& mesh, const ColumnLayout& layou
     bend_inverse_length[at] = static_cast<T>(bend.rest[e][1]);
     bend_smallest_square[at] = static_cast<T>(bend.rest[e][2]);
   }
+}
+
+// The mesh's corner tetrahedra come by face, then layer, then corner.
+template <class T>
+void ColumnModel<T>::setVolume(const HairMesh& mesh, std::size_t stride, const Elements<Volume, double>& volume) {
+  if (volume.size() == 0) return;
+  std::size_t tet = 0;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    for (int l = 0; l + 1 < mesh.bundle_layers[f]; ++l) {
+      for (int k = 0; k < 2 * faces[f].corner_count; ++k, ++tet) {
+        const std::size_t at = faces[f].first + k * stride + l;
+        volume_stiffness[at] = static_cast<T>(volume.stiffness[tet]);
+        volume_rest[at] = static_cast<T>(volume.rest[tet][0] + volume.shift[tet]);
+      }
+    }
+  }
+}
+
+template <class T>
+void ColumnModel<T>::setElements(const HairMesh& mesh, const ColumnLayout& layout, const ForceModel<double>& model) {
+  model.forEach([&]<class Kind>(const Elements<Kind, double>& elements) {
+    if constexpr (!KernelKinds::contains<Kind>() && !MovingKind<Kind>)
+      convertElements(elements, plain.template of<Kind>());
+  });
+  locate(mesh, layout, model);
+  // Entries without an element: no stiffness, and no wall that counts as collapsed.
+  for (auto* array : {&vertical.stiffness, &horizontal.stiffness, &shear_stiffness, &bend_stiffness, &volume_stiffness,
+                      &bend_smallest_square}) {
+    std::fill(array->begin(), array->end(), T(0));
+  }
+  setStretch(mesh, model.of<Stretch>());
+  setWalls(model.of<Shear>(), model.of<Bend>());
+  setVolume(mesh, layout.stride, model.of<Volume>());
   const auto any = [](const std::vector<T>& stiffness) {
     return std::any_of(stiffness.begin(), stiffness.end(), [](T k) { return k != 0; });
   };
@@ -170,21 +192,7 @@ void ColumnModel<T>::setElements(const HairMesh& mesh, const ColumnLayout& layou
   has_horizontal = any(horizontal.stiffness);
   has_shear = any(shear_stiffness);
   has_bend = any(bend_stiffness);
-  const auto& volume = model.of<Volume>();
-  has_volume = volume.size() > 0;
-  if (!has_volume) return;
-  std::size_t tet = 0;
-  for (const Face& face : faces) {
-    // The mesh's corner tetrahedra come by face, then layer, then corner.
-    const int f = static_cast<int>(&face - faces.data());
-    for (int l = 0; l + 1 < mesh.bundle_layers[f]; ++l) {
-      for (int k = 0; k < 2 * face.corner_count; ++k, ++tet) {
-        const std::size_t at = face.first + k * stride + l;
-        volume_stiffness[at] = static_cast<T>(volume.stiffness[tet]);
-        volume_rest[at] = static_cast<T>(volume.rest[tet][0] + volume.shift[tet]);
-      }
-    }
-  }
+  has_volume = model.of<Volume>().size() > 0;
 }
 
 template <class T>

@@ -1,10 +1,10 @@
 // The kernels: kLanes layers of one column, root edge or face at a time.
 //
-// k: stiffness, c: condition with its rest shift taken off, g: its gradient; see force_kind.h.
+// k: stiffness, c: condition less its shift, g: its gradient; see force_kind.h.
 //
-// What the elements of a wall with its hinge, or of a prism, add to one block of the matrix is summed first and added
-// to memory once. Blocks one layer apart overlap there but for one entry, and a load that overlaps a store still under
-// way waits for it: so they are added far from each other, or shifted onto each other in registers.
+// The terms of a wall with its hinge, or of a prism, are summed by block and added to memory once. Blocks one layer
+// apart overlap in memory, and a load that overlaps an unfinished store stalls: they are added far from each other, or
+// shifted onto each other in registers.
 #include "sim/forces/kernels.h"
 
 #include "sim/forces/prism_shares.h"
@@ -12,7 +12,7 @@
 namespace sim {
 namespace {
 
-// What the kernels add to, by plain pointers.
+// The sums of an evaluation.
 template <class T>
 struct Sums {
   ColumnField<T>* force;
@@ -66,6 +66,17 @@ HAIRMESH_INLINE Lanes<T> pullOf(const Lanes<T>& c, const Lanes<T>& k, Sums<T>& s
   return pull;
 }
 
+// The same, with dC/dt from the gradient: vertex v of the condition has entry at(v).
+template <class T, int N>
+HAIRMESH_INLINE Lanes<T> pullOf(const Lanes<T>& c, const Lanes<T>& k, Sums<T>& sums, const V3<Lanes<T>> (&g)[N],
+                                const auto& at) {
+  return pullOf<T>(c, k, sums, [&] {
+    Lanes<T> rate = constant<Lanes<T>>(0);
+    for (int v = 0; v < N; ++v) rate += dot(g[v], loadAt(*sums.velocity, at(v)));
+    return rate;
+  });
+}
+
 // Stretch of kLanes edges between entries a and b.
 template <class T>
 struct StretchTerms {
@@ -88,7 +99,7 @@ HAIRMESH_INLINE StretchTerms<T> stretchTerms(const typename ColumnModel<T>::Stre
   return {pull * g, {{ad.x * d.x + turn, ad.x * d.y, ad.x * d.z, ad.y * d.y + turn, ad.y * d.z, ad.z * d.z + turn}}};
 }
 
-// Every column's own edges. A vertex takes from the edge above it and, shifted by one layer, from the one below.
+// Every column's own edges. A vertex takes the terms of the edge above it and, shifted by one layer, of the one below.
 template <class T>
 HAIRMESH_INLINE void addColumns(const ColumnModel<T>& model, const ColumnLayout& layout, const ColumnField<T>& x,
                                 Sums<T>& sums) {
@@ -116,6 +127,45 @@ HAIRMESH_INLINE void addColumns(const ColumnModel<T>& model, const ColumnLayout&
   }
 }
 
+constexpr std::array<int, 4> kWall{0, 1, 3, 2};  // a wall's corners as wound, among the joint's vertices
+
+// What kLanes walls, with their lower sides and hinges, add to the matrix.
+template <class T>
+struct WallShare {
+  V3<Lanes<T>> s[4], g[6];  // gradients of shear and bend, by the joint's vertices, times the root of their weight
+  OwnBlock<T> side;
+  Lanes<T> crush;
+  bool crushed;
+};
+
+template <class T>
+HAIRMESH_INLINE void addBlocks(const WallShare<T>& share, const typename ColumnModel<T>::RootEdge& edge, int layer,
+                               Sums<T>& sums) {
+  const auto addOwn = [&](int v) {
+    OwnBlock<T> block;
+    if (v < 2) block = share.side;
+    if (v < 4) block.addSquare(share.s[v]);
+    block.addSquare(share.g[v]);
+    if (share.crushed) block.addUnit(constant<Lanes<T>>(crushWeight(v, v)) * share.crush);
+    block.addTo(sums.values + edge.own[v] + layer, sums.stride);
+  };
+  const auto addPair = [&](int pair) {
+    const BlockPlace& place = edge.pairs[pair];
+    const int u = kJointPairs[pair][place.transposed], v = kJointPairs[pair][1 - place.transposed];
+    PairBlock<T> block;
+    block.addOuter(share.g[u], share.g[v]);
+    if (u < 4 && v < 4) block.addOuter(share.s[u], share.s[v]);
+    if (pair == 0) block.subtract(share.side);
+    if (share.crushed) block.addUnit(constant<Lanes<T>>(crushWeight(u, v)) * share.crush);
+    block.addTo(sums.values + place.at + layer, sums.stride);
+  };
+  // Lower, lower with uppermost, middle, lower with middle, uppermost, middle with uppermost.
+  for (int part = 0; part < 3; ++part) {
+    addOwn(2 * part), addOwn(2 * part + 1);
+    for (int pair = 5 * part; pair < 5 * part + 5; ++pair) addPair(pair);
+  }
+}
+
 // The walls of kLanes layers over a root edge, each with its lower side and its hinge to the wall above.
 template <class T>
 HAIRMESH_INLINE void addWalls(const ColumnModel<T>& model, const typename ColumnModel<T>::RootEdge& edge,
@@ -124,7 +174,6 @@ HAIRMESH_INLINE void addWalls(const ColumnModel<T>& model, const typename Column
   const std::size_t e = edge.first + layer;
   V p[6];
   for (int v = 0; v < 6; ++v) p[v] = loadAt(x, at[v]);
-  constexpr std::array<int, 4> kWall{0, 1, 3, 2};  // the wall's corners as wound, among the joint's vertices
   const V wall[4] = {p[0], p[1], p[3], p[2]};
   const auto shear =
       shearCondition(wall, load<T>(model.inverse_along.data() + e), load<T>(model.inverse_across.data() + e));
@@ -132,16 +181,9 @@ HAIRMESH_INLINE void addWalls(const ColumnModel<T>& model, const typename Column
       bendCondition(p, load<T>(model.bend_rest_angle.data() + e), load<T>(model.bend_inverse_length.data() + e),
                     load<T>(model.bend_smallest_square.data() + e));
   const Lanes<T> k_shear = load<T>(model.shear_stiffness.data() + e), k_bend = load<T>(model.bend_stiffness.data() + e);
-  const Lanes<T> shear_pull = pullOf<T>(shear.value - load<T>(model.shear_shift.data() + e), k_shear, sums, [&] {
-    Lanes<T> rate = constant<Lanes<T>>(0);
-    for (int v = 0; v < 4; ++v) rate += dot(shear.g[v], loadAt(*sums.velocity, at[kWall[v]]));
-    return rate;
-  });
-  const Lanes<T> bend_pull = pullOf<T>(bend.value, k_bend, sums, [&] {
-    Lanes<T> rate = constant<Lanes<T>>(0);
-    for (int v = 0; v < 6; ++v) rate += dot(bend.g[v], loadAt(*sums.velocity, at[v]));
-    return rate;
-  });
+  const Lanes<T> shear_pull = pullOf<T>(shear.value - load<T>(model.shear_shift.data() + e), k_shear, sums, shear.g,
+                                        [&](int v) { return at[kWall[v]]; });
+  const Lanes<T> bend_pull = pullOf<T>(bend.value, k_bend, sums, bend.g, [&](int v) { return at[v]; });
   const StretchTerms<T> side = stretchTerms<T>(model.horizontal, e, x, at[0], at[1], sums);
   if (sums.force) {
     V push[6];
@@ -151,37 +193,15 @@ HAIRMESH_INLINE void addWalls(const ColumnModel<T>& model, const typename Column
     for (int v = 0; v < 6; ++v) addAt(*sums.force, at[v], push[v]);
   }
   if (!sums.values) return;
-  // Gradients times the root of what they weigh in the matrix.
+  WallShare<T> share;
   const Lanes<T> shear_root = squareRoot(sums.matrix_scale * k_shear),
                  bend_root = squareRoot(sums.matrix_scale * k_bend);
-  V s[4], g[6];
-  for (int v = 0; v < 4; ++v) s[kWall[v]] = shear_root * shear.g[v];
-  for (int v = 0; v < 6; ++v) g[v] = bend_root * bend.g[v];
-  const bool crushed = anyOf(bend.crush > constant<Lanes<T>>(0));
-  const Lanes<T> crush = sums.tension_scale * k_bend * bend.crush;
-  const auto addOwn = [&](int v) {
-    OwnBlock<T> block;
-    if (v < 2) block = side.block;
-    if (v < 4) block.addSquare(s[v]);
-    block.addSquare(g[v]);
-    if (crushed) block.addUnit(constant<Lanes<T>>(crushWeight(v, v)) * crush);
-    block.addTo(sums.values + edge.own[v] + layer, sums.stride);
-  };
-  const auto addPair = [&](int pair) {
-    const BlockPlace& place = edge.pairs[pair];
-    const int u = kJointPairs[pair][place.transposed], v = kJointPairs[pair][1 - place.transposed];
-    PairBlock<T> block;
-    block.addOuter(g[u], g[v]);
-    if (u < 4 && v < 4) block.addOuter(s[u], s[v]);
-    if (pair == 0) block.subtract(side.block);
-    if (crushed) block.addUnit(constant<Lanes<T>>(crushWeight(u, v)) * crush);
-    block.addTo(sums.values + place.at + layer, sums.stride);
-  };
-  // Lower, lower with uppermost, middle, lower with middle, uppermost, middle with uppermost.
-  for (int part = 0; part < 3; ++part) {
-    addOwn(2 * part), addOwn(2 * part + 1);
-    for (int pair = 5 * part; pair < 5 * part + 5; ++pair) addPair(pair);
-  }
+  for (int v = 0; v < 4; ++v) share.s[kWall[v]] = shear_root * shear.g[v];
+  for (int v = 0; v < 6; ++v) share.g[v] = bend_root * bend.g[v];
+  share.side = side.block;
+  share.crushed = anyOf(bend.crush > constant<Lanes<T>>(0));
+  share.crush = sums.tension_scale * k_bend * bend.crush;
+  addBlocks(share, edge, layer, sums);
 }
 
 template <class T>
@@ -193,7 +213,7 @@ HAIRMESH_INLINE void addEdges(const ColumnModel<T>& model, const ColumnLayout& l
     for (int l = 0; l < walls; l += kLanes) {
       addWalls(model, edge, {a + l, b + l, a + l + 1, b + l + 1, a + l + 2, b + l + 2}, l, x, sums);
     }
-    // Sides without a wall: the uppermost, where they are not among the lower sides of the last kLanes.
+    // Sides without a wall: the uppermost, where the lanes of the walls do not reach them.
     for (int l = walls; l < edge.sides; l += kLanes) {
       const StretchTerms<T> side = stretchTerms<T>(model.horizontal, edge.first + l, x, a + l, b + l, sums);
       if (sums.force) {
@@ -230,11 +250,7 @@ HAIRMESH_INLINE void addPrisms(const ColumnModel<T>& model, const typename Colum
     const V corners[4] = {p[tet[0]], p[tet[1]], p[tet[2]], p[tet[3]]};
     const auto volume = volumeCondition(corners, load<T>(model.volume_rest.data() + e));
     const Lanes<T> stiffness = load<T>(model.volume_stiffness.data() + e);
-    const Lanes<T> pull = pullOf<T>(volume.value, stiffness, sums, [&] {
-      Lanes<T> rate = zero;
-      for (int v = 0; v < 4; ++v) rate += dot(volume.g[v], loadAt(*sums.velocity, at[tet[v]]));
-      return rate;
-    });
+    const Lanes<T> pull = pullOf<T>(volume.value, stiffness, sums, volume.g, [&](int v) { return at[tet[v]]; });
     const Lanes<T> root = squareRoot(sums.matrix_scale * stiffness);
     for (int v = 0; v < 4; ++v) {
       push[tet[v]] -= pull * volume.g[v];

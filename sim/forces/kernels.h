@@ -1,6 +1,5 @@
-// The force model in column layout: the elements of the kinds that have a fast kernel, arranged by root edge and root
-// face with their layers along the vector lanes. This is what the simulator runs; evaluate() over ForceModel is the
-// plain reference that tests hold it to.
+// Fast kernels, run by the solve: elements arranged by root edge and root face, with layers along the vector lanes.
+// evaluate() over ForceModel is the plain reference that tests hold them to.
 #pragma once
 
 #include <array>
@@ -12,11 +11,11 @@
 
 namespace sim {
 
-// The kinds with a fast kernel. Those without run through the plain evaluation (evaluate.h).
+// The kinds with a kernel. All others run through the plain evaluation (evaluate.h).
 using KernelKinds = KindList<Stretch, Shear, Bend, Volume>;
 
-// A wall with the one above it: vertices of columns a, b in its lower layer, between the walls, in the upper layer. Its
-// pairs, the lower side first, so ordered that those one layer apart are far from each other.
+// The joint of a wall and the one above it: vertices a, b of the lower layer, of the middle one, of the upper one. Its
+// pairs of vertices, the lower side first, in an order that keeps pairs one layer apart far from each other.
 inline constexpr std::array<std::array<int, 2>, 15> kJointPairs{{{0, 1},
                                                                  {0, 4},
                                                                  {0, 5},
@@ -33,8 +32,8 @@ inline constexpr std::array<std::array<int, 2>, 15> kJointPairs{{{0, 1},
                                                                  {3, 4},
                                                                  {3, 5}}};
 
-// Element arrays are `stride` long per root edge, face corner or column; entry l belongs to layers l, l + 1 (and l + 2
-// for hinges); stiffness is zero where there is no element.
+// Element arrays have `stride` entries a root edge, face corner or column; entry l is of layers l and l + 1 (hinges:
+// and l + 2). Stiffness is zero where there is no element.
 template <class T>
 struct ColumnModel {
   struct StretchArrays {
@@ -64,28 +63,31 @@ struct ColumnModel {
   std::vector<T> bend_stiffness, bend_rest_angle, bend_inverse_length, bend_smallest_square;
   std::vector<T> volume_stiffness, volume_rest;
   ForceModel<T> plain;  // the kinds without a kernel
-  // Whether any element of the kind has a stiffness: kinds without one are not assembled.
+  // Kinds without an element are not assembled.
   bool has_vertical = true, has_horizontal = true, has_shear = true, has_bend = true, has_volume = true;
 
   ColumnModel(const HairMesh& mesh, const ColumnLayout& layout, const ColumnPattern& pattern);
-  // Takes over stiffnesses and rest values; the topology stays.
+  // Copies stiffnesses and rest values.
   void setElements(const HairMesh& mesh, const ColumnLayout& layout, const ForceModel<double>& model);
-  // Takes over the elements that the step's input moves, for positions relative to `origin` (m).
+  // Copies the elements of moving kinds, for positions relative to `origin` (m).
   void setMoving(const ForceModel<double>& model, const Vec3& origin);
 
  private:
-  // Entry of an element in its arrays, and whether it is wound against the root edge. Looked up once for each set of
-  // elements: a dragged slider changes their values in every frame.
+  // Entry of an element in its arrays, and whether it is wound against the root edge. Kept while the set of elements is
+  // the same, for a dragged slider changes values in every frame.
   struct Entry {
     std::size_t at;
     bool against;
   };
   struct Located {
     std::vector<Entry> stretch, shear, bend;
-    std::array<int, 2> first_stretch{-1, -1};  // tells sets of one size apart
+    std::array<int, 2> first_stretch{-1, -1};  // with the sizes: identifies the set
   };
   Located located_;
   void locate(const HairMesh& mesh, const ColumnLayout& layout, const ForceModel<double>& model);
+  void setStretch(const HairMesh& mesh, const Elements<Stretch, double>& stretch);
+  void setWalls(const Elements<Shear, double>& shear, const Elements<Bend, double>& bend);
+  void setVolume(const HairMesh& mesh, std::size_t stride, const Elements<Volume, double>& volume);
 };
 
 // As evaluate() over ForceModel, within rounding.

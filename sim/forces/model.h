@@ -1,5 +1,4 @@
-// All elements of a hair mesh with the stiffness and rest value of each: what the material parameters make of the rest
-// shape.
+// All elements of a hair mesh, with stiffness and rest value of each.
 #pragma once
 
 #include <algorithm>
@@ -32,7 +31,7 @@ struct ForceModel {
     std::apply([&](const auto&... elements) { (f(elements), ...); }, tables);
   }
 
-  // Calls f with the elements of those kinds that the material makes, not the step's input.
+  // The same without moving kinds.
   void forEachOfMaterial(auto&& f) {
     forEach([&]<class Kind>(Elements<Kind, T>& elements) {
       if constexpr (!MovingKind<Kind>) f(elements);
@@ -50,20 +49,19 @@ struct ForceModel {
 // The vertex pairs that any element couples: the pattern of every system matrix of this mesh.
 BlockPattern systemPattern(const HairMesh& mesh);
 
-// Stiffnesses from the moduli and each element's share of the hair's volume. With sag_free, rest shifts are solved for
-// so that the styled pose carries gravity (down the scalp frame's y): the elastic forces there equal minus the weight.
-// Relative residual of that balance: below 1e-9, unless a shift had to be bounded (a kind's maxShift) because the
-// material is too soft to hold the style.
+// Stiffnesses: moduli times each element's share of the hair's volume. With sag_free, rest shifts balance gravity (down
+// the scalp frame's y) in the styled pose: elastic forces equal minus the weight, to a relative residual of 1e-9 unless
+// a kind's maxShift bounds a shift.
 ForceModel<double> makeForceModel(const HairMesh& mesh, const BlockPattern& pattern, const SimParams& params);
 
 // The elements alone, at rest in the styled pose without gravity.
 ForceModel<double> makeElements(const ForceSource& source, const BlockPattern& pattern);
 
-// The stiffnesses that makeElements would give, over its elements. False when other elements would exist (a modulus has
-// become zero or was): then only makeElements will do.
+// Sets the stiffnesses that makeElements would give. False if its set of elements would differ, because a modulus has
+// become zero or was.
 bool setStiffness(const ForceSource& source, ForceModel<double>& model);
 
-// Makes the elements of the kinds that move anew. Allocates only where there are more than ever before.
+// Makes the elements of moving kinds anew. Allocates only where there are more than ever before.
 void setMovingElements(const ForceSource& source, const BlockPattern& pattern, ForceModel<double>& model);
 
 // Whether two sets of parameters give the same stiffnesses and the same balance of gravity.
@@ -82,14 +80,14 @@ void convertElements(const Elements<Kind, double>& from, Elements<Kind, T>& to) 
 template <class T>
 ForceModel<T> convertModel(const ForceModel<double>& model);
 
-// What an evaluation adds up. Null pointers and zero scales skip their part.
+// The sums of an evaluation. Null pointers, empty spans and zero scales skip their part.
 template <class T>
 struct Evaluation {
   std::span<V3<T>> force;            // N, -dE/dx, added
   BlockMatrix<T>* matrix = nullptr;  // added: matrix_scale sum k g g^T + tension_scale sum k curvature
   T matrix_scale = 0, tension_scale = 0;
-  // Damping forces -damping k (g . v) g, added when velocities are given (m/s); of kinds that move, -damping k (g . v +
-  // drift) g, and without velocities the part of the drift alone.
+  // m/s; adds damping forces -damping k (g . v + drift) g. Without velocities, moving kinds add those of the drift
+  // alone.
   std::span<const V3<T>> velocities;
   T damping = 0;  // s
 };

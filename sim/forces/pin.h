@@ -1,7 +1,5 @@
-// A pin's spring between a vertex and a point that the step's input moves: along each axis a condition of its own,
-// C = axis . (x - target), so that the three are as stiff in every direction and linear.
-//
-// A pin of infinite stiffness is no spring but a constraint of the solve; see pinned_vertex.h.
+// The spring of a pin between a vertex and a point that the step's input moves: C = axis . (x - target), one element an
+// axis. A pin of infinite stiffness is a constraint of the solve instead; see pinned_vertex.h.
 #pragma once
 
 #include "sim/forces/force_kind.h"
@@ -35,12 +33,10 @@ struct Pin {
   static double maxShift(const std::array<double, kRest>&) { return 0; }
   static constexpr bool kCurved = false;
 
-  // dC/dt by the target's motion alone.
   template <class T>
   static T drift(const std::array<T, kRest>& rest) {
     return -rest[4];
   }
-  // The constants where positions are relative to `origin` (m).
   static std::array<double, kRest> relativeTo(const Vec3& origin, std::array<double, kRest> rest) {
     rest[3] -= rest[0] * origin.x() + rest[1] * origin.y() + rest[2] * origin.z();
     return rest;

@@ -1,4 +1,4 @@
-// Pins: hair mesh vertices that are drawn to points of the step's input, by a spring or firmly.
+// Pins: hair mesh vertices drawn to points of the step's input, by a spring or firmly.
 #pragma once
 
 #include <limits>
@@ -23,22 +23,22 @@ struct PinnedVertex {
   bool operator==(const PinnedVertex&) const = default;
 };
 
-// A pin lets go where its target is farther from the column's root than so many times the column is long to the vertex:
-// hair does not stretch further.
+// A pin is released where its target is farther from the column's root than so many times the column's length up to the
+// vertex.
 inline constexpr double kPinReach = 2;
-// m/s, beside its target's own speed, at which a vertex closes in on a target that it is firmly pinned to.
+// m/s, above the target's own speed, at which a firmly pinned vertex approaches its target.
 inline constexpr double kPinClosing = 2;
 
-// The pins that hold in this step, firm ones with the place that the vertex is taken to as their target. Left out are
-// those out of reach, without stiffness, on a root (which the scalp carries), and all but the first firm one of a
-// vertex. Sorted by vertex. `roots`: m, one a column. Returns how many are out of reach.
+// The pins that hold in this step, sorted by vertex; the target of a firm one is where the vertex ends the step. Left
+// out are those out of reach, without stiffness, on a root, and all but the first firm one of a vertex. `roots`: m, one
+// a column. Returns the number out of reach.
 int holdingPins(const HairMesh& mesh, std::span<const PinnedVertex> pins, std::span<const Vec3> roots, double dt,
                 const HairState& state, std::vector<PinnedVertex>& holding);
 
 // Puts firmly pinned vertices on their targets.
 void placePinned(std::span<const PinnedVertex> pins, HairState& state);
 
-// Adds the constraints of firm pins to those of contacts, in whose place they come: x = x_hat + h v ends on the target.
+// Adds the constraints of firm pins, x_hat + h v = target, in place of contacts' constraints of the same vertices.
 void constrainPinned(std::span<const PinnedVertex> pins, std::span<const Vec3> x_hat, double h,
                      std::vector<VertexConstraint>& constraints);
 

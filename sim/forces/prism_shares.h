@@ -1,19 +1,19 @@
-// Which corner tetrahedra of a prism couple which of its vertices: known when the program is compiled.
+// Which corner tetrahedra of a prism couple which of its vertices, at compile time.
 #pragma once
 
 #include <array>
 
+#include "sim/mesh/hair_mesh.h"
+
 namespace sim {
 
 // Vertices of a prism over a face of N corners: its lower corners 0 .. N - 1, then the upper ones above them.
-// Tetrahedron k has vertex k, its two neighbours in the layer and the vertex above or below it, as in HairMesh.
 template <int N>
 struct PrismShares {
   static constexpr int kVertices = 2 * N;
-  // Pairs of vertices that some tetrahedron couples: in the lower layer, between the layers, in the upper layer. All
-  // but the diagonals through a hexahedron's middle.
+  // Coupled pairs: in the lower layer, between the layers, in the upper layer. All but a hexahedron's inner diagonals.
   static constexpr int kLayerPairs = N == 4 ? 6 : 3, kPairs = 2 * kLayerPairs + 3 * N;
-  // Tetrahedra at a vertex, and most that share a pair.
+  // Tetrahedra at a vertex; most that share a pair.
   static constexpr int kOfVertex = 4, kMaxOfPair = 3;
 
   struct Share {
@@ -29,13 +29,7 @@ struct PrismShares {
   std::array<std::array<int, kOfVertex>, kVertices> place_in{};  // per vertex: 4 * tetrahedron + place in it
 
   constexpr PrismShares() {
-    for (int k = 0; k < kVertices; ++k) {
-      const bool upper = k >= N;
-      const int corner = k % N, layer = upper ? N : 0, next = layer + (corner + 1) % N,
-                previous = layer + (corner + N - 1) % N;
-      // Around an upper corner the neighbours swap, so that the volume stays positive.
-      tets[k] = {k, upper ? previous : next, upper ? next : previous, N - layer + corner};
-    }
+    for (int k = 0; k < kVertices; ++k) tets[k] = cornerTetOf(k, N);
     int count = 0;
     for (const int crossing : {0, 1, 2}) {
       for (int u = 0; u < kVertices; ++u) {

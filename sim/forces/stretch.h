@@ -1,6 +1,5 @@
-// Stretch of an edge: C = |x1 - x0| / L - 1. With a wall's material axes laid along its sides, Baraff and Witkin's
-// |w_u| - 1 and |w_v| - 1 are this condition on its sides, so that sides shared by walls are evaluated once with the
-// walls' summed volume.
+// Stretch of an edge: C = |x1 - x0| / L - 1. Baraff and Witkin's |w_u| - 1 and |w_v| - 1, with a wall's material axes
+// along its sides, are this condition on the sides; a side that walls share is evaluated once with their summed volume.
 #pragma once
 
 #include "sim/forces/force_kind.h"
@@ -22,7 +21,7 @@ HAIRMESH_INLINE StretchCondition<T> stretchCondition(const V3<T>& x0, const V3<T
   const T zero = constant<T>(0), one = constant<T>(1);
   const V3<T> d = x1 - x0;
   const T length = squareRoot(dot(d, d));
-  // An edge collapsed to a millionth of its length has no direction; other forces part its ends.
+  // An edge below a millionth of its length has no direction.
   const auto collapsed = length * inverse_length < constant<T>(1e-6);
   const T inverse = collapsed ? zero : one / (collapsed ? one : length);
   return {length * inverse_length - one, inverse * d, inverse_length, inverse_length * inverse};
@@ -44,7 +43,7 @@ struct Stretch {
       add(ElementOf<Stretch>{{e.a, e.b}, modulus * e.volume, {1 / e.rest_length}});
     };
     for (const Edge& e : source.mesh.vertical_edges) edge(e, params.stretch_along);
-    // A horizontal edge carries the walls' stretch across the hair and its own.
+    // Horizontal edges: the walls' stretch across the hair, and the edges' own.
     for (const Edge& e : source.mesh.horizontal_edges) edge(e, params.stretch_across + params.stretch_edge);
   }
 

@@ -1,6 +1,5 @@
-// Volume of a corner tetrahedron, equation (1): C = e1 . (e2 x e3) / 6 - V0, with equation (2)'s gradient. (The paper
-// prints the forces with the sixth taken into k; here it stays in the gradient, so that f = -k C dC/dx holds to the
-// letter.)
+// Volume of a corner tetrahedron, equation (1): C = e1 . (e2 x e3) / 6 - V0, with equation (2)'s gradient. (The paper's
+// forces have the sixth in k; here it is in the gradient, so that f = -k C dC/dx.)
 #pragma once
 
 #include <algorithm>
@@ -22,11 +21,10 @@ HAIRMESH_INLINE Condition<T, 4> volumeCondition(const V3<T>* x, T rest_volume) {
   return c;
 }
 
-// The modulus (Pa) with which this mesh's prisms resist a change of volume: params.volume where they measure 1.5 cm^2
-// or less across the hair, and in inverse proportion less where they are wider. Hair as a whole yields to a bend by
-// widening here and narrowing there; a wide prism cannot follow within itself, and with the same modulus a coarse mesh
-// would move 0.7 to 0.8 times as far as a fine one (docs/consistency.md). Not below what the hair's own weight asks
-// for, twice its density times 9.81 m/s^2 times its length: softer hair would not keep its shape.
+// The modulus (Pa) of this mesh's prisms: params.volume for sections up to 1.5 cm^2 across the hair, less in inverse
+// proportion for wider ones, which cannot narrow and widen within themselves as hair does in a bend
+// (docs/consistency.md). At least twice the density times 9.81 m/s^2 times the hair length, so that hair carries its
+// weight.
 inline double volumeModulus(const HairMesh& mesh, const SimParams& params) {
   constexpr double kResolvedSection = 1.5e-4;  // m^2
   constexpr double kCarrying = 2 * 9.81;       // m/s^2
