@@ -6,11 +6,11 @@
 namespace sim {
 namespace {
 
-// Closest point of the axis-aligned ellipsoid with radii r to p with p >= 0, after Eberly, "Distance from a Point to an
+// Closest point of the axis-aligned ellipsoid with radii r to p >= 0, after Eberly, "Distance from a Point to an
 // Ellipse, an Ellipsoid, or a Hyperellipsoid" (2013): the point is r_i^2 p_i / (t + r_i^2) with t the largest root of
-// F(t) = sum (r_i p_i / (t + r_i^2))^2 - 1, which falls monotonically for t > -min r^2. The unknown here is s = t / min
-// r^2 + 1 >= 0, the distance from the pole of F: near the symmetry plane of the shortest axis the root comes as near to
-// the pole as p does to the plane, and t itself would round it away.
+// F(t) = sum (r_i p_i / (t + r_i^2))^2 - 1, which falls monotonically for t > -min r^2. The unknown here is the
+// distance from the pole of F, s = t / min r^2 + 1 >= 0, which keeps its digits near the symmetry plane of the shortest
+// axis.
 Vec3 closestInOctant(const Vec3& r, const Vec3& p) {
   const double smallest = r.minCoeff();
   const Vec3 q = (r / smallest).cwiseAbs2();                                  // squared radii over the smallest, >= 1
@@ -126,7 +126,7 @@ SurfacePoint closestPoint(const BodySdf& part, const Vec3& p) {
   }
   SurfacePoint out;
   out.distance = distanceAt(part.grid, local);
-  // On the ridge of the distance all ways out are equally near: away from the middle.
+  // Where the slope vanishes all ways out are equally near: away from the middle.
   if (!(slope.squaredNorm() > 1e-12 * reach * reach)) slope = local.squaredNorm() > 0 ? local : Vec3(Vec3::UnitY());
   out.normal = body.rotation * slope.normalized();
   out.point = p - out.distance * out.normal;

@@ -1,5 +1,4 @@
-// What hair collides with: ellipsoids, and signed distance grids of a body's parts. Inside test, closest point, normal,
-// surface velocity.
+// Colliders: ellipsoids, and body SDFs. Inside test, closest point, normal, surface velocity.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,14 +19,13 @@ struct Ellipsoid {
   Vec3 angular_velocity = Vec3::Zero();                          // rad/s, world axes
 };
 
-// Where a point stands against an ellipsoid.
 struct SurfacePoint {
   Vec3 point;       // closest point of the surface, world
   Vec3 normal;      // outward unit normal there
   double distance;  // signed, m: negative inside
 };
 
-// (p/r)^2 - 1 in the local frame: negative inside. Cheap; not a distance.
+// (p/r)^2 - 1 in the local frame: negative inside. Not a distance.
 double implicitValue(const Ellipsoid& e, const Vec3& p);
 
 // Exact closest point (Eberly's one-dimensional root, bracketed Newton), not radial scaling. Any p, the centre
@@ -37,28 +35,27 @@ SurfacePoint closestPoint(const Ellipsoid& e, const Vec3& p);
 // Velocity (m/s) of the ellipsoid's material at world point p.
 Vec3 surfaceVelocity(const Ellipsoid& e, const Vec3& p);
 
-// Where the ellipsoid's motion over the step of dt seconds carries a point that was fixed to it at the step's start.
+// The place at the end of a step of dt seconds of a point fixed to the ellipsoid at its start.
 Vec3 carriedAlong(const Ellipsoid& e, const Vec3& start, double dt);
 
-// Signed distances (m, negative inside) at the nodes of a box, in a part's own frame; trilinear in between. Outside the
-// box the distance to it is added.
+// Signed distances (m, negative inside) at the nodes of a box, in its own frame; trilinear in between. Outside the box
+// the distance to it is added.
 struct DistanceGrid {
   Vec3 low = Vec3::Zero();          // m, the first node
   double spacing = 0;               // m
   std::array<int, 3> nodes{};       // at least 2 each; x runs fastest
   std::span<const float> values{};  // nodes[0] * nodes[1] * nodes[2]
-  double deepest = 0;               // m, the least value, negated: about the part's inner radius
+  double deepest = 0;               // m, the least value, negated: about the body part's inner radius
 };
 double distanceAt(const DistanceGrid& grid, const Vec3& local);
 
-// A rigid part of a body: its grid's frame is that of `bounds`, an ellipsoid around the part that carries its pose and
-// motion and tells what is far away.
+// A rigid body part. `bounds`: an ellipsoid around it, whose frame is the grid's and whose motion is the part's.
 struct BodySdf {
   Ellipsoid bounds;
   DistanceGrid grid;
 };
 
-// Distance from the grid, normal from its slope. Near the surface within the grid's own error of the true part.
+// Distance from the grid, normal from its slope. Error: the grid's.
 SurfacePoint closestPoint(const BodySdf& part, const Vec3& p);
 
 // The colliders of a step, of either kind, by index.
@@ -72,7 +69,7 @@ struct Colliders {
   SurfacePoint closest(int k, const Vec3& p) const {
     return parts.empty() ? closestPoint(ellipsoids[k], p) : closestPoint(parts[k], p);
   }
-  // m, how far the middle of collider k lies from its surface.
+  // m, from the middle of collider k to its surface.
   double thickness(int k) const { return parts.empty() ? ellipsoids[k].radii.minCoeff() : parts[k].grid.deepest; }
 };
 

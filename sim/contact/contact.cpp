@@ -11,14 +11,12 @@ namespace {
 
 constexpr int kProjections = 32;     // alternating projections between overlapping colliders
 constexpr double kSlackShare = 0.2;  // of the contact offset
-constexpr double kRestoring = 0.2;   // share of a dip below the offset that a step closes
-// m^3 m/s^2 times the density: what closing a dip may cost, J. A stiff edge between root and body presses with a
-// hundred newtons; brought out by the tenth of a millimetre that it dips, light hair would gain more than a motion left
-// it. A coarse mesh's vertex, of 3 cm^3, is lifted by 1 cm for so much.
+constexpr double kRestoring = 0.2;   // share of the depth below the offset that a step closes
+// Energy budget, per unit density (m^5/s^2), for lifting a vertex to the contact offset: 3 cm^3 of hair by 1 cm.
 constexpr double kLiftWork = 3e-7;
-constexpr double kReach = 0.01;  // m off the surface up to which a contact is kept, for it may slide over an edge
+constexpr double kReach = 0.01;  // m off the surface at which a contact is dropped; less may be a slide over an edge
 constexpr double kCreep = 1e-3, kNoSlip = 1e-9;  // m/s
-constexpr double kLeaving = 1;  // m/s that a body moves away from a vertex at: more than hair follows within a step
+constexpr double kLeaving = 1;                   // m/s away from the body at which a contact is dropped
 // Paths past a collider
 constexpr double kStraight = 0.2;  // rad; a collider that turns less is passed on a straight line
 constexpr double kGrazing = 0.1;   // of its thickness; a path no deeper slides over a rounded body
@@ -26,13 +24,13 @@ constexpr int kMaxMarches = 64, kDepthSamples = 8, kMaxSamples = 512;
 constexpr double kSampling = 0.5;  // of its thickness, from one sample of the depth to the next
 constexpr double kMet = 1e-5;      // m
 // Bounds of clusters
-constexpr int kMaxClustered = 16;   // vertices of a cluster: fewer are more to bound, more reach farther
-constexpr double kRounding = 1e-6;  // m, more than rounding may make of what the tests themselves would say
-// Out of a crowd of bodies
-constexpr double kNeighbour = 0.005;  // m; bodies so near to a vertex are those that hem it in
-constexpr double kStride = 5e-4;      // m, at least
+constexpr int kMaxClustered = 16;   // vertices of a cluster
+constexpr double kRounding = 1e-6;  // m, above the rounding of the tests that the bounds stand for
+// Out of overlapping bodies
+constexpr double kNeighbour = 0.005;  // m; bodies so near to a vertex count as around it
+constexpr double kStride = 5e-4;      // m, least step
 
-// Whether p can lie within `offset` of the surface; may say yes for a little more.
+// False only if p lies farther than `offset` off the surface.
 bool mayTouch(const Ellipsoid& e, double offset, const Vec3& p) {
   const double reach = e.radii.maxCoeff() + offset;
   const Vec3 d = p - e.center;
@@ -103,10 +101,10 @@ struct SweptBall {
       : center(end), swept((1 + kStraight) * (end - start - shift).norm()) {}
 };
 
-// How far the collider's own motion brings its reach. With d from its centre to a ball's, w the way of that relative to
-// the collider as if it did not turn, and a turn by t, the chord along which sweep looks for the collider is no longer
-// than |w| + t (|d| + |w|), and no vertex of the ball is farther than its radius from the ball's own chord. So neither
-// sweep nor mayTouch finds anything where |d| exceeds reach, radius and that together.
+// Extends the collider's reach by its own motion. Let d be the vector from its centre to a ball's, w the ball's way
+// relative to the collider without its turn, and t the turn. The chord that sweep tests is at most |w| + t (|d| + |w|)
+// long, and every vertex stays within the ball's radius of the ball's own chord. So sweep and mayTouch find nothing
+// where |d| exceeds the sum of reach, radius and chord.
 void boundReach(const Vec3& shift, NearCollider& near) {
   if (near.turned >= kStraight) return;  // met on arcs
   const double way = (near.after - near.before - shift).norm();
@@ -142,14 +140,14 @@ void collectReached(const ContactSearch& search, const Vec3& shift, ContactScrat
   }
 }
 
-// A vertex's way past a collider over the step, seen from the collider as it stands at the step's end.
+// A vertex's way over the step in the frame of a collider, placed as at the step's end.
 struct Path {
   const NearCollider* body;
   Vec3 axis;        // of the collider's turn
   Vec3 start, end;  // m, world, at the step's start and end
-  double speed;     // m per step, at most: relative speed and, far out, that of the turning
+  double speed;     // m per step, upper bound: relative motion, and the turn's at its arm
 
-  // m, world: where the vertex at the share t of the step would be had it moved with the collider from then on.
+  // m, world: the vertex at the share t of the step, carried with the collider to the step's end.
   Vec3 at(double t) const {
     const double back = 1 - t;
     const Vec3 arm = start + t * (end - start) - (body->after + back * (body->before - body->after));
@@ -158,8 +156,8 @@ struct Path {
   }
 };
 
-// Where the path first meets the offset surface from outside and goes in by more than `grazing`. Marches by the
-// distance, which no path at this speed can outrun.
+// Where the path first meets the offset surface from outside and goes in by more than `grazing`: sphere tracing, then
+// samples of the depth.
 std::optional<Vec3> entryOf(const Path& path, const Colliders& colliders, int k, double offset, double grazing) {
   double t = 0;
   for (int march = 0; march < kMaxMarches && t < 1; ++march) {
@@ -170,7 +168,6 @@ std::optional<Vec3> entryOf(const Path& path, const Colliders& colliders, int k,
   }
   if (t >= 1) return {};
   double least = 0;
-  // So close that none steps over a thin body.
   const int samples =
       std::clamp(static_cast<int>(path.speed * (1 - t) / (kSampling * path.body->thin)), kDepthSamples, kMaxSamples);
   for (int i = 1; i <= samples && least > -grazing; ++i) {
@@ -181,17 +178,11 @@ std::optional<Vec3> entryOf(const Path& path, const Colliders& colliders, int k,
   return path.at(t);
 }
 
-// A contact with one collider, as the step leaves it.
-struct Touch {
-  Vec3 target = Vec3::Zero(), normal = Vec3::UnitY();
-  double depth = 0;  // m, inside the offset; at most zero: none
-  bool initial_overlap = false;
-  double left = 0;  // m, how far below the offset the target lies
-};
-
-// The vertex went through the collider, or so deep that its nearest way out lies on the far side: it stays on the side
-// that it came from, at the point where it met the surface, slid along by what its motion had left tangentially.
-void sweep(const ContactSearch& search, const NearCollider& near, const Vec3& start, const Vec3& end, Touch& touch) {
+// Continuous test. A vertex that went through the collider, or so deep that the nearest way out lies on the far side,
+// is put back on the side that it came from: to its point of entry, moved on by the tangential part of the rest of its
+// way.
+void sweep(const ContactSearch& search, const NearCollider& near, const Vec3& start, const Vec3& end,
+           Penetration& touch) {
   const double from_start = (start - near.before).norm(), from_end = (end - near.after).norm();
   const double speed = (end - start - (near.after - near.before)).norm() + near.turned * std::max(from_start, from_end);
   if (speed < 0.5 * near.thin || from_end > near.reach + speed) return;
@@ -210,7 +201,7 @@ void sweep(const ContactSearch& search, const NearCollider& near, const Vec3& st
   const std::optional<Vec3> entry = entryOf(path, search.colliders, k, offset, kGrazing * thin);
   if (!entry) return;
   const SurfacePoint met = search.colliders.closest(k, *entry);
-  if (touch.depth > 0 && touch.normal.dot(met.normal) >= 0) return;  // its way out lies on the side that it came from
+  if (touch.depth > 0 && touch.normal.dot(met.normal) >= 0) return;  // the nearest way out is on that side
   const Vec3 rest = end - met.point;
   const SurfacePoint slid = search.colliders.closest(k, met.point + rest - rest.dot(met.normal) * met.normal);
   touch.target = slid.point + offset * slid.normal;
@@ -218,9 +209,9 @@ void sweep(const ContactSearch& search, const NearCollider& near, const Vec3& st
   touch.depth = std::max(touch.depth, (end - touch.target).norm());
 }
 
-// How a collider stands to a vertex at p.
-Touch touchOf(const ContactSearch& search, const NearCollider& near, int vertex, const Vec3& p, bool swept) {
-  Touch touch;
+// The contact of a vertex at p with one collider; a depth of at most zero: none.
+Penetration touchOf(const ContactSearch& search, const NearCollider& near, int vertex, const Vec3& p, bool swept) {
+  Penetration touch{vertex, near.index, Vec3::Zero(), Vec3::UnitY(), 0, false, 0};
   const int k = near.index;
   const double offset = search.margins.offset;
   if (mayTouch(search.colliders.body(k), offset, p)) {
@@ -231,7 +222,7 @@ Touch touchOf(const ContactSearch& search, const NearCollider& near, int vertex,
     if (touch.depth > 0 && !search.start.empty()) {
       const double before = offset - search.colliders.closest(k, near.carried(search.start[vertex])).distance;
       if (before > search.margins.slack + kMet) {
-        // It stood inside: out by no more than the escape, and no deeper than it was.
+        // An initial overlap: resolved by no more than the escape, and no deeper than it was.
         touch.initial_overlap = true;
         touch.left = std::max(0.0, before - search.margins.escape);
         const double level = offset - touch.left;
@@ -258,24 +249,23 @@ void carryContacts(const Colliders& colliders, const SimParams& params, double d
     const Vec3& x = state.positions[contact.vertex];
     const Vec3 carried = carriedAlong(colliders.body(contact.collider), x, dt);
     const SurfacePoint surface = colliders.closest(contact.collider, carried);
-    const double dip = margins.offset - surface.distance;
-    // What slides over a rounded body leaves it tangentially: the solve may bring it back, and lets go of it where it
-    // would have to pull.
-    const bool dear = contact.pressure * dip > kLiftWork * params.density;
-    const double closed = dear ? 0 : kRestoring * std::min(dip, margins.slack);
-    const double back = dip > 0 ? closed : std::max(dip, -margins.escape);
+    const double depth = margins.offset - surface.distance;
+    const bool too_stiff = contact.pressure * depth > kLiftWork * params.density;
+    const double closed = too_stiff ? 0 : kRestoring * std::min(depth, margins.slack);
+    // Above the offset the vertex may be sliding over a rounded body: the solve brings it back unless it has to pull.
+    const double back = depth > 0 ? closed : std::max(depth, -margins.escape);
     contact.normal = surface.normal;
     contact.velocity = (carried - x + back * surface.normal) / dt;
-    // The solve would let go of what a body leaves behind, but to no better than its tolerance of the body's speed.
+    // The solve lets go of a vertex that a body leaves behind only to its tolerance of the body's speed.
     const double leaving = surface.normal.dot(state.velocities[contact.vertex] - (carried - x) / dt);
-    return -dip > kReach || leaving > kLeaving;
+    return -depth > kReach || leaving > kLeaving;
   });
 }
 
 namespace {
 
-// Where projections go to and fro between bodies that overlap: straight away from those around p, until all are left,
-// or as it was where that is too far.
+// Where projections alternate between overlapping bodies: marches straight away from the mean centre of the bodies
+// around the vertex until it is outside all of them. Leaves `hit` as it is if that is too far.
 void leaveAll(const ContactSearch& search, const ContactScratch& scratch, Penetration& hit) {
   const auto deepestAt = [&](const Vec3& p, int& collider) {
     double depth = 1e-9;
@@ -367,31 +357,27 @@ void findPenetrations(const ContactSearch& search, std::span<const Vec3> positio
     Penetration hit{v, -1, p, Vec3::UnitY(), 0, false, 0};
     bool out = false;
     for (int round = 0; round < kProjections && !out; ++round) {
-      Touch deepest;
-      deepest.depth = 1e-9;
-      int collider = -1;
-      const auto look = [&](const NearCollider& near) {
-        const Touch touch = touchOf(search, near, v, p, round == 0);
-        if (touch.depth > deepest.depth) deepest = touch, collider = near.index;
+      Penetration deepest{v, -1, p, Vec3::UnitY(), 1e-9, false, 0};
+      const auto test = [&](const NearCollider& near) {
+        const Penetration touch = touchOf(search, near, v, p, round == 0);
+        if (touch.depth > deepest.depth) deepest = touch;
       };
-      // Bounds hold for where the step has brought the vertex, not for where a collider has moved it to since.
+      // The bounds hold for the path of the step, not for a projected position.
       if (round == 0 && clustered) {
         const SweptBall path(search.start.empty() ? p : search.start[v], p, shift);
         for (const int n : reached) {
-          if (!outOfReach(path, scratch.near[n])) look(scratch.near[n]);
+          if (!outOfReach(path, scratch.near[n])) test(scratch.near[n]);
         }
       } else {
-        for (const NearCollider& near : scratch.near) look(near);
+        for (const NearCollider& near : scratch.near) test(near);
       }
-      out = collider < 0;
+      out = deepest.collider < 0;
       if (out) break;
-      if (hit.collider < 0) hit.depth = deepest.depth;
-      p = deepest.target;
-      hit.collider = collider;
-      hit.target = p;
-      hit.normal = deepest.normal;
-      hit.initial_overlap = hit.initial_overlap || deepest.initial_overlap;
-      hit.left = std::max(hit.left, deepest.left);
+      if (hit.collider >= 0) deepest.depth = hit.depth;  // that of the first projection
+      deepest.initial_overlap = deepest.initial_overlap || hit.initial_overlap;
+      deepest.left = std::max(deepest.left, hit.left);
+      hit = deepest;
+      p = hit.target;
     }
     if (hit.collider < 0) continue;
     if (!out && !hit.initial_overlap) leaveAll(search, scratch, hit);
@@ -408,7 +394,7 @@ void chooseSticking(double friction, double mobility, const Vec3& velocity, Cont
                    (slid ? slip.dot(contact.friction_direction) >= 0 : speed <= friction * contact.pressure * mobility);
   if (contact.sticks || contact.pressure <= 0) contact.friction_direction.setZero();
   if (contact.sticks) return;
-  // The slip of one that creeps says nothing: friction against it would throw the vertex back, and the next step forth.
+  // The direction of a creep is noise: friction against it would make the vertex oscillate.
   const double least = contact.friction_direction.isZero() ? kNoSlip : kCreep;
   if (speed > least) contact.friction_direction = -slip / speed;
   contact.friction_direction -= contact.friction_direction.dot(contact.normal) * contact.normal;
@@ -428,7 +414,7 @@ bool updateSticking(const FrictionLaw& law, const Vec3& reaction, const Vec3& ve
     contact.pressure = 0;
     return true;
   }
-  // While the solve goes on, `grip` tells of one that sticks because friction threw it back.
+  // Within a solve, a contact that sticks with a friction direction has been thrown back by friction.
   const Vec3 tangential = reaction - contact.pressure * contact.normal;
   if (!contact.friction_direction.isZero() || tangential.norm() <= law.coefficient * contact.pressure) return false;
   contact.sticks = false;
@@ -453,7 +439,7 @@ void constrainContacts(std::span<const Contact> contacts, std::vector<VertexCons
         constraint.directions = {contact.normal, tangent, contact.normal.cross(tangent)};
       }
       if (sticks) continue;
-      // Remove this normal's part that earlier normals of the vertex have left free.
+      // The part of this normal within the directions that are still free.
       const Vec3 rest = constraint.keep * contact.normal;
       const double size = rest.norm();
       if (size < 0.05) continue;

@@ -32,13 +32,13 @@ double innerProduct(std::span<const Vec3> a, std::span<const Vec3> b) {
   return sum;
 }
 
-// What a backward substitution reads, and the four right-hand sides a row that it overwrites.
+// A backward substitution: the factor, and four right-hand sides a row that the solution replaces.
 struct Triangle {
   std::span<const int> first, row;
   std::span<const double> below;
   double* x;
 };
-// Several sums, for each waits for its last addition.
+// Four sums, so that an addition need not wait for the last one.
 HAIRMESH_INLINE void substituteBackward(const Triangle& t) {
   using Row = Lanes<double, 4>;
   const int* row = t.row.data();
@@ -189,7 +189,7 @@ void DeformationMinimizer::computePath(Kept& kept) {
   }
 }
 
-// Two paths to one top are the same from where they meet.
+// Paths from two vertices to the root of the tree are one from where they meet.
 double DeformationMinimizer::productOf(const Kept& a, const Kept& b) const {
   double sum = 0;
   for (std::size_t i = a.path.size(), k = b.path.size(); i-- > 0 && k-- > 0 && a.path[i] == b.path[k];)

@@ -16,8 +16,8 @@
 
 namespace sim {
 
-// A^T A of the hair mesh's edges, the scalp layer's included, as a graph: row i has degree[i] on the diagonal and -1 at
-// each neighbour.
+// A^T A over the hair mesh's edges, the scalp layer's included: row i has degree(i) on the diagonal and -1 at each
+// neighbour.
 struct EdgeLaplacian {
   std::vector<int> row_first{0}, neighbours;
   int size() const { return static_cast<int>(row_first.size()) - 1; }
@@ -29,40 +29,40 @@ struct MinimizationScratch {
   std::vector<Vec3> r, z, d, q;
 };
 
-// Modified PCG from `displacement` (u' = x' - x: the corrections where held, anything elsewhere), which it overwrites
-// at the vertices not held. Stops at a residual of `tolerance` times the first (both in the diagonal's inverse norm).
-// Returns the iterations; zero, with no work done, when no held vertex has moved.
+// Modified PCG. `displacement`: u' = x' - x at held vertices, a start value at all others, where the result replaces
+// it. Stops at a residual of `tolerance` times the first, both in the norm of the diagonal's inverse. Returns the
+// iterations; zero, with no work done, when no held vertex has moved.
 int minimizeDeformation(const EdgeLaplacian& laplacian, std::span<const unsigned char> held, double tolerance,
                         MinimizationScratch& scratch, std::span<Vec3> displacement);
 
-// The same for some held vertices, exactly and at the price of one backward substitution: the matrix, only its roots
-// held, is factored once, A^T A = L D L^T. What a pull at a vertex makes of the forward half, L^-1 e, lies on its path
-// through the elimination tree (Gilbert and Peierls 1988) and is kept from step to step, as are the products of two
-// such, which tell how far one pull moves the other's vertex. A small dense system of these says how hard each held
-// vertex must be pulled to go where it is to. Beyond kMaxHeld vertices the iterations above serve, to `tolerance`.
+// The same, solved exactly where few vertices are held. A^T A = L D L^T, with the roots alone held, is factored once.
+// L^-1 e_i is nonzero only on the elimination-tree path of i (Gilbert and Peierls 1988), so it is cached per held
+// vertex, as are the products e_i^T (A^T A)^-1 e_k. A dense system of these gives the forces that move the held
+// vertices to their places; one backward substitution then moves all others. Above kMaxHeld vertices Modified PCG
+// serves.
 class DeformationMinimizer {
  public:
-  static constexpr int kMaxHeld = 96;  // paths kept: 0.8 MB at 10,241 vertices
+  static constexpr int kMaxHeld = 96;  // paths cached: 0.8 MB at 10,241 vertices
 
   explicit DeformationMinimizer(const HairMesh& mesh);  // factors the matrix
 
-  // As minimizeDeformation; roots must be held, and stay. Returns the iterations or, of the exact way, the paths
-  // computed anew plus one; zero with no work done. Allocates nothing.
+  // As minimizeDeformation; roots must be held, and do not move. Returns the iterations or, solved exactly, one plus
+  // the number of paths computed; zero with no work done. Allocates nothing.
   int minimize(std::span<const unsigned char> held, double tolerance, std::span<Vec3> displacement);
 
  private:
   EdgeLaplacian laplacian_;
   MinimizationScratch scratch_;
   std::vector<unsigned char> root_;
-  // The factor: column j of L below its diagonal is below_[first_[j]] ... in the rows row_of_, ascending, so that the
-  // first of them is its parent in the tree; and the inverse of D.
+  // Column j of L below its diagonal: entries first_[j] ... first_[j + 1] - 1 of below_, in rows row_of_, ascending;
+  // the first is the parent of j in the elimination tree. inverse_d_: of D.
   std::vector<int> first_, row_of_;
   std::vector<double> below_, inverse_d_;
   std::vector<int> row_;   // per vertex, in the factor's order; -1: a root
-  std::vector<int> slot_;  // per vertex: where its path is kept, or -1
+  std::vector<int> slot_;  // per vertex: slot of its cached path, or -1
   struct Kept {
     int vertex = -1;
-    long used = 0;  // when last
+    long used = 0;  // call of the last use
     std::vector<int> path;
     std::vector<double> half;  // L^-1 e along it
   };
@@ -75,7 +75,7 @@ class DeformationMinimizer {
   std::vector<int> held_;         // vertices
 
   void factor();
-  int findPaths();  // of held_; the number that were computed
+  int findPaths();  // of held_; returns the number computed
   void computePath(Kept& kept);
   double productOf(const Kept& a, const Kept& b) const;
 };

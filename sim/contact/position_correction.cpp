@@ -12,7 +12,7 @@ constexpr int kPlainRounds = 8;          // more of correction alone
 constexpr double kMinimization = 1e-3;   // relative residual
 constexpr double kFastestFollower = 10;  // m/s that a vertex takes from following a corrected one
 
-// A corrected vertex keeps the collider's normal velocity and loses tangential speed to friction; the new contact
+// A corrected vertex takes the collider's normal velocity and loses tangential speed to friction. The contact
 // constrains the next solve.
 void enterContact(const CorrectedStep& step, const Penetration& hit, HairState& state) {
   const Ellipsoid& body = step.colliders.body(hit.collider);
@@ -26,19 +26,12 @@ void enterContact(const CorrectedStep& step, const Penetration& hit, HairState& 
     v += approach * hit.normal;
     if (speed > 0) v -= slip * (loss / speed);
   }
-  const auto known = std::find_if(state.contacts.begin(), state.contacts.end(), [&](const Contact& c) {
-    return c.vertex == hit.vertex && c.collider == hit.collider;
-  });
-  if (known == state.contacts.end()) {
-    Contact contact;
-    contact.vertex = hit.vertex;
-    contact.collider = hit.collider;
-    contact.normal = hit.normal;
-    state.contacts.push_back(contact);
-  }
+  const bool known = std::ranges::any_of(
+      state.contacts, [&](const Contact& c) { return c.vertex == hit.vertex && c.collider == hit.collider; });
+  if (!known) state.contacts.push_back({.vertex = hit.vertex, .collider = hit.collider, .normal = hit.normal});
 }
 
-// Moves what was found onto the surface. Returns how many vertices were.
+// Moves the vertices found to the surface. Returns their number.
 int correctFound(const CorrectedStep& step, double slack, PositionCorrection& scratch, HairState& state) {
   scratch.corrected.clear();
   for (const Penetration& hit : scratch.penetrations) {
@@ -53,7 +46,7 @@ int correctFound(const CorrectedStep& step, double slack, PositionCorrection& sc
   return static_cast<int>(scratch.corrected.size());
 }
 
-// Speed (m/s) at which the step's own motion, not an overlap that stood before it, had to be corrected.
+// m/s: the deepest penetration by the step's own motion, initial overlaps left out, over the step.
 double correctionSpeed(const CorrectedStep& step, const PositionCorrection& scratch) {
   double most = 0;
   for (const Penetration& hit : scratch.penetrations) {
@@ -77,22 +70,16 @@ int letFollow(PositionCorrection& scratch, HairState& state) {
   return work;
 }
 
-// As if the vertex had come here at its present velocity.
-void restartHistory(const CorrectedStep& step, std::size_t i, HairState& state) {
-  state.previous_positions[i] = state.positions[i] - step.dt * state.velocities[i];
-  state.previous_velocities[i] = state.velocities[i];
-}
-
-// Vertices that followed take the velocity of their displacement, no more than the corrections' own: an overlap that
-// stood before must not become a kick. The two-step history of all that moved restarts.
+// Vertices that followed take the velocity of their displacement, bounded by `most` (m/s): resolving an initial overlap
+// must not kick them. Restarts the two-step history of all that moved.
 void followCorrections(const CorrectedStep& step, double most, const PositionCorrection& scratch, HairState& state) {
-  for (std::size_t i = 0; i < state.positions.size(); ++i) {
-    if (step.mesh.isRoot(static_cast<int>(i))) continue;
+  for (int i = 0; i < step.mesh.vertexCount(); ++i) {
+    if (step.mesh.isRoot(i)) continue;
     const Vec3 moved = state.positions[i] - scratch.uncorrected[i];
     const double speed = moved.norm() / step.dt;
     if (speed <= 0) continue;
     if (!scratch.held[i]) state.velocities[i] += moved * (std::min(speed, most) / (speed * step.dt));
-    restartHistory(step, i, state);
+    state.restartHistory(i, step.dt);
   }
 }
 
@@ -118,8 +105,8 @@ bool findContacts(const CorrectedStep& step, PositionCorrection& scratch, const 
   if (scratch.round > 0 && (scratch.moved == 0 || scratch.round > kRounds + kPlainRounds)) return false;
   ContactSearch search{step.params.collide_inner ? scratch.all_vertices : step.mesh.external_vertices, step.colliders,
                        step.start, step.dt, contactMargins(step.params, step.dt)};
-  // Vertices that no longer move cannot have come inside. Where the way out of one body leads through another,
-  // following the path back would alternate: from here on being outside at the end is enough.
+  // After minimization only the last corrected vertices can be inside. Where the way out of one body leads through
+  // another, swept tests would alternate: from here on only final positions count.
   if (scratch.round > kRounds + 1) search.vertices = scratch.corrected, search.start = {};
   scratch.search.tests = {};
   findPenetrations(search, state.positions, scratch.search, scratch.penetrations);
@@ -187,7 +174,7 @@ void slowPushed(const CorrectedStep& step, std::span<const Vec3> unpushed, HairS
       const Vec3 way = (state.positions[i] - step.start[i] - carried) / step.dt;
       if (way.squaredNorm() >= (state.velocities[i] - carrying).squaredNorm()) continue;
       state.velocities[i] = carrying + way;
-      restartHistory(step, i, state);
+      state.restartHistory(i, step.dt);
     }
   }
 }

@@ -10,12 +10,12 @@ namespace {
 
 constexpr double kMarginShare = 0.25;   // of the mean length of the edges along the hair
 constexpr double kRestMargin = 0.002;   // m; pairs as near as this in the rest shape are no contacts
-constexpr int kPasses = 8;              // at most, over the pairs: one push may press others together
-constexpr int kOwnLayers = 1;           // a column touches no prism of its own bundles nearer than so many layers
-constexpr double kStrideShare = 0.125;  // of the mean length of the edges across; moved between looks along a path
-constexpr signed char kLeftAlone = -1;  // of a pair that overlaps in the rest shape
-constexpr int kMaxLooks = 32;
-constexpr int kPassesOnTheWay = 2;  // at most, between two looks
+constexpr int kMaxPasses = 8;           // over the pairs: one push may press others together
+constexpr int kMaxPiecePasses = 2;      // the same, after one piece of the step's motion
+constexpr int kOwnLayers = 1;           // a column is tested with prisms of its own bundles beyond so many layers
+constexpr double kStrideShare = 0.125;  // of the mean length of the edges across: longest piece of a path
+constexpr int kMaxPieces = 32;
+constexpr signed char kOverlapsAtRest = -1;  // in place of Pair::apart
 
 struct Plane {
   Vec3 normal, middle;
@@ -34,14 +34,14 @@ struct Inside {
   Vec3 normal = Vec3::UnitY();
 };
 
-// Whether p lies beyond the mean plane of a face, or the face has none.
+// Whether p lies outside the mean plane of a face, or the face has none.
 bool beyond(const BoundaryPrism::Face& face, std::span<const Vec3> x, const Vec3& p) {
   const Plane plane = planeOf(face, x);
   return !(plane.normal.dot(plane.middle - p) >= 0);
 }
 
-// Where p lies in a prism: below all of its faces' mean planes by -margin at least. Prisms that are turned over or flat
-// have no inside.
+// Where p lies in a prism: inside all of its faces' mean planes, or outside by no more than the margin (m). A prism
+// that is inverted or flat has no inside.
 Inside insideOf(const BoundaryPrism& prism, std::span<const Vec3> x, const Vec3& p, double margin) {
   Inside inside;
   inside.depth = INFINITY;
@@ -59,9 +59,9 @@ Inside insideOf(const BoundaryPrism& prism, std::span<const Vec3> x, const Vec3&
   return inside;
 }
 
-// The same for a pair of the list. The face that it lay beyond last time is asked first: most still do.
+// The same for a pair of the list. The face that the vertex last lay beyond is tested first: most still do.
 Inside insideOf(const HairMesh& mesh, SelfContact& self, SelfContact::Pair& pair, std::span<const Vec3> x) {
-  if (pair.apart == kLeftAlone) return {};
+  if (pair.apart == kOverlapsAtRest) return {};
   const BoundaryPrism& prism = self.prisms[pair.prism];
   const Vec3& p = x[pair.vertex];
   if (beyond(prism.faces[pair.apart], x, p)) return {};
@@ -74,11 +74,11 @@ Inside insideOf(const HairMesh& mesh, SelfContact& self, SelfContact::Pair& pair
   if (inside.face < 0) return {};
   const std::vector<Vec3>& rest = mesh.shape.positions;
   if (insideOf(prism, rest, rest[pair.vertex], kRestMargin).face < 0) return inside;
-  pair.apart = kLeftAlone;
+  pair.apart = kOverlapsAtRest;
   return {};
 }
 
-// Weights of a face's corners at p: barycentric in that triangle of the face that p lies over.
+// Weights of a face's corners at p: barycentric in the triangle of the face that p lies over.
 std::array<double, 4> cornerWeights(const BoundaryPrism::Face& face, std::span<const Vec3> x, const Vec3& p) {
   std::array<double, 4> weights{};
   const auto inTriangle = [&](int i, int j, int k) {
@@ -93,7 +93,6 @@ std::array<double, 4> cornerWeights(const BoundaryPrism::Face& face, std::span<c
     weights[k] = std::max(third, 0.0) / sum;
     return second >= 0;
   };
-  // Over the first triangle unless p lies beyond the diagonal.
   if (!inTriangle(0, 1, 2) && face.corner_count == 4) inTriangle(0, 2, 3);
   return weights;
 }
@@ -114,7 +113,7 @@ Frame scalpFrame(const SelfContact& self, std::span<const Vec3> x) {
   return frame;
 }
 
-// Whether none has left the list's margin, neither at the step's start nor at its end.
+// Whether every vertex has moved by less than half the list's margin, at the step's start and at its end.
 bool listHolds(const SelfContact& self, std::span<const Vec3> start, std::span<const Vec3> x) {
   if (self.listed_at.empty()) return false;
   const double most = self.margin * self.margin / 4;
@@ -129,7 +128,7 @@ bool listHolds(const SelfContact& self, std::span<const Vec3> start, std::span<c
   return true;
 }
 
-// m, the farthest that a vertex came against a prism within the step, by one of the prism's corners.
+// m, the longest way of a vertex within the step relative to a corner of its pair's prism.
 double farthestNearing(const HairMesh& mesh, const SelfContact& self, std::span<const Vec3> start,
                        std::span<const Vec3> x) {
   double most = 0;
@@ -141,13 +140,12 @@ double farthestNearing(const HairMesh& mesh, const SelfContact& self, std::span<
   return std::sqrt(most);
 }
 
-// Whether a vertex and a prism of its own bundles lie so near along the hair that they always touch.
+// Whether a vertex of this layer is too near to a prism of its own bundles, along the hair, to be tested with it.
 bool alongside(int layer, const Prism& prism) {
   return layer >= prism.layer - kOwnLayers && layer <= prism.layer + 1 + kOwnLayers;
 }
 
-// Sweep along y, in which hair hangs out longest: prisms by their lower end, vertices against those that reach them.
-// Boxes are those of the ways from start to end.
+// Sweep and prune along y, in which hair is longest. Boxes bound the paths from start to end.
 void makeList(const HairMesh& mesh, std::span<const Vec3> start, std::span<const Vec3> x, SelfContact& self) {
   ++self.rebuilds;
   self.pairs.clear();
@@ -188,8 +186,7 @@ void makeList(const HairMesh& mesh, std::span<const Vec3> start, std::span<const
   }
 }
 
-// A vertex and a face that share a motion: how much of an impulse each takes, by their mass up to the common factor of
-// density; roots do not give way.
+// A vertex and a face in contact: the share of an impulse that each takes, by mass over density. Roots do not move.
 struct Partners {
   int vertex;
   const BoundaryPrism::Face* face;
@@ -204,13 +201,13 @@ struct Partners {
     }
   }
 
-  // Spreads a change of the difference between vertex and face.
-  void apart(const Vec3& change, std::span<Vec3> of) const {
+  // Changes the difference between vertex and face by `change`.
+  void apply(const Vec3& change, std::span<Vec3> of) const {
     of[vertex] += yield / sum * change;
     for (int c = 0; c < face->corner_count; ++c) of[face->v[c]] -= give[c] / sum * change;
   }
 
-  // Takes the approach out of velocities or ways, and of the slip what friction takes.
+  // Removes the approach from velocities or displacements, and from the slip what friction does.
   void stop(const Vec3& normal, double friction, std::span<Vec3> of) const {
     Vec3 relative = of[vertex];
     for (int c = 0; c < face->corner_count; ++c) relative -= weight[c] * of[face->v[c]];
@@ -219,17 +216,16 @@ struct Partners {
     const double speed = slip.norm(), loss = std::min(speed, friction * approach);
     Vec3 change = approach * normal;
     if (speed > 0) change -= loss / speed * slip;
-    apart(change, of);
+    apply(change, of);
   }
 };
 
-// Pushes what lies inside apart, pass by pass, since one push may press others together. `way`, where given, is what
-// the vertices have yet to go between two looks. Returns the most that were inside in one pass.
+// Pushes penetrating pairs apart, pass by pass. `way`: displacements of the next piece of the motion, or empty. Returns
+// the largest number of penetrating pairs in a pass.
 int resolvePairs(const SelfContactStep& step, int passes, std::span<Vec3> way, SelfContact& self, HairState& state) {
   int inside = 0;
   const bool two_step = state.previous_positions.size() == state.positions.size();
-  // What stood inside before the step comes out gently.
-  const double gentle = step.params.max_depenetration * step.dt / (way.empty() ? 1 : self.looks);
+  const double escape = step.params.max_depenetration * step.dt / (way.empty() ? 1 : self.pieces);
   for (int pass = 0; pass < passes; ++pass) {
     int found = 0;
     for (SelfContact::Pair& pair : self.pairs) {
@@ -240,17 +236,12 @@ int resolvePairs(const SelfContactStep& step, int passes, std::span<Vec3> way, S
       self.moved[pair.vertex] = 1;
       for (int c = 0; c < face.corner_count; ++c) self.moved[face.v[c]] = 1;
       const Partners partners(step.mesh, face, state.positions, pair.vertex);
-      partners.apart((pair.stood ? std::min(where.depth, gentle) : where.depth) * where.normal, state.positions);
+      partners.apply((pair.stood ? std::min(where.depth, escape) : where.depth) * where.normal, state.positions);
       partners.stop(where.normal, step.params.friction, state.velocities);
       if (!way.empty()) partners.stop(where.normal, step.params.friction, way);
       if (!two_step) continue;
-      // The history of what moved restarts, as if it had come here at its present velocity.
-      const auto restart = [&](int v) {
-        state.previous_positions[v] = state.positions[v] - step.dt * state.velocities[v];
-        state.previous_velocities[v] = state.velocities[v];
-      };
-      restart(pair.vertex);
-      for (int c = 0; c < face.corner_count; ++c) restart(face.v[c]);
+      state.restartHistory(pair.vertex, step.dt);
+      for (int c = 0; c < face.corner_count; ++c) state.restartHistory(face.v[c], step.dt);
     }
     inside = std::max(inside, found);
     if (found == 0) break;
@@ -258,46 +249,46 @@ int resolvePairs(const SelfContactStep& step, int passes, std::span<Vec3> way, S
   return inside;
 }
 
-// The first look on the way from start to end, the end included, at which a pair has met that stood apart, or that
-// still stands one inside the other; negative: none.
+// The number of pieces of the way from start to end after which a pair that was apart first penetrates, or, after all
+// of them, any pair; negative: none.
 int firstMeeting(const HairMesh& mesh, std::span<const Vec3> start, std::span<const Vec3> x, SelfContact& self) {
   self.between.resize(x.size());
-  bool known = false;  // which pairs stood inside
-  const auto findStanding = [&] {
+  bool known = false;  // which pairs overlapped before the step
+  const auto findOverlaps = [&] {
     for (SelfContact::Pair& pair : self.pairs) pair.stood = insideOf(mesh, self, pair, start).face >= 0;
     known = true;
   };
-  for (int look = 1; look < self.looks; ++look) {
-    const double t = static_cast<double>(look) / self.looks;
+  for (int piece = 1; piece < self.pieces; ++piece) {
+    const double t = static_cast<double>(piece) / self.pieces;
     for (std::size_t i = 0; i < x.size(); ++i) self.between[i] = start[i] + t * (x[i] - start[i]);
     for (SelfContact::Pair& pair : self.pairs) {
       if (insideOf(mesh, self, pair, self.between).face < 0) continue;
-      if (!known) findStanding();
-      if (!pair.stood) return look;
+      if (!known) findOverlaps();
+      if (!pair.stood) return piece;
     }
   }
   for (SelfContact::Pair& pair : self.pairs) {
     if (insideOf(mesh, self, pair, x).face < 0) continue;
-    if (!known) findStanding();
-    return std::max(self.looks, 1);
+    if (!known) findOverlaps();
+    return std::max(self.pieces, 1);
   }
   return -1;
 }
 
-// Plays the step's motion again from the first meeting on, in so short ways that nothing can be out on the other side
-// before it is seen; who meets goes on without the approach. `between` holds the positions of the first meeting.
+// Repeats the step's motion from the first meeting on in pieces too short to pass through a prism; vertices that meet
+// go on without their approach. `between`: the positions of the first meeting.
 int replay(const SelfContactStep& step, int meeting, SelfContact& self, HairState& state) {
   const std::size_t n = state.positions.size();
   self.way.resize(n);
-  for (std::size_t i = 0; i < n; ++i) self.way[i] = (state.positions[i] - step.start[i]) / self.looks;
+  for (std::size_t i = 0; i < n; ++i) self.way[i] = (state.positions[i] - step.start[i]) / self.pieces;
   std::copy(self.between.begin(), self.between.end(), state.positions.begin());
   int inside = 0;
-  for (int look = meeting;; ++look) {
-    inside = std::max(inside, resolvePairs(step, kPassesOnTheWay, self.way, self, state));
-    if (look == self.looks) break;
+  for (int piece = meeting;; ++piece) {
+    inside = std::max(inside, resolvePairs(step, kMaxPiecePasses, self.way, self, state));
+    if (piece == self.pieces) break;
     for (std::size_t i = 0; i < n; ++i) state.positions[i] += self.way[i];
   }
-  // The roots are where the scalp has them, to the last bit.
+  // Summed ways round: roots are prescribed to the last bit.
   for (int c = 0; c < step.mesh.columnCount(); ++c) {
     const int root = step.mesh.shape.column_first[c];
     state.positions[root] = self.unmoved[root];
@@ -305,27 +296,25 @@ int replay(const SelfContactStep& step, int meeting, SelfContact& self, HairStat
   return inside;
 }
 
-}  // namespace
-
-SelfContact::SelfContact(const HairMesh& mesh) {
-  std::set<std::array<int, 4>> outer;
+// The prisms with a face on the outside. Lower and upper face come first: their middles' mean is the prism's centre.
+std::vector<BoundaryPrism> boundaryPrisms(const HairMesh& mesh) {
   const auto key = [](int count, std::array<int, 4> v) {
     if (count == 3) v[3] = -1;
     std::sort(v.begin(), v.end());
     return v;
   };
+  std::set<std::array<int, 4>> outer;
   for (const ExternalFace& face : mesh.external_faces) outer.insert(key(face.corner_count, face.v));
+  std::vector<BoundaryPrism> prisms;
   for (int p = 0; p < static_cast<int>(mesh.prisms.size()); ++p) {
-    const Prism& prism = mesh.prisms[p];
-    const int n = prism.corner_count;
+    const auto& v = mesh.prisms[p].v;
+    const int n = mesh.prisms[p].corner_count;
     BoundaryPrism boundary{p, n + 2, {}};
-    // Lower and upper face first: their middles' mean is the prism's centre.
-    boundary.faces[0] = {n, {prism.v[0], prism.v[n - 1], prism.v[n - 2], n == 4 ? prism.v[1] : -1}, false};
-    if (n == 3) boundary.faces[0].v = {prism.v[0], prism.v[2], prism.v[1], -1};
-    boundary.faces[1] = {n, {prism.v[n], prism.v[n + 1], prism.v[n + 2], n == 4 ? prism.v[n + 3] : -1}, false};
+    boundary.faces[0] = {n, {v[0], v[n - 1], v[n - 2], n == 4 ? v[1] : -1}, false};
+    boundary.faces[1] = {n, {v[n], v[n + 1], v[n + 2], n == 4 ? v[n + 3] : -1}, false};
     for (int k = 0; k < n; ++k) {
       const int next = (k + 1) % n;
-      boundary.faces[2 + k] = {4, {prism.v[k], prism.v[next], prism.v[n + next], prism.v[n + k]}, false};
+      boundary.faces[2 + k] = {4, {v[k], v[next], v[n + next], v[n + k]}, false};
     }
     bool any = false;
     for (int f = 1; f < boundary.face_count; ++f) {
@@ -334,20 +323,29 @@ SelfContact::SelfContact(const HairMesh& mesh) {
     }
     if (any) prisms.push_back(boundary);
   }
+  return prisms;
+}
+
+// SelfContact::own of a mesh.
+std::vector<unsigned char> ownBundles(const HairMesh& mesh) {
   const auto& faces = mesh.shape.root_faces;
   std::vector<std::set<int>> around(mesh.columnCount());  // columns that share a root face
   for (const RootFace& face : faces) {
     for (int i = 0; i < face.corner_count; ++i)
       for (int k = 0; k < face.corner_count; ++k) around[face.columns[i]].insert(face.columns[k]);
   }
-  own.assign(mesh.columnCount() * faces.size(), 0);
+  std::vector<unsigned char> own(mesh.columnCount() * faces.size(), 0);
   for (int c = 0; c < mesh.columnCount(); ++c) {
     for (std::size_t f = 0; f < faces.size(); ++f) {
       for (int k = 0; k < faces[f].corner_count; ++k)
         own[c * faces.size() + f] |= around[c].contains(faces[f].columns[k]) ? 1 : 0;
     }
   }
-  // The roots farthest from one another, so that the frame is exact.
+  return own;
+}
+
+// Three roots far from one another, so that the frame is exact.
+std::array<int, 3> frameRoots(const HairMesh& mesh) {
   const auto root = [&](int c) { return mesh.shape.positions[mesh.shape.column_first[c]]; };
   std::array<int, 3> columns{0, 0, 0};
   for (int c = 1; c < mesh.columnCount(); ++c) {
@@ -357,30 +355,41 @@ SelfContact::SelfContact(const HairMesh& mesh) {
   for (int c = 1; c < mesh.columnCount(); ++c) {
     if (area(c) > area(columns[2])) columns[2] = c;
   }
-  for (int k = 0; k < 3; ++k) frame_roots[k] = mesh.shape.column_first[columns[k]];
-  double length = 0;
-  for (const Edge& edge : mesh.vertical_edges) length += edge.rest_length;
-  margin = kMarginShare * length / static_cast<double>(mesh.vertical_edges.size());
-  double across = 0;
-  for (const Edge& edge : mesh.horizontal_edges) across += edge.rest_length;
-  stride = kStrideShare * across / static_cast<double>(mesh.horizontal_edges.size());
+  for (int& c : columns) c = mesh.shape.column_first[c];
+  return columns;
+}
+
+double meanLength(const std::vector<Edge>& edges) {
+  double sum = 0;
+  for (const Edge& edge : edges) sum += edge.rest_length;
+  return sum / static_cast<double>(edges.size());
+}
+
+}  // namespace
+
+SelfContact::SelfContact(const HairMesh& mesh)
+    : prisms(boundaryPrisms(mesh)),
+      own(ownBundles(mesh)),
+      frame_roots(frameRoots(mesh)),
+      margin(kMarginShare * meanLength(mesh.vertical_edges)),
+      stride(kStrideShare * meanLength(mesh.horizontal_edges)) {
   pairs.reserve(32 * mesh.external_vertices.size());
   boxes.reserve(prisms.size());
-  const int n = mesh.vertexCount();
-  listed_at.reserve(n), unmoved.reserve(n), moved.reserve(n), between.reserve(n), way.reserve(n);
+  for (auto* field : {&listed_at, &unmoved, &between, &way}) field->reserve(mesh.vertexCount());
+  moved.reserve(mesh.vertexCount());
 }
 
 int resolveSelfContacts(const SelfContactStep& step, SelfContact& self, HairState& state) {
   const std::span<const Vec3> start = step.start.empty() ? std::span<const Vec3>(state.positions) : step.start;
   if (!listHolds(self, start, state.positions)) makeList(step.mesh, start, state.positions, self);
   const double nearing = farthestNearing(step.mesh, self, start, state.positions);
-  self.looks = static_cast<int>(std::min<double>(kMaxLooks, std::ceil(nearing / self.stride)));
+  self.pieces = static_cast<int>(std::min<double>(kMaxPieces, std::ceil(nearing / self.stride)));
   const int meeting = firstMeeting(step.mesh, start, state.positions, self);
   if (meeting < 0) return 0;
   self.unmoved = state.positions;
   self.moved.assign(state.positions.size(), 0);
-  const int met = meeting < self.looks ? replay(step, meeting, self, state) : 0;
-  return std::max(met, resolvePairs(step, kPasses, {}, self, state));
+  const int met = meeting < self.pieces ? replay(step, meeting, self, state) : 0;
+  return std::max(met, resolvePairs(step, kMaxPasses, {}, self, state));
 }
 
 }  // namespace sim
