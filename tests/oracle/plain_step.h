@@ -30,7 +30,7 @@ struct PlainContext {
 
 // As sim::advance with the linearized implicit Euler step (params.integrator, solver and precision are not looked at),
 // to the relative residual params.tolerance, measured against the step's first residual in the Euclidean norm. Takes as
-// many iterations as that needs: neither max_iterations nor acceleration_tolerance ends a solve. No watchdog.
+// many iterations as that needs: neither max_iterations nor acceleration_tolerance ends a solve. No state validation.
 sim::StepReport plainAdvance(const sim::HairMesh& mesh, const sim::SimParams& params, const sim::StepInput& input,
                              double dt, PlainContext& context, sim::HairState& state);
 

@@ -167,9 +167,8 @@ TEST(Allocation, NoneInTheFirstViolentStep) {
   }
 }
 
-// Nor where hair that hangs still is watched by a twin (sim/stabilization/reference_hair.h), which is put to the rest
-// shape.
-TEST(Allocation, NoneWhileATwinSettles) {
+// Nor while hair that hangs still is compared with a reference hair (sim/stabilization/reference_hair.h).
+TEST(Allocation, NoneWhileAReferenceHairSettles) {
   sim::SimParams params = test::tautHair();
   params.sag_free = false;  // so that the hair hangs still away from its rest shape
   params.bend /= 20;

@@ -1,4 +1,4 @@
-// Steps without contacts: free flight, drag, momentum, order of convergence, rest, determinism, watchdog.
+// Steps without contacts: free flight, drag, momentum, order of convergence, rest, determinism, state faults.
 #include "sim/step.h"
 
 #include <gtest/gtest.h>

@@ -22,13 +22,13 @@ namespace {
 constexpr double kShortestStep = 1e-3, kLongestStep = 0.5;  // s, of random paces
 constexpr double kFaultEvery = 0.1;                         // s
 constexpr double kIntruderThere = 0.3;                      // s, when a body that appears has done so
-constexpr double kAtRest = 5e-3;                            // m/s, of a twin that needs no more time
+constexpr double kAtRest = 5e-3;                            // m/s, of a reference hair that has settled
 constexpr double kRested = 1;                               // s at rest elsewhere, before that counts
 constexpr double kSoon = 0.1;                               // s, over which velocities are extrapolated
-constexpr double kUnrest = 3;                               // times the stated time, that its twin may take to rest
-constexpr double kWindow = 2, kHurry = 5;                   // s, and times its pace: see Pace of return
-constexpr int kIdleWindows = 5;                             // in a row, of hair that is not coming
-constexpr double kSmallestEnergy = 0.05;                    // of the hair's weight times its length
+constexpr double kUnrest = 3;              // times the stated time: bound of the reference hair's settling
+constexpr double kWindow = 2, kHurry = 5;  // s, and times its pace: see Pace of return
+constexpr int kIdleWindows = 5;            // in a row, of hair that is not coming
+constexpr double kSmallestEnergy = 0.05;   // of the hair's weight times its length
 
 std::string said(const char* format, double a, double b = 0) {
   char text[160];
@@ -255,7 +255,8 @@ void playMotion(Run& run) {
   while (run.around.time() < run.one.seconds && !run.failed()) frame(run);
 }
 
-// How far hair and twin are apart, of the hair's length: the worst vertex, where it is and where it would be 0.1 s on.
+// Distance of hair and reference hair over the hair length: the worst vertex, where it is and where it would be 0.1 s
+// on.
 struct Apart {
   double distance = 0;
   int vertex = 0;
@@ -322,7 +323,7 @@ void checkEnergy(bool lifted, double dt, EnergyWatch& watch, Run& run) {
 // not coming, unless it is only waiting for the simulator to find out that it rests elsewhere
 // (sim/stabilization/reference_hair.h).
 struct Pacer {
-  std::vector<std::vector<sim::Vec3>> was;  // hair's, then its twins'
+  std::vector<std::vector<sim::Vec3>> was;  // the hair's, then its references'
   double since = 0;
   int idle = 0;  // windows
 
@@ -348,12 +349,12 @@ struct Pacer {
   }
 };
 
-// How long one hair has been at rest: within kBack of where it was, and no faster than would take it out of that soon.
+// Seconds that a hair has been at rest: within kBack of one place, and too slow to leave it within kSoon.
 struct Rest {
   std::vector<sim::Vec3> at;
   double seconds = 0;
 
-  void look(const Hair& hair, double dt) {
+  void update(const Hair& hair, double dt) {
     const double near = kBack * hair.mesh.hair_length;
     bool there = !at.empty() && fastest(hair) < near / kSoon;
     for (std::size_t i = 0; there && i < at.size(); ++i) there = (hair.state.positions[i] - at[i]).norm() < near;
@@ -362,22 +363,22 @@ struct Rest {
   }
 };
 
-// Very soft hair sags into more shapes than one: another is as good a rest as the twin's where it is no higher in
-// energy.
+// Very soft hair has more rest shapes than one: another counts as a rest if its energy is no higher than the
+// reference hair's.
 bool restsNoHigher(Hair& reference, const EnergyWatch& watch, Run& run) {
   const double rest = energyOf(run, reference);
   return watch.last - rest <= kEnergyTolerance * kSmallestEnergy * weightOf(run);
 }
 
-// Everything stands still: hair and twins go on until it meets one of them, for `seconds` from when the twins have come
-// to rest where that `may_take` long: limp hair sags and swings for a minute from its own rest shape too, and until it
-// has done so there is no rest to be back at. Returns whether they meet.
+// Head and body stand still. Steps hair and reference hairs until it meets one of them, for `seconds`; with `may_take`,
+// counted from when the references rest, for limp hair swings for a minute from its rest shape too. Returns whether
+// they meet.
 bool waitUntilBack(double seconds, bool may_take, std::span<Hair> references, EnergyWatch& energy, Run& run) {
   const double dt = run.one.pace == Pace::kFixed ? run.one.step : sim::SimParams{}.time_step;
   const double started = run.around.time();
   double until = started + seconds;
   Pacer pacer;
-  std::vector<Rest> rests(1 + references.size());  // the hair's, then its twins'
+  std::vector<Rest> rests(1 + references.size());  // the hair's, then its references'
   while (run.around.time() < until && !run.failed()) {
     run.around.pass(dt);
     const sim::StepReport report = stepHair(run.params, run, dt, run.hair);
@@ -401,9 +402,9 @@ bool waitUntilBack(double seconds, bool may_take, std::span<Hair> references, En
       run.outcome.worst_vertex = worst.vertex;
     }
     if (run.outcome.distance < kBack) return true;
-    rests[0].look(run.hair, dt);
+    rests[0].update(run.hair, dt);
     for (std::size_t k = 0; k < references.size(); ++k) {
-      rests[k + 1].look(references[k], dt);
+      rests[k + 1].update(references[k], dt);
       // Not with the body there: that holds hair up as well.
       if (run.params.collide || run.failed() || std::min(rests[0].seconds, rests[k + 1].seconds) < kRested) continue;
       if (restsNoHigher(references[k], energy, run)) return run.outcome.other_rest = true;
@@ -413,7 +414,7 @@ bool waitUntilBack(double seconds, bool may_take, std::span<Hair> references, En
   return false;
 }
 
-void addTwin(const Run& run, std::vector<Hair>& references) {
+void addReference(const Run& run, std::vector<Hair>& references) {
   Hair& reference = references.emplace_back(run.hair.mesh);
   reference.context.safetyNets() = run.one.nets;
   reference.state = sim::restState(run.hair.mesh, run.around.head());
@@ -428,15 +429,15 @@ void waitForRest(Run& run) {
   }
   run.params.gust = 0;  // it is an input: as everything else, the wind becomes steady
   std::vector<Hair> references;
-  addTwin(run, references);
+  addReference(run, references);
   const double stopped = run.around.time();
   EnergyWatch energy;
   energy.rest = energyOf(run, references[0]);
   bool back = waitUntilBack(run.one.rest, false, references, energy, run);
   run.outcome.with_body = back;
   if (!back && !run.failed()) {
-    // The body may have pushed the twin into another rest than the one from the rest shape: either is one.
-    if (run.params.collide) addTwin(run, references);
+    // The body may have pushed the reference into another rest than the one from the rest shape: either counts.
+    if (run.params.collide) addReference(run, references);
     run.params.collide = false;
     back = waitUntilBack(run.one.release, true, references, energy, run);
   }
@@ -445,8 +446,8 @@ void waitForRest(Run& run) {
     run.fail(said("still %.1f %% of the hair's length from rest %.1f s after the motion stopped",
                   100 * run.outcome.distance, run.around.time() - stopped) +
              ", vertex " + std::to_string(run.outcome.worst_vertex) +
-             said(", fastest %.1e m/s (%.1e its twin)", fastest(run.hair), fastest(references.back())) +
-             said(", energy above the twin's: %.1e of its weight times length",
+             said(", fastest %.1e m/s (%.1e the reference)", fastest(run.hair), fastest(references.back())) +
+             said(", energy above the reference's: %.1e of its weight times length",
                   (energy.last - energyOf(run, references.back())) / weightOf(run)));
   }
 }

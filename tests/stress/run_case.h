@@ -24,9 +24,9 @@ struct Outcome {
   double at = 0;             // s into the case
   bool with_body = false;    // back with the colliders there
   double back_after = -1;    // s after the motion stopped; negative: not back
-  bool other_rest = false;   // at rest elsewhere than the twin, no higher in energy
-  int worst_vertex = 0;      // the one farthest from its twin
-  double distance = 0;       // from the twin at the end, worst vertex, of the hair's length
+  bool other_rest = false;   // at rest elsewhere than the reference hair, no higher in energy
+  int worst_vertex = 0;      // the one farthest from the reference hair
+  double distance = 0;       // from the reference hair at the end, worst vertex, over the hair length
   double deepest = 0;        // m inside a collider at a frame's end, outside of grace
   long inside = 0;           // vertices deeper than kDeepest, summed over frames, outside of grace
   long unconstrained = 0;    // of those, without a contact
@@ -35,7 +35,7 @@ struct Outcome {
   double memory_growth = 0;  // MiB, of an endurance run after its first tenth
   double slowdown = 1;       // of an endurance run: CPU time a step in its last tenth over that in its second
   int recoveries = 0, carried = 0, steps = 0;
-  int guided = 0;         // columns combed out at once, at most
+  int guided = 0;         // most columns guided to rest at once
   double iterations = 0;  // of the linear solver a step, mean
   double unsolved = 0;    // share of the steps whose solve ended at its most iterations
   double cpu_seconds = 0;

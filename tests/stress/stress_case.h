@@ -1,10 +1,9 @@
 // What a stability case is: hair, motion, disturbance, start, pace and parameters, and what it takes to pass.
 //
-// Every case has three parts. In the *motion* the hair is treated as the case says. Then everything stands still, with
-// the body there: the *rest*. If the hair is not back by then (hair that hangs on the other side of a shoulder rests as
-// well as any other), the colliders are taken away: the *release*. Back means: within 1 % of the hair's length of a
-// twin, the same hair put to its rest shape when the motion stopped, which sags, blows and settles as the parameters
-// have it.
+// A case has three parts. *Motion*: the hair is treated as the case says. *Rest*: head and body stand still. *Release*,
+// if the hair is not back by then: the colliders are removed, for hair may rest on the other side of a shoulder. The
+// hair is back if every vertex is within 1 % of the hair length of a reference hair, the same hair released from the
+// rest pose when the motion stopped.
 #pragma once
 
 #include <cstdint>
@@ -87,9 +86,9 @@ struct StressCase {
   bool collide = true;
   double seconds = 1;        // of motion
   double rest = 1;           // s with the body there
-  double release = 5;        // s without, from when the twin rests; back within rest + release
+  double release = 5;        // s without, from when the reference hair rests; back within rest + release
   double grace = 0;          // s after each start or appearance in which vertices may still be inside
-  bool recovers = false;     // the watchdog is expected to step in
+  bool recovers = false;     // state repairs are expected
   sim::SafetyNets nets;      // in use; less than all to measure what one saves
   bool compared = false;     // a peer's setting, shown beside ours and not counted
   bool keeps_energy = true;  // judged by its energy too: not where the numerics are turned to their coarsest

@@ -138,7 +138,7 @@ TEST(Pin, AStiffSpringFollowsItsTarget) {
   }
 }
 
-TEST(Pin, LetGoTheHairComesHome) {
+TEST(Pin, LetGoTheHairReturnsToRest) {
   for (const double stiffness : {5.0, double{INFINITY}}) {
     Hair hair(test::combedShape(patch()), usualHair());
     const std::vector<Vec3> rest = hair.state.positions;
@@ -209,8 +209,9 @@ TEST(Pin, AWhippingTargetKeepsTheHairBounded) {
     }
     hair.pins.clear();
     for (int k = 0; k < 900; ++k) hair.step(kFrame);
-    const sim::HairState home = sim::restState(hair.mesh, Eigen::Isometry3d::Identity());
-    EXPECT_LT(test::largestDistance(hair.state.positions, home.positions), 0.01 * hair.mesh.hair_length) << stiffness;
+    const sim::HairState rest_state = sim::restState(hair.mesh, Eigen::Isometry3d::Identity());
+    EXPECT_LT(test::largestDistance(hair.state.positions, rest_state.positions), 0.01 * hair.mesh.hair_length)
+        << stiffness;
   }
 }
 

@@ -120,9 +120,9 @@ TEST(EnergyLimit, LimpHairInTheWindOnlyLosesEnergyAndComesToRest) {
   };
   double before = energy(), risen = 0, fastest = 0;
   for (int n = 0; n < 900; ++n) {
-    const bool led = hair.step(kFrame).guided > 0;  // home, by a hand from outside
+    const bool guided = hair.step(kFrame).guided > 0;  // inversion recovery does work on the hair
     const double now = energy();
-    if (!led) risen = std::max(risen, now - before);
+    if (!guided) risen = std::max(risen, now - before);
     before = now;
     if (n < 840) continue;
     for (const Vec3& v : hair.state.velocities) fastest = std::max(fastest, v.norm());
@@ -177,7 +177,7 @@ TEST(EnergyLimit, HairLetGoByItsBodyMakesNoEnergyOfWhatItHeld) {
   }
 }
 
-TEST(EnergyLimit, WhatIsNotFiniteIsLeftToTheWatchdog) {
+TEST(EnergyLimit, AStateThatIsNotFiniteIsLeftToValidation) {
   Flung flung;
   flung.fling(0.5);
   flung.hair.state.positions[3].x() = std::numeric_limits<double>::quiet_NaN();

@@ -1,4 +1,4 @@
-// Combing out: hair that stays turned over is led home, gently, and nothing else is touched.
+// Inversion recovery: inverted columns are guided to rest slowly, and no other hair is moved.
 #include "sim/stabilization/inversion_recovery.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ struct Frozen {
   }
 };
 
-TEST(InversionRecovery, WhatStaysTurnedOverIsLedHomeAndTheRestKeepsEveryBit) {
+TEST(InversionRecovery, InvertedColumnsAreGuidedToRestAndOthersKeepEveryBit) {
   Frozen hair;
   const int column = 5;
   for (Vec3& x : hair.state.positions) x += Vec3(1e-4, 0, 0);  // so that what is moved can be told
@@ -133,8 +133,8 @@ TEST(InversionRecovery, WhatTurnsOverAgainIsLeftInPeaceLongerEachTime) {
 double distanceAfterMirroring(bool guided, int& columns) {
   sim::SimParams params;
   params.collide = false;
-  params.volume *= 16;                               // softer hair finds home by itself
-  if (!guided) params.solver = sim::Solver::kPaper;  // combs nothing
+  params.volume *= 16;                               // softer hair recovers by itself
+  if (!guided) params.solver = sim::Solver::kPaper;  // no stabilization
   const sim::HairMeshShape shape =
       sim::makeStyle(sim::Style::kShort, sim::Resolution::kLow, tests::analyticScalp(), tests::bodyDistance);
   Hair hair(shape, params);
@@ -147,7 +147,7 @@ double distanceAfterMirroring(bool guided, int& columns) {
   return test::largestDistance(hair.state.positions, hair.mesh.shape.positions) / hair.mesh.hair_length;
 }
 
-TEST(InversionRecovery, HairMirroredThroughItsRootsComesHomeAndWithoutCombingDoesNot) {
+TEST(InversionRecovery, HairMirroredThroughItsRootsComesToRestAndWithoutRecoveryDoesNot) {
   int columns = 0;
   EXPECT_LT(distanceAfterMirroring(true, columns), 0.01);
   EXPECT_GT(columns, 0);

@@ -15,7 +15,7 @@ constexpr double kFrame = 1.0 / 60;
 struct Patch {
   sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(test::mixedPatch(5, 0.25)));
   sim::HairState state = sim::restState(mesh, Eigen::Isometry3d::Identity());
-  sim::OscillationDamping buzz{mesh};
+  sim::OscillationDamping damping{mesh};
 
   // A step that takes every vertex but the roots where `to` says, from where it is off its rest; roots and rest go
   // along with the head.
@@ -27,7 +27,7 @@ struct Patch {
       state.velocities[i] = (state.positions[i] - start[i]) / kFrame;
     }
     gone += head;
-    return sim::dampOscillation(mesh, start, buzz, state);
+    return sim::dampOscillation(mesh, start, damping, state);
   }
   double furthest() const {
     double most = 0;
@@ -48,12 +48,12 @@ TEST(OscillationDamping, WhatGoesToAndFroWithEveryStepComesToRestUnderAMovingHea
       int most = 0;
       for (int n = 0; n < 200; ++n) {
         most = std::max(most, hair.step(speed * kFrame * Vec3::UnitX(), [&](int, const Vec3& off) {
-          // Bounded, as what makes hair buzz is: far off it is drawn back.
+          // The oscillation is bounded, as in hair: far from rest the vertex is drawn back.
           return Vec3(eigenvalue * off / (1 + off.norm() / 0.002));
         }));
       }
       EXPECT_GT(most, 0);
-      // What is left is slower than what counts as buzzing, but for the few steps that tell it again.
+      // The rest is below the threshold of an oscillation, but for the few steps that detect it again.
       EXPECT_LT(hair.furthest(), 3e-4) << eigenvalue << " at " << speed << " m/s";
     }
   }

@@ -25,7 +25,7 @@ test::PatchOptions patch() {
 }
 
 // Steps until the motion has had `seconds`, and says how far the worst vertex is from the rest shape, as a share of the
-// hair's length. Counts the watchdog's recoveries: an ordinary run needs none.
+// hair's length. Counts recoveries: an ordinary run needs none.
 struct Outcome {
   double start, end;  // worst distance over hair length
   double smallest_volume;

@@ -1,5 +1,5 @@
-// Hair that rests in another shape than its own is led home where that is lower, and nowhere else; and parameters that
-// no hair could bear do not tear it.
+// Hair that rests in another shape than its own is guided to that where its energy is lower, and nowhere else; and
+// parameters that no hair could bear do not tear it.
 #include "sim/stabilization/reference_hair.h"
 
 #include <gtest/gtest.h>
@@ -28,8 +28,8 @@ struct Resting {
     }
   }
   double off() const { return test::largestDistance(state.positions, mesh.shape.positions) / mesh.hair_length; }
-  // Steps in which nothing but being led moves the hair, whose energy is so much above its twin's. Returns whether it
-  // was led.
+  // Steps in which inversion recovery alone moves the hair, whose energy is `higher` (J) above the reference hair's.
+  // Returns whether it was guided.
   bool pass(double seconds, double higher) {
     bool led = false;
     for (double t = 0; t < seconds; t += kFrame) {
@@ -44,7 +44,7 @@ struct Resting {
   }
 };
 
-TEST(RestCheck, HairThatRestsElsewhereAndHigherIsLedHome) {
+TEST(RestCheck, HairThatRestsElsewhereAndHigherIsGuidedToRest) {
   Resting hair(0.05);
   EXPECT_TRUE(hair.pass(3, 0.01));
   EXPECT_LT(hair.off(), 1e-9);
@@ -56,7 +56,7 @@ TEST(RestCheck, HairThatRestsNoHigherIsLeftWhereItIs) {
   EXPECT_NEAR(hair.off(), 0.05, 1e-12);
 }
 
-TEST(RestCheck, WithSelfContactATwinThatIsKeptApartIsAskedToo) {
+TEST(RestCheck, WithSelfContactAReferenceWithItIsComparedToo) {
   Resting hair(0.05);
   hair.check.self_contact = true;
   for (int n = 0; n < 60 && !hair.check.kept_apart; ++n) EXPECT_FALSE(hair.pass(0.9 * kFrame, -0.01));
@@ -65,7 +65,7 @@ TEST(RestCheck, WithSelfContactATwinThatIsKeptApartIsAskedToo) {
   EXPECT_FALSE(hair.check.kept_apart);
 }
 
-TEST(RestCheck, HairAtHomeIsLeftInPeace) {
+TEST(RestCheck, HairAtRestIsNotMoved) {
   Resting hair(0.001);
   EXPECT_FALSE(hair.pass(3, 0.01));
 }

@@ -1,4 +1,5 @@
-// The watchdog heals what is ill and nothing else, says what it found, and tells a teleport from a motion.
+// State validation repairs faulty vertices and no others, reports the fault, and distinguishes a teleport from a
+// motion.
 #include "sim/stabilization/state_validation.h"
 
 #include <gtest/gtest.h>
@@ -57,7 +58,7 @@ std::vector<int> distancesFrom(const sim::HairMesh& mesh, int vertex) {
   return distance;
 }
 
-TEST(Watchdog, HealsFaultsAtRandomVerticesAndLeavesTheRestAlone) {
+TEST(StateValidation, RepairsFaultsAtRandomVerticesAndNothingElse) {
   Hair hair(test::combedShape(patch()), runningHair()), reference(test::combedShape(patch()), runningHair());
   const auto rest = hair.roots;
   test::Random random(11);
@@ -94,7 +95,7 @@ TEST(Watchdog, HealsFaultsAtRandomVerticesAndLeavesTheRestAlone) {
     EXPECT_NE(text.find("largest force there: "), std::string::npos) << text;
     roots += hair.mesh.isRoot(vertex);
     found += report.recoveries;
-    // The healed vertex was put back where it was and lost half of its speed against its root.
+    // The repaired vertex was put back and lost half of its speed relative to its root.
     const std::vector<int> distance = distancesFrom(hair.mesh, vertex);
     for (int i = 0; i < hair.mesh.vertexCount(); ++i) {
       const double moved = (hair.state.positions[i] - reference.state.positions[i]).norm() / hair.mesh.hair_length;
@@ -106,7 +107,7 @@ TEST(Watchdog, HealsFaultsAtRandomVerticesAndLeavesTheRestAlone) {
   EXPECT_EQ(found, injected);
 }
 
-TEST(Watchdog, HealingTouchesNoBitOfTheOthers) {
+TEST(StateValidation, ARepairChangesNoBitOfOtherVertices) {
   Hair hair(test::combedShape(patch()), runningHair());
   for (int n = 0; n < 10; ++n) hair.step(kFrame);
   const sim::GoodState good{hair.state.positions, hair.state.velocities};
@@ -128,7 +129,7 @@ TEST(Watchdog, HealingTouchesNoBitOfTheOthers) {
   }
 }
 
-TEST(Watchdog, HealsManyAtOnceAndTheHairComesBack) {
+TEST(StateValidation, RepairsManyFaultsAtOnceAndTheHairComesBack) {
   Hair hair(test::combedShape(patch()), runningHair());
   test::Random random(3);
   for (int n = 0; n < 30; ++n) hair.step(kFrame);
@@ -140,7 +141,7 @@ TEST(Watchdog, HealsManyAtOnceAndTheHairComesBack) {
   EXPECT_LT(test::largestDistance(hair.state.positions, hair.mesh.shape.positions), 0.01 * hair.mesh.hair_length);
 }
 
-TEST(Watchdog, APlaceBeyondReachIsAbsurdAndAWildOneIsNot) {
+TEST(StateValidation, APlaceBeyondReachIsAbsurdAndAWildOneIsNot) {
   Hair hair(test::patchShape(patch()), runningHair());
   const int tip = hair.mesh.shape.column_first[1] - 1;
   const Vec3 there = hair.state.positions[tip];
@@ -159,7 +160,7 @@ TEST(Watchdog, APlaceBeyondReachIsAbsurdAndAWildOneIsNot) {
   EXPECT_EQ(sim::examine(hair.mesh, hair.state, tip), sim::StateFault::kNotFinite);
 }
 
-TEST(Watchdog, NamesTheElementThatPullsHardest) {
+TEST(StateValidation, NamesTheElementThatPullsHardest) {
   const Hair hair(test::patchShape(patch()), runningHair());
   const sim::BlockPattern pattern = sim::systemPattern(hair.mesh);
   const sim::ForceModel<double> model = sim::makeForceModel(hair.mesh, pattern, hair.params);
@@ -198,7 +199,7 @@ TEST(Teleport, AJumpThatNoMotionCouldMakeCarriesTheHairAlong) {
   const sim::StepReport report = hair.step(kFrame);
   EXPECT_TRUE(report.carried);
   EXPECT_EQ(report.recoveries, 0);
-  // The shape of the twin that stayed.
+  // The shape of the hair that was not teleported.
   for (int i = 0; i < hair.mesh.vertexCount(); ++i) {
     EXPECT_LT((hair.state.positions[i] - motion * reference.state.positions[i]).norm(), 1e-3) << i;
   }
