@@ -16,17 +16,17 @@ namespace {
 
 using sim::Integrator;
 
-constexpr int kMost = 400;
+constexpr int kMaxIterations = 400;
 constexpr Rung kLadder[] = {
-    {"linearized-euler 1/10 s, tolerance 1e-2", Integrator::kLinearizedEuler, 10, 1e-2, kMost, 0.44, 2.6e-2},
-    {"linearized-euler 1/15 s, tolerance 1e-2", Integrator::kLinearizedEuler, 15, 1e-2, kMost, 0.51, 2.4e-2},
-    {"linearized-euler 1/20 s, tolerance 1e-2", Integrator::kLinearizedEuler, 20, 1e-2, kMost, 0.58, 2.3e-2},
-    {"linearized-euler 1/30 s, tolerance 1e-2", Integrator::kLinearizedEuler, 30, 1e-2, kMost, 0.72, 1.95e-2},
-    {"linearized-euler 1/60 s, tolerance 1e-2", Integrator::kLinearizedEuler, 60, 1e-2, kMost, 1, 1.3e-2},
-    {"linearized-euler 1/120 s, tolerance 1e-2", Integrator::kLinearizedEuler, 120, 1e-2, kMost, 2.15, 9.5e-3},
-    {"bdf2 1/120 s, tolerance 1e-2", Integrator::kBdf2, 120, 1e-2, kMost, 2.5, 4.8e-3},
-    {"bdf2 1/240 s, tolerance 1e-2", Integrator::kBdf2, 240, 1e-2, kMost, 4.7, 2.5e-3},
-    {"bdf2 1/480 s, tolerance 1e-2", Integrator::kBdf2, 480, 1e-2, kMost, 9, 1.8e-3},
+    {"linearized-euler 1/10 s, tolerance 1e-2", Integrator::kLinearizedEuler, 10, 1e-2, kMaxIterations, 0.44, 2.6e-2},
+    {"linearized-euler 1/15 s, tolerance 1e-2", Integrator::kLinearizedEuler, 15, 1e-2, kMaxIterations, 0.51, 2.4e-2},
+    {"linearized-euler 1/20 s, tolerance 1e-2", Integrator::kLinearizedEuler, 20, 1e-2, kMaxIterations, 0.58, 2.3e-2},
+    {"linearized-euler 1/30 s, tolerance 1e-2", Integrator::kLinearizedEuler, 30, 1e-2, kMaxIterations, 0.72, 1.95e-2},
+    {"linearized-euler 1/60 s, tolerance 1e-2", Integrator::kLinearizedEuler, 60, 1e-2, kMaxIterations, 1, 1.3e-2},
+    {"linearized-euler 1/120 s, tolerance 1e-2", Integrator::kLinearizedEuler, 120, 1e-2, kMaxIterations, 2.15, 9.5e-3},
+    {"bdf2 1/120 s, tolerance 1e-2", Integrator::kBdf2, 120, 1e-2, kMaxIterations, 2.5, 4.8e-3},
+    {"bdf2 1/240 s, tolerance 1e-2", Integrator::kBdf2, 240, 1e-2, kMaxIterations, 4.7, 2.5e-3},
+    {"bdf2 1/480 s, tolerance 1e-2", Integrator::kBdf2, 480, 1e-2, kMaxIterations, 9, 1.8e-3},
 };
 static_assert(std::size(kLadder) <= kMaxRungs);
 

@@ -14,7 +14,7 @@ namespace app {
 namespace {
 
 constexpr float kMargin = 12, kSidebarWidth = 348, kTimingsWidth = 292;
-constexpr float kMessageWidth = 520, kLeastMessageWidth = 240;
+constexpr float kMessageWidth = 520, kMinMessageWidth = 240;
 constexpr double kMessageTime = 6;  // s; faults stay until clicked
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoBringToFrontOnFocus;
@@ -145,7 +145,7 @@ void message(Demo& demo, UiState& ui) {
   // In the middle of what the sidebar leaves free; over it where that is too narrow to read.
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const float margin = kMargin * ui.text_scale, taken = ui.visible ? sidebarWidth(ui) + margin : 0;
-  const bool beside = size.x - taken > kLeastMessageWidth * ui.text_scale;
+  const bool beside = size.x - taken > kMinMessageWidth * ui.text_scale;
   const float left = (beside ? taken : 0) + margin, width = size.x - left - margin;
   ImGui::SetNextWindowPos({left + 0.5f * width, size.y - 2 * margin}, ImGuiCond_Always, {0.5f, 1});
   ImGui::SetNextWindowSizeConstraints({0, 0}, {width, 0.8f * size.y});
