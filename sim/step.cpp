@@ -16,8 +16,6 @@ namespace sim {
 
 namespace {
 
-constexpr int kBalanceSlices = 40;  // steps over which the balance of gravity is solved for anew
-
 Vec3 windAt(const SimParams& params, double time) {
   // Gusts: two incommensurate periods, so that they do not repeat visibly.
   const double gust = params.gust * (0.6 * std::sin(2.1 * time) + 0.4 * std::sin(5.3 * time + 1.7));
@@ -31,8 +29,7 @@ struct StepContext::Parts {
   StageClock clock;
   BlockPattern pattern;
   Material material;
-  SimParams params;
-  bool has_model = false, gradual = false;
+  bool gradual = false;
   std::optional<ImplicitSolver<float>> single_solver;
   std::optional<ImplicitSolver<double>> double_solver;
   Stabilization stabilization;
@@ -72,26 +69,26 @@ namespace {
 
 using Parts = StepContext::Parts;
 
-// Derived values follow the parameters that they depend on. Returns whether any was made, or a slice of it.
-bool refreshModel(const SimParams& params, Parts& parts) {
+// Derived values follow the parameters that they depend on, from where `memory` is. Returns whether any was made, or a
+// slice of it.
+bool refreshModel(const SimParams& params, MaterialMemory& memory, Parts& parts) {
+  Material& material = parts.material;
   const auto tell = [&](auto&& take) {
     if (parts.single_solver) take(*parts.single_solver);
     if (parts.double_solver) take(*parts.double_solver);
   };
-  const auto setModel = [&](auto& solver) { solver.setModel(*parts.mesh, parts.material.model, params.density); };
-  bool made = parts.material.outdated();
-  if (!parts.has_model || !sameMaterial(params, parts.params)) {
-    if (parts.has_model && parts.gradual) {
-      parts.material.follow(params);
-    } else {
-      parts.material.set(params);
-    }
-    parts.has_model = made = true;
-    tell(setModel);
-  } else if (parts.material.work(kBalanceSlices)) {
-    tell([&](auto& solver) { solver.setRestShifts(*parts.mesh, parts.material.model); });
+  const auto setModel = [&](auto& solver) { solver.setModel(*parts.mesh, material.model, params.density); };
+  const bool changed = !memory.known || !sameMaterial(params, memory.params), follows = parts.gradual && memory.known;
+  bool other = material.recall(changed && !follows ? MaterialMemory{true, params, params, params} : memory);
+  bool made = other || changed || material.outdated();
+  if (changed && follows) {
+    material.follow(params);
+    other = true;
+  } else if (!changed && material.work()) {
+    tell([&](auto& solver) { solver.setRestShifts(*parts.mesh, material.model); });
   }
-  parts.params = params;
+  memory = material.memory();
+  if (other) tell(setModel);
   const auto ready = [&](auto& solver) {
     if (!solver) {
       solver.emplace(*parts.mesh, parts.pattern);
@@ -223,8 +220,8 @@ double energyOf(const SimParams& params, const Vec3& wind, const HairState& stat
 }
 
 // One step of the reference hair: solve, integration, energy limit and, where it is kept apart, self-contact.
-void advanceReference(const SimParams& params, const StepInput& input, double dt, Parts& parts, HairState& reference,
-                      StepReport& report) {
+void advanceReference(const SimParams& params, const StepInput& input, double dt, bool kept_apart, Parts& parts,
+                      HairState& reference, StepReport& report) {
   const HairMesh& mesh = *parts.mesh;
   Stabilization& nets = parts.stabilization;
   parts.start_positions = reference.positions;
@@ -236,7 +233,7 @@ void advanceReference(const SimParams& params, const StepInput& input, double dt
   integratePositions(input, base, dt, mesh, parts, reference);
   const TakenStep taken = takenStep(params, base, dt, parts);
   if (nets.active.step_energy) limitEnergy(taken, own.converged, nets.energy_limit, reference);
-  if (nets.rest_check.kept_apart)
+  if (kept_apart)
     partBundles({mesh, params, {}, parts.start_positions, dt}, taken, parts.reference_contact, parts, reference, own);
   for (const double seconds : own.seconds) report.seconds[kStageOther] += seconds;
 }
@@ -251,8 +248,9 @@ SimParams beginStep(const HairMesh& mesh, const SimParams& asked, Parts& parts, 
   parts.clock.start();
   const SimParams params = limited(mesh, asked, parts);
   parts.stabilization.active = params.solver == Solver::kPaper ? kAsPublished : parts.stabilization.nets;
+  sizeMemory(mesh, state.memory);
   state.contacts.reserve(static_cast<std::size_t>(kMaxTouches) * mesh.vertexCount());
-  report.refreshes = {!refreshModel(params, parts), 1};
+  report.refreshes = {!refreshModel(params, state.memory.material, parts), 1};
   return params;
 }
 
@@ -264,7 +262,7 @@ std::span<const Vec3> rememberStart(const HairState& state, Parts& parts) {
 
 void endStep(const TakenStep& taken, const StepInput& input, Parts& parts, HairState& state, StepReport& report) {
   const auto advance_reference = [&](const SimParams& params, HairState& reference) {
-    advanceReference(params, input, taken.dt, parts, reference, report);
+    advanceReference(params, input, taken.dt, state.memory.rest.kept_apart, parts, reference, report);
   };
   const auto energy = [&](const HairState& one) { return energyOf(taken.params, taken.wind, one, parts); };
   keepPinned(parts, state, report);
@@ -316,7 +314,8 @@ StepReport advance(const HairMesh& mesh, const SimParams& asked, const StepInput
 double mechanicalEnergy(const HairMesh& mesh, const SimParams& asked, StepContext& context, const HairState& state) {
   Parts& parts = context.parts();
   const SimParams params = limited(mesh, asked, parts);
-  refreshModel(params, parts);
+  MaterialMemory memory = state.memory.material;
+  refreshModel(params, memory, parts);
   return energyOf(params, Vec3::Zero(), state, parts);
 }
 
@@ -345,6 +344,7 @@ void collapseOntoRoots(const HairMesh& mesh, HairState& state) {
   }
   state.contacts.clear();
   state.previous_dt = 0;
+  state.memory = {};
 }
 
 }  // namespace sim

@@ -297,6 +297,7 @@ void enterCoarse(const HaircutPair& pair, Actor& actor) {
     coarse.hair.positions[coarse_mesh.shape.column_first[c]] = coarse.roots[c];
   coarse.hair.contacts.clear();
   coarse.hair.previous_dt = 0;
+  coarse.hair.memory = {};
   sim::transferPositions(pair.to_fine, coarse_mesh, fine_mesh, head, coarse.hair.positions, coarse.remainder);
   for (std::size_t i = 0; i < coarse.remainder.size(); ++i)
     coarse.remainder[i] = head.linear().transpose() * (actor.hair.positions[i] - coarse.remainder[i]);
@@ -307,6 +308,7 @@ void leaveCoarse(Actor& actor) {
   // Positions and velocities have been kept up to date; what only the fine mesh knows starts anew.
   actor.hair.contacts.clear();
   actor.hair.previous_dt = 0;
+  actor.hair.memory = {};
   actor.coarse.active = false;
 }
 

@@ -148,6 +148,8 @@ bool alongside(int layer, const Prism& prism) {
 // Sweep and prune along y, in which hair is longest. Boxes bound the paths from start to end.
 void makeList(const HairMesh& mesh, std::span<const Vec3> start, std::span<const Vec3> x, SelfContact& self) {
   ++self.rebuilds;
+  self.made_for.start.assign(start.begin(), start.end());
+  self.made_for.end.assign(x.begin(), x.end());
   self.pairs.clear();
   const Frame frame = scalpFrame(self, x);
   self.listed_at.resize(x.size());
@@ -184,6 +186,14 @@ void makeList(const HairMesh& mesh, std::span<const Vec3> start, std::span<const
     std::sort(self.pairs.begin() + first, self.pairs.end(),
               [](const auto& a, const auto& b) { return a.prism < b.prism; });
   }
+}
+
+// Makes the list that the state remembers, where `self` has another one.
+void recallList(const HairMesh& mesh, const SelfContactMemory& memory, SelfContact& self) {
+  if (memory.start == self.made_for.start && memory.end == self.made_for.end) return;
+  if (!memory.end.empty()) return makeList(mesh, memory.start, memory.end, self);
+  self.made_for.start.clear(), self.made_for.end.clear();
+  self.listed_at.clear();
 }
 
 // A vertex and a face in contact: the share of an impulse that each takes, by mass over density. Roots do not move.
@@ -375,13 +385,18 @@ SelfContact::SelfContact(const HairMesh& mesh)
       stride(kStrideShare * meanLength(mesh.horizontal_edges)) {
   pairs.reserve(32 * mesh.external_vertices.size());
   boxes.reserve(prisms.size());
-  for (auto* field : {&listed_at, &unmoved, &between, &way}) field->reserve(mesh.vertexCount());
+  for (auto* field : {&made_for.start, &made_for.end, &listed_at, &unmoved, &between, &way})
+    field->reserve(mesh.vertexCount());
   moved.reserve(mesh.vertexCount());
 }
 
 int resolveSelfContacts(const SelfContactStep& step, SelfContact& self, HairState& state) {
   const std::span<const Vec3> start = step.start.empty() ? std::span<const Vec3>(state.positions) : step.start;
-  if (!listHolds(self, start, state.positions)) makeList(step.mesh, start, state.positions, self);
+  recallList(step.mesh, state.memory.self_contact, self);
+  if (!listHolds(self, start, state.positions)) {
+    makeList(step.mesh, start, state.positions, self);
+    state.memory.self_contact = self.made_for;
+  }
   const double nearing = farthestNearing(step.mesh, self, start, state.positions);
   self.pieces = static_cast<int>(std::min<double>(kMaxPieces, std::ceil(nearing / self.stride)));
   const int meeting = firstMeeting(step.mesh, start, state.positions, self);

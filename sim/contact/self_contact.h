@@ -35,13 +35,14 @@ struct SelfContact {
   std::array<int, 3> frame_roots;  // vertices that define the scalp's frame
   double margin;                   // m, of the list
   double stride;                   // m, longest piece of a vertex's path relative to a prism
-  // The list, and the positions that it was made at.
+  // The list, derived from the positions that it was made for.
   struct Pair {
     int vertex, prism;  // prism: of `prisms`
     signed char apart;  // a face of the prism that the vertex last lay beyond; negative: they overlap at rest
     bool stood;         // initial overlap: the vertex lay inside before the step
   };
   std::vector<Pair> pairs;
+  SelfContactMemory made_for;
   std::vector<Vec3> listed_at;  // m, in the scalp's frame; empty: no list yet
   // Of the last step: positions before it (m), and which vertices it pushed.
   std::vector<Vec3> unmoved;
@@ -69,7 +70,7 @@ struct SelfContactStep {
 
 // Resolves the contacts among the hair's own bundles at the end of a step, positions and velocities; initial overlaps
 // by no more than max_depenetration. Returns the number of vertices inside foreign prisms or gone through them. The
-// result depends on the state alone, not on when the list was made.
+// result depends on the state alone, memory included.
 int resolveSelfContacts(const SelfContactStep& step, SelfContact& self, HairState& state);
 
 }  // namespace sim

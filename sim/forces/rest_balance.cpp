@@ -41,12 +41,13 @@ void Material::set(const SimParams& params) {
   params_ = params;
   if (!setStiffness({*mesh_, params}, model)) rebuild();
   stage_ = Stage::kIdle;
-  outdated_ = false;
+  memory_ = {.known = true, .params = params, .balanced = params, .coming = params};
   balance_.load = 0;
   applyBalance();
   if (wantedLoad() <= 0) return;
   beginBalance();
   while (stage_ != Stage::kIdle) continueBalance(std::numeric_limits<double>::infinity());
+  memory_.slices = 0;
   factor_.release();
 }
 
@@ -60,23 +61,50 @@ void Material::follow(const SimParams& params) {
   model.forEachOfMaterial([&]<class Kind>(const Elements<Kind, double>& elements) {
     same = same && last.stiffness[kIndex<Kind>] == elements.stiffness;
   });
-  outdated_ = wantedLoad() > 0 && !same;
+  memory_.params = params;
+  memory_.outdated = wantedLoad() > 0 && !same;
 }
 
-bool Material::work(int slices) {
+bool Material::work() {
   if (stage_ == Stage::kIdle) {
-    if (!outdated_) return false;
+    if (!memory_.outdated) return false;
     beginBalance();
     return false;
   }
-  return continueBalance(factor_.factorOperations() / slices);
+  ++memory_.slices;
+  const bool changed = continueBalance(factor_.factorOperations() / kSlices);
+  if (stage_ == Stage::kIdle) memory_.slices = 0;
+  if (changed) memory_.balanced = memory_.coming;
+  return changed;
+}
+
+bool Material::recall(const MaterialMemory& memory) {
+  const auto same = [](const MaterialMemory& a, const MaterialMemory& b) {
+    return a.known == b.known && a.slices == b.slices && a.outdated == b.outdated && sameMaterial(a.params, b.params) &&
+           sameMaterial(a.balanced, b.balanced) && (a.slices == 0 || sameMaterial(a.coming, b.coming));
+  };
+  if (same(memory, memory_) || !memory.known) return false;
+  set(memory.balanced);
+  if (memory.slices > 0) {
+    params_ = memory.coming;
+    setStiffness({*mesh_, params_}, model);
+    beginBalance();
+    for (int k = 1; k < memory.slices; ++k) work();
+  }
+  params_ = memory.params;
+  setStiffness({*mesh_, params_}, model);
+  applyBalance();
+  memory_ = memory;
+  return true;
 }
 
 // With C = shift + (change) at the styled pose, balance asks for sum k s g = M a with s the extra shift and a =
 // -gravity up; of all solutions the one of least energy is s = -g . y, where K y = M (0, -gravity, 0) and K = sum k g
 // g^T over the free vertices: one linear solve.
 void Material::beginBalance() {
-  outdated_ = false;
+  memory_.outdated = false;
+  memory_.coming = params_;
+  memory_.slices = 1;
   stiffness_.setZero();
   Evaluation<double> out;
   out.matrix = &stiffness_;
@@ -129,7 +157,7 @@ bool Material::continueBalance(double operations) {
       takeChanges();
       applyBalance();
       stage_ = Stage::kIdle;
-      if (!outdated_) factor_.release();
+      if (!memory_.outdated) factor_.release();
       return true;
   }
   return false;

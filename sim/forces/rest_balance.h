@@ -10,6 +10,7 @@
 
 #include "sim/forces/model.h"
 #include "sim/linear/block_cholesky.h"
+#include "sim/mesh/hair_memory.h"
 
 namespace sim {
 
@@ -34,10 +35,16 @@ struct Material {
   // Makes the elements anew that the step's input moves.
   void setMoving(std::span<const PinnedVertex> pins);
 
-  // Goes on with the solve for the balance of the last parameters by one `slices`-th of its factorization; answers
+  // Goes on with the solve for the balance of the last parameters by one kSlices-th of its factorization; answers
   // whether `model` has just changed. A parameter that changes meanwhile lets the solve finish and begin again.
-  bool work(int slices);
-  bool outdated() const { return outdated_ || stage_ != Stage::kIdle; }
+  static constexpr int kSlices = 40;
+  bool work();
+  bool outdated() const { return memory_.outdated || stage_ != Stage::kIdle; }
+
+  // What the above have come to: model and solve follow from it. recall() remakes them where they are another's, and
+  // answers whether they were.
+  const MaterialMemory& memory() const { return memory_; }
+  bool recall(const MaterialMemory& memory);
 
  private:
   enum class Stage { kIdle, kFactor, kSolve, kRefine, kShifts };
@@ -46,7 +53,7 @@ struct Material {
   SimParams params_;
   std::array<std::vector<double>, ForceKinds::kCount> unloaded_;  // shifts before any balance
   RestBalance balance_, coming_;
-  bool outdated_ = false;  // the balance is not that of params_
+  MaterialMemory memory_;
   Stage stage_ = Stage::kIdle;
   BlockCholesky<double> factor_;
   BlockMatrix<double> stiffness_;

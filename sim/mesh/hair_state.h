@@ -1,8 +1,9 @@
-// All that changes from step to step.
+// All that changes from step to step: reset, compared, saved and restored as one (state_bytes.h).
 #pragma once
 
 #include <vector>
 
+#include "sim/mesh/hair_memory.h"
 #include "sim/mesh/hair_mesh.h"
 
 namespace sim {
@@ -17,6 +18,7 @@ struct Contact {
   bool sticks = false;           // static friction: all three directions are prescribed
   Vec3 friction_direction =
       Vec3::Zero();  // unit tangent: the way friction pushes it while it slides; zero: it has not slid
+  HAIRMESH_FIELDS(vertex, collider, normal, velocity, pressure, sticks, friction_direction)
 };
 
 // Contacts a vertex, in the mean over all, that steps have memory for from the first: more take it when they come.
@@ -29,6 +31,8 @@ struct HairState {
   // The step before, for two-step integrators; empty after a restart.
   std::vector<Vec3> previous_positions, previous_velocities;
   double previous_dt = 0;  // s
+  HairMemory memory;
+  HAIRMESH_FIELDS(positions, velocities, contacts, previous_positions, previous_velocities, previous_dt, memory)
 
   // Restarts the two-step history of a vertex: as if it had come here at its present velocity in a step of dt (s).
   void restartHistory(int vertex, double dt) {
@@ -36,5 +40,8 @@ struct HairState {
     previous_velocities[vertex] = velocities[vertex];
   }
 };
+
+// Sizes the memory for a mesh. Of a memory that has its size it changes nothing.
+void sizeMemory(const HairMesh& mesh, HairMemory& memory);
 
 }  // namespace sim

@@ -33,7 +33,7 @@ double cosineAt(const int (&segment)[3], const std::vector<Vec3>& x) {
 }
 
 // Returns whether it does: not while the column is guided or waits.
-bool begin(InversionRecovery::Column& column) {
+bool begin(RecoveryMemory::Column& column) {
   if (column.guided >= 0 || column.wait > 0) return false;
   column.guided = 0;
   column.backoff = std::min(kMaxBackoff, std::max(kFirstBackoff, kBackoffGrowth * column.backoff));
@@ -41,14 +41,15 @@ bool begin(InversionRecovery::Column& column) {
   return true;
 }
 
-void look(const HairMesh& mesh, const HairState& state, double seconds, InversionRecovery& recovery) {
-  for (InversionRecovery::Column& column : recovery.columns) {
+void look(const HairMesh& mesh, double seconds, RecoveryScratch& scratch, HairState& state) {
+  RecoveryMemory& recovery = state.memory.recovery;
+  for (RecoveryMemory::Column& column : recovery.columns) {
     column.wait = std::max(0.0, column.wait - seconds);
     column.upright += seconds;
     if (column.upright > kForgiven) column.backoff = 0;
   }
-  std::fill(recovery.touched.begin(), recovery.touched.end(), char{0});
-  for (const Contact& contact : state.contacts) recovery.touched[contact.vertex] = 1;
+  std::fill(scratch.touched.begin(), scratch.touched.end(), char{0});
+  for (const Contact& contact : state.contacts) scratch.touched[contact.vertex] = 1;
   const auto rests = [&](int v) {
     const Vec3& root = state.velocities[mesh.shape.column_first[mesh.column_of[v]]];
     return (state.velocities[v] - root).squaredNorm() < kStill * kStill;
@@ -60,9 +61,9 @@ void look(const HairMesh& mesh, const HairState& state, double seconds, Inversio
     if (!inverted) return;
     for (const int v : vertices) recovery.columns[mesh.column_of[v]].upright = 0;
     if (lasted < kInvertedFor) return;
-    if (std::any_of(vertices.begin(), vertices.end(), [&](int v) { return recovery.touched[v] != 0; })) return;
+    if (std::any_of(vertices.begin(), vertices.end(), [&](int v) { return scratch.touched[v] != 0; })) return;
     for (const int v : vertices) {
-      InversionRecovery::Column& column = recovery.columns[mesh.column_of[v]];
+      RecoveryMemory::Column& column = recovery.columns[mesh.column_of[v]];
       if ((!again && column.backoff > 0) || !begin(column)) continue;
       const int c = mesh.column_of[v];
       for (int i = mesh.shape.column_first[c]; i < mesh.shape.column_first[c + 1]; ++i)
@@ -92,21 +93,16 @@ double left(double seconds) {
 
 }  // namespace
 
-InversionRecovery::InversionRecovery(const HairMesh& mesh) {
-  columns.resize(mesh.columnCount());
-  turned.resize(mesh.tets.size());
-  folded.resize(mesh.vertexCount());
-  touched.resize(mesh.vertexCount());
+RecoveryScratch::RecoveryScratch(const HairMesh& mesh) : touched(mesh.vertexCount()) {
   for (int c = 0; c < mesh.columnCount(); ++c) rest_roots.push_back(mesh.shape.positions[mesh.shape.column_first[c]]);
   roots_before = roots_now = rest_roots;
-  target = mesh.shape.positions;
 }
 
-void guideTo(const HairMesh& mesh, const HairState& there, InversionRecovery& recovery) {
-  for (int c = 0; c < mesh.columnCount(); ++c) recovery.roots_now[c] = there.positions[mesh.shape.column_first[c]];
-  const Eigen::Isometry3d home = rigidMotion(recovery.rest_roots, recovery.roots_now).inverse();
+void guideTo(const HairMesh& mesh, const HairState& there, RecoveryScratch& scratch, RecoveryMemory& recovery) {
+  for (int c = 0; c < mesh.columnCount(); ++c) scratch.roots_now[c] = there.positions[mesh.shape.column_first[c]];
+  const Eigen::Isometry3d home = rigidMotion(scratch.rest_roots, scratch.roots_now).inverse();
   for (int c = 0; c < mesh.columnCount(); ++c) {
-    InversionRecovery::Column& column = recovery.columns[c];
+    RecoveryMemory::Column& column = recovery.columns[c];
     if (column.guided < 0) ++recovery.guided_columns;
     column.guided = 0;
     for (int i = mesh.shape.column_first[c]; i < mesh.shape.column_first[c + 1]; ++i)
@@ -114,24 +110,25 @@ void guideTo(const HairMesh& mesh, const HairState& there, InversionRecovery& re
   }
 }
 
-int recoverInversions(const RecoveredStep& step, InversionRecovery& recovery, HairState& state) {
+int recoverInversions(const RecoveredStep& step, RecoveryScratch& scratch, HairState& state) {
   const HairMesh& mesh = step.mesh;
+  RecoveryMemory& recovery = state.memory.recovery;
   recovery.since_look += step.dt;
   if (recovery.since_look >= kLookEvery) {
-    if (step.looks) look(mesh, state, recovery.since_look, recovery);
+    if (step.looks) look(mesh, recovery.since_look, scratch, state);
     recovery.since_look = 0;
     recovery.guided_columns = static_cast<int>(
         std::count_if(recovery.columns.begin(), recovery.columns.end(), [](const auto& c) { return c.guided >= 0; }));
   }
   if (recovery.guided_columns == 0) return 0;
   for (int c = 0; c < mesh.columnCount(); ++c) {
-    recovery.roots_before[c] = step.start[mesh.shape.column_first[c]];
-    recovery.roots_now[c] = state.positions[mesh.shape.column_first[c]];
+    scratch.roots_before[c] = step.start[mesh.shape.column_first[c]];
+    scratch.roots_now[c] = state.positions[mesh.shape.column_first[c]];
   }
-  const Eigen::Isometry3d before = rigidMotion(recovery.rest_roots, recovery.roots_before).inverse();
-  const Eigen::Isometry3d now = rigidMotion(recovery.rest_roots, recovery.roots_now);
+  const Eigen::Isometry3d before = rigidMotion(scratch.rest_roots, scratch.roots_before).inverse();
+  const Eigen::Isometry3d now = rigidMotion(scratch.rest_roots, scratch.roots_now);
   for (int c = 0; c < mesh.columnCount(); ++c) {
-    InversionRecovery::Column& column = recovery.columns[c];
+    RecoveryMemory::Column& column = recovery.columns[c];
     if (column.guided < 0) continue;
     const bool arrives = column.guided + step.dt > kGuideTime - kSoon;
     const double share = arrives ? 0 : left(column.guided + step.dt) / left(column.guided);

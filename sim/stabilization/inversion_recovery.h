@@ -19,27 +19,15 @@ namespace sim {
 inline constexpr double kInvertedFor = 6;  // s
 inline constexpr double kRestWeight = 4;   // so 1.5 s at rest
 
-// What outlives a step, and scratch: one per hair.
-struct InversionRecovery {
-  explicit InversionRecovery(const HairMesh& mesh);
+// Scratch, and what follows from the mesh.
+struct RecoveryScratch {
+  explicit RecoveryScratch(const HairMesh& mesh);
 
-  struct Column {
-    double guided = -1;  // s since guiding began; negative: it is not guided
-    double wait = 0;     // s before it may be guided again
-    double backoff = 0;  // s that it waits after it was guided
-    double upright = 0;  // s since one of its elements was last inverted
-  };
-  std::vector<Column> columns;
-  std::vector<double> turned;                             // s that each corner tetrahedron has been inverted, weighted
-  std::vector<double> folded;                             // the same of columns folded back at each vertex
-  std::vector<char> touched;                              // by a body, per vertex
   std::vector<Vec3> rest_roots, roots_before, roots_now;  // m, one per column
-  std::vector<Vec3> target;                               // m, seen from the head: where guided columns go
-  double since_look = 0;                                  // s
-  int guided_columns = 0;                                 // columns
+  std::vector<char> touched;                              // by a body, per vertex
 };
 
-// The step that was taken: positions (m) at its start; `state` holds its end.
+// The step that was taken: positions (m) at its start; `state` holds its end, and a memory that has its size.
 struct RecoveredStep {
   const HairMesh& mesh;
   std::span<const Vec3> start;
@@ -48,9 +36,9 @@ struct RecoveredStep {
 };
 
 // Looks for inverted columns every 0.1 s, and moves those that are guided. Returns how many these are.
-int recoverInversions(const RecoveredStep& step, InversionRecovery& recovery, HairState& state);
+int recoverInversions(const RecoveredStep& step, RecoveryScratch& scratch, HairState& state);
 
 // Guides every column to where `there` has it, over the next steps.
-void guideTo(const HairMesh& mesh, const HairState& there, InversionRecovery& recovery);
+void guideTo(const HairMesh& mesh, const HairState& there, RecoveryScratch& scratch, RecoveryMemory& recovery);
 
 }  // namespace sim

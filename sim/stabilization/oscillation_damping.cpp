@@ -11,23 +11,19 @@ constexpr double kForced = 0.5;    // of a vertex's speed: roots that change the
 
 }  // namespace
 
-OscillationDamping::OscillationDamping(const HairMesh& mesh)
-    : last(mesh.vertexCount(), Vec3::Zero()),
-      carrying(mesh.columnCount(), Vec3::Zero()),
-      turns(mesh.vertexCount(), 0) {}
-
-int dampOscillation(const HairMesh& mesh, std::span<const Vec3> start, OscillationDamping& buzz, HairState& state) {
+int dampOscillation(const HairMesh& mesh, std::span<const Vec3> start, HairState& state) {
+  OscillationMemory& memory = state.memory.oscillation;
   int held = 0;
   for (int c = 0; c < mesh.columnCount(); ++c) {
     const int root = mesh.shape.column_first[c];
     const Vec3 carrying = state.velocities[root], carried = state.positions[root] - start[root];
-    const double jolt = (carrying - buzz.carrying[c]).squaredNorm();
-    buzz.carrying[c] = carrying;
+    const double jolt = (carrying - memory.carrying[c]).squaredNorm();
+    memory.carrying[c] = carrying;
     for (int i = root + 1; i < mesh.shape.column_first[c + 1]; ++i) {
       Vec3& v = state.velocities[i];
       const Vec3 now = v - carrying;
-      Vec3& before = buzz.last[i];
-      unsigned char& turns = buzz.turns[i];
+      Vec3& before = memory.last[i];
+      unsigned char& turns = memory.turns[i];
       const double square = now.squaredNorm();
       const bool back = square > kMinSpeed * kMinSpeed && jolt <= kForced * kForced * square &&
                         now.dot(before) < -kOpposite * std::max(square, before.squaredNorm());

@@ -1,4 +1,4 @@
-// Buzzing: vertices that a linearized step throws past their balance, and the next one back, for ever.
+// Oscillation damping of vertices that a linearized step throws past their balance, and the next one back, for ever.
 //
 // Where forces are far from linear over a step (sharply folded hinges of limp hair, hair that wind presses into
 // itself), the map from one step to the next may have an eigenvalue below -1 although no energy is to be had: the
@@ -8,24 +8,16 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "sim/mesh/hair_mesh.h"
 #include "sim/mesh/hair_state.h"
 
 namespace sim {
 
-inline constexpr int kMinTurns = 6;        // steps in a row, from which on a vertex buzzes
+inline constexpr int kMinTurns = 6;        // steps in a row, from which on a vertex is damped
 inline constexpr double kMinSpeed = 1e-3;  // m/s against its root; slower to and fro is not seen
 
-struct OscillationDamping {
-  std::vector<Vec3> last;            // m/s against the root, of the step before
-  std::vector<Vec3> carrying;        // m/s of the columns' roots then
-  std::vector<unsigned char> turns;  // steps that turned back, less those that did not
-  explicit OscillationDamping(const HairMesh& mesh);
-};
-
-// After a step from `start` (m). Roots stay. Returns how many vertices were held back.
-int dampOscillation(const HairMesh& mesh, std::span<const Vec3> start, OscillationDamping& buzz, HairState& state);
+// After a step from `start` (m). Roots stay. Returns how many vertices were held back. The memory has its size.
+int dampOscillation(const HairMesh& mesh, std::span<const Vec3> start, HairState& state);
 
 }  // namespace sim

@@ -11,16 +11,16 @@ namespace {
 // Speeds under another pull are to one another as its root (Froude 1872).
 constexpr double kWeight = 9.81;          // m/s^2
 constexpr double kStill = 0.02;           // m/s: slower hair hangs still, unless it
-constexpr double kOnItsWay = 1;           // s, would in so long go as far as the twin is off
+constexpr double kOnItsWay = 1;           // s, would in so long go as far as the reference is off
 constexpr double kStillFor = 0.5;         // s
 constexpr double kReferenceStill = 5e-3;  // m/s
-constexpr double kMaxSettling = 60;       // s, after which a twin that goes on swinging is taken as it is
-constexpr double kElsewhere = 0.006;      // of the hair's length: what is nearer to its twin is at home
+constexpr double kMaxSettling = 60;       // s, after which a reference that goes on swinging is taken as it is
+constexpr double kElsewhere = 0.006;      // of the hair's length: what is nearer to its reference is at home
 constexpr double kAtHome = 0.003;         // of the hair's length, from the rest shape itself
 constexpr double kHigher = 5e-5;          // of the hair's weight times its length
 constexpr double kMoving = 3 * kStill;    // m/s: hair so fast is on its way to another rest
 
-constexpr double kFirstBackoff = 1, kMaxBackoff = 60;  // s between one time that the hair is led and the next
+constexpr double kFirstBackoff = 1, kMaxBackoff = 60;  // s between one time that the hair is guided and the next
 constexpr double kBackoffGrowth = 2;
 
 double fastest(const HairState& state) {
@@ -36,71 +36,72 @@ double largestDistance(const HairState& a, const HairState& b) {
   return std::sqrt(most);
 }
 
-void beginReference(const HairMesh& mesh, const HairState& state, const InversionRecovery& recovery, RestCheck& check) {
-  for (int c = 0; c < mesh.columnCount(); ++c) check.roots[c] = state.positions[mesh.shape.column_first[c]];
-  const Eigen::Isometry3d head = rigidMotion(recovery.rest_roots, check.roots);
+// How fast hair moves that is pulled so hard (m/s^2), as a multiple of hair that its weight alone pulls.
+double stirOf(double pull) {
+  return std::sqrt(std::max(1.0, pull / kWeight));
+}
+
+void beginReference(const HairMesh& mesh, RecoveryScratch& scratch, HairState& state) {
+  HairState& reference = state.memory.rest.reference.front();
+  for (int c = 0; c < mesh.columnCount(); ++c) scratch.roots_now[c] = state.positions[mesh.shape.column_first[c]];
+  const Eigen::Isometry3d head = rigidMotion(scratch.rest_roots, scratch.roots_now);
   for (int i = 0; i < mesh.vertexCount(); ++i) {
-    check.reference.positions[i] = mesh.isRoot(i) ? state.positions[i] : Vec3(head * mesh.shape.positions[i]);
-    check.reference.velocities[i].setZero();
+    reference.positions[i] = mesh.isRoot(i) ? state.positions[i] : Vec3(head * mesh.shape.positions[i]);
+    reference.velocities[i].setZero();
   }
-  check.reference.previous_dt = 0;
-  check.settling = 0;
+  reference.previous_dt = 0;
+  state.memory.rest.settling = 0;
 }
 
 }  // namespace
 
-RestCheck::RestCheck(const HairMesh& mesh) {
-  for (auto* array :
-       {&reference.positions, &reference.velocities, &reference.previous_positions, &reference.previous_velocities})
-    array->resize(mesh.vertexCount());
-  roots.resize(mesh.columnCount());
-}
-
-bool watchRest(const HairMesh& mesh, const HairState& state, double pull, double dt, const InversionRecovery& recovery,
-               RestCheck& check) {
-  check.stir = std::sqrt(std::max(1.0, pull / kWeight));
-  const double speed = fastest(state) / check.stir;
-  check.wait = std::max(0.0, check.wait - dt);
-  if (speed > kMoving) check.judged = check.kept_apart = false;
-  if (check.judged || check.wait > 0) return false;
-  if (!(speed < kStill) || !state.contacts.empty() || recovery.guided_columns > 0) {
-    check.still = 0;
-    check.settling = -1;
+bool watchRest(const RestStep& step, RecoveryScratch& scratch, HairState& state) {
+  RestMemory& rest = state.memory.rest;
+  const double speed = fastest(state) / stirOf(step.pull);
+  rest.wait = std::max(0.0, rest.wait - step.dt);
+  if (speed > kMoving) rest.judged = rest.kept_apart = false;
+  if (rest.judged || rest.wait > 0) return false;
+  if (!(speed < kStill) || !state.contacts.empty() || state.memory.recovery.guided_columns > 0) {
+    rest.still = 0;
+    rest.settling = -1;
     return false;
   }
-  check.still += dt;
-  if (check.settling < 0) {
-    beginReference(mesh, state, recovery, check);
+  rest.still += step.dt;
+  if (rest.settling < 0) {
+    beginReference(step.mesh, scratch, state);
     // Nobody need find out where the rest shape would come to while the hair is in it and hardly moves.
-    if (largestDistance(state, check.reference) < kAtHome * mesh.hair_length) {
-      check.settling = -1;
+    if (largestDistance(state, rest.reference.front()) < kAtHome * step.mesh.hair_length) {
+      rest.settling = -1;
       return false;
     }
   }
-  check.settling += dt;
+  rest.settling += step.dt;
   return true;
 }
 
-void judgeRest(const HairMesh& mesh, const HairState& state, double scale,
-               const std::function<double(const HairState&)>& energy, InversionRecovery& recovery, RestCheck& check) {
-  const double stirring = fastest(check.reference);
-  if (check.still < kStillFor || !(stirring < kReferenceStill * check.stir || check.settling > kMaxSettling)) return;
-  const double off = largestDistance(state, check.reference);
-  if (off > kElsewhere * mesh.hair_length && kOnItsWay * fastest(state) > off) return;
-  const bool higher = energy(state) - energy(check.reference) > kHigher * scale;
-  // A twin on its way down may yet come to rest below the hair.
-  check.judged = higher || stirring < kReferenceStill || check.settling > kMaxSettling;
-  if (off <= kElsewhere * mesh.hair_length || !higher) {
-    if (check.judged && check.self_contact && !check.kept_apart) {
-      check.judged = false, check.kept_apart = true;
-      check.settling = -1;
+void judgeRest(const RestStep& step, const std::function<double(const HairState&)>& energy, RecoveryScratch& scratch,
+               HairState& state) {
+  RestMemory& rest = state.memory.rest;
+  const HairState& reference = rest.reference.front();
+  const double stirring = fastest(reference);
+  if (rest.still < kStillFor || !(stirring < kReferenceStill * stirOf(step.pull) || rest.settling > kMaxSettling))
+    return;
+  const double off = largestDistance(state, reference);
+  if (off > kElsewhere * step.mesh.hair_length && kOnItsWay * fastest(state) > off) return;
+  const bool higher = energy(state) - energy(reference) > kHigher * step.scale;
+  // A reference on its way down may yet come to rest below the hair.
+  rest.judged = higher || stirring < kReferenceStill || rest.settling > kMaxSettling;
+  if (off <= kElsewhere * step.mesh.hair_length || !higher) {
+    if (rest.judged && step.self_contact && !rest.kept_apart) {
+      rest.judged = false, rest.kept_apart = true;
+      rest.settling = -1;
     }
     return;
   }
-  guideTo(mesh, check.reference, recovery);
-  check.kept_apart = false;
-  check.backoff = std::min(kMaxBackoff, std::max(kFirstBackoff, kBackoffGrowth * check.backoff));
-  check.wait = check.backoff;
+  guideTo(step.mesh, reference, scratch, state.memory.recovery);
+  rest.kept_apart = false;
+  rest.backoff = std::min(kMaxBackoff, std::max(kFirstBackoff, kBackoffGrowth * rest.backoff));
+  rest.wait = rest.backoff;
 }
 
 }  // namespace sim

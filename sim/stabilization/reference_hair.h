@@ -9,8 +9,6 @@
 #pragma once
 
 #include <functional>
-#include <span>
-#include <vector>
 
 #include "sim/mesh/hair_mesh.h"
 #include "sim/mesh/hair_state.h"
@@ -18,30 +16,24 @@
 
 namespace sim {
 
-// What is known of a hair's rest from step to step: one per hair.
-struct RestCheck {
-  explicit RestCheck(const HairMesh& mesh);
-
-  HairState reference;
-  double still = 0;              // s that the hair has hung still
-  double settling = -1;          // s since the twin left the rest shape; negative: there is none
-  bool judged = false;           // nothing more to find out before the hair has moved
-  double wait = 0, backoff = 0;  // s before it may be led again, and after the next time
-  double stir = 1;               // times as fast as hair that its weight alone pulls
-  // With self-contact the first twin runs through its own bundles, for their pushes may hold it as they hold the hair;
-  // if it finds nothing lower, a second one is kept apart, for the first may have been caught behind its neighbours.
-  bool self_contact = false, kept_apart = false;
-  std::vector<Vec3> roots;  // m, scratch
+// The step that was taken.
+struct RestStep {
+  const HairMesh& mesh;
+  double dt;     // s
+  double pull;   // m/s^2, of gravity and wind: under more than hair's own weight it never hangs quite as still
+  double scale;  // J, the hair's weight times its length
+  // With self-contact the first reference runs through its own bundles, for their pushes may hold it as they hold the
+  // hair; if it finds nothing lower, a second one is kept apart, for the first may have been caught behind its
+  // neighbours.
+  bool self_contact = false;
 };
 
-// Looks at the hair after a step of dt (s). Returns whether its twin is to take one too. pull: m/s^2, of gravity and
-// wind; under more than hair's own weight it never hangs quite as still.
-bool watchRest(const HairMesh& mesh, const HairState& state, double pull, double dt, const InversionRecovery& recovery,
-               RestCheck& check);
+// Looks at the hair after a step. Returns whether its reference is to take one too. The memory has its size.
+bool watchRest(const RestStep& step, RecoveryScratch& scratch, HairState& state);
 
-// After the twin's step: once both hang still, has the hair led to where the twin is, if that is elsewhere and lower by
-// more than a small share of `scale` (J, the hair's weight times its length). `energy`: mechanical, of a state (J).
-void judgeRest(const HairMesh& mesh, const HairState& state, double scale,
-               const std::function<double(const HairState&)>& energy, InversionRecovery& recovery, RestCheck& check);
+// After the reference's step: once both hang still, has the hair guided to where the reference is, if that is elsewhere
+// and lower by more than a small share of the scale. `energy`: mechanical, of a state (J).
+void judgeRest(const RestStep& step, const std::function<double(const HairState&)>& energy, RecoveryScratch& scratch,
+               HairState& state);
 
 }  // namespace sim

@@ -14,25 +14,26 @@ constexpr int kMinReferenceIterations = 300;  // a reference hair of loose solve
 constexpr double kAtOnce = 1e6;               // m/s
 
 // Names the force at the vertex in `fault`, at positions `x` (m).
-void nameForceAt(const ForceModel<double>& model, std::span<const Vec3> x, Stabilization& memory, FaultReport& fault) {
-  memory.plain_positions.clear();
-  for (const Vec3& p : x) memory.plain_positions.push_back({p.x(), p.y(), p.z()});
-  nameForce(model, memory.plain_positions, fault);
+void nameForceAt(const ForceModel<double>& model, std::span<const Vec3> x, Stabilization& scratch, FaultReport& fault) {
+  scratch.plain_positions.clear();
+  for (const Vec3& p : x) scratch.plain_positions.push_back({p.x(), p.y(), p.z()});
+  nameForce(model, scratch.plain_positions, fault);
 }
 
-void repairInput(const HairMesh& mesh, const ForceModel<double>& model, const StepInput& input, Stabilization& memory,
+void repairInput(const HairMesh& mesh, const ForceModel<double>& model, const StepInput& input, Stabilization& scratch,
                  HairState& state, StepReport& report) {
   FaultReport fault;
   fault.given = true;
-  repair(mesh, input.roots, memory.good, state, fault);
+  const GoodState& good = state.memory.good;
+  repair(mesh, input.roots, good, state, fault);
   if (fault.fault == StateFault::kNone) return;
   ++report.recoveries;
   // At the last good place: of absurd places no force says anything.
-  nameForceAt(model, memory.good.positions.empty() ? mesh.shape.positions : memory.good.positions, memory, fault);
+  nameForceAt(model, good.positions.empty() ? mesh.shape.positions : good.positions, scratch, fault);
   report.fault_report = fault;
 }
 
-void repairResult(const TakenStep& step, const StepInput& input, Stabilization& memory, HairState& state,
+void repairResult(const TakenStep& step, const StepInput& input, Stabilization& scratch, HairState& state,
                   StepReport& report) {
   bool fine = true;
   for (int i = 0; i < step.mesh.vertexCount() && fine; ++i) fine = examine(step.mesh, state, i) == StateFault::kNone;
@@ -42,88 +43,84 @@ void repairResult(const TakenStep& step, const StepInput& input, Stabilization& 
                         {step.velocities.begin(), step.velocities.end()}};
   FaultReport fault;
   repair(step.mesh, input.roots, start, state, fault);
-  if (fault.vertex >= 0) nameForceAt(step.model, made, memory, fault);
+  if (fault.vertex >= 0) nameForceAt(step.model, made, scratch, fault);
   ++report.recoveries;
   report.fault_report = fault;
 }
 
-StepInput teleport(const HairMesh& mesh, const StepInput& input, Stabilization& memory, HairState& state) {
-  memory.root_positions.clear();
+StepInput teleport(const HairMesh& mesh, const StepInput& input, Stabilization& scratch, HairState& state) {
+  scratch.root_positions.clear();
   for (int c = 0; c < mesh.columnCount(); ++c)
-    memory.root_positions.push_back(state.positions[mesh.shape.column_first[c]]);
-  carryAlong(Eigen::Isometry3d::Identity(), rigidMotion(memory.root_positions, input.roots), state);
+    scratch.root_positions.push_back(state.positions[mesh.shape.column_first[c]]);
+  carryAlong(Eigen::Isometry3d::Identity(), rigidMotion(scratch.root_positions, input.roots), state);
   state.contacts.clear();
-  memory.still_bodies.assign(input.ellipsoids.begin(), input.ellipsoids.end());
-  for (Ellipsoid& body : memory.still_bodies) body.velocity = body.angular_velocity = Vec3::Zero();
-  memory.still_parts.assign(input.parts.begin(), input.parts.end());
-  for (BodySdf& part : memory.still_parts) part.bounds.velocity = part.bounds.angular_velocity = Vec3::Zero();
-  memory.still_pins.assign(input.pins.begin(), input.pins.end());
-  for (PinnedVertex& pin : memory.still_pins) pin.velocity.setZero();
+  scratch.still_bodies.assign(input.ellipsoids.begin(), input.ellipsoids.end());
+  for (Ellipsoid& body : scratch.still_bodies) body.velocity = body.angular_velocity = Vec3::Zero();
+  scratch.still_parts.assign(input.parts.begin(), input.parts.end());
+  for (BodySdf& part : scratch.still_parts) part.bounds.velocity = part.bounds.angular_velocity = Vec3::Zero();
+  scratch.still_pins.assign(input.pins.begin(), input.pins.end());
+  for (PinnedVertex& pin : scratch.still_pins) pin.velocity.setZero();
   StepInput still = input;
-  still.pins = memory.still_pins;
-  still.ellipsoids = memory.still_bodies;
-  still.parts = memory.still_parts;
+  still.pins = scratch.still_pins;
+  still.ellipsoids = scratch.still_bodies;
+  still.parts = scratch.still_parts;
   return still;
 }
 
 }  // namespace
 
-Stabilization::Stabilization(const HairMesh& mesh)
-    : oscillation(mesh), recovery(mesh), rest_check(mesh), energy_limit(mesh) {
+Stabilization::Stabilization(const HairMesh& mesh) : recovery(mesh), energy_limit(mesh) {
   limited_velocities.resize(mesh.vertexCount());
   plain_positions.reserve(mesh.vertexCount());
 }
 
 StepInput admitState(const HairMesh& mesh, const ForceModel<double>& model, const StepInput& input, double dt,
-                     SimParams& params, Stabilization& memory, HairState& state, StepReport& report) {
-  if (memory.active.input_repair) repairInput(mesh, model, input, memory, state, report);
-  report.carried = memory.active.teleport && rootSpeed(mesh, input.roots, dt, state) > params.teleport_speed;
+                     SimParams& params, Stabilization& scratch, HairState& state, StepReport& report) {
+  if (scratch.active.input_repair) repairInput(mesh, model, input, scratch, state, report);
+  report.carried = scratch.active.teleport && rootSpeed(mesh, input.roots, dt, state) > params.teleport_speed;
   if (!report.carried) return input;
   params.max_depenetration = kAtOnce;
-  return teleport(mesh, input, memory, state);
+  return teleport(mesh, input, scratch, state);
 }
 
-void stabilize(const TakenStep& step, const StepInput& input, bool converged, Stabilization& memory, HairState& state,
+void stabilize(const TakenStep& step, const StepInput& input, bool converged, Stabilization& scratch, HairState& state,
                StepReport& report) {
-  const SafetyNets& nets = memory.active;
-  const bool held =
-      nets.oscillation_damping && dampOscillation(step.mesh, step.positions, memory.oscillation, state) > 0;
-  if (nets.step_energy) limitEnergy(step, converged && !held, memory.energy_limit, state);
+  const SafetyNets& nets = scratch.active;
+  const bool held = nets.oscillation_damping && dampOscillation(step.mesh, step.positions, state) > 0;
+  if (nets.step_energy) limitEnergy(step, converged && !held, scratch.energy_limit, state);
   // Loose particles have no shape to be guided to.
   if (nets.inversion_recovery && step.params.volume > 0) {
     const bool looks = windLoad(step.params) < kStorm;
-    report.guided = recoverInversions({step.mesh, step.positions, step.dt, looks}, memory.recovery, state);
+    report.guided = recoverInversions({step.mesh, step.positions, step.dt, looks}, scratch.recovery, state);
   }
-  if (nets.result_repair) repairResult(step, input, memory, state, report);
+  if (nets.result_repair) repairResult(step, input, scratch, state, report);
 }
 
 void limitCorrectionEnergy(const TakenStep& step, const CorrectedStep& corrected, PositionCorrection& correction,
-                           Stabilization& memory, HairState& state, StepReport& report) {
+                           Stabilization& scratch, HairState& state, StepReport& report) {
   // Initial overlaps are lifted out whatever it takes.
-  if (!memory.active.correction_energy || report.corrected == 0 || report.initial_overlap > 0) return;
-  if (limitCorrections(step, corrected.colliders, memory.energy_limit, state) == 1) return;
+  if (!scratch.active.correction_energy || report.corrected == 0 || report.initial_overlap > 0) return;
+  if (limitCorrections(step, corrected.colliders, scratch.energy_limit, state) == 1) return;
   // Halfway between two places outside of a body may lie its inside. Nothing may be left there.
-  memory.limited_velocities = state.velocities;
+  scratch.limited_velocities = state.velocities;
   correctContacts(corrected, correction, state, report);
-  state.velocities = memory.limited_velocities;
+  state.velocities = scratch.limited_velocities;
 }
 
 void finishStep(const TakenStep& step, const std::function<void(const SimParams&, HairState&)>& advance_reference,
-                const std::function<double(const HairState&)>& energy, Stabilization& memory, HairState& state) {
+                const std::function<double(const HairState&)>& energy, Stabilization& scratch, HairState& state) {
   const HairMesh& mesh = step.mesh;
-  memory.good.positions = state.positions;
-  memory.good.velocities = state.velocities;
-  RestCheck& check = memory.rest_check;
-  if (!memory.active.reference_hair || step.params.volume <= 0) return;
+  state.memory.good.positions = state.positions;
+  state.memory.good.velocities = state.velocities;
+  if (!scratch.active.reference_hair || step.params.volume <= 0) return;
   const Vec3 pull = step.params.air_drag * step.wind - Vec3(0, step.params.gravity, 0);
-  check.self_contact = step.params.self_collide;
-  if (!watchRest(mesh, state, pull.norm(), step.dt, memory.recovery, check)) return;
+  const double weight = 9.81 * step.params.density * mesh.total_volume;  // N
+  const RestStep rest{mesh, step.dt, pull.norm(), weight * mesh.hair_length, step.params.self_collide};
+  if (!watchRest(rest, scratch.recovery, state)) return;
   SimParams params = step.params;
   params.max_iterations = std::max(params.max_iterations, kMinReferenceIterations);
-  advance_reference(params, check.reference);
-  double weight = 0;  // N
-  for (const double share : mesh.vertex_volume) weight += 9.81 * params.density * share;
-  judgeRest(mesh, state, weight * mesh.hair_length, energy, memory.recovery, check);
+  advance_reference(params, state.memory.rest.reference.front());
+  judgeRest(rest, energy, scratch.recovery, state);
 }
 
 }  // namespace sim

@@ -17,15 +17,11 @@
 
 namespace sim {
 
-// What the nets of one hair keep from step to step, and their scratch. Sized once.
+// Scratch of the nets of one hair, sized once. What they remember is in the state (mesh/hair_memory.h).
 struct Stabilization {
   SafetyNets nets;    // asked for
   SafetyNets active;  // in this step
-  GoodState good;     // the last step's end
-  OscillationDamping oscillation;
-  InversionRecovery recovery;
-  RestCheck rest_check;
-  // Scratch.
+  RecoveryScratch recovery;
   EnergyLimit energy_limit;
   std::vector<Vec3> limited_velocities;
   std::vector<V3<double>> plain_positions;
@@ -42,22 +38,22 @@ struct Stabilization {
 // Returns the input of the step; after a teleport its bodies, which have come as far, stand still, and `params` let
 // position correction bring out at once what lies in them.
 StepInput admitState(const HairMesh& mesh, const ForceModel<double>& model, const StepInput& input, double dt,
-                     SimParams& params, Stabilization& memory, HairState& state, StepReport& report);
+                     SimParams& params, Stabilization& scratch, HairState& state, StepReport& report);
 
 // After integration: oscillation damping, energy limit, inversion recovery, repair of what is not finite or absurd.
 // `converged`: the solve did.
-void stabilize(const TakenStep& step, const StepInput& input, bool converged, Stabilization& memory, HairState& state,
+void stabilize(const TakenStep& step, const StepInput& input, bool converged, Stabilization& scratch, HairState& state,
                StepReport& report);
 
 // After position correction: what it lifted is paid for by the energy that the step began with. Hair that it lifted by
 // more goes back, and is corrected once more without taking a velocity.
 void limitCorrectionEnergy(const TakenStep& step, const CorrectedStep& corrected, PositionCorrection& correction,
-                           Stabilization& memory, HairState& state, StepReport& report);
+                           Stabilization& scratch, HairState& state, StepReport& report);
 
 // At a step's end: remembers the state as good and compares hair at rest in
 // another shape than its own with a reference hair (reference_hair.h), which takes one step by `advance_reference`.
 // `energy`: mechanical, of a state (J).
 void finishStep(const TakenStep& step, const std::function<void(const SimParams&, HairState&)>& advance_reference,
-                const std::function<double(const HairState&)>& energy, Stabilization& memory, HairState& state);
+                const std::function<double(const HairState&)>& energy, Stabilization& scratch, HairState& state);
 
 }  // namespace sim

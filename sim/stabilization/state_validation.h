@@ -29,11 +29,6 @@ struct FaultReport {
 // One line for the log, without the line's end.
 std::string faultText(const FaultReport& fault_report);
 
-// Positions (m) and velocities (m/s), one per vertex, of the last state that was good; empty before there was one.
-struct GoodState {
-  std::vector<Vec3> positions, velocities;
-};
-
 // What is wrong with a vertex: a value that is not finite, a place farther from its column's root than hair of this
 // length can be thrown, a speed against the root that nothing in a scene has.
 StateFault examine(const HairMesh& mesh, const HairState& state, int vertex);

@@ -8,6 +8,7 @@
 #include "app/scene/frame_stats.h"
 #include "tests/stress/ablation.h"
 #include "tests/stress/document.h"
+#include "tests/stress/resume.h"
 #include "tests/stress/run_case.h"
 
 namespace {
@@ -21,7 +22,7 @@ constexpr double kTellEvery = 30;  // s
 
 struct Options {
   bool short_run = false, long_run = false, list = false, verbose = false, trace = false;
-  std::string pattern, document, csv, ablate;
+  std::string pattern, document, csv, ablate, save, resume;
   std::vector<std::string> sets, results;
   std::uint64_t seed = 1;
   int part = 0, parts = 1;
@@ -141,6 +142,29 @@ int ablate(const Options& options, const std::vector<StressCase>& cases) {
   return app::kExitFine;
 }
 
+// Saves every chosen case midway, or goes on with those that were saved.
+int saveOrResume(const Options& options, const std::vector<StressCase>& cases) {
+  stress::StageStore stages;
+  long done = 0, failed = 0;
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    if (!chosen(cases[k], k, options) || stress::findClip(cases[k].clip).empty()) continue;
+    ++done;
+    if (options.resume.empty()) {
+      stress::saveMidway(cases[k], options.seed, stages, options.save);
+      continue;
+    }
+    const std::string fault = stress::resumeFrom(options.resume, cases[k], options.seed, stages);
+    failed += !fault.empty();
+    if (!fault.empty()) std::cout << "FAILED   " << cases[k].name << " " << fault << std::endl;
+  }
+  if (options.resume.empty()) {
+    std::cout << done << " saved midway" << std::endl;
+  } else {
+    std::cout << done - failed << " resumed to the same bits, " << failed << " failed" << std::endl;
+  }
+  return failed > 0 ? app::kExitFault : app::kExitFine;
+}
+
 int run(const Options& options) {
   std::vector<StressCase> cases = stress::declareCases(options.seed);
   applySets(options.sets, cases);
@@ -150,6 +174,7 @@ int run(const Options& options) {
     }
     return app::kExitFine;
   }
+  if (!options.save.empty() || !options.resume.empty()) return saveOrResume(options, cases);
   if (!options.ablate.empty()) return ablate(options, cases);
   std::vector<Result> results;
   if (options.results.empty()) {
@@ -188,6 +213,10 @@ int main(int argc, char** argv) {
       "--ablate", options.ablate,
       "run the cases with all safety nets and without this one (or all, one after the other); --csv takes "
       "the table");
+  program.add_option("--save", options.save,
+                     "save every case midway and at its end in this folder, without judging it");
+  program.add_option("--resume", options.resume, "go on with what --save has saved, and compare the ends bit by bit")
+      ->excludes("--save");
   program.add_flag("--trace", options.trace, "a line for every step");
   program.add_flag("--verbose", options.verbose, "a line for every case");
   program.add_option("--part", options.part, "run one of --parts shares of the cases, from 0")

@@ -138,7 +138,7 @@ TEST(ForceKinds, EveryChangeOfAModulusIsFollowed) {
       params.*modulus.param *= 0.9;
       material.follow(params);
       EXPECT_TRUE(material.outdated()) << Kind::kName << ": the balance is another";
-      for (int k = 0; k < 200 && material.outdated(); ++k) material.work(10);
+      for (int k = 0; k < 200 && material.outdated(); ++k) material.work();
       const sim::ForceModel<double> at_once = sim::makeForceModel(hair, pattern, params);
       EXPECT_EQ(material.model.of<Kind>().stiffness, at_once.of<Kind>().stiffness) << Kind::kName;
       EXPECT_EQ(material.model.of<Kind>().shift, at_once.of<Kind>().shift) << Kind::kName;

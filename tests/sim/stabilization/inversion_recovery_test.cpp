@@ -34,14 +34,16 @@ bool concerned(const sim::HairMesh& mesh, int column, int other) {
 struct Frozen {
   sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(test::mixedPatch(5, 0.25)));
   sim::HairState state = sim::restState(mesh, Eigen::Isometry3d::Identity());
-  sim::InversionRecovery recovery{mesh};
+  sim::RecoveryScratch scratch{mesh};
+
+  Frozen() { sim::sizeMemory(mesh, state.memory); }
 
   // Steps in which nothing but combing moves the hair; returns the most columns combed at once.
   int pass(double seconds, double dt = kFrame) {
     int most = 0;
     for (double t = 0; t < seconds; t += dt) {
       const std::vector<Vec3> start = state.positions;
-      most = std::max(most, sim::recoverInversions({mesh, start, dt}, recovery, state));
+      most = std::max(most, sim::recoverInversions({mesh, start, dt}, scratch, state));
     }
     return most;
   }
@@ -92,7 +94,7 @@ TEST(InversionRecovery, TheTargetTurnsWithTheHead) {
     const std::vector<Vec3> start = hair.state.positions;
     for (Vec3& x : hair.state.positions) x = motion * x;
     head = motion * head;
-    sim::recoverInversions({hair.mesh, start, kFrame}, hair.recovery, hair.state);
+    sim::recoverInversions({hair.mesh, start, kFrame}, hair.scratch, hair.state);
   }
   double worst = 0;
   for (int i = 0; i < hair.mesh.vertexCount(); ++i)
@@ -119,7 +121,7 @@ TEST(InversionRecovery, WhatTurnsOverAgainIsLeftInPeaceLongerEachTime) {
   bool guided_columns = false;
   for (double t = 0; t < 60; t += kFrame) {
     const std::vector<Vec3> start = hair.state.positions;
-    const bool now = sim::recoverInversions({hair.mesh, start, kFrame}, hair.recovery, hair.state) > 0;
+    const bool now = sim::recoverInversions({hair.mesh, start, kFrame}, hair.scratch, hair.state) > 0;
     if (now && !guided_columns) begun.push_back(t);
     if (!now) turnOver(5, hair.mesh, hair.state);
     guided_columns = now;

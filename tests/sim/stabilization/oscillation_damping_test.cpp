@@ -15,7 +15,8 @@ constexpr double kFrame = 1.0 / 60;
 struct Patch {
   sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(test::mixedPatch(5, 0.25)));
   sim::HairState state = sim::restState(mesh, Eigen::Isometry3d::Identity());
-  sim::OscillationDamping damping{mesh};
+
+  Patch() { sim::sizeMemory(mesh, state.memory); }
 
   // A step that takes every vertex but the roots where `to` says, from where it is off its rest; roots and rest go
   // along with the head.
@@ -27,7 +28,7 @@ struct Patch {
       state.velocities[i] = (state.positions[i] - start[i]) / kFrame;
     }
     gone += head;
-    return sim::dampOscillation(mesh, start, damping, state);
+    return sim::dampOscillation(mesh, start, state);
   }
   double furthest() const {
     double most = 0;

@@ -19,26 +19,29 @@ constexpr double kGravity = 9.81;  // m/s^2
 struct Resting {
   sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(test::mixedPatch(5, 0.25)));
   sim::HairState state = sim::restState(mesh, Eigen::Isometry3d::Identity());
-  sim::InversionRecovery recovery{mesh};
-  sim::RestCheck check{mesh};
+  sim::RecoveryScratch scratch{mesh};
+  bool self_contact = false;
 
   explicit Resting(double share) {
+    sim::sizeMemory(mesh, state.memory);
     for (int i = 0; i < mesh.vertexCount(); ++i) {
       if (!mesh.isRoot(i)) state.positions[i].x() += share * mesh.hair_length;
     }
   }
   double off() const { return test::largestDistance(state.positions, mesh.shape.positions) / mesh.hair_length; }
+  const sim::RestMemory& rest() const { return state.memory.rest; }
+  sim::RestStep step() const { return {mesh, kFrame, kGravity, 1, self_contact}; }
   // Steps in which inversion recovery alone moves the hair, whose energy is `higher` (J) above the reference hair's.
   // Returns whether it was guided.
   bool pass(double seconds, double higher) {
     bool led = false;
     for (double t = 0; t < seconds; t += kFrame) {
       const std::vector<Vec3> start = state.positions;
-      led = sim::recoverInversions({mesh, start, kFrame}, recovery, state) > 0 || led;
-      if (recovery.guided_columns == 0) std::fill(state.velocities.begin(), state.velocities.end(), Vec3::Zero());
+      led = sim::recoverInversions({mesh, start, kFrame}, scratch, state) > 0 || led;
+      if (state.memory.recovery.guided_columns == 0)
+        std::fill(state.velocities.begin(), state.velocities.end(), Vec3::Zero());
       const auto energy = [&](const sim::HairState& one) { return &one == &state ? higher : 0; };
-      if (sim::watchRest(mesh, state, kGravity, kFrame, recovery, check))
-        judgeRest(mesh, state, 1, energy, recovery, check);
+      if (sim::watchRest(step(), scratch, state)) judgeRest(step(), energy, scratch, state);
     }
     return led;
   }
@@ -58,11 +61,11 @@ TEST(RestCheck, HairThatRestsNoHigherIsLeftWhereItIs) {
 
 TEST(RestCheck, WithSelfContactAReferenceWithItIsComparedToo) {
   Resting hair(0.05);
-  hair.check.self_contact = true;
-  for (int n = 0; n < 60 && !hair.check.kept_apart; ++n) EXPECT_FALSE(hair.pass(0.9 * kFrame, -0.01));
-  EXPECT_TRUE(hair.check.kept_apart);
+  hair.self_contact = true;
+  for (int n = 0; n < 60 && !hair.rest().kept_apart; ++n) EXPECT_FALSE(hair.pass(0.9 * kFrame, -0.01));
+  EXPECT_TRUE(hair.rest().kept_apart);
   EXPECT_TRUE(hair.pass(3, 0.01)) << "the second found something lower";
-  EXPECT_FALSE(hair.check.kept_apart);
+  EXPECT_FALSE(hair.rest().kept_apart);
 }
 
 TEST(RestCheck, HairAtRestIsNotMoved) {
@@ -79,7 +82,7 @@ TEST(RestCheck, HairThatABodyHoldsIsLeftWhereItIs) {
 TEST(RestCheck, HairThatMovesIsNotJudged) {
   Resting hair(0.05);
   for (Vec3& v : hair.state.velocities) v = Vec3(1, 0, 0);
-  EXPECT_FALSE(sim::watchRest(hair.mesh, hair.state, kGravity, kFrame, hair.recovery, hair.check));
+  EXPECT_FALSE(sim::watchRest(hair.step(), hair.scratch, hair.state));
 }
 
 double longest(const Hair& hair) {

@@ -1,0 +1,86 @@
+// What steps remember beyond positions, velocities and contacts. Part of a hair's state (hair_state.h): data alone,
+// empty in a new state and sized by the first step. What follows from mesh and parameters is in StepContext.
+#pragma once
+
+#include <vector>
+
+#include "sim/mesh/fields.h"
+#include "sim/mesh/hair_mesh.h"
+#include "sim/sim_params.h"
+
+namespace sim {
+
+struct HairState;
+
+// The state at the last step's end; empty before there was one (stabilization/state_validation.h).
+struct GoodState {
+  std::vector<Vec3> positions, velocities;  // m, m/s, one per vertex
+  HAIRMESH_FIELDS(positions, velocities)
+};
+
+// stabilization/oscillation_damping.h
+struct OscillationMemory {
+  std::vector<Vec3> last;            // m/s against the root, of the step before, one per vertex
+  std::vector<Vec3> carrying;        // m/s of the columns' roots then
+  std::vector<unsigned char> turns;  // steps that turned back, less those that did not, one per vertex
+  HAIRMESH_FIELDS(last, carrying, turns)
+};
+
+// stabilization/inversion_recovery.h
+struct RecoveryMemory {
+  struct Column {
+    double guided = -1;  // s since guiding began; negative: it is not guided
+    double wait = 0;     // s before it may be guided again
+    double backoff = 0;  // s that it waits after it was guided
+    double upright = 0;  // s since one of its elements was last inverted
+    HAIRMESH_FIELDS(guided, wait, backoff, upright)
+  };
+  std::vector<Column> columns;
+  std::vector<double> turned;  // s that each corner tetrahedron has been inverted, weighted
+  std::vector<double> folded;  // the same of columns folded back at each vertex
+  std::vector<Vec3> target;    // m, seen from the head: where guided columns go, one per vertex
+  double since_look = 0;       // s
+  int guided_columns = 0;
+  HAIRMESH_FIELDS(columns, turned, folded, target, since_look, guided_columns)
+};
+
+// stabilization/reference_hair.h
+struct RestMemory {
+  std::vector<HairState> reference;  // one
+  double still = 0;                  // s that the hair has hung still
+  double settling = -1;              // s since the reference left the rest shape; negative: there is none
+  bool judged = false;               // nothing more to find out before the hair has moved
+  double wait = 0, backoff = 0;      // s before it may be guided again, and after the next time
+  bool kept_apart = false;           // the reference's bundles are, by self-contact
+  HAIRMESH_FIELDS(reference, still, settling, judged, wait, backoff, kept_apart)
+};
+
+// The positions (m) between which the list of self-contact candidates was made; empty: there is none
+// (contact/self_contact.h).
+struct SelfContactMemory {
+  std::vector<Vec3> start, end;
+  HAIRMESH_FIELDS(start, end)
+};
+
+// How the force model follows the parameters (forces/rest_balance.h). The model follows from these and the mesh.
+struct MaterialMemory {
+  bool known = false;  // it has been made
+  SimParams params;    // of the last step
+  SimParams balanced;  // for which the balance of gravity in use was solved
+  SimParams coming;    // for which the next one is being solved
+  int slices = 0;      // of that solve that are done; 0: none is under way
+  bool outdated = false;
+  HAIRMESH_FIELDS(known, params, balanced, coming, slices, outdated)
+};
+
+struct HairMemory {
+  GoodState good;
+  OscillationMemory oscillation;
+  RecoveryMemory recovery;
+  RestMemory rest;
+  SelfContactMemory self_contact;
+  MaterialMemory material;
+  HAIRMESH_FIELDS(good, oscillation, recovery, rest, self_contact, material)
+};
+
+}  // namespace sim

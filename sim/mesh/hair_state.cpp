@@ -1,0 +1,26 @@
+#include "sim/mesh/hair_state.h"
+
+namespace sim {
+
+void sizeMemory(const HairMesh& mesh, HairMemory& memory) {
+  const auto n = static_cast<std::size_t>(mesh.vertexCount()), columns = static_cast<std::size_t>(mesh.columnCount());
+  if (memory.oscillation.last.size() == n && memory.recovery.columns.size() == columns &&
+      memory.recovery.turned.size() == mesh.tets.size()) {
+    return;
+  }
+  memory = {};
+  for (auto* array : {&memory.self_contact.start, &memory.self_contact.end}) array->reserve(n);
+  memory.oscillation.last.resize(n, Vec3::Zero());
+  memory.oscillation.carrying.resize(columns, Vec3::Zero());
+  memory.oscillation.turns.resize(n);
+  memory.recovery.columns.resize(columns);
+  memory.recovery.turned.resize(mesh.tets.size());
+  memory.recovery.folded.resize(n);
+  memory.recovery.target = mesh.shape.positions;
+  HairState& reference = memory.rest.reference.emplace_back();
+  for (auto* array :
+       {&reference.positions, &reference.velocities, &reference.previous_positions, &reference.previous_velocities})
+    array->resize(n, Vec3::Zero());
+}
+
+}  // namespace sim
