@@ -9,19 +9,8 @@ namespace sim {
 namespace {
 
 constexpr int kContactRounds = 4;  // solves of one linear system while contacts release or start to slide
-constexpr int kLineSearchSteps = 6;
-constexpr int kBatchesARound = 3;  // of answers to contacts; what is still missing comes with the steps to come
-// Where the direct factor can be corrected for only a part of the contacts at the price of these, so many iterations
-// are tried before the rest is paid for.
-constexpr int kUncorrectedIterations = 10;
-constexpr Solver kAlternative = Solver::kTwoLevel;
-// What an application of a preconditioner costs, in products with the matrix: the warped factor by the ratio of its
-// blocks to the matrix's (measured on meshes of 361 and 2,268 vertices), and the two levels.
-constexpr double kFactorCost = 0.9, kTwoLevelCost = 1.8;
-// A relative residual in the norm of the two levels says less of the error than one in the factor's.
-constexpr double kTwoLevelShare = 0.9;
-// Nor is what they make of a residual the error itself, as with the whole factor, but less by up to an order.
-constexpr double kTwoLevelNear = 0.1;
+// What the two levels answer to a residual is up to an order less than the error itself.
+constexpr double kErrorShare = 0.1;
 // Roots that stop or start within a step put hundreds of joules into the first residual, and a solve that leaves a
 // thousandth of that raises the hair's energy. What it may leave is measured against no more than so many times what
 // the hair's weight and motion are worth: with 10 a walk takes as many iterations as without the bound, a jump at four
@@ -31,9 +20,6 @@ constexpr double kFullStart = 10;
 // all, a step of 1/480 s passed over half a metre per second squared: resting hair went on at 0.1 m/s.
 constexpr double kFullTolerance = 1.0 / 60;
 constexpr double kThrownBack = 0.5;  // m/s, that is worth solving again with the contact held
-constexpr double kStaleRatio = 3;  // of h (h + damping): BDF2's start-up step shares its factor with the steps after it
-constexpr double kStaleMass = 1.5;   // of 1 + h drag: the air is thick while the hair settles
-constexpr int kSlices = 30;          // steps over which a new rest factor is spread
 constexpr double kSameSpeed = 1e-5;  // m/s, that rounding may leave between a velocity and what its constraints ask
 
 template <class T>
@@ -67,7 +53,7 @@ bool updateContacts(double friction, double h, std::vector<Contact>& contacts, c
 }  // namespace
 
 template <class T>
-ImplicitSolver<T>::ImplicitSolver(const HairMesh& mesh, const BlockPattern& pattern)
+ImplicitSolver<T>::ImplicitSolver(const HairMesh& mesh)
     : layout(mesh),
       column_pattern(mesh, layout),
       model(mesh, layout, column_pattern),
@@ -76,10 +62,11 @@ ImplicitSolver<T>::ImplicitSolver(const HairMesh& mesh, const BlockPattern& patt
       packed_x(layout),
       packed_v(layout),
       packed_force(layout),
-      preconditioner(mesh, pattern),
+      two_level(mesh),
+      block_jacobi(mesh.vertexCount()),
       guess(mesh.vertexCount()) {
   const int n = mesh.vertexCount();
-  for (auto* array : {&x, &v, &trial, &force, &rhs, &velocity_step}) array->resize(n);
+  for (auto* array : {&x, &v, &trial, &force, &rhs}) array->resize(n);
   mass.resize(n), inverse_mass_dt.resize(n);
   scratch.resize(n);
   filter.vertices.reserve(n), filter.keep.reserve(n), constraints.reserve(n), touched.reserve(n);
@@ -93,8 +80,7 @@ void ImplicitSolver<T>::setModel(const HairMesh& mesh, const ForceModel<double>&
     mass[i] = static_cast<T>(density * mesh.vertex_volume[i]);
     hair_mass += density * mesh.vertex_volume[i];
   }
-  rest_outdated = true;
-  layer_age.forget(), patch_age.forget();
+  two_level.forget();
 }
 
 template <class T>
@@ -112,54 +98,6 @@ T ImplicitSolver<T>::evaluateForces(std::span<const V3<T>> at, ColumnEvaluation<
     out.velocity = &packed_v;
   }
   return evaluate<T>(model, layout, packed_x, out);
-}
-
-template <class T>
-void ImplicitSolver<T>::assembleRest(const HairMesh& mesh, const FactorTerms& terms) {
-  const Vec3 origin = mesh.shape.positions[0];
-  for (std::size_t i = 0; i < x.size(); ++i) trial[i] = cast<T>(Vec3(mesh.shape.positions[i] - origin));
-  matrix.setZero();
-  ColumnEvaluation<T> out;
-  out.matrix = &matrix;
-  out.matrix_scale = static_cast<T>(terms.stiffness());
-  out.tension_scale = static_cast<T>(terms.h * terms.h);
-  evaluateForces(trial, out, {});
-  matrix.addMass(static_cast<T>(terms.mass()), mass);
-}
-
-template <class T>
-bool ImplicitSolver<T>::factored(Solver solver) const {
-  return solver == Solver::kWarped && static_cast<int>(x.size()) <= kMaxFactored;
-}
-
-// The factor of the rest shape's matrix, for the warped preconditioner. A stale factor stays a valid preconditioner, so
-// it is made anew only when the material has changed, or the terms of the matrix by more than the ratios below; and it
-// serves while the new one is made in slices. Returns whether one was made, or a slice of it.
-template <class T>
-bool ImplicitSolver<T>::refreshRestFactor(const HairMesh& mesh, const SimParams& params, double h) {
-  const FactorTerms wanted{h, params.damping, params.air_drag};
-  const auto near = [](double a, double b, double ratio) { return a < ratio * b && b < ratio * a; };
-  const bool compact = params.precision == Precision::kMixed;
-  const bool usable = rest_terms.h > 0 && rest_compact == compact;
-  if (usable && gradual && preconditioner.restMatrixPending()) {
-    if (preconditioner.continueRestMatrix(kSlices, constraints)) rest_terms = coming_terms;
-    return true;
-  }
-  if (usable && !rest_outdated && near(wanted.stiffness(), rest_terms.stiffness(), kStaleRatio) &&
-      near(wanted.mass(), rest_terms.mass(), kStaleMass)) {
-    return false;
-  }
-  assembleRest(mesh, wanted);
-  rest_outdated = false;
-  if (usable && gradual && preconditioner.restFactorFine()) {
-    preconditioner.beginRestMatrix(matrix);
-    coming_terms = wanted;
-    return true;
-  }
-  preconditioner.setRestMatrix(matrix, compact);
-  rest_terms = wanted;
-  rest_compact = compact;
-  return true;
 }
 
 // Matrix, right-hand side of A v = rhs at the current x (and v, unless the linearization is `at_start`, the paper's).
@@ -187,29 +125,6 @@ void ImplicitSolver<T>::assemble(const SimParams& params, const StepBase& base, 
     if (!at_start) b += rhs[i] - ((T(1) + h * drag) * m) * v[i];
     rhs[i] = b;
   }
-}
-
-// Sum of |r|^2 / m over the free directions at the current x, r being the residual of the step's nonlinear equation.
-// With damping the step has no potential to descend (the damping forces follow the moving gradients), so the line
-// search goes by this.
-template <class T>
-double ImplicitSolver<T>::residualSquare(const SimParams& params, const StepBase& base) {
-  const T h = static_cast<T>(base.h), drag = static_cast<T>(params.air_drag);
-  const V3<T> wind = cast<T>(base.wind), gravity{0, static_cast<T>(-params.gravity), 0};
-  packed_force.setZero();
-  ColumnEvaluation<T> out;
-  out.force = &packed_force;
-  out.damping = static_cast<T>(params.damping);
-  evaluateForces(x, out, v);
-  packed_force.unpack(layout, force);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const V3<T> outer = gravity - drag * (v[i] - wind);
-    force[i] = mass[i] * (v[i] - cast<T>(base.v_hat[i])) - h * (force[i] + mass[i] * outer);
-  }
-  filter.apply(force);
-  double sum = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) sum += static_cast<double>(dot(force[i], force[i]) / mass[i]);
-  return sum;
 }
 
 // Filter, constraints and friction (in `trial`, which else is the right-hand side) of the contacts as they now are, and
@@ -259,72 +174,19 @@ void ImplicitSolver<T>::setResidual() {
   for (std::size_t i = 0; i < v.size(); ++i) scratch.r[i] = trial[i] - scratch.r[i];
 }
 
-// The paper's setting is what the paper says, and a direct solve is done in one iteration.
-template <class T>
-bool ImplicitSolver<T>::looksBack(const SimParams& params) const {
-  return params.solver != Solver::kPaper && params.solver != Solver::kDirect;
-}
-
-// The residual at the present v, and at a nearer one where earlier steps tell of it. Returns the head start of that.
+// The residual at the present v and, by default, at a nearer one that earlier steps' changes of velocity give. Returns
+// the gain of that: the squared energy norm (J).
 template <class T>
 double ImplicitSolver<T>::beginSolve(const SimParams& params) {
   setResidual();
   scratch.deflation = {};
-  if (!looksBack(params)) return 0;
-  const ColumnOperator<T> a{matrix, product};
+  if (params.solver == Solver::kPaper) return 0;
+  const auto a = [&](std::span<const V3<T>> d, std::span<V3<T>> q) { multiply<T>(matrix, product, d, q); };
   if (unfinished) guess.shorten(a, filter, v, scratch.r);
   const double gained = guess.improve(a, filter, v, scratch.r);
   scratch.deflation = guess.deflation();
-  // Only near to the inverse is a preconditioner's norm of the residual the energy norm of the error.
-  const Solver kind = preconditioner.kind();
-  return kind == Solver::kWarped || kind == Solver::kTwoLevel ? gained : 0;
+  return gained;
 }
-
-// The runs of PCG on one linear system, one after the other as its constraints change.
-template <class T>
-struct ImplicitSolver<T>::BudgetedSolve {
-  ImplicitSolver& solver;
-  const SimParams& params;
-  bool warped;  // the whole rest factor is at hand, and the plan chooses between it and its stand-in
-  PreconditionerChoice::Plan plan;
-  StopRule<T> stop;
-  SolveReport total = {};
-  double cost = 0;  // products with the matrix
-  bool overrun = false;
-
-  double applicationCost() const {
-    const auto& preconditioner = solver.preconditioner;
-    return preconditioner.kind() == Solver::kWarped ? kFactorCost * preconditioner.restFactorRatio() : kTwoLevelCost;
-  }
-
-  void runSome(int most, SolveStart start) {
-    const Solver kind = solver.preconditioner.kind();
-    const bool exact = kind == Solver::kWarped || kind == Solver::kDirect, levels = kind == Solver::kTwoLevel;
-    const double shorter = std::min(1.0, stop.h / kFullTolerance);
-    stop.displacement = (exact ? 1 : levels ? kTwoLevelNear : 0) * shorter * shorter * params.displacement_tolerance;
-    stop.foresee = exact;
-    stop.relative = (levels ? kTwoLevelShare : 1) * params.tolerance;
-    stop.max_iterations = most;
-    const int before = total.iterations;
-    total = solveModifiedPcg<ColumnOperator<T>>({solver.matrix, solver.product}, solver.trial, solver.filter,
-                                                solver.preconditioner, stop, solver.scratch, solver.v, start);
-    cost += total.iterations + applicationCost() * total.applications;
-    total.iterations += before;
-  }
-
-  // Within the budget of the plan; beyond it the other preconditioner takes over, once.
-  void run(int most, SolveStart start) {
-    if (!warped || overrun) return runSome(most, start);
-    const double left = (plan.budget - cost) / (1 + applicationCost());
-    const int affordable = left < most ? std::max(1, static_cast<int>(left)) : most;
-    runSome(affordable, start);
-    if (total.converged || affordable >= most) return;
-    overrun = true;
-    solver.preconditioner.update(solver.matrix, plan.cheap ? params.solver : kAlternative, {}, solver.constraints);
-    solver.preconditioner.setConstraints(solver.constraints, kBatchesARound);
-    runSome(params.max_iterations, SolveStart::kExchange);
-  }
-};
 
 // J: what the hair's motion and weight are worth.
 template <class T>
@@ -337,61 +199,67 @@ double ImplicitSolver<T>::energyScale(const HairMesh& mesh) const {
 }
 
 template <class T>
+StopRule<T> ImplicitSolver<T>::stopRule(const HairMesh& mesh, const SimParams& params, const StepBase& base) const {
+  StopRule<T> stop;
+  stop.relative = params.tolerance;
+  stop.acceleration = params.acceleration_tolerance;
+  stop.inverse_mass_dt = inverse_mass_dt;
+  stop.h = base.h;
+  stop.max_iterations = params.max_iterations;
+  if (params.solver == Solver::kPaper) return stop;
+  const double shorter = std::min(1.0, stop.h / kFullTolerance);
+  stop.displacement = kErrorShare * shorter * shorter * params.displacement_tolerance;
+  stop.most_first = kFullStart * energyScale(mesh);
+  return stop;
+}
+
+template <class T>
+void ImplicitSolver<T>::updatePreconditioner(const SimParams& params, const StepBase& base) {
+  const MatrixTerms now{base.h, params.damping, params.air_drag};
+  if (params.solver == Solver::kPaper || !(now == terms)) two_level.forget();
+  terms = now;
+  if (params.solver == Solver::kPaper)
+    block_jacobi.update(matrix);
+  else
+    two_level.update(matrix, x, constraints);
+}
+
+template <class T>
 SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams& params, const StepBase& base,
                                            std::vector<Contact>& contacts) {
-  // The warped factor, or its stand-in (see preconditioner_choice.h).
-  const bool warped = factored(params.solver);
-  BudgetedSolve run{*this, params, warped, warped ? choice.begin() : PreconditionerChoice::Plan{}, {}};
-  run.stop.acceleration = params.acceleration_tolerance;
-  run.stop.inverse_mass_dt = inverse_mass_dt;
-  run.stop.h = base.h;
-  if (looksBack(params)) run.stop.most_first = kFullStart * energyScale(mesh);
-  const bool stand_in = warped ? run.plan.cheap : params.solver == Solver::kWarped;
-  const Solver first = stand_in ? kAlternative : params.solver;
-  const FactorTerms terms{base.h, params.damping, params.air_drag};
-  const bool same = first == Solver::kTwoLevel && terms == layer_terms;
-  const typename Preconditioner<T>::Keep kept{same && layer_age.serves(), same && patch_age.serves()};
+  StopRule<T> stop = stopRule(mesh, params, base);
+  const auto run = [&](auto& preconditioner, SolveStart start) {
+    const auto a = [&](std::span<const V3<T>> d, std::span<V3<T>> q) { multiply<T>(matrix, product, d, q); };
+    return solveModifiedPcg<T>(a, trial, filter, preconditioner, stop, scratch, v, start);
+  };
   touched.clear();
   for (const Contact& contact : contacts) {
     if (touched.empty() || touched.back() != contact.vertex) touched.push_back(contact.vertex);
   }
   std::copy(rhs.begin(), rhs.end(), trial.begin());
+  SolveReport total;
   SolveStart start = SolveStart::kPrepared;
   for (int round = 0; round < kContactRounds; ++round) {
     const bool moved = setContactConstraints(mesh, params, base, contacts, start);
-    // Of the first round: where contacts let go, what P leaves out are directions that hardly matter any more.
-    if (round == 0) preconditioner.update(matrix, first, kept, constraints);
-    const bool complete = preconditioner.setConstraints(constraints, kBatchesARound);
     if (round == 0) {
-      run.stop.head_start = beginSolve(params);
+      updatePreconditioner(params, base);
+      stop.head_start = beginSolve(params);
     } else if (moved) {
       setResidual();
       scratch.deflation = {};  // not all of it lies within what is free now
     }
-    const bool pay = !complete && params.solver == Solver::kDirect;
-    run.run(pay ? std::min(kUncorrectedIterations, params.max_iterations) : params.max_iterations, start);
-    if (!run.total.converged && pay) {
-      preconditioner.setConstraints(constraints);
-      run.run(params.max_iterations, SolveStart::kRestart);
-    }
+    const int before = total.iterations;
+    total = params.solver == Solver::kPaper ? run(block_jacobi, start) : run(two_level, start);
+    total.iterations += before;
     const auto reactionAt = [&](int i) { return Vec3(widen<T>(trial[i] - rhs[i] - scratch.r[i]) / base.h); };
     const auto velocityAt = [&](int i) { return widen<T>(v[i]); };
     const auto massAt = [&](int i) { return static_cast<double>(mass[i]); };
     if (contacts.empty() || !updateContacts(params.friction, base.h, contacts, massAt, reactionAt, velocityAt)) break;
     start = SolveStart::kRestart;
   }
-  // A factor that served to its end is as old as the solves since it was made. Solves by other preconditioners age it
-  // without telling by how much.
-  if (first == Solver::kTwoLevel && preconditioner.kind() == Solver::kTwoLevel && !run.overrun) {
-    layer_age.count(kept.factors, run.total.iterations);
-    patch_age.count(kept.patches, run.total.iterations);
-    layer_terms = terms;
-  } else {
-    layer_age.forget(), patch_age.forget();
-  }
-  if (warped) choice.end(run.plan, run.cost, run.overrun);
-  unfinished = !run.total.converged;
-  return run.total;
+  if (params.solver != Solver::kPaper) two_level.count(total.iterations);
+  unfinished = !total.converged;
+  return total;
 }
 
 // Positions at the step's end if the velocities were these, relative to one root: single precision keeps micrometres
@@ -418,25 +286,6 @@ void ImplicitSolver<T>::beginStep(const SimParams& params, const StepBase& base,
   }
 }
 
-// A Newton iterate goes back towards the one before, which is in velocity_step, until the residual is not above `most`
-// (negative: wherever it is). Returns the largest change (m/s) that the whole iterate makes.
-template <class T>
-double ImplicitSolver<T>::backtrack(const SimParams& params, const StepBase& base, double most) {
-  T largest = 0;
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    trial[i] = v[i] - velocity_step[i];
-    largest = std::max(largest, dot(trial[i], trial[i]));
-  }
-  place(base, v);
-  T step = 1;
-  for (int k = 0; k < kLineSearchSteps && most >= 0 && residualSquare(params, base) > most; ++k) {
-    step *= T(0.5);
-    for (std::size_t i = 0; i < v.size(); ++i) v[i] = velocity_step[i] + step * trial[i];
-    place(base, v);
-  }
-  return std::sqrt(static_cast<double>(largest));
-}
-
 // N, of the firm pins.
 template <class T>
 double ImplicitSolver<T>::largestReaction(const StepBase& base) const {
@@ -451,31 +300,18 @@ template <class T>
 void ImplicitSolver<T>::solve(const HairMesh& mesh, const SimParams& params, const StepBase& base, StageClock& clock,
                               std::vector<Contact>& contacts, std::span<Vec3> velocities, StepReport& report) {
   const bool linearized = params.integrator == Integrator::kLinearizedEuler;
-  const bool newton = params.integrator == Integrator::kImplicitEuler;
-  const bool at_rest = factored(params.solver);
   beginStep(params, base, velocities, contacts);
-  if (at_rest && refreshRestFactor(mesh, params, base.h)) report.refreshes.skipped = 0;
-  const int most = newton ? std::max(1, params.newton_iterations) : 1;
-  for (int iteration = 0; iteration < most; ++iteration) {
-    place(base, linearized ? std::span<const V3<T>>() : std::span<const V3<T>>(v));
-    assemble(params, base, linearized);
-    if (at_rest) preconditioner.updateRotations(x);
-    preconditioner.setPositions(x);
-    clock.spent(kStageForces, report);
-    // The first iterate does not yet meet the constraints: nothing to compare with.
-    const double before = newton && iteration > 0 ? residualSquare(params, base) : -1;
-    if (newton) std::copy(v.begin(), v.end(), velocity_step.begin());
-    const SolveReport linear = solveLinear(mesh, params, base, contacts);
-    report.solver_iterations += linear.iterations;
-    report.residual = linear.relative_residual;
-    report.residual_acceleration = linear.residual_acceleration;
-    report.pin_force = largestReaction(base);
-    report.converged = linear.converged;
-    ++report.newton_iterations;
-    if (newton && backtrack(params, base, before) <= params.newton_tolerance) iteration = most;
-    clock.spent(kStageSolve, report);
-  }
-  if (looksBack(params)) guess.record([&](std::size_t i) { return v[i] - cast<T>(velocities[i]); });
+  place(base, linearized ? std::span<const V3<T>>() : std::span<const V3<T>>(v));
+  assemble(params, base, linearized);
+  clock.spent(kStageForces, report);
+  const SolveReport linear = solveLinear(mesh, params, base, contacts);
+  ++report.solves;
+  report.solver_iterations += linear.iterations;
+  report.residual = linear.relative_residual;
+  report.residual_acceleration = linear.residual_acceleration;
+  report.pin_force = largestReaction(base);
+  report.converged = linear.converged;
+  if (params.solver != Solver::kPaper) guess.record([&](std::size_t i) { return v[i] - cast<T>(velocities[i]); });
   for (std::size_t i = 0; i < v.size(); ++i) velocities[i] = widen(v[i]);
   clock.spent(kStageSolve, report);
 }

@@ -1,9 +1,9 @@
 // The implicit solve of a step: forces, Hessians and the constrained linear systems of the chosen integrator.
 //
-// One linear system serves all integrators. With v the velocity at the step's end, x = x_hat + h v its position and the
-// base (x_hat, v_hat, h) chosen by the integrator (implicit Euler: x0, v0, dt; BDF2: the two-step combinations and 2/3
-// dt), a Newton step from v_k reads
-//   A (v - v_k) = -r(v_k),   r(v) = M (v - v_hat) - h (f(x, v) + M g - c M (v - wind))
+// One linear system serves both integrators. With v the velocity at the step's end, x = x_hat + h v its position and
+// the base (x_hat, v_hat, h) chosen by the integrator (implicit Euler: x0, v0, dt; BDF2: the two-step combinations and
+// 2/3 dt), a Newton step from v0 reads
+//   A (v - v0) = -r(v0),   r(v) = M (v - v_hat) - h (f(x, v) + M g - c M (v - wind))
 //   A = (1 + h c) M + h (h + tau) K + h^2 T
 // K: sum of k g g^T over the conditions, T: the tension part of stretch, c: air drag, tau: damping time. The paper's
 // linearized step (Baraff and Witkin) takes K at x0 and one solve: A v = M v0 + h (f(x0) + M g + c M wind); its damping
@@ -15,9 +15,10 @@
 
 #include "sim/contact/contact.h"
 #include "sim/forces/kernels.h"
+#include "sim/linear/block_jacobi.h"
 #include "sim/linear/modified_pcg.h"
-#include "sim/linear/preconditioner_choice.h"
 #include "sim/linear/solution_projection.h"
+#include "sim/linear/two_level.h"
 #include "sim/step_report.h"
 
 namespace sim {
@@ -39,32 +40,25 @@ struct ImplicitSolver {
   ColumnMatrix<T> matrix;
   ColumnProduct<T> product;
   ColumnField<T> packed_x, packed_v, packed_force;
-  Preconditioner<T> preconditioner;
+  TwoLevel<T> two_level;
+  BlockJacobi<T> block_jacobi;  // Solver::kPaper
   Filter<T> filter;
   SolverScratch<T> scratch;
   SolutionProjection<T> guess;
   bool unfinished = false;  // the last linear solve
-  std::vector<V3<T>> x, v, trial, force, rhs, velocity_step;
+  std::vector<V3<T>> x, v, trial, force, rhs;
   std::vector<T> mass, inverse_mass_dt;
   double hair_mass = 0;  // kg
   std::vector<VertexConstraint> constraints;
-  std::vector<int> touched;     // vertices that were in contact when the solve began
-  PreconditionerChoice choice;  // between the warped factor and its stand-in
-  // Of the rest matrix that was factored: whether in 16 bits, and whether the material has changed since.
-  bool rest_compact = false;
-  bool rest_outdated = false;
-  bool gradual = false;  // a factor that is no longer the best is replaced in slices, not at once
-  // What the rest factor, the one in the making and the layers' factor were made for; h 0: there is none.
-  struct FactorTerms {
+  std::vector<int> touched;  // vertices that were in contact when the solve began
+  // What the matrix is made of beside positions and material.
+  struct MatrixTerms {
     double h = 0, damping = 0, drag = 0;
-    double stiffness() const { return h * (h + damping); }
-    double mass() const { return 1 + h * drag; }
-    bool operator==(const FactorTerms&) const = default;
+    bool operator==(const MatrixTerms&) const = default;
   };
-  FactorTerms rest_terms, coming_terms, layer_terms;
-  FactorAge layer_age{FactorAge::kLayers}, patch_age{FactorAge::kPatches};
+  MatrixTerms terms;  // of the last solve
 
-  ImplicitSolver(const HairMesh& mesh, const BlockPattern& pattern);
+  explicit ImplicitSolver(const HairMesh& mesh);
   void setModel(const HairMesh& mesh, const ForceModel<double>& source, double density);
   void setRestShifts(const HairMesh& mesh, const ForceModel<double>& source);  // nothing else of the model changed
 
@@ -77,25 +71,20 @@ struct ImplicitSolver {
 
  private:
   T evaluateForces(std::span<const V3<T>> at, ColumnEvaluation<T> out, std::span<const V3<T>> velocities);
-  bool factored(Solver solver) const;  // the whole rest factor is made and used
-  bool refreshRestFactor(const HairMesh& mesh, const SimParams& params, double h);
-  void assembleRest(const HairMesh& mesh, const FactorTerms& terms);
   void assemble(const SimParams& params, const StepBase& base, bool at_start);
-  double residualSquare(const SimParams& params, const StepBase& base);
   bool setContactConstraints(const HairMesh& mesh, const SimParams& params, const StepBase& base,
                              std::span<const Contact> contacts, SolveStart start);
-  bool looksBack(const SimParams& params) const;
   void setResidual();
   double largestReaction(const StepBase& base) const;
   double beginSolve(const SimParams& params);
   double energyScale(const HairMesh& mesh) const;
-  struct BudgetedSolve;
+  StopRule<T> stopRule(const HairMesh& mesh, const SimParams& params, const StepBase& base) const;
+  void updatePreconditioner(const SimParams& params, const StepBase& base);
   SolveReport solveLinear(const HairMesh& mesh, const SimParams& params, const StepBase& base,
                           std::vector<Contact>& contacts);
   void place(const StepBase& base, std::span<const V3<T>> speed);
   void beginStep(const SimParams& params, const StepBase& base, std::span<const Vec3> velocities,
                  std::vector<Contact>& contacts);
-  double backtrack(const SimParams& params, const StepBase& base, double most);
 };
 
 }  // namespace sim

@@ -11,26 +11,19 @@ namespace sim {
 // How a step is integrated in time.
 enum class Integrator {
   kLinearizedEuler,  // the paper: one linearized implicit Euler step (Baraff and Witkin 1998)
-  kImplicitEuler,    // implicit Euler solved by Newton's method with line search
   kBdf2,             // second order, two-step
   kCount
 };
 
-// How the linear systems are solved; see linear_solver.h.
+// How the linear systems are solved, by Modified PCG.
 enum class Solver {
-  kPaper,        // Modified PCG, block-diagonal preconditioner, the paper's setting
-  kDiagonal,     // Modified PCG, scalar diagonal
-  kBlockJacobi,  // Modified PCG, 3x3 blocks
-  kColumn,       // Modified PCG, one block-tridiagonal factor a column
-  kIncomplete,   // Modified PCG, incomplete Cholesky
-  kTwoLevel,     // Modified PCG, layers, columns and rigid motions of patches
-  kWarped,       // Modified PCG, the rest shape's factor, residuals turned into the rest frame and back
-  kDirect,       // sparse block Cholesky of the current matrix
+  kDefault,  // two-level preconditioner (linear/two_level.h), begun from earlier solutions
+  kPaper,    // as published: block-diagonal preconditioner, and no safety nets (stabilization/safety_nets.h)
   kCount
 };
 
-// Arithmetic of the linear solver. Mixed: single precision, with the rest factor kept in 16 bits (compact_factor.h).
-enum class Precision { kFloat, kMixed, kDouble, kCount };
+// Arithmetic of the linear solver.
+enum class Precision { kFloat, kDouble, kCount };
 
 // What the hair collides with.
 enum class ColliderKind {
@@ -73,16 +66,14 @@ struct SimParams {
   double teleport_speed = 150;  // m/s, mean of the roots: beyond it the hair is carried along, for no motion made it
   // Numerics
   Integrator integrator = Integrator::kLinearizedEuler;
-  Solver solver = Solver::kWarped;
-  Precision precision = Precision::kMixed;
+  Solver solver = Solver::kDefault;
+  Precision precision = Precision::kFloat;
   double tolerance = 1e-2;               // relative residual of the linear solve; docs/accuracy.md shows why
   double acceleration_tolerance = 0.01;  // m/s^2, a solve also stops when no vertex's residual exceeds it
   // m, and when it estimates that no vertex would end up farther off than this, in steps shorter than 1/60 s less by
   // the square of their length
   double displacement_tolerance = 1e-6;
-  int max_iterations = 400;        // of the linear solver
-  int newton_iterations = 4;       // of the nonlinear integrators
-  double newton_tolerance = 1e-4;  // m/s, the nonlinear integrators stop at a smaller change of velocity
+  int max_iterations = 400;  // of the linear solver
 };
 
 enum class FieldKind { kReal, kInteger, kSwitch, kChoice };

@@ -91,11 +91,10 @@ bool refreshModel(const SimParams& params, MaterialMemory& memory, Parts& parts)
   if (other) tell(setModel);
   const auto ready = [&](auto& solver) {
     if (!solver) {
-      solver.emplace(*parts.mesh, parts.pattern);
+      solver.emplace(*parts.mesh);
       setModel(*solver);
       made = true;
     }
-    solver->gradual = parts.gradual;
   };
   if (params.precision == Precision::kDouble)
     ready(parts.double_solver);

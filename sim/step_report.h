@@ -14,7 +14,7 @@ const char* stageName(Stage stage);
 
 struct StepReport {
   std::array<double, kStageCount> seconds{};  // filled when a clock is given to the context
-  int solver_iterations = 0, newton_iterations = 0;
+  int solver_iterations = 0, solves = 0;
   double residual = 0;               // relative, at the end of the last linear solve
   double residual_acceleration = 0;  // m/s^2, largest over vertices
   bool converged = true;

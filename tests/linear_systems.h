@@ -5,14 +5,15 @@
 
 #include "sim/forces/model.h"
 #include "sim/linear/modified_pcg.h"
+#include "tests/bench/preconditioners/preconditioner.h"
 #include "tests/test_meshes.h"
 
 namespace tests {
 
+using bench::Kind;
 using sim::BlockMatrix;
 using sim::Filter;
 using sim::M3;
-using sim::Solver;
 using sim::V3;
 using sim::Vec3;
 
@@ -60,15 +61,10 @@ struct System {
     return a;
   }
   template <class T>
-  sim::Preconditioner<T> preconditioner(const BlockMatrix<T>& a, Solver solver) const {
-    sim::Preconditioner<T> p(mesh, pattern);
-    p.setPositions(test::plain<T>(positions));
-    if (solver == Solver::kWarped) {
-      EXPECT_TRUE(p.setRestMatrix(matrixAt<T>(mesh.shape.positions)));
-      const auto points = test::plain<T>(positions);
-      for (int k = 0; k < 20; ++k) p.updateRotations(points);  // it follows a large turn over several steps
-    }
-    p.update(a, solver);
+  bench::Preconditioner<T> preconditioner(const BlockMatrix<T>& a, Kind kind,
+                                          std::span<const sim::VertexConstraint> constraints = {}) const {
+    bench::Preconditioner<T> p(mesh, pattern, kind);
+    EXPECT_TRUE(p.update(a, test::plain<T>(positions), constraints)) << "the factorization failed";
     return p;
   }
 };
@@ -133,17 +129,23 @@ Filter<T> filterOf(const Problem& p) {
   return filter;
 }
 
+// y = A x.
 template <class T>
-sim::SolveReport solve(const System& system, const BlockMatrix<T>& a, const Problem& p, Solver solver,
-                       const sim::StopRule<T>& stop, Eigen::VectorXd& x, bool corrected = false) {
-  sim::Preconditioner<T> preconditioner = system.preconditioner(a, solver);
-  if (corrected) preconditioner.setConstraints(p.constraints);
-  EXPECT_EQ(preconditioner.kind(), solver) << "the factorization failed";
+auto productWith(const BlockMatrix<T>& a) {
+  return [&a](std::span<const V3<T>> x, std::span<V3<T>> y) { sim::multiply<T>(a, x, y); };
+}
+
+// `known`: the preconditioner is told of the constraints.
+template <class T>
+sim::SolveReport solve(const System& system, const BlockMatrix<T>& a, const Problem& p, Kind kind,
+                       const sim::StopRule<T>& stop, Eigen::VectorXd& x, bool known = false) {
+  auto preconditioner = system.preconditioner(a, kind, known ? p.constraints : std::vector<sim::VertexConstraint>());
   sim::SolverScratch<T> scratch;
   scratch.resize(static_cast<int>(p.rhs.size()));
   auto values = test::plain<T>(p.guess);
   const auto rhs = test::plain<T>(p.rhs);
-  const auto report = sim::solveModifiedPcg<T>(a, rhs, filterOf<T>(p), preconditioner, stop, scratch, values);
+  const auto report =
+      sim::solveModifiedPcg<T>(productWith<T>(a), rhs, filterOf<T>(p), preconditioner, stop, scratch, values);
   x = test::stacked<T>(values);
   return report;
 }

@@ -114,10 +114,9 @@ inline sim::SimParams tautHair() {
   p.friction = 0.3, p.contact_offset = 0.002, p.max_depenetration = 2, p.collide = true;
   p.minimize_deformation = true, p.sag_free = true;
   p.time_step = 1.0 / 60;
-  p.integrator = sim::Integrator::kLinearizedEuler, p.solver = sim::Solver::kBlockJacobi;
+  p.integrator = sim::Integrator::kLinearizedEuler, p.solver = sim::Solver::kDefault;
   p.precision = sim::Precision::kDouble;
   p.tolerance = 1e-8, p.acceleration_tolerance = 1e-9, p.displacement_tolerance = 1e-9, p.max_iterations = 2000;
-  p.newton_iterations = 30, p.newton_tolerance = 1e-10;
   return p;
 }
 

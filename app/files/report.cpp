@@ -73,7 +73,6 @@ json frameJson(const FrameStats& stats, std::size_t index, double fps) {
           {"steps", stats.steps},
           {"lost_seconds", stats.lost},
           {"solver_iterations", stats.solver_iterations},
-          {"newton_iterations", stats.newton_iterations},
           {"residual", stats.residual},
           {"residual_acceleration", stats.residual_acceleration},
           {"converged", stats.converged},

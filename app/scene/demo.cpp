@@ -167,7 +167,7 @@ void addStep(const sim::StepReport& report, double step_seconds, FrameStats& sta
   stats.seconds[kTimeCharacter] += std::max(0.0, step_seconds - inside);
   stats.steps += 1;
   stats.solver_iterations += report.solver_iterations;
-  stats.newton_iterations += report.newton_iterations;
+  stats.solves += report.solves;
   stats.minimization_iterations += report.minimization_iterations;
   stats.residual = std::max(stats.residual, report.residual);
   stats.residual_acceleration = std::max(stats.residual_acceleration, report.residual_acceleration);

@@ -36,7 +36,7 @@ struct FrameStats {
   double shown_time = 0;  // s since the start
   int steps = 0;
   double lost = 0;  // s of time given up so far
-  int solver_iterations = 0, newton_iterations = 0, minimization_iterations = 0;
+  int solver_iterations = 0, solves = 0, minimization_iterations = 0;
   double residual = 0, residual_acceleration = 0;  // largest
   bool converged = true;
   int contacts = 0, corrected = 0, recoveries = 0;

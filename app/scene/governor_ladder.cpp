@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "app/scene/governor.h"
-#include "sim/linear/preconditioner_choice.h"
 
 namespace app {
 
@@ -34,11 +33,9 @@ static_assert(std::size(kLadder) <= kMaxRungs);
 // hairmesh-bench --styles.
 constexpr double kPerStep = 3e-8, kPerEvaluation = 3.8e-7;
 
-// s an iteration and vertex. A whole rest factor's grows with its fill; the two levels, which serve larger meshes, have
-// none, and theirs grows as matrix and factors leave the caches (1.0e-7 at 2,300 vertices, 1.4 to 1.7e-7 from 7,000 to
-// 10,000).
+// s an iteration and vertex: grows as matrix and factors leave the caches (1.0e-7 at 2,300 vertices, 1.4 to 1.7e-7 from
+// 7,000 to 10,000).
 double perIteration(int vertices) {
-  if (vertices <= sim::kMaxFactored) return 1.9e-7 * std::pow(vertices / 365.0, 0.45);
   return 1.0e-7 * std::pow(vertices / 2300.0, 0.3);
 }
 
@@ -61,8 +58,7 @@ int defaultRung() {
 }
 
 double countedCost(int vertices, const sim::StepReport& report) {
-  return vertices *
-         (kPerStep + kPerEvaluation * report.newton_iterations + perIteration(vertices) * report.solver_iterations);
+  return vertices * (kPerStep + kPerEvaluation * report.solves + perIteration(vertices) * report.solver_iterations);
 }
 
 }  // namespace app

@@ -171,7 +171,6 @@ bool hasEffect(std::string_view name, const SceneLook& look) {
 bool hasEffect(const sim::ParamField& row, const sim::SimParams& params) {
   const std::string_view name = row.name, group = row.group;
   if (name == "gust") return params.wind_x != 0 || params.wind_y != 0 || params.wind_z != 0;
-  if (name.starts_with("newton_")) return params.integrator != sim::Integrator::kLinearizedEuler;
   return params.collide || group != "Contact" || name == "collide" || name == "self_collide";
 }
 

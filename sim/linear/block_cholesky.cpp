@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/linear/batch_kernels.h"
 #include "sim/linear/dense_kernels.h"
 #include "sim/linear/elimination_order.h"
 
@@ -80,17 +79,25 @@ void BlockCholesky<T>::analyze(const BlockPattern& pattern, std::vector<int> eli
   eliminate(pattern, order, position, below, parent);
   postorder(order, position, parent);
   eliminate(pattern, order, position, below, parent);
+  findSupernodes(below, parent);
+  sizeScratch();
+  sortEntries(pattern);
+  at_ = {};
+}
 
-  // Supernodes: a column joins the one before it when it is its parent and the zeros that this stores are few.
+// A column joins the supernode before it when it is its parent and the zeros that this stores are few.
+template <class T>
+void BlockCholesky<T>::findSupernodes(const std::vector<std::vector<int>>& below, const std::vector<int>& parent) {
+  const int n = static_cast<int>(order.size());
   supernodes.clear();
   row_index.clear();
   supernode_of_.assign(n, -1);
-  std::size_t at = 0, true_blocks = 0;
+  value_count_ = 0;
   for (int c = 0; c < n;) {
     Supernode s;
     s.first = c;
     s.columns = 1;
-    true_blocks = below[c].size();
+    std::size_t true_blocks = below[c].size();
     while (c + s.columns < n && parent[c + s.columns - 1] == c + s.columns) {
       const std::size_t next = below[c + s.columns].size();
       const std::size_t stored =
@@ -104,32 +111,32 @@ void BlockCholesky<T>::analyze(const BlockPattern& pattern, std::vector<int> eli
     s.rows_first = static_cast<int>(row_index.size());
     s.rows = static_cast<int>(rows.size());
     row_index.insert(row_index.end(), rows.begin(), rows.end());
-    s.values = at;
-    at += static_cast<std::size_t>(s.width()) * (s.width() + s.height());
+    s.values = value_count_;
+    value_count_ += static_cast<std::size_t>(s.width()) * (s.width() + s.height());
     for (int k = 0; k < s.columns; ++k) supernode_of_[c + k] = static_cast<int>(supernodes.size());
     c += s.columns;
     supernodes.push_back(s);
   }
-  value_count_ = at;
-  reached_.assign(supernodes.size(), 0);
-  largest_front_ = 0;
+  for (Supernode& s : supernodes) s.parent = s.rows > 0 ? supernode_of_[row_index[s.rows_first]] : -1;
+}
+
+template <class T>
+void BlockCholesky<T>::sizeScratch() {
   int tallest = 0;
-  for (Supernode& s : supernodes) {
-    s.parent = s.rows > 0 ? supernode_of_[row_index[s.rows_first]] : -1;
-    largest_front_ = std::max(largest_front_, s.width() + s.height());
-    tallest = std::max(tallest, s.height());
-  }
-  work_.assign(3 * static_cast<std::size_t>(n), T(0));
-  gathered_.assign(tallest, T(0));
-  batch_rows_.assign(static_cast<std::size_t>(tallest) * kBatch, T(0));
-  local_.assign(n, -1);
-  // Deepest the stack of update matrices gets: supernodes are in postorder, so children pop before their parent pushes.
-  std::vector<std::size_t> pending;
+  largest_front_ = 0;
   std::vector<int> child_count(supernodes.size(), 0);
   for (const Supernode& s : supernodes) {
+    largest_front_ = std::max(largest_front_, s.width() + s.height());
+    tallest = std::max(tallest, s.height());
     if (s.parent >= 0) ++child_count[s.parent];
   }
-  std::size_t depth = 0, deepest = 0;
+  work_.assign(3 * order.size(), T(0));
+  gathered_.assign(tallest, T(0));
+  local_.assign(order.size(), -1);
+  // Deepest the stack of update matrices gets: supernodes are in postorder, so children pop before their parent pushes.
+  std::vector<std::size_t> pending;
+  std::size_t depth = 0;
+  deepest_stack_ = 0;
   for (std::size_t k = 0; k < supernodes.size(); ++k) {
     for (int child = 0; child < child_count[k]; ++child) {
       depth -= pending.back();
@@ -139,15 +146,15 @@ void BlockCholesky<T>::analyze(const BlockPattern& pattern, std::vector<int> eli
     if (s.parent < 0) continue;
     pending.push_back(static_cast<std::size_t>(s.height()) * s.height());
     depth += pending.back();
-    deepest = std::max(deepest, depth);
+    deepest_stack_ = std::max(deepest_stack_, depth);
   }
-  deepest_stack_ = deepest;
   pending_.reserve(supernodes.size());
-  at_ = {};
+}
 
-  // Entries of the matrix by the column that eliminates them.
-  entries_first_.assign(n + 1, 0);
-  entries_.clear();
+// Entries of the matrix by the column that eliminates them.
+template <class T>
+void BlockCholesky<T>::sortEntries(const BlockPattern& pattern) {
+  const int n = static_cast<int>(order.size());
   std::vector<std::vector<Entry>> by_column(n);
   for (int i = 0; i < pattern.size; ++i) {
     for (int k = pattern.row_first[i]; k < pattern.row_first[i + 1]; ++k) {
@@ -155,6 +162,8 @@ void BlockCholesky<T>::analyze(const BlockPattern& pattern, std::vector<int> eli
       if (p >= 0 && q >= 0) by_column[std::min(p, q)].push_back({k, std::max(p, q), p < q});
     }
   }
+  entries_first_.assign(n + 1, 0);
+  entries_.clear();
   for (int c = 0; c < n; ++c) {
     entries_.insert(entries_.end(), by_column[c].begin(), by_column[c].end());
     entries_first_[c + 1] = static_cast<int>(entries_.size());
@@ -167,19 +176,6 @@ void BlockCholesky<T>::analyze(const HairMesh& mesh, const BlockPattern& pattern
   other.analyze(pattern, nestedDissectionOrder(pattern, keep, dissectionCoordinates(mesh)));
   analyze(pattern, minimumDegreeOrder(pattern, keep));
   if (other.value_count_ < value_count_) *this = std::move(other);
-}
-
-template <class T>
-void BlockCholesky<T>::copyLayout(const BlockCholesky<T>& other) {
-  order = other.order, position = other.position, supernodes = other.supernodes, row_index = other.row_index;
-  supernode_of_ = other.supernode_of_, entries_ = other.entries_, entries_first_ = other.entries_first_;
-  value_count_ = other.value_count_, deepest_stack_ = other.deepest_stack_, largest_front_ = other.largest_front_;
-  work_.resize(other.work_.size());
-  gathered_.resize(other.gathered_.size());
-  batch_rows_.resize(other.batch_rows_.size());
-  reached_.resize(other.reached_.size());
-  local_.assign(other.local_.size(), -1);
-  pending_.reserve(supernodes.size());
 }
 
 template <class T>
@@ -220,43 +216,6 @@ void BlockCholesky<T>::solve(std::span<const V3<T>> r, std::span<V3<T>> z) {
     const int k = position[i];
     z[i] = k < 0 ? V3<T>{0, 0, 0} : V3<T>{x[3 * k], x[3 * k + 1], x[3 * k + 2]};
   }
-}
-
-template <class T>
-void BlockCholesky<T>::solveBatch(std::span<T> x, std::span<const int> touched) {
-  // Forward, a right-hand side reaches its own supernode and that one's ancestors only.
-  std::fill(reached_.begin(), reached_.end(), 0);
-  for (const int p : touched) reached_[supernode_of_[p]] = 1;
-  for (const Supernode& s : supernodes) {
-    if (!reached_[&s - supernodes.data()]) continue;
-    if (s.parent >= 0) reached_[s.parent] = 1;
-    const T* inverse = values.data() + s.values;
-    const T* rows = inverse + static_cast<std::size_t>(s.width()) * s.width();
-    T* own = x.data() + static_cast<std::size_t>(3) * s.first * kBatch;
-    batchLower(inverse, s.width(), own);
-    batchPanel(rows, s.height(), s.width(), own, batch_rows_.data());
-    for (int k = 0; k < s.rows; ++k) {
-      T* y = x.data() + static_cast<std::size_t>(3) * row_index[s.rows_first + k] * kBatch;
-      const T* from = batch_rows_.data() + static_cast<std::size_t>(3) * k * kBatch;
-      for (int i = 0; i < 3 * kBatch; ++i) y[i] -= from[i];
-    }
-  }
-  for (auto s = supernodes.rbegin(); s != supernodes.rend(); ++s) {
-    const T* inverse = values.data() + s->values;
-    const T* rows = inverse + static_cast<std::size_t>(s->width()) * s->width();
-    T* own = x.data() + static_cast<std::size_t>(3) * s->first * kBatch;
-    for (int k = 0; k < s->rows; ++k) {
-      const T* y = x.data() + static_cast<std::size_t>(3) * row_index[s->rows_first + k] * kBatch;
-      std::copy_n(y, 3 * kBatch, batch_rows_.data() + static_cast<std::size_t>(3) * k * kBatch);
-    }
-    batchSubtractPanelTransposed(rows, s->height(), s->width(), batch_rows_.data(), own);
-    batchUpper(inverse, s->width(), own);
-  }
-}
-
-template <class T>
-std::size_t BlockCholesky<T>::factorBlocks() const {
-  return value_count_ / 9;
 }
 
 template struct BlockCholesky<float>;

@@ -8,7 +8,6 @@
 #include <span>
 #include <vector>
 
-#include "sim/linear/batch_kernels.h"
 #include "sim/linear/block_matrix.h"
 #include "sim/mesh/hair_mesh.h"
 
@@ -38,9 +37,6 @@ struct BlockCholesky {
   // The same with whichever of minimum degree and nested dissection fills less on this mesh.
   void analyze(const HairMesh& mesh, const BlockPattern& pattern, std::span<const unsigned char> keep);
 
-  // The layout of a factor that was analyzed, of the same precision, without its values.
-  void copyLayout(const BlockCholesky<T>& other);
-
   // Factors the matrix; false when a pivot is not positive (the factor is then unusable). Needs analyze.
   bool factor(const BlockMatrix<T>& a);
 
@@ -50,30 +46,19 @@ struct BlockCholesky {
   enum class Progress { kMore, kDone, kFailed };
   void beginFactor();
   Progress continueFactor(const BlockMatrix<T>& a, double operations);
-  double factorOperations() const;                      // of a whole factorization
-  int supernodesDone() const { return at_.supernode; }  // their panels are final
+  double factorOperations() const;  // of a whole factorization
   // Frees what beginFactor takes again; the layout stays.
   void release();
 
   // z = A^-1 r over the kept rows, zero at the others.
   void solve(std::span<const V3<T>> r, std::span<V3<T>> z);
 
-  // kBatch right-hand sides at once, in elimination order: entry (scalar row r, side k) is x[r * kBatch + k], in place.
-  // The factor is read once for all, which makes a side several times cheaper than solve().
-  static constexpr int kBatch = kBatchSides;
-  // `touched`: the elimination positions with entries that are not zero.
-  void solveBatch(std::span<T> x, std::span<const int> touched);
-
-  std::size_t factorBlocks() const;  // 3x3 blocks stored
-
  private:
-  std::vector<T> work_;                 // right-hand side in elimination order
-  std::vector<T> gathered_;             // rows of one panel
-  std::vector<T> batch_rows_;           // the same of a batch
-  std::vector<T> front_, stack_;        // numeric factorization
-  std::vector<int> supernode_of_;       // per elimination position
-  std::vector<unsigned char> reached_;  // per supernode, of the batch in progress
-  std::vector<int> local_;              // elimination position -> row in the front
+  std::vector<T> work_;            // right-hand side in elimination order
+  std::vector<T> gathered_;        // rows of one panel
+  std::vector<T> front_, stack_;   // numeric factorization
+  std::vector<int> supernode_of_;  // per elimination position
+  std::vector<int> local_;         // elimination position -> row in the front
   struct Pending {
     int supernode;
     std::size_t at;  // in stack_
@@ -84,6 +69,9 @@ struct BlockCholesky {
     int supernode = 0, stage = 0, column = 0;
   };
   Place at_;
+  void findSupernodes(const std::vector<std::vector<int>>& below, const std::vector<int>& parent);
+  void sizeScratch();
+  void sortEntries(const BlockPattern& pattern);
   // One piece of the supernode at hand; adds the operations it took. False when a pivot is not positive.
   bool assembleFront(const BlockMatrix<T>& a, double& spent);
   bool factorDiagonal(double& spent);

@@ -125,23 +125,6 @@ HAIRMESH_INLINE void scatter(std::span<const int> columns, const ColumnLayout& l
   }
 }
 
-// How a vertex moves when its patch turns: the matrix of w -> w x arm.
-template <class T>
-M3<T> turnOf(const V3<T>& arm) {
-  return {0, arm.z, -arm.y, -arm.z, 0, arm.x, arm.y, -arm.x, 0};
-}
-template <class T>
-M3<T> transposed(const M3<T>& a) {
-  return {a.m[0], a.m[3], a.m[6], a.m[1], a.m[4], a.m[7], a.m[2], a.m[5], a.m[8]};
-}
-
-template <class T>
-M3<T> times(const M3<T>& a, const M3<T>& b) {
-  M3<T> c{};
-  for (int k = 0; k < 27; ++k) c.m[k / 9 * 3 + k % 3] += a.m[k / 9 * 3 + k / 3 % 3] * b.m[k / 3 % 3 * 3 + k % 3];
-  return c;
-}
-
 #define HAIRMESH_KERNELS(T)                                                                                     \
   HAIRMESH_CLONES void runProject(std::span<const BlockDiagonal> diagonals, std::span<const int> which,         \
                                   const T* values, std::ptrdiff_t stride, const Fields<T>& f, T* sums) {        \
@@ -309,42 +292,6 @@ bool CoarseSpace<T>::make(const ColumnMatrix<T>& a, std::span<const V3<T>> x,
     addSums(one);
   }
   return factor();
-}
-
-template <class T>
-bool CoarseSpace<T>::make(const BlockMatrix<T>& a, std::span<const V3<T>> x,
-                          std::span<const VertexConstraint> constraints) {
-  setArms(x, constraints);
-  matrix_.setZero();
-  const auto addBlock = [&](int i, int j, const M3<T>& m) {
-    if (mesh_->isRoot(i) || mesh_->isRoot(j) || held_[i] || held_[j]) return;
-    const int p = patchOf(mesh_->column_of[i], mesh_->layer_of[i]),
-              q = patchOf(mesh_->column_of[j], mesh_->layer_of[j]);
-    const int at_i = layout_->slot[i], at_j = layout_->slot[j];
-    const M3<T> motion_i = turnOf(V3<T>{arm_.x[at_i], arm_.y[at_i], arm_.z[at_i]});
-    const M3<T> motion_j = turnOf(V3<T>{arm_.x[at_j], arm_.y[at_j], arm_.z[at_j]});
-    const M3<T> right = times(m, motion_j), below = times(transposed(motion_i), m);
-    const M3<T> both = times(transposed(motion_i), right);
-    const M3<T> parts[4] = {m, right, below, both};
-    for (int k = 0; k < 4; ++k) addPart(2 * p + k / 2, 2 * q + k % 2, parts[k]);
-  };
-  for (int i = 0; i < a.pattern->size; ++i) {
-    addBlock(i, i, a.diagonal[i]);
-    for (int k = a.pattern->row_first[i]; k < a.pattern->row_first[i + 1]; ++k) {
-      const int j = a.pattern->columns[k];
-      addBlock(i, j, a.lower[k]);
-      addBlock(j, i, transposed(a.lower[k]));
-    }
-  }
-  return factor();
-}
-
-// Both triangles are given; the lower one is kept.
-template <class T>
-void CoarseSpace<T>::addPart(int row, int column, const M3<T>& m) {
-  if (row < column) return;
-  M3<T>& to = row == column ? matrix_.diagonal[row] : matrix_.lower[coupled_.find(row, column)];
-  for (int k = 0; k < 9; ++k) to.m[k] += m.m[k];
 }
 
 template <class T>

@@ -34,7 +34,6 @@ class CoarseSpace {
   // Takes a positive definite matrix, the positions (m, one a vertex) and the constraints; false when a pivot was not
   // positive, and it must not be used. Allocates nothing.
   bool make(const ColumnMatrix<T>& a, std::span<const V3<T>> x, std::span<const VertexConstraint> constraints);
-  bool make(const BlockMatrix<T>& a, std::span<const V3<T>> x, std::span<const VertexConstraint> constraints);
 
   // How many of these constrained vertices were free when it was made.
   int unknown(std::span<const VertexConstraint> constraints) const;
@@ -83,7 +82,6 @@ class CoarseSpace {
   int patchOf(int column, int layer) const { return patch_first_[group_of_[column]] + (layer - 1) / kLayers; }
   void setArms(std::span<const V3<T>> x, std::span<const VertexConstraint> constraints);
   void addSums(const Class& one);
-  void addPart(int row, int column, const M3<T>& m);
   bool factor();
 };
 

@@ -194,25 +194,6 @@ void ColumnFactor<T>::factor(const ColumnMatrix<T>& a, std::span<const VertexCon
 }
 
 template <class T>
-void ColumnFactor<T>::factor(const BlockMatrix<T>& a, std::span<const VertexConstraint> constraints) {
-  clearWithIdentity();
-  for (int c = 0; c < layout_->columns; ++c) {
-    for (int layer = 1; layer < layout_->length[c]; ++layer) {
-      const int i = mesh_->shape.column_first[c] + layer;
-      const T* m = a.diagonal[i].m;
-      const T upper[kPivot] = {m[0], m[1], m[2], m[4], m[5], m[8]};
-      for (int k = 0; k < kPivot; ++k) at(c, layer, 0)[k * lanes_] = upper[k];
-      for (int step = 1; step <= kReach && layer + step < layout_->length[c]; ++step) {
-        const int block = a.pattern->find(i + step, i);
-        for (int k = 0; block >= 0 && k < kBlock; ++k) at(c, layer, step)[k * lanes_] = a.lower[block].m[k];
-      }
-    }
-  }
-  mask(constraints);
-  eliminate();
-}
-
-template <class T>
 void ColumnFactor<T>::mask(std::span<const VertexConstraint> constraints) {
   for (const VertexConstraint& constraint : constraints) {
     const int c = mesh_->column_of[constraint.vertex], layer = mesh_->layer_of[constraint.vertex];

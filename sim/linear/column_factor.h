@@ -21,7 +21,6 @@ struct ColumnFactor {
   // The blocks within columns of a positive definite matrix, without the directions that the constraints remove; a
   // pivot block that rounding has made singular counts as its diagonal. Allocates nothing.
   void factor(const ColumnMatrix<T>& a, std::span<const VertexConstraint> constraints = {});
-  void factor(const BlockMatrix<T>& a, std::span<const VertexConstraint> constraints = {});
 
   // z += scale * (L D L^T)^-1 r, one entry a vertex; allocates nothing.
   void addSolution(std::span<const V3<T>> r, T scale, std::span<V3<T>> z);

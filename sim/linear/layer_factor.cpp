@@ -221,36 +221,6 @@ void LayerFactor<T>::factor(const ColumnMatrix<T>& a, std::span<const VertexCons
   eliminate();
 }
 
-template <class T>
-void LayerFactor<T>::factor(const BlockMatrix<T>& a, std::span<const VertexConstraint> constraints) {
-  clearWithIdentity();
-  for (const Source& source : sources_) {
-    const BlockDiagonal& d = pattern_->diagonals[source.diagonal];
-    const bool pivot = source.block < 0;
-    const std::size_t at = pivot ? pivot_at_[~source.block] : block_at_[source.block];
-    const int length = std::min(layout_->length[d.a], layout_->length[d.b]);
-    for (int l = 0; l < length; ++l) {
-      T* to = values_.data() + l / lanes_ * group_size_ + at + l % lanes_;
-      const int i = mesh_->shape.column_first[d.a] + l, j = mesh_->shape.column_first[d.b] + l;
-      if (pivot) {
-        const T* m = a.diagonal[i].m;
-        const T upper[kPivot] = {m[0], m[1], m[2], m[4], m[5], m[8]};
-        for (int c = 0; c < kPivot; ++c) to[c * lanes_] = upper[c];
-        continue;
-      }
-      const int block = a.pattern->find(std::max(i, j), std::min(i, j));
-      if (block < 0) continue;
-      // Stored is row max, column min; wanted the row of the column that is eliminated later (d.b where transposed).
-      const bool row_is_b = source.transposed, stored_row_is_b = j > i;
-      for (int c = 0; c < kBlock; ++c) {
-        to[c * lanes_] = a.lower[block].m[row_is_b == stored_row_is_b ? c : 3 * (c % 3) + c / 3];
-      }
-    }
-  }
-  mask(constraints);
-  eliminate();
-}
-
 // What stands for the matrix in values_ loses the directions that are removed.
 template <class T>
 void LayerFactor<T>::mask(std::span<const VertexConstraint> constraints) {

@@ -27,7 +27,6 @@ struct LayerFactor {
   // The blocks within layers of a positive definite matrix, without the directions that the constraints remove; a pivot
   // block that rounding has made singular counts as its diagonal.
   void factor(const ColumnMatrix<T>& a, std::span<const VertexConstraint> constraints = {});
-  void factor(const BlockMatrix<T>& a, std::span<const VertexConstraint> constraints = {});
 
   // x = (L D L^T)^-1 x; allocates nothing.
   void solve(ColumnField<T>& x) const;

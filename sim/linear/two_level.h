@@ -1,65 +1,78 @@
-// The two-level preconditioner: P = L^-1 + s H^-1 + B C^-1 B^T.
+// The two-level preconditioner: P = L^-1 + s H^-1 + B C^-1 B^T, an additive Schwarz method (Dryja and Widlund 1987).
 //
-// L: the matrix without the couplings between layers, of the current step or of one before (layer_factor.h, FactorAge).
-// H: the same without the couplings between columns (strand_factor.h); s: a weight, for the blocks on the diagonal are
-// in both. Both leave out the directions that contacts remove: unknown to P, each of these adds an eigenvalue far from
-// the others, that costs an iteration.
-// C = B^T A B: the projection of the matrix, of this step or of some steps before, onto rigid motions of patches
-// (patch_space.h), which carries what many vertices do together. The sum is an additive Schwarz method (Dryja and
-// Widlund 1987). Its work grows with the mesh, where that of the whole matrix's factor grows faster.
+// L: the matrix without the couplings between layers (layer_factor.h). H: without those between columns
+// (column_factor.h), weighted by s, for the diagonal is in both. Both leave out the directions that contacts remove:
+// each that P does not know of adds an eigenvalue far from the others, which costs an iteration. C = B^T A B: the
+// projection onto rigid motions of patches (coarse_space.h), for what many vertices do together.
+//
+// Each of the two parts, the factors L and H and the coarse space, serves some solves: the matrix changes little from
+// one step to the next.
 #pragma once
 
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "sim/linear/block_matrix.h"
 #include "sim/linear/coarse_space.h"
 #include "sim/linear/column_factor.h"
+#include "sim/linear/column_matrix.h"
 #include "sim/linear/layer_factor.h"
 #include "sim/mesh/hair_mesh.h"
 
 namespace sim {
 
+// How long a part made for one matrix serves the matrices after it.
+struct PartAge {
+  static constexpr double kRise = 1.2;  // of the iterations since it was fresh, with which it still serves
+
+  int oldest;               // solves that it serves at most
+  int age = oldest;         // solves since it was made
+  int fresh = 0, last = 0;  // iterations of its first solve and of the last one
+  bool kept = false;        // in the present solve
+
+  bool serves() const { return age < oldest && last <= kRise * fresh + 1; }
+  void forget() { age = oldest; }
+  void count(int iterations) {
+    age = kept ? age + 1 : 1;
+    if (!kept) fresh = iterations;
+    last = iterations;
+  }
+};
+
 template <class T>
 struct TwoLevel {
   explicit TwoLevel(const HairMesh& mesh);
 
-  // What of an earlier matrix may serve on: the factors, where the constraints hold the same vertices; the patches,
-  // where not many more are held.
-  struct Keep {
-    bool factors = false, patches = false;
-  };
-  // Takes the current matrix, the positions that it is of (m, one a vertex) and the constraints of the solve.
-  template <class Matrix>
-  void update(const Matrix& a, std::span<const V3<T>> x, Keep keep = {},
-              std::span<const VertexConstraint> constraints = {}) {
-    if (!noteConstraints(constraints) || !keep.factors) {
-      layers_.factor(a, constraints);
-      strands_.factor(a, constraints);
-    }
-    if (!patched_ || !keep.patches || patches_.unknown(constraints) > kMaxUnknown)
-      patched_ = patches_.make(a, x, constraints);
-  }
+  // Takes the matrix of a solve, the positions that it is of (m, one a vertex, relative to any point) and the
+  // constraints. Makes those parts anew that serve no longer: old ones, the factors where other directions are held,
+  // the coarse space where more than kMaxUnknown vertices are held that it does not know of.
+  void update(const ColumnMatrix<T>& a, std::span<const V3<T>> x, std::span<const VertexConstraint> constraints = {});
+  // The solve with it took so many iterations.
+  void count(int iterations);
+  // The matrices to come have little to do with those before: other stiffness, mass or time step.
+  void forget();
 
-  // Iterations with 0.3, 0.5 and 0.75 are the same within one in twenty.
-  static constexpr T kStrandWeight = T(0.5);
-  // Vertices held anew, with which the patches still serve; with thirty more they tripled a solve's iterations.
-  static constexpr int kMaxUnknown = 2;
+  // With factors of two solves ago a walk takes no more iterations and a head shake 2 % more; of four, 0 and 35 %. With
+  // a coarse space of four to six solves ago a walk takes 5 % more.
+  static constexpr int kFactorsServe = 2, kCoarseServes = 6;
+  // s. Iterations with 0.3, 0.5 and 0.75 differ by one in twenty.
+  static constexpr T kColumnWeight = T(0.5);
+  static constexpr int kMaxUnknown = 2;  // with thirty a solve's iterations tripled
 
   // z = P r.
   void apply(std::span<const V3<T>> r, std::span<V3<T>> z);
 
  private:
   ColumnLayout layout_;
-  ColumnPattern columns_;
+  ColumnPattern pattern_;
   LayerFactor<T> layers_;
-  ColumnFactor<T> strands_;
-  std::vector<std::pair<int, int>> masked_;  // vertices that the factors know constrained, and in how many directions
-  CoarseSpace<T> patches_;
-  bool patched_ = false;  // else there are none, or a pivot was not positive: P goes without
-  ColumnField<T> field_;  // r, then z
-  bool noteConstraints(std::span<const VertexConstraint> constraints);
+  ColumnFactor<T> columns_;
+  CoarseSpace<T> coarse_;
+  bool has_coarse_ = false;  // else a pivot was not positive: P goes without
+  PartAge factors_age_{kFactorsServe}, coarse_age_{kCoarseServes};
+  std::vector<std::pair<int, int>> held_;  // vertices that the factors know constrained, and in how many directions
+  ColumnField<T> field_;                   // r, then z
+  bool noteHeld(std::span<const VertexConstraint> constraints);
 };
 
 }  // namespace sim

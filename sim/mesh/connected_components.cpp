@@ -105,7 +105,7 @@ void scatterPart(const HairPart& part, const HairState& state, HairState& whole)
 void addPart(const StepReport& part, StepReport& whole) {
   for (std::size_t s = 0; s < part.seconds.size(); ++s) whole.seconds[s] += part.seconds[s];
   whole.solver_iterations += part.solver_iterations;
-  whole.newton_iterations = std::max(whole.newton_iterations, part.newton_iterations);
+  whole.solves = std::max(whole.solves, part.solves);
   whole.residual = std::max(whole.residual, part.residual);
   whole.residual_acceleration = std::max(whole.residual_acceleration, part.residual_acceleration);
   whole.converged = whole.converged && part.converged;

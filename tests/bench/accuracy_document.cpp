@@ -50,8 +50,7 @@ bool isPapers(const Json& row) {
 }
 
 std::string wayOf(const Json& row) {
-  const std::string solver = word(row, "solver");
-  return word(row, "integrator") + (solver == "warped" ? "" : ", " + (isPapers(row) ? "as in the paper" : solver)) +
+  return word(row, "integrator") + (isPapers(row) ? ", as in the paper" : "") +
          (row["minimization"] ? "" : ", no minimization");
 }
 

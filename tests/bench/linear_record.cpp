@@ -4,6 +4,7 @@
 
 #include "app/files/errors.h"
 #include "sim/implicit_solve.h"
+#include "tests/bench/preconditioners/preconditioner.h"
 
 namespace bench {
 namespace {
@@ -17,9 +18,8 @@ Vector3 times(const Eigen::Matrix3d& m, const Vector3& p) {
 
 // The exact solution: conjugate gradients with the factor of the matrix itself, until rounding stops them.
 void solveExactly(const RecordedMesh& shared, LinearRecord& record) {
-  sim::Preconditioner<double> factor(shared.mesh, shared.pattern);
-  factor.update(record.matrix, sim::Solver::kDirect);
-  factor.setConstraints(record.constraints);
+  Preconditioner<double> factor(shared.mesh, shared.pattern, Kind::kDirect);
+  factor.update(record.matrix, record.positions, record.constraints);
   sim::Filter<double> filter;
   for (int i = 0; i < shared.mesh.vertexCount(); ++i) {
     if (record.keep[i].isIdentity(0)) continue;
@@ -34,7 +34,8 @@ void solveExactly(const RecordedMesh& shared, LinearRecord& record) {
   stop.relative = 1e-14;
   stop.max_iterations = 200;
   record.solution = record.guess;
-  sim::solveModifiedPcg<double>(record.matrix, record.rhs, filter, factor, stop, scratch, record.solution);
+  const auto a = [&](std::span<const Vector3> d, std::span<Vector3> q) { sim::multiply<double>(record.matrix, d, q); };
+  sim::solveModifiedPcg<double>(a, record.rhs, filter, factor, stop, scratch, record.solution);
 }
 
 LinearRecord recordStep(const RecordedMesh& shared, sim::ImplicitSolver<double>& solver, const sim::SimParams& params,
@@ -71,19 +72,8 @@ LinearRecord recordStep(const RecordedMesh& shared, sim::ImplicitSolver<double>&
 }  // namespace
 
 RecordedMesh::RecordedMesh(const sim::HairMesh& m, const sim::SimParams& params)
-    : mesh(m), pattern(sim::systemPattern(m)), layout(m), columns(m, layout), rest(&pattern), h(params.time_step) {
-  std::vector<Vector3> x;
-  for (const sim::Vec3& p : m.shape.positions) x.push_back(plain(p - m.shape.positions[0]));
-  rest.setZero();
-  sim::Evaluation<double> out;
-  out.matrix = &rest;
-  out.matrix_scale = h * (h + params.damping);
-  out.tension_scale = h * h;
-  sim::evaluate<double>(sim::makeForceModel(m, pattern, params), x, out);
-  for (int i = 0; i < m.vertexCount(); ++i) {
-    mass.push_back(params.density * m.vertex_volume[i]);
-    for (int k = 0; k < 9; k += 4) rest.diagonal[i].m[k] += (1 + h * params.air_drag) * mass[i];
-  }
+    : mesh(m), pattern(sim::systemPattern(m)), layout(m), columns(m, layout), h(params.time_step) {
+  for (const double volume : m.vertex_volume) mass.push_back(params.density * volume);
 }
 
 RecordedSystems recordSystems(const std::string& scene, const std::vector<int>& steps) {
@@ -100,7 +90,7 @@ RecordedSystems recordSystems(const std::string& scene, const std::vector<int>& 
   exact.tolerance = 1e-10;
   exact.acceleration_tolerance = exact.displacement_tolerance = 0;
   const RecordedMesh& shared = *systems.shared;
-  sim::ImplicitSolver<double> solver(shared.mesh, shared.pattern);
+  sim::ImplicitSolver<double> solver(shared.mesh);
   solver.setModel(shared.mesh, sim::makeForceModel(shared.mesh, shared.pattern, params), params.density);
   systems.stage->visitSteps(params, [&](int step, const sim::StepInput& input, const sim::HairState& state) {
     if (!std::count(steps.begin(), steps.end(), step)) return;

@@ -14,13 +14,12 @@ namespace bench {
 
 using Vector3 = sim::V3<double>;
 
-// What the systems of one hair mesh share. The rest matrix: the same of the rest shape, for the warped preconditioner.
+// What the systems of one hair mesh share.
 struct RecordedMesh {
   const sim::HairMesh& mesh;
   sim::BlockPattern pattern;
   sim::ColumnLayout layout;
   sim::ColumnPattern columns;
-  sim::BlockMatrix<double> rest;
   std::vector<double> mass;  // kg
   double h = 0;              // s
 

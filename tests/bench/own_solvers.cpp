@@ -8,7 +8,6 @@
 namespace bench {
 namespace {
 
-constexpr int kTurnsToSettle = 20;   // the rotations follow a large turn over several steps
 constexpr double kEnough = 1e-13;    // relative residual
 constexpr double kStagnated = 1e-3;  // below it, four rungs without progress end a run
 
@@ -20,41 +19,28 @@ std::vector<sim::V3<T>> converted(const std::vector<Vector3>& from) {
 }
 
 template <class T>
-sim::M3<T> converted(const sim::M3<double>& from) {
-  sim::M3<T> to;
-  for (int k = 0; k < 9; ++k) to.m[k] = static_cast<T>(from.m[k]);
-  return to;
-}
-
-template <class T>
 struct OwnSolver {
   const RecordedMesh& shared;
   const LinearRecord& record;
-  sim::Solver solver;
-  bool compact;
+  Kind kind;
   sim::ColumnMatrix<T> matrix;
-  sim::BlockMatrix<T> rest;
   sim::ColumnProduct<T> product;
   sim::Filter<T> filter;
   sim::SolverScratch<T> scratch;
   std::vector<sim::V3<T>> positions, rhs, guess, x;
   std::vector<T> inverse_mass_dt;
 
-  OwnSolver(const RecordedMesh& s, const LinearRecord& r, sim::Solver chosen, bool sixteen_bits)
+  OwnSolver(const RecordedMesh& s, const LinearRecord& r, Kind chosen)
       : shared(s),
         record(r),
-        solver(chosen),
-        compact(sixteen_bits),
+        kind(chosen),
         matrix(s.layout, s.columns),
-        rest(&s.pattern),
         product(s.layout),
         positions(converted<T>(r.positions)),
         rhs(converted<T>(r.rhs)),
         guess(converted<T>(r.guess)),
         x(guess) {
     matrix.values.assign(r.column_values.begin(), r.column_values.end());
-    for (std::size_t i = 0; i < rest.diagonal.size(); ++i) rest.diagonal[i] = converted<T>(s.rest.diagonal[i]);
-    for (std::size_t k = 0; k < rest.lower.size(); ++k) rest.lower[k] = converted<T>(s.rest.lower[k]);
     for (int i = 0; i < s.mesh.vertexCount(); ++i) {
       inverse_mass_dt.push_back(static_cast<T>(1 / (s.mass[i] * s.h)));
       if (r.keep[i].isIdentity(0)) continue;
@@ -66,24 +52,17 @@ struct OwnSolver {
     scratch.resize(s.mesh.vertexCount());
   }
 
-  void setUp(sim::Preconditioner<T>& p) const {
-    p.setPositions(positions);
-    p.update(matrix, solver);
-    if (solver == sim::Solver::kWarped) p.updateRotations(positions);
-    p.setConstraints(record.constraints);
-  }
+  void setUp(Preconditioner<T>& p) const { p.update(matrix, positions, record.constraints); }
 
-  void setUpFromNothing(sim::Preconditioner<T>& p) const {
-    if (solver == sim::Solver::kWarped) p.setRestMatrix(rest, compact);
-    setUp(p);
-  }
-
-  void solve(sim::Preconditioner<T>& p, int iterations) {
+  void solve(Preconditioner<T>& p, int iterations) {
     sim::StopRule<T> stop;
     stop.relative = 0;
     stop.inverse_mass_dt = inverse_mass_dt;
     stop.max_iterations = iterations;
-    sim::solveModifiedPcg<sim::ColumnOperator<T>>({matrix, product}, rhs, filter, p, stop, scratch, x);
+    const auto a = [&](std::span<const sim::V3<T>> d, std::span<sim::V3<T>> q) {
+      sim::multiply<T>(matrix, product, d, q);
+    };
+    sim::solveModifiedPcg<T>(a, rhs, filter, p, stop, scratch, x);
   }
 
   std::vector<Vector3> solution() const {
@@ -98,12 +77,11 @@ struct OwnSolver {
 template <class T>
 SolverRun measured(OwnSolver<T> own) {
   SolverRun run;
-  std::optional<sim::Preconditioner<T>> fresh;
+  std::optional<Preconditioner<T>> fresh;
   run.first_microseconds = medianMicroseconds(
-      kSecondsPerRung, [&] { fresh.emplace(own.shared.mesh, own.shared.pattern); },
-      [&] { own.setUpFromNothing(*fresh); });
-  sim::Preconditioner<T>& preconditioner = *fresh;
-  for (int k = 0; k < kTurnsToSettle; ++k) preconditioner.updateRotations(own.positions);
+      kSecondsPerRung, [&] { fresh.emplace(own.shared.mesh, own.shared.pattern, own.kind); },
+      [&] { own.setUp(*fresh); });
+  Preconditioner<T>& preconditioner = *fresh;
   run.set_up_microseconds = medianMicroseconds(
       kSecondsPerRung, [] {}, [&] { own.setUp(preconditioner); });
   double best = 1;
@@ -126,15 +104,12 @@ SolverRun measured(OwnSolver<T> own) {
 
 }  // namespace
 
-SolverRun runOwnSolver(const RecordedMesh& shared, const LinearRecord& record, sim::Solver solver,
-                       sim::Precision precision) {
-  SolverRun run = precision == sim::Precision::kDouble
-                      ? measured(OwnSolver<double>(shared, record, solver, false))
-                      : measured(OwnSolver<float>(shared, record, solver, precision == sim::Precision::kMixed));
+SolverRun runOwnSolver(const RecordedMesh& shared, const LinearRecord& record, Kind kind, sim::Precision precision) {
+  SolverRun run = precision == sim::Precision::kDouble ? measured(OwnSolver<double>(shared, record, kind))
+                                                       : measured(OwnSolver<float>(shared, record, kind));
   sim::SimParams names;
-  names.solver = solver;
   names.precision = precision;
-  run.solver = paramText(*sim::findParam("solver"), names);
+  run.solver = nameOf(kind);
   run.precision = paramText(*sim::findParam("precision"), names);
   return run;
 }

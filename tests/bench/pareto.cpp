@@ -31,14 +31,11 @@ Chart chartOf(const Sweep& sweep) {
   };
   const auto grid = [](Integrator integrator) {
     return [integrator](const Point& p) {
-      return p.params.integrator == integrator && p.params.solver == Solver::kWarped && p.params.minimize_deformation;
+      return p.params.integrator == integrator && p.params.solver == Solver::kDefault && p.params.minimize_deformation;
     };
   };
   add("linearized Euler (the paper''s step)", "points pt 4 ps 0.9", grid(Integrator::kLinearizedEuler));
-  add("implicit Euler, Newton", "points pt 6 ps 0.9", grid(Integrator::kImplicitEuler));
   add("BDF2", "points pt 8 ps 0.9", grid(Integrator::kBdf2));
-  add("other solvers", "points pt 2 ps 0.9",
-      [](const Point& p) { return p.params.solver != Solver::kWarped && p.params.solver != Solver::kPaper; });
   add("the paper''s setting", "points pt 5 ps 1.2", [](const Point& p) { return p.params.solver == Solver::kPaper; });
   add("no minimization", "points pt 1 ps 0.9", [](const Point& p) { return !p.params.minimize_deformation; });
   add("front", "steps lw 2 lc rgb 'black'", [](const Point& p) { return p.on_front && p.ranked; });

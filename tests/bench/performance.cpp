@@ -38,9 +38,9 @@ struct Contender {
   Resolution finest;  // it is run on: the plain implementation takes seconds a frame on finer ones
 };
 constexpr Contender kContenders[] = {
-    {"default", sim::Solver::kWarped, Method::kSimulator, Resolution::kUltra},
+    {"default", sim::Solver::kDefault, Method::kSimulator, Resolution::kUltra},
     {"--solver paper", sim::Solver::kPaper, Method::kSimulator, Resolution::kUltra},
-    {"plain implementation", sim::Solver::kDiagonal, Method::kPlain, Resolution::kHigh},
+    {"plain implementation", sim::Solver::kDefault, Method::kPlain, Resolution::kHigh},
 };
 
 struct Motion {

@@ -8,7 +8,6 @@
 #include <span>
 
 #include "app/files/errors.h"
-#include "sim/linear/preconditioner_choice.h"
 #include "tests/bench/gnuplot.h"
 #include "tests/bench/own_solvers.h"
 
@@ -33,7 +32,7 @@ struct MeanRun {
   std::string solver, precision;
   double first = 0, set_up = 0;  // microseconds
   std::vector<MeanRung> rungs;
-  std::string title() const { return solver + ", " + (precision == "mixed" ? "16-bit factor" : precision); }
+  std::string title() const { return solver + ", " + precision; }
 };
 
 MeanRun meanOf(const RecordedMesh& shared, const std::vector<LinearRecord>& records,
@@ -110,26 +109,22 @@ nlohmann::json toJson(const std::string& scene, const RecordedSystems& systems, 
           {"rungs", rungs}};
 }
 
-// The curves of a chart: every solver in the precision that the program uses it in, the two factors in double as well,
-// and the libraries'.
+// The curves of a chart: every preconditioner in single precision, the direct factor in double as well, and the
+// libraries'.
 bool isDrawn(const MeanRun& run) {
-  if (run.solver == "warped") return run.precision != "float";
-  if (run.solver == "direct") return run.precision != "mixed";
   const bool of_library = run.solver.find(' ') != std::string::npos;
-  return of_library || run.precision == "float";
+  return of_library || run.precision == "float" || run.solver == "direct";
 }
 
-// The default is drawn bold: the two levels above the size that has a whole factor.
-Chart chartOf(const std::string& scene, int vertices, const std::vector<MeanRun>& runs) {
-  const bool large = vertices > sim::kMaxFactored;
+// The default is drawn bold.
+Chart chartOf(const std::string& scene, const std::vector<MeanRun>& runs) {
   Chart chart{scene + ": one linear system, set-up included",
               "microseconds of one thread",
               "residual / warm start''s residual",
               {}};
   for (const MeanRun& run : runs) {
     if (!isDrawn(run)) continue;
-    const bool default_solver = large ? run.solver == "two-level" && run.precision == "float"
-                                      : run.solver == "warped" && run.precision == "mixed";
+    const bool default_solver = run.solver == nameOf(Kind::kTwoLevel) && run.precision == "float";
     const bool direct = run.rungs.size() < 3;
     Series series{run.title(), default_solver ? "linespoints lw 3 lc rgb 'black'" : "linespoints", {}};
     if (direct) series.style = "points pt 3 ps 1.6 lw 2";
@@ -173,17 +168,11 @@ std::vector<MeanRun> runAll(const RecordedSystems& systems) {
     means.push_back(meanOf(shared, systems.records, runs));
     printRun(means.back());
   };
-  for (int solver = 0; solver < static_cast<int>(sim::Solver::kCount); ++solver) {
-    if (static_cast<sim::Solver>(solver) == sim::Solver::kPaper) continue;  // block-jacobi under another name
-    for (int precision = 0; precision < static_cast<int>(sim::Precision::kCount); ++precision) {
-      // Only the warped factor is kept in 16 bits; mixed is single precision for the others.
-      const bool warped = static_cast<sim::Solver>(solver) == sim::Solver::kWarped;
-      if (!warped && static_cast<sim::Precision>(precision) == sim::Precision::kMixed) continue;
+  for (int kind = 0; kind < static_cast<int>(Kind::kCount); ++kind) {
+    for (const sim::Precision precision : {sim::Precision::kFloat, sim::Precision::kDouble}) {
       std::vector<SolverRun> runs;
-      for (const LinearRecord& record : systems.records) {
-        runs.push_back(
-            runOwnSolver(shared, record, static_cast<sim::Solver>(solver), static_cast<sim::Precision>(precision)));
-      }
+      for (const LinearRecord& record : systems.records)
+        runs.push_back(runOwnSolver(shared, record, static_cast<Kind>(kind), precision));
       keep(runs);
     }
   }
@@ -209,8 +198,7 @@ void runSolverChart(const SolverChartOptions& options) {
                 systems.shared->mesh.vertexCount());
     const std::vector<MeanRun> runs = runAll(systems);
     for (const MeanRun& run : runs) rows.push_back(toJson(scene.scene, systems, run));
-    drawChart(options.folder, std::string("solvers_") + scene.scene,
-              chartOf(scene.scene, systems.shared->mesh.vertexCount(), runs));
+    drawChart(options.folder, std::string("solvers_") + scene.scene, chartOf(scene.scene, runs));
   }
   writeCsv(options.folder + "/solvers.csv", rows);
   std::ofstream(options.folder + "/solvers.json") << rows.dump(1) << "\n";

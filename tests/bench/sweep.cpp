@@ -56,36 +56,11 @@ void addIntegrators(SweepSize size, ConfigurationList& list) {
   std::vector<double> tolerances{1e-1, 1e-2, 1e-3};
   if (size == SweepSize::kFull) tolerances.insert(tolerances.end(), {1e-4, 1e-5, 1e-6, 1e-7, 1e-8});
   for (int integrator = 0; integrator < static_cast<int>(Integrator::kCount); ++integrator) {
-    // Full Newton steps have never come near the default's place.
-    if (size == SweepSize::kShort && static_cast<Integrator>(integrator) == Integrator::kImplicitEuler) continue;
     for (const double rate : rates) {
       for (const double tolerance : tolerances) {
         SimParams configuration;
         configuration.integrator = static_cast<Integrator>(integrator);
         configuration.time_step = 1 / rate;
-        setTolerance(tolerance, configuration);
-        list.add(configuration);
-      }
-    }
-  }
-}
-
-void addSolvers(SweepSize size, ConfigurationList& list) {
-  const bool full = size == SweepSize::kFull;
-  std::vector<double> rates{60}, tolerances{1e-1, 1e-2, 1e-3};
-  if (full) rates = {30, 60, 240}, tolerances.push_back(1e-4);
-  for (int k = 0; k < static_cast<int>(Solver::kCount); ++k) {
-    const auto solver = static_cast<Solver>(k);
-    const bool came_near = solver == Solver::kBlockJacobi || solver == Solver::kTwoLevel;
-    // `paper` is no solver alone, see addPaper; `warped` has been in every place already.
-    if (solver == Solver::kPaper || solver == Solver::kWarped || (size == SweepSize::kShort && !came_near)) continue;
-    for (const double rate : rates) {
-      for (const double tolerance : tolerances) {
-        if (solver == Solver::kDirect && tolerance != 1e-2) continue;  // a direct solve meets every tolerance
-        SimParams configuration;
-        configuration.solver = solver;
-        configuration.time_step = 1 / rate;
-        configuration.max_iterations = 2000;
         setTolerance(tolerance, configuration);
         list.add(configuration);
       }
@@ -146,7 +121,6 @@ Lag fastestOf(const Sweep& sweep, const auto& allowed) {
 std::vector<SimParams> configurationsToRun(SweepSize size, bool contacts) {
   ConfigurationList list{{SimParams{}}};
   addIntegrators(size, list);
-  addSolvers(size, list);
   addPaper(size, list);
   addPrecisions(size, list);
   const std::vector<double> rates =

@@ -31,7 +31,6 @@ std::vector<Vec3> steps(Solver solver, Precision precision, Integrator integrato
   const bool single = precision != Precision::kDouble;
   params.tolerance = single ? 1e-6 : 1e-12;
   params.acceleration_tolerance = params.displacement_tolerance = 0;
-  params.newton_iterations = 10, params.newton_tolerance = single ? 1e-5 : 1e-11;
   Hair hair(test::combedShape(test::mixedPatch(9, 0.2)), params);
   sim::Ellipsoid body;
   body.center = Vec3(0.04, -0.1, -0.06), body.radii = Vec3(0.06, 0.05, 0.03);

@@ -15,9 +15,9 @@ using sim::Vec3;
 using test::Hair;
 using Complex = std::complex<double>;
 
-constexpr Integrator kIntegrators[] = {Integrator::kLinearizedEuler, Integrator::kImplicitEuler, Integrator::kBdf2};
+constexpr Integrator kIntegrators[] = {Integrator::kLinearizedEuler, Integrator::kBdf2};
 const char* nameOf(Integrator integrator) {
-  constexpr const char* kNames[] = {"linearized Euler", "implicit Euler", "BDF2"};
+  constexpr const char* kNames[] = {"linearized Euler", "BDF2"};
   return kNames[static_cast<int>(integrator)];
 }
 
@@ -25,9 +25,8 @@ sim::SimParams bareMaterial(Integrator integrator) {
   sim::SimParams p = test::looseParticles();
   p.collide = false;
   p.integrator = integrator;
-  p.solver = sim::Solver::kDirect;
-  p.tolerance = 1e-13, p.acceleration_tolerance = 1e-16, p.displacement_tolerance = 0, p.max_iterations = 5;
-  p.newton_iterations = 50, p.newton_tolerance = 1e-15;
+  p.solver = sim::Solver::kDefault;
+  p.tolerance = 1e-13, p.acceleration_tolerance = 1e-16, p.displacement_tolerance = 0, p.max_iterations = 2000;
   return p;
 }
 
@@ -183,9 +182,9 @@ TEST(ShearElement, SwingsAtItsFrequency) {
 
 // Stiffness-proportional damping and air drag in one mode: a step of the scheme is a 2 x 2 matrix on (x, v).
 TEST(StretchingColumn, IsDampedByItsRelaxationTimeAndTheAir) {
-  for (const Integrator integrator : {Integrator::kLinearizedEuler, Integrator::kImplicitEuler}) {
+  {
     for (const double tau : {0.0, 0.001, 0.02}) {
-      sim::SimParams params = bareMaterial(integrator);
+      sim::SimParams params = bareMaterial(Integrator::kLinearizedEuler);
       params.gravity = 0;
       params.stretch_along = 500;
       params.damping = tau, params.air_drag = 3;
@@ -209,7 +208,7 @@ TEST(StretchingColumn, IsDampedByItsRelaxationTimeAndTheAir) {
           hair.step(dt);
           mode = step * mode;
           ASSERT_NEAR(hair.state.positions[tip].y() - rest, mode[0], 1e-9 * amplitude)
-              << nameOf(integrator) << ", damping " << tau << ", step " << dt;
+              << nameOf(Integrator::kLinearizedEuler) << ", damping " << tau << ", step " << dt;
           ASSERT_NEAR(hair.state.velocities[tip].y(), mode[1], 1e-9 * amplitude * std::sqrt(w2));
         }
       }

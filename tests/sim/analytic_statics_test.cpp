@@ -17,8 +17,8 @@ sim::SimParams bareMaterial() {
   sim::SimParams p = test::looseParticles();
   p.damping = 0.02;
   p.collide = false;
-  p.solver = sim::Solver::kDirect;
-  p.tolerance = 1e-13, p.acceleration_tolerance = 1e-16, p.displacement_tolerance = 0, p.max_iterations = 5;
+  p.solver = sim::Solver::kDefault;
+  p.tolerance = 1e-13, p.acceleration_tolerance = 1e-16, p.displacement_tolerance = 0, p.max_iterations = 2000;
   return p;
 }
 

@@ -22,7 +22,7 @@ TipPaths shakenTips(int f, double rate, std::span<const Vec3> points) {
   sim::SimParams params = test::tautHair();
   params.bend = 0.05, params.shear = 500;  // soft enough to swing
   params.collide = false;
-  params.solver = sim::Solver::kDirect;
+  params.solver = sim::Solver::kDefault;
   test::Hair hair(test::patchShape(o), params);
   const std::vector<Vec3> rest_roots = hair.roots;
   std::vector<bench::MaterialPoint> followed;

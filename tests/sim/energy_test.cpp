@@ -44,7 +44,6 @@ sim::SimParams solvedTightly(Integrator integrator) {
   params.integrator = integrator;
   params.precision = sim::Precision::kDouble;
   params.tolerance = 1e-8, params.acceleration_tolerance = 0, params.displacement_tolerance = 0;
-  params.newton_iterations = 30, params.newton_tolerance = 1e-9;
   return params;
 }
 
@@ -73,8 +72,8 @@ TEST(Energy, NeverGrowsWithoutInput) {
   usual.collide = false;
   for (const Disturbance& disturbance : kDisturbances) {
     for (const double dt : {1.0 / 240, 1.0 / 60, 1.0 / 30}) {
-      for (const Integrator integrator : {Integrator::kLinearizedEuler, Integrator::kImplicitEuler})
-        EXPECT_LT(largestRise(solvedTightly(integrator), disturbance, dt), 1e-12) << disturbance.name << ", " << dt;
+      EXPECT_LT(largestRise(solvedTightly(Integrator::kLinearizedEuler), disturbance, dt), 1e-12)
+          << disturbance.name << ", " << dt;
       EXPECT_LT(largestRise(usual, disturbance, dt), 1e-6) << disturbance.name << ", " << dt << ": as the demo steps";
     }
   }

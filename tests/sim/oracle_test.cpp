@@ -72,7 +72,7 @@ TEST(Oracle, HeadShakeIsThatOfThePlainImplementation) {
   app::AssetCache asset_cache;
   app::Actor actor = actorOf("head_shake.bvh", 1, asset_cache);
   const sim::HairMesh& mesh = actor.haircut->mesh;
-  const Solver solvers[] = {Solver::kWarped, Solver::kTwoLevel, Solver::kPaper, Solver::kDirect};
+  const Solver solvers[] = {Solver::kDefault, Solver::kPaper};
   std::vector<sim::StepContext> contexts;
   for (std::size_t k = 0; k < std::size(solvers); ++k) contexts.emplace_back(mesh);
   std::vector<sim::HairState> states(std::size(solvers), actor.hair);

@@ -130,7 +130,7 @@ TEST(Presets, WritingAndReadingKeepsEveryRow) {
   app::SceneLook scene, scene_read;
   CharacterLook look, look_read;
   params.friction = 0.123456789012345678;
-  params.solver = sim::Solver::kWarped;
+  params.solver = sim::Solver::kPaper;
   look.hair.color = {0.1f, 0.7f, 0.3f};
   scene.light.shadows = false;
   scene.view.exposure = 1.7f;

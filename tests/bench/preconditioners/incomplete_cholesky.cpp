@@ -1,8 +1,8 @@
-#include "sim/linear/incomplete_cholesky.h"
+#include "tests/bench/preconditioners/incomplete_cholesky.h"
 
 #include <cmath>
 
-namespace sim {
+namespace bench {
 namespace {
 
 constexpr double kFirstShift = 1e-3;  // of the diagonal
@@ -111,4 +111,4 @@ void IncompleteCholesky<T>::solve(std::span<const V3<T>> r, std::span<V3<T>> z) 
 template class IncompleteCholesky<float>;
 template class IncompleteCholesky<double>;
 
-}  // namespace sim
+}  // namespace bench

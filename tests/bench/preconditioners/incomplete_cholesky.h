@@ -6,7 +6,12 @@
 
 #include "sim/linear/block_matrix.h"
 
-namespace sim {
+namespace bench {
+
+using sim::BlockMatrix;
+using sim::BlockPattern;
+using sim::M3;
+using sim::V3;
 
 // L L^T = A on the pattern of A, rows in their own order (column by column of the hair mesh, so that each column's own
 // blocks are eliminated exactly). A stiff matrix need not have such a factor: where a pivot fails, the diagonal is
@@ -31,4 +36,4 @@ class IncompleteCholesky {
   bool factorShifted(const BlockMatrix<T>& a, T shift);
 };
 
-}  // namespace sim
+}  // namespace bench

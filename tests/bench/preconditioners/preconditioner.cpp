@@ -1,42 +1,59 @@
-#include "sim/linear/preconditioner.h"
+#include "tests/bench/preconditioners/preconditioner.h"
 
 #include <algorithm>
 
+#include "sim/linear/block_jacobi.h"
 #include "sim/linear/elimination_order.h"
 
-namespace sim {
+namespace bench {
+
+using sim::BlockMatrix;
+using sim::M3;
+using sim::V3;
+
+namespace {
 
 template <class T>
-M3<T> inverse(const M3<T>& a) {
-  const T* m = a.m;
-  const T c0 = m[4] * m[8] - m[5] * m[7], c1 = m[5] * m[6] - m[3] * m[8], c2 = m[3] * m[7] - m[4] * m[6];
-  const T det = m[0] * c0 + m[1] * c1 + m[2] * c2;
-  const T scale = m[0] + m[4] + m[8];
-  if (!(det > T(1e-9) * scale * scale * scale)) {
-    return {T(1) / m[0], 0, 0, 0, T(1) / m[4], 0, 0, 0, T(1) / m[8]};
-  }
-  const T s = T(1) / det;
-  return {s * c0, s * (m[2] * m[7] - m[1] * m[8]), s * (m[1] * m[5] - m[2] * m[4]),
-          s * c1, s * (m[0] * m[8] - m[2] * m[6]), s * (m[2] * m[3] - m[0] * m[5]),
-          s * c2, s * (m[1] * m[6] - m[0] * m[7]), s * (m[0] * m[4] - m[1] * m[3])};
+M3<T> times(const M3<T>& a, const M3<T>& b) {
+  M3<T> c{};
+  for (int k = 0; k < 27; ++k) c.m[k / 9 * 3 + k % 3] += a.m[k / 9 * 3 + k / 3 % 3] * b.m[k / 3 % 3 * 3 + k % 3];
+  return c;
 }
 
 template <class T>
-Preconditioner<T>::Preconditioner(const HairMesh& mesh, const BlockPattern& pattern)
-    : mesh_(&mesh), pattern_(&pattern), rotations_(mesh) {
-  free_.resize(mesh.vertexCount());
-  for (int i = 0; i < mesh.vertexCount(); ++i) free_[i] = !mesh.isRoot(i);
-  inverse_diagonal_.resize(mesh.vertexCount());
-  turned_.resize(mesh.vertexCount());
-  for (const Vec3& at : mesh.shape.positions) {
-    const Vec3 p = at - mesh.shape.positions[0];
-    positions_.push_back({static_cast<T>(p.x()), static_cast<T>(p.y()), static_cast<T>(p.z())});
+void convert(const BlockMatrix<T>& a, sim::ColumnMatrix<T>& to) {
+  to.setZero();
+  for (int i = 0; i < a.pattern->size; ++i) {
+    to.addBlock(i, i, a.diagonal[i]);
+    for (int k = a.pattern->row_first[i]; k < a.pattern->row_first[i + 1]; ++k)
+      to.addBlock(i, a.pattern->columns[k], a.lower[k]);
   }
+}
+
+}  // namespace
+
+const char* nameOf(Kind kind) {
+  constexpr const char* kNames[] = {"diagonal", "block-jacobi", "column", "incomplete", "two-level", "direct"};
+  static_assert(std::size(kNames) == static_cast<int>(Kind::kCount));
+  return kNames[static_cast<int>(kind)];
+}
+
+template <class T>
+Preconditioner<T>::Preconditioner(const sim::HairMesh& mesh, const sim::BlockPattern& pattern, Kind kind)
+    : mesh_(&mesh),
+      pattern_(&pattern),
+      asked_(kind),
+      kind_(kind),
+      layout_(mesh),
+      columns_(mesh, layout_),
+      inverse_diagonal_(mesh.vertexCount()),
+      free_(mesh.vertexCount()) {
+  for (int i = 0; i < mesh.vertexCount(); ++i) free_[i] = !mesh.isRoot(i);
 }
 
 template <class T>
 bool Preconditioner<T>::factorColumns(const BlockMatrix<T>& a) {
-  if (!column_factor_) {
+  if (!used_) {
     std::vector<std::pair<int, int>> pairs;
     for (int c = 0; c < mesh_->columnCount(); ++c) {
       const int first = mesh_->shape.column_first[c], length = mesh_->shape.columnLength(c);
@@ -44,163 +61,97 @@ bool Preconditioner<T>::factorColumns(const BlockMatrix<T>& a) {
         for (int step = 1; step <= 2 && l + step < length; ++step) pairs.emplace_back(first + l, first + l + step);
       }
     }
-    column_pattern_ = makePattern(pattern_->size, std::move(pairs));
-    column_matrix_.emplace(&*column_pattern_);
-    for (int i = 0; i < pattern_->size; ++i) {
-      for (int k = column_pattern_->row_first[i]; k < column_pattern_->row_first[i + 1]; ++k) {
-        column_block_.push_back(pattern_->find(i, column_pattern_->columns[k]));
-      }
+    factor_pattern_ = sim::makePattern(pattern_->size, std::move(pairs));
+    used_.emplace(&factor_pattern_);
+    factor_.analyze(factor_pattern_, sim::minimumDegreeOrder(factor_pattern_, free_));
+  }
+  used_->diagonal = a.diagonal;
+  for (int i = 0; i < factor_pattern_.size; ++i) {
+    for (int k = factor_pattern_.row_first[i]; k < factor_pattern_.row_first[i + 1]; ++k) {
+      const int block = pattern_->find(i, factor_pattern_.columns[k]);
+      used_->lower[k] = block < 0 ? M3<T>{} : a.lower[block];
     }
-    column_factor_.emplace();
-    column_factor_->analyze(*column_pattern_, minimumDegreeOrder(*column_pattern_, free_));
   }
-  column_matrix_->diagonal = a.diagonal;
-  for (std::size_t k = 0; k < column_block_.size(); ++k) {
-    column_matrix_->lower[k] = column_block_[k] < 0 ? M3<T>{} : a.lower[column_block_[k]];
+  return factor_.factor(*used_);
+}
+
+// S A S + (I - S) trace A_ii: the removed directions stand alone and keep their size.
+template <class T>
+bool Preconditioner<T>::factorWhole(const BlockMatrix<T>& a, std::span<const sim::VertexConstraint> constraints) {
+  if (!used_) {
+    used_.emplace(pattern_);
+    factor_.analyze(*mesh_, *pattern_, free_);
   }
-  return column_factor_->factor(*column_matrix_);
+  *used_ = a;
+  std::vector<M3<T>> keep(pattern_->size, M3<T>{1, 0, 0, 0, 1, 0, 0, 0, 1});
+  for (const sim::VertexConstraint& constraint : constraints) {
+    for (int k = 0; k < 9; ++k) keep[constraint.vertex].m[k] = static_cast<T>(constraint.keep(k / 3, k % 3));
+  }
+  for (int i = 0; i < pattern_->size; ++i) {
+    M3<T>& d = used_->diagonal[i];
+    const T trace = d.m[0] + d.m[4] + d.m[8];
+    d = times(times(keep[i], d), keep[i]);
+    for (int k = 0; k < 9; ++k) d.m[k] += trace * (T(k % 4 == 0) - keep[i].m[k]);
+    for (int k = pattern_->row_first[i]; k < pattern_->row_first[i + 1]; ++k)
+      used_->lower[k] = times(times(keep[i], used_->lower[k]), keep[pattern_->columns[k]]);
+  }
+  return factor_.factor(*used_);
 }
 
 template <class T>
-TwoLevel<T>& Preconditioner<T>::twoLevel() {
+bool Preconditioner<T>::update(const BlockMatrix<T>& a, std::span<const V3<T>> x,
+                               std::span<const sim::VertexConstraint> constraints) {
+  kind_ = asked_;
+  if (kind_ == Kind::kTwoLevel) {
+    sim::ColumnMatrix<T> packed(layout_, columns_);
+    convert(a, packed);
+    return update(packed, x, constraints);
+  }
+  if (kind_ == Kind::kIncomplete && !incomplete_) incomplete_.emplace(*pattern_, free_);
+  const bool done = kind_ == Kind::kDirect       ? factorWhole(a, constraints)
+                    : kind_ == Kind::kColumn     ? factorColumns(a)
+                    : kind_ == Kind::kIncomplete ? incomplete_->factor(a)
+                                                 : true;
+  if (!done) kind_ = Kind::kBlockJacobi;
+  for (std::size_t i = 0; i < a.diagonal.size(); ++i) {
+    const M3<T>& d = a.diagonal[i];
+    inverse_diagonal_[i] = kind_ == Kind::kDiagonal
+                               ? M3<T>{T(1) / d.m[0], 0, 0, 0, T(1) / d.m[4], 0, 0, 0, T(1) / d.m[8]}
+                               : sim::inverse(d);
+  }
+  return done;
+}
+
+template <class T>
+bool Preconditioner<T>::update(const sim::ColumnMatrix<T>& a, std::span<const V3<T>> x,
+                               std::span<const sim::VertexConstraint> constraints) {
+  if (asked_ != Kind::kTwoLevel) {
+    BlockMatrix<T> blocks(pattern_);
+    a.toBlocks(*mesh_, blocks);
+    return update(blocks, x, constraints);
+  }
   if (!two_level_) two_level_.emplace(*mesh_);
-  return *two_level_;
-}
-
-template <class T>
-bool Preconditioner<T>::setRestMatrix(const BlockMatrix<T>& rest, bool compact) {
-  twoLevel();  // may stand in later, in a step that is to take no memory
-  if (rest_.factor.order.empty()) rest_.factor.analyze(*mesh_, *pattern_, free_);
-  making_.stage = RestFactorInMaking<T>::Stage::kIdle;
-  rest_.make(rest, compact);
-  return rest_.fine;
-}
-
-template <class T>
-void Preconditioner<T>::beginRestMatrix(const ColumnMatrix<T>& rest) {
-  if (!making_.matrix.pattern) making_.matrix = BlockMatrix<T>(pattern_);
-  rest.toBlocks(*mesh_, making_.matrix);
-  making_.begin(rest_);
-}
-
-template <class T>
-bool Preconditioner<T>::continueRestMatrix(int slices, std::span<const VertexConstraint> lasting) {
-  return making_.work(rest_.factor.factorOperations() / slices, lasting, rotations_.matrices, rest_);
-}
-
-template <class T>
-void Preconditioner<T>::updateRotations(std::span<const V3<T>> x) {
-  rotations_.update(x);
-}
-
-template <class T>
-void Preconditioner<T>::update(const BlockMatrix<T>& a, Solver solver, std::span<const VertexConstraint> constraints) {
-  kind_ = solver;
-  rest_.responses.clear();
-  if (solver == Solver::kWarped) return;
-  if (solver == Solver::kDirect) {
-    if (!direct_factor_) {
-      direct_factor_.emplace();
-      direct_factor_->analyze(*mesh_, *pattern_, free_);
-    }
-    if (direct_factor_->factor(a)) {
-      direct_responses_.reset(mesh_->vertexCount());
-      return;
-    }
-    kind_ = Solver::kBlockJacobi;
-  }
-  if (solver == Solver::kColumn) {
-    if (factorColumns(a)) return;
-    kind_ = Solver::kBlockJacobi;
-  }
-  if (solver == Solver::kIncomplete) {
-    if (!incomplete_factor_) incomplete_factor_.emplace(*pattern_, free_);
-    if (incomplete_factor_->factor(a)) return;
-    kind_ = Solver::kBlockJacobi;
-  }
-  if (solver == Solver::kTwoLevel) return twoLevel().update(a, positions_, {}, constraints);
-  for (std::size_t i = 0; i < a.diagonal.size(); ++i) setDiagonal(static_cast<int>(i), a.diagonal[i]);
-}
-
-template <class T>
-void Preconditioner<T>::setDiagonal(int i, const M3<T>& d) {
-  inverse_diagonal_[i] =
-      kind_ == Solver::kDiagonal ? M3<T>{T(1) / d.m[0], 0, 0, 0, T(1) / d.m[4], 0, 0, 0, T(1) / d.m[8]} : inverse(d);
-}
-
-template <class T>
-const BlockMatrix<T>& Preconditioner<T>::toBlocks(const ColumnMatrix<T>& a) {
-  if (!blocks_) blocks_.emplace(pattern_);
-  a.toBlocks(*mesh_, *blocks_);
-  return *blocks_;
-}
-
-template <class T>
-bool Preconditioner<T>::setRestMatrix(const ColumnMatrix<T>& rest, bool compact) {
-  return setRestMatrix(toBlocks(rest), compact);
-}
-
-template <class T>
-void Preconditioner<T>::update(const ColumnMatrix<T>& a, Solver solver, Keep keep,
-                               std::span<const VertexConstraint> constraints) {
-  if (solver == Solver::kWarped && !rest_.fine) solver = Solver::kTwoLevel;
-  kind_ = solver;
-  rest_.responses.clear();
-  if (solver == Solver::kWarped) return;
-  if (solver == Solver::kTwoLevel) return twoLevel().update(a, positions_, keep, constraints);
-  if (solver == Solver::kDirect || solver == Solver::kColumn || solver == Solver::kIncomplete) {
-    return update(toBlocks(a), solver);
-  }
-  for (int i = 0; i < mesh_->vertexCount(); ++i) setDiagonal(i, a.diagonalBlock(i));
-}
-
-template <class T>
-bool Preconditioner<T>::setConstraints(std::span<const VertexConstraint> constraints, int batches) {
-  if (kind_ == Solver::kWarped) {
-    return rest_.responses.setConstraints(rest_.factor, rotations_.matrices, constraints, batches);
-  }
-  if (kind_ == Solver::kDirect) return direct_responses_.setConstraints(*direct_factor_, {}, constraints, batches);
+  two_level_->forget();
+  two_level_->update(a, x, constraints);
   return true;
-}
-
-template <class T>
-double Preconditioner<T>::restFactorRatio() const {
-  constexpr double kBlockBytes = 9 * sizeof(std::int16_t);
-  const double matrix = pattern_->size + pattern_->blockCount();
-  const double factor = rest_.compact ? static_cast<double>(rest_.compact->bytes()) / kBlockBytes
-                                      : 2.0 * static_cast<double>(rest_.factor.factorBlocks());
-  return factor / matrix;
 }
 
 template <class T>
 void Preconditioner<T>::apply(std::span<const V3<T>> r, std::span<V3<T>> z) {
   switch (kind_) {
-    case Solver::kWarped:
-      for (std::size_t i = 0; i < turned_.size(); ++i) turned_[i] = transposeTimes(rotations_.matrices[i], r[i]);
-      rest_.solve(turned_, z);
-      for (std::size_t i = 0; i < turned_.size(); ++i) z[i] = rotations_.matrices[i] * z[i];
-      return;
-    case Solver::kTwoLevel:
-      two_level_->apply(r, z);
-      return;
-    case Solver::kDirect:
-      direct_factor_->solve(r, z);
-      direct_responses_.correct(z);
-      return;
-    case Solver::kColumn:
-      column_factor_->solve(r, z);
-      return;
-    case Solver::kIncomplete:
-      incomplete_factor_->solve(r, z);
-      return;
+    case Kind::kTwoLevel:
+      return two_level_->apply(r, z);
+    case Kind::kDirect:
+    case Kind::kColumn:
+      return factor_.solve(r, z);
+    case Kind::kIncomplete:
+      return incomplete_->solve(r, z);
     default:
       for (std::size_t i = 0; i < inverse_diagonal_.size(); ++i) z[i] = inverse_diagonal_[i] * r[i];
   }
 }
 
-template M3<float> inverse(const M3<float>&);
-template M3<double> inverse(const M3<double>&);
-template struct Preconditioner<float>;
-template struct Preconditioner<double>;
+template class Preconditioner<float>;
+template class Preconditioner<double>;
 
-}  // namespace sim
+}  // namespace bench

@@ -278,13 +278,13 @@ TEST(SelfContact, NothingNearNothingPaidAndTheAnswerKnowsNothingOfTheList) {
   }
   EXPECT_EQ(self.rebuilds, 1);
 
-  // A context of its own for every step against one for all; contexts also remember where solves began, but for the
-  // direct one.
+  // A context of its own for every step against one for all; contexts also remember where solves began, but not
+  // the paper's.
   sim::HairState ends[2];
   for (const bool fresh : {false, true}) {
-    sim::SimParams direct = params;
-    direct.solver = sim::Solver::kDirect;
-    Hair hair(twoCurtains(0.06), direct);
+    sim::SimParams published = params;
+    published.solver = sim::Solver::kPaper;
+    Hair hair(twoCurtains(0.06), published);
     throwTogether(hair, 1.5);
     for (int n = 0; n < 25; ++n) {
       if (fresh) hair.context = sim::StepContext(hair.mesh);

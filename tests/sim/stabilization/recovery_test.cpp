@@ -14,7 +14,6 @@ constexpr double kFrame = 1.0 / 60;
 sim::SimParams runningHair() {
   sim::SimParams params = test::tautHair();
   params.tolerance = 1e-3, params.acceleration_tolerance = 0.01, params.max_iterations = 400;
-  params.newton_iterations = 4, params.newton_tolerance = 1e-4;
   return params;
 }
 
@@ -138,10 +137,8 @@ TEST(Recovery, OfSoftHairThatHardlyHoldsItsBend) {
 }
 
 TEST(Recovery, WorksWithEverySolverAndIntegrator) {
-  for (const sim::Solver solver : {sim::Solver::kPaper, sim::Solver::kColumn, sim::Solver::kTwoLevel,
-                                   sim::Solver::kWarped, sim::Solver::kDirect}) {
-    for (const auto integrator :
-         {sim::Integrator::kLinearizedEuler, sim::Integrator::kImplicitEuler, sim::Integrator::kBdf2}) {
+  for (const sim::Solver solver : {sim::Solver::kPaper, sim::Solver::kDefault}) {
+    for (const auto integrator : {sim::Integrator::kLinearizedEuler, sim::Integrator::kBdf2}) {
       for (const auto precision : {sim::Precision::kFloat, sim::Precision::kDouble}) {
         sim::SimParams params = runningHair();
         params.solver = solver, params.integrator = integrator, params.precision = precision;
