@@ -185,7 +185,7 @@ void addStep(const sim::StepReport& report, double step_seconds, FrameStats& sta
     stats.always[id].skipped += left_out.skipped;
     stats.always[id].of += left_out.of;
   };
-  add(kNoNewFactor, report.refreshes);
+  add(kNoNewBalance, report.refreshes);
   add(kNoStiffness, report.force_kinds);
   add(kOutOfReach, report.collider_tests);
 }

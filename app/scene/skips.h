@@ -55,7 +55,7 @@ const Skip* findSkip(std::string_view name);
 enum BuiltInId {
   kNoContact,
   kSolvedAtStart,
-  kNoNewFactor,
+  kNoNewBalance,
   kNoStiffness,
   kOutOfReach,
   kPausedFrame,
