@@ -9,6 +9,7 @@
 // one step to the next.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <utility>
 #include <vector>
@@ -21,21 +22,22 @@
 
 namespace sim {
 
-// How long a part made for one matrix serves the matrices after it.
+// How long a part made for one matrix serves the matrices after it: until the iterations that its age has cost add up
+// to what making it anew costs, or a number of solves.
 struct PartAge {
-  static constexpr double kRise = 1.2;  // of the iterations since it was fresh, with which it still serves
+  double cost;        // of making it, in iterations
+  int oldest;         // solves that it serves at most
+  int age = oldest;   // solves since it was made
+  int fresh = 0;      // iterations of its first solve
+  double lost = 0;    // iterations beyond those of the first, since then
+  bool kept = false;  // in the present solve
 
-  int oldest;               // solves that it serves at most
-  int age = oldest;         // solves since it was made
-  int fresh = 0, last = 0;  // iterations of its first solve and of the last one
-  bool kept = false;        // in the present solve
-
-  bool serves() const { return age < oldest && last <= kRise * fresh + 1; }
+  bool serves() const { return age < oldest && lost < cost; }
   void forget() { age = oldest; }
   void count(int iterations) {
-    age = kept ? age + 1 : 1;
-    if (!kept) fresh = iterations;
-    last = iterations;
+    if (!kept) age = 0, lost = 0, fresh = iterations;
+    ++age;
+    lost += std::max(0, iterations - fresh);
   }
 };
 
@@ -52,9 +54,10 @@ struct TwoLevel {
   // The matrices to come have little to do with those before: other stiffness, mass or time step.
   void forget();
 
-  // With factors of two solves ago a walk takes no more iterations and a head shake 2 % more; of four, 0 and 35 %. With
-  // a coarse space of four to six solves ago a walk takes 5 % more.
-  static constexpr int kFactorsServe = 2, kCoarseServes = 6;
+  // Iterations that making a part costs, and solves that it serves at most. On four walks (short low to long medium)
+  // solves take within a tenth as long with twice of each.
+  static constexpr double kFactorsCost = 1, kCoarseCost = 3;
+  static constexpr int kFactorsServe = 4, kCoarseServes = 8;
   // s. Iterations with 0.3, 0.5 and 0.75 differ by one in twenty.
   static constexpr T kColumnWeight = T(0.5);
   static constexpr int kMaxUnknown = 2;  // with thirty a solve's iterations tripled
@@ -69,7 +72,7 @@ struct TwoLevel {
   ColumnFactor<T> columns_;
   CoarseSpace<T> coarse_;
   bool has_coarse_ = false;  // else a pivot was not positive: P goes without
-  PartAge factors_age_{kFactorsServe}, coarse_age_{kCoarseServes};
+  PartAge factors_age_{kFactorsCost, kFactorsServe}, coarse_age_{kCoarseCost, kCoarseServes};
   std::vector<std::pair<int, int>> held_;  // vertices that the factors know constrained, and in how many directions
   ColumnField<T> field_;                   // r, then z
   bool noteHeld(std::span<const VertexConstraint> constraints);
