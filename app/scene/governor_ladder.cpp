@@ -29,14 +29,12 @@ constexpr Rung kLadder[] = {
 };
 static_assert(std::size(kLadder) <= kMaxRungs);
 
-// s: of a step, an evaluation of forces and Hessian, and an iteration, each a vertex, of the default solver. Fitted to
-// hairmesh-bench --styles.
-constexpr double kPerStep = 3e-8, kPerEvaluation = 3.8e-7;
+// s a vertex: of a step without iterations. Fitted, as the next, to walks of all styles and resolutions.
+constexpr double kPerSolve = 3.3e-7;
 
-// s an iteration and vertex: grows as matrix and factors leave the caches (1.0e-7 at 2,300 vertices, 1.4 to 1.7e-7 from
-// 7,000 to 10,000).
+// s an iteration and vertex: grows as matrix and factors leave the caches.
 double perIteration(int vertices) {
-  return 1.0e-7 * std::pow(vertices / 2300.0, 0.3);
+  return 5e-8 * std::pow(vertices / 2300.0, 0.2);
 }
 
 }  // namespace
@@ -58,7 +56,7 @@ int defaultRung() {
 }
 
 double countedCost(int vertices, const sim::StepReport& report) {
-  return vertices * (kPerStep + kPerEvaluation * report.solves + perIteration(vertices) * report.solver_iterations);
+  return vertices * (kPerSolve * report.solves + perIteration(vertices) * report.solver_iterations);
 }
 
 }  // namespace app
