@@ -10,7 +10,7 @@ namespace {
 constexpr double kWindow = 0.5;  // simulated s between decisions; two of them see a walk's cycle
 constexpr double kFirstWindow = 0.15;
 constexpr int kFewestFrames = 8;
-// After a change the rest factor is replaced in slices (sim/implicit_solve.cpp): steps, and s, that say little.
+// After a change solves begin with no earlier solutions to start from: steps, and s, that say little.
 constexpr double kSettleSteps = 30, kSettle = 0.1;
 constexpr double kOver = 1.04;      // times the budget: mean of two windows from which a coarser rung is taken
 constexpr double kFarOver = 1.25;   // of one window

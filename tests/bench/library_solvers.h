@@ -17,7 +17,7 @@ struct SolverRung {
 
 struct SolverRun {
   std::string solver, precision;
-  double first_microseconds = 0;   // set-up from nothing: analysis of the pattern, rest factor, answers at contacts
+  double first_microseconds = 0;   // set-up from nothing: analysis of the pattern and all below
   double set_up_microseconds = 0;  // what the next system of the same mesh costs before its first iteration
   std::vector<SolverRung> rungs;
 };

@@ -217,13 +217,13 @@ struct Jerk {
 };
 
 TEST(Governor, RealHairDoesNotPopWhenTheRungChanges) {
-  app::Demo demo = openWalk(0.4);
+  app::Demo demo = openWalk(0.2);
   const app::FrameTarget nowhere;
   std::vector<float> before, earlier;
   Jerk jerk;
   int last_rung = demo.governor.rung, calm = 0, recoveries = 0;
   long changed = 0;
-  const double budgets[] = {0.4, 0.1, 6, 1.5, 0.15, 3};
+  const double budgets[] = {0.2, 0.06, 3, 0.7, 0.08, 1.5};
   for (int f = 0; f < 60 * 12; ++f) {
     if (f % 120 == 0) demo.requests.push_back({app::Ask::kBudget, "", "", budgets[f / 120]});
     app::advanceFrame(demo, 1.0 / 60, nowhere);
@@ -253,7 +253,7 @@ TEST(Governor, CountedCostsRepeatToTheBit) {
   std::vector<float> first;
   long changed = 0;
   for (int repeat = 0; repeat < 2; ++repeat) {
-    app::Demo demo = openWalk(0.3);
+    app::Demo demo = openWalk(0.12);
     for (int f = 0; f < 120; ++f) app::advanceFrame(demo, 1.0 / 60, {});
     changed = demo.governor.changes;
     if (repeat == 0) first = demo.actors[0].shown_positions;
