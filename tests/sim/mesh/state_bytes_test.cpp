@@ -155,7 +155,7 @@ TEST(StateBytes, WhatCannotBeRestoredSaysWhyAndChangesNothing) {
 TEST(StateBytes, TheVersionSpeaksOfTheseFields) {
   Hair hair(patch(), {});
   EXPECT_EQ(sim::kStateVersion, 1u);
-  EXPECT_EQ(sim::saveState(hair.mesh, {}).size(), 1076u);
+  EXPECT_EQ(sim::saveState(hair.mesh, {}).size(), 1028u);
 }
 
 }  // namespace
