@@ -80,12 +80,13 @@ void ImplicitSolver<T>::setModel(const HairMesh& mesh, const ForceModel<double>&
     mass[i] = static_cast<T>(density * mesh.vertex_volume[i]);
     hair_mass += density * mesh.vertex_volume[i];
   }
-  two_level.forget();
+  two_level.drop();
 }
 
 template <class T>
 void ImplicitSolver<T>::setRestShifts(const HairMesh& mesh, const ForceModel<double>& source) {
   model.setElements(mesh, layout, source);
+  two_level.drop();
 }
 
 // Packs positions and velocities and runs the kernels.
@@ -100,12 +101,11 @@ T ImplicitSolver<T>::evaluateForces(std::span<const V3<T>> at, ColumnEvaluation<
   return evaluate<T>(model, layout, packed_x, out);
 }
 
-// Matrix, right-hand side of A v = rhs at the current x (and v, unless the linearization is `at_start`, the paper's).
+// Matrix and forces at positions and velocities; without these, the forces are those of resting hair.
 template <class T>
-void ImplicitSolver<T>::assemble(const SimParams& params, const StepBase& base, bool at_start) {
-  const std::size_t n = x.size();
-  const T h = static_cast<T>(base.h), drag = static_cast<T>(params.air_drag), tau = static_cast<T>(params.damping);
-  const V3<T> wind = cast<T>(base.wind), gravity{0, static_cast<T>(-params.gravity), 0};
+void ImplicitSolver<T>::assembleMatrix(std::span<const V3<T>> at, std::span<const V3<T>> velocities,
+                                       const MatrixTerms& of) {
+  const T h = static_cast<T>(of.h), tau = static_cast<T>(of.damping);
   matrix.setZero();
   packed_force.setZero();
   ColumnEvaluation<T> out;
@@ -114,9 +114,18 @@ void ImplicitSolver<T>::assemble(const SimParams& params, const StepBase& base, 
   out.matrix_scale = h * (h + tau);
   out.tension_scale = h * h;
   out.damping = tau;
-  evaluateForces(x, out, at_start ? std::span<const V3<T>>() : std::span<const V3<T>>(v));
+  evaluateForces(at, out, velocities);
+  matrix.addMass(T(1) + h * static_cast<T>(of.drag), mass);
+}
+
+// Matrix, right-hand side of A v = rhs at the current x (and v, unless the linearization is `at_start`, the paper's).
+template <class T>
+void ImplicitSolver<T>::assemble(const SimParams& params, const StepBase& base, bool at_start) {
+  const std::size_t n = x.size();
+  const T h = static_cast<T>(base.h), drag = static_cast<T>(params.air_drag);
+  const V3<T> wind = cast<T>(base.wind), gravity{0, static_cast<T>(-params.gravity), 0};
+  assembleMatrix(x, at_start ? std::span<const V3<T>>() : std::span<const V3<T>>(v), terms);
   packed_force.unpack(layout, force);
-  matrix.addMass(T(1) + h * drag, mass);
   if (!at_start) multiply<T>(matrix, product, v, rhs);
   for (std::size_t i = 0; i < n; ++i) {
     const T m = mass[i];
@@ -177,7 +186,7 @@ void ImplicitSolver<T>::setResidual() {
 // The residual at the present v and, by default, at a nearer one that earlier steps' changes of velocity give. Returns
 // the gain of that: the squared energy norm (J).
 template <class T>
-double ImplicitSolver<T>::beginSolve(const SimParams& params) {
+double ImplicitSolver<T>::beginSolve(const SimParams& params, bool unfinished) {
   setResidual();
   scratch.deflation = {};
   if (params.solver == Solver::kPaper) return 0;
@@ -214,19 +223,23 @@ StopRule<T> ImplicitSolver<T>::stopRule(const HairMesh& mesh, const SimParams& p
 }
 
 template <class T>
-void ImplicitSolver<T>::updatePreconditioner(const SimParams& params, const StepBase& base) {
-  const MatrixTerms now{base.h, params.damping, params.air_drag};
-  if (params.solver == Solver::kPaper || !(now == terms)) two_level.forget();
-  terms = now;
+void ImplicitSolver<T>::noteTerms(const SimParams& params, const StepBase& base) {
+  terms.h = base.h, terms.damping = params.damping, terms.drag = params.air_drag;
+  terms.pins.clear();
+  for (const PinnedVertex& pin : base.pins) terms.pins.push_back({pin.vertex, pin.stiffness});
+}
+
+template <class T>
+void ImplicitSolver<T>::updatePreconditioner(const SimParams& params) {
   if (params.solver == Solver::kPaper)
     block_jacobi.update(matrix);
   else
-    two_level.update(matrix, x, constraints);
+    two_level.update(matrix, x, constraints, terms);
 }
 
 template <class T>
 SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams& params, const StepBase& base,
-                                           std::vector<Contact>& contacts) {
+                                           bool unfinished, std::vector<Contact>& contacts) {
   StopRule<T> stop = stopRule(mesh, params, base);
   const auto run = [&](auto& preconditioner, SolveStart start) {
     const auto a = [&](std::span<const V3<T>> d, std::span<V3<T>> q) { multiply<T>(matrix, product, d, q); };
@@ -242,8 +255,8 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
   for (int round = 0; round < kContactRounds; ++round) {
     const bool moved = setContactConstraints(mesh, params, base, contacts, start);
     if (round == 0) {
-      updatePreconditioner(params, base);
-      stop.head_start = beginSolve(params);
+      updatePreconditioner(params);
+      stop.head_start = beginSolve(params, unfinished);
     } else if (moved) {
       setResidual();
       scratch.deflation = {};  // not all of it lies within what is free now
@@ -258,7 +271,6 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
     start = SolveStart::kRestart;
   }
   if (params.solver != Solver::kPaper) two_level.count(total.iterations);
-  unfinished = !total.converged;
   return total;
 }
 
@@ -298,21 +310,35 @@ double ImplicitSolver<T>::largestReaction(const StepBase& base) const {
 
 template <class T>
 void ImplicitSolver<T>::solve(const HairMesh& mesh, const SimParams& params, const StepBase& base, StageClock& clock,
-                              std::vector<Contact>& contacts, std::span<Vec3> velocities, StepReport& report) {
+                              std::vector<Contact>& contacts, SolveMemory& memory, std::span<Vec3> velocities,
+                              StepReport& report) {
+  const bool paper = params.solver == Solver::kPaper;
   const bool linearized = params.integrator == Integrator::kLinearizedEuler;
+  // Both work on this hair's memory while it is solved for.
+  std::swap(memory.two_level, two_level.memory);
+  std::swap(memory.projection, guess.memory);
+  if (paper) two_level.memory.forget();
+  two_level.recall([&](std::span<const V3<T>> at, const MatrixTerms& of) -> const ColumnMatrix<T>& {
+    assembleMatrix(at, {}, of);
+    return matrix;
+  });
+  noteTerms(params, base);
   beginStep(params, base, velocities, contacts);
   place(base, linearized ? std::span<const V3<T>>() : std::span<const V3<T>>(v));
   assemble(params, base, linearized);
   clock.spent(kStageForces, report);
-  const SolveReport linear = solveLinear(mesh, params, base, contacts);
+  const SolveReport linear = solveLinear(mesh, params, base, memory.unfinished, contacts);
+  memory.unfinished = !linear.converged;
   ++report.solves;
   report.solver_iterations += linear.iterations;
   report.residual = linear.relative_residual;
   report.residual_acceleration = linear.residual_acceleration;
   report.pin_force = largestReaction(base);
   report.converged = linear.converged;
-  if (params.solver != Solver::kPaper) guess.record([&](std::size_t i) { return v[i] - cast<T>(velocities[i]); });
+  if (!paper) guess.record([&](std::size_t i) { return v[i] - cast<T>(velocities[i]); });
   for (std::size_t i = 0; i < v.size(); ++i) velocities[i] = widen(v[i]);
+  std::swap(memory.two_level, two_level.memory);
+  std::swap(memory.projection, guess.memory);
   clock.spent(kStageSolve, report);
 }
 

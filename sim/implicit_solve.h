@@ -31,7 +31,7 @@ struct StepBase {
   std::span<const PinnedVertex> pins{};  // those that hold
 };
 
-// Everything a solve in scalar type T keeps from step to step.
+// What a solve in scalar type T needs: derived data and scratch.
 template <class T>
 struct ImplicitSolver {
   ColumnLayout layout;
@@ -45,18 +45,12 @@ struct ImplicitSolver {
   Filter<T> filter;
   SolverScratch<T> scratch;
   SolutionProjection<T> guess;
-  bool unfinished = false;  // the last linear solve
   std::vector<V3<T>> x, v, trial, force, rhs;
   std::vector<T> mass, inverse_mass_dt;
   double hair_mass = 0;  // kg
   std::vector<VertexConstraint> constraints;
   std::vector<int> touched;  // vertices that were in contact when the solve began
-  // What the matrix is made of beside positions and material.
-  struct MatrixTerms {
-    double h = 0, damping = 0, drag = 0;
-    bool operator==(const MatrixTerms&) const = default;
-  };
-  MatrixTerms terms;  // of the last solve
+  MatrixTerms terms;         // of the present solve
 
   explicit ImplicitSolver(const HairMesh& mesh);
   void setModel(const HairMesh& mesh, const ForceModel<double>& source, double density);
@@ -67,7 +61,7 @@ struct ImplicitSolver {
   // Coulomb's law. Reports iterations, residuals and, since the clock's last booking, stage times into
   // `report`.
   void solve(const HairMesh& mesh, const SimParams& params, const StepBase& base, StageClock& clock,
-             std::vector<Contact>& contacts, std::span<Vec3> velocities, StepReport& report);
+             std::vector<Contact>& contacts, SolveMemory& memory, std::span<Vec3> velocities, StepReport& report);
 
  private:
   T evaluateForces(std::span<const V3<T>> at, ColumnEvaluation<T> out, std::span<const V3<T>> velocities);
@@ -76,12 +70,14 @@ struct ImplicitSolver {
                              std::span<const Contact> contacts, SolveStart start);
   void setResidual();
   double largestReaction(const StepBase& base) const;
-  double beginSolve(const SimParams& params);
+  void assembleMatrix(std::span<const V3<T>> at, std::span<const V3<T>> velocities, const MatrixTerms& of);
+  double beginSolve(const SimParams& params, bool unfinished);
   double energyScale(const HairMesh& mesh) const;
   StopRule<T> stopRule(const HairMesh& mesh, const SimParams& params, const StepBase& base) const;
-  void updatePreconditioner(const SimParams& params, const StepBase& base);
-  SolveReport solveLinear(const HairMesh& mesh, const SimParams& params, const StepBase& base,
+  void updatePreconditioner(const SimParams& params);
+  SolveReport solveLinear(const HairMesh& mesh, const SimParams& params, const StepBase& base, bool unfinished,
                           std::vector<Contact>& contacts);
+  void noteTerms(const SimParams& params, const StepBase& base);
   void place(const StepBase& base, std::span<const V3<T>> speed);
   void beginStep(const SimParams& params, const StepBase& base, std::span<const Vec3> velocities,
                  std::vector<Contact>& contacts);

@@ -69,9 +69,13 @@ namespace {
 
 using Parts = StepContext::Parts;
 
-// Derived values follow the parameters that they depend on, from where `memory` is. Returns whether any was made, or a
-// slice of it.
-bool refreshModel(const SimParams& params, MaterialMemory& memory, Parts& parts) {
+struct Refresh {
+  bool made = false;     // a derived value, or a slice of it
+  bool changed = false;  // the model is not that of the step before
+};
+
+// Derived values follow the parameters that they depend on, from where `memory` is.
+Refresh refreshModel(const SimParams& params, MaterialMemory& memory, Parts& parts) {
   Material& material = parts.material;
   const auto tell = [&](auto&& take) {
     if (parts.single_solver) take(*parts.single_solver);
@@ -80,12 +84,13 @@ bool refreshModel(const SimParams& params, MaterialMemory& memory, Parts& parts)
   const auto setModel = [&](auto& solver) { solver.setModel(*parts.mesh, material.model, params.density); };
   const bool changed = !memory.known || !sameMaterial(params, memory.params), follows = parts.gradual && memory.known;
   bool other = material.recall(changed && !follows ? MaterialMemory{true, params, params, params} : memory);
-  bool made = other || changed || material.outdated();
+  Refresh refresh{other || changed || material.outdated(), changed};
   if (changed && follows) {
     material.follow(params);
     other = true;
   } else if (!changed && material.work()) {
     tell([&](auto& solver) { solver.setRestShifts(*parts.mesh, material.model); });
+    refresh.changed = true;
   }
   memory = material.memory();
   if (other) tell(setModel);
@@ -93,14 +98,14 @@ bool refreshModel(const SimParams& params, MaterialMemory& memory, Parts& parts)
     if (!solver) {
       solver.emplace(*parts.mesh);
       setModel(*solver);
-      made = true;
+      refresh.made = true;
     }
   };
   if (params.precision == Precision::kDouble)
     ready(parts.double_solver);
   else
     ready(parts.single_solver);
-  return made;
+  return refresh;
 }
 
 // The integrator's base: where the step would end, and how fast, were the new velocity zero and the forces none.
@@ -153,11 +158,11 @@ void rootsFollowScalp(const StepInput& input, const StepBase& base, const HairMe
   }
 }
 
-void solveVelocities(const SimParams& params, const StepBase& base, Parts& parts, HairState& state,
+void solveVelocities(const SimParams& params, const StepBase& base, SolveMemory& memory, Parts& parts, HairState& state,
                      StepReport& report) {
   const auto solve = [&](auto& solver) {
     solver.model.setMoving(parts.material.model, base.x_hat[0]);
-    solver.solve(*parts.mesh, params, base, parts.clock, state.contacts, state.velocities, report);
+    solver.solve(*parts.mesh, params, base, parts.clock, state.contacts, memory, state.velocities, report);
   };
   report.force_kinds = parts.material.model.kindsLeftOut();
   if (params.precision == Precision::kDouble) {
@@ -219,7 +224,7 @@ double energyOf(const SimParams& params, const Vec3& wind, const HairState& stat
 }
 
 // One step of the reference hair: solve, integration, energy limit and, where it is kept apart, self-contact.
-void advanceReference(const SimParams& params, const StepInput& input, double dt, bool kept_apart, Parts& parts,
+void advanceReference(const SimParams& params, const StepInput& input, double dt, HairMemory& memory, Parts& parts,
                       HairState& reference, StepReport& report) {
   const HairMesh& mesh = *parts.mesh;
   Stabilization& nets = parts.stabilization;
@@ -228,11 +233,11 @@ void advanceReference(const SimParams& params, const StepInput& input, double dt
   const StepBase base = integratorBase(params, input, dt, reference, parts);
   rootsFollowScalp(input, base, mesh, reference);
   StepReport own;
-  solveVelocities(params, base, parts, reference, own);
+  solveVelocities(params, base, memory.solve, parts, reference, own);
   integratePositions(input, base, dt, mesh, parts, reference);
   const TakenStep taken = takenStep(params, base, dt, parts);
   if (nets.active.step_energy) limitEnergy(taken, own.converged, nets.energy_limit, reference);
-  if (kept_apart)
+  if (memory.rest.kept_apart)
     partBundles({mesh, params, {}, parts.start_positions, dt}, taken, parts.reference_contact, parts, reference, own);
   for (const double seconds : own.seconds) report.seconds[kStageOther] += seconds;
 }
@@ -249,7 +254,9 @@ SimParams beginStep(const HairMesh& mesh, const SimParams& asked, Parts& parts, 
   parts.stabilization.active = params.solver == Solver::kPaper ? kAsPublished : parts.stabilization.nets;
   sizeMemory(mesh, state.memory);
   state.contacts.reserve(static_cast<std::size_t>(kMaxTouches) * mesh.vertexCount());
-  report.refreshes = {!refreshModel(params, state.memory.material, parts), 1};
+  const Refresh refresh = refreshModel(params, state.memory.material, parts);
+  report.refreshes = {!refresh.made, 1};
+  if (refresh.changed) state.memory.solve.two_level.forget();
   return params;
 }
 
@@ -261,7 +268,7 @@ std::span<const Vec3> rememberStart(const HairState& state, Parts& parts) {
 
 void endStep(const TakenStep& taken, const StepInput& input, Parts& parts, HairState& state, StepReport& report) {
   const auto advance_reference = [&](const SimParams& params, HairState& reference) {
-    advanceReference(params, input, taken.dt, state.memory.rest.kept_apart, parts, reference, report);
+    advanceReference(params, input, taken.dt, state.memory, parts, reference, report);
   };
   const auto energy = [&](const HairState& one) { return energyOf(taken.params, taken.wind, one, parts); };
   keepPinned(parts, state, report);
@@ -289,7 +296,7 @@ StepReport advance(const HairMesh& mesh, const SimParams& asked, const StepInput
   rootsFollowScalp(input, base, mesh, state);
   parts.clock.spent(kStageOther, report);
   // Forces (1), (2) and Hessians; implicit solve by Modified PCG (BW 16).
-  solveVelocities(params, base, parts, state, report);
+  solveVelocities(params, base, state.memory.solve, parts, state, report);
   integratePositions(input, base, dt, mesh, parts, state);
   const TakenStep taken = takenStep(params, base, dt, parts);
   stabilize(taken, input, report.converged, parts.stabilization, state, report);

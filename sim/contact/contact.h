@@ -9,6 +9,7 @@
 #include "sim/contact/colliders.h"
 #include "sim/mesh/hair_mesh.h"
 #include "sim/mesh/hair_state.h"
+#include "sim/mesh/vertex_constraint.h"
 #include "sim/sim_params.h"
 #include "sim/skip_count.h"
 
@@ -104,15 +105,6 @@ struct FrictionLaw {
 //   slides, pulls:                  is left with a negative pressure; the caller drops it
 // Returns whether the constraint or the friction changed.
 bool updateSticking(const FrictionLaw& law, const Vec3& reaction, const Vec3& velocity, Contact& contact);
-
-// The constraint of one vertex: velocity = keep * (free velocity) + prescribed.
-struct VertexConstraint {
-  int vertex;
-  Eigen::Matrix3d keep;                                                      // projector onto the free directions
-  Vec3 prescribed;                                                           // m/s, within the removed directions
-  int removed = 0;                                                           // number of removed directions
-  std::array<Vec3, 3> directions{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};  // orthonormal basis of them
-};
 
 // One constraint per vertex in contact (contacts are sorted by vertex): a single normal, a crease of two or three, or
 // all directions where one of its contacts sticks.

@@ -13,7 +13,7 @@ constexpr double kIndependent = 1e-5;  // of a change's energy, that must be lef
 
 template <class T>
 SolutionProjection<T>::SolutionProjection(int vertices) {
-  for (auto* fields : {&changes_, &directions_, &products_}) {
+  for (auto* fields : {&directions_, &products_}) {
     for (Field& field : *fields) field.resize(vertices);
   }
 }
@@ -23,10 +23,11 @@ double SolutionProjection<T>::improve(const Product& a, const Filter<T>& filter,
                                       std::span<V3<T>> r) {
   double gained = 0;
   used_ = 0;
-  for (int k = 0; k < recorded_; ++k) {
+  for (int k = 0; k < memory.recorded; ++k) {
     const std::span<V3<T>> d(directions_[used_]), q(products_[used_]);
-    const Field& change = changes_[(newest_ + kChanges - k) % kChanges];
-    std::copy(change.begin(), change.end(), d.begin());
+    const std::vector<Vec3>& change = memory.changes[(memory.newest + kChanges - k) % kChanges];
+    for (std::size_t i = 0; i < d.size(); ++i)
+      d[i] = {static_cast<T>(change[i].x()), static_cast<T>(change[i].y()), static_cast<T>(change[i].z())};
     filter.apply(d);
     // Conjugate to the others before the product, which then is that of what is left of it to the last bit; and once
     // more, for where little is left, rounding has spoilt it.

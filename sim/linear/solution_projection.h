@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sim/linear/modified_pcg.h"
+#include "sim/mesh/hair_memory.h"
 
 namespace sim {
 
@@ -25,9 +26,14 @@ struct SolutionProjection {
   // kChanges are forgotten.
   template <class Change>
   void record(const Change& change) {
-    newest_ = (newest_ + 1) % kChanges;
-    for (std::size_t i = 0; i < changes_[newest_].size(); ++i) changes_[newest_][i] = change(i);
-    recorded_ = recorded_ < kChanges ? recorded_ + 1 : kChanges;
+    memory.newest = (memory.newest + 1) % kChanges;
+    std::vector<Vec3>& newest = memory.changes[memory.newest];
+    newest.resize(directions_[0].size());
+    for (std::size_t i = 0; i < newest.size(); ++i) {
+      const V3<T> moved = change(i);
+      newest[i] = Vec3(moved.x, moved.y, moved.z);
+    }
+    memory.recorded = memory.recorded < kChanges ? memory.recorded + 1 : kChanges;
   }
 
   // y = A x.
@@ -44,11 +50,13 @@ struct SolutionProjection {
   // Valid until the next call.
   std::span<const Deflated<T>> deflation() const { return {deflated_.data(), static_cast<std::size_t>(used_)}; }
 
+  ProjectionMemory memory;  // of the hair that is solved for
+
  private:
   using Field = std::vector<V3<T>>;
-  std::array<Field, kChanges> changes_, directions_, products_;
+  std::array<Field, kChanges> directions_, products_;
   std::array<Deflated<T>, kChanges> deflated_;
-  int newest_ = 0, recorded_ = 0, used_ = 0;
+  int used_ = 0;
 };
 
 }  // namespace sim

@@ -1,8 +1,47 @@
 #include "sim/linear/two_level.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace sim {
+namespace {
+
+bool serves(const PartMemory& part, double cost, int oldest, const MatrixTerms& terms) {
+  return !part.input.positions.empty() && part.age < oldest && part.lost < cost && part.input.terms == terms;
+}
+
+void count(bool kept, int iterations, PartMemory& part) {
+  if (!kept) part.age = 0, part.lost = 0, part.fresh = iterations;
+  ++part.age;
+  part.lost += std::max(0, iterations - part.fresh);
+}
+
+bool same(const PartMemory::Input& a, const PartMemory::Input& b) {
+  const auto equal = [](const VertexConstraint& c, const VertexConstraint& d) {
+    return c.vertex == d.vertex && c.removed == d.removed && c.directions == d.directions;
+  };
+  return a.positions.size() == b.positions.size() && a.terms == b.terms &&
+         std::memcmp(a.positions.data(), b.positions.data(), a.positions.size() * sizeof(Vec3)) == 0 &&
+         std::ranges::equal(a.constraints, b.constraints, equal);
+}
+
+// Whether as many directions of the same vertices are held.
+bool holdsAsMuch(std::span<const VertexConstraint> a, std::span<const VertexConstraint> b) {
+  return std::ranges::equal(a, b, [](const VertexConstraint& c, const VertexConstraint& d) {
+    return c.vertex == d.vertex && c.removed == d.removed;
+  });
+}
+
+template <class T>
+void note(std::span<const V3<T>> x, std::span<const VertexConstraint> constraints, const MatrixTerms& terms,
+          PartMemory::Input& input) {
+  input.positions.resize(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) input.positions[i] = Vec3(x[i].x, x[i].y, x[i].z);
+  input.constraints.assign(constraints.begin(), constraints.end());
+  input.terms = terms;
+}
+
+}  // namespace
 
 template <class T>
 TwoLevel<T>::TwoLevel(const HairMesh& mesh)
@@ -11,45 +50,71 @@ TwoLevel<T>::TwoLevel(const HairMesh& mesh)
       layers_(mesh, layout_, pattern_),
       columns_(mesh, layout_, pattern_),
       coarse_(mesh, layout_, pattern_),
-      field_(layout_) {
-  held_.reserve(mesh.vertexCount());
+      field_(layout_),
+      x_(mesh.vertexCount()) {
+  for (auto* input : {&factors_of_, &coarse_of_}) input->constraints.reserve(mesh.vertexCount());
 }
 
-// Returns whether the factors know these constraints already; if not, `held_` is of them from now on.
 template <class T>
-bool TwoLevel<T>::noteHeld(std::span<const VertexConstraint> constraints) {
-  if (std::ranges::equal(constraints, held_, [](const VertexConstraint& c, const auto& known) {
-        return c.vertex == known.first && c.removed == known.second;
-      })) {
-    return true;
+void TwoLevel<T>::makeFactors(const ColumnMatrix<T>& a, const PartMemory::Input& input) {
+  layers_.factor(a, input.constraints);
+  columns_.factor(a, input.constraints);
+  factors_of_ = input;
+}
+
+template <class T>
+void TwoLevel<T>::makeCoarse(const ColumnMatrix<T>& a, std::span<const V3<T>> x, const PartMemory::Input& input) {
+  has_coarse_ = coarse_.make(a, x, input.constraints);
+  coarse_of_ = input;
+}
+
+template <class T>
+void TwoLevel<T>::recall(const Assemble& assemble) {
+  const auto place = [&](const PartMemory::Input& input) {
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      const Vec3& p = input.positions[i];
+      x_[i] = {static_cast<T>(p.x()), static_cast<T>(p.y()), static_cast<T>(p.z())};
+    }
+  };
+  const PartMemory::Input &factors = memory.factors.input, &coarse = memory.coarse.input;
+  if (!factors.positions.empty() && !same(factors, factors_of_)) {
+    place(factors);
+    makeFactors(assemble(x_, factors.terms), factors);
   }
-  held_.clear();
-  for (const VertexConstraint& c : constraints) held_.emplace_back(c.vertex, c.removed);
-  return false;
+  if (!coarse.positions.empty() && !same(coarse, coarse_of_)) {
+    place(coarse);
+    makeCoarse(assemble(x_, coarse.terms), x_, coarse);
+  }
 }
 
 template <class T>
 void TwoLevel<T>::update(const ColumnMatrix<T>& a, std::span<const V3<T>> x,
-                         std::span<const VertexConstraint> constraints) {
-  factors_age_.kept = noteHeld(constraints) && factors_age_.serves();
-  if (!factors_age_.kept) {
-    layers_.factor(a, constraints);
-    columns_.factor(a, constraints);
+                         std::span<const VertexConstraint> constraints, const MatrixTerms& terms) {
+  PartMemory::Input &factors = memory.factors.input, &coarse = memory.coarse.input;
+  factors_kept_ =
+      holdsAsMuch(factors.constraints, constraints) && serves(memory.factors, kFactorsCost, kFactorsServe, terms);
+  if (!factors_kept_) {
+    note(x, constraints, terms, factors);
+    makeFactors(a, factors);
   }
-  coarse_age_.kept = has_coarse_ && coarse_age_.serves() && coarse_.unknown(constraints) <= kMaxUnknown;
-  if (!coarse_age_.kept) has_coarse_ = coarse_.make(a, x, constraints);
+  coarse_kept_ = serves(memory.coarse, kCoarseCost, kCoarseServes, terms) && has_coarse_ &&
+                 coarse_.unknown(constraints) <= kMaxUnknown;
+  if (!coarse_kept_) {
+    note(x, constraints, terms, coarse);
+    makeCoarse(a, x, coarse);
+  }
 }
 
 template <class T>
 void TwoLevel<T>::count(int iterations) {
-  factors_age_.count(iterations);
-  coarse_age_.count(iterations);
+  sim::count(factors_kept_, iterations, memory.factors);
+  sim::count(coarse_kept_, iterations, memory.coarse);
 }
 
 template <class T>
-void TwoLevel<T>::forget() {
-  factors_age_.forget();
-  coarse_age_.forget();
+void TwoLevel<T>::drop() {
+  factors_of_.positions.clear();
+  coarse_of_.positions.clear();
 }
 
 template <class T>

@@ -6,40 +6,22 @@
 // projection onto rigid motions of patches (coarse_space.h), for what many vertices do together.
 //
 // Each of the two parts, the factors L and H and the coarse space, serves some solves: the matrix changes little from
-// one step to the next.
+// one step to the next. A part serves until the iterations that its age has cost add up to what making it anew costs,
+// or a number of solves.
 #pragma once
 
-#include <algorithm>
+#include <functional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "sim/linear/coarse_space.h"
 #include "sim/linear/column_factor.h"
 #include "sim/linear/column_matrix.h"
 #include "sim/linear/layer_factor.h"
+#include "sim/mesh/hair_memory.h"
 #include "sim/mesh/hair_mesh.h"
 
 namespace sim {
-
-// How long a part made for one matrix serves the matrices after it: until the iterations that its age has cost add up
-// to what making it anew costs, or a number of solves.
-struct PartAge {
-  double cost;        // of making it, in iterations
-  int oldest;         // solves that it serves at most
-  int age = oldest;   // solves since it was made
-  int fresh = 0;      // iterations of its first solve
-  double lost = 0;    // iterations beyond those of the first, since then
-  bool kept = false;  // in the present solve
-
-  bool serves() const { return age < oldest && lost < cost; }
-  void forget() { age = oldest; }
-  void count(int iterations) {
-    if (!kept) age = 0, lost = 0, fresh = iterations;
-    ++age;
-    lost += std::max(0, iterations - fresh);
-  }
-};
 
 template <class T>
 struct TwoLevel {
@@ -48,11 +30,18 @@ struct TwoLevel {
   // Takes the matrix of a solve, the positions that it is of (m, one a vertex, relative to any point) and the
   // constraints. Makes those parts anew that serve no longer: old ones, the factors where other directions are held,
   // the coarse space where more than kMaxUnknown vertices are held that it does not know of.
-  void update(const ColumnMatrix<T>& a, std::span<const V3<T>> x, std::span<const VertexConstraint> constraints = {});
+  void update(const ColumnMatrix<T>& a, std::span<const V3<T>> x, std::span<const VertexConstraint> constraints = {},
+              const MatrixTerms& terms = {});
+  // Before update(), where `memory` may be another hair's than that of the last solve: makes the parts again that it
+  // speaks of. `assemble` gives the matrix at positions (m) with terms.
+  using Assemble = std::function<const ColumnMatrix<T>&(std::span<const V3<T>> x, const MatrixTerms& terms)>;
+  void recall(const Assemble& assemble);
   // The solve with it took so many iterations.
   void count(int iterations);
-  // The matrices to come have little to do with those before: other stiffness, mass or time step.
-  void forget();
+  // The material is another: what `memory` speaks of is to be made again.
+  void drop();
+
+  TwoLevelMemory memory;  // of the hair that is solved for
 
   // Iterations that making a part costs, and solves that it serves at most. On four walks (short low to long medium)
   // solves take within a tenth as long with twice of each.
@@ -71,11 +60,13 @@ struct TwoLevel {
   LayerFactor<T> layers_;
   ColumnFactor<T> columns_;
   CoarseSpace<T> coarse_;
-  bool has_coarse_ = false;  // else a pivot was not positive: P goes without
-  PartAge factors_age_{kFactorsCost, kFactorsServe}, coarse_age_{kCoarseCost, kCoarseServes};
-  std::vector<std::pair<int, int>> held_;  // vertices that the factors know constrained, and in how many directions
-  ColumnField<T> field_;                   // r, then z
-  bool noteHeld(std::span<const VertexConstraint> constraints);
+  bool has_coarse_ = false;                          // else a pivot was not positive: P goes without
+  PartMemory::Input factors_of_, coarse_of_;         // that the parts at hand were made for
+  bool factors_kept_ = false, coarse_kept_ = false;  // in the present solve
+  ColumnField<T> field_;                             // r, then z
+  std::vector<V3<T>> x_;
+  void makeFactors(const ColumnMatrix<T>& a, const PartMemory::Input& input);
+  void makeCoarse(const ColumnMatrix<T>& a, std::span<const V3<T>> x, const PartMemory::Input& input);
 };
 
 }  // namespace sim

@@ -2,10 +2,12 @@
 // empty in a new state and sized by the first step. What follows from mesh and parameters is in StepContext.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "sim/mesh/fields.h"
 #include "sim/mesh/hair_mesh.h"
+#include "sim/mesh/vertex_constraint.h"
 #include "sim/sim_params.h"
 
 namespace sim {
@@ -73,6 +75,55 @@ struct MaterialMemory {
   HAIRMESH_FIELDS(known, params, balanced, coming, slices, outdated)
 };
 
+// What a system matrix is made of beside positions and material (implicit_solve.h).
+struct MatrixTerms {
+  struct Spring {
+    int vertex = 0;
+    double stiffness = 0;  // N/m
+    bool operator==(const Spring&) const = default;
+    HAIRMESH_FIELDS(vertex, stiffness)
+  };
+  double h = 0, damping = 0, drag = 0;  // s, s, 1/s
+  std::vector<Spring> pins;
+  bool operator==(const MatrixTerms&) const = default;
+  HAIRMESH_FIELDS(h, damping, drag, pins)
+};
+
+// One part of the preconditioner that serves more than one solve: what it was made for, from which it can be made again
+// to the bit, and how it has served (linear/two_level.h).
+struct PartMemory {
+  struct Input {
+    std::vector<Vec3> positions;  // m, relative to the first root; empty: it serves no longer
+    MatrixTerms terms;
+    std::vector<VertexConstraint> constraints;
+    HAIRMESH_FIELDS(positions, terms, constraints)
+  };
+  Input input;
+  int age = 0, fresh = 0;  // solves since it was made; iterations of the first of them
+  double lost = 0;         // iterations beyond those of the first, since then
+  HAIRMESH_FIELDS(input, age, fresh, lost)
+};
+struct TwoLevelMemory {
+  PartMemory factors, coarse;
+  // The matrices to come have little to do with those before.
+  void forget() { factors.input.positions.clear(), coarse.input.positions.clear(); }
+  HAIRMESH_FIELDS(factors, coarse)
+};
+
+// The changes of velocity (m/s) that the last steps made, one per vertex (linear/solution_projection.h).
+struct ProjectionMemory {
+  std::array<std::vector<Vec3>, 2> changes;
+  int newest = 0, recorded = 0;
+  HAIRMESH_FIELDS(changes, newest, recorded)
+};
+
+struct SolveMemory {
+  TwoLevelMemory two_level;
+  ProjectionMemory projection;
+  bool unfinished = false;  // the last linear solve
+  HAIRMESH_FIELDS(two_level, projection, unfinished)
+};
+
 struct HairMemory {
   GoodState good;
   OscillationMemory oscillation;
@@ -80,7 +131,8 @@ struct HairMemory {
   RestMemory rest;
   SelfContactMemory self_contact;
   MaterialMemory material;
-  HAIRMESH_FIELDS(good, oscillation, recovery, rest, self_contact, material)
+  SolveMemory solve;
+  HAIRMESH_FIELDS(good, oscillation, recovery, rest, self_contact, material, solve)
 };
 
 }  // namespace sim

@@ -10,6 +10,11 @@ void sizeMemory(const HairMesh& mesh, HairMemory& memory) {
   }
   memory = {};
   for (auto* array : {&memory.self_contact.start, &memory.self_contact.end}) array->reserve(n);
+  for (PartMemory* part : {&memory.solve.two_level.factors, &memory.solve.two_level.coarse}) {
+    part->input.positions.reserve(n);
+    part->input.constraints.reserve(n);
+  }
+  for (auto& change : memory.solve.projection.changes) change.reserve(n);
   memory.oscillation.last.resize(n, Vec3::Zero());
   memory.oscillation.carrying.resize(columns, Vec3::Zero());
   memory.oscillation.turns.resize(n);

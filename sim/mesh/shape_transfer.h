@@ -1,7 +1,7 @@
 // Transfers the shape of hair between hair meshes on one scalp: a style at two resolutions.
 //
-// A target vertex takes the source's root triangle nearest to its column's root, and on its three columns the same share
-// of the length. Its displacement from rest, in the head's frame, is the weighted mean of those six vertices'.
+// A target vertex takes the source's root triangle nearest to its column's root, and on its three columns the same
+// share of the length. Its displacement from rest, in the head's frame, is the weighted mean of those six vertices'.
 #pragma once
 
 #include <Eigen/Geometry>

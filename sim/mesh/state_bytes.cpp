@@ -33,10 +33,18 @@ concept Array = requires(T& values) {
 };
 
 template <class T>
+concept FixedArray = requires(T& values) {
+  values.fill(values[0]);
+}
+&&!Numbers<T>;
+
+template <class T>
 void write(const T& value, Bytes& out) {
   if constexpr (Numbers<T>) {
     const auto bytes = std::as_bytes(std::span(&value, 1));
     out.insert(out.end(), bytes.begin(), bytes.end());
+  } else if constexpr (FixedArray<T>) {
+    for (const auto& one : value) write(one, out);
   } else if constexpr (Array<T>) {
     write(std::uint64_t{value.size()}, out);
     for (const auto& one : value) write(one, out);
@@ -71,6 +79,8 @@ void read(Reader& from, T& value) {
     value = byte != 0;
   } else if constexpr (Numbers<T>) {
     from.take(static_cast<void*>(&value), sizeof(T));
+  } else if constexpr (FixedArray<T>) {
+    for (auto& one : value) read(from, one);
   } else if constexpr (Array<T>) {
     std::uint64_t count = 0;
     read(from, count);
@@ -107,6 +117,15 @@ std::uint64_t meshFingerprint(const HairMesh& mesh) {
   return fingerprint(bytes);
 }
 
+bool partFits(const HairMesh& mesh, const PartMemory& part) {
+  const auto n = static_cast<std::size_t>(mesh.vertexCount());
+  const auto inside = [&](int vertex) { return vertex >= 0 && vertex < mesh.vertexCount(); };
+  return (part.input.positions.empty() || part.input.positions.size() == n) &&
+         std::ranges::all_of(part.input.constraints, [&](const VertexConstraint& c) {
+           return inside(c.vertex) && c.removed >= 0 && c.removed <= 3;
+         });
+}
+
 // Whether every array has the mesh's size or none, and every number of a vertex is one of the mesh's: bytes may have
 // been made by hand.
 bool fits(const HairMesh& mesh, const HairState& state) {
@@ -118,7 +137,14 @@ bool fits(const HairMesh& mesh, const HairState& state) {
   const bool known = std::ranges::all_of(state.contacts, [&](const Contact& contact) {
     return contact.vertex >= 0 && contact.vertex < mesh.vertexCount() && contact.collider >= 0;
   });
-  return known && state.positions.size() == n && state.velocities.size() == n &&
+  const SolveMemory& solve = memory.solve;
+  const ProjectionMemory& projection = solve.projection;
+  bool projects =
+      projection.newest >= 0 && projection.newest < 2 && projection.recorded >= 0 && projection.recorded <= 2;
+  for (int k = 0; projects && k < projection.recorded; ++k)
+    projects = projection.changes[(projection.newest + 2 - k) % 2].size() == n;
+  return known && projects && partFits(mesh, solve.two_level.factors) && partFits(mesh, solve.two_level.coarse) &&
+         state.positions.size() == n && state.velocities.size() == n &&
          sized(n, state.previous_positions, state.previous_velocities, memory.good.positions, memory.good.velocities,
                memory.oscillation.last, memory.oscillation.turns, memory.recovery.folded, memory.recovery.target,
                memory.self_contact.start, memory.self_contact.end) &&

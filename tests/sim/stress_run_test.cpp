@@ -89,4 +89,23 @@ TEST_F(StressRun, TheSameSeedGivesTheSameTable) {
   EXPECT_NE(first, other);
 }
 
+// A share of the cases, of all families: what outlives a step is in the state, and nowhere else.
+TEST_F(StressRun, CasesSavedMidwayGoOnInAnotherProcessAndEndInTheSameBits) {
+  const std::string folder = test::freshFolder("stress_states");
+  const std::vector<std::string> share{"--short", "--parts", "18", "--part", "3"};
+  const auto run = [&](const char* what) {
+    std::vector<std::string> arguments = share;
+    arguments.insert(arguments.end(), {what, folder});
+    return runStress(arguments);
+  };
+  const test::Outcome saved = run("--save"), resumed = run("--resume");
+  EXPECT_EQ(saved.exit_code, 0) << saved.err;
+  EXPECT_EQ(resumed.exit_code, 0) << resumed.out << resumed.err;
+  EXPECT_TRUE(resumed.out.ends_with(" resumed to the same bits, 0 failed\n")) << resumed.out;
+  EXPECT_GE(std::stoi(resumed.out), 15) << resumed.out;
+  // A state that is not the one that was saved, or none, is told.
+  std::filesystem::remove_all(folder);
+  EXPECT_EQ(run("--resume").exit_code, 4);
+}
+
 }  // namespace

@@ -131,7 +131,7 @@ bool Preconditioner<T>::update(const sim::ColumnMatrix<T>& a, std::span<const V3
     return update(blocks, x, constraints);
   }
   if (!two_level_) two_level_.emplace(*mesh_);
-  two_level_->forget();
+  two_level_->memory.forget();
   two_level_->update(a, x, constraints);
   return true;
 }

@@ -39,7 +39,13 @@ struct Way {
   bool gradual = false;
 };
 const Way kWays[] = {
+    {"Plain", [](sim::SimParams&) {}},
+    {"SelfContact", [](sim::SimParams& p) { p.self_collide = true; }},
+    {"Bdf2InDouble",
+     [](sim::SimParams& p) { p.integrator = sim::Integrator::kBdf2, p.precision = sim::Precision::kDouble; }},
     {"Paper", [](sim::SimParams& p) { p.solver = sim::Solver::kPaper; }},
+    {"DraggedSlider", [](sim::SimParams&) {}, true},
+    {"Collided", [](sim::SimParams& p) { p.collide_inner = true; }},
 };
 
 void PrintTo(const Way& way, std::ostream* out) {
@@ -154,8 +160,8 @@ TEST(StateBytes, WhatCannotBeRestoredSaysWhyAndChangesNothing) {
 // Fields come and go with kStateVersion: when this fails, count it up and enter the new number.
 TEST(StateBytes, TheVersionSpeaksOfTheseFields) {
   Hair hair(patch(), {});
-  EXPECT_EQ(sim::kStateVersion, 1u);
-  EXPECT_EQ(sim::saveState(hair.mesh, {}).size(), 1028u);
+  EXPECT_EQ(sim::kStateVersion, 2u);
+  EXPECT_EQ(sim::saveState(hair.mesh, {}).size(), 1181u);
 }
 
 }  // namespace
