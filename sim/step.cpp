@@ -194,8 +194,8 @@ TakenStep takenStep(const SimParams& params, const StepBase& base, double dt, co
 }
 
 // Bundles that met are pushed apart, the rest of the hair follows, and who is in a foreign bundle then is pushed again.
-void partBundles(const CorrectedStep& step, const TakenStep& taken, std::optional<SelfContact>& made, Parts& parts,
-                 HairState& state, StepReport& report) {
+void partBundles(const CorrectedStep& step, std::optional<SelfContact>& made, Parts& parts, HairState& state,
+                 StepReport& report) {
   if (!made) made.emplace(step.mesh);
   SelfContact& self = *made;
   report.self_contacts = resolveSelfContacts({step.mesh, step.params, step.start, step.dt}, self, state);
@@ -205,8 +205,6 @@ void partBundles(const CorrectedStep& step, const TakenStep& taken, std::optiona
     followPushed(step, self.unmoved, self.moved, parts.correction, state);
     resolveSelfContacts({step.mesh, step.params, {}, step.dt}, self, state);
   }
-  if (parts.stabilization.active.push_energy)
-    limitPushes(taken, parts.unpushed, parts.stabilization.energy_limit, state);
   slowPushed(step, parts.unpushed, state);
 }
 
@@ -238,7 +236,7 @@ void advanceReference(const SimParams& params, const StepInput& input, double dt
   const TakenStep taken = takenStep(params, base, dt, parts);
   if (nets.active.step_energy) limitEnergy(taken, own.converged, nets.energy_limit, reference);
   if (memory.rest.kept_apart)
-    partBundles({mesh, params, {}, parts.start_positions, dt}, taken, parts.reference_contact, parts, reference, own);
+    partBundles({mesh, params, {}, parts.start_positions, dt}, parts.reference_contact, parts, reference, own);
   for (const double seconds : own.seconds) report.seconds[kStageOther] += seconds;
 }
 
@@ -302,7 +300,7 @@ StepReport advance(const HairMesh& mesh, const SimParams& asked, const StepInput
   stabilize(taken, input, report.converged, parts.stabilization, state, report);
   parts.clock.spent(kStageOther, report);
   // Contacts: position correction and deformation minimization (3), (4), figures 4 and 5.
-  if (params.self_collide) partBundles(step, taken, parts.self_contact, parts, state, report);
+  if (params.self_collide) partBundles(step, parts.self_contact, parts, state, report);
   beginCorrections(parts.correction);
   while (params.collide && findContacts(step, parts.correction, state, report)) {
     correctPositions(step, parts.correction, state, report);

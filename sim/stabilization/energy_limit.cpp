@@ -154,12 +154,12 @@ Account accountFor(const TakenStep& step, EnergyLimit& scratch, const HairState&
   return account;
 }
 
-// Slows what moves against the roots to a share, by vertex, of its speed.
-void slowDown(const TakenStep& step, const EnergyLimit& scratch, HairState& state, const auto& shareOf) {
+// Slows what moves against the roots to a share of its speed.
+void slowDown(const TakenStep& step, const EnergyLimit& scratch, double share, HairState& state) {
   for (int i = 0; i < step.mesh.vertexCount(); ++i) {
     if (step.mesh.isRoot(i)) continue;
     const Vec3 carried = carrying(step, scratch, i);
-    state.velocities[i] = carried + shareOf(i) * (state.velocities[i] - carried);
+    state.velocities[i] = carried + share * (state.velocities[i] - carried);
   }
   state.previous_dt = 0;  // what came before says nothing any more about how it goes on
 }
@@ -188,7 +188,7 @@ double bringBelowBound(const TakenStep& step, int halvings, EnergyLimit& scratch
   const double kept = shorten(step, scratch.carried, account.bound, halvings, stored, scratch, state);
   const double kinetic = kept * kept * account.kinetic, left = std::max(0.0, account.bound - stored);
   const double slowed = kept * (kinetic > left ? std::sqrt(left / kinetic) : 1);
-  slowDown(step, scratch, state, [&](int) { return slowed; });
+  slowDown(step, scratch, slowed, state);
   return kept;
 }
 
@@ -207,7 +207,7 @@ bool bodiesStandStill(const TakenStep& step, const Colliders& colliders, const E
 
 EnergyLimit::EnergyLimit(const HairMesh& mesh) {
   const int n = mesh.vertexCount();
-  carried.resize(n), pushed_to.resize(n), plain.resize(n), pushed.resize(n);
+  carried.resize(n), plain.resize(n);
   roots_before.reserve(mesh.columnCount()), roots_after.reserve(mesh.columnCount());
 }
 
@@ -223,35 +223,6 @@ double limitCorrections(const TakenStep& step, const Colliders& colliders, Energ
   if (!bodiesStandStill(step, colliders, scratch, state)) return 1;
   // Halfway between two distant places outside of a body may lie its inside.
   return bringBelowBound(step, judge(step, state) == Motion::kCalm ? kHalvings : 0, scratch, state);
-}
-
-double limitPushes(const TakenStep& step, std::span<const Vec3> unpushed, EnergyLimit& scratch, HairState& state) {
-  carry(step, state, scratch);
-  // Half way out of a bundle that it has flown into, fast hair would lie within it or beyond. But where no share of its
-  // motion fits, it would be held for ever by what it touches.
-  if (judge(step, state) != Motion::kCalm) {
-    scratch.pushed_to = state.positions;
-    const double kept = bringBelowBound(step, kHalvings, scratch, state);
-    if (kept > 0) return kept;
-    state.positions = scratch.pushed_to;
-  }
-  const Account account = accountFor(step, scratch, state);
-  if (!std::isfinite(account.bound)) return 1;
-  double stored = potential(step, state.positions, scratch);
-  if (stored + account.kinetic <= account.bound) return 1;
-  double pushed = 0;  // J, of motion
-  for (int i = 0; i < step.mesh.vertexCount(); ++i) {
-    scratch.pushed[i] = state.positions[i] != unpushed[i];
-    if (!step.mesh.isRoot(i) && scratch.pushed[i]) pushed += kineticOf(step, scratch, state, i);
-  }
-  const double others = account.kinetic - pushed;
-  const double kept = shorten(step, unpushed, account.bound, kHalvings, stored, scratch, state);
-  // The ones that were pushed pay first.
-  const double left = std::max(0.0, account.bound - stored);
-  const auto share = [](double motion, double most) { return motion > most ? std::sqrt(most / motion) : 1.0; };
-  const double slow_pushed = share(pushed, std::max(0.0, left - others)), slow_others = share(others, left);
-  slowDown(step, scratch, state, [&](int i) { return scratch.pushed[i] ? slow_pushed : slow_others; });
-  return kept;
 }
 
 }  // namespace sim

@@ -38,9 +38,8 @@ struct TakenStep {
 };
 
 struct EnergyLimit {
-  std::vector<Vec3> carried, roots_before, roots_after, pushed_to;
+  std::vector<Vec3> carried, roots_before, roots_after;
   std::vector<V3<double>> plain;
-  std::vector<unsigned char> pushed;
   explicit EnergyLimit(const HairMesh& mesh);
 };
 
@@ -49,14 +48,9 @@ struct EnergyLimit {
 // against the roots that was kept, 1 where all was.
 double limitEnergy(const TakenStep& step, bool solved, EnergyLimit& scratch, HairState& state);
 
-// The same for a step, gentle or not, whose contacts have moved vertices: what corrections lift, and what follows them,
-// must be paid for by what the step began with, where the bodies touched stand still against the roots.
+// The same for a step, gentle or not, whose contacts or self-contacts have moved vertices: what these store or lift,
+// and what follows them, must be paid for by what the step began with, where the bodies touched stand still against the
+// roots. In stiff hair a push of a millimetre may store more than the hair has.
 double limitCorrections(const TakenStep& step, const Colliders& colliders, EnergyLimit& scratch, HairState& state);
-
-// The same for a step whose self-contacts have pushed vertices apart, from `unpushed` (m): in stiff hair a push of a
-// millimetre may store more than the hair has. In a gentle step the push alone is shortened, and what overlaps then
-// comes out in the steps to come; what was pushed pays first with its motion. Returns the share of the push, or of the
-// step, that was kept.
-double limitPushes(const TakenStep& step, std::span<const Vec3> unpushed, EnergyLimit& scratch, HairState& state);
 
 }  // namespace sim

@@ -15,13 +15,12 @@ struct SafetyNets {
   bool oscillation_damping = true;  // oscillation_damping.h
   bool step_energy = true;          // energy_limit.h, limitEnergy
   bool correction_energy = true;    // limitCorrections
-  bool push_energy = true;          // limitPushes
   bool inversion_recovery = true;   // inversion_recovery.h
   bool reference_hair = true;       // reference_hair.h
 };
 
 // Solver::kPaper: the step as published. Only values that are not finite or absurd are repaired.
-inline constexpr SafetyNets kAsPublished{false, true, true, false, false, false, false, false, false, false};
+inline constexpr SafetyNets kAsPublished{false, true, true, false, false, false, false, false, false};
 
 struct SafetyNetName {
   const char* name;
@@ -35,7 +34,6 @@ inline constexpr std::array kSafetyNets{
     SafetyNetName{"oscillation-damping", &SafetyNets::oscillation_damping},
     SafetyNetName{"step-energy", &SafetyNets::step_energy},
     SafetyNetName{"correction-energy", &SafetyNets::correction_energy},
-    SafetyNetName{"push-energy", &SafetyNets::push_energy},
     SafetyNetName{"inversion-recovery", &SafetyNets::inversion_recovery},
     SafetyNetName{"reference-hair", &SafetyNets::reference_hair},
 };

@@ -99,8 +99,9 @@ void stabilize(const TakenStep& step, const StepInput& input, bool converged, St
 void limitCorrectionEnergy(const TakenStep& step, const CorrectedStep& corrected, PositionCorrection& correction,
                            Stabilization& scratch, HairState& state, StepReport& report) {
   // Initial overlaps are lifted out whatever it takes.
-  if (!scratch.active.correction_energy || report.corrected == 0 || report.initial_overlap > 0) return;
-  if (limitCorrections(step, corrected.colliders, scratch.energy_limit, state) == 1) return;
+  const bool moved = report.corrected > 0 || report.self_contacts > 0;
+  if (!scratch.active.correction_energy || !moved || report.initial_overlap > 0) return;
+  if (limitCorrections(step, corrected.colliders, scratch.energy_limit, state) == 1 || !step.params.collide) return;
   // Halfway between two places outside of a body may lie its inside. Nothing may be left there.
   scratch.limited_velocities = state.velocities;
   correctContacts(corrected, correction, state, report);

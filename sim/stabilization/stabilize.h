@@ -45,8 +45,8 @@ StepInput admitState(const HairMesh& mesh, const ForceModel<double>& model, cons
 void stabilize(const TakenStep& step, const StepInput& input, bool converged, Stabilization& scratch, HairState& state,
                StepReport& report);
 
-// After position correction: what it lifted is paid for by the energy that the step began with. Hair that it lifted by
-// more goes back, and is corrected once more without taking a velocity.
+// After self-contact and position correction: what they lifted is paid for by the energy that the step began with. Hair
+// that they lifted by more goes back, and is corrected once more without taking a velocity.
 void limitCorrectionEnergy(const TakenStep& step, const CorrectedStep& corrected, PositionCorrection& correction,
                            Stabilization& scratch, HairState& state, StepReport& report);
 
