@@ -153,29 +153,43 @@ CoarseSpace<T>::CoarseSpace(const HairMesh& mesh, const ColumnLayout& layout, co
       moves_(layout.size()),
       sums_(static_cast<std::size_t>(kEntries) * layout.stride),
       held_(mesh.vertexCount()) {
-  std::vector<std::vector<int>> neighbours(layout.columns);
-  for (const BlockDiagonal& d : pattern.diagonals) {
+  formGroups();
+  couplePatches();
+  asked_.resize(coupled_.size), answer_.resize(coupled_.size);
+  factor_.analyze(coupled_, minimumDegreeOrder(coupled_, std::vector<unsigned char>(coupled_.size, 1)));
+  factor();  // of nothing: takes the memory
+}
+
+// Columns into groups, and the layers of a group into patches.
+template <class T>
+void CoarseSpace<T>::formGroups() {
+  std::vector<std::vector<int>> neighbours(layout_->columns);
+  for (const BlockDiagonal& d : pattern_->diagonals) {
     if (d.a == d.b || d.offset != 0) continue;
     neighbours[d.a].push_back(d.b);
     neighbours[d.b].push_back(d.a);
   }
   int groups = 0;
-  group_of_ = groupColumns(layout.columns, neighbours, groups);
+  group_of_ = groupColumns(layout_->columns, neighbours, groups);
   group_first_.push_back(0);
   for (int g = 0; g < groups; ++g) {
     int longest = 0;
-    for (int c = 0; c < layout.columns; ++c) {
+    for (int c = 0; c < layout_->columns; ++c) {
       if (group_of_[c] != g) continue;
       grouped_.push_back(c);
-      longest = std::max(longest, layout.length[c]);
+      longest = std::max(longest, layout_->length[c]);
     }
     group_first_.push_back(static_cast<int>(grouped_.size()));
     patch_first_.push_back(patch_first_.back() + (std::max(longest - 1, 0) + kLayers - 1) / kLayers);
   }
-  // Classes, and the pairs of patches that each couples.
+}
+
+// The classes of block diagonals, the pairs of patches that each couples, and the matrix of these pairs.
+template <class T>
+void CoarseSpace<T>::couplePatches() {
   std::map<std::array<int, 4>, std::vector<int>> by_class;
-  for (std::size_t k = 0; k < pattern.diagonals.size(); ++k) {
-    const BlockDiagonal& d = pattern.diagonals[k];
+  for (std::size_t k = 0; k < pattern_->diagonals.size(); ++k) {
+    const BlockDiagonal& d = pattern_->diagonals[k];
     by_class[{group_of_[d.a], group_of_[d.b], d.offset, d.symmetric()}].push_back(static_cast<int>(k));
   }
   std::vector<std::pair<int, int>> pairs;
@@ -187,7 +201,7 @@ CoarseSpace<T>::CoarseSpace(const HairMesh& mesh, const ColumnLayout& layout, co
       const int at = patch_first_[group] + (layer - 1) / kLayers;
       return layer >= 1 && at < patch_first_[group + 1] ? at : -1;
     };
-    for (int l = 0; l < layout.stride; ++l) {
+    for (int l = 0; l < layout_->stride; ++l) {
       const int p = patch(key[0], l), q = patch(key[1], l + key[2]);
       if (p < 0 || q < 0) continue;
       const int row = std::max(p, q), column = std::min(p, q);
@@ -210,9 +224,6 @@ CoarseSpace<T>::CoarseSpace(const HairMesh& mesh, const ColumnLayout& layout, co
     }
   }
   matrix_ = BlockMatrix<T>(&coupled_);
-  asked_.resize(coupled_.size), answer_.resize(coupled_.size);
-  factor_.analyze(coupled_, minimumDegreeOrder(coupled_, std::vector<unsigned char>(coupled_.size, 1)));
-  factor();  // of nothing: takes the memory
 }
 
 template <class T>

@@ -80,6 +80,8 @@ class CoarseSpace {
   std::vector<unsigned char> held_;  // per vertex
 
   int patchOf(int column, int layer) const { return patch_first_[group_of_[column]] + (layer - 1) / kLayers; }
+  void formGroups();
+  void couplePatches();
   void setArms(std::span<const V3<T>> x, std::span<const VertexConstraint> constraints);
   void addSums(const Class& one);
   bool factor();

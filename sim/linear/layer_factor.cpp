@@ -171,21 +171,26 @@ LayerFactor<T>::LayerFactor(const HairMesh& mesh, const ColumnLayout& layout, co
     }
     rows_.push_back(layout.first(order_[k]));
   }
-  for (std::size_t n = 0; n < pattern.diagonals.size(); ++n) {
-    const BlockDiagonal& d = pattern.diagonals[n];
+  findSources(position, block_of);
+  values_.resize(group_size_ * groups_);
+  panel_.resize(std::max<std::size_t>(1, most) * kBlock * lanes_);
+}
+
+template <class T>
+void LayerFactor<T>::findSources(std::span<const int> position, const std::map<std::pair<int, int>, int>& block_of) {
+  for (std::size_t n = 0; n < pattern_->diagonals.size(); ++n) {
+    const BlockDiagonal& d = pattern_->diagonals[n];
     if (d.offset != 0) continue;
     const int a = position[d.a], b = position[d.b];
     sources_.push_back({static_cast<int>(n), a == b ? ~a : block_of.at({std::max(a, b), std::min(a, b)}), a < b});
   }
-  for (int c = 0; c < columns; ++c) {
+  for (int c = 0; c < layout_->columns; ++c) {
     for (std::size_t n = 0; n < sources_.size(); ++n) {
-      const BlockDiagonal& d = pattern.diagonals[sources_[n].diagonal];
+      const BlockDiagonal& d = pattern_->diagonals[sources_[n].diagonal];
       if (d.a == c || d.b == c) sources_of_.push_back(static_cast<int>(n));
     }
     sources_of_first_.push_back(static_cast<int>(sources_of_.size()));
   }
-  values_.resize(group_size_ * groups_);
-  panel_.resize(std::max<std::size_t>(1, most) * kBlock * lanes_);
 }
 
 template <class T>

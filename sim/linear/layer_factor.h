@@ -2,7 +2,9 @@
 // that of the root faces. They are eliminated side by side, one layer a vector lane.
 #pragma once
 
+#include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "sim/contact/contact.h"
@@ -58,6 +60,8 @@ struct LayerFactor {
   std::vector<std::size_t> pivot_at_, block_at_;  // within a group
   LineVector<T> panel_;                           // D L^T of one column
 
+  // `position`: of each column in the elimination; `block_of`: the block at (row, column), both in positions.
+  void findSources(std::span<const int> position, const std::map<std::pair<int, int>, int>& block_of);
   LayerStructure structure() const;
   void clearWithIdentity();
   void mask(std::span<const VertexConstraint> constraints);
