@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "sim/forces/evaluate.h"
+#include "sim/linear/elimination_order.h"
 
 namespace sim {
 namespace {
@@ -128,7 +129,7 @@ void Material::beginBalance() {
   if (factor_.order.empty()) {
     std::vector<unsigned char> free_vertex(n);
     for (int i = 0; i < n; ++i) free_vertex[i] = !mesh_->isRoot(i);
-    factor_.analyze(*mesh_, *pattern_, free_vertex);
+    factor_.analyze(*pattern_, minimumDegreeOrder(*pattern_, free_vertex));
   }
   factor_.beginFactor();
   stage_ = Stage::kFactor;

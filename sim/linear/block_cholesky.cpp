@@ -171,14 +171,6 @@ void BlockCholesky<T>::sortEntries(const BlockPattern& pattern) {
 }
 
 template <class T>
-void BlockCholesky<T>::analyze(const HairMesh& mesh, const BlockPattern& pattern, std::span<const unsigned char> keep) {
-  BlockCholesky<T> other;
-  other.analyze(pattern, nestedDissectionOrder(pattern, keep, dissectionCoordinates(mesh)));
-  analyze(pattern, minimumDegreeOrder(pattern, keep));
-  if (other.value_count_ < value_count_) *this = std::move(other);
-}
-
-template <class T>
 void BlockCholesky<T>::solve(std::span<const V3<T>> r, std::span<V3<T>> z) {
   const int n = static_cast<int>(order.size());
   T* x = work_.data();

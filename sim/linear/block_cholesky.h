@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "sim/linear/block_matrix.h"
-#include "sim/mesh/hair_mesh.h"
 
 namespace sim {
 
@@ -33,9 +32,6 @@ struct BlockCholesky {
   // Lays out the factor of the rows listed, eliminated in about that order (postordered within the elimination tree);
   // rows not listed are treated as fixed and left out. See elimination_order.h.
   void analyze(const BlockPattern& pattern, std::vector<int> elimination_order);
-
-  // The same with whichever of minimum degree and nested dissection fills less on this mesh.
-  void analyze(const HairMesh& mesh, const BlockPattern& pattern, std::span<const unsigned char> keep);
 
   // Factors the matrix; false when a pivot is not positive (the factor is then unusable). Needs analyze.
   bool factor(const BlockMatrix<T>& a);

@@ -80,7 +80,7 @@ template <class T>
 bool Preconditioner<T>::factorWhole(const BlockMatrix<T>& a, std::span<const sim::VertexConstraint> constraints) {
   if (!used_) {
     used_.emplace(pattern_);
-    factor_.analyze(*mesh_, *pattern_, free_);
+    factor_.analyze(*pattern_, sim::minimumDegreeOrder(*pattern_, free_));
   }
   *used_ = a;
   std::vector<M3<T>> keep(pattern_->size, M3<T>{1, 0, 0, 0, 1, 0, 0, 0, 1});
