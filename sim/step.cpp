@@ -241,8 +241,7 @@ void advanceReference(const SimParams& params, const StepInput& input, double dt
 }
 
 SimParams limited(const HairMesh& mesh, const SimParams& asked, const Parts& parts) {
-  const bool limits = parts.stabilization.nets.parameter_limits && asked.solver != Solver::kPaper;
-  return limits ? limitedParameters(mesh, asked) : asked;
+  return parts.stabilization.nets.parameter_limits ? limitedParameters(mesh, asked) : asked;
 }
 
 // Starts the clock and brings what is derived from mesh and parameters up to date. Returns the step's parameters.

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "sim/field_text.h"
+#include "sim/stabilization/parameter_limits.h"
 
 namespace app {
 
@@ -87,6 +89,24 @@ std::string rangeOf(sim::FieldKind kind, double low, double high) {
 void fillRow(bool with_reset, UiState& ui) {
   const float room = ImGui::GetContentRegionAvail().x;
   ImGui::SetNextItemWidth(with_reset ? room - kResetWidth * ui.text_scale - 4 : room);
+}
+
+// Under a slider whose value the hair cannot bear: the value that is used, and why.
+void limitNote(const sim::ParamField& field, const Demo& demo, UiState& ui) {
+  const Actor& actor = selectedActor(demo);
+  const sim::HairMesh& mesh = actor.coarse.active ? actor.coarse.pair->coarse->mesh : actor.haircut->mesh;
+  for (const sim::LimitedValue& limited : sim::limitedValues(mesh, demo.scene.sim)) {
+    if (limited.field != &field) continue;
+    char text[160];
+    std::snprintf(text, sizeof text, "used: %.3g %s, %s", limited.used, field.unit, limited.reason);
+    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + kLabelShare * ImGui::GetContentRegionAvail().x);
+    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_CheckMark));
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextUnformatted(text);
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
+    noteItem(std::string(field.name) + " " + text, ui);
+  }
 }
 
 }  // namespace
@@ -211,6 +231,7 @@ void simRow(const sim::ParamField& field, Demo& demo, UiState& ui) {
     postRequest(demo, {Ask::kSetParam, field.name, sim::paramText(field, wanted)});
   }
   if (touched && resetMark(field.name, standard, ui)) postRequest(demo, {Ask::kSetParam, field.name, standard});
+  limitNote(field, demo, ui);
   ImGui::PopID();
 }
 

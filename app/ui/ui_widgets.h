@@ -21,7 +21,8 @@ void tip(const std::string& text);
 // A heading that folds; returns whether it is open.
 bool section(const char* title, bool open_at_first);
 
-// Name, control, and a reset mark while the value is not the default. A change becomes a request.
+// Name, control, and a reset mark while the value is not the default; below, the value that is used where the hair
+// cannot bear it. A change becomes a request.
 void simRow(const sim::ParamField& field, Demo& demo, UiState& ui);
 template <class Owner>
 void lookRow(const LookField<Owner>& field, const Owner& owner, Demo& demo, UiState& ui);

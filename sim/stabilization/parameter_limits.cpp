@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 namespace sim {
 
@@ -11,6 +12,7 @@ double windLoad(const SimParams& params) {
 }
 
 SimParams limitedParameters(const HairMesh& mesh, SimParams params) {
+  if (params.solver == Solver::kPaper) return params;
   if (params.volume <= 0 && params.stretch_along <= 0) return params;
   double blow = windLoad(params);
   if (blow > kMaxWindLoad) {
@@ -20,6 +22,21 @@ SimParams limitedParameters(const HairMesh& mesh, SimParams params) {
   const double stress = params.density * (params.gravity + blow) * mesh.hair_length;
   params.stretch_along = std::max(params.stretch_along, stress / kMaxLoadStrain);
   return params;
+}
+
+std::vector<LimitedValue> limitedValues(const HairMesh& mesh, const SimParams& params) {
+  const SimParams limited = limitedParameters(mesh, params);
+  std::vector<LimitedValue> values;
+  for (const ParamField& field : paramFields()) {
+    const double used = field.get(limited);
+    if (used == field.get(params)) continue;
+    const bool stiffness = std::string_view(field.name) == "stretch_along";
+    values.push_back({&field, used,
+                      !stiffness              ? "with this air drag and gust, more would only crush the hair"
+                      : windLoad(limited) > 0 ? "to bear the hair's weight and the wind"
+                                              : "to bear the hair's weight"});
+  }
+  return values;
 }
 
 }  // namespace sim

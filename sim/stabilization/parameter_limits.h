@@ -8,6 +8,8 @@
 // crushes it.
 #pragma once
 
+#include <vector>
+
 #include "sim/mesh/hair_mesh.h"
 #include "sim/sim_params.h"
 
@@ -22,7 +24,17 @@ inline constexpr double kMaxWindLoad = 100;  // m/s^2, of wind and gusts on hair
 double windLoad(const SimParams& params);
 
 // `params` with no more wind than that, and the least stretch_along (Pa) that bears density, gravity, wind and drag.
-// Loose particles, without walls and volume, are left as they are.
+// Loose particles, without walls and volume, are left as they are; so is the published step (Solver::kPaper).
 SimParams limitedParameters(const HairMesh& mesh, SimParams params);
+
+// A parameter of which a step uses another value than is set.
+struct LimitedValue {
+  const ParamField* field;  // its row of the table
+  double used;              // in that row's unit
+  const char* reason;       // for the artist, to follow the value: "to bear the hair's weight"
+};
+
+// All that limitedParameters changes, in the table's order.
+std::vector<LimitedValue> limitedValues(const HairMesh& mesh, const SimParams& params);
 
 }  // namespace sim

@@ -5,12 +5,14 @@
 #include <imgui/imgui.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 #include "app/files/data_path.h"
 #include "app/scene/demo.h"
+#include "sim/stabilization/parameter_limits.h"
 
 namespace {
 
@@ -86,6 +88,15 @@ class Panels : public testing::Test {
     return all;
   }
 
+  // The note under a slider, or "".
+  std::string noteOf(const std::string& name) {
+    frame();
+    for (const UiItem& item : ui_.items) {
+      if (item.name.starts_with(name + " used: ")) return item.name.substr(name.size() + 1);
+    }
+    return "";
+  }
+
   void openTab(int index) {
     ui_.open_tab = index;
     frame();
@@ -144,6 +155,26 @@ TEST_F(Panels, DraggingASliderSetsTheParameterAndItsMarkResetsIt) {
   demo_.requests = reset;
   app::applyRequests(demo_);
   EXPECT_EQ(demo_.scene.sim.density, sim::SimParams{}.density);
+}
+
+TEST_F(Panels, ASliderBelowWhatTheHairBearsSaysWhatIsUsedAndWhy) {
+  ImGui::GetIO().DisplaySize = {1280, 3000};
+  openTab(0);
+  click("section World", 0.3f);
+  for (const char* name : {"stretch_along", "wind_x", "wind_z"}) EXPECT_EQ(noteOf(name), "") << name;
+  sim::SimParams& params = demo_.scene.sim;
+  params.stretch_along = 100;
+  const double bearable = sim::limitedParameters(app::selectedActor(demo_).haircut->mesh, params).stretch_along;
+  char expected[80];
+  std::snprintf(expected, sizeof expected, "used: %.3g Pa, to bear the hair's weight", bearable);
+  EXPECT_EQ(noteOf("stretch_along"), expected);
+  EXPECT_EQ(noteOf("density"), "");
+  params.wind_x = -40, params.air_drag = 10;
+  EXPECT_TRUE(noteOf("stretch_along").ends_with("the hair's weight and the wind")) << noteOf("stretch_along");
+  EXPECT_EQ(noteOf("wind_x"), "used: -10 m/s, with this air drag and gust, more would only crush the hair");
+  EXPECT_EQ(noteOf("wind_z"), "");
+  params.solver = sim::Solver::kPaper;
+  for (const char* name : {"stretch_along", "wind_x"}) EXPECT_EQ(noteOf(name), "") << name;
 }
 
 TEST_F(Panels, StylesAndResolutionsAreButtons) {
