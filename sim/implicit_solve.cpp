@@ -9,8 +9,6 @@ namespace sim {
 namespace {
 
 constexpr int kContactRounds = 4;  // solves of one linear system while contacts release or start to slide
-// A relative residual in the norm of the two levels says less of the error than one in the energy norm.
-constexpr double kResidualShare = 0.8;
 // What the two levels answer to a residual is up to an order less than the error itself.
 constexpr double kErrorShare = 0.1;
 // Roots that stop or start within a step put hundreds of joules into the first residual, and a solve that leaves a
@@ -219,7 +217,6 @@ StopRule<T> ImplicitSolver<T>::stopRule(const HairMesh& mesh, const SimParams& p
   stop.max_iterations = params.max_iterations;
   if (params.solver == Solver::kPaper) return stop;
   const double shorter = std::min(1.0, stop.h / kFullTolerance);
-  stop.relative = kResidualShare * params.tolerance;
   stop.displacement = kErrorShare * shorter * shorter * params.displacement_tolerance;
   stop.most_first = kFullStart * energyScale(mesh);
   return stop;
