@@ -42,7 +42,8 @@ struct Filter {
 };
 
 // A solve stops, converged, at the first of
-// - the relative residual, in the preconditioner's norm, measured against the first;
+// - the relative error, in the energy norm, estimated by the gains of the iterations and by the residual in the
+//   preconditioner's norm;
 // - no vertex's residual above `acceleration` (against `inverse_mass_dt`);
 // - no vertex moved by more than `displacement` in the time `h` by the velocity P r, an estimate of the error.
 // It stops, not converged, at max_iterations, or where iterations change x by no more than rounding does.
@@ -126,9 +127,10 @@ class PcgRun {
   }
 
  private:
-  static constexpr int kRealign = 16;   // iterations, after which rounding has left something along the deflated
-  static constexpr int kLookBack = 16;  // iterations from one test for stagnation to the next
-  static constexpr double kNoise = 64;  // squared rounding errors that kLookBack iterations gain in stagnation
+  static constexpr int kRealign = 16;        // iterations, after which rounding has left something along the deflated
+  static constexpr int kLookBack = 16;       // iterations from one test for stagnation to the next
+  static constexpr double kNormShare = 0.1;  // of the squared tolerance
+  static constexpr double kNoise = 64;       // squared rounding errors that kLookBack iterations gain in stagnation
 
   void begin(std::span<const V3<T>> b, SolveStart start) {
     if (start == SolveStart::kFresh) {
@@ -155,7 +157,7 @@ class PcgRun {
     const T alpha = static_cast<T>(step);
     addScaled<T>(alpha, d_, x_);
     addScaled<T>(-alpha, q_, r_);
-    recent_ += step * step * curvature;
+    countGain(step * step * curvature);
     ++report_.iterations;
     if (report_.iterations % kRealign == 0) alignToDeflated();
     precondition();
@@ -175,16 +177,35 @@ class PcgRun {
     s_.square = innerProduct<T>(r_, z_);
   }
 
+  // The gain of an iteration (J, of the squared energy norm of the error; Hestenes and Stiefel 1952). The larger of the
+  // last two ratios of gains, as a geometric series, estimates what is left (after Strakos and Tichy 2002).
+  void countGain(double gain) {
+    const double ratio = gain_ > 0 ? gain / gain_ : 1;
+    rate_ = std::max(ratio, last_ratio_);
+    last_ratio_ = ratio;
+    gain_ = gain;
+    recent_ += gain;
+    s_.gained += gain;
+  }
+
+  // By the preconditioner's norm of the residual, which may be less than the energy norm of the error by an order, or
+  // by the estimate of that norm.
+  bool withinTolerance() const {
+    const double bound = stop_.relative * stop_.relative;
+    if (!(s_.square > kNormShare * bound * s_.first_square)) return true;
+    if (!(rate_ < 1)) return false;
+    const double left = gain_ * rate_ / (1 - rate_);
+    return left <= bound * std::min(s_.gained + left, stop_.most_first);
+  }
+
   bool closeEnough() const {
-    return !(s_.square > stop_.relative * stop_.relative * s_.first_square) || calm_ ||
-           (stop_.displacement > 0 && allWithin(stop_.displacement / stop_.h, z_, {}));
+    return withinTolerance() || calm_ || (stop_.displacement > 0 && allWithin(stop_.displacement / stop_.h, z_, {}));
   }
 
   // Beyond rounding, in the energy norm, filtered directions are no longer conjugate and the residual grows again.
   bool stagnates() {
     if (report_.iterations % kLookBack != 0) return false;
     constexpr double kRounding = std::numeric_limits<T>::epsilon();
-    s_.gained += recent_;
     return std::exchange(recent_, 0) <= kNoise * kRounding * kRounding * s_.gained;
   }
 
@@ -228,8 +249,9 @@ class PcgRun {
   SolverScratch<T>& s_;
   std::span<V3<T>> x_, r_, z_, d_, q_;
   SolveReport report_;
-  bool calm_ = false;  // no vertex's residual exceeds the bound on its acceleration
-  double recent_ = 0;  // J, gained since the last test for stagnation
+  bool calm_ = false;                            // no vertex's residual exceeds the bound on its acceleration
+  double recent_ = 0;                            // J, gained since the last test for stagnation
+  double gain_ = 0, last_ratio_ = 1, rate_ = 1;  // see countGain
 };
 
 // `a(x, y)`: y = A x. `preconditioner.apply(r, z)`: z = P r, P symmetric and positive definite.
