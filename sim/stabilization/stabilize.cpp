@@ -20,31 +20,16 @@ void nameForceAt(const ForceModel<double>& model, std::span<const Vec3> x, Stabi
   nameForce(model, scratch.plain_positions, fault);
 }
 
-void repairInput(const HairMesh& mesh, const ForceModel<double>& model, const StepInput& input, Stabilization& scratch,
-                 HairState& state, StepReport& report) {
+// Puts `good` back where `state` is not finite or absurd, and says so in the report. `given`: FaultReport's.
+void repairState(const HairMesh& mesh, const ForceModel<double>& model, std::span<const Vec3> roots,
+                 const KeptState& good, bool given, Stabilization& scratch, HairState& state, StepReport& report) {
   FaultReport fault;
-  fault.given = true;
-  const GoodState& good = state.memory.good;
-  repair(mesh, input.roots, good, state, fault);
+  fault.given = given;
+  repair(mesh, roots, good, state, fault);
   if (fault.fault == StateFault::kNone) return;
   ++report.recoveries;
   // At the last good place: of absurd places no force says anything.
   nameForceAt(model, good.positions.empty() ? mesh.shape.positions : good.positions, scratch, fault);
-  report.fault_report = fault;
-}
-
-void repairResult(const TakenStep& step, const StepInput& input, Stabilization& scratch, HairState& state,
-                  StepReport& report) {
-  bool fine = true;
-  for (int i = 0; i < step.mesh.vertexCount() && fine; ++i) fine = examine(step.mesh, state, i) == StateFault::kNone;
-  if (fine) return;
-  const std::vector<Vec3> made = state.positions;
-  const GoodState start{{step.positions.begin(), step.positions.end()},
-                        {step.velocities.begin(), step.velocities.end()}};
-  FaultReport fault;
-  repair(step.mesh, input.roots, start, state, fault);
-  if (fault.vertex >= 0) nameForceAt(step.model, made, scratch, fault);
-  ++report.recoveries;
   report.fault_report = fault;
 }
 
@@ -76,7 +61,9 @@ Stabilization::Stabilization(const HairMesh& mesh) : recovery(mesh), energy_limi
 
 StepInput admitState(const HairMesh& mesh, const ForceModel<double>& model, const StepInput& input, double dt,
                      SimParams& params, Stabilization& scratch, HairState& state, StepReport& report) {
-  if (scratch.active.input_repair) repairInput(mesh, model, input, scratch, state, report);
+  const GoodState& good = state.memory.good;
+  if (scratch.active.input_repair)
+    repairState(mesh, model, input.roots, {good.positions, good.velocities}, true, scratch, state, report);
   report.carried = scratch.active.teleport && rootSpeed(mesh, input.roots, dt, state) > params.teleport_speed;
   if (!report.carried) return input;
   params.max_depenetration = kAtOnce;
@@ -93,7 +80,8 @@ void stabilize(const TakenStep& step, const StepInput& input, bool converged, St
     const bool looks = windLoad(step.params) < kStorm;
     report.guided = recoverInversions({step.mesh, step.positions, step.dt, looks}, scratch.recovery, state);
   }
-  if (nets.result_repair) repairResult(step, input, scratch, state, report);
+  if (nets.result_repair)
+    repairState(step.mesh, step.model, input.roots, {step.positions, step.velocities}, false, scratch, state, report);
 }
 
 void limitCorrectionEnergy(const TakenStep& step, const CorrectedStep& corrected, PositionCorrection& correction,

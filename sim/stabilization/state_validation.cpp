@@ -126,7 +126,7 @@ void repairRoots(const HairMesh& mesh, std::span<const Vec3> roots, HairState& s
   }
 }
 
-void repair(const HairMesh& mesh, std::span<const Vec3> roots, const GoodState& good, HairState& state,
+void repair(const HairMesh& mesh, std::span<const Vec3> roots, const KeptState& good, HairState& state,
             FaultReport& fault_report) {
   // Roots first: all else is measured against them.
   repairRoots(mesh, roots, state, fault_report);
@@ -143,7 +143,7 @@ void repair(const HairMesh& mesh, std::span<const Vec3> roots, const GoodState& 
   fault_report.vertices += static_cast<int>(ill.size());
 
   const bool known = good.positions.size() == state.positions.size();
-  const std::vector<Vec3>& kept = known ? good.positions : mesh.shape.positions;
+  const std::span<const Vec3> kept = known ? good.positions : mesh.shape.positions;
   std::vector<Vec3> then, now;
   for (int c = 0; c < mesh.columnCount(); ++c) {
     then.push_back(kept[mesh.shape.column_first[c]]);

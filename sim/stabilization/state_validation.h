@@ -37,11 +37,16 @@ StateFault examine(const HairMesh& mesh, const HairState& state, int vertex);
 // where a point is not finite. As many of one as of the other.
 Eigen::Isometry3d rigidMotion(std::span<const Vec3> from, std::span<const Vec3> to);
 
+// What a repair puts back: one value per vertex, or none.
+struct KeptState {
+  std::span<const Vec3> positions, velocities;  // m, m/s
+};
+
 // Heals every ill vertex of `state`: its place becomes the good one, carried along with the roots from there to here,
 // and of the good velocity against the root half is kept. The others keep every bit. A root that is ill, or not where
 // the others are against `roots` (m, one per column, where the scalp takes them), is brought there. `good` may be
-// empty: then it is the rest shape. Counts and names into `trouble`.
-void repair(const HairMesh& mesh, std::span<const Vec3> roots, const GoodState& good, HairState& state,
+// empty: then it is the rest shape. Counts and names into `fault_report`.
+void repair(const HairMesh& mesh, std::span<const Vec3> roots, const KeptState& good, HairState& state,
             FaultReport& fault_report);
 
 // Names the element at the troubled vertex whose force is largest, or not finite, at positions `x` (m).

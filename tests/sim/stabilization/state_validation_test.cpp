@@ -115,7 +115,7 @@ TEST(StateValidation, ARepairChangesNoBitOfOtherVertices) {
     sim::HairState state = hair.state;
     state.positions[vertex].y() = 1e6;
     sim::FaultReport fault_report;
-    sim::repair(hair.mesh, hair.roots, good, state, fault_report);
+    sim::repair(hair.mesh, hair.roots, {good.positions, good.velocities}, state, fault_report);
     EXPECT_EQ(fault_report.vertices, 1);
     EXPECT_EQ(fault_report.vertex, vertex);
     for (int i = 0; i < hair.mesh.vertexCount(); ++i) {
