@@ -50,6 +50,14 @@ TEST(Structure, TheSimulatorKnowsNoPictureNoFileAndNoClock) {
             "");
 }
 
+// Mesh below linear below forces: what solves knows no contact, and what pulls knows no stabilization.
+TEST(Structure, RoomsOfTheSimulatorStandOnThoseBelow) {
+  EXPECT_EQ(includesOf("sim/mesh", "sim/(linear|forces|contact|stabilization|styles)/"), "");
+  EXPECT_EQ(includesOf("sim/linear", "sim/(forces|contact|stabilization|styles)/"), "");
+  EXPECT_EQ(includesOf("sim/forces", "sim/(stabilization|styles)/"), "");
+  EXPECT_EQ(includesOf("sim/contact", "sim/(stabilization|styles)/"), "");
+}
+
 TEST(Structure, TheRendererKnowsNoSimulatorAndNoProgram) {
   EXPECT_EQ(includesOf("render", "sim/|app/|GLFW|EGL|imgui|assimp|nlohmann|CLI"), "");
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "sim/contact/contact.h"
+#include "sim/mesh/vertex_constraint.h"
 
 namespace sim {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <span>
 
-#include "sim/contact/contact.h"
 #include "sim/linear/vector3.h"
+#include "sim/mesh/vertex_constraint.h"
 
 namespace sim {
 

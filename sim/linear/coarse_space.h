@@ -12,10 +12,10 @@
 #include <span>
 #include <vector>
 
-#include "sim/contact/contact.h"
 #include "sim/linear/block_cholesky.h"
 #include "sim/linear/block_matrix.h"
 #include "sim/linear/column_matrix.h"
+#include "sim/mesh/vertex_constraint.h"
 
 namespace sim {
 

@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "sim/contact/contact.h"
 #include "sim/linear/block_matrix.h"
 #include "sim/linear/column_matrix.h"
+#include "sim/mesh/vertex_constraint.h"
 
 namespace sim {
 
