@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <memory>
@@ -35,9 +36,9 @@ class GlTest : public ::testing::Test {
   }
 };
 
-// A copy of the shaders that a test may add to or break.
+// A copy of the shaders, of this process alone, that a test may add to or break.
 inline std::string copyShaders(const std::string& name) {
-  const std::string folder = std::string(HAIRMESH_TEST_OUT) + "/" + name;
+  const std::string folder = std::string(HAIRMESH_TEST_OUT) + "/" + name + "_" + std::to_string(::getpid());
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   std::filesystem::copy(kShaderDir, folder, std::filesystem::copy_options::recursive);

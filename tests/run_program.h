@@ -25,9 +25,9 @@ inline std::string readAll(const std::string& file) {
   return text.str();
 }
 
-// A fresh folder of the tests' output.
+// A fresh folder of the tests' output, of this process alone.
 inline std::string freshFolder(const std::string& name) {
-  const auto folder = std::filesystem::path(HAIRMESH_TEST_OUT) / name;
+  const auto folder = std::filesystem::path(HAIRMESH_TEST_OUT) / (name + "_" + std::to_string(::getpid()));
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder.string();

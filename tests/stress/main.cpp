@@ -237,5 +237,8 @@ int main(int argc, char** argv) {
   } catch (const app::InputError& error) {
     std::cerr << "hairmesh-stress: " << error.what() << "\n";
     return app::kExitBadInput;
+  } catch (const app::OutputError& error) {
+    std::cerr << "hairmesh-stress: " << error.what() << "\n";
+    return app::kExitFault;
   }
 }
