@@ -193,7 +193,8 @@ TakenStep takenStep(const SimParams& params, const StepBase& base, double dt, co
           base.wind,   parts.pins};
 }
 
-// Bundles that met are pushed apart, the rest of the hair follows, and who is in a foreign bundle then is pushed again.
+// Bundles that met are pushed apart and the rest of the hair follows; what then lies in a foreign bundle is pushed
+// again.
 void partBundles(const CorrectedStep& step, std::optional<SelfContact>& made, Parts& parts, HairState& state,
                  StepReport& report) {
   if (!made) made.emplace(step.mesh);

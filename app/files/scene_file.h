@@ -1,4 +1,4 @@
-// A scene: who is in it, how they move, and everything a person may have turned. Read from JSON, written back as JSON.
+// A scene: its characters, their motion, and everything a person may have turned. Read from JSON, written back as JSON.
 //
 // {
 //   "name": "Walk",

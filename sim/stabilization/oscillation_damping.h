@@ -1,10 +1,9 @@
-// Oscillation damping of vertices that a linearized step throws past their balance, and the next one back, for ever.
+// Oscillation damping: under-relaxes vertices that turn back with every step.
 //
 // Where forces are far from linear over a step (sharply folded hinges of limp hair, hair that wind presses into
-// itself), the map from one step to the next may have an eigenvalue below -1 although no energy is to be had: the
-// vertex goes to and fro with every step, by a fraction of a millimetre, and the hair never rests. No motion that such
-// a step resolves turns back with every step. A vertex that has done so for some steps goes half of its way: an
-// eigenvalue of -1 becomes 0, one of -3 becomes -1 (under-relaxation).
+// itself), the map from one step to the next may have an eigenvalue below -1 although the energy does not grow. The
+// vertex then goes to and fro by a fraction of a millimetre for ever. No motion that the step resolves turns back with
+// every step, so such a vertex goes half of its way: an eigenvalue of -1 becomes 0, one of -3 becomes -1.
 #pragma once
 
 #include <span>

@@ -1,11 +1,8 @@
-// Parameters that a hair can bear.
+// Parameter limits: what the parameters ask for together, held to what hair can bear.
 //
-// Sliders are independent of one another, what they ask for is not: hair of a thousand kilograms a cubic metre, in a
-// storm, with walls as soft as foam would be stretched to a hundred times its length. No style looks like that, and no
-// step of such hair is near to linear. So the walls are taken to be at least as stiff along the hair as it takes to
-// bear the hair's own weight and the wind without a visible stretch; whoever turns that slider lower finds that it does
-// no more. And wind presses no harder than ten weights: hair streams straight out by then, and what comes on top only
-// crushes it.
+// Rule for the walls: `stretch_along` is at least what bears the hair's weight, the wind and the drag within
+// kMaxLoadStrain. Rule for the air: wind and gusts press no harder than kMaxWindLoad, ten weights, at which hair
+// streams straight out. Beyond both no step is near to linear.
 #pragma once
 
 #include <vector>

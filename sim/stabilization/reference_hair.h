@@ -1,11 +1,10 @@
-// Hair that has come to rest in another shape than its own.
+// The reference hair: tells whether hair rests in its own shape.
 //
-// A style may have more than one shape in which its forces balance: a tip caught behind its neighbours, a lock bent the
-// other way. Nothing is turned over there and nothing folded, so combing out has nothing to see, and yet the hair hangs
-// a centimetre off for good. What tells it is energy: when hair hangs still and touches no body, a twin is put to the
-// rest shape and settles in the same air, under the same parameters and from the same roots. Where it comes to rest
-// elsewhere and lower, the hair is led there as if it were combed out. Soft hair that found a shape as low as its own,
-// or a lower one, is left in it.
+// The forces of a style may balance in more than one shape: a tip caught behind its neighbours, a lock bent the other
+// way. No element is inverted there, so inversion recovery finds nothing. The energy tells the shapes apart. When hair
+// hangs still and touches no body, a reference hair starts from the rest shape under the same parameters, air and
+// roots. Where the reference comes to rest elsewhere and with less energy, the hair is guided there. Hair with no more
+// energy than its reference stays as it is.
 #pragma once
 
 #include <functional>

@@ -130,17 +130,17 @@ void repair(const HairMesh& mesh, std::span<const Vec3> roots, const KeptState& 
             FaultReport& fault_report) {
   // Roots first: all else is measured against them.
   repairRoots(mesh, roots, state, fault_report);
-  std::vector<int> ill;
+  std::vector<int> faulty;
   for (int i = 0; i < mesh.vertexCount(); ++i) {
     const StateFault fault = examine(mesh, state, i);
     if (fault == StateFault::kNone) continue;
-    ill.push_back(i);
+    faulty.push_back(i);
     if (fault_report.fault != StateFault::kNone) continue;
     fault_report.fault = fault;
     fault_report.vertex = i, fault_report.column = mesh.column_of[i], fault_report.layer = mesh.layer_of[i];
   }
-  if (ill.empty()) return;
-  fault_report.vertices += static_cast<int>(ill.size());
+  if (faulty.empty()) return;
+  fault_report.vertices += static_cast<int>(faulty.size());
 
   const bool known = good.positions.size() == state.positions.size();
   const std::span<const Vec3> kept = known ? good.positions : mesh.shape.positions;
@@ -151,7 +151,7 @@ void repair(const HairMesh& mesh, std::span<const Vec3> roots, const KeptState& 
   }
   // Where the roots have not moved the state is put back to the bit.
   const Eigen::Isometry3d motion = then == now ? Eigen::Isometry3d::Identity() : rigidMotion(then, now);
-  for (const int i : ill) {
+  for (const int i : faulty) {
     const int root = rootOf(mesh, i);
     state.positions[i] = motion * kept[i];
     state.velocities[i] = state.velocities[root];
@@ -160,7 +160,8 @@ void repair(const HairMesh& mesh, std::span<const Vec3> roots, const KeptState& 
     state.previous_velocities[i] = state.velocities[i];
     state.previous_positions[i] = state.positions[i] - state.previous_dt * state.velocities[i];
   }
-  std::erase_if(state.contacts, [&](const Contact& c) { return std::binary_search(ill.begin(), ill.end(), c.vertex); });
+  std::erase_if(state.contacts,
+                [&](const Contact& c) { return std::binary_search(faulty.begin(), faulty.end(), c.vertex); });
 }
 
 void nameForce(const ForceModel<double>& model, std::span<const V3<double>> x, FaultReport& fault_report) {

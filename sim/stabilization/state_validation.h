@@ -1,6 +1,6 @@
-// The watchdog: finds values that are not finite or absurd, says where and under which force, and puts the last good
-// state back there and nowhere else. Also what it shares with teleports: the rigid motion that brings roots from one
-// place to another, and the speed at which they went.
+// State validation: finds values that are not finite or absurd, names the place and the force, and restores the last
+// good state at these vertices alone. Teleports share two of its functions: the rigid motion between two sets of roots,
+// and the roots' speed.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -16,14 +16,14 @@ namespace sim {
 
 enum class StateFault { kNone, kNotFinite, kFarAway, kTooFast, kOffScalp };
 
-// What the watchdog found in a step, for the log. Of several vertices the first is named.
+// The fault found in a step, for the log. Of several vertices the first is named.
 struct FaultReport {
   StateFault fault = StateFault::kNone;
   bool given = false;  // in the state as it was handed over, not in what the step made of it
   int vertex = -1, column = -1, layer = -1;
   const char* force = "";  // the force kind that pulls hardest there
   int element = -1;        // its number within the kind
-  int vertices = 0;        // that were ill and healed
+  int vertices = 0;        // that were repaired
 };
 
 // One line for the log, without the line's end.
@@ -42,14 +42,14 @@ struct KeptState {
   std::span<const Vec3> positions, velocities;  // m, m/s
 };
 
-// Heals every ill vertex of `state`: its place becomes the good one, carried along with the roots from there to here,
-// and of the good velocity against the root half is kept. The others keep every bit. A root that is ill, or not where
-// the others are against `roots` (m, one per column, where the scalp takes them), is brought there. `good` may be
-// empty: then it is the rest shape. Counts and names into `fault_report`.
+// Repairs every vertex of `state` that has a fault. Its position becomes the good one, moved rigidly with the roots;
+// half of the good velocity against the root is kept. The other vertices keep every bit. A root with a fault, or away
+// from where `roots` (m, one per column, where the scalp takes them) has it among the others, is brought there. An
+// empty `good` stands for the rest shape. Counts and names into `fault_report`.
 void repair(const HairMesh& mesh, std::span<const Vec3> roots, const KeptState& good, HairState& state,
             FaultReport& fault_report);
 
-// Names the element at the troubled vertex whose force is largest, or not finite, at positions `x` (m).
+// Names the element at the vertex named in `fault_report` whose force is largest, or not finite, at positions `x` (m).
 void nameForce(const ForceModel<double>& model, std::span<const V3<double>> x, FaultReport& fault_report);
 
 // Mean speed (m/s) of the columns' roots from where `state` has them to `roots` within dt.
