@@ -135,7 +135,11 @@ void addPlaybackOptions(CLI::App& parser, Options& options) {
              "Hold the simulation to so many milliseconds a frame: integrator, time step and tolerance are then "
              "chosen by the governor; 0: off")
       ->check(within(0, kLargestBudget));
-  group.flag("--travel", options.travel, "Let the figure travel over the ground as the clip does");
+  group
+      .value("--loop", options.loop, "NAME",
+             "At the clip's end: go-on (from where the figure is), in-place, stop, none (begin again without a blend), "
+             "or auto: whichever of the first two suits the clip")
+      ->check(CLI::IsMember({"auto", "go-on", "in-place", "stop", "none"}));
 }
 
 void addPictureOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {

@@ -44,7 +44,7 @@ struct Options {
   double ui_scale = 1;         // of texts and panels, over the display's own
   std::string panel;           // the tab that is open at first; empty: the first
   std::string record, replay;  // recordings of a run's inputs
-  bool travel = false;         // keep the clip's travel over the ground
+  std::string loop;            // what a clip does at its end; empty: the scene's
 };
 
 // Parses argv with CLI11. Returns false and an exit code when the program has done what was asked (help, a listing).

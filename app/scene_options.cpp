@@ -100,7 +100,7 @@ void overrideCharacter(const Options& options, CharacterSpec& spec) {
   if (!options.parts.empty()) spec.parts = findFile(options.parts, "", "clips");
   if (!options.clip.empty()) spec.clip = options.clip;
   if (options.start >= 0) spec.clip_offset = options.start;
-  if (options.travel) spec.in_place = false;
+  if (!options.loop.empty()) spec.loop = *parseLoop(options.loop);
   for (const std::string& text : options.pins) spec.pins.push_back(pinFromText(text));
 }
 

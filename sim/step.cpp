@@ -16,6 +16,8 @@ namespace sim {
 
 namespace {
 
+constexpr double kSameDirections = 1e-12;  // of a rotation that is none but for rounding
+
 Vec3 windAt(const SimParams& params, double time) {
   // Gusts: two incommensurate periods, so that they do not repeat visibly.
   const double gust = params.gust * (0.6 * std::sin(2.1 * time) + 0.4 * std::sin(5.3 * time + 1.7));
@@ -332,13 +334,27 @@ HairState restState(const HairMesh& mesh, const Eigen::Isometry3d& head_to_world
 
 void carryAlong(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, HairState& state) {
   const Eigen::Isometry3d move = to * from.inverse();
-  for (auto* positions : {&state.positions, &state.previous_positions}) {
-    for (Vec3& p : *positions) p = move * p;
+  const auto carry = [&](std::vector<Vec3>& points) {
+    for (Vec3& p : points) p = move * p;
+  };
+  const auto turn = [&](std::vector<Vec3>& directions) {
+    for (Vec3& v : directions) v = move.linear() * v;
+  };
+  HairMemory& memory = state.memory;
+  for (auto* points : {&state.positions, &state.previous_positions, &memory.good.positions, &memory.self_contact.start,
+                       &memory.self_contact.end})
+    carry(*points);
+  for (auto* directions :
+       {&state.velocities, &state.previous_velocities, &memory.good.velocities, &memory.oscillation.last,
+        &memory.oscillation.carrying, &memory.solve.projection.changes[0], &memory.solve.projection.changes[1]})
+    turn(*directions);
+  for (Contact& contact : state.contacts) {
+    for (Vec3* direction : {&contact.normal, &contact.velocity, &contact.friction_direction})
+      *direction = move.linear() * *direction;
   }
-  for (auto* velocities : {&state.velocities, &state.previous_velocities}) {
-    for (Vec3& v : *velocities) v = move.linear() * v;
-  }
-  for (Contact& contact : state.contacts) contact.normal = move.linear() * contact.normal;
+  for (HairState& reference : memory.rest.reference) carryAlong(from, to, reference);
+  // Factors are of matrices in world directions.
+  if (!move.linear().isIdentity(kSameDirections)) memory.solve.two_level.forget();
 }
 
 void collapseOntoRoots(const HairMesh& mesh, HairState& state) {

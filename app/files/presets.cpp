@@ -6,7 +6,6 @@
 
 #include "app/files/data_path.h"
 #include "app/files/text_file.h"
-#include "app/motion/motion.h"
 #include "sim/field_text.h"
 
 namespace app {

@@ -9,7 +9,6 @@
 #include "app/files/errors.h"
 #include "app/files/json_reader.h"
 #include "app/files/text_file.h"
-#include "app/motion/motion.h"
 #include "sim/field_text.h"
 
 namespace app {
@@ -29,7 +28,7 @@ struct AskName {
   std::string_view name;
 };
 // What can be recorded: all but the requests that write files.
-constexpr std::array<AskName, 26> kAskNames{{{Ask::kSetParam, "set"},
+constexpr std::array<AskName, 24> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kPause, "pause"},
                                              {Ask::kPauseMotion, "pause-motion"},
                                              {Ask::kSingleStep, "single-step"},
@@ -39,8 +38,6 @@ constexpr std::array<AskName, 26> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kCarryAlong, "carry-along"},
                                              {Ask::kSpeed, "speed"},
                                              {Ask::kLoop, "loop"},
-                                             {Ask::kBlend, "blend"},
-                                             {Ask::kInPlace, "in-place"},
                                              {Ask::kClip, "clip"},
                                              {Ask::kStyle, "style"},
                                              {Ask::kResolution, "resolution"},

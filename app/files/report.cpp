@@ -1,7 +1,9 @@
 #include "app/files/report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <sstream>
 
 #include "app/files/output_file.h"
@@ -98,6 +100,15 @@ json actorJson(const Actor& actor) {
   const sim::HairMesh& mesh = actor.haircut->mesh;
   return {{"motion", actor.spec.motion},
           {"clip", actor.playedClip().name},
+          {"clip_seconds", actor.playedClip().duration()},
+          {"loop",
+           {{"asked", loopName(actor.spec.loop)},
+            {"kind", loopName(actor.playback.loop.kind)},
+            {"treadmill", actor.playback.loop.treadmill},
+            {"travel_metres", std::hypot(actor.playback.loop.travel.x, actor.playback.loop.travel.z)},
+            {"turn_degrees", actor.playback.loop.travel.turn * 180 / std::numbers::pi},
+            {"blend_seconds", actor.playback.loop.blend},
+            {"haste", actor.playback.loop.haste}}},
           {"hair", actor.spec.hair.empty() ? std::string(sim::styleName(actor.spec.style)) + " " +
                                                  std::string(sim::resolutionName(actor.spec.resolution))
                                            : actor.spec.hair},

@@ -6,7 +6,6 @@
 #include "app/files/json_reader.h"
 #include "app/files/presets.h"
 #include "app/files/text_file.h"
-#include "app/motion/motion.h"
 
 namespace app {
 
@@ -32,7 +31,7 @@ std::string readFileName(const JsonPlace& place, const std::string& kind) {
 
 CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
   place.expectObject({"motion", "parts", "clip", "style", "resolution", "hair", "reverse_faces", "position", "heading",
-                      "clip_offset", "in_place", "look", "pins"});
+                      "clip_offset", "loop", "look", "pins"});
   CharacterSpec spec;
   spec.look = look;
   if (place.has("motion")) spec.motion = place.at("motion").text();
@@ -49,7 +48,7 @@ CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
   if (place.has("position")) spec.position = toVec3(place.at("position").vector(-kFarthest, kFarthest));
   if (place.has("heading")) spec.heading = place.at("heading").number(-kTurn, kTurn);
   if (place.has("clip_offset")) spec.clip_offset = place.at("clip_offset").number(0, 1e5);
-  if (place.has("in_place")) spec.in_place = place.at("in_place").flag();
+  if (place.has("loop")) spec.loop = *parseLoop(place.at("loop").choice({"auto", "go-on", "in-place", "stop", "none"}));
   if (place.has("look")) readHairRows(place.at("look"), spec.look);
   if (place.has("pins")) spec.pins = readPins(place.at("pins"));
   return spec;
@@ -72,11 +71,9 @@ CameraSpec readCamera(const JsonPlace& place) {
 }
 
 PlaybackSpec readPlayback(const JsonPlace& place) {
-  place.expectObject({"speed", "loop", "blend", "fps", "settle", "budget_ms"});
+  place.expectObject({"speed", "fps", "settle", "budget_ms"});
   PlaybackSpec playback;
   if (place.has("speed")) playback.speed = place.at("speed").number(0, kFastestPlayback);
-  if (place.has("loop")) playback.loop = place.at("loop").flag();
-  if (place.has("blend")) playback.blend = place.at("blend").number(0, 10);
   if (place.has("fps")) playback.fps = place.at("fps").number(kSlowestFps, kFastestFps);
   if (place.has("settle")) playback.settle = place.at("settle").number(0, 10);
   if (place.has("budget_ms")) playback.budget_ms = place.at("budget_ms").number(0, kLargestBudget);
@@ -94,7 +91,7 @@ json writeCharacter(const CharacterSpec& spec) {
           {"position", fromVec3(spec.position)},
           {"heading", spec.heading},
           {"clip_offset", spec.clip_offset},
-          {"in_place", spec.in_place},
+          {"loop", loopName(spec.loop)},
           {"look", writeHairRows(spec.look)},
           {"pins", writePins(spec.pins)}};
 }
@@ -167,8 +164,6 @@ std::string writeScene(const Scene& scene) {
                      {"sim", writeSimRows(scene.sim)},
                      {"playback",
                       {{"speed", scene.playback.speed},
-                       {"loop", scene.playback.loop},
-                       {"blend", scene.playback.blend},
                        {"fps", scene.playback.fps},
                        {"settle", scene.playback.settle},
                        {"budget_ms", scene.playback.budget_ms}}}};

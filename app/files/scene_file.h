@@ -5,12 +5,12 @@
 //   "characters": [{
 //     "motion": "walk.bvh", "parts": "", "clip": "", "style": "shoulder", "resolution": "medium", "hair": "",
 //     "reverse_faces": false,
-//     "position": [0, 0, 0], "heading": 0, "clip_offset": 0, "in_place": true, "look": { a row of the hair table: value
+//     "position": [0, 0, 0], "heading": 0, "clip_offset": 0, "loop": "auto", "look": { a row of the hair table: value
 //     }, "pins": [ as pin_spec.h says ]
 //   }],
 //   "camera": { "view": "three-quarter", "framing": "bust", "eye": [..], "target": [..], "fov": 0.5, "follow": true },
 //   "light": { row: value }, "view": { row: value }, "sim": { row: value },
-//   "playback": { "speed": 1, "loop": true, "blend": 0.4, "fps": 60, "settle": 0.5, "budget_ms": 0 },
+//   "playback": { "speed": 1, "fps": 60, "settle": 0.5, "budget_ms": 0 },
 //   "preset": "soft"
 // }
 // Every key but "characters" may be left out. Files are searched as findFile says.
@@ -24,6 +24,7 @@
 
 #include "app/figure/character.h"
 #include "app/files/pin_spec.h"
+#include "app/motion/playback.h"
 #include "app/scene/look_params.h"
 #include "app/scene/skips.h"
 #include "sim/sim_params.h"
@@ -45,7 +46,7 @@ struct CharacterSpec {
   Vec3 position = Vec3::Zero();  // m, added to the motion
   double heading = 0;            // rad about y, counter-clockwise from above
   double clip_offset = 0;        // s, where in the clip it begins
-  bool in_place = true;          // horizontal travel is taken out of the clip
+  LoopKind loop = LoopKind::kAuto;
   CharacterLook look;
   std::vector<PinSpec> pins;
 };
@@ -60,9 +61,7 @@ struct CameraSpec {
 };
 
 struct PlaybackSpec {
-  double speed = 1;  // clip seconds per second
-  bool loop = true;
-  double blend = 0.4;    // s, at the loop's seam
+  double speed = 1;      // clip seconds per second
   double fps = 60;       // frames per second of a headless run
   double settle = 0.5;   // s of simulation before the first frame
   double budget_ms = 0;  // of simulation a frame that the governor holds to; 0: it is off

@@ -34,7 +34,7 @@ struct WorldFrame {
 struct Inference {
   bool rest_z_up = false, motion_z_up = false;
   bool rest_is_folded = false;  // the rest offsets do not stand like a body: a frame of the motion takes their place
-  bool first_is_rest = false;   // frame 0 is a rest pose apart from the motion
+  int rest_frames = 0;          // frames before the motion that are a rest pose, or lead from it into the motion
   int upright_frame = 0;        // the sampled frame of greatest height
   double height = 0;            // file's unit
   double scale = 1;             // m per file's unit
@@ -238,35 +238,39 @@ void buildClip(const BvhText& bvh, LocalFrames&& frames, const Inference& inferr
     if (i >= joints && rotation.dot(frames.rotations[i - joints]) < 0) rotation.coeffs() = -rotation.coeffs();
     frames.translations[i] = parent * frames.translations[i] * inferred.scale;
   }
-  if (inferred.first_is_rest) {
-    frames.rotations.erase(frames.rotations.begin(), frames.rotations.begin() + static_cast<std::ptrdiff_t>(joints));
-    frames.translations.erase(frames.translations.begin(),
-                              frames.translations.begin() + static_cast<std::ptrdiff_t>(joints));
-  }
+  const auto left_out = static_cast<std::ptrdiff_t>(joints) * inferred.rest_frames;
+  frames.rotations.erase(frames.rotations.begin(), frames.rotations.begin() + left_out);
+  frames.translations.erase(frames.translations.begin(), frames.translations.begin() + left_out);
   clip.frame_time = bvh.frame_time;
   clip.joint_count = static_cast<int>(joints);
   clip.rotations = std::move(frames.rotations);
   clip.translations = std::move(frames.translations);
 }
 
-// Many files (the CMU database's BVH releases among them) put the rest pose before the motion as frame 0. Played, it
-// would throw every limb across the body within one frame. It is taken for one when some joint moves farther from frame
-// 0 to 1 than any joint does between later frames, by a clear factor and by a clear distance.
-bool leadsWithRestPose(const BvhText& bvh, const LocalFrames& frames, double height) {
+// Many files (the CMU database's BVH releases among them) put the rest pose before the motion as frame 0; where the
+// frame rate was changed afterwards, it swings into the motion over several frames. Played, it would throw every limb
+// across the body. It is taken for one when some joint moves farther from frame 0 to 1 than any joint does between
+// later frames, by a clear factor and by a clear distance. Later frames are those from 1 on, or else those from a tenth
+// of a second on. Returns how many frames come before them.
+int leadingRestFrames(const BvhText& bvh, const LocalFrames& frames, double height) {
   constexpr int kMaxCompared = 600;
-  constexpr double kFactor = 4, kMinJump = 0.08;  // the jump in figure heights
-  if (bvh.frame_count < 4) return false;
+  constexpr double kFactor = 4, kMinJump = 0.08, kSwing = 0.1;  // the jump in figure heights, s
+  if (bvh.frame_count < 4) return 0;
+  std::vector<double> jumps;
   WorldFrame before = worldFrame(bvh, frames, 0);
-  double jump = 0, largest_later = 0;
   for (int f = 1; f < std::min(bvh.frame_count, kMaxCompared); ++f) {
     WorldFrame world = worldFrame(bvh, frames, f);
-    for (std::size_t j = 0; j < bvh.joints.size(); ++j) {
-      double& largest = f == 1 ? jump : largest_later;
-      largest = std::max(largest, (world.positions[j] - before.positions[j]).norm());
-    }
+    double& jump = jumps.emplace_back(0);
+    for (std::size_t j = 0; j < bvh.joints.size(); ++j)
+      jump = std::max(jump, (world.positions[j] - before.positions[j]).norm());
     before = std::move(world);
   }
-  return jump > kFactor * largest_later && jump > kMinJump * height;
+  const int swing = std::min(bvh.frame_count / 4, static_cast<int>(kSwing / bvh.frame_time));
+  for (const int leading : {1, std::max(swing, 1)}) {
+    const double largest_later = *std::max_element(jumps.begin() + leading, jumps.end());
+    if (jumps.front() > kFactor * largest_later && jumps.front() > kMinJump * height) return leading;
+  }
+  return 0;
 }
 
 std::vector<std::string> describe(const BvhText& bvh, const Inference& inferred) {
@@ -285,7 +289,9 @@ std::vector<std::string> describe(const BvhText& bvh, const Inference& inferred)
   if (inferred.rest_is_folded) note("rest pose: the file has none that stands; frame %d taken", inferred.upright_frame);
   note("frame rate: %.4g per second, %d frames, %.2f s", 1 / bvh.frame_time, bvh.frame_count,
        bvh.frame_time * (bvh.frame_count - 1));
-  if (inferred.first_is_rest) note("frame 0 is a rest pose apart from the motion: left out of the clip");
+  if (inferred.rest_frames == 1) note("frame 0 is a rest pose apart from the motion: left out of the clip");
+  if (inferred.rest_frames > 1)
+    note("frames 0 to %d lead from a rest pose into the motion: left out of the clip", inferred.rest_frames - 1);
   if (bvh.has_surplus_row) note("one row more than 'Frames:' says: left out");
   if (bvh.frame_count == 1) note("the clip has one frame: a still pose");
   return notes;
@@ -302,7 +308,7 @@ BvhMotion readBvh(std::string_view text, const std::string& file) {
                      "give the joints OFFSETs that stand like a body");
   }
   inferUnit(inferred);
-  inferred.first_is_rest = leadsWithRestPose(bvh, frames, inferred.height);
+  inferred.rest_frames = leadingRestFrames(bvh, frames, inferred.height);
   const std::vector<Quaternion> turns = frameTurns(bvh, frames, inferred);
 
   BvhMotion motion;

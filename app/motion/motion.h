@@ -1,7 +1,6 @@
-// Motion files and playback: BVH, ARCSim .mot, and the clock that plays a clip.
+// Motion files: BVH and ARCSim .mot.
 #pragma once
 
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,29 +35,5 @@ struct RigidMotion {
   std::vector<Rigid> bodies;     // frames x bodies, y up
 };
 RigidMotion readMot(std::string_view text, const std::string& file);
-
-// Plays a clip: speed 0 to 20 (larger is allowed), pause, scrub, loop with a blend over the seam.
-struct Playback {
-  double time = 0;  // s into the clip; may be set to any value, poses clamp it to the clip
-  double speed = 1;
-  bool paused = false;
-  bool loop = true;
-  double blend = 0.4;  // s before the seam over which a loop leads into the clip's start; 0 jumps
-  // The figure starts over the origin, and its net travel and turn from first to last frame are taken out evenly over
-  // the clip, as on a treadmill: a steady drift that hair does not feel. False: it travels as captured (and a loop
-  // brings it back within the blend).
-  bool in_place = true;
-};
-
-// Moves the clock by `seconds` of wall time. A loop wraps around, however large the step; otherwise time stops at the
-// end. Negative and non-finite seconds or speeds do not move it.
-void advancePlayback(const Clip& clip, double seconds, Playback& playback);
-
-// Pose of the playback. In a loop the last `blend` seconds lead into the first frame with matching pose and velocity,
-// joint by joint, and the rest of the clip is untouched: a clip that already loops is played as it is. Allocates only
-// when `pose` grows. With `needed` (one flag a joint, ancestors of needed joints being needed) the other joints are
-// left as they were.
-void poseAt(const Skeleton& skeleton, const Clip& clip, const Playback& playback, Pose& pose,
-            std::span<const unsigned char> needed = {});
 
 }  // namespace app

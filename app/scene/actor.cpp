@@ -115,10 +115,15 @@ int findClip(const CharacterSpec& spec, const Character& character) {
   throw InputError(spec.motion, "clip '" + spec.clip + "'", "is not in the file", "choose one of " + names);
 }
 
+// Where the scene stands the figure.
+Rigid standingPlace(const CharacterSpec& spec) {
+  return Eigen::Translation3d(spec.position) * Eigen::AngleAxisd(spec.heading, Vec3::UnitY());
+}
+
 // The playback's pose where the scene stands the figure; of the joints in `needed` when it is given.
 void placedPose(const Actor& actor, std::span<const unsigned char> needed, Pose& pose) {
   poseAt(actor.body->character.skeleton, actor.playedClip(), actor.playback, pose, needed);
-  const Rigid place = Eigen::Translation3d(actor.spec.position) * Eigen::AngleAxisd(actor.spec.heading, Vec3::UnitY());
+  const Rigid place = standingPlace(actor.spec);
   for (std::size_t j = 0; j < pose.world.size(); ++j) {
     if (needed.empty() || needed[j]) pose.world[j] = place * pose.world[j];
   }
@@ -127,15 +132,15 @@ void placedPose(const Actor& actor, std::span<const unsigned char> needed, Pose&
 // s, between the poses that the reach is taken from.
 constexpr double kReachInterval = 0.2;
 
-// World, around the joints at all times of the clip played in place.
+// World, around the joints at all times of the clip, of a figure that does not go on. Empty for one that does.
 Eigen::AlignedBox3d reachOf(const Actor& actor) {
+  Eigen::AlignedBox3d box;
+  if (actor.playback.loop.kind == LoopKind::kGoOn) return box;
   Actor playing;
   playing.spec = actor.spec;
   playing.body = actor.body;
   playing.clip = actor.clip;
   playing.playback = actor.playback;
-  playing.playback.in_place = true;
-  Eigen::AlignedBox3d box;
   Pose pose;
   const double duration = actor.playedClip().duration();
   const int poses = static_cast<int>(std::min(duration / kReachInterval, 1000.0)) + 1;
@@ -145,6 +150,41 @@ Eigen::AlignedBox3d reachOf(const Actor& actor) {
     for (const Rigid& joint : pose.world) box.extend(joint.translation());
   }
   return box;
+}
+
+Vec3 headCentre(const Character& character, const Rigid& scalp) {
+  return scalp * character.scalp.center;
+}
+
+Rigid headAt(double time, const Actor& actor, Pose& pose) {
+  Playback moment = actor.playback;
+  moment.time = time;
+  poseAt(actor.body->character.skeleton, actor.playedClip(), moment, pose);
+  const Rigid place = standingPlace(actor.spec);
+  for (Rigid& joint : pose.world) joint = place * joint;
+  return scalpToWorld(actor.body->character, pose);
+}
+
+void carryHair(const Rigid& from, const Rigid& to, Actor& actor) {
+  sim::carryAlong(from, to, actor.hair);
+  if (actor.coarse.active) sim::carryAlong(from, to, actor.coarse.hair);
+  for (PartHair& part : actor.part_hairs) sim::carryAlong(from, to, part.hair);
+  wakeAll(actor);
+}
+
+// The figure has jumped from its clip's end to the start: the hair and the pose before the step are carried along, as
+// if it had been there.
+void carryOverCut(Actor& actor) {
+  Pose start, end;
+  const Rigid to = headAt(0, actor, start), from = headAt(actor.playedClip().duration(), actor, end);
+  carryHair(from, to, actor);
+  actor.jumped += headCentre(actor.body->character, to) - headCentre(actor.body->character, from);
+  const Rigid jump = to * from.inverse();
+  if (actor.playback.loop.kind == LoopKind::kNone) {
+    actor.pose = std::move(start);
+  } else {
+    for (Rigid& joint : actor.pose.world) joint = jump * joint;
+  }
 }
 
 void followScalp(const Actor& actor, const Haircut& haircut, std::vector<sim::Vec3>& roots) {
@@ -179,14 +219,9 @@ Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, AssetCa
   actor.scalp = &coverScalp(body, *actor.haircut, asset_cache);
   actor.clip = findClip(spec, actor.body->character);
   actor.id = freshId();
-  actor.playback.time = spec.clip_offset;
   actor.playback.speed = playback.speed;
-  actor.playback.loop = playback.loop;
-  actor.playback.blend = playback.blend;
-  actor.playback.in_place = spec.in_place;
-  // An offset beyond the clip's end starts inside the loop, as if the clip had been playing for so long.
-  const double length = actor.playedClip().duration();
-  if (playback.loop && length > 0) actor.playback.time = std::fmod(spec.clip_offset, length);
+  actor.playback.loop = clipLoop(body.character.skeleton, actor.playedClip(), spec.loop);
+  startPlayback(actor.playedClip(), spec.clip_offset, actor.playback);
   actor.context = std::make_unique<sim::StepContext>(actor.haircut->mesh, now);
   actor.reach = reachOf(actor);
   placeActor(actor, true);
@@ -241,15 +276,16 @@ void copyMotion(const Actor& from, Actor& actor) {
 }
 
 void placeActor(Actor& actor, bool rest) {
-  const bool carried = !rest && !actor.pose.world.empty();
-  const Rigid before = carried ? scalpToWorld(actor.body->character, actor.pose) : Rigid::Identity();
+  const bool stood = !actor.pose.world.empty();
+  const Rigid before = stood ? scalpToWorld(actor.body->character, actor.pose) : Rigid::Identity();
   placedPose(actor, {}, actor.pose);
   const Rigid after = scalpToWorld(actor.body->character, actor.pose);
-  if (carried) {
-    sim::carryAlong(before, after, actor.hair);
+  if (stood && !rest) {
+    carryHair(before, after, actor);
   } else {
     actor.hair = sim::restState(actor.haircut->mesh, after);
   }
+  if (stood) actor.jumped += headCentre(actor.body->character, after) - headCentre(actor.body->character, before);
   actor.previous_pose = actor.pose;
   actor.shown_pose = actor.pose;  // requests may ask for it before the first frame
   actor.previous_positions = actor.hair.positions;
@@ -264,8 +300,36 @@ void placeActor(Actor& actor, bool rest) {
   wakeAll(actor);
 }
 
+void chooseLoop(LoopKind kind, Actor& actor) {
+  actor.spec.loop = kind;
+  actor.playback.loop = clipLoop(actor.body->character.skeleton, actor.playedClip(), kind);
+  actor.playback.place = {};
+  actor.reach = reachOf(actor);
+  placeActor(actor, false);
+}
+
+void goOnWithClip(const std::string& name, Actor& actor) {
+  CharacterSpec spec = actor.spec;
+  spec.clip = name;
+  const Character& character = actor.body->character;
+  actor.clip = findClip(spec, character);
+  spec.clip_offset = 0;
+  actor.spec = std::move(spec);
+  actor.playback.loop = clipLoop(character.skeleton, actor.playedClip(), actor.spec.loop);
+  startPlayback(actor.playedClip(), 0, actor.playback);
+  if (actor.playback.loop.kind == LoopKind::kGoOn) {
+    Pose standing = actor.pose;
+    const Rigid from_scene = standingPlace(actor.spec).inverse();
+    for (Rigid& joint : standing.world) joint = from_scene * joint;
+    actor.playback.place = placeToGoOn(character.skeleton, actor.playedClip(), standing);
+  }
+  actor.reach = reachOf(actor);
+  placeActor(actor, false);
+}
+
 bool moveActor(double step, Actor& actor, bool skip_still_pose, bool skip_idle_bones) {
-  advancePlayback(actor.playedClip(), step, actor.playback);
+  const long rounds = advancePlayback(actor.playedClip(), step, actor.playback);
+  if (rounds > 0 && actor.playback.loop.cuts()) carryOverCut(actor);
   const bool still = actor.playback.time == actor.posed_time;
   if (still && actor.pose_still && skip_still_pose) return false;
   std::swap(actor.previous_pose, actor.pose);

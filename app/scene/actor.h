@@ -12,7 +12,7 @@
 #include "app/figure/body_sdf.h"
 #include "app/figure/character.h"
 #include "app/files/scene_file.h"
-#include "app/motion/motion.h"
+#include "app/motion/playback.h"
 #include "app/scene/pins.h"
 #include "app/scene/step_error.h"
 #include "render/frame_input.h"
@@ -105,7 +105,8 @@ struct Actor {
   const ScalpCover* scalp = nullptr;  // of this body under this haircut
   int clip = 0;
   Playback playback;
-  Eigen::AlignedBox3d reach;  // world, around the joints at all times of the clip played in place
+  Eigen::AlignedBox3d reach;   // world, around the joints at all times of the clip; empty: the figure goes on
+  Vec3 jumped = Vec3::Zero();  // m, sum of the jumps of the head that no motion made
 
   // The last two simulated moments; the picture shows one in between.
   Pose pose, previous_pose;
@@ -159,6 +160,11 @@ void copyMotion(const Actor& from, Actor& actor);
 // Poses the actor at its playback's time without moving the clock; the hair is carried along rigidly (teleport of the
 // second kind), or put to its rest shape when `rest` is set.
 void placeActor(Actor& actor, bool rest);
+
+// Another end of the present clip, from its first round on; another clip of the same file, from where the figure is.
+// The hair is carried along rigidly. The second throws InputError, and then nothing has changed.
+void chooseLoop(LoopKind kind, Actor& actor);
+void goOnWithClip(const std::string& name, Actor& actor);
 
 // One step of motion and hair: playback by `step` seconds of wall time, then the simulation. `time` is the step's end.
 // moveActor and simulateActor are its two halves; moveActor returns whether anything moved.

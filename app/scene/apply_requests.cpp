@@ -38,13 +38,11 @@ void recast(const CharacterSpec& spec, bool same_motion, const std::string& titl
     return loadLater(std::move(order), demo);
   }
   Actor fresh = makeActor(spec, demo.scene.playback, demo.asset_cache);
-  fresh.playback.speed = old.playback.speed;
   fresh.playback.paused = old.playback.paused;
   if (same_motion) copyMotion(old, fresh);
   settleActor(demo.scene.sim, demo.scene.playback.settle, fresh);
   fresh.context->refreshGradually(true);
-  old = std::move(fresh);
-  tidy(demo.actors, demo.asset_cache);
+  replaceActor(std::move(fresh), demo.selected, same_motion, demo);
   showMessage(title, demo);
 }
 
@@ -73,15 +71,16 @@ void changeHairFile(const std::string& file, Demo& demo) {
 
 void changeMotion(const Request& request, Demo& demo) {
   CharacterSpec spec = selectedActor(demo).spec;
-  if (request.what == Ask::kClip) {
-    spec.clip = request.name;
-  } else {
-    spec.motion = findFile(request.text, "", "clips");
-    spec.clip.clear();
-    spec.parts = request.name;
-  }
+  spec.motion = findFile(request.text, "", "clips");
+  spec.clip.clear();
+  spec.parts = request.name;
   spec.clip_offset = 0;
-  recast(spec, false, "motion " + (request.what == Ask::kClip ? request.name : stem(request.text)), demo);
+  recast(spec, false, "motion " + stem(request.text), demo);
+}
+
+void changeClip(const std::string& name, Demo& demo) {
+  goOnWithClip(name, selectedActor(demo));
+  showMessage("clip " + name, demo);
 }
 
 void changeScene(const std::string& file, Demo& demo) {
@@ -143,7 +142,7 @@ void switchSkip(const Request& request, Demo& demo) {
 
 void restart(const Request&, Demo& demo) {
   for (Actor& actor : demo.actors) {
-    actor.playback.time = actor.spec.clip_offset;
+    startPlayback(actor.playedClip(), actor.spec.clip_offset, actor.playback);
     placeActor(actor, true);
     settleActor(demo.scene.sim, demo.scene.playback.settle, actor);
   }
@@ -163,19 +162,10 @@ void setSpeed(const Request& request, Demo& demo) {
 }
 
 void setLoop(const Request& request, Demo& demo) {
-  demo.scene.playback.loop = request.value != 0;
-  for (Actor& actor : demo.actors) actor.playback.loop = demo.scene.playback.loop;
-}
-
-void setBlend(const Request& request, Demo& demo) {
-  demo.scene.playback.blend = std::clamp(request.value, 0.0, 10.0);
-  for (Actor& actor : demo.actors) actor.playback.blend = demo.scene.playback.blend;
-}
-
-void setInPlace(const Request& request, Demo& demo) {
-  Actor& actor = selectedActor(demo);
-  actor.spec.in_place = actor.playback.in_place = request.value != 0;
-  placeActor(actor, false);
+  const auto loop = parseLoop(request.name);
+  if (!loop)
+    throw InputError("", "loop '" + request.name + "'", "is unknown", "choose auto, go-on, in-place, stop or none");
+  chooseLoop(*loop, selectedActor(demo));
 }
 
 void setBudget(const Request& request, Demo& demo) {
@@ -222,9 +212,7 @@ constexpr Action kActions[] = {
     {Ask::kCarryAlong, [](const Request& request, Demo& demo) { scrub(request.value, demo); }},
     {Ask::kSpeed, setSpeed},
     {Ask::kLoop, setLoop},
-    {Ask::kBlend, setBlend},
-    {Ask::kInPlace, setInPlace},
-    {Ask::kClip, changeMotion},
+    {Ask::kClip, [](const Request& request, Demo& demo) { changeClip(request.name, demo); }},
     {Ask::kStyle, changeStyle},
     {Ask::kResolution, changeStyle},
     {Ask::kMotionFile, changeMotion},

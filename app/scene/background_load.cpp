@@ -57,8 +57,7 @@ void recastLoaded(Loaded& loaded, Demo& demo) {
     fresh.playback = old.playback;
     placeActor(fresh, false);
   }
-  old = std::move(fresh);
-  tidy(demo.actors, demo.asset_cache);
+  replaceActor(std::move(fresh), loaded.order.actor, loaded.order.same_motion, demo);
 }
 
 }  // namespace
@@ -119,6 +118,20 @@ void followColliders(Demo& demo) {
     for (Actor& wearer : demo.actors) {
       if (wearer.body == &body) wakeAll(wearer);
     }
+  }
+}
+
+void replaceActor(Actor fresh, int index, bool same_motion, Demo& demo) {
+  Actor& old = demo.actors[static_cast<std::size_t>(index)];
+  fresh.jumped = old.jumped;
+  old = std::move(fresh);
+  tidy(demo.actors, demo.asset_cache);
+  const CameraSpec& camera = demo.scene.camera;
+  if (index != 0 || same_motion || !demo.camera.follow) return;
+  if (camera.eye && camera.target) {
+    lookAtHead(old, demo.camera);
+  } else {
+    frameFigure(camera.framing, old, demo.aspect, demo.camera);
   }
 }
 

@@ -8,10 +8,11 @@
 #include <string>
 
 #include "app/files/scene_file.h"
-#include "app/motion/motion.h"
+#include "app/motion/playback.h"
 
 namespace app {
 
+struct Actor;
 struct Demo;
 struct Loaded;  // what a thread brings back
 
@@ -41,6 +42,9 @@ void installLoaded(Demo& demo);
 // Where signed distances are collided with: starts making those that are missing, and takes over those that are made.
 // Until then the bodies are their ellipsoids. Does nothing unless loading beside the frames is on.
 void followColliders(Demo& demo);
+
+// Puts an actor in another one's place. With another motion the camera, if it follows the actor, frames it anew.
+void replaceActor(Actor fresh, int index, bool same_motion, Demo& demo);
 
 // Opens `scene` in the demo's place; what belongs to the window rather than to the scene stays.
 void replaceScene(Demo fresh, Demo& demo);

@@ -257,7 +257,7 @@ void advanceFrame(Demo& demo, double seconds, const FrameTarget& target) {
   showFault(demo);
 
   timed(demo.stats.seconds[kTimeHandOver], [&] { handOverPositions(asked || steps > 0, demo); });
-  follow(demo.actors.front(), seconds, demo.camera);
+  follow(demo.actors.front(), seconds, demo.aspect, demo.camera);
 
   advanceShownTime(seconds, demo);
 

@@ -44,8 +44,8 @@ Vec3 headOf(const Actor& actor) {
   return scalpToWorld(actor.body->character, actor.pose).translation();
 }
 
-// World, around the figure and its hair. Of a figure that stays in its place whatever its clip does: what is not seen
-// is not posed.
+// World, around the figure and its hair. Of a figure that does not go on whatever its clip does: what is not seen is
+// not posed.
 Eigen::AlignedBox3d boxAround(const Actor& actor) {
   const Character& character = actor.body->character;
   Eigen::AlignedBox3d box;
@@ -178,7 +178,7 @@ void stepInDetail(double time, Demo& demo, Actor& actor) {
   skip_count(kSkipUnseen, !actor.detail.seen, actor.usual_step, demo);
   if (!actor.detail.seen) {
     // Travel is the one way for a figure to come into view by itself.
-    if (actor.playback.in_place) {
+    if (actor.playback.loop.kind != LoopKind::kGoOn) {
       advancePlayback(actor.playedClip(), step, actor.playback);
     } else {
       moveActor(step, actor, skips[kSkipPose], skips[kSkipBones]);
@@ -189,7 +189,7 @@ void stepInDetail(double time, Demo& demo, Actor& actor) {
   }
   if (actor.unseen) {
     // Steps were not taken where the head went: the hair comes along as it was.
-    if (actor.playback.in_place) placeActor(actor, false);
+    if (actor.playback.loop.kind != LoopKind::kGoOn) placeActor(actor, false);
     actor.unseen = false;
   }
   const HaircutPair* pair = actor.detail.coarse ? coarsePair(actor, *actor.detail.coarse, demo.asset_cache) : nullptr;

@@ -17,9 +17,7 @@ enum class Ask {
   kCollapse,     // every vertex onto its column's root (figure 8 of the paper)
   kCarryAlong,   // value: s in the clip; the hair is carried along rigidly
   kSpeed,        // value: clip seconds per second
-  kLoop,         // value
-  kBlend,        // value: s
-  kInPlace,      // value
+  kLoop,         // name: go-on, in-place, ...
   kClip,         // name
   kStyle,        // name
   kResolution,   // name

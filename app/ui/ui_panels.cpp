@@ -134,6 +134,27 @@ void clipRows(const Actor& actor, Demo& demo, UiState& ui) {
   if (entered) postRequest(demo, {Ask::kMotionFile, is_mot ? ui.parts_path.data() : "", ui.motion_path.data()});
 }
 
+void fact(const char* label, const std::string& value) {
+  rowLabel(label, "");
+  ImGui::TextDisabled("%s", value.c_str());
+}
+
+// What the clip does at its end, and what that comes to.
+void loopRows(const Actor& actor, Demo& demo, UiState& ui) {
+  static constexpr LoopKind kKinds[] = {LoopKind::kAuto, LoopKind::kGoOn, LoopKind::kInPlace, LoopKind::kStop,
+                                        LoopKind::kNone};
+  rowLabel("At the end",
+           "Go on from where the figure is, stay in place, stop, or none: begin again without a blend. Auto goes on "
+           "unless the clip stays in place by itself.");
+  const auto chosen = std::find(std::begin(kKinds), std::end(kKinds), actor.spec.loop) - std::begin(kKinds);
+  const int pressed = segments("loop", {"Auto", "Go on", "In place", "Stop", "None"}, static_cast<int>(chosen), ui);
+  if (pressed >= 0) postRequest(demo, {Ask::kLoop, std::string(loopName(kKinds[pressed])), ""});
+  const ClipLoop& loop = actor.playback.loop;
+  char line[64];
+  std::snprintf(line, sizeof line, loop.blend > 0 ? "%s, blend %.2f s" : "%s", loopName(loop.kind).data(), loop.blend);
+  fact("Seam", line);
+}
+
 void playbackRows(const Actor& actor, Demo& demo, UiState& ui) {
   double speed = actor.playback.speed;
   rowLabel("Speed", "Clip seconds per second. The paper shows 10x; the hair's own time does not change.");
@@ -160,23 +181,11 @@ void playbackRows(const Actor& actor, Demo& demo, UiState& ui) {
   if (ImGui::Button("Carry hair along")) postRequest(demo, {Ask::kCarryAlong, "", "", 0});
   noteItem("carry", ui);
 
-  bool held = actor.playback.paused, loop = actor.playback.loop, in_place = actor.playback.in_place;
+  bool held = actor.playback.paused;
   rowLabel("Hold motion", "The figure stands still while the hair goes on");
   if (ImGui::Checkbox("##held", &held)) postRequest(demo, {Ask::kPauseMotion, "", "", held ? 1.0 : 0.0});
   noteItem("hold", ui);
-  rowLabel("Loop", "Begin again at the end");
-  if (ImGui::Checkbox("##loop", &loop)) postRequest(demo, {Ask::kLoop, "", "", loop ? 1.0 : 0.0});
-  noteItem("loop", ui);
-  if (loop) {
-    double blend = actor.playback.blend;
-    rowLabel("Seam", "Time over which a loop leads into its start");
-    ImGui::SetNextItemWidth(-1);
-    if (slider("##blend", 0, 2, "%.2f s", false, blend)) postRequest(demo, {Ask::kBlend, "", "", blend});
-    noteItem("blend", ui);
-  }
-  rowLabel("In place", "Takes the figure's travel over the ground out of the clip");
-  if (ImGui::Checkbox("##in_place", &in_place)) postRequest(demo, {Ask::kInPlace, "", "", in_place ? 1.0 : 0.0});
-  noteItem("in_place", ui);
+  loopRows(actor, demo, ui);
 }
 
 void substepRow(Demo& demo, UiState& ui) {
@@ -189,11 +198,6 @@ void substepRow(Demo& demo, UiState& ui) {
   sim::SimParams wanted = demo.scene.sim;
   wanted.time_step = 1.0 / (60 * kCounts[pressed]);
   postRequest(demo, {Ask::kSetParam, "time_step", sim::paramText(*sim::findParam("time_step"), wanted)});
-}
-
-void fact(const char* label, const std::string& value) {
-  rowLabel(label, "");
-  ImGui::TextDisabled("%s", value.c_str());
 }
 
 std::string metres(double value) {

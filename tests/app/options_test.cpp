@@ -73,7 +73,7 @@ TEST(Options, NothingGivenLeavesAllToTheScene) {
 
 TEST(Options, OverridesReachTheScene) {
   Options options = parse({"--style", "long", "--resolution", "low", "--speed", "3", "--strands", "77", "--set",
-                           "friction=0.5", "--set", "taper=0.9", "--camera", "back", "--travel"})
+                           "friction=0.5", "--set", "taper=0.9", "--camera", "back", "--loop", "go-on"})
                         .options;
   const app::Scene scene = app::sceneFromOptions(options);
   ASSERT_EQ(scene.characters.size(), 1u);
@@ -81,7 +81,7 @@ TEST(Options, OverridesReachTheScene) {
   EXPECT_EQ(scene.characters[0].resolution, sim::Resolution::kLow);
   EXPECT_EQ(scene.characters[0].look.strands, 77);
   EXPECT_EQ(scene.characters[0].look.hair.taper, 0.9f);
-  EXPECT_FALSE(scene.characters[0].in_place);
+  EXPECT_EQ(scene.characters[0].loop, app::LoopKind::kGoOn);
   EXPECT_EQ(scene.playback.speed, 3);
   EXPECT_EQ(scene.sim.friction, 0.5);
   EXPECT_EQ(scene.camera.view, "back");

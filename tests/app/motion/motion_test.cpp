@@ -284,6 +284,15 @@ TEST(Bvh, ARestPoseBeforeTheMotionIsLeftOut) {
   EXPECT_EQ(app::readBvh(figure(kZxy, rows), "clip").clip.frameCount(), 8) << "an even motion keeps its first frame";
 }
 
+TEST(Bvh, ARestPoseThatSwingsIntoTheMotionIsLeftOutWithTheSwing) {
+  std::vector<std::string> rows;
+  for (const double turn : {80.0, 30.0, 12.0, 5.0})
+    rows.push_back("0 95 0 0 " + std::to_string(turn) + " 0 0 0 0 0 0 0");
+  for (int f = 0; f < 36; ++f) rows.push_back("0 95 0 0 " + std::to_string(2 * f) + " 0 0 0 0 0 0 0");
+  const BvhMotion motion = app::readBvh(replaced(figure(kZxy, rows), "Frame Time: 0.02", "Frame Time: 0.01"), "clip");
+  EXPECT_EQ(motion.clip.frameCount(), 30) << "of 40 frames, without a tenth of a second";
+}
+
 TEST(Bvh, TheSameFrameTwiceIsAStillClip) {
   const BvhMotion motion = app::readBvh(figure(kZxy, {kStill, kStill}), "clip");
   EXPECT_EQ(motion.clip.frameCount(), 2);

@@ -1,61 +1,20 @@
-// Sampling and playing clips, and the project's own clips.
+// Sampling and playing clips, and the seam of a loop.
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
+#include <functional>
 #include <limits>
 
-#include "app/files/text_file.h"
-#include "app/motion/motion.h"
+#include "tests/motions.h"
 
 namespace {
 
-using app::BvhMotion;
-using app::Playback;
-using app::Pose;
-using app::Vec3;
-namespace fs = std::filesystem;
-
-const fs::path kSource = HAIRMESH_SOURCE_DIR;
-
-BvhMotion load(const fs::path& file) {
-  return app::readBvh(app::readText(file.string()), file.string());
-}
-BvhMotion ownClip(const std::string& name) {
-  return load(kSource / "assets" / "clips" / (name + ".bvh"));
-}
-
-std::vector<BvhMotion> allClips() {
-  std::vector<BvhMotion> clips;
-  for (const fs::path& folder : {kSource / "assets" / "clips", kSource / ".." / "shared" / "mocap"}) {
-    if (!fs::exists(folder)) continue;
-    for (const auto& entry : fs::directory_iterator(folder)) {
-      if (entry.path().extension() == ".bvh") clips.push_back(load(entry.path()));
-    }
-  }
-  return clips;
-}
-
-Pose at(const BvhMotion& motion, Playback playback, double time) {
-  Pose pose;
-  playback.time = time;
-  app::poseAt(motion.skeleton, motion.clip, playback, pose);
-  return pose;
-}
-
-// Largest distance of a joint between two poses, m.
-double distance(const Pose& a, const Pose& b) {
-  double largest = 0;
-  for (std::size_t j = 0; j < a.world.size(); ++j) {
-    largest = std::max(largest, (a.world[j].translation() - b.world[j].translation()).norm());
-  }
-  return largest;
-}
+using namespace test;
 
 // Fastest joint over the clip without its blend, m/s.
 double topSpeed(const BvhMotion& motion, const Playback& playback) {
   Playback open = playback;
-  open.loop = false;
+  open.loop.blend = 0;
   double largest = 0;
   for (int f = 0; f + 1 < motion.clip.frameCount(); ++f) {
     const double t = f * motion.clip.frame_time;
@@ -68,7 +27,7 @@ double topSpeed(const BvhMotion& motion, const Playback& playback) {
 // one.
 std::vector<double> largestKinks(const BvhMotion& motion, const Playback& playback) {
   Playback open = playback;
-  open.loop = false;
+  open.loop.blend = 0;
   std::vector<double> kinks(motion.skeleton.joints.size(), 0);
   for (int f = 1; f + 1 < motion.clip.frameCount(); ++f) {
     const double h = motion.clip.frame_time;
@@ -79,19 +38,6 @@ std::vector<double> largestKinks(const BvhMotion& motion, const Playback& playba
     }
   }
   return kinks;
-}
-
-// Two joints; the root turns about y by 10 degrees a frame and moves along x by 0.1 m a frame.
-BvhMotion turning(int frames) {
-  std::string text =
-      "HIERARCHY\nROOT a {\nOFFSET 0 0.9 0\nCHANNELS 6 Xposition Yposition Zposition Yrotation Xrotation Zrotation\n"
-      "JOINT b {\nOFFSET 0 1.5 0.1\nCHANNELS 3 Xrotation Yrotation Zrotation\n}\n}\nMOTION\nFrames: " +
-      std::to_string(frames) + "\nFrame Time: 0.1\n";
-  for (int f = 0; f < frames; ++f) {
-    text += std::to_string(0.1 * f) + " 0.9 0 " + std::to_string(10 * f) + " 0 0 " + std::to_string(f % 2 ? 30 : 0) +
-            " 0 0\n";
-  }
-  return app::readBvh(text, "turning");
 }
 
 TEST(SamplePose, AFramesOwnTimeGivesThatFrameExactly) {
@@ -123,7 +69,7 @@ TEST(SamplePose, BetweenFramesIsBetween) {
 
 TEST(SamplePose, TimesOutsideTheClipAreItsEnds) {
   const BvhMotion motion = turning(5);
-  const Pose first = at(motion, {.loop = false, .in_place = false}, 0);
+  const Pose first = at(motion, playing(motion, LoopKind::kStop), 0);
   const auto sampled = [&](double time) {
     Pose pose;
     app::samplePose(motion.skeleton, motion.clip, time, pose);
@@ -149,6 +95,7 @@ TEST(AdvancePlayback, ObeysSpeedPauseAndTheClipsEnds) {
   const app::Clip clip = turning(11).clip;  // 1 s
   Playback playback;
   playback.speed = 20;
+  playback.loop.kind = LoopKind::kNone;
   app::advancePlayback(clip, 0.02, playback);
   EXPECT_NEAR(playback.time, 0.4, 1e-12);
   playback.paused = true;
@@ -157,7 +104,7 @@ TEST(AdvancePlayback, ObeysSpeedPauseAndTheClipsEnds) {
   playback.paused = false;
   app::advancePlayback(clip, 0.05, playback);
   EXPECT_NEAR(playback.time, 0.4, 1e-12) << "a loop wraps";
-  playback.loop = false;
+  playback.loop.kind = LoopKind::kStop;
   app::advancePlayback(clip, 7, playback);
   EXPECT_EQ(playback.time, clip.duration()) << "without a loop it stays at the end";
   playback.speed = 0;
@@ -169,9 +116,14 @@ TEST(AdvancePlayback, NoStepLeavesTheClip) {
   const app::Clip clip = turning(11).clip;
   for (const double step : {1e-300, 0.3, 17.77, 1e9, 1e300, HUGE_VAL, -5.0, -HUGE_VAL, std::nan("")}) {
     for (const double scrub : {0.0, 0.99, 1.0, 55.0, -3.0, std::nan("")}) {
-      for (const bool loop : {true, false}) {
-        Playback playback{.time = scrub, .speed = 3, .loop = loop};
+      for (const LoopKind kind : {LoopKind::kGoOn, LoopKind::kInPlace, LoopKind::kStop, LoopKind::kNone}) {
+        Playback playback;
+        playback.time = scrub;
+        playback.speed = 3;
+        playback.loop.kind = kind;
+        playback.loop.travel = {1, 2, 0.3};
         app::advancePlayback(clip, step, playback);
+        EXPECT_TRUE(playback.place.rigid().matrix().allFinite());
         EXPECT_GE(playback.time, 0) << step << " from " << scrub;
         EXPECT_LE(playback.time, clip.duration()) << step << " from " << scrub;
       }
@@ -179,31 +131,79 @@ TEST(AdvancePlayback, NoStepLeavesTheClip) {
   }
 }
 
-TEST(Seam, JoinsTheClipsEndToItsStart) {
-  for (const BvhMotion& motion : allClips()) {
-    SCOPED_TRACE(motion.clip.name);
-    for (const bool in_place : {true, false}) {
-      const Playback playback{.in_place = in_place};
-      EXPECT_LT(distance(at(motion, playback, motion.clip.duration()), at(motion, playback, 0)), 1e-6);
+// Every clip at hand, going on and staying in place.
+void forEachLoop(const std::function<void(const BvhMotion&, const Playback&)>& look) {
+  const std::vector<BvhMotion> clips = allClips();
+  ASSERT_GE(clips.size(), 5U);
+  for (const BvhMotion& motion : clips) {
+    for (const LoopKind kind : {LoopKind::kGoOn, LoopKind::kInPlace}) {
+      SCOPED_TRACE(motion.clip.name + " " + std::string(app::loopName(kind)));
+      look(motion, playing(motion, kind));
     }
   }
 }
 
-TEST(Seam, StaysWithinTheClipsOwnSpeed) {
-  for (const BvhMotion& motion : allClips()) {
-    SCOPED_TRACE(motion.clip.name);
-    Playback playback;
+// The playback at the start of its next round.
+Playback nextRound(const BvhMotion& motion, Playback playback) {
+  playback.time = 0;
+  app::advancePlayback(motion.clip, motion.clip.duration(), playback);
+  return playback;
+}
+
+TEST(Seam, JoinsTheClipsEndToItsStart) {
+  forEachLoop([](const BvhMotion& motion, const Playback& playback) {
+    const Playback next = nextRound(motion, playback);
+    Pose last = at(motion, playback, motion.clip.duration());
+    if (playback.loop.cuts()) {
+      for (app::Rigid& joint : last.world) joint = playback.loop.travel.rigid().inverse() * joint;
+    }
+    EXPECT_LT(distance(last, at(motion, next, 0)), 1e-6);
+  });
+}
+
+// Largest angle between two neighbouring moments of a joint against its parent, rad.
+double largestTurn(const BvhMotion& motion, const Pose& a, const Pose& b) {
+  double largest = 0;
+  for (std::size_t j = 0; j < a.world.size(); ++j) {
+    const auto local = [&](const Pose& pose) -> Eigen::Matrix3d {
+      const int parent = motion.skeleton.joints[j].parent;
+      if (parent < 0) return pose.world[j].linear();
+      return pose.world[static_cast<std::size_t>(parent)].linear().transpose() * pose.world[j].linear();
+    };
+    largest = std::max(largest, Eigen::AngleAxisd(local(a).transpose() * local(b)).angle());
+  }
+  return largest;
+}
+
+TEST(Seam, TurnsNoJointFasterThanTheClipsFastest) {
+  forEachLoop([](const BvhMotion& motion, const Playback& playback) {
+    Playback open = playback;
+    open.loop.blend = 0;
+    const double step = motion.clip.frame_time;
+    double fastest = 0, blended = 0;
+    for (int f = 1; f < motion.clip.frameCount(); ++f) {
+      const double before = (f - 1) * step, now = f * step;
+      fastest = std::max(fastest, largestTurn(motion, at(motion, open, before), at(motion, open, now)));
+      blended = std::max(blended, largestTurn(motion, at(motion, playback, before), at(motion, playback, now)));
+    }
+    EXPECT_LT(blended, 1.1 * fastest);
+  });
+}
+
+TEST(Seam, MovesNoJointMuchFasterThanTheClipDoes) {
+  forEachLoop([](const BvhMotion& motion, Playback playback) {
+    if (playback.loop.cuts()) return;
     const double top = topSpeed(motion, playback), step = 1.0 / 240;
-    playback.time = motion.clip.duration() - playback.blend - 5 * step;
+    playback.time = motion.clip.duration() - playback.loop.blend;
     Pose before, after;
     app::poseAt(motion.skeleton, motion.clip, playback, before);
-    for (int k = 0; k < 150; ++k) {
+    for (int k = 0; k < playback.loop.blend / step + 20; ++k) {
       app::advancePlayback(motion.clip, step, playback);
       app::poseAt(motion.skeleton, motion.clip, playback, after);
-      ASSERT_LT(distance(before, after), 1.6 * top * step) << "at " << playback.time << " s";
+      ASSERT_LT(distance(before, after), 1.75 * top * step) << "at " << playback.time << " s";
       std::swap(before, after);
     }
-  }
+  });
 }
 
 // Two joints in smooth motion that ends elsewhere and at another velocity than it began.
@@ -228,9 +228,9 @@ TEST(Seam, KeepsVelocity) {
   clips.push_back(smoothMotion());
   for (const BvhMotion& motion : clips) {
     SCOPED_TRACE(motion.clip.name);
-    const Playback playback;
+    const Playback playback = playing(motion, LoopKind::kGoOn), next = nextRound(motion, playback);
     const double step = 1e-5, end = motion.clip.duration();
-    const Pose a = at(motion, playback, end - step), b = at(motion, playback, 0), c = at(motion, playback, step);
+    const Pose a = at(motion, playback, end - step), b = at(motion, next, 0), c = at(motion, next, step);
     const std::vector<double> kink = largestKinks(motion, playback);
     for (std::size_t j = 0; j < a.world.size(); ++j) {
       const Vec3 arriving = (b.world[j].translation() - a.world[j].translation()) / step;
@@ -241,22 +241,27 @@ TEST(Seam, KeepsVelocity) {
 }
 
 TEST(Seam, LeavesTheRestOfTheClipAlone) {
-  for (const BvhMotion& motion : allClips()) {
-    const Playback loop{.in_place = false}, open{.loop = false, .in_place = false};
-    for (double t = 0; t < motion.clip.duration() - loop.blend; t += 0.037) {
+  forEachLoop([](const BvhMotion& motion, const Playback& playback) {
+    if (playback.loop.treadmill) return;
+    const app::GroundPlace& start = playback.loop.start;
+    for (double t = 0; t < motion.clip.duration() - playback.loop.blend; t += 0.037) {
       Pose plain;
       app::samplePose(motion.skeleton, motion.clip, t, plain);
-      ASSERT_EQ(distance(at(motion, loop, t), plain), 0) << motion.clip.name << " at " << t;
-      ASSERT_EQ(distance(at(motion, open, t), plain), 0);
+      for (app::Rigid& joint : plain.world) joint.translation() -= Vec3(start.x, 0, start.z);
+      ASSERT_LT(distance(at(motion, playback, t), plain), 1e-12) << t;
     }
-  }
+  });
 }
 
 TEST(Seam, AClipThatLoopsAlreadyIsPlayedAsItIs) {
   for (const char* name : {"idle_turns", "walk", "head_shake", "jump_spin", "dance"}) {
     const BvhMotion motion = ownClip(name);
+    const Playback playback = playing(motion, LoopKind::kAuto);
+    EXPECT_TRUE(playback.loop.treadmill) << name;
+    Playback open = playback;
+    open.loop.blend = 0;
     for (double t = motion.clip.duration() - 0.4; t < motion.clip.duration(); t += 0.01) {
-      EXPECT_LT(distance(at(motion, {}, t), at(motion, {.loop = false}, t)), 0.005) << name << " at " << t;
+      EXPECT_LT(distance(at(motion, playback, t), at(motion, open, t)), 0.005) << name << " at " << t;
     }
   }
 }
@@ -264,109 +269,13 @@ TEST(Seam, AClipThatLoopsAlreadyIsPlayedAsItIs) {
 TEST(Seam, ShortAndStillClipsHaveOneToo) {
   for (const int frames : {2, 3, 4}) {
     const BvhMotion motion = turning(frames);
-    for (const double blend : {0.0, 0.4, 1e9, -1.0}) {
-      const Playback playback{.blend = blend};
+    for (const LoopKind kind : {LoopKind::kAuto, LoopKind::kGoOn, LoopKind::kInPlace, LoopKind::kNone}) {
+      Playback playback = playing(motion, kind);
       for (double t = 0; t < 0.3; t += 0.01) {
         for (const app::Rigid& joint : at(motion, playback, t).world) ASSERT_TRUE(joint.matrix().allFinite());
       }
-      if (blend > 0) {
-        EXPECT_LT(distance(at(motion, playback, motion.clip.duration()), at(motion, playback, 0)), 1e-9);
-      }
     }
   }
-}
-
-TEST(InPlace, TakesTravelAndTurnOutEvenly) {
-  const BvhMotion motion = turning(11);  // 1 m and 100 degrees within 1 s
-  const Playback playback{.loop = false};
-  for (const double t : {0.0, 0.33, 0.7, 1.0}) {
-    const Pose pose = at(motion, playback, t);
-    EXPECT_LT((pose.world[0].translation() - Vec3(0, 0.9, 0)).norm(), 1e-9) << t;
-    EXPECT_TRUE(pose.world[0].linear().isIdentity(1e-6)) << t;
-  }
-  const BvhMotion walk = ownClip("walk");
-  double farthest = 0;
-  for (double t = 0; t < walk.clip.duration(); t += 0.05) {
-    const Vec3 hips = at(walk, {}, t).world[0].translation();
-    farthest = std::max(farthest, Vec3(hips.x(), 0, hips.z()).norm());
-  }
-  EXPECT_LT(farthest, 0.1);
-  EXPECT_GT(at(walk, {.in_place = false}, 6).world[0].translation().z(), 6) << "left as captured it travels";
-}
-
-TEST(InPlace, KeepsLooseBodiesTogether) {
-  // A motion of rigid bodies has no hierarchy: every body is a root, and all must be placed alike.
-  app::Skeleton skeleton;
-  app::Clip clip;
-  clip.frame_time = 0.1;
-  clip.joint_count = 3;
-  skeleton.joints.resize(3);
-  for (int f = 0; f < 4; ++f) {
-    const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.3 * f, Vec3::UnitY()));
-    for (int j = 0; j < 3; ++j) {
-      clip.rotations.push_back(turn);
-      clip.translations.push_back(turn * Vec3(0.2 * j, 1 + j, -0.1 * j) + Vec3(0.5 * f, 0, 0));
-    }
-  }
-  const BvhMotion motion{skeleton, {}, {}, clip, {}};
-  for (const double t : {0.1, 0.2, 0.3}) {
-    const Pose placed = at(motion, {.loop = false}, t), captured = at(motion, {.loop = false, .in_place = false}, t);
-    for (std::size_t j = 1; j < 3; ++j) {
-      const app::Rigid a = placed.world[0].inverse() * placed.world[j];
-      EXPECT_TRUE(a.isApprox(captured.world[0].inverse() * captured.world[j], 1e-9));
-    }
-  }
-  EXPECT_LT(distance(at(motion, {.loop = false}, 0), at(motion, {.loop = false}, 0.3)), 1e-9);
-}
-
-TEST(OwnClips, AreAPersonStandingOnTheGround) {
-  for (const char* name : {"idle_turns", "walk", "head_shake", "jump_spin", "dance"}) {
-    SCOPED_TRACE(name);
-    const fs::path file = kSource / "assets" / "clips" / (std::string(name) + ".bvh");
-    EXPECT_LT(fs::file_size(file), 400U << 10);
-    const BvhMotion motion = load(file);
-    EXPECT_GE(motion.clip.duration(), 6);
-    EXPECT_LE(motion.clip.duration(), 12);
-    ASSERT_EQ(motion.skeleton.joints.size(), 22U);
-    std::size_t toes[2] = {}, head = 0;
-    for (std::size_t j = 0; j < 22; ++j) {
-      if (motion.skeleton.joints[j].name == "LeftToe") toes[0] = j;
-      if (motion.skeleton.joints[j].name == "RightToe") toes[1] = j;
-      if (motion.skeleton.joints[j].name == "Head") head = j;
-    }
-    const Playback captured{.loop = false, .in_place = false};
-    Pose before = at(motion, captured, 0);
-    EXPECT_NEAR((app::restPose(motion.skeleton).world[head] * motion.end_sites[head]).y(), 1.70, 0.01);
-    for (int f = 1; f < motion.clip.frameCount(); ++f) {
-      const Pose pose = at(motion, captured, f * motion.clip.frame_time);
-      for (const std::size_t toe : toes) {
-        const Vec3 now = pose.world[toe].translation(), then = before.world[toe].translation();
-        ASSERT_GT(now.y(), 0.012) << "frame " << f;  // the ball of the foot is 17 mm above the sole
-        if (std::max(now.y(), then.y()) < 0.0172) {
-          ASSERT_LT((now - then).norm(), 0.0012) << "planted foot slides in frame " << f;
-        }
-      }
-      before = pose;
-    }
-  }
-}
-
-TEST(OwnClips, MoveTheHeadAsTheirNamesSay) {
-  const auto fastestHead = [](const BvhMotion& motion) {
-    double fastest = 0;
-    for (int f = 1; f < motion.clip.frameCount(); ++f) {
-      const Pose a = at(motion, {}, (f - 1) * motion.clip.frame_time), b = at(motion, {}, f * motion.clip.frame_time);
-      const std::size_t head = 5;
-      EXPECT_EQ(motion.skeleton.joints[head].name, "Head");
-      const Eigen::AngleAxisd turn(a.world[head].linear().transpose() * b.world[head].linear());
-      fastest = std::max(fastest, turn.angle() / motion.clip.frame_time * 180 / M_PI);
-    }
-    return fastest;  // degrees per second
-  };
-  EXPECT_GT(fastestHead(ownClip("head_shake")), 500);
-  EXPECT_GT(fastestHead(ownClip("jump_spin")), 500);
-  EXPECT_LT(fastestHead(ownClip("walk")), 60);
-  EXPECT_GT(fastestHead(ownClip("idle_turns")), 90);
 }
 
 }  // namespace
