@@ -127,6 +127,16 @@ TEST(OutputFile, AFullDiskEndsARunAndTheFramesOnItAreWhole) {
   EXPECT_EQ(nlohmann::json::parse(readAll(report))["frames"].size(), names.size() + 1);
 }
 
+TEST(OutputFile, APictureThatDoesNotFitLeavesNothingAndEndsTheRun) {
+  const std::string out = test::freshFolder("picture_limit");
+  const test::Outcome outcome =
+      test::runProgram(with(kPictures, {"--out", out}), "sh -c 'trap \"\" XFSZ; ulimit -f 8; exec \"$@\"' sh");
+  if (outcome.exit_code == app::kExitNoContext) GTEST_SKIP() << outcome.err;
+  EXPECT_EQ(outcome.exit_code, app::kExitFault) << outcome.err;
+  EXPECT_NE(outcome.err.find("frame_0000.png: cannot be written: File too large"), std::string::npos) << outcome.err;
+  EXPECT_EQ(filesIn(out), std::vector<std::string>{});
+}
+
 // A run in a process of its own.
 struct Child {
   pid_t pid = 0;
@@ -148,8 +158,8 @@ struct Child {
     }
     return false;
   }
-  int interrupt() {
-    ::kill(pid, SIGINT);
+  int interrupt(int signal = SIGINT) {
+    ::kill(pid, signal);
     ::waitpid(pid, &status, 0);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
@@ -157,17 +167,19 @@ struct Child {
 };
 
 TEST(OutputFile, AnInterruptedRunWritesItsReportAndAWholeRecording) {
-  const std::string folder = test::freshFolder("interrupted"), report = folder + "/r.json", tape = folder + "/r.hmr";
-  Child run({"--no-images", "--frames", "1000000", "--report", report, "--record", tape, "--style", "short",
-             "--resolution", "low"});
-  ASSERT_TRUE(run.waitFor(tape + ".part", 8192)) << "the run ended by itself";
-  EXPECT_EQ(run.interrupt(), app::kExitInterrupted);
-  EXPECT_EQ(filesIn(folder), (std::vector<std::string>{"r.hmr", "r.json"}));
-  const std::size_t frames = nlohmann::json::parse(readAll(report))["frames"].size();
-  EXPECT_GT(frames, 0u);
-  const app::Recording recording = app::readRecording(readAll(tape), tape);
-  EXPECT_EQ(recording.frames.size(), frames);
-  EXPECT_FALSE(recording.state.empty());
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const std::string folder = test::freshFolder("interrupted"), report = folder + "/r.json", tape = folder + "/r.hmr";
+    Child run({"--no-images", "--frames", "1000000", "--report", report, "--record", tape, "--style", "short",
+               "--resolution", "low"});
+    ASSERT_TRUE(run.waitFor(tape + ".part", 8192)) << "the run ended by itself";
+    EXPECT_EQ(run.interrupt(signal), app::kExitInterrupted);
+    EXPECT_EQ(filesIn(folder), (std::vector<std::string>{"r.hmr", "r.json"}));
+    const std::size_t frames = nlohmann::json::parse(readAll(report))["frames"].size();
+    EXPECT_GT(frames, 0u);
+    const app::Recording recording = app::readRecording(readAll(tape), tape);
+    EXPECT_EQ(recording.frames.size(), frames);
+    EXPECT_FALSE(recording.state.empty());
+  }
 }
 
 TEST(OutputFile, FramesOfAnInterruptedRunAreWhole) {
