@@ -71,10 +71,10 @@ void Surroundings::stop() {
 void Surroundings::playClip(double dt) {
   app::Playback& playback = stage_.actor.playback;
   const double length = stage_.actor.playedClip().duration();
-  playback.paused = true;
-  if (one_.play == Play::kForward || one_.play == Play::kBackward) {
-    const double direction = one_.play == Play::kForward ? 1 : -1;
-    playback.time = std::fmod(playback.time + direction * one_.speed * dt, length);
+  playback.paused = one_.play != Play::kForward;
+  playback.speed = one_.speed;
+  if (one_.play == Play::kBackward) {
+    playback.time = std::fmod(playback.time - one_.speed * dt, length);
     if (playback.time < 0) playback.time += length;
   }
   const bool jumps = one_.play == Play::kJumps || one_.play == Play::kCarryJumps;
