@@ -9,6 +9,7 @@
 #include "app/figure/mannequin_parts.h"
 #include "app/files/errors.h"
 #include "app/files/text_file.h"
+#include "app/motion/clip_repair.h"
 #include "app/motion/motion.h"
 
 namespace app {
@@ -85,6 +86,10 @@ Character loadCharacter(const std::string& motion_file, const std::string& parts
                        "give a .bvh, .mot, .glb, .gltf, .fbx or .dae file");
   }
   character.name = std::filesystem::path(motion_file).stem().string();
+  for (Clip& clip : character.clips) {
+    const std::string of = character.clips.size() > 1 ? "clip " + clip.name + ": " : "";
+    for (const std::string& note : repairClip(character.skeleton, clip)) character.notes.push_back(of + note);
+  }
   return character;
 }
 

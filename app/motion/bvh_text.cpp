@@ -135,10 +135,7 @@ void readMotionHead(TextScanner& scanner, BvhText& bvh) {
   if (!sameWord(word, "Frames")) scanner.fail("'Frames:' should stand after MOTION", "add the number of frames");
   expectColon(scanner);
   const long long frames = scanner.count("the number of Frames", kMaxFrames);
-  if (frames < 2) {
-    scanner.fail(frames == 0 ? "the clip has no frames" : "the clip has a single frame, which is a pose and no motion",
-                 "give a clip with at least two frames (for a still figure, the same frame twice)");
-  }
+  if (frames < 1) scanner.fail("the clip has no frames", "give a clip with at least one");
   // Checked before anything is allocated: a number and its separator take two characters.
   const auto most_values = static_cast<long long>(scanner.left() / 2 + 1);
   if (frames > most_values / bvh.channel_count + 1) {

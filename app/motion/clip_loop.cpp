@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kFacesAlike = 10 * std::numbers::pi / 180;  // rad
 constexpr double kComesBack = 0.1, kEven = 0.25;             // of the root's height
+constexpr double kShortestRound = 0.25;                      // s
 constexpr double kShortestBlend = 0.4;                       // s
 constexpr double kLonger = 1.25;                             // a blend over the one tried before
 constexpr double kSlowTurn = 1.5;                            // rad/s
@@ -147,6 +148,10 @@ ClipLoop clipLoop(const Skeleton& skeleton, const Clip& clip, LoopKind asked) {
   }
   loop.travel = travelOf(skeleton, clip);
   const bool stays = staysInPlace(skeleton, clip, loop);
+  if (asked == LoopKind::kAuto && clip.duration() < kShortestRound) {
+    loop.kind = LoopKind::kStop;
+    return loop;
+  }
   if (asked == LoopKind::kAuto) loop.kind = stays ? LoopKind::kInPlace : LoopKind::kGoOn;
   if (loop.kind != LoopKind::kInPlace && loop.kind != LoopKind::kGoOn) return loop;
   loop.treadmill = loop.kind == LoopKind::kInPlace && stays;

@@ -48,8 +48,9 @@ struct ClipLoop {
 // others travel as they were captured and jump home at the seam.
 //
 // The blend takes the shortest time, 0.4 s or more, in which no joint turns faster than it does in the clip or than 1.5
-// rad/s, by more than a tenth; where all of the clip is too short for that, the least hasty one. Of a single frame
-// every kind makes kStop.
+// rad/s, by more than a tenth; where all of the clip is too short for that, the least hasty one.
+//
+// kAuto makes kStop of a clip shorter than a quarter of a second, every kind does of a single frame.
 ClipLoop clipLoop(const Skeleton& skeleton, const Clip& clip, LoopKind asked);
 
 // Plays a clip: speed 0 to 20 (larger is allowed), pause, scrub, rounds. The first round begins over the origin.

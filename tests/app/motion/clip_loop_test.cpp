@@ -48,6 +48,7 @@ TEST(ClipLoop, IsChosenByWhereTheClipEndsAndHowItGetsThere) {
   EXPECT_EQ(chosen(path(stop_and_go)), LoopKind::kGoOn);
   EXPECT_EQ(chosen(path(turned)), LoopKind::kGoOn);
   EXPECT_EQ(chosen(path({{0, 0, 0}})), LoopKind::kStop) << "one frame";
+  EXPECT_EQ(chosen(path({{0, 0, 0}, {1, 1, 1}})), LoopKind::kStop) << "a tenth of a second";
   EXPECT_EQ(playing(path(stop_and_go), LoopKind::kInPlace).loop.treadmill, false);
 }
 

@@ -300,8 +300,11 @@ TEST(Bvh, TheSameFrameTwiceIsAStillClip) {
   EXPECT_TRUE(poseOf(motion, 0).world[1].isApprox(poseOf(motion, 5).world[1], 0));
 }
 
-TEST(Bvh, ASingleFrameIsRefused) {
-  EXPECT_THROW(app::readBvh(figure(kZxy, {kStill}), "clip"), app::InputError);
+TEST(Bvh, ASingleFrameIsAStillClip) {
+  const BvhMotion motion = app::readBvh(figure(kZxy, {kStill}), "clip");
+  EXPECT_EQ(motion.clip.frameCount(), 1);
+  EXPECT_GT(motion.clip.duration(), 0);
+  EXPECT_THROW(app::readBvh(figure(kZxy, {}), "clip"), app::InputError);
 }
 
 // What is put in place of what, and the line that the message must name.

@@ -1,8 +1,10 @@
 // Rounds of a clip as the hair and the camera see them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 
 #include "app/files/data_path.h"
 #include "app/scene/demo.h"
@@ -150,16 +152,15 @@ std::vector<std::string> motionsAtHand() {
 
 TEST(CameraFollows, TheHeadStaysInTheMiddleHalfAtAnySpeed) {
   for (const std::string& motion : motionsAtHand()) {
+    Demo demo = open(characterOf(motion));
+    demo.scene.sim.collide = false;
     for (const LoopKind kind : {LoopKind::kGoOn, LoopKind::kInPlace, LoopKind::kNone}) {
-      app::CharacterSpec spec = characterOf(motion);
-      spec.loop = kind;
-      Demo demo = open(spec);
-      demo.scene.sim.collide = false;
       for (const double speed : {1.0, 4.0, 20.0}) {
         SCOPED_TRACE(motion + " " + std::string(app::loopName(kind)) + " at " + std::to_string(speed));
         // From two seconds before the seam, or all of the clip, to a second after it.
         const double lead = std::min(2.0, demo.actors[0].playedClip().duration() / speed);
         demo.actors[0].spec.clip_offset = demo.actors[0].playedClip().duration() - lead * speed;
+        demo.requests.push_back({Ask::kLoop, std::string(app::loopName(kind)), ""});
         demo.requests.push_back({Ask::kSpeed, "", "", speed});
         demo.requests.push_back({Ask::kRestart, "", ""});
         for (int frame = 0; frame < 60 * (lead + 1); ++frame) {
@@ -221,6 +222,51 @@ TEST(CameraFrames, AMotionLoadedWhilePausedIsFramedAtOnce) {
   const Eigen::AlignedBox2d box = drawnBox(demo);
   EXPECT_LE(box.min().cwiseAbs().maxCoeff(), 1);
   EXPECT_GT(box.sizes().y() / 2, 0.7);
+}
+
+TEST(BadInput, APopOfTwoMetresInTheRootLeavesTheHairAsItIs) {
+  Demo plain = open(characterOf(writeClip("plain.bvh", stridingBvh())));
+  Demo popped = open(characterOf(writeClip("popped.bvh", stridingBvh(0, 20))));
+  double most = 0;
+  for (int frame = 0; frame < 100; ++frame) {
+    for (Demo* demo : {&plain, &popped}) app::advanceFrame(*demo, kFrame, {});
+    most = std::max(most, farthest(seenFromHead(plain), seenFromHead(popped)));
+    ASSERT_LT(projectedHead(popped).cwiseAbs().maxCoeff(), 0.5);
+  }
+  EXPECT_LT(most, 0.01);
+  const std::vector<std::string>& notes = popped.actors[0].body->character.notes;
+  EXPECT_TRUE(std::ranges::any_of(notes, [](const std::string& note) { return note.starts_with("pops: 1 "); }));
+}
+
+TEST(BadInput, ClipsOfAFrameOrTwoAndWithAFarEndKeepTheHairUpright) {
+  const std::string whole = stridingBvh();
+  const std::size_t rows = whole.find("Frame Time");
+  const auto of = [&](std::vector<int> frames) {
+    std::string text = whole.substr(0, whole.find("Frames: 60"));
+    text += "Frames: " + std::to_string(frames.size()) + "\nFrame Time: 0.0333333\n";
+    for (const int f : frames) {
+      std::size_t line = whole.find('\n', rows) + 1;
+      for (int k = 0; k < f; ++k) line = whole.find('\n', line) + 1;
+      text += whole.substr(line, whole.find('\n', line) + 1 - line);
+    }
+    return text;
+  };
+  std::vector<int> far_end;
+  for (int f = 0; f < 30; ++f) far_end.push_back(f);
+  far_end.push_back(59);
+  for (const auto& frames : {std::vector<int>{0}, std::vector<int>{0, 59}, far_end}) {
+    SCOPED_TRACE(frames.size());
+    Demo demo = open(characterOf(writeClip("few.bvh", of(frames))));
+    for (int frame = 0; frame < 120; ++frame) {
+      app::advanceFrame(demo, kFrame, {});
+      ASSERT_LT(projectedHead(demo).cwiseAbs().maxCoeff(), 0.5) << frame;
+      ASSERT_EQ(demo.actors[0].last_report.recoveries, 0);
+      ASSERT_EQ(demo.actors[0].last_report.guided, 0) << frame;
+    }
+    // What is seen from the head hangs about where it did.
+    const sim::HairState rest = sim::restState(demo.actors[0].haircut->mesh, app::Rigid::Identity());
+    EXPECT_LT(farthest(seenFromHead(demo), rest.positions), 0.15);
+  }
 }
 
 TEST(FarAway, TheHairIsTheSameWithinRounding) {
