@@ -18,6 +18,7 @@ constexpr double kHeadShare = 0.135;       // chin to crown over height: adults 
 constexpr double kSkullBaseShare = 0.30;   // skull base above the chin, over head height
 constexpr double kNeckShare = 0.058;       // C7 to skull base over height
 constexpr double kShouldersShare = 0.085;  // shoulder joints to skull base over height, at least
+constexpr double kLevel = 0.15;            // rad, hips and shoulders that lie across
 constexpr double kArmAngle = 0.72;         // rad from straight down: far enough that arm and flank stay apart
 
 ReferencePose restReference(const BvhMotion& motion) {
@@ -112,10 +113,67 @@ void poseLegs(const ReferencePose& before, const BodyRoles& roles, const Quat& r
   }
 }
 
-// Straightens a leaning trunk, as of a rest pose taken from the motion.
-void poseSpine(const ReferencePose& before, const BodyRoles& roles, const Quat& root, Poser& poser) {
-  for (std::size_t i = 0; i + 1 < roles.spine.size(); ++i)
-    poser.aim(roles.spine[i], jointAt(before, roles.spine[i + 1]), Vec3::UnitY(), root);
+// From the right joint of a pair to the left one.
+Vec3 acrossHips(const ReferencePose& pose, const BodyRoles& roles) {
+  if (roles.legs[0].upper < 0 || roles.legs[1].upper < 0) return Vec3::UnitX();
+  return jointAt(pose, roles.legs[0].upper) - jointAt(pose, roles.legs[1].upper);
+}
+Vec3 acrossShoulders(const ReferencePose& pose, const BodyRoles& roles) {
+  if (roles.arms[0].upper < 0 || roles.arms[1].upper < 0) return Vec3::UnitX();
+  return jointAt(pose, roles.arms[0].upper) - jointAt(pose, roles.arms[1].upper);
+}
+
+bool standsStraight(const ReferencePose& before, const BodyRoles& roles, const Quat& root) {
+  const Vec3 trunk = jointAt(before, roles.head) - jointAt(before, 0);
+  const auto level = [&](const Vec3& across) { return (root * across).normalized().x() > std::cos(kLevel); };
+  return trunk.y() >= 0.94 * trunk.norm() && level(acrossHips(before, roles)) && level(acrossShoulders(before, roles));
+}
+
+// The collar bones, so that both shoulders stand alike. `chest`: what they hang from.
+void poseCollars(const ReferencePose& before, const BodyRoles& roles, int chest, const Quat& turn, Poser& poser) {
+  std::array<int, 2> collars{};
+  std::array<Vec3, 2> bones;
+  for (std::size_t s = 0; s < 2; ++s) {
+    const int upper = roles.arms[s].upper;
+    if (upper < 0) return;
+    collars[s] = poser.skeleton.joints[static_cast<std::size_t>(upper)].parent;
+    if (collars[s] < 0 || poser.skeleton.joints[static_cast<std::size_t>(collars[s])].parent != chest) return;
+    bones[s] = turn * (jointAt(before, upper) - jointAt(before, collars[s]));
+  }
+  const Vec3 mirror(-1, 1, 1);
+  const Vec3 left = bones[0] + bones[1].cwiseProduct(mirror);
+  if (left.norm() < 1e-4) return;
+  for (std::size_t s = 0; s < 2; ++s)
+    poser.aim(collars[s], jointAt(before, roles.arms[s].upper), s == 0 ? left : Vec3(left.cwiseProduct(mirror)), turn);
+}
+
+// Straightens a trunk that leans or twists, as of a rest pose taken from the motion: hips level, spine upright,
+// shoulders above them and alike.
+void poseTrunk(const ReferencePose& before, const BodyRoles& roles, const Quat& root, Poser& poser) {
+  const std::vector<int>& spine = roles.spine;
+  const Quat level = leastRotation(root * acrossHips(before, roles), Vec3::UnitX()) * root;
+  Quat pelvis = level;
+  if (spine.size() > 1) {
+    const Vec3 up = level * (jointAt(before, spine[1]) - jointAt(before, spine[0]));
+    if (std::hypot(up.y(), up.z()) > 1e-4)
+      pelvis = Quat(Eigen::AngleAxisd(-std::atan2(up.z(), up.y()), Vec3::UnitX())) * level;
+  }
+  if (!spine.empty()) poser.set(spine[0], pelvis);
+  for (std::size_t i = 1; i + 1 < spine.size(); ++i) {
+    const bool chest = std::ranges::any_of(roles.arms, [&](const ArmRoles& arm) {
+      int above = arm.upper;
+      while (above >= 0 && std::ranges::find(spine, above) == spine.end())
+        above = poser.skeleton.joints[static_cast<std::size_t>(above)].parent;
+      return arm.upper >= 0 && above == spine[i];
+    });
+    poser.aim(spine[i], jointAt(before, spine[i + 1]), Vec3::UnitY(), root);
+    if (!chest) continue;
+    const Vec3 across = poser.turn[static_cast<std::size_t>(spine[i])] * acrossShoulders(before, roles);
+    const Quat turn = Quat(Eigen::AngleAxisd(std::atan2(across.z(), across.x()), Vec3::UnitY())) *
+                      poser.turn[static_cast<std::size_t>(spine[i])];
+    poser.set(spine[i], turn);
+    poseCollars(before, roles, spine[i], turn, poser);
+  }
   poser.set(roles.head, root);
 }
 
@@ -263,10 +321,9 @@ StoodSkeleton standSkeleton(const BvhMotion& motion, const std::string& file) {
   const Quat root(Eigen::AngleAxisd(-std::atan2(forward.x(), forward.z()), Vec3::UnitY()));
 
   Poser poser(motion.skeleton, reference, root);
-  const Vec3 trunk = jointAt(reference, head) - jointAt(reference, 0);
-  if (trunk.y() < 0.94 * trunk.norm()) {
-    poseSpine(reference, stood.roles, root, poser);
-    stood.notes.emplace_back("rest pose: the trunk leans, it was stood upright");
+  if (!standsStraight(reference, stood.roles, root)) {
+    poseTrunk(reference, stood.roles, root, poser);
+    stood.notes.emplace_back("rest pose: the trunk leans or twists, it was stood upright");
   }
   poseArms(reference, stood.roles, root, poser);
   poseLegs(reference, stood.roles, root, poser);

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "app/figure/character_build.h"
+#include "app/figure/mannequin_figure.h"
 #include "app/figure/mannequin_mesh.h"
 #include "app/files/errors.h"
 #include "app/files/text_file.h"
@@ -245,6 +246,32 @@ TEST(Mannequin, IsMirrorSymmetricOnAMirrorSymmetricSkeleton) {
     high = high.cwiseMax(p.cast<double>());
   }
   EXPECT_NEAR(low.x(), -high.x(), 1e-3);
+}
+
+// A rest pose taken from a motion leans, twists and shrugs.
+TEST(Mannequin, AFigureTakenFromADanceStandsStraightAndMirrored) {
+  const std::string file = (kClips / "dance.bvh").string();
+  app::BvhMotion motion = app::readBvh(app::readText(file), file);
+  std::vector<app::Joint>& joints = motion.skeleton.joints;
+  const std::map<std::string, Eigen::AngleAxisd> bends{{"Hips", {0.3, Vec3(0, 0.6, 0.8)}},
+                                                       {"Spine1", {0.4, Vec3(0.6, 0.8, 0)}},
+                                                       {"Chest", {0.5, Vec3(0, 1, 0)}},
+                                                       {"LeftShoulder", {0.4, Vec3(0, 0, 1)}}};
+  std::size_t bent = 0;
+  for (app::Joint& joint : joints) {
+    if (const auto bend = bends.find(joint.name); bend != bends.end()) joint.rest_local.rotate(bend->second), ++bent;
+    joint.rest_world = joint.parent < 0 ? joint.rest_local
+                                        : joints[static_cast<std::size_t>(joint.parent)].rest_world * joint.rest_local;
+  }
+  ASSERT_EQ(bent, bends.size());
+  const app::StoodSkeleton stood = app::standSkeleton(motion, file);
+  const auto& [left, right] = stood.figure.arms;
+  const Vec3 mirror(-1, 1, 1);
+  EXPECT_LT((left.shoulder - right.shoulder.cwiseProduct(mirror)).norm(), 0.005);
+  EXPECT_LT((left.wrist - right.wrist.cwiseProduct(mirror)).norm(), 0.005);
+  EXPECT_LT((stood.figure.legs[0].hip - stood.figure.legs[1].hip.cwiseProduct(mirror)).norm(), 0.005);
+  EXPECT_LT(std::abs(stood.figure.skull_base.x()), 0.01);
+  EXPECT_GT(left.shoulder.x(), 0.14);
 }
 
 TEST(Mannequin, SameTextGrowsTheSameBytes) {
