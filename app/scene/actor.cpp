@@ -443,15 +443,16 @@ void settleActor(const sim::SimParams& params, double seconds, Actor& actor) {
   actor.previous_positions = actor.hair.positions;
 }
 
-void showActor(double fraction, Actor& actor) {
+void showActor(double fraction, const Vec3& origin, Actor& actor) {
   if (actor.shown_still && !actor.shown_positions.empty()) return;
   // Between the ends of the actor's own step, which may cover several of the clock's.
   const double within = (actor.span - 1 - actor.ahead + fraction) / actor.span;
   blendPoses(actor.previous_pose, actor.pose, within, actor.shown_pose);
-  if (blendPositions(actor.previous_positions, actor.hair.positions, within, actor.shown_positions)) {
+  if (blendPositions(actor.previous_positions, actor.hair.positions, within, origin, actor.shown_positions)) {
     ++actor.position_revision;
   }
-  if (jointMatrices(actor.body->character.skeleton, actor.shown_pose, actor.joint_matrices)) ++actor.pose_revision;
+  if (jointMatrices(actor.body->character.skeleton, actor.shown_pose, origin, actor.joint_matrices))
+    ++actor.pose_revision;
   actor.shown_still = actor.pose_still && (actor.sleep.asleep || actor.unseen);
 }
 

@@ -134,7 +134,7 @@ struct Actor {
   bool shown_still = false;  // what is shown is what there is
   double usual_step = 0;     // s, a step's cost of late
 
-  // What the picture shows.
+  // What the picture shows; positions and matrices relative to the picture's origin.
   Pose shown_pose;
   std::vector<float> shown_positions;
   std::vector<render::Mat4> joint_matrices;
@@ -184,7 +184,8 @@ void wakeAll(Actor& actor);
 // before the first frame.
 void settleActor(const sim::SimParams& params, double seconds, Actor& actor);
 
-// Positions, pose and matrices of the shown moment, between the last two states.
-void showActor(double fraction, Actor& actor);
+// Positions, pose and matrices of the shown moment, between the last two states; positions and matrices relative to
+// `origin` (m).
+void showActor(double fraction, const Vec3& origin, Actor& actor);
 
 }  // namespace app

@@ -178,8 +178,8 @@ void follow(const Actor& actor, double seconds, double aspect, Camera& camera) {
   camera.anchor += now - kept;
 }
 
-render::CameraInput cameraInput(const Camera& camera) {
-  const Vec3 target = camera.anchor + camera.target;
+render::CameraInput cameraInput(const Camera& camera, const Vec3& origin) {
+  const Vec3 target = camera.anchor + camera.target - origin;
   render::CameraInput input;
   input.eye = toFloat3(target + camera.distance * viewBack(camera));
   input.target = toFloat3(target);

@@ -43,6 +43,7 @@ void follow(const Actor& actor, double seconds, double aspect, Camera& camera);
 // Unit vector from the target to the eye.
 Vec3 viewBack(const Camera& camera);
 
-render::CameraInput cameraInput(const Camera& camera);
+// Relative to `origin` (m).
+render::CameraInput cameraInput(const Camera& camera, const Vec3& origin);
 
 }  // namespace app

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "app/scene/level_of_detail.h"
+#include "app/scene/sim_to_render.h"
 #include "render/fiber_scattering.h"
 
 namespace app {
@@ -39,8 +40,13 @@ void updateGovernor(double seconds, int steps, Demo& demo) {
 // Nothing is handed over when neither a step nor the clock has moved since the last time.
 void handOverPositions(bool moved, Demo& demo) {
   const double fraction = shownFraction(demo.clock, demo.running.time_step);
+  if (const Vec3 origin = pictureOrigin(demo.camera.anchor); origin != demo.origin) {
+    demo.origin = origin;
+    for (Actor& actor : demo.actors) actor.shown_still = false;
+    moved = true;
+  }
   if (moved || fraction != demo.shown_fraction || !demo.scene.skips[kSkipPose]) {
-    for (Actor& actor : demo.actors) showActor(fraction, actor);
+    for (Actor& actor : demo.actors) showActor(fraction, demo.origin, actor);
     demo.shown_fraction = fraction;
   }
   demo.debug_geometry.lines.clear();
@@ -48,6 +54,12 @@ void handOverPositions(bool moved, Demo& demo) {
   demo.debug_geometry.points.clear();
   if (!demo.debug.any()) return;
   for (const Actor& actor : demo.actors) addDebugViews(demo.debug, actor, demo.debug_geometry);
+  const render::Float3 origin = toFloat3(demo.origin);
+  for (auto* vertices : {&demo.debug_geometry.lines, &demo.debug_geometry.triangles, &demo.debug_geometry.points}) {
+    for (render::LineVertex& vertex : *vertices) {
+      for (std::size_t k = 0; k < 3; ++k) vertex.position[k] -= origin[k];
+    }
+  }
 }
 
 void showFault(Demo& demo) {
@@ -229,7 +241,7 @@ render::FrameInput frameInput(Demo& demo, int width, int height) {
   render::FrameInput input;
   input.width = width;
   input.height = height;
-  input.camera = cameraInput(demo.camera);
+  input.camera = cameraInput(demo.camera, demo.origin);
   input.light = demo.scene.look.light;
   input.view = demo.scene.look.view;
   input.skips = drawSkips(demo.scene.skips);

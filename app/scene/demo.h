@@ -36,6 +36,7 @@ struct Demo {
   Camera camera;
   double aspect = 16.0 / 9;    // of the picture
   int picture_height = 720;    // pixels; what is far is what is small in it
+  Vec3 origin = Vec3::Zero();  // m, of what is handed to the renderer
   double shown_fraction = -1;  // of the step, when positions were last handed over
   DebugViews debug;
   FixedClock clock;

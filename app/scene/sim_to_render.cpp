@@ -1,6 +1,7 @@
 #include "app/scene/sim_to_render.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace app {
 
@@ -21,14 +22,19 @@ std::vector<render::HairFace> renderFaces(const sim::HairMesh& mesh) {
   return faces;
 }
 
-bool blendPositions(std::span<const sim::Vec3> from, std::span<const sim::Vec3> to, double fraction,
+Vec3 pictureOrigin(const Vec3& anchor) {
+  constexpr double kGrid = 64;  // m
+  return kGrid * Vec3(std::round(anchor.x() / kGrid), 0, std::round(anchor.z() / kGrid));
+}
+
+bool blendPositions(std::span<const sim::Vec3> from, std::span<const sim::Vec3> to, double fraction, const Vec3& origin,
                     std::vector<float>& floats) {
   bool changed = floats.size() != 3 * to.size();
   floats.resize(3 * to.size());
   for (std::size_t i = 0; i < to.size(); ++i) {
     const sim::Vec3 p = fraction == 1 ? to[i] : sim::Vec3(from[i] + fraction * (to[i] - from[i]));
     for (int k = 0; k < 3; ++k) {
-      const float value = static_cast<float>(p[k]);
+      const float value = static_cast<float>(p[k] - origin[k]);
       changed = changed || floats[3 * i + k] != value;
       floats[3 * i + k] = value;
     }
@@ -50,11 +56,13 @@ void blendPoses(const Pose& from, const Pose& to, double fraction, Pose& pose) {
   }
 }
 
-bool jointMatrices(const Skeleton& skeleton, const Pose& pose, std::vector<render::Mat4>& matrices) {
+bool jointMatrices(const Skeleton& skeleton, const Pose& pose, const Vec3& origin,
+                   std::vector<render::Mat4>& matrices) {
   bool changed = matrices.size() != pose.world.size();
   matrices.resize(pose.world.size());
   for (std::size_t j = 0; j < pose.world.size(); ++j) {
-    const Rigid carried = pose.world[j] * skeleton.joints[j].rest_world.inverse(Eigen::Isometry);
+    Rigid carried = pose.world[j] * skeleton.joints[j].rest_world.inverse(Eigen::Isometry);
+    carried.translation() -= origin;
     const Eigen::Matrix4f m = carried.matrix().cast<float>();
     changed = changed || !std::equal(m.data(), m.data() + 16, matrices[j].begin());
     std::copy(m.data(), m.data() + 16, matrices[j].begin());

@@ -1,4 +1,5 @@
-// The one place where the simulator's values become the renderer's.
+// The one place where the simulator's values become the renderer's. Its numbers are single precision, so that places
+// are handed over relative to an origin near the camera: a figure that has walked for miles does not shake.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,15 +16,18 @@ namespace app {
 // Bundles with the rest area of their root faces.
 std::vector<render::HairFace> renderFaces(const sim::HairMesh& mesh);
 
-// from + fraction (to - from), three floats a vertex. Returns whether any bit changed.
-bool blendPositions(std::span<const sim::Vec3> from, std::span<const sim::Vec3> to, double fraction,
+// The origin for a camera whose anchor is there: on a grid over the ground, so that it seldom changes.
+Vec3 pictureOrigin(const Vec3& anchor);
+
+// from + fraction (to - from) - origin, three floats a vertex. Returns whether any bit changed.
+bool blendPositions(std::span<const sim::Vec3> from, std::span<const sim::Vec3> to, double fraction, const Vec3& origin,
                     std::vector<float>& floats);
 
 // Joint by joint: translations linearly, rotations by slerp.
 void blendPoses(const Pose& from, const Pose& to, double fraction, Pose& pose);
 
-// Rest model space to world, column-major. Returns whether any bit changed.
-bool jointMatrices(const Skeleton& skeleton, const Pose& pose, std::vector<render::Mat4>& matrices);
+// Rest model space to world less origin, column-major. Returns whether any bit changed.
+bool jointMatrices(const Skeleton& skeleton, const Pose& pose, const Vec3& origin, std::vector<render::Mat4>& matrices);
 
 render::Float3 toFloat3(const Vec3& v);
 

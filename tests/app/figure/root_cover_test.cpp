@@ -165,7 +165,7 @@ class ScalpPicture : public gl_fixture::GlTest {
   app::Image draw(float tint, double distance, bool show_strands = true, render::FrameReport* report = nullptr) {
     app::Actor& actor = demo_->actors[0];
     actor.spec.look.scalp_tint = tint;
-    app::showActor(1, actor);
+    app::showActor(1, app::Vec3::Zero(), actor);
     render::FrameInput frame = app::frameInput(*demo_, kWidth, kHeight);
     const Vec3 middle = place(13, 55), ahead = (place(13, 55) - place(180, -55)).normalized();
     const Vec3 eye = middle + distance * (ahead + Vec3(0, 0.6, 0)).normalized();

@@ -285,4 +285,30 @@ TEST(FarAway, TheHairIsTheSameWithinRounding) {
   EXPECT_LT(most, 1e-6) << "m, over a round and a half";
 }
 
+TEST(FarAway, ThePictureIsTheSameToAHundredthOfAMillimetre) {
+  app::CharacterSpec spec = characterOf("walk.bvh");
+  Demo near = open(spec);
+  spec.position = Vec3(20000, 0, -70000);
+  Demo far = open(spec);
+  for (int frame = 0; frame < 20; ++frame) {
+    for (Demo* demo : {&near, &far}) app::advanceFrame(*demo, kFrame, {});
+  }
+  const render::FrameInput here = app::frameInput(near, 320, 240), there = app::frameInput(far, 320, 240);
+  double most = 0;
+  const auto compare = [&](std::span<const float> a, std::span<const float> b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const std::size_t k = i % 3;
+      most = std::max(most, std::abs(double(a[i]) - here.camera.eye[k] - (double(b[i]) - there.camera.eye[k])));
+    }
+  };
+  compare(here.hairs[0].positions, there.hairs[0].positions);
+  compare(here.camera.target, there.camera.target);
+  for (std::size_t j = 0; j < here.bodies[0].joint_matrices.size(); ++j) {
+    compare(std::span(here.bodies[0].joint_matrices[j]).subspan(12, 3),
+            std::span(there.bodies[0].joint_matrices[j]).subspan(12, 3));
+  }
+  EXPECT_LT(most, 1e-5) << "m";
+}
+
 }  // namespace
