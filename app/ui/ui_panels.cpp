@@ -143,16 +143,16 @@ void fact(const char* label, const std::string& value) {
 void loopRows(const Actor& actor, Demo& demo, UiState& ui) {
   static constexpr LoopKind kKinds[] = {LoopKind::kAuto, LoopKind::kGoOn, LoopKind::kInPlace, LoopKind::kStop,
                                         LoopKind::kNone};
-  rowLabel("At the end",
-           "Go on from where the figure is, stay in place, stop, or none: begin again without a blend. Auto goes on "
-           "unless the clip stays in place by itself.");
-  const auto chosen = std::find(std::begin(kKinds), std::end(kKinds), actor.spec.loop) - std::begin(kKinds);
-  const int pressed = segments("loop", {"Auto", "Go on", "In place", "Stop", "None"}, static_cast<int>(chosen), ui);
-  if (pressed >= 0) postRequest(demo, {Ask::kLoop, std::string(loopName(kKinds[pressed])), ""});
   const ClipLoop& loop = actor.playback.loop;
   char line[64];
   std::snprintf(line, sizeof line, loop.blend > 0 ? "%s, blend %.2f s" : "%s", loopName(loop.kind).data(), loop.blend);
-  fact("Seam", line);
+  rowLabel("At the end",
+           "Go on from where the figure is, stay in place, stop, or none: begin again without a blend. Auto goes on "
+           "unless the clip stays in place by itself.");
+  ImGui::TextDisabled("%s", line);
+  const auto chosen = std::find(std::begin(kKinds), std::end(kKinds), actor.spec.loop) - std::begin(kKinds);
+  const int pressed = segments("loop", {"Auto", "Go on", "In place", "Stop", "None"}, static_cast<int>(chosen), ui);
+  if (pressed >= 0) postRequest(demo, {Ask::kLoop, std::string(loopName(kKinds[pressed])), ""});
 }
 
 void playbackRows(const Actor& actor, Demo& demo, UiState& ui) {

@@ -51,6 +51,7 @@ TEST(SceneFile, WritingAndReadingKeepsEveryRow) {
   }
   scene.characters[0].position = {1.25, 0, -3};
   scene.characters[0].heading = 0.5;
+  scene.characters[0].loop = app::LoopKind::kInPlace;
   scene.camera.eye = app::Vec3(0.1, 0.2, 0.3);
   scene.camera.target = app::Vec3(1, 2, 3);
   const Scene copy = app::readScene(app::writeScene(scene), scene.file);
@@ -60,6 +61,7 @@ TEST(SceneFile, WritingAndReadingKeepsEveryRow) {
     EXPECT_EQ(field.get(copy.characters[0].look), field.get(scene.characters[0].look)) << field.name;
   }
   EXPECT_EQ(copy.characters[0].position, scene.characters[0].position);
+  EXPECT_EQ(copy.characters[0].loop, scene.characters[0].loop);
   EXPECT_EQ(*copy.camera.eye, *scene.camera.eye);
   EXPECT_EQ(app::writeScene(copy), app::writeScene(scene));
 }

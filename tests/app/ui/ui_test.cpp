@@ -188,6 +188,8 @@ TEST_F(Panels, SpeedAndScrubAreAskedFor) {
   EXPECT_TRUE(asked(click("speeds 10x"), Ask::kSpeed));
   EXPECT_TRUE(asked(click("scrub", 0.4f, 30), Ask::kCarryAlong));
   EXPECT_TRUE(asked(click("hold", 0.5f), Ask::kPauseMotion));
+  EXPECT_TRUE(asked(click("loop Go on"), Ask::kLoop, "go-on"));
+  EXPECT_TRUE(asked(click("loop None"), Ask::kLoop, "none"));
   EXPECT_TRUE(asked(click("substeps 4"), Ask::kSetParam, "time_step"));
 }
 
