@@ -10,7 +10,7 @@ namespace app {
 namespace {
 
 constexpr int kLongestFault = 3, kAround = 3;  // frames
-constexpr double kFactor = 4;
+constexpr double kFactor = 4, kCatchesUp = 1.5;
 constexpr double kPopTurn = 0.15, kPopWay = 0.05;      // rad, m
 constexpr double kJumpWay = 0.25, kJumpSpeed = 15;     // m, m/s
 constexpr double kSameTurn = 1e-9, kSameWay = 1e-9;    // rad, m: a frame that repeats another
@@ -51,13 +51,16 @@ double stepOf(const Frames& frames, int frame, double turn, double way) {
 
 int mendDropped(Frames frames) {
   const auto repeats = [&](int frame) { return stepOf(frames, frame, kSameTurn, kSameWay) < 1; };
-  const auto moves = [&](int frame) { return stepOf(frames, frame, kMovesTurn, kMovesWay) > 1; };
+  const auto moves = [&](int frame) {
+    return frame < frames.count() ? stepOf(frames, frame, kMovesTurn, kMovesWay) : 0;
+  };
   int mended = 0;
   for (int f = 2; f + 1 < frames.count(); ++f) {
     if (!repeats(f)) continue;
     int next = f + 1;
     while (next < frames.count() && repeats(next)) ++next;
-    if (next - f <= kLongestFault && next < frames.count() && moves(f - 1) && moves(next)) {
+    if (next - f <= kLongestFault && moves(f - 1) > 1 &&
+        moves(next) > kCatchesUp * 0.5 * (moves(f - 1) + moves(next + 1))) {
       for (int j = 0; j < frames.clip.joint_count; ++j) frames.join(f - 1, next, j);
       mended += next - f;
     }

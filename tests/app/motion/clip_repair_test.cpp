@@ -77,7 +77,7 @@ TEST(ClipRepair, AJumpOverTheGroundIsCarriedOver) {
 }
 
 TEST(ClipRepair, DroppedFramesBecomeEvenSteps) {
-  const BvhMotion clean = ownClip("jump_spin");
+  const BvhMotion clean = ownClip("walk");
   BvhMotion motion = clean;
   for (const int f : {150, 200, 201, 230, 231, 232}) {
     for (int j = 0; j < motion.clip.joint_count; ++j) {
