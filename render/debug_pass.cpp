@@ -1,6 +1,9 @@
-#include "render/debug_pass.h"
-
+// Debug lines, triangles and points over the scene: full where they are seen, faint where something hides them.
 #include <cstddef>
+#include <span>
+#include <string>
+
+#include "render/pass.h"
 
 namespace render {
 namespace {
@@ -8,6 +11,34 @@ namespace {
 constexpr float kHiddenVisibility = 0.16f;
 
 }  // namespace
+
+class DebugPass {
+ public:
+  static constexpr const char* kName = "debug";
+  static constexpr Target kTarget = Target::kRadiance;
+  struct Input {
+    float exposure = 1;  // undone for the shapes
+    std::span<const LineVertex> lines, triangles, points;
+
+    bool hasShapes() const { return !lines.empty() || !triangles.empty() || !points.empty(); }
+    // Shapes have no revision, so they count as changed in every frame.
+    bool operator==(const Input& other) const { return !hasShapes() && !other.hasShapes(); }
+  };
+  static Input inputOf(const FrameInput& frame) {
+    return {frame.view.exposure, frame.debug_lines, frame.debug_triangles, frame.debug_points};
+  }
+
+  explicit DebugPass(const std::string& shader_dir);
+  void draw(const Input& input, Stage& stage, FrameReport& report);
+  ReloadReport reload(Reload which) { return program_.reload(which); }
+
+ private:
+  void drawShape(GLenum shape, std::span<const LineVertex> vertices, FrameReport& report);
+
+  ShaderProgram program_;
+  GrowingBuffer vertices_;
+  VertexArray attributes_;
+};
 
 DebugPass::DebugPass(const std::string& shader_dir)
     : program_(shader_dir, {{"debug.vert", "debug.frag"}, {}, {}}), attributes_(makeVertexArray()) {
@@ -50,5 +81,7 @@ void DebugPass::draw(const Input& input, Stage&, FrameReport& report) {
   glDepthMask(GL_TRUE);
   glDisable(GL_PROGRAM_POINT_SIZE);
 }
+
+template PassEntry makePass<DebugPass>(const std::string& shader_dir);
 
 }  // namespace render

@@ -1,9 +1,11 @@
-#include "render/plan_pass.h"
-
+// Plans the frame: strands and their detail, shadow maps, and the constants that every shader reads (FrameBlock).
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "render/pass.h"
+#include "render/plan_input.h"
 #include "render/stage.h"
 #include "shaders/shared.h"
 
@@ -45,6 +47,18 @@ shared::FrameBlock frameBlock(const PlanInput& input, const Matrix4f& view_proje
 
 }  // namespace
 
+class PlanPass {
+ public:
+  static constexpr const char* kName = "plan";
+  static constexpr Target kTarget = Target::kRadiance;
+  using Input = PlanInput;
+  static Input inputOf(const FrameInput& frame);
+
+  explicit PlanPass(const std::string&) {}
+  void draw(const Input& input, Stage& stage, FrameReport& report);
+  ReloadReport reload(Reload) { return {}; }
+};
+
 PlanPass::Input PlanPass::inputOf(const FrameInput& frame) {
   const ViewOptions& view = frame.view;
   Input input;
@@ -80,5 +94,7 @@ void PlanPass::draw(const Input& input, Stage& stage, FrameReport& report) {
   glNamedBufferSubData(stage.frame_block.id(), 0, sizeof(block), &block);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, stage.frame_block.id());
 }
+
+template PassEntry makePass<PlanPass>(const std::string& shader_dir);
 
 }  // namespace render

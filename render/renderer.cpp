@@ -1,6 +1,6 @@
 #include "render/renderer.h"
 
-#include <utility>
+#include <vector>
 
 #include "render/gpu_timer.h"
 #include "render/passes.h"
@@ -11,20 +11,32 @@ namespace render {
 
 struct Renderer::Impl {
   Stage stage;
-  RadiancePasses radiance_passes;
-  ScreenPasses screen_passes;
+  std::vector<PassEntry> passes;
   bool has_drawn = false;  // the radiance shows what the passes' inputs say
   ImageTarget image;
   GpuTimer timer;
 
-  explicit Impl(const std::string& shader_dir) : radiance_passes(shader_dir), screen_passes(shader_dir) {}
+  explicit Impl(const std::string& shader_dir) {
+    for (const PassMaker make : kPasses) passes.push_back(make(shader_dir));
+  }
 
   // Whether the radiance shows another frame than this one. Uploads what changed.
   bool update(const FrameInput& input, FrameReport& report) {
-    const bool scene_changed = stage.update(input, report);
-    const bool passes_changed = radiance_passes.update(input);
-    screen_passes.update(input);
-    return scene_changed || passes_changed || !has_drawn;
+    bool changed = stage.update(input, report) || !has_drawn;
+    for (const PassEntry& pass : passes) {
+      const bool pass_changed = pass.update(pass.pass.get(), input);
+      changed = changed || (pass_changed && pass.target == Target::kRadiance);
+    }
+    return changed;
+  }
+
+  void drawInto(Target target, FrameReport& report) {
+    for (const PassEntry& pass : passes) {
+      if (pass.target != target) continue;
+      target == Target::kRadiance ? stage.beginRadiance() : stage.beginScreen();
+      pass.draw(pass.pass.get(), stage, report);
+      timer.mark(pass.name);
+    }
   }
 };
 
@@ -47,10 +59,10 @@ FrameReport Renderer::renderFrame(const FrameInput& input, unsigned framebuffer,
   report.skip_counts.frame = {kept, 1};
   if (!kept) {
     r.has_drawn = false;  // should a pass throw
-    r.radiance_passes.draw([&] { stage.beginRadiance(); }, stage, r.timer, report);
+    r.drawInto(Target::kRadiance, report);
     r.has_drawn = true;
   }
-  r.screen_passes.draw([&] { stage.beginScreen(); }, stage, r.timer, report);
+  r.drawInto(Target::kScreen, report);
   report.stages = r.timer.finish();
   report.gpu_bytes_hair = stage.hairs.gpuBytes();
   report.gpu_bytes_shadows = stage.shadows.gpuBytes();
@@ -67,8 +79,8 @@ FrameReport Renderer::renderImage(const FrameInput& input, std::vector<unsigned 
 }
 
 ReloadReport Renderer::reloadShaders(Reload which) {
-  ReloadReport report = impl_->radiance_passes.reload(which);
-  report += impl_->screen_passes.reload(which);
+  ReloadReport report;
+  for (const PassEntry& pass : impl_->passes) report += pass.reload(pass.pass.get(), which);
   if (report.programs > 0) {
     impl_->has_drawn = false;
     impl_->stage.shadows.forget();

@@ -1,9 +1,32 @@
-#include "render/strand_pass.h"
+// Draws strands, lit: by the geometry stage or by vertex pulling, the same curves either way.
+#include <string>
 
+#include "render/pass.h"
 #include "render/stage.h"
+#include "render/strand_draw.h"
 #include "shaders/shared.h"
 
 namespace render {
+
+class StrandPass {
+ public:
+  static constexpr const char* kName = "strands";
+  static constexpr Target kTarget = Target::kRadiance;
+  struct Input {
+    bool show = true;
+    StrandPath path = StrandPath::kGeometry;
+    bool operator==(const Input&) const = default;
+  };
+  static Input inputOf(const FrameInput& frame) { return {frame.view.show_strands, frame.view.strand_path}; }
+
+  explicit StrandPass(const std::string& shader_dir);
+  void draw(const Input& input, Stage& stage, FrameReport& report);
+  ReloadReport reload(Reload which) { return reloadPrograms({&geometry_, &pulling_}, which); }
+
+ private:
+  ShaderProgram geometry_, pulling_;
+  VertexArray no_attributes_;
+};
 
 // GL 4.5 promises this much output of one geometry shader invocation; Mesa allows more, other drivers do not.
 static_assert(2 * shared::kChunkPoints * shared::kRibbonComponents <= shared::kMaxOutputComponents);
@@ -31,5 +54,7 @@ void StrandPass::draw(const Input& input, Stage& stage, FrameReport& report) {
   report.strand_vertices = count.vertices;
   report.draw_calls += count.draw_calls;
 }
+
+template PassEntry makePass<StrandPass>(const std::string& shader_dir);
 
 }  // namespace render

@@ -8,10 +8,10 @@
 #include <limits>
 #include <stdexcept>
 
-#include "render/plan_pass.h"
+#include "render/passes.h"
 #include "render/render_target.h"
 #include "render/renderer.h"
-#include "render/shadow_pass.h"
+#include "render/shader.h"
 #include "render/stage.h"
 #include "tests/draw_skips.h"
 #include "tests/gl_fixture.h"
@@ -398,12 +398,15 @@ void main() { tau = hairOpticalDepth(0, hairShadowCoordinates(0, first.xyz + flo
   input.skips = draw_skips::none();
 
   render::Stage stage;
-  render::PlanPass plan(folder);
-  render::HairShadowPass shadows(folder);
   render::FrameReport report;
   stage.update(input, report);
-  plan.draw(render::PlanPass::inputOf(input), stage, report);
-  shadows.draw(render::HairShadowPass::inputOf(input), stage, report);
+  const std::initializer_list<render::PassMaker> makers{render::makePass<render::PlanPass>,
+                                                        render::makePass<render::HairShadowPass>};
+  for (const render::PassMaker make : makers) {
+    const render::PassEntry pass = make(folder);
+    pass.update(pass.pass.get(), input);
+    pass.draw(pass.pass.get(), stage, report);
+  }
   stage.shadows.bindMaps();
 
   const std::array<double, kDepths> mean = meanOpticalDepth(folder);

@@ -14,7 +14,7 @@
 #include "render/render_target.h"
 #include "render/shader.h"
 #include "render/sky_visibility.h"
-#include "render/strand_pass.h"
+#include "render/strand_draw.h"
 #include "shaders/shared.h"
 #include "tests/gl_fixture.h"
 #include "tests/strand_reference.h"
