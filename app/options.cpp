@@ -168,6 +168,12 @@ void addRunOptions(CLI::App& parser, Options& options) {
   group.value("--record", options.record, "FILE", "Write the run's inputs, so that --replay repeats it to the bit");
   group.value("--write-hair", options.write_hair, "FILE.obj", "Write the hair mesh that is shown as OBJ and end");
   group.value("--replay", options.replay, "FILE", "Repeat a recorded run; exit code 1 when it ends in another state");
+  group.value("--save-state", options.save_state, "FILE",
+              "Write the state after the last frame (of every character: motion, hair, sleep, level of detail)");
+  group.value("--save-state-at", options.save_state_at, "N", "Write it after so many frames instead; the run goes on")
+      ->check(within(1, kMaxFrames));
+  group.value("--load-state", options.load_state, "FILE",
+              "Go on from a saved state: the same scene and options continue to the bit, with the next frame's number");
   group.value("--screenshot", options.screenshot, "FILE.png",
               "Write the last frame, panels included, when the run ends");
   group.value("--panel", options.panel, "NAME", "Tab that is open at first: simulation, motion, hair, look or debug")
@@ -200,6 +206,16 @@ void finish(const Unchecked& unchecked, Options& options) {
   }
   if (!options.record.empty() && options.record == options.replay) {
     throw UsageError("--record and --replay name one file; a recording cannot be read and written at once");
+  }
+  if (!options.load_state.empty() && !(options.record + options.replay).empty()) {
+    throw UsageError("--load-state does not go with --record and --replay, which begin with the scene; leave one out");
+  }
+  if (options.save_state_at > options.frames && options.replay.empty()) {
+    throw UsageError("--save-state-at " + std::to_string(options.save_state_at) + " lies beyond the run's " +
+                     std::to_string(options.frames) + " frames; give a smaller number, or more --frames");
+  }
+  if (options.save_state_at > 0 && options.save_state.empty()) {
+    throw UsageError("--save-state-at says when; add --save-state FILE");
   }
   if (options.no_images) options.headless = true;
   if (!options.parts.empty() && options.motion.empty() && options.scene.empty()) {

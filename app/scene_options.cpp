@@ -68,6 +68,8 @@ Options sortedOut(Options options) {
     case FileKind::kHairMesh:
       fill("--hair", options.hair, file);
       break;
+    case FileKind::kState:
+      throw UsageError(file + " is a saved state; name its scene, and it with --load-state");
   }
   return options;
 }

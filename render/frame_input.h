@@ -56,6 +56,7 @@ struct HairInput {
   std::uint64_t layout_id = 0;          // hairs of one such id and revision share faces and rest shape; 0: its own
   std::span<const HairFace> faces;
   std::span<const float> positions;  // world, 3 floats a vertex, columns contiguous root to tip
+  std::span<const float> rest;       // the same at rest, y up; empty: as the positions are when first seen
   int strands = 20000;               // over the whole hair
   int segments_per_layer = 3;        // 1..8
   HairLook look;

@@ -29,7 +29,7 @@ struct HairColumn {
   std::vector<ColumnNeighbour> neighbours;
 };
 
-// Topology and rest geometry, made once per layout from the roots as they then stand.
+// Topology and rest geometry, made once per layout from the roots at rest.
 struct HairLayout {
   std::vector<HairFace> faces;
   std::vector<std::array<int, 4>> face_columns;  // [3] = -1: triangle

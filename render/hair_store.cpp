@@ -215,7 +215,8 @@ HairStyle& HairStore::styleOf(const HairInput& input, int strands, long& uploade
   style.layout_id = input.layout_id;
   style.layout_revision = input.layout_revision;
   style.strands = strands;
-  style.layout = makeHairLayout(input.faces, input.positions);
+  style.layout =
+      makeHairLayout(input.faces, input.rest.size() == input.positions.size() ? input.rest : input.positions);
   if (!style.layout.faces.empty()) uploaded += uploadStyle(style, texels_);
   return style;
 }

@@ -27,6 +27,7 @@ struct SleepState {
   std::vector<Vec3> roots;  // m, when the window began or the hair fell asleep
   std::vector<Ellipsoid> ellipsoids;
   std::vector<PinnedVertex> pins;
+  HAIRMESH_FIELDS(asleep, quiet_windows, window_time, path, params, begin, roots, ellipsoids, pins)
 };
 
 // Whether the coming step may be left out. Call before every step with its input. Wakes when roots, colliders or pins

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <fstream>
+#include <string>
 
 #include "app/files/errors.h"
 #include "app/files/json_reader.h"
@@ -21,6 +23,9 @@ FileKind fileKind(const std::string& file) {
   for (const char* known : {".bvh", ".glb", ".gltf", ".fbx", ".dae"}) {
     if (ending == known) return FileKind::kMotion;
   }
+  if (std::string title(15, '\0');
+      std::ifstream(file, std::ios::binary).read(title.data(), 15) && title == "hairmesh-state ")
+    return FileKind::kState;
   throw InputError(file, "", "is no kind of file that this program reads",
                    "give a scene or preset (.json), a motion (.bvh, .glb, .gltf, .fbx, .mot) or a hair mesh (.obj)");
 }

@@ -5,9 +5,10 @@
 
 namespace app {
 
-enum class FileKind { kScene, kPreset, kMotion, kRigidMotion, kHairMesh };
+enum class FileKind { kScene, kPreset, kMotion, kRigidMotion, kHairMesh, kState };
 
-// By its ending; scenes and presets, both JSON, by their content. Throws InputError for any other file.
+// By its ending; scenes and presets, both JSON, and saved states by their content. Throws InputError for any other
+// file.
 FileKind fileKind(const std::string& file);
 
 // The folder of body parts that ARCSim's data keeps beside a .mot motion.

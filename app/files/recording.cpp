@@ -28,7 +28,7 @@ struct AskName {
   std::string_view name;
 };
 // What can be recorded: all but the requests that write files.
-constexpr std::array<AskName, 24> kAskNames{{{Ask::kSetParam, "set"},
+constexpr std::array<AskName, 25> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kPause, "pause"},
                                              {Ask::kPauseMotion, "pause-motion"},
                                              {Ask::kSingleStep, "single-step"},
@@ -45,6 +45,7 @@ constexpr std::array<AskName, 24> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kHairFile, "hair-file"},
                                              {Ask::kSceneFile, "scene-file"},
                                              {Ask::kPresetFile, "preset-file"},
+                                             {Ask::kLoadState, "state-file"},
                                              {Ask::kOpenFile, "open-file"},
                                              {Ask::kSelect, "select"},
                                              {Ask::kView, "view"},

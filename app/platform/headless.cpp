@@ -15,6 +15,7 @@
 #include "app/platform/egl_context.h"
 #include "app/platform/interrupt.h"
 #include "app/scene/demo.h"
+#include "app/scene/demo_state.h"
 
 namespace app {
 
@@ -22,9 +23,9 @@ namespace {
 
 constexpr double kLineEvery = 5;  // s
 
-std::string framePath(const std::string& folder, int frame) {
+std::string framePath(const std::string& folder, long frame) {
   char name[32];
-  std::snprintf(name, sizeof name, "frame_%04d.png", frame);
+  std::snprintf(name, sizeof name, "frame_%04ld.png", frame);
   return (std::filesystem::path(folder) / name).string();
 }
 
@@ -51,9 +52,12 @@ struct Run {
   std::optional<Pictures> pictures;
   std::vector<unsigned char> pixels;
   int frames = 0;
+  long first = 0;  // number of the first frame: a loaded state has some behind it
 
   Run(Scene scene, const Options& run_options);
   void drawFrames();
+  double frameSeconds(int frame) const;
+  void saveState() const;
   void reportDone();
   int finish();
 };
@@ -72,7 +76,13 @@ Run::Run(Scene scene, const Options& run_options) : options(run_options), tape(o
   if (!options.report.empty()) checkWritable(options.report);
   if (!options.screenshot.empty()) checkWritable(options.screenshot);
   if (!options.no_images) makeFolder(options.out);
+  if (!options.save_state.empty()) checkWritable(options.save_state);
   demo = openForPictures(std::move(scene), options, tape.aspect());
+  if (!options.load_state.empty()) {
+    const bool keep_view = !options.camera.empty() || !options.framing.empty();
+    loadDemoState(options.load_state, keep_view, demo);
+    first = demo.frames;
+  }
   if (!options.no_images) {
     pictures.emplace();
     report.renderer = render::rendererName();
@@ -80,17 +90,28 @@ Run::Run(Scene scene, const Options& run_options) : options(run_options), tape(o
   report.start_seconds = now() - start;
 }
 
+// The first frame of a scene shows its start, the first after a loaded state goes on.
+double Run::frameSeconds(int frame) const {
+  return frame == 0 && options.load_state.empty() ? 0 : 1 / report.fps;
+}
+
+void Run::saveState() const {
+  writeFile(options.save_state, demoStateBytes(demo));
+  std::cout << "state after " << demo.frames << " frames in " << options.save_state << "\n";
+}
+
 void Run::drawFrames() {
   FrameTarget target;
   if (pictures) target = {&pictures->renderer, options.width, options.height, 0, &pixels, !options.report.empty(), {}};
   double last_line = now();
   for (int frame = 0; frame < frames && !interrupted(); ++frame) {
-    advanceFrame(demo, tape.turn(frame, frame == 0 ? 0 : 1 / report.fps, demo), target);
+    advanceFrame(demo, tape.turn(frame, frameSeconds(frame), demo), target);
     report.frames.push_back(demo.stats);
+    if (frame + 1 == options.save_state_at) saveState();
     if (const std::string note = numericalNote(demo.stats); !note.empty())
       std::cerr << "hairmesh: frame " << frame << ": " << note << "\n";
     if (!pictures) continue;
-    writePng(framePath(options.out, frame), options.width, options.height, pixels);
+    writePng(framePath(options.out, first + frame), options.width, options.height, pixels);
     // Software rasterizers take a second a frame; a person wants to see that it goes on.
     if (now() - last_line > kLineEvery) {
       std::cout << "frame " << frame + 1 << " of " << frames << std::endl;
@@ -117,7 +138,13 @@ int Run::finish() {
     if (demo.actors.size() > 1) break;
   }
   std::cout << summary(report);
-  if (pictures) std::cout << report.frames.size() << " frames in " << options.out << "\n";
+  if (pictures) {
+    std::cout << report.frames.size() << " frames in " << options.out;
+    if (first > 0) std::cout << ", from " << framePath("", first);
+    std::cout << "\n";
+  }
+  const bool saved = options.save_state_at > 0 && options.save_state_at <= std::ssize(report.frames);
+  if (!options.save_state.empty() && !saved) saveState();
   const Tape::End end = tape.end(demo);
   std::cout << end.message;
   if (static_cast<int>(report.frames.size()) < frames && interrupted()) {

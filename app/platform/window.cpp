@@ -24,6 +24,7 @@
 #include "app/platform/interrupt.h"
 #include "app/platform/shader_reload.h"
 #include "app/scene/demo.h"
+#include "app/scene/demo_state.h"
 #include "app/scene/level_of_detail.h"
 #include "app/ui/redraw_throttle.h"
 #include "app/ui/ui.h"
@@ -207,6 +208,9 @@ int runWindow(Scene scene, const Options& options) {
   // Runs of so many frames and recordings show the same on every run.
   const bool beside = !options.frames_given && options.record.empty() && options.replay.empty();
   Demo demo = openScene(std::move(scene), tape.aspect(), beside);
+  if (!options.load_state.empty())
+    loadDemoState(options.load_state, !options.camera.empty() || !options.framing.empty(), demo);
+  if (!options.save_state.empty()) checkWritable(options.save_state);
   setDebugViews(options.debug, demo.debug);
   UiState ui;
   ui.visible = !options.hide_panels;
@@ -239,9 +243,10 @@ int runWindow(Scene scene, const Options& options) {
     if (reload()) throttle.disturb();
     glfwGetFramebufferSize(window.handle, &target.width, &target.height);
     const double seconds = frameSeconds(options, demo, last);
-    advanceFrame(demo, tape.turn(frame, frame == 0 ? 0 : seconds, demo), target);
+    advanceFrame(demo, tape.turn(frame, frame == 0 && options.load_state.empty() ? 0 : seconds, demo), target);
     demo.stats.skipped[kSkipEvents] = {throttle.waited(), 1, 0};
     writePictures(demo, target);
+    if (frame + 1 == options.save_state_at) writeFile(options.save_state, demoStateBytes(demo));
     if (!options.report.empty()) run.frames.push_back(demo.stats);
     if (options.frames_given && frame + 1 == options.frames && !options.screenshot.empty()) {
       std::vector<unsigned char> pixels;
@@ -251,6 +256,8 @@ int runWindow(Scene scene, const Options& options) {
     glfwSwapBuffers(window.handle);
   }
   if (!options.report.empty()) writeReport(options.report, run, demo);
+  if (!options.save_state.empty() && (options.save_state_at == 0 || frame < options.save_state_at))
+    writeFile(options.save_state, demoStateBytes(demo));
   const Tape::End end = tape.end(demo);
   std::cout << end.message;
   return end.differs ? kExitFault : kExitFine;

@@ -91,6 +91,7 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
                      error.mend);
   }
   haircut->faces = renderFaces(haircut->mesh);
+  blendPositions(haircut->mesh.shape.positions, haircut->mesh.shape.positions, 1, Vec3::Zero(), haircut->rest);
   haircut->parts = sim::connectedParts(haircut->mesh);
   asset_cache.haircuts.push_back(std::move(haircut));
   return *asset_cache.haircuts.back();

@@ -46,6 +46,7 @@ struct Haircut {
   sim::HairMesh mesh;
   std::vector<sim::HairPart> parts;  // connected ones; empty: all of it is
   std::vector<render::HairFace> faces;
+  std::vector<float> rest;  // positions of the rest shape, three floats a vertex
 };
 
 // Where a body is scalp among the roots of a haircut; see root_cover.h.

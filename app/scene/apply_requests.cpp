@@ -10,6 +10,7 @@
 #include "app/files/output_file.h"
 #include "app/files/presets.h"
 #include "app/scene/demo.h"
+#include "app/scene/demo_state.h"
 #include "sim/field_text.h"
 
 namespace app {
@@ -105,6 +106,11 @@ Scene presentScene(const Demo& demo) {
   return scene;
 }
 
+void loadState(const Request& request, Demo& demo) {
+  loadDemoState(request.text, false, demo);
+  showMessage("state " + stem(request.text), demo);
+}
+
 void openAnyFile(const std::string& file, Demo& demo) {
   switch (fileKind(file)) {
     case FileKind::kScene:
@@ -119,6 +125,8 @@ void openAnyFile(const std::string& file, Demo& demo) {
       return changeMotion({Ask::kMotionFile, partsBeside(file), file}, demo);
     case FileKind::kHairMesh:
       return changeHairFile(file, demo);
+    case FileKind::kState:
+      return loadState({Ask::kLoadState, "", file}, demo);
   }
 }
 
@@ -185,6 +193,11 @@ void saveScene(const Request& request, Demo& demo) {
   showMessage("saved " + request.text, demo);
 }
 
+void saveState(const Request& request, Demo& demo) {
+  writeFile(request.text, demoStateBytes(demo));
+  showMessage("saved " + request.text, demo);
+}
+
 struct Action {
   Ask what;
   void (*apply)(const Request&, Demo&);
@@ -221,6 +234,8 @@ constexpr Action kActions[] = {
     {Ask::kPresetFile, [](const Request& request, Demo& demo) { changePreset(request.text, demo); }},
     {Ask::kSavePreset, savePreset},
     {Ask::kSaveScene, saveScene},
+    {Ask::kSaveState, saveState},
+    {Ask::kLoadState, loadState},
     {Ask::kOpenFile, [](const Request& request, Demo& demo) { openAnyFile(request.text, demo); }},
     {Ask::kSelect,
      [](const Request& request, Demo& demo) {

@@ -119,6 +119,7 @@ render::HairInput hairInput(const Actor& actor) {
   input.layout_id = actor.haircut->id;
   input.faces = actor.haircut->faces;
   input.positions = actor.shown_positions;
+  input.rest = actor.haircut->rest;
   input.strands = actor.spec.look.strands;
   input.segments_per_layer = actor.spec.look.segments_per_layer;
   input.look = actor.spec.look.hair;
@@ -272,6 +273,7 @@ void advanceFrame(Demo& demo, double seconds, const FrameTarget& target) {
   follow(demo.actors.front(), seconds, demo.aspect, demo.camera);
 
   advanceShownTime(seconds, demo);
+  ++demo.frames;
 
   timed(demo.stats.seconds[kTimeDraw], [&] { draw(demo, target); });
   if (target.draw_panels) {

@@ -42,6 +42,7 @@ struct Demo {
   FixedClock clock;
   Governor governor;
   sim::SimParams running;  // the scene's parameters as the governor lets them run
+  long frames = 0;         // shown since the scene began
   double shown_time = 0;   // s
   bool paused = false;
   int single_steps = 0;  // asked for while paused

@@ -12,6 +12,7 @@
 #include <span>
 #include <string>
 
+#include "sim/mesh/fields.h"
 #include "sim/sim_params.h"
 #include "sim/step.h"
 
@@ -56,6 +57,7 @@ struct Governor {
   struct Window {
     double shown = 0, simulated = 0, cost = 0, error = 0;
     int frames = 0;
+    HAIRMESH_FIELDS(shown, simulated, cost, error, frames)
   } window;
   double last_window = 0;                     // cost of a simulated second in the window before; 0: none at this rung
   double settle = 0;                          // simulated s to let pass before measuring
@@ -64,6 +66,8 @@ struct Governor {
   int left_rung = 0;                          // where the last change came from
   double left_cost = 0;                       // of a simulated second there; 0: learned from already, or a jump
   std::array<double, kMaxRungs> steepness{};  // learned cost of rung k + 1 over rung k; 0: the ladder's
+  HAIRMESH_FIELDS(budget, counted, rung, predicted_cost, measured_cost, measured_error, over_budget, changes, window,
+                  last_window, settle, since_change, backoff, calibrated, left_rung, left_cost, steepness)
 };
 
 // Starts governing at `seconds` a frame, or ends it with 0. What was learned of the ladder stays.

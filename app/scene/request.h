@@ -27,6 +27,8 @@ enum class Ask {
   kPresetFile,   // text: file
   kSavePreset,   // text: file
   kSaveScene,    // text: file
+  kSaveState,    // text: file
+  kLoadState,    // text: file
   kOpenFile,     // text: any of the above, told apart by ending and content
   kSelect,       // value: which character the panels speak of
   kView,         // name: front, three-quarter, ...

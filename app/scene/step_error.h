@@ -14,6 +14,7 @@ namespace app {
 struct StepErrorMeter {
   std::vector<sim::Vec3> change;  // of velocity in the step before, m/s
   double step = 0;                // s, its length; 0: none
+  HAIRMESH_FIELDS(change, step)
 };
 
 // Root mean square over the vertices of the step's local error over hair length and per second, after a step of the

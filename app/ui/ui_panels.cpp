@@ -155,6 +155,16 @@ void loopRows(const Actor& actor, Demo& demo, UiState& ui) {
   if (pressed >= 0) postRequest(demo, {Ask::kLoop, std::string(loopName(kKinds[pressed])), ""});
 }
 
+void stateRow(Demo& demo, UiState& ui) {
+  constexpr const char* kFile = "hairmesh.state";
+  rowLabel("State", "Keeps all that moves in hairmesh.state in the working folder, and goes on from it");
+  if (ImGui::Button("Save##state")) postRequest(demo, {Ask::kSaveState, "", kFile});
+  noteItem("save_state", ui);
+  ImGui::SameLine(0, 5);
+  if (ImGui::Button("Load##state")) postRequest(demo, {Ask::kLoadState, "", kFile});
+  noteItem("load_state", ui);
+}
+
 void playbackRows(const Actor& actor, Demo& demo, UiState& ui) {
   double speed = actor.playback.speed;
   rowLabel("Speed", "Clip seconds per second. The paper shows 10x; the hair's own time does not change.");
@@ -186,6 +196,7 @@ void playbackRows(const Actor& actor, Demo& demo, UiState& ui) {
   if (ImGui::Checkbox("##held", &held)) postRequest(demo, {Ask::kPauseMotion, "", "", held ? 1.0 : 0.0});
   noteItem("hold", ui);
   loopRows(actor, demo, ui);
+  stateRow(demo, ui);
 }
 
 void substepRow(Demo& demo, UiState& ui) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <span>
 
+#include "sim/mesh/fields.h"
 #include "sim/mesh/hair_mesh.h"
 
 namespace sim {
@@ -17,6 +18,7 @@ struct Ellipsoid {
   Vec3 radii = Vec3::Ones();                                     // m, along the local axes, all > 0
   Vec3 velocity = Vec3::Zero();                                  // m/s of the centre
   Vec3 angular_velocity = Vec3::Zero();                          // rad/s, world axes
+  HAIRMESH_FIELDS(center, rotation, radii, velocity, angular_velocity)
 };
 
 struct SurfacePoint {

@@ -21,6 +21,7 @@ struct PinnedVertex {
 
   bool firm() const { return stiffness == std::numeric_limits<double>::infinity(); }
   bool operator==(const PinnedVertex&) const = default;
+  HAIRMESH_FIELDS(vertex, target, velocity, stiffness)
 };
 
 // A pin is released where its target is farther from the column's root than so many times the column's length up to the

@@ -49,8 +49,8 @@ MEMBERS(DrawSkips, frame, rows, shadows, view, shadow_view, body_parts, body_det
 MEMBERS(HairLook, strand_radius, strands_represented, width_compensation, least_pixels, taper, length_variation, offset,
         clump, clump_size, curl_radius, curl_turns, frizz, flyaways, eumelanin, pheomelanin, use_color, color,
         root_darkening, tint_variation, beta_m, beta_n, eta, cuticle_angle, specular, diffuse, seed)
-MEMBERS(HairInput, id, layout_revision, position_revision, layout_id, faces, positions, strands, segments_per_layer,
-        look)
+MEMBERS(HairInput, id, layout_revision, position_revision, layout_id, faces, positions, rest, strands,
+        segments_per_layer, look)
 MEMBERS(BodyInput, id, mesh_id, positions, normals, triangles, joints, weights, joint_matrices, pose_revision, color,
         roughness, scalp_id, root_cover, root_color, scalp_tint)
 MEMBERS(FrameInput, width, height, camera, light, view, skips, hairs, bodies, debug_lines, debug_triangles,
@@ -84,7 +84,7 @@ void change(render::StrandPath& value) {
 struct Scene {
   synthetic::Hair hair = synthetic::makeHair(5);
   synthetic::Body body = synthetic::makeBody();
-  std::vector<float> cover;
+  std::vector<float> cover, rest;
   std::vector<render::HairInput> hairs;
   std::vector<render::BodyInput> bodies;
   std::vector<render::LineVertex> shape;
@@ -94,6 +94,8 @@ struct Scene {
     bodies.push_back(synthetic::bodyInput(body));
     for (std::size_t v = 0; v < cover.size(); v += 2) cover[v] = body.positions[3 * v / 2 + 1] > 1.6f;
     hairs[0].segments_per_layer = 6;
+    rest = hair.positions;
+    hairs[0].rest = rest;
     bodies[0].scalp_id = 1;
     bodies[0].scalp_tint = 0.6f;
     bodies[0].root_color = {0.4f, 0.3f, 0.2f};
@@ -119,16 +121,18 @@ struct Scene {
     ++hairs[0].layout_revision;
   }
   void change(std::span<const float>& values) {
+    if (&values == &hairs[0].rest) {
+      for (std::size_t i = 0; i < rest.size(); i += 2) rest[i] = 0.9f * rest[i];
+      ++hairs[0].layout_revision;
+      return;
+    }
     const bool of_hair = &values == &hairs[0].positions, of_cover = &values == &bodies[0].root_cover;
     std::vector<float>& numbers = of_hair                         ? hair.positions
                                   : of_cover                      ? cover
                                   : &values == &bodies[0].normals ? body.normals
                                   : &values == &bodies[0].weights ? body.weights
                                                                   : body.positions;
-    for (std::size_t i = 0; i < numbers.size(); i += 2) {
-      const bool root = of_hair && i / 3 % static_cast<std::size_t>(hair.layers) == 0;  // the layout's, not the pose's
-      if (!root) numbers[i] = 0.95f * numbers[i] + 0.01f;
-    }
+    for (std::size_t i = 0; i < numbers.size(); i += 2) numbers[i] = 0.95f * numbers[i] + 0.01f;
     ++(of_hair ? hairs[0].position_revision : of_cover ? bodies[0].scalp_id : bodies[0].mesh_id);
   }
   void change(std::span<const std::uint32_t>&) {
