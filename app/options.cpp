@@ -101,6 +101,10 @@ void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
   group.value("--hair", options.hair, "FILE", "Hair mesh file (OBJ, one group a layer) in place of a style");
   group.flag("--reverse-faces", options.reverse_faces,
              "Turn round the faces of a hair mesh file that is wound inwards");
+  group
+      .value("--fit", options.fit, "on|off",
+             "Whether unit, axes and size of a hair mesh file are inferred where its roots are far from the scalp (on)")
+      ->check(CLI::IsMember({"on", "off"}));
   group.value("--motion", options.motion, "FILE", "Motion: BVH, glTF, FBX, or ARCSim .mot with --parts");
   group.value("--parts", options.parts, "DIR", "Folder of body0000.obj ... for a .mot motion");
   group.value("--clip", options.clip, "NAME", "Clip of a motion file that holds several");

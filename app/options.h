@@ -27,6 +27,7 @@ struct Options {
   std::string style, resolution;                         // empty: the scene's
   std::string hair, motion, parts, clip;                 // files; name of a clip
   bool reverse_faces = false;                            // of the hair file
+  std::string fit;                                       // of the hair file: on or off; empty: the scene's
   std::string write_hair;                                // OBJ of the first character's hair mesh, in place of a run
   double budget_ms = -1;                                 // negative: the scene's
   double speed = -1, fps = -1;                           // negative: the scene's

@@ -93,6 +93,7 @@ void overrideCharacter(const Options& options, CharacterSpec& spec) {
     spec.hair = findFile(options.hair, "", "hair");
     spec.reverse_faces = options.reverse_faces;
   }
+  if (!options.fit.empty()) spec.fit = options.fit == "on";
   if (!options.motion.empty()) {
     spec.motion = findFile(options.motion, "", "clips");
     spec.clip.clear();

@@ -30,7 +30,7 @@ std::string readFileName(const JsonPlace& place, const std::string& kind) {
 }
 
 CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
-  place.expectObject({"motion", "parts", "clip", "style", "resolution", "hair", "reverse_faces", "position", "heading",
+  place.expectObject({"motion", "parts", "clip", "style", "resolution", "hair", "reverse_faces", "fit", "position", "heading",
                       "clip_offset", "loop", "look", "pins"});
   CharacterSpec spec;
   spec.look = look;
@@ -45,6 +45,7 @@ CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
   }
   if (place.has("hair")) spec.hair = readFileName(place.at("hair"), "hair");
   if (place.has("reverse_faces")) spec.reverse_faces = place.at("reverse_faces").flag();
+  if (place.has("fit")) spec.fit = place.at("fit").flag();
   if (place.has("position")) spec.position = toVec3(place.at("position").vector(-kFarthest, kFarthest));
   if (place.has("heading")) spec.heading = place.at("heading").number(-kTurn, kTurn);
   if (place.has("clip_offset")) spec.clip_offset = place.at("clip_offset").number(0, 1e5);
@@ -88,6 +89,7 @@ json writeCharacter(const CharacterSpec& spec) {
           {"resolution", sim::resolutionName(spec.resolution)},
           {"hair", spec.hair},
           {"reverse_faces", spec.reverse_faces},
+          {"fit", spec.fit},
           {"position", fromVec3(spec.position)},
           {"heading", spec.heading},
           {"clip_offset", spec.clip_offset},

@@ -66,6 +66,7 @@ Demo openForPictures(Scene scene, const Options& options, double aspect) {
   Demo demo = openScene(std::move(scene), aspect);
   setDebugViews(options.debug, demo.debug);
   demo.governor.counted = true;  // the same pictures on every run
+  if (!demo.message.empty()) std::cerr << "hairmesh: " << demo.message << "\n";
   return demo;
 }
 

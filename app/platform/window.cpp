@@ -197,6 +197,18 @@ void pollOrWait(bool may_wait, const Demo& demo, const std::function<bool()>& re
   }
 }
 
+Demo openForWindow(Scene scene, const Options& options, double aspect) {
+  // Runs of so many frames and recordings show the same on every run.
+  const bool beside = !options.frames_given && options.record.empty() && options.replay.empty();
+  Demo demo = openScene(std::move(scene), aspect, beside);
+  if (!options.load_state.empty())
+    loadDemoState(options.load_state, !options.camera.empty() || !options.framing.empty(), demo);
+  if (!options.save_state.empty()) checkWritable(options.save_state);
+  setDebugViews(options.debug, demo.debug);
+  if (!demo.message.empty()) std::cerr << "hairmesh: " << demo.message << "\n";
+  return demo;
+}
+
 }  // namespace
 
 int runWindow(Scene scene, const Options& options) {
@@ -205,13 +217,7 @@ int runWindow(Scene scene, const Options& options) {
   Window window(options.width, options.height);
   const double start = now();
   Tape tape(options, scene);
-  // Runs of so many frames and recordings show the same on every run.
-  const bool beside = !options.frames_given && options.record.empty() && options.replay.empty();
-  Demo demo = openScene(std::move(scene), tape.aspect(), beside);
-  if (!options.load_state.empty())
-    loadDemoState(options.load_state, !options.camera.empty() || !options.framing.empty(), demo);
-  if (!options.save_state.empty()) checkWritable(options.save_state);
-  setDebugViews(options.debug, demo.debug);
+  Demo demo = openForWindow(std::move(scene), options, tape.aspect());
   UiState ui;
   ui.visible = !options.hide_panels;
   ui.open_tab = tabIndex(options.panel);

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "app/figure/hair_fit.h"
 #include "app/figure/root_cover.h"
 #include "app/files/errors.h"
 #include "app/files/hair_file.h"
@@ -73,7 +74,7 @@ std::string styleTitle(const CharacterSpec& spec) {
 
 const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& asset_cache) {
   const std::string title = spec.hair.empty() ? styleTitle(spec) : spec.hair + (spec.reverse_faces ? " reversed" : "");
-  const std::string key = spec.hair.empty() ? body.key + "|" + title : title;
+  const std::string key = body.key + "|" + title + (spec.fit ? " fitted" : "");
   for (const auto& haircut : asset_cache.haircuts) {
     if (haircut->key == key) return *haircut;
   }
@@ -83,9 +84,12 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
   // Built-in styles alone ask for the distance, and it is a grid that takes time to fill.
   if (spec.hair.empty() && !body.distance) body.distance = restBodyDistance(body.character);
   try {
-    haircut->mesh = sim::buildHairMesh(
-        spec.hair.empty() ? sim::makeStyle(spec.style, spec.resolution, body.character.scalp, body.distance)
-                          : readHairMesh(readText(spec.hair), spec.hair, spec.reverse_faces));
+    sim::HairMeshShape shape = spec.hair.empty()
+                                   ? sim::makeStyle(spec.style, spec.resolution, body.character.scalp, body.distance)
+                                   : readHairMesh(readText(spec.hair), spec.hair, spec.reverse_faces);
+    if (!spec.hair.empty()) haircut->note = fitHair(body.character, spec.fit, shape);
+    if (!haircut->note.empty()) haircut->note = spec.hair + ": " + haircut->note;
+    haircut->mesh = sim::buildHairMesh(std::move(shape));
   } catch (const sim::MeshError& error) {
     throw InputError(spec.hair.empty() ? "style " + title + " on " + spec.motion : spec.hair, error.place, error.fault,
                      error.mend);

@@ -43,6 +43,7 @@ struct LoadedBody {
 struct Haircut {
   std::string key;
   std::uint64_t id = 0;
+  std::string note;  // what was found of a file that does not fit the head
   sim::HairMesh mesh;
   std::vector<sim::HairPart> parts;  // connected ones; empty: all of it is
   std::vector<render::HairFace> faces;

@@ -44,7 +44,7 @@ void recast(const CharacterSpec& spec, bool same_motion, const std::string& titl
   settleActor(demo.scene.sim, demo.scene.playback.settle, fresh);
   fresh.context->refreshGradually(true);
   replaceActor(std::move(fresh), demo.selected, same_motion, demo);
-  showMessage(title, demo);
+  showMessage(selectedActor(demo).haircut->note.empty() ? title : hairNotes(demo), demo);
 }
 
 void changeStyle(const Request& request, Demo& demo) {

@@ -82,7 +82,8 @@ void installLoaded(Demo& demo) {
     } else {
       recastLoaded(*loaded, demo);
     }
-    demo.message = title;
+    const std::string notes = hairNotes(demo);
+    demo.message = notes.empty() ? title : notes;
     demo.message_is_fault = false;
   } catch (const std::exception& fault) {
     demo.message = fault.what();

@@ -209,6 +209,15 @@ std::string numericalNote(const FrameStats& stats) {
   return stats.carried > 0 ? "the head jumped; the hair was carried along" : "";
 }
 
+std::string hairNotes(const Demo& demo) {
+  std::string notes;
+  for (const Actor& actor : demo.actors) {
+    const std::string& note = actor.haircut->note;
+    if (!note.empty() && notes.find(note) == std::string::npos) notes += (notes.empty() ? "" : "\n") + note;
+  }
+  return notes;
+}
+
 Demo openScene(Scene scene, double aspect, bool beside) {
   Demo demo;
   demo.scene = std::move(scene);
@@ -229,6 +238,7 @@ Demo openScene(Scene scene, double aspect, bool beside) {
     settleInDetail(settle, demo, demo.actors[i]);
   }
   for (Actor& actor : demo.actors) actor.context->refreshGradually(true);
+  demo.message = hairNotes(demo);
   return demo;
 }
 

@@ -82,6 +82,9 @@ Demo openScene(Scene scene, double aspect, bool beside = false);
 // Advances by `seconds` of wall time and draws. Faults of requests become the demo's message; what was loaded stays.
 void advanceFrame(Demo& demo, double seconds, const FrameTarget& target);
 
+// What was found of hair mesh files that do not fit their heads; empty when all fit.
+std::string hairNotes(const Demo& demo);
+
 // What advanceFrame hands to the renderer; spans point into the demo.
 render::FrameInput frameInput(Demo& demo, int width, int height);
 

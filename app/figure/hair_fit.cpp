@@ -1,0 +1,233 @@
+#include "app/figure/hair_fit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <vector>
+
+namespace app {
+
+namespace {
+
+constexpr double kHead = 0.23;                               // m, the head that limits are given for
+constexpr double kSmallestScale = 0.6, kLargestScale = 1.6;  // of another head's hair
+constexpr double kNearby = 0.3;                              // m that it may be off
+constexpr int kFitSteps = 20;
+
+struct Unit {
+  const char* name;
+  double metres;
+};
+constexpr std::array<Unit, 5> kUnits{
+    {{"metres", 1}, {"centimetres", 0.01}, {"millimetres", 0.001}, {"inches", 0.0254}, {"feet", 0.3048}}};
+
+struct Axes {
+  const char* name;
+  std::array<Vec3, 3> rows;  // x, y and z of the scalp's frame
+};
+
+const std::array<Axes, 4>& axesKnown() {
+  const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ();
+  static const std::array<Axes, 4> known{{{"y up", {x, y, z}},
+                                          {"z up, facing -y", {x, z, -y}},
+                                          {"z up, facing y", {-x, z, y}},
+                                          {"y up, facing -z", {-x, y, -z}}}};
+  return known;
+}
+
+// How a file's coordinates become the scalp's.
+struct Reading {
+  const Unit* unit = &kUnits[0];
+  const Axes* axes = &axesKnown()[0];
+  bool from_ground = false;  // the origin is the figure's, not the head joint
+  Eigen::Matrix3d linear = Eigen::Matrix3d::Identity();
+  Vec3 shift = Vec3::Zero();
+  Vec3 operator()(const Vec3& p) const { return linear * p + shift; }
+};
+
+std::vector<Vec3> rootsOf(const sim::HairMeshShape& shape) {
+  std::vector<Vec3> roots;
+  for (int c = 0; c < shape.columnCount(); ++c) roots.push_back(shape.positions[shape.column_first[c]]);
+  return roots;
+}
+
+Vec3 nearestOnScalp(const Vec3& p, const sim::Scalp& scalp) {
+  const Vec3 out = p - scalp.center;
+  const double far = out.norm();
+  return far < 1e-9 ? p : Vec3(scalp.center + scalp.radiusAt(out) / far * out);
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double distanceOf(const std::vector<Vec3>& roots, const Reading& reading, const sim::Scalp& scalp) {
+  std::vector<double> gaps;
+  for (const Vec3& root : roots) {
+    const Vec3 p = reading(root);
+    gaps.push_back((p - nearestOnScalp(p, scalp)).norm());
+  }
+  return median(std::move(gaps));
+}
+
+// m. Heads are nearly as round as they are the wrong way about, so hair also has to root above and behind the middle.
+double misfit(const std::vector<Vec3>& roots, const Reading& reading, const sim::Scalp& scalp) {
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& root : roots) mean += reading(root);
+  mean = mean / static_cast<double>(roots.size()) - scalp.center;
+  return distanceOf(roots, reading, scalp) + std::max(0.0, mean.z()) + std::max(0.0, -mean.y());
+}
+
+std::vector<Reading> readings(const Character& character) {
+  const Rigid from_figure = scalpToWorld(character, restPose(character.skeleton)).inverse();
+  std::vector<Reading> all;
+  for (const bool from_ground : {false, true}) {
+    for (const Axes& axes : axesKnown()) {
+      for (const Unit& unit : kUnits) {
+        Reading reading{&unit, &axes, from_ground};
+        for (int k = 0; k < 3; ++k) reading.linear.row(k) = unit.metres * axes.rows[static_cast<std::size_t>(k)];
+        if (from_ground) {
+          reading.linear = from_figure.linear() * reading.linear;
+          reading.shift = from_figure.translation();
+        }
+        all.push_back(reading);
+      }
+    }
+  }
+  return all;
+}
+
+struct Cloud {
+  Vec3 middle = Vec3::Zero();
+  double spread = 0;  // m, root mean square about the middle
+};
+
+Cloud cloudOf(const std::vector<Vec3>& points) {
+  Cloud cloud;
+  const auto count = static_cast<double>(points.size());
+  for (const Vec3& p : points) cloud.middle += p / count;
+  for (const Vec3& p : points) cloud.spread += (p - cloud.middle).squaredNorm() / count;
+  cloud.spread = std::sqrt(cloud.spread);
+  return cloud;
+}
+
+// Where hair grows, roughly: the upper and back half of the scalp.
+Cloud hairyScalp(const sim::Scalp& scalp) {
+  const Vec3 back = Vec3(0, 0.8, -0.6);
+  std::vector<Vec3> points;
+  constexpr int kRows = 24;
+  for (int i = 1; i < kRows; ++i) {
+    const double polar = i * std::numbers::pi / kRows;
+    const int columns = std::max(1, static_cast<int>(2 * kRows * std::sin(polar)));
+    for (int j = 0; j < columns; ++j) {
+      const double azimuth = j * 2 * std::numbers::pi / columns;
+      const Vec3 out(std::sin(polar) * std::sin(azimuth), std::cos(polar), std::sin(polar) * std::cos(azimuth));
+      if (out.dot(back) > 0) points.push_back(scalp.center + scalp.radiusAt(out) * out);
+    }
+  }
+  return cloudOf(points);
+}
+
+// The scale and shift, without a turn, that bring the roots to the scalp: first over where hair grows, then by closest
+// points again and again.
+Reading broughtToScalp(const std::vector<Vec3>& roots, Reading reading, const sim::Scalp& scalp) {
+  const auto rescale = [&](double scale, const Vec3& from, const Vec3& to) {
+    reading.linear *= scale;
+    reading.shift = to + scale * (reading.shift - from);
+  };
+  std::vector<Vec3> read(roots.size()), on_scalp(roots.size());
+  for (std::size_t i = 0; i < roots.size(); ++i) read[i] = reading(roots[i]);
+  const Cloud hair = cloudOf(read), scalp_hair = hairyScalp(scalp);
+  rescale(hair.spread > 0 ? scalp_hair.spread / hair.spread : 1, hair.middle, scalp_hair.middle);
+  for (int step = 0; step < kFitSteps; ++step) {
+    for (std::size_t i = 0; i < roots.size(); ++i) {
+      read[i] = reading(roots[i]);
+      on_scalp[i] = nearestOnScalp(read[i], scalp);
+    }
+    const Vec3 from = cloudOf(read).middle, to = cloudOf(on_scalp).middle;
+    double along = 0, square = 0;
+    for (std::size_t i = 0; i < roots.size(); ++i) {
+      along += (read[i] - from).dot(on_scalp[i] - to);
+      square += (read[i] - from).squaredNorm();
+    }
+    rescale(square > 0 ? along / square : 1, from, to);
+  }
+  return reading;
+}
+
+double scaleOf(const Reading& reading) {
+  return reading.linear.col(0).norm() / reading.unit->metres;
+}
+
+std::string length(double metres) {
+  char text[32];
+  if (metres < 0.1) {
+    std::snprintf(text, sizeof text, "%.0f mm", 1e3 * metres);
+  } else {
+    std::snprintf(text, sizeof text, metres < 10 ? "%.2f m" : "%.0f m", metres);
+  }
+  return text;
+}
+
+std::string looksLike(const Reading& reading) {
+  std::string text;
+  const auto add = [&](const std::string& more) { text += (text.empty() ? "" : ", ") + more; };
+  if (reading.unit != &kUnits[0]) add(reading.unit->name);
+  if (reading.axes != &axesKnown()[0]) add(reading.axes->name);
+  if (reading.from_ground) add("the figure's origin");
+  return text;
+}
+
+std::string anotherHeads(const Reading& reading) {
+  char text[64];
+  std::snprintf(text, sizeof text, "hair for another head, scaled by %.2f and moved by ", scaleOf(reading));
+  return text + length(reading.shift.norm());
+}
+
+}  // namespace
+
+double rootDistance(const sim::HairMeshShape& shape, const sim::Scalp& scalp) {
+  return distanceOf(rootsOf(shape), Reading{}, scalp);
+}
+
+std::string fitHair(const Character& character, bool mend, sim::HairMeshShape& shape) {
+  const sim::Scalp& scalp = character.scalp;
+  const std::vector<Vec3> roots = rootsOf(shape);
+  const double limit = kFarRoots * scalp.head_height / kHead, before = rootDistance(shape, scalp);
+  if (roots.empty() || before <= limit) return "";
+  const std::vector<Reading> all = readings(character);
+  const auto best = [&](const std::vector<Reading>& of) {
+    return std::min_element(of.begin(), of.end(), [&](const Reading& a, const Reading& b) {
+      return misfit(roots, a, scalp) < misfit(roots, b, scalp);
+    });
+  };
+  Reading found = *best(all);
+  std::string like = looksLike(found);
+  if (distanceOf(roots, found, scalp) > limit) {
+    std::vector<Reading> moved;
+    for (const Reading& reading : all) {
+      if (reading.from_ground || distanceOf(roots, reading, scalp) > kNearby) continue;
+      const Reading one = broughtToScalp(roots, reading, scalp);
+      const double scale = scaleOf(one);
+      if (scale >= kSmallestScale && scale <= kLargestScale) moved.push_back(one);
+    }
+    if (moved.empty() || distanceOf(roots, *best(moved), scalp) > limit)
+      return "its roots are " + length(before) +
+             " from the scalp, in no unit, axes or size that is known; it should be in metres, y up, about the head "
+             "joint (assets/hair/README.md)";
+    found = *best(moved);
+    like = looksLike(found) + (looksLike(found).empty() ? "" : ", ") + anotherHeads(found);
+  }
+  const std::string far = "its roots are " + length(before) + " from the scalp";
+  if (!mend) return far + "; it looks like " + like + ": --fit on reads it so";
+  for (Vec3& p : shape.positions) p = found(p);
+  return far + "; it looks like " + like + ", and is read so: now they are " + length(rootDistance(shape, scalp)) +
+         " off (--fit off leaves it as it is)";
+}
+
+}  // namespace app

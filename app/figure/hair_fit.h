@@ -1,0 +1,24 @@
+// Hair meshes that were modelled in another unit, with another axis up, about another origin or for another head.
+#pragma once
+
+#include <string>
+
+#include "app/figure/character.h"
+#include "sim/mesh/hair_mesh.h"
+
+namespace app {
+
+// m, median distance of the roots from the scalp up to which a hair mesh fits as it is; of a head of 23 cm, and in
+// proportion.
+inline constexpr double kFarRoots = 0.018;
+
+// m, median over the roots. The shape is in the scalp's frame.
+double rootDistance(const sim::HairMeshShape& shape, const sim::Scalp& scalp);
+
+// Where the roots are far from the scalp: finds the unit (m, cm, mm, inches, feet), the axes (y up; z up, facing -y as
+// in Blender, or y), the origin (head joint or the figure's own) and at last the scale and place that bring them to it.
+// With `mend` the shape is brought there. Returns what was found, and done, in words; empty when the roots fit as they
+// are. Of two that fit the simpler one is taken, as listed.
+std::string fitHair(const Character& character, bool mend, sim::HairMeshShape& shape);
+
+}  // namespace app

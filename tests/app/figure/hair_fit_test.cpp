@@ -1,0 +1,131 @@
+// Hair meshes in another unit, with another axis up, about another origin or for another head come back to the scalp.
+#include "app/figure/hair_fit.h"
+
+#include <gtest/gtest.h>
+
+#include "app/files/data_path.h"
+#include "app/files/hair_file.h"
+#include "app/files/output_file.h"
+#include "tests/run_program.h"
+
+namespace {
+
+using app::Vec3;
+
+const app::Character& figure() {
+  static const app::Character character = app::loadCharacter(app::dataPath("assets/clips/walk.bvh"));
+  return character;
+}
+
+sim::HairMeshShape styled(sim::Style style) {
+  static const sim::BodyDistance distance = app::restBodyDistance(figure());
+  return sim::makeStyle(style, sim::Resolution::kLow, figure().scalp, distance);
+}
+
+template <class Change>
+sim::HairMeshShape changed(sim::HairMeshShape shape, Change&& change) {
+  for (Vec3& p : shape.positions) p = change(p);
+  return shape;
+}
+
+double farthest(const sim::HairMeshShape& a, const sim::HairMeshShape& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.positions.size(); ++i) most = std::max(most, (a.positions[i] - b.positions[i]).norm());
+  return most;
+}
+
+TEST(HairFit, WhatFitsIsLeftAlone) {
+  for (const sim::Style style : {sim::Style::kShort, sim::Style::kShoulder, sim::Style::kLong}) {
+    const sim::HairMeshShape shape = styled(style);
+    sim::HairMeshShape fitted = shape;
+    EXPECT_EQ(app::fitHair(figure(), true, fitted), "");
+    EXPECT_EQ(fitted.positions, shape.positions);
+    EXPECT_LT(app::rootDistance(shape, figure().scalp), 0.25 * app::kFarRoots);
+  }
+}
+
+struct Written {
+  const char* name;
+  Vec3 (*axes)(const Vec3&);  // of the scalp's frame, as the file has them
+};
+const Written kAxes[] = {{"", [](const Vec3& p) { return p; }},
+                         {"z up, facing -y", [](const Vec3& p) { return Vec3(p.x(), -p.z(), p.y()); }},
+                         {"z up, facing y", [](const Vec3& p) { return Vec3(-p.x(), p.z(), p.y()); }}};
+struct In {
+  const char* name;
+  double in_a_metre;
+};
+const In kUnits[] = {
+    {"", 1}, {"centimetres", 100}, {"millimetres", 1000}, {"inches", 1 / 0.0254}, {"feet", 1 / 0.3048}};
+
+TEST(HairFit, UnitsAxesAndOriginAreNamedAndTakenBack) {
+  const app::Rigid head = app::scalpToWorld(figure(), app::restPose(figure().skeleton));
+  for (const sim::Style style : {sim::Style::kShort, sim::Style::kShoulder, sim::Style::kLong}) {
+    const sim::HairMeshShape shape = styled(style);
+    for (const Written& axes : kAxes) {
+      for (const In& unit : kUnits) {
+        for (const bool from_ground : {false, true}) {
+          sim::HairMeshShape file = changed(
+              shape, [&](const Vec3& p) -> Vec3 { return unit.in_a_metre * axes.axes(from_ground ? head * p : p); });
+          const double before = app::rootDistance(file, figure().scalp);
+          const bool as_it_is = before <= app::kFarRoots * figure().scalp.head_height / 0.23;
+          const sim::HairMeshShape unread = file;
+          sim::HairMeshShape off = file;
+          const std::string note = app::fitHair(figure(), true, file), told = app::fitHair(figure(), false, off);
+          const std::string what = std::string(unit.name) + " " + axes.name + (from_ground ? " ground: " : ": ") + note;
+          EXPECT_EQ(off.positions, unread.positions) << what;
+          if (as_it_is) {
+            EXPECT_EQ(note, "") << what;
+            continue;
+          }
+          EXPECT_LT(farthest(file, shape), 1e-9) << what;
+          EXPECT_NE(note.find(unit.name), std::string::npos) << what;
+          EXPECT_NE(note.find(axes.name), std::string::npos) << what;
+          EXPECT_EQ(note.find("figure's origin") != std::string::npos, from_ground) << what;
+          EXPECT_NE(told.find("--fit on"), std::string::npos) << told;
+        }
+      }
+    }
+  }
+}
+
+TEST(HairFit, HairForAnotherHeadIsScaledAndMoved) {
+  const double limit = app::kFarRoots * figure().scalp.head_height / 0.23;
+  for (const double scale : {0.8, 1.3}) {
+    sim::HairMeshShape file = changed(styled(sim::Style::kShoulder),
+                                      [&](const Vec3& p) -> Vec3 { return scale * p + Vec3(0.01, 0.1, -0.08); });
+    ASSERT_GT(app::rootDistance(file, figure().scalp), limit);
+    const std::string note = app::fitHair(figure(), true, file);
+    EXPECT_NE(note.find("for another head, scaled by"), std::string::npos) << note;
+    EXPECT_LT(app::rootDistance(file, figure().scalp), limit) << note;
+    EXPECT_LT(farthest(file, styled(sim::Style::kShoulder)), 0.06) << note;
+  }
+}
+
+TEST(HairFit, WhatIsNowhereNearIsSaidAndLeftAlone) {
+  sim::HairMeshShape far =
+      changed(styled(sim::Style::kShort), [](const Vec3& p) { return Vec3(p.x(), p.y() + 40, p.z()); });
+  const sim::HairMeshShape before = far;
+  const std::string note = app::fitHair(figure(), true, far);
+  EXPECT_NE(note.find("in no unit"), std::string::npos) << note;
+  EXPECT_EQ(far.positions, before.positions);
+}
+
+TEST(HairFit, TheProgramSaysItOnceAndReadsIt) {
+  const std::string folder = test::freshFolder("hair_fit"), file = folder + "/hair.obj", out = folder + "/out.obj";
+  app::writeFile(file, app::writeHairMesh(changed(styled(sim::Style::kShort), [](const Vec3& p) -> Vec3 {
+                   return 100 * Vec3(p.x(), -p.z(), p.y());
+                 })));
+  const std::vector<std::string> run{"--no-images", "--frames", "2", "--motion", "walk.bvh", "--hair", file};
+  const test::Outcome fitted = test::runProgram(run);
+  EXPECT_EQ(fitted.exit_code, 0) << fitted.err;
+  EXPECT_NE(fitted.err.find("looks like centimetres, z up, facing -y, and is read so"), std::string::npos)
+      << fitted.err;
+  std::vector<std::string> off = run;
+  off.insert(off.end(), {"--fit", "off"});
+  const test::Outcome left = test::runProgram(off);
+  EXPECT_EQ(left.exit_code, 0) << left.err;
+  EXPECT_NE(left.err.find("--fit on reads it so"), std::string::npos) << left.err;
+}
+
+}  // namespace
