@@ -103,9 +103,38 @@ TEST_F(StressRun, CasesSavedMidwayGoOnInAnotherProcessAndEndInTheSameBits) {
   EXPECT_EQ(resumed.exit_code, 0) << resumed.out << resumed.err;
   EXPECT_TRUE(resumed.out.ends_with(" resumed to the same bits, 0 failed\n")) << resumed.out;
   EXPECT_GE(std::stoi(resumed.out), 15) << resumed.out;
+  std::vector<std::string> seeded = share;
+  seeded.insert(seeded.end(), {"--resume", folder, "--seed", "2"});
+  const test::Outcome other_seed = runStress(seeded);
+  EXPECT_EQ(other_seed.exit_code, 4);
+  EXPECT_NE(other_seed.err.find("was saved with --seed 1, not 2; give --seed 1"), std::string::npos) << other_seed.err;
   // A state that is not the one that was saved, or none, is told.
   std::filesystem::remove_all(folder);
   EXPECT_EQ(run("--resume").exit_code, 4);
+}
+
+TEST_F(StressRun, WhatChoosesNothingIsToldAndPartsChooseAmongNamedCases) {
+  const auto linesOf = [&](const std::vector<std::string>& arguments) {
+    const test::Outcome outcome = runStress(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return std::count(outcome.out.begin(), outcome.out.end(), '\n');
+  };
+  const auto all = linesOf({"--list", "--case", "mixed/1*"});
+  long dealt = 0;
+  for (const char* part : {"0", "1", "2", "3"})
+    dealt += linesOf({"--list", "--case", "mixed/1*", "--parts", "4", "--part", part});
+  EXPECT_EQ(dealt, all);
+  EXPECT_LT(linesOf({"--list", "--case", "mixed/1*", "--parts", "4", "--part", "1"}), all / 3);
+  const std::string folder = test::freshFolder("stress_none");
+  for (const std::vector<std::string>& unknown :
+       {std::vector<std::string>{"--case", "nix"}, {"--save", folder, "--case", "nix"}, {"--list", "--case", "nix"}}) {
+    const test::Outcome outcome = runStress(unknown);
+    EXPECT_EQ(outcome.exit_code, 4);
+    EXPECT_NE(outcome.err.find("case 'nix': is not declared"), std::string::npos) << outcome.err;
+  }
+  const test::Outcome beyond = runStress({"--short", "--part", "9", "--parts", "4"});
+  EXPECT_EQ(beyond.exit_code, 2);
+  EXPECT_NE(beyond.err.find("from 0 to 3"), std::string::npos) << beyond.err;
 }
 
 }  // namespace

@@ -29,12 +29,12 @@ struct Options {
 };
 
 bool chosen(const StressCase& one, std::size_t index, const Options& options) {
+  if (static_cast<int>(index % static_cast<std::size_t>(options.parts)) != options.part) return false;
   if (!options.pattern.empty()) {
     const bool all_that_begin = options.pattern.back() == '*';
     const std::string begin = options.pattern.substr(0, options.pattern.size() - all_that_begin);
     return all_that_begin ? one.name.starts_with(begin) : one.name == options.pattern;
   }
-  if (static_cast<int>(index % static_cast<std::size_t>(options.parts)) != options.part) return false;
   return options.long_run || one.in_short;
 }
 
@@ -144,6 +144,11 @@ int ablate(const Options& options, const std::vector<StressCase>& cases) {
 
 // Saves every chosen case midway, or goes on with those that were saved.
 int saveOrResume(const Options& options, const std::vector<StressCase>& cases) {
+  if (options.resume.empty()) {
+    stress::saveSeed(options.seed, options.save);
+  } else {
+    stress::checkSeed(options.seed, options.resume);
+  }
   stress::StageStore stages;
   long done = 0, failed = 0;
   for (std::size_t k = 0; k < cases.size(); ++k) {
@@ -165,8 +170,24 @@ int saveOrResume(const Options& options, const std::vector<StressCase>& cases) {
   return failed > 0 ? app::kExitFault : app::kExitFine;
 }
 
+// Throws where nothing would be run: a misspelt case, a share that is empty.
+void checkAnyChosen(const Options& options, const std::vector<StressCase>& cases) {
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    if (chosen(cases[k], k, options)) return;
+  }
+  Options whole = options;
+  whole.part = 0, whole.parts = 1;
+  if (options.parts > 1) {
+    checkAnyChosen(whole, cases);
+    throw app::InputError("", "--part " + std::to_string(options.part),
+                          "has no case in " + std::to_string(options.parts) + " parts", "give fewer --parts");
+  }
+  throw app::InputError("", "case '" + options.pattern + "'", "is not declared", "see hairmesh-stress --list");
+}
+
 int run(const Options& options) {
   std::vector<StressCase> cases = stress::declareCases(options.seed);
+  if (options.results.empty()) checkAnyChosen(options, cases);
   applySets(options.sets, cases);
   if (options.list) {
     for (std::size_t k = 0; k < cases.size(); ++k) {
@@ -185,8 +206,6 @@ int run(const Options& options) {
       results.insert(results.end(), some.begin(), some.end());
     }
   }
-  if (results.empty())
-    throw app::InputError("", "case '" + options.pattern + "'", "is not declared", "see hairmesh-stress --list");
   if (!options.document.empty())
     stress::writeDocument(results, options.short_run ? "--short" : "--long", options.seed, options.document);
   Count count;
@@ -227,6 +246,11 @@ int main(int argc, char** argv) {
   program.add_option("--document", options.document,
                      "write the tables of stability.md, and its data, into this folder");
   CLI11_PARSE(program, argc, argv);
+  if (options.part >= options.parts) {
+    std::cerr << "hairmesh-stress: --part cannot be " << options.part << " of " << options.parts
+              << " --parts; they are numbered from 0 to " << options.parts - 1 << "\n";
+    return app::kExitUsage;
+  }
   if (options.list && !options.short_run && options.pattern.empty()) options.long_run = true;
   if (!options.short_run && !options.long_run && options.pattern.empty() && options.results.empty()) {
     std::cout << program.help();

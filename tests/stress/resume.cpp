@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "app/files/errors.h"
 #include "app/files/output_file.h"
 #include "app/files/text_file.h"
 #include "sim/mesh/state_bytes.h"
@@ -55,7 +56,23 @@ void play(std::uint64_t seed, Run& run, const std::function<void()>& midway) {
   }
 }
 
+std::string seedFile(const std::string& folder) {
+  return (std::filesystem::path(folder) / "seed").string();
+}
+
 }  // namespace
+
+void saveSeed(std::uint64_t seed, const std::string& folder) {
+  app::writeFile(seedFile(folder), std::to_string(seed) + "\n");
+}
+
+void checkSeed(std::uint64_t seed, const std::string& folder) {
+  std::string saved = app::readText(seedFile(folder));
+  saved.resize(std::min(saved.find('\n'), saved.size()));
+  if (saved != std::to_string(seed))
+    throw app::InputError(folder, "", "was saved with --seed " + saved + ", not " + std::to_string(seed),
+                          "give --seed " + saved);
+}
 
 void saveMidway(const StressCase& one, std::uint64_t seed, StageStore& stages, const std::string& folder) {
   Run run(one, seed, stages.stage(one));
