@@ -69,7 +69,7 @@ Exit codes: 0 fine, 1 OpenGL or numerical fault or a file that cannot be written
 struct Unchecked {
   std::string size;
   std::vector<std::string> sets;
-  std::string solver, collider;
+  std::string collider;
   bool list_parameters = false, list_skips = false;
 };
 
@@ -110,10 +110,10 @@ void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
   group.value("--clip", options.clip, "NAME", "Clip of a motion file that holds several");
   group.value("--preset", options.preset, "NAME", "Preset by name or file");
   group.values("--set", unchecked.sets, "NAME=VALUE", "Set a parameter of the tables; may be given many times");
-  group
-      .value("--solver", unchecked.solver, "NAME",
-             "Linear solver; paper: the paper's own setting, one linearized step of 1/60 s by block-diagonal PCG")
-      ->check(CLI::IsMember(choicesOf("solver")));
+  group.value(
+      "--solver", options.solver, "NAME",
+      "default, or paper: all of the published setting, as --preset paper: one linearized step of 1/60 s by "
+      "block-diagonal PCG without safety nets (--set solver=paper leaves integrator and time step as they are)");
   group
       .value("--collider", unchecked.collider, "NAME",
              "What the hair collides with: ellipsoids fitted to the body, or signed distances of its skin (sdf)")
@@ -194,13 +194,8 @@ void finish(const Unchecked& unchecked, Options& options) {
     throw UsageError("--size cannot be '" + unchecked.size + "'; write WIDTHxHEIGHT with sides from " +
                      std::to_string(kSmallestSide) + " to " + std::to_string(kLargestSide) + ", for instance 1280x720");
   }
+  if (options.out.empty()) throw UsageError("--out names no folder; write --out DIR, for instance --out frames");
   if (!unchecked.collider.empty()) options.set.emplace_back("collider", unchecked.collider);
-  // Before the sets: --set overrides a part of what --solver sets.
-  if (!unchecked.solver.empty()) options.set.emplace_back("solver", unchecked.solver);
-  if (unchecked.solver == "paper") {
-    options.set.emplace_back("integrator", "linearized-euler");
-    options.set.emplace_back("time_step", "0.016666666666666666");
-  }
   for (const std::string& text : unchecked.sets) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0) {

@@ -38,6 +38,7 @@ struct Options {
   std::string report;       // JSON file of timings and counters
   std::string strand_path;  // geometry or pulling
   std::string preset;
+  std::string solver;      // default or paper; empty: the scene's
   std::string debug;       // debug views, comma separated
   std::string screenshot;  // PNG of the last frame, panels included
   bool no_images = false;
@@ -47,7 +48,7 @@ struct Options {
   std::string record, replay;  // recordings of a run's inputs
   std::string save_state, load_state;
   int save_state_at = 0;  // frames of this run after which the state is saved; 0: the last
-  std::string loop;            // what a clip does at its end; empty: the scene's
+  std::string loop;       // what a clip does at its end; empty: the scene's
 };
 
 // Parses argv with CLI11. Returns false and an exit code when the program has done what was asked (help, a listing).

@@ -107,6 +107,15 @@ void overrideCharacter(const Options& options, CharacterSpec& spec) {
   for (const std::string& text : options.pins) spec.pins.push_back(pinFromText(text));
 }
 
+// "paper" is the preset of that name.
+void chooseSolver(const std::string& name, sim::SimParams& params) {
+  if (name.empty()) return;
+  if (const sim::ParamText answer = sim::setParam(params, "solver", name); !answer.ok)
+    throw UsageError("--solver: " + answer.fault);
+  SceneLook look;
+  if (params.solver == sim::Solver::kPaper) loadPreset(presetFile(name, ""), {&params, &look, {}});
+}
+
 }  // namespace
 
 Scene sceneFromOptions(const Options& given) {
@@ -120,6 +129,8 @@ Scene sceneFromOptions(const Options& given) {
     looks.push_back(&spec.look);
   }
   if (!options.preset.empty()) loadPreset(presetFile(options.preset, ""), {&scene.sim, &scene.look, looks});
+  // Before the sets: --set overrides a part of what --solver sets.
+  chooseSolver(options.solver, scene.sim);
   for (const auto& [name, text] : options.set) {
     if (std::string fault = setAnywhere(name, text, scene.sim, looks, scene.look); !fault.empty()) {
       throw UsageError("--set " + name + ": " + fault);

@@ -53,11 +53,18 @@ int editDistance(std::string_view a, std::string_view b) {
 // Long names would make the distance quadratic in what a hostile file holds; no field's name is longer than this.
 constexpr std::size_t kLongestName = 64;
 constexpr std::size_t kLongestList = 24;
+constexpr std::size_t kSureBeginning = 4;
 
 }  // namespace
 
 std::string_view nearestName(std::string_view name, std::span<const std::string_view> candidates) {
   if (name.empty() || name.size() > kLongestName) return {};
+  // The beginning of a name is what a person is sure of: 'frict' for 'friction' rather than 'frizz'.
+  if (name.size() >= kSureBeginning) {
+    for (const std::string_view candidate : candidates) {
+      if (candidate.starts_with(name)) return candidate;
+    }
+  }
   std::string_view best;
   int best_distance = 1 + static_cast<int>(name.size()) / 3;
   for (const std::string_view candidate : candidates) {

@@ -16,7 +16,7 @@ bool parseSwitch(std::string_view text, bool& value);
 // The shortest decimal that reads back as the same double.
 std::string numberText(double value);
 
-// The candidate with the smallest edit distance, or an empty view when none is close enough to be what was meant.
+// The candidate that begins so, else that with the smallest edit distance, or an empty view when none is close enough to be what was meant.
 std::string_view nearestName(std::string_view name, std::span<const std::string_view> candidates);
 
 // "did you mean NAME?", or the list of all when nothing is near (of a short list; a long one is only pointed at).

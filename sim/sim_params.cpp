@@ -154,8 +154,28 @@ std::string choiceText(const ParamField& row) {
   return text;
 }
 
+// Choices that are no more, and what takes their place.
+struct Retired {
+  std::string_view field, choice, now;
+};
+constexpr Retired kRetired[] = {
+    {"solver", "warped", "default"},       {"solver", "two-level", "default"},
+    {"solver", "direct", "default"},       {"solver", "diagonal", "paper"},
+    {"solver", "block-jacobi", "default"}, {"solver", "column", "default"},
+    {"solver", "incomplete", "default"},   {"integrator", "implicit-euler", "linearized-euler"},
+    {"precision", "mixed", "float"}};
+
 ParamText refuse(const ParamField& row, std::string_view text, const std::string& mend) {
   return {false, std::string(row.name) + " cannot be '" + std::string(text.substr(0, 40)) + "'; " + mend};
+}
+
+std::string choiceHint(const ParamField& row, std::string_view text) {
+  std::string hint = "choose one of " + choiceText(row);
+  for (const Retired& retired : kRetired) {
+    if (retired.field == row.name && retired.choice == text)
+      hint += "; it is no more, " + std::string(retired.now) + " takes its place";
+  }
+  return hint;
 }
 
 }  // namespace
@@ -191,7 +211,7 @@ ParamText setParam(SimParams& params, std::string_view name, std::string_view te
     case FieldKind::kChoice: {
       std::size_t index = 0;
       while (index < row->choices.size() && text != row->choices[index]) ++index;
-      if (index == row->choices.size()) return refuse(*row, text, "choose one of " + choiceText(*row));
+      if (index == row->choices.size()) return refuse(*row, text, choiceHint(*row, text));
       value = static_cast<double>(index);
       break;
     }

@@ -1,6 +1,7 @@
 #include "app/files/file_kind.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <filesystem>
 #include <fstream>
@@ -9,14 +10,30 @@
 #include "app/files/errors.h"
 #include "app/files/json_reader.h"
 #include "app/files/text_file.h"
+#include "sim/field_text.h"
 
 namespace app {
+
+namespace {
+
+// By a key that a preset has not, or one that was meant to be "characters".
+bool looksLikeScene(const nlohmann::json& text) {
+  if (!text.is_object()) return false;
+  static constexpr std::array<std::string_view, 9> kKeys{"characters", "camera", "playback", "preset", "name",
+                                                         "sim",        "hair",   "light",    "view"};
+  return std::ranges::any_of(text.items(), [](const auto& item) {
+    const std::string_view near = sim::nearestName(item.key(), kKeys);
+    return std::find(kKeys.begin(), kKeys.begin() + 4, near) != kKeys.begin() + 4;
+  });
+}
+
+}  // namespace
 
 FileKind fileKind(const std::string& file) {
   std::string ending = std::filesystem::path(file).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
   if (ending == ".json") {
-    return parseJson(readText(file), file).contains("characters") ? FileKind::kScene : FileKind::kPreset;
+    return looksLikeScene(parseJson(readText(file), file)) ? FileKind::kScene : FileKind::kPreset;
   }
   if (ending == ".obj") return FileKind::kHairMesh;
   if (ending == ".mot") return FileKind::kRigidMotion;

@@ -190,7 +190,11 @@ Recording readRecording(std::string_view text, const std::string& file) {
   recording.scene = readScene(scene, file);
   recording.scene.skips = skips;
   while (!text.empty()) {
+    const bool ended = text.find('\n') != std::string_view::npos;
     const std::string_view line = next();
+    if (!ended && !json::accept(line))
+      throw InputError(named(), "", "the recording is cut off in the middle of this line",
+                       "delete the line to replay what is before it, or record anew");
     const json value = parseJson(line, named());
     const JsonPlace place(value, named());
     if (value.is_array()) {
@@ -280,7 +284,8 @@ Tape::End Tape::end(const Demo& demo) {
   if (turns_ < static_cast<int>(replay_->frames.size())) {
     end.message += "replayed " + count + " of " + std::to_string(replay_->frames.size()) + "\n";
   } else if (replay_->state.empty()) {
-    end.message += "replayed a recording without an end, state " + state + "\n";
+    end.message +=
+        "replayed " + count + " of a recording that was cut off, so that none knows its end; state " + state + "\n";
   } else {
     end.differs = state != replay_->state;
     end.message += "replayed " + count + ", " +

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "app/files/output_file.h"
+#include "sim/stabilization/parameter_limits.h"
 
 namespace app {
 
@@ -96,7 +97,18 @@ json frameJson(const FrameStats& stats, std::size_t index, double fps) {
           {"always_skipped", alwaysJson(stats.always)}};
 }
 
-json actorJson(const Actor& actor) {
+json limitsJson(const Actor& actor, const sim::SimParams& params) {
+  json limits = json::array();
+  for (const sim::LimitedValue& limited : sim::limitedValues(actor.haircut->mesh, params))
+    limits.push_back({{"parameter", limited.field->name},
+                      {"set", limited.field->get(params)},
+                      {"used", limited.used},
+                      {"unit", limited.field->unit},
+                      {"reason", limited.reason}});
+  return limits;
+}
+
+json actorJson(const Actor& actor, const sim::SimParams& params) {
   const sim::HairMesh& mesh = actor.haircut->mesh;
   return {{"motion", actor.spec.motion},
           {"clip", actor.playedClip().name},
@@ -116,6 +128,8 @@ json actorJson(const Actor& actor) {
           {"columns", mesh.columnCount()},
           {"prisms", mesh.prisms.size()},
           {"hair_length", mesh.hair_length},
+          {"limits", limitsJson(actor, params)},
+          {"hair_note", actor.haircut->note},
           {"strands", actor.spec.look.strands},
           {"joints", actor.body->character.skeleton.joints.size()},
           {"ellipsoids", actor.body->character.ellipsoids.size()},
@@ -156,6 +170,19 @@ json budgetJson(const RunReport& run, const Demo& demo) {
 
 }  // namespace
 
+std::vector<std::string> limitNotes(const Demo& demo) {
+  std::vector<std::string> notes;
+  for (const Actor& actor : demo.actors) {
+    for (const sim::LimitedValue& limited : sim::limitedValues(actor.haircut->mesh, demo.scene.sim)) {
+      std::ostringstream note;
+      note << limited.field->name << " is set to " << limited.field->get(demo.scene.sim) << " " << limited.field->unit
+           << "; used: " << limited.used << " " << limited.field->unit << ", " << limited.reason;
+      if (std::find(notes.begin(), notes.end(), note.str()) == notes.end()) notes.push_back(note.str());
+    }
+  }
+  return notes;
+}
+
 void writeReport(const std::string& file, const RunReport& run, const Demo& demo) {
   json stages;
   for (int s = 0; s < kFrameStageCount; ++s) {
@@ -180,7 +207,7 @@ void writeReport(const std::string& file, const RunReport& run, const Demo& demo
   json switches = json::object();
   for (const Skip& skip : skipTable()) switches[skip.name] = demo.scene.skips[skip.id];
   json characters = json::array(), frames = json::array();
-  for (const Actor& actor : demo.actors) characters.push_back(actorJson(actor));
+  for (const Actor& actor : demo.actors) characters.push_back(actorJson(actor, demo.scene.sim));
   for (std::size_t k = 0; k < run.frames.size(); ++k) frames.push_back(frameJson(run.frames[k], k, run.fps));
   const json report = {
       {"scene", demo.scene.name},

@@ -16,6 +16,9 @@ struct RunReport {
   std::vector<FrameStats> frames;
 };
 
+// Parameters of which a character's hair uses another value than is set: which, why, and of what; a line each.
+std::vector<std::string> limitNotes(const Demo& demo);
+
 // Throws OutputError.
 void writeReport(const std::string& file, const RunReport& run, const Demo& demo);
 

@@ -26,17 +26,23 @@ json fromVec3(const Vec3& v) {
 
 std::string readFileName(const JsonPlace& place, const std::string& kind) {
   const std::string name = place.text();
-  return name.empty() ? name : findFile(name, place.file(), kind);
+  if (name.empty()) return name;
+  const std::string file = findFile(name, place.file(), kind);
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored))
+    place.refuse("names '" + name.substr(0, 200) + "', which is not there",
+                 "check the path; it is looked for beside the scene");
+  return file;
 }
 
 CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
-  place.expectObject({"motion", "parts", "clip", "style", "resolution", "hair", "reverse_faces", "fit", "position", "heading",
-                      "clip_offset", "loop", "look", "pins"});
+  place.expectObject({"motion", "parts", "clip", "style", "resolution", "hair", "reverse_faces", "fit", "position",
+                      "heading", "clip_offset", "loop", "look", "pins"});
   CharacterSpec spec;
   spec.look = look;
-  if (place.has("motion")) spec.motion = place.at("motion").text();
+  spec.motion =
+      place.has("motion") ? readFileName(place.at("motion"), "clips") : findFile(spec.motion, place.file(), "clips");
   if (spec.motion.empty()) place.refuse("names no motion", "give \"motion\" a BVH, glTF, FBX or .mot file");
-  spec.motion = findFile(spec.motion, place.file(), "clips");
   if (place.has("parts")) spec.parts = readFileName(place.at("parts"), "clips");
   if (place.has("clip")) spec.clip = place.at("clip").text();
   if (place.has("style")) spec.style = *parseStyle(place.at("style").choice({"short", "shoulder", "long"}));

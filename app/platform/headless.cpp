@@ -1,9 +1,11 @@
 #include "app/platform/headless.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <optional>
+#include <regex>
 
 #include "app/debug_option.h"
 #include "app/files/data_path.h"
@@ -33,8 +35,31 @@ void makeFolder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (!std::filesystem::is_directory(folder)) {
-    throw OutputError(folder, "is not a folder and cannot be made one", "choose another with --out DIR");
+    throw OutputError(folder, "is not a folder and cannot be made one: " + error.message(),
+                      "choose another with --out DIR");
   }
+}
+
+// The number in "frame_0123.png", or -1.
+long frameNumber(const std::string& name) {
+  static const std::regex pattern("frame_([0-9]{4,9})\\.png");
+  std::smatch match;
+  return std::regex_match(name, match, pattern) ? std::stol(match[1]) : -1;
+}
+
+// What an earlier, longer run has left beyond frame `last`; empty when there is nothing. It stays: only who made it
+// knows whether it is still wanted.
+std::string staleFrames(const std::string& folder, long last) {
+  std::vector<long> beyond;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    const long number = frameNumber(entry.path().filename().string());
+    if (number > last) beyond.push_back(number);
+  }
+  if (beyond.empty()) return "";
+  const auto [low, high] = std::minmax_element(beyond.begin(), beyond.end());
+  return folder + " holds " + std::to_string(beyond.size()) + " frames of an earlier run as well, " +
+         framePath("", *low) + " to " + framePath("", *high) + "; remove them before the frames become a film\n";
 }
 
 // What only a run with pictures has. The renderer goes before its context.
@@ -67,6 +92,7 @@ Demo openForPictures(Scene scene, const Options& options, double aspect) {
   setDebugViews(options.debug, demo.debug);
   demo.governor.counted = true;  // the same pictures on every run
   if (!demo.message.empty()) std::cerr << "hairmesh: " << demo.message << "\n";
+  for (const std::string& note : limitNotes(demo)) std::cerr << "hairmesh: " << note << "\n";
   return demo;
 }
 
@@ -84,6 +110,7 @@ Run::Run(Scene scene, const Options& run_options) : options(run_options), tape(o
     loadDemoState(options.load_state, keep_view, demo);
     first = demo.frames;
   }
+  if (!options.no_images) checkWritable(framePath(options.out, first));
   if (!options.no_images) {
     pictures.emplace();
     report.renderer = render::rendererName();
@@ -142,7 +169,7 @@ int Run::finish() {
   if (pictures) {
     std::cout << report.frames.size() << " frames in " << options.out;
     if (first > 0) std::cout << ", from " << framePath("", first);
-    std::cout << "\n";
+    std::cout << "\n" << staleFrames(options.out, first + std::ssize(report.frames) - 1);
   }
   const bool saved = options.save_state_at > 0 && options.save_state_at <= std::ssize(report.frames);
   if (!options.save_state.empty() && !saved) saveState();

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -160,15 +162,49 @@ TEST(Options, FilesThatCannotBeUsedAreBadInput) {
   }
 }
 
-TEST(Options, ThePapersSettingIsOneWord) {
-  const Parsed parsed = parse({"--set", "integrator=bdf2", "--solver", "paper"});
-  ASSERT_TRUE(parsed.go_on);
-  const auto& set = parsed.options.set;
-  ASSERT_EQ(set.size(), 4u);
-  EXPECT_EQ(set[0], std::make_pair(std::string("solver"), std::string("paper")));
-  EXPECT_EQ(set[1], std::make_pair(std::string("integrator"), std::string("linearized-euler")));
-  EXPECT_EQ(set[2].first, "time_step");
-  EXPECT_EQ(set[3], std::make_pair(std::string("integrator"), std::string("bdf2"))) << "what is set by name wins";
+TEST(Options, ThePapersSettingIsOneWordAndItsPreset) {
+  const auto paramsOf = [](const std::vector<std::string>& words) {
+    const sim::SimParams params = app::sceneFromOptions(parse(words).options).sim;
+    std::string text;
+    for (const sim::ParamField& field : sim::paramFields())
+      text += std::string(field.name) + "=" + sim::paramText(field, params) + "\n";
+    return text;
+  };
+  const std::string paper = paramsOf({"--solver", "paper"});
+  EXPECT_EQ(paper, paramsOf({"--preset", "paper"}));
+  EXPECT_EQ(paper, paramsOf({"--solver", "paper", "head_shake.json"}));
+  EXPECT_NE(paper, paramsOf({}));
+  EXPECT_NE(paper.find("solver=paper\n"), std::string::npos);
+  // What is set by name wins, and says no more than it says.
+  const sim::SimParams mixed =
+      app::sceneFromOptions(parse({"--set", "integrator=bdf2", "--solver", "paper"}).options).sim;
+  EXPECT_EQ(mixed.integrator, sim::Integrator::kBdf2);
+  const sim::SimParams alone =
+      app::sceneFromOptions(parse({"--set", "time_step=0.01", "--set", "solver=paper"}).options).sim;
+  EXPECT_EQ(alone.time_step, 0.01);
+}
+
+TEST(Options, AMisspeltKeyOfASceneIsToldAsAScenes) {
+  const std::string file = test::freshFolder("misspelt") + "/scene.json";
+  std::ofstream(file) << R"({"charcters": [{"motion": "walk.bvh"}]})";
+  const Outcome outcome = runProgram({file, "--no-images", "--frames", "1"});
+  expectOneMessage(outcome, app::kExitBadInput, "charcters");
+  EXPECT_NE(outcome.err.find("did you mean 'characters'?"), std::string::npos) << outcome.err;
+  expectOneMessage(runProgram({"--headless", "--frames", "1", "--out", ""}), app::kExitUsage, "--out");
+}
+
+TEST(Options, ChoicesThatAreNoMoreSayWhatTakesTheirPlace) {
+  for (const auto& [option, value, now] : std::vector<std::array<std::string, 3>>{
+           {"--solver", "warped", "default takes its place"},
+           {"--set", "solver=two-level", "default takes its place"},
+           {"--set", "integrator=implicit-euler", "linearized-euler takes its place"},
+           {"--set", "precision=mixed", "float takes its place"}}) {
+    const Outcome outcome = runProgram({option, value, "--no-images", "--frames", "1"});
+    expectOneMessage(outcome, app::kExitUsage, value);
+    EXPECT_NE(outcome.err.find(now), std::string::npos) << outcome.err;
+  }
+  const Outcome outcome = runProgram({"--set", "frict=0.2", "--no-images", "--frames", "1"});
+  EXPECT_NE(outcome.err.find("did you mean 'friction'?"), std::string::npos) << outcome.err;
 }
 
 TEST(Options, AnUnknownPresetIsAnsweredWithThoseThereAre) {

@@ -7,6 +7,7 @@
 #include <sys/mount.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -194,6 +195,50 @@ TEST(OutputFile, FramesOfAnInterruptedRunAreWhole) {
   const std::vector<std::string> names = filesIn(out);
   EXPECT_GE(names.size(), 3u);
   for (const std::string& name : names) EXPECT_EQ(app::readPng(out + "/" + name).width, 160) << name;
+}
+
+TEST(OutputFile, FramesThatALongerRunLeftAreTold) {
+  const std::string folder = test::freshFolder("stale"), out = folder + "/frames";
+  const test::Outcome whole = test::runProgram(with(kPictures, {"--out", out, "--frames", "4"}));
+  if (whole.exit_code == app::kExitNoContext) GTEST_SKIP() << "no OpenGL context";
+  EXPECT_EQ(whole.out.find("earlier run"), std::string::npos) << whole.out;
+  app::writeFile(out + "/frame_notes.txt", "mine");
+  const test::Outcome part = test::runProgram(with(kPictures, {"--out", out, "--frames", "2"}));
+  EXPECT_NE(part.out.find("2 frames of an earlier run as well, frame_0002.png to frame_0003.png"), std::string::npos)
+      << part.out;
+  EXPECT_EQ(filesIn(out).size(), 5u) << "they stay";
+}
+
+TEST(OutputFile, LimitedParametersAreToldOnceAndReported) {
+  const std::string report = test::freshFolder("limits") + "/r.json";
+  const std::vector<std::string> run{"--no-images", "--frames", "3", "--style", "short", "--report", report};
+  const test::Outcome usual = test::runProgram(run);
+  EXPECT_EQ(usual.err, "");
+  EXPECT_TRUE(nlohmann::json::parse(readAll(report))["characters"][0]["limits"].empty());
+  const test::Outcome soft = test::runProgram(with(run, {"--set", "stretch_along=100"}));
+  EXPECT_EQ(std::count(soft.err.begin(), soft.err.end(), '\n'), 1) << soft.err;
+  EXPECT_NE(soft.err.find("stretch_along is set to 100 Pa; used: "), std::string::npos) << soft.err;
+  const auto limits = nlohmann::json::parse(readAll(report))["characters"][0]["limits"];
+  ASSERT_EQ(limits.size(), 1u);
+  EXPECT_EQ(limits[0]["parameter"], "stretch_along");
+  EXPECT_GT(limits[0]["used"], limits[0]["set"]);
+}
+
+TEST(OutputFile, ARecordingThatWasCutOffSaysSo) {
+  const std::string folder = test::freshFolder("cut"), tape = folder + "/r.hmr", cut = folder + "/cut.hmr";
+  const std::vector<std::string> run{"--no-images", "--frames", "4", "--style", "short", "--resolution", "low"};
+  ASSERT_EQ(test::runProgram(with(run, {"--record", tape})).exit_code, 0);
+  const std::string whole = readAll(tape);
+  std::size_t end = whole.find('\n', whole.find('\n') + 1);  // of the scene
+  end = whole.find('\n', end + 1);                           // of the first frame
+  app::writeFile(cut, whole.substr(0, end + 4));
+  const test::Outcome within = test::runProgram({"--no-images", "--replay", cut});
+  EXPECT_EQ(within.exit_code, app::kExitBadInput);
+  EXPECT_NE(within.err.find("line 4: the recording is cut off"), std::string::npos) << within.err;
+  app::writeFile(cut, whole.substr(0, end + 1));
+  const test::Outcome between = test::runProgram({"--no-images", "--replay", cut});
+  EXPECT_EQ(between.exit_code, 0) << between.err;
+  EXPECT_NE(between.out.find("replayed 1 frames of a recording that was cut off"), std::string::npos) << between.out;
 }
 
 }  // namespace

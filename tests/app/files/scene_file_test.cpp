@@ -80,6 +80,8 @@ TEST(SceneFile, FaultsNameFilePlaceAndMend) {
       {R"({"charcters": []})", "charcters", "'characters'"},
       {R"({"characters": [{"motion": 5}]})", "/characters/0/motion", "quotes"},
       {R"({"characters": [{"motion": ""}]})", "/characters/0", "motion"},
+      {R"({"characters": [{}, {"motion": "nope.bvh"}]})", "/characters/1/motion", "beside the scene"},
+      {R"({"characters": [{"hair": "nope.obj"}]})", "/characters/0/hair", "names 'nope.obj', which is not there"},
       {R"({"characters": [{"style": "mohawk"}]})", "/characters/0/style", "short"},
       {R"({"characters": [{"position": [1, 2]}]})", "/characters/0/position", "three"},
       {R"({"characters": [{"position": [1, 2, 1e30]}]})", "/characters/0/position/2", "1000"},
