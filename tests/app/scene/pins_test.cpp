@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "app/files/data_path.h"
 #include "app/files/errors.h"
 #include "app/scene/actor.h"
+#include "app/scene/demo.h"
 #include "app/scene/sleep.h"
 
 namespace {
@@ -132,6 +134,35 @@ TEST(Pins, HoldOnTheCoarseMeshAndWakeWhatSleeps) {
   actor.pins[0].until = time;
   app::sleepersOf(params, kFrame, time + kFrame, actor);
   EXPECT_FALSE(actor.sleep.asleep) << "the pin has let go";
+}
+
+// assets/scenes/pinned.json: hair tucked behind the ears. The debug view has a point and a line a pin, from where the
+// vertex is shown to where it is drawn.
+TEST(Pins, TheExampleSceneHoldsItsHairAndTheDebugViewShowsEachPin) {
+  app::Demo demo = app::openScene(app::loadScene(app::dataPath("assets/scenes/pinned.json")), 1);
+  demo.debug.pins = true;
+  for (int frame = 0; frame < 60; ++frame) app::advanceFrame(demo, frame == 0 ? 0 : 1.0 / 60, {});
+  const app::Actor& actor = demo.actors[0];
+  ASSERT_EQ(actor.pinned.size(), actor.spec.pins.size());
+  EXPECT_EQ(actor.last_report.pins, static_cast<int>(actor.pinned.size()));
+  EXPECT_EQ(actor.last_report.pins_out_of_reach, 0);
+  const app::DebugGeometry& drawn = demo.debug_geometry;
+  ASSERT_EQ(drawn.points.size(), actor.pinned.size());
+  ASSERT_EQ(drawn.lines.size(), 2 * actor.pinned.size());
+  int firm = 0;
+  for (std::size_t k = 0; k < actor.pinned.size(); ++k) {
+    const sim::PinnedVertex& pin = actor.pinned[k];
+    const double off = (actor.hair.positions[pin.vertex] - pin.target).norm();
+    firm += pin.firm();
+    EXPECT_LT(off, pin.firm() ? 1e-9 : 0.02) << "pin " << k;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto target = static_cast<float>(pin.target[axis] - demo.origin[axis]);
+      EXPECT_NEAR(drawn.points[k].position[axis], target, 1e-5) << "pin " << k;
+      EXPECT_NEAR(drawn.lines[2 * k].position[axis], actor.shown_positions[3 * pin.vertex + axis], 1e-5) << "pin " << k;
+      EXPECT_NEAR(drawn.lines[2 * k + 1].position[axis], target, 1e-5) << "pin " << k;
+    }
+  }
+  EXPECT_EQ(firm, 2);
 }
 
 }  // namespace
