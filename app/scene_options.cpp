@@ -45,12 +45,26 @@ void fill(const char* option, std::string& value, const std::string& file) {
   value = file;
 }
 
-// A file named without an option goes where its kind belongs. One that is not there is looked for as a scene.
+// Throws what is said of a file that is not there: the name that was meant, where the program comes with one.
+[[noreturn]] void refuseMissing(const std::string& file) {
+  std::vector<std::string> names;
+  for (const char* kind : {"scenes", "presets", "clips", "hair"}) {
+    for (const std::string& asset : listAssets(kind, {".json", ".bvh", ".obj"}))
+      names.push_back(std::filesystem::path(asset).filename().string());
+  }
+  const std::vector<std::string_view> candidates(names.begin(), names.end());
+  const std::string_view near = sim::nearestName(file, candidates);
+  throw InputError(file, "", "there is no such file",
+                   near.empty() ? "check the path" : "did you mean '" + std::string(near) + "'?");
+}
+
+// A file named without an option goes where its kind belongs.
 Options sortedOut(Options options) {
   if (options.scene.empty()) return options;
   std::string file = options.scene;
   for (const char* kind : {"hair", "clips", "presets", "scenes"}) file = findFile(file, "", kind);
-  if (!std::filesystem::exists(file)) return options;
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) refuseMissing(options.scene);
   options.scene.clear();
   switch (fileKind(file)) {
     case FileKind::kScene:

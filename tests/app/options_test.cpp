@@ -190,6 +190,10 @@ TEST(Options, AMisspeltKeyOfASceneIsToldAsAScenes) {
   const Outcome outcome = runProgram({file, "--no-images", "--frames", "1"});
   expectOneMessage(outcome, app::kExitBadInput, "charcters");
   EXPECT_NE(outcome.err.find("did you mean 'characters'?"), std::string::npos) << outcome.err;
+  const Outcome missing = runProgram({"head_shak.json", "--no-images", "--frames", "1"});
+  expectOneMessage(missing, app::kExitBadInput, "head_shak.json");
+  EXPECT_NE(missing.err.find("there is no such file; did you mean 'head_shake.json'?"), std::string::npos)
+      << missing.err;
   expectOneMessage(runProgram({"--headless", "--frames", "1", "--out", ""}), app::kExitUsage, "--out");
 }
 
