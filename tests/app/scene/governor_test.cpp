@@ -318,9 +318,16 @@ TEST(Governor, CountedWorkOfEverySizeIsWithinHalfOfWhatWasMeasured) {
 
 TEST(Governor, ALargeMeshGetsTheSettingThatItsBudgetBuys) {
   app::Demo demo = openWalk(12, sim::Resolution::kHigh);
-  for (int f = 0; f < 150; ++f) app::advanceFrame(demo, 1.0 / 60, {});
+  for (int f = 0; f < 30; ++f) app::advanceFrame(demo, 1.0 / 60, {});
+  // The mean: a finer setting that is tried for a third of a second may exceed the budget before it is left again.
+  constexpr int kFrames = 240;
+  double cost = 0;
+  for (int f = 0; f < kFrames; ++f) {
+    app::advanceFrame(demo, 1.0 / 60, {});
+    cost += demo.governor.measured_cost / kFrames;
+  }
   EXPECT_GE(demo.governor.rung, app::defaultRung()) << "the default takes two thirds of it";
-  EXPECT_LE(1e3 * demo.governor.measured_cost, 1.1 * 12);
+  EXPECT_LE(1e3 * cost, 1.1 * 12);
 }
 
 TEST(Governor, SeveralCharactersShareTheBudget) {
