@@ -1,6 +1,5 @@
 // How the rounds of a clip follow each other: where it ends, whether it stays in place, how long its seam takes.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -19,16 +18,6 @@ constexpr double kLonger = 1.25;                             // a blend over the
 constexpr double kSlowTurn = 1.5;                            // rad/s
 constexpr double kTooFast = 1.1;
 constexpr int kBlendSamples = 48;
-
-struct LoopRow {
-  LoopKind kind;
-  std::string_view name;
-};
-constexpr std::array<LoopRow, 5> kLoopNames{{{LoopKind::kAuto, "auto"},
-                                             {LoopKind::kGoOn, "go-on"},
-                                             {LoopKind::kInPlace, "in-place"},
-                                             {LoopKind::kStop, "stop"},
-                                             {LoopKind::kNone, "none"}}};
 
 GroundPlace travelOf(const Skeleton& skeleton, const Clip& clip) {
   const int last = clip.frameCount() - 1;
@@ -122,20 +111,6 @@ void chooseBlend(const Skeleton& skeleton, const Clip& clip, ClipLoop& loop) {
 }
 
 }  // namespace
-
-std::string_view loopName(LoopKind kind) {
-  for (const LoopRow& row : kLoopNames) {
-    if (row.kind == kind) return row.name;
-  }
-  return {};
-}
-
-std::optional<LoopKind> parseLoop(std::string_view name) {
-  for (const LoopRow& row : kLoopNames) {
-    if (row.name == name) return row.kind;
-  }
-  return {};
-}
 
 ClipLoop clipLoop(const Skeleton& skeleton, const Clip& clip, LoopKind asked) {
   ClipLoop loop;
