@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <numbers>
 #include <vector>
 
@@ -13,7 +14,11 @@ namespace {
 
 constexpr double kHead = 0.23;                               // m, the head that limits are given for
 constexpr double kSmallestScale = 0.6, kLargestScale = 1.6;  // of another head's hair
-constexpr double kNearby = 0.3;                              // m that it may be off
+constexpr double kCloser = 0.5;                              // of the limit: where size and place are fitted as well
+constexpr double kSmallestSpread = 0.2;                      // of the roots over that of the scalp
+// Hair hangs when its tips' mean way from the roots is so much of their mean length; then it points down within 70
+// degrees.
+constexpr double kHangs = 0.5, kDown = 0.34;
 constexpr int kFitSteps = 20;
 
 struct Unit {
@@ -53,6 +58,19 @@ std::vector<Vec3> rootsOf(const sim::HairMeshShape& shape) {
   return roots;
 }
 
+// The mean way from root to tip, over the mean length of these ways.
+Vec3 hangOf(const sim::HairMeshShape& shape) {
+  Vec3 sum = Vec3::Zero();
+  double length = 0;
+  for (int c = 0; c < shape.columnCount(); ++c) {
+    const int root = shape.column_first[c];
+    const Vec3 way = shape.positions[root + shape.columnLength(c) - 1] - shape.positions[root];
+    sum += way;
+    length += way.norm();
+  }
+  return length > 0 ? Vec3(sum / length) : Vec3::Zero();
+}
+
 Vec3 nearestOnScalp(const Vec3& p, const sim::Scalp& scalp) {
   const Vec3 out = p - scalp.center;
   const double far = out.norm();
@@ -73,14 +91,6 @@ double distanceOf(const std::vector<Vec3>& roots, const Reading& reading, const 
     gaps.push_back((p - nearestOnScalp(p, scalp)).norm());
   }
   return median(std::move(gaps));
-}
-
-// m. Heads are nearly as round as they are the wrong way about, so hair also has to root above and behind the middle.
-double misfit(const std::vector<Vec3>& roots, const Reading& reading, const sim::Scalp& scalp) {
-  Vec3 mean = Vec3::Zero();
-  for (const Vec3& root : roots) mean += reading(root);
-  mean = mean / static_cast<double>(roots.size()) - scalp.center;
-  return distanceOf(roots, reading, scalp) + std::max(0.0, mean.z()) + std::max(0.0, -mean.y());
 }
 
 std::vector<Reading> readings(const Character& character) {
@@ -133,6 +143,22 @@ Cloud hairyScalp(const sim::Scalp& scalp) {
   return cloudOf(points);
 }
 
+// m. Heads are nearly as round as they are the wrong way about, so hair also has to root above and behind the middle.
+double misfit(const std::vector<Vec3>& roots, const Reading& reading, const sim::Scalp& scalp) {
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& root : roots) mean += reading(root);
+  mean = mean / static_cast<double>(roots.size()) - scalp.center;
+  return distanceOf(roots, reading, scalp) + std::max(0.0, mean.z()) + std::max(0.0, -mean.y());
+}
+
+// Whether hair read so is of a head's size and hangs down, if it hangs.
+bool plausible(const std::vector<Vec3>& roots, const Vec3& hang, const Reading& reading, const sim::Scalp& scalp) {
+  const double scale = reading.linear.col(0).norm();
+  const double spread = scale * cloudOf(roots).spread / hairyScalp(scalp).spread;
+  const Vec3 way = reading.linear * hang / scale;
+  return spread >= kSmallestSpread && spread <= kLargestScale && (way.norm() < kHangs || -way.y() >= kDown * way.norm());
+}
+
 // The scale and shift, without a turn, that bring the roots to the scalp: first over where hair grows, then by closest
 // points again and again.
 Reading broughtToScalp(const std::vector<Vec3>& roots, Reading reading, const sim::Scalp& scalp) {
@@ -162,6 +188,19 @@ Reading broughtToScalp(const std::vector<Vec3>& roots, Reading reading, const si
 
 double scaleOf(const Reading& reading) {
   return reading.linear.col(0).norm() / reading.unit->metres;
+}
+
+// The readings that can be hair for another head, brought to this one.
+std::vector<Reading> forOtherHeads(const std::vector<Reading>& all, const std::vector<Vec3>& roots, const Vec3& hang,
+                                   const sim::Scalp& scalp) {
+  std::vector<Reading> moved;
+  for (const Reading& reading : all) {
+    if (reading.from_ground) continue;  // the place is found anyway
+    const Reading one = broughtToScalp(roots, reading, scalp);
+    const double scale = scaleOf(one);
+    if (scale >= kSmallestScale && scale <= kLargestScale && plausible(roots, hang, one, scalp)) moved.push_back(one);
+  }
+  return moved;
 }
 
 std::string length(double metres) {
@@ -200,23 +239,21 @@ std::string fitHair(const Character& character, bool mend, sim::HairMeshShape& s
   const std::vector<Vec3> roots = rootsOf(shape);
   const double limit = kFarRoots * scalp.head_height / kHead, before = rootDistance(shape, scalp);
   if (roots.empty() || before <= limit) return "";
+  const Vec3 hang = hangOf(shape);
   const std::vector<Reading> all = readings(character);
   const auto best = [&](const std::vector<Reading>& of) {
     return std::min_element(of.begin(), of.end(), [&](const Reading& a, const Reading& b) {
       return misfit(roots, a, scalp) < misfit(roots, b, scalp);
     });
   };
-  Reading found = *best(all);
+  std::vector<Reading> as_made;
+  std::ranges::copy_if(all, std::back_inserter(as_made),
+                       [&](const Reading& reading) { return plausible(roots, hang, reading, scalp); });
+  Reading found = as_made.empty() ? Reading{} : *best(as_made);
   std::string like = looksLike(found);
-  if (distanceOf(roots, found, scalp) > limit) {
-    std::vector<Reading> moved;
-    for (const Reading& reading : all) {
-      if (reading.from_ground || distanceOf(roots, reading, scalp) > kNearby) continue;
-      const Reading one = broughtToScalp(roots, reading, scalp);
-      const double scale = scaleOf(one);
-      if (scale >= kSmallestScale && scale <= kLargestScale) moved.push_back(one);
-    }
-    if (moved.empty() || distanceOf(roots, *best(moved), scalp) > limit)
+  if (as_made.empty() || distanceOf(roots, found, scalp) > limit) {
+    const std::vector<Reading> moved = forOtherHeads(all, roots, hang, scalp);
+    if (moved.empty() || distanceOf(roots, *best(moved), scalp) > kCloser * limit)
       return "its roots are " + length(before) +
              " from the scalp, in no unit, axes or size that is known; it should be in metres, y up, about the head "
              "joint (assets/hair/README.md)";

@@ -17,8 +17,9 @@ double rootDistance(const sim::HairMeshShape& shape, const sim::Scalp& scalp);
 
 // Where the roots are far from the scalp: finds the unit (m, cm, mm, inches, feet), the axes (y up; z up, facing -y as
 // in Blender, or y), the origin (head joint or the figure's own) and at last the scale and place that bring them to it.
-// With `mend` the shape is brought there. Returns what was found, and done, in words; empty when the roots fit as they
-// are. Of two that fit the simpler one is taken, as listed.
+// Hair that hangs must hang down, and its roots must be spread as over a head. With `mend` the shape is brought there.
+// Returns what was found, and done, in words; empty when the roots fit as they are. Of two that fit the simpler one is
+// taken, as listed.
 std::string fitHair(const Character& character, bool mend, sim::HairMeshShape& shape);
 
 }  // namespace app

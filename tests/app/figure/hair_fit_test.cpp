@@ -102,13 +102,30 @@ TEST(HairFit, HairForAnotherHeadIsScaledAndMoved) {
   }
 }
 
-TEST(HairFit, WhatIsNowhereNearIsSaidAndLeftAlone) {
-  sim::HairMeshShape far =
-      changed(styled(sim::Style::kShort), [](const Vec3& p) { return Vec3(p.x(), p.y() + 40, p.z()); });
-  const sim::HairMeshShape before = far;
-  const std::string note = app::fitHair(figure(), true, far);
-  EXPECT_NE(note.find("in no unit"), std::string::npos) << note;
-  EXPECT_EQ(far.positions, before.positions);
+TEST(HairFit, HairOfTheRightSizeIsBroughtFromAnywhere) {
+  const app::Rigid head = app::scalpToWorld(figure(), app::restPose(figure().skeleton));
+  for (const double in_a_metre : {1.0, 100.0}) {
+    for (const double off : {0.02, 0.1, 1.6, 40.0}) {
+      sim::HairMeshShape file = changed(styled(sim::Style::kShoulder), [&](const Vec3& p) -> Vec3 {
+        return in_a_metre * (head * p + Vec3(0, off, 0));
+      });
+      const std::string note = app::fitHair(figure(), true, file);
+      EXPECT_LT(farthest(file, styled(sim::Style::kShoulder)), 0.06) << off << ": " << note;
+      EXPECT_EQ(note.find("centimetres") != std::string::npos, in_a_metre == 100) << off << ": " << note;
+    }
+  }
+}
+
+TEST(HairFit, AFileInNoKnownSizeOrAxesIsSaidAndLeftAlone) {
+  const std::vector<Vec3 (*)(const Vec3&)> kUnknown{[](const Vec3& p) -> Vec3 { return 1e-5 * p; },
+                                                    [](const Vec3& p) { return Vec3(p.y(), -p.x(), p.z()); }};
+  for (const auto& unknown : kUnknown) {
+    sim::HairMeshShape file = changed(styled(sim::Style::kLong), unknown);
+    const sim::HairMeshShape before = file;
+    const std::string note = app::fitHair(figure(), true, file);
+    EXPECT_NE(note.find("in no unit"), std::string::npos) << note;
+    EXPECT_TRUE(file.positions == before.positions) << note;
+  }
 }
 
 TEST(HairFit, TheProgramSaysItOnceAndReadsIt) {
