@@ -110,10 +110,10 @@ std::array<double, 3> JsonPlace::vector(double minimum, double maximum) const {
   return {at(0).number(minimum, maximum), at(1).number(minimum, maximum), at(2).number(minimum, maximum)};
 }
 
-std::string JsonPlace::choice(std::initializer_list<std::string_view> choices) const {
+std::string JsonPlace::choice(std::span<const std::string_view> choices) const {
   const std::string chosen = text();
   if (std::find(choices.begin(), choices.end(), chosen) == choices.end()) {
-    refuse("is " + quote(*value_), sim::nameHint(chosen, {choices.begin(), choices.size()}));
+    refuse("is " + quote(*value_), sim::nameHint(chosen, choices));
   }
   return chosen;
 }

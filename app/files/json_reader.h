@@ -42,7 +42,10 @@ class JsonPlace {
   bool flag() const;
   std::string text() const;
   std::array<double, 3> vector(double minimum, double maximum) const;
-  std::string choice(std::initializer_list<std::string_view> choices) const;
+  std::string choice(std::span<const std::string_view> choices) const;
+  std::string choice(std::initializer_list<std::string_view> choices) const {
+    return choice(std::span(choices.begin(), choices.size()));
+  }
 
   // A number, flag, text or array of numbers as the text that the parameter tables read ("0.3", "on", "paper",
   // "1,2,3").

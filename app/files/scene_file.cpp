@@ -55,7 +55,7 @@ CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
   if (place.has("position")) spec.position = toVec3(place.at("position").vector(-kFarthest, kFarthest));
   if (place.has("heading")) spec.heading = place.at("heading").number(-kTurn, kTurn);
   if (place.has("clip_offset")) spec.clip_offset = place.at("clip_offset").number(0, 1e5);
-  if (place.has("loop")) spec.loop = *parseLoop(place.at("loop").choice({"auto", "go-on", "in-place", "stop", "none"}));
+  if (place.has("loop")) spec.loop = *parseLoop(place.at("loop").choice(kLoopNames));
   if (place.has("look")) readHairRows(place.at("look"), spec.look);
   if (place.has("pins")) spec.pins = readPins(place.at("pins"));
   return spec;

@@ -1,6 +1,7 @@
 // How the rounds of a clip follow each other: where it ends, whether it stays in place, how long its seam takes.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <vector>
 
@@ -10,7 +11,7 @@ namespace app {
 
 namespace {
 
-constexpr double kFacesAlike = 10 * std::numbers::pi / 180;  // rad
+constexpr double kFacesAlike = 30 * std::numbers::pi / 180;  // rad: hips twist in a gait
 constexpr double kComesBack = 0.1, kEven = 0.25;             // of the root's height
 constexpr double kShortestRound = 0.25;                      // s
 constexpr double kShortestBlend = 0.4;                       // s
@@ -111,6 +112,13 @@ void chooseBlend(const Skeleton& skeleton, const Clip& clip, ClipLoop& loop) {
 }
 
 }  // namespace
+
+std::string loopText(const ClipLoop& loop) {
+  std::string text(loopName(loop.kind));
+  char blend[32];
+  std::snprintf(blend, sizeof blend, ", blend %.2f s", loop.blend);
+  return loop.blend > 0 ? text + blend : text;
+}
 
 ClipLoop clipLoop(const Skeleton& skeleton, const Clip& clip, LoopKind asked) {
   ClipLoop loop;

@@ -1,8 +1,11 @@
 // The clock that plays a clip, round after round.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "app/figure/character.h"
@@ -18,9 +21,16 @@ enum class LoopKind {
   kNone      // the clip begins again as it was captured, without a blend
 };
 
-// "go-on" and so on.
-std::string_view loopName(LoopKind kind);
-std::optional<LoopKind> parseLoop(std::string_view name);
+// In the order of LoopKind.
+inline constexpr std::array<std::string_view, 5> kLoopNames{"auto", "go-on", "in-place", "stop", "none"};
+inline std::string_view loopName(LoopKind kind) {
+  return kLoopNames[static_cast<std::size_t>(kind)];
+}
+inline std::optional<LoopKind> parseLoop(std::string_view name) {
+  const auto at = std::find(kLoopNames.begin(), kLoopNames.end(), name);
+  if (at == kLoopNames.end()) return std::nullopt;
+  return static_cast<LoopKind>(at - kLoopNames.begin());
+}
 
 // A place on the ground and a heading: turned about y, then shifted.
 struct GroundPlace {
@@ -42,7 +52,7 @@ struct ClipLoop {
   bool cuts() const { return kind == LoopKind::kNone || (kind == LoopKind::kInPlace && !treadmill); }
 };
 
-// A clip stays in place by itself when it ends facing as it began, to 10 degrees, and its root (the mean of the root
+// A clip stays in place by itself when it ends facing as it began, to 30 degrees, and its root (the mean of the root
 // joints) ends within a tenth of its height of where it began, or never strays more than a quarter of its height from
 // even travel along a straight line. Of such clips kAuto makes kInPlace, on a treadmill; of others kGoOn. In place, the
 // others travel as they were captured and jump home at the seam.
@@ -52,6 +62,9 @@ struct ClipLoop {
 //
 // kAuto makes kStop of a clip shorter than a quarter of a second, every kind does of a single frame.
 ClipLoop clipLoop(const Skeleton& skeleton, const Clip& clip, LoopKind asked);
+
+// "go-on, blend 0.40 s".
+std::string loopText(const ClipLoop& loop);
 
 // Plays a clip: speed 0 to 20 (larger is allowed), pause, scrub, rounds. The first round begins over the origin.
 struct Playback {

@@ -163,6 +163,7 @@ int Run::finish() {
   for (const Actor& actor : demo.actors) {
     for (const std::string& note : actor.body->character.notes)
       std::cout << stem(actor.spec.motion) << ": " << note << "\n";
+    std::cout << stem(actor.spec.motion) << ": at the clip's end: " << loopText(actor.playback.loop) << "\n";
     if (demo.actors.size() > 1) break;
   }
   std::cout << summary(report);

@@ -141,18 +141,13 @@ void fact(const char* label, const std::string& value) {
 
 // What the clip does at its end, and what that comes to.
 void loopRows(const Actor& actor, Demo& demo, UiState& ui) {
-  static constexpr LoopKind kKinds[] = {LoopKind::kAuto, LoopKind::kGoOn, LoopKind::kInPlace, LoopKind::kStop,
-                                        LoopKind::kNone};
-  const ClipLoop& loop = actor.playback.loop;
-  char line[64];
-  std::snprintf(line, sizeof line, loop.blend > 0 ? "%s, blend %.2f s" : "%s", loopName(loop.kind).data(), loop.blend);
   rowLabel("At the end",
            "Go on from where the figure is, stay in place, stop, or none: begin again without a blend. Auto goes on "
            "unless the clip stays in place by itself.");
-  ImGui::TextDisabled("%s", line);
-  const auto chosen = std::find(std::begin(kKinds), std::end(kKinds), actor.spec.loop) - std::begin(kKinds);
-  const int pressed = segments("loop", {"Auto", "Go on", "In place", "Stop", "None"}, static_cast<int>(chosen), ui);
-  if (pressed >= 0) postRequest(demo, {Ask::kLoop, std::string(loopName(kKinds[pressed])), ""});
+  ImGui::TextDisabled("%s", loopText(actor.playback.loop).c_str());
+  const int chosen = static_cast<int>(actor.spec.loop);
+  const int pressed = segments("loop", {"Auto", "Go on", "In place", "Stop", "None"}, chosen, ui);
+  if (pressed >= 0) postRequest(demo, {Ask::kLoop, std::string(loopName(static_cast<LoopKind>(pressed))), ""});
 }
 
 void stateRow(Demo& demo, UiState& ui) {
