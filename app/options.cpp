@@ -53,6 +53,12 @@ CLI::Validator within(double low, double high) {
       "");
 }
 
+// What an unset variable of a script leaves.
+CLI::Validator notEmpty(const std::string& placeholder) {
+  return CLI::Validator(
+      [=](std::string& text) { return text.empty() ? "is empty; write " + placeholder : std::string(); }, "");
+}
+
 const char* const kExamples = R"(Examples:
   hairmesh                                        the default scene in a window
   hairmesh assets/scenes/head_shake.json          another scene
@@ -80,7 +86,9 @@ struct OptionGroup {
 
   template <class Value>
   CLI::Option* value(const char* name, Value& value, const char* placeholder, const char* help) {
-    return parser.add_option(name, value, help)->group(heading)->option_text(placeholder);
+    CLI::Option* option = parser.add_option(name, value, help)->group(heading)->option_text(placeholder);
+    if constexpr (std::is_same_v<Value, std::string>) option->check(notEmpty(placeholder));
+    return option;
   }
   // May be given many times, one value each.
   void values(const char* name, std::vector<std::string>& values, const char* placeholder, const char* help) {
@@ -143,7 +151,7 @@ void addPlaybackOptions(CLI::App& parser, Options& options) {
       .value("--loop", options.loop, "NAME",
              "At the clip's end: go-on (from where the figure is), in-place, stop, none (begin again without a blend), "
              "or auto: whichever of the first two suits the clip")
-      ->check(CLI::IsMember({"auto", "go-on", "in-place", "stop", "none"}));
+      ->check(CLI::IsMember(std::vector<std::string>(kLoopNames.begin(), kLoopNames.end())));
 }
 
 void addPictureOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
@@ -194,7 +202,6 @@ void finish(const Unchecked& unchecked, Options& options) {
     throw UsageError("--size cannot be '" + unchecked.size + "'; write WIDTHxHEIGHT with sides from " +
                      std::to_string(kSmallestSide) + " to " + std::to_string(kLargestSide) + ", for instance 1280x720");
   }
-  if (options.out.empty()) throw UsageError("--out names no folder; write --out DIR, for instance --out frames");
   if (!unchecked.collider.empty()) options.set.emplace_back("collider", unchecked.collider);
   for (const std::string& text : unchecked.sets) {
     const std::size_t equals = text.find('=');

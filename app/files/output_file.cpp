@@ -54,7 +54,9 @@ void OutputFile::commit() {
 void OutputFile::fail(int error) {
   const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG;
   throw OutputError(file_, std::string("cannot be written: ") + std::strerror(error),
-                    full ? "make room, or choose another folder" : "choose a folder that exists and may be written to");
+                    full              ? "make room, or choose another folder"
+                    : error == EISDIR ? "add a file's name to the folder"
+                                      : "choose a folder that exists and may be written to");
 }
 
 void writeFile(const std::string& file, std::string_view bytes) {

@@ -289,11 +289,11 @@ std::vector<std::string> describe(const BvhText& bvh, const Inference& inferred)
   if (inferred.rest_is_folded) note("rest pose: the file has none that stands; frame %d taken", inferred.upright_frame);
   note("frame rate: %.4g per second, %d frames, %.2f s", 1 / bvh.frame_time, bvh.frame_count,
        bvh.frame_time * (bvh.frame_count - 1));
-  if (inferred.rest_frames == 1) note("frame 0 is a rest pose apart from the motion: left out of the clip");
+  if (inferred.rest_frames == 1) notes.emplace_back("frame 0 is a rest pose apart from the motion: left out of the clip");
   if (inferred.rest_frames > 1)
     note("frames 0 to %d lead from a rest pose into the motion: left out of the clip", inferred.rest_frames - 1);
-  if (bvh.has_surplus_row) note("one row more than 'Frames:' says: left out");
-  if (bvh.frame_count == 1) note("the clip has one frame: a still pose");
+  if (bvh.has_surplus_row) notes.emplace_back("one row more than 'Frames:' says: left out");
+  if (bvh.frame_count == 1) notes.emplace_back("the clip has one frame: a still pose");
   return notes;
 }
 

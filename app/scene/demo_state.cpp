@@ -76,7 +76,7 @@ std::string identity(const Actor& actor) {
   if (spec.position != Vec3::Zero() || spec.heading != 0) {
     text += ", at";
     for (const double value : {spec.position.x(), spec.position.y(), spec.position.z(), spec.heading})
-      text += " " + sim::numberText(value);
+      text.append(1, ' ').append(sim::numberText(value));
   }
   return text;
 }

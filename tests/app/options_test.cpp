@@ -194,7 +194,8 @@ TEST(Options, AMisspeltKeyOfASceneIsToldAsAScenes) {
   expectOneMessage(missing, app::kExitBadInput, "head_shak.json");
   EXPECT_NE(missing.err.find("there is no such file; did you mean 'head_shake.json'?"), std::string::npos)
       << missing.err;
-  expectOneMessage(runProgram({"--headless", "--frames", "1", "--out", ""}), app::kExitUsage, "--out");
+  for (const char* option : {"--out", "--report", "--save-state", "--load-state", "--style"})
+    expectOneMessage(runProgram({"--headless", "--frames", "1", option, ""}), app::kExitUsage, option);
 }
 
 TEST(Options, ChoicesThatAreNoMoreSayWhatTakesTheirPlace) {

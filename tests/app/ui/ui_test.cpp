@@ -190,6 +190,8 @@ TEST_F(Panels, SpeedAndScrubAreAskedFor) {
   EXPECT_TRUE(asked(click("hold", 0.5f), Ask::kPauseMotion));
   EXPECT_TRUE(asked(click("loop Go on"), Ask::kLoop, "go-on"));
   EXPECT_TRUE(asked(click("loop None"), Ask::kLoop, "none"));
+  EXPECT_TRUE(asked(click("save_state", 0.5f), Ask::kSaveState));
+  EXPECT_TRUE(asked(click("load_state", 0.5f), Ask::kLoadState));
   EXPECT_TRUE(asked(click("substeps 4"), Ask::kSetParam, "time_step"));
 }
 
@@ -319,7 +321,9 @@ TEST_F(Panels, AFaultCanBeReadAndClosedInWindowsOfAnySize) {
     click("close_message");
     EXPECT_TRUE(demo_.message.empty()) << size.x << "x" << size.y;
     const UiItem *bar = find("stage_bar"), *sidebar = find("tab Debug");
-    if (bar && sidebar) EXPECT_FALSE(overlap(*bar, *sidebar)) << size.x;
+    if (bar && sidebar) {
+      EXPECT_FALSE(overlap(*bar, *sidebar)) << size.x;
+    }
   }
 }
 
