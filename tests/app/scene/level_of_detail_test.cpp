@@ -1,0 +1,140 @@
+// From how many pixels on a figure is simulated with less care: the sizes of docs/skipping.md, measured here with the
+// camera that the picture is drawn with.
+#include "app/scene/level_of_detail.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "app/files/data_path.h"
+#include "app/files/text_file.h"
+#include "render/view_math.h"
+
+namespace {
+
+using app::Demo;
+using app::Vec3;
+
+constexpr int kWidth = 1080, kHeight = 720;  // pixels
+
+Demo open(sim::Style style) {
+  app::Scene scene;
+  app::CharacterSpec character;
+  character.motion = app::dataPath("assets/clips/idle_turns.bvh");
+  character.style = style;
+  character.resolution = sim::Resolution::kMedium;
+  scene.characters.push_back(character);
+  scene.playback.settle = 0;
+  scene.camera.follow = false;
+  return app::openScene(std::move(scene), 1.0 * kWidth / kHeight);
+}
+
+double lengthOf(const Demo& demo) {
+  return demo.actors[0].haircut->mesh.hair_length;
+}
+// m, that hair and head span at most.
+double spanOf(const Demo& demo) {
+  return lengthOf(demo) + 2 * demo.actors[0].body->character.scalp.head_height;
+}
+
+// Pixels between the ends of an upright stick of `length` metres, half the hair's span nearer than the head, in the
+// picture.
+double drawnPixels(Demo& demo, double length) {
+  const render::CameraInput camera = app::frameInput(demo, kWidth, kHeight).camera;
+  const Eigen::Matrix4f to_clip = render::cameraMatrix(camera, 1.0f * kWidth / kHeight);
+  const app::Actor& actor = demo.actors[0];
+  const Vec3 head = app::scalpToWorld(actor.body->character, actor.pose).translation() - demo.origin;
+  const Vec3 near = head + Vec3(0, 0, 0.5 * spanOf(demo));
+  double row[2];
+  for (const int end : {0, 1}) {
+    const Vec3 p = near + Vec3(0, (end - 0.5) * length, 0);
+    const Eigen::Vector4f clip = to_clip * Eigen::Vector4f(float(p.x()), float(p.y()), float(p.z()), 1);
+    row[end] = 0.5 * kHeight * clip.y() / clip.w();
+  }
+  return row[1] - row[0];
+}
+
+// Puts the camera straight before the head, where the hair spans so many pixels.
+void standAt(double pixels, Demo& demo) {
+  const app::Actor& actor = demo.actors[0];
+  demo.camera.anchor = app::scalpToWorld(actor.body->character, actor.pose).translation();
+  demo.camera.target.setZero();
+  demo.camera.yaw = demo.camera.pitch = 0;
+  double near = 0.2, far = 400;  // m
+  for (int halving = 0; halving < 60; ++halving) {
+    demo.camera.distance = 0.5 * (near + far);
+    (drawnPixels(demo, spanOf(demo)) > pixels ? near : far) = demo.camera.distance;
+  }
+}
+
+struct Care {
+  int span;
+  std::optional<sim::Resolution> mesh;
+};
+// Afresh: nothing of an earlier size is remembered.
+Care careAt(double pixels, Demo& demo) {
+  standAt(pixels, demo);
+  demo.actors[0].detail = {};
+  app::chooseDetail(demo);
+  return {demo.actors[0].detail.step_span, demo.actors[0].detail.coarse};
+}
+
+TEST(LevelOfDetail, SizesAreThoseOfThePicture) {
+  for (const sim::Style style : {sim::Style::kShort, sim::Style::kLong}) {
+    Demo demo = open(style);
+    for (const double pixels : {1500.0, 520.0, 100.0, 20.0}) {
+      standAt(pixels, demo);
+      EXPECT_NEAR(app::projectedSize(demo, demo.actors[0]), pixels, 1e-3 * pixels) << sim::styleName(style);
+    }
+  }
+}
+
+TEST(LevelOfDetail, StepsGrowLongerAtThePagesSizes) {
+  const std::string page = app::readText(app::dataPath("docs/data/skips.md"));
+  EXPECT_NE(page.find("smaller than 520 pixels takes steps twice as long, below 380 four times, below 100 eight times"),
+            std::string::npos);
+  struct Limit {
+    double pixels;
+    int above, below;
+  };
+  Demo demo = open(sim::Style::kShort);
+  for (const Limit& limit : {Limit{520, 1, 2}, Limit{380, 2, 4}, Limit{100, 4, 8}}) {
+    EXPECT_EQ(careAt(1.01 * limit.pixels, demo).span, limit.above) << "just over " << limit.pixels;
+    EXPECT_EQ(careAt(0.99 * limit.pixels, demo).span, limit.below) << "just under " << limit.pixels;
+  }
+}
+
+TEST(LevelOfDetail, MeshesGrowCoarserAtThePagesSizes) {
+  const std::string page = app::readText(app::dataPath("docs/data/skips.md"));
+  EXPECT_NE(
+      page.find("smaller than 420 pixels, its hair shorter than 150, is simulated with its style's low resolution, "
+                "below 240 with its minimal one"),
+      std::string::npos);
+  for (const sim::Style style : {sim::Style::kShort, sim::Style::kLong}) {
+    Demo demo = open(style);
+    // Figure and hair must both be small.
+    const double low = std::min(420.0, 150 * spanOf(demo) / lengthOf(demo)), minimal = std::min(240.0, low);
+    EXPECT_FALSE(careAt(1.01 * low, demo).mesh) << sim::styleName(style);
+    if (minimal < low) {
+      EXPECT_EQ(careAt(0.99 * low, demo).mesh, sim::Resolution::kLow) << sim::styleName(style);
+      EXPECT_EQ(careAt(1.01 * minimal, demo).mesh, sim::Resolution::kLow) << sim::styleName(style);
+    }
+    EXPECT_EQ(careAt(0.99 * minimal, demo).mesh, sim::Resolution::kMinimal) << sim::styleName(style);
+  }
+}
+
+// On the way back each switches a fifth later, so that a figure at the limit does not switch to and fro.
+TEST(LevelOfDetail, TheWayBackIsAFifthFurther) {
+  Demo demo = open(sim::Style::kShort);
+  ASSERT_EQ(careAt(500, demo).span, 2);
+  standAt(1.19 * 520, demo);
+  app::chooseDetail(demo);
+  EXPECT_EQ(demo.actors[0].detail.step_span, 2);
+  standAt(1.21 * 520, demo);
+  app::chooseDetail(demo);
+  EXPECT_EQ(demo.actors[0].detail.step_span, 1);
+}
+
+}  // namespace
