@@ -1,4 +1,5 @@
-// Azimuthal scattering of a hair fibre, tabulated for the shaders: R, TT and TRT with absorption inside.
+// Scattering of a look's fibres, tabulated for the shaders: single scattering (azimuthal_lobes.h, longitudinal_lobes.h)
+// and what fibres send on to each other (hair_volume.h).
 #pragma once
 
 #include <array>
@@ -22,11 +23,9 @@ Float3 rootColor(const HairLook& look);
 Float3 lobeWidths(float beta_m);
 
 struct FiberScattering {
-  // N_p, RGBA floats: [lobe][cos theta_d][phi], kScatterPhi angles over [0, pi], kScatterTheta cosines over [0, 1].
-  // Integrated over phi in (-pi, pi) and summed over lobes: the fibre's albedo, 1 without absorption.
+  // RGBA floats: kScatterSlices slices of kScatterTheta rows of kScatterPhi texels; see shaders/shared.h.
   std::vector<float> table;
-  Float3 forward_albedo{}, backward_albedo{};  // a_f, a_b (Zinke et al. 2008), mean over inclinations
-  Float3 local_back{};                         // A_b: multiple backscattering among neighbours
+  Float3 forward_albedo{}, backward_albedo{};  // share sent on with and against the light, mean over inclinations
 };
 
 FiberScattering tabulateScattering(const HairLook& look);

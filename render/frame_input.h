@@ -43,7 +43,8 @@ struct HairLook {
   float beta_m = 0.24f, beta_n = 0.3f;  // longitudinal and azimuthal roughness, 0..1
   float eta = 1.55f;
   float cuticle_angle = 0.05f;  // rad, scale tilt that shifts the R and TRT highlights
-  float specular = 1.3f, diffuse = 1.0f;
+  float specular = 1;  // of R and TRT; what they gain, the light that passes through loses
+  float diffuse = 1;   // 0..1, share of the light between strands that is kept
   std::uint32_t seed = 1;
 
   bool operator==(const HairLook&) const = default;

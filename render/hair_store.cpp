@@ -64,16 +64,15 @@ long uploadScattering(HairScattering& hair) {
   const FiberScattering scattering = tabulateScattering(hair.look);
   hair.forward_albedo = scattering.forward_albedo;
   hair.backward_albedo = scattering.backward_albedo;
-  hair.local_back = scattering.local_back;
   hair.table = makeTexture(GL_TEXTURE_2D_ARRAY);
   const GLuint id = hair.table.id();
-  glTextureStorage3D(id, 1, GL_RGBA16F, shared::kScatterPhi, shared::kScatterTheta, 3);
+  glTextureStorage3D(id, 1, GL_RGBA16F, shared::kScatterPhi, shared::kScatterTheta, shared::kScatterSlices);
   glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   glTextureParameteri(id, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   glTextureParameteri(id, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  glTextureSubImage3D(id, 0, 0, 0, 0, shared::kScatterPhi, shared::kScatterTheta, 3, GL_RGBA, GL_FLOAT,
-                      scattering.table.data());
+  glTextureSubImage3D(id, 0, 0, 0, 0, shared::kScatterPhi, shared::kScatterTheta, shared::kScatterSlices, GL_RGBA,
+                      GL_FLOAT, scattering.table.data());
   return static_cast<long>(scattering.table.size() * sizeof(float));
 }
 
@@ -97,10 +96,9 @@ long uploadBlock(HairResources& hair) {
   block.shape = {look.length_variation, look.offset, look.curl_radius, look.curl_turns};
   block.clumping = {look.clump, look.clump_size, look.frizz, look.flyaways};
   block.lobe_width = {widths[0], widths[1], widths[2], look.cuticle_angle};
-  block.gain = {look.specular, look.diffuse, look.root_darkening, look.tint_variation};
+  block.gain = {0, std::clamp(look.diffuse, 0.0f, 1.0f), look.root_darkening, look.tint_variation};
   block.forward_albedo = asVec4(hair.scattering->forward_albedo);
   block.backward_albedo = asVec4(hair.scattering->backward_albedo);
-  block.local_back = asVec4(hair.scattering->local_back);
   block.center = asVec4(hair.head.radius > 0 ? hair.head.center : hair.bounds.center());
   block.ball = asVec4(hair.bounds.center(), 0.5f * hair.bounds.diagonal() + sidewaysReach(look));
   if (!hair.block) {
@@ -184,7 +182,7 @@ long HairResources::gpuBytes() const {
 }
 
 long HairStore::gpuBytes() const {
-  const long table = 8L * shared::kScatterPhi * shared::kScatterTheta * 3;
+  const long table = 8L * shared::kScatterPhi * shared::kScatterTheta * shared::kScatterSlices;
   long bytes = static_cast<long>(scatterings_.size()) * table;
   for (const auto& style : styles_) bytes += static_cast<long>(style->bytes);
   for (const HairResources& hair : hairs_) bytes += hair.gpuBytes();
@@ -252,10 +250,10 @@ long HairStore::uploadVertices(HairResources& hair, std::span<const float> posit
   texels_.clear();
   for (int v = 0; v < layout.vertex_count; ++v) {
     const Vector3f p(positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]);
-    const Vector3f& open = hair.soft_light[static_cast<std::size_t>(v)];
-    append(texels_, p, open.x());
-    append(texels_, gradients_[v].col(0), open.y());
-    append(texels_, gradients_[v].col(1), open.z());
+    const SoftLight& light = hair.soft_light[static_cast<std::size_t>(v)];
+    append(texels_, p, light.sky);
+    append(texels_, gradients_[v].col(0), packDepths(light.fill));
+    append(texels_, gradients_[v].col(1), packDepths(light.rim));
   }
   measureFaces(positions, hair);
   constexpr std::size_t kRow = 4 * shared::kVertexTexels;

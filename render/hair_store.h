@@ -33,7 +33,7 @@ struct HairStyle {
 
 struct HairScattering {
   HairLook look;
-  Float3 forward_albedo{}, backward_albedo{}, local_back{};  // see fiber_scattering.h
+  Float3 forward_albedo{}, backward_albedo{};  // see fiber_scattering.h
   Texture table;
   bool seen = false;
 };
@@ -56,7 +56,7 @@ struct HairResources {
   HairStyle* style = nullptr;
   HairScattering* scattering = nullptr;
   HeadBall head;
-  std::vector<Eigen::Vector3f> soft_light;  // per vertex; see sky_visibility.h
+  std::vector<SoftLight> soft_light;        // per vertex
   std::vector<float> texels;                // as uploaded
   std::vector<Bounds> face_bounds;          // m, around all strands of a face
   std::vector<float> face_bend;             // m, how far a face's strands turn away within a layer

@@ -1,19 +1,24 @@
 #include "render/sky_visibility.h"
 
 #include <Eigen/LU>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "shaders/shared.h"
 
 namespace render {
 namespace {
 
 using Eigen::Vector3f;
 
-constexpr int kGridSize = 18;
 // Light finds its way between clumps: far less is stopped than by hairs strewn evenly.
 constexpr float kClumpGaps = 0.3f;
-constexpr float kHeadDepth = 6.0f;  // optical depth of a ray through the head's middle; softened at its rim
+constexpr float kHeadDepth = 6.0f;   // optical depth of a ray through the head's middle; softened at its rim
+constexpr float kBackReach = 0.04f;  // m: light comes back from as far behind a strand; as in shadow.glsl
+constexpr float kSpacing = 0.012f;   // m between the points that stand for a prism's hair
+constexpr int kMaxPoints = 6;        // of them along a prism's height
 
 Vector3f vertexAt(std::span<const float> positions, int vertex) {
   return Vector3f(positions[3 * vertex], positions[3 * vertex + 1], positions[3 * vertex + 2]);
@@ -31,12 +36,12 @@ const std::array<Vector3f, 7>& skyDirections() {
   return directions;
 }
 
-float headDepth(const HeadBall& head, const Vector3f& from, const Vector3f& direction) {
-  if (head.radius <= 0) return 0;
-  const Vector3f gap = head.center - from;
+// gap: from the place to the head's middle.
+float headDepth(const Vector3f& gap, float radius, const Vector3f& direction) {
+  if (radius <= 0) return 0;
   const float ahead = gap.dot(direction);
   if (ahead <= 0) return 0;
-  const float miss = std::sqrt(std::max(gap.squaredNorm() - ahead * ahead, 0.0f)) / head.radius;
+  const float miss = std::sqrt(std::max(gap.squaredNorm() - ahead * ahead, 0.0f)) / radius;
   return kHeadDepth * std::clamp((1.05f - miss) / 0.35f, 0.0f, 1.0f);
 }
 
@@ -67,62 +72,96 @@ HeadBall fitHead(const HairLayout& layout, std::span<const float> positions) {
   return ball;
 }
 
-void SkyVisibility::splat(const Vector3f& at, float extinction) {
-  const Vector3f cell = (at - low_) / cell_ - Vector3f::Constant(0.5f);
-  const Eigen::Vector3i base = cell.array().floor().cast<int>().max(0).min(kGridSize - 2);
-  const Vector3f f = (cell - base.cast<float>()).cwiseMax(0.0f).cwiseMin(1.0f);
-  for (int corner = 0; corner < 8; ++corner) {
-    const int dx = corner & 1, dy = (corner >> 1) & 1, dz = corner >> 2;
-    const float share = (dx ? f.x() : 1 - f.x()) * (dy ? f.y() : 1 - f.y()) * (dz ? f.z() : 1 - f.z());
-    grid_[((base.z() + dz) * kGridSize + base.y() + dy) * kGridSize + base.x() + dx] += share * extinction;
+Eigen::Isometry3f headFrame(const HairLayout& layout, std::span<const float> positions) {
+  Eigen::Isometry3f frame = Eigen::Isometry3f::Identity();
+  if (layout.columns.empty()) return frame;
+  Vector3f rest = Vector3f::Zero(), now = Vector3f::Zero();
+  for (const HairColumn& column : layout.columns) {
+    rest += column.rest;
+    now += vertexAt(positions, column.first_vertex);
   }
+  rest /= static_cast<float>(layout.columns.size());
+  now /= static_cast<float>(layout.columns.size());
+  Eigen::Matrix3f covariance = Eigen::Matrix3f::Zero();
+  for (const HairColumn& column : layout.columns)
+    covariance += (vertexAt(positions, column.first_vertex) - now) * (column.rest - rest).transpose();
+  const Eigen::JacobiSVD<Eigen::Matrix3f> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Matrix3f turn = svd.matrixU();
+  if (turn.determinant() * svd.matrixV().determinant() < 0) turn.col(2) *= -1;
+  frame.linear() = turn * svd.matrixV().transpose();
+  frame.translation() = now - frame.linear() * rest;
+  return frame;
 }
 
-float SkyVisibility::density(const Vector3f& at) const {
-  const Eigen::Vector3i cell = ((at - low_) / cell_).array().floor().cast<int>();
-  if ((cell.array() < 0).any() || (cell.array() >= kGridSize).any()) return 0;
-  return grid_[(cell.z() * kGridSize + cell.y()) * kGridSize + cell.x()];
+float packDepths(const LightDepths& depths) {
+  const float front = std::clamp(depths.front, 0.0f, shared::kDeepest),
+              behind = std::clamp(depths.behind / shared::kDeepest, 0.0f, 0.999f);
+  return std::floor(front * shared::kDepthSteps + 0.5f) + behind;
 }
 
-void SkyVisibility::fillGrid(const HairLayout& layout, std::span<const float> positions, float hair_width) {
-  Vector3f low = Vector3f::Constant(1e9f), high = Vector3f::Constant(-1e9f);
+void SkyVisibility::placeVertices(const HairLayout& layout, std::span<const float> positions) {
+  frame_ = headFrame(layout, positions);
+  const Eigen::Isometry3f to_head = frame_.inverse();
+  head_center_ = to_head * head_.center;
+  Bounds bounds;
+  vertices_.resize(static_cast<std::size_t>(layout.vertex_count));
   for (int v = 0; v < layout.vertex_count; ++v) {
-    low = low.cwiseMin(vertexAt(positions, v));
-    high = high.cwiseMax(vertexAt(positions, v));
+    vertices_[static_cast<std::size_t>(v)] = to_head * vertexAt(positions, v);
+    bounds.add(vertices_[static_cast<std::size_t>(v)]);
   }
-  cell_ = std::max((high - low).maxCoeff(), 0.02f) / (kGridSize - 2);
-  low_ = 0.5f * (low + high) - Vector3f::Constant(0.5f * kGridSize * cell_);
-  grid_.assign(kGridSize * kGridSize * kGridSize, 0.0f);
+  grid_.place(bounds);
+}
+
+void SkyVisibility::fillGrid(const HairLayout& layout, float hair_width) {
   double area = 0;
   for (const HairFace& face : layout.faces) area += std::max(face.area, 0.0f);
   // pi / 4: mean projected width of a cylinder over the angles it is crossed at.
-  const float per_area =
-      area > 0 ? static_cast<float>(hair_width / area) * 0.785f * kClumpGaps / (cell_ * cell_ * cell_) : 0.0f;
+  const float per_area = area > 0 ? static_cast<float>(hair_width / area) * 0.785f * kClumpGaps : 0.0f;
   for (const HairFace& face : layout.faces) {
     const int corners = face.first_vertex[3] < 0 ? 3 : 4;
+    const auto vertex = [&](int corner, int layer) -> const Vector3f& {
+      return vertices_[static_cast<std::size_t>(face.first_vertex[corner] + layer)];
+    };
+    const auto middle = [&](int layer) {
+      Vector3f sum = Vector3f::Zero();
+      for (int k = 0; k < corners; ++k) sum += vertex(k, layer);
+      return Vector3f(sum / static_cast<float>(corners));
+    };
+    Vector3f lower = middle(0);
     for (int layer = 0; layer + 1 < face.layers; ++layer) {
-      Vector3f lower = Vector3f::Zero(), upper = Vector3f::Zero();
+      const Vector3f upper = middle(layer + 1);
+      const float length = (upper - lower).norm();
+      const int points = std::clamp(static_cast<int>(std::ceil(length / kSpacing)), 1, kMaxPoints);
+      const float extinction = per_area * face.area * length / static_cast<float>(points * corners);
       for (int k = 0; k < corners; ++k) {
-        lower += vertexAt(positions, face.first_vertex[k] + layer) / static_cast<float>(corners);
-        upper += vertexAt(positions, face.first_vertex[k] + layer + 1) / static_cast<float>(corners);
+        // Half way from the middle to the corner: spreads a prism over the nodes that it fills.
+        const Vector3f from = 0.5f * (lower + vertex(k, layer)), to = 0.5f * (upper + vertex(k, layer + 1));
+        for (int point = 0; point < points; ++point) {
+          const float t = (static_cast<float>(point) + 0.5f) / static_cast<float>(points);
+          grid_.add((1 - t) * from + t * to, extinction);
+        }
       }
-      const float extinction = per_area * face.area * (upper - lower).norm() / (2.0f * corners);
-      for (int k = 0; k < corners; ++k) {
-        const Vector3f a = vertexAt(positions, face.first_vertex[k] + layer),
-                       b = vertexAt(positions, face.first_vertex[k] + layer + 1);
-        // Half way from the middle to the corner, at two heights: spreads a prism over the cells it fills.
-        splat(0.5f * (0.75f * (a + lower) + 0.25f * (b + upper)), extinction);
-        splat(0.5f * (0.25f * (a + lower) + 0.75f * (b + upper)), extinction);
-      }
+      lower = upper;
     }
   }
 }
 
-float SkyVisibility::opticalDepth(const Vector3f& from, const Vector3f& direction) const {
-  float depth = headDepth(head_, from, direction);
-  for (int step = 1; step <= kGridSize; ++step) {
-    const Vector3f at = from + (static_cast<float>(step) - 0.25f) * cell_ * direction;
-    depth += density(at) * cell_;
+void SkyVisibility::lookTowards(const Vector3f& direction) {
+  grid_.sweep(direction, swept_);
+  depths_.resize(vertices_.size());
+  for (std::size_t v = 0; v < vertices_.size(); ++v)
+    depths_[v] = grid_.sample(swept_, vertices_[v]) + headDepth(head_center_ - vertices_[v], head_.radius, direction);
+}
+
+// Hair alone: the head sends little back.
+float SkyVisibility::depthBehind(const Vector3f& from, const Vector3f& to_light) const {
+  constexpr int kSteps = 3;
+  constexpr float kStep = kBackReach / kSteps;
+  float depth = 0;
+  for (int step = 0; step < kSteps; ++step) {
+    const Vector3f at = from - (static_cast<float>(step) + 0.5f) * kStep * to_light;
+    if ((at - head_center_).norm() < head_.radius) break;
+    depth += kStep * grid_.density(at);
   }
   return depth;
 }
@@ -130,14 +169,24 @@ float SkyVisibility::opticalDepth(const Vector3f& from, const Vector3f& directio
 void SkyVisibility::compute(const HairLayout& layout, std::span<const float> positions, float hair_width,
                             const Vector3f& to_fill, const Vector3f& to_rim) {
   head_ = fitHead(layout, positions);
-  fillGrid(layout, positions, hair_width);
-  values_.resize(layout.vertex_count);
-  for (int v = 0; v < layout.vertex_count; ++v) {
-    const Vector3f at = vertexAt(positions, v);
-    float open = 0;
-    for (const Vector3f& direction : skyDirections()) open += std::exp(-opticalDepth(at, direction));
-    values_[v] = Vector3f(open / skyDirections().size(), opticalDepth(at, to_fill), opticalDepth(at, to_rim));
+  placeVertices(layout, positions);
+  fillGrid(layout, hair_width);
+  const auto to_head = [&](const Vector3f& direction) { return Vector3f(frame_.linear().transpose() * direction); };
+  values_.assign(vertices_.size(), SoftLight{});
+  for (SoftLight& value : values_) value.sky = 0;
+  for (const Vector3f& direction : skyDirections()) {
+    lookTowards(to_head(direction));
+    for (std::size_t v = 0; v < vertices_.size(); ++v)
+      values_[v].sky += std::exp(-depths_[v]) / static_cast<float>(skyDirections().size());
   }
+  const auto light = [&](const Vector3f& to_light, LightDepths SoftLight::*depths) {
+    const Vector3f direction = to_head(to_light);
+    lookTowards(direction);
+    for (std::size_t v = 0; v < vertices_.size(); ++v)
+      values_[v].*depths = {depths_[v], depthBehind(vertices_[v], direction)};
+  };
+  light(to_fill, &SoftLight::fill);
+  light(to_rim, &SoftLight::rim);
 }
 
 }  // namespace render

@@ -29,7 +29,11 @@ const int kMaxOpacityLayers = 7;  // the eighth channel takes everything
 const float kLayerGrowth = 1.5;   // each deep opacity layer is this much thicker than the one before it
 
 // Texels of the two float buffer textures of a hair.
-const int kVertexTexels = 3;  // position + sky visibility, du + depth towards fill, dv + depth towards rim
+const int kVertexTexels = 3;  // position + sky visibility, du + depths along fill, dv + depths along rim
+// Two optical depths in one float: the one towards the light in steps of 1 / kDepthSteps before the point, the one away
+// from it as a share of kDeepest behind it.
+const float kDepthSteps = 128.0;
+const float kDeepest = 32.0;
 const int kFaceTexels = 3;    // first vertices; columns; layers, first strand, end strand, 1 / area
 const int kTableTexels = 1;   // end strand, face, segments a layer (0: the hair's), first strand
 const int kColumnTexels = 3;  // rest position + last layer of the shortest bundle around, rest axis u, rest axis v
@@ -47,9 +51,17 @@ const int kUnitJoints = 8;
 const int kUnitColor = 9;
 const int kUnitTable = 10;
 
-// Azimuthal scattering table: kScatterPhi angles over [0, pi], kScatterTheta cosines over [0, 1], one slice a lobe.
+// Scattering table (fiber_scattering.h). Slices 0 to 2: N_p of R, TT, TRT: kScatterPhi angles over [0, pi], kScatterTheta
+// cosines over [0, 1]. Slice 3: first row: norms of the lobes over kScatterPhi inclinations in [-pi/2, pi/2]; last row:
+// what the eye's inclination adds to them. Slice 4: light of several fibres, kVolumeSteps depths in front by as many
+// behind, three blocks side by side for the powers 0, 1, 2 of the azimuth's cosine.
 const int kScatterPhi = 48;
-const int kScatterTheta = 12;
+const int kScatterTheta = 16;
+const int kScatterSlices = 5;
+const int kVolumeSteps = 16;      // step i: optical depth kVolumeDepth i / (kVolumeSteps - i)
+const float kVolumeDepth = 2.0;
+const float kGrazing = 0.6;       // see longitudinal_lobes.h
+const float kVolumeSpread = 0.55;  // rad: deviation over the half angle of light that several fibres scattered
 
 SHARED_BLOCK(0, FrameBlock) {
   mat4 view_projection;
@@ -99,10 +111,9 @@ SHARED_BLOCK(1, HairBlock) {
   vec4 shape;     // length variation, offset (m), curl radius (m), curl turns
   vec4 clumping;  // clump, clump size (m), frizz (m), share of flyaways
   vec4 lobe_width;       // standard deviations (rad) of R, TT, TRT over the half angle; w: cuticle angle
-  vec4 gain;             // specular, diffuse, root darkening, tint variation
+  vec4 gain;             // unused, diffuse, root darkening, tint variation
   vec4 forward_albedo;   // mean forward scattering attenuation a_f (Zinke et al. 2008)
   vec4 backward_albedo;  // mean backward scattering attenuation a_b
-  vec4 local_back;       // multiple backscattering A_b
   vec4 center;           // world: the middle of the head under the hair
   vec4 ball;             // world: a ball around the whole hair; w: its radius, m
 };

@@ -134,8 +134,10 @@ std::vector<HairField> makeHairTable() {
     hair<HAIR(eta)>("eta", "Shine", "", {1.05, 2.5}, "Index of refraction."),
     hair<HAIR(cuticle_angle)>("cuticle_angle", "Shine", "rad", {-0.2, 0.2},
                               "Tilt of the cuticle's scales; moves the two highlights apart."),
-    hair<HAIR(specular)>("specular", "Shine", "", {0, 4}, "Strength of the highlights."),
-    hair<HAIR(diffuse)>("diffuse", "Shine", "", {0, 4}, "Strength of light scattered from strand to strand."),
+    hair<HAIR(specular)>("specular", "Shine", "", {0, 4},
+                         "Strength of the highlights; what they gain, light that passes through strands loses."),
+    hair<HAIR(diffuse)>("diffuse", "Shine", "", {0, 1},
+                        "Share that is kept of light scattered from strand to strand."),
     color(hair<[](auto& look) -> auto& { return look.body_color; }>("body_color", "Body", "", {0, 1},
                                                                     "Colour of the mannequin, linear RGB.")),
     hair < [](auto& look) -> auto& {

@@ -1,85 +1,117 @@
 // Light scattered by a strand towards the eye, evaluated once per ribbon point.
 //
-// Single scattering: S = sum over R, TT, TRT of M_p N_p / cos^2 theta_d (Marschner et al. 2003). M_p: Gaussians over
-// the half angle, shifted by the cuticle; N_p: a table with absorption inside (fiber_scattering.cpp). Multiple
-// scattering: dual scattering's idea (Zinke et al. 2008): light that crossed other hairs forward arrives tinted by a_f
-// per hair, and light that entered deeper comes back by A_b. The number of hairs crossed is Poisson distributed with
-// the optical depth tau, so what arrives unscattered is exp(-tau) and in all exp(-tau (1 - a_f)).
+// Single scattering: S = sum over R, TT, TRT of M_p N_p, energy-conserving at every roughness (longitudinal_lobes.h,
+// azimuthal_lobes.h). Light of several fibres: radiative transfer in a slab lit along the light's direction, by the
+// optical depths in front of the point and behind it (hair_volume.h). A lone strand has neither, a strand on a thick lock
+// has all that the lock sends back.
 
 layout(binding = kUnitScattering) uniform sampler2DArray scattering;
 
-const float kScatterDensity = 0.7;  // d_f = d_b of Zinke et al.: hairs are close to each other
-const float kBackDeviation = 0.55;  // rad: how far multiple scattering spreads along the strand
-
-float gaussian(float x, float deviation) {
-  float scaled = x / deviation;
-  return exp(-0.5 * scaled * scaled) / (2.50662827 * deviation);
-}
-
-struct Geometry {
-  float half_angle;  // theta_h
-  float cos_i;       // light's inclination
-  float cos_d;       // theta_d
-  float phi;         // azimuth between light and eye over pi
+// The eye's side of a strand's point, the same for all lights.
+struct EyeSide {
+  vec3 tangent;
+  vec3 across;  // the eye's direction without its part along the strand
+  float sine, theta;
+  vec4 norm;  // a of R, TT, TRT times c; a of light of several fibres
 };
 
-Geometry scatterGeometry(vec3 tangent, vec3 to_light, vec3 to_eye) {
-  float sin_i = clamp(dot(tangent, to_light), -1.0, 1.0), sin_r = clamp(dot(tangent, to_eye), -1.0, 1.0);
-  float theta_i = asin(sin_i), theta_r = asin(sin_r);
-  vec3 light_across = to_light - sin_i * tangent, eye_across = to_eye - sin_r * tangent;
-  float lengths = dot(light_across, light_across) * dot(eye_across, eye_across);
-  float cos_phi = lengths > 1e-12 ? dot(light_across, eye_across) * inversesqrt(lengths) : 1.0;
+// The light's and the eye's.
+struct Geometry {
+  float half_angle;        // theta_h
+  float cos_i;             // light's inclination
+  float cos_product;       // of both inclinations
+  float cos_d;             // theta_d
+  float cos_phi;           // azimuth between light and eye
+  vec4 norm;
+};
+
+vec4 inclinationTexel(float theta, int row) {
+  float at = (theta / kPi + 0.5) * float(kScatterPhi - 1) + 0.5;
+  return textureLod(scattering, vec3(at / float(kScatterPhi), (float(row) + 0.5) / float(kScatterTheta), 3.0), 0.0);
+}
+
+EyeSide eyeSide(vec3 tangent, vec3 to_eye) {
+  EyeSide side;
+  side.tangent = tangent;
+  side.sine = clamp(dot(tangent, to_eye), -1.0, 1.0);
+  side.theta = asin(side.sine);
+  side.across = to_eye - side.sine * tangent;
+  side.norm = inclinationTexel(side.theta, 0);
+  side.norm.xyz *= inclinationTexel(side.theta, kScatterTheta - 1).x;
+  return side;
+}
+
+Geometry scatterGeometry(in EyeSide side, vec3 to_light) {
+  float sin_i = clamp(dot(side.tangent, to_light), -1.0, 1.0), theta_i = asin(sin_i);
+  vec3 light_across = to_light - sin_i * side.tangent;
+  float eye_squared = dot(side.across, side.across), lengths = dot(light_across, light_across) * eye_squared;
   Geometry g;
-  g.half_angle = 0.5 * (theta_i + theta_r);
+  g.half_angle = 0.5 * (theta_i + side.theta);
   g.cos_i = sqrt(max(1.0 - sin_i * sin_i, 0.0));
-  g.cos_d = cos(0.5 * (theta_r - theta_i));
-  g.phi = acos(clamp(cos_phi, -1.0, 1.0)) * (1.0 / kPi);
+  g.cos_product = g.cos_i * sqrt(eye_squared);
+  g.cos_d = cos(0.5 * (side.theta - theta_i));
+  g.cos_phi = lengths > 1e-12 ? clamp(dot(light_across, side.across) * inversesqrt(lengths), -1.0, 1.0) : 1.0;
+  g.norm = side.norm * inclinationTexel(theta_i, 0);
   return g;
 }
 
-// Radiance per irradiance of the light. tint: colour of this strand's pigment against the mean.
-vec3 scatterLight(in Geometry g, float tau, vec3 tint) {
-  float shift = lobe_width.w;
-  vec2 at = vec2(g.phi * (1.0 - 1.0 / float(kScatterPhi)) + 0.5 / float(kScatterPhi),
+// See longitudinalShape of longitudinal_lobes.h.
+float longitudinalShape(float half_angle, float cos_product, float deviation) {
+  float v = 4.0 * deviation * deviation, sine = sin(half_angle);
+  return exp(-2.0 * sine * sine / v) / (cos_product + kGrazing * v);
+}
+
+// Light that several fibres scattered, by the optical depths in front of the point (x) and behind it (y).
+vec3 volumeLight(float cos_phi, vec2 tau) {
+  vec2 at = min(tau / (tau + kVolumeDepth) * float(kVolumeSteps), vec2(float(kVolumeSteps - 1))) + 0.5;
+  const vec2 kTexel = 1.0 / vec2(float(kScatterPhi), float(kScatterTheta));
+  vec2 block = vec2(float(kVolumeSteps), 0.0);
+  vec3 even = textureLod(scattering, vec3(at * kTexel, 4.0), 0.0).rgb;
+  vec3 once = textureLod(scattering, vec3((at + block) * kTexel, 4.0), 0.0).rgb;
+  vec3 twice = textureLod(scattering, vec3((at + 2.0 * block) * kTexel, 4.0), 0.0).rgb;
+  return max(even + cos_phi * (once + cos_phi * twice), 0.0);
+}
+
+// Radiance per irradiance of the light. tau: optical depth in front of the point and behind it. tint: colour of this
+// strand's pigment against the mean.
+vec3 scatterLight(in Geometry g, vec2 tau, vec3 tint) {
+  float shift = lobe_width.w * g.cos_d;
+  vec2 at = vec2(acos(g.cos_phi) / kPi * (1.0 - 1.0 / float(kScatterPhi)) + 0.5 / float(kScatterPhi),
                  g.cos_d * (1.0 - 1.0 / float(kScatterTheta)) + 0.5 / float(kScatterTheta));
   vec3 n_r = textureLod(scattering, vec3(at, 0.0), 0.0).rgb, n_tt = textureLod(scattering, vec3(at, 1.0), 0.0).rgb,
        n_trt = textureLod(scattering, vec3(at, 2.0), 0.0).rgb;
-  // The half angle moves half as far as the light, hence 0.5: the lobe then integrates to one over the light's
-  // inclination.
-  float m_r = 0.5 * gaussian(g.half_angle + shift, lobe_width.x),
-        m_tt = 0.5 * gaussian(g.half_angle - 0.5 * shift, lobe_width.y),
-        m_trt = 0.5 * gaussian(g.half_angle - 1.5 * shift, lobe_width.z);
-  float m_back = 0.5 * gaussian(g.half_angle, kBackDeviation);
-  vec3 single = gain.x * (m_r * n_r + tint * (m_trt * n_trt)) + tint * (m_tt * n_tt);
-  vec3 local = gain.y * tint * local_back.rgb * (2.0 / kPi) * m_back * kScatterDensity;
-  vec3 spread = gain.y * tint * (forward_albedo.rgb + backward_albedo.rgb) * (0.5 / kPi) * m_back;
-  float direct = exp(-tau);
-  vec3 scattered = max(exp(-tau * (1.0 - forward_albedo.rgb)) - direct, 0.0);
-  vec3 radiance = direct * (single + local) + kScatterDensity * scattered * (spread + kPi * local);
-  return radiance * g.cos_i / max(g.cos_d * g.cos_d, 0.05);
+  vec3 m = g.norm.xyz * vec3(longitudinalShape(g.half_angle + shift, g.cos_product, lobe_width.x),
+                             longitudinalShape(g.half_angle - 0.5 * shift, g.cos_product, lobe_width.y),
+                             longitudinalShape(g.half_angle - 1.5 * shift, g.cos_product, lobe_width.z));
+  vec3 single = m.x * n_r + tint * (m.y * n_tt + m.z * n_trt);
+  float m_volume = g.norm.w * longitudinalShape(g.half_angle, g.cos_product, kVolumeSpread);
+  return g.cos_i * (exp(-tau.x) * single + gain.y * m_volume * tint * volumeLight(g.cos_phi, tau));
 }
 
 // Colour of a strand's pigment against the hair's mean: brighter or darker, a little warmer or cooler, darker at the
-// root.
+// root; never so bright that a fibre sends on more than it gets.
 vec3 strandTint(in Strand strand, float along) {
   float brighter = mix(randomOf(strand.key, 20u), randomOf(strand.clump_key, 20u), 0.5) * 2.0 - 1.0;
   float warmer = randomOf(strand.key, 21u) * 2.0 - 1.0;
   vec3 tint = exp2(gain.w * (1.6 * brighter + 0.35 * warmer * vec3(1.0, 0.0, -1.0)));
-  return tint * (1.0 - gain.z * (1.0 - smoothstep(0.0, 0.4, along)));
+  tint *= 1.0 - gain.z * (1.0 - smoothstep(0.0, 0.4, along));
+  return min(tint, 1.0 / max(forward_albedo.rgb + backward_albedo.rgb, 1e-3));
 }
 
 vec3 shadeStrand(in Strand strand, in CurvePoint point) {
   vec3 to_eye = normalize(eye.xyz - point.position), tint = strandTint(strand, point.along);
-  vec3 tangent = point.tangent;
-  float tau_key = 0.5 * (point.light.y + point.light.z), lit = 1.0;
+  EyeSide side = eyeSide(point.tangent, to_eye);
+  vec2 tau_fill = vec2(point.light.y, point.behind.x), tau_rim = vec2(point.light.z, point.behind.y);
+  vec2 tau_key = 0.5 * (tau_fill + tau_rim);
+  float lit = 1.0;
   if (draw.w >= 0) {
     vec3 at = hairShadowCoordinates(draw.w, point.position);
-    tau_key = hairOpticalDepth(draw.w, at);
+    tau_key = hairOpticalDepths(draw.w, at);
     lit = bodyLightOnHair(draw.w, at);
   }
-  vec3 radiance = lit * key.rgb * scatterLight(scatterGeometry(tangent, to_key.xyz, to_eye), tau_key, tint);
-  radiance += fill.rgb * scatterLight(scatterGeometry(tangent, to_fill.xyz, to_eye), point.light.y, tint);
-  radiance += rim.rgb * scatterLight(scatterGeometry(tangent, to_rim.xyz, to_eye), point.light.z, tint);
+  vec3 radiance = lit * key.rgb * scatterLight(scatterGeometry(side, to_key.xyz), tau_key, tint);
+  radiance += fill.rgb * scatterLight(scatterGeometry(side, to_fill.xyz), tau_fill, tint);
+  radiance += rim.rgb * scatterLight(scatterGeometry(side, to_rim.xyz), tau_rim, tint);
   // Ambient: the albedo of a fibre under an even sky; the sky visibility is the mean direct transmittance, raised by what is
   // scattered on.
   vec3 outward = unitOr(point.position - center.xyz, vec3(0.0, 1.0, 0.0));

@@ -8,6 +8,8 @@ layout(binding = kUnitHairDepth) uniform sampler2DArray hair_depth;
 layout(binding = kUnitBodyInHairDepth) uniform sampler2DArrayShadow body_in_hair_depth;
 layout(binding = kUnitBodyDepth) uniform sampler2DArrayShadow body_depth;
 
+const float kBackReach = 0.04;  // m: light comes back from as far behind a strand
+
 // Light-space texture coordinates and depth of a world point in hair shadow map `map`; outside of [0, 1] where not
 // covered.
 vec3 hairShadowCoordinates(int map, vec3 world) {
@@ -23,17 +25,12 @@ vec3 hairShadowTexel(int map, vec2 at) {
   return vec3(tile.xy + clamp(at, half_texel, 1.0 - half_texel) * vec2(tile.z, tile.z * opacity.z), tile.w);
 }
 
-// Optical depth (expected number of hairs crossed, weighted by strength) between the key light and a point. Within a
-// layer it grows linearly; layers thicken geometrically, since what lies deep needs less resolution.
-float hairOpticalDepth(int map, vec3 at) {
-  if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return 0.0;
-  vec3 texel = hairShadowTexel(map, at.xy);
-  float behind = (at.z - textureLod(hair_depth, texel, 0.0).r) * hair_shadow_size[map].z;
-  if (behind <= 0.0) return 0.0;
-  vec4 near = textureLod(opacity_near, texel, 0.0), far = textureLod(opacity_far, texel, 0.0);
+// What the layers of a texel hold up to `behind` (m) its first hair. Within a layer it grows linearly; layers thicken
+// geometrically, since what lies deep needs less resolution.
+float heldUpTo(vec4 near, vec4 far, float behind, float thickness) {
   // held[0] = 0 at the first hair; held[k] at the end of layer k, which lies at thickness (g^k - 1) / (g - 1).
   const float kRate = log2(kLayerGrowth);
-  float depth = behind / hair_shadow_size[map].w;
+  float depth = max(behind, 0.0) / thickness;
   float layer = min(floor(log2(1.0 + (kLayerGrowth - 1.0) * depth) / kRate), opacity.x);
   float span = exp2(kRate * layer);
   float into = clamp((depth - (span - 1.0) / (kLayerGrowth - 1.0)) / span, 0.0, 1.0);
@@ -48,6 +45,26 @@ float hairOpticalDepth(int map, vec3 at) {
     in_far.w += into;
   }
   return opacity.y * (dot(in_near, near) + dot(in_far, far));
+}
+
+// Optical depth (expected number of hairs crossed, weighted by strength) between the key light and a point.
+float hairOpticalDepth(int map, vec3 at) {
+  if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return 0.0;
+  vec3 texel = hairShadowTexel(map, at.xy);
+  float behind = (at.z - textureLod(hair_depth, texel, 0.0).r) * hair_shadow_size[map].z;
+  if (behind <= 0.0) return 0.0;
+  return heldUpTo(textureLod(opacity_near, texel, 0.0), textureLod(opacity_far, texel, 0.0), behind,
+                  hair_shadow_size[map].w);
+}
+
+// The same, and that of the hair behind the point as far as light comes back from it.
+vec2 hairOpticalDepths(int map, vec3 at) {
+  if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return vec2(0.0);
+  vec3 texel = hairShadowTexel(map, at.xy);
+  float behind = (at.z - textureLod(hair_depth, texel, 0.0).r) * hair_shadow_size[map].z;
+  vec4 near = textureLod(opacity_near, texel, 0.0), far = textureLod(opacity_far, texel, 0.0);
+  float before = heldUpTo(near, far, behind, hair_shadow_size[map].w);
+  return vec2(before, heldUpTo(near, far, behind + kBackReach, hair_shadow_size[map].w) - before);
 }
 
 // Light left after the bodies, for a point of hair.

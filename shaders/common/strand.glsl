@@ -35,13 +35,15 @@ struct Strand {
 struct LayerPoint {
   vec3 position;
   vec3 axis_u, axis_v;
-  vec3 light;  // sky visibility, optical depth towards fill, towards rim
+  vec3 light;   // sky visibility, optical depth towards fill, towards rim
+  vec2 behind;  // optical depth away from fill, from rim
 };
 
 struct CurvePoint {
   vec3 position;
   vec3 tangent;  // unit
   vec3 light;
+  vec2 behind;
   float along;  // 0 root .. 1 tip of this strand
 };
 
@@ -177,7 +179,7 @@ float clumpClosing(float t, uint clump_key) {
 }
 
 LayerPoint layerPoint(in Strand strand, int layer) {
-  LayerPoint point = LayerPoint(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+  LayerPoint point = LayerPoint(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec2(0.0));
   float closing = clumpClosing(float(layer) / float(strand.layers - 1), strand.clump_key);
   for (int k = 0; k < 4; ++k) {
     int at = (strand.first[k] + layer) * kVertexTexels;
@@ -187,7 +189,8 @@ LayerPoint layerPoint(in Strand strand, int layer) {
                       (strand.along_v[k] + closing * strand.pull_v[k]) * dv.xyz;
     point.axis_u += strand.blend[k] * du.xyz;
     point.axis_v += strand.blend[k] * dv.xyz;
-    point.light += strand.blend[k] * vec3(p.w, du.w, dv.w);
+    point.light += strand.blend[k] * vec3(p.w, floor(vec2(du.w, dv.w)) / kDepthSteps);
+    point.behind += strand.blend[k] * fract(vec2(du.w, dv.w)) * kDeepest;
   }
   return point;
 }
@@ -259,6 +262,7 @@ CurvePoint curvePoint(in Strand strand, in LayerWindow window, float s, float fr
   point.position = base + aside * bend.x + across * bend.y;
   point.tangent = unitOr(slope + aside * bend.z + across * bend.w, axis);
   point.light = mix(window.from.light, window.to.light, f);
+  point.behind = mix(window.from.behind, window.to.behind, f);
   point.along = strand.end > 0.0 ? s / strand.end : 0.0;
   return point;
 }

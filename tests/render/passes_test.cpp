@@ -94,6 +94,7 @@ struct Scene {
     bodies.push_back(synthetic::bodyInput(body));
     for (std::size_t v = 0; v < cover.size(); v += 2) cover[v] = body.positions[3 * v / 2 + 1] > 1.6f;
     hairs[0].segments_per_layer = 6;
+    hairs[0].look.diffuse = 0.7f;
     rest = hair.positions;
     hairs[0].rest = rest;
     bodies[0].scalp_id = 1;

@@ -377,13 +377,17 @@ TEST(SkyVisibility, FindsTheHeadAndDarkensWhatLiesDeep) {
   render::SkyVisibility sky_visibility;
   sky_visibility.compute(layout, hair.positions, 5.0f, Vector3f::UnitX(), -Vector3f::UnitZ());
   // The crown's column is outermost, the last ring's roots are covered by all that falls over them.
-  const Eigen::Vector3f outer = sky_visibility.values()[4],
-                        inner = sky_visibility.values()[(hair.positions.size() / 3) - hair.layers];
-  EXPECT_GT(outer.x(), inner.x());
-  for (const Eigen::Vector3f& value : sky_visibility.values()) {
-    ASSERT_TRUE(value.allFinite());
-    ASSERT_GE(value.minCoeff(), 0.0f);
-    ASSERT_LE(value.x(), 1.0f);
+  const render::SoftLight outer = sky_visibility.values()[4],
+                          inner = sky_visibility.values()[(hair.positions.size() / 3) - hair.layers];
+  EXPECT_GT(outer.sky, inner.sky);
+  for (const render::SoftLight& value : sky_visibility.values()) {
+    ASSERT_TRUE(std::isfinite(value.sky));
+    ASSERT_GE(value.sky, 0.0f);
+    ASSERT_LE(value.sky, 1.0001f);
+    for (const render::LightDepths& depths : {value.fill, value.rim}) {
+      ASSERT_GE(depths.front, 0.0f);
+      ASSERT_GE(depths.behind, 0.0f);
+    }
   }
 }
 
