@@ -228,7 +228,7 @@ TEST_F(LightTest, ALockSendsBackAndOnWhatARandomWalkSays) {
           shadersSlab(evaluate(probe, look, static_cast<float>(thickness), kDepths * kAzimuths), thickness);
       for (int c = 0; c < 3; ++c) {
         const auto close = [&](float a, float b, const char* side) {
-          EXPECT_NEAR(a, b, 0.07f * b + 0.0015f) << colour.name << " " << thickness << " " << side << " " << c;
+          EXPECT_NEAR(a, b, 0.05f * b + 0.0025f) << colour.name << " " << thickness << " " << side << " " << c;
         };
         close(shaded.back[c], walked.back[c], "back");
         close(shaded.through[c], walked.through[c], "through");
