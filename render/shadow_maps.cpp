@@ -46,15 +46,16 @@ int bodyMapSize(int hair_map_size) {
 }
 
 // Thickness of the first deep opacity layer: small enough to resolve the outer hairs, large enough that the growing
-// layers together reach through the hair.
-float firstThickness(const HairResources& hair, const LightInput& light) {
+// layers together reach through the hair. It follows the frustum, which grows in steps: all of the shadow would change
+// with every tip that moves the hair's bounds.
+float firstThickness(const LightFrustum& frustum, const LightInput& light) {
   if (light.layer_thickness > 0) return light.layer_thickness;
   float sum = 0, thickness = 1;
   for (int layer = 0; layer < std::clamp(light.opacity_layers, 1, shared::kMaxOpacityLayers); ++layer) {
     sum += thickness;
     thickness *= shared::kLayerGrowth;
   }
-  return std::max(0.5f * hair.bounds.diagonal() / sum, 1e-4f);
+  return std::max(0.45f * std::hypot(frustum.side, frustum.depth) / sum, 1e-4f);
 }
 
 // Texels of a tile's side for every pixel of the hair, while there is room. More cost memory, and the picture came no
@@ -183,7 +184,7 @@ std::uint64_t ShadowMaps::signatureOf(const HairMap& map, const HairResources& h
   signature.add(hair.revision);
   signature.add(has_bodies_ ? bodies.poseSignature(input.skips.shadow_view ? &map.frustum.clip_from_world : nullptr)
                             : 0);
-  signature.add(firstThickness(hair, input.light));
+  signature.add(firstThickness(map.frustum, input.light));
   const HairDraw& draw = hair.shadow_draw;
   signature.add(draw.segments);
   signature.add(draw.table_strands);
@@ -265,7 +266,7 @@ void ShadowMaps::fitHairMap(std::size_t index, const PlanInput& input, const Hai
   const float scale = 1 / static_cast<float>(extent_.width), down = 1 / static_cast<float>(extent_.height);
   maps_.hair_shadow[index] = asMat4(map.frustum.clip_from_world);
   maps_.hair_shadow_size[index] = {map.frustum.side, static_cast<float>(map.tile.side), map.frustum.depth,
-                                   firstThickness(hair, input.light)};
+                                   firstThickness(map.frustum, input.light)};
   maps_.hair_shadow_tile[index] = {static_cast<float>(map.tile.x) * scale, static_cast<float>(map.tile.y) * down,
                                    static_cast<float>(map.tile.side) * scale, static_cast<float>(map.tile.layer)};
   // Around the square that the map covers, wherever in its depth.

@@ -105,19 +105,24 @@ LightFrustum lightFrustum(const Bounds& bounds, const Vector3f& to_light, int te
     seen.add((turn.block<3, 3>(0, 0) * p + turn.block<3, 1>(0, 3)).eval());
   }
   const Vector3f extent = seen.high - seen.low;
-  constexpr float kStep = 0.08f;  // m
+  constexpr float kStep = 0.08f;      // m
+  constexpr float kSnap = 1.0f / 16;  // of the side
   LightFrustum frustum;
-  frustum.side = kStep * (std::floor(std::max(extent.x(), extent.y()) / kStep) + 1);
+  frustum.side = kStep * (std::floor((1 + kSnap) * std::max(extent.x(), extent.y()) / kStep) + 1);
   frustum.depth = kStep * (std::floor(extent.z() / kStep) + 2);
-  const float texel = frustum.side / static_cast<float>(texels);
-  const float x = texel * std::round(seen.center().x() / texel), y = texel * std::round(seen.center().y() / texel);
+  // Lines and depths are rounded anew where the frustum moves, so it moves seldom.
+  const float snap =
+      std::max(std::round(kSnap * static_cast<float>(texels)), 1.0f) * frustum.side / static_cast<float>(texels);
+  const auto snapped = [](float at, float to) { return to * std::round(at / to); };
+  const float x = snapped(seen.center().x(), snap), y = snapped(seen.center().y(), snap),
+              z = snapped(seen.center().z(), 0.5f * kStep);
   Matrix4f fit = Matrix4f::Identity();
   fit(0, 0) = fit(1, 1) = 2 / frustum.side;
   fit(0, 3) = -x * fit(0, 0);
   fit(1, 3) = -y * fit(1, 1);
   // Depth 0 at the light's side of the bounds; view space looks along -z.
   fit(2, 2) = -2 / frustum.depth;
-  fit(2, 3) = seen.center().z() * 2 / frustum.depth;
+  fit(2, 3) = z * 2 / frustum.depth;
   frustum.clip_from_world = fit * turn;
   return frustum;
 }

@@ -54,8 +54,8 @@ struct LightFrustum {
   Eigen::Matrix4f clip_from_world = Eigen::Matrix4f::Identity();
   float side = 1, depth = 1;  // m
 };
-// Orthographic, looking along -to_light; its size grows in steps and it moves by whole texels, so that shadows of
-// moving hair do not swim.
+// Orthographic, looking along -to_light; its size grows in steps and it moves by many whole texels at once, so that
+// shadows of moving hair do not swim.
 LightFrustum lightFrustum(const Bounds& bounds, const Eigen::Vector3f& to_light, int texels);
 
 }  // namespace render
