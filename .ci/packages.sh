@@ -6,7 +6,7 @@ build_packages=(
   libeigen3-dev libglfw3-dev libglew-dev libgl-dev libegl-dev libassimp-dev libcli11-dev nlohmann-json3-dev libimgui-dev libstb-dev
   libgl1-mesa-dri libegl1 fonts-roboto-unhinted
 )
-test_packages=(libgtest-dev libpng-dev xvfb)
+test_packages=(libgtest-dev libpng-dev xvfb python3)
 # More tests and comparisons run where these are installed; without them they are skipped.
 optional_test_packages=(assimp-testmodels libsuitesparse-dev libbullet-dev gnuplot-nox valgrind clang libclang-rt-14-dev)
 

@@ -30,13 +30,17 @@ inline BvhMotion ownClip(const std::string& name) {
   return load(kSource / "assets" / "clips" / (name + ".bvh"));
 }
 
+// The project's own, and the captures where they are at hand.
 inline std::vector<BvhMotion> allClips() {
   std::vector<BvhMotion> clips;
-  for (const fs::path& folder : {kSource / "assets" / "clips", kSource / ".." / "shared" / "mocap"}) {
-    if (!fs::exists(folder)) continue;
+  const fs::path own = kSource / "assets" / "clips";
+  for (const fs::path& folder : {own, kSource / ".." / "shared" / "mocap"}) {
+    if (folder != own && !fs::exists(folder)) continue;
+    const std::size_t before = clips.size();
     for (const auto& entry : fs::directory_iterator(folder)) {
       if (entry.path().extension() == ".bvh") clips.push_back(load(entry.path()));
     }
+    EXPECT_GT(clips.size(), before) << "no clips in " << folder;
   }
   return clips;
 }

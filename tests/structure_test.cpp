@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -22,6 +23,7 @@ std::vector<fs::path> sources(const std::vector<std::string>& folders) {
       if (ending == ".cpp" || ending == ".h") files.push_back(entry.path());
     }
   }
+  EXPECT_FALSE(files.empty()) << "no sources are found";
   return files;
 }
 
@@ -97,6 +99,7 @@ struct Function {
   std::string head;
   std::size_t lines = 0;
   bool table = false;  // all of it after the first lines is one list that it returns
+  std::string text;
 };
 
 // Functions of a file in this project's format: each ends with a brace where its first line begins.
@@ -111,7 +114,8 @@ std::vector<Function> functionsOf(const fs::path& file) {
       if (!here) continue;
       if (text[n] == indent + "}" && first < n && text[first].find('(') != std::string::npos &&
           !std::regex_match(text[first], type)) {
-        functions.push_back({text[first], n - first + 1, text[n - 1] == indent + "  };"});
+        functions.push_back({text[first], n - first + 1, text[n - 1] == indent + "  };", ""});
+        for (std::size_t line = first; line <= n; ++line) functions.back().text += text[line] + "\n";
       }
       first = n;
     }
@@ -134,6 +138,49 @@ TEST(Structure, NoFunctionIsLongerThanSixtyLinesOutsideOfTables) {
 bool hasAny(const std::string& text, std::initializer_list<const char*> words) {
   return std::any_of(words.begin(), words.end(),
                      [&](const char* word) { return text.find(word) != std::string::npos; });
+}
+
+// The words of a text that are followed by an opening bracket.
+std::set<std::string> calledIn(const std::string& text) {
+  static const std::regex call("(\\w+)(<\\w+>)?\\(");
+  std::set<std::string> words;
+  for (auto at = std::sregex_iterator(text.begin(), text.end(), call); at != std::sregex_iterator(); ++at)
+    words.insert((*at)[1]);
+  return words;
+}
+
+// A test asserts, itself or in what it calls, or has Crash in its name.
+TEST(Structure, ATestWithoutAnAssertionSaysThatItLooksForACrashOnly) {
+  struct Body {
+    std::string head;
+    std::set<std::string> calls;
+    bool asserts;
+  };
+  const std::regex macro("\\b(EXPECT|ASSERT)_|\\b(ADD_)?FAIL(URE)?\\("), name("(\\w+)\\(");
+  std::vector<Body> bodies;
+  for (const fs::path& file : sources({"tests"})) {
+    for (const Function& function : functionsOf(file))
+      bodies.push_back({function.head, calledIn(function.text.substr(function.head.size())),
+                        std::regex_search(function.text, macro)});
+  }
+  std::set<std::string> asserting;  // functions that tests call
+  for (bool grown = true; grown;) {
+    grown = false;
+    for (Body& body : bodies) {
+      body.asserts =
+          body.asserts || std::ranges::any_of(body.calls, [&](const auto& word) { return asserting.contains(word); });
+      std::smatch match;
+      if (body.asserts && !body.head.starts_with("TEST") && std::regex_search(body.head, match, name))
+        grown = asserting.insert(match[1]).second || grown;
+    }
+  }
+  std::size_t tests = 0;
+  for (const Body& body : bodies) {
+    if (!body.head.starts_with("TEST")) continue;
+    ++tests;
+    EXPECT_TRUE(body.asserts || hasAny(body.head, {"Crash"})) << body.head;
+  }
+  EXPECT_GT(tests, 300u) << "tests are not recognized";
 }
 
 TEST(Structure, NamesSayWhatThingsAre) {

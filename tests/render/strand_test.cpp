@@ -391,4 +391,42 @@ TEST(SkyVisibility, FindsTheHeadAndDarkensWhatLiesDeep) {
   }
 }
 
+// The grid is a cube about the hair: turned by a right angle about y, hair and light see the same.
+TEST(SkyVisibility, TurnsWithTheHairByRightAngles) {
+  const synthetic::Hair hair = synthetic::makeHair();
+  std::vector<float> turned = hair.positions;
+  for (std::size_t i = 0; i < turned.size(); i += 3) {
+    turned[i] = hair.positions[i + 2];
+    turned[i + 2] = -hair.positions[i];
+  }
+  render::SkyVisibility one, other;
+  const Vector3f fill = Vector3f(0.9f, 0.3f, 0.2f).normalized(), rim = Vector3f(-0.2f, 0.1f, -0.9f).normalized();
+  const auto turn = [](const Vector3f& v) { return Vector3f(v.z(), v.y(), -v.x()); };
+  one.compute(render::makeHairLayout(hair.faces, hair.positions), hair.positions, 5.0f, fill, rim);
+  other.compute(render::makeHairLayout(hair.faces, turned), turned, 5.0f, turn(fill), turn(rim));
+  double off = 0, sum = 0;
+  for (std::size_t v = 0; v < one.values().size(); ++v) {
+    off += (one.values()[v] - other.values()[v]).tail<2>().cwiseAbs().sum();
+    sum += one.values()[v].tail<2>().sum();
+  }
+  EXPECT_LT(off, 0.01 * sum);  // rays may pass cells' corners on the other side
+}
+
+// A box beside the view is seen once it is swept across it, and not when it is swept away.
+TEST(Frustum, SeesWhatIsSweptIntoIt) {
+  render::CameraInput camera;
+  camera.eye = {0, 1, 5};
+  camera.target = {0, 1, 0};
+  const render::Frustum view(render::cameraMatrix(camera, 1.5f), 0);
+  for (const float side : {-1.0f, 1.0f}) {
+    render::Bounds box;
+    box.add(Vector3f(side * 20, 0.9f, -0.1f));
+    box.add(Vector3f(side * 20.2f, 1.1f, 0.1f));
+    EXPECT_FALSE(view.maySee(box));
+    EXPECT_TRUE(view.maySeeSwept(box, Vector3f(-side * 40, 0, 0)));
+    EXPECT_FALSE(view.maySeeSwept(box, Vector3f(side * 40, 0, 0)));
+    EXPECT_FALSE(view.maySeeSwept(box, Vector3f(0, -40, 0)));
+  }
+}
+
 }  // namespace

@@ -161,6 +161,28 @@ TEST(Sleep, ComesWhenNothingThatShowsIsLeft) {
   }
 }
 
+// Two quiet windows in a row: one that is not quiet between them begins the count anew.
+TEST(Sleep, ComesAfterTwoQuietWindowsInARowOnly) {
+  sim::HairState hair;
+  hair.positions.assign(3, sim::Vec3::Zero());
+  sim::SleepState sleep;
+  const sim::SimParams params;
+  constexpr double kStep = 1.0 / 60;
+  const int window = static_cast<int>(std::ceil(sim::kQuietWindow / kStep)) + 1;
+  const auto stay = [&](int steps) {
+    bool slept = false;
+    for (int n = 0; n < steps; ++n) slept = sim::maySleep(params, {}, kStep, hair, sleep) || slept;
+    return slept;
+  };
+  for (int round = 0; round < 3; ++round) {
+    EXPECT_FALSE(stay(window + 3)) << "one quiet window";
+    hair.positions[1].x() += 3 * sim::kQuietPath;
+    EXPECT_FALSE(stay(1));
+  }
+  EXPECT_FALSE(stay(window));
+  EXPECT_TRUE(stay(window));
+}
+
 // The head stands still, and a fist comes up to the hair from aside.
 TEST(Sleep, WakesBeforeABodyTouchesIt) {
   constexpr double kSpeed = 0.5;  // m/s

@@ -230,7 +230,6 @@ INSTANTIATE_TEST_SUITE_P(Mannequin, EveryClip, testing::ValuesIn(bvhFiles()), []
       name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
   return name;
 });
-GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(EveryClip);
 
 TEST(Mannequin, IsMirrorSymmetricOnAMirrorSymmetricSkeleton) {
   const app::Mannequin m = growText(symmetricFigure());

@@ -65,7 +65,9 @@ TEST_P(HostileInput, SurvivesDamage) {
     state = state * 6364136223846793005ull + 1442695040888963407ull;
     return static_cast<std::size_t>(state >> 33) % end;
   };
-  for (std::string text : textsOf(GetParam().name)) {
+  const std::vector<std::string> texts = textsOf(GetParam().name);
+  ASSERT_FALSE(texts.empty());
+  for (std::string text : texts) {
     const std::string sound = text;
     for (int n = 0; n < kDamaged; ++n) {
       if (n % 8 == 0) text = sound;

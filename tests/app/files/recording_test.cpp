@@ -170,6 +170,20 @@ TEST(Recording, AChangedInputShowsInTheEnd) {
   EXPECT_TRUE(replay(folder + "/other.hmr", replayed).differs);
 }
 
+// Hair in the same place that goes elsewhere is another state.
+TEST(Recording, TheStateIsPlacesAndVelocities) {
+  app::Demo demo = app::openScene(app::readScene(R"({"characters": [{"motion": "walk.bvh"}]})", "walk"), 1.5);
+  const std::string before = app::stateHash(demo);
+  sim::HairState& hair = demo.actors[0].hair;
+  for (sim::Vec3* value : {&hair.positions.back(), &hair.velocities.back()}) {
+    const sim::Vec3 kept = *value;
+    value->z() += 1e-9;
+    EXPECT_NE(app::stateHash(demo), before);
+    *value = kept;
+  }
+  EXPECT_EQ(app::stateHash(demo), before);
+}
+
 TEST(Recording, TheProgramRecordsAndReplays) {
   const std::string folder = test::freshFolder("recording_program"), file = folder + "/run.hmr";
   const test::Outcome recorded =

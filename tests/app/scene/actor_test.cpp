@@ -9,6 +9,9 @@
 #include <fstream>
 #include <string>
 
+#include "app/files/data_path.h"
+#include "app/scene/debug_views.h"
+#include "app/scene/sim_to_render.h"
 #include "tests/run_program.h"
 
 namespace {
@@ -147,6 +150,41 @@ TEST(Actor, RootsOfTheCoarseMeshAreThoseOfTheHead) {
     const Rigid by = headAt(frame) * headAt(0).inverse();
     EXPECT_LT(farthest(actor.coarse.roots, moved(by, roots)), kRounding) << "frame " << frame;
     EXPECT_LT(farthest(rootsOfHair(actor), moved(by, fine)), kRounding) << "frame " << frame;
+  }
+}
+
+// A joint that moves alone is a new pose, whichever it is.
+TEST(JointMatrices, TellAMoveOfAnyJoint) {
+  app::Skeleton skeleton;
+  app::Pose pose;
+  for (int j = 0; j < 4; ++j) {
+    skeleton.joints.push_back({"joint", j - 1, Rigid::Identity(), Rigid(Eigen::Translation3d(0, j, 0))});
+    pose.world.push_back(skeleton.joints.back().rest_world);
+  }
+  std::vector<render::Mat4> matrices;
+  EXPECT_TRUE(app::jointMatrices(skeleton, pose, Vec3::Zero(), matrices));
+  EXPECT_FALSE(app::jointMatrices(skeleton, pose, Vec3::Zero(), matrices));
+  for (Rigid& joint : pose.world) {
+    joint.translation().x() += 0.1;
+    EXPECT_TRUE(app::jointMatrices(skeleton, pose, Vec3::Zero(), matrices));
+    EXPECT_FALSE(app::jointMatrices(skeleton, pose, Vec3::Zero(), matrices));
+  }
+}
+
+// As the view's help says: red where the hair sticks.
+TEST(DebugViews, AContactThatSticksIsRedAndOneThatSlidesIsNot) {
+  app::AssetCache cache;
+  app::CharacterSpec spec;
+  spec.motion = app::dataPath("assets/clips/walk.bvh");
+  app::Actor actor = app::makeActor(spec, {}, cache);
+  app::showActor(1, Vec3::Zero(), actor);
+  for (const bool sticks : {false, true}) {
+    actor.hair.contacts = {{.vertex = 5, .sticks = sticks}};
+    app::DebugGeometry geometry;
+    app::addDebugViews({.contacts = true}, actor, geometry);
+    ASSERT_EQ(geometry.points.size(), 1u);
+    const auto& color = geometry.points[0].color;
+    EXPECT_EQ(color[0] > color[1] && color[0] > color[2], sticks);
   }
 }
 

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -242,7 +244,9 @@ TEST(Demo, ScrubbingCarriesTheHairAlong) {
 }
 
 TEST(Demo, EveryOwnClipPlaysWithoutRecoveries) {
-  for (const std::string& file : app::listAssets("clips", {".bvh"})) {
+  const std::vector<std::string> files = app::listAssets("clips", {".bvh"});
+  ASSERT_FALSE(files.empty());
+  for (const std::string& file : files) {
     Demo demo = smallDemo(app::stem(file) + ".bvh");
     int recoveries = 0;
     for (int frame = 0; frame < 90; ++frame) {
@@ -288,6 +292,13 @@ TEST(Headless, ARunWithoutPicturesNeedsNoGraphicsAndReportsEveryFrame) {
     EXPECT_NEAR(frame["time"].get<double>(), k / 60.0, 1e-12);
     EXPECT_EQ(frame["steps"], k == 0 ? 0 : 1);
   }
+  std::vector<double> whole;
+  for (const auto& frame : report["frames"]) whole.push_back(frame["milliseconds"]);
+  std::sort(whole.begin(), whole.end());
+  const auto& milliseconds = report["summary"]["frame_milliseconds"];
+  EXPECT_DOUBLE_EQ(milliseconds["max"], whole.back());
+  EXPECT_DOUBLE_EQ(milliseconds["median"], whole[10]);
+  EXPECT_NEAR(milliseconds["mean"], std::accumulate(whole.begin(), whole.end(), 0.0) / 20, 1e-9 * whole.back());
   EXPECT_GT(report["frames"][5]["solver_iterations"].get<int>(), 0);
   EXPECT_FALSE(report["characters"][0]["notes"].empty());
   const auto& summary = report["summary"];

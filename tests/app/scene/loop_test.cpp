@@ -144,9 +144,11 @@ std::vector<std::string> motionsAtHand() {
   std::vector<std::string> motions{"walk.bvh", "jump_spin.bvh", "head_shake.bvh"};
   const fs::path captures = fs::path(HAIRMESH_SOURCE_DIR) / ".." / "shared" / "mocap";
   if (!fs::exists(captures)) return motions;
+  const std::size_t own = motions.size();
   for (const auto& entry : fs::directory_iterator(captures)) {
     if (entry.path().extension() == ".bvh") motions.push_back(entry.path().string());
   }
+  EXPECT_GT(motions.size(), own) << "no clips in " << captures;
   return motions;
 }
 

@@ -119,6 +119,31 @@ TEST(Pin, AFirmOneHoldsThroughAHeadShake) {
   }
 }
 
+// Head, hair and pin in even flight: no force acts, so that nothing changes but the place.
+TEST(Pin, InEvenFlightItPullsNothing) {
+  const Vec3 flight(3, 0.5, -2);  // m/s, faster than a pin closes in on its target
+  for (const double stiffness : {20.0, double{INFINITY}}) {
+    sim::SimParams params = usualHair();
+    params.gravity = params.air_drag = 0;
+    params.precision = sim::Precision::kDouble;
+    params.tolerance = 1e-8, params.acceleration_tolerance = 0, params.displacement_tolerance = 0;
+    Hair hair(test::combedShape(patch()), params);
+    const std::vector<Vec3> rest = hair.state.positions, roots = hair.roots;
+    for (Vec3& v : hair.state.velocities) v = flight;
+    for (const int column : {2, 9}) hair.pins.push_back({tipOf(hair, column), {}, flight, stiffness});
+    for (int k = 1; k <= 30; ++k) {
+      const Vec3 way = k * kFrame * flight;
+      for (std::size_t c = 0; c < roots.size(); ++c) hair.roots[c] = roots[c] + way;
+      for (PinnedVertex& pin : hair.pins) pin.target = rest[pin.vertex] + way;
+      hair.step(kFrame);
+      for (std::size_t i = 0; i < rest.size(); ++i) {
+        ASSERT_LT((hair.state.positions[i] - rest[i] - way).norm(), 1e-6) << i << " in step " << k;
+        ASSERT_LT((hair.state.velocities[i] - flight).norm(), 1e-4) << i << " in step " << k;
+      }
+    }
+  }
+}
+
 // A stiff spring is as good as a firm hold, and its damper lets it follow without lag.
 TEST(Pin, AStiffSpringFollowsItsTarget) {
   for (const auto integrator : {sim::Integrator::kLinearizedEuler, sim::Integrator::kBdf2}) {

@@ -262,6 +262,30 @@ TEST(TwoLevel, PartsAreSolvedWithoutRemovedDirections) {
   partsAreSolvedWithoutRemovedDirections<double>(1e-12);
 }
 
+// A matrix of other terms, of another time step for one, is another matrix: nothing of the last one's answers it.
+TEST(TwoLevel, OtherTermsMakeAllPartsAnew) {
+  test::PatchOptions o;
+  o.nx = 4, o.nz = 3, o.layers = 11, o.mixed = true;
+  RandomSystem<double> system(o, 93, 200);
+  const std::vector<V3<double>> x = test::plain<double>(system.mesh.shape.positions), r = system.vectors();
+  sim::TwoLevel<double> used(system.mesh);
+  used.update(system.packed, x, {}, {.h = 1.0 / 60, .damping = 0.02, .drag = 1});
+  for (double& value : system.packed.values) value *= 0.3;
+  system.packed.addMass(200, std::vector<double>(system.mesh.vertexCount(), 1));
+  for (const sim::MatrixTerms& terms :
+       {sim::MatrixTerms{.h = 1.0 / 120, .damping = 0.02, .drag = 1}, sim::MatrixTerms{.h = 1.0 / 120, .damping = 0.05},
+        sim::MatrixTerms{.h = 1.0 / 120, .damping = 0.05, .pins = {{3, 20}}}}) {
+    system.packed.addMass(10, std::vector<double>(system.mesh.vertexCount(), 1));
+    used.update(system.packed, x, {}, terms);
+    sim::TwoLevel<double> fresh(system.mesh);
+    fresh.update(system.packed, x, {}, terms);
+    std::vector<V3<double>> one(r.size()), other(r.size());
+    used.apply(r, one);
+    fresh.apply(r, other);
+    EXPECT_EQ((test::stacked<double>(one) - test::stacked<double>(other)).norm(), 0);
+  }
+}
+
 // Contacts that P knows of leave it symmetric and positive, and cost hardly an iteration; those that it does not know
 // of cost about one each.
 TEST(TwoLevel, ContactsItKnowsOfCostFewIterations) {

@@ -157,6 +157,22 @@ TEST(StateBytes, WhatCannotBeRestoredSaysWhyAndChangesNothing) {
   EXPECT_TRUE(sim::sameBits(state, hair.state));
 }
 
+// Bytes that are whole, but of a hand that knows another mesh.
+TEST(StateBytes, ContactsOfVerticesThatAreNotThereAreRefused) {
+  Hair hair(patch(), {});
+  hair.step(kFrame);
+  sim::HairState state = hair.state;
+  for (const int vertex : {-1, hair.mesh.vertexCount()}) {
+    sim::HairState strange = hair.state;
+    strange.contacts.push_back({.vertex = vertex});
+    EXPECT_NE(sim::loadState(hair.mesh, sim::saveState(hair.mesh, strange), state), "") << vertex;
+    EXPECT_TRUE(sim::sameBits(state, hair.state));
+  }
+  sim::HairState touching = hair.state;
+  touching.contacts.push_back({.vertex = hair.mesh.vertexCount() - 1});
+  EXPECT_EQ(sim::loadState(hair.mesh, sim::saveState(hair.mesh, touching), state), "");
+}
+
 // Fields come and go with kStateVersion: when this fails, count it up and enter the new number.
 TEST(StateBytes, TheVersionSpeaksOfTheseFields) {
   Hair hair(patch(), {});

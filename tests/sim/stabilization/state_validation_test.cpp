@@ -228,4 +228,73 @@ TEST(Teleport, CarryingAlongKeepsShapeAndVelocityAgainstTheHead) {
   }
 }
 
+// What a two-step integrator remembers comes along as well: without gravity the next step is the one that would have
+// been taken, moved.
+TEST(Teleport, CarriedHairTakesTheStepThatItWouldHaveTaken) {
+  sim::SimParams params = runningHair();
+  params.integrator = sim::Integrator::kBdf2;
+  Hair hair(test::combedShape(patch()), params);
+  const auto rest = hair.roots;
+  for (int n = 1; n <= 20; ++n) sway(n * kFrame, rest, hair), hair.step(kFrame);
+  // Only the reference may know the way up.
+  hair.params.gravity = 0;
+  Hair stays(test::combedShape(patch()), hair.params);
+  stays.state = hair.state, stays.roots = hair.roots, stays.time = hair.time;
+  stays.step(kFrame);
+  const Eigen::Isometry3d motion = jump(5, 2);
+  sim::carryAlong(Eigen::Isometry3d::Identity(), motion, hair.state);
+  for (Vec3& root : hair.roots) root = motion * root;
+  EXPECT_FALSE(hair.step(kFrame).carried);
+  for (int i = 0; i < hair.mesh.vertexCount(); ++i) {
+    EXPECT_LT((hair.state.positions[i] - motion * stays.state.positions[i]).norm(), 1e-4) << i;
+    EXPECT_LT((hair.state.velocities[i] - motion.linear() * stays.state.velocities[i]).norm(), 1e-2) << i;
+  }
+}
+
+// A body that jumps with the head has the velocity of its jump, and hair that lies on it must not feel it.
+TEST(Teleport, HairOnABodyThatJumpsWithTheHeadStaysOnIt) {
+  sim::Ellipsoid body;
+  body.center = Vec3(0.04, -0.15, -0.05);
+  body.radii = Vec3(0.09, 0.06, 0.05);
+  Hair hair(test::combedShape(patch()), runningHair());
+  hair.bodies = {body};
+  for (int n = 0; n < 60; ++n) hair.step(kFrame);
+  ASSERT_GT(hair.state.contacts.size(), 2u);
+  hair.params.gravity = 0;  // the jump turns it against the hair
+  Hair stays(test::combedShape(patch()), hair.params);
+  stays.state = hair.state, stays.bodies = hair.bodies, stays.time = hair.time;
+  stays.step(kFrame);
+  const Eigen::Isometry3d motion = jump(10, 1);
+  for (Vec3& root : hair.roots) root = motion * root;
+  sim::Ellipsoid& moved = hair.bodies[0];
+  moved.center = motion * body.center;
+  moved.rotation = Eigen::Quaterniond(motion.linear());
+  moved.velocity = (moved.center - body.center) / kFrame;
+  const Eigen::AngleAxisd turn(motion.linear());
+  moved.angular_velocity = turn.axis() * turn.angle() / kFrame;
+  const sim::StepReport report = hair.step(kFrame);
+  EXPECT_TRUE(report.carried);
+  EXPECT_EQ(report.recoveries, 0);
+  for (int i = 0; i < hair.mesh.vertexCount(); ++i)
+    EXPECT_LT((hair.state.positions[i] - motion * stays.state.positions[i]).norm(), 1e-3) << i;
+}
+
+// Points of a plane have two motions that bring them anywhere, of which one is a mirror image.
+TEST(Teleport, AMotionOfFlatRootsIsNoMirrorImage) {
+  for (const double radians : {0.0, 0.4, 2.0, 3.1}) {
+    for (const bool flat : {false, true}) {
+      std::vector<Vec3> from, to;
+      test::Random random(3);
+      const Eigen::Isometry3d motion = jump(2, radians);
+      for (int i = 0; i < 9; ++i) {
+        from.push_back(random.vector(1));
+        if (flat) from.back().y() = 0;
+        to.push_back(motion * from.back());
+      }
+      const Eigen::Isometry3d found = sim::rigidMotion(from, to);
+      EXPECT_LT((found.matrix() - motion.matrix()).cwiseAbs().maxCoeff(), 1e-9) << radians << " " << flat;
+    }
+  }
+}
+
 }  // namespace

@@ -362,8 +362,10 @@ TEST(HairStyles, ValidOnEveryCharacterAtHand) {
   const std::pair<const char*, const char*> files[] = {{"/arcsim/dance.mot", "/arcsim/female-objs"},
                                                        {"/characters/robot.glb", ""},
                                                        {"/mocap/deepmimic_cartwheel.bvh", ""}};
+  int found = 0;
   for (const auto& [motion, parts] : files) {
     if (!std::filesystem::exists(shared + motion)) continue;
+    ++found;
     const app::Character character = app::loadCharacter(shared + motion, *parts ? shared + parts : "");
     const sim::BodyDistance body = app::restBodyDistance(character);
     for (const Style style : kStyles) {
@@ -373,6 +375,7 @@ TEST(HairStyles, ValidOnEveryCharacterAtHand) {
       }
     }
   }
+  EXPECT_GT(found, 0) << "no character in " << shared;
 }
 
 TEST(Scalp, RadiusIsInterpolatedAndPeriodic) {

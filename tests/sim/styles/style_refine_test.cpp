@@ -1,0 +1,47 @@
+// The finer half of a haircut: what it adds lies on the curves that the coarse one samples.
+#include "sim/styles/style_refine.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/analytic_head.h"
+#include "tests/test_meshes.h"
+
+namespace {
+
+using sim::Vec3;
+
+// A column's curve, which four points determine.
+Vec3 curveAt(double layer) {
+  const double t = layer / 8;
+  return {0.03 * t * t - 0.02 * t * t * t, -0.2 * t + 0.05 * t * t, 0.01 * t + 0.04 * t * t * t};
+}
+
+TEST(RefinedStyle, AddsPointsOfTheSameCurves) {
+  test::PatchOptions o;
+  o.nx = 3, o.nz = 2, o.layers = 9;
+  sim::HairMeshShape coarse = test::patchShape(o);
+  std::vector<Vec3> roots;
+  for (int c = 0; c < coarse.columnCount(); ++c) {
+    roots.push_back(coarse.positions[coarse.column_first[c]]);
+    for (int l = 0; l < coarse.columnLength(c); ++l)
+      coarse.positions[coarse.column_first[c] + l] = roots[c] + curveAt(l);
+  }
+  const sim::HairMeshShape fine = sim::refined(coarse, tests::analyticScalp());
+  ASSERT_GT(fine.columnCount(), coarse.columnCount());
+  int added = 0;
+  for (int c = 0; c < fine.columnCount(); ++c) {
+    const Vec3* x = &fine.positions[fine.column_first[c]];
+    ASSERT_EQ(fine.columnLength(c), 17);
+    // Layers of the coarse mesh and, between inner ones, points of the cubic; a straight step at both ends.
+    const Vec3 root = c < coarse.columnCount() ? roots[c] : Vec3(x[2] - curveAt(1));
+    for (int l = c < coarse.columnCount() ? 0 : 2; l < 17; ++l) {
+      const bool end = l == 1 || l == 15;
+      const Vec3 expected = end ? Vec3(0.5 * (curveAt(l / 2) + curveAt(l / 2 + 1))) : curveAt(0.5 * l);
+      EXPECT_LT((x[l] - root - expected).norm(), 1e-12) << "column " << c << ", layer " << l;
+      added += l % 2;
+    }
+  }
+  EXPECT_GT(added, 100);
+}
+
+}  // namespace
