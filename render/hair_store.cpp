@@ -76,9 +76,6 @@ long uploadScattering(HairScattering& hair) {
   return static_cast<long>(scattering.table.size() * sizeof(float));
 }
 
-// Hairs lie in clumps and light passes between those, so shadows are as if half the hairs were strewn evenly.
-constexpr float kClumpedShare = 0.5f;
-
 // Summed projected diameter (m) of the hairs that the drawn strands stand for.
 float representedWidth(const HairLook& look, int strands) {
   return 2 * look.strand_radius * 0.5f * (1 + look.taper) *
@@ -92,7 +89,7 @@ long uploadBlock(HairResources& hair) {
   const Float3 widths = lobeWidths(look.beta_m);
   shared::HairBlock block{};
   block.width = {look.strand_radius * std::pow(represented, look.width_compensation), look.taper,
-                 kClumpedShare * representedWidth(look, hair.strands) / strands, look.least_pixels};
+                 representedWidth(look, hair.strands) / strands, look.least_pixels};
   block.shape = {look.length_variation, look.offset, look.curl_radius, look.curl_turns};
   block.clumping = {look.clump, look.clump_size, look.frizz, look.flyaways};
   block.lobe_width = {widths[0], widths[1], widths[2], look.cuticle_angle};

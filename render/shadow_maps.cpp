@@ -55,7 +55,7 @@ float firstThickness(const LightFrustum& frustum, const LightInput& light) {
     sum += thickness;
     thickness *= shared::kLayerGrowth;
   }
-  return std::max(0.45f * std::hypot(frustum.side, frustum.depth) / sum, 1e-4f);
+  return std::max(0.25f * std::hypot(frustum.side, frustum.depth) / sum, 1e-4f);
 }
 
 // Texels of a tile's side for every pixel of the hair, while there is room. More cost memory, and the picture came no

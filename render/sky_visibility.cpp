@@ -13,12 +13,12 @@ namespace {
 
 using Eigen::Vector3f;
 
-// Light finds its way between clumps: far less is stopped than by hairs strewn evenly.
-constexpr float kClumpGaps = 0.3f;
-constexpr float kHeadDepth = 6.0f;   // optical depth of a ray through the head's middle; softened at its rim
-constexpr float kBackReach = 0.04f;  // m: light comes back from as far behind a strand; as in shadow.glsl
-constexpr float kSpacing = 0.012f;   // m between the points that stand for a prism's hair
-constexpr int kMaxPoints = 6;        // of them along a prism's height
+// Light finds its way between clumps that the lattice doesn't resolve: less is stopped than by hairs strewn evenly.
+// Held to traced light; see docs/picture.md.
+constexpr float kClumpGaps = 0.4f;
+constexpr float kHeadDepth = 6.0f;  // optical depth of a ray through the head's middle; softened at its rim
+constexpr float kSpacing = 0.012f;  // m between the points that stand for a prism's hair
+constexpr int kMaxPoints = 6;       // of them along a prism's height
 
 Vector3f vertexAt(std::span<const float> positions, int vertex) {
   return Vector3f(positions[3 * vertex], positions[3 * vertex + 1], positions[3 * vertex + 2]);
@@ -155,13 +155,13 @@ void SkyVisibility::lookTowards(const Vector3f& direction) {
 
 // Hair alone: the head sends little back.
 float SkyVisibility::depthBehind(const Vector3f& from, const Vector3f& to_light) const {
-  constexpr int kSteps = 3;
-  constexpr float kStep = kBackReach / kSteps;
+  constexpr int kSteps = 2;
+  const float step_length = shared::kBackReach / kSteps;
   float depth = 0;
   for (int step = 0; step < kSteps; ++step) {
-    const Vector3f at = from - (static_cast<float>(step) + 0.5f) * kStep * to_light;
+    const Vector3f at = from - (static_cast<float>(step) + 0.5f) * step_length * to_light;
     if ((at - head_center_).norm() < head_.radius) break;
-    depth += kStep * grid_.density(at);
+    depth += step_length * grid_.density(at);
   }
   return depth;
 }

@@ -34,6 +34,7 @@ const int kVertexTexels = 3;  // position + sky visibility, du + depths along fi
 // from it as a share of kDeepest behind it.
 const float kDepthSteps = 128.0;
 const float kDeepest = 32.0;
+const float kBackReach = 0.012;  // m: light comes back from hair as far behind a strand
 const int kFaceTexels = 3;    // first vertices; columns; layers, first strand, end strand, 1 / area
 const int kTableTexels = 1;   // end strand, face, segments a layer (0: the hair's), first strand
 const int kColumnTexels = 3;  // rest position + last layer of the shortest bundle around, rest axis u, rest axis v

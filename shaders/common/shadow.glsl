@@ -8,8 +8,6 @@ layout(binding = kUnitHairDepth) uniform sampler2DArray hair_depth;
 layout(binding = kUnitBodyInHairDepth) uniform sampler2DArrayShadow body_in_hair_depth;
 layout(binding = kUnitBodyDepth) uniform sampler2DArrayShadow body_depth;
 
-const float kBackReach = 0.04;  // m: light comes back from as far behind a strand
-
 // Light-space texture coordinates and depth of a world point in hair shadow map `map`; outside of [0, 1] where not
 // covered.
 vec3 hairShadowCoordinates(int map, vec3 world) {

@@ -12,20 +12,18 @@
 #include "render/fiber_scattering.h"
 #include "render/hair_layout.h"
 #include "render/hair_store.h"
-#include "render/render_target.h"
-#include "render/shader.h"
 #include "render/sky_visibility.h"
-#include "render/strand_draw.h"
 #include "shaders/shared.h"
 #include "tests/gl_fixture.h"
+#include "tests/strand_capture.h"
 #include "tests/strand_reference.h"
 #include "tests/synthetic_hair.h"
 
 namespace {
 
 using Eigen::Vector3f;
+using strand_capture::Polyline;
 using strand_reference::Reference;
-using Polyline = std::vector<Vector3f>;
 
 render::HairLook plainLook() {
   render::HairLook look;
@@ -43,47 +41,7 @@ class StrandCapture : public gl_fixture::GlTest {
  protected:
   // Every strand's points, in the order of the strands.
   std::vector<Polyline> capture(const render::HairInput& input) {
-    static const render::ShaderProgram program(
-        gl_fixture::kShaderDir, {{"strand.vert", "strand_shadow.geom"}, {"CAPTURE_POINTS"}, {"captured"}});
-    render::HairStore store;
-    store.update({&input, 1}, render::LightInput{});
-    render::HairResources& hair = store.hairs()[0];
-    render::HairDraw draw;
-    draw.segments = hair.segments;
-    render::HairStore::bind(hair, draw);
-    render::Buffer frame = render::makeBuffer(), result = render::makeBuffer();
-    glNamedBufferStorage(frame.id(), sizeof(render::shared::FrameBlock), nullptr, 0);
-    glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame.id());
-    const std::size_t most = static_cast<std::size_t>(hair.strandCount(draw)) * hair.pointsPerStrand(draw) * 2;
-    glNamedBufferStorage(result.id(), static_cast<GLsizeiptr>(most * 16), nullptr, 0);
-    glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, result.id());
-    render::VertexArray none = render::makeVertexArray();
-    render::Query query = render::makeQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
-    // A context without a surface draws nothing, not even into a feedback buffer, until a complete framebuffer is
-    // bound.
-    render::ImageTarget target;
-    target.prepare(4, 4);
-    glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer());
-    glBindVertexArray(none.id());
-    program.use();
-    glEnable(GL_RASTERIZER_DISCARD);
-    glBeginQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN, query.id());
-    glBeginTransformFeedback(GL_LINES);
-    render::issueStrands(hair, draw, render::StrandPath::kGeometry, {GL_LINE_STRIP, 1});
-    glEndTransformFeedback();
-    glEndQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
-    glDisable(GL_RASTERIZER_DISCARD);
-    GLuint segments = 0;
-    glGetQueryObjectuiv(query.id(), GL_QUERY_RESULT, &segments);
-    std::vector<Eigen::Vector4f> points(segments * 2);
-    glGetNamedBufferSubData(result.id(), 0, static_cast<GLsizeiptr>(points.size() * 16), points.data());
-    std::vector<Polyline> strands(static_cast<std::size_t>(input.strands));
-    for (std::size_t i = 0; i < points.size(); i += 2) {
-      Polyline& strand = strands.at(static_cast<std::size_t>(points[i].w()));
-      if (strand.empty()) strand.push_back(points[i].head<3>());
-      strand.push_back(points[i + 1].head<3>());
-    }
-    return strands;
+    return strand_capture::capture(input, gl_fixture::kShaderDir);
   }
 };
 
