@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "sim/forces/model.h"
+#include "sim/forces/rest_balance.h"
 #include "tests/test_meshes.h"
 
 namespace {
@@ -310,6 +311,19 @@ TEST(VolumeForce, AFlattenedOrInvertedTetrahedronFlowsBackToItsVolume) {
   }
 }
 
+// Forces at the styled pose against the weight there, as a share of it.
+double imbalance(const sim::HairMesh& mesh, const ForceModel<double>& model, const sim::SimParams& params) {
+  const auto force = forceAt(model, mesh.shape.positions);
+  double residual = 0, weight = 0;
+  for (int i = 0; i < mesh.vertexCount(); ++i) {
+    if (mesh.isRoot(i)) continue;
+    const Vec3 gravity(0, -params.density * mesh.vertex_volume[i] * params.gravity, 0);
+    residual += (test::eigen(force[i]) + gravity).squaredNorm();
+    weight += gravity.squaredNorm();
+  }
+  return std::sqrt(residual / weight);
+}
+
 TEST(SagFree, TheStyledPoseCarriesItsWeight) {
   test::PatchOptions hanging, initial_overlap;
   hanging.mixed = hanging.uneven = true;
@@ -319,19 +333,28 @@ TEST(SagFree, TheStyledPoseCarriesItsWeight) {
     const sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(o));
     const sim::SimParams params = test::tautHair();
     const ForceModel<double> model = sim::makeForceModel(mesh, sim::systemPattern(mesh), params);
-    const auto force = forceAt(model, mesh.shape.positions);
-    double residual = 0, weight = 0;
-    for (int i = 0; i < mesh.vertexCount(); ++i) {
-      if (mesh.isRoot(i)) continue;
-      const Vec3 gravity(0, -params.density * mesh.vertex_volume[i] * params.gravity, 0);
-      residual += (test::eigen(force[i]) + gravity).squaredNorm();
-      weight += gravity.squaredNorm();
-    }
-    std::printf("relative residual of the balance: %.1e\n", std::sqrt(residual / weight));
-    EXPECT_LT(std::sqrt(residual / weight), 1e-9);
+    const double residual = imbalance(mesh, model, params);
+    std::printf("relative residual of the balance: %.1e\n", residual);
+    EXPECT_LT(residual, 1e-9);
     const ForceModel<double> slack = sim::makeForceModel(mesh, sim::systemPattern(mesh), withoutSagFree());
     EXPECT_LT(largest(forceAt(slack, mesh.shape.positions)), 1e-9) << "without it the styled pose is free of force";
   }
+}
+
+// While a slider is dragged the balance follows by products: stiffness times shift, and load, keep it exact.
+TEST(SagFree, TheStyledPoseCarriesItsWeightWhileStiffnessAndWeightFollow) {
+  const sim::HairMesh mesh = combedMesh();
+  const BlockPattern pattern = sim::systemPattern(mesh);
+  sim::SimParams params = test::tautHair();
+  sim::Material material(mesh, pattern);
+  material.set(params);
+  EXPECT_LT(imbalance(mesh, material.model, params), 1e-9);
+  params.bend *= 1.7, params.stretch_along *= 0.6, params.volume *= 1.3, params.shear *= 2;
+  material.follow(params);
+  EXPECT_LT(imbalance(mesh, material.model, params), 1e-9) << "other stiffnesses";
+  params.density *= 1.2, params.gravity *= 0.5;
+  material.follow(params);
+  EXPECT_LT(imbalance(mesh, material.model, params), 1e-9) << "another weight";
 }
 
 }  // namespace
