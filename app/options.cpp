@@ -148,6 +148,11 @@ void addPlaybackOptions(CLI::App& parser, Options& options) {
              "chosen by the governor; 0: off")
       ->check(within(0, kLargestBudget));
   group
+      .value("--deadline-ms", options.deadline_ms, "X",
+             "Let the simulation of no frame take more than so many milliseconds, by counted work: steps, iterations "
+             "and corrections beyond are left out; 0: no deadline")
+      ->check(within(0, kLargestBudget));
+  group
       .value("--loop", options.loop, "NAME",
              "At the clip's end: go-on (from where the figure is), in-place, stop, none (begin again without a blend), "
              "or auto: whichever of the first two suits the clip")

@@ -160,6 +160,7 @@ Scene sceneFromOptions(const Options& given) {
   if (options.strand_path == "geometry") scene.look.view.strand_path = render::StrandPath::kGeometry;
   if (options.speed >= 0) scene.playback.speed = options.speed;
   if (options.budget_ms >= 0) scene.playback.budget_ms = options.budget_ms;
+  if (options.deadline_ms >= 0) scene.playback.deadline_ms = options.deadline_ms;
   if (options.fps > 0) scene.playback.fps = options.fps;
   if (!options.camera.empty()) setCamera(options.camera, scene.camera);
   if (!options.framing.empty()) scene.camera.framing = options.framing;

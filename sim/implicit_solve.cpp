@@ -262,6 +262,7 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
       scratch.deflation = {};  // not all of it lies within what is free now
     }
     const int before = total.iterations;
+    stop.max_iterations = std::max(1, params.max_iterations - before);
     total = params.solver == Solver::kPaper ? run(block_jacobi, start) : run(two_level, start);
     total.iterations += before;
     const auto reactionAt = [&](int i) { return Vec3(widen<T>(trial[i] - rhs[i] - scratch.r[i]) / base.h); };
@@ -322,6 +323,7 @@ void ImplicitSolver<T>::solve(const HairMesh& mesh, const SimParams& params, con
     assembleMatrix(at, {}, of);
     return matrix;
   });
+  const int factors = two_level.made_factors, coarse_spaces = two_level.made_coarse;
   noteTerms(params, base);
   beginStep(params, base, velocities, contacts);
   place(base, linearized ? std::span<const V3<T>>() : std::span<const V3<T>>(v));
@@ -331,6 +333,10 @@ void ImplicitSolver<T>::solve(const HairMesh& mesh, const SimParams& params, con
   memory.unfinished = !linear.converged;
   ++report.solves;
   report.solver_iterations += linear.iterations;
+  report.work += {.solves = 1,
+                  .iterations = linear.iterations,
+                  .factors = two_level.made_factors - factors,
+                  .coarse_spaces = two_level.made_coarse - coarse_spaces};
   report.residual = linear.relative_residual;
   report.residual_acceleration = linear.residual_acceleration;
   report.pin_force = largestReaction(base);

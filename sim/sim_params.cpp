@@ -131,7 +131,7 @@ std::vector<ParamField> makeTable() {
       field<&P::tolerance>("tolerance", "Numerics", "", {1e-12, 0.1, kLog},
                            "Relative residual at which the linear solver stops."),
       field<&P::max_iterations>("max_iterations", "Numerics", "", {10, 5000, kLog},
-                                "Iterations after which the linear solver stops in any case."),
+                                "Iterations of the linear solver after which a step ends in any case."),
       field<&P::acceleration_tolerance>(
           "acceleration_tolerance", "Numerics", "m/s^2", {1e-9, 0.1, kLog},
           "A linear solve also stops when no vertex's residual, as an acceleration, exceeds this."),

@@ -186,8 +186,9 @@ void integratePositions(const StepInput& input, const StepBase& base, double dt,
   placePinned(parts.pins, state);
 }
 
-Colliders collidersOf(const SimParams& params, const StepInput& input) {
-  return {input.ellipsoids, params.collider == ColliderKind::kSdf ? input.parts : std::span<const BodySdf>()};
+Colliders collidersOf(const SimParams& params, const StepInput& input, Parts& parts) {
+  return {input.ellipsoids, params.collider == ColliderKind::kSdf ? input.parts : std::span<const BodySdf>(),
+          &parts.correction.points};
 }
 
 TakenStep takenStep(const SimParams& params, const StepBase& base, double dt, const Parts& parts) {
@@ -214,6 +215,7 @@ void partBundles(const CorrectedStep& step, std::optional<SelfContact>& made, Pa
 // Kinetic, elastic and gravitational energy, and that of the wind's push on hair that does not move (J).
 double energyOf(const SimParams& params, const Vec3& wind, const HairState& state, Parts& parts) {
   parts.plain_positions.resize(state.positions.size());
+  ++parts.stabilization.energy_limit.energies;
   double energy = 0;
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
     const Vec3 &x = state.positions[i], &v = state.velocities[i];
@@ -241,16 +243,27 @@ void advanceReference(const SimParams& params, const StepInput& input, double dt
   if (memory.rest.kept_apart)
     partBundles({mesh, params, {}, parts.start_positions, dt}, parts.reference_contact, parts, reference, own);
   for (const double seconds : own.seconds) report.seconds[kStageOther] += seconds;
+  report.work += own.work;
 }
 
 SimParams limited(const HairMesh& mesh, const SimParams& asked, const Parts& parts) {
   return parts.stabilization.nets.parameter_limits ? limitedParameters(mesh, asked) : asked;
 }
 
+// Counts start anew, within the budget `max_work` (StepInput).
+void limitWork(double max_work, Parts& parts, SimParams& params) {
+  const WorkBounds bounds = boundsWithin(parts.mesh->vertexCount(), max_work);
+  params.max_iterations = std::min(params.max_iterations, bounds.iterations);
+  limitCorrectionWork(bounds, parts.correction);
+  parts.stabilization.energy_limit.energies = 0;
+}
+
 // Starts the clock and brings what is derived from mesh and parameters up to date. Returns the step's parameters.
-SimParams beginStep(const HairMesh& mesh, const SimParams& asked, Parts& parts, HairState& state, StepReport& report) {
+SimParams beginStep(const HairMesh& mesh, const SimParams& asked, double max_work, Parts& parts, HairState& state,
+                    StepReport& report) {
   parts.clock.start();
-  const SimParams params = limited(mesh, asked, parts);
+  SimParams params = limited(mesh, asked, parts);
+  limitWork(max_work, parts, params);
   parts.stabilization.active = params.solver == Solver::kPaper ? kAsPublished : parts.stabilization.nets;
   sizeMemory(mesh, state.memory);
   state.contacts.reserve(static_cast<std::size_t>(kMaxTouches) * mesh.vertexCount());
@@ -276,6 +289,10 @@ void endStep(const TakenStep& taken, const StepInput& input, Parts& parts, HairS
   finishStep(taken, std::cref(advance_reference), std::cref(energy), parts.stabilization, state);
   parts.clock.spent(kStageOther, report);
   report.contacts = static_cast<int>(state.contacts.size());
+  report.work += {.energies = parts.stabilization.energy_limit.energies,
+                  .minimizations = parts.correction.minimizations,
+                  .surface_points = parts.correction.points};
+  report.work_units = workUnits(taken.mesh.vertexCount(), report.work);
 }
 
 }  // namespace
@@ -286,9 +303,9 @@ StepReport advance(const HairMesh& mesh, const SimParams& asked, const StepInput
   Parts& parts = context.parts();
   StepReport report;
   // Context: derived values follow the parameters, contacts follow the bodies.
-  SimParams params = beginStep(mesh, asked, parts, state, report);
+  SimParams params = beginStep(mesh, asked, given.max_work, parts, state, report);
   const StepInput input = admitState(mesh, parts.material.model, given, dt, params, parts.stabilization, state, report);
-  const CorrectedStep step{mesh, params, collidersOf(params, input), rememberStart(state, parts), dt};
+  const CorrectedStep step{mesh, params, collidersOf(params, input, parts), rememberStart(state, parts), dt};
   carryContacts(step.colliders, params, dt, state);
   // Roots and pins.
   holdPins(input, dt, parts, state, report);
@@ -297,6 +314,7 @@ StepReport advance(const HairMesh& mesh, const SimParams& asked, const StepInput
   parts.clock.spent(kStageOther, report);
   // Forces (1), (2) and Hessians; implicit solve by Modified PCG (BW 16).
   solveVelocities(params, base, state.memory.solve, parts, state, report);
+  report.solve_cut = !report.converged && params.max_iterations < asked.max_iterations;
   integratePositions(input, base, dt, mesh, parts, state);
   const TakenStep taken = takenStep(params, base, dt, parts);
   stabilize(taken, input, report.converged, parts.stabilization, state, report);

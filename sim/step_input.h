@@ -1,6 +1,7 @@
 // What happens around the hair during a step.
 #pragma once
 
+#include <cmath>
 #include <span>
 
 #include "sim/contact/colliders.h"
@@ -16,6 +17,7 @@ struct StepInput {
   double time = 0;                        // s, of the step's end (gusts are a function of it)
   std::span<const BodySdf> parts{};       // the same body as signed distances, for ColliderKind::kSdf; may be none
   std::span<const PinnedVertex> pins{};   // vertices drawn to points that move with joints, the scalp or not at all
+  double max_work = INFINITY;             // workUnits (step_work.h) that the step should keep within
 };
 
 }  // namespace sim

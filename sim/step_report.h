@@ -5,6 +5,7 @@
 
 #include "sim/skip_count.h"
 #include "sim/stabilization/state_validation.h"
+#include "sim/step_work.h"
 
 namespace sim {
 
@@ -35,6 +36,10 @@ struct StepReport {
   double pin_force = 0;              // N, largest
   SkipCount force_kinds;             // kinds of force that have no stiffness, of all
   SkipCount collider_tests;          // of a vertex with a collider, all searches: those that lay out of reach
+  StepWork work;                     // all that was counted
+  double work_units = 0;             // workUnits of it
+  bool solve_cut = false;            // iterations ended at StepInput::max_work, not at the tolerance
+  bool corrections_cut = false;      // corrections ended early: nothing is inside a body, nothing else followed
 };
 
 struct StageClock {

@@ -28,7 +28,7 @@ struct AskName {
   std::string_view name;
 };
 // What can be recorded: all but the requests that write files.
-constexpr std::array<AskName, 25> kAskNames{{{Ask::kSetParam, "set"},
+constexpr std::array<AskName, 26> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kPause, "pause"},
                                              {Ask::kPauseMotion, "pause-motion"},
                                              {Ask::kSingleStep, "single-step"},
@@ -52,6 +52,7 @@ constexpr std::array<AskName, 25> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kFollow, "follow"},
                                              {Ask::kDebugView, "debug-view"},
                                              {Ask::kBudget, "budget"},
+                                             {Ask::kDeadline, "deadline"},
                                              {Ask::kSkip, "skip"}}};
 
 std::string_view nameOf(Ask what) {
@@ -268,7 +269,7 @@ double Tape::turn(int frame, double seconds, Demo& demo) {
   }
   ++turns_;
   // The clock does not repeat itself.
-  if (replay_ || record_) demo.governor.counted = true;
+  if (replay_ || record_) demo.governor.counted = demo.deadline.counted = true;
   return seconds;
 }
 

@@ -78,12 +78,13 @@ CameraSpec readCamera(const JsonPlace& place) {
 }
 
 PlaybackSpec readPlayback(const JsonPlace& place) {
-  place.expectObject({"speed", "fps", "settle", "budget_ms"});
+  place.expectObject({"speed", "fps", "settle", "budget_ms", "deadline_ms"});
   PlaybackSpec playback;
   if (place.has("speed")) playback.speed = place.at("speed").number(0, kFastestPlayback);
   if (place.has("fps")) playback.fps = place.at("fps").number(kSlowestFps, kFastestFps);
   if (place.has("settle")) playback.settle = place.at("settle").number(0, 10);
   if (place.has("budget_ms")) playback.budget_ms = place.at("budget_ms").number(0, kLargestBudget);
+  if (place.has("deadline_ms")) playback.deadline_ms = place.at("deadline_ms").number(0, kLargestBudget);
   return playback;
 }
 
@@ -174,7 +175,8 @@ std::string writeScene(const Scene& scene) {
                       {{"speed", scene.playback.speed},
                        {"fps", scene.playback.fps},
                        {"settle", scene.playback.settle},
-                       {"budget_ms", scene.playback.budget_ms}}}};
+                       {"budget_ms", scene.playback.budget_ms},
+                       {"deadline_ms", scene.playback.deadline_ms}}}};
   return text.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 

@@ -210,7 +210,7 @@ sim::StepInput stepInput(const sim::SimParams& params, double step, double time,
     posePartDistances(body.parts, actor.pose, actor.previous_pose, step, actor.parts);
   }
   posePins(actor.pins, actor.pose, actor.previous_pose, time, step, actor.pinned);
-  return {actor.roots, actor.ellipsoids, time, actor.parts, actor.pinned};
+  return {actor.roots, actor.ellipsoids, time, actor.parts, actor.pinned, actor.max_work};
 }
 
 }  // namespace
@@ -432,6 +432,7 @@ sim::StepReport stepActor(const sim::SimParams& params, double step, double time
 
 void settleActor(const sim::SimParams& params, double seconds, Actor& actor) {
   wakeAll(actor);
+  actor.max_work = INFINITY;
   sim::SimParams thick = params;
   thick.air_drag = std::max(params.air_drag, kSettlingDrag);
   thick.wind_x = thick.wind_y = thick.wind_z = 0;

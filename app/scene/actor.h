@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <cstdint>
 #include <future>
 #include <memory>
@@ -128,13 +129,14 @@ struct Actor {
   CoarseHair coarse;
   sim::SleepState sleep;  // of all the hair; its parts' when there are several
   std::vector<PartHair> part_hairs;
-  int span = 1, ahead = 0;   // steps that the last step covered; those of them that the clock has yet to take
-  std::uint64_t steps = 0;   // of the clock; begins anywhere, so that long steps of a crowd spread over the frames
-  double posed_time = -1;    // s, clip time of `pose`
-  bool pose_still = false;   // pose and previous pose are one
-  bool unseen = false;       // was not stepped last time
-  bool shown_still = false;  // what is shown is what there is
-  double usual_step = 0;     // s, a step's cost of late
+  int span = 1, ahead = 0;     // steps that the last step covered; those of them that the clock has yet to take
+  std::uint64_t steps = 0;     // of the clock; begins anywhere, so that long steps of a crowd spread over the frames
+  double posed_time = -1;      // s, clip time of `pose`
+  bool pose_still = false;     // pose and previous pose are one
+  bool unseen = false;         // was not stepped last time
+  bool shown_still = false;    // what is shown is what there is
+  double usual_step = 0;       // s, a step's cost of late
+  double max_work = INFINITY;  // units of the next step, see deadline.h
 
   // What the picture shows; positions and matrices relative to the picture's origin.
   Pose shown_pose;

@@ -182,6 +182,12 @@ void setBudget(const Request& request, Demo& demo) {
   setBudget(1e-3 * budget, demo.governor);
 }
 
+void setDeadline(const Request& request, Demo& demo) {
+  double& deadline = demo.scene.playback.deadline_ms;
+  deadline = std::isfinite(request.value) ? std::clamp(request.value, 0.0, kLargestBudget) : 0;
+  demo.deadline.seconds = 1e-3 * deadline;
+}
+
 void savePreset(const Request& request, Demo& demo) {
   writeFile(request.text,
             writePreset(stem(request.text), demo.scene.sim, selectedActor(demo).spec.look, demo.scene.look));
@@ -245,6 +251,7 @@ constexpr Action kActions[] = {
     {Ask::kFollow, [](const Request& request, Demo& demo) { demo.camera.follow = request.value != 0; }},
     {Ask::kDebugView, setDebugView},
     {Ask::kBudget, setBudget},
+    {Ask::kDeadline, setDeadline},
     {Ask::kSkip, switchSkip},
     {Ask::kScreenshot,
      [](const Request& request, Demo& demo) {

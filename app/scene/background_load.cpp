@@ -141,6 +141,7 @@ void replaceScene(Demo fresh, Demo& demo) {
   fresh.capture = demo.capture;
   fresh.picture_height = demo.picture_height;
   fresh.governor.counted = demo.governor.counted;
+  fresh.deadline.counted = demo.deadline.counted;
   fresh.loading = std::move(demo.loading);
   fresh.requests = std::move(demo.requests);
   fresh.message = "scene " + fresh.scene.name;

@@ -14,14 +14,26 @@ namespace {
 // How many steps the frame takes: the clock's, or those asked for one by one.
 int stepsToTake(double seconds, Demo& demo) {
   const sim::SimParams& params = demo.running;
-  if (!demo.paused) return tick(seconds, params.time_step, params.max_steps_per_frame, demo.clock);
+  const int most = affordableSteps(params.max_steps_per_frame, demo.deadline);
+  if (!demo.paused) return tick(seconds, params.time_step, most, demo.clock);
   const int steps = std::exchange(demo.single_steps, 0);
   stepSingly(steps, params.time_step, demo.clock);
   return steps;
 }
 
-void moveActors(double time, Demo& demo) {
-  for (Actor& actor : demo.actors) stepInDetail(time, demo, actor);
+// Takes one of the frame's steps, with so many more to come.
+void moveActors(double time, int more, Demo& demo) {
+  long all = 0;
+  for (const Actor& actor : demo.actors) all += actor.haircut->mesh.vertexCount();
+  long to_come = (1 + more) * all;
+  for (Actor& actor : demo.actors) {
+    const int vertices = actor.haircut->mesh.vertexCount();
+    actor.max_work = workOfStep(vertices, to_come, demo.deadline);
+    to_come -= vertices;
+    const double before = demo.stats.work_units;
+    stepInDetail(time, demo, actor);
+    if (demo.deadline.seconds > 0) demo.deadline.left -= demo.stats.work_units - before;
+  }
 }
 
 // What the frame cost and how far it strayed, to the governor.
@@ -185,6 +197,9 @@ void addStep(const sim::StepReport& report, double step_seconds, FrameStats& sta
   stats.residual = std::max(stats.residual, report.residual);
   stats.residual_acceleration = std::max(stats.residual_acceleration, report.residual_acceleration);
   stats.converged = stats.converged && report.converged;
+  stats.work_units += report.work_units;
+  stats.solves_cut += report.solve_cut;
+  stats.corrections_cut += report.corrections_cut;
   stats.contacts += report.contacts;
   stats.corrected += report.corrected;
   stats.recoveries += report.recoveries;
@@ -230,6 +245,7 @@ Demo openScene(Scene scene, double aspect, bool beside) {
   followColliders(demo);
   demo.running = demo.scene.sim;
   setBudget(1e-3 * demo.scene.playback.budget_ms, demo.governor);
+  demo.deadline.seconds = 1e-3 * demo.scene.playback.deadline_ms;
   const double settle = demo.scene.playback.settle;
   settleActor(demo.scene.sim, settle, demo.actors.front());
   demo.camera = makeCamera(demo.scene.camera, demo.actors.front(), aspect);
@@ -275,7 +291,8 @@ void advanceFrame(Demo& demo, double seconds, const FrameTarget& target) {
   const int steps = stepsToTake(seconds, demo);
   count(demo.paused && steps == 0, demo.stats.always[kPausedFrame]);
   if (steps > 0) chooseDetail(demo);
-  for (int i = 1; i <= steps; ++i) moveActors(demo.clock.time - (steps - i) * demo.running.time_step, demo);
+  for (int i = 1; i <= steps; ++i) moveActors(demo.clock.time - (steps - i) * demo.running.time_step, steps - i, demo);
+  observeWork(steps, demo.stats.work_units, demo.stats.simulation(), demo.deadline);
   updateGovernor(seconds, steps, demo);
   showFault(demo);
 

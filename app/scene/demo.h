@@ -11,6 +11,7 @@
 #include "app/scene/actor.h"
 #include "app/scene/background_load.h"
 #include "app/scene/camera.h"
+#include "app/scene/deadline.h"
 #include "app/scene/debug_views.h"
 #include "app/scene/frame_stats.h"
 #include "app/scene/governor.h"
@@ -41,6 +42,7 @@ struct Demo {
   DebugViews debug;
   FixedClock clock;
   Governor governor;
+  Deadline deadline;
   sim::SimParams running;  // the scene's parameters as the governor lets them run
   long frames = 0;         // shown since the scene began
   double shown_time = 0;   // s

@@ -39,8 +39,8 @@ template <class A>
 auto savedOf(A& actor) requires std::same_as<std::remove_const_t<A>, Actor> {
   auto& [id, spec, body, haircut, scalp, clip, playback, reach, jumped, pose, previous_pose, hair, previous_positions,
          ellipsoids, parts, roots, pins, pinned, context, last_report, error_meter, detail, coarse, sleep, part_hairs,
-         span, ahead, steps, posed_time, pose_still, unseen, shown_still, usual_step, shown_pose, shown_positions,
-         joint_matrices, layout_revision, position_revision, pose_revision] = actor;
+         span, ahead, steps, posed_time, pose_still, unseen, shown_still, usual_step, max_work, shown_pose,
+         shown_positions, joint_matrices, layout_revision, position_revision, pose_revision] = actor;
   auto& [step_span, coarse_mesh, seen] = detail;
   return std::tuple_cat(savedOf(playback),
                         std::tie(jumped, pose.world, previous_pose.world, previous_positions, ellipsoids, roots, pinned,
@@ -51,8 +51,8 @@ auto savedOf(A& actor) requires std::same_as<std::remove_const_t<A>, Actor> {
 template <class D>
 auto savedOf(D& demo) requires std::same_as<std::remove_const_t<D>, Demo> {
   auto& [scene, asset_cache, actors, selected, camera, aspect, picture_height, origin, shown_fraction, debug, clock,
-         governor, running, frames, shown_time, paused, single_steps, loading, requests, message, message_is_fault,
-         capture, stats, history, history_next, debug_geometry, hair_inputs, body_inputs] = demo;
+         governor, deadline, running, frames, shown_time, paused, single_steps, loading, requests, message,
+         message_is_fault, capture, stats, history, history_next, debug_geometry, hair_inputs, body_inputs] = demo;
   auto& [ahead, lost, steps, time, step] = clock;
   return std::tie(camera.anchor, camera.jumped, aspect, picture_height, origin, shown_fraction, ahead, lost, steps,
                   time, step, frames, shown_time, paused);
@@ -249,6 +249,7 @@ std::string demoStateBytes(const Demo& demo) {
   sim::writeBytes(savedOf(demo), body);
   sim::writeBytes(viewOf(demo.camera), body);
   sim::writeBytes(demo.governor, body);
+  sim::writeBytes(demo.deadline, body);
   sim::writeBytes(Head{body.size(), sim::fingerprint(body)}, head);
   std::string text = std::string(kTitle) + std::to_string(kDemoStateVersion) + "\n";
   for (const sim::Bytes& bytes : {head, body}) text.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -274,6 +275,7 @@ void loadDemoState(const std::string& file, bool keep_view, Demo& demo) {
   auto view = viewOf(saved.camera);
   sim::readBytes(from, view);
   sim::readBytes(from, saved.governor);
+  sim::readBytes(from, saved.deadline);
   const Governor& governor = saved.governor;
   const auto known = [](int rung) { return rung >= 0 && rung < static_cast<int>(ladder().size()); };
   if (!from.complete || !from.left.empty() || saved.frames < 0 || !known(governor.rung) || !known(governor.left_rung) ||
@@ -287,6 +289,11 @@ void loadDemoState(const std::string& file, bool keep_view, Demo& demo) {
     const bool counted = demo.governor.counted;
     demo.governor = governor;
     demo.governor.counted = counted;
+  }
+  if (saved.deadline.seconds == demo.deadline.seconds) {
+    const bool counted = demo.deadline.counted;
+    demo.deadline = saved.deadline;
+    demo.deadline.counted = counted;
   }
   for (std::size_t i = 0; i < actors.size(); ++i) install(std::move(actors[i]), demo.origin, demo.actors[i]);
 }

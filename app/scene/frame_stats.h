@@ -39,6 +39,8 @@ struct FrameStats {
   int solver_iterations = 0, solves = 0, minimization_iterations = 0;
   double residual = 0, residual_acceleration = 0;  // largest
   bool converged = true;
+  double work_units = 0;                    // counted work, see sim/step_work.h
+  int solves_cut = 0, corrections_cut = 0;  // steps whose solve or corrections ended early, see deadline.h
   int contacts = 0, corrected = 0, recoveries = 0;
   double max_penetration = 0;     // m
   int rung = -1;                  // of the budget governor; -1: it is off

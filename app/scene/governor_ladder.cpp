@@ -15,7 +15,7 @@ namespace {
 
 using sim::Integrator;
 
-constexpr int kMaxIterations = 400;
+constexpr int kMaxIterations = 60;
 constexpr Rung kLadder[] = {
     {"linearized-euler 1/10 s, tolerance 1e-2", Integrator::kLinearizedEuler, 10, 1e-2, kMaxIterations, 0.44, 2.6e-2},
     {"linearized-euler 1/15 s, tolerance 1e-2", Integrator::kLinearizedEuler, 15, 1e-2, kMaxIterations, 0.51, 2.4e-2},

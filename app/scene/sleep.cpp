@@ -54,6 +54,7 @@ sim::StepReport advanceAwakeParts(const sim::SimParams& params, sim::StepInput i
     }
     input.roots = part.roots;
     input.pins = part.pins;
+    input.max_work = actor.max_work * source.mesh.vertexCount() / actor.haircut->mesh.vertexCount();
     sim::addPart(sim::advance(source.mesh, params, input, step, *part.context, part.hair), report);
     sim::scatterPart(source, part.hair, whole);
   }

@@ -1,4 +1,4 @@
-// The budget governor's corner of the timings panel.
+// The budget governor's and the deadline's corner of the timings panel.
 #include <imgui/imgui.h>
 
 #include <algorithm>
@@ -12,6 +12,7 @@ namespace app {
 namespace {
 
 constexpr float kSmallest = 0.05f, kLargest = 50;  // ms, of the slider; --budget-ms takes more
+constexpr double kUsualDeadline = 8;               // ms: half a frame of 60 a second
 constexpr double kHeadroom = 1.5;                  // of the present cost, when the governor is switched on
 
 void line(const char* name, const char* text) {
@@ -26,9 +27,38 @@ double recentSimulation(const Demo& demo) {
   return demo.history.empty() ? 0 : sum / static_cast<double>(demo.history.size());
 }
 
-}  // namespace
+// What the deadline left out over the last frames.
+void leftOutLine(const Demo& demo) {
+  int solves = 0, corrections = 0;
+  double lost = demo.stats.lost;
+  for (const FrameStats& frame : demo.history) {
+    solves += frame.solves_cut;
+    corrections += frame.corrections_cut;
+    lost = std::min(lost, frame.lost);
+  }
+  char text[96];
+  std::snprintf(text, sizeof text, "%.0f ms, %d solves, %d corrections", 1e3 * (demo.stats.lost - lost), solves,
+                corrections);
+  line("left out", text);
+  tip("Over the frames of the plot: motion that was not simulated, steps whose solve or corrections ended early");
+}
 
-void budgetLines(Demo& demo, UiState& ui) {
+void deadlineLines(Demo& demo, UiState& ui) {
+  bool on = demo.deadline.seconds > 0;
+  if (ImGui::Checkbox("Never over", &on)) postRequest(demo, {Ask::kDeadline, "", "", on ? kUsualDeadline : 0.0});
+  noteItem("deadline on", ui);
+  tip("No frame's simulation takes longer, by counted work: steps, iterations and corrections beyond are left out");
+  if (!on) return;
+  ImGui::SameLine(0.46f * ImGui::GetWindowWidth());
+  ImGui::SetNextItemWidth(-1);
+  float deadline = static_cast<float>(1e3 * demo.deadline.seconds);
+  if (ImGui::SliderFloat("##deadline", &deadline, kSmallest, kLargest, "%.2f ms", ImGuiSliderFlags_Logarithmic))
+    postRequest(demo, {Ask::kDeadline, "", "", deadline});
+  noteItem("deadline", ui);
+  leftOutLine(demo);
+}
+
+void governorLines(Demo& demo, UiState& ui) {
   const Governor& governor = demo.governor;
   bool on = governor.budget > 0;
   if (ImGui::Checkbox("Hold to", &on)) {
@@ -56,6 +86,13 @@ void budgetLines(Demo& demo, UiState& ui) {
   line("error / length", text);
   tip("Expected: the mean over the styles and motions that the setting was measured on");
   if (governor.over_budget) ImGui::TextDisabled("the coarsest setting takes longer");
+}
+
+}  // namespace
+
+void budgetLines(Demo& demo, UiState& ui) {
+  governorLines(demo, ui);
+  deadlineLines(demo, ui);
 }
 
 }  // namespace app

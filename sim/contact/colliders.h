@@ -64,11 +64,13 @@ SurfacePoint closestPoint(const BodySdf& part, const Vec3& p);
 struct Colliders {
   std::span<const Ellipsoid> ellipsoids{};
   std::span<const BodySdf> parts{};  // in place of the ellipsoids where there are any
+  long* counted = nullptr;           // where there is one: the closest points asked for (StepWork::surface_points)
 
   int count() const { return static_cast<int>(parts.empty() ? ellipsoids.size() : parts.size()); }
   // Pose, motion and bounds of collider k.
   const Ellipsoid& body(int k) const { return parts.empty() ? ellipsoids[k] : parts[k].bounds; }
   SurfacePoint closest(int k, const Vec3& p) const {
+    if (counted) ++*counted;
     return parts.empty() ? closestPoint(ellipsoids[k], p) : closestPoint(parts[k], p);
   }
   // m, from the middle of collider k to its surface.

@@ -6,10 +6,12 @@
 #include <numeric>
 #include <optional>
 
+#include "sim/contact/passage.h"
+
 namespace sim {
 namespace {
 
-constexpr int kProjections = 32;     // alternating projections between overlapping colliders
+constexpr int kProjections = 6;      // alternating projections between overlapping colliders
 constexpr double kSlackShare = 0.2;  // of the contact offset
 constexpr double kRestoring = 0.2;   // share of the depth below the offset that a step closes
 // Energy budget, per unit density (m^5/s^2), for lifting a vertex to the contact offset: 3 cm^3 of hair by 1 cm.
@@ -18,17 +20,14 @@ constexpr double kReach = 0.01;  // m off the surface at which a contact is drop
 constexpr double kCreep = 1e-3, kNoSlip = 1e-9;  // m/s
 constexpr double kLeaving = 1;                   // m/s away from the body at which a contact is dropped
 // Paths past a collider
-constexpr double kStraight = 0.2;  // rad; a collider that turns less is passed on a straight line
-constexpr double kGrazing = 0.1;   // of its thickness; a path no deeper slides over a rounded body
-constexpr int kMaxMarches = 64, kDepthSamples = 8, kMaxSamples = 512;
-constexpr double kSampling = 0.5;  // of its thickness, from one sample of the depth to the next
-constexpr double kMet = 1e-5;      // m
+constexpr double kMet = 1e-5;  // m
 // Bounds of clusters
 constexpr int kMaxClustered = 16;   // vertices of a cluster
 constexpr double kRounding = 1e-6;  // m, above the rounding of the tests that the bounds stand for
 // Out of overlapping bodies
 constexpr double kNeighbour = 0.005;  // m; bodies so near to a vertex count as around it
-constexpr double kStride = 5e-4;      // m, least step
+constexpr double kStride = 1e-5;      // m, from one body to the next
+constexpr int kMaxLeaves = 32;
 
 // False only if p lies farther than `offset` off the surface.
 bool mayTouch(const Ellipsoid& e, double offset, const Vec3& p) {
@@ -79,10 +78,7 @@ void collectNear(const ContactSearch& search, const SweptBox& whole, std::vector
     const Vec3 before = e.center - search.dt * e.velocity;
     const Vec3 least = e.center.cwiseMin(before).array() - reach, most = e.center.cwiseMax(before).array() + reach;
     if (!((least.array() < high.array()).all() && (most.array() > low.array()).all())) continue;
-    const double turned = e.angular_velocity.norm() * search.dt;
-    NearCollider body{k, before, e.center, Eigen::Matrix3d::Identity(), turned, reach, search.colliders.thickness(k)};
-    if (turned > 1e-12) body.turn = Eigen::AngleAxisd(turned, e.angular_velocity.normalized()).toRotationMatrix();
-    near.push_back(body);
+    near.emplace_back(k, e, search.colliders.thickness(k), search.margins.offset, search.dt);
   }
 }
 
@@ -95,10 +91,10 @@ struct SweptBall {
   SweptBall(const SweptBox& box, const Vec3& shift) : center(0.5 * (box.low[1] + box.high[1])) {
     const Vec3 way = center - 0.5 * (box.low[0] + box.high[0]) - shift;
     const double radius = 0.5 * std::max((box.high[0] - box.low[0]).norm(), (box.high[1] - box.low[1]).norm());
-    swept = radius + (1 + kStraight) * way.norm();
+    swept = radius + (1 + NearCollider::kStraight) * way.norm();
   }
   SweptBall(const Vec3& start, const Vec3& end, const Vec3& shift)
-      : center(end), swept((1 + kStraight) * (end - start - shift).norm()) {}
+      : center(end), swept((1 + NearCollider::kStraight) * (end - start - shift).norm()) {}
 };
 
 // Extends the collider's reach by its own motion. Let d be the vector from its centre to a ball's, w the ball's way
@@ -106,7 +102,7 @@ struct SweptBall {
 // long, and every vertex stays within the ball's radius of the ball's own chord. So sweep and mayTouch find nothing
 // where |d| exceeds the sum of reach, radius and chord.
 void boundReach(const Vec3& shift, NearCollider& near) {
-  if (near.turned >= kStraight) return;  // met on arcs
+  if (near.turned >= NearCollider::kStraight) return;  // met on arcs
   const double way = (near.after - near.before - shift).norm();
   near.stretch = 1 / (1 - near.turned);
   near.margin = near.stretch * (near.reach + (1 + near.turned) * way + kRounding);
@@ -140,44 +136,6 @@ void collectReached(const ContactSearch& search, const Vec3& shift, ContactScrat
   }
 }
 
-// A vertex's way over the step in the frame of a collider, placed as at the step's end.
-struct Path {
-  const NearCollider* body;
-  Vec3 axis;        // of the collider's turn
-  Vec3 start, end;  // m, world, at the step's start and end
-  double speed;     // m per step, upper bound: relative motion, and the turn's at its arm
-
-  // m, world: the vertex at the share t of the step, carried with the collider to the step's end.
-  Vec3 at(double t) const {
-    const double back = 1 - t;
-    const Vec3 arm = start + t * (end - start) - (body->after + back * (body->before - body->after));
-    if (body->turned < 1e-12) return body->after + arm;
-    return body->after + Eigen::AngleAxisd(back * body->turned, axis) * arm;
-  }
-};
-
-// Where the path first meets the offset surface from outside and goes in by more than `grazing`: sphere tracing, then
-// samples of the depth.
-std::optional<Vec3> entryOf(const Path& path, const Colliders& colliders, int k, double offset, double grazing) {
-  double t = 0;
-  for (int march = 0; march < kMaxMarches && t < 1; ++march) {
-    const double gap = colliders.closest(k, path.at(t)).distance - offset;
-    if (march == 0 && gap <= 0) return {};  // began inside
-    if (gap < kMet) break;
-    t += gap / path.speed;
-  }
-  if (t >= 1) return {};
-  double least = 0;
-  const int samples =
-      std::clamp(static_cast<int>(path.speed * (1 - t) / (kSampling * path.body->thin)), kDepthSamples, kMaxSamples);
-  for (int i = 1; i <= samples && least > -grazing; ++i) {
-    const double later = t + (1 - t) * i / samples;
-    least = std::min(least, colliders.closest(k, path.at(later)).distance - offset);
-  }
-  if (least > -grazing) return {};
-  return path.at(t);
-}
-
 // Continuous test. A vertex that went through the collider, or so deep that the nearest way out lies on the far side,
 // is put back on the side that it came from: to its point of entry, moved on by the tangential part of the rest of its
 // way.
@@ -188,22 +146,24 @@ void sweep(const ContactSearch& search, const NearCollider& near, const Vec3& st
   if (speed < 0.5 * near.thin || from_end > near.reach + speed) return;
   const double thin = near.thin, offset = search.margins.offset;
   const Vec3 carried = near.carried(start), way = end - carried;
-  if (way.squaredNorm() < 0.25 * thin * thin) return;
+  if (near.turned < NearCollider::kStraight && way.squaredNorm() < 0.25 * thin * thin) return;
   // A turning collider may be met on an arc, any other on the chord.
-  if (near.turned < kStraight) {
+  if (near.turned < NearCollider::kStraight) {
     const Vec3 from = carried - near.after;
     const double t = std::clamp(-from.dot(way) / way.squaredNorm(), 0.0, 1.0);
     if ((from + t * way).squaredNorm() >= near.reach * near.reach) return;
   }
   const int k = near.index;
-  const Vec3 axis = search.colliders.body(k).angular_velocity.normalized();
-  const Path path{&near, axis, start, end, speed};
-  const std::optional<Vec3> entry = entryOf(path, search.colliders, k, offset, kGrazing * thin);
+  const std::optional<Vec3> entry = entryOf(search.colliders, near, offset, start, end);
   if (!entry) return;
-  const SurfacePoint met = search.colliders.closest(k, *entry);
-  if (touch.depth > 0 && touch.normal.dot(met.normal) >= 0) return;  // the nearest way out is on that side
-  const Vec3 rest = end - met.point;
-  const SurfacePoint slid = search.colliders.closest(k, met.point + rest - rest.dot(met.normal) * met.normal);
+  const Ellipsoid& body = search.colliders.body(k);
+  const Vec3 met = body.center + body.rotation * *entry;
+  const Vec3 normal = search.colliders.parts.empty()
+                          ? Vec3(body.rotation * entry->cwiseProduct(near.outer.cwiseAbs2()).normalized())
+                          : search.colliders.closest(k, met).normal;
+  if (touch.depth > 0 && touch.normal.dot(normal) >= 0) return;  // the nearest way out is on that side
+  const Vec3 rest = end - met;
+  const SurfacePoint slid = search.colliders.closest(k, met + rest - rest.dot(normal) * normal);
   touch.target = slid.point + offset * slid.normal;
   touch.normal = slid.normal;
   touch.depth = std::max(touch.depth, (end - touch.target).norm());
@@ -219,8 +179,9 @@ Penetration touchOf(const ContactSearch& search, const NearCollider& near, int v
     touch.depth = offset - s.distance;
     touch.normal = s.normal;
     touch.target = s.point + offset * s.normal;
-    if (touch.depth > 0 && !search.start.empty()) {
-      const double before = offset - search.colliders.closest(k, near.carried(search.start[vertex])).distance;
+    const Vec3 carried = search.start.empty() ? p : near.carried(search.start[vertex]);
+    if (touch.depth > 0 && !search.start.empty() && mayTouch(search.colliders.body(k), offset, carried)) {
+      const double before = offset - search.colliders.closest(k, carried).distance;
       if (before > search.margins.slack + kMet) {
         // An initial overlap: resolved by no more than the escape, and no deeper than it was.
         touch.initial_overlap = true;
@@ -264,42 +225,57 @@ void carryContacts(const Colliders& colliders, const SimParams& params, double d
 
 namespace {
 
-// Where projections alternate between overlapping bodies: marches straight away from the mean centre of the bodies
-// around the vertex until it is outside all of them. Leaves `hit` as it is if that is too far.
+// The share of `direction` (m, world) after which a line from p, inside or outside, has left the ellipsoid that holds
+// all points nearer to the collider than the offset; 0 where it does not meet it.
+double leavesAt(const Ellipsoid& e, double offset, const Vec3& p, const Vec3& direction) {
+  const double grow = offset * e.radii.maxCoeff() / e.radii.minCoeff();  // see mayTouch
+  const Vec3 radii = e.radii.array() + grow;
+  const Vec3 from = (e.rotation.conjugate() * (p - e.center)).cwiseQuotient(radii);
+  const Vec3 along = (e.rotation.conjugate() * direction).cwiseQuotient(radii);
+  const double a = along.squaredNorm(), b = from.dot(along), c = from.squaredNorm() - 1;
+  const double discriminant = b * b - a * c;
+  return discriminant <= 0 ? 0 : std::max(0.0, (std::sqrt(discriminant) - b) / a);
+}
+
+// m along `direction` (unit) after which p has left the collider, or is nearer to having left signed distances; 0 where
+// it is outside.
+double wayOut(const ContactSearch& search, int k, const Vec3& p, const Vec3& direction) {
+  const double offset = search.margins.offset;
+  const Ellipsoid& body = search.colliders.body(k);
+  if (!mayTouch(body, offset, p)) return 0;
+  if (search.colliders.parts.empty()) return leavesAt(body, offset, p, direction);
+  return std::max(0.0, 2 * (offset - search.colliders.closest(k, p).distance));
+}
+
+// Where projections alternate between overlapping bodies: goes straight away from the mean centre of the bodies around
+// the vertex until it is outside all of them. Leaves `hit` as it is where none is around.
 void leaveAll(const ContactSearch& search, const ContactScratch& scratch, Penetration& hit) {
-  const auto deepestAt = [&](const Vec3& p, int& collider) {
-    double depth = 1e-9;
-    collider = -1;
-    for (const NearCollider& near : scratch.near) {
-      const double inside = search.margins.offset - search.colliders.closest(near.index, p).distance;
-      if (inside > depth) depth = inside, collider = near.index;
-    }
-    return depth;
-  };
+  const auto body = [&](const NearCollider& near) -> const Ellipsoid& { return search.colliders.body(near.index); };
+  const double offset = search.margins.offset;
   Vec3 centers = Vec3::Zero();
   int count = 0;
   for (const NearCollider& near : scratch.near) {
-    if (search.colliders.closest(near.index, hit.target).distance >= search.margins.offset + kNeighbour) continue;
-    centers += search.colliders.body(near.index).center;
+    if (!mayTouch(body(near), offset + kNeighbour, hit.target)) continue;
+    centers += body(near).center;
     ++count;
   }
   if (count == 0) return;
   const Vec3 away = hit.target - centers / count;
   const Vec3 direction = away.norm() > 1e-9 ? Vec3(away.normalized()) : Vec3(Vec3::UnitY());
-  Vec3 p = hit.target;
-  int last = hit.collider;
-  for (int march = 0; march < kMaxMarches; ++march) {
-    int collider = -1;
-    const double depth = deepestAt(p, collider);
-    if (collider < 0) {
-      hit.target = p;
-      hit.collider = last;
-      hit.normal = search.colliders.closest(last, p).normal;
-      return;
+  double way = 0;
+  bool inside = true;
+  for (int round = 0; inside && round < kMaxLeaves; ++round) {
+    inside = false;
+    for (const NearCollider& near : scratch.near) {
+      const double further = wayOut(search, near.index, hit.target + (way + kStride) * direction, direction);
+      if (further <= 0) continue;
+      way += kStride + further;
+      hit.collider = near.index;
+      inside = true;
     }
-    p += std::max(2 * depth, kStride) * direction;
-    last = collider;
   }
+  hit.target += (way + kStride) * direction;
+  hit.normal = search.colliders.closest(hit.collider, hit.target).normal;
 }
 
 // Places in `near` of the colliders that the vertex's cluster reaches.
@@ -357,7 +333,7 @@ void findPenetrations(const ContactSearch& search, std::span<const Vec3> positio
     Penetration hit{v, -1, p, Vec3::UnitY(), 0, false, 0};
     bool out = false;
     for (int round = 0; round < kProjections && !out; ++round) {
-      Penetration deepest{v, -1, p, Vec3::UnitY(), 1e-9, false, 0};
+      Penetration deepest{v, -1, p, Vec3::UnitY(), round == 0 ? 1e-9 : kMet, false, 0};
       const auto test = [&](const NearCollider& near) {
         const Penetration touch = touchOf(search, near, v, p, round == 0);
         if (touch.depth > deepest.depth) deepest = touch;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/contact/colliders.h"
+#include "sim/contact/passage.h"
 #include "sim/mesh/hair_mesh.h"
 #include "sim/mesh/hair_state.h"
 #include "sim/mesh/vertex_constraint.h"
@@ -39,20 +40,6 @@ struct ContactSearch {
   std::span<const Vec3> start;  // m, positions at the step's start; empty: no paths, no initial overlaps
   double dt = 0;                // s
   ContactMargins margins{};
-};
-
-// A collider within reach of the hair, with its rigid motion over the step.
-struct NearCollider {
-  int index;
-  Vec3 before, after;    // m, its centre
-  Eigen::Matrix3d turn;  // its rotation over the step
-  double turned;         // rad, angle of that
-  double reach, thin;    // m, bound of the distance from centre to contact; thickness
-  // A vertex that moves by s m within the step meets it only from within margin + stretch * s of its centre at the end.
-  double margin = INFINITY, stretch = 1;
-
-  // The place at the step's end of a point fixed to it at the start.
-  Vec3 carried(const Vec3& start) const { return after + turn * (start - before); }
 };
 
 // Positions (m) of some vertices at the start (0) and at the end (1) of a step.

@@ -11,8 +11,6 @@
 namespace sim {
 namespace {
 
-constexpr int kMaxIterations = 1000;
-
 void applyLaplacian(const EdgeLaplacian& laplacian, std::span<const unsigned char> held, std::span<const Vec3> u,
                     std::span<Vec3> out) {
   for (int i = 0; i < laplacian.size(); ++i) {
@@ -80,7 +78,7 @@ EdgeLaplacian makeEdgeLaplacian(const HairMesh& mesh) {
 }
 
 int minimizeDeformation(const EdgeLaplacian& laplacian, std::span<const unsigned char> held, double tolerance,
-                        MinimizationScratch& scratch, std::span<Vec3> displacement) {
+                        MinimizationScratch& scratch, std::span<Vec3> displacement, int most) {
   const int n = laplacian.size();
   bool moved = false;
   for (int i = 0; i < n; ++i) moved = moved || (held[i] && !displacement[i].isZero(0));
@@ -98,7 +96,7 @@ int minimizeDeformation(const EdgeLaplacian& laplacian, std::span<const unsigned
   double delta = innerProduct(r, z);
   const double goal = tolerance * tolerance * delta;
   int iterations = 0;
-  while (delta > goal && iterations < kMaxIterations) {
+  while (delta > goal && iterations < most) {
     applyLaplacian(laplacian, held, d, q);
     const double curvature = innerProduct(d, q);
     if (!(curvature > 0)) break;
@@ -219,8 +217,8 @@ int DeformationMinimizer::findPaths() {
   return computed;
 }
 
-int DeformationMinimizer::minimize(std::span<const unsigned char> held, double tolerance,
-                                   std::span<Vec3> displacement) {
+int DeformationMinimizer::minimize(std::span<const unsigned char> held, double tolerance, std::span<Vec3> displacement,
+                                   int most) {
   const int size = laplacian_.size();
   bool moved = false;
   held_.clear();
@@ -231,7 +229,12 @@ int DeformationMinimizer::minimize(std::span<const unsigned char> held, double t
     held_.push_back(v);
   }
   const auto count = static_cast<Eigen::Index>(held_.size());
-  if (!moved || count > kMaxHeld) return minimizeDeformation(laplacian_, held, tolerance, scratch_, displacement);
+  const auto iterate = [&] {
+    iterated_ = true;
+    return minimizeDeformation(laplacian_, held, tolerance, scratch_, displacement, most);
+  };
+  iterated_ = false;
+  if (!moved || count > kMaxHeld) return iterate();
   const int computed = findPaths();
   for (Eigen::Index k = 0; k < count; ++k) {
     for (Eigen::Index l = 0; l <= k; ++l) gram_(k, l) = products_(slot_[held_[k]], slot_[held_[l]]);
@@ -239,7 +242,7 @@ int DeformationMinimizer::minimize(std::span<const unsigned char> held, double t
   }
   auto gram = gram_.topLeftCorner(count, count);
   auto pulls = pulls_.topRows(count);
-  if (!factorLowerInPlace(gram)) return minimizeDeformation(laplacian_, held, tolerance, scratch_, displacement);
+  if (!factorLowerInPlace(gram)) return iterate();
   gram.triangularView<Eigen::Lower>().solveInPlace(pulls);
   gram.triangularView<Eigen::Lower>().transpose().solveInPlace(pulls);
   std::fill(moved_.begin(), moved_.end(), 0);

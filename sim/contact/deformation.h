@@ -30,16 +30,17 @@ struct MinimizationScratch {
 };
 
 // Modified PCG. `displacement`: u' = x' - x at held vertices, a start value at all others, where the result replaces
-// it. Stops at a residual of `tolerance` times the first, both in the norm of the diagonal's inverse. Returns the
-// iterations; zero, with no work done, when no held vertex has moved.
+// it. Stops at a residual of `tolerance` times the first, both in the norm of the diagonal's inverse, or after `most`
+// iterations. Returns the iterations; zero, with no work done, when no held vertex has moved.
+inline constexpr int kMaxMinimization = 2000;
 int minimizeDeformation(const EdgeLaplacian& laplacian, std::span<const unsigned char> held, double tolerance,
-                        MinimizationScratch& scratch, std::span<Vec3> displacement);
+                        MinimizationScratch& scratch, std::span<Vec3> displacement, int most = kMaxMinimization);
 
 // The same, solved exactly where few vertices are held. A^T A = L D L^T, with the roots alone held, is factored once.
 // L^-1 e_i is nonzero only on the elimination-tree path of i (Gilbert and Peierls 1988), so it is cached per held
 // vertex, as are the products e_i^T (A^T A)^-1 e_k. A dense system of these gives the forces that move the held
 // vertices to their places; one backward substitution then moves all others. Above kMaxHeld vertices Modified PCG
-// serves.
+// serves. What is cached changes no result.
 class DeformationMinimizer {
  public:
   static constexpr int kMaxHeld = 96;  // paths cached: 0.8 MB at 10,241 vertices
@@ -48,9 +49,12 @@ class DeformationMinimizer {
 
   // As minimizeDeformation; roots must be held, and do not move. Returns the iterations or, solved exactly, one plus
   // the number of paths computed; zero with no work done. Allocates nothing.
-  int minimize(std::span<const unsigned char> held, double tolerance, std::span<Vec3> displacement);
+  int minimize(std::span<const unsigned char> held, double tolerance, std::span<Vec3> displacement,
+               int most = kMaxMinimization);
+  bool iterated() const { return iterated_; }  // the last call, by Modified PCG
 
  private:
+  bool iterated_ = false;
   EdgeLaplacian laplacian_;
   MinimizationScratch scratch_;
   std::vector<unsigned char> root_;

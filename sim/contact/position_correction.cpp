@@ -9,6 +9,9 @@ namespace {
 
 constexpr int kRounds = 4;               // of position correction and deformation minimization
 constexpr int kPlainRounds = 8;          // more of correction alone
+constexpr int kMaxPoints = 3;            // closest points of colliders, a vertex and step
+constexpr int kMaxMinimizations = 12;    // iterations of deformation minimization, a step
+constexpr int kExactCost = 2;            // of them, that an exact solution stands for
 constexpr double kMinimization = 1e-3;   // relative residual
 constexpr double kFastestFollower = 10;  // m/s that a vertex takes from following a corrected one
 
@@ -63,7 +66,11 @@ void holdResting(const HairMesh& mesh, const HairState& state, PositionCorrectio
 
 // The others follow those held. Returns the work (StepReport::minimization_iterations).
 int letFollow(PositionCorrection& scratch, HairState& state) {
-  const int work = scratch.minimizer.minimize(scratch.held, kMinimization, scratch.displacement);
+  const int most = scratch.max_minimizations - scratch.minimizations;
+  if (most <= 0) return 0;
+  const int work = scratch.minimizer.minimize(scratch.held, kMinimization, scratch.displacement, most);
+  // Not the paths computed: what is cached changes no result, so it must not change what comes next.
+  scratch.minimizations += scratch.minimizer.iterated() ? work : kExactCost;
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
     if (!scratch.held[i]) state.positions[i] += scratch.displacement[i];
   }
@@ -96,6 +103,13 @@ PositionCorrection::PositionCorrection(const HairMesh& mesh) : minimizer(mesh) {
   corrected.reserve(all_vertices.size());
 }
 
+void limitCorrectionWork(const WorkBounds& bounds, PositionCorrection& scratch) {
+  scratch.points = 0;
+  scratch.minimizations = 0;
+  scratch.max_points = std::min(static_cast<long>(kMaxPoints * scratch.held.size()), bounds.surface_points);
+  scratch.max_minimizations = std::min(kMaxMinimizations, bounds.minimizations);
+}
+
 void beginCorrections(PositionCorrection& scratch) {
   scratch.round = scratch.moved = 0;
   scratch.follow_speed = 0;
@@ -105,9 +119,14 @@ bool findContacts(const CorrectedStep& step, PositionCorrection& scratch, const 
   if (scratch.round > 0 && (scratch.moved == 0 || scratch.round > kRounds + kPlainRounds)) return false;
   ContactSearch search{step.params.collide_inner ? scratch.all_vertices : step.mesh.external_vertices, step.colliders,
                        step.start, step.dt, contactMargins(step.params, step.dt)};
-  // After minimization only the last corrected vertices can be inside. Where the way out of one body leads through
-  // another, swept tests would alternate: from here on only final positions count.
-  if (scratch.round > kRounds + 1) search.vertices = scratch.corrected, search.start = {};
+  const bool cut = scratch.points > scratch.max_points;
+  report.corrections_cut = report.corrections_cut || cut;
+  // Where the way out of one body leads through another, swept tests would alternate: from here on only final
+  // positions count. Where nothing followed the last corrected vertices, only these can be inside.
+  if (cut || scratch.round > kRounds + 1) {
+    search.start = {};
+    if (scratch.round > 0 && !scratch.followed) search.vertices = scratch.corrected;
+  }
   scratch.search.tests = {};
   findPenetrations(search, state.positions, scratch.search, scratch.penetrations);
   report.collider_tests += scratch.search.tests;
@@ -131,12 +150,15 @@ void correctPositions(const CorrectedStep& step, PositionCorrection& scratch, Ha
     report.initial_overlap_depth = std::max(report.initial_overlap_depth, hit.left);
   }
   report.corrected += scratch.moved;
+  scratch.followed = false;
   ++scratch.round;
 }
 
 void minimizeDeformation(const CorrectedStep& step, PositionCorrection& scratch, HairState& state, StepReport& report) {
   if (!step.params.minimize_deformation || scratch.moved == 0 || scratch.round > kRounds) return;
+  if (scratch.points > scratch.max_points) return;
   report.minimization_iterations += letFollow(scratch, state);
+  scratch.followed = true;
 }
 
 void updateVelocities(const CorrectedStep& step, PositionCorrection& scratch, HairState& state) {

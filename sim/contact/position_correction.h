@@ -21,7 +21,12 @@ struct PositionCorrection {
   std::vector<unsigned char> held;
   ContactScratch search;
   int round = 0, moved = 0;  // rounds so far; vertices that the last one moved
+  bool followed = false;     // others moved after these
   double follow_speed = 0;   // m/s, bound of the velocity that followers take
+  long points = 0;           // closest points of colliders asked for in this step (Colliders::counted)
+  long max_points = 0;       // more of them cut the corrections short
+  int max_minimizations = 0;
+  int minimizations = 0;  // iterations of deformation minimization in this step
 
   explicit PositionCorrection(const HairMesh& mesh);
 };
@@ -39,10 +44,15 @@ struct CorrectedStep {
 // a body, which the paper leaves to future work: kRounds rounds minimize with all corrected vertices held, and
 // kPlainRounds more only correct. Afterwards no external vertex (with collide_inner: no vertex) lies below the contact
 // offset by more than the slack of contactMargins, except initial overlaps: these shrink by max_depenetration a step
-// and leave no velocity.
+// and leave no velocity. Beyond max_points closest points of colliders the corrections are cut short: searches look at
+// final positions only, and nothing else follows.
 //
-// Usage: beginCorrections; while (findContacts) { correctPositions; minimizeDeformation }; updateVelocities.
+// Usage: limitCorrectionWork once a step, then beginCorrections; while (findContacts) { correctPositions;
+// minimizeDeformation }; updateVelocities.
 void beginCorrections(PositionCorrection& scratch);
+
+// Before a step's first correction: its counts are zero, and bounded by the corrections' own bounds and the step's.
+void limitCorrectionWork(const WorkBounds& bounds, PositionCorrection& scratch);
 
 // Finds the vertices that are inside a collider or went through one. Returns whether another round is due.
 bool findContacts(const CorrectedStep& step, PositionCorrection& scratch, const HairState& state, StepReport& report);

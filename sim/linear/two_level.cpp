@@ -60,12 +60,14 @@ void TwoLevel<T>::makeFactors(const ColumnMatrix<T>& a, const PartMemory::Input&
   layers_.factor(a, input.constraints);
   columns_.factor(a, input.constraints);
   factors_of_ = input;
+  ++made_factors;
 }
 
 template <class T>
 void TwoLevel<T>::makeCoarse(const ColumnMatrix<T>& a, std::span<const V3<T>> x, const PartMemory::Input& input) {
   has_coarse_ = coarse_.make(a, x, input.constraints);
   coarse_of_ = input;
+  ++made_coarse;
 }
 
 template <class T>

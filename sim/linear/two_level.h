@@ -41,7 +41,8 @@ struct TwoLevel {
   // The material is another: what `memory` speaks of is to be made again.
   void drop();
 
-  TwoLevelMemory memory;  // of the hair that is solved for
+  TwoLevelMemory memory;                  // of the hair that is solved for
+  int made_factors = 0, made_coarse = 0;  // so far
 
   // Iterations that making a part costs, and solves that it serves at most. On four walks (short low to long medium)
   // solves take within a tenth as long with twice of each.

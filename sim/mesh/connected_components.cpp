@@ -123,6 +123,10 @@ void addPart(const StepReport& part, StepReport& whole) {
   whole.pin_force = std::max(whole.pin_force, part.pin_force);
   whole.force_kinds += part.force_kinds;
   whole.collider_tests += part.collider_tests;
+  whole.work += part.work;
+  whole.work_units += part.work_units;
+  whole.solve_cut = whole.solve_cut || part.solve_cut;
+  whole.corrections_cut = whole.corrections_cut || part.corrections_cut;
   whole.recoveries += part.recoveries;
   if (part.recoveries > 0) whole.fault_report = part.fault_report;
   whole.carried = whole.carried || part.carried;

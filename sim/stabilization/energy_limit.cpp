@@ -15,8 +15,10 @@ constexpr double kLongStep = 1.0 / 50;  // s
 // No step is near to linear of hair that is limp, folded as it hangs: its load strains its walls by more than this; or
 // of hair that is stiffer one way by such a ratio than another (Modulus::uneven): it buckles.
 constexpr double kLimp = 1;
-constexpr int kHalvings = 12;
-constexpr double kStill = 1e-3;  // m/s of a body's surface against the roots
+constexpr int kTries = 8;          // of a shorter way
+constexpr double kWithin = 0.95;   // of the way that would end on the bound, were the energy quadratic along it
+constexpr double kLeastWay = 0.5;  // of the way, that a try leaves: energies of stretched hair rise faster
+constexpr double kStill = 1e-3;    // m/s of a body's surface against the roots
 
 enum class Motion { kCalm, kViolent, kNotFinite };
 
@@ -88,6 +90,7 @@ Vec3 carrying(const TakenStep& step, const EnergyLimit& scratch, int i) {
 // Elastic energy, that of gravity, and that of the air as it blows against what the roots carry (J): drag beyond that
 // only takes. Hair that goes to and fro gives back to the wind what it was given.
 double potential(const TakenStep& step, std::span<const Vec3> x, EnergyLimit& scratch) {
+  ++scratch.energies;
   double energy = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
     scratch.plain[i] = {x[i].x(), x[i].y(), x[i].z()};
@@ -99,7 +102,9 @@ double potential(const TakenStep& step, std::span<const Vec3> x, EnergyLimit& sc
 }
 
 // J, of a step whose carried positions are known, seen from the roots.
+double carried = 0;  // potential, of the hair as the roots carry it
 struct Account {
+  double carried = 0;  // potential, of the hair as the roots carry it
   double bound = 0;    // of what it may end with
   double kinetic = 0;  // that it ends with
 };
@@ -136,7 +141,8 @@ double dampersWork(const TakenStep& step, const EnergyLimit& scratch) {
 
 Account accountFor(const TakenStep& step, EnergyLimit& scratch, const HairState& state) {
   Account account;
-  account.bound = potential(step, scratch.carried, scratch) + dampersWork(step, scratch);
+  account.carried = potential(step, scratch.carried, scratch);
+  account.bound = account.carried + dampersWork(step, scratch);
   for (int i = 0; i < step.mesh.vertexCount(); ++i) {
     if (step.mesh.isRoot(i)) continue;
     const double mass = step.params.density * step.mesh.vertex_volume[i];
@@ -164,13 +170,15 @@ void slowDown(const TakenStep& step, const EnergyLimit& scratch, double share, H
   state.previous_dt = 0;  // what came before says nothing any more about how it goes on
 }
 
-// Halves the way of every vertex from `back` until its potential energy is `most` (J), so many times before giving it
-// up. Returns the share of the way that was kept and sets the energy stored there.
-double shorten(const TakenStep& step, std::span<const Vec3> back, double most, int halvings, double& stored,
+// Shortens the way of every vertex from `back`, whose potential energy is `least` (J), until its own is `most`: to
+// where an energy quadratic along the way would be so, tried so many times before giving the way up. Returns the share
+// of it that was kept and sets the energy stored there.
+double shorten(const TakenStep& step, std::span<const Vec3> back, double least, double most, int tries, double& stored,
                EnergyLimit& scratch, HairState& state) {
   double kept = 1;
-  for (int halving = 0; !(stored <= most) && kept > 0; ++halving) {
-    const double share = halving < halvings ? 0.5 : 0;
+  for (int k = 0; !(stored <= most) && kept > 0; ++k) {
+    const double quadratic = kWithin * std::sqrt(std::max(0.0, most - least) / (stored - least));
+    const double share = k >= tries ? 0 : std::isfinite(stored) ? std::clamp(quadratic, kLeastWay, kWithin) : kLeastWay;
     for (std::size_t i = 0; i < back.size(); ++i) state.positions[i] = back[i] + share * (state.positions[i] - back[i]);
     kept *= share;
     stored = potential(step, state.positions, scratch);
@@ -178,14 +186,14 @@ double shorten(const TakenStep& step, std::span<const Vec3> back, double most, i
   return kept;
 }
 
-// Brings a step whose carried positions are known below its bound, halving its motion so many times before giving it
-// up. Returns the share of the motion that was kept.
-double bringBelowBound(const TakenStep& step, int halvings, EnergyLimit& scratch, HairState& state) {
+// Brings a step whose carried positions are known below its bound, by at most so many tries of a shorter way. Returns
+// the share of the motion that was kept.
+double bringBelowBound(const TakenStep& step, int tries, EnergyLimit& scratch, HairState& state) {
   const Account account = accountFor(step, scratch, state);
   if (!std::isfinite(account.bound)) return 1;
   double stored = potential(step, state.positions, scratch);
   if (stored + account.kinetic <= account.bound) return 1;
-  const double kept = shorten(step, scratch.carried, account.bound, halvings, stored, scratch, state);
+  const double kept = shorten(step, scratch.carried, account.carried, account.bound, tries, stored, scratch, state);
   const double kinetic = kept * kept * account.kinetic, left = std::max(0.0, account.bound - stored);
   const double slowed = kept * (kinetic > left ? std::sqrt(left / kinetic) : 1);
   slowDown(step, scratch, slowed, state);
@@ -215,14 +223,14 @@ double limitEnergy(const TakenStep& step, bool solved, EnergyLimit& scratch, Hai
   const Motion motion = judge(step, state);
   if (motion == Motion::kNotFinite || (motion == Motion::kCalm && solved && !neverLinear(step))) return 1;
   carry(step, state, scratch);
-  return bringBelowBound(step, kHalvings, scratch, state);
+  return bringBelowBound(step, kTries, scratch, state);
 }
 
 double limitCorrections(const TakenStep& step, const Colliders& colliders, EnergyLimit& scratch, HairState& state) {
   carry(step, state, scratch);
   if (!bodiesStandStill(step, colliders, scratch, state)) return 1;
   // Halfway between two distant places outside of a body may lie its inside.
-  return bringBelowBound(step, judge(step, state) == Motion::kCalm ? kHalvings : 0, scratch, state);
+  return bringBelowBound(step, judge(step, state) == Motion::kCalm ? kTries : 0, scratch, state);
 }
 
 }  // namespace sim

@@ -40,6 +40,7 @@ struct TakenStep {
 struct EnergyLimit {
   std::vector<Vec3> carried, roots_before, roots_after;
   std::vector<V3<double>> plain;
+  int energies = 0;  // potential energies computed in this step
   explicit EnergyLimit(const HairMesh& mesh);
 };
 

@@ -26,7 +26,7 @@ constexpr double kReferenceRate = 1920;                     // 1/s
 struct Candidate {
   Integrator integrator;
   double rate, tolerance;
-  int max_iterations = 400;
+  int max_iterations = 60;
 };
 
 std::vector<Candidate> candidates() {
@@ -134,6 +134,7 @@ Measured measureCandidates(const std::vector<Candidate>& list, int runs) {
     reference.precision = sim::Precision::kDouble;
     reference.tolerance = 1e-9;
     reference.acceleration_tolerance = 0;
+    reference.max_iterations = 2000;
     const Trajectory truth = stage.run(reference, kReferenceRate).trajectory;
     Trajectory trajectory;
     const double standard = fastest(stage, {Integrator::kLinearizedEuler, 60, SimParams{}.tolerance}, runs, trajectory);

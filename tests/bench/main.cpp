@@ -13,6 +13,7 @@
 #include "tests/bench/collisions.h"
 #include "tests/bench/consistency.h"
 #include "tests/bench/contact_sheet.h"
+#include "tests/bench/frames_budget.h"
 #include "tests/bench/gate.h"
 #include "tests/bench/ladder.h"
 #include "tests/bench/pareto.h"
@@ -36,6 +37,7 @@ struct Asked {
   std::vector<std::string> sets;
   bench::GateOptions gate;
   std::string gate_document;
+  bench::FramesBudgetOptions frames_budget;
   std::string document, accuracy, performance;
   bool all_hold = true;  // the figures of those that have bounds
 };
@@ -81,6 +83,11 @@ std::vector<Task> tasks() {
        }},
       {"--collision-document", "all that collisions claim, into the tables of collision.md in the folder of --out",
        [](Asked& a) { bench::writeCollisionDocument(a.pareto.folder, a.styles.frames); }},
+      {"--frames-budget",
+       "what steps of whole clips cost over a walk's median, in counted work; exits 1 off its bounds",
+       [](Asked& a) {
+         if (!bench::runFramesBudget(a.frames_budget)) a.all_hold = false;
+       }},
       {"--gate", "every bound on speed and accuracy, one line each; exits 1 where one falls short",
        [](Asked& a) {
          const std::vector<bench::Figure> figures = bench::measureFigures(a.gate);
@@ -107,10 +114,18 @@ void addOptions(CLI::App& program, Asked& a) {
   program.add_flag("--quick", a.pareto.quick, "a coarser sweep");
   program
       .add_option("--only", a.collisions.styles,
-                  "styles of --collisions and --colliders, such as 'long low', comma separated")
+                  "styles of --collisions, --colliders and --frames-budget, such as 'long low', comma separated")
       ->delimiter(',');
-  program.add_option("--clips", a.collisions.clips, "clips of --collisions and --colliders, comma separated")
+  program
+      .add_option("--clips", a.collisions.clips,
+                  "clips of --collisions, --colliders and --frames-budget, comma separated")
       ->delimiter(',');
+  program.add_option("--speeds", a.frames_budget.speeds, "playback speeds of --frames-budget, comma separated")
+      ->delimiter(',')
+      ->check(CLI::Range(0.01, 100.0));
+  program.add_option("--steps", a.frames_budget.steps, "CSV file of every step of --frames-budget");
+  program.add_option("--frames-budget-document", a.frames_budget.folder,
+                     "also put --frames-budget's table and chart into this folder's performance.md");
   program.add_option("--set", a.sets, "NAME=VALUE of a parameter for --collisions")->allow_extra_args(false);
   program.add_option("--rounds", a.gate.rounds, "turns that the compared ways of --gate take")
       ->check(CLI::Range(1, 100));
@@ -124,7 +139,7 @@ void addOptions(CLI::App& program, Asked& a) {
 }
 
 // What options mean for one another.
-void settle(std::vector<Task>& all, Asked& a) {
+void settle(const CLI::App& program, std::vector<Task>& all, Asked& a) {
   if (!a.accuracy.empty()) {
     for (Task& task : all) {
       for (const char* part : {"--pareto", "--solvers", "--peers"})
@@ -137,6 +152,8 @@ void settle(std::vector<Task>& all, Asked& a) {
   a.gate.references = a.pareto.references;
   a.solvers.folder = a.peers.folder = a.pareto.folder;
   a.collisions.frames = a.styles.frames;
+  a.frames_budget.styles = a.collisions.styles;
+  if (program.count("--clips") > 0) a.frames_budget.clips = a.collisions.clips;
   for (const std::string& text : a.sets) {
     const std::size_t equals = text.find('=');
     a.collisions.set.emplace_back(text.substr(0, equals), equals < text.size() ? text.substr(equals + 1) : "");
@@ -152,7 +169,7 @@ int main(int argc, char** argv) {
   for (Task& task : all) program.add_flag(task.flag, task.asked, task.help);
   addOptions(program, asked);
   CLI11_PARSE(program, argc, argv);
-  settle(all, asked);
+  settle(program, all, asked);
   const bool any = std::any_of(all.begin(), all.end(), [](const Task& task) { return task.asked; });
   if (!any && asked.document.empty() && asked.performance.empty() && asked.sheet.folder.empty()) {
     std::cout << program.help();

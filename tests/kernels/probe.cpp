@@ -30,7 +30,7 @@ std::vector<Vec3> steps(Solver solver, Precision precision, Integrator integrato
   params.solver = solver, params.precision = precision, params.integrator = integrator;
   const bool single = precision != Precision::kDouble;
   params.tolerance = single ? 1e-6 : 1e-12;
-  params.acceleration_tolerance = params.displacement_tolerance = 0;
+  params.acceleration_tolerance = params.displacement_tolerance = 0, params.max_iterations = 2000;
   Hair hair(test::combedShape(test::mixedPatch(9, 0.2)), params);
   sim::Ellipsoid body;
   body.center = Vec3(0.04, -0.1, -0.06), body.radii = Vec3(0.06, 0.05, 0.03);

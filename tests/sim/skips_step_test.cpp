@@ -254,8 +254,9 @@ TEST(HairParts, AreWhatIsConnectedAndMoveAsTheWholeDoes) {
 TEST(HairParts, CountWhatTheyDidTogether) {
   sim::StepReport part, whole;
   const auto counts = [](sim::StepReport& report) {
-    return std::array{&report.solver_iterations, &report.contacts, &report.corrected, &report.initial_overlap,
-                      &report.self_contacts,     &report.guided,   &report.recoveries};
+    return std::array{&report.solver_iterations, &report.contacts,        &report.corrected,
+                      &report.initial_overlap,   &report.self_contacts,   &report.guided,
+                      &report.recoveries,        &report.work.iterations, &report.work.factors};
   };
   int n = 0;
   for (int* count : counts(part)) *count = ++n;

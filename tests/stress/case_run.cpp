@@ -151,6 +151,7 @@ void step(double dt, Run& run) {
   run.outcome.recoveries += report.recoveries;
   run.outcome.carried += report.carried;
   countWork(report, run);
+  run.outcome.dearest = std::max(run.outcome.dearest, report.work_units / run.hair.mesh.vertexCount());
   if (run.one.meets) countMeetings(run);
   if (run.bodyWithin() && run.around.time() > kIntruderThere)
     run.raised = std::max(run.raised, energyOf(run, run.hair));

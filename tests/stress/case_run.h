@@ -33,7 +33,7 @@ struct Run {
   Outcome outcome;
   double last_intrusion = 0;  // s
   double next_fault = 0;      // s
-  double raised = 0;  // J, most energy since a body appeared within the hair
+  double raised = 0;          // J, most energy since a body appeared within the hair
   long iterations = 0, unsolved = 0, met = 0;
   bool trace = false;
   bool waits = false;  // the hair is not stepped: its state is yet to come (resume.h)

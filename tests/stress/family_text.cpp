@@ -20,7 +20,7 @@ struct FamilyTitle {
   const char* title;
 };
 // Of families of which any part varies the same.
-constexpr std::array<FamilyTitle, 10> kTitles{{
+constexpr std::array<FamilyTitle, 11> kTitles{{
     {"pace", "steps, and frames through the clock, of 1 to 500 ms drawn anew each time"},
     {"param", "every parameter at its minimum and maximum, every choice"},
     {"random-params", "random combinations over the whole ranges of all parameters"},
@@ -30,6 +30,8 @@ constexpr std::array<FamilyTitle, 10> kTitles{{
     {"distances", "disturbances with signed distances of the skin for colliders"},
     {"scrub", "scrubbing backwards, jumps in time with and without carrying the hair along"},
     {"fault", "values not finite or absurd written into random vertices ten times a second"},
+    {"capture",
+     "two rounds of each capture, in place and going on, at 1 to 20 times, seams included; a step's work bounded"},
     {"mixed", "draws over all axes at once"},
 }};
 

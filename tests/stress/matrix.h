@@ -16,6 +16,8 @@ using Cases = std::vector<StressCase>;
 // Own clips, then those of the motion capture collection.
 std::span<const char* const> ownClips();
 std::span<const char* const> capturedClips();
+// All of the collection, the paper's figure included.
+std::span<const char* const> allCaptures();
 // The three styles in low resolution: what most cases run on.
 std::span<const HairChoice> lowStyles();
 
@@ -27,6 +29,7 @@ void addSpeeds(Cases& cases);
 void addScrubs(Cases& cases);
 void addStyles(Cases& cases);
 void addEndurance(Cases& cases);
+void addCaptures(Cases& cases);
 // matrix_params.cpp
 void addParameters(Cases& cases);
 void addStiffness(Cases& cases);

@@ -22,6 +22,20 @@ std::span<const char* const> capturedClips() {
   return kClips;
 }
 
+std::span<const char* const> allCaptures() {
+  static constexpr std::array<const char*, 10> kClips{"cmu_02_01_walk.bvh",
+                                                      "cmu_02_03_run.bvh",
+                                                      "cmu_02_04_jump.bvh",
+                                                      "cmu_indian_15_dance.bvh",
+                                                      "cmu_salsa17_spins_clean.bvh",
+                                                      "deepmimic_backflip.bvh",
+                                                      "deepmimic_cartwheel.bvh",
+                                                      "rokoko_dance.bvh",
+                                                      "dance.mot",
+                                                      "dance-paused.mot"};
+  return kClips;
+}
+
 std::span<const HairChoice> lowStyles() {
   static constexpr std::array<HairChoice, 3> kStyles{
       HairChoice{Cut::kStyle, sim::Style::kShort, sim::Resolution::kLow},
@@ -44,6 +58,9 @@ std::string clipName(const char* clip) {
   const std::string name = clip;
   return name.substr(0, name.find('.'));
 }
+
+// What the bounds on a step's counts add up to.
+constexpr double kMaxStepWork = 320;
 
 constexpr std::array<double, 9> kSteps{1.0 / 1000, 1.0 / 480, 1.0 / 240, 1.0 / 120, 1.0 / 60,
                                        1.0 / 30,   1.0 / 20,  1.0 / 15,  0.1};
@@ -138,6 +155,29 @@ void addSpeeds(Cases& cases) {
   };
   for (const char* clip : ownClips()) add(clip, true);
   for (const char* clip : capturedClips()) add(clip, false);
+}
+
+// Whole clips with the seams of their loops.
+void addCaptures(Cases& cases) {
+  for (const char* clip : allCaptures()) {
+    for (const char* loop : {"go-on", "in-place"}) {
+      for (const double speed : {1.0, 4.0, 10.0, 20.0}) {
+        for (const HairChoice& hair : lowStyles()) {
+          StressCase one;
+          one.name = "capture/" + clipName(clip) + "/" + loop + "/" + plain(speed) + "x/" + hairName(hair);
+          one.hair = hair;
+          one.clip = clip;
+          one.play = Play::kForward;
+          one.speed = speed;
+          one.rounds = 2;
+          one.loop = loop;
+          one.max_work = kMaxStepWork;
+          one.by_forces = speed == 1;
+          cases.push_back(one);
+        }
+      }
+    }
+  }
 }
 
 void addScrubs(Cases& cases) {

@@ -14,13 +14,14 @@
 namespace stress {
 namespace {
 
-constexpr double kAtRest = 5e-3;           // m/s, of a reference hair that has settled
-constexpr double kRested = 1;              // s at rest elsewhere, before that counts
-constexpr double kSoon = 0.1;              // s, over which velocities are extrapolated
-constexpr double kUnrest = 3;              // times the stated time: bound of the reference hair's settling
-constexpr double kWindow = 2, kHurry = 5;  // s, and times its pace: see Pace of return
-constexpr int kIdleWindows = 5;            // in a row, of hair that is not coming
-constexpr double kSmallestEnergy = 0.05;   // of the hair's weight times its length
+constexpr double kAtRest = 5e-3;                // m/s, of a reference hair that has settled
+constexpr double kRested = 1;                   // s at rest elsewhere, before that counts
+constexpr double kSoon = 0.1;                   // s, over which velocities are extrapolated
+constexpr double kUnrest = 3;                   // times the stated time: bound of the reference hair's settling
+constexpr double kWindow = 2, kHurry = 5;       // s, and times its pace: see Pace of return
+constexpr int kIdleWindows = 5;                 // in a row, of hair that is not coming
+constexpr double kShortest = 4, kLongest = 60;  // s, of a case's rounds
+constexpr double kSmallestEnergy = 0.05;        // of the hair's weight times its length
 
 // MiB of the process that are in memory.
 double residentMemory() {
@@ -253,6 +254,27 @@ void waitForRest(Run& run) {
 
 }  // namespace
 
+namespace {
+
+// The case with its loop chosen and its rounds in seconds.
+StressCase withRounds(StressCase one, Stage& stage) {
+  if (!one.loop.empty()) {
+    app::chooseLoop(*app::parseLoop(one.loop), stage.actor);
+    stage.settled = stage.actor.hair;
+  }
+  if (one.rounds > 0)
+    one.seconds = std::clamp(one.rounds * stage.actor.playedClip().duration() / one.speed, kShortest, kLongest);
+  return one;
+}
+
+void judgeMotion(Run& run) {
+  if (run.one.max_work > 0 && run.outcome.dearest > run.one.max_work)
+    run.fail(said("a step took %.0f units a vertex, more than %.0f", run.outcome.dearest, run.one.max_work));
+  if (run.one.by_forces && run.outcome.guided > 0) run.fail(said("%.0f columns were guided home", run.outcome.guided));
+}
+
+}  // namespace
+
 Outcome runCase(const StressCase& one, std::uint64_t seed, bool trace, StageStore& stages) {
   if (findClip(one.clip).empty()) {
     Outcome skipped;
@@ -262,9 +284,11 @@ Outcome runCase(const StressCase& one, std::uint64_t seed, bool trace, StageStor
   }
   Stage& stage = stages.stage(one);
   const double started = bench::cpuSeconds();
-  Run run(one, seed, stage);
+  const StressCase timed = withRounds(one, stage);
+  Run run(timed, seed, stage);
   run.trace = trace;
   playMotion(run);
+  judgeMotion(run);
   if (one.meets && run.met == 0) run.fail("the body that was added never met the hair");
   if (!run.failed()) waitForRest(run);
   run.outcome.iterations = static_cast<double>(run.iterations) / std::max(1, run.outcome.steps);

@@ -37,6 +37,7 @@ struct Outcome {
   int recoveries = 0, carried = 0, steps = 0;
   int guided = 0;         // most columns guided to rest at once
   double iterations = 0;  // of the linear solver a step, mean
+  double dearest = 0;     // units a vertex, of the motion's dearest step
   double unsolved = 0;    // share of the steps whose solve ended at its most iterations
   double cpu_seconds = 0;
 };

@@ -88,7 +88,8 @@ sim::HairMeshShape recut(Cut cut, const sim::HairMeshShape& shape) {
 }  // namespace
 
 std::string findClip(const std::string& name) {
-  for (const std::string& folder : {app::dataPath("assets/clips"), app::dataPath("../shared/mocap")}) {
+  for (const std::string& folder :
+       {app::dataPath("assets/clips"), app::dataPath("../shared/mocap"), app::dataPath("../shared/arcsim")}) {
     const std::string file = (std::filesystem::path(folder) / name).string();
     if (std::filesystem::exists(file)) return file;
   }
@@ -134,6 +135,8 @@ Stage& StageStore::stage(const StressCase& one) {
   app::CharacterSpec spec;
   spec.motion = findClip(one.clip);
   if (spec.motion.empty()) throw app::InputError(one.clip, "", "is not here", "see --list for the clips in use");
+  if (spec.motion.ends_with(".mot"))
+    spec.parts = (std::filesystem::path(spec.motion).parent_path() / "female-objs").string();
   spec.style = one.hair.style;
   spec.resolution = one.hair.resolution;
   auto stage = std::make_unique<Stage>();

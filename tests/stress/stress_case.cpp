@@ -1,5 +1,7 @@
 #include "tests/stress/stress_case.h"
 
+#include <filesystem>
+
 #include "sim/field_text.h"
 #include "tests/stress/matrix.h"
 #include "tests/stress/stage.h"
@@ -24,6 +26,7 @@ std::vector<StressCase> declareCases(std::uint64_t seed) {
   addRandomParameters(seed, cases);
   addMixed(seed, cases);
   addEndurance(cases);
+  addCaptures(cases);
   return cases;
 }
 
@@ -39,10 +42,14 @@ WindowCommand windowCommand(const StressCase& one) {
   WindowCommand window;
   window.command = "hairmesh --motion '";
   window.command += findClip(one.clip);
+  if (one.clip.ends_with(".mot"))
+    window.command +=
+        "' --parts '" + (std::filesystem::path(findClip(one.clip)).parent_path() / "female-objs").string();
   window.command += "' --style " + std::string(sim::styleName(one.hair.style));
   window.command += " --resolution " + std::string(sim::resolutionName(one.hair.resolution));
   const auto also = [&](const std::string& text) { window.note += (window.note.empty() ? "" : "; ") + text; };
   if (one.play == Play::kForward) window.command += " --speed " + sim::numberText(one.speed);
+  if (!one.loop.empty()) window.command += " --loop " + one.loop;
   if (one.play == Play::kStill) window.command += " --speed 0";
   if (one.play == Play::kBackward || one.play == Play::kJumps || one.play == Play::kCarryJumps)
     also("scrub in the Motion panel");

@@ -84,7 +84,12 @@ void Surroundings::playClip(double dt) {
   } else if (jumps) {
     playback.time = std::fmod(playback.time + dt, length);
   }
+  const sim::Vec3 jumped = stage_.actor.jumped;
   if (one_.play != Play::kStill) app::moveActor(dt, stage_.actor);
+  if (stage_.actor.jumped == jumped) return;
+  // The whole figure has jumped, at a seam: hair and bodies come along.
+  carries_ = true;
+  before_.clear(), parts_before_.clear();
 }
 
 // The pose of the disturbance at time_.

@@ -1,0 +1,41 @@
+#include "sim/step_work.h"
+
+#include <algorithm>
+
+namespace sim {
+namespace {
+
+// Units a vertex
+constexpr double kSolve = 7, kFactors = 1.9, kCoarseSpace = 4, kEnergy = 4.3, kMinimization = 2.9;
+constexpr double kSurfacePoint = 16;                      // units each
+constexpr double kSolveShare = 0.5, kFollowShare = 0.25;  // of what a budget leaves to choose
+constexpr int kEnergies = 2;                              // that a step in motion computes
+
+}  // namespace
+
+StepWork& StepWork::operator+=(const StepWork& other) {
+  solves += other.solves, iterations += other.iterations;
+  factors += other.factors, coarse_spaces += other.coarse_spaces;
+  energies += other.energies, minimizations += other.minimizations;
+  surface_points += other.surface_points;
+  return *this;
+}
+
+double workUnits(int vertices, const StepWork& work) {
+  const double each = kSolve * work.solves + work.iterations + kFactors * work.factors +
+                      kCoarseSpace * work.coarse_spaces + kEnergy * work.energies + kMinimization * work.minimizations;
+  return vertices * each + kSurfacePoint * static_cast<double>(work.surface_points);
+}
+
+WorkBounds boundsWithin(int vertices, double units) {
+  constexpr double kMost = 1e6;
+  const double each = units / std::max(1, vertices) - kSolve - kFactors - kCoarseSpace - kEnergies * kEnergy;
+  const double left = std::clamp(each, 0.0, kMost);
+  WorkBounds bounds;
+  bounds.iterations = std::max(1, static_cast<int>(kSolveShare * left));
+  bounds.minimizations = static_cast<int>(kFollowShare * left / kMinimization);
+  bounds.surface_points = static_cast<long>((1 - kSolveShare - kFollowShare) * left * vertices / kSurfacePoint);
+  return bounds;
+}
+
+}  // namespace sim
