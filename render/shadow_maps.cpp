@@ -25,10 +25,11 @@ struct Signature {
   }
 };
 
-Texture makeArray(GLenum format, const TextureExtent& extent, GLenum filter) {
+Texture makeArray(GLenum format, const TextureExtent& extent, GLenum filter, GLsizei levels = 1) {
   Texture texture = makeTexture(GL_TEXTURE_2D_ARRAY);
-  glTextureStorage3D(texture.id(), 1, format, extent.width, extent.height, extent.layers);
-  glTextureParameteri(texture.id(), GL_TEXTURE_MIN_FILTER, static_cast<GLint>(filter));
+  glTextureStorage3D(texture.id(), levels, format, extent.width, extent.height, extent.layers);
+  glTextureParameteri(texture.id(), GL_TEXTURE_MIN_FILTER,
+                      static_cast<GLint>(levels > 1 ? GL_LINEAR_MIPMAP_LINEAR : filter));
   glTextureParameteri(texture.id(), GL_TEXTURE_MAG_FILTER, static_cast<GLint>(filter));
   glTextureParameteri(texture.id(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   glTextureParameteri(texture.id(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
@@ -97,7 +98,8 @@ void ShadowMaps::allocate(const TextureExtent& extent) {
   if (same_size && extent.height <= extent_.height && extent.layers <= extent_.layers) return;
   extent_ = extent;
   opacity_near_ = makeArray(GL_RGBA16F, extent, GL_LINEAR);
-  opacity_far_ = makeArray(GL_RGBA16F, extent, GL_LINEAR);
+  opacity_far_ = makeArray(GL_RGBA16F, extent, GL_LINEAR, shared::kOpacityLevels);
+  glClearTexImage(opacity_far_.id(), 0, GL_RGBA, GL_FLOAT, nullptr);  // coarse texels reach past the tiles
   hair_depth_ = makeArray(GL_DEPTH_COMPONENT32F, extent, GL_LINEAR);
   body_in_hair_depth_ = makeArray(GL_DEPTH_COMPONENT32F, extent, GL_LINEAR);
   compareDepth(body_in_hair_depth_);
@@ -112,7 +114,7 @@ void ShadowMaps::allocate(const TextureExtent& extent) {
 
 long ShadowMaps::gpuBytes() const {
   const long side = bodyMapSize(extent_.width);
-  return extent_.texels() * (8 + 8 + 4 + 4) + 4L * shared::kMaxBodyShadows * side * side;
+  return extent_.texels() * (8 + 8 + 4 + 4) + extent_.texels() * 8 / 3 + 4L * shared::kMaxBodyShadows * side * side;
 }
 
 // A tile that the hair has is kept until it is off by more than a little, so that nothing switches to and fro.
@@ -361,6 +363,10 @@ void ShadowMaps::beginOpacity(const HairMap& map) {
   glClearNamedFramebufferfv(target, GL_COLOR, 1, nothing);
   glDisable(GL_DEPTH_TEST);
   glBindTextureUnit(shared::kUnitHairDepth, hair_depth_.id());
+}
+
+void ShadowMaps::finishOpacity() {
+  glGenerateTextureMipmap(opacity_far_.id());
 }
 
 void ShadowMaps::beginBodyInHairDepth(const HairMap& map) {

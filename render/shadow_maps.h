@@ -70,6 +70,9 @@ class ShadowMaps {
   void beginBodyInHairDepth(const HairMap& map);
   void beginBodyDepth(std::size_t map);
 
+  // Averages the opacity of all hairs' maps over ever coarser texels, once those that changed are drawn.
+  void finishOpacity();
+
   // Binds every map for the passes that read them.
   void bindMaps() const;
 

@@ -81,10 +81,12 @@ void HairShadowPass::drawStrands(const Input& input, const HairResources& hair, 
 
 void HairShadowPass::draw(const Input& input, Stage& stage, FrameReport& report) {
   ShadowMaps& shadows = stage.shadows;
+  bool changed = false;
   for (std::size_t i = 0; i < shadows.hairMaps().size(); ++i) {
     const bool kept = shadows.claimHairMap(i) && input.keep_maps;
     report.skip_counts.shadows += {kept, 1};
     if (kept) continue;
+    changed = true;
     const ShadowMaps::HairMap& map = shadows.hairMaps()[i];
     HairResources& hair = stage.hairs.hairs()[map.hair];
     hair.shadow_draw.shadow_map = static_cast<int>(i);
@@ -103,6 +105,7 @@ void HairShadowPass::draw(const Input& input, Stage& stage, FrameReport& report)
     body_depth_.use();
     drawBodies(stage.bodies, map.frustum, input.cull_bodies);
   }
+  if (changed) shadows.finishOpacity();
 }
 
 ReloadReport HairShadowPass::reload(Reload which) {

@@ -26,6 +26,7 @@ const int kMaxHairShadows =
     128;                        // hairs (the nearest ones) that own a deep opacity map; a block of 16 KB holds so many
 const int kMaxBodyShadows = 2;  // of the bodies near the camera, and of all
 const int kMaxOpacityLayers = 7;  // the eighth channel takes everything
+const int kOpacityLevels = 6;     // of the far layers' texture, each half as fine as the one before it
 const float kLayerGrowth = 1.5;   // each deep opacity layer is this much thicker than the one before it
 
 // Texels of the two float buffer textures of a hair.

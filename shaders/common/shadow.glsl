@@ -15,13 +15,15 @@ vec3 hairShadowCoordinates(int map, vec3 world) {
   return clip.xyz * 0.5 + 0.5;
 }
 
-// Where a place of the map lies in the array of textures, half a texel off the tile's border so that neighbours do not
-// bleed in.
-vec3 hairShadowTexel(int map, vec2 at) {
-  float half_texel = 0.5 / hair_shadow_size[map].y;
+// Where a place of the map lies in the array of textures, off the tile's border by half a texel of a level so that
+// neighbours do not bleed in.
+vec3 hairShadowTexel(int map, vec2 at, float level) {
+  float half_texel = min(0.5 * exp2(ceil(level)) / hair_shadow_size[map].y, 0.5);
   vec4 tile = hair_shadow_tile[map];
   return vec3(tile.xy + clamp(at, half_texel, 1.0 - half_texel) * vec2(tile.z, tile.z * opacity.z), tile.w);
 }
+
+vec3 hairShadowTexel(int map, vec2 at) { return hairShadowTexel(map, at, 0.0); }
 
 // What the layers of a texel hold up to `behind` (m) its first hair. Within a layer it grows linearly; layers thicken
 // geometrically, since what lies deep needs less resolution.
@@ -72,39 +74,66 @@ float bodyLightOnHair(int map, vec3 at) {
   return texture(body_in_hair_depth, vec4(hairShadowTexel(map, at.xy), reference));
 }
 
-// Light of the key left after the hair of a map, for a point of body or ground: averaged over a disc that widens with
-// the distance from the hair, as under a lamp of some size. The taps lie on a spiral of golden angles (Vogel 1979).
-float lightThroughHair(int map, vec3 world) {
-  const int kTaps = 12;
-  const float kLampAngle = 0.16, kMinRadius = 0.004;  // rad, m
-  // Hair shades what lies in the ball's shadow only.
-  vec3 from = world - hair_shadow_ball[map].xyz;
-  float down = dot(from, to_key.xyz), radius = hair_shadow_ball[map].w;
-  if (down > radius || dot(from, from) - down * down > radius * radius) return 1.0;
-  vec3 at = hairShadowCoordinates(map, world);
-  if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return 1.0;
-  // How far above lies the hair that may shade this point? Sought over a wide disc: the mean of what is found, so that
-  // it does not leap from one strand to the next; hair nearer than kNear counts less and less.
+// A lamp of some size: hair's shadow widens with the distance from the hair. m at the hair; rad.
+const float kMinRadius = 0.008, kLampAngle = 0.035;
+const int kTaps = 12;
+
+// Tap `i` of so many on a disc of radius 1: a spiral of golden angles (Vogel 1979).
+vec2 discTap(int i, float taps) {
+  float turn = 2.399963 * float(i);
+  return sqrt((float(i) + 0.5) / taps) * vec2(cos(turn), sin(turn));
+}
+
+// Optical depth of all hair of a map along the light, averaged over texels of a level.
+float wholeOpticalDepth(int map, vec2 at, float level) {
+  return opacity.y * textureLod(opacity_far, hairShadowTexel(map, at, level), level).w;
+}
+
+// For a point behind all hair of the map, as the ground is: `taps` taps as wide as they lie apart, so that none is seen.
+float lightBehindHair(int map, vec3 at, int taps) {
+  float above = (at.z - 0.5) * hair_shadow_size[map].z;  // m, from the hair's middle
+  float reach = (kMinRadius + 0.5 * kLampAngle * above) / hair_shadow_size[map].x;
+  float level = clamp(log2(reach * hair_shadow_size[map].y * 0.5), 0.0, float(kOpacityLevels - 1));
+  float sum = 0.0;
+  for (int i = 0; i < taps; ++i) {
+    vec2 tap = at.xy + reach * discTap(i, float(kTaps));
+    bool inside = all(greaterThan(tap, vec2(0.0))) && all(lessThan(tap, vec2(1.0)));
+    sum += inside ? exp(-wholeOpticalDepth(map, tap, level)) : 1.0;
+  }
+  return sum / float(kTaps);
+}
+
+// For a point among the map's hair: how far above lies the hair that may shade it? Sought over a wide disc: the mean of
+// what is found, so that it does not leap from one strand to the next; hair nearer than kNear counts less and less.
+float lightBetweenHair(int map, vec3 at, int sought) {
   const float kSought = 0.03, kNear = 0.01;  // m
   float above = 0.0, found = 0.0;
-  for (int i = 0; i < 9; ++i) {
-    float turn = 2.399963 * float(i);
-    vec2 tap = kSought * sqrt(float(i) / 8.0) * vec2(cos(turn), sin(turn));
+  for (int i = 0; i < sought; ++i) {
+    vec2 tap = kSought * discTap(i, 9.0);
     float first = textureLod(hair_depth, hairShadowTexel(map, at.xy + tap / hair_shadow_size[map].x), 0.0).r;
-    float height = (min(at.z, 1.0) - first) * hair_shadow_size[map].z, weight = clamp(height / kNear, 0.0, 1.0);
+    float height = (at.z - first) * hair_shadow_size[map].z, weight = clamp(height / kNear, 0.0, 1.0);
     above += weight * height;
     found += weight;
   }
-  if (found == 0.0) return 1.0;
-  above /= found;
-  float reach = (kMinRadius + kLampAngle * 0.5 * above) / hair_shadow_size[map].x;
-  float sum = 0.0;
-  for (int i = 0; i < kTaps; ++i) {
-    float turn = 2.399963 * float(i);
-    vec2 tap = sqrt((float(i) + 0.5) / float(kTaps)) * vec2(cos(turn), sin(turn));
-    sum += exp(-hairOpticalDepth(map, vec3(at.xy + tap * reach, at.z)));
-  }
+  above /= max(found, 1e-6);
+  float reach = (kMinRadius + 0.5 * kLampAngle * above) / hair_shadow_size[map].x, sum = 0.0;
+  int taps = found > 0.0 ? kTaps : 0;
+  for (int i = 0; i < taps; ++i)
+    sum += exp(-hairOpticalDepth(map, vec3(at.xy + reach * discTap(i, float(kTaps)), at.z)));
   return mix(1.0, sum / float(kTaps), min(4.0 * found, 1.0));
+}
+
+// Light of the key left after the hair of a map, for a point of body or ground: averaged over a disc that widens with
+// the distance from the hair. Software rasterizers run through both sides of a branch but skip a loop without turns: so
+// it is counts that say what is left out.
+float lightThroughHair(int map, vec3 world) {
+  vec3 at = hairShadowCoordinates(map, world);
+  vec2 beyond = max(-at.xy, at.xy - 1.0) * hair_shadow_size[map].x;
+  bool behind = at.z >= 1.0, covered = max(beyond.x, beyond.y) <= (behind ? 0.1 : 0.0);
+  // Where the coarsest texels around the point hold no hair, none can be found.
+  bool near = covered && !behind && wholeOpticalDepth(map, at.xy, float(kOpacityLevels - 1)) > 0.0;
+  float below = lightBehindHair(map, at, covered && behind ? kTaps : 0), between = lightBetweenHair(map, at, near ? 9 : 0);
+  return covered && behind ? below : near ? between : 1.0;
 }
 
 // After all hairs that may stand above the point.
