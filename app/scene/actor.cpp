@@ -96,7 +96,8 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
   }
   haircut->faces = renderFaces(haircut->mesh);
   blendPositions(haircut->mesh.shape.positions, haircut->mesh.shape.positions, 1, Vec3::Zero(), haircut->rest);
-  haircut->parts = sim::connectedParts(haircut->mesh);
+  // Hair of a style that divides over the shoulders lies against itself: it sleeps as a whole.
+  if (!spec.hair.empty()) haircut->parts = sim::connectedParts(haircut->mesh);
   asset_cache.haircuts.push_back(std::move(haircut));
   return *asset_cache.haircuts.back();
 }

@@ -16,8 +16,9 @@
 namespace sim {
 namespace {
 
-constexpr double kFatness = 0.10;  // of every corner tetrahedron, see cornerFatness
-constexpr double kGap = 0.0025;    // m, of every vertex but the roots; further down the coat keeps more by itself
+constexpr double kFatness = 0.10, kFatnessRefined = 0.09;  // of every corner tetrahedron, see cornerFatness
+constexpr double kGap = 0.0025;  // m, of every vertex but the roots; further down the coat keeps more by itself
+constexpr double kGapBeforeRefining = 0.0042;  // m: layers half-way to the roots find room
 
 constexpr double kOrdinaryHead = 0.23;  // m from chin to crown
 constexpr double kMinFatness = 0.03;
@@ -90,12 +91,16 @@ HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& scalp, 
   for (const Attempt& attempt :
        {Attempt{0, 0, &scaled_body}, Attempt{20, 0, &scaled_body}, Attempt{60, 0.5, &post}, Attempt{60, 1, &post}}) {
     const Scalp head = rounded(scaledTo(scalp, 1 / scale), attempt.rounds, attempt.ball);
-    shape = weave(combCoat(style, head, *attempt.around, traceFlowLines(head)), plan);
-    double fatness = untangle(*attempt.around, kFatness, kGap, shape);
-    if (resolution == Resolution::kUltra) {
-      shape = refined(shape, head);
-      fatness = untangle(*attempt.around, kFatness, kGap, shape);
+    Woven woven = weave(combCoat(style, head, *attempt.around, traceFlowLines(head)), plan);
+    const bool refining = resolution == Resolution::kUltra;
+    const double gap = refining ? kGapBeforeRefining : kGap;
+    layFlat(*attempt.around, woven.up, kFatness, gap, woven.shape);
+    double fatness = untangle(*attempt.around, kFatness, gap, woven.shape);
+    if (refining) {
+      woven.shape = refined(woven, head);
+      fatness = untangle(*attempt.around, kFatnessRefined, kGap, woven.shape);
     }
+    shape = std::move(woven.shape);
     if (fatness > kMinFatness) break;
   }
   for (Vec3& p : shape.positions) p *= scale;

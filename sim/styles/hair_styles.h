@@ -31,14 +31,17 @@ struct Scalp {
 // Signed distance (m, negative inside) from a point to the body in its rest pose, in the scalp's frame.
 using BodyDistance = std::function<double(const Vec3&)>;
 
-// Grows a hair mesh: hairline at forehead, temples, around the ears and nape; side parting; columns from the parting
-// and crown outermost; ends cut along a smooth surface. Long hair divides over the shoulders: what is rooted before the
-// ears falls in front of them. All but the roots keeps 2.5 mm off the body (on a head of 23 cm, and in proportion), 6
-// mm once the hair has left the scalp; edges are at least 3 mm. The resolutions are one haircut, meshed more or
-// less finely, with the same topology on every head. Valid for any scalp: where a head leaves no room, the hair grows
-// on a rounded one (see the source). Vertex counts: short 225 / 569 / 1,339 / 7,081, shoulder 360 / 913 / 2,306 /
-// 9,617, long 376 / 922 / 2,249 / 10,241; minimal 85, 119, 174. Columns of at most 8 or 16 vertices where a
-// plan can have them so, for whole vectors of the solver's kernels. Deterministic; under 0.25 s, ultra under 0.5 s.
+// Grows a hair mesh: hairline at forehead, temples, around the ears and nape; side parting; columns from the
+// parting and crown outermost; ends cut along a smooth surface, the outer hair a little shorter. The coat lies on
+// the head: from medium on it stands 3 to 8 mm over the scalp within 20 mm of the parting, and less than 18 mm at
+// the crown. Long hair divides over the shoulders: what is rooted before the ears falls in front of them, and no
+// root face joins it to the rest. All but the roots keeps 2.5 mm off the body (on a head of 23 cm, and in
+// proportion), 6 mm once the hair has left the scalp; edges are at least 3 mm. The resolutions are one haircut,
+// meshed more or less finely, with the same topology on every head; the coarser ones stand off further, for their
+// prisms would be inverted otherwise. Valid for any scalp: where a head leaves no room, the hair grows on a rounded
+// one (see the source). Vertex counts: short 225 / 569 / 1,339 / 7,081, shoulder 360 / 913 / 2,306 / 9,617, long
+// 368 / 902 / 2,257 / 9,997; minimal 85, 119, 168. Columns of at most 8 or 16 vertices where a plan can have them
+// so, for whole vectors of the solver's kernels. Deterministic; under 0.5 s, ultra under 1.5 s.
 HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& scalp, const BodyDistance& body);
 
 std::string_view styleName(Style style);                 // "short", "shoulder", "long"

@@ -7,22 +7,29 @@
 namespace sim {
 namespace {
 
-constexpr double kRowStep = 0.006;   // m, below the hairline
-constexpr double kInnerGap = 0.006;  // m, between the body and the underside of the hair
-constexpr double kTautness = 0.9;    // how nearly hanging hair spans hollows as a taut string would
-constexpr double kDivide = 0.35;     // hair rooted in front of this backness falls in front of the shoulders
+constexpr double kRowStep = 0.006;    // m, below the hairline
+constexpr double kInnerGap = 0.006;   // m, between the body and the underside of the hair
+constexpr double kTautness = 0.9;     // how nearly hanging hair spans hollows as a taut string would
+constexpr double kCloseBeside = 0.9;  // of the way from one flow line to the next, at either side of the divide
+constexpr double kDivide = 0.35;      // hair rooted in front of this backness falls in front of the shoulders
 
 // What one style wants. Heights are in head heights above the scalp's centre.
 struct Cut {
-  double thickness;          // m, of the coat at the sides and the back
+  double thickness;          // m, of the coat at the sides and the back, over its underside
   double front, side, back;  // height of the ends; relative to the shoulders where `from_shoulders`
   bool from_shoulders, divides;
   double tautness;  // how nearly the outer guide hangs straight from the widest part of the head
+  double slant;     // m that what is rooted at the hairline ends below what is rooted at the parting
 };
 
-constexpr std::array kCuts{Cut{0.024, -0.20, -0.25, -0.40, false, false, 0.35},  // by Style
-                           Cut{0.034, 0.05, 0.05, 0.0, true, false, 0.6},
-                           Cut{0.036, -0.50, -0.90, -1.08, true, true, 0.8}};
+constexpr std::array kCuts{Cut{0.017, -0.20, -0.25, -0.40, false, false, 0.35, 0.020},  // by Style
+                           Cut{0.019, 0.05, 0.05, 0.0, true, false, 0.6, 0.030},
+                           Cut{0.020, -0.50, -0.90, -1.08, true, true, 0.8, 0.045}};
+
+// Hair leaves the scalp at about 25 degrees until it lies on the hair below, a little higher at the crown.
+constexpr double kLift = 0.0035, kLiftAtCrown = 0.0065;          // m
+constexpr double kLiftReach = 0.009, kLiftReachAtCrown = 0.016;  // m
+constexpr double kThinnestInFront = 0.42;  // thickness of the coat at the forehead's hairline over that at the sides
 
 // Height of the shoulders' tops beside the neck, where hair comes to rest.
 double shoulderHeight(const Scalp& scalp, const BodyDistance& body) {
@@ -60,7 +67,7 @@ struct Comber {
 
   double backness(int sheet) const { return lines.backness(sheet); }
   double sideOf(int sheet) const { return 2 * sheet < coat.sheets ? 1.0 : -1.0; }
-  bool inFront(int sheet) const { return cut.divides && backness(sheet) < kDivide; }
+  bool inFront(int sheet) const { return coat.inFront(sheet); }
 
   // Whether two neighbouring sheets have gone separate ways at a row: one before, one behind the shoulder.
   bool parted(int sheet, int other, int row) const;
@@ -77,7 +84,8 @@ struct Comber {
   void relaxInner();
   void raiseOuter();
   double rowAtHeight(int sheet, double height) const;
-  void measure();
+  void measureWays();
+  void measureCut();
 };
 
 bool Comber::parted(int sheet, int other, int row) const {
@@ -253,7 +261,7 @@ void Comber::hangOuter(int sheet) {
   hangTaut(coat.outer, sheet, widest, coat.rows - 1, cut.tautness);
   // Rounds the bend where the hair leaves the head.
   for (int sweep = 0; sweep < 12; ++sweep) {
-    for (int r = 1; r + 1 < coat.rows; ++r) {
+    for (int r = std::max(1, widest - 6); r + 1 < coat.rows; ++r) {
       Vec3& p = coat.outer[coat.index(sheet, r)];
       p = 0.5 * p + 0.25 * (coat.outer[coat.index(sheet, r - 1)] + coat.outer[coat.index(sheet, r + 1)]);
     }
@@ -323,13 +331,16 @@ void Comber::raiseOuter() {
     std::swap(normal, coat.outer);
   }
   for (int s = 0; s < coat.sheets; ++s) {
-    const double around = 0.42 + 0.58 * smoothstep(0.0, 0.35, backness(s));
     for (int r = 0; r < coat.rows; ++r) {
-      const double along = 0.72 + 0.28 * smoothstep(0, coat.scalp_rows, r);
-      const Vec3& n = normal[coat.index(s, r)];
-      coat.outer[coat.index(s, r)] = coat.inner[coat.index(s, r)] + cut.thickness * around * along * n;
+      const double height = coat.rise[s].height(1, coat.travelled[coat.index(s, r)]);
+      coat.outer[coat.index(s, r)] = coat.inner[coat.index(s, r)] + height * normal[coat.index(s, r)];
     }
     hangOuter(s);
+  }
+  coat.up = normal;
+  for (std::size_t i = 0; i < coat.up.size(); ++i) {
+    const Vec3 off = coat.outer[i] - coat.inner[i];
+    if (off.norm() > 0.002) coat.up[i] = off.normalized();
   }
 }
 
@@ -342,17 +353,43 @@ double Comber::rowAtHeight(int sheet, double height) const {
   return coat.rows - 1.0;
 }
 
-void Comber::measure() {
+void Comber::measureWays() {
   coat.travelled.assign(coat.inner.size(), 0.0);
   for (int s = 0; s < coat.sheets; ++s) {
     for (int r = 1; r < coat.rows; ++r) {
       const double way = (coat.inner[coat.index(s, r)] - coat.inner[coat.index(s, r - 1)]).norm();
       coat.travelled[coat.index(s, r)] = coat.travelled[coat.index(s, r - 1)] + way;
     }
-    coat.cut_row.push_back(rowAtHeight(s, ends[s]));
-    coat.short_row.push_back(rowAtHeight(s, scalp.center.y() + shoulders + 0.16 * scalp.head_height));
+    const double q = backness(s), crown = smoothstep(0.6, 1.0, q);
+    Rise rise;
+    rise.lift = kLift + (kLiftAtCrown - kLift) * crown;
+    rise.reach = kLiftReach + (kLiftReachAtCrown - kLiftReach) * crown;
+    rise.hairline = coat.travelled[coat.index(s, coat.scalp_rows - 1)];
+    const double thickness = cut.thickness * (kThinnestInFront + (1 - kThinnestInFront) * smoothstep(0.0, 0.4, q));
+    rise.slope = std::max(0.0, thickness - rise.lift) / rise.hairline;
+    coat.rise.push_back(rise);
   }
-  if (cut.divides) coat.divide = kDivide;
+}
+
+void Comber::measureCut() {
+  for (int s = 0; s < coat.sheets; ++s) {
+    coat.cut_row.push_back(rowAtHeight(s, ends[s]));
+  }
+  coat.slant = cut.slant;
+}
+
+// Hair divides between two flow lines. The front one is moved next to the back one, so that no bare scalp shows
+// between.
+FlowLines dividedLines(const Scalp& scalp, FlowLines lines, int front_sheets) {
+  for (const int side : {0, 1}) {
+    const auto at = [&](int sheet) { return side ? lines.sheets - 1 - sheet : sheet; };
+    for (int r = 0; r < lines.rows; ++r) {
+      Vec3& front = lines.points[static_cast<std::size_t>(at(front_sheets - 1)) * lines.rows + r];
+      const Vec3& back = lines.at(at(front_sheets), r);
+      front = skinPoint(scalp, front + kCloseBeside * (back - front) - scalp.center);
+    }
+  }
+  return lines;
 }
 
 }  // namespace
@@ -367,13 +404,18 @@ Vec3 bodyNormal(const BodyDistance& body, const Vec3& p) {
 }
 
 Coat combCoat(Style style, const Scalp& scalp, const BodyDistance& body, const FlowLines& lines) {
-  Comber comber{style, scalp, body, lines, kCuts[static_cast<std::size_t>(style)], shoulderHeight(scalp, body), {}};
+  const Cut& cut = kCuts[static_cast<std::size_t>(style)];
+  const int front = cut.divides ? static_cast<int>(std::lround(kDivide * (lines.sheets / 2))) : 0;
+  const FlowLines combed = cut.divides ? dividedLines(scalp, lines, front) : lines;
+  Comber comber{style, scalp, body, combed, cut, shoulderHeight(scalp, body), {}};
   comber.coat.sheets = lines.sheets;
   comber.coat.scalp_rows = lines.rows;
+  comber.coat.front_sheets = front;
   comber.fallAll();
   comber.relaxInner();
+  comber.measureWays();
   comber.raiseOuter();
-  comber.measure();
+  comber.measureCut();
   return comber.coat;
 }
 

@@ -3,22 +3,39 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "sim/styles/hair_styles.h"
 #include "sim/styles/style_roots.h"
 
 namespace sim {
 
+// How high hair lies over the inner guide after a way (m) from its root: it leaves the scalp at a flat angle, and lies
+// on all that is rooted further down its sheet, which is more the further it has come.
+struct Rise {
+  double lift = 0, reach = 1;  // m: height gained at the root, and the way over which it is gained
+  double slope = 0;            // m of height per m of way between the parting and the hairline
+  double hairline = 0;         // m of way from the parting
+
+  // m; rank: 0 rooted at the hairline, 1 at the parting.
+  double height(double rank, double way) const {
+    return lift * (1 - std::exp(-std::max(0.0, way) / reach)) + slope * std::clamp(way, 0.0, rank * hairline);
+  }
+};
+
 // Rows run down every sheet: `scalp_rows` of them on the skin, the rest below the hairline. Rows are real numbers where
 // a place between two rows is meant.
 struct Coat {
   int sheets = 0, rows = 0, scalp_rows = 0;
   std::vector<Vec3> inner, outer;  // m, sheets x rows
+  std::vector<Vec3> up;            // unit, sheets x rows: off the inner guide towards the outer one
   std::vector<double> travelled;   // m, sheets x rows: arc length of the inner guide from the parting
   std::vector<double> cut_row;     // per sheet: the row where the hair is cut
-  std::vector<double> short_row;   // per sheet: the row where hair that divides over a shoulder ends
-  double divide = -1;              // backness at which the hair divides over the shoulders; negative: it does not
+  int front_sheets = 0;            // of each half, that fall in front of the shoulders; the others fall behind
+  std::vector<Rise> rise;          // per sheet
+  double slant = 0;                // m that the hairline's columns lead those of the parting by where the hair hangs
 
+  bool inFront(int sheet) const { return std::min(sheet, sheets - 1 - sheet) < front_sheets; }
   std::size_t index(int sheet, int row) const { return static_cast<std::size_t>(sheet) * rows + row; }
 };
 

@@ -11,10 +11,14 @@ struct FineColumn {
   int layers = 0;  // coarse ones
 };
 
-// A column's curve half-way between its layers l and l + 1: the cubic through the four nearest, where there are four.
+// A column's curve half-way between its layers l and l + 1: the cubic through the four nearest where there are four,
+// the parabola through three at its ends.
 Vec3 halfWay(const HairMeshShape& shape, int column, int l) {
   const Vec3* x = &shape.positions[shape.column_first[column]];
-  if (l < 1 || l + 2 >= shape.columnLength(column)) return 0.5 * (x[l] + x[l + 1]);
+  const bool first = l < 1, last = l + 2 >= shape.columnLength(column);
+  if (first && last) return 0.5 * (x[l] + x[l + 1]);
+  if (first) return (3 * x[l] + 6 * x[l + 1] - x[l + 2]) / 8;
+  if (last) return (3 * x[l + 1] + 6 * x[l] - x[l - 1]) / 8;
   return (9 * (x[l] + x[l + 1]) - x[l - 1] - x[l + 2]) / 16;
 }
 
@@ -29,7 +33,8 @@ bool acrossSheets(int a, int b) {
 
 }  // namespace
 
-HairMeshShape refined(const HairMeshShape& shape, const Scalp& scalp) {
+HairMeshShape refined(const Woven& coarse, const Scalp& scalp) {
+  const HairMeshShape& shape = coarse.shape;
   std::vector<FineColumn> columns;
   for (int c = 0; c < shape.columnCount(); ++c) columns.push_back({c, c, 0});
   std::map<std::pair<int, int>, int> between;
@@ -58,13 +63,19 @@ HairMeshShape refined(const HairMeshShape& shape, const Scalp& scalp) {
     addFace(n == 4 ? std::vector{near, corner(1), corner(2), far} : std::vector{near, corner(1), far}, layers);
   }
   for (const FineColumn& column : columns) {
+    double raised = 0;  // m: a chord between two columns runs below the scalp's curve, and so it does above the scalp
     for (int l = 0; l < 2 * column.layers - 1; ++l) {
       const auto at = [&](int c) {
         return l % 2 ? halfWay(shape, c, l / 2) : shape.positions[shape.column_first[c] + l / 2];
       };
-      Vec3 p = 0.5 * (at(column.a) + at(column.b));
-      if (l == 0 && column.a != column.b) p = onScalp(scalp, p);
-      fine.positions.push_back(p);
+      const auto upAt = [&](int c) -> Vec3 {
+        const Vec3* up = &coarse.up[shape.column_first[c] + l / 2];
+        return l % 2 ? Vec3(up[0] + up[1]) : Vec3(2 * up[0]);
+      };
+      const Vec3 p = 0.5 * (at(column.a) + at(column.b)), up = (upAt(column.a) + upAt(column.b)).normalized();
+      if (l == 0 && column.a != column.b) raised = (onScalp(scalp, p) - p).norm();
+      const double share = 1 - l / (2.0 * column.layers);
+      fine.positions.push_back(l == 0 && column.a != column.b ? onScalp(scalp, p) : Vec3(p + share * raised * up));
     }
     fine.column_first.push_back(static_cast<int>(fine.positions.size()));
   }

@@ -9,9 +9,11 @@
 namespace sim {
 namespace {
 
-constexpr int kSweeps = 240;
+constexpr int kSweeps = 240, kFlatSweeps = 240, kFullSweepEvery = 3;
 constexpr double kShortestEdge = 0.0032;  // m: shorter ones ruin the conditioning of the simulator's systems
-constexpr double kLargestMove = 0.004;    // m a sweep: large steps would throw neighbours over each other
+constexpr double kAcuteShare = 0.75;
+constexpr double kLargestLift = 0.012;  // m: what that does not mend, heights do not
+constexpr double kLargestMove = 0.004;  // m a sweep: large steps would throw neighbours over each other
 
 using Corner = std::array<int, 4>;  // vertices, as CornerTet::v
 
@@ -78,13 +80,19 @@ struct Relaxation {
   void pushOut(const BodyDistance& body, double gap);
 };
 
+// Share of the fatness that a corner of a layer is asked for: acute ones would have to rise too steeply for all of it.
+double squareness(const Vec3& next, const Vec3& previous) {
+  const double sine = next.cross(previous).norm() / std::max(next.norm() * previous.norm(), 1e-12);
+  return std::clamp(sine / 0.8, kAcuteShare, 1.0);
+}
+
 // One Newton step of a corner's volume towards the fatness asked for, against the volume's gradient. Returns whether
 // the corner was clearly below it.
 bool Relaxation::openCorner(const Corner& t, double fatness) {
   std::vector<Vec3>& x = shape.positions;
   const Vec3 a = x[t[1]] - x[t[0]], b = x[t[2]] - x[t[0]], c = x[t[3]] - x[t[0]];
   const double box = a.norm() * b.norm() * c.norm();
-  const double lacking = 1.15 * fatness * box - a.cross(b).dot(c);
+  const double wanted = fatness * squareness(a, b), lacking = 1.15 * wanted * box - a.cross(b).dot(c);
   if (lacking <= 0) return false;
   std::array<Vec3, 4> slope{Vec3::Zero(), b.cross(c), c.cross(a), a.cross(b)};
   slope[0] = -slope[1] - slope[2] - slope[3];
@@ -96,7 +104,7 @@ bool Relaxation::openCorner(const Corner& t, double fatness) {
     move *= std::min(1.0, kLargestMove / std::max(move.norm(), 1e-12));
     x[t[k]] += move;
   }
-  return lacking > 0.15 * fatness * box;
+  return lacking > 0.15 * wanted * box;
 }
 
 bool Relaxation::openCorners(double fatness) {
@@ -160,6 +168,49 @@ void Relaxation::pushOut(const BodyDistance& body, double gap) {
 double cornerFatness(const Vec3& corner, const Vec3& next, const Vec3& previous, const Vec3& along) {
   const Vec3 a = next - corner, b = previous - corner, c = along - corner;
   return a.cross(b).dot(c) / std::max(a.norm() * b.norm() * c.norm(), 1e-30);
+}
+
+// Hildreth's method: a multiplier per corner, raised while the corner is too flat and lowered while it is fatter than
+// it needs to be, and the heights that follow from the multipliers.
+void layFlat(const BodyDistance& body, const std::vector<Vec3>& up, double fatness, double gap, HairMeshShape& shape) {
+  std::vector<Vec3>& x = shape.positions;
+  std::vector<bool> root(x.size(), false);
+  for (int c = 0; c < shape.columnCount(); ++c) root[shape.column_first[c]] = true;
+  const std::vector<Corner> all = corners(shape);
+  std::vector<double> pressure(all.size(), 0.0), support(x.size(), 0.0), lifted(x.size(), 0.0);
+  const auto lift = [&](int v, double way) {
+    const double now = std::clamp(lifted[v] + way, -kLargestLift, kLargestLift);
+    x[v] += (now - lifted[v]) * up[v];
+    lifted[v] = now;
+  };
+  for (int sweep = 0; sweep < kFlatSweeps; ++sweep) {
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (sweep % kFullSweepEvery != 0 && pressure[i] == 0) continue;
+      const Corner& t = all[i];
+      const Vec3 a = x[t[1]] - x[t[0]], b = x[t[2]] - x[t[0]], c = x[t[3]] - x[t[0]];
+      const double box = std::max(a.norm() * b.norm() * c.norm(), 1e-12);
+      std::array<Vec3, 4> slope{Vec3::Zero(), b.cross(c), c.cross(a), a.cross(b)};
+      slope[0] = -slope[1] - slope[2] - slope[3];
+      std::array<double, 4> rise{};
+      double sum = 0;
+      for (int k = 0; k < 4; ++k) {
+        rise[k] = root[t[k]] ? 0.0 : slope[k].dot(up[t[k]]) / box;
+        sum += rise[k] * rise[k];
+      }
+      if (sum < 1e-12) continue;
+      const double lacking = fatness * squareness(a, b) - a.cross(b).dot(c) / box;
+      const double change = std::max(-pressure[i], lacking / sum);
+      pressure[i] += change;
+      for (int k = 0; k < 4; ++k)
+        if (!root[t[k]]) lift(t[k], change * rise[k]);
+    }
+    for (std::size_t v = 0; v < x.size() && sweep % 10 == 9; ++v) {
+      if (root[v]) continue;
+      const double change = std::max(-support[v], gap - body(x[v]));
+      support[v] += change;
+      lift(static_cast<int>(v), change);
+    }
+  }
 }
 
 double untangle(const BodyDistance& body, double fatness, double gap, HairMeshShape& shape) {

@@ -9,9 +9,14 @@ namespace sim {
 // negative inside out.
 double cornerFatness(const Vec3& corner, const Vec3& next, const Vec3& previous, const Vec3& along);
 
-// Moves all but the roots, as little as it can, until every corner tetrahedron is at least `fatness` fat, and keeps
-// `gap` (m) off the body. Deterministic; gives up after a fixed number of sweeps and returns what it reached: the
-// smallest fatness of all.
+// Raises and lowers all but the roots along `up` (unit, per vertex), as little as it can in the mean square, until
+// every corner tetrahedron is at least `fatness` fat (0.75 of that where a layer's corner is acute) and every vertex
+// keeps `gap` (m) off the body. Deterministic; stops after a fixed number of sweeps and leaves what is not mended yet.
+void layFlat(const BodyDistance& body, const std::vector<Vec3>& up, double fatness, double gap, HairMeshShape& shape);
+
+// Moves all but the roots, as little as it can, until every corner tetrahedron is at least `fatness` fat (0.75 of that
+// where a layer's corner is acute), and keeps `gap` (m) off the body. Deterministic; gives up after a fixed number of
+// sweeps and returns what it reached: the smallest fatness of all.
 double untangle(const BodyDistance& body, double fatness, double gap, HairMeshShape& shape);
 
 }  // namespace sim

@@ -7,17 +7,13 @@
 namespace sim {
 namespace {
 
-constexpr double kHairlineRise = 0.34;  // share of the coat's thickness that the hairline's own columns rise to
-constexpr double kRiseAtHairline = 0.012, kRiseAtParting = 0.048;  // m of travel over which a column leaves the scalp
-constexpr double kInStepBelowHairline = 0.04;                      // m
+constexpr double kTurn = 0.01;  // m of way over which a column takes up the step
 
 // A column to be: the sheet it runs in and its rank, 0 at the hairline to 1 at the parting.
 struct Plait {
   int sheet;
   double rank;
-  bool ends_early;  // where the hair divides over a shoulder
-  int full_layers;  // from the root to the cut
-  int layers;       // of which the column has these
+  int layers;
 };
 
 template <class T>
@@ -36,39 +32,39 @@ double rowAt(const Coat& coat, int sheet, double way) {
   return (after - 1 - first) + std::clamp((way - *(after - 1)) / std::max(span, 1e-12), 0.0, 1.0);
 }
 
-// How far a column stands off the inner guide after a way (m) from its root: it leaves the scalp steeply, climbs to its
-// own height in the coat and stays there. The share is of the coat's thickness.
-double heightShare(double rank, double way, double hairline) {
-  const double height = kHairlineRise + (1 - kHairlineRise) * rank;
-  const double rise = kRiseAtHairline + (kRiseAtParting * std::min(1.0, hairline / 0.22) - kRiseAtHairline) * rank;
-  return height * (1 - std::exp(-way / rise));
-}
-
 // Where layers are cut along the outermost columns: closer over the head, where the hair bends, than where it hangs.
 double gradedPlace(double x, double grading) {
   return x * (1 - grading + grading * x);
 }
 
-// Appends a column's vertices. The outermost column of a sheet is cut by the grading; the inner ones keep in step with
-// it, so that layers lie along the scalp at first, have turned square to the hair shortly below the hairline, and stay
-// so. Without that the prisms of a coarse mesh would be turned inside out by the curvature of the head.
-void layColumn(const Coat& coat, const Weave& plan, const Plait& plait, std::vector<Vec3>& positions) {
+// m of the inner guide that a column has come to at a layer. The outermost column of a sheet is cut by the grading; an
+// inner one creeps along the scalp until that has come up to it, and then keeps in step, a little ahead. Layers turn
+// from lying along the scalp to square to the hair where the outermost column passes: on a round head every edge dips
+// below the scalp's tangent, and prisms of long edges are positive only if their columns climb. The slant that is left
+// makes room between columns in a thin coat, and the ends are the thinner for it.
+double wayAt(const Coat& coat, const Weave& plan, const Plait& plait, int layer) {
+  const auto placeOf = [&](int l) { return gradedPlace(l / (plan.outer_layers - 1.0), plan.grading); };
   const int sheet = plait.sheet;
-  const auto placeOf = [&](int layer) { return gradedPlace(layer / (plan.outer_layers - 1.0), plan.grading); };
-  double end = sampleRow(coat, coat.travelled, sheet, coat.cut_row[sheet]);
-  if (plait.ends_early)
-    end = sampleRow(coat, coat.travelled, sheet, coat.short_row[sheet]) / placeOf(plait.full_layers - 1);
-  const double hairline = coat.travelled[coat.index(sheet, coat.scalp_rows - 1)];
-  const double root = (1 - plait.rank) * hairline;
-  const double in_step = std::min(hairline + kInStepBelowHairline, 1.02 * end);
+  const double end = sampleRow(coat, coat.travelled, sheet, coat.cut_row[sheet]) - coat.slant;
+  const double root = (1 - plait.rank) * coat.rise[sheet].hairline, outermost = end * placeOf(layer);
+  if (layer == 0) return root;
+  const double creeping = root + plan.creep * layer, keeping_step = outermost + (1 - plait.rank) * coat.slant;
+  return 0.5 * (creeping + keeping_step + std::hypot(creeping - keeping_step, kTurn));
+}
+
+void layColumn(const Coat& coat, const Weave& plan, const Plait& plait, Woven& woven) {
+  const int sheet = plait.sheet;
+  const Rise& rise = coat.rise[sheet];
+  const double root = (1 - plait.rank) * rise.hairline;
   for (int l = 0; l < plait.layers; ++l) {
-    const double outermost = end * placeOf(l);
-    const double behind = std::max(0.0, 1 - outermost / in_step);
-    const double way = outermost + root * behind;
-    const double row = rowAt(coat, sheet, way), share = heightShare(plait.rank, (way - root), hairline);
-    positions.push_back((1 - share) * sampleRow(coat, coat.inner, sheet, row) +
-                        share * sampleRow(coat, coat.outer, sheet, row));
+    const double way = wayAt(coat, plan, plait, l), row = rowAt(coat, sheet, way), full = rise.height(1, way);
+    const Vec3 inner = sampleRow(coat, coat.inner, sheet, row), up = sampleRow(coat, coat.up, sheet, row).normalized();
+    const double thickness = (sampleRow(coat, coat.outer, sheet, row) - inner).norm();
+    const double height = full > 0 ? rise.height(plait.rank, way - root) / full * thickness : 0.0;
+    woven.shape.positions.push_back(inner + height * up);
+    woven.up.push_back(up);
   }
+  woven.shape.column_first.push_back(static_cast<int>(woven.shape.positions.size()));
 }
 
 RootFace quad(int a, int b, int c, int d) {
@@ -138,6 +134,8 @@ void trimLayers(const std::vector<RootFace>& faces, std::vector<Plait>& plaits) 
 
 }  // namespace
 
+constexpr double kRefinedCreep = 0.007;
+
 Weave weaveOf(Style style, Resolution resolution) {
   const auto even = [](int intervals) {
     std::vector<double> q(intervals + 1);
@@ -148,24 +146,25 @@ Weave weaveOf(Style style, Resolution resolution) {
   // The finest plans are refined once more by makeStyle, which about doubles sheets and layers.
   switch (style) {
     case Style::kShort:
-      return std::array<Weave, 5>{Weave{even(5), 3, 5, 5, 5, 0, 0.0}, Weave{even(7), 4, 7, 6, 7, 0, 0.0},
-                                  Weave{even(11), 4, 10, 7, 8, 0, 0.0}, Weave{even(11), 4, 9, 11, 12, 0, 0.0},
-                                  Weave{even(3), 2, 3, 5, 5, 0, 0.0}}[level];
+      return std::array<Weave, 5>{Weave{even(5), 3, 5, 5, 5, 0.6}, Weave{even(7), 4, 7, 6, 7, 0.5},
+                                  Weave{even(11), 4, 10, 7, 8, 0.4}, Weave{even(11), 4, 9, 11, 12, 0.3, kRefinedCreep},
+                                  Weave{even(3), 2, 3, 5, 5, 0.6}}[level];
     case Style::kShoulder:
-      return std::array<Weave, 5>{Weave{even(5), 3, 5, 8, 8, 0, 0.2}, Weave{even(8), 3, 6, 10, 12, 0, 0.2},
-                                  Weave{even(11), 4, 9, 14, 15, 0, 0.2}, Weave{even(11), 4, 9, 15, 16, 0, 0.2},
-                                  Weave{even(3), 2, 3, 7, 7, 0, 0.2}}[level];
+      return std::array<Weave, 5>{Weave{even(5), 3, 5, 8, 8, 0.5}, Weave{even(8), 3, 6, 10, 12, 0.4},
+                                  Weave{even(11), 4, 9, 14, 15, 0.3}, Weave{even(11), 4, 9, 15, 16, 0.3, kRefinedCreep},
+                                  Weave{even(3), 2, 3, 7, 7, 0.5}}[level];
     case Style::kLong:
       break;
   }
-  const std::vector<double> fine{0, 0.1, 0.2, 0.3, 0.35, 0.4, 0.52, 0.64, 0.76, 0.88, 1};
-  return std::array<Weave, 5>{Weave{{0, 0.275, 0.35, 0.425, 0.7, 1}, 3, 6, 8, 8, 5, 0.7},
-                              Weave{{0, 0.15, 0.3, 0.35, 0.4, 0.6, 0.8, 1}, 4, 6, 12, 13, 9, 0.4},
-                              Weave{fine, 4, 10, 15, 16, 10, 0.4}, Weave{fine, 4, 9, 19, 20, 11, 0.4},
-                              Weave{{0, 0.25, 0.35, 0.45, 1}, 2, 4, 8, 8, 5, 0.7}}[level];
+  // Sheets stand close on both sides of where the hair divides.
+  const std::vector<double> fine{0, 0.08, 0.16, 0.24, 0.325, 0.35, 0.47, 0.6, 0.73, 0.86, 1};
+  return std::array<Weave, 5>{Weave{{0, 0.17, 0.325, 0.35, 0.7, 1}, 3, 6, 8, 8, 0.7},
+                              Weave{{0, 0.17, 0.325, 0.35, 0.57, 0.78, 1}, 4, 6, 13, 14, 0.5},
+                              Weave{fine, 4, 10, 15, 16, 0.4}, Weave{fine, 4, 9, 19, 20, 0.4, kRefinedCreep},
+                              Weave{{0, 0.325, 0.35, 0.68, 1}, 2, 4, 6, 6, 0.4}}[level];
 }
 
-HairMeshShape weave(const Coat& coat, const Weave& plan) {
+Woven weave(const Coat& coat, const Weave& plan) {
   const int half = static_cast<int>(plan.backness.size()) - 1, sheet_count = 2 * half + 1;
   std::vector<Plait> plaits;
   std::vector<std::array<int, 2>> sheets;  // first column and the one after the last
@@ -175,27 +174,27 @@ HairMeshShape weave(const Coat& coat, const Weave& plan) {
     const int sheet = static_cast<int>(std::lround(i <= half ? q * middle : (2 - q) * middle));
     const int ranks = static_cast<int>(
         std::lround(plan.front_ranks + (plan.back_ranks - plan.front_ranks) * smoothstep(0.0, 0.8, q)));
-    const bool ends_early = coat.divide >= 0 && std::abs(q - coat.divide) < 1e-9;
     const int first = static_cast<int>(plaits.size());
     for (int r = 0; r < ranks; ++r) {
       const double rank = static_cast<double>(r) / (ranks - 1);
-      const int full = ends_early ? plan.divided_layers : plan.outer_layers;
-      const double fewer = (plan.outer_layers - plan.inner_layers) * std::max(0.0, 1 - rank / 0.5);
-      plaits.push_back({sheet, rank, ends_early, full, full - static_cast<int>(std::lround(fewer))});
+      const double fewer =
+          (plan.outer_layers - plan.inner_layers) * std::max(0.0, 1 - static_cast<double>(r) / (ranks - 1) / 0.5);
+      plaits.push_back({sheet, rank, plan.outer_layers - static_cast<int>(std::lround(fewer))});
     }
     sheets.push_back({first, first + ranks});
   }
-  HairMeshShape shape;
+  Woven woven;
   for (int i = 0; i + 1 < sheet_count; ++i) {
+    // Hair before and behind the shoulders has nothing between.
+    if (coat.front_sheets > 0 &&
+        coat.inFront(plaits[sheets[i][0]].sheet) != coat.inFront(plaits[sheets[i + 1][0]].sheet))
+      continue;
     // The right half is joined as the left one's mirror image.
-    joinSheets(plaits, coat.sheets / 2, sheets[i], sheets[i + 1], shape.root_faces);
+    joinSheets(plaits, coat.sheets / 2, sheets[i], sheets[i + 1], woven.shape.root_faces);
   }
-  trimLayers(shape.root_faces, plaits);
-  for (const Plait& plait : plaits) {
-    layColumn(coat, plan, plait, shape.positions);
-    shape.column_first.push_back(static_cast<int>(shape.positions.size()));
-  }
-  return shape;
+  trimLayers(woven.shape.root_faces, plaits);
+  for (const Plait& plait : plaits) layColumn(coat, plan, plait, woven);
+  return woven;
 }
 
 }  // namespace sim

@@ -14,12 +14,17 @@ struct Weave {
   int front_ranks = 3,
       back_ranks = 5;  // columns a sheet has from the hairline to the parting, at the temple and at the nape
   int inner_layers = 4, outer_layers = 6;  // layers of the columns at the hairline and of those at the parting
-  int divided_layers = 0;                  // layers of the columns that end where the hair divides over a shoulder
   double grading = 0;                      // 0: layers are evenly spaced; towards 1: closer over the head than below it
+  double creep = 0.004;                    // m a layer: how columns go on whose layer lies along the scalp
 };
 
 Weave weaveOf(Style style, Resolution resolution);
 
-HairMeshShape weave(const Coat& coat, const Weave& plan);
+struct Woven {
+  HairMeshShape shape;
+  std::vector<Vec3> up;  // unit, per vertex: off the coat's underside
+};
+
+Woven weave(const Coat& coat, const Weave& plan);
 
 }  // namespace sim
