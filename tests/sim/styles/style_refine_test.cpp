@@ -26,17 +26,21 @@ TEST(RefinedStyle, AddsPointsOfTheSameCurves) {
     for (int l = 0; l < coarse.columnLength(c); ++l)
       coarse.positions[coarse.column_first[c] + l] = roots[c] + curveAt(l);
   }
-  const sim::HairMeshShape fine = sim::refined(coarse, tests::analyticScalp());
+  // Nothing points up: the columns between are not lifted as their roots are.
+  const sim::Woven woven{coarse, std::vector<Vec3>(coarse.positions.size(), Vec3::Zero())};
+  const sim::HairMeshShape fine = sim::refined(woven, tests::analyticScalp());
   ASSERT_GT(fine.columnCount(), coarse.columnCount());
   int added = 0;
   for (int c = 0; c < fine.columnCount(); ++c) {
     const Vec3* x = &fine.positions[fine.column_first[c]];
     ASSERT_EQ(fine.columnLength(c), 17);
-    // Layers of the coarse mesh and, between inner ones, points of the cubic; a straight step at both ends.
+    // Layers of the coarse mesh and, between inner ones, points of the cubic; at both ends a parabola.
     const Vec3 root = c < coarse.columnCount() ? roots[c] : Vec3(x[2] - curveAt(1));
     for (int l = c < coarse.columnCount() ? 0 : 2; l < 17; ++l) {
       const bool end = l == 1 || l == 15;
-      const Vec3 expected = end ? Vec3(0.5 * (curveAt(l / 2) + curveAt(l / 2 + 1))) : curveAt(0.5 * l);
+      const int from = l == 1 ? 0 : 8, inwards = l == 1 ? 1 : -1;
+      const Vec3 parabola = (3 * curveAt(from) + 6 * curveAt(from + inwards) - curveAt(from + 2 * inwards)) / 8;
+      const Vec3 expected = end ? parabola : curveAt(0.5 * l);
       EXPECT_LT((x[l] - root - expected).norm(), 1e-12) << "column " << c << ", layer " << l;
       added += l % 2;
     }
