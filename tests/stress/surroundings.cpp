@@ -88,7 +88,7 @@ void Surroundings::playClip(double dt) {
   if (one_.play != Play::kStill) app::moveActor(dt, stage_.actor);
   if (stage_.actor.jumped == jumped) return;
   // The whole figure has jumped, at a seam: hair and bodies come along.
-  carries_ = true;
+  carries_ = intrudes_ = true;
   before_.clear(), parts_before_.clear();
 }
 
