@@ -269,12 +269,13 @@ TEST(TwoLevel, OtherTermsMakeAllPartsAnew) {
   RandomSystem<double> system(o, 93, 200);
   const std::vector<V3<double>> x = test::plain<double>(system.mesh.shape.positions), r = system.vectors();
   sim::TwoLevel<double> used(system.mesh);
-  used.update(system.packed, x, {}, {.h = 1.0 / 60, .damping = 0.02, .drag = 1});
+  using Terms = sim::MatrixTerms;
+  used.update(system.packed, x, {}, Terms{.h = 1.0 / 60, .damping = 0.02, .drag = 1, .pins = {}});
   for (double& value : system.packed.values) value *= 0.3;
   system.packed.addMass(200, std::vector<double>(system.mesh.vertexCount(), 1));
-  for (const sim::MatrixTerms& terms :
-       {sim::MatrixTerms{.h = 1.0 / 120, .damping = 0.02, .drag = 1}, sim::MatrixTerms{.h = 1.0 / 120, .damping = 0.05},
-        sim::MatrixTerms{.h = 1.0 / 120, .damping = 0.05, .pins = {{3, 20}}}}) {
+  for (const Terms& terms : {Terms{.h = 1.0 / 120, .damping = 0.02, .drag = 1, .pins = {}},
+                             Terms{.h = 1.0 / 120, .damping = 0.05, .drag = 1, .pins = {}},
+                             Terms{.h = 1.0 / 120, .damping = 0.05, .drag = 1, .pins = {{3, 20}}}}) {
     system.packed.addMass(10, std::vector<double>(system.mesh.vertexCount(), 1));
     used.update(system.packed, x, {}, terms);
     sim::TwoLevel<double> fresh(system.mesh);
