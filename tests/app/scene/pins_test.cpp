@@ -154,7 +154,7 @@ TEST(Pins, TheExampleSceneHoldsItsHairAndTheDebugViewShowsEachPin) {
     const sim::PinnedVertex& pin = actor.pinned[k];
     const double off = (actor.hair.positions[pin.vertex] - pin.target).norm();
     firm += pin.firm();
-    EXPECT_LT(off, pin.firm() ? 1e-9 : 0.02) << "pin " << k;
+    EXPECT_LT(off, pin.firm() ? 1e-9 : 0.045) << "pin " << k;
     for (int axis = 0; axis < 3; ++axis) {
       const auto target = static_cast<float>(pin.target[axis] - demo.origin[axis]);
       EXPECT_NEAR(drawn.points[k].position[axis], target, 1e-5) << "pin " << k;
