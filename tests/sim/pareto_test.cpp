@@ -22,6 +22,7 @@ struct Recorded {
   double lag;    // how many times faster another configuration may be whose positions alone are no worse
   const char* why;
   int reference = kCoarseReference;
+  double any_lag = kMaxLag;  // the same of one that is no worse in any error
 };
 void PrintTo(const Recorded& recorded, std::ostream* out) {
   *out << recorded.scene;
@@ -31,13 +32,16 @@ constexpr Recorded kRecorded[] = {
     // By the coarse reference only the first 0.4 s could be compared.
     {"walk_contact", 3.4e-3, kMaxLag, "on the front", bench::kReferenceRate},
     {"walk_short", 3.4e-4, kMaxLag, "on the front"},
-    {"walk_shoulder", 8.5e-4, 1.3, "on the front, within what another processor makes of it"},
-    {"jump_1x", 3.7e-3, kMaxLag, "on the front"},
+    {"walk_shoulder", 2.3e-3, 1.8, "a lock slides over the shoulder: steps of 1/30 s are as exact", kCoarseReference,
+     1.8},
+    {"jump_1x", 4.6e-3, kMaxLag, "on the front"},
     {"jump_4x", 2.0e-1, 2.0,
      "positions are off by a fifth of the hair's length whatever is done, lengths and volumes not"},
-    {"jump_10x", 3.1e-1, 2.0, "as at four times the speed, and all positions are off by a third of the hair's length"},
+    {"jump_10x", 3.1e-1, 2.0, "as at four times the speed, and all positions are off by a third of the hair's length",
+     kCoarseReference, 1.6},
     {"collapse", 6.2e-2, 2.7,
-     "one sample can be compared, in which any configuration that unfolds the hair at all is as near"},
+     "one sample can be compared, in which any configuration that unfolds the hair at all is as near", kCoarseReference,
+     1.5},
 };
 
 void printErrors(const char* what, const bench::Errors& e) {
@@ -78,7 +82,7 @@ TEST_P(ParetoFront, NoConfigurationThatIsNoWorseIsMuchFasterThanTheDefault) {
   for (const bench::Point& configuration : sweep.points) {
     const bool in_any = configuration.errors().noWorseInAny(standard.errors(), sweep.own_error);
     const bool in_position = configuration.errors().noWorseInPosition(standard.errors(), sweep.own_error);
-    const double most = in_any ? kMaxLag : GetParam().lag;
+    const double most = in_any ? GetParam().any_lag : GetParam().lag;
     if (!in_position || configuration.fastest * most > standard.fastest) continue;
     const double lag = leastLag(stage, standard.params, configuration.params, most);
     std::printf("  %.2f times faster, error %.2e%s: %s\n", lag, configuration.error.rms,

@@ -164,7 +164,7 @@ TEST_F(CostOfDrawing, IsNoMoreWithAllSkipsInAnyScene) {
     EXPECT_LE(ratio, kMaxRatio) << scene;
     EXPECT_LE(report[1].strand_vertices, report[0].strand_vertices) << scene;
     EXPECT_LE(report[1].draw_calls, report[0].draw_calls) << scene;
-    EXPECT_LE(report[1].bytes_uploaded, report[0].bytes_uploaded + report[0].bytes_uploaded / 20) << scene;
+    EXPECT_LE(report[1].bytes_uploaded, report[0].bytes_uploaded + report[0].bytes_uploaded / 10) << scene;
   }
 }
 

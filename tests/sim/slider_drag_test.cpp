@@ -226,6 +226,7 @@ std::vector<double> LargeHair::dragTimes(double drag) {
   app::placeActor(actor, true);
   actor.hair = start;
   SimParams params = standard;
+  params.max_iterations = 400;  // what the drag costs is to be seen
   std::vector<double> times;
   const auto frame = [&] {
     app::moveActor(kFrame, actor);
