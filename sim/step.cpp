@@ -254,7 +254,7 @@ SimParams limited(const HairMesh& mesh, const SimParams& asked, const Parts& par
 void limitWork(double max_work, Parts& parts, SimParams& params) {
   const WorkBounds bounds = boundsWithin(parts.mesh->vertexCount(), max_work);
   params.max_iterations = std::min(params.max_iterations, bounds.iterations);
-  limitCorrectionWork(bounds, parts.correction);
+  limitCorrectionWork(bounds, params.solver == Solver::kPaper, parts.correction);
   parts.stabilization.energy_limit.energies = 0;
 }
 

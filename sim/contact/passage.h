@@ -13,8 +13,7 @@ namespace sim {
 // A collider within reach of the hair, with its rigid motion over the step.
 struct NearCollider {
   static constexpr int kMaxChords = 8;
-  static constexpr double kStraight =
-      0.2;  // rad; the way past a collider that turns less is bounded by a straight line
+  static constexpr double kStraight = 0.2;  // rad; where a collider turns less, a straight line bounds the way past it
 
   int index;
   Vec3 before, after;    // m, its centre

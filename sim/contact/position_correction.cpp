@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace sim {
@@ -103,9 +104,12 @@ PositionCorrection::PositionCorrection(const HairMesh& mesh) : minimizer(mesh) {
   corrected.reserve(all_vertices.size());
 }
 
-void limitCorrectionWork(const WorkBounds& bounds, PositionCorrection& scratch) {
+void limitCorrectionWork(const WorkBounds& bounds, bool published, PositionCorrection& scratch) {
   scratch.points = 0;
   scratch.minimizations = 0;
+  scratch.max_points = std::numeric_limits<long>::max();
+  scratch.max_minimizations = (kRounds + kPlainRounds) * kMaxMinimization;
+  if (published) return;
   scratch.max_points = std::min(static_cast<long>(kMaxPoints * scratch.held.size()), bounds.surface_points);
   scratch.max_minimizations = std::min(kMaxMinimizations, bounds.minimizations);
 }
@@ -157,8 +161,9 @@ void correctPositions(const CorrectedStep& step, PositionCorrection& scratch, Ha
 void minimizeDeformation(const CorrectedStep& step, PositionCorrection& scratch, HairState& state, StepReport& report) {
   if (!step.params.minimize_deformation || scratch.moved == 0 || scratch.round > kRounds) return;
   if (scratch.points > scratch.max_points) return;
-  report.minimization_iterations += letFollow(scratch, state);
-  scratch.followed = true;
+  const int work = letFollow(scratch, state);
+  report.minimization_iterations += work;
+  scratch.followed = work > 0;
 }
 
 void updateVelocities(const CorrectedStep& step, PositionCorrection& scratch, HairState& state) {

@@ -51,8 +51,9 @@ struct CorrectedStep {
 // minimizeDeformation }; updateVelocities.
 void beginCorrections(PositionCorrection& scratch);
 
-// Before a step's first correction: its counts are zero, and bounded by the corrections' own bounds and the step's.
-void limitCorrectionWork(const WorkBounds& bounds, PositionCorrection& scratch);
+// Before a step's first correction: its counts are zero. They are bounded by the corrections' own bounds and the
+// step's; `published`: by neither.
+void limitCorrectionWork(const WorkBounds& bounds, bool published, PositionCorrection& scratch);
 
 // Finds the vertices that are inside a collider or went through one. Returns whether another round is due.
 bool findContacts(const CorrectedStep& step, PositionCorrection& scratch, const HairState& state, StepReport& report);

@@ -102,7 +102,6 @@ double potential(const TakenStep& step, std::span<const Vec3> x, EnergyLimit& sc
 }
 
 // J, of a step whose carried positions are known, seen from the roots.
-double carried = 0;  // potential, of the hair as the roots carry it
 struct Account {
   double carried = 0;  // potential, of the hair as the roots carry it
   double bound = 0;    // of what it may end with

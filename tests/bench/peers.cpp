@@ -179,7 +179,7 @@ nlohmann::json toJson(const std::string& scene, const sim::HairMesh& mesh, const
 std::vector<PeerFigures> measureAll(const PeerScenes& scenes) {
   const sim::SimParams standard;
   sim::SimParams paper;
-  paper.solver = sim::Solver::kPaper;
+  paper.solver = sim::Solver::kPaper, paper.max_iterations = 400;
   sim::SimParams second_order;
   second_order.integrator = sim::Integrator::kBdf2;
   std::vector<PeerFigures> all;

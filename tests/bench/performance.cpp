@@ -88,6 +88,7 @@ std::vector<Row> measureStages() {
           if (resolution > contender.finest) continue;
           SimParams params;
           params.solver = contender.solver;
+          if (contender.solver == sim::Solver::kPaper) params.max_iterations = 400;
           // The first run makes what the others keep: force model, factors, memory.
           const double seconds = contender.method == Method::kPlain ? kSeconds / 4 : kSeconds;
           scene.run(params, seconds, contender.method);

@@ -163,6 +163,7 @@ void addClaim(Cases& cases, const std::string& name, Change&& change, std::span<
     change(ours);
     StressCase theirs = ours;
     theirs.name = "paper/" + name + "/its-solver/" + hairName(hair);
+    theirs.params.insert(theirs.params.begin(), {"max_iterations", 400});  // unless the claim says how many
     theirs.params.insert(theirs.params.end(), {{"solver", static_cast<double>(sim::Solver::kPaper)},
                                                {"integrator", static_cast<double>(sim::Integrator::kLinearizedEuler)},
                                                {"precision", static_cast<double>(sim::Precision::kFloat)}});
