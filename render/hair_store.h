@@ -10,7 +10,7 @@
 
 #include "render/frame_input.h"
 #include "render/gl_object.h"
-#include "render/hair_layout.h"
+#include "render/strands/hair_layout.h"
 #include "render/renderer.h"
 #include "render/sky_visibility.h"
 #include "render/view_math.h"

@@ -11,7 +11,7 @@
 
 #include "render/density_grid.h"
 #include "render/frame_input.h"
-#include "render/hair_layout.h"
+#include "render/strands/hair_layout.h"
 
 namespace render {
 

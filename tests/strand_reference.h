@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "render/hair_layout.h"
+#include "render/strands/hair_layout.h"
 
 namespace strand_reference {
 

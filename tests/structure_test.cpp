@@ -64,6 +64,11 @@ TEST(Structure, TheRendererKnowsNoSimulatorAndNoProgram) {
   EXPECT_EQ(includesOf("render", "sim/|app/|GLFW|EGL|imgui|assimp|nlohmann|CLI"), "");
 }
 
+// Strands are grown without OpenGL: of the renderer they know its plain values alone.
+TEST(Structure, StrandsAreGrownWithoutOpenGl) {
+  EXPECT_EQ(includesOf("render/strands", "GL/|render/(?!strands/|frame_input\\.h)|shaders/"), "");
+}
+
 TEST(Structure, SimulatorAndRendererMeetOnlyWhereTheyShould) {
   // Files of app that include both rooms' doors: the hand-over, the demo and its parts, and the tables over both.
   const std::vector<std::string> allowed{"sim_to_render", "demo",       "actor",  "debug_views", "frame_stats",

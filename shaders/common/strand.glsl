@@ -8,6 +8,9 @@
 // strand: uniform Catmull-Rom through the layers (C1). Sources: Yuksel et al. 2009 (hair meshes); Farin, Curves and
 // Surfaces for CAGD (Coons patches, cubic triangles); Vlachos et al. 2001 (the centre point of the triangle); Roberts
 // 2018 (R2 sequence).
+//
+// render/strands/strand_growth.cpp grows the same strands on the CPU, function by function: a change here is one there,
+// and tests/render/strand_growth_test.cpp compares the two.
 
 layout(binding = kUnitVertices) uniform samplerBuffer vertex_texels;
 layout(binding = kUnitLayout) uniform samplerBuffer layout_texels;

@@ -10,7 +10,7 @@
 
 #include "render/density_grid.h"
 #include "render/fiber_scattering.h"
-#include "render/hair_layout.h"
+#include "render/strands/hair_layout.h"
 #include "render/hair_store.h"
 #include "render/sky_visibility.h"
 #include "shaders/shared.h"

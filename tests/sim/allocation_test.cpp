@@ -5,7 +5,9 @@
 #include <cstdlib>
 #include <new>
 
+#include "render/strands/strand_growth.h"
 #include "sim/step.h"
+#include "tests/synthetic_hair.h"
 #include "tests/test_meshes.h"
 
 namespace {
@@ -180,6 +182,26 @@ TEST(Allocation, NoneWhileAReferenceHairSettles) {
     counting = false;
   }
   EXPECT_EQ(allocations, 0);
+}
+
+// Nor to grow strands, nor to take up the positions that they grow from.
+TEST(Allocation, NoneToGrowStrands) {
+  const synthetic::Hair hair = synthetic::makeHair();
+  render::StrandGrowth growth(hair.faces, hair.positions, 200, 3, {});
+  std::vector<render::CurvePoint> points(static_cast<std::size_t>(growth.maxPoints()));
+  float sum = 0;
+  allocations = 0;
+  counting = true;
+  growth.setPositions(hair.positions);
+  for (int number = 0; number < growth.strandCount(); ++number) {
+    const render::Strand strand = growth.strand(number);
+    growth.growEven(strand, points);
+    sum += points.back().position.y();
+    sum += static_cast<float>(growth.growDrawn(strand, points));
+  }
+  counting = false;
+  EXPECT_EQ(allocations, 0);
+  EXPECT_GT(sum, 0);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 #include "app/figure/character.h"
 #include "app/scene/sim_to_render.h"
-#include "render/hair_layout.h"
+#include "render/strands/hair_layout.h"
 #include "sim/styles/hair_styles.h"
 #include "sim/styles/style_roots.h"
 #include "tests/analytic_head.h"

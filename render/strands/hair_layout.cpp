@@ -1,4 +1,4 @@
-#include "render/hair_layout.h"
+#include "render/strands/hair_layout.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
