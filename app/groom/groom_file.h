@@ -1,0 +1,28 @@
+// Grooms from files of any kind that is read, told by content. Tables of what each format holds: docs/files.md.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "app/groom/groom.h"
+
+namespace app {
+
+enum class GroomFormat { kHair };
+
+// By the first bytes, and for a kind without a mark by the plausibility of its header. Throws InputError for what is
+// known and not read: Alembic in HDF5, binary or packed USD. Nothing: no groom.
+std::optional<GroomFormat> groomFormat(std::string_view bytes, const std::string& file);
+
+// Whether the name ends like a groom's: .hair, .abc, .usda, .tfx, .ply and those that are refused by name.
+bool hasGroomEnding(const std::string& file);
+
+// The groom as the file has it: its unit, its axes, its order of points; strands without points are kept. Where a file
+// holds several moments, the first. Memory used is bounded by a small multiple of the file's size; files over
+// kMaxGroomFile bytes and grooms over kMaxGroomPoints points are refused (groom_bytes.h). Throws InputError naming the
+// place, the fault and the mend.
+Groom readGroom(const std::string& file);
+Groom readGroom(std::string_view bytes, const std::string& file);
+
+}  // namespace app

@@ -1,0 +1,97 @@
+// `.hair` files: what is written comes back in the same bits, and every fault is named.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "app/files/errors.h"
+#include "app/groom/groom_file.h"
+#include "app/groom/hair_strands_file.h"
+#include "tests/app/groom/groom_samples.h"
+#include "tests/run_program.h"
+
+namespace {
+
+std::string written(const app::Groom& groom) {
+  const std::string file = test::freshFolder("hair_strands") + "/groom.hair";
+  app::OutputFile output(file);
+  app::writeHairStrands(groom, file, output);
+  output.commit();
+  return test::readAll(file);
+}
+
+std::string faultOf(const std::string& bytes) {
+  try {
+    app::readGroom(bytes, "groom.hair");
+  } catch (const app::InputError& fault) {
+    return fault.what();
+  }
+  return "";
+}
+
+void put(std::string& bytes, std::size_t at, std::uint32_t value) {
+  std::memcpy(bytes.data() + at, &value, sizeof value);
+}
+
+TEST(HairStrands, ComesBackInTheSameBits) {
+  app::Groom groom = test::sampleGroom(40, 1);
+  const app::Groom read = app::readGroom(written(groom), "groom.hair");
+  EXPECT_EQ(read.strand_first, groom.strand_first);
+  EXPECT_EQ(read.points, groom.points);
+  EXPECT_EQ(read.widths, groom.widths);
+  EXPECT_EQ(read.colors, groom.colors);
+  groom.widths.clear();
+  groom.colors.clear();
+  const app::Groom bare = app::readGroom(written(groom), "groom.hair");
+  EXPECT_EQ(bare.points, groom.points);
+  EXPECT_TRUE(bare.widths.empty() && bare.colors.empty());
+}
+
+TEST(HairStrands, DefaultsOfTheHeaderServeEveryStrand) {
+  app::Groom groom = test::sampleGroom(1, 2);
+  groom.strand_first = {0, 2};
+  groom.points.resize(2);
+  groom.widths.clear();
+  groom.colors.clear();
+  std::string bytes = written(groom);
+  bytes.erase(128, 2);  // the one strand's segments
+  put(bytes, 12, 2);
+  put(bytes, 16, 1);
+  const float thickness = 0.25f;
+  std::memcpy(bytes.data() + 20, &thickness, sizeof thickness);
+  const app::Groom read = app::readGroom(bytes, "groom.hair");
+  EXPECT_EQ(read.strand_first, groom.strand_first);
+  EXPECT_EQ(read.widths, (std::vector<float>{0.25f, 0.25f}));
+}
+
+TEST(HairStrands, FaultsNameFilePlaceAndMend) {
+  const std::string whole = written(test::sampleGroom(10, 3));
+  EXPECT_NE(faultOf(whole.substr(0, 100)).find("groom.hair: byte 0: the file ends where the 128 bytes"),
+            std::string::npos);
+  EXPECT_NE(faultOf(whole.substr(0, whole.size() - 1)).find("colours of the points"), std::string::npos);
+  std::string bytes = whole;
+  put(bytes, 4, 11);
+  EXPECT_NE(faultOf(bytes).find("export it again"), std::string::npos);
+  bytes = whole;
+  put(bytes, 12, 1);
+  EXPECT_NE(faultOf(bytes).find("byte 12: the header's flags say that there are no points"), std::string::npos);
+  bytes = whole;
+  put(bytes, 4, 5'000'000);
+  put(bytes, 8, 80'000'000);
+  EXPECT_NE(faultOf(bytes).find("2097152 such strands fit"), std::string::npos) << faultOf(bytes);
+  EXPECT_NE(faultOf("what is this").find("no kind of groom"), std::string::npos);
+  EXPECT_NE(faultOf(std::string("\x89HDF\r\n\x1a\n", 8)).find("HDF5"), std::string::npos);
+  EXPECT_NE(faultOf("PXR-USDC0000").find("usdcat"), std::string::npos);
+}
+
+TEST(HairStrands, StrandsThatTheFormatCannotHoldAreNamed) {
+  app::Groom groom = test::sampleGroom(3, 4);
+  groom.strand_first.push_back(groom.strand_first.back());
+  try {
+    written(groom);
+    FAIL() << "an empty strand was written";
+  } catch (const app::OutputError& fault) {
+    EXPECT_NE(std::string(fault.what()).find("strand 3 has 0 points"), std::string::npos);
+  }
+}
+
+}  // namespace
