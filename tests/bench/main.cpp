@@ -19,6 +19,7 @@
 #include "tests/bench/pareto.h"
 #include "tests/bench/peers.h"
 #include "tests/bench/performance.h"
+#include "tests/bench/skin.h"
 #include "tests/bench/skipping.h"
 #include "tests/bench/solver_chart.h"
 #include "tests/bench/styles_bench.h"
@@ -38,6 +39,7 @@ struct Asked {
   bench::GateOptions gate;
   std::string gate_document;
   bench::FramesBudgetOptions frames_budget;
+  bench::SkinOptions skin;
   std::string document, accuracy, performance;
   bool all_hold = true;  // the figures of those that have bounds
 };
@@ -88,6 +90,11 @@ std::vector<Task> tasks() {
        [](Asked& a) {
          if (!bench::runFramesBudget(a.frames_budget)) a.all_hold = false;
        }},
+      {"--skin",
+       "how far drawn strands reach into the drawn skin, over whole clips of every figure; exits 1 off bounds",
+       [](Asked& a) {
+         if (!bench::runSkin(a.skin)) a.all_hold = false;
+       }},
       {"--gate", "every bound on speed and accuracy, one line each; exits 1 where one falls short",
        [](Asked& a) {
          const std::vector<bench::Figure> figures = bench::measureFigures(a.gate);
@@ -113,12 +120,13 @@ void addOptions(CLI::App& program, Asked& a) {
   program.add_option("--runs", a.pareto.runs, "timed runs a point")->check(CLI::Range(1, 100));
   program.add_flag("--quick", a.pareto.quick, "a coarser sweep");
   program
-      .add_option("--only", a.collisions.styles,
-                  "styles of --collisions, --colliders and --frames-budget, such as 'long low', comma separated")
+      .add_option(
+          "--only", a.collisions.styles,
+          "styles of --collisions, --colliders, --frames-budget and --skin, such as 'long low', comma separated")
       ->delimiter(',');
   program
       .add_option("--clips", a.collisions.clips,
-                  "clips of --collisions, --colliders and --frames-budget, comma separated")
+                  "clips of --collisions, --colliders, --frames-budget and --skin, comma separated")
       ->delimiter(',');
   program.add_option("--speeds", a.frames_budget.speeds, "playback speeds of --frames-budget, comma separated")
       ->delimiter(',')
@@ -126,7 +134,8 @@ void addOptions(CLI::App& program, Asked& a) {
   program.add_option("--steps", a.frames_budget.steps, "CSV file of every step of --frames-budget");
   program.add_option("--frames-budget-document", a.frames_budget.folder,
                      "also put --frames-budget's table and chart into this folder's performance.md");
-  program.add_option("--set", a.sets, "NAME=VALUE of a parameter for --collisions")->allow_extra_args(false);
+  program.add_option("--skin-document", a.skin.folder, "also put --skin's table into this folder's collision.md");
+  program.add_option("--set", a.sets, "NAME=VALUE of a parameter for --collisions and --skin")->allow_extra_args(false);
   program.add_option("--rounds", a.gate.rounds, "turns that the compared ways of --gate take")
       ->check(CLI::Range(1, 100));
   program.add_option("--gate-document", a.gate_document, "also put --gate's figures into this folder's gate.md");
@@ -152,12 +161,13 @@ void settle(const CLI::App& program, std::vector<Task>& all, Asked& a) {
   a.gate.references = a.pareto.references;
   a.solvers.folder = a.peers.folder = a.pareto.folder;
   a.collisions.frames = a.styles.frames;
-  a.frames_budget.styles = a.collisions.styles;
-  if (program.count("--clips") > 0) a.frames_budget.clips = a.collisions.clips;
+  a.frames_budget.styles = a.skin.styles = a.collisions.styles;
+  if (program.count("--clips") > 0) a.frames_budget.clips = a.skin.clips = a.collisions.clips;
   for (const std::string& text : a.sets) {
     const std::size_t equals = text.find('=');
     a.collisions.set.emplace_back(text.substr(0, equals), equals < text.size() ? text.substr(equals + 1) : "");
   }
+  a.skin.sets = a.collisions.set;
 }
 
 }  // namespace

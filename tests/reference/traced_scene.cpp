@@ -4,6 +4,8 @@
 #include <cstring>
 #include <limits>
 
+#include "tests/skin/drawn_skin.h"
+
 namespace reference {
 namespace {
 
@@ -20,20 +22,6 @@ RTCRay rayFrom(const Vector3f& from, const Vector3f& direction, float nearest) {
 }
 
 }  // namespace
-
-std::vector<Vector3f> skinned(const render::BodyInput& body) {
-  std::vector<Vector3f> world(body.positions.size() / 3, Vector3f::Zero());
-  for (std::size_t v = 0; v < world.size(); ++v) {
-    const Eigen::Map<const Vector3f> rest(&body.positions[3 * v]), normal(&body.normals[3 * v]);
-    const float lower = body.scalp_id != 0 && body.root_cover.size() > 2 * v + 1 ? body.root_cover[2 * v + 1] : 0;
-    const Eigen::Vector4f p = (rest - lower * normal).homogeneous();
-    for (std::size_t k = 0; k < 4; ++k) {
-      const Eigen::Map<const Eigen::Matrix4f> joint(body.joint_matrices[body.joints[4 * v + k]].data());
-      world[v] += body.weights[4 * v + k] * (joint * p).head<3>();
-    }
-  }
-  return world;
-}
 
 TracedScene::TracedScene(const std::vector<strand_capture::Polyline>& strands, float radius, float taper,
                          std::span<const render::BodyInput> bodies)
@@ -63,7 +51,7 @@ void TracedScene::addStrands(const std::vector<strand_capture::Polyline>& strand
 }
 
 void TracedScene::addBody(const render::BodyInput& body) {
-  const std::vector<Vector3f> world = skinned(body);
+  const std::vector<Vector3f> world = skin::skinned(body);
   const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
   void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, world.size());
   std::memcpy(vertices, world.data(), world.size() * 12);

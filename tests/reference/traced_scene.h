@@ -44,7 +44,4 @@ class TracedScene {
   std::vector<unsigned> segments_;       // first point of each
 };
 
-// Bodies' positions in the world, as the shaders skin them.
-std::vector<Vector3f> skinned(const render::BodyInput& body);
-
 }  // namespace reference

@@ -1,0 +1,24 @@
+// How far the drawn strands reach into the drawn skin, and how far the skin sticks out of the ellipsoids that hair
+// collides with, over whole clips of every figure at hand.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace bench {
+
+struct SkinOptions {
+  std::vector<std::string> styles;                        // "long low"; empty: three styles at low resolution
+  std::vector<std::string> clips;                         // file names; empty: all
+  std::vector<std::pair<std::string, std::string>> sets;  // parameters as for --set
+  int strands = 1200;
+  std::string folder;  // of the document whose table is written; empty: none
+};
+
+// The project's own clips, and where they are there those of ../shared: mocap, the rigid parts of arcsim, characters.
+// One round of each at 1x in steps of 1/60 s, looked at ten times a second. Returns whether all keep the bounds: at
+// most a thousandth of the points 1 mm inside, none 4 mm. Throws app::InputError.
+bool runSkin(const SkinOptions& options);
+
+}  // namespace bench
