@@ -36,6 +36,12 @@ void OutputFile::write(std::string_view bytes) {
   if (std::fwrite(bytes.data(), 1, bytes.size(), stream_) != bytes.size()) fail(errno);
 }
 
+void OutputFile::overwrite(long at, std::string_view bytes) {
+  if (std::fseek(stream_, at, SEEK_SET) != 0) fail(errno);
+  write(bytes);
+  if (std::fseek(stream_, 0, SEEK_END) != 0) fail(errno);
+}
+
 void OutputFile::flush() {
   if (std::fflush(stream_) != 0) fail(errno);
 }

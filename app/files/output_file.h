@@ -20,6 +20,8 @@ class OutputFile {
 
   // Each throws OutputError when the bytes could not be written.
   void write(std::string_view bytes);
+  // Puts bytes in place of some that were written, at an offset from the file's start; writing goes on at the end.
+  void overwrite(long at, std::string_view bytes);
   void flush();
   void commit();
 

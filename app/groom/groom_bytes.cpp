@@ -1,12 +1,14 @@
 #include "app/groom/groom_bytes.h"
 
+#include <algorithm>
+
 #include "app/files/errors.h"
 
 namespace app {
 
 void checkGroomSize(const std::string& file, const std::string& place, std::size_t strands, std::size_t points) {
-  if (points <= kMaxGroomPoints) return;
-  const double share = static_cast<double>(kMaxGroomPoints) / static_cast<double>(points);
+  if (points <= kMaxGroomPoints && strands <= kMaxGroomPoints) return;
+  const double share = static_cast<double>(kMaxGroomPoints) / static_cast<double>(std::max(points, strands));
   const auto fit = static_cast<std::size_t>(share * static_cast<double>(strands));
   throw InputError(file, place,
                    "holds " + std::to_string(strands) + " strands of " + std::to_string(points) + " points; " +

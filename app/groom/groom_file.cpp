@@ -7,6 +7,7 @@
 
 #include "app/files/errors.h"
 #include "app/files/text_file.h"
+#include "app/groom/alembic_file.h"
 #include "app/groom/groom_bytes.h"
 #include "app/groom/hair_strands_file.h"
 
@@ -31,6 +32,7 @@ void refuseKnown(std::string_view bytes, const std::string& file) {
 
 std::optional<GroomFormat> groomFormat(std::string_view bytes, const std::string& file) {
   if (bytes.starts_with("HAIR")) return GroomFormat::kHair;
+  if (bytes.starts_with("Ogawa")) return GroomFormat::kAlembic;
   refuseKnown(bytes, file);
   return std::nullopt;
 }
@@ -48,7 +50,13 @@ Groom readGroom(std::string_view bytes, const std::string& file) {
   if (!format) {
     throw InputError(file, "", "is no kind of groom that is read", "give strands as .hair, .abc, .usda, .tfx or .ply");
   }
-  return readHairStrands(bytes, file);
+  switch (*format) {
+    case GroomFormat::kHair:
+      return readHairStrands(bytes, file);
+    case GroomFormat::kAlembic:
+      return readAlembic(bytes, file);
+  }
+  return {};
 }
 
 Groom readGroom(const std::string& file) {

@@ -9,7 +9,7 @@
 
 namespace app {
 
-enum class GroomFormat { kHair };
+enum class GroomFormat { kHair, kAlembic };
 
 // By the first bytes, and for a kind without a mark by the plausibility of its header. Throws InputError for what is
 // known and not read: Alembic in HDF5, binary or packed USD. Nothing: no groom.

@@ -7,7 +7,7 @@
 #include "app/groom/groom_file.h"
 #include "app/groom/hair_strands_file.h"
 #include "tests/app/groom/groom_samples.h"
-#include "tests/run_program.h"
+#include "tests/app/groom/second_reader.h"
 
 namespace {
 
@@ -39,6 +39,10 @@ TEST(HairStrands, ComesBackInTheSameBits) {
   EXPECT_EQ(read.points, groom.points);
   EXPECT_EQ(read.widths, groom.widths);
   EXPECT_EQ(read.colors, groom.colors);
+  const std::string file = test::freshFolder("hair_second") + "/groom.hair";
+  app::writeFile(file, written(groom));
+  const std::string second = test::secondReading(file);
+  EXPECT_TRUE(second == test::dumpClip({}, {read})) << second.substr(0, 2000);
   groom.widths.clear();
   groom.colors.clear();
   const app::Groom bare = app::readGroom(written(groom), "groom.hair");
