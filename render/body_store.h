@@ -17,6 +17,8 @@ namespace render {
 struct BodyFinish {
   Float3 color{}, root_color{};
   float roughness = 0, scalp_tint = 0;
+  Float3 face_origin{};
+  float face_height = 0, face_paint = 0;
   bool operator==(const BodyFinish&) const = default;
 };
 

@@ -73,13 +73,17 @@ struct BodyInput {
   std::span<const float> weights;         // 4 a vertex
   std::span<const Mat4> joint_matrices;   // rest model space to world
   std::uint64_t pose_revision = 0;
-  Float3 color{0.19f, 0.162f, 0.147f};
+  Float3 color{0.27f, 0.197f, 0.162f};
   float roughness = 0.55f;
   // Skin among the roots of a hair is shaded and coloured by them.
   std::uint64_t scalp_id = 0;         // stable per root cover; 0: no hair grows on the body
   std::span<const float> root_cover;  // 2 a vertex: 0 bare .. 1 among the roots; m that the skin is drawn lower
   Float3 root_color{};                // share of light that the roots leave what is seen through them; see rootColor
   float scalp_tint = 0;               // 0..1, strength of shade and colour
+  // Brows, lashes and lips are painted where shaders/common/face.glsl has them.
+  Float3 face_origin{};   // m, rest pose: the chin's level under the base of the skull
+  float face_height = 0;  // m from chin to crown; 0: no face is painted
+  float face_paint = 1;   // 0..1, strength
 };
 
 struct CameraInput {

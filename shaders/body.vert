@@ -3,9 +3,11 @@
 layout(location = 0) out vec3 world;
 layout(location = 1) out vec3 normal;
 layout(location = 2) out float cover;
+layout(location = 3) out vec3 rest;
 
 void main() {
   skin(world, normal);
   cover = root_cover.x;
+  rest = rest_position;
   gl_Position = clip_from_world * vec4(world, 1.0);
 }

@@ -45,6 +45,7 @@ Character loadMannequin(const std::string& text, const std::string& file) {
   character.clips.push_back(std::move(motion.clip));
   character.head_joint = mannequin.roles.head;
   character.head_frame = mannequin.head_frame;
+  character.face = {mannequin.field.head_origin, mannequin.field.head_scale};
   character.notes = std::move(motion.notes);
   character.notes.insert(character.notes.end(), mannequin.notes.begin(), mannequin.notes.end());
 

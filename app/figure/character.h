@@ -64,6 +64,12 @@ struct BodyEllipsoid {
   Vec3 radii = Vec3::Ones();
 };
 
+// Where a grown head's face lies, rest pose.
+struct Face {
+  Vec3 origin = Vec3::Zero();  // m: the chin's level under the base of the skull
+  double height = 0;           // m from chin to crown; 0: the figure brings its own face
+};
+
 struct Character {
   std::string name;
   Skeleton skeleton;
@@ -74,6 +80,7 @@ struct Character {
   Rigid head_frame =
       Rigid::Identity();  // scalp frame (y up, z forward, x left, origin at the head joint) to head joint frame
   sim::Scalp scalp;
+  Face face;
   std::vector<std::string> notes;  // what was inferred: units, axes, frame rate, rest pose, head joint
 };
 

@@ -157,6 +157,10 @@ render::BodyInput bodyInput(const Actor& actor, bool show_strands) {
   input.root_cover = actor.scalp->cover;
   input.scalp_tint = actor.spec.look.scalp_tint;
   input.root_color = render::rootColor(actor.spec.look.hair);
+  const Face& face = actor.body->character.face;
+  for (int k = 0; k < 3; ++k) input.face_origin[k] = static_cast<float>(face.origin[k]);
+  input.face_height = static_cast<float>(face.height);
+  input.face_paint = actor.spec.look.face_paint;
   return input;
 }
 

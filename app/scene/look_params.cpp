@@ -89,6 +89,7 @@ LookField<Owner> shaped(LookShape shape, LookField<Owner> row) {
   return row;
 }
 
+#define BODY(member) [](auto& look) -> auto& { return look.member; }
 #define HAIR(member)         \
   [](auto& look) -> auto& {  \
     return look.hair.member; \
@@ -138,15 +139,12 @@ std::vector<HairField> makeHairTable() {
                          "Strength of the highlights; what they gain, light that passes through strands loses."),
     hair<HAIR(diffuse)>("diffuse", "Shine", "", {0, 1},
                         "Share that is kept of light scattered from strand to strand."),
-    color(hair<[](auto& look) -> auto& { return look.body_color; }>("body_color", "Body", "", {0, 1},
-                                                                    "Colour of the mannequin, linear RGB.")),
-    hair < [](auto& look) -> auto& {
-  return look.body_roughness;
-}
-> ("body_roughness", "Body", "", {0.05, 1}, "Roughness of the mannequin's surface."), hair < [](auto& look) -> auto& {
-  return look.scalp_tint;
-}
-> ("scalp_tint", "Body", "", {0, 1}, "How much the roots shade and colour the skin between them, as at the parting."),
+    color(hair<BODY(body_color)>("body_color", "Body", "", {0, 1}, "Colour of the mannequin, linear RGB.")),
+    hair<BODY(body_roughness)>("body_roughness", "Body", "", {0.05, 1}, "Roughness of the mannequin's surface."),
+    hair<BODY(scalp_tint)>("scalp_tint", "Body", "", {0, 1},
+                           "How much the roots shade and colour the skin between them, as at the parting."),
+    hair<BODY(face_paint)>("face_paint", "Body", "", {0, 1},
+                           "Strength of the mannequin's painted brows, lashes and lips; 0 is a bare face."),
 };  // namespace
 }  // namespace app
 

@@ -21,6 +21,7 @@ struct CharacterLook {
   render::Float3 body_color = render::BodyInput{}.color;
   float body_roughness = render::BodyInput{}.roughness;
   float scalp_tint = 0.8f;  // how much the hair's roots shade and colour the skin between them, 0..1
+  float face_paint = 1;     // of brows, lashes and lips of a grown mannequin, 0..1
 };
 
 // What all characters of a scene share.

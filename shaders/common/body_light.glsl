@@ -1,4 +1,5 @@
 // Light that a point of a body sends to the eye.
+#include "common/face.glsl"
 #include "common/shadow.glsl"
 #include "common/surface.glsl"
 
@@ -6,8 +7,8 @@
 // to it, and share of what the skin sends on that meets them again.
 const float kRootShade = 0.65, kRootPasses = 0.6, kRootMeeting = 0.75;
 
-// cover: 0 bare skin .. 1 among the roots of a hair.
-vec3 bodyRadiance(vec3 world, vec3 normal, float cover) {
+// rest: the point in the rest pose, m. cover: 0 bare skin .. 1 among the roots of a hair.
+vec3 bodyRadiance(vec3 rest, vec3 world, vec3 normal, float cover) {
   vec3 to_eye = normalize(eye.xyz - world), n = normalize(normal);
   if (dot(n, to_eye) < 0.0)
     n = normalize(n - 1.02 * dot(n, to_eye) * to_eye);  // interpolated normals may tip over the rim
@@ -15,6 +16,13 @@ vec3 bodyRadiance(vec3 world, vec3 normal, float cover) {
   vec3 among_roots = 1.0 - kRootShade * roots * (1.0 - kRootPasses * root_color.rgb);
   vec3 albedo = body_color.rgb * mix(vec3(1.0), root_color.rgb, kRootMeeting * roots);
   float roughness = mix(body_color.a, 1.0, roots);
+  if (paint.x > 0.0) {
+    float pixel = eye.w * length(eye.xyz - world) * face.w;
+    vec3 brow_color = mix(vec3(0.14, 0.10, 0.08), 0.55 * root_color.rgb, min(root_color.w, 1.0));
+    vec4 painted = facePaint((rest - face.xyz) * face.w, brow_color, pixel);
+    albedo *= mix(vec3(1.0), painted.rgb, paint.x);
+    roughness *= mix(1.0, painted.w, paint.x);
+  }
   float through_hair = 1.0, lit = 1.0;
   if (forward.w > 0.0) {
     through_hair = hairLightOnSurface(world);
@@ -25,9 +33,9 @@ vec3 bodyRadiance(vec3 world, vec3 normal, float cover) {
   vec3 key_light = lit * min(vec3(through_hair), among_roots) * key.rgb;
   // Under hair little of the sky and of the other lights arrives either; the key light's map is the only witness.
   vec3 open = min(vec3(0.7 + 0.3 * through_hair), among_roots);
-  vec3 radiance = key_light * surfaceLight(n, to_key.xyz, to_eye, albedo, roughness);
-  radiance += open * fill.rgb * surfaceLight(n, to_fill.xyz, to_eye, albedo, roughness);
-  radiance += open * rim.rgb * surfaceLight(n, to_rim.xyz, to_eye, albedo, roughness);
+  vec3 radiance = key_light * skinLight(n, to_key.xyz, to_eye, albedo, roughness);
+  radiance += open * fill.rgb * skinLight(n, to_fill.xyz, to_eye, albedo, roughness);
+  radiance += open * rim.rgb * skinLight(n, to_rim.xyz, to_eye, albedo, roughness);
   radiance += open * albedo * mix(ground_light.rgb, sky.rgb, 0.5 + 0.5 * n.y);
   return radiance;
 }

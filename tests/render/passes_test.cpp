@@ -52,7 +52,7 @@ MEMBERS(HairLook, strand_radius, strands_represented, width_compensation, least_
 MEMBERS(HairInput, id, layout_revision, position_revision, layout_id, faces, positions, rest, strands,
         segments_per_layer, look)
 MEMBERS(BodyInput, id, mesh_id, positions, normals, triangles, joints, weights, joint_matrices, pose_revision, color,
-        roughness, scalp_id, root_cover, root_color, scalp_tint)
+        roughness, scalp_id, root_cover, root_color, scalp_tint, face_origin, face_height, face_paint)
 MEMBERS(FrameInput, width, height, camera, light, view, skips, hairs, bodies, debug_lines, debug_triangles,
         debug_points)
 #undef MEMBERS
@@ -101,6 +101,10 @@ struct Scene {
     bodies[0].scalp_tint = 0.6f;
     bodies[0].root_color = {0.4f, 0.3f, 0.2f};
     bodies[0].root_cover = cover;
+    // The synthetic body's front lies where face.glsl paints lips and brows.
+    bodies[0].face_origin = {0, 1.45f, 0};
+    bodies[0].face_height = 0.25f;
+    bodies[0].face_paint = 0.6f;
     frame = synthetic::frameInput(hairs, bodies, 96, 64);
     frame.camera.eye = {0.25f, 1.6f, 0.6f};
     frame.light.shadow_size = 128;
