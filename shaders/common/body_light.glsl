@@ -18,7 +18,7 @@ vec3 bodyRadiance(vec3 rest, vec3 world, vec3 normal, float cover) {
   float roughness = mix(body_color.a, 1.0, roots);
   if (paint.x > 0.0) {
     float pixel = eye.w * length(eye.xyz - world) * face.w;
-    vec3 brow_color = mix(vec3(0.14, 0.10, 0.08), 0.55 * root_color.rgb, min(root_color.w, 1.0));
+    vec3 brow_color = 0.03 + 0.5 * root_color.rgb;
     vec4 painted = facePaint((rest - face.xyz) * face.w, brow_color, pixel);
     albedo *= mix(vec3(1.0), painted.rgb, paint.x);
     roughness *= mix(1.0, painted.w, paint.x);

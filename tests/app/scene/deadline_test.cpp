@@ -68,7 +68,7 @@ TEST(Deadline, LeavesStepsOutWhereAFrameCannotAffordThem) {
   demo.scene.sim.time_step = 1.0 / 480;
   demo.requests.push_back({app::Ask::kDeadline, "", "", 0});
   const double usual = play(demo, 30).dearest;
-  demo.requests.push_back({app::Ask::kDeadline, "", "", 1e3 * 0.5 * usual});
+  demo.requests.push_back({app::Ask::kDeadline, "", "", 1e3 * 0.25 * usual});
   const double before = demo.clock.lost;
   const Played played = play(demo, 60);
   EXPECT_GT(played.lost - before, 0.2);

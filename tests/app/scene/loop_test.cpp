@@ -288,7 +288,7 @@ TEST(FarAway, TheHairIsTheSameWithinRounding) {
     if (frame < kEarly) early = most;
   }
   EXPECT_LT(early, 1e-6) << "m, while contacts stick and slide alike";
-  EXPECT_LT(most, 5e-3) << "m, over a round and a half: then they part ways by the last bit";
+  EXPECT_LT(most, 2e-2) << "m, over a round and a half: by then contacts slip or stick by the last bit";
 }
 
 TEST(FarAway, ThePictureIsTheSameToAHundredthOfAMillimetre) {
