@@ -8,7 +8,8 @@ build_packages=(
 )
 test_packages=(libgtest-dev libpng-dev xvfb python3)
 # More tests and comparisons run where these are installed; without them they are skipped.
-optional_test_packages=(libembree-dev assimp-testmodels libsuitesparse-dev libbullet-dev gnuplot-nox valgrind clang libclang-rt-14-dev)
+optional_test_packages=(libembree-dev assimp-testmodels libsuitesparse-dev libbullet-dev gnuplot-nox valgrind clang libclang-rt-14-dev
+  glslang-tools mesa-vulkan-drivers)
 
 installed() {
   [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
