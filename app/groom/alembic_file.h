@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "app/files/output_file.h"
-#include "app/groom/clip_times.h"
+#include "app/groom/clip_settings.h"
 #include "app/groom/groom.h"
 
 namespace app {
@@ -33,7 +33,7 @@ std::vector<double> alembicTimes(std::string_view bytes, const std::string& file
 class AlembicWriter {
  public:
   // Throws OutputError where the file cannot be made.
-  AlembicWriter(const std::string& file, const ClipTimes& times);
+  AlembicWriter(const std::string& file, const ClipSettings& times);
   ~AlembicWriter();
 
   // Throws OutputError when strands differ from those of the first moment, and when bytes could not be written.

@@ -29,7 +29,7 @@ std::string geomParam(const char* scope, unsigned extent, const char* pod, const
 struct AlembicWriter::Impl {
   OutputFile output;
   std::string file;
-  ClipTimes times;
+  ClipSettings times;
   OgawaWriter ogawa{output};
   std::vector<std::uint32_t> strand_first;
   std::vector<std::uint64_t> points, bounds;  // offsets of the samples
@@ -37,7 +37,7 @@ struct AlembicWriter::Impl {
   MetadataTable table;
   std::uint64_t hash = 0;
 
-  Impl(const std::string& name, const ClipTimes& clip_times) : output(name), file(name), times(clip_times) {}
+  Impl(const std::string& name, const ClipSettings& settings) : output(name), file(name), times(settings) {}
 
   Property constant(const char* name, std::string metadata, Kind kind, Pod pod, unsigned extent,
                     std::string_view bytes);
@@ -162,7 +162,7 @@ std::string AlembicWriter::Impl::timeSamplings() const {
   put(1, 1.0, {0.0});
   if (points.size() < 2) return bytes;
   std::vector<double> stored;
-  for (std::size_t n = 0; n < times.offsets.size(); ++n) stored.push_back(times.of(n));
+  for (std::size_t n = 0; n < times.offsets.size(); ++n) stored.push_back(times.timeOf(n));
   put(static_cast<std::uint32_t>(points.size()), 1 / times.fps, stored);
   return bytes;
 }
@@ -179,7 +179,7 @@ void AlembicWriter::Impl::finish() {
   output.commit();
 }
 
-AlembicWriter::AlembicWriter(const std::string& file, const ClipTimes& times)
+AlembicWriter::AlembicWriter(const std::string& file, const ClipSettings& times)
     : impl_(std::make_unique<Impl>(file, times)) {}
 
 AlembicWriter::~AlembicWriter() = default;

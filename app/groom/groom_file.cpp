@@ -10,6 +10,9 @@
 #include "app/groom/alembic_file.h"
 #include "app/groom/groom_bytes.h"
 #include "app/groom/hair_strands_file.h"
+#include "app/groom/ply_file.h"
+#include "app/groom/tfx_file.h"
+#include "app/groom/usda_file.h"
 
 namespace app {
 
@@ -33,7 +36,10 @@ void refuseKnown(std::string_view bytes, const std::string& file) {
 std::optional<GroomFormat> groomFormat(std::string_view bytes, const std::string& file) {
   if (bytes.starts_with("HAIR")) return GroomFormat::kHair;
   if (bytes.starts_with("Ogawa")) return GroomFormat::kAlembic;
+  if (bytes.starts_with("#usda")) return GroomFormat::kUsda;
+  if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return GroomFormat::kPly;
   refuseKnown(bytes, file);
+  if (looksLikeTfx(bytes)) return GroomFormat::kTfx;
   return std::nullopt;
 }
 
@@ -45,7 +51,7 @@ bool hasGroomEnding(const std::string& file) {
   return std::ranges::find(kEndings, ending) != kEndings.end();
 }
 
-Groom readGroom(std::string_view bytes, const std::string& file) {
+Groom readGroom(std::string_view bytes, const std::string& file, GroomHints* hints) {
   const std::optional<GroomFormat> format = groomFormat(bytes, file);
   if (!format) {
     throw InputError(file, "", "is no kind of groom that is read", "give strands as .hair, .abc, .usda, .tfx or .ply");
@@ -55,12 +61,18 @@ Groom readGroom(std::string_view bytes, const std::string& file) {
       return readHairStrands(bytes, file);
     case GroomFormat::kAlembic:
       return readAlembic(bytes, file);
+    case GroomFormat::kUsda:
+      return readUsda(bytes, file, 0, hints);
+    case GroomFormat::kPly:
+      return readPlyStrands(bytes, file);
+    case GroomFormat::kTfx:
+      return readTfx(bytes, file);
   }
   return {};
 }
 
-Groom readGroom(const std::string& file) {
-  return readGroom(readText(file, kMaxGroomFile), file);
+Groom readGroom(const std::string& file, GroomHints* hints) {
+  return readGroom(readText(file, kMaxGroomFile), file, hints);
 }
 
 }  // namespace app

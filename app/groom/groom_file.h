@@ -6,10 +6,11 @@
 #include <string_view>
 
 #include "app/groom/groom.h"
+#include "app/groom/groom_hints.h"
 
 namespace app {
 
-enum class GroomFormat { kHair, kAlembic };
+enum class GroomFormat { kHair, kAlembic, kUsda, kPly, kTfx };
 
 // By the first bytes, and for a kind without a mark by the plausibility of its header. Throws InputError for what is
 // known and not read: Alembic in HDF5, binary or packed USD. Nothing: no groom.
@@ -21,8 +22,8 @@ bool hasGroomEnding(const std::string& file);
 // The groom as the file has it: its unit, its axes, its order of points; strands without points are kept. Where a file
 // holds several moments, the first. Memory used is bounded by a small multiple of the file's size; files over
 // kMaxGroomFile bytes and grooms over kMaxGroomPoints points are refused (groom_bytes.h). Throws InputError naming the
-// place, the fault and the mend.
-Groom readGroom(const std::string& file);
-Groom readGroom(std::string_view bytes, const std::string& file);
+// place, the fault and the mend. What the file tells of its unit and axes goes to `hints`.
+Groom readGroom(const std::string& file, GroomHints* hints = nullptr);
+Groom readGroom(std::string_view bytes, const std::string& file, GroomHints* hints = nullptr);
 
 }  // namespace app

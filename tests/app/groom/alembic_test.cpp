@@ -21,7 +21,7 @@ std::vector<app::Groom> swaying(app::Groom groom, std::size_t moments) {
   return clip;
 }
 
-std::string writtenFile(const std::vector<app::Groom>& clip, const app::ClipTimes& times) {
+std::string writtenFile(const std::vector<app::Groom>& clip, const app::ClipSettings& times) {
   const std::string file = test::freshFolder("alembic") + "/groom.abc";
   app::AlembicWriter writer(file, times);
   for (const app::Groom& groom : clip) writer.add(groom);
@@ -29,11 +29,11 @@ std::string writtenFile(const std::vector<app::Groom>& clip, const app::ClipTime
   return file;
 }
 
-void expectTheSame(const std::vector<app::Groom>& clip, const app::ClipTimes& times) {
+void expectTheSame(const std::vector<app::Groom>& clip, const app::ClipSettings& times) {
   const std::string file = writtenFile(clip, times), bytes = test::readAll(file);
   const std::vector<double> read_times = app::alembicTimes(bytes, file);
   std::vector<double> expected;
-  for (std::size_t n = 0; n < clip.size(); ++n) expected.push_back(clip.size() > 1 ? times.of(n) : 0);
+  for (std::size_t n = 0; n < clip.size(); ++n) expected.push_back(clip.size() > 1 ? times.timeOf(n) : 0);
   ASSERT_EQ(read_times.size(), expected.size());
   for (std::size_t n = 0; n < clip.size(); ++n) EXPECT_NEAR(read_times[n], expected[n], 1e-12);
   std::vector<app::Groom> read;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <random>
+#include <string>
 
 #include "app/groom/groom.h"
 
@@ -30,6 +31,11 @@ inline app::Groom sampleGroom(std::size_t strands, std::uint32_t seed) {
     groom.guides.push_back(s % 5 == 0);
   }
   return groom;
+}
+
+// Empty where `text` holds `piece`, else the text.
+inline std::string lacking(const std::string& text, const std::string& piece) {
+  return text.find(piece) != std::string::npos ? "" : "'" + text + "'";
 }
 
 }  // namespace test

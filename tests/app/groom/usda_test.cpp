@@ -1,0 +1,123 @@
+// USD curves: what is written comes back in the same bits, by the program's reader and by one in Python; what other
+// programs write of the grammar is read too.
+#include <gtest/gtest.h>
+
+#include "app/files/errors.h"
+#include "app/groom/groom_file.h"
+#include "app/groom/usda_file.h"
+#include "tests/app/groom/groom_samples.h"
+#include "tests/app/groom/second_reader.h"
+
+namespace {
+
+std::vector<app::Groom> swaying(app::Groom groom, std::size_t moments) {
+  std::vector<app::Groom> clip;
+  for (std::size_t n = 0; n < moments; ++n) {
+    for (Eigen::Vector3f& point : groom.points) point.x() += 0.001f * point.y();
+    clip.push_back(groom);
+  }
+  return clip;
+}
+
+std::string writtenFile(const std::vector<app::Groom>& clip, const app::ClipSettings& settings) {
+  const std::string file = test::freshFolder("usda") + "/groom.usda";
+  app::UsdaWriter writer(file, settings);
+  for (const app::Groom& groom : clip) writer.add(groom);
+  writer.finish();
+  return file;
+}
+
+void expectTheSame(const std::vector<app::Groom>& clip, const app::ClipSettings& settings) {
+  const std::string file = writtenFile(clip, settings), text = test::readAll(file);
+  const std::vector<double> times = app::usdaTimes(text, file);
+  ASSERT_EQ(times.size(), clip.size());
+  std::vector<app::Groom> read;
+  for (std::size_t n = 0; n < clip.size(); ++n) {
+    read.push_back(app::readUsda(text, file, n));
+    EXPECT_NEAR(times[n], settings.timeOf(n), 1e-12);
+  }
+  EXPECT_TRUE(test::dumpClip({}, read) == test::dumpClip({}, clip)) << "read back differently";
+  const std::string second = test::secondReading(file);
+  EXPECT_TRUE(second.substr(8 * (clip.size() + 1)) == test::dumpClip({}, clip).substr(8)) << second.substr(0, 2000);
+}
+
+TEST(Usda, AClipComesBackInTheSameBitsByBothReaders) {
+  expectTheSame(swaying(test::sampleGroom(40, 41), 5), {30, 0.5, {0}, 1});
+  expectTheSame(swaying(test::sampleGroom(7, 42), 12), {24, 0, {-0.01, 0, 0.01}, 0.01});
+  expectTheSame({test::sampleGroom(20, 43)}, {});
+}
+
+TEST(Usda, UnitAndAxisAreHanded) {
+  app::GroomHints hints;
+  app::readGroom(writtenFile({test::sampleGroom(2, 44)}, {24, 0, {0}, 0.01}), &hints);
+  EXPECT_EQ(hints.meters_per_unit, 0.01);
+  EXPECT_EQ(hints.up, 'Y');
+}
+
+const char* const kForeign = R"(#usda 1.0
+(
+    "made by hand"
+    customLayerData = { string creator = "x } y" }
+    upAxis = "Z"
+    subLayers = [ @./a.usda@ ]
+)
+def Xform "root" ( kind = "group" )
+{
+    double3 xformOp:translate = (0, 0, 10)
+    float3 xformOp:scale = (2, 2, 2)
+    uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:scale"]
+    token visibility
+    rel material:binding = </mat>
+    # a comment with { a brace
+    def BasisCurves "bezier" (
+        prepend apiSchemas = ["MaterialBindingAPI"]
+    )
+    {
+        custom string note = """several
+lines } """
+        point3f[] points = [(0,0,0),(0,0,1),(0,0,2),(0,0,3), (1,0,0),(1,0,1),(1,0,2),(1,0,3)]
+        int[] curveVertexCounts = [4, 4]
+        float[] widths = [0.5] ( interpolation = "constant" )
+        color3f[] primvars:displayColor = [(1,0,0), (0,1,0)] ( interpolation = "uniform" )
+        int[] primvars:displayColor:indices = [1, 0]
+    }
+    def "untyped" { }
+    def BasisCurves "linear" { uniform token type = "linear"
+        int[] curveVertexCounts = [2]
+        point3f[] points.timeSamples = { 1: [(0,0,0),(1,0,0)], 2.5: [(0,0,0),(2,0,0)], }
+        texCoord2f[] primvars:st = [(0.25, 0.75)] (interpolation = "uniform") }
+}
+)";
+
+TEST(Usda, WhatOtherProgramsWriteIsRead) {
+  const app::Groom groom = app::readGroom(kForeign, "hand.usda");
+  EXPECT_EQ(groom.strand_first, (std::vector<std::uint32_t>{0, 2, 4, 6}));
+  EXPECT_EQ(groom.points[1], Eigen::Vector3f(0, 0, 16));
+  EXPECT_EQ(groom.points[5], Eigen::Vector3f(2, 0, 10));
+  EXPECT_EQ(groom.widths, (std::vector<float>{0.5f, 0.5f, 0.5f, 0.5f, 0, 0}));
+  EXPECT_EQ(groom.colors[0], Eigen::Vector3f(0, 1, 0));
+  EXPECT_EQ(groom.root_uvs[2], Eigen::Vector2f(0.25f, 0.75f));
+  EXPECT_EQ(groom.groups, (std::vector<std::int32_t>{0, 0, 1}));
+  EXPECT_EQ(app::readUsda(kForeign, "hand.usda", 1).points[5], Eigen::Vector3f(4, 0, 10));
+  EXPECT_EQ(app::usdaTimes(kForeign, "hand.usda"), (std::vector<double>{1.0 / 24, 2.5 / 24}));
+}
+
+TEST(Usda, FaultsNameTheirLine) {
+  const auto fault = [](std::string text, const std::string& from, const std::string& to) -> std::string {
+    text.replace(text.find(from), from.size(), to);
+    try {
+      app::readGroom(text, "hand.usda");
+    } catch (const app::InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(test::lacking(fault(kForeign, "(0,0,1)", "(0,0,x)"), "hand.usda: line 22: 'x)"), "");
+  EXPECT_EQ(test::lacking(fault(kForeign, "[4, 4]", "[4, 5]"), "curveVertexCounts reach beyond"), "");
+  EXPECT_EQ(test::lacking(fault(kForeign, "[0.5]", "[0.5, 1, 2]"), "widths has 3 values for 2 curves"), "");
+  EXPECT_EQ(test::lacking(fault(kForeign, "(0.25, 0.75)]", "(0.25, 0.75)"), "line 34: an attribute or a prim"), "");
+  const std::string whole = kForeign;
+  EXPECT_EQ(test::lacking(fault(whole, "xformOp:scale\"", "xformOp:shear\""), "'xformOp:shear' is not read"), "");
+}
+
+}  // namespace
