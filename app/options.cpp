@@ -181,6 +181,8 @@ void addRunOptions(CLI::App& parser, Options& options) {
       ->check(within(1, kMaxFrames));
   group.value("--out", options.out, "DIR", "Folder for headless frames (frames)");
   group.flag("--no-images", options.no_images, "Headless: simulate only, create no OpenGL context");
+  group.flag("--gl-debug", options.gl_debug,
+             "Headless: let the driver check every OpenGL call (KHR_debug); exit code 1 when it has anything to say");
   group.value("--report", options.report, "FILE.json", "Write timings per stage and counters of every frame as JSON");
   group.value("--record", options.record, "FILE", "Write the run's inputs, so that --replay repeats it to the bit");
   group.value("--write-hair", options.write_hair, "FILE.obj", "Write the hair mesh that is shown as OBJ and end");

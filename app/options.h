@@ -42,6 +42,7 @@ struct Options {
   std::string debug;       // debug views, comma separated
   std::string screenshot;  // PNG of the last frame, panels included
   bool no_images = false;
+  bool gl_debug = false;  // headless: the driver checks every OpenGL call
   bool hide_panels = false;
   double ui_scale = 1;         // of texts and panels, over the display's own
   std::string panel;           // the tab that is open at first; empty: the first

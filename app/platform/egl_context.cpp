@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "app/files/errors.h"
+#include "render/gl_messages.h"
 #include "render/renderer.h"
 
 namespace app {
@@ -60,7 +61,7 @@ std::string eglFault(const char* call) {
 
 // Makes a 4.5 core context current on `display`. Returns the fault in words; empty when all is well. On a fault the
 // display is terminated and nothing stays current.
-std::string makeContext(EGLDisplay display, EGLContext& context) {
+std::string makeContext(EGLDisplay display, bool debug, EGLContext& context) {
   if (display == EGL_NO_DISPLAY) return "no such display";
   if (!eglInitialize(display, nullptr, nullptr)) return eglFault("eglInitialize");
   const auto fail = [&](std::string fault) {
@@ -79,22 +80,23 @@ std::string makeContext(EGLDisplay display, EGLContext& context) {
   }
   const EGLint context_attributes[] = {
       EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
-      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_CONTEXT_OPENGL_DEBUG, debug ? EGL_TRUE : EGL_FALSE, EGL_NONE};
   context = eglCreateContext(display, config, EGL_NO_CONTEXT, context_attributes);
   if (context == EGL_NO_CONTEXT) return fail(eglFault("eglCreateContext for OpenGL 4.5 core"));
   if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) return fail(eglFault("eglMakeCurrent"));
   std::string fault = render::initGl();
   if (!fault.empty()) return fail(fault);
+  if (debug) render::watchGl();
   return {};
 }
 
 }  // namespace
 
-EglContext::EglContext() {
+EglContext::EglContext(bool debug) {
   std::ostringstream tried;
   for (const Candidate& candidate : candidateDisplays()) {
     EGLContext context = EGL_NO_CONTEXT;
-    const std::string fault = makeContext(candidate.display, context);
+    const std::string fault = makeContext(candidate.display, debug, context);
     if (fault.empty()) {
       display_ = candidate.display;
       context_ = context;

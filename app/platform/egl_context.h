@@ -10,8 +10,9 @@ namespace app {
 // GLEW.
 class EglContext {
  public:
-  // Throws ContextError that lists every attempt and how each failed.
-  EglContext();
+  // Throws ContextError that lists every attempt and how each failed. `debug`: the driver checks every call; see
+  // render/gl_messages.h.
+  explicit EglContext(bool debug = false);
   ~EglContext();
   EglContext(EglContext&& other) noexcept;
   EglContext& operator=(EglContext&& other) noexcept;

@@ -18,6 +18,7 @@
 #include "app/platform/interrupt.h"
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
+#include "render/gl_messages.h"
 
 namespace app {
 
@@ -64,6 +65,7 @@ std::string staleFrames(const std::string& folder, long last) {
 
 // What only a run with pictures has. The renderer goes before its context.
 struct Pictures {
+  explicit Pictures(bool debug) : context(debug) {}
   EglContext context;
   render::Renderer renderer{dataPath("shaders")};
 };
@@ -112,7 +114,7 @@ Run::Run(Scene scene, const Options& run_options) : options(run_options), tape(o
   }
   if (!options.no_images) checkWritable(framePath(options.out, first));
   if (!options.no_images) {
-    pictures.emplace();
+    pictures.emplace(options.gl_debug);
     report.renderer = render::rendererName();
   }
   report.start_seconds = now() - start;
@@ -180,7 +182,9 @@ int Run::finish() {
     std::cout << "interrupted after " << report.frames.size() << " of " << frames << " frames\n";
     return kExitInterrupted;
   }
-  return end.differs ? kExitFault : kExitFine;
+  if (options.gl_debug && render::glMessageCount() > 0)
+    std::cerr << "hairmesh: the driver had " << render::glMessageCount() << " things to say of OpenGL calls\n";
+  return end.differs || render::glMessageCount() > 0 ? kExitFault : kExitFine;
 }
 
 }  // namespace
