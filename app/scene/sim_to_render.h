@@ -8,13 +8,11 @@
 #include <vector>
 
 #include "app/figure/character.h"
+#include "app/scene/render_faces.h"
 #include "render/frame_input.h"
 #include "sim/mesh/hair_mesh.h"
 
 namespace app {
-
-// Bundles with the rest area of their root faces.
-std::vector<render::HairFace> renderFaces(const sim::HairMesh& mesh);
 
 // The origin for a camera whose anchor is there: on a grid over the ground, so that it seldom changes.
 Vec3 pictureOrigin(const Vec3& anchor);

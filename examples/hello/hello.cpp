@@ -46,19 +46,24 @@ sim::HairMeshShape readObj(const std::string& file) {
 // The head turns 60 degrees to either side, twice a second.
 constexpr double kSwing = std::numbers::pi / 3, kRate = 2 * std::numbers::pi * 2;
 
-Eigen::Isometry3d headAt(double time) {
-  return Eigen::Isometry3d(Eigen::AngleAxisd(kSwing * std::sin(kRate * time), sim::Vec3::UnitY()));
-}
-
 // A skull around the head joint, moving with the head.
 sim::Ellipsoid skullAt(double time) {
+  const double angle = kSwing * std::sin(kRate * time), speed = kSwing * kRate * std::cos(kRate * time);
   sim::Ellipsoid skull;
-  skull.center = headAt(time) * sim::Vec3(0, 0.085, 0.005);
-  skull.rotation = headAt(time).rotation();
+  skull.center = sim::Vec3(0.005 * std::sin(angle), 0.085, 0.005 * std::cos(angle));
+  skull.rotation = Eigen::Quaterniond(std::cos(angle / 2), 0, std::sin(angle / 2), 0);
   skull.radii = sim::Vec3(0.072, 0.1, 0.09);
-  skull.angular_velocity = sim::Vec3(0, kSwing * kRate * std::cos(kRate * time), 0);
-  skull.velocity = skull.angular_velocity.cross(skull.center);
+  skull.velocity = sim::Vec3(speed * skull.center.z(), 0, -speed * skull.center.x());
+  skull.angular_velocity = sim::Vec3(0, speed, 0);
   return skull;
+}
+
+// FNV-1a of the positions' bytes.
+unsigned long long hashOf(const std::vector<sim::Vec3>& positions) {
+  unsigned long long value = 14695981039346656037ull;
+  const auto* bytes = reinterpret_cast<const unsigned char*>(positions.data());
+  for (std::size_t i = 0; i < positions.size() * sizeof(sim::Vec3); ++i) value = (value ^ bytes[i]) * 1099511628211ull;
+  return value;
 }
 
 }  // namespace
@@ -72,21 +77,22 @@ int main(int count, char** arguments) try {
   const double seconds = count > 2 ? std::atof(arguments[2]) : 2;
   const sim::SimParams params;
   sim::StepContext context(mesh);
-  sim::HairState hair = sim::restState(mesh, headAt(0));
+  sim::HairState hair = sim::restState(mesh, Eigen::Isometry3d::Identity());
   const int tip = mesh.shape.column_first[1] - 1;
 
   std::printf("%d columns, %d vertices\n  time s     x m     y m     z m\n", mesh.columnCount(), mesh.vertexCount());
-  for (int step = 1; step * params.time_step <= seconds; ++step) {
-    const double time = step * params.time_step;
+  for (double step = 1, time; (time = step / 60) <= seconds; ++step) {
+    const std::vector<sim::Ellipsoid> body{skullAt(time)};
+    const Eigen::Isometry3d head(body[0].rotation.normalized());
     std::vector<sim::Vec3> roots;
     for (int c = 0; c < mesh.columnCount(); ++c) {
-      roots.push_back(headAt(time) * mesh.shape.positions[mesh.shape.column_first[c]]);
+      roots.push_back(head * mesh.shape.positions[mesh.shape.column_first[c]]);
     }
-    const std::vector<sim::Ellipsoid> body{skullAt(time)};
     sim::advance(mesh, params, {roots, body, time}, params.time_step, context, hair);
     const sim::Vec3& p = hair.positions[tip];
     std::printf("%8.3f %7.4f %7.4f %7.4f\n", time, p.x(), p.y(), p.z());
   }
+  std::printf("end state: %016llx\n", hashOf(hair.positions));
 } catch (const sim::MeshError& error) {
   std::fprintf(stderr, "%s: %s\n", arguments[1], error.what());
   return 1;

@@ -1,0 +1,117 @@
+// Hair meshes of the C interface.
+#include <algorithm>
+#include <cstring>
+#include <string_view>
+
+#include "app/files/hair_file.h"
+#include "app/library/convert.h"
+#include "app/library/objects.h"
+
+namespace app::library {
+namespace {
+
+constexpr std::size_t kMaxElements = std::size_t{1} << 28;  // of an array: more does not fit an int's bytes
+
+// Reads the columns' lengths; returns the number of vertices.
+std::size_t readColumns(const hm_mesh_settings& settings, sim::HairMeshShape& shape) {
+  std::size_t vertices = 0;
+  for (std::size_t c = 0; c < settings.column_count; ++c) {
+    const int length = settings.column_lengths[c];
+    if (length < 2 || vertices + static_cast<std::size_t>(length) > kMaxElements)
+      throw Fault{HM_ERROR_MESH, "column " + std::to_string(c) + " has " + std::to_string(length) +
+                                     " vertices; give it at least 2, root first"};
+    vertices += static_cast<std::size_t>(length);
+    shape.column_first.push_back(static_cast<int>(vertices));
+  }
+  return vertices;
+}
+
+void readFaces(const hm_mesh_settings& settings, sim::HairMeshShape& shape) {
+  const auto columns = static_cast<std::int64_t>(settings.column_count);
+  for (std::size_t f = 0; f < settings.face_count; ++f) {
+    sim::RootFace face;
+    const std::int32_t* corners = settings.faces + 4 * f;
+    face.corner_count = corners[3] < 0 ? 3 : 4;
+    for (int k = 0; k < face.corner_count; ++k) {
+      if (corners[k] < 0 || corners[k] >= columns)
+        throw Fault{HM_ERROR_MESH, "root face " + std::to_string(f) + " names column " + std::to_string(corners[k]) +
+                                       "; there are columns 0 to " + std::to_string(columns - 1)};
+      face.columns[static_cast<std::size_t>(k)] = corners[k];
+    }
+    if (settings.reverse_faces) std::reverse(face.columns.begin(), face.columns.begin() + face.corner_count);
+    shape.root_faces.push_back(face);
+  }
+}
+
+sim::HairMeshShape shapeOf(const hm_mesh_settings& settings) {
+  needs(settings.column_lengths, "column_lengths");
+  needs(settings.faces, "faces");
+  if (settings.column_count > kMaxElements || settings.face_count > kMaxElements)
+    throw Fault{HM_ERROR_ARGUMENT, "column_count or face_count is beyond 2^28; split the hair"};
+  sim::HairMeshShape shape;
+  const std::size_t vertices = readColumns(settings, shape);
+  checkArray(settings.positions, vertices, "positions");
+  shape.positions.reserve(vertices);
+  for (std::size_t v = 0; v < vertices; ++v) shape.positions.push_back(pointOf(settings.positions, v, "positions"));
+  readFaces(settings, shape);
+  return shape;
+}
+
+hm_mesh addMesh(sim::HairMeshShape shape) {
+  auto mesh = std::make_unique<Mesh>();
+  mesh->mesh = sim::buildHairMesh(std::move(shape));
+  const sim::HairMeshShape& built = mesh->mesh.shape;
+  for (const sim::RootFace& face : built.root_faces) {
+    for (int k = 0; k < 4; ++k)
+      mesh->faces.push_back(k < face.corner_count ? face.columns[static_cast<std::size_t>(k)] : -1);
+  }
+  for (int c = 0; c < built.columnCount(); ++c) mesh->layers = std::max(mesh->layers, built.columnLength(c));
+  return {meshes().add(MeshRef(std::move(mesh)))};
+}
+
+}  // namespace
+}  // namespace app::library
+
+using namespace app::library;
+
+void hm_default_mesh_settings(hm_mesh_settings* settings) {
+  if (settings) *settings = {};
+}
+
+hm_result hm_mesh_create(const hm_mesh_settings* settings, hm_mesh* mesh) {
+  return guarded("hm_mesh_create", [&] {
+    needs(settings, "settings");
+    needs(mesh, "mesh");
+    *mesh = addMesh(shapeOf(*settings));
+  });
+}
+
+hm_result hm_mesh_create_from_text(const char* text, size_t length, const char* name, int32_t reverse_faces,
+                                   hm_mesh* mesh) {
+  return guarded("hm_mesh_create_from_text", [&] {
+    needs(text, "text");
+    needs(mesh, "mesh");
+    *mesh = addMesh(app::readHairMesh(std::string_view(text, length), name ? name : "hair mesh", reverse_faces != 0));
+  });
+}
+
+hm_result hm_mesh_destroy(hm_mesh mesh) {
+  return guarded("hm_mesh_destroy", [&] { meshes().remove(mesh.id, [](const MeshRef&) {}); });
+}
+
+hm_result hm_mesh_describe(hm_mesh mesh, hm_mesh_info* info) {
+  return guarded("hm_mesh_describe", [&] {
+    needs(info, "info");
+    const MeshRef ref = meshOf(mesh);
+    const sim::HairMesh& of = ref->mesh;
+    info->vertex_count = of.vertexCount();
+    info->column_count = of.columnCount();
+    info->face_count = static_cast<int32_t>(of.shape.root_faces.size());
+    info->layer_count = ref->layers;
+    info->hair_length = of.hair_length;
+    info->volume = of.total_volume;
+    info->column_first = of.shape.column_first.data();
+    info->faces = ref->faces.data();
+    info->rest = {of.shape.positions.data()->data(), sizeof(Vec3), of.shape.positions.size()};
+  });
+}

@@ -1,0 +1,261 @@
+"""Hair mesh simulation: the library of include/hairmesh.h for Python, with NumPy arrays.
+
+    import hairmesh
+    mesh = hairmesh.Mesh.load("bob.obj")
+    hair = hairmesh.Hair(mesh, stretch_along=2e5)
+    report = hair.step(1 / 60, head=hairmesh.pose(rotation=(0, 0.1, 0, 0.995)))
+    print(hair.positions[mesh.tips])
+
+Units are SI, y is up. `positions` and `velocities` are views of the library's memory: no copies, read-only, and steps
+write to them. A view keeps its hair alive. What cannot be done raises hairmesh.Error with the fault and the mend.
+"""
+
+import ctypes
+import math
+
+import numpy as np
+
+from . import _c
+from ._c import Error
+
+__all__ = ["Ellipsoid", "Error", "Hair", "Mesh", "parameters", "pose", "version"]
+
+
+def version():
+    """Version of the library, as "0.1.0"."""
+    number = _c.lib.hm_version()
+    return f"{number // 10000}.{number // 100 % 100}.{number % 100}"
+
+
+def parameters():
+    """All parameters by name: a dict of dicts with group, unit, help, kind, minimum, maximum, default, choices."""
+    kinds = ("real", "integer", "switch", "choice")
+    table = {}
+    row = _c.Parameter()
+    for index in range(_c.lib.hm_parameter_count()):
+        _c.lib.hm_parameter_at(index, row)
+        table[row.name.decode()] = {
+            "group": row.group.decode(),
+            "unit": row.unit.decode(),
+            "help": row.help.decode(),
+            "kind": kinds[row.kind],
+            "minimum": row.minimum,
+            "maximum": row.maximum,
+            "default": row.default_value,
+            "logarithmic": bool(row.logarithmic),
+            "of_strands": bool(row.of_strands),
+            "choices": [row.choices[i].decode() for i in range(row.choice_count)],
+        }
+    return table
+
+
+def pose(position=(0, 0, 0), rotation=(0, 0, 0, 1)):
+    """A rigid placement: position in m, rotation as a unit quaternion x, y, z, w."""
+    return _c.Pose((ctypes.c_double * 3)(*position), (ctypes.c_double * 4)(*rotation))
+
+
+class Ellipsoid:
+    """A solid ellipsoid at its place at a step's end. `before`: its pose `seconds` earlier, for its velocities."""
+
+    def __init__(self, radii, position=(0, 0, 0), rotation=(0, 0, 0, 1), velocity=(0, 0, 0), angular_velocity=(0, 0, 0),
+                 before=None, seconds=None):
+        vector = ctypes.c_double * 3
+        self._c = _c.Ellipsoid(pose(position, rotation), vector(*radii), vector(*velocity), vector(*angular_velocity))
+        if before is not None:
+            _c.lib.hm_ellipsoid_moved(self._c, before, seconds)
+
+
+def _view(view, owner):
+    """A read-only array over the library's memory that keeps `owner` alive."""
+    memory = (ctypes.c_double * (3 * view.count)).from_address(view.data)
+    memory.owner = owner
+    array = np.frombuffer(memory, dtype=np.float64).reshape(view.count, 3)
+    array.flags.writeable = False
+    return array
+
+
+def _array(values, width):
+    """`values` for the library, rows strided as they are; the second result keeps them alive."""
+    values = np.asarray(values)
+    if values.dtype not in (np.float32, np.float64):
+        values = values.astype(np.float64)
+    if values.ndim != 2 or values.shape[1] != width:
+        raise ValueError(f"an array of shape (n, {width}) is needed, not {values.shape}")
+    if values.strides[1] != values.itemsize or (values.strides[0] < 0):
+        values = np.ascontiguousarray(values)
+    kind = 1 if values.dtype == np.float32 else 0
+    return _c.Array(values.ctypes.data, values.strides[0], len(values), kind), values
+
+
+class Mesh:
+    """A hair mesh; any number of hairs share one."""
+
+    def __init__(self, positions, column_lengths, faces, reverse_faces=False):
+        """positions: (vertices, 3) in m, column after column, root first; faces: (n, 4) columns, the fourth -1 in a
+        triangle, counter-clockwise seen from outside."""
+        settings = _c.MeshSettings()
+        _c.lib.hm_default_mesh_settings(settings)
+        lengths = np.ascontiguousarray(column_lengths, dtype=np.int32)
+        corners = np.ascontiguousarray(faces, dtype=np.int32).reshape(-1, 4)
+        settings.positions, kept = _array(positions, 3)
+        settings.column_lengths, settings.column_count = lengths.ctypes.data, len(lengths)
+        settings.faces, settings.face_count = corners.ctypes.data, len(corners)
+        settings.reverse_faces = bool(reverse_faces)
+        handle = _c.Mesh()
+        _c.lib.hm_mesh_create(settings, handle)
+        self._take(handle)
+
+    @classmethod
+    def from_text(cls, text, name="hair mesh", reverse_faces=False):
+        """Reads the text of an OBJ file: one group a layer, layer_0 the scalp."""
+        text = text.encode() if isinstance(text, str) else text
+        mesh = cls.__new__(cls)
+        handle = _c.Mesh()
+        _c.lib.hm_mesh_create_from_text(text, len(text), str(name).encode(), bool(reverse_faces), handle)
+        mesh._take(handle)
+        return mesh
+
+    @classmethod
+    def load(cls, file, reverse_faces=False):
+        """Reads an OBJ file."""
+        with open(file, "rb") as stream:
+            return cls.from_text(stream.read(), file, reverse_faces)
+
+    def _take(self, handle):
+        self._c = handle
+        info = _c.MeshInfo()
+        _c.lib.hm_mesh_describe(handle, info)
+        count = info.column_count
+        self.hair_length, self.volume = info.hair_length, info.volume
+        self.column_first = np.array((ctypes.c_int32 * (count + 1)).from_address(info.column_first))
+        self.faces = np.array((ctypes.c_int32 * (4 * info.face_count)).from_address(info.faces)).reshape(-1, 4)
+        self.rest = _view(info.rest, self)
+
+    @property
+    def roots(self):
+        """First vertex of every column."""
+        return self.column_first[:-1]
+
+    @property
+    def tips(self):
+        """Last vertex of every column."""
+        return self.column_first[1:] - 1
+
+    def __del__(self):
+        if getattr(self, "_c", None) is not None and self._c.id:
+            _c.lib.hm_mesh_destroy(self._c)
+
+
+class Hair:
+    """A hair of a mesh: parameters and state. Keyword arguments set parameters."""
+
+    def __init__(self, mesh, head=None, measure_stages=False, gradual=False, **values):
+        settings = _c.HairSettings()
+        _c.lib.hm_default_hair_settings(settings)
+        if head is not None:
+            settings.head = head
+        settings.measure_stages, settings.gradual = bool(measure_stages), bool(gradual)
+        handle = _c.Hair()
+        _c.lib.hm_hair_create(mesh._c, settings, handle)
+        self._c, self.mesh, self.time = handle, mesh, 0.0
+        view = _c.View()
+        _c.lib.hm_hair_positions(handle, view)
+        self._positions = view.data, view.count
+        _c.lib.hm_hair_velocities(handle, view)
+        self._velocities = view.data, view.count
+        self.set(**values)
+
+    def __del__(self):
+        if getattr(self, "_c", None) is not None and self._c.id:
+            _c.lib.hm_hair_destroy(self._c)
+
+    def set(self, **values):
+        """Sets parameters: numbers, booleans, or texts such as "on" and the names of choices."""
+        for name, value in values.items():
+            if isinstance(value, str):
+                _c.lib.hm_hair_set_text(self._c, name.encode(), value.encode())
+            else:
+                _c.lib.hm_hair_set(self._c, name.encode(), float(value))
+
+    def get(self, name):
+        """Value of a parameter, as a number."""
+        value = ctypes.c_double()
+        _c.lib.hm_hair_get(self._c, name.encode(), value)
+        return value.value
+
+    @property
+    def positions(self):
+        """Vertices in m, world: a view of shape (vertices, 3)."""
+        return _view(_c.View(self._positions[0], 24, self._positions[1]), self)
+
+    @property
+    def velocities(self):
+        """Velocities of the vertices in m/s: a view of shape (vertices, 3)."""
+        return _view(_c.View(self._velocities[0], 24, self._velocities[1]), self)
+
+    def step(self, dt=1 / 60, head=None, roots=None, ellipsoids=(), pins=(), time=None, max_work=math.inf):
+        """Advances by dt seconds. Roots, (columns, 3) in m, or the head's pose, are those of the step's end; pins are
+        (vertex, target, velocity, stiffness). Returns what the step did, as a dict."""
+        step = _c.StepInput()
+        _c.lib.hm_default_step_input(step)
+        step.dt, step.max_work = dt, max_work
+        step.time = self.time + dt if time is None else time
+        if head is not None:
+            step.head = head
+        kept = None
+        if roots is not None:
+            step.roots, kept = _array(roots, 3)
+        bodies = (_c.Ellipsoid * len(ellipsoids))(*[one._c for one in ellipsoids])
+        vector = ctypes.c_double * 3
+        holds = (_c.Pin * len(pins))(*[_c.Pin(int(v), vector(*at), vector(*speed), k) for v, at, speed, k in pins])
+        step.ellipsoids, step.ellipsoid_count = ctypes.addressof(bodies), len(ellipsoids)
+        step.pins, step.pin_count = ctypes.addressof(holds), len(pins)
+        report = _c.Report()
+        _c.lib.hm_hair_step(self._c, step, report)
+        self.time = step.time
+        done = {name: getattr(report, name) for name, _ in _c.Report._fields_}
+        done["seconds"] = tuple(report.seconds)
+        return done
+
+    def reset(self, head=None):
+        """Puts the hair to its rest shape, at rest."""
+        _c.lib.hm_hair_reset(self._c, head if head is not None else pose())
+
+    def carry(self, before, now):
+        """Carries the hair along rigidly from one pose of the head to another."""
+        _c.lib.hm_hair_carry(self._c, before, now)
+
+    def save(self):
+        """The state as bytes; steps go on from it in the same bits. Parameters and `time` are not part of it."""
+        size = ctypes.c_size_t()
+        _c.lib.hm_hair_save(self._c, None, 0, size)
+        buffer = ctypes.create_string_buffer(size.value)
+        _c.lib.hm_hair_save(self._c, buffer, size.value, size)
+        return buffer.raw
+
+    def restore(self, state):
+        """Restores what save() gave for a hair of the same mesh."""
+        _c.lib.hm_hair_restore(self._c, state, len(state))
+
+    def strands(self, numbers=None, points=16, dtype=np.float32):
+        """Grows strands, all or those of the numbers given. Returns positions and tangents, (strands, points, 3), and
+        radii, (strands, points), in m."""
+        settings = _c.StrandSettings()
+        _c.lib.hm_default_strand_settings(settings)
+        if numbers is None:
+            numbers = np.arange(int(self.get("strands")))
+        numbers = np.ascontiguousarray(numbers, dtype=np.int32)
+        settings.numbers, settings.count, settings.points = numbers.ctypes.data, len(numbers), points
+        shape = (len(numbers), points)
+        positions, tangents, radii = (np.empty(shape + (3,), dtype), np.empty(shape + (3,), dtype), np.empty(shape, dtype))
+        kind = 1 if np.dtype(dtype) == np.float32 else 0
+        target = lambda array: _c.Array(array.ctypes.data, 0, len(numbers) * points, kind)
+        output = _c.StrandOutput(target(positions), target(tangents), target(radii))
+        _c.lib.hm_hair_grow_strands(self._c, settings, output)
+        return positions, tangents, radii
+
+    def strand(self, number):
+        """What a strand is: root face, place in it, layers that it reaches, whether it leaves its clump."""
+        strand = _c.Strand()
+        _c.lib.hm_hair_describe_strand(self._c, number, strand)
+        return {"face": strand.face, "place": tuple(strand.place), "end": strand.end, "flyaway": bool(strand.flyaway)}

@@ -1,0 +1,73 @@
+# What find_package(hairmesh CONFIG) gives: hairmesh::sim, the simulator for C++ with Eigen (examples/hello); and the C
+# interface of include/hairmesh.h, hairmesh::hairmesh (shared) and hairmesh::static, which need no other package.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+include(CheckCXXSourceCompiles)
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/hairmesh)
+
+add_library(hairmesh::sim ALIAS hair_sim)
+set_target_properties(hair_sim PROPERTIES EXPORT_NAME sim OUTPUT_NAME hairmesh_sim)
+
+# Objects of their own: they can be moved, and show nothing but what the interface marks.
+file(GLOB library_sources CONFIGURE_DEPENDS app/library/*.cpp)
+set(allocator_source ${CMAKE_CURRENT_SOURCE_DIR}/app/library/allocator.cpp)
+list(REMOVE_ITEM library_sources ${allocator_source})
+add_library(hairmesh_objects OBJECT ${sim_sources} ${strand_sources} ${library_sources}
+  app/files/errors.cpp app/files/hair_file.cpp app/files/obj_layers.cpp app/files/text_scanner.cpp
+  app/scene/look_params.cpp app/scene/render_faces.cpp)
+target_link_libraries(hairmesh_objects PRIVATE hair_options Eigen3::Eigen)
+target_precompile_headers(hairmesh_objects PRIVATE ${common_headers})
+
+add_library(hairmesh_shared SHARED $<TARGET_OBJECTS:hairmesh_objects> ${allocator_source})
+add_library(hairmesh_static STATIC $<TARGET_OBJECTS:hairmesh_objects> ${allocator_source})
+add_library(hairmesh::hairmesh ALIAS hairmesh_shared)
+add_library(hairmesh::static ALIAS hairmesh_static)
+foreach(target hairmesh_objects hairmesh_shared hairmesh_static)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
+    VISIBILITY_INLINES_HIDDEN ON OUTPUT_NAME hairmesh)
+endforeach()
+foreach(target hairmesh_shared hairmesh_static)
+  target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:hair_options> $<BUILD_INTERFACE:Eigen3::Eigen>)
+  target_include_directories(${target} INTERFACE $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+endforeach()
+
+# As long as the major version is 0, a minor one may change the layout: it names the library.
+set_target_properties(hairmesh_shared PROPERTIES VERSION ${PROJECT_VERSION}
+  SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} EXPORT_NAME hairmesh
+  LINK_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/cmake/hairmesh.map)
+set_target_properties(hairmesh_static PROPERTIES EXPORT_NAME static)
+if(CMAKE_SYSTEM_NAME STREQUAL Linux)
+  # The interface alone is seen. hm_set_allocator reaches all memory where the C++ runtime is a part of the library.
+  target_link_options(hairmesh_shared PRIVATE -Wl,--version-script=${CMAKE_CURRENT_SOURCE_DIR}/cmake/hairmesh.map
+    -Wl,--no-undefined)
+  set(CMAKE_REQUIRED_LINK_OPTIONS -static-libstdc++ -static-libgcc)
+  check_cxx_source_compiles("#include <string>\nint main(int n, char** a) { return std::string(a[0]).size() < unsigned(n); }"
+    HAIRMESH_STATIC_RUNTIME)
+  unset(CMAKE_REQUIRED_LINK_OPTIONS)
+  if(HAIRMESH_STATIC_RUNTIME AND NOT HAIRMESH_SANITIZE)
+    set(wrapped malloc free calloc realloc aligned_alloc memalign posix_memalign)
+    list(TRANSFORM wrapped PREPEND -Wl,--wrap=)
+    target_link_options(hairmesh_shared PRIVATE -static-libstdc++ -static-libgcc ${wrapped})
+    target_compile_definitions(hairmesh_shared PRIVATE HAIRMESH_WRAPS_MALLOC)
+  endif()
+  # What a program in C has to link with the static library.
+  target_link_libraries(hairmesh_static INTERFACE $<INSTALL_INTERFACE:stdc++> $<INSTALL_INTERFACE:m>)
+endif()
+
+write_basic_package_version_file(hairmesh-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(TARGETS hair_sim EXPORT hairmesh-sim ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+install(TARGETS hairmesh_shared EXPORT hairmesh
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development)
+install(TARGETS hairmesh_static EXPORT hairmesh ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+install(EXPORT hairmesh-sim NAMESPACE hairmesh:: FILE hairmesh-sim-targets.cmake DESTINATION ${package_folder}
+  COMPONENT development)
+install(EXPORT hairmesh NAMESPACE hairmesh:: FILE hairmesh-targets.cmake DESTINATION ${package_folder}
+  COMPONENT development)
+install(FILES cmake/hairmesh-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/hairmesh-config-version.cmake
+  DESTINATION ${package_folder} COMPONENT development)
+install(FILES include/hairmesh.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
+install(DIRECTORY sim DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hairmesh COMPONENT development
+  FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY app/library/python/hairmesh DESTINATION lib/python3/dist-packages COMPONENT python
+  FILES_MATCHING PATTERN "*.py" PATTERN "__pycache__" EXCLUDE)
