@@ -13,12 +13,13 @@ struct BodyVertex {
   float position[3], normal[3];
   std::uint16_t joints[4];
   float weights[4];
+  float cloth;
 };
 
 bool isSound(const BodyInput& input) {
   const std::size_t vertices = input.positions.size() / 3;
   if (vertices == 0 || input.normals.size() != 3 * vertices || input.joints.size() != 4 * vertices ||
-      input.weights.size() != 4 * vertices || input.triangles.size() % 3 != 0 || input.joint_matrices.empty()) {
+      input.weights.size() != 4 * vertices || (!input.cloth.empty() && input.cloth.size() != vertices) || input.triangles.size() % 3 != 0 || input.joint_matrices.empty()) {
     return false;
   }
   const auto joint_count = input.joint_matrices.size();
@@ -63,6 +64,7 @@ std::vector<BodyVertex> verticesOf(const BodyInput& input) {
       vertices[v].position[k] = input.positions[3 * v + k];
       vertices[v].normal[k] = input.normals[3 * v + k];
     }
+    vertices[v].cloth = input.cloth.empty() ? 1 : input.cloth[v];
     for (std::size_t k = 0; k < 4; ++k) {
       vertices[v].joints[k] = input.joints[4 * v + k];
       vertices[v].weights[k] = input.weights[4 * v + k];
@@ -119,6 +121,7 @@ void describeVertices(BodyMesh& mesh) {
   attribute(array, 1, 3, GL_FLOAT, offsetof(BodyVertex, normal));
   attribute(array, 2, 4, GL_UNSIGNED_SHORT, offsetof(BodyVertex, joints));
   attribute(array, 3, 4, GL_FLOAT, offsetof(BodyVertex, weights));
+  attribute(array, 5, 1, GL_FLOAT, offsetof(BodyVertex, cloth));
   glVertexArrayAttribFormat(array, kCoverAttribute, 2, GL_FLOAT, GL_FALSE, 0);
   glVertexArrayAttribBinding(array, kCoverAttribute, 1);
 }

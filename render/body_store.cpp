@@ -107,7 +107,7 @@ void BodyStore::refreshLook(Body& body, const BodyInput& input, long& uploaded) 
   if (scalp_id != body.scalp_id) body.change = ++changes_;  // its shape is another as well
   body.scalp_id = scalp_id;
   const BodyFinish finish{input.color,       input.root_color,  input.roughness, input.scalp_tint,
-                          input.face_origin, input.face_height, input.face_paint};
+                          input.face_origin, input.face_height, input.face_paint, input.cloth_color, input.dressed};
   if (body.block && body.finish == finish) return;
   ++look_changes_;
   body.finish = finish;
@@ -115,6 +115,7 @@ void BodyStore::refreshLook(Body& body, const BodyInput& input, long& uploaded) 
   const shared::BodyBlock block{asVec4(finish.color, std::clamp(finish.roughness, 0.05f, 1.0f)),
                                 asVec4(finish.root_color, std::clamp(finish.scalp_tint, 0.0f, 1.0f)),
                                 asVec4(finish.face_origin, painted ? 1 / finish.face_height : 0),
+                                asVec4(finish.cloth_color, finish.dressed ? 1 : 0),
                                 {painted ? std::clamp(finish.face_paint, 0.0f, 1.0f) : 0, 0, 0, 0}};
   body.block = makeBuffer();
   glNamedBufferStorage(body.block.id(), sizeof(block), &block, 0);

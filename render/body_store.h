@@ -19,6 +19,8 @@ struct BodyFinish {
   float roughness = 0, scalp_tint = 0;
   Float3 face_origin{};
   float face_height = 0, face_paint = 0;
+  Float3 cloth_color{};
+  bool dressed = true;
   bool operator==(const BodyFinish&) const = default;
 };
 

@@ -84,6 +84,9 @@ struct BodyInput {
   Float3 face_origin{};   // m, rest pose: the chin's level under the base of the skull
   float face_height = 0;  // m from chin to crown; 0: no face is painted
   float face_paint = 1;   // 0..1, strength
+  std::span<const float> cloth;  // 1 a vertex: m from a garment's edge, negative under it; empty: bare
+  bool dressed = true;           // whether the garment is worn
+  Float3 cloth_color{0.105f, 0.11f, 0.12f};
 };
 
 struct CameraInput {

@@ -4,10 +4,12 @@ layout(location = 0) out vec3 world;
 layout(location = 1) out vec3 normal;
 layout(location = 2) out float cover;
 layout(location = 3) out vec3 rest;
+layout(location = 4) out float garment;
 
 void main() {
   skin(world, normal);
   cover = root_cover.x;
   rest = rest_position;
+  garment = cloth;
   gl_Position = clip_from_world * vec4(world, 1.0);
 }

@@ -8,6 +8,6 @@ layout(location = 0) out vec3 radiance;
 void main() {
   vec3 world, normal;
   skin(world, normal);
-  radiance = bodyRadiance(rest_position, world, normal, root_cover.x);
+  radiance = bodyRadiance(rest_position, world, normal, root_cover.x, cloth);
   gl_Position = clip_from_world * vec4(world, 1.0);
 }

@@ -53,6 +53,7 @@ struct SkinnedMesh {
   std::vector<std::uint32_t> triangles;  // three indices a triangle, counter-clockwise from outside
   std::vector<std::array<std::uint16_t, 4>> joints;
   std::vector<std::array<float, 4>> weights;
+  std::vector<float> cloth;  // m from a garment's edge, negative under it; empty: bare
 };
 
 // A collision ellipsoid fixed to a joint.

@@ -176,6 +176,19 @@ struct Skinner {
   }
 };
 
+// Distance to the edge of a suit without sleeves, m, negative under it: trunk and legs down to the ankles, cut out
+// around neck and shoulders.
+double garment(const BodyField& body, const Vec3& p) {
+  const RegionValues r = body.regions(p);
+  const Figure& f = body.figure;
+  const double s = f.height / 1.70, across = std::abs(p.x() - f.neck_base.x()) / s;
+  const double dip = p.z() > f.neck_base.z() ? 0.085 : 0.055;
+  const double neckline = f.shoulder_level + s * (0.055 - (dip + 0.055) * (1 - std::pow(std::min(across / 0.105, 1.0), 3)));
+  const double covered = std::min({r.trunk, r.legs[0], r.legs[1]});
+  const double bare = std::min({r.arms[0], r.arms[1], r.neck, r.head});
+  return std::max({covered - bare, p.y() - neckline, f.sole + 0.095 * s - p.y()});
+}
+
 void store(Weights weights, SkinnedMesh& mesh) {
   auto& e = weights.entries;
   std::sort(e.begin(), e.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
@@ -203,6 +216,7 @@ SkinnedMesh skinMannequin(const Surface& surface, const BodyField& body, const S
     mesh.positions.push_back(surface.positions[v].cast<float>());
     mesh.normals.push_back(surface.normals[v].cast<float>());
     store(skinner.weigh(surface.positions[v]), mesh);
+    mesh.cloth.push_back(static_cast<float>(garment(body, surface.positions[v])));
   }
   return mesh;
 }

@@ -161,6 +161,9 @@ render::BodyInput bodyInput(const Actor& actor, bool show_strands) {
   for (int k = 0; k < 3; ++k) input.face_origin[k] = static_cast<float>(face.origin[k]);
   input.face_height = static_cast<float>(face.height);
   input.face_paint = actor.spec.look.face_paint;
+  input.cloth = mesh.cloth;
+  input.dressed = actor.spec.look.dressed;
+  input.cloth_color = actor.spec.look.cloth_color;
   return input;
 }
 

@@ -143,6 +143,8 @@ std::vector<HairField> makeHairTable() {
     hair<BODY(body_roughness)>("body_roughness", "Body", "", {0.05, 1}, "Roughness of the mannequin's surface."),
     hair<BODY(scalp_tint)>("scalp_tint", "Body", "", {0, 1},
                            "How much the roots shade and colour the skin between them, as at the parting."),
+    color(hair<BODY(cloth_color)>("cloth_color", "Body", "", {0, 1}, "Colour of the mannequin's garment, linear RGB.")),
+    hair<BODY(dressed)>("dressed", "Body", "", {0, 1}, "Whether the mannequin wears its garment."),
     hair<BODY(face_paint)>("face_paint", "Body", "", {0, 1},
                            "Strength of the mannequin's painted brows, lashes and lips; 0 is a bare face."),
 };  // namespace

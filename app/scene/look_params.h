@@ -21,6 +21,8 @@ struct CharacterLook {
   render::Float3 body_color = render::BodyInput{}.color;
   float body_roughness = render::BodyInput{}.roughness;
   float scalp_tint = 0.8f;  // how much the hair's roots shade and colour the skin between them, 0..1
+  bool dressed = true;      // a garment on a grown mannequin
+  render::Float3 cloth_color = render::BodyInput{}.cloth_color;
   float face_paint = 1;     // of brows, lashes and lips of a grown mannequin, 0..1
 };
 

@@ -7,8 +7,9 @@
 // to it, and share of what the skin sends on that meets them again.
 const float kRootShade = 0.65, kRootPasses = 0.6, kRootMeeting = 0.75;
 
-// rest: the point in the rest pose, m. cover: 0 bare skin .. 1 among the roots of a hair.
-vec3 bodyRadiance(vec3 rest, vec3 world, vec3 normal, float cover) {
+// rest: the point in the rest pose, m. cover: 0 bare skin .. 1 among the roots of a hair. garment: m from its edge,
+// negative under it.
+vec3 bodyRadiance(vec3 rest, vec3 world, vec3 normal, float cover, float garment) {
   vec3 to_eye = normalize(eye.xyz - world), n = normalize(normal);
   if (dot(n, to_eye) < 0.0)
     n = normalize(n - 1.02 * dot(n, to_eye) * to_eye);  // interpolated normals may tip over the rim
@@ -16,13 +17,17 @@ vec3 bodyRadiance(vec3 rest, vec3 world, vec3 normal, float cover) {
   vec3 among_roots = 1.0 - kRootShade * roots * (1.0 - kRootPasses * root_color.rgb);
   vec3 albedo = body_color.rgb * mix(vec3(1.0), root_color.rgb, kRootMeeting * roots);
   float roughness = mix(body_color.a, 1.0, roots);
+  float pixel = eye.w * length(eye.xyz - world);
   if (paint.x > 0.0) {
-    float pixel = eye.w * length(eye.xyz - world) * face.w;
     vec3 brow_color = 0.03 + 0.5 * root_color.rgb;
-    vec4 painted = facePaint((rest - face.xyz) * face.w, brow_color, pixel);
+    vec4 painted = facePaint((rest - face.xyz) * face.w, brow_color, pixel * face.w);
     albedo *= mix(vec3(1.0), painted.rgb, paint.x);
     roughness *= mix(1.0, painted.w, paint.x);
   }
+  float dressed = cloth_color.w - cloth_color.w * smoothstep(-0.5 * pixel, 0.5 * pixel + 1e-4, garment);
+  albedo = mix(albedo, cloth_color.rgb * (1.0 - 0.25 * smoothstep(-0.004, -0.002, garment)), dressed);  // a hem
+  roughness = mix(roughness, 0.95, dressed);
+  vec3 wrap = mix(kSkinWrap, vec3(0.05), dressed);
   float through_hair = 1.0, lit = 1.0;
   if (forward.w > 0.0) {
     through_hair = hairLightOnSurface(world);
@@ -33,9 +38,9 @@ vec3 bodyRadiance(vec3 rest, vec3 world, vec3 normal, float cover) {
   vec3 key_light = lit * min(vec3(through_hair), among_roots) * key.rgb;
   // Under hair little of the sky and of the other lights arrives either; the key light's map is the only witness.
   vec3 open = min(vec3(0.7 + 0.3 * through_hair), among_roots);
-  vec3 radiance = key_light * skinLight(n, to_key.xyz, to_eye, albedo, roughness);
-  radiance += open * fill.rgb * skinLight(n, to_fill.xyz, to_eye, albedo, roughness);
-  radiance += open * rim.rgb * skinLight(n, to_rim.xyz, to_eye, albedo, roughness);
+  vec3 radiance = key_light * wrappedLight(n, to_key.xyz, to_eye, albedo, wrap, roughness);
+  radiance += open * fill.rgb * wrappedLight(n, to_fill.xyz, to_eye, albedo, wrap, roughness);
+  radiance += open * rim.rgb * wrappedLight(n, to_rim.xyz, to_eye, albedo, wrap, roughness);
   radiance += open * albedo * mix(ground_light.rgb, sky.rgb, 0.5 + 0.5 * n.y);
   return radiance;
 }

@@ -11,16 +11,15 @@ float highlight(vec3 normal, vec3 to_light, vec3 to_eye, float roughness) {
   return a2 / (3.14159265 * d * d) * visibility * fresnel * nl;
 }
 
-// As surfaceLight, of skin: light that spreads beneath it comes up past the shadow's edge, red farthest (a wrap for each
-// colour; the shares of light that is sent back are kept).
-vec3 skinLight(vec3 normal, vec3 to_light, vec3 to_eye, vec3 albedo, float roughness) {
-  const vec3 wrap = vec3(0.32, 0.18, 0.12);
+// Light that spreads beneath skin comes up past the shadow's edge, red farthest.
+const vec3 kSkinWrap = vec3(0.27, 0.18, 0.14);
+
+// As surfaceLight, with a wrap for each colour; the share of light that is sent back is kept.
+vec3 wrappedLight(vec3 normal, vec3 to_light, vec3 to_eye, vec3 albedo, vec3 wrap, float roughness) {
   vec3 diffuse = max(dot(normal, to_light) + wrap, 0.0) / ((1.0 + wrap) * (1.0 + wrap));
   return albedo * diffuse / 3.14159265 + highlight(normal, to_light, to_eye, roughness);
 }
 
 vec3 surfaceLight(vec3 normal, vec3 to_light, vec3 to_eye, vec3 albedo, float roughness) {
-  const float wrap = 0.18;
-  float diffuse = max(dot(normal, to_light) + wrap, 0.0) / ((1.0 + wrap) * (1.0 + wrap));
-  return albedo * diffuse / 3.14159265 + highlight(normal, to_light, to_eye, roughness);
+  return wrappedLight(normal, to_light, to_eye, albedo, vec3(0.18), roughness);
 }

@@ -52,7 +52,7 @@ MEMBERS(HairLook, strand_radius, strands_represented, width_compensation, least_
 MEMBERS(HairInput, id, layout_revision, position_revision, layout_id, faces, positions, rest, strands,
         segments_per_layer, look)
 MEMBERS(BodyInput, id, mesh_id, positions, normals, triangles, joints, weights, joint_matrices, pose_revision, color,
-        roughness, scalp_id, root_cover, root_color, scalp_tint, face_origin, face_height, face_paint)
+        roughness, scalp_id, root_cover, root_color, scalp_tint, face_origin, face_height, face_paint, cloth, dressed, cloth_color)
 MEMBERS(FrameInput, width, height, camera, light, view, skips, hairs, bodies, debug_lines, debug_triangles,
         debug_points)
 #undef MEMBERS
@@ -84,7 +84,7 @@ void change(render::StrandPath& value) {
 struct Scene {
   synthetic::Hair hair = synthetic::makeHair(5);
   synthetic::Body body = synthetic::makeBody();
-  std::vector<float> cover, rest;
+  std::vector<float> cover, rest, cloth;
   std::vector<render::HairInput> hairs;
   std::vector<render::BodyInput> bodies;
   std::vector<render::LineVertex> shape;
@@ -101,6 +101,8 @@ struct Scene {
     bodies[0].scalp_tint = 0.6f;
     bodies[0].root_color = {0.4f, 0.3f, 0.2f};
     bodies[0].root_cover = cover;
+    for (std::size_t v = 1; v < body.positions.size(); v += 3) cloth.push_back(body.positions[v] - 1.42f);
+    bodies[0].cloth = cloth;
     // The synthetic body's front lies where face.glsl paints lips and brows.
     bodies[0].face_origin = {0, 1.45f, 0};
     bodies[0].face_height = 0.25f;
@@ -136,6 +138,7 @@ struct Scene {
                                   : of_cover                      ? cover
                                   : &values == &bodies[0].normals ? body.normals
                                   : &values == &bodies[0].weights ? body.weights
+                                  : &values == &bodies[0].cloth   ? cloth
                                                                   : body.positions;
     for (std::size_t i = 0; i < numbers.size(); i += 2) numbers[i] = 0.95f * numbers[i] + 0.01f;
     ++(of_hair ? hairs[0].position_revision : of_cover ? bodies[0].scalp_id : bodies[0].mesh_id);

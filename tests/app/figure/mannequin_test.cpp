@@ -209,6 +209,34 @@ TEST_P(EveryClip, SkullIsRigid) {
   EXPECT_GT(skull, 1000u);
 }
 
+TEST_P(EveryClip, TheGarmentCoversTrunkAndThighsAndLeavesFaceAndHandsBare) {
+  const app::Mannequin m = grow(GetParam());
+  const app::Figure& f = m.field.figure;
+  ASSERT_EQ(m.mesh.cloth.size(), m.mesh.positions.size());
+  // The garment at the vertex nearest to a place.
+  const auto at = [&](const Vec3& place) {
+    std::size_t best = 0;
+    const auto away = [&](std::size_t v) { return (m.mesh.positions[v].cast<double>() - place).norm(); };
+    for (std::size_t v = 1; v < m.mesh.positions.size(); ++v)
+      if (away(v) < away(best)) best = v;
+    return m.mesh.cloth[best];
+  };
+  const double chest = 0.6 * f.shoulder_level + 0.4 * f.pelvis.y();
+  EXPECT_LT(at(Vec3(f.pelvis.x(), chest, f.pelvis.z() + 0.2)), -0.01) << "chest";
+  EXPECT_LT(at(Vec3(f.pelvis.x(), chest, f.pelvis.z() - 0.2)), -0.01) << "back";
+  EXPECT_GT(at(m.field.head_origin + m.field.head_scale * Vec3(0, 0.4, 0.45)), 0.02) << "face";
+  for (const app::Figure::Arm& arm : f.arms) {
+    if (arm.present) {
+      EXPECT_GT(at(arm.wrist), 0.01) << "hand";
+    }
+  }
+  for (const app::Figure::Leg& leg : f.legs) {
+    if (leg.present) {
+      EXPECT_LT(at(0.5 * (leg.hip + leg.knee)), -0.01) << "thigh";
+    }
+  }
+}
+
 TEST_P(EveryClip, LimbsDoNotWeldToTheTrunkOrToEachOther) {
   const app::Mannequin m = grow(GetParam());
   const auto weightOf = [&](std::size_t v, int joint) {
