@@ -32,6 +32,7 @@ void setCamera(const std::string& text, CameraSpec& camera) {
     }
     begin = end + 1;
   }
+  camera.of_head = false;
   camera.eye = Vec3(numbers[0], numbers[1], numbers[2]);
   camera.target = Vec3(numbers[3], numbers[4], numbers[5]);
   const double reach = std::max(camera.eye->norm(), camera.target->norm());

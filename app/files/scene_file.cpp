@@ -62,7 +62,7 @@ CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
 }
 
 CameraSpec readCamera(const JsonPlace& place) {
-  place.expectObject({"view", "framing", "eye", "target", "fov", "follow"});
+  place.expectObject({"view", "framing", "eye", "target", "fov", "follow", "of_head"});
   CameraSpec camera;
   if (place.has("view")) camera.view = place.at("view").choice({"front", "three-quarter", "side", "back", "top"});
   if (place.has("framing")) camera.framing = place.at("framing").choice({"head", "bust", "figure"});
@@ -74,6 +74,8 @@ CameraSpec readCamera(const JsonPlace& place) {
   }
   if (place.has("fov")) camera.fov = place.at("fov").number(0.05, 2.5);
   if (place.has("follow")) camera.follow = place.at("follow").flag();
+  if (place.has("of_head")) camera.of_head = place.at("of_head").flag();
+  if (camera.of_head && !camera.eye) place.refuse("has no eye for of_head", "give eye and target, from the head");
   return camera;
 }
 
@@ -164,6 +166,7 @@ std::string writeScene(const Scene& scene) {
   if (scene.camera.eye && scene.camera.target) {
     camera["eye"] = fromVec3(*scene.camera.eye);
     camera["target"] = fromVec3(*scene.camera.target);
+    camera["of_head"] = scene.camera.of_head;
   }
   const json text = {{"name", scene.name},
                      {"characters", characters},

@@ -8,7 +8,8 @@
 //     "position": [0, 0, 0], "heading": 0, "clip_offset": 0, "loop": "auto", "look": { a row of the hair table: value
 //     }, "pins": [ as pin_spec.h says ]
 //   }],
-//   "camera": { "view": "three-quarter", "framing": "bust", "eye": [..], "target": [..], "fov": 0.5, "follow": true },
+//   "camera": { "view": "three-quarter", "framing": "bust", "eye": [..], "target": [..], "fov": 0.5, "follow": true,
+//              "of_head": false },
 //   "light": { row: value }, "view": { row: value }, "sim": { row: value },
 //   "playback": { "speed": 1, "fps": 60, "settle": 0.5, "budget_ms": 0, "deadline_ms": 0 },
 //   "preset": "soft"
@@ -59,6 +60,7 @@ struct CameraSpec {
   std::optional<Vec3> eye, target;     // m
   double fov = 0.5;                    // rad, vertical
   bool follow = true;                  // goes along with the first character
+  bool of_head = false;                // eye and target count from that character's head
 };
 
 struct PlaybackSpec {

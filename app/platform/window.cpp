@@ -8,6 +8,7 @@
 #include <imgui/imgui.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <iostream>
 #include <limits>
@@ -27,7 +28,9 @@
 #include "app/scene/demo_state.h"
 #include "app/scene/level_of_detail.h"
 #include "app/ui/redraw_throttle.h"
+#include "app/ui/input_queue.h"
 #include "app/ui/ui.h"
+#include "app/ui/ui_panels.h"
 #include "render/read_back.h"
 
 namespace app {
@@ -78,7 +81,9 @@ struct Window {
 struct Session {
   Demo& demo;
   UiState& ui;
+  InputQueue input = {};
   double mouse_x = 0, mouse_y = 0;
+  bool other_scale = false;  // the window has come to a display of another density
 };
 
 Session& session(GLFWwindow* window) {
@@ -110,16 +115,39 @@ void onScroll(GLFWwindow* window, double, double notches) {
   if (!ImGui::GetIO().WantCaptureMouse) zoom(notches, session(window).demo.camera);
 }
 
-void onKey(GLFWwindow* window, int key, int, int action, int) {
-  if (action == GLFW_RELEASE || ImGui::GetIO().WantTextInput) return;
+void onKey(GLFWwindow* window, int key, int, int action, int modifiers) {
+  if (action == GLFW_RELEASE || panelsTakeKey(key)) return;
   // Only what is meant to repeat does while a key is held.
   if (action == GLFW_REPEAT && key != '.' && key != '-' && key != '=') return;
   Session& s = session(window);
-  pressKey(key, s.demo, s.ui);
+  const int held = (modifiers & GLFW_MOD_SHIFT ? kShift : 0) | (modifiers & GLFW_MOD_CONTROL ? kControl : 0);
+  pressKey(key, s.demo, s.ui, held);
+}
+
+void queueKey(GLFWwindow* window, int key, int scancode, int action, int modifiers) {
+  if (key > 0) session(window).input.add({key, 0, scancode, action, modifiers});
+}
+
+void queueCharacter(GLFWwindow* window, unsigned character) {
+  session(window).input.add({0, character});
+}
+
+// What one frame can take of the keys that have come; see InputQueue.
+void feedInput(GLFWwindow* window) {
+  session(window).input.feed([&](const InputEvent& event) {
+    if (event.key == 0) return ImGui_ImplGlfw_CharCallback(window, event.character);
+    onKey(window, event.key, event.scancode, event.action, event.modifiers);
+    ImGui_ImplGlfw_KeyCallback(window, event.key, event.scancode, event.action, event.modifiers);
+  });
 }
 
 void onDrop(GLFWwindow* window, int count, const char** files) {
-  for (int i = 0; i < count; ++i) session(window).demo.requests.push_back({Ask::kOpenFile, "", files[i]});
+  Session& s = session(window);
+  for (int i = 0; i < count; ++i) openFile(files[i], s.demo, s.ui);
+}
+
+void onScale(GLFWwindow* window, float, float) {
+  session(window).other_scale = true;
 }
 
 // Dear ImGui's context and its two backends.
@@ -152,14 +180,29 @@ void setCallbacks(GLFWwindow* window, Session& s) {
   glfwSetWindowUserPointer(window, &s);
   glfwSetCursorPosCallback(window, onMouseMove);
   glfwSetScrollCallback(window, onScroll);
-  glfwSetKeyCallback(window, onKey);
   glfwSetDropCallback(window, onDrop);
+  glfwSetWindowContentScaleCallback(window, onScale);
+}
+
+// After the panels' backend has set its own: keys reach it by the queue.
+void setKeyCallbacks(GLFWwindow* window) {
+  glfwSetKeyCallback(window, queueKey);
+  glfwSetCharCallback(window, queueCharacter);
 }
 
 float textScale(GLFWwindow* window) {
   float x = 1, y = 1;
   glfwGetWindowContentScale(window, &x, &y);
   return std::clamp(x, 1.0f, 3.0f);
+}
+
+// Texts follow the display that the window is on, and what a person has made of them.
+void followTextScale(GLFWwindow* window, double asked, Session& s) {
+  const float wanted = std::clamp(textScale(window) * static_cast<float>(asked) * s.ui.zoom_texts, 0.5f, 4.0f);
+  if (!std::exchange(s.other_scale, false) && std::abs(wanted - s.ui.text_scale) < 1e-3f) return;
+  ImGui_ImplOpenGL3_DestroyFontsTexture();
+  prepareUi(wanted, s.ui);
+  ImGui_ImplOpenGL3_CreateFontsTexture();
 }
 
 // How long the next frame is. Runs of a given number of frames and recordings go by frames, all else by the clock.
@@ -211,6 +254,20 @@ Demo openForWindow(Scene scene, const Options& options, double aspect) {
 
 }  // namespace
 
+namespace {
+
+// After the last frame: what was asked to be written. Returns the exit code.
+int endRun(const Options& options, const RunReport& run, int frames, Tape& tape, Demo& demo) {
+  if (!options.report.empty()) writeReport(options.report, run, demo);
+  if (!options.save_state.empty() && (options.save_state_at == 0 || frames < options.save_state_at))
+    writeFile(options.save_state, demoStateBytes(demo));
+  const Tape::End end = tape.end(demo);
+  std::cout << end.message;
+  return end.differs ? kExitFault : kExitFine;
+}
+
+}  // namespace
+
 int runWindow(Scene scene, const Options& options) {
   noteInterrupts();
   WindowSystem system;
@@ -221,11 +278,14 @@ int runWindow(Scene scene, const Options& options) {
   UiState ui;
   ui.visible = !options.hide_panels;
   ui.open_tab = tabIndex(options.panel);
+  ui.kept_folder = options.frames_given ? "" : keptFolder();  // runs of so many frames leave nothing behind
+  ui.recent = readRecent(ui.kept_folder);
   Session callbacks{demo, ui};
   // The panels' backend chains to the callbacks that it finds.
   setCallbacks(window.handle, callbacks);
   PanelBackends backends(window.handle);
-  prepareUi(textScale(window.handle) * static_cast<float>(options.ui_scale), ui);
+  setKeyCallbacks(window.handle);
+  prepareUi(std::clamp(textScale(window.handle) * static_cast<float>(options.ui_scale), 0.5f, 4.0f), ui);
   render::Renderer renderer(dataPath("shaders"));
   if (!options.report.empty()) checkWritable(options.report);
   RunReport run;
@@ -245,6 +305,9 @@ int runWindow(Scene scene, const Options& options) {
   const auto ended = [&] { return glfwWindowShouldClose(window.handle) || ui.quit || interrupted(); };
   for (; !ended() && frame < most; ++frame) {
     pollOrWait(most == kEndless, demo, reload, throttle, last);
+    feedInput(window.handle);
+    if (!callbacks.input.empty()) throttle.disturb();
+    followTextScale(window.handle, options.ui_scale, callbacks);
     watch.reload_all = std::exchange(ui.reload_shaders, false);
     if (reload()) throttle.disturb();
     glfwGetFramebufferSize(window.handle, &target.width, &target.height);
@@ -261,12 +324,7 @@ int runWindow(Scene scene, const Options& options) {
     }
     glfwSwapBuffers(window.handle);
   }
-  if (!options.report.empty()) writeReport(options.report, run, demo);
-  if (!options.save_state.empty() && (options.save_state_at == 0 || frame < options.save_state_at))
-    writeFile(options.save_state, demoStateBytes(demo));
-  const Tape::End end = tape.end(demo);
-  std::cout << end.message;
-  return end.differs ? kExitFault : kExitFine;
+  return endRun(options, run, frame, tape, demo);
 }
 
 }  // namespace app

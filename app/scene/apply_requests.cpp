@@ -11,6 +11,7 @@
 #include "app/files/presets.h"
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
+#include "app/scene/present_scene.h"
 #include "sim/field_text.h"
 
 namespace app {
@@ -98,12 +99,6 @@ void scrub(double time, Demo& demo) {
   Actor& actor = selectedActor(demo);
   actor.playback.time = std::clamp(time, 0.0, actor.playedClip().duration());
   placeActor(actor, false);
-}
-
-Scene presentScene(const Demo& demo) {
-  Scene scene = demo.scene;
-  for (std::size_t i = 0; i < demo.actors.size(); ++i) scene.characters[i] = demo.actors[i].spec;
-  return scene;
 }
 
 void loadState(const Request& request, Demo& demo) {
@@ -195,7 +190,12 @@ void savePreset(const Request& request, Demo& demo) {
 }
 
 void saveScene(const Request& request, Demo& demo) {
-  writeFile(request.text, writeScene(presentScene(demo)));
+  Scene scene = presentScene(demo);
+  scene.name = stem(request.text);
+  writeFile(request.text, writeScene(movable(std::move(scene))));
+  demo.scene.file = request.text;
+  demo.scene.name = stem(request.text);
+  for (std::size_t i = 0; i < demo.actors.size(); ++i) demo.scene.characters[i] = demo.actors[i].spec;
   showMessage("saved " + request.text, demo);
 }
 

@@ -1,5 +1,6 @@
 #include "app/scene/background_load.h"
 
+#include <algorithm>
 #include <chrono>
 #include <functional>
 #include <utility>
@@ -38,6 +39,7 @@ std::unique_ptr<Loaded> load(LoadOrder order) {
 }
 
 void start(LoadOrder order, Demo& demo) {
+  demo.loading.title = order.title;
   demo.message = "loading " + order.title;
   demo.message_is_fault = false;
   demo.loading.running = std::async(std::launch::async, load, std::move(order));
@@ -61,6 +63,12 @@ void recastLoaded(Loaded& loaded, Demo& demo) {
 }
 
 }  // namespace
+
+std::string loadingNote(const Demo& demo) {
+  if (demo.loading.running.valid()) return "loading " + demo.loading.title;
+  const bool parts = std::ranges::any_of(demo.actors, [](const Actor& actor) { return actor.body->parts_coming.valid(); });
+  return parts ? "making the signed distances of the body" : "";
+}
 
 void loadLater(LoadOrder order, Demo& demo) {
   if (demo.loading.running.valid()) {

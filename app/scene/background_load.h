@@ -30,8 +30,12 @@ struct LoadOrder {
 struct BackgroundLoad {
   bool on = false;
   std::optional<LoadOrder> waiting;  // the latest one given while another is being loaded
+  std::string title;  // of what `running` brings
   std::future<std::unique_ptr<Loaded>> running;
 };
+
+// What is being loaded, in words; empty when nothing is.
+std::string loadingNote(const Demo& demo);
 
 // Starts loading, or lets the order wait in place of one that waits already.
 void loadLater(LoadOrder order, Demo& demo);

@@ -121,7 +121,7 @@ Camera makeCamera(const CameraSpec& spec, const Actor& actor, double aspect) {
   lookAtHead(actor, camera);
   if (spec.eye && spec.target) {
     const Vec3 back = *spec.eye - *spec.target;
-    camera.target = *spec.target - camera.anchor;
+    camera.target = spec.of_head ? *spec.target : Vec3(*spec.target - camera.anchor);
     camera.distance = back.norm();
     camera.yaw = std::atan2(back.x(), back.z());
     camera.pitch = std::asin(std::clamp(back.y() / camera.distance, -0.99999, 0.99999));

@@ -114,7 +114,9 @@ void draw(Demo& demo, const FrameTarget& target) {
   addDrawing(demo.stats.draw.skip_counts, demo.stats.skipped);
 }
 
+// A frame that takes no step because time stands still has no times to tell.
 void addToHistory(Demo& demo) {
+  if (demo.paused && demo.stats.steps == 0 && !demo.history.empty()) return;
   if (demo.history.size() < kHistoryLength) {
     demo.history.push_back(demo.stats);
   } else {

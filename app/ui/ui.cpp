@@ -4,6 +4,7 @@
 #include <imgui/imgui_internal.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "app/files/data_path.h"
 #include "app/ui/ui_panels.h"
@@ -15,9 +16,26 @@ namespace {
 
 constexpr float kMargin = 12, kSidebarWidth = 348, kTimingsWidth = 292;
 constexpr float kMessageWidth = 520, kMinMessageWidth = 240;
+constexpr float kFigureWidth = 280;  // beside the sidebar; with less the tabs are folded away
+constexpr float kAmpleWidth = 340;   // between sidebar and timings; with less the timings begin folded
 constexpr double kMessageTime = 6;  // s; faults stay until clicked
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoBringToFrontOnFocus;
+
+// Whether sidebar and figure do not fit beside one another.
+bool narrow(const UiState& ui) {
+  return ImGui::GetIO().DisplaySize.x < (kSidebarWidth + kFigureWidth + 2 * kMargin) * ui.text_scale;
+}
+
+// The scene's name, and what has been put into it since.
+std::string sceneTitle(const Demo& demo) {
+  std::string title = readable(demo.scene.name), other;
+  for (std::size_t i = 0; i < demo.actors.size(); ++i) {
+    const CharacterSpec &now = demo.actors[i].spec, &then = demo.scene.characters[i];
+    if (now.motion != then.motion) other = readable(stem(now.motion));
+  }
+  return other.empty() ? title : title + ", with " + other;
+}
 
 void sceneRow(Demo& demo, UiState& ui) {
   ImGui::PushFont(ui.heading);
@@ -25,8 +43,10 @@ void sceneRow(Demo& demo, UiState& ui) {
   ImGui::PopFont();
   ImGui::SameLine(0, 12);
   ImGui::SetNextItemWidth(-1);
-  const bool open = ImGui::BeginCombo("##scene", demo.scene.name.c_str());
+  const std::string title = sceneTitle(demo);
+  const bool open = ImGui::BeginCombo("##scene", title.c_str());
   noteItem("scene", ui);
+  noteItem("scene " + title, ui);
   if (open) {
     for (const std::string& file : ui.scenes) {
       if (ImGui::Selectable(readable(stem(file)).c_str(), file == demo.scene.file))
@@ -66,6 +86,16 @@ void transportRow(Demo& demo, UiState& ui) {
   }
   next();
   if (iconButton(Icon::kHelp, "help", "Keys (?)", ui.help, ui)) ui.help = !ui.help;
+  if (!narrow(ui)) return;
+  next();
+  if (iconButton(Icon::kPanels, "panels", ui.unfolded ? "Fold the panels" : "All panels", ui.unfolded, ui))
+    ui.unfolded = !ui.unfolded;
+}
+
+void fileRow(UiState& ui) {
+  const int pressed = segments("file", {"Open", "Save scene"}, -1, ui);
+  if (pressed == 0) browseFor(BrowseFor::kOpen, ui);
+  if (pressed == 1) browseFor(BrowseFor::kSaveScene, ui);
 }
 
 void characterRow(Demo& demo, UiState& ui) {
@@ -91,29 +121,42 @@ float sidebarWidth(const UiState& ui) {
   return std::min(kSidebarWidth * ui.text_scale, ImGui::GetIO().DisplaySize.x - 2 * kMargin * ui.text_scale);
 }
 
+// In a narrow window the row of buttons alone, unless a person has unfolded the tabs.
+bool folded(const UiState& ui) {
+  return narrow(ui) && !ui.unfolded;
+}
+
+void tabs(Demo& demo, UiState& ui) {
+  if (!ImGui::BeginTabBar("tabs")) return;
+  int index = 0;
+  for (const Tab& tab : kTabs) {
+    const bool wanted = ui.open_tab == index++;
+    const bool open = ImGui::BeginTabItem(tab.label, nullptr, wanted ? ImGuiTabItemFlags_SetSelected : 0);
+    noteItem(std::string("tab ") + tab.label, ui);
+    if (!open) continue;
+    if (ImGui::BeginChild(tab.label, {0, 0}, false, ImGuiWindowFlags_NavFlattened)) tab.build(demo, ui);
+    ImGui::EndChild();
+    ImGui::EndTabItem();
+  }
+  ui.open_tab = -1;
+  ImGui::EndTabBar();
+}
+
 void sidebar(Demo& demo, UiState& ui) {
   const ImGuiIO& io = ImGui::GetIO();
   const float margin = kMargin * ui.text_scale;
   ImGui::SetNextWindowPos({margin, margin});
-  ImGui::SetNextWindowSize({sidebarWidth(ui), std::max(120.0f, io.DisplaySize.y - 2 * margin)});
+  const float height = folded(ui) ? 0 : std::max(120.0f, io.DisplaySize.y - 2 * margin);
+  ImGui::SetNextWindowSize({sidebarWidth(ui), height});
+  if (std::exchange(ui.focus_panels, false)) ImGui::SetNextWindowFocus();
   if (ImGui::Begin("sidebar", nullptr, kFixed)) {
-    sceneRow(demo, ui);
+    if (!folded(ui)) sceneRow(demo, ui);
     transportRow(demo, ui);
-    characterRow(demo, ui);
-    ImGui::Spacing();
-    if (ImGui::BeginTabBar("tabs")) {
-      int index = 0;
-      for (const Tab& tab : kTabs) {
-        const bool wanted = ui.open_tab == index++;
-        const bool open = ImGui::BeginTabItem(tab.label, nullptr, wanted ? ImGuiTabItemFlags_SetSelected : 0);
-        noteItem(std::string("tab ") + tab.label, ui);
-        if (!open) continue;
-        if (ImGui::BeginChild(tab.label, {0, 0}, false)) tab.build(demo, ui);
-        ImGui::EndChild();
-        ImGui::EndTabItem();
-      }
-      ui.open_tab = -1;
-      ImGui::EndTabBar();
+    if (!folded(ui)) {
+      fileRow(ui);
+      characterRow(demo, ui);
+      ImGui::Spacing();
+      tabs(demo, ui);
     }
   }
   ImGui::End();
@@ -122,29 +165,38 @@ void sidebar(Demo& demo, UiState& ui) {
 void timings(Demo& demo, UiState& ui) {
   const float margin = kMargin * ui.text_scale;
   // Panels do not cover one another: without room beside the sidebar this one is left out.
-  if (ImGui::GetIO().DisplaySize.x < sidebarWidth(ui) + kTimingsWidth * ui.text_scale + 3 * margin) return;
+  const float room = ImGui::GetIO().DisplaySize.x - sidebarWidth(ui) - kTimingsWidth * ui.text_scale - 3 * margin;
+  if (room < 0) return;
   ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x - margin, margin}, ImGuiCond_Always, {1, 0});
   ImGui::SetNextWindowSize({kTimingsWidth * ui.text_scale, 0});
-  ImGui::SetNextWindowCollapsed(false, ImGuiCond_FirstUseEver);
+  ImGui::SetNextWindowCollapsed(room < kAmpleWidth * ui.text_scale, ImGuiCond_FirstUseEver);
   const ImGuiWindowFlags flags =
       ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_AlwaysAutoResize;
   if (ImGui::Begin("Timings", nullptr, flags)) timingsPanel(demo, ui);
   ImGui::End();
 }
 
+// What is shown below the figure: the message, and what is being loaded as long as it is.
+std::string messageText(const Demo& demo) {
+  const std::string loading = loadingNote(demo);
+  if (loading.empty() || demo.message == loading) return demo.message;
+  return demo.message_is_fault ? demo.message + "\n" + loading : loading;
+}
+
 void message(Demo& demo, UiState& ui) {
+  const std::string text = messageText(demo);
   if (demo.message != ui.shown_message) {
     ui.shown_message = demo.message;
     ui.message_since = ImGui::GetTime();
   }
-  if (demo.message.empty()) return;
-  if (!demo.message_is_fault && ImGui::GetTime() - ui.message_since > kMessageTime) {
+  if (text.empty()) return;
+  if (text == demo.message && !demo.message_is_fault && ImGui::GetTime() - ui.message_since > kMessageTime) {
     demo.message.clear();
     return;
   }
   // In the middle of what the sidebar leaves free; over it where that is too narrow to read.
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  const float margin = kMargin * ui.text_scale, taken = ui.visible ? sidebarWidth(ui) + margin : 0;
+  const float margin = kMargin * ui.text_scale, taken = ui.visible && !folded(ui) ? sidebarWidth(ui) + margin : 0;
   const bool beside = size.x - taken > kMinMessageWidth * ui.text_scale;
   const float left = (beside ? taken : 0) + margin, width = size.x - left - margin;
   ImGui::SetNextWindowPos({left + 0.5f * width, size.y - 2 * margin}, ImGuiCond_Always, {0.5f, 1});
@@ -155,8 +207,9 @@ void message(Demo& demo, UiState& ui) {
   // The sidebar and the timings stay where they are in the order of windows; this one comes to the front.
   if (ImGui::Begin("message", nullptr, flags & ~ImGuiWindowFlags_NoBringToFrontOnFocus)) {
     ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
+    noteItem("message", ui);
     ImGui::PushTextWrapPos(std::min(kMessageWidth * ui.text_scale, width - 2 * margin));
-    ImGui::TextUnformatted(demo.message.c_str());
+    ImGui::TextUnformatted(text.c_str());
     ImGui::PopTextWrapPos();
     if (fault) {
       const bool closed = ImGui::Button("Close");
@@ -172,6 +225,9 @@ void help(UiState& ui) {
   if (!ui.help) return;
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({0.5f * size.x, 0.5f * size.y}, ImGuiCond_Always, {0.5f, 0.5f});
+  // In a small window it scrolls.
+  const float margin = kMargin * ui.text_scale;
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {std::max(1.0f, size.x - margin), std::max(1.0f, size.y - margin)});
   const ImGuiWindowFlags flags =
       ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize;
   if (ImGui::Begin("keys", nullptr, flags)) {
@@ -213,6 +269,7 @@ void buildUi(Demo& demo, UiState& ui) {
     sidebar(demo, ui);
     timings(demo, ui);
   }
+  filePanel(demo, ui);
   message(demo, ui);
   help(ui);
 }

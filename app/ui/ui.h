@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/files/folder_list.h"
 #include "app/scene/demo.h"
 
 struct ImFont;
@@ -20,18 +21,44 @@ struct UiItem {
   float x = 0, y = 0, width = 0, height = 0;  // pixels
 };
 
+// What the file panel is open for.
+enum class BrowseFor { kNothing, kOpen, kMotion, kParts, kHair, kSaveScene };
+
+struct FileBrowser {
+  BrowseFor what = BrowseFor::kNothing;
+  std::string folder;  // shown; kept from one time to the next
+  std::vector<FolderEntry> entries;
+  std::array<char, 512> name{};
+  std::string to_replace;  // is there already and is written on the second press
+};
+
+// The parameters as a preset left them, to tell whether they have been changed since.
+struct PresetMark {
+  std::string file;      // empty: no preset was chosen
+  bool arriving = true;  // it is applied with the next frame's requests
+  sim::SimParams sim;
+  CharacterLook hair;
+  SceneLook scene;
+};
+
 struct UiState {
   bool visible = true;
+  bool unfolded = false;  // in a window too narrow for sidebar and figure: the tabs are shown all the same
   bool help = false;
   bool quit = false;
+  bool focus_panels = false;    // asked for by an arrow key: the keyboard goes to the sidebar
+  float zoom_texts = 1;         // asked for by a key: texts of that size, over the display's
   bool reload_shaders = false;  // asked for by a key
   int open_tab = -1;            // asked for by a key or a test; -1: leave
   float text_scale = 1;         // of a dense display
   ImFont* heading = nullptr;
   std::array<char, 512> motion_path{}, parts_path{}, hair_path{}, scene_path{};
   std::array<char, 64> preset_name{}, search{};
-  std::string chosen_preset;  // file; empty: none yet
-  std::string to_replace;     // a file that is there already and is written on the second press
+  PresetMark preset;
+  std::string to_replace;  // a file that is there already and is written on the second press
+  FileBrowser browser;
+  std::string kept_folder;          // where the list of recent files is kept; empty: nowhere
+  std::vector<std::string> recent;  // files opened last
   bool leaving = false;       // Esc was pressed once
   std::string shown_message;
   double message_since = 0;                                // s of ImGui's clock
@@ -49,10 +76,28 @@ int tabIndex(std::string_view name);
 void buildUi(Demo& demo, UiState& ui);
 
 // A key as its character in upper case, or one of these (the numbers are those of GLFW).
-enum UiKey { kKeyEscape = 256, kKeyTab = 258, kKeyHome = 268, kKeyF1 = 290, kKeyF5 = 294, kKeyF12 = 301 };
+enum UiKey {
+  kKeyEscape = 256,
+  kKeyEnter = 257,
+  kKeyTab = 258,
+  kKeyRight = 262,
+  kKeyLeft = 263,
+  kKeyDown = 264,
+  kKeyUp = 265,
+  kKeyHome = 268,
+  kKeyF1 = 290,
+  kKeyF5 = 294,
+  kKeyF12 = 301
+};
+
+// Held while a key is pressed.
+enum UiModifier { kNoModifier = 0, kShift = 1, kControl = 2 };
 
 // What a key does. Returns whether it did something.
-bool pressKey(int key, Demo& demo, UiState& ui);
+bool pressKey(int key, Demo& demo, UiState& ui, int modifiers = kNoModifier);
+
+// Whether a key goes to the widget that the keyboard has chosen, rather than to pressKey.
+bool panelsTakeKey(int key);
 
 struct KeyHelp {
   const char* keys;

@@ -1,7 +1,10 @@
 // Keys, and the list of them that ? shows.
+#include <imgui/imgui.h>
+
 #include <utility>
 
 #include "app/ui/ui.h"
+#include "app/ui/ui_panels.h"
 #include "app/ui/ui_widgets.h"
 
 namespace app {
@@ -23,9 +26,12 @@ constexpr KeyHelp kKeyHelp[] = {
     {"P", "screenshot"},
     {"K", "record a PNG sequence"},
     {"F5", "reload the shaders (also reloaded when saved)"},
+    {"Ctrl O  Ctrl S", "open a file, save the scene"},
+    {"Up  Down", "the keyboard goes to the panels: arrows, Space, Enter; Esc lets go"},
+    {"Ctrl +  -  0", "larger or smaller texts, as they were"},
     {"Tab", "hide or show the panels"},
     {"?  F1", "this list"},
-    {"Esc", "close this list; pressed twice, leave"},
+    {"Esc", "close what is open; pressed twice, leave"},
     {"left drag", "orbit"},
     {"right drag", "pan"},
     {"wheel", "zoom"},
@@ -56,9 +62,10 @@ void changeSpeed(double factor, Demo& demo) {
   postRequest(demo, {Ask::kSpeed, "", "", speed == 0 ? 0.25 : speed * factor});
 }
 
-// Closes the list of keys; then asks; then leaves.
+// Closes the file panel or the list of keys, lets the keyboard go from the panels; then asks; then leaves.
 void pressEscape(Demo& demo, UiState& ui) {
   if (std::exchange(ui.help, false)) return;
+  if (std::exchange(ui.browser.what, BrowseFor::kNothing) != BrowseFor::kNothing) return;
   ui.quit = std::exchange(ui.leaving, true);
   demo.message = "Esc again leaves; what was not saved is lost";
   demo.message_is_fault = false;
@@ -96,7 +103,22 @@ constexpr KeyAction kKeyActions[] = {
     {'?', [](Demo&, UiState& ui) { ui.help = !ui.help; }},
     {kKeyF1, [](Demo&, UiState& ui) { ui.help = !ui.help; }},
     {kKeyF5, [](Demo&, UiState& ui) { ui.reload_shaders = true; }},
+    {kKeyDown, [](Demo&, UiState& ui) { ui.visible = ui.focus_panels = true; }},
+    {kKeyUp, [](Demo&, UiState& ui) { ui.visible = ui.focus_panels = true; }},
     {kKeyEscape, pressEscape},
+};
+
+struct ChordAction {
+  int key, modifiers;
+  void (*press)(Demo&, UiState&);
+};
+
+constexpr ChordAction kChordActions[] = {
+    {'O', kControl, [](Demo&, UiState& ui) { browseFor(BrowseFor::kOpen, ui); }},
+    {'S', kControl, [](Demo&, UiState& ui) { browseFor(BrowseFor::kSaveScene, ui); }},
+    {'=', kControl, [](Demo&, UiState& ui) { ui.zoom_texts *= 1.1f; }},
+    {'-', kControl, [](Demo&, UiState& ui) { ui.zoom_texts /= 1.1f; }},
+    {'0', kControl, [](Demo&, UiState& ui) { ui.zoom_texts = 1; }},
 };
 
 }  // namespace
@@ -105,7 +127,20 @@ std::span<const KeyHelp> keyHelp() {
   return kKeyHelp;
 }
 
-bool pressKey(int key, Demo& demo, UiState& ui) {
+bool panelsTakeKey(int key) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const bool moves = key >= kKeyRight && key <= kKeyUp;
+  return io.WantTextInput || (io.NavVisible && (moves || key == ' ' || key == kKeyEnter || key == kKeyEscape));
+}
+
+bool pressKey(int key, Demo& demo, UiState& ui, int modifiers) {
+  for (const ChordAction& row : kChordActions) {
+    if (row.key != key || row.modifiers != modifiers) continue;
+    ui.leaving = false;
+    row.press(demo, ui);
+    return true;
+  }
+  if (modifiers & kControl) return false;
   for (const KeyAction& row : kKeyActions) {
     if (row.key != key) continue;
     if (key != kKeyEscape) ui.leaving = false;

@@ -29,13 +29,19 @@ std::string fileCombo(const char* name, const std::string& shown, const std::vec
   return chosen;
 }
 
-// A path to type; true when it was confirmed.
+// A path to type, or to look for by the button beside it; true when it was confirmed.
 template <std::size_t N>
-bool pathInput(const char* name, const char* hint, std::array<char, N>& path, UiState& ui) {
-  ImGui::SetNextItemWidth(-1);
+bool pathInput(const char* name, const char* hint, BrowseFor what, std::array<char, N>& path, UiState& ui) {
+  const float button = 52 * ui.text_scale;
+  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - button - 5);
   const bool entered =
       ImGui::InputTextWithHint(name, hint, path.data(), path.size(), ImGuiInputTextFlags_EnterReturnsTrue);
   noteItem(name, ui);
+  ImGui::SameLine(0, 5);
+  ImGui::PushID(name);
+  if (ImGui::Button("Open", {button, 0})) browseFor(what, ui);
+  ImGui::PopID();
+  noteItem(std::string("open ") + name, ui);
   return entered && path[0] != 0;
 }
 
@@ -53,16 +59,41 @@ void savePreset(Demo& demo, UiState& ui) {
     return;
   }
   ui.to_replace.clear();
-  ui.chosen_preset = file;
+  ui.preset = {};
+  ui.preset.file = file;
   postRequest(demo, {Ask::kSavePreset, "", file});
   if (std::find(ui.presets.begin(), ui.presets.end(), file) == ui.presets.end()) ui.presets.push_back(file);
 }
 
+template <class Owner, class Field>
+bool sameRows(std::span<const Field> table, const Owner& a, const Owner& b) {
+  return std::ranges::all_of(table, [&](const Field& row) { return row.get(a) == row.get(b); });
+}
+
+// The chosen preset's name, and whether a parameter has been changed since.
+std::string presetTitle(const Demo& demo, PresetMark& preset) {
+  if (preset.file.empty()) return "choose...";
+  const CharacterLook& hair = selectedActor(demo).spec.look;
+  if (preset.arriving) {
+    preset.arriving = !demo.requests.empty();
+    preset.sim = demo.scene.sim;
+    preset.hair = hair;
+    preset.scene = demo.scene.look;
+  }
+  const bool same = sameRows(sim::paramFields(), demo.scene.sim, preset.sim) &&
+                    sameRows(hairFields(), hair, preset.hair) &&
+                    sameRows(sceneFields(), demo.scene.look, preset.scene);
+  return readable(stem(preset.file)) + (same ? "" : ", changed");
+}
+
 void presetRow(Demo& demo, UiState& ui) {
   rowLabel("Preset", "Sets the groups of parameters that it names: what it leaves out of them takes its default");
-  const std::string shown = ui.chosen_preset.empty() ? "choose..." : stem(ui.chosen_preset);
-  if (const std::string file = fileCombo("##preset", shown, ui.presets, ui); !file.empty()) {
-    ui.chosen_preset = file;
+  const std::string shown = presetTitle(demo, ui.preset);
+  const std::string file = fileCombo("##preset", shown, ui.presets, ui);
+  noteItem("preset " + shown, ui);
+  if (!file.empty()) {
+    ui.preset = {};
+    ui.preset.file = file;
     postRequest(demo, {Ask::kPresetFile, "", file});
   }
   rowLabel("Save as", "Writes every parameter to NAME.json in the working folder");
@@ -126,10 +157,10 @@ void clipRows(const Actor& actor, Demo& demo, UiState& ui) {
   }
   rowLabel("File", "BVH, glTF, FBX, or ARCSim's .mot with its folder of body parts");
   const bool is_mot = std::string(ui.motion_path.data()).ends_with(".mot");
-  bool entered = pathInput("##motion_path", "path, then Enter", ui.motion_path, ui);
+  bool entered = pathInput("##motion_path", "path, then Enter", BrowseFor::kMotion, ui.motion_path, ui);
   if (is_mot) {
     rowLabel("Body parts", "Folder of body0000.obj ...");
-    entered = pathInput("##parts_path", "folder, then Enter", ui.parts_path, ui) || entered;
+    entered = pathInput("##parts_path", "folder, then Enter", BrowseFor::kParts, ui.parts_path, ui) || entered;
   }
   if (entered) postRequest(demo, {Ask::kMotionFile, is_mot ? ui.parts_path.data() : "", ui.motion_path.data()});
 }
@@ -167,10 +198,10 @@ void playbackRows(const Actor& actor, Demo& demo, UiState& ui) {
   if (slider("##speed", 0, 20, "%.3g x", true, speed)) postRequest(demo, {Ask::kSpeed, "", "", speed});
   noteItem("speed", ui);
   rowLabel("", "");
-  static constexpr double kSpeeds[] = {0.25, 1, 2, 5, 10};
+  static constexpr double kSpeeds[] = {0.25, 1, 2, 5, 10, 20};
   int chosen = -1;
-  for (int i = 0; i < 5; ++i) chosen = std::abs(speed - kSpeeds[i]) < 1e-9 ? i : chosen;
-  const int pressed = segments("speeds", {"1/4", "1x", "2x", "5x", "10x"}, chosen, ui);
+  for (int i = 0; i < 6; ++i) chosen = std::abs(speed - kSpeeds[i]) < 1e-9 ? i : chosen;
+  const int pressed = segments("speeds", {"1/4", "1x", "2x", "5x", "10x", "20x"}, chosen, ui);
   if (pressed >= 0) postRequest(demo, {Ask::kSpeed, "", "", kSpeeds[pressed]});
 
   double time = actor.playback.time;
@@ -266,7 +297,8 @@ void hairTab(Demo& demo, UiState& ui) {
     static constexpr const char* kResolutions[] = {"low", "medium", "high", "ultra"};
     if (resolution >= 0) postRequest(demo, {Ask::kResolution, kResolutions[resolution], ""});
     rowLabel("Hair mesh file", "OBJ with one group a layer; see assets/hair/README.md");
-    if (pathInput("##hair_path", from_file ? stem(actor.spec.hair).c_str() : "path, then Enter", ui.hair_path, ui)) {
+    if (pathInput("##hair_path", from_file ? stem(actor.spec.hair).c_str() : "path, then Enter", BrowseFor::kHair,
+                  ui.hair_path, ui)) {
       postRequest(demo, {Ask::kHairFile, "", ui.hair_path.data()});
     }
     const sim::HairMesh& mesh = actor.haircut->mesh;

@@ -52,9 +52,10 @@ void setColors(ImGuiStyle& style) {
   c[ImGuiCol_TabHovered] = hover;
   c[ImGuiCol_TabActive] = raised;
   c[ImGuiCol_TitleBg] = c[ImGuiCol_TitleBgActive] = c[ImGuiCol_TitleBgCollapsed] = ground;
-  // The value is written over the grab, so the grab stays below it in brightness.
-  c[ImGuiCol_SliderGrab] = {0.55f, 0.36f, 0.25f, 1};
+  // The value is written over the grab: a narrow mark, below the letters in brightness.
+  c[ImGuiCol_SliderGrab] = {0.60f, 0.39f, 0.26f, 0.85f};
   c[ImGuiCol_SliderGrabActive] = copper;
+  c[ImGuiCol_NavHighlight] = copper_lit;
   c[ImGuiCol_CheckMark] = copper_lit;
   c[ImGuiCol_PlotHistogram] = copper;
   c[ImGuiCol_ScrollbarBg] = {0, 0, 0, 0};
@@ -72,6 +73,7 @@ void prepareUi(float text_scale, UiState& ui) {
   // Window places are this program's own affair; no file is left in the working folder.
   io.IniFilename = nullptr;
   io.LogFilename = nullptr;
+  io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
   io.Fonts->Clear();
   addFont(kTextFonts, 15 * text_scale);
   ui.heading = addFont(kHeadingFonts, 18 * text_scale);
@@ -86,7 +88,7 @@ void prepareUi(float text_scale, UiState& ui) {
   style.FramePadding = {7, 4};
   style.ItemSpacing = {7, 5};
   style.ScrollbarSize = 11;
-  style.GrabMinSize = 9;
+  style.GrabMinSize = 4;
   style.WindowMenuButtonPosition = ImGuiDir_Right;
   style.ScaleAllSizes(text_scale);
   ui.scenes = listAssets("scenes", {".json"});

@@ -117,8 +117,20 @@ void historyPlot(const Demo& demo, int first, int last, float height) {
   ImGui::Dummy({width, height});
 }
 
+// The latest frame that `has` something to say: frames without a step, or kept from the one before, say nothing.
+template <class Has>
+const FrameStats& latest(const Demo& demo, Has&& has) {
+  const std::size_t count = demo.history.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const FrameStats& frame = demo.history[(demo.history_next + 2 * count - 1 - i) % count];
+    if (has(frame)) return frame;
+  }
+  return demo.stats;
+}
+
 void solverLines(const Demo& demo) {
-  const FrameStats& stats = demo.stats;
+  const FrameStats& stats = latest(demo, [](const FrameStats& frame) { return frame.steps > 0; });
+  const FrameStats& drawn = latest(demo, [](const FrameStats& frame) { return frame.draw.strands_drawn > 0; });
   const auto line = [](const char* name, const char* format, auto... values) {
     ImGui::TextDisabled("%s", name);
     ImGui::SameLine(0.46f * ImGui::GetWindowWidth());
@@ -132,9 +144,9 @@ void solverLines(const Demo& demo) {
   double saved = 0;
   for (const SkipCount& count : stats.skipped) saved += count.seconds;
   line("skips save", "%.2f ms", 1e3 * saved);
-  if (demo.stats.draw.strands_drawn > 0) {
-    line("strands", "%ld", stats.draw.strands_drawn);
-    line("hair on GPU", "%.1f KB", static_cast<double>(stats.draw.gpu_bytes_hair) / 1024);
+  if (drawn.draw.strands_drawn > 0) {
+    line("strands", "%ld", drawn.draw.strands_drawn);
+    line("hair on GPU", "%.1f KB", static_cast<double>(drawn.draw.gpu_bytes_hair) / 1024);
   }
 }
 

@@ -301,19 +301,10 @@ void sceneGroup(std::string_view group, Demo& demo, UiState& ui) {
   }
 }
 
-bool iconButton(Icon icon, const char* name, const std::string& help, bool lit, UiState& ui) {
-  const float s = ui.text_scale;
-  const ImVec2 size(35 * s, 30 * s);
-  const bool pressed = ImGui::InvisibleButton(name, size);
-  noteItem(name, ui);
-  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-  const ImVec2 m(0.5f * (low.x + high.x), 0.5f * (low.y + high.y));
-  ImDrawList* list = ImGui::GetWindowDrawList();
-  const ImGuiCol back = ImGui::IsItemActive()    ? ImGuiCol_ButtonActive
-                        : ImGui::IsItemHovered() ? ImGuiCol_ButtonHovered
-                                                 : ImGuiCol_Button;
-  list->AddRectFilled(low, high, color(back), 5 * s);
-  const ImU32 ink = lit ? color(ImGuiCol_CheckMark) : color(ImGuiCol_Text, 0.9f);
+namespace {
+
+// The sign of a button about its middle `m`, of scale `s`.
+void drawIcon(Icon icon, ImVec2 m, float s, bool lit, ImU32 ink, ImDrawList* list) {
   const float r = 6 * s;
   switch (icon) {
     case Icon::kPlay:
@@ -351,11 +342,35 @@ bool iconButton(Icon icon, const char* name, const std::string& help, bool lit, 
     case Icon::kRecord:
       list->AddCircleFilled(m, 0.85f * r, lit ? IM_COL32(235, 70, 60, 255) : ink, 20);
       break;
+    case Icon::kPanels:
+      for (int k = -1; k <= 1; ++k) {
+        const float y = m.y + 0.75f * r * static_cast<float>(k);
+        list->AddLine({m.x - r, y}, {m.x + r, y}, ink, 1.8f);
+      }
+      break;
     case Icon::kHelp:
       const ImVec2 text = ImGui::CalcTextSize("?");
       list->AddText({m.x - 0.5f * text.x, m.y - 0.5f * text.y}, ink, "?");
       break;
   }
+}
+
+}  // namespace
+
+bool iconButton(Icon icon, const char* name, const std::string& help, bool lit, UiState& ui) {
+  const float s = ui.text_scale;
+  const ImVec2 size(32 * s, 30 * s);
+  const bool pressed = ImGui::InvisibleButton(name, size);
+  noteItem(name, ui);
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  const ImVec2 m(0.5f * (low.x + high.x), 0.5f * (low.y + high.y));
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  const ImGuiCol back = ImGui::IsItemActive()    ? ImGuiCol_ButtonActive
+                        : ImGui::IsItemHovered() ? ImGuiCol_ButtonHovered
+                                                 : ImGuiCol_Button;
+  list->AddRectFilled(low, high, color(back), 5 * s);
+  const ImU32 ink = lit ? color(ImGuiCol_CheckMark) : color(ImGuiCol_Text, 0.9f);
+  drawIcon(icon, m, s, lit, ink, list);
   tip(help);
   return pressed;
 }

@@ -1,0 +1,16 @@
+// The scene as it is now, all that a person has turned included: opened, it looks as it does.
+#pragma once
+
+#include "app/scene/demo.h"
+
+namespace app {
+
+// Characters, look, parameters, playback, and the camera: as seen from the head where it follows it, else where it
+// stands.
+Scene presentScene(const Demo& demo);
+
+// The scene with the names of its files such that it can be opened from any folder: files that come with the program by
+// their bare name, others by their full path.
+Scene movable(Scene scene);
+
+}  // namespace app

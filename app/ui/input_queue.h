@@ -1,0 +1,45 @@
+// Keys and characters on their way to Dear ImGui, whose version 1.86 sees only what is held down when a frame begins: a
+// key tapped between two frames would be lost. What comes too fast for one frame waits for the next.
+#pragma once
+
+#include <algorithm>
+#include <deque>
+#include <utility>
+#include <vector>
+
+namespace app {
+
+struct InputEvent {
+  int key = 0;             // of GLFW; 0: a character
+  unsigned character = 0;  // code point
+  int scancode = 0, action = 0, modifiers = 0;
+};
+
+class InputQueue {
+ public:
+  void add(const InputEvent& event) { events_.push_back(event); }
+  bool empty() const { return events_.empty(); }
+
+  // Hands the next frame's events to `give`, in order: each key changes at most once, and a key other than the one that
+  // a character comes from does not share a frame with characters after it, so that typing and editing keep their order.
+  template <class Give>
+  void feed(Give&& give) {
+    std::vector<int> changed;
+    bool edited = false;
+    while (!events_.empty()) {
+      const InputEvent event = events_.front();
+      const bool again = event.key != 0 && std::find(changed.begin(), changed.end(), event.key) != changed.end();
+      if (again || (event.key == 0 && edited)) return;
+      events_.pop_front();
+      if (event.key != 0) changed.push_back(event.key);
+      edited = edited || (event.key >= kFirstEditing && event.key <= kLastEditing && event.action != 0);
+      give(event);
+    }
+  }
+
+ private:
+  static constexpr int kFirstEditing = 256, kLastEditing = 319;  // Escape, Enter, arrows: keys that make no character
+  std::deque<InputEvent> events_;
+};
+
+}  // namespace app

@@ -1,0 +1,222 @@
+// The file panel: looks for a file to open, or for a name to save under.
+#include <imgui/imgui.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+#include "app/files/data_path.h"
+#include "app/ui/ui_panels.h"
+#include "app/ui/ui_widgets.h"
+
+namespace app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr float kWidth = 560, kHeight = 460;
+
+struct Purpose {
+  BrowseFor what;
+  const char* title;
+  const char* button;
+  std::vector<std::string_view> endings;  // empty: all files
+};
+
+const Purpose& purposeOf(BrowseFor what) {
+  static const Purpose kPurposes[] = {
+      {BrowseFor::kOpen, "Open a scene, preset, motion, hair mesh or state", "Open", {}},
+      {BrowseFor::kMotion, "Open a motion", "Open", {".bvh", ".glb", ".gltf", ".fbx", ".dae", ".mot"}},
+      {BrowseFor::kParts, "Folder of body parts", "Choose", {"/"}},
+      {BrowseFor::kHair, "Open a hair mesh", "Open", {".obj"}},
+      {BrowseFor::kSaveScene, "Save the scene: style, motion, hair, camera, look, parameters", "Save", {".json"}}};
+  return *std::find_if(std::begin(kPurposes), std::end(kPurposes) - 1,
+                       [&](const Purpose& purpose) { return purpose.what == what; });
+}
+
+void setName(const std::string& name, FileBrowser& browser) {
+  browser.name.fill(0);
+  std::copy_n(name.begin(), std::min(name.size(), browser.name.size() - 1), browser.name.begin());
+}
+
+void goTo(const std::string& folder, FileBrowser& browser) {
+  std::error_code ignored;
+  browser.folder = fs::weakly_canonical(folder, ignored).string();
+  browser.entries = listFolder(browser.folder, purposeOf(browser.what).endings);
+}
+
+void close(FileBrowser& browser) {
+  browser.what = BrowseFor::kNothing;
+  browser.to_replace.clear();
+}
+
+void placesRow(UiState& ui) {
+  FileBrowser& browser = ui.browser;
+  const auto place = [&](const char* label, const char* help, const std::string& folder) {
+    if (ImGui::Button(label)) goTo(folder, browser);
+    noteItem(std::string("place ") + label, ui);
+    tip(help);
+    ImGui::SameLine(0, 4);
+  };
+  place("Up", "The folder above", folderAbove(browser.folder));
+  place("Here", "The folder that the program was started in", ".");
+  place("Examples", "What comes with the program", dataPath("assets"));
+  if (const char* home = std::getenv("HOME")) place("Home", home, home);
+  // The end of a long path says more than its start.
+  std::string shown = browser.folder;
+  const float room = ImGui::GetContentRegionAvail().x;
+  while (shown.size() > 4 && ImGui::CalcTextSize(shown.c_str()).x > room) shown = "..." + shown.substr(7);
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextDisabled("%s", shown.c_str());
+}
+
+// A file's full path once it is chosen twice or by the button; empty until then.
+std::string entryList(UiState& ui) {
+  FileBrowser& browser = ui.browser;
+  std::string chosen, enter;
+  for (const FolderEntry& entry : browser.entries) {
+    const std::string label = entry.name + (entry.folder ? "/" : "");
+    const bool lit = !entry.folder && entry.name == browser.name.data();
+    if (ImGui::Selectable(label.c_str(), lit, ImGuiSelectableFlags_AllowDoubleClick)) {
+      if (entry.folder) {
+        enter = entry.name;
+      } else {
+        setName(entry.name, browser);
+        if (lit && ImGui::IsMouseDoubleClicked(0)) chosen = (fs::path(browser.folder) / entry.name).string();
+      }
+    }
+    noteItem("entry " + entry.name, ui);
+  }
+  if (browser.entries.empty()) ImGui::TextDisabled("nothing here to choose from");
+  if (!enter.empty()) goTo((fs::path(browser.folder) / enter).string(), browser);
+  return chosen;
+}
+
+// The files opened last, one line each.
+std::string recentList(UiState& ui) {
+  std::string chosen;
+  ImGui::TextDisabled("opened last");
+  for (std::size_t i = 0; i < std::min<std::size_t>(4, ui.recent.size()); ++i) {
+    const fs::path file(ui.recent[i]);
+    if (ImGui::Selectable((file.filename().string() + "##recent" + std::to_string(i)).c_str())) chosen = file.string();
+    noteItem("recent " + file.filename().string(), ui);
+    tip(file.string());
+  }
+  ImGui::Separator();
+  return chosen;
+}
+
+// A typed name counts from the folder that is shown.
+std::string typedPath(const FileBrowser& browser) {
+  const fs::path name(browser.name.data());
+  if (name.empty()) return browser.what == BrowseFor::kParts ? browser.folder : "";
+  fs::path whole = name.is_absolute() ? name : fs::path(browser.folder) / name;
+  if (browser.what == BrowseFor::kSaveScene && whole.extension().empty()) whole += ".json";
+  return whole.lexically_normal().string();
+}
+
+void setPath(const std::string& text, std::array<char, 512>& path) {
+  path.fill(0);
+  std::copy_n(text.begin(), std::min(text.size(), path.size() - 1), path.begin());
+}
+
+void take(const std::string& file, Demo& demo, UiState& ui) {
+  FileBrowser& browser = ui.browser;
+  std::error_code ignored;
+  if (browser.what != BrowseFor::kParts && fs::is_directory(file, ignored)) {
+    setName("", browser);
+    return goTo(file, browser);
+  }
+  if (browser.what == BrowseFor::kSaveScene && fs::exists(file, ignored) && browser.to_replace != file) {
+    browser.to_replace = file;
+    return;
+  }
+  switch (browser.what) {
+    case BrowseFor::kNothing:
+      break;
+    case BrowseFor::kOpen:
+      openFile(file, demo, ui);
+      break;
+    case BrowseFor::kMotion:
+      setPath(file, ui.motion_path);
+      if (!file.ends_with(".mot")) openFile(file, demo, ui);
+      break;
+    case BrowseFor::kParts:
+      setPath(file, ui.parts_path);
+      postRequest(demo, {Ask::kMotionFile, file, ui.motion_path.data()});
+      break;
+    case BrowseFor::kHair:
+      openFile(file, demo, ui);
+      break;
+    case BrowseFor::kSaveScene:
+      postRequest(demo, {Ask::kSaveScene, "", file});
+      noteRecent(file, ui.kept_folder, ui.recent);
+      break;
+  }
+  close(browser);
+}
+
+void nameRow(Demo& demo, UiState& ui, std::string chosen) {
+  FileBrowser& browser = ui.browser;
+  const std::string typed = typedPath(browser);
+  const bool replaces = !browser.to_replace.empty() && browser.to_replace == typed;
+  const float button = 74 * ui.text_scale;
+  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - 2 * button - 10);
+  const bool entered = ImGui::InputTextWithHint("##file_name", "name or path, then Enter", browser.name.data(),
+                                                browser.name.size(), ImGuiInputTextFlags_EnterReturnsTrue);
+  noteItem("file_name", ui);
+  ImGui::SameLine(0, 5);
+  const bool pressed = ImGui::Button(replaces ? "Replace" : purposeOf(browser.what).button, {button, 0});
+  noteItem("file_take", ui);
+  if (replaces) tip("A file of this name is there already");
+  ImGui::SameLine(0, 5);
+  const bool cancelled = ImGui::Button("Cancel", {button, 0});
+  noteItem("file_cancel", ui);
+  if (chosen.empty() && (entered || pressed)) chosen = typed;
+  if (cancelled) return close(browser);
+  if (!chosen.empty()) take(chosen, demo, ui);
+}
+
+}  // namespace
+
+void browseFor(BrowseFor what, UiState& ui) {
+  FileBrowser& browser = ui.browser;
+  browser.what = what;
+  browser.to_replace.clear();
+  setName("", browser);
+  goTo(browser.folder.empty() ? "." : browser.folder, browser);
+}
+
+void openFile(const std::string& file, Demo& demo, UiState& ui) {
+  postRequest(demo, {Ask::kOpenFile, "", file});
+  noteRecent(file, ui.kept_folder, ui.recent);
+}
+
+void filePanel(Demo& demo, UiState& ui) {
+  if (ui.browser.what == BrowseFor::kNothing) return;
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const float scale = ui.text_scale, margin = 12 * scale;
+  const ImVec2 wanted(std::min(kWidth * scale, size.x - 2 * margin), std::min(kHeight * scale, size.y - 2 * margin));
+  ImGui::SetNextWindowPos({0.5f * size.x, 0.5f * size.y}, ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowSize({std::max(32.0f, wanted.x), std::max(32.0f, wanted.y)});
+  const ImGuiWindowFlags flags =
+      ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse;
+  if (ImGui::Begin("files", nullptr, flags)) {
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextUnformatted(purposeOf(ui.browser.what).title);
+    ImGui::PopTextWrapPos();
+    placesRow(ui);
+    std::string chosen;
+    const float below = ImGui::GetFrameHeightWithSpacing();
+    if (ImGui::BeginChild("list", {0, -below}, true)) {
+      if (ui.browser.what == BrowseFor::kOpen && !ui.recent.empty()) chosen = recentList(ui);
+      if (const std::string entry = entryList(ui); !entry.empty()) chosen = entry;
+    }
+    ImGui::EndChild();
+    nameRow(demo, ui, chosen);
+  }
+  ImGui::End();
+}
+
+}  // namespace app

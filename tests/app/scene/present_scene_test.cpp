@@ -1,0 +1,68 @@
+// A scene saved from the window brings back what was on the screen.
+#include "app/scene/present_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "app/files/data_path.h"
+#include "tests/run_program.h"
+
+namespace {
+
+using app::Ask;
+
+app::Demo smallDemo() {
+  app::Scene scene;
+  app::CharacterSpec spec;
+  spec.motion = app::dataPath("assets/clips/idle_turns.bvh");
+  spec.style = sim::Style::kShort;
+  spec.resolution = sim::Resolution::kLow;
+  scene.characters = {spec};
+  scene.playback.settle = 0;
+  return app::openScene(std::move(scene), 1.5);
+}
+
+TEST(PresentScene, SavedAndOpenedItIsTheSame) {
+  app::Demo demo = smallDemo();
+  demo.requests = {{Ask::kSetParam, "density", "90"},        {Ask::kSetParam, "beta_m", "0.41"},
+                   {Ask::kSetParam, "key", "1,0.5,0.25"},    {Ask::kSpeed, "", "", 3},
+                   {Ask::kMotionFile, "", "walk.bvh"},       {Ask::kLoop, "in-place", ""},
+                   {Ask::kView, "back", ""},                 {Ask::kBudget, "", "", 2}};
+  app::advanceFrame(demo, 0, {});
+  ASSERT_FALSE(demo.message_is_fault) << demo.message;
+  app::orbit(40, 25, 720, demo.camera);
+  app::zoom(3, demo.camera);
+  const std::string file = test::freshFolder("present_scene") + "/mine.json";
+  demo.requests = {{Ask::kSaveScene, "", file}};
+  app::advanceFrame(demo, 0, {});
+  ASSERT_FALSE(demo.message_is_fault) << demo.message;
+  EXPECT_EQ(demo.scene.name, "mine");
+
+  const app::Demo opened = app::openScene(app::loadScene(file), 1.5);
+  EXPECT_EQ(opened.scene.sim.density, 90);
+  EXPECT_EQ(opened.scene.playback.speed, 3);
+  EXPECT_EQ(opened.scene.playback.budget_ms, 2);
+  EXPECT_EQ(opened.actors[0].spec.loop, app::LoopKind::kInPlace);
+  EXPECT_TRUE(opened.actors[0].spec.motion.ends_with("walk.bvh"));
+  EXPECT_EQ(app::writeScene(app::movable(app::presentScene(opened))).size(),
+            app::writeScene(app::movable(app::presentScene(demo))).size());
+  EXPECT_NEAR((opened.camera.target - demo.camera.target).norm(), 0, 1e-12);
+  EXPECT_NEAR(opened.camera.distance, demo.camera.distance, 1e-9);
+  EXPECT_NEAR(opened.camera.yaw, demo.camera.yaw, 1e-9);
+  EXPECT_NEAR(opened.camera.pitch, demo.camera.pitch, 1e-9);
+}
+
+TEST(PresentScene, FilesOfTheProgramAreNamedBare) {
+  app::Scene scene;
+  app::CharacterSpec spec;
+  spec.motion = app::dataPath("assets/clips/walk.bvh");
+  spec.hair = "some/where.obj";
+  scene.characters = {spec};
+  const app::Scene moved = app::movable(scene);
+  EXPECT_EQ(moved.characters[0].motion, "walk.bvh");
+  EXPECT_TRUE(std::filesystem::path(moved.characters[0].hair).is_absolute());
+  EXPECT_EQ(moved.characters[0].parts, "");
+}
+
+}  // namespace

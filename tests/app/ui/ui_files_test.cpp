@@ -1,0 +1,196 @@
+// The file panel, the rows on top in windows of any size, and what the panels tell by themselves.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <future>
+
+#include "app/files/data_path.h"
+#include "app/ui/input_queue.h"
+#include "tests/app/ui/panels.h"
+#include "tests/run_program.h"
+
+namespace {
+
+using app::Ask;
+using app::UiItem;
+using test::Panels;
+
+const app::Request* requestOf(const std::vector<app::Request>& requests, Ask what) {
+  for (const app::Request& request : requests) {
+    if (request.what == what) return &request;
+  }
+  return nullptr;
+}
+
+TEST_F(Panels, AFileIsFoundAndOpenedAndThenIsAmongTheRecentOnes) {
+  const std::string folder = test::freshFolder("ui_files");
+  std::filesystem::create_directories(folder + "/inner");
+  std::ofstream(folder + "/inner/a.bvh") << "x";
+  ui_.browser.folder = folder;
+  ui_.kept_folder = folder + "/kept";
+  click("file Open");
+  click("entry inner");
+  ASSERT_NE(find("entry a.bvh"), nullptr);
+  click("entry a.bvh");
+  const auto requests = click("file_take");
+  const app::Request* open = requestOf(requests, Ask::kOpenFile);
+  ASSERT_NE(open, nullptr);
+  EXPECT_TRUE(std::filesystem::equivalent(open->text, folder + "/inner/a.bvh"));
+  EXPECT_EQ(find("file_take"), nullptr) << "the panel is still there";
+  EXPECT_EQ(app::readRecent(ui_.kept_folder).size(), 1u);
+  click("file Open");
+  EXPECT_NE(find("recent a.bvh"), nullptr);
+  click("place Up");
+  EXPECT_NE(find("entry inner"), nullptr);
+  app::pressKey(app::kKeyEscape, demo_, ui_);
+  frame();
+  EXPECT_EQ(find("file_take"), nullptr);
+  EXPECT_FALSE(ui_.leaving);
+}
+
+TEST_F(Panels, ASceneIsSavedAndOneThatIsThereOnlyOnASecondPress) {
+  const std::string folder = test::freshFolder("ui_save_scene");
+  std::ofstream(folder + "/there.json") << "{}";
+  ui_.browser.folder = folder;
+  for (const std::string name : {"fresh", "there"}) {
+    click("file Save scene");
+    std::copy(name.begin(), name.end() + 1, ui_.browser.name.begin());
+    frame();
+    const auto first = click("file_take");
+    if (name == "there") {
+      EXPECT_EQ(requestOf(first, Ask::kSaveScene), nullptr);
+    }
+    const auto last = name == "there" ? click("file_take") : first;
+    const app::Request* save = requestOf(last, Ask::kSaveScene);
+    ASSERT_NE(save, nullptr) << name;
+    EXPECT_TRUE(save->text.ends_with(name + ".json")) << save->text;
+  }
+}
+
+TEST_F(Panels, PathFieldsHaveAnOpenButton) {
+  openTab(1);
+  click("open ##motion_path");
+  EXPECT_EQ(ui_.browser.what, app::BrowseFor::kMotion);
+  click("file_cancel");
+  EXPECT_EQ(ui_.browser.what, app::BrowseFor::kNothing);
+  openTab(2);
+  click("open ##hair_path");
+  EXPECT_EQ(ui_.browser.what, app::BrowseFor::kHair);
+}
+
+TEST_F(Panels, ANarrowWindowFoldsTheTabsUntilTheyAreAskedFor) {
+  for (const ImVec2 size : {ImVec2(400, 300), ImVec2(500, 350)}) {
+    ImGui::GetIO().DisplaySize = size;
+    ui_.unfolded = false;
+    for (int k = 0; k < 3; ++k) frame();
+    EXPECT_EQ(find("tab Debug"), nullptr) << size.x;
+    ASSERT_NE(find("panels"), nullptr) << size.x;
+    for (const UiItem& item : ui_.items) {
+      EXPECT_LE(item.y + item.height, 0.2f * size.y) << item.name;
+      EXPECT_LE(item.x + item.width, size.x) << item.name;
+    }
+    click("panels");
+    frame();
+    EXPECT_NE(find("tab Debug"), nullptr) << size.x;
+    EXPECT_NE(find("file Open"), nullptr) << size.x;
+  }
+}
+
+TEST_F(Panels, LoadingIsToldAsLongAsItGoesOn) {
+  std::promise<std::vector<app::PartDistance>> promise;
+  demo_.actors[0].body->parts_coming = promise.get_future();
+  demo_.message.clear();
+  for (int i = 0; i < 600; ++i) frame();
+  EXPECT_NE(find("message"), nullptr);
+  demo_.actors[0].body->parts_coming = {};
+  frame();
+  EXPECT_EQ(find("message"), nullptr);
+}
+
+TEST_F(Panels, ThePresetBoxSaysWhatWasChosenAndWhetherItWasChanged) {
+  openTab(0);
+  ui_.preset.file = app::dataPath("assets/presets/soft.json");
+  frame();
+  EXPECT_NE(find("preset Soft"), nullptr);
+  demo_.scene.sim.density += 1;
+  frame();
+  EXPECT_NE(find("preset Soft, changed"), nullptr);
+  demo_.scene.sim.density -= 1;
+  frame();
+  EXPECT_NE(find("preset Soft"), nullptr);
+}
+
+TEST_F(Panels, TheSceneBoxNamesAMotionThatIsNotTheScenes) {
+  demo_.scene.name = "idle";
+  frame();
+  EXPECT_NE(find("scene Idle"), nullptr);
+  demo_.actors[0].spec.motion = "walk.bvh";
+  frame();
+  EXPECT_NE(find("scene Idle, with Walk"), nullptr);
+}
+
+TEST_F(Panels, PausedTimesStandStill) {
+  app::advanceFrame(demo_, 1.0 / 60, {});
+  demo_.paused = true;
+  const std::size_t frames = demo_.history.size();
+  for (int i = 0; i < 5; ++i) app::advanceFrame(demo_, 1.0 / 60, {});
+  EXPECT_EQ(demo_.history.size(), frames);
+}
+
+TEST_F(Panels, TheKeyboardReachesThePanels) {
+  ImGuiIO& io = ImGui::GetIO();
+  const auto tap = [&](int key) {
+    std::vector<app::Request> all;
+    for (const bool down : {true, false}) {
+      io.KeysDown[key] = down;
+      for (app::Request& request : frame()) all.push_back(std::move(request));
+    }
+    return all;
+  };
+  EXPECT_FALSE(app::panelsTakeKey(' '));
+  app::pressKey(app::kKeyDown, demo_, ui_);
+  frame();
+  std::vector<app::Request> requests;
+  tap(app::kKeyDown);
+  EXPECT_TRUE(app::panelsTakeKey(' '));
+  for (int k = 0; k < 6 && requests.empty(); ++k) {
+    tap(app::kKeyDown);
+    requests = tap(' ');
+    ui_.browser.what = app::BrowseFor::kNothing;
+    ui_.help = false;
+  }
+  EXPECT_FALSE(requests.empty()) << "no button is reached by the keyboard";
+}
+
+// What a person types between two frames, one after another as it comes.
+TEST(InputQueue, ATapBetweenTwoFramesIsSeenAndTypingKeepsItsOrder) {
+  app::InputQueue queue;
+  constexpr int kBackspace = 259;
+  for (const int action : {1, 0, 1, 0}) queue.add({kBackspace, 0, 0, action});
+  queue.add({0, 'a'});
+  queue.add({0, 'b'});
+  std::vector<std::vector<app::InputEvent>> frames;
+  while (!queue.empty()) {
+    frames.emplace_back();
+    queue.feed([&](const app::InputEvent& event) { frames.back().push_back(event); });
+  }
+  ASSERT_EQ(frames.size(), 4u);
+  for (int k = 0; k < 4; ++k) EXPECT_EQ(frames[static_cast<std::size_t>(k)][0].action, 1 - k % 2) << k;
+  ASSERT_EQ(frames[3].size(), 3u);
+  EXPECT_EQ(frames[3][1].character, unsigned('a'));
+  EXPECT_EQ(frames[3][2].character, unsigned('b'));
+}
+
+TEST(InputQueue, ShiftGoesWithTheCharacterThatItMakes) {
+  app::InputQueue queue;
+  constexpr int kLeftShift = 340;
+  queue.add({kLeftShift, 0, 0, 1});
+  queue.add({'A', 0, 0, 1});
+  queue.add({0, 'A'});
+  int given = 0;
+  queue.feed([&](const app::InputEvent&) { ++given; });
+  EXPECT_EQ(given, 3);
+}
+
+}  // namespace
