@@ -28,7 +28,7 @@ struct AskName {
   std::string_view name;
 };
 // What can be recorded: all but the requests that write files.
-constexpr std::array<AskName, 26> kAskNames{{{Ask::kSetParam, "set"},
+constexpr std::array<AskName, 29> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kPause, "pause"},
                                              {Ask::kPauseMotion, "pause-motion"},
                                              {Ask::kSingleStep, "single-step"},
@@ -53,7 +53,10 @@ constexpr std::array<AskName, 26> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kDebugView, "debug-view"},
                                              {Ask::kBudget, "budget"},
                                              {Ask::kDeadline, "deadline"},
-                                             {Ask::kSkip, "skip"}}};
+                                             {Ask::kSkip, "skip"},
+                                             {Ask::kUndo, "undo"},
+                                             {Ask::kRedo, "redo"},
+                                             {Ask::kEndGesture, "end-gesture"}}};
 
 std::string_view nameOf(Ask what) {
   for (const AskName& row : kAskNames) {

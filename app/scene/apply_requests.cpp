@@ -107,21 +107,20 @@ void loadState(const Request& request, Demo& demo) {
 }
 
 void openAnyFile(const std::string& file, Demo& demo) {
+  const auto post = [&](Ask what, const std::string& name) { demo.requests.push_back({what, name, file}); };
   switch (fileKind(file)) {
     case FileKind::kScene:
-      demo.requests.push_back({Ask::kSceneFile, "", file});
-      return;
+      return post(Ask::kSceneFile, "");
     case FileKind::kPreset:
-      demo.requests.push_back({Ask::kPresetFile, "", file});
-      return;
+      return post(Ask::kPresetFile, "");
     case FileKind::kMotion:
-      return changeMotion({Ask::kMotionFile, "", file}, demo);
+      return post(Ask::kMotionFile, "");
     case FileKind::kRigidMotion:
-      return changeMotion({Ask::kMotionFile, partsBeside(file), file}, demo);
+      return post(Ask::kMotionFile, partsBeside(file));
     case FileKind::kHairMesh:
-      return changeHairFile(file, demo);
+      return post(Ask::kHairFile, "");
     case FileKind::kState:
-      return loadState({Ask::kLoadState, "", file}, demo);
+      return post(Ask::kLoadState, "");
   }
 }
 
@@ -204,6 +203,10 @@ void saveState(const Request& request, Demo& demo) {
   showMessage("saved " + request.text, demo);
 }
 
+int stepsOf(const Request& request) {
+  return static_cast<int>(std::clamp(request.value, 1.0, 1e6));
+}
+
 struct Action {
   Ask what;
   void (*apply)(const Request&, Demo&);
@@ -263,6 +266,9 @@ constexpr Action kActions[] = {
        demo.capture.recording = request.value != 0;
        demo.capture.recorded = 0;
      }},
+    {Ask::kUndo, [](const Request& request, Demo& demo) { undoEdits(stepsOf(request), demo); }},
+    {Ask::kRedo, [](const Request& request, Demo& demo) { redoEdits(stepsOf(request), demo); }},
+    {Ask::kEndGesture, [](const Request&, Demo& demo) { demo.edits.gesture = false; }},
 };
 
 constexpr bool rowsMatchRequests() {
@@ -274,7 +280,9 @@ constexpr bool rowsMatchRequests() {
 static_assert(rowsMatchRequests());
 
 void apply(const Request& request, Demo& demo) {
+  std::optional<EditStep> step = beginEdit(request, demo);
   kActions[static_cast<std::size_t>(request.what)].apply(request, demo);
+  if (step) commitEdit(std::move(*step), demo.edits);
 }
 
 }  // namespace

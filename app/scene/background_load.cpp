@@ -40,6 +40,7 @@ std::unique_ptr<Loaded> load(LoadOrder order) {
 
 void start(LoadOrder order, Demo& demo) {
   demo.loading.title = order.title;
+  demo.loading.unwanted = false;
   demo.message = "loading " + order.title;
   demo.message_is_fault = false;
   demo.loading.running = std::async(std::launch::async, load, std::move(order));
@@ -85,7 +86,9 @@ void installLoaded(Demo& demo) {
   try {
     const std::unique_ptr<Loaded> loaded = loading.running.get();
     const std::string title = loaded->order.title;
-    if (loaded->demo) {
+    if (loading.unwanted) {
+      // Nothing of it is used.
+    } else if (loaded->demo) {
       replaceScene(std::move(*loaded->demo), demo);
     } else {
       recastLoaded(*loaded, demo);
@@ -152,6 +155,7 @@ void replaceScene(Demo fresh, Demo& demo) {
   fresh.deadline.counted = demo.deadline.counted;
   fresh.loading = std::move(demo.loading);
   fresh.requests = std::move(demo.requests);
+  fresh.edits = std::move(demo.edits);
   fresh.message = "scene " + fresh.scene.name;
   demo = std::move(fresh);
 }

@@ -30,7 +30,8 @@ struct LoadOrder {
 struct BackgroundLoad {
   bool on = false;
   std::optional<LoadOrder> waiting;  // the latest one given while another is being loaded
-  std::string title;  // of what `running` brings
+  std::string title;      // of what `running` brings
+  bool unwanted = false;  // it is dropped when it comes: what asked for it was undone
   std::future<std::unique_ptr<Loaded>> running;
 };
 

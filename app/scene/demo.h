@@ -13,6 +13,7 @@
 #include "app/scene/camera.h"
 #include "app/scene/deadline.h"
 #include "app/scene/debug_views.h"
+#include "app/scene/edit_history.h"
 #include "app/scene/frame_stats.h"
 #include "app/scene/governor.h"
 #include "app/scene/request.h"
@@ -49,6 +50,7 @@ struct Demo {
   bool paused = false;
   int single_steps = 0;  // asked for while paused
 
+  EditHistory edits;
   BackgroundLoad loading;
   std::vector<Request> requests;  // applied at the start of the next frame
   std::string message;            // the last fault or success, for the window

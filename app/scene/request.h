@@ -39,6 +39,9 @@ enum class Ask {
   kSkip,         // name, value
   kScreenshot,   // text: file, empty for the next free name
   kRecord,       // value: 1 starts, 0 ends
+  kUndo,         // value: so many steps back
+  kRedo,         // value: so many steps on
+  kEndGesture,   // a drag is over: what follows is a step of its own
   kCount
 };
 

@@ -92,10 +92,22 @@ void transportRow(Demo& demo, UiState& ui) {
     ui.unfolded = !ui.unfolded;
 }
 
-void fileRow(UiState& ui) {
-  const int pressed = segments("file", {"Open", "Save scene"}, -1, ui);
+void fileRow(Demo& demo, UiState& ui) {
+  const int pressed = segments("file", {"Open", "Save", "Undo", "Redo", "History"}, ui.history ? 4 : -1, ui);
   if (pressed == 0) browseFor(BrowseFor::kOpen, ui);
   if (pressed == 1) browseFor(BrowseFor::kSaveScene, ui);
+  if (pressed == 2) postRequest(demo, {Ask::kUndo, "", "", 1});
+  if (pressed == 3) postRequest(demo, {Ask::kRedo, "", "", 1});
+  if (pressed == 4) ui.history = !ui.history;
+}
+
+// When a widget is let go that has asked for something, its gesture is over.
+void endGesture(Demo& demo, UiState& ui) {
+  const auto edits = [](const Request& request) { return request.what != Ask::kEndGesture; };
+  ui.dragging = ui.dragging || std::ranges::any_of(demo.requests, edits);
+  if (!ui.dragging || ImGui::IsAnyItemActive()) return;
+  ui.dragging = false;
+  postRequest(demo, {Ask::kEndGesture, "", ""});
 }
 
 void characterRow(Demo& demo, UiState& ui) {
@@ -153,7 +165,7 @@ void sidebar(Demo& demo, UiState& ui) {
     if (!folded(ui)) sceneRow(demo, ui);
     transportRow(demo, ui);
     if (!folded(ui)) {
-      fileRow(ui);
+      fileRow(demo, ui);
       characterRow(demo, ui);
       ImGui::Spacing();
       tabs(demo, ui);
@@ -166,6 +178,7 @@ void timings(Demo& demo, UiState& ui) {
   const float margin = kMargin * ui.text_scale;
   // Panels do not cover one another: without room beside the sidebar this one is left out.
   const float room = ImGui::GetIO().DisplaySize.x - sidebarWidth(ui) - kTimingsWidth * ui.text_scale - 3 * margin;
+  ui.timings_bottom = 0;
   if (room < 0) return;
   ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x - margin, margin}, ImGuiCond_Always, {1, 0});
   ImGui::SetNextWindowSize({kTimingsWidth * ui.text_scale, 0});
@@ -173,6 +186,7 @@ void timings(Demo& demo, UiState& ui) {
   const ImGuiWindowFlags flags =
       ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_AlwaysAutoResize;
   if (ImGui::Begin("Timings", nullptr, flags)) timingsPanel(demo, ui);
+  ui.timings_bottom = ImGui::GetWindowPos().y + ImGui::GetWindowSize().y;
   ImGui::End();
 }
 
@@ -269,9 +283,11 @@ void buildUi(Demo& demo, UiState& ui) {
     sidebar(demo, ui);
     timings(demo, ui);
   }
+  historyPanel(demo, ui);
   filePanel(demo, ui);
   message(demo, ui);
   help(ui);
+  endGesture(demo, ui);
 }
 
 }  // namespace app

@@ -45,11 +45,14 @@ struct UiState {
   bool visible = true;
   bool unfolded = false;  // in a window too narrow for sidebar and figure: the tabs are shown all the same
   bool help = false;
+  bool history = false;
+  bool dragging = false;  // a widget is held that has asked for something
   bool quit = false;
   bool focus_panels = false;    // asked for by an arrow key: the keyboard goes to the sidebar
   float zoom_texts = 1;         // asked for by a key: texts of that size, over the display's
   bool reload_shaders = false;  // asked for by a key
   int open_tab = -1;            // asked for by a key or a test; -1: leave
+  float timings_bottom = 0;     // px; 0: they are not shown
   float text_scale = 1;         // of a dense display
   ImFont* heading = nullptr;
   std::array<char, 512> motion_path{}, parts_path{}, hair_path{}, scene_path{};

@@ -26,6 +26,7 @@ constexpr KeyHelp kKeyHelp[] = {
     {"P", "screenshot"},
     {"K", "record a PNG sequence"},
     {"F5", "reload the shaders (also reloaded when saved)"},
+    {"Ctrl Z", "undo; with Shift, or Ctrl Y: do again"},
     {"Ctrl O  Ctrl S", "open a file, save the scene"},
     {"Up  Down", "the keyboard goes to the panels: arrows, Space, Enter; Esc lets go"},
     {"Ctrl +  -  0", "larger or smaller texts, as they were"},
@@ -114,6 +115,9 @@ struct ChordAction {
 };
 
 constexpr ChordAction kChordActions[] = {
+    {'Z', kControl, [](Demo& demo, UiState&) { postRequest(demo, {Ask::kUndo, "", "", 1}); }},
+    {'Z', kControl | kShift, [](Demo& demo, UiState&) { postRequest(demo, {Ask::kRedo, "", "", 1}); }},
+    {'Y', kControl, [](Demo& demo, UiState&) { postRequest(demo, {Ask::kRedo, "", "", 1}); }},
     {'O', kControl, [](Demo&, UiState& ui) { browseFor(BrowseFor::kOpen, ui); }},
     {'S', kControl, [](Demo&, UiState& ui) { browseFor(BrowseFor::kSaveScene, ui); }},
     {'=', kControl, [](Demo&, UiState& ui) { ui.zoom_texts *= 1.1f; }},

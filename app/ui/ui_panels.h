@@ -18,6 +18,9 @@ void skipsSection(Demo& demo, UiState& ui);
 // Stages as a stacked bar and their history (figure 6 of the paper), solver iterations and residual.
 void timingsPanel(Demo& demo, UiState& ui);
 
+// The steps that can be undone and done again, by name; a press goes there.
+void historyPanel(Demo& demo, UiState& ui);
+
 // The file panel, while it is open; opening it; and what a file that was chosen or dropped asks for.
 void filePanel(Demo& demo, UiState& ui);
 void browseFor(BrowseFor what, UiState& ui);

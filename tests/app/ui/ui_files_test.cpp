@@ -54,7 +54,7 @@ TEST_F(Panels, ASceneIsSavedAndOneThatIsThereOnlyOnASecondPress) {
   std::ofstream(folder + "/there.json") << "{}";
   ui_.browser.folder = folder;
   for (const std::string name : {"fresh", "there"}) {
-    click("file Save scene");
+    click("file Save");
     std::copy(name.begin(), name.end() + 1, ui_.browser.name.begin());
     frame();
     const auto first = click("file_take");

@@ -1,0 +1,61 @@
+// The history panel: every step by name, the present one lit.
+#include <imgui/imgui.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "app/ui/ui_panels.h"
+#include "app/ui/ui_widgets.h"
+
+namespace app {
+
+namespace {
+
+constexpr float kWidth = 292, kLeastHeight = 130, kMargin = 12;
+
+// A slider's step carries its row's title; others say what they are.
+std::string titleOf(const EditStep& step) {
+  if (step.request.what == Ask::kSetParam) return rowTitle(step.request.name) + " " + step.request.text;
+  std::string title = step.title;
+  title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+  return title;
+}
+
+// A line for the moment after `done` steps. A press goes there.
+void momentLine(std::size_t done, const std::string& title, Demo& demo, UiState& ui) {
+  const EditHistory& edits = demo.edits;
+  const bool here = done == edits.done;
+  ImGui::PushID(static_cast<int>(done));
+  if (done > edits.done) ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+  const bool pressed = ImGui::Selectable(title.c_str(), here);
+  if (done > edits.done) ImGui::PopStyleColor();
+  noteItem("moment " + std::to_string(done), ui);
+  if (here && ImGui::IsWindowAppearing()) ImGui::SetScrollHereY(1);
+  ImGui::PopID();
+  if (!pressed || here) return;
+  const double steps = static_cast<double>(done) - static_cast<double>(edits.done);
+  postRequest(demo, {steps < 0 ? Ask::kUndo : Ask::kRedo, "", "", std::abs(steps)});
+}
+
+}  // namespace
+
+void historyPanel(Demo& demo, UiState& ui) {
+  if (!ui.history || !ui.visible) return;
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const float scale = ui.text_scale, margin = kMargin * scale;
+  const float width = std::min(kWidth * scale, size.x - 2 * margin);
+  // Below the timings where they leave room.
+  const float room = size.y - ui.timings_bottom - 2 * margin;
+  const float height = std::clamp(room, std::min(kLeastHeight * scale, size.y - 2 * margin), 0.5f * size.y);
+  ImGui::SetNextWindowPos({size.x - margin, size.y - margin}, ImGuiCond_Always, {1, 1});
+  ImGui::SetNextWindowSize({std::max(32.0f, width), std::max(32.0f, height)});
+  const ImGuiWindowFlags flags = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse;
+  if (ImGui::Begin("History", &ui.history, flags)) {
+    momentLine(0, "Opened", demo, ui);
+    const EditHistory& edits = demo.edits;
+    for (std::size_t k = 0; k < edits.steps.size(); ++k) momentLine(k + 1, titleOf(edits.steps[k]), demo, ui);
+  }
+  ImGui::End();
+}
+
+}  // namespace app

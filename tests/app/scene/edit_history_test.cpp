@@ -1,0 +1,195 @@
+// Undo brings back to the bit what was there, redo what was undone; a gesture is one step.
+#include "app/scene/edit_history.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "app/files/data_path.h"
+#include "app/scene/demo.h"
+#include "sim/field_text.h"
+#include "tests/run_program.h"
+
+namespace {
+
+using app::Ask;
+using app::Request;
+
+app::Demo movingDemo() {
+  app::Scene scene;
+  app::CharacterSpec spec;
+  spec.motion = app::dataPath("assets/clips/idle_turns.bvh");
+  spec.style = sim::Style::kShort;
+  spec.resolution = sim::Resolution::kLow;
+  scene.characters = {spec};
+  scene.playback.settle = 0.1;
+  app::Demo demo = app::openScene(std::move(scene), 1.5);
+  for (int frame = 0; frame < 20; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
+  return demo;
+}
+
+// Applies a request while time stands still; returns the message when it was a fault.
+std::string ask(const Request& request, app::Demo& demo) {
+  demo.message.clear();
+  demo.message_is_fault = false;
+  demo.requests = {request, {Ask::kEndGesture, "", ""}};
+  app::advanceFrame(demo, 0, {});
+  return demo.message_is_fault ? demo.message : "";
+}
+
+// A value that a row takes.
+template <class Field>
+std::string valueOf(const Field& row, int components, std::mt19937& random) {
+  std::uniform_real_distribution<double> share(0, 1);
+  if (row.kind == sim::FieldKind::kSwitch) return share(random) < 0.5 ? "on" : "off";
+  if (row.kind == sim::FieldKind::kChoice)
+    return row.choices[static_cast<std::size_t>(share(random) * 0.999 * static_cast<double>(row.choices.size()))];
+  std::string text;
+  for (int k = 0; k < components; ++k) {
+    double value = row.minimum + share(random) * (row.maximum - row.minimum);
+    if (row.kind == sim::FieldKind::kInteger) value = std::floor(value);
+    text.append(k ? "," : "").append(sim::numberText(value));
+  }
+  return text;
+}
+
+Request randomParameter(std::mt19937& random) {
+  const auto pick = [&](std::size_t count) { return random() % count; };
+  switch (random() % 3) {
+    case 0: {
+      const sim::ParamField& row = sim::paramFields()[pick(sim::paramFields().size())];
+      return {Ask::kSetParam, row.name, valueOf(row, 1, random)};
+    }
+    case 1: {
+      const app::HairField& row = app::hairFields()[pick(app::hairFields().size())];
+      return {Ask::kSetParam, row.name, valueOf(row, row.components(), random)};
+    }
+    default: {
+      const app::SceneField& row = app::sceneFields()[pick(app::sceneFields().size())];
+      return {Ask::kSetParam, row.name, valueOf(row, row.components(), random)};
+    }
+  }
+}
+
+Request randomEdit(std::mt19937& random) {
+  const auto number = [&](double high) { return high * static_cast<double>(random() % 1000) / 1000; };
+  const auto of = [&](std::initializer_list<const char*> names) { return names.begin()[random() % names.size()]; };
+  switch (random() % 200) {
+    case 0:
+      return {Ask::kStyle, of({"short", "shoulder", "long"}), ""};
+    case 1:
+      return {Ask::kMotionFile, "", of({"walk.bvh", "dance.bvh", "jump_spin.bvh"})};
+    case 2:
+      return {Ask::kSceneFile, "", of({"head_shake.json", "walk.json"})};
+    case 3:
+    case 4:
+      return {Ask::kLoop, of({"go-on", "in-place", "none"}), ""};
+    case 5:
+    case 6:
+      return {Ask::kReset, "", ""};
+    case 7:
+      return {Ask::kCollapse, "", ""};
+    case 8:
+      return {Ask::kRestart, "", ""};
+    case 9:
+    case 10:
+    case 11:
+      return {Ask::kCarryAlong, "", "", number(3)};
+    case 12:
+    case 13:
+    case 14:
+    case 15:
+      return {Ask::kPresetFile, "", of({"soft", "stiff", "paper"})};
+    case 16:
+    case 17:
+      return {Ask::kView, of({"front", "back", "side"}), ""};
+    case 18:
+      return {Ask::kFollow, "", "", static_cast<double>(random() % 2)};
+    case 19:
+    case 20:
+      return {Ask::kSkip, "sleep", "", static_cast<double>(random() % 2)};
+    case 21:
+    case 22:
+      return {Ask::kDebugView, "mesh", "", static_cast<double>(random() % 2)};
+    case 23:
+    case 24:
+      return {Ask::kSpeed, "", "", number(20)};
+    case 25:
+    case 26:
+      return {Ask::kBudget, "", "", number(5)};
+    case 27:
+      return {Ask::kDeadline, "", "", number(5)};
+    default:
+      return randomParameter(random);
+  }
+}
+
+TEST(EditHistory, AThousandRandomEditsUndoneAndDoneAgainEndInTheSameBits) {
+  app::Demo demo = movingDemo();
+  const std::string start = app::editHash(demo);
+  std::mt19937 random(7);
+  std::vector<std::string> hashes{start};
+  std::size_t faults = 0;
+  for (int k = 0; k < 1000; ++k) {
+    const std::size_t before = demo.edits.done;
+    if (!ask(randomEdit(random), demo).empty()) ++faults;
+    if (demo.edits.done > before) hashes.push_back(app::editHash(demo));
+  }
+  EXPECT_LT(faults, 20u);
+  const std::size_t steps = demo.edits.done;
+  ASSERT_EQ(hashes.size(), steps + 1);
+  EXPECT_GT(steps, 950u);
+  for (std::size_t k = steps; k-- > 0;) {
+    ASSERT_EQ(ask({Ask::kUndo, "", "", 1}, demo), "");
+    if (k % 50 == 0 || k > steps - 50) {
+      ASSERT_EQ(app::editHash(demo), hashes[k]) << k << ": " << demo.edits.steps[k].title;
+    }
+  }
+  EXPECT_EQ(app::editHash(demo), start);
+  EXPECT_NE(ask({Ask::kUndo, "", "", 1}, demo).find("nothing to undo"), std::string::npos);
+  EXPECT_EQ(app::editHash(demo), start);
+  ASSERT_EQ(ask({Ask::kRedo, "", "", static_cast<double>(steps)}, demo), "");
+  EXPECT_EQ(app::editHash(demo), hashes.back());
+  EXPECT_NE(ask({Ask::kRedo, "", "", 1}, demo).find("nothing to redo"), std::string::npos);
+}
+
+TEST(EditHistory, ADragIsOneStepAndALaterEditEndsWhatWasUndone) {
+  app::Demo demo = movingDemo();
+  const double density = demo.scene.sim.density;
+  for (const char* text : {"70", "75", "80"}) {
+    demo.requests = {{Ask::kSetParam, "density", text}};
+    app::advanceFrame(demo, 1.0 / 60, {});
+  }
+  ASSERT_EQ(demo.edits.steps.size(), 1u);
+  EXPECT_EQ(demo.edits.steps[0].title, "density 80");
+  demo.requests = {{Ask::kEndGesture, "", ""}, {Ask::kSetParam, "density", "90"}, {Ask::kSetParam, "damping", "0.1"}};
+  app::advanceFrame(demo, 1.0 / 60, {});
+  EXPECT_EQ(demo.edits.steps.size(), 3u);
+  EXPECT_EQ(ask({Ask::kUndo, "", "", 2}, demo), "");
+  EXPECT_EQ(demo.scene.sim.density, 80);
+  EXPECT_EQ(ask({Ask::kSetParam, "gravity", "5"}, demo), "");
+  EXPECT_EQ(demo.edits.steps.size(), 2u);
+  EXPECT_EQ(ask({Ask::kUndo, "", "", 9}, demo), "");
+  EXPECT_EQ(demo.scene.sim.density, density);
+}
+
+// While time goes on an undone reset gives the hair its shape back where the head is now.
+TEST(EditHistory, HairComesBackWhereTheHeadIsNow) {
+  app::Demo demo = movingDemo();
+  demo.requests = {{Ask::kCollapse, "", ""}};
+  for (int frame = 0; frame < 30; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
+  demo.requests = {{Ask::kUndo, "", "", 1}};
+  app::advanceFrame(demo, 0, {});
+  const app::Actor& actor = demo.actors[0];
+  const sim::HairMeshShape& shape = actor.haircut->mesh.shape;
+  double most = 0;
+  for (int c = 0; c < shape.columnCount(); ++c)
+    most = std::max(most, (actor.hair.positions[static_cast<std::size_t>(shape.column_first[c])] -
+                           actor.roots[static_cast<std::size_t>(c)])
+                              .norm());
+  EXPECT_LT(most, 1e-9);
+  for (int frame = 0; frame < 10; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
+  EXPECT_EQ(demo.stats.recoveries, 0);
+}
+
+}  // namespace
