@@ -1,11 +1,26 @@
-# What find_package(hairmesh CONFIG) reads: hairmesh::hairmesh and hairmesh::static, the C interface, which need no other
-# package; and hairmesh::sim, the simulator for C++, where Eigen is found. find_package(hairmesh COMPONENTS sim) asks for it.
+# What find_package(hairmesh CONFIG) reads. hairmesh::hairmesh and hairmesh::static, the C interface, need no other package.
+# COMPONENTS sim: hairmesh::sim, the simulator for C++, with Eigen; it is there as well where Eigen is found unasked.
+# COMPONENTS render: hairmesh::render, the renderer, with Eigen, GLEW and OpenGL; hairmesh_SHADERS is what it draws with.
+include(CMakeFindDependencyMacro)
 include(${CMAKE_CURRENT_LIST_DIR}/hairmesh-targets.cmake)
 find_package(Eigen3 3.4 QUIET NO_MODULE)
 if(Eigen3_FOUND)
   include(${CMAKE_CURRENT_LIST_DIR}/hairmesh-sim-targets.cmake)
   set(hairmesh_sim_FOUND TRUE)
-elseif(sim IN_LIST hairmesh_FIND_COMPONENTS AND hairmesh_FIND_REQUIRED_sim)
+elseif(hairmesh_FIND_REQUIRED_sim OR hairmesh_FIND_REQUIRED_render)
   set(hairmesh_FOUND FALSE)
-  set(hairmesh_NOT_FOUND_MESSAGE "hairmesh::sim needs Eigen 3.4 (Debian: libeigen3-dev)")
+  set(hairmesh_NOT_FOUND_MESSAGE "hairmesh::sim and hairmesh::render need Eigen 3.4 (Debian: libeigen3-dev)")
+  return()
+endif()
+if(render IN_LIST hairmesh_FIND_COMPONENTS)
+  if(EXISTS ${CMAKE_CURRENT_LIST_DIR}/hairmesh-render-targets.cmake)
+    find_dependency(GLEW)
+    find_dependency(OpenGL)
+    include(${CMAKE_CURRENT_LIST_DIR}/hairmesh-render-targets.cmake)
+    get_filename_component(hairmesh_SHADERS ${CMAKE_CURRENT_LIST_DIR}/@PACKAGE_SHADERS@ ABSOLUTE)
+    set(hairmesh_render_FOUND TRUE)
+  elseif(hairmesh_FIND_REQUIRED_render)
+    set(hairmesh_FOUND FALSE)
+    set(hairmesh_NOT_FOUND_MESSAGE "this hairmesh was built without its renderer (-DHAIRMESH_APP=OFF)")
+  endif()
 endif()

@@ -64,10 +64,37 @@ install(EXPORT hairmesh-sim NAMESPACE hairmesh:: FILE hairmesh-sim-targets.cmake
   COMPONENT development)
 install(EXPORT hairmesh NAMESPACE hairmesh:: FILE hairmesh-targets.cmake DESTINATION ${package_folder}
   COMPONENT development)
-install(FILES cmake/hairmesh-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/hairmesh-config-version.cmake
+file(RELATIVE_PATH PACKAGE_SHADERS /${package_folder} /${CMAKE_INSTALL_DATADIR}/hairmesh/shaders)
+configure_file(cmake/hairmesh-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/hairmesh-config.cmake @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/hairmesh-config.cmake
+  ${CMAKE_CURRENT_BINARY_DIR}/hairmesh-config-version.cmake
   DESTINATION ${package_folder} COMPONENT development)
 install(FILES include/hairmesh.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
 install(DIRECTORY sim DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hairmesh COMPONENT development
   FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY app/library/python/hairmesh DESTINATION lib/python3/dist-packages COMPONENT python
   FILES_MATCHING PATTERN "*.py" PATTERN "__pycache__" EXCLUDE)
+
+# cpack -G DEB: libhairmesh0.1, libhairmesh-dev and python3-hairmesh.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME hairmesh)
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "Real-time hair mesh simulation")
+set(CPACK_PACKAGE_CONTACT "the hairmesh project")
+set(CPACK_RESOURCE_FILE_LICENSE ${CMAKE_CURRENT_SOURCE_DIR}/LICENSE)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_COMPONENTS_ALL library development python)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION libs)
+set(soname_version ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libhairmesh${soname_version})
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS libc6)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libhairmesh-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libhairmesh${soname_version} (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "libeigen3-dev (>= 3.4), libglew-dev")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-hairmesh)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "libhairmesh${soname_version} (>= ${PROJECT_VERSION}), python3-numpy")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-distributed, python3-matplotlib")
+include(CPack)

@@ -109,7 +109,7 @@ typedef struct hm_pose {
 
 /* ---- the library ------------------------------------------------------------------------------------------------ */
 
-/** Version of the library that is linked: major * 10000 + minor * 100 + patch. */
+/** Tells the version of the library that is linked. @return major * 10000 + minor * 100 + patch. */
 HM_API int32_t hm_version(void);
 
 /** Name of a result, as "HM_ERROR_SIZE". @param result of a call. @return text that stays. */
@@ -241,7 +241,7 @@ typedef struct hm_parameter {
   int32_t choice_count;       /**< Number of choices. */
 } hm_parameter;
 
-/** Number of parameters that a hair has: those of the simulation, then those of the strands. */
+/** Counts the parameters that a hair has. @return their number: those of the simulation, then those of the strands. */
 HM_API int32_t hm_parameter_count(void);
 
 /** Tells of a parameter. @param index 0 .. hm_parameter_count() - 1. @param parameter to fill. @return HM_OK or

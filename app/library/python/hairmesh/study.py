@@ -154,7 +154,10 @@ def _spread(todo, client):
 
 
 def _client(scheduler, workers):
-    from dask.distributed import Client, LocalCluster
+    try:
+        from dask.distributed import Client, LocalCluster
+    except ImportError as error:
+        raise ImportError('Dask is missing (Debian: python3-distributed); install it, or say scheduler="serial"') from error
     if scheduler is not None:
         return Client(scheduler)
     return Client(LocalCluster(n_workers=workers or os.cpu_count(), threads_per_worker=1, processes=True,

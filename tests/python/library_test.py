@@ -1,0 +1,134 @@
+"""The Python package: views without copies, parameters, states, strands, faults."""
+
+import gc
+import math
+import pathlib
+import sys
+import unittest
+
+try:
+    import numpy as np
+except ImportError:
+    sys.exit(77)
+
+import hairmesh
+
+BOB = pathlib.Path(__file__).parents[2] / "assets" / "hair" / "bob_example.obj"
+
+
+def turned(angle):
+    return hairmesh.pose(rotation=(0, math.sin(angle / 2), 0, math.cos(angle / 2)))
+
+
+def shake(hair, first, last):
+    for n in range(first, last):
+        report = hair.step(head=turned(math.sin(0.2 * n)))
+    return report
+
+
+class Library(unittest.TestCase):
+    def setUp(self):
+        self.mesh = hairmesh.Mesh.load(BOB)
+
+    def test_views_are_the_librarys_memory(self):
+        hair = hairmesh.Hair(self.mesh)
+        positions = hair.positions
+        before, address = positions.copy(), positions.ctypes.data
+        shake(hair, 0, 10)
+        self.assertGreater(np.abs(positions - before).max(), 0.01)
+        self.assertEqual(hair.positions.ctypes.data, address)
+        self.assertFalse(positions.flags.writeable)
+        self.assertFalse(positions.flags.owndata)
+        with self.assertRaises(ValueError):
+            positions[0] = 0
+        del hair
+        gc.collect()
+        self.assertTrue(np.isfinite(positions).all())  # the view keeps its hair alive
+
+    def test_arrays_make_the_same_mesh(self):
+        lengths = np.diff(self.mesh.column_first)
+        mesh = hairmesh.Mesh(self.mesh.rest.astype(np.float64), lengths, self.mesh.faces)
+        np.testing.assert_array_equal(mesh.rest, self.mesh.rest)
+        np.testing.assert_array_equal(mesh.faces, self.mesh.faces)
+        self.assertEqual(mesh.hair_length, self.mesh.hair_length)
+        one, other = hairmesh.Hair(mesh), hairmesh.Hair(self.mesh)
+        shake(one, 0, 20), shake(other, 0, 20)
+        self.assertEqual(one.save(), other.save())
+
+    def test_states_go_on_to_the_bit(self):
+        hair, other = hairmesh.Hair(self.mesh), hairmesh.Hair(self.mesh)
+        shake(hair, 0, 15)
+        state = hair.save()
+        shake(hair, 15, 30)
+        other.restore(state)
+        shake(other, 15, 30)
+        self.assertEqual(hair.save(), other.save())
+        hair.reset()
+        np.testing.assert_array_equal(hair.positions, self.mesh.rest)
+        self.assertEqual(np.abs(hair.velocities).max(), 0)
+        hair.carry(hairmesh.pose(), hairmesh.pose((1, 2, 3)))
+        np.testing.assert_allclose(hair.positions, self.mesh.rest + (1, 2, 3), atol=1e-12)
+
+    def test_roots_of_any_stride_and_type(self):
+        hair, other = hairmesh.Hair(self.mesh), hairmesh.Hair(self.mesh)
+        wide = np.zeros((len(self.mesh.tips), 5), np.float64)
+        wide[:, 1:4] = self.mesh.rest[self.mesh.roots] + (0, 0, 0.01)
+        hair.step(roots=wide[:, 1:4])
+        other.step(roots=np.asfortranarray(wide[:, 1:4]).astype(np.float32))
+        np.testing.assert_allclose(hair.positions, other.positions, atol=1e-5)
+        with self.assertRaisesRegex(hairmesh.Error, "roots has"):
+            hair.step(roots=wide[:3, 1:4])
+        with self.assertRaises(ValueError):
+            hair.step(roots=wide)
+
+    def test_parameters(self):
+        table = hairmesh.parameters()
+        self.assertEqual(table["solver"]["choices"], ["default", "paper"])
+        hair = hairmesh.Hair(self.mesh, stretch_along=2e5, solver="paper", collide=False)
+        self.assertEqual([hair.get(name) for name in ("stretch_along", "solver", "collide")], [2e5, 1, 0])
+        for name, row in table.items():
+            self.assertGreater(len(row["help"]), 10)
+            if name not in ("stretch_along", "solver", "collide"):
+                self.assertEqual(hair.get(name), row["default"])
+        with self.assertRaisesRegex(hairmesh.Error, "density") as caught:
+            hair.set(densty=3)
+        self.assertEqual(caught.exception.result, "HM_ERROR_NAME")
+
+    def test_colliders_pins_and_report(self):
+        hair, vertex = hairmesh.Hair(self.mesh), int(self.mesh.tips[0])
+        there = self.mesh.rest[vertex] + (0.01, 0, 0)
+        skull = hairmesh.Ellipsoid((0.08, 0.11, 0.1), (0, 0.085, 0), before=hairmesh.pose((0, 0.084, 0)), seconds=1 / 60)
+        for _ in range(20):
+            report = hair.step(ellipsoids=[skull], pins=[(vertex, there, (0, 0, 0), math.inf)])
+        self.assertGreater(report["contacts"], 0)
+        self.assertEqual(report["pins"], 1)
+        np.testing.assert_allclose(hair.positions[vertex], there, atol=1e-6)
+        self.assertAlmostEqual(hair.time, 20 / 60)
+
+    def test_strands(self):
+        hair = hairmesh.Hair(self.mesh, strands=200)
+        positions, tangents, radii = hair.strands(points=12)
+        self.assertEqual((positions.shape, tangents.shape, radii.shape), ((200, 12, 3), (200, 12, 3), (200, 12)))
+        some, _, _ = hair.strands([7, 199, 0], 12)
+        np.testing.assert_array_equal(some, positions[[7, 199, 0]])
+        np.testing.assert_allclose(np.linalg.norm(tangents, axis=2), 1, atol=1e-5)
+        self.assertTrue((radii > 1e-5).all() and (radii < 5e-3).all())
+        double, _, _ = hair.strands(points=12, dtype=np.float64)
+        np.testing.assert_allclose(double, positions, atol=1e-6)
+        self.assertIn(hair.strand(7)["face"], range(len(self.mesh.faces)))
+        with self.assertRaisesRegex(hairmesh.Error, "200"):
+            hair.strands([200])
+
+    def test_faults_name_file_and_mend(self):
+        with self.assertRaisesRegex(hairmesh.Error, "wrong.obj: .*layer_0.*;"):
+            hairmesh.Mesh.from_text("v 0 0 0\n", "wrong.obj")
+        hair = hairmesh.Hair(self.mesh)
+        with self.assertRaisesRegex(hairmesh.Error, "dt"):
+            hair.step(dt=math.nan)
+        with self.assertRaises(hairmesh.Error):
+            hair.restore(b"no state")
+        self.assertEqual(hairmesh.version().count("."), 2)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
