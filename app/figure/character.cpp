@@ -10,6 +10,7 @@
 #include "app/files/errors.h"
 #include "app/files/text_file.h"
 #include "app/motion/clip_repair.h"
+#include "app/motion/foot_plant.h"
 #include "app/motion/motion.h"
 
 namespace app {
@@ -90,6 +91,7 @@ Character loadCharacter(const std::string& motion_file, const std::string& parts
   for (Clip& clip : character.clips) {
     const std::string of = character.clips.size() > 1 ? "clip " + clip.name + ": " : "";
     for (const std::string& note : repairClip(character.skeleton, clip)) character.notes.push_back(of + note);
+    if (const std::string note = plantFeet(character.skeleton, clip); !note.empty()) character.notes.push_back(of + note);
   }
   return character;
 }
