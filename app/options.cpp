@@ -2,10 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 
 #include "app/files/errors.h"
 #include "app/files/scene_file.h"
+#include "app/groom/groom_writer.h"
 #include "app/scene/look_params.h"
 #include "app/scene/parameter_table.h"
 #include "app/scene/skips.h"
@@ -21,6 +23,7 @@ std::vector<std::string> choicesOf(const char* parameter) {
 }
 
 constexpr int kSmallestSide = 16, kLargestSide = 8192, kMaxFrames = 1000000;
+constexpr int kMostExportPoints = 1024, kMostExportSamples = 32;
 
 // "1280x720".
 bool parseSize(const std::string& text, int& width, int& height) {
@@ -66,6 +69,7 @@ const char* const kExamples = R"(Examples:
   hairmesh --style long --resolution high --motion walk.bvh
   hairmesh --headless --frames 240 --size 1280x720 --out frames --style short
   hairmesh --headless --frames 600 --no-images --report timings.json
+  hairmesh --no-images --frames 240 --strands 10000 --export walk.abc    (.usda, .hair, .ply, .glb)
   hairmesh --motion dance.mot --parts female-objs --speed 2 --set friction=0.6 --set solver=paper
 
 Exit codes: 0 fine, 1 OpenGL or numerical fault or a file that cannot be written, 2 usage, 3 no OpenGL context,
@@ -76,6 +80,7 @@ struct Unchecked {
   std::string size;
   std::vector<std::string> sets;
   std::string collider;
+  std::string export_what, export_frames, export_unit;
   bool list_parameters = false, list_skips = false;
 };
 
@@ -202,6 +207,71 @@ void addRunOptions(CLI::App& parser, Options& options) {
   parser.set_version_flag("--version", "hairmesh 0.1")->group(group.heading);
 }
 
+void addExportOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
+  OptionGroup group{parser, "Export"};
+  ExportSpec& spec = options.hair_export;
+  group.value("--export", spec.file, "FILE",
+              "Without a window: write the simulated hair: .abc or .usda (a clip), .hair, .ply or .tfx (a file a frame, its "
+              "number before the dot), .glb (the hair mesh with a morph target a frame)");
+  group
+      .value("--export-what", unchecked.export_what, "NAME",
+             "strands as drawn, guides (the hair mesh's columns), or mesh (.glb alone; its default)")
+      ->check(CLI::IsMember({"strands", "guides", "mesh"}));
+  group.value("--export-points", spec.points, "N", "Points a strand, evenly from root to tip (as drawn)")
+      ->check(within(2, kMostExportPoints));
+  group.value("--export-frames", unchecked.export_frames, "A-B", "Frames of the run, from 0, that are exported (all)");
+  group.value("--export-every", spec.every, "N", "Every nth of them (1)")->check(within(1, kMaxFrames));
+  group.value("--export-samples", spec.samples, "N", "Moments a frame, for motion blur: .abc, .usda, .glb (1)")
+      ->check(within(1, kMostExportSamples));
+  group.value("--export-shutter", spec.shutter, "X", "Of a frame's length, from its first moment to its last (0.5)")
+      ->check(within(0.01, 1));
+  group.value("--export-unit", unchecked.export_unit, "NAME", "Unit of the file's numbers: m, cm, mm or in (m)")
+      ->check(CLI::IsMember({"m", "cm", "mm", "in"}));
+}
+
+// "12-47", "12-" or "12".
+bool parseFrames(const std::string& text, ExportSpec& spec) {
+  const std::size_t dash = text.find('-');
+  double first = 0, last = -1;
+  if (!sim::parseNumber(text.substr(0, dash), first)) return false;
+  if (dash == std::string::npos) last = first;
+  if (dash != std::string::npos && dash + 1 < text.size() && !sim::parseNumber(text.substr(dash + 1), last))
+    return false;
+  if (!(first >= 0 && first <= kMaxFrames && last <= kMaxFrames) || (last >= 0 && last < first)) return false;
+  spec.first = static_cast<int>(first);
+  spec.last = static_cast<int>(last);
+  return true;
+}
+
+// Throws UsageError for what the export cannot do.
+void finishExport(const Unchecked& unchecked, Options& options) {
+  ExportSpec& spec = options.hair_export;
+  if (spec.file.empty()) {
+    if (!(unchecked.export_what + unchecked.export_frames + unchecked.export_unit).empty() || spec.samples > 1 ||
+        spec.every > 1 || spec.points > 0)
+      throw UsageError("--export-... says how; add --export FILE");
+    return;
+  }
+  const bool mesh = std::filesystem::path(spec.file).extension() == ".glb";
+  if (!mesh && !isGroomOutput(spec.file))
+    throw UsageError("--export cannot be '" + spec.file + "'; name it .abc, .usda, .hair, .ply, .tfx or .glb");
+  if (mesh != (unchecked.export_what == "mesh") && !(mesh && unchecked.export_what.empty()))
+    throw UsageError("a .glb file takes the mesh, and the mesh goes into a .glb file alone; glTF has no curves");
+  spec.what = mesh ? ExportWhat::kMesh : unchecked.export_what == "guides" ? ExportWhat::kGuides : ExportWhat::kStrands;
+  if (!unchecked.export_frames.empty() && !parseFrames(unchecked.export_frames, spec))
+    throw UsageError("--export-frames cannot be '" + unchecked.export_frames +
+                     "'; write FIRST-LAST, for instance 0-119");
+  if (spec.samples > 1 && !takesClip(spec.file))
+    throw UsageError("--export-samples needs a file that takes a clip; name it .abc or .usda");
+  if (spec.samples > 1 && !(options.record + options.replay + options.save_state + options.load_state).empty())
+    throw UsageError("--export-samples does not go with recordings and states, whose frames have one moment");
+  if (unchecked.export_unit == "cm") spec.unit = 0.01;
+  if (unchecked.export_unit == "mm") spec.unit = 0.001;
+  if (unchecked.export_unit == "in") spec.unit = 0.0254;
+  if (!options.headless) options.no_images = true;  // pictures are drawn when asked for
+  options.headless = true;
+}
+
 // Checks what the parser cannot and moves it into the options. Throws UsageError.
 void finish(const Unchecked& unchecked, Options& options) {
   options.size_given = !unchecked.size.empty();
@@ -231,6 +301,7 @@ void finish(const Unchecked& unchecked, Options& options) {
     throw UsageError("--save-state-at says when; add --save-state FILE");
   }
   if (options.no_images) options.headless = true;
+  finishExport(unchecked, options);
   if (!options.parts.empty() && options.motion.empty() && options.scene.empty()) {
     throw UsageError("--parts needs a .mot motion; add --motion FILE.mot");
   }
@@ -254,6 +325,7 @@ bool parseOptions(int argc, char** argv, Options& options, int& exit_code) {
   addPlaybackOptions(parser, options);
   addPictureOptions(parser, options, unchecked);
   addRunOptions(parser, options);
+  addExportOptions(parser, options, unchecked);
   exit_code = kExitFine;
   try {
     parser.parse(argc, argv);

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "app/scene/export_spec.h"
+
 namespace app {
 
 // An option's value that cannot be used; what() is the whole message. Exit code kExitUsage.
@@ -50,6 +52,7 @@ struct Options {
   std::string save_state, load_state;
   int save_state_at = 0;  // frames of this run after which the state is saved; 0: the last
   std::string loop;       // what a clip does at its end; empty: the scene's
+  ExportSpec hair_export;
 };
 
 // Parses argv with CLI11. Returns false and an exit code when the program has done what was asked (help, a listing).

@@ -18,6 +18,7 @@
 #include "app/platform/interrupt.h"
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
+#include "app/scene/hair_export.h"
 #include "render/gl_messages.h"
 
 namespace app {
@@ -77,12 +78,14 @@ struct Run {
   Demo demo;
   RunReport report;
   std::optional<Pictures> pictures;
+  std::optional<HairExport> hair_export;
   std::vector<unsigned char> pixels;
   int frames = 0;
   long first = 0;  // number of the first frame: a loaded state has some behind it
 
   Run(Scene scene, const Options& run_options);
   void drawFrames();
+  void exportFrame(int frame);
   double frameSeconds(int frame) const;
   void saveState() const;
   void reportDone();
@@ -90,6 +93,7 @@ struct Run {
 };
 
 Demo openForPictures(Scene scene, const Options& options, double aspect) {
+  if (!options.hair_export.file.empty()) simulateAll(scene.skips);
   Demo demo = openScene(std::move(scene), aspect);
   setDebugViews(options.debug, demo.debug);
   demo.governor.counted = demo.deadline.counted = true;  // the same pictures on every run
@@ -112,6 +116,7 @@ Run::Run(Scene scene, const Options& run_options) : options(run_options), tape(o
     loadDemoState(options.load_state, keep_view, demo);
     first = demo.frames;
   }
+  if (!options.hair_export.file.empty()) hair_export.emplace(options.hair_export, demo, report.fps, frames);
   if (!options.no_images) checkWritable(framePath(options.out, first));
   if (!options.no_images) {
     pictures.emplace(options.gl_debug);
@@ -120,9 +125,23 @@ Run::Run(Scene scene, const Options& run_options) : options(run_options), tape(o
   report.start_seconds = now() - start;
 }
 
-// The first frame of a scene shows its start, the first after a loaded state goes on.
+// The first frame of a scene shows its start, the first after a loaded state goes on. What a frame's further moments
+// have taken is left out of the next.
 double Run::frameSeconds(int frame) const {
-  return frame == 0 && options.load_state.empty() ? 0 : 1 / report.fps;
+  if (frame == 0 && options.load_state.empty()) return 0;
+  const ExportSpec& spec = options.hair_export;
+  const bool further = hair_export && spec.samples > 1 && spec.takes(frame - 1);
+  return (1 - (further ? spec.shutter : 0)) / report.fps;
+}
+
+void Run::exportFrame(int frame) {
+  const ExportSpec& spec = options.hair_export;
+  if (!hair_export || !spec.takes(frame)) return;
+  hair_export->add(demo, frame);
+  for (int sample = 1; sample < spec.samples; ++sample) {
+    advanceFrame(demo, spec.shutter / ((spec.samples - 1) * report.fps), {});
+    hair_export->add(demo, frame);
+  }
 }
 
 void Run::saveState() const {
@@ -140,8 +159,12 @@ void Run::drawFrames() {
     if (frame + 1 == options.save_state_at) saveState();
     if (const std::string note = numericalNote(demo.stats); !note.empty())
       std::cerr << "hairmesh: frame " << frame << ": " << note << "\n";
-    if (!pictures) continue;
+    if (!pictures) {
+      exportFrame(frame);
+      continue;
+    }
     writePng(framePath(options.out, first + frame), options.width, options.height, pixels);
+    exportFrame(frame);
     // Software rasterizers take a second a frame; a person wants to see that it goes on.
     if (now() - last_line > kLineEvery) {
       std::cout << "frame " << frame + 1 << " of " << frames << std::endl;
@@ -168,6 +191,7 @@ int Run::finish() {
     std::cout << stem(actor.spec.motion) << ": at the clip's end: " << loopText(actor.playback.loop) << "\n";
     if (demo.actors.size() > 1) break;
   }
+  if (hair_export) std::cout << hair_export->finish();
   std::cout << summary(report);
   if (pictures) {
     std::cout << report.frames.size() << " frames in " << options.out;

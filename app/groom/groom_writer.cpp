@@ -1,0 +1,87 @@
+#include "app/groom/groom_writer.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdio>
+#include <filesystem>
+
+#include "app/files/errors.h"
+#include "app/groom/hair_strands_file.h"
+#include "app/groom/ply_file.h"
+#include "app/groom/tfx_file.h"
+
+namespace app {
+
+namespace {
+
+std::string endingOf(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  return ending;
+}
+
+void writeFrame(const Groom& groom, const std::string& file) {
+  OutputFile output(file);
+  const std::string ending = endingOf(file);
+  if (ending == ".hair") writeHairStrands(groom, file, output);
+  if (ending == ".ply") writePlyStrands(groom, false, output);
+  if (ending == ".tfx") writeTfx(groom, file, output);
+  output.commit();
+}
+
+}  // namespace
+
+bool takesClip(const std::string& file) {
+  const std::string ending = endingOf(file);
+  return ending == ".abc" || ending == ".usda" || ending == ".glb";
+}
+
+bool isGroomOutput(const std::string& file) {
+  constexpr std::array<std::string_view, 5> kEndings{".abc", ".usda", ".hair", ".ply", ".tfx"};
+  return std::ranges::find(kEndings, endingOf(file)) != kEndings.end();
+}
+
+std::string numberedName(const std::string& file, long frame) {
+  std::array<char, 24> number;
+  std::snprintf(number.data(), number.size(), "_%04ld", frame);
+  const std::filesystem::path path(file);
+  return (path.parent_path() / (path.stem().string() + number.data() + path.extension().string())).string();
+}
+
+GroomWriter::GroomWriter(const std::string& file, const ClipSettings& settings, bool numbered)
+    : file_(file), numbered_(numbered) {
+  const std::string ending = endingOf(file);
+  if (!isGroomOutput(file))
+    throw OutputError(file, "is no kind of groom that is written", "name it .abc, .usda, .hair, .ply or .tfx");
+  if (ending == ".abc") {
+    clip_.emplace<AlembicWriter>(file, settings);
+  } else if (ending == ".usda") {
+    clip_.emplace<UsdaWriter>(file, settings);
+  } else {
+    checkWritable(numbered ? numberedName(file, 0) : file);
+  }
+}
+
+void GroomWriter::add(const Groom& groom, long frame) {
+  if (auto* alembic = std::get_if<AlembicWriter>(&clip_)) {
+    alembic->add(groom);
+  } else if (auto* usda = std::get_if<UsdaWriter>(&clip_)) {
+    usda->add(groom);
+  } else {
+    writeFrame(groom, numbered_ ? numberedName(file_, frame) : file_);
+  }
+}
+
+void GroomWriter::finish() {
+  if (auto* alembic = std::get_if<AlembicWriter>(&clip_)) alembic->finish();
+  if (auto* usda = std::get_if<UsdaWriter>(&clip_)) usda->finish();
+}
+
+void writeGroom(const Groom& groom, const std::string& file) {
+  GroomWriter writer(file, {}, false);
+  writer.add(groom, 0);
+  writer.finish();
+}
+
+}  // namespace app

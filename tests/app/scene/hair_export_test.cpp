@@ -1,0 +1,180 @@
+// The hair that is simulated, into files: every format has the same strands in every frame, where and as they are
+// drawn.
+#include "app/scene/hair_export.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "app/groom/alembic_file.h"
+#include "app/groom/groom_file.h"
+#include "app/groom/usda_file.h"
+#include "tests/app/groom/groom_samples.h"
+#include "tests/app/groom/second_reader.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// A run of the program without pictures, of 600 strands of the short style.
+test::Outcome exported(const std::string& file, std::vector<std::string> more, int frames = 6) {
+  std::vector<std::string> arguments{"--no-images", "--frames",     std::to_string(frames),
+                                     "--strands",   "600",          "--style",
+                                     "short",       "--resolution", "low",
+                                     "--motion",    "walk.bvh",     "--export",
+                                     file};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return test::runProgram(arguments);
+}
+
+void expectTheSame(const app::Groom& a, const app::Groom& b) {
+  EXPECT_EQ(a.strand_first, b.strand_first);
+  EXPECT_EQ(a.points, b.points);
+  EXPECT_EQ(a.widths, b.widths);
+  EXPECT_EQ(a.colors, b.colors);
+}
+
+TEST(HairExport, EveryFormatHasTheSameStrandsInEveryFrame) {
+  const std::string folder = test::freshFolder("hair_export");
+  for (const char* ending : {"abc", "usda", "hair", "ply", "tfx"}) {
+    const test::Outcome outcome = exported(folder + "/walk." + ending, {"--export-points", "16"});
+    EXPECT_EQ(outcome.exit_code, 0) << ending << outcome.err;
+    EXPECT_EQ(test::lacking(outcome.out, "6 frames of "), "");
+  }
+  const std::string bytes = test::readAll(folder + "/walk.abc"), text = test::readAll(folder + "/walk.usda");
+  ASSERT_EQ(app::alembicTimes(bytes, "walk.abc").size(), 6u);
+  for (std::size_t frame = 0; frame < 6; ++frame) {
+    const app::Groom strands = app::readAlembic(bytes, "walk.abc", frame);
+    const std::string number = "/walk_000" + std::to_string(frame);
+    EXPECT_GT(strands.strandCount(), 500u);
+    expectTheSame(app::readUsda(text, "walk.usda", frame), strands);
+    expectTheSame(app::readGroom(folder + number + ".hair"), strands);
+    expectTheSame(app::readGroom(folder + number + ".ply"), strands);
+    const app::Groom tressfx = app::readGroom(folder + number + ".tfx");
+    EXPECT_EQ(tressfx.points, strands.points);
+    EXPECT_EQ(tressfx.root_uvs, strands.root_uvs);
+  }
+  const app::Groom first = app::readAlembic(bytes, "walk.abc", 0), last = app::readAlembic(bytes, "walk.abc", 5);
+  EXPECT_NE(first.points, last.points) << "nothing moves";
+  EXPECT_EQ(first.ids.size(), first.strandCount());
+  for (std::size_t s = 0; s < first.strandCount(); ++s) {
+    EXPECT_GT(first.strand(s)[0].y(), 1.3f) << "roots are in the world, at a head's height";
+    EXPECT_TRUE((first.root_uvs[s].array() >= 0).all() && (first.root_uvs[s].array() <= 1).all());
+  }
+  EXPECT_TRUE(test::dumpClip({}, {first}).size() > 100);
+  const std::string second = test::secondReading(folder + "/walk.abc");
+  EXPECT_TRUE(second.find("failed") == std::string::npos) << second.substr(0, 500);
+}
+
+TEST(HairExport, FramesAreChosenAndNumbered) {
+  const std::string folder = test::freshFolder("hair_export_range");
+  EXPECT_EQ(exported(folder + "/a.hair", {"--export-frames", "1-5", "--export-every", "2"}).exit_code, 0);
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename().string());
+  std::ranges::sort(names);
+  EXPECT_EQ(names, (std::vector<std::string>{"a_0001.hair", "a_0003.hair", "a_0005.hair"}));
+  EXPECT_EQ(exported(folder + "/b.ply", {"--export-frames", "2"}).exit_code, 0);
+  EXPECT_TRUE(fs::exists(folder + "/b.ply")) << "one frame has the name that was given";
+  EXPECT_EQ(exported(folder + "/all.abc", {}).exit_code, 0);
+  EXPECT_EQ(exported(folder + "/some.abc", {"--export-frames", "1-5", "--export-every", "2"}).exit_code, 0);
+  const std::string all = test::readAll(folder + "/all.abc"), some = test::readAll(folder + "/some.abc");
+  const std::vector<double> times = app::alembicTimes(some, "some.abc");
+  ASSERT_EQ(times.size(), 3u);
+  EXPECT_NEAR(times[0], 1.0 / 60, 1e-9);
+  EXPECT_NEAR(times[2], 5.0 / 60, 1e-9);
+  for (std::size_t n = 0; n < 3; ++n)
+    EXPECT_EQ(app::readAlembic(some, "", n).points, app::readAlembic(all, "", 2 * n + 1).points);
+}
+
+TEST(HairExport, MotionBlurSamplesLieBetweenTheFrames) {
+  const std::string folder = test::freshFolder("hair_export_blur");
+  EXPECT_EQ(exported(folder + "/blur.abc", {"--export-samples", "3", "--export-shutter", "0.5"}, 4).exit_code, 0);
+  EXPECT_EQ(exported(folder + "/plain.abc", {}, 4).exit_code, 0);
+  const std::string blur = test::readAll(folder + "/blur.abc"), plain = test::readAll(folder + "/plain.abc");
+  const std::vector<double> times = app::alembicTimes(blur, "blur.abc");
+  ASSERT_EQ(times.size(), 12u);
+  EXPECT_NEAR(times[4], 1.25 / 60, 1e-9);
+  const auto distance = [](const app::Groom& a, const app::Groom& b) {
+    float sum = 0;
+    for (std::size_t p = 0; p < a.points.size(); ++p) sum += (a.points[p] - b.points[p]).norm();
+    return sum / static_cast<float>(a.points.size());
+  };
+  for (std::size_t frame = 1; frame < 3; ++frame) {
+    const app::Groom here = app::readAlembic(plain, "", frame), next = app::readAlembic(plain, "", frame + 1);
+    const float step = distance(here, next);
+    EXPECT_LT(distance(app::readAlembic(blur, "", 3 * frame), here), 0.02f * step) << "frames are where they were";
+    EXPECT_NEAR(distance(app::readAlembic(blur, "", 3 * frame + 2), here), 0.5f * step, 0.2f * step);
+  }
+}
+
+TEST(HairExport, GuidesAreTheColumnsAndTheUnitIsTheFiles) {
+  const std::string folder = test::freshFolder("hair_export_guides");
+  EXPECT_EQ(exported(folder + "/m.abc", {"--export-what", "guides"}, 1).exit_code, 0);
+  EXPECT_EQ(exported(folder + "/cm.usda", {"--export-what", "guides", "--export-unit", "cm"}, 1).exit_code, 0);
+  const app::Groom metres = app::readGroom(folder + "/m.abc");
+  app::GroomHints hints;
+  const app::Groom centimetres = app::readGroom(folder + "/cm.usda", &hints);
+  EXPECT_EQ(hints.meters_per_unit, 0.01);
+  ASSERT_EQ(metres.points.size(), centimetres.points.size());
+  for (std::size_t p = 0; p < metres.points.size(); ++p)
+    EXPECT_LT((100 * metres.points[p] - centimetres.points[p]).norm(), 1e-4f);
+  EXPECT_EQ(metres.guides, std::vector<std::uint8_t>(metres.strandCount(), 1));
+  EXPECT_LT(metres.strandCount(), 200u);
+}
+
+TEST(HairExport, TheCageIsAMeshWithMorphTargets) {
+  const std::string folder = test::freshFolder("hair_export_cage");
+  EXPECT_EQ(exported(folder + "/cage.glb", {}).exit_code, 0);
+  EXPECT_EQ(exported(folder + "/columns.abc", {"--export-what", "guides"}).exit_code, 0);
+  const std::string second = test::secondReading(folder + "/cage.glb");
+  const std::string bytes = test::readAll(folder + "/columns.abc");
+  std::vector<double> times(6);
+  std::uint64_t length = 0;
+  ASSERT_GT(second.size(), 8u + 6 * 8);
+  std::memcpy(&length, second.data(), sizeof length);
+  ASSERT_EQ(length, 6 * sizeof(double)) << second.substr(0, 500);
+  // The vertices of the cage are those of the columns, one after another.
+  std::size_t at = 8 + length;
+  for (std::size_t frame = 0; frame < 6; ++frame) {
+    const app::Groom columns = app::readAlembic(bytes, "", frame);
+    at += 8 + 8;  // the first vertices of the one strand
+    std::memcpy(&length, second.data() + at, sizeof length);
+    ASSERT_EQ(length, columns.points.size() * 12);
+    for (std::size_t v = 0; v < columns.points.size(); ++v) {
+      Eigen::Vector3f vertex;
+      std::memcpy(vertex.data(), second.data() + at + 8 + 12 * v, 12);
+      ASSERT_LT((vertex - columns.points[v]).norm(), 1e-6f);
+    }
+    at += 8 + length + 6 * 8;
+  }
+}
+
+TEST(HairExport, AFullDiskLeavesNothingHalfWritten) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
+  const std::string folder = test::freshFolder("hair_export_full");
+  for (const char* ending : {"abc", "usda", "hair", "glb"}) {
+    const std::string file = folder + "/full." + ending;
+    fs::create_symlink("/dev/full", file);
+    const test::Outcome outcome = exported(file, {}, 1);
+    EXPECT_EQ(outcome.exit_code, 1) << ending;
+    EXPECT_EQ(test::lacking(outcome.err, "cannot be written: No space left on device; make room"), "");
+    fs::remove(file);
+  }
+  EXPECT_TRUE(fs::is_empty(folder));
+  EXPECT_EQ(exported(folder + "/none/a.abc", {}, 1).exit_code, 1);
+}
+
+TEST(HairExport, WhatCannotBeAskedForIsNamed) {
+  const auto fault = [](std::vector<std::string> arguments) {
+    const test::Outcome outcome = test::runProgram(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_EQ(test::lacking(fault({"--export", "a.fbx"}), "name it .abc, .usda, .hair, .ply, .tfx or .glb"), "");
+  EXPECT_EQ(test::lacking(fault({"--export-what", "guides"}), "add --export FILE"), "");
+  EXPECT_EQ(test::lacking(fault({"--export", "a.glb", "--export-what", "strands"}), "glTF has no curves"), "");
+  EXPECT_EQ(test::lacking(fault({"--export", "a.ply", "--export-samples", "3"}), "takes a clip"), "");
+  EXPECT_EQ(test::lacking(fault({"--export", "a.abc", "--export-frames", "9-3"}), "FIRST-LAST"), "");
+}
+
+}  // namespace
