@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "render/skinning.h"
 #include "shaders/shared.h"
 
 namespace render {
@@ -21,6 +22,20 @@ Vector3f transformed(const Mat4& m, const Vector3f& p) {
   Vector3f out;
   for (int row = 0; row < 3; ++row) out[row] = m[row] * p.x() + m[4 + row] * p.y() + m[8 + row] * p.z() + m[12 + row];
   return out;
+}
+
+// As skinning.glsl reads them.
+std::vector<float> jointTexels(std::span<const Mat4> joint_matrices) {
+  const std::vector<DualQuaternion> motions = rigidMotions(joint_matrices);
+  std::vector<float> texels{motions.empty() ? 3.0f : 2.0f, 0, 0, 0};
+  for (const DualQuaternion& motion : motions) {
+    texels.insert(texels.end(), motion.real.begin(), motion.real.end());
+    texels.insert(texels.end(), motion.dual.begin(), motion.dual.end());
+  }
+  for (const Mat4& m : motions.empty() ? joint_matrices : std::span<const Mat4>()) {
+    for (int row = 0; row < 3; ++row) texels.insert(texels.end(), {m[row], m[4 + row], m[8 + row], m[12 + row]});
+  }
+  return texels;
 }
 
 // Whether a body can stand in a light's view or between it and the light. The fifth plane, the light's side, is left
@@ -63,19 +78,16 @@ bool BodyStore::refreshPose(Body& body, const BodyMesh& mesh, const BodyInput& i
   if (body.pose_revision == input.pose_revision && body.mesh_id == input.mesh_id && body.joint_count == joint_count) {
     return true;
   }
-  std::vector<float> rows;
-  rows.reserve(static_cast<std::size_t>(joint_count) * 12);
-  for (const Mat4& m : input.joint_matrices) {
-    for (int row = 0; row < 3; ++row) rows.insert(rows.end(), {m[row], m[4 + row], m[8 + row], m[12 + row]});
-  }
-  const auto bytes = static_cast<GLsizeiptr>(rows.size() * sizeof(float));
-  if (body.joint_count != joint_count) {
+  const std::vector<float> texels = jointTexels(input.joint_matrices);
+  const auto bytes = static_cast<GLsizeiptr>(texels.size() * sizeof(float));
+  if (body.joint_bytes != bytes) {
+    body.joint_bytes = bytes;
     body.joints = makeBuffer();
     body.joint_texture = makeTexture(GL_TEXTURE_BUFFER);
     glNamedBufferStorage(body.joints.id(), bytes, nullptr, GL_DYNAMIC_STORAGE_BIT);
     glTextureBuffer(body.joint_texture.id(), GL_RGBA32F, body.joints.id());
   }
-  glNamedBufferSubData(body.joints.id(), 0, bytes, rows.data());
+  glNamedBufferSubData(body.joints.id(), 0, bytes, texels.data());
   uploaded += static_cast<long>(bytes);
   body.bounds = Bounds{};
   for (std::size_t j = 0; j < mesh.joint_boxes.size(); ++j)

@@ -30,6 +30,7 @@ struct Body {
   Buffer joints, block;
   Texture joint_texture;
   int joint_count = 0;
+  long joint_bytes = 0;  // of the joints' buffer
   BodyFinish finish;
   std::uint64_t scalp_id = 0;        // 0: bare
   int level = 0;                     // of detail; 0 is the full mesh

@@ -60,12 +60,12 @@ std::string spaced(std::string name) {
 }
 
 std::string titleOf(const Request& request, const EditKind& kind) {
-  if (request.what == Ask::kSetParam) return spaced(request.name) + " " + request.text;
+  if (request.what == Ask::kSetParam) return spaced(request.name).append(" ").append(request.text);
   std::string title = kind.title;
-  if (!request.name.empty() && request.what != Ask::kMotionFile) title += " " + request.name;
-  if (!request.text.empty()) title += " " + spaced(stem(request.text));
+  if (!request.name.empty() && request.what != Ask::kMotionFile) title.append(" ").append(request.name);
+  if (!request.text.empty()) title.append(" ").append(spaced(stem(request.text)));
   const bool number = request.what == Ask::kBudget || request.what == Ask::kDeadline || request.what == Ask::kSpeed;
-  if (number) title += " " + sim::numberText(request.value);
+  if (number) title.append(" ").append(sim::numberText(request.value));
   const bool toggle =
       request.what == Ask::kSkip || request.what == Ask::kDebugView || request.what == Ask::kFollow;
   if (toggle) title += request.value != 0 ? " on" : " off";

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "render/skinning.h"
+
 namespace bench {
 namespace {
 
@@ -31,16 +33,19 @@ double triangleDistance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3&
 
 SkinDistance::SkinDistance(const app::Character& character, const app::Pose& pose) {
   const app::SkinnedMesh& mesh = character.mesh;
-  std::vector<app::Rigid> carried;
-  for (std::size_t j = 0; j < pose.world.size(); ++j)
-    carried.push_back(pose.world[j] * character.skeleton.joints[j].rest_world.inverse());
-  std::vector<Vec3> points;
-  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    const Vec3 rest = mesh.positions[v].cast<double>();
-    Vec3 p = Vec3::Zero();
-    for (int k = 0; k < 4; ++k) p += mesh.weights[v][k] * (carried[mesh.joints[v][k]] * rest);
-    points.push_back(p);
+  std::vector<render::Mat4> carried(pose.world.size());
+  for (std::size_t j = 0; j < pose.world.size(); ++j) {
+    Eigen::Map<Eigen::Matrix4f>(carried[j].data()) =
+        (pose.world[j] * character.skeleton.joints[j].rest_world.inverse()).matrix().cast<float>();
   }
+  render::BodyInput body;
+  body.positions = {mesh.positions.data()->data(), 3 * mesh.positions.size()};
+  body.normals = {mesh.normals.data()->data(), 3 * mesh.normals.size()};
+  body.joints = {mesh.joints.data()->data(), 4 * mesh.joints.size()};
+  body.weights = {mesh.weights.data()->data(), 4 * mesh.weights.size()};
+  body.joint_matrices = carried;
+  std::vector<Vec3> points;
+  for (const Eigen::Vector3f& p : render::skinnedPositions(body)) points.push_back(p.cast<double>());
   for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
     Face face{points[mesh.triangles[t]], points[mesh.triangles[t + 1]], points[mesh.triangles[t + 2]], {}, 0};
     face.middle = (face.a + face.b + face.c) / 3;

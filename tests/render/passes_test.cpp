@@ -212,6 +212,7 @@ const std::set<std::string> kUnseen{"frame.bodies.id",
                                     "frame.bodies.mesh_id",
                                     "frame.bodies.pose_revision",
                                     "frame.bodies.scalp_id",
+                                    "frame.bodies.weights",  // of one rigid joint
                                     "frame.camera.far_plane",
                                     "frame.camera.near_plane",
                                     "frame.hairs.id",

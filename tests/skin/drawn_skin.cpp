@@ -9,6 +9,8 @@
 #include <map>
 #include <numeric>
 
+#include "render/skinning.h"
+
 namespace skin {
 namespace {
 
@@ -93,17 +95,7 @@ bool visitTriangle(RTCPointQueryFunctionArguments* args) {
 }  // namespace
 
 std::vector<Vector3f> skinned(const render::BodyInput& body) {
-  std::vector<Vector3f> world(body.positions.size() / 3, Vector3f::Zero());
-  for (std::size_t v = 0; v < world.size(); ++v) {
-    const Eigen::Map<const Vector3f> rest(&body.positions[3 * v]), normal(&body.normals[3 * v]);
-    const float lower = body.scalp_id != 0 && body.root_cover.size() > 2 * v + 1 ? body.root_cover[2 * v + 1] : 0;
-    const Eigen::Vector4f p = (rest - lower * normal).homogeneous();
-    for (std::size_t k = 0; k < 4; ++k) {
-      const Eigen::Map<const Eigen::Matrix4f> joint(body.joint_matrices[body.joints[4 * v + k]].data());
-      world[v] += body.weights[4 * v + k] * (joint * p).head<3>();
-    }
-  }
-  return world;
+  return render::skinnedPositions(body);
 }
 
 struct DrawnSkin::Tree {
