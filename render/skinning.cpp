@@ -43,7 +43,8 @@ std::vector<DualQuaternion> rigidMotions(std::span<const Mat4> joint_matrices) {
     const Eigen::Quaternionf q = Eigen::Quaternionf(turn).normalized();
     const Vector3f half = 0.5f * matrix.topRightCorner<3, 1>();
     DualQuaternion motion{q.coeffs(), Vector4f::Zero()};
-    motion.dual << half * q.w() + half.cross(q.vec()), -half.dot(q.vec());
+    motion.dual.head<3>() = half * q.w() + half.cross(q.vec());
+    motion.dual.w() = -half.dot(q.vec());
     motions.push_back(motion);
   }
   return motions;
