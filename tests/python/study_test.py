@@ -56,7 +56,7 @@ class Study(unittest.TestCase):
         self.assertEqual(bytes_of(self.at / "cut"), expected)
 
     def test_seeds_draw_parameters_in_their_range(self):
-        drawn = [job["parameters"]["bend"] for job in self.jobs if job["clip"] == "slow" and "friction" not in job["parameters"]]
+        drawn = [job["parameters"]["bend"] for job in self.jobs if job["row"]["clip"] == "slow" and "friction" not in job["parameters"]]
         self.assertEqual(drawn[0], 0.3)
         self.assertEqual(len(set(drawn)), 3)
         self.assertEqual(len({job["key"] for job in self.jobs}), 12)
@@ -69,6 +69,20 @@ class Study(unittest.TestCase):
         with np.load(self.at / "serial" / "jobs" / (self.jobs[0]["key"] + ".npz")) as data:
             self.assertEqual(data["tips"].shape[0], 30)
             self.assertGreater(np.ptp(data["tips"], axis=0).max(), 0.05)
+
+    def test_programs_are_jobs_too(self):
+        write = "import pathlib, sys; pathlib.Path(sys.argv[1], 'part.csv').write_text(sys.argv[2]); print('done', sys.argv[2])"
+        commands = {f"part {n}": [sys.executable, "-c", write, "{out}", str(n)] for n in range(3)}
+        commands["fault"] = [sys.executable, "-c", "raise SystemExit(3)"]
+        jobs = study.program_jobs(commands)
+        self.assertEqual(study.run(jobs, self.at, scheduler="serial")["skipped"], 0)
+        self.assertEqual(study.run(jobs, self.at, scheduler="serial")["skipped"], 4)
+        study.unpack(jobs, self.at)
+        self.assertEqual((self.at / "programs" / "part 2" / "out" / "part.csv").read_text(), "2")
+        self.assertEqual((self.at / "programs" / "part 1" / "output").read_text(), "done 1\n")
+        table = (self.at / "table.csv").read_text().splitlines()
+        self.assertEqual(table[0], "key,name,command,exit,files")
+        self.assertTrue(table[4].endswith(",3,0"), table[4])
 
     def test_clips_are_kept(self):
         clip = study.Clip.shake(0.2)

@@ -16,10 +16,15 @@ import hashlib
 import io
 import itertools
 import json
+import logging
 import math
 import os
 import pathlib
 import resource
+import shlex
+import shutil
+import subprocess
+import tempfile
 import time
 
 import numpy as np
@@ -86,14 +91,52 @@ def jobs(clips, styles, parameters=({},), seeds=(0,), spread=0.2, function=None)
         stamp = json.dumps([hairmesh.version(), function.__module__, function.__qualname__, drawn, seed], sort_keys=True)
         parts = [stamp.encode(), text.encode(), np.float64(motion.dt).tobytes()]
         parts += [array.tobytes() for array in (motion.head, motion.radii, motion.bodies)]
-        listed.append({"key": _key(parts), "clip": clip, "style": style, "seed": seed, "parameters": drawn,
-                       "motion": motion, "text": text, "function": function})
+        row = {"clip": clip, "style": style, "seed": seed, "parameters": json.dumps(drawn, sort_keys=True)}
+        listed.append({"key": _key(parts), "row": row, "parameters": drawn, "motion": motion, "text": text,
+                       "function": function})
     return listed
+
+
+def program_jobs(commands):
+    """Runs of programs as jobs: lists of arguments by name. "{out}" in an argument is a folder of the job's own; what
+    the program writes there, and to its output, is kept. The workers need the program."""
+    listed = []
+    for name, command in commands.items():
+        program = shutil.which(command[0])
+        digest = hashlib.sha256(pathlib.Path(program).read_bytes()).hexdigest() if program else "absent"
+        key = _key([b"program", digest.encode(), *(part.encode() for part in command)])
+        row = {"name": name, "command": shlex.join(command)}
+        listed.append({"key": key, "row": row, "command": list(command), "function": run_program})
+    return listed
+
+
+def run_program(job):
+    """Runs a job of program_jobs. Metrics: the exit status and the number of files."""
+    with tempfile.TemporaryDirectory() as folder:
+        command = [part.replace("{out}", folder) for part in job["command"]]
+        ended = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        files = {"output": ended.stdout}
+        for file in sorted(pathlib.Path(folder).rglob("*")):
+            if file.is_file():
+                files["out/" + str(file.relative_to(folder))] = file.read_bytes()
+    arrays = {name: np.frombuffer(data, dtype=np.uint8) for name, data in files.items()}
+    return {"metrics": {"exit": ended.returncode, "files": len(files) - 1}, **arrays}
+
+
+def unpack(listed, folder):
+    """Writes what programs wrote as files again: folder/programs/NAME/output and folder/programs/NAME/out/..."""
+    for job in listed:
+        with np.load(pathlib.Path(folder) / "jobs" / (job["key"] + ".npz")) as data:
+            for name in data.files:
+                if name != "metrics":
+                    file = pathlib.Path(folder) / "programs" / job["row"]["name"] / name
+                    file.parent.mkdir(parents=True, exist_ok=True)
+                    _write(file, data[name].tobytes())
 
 
 def simulate(job):
     """Runs a clip once. Metrics: what the tips did relative to the head, steps' counts; arrays: the tips' paths."""
-    clip, mesh = job["motion"], hairmesh.Mesh.from_text(job["text"], job["style"])
+    clip, mesh = job["motion"], hairmesh.Mesh.from_text(job["text"], job["row"]["style"])
     hair = hairmesh.Hair(mesh, head=hairmesh.pose(clip.head[0, :3], clip.head[0, 3:]), **job["parameters"])
     tips, lengths = np.empty((len(clip.head), len(mesh.tips), 3)), np.diff(mesh.rest, axis=0)
     inside = np.setdiff1d(np.arange(len(mesh.rest) - 1), mesh.tips)  # edges along columns
@@ -126,10 +169,10 @@ def _encode(result):
 
 def _work(job):
     """What a worker does with a job: the file's bytes, and what they cost."""
-    start = time.process_time()
+    start = sum(os.times()[:4])  # processor time, of programs that it started as well
     data = _encode(job["function"](job))
-    return {"key": job["key"], "data": data, "seconds": time.process_time() - start,
-            "peak_bytes": 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss}
+    peak = max(resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return {"key": job["key"], "data": data, "seconds": sum(os.times()[:4]) - start, "peak_bytes": 1024 * peak}
 
 
 def _write(file, data):
@@ -159,9 +202,10 @@ def _client(scheduler, workers):
     except ImportError as error:
         raise ImportError('Dask is missing (Debian: python3-distributed); install it, or say scheduler="serial"') from error
     if scheduler is not None:
-        return Client(scheduler)
-    return Client(LocalCluster(n_workers=workers or os.cpu_count(), threads_per_worker=1, processes=True,
-                               dashboard_address=None))
+        return Client(scheduler), None
+    cluster = LocalCluster(n_workers=workers or os.cpu_count(), threads_per_worker=1, processes=True,
+                           dashboard_address=None, silence_logs=logging.CRITICAL)
+    return Client(cluster), cluster
 
 
 def write_table(listed, folder):
@@ -170,8 +214,7 @@ def write_table(listed, folder):
     for job in listed:
         with np.load(folder / "jobs" / (job["key"] + ".npz")) as data:
             metrics = json.loads(str(data["metrics"]))
-        rows.append({"key": job["key"], "clip": job["clip"], "style": job["style"], "seed": job["seed"],
-                     "parameters": json.dumps(job["parameters"], sort_keys=True), **metrics})
+        rows.append({"key": job["key"], **job["row"], **metrics})
     text = io.StringIO()
     names = list(dict.fromkeys(name for row in rows for name in row))
     table = csv.DictWriter(text, names, lineterminator="\n")
@@ -193,9 +236,10 @@ def run(listed, folder, scheduler=None, workers=None, client=None, done=None):
     unique = {job["key"]: job for job in listed}
     todo = [job for key, job in unique.items() if not (folder / "jobs" / (key + ".npz")).exists()]
     summary = {"jobs": len(unique), "skipped": len(unique) - len(todo), "worker_seconds": 0.0, "peak_bytes": 0}
-    own = None
+    own = cluster = None
     if todo and scheduler != "serial" and client is None:
-        client = own = _client(scheduler, workers)
+        own, cluster = _client(scheduler, workers)
+        client = own
     try:
         for result in _spread(todo, client) if client is not None and todo else _in_turn(todo):
             _write(folder / "jobs" / (result["key"] + ".npz"), result["data"])
@@ -206,8 +250,8 @@ def run(listed, folder, scheduler=None, workers=None, client=None, done=None):
     finally:
         if own is not None:
             own.close()
-            if own.cluster is not None:
-                own.cluster.close()
+        if cluster is not None:
+            cluster.close(timeout=60)
     summary["table"] = str(write_table(listed, folder))
     summary["seconds"] = time.perf_counter() - start
     return summary
