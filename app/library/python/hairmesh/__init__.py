@@ -7,7 +7,8 @@
     print(hair.positions[mesh.tips])
 
 Units are SI, y is up. `positions` and `velocities` are views of the library's memory: no copies, read-only, and steps
-write to them. A view keeps its hair alive. What cannot be done raises hairmesh.Error with the fault and the mend.
+write to them. A view keeps its hair alive. Calls give the interpreter's lock away, so threads step different hairs side
+by side. What cannot be done raises hairmesh.Error with the fault and the mend.
 """
 
 import ctypes
@@ -65,11 +66,12 @@ class Ellipsoid:
             _c.lib.hm_ellipsoid_moved(self._c, before, seconds)
 
 
-def _view(view, owner):
-    """A read-only array over the library's memory that keeps `owner` alive."""
-    memory = (ctypes.c_double * (3 * view.count)).from_address(view.data)
+def _view(place, owner):
+    """A read-only array over the library's memory, an address and a number of vertices; it keeps `owner` alive."""
+    address, count = place
+    memory = (ctypes.c_double * (3 * count)).from_address(address)
     memory.owner = owner
-    array = np.frombuffer(memory, dtype=np.float64).reshape(view.count, 3)
+    array = np.frombuffer(memory, dtype=np.float64).reshape(count, 3)
     array.flags.writeable = False
     return array
 
@@ -129,7 +131,12 @@ class Mesh:
         self.hair_length, self.volume = info.hair_length, info.volume
         self.column_first = np.array((ctypes.c_int32 * (count + 1)).from_address(info.column_first))
         self.faces = np.array((ctypes.c_int32 * (4 * info.face_count)).from_address(info.faces)).reshape(-1, 4)
-        self.rest = _view(info.rest, self)
+        self._rest = info.rest.data, info.rest.count
+
+    @property
+    def rest(self):
+        """Vertices at rest in m, in the head's frame: a view of shape (vertices, 3)."""
+        return _view(self._rest, self)
 
     @property
     def roots(self):
@@ -186,12 +193,12 @@ class Hair:
     @property
     def positions(self):
         """Vertices in m, world: a view of shape (vertices, 3)."""
-        return _view(_c.View(self._positions[0], 24, self._positions[1]), self)
+        return _view(self._positions, self)
 
     @property
     def velocities(self):
         """Velocities of the vertices in m/s: a view of shape (vertices, 3)."""
-        return _view(_c.View(self._velocities[0], 24, self._velocities[1]), self)
+        return _view(self._velocities, self)
 
     def step(self, dt=1 / 60, head=None, roots=None, ellipsoids=(), pins=(), time=None, max_work=math.inf):
         """Advances by dt seconds. Roots, (columns, 3) in m, or the head's pose, are those of the step's end; pins are
