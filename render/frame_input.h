@@ -27,14 +27,20 @@ struct HairLook {
   float width_compensation =
       0.6f;                   // drawn radius = strand_radius * (strands_represented / strands)^this; 0: none, 1: all
   float least_pixels = 1.0f;  // strands thinner than this are drawn this wide and fade by coverage
-  float taper = 0.7f;         // tip radius over root radius; cut hair is blunt
-  float length_variation = 0.06f;  // strands end up to this share of their length early
+  float taper = 0.5f;         // tip radius over root radius; cut hair is blunt
+  float length_variation = 0.16f;  // strands end up to this share of their length early
   float offset = 0.0012f;          // m, random sideways wander that grows along the strand
-  float clump = 0.55f;             // 0..1 pull towards the clump's centre strand, opening and closing along the length
+  float clump = 0.5f;              // 0..1 pull towards the clump's centre strand, opening and closing along the length
   float clump_size = 0.012f;       // m, typical spacing of clumps on the scalp
-  float curl_radius = 0.0f, curl_turns = 3.0f;  // m; turns over the strand
-  float frizz = 0.0006f;                        // m, small-scale noise amplitude
-  float flyaways = 0.02f;                       // share of strands that leave their clump
+  float lock = 0.3f, wisp = 0.35f;  // 0..1 pull of clumps into locks, of hairs into wisps: 3.2 and 0.3 clump sizes
+  float drift = 0.002f;             // m, how far locks and clumps stray along their length
+  float curl_radius = 0.0f, curl_pitch = 0.035f;  // m; m of hair a turn
+  float wave_height = 0.0f, wave_length = 0.06f;  // m, from crest to trough and from crest to crest
+  float frizz = 0.0007f;                          // m, small-scale noise amplitude
+  float flyaways = 0.03f;                         // share of strands that leave their groups
+  float flyaway_lift = 0.006f;                    // m that these stand off the hair
+  float hairline = 0.01f;                         // m from the hairline over which hair becomes sparse
+  float baby_hairs = 0.6f;                        // 0..1 share of short fine hairs at the hairline
   // Colour: melanin (d'Eon et al. 2011 / pbrt's eumelanin and pheomelanin concentrations) or picked reflectance.
   float eumelanin = 1.1f, pheomelanin = 0.35f;
   bool use_color = false;

@@ -46,12 +46,13 @@ long uploadStyle(HairStyle& style, std::vector<float>& texels) {
     for (int vertex : face.first_vertex) texels.push_back(static_cast<float>(vertex));
     for (int column : style.layout.face_columns[i]) texels.push_back(static_cast<float>(column));
     texels.insert(texels.end(), {static_cast<float>(face.layers), static_cast<float>(first[i]),
-                                 static_cast<float>(first[i + 1]), face.area > 0 ? 1 / face.area : 0.0f});
+                                 static_cast<float>(first[i + 1]), style.layout.face_edge[i]});
   }
   for (const HairColumn& column : style.layout.columns) {
     append(texels, column.rest, static_cast<float>(column.shortest_bundle - 1));
-    append(texels, column.axis_u, 0);
-    append(texels, column.axis_v, 0);
+    append(texels, column.axis_u, column.outward.x());
+    append(texels, column.axis_v, column.outward.y());
+    texels.insert(texels.end(), {column.way.x(), column.way.y(), column.edge, 0});
   }
   for (std::size_t i = 0; i < style.layout.faces.size(); ++i) {
     texels.insert(texels.end(),
@@ -90,8 +91,10 @@ long uploadBlock(HairResources& hair) {
   shared::HairBlock block{};
   block.width = {look.strand_radius * std::pow(represented, look.width_compensation), look.taper,
                  representedWidth(look, hair.strands) / strands, look.least_pixels};
-  block.shape = {look.length_variation, look.offset, look.curl_radius, look.curl_turns};
+  block.shape = {look.length_variation, look.offset, look.curl_radius, look.curl_pitch};
   block.clumping = {look.clump, look.clump_size, look.frizz, look.flyaways};
+  block.groups = {look.lock, look.wisp, look.drift, look.flyaway_lift};
+  block.waves = {look.wave_height, look.wave_length, look.hairline, look.baby_hairs};
   block.lobe_width = {widths[0], widths[1], widths[2], look.cuticle_angle};
   block.gain = {0, std::clamp(look.diffuse, 0.0f, 1.0f), look.root_darkening, look.tint_variation};
   block.forward_albedo = asVec4(hair.scattering->forward_albedo);
@@ -155,7 +158,8 @@ constexpr float kSoftLightPixels = 110;
 }  // namespace
 
 float sidewaysReach(const HairLook& look) {
-  return 0.01f + 6 * look.offset + 1.5f * look.curl_radius + 2 * look.frizz + look.clump_size;
+  return 0.01f + 6 * look.offset + 2.5f * look.drift + 1.5f * look.curl_radius + 0.6f * look.wave_height +
+         3 * look.frizz + 2 * look.flyaway_lift + look.clump_size * (1 + 2 * look.lock);
 }
 
 int HairStyle::fullTableTexel() const {
@@ -279,11 +283,11 @@ long HairStore::uploadVertices(HairResources& hair, std::span<const float> posit
 }
 
 long HairStore::refresh(HairResources& hair, const HairInput& input, const DrawSkips& skips) {
-  const int segments = std::clamp(input.segments_per_layer, 1, 8), strands = std::clamp(input.strands, 0, 1 << 24);
+  const int asked = std::clamp(input.segments_per_layer, 1, 8), strands = std::clamp(input.strands, 0, 1 << 24);
   const bool fresh_layout = hair.style == nullptr || hair.style->layout_revision != input.layout_revision ||
                             (input.layout_id != 0 && hair.style->layout_id != input.layout_id);
   const bool fresh_positions = fresh_layout || hair.position_revision != input.position_revision;
-  const bool fresh_count = fresh_layout || hair.strands != strands || hair.segments != segments;
+  const bool fresh_count = fresh_layout || hair.strands != strands || hair.asked_segments != asked;
   const bool fresh_look = hair.scattering == nullptr || !(hair.look == input.look);
   const bool light_moved = hair.light_revision != light_revision_;
   if (!fresh_positions && !fresh_count && !fresh_look && !light_moved) return 0;
@@ -300,7 +304,8 @@ long HairStore::refresh(HairResources& hair, const HairInput& input, const DrawS
   if (!hair.drawable) return 0;
   ++hair.revision;
   hair.strands = strands;
-  hair.segments = segments;
+  hair.asked_segments = asked;
+  hair.segments = segmentsFor(hair.layout(), input.look, asked);
   if (fresh_look) {
     hair.look = input.look;
     hair.scattering = &scatteringOf(input.look, uploaded);

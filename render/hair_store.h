@@ -63,7 +63,7 @@ struct HairResources {
   float layer_length = 0;                   // m, the longest
   int soft_light_age = 0;                   // uploads since it was made
   Bounds bounds, around;                    // of the vertices; with room for all strands
-  int strands = -1, segments = 0;
+  int strands = -1, segments = 0, asked_segments = 0;  // segments: a layer, with those that curls need
   HairLook look;
   bool seen = false, drawable = false;  // drawable: has faces and finite positions
   std::uint64_t revision = 0;           // counts changes of anything that is drawn of it

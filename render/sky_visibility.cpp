@@ -47,31 +47,6 @@ float headDepth(const Vector3f& gap, float radius, const Vector3f& direction) {
 
 }  // namespace
 
-HeadBall fitHead(const HairLayout& layout, std::span<const float> positions) {
-  // |p|^2 = 2 c.p + (r^2 - |c|^2): linear in c and the bracket. Taken about the mean for conditioning.
-  HeadBall ball;
-  if (layout.columns.size() < 4) return ball;
-  Vector3f mean = Vector3f::Zero();
-  for (const HairColumn& column : layout.columns) mean += vertexAt(positions, column.first_vertex);
-  mean /= static_cast<float>(layout.columns.size());
-  Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
-  Eigen::Vector4d right = Eigen::Vector4d::Zero();
-  for (const HairColumn& column : layout.columns) {
-    const Eigen::Vector3d p = (vertexAt(positions, column.first_vertex) - mean).cast<double>();
-    const Eigen::Vector4d row(2 * p.x(), 2 * p.y(), 2 * p.z(), 1);
-    normal += row * row.transpose();
-    right += row * p.squaredNorm();
-  }
-  const Eigen::FullPivLU<Eigen::Matrix4d> factor(normal);
-  if (!factor.isInvertible()) return ball;
-  const Eigen::Vector4d solution = factor.solve(right);
-  const double squared = solution[3] + solution.head<3>().squaredNorm();
-  if (!(squared > 0.03 * 0.03) || squared > 0.3 * 0.3) return ball;
-  ball.center = mean + solution.head<3>().cast<float>();
-  ball.radius = static_cast<float>(std::sqrt(squared));
-  return ball;
-}
-
 Eigen::Isometry3f headFrame(const HairLayout& layout, std::span<const float> positions) {
   Eigen::Isometry3f frame = Eigen::Isometry3f::Identity();
   if (layout.columns.empty()) return frame;

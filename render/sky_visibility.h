@@ -15,14 +15,6 @@
 
 namespace render {
 
-struct HeadBall {
-  Eigen::Vector3f center = Eigen::Vector3f::Zero();
-  float radius = 0;  // m; 0: the roots do not lie on anything like a head
-};
-
-// Least-squares sphere through the roots.
-HeadBall fitHead(const HairLayout& layout, std::span<const float> positions);
-
 // The rigid motion of the roots since they were at rest: least squares (Kabsch 1976).
 Eigen::Isometry3f headFrame(const HairLayout& layout, std::span<const float> positions);
 

@@ -36,9 +36,14 @@ const int kVertexTexels = 3;  // position + sky visibility, du + depths along fi
 const float kDepthSteps = 128.0;
 const float kDeepest = 32.0;
 const float kBackReach = 0.012;  // m: light comes back from hair as far behind a strand
-const int kFaceTexels = 3;    // first vertices; columns; layers, first strand, end strand, 1 / area
+const int kFaceTexels = 3;    // first vertices; columns; layers, first strand, end strand, edge (see HairLayout)
 const int kTableTexels = 1;   // end strand, face, segments a layer (0: the hair's), first strand
-const int kColumnTexels = 3;  // rest position + last layer of the shortest bundle around, rest axis u, rest axis v
+const int kColumnTexels = 4;  // rest position + last layer of the shortest bundle around, rest axes u and v, each
+                              // with the part of the way to bare skin along it; way of hair (m a layer, m a layer^2)
+                              // and distance to the hairline (m)
+// Sizes of a lock and of a wisp over that of a clump.
+const float kLockSize = 3.2;
+const float kWispSize = 0.3;
 
 // Texture units.
 const int kUnitVertices = 0;
@@ -110,8 +115,10 @@ SHARED_BLOCK(1, HairBlock) {
   vec4 detail;    // strands of a rank below x are drawn, above y are not; width gain; segments a layer
   vec4 width;     // drawn radius at the root (m), tip over root, projected diameter of the hairs one strand stands for
                   // (m), least width (pixels)
-  vec4 shape;     // length variation, offset (m), curl radius (m), curl turns
+  vec4 shape;     // length variation, offset (m), curl radius (m), curl pitch (m a turn)
   vec4 clumping;  // clump, clump size (m), frizz (m), share of flyaways
+  vec4 groups;    // lock, wisp, drift of locks and clumps (m), lift of flyaways (m)
+  vec4 waves;     // wave height (m), wave length (m), width of the hairline (m), share of fine hairs there
   vec4 lobe_width;       // standard deviations (rad) of R, TT, TRT over the half angle; w: cuticle angle
   vec4 gain;             // unused, diffuse, root darkening, tint variation
   vec4 forward_albedo;   // mean forward scattering attenuation a_f (Zinke et al. 2008)

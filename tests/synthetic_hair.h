@@ -156,6 +156,14 @@ inline Body makeBody() {
   return body;
 }
 
+// Every variation off: strands are the hair mesh's own curves.
+inline render::HairLook plainLook() {
+  render::HairLook look;
+  look.length_variation = look.offset = look.clump = look.lock = look.wisp = look.drift = look.curl_radius =
+      look.wave_height = look.frizz = look.flyaways = look.hairline = 0;
+  return look;
+}
+
 inline render::HairInput hairInput(const Hair& hair, int strands) {
   render::HairInput input;
   input.id = 1;

@@ -176,8 +176,11 @@ std::string rowTitle(std::string_view name) {
 bool hasEffect(std::string_view name, const CharacterLook& look) {
   if (name == "color") return look.hair.use_color;
   if (name == "eumelanin" || name == "pheomelanin") return !look.hair.use_color;
-  if (name == "curl_turns") return look.hair.curl_radius > 0;
-  if (name == "clump_size") return look.hair.clump > 0;
+  if (name == "curl_pitch") return look.hair.curl_radius > 0;
+  if (name == "wave_length") return look.hair.wave_height > 0;
+  if (name == "clump_size") return look.hair.clump + look.hair.lock + look.hair.wisp + look.hair.drift > 0;
+  if (name == "flyaway_lift") return look.hair.flyaways > 0;
+  if (name == "baby_hairs") return look.hair.hairline > 0;
   return true;
 }
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "render/strands/hairline.h"
+
 namespace render {
 namespace {
 
@@ -64,6 +66,21 @@ Eigen::Quaternionf leastRotation(const Vector3f& from, const Vector3f& to) {
     turn.vec() = from.cross(to) * (1 / twice_w);
   }
   return turn;
+}
+
+// Two measures of a column make its way by layers: its length, and that of its first half.
+void measureWay(std::span<const float> positions, HairColumn& column) {
+  const int last = column.layers - 1;
+  float whole = 0, half = 0;
+  for (int layer = 0; layer < last; ++layer) {
+    const int v = column.first_vertex + layer;
+    const float step = (vertexAt(positions, v + 1) - vertexAt(positions, v)).norm();
+    half += step * std::clamp(0.5f * static_cast<float>(last) - static_cast<float>(layer), 0.0f, 1.0f);
+    whole += step;
+  }
+  half = std::clamp(half, 0.3f * whole, 0.7f * whole);  // else the way would turn round
+  const auto layers = static_cast<float>(last);
+  column.way = {(4 * half - whole) / layers, (2 * whole - 4 * half) / (layers * layers)};
 }
 
 void setTangentPlanes(HairLayout& layout, const Vector3f& up) {
@@ -130,10 +147,57 @@ HairLayout makeHairLayout(std::span<const HairFace> faces, std::span<const float
       column.shortest_bundle = added ? face.layers : std::min(column.shortest_bundle, face.layers);
     }
   }
+  for (HairColumn& column : layout.columns) {
+    measureWay(positions, column);
+    const float tip = column.way.x() + 2 * column.way.y() * static_cast<float>(column.layers - 1);
+    layout.layer_length = std::max({layout.layer_length, column.way.x(), tip});
+  }
   const Vector3f up = intoOwnFrame(layout);
   setTangentPlanes(layout, up);
   joinNeighbours(layout);
+  measureHairline(layout);
   return layout;
+}
+
+HeadBall fitHead(const HairLayout& layout, std::span<const float> positions) {
+  // |p|^2 = 2 c.p + (r^2 - |c|^2): linear in c and the bracket. Taken about the mean for conditioning.
+  HeadBall ball;
+  if (layout.columns.size() < 4) return ball;
+  Vector3f mean = Vector3f::Zero();
+  for (const HairColumn& column : layout.columns) mean += vertexAt(positions, column.first_vertex);
+  mean /= static_cast<float>(layout.columns.size());
+  Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d right = Eigen::Vector4d::Zero();
+  for (const HairColumn& column : layout.columns) {
+    const Eigen::Vector3d p = (vertexAt(positions, column.first_vertex) - mean).cast<double>();
+    const Eigen::Vector4d row(2 * p.x(), 2 * p.y(), 2 * p.z(), 1);
+    normal += row * row.transpose();
+    right += row * p.squaredNorm();
+  }
+  const Eigen::FullPivLU<Eigen::Matrix4d> factor(normal);
+  if (!factor.isInvertible()) return ball;
+  const Eigen::Vector4d solution = factor.solve(right);
+  const double squared = solution[3] + solution.head<3>().squaredNorm();
+  if (!(squared > 0.03 * 0.03) || squared > 0.3 * 0.3) return ball;
+  ball.center = mean + solution.head<3>().cast<float>();
+  ball.radius = static_cast<float>(std::sqrt(squared));
+  return ball;
+}
+
+Vector3f middleOfHead(const HairLayout& layout, std::span<const float> positions) {
+  const HeadBall ball = fitHead(layout, positions);
+  if (ball.radius > 0 || layout.vertex_count == 0) return ball.center;
+  const auto points = Eigen::Map<const Eigen::Matrix3Xf>(positions.data(), 3, layout.vertex_count);
+  return 0.5f * (points.rowwise().minCoeff() + points.rowwise().maxCoeff());
+}
+
+int segmentsFor(const HairLayout& layout, const HairLook& look, int asked) {
+  constexpr int kMost = 32;
+  float turns = 0;  // of the sharpest bends, in pieces a metre
+  if (look.curl_radius > 0) turns = 12 / (0.8f * std::max(look.curl_pitch, 1e-3f));
+  if (look.wave_height > 0) turns = std::max(turns, 8 / (0.85f * std::max(look.wave_length, 1e-3f)));
+  const int needed = static_cast<int>(std::min(std::ceil(turns * layout.layer_length), static_cast<float>(kMost)));
+  return std::max(std::clamp(asked, 1, 8), needed);
 }
 
 std::vector<int> dealStrands(const HairLayout& layout, int strands) {

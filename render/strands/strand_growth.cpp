@@ -18,6 +18,7 @@ using Eigen::Vector4f;
 
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr int kVertexTexels = 3;
+constexpr float kLockSize = 3.2f, kWispSize = 0.3f;  // as in shaders/shared.h
 
 Vector2f facePoint(uint face, uint index, uint key, uint seed) {
   const Vector2f shift(unitFloat(hash(face, seed)), unitFloat(hash(face + 0x51ed27u, seed)));
@@ -29,6 +30,16 @@ Vector2f facePoint(uint face, uint index, uint key, uint seed) {
   return {fract(at.x()), fract(at.y())};
 }
 
+// m of hair from the root to s layers, and its rate by s.
+Vector2f wayAt(const Strand& strand, float s) {
+  return {s * (strand.way.x() + strand.way.y() * s), strand.way.x() + 2.0f * strand.way.y() * s};
+}
+
+float layersAt(const Strand& strand, float metres) {
+  const float root = std::sqrt(std::max(strand.way.x() * strand.way.x() + 4.0f * strand.way.y() * metres, 0.0f));
+  return 2.0f * metres / std::max(strand.way.x() + root, 1e-6f);
+}
+
 float clumpClosing(float t, uint clump_key) {
   const float reach = 0.3f + 0.4f * randomOf(clump_key, 6u);
   const float opens_again = 0.35f + 0.4f * randomOf(clump_key, 7u);
@@ -38,6 +49,26 @@ float clumpClosing(float t, uint clump_key) {
 Vector3f unitOr(const Vector3f& v, const Vector3f& otherwise) {
   const float squared = v.squaredNorm();
   return squared > 1e-16f ? (v * (1.0f / std::sqrt(squared))).eval() : otherwise;
+}
+
+Vector2f opening(const Vector2f& way, float reach) {
+  const float square = way.x() * way.x(), far = reach * reach, sum = square + far;
+  return {square / sum, 2.0f * way.x() * far / (sum * sum) * way.y()};
+}
+
+void addSwing(Vector4f& bend, const Vector2f& away, const Vector2f& open, const Vector2f& angle) {
+  const float sine = std::sin(angle.x());
+  bend.head<2>() += open.x() * sine * away;
+  bend.tail<2>() += (open.y() * sine + open.x() * std::cos(angle.x()) * angle.y()) * away;
+}
+
+Vector2f onCircle(float turn) {
+  return {std::cos(2.0f * kPi * turn), std::sin(2.0f * kPi * turn)};
+}
+
+Vector2f swingAngle(const Vector2f& way, float wave_length, float phase) {
+  const float rate = 2.0f * kPi / wave_length;
+  return {rate * way.x() + 2.0f * kPi * phase, rate * way.y()};
 }
 
 int lastPoint(const Strand& strand) {
@@ -53,7 +84,7 @@ int layerOf(const Strand& strand, float s) {
 StrandGrowth::StrandGrowth(std::span<const HairFace> faces, std::span<const float> rest, int strands,
                            int segments_per_layer, const HairLook& look)
     : layout_(makeHairLayout(faces, rest)),
-      segments_(static_cast<float>(std::clamp(segments_per_layer, 1, 8))),
+      asked_segments_(segments_per_layer),
       texels_(static_cast<std::size_t>(kVertexTexels) * layout_.vertex_count, Vector4f::Zero()) {
   if (!layout_.faces.empty()) first_strand_ = dealStrands(layout_, std::clamp(strands, 0, 1 << 24));
   setLook(look);
@@ -62,6 +93,7 @@ StrandGrowth::StrandGrowth(std::span<const HairFace> faces, std::span<const floa
 
 void StrandGrowth::setLook(const HairLook& look) {
   look_ = look;
+  segments_ = static_cast<float>(segmentsFor(layout_, look, asked_segments_));
   const auto strands = static_cast<float>(std::max(strandCount(), 1));
   const float represented = std::max(look.strands_represented / strands, 1.0f);
   root_radius_ = look.strand_radius * std::pow(represented, look.width_compensation);
@@ -71,6 +103,7 @@ bool StrandGrowth::setPositions(std::span<const float> positions) {
   if (positions.size() != 3 * static_cast<std::size_t>(layout_.vertex_count)) return false;
   if (!std::all_of(positions.begin(), positions.end(), [](float v) { return std::isfinite(v); })) return false;
   inLayerGradients(layout_, positions, gradients_);
+  center_ = middleOfHead(layout_, positions);
   for (int v = 0; v < layout_.vertex_count; ++v) {
     texels_[kVertexTexels * v] = {positions[3 * v], positions[3 * v + 1], positions[3 * v + 2], 0};
     texels_[kVertexTexels * v + 1] << gradients_[v].col(0), 0;
@@ -121,34 +154,83 @@ void StrandGrowth::weighTriangle(Vector2f p, const std::array<int, 4>& columns, 
   }
 }
 
-void StrandGrowth::joinClump(const std::array<int, 4>& columns, int corners, Strand& strand) const {
-  Vector3f root = Vector3f::Zero();
-  for (int k = 0; k < corners; ++k) root += strand.blend[k] * layout_.columns[columns[k]].rest;
-  const float size = std::max(look_.clump_size, 1e-4f);
+StrandGrowth::Root StrandGrowth::rootOf(const std::array<int, 4>& columns, int corners, Strand& strand) const {
+  Root root;
+  for (int k = 0; k < corners; ++k) {
+    const HairColumn& column = layout_.columns[columns[k]];
+    root.rest += strand.blend[k] * column.rest;
+    root.axis_u += strand.blend[k] * column.axis_u;
+    root.axis_v += strand.blend[k] * column.axis_v;
+    root.cut += strand.blend[k] * static_cast<float>(column.shortest_bundle - 1);
+    strand.way += strand.blend[k] * column.way;
+    root.edge += strand.blend[k] * column.edge;
+    root.outward += strand.blend[k] * column.outward;
+  }
+  return root;
+}
+
+StrandGrowth::Group StrandGrowth::groupOf(const Vector3f& root, float size, uint level) const {
   const Vector3f cell = (root / size).array() - 0.5f;
   const Eigen::Vector3i base = cell.array().floor().cast<int>();
-  Vector3f nearest = Vector3f::Zero();
-  float nearest_squared = 1e30f;
+  Group group{Vector3f::Zero(), 0};
+  float nearest = 1e30f;
   for (int i = 0; i < 8; ++i) {
     const Eigen::Vector3i at = base + Eigen::Vector3i(i & 1, (i >> 1) & 1, i >> 2);
     const uint key = hash(static_cast<uint>(at.x()) * 73856093u ^ static_cast<uint>(at.y()) * 19349663u ^
                               static_cast<uint>(at.z()) * 83492791u,
-                          look_.seed);
-    const Vector3f jitter(randomOf(key, 1u), randomOf(key, 2u), randomOf(key, 3u));
+                          look_.seed + level);
+    const Vector3f jitter = Vector3f(static_cast<float>(key & 1023u), static_cast<float>((key >> 10u) & 1023u),
+                                     static_cast<float>((key >> 20u) & 1023u)) *
+                            (1.0f / 1024.0f);
     const Vector3f gap = at.cast<float>() + (0.8f * (jitter.array() - 0.5f)).matrix() - cell;
     const float squared = gap.squaredNorm();
-    if (squared < nearest_squared) {
-      nearest_squared = squared;
-      nearest = gap;
-      strand.clump_key = key;
+    if (squared < nearest) {
+      nearest = squared;
+      group = {gap, key};
     }
   }
-  const Vector3f pull =
-      nearest * size * look_.clump * (1.0f - strand.loose) * (0.75f + 0.25f * randomOf(strand.key, 5u));
-  for (int k = 0; k < corners; ++k) {
-    strand.pull_u[k] = strand.blend[k] * pull.dot(layout_.columns[columns[k]].axis_u);
-    strand.pull_v[k] = strand.blend[k] * pull.dot(layout_.columns[columns[k]].axis_v);
+  return group;
+}
+
+void StrandGrowth::joinGroups(const Root& root, Strand& strand) const {
+  const auto inPlane = [&](const Vector3f& gap) { return Vector2f(gap.dot(root.axis_u), gap.dot(root.axis_v)); };
+  const float size = std::max(look_.clump_size, 1e-4f);
+  const Group clump = groupOf(root.rest, size, 0u), lock = groupOf(root.rest, kLockSize * size, 1u),
+              wisp = groupOf(root.rest, kWispSize * size, 2u);
+  strand.clump_key = clump.key;
+  strand.lock_key = lock.key;
+  strand.clump = size * inPlane(clump.gap);
+  strand.lock = kLockSize * size * inPlane(lock.gap);
+  strand.wisp = kWispSize * size * inPlane(wisp.gap);
+  const float frizzy = std::min(look_.frizz * 200.0f, 0.8f) * randomOf(strand.key, 24u);
+  strand.hold = (1.0f - strand.loose) * (1.0f - frizzy) * (0.75f + 0.25f * randomOf(strand.key, 5u));
+}
+
+void StrandGrowth::thinHairline(const Root& root, Strand& strand) const {
+  if (look_.hairline <= 0.0f) return;
+  const float ragged = 0.6f * (randomOf(strand.clump_key, 23u) - 0.5f);
+  const float inside = std::clamp(root.edge / look_.hairline + ragged, 0.0f, 1.0f);
+  if (randomOf(strand.key, 18u) > 0.3f + 0.7f * smoothstep(0.0f, 0.8f, inside)) strand.gain = 0.0f;
+  strand.rim = 1.0f - inside;
+  strand.fine = randomOf(strand.key, 19u) < look_.baby_hairs * strand.rim ? 1.0f : 0.0f;
+  strand.astray = strand.fine * (0.2f + 0.9f * randomOf(strand.key, 6u)) * root.outward;
+}
+
+void StrandGrowth::cutStrand(const Root& root, Strand& strand) const {
+  const float own = randomOf(strand.key, 4u), apart = strand.clump.norm() / (0.6f * std::max(look_.clump_size, 1e-4f));
+  const float early = 0.35f * own * own + 0.25f * randomOf(strand.clump_key, 4u) +
+                      0.2f * randomOf(strand.lock_key, 4u) + 0.2f * std::min(apart * apart, 1.0f);
+  strand.end = root.cut * (1.0f - look_.length_variation * early);
+  const Vector2f chance(randomOf(strand.key, 22u), randomOf(strand.key, 25u));
+  if (strand.fine > 0.0f) {
+    strand.end = std::min(strand.end, layersAt(strand, 0.008f + 0.03f * chance.x() * chance.x()));
+    strand.gain *= 0.7f;
+    strand.hold = 0.0f;
+  } else if (strand.loose > 0.0f) {
+    if (chance.x() < 0.4f) strand.end = std::min(strand.end, layersAt(strand, 0.02f + 0.12f * chance.y()));
+    strand.gain *= 0.7f;
   }
+  strand.metres = wayAt(strand, strand.end).x();
 }
 
 Strand StrandGrowth::strand(int number) const {
@@ -175,25 +257,35 @@ Strand StrandGrowth::strand(int number) const {
     weighQuad(strand.root, columns, strand);
   else
     weighTriangle(strand.root, columns, strand);
-  joinClump(columns, corners, strand);
-  const float early = mix(randomOf(strand.key, 4u), randomOf(strand.clump_key, 4u), 0.2f * look_.clump);
-  float cut = 0;
-  for (int k = 0; k < corners; ++k)
-    cut += strand.blend[k] * static_cast<float>(layout_.columns[columns[k]].shortest_bundle - 1);
-  strand.end = cut * (1.0f - look_.length_variation * early * early);
+  Root root = rootOf(columns, corners, strand);
+  const Vector2f& p = strand.root;
+  root.edge += layout_.face_edge[low] * (corners == 4 ? 16.0f * p.x() * p.y() * (1.0f - p.x()) * (1.0f - p.y())
+                                                      : 27.0f * strand.blend[0] * strand.blend[1] * strand.blend[2]);
+  joinGroups(root, strand);
+  thinHairline(root, strand);
+  cutStrand(root, strand);
   return strand;
 }
 
+Vector2f StrandGrowth::groupPull(const Strand& strand, float layer) const {
+  if (strand.fine > 0.0f) return wayAt(strand, layer).x() * strand.astray;
+  const float t = layer / static_cast<float>(strand.layers - 1);
+  Vector2f pull = strand.hold * look_.wisp * smoothstep(0.0f, 0.25f, t) * strand.wisp;
+  pull += strand.hold * look_.clump * clumpClosing(t, strand.clump_key) * (strand.clump - pull);
+  pull += strand.hold * look_.lock * smoothstep(0.1f, 0.8f, t) * (strand.lock - pull);
+  return pull;
+}
+
 StrandGrowth::LayerPoint StrandGrowth::layerPoint(const Strand& strand, int layer) const {
-  LayerPoint point{Vector4f::Zero(), Vector4f::Zero()};
-  const float closing =
-      clumpClosing(static_cast<float>(layer) / static_cast<float>(strand.layers - 1), strand.clump_key);
+  LayerPoint point{Vector4f::Zero(), Vector4f::Zero(), Vector4f::Zero()};
   for (int k = 0; k < 4; ++k) {
     const Vector4f* texels = &texels_[static_cast<std::size_t>(kVertexTexels) * (strand.first[k] + layer)];
-    point.position += strand.weight[k] * texels[0] + (strand.along_u[k] + closing * strand.pull_u[k]) * texels[1] +
-                      (strand.along_v[k] + closing * strand.pull_v[k]) * texels[2];
+    point.position += strand.weight[k] * texels[0] + strand.along_u[k] * texels[1] + strand.along_v[k] * texels[2];
     point.axis_u += strand.blend[k] * texels[1];
+    point.axis_v += strand.blend[k] * texels[2];
   }
+  const Vector2f pull = groupPull(strand, static_cast<float>(layer));
+  point.position += pull.x() * point.axis_u + pull.y() * point.axis_v;
   return point;
 }
 
@@ -211,33 +303,72 @@ StrandGrowth::LayerWindow StrandGrowth::layerWindow(const Strand& strand, int la
   return window;
 }
 
+void StrandGrowth::addWander(const Strand& strand, float s, Vector4f& bend) const {
+  const float span =
+      strand.loose + strand.fine > 0.0f ? std::max(strand.end, 1e-3f) : static_cast<float>(strand.layers - 1);
+  const float t = s / span;
+  const float reach = look_.offset * (1.0f + 5.0f * strand.loose + 3.0f * strand.rim) + 0.3f * strand.fine * strand.metres;
+  const Vector2f away = reach * std::sqrt(randomOf(strand.key, 9u)) * onCircle(randomOf(strand.key, 8u));
+  const Vector2f grow(t * (1.6f - 0.6f * t), (1.6f - 1.2f * t) / span);
+  const float turns = 0.7f + 0.8f * randomOf(strand.key, 10u);
+  bend.head<2>() += 0.6f * grow.x() * away;
+  bend.tail<2>() += 0.6f * grow.y() * away;
+  addSwing(bend, 0.4f * away, grow, 2.0f * kPi * Vector2f(turns * t + randomOf(strand.key, 11u), turns / span));
+}
+
+void StrandGrowth::addDrift(const Strand& strand, const Vector2f& way, Vector4f& bend) const {
+  const float reach = look_.drift * strand.hold;
+  addSwing(bend, 1.5f * reach * onCircle(randomOf(strand.lock_key, 10u)), opening(way, 0.08f),
+           swingAngle(way, 0.12f + 0.13f * randomOf(strand.lock_key, 11u), randomOf(strand.lock_key, 12u)));
+  addSwing(bend, reach * onCircle(randomOf(strand.clump_key, 10u)), opening(way, 0.05f),
+           swingAngle(way, 0.06f + 0.07f * randomOf(strand.clump_key, 11u), randomOf(strand.clump_key, 12u)));
+}
+
+void StrandGrowth::addCurl(const Strand& strand, const Vector2f& way, Vector4f& bend) const {
+  const float pitch = std::max(look_.curl_pitch, 1e-3f) * (0.8f + 0.4f * randomOf(strand.clump_key, 8u));
+  const float hand = randomOf(strand.clump_key, 13u) < 0.5f ? -1.0f : 1.0f;
+  const Vector2f angle =
+      swingAngle(way, pitch, randomOf(strand.clump_key, 9u) + 0.15f * (randomOf(strand.key, 12u) - 0.5f));
+  const Vector2f radius = look_.curl_radius *
+                          (0.7f + 0.4f * randomOf(strand.clump_key, 14u) + 0.3f * randomOf(strand.key, 13u)) *
+                          opening(way, 0.025f);
+  const float c = std::cos(angle.x()), d = hand * std::sin(angle.x());
+  bend += Vector4f(radius.x() * c, radius.x() * d, radius.y() * c - radius.x() * d * hand * angle.y(),
+                   radius.y() * d + radius.x() * c * hand * angle.y());
+}
+
+void StrandGrowth::addWave(const Strand& strand, const Vector2f& way, Vector4f& bend) const {
+  const float wave_length = std::max(look_.wave_length, 1e-3f) * (0.85f + 0.3f * randomOf(strand.lock_key, 14u));
+  const float phase = 0.6f * randomOf(strand.lock_key, 15u) + 0.12f * (randomOf(strand.key, 26u) - 0.5f);
+  const float height = look_.wave_height * (0.8f + 0.4f * randomOf(strand.key, 27u));
+  addSwing(bend, 0.5f * height * onCircle(randomOf(strand.lock_key, 16u)), opening(way, 0.035f),
+           swingAngle(way, wave_length, phase));
+}
+
+void StrandGrowth::addFrizz(const Strand& strand, const Vector2f& way, Vector4f& bend) const {
+  const float own = randomOf(strand.key, 28u), reach = look_.frizz * (0.3f + 1.7f * own * own);
+  const Vector2f open = opening(way, 0.03f);
+  for (uint axis = 0; axis < 2; ++axis)
+    addSwing(bend, axis == 0 ? Vector2f(reach, 0.0f) : Vector2f(0.0f, reach), open,
+             swingAngle(way, 0.025f + 0.05f * randomOf(strand.key, 14u + axis), randomOf(strand.key, 16u + axis)));
+}
+
 Vector4f StrandGrowth::sideways(const Strand& strand, float s) const {
-  const float per_layer = 1.0f / static_cast<float>(strand.layers - 1), t = s * per_layer;
-  const float grow = t * (1.6f - 0.6f * t), growth = 1.6f - 1.2f * t;
-  const float angle = 2.0f * kPi * randomOf(strand.key, 8u);
-  const float reach = std::sqrt(randomOf(strand.key, 9u)) * look_.offset * (1.0f + 5.0f * strand.loose);
-  const Vector2f away = reach * Vector2f(std::cos(angle), std::sin(angle));
-  const float bend_rate = 2.0f * kPi * (0.7f + 0.8f * randomOf(strand.key, 10u));
-  const float bend = 2.0f * kPi * (t * (0.7f + 0.8f * randomOf(strand.key, 10u)) + randomOf(strand.key, 11u));
-  Vector2f offset = away * grow * (0.6f + 0.4f * std::sin(bend));
-  Vector2f rate = away * (growth * (0.6f + 0.4f * std::sin(bend)) + grow * 0.4f * std::cos(bend) * bend_rate);
+  const Vector2f way = wayAt(strand, s);
+  Vector4f bend = Vector4f::Zero();
+  addWander(strand, s, bend);
+  if (look_.drift > 0.0f) addDrift(strand, way, bend);
+  if (look_.curl_radius > 0.0f) addCurl(strand, way, bend);
+  if (look_.wave_height > 0.0f) addWave(strand, way, bend);
+  if (look_.frizz > 0.0f) addFrizz(strand, way, bend);
+  return bend;
+}
 
-  const float turn_rate = 2.0f * kPi * look_.curl_turns * (0.85f + 0.3f * randomOf(strand.clump_key, 8u));
-  const float turn =
-      turn_rate * t + 2.0f * kPi * randomOf(strand.clump_key, 9u) + 0.8f * (randomOf(strand.key, 12u) - 0.5f);
-  const float radius = look_.curl_radius * (0.8f + 0.4f * randomOf(strand.key, 13u));
-  const Vector2f round(std::cos(turn), std::sin(turn)), round_rate = Vector2f(-round.y(), round.x()) * turn_rate;
-  const float opening = smoothstep(0.0f, 0.35f, t), x = std::clamp(t / 0.35f, 0.0f, 1.0f);
-  offset += radius * opening * round;
-  rate += radius * (opening * round_rate + 6.0f * x * (1.0f - x) / 0.35f * round);
-
-  for (int axis = 0; axis < 2; ++axis) {
-    const float wave_rate = 2.0f * kPi * (2.5f + 4.0f * randomOf(strand.key, 14u + static_cast<uint>(axis)));
-    const float wave = wave_rate * t + 2.0f * kPi * randomOf(strand.key, 16u + static_cast<uint>(axis));
-    offset[axis] += look_.frizz * grow * std::sin(wave);
-    rate[axis] += look_.frizz * (growth * std::sin(wave) + grow * std::cos(wave) * wave_rate);
-  }
-  return {offset.x(), offset.y(), rate.x() * per_layer, rate.y() * per_layer};
+Vector2f StrandGrowth::lifted(const Strand& strand, float s) const {
+  const float chance = randomOf(strand.key, 29u);
+  const float lift = strand.loose * look_.flyaway_lift * (0.2f + 1.8f * chance * chance) +
+                     0.35f * strand.fine * chance * strand.metres;
+  return lift * opening(wayAt(strand, s), 0.3f * std::min(strand.metres, 0.15f) + 1e-4f);
 }
 
 CurvePoint StrandGrowth::curvePoint(const Strand& strand, const LayerWindow& window, float s, float fraction) const {
@@ -254,7 +385,15 @@ CurvePoint StrandGrowth::curvePoint(const Strand& strand, const LayerWindow& win
   const Vector4f bend = sideways(strand, s);
   CurvePoint point;
   point.position = base + aside * bend.x() + across * bend.y();
-  point.tangent = unitOr(slope + aside * bend.z() + across * bend.w(), axis);
+  Vector3f along = slope + aside * bend.z() + across * bend.w();
+  if (strand.loose + strand.fine > 0.0f) {
+    Vector3f outward = base - center_;
+    outward = unitOr(outward - axis * axis.dot(outward), Vector3f::Zero());
+    const Vector2f lift = lifted(strand, s);
+    point.position += lift.x() * outward;
+    along += lift.y() * outward;
+  }
+  point.tangent = unitOr(along, axis);
   point.along = strand.end > 0.0f ? s / strand.end : 0.0f;
   return point;
 }

@@ -28,12 +28,19 @@ struct Strand {
   int layers = 0;
   std::array<float, 4> weight{};                   // of positions
   std::array<float, 4> along_u{}, along_v{};       // of gradients du, dv
-  std::array<float, 4> pull_u{}, pull_v{};         // what the clump adds to them at full strength
   std::array<float, 4> blend{};                    // linear weights: frames
-  float end = 0;                                   // curve parameter of the tip, in layers
-  std::uint32_t key = 0, clump_key = 0;            // hash keys of the strand and of its clump
-  float loose = 0;                                 // 1 for a flyaway, else 0
-  float segments = 1;                              // a layer
+  // m in the rest scalp's plane: from the root to the middles of its groups.
+  Eigen::Vector2f wisp = Eigen::Vector2f::Zero(), clump = Eigen::Vector2f::Zero(), lock = Eigen::Vector2f::Zero();
+  Eigen::Vector2f way = Eigen::Vector2f::Zero();       // m of hair from the root to s layers at rest: s (x + y s)
+  float end = 0;                                       // curve parameter of the tip, in layers
+  float metres = 0;                                    // of hair to the tip
+  std::uint32_t key = 0, clump_key = 0, lock_key = 0;  // hash keys of the strand and of its groups
+  float loose = 0;                                     // 1 for a stray hair, else 0
+  float fine = 0;                                      // 1 for a short fine hair of the hairline, else 0
+  float rim = 0;                                       // 1 at the hairline .. 0 well inside
+  Eigen::Vector2f astray = Eigen::Vector2f::Zero();    // m a m of hair: how a fine hair leaves the others
+  float hold = 0;                                      // 0..1: how far it goes along with its groups
+  float segments = 1;                                  // a layer
   float gain = 1;                                  // of width: how many strands this one stands for; 0: not grown
   int face = 0;                                    // of the layout
   Eigen::Vector2f root = Eigen::Vector2f::Zero();  // in the unit square of the face, corners 0, 1, 2, 3 around it
@@ -79,7 +86,17 @@ class StrandGrowth {
 
  private:
   struct LayerPoint {
-    Eigen::Vector4f position, axis_u;  // [3]: 0
+    Eigen::Vector4f position, axis_u, axis_v;  // [3]: 0
+  };
+  // What a strand's root is at rest, and a group of hairs; see the shader.
+  struct Root {
+    Eigen::Vector3f rest = Eigen::Vector3f::Zero(), axis_u = rest, axis_v = rest;
+    float cut = 0, edge = 0;
+    Eigen::Vector2f outward = Eigen::Vector2f::Zero();
+  };
+  struct Group {
+    Eigen::Vector3f gap;
+    std::uint32_t key;
   };
   // The layers around a segment: `before` and `after` are mirrored where the strand has none.
   struct LayerWindow {
@@ -91,13 +108,24 @@ class StrandGrowth {
   Eigen::Vector2f planeOffset(int from, int to) const;
   void weighQuad(const Eigen::Vector2f& p, const std::array<int, 4>& columns, Strand& strand) const;
   void weighTriangle(Eigen::Vector2f p, const std::array<int, 4>& columns, Strand& strand) const;
-  void joinClump(const std::array<int, 4>& columns, int corners, Strand& strand) const;
+  Root rootOf(const std::array<int, 4>& columns, int corners, Strand& strand) const;
+  Group groupOf(const Eigen::Vector3f& root, float size, std::uint32_t level) const;
+  void joinGroups(const Root& root, Strand& strand) const;
+  void thinHairline(const Root& root, Strand& strand) const;
+  void cutStrand(const Root& root, Strand& strand) const;
+  Eigen::Vector2f groupPull(const Strand& strand, float layer) const;
   LayerPoint layerPoint(const Strand& strand, int layer) const;
   Eigen::Vector4f layerAfter(const Strand& strand, int layer, const Eigen::Vector4f& last,
                              const Eigen::Vector4f& here) const;
   LayerWindow layerWindow(const Strand& strand, int layer) const;
   void moveWindow(const Strand& strand, int wanted, int& layer, LayerWindow& window) const;
+  void addWander(const Strand& strand, float s, Eigen::Vector4f& bend) const;
+  void addDrift(const Strand& strand, const Eigen::Vector2f& way, Eigen::Vector4f& bend) const;
+  void addCurl(const Strand& strand, const Eigen::Vector2f& way, Eigen::Vector4f& bend) const;
+  void addWave(const Strand& strand, const Eigen::Vector2f& way, Eigen::Vector4f& bend) const;
+  void addFrizz(const Strand& strand, const Eigen::Vector2f& way, Eigen::Vector4f& bend) const;
   Eigen::Vector4f sideways(const Strand& strand, float s) const;
+  Eigen::Vector2f lifted(const Strand& strand, float s) const;
   CurvePoint curvePoint(const Strand& strand, const LayerWindow& window, float s, float fraction) const;
   template <class Parameter>
   void growAt(const Strand& strand, std::span<CurvePoint> points, const Parameter& parameter) const;
@@ -106,7 +134,9 @@ class StrandGrowth {
   std::vector<int> first_strand_;  // see dealStrands
   HairLook look_;
   StrandFade fade_;
-  float segments_;         // a layer
+  int asked_segments_;     // a layer
+  float segments_ = 1;     // a layer, with those that curls need
+  Eigen::Vector3f center_ = Eigen::Vector3f::Zero();  // m: the middle of the head
   float root_radius_ = 0;  // m, as drawn
   std::vector<Eigen::Matrix<float, 3, 2>> gradients_;
   std::vector<Eigen::Vector4f> texels_;  // 3 a vertex: position, du, dv, as on the GPU

@@ -24,15 +24,23 @@ struct Strand {
   vec4 weight;   // of positions
   vec4 along_u;  // of gradients du
   vec4 along_v;  // of gradients dv
-  vec4 pull_u;   // what the clump adds to along_u, along_v at full strength
-  vec4 pull_v;
   vec4 blend;      // linear weights: frames and light
+  vec2 wisp;       // m in the rest scalp's plane: from the root to the middle of its wisp,
+  vec2 clump;      // of its clump,
+  vec2 lock;       // of its lock
+  vec2 way;        // m of hair from the root to s layers at rest: s (x + y s)
   float end;       // curve parameter of the tip, in layers
-  uint key;        // hash key of the strand
-  uint clump_key;  // hash key of its clump
-  float loose;     // 1 for a flyaway, else 0
+  float metres;    // of hair to the tip
+  uint key;        // hash keys of the strand,
+  uint clump_key;  // of its clump,
+  uint lock_key;   // of its lock
+  float loose;     // 1 for a stray hair, else 0
+  float fine;      // 1 for a short fine hair of the hairline, else 0
+  float rim;       // 1 at the hairline .. 0 well inside
+  vec2 astray;     // m a m of hair, in the rest scalp's plane: how a fine hair leaves the others
+  float hold;      // 0..1: how far it goes along with its groups
   float segments;  // a layer
-  float gain;      // of width and opacity: how many strands this one stands for
+  float gain;      // of width and opacity: how many strands this one stands for; 0: left out
 };
 
 struct LayerPoint {
@@ -98,34 +106,118 @@ void weighTriangle(vec2 p, ivec4 columns, int columns_at, inout Strand strand) {
   }
 }
 
-// The clump is the nearest of the jittered points of a lattice in rest scalp space, so clumps cross faces freely.
-void joinClump(ivec4 columns, int corners, int columns_at, inout Strand strand) {
-  vec3 root = vec3(0.0);
-  for (int k = 0; k < corners; ++k)
-    root += strand.blend[k] * texelFetch(layout_texels, columns_at + columns[k] * kColumnTexels).xyz;
-  float size = max(clumping.y, 1e-4);
+// What a strand's root is at rest: the blend of its columns.
+struct Root {
+  vec3 rest, axis_u, axis_v;  // m, unit
+  float cut;                  // layers at which the bundles around are cut
+  float edge;                 // m to the hairline
+  vec2 outward;               // in the scalp's plane, towards bare skin
+};
+
+Root rootOf(ivec4 columns, int corners, int columns_at, inout Strand strand) {
+  Root root = Root(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0, vec2(0.0));
+  strand.way = vec2(0.0);
+  for (int k = 0; k < corners; ++k) {
+    int at = columns_at + columns[k] * kColumnTexels;
+    vec4 place = texelFetch(layout_texels, at);
+    vec4 axis_u = texelFetch(layout_texels, at + 1), axis_v = texelFetch(layout_texels, at + 2);
+    vec3 measures = texelFetch(layout_texels, at + 3).xyz;
+    root.rest += strand.blend[k] * place.xyz;
+    root.axis_u += strand.blend[k] * axis_u.xyz;
+    root.axis_v += strand.blend[k] * axis_v.xyz;
+    root.outward += strand.blend[k] * vec2(axis_u.w, axis_v.w);
+    root.cut += strand.blend[k] * place.w;
+    strand.way += strand.blend[k] * measures.xy;
+    root.edge += strand.blend[k] * measures.z;
+  }
+  return root;
+}
+
+// m of hair from the root to s layers, and its rate by s.
+vec2 wayAt(in Strand strand, float s) {
+  return vec2(s * (strand.way.x + strand.way.y * s), strand.way.x + 2.0 * strand.way.y * s);
+}
+
+// Layers after m of hair.
+float layersAt(in Strand strand, float metres) {
+  float root = sqrt(max(strand.way.x * strand.way.x + 4.0 * strand.way.y * metres, 0.0));
+  return 2.0 * metres / max(strand.way.x + root, 1e-6);
+}
+
+// A group of hairs that keep together.
+struct Group {
+  vec3 gap;  // from the root to its middle, in sizes of the group
+  uint key;
+};
+
+// The nearest of the jittered points of a lattice in rest scalp space, so groups cross faces freely.
+Group groupOf(vec3 root, float size, uint level) {
   vec3 cell = root / size - 0.5;
   ivec3 base = ivec3(floor(cell));
-  vec3 nearest = vec3(0.0);
-  float nearest_squared = 1e30;
+  Group group = Group(vec3(0.0), 0u);
+  float nearest = 1e30;
   for (int i = 0; i < 8; ++i) {
     ivec3 at = base + ivec3(i & 1, (i >> 1) & 1, i >> 2);
-    uint key = hash(uint(at.x) * 73856093u ^ uint(at.y) * 19349663u ^ uint(at.z) * 83492791u, uint(counts.w));
-    vec3 gap = vec3(at) + 0.8 * (vec3(randomOf(key, 1u), randomOf(key, 2u), randomOf(key, 3u)) - 0.5) - cell;
+    uint key = hash(uint(at.x) * 73856093u ^ uint(at.y) * 19349663u ^ uint(at.z) * 83492791u, uint(counts.w) + level);
+    vec3 jitter = vec3(key & 1023u, (key >> 10u) & 1023u, (key >> 20u) & 1023u) * (1.0 / 1024.0);
+    vec3 gap = vec3(at) + 0.8 * (jitter - 0.5) - cell;
     float squared = dot(gap, gap);
-    if (squared < nearest_squared) {
-      nearest_squared = squared;
-      nearest = gap;
-      strand.clump_key = key;
+    if (squared < nearest) {
+      nearest = squared;
+      group.gap = gap;
+      group.key = key;
     }
   }
-  vec3 pull = nearest * size * clumping.x * (1.0 - strand.loose) * (0.75 + 0.25 * randomOf(strand.key, 5u));
-  for (int k = 0; k < corners; ++k) {
-    strand.pull_u[k] =
-        strand.blend[k] * dot(pull, texelFetch(layout_texels, columns_at + columns[k] * kColumnTexels + 1).xyz);
-    strand.pull_v[k] =
-        strand.blend[k] * dot(pull, texelFetch(layout_texels, columns_at + columns[k] * kColumnTexels + 2).xyz);
+  return group;
+}
+
+vec2 inPlane(in Root root, vec3 gap) { return vec2(dot(gap, root.axis_u), dot(gap, root.axis_v)); }
+
+// Hairs keep together in wisps, wisps in clumps, clumps in locks.
+void joinGroups(in Root root, inout Strand strand) {
+  float size = max(clumping.y, 1e-4);
+  Group clump = groupOf(root.rest, size, 0u), lock = groupOf(root.rest, kLockSize * size, 1u),
+        wisp = groupOf(root.rest, kWispSize * size, 2u);
+  strand.clump_key = clump.key;
+  strand.lock_key = lock.key;
+  strand.clump = size * inPlane(root, clump.gap);
+  strand.lock = kLockSize * size * inPlane(root, lock.gap);
+  strand.wisp = kWispSize * size * inPlane(root, wisp.gap);
+  // Frizzy hairs leave their groups.
+  float frizzy = min(clumping.z * 200.0, 0.8) * randomOf(strand.key, 24u);
+  strand.hold = (1.0 - strand.loose) * (1.0 - frizzy) * (0.75 + 0.25 * randomOf(strand.key, 5u));
+}
+
+// Towards the hairline fewer hairs grow, and more of them are short and fine.
+void thinHairline(in Root root, inout Strand strand) {
+  strand.rim = 0.0;
+  strand.astray = vec2(0.0);
+  if (waves.z <= 0.0) return;
+  float ragged = 0.6 * (randomOf(strand.clump_key, 23u) - 0.5);  // a hairline is no smooth curve
+  float inside = clamp(root.edge / waves.z + ragged, 0.0, 1.0);
+  if (randomOf(strand.key, 18u) > 0.3 + 0.7 * smoothstep(0.0, 0.8, inside)) strand.gain = 0.0;
+  strand.rim = 1.0 - inside;
+  strand.fine = randomOf(strand.key, 19u) < waves.w * strand.rim ? 1.0 : 0.0;
+  strand.astray = strand.fine * (0.2 + 0.9 * randomOf(strand.key, 6u)) * root.outward;
+}
+
+// Where a strand ends. Locks and clumps are cut to lengths of their own, each clump to a point; stray hairs are often
+// broken.
+void cutStrand(in Root root, inout Strand strand) {
+  float own = randomOf(strand.key, 4u), apart = length(strand.clump) / (0.6 * max(clumping.y, 1e-4));
+  float early = 0.35 * own * own + 0.25 * randomOf(strand.clump_key, 4u) + 0.2 * randomOf(strand.lock_key, 4u) +
+                0.2 * min(apart * apart, 1.0);
+  strand.end = root.cut * (1.0 - shape.x * early);
+  vec2 chance = vec2(randomOf(strand.key, 22u), randomOf(strand.key, 25u));
+  if (strand.fine > 0.0) {
+    strand.end = min(strand.end, layersAt(strand, 0.008 + 0.03 * chance.x * chance.x));
+    strand.gain *= 0.7;
+    strand.hold = 0.0;
+  } else if (strand.loose > 0.0) {
+    if (chance.x < 0.4) strand.end = min(strand.end, layersAt(strand, 0.02 + 0.12 * chance.y));
+    strand.gain *= 0.7;
   }
+  strand.metres = wayAt(strand, strand.end).x;
 }
 
 Strand makeStrand(int number) {
@@ -155,21 +247,20 @@ Strand makeStrand(int number) {
   // A face's strands leave one after another as detail falls, each fading; faces do not do so at the same moment.
   float rank = (float(index) + unitFloat(hash(uint(low) + 0x2545f4u, uint(counts.w)))) / max(extent.z - extent.y, 1.0);
   strand.gain = detail.z * clamp((detail.y - rank) / (detail.y - detail.x), 0.0, 1.0);
-  strand.along_u = strand.along_v = strand.pull_u = strand.pull_v = vec4(0.0);
-  strand.clump_key = 0u;
+  strand.along_u = strand.along_v = vec4(0.0);
   strand.loose = randomOf(strand.key, 3u) < clumping.w ? 1.0 : 0.0;
+  strand.fine = 0.0;
   vec2 point = facePoint(uint(low), index, strand.key);
   if (corners == 4)
     weighQuad(point, columns, columns_at, strand);
   else
     weighTriangle(point, columns, columns_at, strand);
-  joinClump(columns, corners, columns_at, strand);
-  // A clump's strands end near each other, as cut locks do; the square keeps most strands long.
-  float early = mix(randomOf(strand.key, 4u), randomOf(strand.clump_key, 4u), 0.2 * clumping.x);
-  float cut = 0.0;
-  for (int k = 0; k < corners; ++k)
-    cut += strand.blend[k] * texelFetch(layout_texels, columns_at + columns[k] * kColumnTexels).w;
-  strand.end = cut * (1.0 - shape.x * early * early);
+  Root root = rootOf(columns, corners, columns_at, strand);
+  root.edge += extent.w * (corners == 4 ? 16.0 * point.x * point.y * (1.0 - point.x) * (1.0 - point.y)
+                                        : 27.0 * strand.blend.x * strand.blend.y * strand.blend.z);
+  joinGroups(root, strand);
+  thinHairline(root, strand);
+  cutStrand(root, strand);
   return strand;
 }
 
@@ -181,20 +272,29 @@ float clumpClosing(float t, uint clump_key) {
   return smoothstep(0.0, reach, t) * (1.0 - opens_again * smoothstep(0.6, 1.0, t));
 }
 
+// m in the rest scalp's plane: how far a strand has been drawn aside at a layer, by its groups or as a fine hair.
+vec2 groupPull(in Strand strand, float layer) {
+  if (strand.fine > 0.0) return wayAt(strand, layer).x * strand.astray;
+  float t = layer / float(strand.layers - 1);
+  vec2 pull = strand.hold * groups.y * smoothstep(0.0, 0.25, t) * strand.wisp;
+  pull += strand.hold * clumping.x * clumpClosing(t, strand.clump_key) * (strand.clump - pull);
+  return pull + strand.hold * groups.x * smoothstep(0.1, 0.8, t) * (strand.lock - pull);
+}
+
 LayerPoint layerPoint(in Strand strand, int layer) {
   LayerPoint point = LayerPoint(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec2(0.0));
-  float closing = clumpClosing(float(layer) / float(strand.layers - 1), strand.clump_key);
   for (int k = 0; k < 4; ++k) {
     int at = (strand.first[k] + layer) * kVertexTexels;
     vec4 p = texelFetch(vertex_texels, at), du = texelFetch(vertex_texels, at + 1),
          dv = texelFetch(vertex_texels, at + 2);
-    point.position += strand.weight[k] * p.xyz + (strand.along_u[k] + closing * strand.pull_u[k]) * du.xyz +
-                      (strand.along_v[k] + closing * strand.pull_v[k]) * dv.xyz;
+    point.position += strand.weight[k] * p.xyz + strand.along_u[k] * du.xyz + strand.along_v[k] * dv.xyz;
     point.axis_u += strand.blend[k] * du.xyz;
     point.axis_v += strand.blend[k] * dv.xyz;
     point.light += strand.blend[k] * vec3(p.w, floor(vec2(du.w, dv.w)) / kDepthSteps);
     point.behind += strand.blend[k] * fract(vec2(du.w, dv.w)) * kDeepest;
   }
+  vec2 pull = groupPull(strand, float(layer));
+  point.position += pull.x * point.axis_u + pull.y * point.axis_v;
   return point;
 }
 
@@ -223,31 +323,94 @@ vec3 unitOr(vec3 v, vec3 otherwise) {
   return squared > 1e-16 ? v * inversesqrt(squared) : otherwise;
 }
 
-// Sideways wander, curl and frizz at parameter s: xy the offset (m) in the strand's frame, zw its derivative by s.
+// From 0 at the root to 1 well beyond `reach` (m); way and result: a value and its rate by s.
+vec2 opening(vec2 way, float reach) {
+  float square = way.x * way.x, far = reach * reach, sum = square + far;
+  return vec2(square / sum, 2.0 * way.x * far / (sum * sum) * way.y);
+}
+
+// Adds away open sin(angle) to an offset (xy, m) and its rate by s (zw); open and angle: a value and its rate by s.
+void addSwing(inout vec4 bend, vec2 away, vec2 open, vec2 angle) {
+  float sine = sin(angle.x);
+  bend.xy += open.x * sine * away;
+  bend.zw += (open.y * sine + open.x * cos(angle.x) * angle.y) * away;
+}
+
+vec2 onCircle(float turn) { return vec2(cos(2.0 * kPi * turn), sin(2.0 * kPi * turn)); }
+
+// The angle of a swing of some wave length (m) and phase (in turns), with its rate by s.
+vec2 swingAngle(vec2 way, float wave_length, float phase) {
+  float rate = 2.0 * kPi / wave_length;
+  return vec2(rate * way.x + 2.0 * kPi * phase, rate * way.y);
+}
+
+// A hair's own way beside its guide, over all of its length; stray and fine hairs go further astray.
+void addWander(in Strand strand, float s, inout vec4 bend) {
+  float span = strand.loose + strand.fine > 0.0 ? max(strand.end, 1e-3) : float(strand.layers - 1), t = s / span;
+  float reach = shape.y * (1.0 + 5.0 * strand.loose + 3.0 * strand.rim) + 0.3 * strand.fine * strand.metres;
+  vec2 away = reach * sqrt(randomOf(strand.key, 9u)) * onCircle(randomOf(strand.key, 8u));
+  vec2 grow = vec2(t * (1.6 - 0.6 * t), (1.6 - 1.2 * t) / span);
+  float turns = 0.7 + 0.8 * randomOf(strand.key, 10u);
+  bend += 0.6 * vec4(grow.x * away, grow.y * away);
+  addSwing(bend, 0.4 * away, grow, 2.0 * kPi * vec2(turns * t + randomOf(strand.key, 11u), turns / span));
+}
+
+// Locks and clumps go ways of their own.
+void addDrift(in Strand strand, vec2 way, inout vec4 bend) {
+  float reach = groups.z * strand.hold;
+  addSwing(bend, 1.5 * reach * onCircle(randomOf(strand.lock_key, 10u)), opening(way, 0.08),
+           swingAngle(way, 0.12 + 0.13 * randomOf(strand.lock_key, 11u), randomOf(strand.lock_key, 12u)));
+  addSwing(bend, reach * onCircle(randomOf(strand.clump_key, 10u)), opening(way, 0.05),
+           swingAngle(way, 0.06 + 0.07 * randomOf(strand.clump_key, 11u), randomOf(strand.clump_key, 12u)));
+}
+
+// A helix. Pitch, hand and phase are the clump's, a little of the phase and of the radius the strand's.
+void addCurl(in Strand strand, vec2 way, inout vec4 bend) {
+  float pitch = max(shape.w, 1e-3) * (0.8 + 0.4 * randomOf(strand.clump_key, 8u));
+  float hand = randomOf(strand.clump_key, 13u) < 0.5 ? -1.0 : 1.0;
+  vec2 angle = swingAngle(way, pitch, randomOf(strand.clump_key, 9u) + 0.15 * (randomOf(strand.key, 12u) - 0.5));
+  vec2 radius = shape.z * (0.7 + 0.4 * randomOf(strand.clump_key, 14u) + 0.3 * randomOf(strand.key, 13u)) *
+                opening(way, 0.025);
+  float c = cos(angle.x), d = hand * sin(angle.x);
+  bend += vec4(radius.x * c, radius.x * d, radius.y * c - radius.x * d * hand * angle.y,
+               radius.y * d + radius.x * c * hand * angle.y);
+}
+
+// A wave in one plane, the lock's.
+void addWave(in Strand strand, vec2 way, inout vec4 bend) {
+  float wave_length = max(waves.y, 1e-3) * (0.85 + 0.3 * randomOf(strand.lock_key, 14u));
+  float phase = 0.6 * randomOf(strand.lock_key, 15u) + 0.12 * (randomOf(strand.key, 26u) - 0.5);
+  addSwing(bend, 0.5 * waves.x * (0.8 + 0.4 * randomOf(strand.key, 27u)) * onCircle(randomOf(strand.lock_key, 16u)),
+           opening(way, 0.035), swingAngle(way, wave_length, phase));
+}
+
+// Noise of each hair's own: most have little of it, some much.
+void addFrizz(in Strand strand, vec2 way, inout vec4 bend) {
+  float own = randomOf(strand.key, 28u), reach = clumping.z * (0.3 + 1.7 * own * own);
+  vec2 open = opening(way, 0.03);
+  addSwing(bend, vec2(reach, 0.0), open,
+           swingAngle(way, 0.025 + 0.05 * randomOf(strand.key, 14u), randomOf(strand.key, 16u)));
+  addSwing(bend, vec2(0.0, reach), open,
+           swingAngle(way, 0.025 + 0.05 * randomOf(strand.key, 15u), randomOf(strand.key, 17u)));
+}
+
+// What a strand leaves its guide by at parameter s: xy the offset (m) in the strand's frame, zw its rate by s.
 vec4 sideways(in Strand strand, float s) {
-  float per_layer = 1.0 / float(strand.layers - 1), t = s * per_layer;
-  float grow = t * (1.6 - 0.6 * t), growth = 1.6 - 1.2 * t;
-  float angle = 2.0 * kPi * randomOf(strand.key, 8u), reach = sqrt(randomOf(strand.key, 9u));
-  reach *= shape.y * (1.0 + 5.0 * strand.loose);
-  vec2 away = reach * vec2(cos(angle), sin(angle));
-  float bend = 2.0 * kPi * (t * (0.7 + 0.8 * randomOf(strand.key, 10u)) + randomOf(strand.key, 11u));
-  float bend_rate = 2.0 * kPi * (0.7 + 0.8 * randomOf(strand.key, 10u));
-  vec2 offset = away * grow * (0.6 + 0.4 * sin(bend));
-  vec2 rate = away * (growth * (0.6 + 0.4 * sin(bend)) + grow * 0.4 * cos(bend) * bend_rate);
+  vec2 way = wayAt(strand, s);
+  vec4 bend = vec4(0.0);
+  addWander(strand, s, bend);
+  if (groups.z > 0.0) addDrift(strand, way, bend);
+  if (shape.z > 0.0) addCurl(strand, way, bend);
+  if (waves.x > 0.0) addWave(strand, way, bend);
+  if (clumping.z > 0.0) addFrizz(strand, way, bend);
+  return bend;
+}
 
-  float turn_rate = 2.0 * kPi * shape.w * (0.85 + 0.3 * randomOf(strand.clump_key, 8u));
-  float turn = turn_rate * t + 2.0 * kPi * randomOf(strand.clump_key, 9u) + 0.8 * (randomOf(strand.key, 12u) - 0.5);
-  float radius = shape.z * (0.8 + 0.4 * randomOf(strand.key, 13u));
-  vec2 round = vec2(cos(turn), sin(turn)), round_rate = vec2(-round.y, round.x) * turn_rate;
-  float opening = smoothstep(0.0, 0.35, t), x = clamp(t / 0.35, 0.0, 1.0);
-  offset += radius * opening * round;
-  rate += radius * (opening * round_rate + 6.0 * x * (1.0 - x) / 0.35 * round);
-
-  vec2 wave_rate = 2.0 * kPi * (2.5 + 4.0 * vec2(randomOf(strand.key, 14u), randomOf(strand.key, 15u)));
-  vec2 wave = wave_rate * t + 2.0 * kPi * vec2(randomOf(strand.key, 16u), randomOf(strand.key, 17u));
-  offset += clumping.z * grow * sin(wave);
-  rate += clumping.z * (growth * sin(wave) + grow * cos(wave) * wave_rate);
-  return vec4(offset, rate * per_layer);
+// m that a stray or fine hair stands off the hair, away from the head, and its rate by s.
+vec2 lifted(in Strand strand, float s) {
+  float chance = randomOf(strand.key, 29u);
+  float lift = strand.loose * groups.w * (0.2 + 1.8 * chance * chance) + 0.35 * strand.fine * chance * strand.metres;
+  return lift * opening(wayAt(strand, s), 0.3 * min(strand.metres, 0.15) + 1e-4);
 }
 
 CurvePoint curvePoint(in Strand strand, in LayerWindow window, float s, float fraction) {
@@ -263,7 +426,15 @@ CurvePoint curvePoint(in Strand strand, in LayerWindow window, float s, float fr
   vec4 bend = sideways(strand, s);
   CurvePoint point;
   point.position = base + aside * bend.x + across * bend.y;
-  point.tangent = unitOr(slope + aside * bend.z + across * bend.w, axis);
+  vec3 along = slope + aside * bend.z + across * bend.w;
+  if (strand.loose + strand.fine > 0.0) {
+    vec3 outward = base - center.xyz;
+    outward = unitOr(outward - axis * dot(axis, outward), vec3(0.0));
+    vec2 lift = lifted(strand, s);
+    point.position += lift.x * outward;
+    along += lift.y * outward;
+  }
+  point.tangent = unitOr(along, axis);
   point.light = mix(window.from.light, window.to.light, f);
   point.behind = mix(window.from.behind, window.to.behind, f);
   point.along = strand.end > 0.0 ? s / strand.end : 0.0;

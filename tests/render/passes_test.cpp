@@ -47,7 +47,8 @@ MEMBERS(ViewOptions, samples, exposure, backdrop_top, backdrop_bottom, ground_co
 MEMBERS(DrawSkips, frame, rows, shadows, view, shadow_view, body_parts, body_detail, strands, segments, shadow_detail,
         sky_visibility)
 MEMBERS(HairLook, strand_radius, strands_represented, width_compensation, least_pixels, taper, length_variation, offset,
-        clump, clump_size, curl_radius, curl_turns, frizz, flyaways, eumelanin, pheomelanin, use_color, color,
+        clump, clump_size, lock, wisp, drift, curl_radius, curl_pitch, wave_height, wave_length, frizz, flyaways,
+        flyaway_lift, hairline, baby_hairs, eumelanin, pheomelanin, use_color, color,
         root_darkening, tint_variation, beta_m, beta_n, eta, cuticle_angle, specular, diffuse, seed)
 MEMBERS(HairInput, id, layout_revision, position_revision, layout_id, faces, positions, rest, strands,
         segments_per_layer, look)
@@ -219,7 +220,7 @@ const std::set<std::string> kUnseen{"frame.bodies.id",
                                     "frame.hairs.layout_id",
                                     "frame.hairs.layout_revision",
                                     "frame.hairs.look.color",
-                                    "frame.hairs.look.curl_turns",
+                                    "frame.hairs.look.curl_pitch",
                                     "frame.hairs.position_revision",
                                     "frame.light.shadow_strands_per_pixel",
                                     "frame.skips.body_detail",

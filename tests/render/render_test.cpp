@@ -164,9 +164,19 @@ TEST_F(RenderTest, EverySettingOfTheLookChangesThePicture) {
       {"offset", [](Look& l) { l.offset = 0.01f; }},
       {"clump", [](Look& l) { l.clump = 1; }},
       {"clump_size", [](Look& l) { l.clump_size = 0.03f; }},
+      {"lock", [](Look& l) { l.lock = 1; }},
+      {"wisp", [](Look& l) { l.wisp = 1; }},
+      {"drift", [](Look& l) { l.drift = 0.01f; }},
       {"curl_radius", [](Look& l) { l.curl_radius = 0.01f; }},
+      {"wave_height", [](Look& l) { l.wave_height = 0.02f; }},
       {"frizz", [](Look& l) { l.frizz = 0.01f; }},
       {"flyaways", [](Look& l) { l.flyaways = 0.6f; }},
+      {"flyaway_lift",
+       [](Look& l) {
+         l.flyaways = 0.6f, l.flyaway_lift = 0.03f;
+       }},
+      {"hairline", [](Look& l) { l.hairline = 0.03f; }},
+      {"baby_hairs", [](Look& l) { l.baby_hairs = 0; }},
       {"eumelanin", [](Look& l) { l.eumelanin = 0.1f; }},
       {"pheomelanin", [](Look& l) { l.pheomelanin = 3; }},
       {"color",
@@ -386,7 +396,7 @@ void main() { tau = hairOpticalDepth(0, hairShadowCoordinates(0, first.xyz + flo
   hair.faces = slab.faces;
   hair.positions = slab.positions;
   hair.strands = 40000;
-  hair.look.length_variation = hair.look.offset = hair.look.clump = hair.look.frizz = hair.look.flyaways = 0;
+  hair.look = synthetic::plainLook();
   hair.look.taper = 1;
   hair.look.strands_represented = 40000;
   render::FrameInput input;

@@ -29,7 +29,12 @@ render::HairLook variedLook() {
   look.offset = 0.003f;
   look.clump = 0.8f;
   look.curl_radius = 0.006f;
-  look.curl_turns = 4;
+  look.curl_pitch = 0.06f;
+  look.lock = look.wisp = 0.6f;
+  look.drift = 0.004f;
+  look.wave_height = 0.005f;
+  look.wave_length = 0.08f;
+  look.hairline = 0.015f;
   look.frizz = 0.0015f;
   look.flyaways = 0.1f;
   look.seed = 7;

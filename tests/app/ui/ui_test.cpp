@@ -195,10 +195,10 @@ TEST_F(Panels, ARowThatAnotherOneMakesIdleDoesNotMove) {
   ImGui::GetIO().DisplaySize = {1280, 3000};
   frame();
   frame();
-  EXPECT_FALSE(asked(click("curl_turns", 0.5f, 40), Ask::kSetParam));
+  EXPECT_FALSE(asked(click("curl_pitch", 0.5f, 40), Ask::kSetParam));
   demo_.actors[0].spec.look.hair.curl_radius = 0.01f;
   frame();
-  EXPECT_TRUE(asked(click("curl_turns", 0.5f, 40), Ask::kSetParam, "curl_turns"));
+  EXPECT_TRUE(asked(click("curl_pitch", 0.5f, 40), Ask::kSetParam, "curl_pitch"));
 }
 
 TEST_F(Panels, SearchFindsRowsOfAllTables) {
