@@ -48,7 +48,7 @@ float clumpClosing(float t, uint clump_key) {
 
 Vector3f unitOr(const Vector3f& v, const Vector3f& otherwise) {
   const float squared = v.squaredNorm();
-  return squared > 1e-16f ? (v * (1.0f / std::sqrt(squared))).eval() : otherwise;
+  return squared > 1e-16f ? (v / std::sqrt(squared)).eval() : otherwise;
 }
 
 Vector2f opening(const Vector2f& way, float reach) {
@@ -387,8 +387,8 @@ CurvePoint StrandGrowth::curvePoint(const Strand& strand, const LayerWindow& win
   point.position = base + aside * bend.x() + across * bend.y();
   Vector3f along = slope + aside * bend.z() + across * bend.w();
   if (strand.loose + strand.fine > 0.0f) {
-    Vector3f outward = base - center_;
-    outward = unitOr(outward - axis * axis.dot(outward), Vector3f::Zero());
+    Vector3f outward = unitOr(base - center_, Vector3f::Zero());
+    outward -= axis * axis.dot(outward);
     const Vector2f lift = lifted(strand, s);
     point.position += lift.x() * outward;
     along += lift.y() * outward;

@@ -318,9 +318,11 @@ LayerWindow layerWindow(in Strand strand, int layer) {
   return window;
 }
 
+// By a root to full precision: what it turns may be long.
 vec3 unitOr(vec3 v, vec3 otherwise) {
   float squared = dot(v, v);
-  return squared > 1e-16 ? v * inversesqrt(squared) : otherwise;
+  precise vec3 unit = v / sqrt(max(squared, 1e-16));
+  return squared > 1e-16 ? unit : otherwise;
 }
 
 // From 0 at the root to 1 well beyond `reach` (m); way and result: a value and its rate by s.
@@ -428,8 +430,8 @@ CurvePoint curvePoint(in Strand strand, in LayerWindow window, float s, float fr
   point.position = base + aside * bend.x + across * bend.y;
   vec3 along = slope + aside * bend.z + across * bend.w;
   if (strand.loose + strand.fine > 0.0) {
-    vec3 outward = base - center.xyz;
-    outward = unitOr(outward - axis * dot(axis, outward), vec3(0.0));
+    vec3 outward = unitOr(base - center.xyz, vec3(0.0));
+    outward -= axis * dot(axis, outward);
     vec2 lift = lifted(strand, s);
     point.position += lift.x * outward;
     along += lift.y * outward;

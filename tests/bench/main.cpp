@@ -23,6 +23,7 @@
 #include "tests/bench/skipping.h"
 #include "tests/bench/solver_chart.h"
 #include "tests/bench/styles_bench.h"
+#include "tests/bench/swing.h"
 #include "tests/bench/table.h"
 
 namespace {
@@ -40,6 +41,7 @@ struct Asked {
   std::string gate_document;
   bench::FramesBudgetOptions frames_budget;
   bench::SkinOptions skin;
+  bench::SwingOptions swing;
   std::string document, accuracy, performance;
   bool all_hold = true;  // the figures of those that have bounds
 };
@@ -95,6 +97,12 @@ std::vector<Task> tasks() {
        [](Asked& a) {
          if (!bench::runSkin(a.skin)) a.all_hold = false;
        }},
+      {"--swing",
+       "how fast free hair swings, how soon it stops and how far it goes on after a turn of the head, for the presets "
+       "of hair; exits 1 where natural hair leaves its bounds",
+       [](Asked& a) {
+         if (!bench::runSwing(a.swing)) a.all_hold = false;
+       }},
       {"--gate", "every bound on speed and accuracy, one line each; exits 1 where one falls short",
        [](Asked& a) {
          const std::vector<bench::Figure> figures = bench::measureFigures(a.gate);
@@ -135,7 +143,7 @@ void addOptions(CLI::App& program, Asked& a) {
   program.add_option("--frames-budget-document", a.frames_budget.folder,
                      "also put --frames-budget's table and chart into this folder's performance.md");
   program.add_option("--skin-document", a.skin.folder, "also put --skin's table into this folder's collision.md");
-  program.add_option("--set", a.sets, "NAME=VALUE of a parameter for --collisions and --skin")->allow_extra_args(false);
+  program.add_option("--set", a.sets, "NAME=VALUE of a parameter for --collisions, --skin and --swing")->allow_extra_args(false);
   program.add_option("--rounds", a.gate.rounds, "turns that the compared ways of --gate take")
       ->check(CLI::Range(1, 100));
   program.add_option("--gate-document", a.gate_document, "also put --gate's figures into this folder's gate.md");
@@ -167,7 +175,7 @@ void settle(const CLI::App& program, std::vector<Task>& all, Asked& a) {
     const std::size_t equals = text.find('=');
     a.collisions.set.emplace_back(text.substr(0, equals), equals < text.size() ? text.substr(equals + 1) : "");
   }
-  a.skin.sets = a.collisions.set;
+  a.skin.sets = a.swing.sets = a.collisions.set;
 }
 
 }  // namespace
