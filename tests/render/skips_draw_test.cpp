@@ -179,6 +179,7 @@ TEST_F(SkipsDraw, DetailStaysInItsBound) {
     const auto picture = [&](const render::DrawSkips& skips, bool strands = true) {
       render::Renderer renderer(gl_fixture::kShaderDir);
       Crowd crowd(1, 1, 6000);
+      crowd.hairs[0].rest = crowd.hair.positions;  // else it would be what is seen first
       render::FrameInput frame = crowd.frame(skips);
       frame.camera.eye = {0.25f * distance, 1.62f, 0.97f * distance};
       frame.view.show_strands = strands;
