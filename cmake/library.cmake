@@ -5,6 +5,14 @@ include(CMakePackageConfigHelpers)
 include(CheckCXXSourceCompiles)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/hairmesh)
 
+# The header's version is the project's.
+foreach(part MAJOR MINOR PATCH)
+  file(STRINGS include/hairmesh.h line REGEX "^#define HM_VERSION_${part} ")
+  if(NOT line STREQUAL "#define HM_VERSION_${part} ${PROJECT_VERSION_${part}}")
+    message(FATAL_ERROR "include/hairmesh.h: '${line}' is not version ${PROJECT_VERSION} of CMakeLists.txt; change one of them")
+  endif()
+endforeach()
+
 add_library(hairmesh::sim ALIAS hair_sim)
 set_target_properties(hair_sim PROPERTIES EXPORT_NAME sim OUTPUT_NAME hairmesh_sim)
 
