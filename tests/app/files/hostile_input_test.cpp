@@ -11,7 +11,8 @@
 
 using Target = int(const std::uint8_t* data, std::size_t size);
 // The targets' one name, told apart where they are compiled (tests/CMakeLists.txt).
-extern "C" Target fuzz_hair_mesh, fuzz_bvh, fuzz_mot, fuzz_part, fuzz_scene, fuzz_preset, fuzz_recording;
+extern "C" Target fuzz_hair_mesh, fuzz_bvh, fuzz_mot, fuzz_part, fuzz_scene, fuzz_preset, fuzz_recording,
+    fuzz_hair_strands, fuzz_alembic, fuzz_usda, fuzz_ply, fuzz_tfx, fuzz_groom_inspect;
 
 namespace {
 
@@ -22,9 +23,19 @@ struct Reader {
 void PrintTo(const Reader& reader, std::ostream* out) {
   *out << reader.name;
 }
-constexpr Reader kReaders[] = {{"hair_mesh", fuzz_hair_mesh}, {"bvh", fuzz_bvh},     {"mot", fuzz_mot},
-                               {"part", fuzz_part},           {"scene", fuzz_scene}, {"preset", fuzz_preset},
-                               {"recording", fuzz_recording}};
+constexpr Reader kReaders[] = {{"hair_mesh", fuzz_hair_mesh},
+                               {"bvh", fuzz_bvh},
+                               {"mot", fuzz_mot},
+                               {"part", fuzz_part},
+                               {"scene", fuzz_scene},
+                               {"preset", fuzz_preset},
+                               {"recording", fuzz_recording},
+                               {"hair_strands", fuzz_hair_strands},
+                               {"alembic", fuzz_alembic},
+                               {"usda", fuzz_usda},
+                               {"ply", fuzz_ply},
+                               {"tfx", fuzz_tfx},
+                               {"groom_inspect", fuzz_groom_inspect}};
 
 // What the fuzzers begin with, and what they once found.
 std::vector<std::string> textsOf(const std::string& reader) {

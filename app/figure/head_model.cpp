@@ -1,0 +1,23 @@
+#include "app/figure/head_model.h"
+
+#include <cmath>
+
+#include "app/groom/groom_shape.h"
+
+namespace app {
+
+HeadModel headModelOf(const Character& character) {
+  // The skull where hair grows: above the ears and behind the face.
+  std::vector<Eigen::Vector3f> skull;
+  for (int n = 0; n < 400; ++n) {
+    const double height = -0.2 + 1.2 * n / 400, azimuth = 2.39996 * n, level = std::sqrt(1 - height * height);
+    const Vec3 direction(level * std::sin(azimuth), height, level * std::cos(azimuth));
+    if (direction.z() > 0.35 && direction.y() < 0.75) continue;
+    skull.push_back((character.scalp.center + character.scalp.radiusAt(direction) * direction).cast<float>());
+  }
+  const sim::BodyDistance body = restBodyDistance(character);
+  return {[body](const Eigen::Vector3f& p) { return static_cast<float>(body(p.cast<double>())); },
+          fitSphere(skull).center};
+}
+
+}  // namespace app

@@ -1,0 +1,116 @@
+// hairmesh-inspect: what is wrong with a groom, and what mends it.
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+#include <optional>
+
+#include "app/figure/head_model.h"
+#include "app/files/data_path.h"
+#include "app/files/errors.h"
+#include "app/groom/groom_file.h"
+#include "app/groom/groom_inspect.h"
+#include "app/groom/groom_writer.h"
+
+namespace {
+
+constexpr const char* kAbout =
+    "Says what is wrong with a groom (.abc, .usda, .hair, .ply, .tfx) and which option mends it. What is certain is "
+    "mended by itself in what --out writes; options overrule it.";
+
+struct Asked {
+  std::string file, out, figure = "idle_turns.bvh";
+  std::string unit, up, reverse;
+  std::optional<double> turn;
+  std::vector<float> move;
+  app::GroomMends mends;
+  bool no_guess = false;
+};
+
+void addOptions(CLI::App& parser, Asked& asked) {
+  parser.add_option("FILE", asked.file, "The groom")->required();
+  parser.add_option("--out", asked.out, "Write the mended groom: .abc, .usda, .hair, .ply or .tfx; metres, y up");
+  parser.add_option("--figure", asked.figure, "Motion or model whose head the hair is held against (a mannequin's)");
+  parser.add_option("--unit", asked.unit, "Unit of the file: m, cm, mm, in or ft")
+      ->check(CLI::IsMember({"m", "cm", "mm", "in", "ft"}));
+  parser.add_option("--up", asked.up, "Axis that is up in the file: y, z, -y, -z, x or -x")
+      ->check(CLI::IsMember({"y", "z", "-y", "-z", "x", "-x"}));
+  parser.add_option("--turn", asked.turn, "Degrees about y, after --up: 180 for hair that faces backwards");
+  parser.add_option("--reverse", asked.reverse, "Strands that run from tip to root: none, found or all")
+      ->check(CLI::IsMember({"none", "found", "all"}));
+  parser.add_option("--width-scale", asked.mends.width_scale, "Factor of the widths, beside the unit");
+  parser.add_option("--width", asked.mends.width, "Width, m, in place of those that are 0, negative or no number");
+  parser.add_option("--points", asked.mends.points, "Points a strand, evenly along it")->check(CLI::Range(2, 1024));
+  parser.add_option("--move", asked.move, "Shift, m: X,Y,Z")->delimiter(',')->expected(3);
+  parser.add_option("--drop-far", asked.mends.drop_far, "Leave out strands whose root is further from the body, m");
+  parser.add_flag("--drop-bad", asked.mends.drop_bad, "Leave out strands that are not finite or have no length");
+  parser.add_flag("--push-out", asked.mends.push_out, "Bring points that lie inside the body to its surface");
+  parser.add_flag("--no-guess", asked.no_guess, "Mend only what the options say");
+}
+
+// What was found for certain, with what was asked for in its place.
+app::GroomMends mendsOf(const CLI::App& parser, const Asked& asked, const app::GroomHints& hints,
+                        const app::GroomMends& found) {
+  app::GroomMends mends = asked.no_guess ? app::GroomMends() : found;
+  if (asked.no_guess) mends.unit = hints.meters_per_unit.value_or(1);
+  const std::map<std::string, double> units{{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}};
+  if (!asked.unit.empty()) mends.unit = units.at(asked.unit);
+  if (!asked.up.empty()) mends.axes = *app::axesOfUp(asked.up);
+  if (asked.turn) mends.axes = app::turnedAbout(*asked.turn) * mends.axes;
+  if (asked.reverse == "none") mends.reverse = app::Reverse::kNone;
+  if (asked.reverse == "found") mends.reverse = app::Reverse::kFound;
+  if (asked.reverse == "all") mends.reverse = app::Reverse::kAll;
+  if (parser.count("--width-scale") > 0) mends.width_scale = asked.mends.width_scale;
+  if (!asked.move.empty()) mends.move = Eigen::Vector3f(asked.move[0], asked.move[1], asked.move[2]);
+  mends.width = asked.mends.width;
+  mends.points = asked.mends.points;
+  mends.drop_far = asked.mends.drop_far;
+  mends.drop_bad = mends.drop_bad || asked.mends.drop_bad;
+  mends.push_out = asked.mends.push_out;
+  return mends;
+}
+
+int run(const CLI::App& parser, const Asked& asked) {
+  if (!asked.out.empty() && !app::isGroomOutput(asked.out))
+    throw app::OutputError(asked.out, "is no kind of groom that is written",
+                           "name it .abc, .usda, .hair, .ply or .tfx");
+  app::GroomHints hints;
+  app::Groom groom = app::readGroom(asked.file, &hints);
+  const app::HeadModel head = app::headModelOf(app::loadCharacter(app::findFile(asked.figure, "", "clips")));
+  const app::GroomInspection inspection = app::inspectGroom(groom, hints, &head);
+  std::cout << asked.file << ": " << inspection.summary << "\n";
+  for (const app::GroomFinding& finding : inspection.findings)
+    std::cout << finding.what << ": " << finding.text << "; " << finding.mend << (finding.certain ? " (certain)" : "")
+              << "\n";
+  if (inspection.findings.empty()) std::cout << "nothing is wrong\n";
+  if (asked.out.empty()) return app::kExitFine;
+  app::mendGroom(mendsOf(parser, asked, hints, inspection.mends), &head, groom);
+  app::writeGroom(groom, asked.out);
+  std::cout << groom.strandCount() << " strands written to " << asked.out << "\n";
+  return app::kExitFine;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App parser{kAbout};
+  parser.name("hairmesh-inspect");
+  parser.footer("Exit codes: 0 fine, 1 a file that cannot be written, 2 usage, 4 a file that cannot be used.");
+  Asked asked;
+  addOptions(parser, asked);
+  const auto fail = [](const std::exception& fault, int exit_code) {
+    std::cerr << "hairmesh-inspect: " << fault.what() << "\n";
+    return exit_code;
+  };
+  try {
+    parser.parse(argc, argv);
+    return run(parser, asked);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return parser.exit(error);
+    std::cerr << "hairmesh-inspect: " << error.what() << "; hairmesh-inspect --help lists the options\n";
+    return app::kExitUsage;
+  } catch (const app::InputError& fault) {
+    return fail(fault, app::kExitBadInput);
+  } catch (const std::exception& fault) {
+    return fail(fault, app::kExitFault);
+  }
+}

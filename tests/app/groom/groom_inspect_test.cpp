@@ -1,0 +1,270 @@
+// The inspector: grooms with one seeded defect each, over all formats; every defect is named, and its mend brings the
+// groom back.
+#include "app/groom/groom_inspect.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "app/groom/groom_file.h"
+#include "app/groom/groom_writer.h"
+#include "tests/analytic_head.h"
+#include "tests/app/groom/groom_samples.h"
+#include "tests/run_program.h"
+
+namespace {
+
+using Eigen::Vector3f;
+
+app::HeadModel head() {
+  return {[](const Vector3f& p) { return static_cast<float>(tests::bodyDistance(p.cast<double>())); },
+          Vector3f(0, 0.022f, -0.012f)};
+}
+
+struct Random {
+  std::mt19937 engine;
+  float unit() { return static_cast<float>(engine() >> 8) * 0x1p-24f; }
+  float between(float low, float high) { return low + (high - low) * unit(); }
+};
+
+// Hair of 8 points a strand on the analytic head: rooted over the skull above the ears but for the face, combed down
+// over it.
+app::Groom combedGroom(std::size_t strands, std::uint32_t seed) {
+  Random random{std::mt19937(seed)};
+  const float length = random.between(0.12f, 0.35f);
+  const app::HeadModel model = head();
+  app::Groom groom;
+  while (groom.strandCount() < strands) {
+    const float azimuth = random.between(-3.14159f, 3.14159f), height = random.between(-0.15f, 1);
+    const float level = std::sqrt(1 - height * height);
+    const Vector3f direction(level * std::sin(azimuth), height, level * std::cos(azimuth));
+    if (direction.z() > 0.35f && direction.y() < 0.75f) continue;  // the face
+    Vector3f at = model.center;
+    for (float out = 0; model.distance(at) < 0.0005f && out < 0.3f; out += 0.0005f) at = model.center + out * direction;
+    Vector3f heading = direction;
+    for (int p = 0; p < 8; ++p) {
+      groom.points.push_back(at);
+      groom.widths.push_back(1e-4f * (1 - 0.05f * static_cast<float>(p)));
+      heading = (heading + Vector3f(0, -0.9f, 0)).normalized();
+      at += length * random.between(0.9f, 1.1f) / 7 * heading;
+      for (int round = 0; round < 8; ++round) {
+        const float here = model.distance(at);
+        if (here > 0.004f) break;
+        Vector3f slope;
+        for (int axis = 0; axis < 3; ++axis) slope[axis] = model.distance(at + 1e-3f * Vector3f::Unit(axis)) - here;
+        at += (0.005f - here) * slope.normalized();
+      }
+    }
+    groom.strand_first.push_back(static_cast<std::uint32_t>(groom.points.size()));
+  }
+  return groom;
+}
+
+void moveAll(app::Groom& groom, const Eigen::Matrix3f& turn, float scale, const Vector3f& shift) {
+  for (Vector3f& point : groom.points) point = scale * (turn * point) + shift;
+}
+
+// One defect: what the inspector is to name, and how it is planted.
+struct Defect {
+  const char* what;
+  void (*plant)(Random&, app::Groom&);
+};
+
+Eigen::Matrix3f turnOf(const char* up) {
+  return app::axesOfUp(up)->transpose();
+}
+
+std::span<Vector3f> pick(Random& random, app::Groom& groom) {
+  const std::size_t s = random.engine() % groom.strandCount();
+  return std::span(groom.points).subspan(groom.strand_first[s], groom.pointCount(s));
+}
+
+const std::vector<Defect>& defects() {
+  static const std::vector<Defect> all{
+      {"unit",
+       [](Random& random, app::Groom& groom) {
+         const float scale = std::array{100.0f, 1000.0f, 39.37f, 3.281f}[random.engine() % 4];
+         moveAll(groom, Eigen::Matrix3f::Identity(), scale, Vector3f::Zero());
+         for (float& width : groom.widths) width *= scale;
+       }},
+      {"up",
+       [](Random& random, app::Groom& groom) {
+         moveAll(groom, turnOf(std::array{"z", "-y", "-z", "x", "-x"}[random.engine() % 5]), 1, Vector3f::Zero());
+       }},
+      {"facing",
+       [](Random& random, app::Groom& groom) {
+         moveAll(groom, app::turnedAbout(std::array{180.0, 90.0, -90.0}[random.engine() % 3]), 1, Vector3f::Zero());
+       }},
+      {"reversed",
+       [](Random&, app::Groom& groom) {
+         for (std::size_t s = 0; s < groom.strandCount(); ++s)
+           std::reverse(groom.points.begin() + groom.strand_first[s], groom.points.begin() + groom.strand_first[s + 1]);
+       }},
+      {"reversed",
+       [](Random& random, app::Groom& groom) {
+         for (int n = 0; n < 20; ++n) std::ranges::reverse(pick(random, groom));
+       }},
+      {"widths",
+       [](Random& random, app::Groom& groom) {
+         const float scale = std::array{100.0f, 1000.0f, 0.01f, 0.001f}[random.engine() % 4];
+         for (float& width : groom.widths) width *= scale;
+       }},
+      {"roots",
+       [](Random& random, app::Groom& groom) {
+         const Vector3f away(random.between(-0.1f, 0.1f), random.between(0.1f, 1.6f), random.between(-0.2f, 0.2f));
+         moveAll(groom, Eigen::Matrix3f::Identity(), 1, away);
+       }},
+      {"roots",
+       [](Random& random, app::Groom& groom) {
+         for (int n = 0; n < 10; ++n) {
+           const Vector3f away = Vector3f(random.between(-1, 1), random.unit(), -random.unit()).normalized();
+           for (Vector3f& point : pick(random, groom)) point += 0.12f * away;
+         }
+       }},
+      {"body",
+       [](Random& random, app::Groom& groom) {
+         for (int n = 0; n < 30; ++n) {
+           const std::span<Vector3f> points = pick(random, groom);
+           const float share = random.between(0.5f, 0.8f);
+           for (Vector3f& point : points.subspan(3)) point += share * (head().center - point);
+         }
+       }},
+      {"zero-length",
+       [](Random& random, app::Groom& groom) {
+         for (int n = 0; n < 3; ++n) {
+           const std::span<Vector3f> points = pick(random, groom);
+           std::ranges::fill(points, points[0]);
+         }
+       }},
+      {"non-finite",
+       [](Random& random, app::Groom& groom) {
+         const float bad = random.engine() % 2 ? NAN : HUGE_VALF;
+         for (int n = 0; n < 3; ++n) pick(random, groom)[random.engine() % 8][random.engine() % 3] = bad;
+       }},
+  };
+  return all;
+}
+
+app::GroomInspection inspected(const app::Groom& groom, const std::string& file) {
+  app::writeGroom(groom, file);
+  app::GroomHints hints;
+  const app::Groom read = app::readGroom(file, &hints);
+  const app::HeadModel model = head();
+  return app::inspectGroom(read, hints, &model);
+}
+
+std::string namesOf(const app::GroomInspection& inspection) {
+  std::string names;
+  for (const app::GroomFinding& finding : inspection.findings) names += finding.what + ": " + finding.text + "; ";
+  return names;
+}
+
+const std::vector<std::string> kFormats{"abc", "usda", "hair", "ply", "tfx"};
+
+TEST(GroomInspect, SaysNothingOfAGroomThatFits) {
+  const std::string folder = test::freshFolder("inspect_fits");
+  for (std::uint32_t seed = 0; seed < 20; ++seed) {
+    const std::string file = folder + "/fits." + kFormats[seed % 5];
+    EXPECT_EQ(namesOf(inspected(combedGroom(300, seed), file)), "") << seed;
+  }
+}
+
+TEST(GroomInspect, NamesEveryOfTwoHundredAndSeventyFiveSeededDefects) {
+  const std::string folder = test::freshFolder("inspect_defects");
+  std::map<std::string, int> planted, named;
+  std::uint32_t seed = 100;
+  for (const Defect& defect : defects()) {
+    for (const std::string& format : kFormats) {
+      for (int n = 0; n < 5; ++n) {
+        Random random{std::mt19937(++seed)};
+        app::Groom groom = combedGroom(300, seed);
+        defect.plant(random, groom);
+        const app::GroomInspection inspection = inspected(groom, folder + "/bad." + format);
+        const app::GroomFinding* finding = inspection.find(defect.what);
+        ++planted[defect.what];
+        named[defect.what] += finding != nullptr;
+        EXPECT_TRUE(finding) << defect.what << " in " << format << ", seed " << seed << ": " << namesOf(inspection);
+        EXPECT_TRUE(!finding || finding->mend.starts_with("--"));
+      }
+    }
+  }
+  int all = 0;
+  for (const auto& [what, count] : planted) all += count;
+  EXPECT_GE(all, 200);
+  EXPECT_EQ(named, planted);
+}
+
+// What is certain is mended: then nothing more is said, and strands lie where they lay.
+TEST(GroomInspect, CertainMendsBringTheGroomBack) {
+  const app::HeadModel model = head();
+  std::uint32_t seed = 1000;
+  for (const Defect& defect : defects()) {
+    for (int n = 0; n < 6; ++n) {
+      Random random{std::mt19937(++seed)};
+      const app::Groom whole = combedGroom(300, seed);
+      app::Groom groom = whole;
+      defect.plant(random, groom);
+      const app::GroomInspection inspection = app::inspectGroom(groom, {}, &model);
+      const app::GroomFinding* finding = inspection.find(defect.what);
+      ASSERT_TRUE(finding) << defect.what;
+      if (!finding->certain) continue;
+      app::mendGroom(inspection.mends, &model, groom);
+      EXPECT_EQ(namesOf(app::inspectGroom(groom, {}, &model)), "") << defect.what << " seed " << seed;
+      if (groom.points.size() != whole.points.size()) continue;  // bad strands are gone
+      float off = 0;
+      for (std::size_t p = 0; p < whole.points.size(); ++p)
+        off += (groom.points[p] - whole.points[p]).norm() / static_cast<float>(whole.points.size());
+      EXPECT_LT(off, 0.006f) << defect.what << " seed " << seed;
+    }
+  }
+}
+
+TEST(GroomInspect, OtherMendsDoWhatTheyAreAskedFor) {
+  const app::HeadModel model = head();
+  app::Groom groom = combedGroom(200, 7);
+  groom.points[3] += 0.9f * (model.center - groom.points[3]);
+  groom.widths[5] = 0;
+  app::GroomMends mends;
+  mends.points = 16;
+  mends.push_out = true;
+  mends.width = 1e-4f;
+  app::mendGroom(mends, &model, groom);
+  EXPECT_EQ(groom.points.size(), 200u * 16);
+  EXPECT_EQ(groom.widths.size(), 200u * 16);
+  for (const Vector3f& point : groom.points) EXPECT_GT(model.distance(point), -1e-4f);
+  for (const float width : groom.widths) EXPECT_GT(width, 0);
+  mends = {};
+  mends.drop_far = 0.03f;
+  for (Vector3f& point : std::span(groom.points).first(16)) point.y() += 0.5f;
+  app::mendGroom(mends, &model, groom);
+  EXPECT_EQ(groom.strandCount(), 199u);
+}
+
+// The program: what it says, what it writes, and how it ends.
+TEST(GroomInspect, TheProgramMendsWhatIsCertain) {
+  const std::string folder = test::freshFolder("inspect_program");
+  app::Groom groom = combedGroom(300, 5);
+  moveAll(groom, turnOf("z"), 100, Vector3f::Zero());
+  for (float& width : groom.widths) width *= 100;
+  app::writeGroom(groom, folder + "/z_cm.hair");
+  const std::string binary = std::filesystem::path(HAIRMESH_BINARY).parent_path().string() + "/hairmesh-inspect";
+  const auto run = [&](const std::string& arguments) {
+    const std::string command = test::shellQuoted(binary) + " " + arguments + " >" +
+                                test::shellQuoted(folder + "/out") + " 2>" + test::shellQuoted(folder + "/err");
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  };
+  const std::string in = test::shellQuoted(folder + "/z_cm.hair"), out = test::shellQuoted(folder + "/mended.abc");
+  EXPECT_EQ(run(in + " --out " + out), 0) << test::readAll(folder + "/err");
+  EXPECT_EQ(test::lacking(test::readAll(folder + "/out"), "--unit cm (certain)"), "");
+  EXPECT_EQ(test::lacking(test::readAll(folder + "/out"), "--up z (certain)"), "");
+  EXPECT_EQ(run(out), 0);
+  EXPECT_NE(test::lacking(test::readAll(folder + "/out"), "unit: "), "") << "the unit is mended";
+  EXPECT_EQ(run(test::shellQuoted(folder + "/none.hair")), 4);
+  EXPECT_EQ(run(in + " --unit furlong"), 2);
+  EXPECT_EQ(run(in + " --out " + test::shellQuoted(folder + "/none/a.abc")), 1);
+}
+
+}  // namespace

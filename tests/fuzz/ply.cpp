@@ -1,0 +1,16 @@
+// Fuzz target: strands from a .ply file.
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "app/files/errors.h"
+#include "app/groom/ply_file.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+  try {
+    app::readPlyStrands(bytes, "fuzz.ply");
+  } catch (const app::InputError&) {
+  }
+  return 0;
+}
