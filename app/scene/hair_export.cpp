@@ -6,6 +6,7 @@
 #include <optional>
 #include <thread>
 
+#include "app/files/errors.h"
 #include "app/groom/glb_file.h"
 #include "app/groom/groom_writer.h"
 #include "render/fiber_scattering.h"
@@ -111,7 +112,10 @@ const Groom& StrandExport::groom(const Demo& demo, double unit) {
   for (std::size_t a = 0; a < grown_.size() && a < demo.actors.size(); ++a) {
     Grown& grown = *grown_[a];
     const Actor& actor = demo.actors[a];
-    grown.growth.setPositions(actor.shown_positions);
+    if (!grown.growth.setPositions(actor.shown_positions)) {
+      throw OutputError("export", "the hair of character " + std::to_string(a + 1) + " was exchanged during the run",
+                        "export without changing style or hair mesh");
+    }
     if (what_ == ExportWhat::kGuides) {
       const std::size_t first = groom_.strand_first[grown.first_strand];
       const float width = 2 * actor.spec.look.hair.strand_radius;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -81,8 +82,8 @@ std::span<Vector3f> pick(Random& random, app::Groom& groom) {
   return std::span(groom.points).subspan(groom.strand_first[s], groom.pointCount(s));
 }
 
-const std::vector<Defect>& defects() {
-  static const std::vector<Defect> all{
+std::vector<Defect> defects() {
+  return {
       {"unit",
        [](Random& random, app::Groom& groom) {
          const float scale = std::array{100.0f, 1000.0f, 39.37f, 3.281f}[random.engine() % 4];
@@ -144,7 +145,6 @@ const std::vector<Defect>& defects() {
          for (int n = 0; n < 3; ++n) pick(random, groom)[random.engine() % 8][random.engine() % 3] = bad;
        }},
   };
-  return all;
 }
 
 app::GroomInspection inspected(const app::Groom& groom, const std::string& file) {
@@ -240,6 +240,20 @@ TEST(GroomInspect, OtherMendsDoWhatTheyAreAskedFor) {
   for (Vector3f& point : std::span(groom.points).first(16)) point.y() += 0.5f;
   app::mendGroom(mends, &model, groom);
   EXPECT_EQ(groom.strandCount(), 199u);
+}
+
+TEST(GroomInspect, AxesAreTurnsThatBringUpToY) {
+  const std::map<std::string, Vector3f> ups{{"y", Vector3f::UnitY()},   {"z", Vector3f::UnitZ()},
+                                            {"-y", -Vector3f::UnitY()}, {"-z", -Vector3f::UnitZ()},
+                                            {"x", Vector3f::UnitX()},   {"-x", -Vector3f::UnitX()}};
+  for (const auto& [name, up] : ups) {
+    const Eigen::Matrix3f axes = *app::axesOfUp(name);
+    EXPECT_EQ(Vector3f(axes * up), Vector3f::UnitY()) << name;
+    EXPECT_NEAR(axes.determinant(), 1, 1e-6f) << name << " is a mirror";
+  }
+  EXPECT_EQ(Vector3f(*app::axesOfUp("z") * -Vector3f::UnitY()), Vector3f::UnitZ()) << "z up faces -y";
+  EXPECT_EQ(Vector3f(app::turnedAbout(90) * Vector3f::UnitZ()), Vector3f::UnitX());
+  EXPECT_FALSE(app::axesOfUp("w"));
 }
 
 // The program: what it says, what it writes, and how it ends.
