@@ -417,7 +417,7 @@ typedef struct hm_strand_settings {
 typedef struct hm_strand_output {
   hm_target positions; /**< Three numbers each: m, world. */
   hm_target tangents;  /**< Three numbers each: unit vectors. */
-  hm_target radii;     /**< One number each: m. */
+  hm_target radii;     /**< One number each: m; 0 for a strand that is not drawn, as where a hairline thins out. */
 } hm_strand_output;
 
 /** What a strand is, whatever the pose. */

@@ -112,7 +112,9 @@ class Library(unittest.TestCase):
         some, _, _ = hair.strands([7, 199, 0], 12)
         np.testing.assert_array_equal(some, positions[[7, 199, 0]])
         np.testing.assert_allclose(np.linalg.norm(tangents, axis=2), 1, atol=1e-5)
-        self.assertTrue((radii > 1e-5).all() and (radii < 5e-3).all())
+        drawn = radii[:, 0] > 0  # a hairline leaves some out
+        self.assertGreater(drawn.sum(), 100)
+        self.assertTrue((radii[drawn] > 1e-5).all() and (radii[drawn] < 5e-3).all() and (radii[~drawn] == 0).all())
         double, _, _ = hair.strands(points=12, dtype=np.float64)
         np.testing.assert_allclose(double, positions, atol=1e-6)
         self.assertIn(hair.strand(7)["face"], range(len(self.mesh.faces)))

@@ -246,7 +246,7 @@ class Hair:
 
     def strands(self, numbers=None, points=16, dtype=np.float32):
         """Grows strands, all or those of the numbers given. Returns positions and tangents, (strands, points, 3), and
-        radii, (strands, points), in m."""
+        radii, (strands, points), in m; 0 for a strand that is not drawn, as where a hairline thins out."""
         settings = _c.StrandSettings()
         _c.lib.hm_default_strand_settings(settings)
         if numbers is None:
