@@ -11,7 +11,7 @@ constexpr const char* kSimulation = "simulation";
 constexpr const char* kCharacter = "character";
 constexpr const char* kDrawing = "drawing";
 
-constexpr const char* kDetailBound = "mean 4 levels of 255 over blocks of hair, 7 where the hair is under 20 pixels";
+constexpr const char* kDetailBound = "mean 4.5 levels of 255 over blocks of hair, 9 where the hair is under 20 pixels";
 
 // Exact skips have no bound: nothing may change.
 constexpr std::array<Skip, kSkipCount> kTable{{

@@ -213,7 +213,7 @@ void StrandGrowth::thinHairline(const Root& root, Strand& strand) const {
   if (randomOf(strand.key, 18u) > 0.3f + 0.7f * smoothstep(0.0f, 0.8f, inside)) strand.gain = 0.0f;
   strand.rim = 1.0f - inside;
   strand.fine = randomOf(strand.key, 19u) < look_.baby_hairs * strand.rim ? 1.0f : 0.0f;
-  strand.astray = strand.fine * (0.2f + 0.9f * randomOf(strand.key, 6u)) * root.outward;
+  strand.astray = strand.fine * (0.2f + 0.6f * randomOf(strand.key, 6u)) * root.outward;
 }
 
 void StrandGrowth::cutStrand(const Root& root, Strand& strand) const {
@@ -223,7 +223,7 @@ void StrandGrowth::cutStrand(const Root& root, Strand& strand) const {
   strand.end = root.cut * (1.0f - look_.length_variation * early);
   const Vector2f chance(randomOf(strand.key, 22u), randomOf(strand.key, 25u));
   if (strand.fine > 0.0f) {
-    strand.end = std::min(strand.end, layersAt(strand, 0.008f + 0.03f * chance.x() * chance.x()));
+    strand.end = std::min(strand.end, layersAt(strand, 0.006f + 0.022f * chance.x() * chance.x()));
     strand.gain *= 0.7f;
     strand.hold = 0.0f;
   } else if (strand.loose > 0.0f) {

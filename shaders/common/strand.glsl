@@ -198,7 +198,7 @@ void thinHairline(in Root root, inout Strand strand) {
   if (randomOf(strand.key, 18u) > 0.3 + 0.7 * smoothstep(0.0, 0.8, inside)) strand.gain = 0.0;
   strand.rim = 1.0 - inside;
   strand.fine = randomOf(strand.key, 19u) < waves.w * strand.rim ? 1.0 : 0.0;
-  strand.astray = strand.fine * (0.2 + 0.9 * randomOf(strand.key, 6u)) * root.outward;
+  strand.astray = strand.fine * (0.2 + 0.6 * randomOf(strand.key, 6u)) * root.outward;
 }
 
 // Where a strand ends. Locks and clumps are cut to lengths of their own, each clump to a point; stray hairs are often
@@ -210,7 +210,7 @@ void cutStrand(in Root root, inout Strand strand) {
   strand.end = root.cut * (1.0 - shape.x * early);
   vec2 chance = vec2(randomOf(strand.key, 22u), randomOf(strand.key, 25u));
   if (strand.fine > 0.0) {
-    strand.end = min(strand.end, layersAt(strand, 0.008 + 0.03 * chance.x * chance.x));
+    strand.end = min(strand.end, layersAt(strand, 0.006 + 0.022 * chance.x * chance.x));
     strand.gain *= 0.7;
     strand.hold = 0.0;
   } else if (strand.loose > 0.0) {

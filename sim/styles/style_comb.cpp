@@ -10,6 +10,7 @@ namespace {
 constexpr double kRowStep = 0.006;    // m, below the hairline
 constexpr double kInnerGap = 0.006;   // m, between the body and the underside of the hair
 constexpr double kTautness = 0.9;     // how nearly hanging hair spans hollows as a taut string would
+constexpr double kTautnessInFront = 0.25;  // below the jaw: hair lies on the chest
 constexpr double kCloseBeside = 0.9;  // of the way from one flow line to the next, at either side of the divide
 constexpr double kDivide = 0.35;      // hair rooted in front of this backness falls in front of the shoulders
 
@@ -75,6 +76,7 @@ struct Comber {
   double freeBelow(int sheet) const { return ends[sheet] - 0.01; }
   Vec3 aim(int sheet) const;
   Vec3 keepOff(int sheet, Vec3 p, double gap) const;
+  double tautnessAt(int sheet, double height, double tautness) const;
   bool fall(int sheet);
   void cutAboveShoulders();
   void fallAll();
@@ -135,6 +137,13 @@ Vec3 Comber::keepOff(int sheet, Vec3 p, double gap) const {
     p += (gap - d) * n;
   }
   return p;
+}
+
+// Over the shoulders hair spans hollows, before them it lies on the chest.
+double Comber::tautnessAt(int sheet, double height, double tautness) const {
+  if (!inFront(sheet)) return tautness;
+  const double below_jaw = smoothstep(0.30, 0.55, (scalp.center.y() - height) / scalp.head_height);
+  return tautness + below_jaw * (std::min(tautness, kTautnessInFront) - tautness);
 }
 
 // Follows gravity from the hairline: stiff enough to turn gently, sliding over what is in the way. Hair that is to end
@@ -231,7 +240,7 @@ void Comber::hangTaut(std::vector<Vec3>& guide, int sheet, int first, int last, 
     const double t = std::clamp((a.height - p.y()) / std::max(a.height - b.height, 1e-9), 0.0, 1.0);
     const Vec3 out = outwards(r);
     const double lacking = a.radius + t * (b.radius - a.radius) - out.norm();
-    if (lacking > 0) p += out.normalized() * tautness * lacking;
+    if (lacking > 0) p += out.normalized() * tautnessAt(sheet, p.y(), tautness) * lacking;
   }
 }
 

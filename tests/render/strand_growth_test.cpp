@@ -26,9 +26,9 @@ using strand_capture::Polyline;
 render::HairLook variedLook() {
   render::HairLook look;
   look.length_variation = 0.2f;
-  look.offset = 0.002f;
+  look.offset = 0.0013f;
   look.clump = 0.8f;
-  look.curl_radius = 0.006f;
+  look.curl_radius = 0.003f;
   look.curl_pitch = 0.06f;
   look.lock = look.wisp = 0.6f;
   look.drift = 0.004f;
