@@ -93,6 +93,9 @@ Groom readHairStrands(std::string_view bytes, const std::string& file) {
     reader.fail("the header's flags say that there are no points", "export the hair with its points");
   }
   checkGroomSize(file, "header", header.strands, header.points);
+  // Before anything is sized by what the header counts.
+  const std::size_t segments = header.flags & kSegments ? header.strands * sizeof(std::uint16_t) : 0;
+  reader.need(segments + header.points * sizeof(Eigen::Vector3f), 1, "segments and points of the strands");
   Groom groom;
   readSegments(header, reader, groom);
   readArrays(header, reader, groom);

@@ -77,6 +77,11 @@ TEST(HairStrands, FaultsNameFilePlaceAndMend) {
   bytes = whole;
   put(bytes, 12, 1);
   EXPECT_EQ(test::lacking(faultOf(bytes), "byte 12: the header's flags say that there are no points"), "");
+  bytes = whole.substr(0, 128);  // memory is bounded by the file, not by what its header counts
+  put(bytes, 4, 30'000'000);
+  put(bytes, 8, 30'000'000);
+  put(bytes, 12, 2);
+  EXPECT_EQ(test::lacking(faultOf(bytes), "the file ends where segments and points of the strands"), "");
   bytes = whole;
   put(bytes, 4, 5'000'000);
   put(bytes, 8, 80'000'000);
