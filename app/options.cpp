@@ -1,6 +1,7 @@
 #include "app/options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -52,6 +53,21 @@ CLI::Validator within(double low, double high) {
         double value = 0;
         const bool fine = sim::parseNumber(text, value) && value >= low && value <= high;
         return fine ? std::string() : "'" + text.substr(0, 40) + "' is not a number from " + range;
+      },
+      "");
+}
+
+// One of some names; for another one the nearest is suggested.
+CLI::Validator oneOf(std::vector<std::string> names) {
+  return CLI::Validator(
+      [names = std::move(names)](std::string& text) {
+        if (std::ranges::find(names, text) != names.end()) return std::string();
+        const std::vector<std::string_view> candidates(names.begin(), names.end());
+        std::string known;
+        for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
+        const std::string_view near = sim::nearestName(text, candidates);
+        return "there is no '" + text.substr(0, 40) + "'; " +
+               (near.empty() ? "" : "did you mean '" + std::string(near) + "'? ") + "Choose one of " + known;
       },
       "");
 }
@@ -108,16 +124,17 @@ struct OptionGroup {
 void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
   OptionGroup group{parser, "What is shown"};
   group.value("--style", options.style, "NAME", "Hair style: short, shoulder or long")
-      ->check(CLI::IsMember({"short", "shoulder", "long"}));
+      ->check(oneOf({"short", "shoulder", "long"}));
   group.value("--resolution", options.resolution, "NAME", "Hair mesh resolution: low, medium, high or ultra")
-      ->check(CLI::IsMember({"low", "medium", "high", "ultra"}));
-  group.value("--hair", options.hair, "FILE", "Hair mesh file (OBJ, one group a layer) in place of a style");
+      ->check(oneOf({"low", "medium", "high", "ultra"}));
+  group.value("--hair", options.hair, "FILE",
+              "Hair mesh file (OBJ, one group a layer) or groom (.hair, .abc, .usda, .tfx, .ply) in place of a style");
   group.flag("--reverse-faces", options.reverse_faces,
              "Turn round the faces of a hair mesh file that is wound inwards");
   group
       .value("--fit", options.fit, "on|off",
              "Whether unit, axes and size of a hair mesh file are inferred where its roots are far from the scalp (on)")
-      ->check(CLI::IsMember({"on", "off"}));
+      ->check(oneOf({"on", "off"}));
   group.value("--motion", options.motion, "FILE", "Motion: BVH, glTF, FBX, or ARCSim .mot with --parts");
   group.value("--parts", options.parts, "DIR", "Folder of body0000.obj ... for a .mot motion");
   group.value("--clip", options.clip, "NAME", "Clip of a motion file that holds several");
@@ -130,7 +147,7 @@ void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
   group
       .value("--collider", unchecked.collider, "NAME",
              "What the hair collides with: ellipsoids fitted to the body, or signed distances of its skin (sdf)")
-      ->check(CLI::IsMember(choicesOf("collider")));
+      ->check(oneOf(choicesOf("collider")));
   group.values(
       "--pin", options.pins, "JSON",
       "Hold a vertex of the hair, for instance {\"column\": 3, \"to\": \"scalp\"}; keys as in a scene's \"pins\"");
@@ -161,7 +178,7 @@ void addPlaybackOptions(CLI::App& parser, Options& options) {
       .value("--loop", options.loop, "NAME",
              "At the clip's end: go-on (from where the figure is), in-place, stop, none (begin again without a blend), "
              "or auto: whichever of the first two suits the clip")
-      ->check(CLI::IsMember(std::vector<std::string>(kLoopNames.begin(), kLoopNames.end())));
+      ->check(oneOf(std::vector<std::string>(kLoopNames.begin(), kLoopNames.end())));
 }
 
 void addPictureOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
@@ -170,11 +187,11 @@ void addPictureOptions(CLI::App& parser, Options& options, Unchecked& unchecked)
   group.value("--camera", options.camera, "VIEW",
               "front, three-quarter, side, back, top, or eye and target in metres: ex,ey,ez,tx,ty,tz");
   group.value("--framing", options.framing, "NAME", "How much is in the picture: head, bust or figure")
-      ->check(CLI::IsMember({"head", "bust", "figure"}));
+      ->check(oneOf({"head", "bust", "figure"}));
   group.value("--strands", options.strands, "N", "Strands to draw over a whole head")
       ->check(within(0, findHairField("strands")->maximum));
   group.value("--strand-path", options.strand_path, "NAME", "Shader stage that grows strands: geometry or pulling")
-      ->check(CLI::IsMember({"geometry", "pulling"}));
+      ->check(oneOf({"geometry", "pulling"}));
   group.value("--debug", options.debug, "LIST",
               "Debug views, comma separated: mesh, external, tets, ellipsoids, contacts, velocities, pins");
 }
@@ -201,7 +218,7 @@ void addRunOptions(CLI::App& parser, Options& options) {
   group.value("--screenshot", options.screenshot, "FILE.png",
               "Write the last frame, panels included, when the run ends");
   group.value("--panel", options.panel, "NAME", "Tab that is open at first: simulation, motion, hair, look or debug")
-      ->check(CLI::IsMember({"simulation", "motion", "hair", "look", "debug"}));
+      ->check(oneOf({"simulation", "motion", "hair", "look", "debug"}));
   group.value("--ui-scale", options.ui_scale, "X", "Size of texts and panels, 0.5 to 3")->check(within(0.5, 3));
   group.flag("--hide-panels", options.hide_panels, "Start the window without panels");
   parser.set_version_flag("--version", "hairmesh 0.1")->group(group.heading);
@@ -210,13 +227,14 @@ void addRunOptions(CLI::App& parser, Options& options) {
 void addExportOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
   OptionGroup group{parser, "Export"};
   ExportSpec& spec = options.hair_export;
-  group.value("--export", spec.file, "FILE",
-              "Without a window: write the simulated hair: .abc or .usda (a clip), .hair, .ply or .tfx (a file a frame, its "
-              "number before the dot), .glb (the hair mesh with a morph target a frame)");
+  group.value(
+      "--export", spec.file, "FILE",
+      "Without a window: write the simulated hair: .abc or .usda (a clip), .hair, .ply or .tfx (a file a frame, its "
+      "number before the dot), .glb (the hair mesh with a morph target a frame)");
   group
       .value("--export-what", unchecked.export_what, "NAME",
              "strands as drawn, guides (the hair mesh's columns), or mesh (.glb alone; its default)")
-      ->check(CLI::IsMember({"strands", "guides", "mesh"}));
+      ->check(oneOf({"strands", "guides", "mesh"}));
   group.value("--export-points", spec.points, "N", "Points a strand, evenly from root to tip (as drawn)")
       ->check(within(2, kMostExportPoints));
   group.value("--export-frames", unchecked.export_frames, "A-B", "Frames of the run, from 0, that are exported (all)");
@@ -226,7 +244,7 @@ void addExportOptions(CLI::App& parser, Options& options, Unchecked& unchecked) 
   group.value("--export-shutter", spec.shutter, "X", "Of a frame's length, from its first moment to its last (0.5)")
       ->check(within(0.01, 1));
   group.value("--export-unit", unchecked.export_unit, "NAME", "Unit of the file's numbers: m, cm, mm or in (m)")
-      ->check(CLI::IsMember({"m", "cm", "mm", "in"}));
+      ->check(oneOf({"m", "cm", "mm", "in"}));
 }
 
 // "12-47", "12-" or "12".

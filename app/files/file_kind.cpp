@@ -10,6 +10,7 @@
 #include "app/files/errors.h"
 #include "app/files/json_reader.h"
 #include "app/files/text_file.h"
+#include "app/groom/groom_file.h"
 #include "sim/field_text.h"
 
 namespace app {
@@ -40,11 +41,13 @@ FileKind fileKind(const std::string& file) {
   for (const char* known : {".bvh", ".glb", ".gltf", ".fbx", ".dae"}) {
     if (ending == known) return FileKind::kMotion;
   }
+  if (hasGroomEnding(file)) return FileKind::kHairMesh;
   if (std::string title(15, '\0');
       std::ifstream(file, std::ios::binary).read(title.data(), 15) && title == "hairmesh-state ")
     return FileKind::kState;
   throw InputError(file, "", "is no kind of file that this program reads",
-                   "give a scene or preset (.json), a motion (.bvh, .glb, .gltf, .fbx, .mot) or a hair mesh (.obj)");
+                   "give a scene or preset (.json), a motion (.bvh, .glb, .gltf, .fbx, .mot) a hair mesh (.obj) "
+                   "or a groom (.hair, .abc, .usda, .tfx, .ply)");
 }
 
 std::string partsBeside(const std::string& motion_file) {

@@ -9,6 +9,7 @@
 #include "app/files/errors.h"
 #include "app/files/hair_file.h"
 #include "app/files/text_file.h"
+#include "app/groom/convert.h"
 #include "app/scene/frame_stats.h"
 #include "app/scene/sim_to_render.h"
 #include "app/scene/sleep.h"
@@ -72,6 +73,28 @@ std::string styleTitle(const CharacterSpec& spec) {
   return std::string(sim::styleName(spec.style)) + " " + std::string(sim::resolutionName(spec.resolution));
 }
 
+// A hair mesh from a file: an OBJ by layers, or a groom that is converted; its unit, axes and place as fitHair finds
+// them.
+sim::HairMeshShape shapeFromFile(const CharacterSpec& spec, const Character& character, Haircut& haircut) {
+  sim::HairMeshShape shape;
+  const auto note = [&](const std::string& text) {
+    if (!text.empty()) haircut.note += (haircut.note.empty() ? spec.hair + ": " : "; ") + text;
+  };
+  const std::string bytes = readText(spec.hair);
+  if (groomFormat(bytes, spec.hair)) {
+    GroomHints hints;
+    const Groom groom = readGroom(bytes, spec.hair, &hints);
+    const Conversion conversion = convertGroom(groom, hints, {}, spec.hair);
+    haircut.look = conversion.look;
+    shape = conversion.shape;
+    note(conversionNote(conversion));
+  } else {
+    shape = readHairMesh(bytes, spec.hair, spec.reverse_faces);
+  }
+  note(fitHair(character, spec.fit, shape));
+  return shape;
+}
+
 const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& asset_cache) {
   const std::string title = spec.hair.empty() ? styleTitle(spec) : spec.hair + (spec.reverse_faces ? " reversed" : "");
   const std::string key = body.key + "|" + title + (spec.fit ? " fitted" : "");
@@ -86,9 +109,7 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
   try {
     sim::HairMeshShape shape = spec.hair.empty()
                                    ? sim::makeStyle(spec.style, spec.resolution, body.character.scalp, body.distance)
-                                   : readHairMesh(readText(spec.hair), spec.hair, spec.reverse_faces);
-    if (!spec.hair.empty()) haircut->note = fitHair(body.character, spec.fit, shape);
-    if (!haircut->note.empty()) haircut->note = spec.hair + ": " + haircut->note;
+                                   : shapeFromFile(spec, body.character, *haircut);
     haircut->mesh = sim::buildHairMesh(std::move(shape));
   } catch (const sim::MeshError& error) {
     throw InputError(spec.hair.empty() ? "style " + title + " on " + spec.motion : spec.hair, error.place, error.fault,
@@ -222,6 +243,7 @@ Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, AssetCa
   LoadedBody& body = loadBody(spec, asset_cache);
   actor.body = &body;
   actor.haircut = &cutHair(spec, body, asset_cache);
+  if (actor.haircut->look) takeUnset(*actor.haircut->look, actor.spec.look.hair);
   actor.scalp = &coverScalp(body, *actor.haircut, asset_cache);
   actor.clip = findClip(spec, actor.body->character);
   actor.id = freshId();

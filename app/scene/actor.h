@@ -13,6 +13,7 @@
 #include "app/figure/body_sdf.h"
 #include "app/figure/character.h"
 #include "app/files/scene_file.h"
+#include "app/groom/look_fit.h"
 #include "app/motion/playback.h"
 #include "app/scene/pins.h"
 #include "app/scene/step_error.h"
@@ -44,7 +45,8 @@ struct LoadedBody {
 struct Haircut {
   std::string key;
   std::uint64_t id = 0;
-  std::string note;  // what was found of a file that does not fit the head
+  std::string note;  // what was found of a file that does not fit the head, or was converted
+  std::optional<LookFit> look;  // of a groom's strands
   sim::HairMesh mesh;
   std::vector<sim::HairPart> parts;  // connected ones; empty: all of it is
   std::vector<render::HairFace> faces;

@@ -13,6 +13,7 @@
 #include "tests/bench/collisions.h"
 #include "tests/bench/consistency.h"
 #include "tests/bench/contact_sheet.h"
+#include "tests/bench/conversion.h"
 #include "tests/bench/frames_budget.h"
 #include "tests/bench/gate.h"
 #include "tests/bench/ladder.h"
@@ -42,6 +43,7 @@ struct Asked {
   bench::FramesBudgetOptions frames_budget;
   bench::SkinOptions skin;
   bench::SwingOptions swing;
+  bench::ConversionOptions conversion;
   std::string document, accuracy, performance;
   bool all_hold = true;  // the figures of those that have bounds
 };
@@ -103,6 +105,8 @@ std::vector<Task> tasks() {
        [](Asked& a) {
          if (!bench::runSwing(a.swing)) a.all_hold = false;
        }},
+      {"--conversion", "grooms of ten kinds to hair meshes: distances, silhouettes, time",
+       [](Asked& a) { bench::runConversion(a.conversion); }},
       {"--gate", "every bound on speed and accuracy, one line each; exits 1 where one falls short",
        [](Asked& a) {
          const std::vector<bench::Figure> figures = bench::measureFigures(a.gate);
@@ -144,6 +148,8 @@ void addOptions(CLI::App& program, Asked& a) {
                      "also put --frames-budget's table and chart into this folder's performance.md");
   program.add_option("--skin-document", a.skin.folder, "also put --skin's table into this folder's collision.md");
   program.add_option("--set", a.sets, "NAME=VALUE of a parameter for --collisions, --skin and --swing")->allow_extra_args(false);
+  program.add_option("--conversion-document", a.conversion.folder,
+                     "also put --conversion's tables into this folder's conversion.md");
   program.add_option("--rounds", a.gate.rounds, "turns that the compared ways of --gate take")
       ->check(CLI::Range(1, 100));
   program.add_option("--gate-document", a.gate_document, "also put --gate's figures into this folder's gate.md");

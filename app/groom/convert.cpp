@@ -1,0 +1,224 @@
+#include "app/groom/convert.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+#include "app/files/errors.h"
+#include "app/groom/grown_groom.h"
+
+namespace app {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr int kSamples = 25;             // points a strand
+constexpr double kMisfit = 0.03;         // of the hair's length
+constexpr float kTogether = 0.012f;      // m, between roots of strands that are told of as one
+constexpr std::size_t kMostMisfits = 6;  // groups that are told of
+constexpr double kCrossing = 0.35;       // rad-like, of strands that root together
+
+Groom reversed(Groom groom) {
+  for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+    const auto first = static_cast<std::ptrdiff_t>(groom.strand_first[s]),
+               last = static_cast<std::ptrdiff_t>(groom.strand_first[s + 1]);
+    std::reverse(groom.points.begin() + first, groom.points.begin() + last);
+    if (!groom.widths.empty()) std::reverse(groom.widths.begin() + first, groom.widths.begin() + last);
+    if (!groom.colors.empty()) std::reverse(groom.colors.begin() + first, groom.colors.begin() + last);
+  }
+  return groom;
+}
+
+using Cell = std::array<int, 3>;
+
+Cell cellOf(const Vector3f& root) {
+  return {static_cast<int>(std::floor(root.x() / kTogether)), static_cast<int>(std::floor(root.y() / kTogether)),
+          static_cast<int>(std::floor(root.z() / kTogether))};
+}
+
+// Cells of misfits that touch each other, gathered from one of them.
+std::vector<std::size_t> gather(const Cell& start, std::map<Cell, std::vector<std::size_t>>& cells) {
+  std::vector<std::size_t> strands;
+  std::vector<Cell> queue{start};
+  while (!queue.empty()) {
+    const Cell cell = queue.back();
+    queue.pop_back();
+    const auto entry = cells.find(cell);
+    if (entry == cells.end()) continue;
+    strands.insert(strands.end(), entry->second.begin(), entry->second.end());
+    cells.erase(entry);
+    for (int dx = -1; dx <= 1; ++dx)
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dz = -1; dz <= 1; ++dz) queue.push_back({cell[0] + dx, cell[1] + dy, cell[2] + dz});
+  }
+  return strands;
+}
+
+// Whether strands whose roots share a cell go apart, on the mean over pairs that follow each other.
+bool goApart(const StrandSamples& samples, const std::vector<std::size_t>& of) {
+  std::map<Cell, std::size_t> seen;
+  double sum = 0, count = 0;
+  for (const std::size_t s : of) {
+    const auto [entry, added] = seen.try_emplace(cellOf(samples.strand(s)[0]), s);
+    if (added) continue;
+    const auto path = [&](std::size_t strand) {
+      return std::vector<Vector3f>(samples.strand(strand).begin(), samples.strand(strand).end());
+    };
+    sum += divergence(path(s), path(entry->second));
+    ++count;
+    entry->second = s;
+  }
+  return count > 0 && sum / count > kCrossing;
+}
+
+std::vector<Misfit> findMisfits(const StrandSamples& samples, const HairFit& fit) {
+  std::map<Cell, std::vector<std::size_t>> cells;
+  for (std::size_t s = 0; s < samples.strandCount(); ++s) {
+    if (fit.error.of_strand[s] > kMisfit * fit.error.strand_length) cells[cellOf(samples.strand(s)[0])].push_back(s);
+  }
+  std::vector<Misfit> all;
+  while (!cells.empty()) {
+    const std::vector<std::size_t> strands = gather(cells.begin()->first, cells);
+    Misfit& misfit = all.emplace_back();
+    misfit.strands = static_cast<int>(strands.size());
+    misfit.first = misfit.last = samples.source[strands.front()];
+    for (const std::size_t s : strands) {
+      misfit.first = std::min(misfit.first, samples.source[s]);
+      misfit.last = std::max(misfit.last, samples.source[s]);
+      misfit.root += samples.strand(s)[0] / static_cast<float>(strands.size());
+      misfit.mean += fit.error.of_strand[s] / static_cast<double>(strands.size());
+      misfit.largest = std::max(misfit.largest, static_cast<double>(fit.error.of_strand[s]));
+    }
+    misfit.crossing = goApart(samples, strands);
+  }
+  std::sort(all.begin(), all.end(),
+            [](const Misfit& a, const Misfit& b) { return a.strands * a.mean > b.strands * b.mean; });
+  return all;
+}
+
+template <class... Values>
+std::string line(const char* format, Values... values) {
+  char text[400];
+  std::snprintf(text, sizeof text, format, values...);
+  return std::string(text) + "\n";
+}
+
+std::string misfitLine(const Misfit& misfit, const FitError& error) {
+  return line(
+      "does not fit  %d strand%s of number %d to %d, rooted about (%.3f, %.3f, %.3f) m: %.0f mm off, up to %.0f mm "
+      "(%.0f %% of the length)%s",
+      misfit.strands, misfit.strands == 1 ? "" : "s", misfit.first, misfit.last, misfit.root.x(), misfit.root.y(),
+      misfit.root.z(), 1e3 * misfit.mean, 1e3 * misfit.largest, 100 * misfit.largest / error.strand_length,
+      misfit.crossing ? "; strands of the same roots go other ways" : "");
+}
+
+std::string characterLine(const LookFit& look) {
+  const StrandCharacter& all = look.all;
+  std::string text = "strands       ";
+  char part[160];
+  if (all.curl_radius > 0) {
+    double least = all.curl_radius, most = least;
+    for (const StrandCharacter& bundle : look.bundles) {
+      least = std::min(least, bundle.curl_radius);
+      most = std::max(most, bundle.curl_radius);
+    }
+    std::snprintf(part, sizeof part, "curls of %.1f mm (bundles: %.1f to %.1f), %.1f turns; ", 1e3 * all.curl_radius,
+                  1e3 * least, 1e3 * most, all.curl_turns);
+    text += part;
+  }
+  std::snprintf(part, sizeof part, "end up to %.0f %% early, wander %.1f mm, frizz %.1f mm, clumps closed by %.0f %%",
+                100 * all.length_variation, 1e3 * all.offset, 1e3 * all.frizz, 100 * all.clump);
+  text += part;
+  if (look.taper >= 0) {
+    std::snprintf(part, sizeof part, ", tips %.2f as thick as roots", look.taper);
+    text += part;
+  }
+  return text + "\n";
+}
+
+}  // namespace
+
+Conversion convertGroom(const Groom& given, const GroomHints& hints, const ConvertOptions& options,
+                        const std::string& file) {
+  Groom turned;
+  if (options.reverse) turned = reversed(given);
+  const Groom& groom = options.reverse ? turned : given;
+  Conversion out;
+  out.scale = inferUnit(groom, out.unit);
+  const double said = options.unit > 0 ? options.unit : hints.meters_per_unit.value_or(0);
+  if (said > 0 && std::isfinite(said)) {
+    out.scale = said;
+    char text[60];
+    std::snprintf(text, sizeof text, "units of %g m", said);
+    out.unit = text;
+  }
+  const StrandSamples samples = sampleStrands(groom, out.scale, kSamples);
+  out.strands = static_cast<int>(samples.strandCount());
+  out.left_out = samples.left_out;
+  try {
+    out.fit = fitGroom(samples, options.fit);
+    out.shape = out.fit.shape;
+    sim::buildHairMesh(out.shape);
+  } catch (const std::runtime_error& fault) {
+    throw InputError(file, "", std::string("no hair mesh can be made of it: ") + fault.what(),
+                     "give strands that root on an area of scalp, root first");
+  }
+  out.look = fitLook(groom, out.scale, samples, out.fit);
+  out.misfits = findMisfits(samples, out.fit);
+  if (options.silhouettes) {
+    render::HairLook look;
+    takeLook(out.look, look);
+    Groom metres = groom;
+    for (Vector3f& p : metres.points) p *= static_cast<float>(out.scale);
+    out.silhouette = silhouetteOverlap(metres, growGroom(out.shape, look, out.strands, 2 * kSamples));
+  }
+  return out;
+}
+
+std::string conversionReport(const Conversion& conversion) {
+  const HairFit& fit = conversion.fit;
+  const FitError& error = fit.error;
+  std::string text = line("read          %d strands in %s, median length %.3f m", conversion.strands,
+                          conversion.unit.c_str(), error.strand_length);
+  if (conversion.left_out > 0)
+    text +=
+        line("left out      %d strands: fewer than two points, not finite or shorter than 1 mm", conversion.left_out);
+  text += line("hair mesh     %d vertices in %d columns of %zu layers; %zu root faces in %d region%s",
+               fit.shape.vertexCount(), fit.shape.columnCount(), fit.knots.size(), fit.shape.root_faces.size(),
+               fit.regions, fit.regions == 1 ? "" : "s");
+  if (fit.dropped_faces > 0)
+    text += line("left bare     %d root faces: strands over them go through each other", fit.dropped_faces);
+  text += line(
+      "distance      mean %.2f %% of the length (%.1f mm), 95 %% within %.2f %% (%.1f mm), largest %.0f mm; roots %.1f "
+      "mm",
+      100 * error.mean / error.strand_length, 1e3 * error.mean, 100 * error.share95 / error.strand_length,
+      1e3 * error.share95, 1e3 * error.largest, 1e3 * error.root_mean);
+  if (conversion.silhouette >= 0)
+    text += line("silhouette    overlaps by at least %.3f from six sides", conversion.silhouette);
+  text += characterLine(conversion.look);
+  for (std::size_t k = 0; k < std::min(kMostMisfits, conversion.misfits.size()); ++k)
+    text += misfitLine(conversion.misfits[k], error);
+  if (conversion.misfits.size() > kMostMisfits) {
+    int rest = 0;
+    for (std::size_t k = kMostMisfits; k < conversion.misfits.size(); ++k) rest += conversion.misfits[k].strands;
+    text += line("              and %d strands in %zu smaller groups", rest, conversion.misfits.size() - kMostMisfits);
+  }
+  return text;
+}
+
+std::string conversionNote(const Conversion& conversion) {
+  const FitError& error = conversion.fit.error;
+  int astray = 0;
+  for (const Misfit& misfit : conversion.misfits) astray += misfit.strands;
+  char text[300];
+  std::snprintf(text, sizeof text,
+                "%d strands in %s made into a hair mesh of %d vertices: mean distance %.1f %% of their length, 95 %% "
+                "within %.1f %%",
+                conversion.strands, conversion.unit.c_str(), conversion.shape.vertexCount(),
+                100 * error.mean / error.strand_length, 100 * error.share95 / error.strand_length);
+  return text + (astray > 0 ? "; " + std::to_string(astray) + " strands do not fit (hairmesh-convert says which)"
+                            : std::string());
+}
+
+}  // namespace app

@@ -1,0 +1,50 @@
+// A groom to a hair mesh with its look, and what is said about it. docs/conversion.md
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/groom/groom_file.h"
+#include "app/groom/groom_fit.h"
+#include "app/groom/look_fit.h"
+
+namespace app {
+
+struct ConvertOptions {
+  FitOptions fit;
+  double unit = 0;           // metres in a unit of the file; 0: as the file says, or inferred from the roots' spread
+  bool reverse = false;      // strands are given from tip to root
+  bool silhouettes = false;  // compare them: takes as long as drawing both grooms six times
+};
+
+// Neighbouring strands that one hair mesh cannot hold within 3 % of the hair's length.
+struct Misfit {
+  int strands = 0;
+  int first = 0, last = 0;                         // lowest and highest number in the groom
+  Eigen::Vector3f root = Eigen::Vector3f::Zero();  // m, their mean root, the file's axes
+  double mean = 0, largest = 0;                    // m, of the strands' mean distances
+  bool crossing = false;                           // strands of the same roots go other ways
+};
+
+struct Conversion {
+  sim::HairMeshShape shape;  // m, the file's axes; has passed sim::buildHairMesh
+  HairFit fit;
+  LookFit look;
+  std::string unit;  // in words
+  double scale = 1;  // metres in a unit
+  int strands = 0, left_out = 0;
+  double silhouette = -1;  // smallest overlap of six sides; negative: not compared
+  std::vector<Misfit> misfits;
+};
+
+// Throws InputError naming `file` where no hair mesh can be made of it.
+Conversion convertGroom(const Groom& groom, const GroomHints& hints, const ConvertOptions& options,
+                        const std::string& file);
+
+// Vertices, distances, character of the strands, and what does not fit: one fact a line.
+std::string conversionReport(const Conversion& conversion);
+
+// The same in one sentence: vertices, distances, and how many strands do not fit.
+std::string conversionNote(const Conversion& conversion);
+
+}  // namespace app

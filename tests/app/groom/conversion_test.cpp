@@ -1,0 +1,118 @@
+// Grooms of ten kinds to hair meshes: strands that grow from these come back to those that were given.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "app/files/errors.h"
+#include "app/files/hair_file.h"
+#include "app/groom/convert.h"
+#include "app/groom/root_mesh.h"
+#include "tests/groom_kinds.h"
+
+namespace app {
+namespace {
+
+constexpr int kStrands = 1000, kVertices = 1000;
+
+class ConversionOfAKind : public testing::TestWithParam<groom_kinds::Kind> {};
+
+TEST_P(ConversionOfAKind, StrandsComeBackWithinTheKindsBounds) {
+  const groom_kinds::Kind& kind = GetParam();
+  ConvertOptions options;
+  options.silhouettes = true;
+  options.fit.vertices = kVertices;
+  const Conversion conversion = convertGroom(kind.make(kStrands), {}, options, kind.name);
+  const FitError& error = conversion.fit.error;
+  EXPECT_LE(error.mean, kind.mean * error.strand_length) << conversionReport(conversion);
+  EXPECT_LE(error.share95, kind.share95 * error.strand_length) << conversionReport(conversion);
+  EXPECT_GE(conversion.silhouette, kind.silhouette);
+  EXPECT_LE(conversion.shape.vertexCount(), kVertices);
+  EXPECT_EQ(conversion.left_out, 0);
+  // What is written is read back to the same bits, and is valid.
+  const sim::HairMeshShape again = readHairMesh(writeHairMesh(conversion.shape), "again.obj");
+  EXPECT_EQ(again.positions.size(), conversion.shape.positions.size());
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, ConversionOfAKind, testing::ValuesIn(groom_kinds::kinds()), [](const auto& info) {
+  std::string name = info.param.name;
+  name.erase(std::remove(name.begin(), name.end(), ' '), name.end());
+  return name;
+});
+
+TEST(Conversion, KeepsToTheVerticesAskedFor) {
+  const Groom groom = groom_kinds::cropped(kStrands);
+  int before = 0;
+  double error = 1;
+  for (const int vertices : {150, 400, 1000}) {
+    ConvertOptions options;
+    options.fit.vertices = vertices;
+    const Conversion conversion = convertGroom(groom, {}, options, "cropped");
+    EXPECT_LE(conversion.shape.vertexCount(), vertices);
+    EXPECT_GT(conversion.shape.vertexCount(), std::max(before, vertices / 2));
+    EXPECT_LT(conversion.fit.error.mean, error) << "more vertices bring the strands nearer";
+    before = conversion.shape.vertexCount();
+    error = conversion.fit.error.mean;
+  }
+}
+
+TEST(Conversion, FindsRadiusAndTurnsOfCurls) {
+  ConvertOptions options;
+  options.fit.vertices = 400;
+  const Conversion conversion = convertGroom(groom_kinds::curly(kStrands, 0.003f, 6), {}, options, "curly");
+  EXPECT_NEAR(conversion.look.all.curl_radius, 0.003, 0.0008);
+  EXPECT_NEAR(conversion.look.all.curl_turns, 6, 0.8);
+  const Conversion straight = convertGroom(groom_kinds::cropped(kStrands), {}, options, "straight");
+  EXPECT_EQ(straight.look.all.curl_radius, 0);
+}
+
+TEST(Conversion, SaysWhichStrandsGoAnotherWay) {
+  ConvertOptions options;
+  options.fit.vertices = 400;
+  const Conversion conversion = convertGroom(groom_kinds::twoWays(kStrands), {}, options, "two ways");
+  ASSERT_FALSE(conversion.misfits.empty());
+  EXPECT_TRUE(std::ranges::any_of(conversion.misfits, [](const Misfit& misfit) { return misfit.crossing; }));
+  EXPECT_NE(conversionReport(conversion).find("strands of the same roots go other ways"), std::string::npos);
+}
+
+TEST(Conversion, ReadsUnitsFromTheSpreadOfTheRoots) {
+  Groom groom = groom_kinds::cropped(400);
+  std::string name;
+  EXPECT_EQ(inferUnit(groom, name), 1);
+  for (Eigen::Vector3f& p : groom.points) p *= 100;
+  EXPECT_EQ(inferUnit(groom, name), 0.01);
+  EXPECT_EQ(name, "centimetres");
+}
+
+TEST(Conversion, RefusesWhatCarriesNoHairMesh) {
+  Groom few;
+  for (int i = 0; i < 5; ++i) groom_kinds::add({{0, 0, 0.01f * static_cast<float>(i)}, {0, 0.1f, 0}}, few);
+  EXPECT_THROW(convertGroom(few, {}, {}, "few.hair"), InputError);
+  Groom line;
+  for (int i = 0; i < 100; ++i)
+    groom_kinds::add({{0, 0, 0.001f * static_cast<float>(i)}, {0, 0.1f, 0.001f * static_cast<float>(i)}}, line);
+  try {
+    const Conversion conversion = convertGroom(line, {}, {}, "line.hair");
+    EXPECT_GT(conversion.shape.vertexCount(), 0);
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("line.hair"), std::string::npos);
+  }
+}
+
+TEST(Conversion, TriangulatesAGridWhole) {
+  std::vector<Eigen::Vector2f> points;
+  for (int y = 0; y < 6; ++y)
+    for (int x = 0; x < 7; ++x) points.emplace_back(0.01f * static_cast<float>(x), 0.01f * static_cast<float>(y));
+  double area = 0;
+  for (const auto& t : delaunay(points)) {
+    const auto at = [&](std::size_t k) { return points[static_cast<std::size_t>(t[k])]; };
+    const Eigen::Vector2f a = at(1) - at(0), b = at(2) - at(0);
+    const double one = 0.5 * (a.x() * b.y() - a.y() * b.x());
+    EXPECT_GE(one, -1e-9) << "wound the other way";
+    area += one;
+  }
+  EXPECT_NEAR(area, 0.06 * 0.05, 1e-6);
+}
+
+}  // namespace
+}  // namespace app
