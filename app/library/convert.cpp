@@ -13,8 +13,13 @@ std::size_t strideOf(std::size_t stride, hm_type type, int numbers) {
   return stride != 0 ? stride : size * static_cast<std::size_t>(numbers);
 }
 
-void checkLayout(const void* data, std::size_t has, hm_type type, std::size_t needed, const char* name) {
-  if (type != HM_FLOAT32 && type != HM_FLOAT64)
+// `type` may be any number that a program in C has put there: it is not read as an enumerator before it is known to be
+// one.
+void checkLayout(const void* data, std::size_t has, const hm_type& type, std::size_t needed, const char* name) {
+  int number = 0;
+  static_assert(sizeof number == sizeof type);
+  std::memcpy(&number, &type, sizeof number);
+  if (number != HM_FLOAT32 && number != HM_FLOAT64)
     throw Fault{HM_ERROR_ARGUMENT, std::string(name) + ".type is none of HM_FLOAT32 and HM_FLOAT64"};
   if (has != needed)
     throw Fault{HM_ERROR_SIZE, std::string(name) + " has " + std::to_string(has) + " elements; " +

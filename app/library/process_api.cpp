@@ -1,5 +1,6 @@
 // The library itself: version, messages, log.
 #include <cstdio>
+#include <cstring>
 #include <mutex>
 #include <stdexcept>
 
@@ -70,7 +71,8 @@ const char* hm_result_name(hm_result result) {
       "HM_OK",           "HM_ERROR_ARGUMENT",    "HM_ERROR_HANDLE",  "HM_ERROR_BUSY", "HM_ERROR_SIZE",
       "HM_ERROR_VALUE",  "HM_ERROR_NAME",        "HM_ERROR_MESH",    "HM_ERROR_TEXT", "HM_ERROR_STATE",
       "HM_ERROR_MEMORY", "HM_ERROR_UNSUPPORTED", "HM_ERROR_INTERNAL"};
-  const auto number = static_cast<unsigned>(result);
+  unsigned number = 0;  // any number may come from C
+  std::memcpy(&number, &result, sizeof number);
   return number < sizeof kNames / sizeof *kNames ? kNames[number] : "no result of this library";
 }
 
