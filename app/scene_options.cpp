@@ -83,6 +83,8 @@ Options sortedOut(Options options) {
     case FileKind::kHairMesh:
       fill("--hair", options.hair, file);
       break;
+    case FileKind::kProject:
+      throw UsageError(file + " is a project; start the window without it and open it there");
     case FileKind::kState:
       throw UsageError(file + " is a saved state; name its scene, and it with --load-state");
   }

@@ -58,6 +58,25 @@ void StepContext::refreshGradually(bool on) {
   parts_->gradual = on;
 }
 
+void StepContext::reshape(HairState& state) {
+  Parts& parts = *parts_;
+  parts.material.reshape();
+  const double density = parts.material.memory().params.density;
+  const auto follow = [&](auto& solver) {
+    if (solver && parts.material.memory().known) solver->setModel(*parts.mesh, parts.material.model, density);
+  };
+  follow(parts.single_solver);
+  follow(parts.double_solver);
+  parts.self_contact.reset();
+  parts.reference_contact.reset();
+  state.memory.material = parts.material.memory();
+  RestMemory& rest = state.memory.rest;
+  rest.still = 0;
+  rest.settling = -1;
+  rest.judged = rest.kept_apart = false;
+  state.memory.self_contact = {};
+}
+
 SafetyNets& StepContext::safetyNets() {
   return parts_->stabilization.nets;
 }

@@ -28,6 +28,11 @@ class StepContext {
   // takes the new values over depends on counted work alone. Off at first.
   void refreshGradually(bool on);
 
+  // The mesh has taken another rest shape (mesh/rest_shape.h): elements and masses follow at once, for little; the
+  // balance of gravity in slices over the next steps, until which the old one's serves. `state`: the hair that this
+  // context steps. A state saved within those steps goes on with the new balance at once.
+  void reshape(HairState& state);
+
   // The safety nets in use (all at first), to measure what each saves. Solver::kPaper uses none of them.
   SafetyNets& safetyNets();
 

@@ -34,7 +34,9 @@ FileKind fileKind(const std::string& file) {
   std::string ending = std::filesystem::path(file).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
   if (ending == ".json") {
-    return looksLikeScene(parseJson(readText(file), file)) ? FileKind::kScene : FileKind::kPreset;
+    const nlohmann::json text = parseJson(readText(file), file);
+    if (text.is_object() && text.contains("hairmesh-project")) return FileKind::kProject;
+    return looksLikeScene(text) ? FileKind::kScene : FileKind::kPreset;
   }
   if (ending == ".obj") return FileKind::kHairMesh;
   if (ending == ".mot") return FileKind::kRigidMotion;

@@ -5,7 +5,7 @@
 
 namespace app {
 
-enum class FileKind { kScene, kPreset, kMotion, kRigidMotion, kHairMesh, kState };
+enum class FileKind { kScene, kPreset, kMotion, kRigidMotion, kHairMesh, kState, kProject };
 
 // By its ending; scenes and presets, both JSON, and saved states by their content. Throws InputError for any other
 // file.

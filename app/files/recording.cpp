@@ -28,7 +28,7 @@ struct AskName {
   std::string_view name;
 };
 // What can be recorded: all but the requests that write files.
-constexpr std::array<AskName, 29> kAskNames{{{Ask::kSetParam, "set"},
+constexpr std::array<AskName, 36> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kPause, "pause"},
                                              {Ask::kPauseMotion, "pause-motion"},
                                              {Ask::kSingleStep, "single-step"},
@@ -54,6 +54,13 @@ constexpr std::array<AskName, 29> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kBudget, "budget"},
                                              {Ask::kDeadline, "deadline"},
                                              {Ask::kSkip, "skip"},
+                                             {Ask::kBrush, "brush"},
+                                             {Ask::kOpenProject, "project-file"},
+                                             {Ask::kRewind, "rewind"},
+                                             {Ask::kKeepView, "keep-view"},
+                                             {Ask::kGoToView, "go-to-view"},
+                                             {Ask::kLens, "lens"},
+                                             {Ask::kTurntable, "turntable"},
                                              {Ask::kUndo, "undo"},
                                              {Ask::kRedo, "redo"},
                                              {Ask::kEndGesture, "end-gesture"}}};
@@ -272,6 +279,7 @@ double Tape::turn(int frame, double seconds, Demo& demo) {
   }
   ++turns_;
   // The clock does not repeat itself.
+  if (replay_ || record_) demo.timeline.on = true;
   if (replay_ || record_) demo.governor.counted = demo.deadline.counted = true;
   return seconds;
 }

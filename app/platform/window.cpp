@@ -27,6 +27,7 @@
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
 #include "app/scene/level_of_detail.h"
+#include "app/scene/project.h"
 #include "app/ui/redraw_throttle.h"
 #include "app/ui/input_queue.h"
 #include "app/ui/ui.h"
@@ -99,7 +100,9 @@ void onMouseMove(GLFWwindow* window, double x, double y) {
   const double dx = x - s.mouse_x, dy = y - s.mouse_y;
   s.mouse_x = x;
   s.mouse_y = y;
-  if (ImGui::GetIO().WantCaptureMouse) return;
+  const BrushState& brush = s.ui.brush;
+  const bool brushes = brush.stroking || (brush.over_hair && pressed(window, GLFW_MOUSE_BUTTON_LEFT));
+  if (ImGui::GetIO().WantCaptureMouse || brushes) return;
   int width = 1, height = 1;
   glfwGetWindowSize(window, &width, &height);
   const bool shift = glfwGetKey(window, GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS;
@@ -256,6 +259,15 @@ Demo openForWindow(Scene scene, const Options& options, double aspect) {
 
 namespace {
 
+UiState uiOf(const Options& options) {
+  UiState ui;
+  ui.visible = !options.hide_panels;
+  ui.open_tab = tabIndex(options.panel);
+  ui.kept_folder = options.frames_given ? "" : keptFolder();  // runs of so many frames leave nothing behind
+  ui.recent = readRecent(ui.kept_folder);
+  return ui;
+}
+
 // After the last frame: what was asked to be written. Returns the exit code.
 int endRun(const Options& options, const RunReport& run, int frames, Tape& tape, Demo& demo) {
   if (!options.report.empty()) writeReport(options.report, run, demo);
@@ -275,11 +287,10 @@ int runWindow(Scene scene, const Options& options) {
   const double start = now();
   Tape tape(options, scene);
   Demo demo = openForWindow(std::move(scene), options, tape.aspect());
-  UiState ui;
-  ui.visible = !options.hide_panels;
-  ui.open_tab = tabIndex(options.panel);
-  ui.kept_folder = options.frames_given ? "" : keptFolder();  // runs of so many frames leave nothing behind
-  ui.recent = readRecent(ui.kept_folder);
+  UiState ui = uiOf(options);
+  Autosave autosave(ui.kept_folder);
+  ui.offered = autosave.left();
+  demo.timeline.on = true;
   Session callbacks{demo, ui};
   // The panels' backend chains to the callbacks that it finds.
   setCallbacks(window.handle, callbacks);
@@ -313,6 +324,8 @@ int runWindow(Scene scene, const Options& options) {
     glfwGetFramebufferSize(window.handle, &target.width, &target.height);
     const double seconds = frameSeconds(options, demo, last);
     advanceFrame(demo, tape.turn(frame, frame == 0 && options.load_state.empty() ? 0 : seconds, demo), target);
+    if (!ui.to_forget.empty()) autosave.forget(std::exchange(ui.to_forget, ""));
+    autosave.keep(now(), demo);
     demo.stats.skipped[kSkipEvents] = {throttle.waited(), 1, 0};
     writePictures(demo, target);
     if (frame + 1 == options.save_state_at) writeFile(options.save_state, demoStateBytes(demo));

@@ -260,7 +260,7 @@ Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, AssetCa
 
 const HaircutPair* coarsePair(const Actor& actor, sim::Resolution resolution, AssetCache& asset_cache) {
   const sim::Resolution own = actor.spec.resolution;
-  if (!actor.spec.hair.empty() || own == resolution || own == sim::Resolution::kMinimal) return nullptr;
+  if (!actor.spec.hair.empty() || actor.haircut->edited || own == resolution || own == sim::Resolution::kMinimal) return nullptr;
   for (const auto& pair : asset_cache.pairs) {
     if (pair->fine == actor.haircut && pair->resolution == resolution) return pair.get();
   }

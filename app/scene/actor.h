@@ -21,6 +21,8 @@
 #include "sim/mesh/connected_components.h"
 #include "sim/mesh/hair_mesh.h"
 #include "sim/mesh/hair_state.h"
+#include "sim/mesh/rest_shape.h"
+#include "sim/mesh/shape_brush.h"
 #include "sim/mesh/shape_transfer.h"
 #include "sim/sleep.h"
 #include "sim/step.h"
@@ -51,6 +53,10 @@ struct Haircut {
   std::vector<sim::HairPart> parts;  // connected ones; empty: all of it is
   std::vector<render::HairFace> faces;
   std::vector<float> rest;  // positions of the rest shape, three floats a vertex
+  // Of hair that brushes have reshaped, which one actor alone wears.
+  bool edited = false;
+  std::optional<sim::RestShape> reshape;
+  mutable std::optional<sim::ShapeBrushes> brushes;  // scratch
 };
 
 // Where a body is scalp among the roots of a haircut; see root_cover.h.

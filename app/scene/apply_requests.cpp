@@ -7,11 +7,14 @@
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
 #include "app/files/file_kind.h"
+#include "app/files/hair_file.h"
 #include "app/files/output_file.h"
 #include "app/files/presets.h"
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
+#include "app/scene/groom_brush.h"
 #include "app/scene/present_scene.h"
+#include "app/scene/project.h"
 #include "sim/field_text.h"
 
 namespace app {
@@ -121,6 +124,8 @@ void openAnyFile(const std::string& file, Demo& demo) {
       return post(Ask::kHairFile, "");
     case FileKind::kState:
       return post(Ask::kLoadState, "");
+    case FileKind::kProject:
+      return post(Ask::kOpenProject, "");
   }
 }
 
@@ -188,9 +193,22 @@ void savePreset(const Request& request, Demo& demo) {
   showMessage("saved " + request.text, demo);
 }
 
+// Hair that brushes have reshaped becomes a file of its own beside the scene.
+void saveReshapedHair(const std::string& scene_file, const Demo& demo, Scene& scene) {
+  for (std::size_t i = 0; i < demo.actors.size(); ++i) {
+    if (!demo.actors[i].haircut->edited) continue;
+    const std::filesystem::path beside =
+        std::filesystem::path(scene_file).replace_extension().string() + "-hair" + std::to_string(i + 1) + ".obj";
+    writeFile(beside.string(), writeHairMesh(demo.actors[i].haircut->mesh.shape));
+    scene.characters[i].hair = beside.string();
+    scene.characters[i].fit = scene.characters[i].reverse_faces = false;
+  }
+}
+
 void saveScene(const Request& request, Demo& demo) {
   Scene scene = presentScene(demo);
   scene.name = stem(request.text);
+  saveReshapedHair(request.text, demo, scene);
   writeFile(request.text, writeScene(movable(std::move(scene))));
   demo.scene.file = request.text;
   demo.scene.name = stem(request.text);
@@ -201,6 +219,30 @@ void saveScene(const Request& request, Demo& demo) {
 void saveState(const Request& request, Demo& demo) {
   writeFile(request.text, demoStateBytes(demo));
   showMessage("saved " + request.text, demo);
+}
+
+long frameOf(const Request& request) {
+  return static_cast<long>(std::clamp(request.value, -1.0, 1e15));
+}
+
+std::optional<Camera>& bookmark(const Request& request, Demo& demo) {
+  const double last = static_cast<double>(demo.bookmarks.size() - 1);
+  return demo.bookmarks[static_cast<std::size_t>(std::clamp(request.value, 0.0, last))];
+}
+
+void keepView(const Request& request, Demo& demo) {
+  bookmark(request, demo) = demo.camera;
+  showMessage("view kept", demo);
+}
+
+// The kept direction, distance and angle, about where the figure is now.
+void goToView(const Request& request, Demo& demo) {
+  const std::optional<Camera>& kept = bookmark(request, demo);
+  if (!kept) throw InputError("", "", "no view is kept there", "keep one first");
+  const Camera now = demo.camera;
+  demo.camera = *kept;
+  demo.camera.anchor = now.anchor;
+  demo.camera.jumped = now.jumped;
 }
 
 int stepsOf(const Request& request) {
@@ -266,6 +308,27 @@ constexpr Action kActions[] = {
        demo.capture.recording = request.value != 0;
        demo.capture.recorded = 0;
      }},
+    {Ask::kBrush,
+     [](const Request& request, Demo& demo) {
+       applyBrush(parseBrush(request.name, request.text), demo.selected, demo);
+     }},
+    {Ask::kSaveProject,
+     [](const Request& request, Demo& demo) {
+       saveProject(request.text, demo);
+       showMessage("saved " + request.text, demo);
+     }},
+    {Ask::kOpenProject,
+     [](const Request& request, Demo& demo) {
+       openProject(request.text, demo);
+       showMessage("project " + stem(request.text), demo);
+     }},
+    {Ask::kRewind, [](const Request& request, Demo& demo) { rewindTo(frameOf(request), demo); }},
+    {Ask::kKeepView, keepView},
+    {Ask::kGoToView, goToView},
+    {Ask::kLens,
+     [](const Request& request, Demo& demo) { demo.camera.fov = std::clamp(request.value, 0.05, 2.5); }},
+    {Ask::kTurntable,
+     [](const Request& request, Demo& demo) { demo.turntable = std::clamp(request.value, -10.0, 10.0); }},
     {Ask::kUndo, [](const Request& request, Demo& demo) { undoEdits(stepsOf(request), demo); }},
     {Ask::kRedo, [](const Request& request, Demo& demo) { redoEdits(stepsOf(request), demo); }},
     {Ask::kEndGesture, [](const Request&, Demo& demo) { demo.edits.gesture = false; }},

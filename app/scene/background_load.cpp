@@ -138,6 +138,7 @@ void replaceActor(Actor fresh, int index, bool same_motion, Demo& demo) {
   fresh.jumped = old.jumped;
   old = std::move(fresh);
   tidy(demo.actors, demo.asset_cache);
+  forgetMoments(demo.timeline);
   const CameraSpec& camera = demo.scene.camera;
   if (index != 0 || same_motion || !demo.camera.follow) return;
   if (camera.eye && camera.target) {
@@ -156,6 +157,8 @@ void replaceScene(Demo fresh, Demo& demo) {
   fresh.loading = std::move(demo.loading);
   fresh.requests = std::move(demo.requests);
   fresh.edits = std::move(demo.edits);
+  fresh.timeline.on = demo.timeline.on;
+  fresh.bookmarks = demo.bookmarks;
   fresh.message = "scene " + fresh.scene.name;
   demo = std::move(fresh);
 }

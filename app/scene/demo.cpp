@@ -1,6 +1,7 @@
 #include "app/scene/demo.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "app/scene/level_of_detail.h"
@@ -10,6 +11,8 @@
 namespace app {
 
 namespace {
+
+constexpr double kWholeTurn = 2 * 3.14159265358979323846;
 
 // How many steps the frame takes: the clock's, or those asked for one by one.
 int stepsToTake(double seconds, Demo& demo) {
@@ -307,9 +310,11 @@ void advanceFrame(Demo& demo, double seconds, const FrameTarget& target) {
 
   timed(demo.stats.seconds[kTimeHandOver], [&] { handOverPositions(asked || steps > 0, demo); });
   follow(demo.actors.front(), seconds, demo.aspect, demo.camera);
+  if (demo.turntable != 0) demo.camera.yaw = std::remainder(demo.camera.yaw + demo.turntable * seconds, kWholeTurn);
 
   advanceShownTime(seconds, demo);
   ++demo.frames;
+  keepMoment(demo);
 
   timed(demo.stats.seconds[kTimeDraw], [&] { draw(demo, target); });
   if (target.draw_panels) {

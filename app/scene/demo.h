@@ -2,7 +2,9 @@
 // reads the pixels differs.
 #pragma once
 
+#include <array>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +19,7 @@
 #include "app/scene/frame_stats.h"
 #include "app/scene/governor.h"
 #include "app/scene/request.h"
+#include "app/scene/timeline.h"
 #include "render/renderer.h"
 
 namespace app {
@@ -51,6 +54,9 @@ struct Demo {
   int single_steps = 0;  // asked for while paused
 
   EditHistory edits;
+  Timeline timeline;
+  std::array<std::optional<Camera>, 4> bookmarks;
+  double turntable = 0;  // rad/s
   BackgroundLoad loading;
   std::vector<Request> requests;  // applied at the start of the next frame
   std::string message;            // the last fault or success, for the window

@@ -51,7 +51,7 @@ auto savedOf(A& actor) requires std::same_as<std::remove_const_t<A>, Actor> {
 template <class D>
 auto savedOf(D& demo) requires std::same_as<std::remove_const_t<D>, Demo> {
   auto& [scene, asset_cache, actors, selected, camera, aspect, picture_height, origin, shown_fraction, debug, clock,
-         governor, deadline, running, frames, shown_time, paused, single_steps, edits, loading, requests, message,
+         governor, deadline, running, frames, shown_time, paused, single_steps, edits, timeline, bookmarks, turntable, loading, requests, message,
          message_is_fault, capture, stats, history, history_next, debug_geometry, hair_inputs, body_inputs] = demo;
   auto& [ahead, lost, steps, time, step] = clock;
   return std::tie(camera.anchor, camera.jumped, aspect, picture_height, origin, shown_fraction, ahead, lost, steps,
@@ -257,7 +257,10 @@ std::string demoStateBytes(const Demo& demo) {
 }
 
 void loadDemoState(const std::string& file, bool keep_view, Demo& demo) {
-  const std::string text = readText(file);
+  restoreDemoState(readText(file), file, keep_view, demo);
+}
+
+void restoreDemoState(const std::string& text, const std::string& file, bool keep_view, Demo& demo) {
   sim::ByteReader from{bodyOf(text, file)};
   std::uint64_t count = 0;
   sim::readBytes(from, count);

@@ -22,5 +22,7 @@ std::string demoStateBytes(const Demo& demo);
 // Throws InputError when the file is no state, cut off, changed, of another version or of another scene; then nothing
 // has changed.
 void loadDemoState(const std::string& file, bool keep_view, Demo& demo);
+// The same of bytes at hand; `name` is for messages.
+void restoreDemoState(const std::string& bytes, const std::string& name, bool keep_view, Demo& demo);
 
 }  // namespace app

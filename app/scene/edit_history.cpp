@@ -8,6 +8,7 @@
 #include "app/files/errors.h"
 #include "app/files/recording.h"
 #include "app/scene/demo.h"
+#include "app/scene/groom_brush.h"
 #include "app/scene/present_scene.h"
 #include "sim/field_text.h"
 
@@ -16,7 +17,7 @@ namespace app {
 namespace {
 
 // What an edit reaches beyond the settings.
-enum Reach { kSettings = 0, kOfView = 1, kOfHair = 2, kOfMotion = 4 };
+enum Reach { kSettings = 0, kOfView = 1, kOfHair = 2, kOfMotion = 4, kOfShape = 8 };
 
 struct EditKind {
   Ask what;
@@ -35,6 +36,9 @@ constexpr EditKind kEditKinds[] = {{Ask::kSetParam, kSettings, true, ""},
                                    {Ask::kDebugView, kSettings, false, "Debug view"},
                                    {Ask::kView, kOfView, false, "View"},
                                    {Ask::kFollow, kOfView, false, "Follow figure"},
+                                   {Ask::kGoToView, kOfView, false, "Kept view"},
+                                   {Ask::kLens, kOfView, true, "Lens"},
+                                   {Ask::kBrush, kOfHair | kOfShape, true, ""},
                                    {Ask::kReset, kOfHair, false, "Hair to rest"},
                                    {Ask::kCollapse, kOfHair, false, "Collapse"},
                                    {Ask::kStyle, kOfHair, false, "Style"},
@@ -61,6 +65,7 @@ std::string spaced(std::string name) {
 
 std::string titleOf(const Request& request, const EditKind& kind) {
   if (request.what == Ask::kSetParam) return spaced(request.name).append(" ").append(request.text);
+  if (request.what == Ask::kBrush) return request.name;
   std::string title = kind.title;
   if (!request.name.empty() && request.what != Ask::kMotionFile) title.append(" ").append(request.name);
   if (!request.text.empty()) title.append(" ").append(spaced(stem(request.text)));
@@ -81,8 +86,9 @@ EditSide sideOf(const Demo& demo, int reach) {
   if (reach & kOfView) side.camera = demo.camera;
   if (!(reach & (kOfHair | kOfMotion))) return side;
   for (const Actor& actor : demo.actors) {
-    ActorMoment moment{scalpToWorld(actor.body->character, actor.pose), actor.hair, {}};
+    ActorMoment moment{scalpToWorld(actor.body->character, actor.pose), actor.hair, {}, {}};
     if (reach & kOfMotion) moment.playback = actor.playback;
+    if (reach & kOfShape || actor.haircut->edited) moment.shape = actor.haircut->mesh.shape.positions;
     side.moments.push_back(std::move(moment));
   }
   return side;
@@ -165,14 +171,17 @@ void bringBack(const EditSide& side, Demo& demo) {
     demo.paused = paused;
   } else {
     for (std::size_t i = 0; i < demo.actors.size(); ++i) {
-      if (!sameCast(side.cast[i], demo.actors[i].spec))
+      const bool another_shape = demo.actors[i].haircut->edited && !side.moments.empty() && side.moments[i].shape.empty();
+      if (another_shape || !sameCast(side.cast[i], demo.actors[i].spec))
         castAnew(side.cast[i], side.moments.empty() ? nullptr : &side.moments[i], static_cast<int>(i), demo);
     }
   }
   bringBackSettings(side, demo);
   for (std::size_t i = 0; i < side.moments.size(); ++i) {
-    if (side.moments[i].hair.positions.size() == demo.actors[i].hair.positions.size())
-      bringBack(side.moments[i], demo.actors[i]);
+    const ActorMoment& moment = side.moments[i];
+    if (moment.hair.positions.size() != demo.actors[i].hair.positions.size()) continue;
+    if (!moment.shape.empty()) reshapeHair(moment.shape, static_cast<int>(i), demo);
+    bringBack(moment, demo.actors[i]);
   }
   if (side.camera) bringBackView(*side.camera, demo.camera);
   demo.shown_fraction = -1;

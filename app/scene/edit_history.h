@@ -25,6 +25,7 @@ struct ActorMoment {
   Rigid head = Rigid::Identity();  // scalp frame to world
   sim::HairState hair;
   std::optional<Playback> playback;
+  std::vector<Vec3> shape;  // rest positions of hair that brushes have reshaped or are about to
 };
 
 // What an edit can change, as it is at one moment.

@@ -39,6 +39,14 @@ enum class Ask {
   kSkip,         // name, value
   kScreenshot,   // text: file, empty for the next free name
   kRecord,       // value: 1 starts, 0 ends
+  kBrush,        // name: tool, text: a sample of a stroke on the selected character's hair; see groom_brush.h
+  kSaveProject,  // text: file
+  kOpenProject,  // text: file
+  kRewind,       // value: number of the frame to go back to; see timeline.h
+  kKeepView,     // value: bookmark 0 to 3 takes the present view
+  kGoToView,     // value: bookmark whose view is taken
+  kLens,         // value: rad, the camera's vertical angle
+  kTurntable,    // value: rad/s that the camera goes round the figure
   kUndo,         // value: so many steps back
   kRedo,         // value: so many steps on
   kEndGesture,   // a drag is over: what follows is a step of its own

@@ -105,7 +105,7 @@ void fileRow(Demo& demo, UiState& ui) {
 void endGesture(Demo& demo, UiState& ui) {
   const auto edits = [](const Request& request) { return request.what != Ask::kEndGesture; };
   ui.dragging = ui.dragging || std::ranges::any_of(demo.requests, edits);
-  if (!ui.dragging || ImGui::IsAnyItemActive()) return;
+  if (!ui.dragging || ImGui::IsAnyItemActive() || ui.brush.stroking) return;
   ui.dragging = false;
   postRequest(demo, {Ask::kEndGesture, "", ""});
 }
@@ -197,7 +197,8 @@ std::string messageText(const Demo& demo) {
   return demo.message_is_fault ? demo.message + "\n" + loading : loading;
 }
 
-void message(Demo& demo, UiState& ui) {
+// `below`: pixels that the timeline takes.
+void message(Demo& demo, UiState& ui, float below) {
   const std::string text = messageText(demo);
   if (demo.message != ui.shown_message) {
     ui.shown_message = demo.message;
@@ -213,7 +214,7 @@ void message(Demo& demo, UiState& ui) {
   const float margin = kMargin * ui.text_scale, taken = ui.visible && !folded(ui) ? sidebarWidth(ui) + margin : 0;
   const bool beside = size.x - taken > kMinMessageWidth * ui.text_scale;
   const float left = (beside ? taken : 0) + margin, width = size.x - left - margin;
-  ImGui::SetNextWindowPos({left + 0.5f * width, size.y - 2 * margin}, ImGuiCond_Always, {0.5f, 1});
+  ImGui::SetNextWindowPos({left + 0.5f * width, size.y - 2 * margin - below}, ImGuiCond_Always, {0.5f, 1});
   ImGui::SetNextWindowSizeConstraints({0, 0}, {width, 0.8f * size.y});
   const bool fault = demo.message_is_fault;
   if (fault) ImGui::PushStyleColor(ImGuiCol_WindowBg, ImVec4(0.30f, 0.10f, 0.09f, 0.96f));
@@ -278,6 +279,7 @@ int tabIndex(std::string_view name) {
 
 void buildUi(Demo& demo, UiState& ui) {
   ui.items.clear();
+  brushFrame(demo, ui);
   count(!ui.visible, demo.stats.always[kHiddenPanels]);
   if (ui.visible) {
     sidebar(demo, ui);
@@ -285,7 +287,8 @@ void buildUi(Demo& demo, UiState& ui) {
   }
   historyPanel(demo, ui);
   filePanel(demo, ui);
-  message(demo, ui);
+  offerPanel(demo, ui);
+  message(demo, ui, timelinePanel(demo, ui, folded(ui) ? 0 : sidebarWidth(ui) + kMargin * ui.text_scale));
   help(ui);
   endGesture(demo, ui);
 }

@@ -30,6 +30,17 @@ struct FileBrowser {
   std::vector<FolderEntry> entries;
   std::array<char, 512> name{};
   std::string to_replace;  // is there already and is written on the second press
+  bool project = false;    // what is saved: all that moves as well
+};
+
+// The brush in a person's hand.
+struct BrushState {
+  int tool = -1;  // of sim::BrushTool; -1: none
+  double radius = 0.04, strength = 0.5, falloff = 1;  // m
+  bool mirror = false;
+  bool over_hair = false, stroking = false;  // then a drag is the brush's, not the camera's
+  bool held = false;                         // the button, in the frame before
+  Vec3 last = Vec3::Zero();                  // m, scalp frame: where combing has come to
 };
 
 // The parameters as a preset left them, to tell whether they have been changed since.
@@ -60,6 +71,9 @@ struct UiState {
   PresetMark preset;
   std::string to_replace;  // a file that is there already and is written on the second press
   FileBrowser browser;
+  std::string offered, to_forget;  // project that an earlier run has left; one that a person does not want
+  long scrubbed = -1;              // frame that the timeline is dragged to
+  BrushState brush;
   std::string kept_folder;          // where the list of recent files is kept; empty: nowhere
   std::vector<std::string> recent;  // files opened last
   bool leaving = false;       // Esc was pressed once

@@ -150,7 +150,7 @@ void take(const std::string& file, Demo& demo, UiState& ui) {
       openFile(file, demo, ui);
       break;
     case BrowseFor::kSaveScene:
-      postRequest(demo, {Ask::kSaveScene, "", file});
+      postRequest(demo, {browser.project ? Ask::kSaveProject : Ask::kSaveScene, "", file});
       noteRecent(file, ui.kept_folder, ui.recent);
       break;
   }
@@ -206,6 +206,10 @@ void filePanel(Demo& demo, UiState& ui) {
     ImGui::PushTextWrapPos(0);
     ImGui::TextUnformatted(purposeOf(ui.browser.what).title);
     ImGui::PopTextWrapPos();
+    if (ui.browser.what == BrowseFor::kSaveScene) {
+      ImGui::Checkbox("As a project: with the hair as it moves and its brushed shape", &ui.browser.project);
+      noteItem("as_project", ui);
+    }
     placesRow(ui);
     std::string chosen;
     const float below = ImGui::GetFrameHeightWithSpacing();

@@ -1,6 +1,7 @@
 // Keys, and the list of them that ? shows.
 #include <imgui/imgui.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "app/ui/ui.h"
@@ -13,7 +14,7 @@ namespace {
 
 constexpr KeyHelp kKeyHelp[] = {
     {"Space", "pause or go on"},
-    {".", "one simulation step"},
+    {".  ,", "one simulation step; back to the moment kept before"},
     {"R", "hair to rest"},
     {"Home", "everything to the start"},
     {"C", "collapse the hair onto its roots"},
@@ -26,6 +27,7 @@ constexpr KeyHelp kKeyHelp[] = {
     {"P", "screenshot"},
     {"K", "record a PNG sequence"},
     {"F5", "reload the shaders (also reloaded when saved)"},
+    {"G  [  ]", "next brush or none; smaller, larger. Drag on the hair to use it"},
     {"Ctrl Z", "undo; with Shift, or Ctrl Y: do again"},
     {"Ctrl O  Ctrl S", "open a file, save the scene"},
     {"Up  Down", "the keyboard goes to the panels: arrows, Space, Enter; Esc lets go"},
@@ -75,6 +77,11 @@ void pressEscape(Demo& demo, UiState& ui) {
 constexpr KeyAction kKeyActions[] = {
     {' ', [](Demo& demo, UiState&) { toggle(Ask::kPause, demo.paused, demo); }},
     {'.', [](Demo& demo, UiState&) { send(Ask::kSingleStep, "", demo); }},
+    {',',
+     [](Demo& demo, UiState&) {
+       postRequest(demo, {Ask::kPause, "", "", 1});
+       postRequest(demo, {Ask::kRewind, "", "", static_cast<double>(demo.frames - 1)});
+     }},
     {'R', [](Demo& demo, UiState&) { send(Ask::kReset, "", demo); }},
     {kKeyHome, [](Demo& demo, UiState&) { send(Ask::kRestart, "", demo); }},
     {'C', [](Demo& demo, UiState&) { send(Ask::kCollapse, "", demo); }},
@@ -99,6 +106,9 @@ constexpr KeyAction kKeyActions[] = {
     {'P', [](Demo& demo, UiState&) { send(Ask::kScreenshot, "", demo); }},
     {kKeyF12, [](Demo& demo, UiState&) { send(Ask::kScreenshot, "", demo); }},
     {'K', [](Demo& demo, UiState&) { toggle(Ask::kRecord, demo.capture.recording, demo); }},
+    {'G', [](Demo&, UiState& ui) { ui.brush.tool = (ui.brush.tool + 2) % 6 - 1; }},
+    {'[', [](Demo&, UiState& ui) { ui.brush.radius = std::max(0.005, ui.brush.radius / 1.2); }},
+    {']', [](Demo&, UiState& ui) { ui.brush.radius = std::min(0.2, ui.brush.radius * 1.2); }},
     {kKeyTab, [](Demo&, UiState& ui) { ui.visible = !ui.visible; }},
     {'/', [](Demo&, UiState& ui) { ui.help = !ui.help; }},
     {'?', [](Demo&, UiState& ui) { ui.help = !ui.help; }},

@@ -274,6 +274,7 @@ void motionTab(Demo& demo, UiState& ui) {
     bool following = demo.camera.follow;
     rowLabel("Follow figure", "The camera goes along with the head");
     if (ImGui::Checkbox("##follow", &following)) postRequest(demo, {Ask::kFollow, "", "", following ? 1.0 : 0.0});
+    cameraRows(demo, ui);
   }
   if (section("What was read", false)) {
     for (const std::string& note : actor.body->character.notes) {
@@ -286,6 +287,7 @@ void motionTab(Demo& demo, UiState& ui) {
 
 void hairTab(Demo& demo, UiState& ui) {
   const Actor& actor = selectedActor(demo);
+  if (section("Brushes", true)) brushSection(ui);
   if (section("Haircut", true)) {
     const bool from_file = !actor.spec.hair.empty();
     const int style =

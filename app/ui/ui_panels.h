@@ -18,6 +18,16 @@ void skipsSection(Demo& demo, UiState& ui);
 // Stages as a stacked bar and their history (figure 6 of the paper), solver iterations and residual.
 void timingsPanel(Demo& demo, UiState& ui);
 
+// The timeline right of `left` (pixels); returns the height that it takes of the window. The box that offers what an
+// earlier run has left. Lens, turntable and kept views.
+float timelinePanel(Demo& demo, UiState& ui, float left);
+void offerPanel(Demo& demo, UiState& ui);
+void cameraRows(Demo& demo, UiState& ui);
+
+// The brushes' settings; and, before the panels, their ring on the hair and what a drag asks for.
+void brushSection(UiState& ui);
+void brushFrame(Demo& demo, UiState& ui);
+
 // The steps that can be undone and done again, by name; a press goes there.
 void historyPanel(Demo& demo, UiState& ui);
 

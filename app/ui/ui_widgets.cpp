@@ -321,6 +321,10 @@ void drawIcon(Icon icon, ImVec2 m, float s, bool lit, ImU32 ink, ImDrawList* lis
       list->AddTriangleFilled({m.x - r, m.y - r}, {m.x - r, m.y + r}, {m.x + 0.45f * r, m.y}, ink);
       list->AddRectFilled({m.x + 0.55f * r, m.y - r}, {m.x + r, m.y + r}, ink, 1);
       break;
+    case Icon::kBack:
+      list->AddTriangleFilled({m.x + r, m.y - r}, {m.x + r, m.y + r}, {m.x - 0.45f * r, m.y}, ink);
+      list->AddRectFilled({m.x - r, m.y - r}, {m.x - 0.55f * r, m.y + r}, ink, 1);
+      break;
     case Icon::kReset:
       drawTurn(list, m, r, ink);
       break;
@@ -384,6 +388,7 @@ int segments(const char* name, std::initializer_list<const char*> labels, int ch
   const float count = static_cast<float>(labels.size());
   const float width = (ImGui::GetContentRegionAvail().x - gap * (count - 1)) / count;
   ImGui::PushID(name);
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {2, ImGui::GetStyle().FramePadding.y});
   for (const char* label : labels) {
     if (index) ImGui::SameLine(0, gap);
     const bool lit = index == chosen;
@@ -397,6 +402,7 @@ int segments(const char* name, std::initializer_list<const char*> labels, int ch
     noteItem(std::string(name) + " " + label, ui);
     ++index;
   }
+  ImGui::PopStyleVar();
   ImGui::PopID();
   return pressed;
 }

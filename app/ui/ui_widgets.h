@@ -35,7 +35,7 @@ void sceneGroup(std::string_view group, Demo& demo, UiState& ui);
 // A label in the left column; the control that follows fills the rest.
 void rowLabel(const std::string& text, const std::string& help);
 
-enum class Icon { kPlay, kPause, kStep, kReset, kRestart, kCollapse, kPhoto, kRecord, kHelp, kPanels };
+enum class Icon { kPlay, kPause, kStep, kReset, kRestart, kCollapse, kPhoto, kRecord, kHelp, kPanels, kBack };
 bool iconButton(Icon icon, const char* name, const std::string& help, bool lit, UiState& ui);
 
 // Buttons side by side, one of them chosen. Returns the index pressed, or -1.

@@ -66,6 +66,17 @@ void Material::follow(const SimParams& params) {
   memory_.outdated = wantedLoad() > 0 && !same;
 }
 
+void Material::reshape() {
+  for (std::size_t v = 0; v < x_.size(); ++v) x_[v] = plain(mesh_->shape.positions[v]);
+  if (!memory_.known) return;
+  RestBalance kept = std::move(balance_);
+  rebuild();
+  balance_ = std::move(kept);
+  applyBalance();
+  memory_.slices = 0;
+  memory_.outdated = wantedLoad() > 0;
+}
+
 bool Material::work() {
   if (stage_ == Stage::kIdle) {
     if (!memory_.outdated) return false;

@@ -32,6 +32,10 @@ struct Material {
   // Stiffnesses and weight follow at once, the balance by its products. Then outdated() until its own is solved for.
   void follow(const SimParams& params);
 
+  // The mesh has another rest shape (mesh/rest_shape.h). What balanced gravity in the old one serves, by its products,
+  // until the new one's balance is solved for: outdated() until then.
+  void reshape();
+
   // Makes the elements anew that the step's input moves.
   void setMoving(std::span<const PinnedVertex> pins);
 

@@ -7,6 +7,8 @@
 #include <set>
 #include <utility>
 
+#include "sim/mesh/rest_measures.h"
+
 namespace sim {
 
 MeshError::MeshError(std::string place_, std::string fault_, std::string mend_)
@@ -17,7 +19,6 @@ MeshError::MeshError(std::string place_, std::string fault_, std::string mend_)
 
 namespace {
 
-constexpr double kShortestEdge = 1e-5;  // m; shorter ones ruin the conditioning of the solve
 constexpr double kLargestCoordinate = 1e3;
 
 std::string faceName(int f) {
@@ -126,18 +127,14 @@ void addPrisms(HairMesh& mesh) {
         CornerTet& tet = tets[k];
         const std::array<int, 4> corners = cornerTetOf(k, n);
         for (int i = 0; i < 4; ++i) tet.v[i] = prism.v[corners[i]];
-        const Vec3& x0 = shape.positions[tet.v[0]];
-        tet.rest_volume = (shape.positions[tet.v[1]] - x0)
-                              .dot((shape.positions[tet.v[2]] - x0).cross(shape.positions[tet.v[3]] - x0)) /
-                          6;
-        if (!(tet.rest_volume > 1e-15)) {
+        tet.rest_volume = cornerVolume(tet.v, shape.positions);
+        if (!(tet.rest_volume > kSmallestCornerVolume)) {
           throw MeshError(faceName(f) + ", layer " + std::to_string(l) + ", corner " + std::to_string(k),
                           "the prism is flat or inverted there", "move its corners so that the layers do not cross");
         }
         sum += tet.rest_volume;
       }
-      // A corner tetrahedron of a parallelepiped is a sixth of it, of a straight triangular prism a third.
-      prism.volume = n == 4 ? sum * 6 / 8 : sum / 2;
+      prism.volume = prismVolume(sum, n);
       for (int k = 0; k < 2 * n; ++k) {
         tets[k].volume = prism.volume / (2 * n);
         mesh.tets.push_back(tets[k]);
@@ -185,14 +182,9 @@ std::vector<RootEdge> collectRootEdges(HairMesh& mesh) {
   return edges;
 }
 
-double dihedral(const Vec3& m1, const Vec3& p, const Vec3& q, const Vec3& m2) {
-  const Vec3 n1 = (q - p).cross(m1 - p), n2 = (m2 - p).cross(q - p);
-  return std::atan2(n1.cross(n2).dot((q - p).normalized()), n1.dot(n2));
-}
-
 double checkedLength(const HairMesh& mesh, int a, int b) {
   const double length = (mesh.shape.positions[a] - mesh.shape.positions[b]).norm();
-  if (length < kShortestEdge) {
+  if (length < kShortestRestEdge) {
     throw MeshError(
         vertexName(mesh.column_of[a], mesh.layer_of[a]) + " to " + vertexName(mesh.column_of[b], mesh.layer_of[b]),
         "the edge is shorter than 0.01 mm", "move the vertices apart or merge the columns");
@@ -201,7 +193,6 @@ double checkedLength(const HairMesh& mesh, int a, int b) {
 }
 
 void addWallsAndEdges(HairMesh& mesh) {
-  const auto& x = mesh.shape.positions;
   std::vector<double> vertical_volume(mesh.vertexCount(), 0);  // by the edge's lower vertex
   for (const Prism& prism : mesh.prisms) {
     for (int k = 0; k < prism.corner_count; ++k) vertical_volume[prism.v[k]] += prism.volume / prism.corner_count;
@@ -227,9 +218,7 @@ void addWallsAndEdges(HairMesh& mesh) {
       // Corners by column, since a wall may be wound either way once its first face has ended.
       const int a = mesh.shape.column_first[edge.a] + l, b = mesh.shape.column_first[edge.b] + l;
       Hinge hinge{{a - 1, b - 1, a, b, a + 1, b + 1}, 0, 0, (edge.walls[l - 1].volume + edge.walls[l].volume) / 2};
-      const Vec3 below = (x[a - 1] + x[b - 1]) / 2, middle = (x[a] + x[b]) / 2, above = (x[a + 1] + x[b + 1]) / 2;
-      hinge.rest_angle = dihedral(below, x[a], x[b], above);
-      hinge.length = ((middle - below).norm() + (above - middle).norm()) / 2;
+      measureHinge(mesh.shape.positions, hinge);
       mesh.hinges.push_back(hinge);
     }
   }
@@ -265,15 +254,13 @@ HairMesh buildHairMesh(HairMeshShape shape) {
   mesh.layer_of.resize(mesh.vertexCount());
   mesh.vertex_volume.assign(mesh.vertexCount(), 0.0);
   for (int c = 0; c < mesh.columnCount(); ++c) {
-    double length = 0;
     for (int l = 0; l < mesh.shape.columnLength(c); ++l) {
       const int v = mesh.shape.column_first[c] + l;
       mesh.column_of[v] = c;
       mesh.layer_of[v] = l;
-      if (l > 0) length += (mesh.shape.positions[v] - mesh.shape.positions[v - 1]).norm();
     }
-    mesh.hair_length = std::max(mesh.hair_length, length);
   }
+  mesh.hair_length = hairLength(mesh.shape);
   addPrisms(mesh);
   addWallsAndEdges(mesh);
   addExternal(mesh);

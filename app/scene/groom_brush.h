@@ -1,0 +1,39 @@
+// Strokes of a brush on an actor's hair: asked for as text, so that recordings keep them, and carried out on the rest
+// shape while the hair goes on moving.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/scene/actor.h"
+#include "sim/mesh/shape_brush.h"
+
+namespace app {
+
+struct Demo;
+
+// One sample of a stroke. Places are those of sim::Brush: the scalp's frame, m.
+struct BrushSample {
+  sim::BrushTool tool = sim::BrushTool::kComb;
+  Vec3 at = Vec3::Zero(), along = Vec3::Zero();
+  double radius = 0.04, strength = 0.5, falloff = 1;
+  bool mirror = false;
+};
+
+inline constexpr double kSmallestBrush = 0.003, kLargestBrush = 0.3;  // m
+inline constexpr double kLargestFalloff = 8;
+
+// "x y z  x y z  radius strength falloff mirror"; parseBrush reads the same bits back.
+std::string brushText(const BrushSample& sample);
+// `tool`: as sim::kBrushNames. Throws InputError.
+BrushSample parseBrush(const std::string& tool, const std::string& text);
+
+// Changes the rest shape of the actor's hair, which becomes its own. Throws InputError where the brush reaches no hair;
+// then nothing has changed.
+void applyBrush(const BrushSample& sample, int actor, Demo& demo);
+
+// Gives the actor's hair other rest positions (one a vertex, scalp frame, m). What moves goes on moving. Throws
+// InputError where a prism would not be positive; then nothing has changed.
+void reshapeHair(const std::vector<Vec3>& positions, int actor, Demo& demo);
+
+}  // namespace app

@@ -1,0 +1,157 @@
+#include "app/scene/project.h"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+
+#include "app/files/errors.h"
+#include "app/files/folder_list.h"
+#include "app/files/json_reader.h"
+#include "app/files/output_file.h"
+#include "app/files/text_file.h"
+#include "app/scene/demo_state.h"
+#include "app/scene/groom_brush.h"
+#include "app/scene/present_scene.h"
+#include "sim/mesh/field_bytes.h"
+
+namespace app {
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr double kKeepEvery = 20;  // s
+constexpr const char* kKey = "hairmesh-project";
+
+std::string hex(std::uint64_t value) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
+  return text;
+}
+
+std::string textOf(const sim::Bytes& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+sim::Bytes binaryOf(const Demo& demo) {
+  sim::Bytes bytes;
+  for (const Actor& actor : demo.actors)
+    sim::writeBytes(actor.haircut->edited ? actor.haircut->mesh.shape.positions : std::vector<Vec3>(), bytes);
+  const std::string state = demoStateBytes(demo);
+  sim::writeBytes(std::vector<char>(state.begin(), state.end()), bytes);
+  return bytes;
+}
+
+// The binary that a project names; empty where it is none.
+std::string binaryNamedBy(const std::string& file) {
+  try {
+    const json project = parseJson(readText(file), file);
+    return project.is_object() ? project.value("binary", "") : "";
+  } catch (const std::exception&) {
+    return "";
+  }
+}
+
+std::string besides(const std::string& file, const std::string& name) {
+  return (fs::path(file).parent_path() / fs::path(name).filename()).string();
+}
+
+}  // namespace
+
+void saveProject(const std::string& file, const Demo& demo) {
+  const sim::Bytes binary = binaryOf(demo);
+  const std::string checksum = hex(sim::fingerprint(binary));
+  const std::string name = fs::path(file).stem().string() + "-" + checksum + ".bin";
+  const std::string before = binaryNamedBy(file);
+  const json project = {{kKey, kProjectVersion},
+                        {"scene", parseJson(writeScene(movable(presentScene(demo))), file)},
+                        {"binary", name},
+                        {"checksum", checksum}};
+  writeFile(besides(file, name), textOf(binary));
+  writeFile(file, project.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+  std::error_code ignored;
+  if (!before.empty() && before != name) fs::remove(besides(file, before), ignored);
+}
+
+void openProject(const std::string& file, Demo& demo) {
+  const json parsed = parseJson(readText(file), file);
+  const JsonPlace place(parsed, file);
+  if (!parsed.is_object() || !place.has(kKey)) place.refuse("is no project", "give a file that Save project wrote");
+  const double version = place.at(kKey).number(1, 1e6);
+  if (version > kProjectVersion)
+    place.refuse("is a project of version " + std::to_string(static_cast<int>(version)) + ", newer than this program's " +
+                     std::to_string(kProjectVersion),
+                 "open it with the program that saved it, or a newer one");
+  place.expectObject({kKey, "scene", "binary", "checksum"});
+  for (const char* key : {"scene", "binary", "checksum"}) {
+    if (!place.has(key)) place.refuse(std::string("lacks \"") + key + "\"", "save it anew");
+  }
+  const std::string binary_file = besides(file, place.at("binary").text());
+  const std::string binary = readText(binary_file);
+  const auto bytes = std::as_bytes(std::span(binary));
+  if (hex(sim::fingerprint(bytes)) != place.at("checksum").text())
+    throw InputError(binary_file, "", "is not the one that " + file + " was saved with", "save the project anew");
+  Demo fresh = openScene(readScene(parsed.at("scene").dump(), file), demo.aspect);
+  sim::ByteReader from{bytes};
+  for (std::size_t i = 0; i < fresh.actors.size(); ++i) {
+    std::vector<Vec3> shape;
+    sim::readBytes(from, shape);
+    if (shape.empty()) continue;
+    if (!from.complete || shape.size() != fresh.actors[i].hair.positions.size())
+      throw InputError(binary_file, "", "does not fit the scene", "save the project anew");
+    reshapeHair(shape, static_cast<int>(i), fresh);
+  }
+  std::vector<char> state;
+  sim::readBytes(from, state);
+  restoreDemoState(std::string(state.begin(), state.end()), binary_file, false, fresh);
+  fresh.scene.file = file;
+  replaceScene(std::move(fresh), demo);
+  demo.edits = {};
+}
+
+Autosave::Autosave(const std::string& kept_folder) : folder_(kept_folder) {
+  if (!folder_.empty()) file_ = (fs::path(folder_) / ("autosave-" + std::to_string(getpid()) + ".json")).string();
+}
+
+Autosave::~Autosave() {
+  if (!file_.empty() && std::uncaught_exceptions() == 0) forget(file_);
+}
+
+void Autosave::keep(double now, const Demo& demo) {
+  if (file_.empty() || now - last_ < kKeepEvery) return;
+  const std::string edits = std::to_string(demo.edits.steps.size()) + " " + std::to_string(demo.edits.done) + " " +
+                            (demo.edits.done ? demo.edits.steps[demo.edits.done - 1].title : "");
+  if (demo.edits.steps.empty() || edits == kept_) return;
+  last_ = now;
+  try {
+    std::error_code ignored;
+    fs::create_directories(folder_, ignored);
+    saveProject(file_, demo);
+    kept_ = edits;
+  } catch (const std::exception&) {
+  }
+}
+
+std::string Autosave::left() const {
+  if (folder_.empty()) return "";
+  for (const FolderEntry& entry : listFolder(folder_, {".json"})) {
+    if (!entry.name.starts_with("autosave-")) continue;
+    const long process = std::strtol(entry.name.c_str() + 9, nullptr, 10);
+    const bool runs = process > 0 && kill(static_cast<pid_t>(process), 0) == 0;
+    if (!runs) return (fs::path(folder_) / entry.name).string();
+  }
+  return "";
+}
+
+void Autosave::forget(const std::string& file) const {
+  std::error_code ignored;
+  if (const std::string binary = binaryNamedBy(file); !binary.empty()) fs::remove(besides(file, binary), ignored);
+  fs::remove(file, ignored);
+}
+
+}  // namespace app

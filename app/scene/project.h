@@ -1,0 +1,49 @@
+// Projects: a scene with all that moves in it and what brushes have made of the hair, to go on from as it was left: to
+// the bit where no brush has reshaped the hair, else from the same bits and to rounding afterwards (what a step derives
+// from the rest shape in advance is then made from another one).
+//
+// A project is a JSON file: {"hairmesh-project": 1, "scene": as scene_file.h says, "binary": name, "checksum": text}.
+// The binary beside it holds reshaped rest positions and the state (demo_state.h); it is NAME-CHECKSUM.bin, so that a
+// project that cannot be saved leaves the one that was there with its own.
+#pragma once
+
+#include <string>
+
+#include "app/scene/demo.h"
+
+namespace app {
+
+inline constexpr int kProjectVersion = 1;
+
+// Throws OutputError; then the project that was there is whole.
+void saveProject(const std::string& file, const Demo& demo);
+
+// Opens it in the demo's place. Throws InputError (no project, of a newer version, its binary gone or changed); then
+// nothing has changed.
+void openProject(const std::string& file, Demo& demo);
+
+// What is kept of a run while it goes on, so that a crash loses little.
+class Autosave {
+ public:
+  // `kept_folder` empty: nothing is kept.
+  explicit Autosave(const std::string& kept_folder);
+  // Where the run has ended as it should nothing is kept of it; where it ends by an exception it is.
+  ~Autosave();
+  Autosave(const Autosave&) = delete;
+  Autosave& operator=(const Autosave&) = delete;
+
+  // Keeps the demo where it has changed and the last time is long ago. `now`: s. A fault is no reason to disturb: it
+  // tries again later.
+  void keep(double now, const Demo& demo);
+  // The project of a run that has ended without leaving, of a process that is gone; empty: there is none.
+  std::string left() const;
+  // Forgets that one.
+  void forget(const std::string& file) const;
+
+ private:
+  std::string folder_, file_;
+  double last_ = -1e9;
+  std::string kept_;  // what of the demo was kept: its edits
+};
+
+}  // namespace app

@@ -1,0 +1,129 @@
+// The brushes: their settings, the ring on the hair, and the strokes that a drag makes.
+#include <imgui/imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/scene/groom_brush.h"
+#include "app/scene/picking.h"
+#include "app/ui/ui_panels.h"
+#include "app/ui/ui_widgets.h"
+
+namespace app {
+
+namespace {
+
+constexpr double kLeastWay = 0.0015;  // m between two samples of combing
+constexpr int kRingPoints = 48;
+
+Rigid worldToScalp(const Actor& actor) {
+  return scalpToWorld(actor.body->character, actor.pose).inverse(Eigen::Isometry);
+}
+
+// The ray's point in the plane through `place` that faces the camera.
+Vec3 inPlane(const Ray& ray, const Vec3& place, const Vec3& facing) {
+  const double slope = ray.along.dot(facing);
+  return std::abs(slope) < 1e-6 ? place : Vec3(ray.from + (place - ray.from).dot(facing) / slope * ray.along);
+}
+
+// What the brush reaches: its ring, and a dot at each vertex, the brighter the more it is moved.
+void drawReach(const Vec3& place, const Demo& demo, const BrushState& brush, float scale) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const Actor& actor = selectedActor(demo);
+  ImDrawList* list = ImGui::GetBackgroundDrawList();
+  const Vec3 back = viewBack(demo.camera), right = Vec3::UnitY().cross(back).normalized(), up = back.cross(right);
+  ImVec2 ring[kRingPoints];
+  for (int k = 0; k < kRingPoints; ++k) {
+    const double turn = 2 * 3.14159265358979 * k / kRingPoints;
+    const auto pixel = pixelOf(place + brush.radius * (std::cos(turn) * right + std::sin(turn) * up), size.x, size.y,
+                               demo.camera);
+    if (!pixel) return;
+    ring[k] = {static_cast<float>((*pixel)[0]), static_cast<float>((*pixel)[1])};
+  }
+  list->AddPolyline(ring, kRingPoints, IM_COL32(20, 20, 24, 150), ImDrawFlags_Closed, 3.5f * scale);
+  list->AddPolyline(ring, kRingPoints, IM_COL32(240, 172, 120, 235), ImDrawFlags_Closed, 1.6f * scale);
+  sim::Brush reach;
+  reach.at = place, reach.radius = brush.radius, reach.falloff = brush.falloff;
+  for (const Vec3& p : actor.hair.positions) {
+    const double weight = sim::brushReach(reach, p);
+    const auto pixel = weight > 0.02 ? pixelOf(p, size.x, size.y, demo.camera) : std::nullopt;
+    if (!pixel) continue;
+    const int alpha = static_cast<int>(40 + 180 * weight);
+    list->AddCircleFilled({static_cast<float>((*pixel)[0]), static_cast<float>((*pixel)[1])}, 1.6f * scale,
+                          IM_COL32(255, 214, 170, alpha), 8);
+  }
+}
+
+void postSample(const Vec3& at, const Vec3& along, Demo& demo, const BrushState& brush) {
+  BrushSample sample;
+  sample.tool = static_cast<sim::BrushTool>(brush.tool);
+  sample.at = at, sample.along = along;
+  sample.radius = brush.radius, sample.strength = brush.strength, sample.falloff = brush.falloff;
+  sample.mirror = brush.mirror;
+  postRequest(demo, {Ask::kBrush, std::string(sim::kBrushNames[static_cast<std::size_t>(brush.tool)]),
+                     brushText(sample)});
+}
+
+// One frame of a drag. Combing moves by the way of the hand; the others act as long as the button is held.
+void stroke(const Ray& ray, const std::optional<Vec3>& hit, Demo& demo, BrushState& brush) {
+  const Rigid to_scalp = worldToScalp(selectedActor(demo));
+  if (brush.tool != static_cast<int>(sim::BrushTool::kComb)) {
+    if (hit) postSample(to_scalp * *hit, Vec3::Zero(), demo, brush);
+    return;
+  }
+  const Vec3 last = to_scalp.inverse(Eigen::Isometry) * brush.last;
+  const Vec3 now = inPlane(ray, last, viewBack(demo.camera)), way = now - last;
+  if (way.norm() < kLeastWay) return;
+  postSample(brush.last, to_scalp.linear() * way, demo, brush);
+  brush.last = to_scalp * now;
+}
+
+}  // namespace
+
+void brushSection(UiState& ui) {
+  BrushState& brush = ui.brush;
+  const int pressed = segments("brush", {"Off", "Comb", "Cut", "Grow", "Smooth", "Puff"}, brush.tool + 1, ui);
+  if (pressed >= 0) brush.tool = pressed - 1;
+  ImGui::BeginDisabled(brush.tool < 0);
+  const auto row = [&](const char* label, const char* help, const char* name, float low, float high, const char* format,
+                       double shown_scale, double& value) {
+    rowLabel(label, help);
+    ImGui::SetNextItemWidth(-1);
+    float shown = static_cast<float>(shown_scale * value);
+    if (ImGui::SliderFloat(name, &shown, low, high, format, ImGuiSliderFlags_AlwaysClamp)) value = shown / shown_scale;
+    noteItem(name, ui);
+  };
+  row("Radius", "[ and ] change it", "brush_radius", 5, 200, "%.0f mm", 1000, brush.radius);
+  row("Strength", "Share of the way that the middle of the brush takes", "brush_strength", 0.02f, 1, "%.2f", 1,
+      brush.strength);
+  row("Falloff", "0: all within the ring alike; larger: softer edge", "brush_falloff", 0, 4, "%.1f", 1, brush.falloff);
+  rowLabel("Mirror", "Acts on the other side of the head as well");
+  ImGui::Checkbox("##brush_mirror", &brush.mirror);
+  noteItem("brush_mirror", ui);
+  ImGui::EndDisabled();
+}
+
+void brushFrame(Demo& demo, UiState& ui) {
+  BrushState& brush = ui.brush;
+  const ImGuiIO& io = ImGui::GetIO();
+  const bool held = io.MouseDown[0], begins = held && !brush.held;
+  brush.held = held;
+  brush.over_hair = false;
+  if (brush.tool < 0 || (io.WantCaptureMouse && !brush.stroking) || io.DisplaySize.y < 1) {
+    brush.stroking = false;
+    return;
+  }
+  const Ray ray = rayThrough(io.MousePos.x, io.MousePos.y, io.DisplaySize.x, io.DisplaySize.y, demo.camera);
+  const std::optional<Vec3> hit = pickHair(ray, selectedActor(demo));
+  brush.over_hair = hit.has_value();
+  if (begins && hit) {
+    brush.stroking = true;
+    brush.last = worldToScalp(selectedActor(demo)) * *hit;
+  }
+  brush.stroking = brush.stroking && held;
+  if (brush.stroking) stroke(ray, hit, demo, brush);
+  const Vec3 combed = worldToScalp(selectedActor(demo)).inverse(Eigen::Isometry) * brush.last;
+  if (hit || brush.stroking) drawReach(brush.stroking && !hit ? combed : *hit, demo, brush, ui.text_scale);
+}
+
+}  // namespace app

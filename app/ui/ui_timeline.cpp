@@ -1,0 +1,144 @@
+// The timeline along the bottom, and the box that offers what an earlier run has left.
+#include <imgui/imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "app/ui/ui_panels.h"
+#include "app/ui/ui_widgets.h"
+
+namespace app {
+
+namespace {
+
+constexpr float kHeight = 50, kLeastWidth = 240, kMargin = 12;
+constexpr double kWorst = 3;  // of the mean cost: a step to look at
+
+// The kept moment at a share of the strip.
+long frameAt(float share, const Timeline& timeline) {
+  const double first = static_cast<double>(timeline.frames.front().frame);
+  const double last = static_cast<double>(timeline.frames.back().frame);
+  return static_cast<long>(first + std::clamp(share, 0.0f, 1.0f) * (last - first) + 0.5);
+}
+
+void drawMarks(const Timeline& timeline, ImVec2 at, ImVec2 size, float scale) {
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  double mean = 0;
+  for (const TimelineFrame& frame : timeline.frames) mean += frame.cost / static_cast<double>(timeline.frames.size());
+  const double first = static_cast<double>(timeline.frames.front().frame);
+  const double span = std::max(1.0, static_cast<double>(timeline.frames.back().frame) - first);
+  for (const TimelineFrame& frame : timeline.frames) {
+    const float x = at.x + size.x * static_cast<float>((static_cast<double>(frame.frame) - first) / span);
+    const auto mark = [&](float share, ImU32 color) {
+      list->AddRectFilled({x - 0.8f * scale, at.y + size.y * (1 - share)}, {x + 0.8f * scale, at.y + size.y}, color);
+    };
+    if (frame.contact) mark(0.25f, IM_COL32(118, 178, 130, 200));
+    if (frame.cost > kWorst * mean) mark(0.6f, IM_COL32(240, 196, 110, 230));
+    if (frame.jump) mark(0.8f, IM_COL32(86, 156, 190, 255));
+    if (frame.recovery) mark(1, IM_COL32(235, 70, 60, 255));
+  }
+}
+
+void strip(Demo& demo, UiState& ui) {
+  const Timeline& timeline = demo.timeline;
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const ImVec2 size(ImGui::GetContentRegionAvail().x, ImGui::GetFrameHeight());
+  ImGui::InvisibleButton("strip", size);
+  noteItem("timeline", ui);
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  list->AddRectFilled(at, {at.x + size.x, at.y + size.y}, ImGui::GetColorU32(ImGuiCol_FrameBg), 4);
+  if (timeline.frames.empty()) {
+    list->AddText({at.x + 8, at.y + 4}, ImGui::GetColorU32(ImGuiCol_TextDisabled), "fills while the hair moves");
+    return;
+  }
+  drawMarks(timeline, at, size, ui.text_scale);
+  const double first = static_cast<double>(timeline.frames.front().frame);
+  const double span = std::max(1.0, static_cast<double>(timeline.frames.back().frame) - first);
+  const double here = std::clamp((static_cast<double>(demo.frames) - first) / span, 0.0, 1.0);
+  const float x = at.x + size.x * static_cast<float>(here);
+  list->AddRectFilled({x - 1.5f, at.y - 2}, {x + 1.5f, at.y + size.y + 2}, ImGui::GetColorU32(ImGuiCol_CheckMark));
+  const float share = (ImGui::GetIO().MousePos.x - at.x) / std::max(1.0f, size.x);
+  if (ImGui::IsItemActive()) {
+    const long frame = frameAt(share, timeline);
+    if (!demo.paused) postRequest(demo, {Ask::kPause, "", "", 1});
+    if (frame != ui.scrubbed) postRequest(demo, {Ask::kRewind, "", "", static_cast<double>(frame)});
+    ui.scrubbed = frame;
+  } else {
+    ui.scrubbed = -1;
+    tip("Drag to see what was simulated; Space goes on from there. Green: contact, yellow: a slow step, blue: the head "
+        "jumped, red: recovery");
+  }
+}
+
+}  // namespace
+
+float timelinePanel(Demo& demo, UiState& ui, float left) {
+  if (!ui.visible || !demo.timeline.on) return 0;
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const float scale = ui.text_scale, margin = kMargin * scale;
+  const float right = ui.history ? (292 + kMargin) * scale : 0;
+  const float width = size.x - left - right - 2 * margin;
+  if (width < kLeastWidth * scale || size.y < 4 * kHeight * scale) return 0;
+  ImGui::SetNextWindowPos({left + margin, size.y - margin}, ImGuiCond_Always, {0, 1});
+  ImGui::SetNextWindowSize({width, kHeight * scale});
+  const ImGuiWindowFlags flags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+                                 ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoBringToFrontOnFocus;
+  if (ImGui::Begin("timeline", nullptr, flags)) {
+    if (iconButton(Icon::kBack, "step_back", "Back to the moment kept before (,)", false, ui))
+      postRequest(demo, {Ask::kRewind, "", "", static_cast<double>(demo.frames - 1)});
+    ImGui::SameLine(0, 6);
+    char text[48];
+    std::snprintf(text, sizeof text, "%7.2f s", demo.shown_time);
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(text);
+    ImGui::SameLine(0, 10);
+    strip(demo, ui);
+  }
+  ImGui::End();
+  return (kHeight + kMargin) * scale;
+}
+
+void offerPanel(Demo& demo, UiState& ui) {
+  if (ui.offered.empty()) return;
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({0.5f * size.x, 0.3f * size.y}, ImGuiCond_Always, {0.5f, 0.5f});
+  const ImGuiWindowFlags flags =
+      ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize;
+  if (ImGui::Begin("offer", nullptr, flags)) {
+    ImGui::TextUnformatted("An earlier run ended without leaving. What it had was kept.");
+    const bool open = ImGui::Button("Open it");
+    noteItem("offer_open", ui);
+    ImGui::SameLine(0, 6);
+    const bool forget = ImGui::Button("Forget it");
+    noteItem("offer_forget", ui);
+    if (open) postRequest(demo, {Ask::kOpenProject, "", ui.offered});
+    if (forget) ui.to_forget = ui.offered;
+    if (open || forget) ui.offered.clear();
+  }
+  ImGui::End();
+}
+
+void cameraRows(Demo& demo, UiState& ui) {
+  rowLabel("Lens", "Focal length over a picture 24 mm high");
+  ImGui::SetNextItemWidth(-1);
+  float lens = static_cast<float>(12 / std::tan(0.5 * demo.camera.fov));
+  if (ImGui::SliderFloat("##lens", &lens, 12, 200, "%.0f mm", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
+    postRequest(demo, {Ask::kLens, "", "", 2 * std::atan(12.0 / lens)});
+  noteItem("lens", ui);
+  rowLabel("Turntable", "The camera goes round the figure");
+  ImGui::SetNextItemWidth(-1);
+  constexpr double kDegree = 3.14159265358979 / 180;
+  float turn = static_cast<float>(demo.turntable / kDegree);
+  if (ImGui::SliderFloat("##turntable", &turn, -90, 90, "%.0f deg/s"))
+    postRequest(demo, {Ask::kTurntable, "", "", kDegree * turn});
+  noteItem("turntable", ui);
+  rowLabel("Keep view", "Four places for views");
+  const int keep = segments("keep", {"1", "2", "3", "4"}, -1, ui);
+  if (keep >= 0) postRequest(demo, {Ask::kKeepView, "", "", static_cast<double>(keep)});
+  rowLabel("Go to view", "A kept view, about where the figure is now");
+  const int go = segments("go", {"1", "2", "3", "4"}, -1, ui);
+  if (go >= 0) postRequest(demo, {Ask::kGoToView, "", "", static_cast<double>(go)});
+}
+
+}  // namespace app

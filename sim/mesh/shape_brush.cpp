@@ -1,0 +1,231 @@
+#include "sim/mesh/shape_brush.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/mesh/rest_measures.h"
+
+namespace sim {
+
+namespace {
+
+constexpr double kPuff = 0.004, kGrow = 0.03;  // m, share of the length: of one sample at full strength
+constexpr double kLeastVolume = 0.02;          // of the mean corner volume, or half of what it is
+constexpr double kLeastEdge = 0.001;           // m, or half of what it is
+constexpr double kOffBody = 0.002;             // m, or as near as it is
+constexpr int kHalvings = 8, kRounds = 24;     // of a stroke that goes too far, before what it spoils stays
+constexpr double kMoved = 1e-7;                // m
+
+Vec3 mirrored(Vec3 v, double plane) {
+  v.x() = 2 * plane - v.x();
+  return v;
+}
+
+Brush mirrored(Brush brush) {
+  brush.at = mirrored(brush.at, *brush.mirror);
+  brush.along.x() = -brush.along.x();
+  return brush;
+}
+
+double columnLength(std::span<const Vec3> x, int first, int last) {
+  double length = 0;
+  for (int v = first + 1; v < last; ++v) length += (x[v] - x[v - 1]).norm();
+  return length;
+}
+
+}  // namespace
+
+double brushReach(const Brush& brush, const Vec3& seen) {
+  const double share = (seen - brush.at).squaredNorm() / (brush.radius * brush.radius);
+  return share < 1 ? std::pow(1 - share, brush.falloff) : 0;
+}
+
+ShapeBrushes::ShapeBrushes(const HairMesh& mesh) {
+  std::vector<std::vector<int>> of(mesh.vertexCount());
+  for (const auto* edges : {&mesh.horizontal_edges, &mesh.vertical_edges}) {
+    for (const Edge& edge : *edges) {
+      of[edge.a].push_back(edge.b);
+      of[edge.b].push_back(edge.a);
+    }
+  }
+  neighbour_first_ = {0};
+  for (const std::vector<int>& list : of) {
+    neighbours_.insert(neighbours_.end(), list.begin(), list.end());
+    neighbour_first_.push_back(static_cast<int>(neighbours_.size()));
+  }
+  weight_.resize(of.size()), share_.resize(of.size()), wanted_.resize(of.size()), touched_.resize(of.size());
+}
+
+void ShapeBrushes::reach(const Brush& brush, const HairMesh& mesh, std::span<const Vec3> seen) {
+  for (std::size_t v = 0; v < weight_.size(); ++v)
+    weight_[v] = mesh.isRoot(static_cast<int>(v)) ? 0 : brush.strength * brushReach(brush, seen[v]);
+}
+
+void ShapeBrushes::comb(const Brush&, const Vec3& along) {
+  for (std::size_t v = 0; v < wanted_.size(); ++v) wanted_[v] += weight_[v] * along;
+}
+
+void ShapeBrushes::smooth(const HairMesh& mesh) {
+  const std::vector<Vec3>& x = mesh.shape.positions;
+  for (std::size_t v = 0; v < wanted_.size(); ++v) {
+    const int first = neighbour_first_[v], last = neighbour_first_[v + 1];
+    if (weight_[v] == 0 || last == first) continue;
+    Vec3 mean = Vec3::Zero();
+    for (int k = first; k < last; ++k) mean += x[neighbours_[k]];
+    wanted_[v] += 0.5 * weight_[v] * (mean / (last - first) - x[v]);
+  }
+}
+
+void ShapeBrushes::puff(const Brush& brush, const HairMesh& mesh) {
+  const std::vector<Vec3>& x = mesh.shape.positions;
+  for (std::size_t v = 0; v < wanted_.size(); ++v) {
+    Vec3 out = x[v] - brush.centre;
+    out.y() = std::max(0.0, out.y());  // below the head's middle: level
+    if (weight_[v] > 0 && out.norm() > 1e-6) wanted_[v] += kPuff * weight_[v] * out.normalized();
+  }
+}
+
+// Cutting and growing: the column's length changes, by the most that the brush reaches of it.
+void ShapeBrushes::scaleColumns(const Brush& brush, const HairMesh& mesh, std::span<const Vec3> seen) {
+  const std::vector<Vec3>& x = mesh.shape.positions;
+  for (int c = 0; c < mesh.columnCount(); ++c) {
+    const int first = mesh.shape.column_first[c], last = mesh.shape.column_first[c + 1];
+    int nearest = first;
+    for (int v = first + 1; v < last; ++v) {
+      if (weight_[v] > weight_[nearest]) nearest = v;
+    }
+    const double weight = weight_[nearest];
+    if (nearest == first || weight == 0) continue;
+    const double length = columnLength(x, first, last);
+    double wanted = length * (1 + kGrow * weight);
+    if (brush.tool == BrushTool::kCut) {
+      // Where along the column the brush is: its nearest vertex, and the way from there along the hair as seen.
+      double at = columnLength(x, first, nearest + 1);
+      if (nearest + 1 < last || nearest > first) {
+        const int below = nearest + 1 < last ? nearest : nearest - 1;
+        const Vec3 way = seen[below + 1] - seen[below];
+        at += std::clamp((brush.at - seen[nearest]).dot(way) / std::max(1e-9, way.norm()), -0.5 * way.norm(),
+                         0.5 * way.norm());
+      }
+      wanted = length - weight * std::max(0.0, length - at);
+    }
+    const double shortest = std::min(length, brush.shortest), longest = std::max(length, brush.longest);
+    const double scale = std::clamp(wanted, shortest, longest) / length;
+    if (scale == 1) continue;
+    // Cut hair keeps its curve: each vertex comes nearer the root along the old one. Grown hair keeps its bends.
+    double passed = 0;
+    int segment = first;
+    double before = 0, along = (x[first + 1] - x[first]).norm();
+    for (int v = first + 1; v < last; ++v) {
+      passed += (x[v] - x[v - 1]).norm();
+      if (scale > 1) {
+        wanted_[v] = wanted_[v - 1] + scale * (x[v] - x[v - 1]);
+        continue;
+      }
+      const double place = scale * passed;
+      while (segment + 2 < last && before + along < place) {
+        before += along;
+        ++segment;
+        along = (x[segment + 1] - x[segment]).norm();
+      }
+      wanted_[v] = x[segment] + (place - before) / along * (x[segment + 1] - x[segment]);
+    }
+  }
+}
+
+// From the root on, each segment as long as it was.
+void ShapeBrushes::keepLengths(const HairMesh& mesh) {
+  const std::vector<Vec3>& x = mesh.shape.positions;
+  for (int c = 0; c < mesh.columnCount(); ++c) {
+    const int first = mesh.shape.column_first[c], last = mesh.shape.column_first[c + 1];
+    for (int v = first + 1; v < last; ++v) {
+      const Vec3 way = wanted_[v] - wanted_[v - 1];
+      if (wanted_[v] == x[v] && wanted_[v - 1] == x[v - 1]) continue;
+      wanted_[v] = wanted_[v - 1] + (x[v] - x[v - 1]).norm() / std::max(1e-9, way.norm()) * way;
+    }
+  }
+}
+
+// Each vertex goes as far of its way as leaves what hangs on it valid.
+void ShapeBrushes::limit(const HairMesh& mesh, const std::function<double(const Vec3&)>& body,
+                         std::vector<Vec3>& positions) {
+  const std::vector<Vec3>& x = mesh.shape.positions;
+  const std::size_t n = x.size();
+  for (std::size_t v = 0; v < n; ++v) {
+    touched_[v] = (wanted_[v] - x[v]).squaredNorm() > kMoved * kMoved;
+    share_[v] = touched_[v];
+  }
+  tets_.clear();
+  double sum = 0;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    sum += mesh.tets[t].rest_volume;
+    if (std::ranges::any_of(mesh.tets[t].v, [&](int v) { return touched_[v]; })) tets_.push_back(static_cast<int>(t));
+  }
+  const double least = kLeastVolume * sum / static_cast<double>(mesh.tets.size());
+  bool valid = false;
+  for (int round = 0; round < kRounds && !valid; ++round) {
+    for (std::size_t v = 0; v < n; ++v) positions[v] = x[v] + share_[v] * (wanted_[v] - x[v]);
+    valid = true;
+    std::fill(touched_.begin(), touched_.end(), 0);
+    const auto spoilt = [&](int v) {
+      valid = false;
+      touched_[v] = 1;
+    };
+    for (const int t : tets_) {
+      const CornerTet& tet = mesh.tets[t];
+      const bool fine = cornerVolume(tet.v, positions) >= std::min(least, 0.5 * tet.rest_volume);
+      if (!fine) std::ranges::for_each(tet.v, spoilt);
+    }
+    for (const auto* edges : {&mesh.horizontal_edges, &mesh.vertical_edges}) {
+      for (const Edge& edge : *edges) {
+        if (share_[edge.a] == 0 && share_[edge.b] == 0) continue;
+        const double length = (positions[edge.a] - positions[edge.b]).norm();
+        if (length < std::min(kLeastEdge, 0.5 * edge.rest_length)) spoilt(edge.a), spoilt(edge.b);
+      }
+    }
+    for (std::size_t v = 0; body && v < n; ++v) {
+      if (share_[v] == 0) continue;
+      const double distance = body(positions[v]);
+      if (distance < kOffBody && distance < body(x[v])) spoilt(static_cast<int>(v));
+    }
+    for (std::size_t v = 0; v < n; ++v) {
+      if (touched_[v]) share_[v] = round < kHalvings ? 0.5 * share_[v] : 0;
+    }
+  }
+  if (!valid) positions.assign(x.begin(), x.end());
+}
+
+int ShapeBrushes::apply(const Brush& brush, const HairMesh& mesh, std::span<const Vec3> seen,
+                        const std::function<double(const Vec3&)>& body, std::vector<Vec3>& positions) {
+  const std::vector<Vec3>& x = mesh.shape.positions;
+  wanted_.assign(x.begin(), x.end());
+  for (const bool other : {false, true}) {
+    if (other && !brush.mirror) break;
+    const Brush here = other ? mirrored(brush) : brush;
+    reach(here, mesh, seen);
+    switch (brush.tool) {
+      case BrushTool::kComb:
+        comb(here, here.along);
+        break;
+      case BrushTool::kSmooth:
+        smooth(mesh);
+        break;
+      case BrushTool::kPuff:
+        puff(here, mesh);
+        break;
+      case BrushTool::kCut:
+      case BrushTool::kGrow:
+        scaleColumns(here, mesh, seen);
+        break;
+    }
+  }
+  const bool scales = brush.tool == BrushTool::kCut || brush.tool == BrushTool::kGrow;
+  if (!scales) keepLengths(mesh);
+  positions.assign(x.begin(), x.end());
+  limit(mesh, body, positions);
+  int moved = 0;
+  for (std::size_t v = 0; v < x.size(); ++v) moved += (positions[v] - x[v]).squaredNorm() > kMoved * kMoved;
+  return moved;
+}
+
+}  // namespace sim

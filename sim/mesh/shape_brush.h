@@ -1,0 +1,68 @@
+// Brushes on the rest shape of a hair mesh, placed where the moving hair is seen: combing, cutting, growing, smoothing,
+// puffing. Whatever a brush does, every prism stays positive, edges keep a length, and nothing comes nearer to the body.
+//
+// All positions are in the scalp's frame, m.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "sim/mesh/hair_mesh.h"
+
+namespace sim {
+
+enum class BrushTool {
+  kComb,    // along the stroke; lengths stay
+  kCut,     // columns end nearer the brush
+  kGrow,    // columns become longer in their own shape
+  kSmooth,  // towards the mean of the neighbours; lengths stay
+  kPuff     // away from the head's middle; lengths stay
+};
+inline constexpr std::array<std::string_view, 5> kBrushNames{"comb", "cut", "grow", "smooth", "puff"};
+
+struct Brush {
+  BrushTool tool = BrushTool::kComb;
+  Vec3 at = Vec3::Zero();             // on the moving hair
+  Vec3 along = Vec3::Zero();          // of combing: the way from the last place to this one
+  double radius = 0.04;               // m
+  double strength = 0.5;              // 0 to 1
+  double falloff = 1;                 // of the reach: (1 - (distance / radius)^2)^falloff
+  std::optional<double> mirror;       // x of the plane across which the brush acts as well
+  Vec3 centre = Vec3::Zero();         // the head's middle, that puffing leads away from
+  double shortest = 0.03, longest = 1.2;  // m, columns that are cut and grown
+};
+
+// How much a brush reaches of a vertex seen at a place: 0 outside, 1 in the middle.
+double brushReach(const Brush& brush, const Vec3& seen);
+
+class ShapeBrushes {
+ public:
+  explicit ShapeBrushes(const HairMesh& mesh);
+
+  // What one sample of a stroke makes of the mesh's rest positions, into `positions`. `seen`: the moving hair, one place
+  // a vertex. `body`: signed distance to the body at rest; empty: there is none. Returns how many vertices it moves: 0
+  // where it reaches none, or where all that it reaches is as short, as long or as close as it may be.
+  int apply(const Brush& brush, const HairMesh& mesh, std::span<const Vec3> seen,
+            const std::function<double(const Vec3&)>& body, std::vector<Vec3>& positions);
+
+ private:
+  std::vector<int> neighbour_first_, neighbours_;  // of each vertex: within its layer, and in its column
+  std::vector<double> weight_, share_;             // scratch: reach; how much of its way each vertex goes
+  std::vector<Vec3> wanted_;
+  std::vector<unsigned char> touched_;
+  std::vector<int> tets_;
+
+  void reach(const Brush& brush, const HairMesh& mesh, std::span<const Vec3> seen);
+  void comb(const Brush& brush, const Vec3& along);
+  void smooth(const HairMesh& mesh);
+  void puff(const Brush& brush, const HairMesh& mesh);
+  void scaleColumns(const Brush& brush, const HairMesh& mesh, std::span<const Vec3> seen);
+  void keepLengths(const HairMesh& mesh);
+  void limit(const HairMesh& mesh, const std::function<double(const Vec3&)>& body, std::vector<Vec3>& positions);
+};
+
+}  // namespace sim

@@ -1,0 +1,197 @@
+// Strokes on moving hair: the hair follows, stays, is undone, and a recorded take of it replays to the bit.
+#include "app/scene/groom_brush.h"
+
+#include <gtest/gtest.h>
+
+#include "app/files/data_path.h"
+#include "app/files/errors.h"
+#include "app/files/recording.h"
+#include "app/scene/demo.h"
+#include "app/scene/picking.h"
+#include "tests/run_program.h"
+
+namespace {
+
+using app::Ask;
+
+app::Scene sceneOf(sim::Resolution resolution, const char* clip) {
+  app::Scene scene;
+  app::CharacterSpec spec;
+  spec.motion = app::dataPath(std::string("assets/clips/") + clip);
+  spec.style = sim::Style::kLong;
+  spec.resolution = resolution;
+  scene.characters = {spec};
+  scene.playback.settle = 0.3;
+  return scene;
+}
+
+// The tip of the column that hangs farthest in front, scalp frame, as it is now.
+sim::Vec3 frontTip(const app::Demo& demo, int& vertex) {
+  const app::Actor& actor = demo.actors[0];
+  const sim::HairMesh& mesh = actor.haircut->mesh;
+  const app::Rigid to_scalp = app::scalpToWorld(actor.body->character, actor.pose).inverse();
+  sim::Vec3 best(0, 0, -1);
+  for (int c = 0; c < mesh.columnCount(); ++c) {
+    const int tip = mesh.shape.column_first[static_cast<std::size_t>(c) + 1] - 1;
+    const sim::Vec3 p = to_scalp * actor.hair.positions[static_cast<std::size_t>(tip)];
+    if (p.z() > best.z()) best = p, vertex = tip;
+  }
+  return best;
+}
+
+app::Request sampleAt(sim::BrushTool tool, const sim::Vec3& at, const sim::Vec3& along) {
+  app::BrushSample sample;
+  sample.tool = tool;
+  sample.at = at, sample.along = along;
+  sample.radius = 0.08, sample.strength = 0.6;
+  return {Ask::kBrush, std::string(sim::kBrushNames[static_cast<std::size_t>(tool)]), app::brushText(sample)};
+}
+
+TEST(GroomBrush, ASampleReadsBackToTheSameBits) {
+  app::BrushSample sample;
+  sample.at = {0.1, -1.0 / 3, 2e-17};
+  sample.along = {1e-3, 0, -7.7};
+  sample.radius = 0.0123456789, sample.strength = 1.0 / 7, sample.falloff = 2.5, sample.mirror = true;
+  const app::BrushSample back = app::parseBrush("puff", app::brushText(sample));
+  EXPECT_EQ(app::brushText(back), app::brushText(sample));
+  EXPECT_EQ(back.at, sample.at);
+  EXPECT_EQ(back.tool, sim::BrushTool::kPuff);
+  for (const char* text : {"", "1 2 3", "0 0 0 0 0 0 9 1 1 0", "0 0 0 0 0 0 0.1 nan 1 0", "0 0 0 0 0 0 0.1 1 1 0 5"})
+    EXPECT_THROW(app::parseBrush("comb", text), app::InputError) << text;
+  EXPECT_THROW(app::parseBrush("saw", app::brushText(sample)), app::InputError);
+}
+
+TEST(GroomBrush, HairThatMovesTakesTheEditOnAndKeepsIt) {
+  app::Demo demo = app::openScene(sceneOf(sim::Resolution::kLow, "idle_turns.bvh"), 1.5);
+  for (int frame = 0; frame < 10; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
+  const double length = demo.actors[0].haircut->mesh.hair_length;
+  int tip = 0;
+  for (int frame = 0; frame < 20; ++frame) {
+    const sim::Vec3 at = frontTip(demo, tip);
+    demo.requests = {sampleAt(sim::BrushTool::kCut, at + sim::Vec3(0, 0.06, 0), {})};
+    app::advanceFrame(demo, 1.0 / 60, {});
+    ASSERT_FALSE(demo.message_is_fault) << demo.message;
+  }
+  const app::Actor& actor = demo.actors[0];
+  EXPECT_TRUE(actor.haircut->edited);
+  EXPECT_EQ(demo.edits.steps.size(), 1u) << "one drag is one step";
+  const auto lengthOf = [&](const std::vector<sim::Vec3>& x) {
+    const sim::HairMesh& mesh = actor.haircut->mesh;
+    const int c = mesh.column_of[static_cast<std::size_t>(tip)];
+    double sum = 0;
+    for (int v = mesh.shape.column_first[static_cast<std::size_t>(c)] + 1; v <= tip; ++v)
+      sum += (x[static_cast<std::size_t>(v)] - x[static_cast<std::size_t>(v) - 1]).norm();
+    return sum;
+  };
+  const double cut = lengthOf(actor.haircut->mesh.shape.positions);
+  EXPECT_LT(cut, 0.9 * length);
+  int recoveries = 0;
+  for (int frame = 0; frame < 60; ++frame) {
+    app::advanceFrame(demo, 1.0 / 60, {});
+    recoveries += demo.stats.recoveries;
+  }
+  EXPECT_EQ(recoveries, 0);
+  EXPECT_NEAR(lengthOf(actor.hair.positions), cut, 0.03 * length) << "the hair has not followed";
+  demo.requests = {{Ask::kUndo, "", "", 1}};
+  app::advanceFrame(demo, 0, {});
+  EXPECT_EQ(demo.actors[0].haircut->mesh.hair_length, length);
+}
+
+// Two seconds after the last stroke gravity is balanced in the new shape: what hangs still has not drooped.
+TEST(GroomBrush, TwoSecondsAfterAnEditNothingHasDrooped) {
+  app::Scene scene = sceneOf(sim::Resolution::kLow, "idle_turns.bvh");
+  scene.sim.collide = false;
+  app::Demo demo = app::openScene(std::move(scene), 1.5);
+  demo.actors[0].playback.paused = true;
+  for (int frame = 0; frame < 60; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
+  int tip = 0;
+  for (int frame = 0; frame < 20; ++frame) {
+    const sim::Vec3 at = frontTip(demo, tip);
+    demo.requests = {sampleAt(sim::BrushTool::kPuff, at + sim::Vec3(0, 0.1, 0), {})};
+    app::advanceFrame(demo, 1.0 / 60, {});
+  }
+  for (int frame = 0; frame < 120; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
+  const app::Actor& actor = demo.actors[0];
+  const app::Rigid head = app::scalpToWorld(actor.body->character, actor.pose);
+  double most = 0;
+  for (std::size_t v = 0; v < actor.hair.positions.size(); ++v)
+    most = std::max(most, (actor.hair.positions[v] - head * actor.haircut->mesh.shape.positions[v]).norm());
+  EXPECT_LT(most, 0.05 * actor.haircut->mesh.hair_length);
+}
+
+TEST(GroomBrush, OffTheHairItSaysSoAndChangesNothing) {
+  app::Demo demo = app::openScene(sceneOf(sim::Resolution::kLow, "idle_turns.bvh"), 1.5);
+  const std::string before = app::editHash(demo);
+  demo.requests = {sampleAt(sim::BrushTool::kCut, {3, 3, 3}, {})};
+  app::advanceFrame(demo, 0, {});
+  EXPECT_TRUE(demo.message_is_fault);
+  EXPECT_NE(demo.message.find("reaches no hair"), std::string::npos) << demo.message;
+  EXPECT_EQ(app::editHash(demo), before);
+  EXPECT_FALSE(demo.actors[0].haircut->edited);
+  EXPECT_TRUE(demo.edits.steps.empty());
+}
+
+// One of three who wear a haircut is brushed: the others keep theirs.
+TEST(GroomBrush, OthersOfTheSameHaircutKeepTheirs) {
+  app::Scene scene = sceneOf(sim::Resolution::kLow, "idle_turns.bvh");
+  scene.characters.push_back(scene.characters[0]);
+  scene.characters[1].position = {1, 0, 0};
+  app::Demo demo = app::openScene(std::move(scene), 1.5);
+  ASSERT_EQ(demo.actors[0].haircut, demo.actors[1].haircut);
+  int tip = 0;
+  const sim::Vec3 at = frontTip(demo, tip);
+  demo.requests = {sampleAt(sim::BrushTool::kCut, at, {})};
+  for (int frame = 0; frame < 5; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
+  EXPECT_TRUE(demo.actors[0].haircut->edited);
+  EXPECT_FALSE(demo.actors[1].haircut->edited);
+  EXPECT_LT(demo.actors[0].haircut->mesh.total_volume, demo.actors[1].haircut->mesh.total_volume);
+}
+
+TEST(GroomBrush, ARecordedTakeReplaysToTheBit) {
+  const std::string file = test::freshFolder("groom_brush") + "/take.hmr";
+  app::Options options;
+  options.record = file;
+  app::Scene scene = sceneOf(sim::Resolution::kLow, "walk.bvh");
+  app::Tape tape(options, scene);
+  app::Demo demo = app::openScene(scene, tape.aspect());
+  int tip = 0;
+  for (int frame = 0; frame < 40; ++frame) {
+    const sim::Vec3 at = frontTip(demo, tip);
+    const auto tool = static_cast<sim::BrushTool>(frame / 6 % 5);
+    if (frame % 3 != 2 && frame < 30) demo.requests = {sampleAt(tool, at, {0.004, 0, 0.002})};
+    if (frame == 33) demo.requests = {{Ask::kUndo, "", "", 2}};
+    app::advanceFrame(demo, tape.turn(frame, 1.0 / 60, demo), {});
+  }
+  const std::string recorded = app::stateHash(demo);
+  EXPECT_TRUE(demo.actors[0].haircut->edited);
+  tape.end(demo);
+  app::Options again;
+  again.replay = file;
+  app::Scene other;
+  app::Tape replay(again, other);
+  app::Demo copy = app::openScene(other, replay.aspect());
+  for (int frame = 0; frame < replay.frames(); ++frame) app::advanceFrame(copy, replay.turn(frame, 0, copy), {});
+  EXPECT_EQ(app::stateHash(copy), recorded);
+  EXPECT_FALSE(replay.end(copy).differs);
+}
+
+TEST(Picking, ARayThroughAPixelMeetsWhatIsSeenThere) {
+  app::Demo demo = app::openScene(sceneOf(sim::Resolution::kLow, "idle_turns.bvh"), 1.5);
+  const app::Actor& actor = demo.actors[0];
+  int hits = 0;
+  for (double x = 100; x < 900; x += 50) {
+    for (double y = 50; y < 600; y += 50) {
+      const std::optional<app::Vec3> hit = app::pickHair(app::rayThrough(x, y, 900, 600, demo.camera), actor);
+      if (!hit) continue;
+      ++hits;
+      const auto pixel = app::pixelOf(*hit, 900, 600, demo.camera);
+      ASSERT_TRUE(pixel);
+      EXPECT_NEAR((*pixel)[0], x, 1e-6);
+      EXPECT_NEAR((*pixel)[1], y, 1e-6);
+    }
+  }
+  EXPECT_GT(hits, 5);
+  EXPECT_FALSE(app::pickHair(app::rayThrough(2, 2, 900, 600, demo.camera), actor));
+}
+
+}  // namespace

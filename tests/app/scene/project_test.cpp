@@ -1,0 +1,182 @@
+// A project goes on where it was left, to the bit; one that cannot be saved or opened leaves what there was.
+#include "app/scene/project.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "app/files/data_path.h"
+#include "app/files/errors.h"
+#include "app/files/file_kind.h"
+#include "app/files/recording.h"
+#include "app/files/text_file.h"
+#include "app/scene/groom_brush.h"
+#include "tests/run_program.h"
+
+namespace {
+
+using app::Ask;
+
+app::Scene smallScene() {
+  app::Scene scene;
+  app::CharacterSpec spec;
+  spec.motion = app::dataPath("assets/clips/walk.bvh");
+  spec.style = sim::Style::kShort;
+  spec.resolution = sim::Resolution::kLow;
+  scene.characters = {spec};
+  scene.playback.settle = 0.1;
+  return scene;
+}
+
+// With another density and a brushed fringe, in the middle of a walk. `frames`: after the stroke.
+app::Demo brushedDemo(int frames) {
+  app::Demo demo = app::openScene(smallScene(), 1.5);
+  app::BrushSample sample;
+  const app::Actor& actor = demo.actors[0];
+  sample.at = app::scalpToWorld(actor.body->character, actor.pose).inverse() * actor.hair.positions.back();
+  sample.radius = 0.1;
+  demo.requests = {{Ask::kSetParam, "density", "80"}, {Ask::kBrush, "cut", app::brushText(sample)}};
+  sample.tool = sim::BrushTool::kCut;
+  for (int frame = 0; frame < frames; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
+  EXPECT_TRUE(demo.actors[0].haircut->edited) << demo.message;
+  return demo;
+}
+
+void goOn(int frames, app::Demo& demo) {
+  for (int frame = 0; frame < frames; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
+}
+
+double largestDifference(const app::Demo& a, const app::Demo& b) {
+  double most = 0;
+  for (std::size_t v = 0; v < a.actors[0].hair.positions.size(); ++v)
+    most = std::max(most, (a.actors[0].hair.positions[v] - b.actors[0].hair.positions[v]).norm());
+  return most;
+}
+
+TEST(Project, GoesOnWhereItWasLeftToTheBit) {
+  const std::string file = test::freshFolder("project_plain") + "/mine.json";
+  app::Demo demo = app::openScene(smallScene(), 1.5), other = app::openScene(smallScene(), 1.5);
+  goOn(25, demo);
+  app::saveProject(file, demo);
+  app::openProject(file, other);
+  goOn(30, demo);
+  goOn(30, other);
+  EXPECT_EQ(app::stateHash(other), app::stateHash(demo));
+}
+
+TEST(Project, KeepsBrushedHairAndGoesOnWithIt) {
+  const std::string file = test::freshFolder("project") + "/mine.json";
+  app::Demo demo = brushedDemo(60);
+  app::saveProject(file, demo);
+  EXPECT_EQ(app::fileKind(file), app::FileKind::kProject);
+  app::Demo other = app::openScene(smallScene(), 1.5);
+  app::openProject(file, other);
+  EXPECT_EQ(other.scene.sim.density, 80);
+  EXPECT_EQ(other.actors[0].haircut->mesh.shape.positions, demo.actors[0].haircut->mesh.shape.positions);
+  EXPECT_EQ(app::stateHash(other), app::stateHash(demo));
+  goOn(30, demo);
+  goOn(30, other);
+  EXPECT_LT(largestDifference(other, demo), 0.01 * demo.actors[0].haircut->mesh.hair_length);
+  app::saveProject(file, other);
+  int binaries = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(file).parent_path()))
+    binaries += entry.path().extension() == ".bin";
+  EXPECT_EQ(binaries, 1) << "the binary of the one before is gone";
+}
+
+TEST(Project, AFullDiskLeavesTheOneThatWasThere) {
+  const std::string file = test::freshFolder("project_full") + "/mine.json";
+  app::Demo demo = brushedDemo(20);
+  app::saveProject(file, demo);
+  const std::string before = app::stateHash(demo);
+  goOn(10, demo);
+  rlimit limit{}, small{};
+  getrlimit(RLIMIT_FSIZE, &limit);
+  small = limit;
+  small.rlim_cur = 2000;
+  signal(SIGXFSZ, SIG_IGN);
+  setrlimit(RLIMIT_FSIZE, &small);
+  EXPECT_THROW(app::saveProject(file, demo), app::OutputError);
+  setrlimit(RLIMIT_FSIZE, &limit);
+  app::openProject(file, demo);
+  EXPECT_EQ(app::stateHash(demo), before);
+}
+
+TEST(Project, WhatIsNoneOrNewerOrChangedIsRefusedAndChangesNothing) {
+  const std::string folder = test::freshFolder("project_bad"), file = folder + "/mine.json";
+  app::Demo demo = brushedDemo(5);
+  app::saveProject(file, demo);
+  const std::string text = app::readText(file), state = app::stateHash(demo);
+  const auto faultOf = [&](const std::string& changed) {
+    std::ofstream(folder + "/bad.json") << changed;
+    try {
+      app::openProject(folder + "/bad.json", demo);
+    } catch (const app::InputError& fault) {
+      return std::string(fault.what());
+    }
+    return std::string("none");
+  };
+  std::string newer = text;
+  newer.replace(newer.find("\"hairmesh-project\": 1"), 21, "\"hairmesh-project\": 2");
+  EXPECT_NE(faultOf(newer).find("version 2, newer"), std::string::npos) << faultOf(newer);
+  EXPECT_NE(faultOf("{}").find("is no project"), std::string::npos);
+  EXPECT_NE(faultOf("[").find("bad.json"), std::string::npos);
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".bin") std::ofstream(entry.path(), std::ios::app) << "x";
+  }
+  EXPECT_NE(faultOf(text).find("is not the one"), std::string::npos) << faultOf(text);
+  EXPECT_EQ(app::stateHash(demo), state);
+}
+
+TEST(Project, ARunThatEndsWithoutLeavingIsOfferedAgain) {
+  const std::string folder = test::freshFolder("project_autosave");
+  app::Demo demo = brushedDemo(5);
+  {
+    app::Autosave autosave(folder);
+    autosave.keep(100, demo);
+    EXPECT_FALSE(std::filesystem::is_empty(folder));
+    EXPECT_EQ(autosave.left(), "") << "this run goes on";
+    // A process that is no more: its number is beyond all that are given.
+    const std::string own = folder + "/autosave-" + std::to_string(getpid()) + ".json";
+    std::filesystem::copy(own, folder + "/autosave-99999999.json");
+    const std::string left = autosave.left();
+    ASSERT_TRUE(left.ends_with("autosave-99999999.json"));
+    app::Demo other = app::openScene(smallScene(), 1.5);
+    app::openProject(left, other);
+    EXPECT_EQ(app::stateHash(other), app::stateHash(demo));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder + "/autosave-" + std::to_string(getpid()) + ".json"));
+}
+
+TEST(Timeline, GoingBackAndOnWithTheSameParametersEndsInTheSameBits) {
+  app::Demo demo = app::openScene(smallScene(), 1.5);
+  demo.timeline.on = true;
+  goOn(40, demo);
+  const std::string end = app::stateHash(demo);
+  ASSERT_GE(demo.timeline.frames.size(), 12u);
+  app::rewindTo(20, demo);
+  EXPECT_EQ(demo.frames, 18);
+  EXPECT_NE(app::stateHash(demo), end);
+  goOn(22, demo);
+  EXPECT_EQ(app::stateHash(demo), end);
+  EXPECT_THROW(app::rewindTo(1, demo), app::InputError);
+  EXPECT_EQ(app::stateHash(demo), end);
+  app::rewindTo(20, demo);
+  demo.requests = {{Ask::kSetParam, "gravity", "3"}};
+  goOn(22, demo);
+  EXPECT_NE(app::stateHash(demo), end);
+}
+
+TEST(Timeline, KeepsNoMoreThanItMay) {
+  app::Demo demo = app::openScene(smallScene(), 1.5);
+  demo.timeline.on = true;
+  goOn(12, demo);
+  demo.timeline.bytes += app::kTimelineBytes;
+  goOn(3, demo);
+  EXPECT_EQ(demo.timeline.frames.size(), 1u);
+}
+
+}  // namespace
