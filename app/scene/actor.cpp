@@ -118,7 +118,6 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
   haircut->faces = renderFaces(haircut->mesh);
   blendPositions(haircut->mesh.shape.positions, haircut->mesh.shape.positions, 1, Vec3::Zero(), haircut->rest);
   // Hair of a style that divides over the shoulders lies against itself: it sleeps as a whole.
-  if (!spec.hair.empty()) haircut->parts = sim::connectedParts(haircut->mesh);
   asset_cache.haircuts.push_back(std::move(haircut));
   return *asset_cache.haircuts.back();
 }
@@ -195,7 +194,6 @@ Rigid headAt(double time, const Actor& actor, Pose& pose) {
 void carryHair(const Rigid& from, const Rigid& to, Actor& actor) {
   sim::carryAlong(from, to, actor.hair);
   if (actor.coarse.active) sim::carryAlong(from, to, actor.coarse.hair);
-  for (PartHair& part : actor.part_hairs) sim::carryAlong(from, to, part.hair);
   wakeAll(actor);
 }
 
@@ -295,7 +293,6 @@ void tidy(const std::vector<Actor>& actors, AssetCache& asset_cache) {
 
 void wakeAll(Actor& actor) {
   actor.sleep.asleep = false;
-  for (PartHair& part : actor.part_hairs) part.sleep.asleep = false;
 }
 
 void copyMotion(const Actor& from, Actor& actor) {
@@ -437,11 +434,8 @@ sim::StepReport simulateActor(const sim::SimParams& params, double step, double 
   std::copy(actor.hair.positions.begin(), actor.hair.positions.end(), actor.previous_positions.begin());
   actor.shown_still = false;
   const sim::StepInput input = stepInput(params, step, time, actor);
-  const auto asleep = [](const PartHair& part) { return part.sleep.asleep; };
   if (actor.coarse.active) {
     actor.last_report = simulateCoarse(params, input, step, actor);
-  } else if (std::ranges::any_of(actor.part_hairs, asleep) && !actor.sleep.asleep) {
-    actor.last_report = advanceAwakeParts(params, input, step, actor);
   } else {
     actor.last_report = sim::advance(actor.haircut->mesh, params, input, step, *actor.context, actor.hair);
   }

@@ -18,7 +18,6 @@
 #include "app/scene/pins.h"
 #include "app/scene/step_error.h"
 #include "render/frame_input.h"
-#include "sim/mesh/connected_components.h"
 #include "sim/mesh/hair_mesh.h"
 #include "sim/mesh/hair_state.h"
 #include "sim/mesh/rest_shape.h"
@@ -50,7 +49,6 @@ struct Haircut {
   std::string note;  // what was found of a file that does not fit the head, or was converted
   std::optional<LookFit> look;  // of a groom's strands
   sim::HairMesh mesh;
-  std::vector<sim::HairPart> parts;  // connected ones; empty: all of it is
   std::vector<render::HairFace> faces;
   std::vector<float> rest;  // positions of the rest shape, three floats a vertex
   // Of hair that brushes have reshaped, which one actor alone wears.
@@ -99,15 +97,6 @@ struct CoarseHair {
   std::vector<sim::Vec3> remainder;  // m, head frame: what the coarse shape lacks, fading after the change-over
 };
 
-// One connected part of an actor's hair, stepped by itself while another one sleeps.
-struct PartHair {
-  sim::SleepState sleep;
-  sim::HairState hair;  // gathered from the actor's before each use
-  std::vector<sim::Vec3> roots;
-  std::vector<sim::PinnedVertex> pins;
-  std::unique_ptr<sim::StepContext> context;  // made when it is first stepped by itself
-};
-
 struct Actor {
   std::uint64_t id = 0;
   CharacterSpec spec;
@@ -135,8 +124,7 @@ struct Actor {
   // What may be left out, and for how long.
   SimDetail detail;
   CoarseHair coarse;
-  sim::SleepState sleep;  // of all the hair; its parts' when there are several
-  std::vector<PartHair> part_hairs;
+  sim::SleepState sleep;
   int span = 1, ahead = 0;     // steps that the last step covered; those of them that the clock has yet to take
   std::uint64_t steps = 0;     // of the clock; begins anywhere, so that long steps of a crowd spread over the frames
   double posed_time = -1;      // s, clip time of `pose`

@@ -38,9 +38,9 @@ auto savedOf(P& playback) requires std::same_as<std::remove_const_t<P>, Playback
 template <class A>
 auto savedOf(A& actor) requires std::same_as<std::remove_const_t<A>, Actor> {
   auto& [id, spec, body, haircut, scalp, clip, playback, reach, jumped, pose, previous_pose, hair, previous_positions,
-         ellipsoids, parts, roots, pins, pinned, context, last_report, error_meter, detail, coarse, sleep, part_hairs,
-         span, ahead, steps, posed_time, pose_still, unseen, shown_still, usual_step, max_work, shown_pose,
-         shown_positions, joint_matrices, layout_revision, position_revision, pose_revision] = actor;
+         ellipsoids, parts, roots, pins, pinned, context, last_report, error_meter, detail, coarse, sleep, span, ahead,
+         steps, posed_time, pose_still, unseen, shown_still, usual_step, max_work, shown_pose, shown_positions,
+         joint_matrices, layout_revision, position_revision, pose_revision] = actor;
   auto& [step_span, coarse_mesh, seen] = detail;
   return std::tuple_cat(savedOf(playback),
                         std::tie(jumped, pose.world, previous_pose.world, previous_positions, ellipsoids, roots, pinned,
@@ -104,11 +104,6 @@ void writeActor(const Actor& actor, sim::Bytes& out) {
     sim::writeBytes(sim::saveState(coarse.pair->coarse->mesh, coarse.hair), out);
     sim::writeBytes(coarse.remainder, out);
   }
-  sim::writeBytes(std::uint64_t{actor.part_hairs.size()}, out);
-  for (std::size_t p = 0; p < actor.part_hairs.size(); ++p) {
-    sim::writeBytes(actor.part_hairs[p].sleep, out);
-    sim::writeBytes(sim::saveState(actor.haircut->parts[p].mesh, actor.part_hairs[p].hair), out);
-  }
 }
 
 // Reads what belongs to one character of the scene at hand; throws what is wrong with it.
@@ -126,7 +121,6 @@ class ActorReader {
     saved.chosen_mesh = readMesh();
     saved.coarse_mesh = readMesh();
     if (saved.coarse_mesh >= 0) readCoarse(shown, asset_cache, saved);
-    readParts(shown, saved.actor);
     if (!from_.complete || !fits(shown, saved.actor)) fail("does not fit the scene's", kSaveAnew);
     return saved;
   }
@@ -166,18 +160,6 @@ class ActorReader {
     if (coarse.remainder.size() != shown.hair.positions.size()) fail("does not fit the scene's", kSaveAnew);
   }
 
-  void readParts(const Actor& shown, Actor& saved) {
-    std::uint64_t count = 0;
-    sim::readBytes(from_, count);
-    const std::vector<sim::HairPart>& parts = shown.haircut->parts;
-    if (count != 0 && count != parts.size()) fail("has another number of parts", kSaveAnew);
-    saved.part_hairs.resize(count);
-    for (std::size_t p = 0; p < count; ++p) {
-      sim::readBytes(from_, saved.part_hairs[p].sleep);
-      readHair(parts[p].mesh, saved.part_hairs[p].hair);
-    }
-  }
-
   // Whether sizes and indices are those of the scene's character: bytes may have been made by hand.
   static bool fits(const Actor& shown, const Actor& saved) {
     const std::size_t vertices = shown.hair.positions.size(), joints = shown.pose.world.size();
@@ -211,7 +193,6 @@ void install(SavedActor saved, const Vec3& origin, Actor& actor) {
     actor.coarse.active = true;
     actor.coarse.context = contextOf(saved.pair->coarse->mesh);
   }
-  actor.part_hairs = std::move(saved.actor.part_hairs);
   jointMatrices(actor.body->character.skeleton, actor.shown_pose, origin, actor.joint_matrices);
   ++actor.position_revision;
   ++actor.pose_revision;

@@ -14,7 +14,7 @@
 namespace app {
 
 // Of the layout; another one after every change of a field.
-inline constexpr unsigned kDemoStateVersion = 2;
+inline constexpr unsigned kDemoStateVersion = 3;
 
 std::string demoStateBytes(const Demo& demo);
 

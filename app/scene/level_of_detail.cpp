@@ -96,17 +96,17 @@ void chooseMesh(double size, Demo& demo, Actor& actor) {
 
 // Whether all of the actor's hair sleeps through the step.
 bool countSleep(double step, double time, Demo& demo, Actor& actor) {
-  Sleepers sleepers;
+  bool asleep = false;
   if (demo.scene.skips[kSkipSleep]) {
-    sleepers = sleepersOf(demo.running, step, time, actor);
+    asleep = maySleep(demo.running, step, time, actor);
   } else {
     wakeAll(actor);
   }
   SkipCount& count = demo.stats.skipped[kSkipSleep];
-  count.skipped += sleepers.asleep;
-  count.of += sleepers.parts;
-  if (sleepers.all()) count.seconds += actor.usual_step;
-  return sleepers.all();
+  count.skipped += asleep;
+  ++count.of;
+  if (asleep) count.seconds += actor.usual_step;
+  return asleep;
 }
 
 }  // namespace

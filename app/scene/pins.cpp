@@ -86,16 +86,6 @@ void posePins(const std::vector<ActorPin>& pins, const Pose& pose, const Pose& p
   }
 }
 
-void pinsOfPart(const sim::HairPart& part, const std::vector<sim::PinnedVertex>& whole,
-                std::vector<sim::PinnedVertex>& pins) {
-  pins.clear();
-  for (const sim::PinnedVertex& pin : whole) {
-    if (part.place[pin.vertex] < 0) continue;
-    pins.push_back(pin);
-    pins.back().vertex = part.place[pin.vertex];
-  }
-}
-
 void pinsOfCoarse(const sim::HairMesh& fine, const sim::HairMesh& coarse, const Rigid& head,
                   const std::vector<sim::PinnedVertex>& whole, std::vector<sim::PinnedVertex>& pins) {
   pins.clear();

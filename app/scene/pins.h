@@ -5,7 +5,6 @@
 
 #include "app/figure/character.h"
 #include "app/files/pin_spec.h"
-#include "sim/mesh/connected_components.h"
 #include "sim/mesh/hair_mesh.h"
 #include "sim/step.h"
 
@@ -27,10 +26,7 @@ std::vector<ActorPin> findPins(const std::vector<PinSpec>& specs, const sim::Hai
 void posePins(const std::vector<ActorPin>& pins, const Pose& pose, const Pose& previous, double time, double dt,
               std::vector<sim::PinnedVertex>& posed);
 
-// The same for a connected part of the hair, and for a coarser mesh of the same style (by the nearest vertices at rest;
-// `head`: scalp frame to world).
-void pinsOfPart(const sim::HairPart& part, const std::vector<sim::PinnedVertex>& whole,
-                std::vector<sim::PinnedVertex>& pins);
+// The same for a coarser mesh of the same style (by the nearest vertices at rest; `head`: scalp frame to world).
 void pinsOfCoarse(const sim::HairMesh& fine, const sim::HairMesh& coarse, const Rigid& head,
                   const std::vector<sim::PinnedVertex>& whole, std::vector<sim::PinnedVertex>& pins);
 

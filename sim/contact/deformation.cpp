@@ -4,9 +4,8 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <set>
-
-#include "sim/linear/small_cholesky.h"
 
 namespace sim {
 namespace {
@@ -28,6 +27,20 @@ double innerProduct(std::span<const Vec3> a, std::span<const Vec3> b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
   return sum;
+}
+
+// The lower triangle of a symmetric positive definite matrix becomes its Cholesky factor, in place, left-looking:
+// unlike Eigen::LLT of a part of a matrix it allocates nothing. False where a pivot is not positive; the rest is then
+// as it was.
+bool factorLowerInPlace(Eigen::Ref<Eigen::MatrixXd> a) {
+  for (Eigen::Index j = 0; j < a.cols(); ++j) {
+    const double pivot = a(j, j) - a.row(j).head(j).squaredNorm();
+    if (!(pivot > 0)) return false;
+    a(j, j) = std::sqrt(pivot);
+    for (Eigen::Index i = j + 1; i < a.rows(); ++i)
+      a(i, j) = (a(i, j) - a.row(i).head(j).dot(a.row(j).head(j))) / a(j, j);
+  }
+  return true;
 }
 
 // A backward substitution: the factor, and four right-hand sides a row that the solution replaces.

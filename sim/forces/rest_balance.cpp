@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "sim/forces/evaluate.h"
-#include "sim/linear/elimination_order.h"
+#include "sim/forces/kernels.h"
+#include "sim/linear/modified_pcg.h"
+#include "sim/linear/two_level.h"
 
 namespace sim {
 namespace {
+
+constexpr double kResidual = 2e-10;  // of a vertex's weight
+constexpr int kMaxIterations = 3000;
 
 V3<double> plain(const Vec3& p) {
   return {p.x(), p.y(), p.z()};
@@ -19,12 +22,98 @@ constexpr int kIndex = ForceKinds::indexOf<Kind>();
 
 }  // namespace
 
-Material::Material(const HairMesh& mesh, const BlockPattern& pattern)
-    : mesh_(&mesh), pattern_(&pattern), stiffness_(&pattern) {
-  const int n = mesh.vertexCount();
-  for (auto* array : {&x_, &load_, &y_, &residual_, &more_}) array->resize(n);
-  for (int v = 0; v < n; ++v) x_[v] = plain(mesh.shape.positions[v]);
-}
+// K y = load at the styled pose, by preconditioned conjugate gradients from y = 0. K = sum k g g^T; roots are held.
+struct Material::Solve {
+  ColumnLayout layout;
+  ColumnPattern columns;
+  ColumnModel<double> elements;
+  ColumnMatrix<double> k;
+  ColumnProduct<double> product;
+  ColumnField<double> packed;
+  TwoLevel<double> preconditioner;
+  Filter<double> free;
+  std::vector<V3<double>> x, load, y, r, z, d, q;
+  bool assembled = false;
+  double square = 0;  // r . P r
+  int iterations = 0;
+
+  explicit Solve(const HairMesh& mesh)
+      : layout(mesh),
+        columns(mesh, layout),
+        elements(mesh, layout, columns),
+        k(layout, columns),
+        product(layout),
+        packed(layout),
+        preconditioner(mesh) {
+    for (auto* array : {&load, &y, &r, &z, &d, &q}) array->resize(mesh.vertexCount());
+    for (const Vec3& p : mesh.shape.positions) x.push_back(plain(p));
+    packed.pack(layout, x);
+    free.vertices.assign(mesh.shape.column_first.begin(), mesh.shape.column_first.end() - 1);
+    free.keep.resize(mesh.columnCount());
+  }
+
+  // Takes the elements and the weight (N/m^3); assemble() is a step's work of its own.
+  void begin(const HairMesh& mesh, const ForceModel<double>& model, double weight) {
+    elements.setElements(mesh, layout, model);
+    for (int i = 0; i < mesh.vertexCount(); ++i) load[i] = {0, -weight * mesh.vertex_volume[i], 0};
+    free.apply(load);
+    std::fill(y.begin(), y.end(), V3<double>{});
+    assembled = false;
+    iterations = 0;
+  }
+
+  void assemble() {
+    k.setZero();
+    ColumnEvaluation<double> out;
+    out.matrix = &k;
+    out.matrix_scale = 1;
+    evaluate<double>(elements, layout, packed, out);
+    double scale = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) scale = std::max(scale, k.diagonalBlock(static_cast<int>(i)).m[0]);
+    // A material without bend or shear leaves modes without stiffness; the smallest share keeps the solve defined.
+    k.addMass(1e-13 * scale, std::vector<double>(load.size(), 1));
+    preconditioner.memory.forget();
+    preconditioner.update(k, x);
+    restart();
+    assembled = true;
+  }
+
+  void restart() {
+    multiply<double>(k, product, y, r);
+    for (std::size_t i = 0; i < r.size(); ++i) r[i] = load[i] - r[i];
+    free.apply(r);
+    square = precondition();
+    d = z;
+  }
+
+  double precondition() {
+    preconditioner.apply(r, z);
+    free.apply(z);
+    return innerProduct<double>(r, z);
+  }
+
+  bool iterate() {
+    multiply<double>(k, product, d, q);
+    free.apply(q);
+    const double curvature = innerProduct<double>(d, q), before = square;
+    if (!(curvature > 0)) return false;
+    addScaled<double>(before / curvature, d, y);
+    addScaled<double>(-before / curvature, q, r);
+    square = precondition();
+    scaleAndAdd<double>(square / before, z, d);
+    return ++iterations < kMaxIterations;
+  }
+
+  bool balanced() const {
+    for (std::size_t i = 0; i < r.size(); ++i) {
+      if (!(dot(r[i], r[i]) <= kResidual * kResidual * load[i].y * load[i].y)) return false;
+    }
+    return true;
+  }
+};
+
+Material::Material(const HairMesh& mesh, const BlockPattern& pattern) : mesh_(&mesh), pattern_(&pattern) {}
+Material::~Material() = default;
 
 void Material::setMoving(std::span<const PinnedVertex> pins) {
   setMovingElements({*mesh_, params_, pins}, *pattern_, model);
@@ -35,21 +124,21 @@ void Material::rebuild() {
   model.forEachOfMaterial(
       [&]<class Kind>(const Elements<Kind, double>& elements) { unloaded_[kIndex<Kind>] = elements.shift; });
   balance_ = coming_ = {};
-  stage_ = Stage::kIdle;
+  solving_ = false;
 }
 
 void Material::set(const SimParams& params) {
   params_ = params;
   if (!setStiffness({*mesh_, params}, model)) rebuild();
-  stage_ = Stage::kIdle;
+  solving_ = false;
   memory_ = {.known = true, .params = params, .balanced = params, .coming = params};
   balance_.load = 0;
   applyBalance();
   if (wantedLoad() <= 0) return;
   beginBalance();
-  while (stage_ != Stage::kIdle) continueBalance(std::numeric_limits<double>::infinity());
+  while (solving_) continueBalance(kMaxIterations);
   memory_.slices = 0;
-  factor_.release();
+  solve_.reset();
 }
 
 void Material::follow(const SimParams& params) {
@@ -57,7 +146,7 @@ void Material::follow(const SimParams& params) {
   if (!setStiffness({*mesh_, params}, model)) return set(params);
   applyBalance();
   // Weight alone changes no more than the scale.
-  const RestBalance& last = stage_ == Stage::kIdle ? balance_ : coming_;
+  const RestBalance& last = solving_ ? coming_ : balance_;
   bool same = last.load > 0;
   model.forEachOfMaterial([&]<class Kind>(const Elements<Kind, double>& elements) {
     same = same && last.stiffness[kIndex<Kind>] == elements.stiffness;
@@ -78,14 +167,13 @@ void Material::reshape() {
 }
 
 bool Material::work() {
-  if (stage_ == Stage::kIdle) {
-    if (!memory_.outdated) return false;
-    beginBalance();
+  if (!solving_) {
+    if (memory_.outdated) beginBalance();
     return false;
   }
   ++memory_.slices;
-  const bool changed = continueBalance(factor_.factorOperations() / kSlices);
-  if (stage_ == Stage::kIdle) memory_.slices = 0;
+  const bool changed = continueBalance(kSlice);
+  if (!solving_) memory_.slices = 0;
   if (changed) memory_.balanced = memory_.coming;
   return changed;
 }
@@ -117,73 +205,33 @@ void Material::beginBalance() {
   memory_.outdated = false;
   memory_.coming = params_;
   memory_.slices = 1;
-  stiffness_.setZero();
-  Evaluation<double> out;
-  out.matrix = &stiffness_;
-  out.matrix_scale = 1;
-  double energy = 0;
-  model.forEachOfMaterial([&](const auto& elements) {
-    evaluateElements(elements, BlockSums<double>{x_, out}, energy);
-  });
-  const int n = mesh_->vertexCount();
-  double scale = 0;
-  for (int i = 0; i < n; ++i) scale = std::max(scale, stiffness_.diagonal[i].m[0]);
   coming_.load = wantedLoad();
-  for (int i = 0; i < n; ++i) {
-    load_[i] = {0, mesh_->isRoot(i) ? 0 : -params_.density * mesh_->vertex_volume[i] * params_.gravity, 0};
-    // A material without bend or shear leaves modes without stiffness; the smallest share keeps the solve defined.
-    for (int k = 0; k < 9; k += 4) stiffness_.diagonal[i].m[k] += 1e-13 * scale;
-  }
   model.forEachOfMaterial([&]<class Kind>(const Elements<Kind, double>& elements) {
     coming_.stiffness[kIndex<Kind>] = elements.stiffness;
   });
-  if (factor_.order.empty()) {
-    std::vector<unsigned char> free_vertex(n);
-    for (int i = 0; i < n; ++i) free_vertex[i] = !mesh_->isRoot(i);
-    factor_.analyze(*pattern_, minimumDegreeOrder(*pattern_, free_vertex));
-  }
-  factor_.beginFactor();
-  stage_ = Stage::kFactor;
+  if (!solve_) solve_ = std::make_unique<Solve>(*mesh_);
+  solve_->begin(*mesh_, model, coming_.load);
+  solving_ = true;
 }
 
-// One stage, or a slice of the factorization.
-bool Material::continueBalance(double operations) {
-  switch (stage_) {
-    case Stage::kIdle:
-      return false;
-    case Stage::kFactor: {
-      using Progress = BlockCholesky<double>::Progress;
-      const Progress progress = factor_.continueFactor(stiffness_, operations);
-      if (progress == Progress::kDone) stage_ = Stage::kSolve;
-      if (progress == Progress::kFailed) stage_ = Stage::kIdle;
-      return false;
-    }
-    case Stage::kSolve:
-      factor_.solve(load_, y_);
-      stage_ = Stage::kRefine;
-      return false;
-    case Stage::kRefine:
-      stage_ = refine() ? Stage::kShifts : Stage::kIdle;
-      return false;
-    case Stage::kShifts:
-      takeChanges();
-      applyBalance();
-      stage_ = Stage::kIdle;
-      if (!memory_.outdated) factor_.release();
-      return true;
+// Assembles, or makes so many iterations or those that are left. Returns whether a balance was found.
+bool Material::continueBalance(int iterations) {
+  bool goes_on = true;
+  if (!solve_->assembled) {
+    solve_->assemble();
+    return false;
   }
-  return false;
-}
-
-bool Material::refine() {
-  multiply<double>(stiffness_, y_, residual_);
-  for (std::size_t i = 0; i < y_.size(); ++i) residual_[i] = load_[i] - residual_[i];
-  factor_.solve(residual_, more_);
-  for (std::size_t i = 0; i < y_.size(); ++i) {
-    y_[i] += more_[i];
-    if (!std::isfinite(dot(y_[i], y_[i]))) return false;
+  for (int i = 0; i < iterations && goes_on; ++i) {
+    if (solve_->balanced()) solve_->restart();  // rounding has spoilt the residual
+    goes_on = !solve_->balanced() && solve_->iterate();
   }
-  return true;
+  if (goes_on) return false;
+  solving_ = false;
+  const bool finite = std::ranges::all_of(solve_->y, [](const V3<double>& y) { return std::isfinite(dot(y, y)); });
+  if (finite) takeChanges();
+  applyBalance();
+  if (!memory_.outdated) solve_.reset();
+  return finite;
 }
 
 void Material::takeChanges() {
@@ -193,10 +241,10 @@ void Material::takeChanges() {
     for (std::size_t e = 0; e < elements.size(); ++e) {
       const auto& v = elements.vertices[e];
       V3<double> p[Kind::kVertices];
-      for (int k = 0; k < Kind::kVertices; ++k) p[k] = x_[v[k]];
+      for (int k = 0; k < Kind::kVertices; ++k) p[k] = solve_->x[v[k]];
       const auto c = Kind::condition(p, elements.rest[e], 0.0);
       double change = 0;
-      for (int k = 0; k < Kind::kVertices; ++k) change += dot(c.g[k], y_[v[k]]);
+      for (int k = 0; k < Kind::kVertices; ++k) change += dot(c.g[k], solve_->y[v[k]]);
       changes[e] = change;
     }
   });

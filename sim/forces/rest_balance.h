@@ -1,15 +1,15 @@
 // The force model as it follows the material parameters: at once, and cheaply where only their values change.
 //
-// Sag-free rest shifts are a linear solve with a factor of the stiffness, far too long for a frame in which a slider is
-// dragged. But what balances gravity is the product of stiffness and shift of each element: kept while the stiffness
-// changes, gravity stays balanced exactly. Only which of all balances it is, the one of least energy, needs the solve,
-// and that can come a little later, in slices.
+// Rest shifts that balance gravity are a linear solve of hundreds of iterations, far too long for a frame in which a
+// slider is dragged. But what balances gravity is the product of stiffness and shift of each element: kept while the
+// stiffness changes, gravity stays balanced exactly. Only which of all balances it is, the one of least energy, needs
+// the solve, and that can come a little later, some iterations a step.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "sim/forces/model.h"
-#include "sim/linear/block_cholesky.h"
 #include "sim/mesh/hair_memory.h"
 
 namespace sim {
@@ -25,6 +25,7 @@ struct Material {
   ForceModel<double> model;
 
   Material(const HairMesh& mesh, const BlockPattern& pattern);
+  ~Material();
 
   // As makeForceModel.
   void set(const SimParams& params);
@@ -39,11 +40,11 @@ struct Material {
   // Makes the elements anew that the step's input moves.
   void setMoving(std::span<const PinnedVertex> pins);
 
-  // Goes on with the solve for the balance of the last parameters by one kSlices-th of its factorization; answers
-  // whether `model` has just changed. A parameter that changes meanwhile lets the solve finish and begin again.
-  static constexpr int kSlices = 40;
+  // Goes on with the solve for the balance of the last parameters by kSlice iterations; answers whether `model` has
+  // just changed. A parameter that changes meanwhile lets the solve finish and begin again.
+  static constexpr int kSlice = 8;
   bool work();
-  bool outdated() const { return memory_.outdated || stage_ != Stage::kIdle; }
+  bool outdated() const { return memory_.outdated || solving_; }
 
   // What the above have come to: model and solve follow from it. recall() remakes them where they are another's, and
   // answers whether they were.
@@ -51,23 +52,20 @@ struct Material {
   bool recall(const MaterialMemory& memory);
 
  private:
-  enum class Stage { kIdle, kFactor, kSolve, kRefine, kShifts };
   const HairMesh* mesh_;
   const BlockPattern* pattern_;
   SimParams params_;
   std::array<std::vector<double>, ForceKinds::kCount> unloaded_;  // shifts before any balance
   RestBalance balance_, coming_;
   MaterialMemory memory_;
-  Stage stage_ = Stage::kIdle;
-  BlockCholesky<double> factor_;
-  BlockMatrix<double> stiffness_;
-  std::vector<V3<double>> x_, load_, y_, residual_, more_;
+  struct Solve;  // that of `coming_`; kept while sliders are dragged
+  std::unique_ptr<Solve> solve_;
+  bool solving_ = false;
 
   double wantedLoad() const { return params_.sag_free ? params_.density * params_.gravity : 0; }
   void rebuild();
   void beginBalance();
-  bool continueBalance(double operations);
-  bool refine();
+  bool continueBalance(int iterations);
   void takeChanges();
   void applyBalance();
 };

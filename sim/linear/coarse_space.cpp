@@ -4,7 +4,6 @@
 #include <array>
 #include <map>
 
-#include "sim/linear/elimination_order.h"
 #include "sim/linear/lanes.h"
 
 namespace sim {
@@ -155,9 +154,7 @@ CoarseSpace<T>::CoarseSpace(const HairMesh& mesh, const ColumnLayout& layout, co
       held_(mesh.vertexCount()) {
   formGroups();
   couplePatches();
-  asked_.resize(coupled_.size), answer_.resize(coupled_.size);
-  factor_.analyze(coupled_, minimumDegreeOrder(coupled_, std::vector<unsigned char>(coupled_.size, 1)));
-  factor();  // of nothing: takes the memory
+  motion_.resize(2 * patches());
 }
 
 // Columns into groups, and the layers of a group into patches.
@@ -184,7 +181,7 @@ void CoarseSpace<T>::formGroups() {
   }
 }
 
-// The classes of block diagonals, the pairs of patches that each couples, and the matrix of these pairs.
+// The classes of block diagonals, the pairs of patches that each couples, and the envelope of these pairs.
 template <class T>
 void CoarseSpace<T>::couplePatches() {
   std::map<std::array<int, 4>, std::vector<int>> by_class;
@@ -192,8 +189,8 @@ void CoarseSpace<T>::couplePatches() {
     const BlockDiagonal& d = pattern_->diagonals[k];
     by_class[{group_of_[d.a], group_of_[d.b], d.offset, d.symmetric()}].push_back(static_cast<int>(k));
   }
-  std::vector<std::pair<int, int>> pairs;
-  for (int p = 0; p < patches(); ++p) pairs.emplace_back(2 * p + 1, 2 * p);
+  std::vector<int> first(6 * patches());
+  for (int row = 0; row < 6 * patches(); ++row) first[row] = row / 6 * 6;
   for (const auto& [key, members] : by_class) {
     Class one{static_cast<int>(diagonals_.size()), 0, static_cast<int>(targets_.size()), 0, key[3] != 0};
     diagonals_.insert(diagonals_.end(), members.begin(), members.end());
@@ -210,27 +207,21 @@ void CoarseSpace<T>::couplePatches() {
         targets_.back().last = l;
         continue;
       }
-      targets_.push_back({l, l, row, column, p < q, {-1, -1, -1, -1}});
-      for (int k = 0; row != column && k < 4; ++k) pairs.emplace_back(2 * row + k / 2, 2 * column + k % 2);
+      targets_.push_back({l, l, row, column, p < q});
+      for (int k = 6 * row; k < 6 * row + 6; ++k) first[k] = std::min(first[k], 6 * column);
     }
     one.diagonal_end = static_cast<int>(diagonals_.size());
     one.target_end = static_cast<int>(targets_.size());
     if (one.target_end > one.target_first) classes_.push_back(one);
   }
-  coupled_ = makePattern(2 * patches(), std::move(pairs));
-  for (Target& t : targets_) {
-    for (int k = 0; k < 4; ++k) {
-      if (t.row != t.column || k == 2) t.blocks[k] = coupled_.find(2 * t.row + k / 2, 2 * t.column + k % 2);
-    }
-  }
-  matrix_ = BlockMatrix<T>(&coupled_);
+  factor_.analyze(first);
 }
 
 template <class T>
 void CoarseSpace<T>::setArms(std::span<const V3<T>> x, std::span<const VertexConstraint> constraints) {
   std::fill(held_.begin(), held_.end(), 0);
   for (const VertexConstraint& c : constraints) held_[c.vertex] = 1;
-  std::fill(asked_.begin(), asked_.end(), V3<T>{});  // sums of positions, and in the turn's place their number
+  std::fill(motion_.begin(), motion_.end(), V3<T>{});  // sums of positions, and in the turn's place their number
   const auto eachMoving = [&](auto&& visit) {
     for (std::size_t i = 0; i < x.size(); ++i) {
       const int v = static_cast<int>(i), layer = mesh_->layer_of[v];
@@ -238,13 +229,13 @@ void CoarseSpace<T>::setArms(std::span<const V3<T>> x, std::span<const VertexCon
     }
   };
   eachMoving([&](int v, int patch, int) {
-    asked_[2 * patch] += x[v];
-    asked_[2 * patch + 1].x += 1;
+    motion_[2 * patch] += x[v];
+    motion_[2 * patch + 1].x += 1;
   });
   arm_.setZero();
   std::fill(moves_.begin(), moves_.end(), T(0));
   eachMoving([&](int v, int patch, int slot) {
-    const V3<T> arm = x[v] - (T(1) / asked_[2 * patch + 1].x) * asked_[2 * patch];
+    const V3<T> arm = x[v] - (T(1) / motion_[2 * patch + 1].x) * motion_[2 * patch];
     arm_.x[slot] = arm.x, arm_.y[slot] = arm.y, arm_.z[slot] = arm.z;
     moves_[slot] = 1;
   });
@@ -262,40 +253,34 @@ void CoarseSpace<T>::addSums(const Class& one) {
       for (int l = t.first; l <= t.last; ++l) sum += sums_[static_cast<std::size_t>(e) * stride + l];
       six[e] = sum;
     }
-    // Entry (r, c) of part (s, t) of the block, as the target sees it.
-    const auto part = [&](int rows, int columns, bool turned, M3<T>& to) {
-      for (int e = 0; e < 9; ++e) {
-        const int r = 3 * rows + e / 3, c = 3 * columns + e % 3;
-        to.m[e] += six[turned ? 6 * c + r : 6 * r + c];
+    const bool within = t.row == t.column;
+    const auto add = [&](bool turned) {
+      for (int r = 0; r < 6; ++r) {
+        for (int c = 0; c < (within ? r + 1 : 6); ++c)
+          factor_.at(6 * t.row + r, 6 * t.column + c) += six[turned ? 6 * c + r : 6 * r + c];
       }
     };
-    if (t.row != t.column) {
-      for (int b = 0; b < 4; ++b) part(b / 2, b % 2, t.turned, matrix_.lower[t.blocks[b]]);
-      continue;
-    }
-    // Blocks off the matrix's diagonal stand for their transposes as well.
-    for (int turned = 0; turned < (one.symmetric ? 1 : 2); ++turned) {
-      part(0, 0, turned, matrix_.diagonal[2 * t.row]);
-      part(1, 1, turned, matrix_.diagonal[2 * t.row + 1]);
-      part(1, 0, turned, matrix_.lower[t.blocks[2]]);
-    }
+    add(t.turned);
+    // Within a patch, blocks off the matrix's diagonal stand for their transposes as well.
+    if (within && !one.symmetric) add(!t.turned);
   }
 }
 
 template <class T>
 bool CoarseSpace<T>::factor() {
-  for (M3<T>& d : matrix_.diagonal) {
-    const T largest = std::max({d.m[0], d.m[4], d.m[8]});
-    for (int k = 0; k < 9; k += 4) d.m[k] += largest > 0 ? static_cast<T>(kRaise) * largest : T(1);
+  for (int row = 0; row < 6 * patches(); row += 3) {
+    const auto diagonal = [&](int k) -> T& { return factor_.at(row + k, row + k); };
+    const T largest = std::max({diagonal(0), diagonal(1), diagonal(2)});
+    for (int k = 0; k < 3; ++k) diagonal(k) += largest > 0 ? static_cast<T>(kRaise) * largest : T(1);
   }
-  return factor_.factor(matrix_);
+  return factor_.factor();
 }
 
 template <class T>
 bool CoarseSpace<T>::make(const ColumnMatrix<T>& a, std::span<const V3<T>> x,
                           std::span<const VertexConstraint> constraints) {
   setArms(x, constraints);
-  matrix_.setZero();
+  factor_.setZero();
   const Fields<T> fields{arm_, moves_.data()};
   for (const Class& one : classes_) {
     const auto which = std::span(diagonals_).subspan(one.diagonal_first, one.diagonal_end - one.diagonal_first);
@@ -327,10 +312,10 @@ void CoarseSpace<T>::solve(const ColumnField<T>& r) {
         force += V3<T>{at[0], at[stride], at[2 * stride]};
         torque += V3<T>{at[3 * stride], at[4 * stride], at[5 * stride]};
       }
-      asked_[2 * p] = force, asked_[2 * p + 1] = torque;
+      motion_[2 * p] = force, motion_[2 * p + 1] = torque;
     }
   }
-  factor_.solve(asked_, answer_);
+  if (!motion_.empty()) factor_.solve(&motion_[0].x);
 }
 
 template <class T>
@@ -341,7 +326,7 @@ void CoarseSpace<T>::add(ColumnField<T>& z) {
     std::fill_n(sums_.begin(), 6 * stride, T(0));
     for (int p = patch_first_[g]; p < patch_first_[g + 1]; ++p) {
       const int first = (p - patch_first_[g]) * kLayers + 1, last = std::min(first + kLayers, stride);
-      const V3<T>&shift = answer_[2 * p], &turn = answer_[2 * p + 1];
+      const V3<T>&shift = motion_[2 * p], &turn = motion_[2 * p + 1];
       for (int l = first; l < last; ++l) {
         T* at = sums_.data() + l;
         at[0] = shift.x, at[stride] = shift.y, at[2 * stride] = shift.z;

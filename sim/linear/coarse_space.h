@@ -12,9 +12,8 @@
 #include <span>
 #include <vector>
 
-#include "sim/linear/block_cholesky.h"
-#include "sim/linear/block_matrix.h"
 #include "sim/linear/column_matrix.h"
+#include "sim/linear/envelope_cholesky.h"
 #include "sim/mesh/vertex_constraint.h"
 
 namespace sim {
@@ -45,14 +44,11 @@ class CoarseSpace {
   int patches() const { return patch_first_.back(); }
 
  private:
-  // Where the sums over lanes [first, last] of a class go: the blocks that couple two patches, of which `row` is the
-  // later one. `turned`: the class knows them the other way round. Blocks: of translation with translation and with
-  // turn, of turn with translation and with turn (rows with columns); within one patch only the third, the others are
-  // on the diagonal or above it.
+  // Where the sums over lanes [first, last] of a class go: the block that couples two patches, `row` being the later
+  // one. `turned`: the class has it transposed.
   struct Target {
     int first, last, row, column;
     bool turned;
-    int blocks[4];
   };
   // The block diagonals of the matrix between the columns of two groups, at one offset of layers.
   struct Class {
@@ -70,13 +66,11 @@ class CoarseSpace {
   std::vector<Class> classes_;
   std::vector<int> diagonals_;
   std::vector<Target> targets_;
-  BlockPattern coupled_;  // a patch has two rows: its translation and its turn
-  BlockMatrix<T> matrix_;
-  BlockCholesky<T> factor_;
-  ColumnField<T> arm_;   // m, from the centre of the patch; zero where the next is
-  LineVector<T> moves_;  // 1, or 0 for what does not move: roots, constrained vertices, padding
-  LineVector<T> sums_;   // of one class: 36 entries, a stride each; or of one group: 6
-  std::vector<V3<T>> asked_, answer_;
+  EnvelopeCholesky<T> factor_;       // of a patch, six rows: its translation and its turn
+  ColumnField<T> arm_;               // m, from the centre of the patch; zero where the next is
+  LineVector<T> moves_;              // 1, or 0 for what does not move: roots, constrained vertices, padding
+  LineVector<T> sums_;               // of one class: 36 entries, a stride each; or of one group: 6
+  std::vector<V3<T>> motion_;        // two a patch: force and torque, then translation and turn
   std::vector<unsigned char> held_;  // per vertex
 
   int patchOf(int column, int layer) const { return patch_first_[group_of_[column]] + (layer - 1) / kLayers; }

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "sim/linear/block_mask.h"
-#include "sim/linear/pivot_inverse.h"
+#include "sim/linear/lane_blocks.h"
 #include "sim/linear/vector3.h"
 
 namespace sim {

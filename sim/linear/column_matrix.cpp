@@ -141,23 +141,6 @@ M3<T> ColumnMatrix<T>::diagonalBlock(int v) const {
   return {at[0], at[s], at[2 * s], at[s], at[3 * s], at[4 * s], at[2 * s], at[4 * s], at[5 * s]};
 }
 
-template <class T>
-void ColumnMatrix<T>::toBlocks(const HairMesh& mesh, BlockMatrix<T>& to) const {
-  to.setZero();
-  for (int v = 0; v < mesh.vertexCount(); ++v) to.diagonal[v] = diagonalBlock(v);
-  for (const BlockDiagonal& d : pattern->diagonals) {
-    if (d.symmetric()) continue;
-    for (int l = std::max(0, -d.offset); l < layout->length[d.a] && l + d.offset < layout->length[d.b]; ++l) {
-      const int i = mesh.shape.column_first[d.a] + l, j = mesh.shape.column_first[d.b] + l + d.offset;
-      const int block = to.pattern->find(std::max(i, j), std::min(i, j));
-      if (block < 0) continue;
-      M3<T> m;
-      for (int k = 0; k < 9; ++k) m.m[i > j ? k : 3 * (k % 3) + k / 3] = values[d.values + k * layout->stride + l];
-      to.lower[block] = m;
-    }
-  }
-}
-
 namespace {
 
 // A field as one address and the ways from there to the other components: few registers, and nothing that the compiler

@@ -4,9 +4,8 @@
 #include <map>
 #include <set>
 
-#include "sim/linear/block_mask.h"
 #include "sim/linear/elimination_order.h"
-#include "sim/linear/pivot_inverse.h"
+#include "sim/linear/lane_blocks.h"
 
 namespace sim {
 namespace {
@@ -138,7 +137,7 @@ LayerFactor<T>::LayerFactor(const HairMesh& mesh, const ColumnLayout& layout, co
     if (d.a != d.b && d.offset == 0) pairs.emplace_back(d.a, d.b);
   }
   const BlockPattern graph = makePattern(columns, pairs);
-  order_ = minimumDegreeOrder(graph, std::vector<unsigned char>(columns, 1));
+  order_ = minimumDegreeOrder(graph);
   std::vector<int> position(columns);
   for (int k = 0; k < columns; ++k) position[order_[k]] = k;
   // Symbolic elimination, in positions.

@@ -29,24 +29,19 @@ HAIRMESH_INLINE void scale(T s, const T* __restrict x, T* __restrict y, std::siz
   for (std::size_t i = 0; i < n; ++i) y[i] = x[i] + s * y[i];
 }
 
-HAIRMESH_CLONES double runInner(const float* a, const float* b, std::size_t n) {
-  return inner(a, b, n);
-}
-HAIRMESH_CLONES double runInner(const double* a, const double* b, std::size_t n) {
-  return inner(a, b, n);
-}
-HAIRMESH_CLONES void runAdd(float s, const float* x, float* y, std::size_t n) {
-  add(s, x, y, n);
-}
-HAIRMESH_CLONES void runAdd(double s, const double* x, double* y, std::size_t n) {
-  add(s, x, y, n);
-}
-HAIRMESH_CLONES void runScale(float s, const float* x, float* y, std::size_t n) {
-  scale(s, x, y, n);
-}
-HAIRMESH_CLONES void runScale(double s, const double* x, double* y, std::size_t n) {
-  scale(s, x, y, n);
-}
+#define HAIRMESH_KERNELS(T)                                                \
+  HAIRMESH_CLONES double runInner(const T* a, const T* b, std::size_t n) { \
+    return inner(a, b, n);                                                 \
+  }                                                                        \
+  HAIRMESH_CLONES void runAdd(T s, const T* x, T* y, std::size_t n) {      \
+    add(s, x, y, n);                                                       \
+  }                                                                        \
+  HAIRMESH_CLONES void runScale(T s, const T* x, T* y, std::size_t n) {    \
+    scale(s, x, y, n);                                                     \
+  }
+HAIRMESH_KERNELS(float)
+HAIRMESH_KERNELS(double)
+#undef HAIRMESH_KERNELS
 
 // The components one after the other.
 template <class V>

@@ -51,11 +51,11 @@ LinearRecord recordStep(const RecordedMesh& shared, sim::ImplicitSolver<double>&
   for (const sim::Vec3& v : state.velocities) record.guess.push_back(plain(v));
   sim::StepReport report;
   sim::StageClock no_clock;
-  solver.solve(mesh, params, {state.positions, state.velocities, shared.h}, no_clock, state.contacts, state.memory.solve,
-               state.velocities, report);
+  solver.solve(mesh, params, {state.positions, state.velocities, shared.h}, no_clock, state.contacts,
+               state.memory.solve, state.velocities, report);
   record.column_values = solver.matrix.values;
   record.matrix = sim::BlockMatrix<double>(&shared.pattern);
-  solver.matrix.toBlocks(mesh, record.matrix);
+  toBlocks(mesh, solver.matrix, record.matrix);
   record.rhs = solver.trial;
   record.constraints = solver.constraints;
   record.keep.assign(mesh.vertexCount(), Eigen::Matrix3d::Identity());

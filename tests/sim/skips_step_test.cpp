@@ -10,7 +10,6 @@
 #include "app/scene/demo.h"
 #include "app/scene/sleep.h"
 #include "sim/forces/kernels.h"
-#include "sim/mesh/connected_components.h"
 #include "tests/test_meshes.h"
 
 namespace {
@@ -199,111 +198,6 @@ TEST(SkipCount, CollidersOutOfReachChangeNoBitAndCostNothing) {
   EXPECT_TRUE(looked);
   EXPECT_FALSE(with.state.contacts.empty());
   EXPECT_LT(least[1], 1.1 * least[0]) << "forty bodies";
-}
-
-// Two plaits that share nothing.
-sim::HairMeshShape plaits() {
-  test::PatchOptions o;
-  o.nx = 2, o.nz = 1, o.layers = 6, o.length = 0.15;
-  sim::HairMeshShape shape = test::combedShape(o), other = shape;
-  const int columns = shape.columnCount(), vertices = shape.vertexCount();
-  for (Vec3& p : other.positions) shape.positions.push_back(p + Vec3(0.15, 0.01, 0));
-  for (std::size_t c = 1; c < other.column_first.size(); ++c)
-    shape.column_first.push_back(vertices + other.column_first[c]);
-  for (sim::RootFace& face : other.root_faces) {
-    for (int k = 0; k < face.corner_count; ++k) face.columns[k] += columns;
-    shape.root_faces.push_back(face);
-  }
-  return shape;
-}
-
-TEST(HairParts, AreWhatIsConnectedAndMoveAsTheWholeDoes) {
-  EXPECT_TRUE(sim::connectedParts(sim::buildHairMesh(test::combedShape(coat()))).empty());
-  sim::SimParams params = test::tautHair();
-  Hair hair(plaits(), params);
-  const std::vector<sim::HairPart> parts = sim::connectedParts(hair.mesh);
-  ASSERT_EQ(parts.size(), 2u);
-  EXPECT_EQ(parts[0].vertices.size() + parts[1].vertices.size(), hair.state.positions.size());
-
-  Hair other(plaits(), params);
-  std::vector<sim::StepContext> contexts;
-  for (const sim::HairPart& part : parts) contexts.emplace_back(part.mesh);
-  for (Hair* one : {&hair, &other})
-    one->bodies.push_back({Vec3(0.02, -0.13, -0.02), Eigen::Quaterniond::Identity(), Vec3(0.05, 0.05, 0.05)});
-  for (int n = 0; n < 30; ++n) {
-    for (Hair* one : {&hair, &other}) {
-      for (Vec3& root : one->roots) root += Vec3(0.002, -0.001, 0.001);
-    }
-    hair.step(kFrame);
-    other.state.previous_positions = other.state.positions;
-    other.state.previous_velocities = other.state.velocities;
-    for (std::size_t p = 0; p < parts.size(); ++p) {
-      sim::HairState state;
-      std::vector<Vec3> roots;
-      for (const int c : parts[p].columns) roots.push_back(other.roots[c]);
-      sim::gatherPart(parts[p], other.state, state);
-      sim::advance(parts[p].mesh, params, {roots, other.bodies, 0}, kFrame, contexts[p], state);
-      sim::scatterPart(parts[p], state, other.state);
-    }
-  }
-  EXPECT_FALSE(hair.state.contacts.empty());
-  EXPECT_EQ(hair.state.contacts.size(), other.state.contacts.size());
-  EXPECT_LT(test::largestDistance(hair.state.positions, other.state.positions), 1e-6);
-}
-
-TEST(HairParts, CountWhatTheyDidTogether) {
-  sim::StepReport part, whole;
-  const auto counts = [](sim::StepReport& report) {
-    return std::array{&report.solver_iterations, &report.contacts,        &report.corrected,
-                      &report.initial_overlap,   &report.self_contacts,   &report.guided,
-                      &report.recoveries,        &report.work.iterations, &report.work.factors};
-  };
-  int n = 0;
-  for (int* count : counts(part)) *count = ++n;
-  sim::addPart(part, whole);
-  sim::addPart(part, whole);
-  n = 0;
-  for (const int* count : counts(whole)) EXPECT_EQ(*count, 2 * ++n);
-}
-
-// Both plaits sleep; one is pushed: it alone wakes, and the other one stays to the bit where it was.
-TEST(HairParts, SleepAndWakeOneByOne) {
-  const std::string file = testing::TempDir() + "plaits.obj";
-  sim::HairMeshShape shape = plaits();
-  for (Vec3& p : shape.positions) p += Vec3(-0.1, 0.3, 0);  // above the head: nothing touches them
-  std::ofstream(file) << app::writeHairMesh(shape);
-  app::Scene scene;
-  app::CharacterSpec spec;
-  spec.motion = app::dataPath("assets/clips/idle_turns.bvh");
-  spec.hair = file;
-  scene.characters.push_back(spec);
-  scene.playback.speed = 0;
-  scene.playback.settle = 0.5;
-  scene.sim.collide = false;
-  app::Demo demo = app::openScene(std::move(scene), 1.5);
-  app::Actor& actor = demo.actors[0];
-  ASSERT_EQ(actor.haircut->parts.size(), 2u);
-  const auto run = [&](int frames) {
-    for (int frame = 0; frame < frames; ++frame) app::advanceFrame(demo, kFrame, {});
-  };
-  for (int second = 0; second < 30 && !actor.sleep.asleep; ++second) run(60);
-  ASSERT_TRUE(actor.sleep.asleep);
-  EXPECT_EQ(demo.stats.skipped[app::kSkipSleep].skipped, 2);
-
-  const std::vector<Vec3> before = actor.hair.positions;
-  const std::vector<int>&still = actor.haircut->parts[0].vertices, &pushed = actor.haircut->parts[1].vertices;
-  for (const int v : pushed) {
-    if (!actor.haircut->mesh.isRoot(v)) actor.hair.velocities[v].x() += 0.3, actor.hair.positions[v].x() += 1e-6;
-  }
-  run(4);
-  EXPECT_FALSE(actor.sleep.asleep);
-  EXPECT_EQ(demo.stats.skipped[app::kSkipSleep].skipped, 1);
-  for (const int v : still) EXPECT_EQ(actor.hair.positions[v], before[v]);
-  double most = 0;
-  for (const int v : pushed) most = std::max(most, (actor.hair.positions[v] - before[v]).norm());
-  EXPECT_GT(most, 2e-4);
-  for (int second = 0; second < 30 && !actor.sleep.asleep; ++second) run(60);
-  EXPECT_TRUE(actor.sleep.asleep) << "it comes to rest again";
 }
 
 }  // namespace

@@ -127,12 +127,12 @@ TEST(Pins, HoldOnTheCoarseMeshAndWakeWhatSleeps) {
   for (int k = 0; k < 1800 && !actor.sleep.asleep; ++k) {
     time += kFrame;
     app::moveActor(kFrame, actor);
-    if (app::sleepersOf(params, kFrame, time, actor).all()) break;
+    if (app::maySleep(params, kFrame, time, actor)) break;
     app::simulateActor(params, kFrame, time, actor);
   }
   ASSERT_TRUE(actor.sleep.asleep);
   actor.pins[0].until = time;
-  app::sleepersOf(params, kFrame, time + kFrame, actor);
+  app::maySleep(params, kFrame, time + kFrame, actor);
   EXPECT_FALSE(actor.sleep.asleep) << "the pin has let go";
 }
 

@@ -1,12 +1,13 @@
 // Preconditioners of the Modified PCG beside the simulator's own, for comparisons.
 #pragma once
 
+#include <Eigen/SparseCholesky>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "sim/contact/contact.h"
-#include "sim/linear/block_cholesky.h"
 #include "sim/linear/block_matrix.h"
 #include "sim/linear/column_matrix.h"
 #include "sim/linear/two_level.h"
@@ -50,13 +51,16 @@ class Preconditioner {
   std::vector<sim::M3<T>> inverse_diagonal_;  // scalar diagonals or 3x3 inverses
   std::vector<unsigned char> free_;           // not a root
   std::optional<sim::TwoLevel<T>> two_level_;
-  sim::BlockCholesky<T> factor_;
-  sim::BlockPattern factor_pattern_;         // of `column`: the blocks within columns
-  std::optional<sim::BlockMatrix<T>> used_;  // what is factored
+  using Factor = Eigen::SimplicialLLT<Eigen::SparseMatrix<T>>;
+  std::unique_ptr<Factor> factor_ = std::make_unique<Factor>();  // of the free vertices
   std::optional<IncompleteCholesky<T>> incomplete_;
 
-  bool factorColumns(const sim::BlockMatrix<T>& a);
+  bool factorFree(const sim::BlockMatrix<T>& a, bool within_columns);
   bool factorWhole(const sim::BlockMatrix<T>& a, std::span<const sim::VertexConstraint> constraints);
 };
+
+// The same matrix as blocks by vertex. `to` has the mesh's system pattern.
+template <class T>
+void toBlocks(const sim::HairMesh& mesh, const sim::ColumnMatrix<T>& a, sim::BlockMatrix<T>& to);
 
 }  // namespace bench

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/forces/kernels.h"
+#include "tests/bench/preconditioners/preconditioner.h"
 #include "tests/test_meshes.h"
 
 namespace {
@@ -97,7 +98,7 @@ void expectSameEvaluation(const sim::HairMesh& mesh, double bound) {
     const sim::ColumnEvaluation<T> column_out{&packed_force, &columns, T(0.7), T(0.3), &packed_v, T(0.05)};
     const double column_energy = sim::evaluate<T>(column_model, layout, packed_x, column_out);
     packed_force.unpack(layout, column_force);
-    columns.toBlocks(mesh, column_blocks);
+    bench::toBlocks(mesh, columns, column_blocks);
 
     EXPECT_NEAR(column_energy, energy, bound * std::abs(energy)) << "state " << kind;
     const Eigen::VectorXd f = test::stacked<T>(force), cf = test::stacked<T>(column_force);
@@ -144,7 +145,7 @@ TEST(ColumnLayout, PlainElementsOfAnyKindAddUpInColumnsAsByVertex) {
       const sim::ColumnEvaluation<double> column_out{&packed_force, &columns, 0.7, 0.3, &packed_v, 0.05};
       sim::evaluateElements(elements, sim::ColumnSums<double>{layout, packed_x, column_out}, column_energy);
       packed_force.unpack(layout, column_force);
-      columns.toBlocks(mesh, column_blocks);
+      bench::toBlocks(mesh, columns, column_blocks);
       EXPECT_EQ(column_energy, energy) << Kind::kName;
       EXPECT_EQ(test::stacked<double>(column_force), test::stacked<double>(force)) << Kind::kName;
       const Eigen::MatrixXd sum = test::dense(matrix), column_sum = test::dense(column_blocks);

@@ -23,7 +23,7 @@ struct RandomSystem {
       : mesh(sim::buildHairMesh(test::combedShape(o))), random(seed) {
     for (T& value : packed.values) value = static_cast<T>(random(-1, 1));
     packed.addMass(static_cast<T>(diagonal), std::vector<T>(mesh.vertexCount(), T(1)));
-    packed.toBlocks(mesh, a);
+    bench::toBlocks(mesh, packed, a);
   }
   RandomSystem(const RandomSystem&) = delete;
   RandomSystem& operator=(const RandomSystem&) = delete;
@@ -82,7 +82,7 @@ void clearUncoupled(RandomSystem<T>& system) {
       for (int k = 0; both && k < 9; ++k) packed.values[d.values + k * columns.stride + l] = 0;
     }
   }
-  packed.toBlocks(mesh, a);
+  bench::toBlocks(mesh, packed, a);
 }
 
 // P r of a projection: z . A z = z . r, and z moves each patch rigidly: vertices of one column keep their distances to

@@ -1,7 +1,5 @@
-// Sparse factors and products of block matrices.
-#include "sim/linear/block_cholesky.h"
-
-#include "sim/linear/elimination_order.h"
+// Factors and products of block matrices.
+#include "sim/linear/envelope_cholesky.h"
 #include "tests/linear_systems.h"
 
 namespace tests {
@@ -11,23 +9,36 @@ template <class T>
 void factorSolves(double bound) {
   const System system(0.004);
   const BlockMatrix<T> a = system.matrixAt<T>(system.positions);
-  const int n = system.mesh.vertexCount();
-  std::vector<unsigned char> free_vertex;
-  for (int i = 0; i < n; ++i) free_vertex.push_back(!system.mesh.isRoot(i));
-  sim::BlockCholesky<T> factor;
-  factor.analyze(system.pattern, sim::minimumDegreeOrder(system.pattern, free_vertex));
-  ASSERT_TRUE(factor.factor(a));
+  std::vector<int> first(3 * system.pattern.size);
+  for (std::size_t row = 0; row < first.size(); ++row) {
+    const int i = static_cast<int>(row) / 3, k = system.pattern.row_first[i];
+    first[row] = k < system.pattern.row_first[i + 1] ? 3 * system.pattern.columns[k] : 3 * i;
+  }
+  const Eigen::Matrix<double, -1, -1> whole = test::dense(a);
+  sim::EnvelopeCholesky<T> factor;
+  factor.analyze(first);
+  const auto fill = [&] {
+    factor.setZero();
+    for (int row = 0; row < whole.rows(); ++row) {
+      for (int column = first[row]; column <= row; ++column) factor.at(row, column) = static_cast<T>(whole(row, column));
+    }
+  };
+  fill();
+  ASSERT_TRUE(factor.factor());
   test::Random random(81);
   std::vector<Vec3> wanted;
-  for (int i = 0; i < n; ++i) wanted.push_back(free_vertex[i] ? random.vector(1) : Vec3(0, 0, 0));
+  for (int i = 0; i < system.mesh.vertexCount(); ++i) wanted.push_back(random.vector(1));
   const auto x = test::plain<T>(wanted);
-  std::vector<V3<T>> r(n), z(n);
-  sim::multiply<T>(a, x, r);
-  factor.solve(r, z);
+  std::vector<V3<T>> z(x.size());
+  sim::multiply<T>(a, x, z);
+  factor.solve(&z[0].x);
   EXPECT_LT((test::stacked<T>(z) - stackedPoints(wanted)).norm(), bound * stackedPoints(wanted).norm());
+  fill();
+  factor.at(9, 9) *= -1;
+  EXPECT_FALSE(factor.factor()) << "a pivot is not positive";
 }
 
-TEST(BlockCholesky, SolvesTheSystemOfTheFreeVertices) {
+TEST(EnvelopeCholesky, SolvesAndRefusesWhatIsNotPositive) {
   factorSolves<float>(1e-3);
   factorSolves<double>(1e-11);
 }
