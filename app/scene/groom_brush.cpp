@@ -55,7 +55,6 @@ void dropWhatIsOfTheOldShape(Haircut& own, Actor& actor, AssetCache& asset_cache
   if (actor.coarse.active) leaveCoarse(actor);
   actor.coarse.pair = nullptr;
   actor.detail.coarse.reset();
-  actor.part_hairs.clear();
   own.parts.clear();
   std::erase_if(asset_cache.pairs, [&](const auto& pair) { return pair->fine == &own; });
 }
