@@ -56,6 +56,13 @@ struct HairLook {
   bool operator==(const HairLook&) const = default;
 };
 
+// An ellipsoid of skin: the affine map of the world to the ball of radius one, row by row, 1/m and translation.
+struct SkinEllipsoid {
+  std::array<std::array<float, 4>, 3> to_ball{};
+
+  bool operator==(const SkinEllipsoid&) const = default;
+};
+
 struct HairInput {
   std::uint64_t id = 0;                 // stable per hair; GPU resources are kept by it
   std::uint64_t layout_revision = 0;    // changes when faces or vertex count change
@@ -67,6 +74,7 @@ struct HairInput {
   int strands = 20000;               // over the whole hair
   int segments_per_layer = 3;        // 1..8
   HairLook look;
+  std::span<const SkinEllipsoid> skin;  // drawn strands are lifted out of these; the nearest 48
 };
 
 // A skinned body. The mesh is uploaded once per mesh_id, the root cover once per mesh and scalp id; a frame brings

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "render/fiber_scattering.h"
+#include "render/strands/skin_lift.h"
 #include "shaders/shared.h"
 
 namespace render {
@@ -101,6 +102,9 @@ long uploadBlock(HairResources& hair) {
   block.backward_albedo = asVec4(hair.scattering->backward_albedo);
   block.center = asVec4(hair.head.radius > 0 ? hair.head.center : hair.bounds.center());
   block.ball = asVec4(hair.bounds.center(), 0.5f * hair.bounds.diagonal() + sidewaysReach(look));
+  block.skin_count = {static_cast<int>(hair.skin.size()), 0, 0, 0};
+  for (std::size_t i = 0; i < hair.skin.size(); ++i)
+    std::copy(hair.skin[i].to_ball.begin(), hair.skin[i].to_ball.end(), block.skin_rows.begin() + 3 * static_cast<long>(i));
   if (!hair.block) {
     hair.block = makeBuffer();
     glNamedBufferStorage(hair.block.id(), sizeof(block), nullptr, GL_DYNAMIC_STORAGE_BIT);
@@ -290,7 +294,9 @@ long HairStore::refresh(HairResources& hair, const HairInput& input, const DrawS
   const bool fresh_count = fresh_layout || hair.strands != strands || hair.asked_segments != asked;
   const bool fresh_look = hair.scattering == nullptr || !(hair.look == input.look);
   const bool light_moved = hair.light_revision != light_revision_;
-  if (!fresh_positions && !fresh_count && !fresh_look && !light_moved) return 0;
+  std::vector<SkinEllipsoid> skin = skinNear(input.skin, hair.around.low, hair.around.high);
+  const bool fresh_skin = skin != hair.skin;
+  if (!fresh_positions && !fresh_count && !fresh_look && !light_moved && !fresh_skin) return 0;
   if (fresh_positions && !allFinite(input.positions)) {
     // Never draw NaN: what was last good stays on screen, and the old revision makes the next positions be tried.
     if (fresh_layout) hair.drawable = false;
@@ -311,7 +317,9 @@ long HairStore::refresh(HairResources& hair, const HairInput& input, const DrawS
     hair.scattering = &scatteringOf(input.look, uploaded);
   }
   hair.light_revision = light_revision_;
+  hair.skin = std::move(skin);
   const bool renew = fresh_count || fresh_look || light_moved;
+  if (!renew && !fresh_positions) return uploaded + uploadBlock(hair);
   return uploaded + uploadVertices(hair, input.positions, renew, skips) + uploadBlock(hair);
 }
 

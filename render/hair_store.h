@@ -65,6 +65,7 @@ struct HairResources {
   Bounds bounds, around;                    // of the vertices; with room for all strands
   int strands = -1, segments = 0, asked_segments = 0;  // segments: a layer, with those that curls need
   HairLook look;
+  std::vector<SkinEllipsoid> skin;  // near the hair
   bool seen = false, drawable = false;  // drawable: has faces and finite positions
   std::uint64_t revision = 0;           // counts changes of anything that is drawn of it
   Buffer vertex_buffer, block;

@@ -58,6 +58,14 @@ const int kUnitJoints = 8;
 const int kUnitColor = 9;
 const int kUnitTable = 10;
 
+// Strands out of the skin (shaders/common/skin.glsl).
+const int kMaxSkin = 48;          // ellipsoids of a hair
+const float kSkinGap = 0.0005;    // m, off an ellipsoid
+const float kSkinBlend = 0.0015;  // m, on either side of that: there the lift sets in
+const float kSkinFar = 4.0;       // squared distance from the middle, in the ellipsoid's own measure: nothing beyond is lifted
+const float kSkinMiddle = 0.04;   // the same: nothing nearer is
+const float kSkinWhole = 0.25;    // the same: all farther out are lifted whole
+
 // Scattering table (fiber_scattering.h). Slices 0 to 2: N_p of R, TT, TRT: kScatterPhi angles over [0, pi], kScatterTheta
 // cosines over [0, 1]. Slice 3: first row: norms of the lobes over kScatterPhi inclinations in [-pi/2, pi/2]; last row:
 // what the eye's inclination adds to them. Slice 4: light of several fibres, kVolumeSteps depths in front by as many
@@ -125,6 +133,8 @@ SHARED_BLOCK(1, HairBlock) {
   vec4 backward_albedo;  // mean backward scattering attenuation a_b
   vec4 center;           // world: the middle of the head under the hair
   vec4 ball;             // world: a ball around the whole hair; w: its radius, m
+  ivec4 skin_count;      // ellipsoids that strands are lifted out of
+  SHARED_ARRAY(vec4, skin_rows, 3 * kMaxSkin);  // three rows each: world to the ball of radius one
 };
 
 SHARED_BLOCK(2, BodyBlock) {

@@ -175,6 +175,16 @@ inline render::HairInput hairInput(const Hair& hair, int strands) {
   return input;
 }
 
+// A ball of skin: centre and radius, m.
+inline render::SkinEllipsoid skinBall(const render::Float3& center, float radius) {
+  render::SkinEllipsoid skin;
+  for (std::size_t k = 0; k < 3; ++k) {
+    skin.to_ball[k][k] = 1 / radius;
+    skin.to_ball[k][3] = -center[k] / radius;
+  }
+  return skin;
+}
+
 inline render::BodyInput bodyInput(const Body& body) {
   render::BodyInput input;
   input.id = 1;

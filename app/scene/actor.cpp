@@ -476,6 +476,7 @@ void showActor(double fraction, const Vec3& origin, Actor& actor) {
   }
   if (jointMatrices(actor.body->character.skeleton, actor.shown_pose, origin, actor.joint_matrices))
     ++actor.pose_revision;
+  skinEllipsoids(actor.body->character, actor.shown_pose, origin, actor.shown_skin);
   actor.shown_still = actor.pose_still && (actor.sleep.asleep || actor.unseen);
 }
 

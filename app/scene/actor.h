@@ -137,6 +137,7 @@ struct Actor {
   // What the picture shows; positions and matrices relative to the picture's origin.
   Pose shown_pose;
   std::vector<float> shown_positions;
+  std::vector<render::SkinEllipsoid> shown_skin;
   std::vector<render::Mat4> joint_matrices;
   std::uint64_t layout_revision = 1, position_revision = 1, pose_revision = 1;
 

@@ -111,6 +111,10 @@ std::vector<HairField> makeHairTable() {
   return look.segments_per_layer;
 }
 > ("segments_per_layer", "Strands", "", {1, 8}, "Straight pieces drawn between two layers of the hair mesh."),
+    hair < [](auto& look) -> auto& {
+  return look.lift_strands;
+}
+> ("lift_strands", "Strands", "", {0, 1}, "Drawn strands leave the skin where a bundle between vertices would cut it."),
     hair<HAIR(strand_radius)>("strand_radius", "Strands", "m", {5e-6, 1e-3, kLog}, "Radius of a strand at its root."),
     hair<HAIR(taper)>("taper", "Strands", "", {0, 1}, "Radius at the tip over radius at the root."),
     hair<HAIR(length_variation)>("length_variation", "Styling", "", {0, 0.9},

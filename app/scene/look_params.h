@@ -20,6 +20,7 @@ struct CharacterLook {
   int segments_per_layer = 3;
   render::Float3 body_color = render::BodyInput{}.color;
   float body_roughness = render::BodyInput{}.roughness;
+  bool lift_strands = true;  // out of the skin, see HairInput::skin
   float scalp_tint = 0.8f;  // how much the hair's roots shade and colour the skin between them, 0..1
   bool dressed = true;      // a garment on a grown mannequin
   render::Float3 cloth_color = render::BodyInput{}.cloth_color;

@@ -53,6 +53,21 @@ bool jointMatrices(const Skeleton& skeleton, const Pose& pose, const Vec3& origi
   return changed;
 }
 
+void skinEllipsoids(const Character& character, const Pose& pose, const Vec3& origin,
+                    std::vector<render::SkinEllipsoid>& skin) {
+  skin.resize(character.ellipsoids.size());
+  for (std::size_t i = 0; i < skin.size(); ++i) {
+    sim::Ellipsoid e;
+    poseEllipsoid(character.ellipsoids[i], pose, pose, 0, e);
+    const Eigen::Matrix3d to_ball = e.radii.cwiseInverse().asDiagonal() * e.rotation.conjugate().toRotationMatrix();
+    const Vec3 middle = to_ball * (e.center - origin);
+    for (int row = 0; row < 3; ++row) {
+      for (int k = 0; k < 3; ++k) skin[i].to_ball[row][k] = static_cast<float>(to_ball(row, k));
+      skin[i].to_ball[row][3] = static_cast<float>(-middle[row]);
+    }
+  }
+}
+
 render::Float3 toFloat3(const Vec3& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }

@@ -27,6 +27,10 @@ void blendPoses(const Pose& from, const Pose& to, double fraction, Pose& pose);
 // Rest model space to world less origin, column-major. Returns whether any bit changed.
 bool jointMatrices(const Skeleton& skeleton, const Pose& pose, const Vec3& origin, std::vector<render::Mat4>& matrices);
 
+// A pose's collision ellipsoids relative to `origin` (m), as strands are lifted out of them.
+void skinEllipsoids(const Character& character, const Pose& pose, const Vec3& origin,
+                    std::vector<render::SkinEllipsoid>& skin);
+
 render::Float3 toFloat3(const Vec3& v);
 
 }  // namespace app

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "render/strands/shader_math.h"
+#include "render/strands/skin_lift.h"
 
 namespace render {
 namespace {
@@ -393,6 +394,8 @@ CurvePoint StrandGrowth::curvePoint(const Strand& strand, const LayerWindow& win
     point.position += lift.x() * outward;
     along += lift.y() * outward;
   }
+  along = unitOr(along, axis);
+  leaveSkin(skin_, s, point.position, along);
   point.tangent = unitOr(along, axis);
   point.along = strand.end > 0.0f ? s / strand.end : 0.0f;
   return point;

@@ -64,6 +64,8 @@ class StrandGrowth {
   bool setPositions(std::span<const float> positions);
 
   void setLook(const HairLook& look);
+  // What drawn strands are lifted out of; none at first.
+  void setSkin(std::span<const SkinEllipsoid> skin) { skin_.assign(skin.begin(), skin.end()); }
   void setFade(const StrandFade& fade) { fade_ = fade; }
 
   const HairLayout& layout() const { return layout_; }
@@ -133,6 +135,7 @@ class StrandGrowth {
   HairLayout layout_;
   std::vector<int> first_strand_;  // see dealStrands
   HairLook look_;
+  std::vector<SkinEllipsoid> skin_;
   StrandFade fade_;
   int asked_segments_;     // a layer
   float segments_ = 1;     // a layer, with those that curls need

@@ -12,6 +12,8 @@
 // render/strands/strand_growth.cpp grows the same strands on the CPU, function by function: a change here is one there,
 // and tests/render/strand_growth_test.cpp compares the two.
 
+#include "common/skin.glsl"
+
 layout(binding = kUnitVertices) uniform samplerBuffer vertex_texels;
 layout(binding = kUnitLayout) uniform samplerBuffer layout_texels;
 layout(binding = kUnitTable) uniform samplerBuffer table_texels;  // which strands of which faces are drawn
@@ -436,6 +438,8 @@ CurvePoint curvePoint(in Strand strand, in LayerWindow window, float s, float fr
     point.position += lift.x * outward;
     along += lift.y * outward;
   }
+  along = unitOr(along, axis);
+  leaveSkin(s, point.position, along);
   point.tangent = unitOr(along, axis);
   point.light = mix(window.from.light, window.to.light, f);
   point.behind = mix(window.from.behind, window.to.behind, f);

@@ -119,6 +119,7 @@ void look(app::Demo& demo, double time, render::StrandGrowth& growth, Looked& lo
   const render::FrameInput frame = app::frameInput(demo, kWidth, kHeight);
   const skin::DrawnSkin skin(frame.bodies.front());
   growth.setPositions(frame.hairs.front().positions);
+  growth.setSkin(frame.hairs.front().skin);
   std::vector<render::CurvePoint> strand(static_cast<std::size_t>(growth.maxPoints()));
   const Vector3f eye(frame.camera.eye.data());
   const double pixels_a_radian = kHeight / (2 * std::tan(frame.camera.fov_y / 2));
@@ -210,12 +211,7 @@ bool runSkin(const SkinOptions& options) {
     }
   }
   if (table.rows.empty()) throw app::InputError("", "--clips", "names no clip that is there", "such as walk.bvh");
-  if (!options.folder.empty()) {
-    writeTable(options.folder, "skin", table);
-    const Table shown =
-        columns(table, {"style", "clip", "over 1 mm", "deepest, mm", "deepest, px", "skin out, mm", "out by 3 mm"});
-    writeMeasuredPart(options.folder + "/collision.md", "skin", shown.markdown());
-  }
+  if (!options.folder.empty()) writeTable(options.folder, "skin", table);
   return all_hold;
 }
 

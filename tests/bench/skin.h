@@ -13,7 +13,7 @@ struct SkinOptions {
   std::vector<std::string> clips;                         // file names; empty: all
   std::vector<std::pair<std::string, std::string>> sets;  // parameters as for --set
   int strands = 1200;
-  std::string folder;  // of the document whose table is written; empty: none
+  std::string folder;  // whose data/skin.csv gets the table; empty: none
 };
 
 // The project's own clips, and where they are there those of ../shared: mocap, the rigid parts of arcsim, characters.

@@ -51,7 +51,7 @@ MEMBERS(HairLook, strand_radius, strands_represented, width_compensation, least_
         flyaway_lift, hairline, baby_hairs, eumelanin, pheomelanin, use_color, color,
         root_darkening, tint_variation, beta_m, beta_n, eta, cuticle_angle, specular, diffuse, seed)
 MEMBERS(HairInput, id, layout_revision, position_revision, layout_id, faces, positions, rest, strands,
-        segments_per_layer, look)
+        segments_per_layer, look, skin)
 MEMBERS(BodyInput, id, mesh_id, positions, normals, triangles, joints, weights, joint_matrices, pose_revision, color,
         roughness, scalp_id, root_cover, root_color, scalp_tint, face_origin, face_height, face_paint, cloth, dressed, cloth_color)
 MEMBERS(FrameInput, width, height, camera, light, view, skips, hairs, bodies, debug_lines, debug_triangles,
@@ -86,6 +86,7 @@ struct Scene {
   synthetic::Hair hair = synthetic::makeHair(5);
   synthetic::Body body = synthetic::makeBody();
   std::vector<float> cover, rest, cloth;
+  std::vector<render::SkinEllipsoid> skin;
   std::vector<render::HairInput> hairs;
   std::vector<render::BodyInput> bodies;
   std::vector<render::LineVertex> shape;
@@ -143,6 +144,10 @@ struct Scene {
                                                                   : body.positions;
     for (std::size_t i = 0; i < numbers.size(); i += 2) numbers[i] = 0.95f * numbers[i] + 0.01f;
     ++(of_hair ? hairs[0].position_revision : of_cover ? bodies[0].scalp_id : bodies[0].mesh_id);
+  }
+  void change(std::span<const render::SkinEllipsoid>& of) {
+    skin.push_back(synthetic::skinBall({0.05f, synthetic::kHeadHeight, 0.05f}, 1.05f * synthetic::kHeadRadius));
+    of = skin;
   }
   void change(std::span<const std::uint32_t>&) {
     body.triangles.resize(body.triangles.size() / 2 / 3 * 3);

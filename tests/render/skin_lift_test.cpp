@@ -1,0 +1,184 @@
+// Drawn strands are lifted out of the skin, alike on CPU and GPU, and none pops.
+#include "render/strands/skin_lift.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "render/strands/strand_growth.h"
+#include "shaders/shared.h"
+#include "tests/gl_fixture.h"
+#include "tests/strand_capture.h"
+#include "tests/synthetic_hair.h"
+
+namespace {
+
+using Eigen::Vector3f;
+using render::CurvePoint;
+using render::SkinEllipsoid;
+using render::shared::kSkinBlend, render::shared::kSkinGap;
+
+// Turned, with radii of 4, 7 and 10 cm, at the origin.
+SkinEllipsoid turnedEllipsoid() {
+  const Eigen::Matrix3f turn = Eigen::AngleAxisf(0.7f, Vector3f(1, 2, -1).normalized()).toRotationMatrix();
+  SkinEllipsoid skin;
+  const Vector3f radii(0.04f, 0.07f, 0.10f);
+  for (int k = 0; k < 3; ++k) {
+    for (int axis = 0; axis < 3; ++axis) skin.to_ball[k][axis] = turn(axis, k) / radii[k];
+  }
+  return skin;
+}
+
+Vector3f inBall(const SkinEllipsoid& skin, const Vector3f& p) {
+  Vector3f ball;
+  for (int k = 0; k < 3; ++k)
+    ball[k] = Vector3f(skin.to_ball[k][0], skin.to_ball[k][1], skin.to_ball[k][2]).dot(p) + skin.to_ball[k][3];
+  return ball;
+}
+
+// m, of first order.
+float gapOf(const SkinEllipsoid& skin, const Vector3f& p) {
+  const Vector3f ball = inBall(skin, p);
+  Vector3f slope = Vector3f::Zero();
+  for (int k = 0; k < 3; ++k) slope += ball[k] * Vector3f(skin.to_ball[k].data());
+  return ball.norm() * (ball.norm() - 1) / slope.norm();
+}
+
+Vector3f lifted(std::span<const SkinEllipsoid> skin, float s, Vector3f p) {
+  Vector3f tangent = Vector3f::UnitY();
+  render::leaveSkin(skin, s, p, tangent);
+  return p;
+}
+
+TEST(SkinLift, PointsInsideComeToTheBoundAndThoseOutsideStay) {
+  const SkinEllipsoid skin = turnedEllipsoid();
+  int inside = 0, outside = 0;
+  for (float x = -0.1f; x < 0.1f; x += 0.007f) {
+    for (float y = -0.1f; y < 0.1f; y += 0.007f) {
+      for (float z = -0.1f; z < 0.1f; z += 0.007f) {
+        const Vector3f p(x, y, z), after = lifted({&skin, 1}, 2, p);
+        const float before = gapOf(skin, p);
+        if (before > kSkinGap + kSkinBlend) {
+          ++outside;
+          ASSERT_EQ(after, p);
+        } else if (before > -0.03f && inBall(skin, p).squaredNorm() > render::shared::kSkinWhole) {
+          ++inside;
+          ASSERT_GT(gapOf(skin, after), 0) << "from " << before;
+          ASSERT_LT(gapOf(skin, after), kSkinGap + kSkinBlend + 0.1f * std::abs(before)) << "from " << before;
+        }
+      }
+    }
+  }
+  EXPECT_GT(inside, 500);
+  EXPECT_GT(outside, 500);
+}
+
+TEST(SkinLift, RootsStayAndTheFirstLayerLeadsUp) {
+  const SkinEllipsoid skin = synthetic::skinBall({0, 0, 0}, 0.1f);
+  const Vector3f p(0, 0.09f, 0);
+  EXPECT_EQ(lifted({&skin, 1}, 0, p), p);
+  float last = 0;
+  for (const float s : {0.2f, 0.5f, 0.8f, 1.0f}) {
+    const float rise = (lifted({&skin, 1}, s, p) - p).norm();
+    EXPECT_GT(rise, last);
+    last = rise;
+  }
+  EXPECT_NEAR(last, 0.01f + kSkinGap, 5e-4f);
+}
+
+constexpr float kStep = 0.001f;  // m, that the skin moves in a frame, through points that do not
+
+// m a frame, the most that points move by: those at most 8 mm inside, and all.
+struct Moves {
+  float outer = 0, all = 0;
+};
+
+Moves movesOf(const std::vector<SkinEllipsoid>& skin) {
+  const auto at = [&](float shift) {
+    std::vector<SkinEllipsoid> moved = skin;
+    for (SkinEllipsoid& e : moved) {
+      for (auto& row : e.to_ball) row[3] -= row[0] * shift;
+    }
+    return moved;
+  };
+  Moves moves;
+  for (float y = -0.12f; y < 0.12f; y += 0.006f) {
+    for (float z = -0.12f; z < 0.12f; z += 0.006f) {
+      Vector3f before = lifted(at(-0.2f), 2, {0, y, z});
+      for (float shift = -0.2f; shift < 0.2f; shift += kStep) {
+        const auto moved = at(shift);
+        const Vector3f after = lifted(moved, 2, {0, y, z});
+        const bool deep = std::ranges::any_of(moved, [&](const SkinEllipsoid& e) {
+          return gapOf(e, {0, y, z}) < -0.008f;
+        });
+        const float way = (after - before).norm();
+        if (!deep) moves.outer = std::max(moves.outer, way);
+        moves.all = std::max(moves.all, way);
+        before = after;
+      }
+    }
+  }
+  return moves;
+}
+
+TEST(SkinLift, NoPointPopsAsTheSkinMoves) {
+  const Moves one = movesOf({turnedEllipsoid()});
+  EXPECT_LT(one.outer, 2 * kStep);
+  EXPECT_LT(one.all, 25 * kStep);  // within half the way to the middle, where the lift fades out
+  EXPECT_GT(one.outer, 0);
+  // Where two meet, the crease runs ahead of them.
+  EXPECT_LT(movesOf({turnedEllipsoid(), synthetic::skinBall({0.03f, 0.05f, 0}, 0.05f)}).outer, 5 * kStep);
+}
+
+TEST(SkinLift, EllipsoidsOutOfReachAreLeftOut) {
+  const std::vector<SkinEllipsoid> skin{synthetic::skinBall({0, 0, 0}, 0.1f), synthetic::skinBall({1, 0, 0}, 0.1f),
+                                        turnedEllipsoid()};
+  const auto near = render::skinNear(skin, {0.05f, -0.2f, -0.2f}, {0.3f, 0.2f, 0.2f});
+  ASSERT_EQ(near.size(), 2u);
+  EXPECT_EQ(near[0], skin[0]);
+  EXPECT_EQ(near[1], skin[2]);
+  EXPECT_EQ(render::skinNear(skin, {0.85f, -0.1f, -0.1f}, {0.9f, 0.1f, 0.1f}).size(), 1u);
+}
+
+class SkinLiftOnGpu : public gl_fixture::GlTest {};
+
+// A hair half of whose strands run through two bodies.
+TEST_F(SkinLiftOnGpu, ShadersLiftAsTheCpuDoes) {
+  const synthetic::Hair hair = synthetic::makeHair();
+  render::HairInput input = synthetic::hairInput(hair, 2000);
+  input.look.curl_radius = 0.004f;
+  SkinEllipsoid shoulder = turnedEllipsoid();
+  for (auto& row : shoulder.to_ball)
+    row[3] = -Vector3f(row.data()).dot(Vector3f(0.06f, synthetic::kHeadHeight - 0.15f, -0.05f));
+  const std::vector<SkinEllipsoid> skin{
+      synthetic::skinBall({0, synthetic::kHeadHeight, 0}, synthetic::kHeadRadius + 0.004f), shoulder};
+  const auto bare = strand_capture::capture(input, gl_fixture::kShaderDir);
+  input.skin = skin;
+  const auto drawn = strand_capture::capture(input, gl_fixture::kShaderDir);
+  render::StrandGrowth growth(input.faces, input.positions, input.strands, input.segments_per_layer, input.look);
+  growth.setSkin(skin);
+  std::vector<CurvePoint> points(static_cast<std::size_t>(growth.maxPoints()));
+  int other = 0, moved = 0;
+  for (int number = 0; number < growth.strandCount(); ++number) {
+    const auto n = static_cast<std::size_t>(number);
+    const int count = growth.growDrawn(growth.strand(number), points);
+    ASSERT_EQ(static_cast<std::size_t>(count), drawn[n].size());
+    float worst = 0, rise = 0;
+    for (int i = 0; i < count; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      worst = std::max(worst, (points[k].position - drawn[n][k]).norm());
+      rise = std::max(rise, (bare[n][k] - drawn[n][k]).norm());
+      EXPECT_NEAR(points[k].tangent.norm(), 1, 1e-5f);
+    }
+    other += worst > 1e-5f;  // m
+    moved += rise > 1e-3f;
+  }
+  EXPECT_LE(other, 3);  // roots on the border of two clumps, where the last bit decides
+  EXPECT_GT(moved, 500);
+  EXPECT_LT(moved, 1990);
+}
+
+}  // namespace
