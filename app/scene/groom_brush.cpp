@@ -50,12 +50,11 @@ Haircut& ownHaircut(Actor& actor, Demo& demo) {
   return *asset_cache.haircuts.back();
 }
 
-// A coarser mesh of the style, or parts of a file's hair that sleep by themselves, are not of this shape.
+// A coarser mesh of the style is not of this shape.
 void dropWhatIsOfTheOldShape(Haircut& own, Actor& actor, AssetCache& asset_cache) {
   if (actor.coarse.active) leaveCoarse(actor);
   actor.coarse.pair = nullptr;
   actor.detail.coarse.reset();
-  own.parts.clear();
   std::erase_if(asset_cache.pairs, [&](const auto& pair) { return pair->fine == &own; });
 }
 
