@@ -156,7 +156,8 @@ void Material::follow(const SimParams& params) {
 }
 
 void Material::reshape() {
-  for (std::size_t v = 0; v < x_.size(); ++v) x_[v] = plain(mesh_->shape.positions[v]);
+  solve_.reset();  // it knows the old shape
+  solving_ = false;
   if (!memory_.known) return;
   RestBalance kept = std::move(balance_);
   rebuild();
