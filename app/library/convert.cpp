@@ -27,9 +27,16 @@ void checkLayout(const void* data, std::size_t has, const hm_type& type, std::si
   if (!data && needed > 0) throw Fault{HM_ERROR_ARGUMENT, std::string(name) + ".data is NULL; give an array"};
 }
 
+// m, m/s or rad/s: beyond it squares of differences lose what is seen of a hair.
+constexpr double kFarthest = 1e7;
+
+bool usable(const Vec3& numbers) {
+  return numbers.cwiseAbs().maxCoeff() <= kFarthest && numbers.allFinite();
+}
+
 Vec3 finiteVector(const double* numbers, const Place& place, const char* field) {
   const Vec3 vector(numbers[0], numbers[1], numbers[2]);
-  if (!vector.allFinite()) throw Fault{HM_ERROR_VALUE, place.text(field) + " is not finite; give numbers"};
+  if (!usable(vector)) throw Fault{HM_ERROR_VALUE, place.text(field) + " is not finite or beyond 1e7; give SI units"};
   return vector;
 }
 
@@ -79,9 +86,9 @@ Vec3 pointOf(const hm_array& array, std::size_t index, const char* name) {
   double numbers[3];
   readElement(array, index, 3, numbers);
   const Vec3 point(numbers[0], numbers[1], numbers[2]);
-  if (!point.allFinite())
+  if (!usable(point))
     throw Fault{HM_ERROR_VALUE,
-                Place{name, static_cast<std::ptrdiff_t>(index)}.text("") + " is not finite; give numbers"};
+                Place{name, static_cast<std::ptrdiff_t>(index)}.text("") + " is not finite or beyond 1e7; give metres"};
   return point;
 }
 

@@ -470,7 +470,8 @@ void showActor(double fraction, const Vec3& origin, Actor& actor) {
   if (actor.shown_still && !actor.shown_positions.empty()) return;
   // Between the ends of the actor's own step, which may cover several of the clock's.
   const double within = (actor.span - 1 - actor.ahead + fraction) / actor.span;
-  blendPoses(actor.previous_pose, actor.pose, within, actor.shown_pose);
+  const Character& character = actor.body->character;
+  blendPoses(character.skeleton, character.head_joint, actor.previous_pose, actor.pose, within, actor.shown_pose);
   if (blendPositions(actor.previous_positions, actor.hair.positions, within, origin, actor.shown_positions)) {
     ++actor.position_revision;
   }

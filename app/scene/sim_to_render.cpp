@@ -25,18 +25,40 @@ bool blendPositions(std::span<const sim::Vec3> from, std::span<const sim::Vec3> 
   return changed;
 }
 
-void blendPoses(const Pose& from, const Pose& to, double fraction, Pose& pose) {
+namespace {
+
+Rigid blend(const Rigid& from, const Rigid& to, double fraction) {
+  const Eigen::Quaterniond a(from.linear()), b(to.linear());
+  const Vec3 translation = from.translation() + fraction * (to.translation() - from.translation());
+  return Eigen::Translation3d(translation) * a.slerp(fraction, b);
+}
+
+bool same(const Pose& a, const Pose& b) {
+  const auto equal = [](const Rigid& x, const Rigid& y) { return x.matrix() == y.matrix(); };
+  return std::equal(a.world.begin(), a.world.end(), b.world.begin(), b.world.end(), equal);
+}
+
+}  // namespace
+
+void blendPoses(const Skeleton& skeleton, int head, const Pose& from, const Pose& to, double fraction, Pose& pose) {
   pose.world.resize(to.world.size());
-  if (fraction == 1) {
+  if (fraction == 1 || same(from, to)) {
     std::copy(to.world.begin(), to.world.end(), pose.world.begin());
     return;
   }
   for (std::size_t j = 0; j < to.world.size(); ++j) {
-    const Eigen::Quaterniond a(from.world[j].linear()), b(to.world[j].linear());
-    const Vec3 translation =
-        from.world[j].translation() + fraction * (to.world[j].translation() - from.world[j].translation());
-    pose.world[j] = Eigen::Translation3d(translation) * a.slerp(fraction, b);
+    const int parent = skeleton.joints[j].parent;
+    if (parent < 0) {
+      pose.world[j] = blend(from.world[j], to.world[j], fraction);
+      continue;
+    }
+    const auto p = static_cast<std::size_t>(parent);
+    pose.world[j] = pose.world[p] * blend(from.world[p].inverse(Eigen::Isometry) * from.world[j],
+                                          to.world[p].inverse(Eigen::Isometry) * to.world[j], fraction);
   }
+  const auto h = static_cast<std::size_t>(head);
+  const Rigid held = blend(from.world[h], to.world[h], fraction) * pose.world[h].inverse(Eigen::Isometry);
+  for (Rigid& joint : pose.world) joint = held * joint;
 }
 
 bool jointMatrices(const Skeleton& skeleton, const Pose& pose, const Vec3& origin,

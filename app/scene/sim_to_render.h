@@ -21,8 +21,9 @@ Vec3 pictureOrigin(const Vec3& anchor);
 bool blendPositions(std::span<const sim::Vec3> from, std::span<const sim::Vec3> to, double fraction, const Vec3& origin,
                     std::vector<float>& floats);
 
-// Joint by joint: translations linearly, rotations by slerp.
-void blendPoses(const Pose& from, const Pose& to, double fraction, Pose& pose);
+// Each joint within its parent's frame, rotations by slerp, so that limbs keep their length however far a step reaches;
+// then all are moved as one so that the joint `head` is where a blend in the world has it, as the hair's vertices are.
+void blendPoses(const Skeleton& skeleton, int head, const Pose& from, const Pose& to, double fraction, Pose& pose);
 
 // Rest model space to world less origin, column-major. Returns whether any bit changed.
 bool jointMatrices(const Skeleton& skeleton, const Pose& pose, const Vec3& origin, std::vector<render::Mat4>& matrices);

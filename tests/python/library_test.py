@@ -116,6 +116,9 @@ class Library(unittest.TestCase):
         self.assertGreater(drawn.sum(), 100)
         self.assertTrue((radii[drawn] > 1e-5).all() and (radii[drawn] < 5e-3).all() and (radii[~drawn] == 0).all())
         double, _, _ = hair.strands(points=12, dtype=np.float64)
+        for wrong in (np.int32, np.float16, ">f8"):
+            with self.assertRaises(TypeError):
+                hair.strands(points=12, dtype=wrong)
         np.testing.assert_allclose(double, positions, atol=1e-6)
         self.assertIn(hair.strand(7)["face"], range(len(self.mesh.faces)))
         with self.assertRaisesRegex(hairmesh.Error, "200"):

@@ -39,6 +39,7 @@ class LibraryMisuse : public ::testing::Test {
 };
 
 TEST_F(LibraryMisuse, StepsThatCannotBeTakenAreRefusedWhole) {
+  refuses(HM_ERROR_VALUE, "beyond 1e7", [](Step& step) { step.input.head.position[0] = 1e40; });
   refuses(HM_ERROR_VALUE, "dt", [](Step& s) { s.input.dt = 0; });
   refuses(HM_ERROR_VALUE, "dt", [](Step& s) { s.input.dt = NAN; });
   refuses(HM_ERROR_VALUE, "dt", [](Step& s) { s.input.dt = 1; });

@@ -247,6 +247,8 @@ class Hair:
     def strands(self, numbers=None, points=16, dtype=np.float32):
         """Grows strands, all or those of the numbers given. Returns positions and tangents, (strands, points, 3), and
         radii, (strands, points), in m; 0 for a strand that is not drawn, as where a hairline thins out."""
+        if np.dtype(dtype) not in (np.dtype(np.float32), np.dtype(np.float64)):
+            raise TypeError(f"strands are float32 or float64, not {np.dtype(dtype)}")
         settings = _c.StrandSettings()
         _c.lib.hm_default_strand_settings(settings)
         if numbers is None:
