@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <numbers>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct Kind {
   std::function<app::Groom(int strands)> make;
   // Bounds for 1,000 strands and 1,000 vertices; distances of the strands' length. A fifth above what was measured.
   double mean, share95, silhouette;
+  friend std::ostream& operator<<(std::ostream& stream, const Kind& kind) { return stream << kind.name; }
 };
 
 inline float random(std::uint32_t key) {

@@ -78,9 +78,16 @@ std::string makeContext(EGLDisplay display, bool debug, EGLContext& context) {
   if (!eglChooseConfig(display, config_attributes, &config, 1, &config_count) || config_count == 0) {
     return fail(eglFault("eglChooseConfig"));
   }
-  const EGLint context_attributes[] = {
-      EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
-      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_CONTEXT_OPENGL_DEBUG, debug ? EGL_TRUE : EGL_FALSE, EGL_NONE};
+  // The attribute of debug contexts is refused by displays before EGL 1.5: it comes last, and only where it is wanted.
+  const EGLint context_attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                       4,
+                                       EGL_CONTEXT_MINOR_VERSION,
+                                       5,
+                                       EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                       EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                       debug ? EGL_CONTEXT_OPENGL_DEBUG : EGL_NONE,
+                                       EGL_TRUE,
+                                       EGL_NONE};
   context = eglCreateContext(display, config, EGL_NO_CONTEXT, context_attributes);
   if (context == EGL_NO_CONTEXT) return fail(eglFault("eglCreateContext for OpenGL 4.5 core"));
   if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) return fail(eglFault("eglMakeCurrent"));

