@@ -34,8 +34,8 @@ TEST_P(ConversionOfAKind, StrandsComeBackWithinTheKindsBounds) {
   EXPECT_EQ(again.positions.size(), conversion.shape.positions.size());
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, ConversionOfAKind, testing::ValuesIn(groom_kinds::kinds()), [](const auto& info) {
-  std::string name = info.param.name;
+INSTANTIATE_TEST_SUITE_P(Kinds, ConversionOfAKind, testing::ValuesIn(groom_kinds::kinds()), [](const auto& kind) {
+  std::string name = kind.param.name;
   name.erase(std::remove(name.begin(), name.end(), ' '), name.end());
   return name;
 });
