@@ -88,6 +88,8 @@ const char* const kExamples = R"(Examples:
   hairmesh --no-images --frames 240 --strands 10000 --export walk.abc    (.usda, .hair, .ply, .glb)
   hairmesh --motion dance.mot --parts female-objs --speed 2 --set friction=0.6 --set solver=paper
 
+Of an option that is given twice the last counts; --set, --skip and --pin add up.
+
 Exit codes: 0 fine, 1 OpenGL or numerical fault or a file that cannot be written, 2 usage, 3 no OpenGL context,
 4 a file that cannot be used, 130 interrupted.)";
 
@@ -291,7 +293,8 @@ void finishExport(const Unchecked& unchecked, Options& options) {
   if (unchecked.export_unit == "cm") spec.unit = 0.01;
   if (unchecked.export_unit == "mm") spec.unit = 0.001;
   if (unchecked.export_unit == "in") spec.unit = 0.0254;
-  if (!options.headless) options.no_images = true;  // pictures are drawn when asked for
+  // Pictures are drawn when asked for.
+  if (!options.headless && options.screenshot.empty()) options.no_images = true;
   options.headless = true;
 }
 
@@ -313,6 +316,12 @@ void finish(const Unchecked& unchecked, Options& options) {
   if (!options.record.empty() && options.record == options.replay) {
     throw UsageError("--record and --replay name one file; a recording cannot be read and written at once");
   }
+  if (options.no_images && !options.screenshot.empty()) {
+    throw UsageError("--no-images draws nothing that --screenshot could write; leave one of them out");
+  }
+  if (!options.write_hair.empty() && std::filesystem::path(options.write_hair).extension() != ".obj") {
+    throw UsageError("--write-hair cannot be '" + options.write_hair + "'; name it .obj, the format that is written");
+  }
   if (!options.load_state.empty() && !(options.record + options.replay).empty()) {
     throw UsageError("--load-state does not go with --record and --replay, which begin with the scene; leave one out");
   }
@@ -332,12 +341,58 @@ void finish(const Unchecked& unchecked, Options& options) {
 
 }  // namespace
 
+namespace {
+
+// What the parser says of a line that it cannot read, in this program's words.
+std::string parseFault(const CLI::ParseError& error, const CLI::App& parser) {
+  const std::string words = error.what(), help = "; hairmesh --help lists the options";
+  if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
+    const std::string extra = parser.remaining().empty() ? "" : parser.remaining().front();
+    if (!extra.starts_with("-")) return "'" + extra + "' is one file too many; name others by --motion, --hair, --preset";
+    std::vector<std::string> names;
+    for (const CLI::Option* option : parser.get_options()) {
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+    const std::vector<std::string_view> candidates(names.begin(), names.end());
+    const std::string_view near = sim::nearestName(extra.substr(0, extra.find('=')), candidates);
+    return "there is no option '" + extra + "'" +
+           (near.empty() ? help : "; did you mean '" + std::string(near) + "'?");
+  }
+  const std::string name = words.substr(0, words.find(':'));
+  const CLI::Option* option = parser.get_option_no_throw(name);
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) && option && name.starts_with("--"))
+    return name + " needs a value; write " + name + " " + option->get_option_text();
+  if (dynamic_cast<const CLI::ConversionError*>(&error) && words.starts_with("Could not convert: ")) {
+    const std::size_t equals = words.find(" = ");
+    return words.substr(19, equals - 19) + " cannot be '" + words.substr(equals + 3, 40) + "'; write a whole number";
+  }
+  return words + help;
+}
+
+// A replay has its scene and its frames from the recording: what would choose others is refused rather than left unused.
+void refuseBesideReplay(const CLI::App& parser, const Options& options) {
+  if (options.replay.empty()) return;
+  std::string unused;
+  for (const CLI::Option* option : parser.get_options()) {
+    const std::string name = option->get_single_name(), group = option->get_group();
+    const bool of_scene = group == "What is shown" || group == "Playback" || name == "scene" || name == "frames" ||
+                          name == "camera" || name == "framing" || name == "strands" || name == "strand-path";
+    if (option->count() > 0 && of_scene) unused += (unused.empty() ? "" : ", ") + option->get_name();
+  }
+  if (!unused.empty()) {
+    throw UsageError("--replay plays the recorded scene and its frames, to which " + unused +
+                     " would do nothing; leave out what stands beside it, or record anew");
+  }
+}
+
+}  // namespace
+
 bool parseOptions(int argc, char** argv, Options& options, int& exit_code) {
   CLI::App parser{"Real-time hair mesh simulation and rendering (Wu and Yuksel 2016), in a window or headless."};
   parser.name("hairmesh");
   parser.footer(kExamples);
   parser.get_formatter()->column_width(34);
-  // The last of two wins, so that ./run and scripts can put their own before a person's.
+  // So that ./run and scripts can put their own before a person's.
   parser.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   parser
       .add_option("scene", options.scene, "Scene, preset, motion or hair mesh; without one the default scene is shown")
@@ -357,13 +412,14 @@ bool parseOptions(int argc, char** argv, Options& options, int& exit_code) {
       exit_code = parser.exit(error);
       return false;
     }
-    throw UsageError(std::string(error.what()) + "; hairmesh --help lists the options");
+    throw UsageError(parseFault(error, parser));
   }
   if (unchecked.list_parameters || unchecked.list_skips) {
     std::cout << (unchecked.list_parameters ? parameterTable() : skipTableText());
     return false;
   }
   options.frames_given = parser.count("--frames") > 0;
+  refuseBesideReplay(parser, options);
   finish(unchecked, options);
   return true;
 }

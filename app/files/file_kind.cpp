@@ -4,12 +4,12 @@
 #include <array>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "app/files/errors.h"
 #include "app/files/json_reader.h"
 #include "app/files/text_file.h"
+#include "app/groom/groom_bytes.h"
 #include "app/groom/groom_file.h"
 #include "sim/field_text.h"
 
@@ -44,9 +44,9 @@ FileKind fileKind(const std::string& file) {
     if (ending == known) return FileKind::kMotion;
   }
   if (hasGroomEnding(file)) return FileKind::kHairMesh;
-  if (std::string title(15, '\0');
-      std::ifstream(file, std::ios::binary).read(title.data(), 15) && title == "hairmesh-state ")
-    return FileKind::kState;
+  const std::string bytes = readText(file, kMaxGroomFile);
+  if (bytes.starts_with("hairmesh-state ")) return FileKind::kState;
+  if (groomFormat(bytes, file)) return FileKind::kHairMesh;
   throw InputError(file, "", "is no kind of file that this program reads",
                    "give a scene or preset (.json), a motion (.bvh, .glb, .gltf, .fbx, .mot) a hair mesh (.obj) "
                    "or a groom (.hair, .abc, .usda, .tfx, .ply)");

@@ -7,8 +7,8 @@ namespace app {
 
 enum class FileKind { kScene, kPreset, kMotion, kRigidMotion, kHairMesh, kState, kProject };
 
-// By its ending; scenes and presets, both JSON, and saved states by their content. Throws InputError for any other
-// file.
+// By its ending; scenes and presets, both JSON, by their content, and so are saved states and grooms of any name.
+// Throws InputError for any other file.
 FileKind fileKind(const std::string& file);
 
 // The folder of body parts that ARCSim's data keeps beside a .mot motion.

@@ -234,6 +234,30 @@ void writeReport(const std::string& file, const RunReport& run, const Demo& demo
   writeFile(file, report.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
 }
 
+namespace {
+
+// How the deadline was kept; empty without one.
+std::string deadlineLine(const RunReport& run) {
+  if (run.deadline <= 0 || run.frames.empty()) return "";
+  int over = 0, cut = 0;
+  double longest = 0;
+  for (const FrameStats& frame : run.frames) {
+    over += frame.simulation() > run.deadline;
+    cut += frame.solves_cut > 0 || frame.corrections_cut > 0;
+    longest = std::max(longest, frame.simulation());
+  }
+  std::ostringstream text;
+  text.precision(3);
+  text << "  deadline   " << 1e3 * run.deadline << " ms: ";
+  if (over == 0) text << "kept in every frame";
+  if (over > 0) text << "not kept in " << over << " of " << run.frames.size() << " frames";
+  text << ", the longest took " << 1e3 * longest << " ms; work left out in " << cut << " frames, "
+       << run.frames.back().lost << " s of motion given up\n";
+  return text.str();
+}
+
+}  // namespace
+
 std::string summary(const RunReport& run) {
   const auto line = [&](const char* name, auto pick) {
     std::ostringstream text;
@@ -244,7 +268,7 @@ std::string summary(const RunReport& run) {
   return "median of " + std::to_string(run.frames.size()) + " frames:\n" +
          line("frame     ", [](const FrameStats& f) { return f.whole; }) +
          line("simulation", [](const FrameStats& f) { return f.simulation(); }) +
-         line("drawing   ", [](const FrameStats& f) { return f.seconds[kTimeDraw]; });
+         line("drawing   ", [](const FrameStats& f) { return f.seconds[kTimeDraw]; }) + deadlineLine(run);
 }
 
 }  // namespace app

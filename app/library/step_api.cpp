@@ -35,8 +35,12 @@ void readColliders(const hm_step_input& input, Hair& hair) {
 void readPins(const hm_step_input& input, Hair& hair) {
   if (input.pin_count > 0) needs(input.pins, "pins");
   hair.pins.clear();
-  for (std::size_t i = 0; i < input.pin_count; ++i)
+  for (std::size_t i = 0; i < input.pin_count; ++i) {
     hair.pins.push_back(pinOf(input.pins[i], hair.mesh().vertexCount(), {"pins", static_cast<std::ptrdiff_t>(i)}));
+    if (hair.mesh().isRoot(hair.pins.back().vertex))
+      throw Fault{HM_ERROR_VALUE,
+                  "pins[" + std::to_string(i) + "].vertex is a root, which the head carries; pin one below it"};
+  }
 }
 
 void checkScalars(const hm_step_input& input) {

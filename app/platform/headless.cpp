@@ -16,6 +16,7 @@
 #include "app/files/report.h"
 #include "app/platform/egl_context.h"
 #include "app/platform/interrupt.h"
+#include "app/platform/opening_notes.h"
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
 #include "app/scene/hair_export.h"
@@ -97,8 +98,7 @@ Demo openForPictures(Scene scene, const Options& options, double aspect) {
   Demo demo = openScene(std::move(scene), aspect);
   setDebugViews(options.debug, demo.debug);
   demo.governor.counted = demo.deadline.counted = true;  // the same pictures on every run
-  if (!demo.message.empty()) std::cerr << "hairmesh: " << demo.message << "\n";
-  for (const std::string& note : limitNotes(demo)) std::cerr << "hairmesh: " << note << "\n";
+  for (const std::string& note : openingNotes(options, demo)) std::cerr << "hairmesh: " << note << "\n";
   return demo;
 }
 
@@ -192,6 +192,7 @@ int Run::finish() {
     if (demo.actors.size() > 1) break;
   }
   if (hair_export) std::cout << hair_export->finish();
+  report.deadline = demo.deadline.seconds;
   std::cout << summary(report);
   if (pictures) {
     std::cout << report.frames.size() << " frames in " << options.out;

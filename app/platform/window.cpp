@@ -23,6 +23,7 @@
 #include "app/files/report.h"
 #include "app/platform/capture.h"
 #include "app/platform/interrupt.h"
+#include "app/platform/opening_notes.h"
 #include "app/platform/shader_reload.h"
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
@@ -170,7 +171,21 @@ struct PanelBackends {
   PanelBackends& operator=(const PanelBackends&) = delete;
 };
 
+// Tab bars and boxes take their sizes from the frame before: with two frames that nobody sees the first one is whole.
+void layOutPanels(Demo& demo, UiState& ui) {
+  const BuiltInCounts counted = demo.stats.always;
+  for (int k = 0; k < 2; ++k) {
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+    buildUi(demo, ui);
+    ImGui::EndFrame();
+  }
+  demo.stats.always = counted;
+}
+
 void drawPanels(Demo& demo, UiState& ui) {
+  if (demo.frames <= 1) layOutPanels(demo, ui);
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
@@ -251,7 +266,7 @@ Demo openForWindow(Scene scene, const Options& options, double aspect) {
     loadDemoState(options.load_state, !options.camera.empty() || !options.framing.empty(), demo);
   if (!options.save_state.empty()) checkWritable(options.save_state);
   setDebugViews(options.debug, demo.debug);
-  if (!demo.message.empty()) std::cerr << "hairmesh: " << demo.message << "\n";
+  for (const std::string& note : openingNotes(options, demo)) std::cerr << "hairmesh: " << note << "\n";
   return demo;
 }
 

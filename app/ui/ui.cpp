@@ -16,15 +16,15 @@ namespace {
 
 constexpr float kMargin = 12, kSidebarWidth = 348, kTimingsWidth = 292;
 constexpr float kMessageWidth = 520, kMinMessageWidth = 240;
-constexpr float kFigureWidth = 280;  // beside the sidebar; with less the tabs are folded away
+constexpr float kFaceWidth = 168;    // in the window's middle; where the sidebar covers it the tabs are folded away
 constexpr float kAmpleWidth = 340;   // between sidebar and timings; with less the timings begin folded
 constexpr double kMessageTime = 6;  // s; faults stay until clicked
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoBringToFrontOnFocus;
 
-// Whether sidebar and figure do not fit beside one another.
+// Whether the sidebar would cover the face, in the window's middle.
 bool narrow(const UiState& ui) {
-  return ImGui::GetIO().DisplaySize.x < (kSidebarWidth + kFigureWidth + 2 * kMargin) * ui.text_scale;
+  return 0.5f * ImGui::GetIO().DisplaySize.x < (kSidebarWidth + 2 * kMargin + 0.5f * kFaceWidth) * ui.text_scale;
 }
 
 // The scene's name, and what has been put into it since.
@@ -154,10 +154,15 @@ void tabs(Demo& demo, UiState& ui) {
   ImGui::EndTabBar();
 }
 
-void sidebar(Demo& demo, UiState& ui) {
+// Folded it stands at the bottom, over the `below` pixels of the timeline, where no face is.
+void sidebar(Demo& demo, UiState& ui, float below) {
   const ImGuiIO& io = ImGui::GetIO();
   const float margin = kMargin * ui.text_scale;
-  ImGui::SetNextWindowPos({margin, margin});
+  if (folded(ui)) {
+    ImGui::SetNextWindowPos({margin, io.DisplaySize.y - margin - below}, ImGuiCond_Always, {0, 1});
+  } else {
+    ImGui::SetNextWindowPos({margin, margin});
+  }
   const float height = folded(ui) ? 0 : std::max(120.0f, io.DisplaySize.y - 2 * margin);
   ImGui::SetNextWindowSize({sidebarWidth(ui), height});
   if (std::exchange(ui.focus_panels, false)) ImGui::SetNextWindowFocus();
@@ -281,14 +286,16 @@ void buildUi(Demo& demo, UiState& ui) {
   ui.items.clear();
   brushFrame(demo, ui);
   count(!ui.visible, demo.stats.always[kHiddenPanels]);
+  float below = timelinePanel(demo, ui, folded(ui) ? 0 : sidebarWidth(ui) + kMargin * ui.text_scale);
   if (ui.visible) {
-    sidebar(demo, ui);
+    sidebar(demo, ui, below);
     timings(demo, ui);
+    if (folded(ui)) below += ImGui::GetFrameHeight() + 3 * kMargin * ui.text_scale;
   }
   historyPanel(demo, ui);
   filePanel(demo, ui);
   offerPanel(demo, ui);
-  message(demo, ui, timelinePanel(demo, ui, folded(ui) ? 0 : sidebarWidth(ui) + kMargin * ui.text_scale));
+  message(demo, ui, below);
   help(ui);
   endGesture(demo, ui);
 }

@@ -90,6 +90,7 @@ void brushSection(UiState& ui) {
     rowLabel(label, help);
     ImGui::SetNextItemWidth(-1);
     float shown = static_cast<float>(shown_scale * value);
+    const MarksBelowDigits marks;
     if (ImGui::SliderFloat(name, &shown, low, high, format, ImGuiSliderFlags_AlwaysClamp)) value = shown / shown_scale;
     noteItem(name, ui);
   };

@@ -52,8 +52,11 @@ void deadlineLines(Demo& demo, UiState& ui) {
   ImGui::SameLine(0.46f * ImGui::GetWindowWidth());
   ImGui::SetNextItemWidth(-1);
   float deadline = static_cast<float>(1e3 * demo.deadline.seconds);
-  if (ImGui::SliderFloat("##deadline", &deadline, kSmallest, kLargest, "%.2f ms", ImGuiSliderFlags_Logarithmic))
-    postRequest(demo, {Ask::kDeadline, "", "", deadline});
+  {
+    const MarksBelowDigits marks;
+    if (ImGui::SliderFloat("##deadline", &deadline, kSmallest, kLargest, "%.2f ms", ImGuiSliderFlags_Logarithmic))
+      postRequest(demo, {Ask::kDeadline, "", "", deadline});
+  }
   noteItem("deadline", ui);
   leftOutLine(demo);
 }
@@ -71,8 +74,10 @@ void governorLines(Demo& demo, UiState& ui) {
   ImGui::SameLine(0.46f * ImGui::GetWindowWidth());
   ImGui::SetNextItemWidth(-1);
   float budget = static_cast<float>(1e3 * governor.budget);
-  if (ImGui::SliderFloat("##budget", &budget, kSmallest, kLargest, "%.2f ms a frame", ImGuiSliderFlags_Logarithmic)) {
-    postRequest(demo, {Ask::kBudget, "", "", budget});
+  {
+    const MarksBelowDigits marks;
+    if (ImGui::SliderFloat("##budget", &budget, kSmallest, kLargest, "%.2f ms a frame", ImGuiSliderFlags_Logarithmic))
+      postRequest(demo, {Ask::kBudget, "", "", budget});
   }
   noteItem("budget", ui);
   const Rung& rung = ladder()[governor.rung];

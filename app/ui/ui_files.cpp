@@ -29,7 +29,10 @@ const Purpose& purposeOf(BrowseFor what) {
       {BrowseFor::kOpen, "Open a scene, preset, motion, hair mesh or state", "Open", {}},
       {BrowseFor::kMotion, "Open a motion", "Open", {".bvh", ".glb", ".gltf", ".fbx", ".dae", ".mot"}},
       {BrowseFor::kParts, "Folder of body parts", "Choose", {"/"}},
-      {BrowseFor::kHair, "Open a hair mesh", "Open", {".obj"}},
+      {BrowseFor::kHair,
+       "Open a hair mesh or a groom",
+       "Open",
+       {".obj", ".hair", ".abc", ".usda", ".tfx", ".ply"}},
       {BrowseFor::kSaveScene, "Save the scene: style, motion, hair, camera, look, parameters", "Save", {".json"}}};
   return *std::find_if(std::begin(kPurposes), std::end(kPurposes) - 1,
                        [&](const Purpose& purpose) { return purpose.what == what; });

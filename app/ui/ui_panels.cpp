@@ -47,6 +47,7 @@ bool pathInput(const char* name, const char* hint, BrowseFor what, std::array<ch
 
 bool slider(const char* name, double low, double high, const char* format, bool logarithmic, double& value) {
   const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp | (logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
+  const MarksBelowDigits marks;
   return ImGui::SliderScalar(name, ImGuiDataType_Double, &value, &low, &high, format, flags);
 }
 

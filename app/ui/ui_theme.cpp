@@ -52,8 +52,7 @@ void setColors(ImGuiStyle& style) {
   c[ImGuiCol_TabHovered] = hover;
   c[ImGuiCol_TabActive] = raised;
   c[ImGuiCol_TitleBg] = c[ImGuiCol_TitleBgActive] = c[ImGuiCol_TitleBgCollapsed] = ground;
-  // The value is written over the grab: a narrow mark, below the letters in brightness.
-  c[ImGuiCol_SliderGrab] = {0.60f, 0.39f, 0.26f, 0.85f};
+  c[ImGuiCol_SliderGrab] = {0.78f, 0.51f, 0.33f, 1};
   c[ImGuiCol_SliderGrabActive] = copper;
   c[ImGuiCol_NavHighlight] = copper_lit;
   c[ImGuiCol_CheckMark] = copper_lit;
@@ -88,7 +87,7 @@ void prepareUi(float text_scale, UiState& ui) {
   style.FramePadding = {7, 4};
   style.ItemSpacing = {7, 5};
   style.ScrollbarSize = 11;
-  style.GrabMinSize = 4;
+  style.GrabMinSize = 10;
   style.WindowMenuButtonPosition = ImGuiDir_Right;
   style.ScaleAllSizes(text_scale);
   ui.scenes = listAssets("scenes", {".json"});

@@ -123,15 +123,22 @@ void cameraRows(Demo& demo, UiState& ui) {
   rowLabel("Lens", "Focal length over a picture 24 mm high");
   ImGui::SetNextItemWidth(-1);
   float lens = static_cast<float>(12 / std::tan(0.5 * demo.camera.fov));
-  if (ImGui::SliderFloat("##lens", &lens, 12, 200, "%.0f mm", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
-    postRequest(demo, {Ask::kLens, "", "", 2 * std::atan(12.0 / lens)});
+  constexpr ImGuiSliderFlags kFlags = ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp;
+  {
+    const MarksBelowDigits marks;
+    if (ImGui::SliderFloat("##lens", &lens, 12, 200, "%.0f mm", kFlags))
+      postRequest(demo, {Ask::kLens, "", "", 2 * std::atan(12.0 / lens)});
+  }
   noteItem("lens", ui);
   rowLabel("Turntable", "The camera goes round the figure");
   ImGui::SetNextItemWidth(-1);
   constexpr double kDegree = 3.14159265358979 / 180;
   float turn = static_cast<float>(demo.turntable / kDegree);
-  if (ImGui::SliderFloat("##turntable", &turn, -90, 90, "%.0f deg/s"))
-    postRequest(demo, {Ask::kTurntable, "", "", kDegree * turn});
+  {
+    const MarksBelowDigits marks;
+    if (ImGui::SliderFloat("##turntable", &turn, -90, 90, "%.0f deg/s"))
+      postRequest(demo, {Ask::kTurntable, "", "", kDegree * turn});
+  }
   noteItem("turntable", ui);
   rowLabel("Keep view", "Four places for views");
   const int keep = segments("keep", {"1", "2", "3", "4"}, -1, ui);

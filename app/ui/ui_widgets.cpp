@@ -15,6 +15,7 @@ namespace {
 
 constexpr float kLabelShare = 0.43f;
 constexpr float kResetWidth = 20;
+constexpr float kMarkShare = 0.16f;  // of a slider's height
 
 ImU32 color(ImGuiCol index, float alpha = 1) {
   return ImGui::GetColorU32(index, alpha);
@@ -56,6 +57,7 @@ bool numberSlider(const char* name, sim::FieldKind kind, bool logarithmic, doubl
   if (*unit) format += std::string(" ") + unit;
   ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp;
   if (logarithmic) flags |= ImGuiSliderFlags_Logarithmic;
+  const MarksBelowDigits marks;
   return ImGui::SliderScalar(name, ImGuiDataType_Double, &value, &low, &high, format.c_str(), flags);
 }
 
@@ -118,6 +120,22 @@ void noteItem(const std::string& name, UiState& ui) {
 
 void postRequest(Demo& demo, Request request) {
   demo.requests.push_back(std::move(request));
+}
+
+MarksBelowDigits::MarksBelowDigits() : first_(ImGui::GetWindowDrawList()->VtxBuffer.Size) {}
+
+// Dear ImGui draws a mark as high as its slider and the digits over it: the vertices of its two colours are moved.
+MarksBelowDigits::~MarksBelowDigits() {
+  constexpr ImU32 kTint = ~IM_COL32_A_MASK;
+  const ImU32 still = color(ImGuiCol_SliderGrab) & kTint, held = color(ImGuiCol_SliderGrabActive) & kTint;
+  const float low = ImGui::GetItemRectMin().y, high = ImGui::GetItemRectMax().y, height = kMarkShare * (high - low);
+  ImVector<ImDrawVert>& vertices = ImGui::GetWindowDrawList()->VtxBuffer;
+  for (int v = first_; v < vertices.Size; ++v) {
+    ImDrawVert& vertex = vertices[v];
+    const ImU32 tint = vertex.col & kTint;
+    if (tint != still && tint != held) continue;
+    vertex.pos.y = vertex.pos.y < 0.5f * (low + high) ? high - 1 - height : high - 1;
+  }
 }
 
 void tip(const std::string& text) {
@@ -258,6 +276,7 @@ void lookRow(const LookField<Owner>& field, const Owner& owner, Demo& demo, UiSt
     for (int i = 0; i < 3; ++i) value[i] = std::clamp(static_cast<double>(rgb[i]), field.minimum, field.maximum);
   } else if (field.shape == LookShape::kDirection) {
     float xyz[3] = {static_cast<float>(value[0]), static_cast<float>(value[1]), static_cast<float>(value[2])};
+    const MarksBelowDigits marks;
     changed = ImGui::SliderFloat3("##value", xyz, -1, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp);
     for (int i = 0; i < 3; ++i) value[i] = xyz[i];
     changed = changed && (xyz[0] != 0 || xyz[1] != 0 || xyz[2] != 0);

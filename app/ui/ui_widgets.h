@@ -18,6 +18,18 @@ void postRequest(Demo& demo, Request request);
 // A tooltip for the last widget, after a short hover.
 void tip(const std::string& text);
 
+// While it lives sliders are drawn with their marks along the lower edge, so that none lies behind the digits.
+class MarksBelowDigits {
+ public:
+  MarksBelowDigits();
+  ~MarksBelowDigits();
+  MarksBelowDigits(const MarksBelowDigits&) = delete;
+  MarksBelowDigits& operator=(const MarksBelowDigits&) = delete;
+
+ private:
+  int first_;  // vertex of the window's draw list
+};
+
 // A heading that folds; returns whether it is open.
 bool section(const char* title, bool open_at_first);
 

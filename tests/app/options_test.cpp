@@ -128,12 +128,55 @@ TEST(Options, MisuseIsUsageAndSaysSoInOneLine) {
                                                       {"--start", "-3"},
                                                       {"--style", "long", "--hair", "x.obj"},
                                                       {"--reverse-faces"},
+                                                      {"--no-images", "--screenshot", "s.png"},
+                                                      {"--write-hair", "w.txt"},
+                                                      {"--replay", "r.hmr", "--set", "friction=0.5"},
+                                                      {"--replay", "r.hmr", "--style", "long", "--frames", "9"},
                                                       {"--no-images", "--frames", "1", "--debug", "everything"}};
   for (const auto& words : misuses) {
     std::string all;
     for (const std::string& word : words) all += word + " ";
     expectOneMessage(runProgram(words), app::kExitUsage, all);
   }
+}
+
+TEST(Options, WhatTheParserCannotReadIsToldInWordsOfOurOwn) {
+  for (const auto& [words, expected] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{"--resolutoin", "low"}, "there is no option '--resolutoin'; did you mean '--resolution'?"},
+           {{"--frames"}, "--frames needs a value; write --frames N"},
+           {{"--strands", "1.5"}, "--strands cannot be '1.5'; write a whole number"},
+           {{"a.json", "b.json"}, "'b.json' is one file too many"},
+           {{"--replay", "r.hmr", "--set", "bend=0.1"}, "to which --set would do nothing"}}) {
+    const Outcome outcome = runProgram(words);
+    expectOneMessage(outcome, app::kExitUsage, words[0]);
+    EXPECT_NE(outcome.err.find(expected), std::string::npos) << outcome.err;
+  }
+}
+
+TEST(Options, WhatARunLeavesUndoneItSays) {
+  const Outcome late =
+      runProgram({"--no-images", "--frames", "2", "--resolution", "low", "--style", "short", "--start", "99999"});
+  EXPECT_EQ(late.exit_code, 0);
+  EXPECT_NE(late.err.find("--start 99999 lies beyond the clip's"), std::string::npos) << late.err;
+  const Outcome hurried =
+      runProgram({"--no-images", "--frames", "4", "--resolution", "low", "--style", "short", "--deadline-ms", "1e-5"});
+  EXPECT_NE(hurried.out.find("deadline   1e-05 ms: not kept in"), std::string::npos) << hurried.out;
+  EXPECT_EQ(runProgram({"--no-images", "--frames", "2", "--resolution", "low"}).out.find("deadline"), std::string::npos);
+  EXPECT_NE(runProgram({"--help"}).out.find("given twice the last counts"), std::string::npos);
+}
+
+// Whatever its name ends in, a groom is told by its content, as --hair tells it.
+TEST(Options, AGroomIsToldByItsContent) {
+  const std::string folder = test::freshFolder("groom_by_content"), file = folder + "/strands.bin";
+  ASSERT_EQ(runProgram({"--no-images", "--frames", "1", "--strands", "300", "--resolution", "low", "--style", "short",
+                        "--export", folder + "/strands.ply"})
+                .exit_code,
+            0);
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    std::filesystem::rename(entry.path(), file);
+    break;
+  }
+  EXPECT_EQ(app::sceneFromOptions(parse({file}).options).characters[0].hair, file);
 }
 
 TEST(Options, FilesThatCannotBeUsedAreBadInput) {

@@ -72,6 +72,8 @@ TEST_F(LibraryMisuse, PinsThatNameNothingAreRefused) {
   hm_pin pin{100000, {0, 0, 0}, {0, 0, 0}, 1};
   const auto give = [&](Step& s) { s.input.pins = &pin, s.input.pin_count = 1; };
   refuses(HM_ERROR_ARGUMENT, "pins[0].vertex", give);
+  pin.vertex = 0;
+  refuses(HM_ERROR_VALUE, "pins[0].vertex is a root", give);
   pin.vertex = 3;
   pin.stiffness = -1;
   refuses(HM_ERROR_VALUE, "pins[0].stiffness", give);

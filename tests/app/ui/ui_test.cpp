@@ -66,6 +66,25 @@ TEST_F(Panels, DraggingASliderSetsTheParameterAndItsMarkResetsIt) {
   EXPECT_EQ(demo_.scene.sim.density, sim::SimParams{}.density);
 }
 
+// The digits stand in the middle of a slider; nothing of the mark's colour is drawn there.
+TEST_F(Panels, NoSlidersMarkLiesBehindItsDigits) {
+  openTab(0);
+  const UiItem* slider = find("density");
+  ASSERT_NE(slider, nullptr);
+  const float low = slider->y, high = slider->y + slider->height;
+  const ImU32 mark = ImGui::GetColorU32(ImGuiCol_SliderGrab) & ~IM_COL32_A_MASK;
+  int vertices = 0;
+  const ImDrawData* drawn = ImGui::GetDrawData();
+  for (int k = 0; k < drawn->CmdListsCount; ++k) {
+    for (const ImDrawVert& vertex : drawn->CmdLists[k]->VtxBuffer) {
+      if ((vertex.col & ~IM_COL32_A_MASK) != mark || vertex.pos.y < low || vertex.pos.y > high) continue;
+      ++vertices;
+      EXPECT_GT(vertex.pos.y, high - 0.25f * (high - low));
+    }
+  }
+  EXPECT_GT(vertices, 0);
+}
+
 TEST_F(Panels, ASliderBelowWhatTheHairBearsSaysWhatIsUsedAndWhy) {
   ImGui::GetIO().DisplaySize = {1280, 3000};
   openTab(0);

@@ -1,0 +1,21 @@
+#include "app/platform/opening_notes.h"
+
+#include "app/files/report.h"
+#include "sim/field_text.h"
+
+namespace app {
+
+std::vector<std::string> openingNotes(const Options& options, const Demo& demo) {
+  std::vector<std::string> notes;
+  if (!demo.message.empty()) notes.push_back(demo.message);
+  for (std::string& note : limitNotes(demo)) notes.push_back(std::move(note));
+  const Actor& first = demo.actors.front();
+  const double duration = first.playedClip().duration();
+  if (options.start > duration) {
+    notes.push_back("--start " + sim::numberText(options.start) + " lies beyond the clip's " +
+                    sim::numberText(duration) + " s; it begins at " + sim::numberText(first.playback.time) + " s");
+  }
+  return notes;
+}
+
+}  // namespace app
