@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/styles/hair_styles.h"
+#include "app/styles/hair_styles.h"
 
 namespace tests {
 

@@ -12,7 +12,7 @@
 
 #include "app/groom/groom.h"
 #include "app/groom/grown_groom.h"
-#include "sim/styles/hair_styles.h"
+#include "app/styles/hair_styles.h"
 #include "tests/analytic_head.h"
 
 namespace groom_kinds {

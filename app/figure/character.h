@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "sim/contact/colliders.h"
-#include "sim/styles/hair_styles.h"
+#include "app/styles/hair_styles.h"
 
 namespace app {
 

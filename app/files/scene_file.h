@@ -29,7 +29,7 @@
 #include "app/scene/look_params.h"
 #include "app/scene/skips.h"
 #include "sim/sim_params.h"
-#include "sim/styles/hair_styles.h"
+#include "app/styles/hair_styles.h"
 
 namespace app {
 

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <set>
 
-#include "sim/styles/style_untangle.h"
+#include "app/styles/style_untangle.h"
 
 namespace app {
 namespace {

@@ -56,7 +56,7 @@ struct FitRounds {
 };
 
 // Moves all but the roots to where the system's error is least with every corner tetrahedron at least `fatness` fat
-// (sim/styles/style_untangle.h) and every edge 3.5 mm long: by Gauss-Newton steps in which what is too flat or short is
+// (app/styles/style_untangle.h) and every edge 3.5 mm long: by Gauss-Newton steps in which what is too flat or short is
 // a penalty that grows.  Returns the smallest fatness reached,
 // which can lack a little.
 double fitColumns(const ColumnSystem& system, double fatness, const FitRounds& rounds, sim::HairMeshShape& shape);

@@ -10,7 +10,7 @@
 
 #include "app/groom/column_fit.h"
 #include "app/groom/root_mesh.h"
-#include "sim/styles/style_untangle.h"
+#include "app/styles/style_untangle.h"
 
 namespace app {
 namespace {

@@ -47,7 +47,7 @@ struct HairFit {
   int dropped_faces = 0;           // root faces over which no prisms could be made
   std::vector<StrandFit> strands;  // of the samples
   FitError error;
-  double flattest = 0;  // smallest fatness of a corner tetrahedron, see sim/styles/style_untangle.h
+  double flattest = 0;  // smallest fatness of a corner tetrahedron, see app/styles/style_untangle.h
 };
 
 // Throws std::runtime_error where the strands carry no hair mesh: fewer than 20 of them, or roots that span no face.

@@ -21,7 +21,7 @@
 #include "sim/mesh/hair_mesh.h"
 #include "sim/mesh/hair_state.h"
 #include "sim/mesh/rest_shape.h"
-#include "sim/mesh/shape_brush.h"
+#include "app/groom/shape_brush.h"
 #include "sim/mesh/shape_transfer.h"
 #include "sim/sleep.h"
 #include "sim/step.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/scene/actor.h"
-#include "sim/mesh/shape_brush.h"
+#include "app/groom/shape_brush.h"
 
 namespace app {
 

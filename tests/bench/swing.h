@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/sim_params.h"
-#include "sim/styles/hair_styles.h"
+#include "app/styles/hair_styles.h"
 
 namespace bench {
 

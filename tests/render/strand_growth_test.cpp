@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "app/scene/sim_to_render.h"
-#include "sim/styles/hair_styles.h"
+#include "app/styles/hair_styles.h"
 #include "tests/analytic_head.h"
 #include "tests/gl_fixture.h"
 #include "tests/strand_capture.h"

@@ -9,7 +9,7 @@
 
 #include "render/strands/strand_growth.h"
 #include "sim/mesh/hair_mesh.h"
-#include "sim/styles/hair_styles.h"
+#include "app/styles/hair_styles.h"
 #include "tests/analytic_head.h"
 #include "tests/synthetic_hair.h"
 

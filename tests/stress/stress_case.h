@@ -13,7 +13,7 @@
 
 #include "sim/sim_params.h"
 #include "sim/stabilization/safety_nets.h"
-#include "sim/styles/hair_styles.h"
+#include "app/styles/hair_styles.h"
 
 namespace stress {
 

@@ -14,7 +14,7 @@
 #include "app/scene/sim_to_render.h"
 #include "render/fiber_scattering.h"
 #include "render/renderer.h"
-#include "sim/styles/style_roots.h"
+#include "app/styles/style_roots.h"
 #include "tests/gl_fixture.h"
 #include "tests/golden_compare.h"
 

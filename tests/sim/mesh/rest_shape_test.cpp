@@ -7,7 +7,7 @@
 #include <random>
 
 #include "sim/mesh/rest_measures.h"
-#include "sim/mesh/shape_brush.h"
+#include "app/groom/shape_brush.h"
 #include "tests/test_meshes.h"
 
 namespace {

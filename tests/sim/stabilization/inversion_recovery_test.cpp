@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/styles/hair_styles.h"
+#include "app/styles/hair_styles.h"
 #include "tests/analytic_head.h"
 #include "tests/test_meshes.h"
 

@@ -1,5 +1,5 @@
 // The finer half of a haircut: what it adds lies on the curves that the coarse one samples.
-#include "sim/styles/style_refine.h"
+#include "app/styles/style_refine.h"
 
 #include <gtest/gtest.h>
 

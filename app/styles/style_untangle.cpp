@@ -1,10 +1,10 @@
-#include "sim/styles/style_untangle.h"
+#include "app/styles/style_untangle.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "sim/styles/style_comb.h"
+#include "app/styles/style_comb.h"
 
 namespace sim {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/styles/hair_styles.h"
-#include "sim/styles/style_roots.h"
+#include "app/styles/hair_styles.h"
+#include "app/styles/style_roots.h"
 
 namespace sim {
 

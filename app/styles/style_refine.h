@@ -1,7 +1,7 @@
 // A finer mesh of the same haircut: twice the sheets and twice the layers.
 #pragma once
 
-#include "sim/styles/style_weave.h"
+#include "app/styles/style_weave.h"
 
 namespace sim {
 

@@ -1,4 +1,4 @@
-#include "sim/mesh/shape_brush.h"
+#include "app/groom/shape_brush.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Fattens the prisms of a style that the curvature of a head has flattened or turned inside out.
 #pragma once
 
-#include "sim/styles/hair_styles.h"
+#include "app/styles/hair_styles.h"
 
 namespace sim {
 

@@ -1,4 +1,4 @@
-#include "sim/styles/style_refine.h"
+#include "app/styles/style_refine.h"
 
 #include <algorithm>
 #include <map>

@@ -7,7 +7,7 @@
 // ends at the hairline.
 #pragma once
 
-#include "sim/styles/hair_styles.h"
+#include "app/styles/hair_styles.h"
 
 namespace sim {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "sim/styles/style_comb.h"
+#include "app/styles/style_comb.h"
 
 namespace sim {
 

@@ -9,8 +9,8 @@
 #include "app/figure/character.h"
 #include "app/scene/sim_to_render.h"
 #include "render/strands/hair_layout.h"
-#include "sim/styles/hair_styles.h"
-#include "sim/styles/style_roots.h"
+#include "app/styles/hair_styles.h"
+#include "app/styles/style_roots.h"
 #include "tests/analytic_head.h"
 #include "tests/strand_reference.h"
 

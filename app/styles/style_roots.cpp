@@ -1,4 +1,4 @@
-#include "sim/styles/style_roots.h"
+#include "app/styles/style_roots.h"
 
 #include <algorithm>
 #include <array>

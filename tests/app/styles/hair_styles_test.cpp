@@ -1,5 +1,5 @@
 // The nine built-in styles: what a haircut must be on any head.
-#include "sim/styles/hair_styles.h"
+#include "app/styles/hair_styles.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <set>
 
 #include "app/figure/character.h"
-#include "sim/styles/style_untangle.h"
+#include "app/styles/style_untangle.h"
 #include "tests/analytic_head.h"
 
 namespace {

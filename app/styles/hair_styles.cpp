@@ -1,4 +1,4 @@
-#include "sim/styles/hair_styles.h"
+#include "app/styles/hair_styles.h"
 
 #include <algorithm>
 #include <array>
@@ -7,11 +7,11 @@
 #include <numbers>
 #include <numeric>
 
-#include "sim/styles/style_comb.h"
-#include "sim/styles/style_refine.h"
-#include "sim/styles/style_roots.h"
-#include "sim/styles/style_untangle.h"
-#include "sim/styles/style_weave.h"
+#include "app/styles/style_comb.h"
+#include "app/styles/style_refine.h"
+#include "app/styles/style_roots.h"
+#include "app/styles/style_untangle.h"
+#include "app/styles/style_weave.h"
 
 namespace sim {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/styles/style_weave.h"
+#include "app/styles/style_weave.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "sim/styles/style_comb.h"
+#include "app/styles/style_comb.h"
 
 #include <algorithm>
 #include <array>
