@@ -48,8 +48,8 @@ inline double bodyDistance(const Vec3& p) {
 }
 
 // The head alone, sampled along rays from the origin.
-inline sim::Scalp analyticScalp() {
-  sim::Scalp scalp;
+inline app::Scalp analyticScalp() {
+  app::Scalp scalp;
   scalp.head_height = 0.23;
   scalp.rows = 65;
   scalp.columns = 128;

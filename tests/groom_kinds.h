@@ -249,16 +249,16 @@ inline app::Groom twoWays(int strands) {
   return groom;
 }
 
-inline app::Groom styled(sim::Style style, sim::Resolution resolution, int strands) {
+inline app::Groom styled(app::Style style, app::Resolution resolution, int strands) {
   render::HairLook look;
   look.offset = look.clump = look.frizz = look.flyaways = 0;
   look.lock = look.wisp = look.drift = look.hairline = look.baby_hairs = 0;
-  return app::growGroom(sim::makeStyle(style, resolution, tests::analyticScalp(), tests::bodyDistance), look, strands,
+  return app::growGroom(app::makeStyle(style, resolution, tests::analyticScalp(), tests::bodyDistance), look, strands,
                         33);
 }
 
 inline std::vector<Kind> kinds() {
-  using sim::Resolution, sim::Style;
+  using app::Resolution, app::Style;
   return {
       {"short", "the short style, low", [](int n) { return styled(Style::kShort, Resolution::kLow, n); }, 0.02, 0.06,
        0.78},

@@ -80,7 +80,7 @@ struct Character {
   int head_joint = 0;
   Rigid head_frame =
       Rigid::Identity();  // scalp frame (y up, z forward, x left, origin at the head joint) to head joint frame
-  sim::Scalp scalp;
+  Scalp scalp;
   Face face;
   std::vector<std::string> notes;  // what was inferred: units, axes, frame rate, rest pose, head joint
 };
@@ -97,7 +97,7 @@ Pose restPose(const Skeleton& skeleton);
 
 // Signed distance (m, negative inside) to the body in its rest pose, for points in the scalp frame. Exact enough to
 // grow hair on: within 2 mm near the surface.
-sim::BodyDistance restBodyDistance(const Character& character);
+BodyDistance restBodyDistance(const Character& character);
 
 // The head's scalp-frame-to-world transform and the ellipsoids of a pose. `velocity` fields are filled from `previous`
 // over dt when dt > 0.

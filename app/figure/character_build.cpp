@@ -156,7 +156,7 @@ std::vector<SurfaceSample> sampleSurface(const SkinnedMesh& mesh) {
 // A part of the skull with a start read off the scalp: the middle of the skin on a level (share of head height above
 // the chin), as wide and deep as the skin is there.
 BodyPart skullPart(const std::string& name, double level, const Character& character) {
-  const sim::Scalp& scalp = character.scalp;
+  const Scalp& scalp = character.scalp;
   const Rigid from_scalp = character.skeleton.joints[character.head_joint].rest_world * character.head_frame;
   const auto radius = [&](int row, int quarter) {
     return scalp.radius[row * scalp.columns + quarter * scalp.columns / 4];

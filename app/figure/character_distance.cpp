@@ -16,7 +16,7 @@ SignedGrid layOut(double head_height) {
 
 }  // namespace
 
-sim::BodyDistance restBodyDistance(const Character& character) {
+BodyDistance restBodyDistance(const Character& character) {
   const Rigid to_scalp = (character.skeleton.joints[character.head_joint].rest_world * character.head_frame).inverse();
   SignedGrid grid = layOut(character.scalp.head_height);
   const Vec3 high = grid.point(grid.n[0] - 1, grid.n[1] - 1, grid.n[2] - 1);

@@ -71,7 +71,7 @@ Vec3 hangOf(const sim::HairMeshShape& shape) {
   return length > 0 ? Vec3(sum / length) : Vec3::Zero();
 }
 
-Vec3 nearestOnScalp(const Vec3& p, const sim::Scalp& scalp) {
+Vec3 nearestOnScalp(const Vec3& p, const Scalp& scalp) {
   const Vec3 out = p - scalp.center;
   const double far = out.norm();
   return far < 1e-9 ? p : Vec3(scalp.center + scalp.radiusAt(out) / far * out);
@@ -84,7 +84,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-double distanceOf(const std::vector<Vec3>& roots, const Reading& reading, const sim::Scalp& scalp) {
+double distanceOf(const std::vector<Vec3>& roots, const Reading& reading, const Scalp& scalp) {
   std::vector<double> gaps;
   for (const Vec3& root : roots) {
     const Vec3 p = reading(root);
@@ -127,7 +127,7 @@ Cloud cloudOf(const std::vector<Vec3>& points) {
 }
 
 // Where hair grows, roughly: the upper and back half of the scalp.
-Cloud hairyScalp(const sim::Scalp& scalp) {
+Cloud hairyScalp(const Scalp& scalp) {
   const Vec3 back = Vec3(0, 0.8, -0.6);
   std::vector<Vec3> points;
   constexpr int kRows = 24;
@@ -144,7 +144,7 @@ Cloud hairyScalp(const sim::Scalp& scalp) {
 }
 
 // m. Heads are nearly as round as they are the wrong way about, so hair also has to root above and behind the middle.
-double misfit(const std::vector<Vec3>& roots, const Reading& reading, const sim::Scalp& scalp) {
+double misfit(const std::vector<Vec3>& roots, const Reading& reading, const Scalp& scalp) {
   Vec3 mean = Vec3::Zero();
   for (const Vec3& root : roots) mean += reading(root);
   mean = mean / static_cast<double>(roots.size()) - scalp.center;
@@ -152,7 +152,7 @@ double misfit(const std::vector<Vec3>& roots, const Reading& reading, const sim:
 }
 
 // Whether hair read so is of a head's size and hangs down, if it hangs.
-bool plausible(const std::vector<Vec3>& roots, const Vec3& hang, const Reading& reading, const sim::Scalp& scalp) {
+bool plausible(const std::vector<Vec3>& roots, const Vec3& hang, const Reading& reading, const Scalp& scalp) {
   const double scale = reading.linear.col(0).norm();
   const double spread = scale * cloudOf(roots).spread / hairyScalp(scalp).spread;
   const Vec3 way = reading.linear * hang / scale;
@@ -161,7 +161,7 @@ bool plausible(const std::vector<Vec3>& roots, const Vec3& hang, const Reading& 
 
 // The scale and shift, without a turn, that bring the roots to the scalp: first over where hair grows, then by closest
 // points again and again.
-Reading broughtToScalp(const std::vector<Vec3>& roots, Reading reading, const sim::Scalp& scalp) {
+Reading broughtToScalp(const std::vector<Vec3>& roots, Reading reading, const Scalp& scalp) {
   const auto rescale = [&](double scale, const Vec3& from, const Vec3& to) {
     reading.linear *= scale;
     reading.shift = to + scale * (reading.shift - from);
@@ -192,7 +192,7 @@ double scaleOf(const Reading& reading) {
 
 // The readings that can be hair for another head, brought to this one.
 std::vector<Reading> forOtherHeads(const std::vector<Reading>& all, const std::vector<Vec3>& roots, const Vec3& hang,
-                                   const sim::Scalp& scalp) {
+                                   const Scalp& scalp) {
   std::vector<Reading> moved;
   for (const Reading& reading : all) {
     if (reading.from_ground) continue;  // the place is found anyway
@@ -230,12 +230,12 @@ std::string anotherHeads(const Reading& reading) {
 
 }  // namespace
 
-double rootDistance(const sim::HairMeshShape& shape, const sim::Scalp& scalp) {
+double rootDistance(const sim::HairMeshShape& shape, const Scalp& scalp) {
   return distanceOf(rootsOf(shape), Reading{}, scalp);
 }
 
 std::string fitHair(const Character& character, bool mend, sim::HairMeshShape& shape) {
-  const sim::Scalp& scalp = character.scalp;
+  const Scalp& scalp = character.scalp;
   const std::vector<Vec3> roots = rootsOf(shape);
   const double limit = kFarRoots * scalp.head_height / kHead, before = rootDistance(shape, scalp);
   if (roots.empty() || before <= limit) return "";

@@ -13,7 +13,7 @@ namespace app {
 inline constexpr double kFarRoots = 0.018;
 
 // m, median over the roots. The shape is in the scalp's frame.
-double rootDistance(const sim::HairMeshShape& shape, const sim::Scalp& scalp);
+double rootDistance(const sim::HairMeshShape& shape, const Scalp& scalp);
 
 // Where the roots are far from the scalp: finds the unit (m, cm, mm, inches, feet), the axes (y up; z up, facing -y as
 // in Blender, or y), the origin (head joint or the figure's own) and at last the scale and place that bring them to it.

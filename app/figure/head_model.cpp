@@ -15,7 +15,7 @@ HeadModel headModelOf(const Character& character) {
     if (direction.z() > 0.35 && direction.y() < 0.75) continue;
     skull.push_back((character.scalp.center + character.scalp.radiusAt(direction) * direction).cast<float>());
   }
-  const sim::BodyDistance body = restBodyDistance(character);
+  const BodyDistance body = restBodyDistance(character);
   return {[body](const Eigen::Vector3f& p) { return static_cast<float>(body(p.cast<double>())); },
           fitSphere(skull).center};
 }

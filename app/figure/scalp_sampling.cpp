@@ -185,9 +185,9 @@ HeadMeasure measureHead(std::span<const Vec3> vertices) {
   return m;
 }
 
-sim::Scalp sampleScalp(std::span<const Vec3> vertices, std::span<const std::uint32_t> triangles,
+Scalp sampleScalp(std::span<const Vec3> vertices, std::span<const std::uint32_t> triangles,
                        const HeadMeasure& measure) {
-  sim::Scalp scalp;
+  Scalp scalp;
   scalp.center = measure.center;
   scalp.head_height = measure.crown - measure.chin;
   scalp.rows = kRows;

@@ -16,9 +16,9 @@ struct HeadMeasure {
 // Landmarks of any head from its vertices (scalp frame): crown, lowest point of the front, cranium's middle.
 HeadMeasure measureHead(std::span<const Vec3> vertices);
 
-// Radial distances of the mesh's outermost surface over the grid of sim::Scalp (65 x 128). Ears and other narrow bumps
+// Radial distances of the mesh's outermost surface over the grid of Scalp (65 x 128). Ears and other narrow bumps
 // at the head's sides are cut off; directions that meet no triangle (the neck's opening) are filled in smoothly.
-sim::Scalp sampleScalp(std::span<const Vec3> vertices, std::span<const std::uint32_t> triangles,
+Scalp sampleScalp(std::span<const Vec3> vertices, std::span<const std::uint32_t> triangles,
                        const HeadMeasure& measure);
 
 }  // namespace app

@@ -124,8 +124,8 @@ json actorJson(const Actor& actor, const sim::SimParams& params) {
             {"turn_degrees", actor.playback.loop.travel.turn * 180 / std::numbers::pi},
             {"blend_seconds", actor.playback.loop.blend},
             {"haste", actor.playback.loop.haste}}},
-          {"hair", actor.spec.hair.empty() ? std::string(sim::styleName(actor.spec.style)) + " " +
-                                                 std::string(sim::resolutionName(actor.spec.resolution))
+          {"hair", actor.spec.hair.empty() ? std::string(styleName(actor.spec.style)) + " " +
+                                                 std::string(resolutionName(actor.spec.resolution))
                                            : actor.spec.hair},
           {"vertices", mesh.vertexCount()},
           {"columns", mesh.columnCount()},

@@ -94,8 +94,8 @@ json writeCharacter(const CharacterSpec& spec) {
   return {{"motion", spec.motion},
           {"parts", spec.parts},
           {"clip", spec.clip},
-          {"style", sim::styleName(spec.style)},
-          {"resolution", sim::resolutionName(spec.resolution)},
+          {"style", styleName(spec.style)},
+          {"resolution", resolutionName(spec.resolution)},
           {"hair", spec.hair},
           {"reverse_faces", spec.reverse_faces},
           {"fit", spec.fit},
@@ -109,17 +109,17 @@ json writeCharacter(const CharacterSpec& spec) {
 
 }  // namespace
 
-std::optional<sim::Style> parseStyle(std::string_view name) {
-  for (const sim::Style style : {sim::Style::kShort, sim::Style::kShoulder, sim::Style::kLong}) {
-    if (name == sim::styleName(style)) return style;
+std::optional<Style> parseStyle(std::string_view name) {
+  for (const Style style : {Style::kShort, Style::kShoulder, Style::kLong}) {
+    if (name == styleName(style)) return style;
   }
   return {};
 }
 
-std::optional<sim::Resolution> parseResolution(std::string_view name) {
-  for (const sim::Resolution resolution :
-       {sim::Resolution::kLow, sim::Resolution::kMedium, sim::Resolution::kHigh, sim::Resolution::kUltra}) {
-    if (name == sim::resolutionName(resolution)) return resolution;
+std::optional<Resolution> parseResolution(std::string_view name) {
+  for (const Resolution resolution :
+       {Resolution::kLow, Resolution::kMedium, Resolution::kHigh, Resolution::kUltra}) {
+    if (name == resolutionName(resolution)) return resolution;
   }
   return {};
 }

@@ -40,8 +40,8 @@ struct CharacterSpec {
   std::string motion = "idle_turns.bvh";  // BVH, glTF, FBX, .mot
   std::string parts;                      // folder of body0000.obj ..., for .mot
   std::string clip;                       // name within a file of several clips; empty: the first
-  sim::Style style = sim::Style::kShoulder;
-  sim::Resolution resolution = sim::Resolution::kMedium;
+  Style style = Style::kShoulder;
+  Resolution resolution = Resolution::kMedium;
   std::string hair;              // hair mesh OBJ in place of the built-in style; empty: the style
   bool reverse_faces = false;    // of that file: they are wound inwards
   bool fit = true;               // of that file: unit, axes and size are inferred where it does not fit the head
@@ -98,7 +98,7 @@ std::string writeScene(const Scene& scene);
 Scene sceneFromOptions(const Options& options);
 
 // "short" -> Style::kShort; throws nothing, empty when unknown.
-std::optional<sim::Style> parseStyle(std::string_view name);
-std::optional<sim::Resolution> parseResolution(std::string_view name);
+std::optional<Style> parseStyle(std::string_view name);
+std::optional<Resolution> parseResolution(std::string_view name);
 
 }  // namespace app

@@ -219,7 +219,7 @@ double fatnessOf(const sim::HairMeshShape& shape, const Corner& corner) {
   const auto at = [&](std::size_t k) -> const sim::Vec3& {
     return shape.positions[static_cast<std::size_t>(corner[k])];
   };
-  return sim::cornerFatness(at(0), at(1), at(2), at(3));
+  return cornerFatness(at(0), at(1), at(2), at(3));
 }
 
 // A linear constraint on up to four vertices: the sum of slope . move is to reach `lacking` (m); the slopes that count

@@ -182,7 +182,7 @@ double flattestCorner(const sim::HairMeshShape& shape, const sim::RootFace& face
         at[i] = shape.positions[static_cast<std::size_t>(shape.column_first[static_cast<std::size_t>(column)] + l +
                                                          corners[i] / n)];
       }
-      least = std::min(least, sim::cornerFatness(at[0], at[1], at[2], at[3]));
+      least = std::min(least, cornerFatness(at[0], at[1], at[2], at[3]));
     }
   }
   return least;
@@ -231,8 +231,8 @@ void settle(Draft& draft) {
   if (draft.fit.flattest < kLeastFatness)
     draft.fit.flattest = fitColumns(columnSystem(draft.targets, shape), 2 * kFatness, {2 * kRounds, 30, 30}, shape);
   if (draft.fit.flattest >= kLeastFatness) return;
-  const sim::BodyDistance nobody = [](const sim::Vec3&) { return 1.0; };
-  draft.fit.flattest = sim::untangle(nobody, kLeastFatness, 0, shape);
+  const BodyDistance nobody = [](const sim::Vec3&) { return 1.0; };
+  draft.fit.flattest = untangle(nobody, kLeastFatness, 0, shape);
   if (draft.fit.flattest <= kFlat) dropFlat(draft);
 }
 

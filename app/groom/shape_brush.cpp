@@ -5,7 +5,7 @@
 
 #include "sim/mesh/rest_measures.h"
 
-namespace sim {
+namespace app {
 
 namespace {
 
@@ -40,10 +40,10 @@ double brushReach(const Brush& brush, const Vec3& seen) {
   return share < 1 ? std::pow(1 - share, brush.falloff) : 0;
 }
 
-ShapeBrushes::ShapeBrushes(const HairMesh& mesh) {
+ShapeBrushes::ShapeBrushes(const sim::HairMesh& mesh) {
   std::vector<std::vector<int>> of(mesh.vertexCount());
   for (const auto* edges : {&mesh.horizontal_edges, &mesh.vertical_edges}) {
-    for (const Edge& edge : *edges) {
+    for (const sim::Edge& edge : *edges) {
       of[edge.a].push_back(edge.b);
       of[edge.b].push_back(edge.a);
     }
@@ -56,7 +56,7 @@ ShapeBrushes::ShapeBrushes(const HairMesh& mesh) {
   weight_.resize(of.size()), share_.resize(of.size()), wanted_.resize(of.size()), touched_.resize(of.size());
 }
 
-void ShapeBrushes::reach(const Brush& brush, const HairMesh& mesh, std::span<const Vec3> seen) {
+void ShapeBrushes::reach(const Brush& brush, const sim::HairMesh& mesh, std::span<const Vec3> seen) {
   for (std::size_t v = 0; v < weight_.size(); ++v)
     weight_[v] = mesh.isRoot(static_cast<int>(v)) ? 0 : brush.strength * brushReach(brush, seen[v]);
 }
@@ -65,7 +65,7 @@ void ShapeBrushes::comb(const Brush&, const Vec3& along) {
   for (std::size_t v = 0; v < wanted_.size(); ++v) wanted_[v] += weight_[v] * along;
 }
 
-void ShapeBrushes::smooth(const HairMesh& mesh) {
+void ShapeBrushes::smooth(const sim::HairMesh& mesh) {
   const std::vector<Vec3>& x = mesh.shape.positions;
   for (std::size_t v = 0; v < wanted_.size(); ++v) {
     const int first = neighbour_first_[v], last = neighbour_first_[v + 1];
@@ -76,7 +76,7 @@ void ShapeBrushes::smooth(const HairMesh& mesh) {
   }
 }
 
-void ShapeBrushes::puff(const Brush& brush, const HairMesh& mesh) {
+void ShapeBrushes::puff(const Brush& brush, const sim::HairMesh& mesh) {
   const std::vector<Vec3>& x = mesh.shape.positions;
   for (std::size_t v = 0; v < wanted_.size(); ++v) {
     Vec3 out = x[v] - brush.centre;
@@ -86,7 +86,7 @@ void ShapeBrushes::puff(const Brush& brush, const HairMesh& mesh) {
 }
 
 // Cutting and growing: the column's length changes, by the most that the brush reaches of it.
-void ShapeBrushes::scaleColumns(const Brush& brush, const HairMesh& mesh, std::span<const Vec3> seen) {
+void ShapeBrushes::scaleColumns(const Brush& brush, const sim::HairMesh& mesh, std::span<const Vec3> seen) {
   const std::vector<Vec3>& x = mesh.shape.positions;
   for (int c = 0; c < mesh.columnCount(); ++c) {
     const int first = mesh.shape.column_first[c], last = mesh.shape.column_first[c + 1];
@@ -134,7 +134,7 @@ void ShapeBrushes::scaleColumns(const Brush& brush, const HairMesh& mesh, std::s
 }
 
 // From the root on, each segment as long as it was.
-void ShapeBrushes::keepLengths(const HairMesh& mesh) {
+void ShapeBrushes::keepLengths(const sim::HairMesh& mesh) {
   const std::vector<Vec3>& x = mesh.shape.positions;
   for (int c = 0; c < mesh.columnCount(); ++c) {
     const int first = mesh.shape.column_first[c], last = mesh.shape.column_first[c + 1];
@@ -147,7 +147,7 @@ void ShapeBrushes::keepLengths(const HairMesh& mesh) {
 }
 
 // Each vertex goes as far of its way as leaves what hangs on it valid.
-void ShapeBrushes::limit(const HairMesh& mesh, const std::function<double(const Vec3&)>& body,
+void ShapeBrushes::limit(const sim::HairMesh& mesh, const std::function<double(const Vec3&)>& body,
                          std::vector<Vec3>& positions) {
   const std::vector<Vec3>& x = mesh.shape.positions;
   const std::size_t n = x.size();
@@ -172,12 +172,12 @@ void ShapeBrushes::limit(const HairMesh& mesh, const std::function<double(const 
       touched_[v] = 1;
     };
     for (const int t : tets_) {
-      const CornerTet& tet = mesh.tets[t];
-      const bool fine = cornerVolume(tet.v, positions) >= std::min(least, 0.5 * tet.rest_volume);
+      const sim::CornerTet& tet = mesh.tets[t];
+      const bool fine = sim::cornerVolume(tet.v, positions) >= std::min(least, 0.5 * tet.rest_volume);
       if (!fine) std::ranges::for_each(tet.v, spoilt);
     }
     for (const auto* edges : {&mesh.horizontal_edges, &mesh.vertical_edges}) {
-      for (const Edge& edge : *edges) {
+      for (const sim::Edge& edge : *edges) {
         if (share_[edge.a] == 0 && share_[edge.b] == 0) continue;
         const double length = (positions[edge.a] - positions[edge.b]).norm();
         if (length < std::min(kLeastEdge, 0.5 * edge.rest_length)) spoilt(edge.a), spoilt(edge.b);
@@ -195,7 +195,7 @@ void ShapeBrushes::limit(const HairMesh& mesh, const std::function<double(const 
   if (!valid) positions.assign(x.begin(), x.end());
 }
 
-int ShapeBrushes::apply(const Brush& brush, const HairMesh& mesh, std::span<const Vec3> seen,
+int ShapeBrushes::apply(const Brush& brush, const sim::HairMesh& mesh, std::span<const Vec3> seen,
                         const std::function<double(const Vec3&)>& body, std::vector<Vec3>& positions) {
   const std::vector<Vec3>& x = mesh.shape.positions;
   wanted_.assign(x.begin(), x.end());
@@ -228,4 +228,4 @@ int ShapeBrushes::apply(const Brush& brush, const HairMesh& mesh, std::span<cons
   return moved;
 }
 
-}  // namespace sim
+}  // namespace app

@@ -1,5 +1,6 @@
 // Brushes on the rest shape of a hair mesh, placed where the moving hair is seen: combing, cutting, growing, smoothing,
-// puffing. Whatever a brush does, every prism stays positive, edges keep a length, and nothing comes nearer to the body.
+// puffing. Whatever a brush does, every prism stays positive, edges keep a length, and nothing comes nearer to the
+// body.
 //
 // All positions are in the scalp's frame, m.
 #pragma once
@@ -13,7 +14,9 @@
 
 #include "sim/mesh/hair_mesh.h"
 
-namespace sim {
+namespace app {
+
+using Vec3 = Eigen::Vector3d;
 
 enum class BrushTool {
   kComb,    // along the stroke; lengths stay
@@ -26,13 +29,13 @@ inline constexpr std::array<std::string_view, 5> kBrushNames{"comb", "cut", "gro
 
 struct Brush {
   BrushTool tool = BrushTool::kComb;
-  Vec3 at = Vec3::Zero();             // on the moving hair
-  Vec3 along = Vec3::Zero();          // of combing: the way from the last place to this one
-  double radius = 0.04;               // m
-  double strength = 0.5;              // 0 to 1
-  double falloff = 1;                 // of the reach: (1 - (distance / radius)^2)^falloff
-  std::optional<double> mirror;       // x of the plane across which the brush acts as well
-  Vec3 centre = Vec3::Zero();         // the head's middle, that puffing leads away from
+  Vec3 at = Vec3::Zero();                 // on the moving hair
+  Vec3 along = Vec3::Zero();              // of combing: the way from the last place to this one
+  double radius = 0.04;                   // m
+  double strength = 0.5;                  // 0 to 1
+  double falloff = 1;                     // of the reach: (1 - (distance / radius)^2)^falloff
+  std::optional<double> mirror;           // x of the plane across which the brush acts as well
+  Vec3 centre = Vec3::Zero();             // the head's middle, that puffing leads away from
   double shortest = 0.03, longest = 1.2;  // m, columns that are cut and grown
 };
 
@@ -41,12 +44,12 @@ double brushReach(const Brush& brush, const Vec3& seen);
 
 class ShapeBrushes {
  public:
-  explicit ShapeBrushes(const HairMesh& mesh);
+  explicit ShapeBrushes(const sim::HairMesh& mesh);
 
-  // What one sample of a stroke makes of the mesh's rest positions, into `positions`. `seen`: the moving hair, one place
-  // a vertex. `body`: signed distance to the body at rest; empty: there is none. Returns how many vertices it moves: 0
-  // where it reaches none, or where all that it reaches is as short, as long or as close as it may be.
-  int apply(const Brush& brush, const HairMesh& mesh, std::span<const Vec3> seen,
+  // What one sample of a stroke makes of the mesh's rest positions, into `positions`. `seen`: the moving hair, one
+  // place a vertex. `body`: signed distance to the body at rest; empty: there is none. Returns how many vertices it
+  // moves: 0 where it reaches none, or where all that it reaches is as short, as long or as close as it may be.
+  int apply(const Brush& brush, const sim::HairMesh& mesh, std::span<const Vec3> seen,
             const std::function<double(const Vec3&)>& body, std::vector<Vec3>& positions);
 
  private:
@@ -56,13 +59,13 @@ class ShapeBrushes {
   std::vector<unsigned char> touched_;
   std::vector<int> tets_;
 
-  void reach(const Brush& brush, const HairMesh& mesh, std::span<const Vec3> seen);
+  void reach(const Brush& brush, const sim::HairMesh& mesh, std::span<const Vec3> seen);
   void comb(const Brush& brush, const Vec3& along);
-  void smooth(const HairMesh& mesh);
-  void puff(const Brush& brush, const HairMesh& mesh);
-  void scaleColumns(const Brush& brush, const HairMesh& mesh, std::span<const Vec3> seen);
-  void keepLengths(const HairMesh& mesh);
-  void limit(const HairMesh& mesh, const std::function<double(const Vec3&)>& body, std::vector<Vec3>& positions);
+  void smooth(const sim::HairMesh& mesh);
+  void puff(const Brush& brush, const sim::HairMesh& mesh);
+  void scaleColumns(const Brush& brush, const sim::HairMesh& mesh, std::span<const Vec3> seen);
+  void keepLengths(const sim::HairMesh& mesh);
+  void limit(const sim::HairMesh& mesh, const std::function<double(const Vec3&)>& body, std::vector<Vec3>& positions);
 };
 
-}  // namespace sim
+}  // namespace app

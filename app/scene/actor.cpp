@@ -70,7 +70,7 @@ LoadedBody& loadBody(const CharacterSpec& spec, AssetCache& asset_cache) {
 }
 
 std::string styleTitle(const CharacterSpec& spec) {
-  return std::string(sim::styleName(spec.style)) + " " + std::string(sim::resolutionName(spec.resolution));
+  return std::string(styleName(spec.style)) + " " + std::string(resolutionName(spec.resolution));
 }
 
 // A hair mesh from a file: an OBJ by layers, or a groom that is converted; its unit, axes and place as fitHair finds
@@ -108,7 +108,7 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
   if (spec.hair.empty() && !body.distance) body.distance = restBodyDistance(body.character);
   try {
     sim::HairMeshShape shape = spec.hair.empty()
-                                   ? sim::makeStyle(spec.style, spec.resolution, body.character.scalp, body.distance)
+                                   ? makeStyle(spec.style, spec.resolution, body.character.scalp, body.distance)
                                    : shapeFromFile(spec, body.character, *haircut);
     haircut->mesh = sim::buildHairMesh(std::move(shape));
   } catch (const sim::MeshError& error) {
@@ -256,9 +256,9 @@ Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, AssetCa
   return actor;
 }
 
-const HaircutPair* coarsePair(const Actor& actor, sim::Resolution resolution, AssetCache& asset_cache) {
-  const sim::Resolution own = actor.spec.resolution;
-  if (!actor.spec.hair.empty() || actor.haircut->edited || own == resolution || own == sim::Resolution::kMinimal) return nullptr;
+const HaircutPair* coarsePair(const Actor& actor, Resolution resolution, AssetCache& asset_cache) {
+  const Resolution own = actor.spec.resolution;
+  if (!actor.spec.hair.empty() || actor.haircut->edited || own == resolution || own == Resolution::kMinimal) return nullptr;
   for (const auto& pair : asset_cache.pairs) {
     if (pair->fine == actor.haircut && pair->resolution == resolution) return pair.get();
   }

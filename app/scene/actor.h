@@ -33,7 +33,7 @@ struct LoadedBody {
   std::string key;
   std::uint64_t id = 0;
   Character character;
-  sim::BodyDistance distance;
+  BodyDistance distance;
   bool has_parts = false;  // they are made when signed distances are first collided with
   std::vector<PartDistance> parts;
   std::vector<unsigned char> moving_joints;  // per joint: whether skin, ellipsoids or scalp hang on it or below it
@@ -54,7 +54,7 @@ struct Haircut {
   // Of hair that brushes have reshaped, which one actor alone wears.
   bool edited = false;
   std::optional<sim::RestShape> reshape;
-  mutable std::optional<sim::ShapeBrushes> brushes;  // scratch
+  mutable std::optional<ShapeBrushes> brushes;  // scratch
 };
 
 // Where a body is scalp among the roots of a haircut; see root_cover.h.
@@ -67,7 +67,7 @@ struct ScalpCover {
 struct HaircutPair {
   const Haircut* fine = nullptr;
   const Haircut* coarse = nullptr;
-  sim::Resolution resolution = sim::Resolution::kLow;  // of the coarse one
+  Resolution resolution = Resolution::kLow;  // of the coarse one
   sim::ShapeTransfer to_coarse, to_fine;
 };
 
@@ -82,7 +82,7 @@ struct AssetCache {
 // How much care the simulation takes of an actor.
 struct SimDetail {
   int step_span = 1;                      // simulation steps that one step of the actor covers
-  std::optional<sim::Resolution> coarse;  // of its style, simulated in place of its own
+  std::optional<Resolution> coarse;  // of its style, simulated in place of its own
   bool seen = true;                       // neither figure nor shadow can be in the picture otherwise
 };
 
@@ -150,7 +150,7 @@ Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, AssetCa
 
 // The actor's style at low or minimal resolution with the transfers to it and back, made on first use; null
 // for hair from a file and for hair that is already as coarse.
-const HaircutPair* coarsePair(const Actor& actor, sim::Resolution resolution, AssetCache& asset_cache);
+const HaircutPair* coarsePair(const Actor& actor, Resolution resolution, AssetCache& asset_cache);
 
 // Drops what no actor wears.
 void tidy(const std::vector<Actor>& actors, AssetCache& asset_cache);

@@ -64,7 +64,7 @@ void changeStyle(const Request& request, Demo& demo) {
     spec.resolution = *resolution;
   }
   spec.hair.clear();
-  recast(spec, true, std::string(sim::styleName(spec.style)) + " " + std::string(sim::resolutionName(spec.resolution)),
+  recast(spec, true, std::string(styleName(spec.style)) + " " + std::string(resolutionName(spec.resolution)),
          demo);
 }
 

@@ -69,8 +69,8 @@ std::string identity(const Actor& actor) {
   const CharacterSpec& spec = actor.spec;
   const auto name = [](const std::string& file) { return std::filesystem::path(file).filename().string(); };
   std::string text = name(spec.motion) + ", clip '" + actor.playedClip().name + "', " +
-                     (spec.hair.empty() ? std::string(sim::styleName(spec.style)) + " " +
-                                              std::string(sim::resolutionName(spec.resolution))
+                     (spec.hair.empty() ? std::string(styleName(spec.style)) + " " +
+                                              std::string(resolutionName(spec.resolution))
                                         : name(spec.hair));
   if (!spec.parts.empty()) text += ", parts " + name(spec.parts);
   if (spec.position != Vec3::Zero() || spec.heading != 0) {
@@ -81,7 +81,7 @@ std::string identity(const Actor& actor) {
   return text;
 }
 
-int numberOf(const std::optional<sim::Resolution>& resolution) {
+int numberOf(const std::optional<Resolution>& resolution) {
   return resolution ? static_cast<int>(*resolution) : -1;
 }
 
@@ -147,12 +147,12 @@ class ActorReader {
   int readMesh() {
     int number = -1;
     sim::readBytes(from_, number);
-    if (number < -1 || number > static_cast<int>(sim::Resolution::kMinimal)) fail("has no such mesh", kSaveAnew);
+    if (number < -1 || number > static_cast<int>(Resolution::kMinimal)) fail("has no such mesh", kSaveAnew);
     return number;
   }
 
   void readCoarse(const Actor& shown, AssetCache& asset_cache, SavedActor& saved) {
-    saved.pair = coarsePair(shown, static_cast<sim::Resolution>(saved.coarse_mesh), asset_cache);
+    saved.pair = coarsePair(shown, static_cast<Resolution>(saved.coarse_mesh), asset_cache);
     if (!saved.pair) fail("was simulated with a coarser mesh that it does not have", kSaveAnew);
     CoarseHair& coarse = saved.actor.coarse;
     readHair(saved.pair->coarse->mesh, coarse.hair);
@@ -186,7 +186,7 @@ void install(SavedActor saved, const Vec3& origin, Actor& actor) {
   actor.context = contextOf(actor.haircut->mesh);
   actor.context->refreshGradually(true);
   actor.detail.coarse.reset();
-  if (saved.chosen_mesh >= 0) actor.detail.coarse = static_cast<sim::Resolution>(saved.chosen_mesh);
+  if (saved.chosen_mesh >= 0) actor.detail.coarse = static_cast<Resolution>(saved.chosen_mesh);
   actor.coarse = std::move(saved.actor.coarse);
   if (saved.pair) {
     actor.coarse.pair = saved.pair;

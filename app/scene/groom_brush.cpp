@@ -71,8 +71,8 @@ std::string brushText(const BrushSample& sample) {
 }
 
 BrushSample parseBrush(const std::string& tool, const std::string& text) {
-  const auto name = std::ranges::find(sim::kBrushNames, tool);
-  if (name == sim::kBrushNames.end())
+  const auto name = std::ranges::find(kBrushNames, tool);
+  if (name == kBrushNames.end())
     throw InputError("", "brush '" + tool.substr(0, 40) + "'", "is unknown", "choose comb, cut, grow, smooth or puff");
   std::array<double, 10> numbers{};
   std::size_t count = 0;
@@ -90,7 +90,7 @@ BrushSample parseBrush(const std::string& tool, const std::string& text) {
     throw InputError("", "brush stroke", "is not ten numbers in their ranges",
                      "write x y z, the way x y z, radius 0.003 to 0.3, strength 0 to 1, falloff 0 to 8, mirror 0 or 1");
   BrushSample sample;
-  sample.tool = static_cast<sim::BrushTool>(name - sim::kBrushNames.begin());
+  sample.tool = static_cast<BrushTool>(name - kBrushNames.begin());
   sample.at = {numbers[0], numbers[1], numbers[2]};
   sample.along = {numbers[3], numbers[4], numbers[5]};
   sample.radius = numbers[6], sample.strength = numbers[7], sample.falloff = numbers[8];
@@ -123,13 +123,13 @@ void applyBrush(const BrushSample& sample, int index, Demo& demo) {
   std::vector<Vec3> seen, positions;
   seen.reserve(actor.hair.positions.size());
   for (const Vec3& p : actor.hair.positions) seen.push_back(to_scalp * p);
-  sim::Brush brush;
+  Brush brush;
   brush.tool = sample.tool;
   brush.at = sample.at, brush.along = sample.along;
   brush.radius = sample.radius, brush.strength = sample.strength, brush.falloff = sample.falloff;
   brush.centre = actor.body->character.scalp.center;
   if (sample.mirror) brush.mirror = brush.centre.x();
-  if (std::ranges::none_of(seen, [&](const Vec3& p) { return sim::brushReach(brush, p) > 0; }))
+  if (std::ranges::none_of(seen, [&](const Vec3& p) { return brushReach(brush, p) > 0; }))
     throw InputError("", "the brush", "reaches no hair", "move it onto the hair, or make it larger");
   if (!actor.body->distance) actor.body->distance = restBodyDistance(actor.body->character);
   if (!actor.haircut->brushes) actor.haircut->brushes.emplace(mesh);

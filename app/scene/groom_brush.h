@@ -12,9 +12,9 @@ namespace app {
 
 struct Demo;
 
-// One sample of a stroke. Places are those of sim::Brush: the scalp's frame, m.
+// One sample of a stroke. Places are those of Brush: the scalp's frame, m.
 struct BrushSample {
-  sim::BrushTool tool = sim::BrushTool::kComb;
+  BrushTool tool = BrushTool::kComb;
   Vec3 at = Vec3::Zero(), along = Vec3::Zero();
   double radius = 0.04, strength = 0.5, falloff = 1;
   bool mirror = false;
@@ -25,7 +25,7 @@ inline constexpr double kLargestFalloff = 8;
 
 // "x y z  x y z  radius strength falloff mirror"; parseBrush reads the same bits back.
 std::string brushText(const BrushSample& sample);
-// `tool`: as sim::kBrushNames. Throws InputError.
+// `tool`: as kBrushNames. Throws InputError.
 BrushSample parseBrush(const std::string& tool, const std::string& text);
 
 // Changes the rest shape of the actor's hair, which becomes its own. Throws InputError where the brush reaches no hair;

@@ -15,9 +15,9 @@ namespace {
 // Pixels below which an actor is simulated with a coarser mesh; it returns at kReturn times as many.
 struct Coarseness {
   double below;
-  sim::Resolution resolution;
+  Resolution resolution;
 };
-constexpr std::array<Coarseness, 2> kMeshes{{{420, sim::Resolution::kLow}, {240, sim::Resolution::kMinimal}}};
+constexpr std::array<Coarseness, 2> kMeshes{{{420, Resolution::kLow}, {240, Resolution::kMinimal}}};
 // And of the hair's length: a coarse mesh is off by a share of that, two hundredths of long hair that rubs on
 // shoulders.
 constexpr double kHairBelow = 150;
@@ -82,7 +82,7 @@ double hairSize(const Actor& actor) {
 
 // A mesh in use goes on up to its own way back.
 void chooseMesh(double size, Demo& demo, Actor& actor) {
-  const std::optional<sim::Resolution> before = std::exchange(actor.detail.coarse, std::nullopt);
+  const std::optional<Resolution> before = std::exchange(actor.detail.coarse, std::nullopt);
   if (!demo.scene.skips[kSkipFarMesh]) return;
   bool already = before.has_value();
   const double hair = size * actor.haircut->mesh.hair_length / hairSize(actor);

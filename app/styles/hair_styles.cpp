@@ -13,7 +13,7 @@
 #include "app/styles/style_untangle.h"
 #include "app/styles/style_weave.h"
 
-namespace sim {
+namespace app {
 namespace {
 
 constexpr double kFatness = 0.10, kFatnessRefined = 0.09;  // of every corner tetrahedron, see cornerFatness
@@ -71,7 +71,7 @@ double Scalp::radiusAt(const Vec3& direction) const {
   return (1 - u) * ((1 - v) * at(i, j) + v * at(i, k)) + u * ((1 - v) * at(i + 1, j) + v * at(i + 1, k));
 }
 
-HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& scalp, const BodyDistance& body) {
+sim::HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& scalp, const BodyDistance& body) {
   // Hair is cut on a head of ordinary size, where lengths mean what they say, and grown or shrunk with it.
   const double scale = scalp.head_height / kOrdinaryHead;
   const BodyDistance scaled_body = [&](const Vec3& p) { return body(scale * p) / scale; };
@@ -87,7 +87,7 @@ HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& scalp, 
     const BodyDistance* around;
   };
   const Weave plan = weaveOf(style, resolution);
-  HairMeshShape shape;
+  sim::HairMeshShape shape;
   for (const Attempt& attempt :
        {Attempt{0, 0, &scaled_body}, Attempt{20, 0, &scaled_body}, Attempt{60, 0.5, &post}, Attempt{60, 1, &post}}) {
     const Scalp head = rounded(scaledTo(scalp, 1 / scale), attempt.rounds, attempt.ball);
@@ -117,4 +117,4 @@ std::string_view resolutionName(Resolution resolution) {
   return kNames[static_cast<std::size_t>(resolution)];
 }
 
-}  // namespace sim
+}  // namespace app

@@ -8,7 +8,9 @@
 #include "sim/contact/colliders.h"
 #include "sim/mesh/hair_mesh.h"
 
-namespace sim {
+namespace app {
+
+using Vec3 = Eigen::Vector3d;
 
 enum class Style { kShort, kShoulder, kLong };
 // Minimal, the coarsest of all, is for hair that is small in the picture and is not offered by name.
@@ -42,9 +44,9 @@ using BodyDistance = std::function<double(const Vec3&)>;
 // one (see the source). Vertex counts: short 225 / 569 / 1,339 / 7,081, shoulder 360 / 913 / 2,306 / 9,617, long
 // 368 / 902 / 2,257 / 9,997; minimal 85, 119, 168. Columns of at most 8 or 16 vertices where a plan can have them
 // so, for whole vectors of the solver's kernels. Deterministic; under 0.5 s, ultra under 1.5 s.
-HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& scalp, const BodyDistance& body);
+sim::HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& scalp, const BodyDistance& body);
 
 std::string_view styleName(Style style);                 // "short", "shoulder", "long"
 std::string_view resolutionName(Resolution resolution);  // "low", "medium", "high", "ultra"
 
-}  // namespace sim
+}  // namespace app

@@ -4,15 +4,15 @@
 #include <array>
 #include <cmath>
 
-namespace sim {
+namespace app {
 namespace {
 
-constexpr double kRowStep = 0.006;    // m, below the hairline
-constexpr double kInnerGap = 0.006;   // m, between the body and the underside of the hair
-constexpr double kTautness = 0.9;     // how nearly hanging hair spans hollows as a taut string would
+constexpr double kRowStep = 0.006;         // m, below the hairline
+constexpr double kInnerGap = 0.006;        // m, between the body and the underside of the hair
+constexpr double kTautness = 0.9;          // how nearly hanging hair spans hollows as a taut string would
 constexpr double kTautnessInFront = 0.25;  // below the jaw: hair lies on the chest
-constexpr double kCloseBeside = 0.9;  // of the way from one flow line to the next, at either side of the divide
-constexpr double kDivide = 0.35;      // hair rooted in front of this backness falls in front of the shoulders
+constexpr double kCloseBeside = 0.9;       // of the way from one flow line to the next, at either side of the divide
+constexpr double kDivide = 0.35;           // hair rooted in front of this backness falls in front of the shoulders
 
 // What one style wants. Heights are in head heights above the scalp's centre.
 struct Cut {
@@ -428,4 +428,4 @@ Coat combCoat(Style style, const Scalp& scalp, const BodyDistance& body, const F
   return comber.coat;
 }
 
-}  // namespace sim
+}  // namespace app

@@ -8,7 +8,7 @@
 #include "app/styles/hair_styles.h"
 #include "app/styles/style_roots.h"
 
-namespace sim {
+namespace app {
 
 // How high hair lies over the inner guide after a way (m) from its root: it leaves the scalp at a flat angle, and lies
 // on all that is rooted further down its sheet, which is more the further it has come.
@@ -50,4 +50,4 @@ Coat combCoat(Style style, const Scalp& scalp, const BodyDistance& body, const F
 // Unit gradient of the body's distance by central differences; +y where it vanishes.
 Vec3 bodyNormal(const BodyDistance& body, const Vec3& p);
 
-}  // namespace sim
+}  // namespace app

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-namespace sim {
+namespace app {
 namespace {
 
 struct FineColumn {
@@ -13,7 +13,7 @@ struct FineColumn {
 
 // A column's curve half-way between its layers l and l + 1: the cubic through the four nearest where there are four,
 // the parabola through three at its ends.
-Vec3 halfWay(const HairMeshShape& shape, int column, int l) {
+Vec3 halfWay(const sim::HairMeshShape& shape, int column, int l) {
   const Vec3* x = &shape.positions[shape.column_first[column]];
   const bool first = l < 1, last = l + 2 >= shape.columnLength(column);
   if (first && last) return 0.5 * (x[l] + x[l + 1]);
@@ -33,8 +33,8 @@ bool acrossSheets(int a, int b) {
 
 }  // namespace
 
-HairMeshShape refined(const Woven& coarse, const Scalp& scalp) {
-  const HairMeshShape& shape = coarse.shape;
+sim::HairMeshShape refined(const Woven& coarse, const Scalp& scalp) {
+  const sim::HairMeshShape& shape = coarse.shape;
   std::vector<FineColumn> columns;
   for (int c = 0; c < shape.columnCount(); ++c) columns.push_back({c, c, 0});
   std::map<std::pair<int, int>, int> between;
@@ -43,15 +43,15 @@ HairMeshShape refined(const Woven& coarse, const Scalp& scalp) {
     if (fresh) columns.push_back({std::min(a, b), std::max(a, b), 0});
     return place->second;
   };
-  HairMeshShape fine;
+  sim::HairMeshShape fine;
   const auto addFace = [&](std::vector<int> corners, int layers) {
-    RootFace face;
+    sim::RootFace face;
     face.corner_count = static_cast<int>(corners.size());
     std::copy(corners.begin(), corners.end(), face.columns.begin());
     for (const int c : corners) columns[c].layers = std::max(columns[c].layers, layers);
     fine.root_faces.push_back(face);
   };
-  for (const RootFace& face : shape.root_faces) {
+  for (const sim::RootFace& face : shape.root_faces) {
     const int n = face.corner_count;
     const int layers = shape.bundleLayers(face);
     // Turned so that the first edge runs across the sheets and the last one within a sheet.
@@ -82,4 +82,4 @@ HairMeshShape refined(const Woven& coarse, const Scalp& scalp) {
   return fine;
 }
 
-}  // namespace sim
+}  // namespace app

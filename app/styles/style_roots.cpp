@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace sim {
+namespace app {
 namespace {
 
 constexpr int kHalfSheets = 40;
@@ -171,4 +171,4 @@ FlowLines traceFlowLines(const Scalp& scalp) {
   return lines;
 }
 
-}  // namespace sim
+}  // namespace app

@@ -9,7 +9,7 @@
 
 #include "app/styles/hair_styles.h"
 
-namespace sim {
+namespace app {
 
 struct FlowLines {
   int sheets = 0;            // odd: the middle one goes from the crown to the nape
@@ -29,4 +29,4 @@ Vec3 skinPoint(const Scalp& scalp, const Vec3& direction);
 
 FlowLines traceFlowLines(const Scalp& scalp);
 
-}  // namespace sim
+}  // namespace app

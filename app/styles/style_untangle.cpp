@@ -6,7 +6,7 @@
 
 #include "app/styles/style_comb.h"
 
-namespace sim {
+namespace app {
 namespace {
 
 constexpr int kSweeps = 240, kFlatSweeps = 240, kFullSweepEvery = 3;
@@ -17,14 +17,14 @@ constexpr double kLargestMove = 0.004;  // m a sweep: large steps would throw ne
 
 using Corner = std::array<int, 4>;  // vertices, as CornerTet::v
 
-std::vector<Corner> corners(const HairMeshShape& shape) {
+std::vector<Corner> corners(const sim::HairMeshShape& shape) {
   std::vector<Corner> out;
-  for (const RootFace& face : shape.root_faces) {
+  for (const sim::RootFace& face : shape.root_faces) {
     const int n = face.corner_count;
     for (int l = 0; l + 1 < shape.bundleLayers(face); ++l) {
       for (int k = 0; k < n; ++k) {
         for (const int corner : {k, n + k}) {
-          Corner& vertices = out.emplace_back(cornerTetOf(corner, n));
+          Corner& vertices = out.emplace_back(sim::cornerTetOf(corner, n));
           for (int& v : vertices) v = shape.column_first[face.columns[v % n]] + l + v / n;
         }
       }
@@ -38,7 +38,7 @@ struct Neighbours {
 };
 
 // Every vertex's neighbours along its column and in its layer.
-Neighbours neighbours(const HairMeshShape& shape, const std::vector<Corner>& all) {
+Neighbours neighbours(const sim::HairMeshShape& shape, const std::vector<Corner>& all) {
   std::vector<std::array<int, 2>> pairs;
   for (const Corner& c : all)
     for (int k = 1; k < 4; ++k) pairs.push_back({c[0], c[k]});
@@ -55,7 +55,7 @@ Neighbours neighbours(const HairMeshShape& shape, const std::vector<Corner>& all
 
 // The mesh while it is relaxed. Roots do not move.
 struct Relaxation {
-  HairMeshShape& shape;
+  sim::HairMeshShape& shape;
   const std::vector<Corner> all;
   const Neighbours near;
   const std::vector<Vec3> start;  // positions before the first sweep
@@ -63,7 +63,7 @@ struct Relaxation {
   std::vector<Vec3> asked_at;     // where a vertex was when its distance to the body was last evaluated
   std::vector<double> clearance;  // m: that distance
 
-  explicit Relaxation(HairMeshShape& relaxed)
+  explicit Relaxation(sim::HairMeshShape& relaxed)
       : shape(relaxed),
         all(corners(relaxed)),
         near(neighbours(relaxed, all)),
@@ -172,7 +172,8 @@ double cornerFatness(const Vec3& corner, const Vec3& next, const Vec3& previous,
 
 // Hildreth's method: a multiplier per corner, raised while the corner is too flat and lowered while it is fatter than
 // it needs to be, and the heights that follow from the multipliers.
-void layFlat(const BodyDistance& body, const std::vector<Vec3>& up, double fatness, double gap, HairMeshShape& shape) {
+void layFlat(const BodyDistance& body, const std::vector<Vec3>& up, double fatness, double gap,
+             sim::HairMeshShape& shape) {
   std::vector<Vec3>& x = shape.positions;
   std::vector<bool> root(x.size(), false);
   for (int c = 0; c < shape.columnCount(); ++c) root[shape.column_first[c]] = true;
@@ -213,7 +214,7 @@ void layFlat(const BodyDistance& body, const std::vector<Vec3>& up, double fatne
   }
 }
 
-double untangle(const BodyDistance& body, double fatness, double gap, HairMeshShape& shape) {
+double untangle(const BodyDistance& body, double fatness, double gap, sim::HairMeshShape& shape) {
   Relaxation relaxation(shape);
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     const bool flat = relaxation.openCorners(fatness), shorter = relaxation.lengthenEdges();
@@ -228,4 +229,4 @@ double untangle(const BodyDistance& body, double fatness, double gap, HairMeshSh
   return worst;
 }
 
-}  // namespace sim
+}  // namespace app

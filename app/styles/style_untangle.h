@@ -3,7 +3,7 @@
 
 #include "app/styles/hair_styles.h"
 
-namespace sim {
+namespace app {
 
 // How fat a corner tetrahedron is: its volume over that of a box corner with the same three edges; 1 is square, 0 flat,
 // negative inside out.
@@ -12,11 +12,12 @@ double cornerFatness(const Vec3& corner, const Vec3& next, const Vec3& previous,
 // Raises and lowers all but the roots along `up` (unit, per vertex), as little as it can in the mean square, until
 // every corner tetrahedron is at least `fatness` fat (0.75 of that where a layer's corner is acute) and every vertex
 // keeps `gap` (m) off the body. Deterministic; stops after a fixed number of sweeps and leaves what is not mended yet.
-void layFlat(const BodyDistance& body, const std::vector<Vec3>& up, double fatness, double gap, HairMeshShape& shape);
+void layFlat(const BodyDistance& body, const std::vector<Vec3>& up, double fatness, double gap,
+             sim::HairMeshShape& shape);
 
 // Moves all but the roots, as little as it can, until every corner tetrahedron is at least `fatness` fat (0.75 of that
 // where a layer's corner is acute), and keeps `gap` (m) off the body. Deterministic; gives up after a fixed number of
 // sweeps and returns what it reached: the smallest fatness of all.
-double untangle(const BodyDistance& body, double fatness, double gap, HairMeshShape& shape);
+double untangle(const BodyDistance& body, double fatness, double gap, sim::HairMeshShape& shape);
 
-}  // namespace sim
+}  // namespace app

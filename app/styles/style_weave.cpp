@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace sim {
+namespace app {
 namespace {
 
 constexpr double kTurn = 0.01;  // m of way over which a column takes up the step
@@ -67,17 +67,17 @@ void layColumn(const Coat& coat, const Weave& plan, const Plait& plait, Woven& w
   woven.shape.column_first.push_back(static_cast<int>(woven.shape.positions.size()));
 }
 
-RootFace quad(int a, int b, int c, int d) {
+sim::RootFace quad(int a, int b, int c, int d) {
   return {4, {a, b, c, d}};
 }
-RootFace triangle(int a, int b, int c) {
+sim::RootFace triangle(int a, int b, int c) {
   return {3, {a, b, c, -1}};
 }
 
 // Joins two neighbouring sheets from the hairline up: quads while the ranks keep step, a triangle where one sheet has
 // one more.
 void joinSheets(const std::vector<Plait>& plaits, int crown_sheet, std::array<int, 2> left, std::array<int, 2> right,
-                std::vector<RootFace>& faces) {
+                std::vector<sim::RootFace>& faces) {
   const bool left_is_crown = plaits[left[0]].sheet == crown_sheet,
              right_is_crown = plaits[right[0]].sheet == crown_sheet;
   int i = left[0], j = right[0];
@@ -122,9 +122,9 @@ void joinSheets(const std::vector<Plait>& plaits, int crown_sheet, std::array<in
 }
 
 // A bundle ends with its shortest column, and a column with its longest bundle: no vertex is left hanging.
-void trimLayers(const std::vector<RootFace>& faces, std::vector<Plait>& plaits) {
+void trimLayers(const std::vector<sim::RootFace>& faces, std::vector<Plait>& plaits) {
   std::vector<int> used(plaits.size(), 0);
-  for (const RootFace& face : faces) {
+  for (const sim::RootFace& face : faces) {
     int layers = plaits[face.columns[0]].layers;
     for (int k = 1; k < face.corner_count; ++k) layers = std::min(layers, plaits[face.columns[k]].layers);
     for (int k = 0; k < face.corner_count; ++k) used[face.columns[k]] = std::max(used[face.columns[k]], layers);
@@ -197,4 +197,4 @@ Woven weave(const Coat& coat, const Weave& plan) {
   return woven;
 }
 
-}  // namespace sim
+}  // namespace app

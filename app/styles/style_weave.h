@@ -5,7 +5,7 @@
 
 #include "app/styles/style_comb.h"
 
-namespace sim {
+namespace app {
 
 // How finely a style is meshed. Everything is counted, not measured, so that a style has the same topology on every
 // head.
@@ -21,10 +21,10 @@ struct Weave {
 Weave weaveOf(Style style, Resolution resolution);
 
 struct Woven {
-  HairMeshShape shape;
+  sim::HairMeshShape shape;
   std::vector<Vec3> up;  // unit, per vertex: off the coat's underside
 };
 
 Woven weave(const Coat& coat, const Weave& plan);
 
-}  // namespace sim
+}  // namespace app

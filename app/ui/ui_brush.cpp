@@ -42,10 +42,10 @@ void drawReach(const Vec3& place, const Demo& demo, const BrushState& brush, flo
   }
   list->AddPolyline(ring, kRingPoints, IM_COL32(20, 20, 24, 150), ImDrawFlags_Closed, 3.5f * scale);
   list->AddPolyline(ring, kRingPoints, IM_COL32(240, 172, 120, 235), ImDrawFlags_Closed, 1.6f * scale);
-  sim::Brush reach;
+  Brush reach;
   reach.at = place, reach.radius = brush.radius, reach.falloff = brush.falloff;
   for (const Vec3& p : actor.hair.positions) {
-    const double weight = sim::brushReach(reach, p);
+    const double weight = brushReach(reach, p);
     const auto pixel = weight > 0.02 ? pixelOf(p, size.x, size.y, demo.camera) : std::nullopt;
     if (!pixel) continue;
     const int alpha = static_cast<int>(40 + 180 * weight);
@@ -56,18 +56,18 @@ void drawReach(const Vec3& place, const Demo& demo, const BrushState& brush, flo
 
 void postSample(const Vec3& at, const Vec3& along, Demo& demo, const BrushState& brush) {
   BrushSample sample;
-  sample.tool = static_cast<sim::BrushTool>(brush.tool);
+  sample.tool = static_cast<BrushTool>(brush.tool);
   sample.at = at, sample.along = along;
   sample.radius = brush.radius, sample.strength = brush.strength, sample.falloff = brush.falloff;
   sample.mirror = brush.mirror;
-  postRequest(demo, {Ask::kBrush, std::string(sim::kBrushNames[static_cast<std::size_t>(brush.tool)]),
+  postRequest(demo, {Ask::kBrush, std::string(kBrushNames[static_cast<std::size_t>(brush.tool)]),
                      brushText(sample)});
 }
 
 // One frame of a drag. Combing moves by the way of the hand; the others act as long as the button is held.
 void stroke(const Ray& ray, const std::optional<Vec3>& hit, Demo& demo, BrushState& brush) {
   const Rigid to_scalp = worldToScalp(selectedActor(demo));
-  if (brush.tool != static_cast<int>(sim::BrushTool::kComb)) {
+  if (brush.tool != static_cast<int>(BrushTool::kComb)) {
     if (hit) postSample(to_scalp * *hit, Vec3::Zero(), demo, brush);
     return;
   }

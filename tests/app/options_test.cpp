@@ -79,8 +79,8 @@ TEST(Options, OverridesReachTheScene) {
                         .options;
   const app::Scene scene = app::sceneFromOptions(options);
   ASSERT_EQ(scene.characters.size(), 1u);
-  EXPECT_EQ(scene.characters[0].style, sim::Style::kLong);
-  EXPECT_EQ(scene.characters[0].resolution, sim::Resolution::kLow);
+  EXPECT_EQ(scene.characters[0].style, app::Style::kLong);
+  EXPECT_EQ(scene.characters[0].resolution, app::Resolution::kLow);
   EXPECT_EQ(scene.characters[0].look.strands, 77);
   EXPECT_EQ(scene.characters[0].look.hair.taper, 0.9f);
   EXPECT_EQ(scene.characters[0].loop, app::LoopKind::kGoOn);

@@ -59,13 +59,13 @@ void runColliders(const ColliderOptions& options, std::FILE* out) {
       "gap to the skin, median mm | 10 %% to 90 %% |\n|---|---|---|---|---|---|---|---|---|\n");
   app::AssetCache asset_cache;
   for (const std::string& clip : options.clips) {
-    for (const sim::Style style : {sim::Style::kShort, sim::Style::kShoulder, sim::Style::kLong}) {
-      for (const sim::Resolution resolution :
-           {sim::Resolution::kLow, sim::Resolution::kMedium, sim::Resolution::kHigh}) {
+    for (const app::Style style : {app::Style::kShort, app::Style::kShoulder, app::Style::kLong}) {
+      for (const app::Resolution resolution :
+           {app::Resolution::kLow, app::Resolution::kMedium, app::Resolution::kHigh}) {
         const std::string name =
-            std::string(sim::styleName(style)) + " " + std::string(sim::resolutionName(resolution));
+            std::string(app::styleName(style)) + " " + std::string(app::resolutionName(resolution));
         const bool wanted = options.styles.empty()
-                                ? resolution == sim::Resolution::kMedium
+                                ? resolution == app::Resolution::kMedium
                                 : std::find(options.styles.begin(), options.styles.end(), name) != options.styles.end();
         if (!wanted) continue;
         for (const sim::ColliderKind kind : {sim::ColliderKind::kEllipsoids, sim::ColliderKind::kSdf}) {

@@ -17,7 +17,7 @@ using sim::Vec3;
 
 constexpr double kSettle = 2;  // s
 
-app::Actor makeDancer(const std::string& clip, sim::Style style, sim::Resolution resolution,
+app::Actor makeDancer(const std::string& clip, app::Style style, app::Resolution resolution,
                       app::AssetCache& asset_cache) {
   app::CharacterSpec spec;
   spec.motion = app::findFile(clip, "", "clips");
@@ -149,8 +149,8 @@ void writeSpawns(std::FILE* out) {
       "most, mJ | total energy, before, mJ | when out | most afterwards | two seconds later | recoveries |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|\n");
   app::AssetCache asset_cache;
-  for (const sim::Style style : {sim::Style::kShoulder, sim::Style::kLong}) {
-    const app::Actor actor = makeDancer("idle_turns.bvh", style, sim::Resolution::kMedium, asset_cache);
+  for (const app::Style style : {app::Style::kShoulder, app::Style::kLong}) {
+    const app::Actor actor = makeDancer("idle_turns.bvh", style, app::Resolution::kMedium, asset_cache);
     for (const double speed : {0.2, 0.5, 1.0, 2.0}) {
       sim::SimParams params;
       params.max_depenetration = speed;
@@ -176,7 +176,7 @@ void writeSpawns(std::FILE* out) {
         highest = std::max(highest, energy());
       }
       std::fprintf(out, "| %s medium | %.1f | %.1f | %.2f | %.2f | %.2f | 0 | %+.2f | %+.2f | %+.2f | %d |\n",
-                   std::string(sim::styleName(style)).c_str(), speed, 1e3 * at_first, steps * params.time_step, fastest,
+                   std::string(app::styleName(style)).c_str(), speed, 1e3 * at_first, steps * params.time_step, fastest,
                    1e3 * most, 1e3 * (when_out - before), 1e3 * (highest - before), 1e3 * (energy() - before),
                    recoveries);
     }
@@ -189,14 +189,14 @@ void writeCrossings(std::FILE* out) {
       "| style | direction | speed, m/s | turning, rad/s | way a step, mm | vertices met | slid over the rim | "
       "passed through | inside afterwards, mm | recoveries |\n|---|---|---|---|---|---|---|---|---|---|\n");
   app::AssetCache asset_cache;
-  for (const sim::Style style : {sim::Style::kShoulder, sim::Style::kLong}) {
-    const app::Actor actor = makeDancer("idle_turns.bvh", style, sim::Resolution::kMedium, asset_cache);
+  for (const app::Style style : {app::Style::kShoulder, app::Style::kLong}) {
+    const app::Actor actor = makeDancer("idle_turns.bvh", style, app::Resolution::kMedium, asset_cache);
     for (const double side : {-1.0, 1.0}) {  // from the right, from the left
       for (const double speed : {5.0, 10.0, 20.0, 40.0}) {
         for (const double spin : {0.0, 10.0}) {
           const Crossing crossing = cross(actor, side, speed, spin);
           std::fprintf(out, "| %s medium | %s | %.0f | %.0f | %.0f | %d | %d | %d | %.3f | %d |\n",
-                       std::string(sim::styleName(style)).c_str(), side < 0 ? "from the right" : "from the left", speed,
+                       std::string(app::styleName(style)).c_str(), side < 0 ? "from the right" : "from the left", speed,
                        spin, 1e3 * speed * sim::SimParams{}.time_step, crossing.met, crossing.slid, crossing.passed,
                        1e3 * crossing.inside, crossing.recoveries);
         }
@@ -212,11 +212,11 @@ void writeSelfContacts(int frames, std::FILE* out) {
       "| vertices inside foreign bundles, on | most, off | most, on | recoveries "
       "|\n|---|---|---|---|---|---|---|---|---|---|\n");
   app::AssetCache asset_cache;
-  for (const sim::Style style : {sim::Style::kShort, sim::Style::kShoulder, sim::Style::kLong}) {
+  for (const app::Style style : {app::Style::kShort, app::Style::kShoulder, app::Style::kLong}) {
     for (const char* clip : {"walk.bvh", "jump_spin.bvh"}) {
       // Both go side by side, frame by frame, so that whatever else the machine does falls on both.
-      app::Actor actors[2] = {makeDancer(clip, style, sim::Resolution::kMedium, asset_cache),
-                              makeDancer(clip, style, sim::Resolution::kMedium, asset_cache)};
+      app::Actor actors[2] = {makeDancer(clip, style, app::Resolution::kMedium, asset_cache),
+                              makeDancer(clip, style, app::Resolution::kMedium, asset_cache)};
       std::vector<double> times[2];
       long sum[2] = {0, 0};
       int most[2] = {0, 0}, recoveries = 0;
@@ -237,7 +237,7 @@ void writeSelfContacts(int frames, std::FILE* out) {
       const double milliseconds[2] = {1e3 * medianOf(times[0]), 1e3 * medianOf(times[1])};
       const double mean[2] = {static_cast<double>(sum[0]) / frames, static_cast<double>(sum[1]) / frames};
       std::fprintf(out, "| %s medium | %s | %.3f | %.3f | %+.1f %% | %.2f | %.2f | %d | %d | %d |\n",
-                   std::string(sim::styleName(style)).c_str(), clip, milliseconds[0], milliseconds[1],
+                   std::string(app::styleName(style)).c_str(), clip, milliseconds[0], milliseconds[1],
                    100 * (milliseconds[1] / milliseconds[0] - 1), mean[0], mean[1], most[0], most[1], recoveries);
     }
   }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kSettle = 2, kRest = 4;  // s before a clip's measured frames; s of standing before rest is measured
 
-app::Actor makeDancer(const std::string& clip, sim::Style style, sim::Resolution resolution,
+app::Actor makeDancer(const std::string& clip, app::Style style, app::Resolution resolution,
                       app::AssetCache& asset_cache) {
   app::CharacterSpec spec;
   spec.motion = app::findFile(clip, "", "clips");
@@ -99,9 +99,9 @@ sim::SimParams paramsOf(const CollisionOptions& options) {
 
 // Calls visit(name, style, resolution) for the wanted ones.
 void eachStyle(const CollisionOptions& options, auto&& visit) {
-  for (const sim::Style style : {sim::Style::kShort, sim::Style::kShoulder, sim::Style::kLong}) {
-    for (const sim::Resolution resolution : {sim::Resolution::kLow, sim::Resolution::kMedium, sim::Resolution::kHigh}) {
-      const std::string name = std::string(sim::styleName(style)) + " " + std::string(sim::resolutionName(resolution));
+  for (const app::Style style : {app::Style::kShort, app::Style::kShoulder, app::Style::kLong}) {
+    for (const app::Resolution resolution : {app::Resolution::kLow, app::Resolution::kMedium, app::Resolution::kHigh}) {
+      const std::string name = std::string(app::styleName(style)) + " " + std::string(app::resolutionName(resolution));
       const auto& wanted = options.styles;
       if (wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end())
         visit(name, style, resolution);
@@ -119,7 +119,7 @@ void writeClips(const CollisionOptions& options, std::FILE* out) {
       "inner vertices, mm inside | recoveries |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
   app::AssetCache asset_cache;
   for (const std::string& clip : options.clips) {
-    eachStyle(options, [&](const std::string& name, sim::Style style, sim::Resolution resolution) {
+    eachStyle(options, [&](const std::string& name, app::Style style, app::Resolution resolution) {
       app::Actor actor = makeDancer(clip, style, resolution, asset_cache);
       const Row row = measureClip(params, options.frames, actor);
       std::fprintf(out, "| %s | %s | %.2f | %.1f | %.1f | %.2f | %.2f | %.2f | %.3f | %.1f | %d |\n", name.c_str(),
@@ -134,7 +134,7 @@ void writeRests(const CollisionOptions& options, std::FILE* out) {
   const sim::SimParams params = paramsOf(options);
   std::fprintf(out, "| style | rest speed, RMS mm/s | largest mm/s | contacts |\n|---|---|---|---|\n");
   app::AssetCache asset_cache;
-  eachStyle(options, [&](const std::string& name, sim::Style style, sim::Resolution resolution) {
+  eachStyle(options, [&](const std::string& name, app::Style style, app::Resolution resolution) {
     app::Actor actor = makeDancer("idle_turns.bvh", style, resolution, asset_cache);
     const auto [rms, most] = measureRest(params, actor);
     std::fprintf(out, "| %s | %.3f | %.2f | %zu |\n", name.c_str(), 1e3 * rms, 1e3 * most, actor.hair.contacts.size());

@@ -10,8 +10,8 @@
 namespace bench {
 namespace {
 
-using sim::Resolution;
-using sim::Style;
+using app::Resolution;
+using app::Style;
 
 constexpr double kFinest = 960;  // steps a second, of the limit of small steps
 constexpr std::array<double, 4> kRates{30, 60, 120, 240};
@@ -93,7 +93,7 @@ void runConsistency(const ConsistencyOptions& options) {
   for (const Style style : {Style::kShort, Style::kShoulder, Style::kLong}) {
     for (const bool walk : {false, true}) {
       const ResolutionSpread s = measureSpread(style, walk ? "walk.bvh" : "head_shake.bvh", walk, 1);
-      const std::string name(sim::styleName(style));
+      const std::string name(app::styleName(style));
       const char* motion = walk ? "walk, contacts" : "head shake";
       resolutions += formatted("| %s | %s | %.4f | %.4f | %.4f |\n", name.c_str(), motion, s.motion, s.low, s.medium);
       steps += formatted("| %s | %s | %.4f | %.4f | %.4f | %.4f |\n", name.c_str(), motion, s.steps[0], s.steps[1],

@@ -28,7 +28,7 @@ struct ResolutionSpread {
 };
 
 // `motion`: a clip of assets/clips.
-ResolutionSpread measureSpread(sim::Style style, const char* motion, bool collide, double seconds);
+ResolutionSpread measureSpread(app::Style style, const char* motion, bool collide, double seconds);
 
 struct ConsistencyOptions {
   std::string folder;  // its consistency.md gets the tables

@@ -18,7 +18,7 @@ constexpr std::array<const char*, 4> kViews{"front", "side", "back", "top"};
 constexpr std::array<double, 3> kMoments{1.2, 2.6, 4.1};  // s into the motion
 constexpr double kFrame = 1.0 / 60;
 
-app::Scene sceneOf(sim::Style style, sim::Resolution resolution, const std::string& motion, int strands) {
+app::Scene sceneOf(app::Style style, app::Resolution resolution, const std::string& motion, int strands) {
   app::Scene scene = app::loadScene(app::dataPath("assets/scenes/default.json"));
   app::CharacterSpec& spec = scene.characters.front();
   spec.motion = app::findFile(motion, "", "clips");
@@ -30,7 +30,7 @@ app::Scene sceneOf(sim::Style style, sim::Resolution resolution, const std::stri
   spec.look.strands = strands;
   scene.characters.resize(1);
   scene.camera = app::CameraSpec{};
-  scene.camera.framing = style == sim::Style::kLong ? "bust" : "head";
+  scene.camera.framing = style == app::Style::kLong ? "bust" : "head";
   return scene;
 }
 
@@ -70,13 +70,13 @@ void drawContactSheets(const SheetOptions& options) {
   target.width = cell.width * kOversampling;
   target.height = cell.height * kOversampling;
   target.pixels = &pixels;
-  for (const sim::Style style : {sim::Style::kShort, sim::Style::kShoulder, sim::Style::kLong}) {
+  for (const app::Style style : {app::Style::kShort, app::Style::kShoulder, app::Style::kLong}) {
     app::Image sheet;
     sheet.width = columns * cell.width;
     sheet.height = 3 * cell.height;
     sheet.rgba.assign(4 * static_cast<std::size_t>(sheet.width) * sheet.height, 255);
     int row = 0;
-    for (const sim::Resolution resolution : {sim::Resolution::kLow, sim::Resolution::kMedium, sim::Resolution::kHigh}) {
+    for (const app::Resolution resolution : {app::Resolution::kLow, app::Resolution::kMedium, app::Resolution::kHigh}) {
       const double aspect = static_cast<double>(cell.width) / cell.height;
       int column = 0;
       app::Demo rest = app::openScene(sceneOf(style, resolution, "idle_turns.bvh", options.strands), aspect);
@@ -96,7 +96,7 @@ void drawContactSheets(const SheetOptions& options) {
       ++row;
     }
     const std::string file =
-        (std::filesystem::path(options.folder) / ("styles_" + std::string(sim::styleName(style)) + ".png")).string();
+        (std::filesystem::path(options.folder) / ("styles_" + std::string(app::styleName(style)) + ".png")).string();
     app::writePng(file, sheet.width, sheet.height, sheet.rgba);
     std::printf("%s\n", file.c_str());
   }

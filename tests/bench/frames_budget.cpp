@@ -185,7 +185,7 @@ void writeDocument(const std::string& folder, const std::vector<double>& speeds,
              "share of the steps", measured.shares});
 }
 
-app::Actor actorOf(const ClipFile& clip, sim::Style style, sim::Resolution resolution, app::AssetCache& cache) {
+app::Actor actorOf(const ClipFile& clip, app::Style style, app::Resolution resolution, app::AssetCache& cache) {
   app::CharacterSpec spec;
   spec.motion = clip.file;
   spec.parts = clip.parts;
@@ -194,9 +194,9 @@ app::Actor actorOf(const ClipFile& clip, sim::Style style, sim::Resolution resol
   return app::makeActor(spec, {}, cache);
 }
 
-void measureStyle(sim::Style style, sim::Resolution resolution, const std::vector<ClipFile>& clips,
+void measureStyle(app::Style style, app::Resolution resolution, const std::vector<ClipFile>& clips,
                   const std::vector<double>& speeds, std::ofstream& steps, Measured& measured) {
-  const std::string name = std::string(sim::styleName(style)) + " " + std::string(sim::resolutionName(resolution));
+  const std::string name = std::string(app::styleName(style)) + " " + std::string(app::resolutionName(resolution));
   const sim::SimParams params;
   app::AssetCache cache;
   StepCost walk;
@@ -233,9 +233,9 @@ bool runFramesBudget(const FramesBudgetOptions& options) {
   }
   Measured measured;
   for (const std::string& cell : kHead) std::printf("%s%s", cell.c_str(), &cell == &kHead.back() ? "\n" : ", ");
-  for (const sim::Style style : {sim::Style::kShort, sim::Style::kShoulder, sim::Style::kLong}) {
-    for (const sim::Resolution resolution : {sim::Resolution::kLow, sim::Resolution::kMedium, sim::Resolution::kHigh}) {
-      const std::string name = std::string(sim::styleName(style)) + " " + std::string(sim::resolutionName(resolution));
+  for (const app::Style style : {app::Style::kShort, app::Style::kShoulder, app::Style::kLong}) {
+    for (const app::Resolution resolution : {app::Resolution::kLow, app::Resolution::kMedium, app::Resolution::kHigh}) {
+      const std::string name = std::string(app::styleName(style)) + " " + std::string(app::resolutionName(resolution));
       if (options.styles.empty() || std::ranges::find(options.styles, name) != options.styles.end())
         measureStyle(style, resolution, clips, speeds, steps, measured);
     }

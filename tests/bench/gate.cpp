@@ -18,9 +18,9 @@
 namespace bench {
 namespace {
 
-using sim::Resolution;
+using app::Resolution;
 using sim::SimParams;
-using sim::Style;
+using app::Style;
 
 constexpr double kWalk = 1.0;  // s of the walk that ratios and errors are taken from
 constexpr double kFrame = 1.0 / 60;
@@ -52,8 +52,8 @@ struct Bounds {
 void compareWithPlain(Style style, Resolution resolution, const Bounds& bounds, const GateOptions& options,
                       Report& report) {
   const int rounds = options.rounds;
-  std::string name = text("gate_%s_%s", std::string(sim::styleName(style)).c_str(),
-                          std::string(sim::resolutionName(resolution)).c_str());
+  std::string name = text("gate_%s_%s", std::string(app::styleName(style)).c_str(),
+                          std::string(app::resolutionName(resolution)).c_str());
   TimedScene scene("walk.bvh", style, resolution, true);
   SimParams params;
   params.time_step = kFrame;
@@ -116,14 +116,14 @@ void growth(Style style, int rounds, Report& report) {
     coarse.push_back(a * kFrame / kWalk), fine.push_back(b * kFrame / kWalk);
   }
   report.add({text("exponent of growth from %.0f to %.0f vertices: %s", low, ultra,
-                   std::string(sim::styleName(style)).c_str()),
+                   std::string(app::styleName(style)).c_str()),
               medianOf(slopes), 1.15, false, "",
               text("%.2f to %.2f ms a frame", 1e3 * medianOf(coarse), 1e3 * medianOf(fine))});
 }
 
 void startUp(Style style, Report& report) {
   const StartUp fresh = measureStartUp(style, Resolution::kHigh);
-  report.add({text("start-up, parse, build, factor: %s high from file", std::string(sim::styleName(style)).c_str()),
+  report.add({text("start-up, parse, build, factor: %s high from file", std::string(app::styleName(style)).c_str()),
               fresh.parse + fresh.build + fresh.factor, 0.5, false, "s",
               text("%.3f + %.3f + %.3f s; a character and a style that are grown take %.3f s before", fresh.parse,
                    fresh.build, fresh.factor, fresh.character)});

@@ -12,8 +12,8 @@
 namespace bench {
 namespace {
 
-using sim::Resolution;
-using sim::Style;
+using app::Resolution;
+using app::Style;
 
 constexpr double kFrame = 1.0 / 60, kSameMoment = 1e-9;
 constexpr int kFrames = 60;                  // a second
@@ -74,7 +74,7 @@ void addBudgetFigures(const std::function<void(const Figure&)>& add) {
 void addConsistencyFigures(const std::function<void(const Figure&)>& add) {
   for (const Style style : {Style::kShoulder, Style::kLong}) {
     const ResolutionSpread spread = measureSpread(style, "head_shake.bvh", false, 1);
-    const std::string name(sim::styleName(style));
+    const std::string name(app::styleName(style));
     for (const bool medium : {false, true}) {
       const double off = medium ? spread.medium : spread.low;
       add({formatted("tips of the %s resolution off the high one's, over their way: %s", medium ? "medium" : "low",

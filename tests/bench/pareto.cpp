@@ -121,7 +121,7 @@ void runPareto(const ParetoOptions& options) {
     if (!wanted) continue;
     TrajectoryStage stage(scene);
     const Reference reference = referenceOf(stage, kReferenceRate, options.references);
-    const bool large = scene.resolution == sim::Resolution::kHigh;
+    const bool large = scene.resolution == app::Resolution::kHigh;
     const SweepSize size = options.quick || large ? SweepSize::kQuick : SweepSize::kFull;
     const Sweep sweep = sweepScene(stage, reference, configurationsToRun(size, scene.collide), options.runs);
     for (const Point& p : sweep.points) rows.push_back(toJson(sweep, p));

@@ -213,10 +213,10 @@ void runPeers(const PeersOptions& options) {
   std::error_code fault;
   std::filesystem::create_directories(options.folder, fault);
   nlohmann::json rows = nlohmann::json::array();
-  for (const sim::Resolution resolution : {sim::Resolution::kLow, sim::Resolution::kHigh}) {
-    const char* name = resolution == sim::Resolution::kLow ? "long_low" : "long_high";
-    TrajectoryStage shake({name, "head_shake.bvh", sim::Style::kLong, resolution, 1, false, false, 2});
-    TrajectoryStage violent({name, "jump_spin.bvh", sim::Style::kLong, resolution, 10, false, false, 1});
+  for (const app::Resolution resolution : {app::Resolution::kLow, app::Resolution::kHigh}) {
+    const char* name = resolution == app::Resolution::kLow ? "long_low" : "long_high";
+    TrajectoryStage shake({name, "head_shake.bvh", app::Style::kLong, resolution, 1, false, false, 2});
+    TrajectoryStage violent({name, "jump_spin.bvh", app::Style::kLong, resolution, 10, false, false, 1});
     const PeerScenes scenes{shake.mesh(), rootMotion(shake), rootMotion(violent)};
     std::printf("\n%s: %d vertices, 1/60 s\n", name, scenes.mesh.vertexCount());
     for (const PeerFigures& figures : measureAll(scenes)) rows.push_back(toJson(name, scenes.mesh, figures));

@@ -18,9 +18,9 @@
 namespace bench {
 namespace {
 
-using sim::Resolution;
+using app::Resolution;
 using sim::SimParams;
-using sim::Style;
+using app::Style;
 
 constexpr double kSeconds = 0.5;  // of each scene
 
@@ -94,7 +94,7 @@ std::vector<Row> measureStages() {
           scene.run(params, seconds, contender.method);
           Row row = rowOf(scene.run(params, seconds, contender.method));
           row.contender = contender.name, row.motion = motion.name;
-          row.style = sim::styleName(style), row.resolution = sim::resolutionName(resolution);
+          row.style = app::styleName(style), row.resolution = app::resolutionName(resolution);
           row.vertices = scene.mesh().vertexCount();
           std::printf("%-22s %-20s %-8s %-6s %6d vertices %9.3f ms\n", row.contender, row.motion, row.style.c_str(),
                       row.resolution.c_str(), row.vertices, row.total);
@@ -143,8 +143,8 @@ std::string startUpTable() {
   for (const Style style : {Style::kShoulder, Style::kLong}) {
     for (const Resolution resolution : {Resolution::kLow, Resolution::kHigh, Resolution::kUltra}) {
       const StartUp times = measureStartUp(style, resolution);
-      out += text("| %s %s | %.3f | %.3f | %.3f | %.3f |\n", std::string(sim::styleName(style)).c_str(),
-                  std::string(sim::resolutionName(resolution)).c_str(), times.parse, times.build, times.factor,
+      out += text("| %s %s | %.3f | %.3f | %.3f | %.3f |\n", std::string(app::styleName(style)).c_str(),
+                  std::string(app::resolutionName(resolution)).c_str(), times.parse, times.build, times.factor,
                   times.character);
     }
   }

@@ -91,7 +91,7 @@ Run runOrRead(TrajectoryStage& stage, double step, const std::string& cache) {
 Reference referenceOf(TrajectoryStage& stage, int steps_a_second, const std::string& cache) {
   Reference reference;
   // The steps of the larger meshes cost ten times as much.
-  reference.step = (stage.scene().resolution == sim::Resolution::kLow ? 1.0 : 4.0) / steps_a_second;
+  reference.step = (stage.scene().resolution == app::Resolution::kLow ? 1.0 : 4.0) / steps_a_second;
   const Run coarse = runOrRead(stage, 2 * reference.step, cache);
   Run fine = runOrRead(stage, reference.step, cache);
   reference.trajectory = std::move(fine.trajectory);

@@ -38,7 +38,7 @@ double simulationMs(const Row& row) {
   return 1e3 * medianOf(row, [](const app::FrameStats& f) { return f.simulation() + f.seconds[app::kTimeCharacter]; });
 }
 
-Row measure(sim::Style style, sim::Resolution resolution, const StylesOptions& options) {
+Row measure(app::Style style, app::Resolution resolution, const StylesOptions& options) {
   app::Scene scene;
   app::CharacterSpec spec;
   spec.motion = app::findFile(options.motion, "", "clips");
@@ -47,7 +47,7 @@ Row measure(sim::Style style, sim::Resolution resolution, const StylesOptions& o
   scene.characters.push_back(spec);
   app::Demo demo = app::openScene(std::move(scene), 16.0 / 9);
   Row row;
-  row.name = std::string(sim::styleName(style)) + " " + std::string(sim::resolutionName(resolution));
+  row.name = std::string(app::styleName(style)) + " " + std::string(app::resolutionName(resolution));
   row.vertices = demo.actors.front().haircut->mesh.vertexCount();
   for (int frame = 0; frame < kWarmUpFrames + options.frames; ++frame) {
     app::advanceFrame(demo, kFrame, {});
@@ -57,9 +57,9 @@ Row measure(sim::Style style, sim::Resolution resolution, const StylesOptions& o
 }
 
 // The paper's published milliseconds (2016, one core of an i7-3930K); zero where it gives none.
-double published(sim::Style style, sim::Resolution resolution) {
-  if (resolution == sim::Resolution::kLow) return style == sim::Style::kShort ? 4.8 : 6.0;
-  return style == sim::Style::kLong && resolution == sim::Resolution::kHigh ? 36.0 : 0.0;
+double published(app::Style style, app::Resolution resolution) {
+  if (resolution == app::Resolution::kLow) return style == app::Style::kShort ? 4.8 : 6.0;
+  return style == app::Style::kLong && resolution == app::Resolution::kHigh ? 36.0 : 0.0;
 }
 
 // Slope of log time over log vertices, least squares.
@@ -79,8 +79,8 @@ void runStyles(const StylesOptions& options) {
   table << "| style | vertices | ms a frame | paper | character | forces | solve | collision | minimization | other | "
            "iterations | contacts |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   std::vector<Row> rows;
-  for (const sim::Style style : {sim::Style::kShort, sim::Style::kShoulder, sim::Style::kLong}) {
-    for (const sim::Resolution resolution : {sim::Resolution::kLow, sim::Resolution::kMedium, sim::Resolution::kHigh}) {
+  for (const app::Style style : {app::Style::kShort, app::Style::kShoulder, app::Style::kLong}) {
+    for (const app::Resolution resolution : {app::Resolution::kLow, app::Resolution::kMedium, app::Resolution::kHigh}) {
       const Row row = measure(style, resolution, options);
       const auto stage = [&](app::FrameStage s) {
         return 1e3 * medianOf(row, [&](const auto& f) { return f.seconds[s]; });

@@ -36,8 +36,8 @@ struct Stand {
   std::vector<int> tips;  // of the columns that hang behind
   double time = 0;
 
-  Stand(sim::Style style, sim::Resolution resolution, const sim::SimParams& with)
-      : mesh(sim::buildHairMesh(sim::makeStyle(style, resolution, tests::analyticScalp(), tests::bodyDistance))),
+  Stand(app::Style style, app::Resolution resolution, const sim::SimParams& with)
+      : mesh(sim::buildHairMesh(app::makeStyle(style, resolution, tests::analyticScalp(), tests::bodyDistance))),
         params(with),
         context(mesh),
         state(sim::restState(mesh, Eigen::Isometry3d::Identity())),
@@ -114,7 +114,7 @@ double freeLength(const Stand& stand) {
 
 }  // namespace
 
-Swing measureSwing(sim::Style style, sim::Resolution resolution, const sim::SimParams& params) {
+Swing measureSwing(app::Style style, app::Resolution resolution, const sim::SimParams& params) {
   Stand stand(style, resolution, params);
   const double dt = params.time_step, length = freeLength(stand);
   for (int i = 0; i < 60; ++i) stand.step(dt, 0, 0);
@@ -138,7 +138,7 @@ Swing measureSwing(sim::Style style, sim::Resolution resolution, const sim::SimP
   return swing;
 }
 
-FollowThrough measureFollowThrough(sim::Style style, sim::Resolution resolution, const sim::SimParams& params) {
+FollowThrough measureFollowThrough(app::Style style, app::Resolution resolution, const sim::SimParams& params) {
   Stand stand(style, resolution, params);
   const double dt = params.time_step;
   for (int i = 0; i < 60; ++i) stand.step(dt, 0, 0);
@@ -179,15 +179,15 @@ bool runSwing(const SwingOptions& options) {
       const std::string fault = sim::setParam(params, name, value).fault;
       if (!fault.empty()) throw app::InputError("--set", name, fault, "hairmesh --parameters lists them");
     }
-    for (const sim::Style style : {sim::Style::kShoulder, sim::Style::kLong}) {
-      const Swing swing = measureSwing(style, sim::Resolution::kMedium, params);
-      const FollowThrough follow = measureFollowThrough(style, sim::Resolution::kMedium, params);
+    for (const app::Style style : {app::Style::kShoulder, app::Style::kLong}) {
+      const Swing swing = measureSwing(style, app::Resolution::kMedium, params);
+      const FollowThrough follow = measureFollowThrough(style, app::Resolution::kMedium, params);
       constexpr double kDegrees = 180 / std::numbers::pi;
       std::printf("| %s | %s | %.2f | %.2f | %.2f | %.0f | %.0f | %.1f |\n", *preset ? preset : "default",
-                  std::string(sim::styleName(style)).c_str(), swing.length, swing.frequency, swing.damping,
+                  std::string(app::styleName(style)).c_str(), swing.length, swing.frequency, swing.damping,
                   kDegrees * follow.lag, kDegrees * follow.overshoot, follow.settling);
       const bool as_hair = swing.frequency > 1 && swing.frequency < 1.6 && swing.damping > 0.1 && swing.damping < 0.25;
-      if (preset == std::string_view("natural") && style == sim::Style::kLong && !as_hair) hold = false;
+      if (preset == std::string_view("natural") && style == app::Style::kLong && !as_hair) hold = false;
     }
   }
   return hold;

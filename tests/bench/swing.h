@@ -25,8 +25,8 @@ struct FollowThrough {
   double settling = 0;   // s after the stop until they stay within 2 degrees
 };
 
-Swing measureSwing(sim::Style style, sim::Resolution resolution, const sim::SimParams& params);
-FollowThrough measureFollowThrough(sim::Style style, sim::Resolution resolution, const sim::SimParams& params);
+Swing measureSwing(app::Style style, app::Resolution resolution, const sim::SimParams& params);
+FollowThrough measureFollowThrough(app::Style style, app::Resolution resolution, const sim::SimParams& params);
 
 struct SwingOptions {
   std::vector<std::pair<std::string, std::string>> sets;  // name and value of parameters, on top of every preset

@@ -26,8 +26,8 @@ double TimedRun::total() const {
   return sum;
 }
 
-TimedScene::TimedScene(std::string motion, sim::Style style, sim::Resolution resolution, bool collide)
-    : name_(std::string(sim::styleName(style)) + " " + std::string(sim::resolutionName(resolution))),
+TimedScene::TimedScene(std::string motion, app::Style style, app::Resolution resolution, bool collide)
+    : name_(std::string(app::styleName(style)) + " " + std::string(app::resolutionName(resolution))),
       collide_(collide) {
   app::CharacterSpec spec;
   spec.motion = app::findFile(motion, "", "clips");

@@ -35,7 +35,7 @@ enum class Method { kSimulator, kPlain };
 class TimedScene {
  public:
   // Settled and at the start of its clip. Throws app::InputError.
-  TimedScene(std::string motion, sim::Style style, sim::Resolution resolution, bool collide);
+  TimedScene(std::string motion, app::Style style, app::Resolution resolution, bool collide);
   ~TimedScene();
 
   // Simulates `seconds` in steps of params.time_step, which must divide 1/60 s. The step contexts are kept from run to

@@ -15,8 +15,8 @@ constexpr double kSameMoment = 1e-6;  // of a step
 }  // namespace
 
 std::vector<TrajectoryScene> trajectoryScenes() {
-  using sim::Resolution;
-  using sim::Style;
+  using app::Resolution;
+  using app::Style;
   return {
       {"head_shake", "head_shake.bvh", Style::kLong, Resolution::kLow, 1, false, false, 1},
       {"walk_contact", "walk.bvh", Style::kLong, Resolution::kLow, 1, true, false, 1},

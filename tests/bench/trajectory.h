@@ -14,8 +14,8 @@ namespace bench {
 struct TrajectoryScene {
   const char* name;
   const char* motion;
-  sim::Style style;
-  sim::Resolution resolution;
+  app::Style style;
+  app::Resolution resolution;
   double speed;
   bool collide;
   bool collapsed;  // starts with every vertex on its root

@@ -15,7 +15,7 @@ constexpr int kWarmUpFrames = 20, kDragFrames = 60;
 
 }  // namespace
 
-StartUp measureStartUp(sim::Style style, sim::Resolution resolution) {
+StartUp measureStartUp(app::Style style, app::Resolution resolution) {
   StartUp times;
   double started = cpuSeconds();
   const auto lap = [&] {

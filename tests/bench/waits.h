@@ -13,7 +13,7 @@ struct StartUp {
   double factor = 0;            // step context and first step: force model, rest shape, factor
   double character = 0;         // motion file, mannequin, its distances, the built-in style and mesh
 };
-StartUp measureStartUp(sim::Style style, sim::Resolution resolution);
+StartUp measureStartUp(app::Style style, app::Resolution resolution);
 
 // Seconds of a frame's simulation while a parameter changes every frame and, on the same frames, while none does.
 struct DragTimes {

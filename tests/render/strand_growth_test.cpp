@@ -59,9 +59,9 @@ struct PosedHair {
   }
 };
 
-PosedHair posedStyle(sim::Style style, sim::Resolution resolution) {
+PosedHair posedStyle(app::Style style, app::Resolution resolution) {
   const sim::HairMesh mesh =
-      sim::buildHairMesh(sim::makeStyle(style, resolution, tests::analyticScalp(), tests::bodyDistance));
+      sim::buildHairMesh(app::makeStyle(style, resolution, tests::analyticScalp(), tests::bodyDistance));
   PosedHair hair;
   hair.faces = app::renderFaces(mesh);
   for (const sim::Vec3& p : mesh.shape.positions) {
@@ -122,11 +122,11 @@ Comparison compare(const StrandGrowth& growth, const std::vector<Polyline>& capt
 class StrandGrowthOnGpu : public gl_fixture::GlTest {};
 
 TEST_F(StrandGrowthOnGpu, AgreesWithTheShadersForEveryStyle) {
-  using enum sim::Style;
-  using enum sim::Resolution;
-  for (const sim::Style style : {kShort, kShoulder, kLong}) {
-    for (const sim::Resolution resolution : {kMinimal, kLow, kMedium, kHigh, kUltra}) {
-      SCOPED_TRACE(std::string(sim::styleName(style)) + " " + std::to_string(static_cast<int>(resolution)));
+  using enum app::Style;
+  using enum app::Resolution;
+  for (const app::Style style : {kShort, kShoulder, kLong}) {
+    for (const app::Resolution resolution : {kMinimal, kLow, kMedium, kHigh, kUltra}) {
+      SCOPED_TRACE(std::string(app::styleName(style)) + " " + std::to_string(static_cast<int>(resolution)));
       const PosedHair hair = posedStyle(style, resolution);
       const render::HairInput input = hair.input(3000);
       const Comparison result = compare(growthOf(input), strand_capture::capture(input, gl_fixture::kShaderDir));
@@ -154,7 +154,7 @@ TEST_F(StrandGrowthOnGpu, AgreesWithTheShadersOverTrianglesAndShortBundles) {
 }
 
 TEST(StrandGrowth, GrowsASubsetInAnyOrderToTheSameBits) {
-  const PosedHair hair = posedStyle(sim::Style::kShoulder, sim::Resolution::kLow);
+  const PosedHair hair = posedStyle(app::Style::kShoulder, app::Resolution::kLow);
   const StrandGrowth growth = growthOf(hair.input(500));
   std::vector<int> order(500);
   std::iota(order.begin(), order.end(), 0);
@@ -167,7 +167,7 @@ TEST(StrandGrowth, GrowsASubsetInAnyOrderToTheSameBits) {
 }
 
 TEST(StrandGrowth, EvenPointsLieOnTheDrawnCurveFromRootToTip) {
-  const PosedHair hair = posedStyle(sim::Style::kLong, sim::Resolution::kLow);
+  const PosedHair hair = posedStyle(app::Style::kLong, app::Resolution::kLow);
   render::HairInput input = hair.input(300);
   input.look.length_variation = input.look.flyaways = input.look.hairline = 0;
   const StrandGrowth growth = growthOf(input);
@@ -189,7 +189,7 @@ TEST(StrandGrowth, EvenPointsLieOnTheDrawnCurveFromRootToTip) {
 }
 
 TEST(StrandGrowth, TangentsAreTheDirectionsOfTheCurve) {
-  const PosedHair hair = posedStyle(sim::Style::kLong, sim::Resolution::kMedium);
+  const PosedHair hair = posedStyle(app::Style::kLong, app::Resolution::kMedium);
   const StrandGrowth growth = growthOf(hair.input(200));
   double sum = 0;
   long count = 0;
@@ -206,7 +206,7 @@ TEST(StrandGrowth, TangentsAreTheDirectionsOfTheCurve) {
 }
 
 TEST(StrandGrowth, RadiusTapersAndStandsForAllHairs) {
-  const PosedHair hair = posedStyle(sim::Style::kShort, sim::Resolution::kLow);
+  const PosedHair hair = posedStyle(app::Style::kShort, app::Resolution::kLow);
   render::HairInput input = hair.input(1000);
   input.look.width_compensation = 1;
   StrandGrowth growth = growthOf(input);
@@ -227,7 +227,7 @@ TEST(StrandGrowth, RadiusTapersAndStandsForAllHairs) {
 }
 
 TEST(StrandGrowth, PositionsThatDoNotFitAreRefused) {
-  const PosedHair hair = posedStyle(sim::Style::kShort, sim::Resolution::kLow);
+  const PosedHair hair = posedStyle(app::Style::kShort, app::Resolution::kLow);
   StrandGrowth growth = growthOf(hair.input(100));
   const Vector3f before = grown(growth, 3).back().position;
   std::vector<float> wrong = hair.posed;

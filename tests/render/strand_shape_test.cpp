@@ -23,9 +23,9 @@ struct StyledHair {
   std::vector<render::HairFace> faces;
   std::vector<float> positions;
 
-  explicit StyledHair(sim::Style style) {
+  explicit StyledHair(app::Style style) {
     const sim::HairMeshShape shape =
-        sim::makeStyle(style, sim::Resolution::kMedium, tests::analyticScalp(), tests::bodyDistance);
+        app::makeStyle(style, app::Resolution::kMedium, tests::analyticScalp(), tests::bodyDistance);
     for (const sim::RootFace& root : shape.root_faces) {
       render::HairFace& face = faces.emplace_back();
       for (int k = 0; k < root.corner_count; ++k) face.first_vertex[k] = shape.column_first[root.columns[k]];
@@ -48,7 +48,7 @@ std::vector<CurvePoint> evenly(const StrandGrowth& growth, int number, int count
 }
 
 TEST(StrandShape, CurlsAreHelicesOfTheirPitch) {
-  const StyledHair hair(sim::Style::kLong);
+  const StyledHair hair(app::Style::kLong);
   render::HairLook look = synthetic::plainLook();
   const StrandGrowth straight = hair.growth(look, 200);
   look.curl_radius = 0.006f;
@@ -74,7 +74,7 @@ TEST(StrandShape, CurlsAreHelicesOfTheirPitch) {
 }
 
 TEST(StrandShape, TheHairlineIsThinAndThePartingIsNot) {
-  const StyledHair hair(sim::Style::kShoulder);
+  const StyledHair hair(app::Style::kShoulder);
   const render::HairLook look;
   const StrandGrowth growth = hair.growth(look, 20000);
   const auto& columns = growth.layout().columns;
@@ -102,7 +102,7 @@ TEST(StrandShape, TheHairlineIsThinAndThePartingIsNot) {
 }
 
 TEST(StrandShape, StrayHairsStandOffTheHair) {
-  const StyledHair hair(sim::Style::kShoulder);
+  const StyledHair hair(app::Style::kShoulder);
   render::HairLook look = synthetic::plainLook();
   look.flyaways = 1;
   look.flyaway_lift = 0;
@@ -120,7 +120,7 @@ TEST(StrandShape, StrayHairsStandOffTheHair) {
 }
 
 TEST(StrandShape, GroupsDrawTheirHairsTogether) {
-  const StyledHair hair(sim::Style::kLong);
+  const StyledHair hair(app::Style::kLong);
   // Median distance (m) of a strand's point from that of the strand of the same group before it.
   const auto spread = [&](const render::HairLook& look, std::uint32_t render::Strand::* group) {
     const StrandGrowth growth = hair.growth(look, 4000);
@@ -146,7 +146,7 @@ TEST(StrandShape, GroupsDrawTheirHairsTogether) {
 
 // A hair keeps its looks from frame to frame: what moves rigidly keeps every hair's shape.
 TEST(StrandShape, MovesRigidlyWithTheHead) {
-  const StyledHair hair(sim::Style::kLong);
+  const StyledHair hair(app::Style::kLong);
   render::HairLook look;
   look.curl_radius = look.wave_height = 0.004f;
   StrandGrowth growth = hair.growth(look, 1000);

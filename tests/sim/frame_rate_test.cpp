@@ -17,8 +17,8 @@ app::Demo dancingDemo(double time_step = 1.0 / 60) {
   app::Scene scene;
   app::CharacterSpec spec;
   spec.motion = app::dataPath("assets/clips/dance.bvh");
-  spec.style = sim::Style::kLong;
-  spec.resolution = sim::Resolution::kLow;
+  spec.style = app::Style::kLong;
+  spec.resolution = app::Resolution::kLow;
   scene.characters.push_back(spec);
   scene.sim.time_step = time_step;
   scene.playback.settle = 0.2;

@@ -31,8 +31,8 @@ app::Actor actorOf(const char* motion, double start, app::AssetCache& asset_cach
   app::CharacterSpec spec;
   spec.motion = app::findFile(motion, "", "clips");
   spec.clip_offset = start;
-  spec.style = sim::Style::kLong;
-  spec.resolution = sim::Resolution::kLow;
+  spec.style = app::Style::kLong;
+  spec.resolution = app::Resolution::kLow;
   return app::makeActor(spec, {}, asset_cache);
 }
 

@@ -129,8 +129,8 @@ TEST_P(Walk, IsCorrectedToTheBit) {
   app::Scene scene;
   app::CharacterSpec spec;
   spec.motion = app::dataPath("assets/clips/walk.bvh");
-  spec.style = sim::Style::kLong;
-  spec.resolution = sim::Resolution::kLow;
+  spec.style = app::Style::kLong;
+  spec.resolution = app::Resolution::kLow;
   scene.characters = {spec};
   scene.playback.settle = 0.2;
   scene.sim.collider = GetParam();

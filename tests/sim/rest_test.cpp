@@ -10,7 +10,7 @@ namespace {
 
 // Root mean square and largest vertex speed, m/s, over the last of `seconds` of standing still, all of the hair having
 // been thrown sideways at `thrown` m/s.
-std::pair<double, double> restSpeed(sim::Style style, sim::Resolution resolution, double seconds,
+std::pair<double, double> restSpeed(app::Style style, app::Resolution resolution, double seconds,
                                     const sim::SimParams& params = {}, double thrown = 0) {
   app::CharacterSpec spec;
   spec.motion = app::findFile("idle_turns.bvh", "", "clips");
@@ -36,14 +36,14 @@ std::pair<double, double> restSpeed(sim::Style style, sim::Resolution resolution
 // and fro without end: 10 mm/s.
 TEST(Rest, HairThatLiesOnTheBodyHangsStill) {
   struct Case {
-    sim::Style style;
-    sim::Resolution resolution;
+    app::Style style;
+    app::Resolution resolution;
   };
   for (const Case& c :
-       {Case{sim::Style::kLong, sim::Resolution::kMedium}, Case{sim::Style::kShort, sim::Resolution::kHigh}}) {
+       {Case{app::Style::kLong, app::Resolution::kMedium}, Case{app::Style::kShort, app::Resolution::kHigh}}) {
     const auto [rms, most] = restSpeed(c.style, c.resolution, 2);
-    std::printf("%s %s: %.4f mm/s RMS, %.3f largest\n", sim::styleName(c.style).data(),
-                sim::resolutionName(c.resolution).data(), 1e3 * rms, 1e3 * most);
+    std::printf("%s %s: %.4f mm/s RMS, %.3f largest\n", app::styleName(c.style).data(),
+                app::resolutionName(c.resolution).data(), 1e3 * rms, 1e3 * most);
     EXPECT_LT(rms, 1e-3);
     EXPECT_LT(most, 1e-2);
   }
@@ -57,7 +57,7 @@ TEST(Rest, HairComesToRestInShortStepsToo) {
       sim::SimParams params;
       params.integrator = integrator;
       params.time_step = step;
-      const auto [rms, most] = restSpeed(sim::Style::kLong, sim::Resolution::kLow, 4, params, 1);
+      const auto [rms, most] = restSpeed(app::Style::kLong, app::Resolution::kLow, 4, params, 1);
       std::printf("integrator %d, 1/%.0f s: %.4f mm/s RMS, %.3f largest\n", static_cast<int>(integrator), 1 / step,
                   1e3 * rms, 1e3 * most);
       EXPECT_LT(rms, 5e-3);

@@ -25,7 +25,7 @@ SkipSet only(std::initializer_list<app::SkipId> ids) {
   return skips;
 }
 
-app::CharacterSpec spec(const std::string& motion, sim::Resolution resolution, sim::Style style = sim::Style::kShort) {
+app::CharacterSpec spec(const std::string& motion, app::Resolution resolution, app::Style style = app::Style::kShort) {
   app::CharacterSpec character;
   character.motion = app::dataPath("assets/clips/" + motion);
   character.style = style;
@@ -116,7 +116,7 @@ TEST(SkipTable, SwitchesAreSetByNameAndRefuseNonsense) {
 }
 
 TEST(SkipTable, ARequestTurnsASkip) {
-  Demo demo = demoAt(1, spec("idle_turns.bvh", sim::Resolution::kLow), SkipSet{});
+  Demo demo = demoAt(1, spec("idle_turns.bvh", app::Resolution::kLow), SkipSet{});
   demo.requests.push_back({app::Ask::kSkip, "sleep", "", 0});
   run(demo, 1);
   EXPECT_FALSE(demo.scene.skips[app::kSkipSleep]);
@@ -127,12 +127,12 @@ TEST(SkipTable, ARequestTurnsASkip) {
 // below the bound.
 TEST(Sleep, ComesWhenNothingThatShowsIsLeft) {
   struct Case {
-    sim::Style style;
+    app::Style style;
     const char* preset;
   };
-  for (const Case& one : {Case{sim::Style::kShort, ""}, Case{sim::Style::kShoulder, ""}, Case{sim::Style::kLong, ""},
-                          Case{sim::Style::kShoulder, "soft"}}) {
-    const app::CharacterSpec character = spec("idle_turns.bvh", sim::Resolution::kLow, one.style);
+  for (const Case& one : {Case{app::Style::kShort, ""}, Case{app::Style::kShoulder, ""}, Case{app::Style::kLong, ""},
+                          Case{app::Style::kShoulder, "soft"}}) {
+    const app::CharacterSpec character = spec("idle_turns.bvh", app::Resolution::kLow, one.style);
     Demo sleeping = demoAt(1, character, only({app::kSkipSleep})), awake = demoAt(1, character, only({}));
     for (Demo* demo : {&sleeping, &awake}) {
       if (*one.preset)
@@ -152,7 +152,7 @@ TEST(Sleep, ComesWhenNothingThatShowsIsLeft) {
       ASSERT_TRUE(asleep >= 0 || off == 0) << frame;
       worst = std::max(worst, off);
     }
-    std::printf("%s %s: asleep after %.1f s, then off by %.3f mm\n", std::string(sim::styleName(one.style)).c_str(),
+    std::printf("%s %s: asleep after %.1f s, then off by %.3f mm\n", std::string(app::styleName(one.style)).c_str(),
                 one.preset, asleep / 60.0, 1e3 * worst);
     ASSERT_GE(asleep, 60) << "never within two windows";
     EXPECT_LE(worst, sim::kSleepError);
@@ -186,7 +186,7 @@ TEST(Sleep, ComesAfterTwoQuietWindowsInARowOnly) {
 // The head stands still, and a fist comes up to the hair from aside.
 TEST(Sleep, WakesBeforeABodyTouchesIt) {
   constexpr double kSpeed = 0.5;  // m/s
-  Demo demo = demoAt(1, spec("idle_turns.bvh", sim::Resolution::kLow, sim::Style::kLong),
+  Demo demo = demoAt(1, spec("idle_turns.bvh", app::Resolution::kLow, app::Style::kLong),
                      only({app::kSkipSleep, app::kSkipPose}));
   app::Actor& actor = demo.actors[0];
   demo.requests.push_back({app::Ask::kPauseMotion, "", "", 1});
@@ -215,7 +215,7 @@ TEST(Sleep, WakesBeforeABodyTouchesIt) {
 }
 
 TEST(Sleep, WakesWithoutAPopByWhateverMovesHair) {
-  Demo demo = demoAt(1, spec("idle_turns.bvh", sim::Resolution::kLow), only({app::kSkipSleep}));
+  Demo demo = demoAt(1, spec("idle_turns.bvh", app::Resolution::kLow), only({app::kSkipSleep}));
   const auto fallAsleep = [&] {
     demo.requests.push_back({app::Ask::kPauseMotion, "", "", 1});
     for (int frame = 0; frame < 1500 && !demo.actors[0].sleep.asleep; ++frame) run(demo, 1);
@@ -239,7 +239,7 @@ TEST(Sleep, WakesWithoutAPopByWhateverMovesHair) {
 }
 
 TEST(Exact, PosesAndBonesChangeNoBit) {
-  const app::CharacterSpec character = spec("head_shake.bvh", sim::Resolution::kLow);
+  const app::CharacterSpec character = spec("head_shake.bvh", app::Resolution::kLow);
   Demo with = demoAt(1, character, only({app::kSkipPose, app::kSkipBones})), without = demoAt(1, character, only({}));
   long poses = 0;
   for (int frame = 0; frame < 90; ++frame) {
@@ -265,7 +265,7 @@ TEST(Unseen, NothingOfWhatIsShownChanges) {
   // The second character stands behind the camera with the light in its face: neither it nor its shadow is seen.
   const auto scene = [](const SkipSet& skips) {
     app::Scene made;
-    made.characters = {spec("idle_turns.bvh", sim::Resolution::kLow), spec("dance.bvh", sim::Resolution::kLow)};
+    made.characters = {spec("idle_turns.bvh", app::Resolution::kLow), spec("dance.bvh", app::Resolution::kLow)};
     made.characters[1].position = app::Vec3(0, 0, 14);
     made.camera.eye = app::Vec3(0, 1.6, 1.5);
     made.camera.target = app::Vec3(0, 1.5, 0);
@@ -343,8 +343,8 @@ TEST(Far, StaysWithinItsPixels) {
   };
   const SkipSet steps = only({app::kSkipFarSteps}), mesh = only({app::kSkipFarMesh}),
                 all = only({app::kSkipFarSteps, app::kSkipFarMesh});
-  for (const sim::Style style : {sim::Style::kShort, sim::Style::kShoulder, sim::Style::kLong}) {
-    const app::CharacterSpec character = spec("walk.bvh", sim::Resolution::kMedium, style);
+  for (const app::Style style : {app::Style::kShort, app::Style::kShoulder, app::Style::kLong}) {
+    const app::CharacterSpec character = spec("walk.bvh", app::Resolution::kMedium, style);
     Demo without = demoAt(2, character, only({}));
     // Where the character is that small.
     const auto distanceAt = [&](double pixels) {
@@ -377,12 +377,12 @@ TEST(Far, StaysWithinItsPixels) {
         worst = std::max(worst, mean(with.actors[0].shown_positions, truth[static_cast<std::size_t>(frame)]));
       }
       const double metre = 720 / (2 * std::tan(0.25) * one.distance);  // pixels
-      EXPECT_LE(worst * metre, kBound) << sim::styleName(style) << ", " << one.name << ", " << one.distance
+      EXPECT_LE(worst * metre, kBound) << app::styleName(style) << ", " << one.name << ", " << one.distance
                                        << " m away, off by " << 1e3 * worst << " mm";
       EXPECT_TRUE(with.actors[0].coarse.active || with.actors[0].detail.step_span > 1) << one.distance;
-      const bool minimal = with.actors[0].detail.coarse == sim::Resolution::kMinimal;
+      const bool minimal = with.actors[0].detail.coarse == app::Resolution::kMinimal;
       EXPECT_EQ(minimal, one.skips[app::kSkipFarMesh] && one.distance >= begin_minimal) << one.distance;
-      std::printf("%s, %s at %.2f m: %.2f mm, %.3f pixels, span %d\n", std::string(sim::styleName(style)).c_str(),
+      std::printf("%s, %s at %.2f m: %.2f mm, %.3f pixels, span %d\n", std::string(app::styleName(style)).c_str(),
                   one.name, one.distance, 1e3 * worst, worst * metre, with.actors[0].detail.step_span);
     }
   }
@@ -391,13 +391,13 @@ TEST(Far, StaysWithinItsPixels) {
 // A camera that backs away and returns: from frame to frame the shown hair moves by no more than it does without, but
 // for a pixel that nobody sees.
 TEST(Far, ChangesOverWithoutAJump) {
-  app::CharacterSpec character = spec("walk.bvh", sim::Resolution::kMedium, sim::Style::kShoulder);
+  app::CharacterSpec character = spec("walk.bvh", app::Resolution::kMedium, app::Style::kShoulder);
   Demo with = demoAt(1.8, character, only({app::kSkipFarSteps, app::kSkipFarMesh}));
   Demo without = demoAt(1.8, character, only({}));
   std::vector<float> before = with.actors[0].shown_positions, before_without = without.actors[0].shown_positions;
   double fastest_without = 0;  // m a frame
   int changes = 0;
-  std::optional<sim::Resolution> coarse;
+  std::optional<app::Resolution> coarse;
   for (int frame = 0; frame < 158; ++frame) {  // the last step of eight frames ends too
     const double t = frame < 75 ? frame / 75.0 : std::max(150 - frame, 0) / 75.0;
     with.camera.distance = without.camera.distance = 1.8 + 38 * t;
@@ -416,7 +416,7 @@ TEST(Far, ChangesOverWithoutAJump) {
 }
 
 TEST(Exact, TheWindowWaitsOnlyWhenNothingMoves) {
-  Demo demo = demoAt(1, spec("idle_turns.bvh", sim::Resolution::kLow), SkipSet{});
+  Demo demo = demoAt(1, spec("idle_turns.bvh", app::Resolution::kLow), SkipSet{});
   run(demo, 1);
   demo.stats.draw.skip_counts.frame = {1, 1};
   EXPECT_FALSE(app::nothingMoves(demo)) << "the clip plays";

@@ -177,8 +177,8 @@ struct LargeHair {
   LargeHair() {
     app::CharacterSpec spec;
     spec.motion = app::findFile("head_shake.bvh", "", "clips");
-    spec.style = sim::Style::kLong;
-    spec.resolution = sim::Resolution::kHigh;
+    spec.style = app::Style::kLong;
+    spec.resolution = app::Resolution::kHigh;
     actor = app::makeActor(spec, {}, asset_cache);
     standard.collide = false;
     app::settleActor(standard, 0.2, actor);

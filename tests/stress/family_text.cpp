@@ -78,7 +78,7 @@ std::string speedText(Some cases) {
 }
 
 std::string styleText(Some cases) {
-  std::set<std::pair<sim::Style, sim::Resolution>> whole;
+  std::set<std::pair<app::Style, app::Resolution>> whole;
   std::set<Cut> cuts;
   for (const StressCase* one : cases) {
     if (one->hair.cut == Cut::kStyle)
@@ -87,7 +87,7 @@ std::string styleText(Some cases) {
       cuts.insert(one->hair.cut);
   }
   const bool low =
-      std::all_of(whole.begin(), whole.end(), [](const auto& hair) { return hair.second == sim::Resolution::kLow; });
+      std::all_of(whole.begin(), whole.end(), [](const auto& hair) { return hair.second == app::Resolution::kLow; });
   std::vector<std::string> parts{plain(static_cast<double>(whole.size())) + " styles" +
                                  (low ? " in low resolution" : " and resolutions")};
   if (cuts.contains(Cut::kUneven)) parts.emplace_back("uneven columns");

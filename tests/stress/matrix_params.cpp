@@ -57,7 +57,7 @@ void addParameters(Cases& cases) {
     }
     for (const auto& [label, value] : values) {
       for (const HairChoice& hair : lowStyles()) {
-        if (hair.style == sim::Style::kShoulder) continue;
+        if (hair.style == app::Style::kShoulder) continue;
         StressCase dance;
         dance.name = std::string("param/") + field.name + "-" + label + "/dance/" + hairName(hair);
         dance.hair = hair;
@@ -68,7 +68,7 @@ void addParameters(Cases& cases) {
         dance.keeps_energy = std::string_view(field.group) != "Numerics";
         // Of frames that are long enough for it to matter.
         if (std::string_view(field.name) == "max_steps_per_frame") dance.pace = Pace::kRandomFrames;
-        dance.in_short = hair.style == sim::Style::kShort;
+        dance.in_short = hair.style == app::Style::kShort;
         cases.push_back(dance);
         StressCase collapsed = dance;
         collapsed.name = std::string("param/") + field.name + "-" + label + "/collapsed/" + hairName(hair);
@@ -105,7 +105,7 @@ void addStiffness(Cases& cases) {
             if (row == modulus || row == "all") one.params.emplace_back(modulus, ratio * defaultOf(modulus));
           }
           if (row == "density") one.params.emplace_back("density", ratio * defaultOf("density"));
-          one.in_short = std::abs(decade) == 3 && hair.style == sim::Style::kShort && name == "dance.bvh";
+          one.in_short = std::abs(decade) == 3 && hair.style == app::Style::kShort && name == "dance.bvh";
           cases.push_back(one);
         }
       }
@@ -233,7 +233,7 @@ void addPaperText(Cases& cases) {
     one.seconds = 2;
   });
   // The paper does not say how many iterations it takes: on its largest mesh so many.
-  const HairChoice large{Cut::kStyle, sim::Style::kLong, sim::Resolution::kHigh};
+  const HairChoice large{Cut::kStyle, app::Style::kLong, app::Resolution::kHigh};
   for (const int most : {50, 100}) {
     addClaim(
         cases, "collapse-" + plain(most) + "-iterations",

@@ -79,7 +79,7 @@ void addStates(Cases& cases) {
             one.seconds = 0.2;
             one.grace = 0.2;
             if (step > 0.05) one.release = 10;  // combing and buzzing are over after some steps, whatever their length
-            one.in_short = draw == 0 && step == 1.0 / 60 && (collide || hair.style == sim::Style::kLong);
+            one.in_short = draw == 0 && step == 1.0 / 60 && (collide || hair.style == app::Style::kLong);
             cases.push_back(one);
           }
         }
@@ -100,7 +100,7 @@ void addUpsets(Cases& cases) {
         one.grace = row.grace;
         one.meets = addsBody(row.upset);
         one.step = step;
-        one.in_short = step == 1.0 / 60 && hair.style != sim::Style::kShoulder;
+        one.in_short = step == 1.0 / 60 && hair.style != app::Style::kShoulder;
         cases.push_back(one);
       }
     }
@@ -120,7 +120,7 @@ void addDistances(Cases& cases) {
       one.meets = addsBody(row.upset);
       one.params = {{"collider", static_cast<double>(sim::ColliderKind::kSdf)}};
       const bool body = row.upset == Upset::kBodyRise || row.upset == Upset::kArm || row.upset == Upset::kBury;
-      one.in_short = hair.style == sim::Style::kLong && (body || row.upset == Upset::kTurn);
+      one.in_short = hair.style == app::Style::kLong && (body || row.upset == Upset::kTurn);
       cases.push_back(one);
     }
   }

@@ -38,9 +38,9 @@ std::span<const char* const> allCaptures() {
 
 std::span<const HairChoice> lowStyles() {
   static constexpr std::array<HairChoice, 3> kStyles{
-      HairChoice{Cut::kStyle, sim::Style::kShort, sim::Resolution::kLow},
-      HairChoice{Cut::kStyle, sim::Style::kShoulder, sim::Resolution::kLow},
-      HairChoice{Cut::kStyle, sim::Style::kLong, sim::Resolution::kLow}};
+      HairChoice{Cut::kStyle, app::Style::kShort, app::Resolution::kLow},
+      HairChoice{Cut::kStyle, app::Style::kShoulder, app::Resolution::kLow},
+      HairChoice{Cut::kStyle, app::Style::kLong, app::Resolution::kLow}};
   return kStyles;
 }
 
@@ -77,9 +77,9 @@ void addSteps(Cases& cases) {
         one.clip = clip;
         one.play = Play::kForward;
         one.step = step;
-        one.in_short = hair.style != sim::Style::kShoulder && clipName(clip) == "dance";
+        one.in_short = hair.style != app::Style::kShoulder && clipName(clip) == "dance";
         // Left bent over a shoulder: when the body is taken away, it springs back for many steps.
-        one.in_short |= hair.style == sim::Style::kLong && clipName(clip) == "jump_spin" && step == 1.0 / 120;
+        one.in_short |= hair.style == app::Style::kLong && clipName(clip) == "jump_spin" && step == 1.0 / 120;
         cases.push_back(one);
       }
     }
@@ -102,7 +102,7 @@ void addLadder(Cases& cases) {
       dance.params = {{"integrator", static_cast<double>(rung.integrator)},
                       {"tolerance", rung.tolerance},
                       {"max_iterations", rung.max_iterations}};
-      dance.in_short = hair.style == sim::Style::kLong;
+      dance.in_short = hair.style == app::Style::kLong;
       StressCase turn = dance;
       turn.name = "ladder/" + name + "/turn/" + hairName(hair);
       turn.clip = "idle_turns.bvh";
@@ -127,7 +127,7 @@ void addPaces(Cases& cases) {
           one.play = Play::kForward;
           one.pace = pace;
           one.seconds = 4;
-          one.in_short = draw == 0 && hair.style == sim::Style::kLong;
+          one.in_short = draw == 0 && hair.style == app::Style::kLong;
           cases.push_back(one);
         }
       }
@@ -148,7 +148,7 @@ void addSpeeds(Cases& cases) {
         one.seconds = 2;
         // A spin at twenty times comes back or not as rounding has it: wind of 0.1 mm/s makes it stay away.
         const bool chance = speed == 20 && clipName(clip) == "jump_spin";
-        one.in_short = own && hair.style == sim::Style::kLong && clipName(clip) != "idle_turns" && !chance;
+        one.in_short = own && hair.style == app::Style::kLong && clipName(clip) != "idle_turns" && !chance;
         cases.push_back(one);
       }
     }
@@ -207,14 +207,14 @@ void addScrubs(Cases& cases) {
 
 void addStyles(Cases& cases) {
   std::vector<HairChoice> choices;
-  for (const sim::Style style : {sim::Style::kShort, sim::Style::kShoulder, sim::Style::kLong}) {
-    for (const auto resolution : {sim::Resolution::kLow, sim::Resolution::kMedium, sim::Resolution::kHigh})
+  for (const app::Style style : {app::Style::kShort, app::Style::kShoulder, app::Style::kLong}) {
+    for (const auto resolution : {app::Resolution::kLow, app::Resolution::kMedium, app::Resolution::kHigh})
       choices.push_back({Cut::kStyle, style, resolution});
-    for (const Cut cut : {Cut::kUneven, Cut::kSingleBundle}) choices.push_back({cut, style, sim::Resolution::kLow});
+    for (const Cut cut : {Cut::kUneven, Cut::kSingleBundle}) choices.push_back({cut, style, app::Resolution::kLow});
   }
-  choices.push_back({Cut::kTenThousand, sim::Style::kLong, sim::Resolution::kHigh});
+  choices.push_back({Cut::kTenThousand, app::Style::kLong, app::Resolution::kHigh});
   for (const HairChoice& hair : choices) {
-    const bool small = hair.resolution == sim::Resolution::kLow;
+    const bool small = hair.resolution == app::Resolution::kLow;
     for (const char* clip : {"dance.bvh", "jump_spin.bvh"}) {
       StressCase one;
       one.name = "style/" + hairName(hair) + "/" + clipName(clip);

@@ -98,7 +98,7 @@ std::string findClip(const std::string& name) {
 
 std::string hairName(const HairChoice& hair) {
   const std::string style =
-      std::string(sim::styleName(hair.style)) + "-" + std::string(sim::resolutionName(hair.resolution));
+      std::string(app::styleName(hair.style)) + "-" + std::string(app::resolutionName(hair.resolution));
   switch (hair.cut) {
     case Cut::kUneven:
       return "uneven-" + style;

@@ -45,8 +45,8 @@ WindowCommand windowCommand(const StressCase& one) {
   if (one.clip.ends_with(".mot"))
     window.command +=
         "' --parts '" + (std::filesystem::path(findClip(one.clip)).parent_path() / "female-objs").string();
-  window.command += "' --style " + std::string(sim::styleName(one.hair.style));
-  window.command += " --resolution " + std::string(sim::resolutionName(one.hair.resolution));
+  window.command += "' --style " + std::string(app::styleName(one.hair.style));
+  window.command += " --resolution " + std::string(app::resolutionName(one.hair.resolution));
   const auto also = [&](const std::string& text) { window.note += (window.note.empty() ? "" : "; ") + text; };
   if (one.play == Play::kForward) window.command += " --speed " + sim::numberText(one.speed);
   if (!one.loop.empty()) window.command += " --loop " + one.loop;

@@ -21,8 +21,8 @@ enum class Cut { kStyle, kUneven, kSingleBundle, kTenThousand };
 
 struct HairChoice {
   Cut cut = Cut::kStyle;
-  sim::Style style = sim::Style::kShort;
-  sim::Resolution resolution = sim::Resolution::kLow;
+  app::Style style = app::Style::kShort;
+  app::Resolution resolution = app::Resolution::kLow;
 };
 
 // How a clip is played.

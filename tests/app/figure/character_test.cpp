@@ -124,7 +124,7 @@ TEST_F(OwnMannequin, HeadEllipsoidFitsTheScalp) {
 }
 
 TEST_F(OwnMannequin, ScalpIsSmoothAndMirrored) {
-  const sim::Scalp& s = character->scalp;
+  const app::Scalp& s = character->scalp;
   ASSERT_EQ(s.rows, 65);
   ASSERT_EQ(s.columns, 128);
   ASSERT_EQ(s.radius.size(), static_cast<std::size_t>(s.rows * s.columns));
@@ -144,7 +144,7 @@ TEST_F(OwnMannequin, ScalpIsSmoothAndMirrored) {
 
 TEST_F(OwnMannequin, DistanceAgreesWithBruteForceNearTheSkin) {
   const app::Character& c = *character;
-  const sim::BodyDistance distance = app::restBodyDistance(c);
+  const app::BodyDistance distance = app::restBodyDistance(c);
   const Rigid to_scalp = (c.skeleton.joints[c.head_joint].rest_world * c.head_frame).inverse();
   std::mt19937 random(7);
   std::uniform_real_distribution<double> shift(-0.012, 0.012);

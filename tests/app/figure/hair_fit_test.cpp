@@ -17,9 +17,9 @@ const app::Character& figure() {
   return character;
 }
 
-sim::HairMeshShape styled(sim::Style style) {
-  static const sim::BodyDistance distance = app::restBodyDistance(figure());
-  return sim::makeStyle(style, sim::Resolution::kLow, figure().scalp, distance);
+sim::HairMeshShape styled(app::Style style) {
+  static const app::BodyDistance distance = app::restBodyDistance(figure());
+  return app::makeStyle(style, app::Resolution::kLow, figure().scalp, distance);
 }
 
 template <class Change>
@@ -35,7 +35,7 @@ double farthest(const sim::HairMeshShape& a, const sim::HairMeshShape& b) {
 }
 
 TEST(HairFit, WhatFitsIsLeftAlone) {
-  for (const sim::Style style : {sim::Style::kShort, sim::Style::kShoulder, sim::Style::kLong}) {
+  for (const app::Style style : {app::Style::kShort, app::Style::kShoulder, app::Style::kLong}) {
     const sim::HairMeshShape shape = styled(style);
     sim::HairMeshShape fitted = shape;
     EXPECT_EQ(app::fitHair(figure(), true, fitted), "");
@@ -60,7 +60,7 @@ const In kUnits[] = {
 
 TEST(HairFit, UnitsAxesAndOriginAreNamedAndTakenBack) {
   const app::Rigid head = app::scalpToWorld(figure(), app::restPose(figure().skeleton));
-  for (const sim::Style style : {sim::Style::kShort, sim::Style::kShoulder, sim::Style::kLong}) {
+  for (const app::Style style : {app::Style::kShort, app::Style::kShoulder, app::Style::kLong}) {
     const sim::HairMeshShape shape = styled(style);
     for (const Written& axes : kAxes) {
       for (const In& unit : kUnits) {
@@ -92,13 +92,13 @@ TEST(HairFit, UnitsAxesAndOriginAreNamedAndTakenBack) {
 TEST(HairFit, HairForAnotherHeadIsScaledAndMoved) {
   const double limit = app::kFarRoots * figure().scalp.head_height / 0.23;
   for (const double scale : {0.8, 1.3}) {
-    sim::HairMeshShape file = changed(styled(sim::Style::kShoulder),
+    sim::HairMeshShape file = changed(styled(app::Style::kShoulder),
                                       [&](const Vec3& p) -> Vec3 { return scale * p + Vec3(0.01, 0.1, -0.08); });
     ASSERT_GT(app::rootDistance(file, figure().scalp), limit);
     const std::string note = app::fitHair(figure(), true, file);
     EXPECT_NE(note.find("for another head, scaled by"), std::string::npos) << note;
     EXPECT_LT(app::rootDistance(file, figure().scalp), limit) << note;
-    EXPECT_LT(farthest(file, styled(sim::Style::kShoulder)), 0.06) << note;
+    EXPECT_LT(farthest(file, styled(app::Style::kShoulder)), 0.06) << note;
   }
 }
 
@@ -106,11 +106,11 @@ TEST(HairFit, HairOfTheRightSizeIsBroughtFromAnywhere) {
   const app::Rigid head = app::scalpToWorld(figure(), app::restPose(figure().skeleton));
   for (const double in_a_metre : {1.0, 100.0}) {
     for (const double off : {0.02, 0.1, 1.6, 40.0}) {
-      sim::HairMeshShape file = changed(styled(sim::Style::kShoulder), [&](const Vec3& p) -> Vec3 {
+      sim::HairMeshShape file = changed(styled(app::Style::kShoulder), [&](const Vec3& p) -> Vec3 {
         return in_a_metre * (head * p + Vec3(0, off, 0));
       });
       const std::string note = app::fitHair(figure(), true, file);
-      EXPECT_LT(farthest(file, styled(sim::Style::kShoulder)), 0.06) << off << ": " << note;
+      EXPECT_LT(farthest(file, styled(app::Style::kShoulder)), 0.06) << off << ": " << note;
       EXPECT_EQ(note.find("centimetres") != std::string::npos, in_a_metre == 100) << off << ": " << note;
     }
   }
@@ -120,7 +120,7 @@ TEST(HairFit, AFileInNoKnownSizeOrAxesIsSaidAndLeftAlone) {
   const std::vector<Vec3 (*)(const Vec3&)> kUnknown{[](const Vec3& p) -> Vec3 { return 1e-5 * p; },
                                                     [](const Vec3& p) { return Vec3(p.y(), -p.x(), p.z()); }};
   for (const auto& unknown : kUnknown) {
-    sim::HairMeshShape file = changed(styled(sim::Style::kLong), unknown);
+    sim::HairMeshShape file = changed(styled(app::Style::kLong), unknown);
     const sim::HairMeshShape before = file;
     const std::string note = app::fitHair(figure(), true, file);
     EXPECT_NE(note.find("in no unit"), std::string::npos) << note;
@@ -130,7 +130,7 @@ TEST(HairFit, AFileInNoKnownSizeOrAxesIsSaidAndLeftAlone) {
 
 TEST(HairFit, TheProgramSaysItOnceAndReadsIt) {
   const std::string folder = test::freshFolder("hair_fit"), file = folder + "/hair.obj", out = folder + "/out.obj";
-  app::writeFile(file, app::writeHairMesh(changed(styled(sim::Style::kShort), [](const Vec3& p) -> Vec3 {
+  app::writeFile(file, app::writeHairMesh(changed(styled(app::Style::kShort), [](const Vec3& p) -> Vec3 {
                    return 100 * Vec3(p.x(), -p.z(), p.y());
                  })));
   const std::vector<std::string> run{"--no-images", "--frames", "2", "--motion", "walk.bvh", "--hair", file};

@@ -28,20 +28,20 @@ const Character& mannequin() {
   return character;
 }
 
-const sim::HairMesh& longHair(sim::Resolution resolution) {
-  static const sim::BodyDistance distance = app::restBodyDistance(mannequin());
+const sim::HairMesh& longHair(app::Resolution resolution) {
+  static const app::BodyDistance distance = app::restBodyDistance(mannequin());
   static const sim::HairMesh low = sim::buildHairMesh(
-                                 sim::makeStyle(sim::Style::kLong, sim::Resolution::kLow, mannequin().scalp, distance)),
-                             high = sim::buildHairMesh(sim::makeStyle(sim::Style::kLong, sim::Resolution::kHigh,
+                                 app::makeStyle(app::Style::kLong, app::Resolution::kLow, mannequin().scalp, distance)),
+                             high = sim::buildHairMesh(app::makeStyle(app::Style::kLong, app::Resolution::kHigh,
                                                                       mannequin().scalp, distance));
-  return resolution == sim::Resolution::kLow ? low : high;
+  return resolution == app::Resolution::kLow ? low : high;
 }
 
 // The skin's vertex nearest to a place seen from the middle of the cranium.
 std::size_t vertexAt(double azimuth, double elevation) {
   const Character& character = mannequin();
   const app::Rigid scalp = app::scalpToWorld(character, app::restPose(character.skeleton));
-  const Vec3 place = scalp * sim::skinPoint(character.scalp, sim::scalpDirection(azimuth, elevation));
+  const Vec3 place = scalp * app::skinPoint(character.scalp, app::scalpDirection(azimuth, elevation));
   const auto& positions = character.mesh.positions;
   const auto nearest = std::min_element(positions.begin(), positions.end(), [&](const auto& a, const auto& b) {
     return (a.template cast<double>() - place).norm() < (b.template cast<double>() - place).norm();
@@ -50,7 +50,7 @@ std::size_t vertexAt(double azimuth, double elevation) {
 }
 
 TEST(RootCover, HoldsTheWholeScalpWithItsPartingAndNothingElse) {
-  for (const sim::Resolution resolution : {sim::Resolution::kLow, sim::Resolution::kHigh}) {
+  for (const app::Resolution resolution : {app::Resolution::kLow, app::Resolution::kHigh}) {
     const std::vector<float> cover = app::rootCover(mannequin(), longHair(resolution));
     const auto at = [&](double azimuth, double elevation) { return cover[2 * vertexAt(azimuth, elevation)]; };
     ASSERT_EQ(cover.size(), 2 * mannequin().mesh.positions.size());
@@ -68,7 +68,7 @@ TEST(RootCover, HoldsTheWholeScalpWithItsPartingAndNothingElse) {
 }
 
 TEST(RootCover, FadesWithoutAnEdge) {
-  const std::vector<float> cover = app::rootCover(mannequin(), longHair(sim::Resolution::kLow));
+  const std::vector<float> cover = app::rootCover(mannequin(), longHair(app::Resolution::kLow));
   const app::SkinnedMesh& mesh = mannequin().mesh;
   double steepest = 0;  // 1/m
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -82,8 +82,8 @@ TEST(RootCover, FadesWithoutAnEdge) {
 
 // Without the depth the middle of a root face of the low resolution lies up to 11 mm inside the head.
 TEST(RootCover, TheSkinIsDrawnBelowTheRoots) {
-  const sim::HairMeshShape& shape = longHair(sim::Resolution::kLow).shape;
-  const std::vector<float> cover = app::rootCover(mannequin(), longHair(sim::Resolution::kLow));
+  const sim::HairMeshShape& shape = longHair(app::Resolution::kLow).shape;
+  const std::vector<float> cover = app::rootCover(mannequin(), longHair(app::Resolution::kLow));
   const app::SkinnedMesh& mesh = mannequin().mesh;
   const app::Rigid scalp = app::scalpToWorld(mannequin(), app::restPose(mannequin().skeleton));
   double deepest_before = 0, deepest = 0;  // m
@@ -106,7 +106,7 @@ TEST(RootCover, TheSkinIsDrawnBelowTheRoots) {
 }
 
 TEST(RootCover, OfAHairMeshThatIsNotOnTheHeadThereIsNone) {
-  sim::HairMeshShape shape = longHair(sim::Resolution::kLow).shape;
+  sim::HairMeshShape shape = longHair(app::Resolution::kLow).shape;
   for (sim::Vec3& p : shape.positions) p = mannequin().scalp.center + 1.4 * (p - mannequin().scalp.center);
   const std::vector<float> cover = app::rootCover(mannequin(), sim::buildHairMesh(shape));
   EXPECT_EQ(*std::max_element(cover.begin(), cover.end()), 0);
@@ -133,15 +133,15 @@ app::Scene sceneOf(std::vector<app::CharacterSpec> characters) {
 
 app::CharacterSpec longLow(int strands) {
   app::CharacterSpec spec;
-  spec.style = sim::Style::kLong;
-  spec.resolution = sim::Resolution::kLow;
+  spec.style = app::Style::kLong;
+  spec.resolution = app::Resolution::kLow;
   spec.look.strands = strands;
   return spec;
 }
 
 TEST(RootCover, IsSharedByAllOfOneBodyUnderOneHaircut) {
   app::CharacterSpec other = longLow(100);
-  other.style = sim::Style::kShort;
+  other.style = app::Style::kShort;
   app::Demo demo = app::openScene(sceneOf({longLow(100), longLow(100), other}), 1);
   EXPECT_EQ(demo.actors[0].scalp, demo.actors[1].scalp);
   EXPECT_NE(demo.actors[0].scalp, demo.actors[2].scalp);
@@ -187,7 +187,7 @@ class ScalpPicture : public gl_fixture::GlTest {
     const app::Actor& actor = demo_->actors[0];
     const Character& character = actor.body->character;
     return app::scalpToWorld(character, actor.shown_pose) *
-           sim::skinPoint(character.scalp, sim::scalpDirection(azimuth, elevation));
+           app::skinPoint(character.scalp, app::scalpDirection(azimuth, elevation));
   }
 
   // Mean of all channels over (2 reach + 1)^2 pixels around a place of the head.

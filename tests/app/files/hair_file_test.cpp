@@ -13,8 +13,8 @@
 
 namespace {
 
-using sim::Resolution;
-using sim::Style;
+using app::Resolution;
+using app::Style;
 
 // Two bundles, a quad and a triangle on its right; the triangle ends a layer earlier.
 const char* const kTwoBundles = R"(# a comment
@@ -74,11 +74,11 @@ void expectSame(const sim::HairMeshShape& a, const sim::HairMeshShape& b) {
 }
 
 TEST(HairFile, NineStylesComeBackBitForBit) {
-  const sim::Scalp scalp = tests::analyticScalp();
+  const app::Scalp scalp = tests::analyticScalp();
   for (const Style style : {Style::kShort, Style::kShoulder, Style::kLong}) {
     for (const Resolution resolution : {Resolution::kLow, Resolution::kMedium, Resolution::kHigh}) {
-      SCOPED_TRACE(std::string(sim::styleName(style)) + " " + std::string(sim::resolutionName(resolution)));
-      const sim::HairMeshShape shape = sim::makeStyle(style, resolution, scalp, tests::bodyDistance);
+      SCOPED_TRACE(std::string(app::styleName(style)) + " " + std::string(app::resolutionName(resolution)));
+      const sim::HairMeshShape shape = app::makeStyle(style, resolution, scalp, tests::bodyDistance);
       expectSame(app::readHairMesh(app::writeHairMesh(shape), "style.obj"), shape);
     }
   }

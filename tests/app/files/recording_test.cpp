@@ -16,8 +16,8 @@ app::Scene smallScene() {
   scene.name = "recorded";
   app::CharacterSpec spec;
   spec.motion = app::dataPath("assets/clips/dance.bvh");
-  spec.style = sim::Style::kShort;
-  spec.resolution = sim::Resolution::kLow;
+  spec.style = app::Style::kShort;
+  spec.resolution = app::Resolution::kLow;
   scene.characters.push_back(spec);
   scene.playback.settle = 0.1;
   return scene;
@@ -88,7 +88,7 @@ TEST(Recording, AReplayEndsInTheRecordedStateToTheBit) {
 TEST(Recording, HoldsFromWhereItWasSeen) {
   const std::string file = test::freshFolder("recording_view") + "/run.hmr";
   app::Scene scene = smallScene();
-  scene.characters[0].resolution = sim::Resolution::kMedium;
+  scene.characters[0].resolution = app::Resolution::kMedium;
   scene.characters.push_back(scene.characters[0]);
   scene.characters[1].position = app::Vec3(1.5, 0, -12);
   bool coarse = false, unseen = false;

@@ -81,8 +81,8 @@ app::Actor actorOf(const Vec3& position, double heading, app::AssetCache& asset_
   spec.position = position;
   spec.heading = heading;
   spec.loop = app::LoopKind::kNone;  // the clip's own numbers
-  spec.style = sim::Style::kShort;
-  spec.resolution = sim::Resolution::kLow;
+  spec.style = app::Style::kShort;
+  spec.resolution = app::Resolution::kLow;
   return app::makeActor(spec, {}, asset_cache);
 }
 
@@ -141,7 +141,7 @@ TEST(Actor, RootsAndHeadAreWhereTheClipHasThemAtTheStepsEnd) {
 TEST(Actor, RootsOfTheCoarseMeshAreThoseOfTheHead) {
   app::AssetCache asset_cache;
   app::Actor actor = actorOf(Vec3::Zero(), 0, asset_cache);
-  const app::HaircutPair* pair = app::coarsePair(actor, sim::Resolution::kMinimal, asset_cache);
+  const app::HaircutPair* pair = app::coarsePair(actor, app::Resolution::kMinimal, asset_cache);
   ASSERT_NE(pair, nullptr);
   app::enterCoarse(*pair, actor);
   const std::vector<Vec3> roots = actor.coarse.roots, fine = actor.roots;

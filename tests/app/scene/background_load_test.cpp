@@ -17,8 +17,8 @@ using app::Demo;
 Demo walking() {
   app::Scene scene = app::loadScene(app::dataPath("assets/scenes/walk.json"));
   scene.characters.resize(1);
-  scene.characters[0].style = sim::Style::kShort;
-  scene.characters[0].resolution = sim::Resolution::kLow;
+  scene.characters[0].style = app::Style::kShort;
+  scene.characters[0].resolution = app::Resolution::kLow;
   Demo demo = app::openScene(std::move(scene), 1);
   demo.loading.on = true;
   return demo;
@@ -41,7 +41,7 @@ TEST(BackgroundLoad, TheOldHairGoesOnUntilTheNewStyleIsThere) {
   demo.loading.running.wait();
   frames(1, demo);
   EXPECT_NE(demo.actors[0].id, old);
-  EXPECT_EQ(demo.actors[0].spec.style, sim::Style::kShoulder);
+  EXPECT_EQ(demo.actors[0].spec.style, app::Style::kShoulder);
   EXPECT_NEAR(demo.actors[0].playback.time, time + 1.0 / 60, 1e-9) << "in step with the clip";
   EXPECT_EQ(demo.asset_cache.haircuts.size(), 1u);
   EXPECT_EQ(demo.asset_cache.bodies.size(), 1u);
@@ -65,7 +65,7 @@ TEST(BackgroundLoad, OfSeveralOrdersTheLastIsServed) {
   EXPECT_FALSE(demo.loading.waiting.has_value());
   demo.loading.running.wait();
   frames(1, demo);
-  EXPECT_EQ(demo.actors[0].spec.resolution, sim::Resolution::kMedium);
+  EXPECT_EQ(demo.actors[0].spec.resolution, app::Resolution::kMedium);
 }
 
 TEST(BackgroundLoad, ASceneTakesThePlaceOfTheOther) {
@@ -84,8 +84,8 @@ TEST(BackgroundLoad, ASceneTakesThePlaceOfTheOther) {
 TEST(BackgroundLoad, TheEllipsoidsActUntilTheSignedDistancesAreThere) {
   app::Scene scene = app::loadScene(app::dataPath("assets/scenes/walk.json"));
   scene.characters.resize(1);
-  scene.characters[0].style = sim::Style::kShort;
-  scene.characters[0].resolution = sim::Resolution::kLow;
+  scene.characters[0].style = app::Style::kShort;
+  scene.characters[0].resolution = app::Resolution::kLow;
   scene.sim.collider = sim::ColliderKind::kSdf;
   Demo demo = app::openScene(std::move(scene), 1, true);
   app::LoadedBody& body = *demo.actors[0].body;

@@ -14,8 +14,8 @@ app::Demo openJump(double deadline_ms, double speed) {
   app::Scene scene = app::loadScene(app::dataPath("assets/scenes/walk.json"));
   scene.characters.resize(1);
   scene.characters[0].motion = app::findFile("jump_spin.bvh", "", "clips");
-  scene.characters[0].style = sim::Style::kLong;
-  scene.characters[0].resolution = sim::Resolution::kLow;
+  scene.characters[0].style = app::Style::kLong;
+  scene.characters[0].resolution = app::Resolution::kLow;
   scene.playback.deadline_ms = deadline_ms;
   scene.playback.speed = speed;
   app::Demo demo = app::openScene(std::move(scene), 1);

@@ -14,7 +14,7 @@ namespace {
 
 using test::readAll;
 
-app::CharacterSpec character(const std::string& clip, sim::Style style, sim::Resolution resolution) {
+app::CharacterSpec character(const std::string& clip, app::Style style, app::Resolution resolution) {
   app::CharacterSpec spec;
   spec.motion = app::dataPath("assets/clips/" + clip);
   spec.style = style;
@@ -26,11 +26,11 @@ app::CharacterSpec character(const std::string& clip, sim::Style style, sim::Res
 app::Scene crowdScene() {
   app::Scene scene;
   scene.name = "crowd";
-  scene.characters.push_back(character("dance.bvh", sim::Style::kShoulder, sim::Resolution::kMedium));
+  scene.characters.push_back(character("dance.bvh", app::Style::kShoulder, app::Resolution::kMedium));
   scene.characters[0].pins.push_back(app::pinFromText(R"({"column": 3, "to": "scalp"})"));
-  scene.characters.push_back(character("walk.bvh", sim::Style::kLong, sim::Resolution::kMedium));
+  scene.characters.push_back(character("walk.bvh", app::Style::kLong, app::Resolution::kMedium));
   scene.characters[1].position = app::Vec3(1.5, 0, -12);
-  scene.characters.push_back(character("walk.bvh", sim::Style::kShort, sim::Resolution::kLow));
+  scene.characters.push_back(character("walk.bvh", app::Style::kShort, app::Resolution::kLow));
   scene.characters[2].position = app::Vec3(0, 0, 40);
   scene.playback.settle = 0.1;
   return scene;
@@ -39,7 +39,7 @@ app::Scene crowdScene() {
 // Hair that falls asleep over a head that stands still.
 app::Scene sleepingScene() {
   app::Scene scene;
-  scene.characters.push_back(character("walk.bvh", sim::Style::kShort, sim::Resolution::kLow));
+  scene.characters.push_back(character("walk.bvh", app::Style::kShort, app::Resolution::kLow));
   scene.playback.speed = 0;
   return scene;
 }
@@ -156,7 +156,7 @@ TEST(DemoState, WhatCannotBeUsedIsRefusedAndChangesNothing) {
   const std::string good = app::demoStateBytes(demo);
   app::Scene two = sleepingScene(), long_hair = sleepingScene();
   two.characters.push_back(two.characters[0]);
-  long_hair.characters[0].style = sim::Style::kLong;
+  long_hair.characters[0].style = app::Style::kLong;
   app::Demo pair = opened(two), other = opened(long_hair);
   std::string changed = good, future = good;
   changed[changed.size() / 2] ^= 1;

@@ -86,8 +86,8 @@ Demo smallDemo(const std::string& motion = "head_shake.bvh") {
   scene.name = "test";
   app::CharacterSpec spec;
   spec.motion = app::dataPath("assets/clips/" + motion);
-  spec.style = sim::Style::kShort;
-  spec.resolution = sim::Resolution::kLow;
+  spec.style = app::Style::kShort;
+  spec.resolution = app::Resolution::kLow;
   scene.characters.push_back(spec);
   scene.playback.settle = 0.1;
   return app::openScene(std::move(scene), 1.5);

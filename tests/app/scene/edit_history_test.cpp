@@ -19,8 +19,8 @@ app::Demo movingDemo() {
   app::Scene scene;
   app::CharacterSpec spec;
   spec.motion = app::dataPath("assets/clips/idle_turns.bvh");
-  spec.style = sim::Style::kShort;
-  spec.resolution = sim::Resolution::kLow;
+  spec.style = app::Style::kShort;
+  spec.resolution = app::Resolution::kLow;
   scene.characters = {spec};
   scene.playback.settle = 0.1;
   app::Demo demo = app::openScene(std::move(scene), 1.5);

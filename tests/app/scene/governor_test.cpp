@@ -199,10 +199,10 @@ TEST(FixedClock, TheShownMomentGoesOnEvenlyWhenTheStepChanges) {
   EXPECT_EQ(clock.lost, 0);
 }
 
-app::Demo openWalk(double budget_ms, sim::Resolution resolution = sim::Resolution::kLow) {
+app::Demo openWalk(double budget_ms, app::Resolution resolution = app::Resolution::kLow) {
   app::Scene scene = app::loadScene(app::dataPath("assets/scenes/walk.json"));
   scene.characters.resize(1);
-  scene.characters[0].style = sim::Style::kLong;
+  scene.characters[0].style = app::Style::kLong;
   scene.characters[0].resolution = resolution;
   scene.playback.budget_ms = budget_ms;
   app::Demo demo = app::openScene(std::move(scene), 1);
@@ -264,7 +264,7 @@ TEST(Governor, CountedCostsRepeatToTheBit) {
 
 // A frame's time over its counted work, at the default's setting: the lower quartile, as other work on the machine only
 // adds to times, and more to long frames.
-double secondsForCounted(sim::Resolution resolution) {
+double secondsForCounted(app::Resolution resolution) {
   app::Demo demo = openWalk(0, resolution);
   const int vertices = demo.actors.front().haircut->mesh.vertexCount();
   std::vector<double> ratios;
@@ -286,7 +286,7 @@ TEST(Governor, CountedWorkStandsForTimeOnLargeMeshesAsOnSmall) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "what a sanitizer checks is not counted";
 #endif
-  const double low = secondsForCounted(sim::Resolution::kLow), high = secondsForCounted(sim::Resolution::kHigh);
+  const double low = secondsForCounted(app::Resolution::kLow), high = secondsForCounted(app::Resolution::kHigh);
   std::printf("time over counted work: %.2f on the small mesh, %.2f on the large\n", low, high);
   EXPECT_LT(std::abs(std::log(high / low)), std::log(2.5));
 }
@@ -317,7 +317,7 @@ TEST(Governor, CountedWorkOfEverySizeIsWithinHalfOfWhatWasMeasured) {
 }
 
 TEST(Governor, ALargeMeshGetsTheSettingThatItsBudgetBuys) {
-  app::Demo demo = openWalk(12, sim::Resolution::kHigh);
+  app::Demo demo = openWalk(12, app::Resolution::kHigh);
   for (int f = 0; f < 30; ++f) app::advanceFrame(demo, 1.0 / 60, {});
   // The mean: a finer setting that is tried for a third of a second may exceed the budget before it is left again.
   constexpr int kFrames = 240;
@@ -334,8 +334,8 @@ TEST(Governor, SeveralCharactersShareTheBudget) {
   const auto rungOf = [](std::size_t characters) {
     app::Scene scene = app::loadScene(app::dataPath("assets/scenes/walk.json"));
     scene.characters.resize(1);
-    scene.characters[0].style = sim::Style::kShort;
-    scene.characters[0].resolution = sim::Resolution::kLow;
+    scene.characters[0].style = app::Style::kShort;
+    scene.characters[0].resolution = app::Resolution::kLow;
     scene.characters.resize(characters, scene.characters[0]);
     scene.playback.budget_ms = 0.6;
     app::Demo demo = app::openScene(std::move(scene), 1);

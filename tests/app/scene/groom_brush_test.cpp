@@ -14,11 +14,11 @@ namespace {
 
 using app::Ask;
 
-app::Scene sceneOf(sim::Resolution resolution, const char* clip) {
+app::Scene sceneOf(app::Resolution resolution, const char* clip) {
   app::Scene scene;
   app::CharacterSpec spec;
   spec.motion = app::dataPath(std::string("assets/clips/") + clip);
-  spec.style = sim::Style::kLong;
+  spec.style = app::Style::kLong;
   spec.resolution = resolution;
   scene.characters = {spec};
   scene.playback.settle = 0.3;
@@ -39,12 +39,12 @@ sim::Vec3 frontTip(const app::Demo& demo, int& vertex) {
   return best;
 }
 
-app::Request sampleAt(sim::BrushTool tool, const sim::Vec3& at, const sim::Vec3& along) {
+app::Request sampleAt(app::BrushTool tool, const sim::Vec3& at, const sim::Vec3& along) {
   app::BrushSample sample;
   sample.tool = tool;
   sample.at = at, sample.along = along;
   sample.radius = 0.08, sample.strength = 0.6;
-  return {Ask::kBrush, std::string(sim::kBrushNames[static_cast<std::size_t>(tool)]), app::brushText(sample)};
+  return {Ask::kBrush, std::string(app::kBrushNames[static_cast<std::size_t>(tool)]), app::brushText(sample)};
 }
 
 TEST(GroomBrush, ASampleReadsBackToTheSameBits) {
@@ -55,20 +55,20 @@ TEST(GroomBrush, ASampleReadsBackToTheSameBits) {
   const app::BrushSample back = app::parseBrush("puff", app::brushText(sample));
   EXPECT_EQ(app::brushText(back), app::brushText(sample));
   EXPECT_EQ(back.at, sample.at);
-  EXPECT_EQ(back.tool, sim::BrushTool::kPuff);
+  EXPECT_EQ(back.tool, app::BrushTool::kPuff);
   for (const char* text : {"", "1 2 3", "0 0 0 0 0 0 9 1 1 0", "0 0 0 0 0 0 0.1 nan 1 0", "0 0 0 0 0 0 0.1 1 1 0 5"})
     EXPECT_THROW(app::parseBrush("comb", text), app::InputError) << text;
   EXPECT_THROW(app::parseBrush("saw", app::brushText(sample)), app::InputError);
 }
 
 TEST(GroomBrush, HairThatMovesTakesTheEditOnAndKeepsIt) {
-  app::Demo demo = app::openScene(sceneOf(sim::Resolution::kLow, "idle_turns.bvh"), 1.5);
+  app::Demo demo = app::openScene(sceneOf(app::Resolution::kLow, "idle_turns.bvh"), 1.5);
   for (int frame = 0; frame < 10; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
   const double length = demo.actors[0].haircut->mesh.hair_length;
   int tip = 0;
   for (int frame = 0; frame < 20; ++frame) {
     const sim::Vec3 at = frontTip(demo, tip);
-    demo.requests = {sampleAt(sim::BrushTool::kCut, at + sim::Vec3(0, 0.06, 0), sim::Vec3::Zero())};
+    demo.requests = {sampleAt(app::BrushTool::kCut, at + sim::Vec3(0, 0.06, 0), sim::Vec3::Zero())};
     app::advanceFrame(demo, 1.0 / 60, {});
     ASSERT_FALSE(demo.message_is_fault) << demo.message;
   }
@@ -99,7 +99,7 @@ TEST(GroomBrush, HairThatMovesTakesTheEditOnAndKeepsIt) {
 
 // Two seconds after the last stroke gravity is balanced in the new shape: what hangs still has not drooped.
 TEST(GroomBrush, TwoSecondsAfterAnEditNothingHasDrooped) {
-  app::Scene scene = sceneOf(sim::Resolution::kLow, "idle_turns.bvh");
+  app::Scene scene = sceneOf(app::Resolution::kLow, "idle_turns.bvh");
   scene.sim.collide = false;
   app::Demo demo = app::openScene(std::move(scene), 1.5);
   demo.actors[0].playback.paused = true;
@@ -107,7 +107,7 @@ TEST(GroomBrush, TwoSecondsAfterAnEditNothingHasDrooped) {
   int tip = 0;
   for (int frame = 0; frame < 20; ++frame) {
     const sim::Vec3 at = frontTip(demo, tip);
-    demo.requests = {sampleAt(sim::BrushTool::kPuff, at + sim::Vec3(0, 0.1, 0), sim::Vec3::Zero())};
+    demo.requests = {sampleAt(app::BrushTool::kPuff, at + sim::Vec3(0, 0.1, 0), sim::Vec3::Zero())};
     app::advanceFrame(demo, 1.0 / 60, {});
   }
   for (int frame = 0; frame < 120; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
@@ -120,9 +120,9 @@ TEST(GroomBrush, TwoSecondsAfterAnEditNothingHasDrooped) {
 }
 
 TEST(GroomBrush, OffTheHairItSaysSoAndChangesNothing) {
-  app::Demo demo = app::openScene(sceneOf(sim::Resolution::kLow, "idle_turns.bvh"), 1.5);
+  app::Demo demo = app::openScene(sceneOf(app::Resolution::kLow, "idle_turns.bvh"), 1.5);
   const std::string before = app::editHash(demo);
-  demo.requests = {sampleAt(sim::BrushTool::kCut, {3, 3, 3}, sim::Vec3::Zero())};
+  demo.requests = {sampleAt(app::BrushTool::kCut, {3, 3, 3}, sim::Vec3::Zero())};
   app::advanceFrame(demo, 0, {});
   EXPECT_TRUE(demo.message_is_fault);
   EXPECT_NE(demo.message.find("reaches no hair"), std::string::npos) << demo.message;
@@ -133,7 +133,7 @@ TEST(GroomBrush, OffTheHairItSaysSoAndChangesNothing) {
 
 // One of three who wear a haircut is brushed: the others keep theirs.
 TEST(GroomBrush, OthersOfTheSameHaircutKeepTheirs) {
-  app::Scene scene = sceneOf(sim::Resolution::kLow, "idle_turns.bvh");
+  app::Scene scene = sceneOf(app::Resolution::kLow, "idle_turns.bvh");
   scene.characters.push_back(scene.characters[0]);
   scene.characters[1].position = {1, 0, 0};
   app::Demo demo = app::openScene(std::move(scene), 1.5);
@@ -141,7 +141,7 @@ TEST(GroomBrush, OthersOfTheSameHaircutKeepTheirs) {
   const std::vector<sim::Vec3> before = demo.actors[0].haircut->mesh.shape.positions;
   int tip = 0;
   const sim::Vec3 at = frontTip(demo, tip);
-  demo.requests = {sampleAt(sim::BrushTool::kCut, at, sim::Vec3::Zero())};
+  demo.requests = {sampleAt(app::BrushTool::kCut, at, sim::Vec3::Zero())};
   for (int frame = 0; frame < 5; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
   EXPECT_TRUE(demo.actors[0].haircut->edited);
   EXPECT_FALSE(demo.actors[1].haircut->edited);
@@ -153,13 +153,13 @@ TEST(GroomBrush, ARecordedTakeReplaysToTheBit) {
   const std::string file = test::freshFolder("groom_brush") + "/take.hmr";
   app::Options options;
   options.record = file;
-  app::Scene scene = sceneOf(sim::Resolution::kLow, "walk.bvh");
+  app::Scene scene = sceneOf(app::Resolution::kLow, "walk.bvh");
   app::Tape tape(options, scene);
   app::Demo demo = app::openScene(scene, tape.aspect());
   int tip = 0;
   for (int frame = 0; frame < 40; ++frame) {
     const sim::Vec3 at = frontTip(demo, tip);
-    const auto tool = static_cast<sim::BrushTool>(frame / 6 % 5);
+    const auto tool = static_cast<app::BrushTool>(frame / 6 % 5);
     if (frame % 3 != 2 && frame < 30) demo.requests = {sampleAt(tool, at, {0.004, 0, 0.002})};
     if (frame == 33) demo.requests = {{Ask::kUndo, "", "", 2}};
     app::advanceFrame(demo, tape.turn(frame, 1.0 / 60, demo), {});
@@ -178,7 +178,7 @@ TEST(GroomBrush, ARecordedTakeReplaysToTheBit) {
 }
 
 TEST(Picking, ARayThroughAPixelMeetsWhatIsSeenThere) {
-  app::Demo demo = app::openScene(sceneOf(sim::Resolution::kLow, "idle_turns.bvh"), 1.5);
+  app::Demo demo = app::openScene(sceneOf(app::Resolution::kLow, "idle_turns.bvh"), 1.5);
   const app::Actor& actor = demo.actors[0];
   int hits = 0;
   for (double x = 100; x < 900; x += 50) {

@@ -19,12 +19,12 @@ using app::Vec3;
 
 constexpr int kWidth = 1080, kHeight = 720;  // pixels
 
-Demo open(sim::Style style) {
+Demo open(app::Style style) {
   app::Scene scene;
   app::CharacterSpec character;
   character.motion = app::dataPath("assets/clips/idle_turns.bvh");
   character.style = style;
-  character.resolution = sim::Resolution::kMedium;
+  character.resolution = app::Resolution::kMedium;
   scene.characters.push_back(character);
   scene.playback.settle = 0;
   scene.camera.follow = false;
@@ -71,7 +71,7 @@ void standAt(double pixels, Demo& demo) {
 
 struct Care {
   int span;
-  std::optional<sim::Resolution> mesh;
+  std::optional<app::Resolution> mesh;
 };
 // Afresh: nothing of an earlier size is remembered.
 Care careAt(double pixels, Demo& demo) {
@@ -82,11 +82,11 @@ Care careAt(double pixels, Demo& demo) {
 }
 
 TEST(LevelOfDetail, SizesAreThoseOfThePicture) {
-  for (const sim::Style style : {sim::Style::kShort, sim::Style::kLong}) {
+  for (const app::Style style : {app::Style::kShort, app::Style::kLong}) {
     Demo demo = open(style);
     for (const double pixels : {1500.0, 520.0, 100.0, 20.0}) {
       standAt(pixels, demo);
-      EXPECT_NEAR(app::projectedSize(demo, demo.actors[0]), pixels, 1e-3 * pixels) << sim::styleName(style);
+      EXPECT_NEAR(app::projectedSize(demo, demo.actors[0]), pixels, 1e-3 * pixels) << app::styleName(style);
     }
   }
 }
@@ -99,7 +99,7 @@ TEST(LevelOfDetail, StepsGrowLongerAtThePagesSizes) {
     double pixels;
     int above, below;
   };
-  Demo demo = open(sim::Style::kShort);
+  Demo demo = open(app::Style::kShort);
   for (const Limit& limit : {Limit{520, 1, 2}, Limit{380, 2, 4}, Limit{100, 4, 8}}) {
     EXPECT_EQ(careAt(1.01 * limit.pixels, demo).span, limit.above) << "just over " << limit.pixels;
     EXPECT_EQ(careAt(0.99 * limit.pixels, demo).span, limit.below) << "just under " << limit.pixels;
@@ -112,22 +112,22 @@ TEST(LevelOfDetail, MeshesGrowCoarserAtThePagesSizes) {
       page.find("smaller than 420 pixels, its hair shorter than 150, is simulated with its style's low resolution, "
                 "below 240 with its minimal one"),
       std::string::npos);
-  for (const sim::Style style : {sim::Style::kShort, sim::Style::kLong}) {
+  for (const app::Style style : {app::Style::kShort, app::Style::kLong}) {
     Demo demo = open(style);
     // Figure and hair must both be small.
     const double low = std::min(420.0, 150 * spanOf(demo) / lengthOf(demo)), minimal = std::min(240.0, low);
-    EXPECT_FALSE(careAt(1.01 * low, demo).mesh) << sim::styleName(style);
+    EXPECT_FALSE(careAt(1.01 * low, demo).mesh) << app::styleName(style);
     if (minimal < low) {
-      EXPECT_EQ(careAt(0.99 * low, demo).mesh, sim::Resolution::kLow) << sim::styleName(style);
-      EXPECT_EQ(careAt(1.01 * minimal, demo).mesh, sim::Resolution::kLow) << sim::styleName(style);
+      EXPECT_EQ(careAt(0.99 * low, demo).mesh, app::Resolution::kLow) << app::styleName(style);
+      EXPECT_EQ(careAt(1.01 * minimal, demo).mesh, app::Resolution::kLow) << app::styleName(style);
     }
-    EXPECT_EQ(careAt(0.99 * minimal, demo).mesh, sim::Resolution::kMinimal) << sim::styleName(style);
+    EXPECT_EQ(careAt(0.99 * minimal, demo).mesh, app::Resolution::kMinimal) << app::styleName(style);
   }
 }
 
 // On the way back each switches a fifth later, so that a figure at the limit does not switch to and fro.
 TEST(LevelOfDetail, TheWayBackIsAFifthFurther) {
-  Demo demo = open(sim::Style::kShort);
+  Demo demo = open(app::Style::kShort);
   ASSERT_EQ(careAt(500, demo).span, 2);
   standAt(1.19 * 520, demo);
   app::chooseDetail(demo);

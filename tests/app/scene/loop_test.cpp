@@ -24,8 +24,8 @@ constexpr double kFrame = 1.0 / 60;
 app::CharacterSpec characterOf(const std::string& motion) {
   app::CharacterSpec spec;
   spec.motion = fs::exists(motion) ? motion : app::dataPath("assets/clips/" + motion);
-  spec.style = sim::Style::kShort;
-  spec.resolution = sim::Resolution::kLow;
+  spec.style = app::Style::kShort;
+  spec.resolution = app::Resolution::kLow;
   return spec;
 }
 

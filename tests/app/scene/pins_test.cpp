@@ -114,9 +114,9 @@ TEST(Pins, HairStaysWhereItIsPinnedThroughAClip) {
 TEST(Pins, HoldOnTheCoarseMeshAndWakeWhatSleeps) {
   app::AssetCache cache;
   app::CharacterSpec spec = specOf(R"({"column": 3, "stiffness": 50})");
-  spec.resolution = sim::Resolution::kMedium;
+  spec.resolution = app::Resolution::kMedium;
   app::Actor actor = app::makeActor(spec, {}, cache);
-  const app::HaircutPair* pair = app::coarsePair(actor, sim::Resolution::kLow, cache);
+  const app::HaircutPair* pair = app::coarsePair(actor, app::Resolution::kLow, cache);
   ASSERT_NE(pair, nullptr);
   app::enterCoarse(*pair, actor);
   const sim::SimParams params;

@@ -16,8 +16,8 @@ app::Demo smallDemo() {
   app::Scene scene;
   app::CharacterSpec spec;
   spec.motion = app::dataPath("assets/clips/idle_turns.bvh");
-  spec.style = sim::Style::kShort;
-  spec.resolution = sim::Resolution::kLow;
+  spec.style = app::Style::kShort;
+  spec.resolution = app::Resolution::kLow;
   scene.characters = {spec};
   scene.playback.settle = 0;
   return app::openScene(std::move(scene), 1.5);

@@ -24,8 +24,8 @@ app::Scene smallScene() {
   app::Scene scene;
   app::CharacterSpec spec;
   spec.motion = app::dataPath("assets/clips/walk.bvh");
-  spec.style = sim::Style::kShort;
-  spec.resolution = sim::Resolution::kLow;
+  spec.style = app::Style::kShort;
+  spec.resolution = app::Resolution::kLow;
   scene.characters = {spec};
   scene.playback.settle = 0.1;
   return scene;
@@ -39,7 +39,7 @@ app::Demo brushedDemo(int frames) {
   sample.at = app::scalpToWorld(actor.body->character, actor.pose).inverse() * actor.hair.positions.back();
   sample.radius = 0.1;
   demo.requests = {{Ask::kSetParam, "density", "80"}, {Ask::kBrush, "cut", app::brushText(sample)}};
-  sample.tool = sim::BrushTool::kCut;
+  sample.tool = app::BrushTool::kCut;
   for (int frame = 0; frame < frames; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
   EXPECT_TRUE(demo.actors[0].haircut->edited) << demo.message;
   return demo;

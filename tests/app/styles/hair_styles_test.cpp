@@ -15,8 +15,8 @@
 namespace {
 
 using sim::HairMeshShape;
-using sim::Resolution;
-using sim::Style;
+using app::Resolution;
+using app::Style;
 using sim::Vec3;
 
 constexpr Style kStyles[] = {Style::kShort, Style::kShoulder, Style::kLong};
@@ -25,8 +25,8 @@ constexpr Resolution kResolutions[] = {Resolution::kLow, Resolution::kMedium, Re
 
 struct Head {
   std::string name;
-  sim::Scalp scalp;
-  sim::BodyDistance body;
+  app::Scalp scalp;
+  app::BodyDistance body;
 };
 
 struct Haircut {
@@ -41,8 +41,8 @@ std::vector<Haircut> haircutsOn(const Head& head) {
   for (const Style style : kStyles)
     for (const Resolution resolution : kResolutions)
       out.push_back(
-          {head.name + ", " + std::string(sim::styleName(style)) + " " + std::string(sim::resolutionName(resolution)),
-           style, resolution, sim::makeStyle(style, resolution, head.scalp, head.body)});
+          {head.name + ", " + std::string(app::styleName(style)) + " " + std::string(app::resolutionName(resolution)),
+           style, resolution, app::makeStyle(style, resolution, head.scalp, head.body)});
   return out;
 }
 
@@ -158,9 +158,9 @@ TEST(HairStyles, PrismsAreFatAtEveryCorner) {
       for (int l = 0; l + 1 < bundleLayers(s, face); ++l) {
         for (int k = 0; k < n; ++k) {
           const int here = face.columns[k], next = face.columns[(k + 1) % n], previous = face.columns[(k + n - 1) % n];
-          thinnest = std::min(thinnest, sim::cornerFatness(vertex(s, here, l), vertex(s, next, l),
+          thinnest = std::min(thinnest, app::cornerFatness(vertex(s, here, l), vertex(s, next, l),
                                                            vertex(s, previous, l), vertex(s, here, l + 1)));
-          thinnest = std::min(thinnest, sim::cornerFatness(vertex(s, here, l + 1), vertex(s, previous, l + 1),
+          thinnest = std::min(thinnest, app::cornerFatness(vertex(s, here, l + 1), vertex(s, previous, l + 1),
                                                            vertex(s, next, l + 1), vertex(s, here, l)));
         }
       }
@@ -258,7 +258,7 @@ TEST(HairStyles, NeighbouringColumnsAreNearlyParallel) {
 TEST(HairStyles, ResolutionsAreTheSameHaircut) {
   for (const Head& head : heads()) {
     for (const Style style : kStyles) {
-      SCOPED_TRACE(head.name + " " + std::string(sim::styleName(style)));
+      SCOPED_TRACE(head.name + " " + std::string(app::styleName(style)));
       std::vector<std::vector<Vec3>> tips, full_tips;  // all; of the columns that reach the cut
       std::vector<double> volumes, lengths;
       for (const Haircut& cut : haircuts(head)) {
@@ -315,8 +315,8 @@ TEST(HairStyles, LengthsAreWhatTheNamesSay) {
 
 TEST(HairStyles, AreDeterministic) {
   const Head& head = heads().front();
-  const HairMeshShape a = sim::makeStyle(Style::kLong, Resolution::kMedium, head.scalp, head.body);
-  const HairMeshShape b = sim::makeStyle(Style::kLong, Resolution::kMedium, head.scalp, head.body);
+  const HairMeshShape a = app::makeStyle(Style::kLong, Resolution::kMedium, head.scalp, head.body);
+  const HairMeshShape b = app::makeStyle(Style::kLong, Resolution::kMedium, head.scalp, head.body);
   ASSERT_EQ(a.positions.size(), b.positions.size());
   for (std::size_t v = 0; v < a.positions.size(); ++v) EXPECT_EQ(a.positions[v], b.positions[v]);
 }
@@ -331,7 +331,7 @@ TEST(HairStyles, ValidOnOddHeads) {
   for (const Odd& odd : {Odd{"child", 0.6, 0, false}, Odd{"giant", 3, 0, false}, Odd{"horned", 1, 0.06, false},
                          Odd{"wall", 1, 0, true}}) {
     SCOPED_TRACE(odd.name);
-    sim::Scalp scalp = tests::analyticScalp();
+    app::Scalp scalp = tests::analyticScalp();
     scalp.head_height *= odd.scale;
     for (int i = 0; i < scalp.rows; ++i) {
       for (int j = 0; j < scalp.columns; ++j) {
@@ -340,7 +340,7 @@ TEST(HairStyles, ValidOnOddHeads) {
         r *= odd.scale;
       }
     }
-    const sim::BodyDistance body = [&](const Vec3& p) {
+    const app::BodyDistance body = [&](const Vec3& p) {
       const double head = odd.scale * tests::bodyDistance(p / odd.scale);
       return odd.wall ? std::min(head, 0.16 + p.z()) : head;
     };
@@ -348,8 +348,8 @@ TEST(HairStyles, ValidOnOddHeads) {
       for (const Resolution resolution :
            {Resolution::kMinimal, Resolution::kLow, Resolution::kHigh, Resolution::kUltra}) {
         if (resolution == Resolution::kUltra && style != Style::kLong) continue;  // takes its time
-        EXPECT_NO_THROW(sim::buildHairMesh(sim::makeStyle(style, resolution, scalp, body)))
-            << sim::styleName(style) << " " << sim::resolutionName(resolution);
+        EXPECT_NO_THROW(sim::buildHairMesh(app::makeStyle(style, resolution, scalp, body)))
+            << app::styleName(style) << " " << app::resolutionName(resolution);
       }
     }
   }
@@ -368,11 +368,11 @@ TEST(HairStyles, ValidOnEveryCharacterAtHand) {
     if (!std::filesystem::exists(shared + motion)) continue;
     ++found;
     const app::Character character = app::loadCharacter(shared + motion, *parts ? shared + parts : "");
-    const sim::BodyDistance body = app::restBodyDistance(character);
+    const app::BodyDistance body = app::restBodyDistance(character);
     for (const Style style : kStyles) {
       for (const Resolution resolution : {Resolution::kLow, Resolution::kHigh}) {
-        EXPECT_NO_THROW(sim::buildHairMesh(sim::makeStyle(style, resolution, character.scalp, body)))
-            << motion << " " << sim::styleName(style) << " " << sim::resolutionName(resolution);
+        EXPECT_NO_THROW(sim::buildHairMesh(app::makeStyle(style, resolution, character.scalp, body)))
+            << motion << " " << app::styleName(style) << " " << app::resolutionName(resolution);
       }
     }
   }
@@ -380,7 +380,7 @@ TEST(HairStyles, ValidOnEveryCharacterAtHand) {
 }
 
 TEST(Scalp, RadiusIsInterpolatedAndPeriodic) {
-  sim::Scalp scalp;
+  app::Scalp scalp;
   scalp.rows = 33;
   scalp.columns = 64;
   scalp.radius.resize(33 * 64);

@@ -16,16 +16,16 @@
 
 namespace {
 
-using sim::Resolution;
-using sim::Style;
+using app::Resolution;
+using app::Style;
 using sim::Vec3;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
 struct Head {
   const char* name;
-  sim::Scalp scalp;
-  sim::BodyDistance body;
+  app::Scalp scalp;
+  app::BodyDistance body;
 };
 
 const std::vector<Head>& heads() {
@@ -57,8 +57,8 @@ struct Surface {
   std::vector<Root> roots;
 };
 
-std::vector<Vec3> partingOf(const sim::Scalp& scalp) {
-  const sim::FlowLines lines = sim::traceFlowLines(scalp);
+std::vector<Vec3> partingOf(const app::Scalp& scalp) {
+  const app::FlowLines lines = app::traceFlowLines(scalp);
   std::vector<Vec3> middle;
   for (int s = 0; 2 * s < lines.sheets; ++s)
     middle.push_back(0.5 * (lines.at(s, 0) + lines.at(lines.sheets - 1 - s, 0)));
@@ -80,7 +80,7 @@ void placeBeside(const std::vector<Vec3>& parting, const Vec3& p, double& along,
 }
 
 Surface surfaceOf(const Head& head, Style style, Resolution resolution) {
-  const sim::HairMesh mesh = sim::buildHairMesh(sim::makeStyle(style, resolution, head.scalp, head.body));
+  const sim::HairMesh mesh = sim::buildHairMesh(app::makeStyle(style, resolution, head.scalp, head.body));
   std::vector<float> positions;
   app::blendPositions(mesh.shape.positions, mesh.shape.positions, 1, Vec3::Zero(), positions);
   const render::HairLayout layout = render::makeHairLayout(app::renderFaces(mesh), positions);
@@ -108,7 +108,7 @@ Surface surfaceOf(const Head& head, Style style, Resolution resolution) {
         Sample sample;
         sample.place = strands.curve(face, q, static_cast<double>(k) / along_layers);
         const Vec3 ray = sample.place - head.scalp.center;
-        sample.skin = sim::skinPoint(head.scalp, ray);
+        sample.skin = app::skinPoint(head.scalp, ray);
         sample.height = ray.norm() - head.scalp.radiusAt(ray);
         placeBeside(parting, sample.skin, sample.along, sample.away);
         surface.samples.push_back(sample);
@@ -138,8 +138,8 @@ void forEveryStyle(Law law) {
       // The minimal resolution is for hair that is small in the picture.
       for (const Resolution resolution :
            {Resolution::kLow, Resolution::kMedium, Resolution::kHigh, Resolution::kUltra}) {
-        const std::string title = std::string(head.name) + ", " + std::string(sim::styleName(style)) + " " +
-                                  std::string(sim::resolutionName(resolution));
+        const std::string title = std::string(head.name) + ", " + std::string(app::styleName(style)) + " " +
+                                  std::string(app::resolutionName(resolution));
         SCOPED_TRACE(title);
         const Name name{head, style, resolution};
         law(name, surfaceOnce(title, name));
@@ -167,7 +167,7 @@ double quantile(const std::vector<double>& sorted, double share) {
 }
 
 // m: how deep the outline from an azimuth (0: the front) lies under its convex hull, over the upper half of the head.
-double deepestNotch(const Surface& surface, const sim::Scalp& scalp, double azimuth) {
+double deepestNotch(const Surface& surface, const app::Scalp& scalp, double azimuth) {
   const Vec3 right(std::cos(azimuth), 0, -std::sin(azimuth));
   constexpr int kBins = 90;
   std::vector<double> radius(kBins + 1, 0.0);
@@ -179,7 +179,7 @@ double deepestNotch(const Surface& surface, const sim::Scalp& scalp, double azim
   };
   for (const Sample& s : surface.samples) add(s.place - scalp.center);
   for (int i = 0; i < 400; ++i)  // the head itself, where no hair stands out
-    for (int j = 0; j < 100; ++j) add(sim::skinPoint(scalp, sim::scalpDirection(0.9 * i, 0.9 * j)) - scalp.center);
+    for (int j = 0; j < 100; ++j) add(app::skinPoint(scalp, app::scalpDirection(0.9 * i, 0.9 * j)) - scalp.center);
   std::vector<Eigen::Vector2d> outline;
   for (int i = 0; i <= kBins; ++i) {
     const double a = std::numbers::pi * i / kBins;

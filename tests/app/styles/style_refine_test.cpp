@@ -27,8 +27,8 @@ TEST(RefinedStyle, AddsPointsOfTheSameCurves) {
       coarse.positions[coarse.column_first[c] + l] = roots[c] + curveAt(l);
   }
   // Nothing points up: the columns between are not lifted as their roots are.
-  const sim::Woven woven{coarse, std::vector<Vec3>(coarse.positions.size(), Vec3::Zero())};
-  const sim::HairMeshShape fine = sim::refined(woven, tests::analyticScalp());
+  const app::Woven woven{coarse, std::vector<Vec3>(coarse.positions.size(), Vec3::Zero())};
+  const sim::HairMeshShape fine = app::refined(woven, tests::analyticScalp());
   ASSERT_GT(fine.columnCount(), coarse.columnCount());
   int added = 0;
   for (int c = 0; c < fine.columnCount(); ++c) {

@@ -12,7 +12,7 @@
 
 namespace {
 
-using sim::BrushTool;
+using app::BrushTool;
 using sim::Vec3;
 
 sim::HairMesh combedMesh() {
@@ -85,11 +85,11 @@ TEST(ShapeBrush, WhateverAHandDoesEveryPrismStaysPositive) {
   for (int tool = 0; tool < 5; ++tool) {
     sim::HairMesh mesh = combedMesh();
     sim::RestShape shape(mesh);
-    sim::ShapeBrushes brushes(mesh);
+    app::ShapeBrushes brushes(mesh);
     std::vector<Vec3> positions;
     int moved = 0;
     for (int k = 0; k < 200; ++k) {
-      sim::Brush brush;
+      app::Brush brush;
       brush.tool = static_cast<BrushTool>(tool);
       brush.at = mesh.shape.positions[random() % mesh.shape.positions.size()];
       brush.along = 0.05 * Vec3(share(random) - 0.5, share(random) - 0.5, share(random) - 0.5);
@@ -98,7 +98,7 @@ TEST(ShapeBrush, WhateverAHandDoesEveryPrismStaysPositive) {
       brush.falloff = 3 * share(random);
       if (k % 3 == 0) brush.mirror = 0.01;
       moved += brushes.apply(brush, mesh, mesh.shape.positions, {}, positions);
-      ASSERT_TRUE(shape.set(positions, mesh)) << sim::kBrushNames[static_cast<std::size_t>(tool)] << " " << k;
+      ASSERT_TRUE(shape.set(positions, mesh)) << app::kBrushNames[static_cast<std::size_t>(tool)] << " " << k;
     }
     EXPECT_GT(moved, 500) << tool;
     EXPECT_NO_THROW(sim::buildHairMesh(mesh.shape));
@@ -107,11 +107,11 @@ TEST(ShapeBrush, WhateverAHandDoesEveryPrismStaysPositive) {
 
 TEST(ShapeBrush, EachDoesWhatItsNameSays) {
   sim::HairMesh mesh = combedMesh();
-  sim::ShapeBrushes brushes(mesh);
+  app::ShapeBrushes brushes(mesh);
   const std::vector<Vec3> before = mesh.shape.positions;
   const int column = mesh.columnCount() / 2, tip = mesh.shape.column_first[column + 1] - 1;
   std::vector<Vec3> after;
-  sim::Brush brush;
+  app::Brush brush;
   brush.at = before[tip];
   brush.radius = 0.05;
   brush.strength = 0.3;
@@ -139,14 +139,14 @@ TEST(ShapeBrush, EachDoesWhatItsNameSays) {
 TEST(ShapeBrush, NothingIsPushedIntoTheBody) {
   sim::HairMesh mesh = combedMesh();
   sim::RestShape shape(mesh);
-  sim::ShapeBrushes brushes(mesh);
+  app::ShapeBrushes brushes(mesh);
   const int tip = mesh.shape.column_first[mesh.columnCount() / 2 + 1] - 1;
   const Vec3 centre = mesh.shape.positions[tip] + Vec3(0.3, 0, 0);
   const auto body = [&](const Vec3& p) { return (p - centre).norm() - 0.25; };
   const std::vector<Vec3> before = mesh.shape.positions;
   std::vector<Vec3> positions;
   for (int k = 0; k < 100; ++k) {
-    sim::Brush brush;
+    app::Brush brush;
     brush.at = mesh.shape.positions[tip];
     brush.along = {0.01, 0, 0};
     brush.radius = 0.1;

@@ -157,7 +157,7 @@ double distanceAfterMirroring(bool guided, int& columns) {
   params.volume *= 16;                               // softer hair recovers by itself
   if (!guided) params.solver = sim::Solver::kPaper;  // no stabilization
   const sim::HairMeshShape shape =
-      sim::makeStyle(sim::Style::kShort, sim::Resolution::kLow, tests::analyticScalp(), tests::bodyDistance);
+      app::makeStyle(app::Style::kShort, app::Resolution::kLow, tests::analyticScalp(), tests::bodyDistance);
   Hair hair(shape, params);
   const std::vector<Vec3> was = hair.state.positions;
   for (int i = 0; i < hair.mesh.vertexCount(); ++i) {
