@@ -7,6 +7,7 @@
 
 #include "app/figure/character_build.h"
 #include "app/figure/mannequin_parts.h"
+#include "app/figure/skin_cover.h"
 #include "app/files/errors.h"
 #include "app/files/text_file.h"
 #include "app/motion/clip_repair.h"
@@ -32,6 +33,17 @@ Kind kindOf(const std::string& file) {
   if (text.find("HIERARCHY") < 256) return Kind::kBvh;
   if (text.find("NumFrames") < 256) return Kind::kMot;
   return Kind::kUnknown;
+}
+
+void cover(Character& character) {
+  const CoverReport report = coverSkin(character);
+  char note[200];
+  std::snprintf(
+      note, sizeof note,
+      "skin below the chin that hair reaches sticks out of %zu ellipsoids by %.1f mm at most (%s; %.1f mm before "
+      "%d were added)",
+      character.ellipsoids.size(), 1e3 * report.after, report.where.c_str(), 1e3 * report.before, report.added);
+  character.notes.push_back(note);
 }
 
 }  // namespace
@@ -91,8 +103,10 @@ Character loadCharacter(const std::string& motion_file, const std::string& parts
   for (Clip& clip : character.clips) {
     const std::string of = character.clips.size() > 1 ? "clip " + clip.name + ": " : "";
     for (const std::string& note : repairClip(character.skeleton, clip)) character.notes.push_back(of + note);
-    if (const std::string note = plantFeet(character.skeleton, clip); !note.empty()) character.notes.push_back(of + note);
+    if (const std::string note = plantFeet(character.skeleton, clip); !note.empty())
+      character.notes.push_back(of + note);
   }
+  if (kind == Kind::kMot) cover(character);
   return character;
 }
 

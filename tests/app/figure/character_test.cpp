@@ -313,7 +313,7 @@ TEST(RigidParts, PapersMannequinDancesForThreeHundredFrames) {
   if (!fs::exists(folder / "dance.mot")) GTEST_SKIP() << folder << " is absent";
   const app::Character c = app::loadCharacter((folder / "dance.mot").string(), (folder / "female-objs").string());
   ASSERT_EQ(c.skeleton.joints.size(), 16u);
-  ASSERT_EQ(c.ellipsoids.size(), 16u);
+  ASSERT_GE(c.ellipsoids.size(), 16u);  // one a part, and those that cover what sticks out
   EXPECT_EQ(c.head_joint, 0);
   const app::Clip& clip = c.clips.front();
   EXPECT_EQ(clip.frameCount(), 2111);

@@ -1,0 +1,282 @@
+#include "app/figure/skin_cover.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "app/figure/character_build.h"
+#include "app/figure/cover_fit.h"
+#include "app/figure/skin_samples.h"
+
+namespace app {
+namespace {
+
+constexpr std::size_t kMaxSamples = 3000;
+constexpr int kMoments = 10;         // of all clips together, beside the rest pose
+constexpr double kCovered = 0.0018;  // m: skin that sticks out less is covered
+constexpr double kPatch = 0.40;      // head heights: radius of the patch that an added ellipsoid begins with
+constexpr double kSmaller = 0.6;     // of that, for a patch whose ellipsoid swallows too much
+constexpr int kTries = 3;
+constexpr double kHold = 0.02;           // m, see fitCover
+constexpr double kAround = 0.04;         // m: skin of another part so near may hide a place
+constexpr double kHidden = 0.003;        // m under that
+constexpr double kStraight = 0.7;        // cosine of the way there to that skin's normal, at least
+constexpr std::size_t kMaxPoints = 400;  // of a fit's own
+constexpr float kBuried = 0.002f;        // m, that skin above the chin may lie deeper in an added ellipsoid than before
+
+// Gaps (m) of every place to one ellipsoid.
+using Gaps = std::vector<float>;
+
+class Cover {
+ public:
+  explicit Cover(Character& character);
+  CoverReport run(int most);
+
+ private:
+  Gaps gapsOf(const BodyEllipsoid& e) const;
+  void findNearest();
+  void leaveOutHidden();
+  std::vector<CoverPoint> pointsFor(const BodyEllipsoid& e, const Gaps& gaps, int number,
+                                    const std::vector<int>& own) const;
+  bool swallows(const BodyEllipsoid& e, const Gaps& gaps) const;
+  void refit(std::size_t e);
+  void refitAdded(std::size_t given);
+  std::optional<BodyEllipsoid> patchAt(std::size_t place, double radius) const;
+  bool add(std::size_t place);
+  double over() const;
+  // Of the place that sticks out most and is asked for; none: all are covered.
+  std::optional<std::size_t> worst(float least) const;
+
+  Character& character_;
+  PosedSkin skin_;
+  std::vector<Gaps> gaps_;                     // per ellipsoid
+  std::vector<float> nearest_gap_, head_gap_;  // per place; at rest, to the given ones, per sample
+  std::vector<int> nearest_;                   // the ellipsoid, per place
+  std::vector<unsigned char> given_up_;        // per sample
+};
+
+Cover::Cover(Character& character) : character_(character), skin_(poseSkin(character, kMaxSamples, kMoments)) {
+  for (const BodyEllipsoid& e : character_.ellipsoids) gaps_.push_back(gapsOf(e));
+  findNearest();
+  head_gap_.assign(nearest_gap_.begin(), nearest_gap_.begin() + static_cast<std::ptrdiff_t>(skin_.samples.size()));
+  given_up_.resize(skin_.samples.size(), 0);
+  leaveOutHidden();
+}
+
+// Skin that sticks out of the ellipsoids but lies within another part's skin is out of hair's reach: pieces of a figure
+// end in one another.
+void Cover::leaveOutHidden() {
+  for (std::size_t i = 0; i < nearest_gap_.size(); ++i) {
+    if (nearest_gap_[i] <= kCovered || !skin_.reached[i]) continue;
+    const std::vector<Vec3>& world = skin_.world[skin_.momentOf(i)];
+    const Vec3& p = world[i % world.size()];
+    double nearest = kAround * kAround;
+    std::size_t other = world.size();
+    for (std::size_t s = 0; s < world.size(); ++s) {
+      const double apart = (world[s] - p).squaredNorm();
+      if (apart < nearest && skin_.samples[s].joint != skin_.sampleOf(i).joint) nearest = apart, other = s;
+    }
+    if (other == world.size()) continue;
+    const Vec3 normal = skin_.normalAt(skin_.momentOf(i) * world.size() + other);
+    // Behind its nearest skin, not beside that skin's edge.
+    if ((p - world[other]).dot(normal) < -std::max(kHidden, kStraight * std::sqrt(nearest))) skin_.reached[i] = 0;
+  }
+}
+
+Gaps Cover::gapsOf(const BodyEllipsoid& e) const {
+  Gaps gaps;
+  gaps.reserve(skin_.reached.size());
+  for (std::size_t m = 0; m < skin_.world.size(); ++m) {
+    const Rigid& to_joint = skin_.to_joint[m][static_cast<std::size_t>(e.joint)];
+    for (const Vec3& p : skin_.world[m]) gaps.push_back(static_cast<float>(ellipsoidGap(e, to_joint * p)));
+  }
+  return gaps;
+}
+
+void Cover::findNearest() {
+  nearest_gap_.assign(skin_.reached.size(), 1e9f);
+  nearest_.assign(nearest_gap_.size(), -1);
+  for (std::size_t e = 0; e < gaps_.size(); ++e) {
+    for (std::size_t i = 0; i < nearest_gap_.size(); ++i) {
+      if (gaps_[e][i] >= nearest_gap_[i]) continue;
+      nearest_gap_[i] = gaps_[e][i];
+      nearest_[i] = static_cast<int>(e);
+    }
+  }
+}
+
+std::optional<std::size_t> Cover::worst(float least) const {
+  std::optional<std::size_t> place;
+  for (std::size_t i = 0; i < nearest_gap_.size(); ++i) {
+    const SkinSample& sample = skin_.sampleOf(i);
+    if (nearest_gap_[i] <= least || !skin_.reached[i] || sample.of_head || given_up_[i % skin_.samples.size()])
+      continue;
+    least = nearest_gap_[i];
+    place = i;
+  }
+  return place;
+}
+
+// Its own places, all that stick out and of the others as many as there is room for; every other sample at rest that is
+// near or inside; and the air that it holds.
+std::vector<CoverPoint> Cover::pointsFor(const BodyEllipsoid& e, const Gaps& gaps, int number,
+                                         const std::vector<int>& own) const {
+  std::vector<CoverPoint> points;
+  std::vector<unsigned char> is_own(skin_.samples.size(), 0);
+  const auto isOut = [&](int place) { return nearest_gap_[static_cast<std::size_t>(place)] > 0; };
+  const auto out = static_cast<std::size_t>(std::ranges::count_if(own, isOut));
+  const std::size_t room = out < kMaxPoints ? kMaxPoints - out : 1, step = (own.size() - out) / room + 1;
+  std::size_t n = 0;
+  for (const int place : own) {
+    const auto i = static_cast<std::size_t>(place);
+    is_own[i % is_own.size()] = 1;
+    if (isOut(place) || n++ % step == 0) points.push_back({skin_.inJoint(i, e.joint), skin_.sampleOf(i).weight, true});
+  }
+  for (std::size_t i = 0; i < skin_.samples.size(); i += 2) {
+    if (is_own[i] || gaps[i] > 0.02f) continue;
+    // Skin that another ellipsoid buries deep is within the body: pieces of a figure end in one another.
+    if (nearest_[i] != number && nearest_gap_[i] < -0.006f) continue;
+    points.push_back({skin_.inJoint(i, e.joint), 2 * skin_.samples[i].weight, false});
+  }
+  const Rigid to_joint =
+      character_.skeleton.joints[static_cast<std::size_t>(e.joint)].rest_world.inverse(Eigen::Isometry);
+  for (const Vec3& air : skin_.air) {
+    const Vec3 p = to_joint * air;
+    if (ellipsoidGap(e, p) < 0.02) points.push_back({p, 4.0 / static_cast<double>(skin_.samples.size()), false});
+  }
+  return points;
+}
+
+bool Cover::swallows(const BodyEllipsoid& e, const Gaps& gaps) const {
+  for (std::size_t i = 0; i < skin_.samples.size(); ++i) {
+    if (skin_.samples[i].of_head && gaps[i] < std::min(head_gap_[i], 0.0f) - kBuried) return true;
+  }
+  const Rigid to_joint =
+      character_.skeleton.joints[static_cast<std::size_t>(e.joint)].rest_world.inverse(Eigen::Isometry);
+  return std::ranges::any_of(skin_.air, [&](const Vec3& air) { return ellipsoidGap(e, to_joint * air) < 0; });
+}
+
+void Cover::refit(std::size_t e) {
+  std::vector<int> own;
+  for (std::size_t i = 0; i < nearest_.size(); ++i) {
+    const bool wanted = skin_.reached[i] && !skin_.sampleOf(i).of_head;
+    if (wanted && nearest_[i] == static_cast<int>(e) && nearest_gap_[i] > -0.008f) own.push_back(static_cast<int>(i));
+  }
+  if (own.size() < 8) return;
+  const BodyEllipsoid& now = character_.ellipsoids[e];
+  const auto points = pointsFor(now, gaps_[e], static_cast<int>(e), own);
+  const BodyEllipsoid next = fitCover(points, now, kHold * character_.scalp.head_height / 0.23);
+  Gaps gaps = gapsOf(next);
+  if (swallows(next, gaps)) return;
+  character_.ellipsoids[e] = next;
+  gaps_[e] = std::move(gaps);
+}
+
+// Fitted to the skin around a place, as it lies at that place's moment.
+std::optional<BodyEllipsoid> Cover::patchAt(std::size_t place, double radius) const {
+  const std::size_t count = skin_.samples.size(), m = skin_.momentOf(place);
+  const SkinSample& at = skin_.sampleOf(place);
+  const Rigid to_joint =
+      character_.skeleton.joints[static_cast<std::size_t>(at.joint)].rest_world.inverse(Eigen::Isometry);
+  std::vector<FitPoint> around;
+  std::vector<int> own;
+  for (std::size_t s = 0; s < count; ++s) {
+    const SkinSample& sample = skin_.samples[s];
+    const bool other = (sample.rest - at.rest).norm() > radius || sample.normal.dot(at.normal) < 0.2;
+    if (other || sample.of_head || nearest_gap_[m * count + s] < -0.001f) continue;
+    around.push_back({to_joint * sample.rest, sample.weight});
+    own.push_back(static_cast<int>(m * count + s));
+  }
+  BodyEllipsoid e;
+  const Vec3 inward = to_joint.linear() * -at.normal;
+  if (around.size() >= 6) {
+    // As wide as the patch, and as deep under its middle as it is narrow.
+    e = principalEllipsoid(around);
+    const double depth = std::clamp(e.radii.sum() - e.radii.maxCoeff() - e.radii.minCoeff(), 0.008, 0.5 * radius);
+    e.radii = e.radii.cwiseMax(depth);
+    e.center += depth * inward;
+  } else {
+    e.radii = Vec3::Constant(0.25 * radius);
+    e.center = to_joint * at.rest + 0.25 * radius * inward;
+  }
+  e.joint = at.joint;
+  e.name = "cover_" + std::to_string(character_.ellipsoids.size());
+  const auto points = pointsFor(e, gapsOf(e), static_cast<int>(gaps_.size()), own);
+  e = fitCover(points, e, 4 * kHold * character_.scalp.head_height / 0.23);
+  if (swallows(e, gapsOf(e))) return {};
+  return e;
+}
+
+// An ellipsoid for the patch of skin around a place that sticks out. Returns whether less sticks out with it.
+bool Cover::add(std::size_t place) {
+  const float before = nearest_gap_[place];
+  double radius = kPatch * character_.scalp.head_height;
+  for (int attempt = 0; attempt < kTries; ++attempt, radius *= kSmaller) {
+    const std::optional<BodyEllipsoid> e = patchAt(place, radius);
+    if (!e) continue;
+    character_.ellipsoids.push_back(*e);
+    gaps_.push_back(gapsOf(*e));
+    if (gaps_.back()[place] < 0.5f * before) {
+      findNearest();
+      return true;
+    }
+    character_.ellipsoids.pop_back();
+    gaps_.pop_back();
+  }
+  return false;
+}
+
+// Those from number `given` on that skin sticks out of.
+void Cover::refitAdded(std::size_t given) {
+  std::vector<unsigned char> due(gaps_.size(), 0);
+  for (std::size_t i = 0; i < nearest_.size(); ++i) {
+    if (nearest_gap_[i] > kCovered && skin_.reached[i]) due[static_cast<std::size_t>(nearest_[i])] = 1;
+  }
+  for (std::size_t e = given; e < due.size(); ++e) {
+    if (due[e]) refit(e);
+  }
+  findNearest();
+}
+
+// m, of the rest pose's samples: the mean of how far they lie inside.
+double Cover::over() const {
+  double over = 0, weight = 0;
+  for (std::size_t s = 0; s < skin_.samples.size(); ++s) {
+    if (nearest_gap_[s] < -0.02f || skin_.samples[s].of_head) continue;
+    over -= skin_.samples[s].weight * std::min(nearest_gap_[s], 0.0f);
+    weight += skin_.samples[s].weight;
+  }
+  return over / std::max(weight, 1e-12);
+}
+
+CoverReport Cover::run(int most) {
+  CoverReport report;
+  if (skin_.samples.empty()) return report;
+  report.over_before = over();
+  if (const auto place = worst(0)) report.before = nearest_gap_[*place];
+  const std::size_t given = gaps_.size();
+  while (true) {
+    refitAdded(given);
+    const auto place = worst(kCovered);
+    if (!place || gaps_.size() >= given + static_cast<std::size_t>(most)) break;
+    if (!add(*place)) given_up_[*place % skin_.samples.size()] = 1;
+  }
+  given_up_.assign(given_up_.size(), 0);
+  if (const auto place = worst(0)) {
+    report.after = nearest_gap_[*place];
+    report.where = character_.skeleton.joints[static_cast<std::size_t>(skin_.sampleOf(*place).joint)].name;
+  }
+  report.added = static_cast<int>(gaps_.size() - given);
+  report.over = over();
+  return report;
+}
+
+}  // namespace
+
+CoverReport coverSkin(Character& character, int most) {
+  if (character.ellipsoids.empty() || character.mesh.positions.empty()) return {};
+  return Cover(character).run(most);
+}
+
+}  // namespace app

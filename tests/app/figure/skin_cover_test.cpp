@@ -1,0 +1,154 @@
+// Collision ellipsoids cover the skin that hair can reach, and nothing where hair may be.
+#include "app/figure/skin_cover.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "app/figure/character_build.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using app::Rigid;
+using app::Vec3;
+
+// A trunk with two humps of 3 cm in front, under a head: a joint and one fitted ellipsoid each.
+double trunkRadius(const Vec3& d) {
+  const auto hump = [&](double x) { return std::exp(-(d - Vec3(x, 0.2, 0.7).normalized()).squaredNorm() / 0.06); };
+  return 0.15 + 0.03 * (hump(0.5) + hump(-0.5));
+}
+
+void addBall(int joint, const Vec3& center, double (*radius)(const Vec3&), app::Character& c) {
+  constexpr std::uint32_t kRows = 40, kColumns = 60;
+  const auto base = static_cast<std::uint32_t>(c.mesh.positions.size());
+  const auto at = [&](double row, double column) {
+    const double down = row * EIGEN_PI / kRows, around = column * 2 * EIGEN_PI / kColumns;
+    const Vec3 d(std::sin(down) * std::sin(around), std::cos(down), std::sin(down) * std::cos(around));
+    return Vec3(center + radius(d) * d);
+  };
+  for (std::uint32_t row = 0; row <= kRows; ++row) {
+    for (std::uint32_t column = 0; column < kColumns; ++column) {
+      const double r = std::clamp<double>(row, 0.01, kRows - 0.01), k = column;
+      const Vec3 normal = (at(r + 0.01, k) - at(r - 0.01, k)).cross(at(r, k + 0.01) - at(r, k - 0.01)).normalized();
+      c.mesh.positions.push_back(at(r, k).cast<float>());
+      c.mesh.normals.push_back(normal.cast<float>());
+      c.mesh.joints.push_back({static_cast<std::uint16_t>(joint), 0, 0, 0});
+      c.mesh.weights.push_back({1, 0, 0, 0});
+      const std::uint32_t a = base + row * kColumns + column, b = base + row * kColumns + (column + 1) % kColumns;
+      if (row < kRows)
+        c.mesh.triangles.insert(c.mesh.triangles.end(), {a, a + kColumns, b, b, a + kColumns, b + kColumns});
+    }
+  }
+}
+
+app::Character humpedFigure() {
+  app::Character c;
+  const Vec3 trunk(0, 1.2, 0), head(0, 1.54, 0);
+  for (const auto& [name, place] : {std::pair("chest", trunk), std::pair("head", head)}) {
+    app::Joint joint;
+    joint.name = name;
+    joint.rest_local = joint.rest_world = Rigid(Eigen::Translation3d(place));
+    c.skeleton.joints.push_back(joint);
+  }
+  c.head_joint = 1;
+  c.scalp.head_height = 0.24;
+  addBall(0, trunk, trunkRadius, c);
+  addBall(
+      1, head, [](const Vec3&) { return 0.12; }, c);
+  std::vector<app::BodyPart> parts(2);
+  const std::vector<app::FitPoint> points = app::surfacePoints(c.mesh);
+  for (std::size_t v = 0; v < points.size(); ++v) parts[c.mesh.joints[v][0]].points.push_back(points[v]);
+  for (int j = 0; j < 2; ++j) parts[j].joint = j, parts[j].name = c.skeleton.joints[j].name;
+  app::fitParts(parts, c);
+  return c;
+}
+
+double gapAtRest(const app::Character& c, const Vec3& p) {
+  double gap = 1e9;
+  for (const app::BodyEllipsoid& e : c.ellipsoids)
+    gap = std::min(gap, app::ellipsoidGap(e, c.skeleton.joints[e.joint].rest_world.inverse() * p));
+  return gap;
+}
+
+// m, by which the skin of a joint sticks out of all ellipsoids at worst.
+double sticksOut(const app::Character& c, int joint) {
+  double out = 0;
+  for (std::size_t v = 0; v < c.mesh.positions.size(); ++v) {
+    if (c.mesh.joints[v][0] == joint) out = std::max(out, gapAtRest(c, c.mesh.positions[v].cast<double>()));
+  }
+  return out;
+}
+
+TEST(SkinCover, AddsEllipsoidsWhereSkinSticksOut) {
+  app::Character c = humpedFigure();
+  const double before = sticksOut(c, 0);
+  ASSERT_GT(before, 0.010);
+  const app::CoverReport report = app::coverSkin(c);
+  EXPECT_GT(report.added, 0);
+  EXPECT_EQ(c.ellipsoids.size(), 2u + static_cast<std::size_t>(report.added));
+  EXPECT_NEAR(report.before, before, 0.002);
+  EXPECT_LT(report.after, 0.003);
+  EXPECT_LT(sticksOut(c, 0), 0.003);
+}
+
+TEST(SkinCover, LeavesTheAirAndTheHeadFree) {
+  app::Character c = humpedFigure();
+  const app::Character plain = c;
+  app::coverSkin(c);
+  int head = 0, air = 0;
+  for (std::size_t v = 0; v < c.mesh.positions.size(); ++v) {
+    const Vec3 p = c.mesh.positions[v].cast<double>(), out = p + 0.016 * c.mesh.normals[v].cast<double>();
+    if (c.mesh.joints[v][0] == 1) {
+      ++head;
+      ASSERT_GT(gapAtRest(c, p), std::min(gapAtRest(plain, p), 0.0) - 0.003);
+    }
+    if (gapAtRest(plain, out) < 0.006) continue;
+    ++air;
+    ASSERT_GT(gapAtRest(c, out), -0.002);
+  }
+  EXPECT_GT(head, 1000);
+  EXPECT_GT(air, 1000);
+}
+
+TEST(SkinCover, IsTheSameEveryTimeAndAddsNoneWhereNoneIsAsked) {
+  app::Character a = humpedFigure(), b = a, none = a;
+  app::coverSkin(a);
+  app::coverSkin(b);
+  EXPECT_EQ(app::coverSkin(none, 0).added, 0);
+  EXPECT_EQ(none.ellipsoids.size(), 2u);
+  ASSERT_EQ(a.ellipsoids.size(), b.ellipsoids.size());
+  for (std::size_t e = 0; e < a.ellipsoids.size(); ++e) {
+    EXPECT_EQ(a.ellipsoids[e].center, b.ellipsoids[e].center);
+    EXPECT_EQ(a.ellipsoids[e].radii, b.ellipsoids[e].radii);
+  }
+}
+
+// Between the moments that the ellipsoids were fitted at: the trunk's skin in front, where no other part ends.
+TEST(SkinCover, CoversThePapersMannequinThroughItsDance) {
+  const fs::path folder = fs::path(HAIRMESH_SOURCE_DIR) / ".." / "shared" / "arcsim";
+  if (!fs::exists(folder / "dance.mot")) GTEST_SKIP() << folder << " is absent";
+  const app::Character c = app::loadCharacter((folder / "dance.mot").string(), (folder / "female-objs").string());
+  const int chest = 5;
+  ASSERT_EQ(c.skeleton.joints[chest].name, "chest");
+  int looked = 0;
+  for (int frame = 100; frame < 2100; frame += 333) {
+    app::Pose pose;
+    app::samplePose(c.skeleton, c.clips.front(), frame * c.clips.front().frame_time, pose);
+    for (std::size_t v = 0; v < c.mesh.positions.size(); ++v) {
+      if (c.mesh.joints[v][0] != chest || c.mesh.positions[v].y() > 1.35f || c.mesh.positions[v].y() < 1.2f) continue;
+      const Vec3 p =
+          pose.world[chest] * c.skeleton.joints[chest].rest_world.inverse() * c.mesh.positions[v].cast<double>();
+      double gap = 1e9;
+      for (const app::BodyEllipsoid& e : c.ellipsoids)
+        gap = std::min(gap, app::ellipsoidGap(e, pose.world[e.joint].inverse() * p));
+      ASSERT_LT(gap, 0.004) << "frame " << frame;
+      ++looked;
+    }
+  }
+  EXPECT_GT(looked, 500);
+}
+
+}  // namespace
