@@ -128,7 +128,7 @@ SHARED_BLOCK(1, HairBlock) {
   vec4 groups;    // lock, wisp, drift of locks and clumps (m), lift of flyaways (m)
   vec4 waves;     // wave height (m), wave length (m), width of the hairline (m), share of fine hairs there
   vec4 lobe_width;       // standard deviations (rad) of R, TT, TRT over the half angle; w: cuticle angle
-  vec4 gain;             // unused, diffuse, root darkening, tint variation
+  vec4 gain;             // share of the real hairs' width that is drawn, diffuse, root darkening, tint variation
   vec4 forward_albedo;   // mean forward scattering attenuation a_f (Zinke et al. 2008)
   vec4 backward_albedo;  // mean backward scattering attenuation a_b
   vec4 center;           // world: the middle of the head under the hair

@@ -1,6 +1,6 @@
 // The head of the mannequin, in head units (chin to crown = 1): a cranium, a face lofted from chin to brow, and the
 // soft features of a shop-window figure. Proportions follow the sculptor's canon: eyes half way up, nose base a third,
-// mouth two ninths above the chin.
+// mouth two ninths above the chin; pupils 0.26 apart, mouth 0.21 and nose 0.14 wide, cheekbones 0.56 (Farkas 1994).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -39,13 +39,13 @@ const Loft& faceLoft() {
   struct Level {
     double y, side, front, back, shift;
   };
-  constexpr std::array<Level, 10> levels{{{0.030, 0.074, 0.060, 0.085, 0.272},
-                                          {0.090, 0.122, 0.096, 0.140, 0.256},
-                                          {0.160, 0.167, 0.133, 0.195, 0.230},
-                                          {0.240, 0.209, 0.170, 0.240, 0.199},
-                                          {0.330, 0.240, 0.210, 0.258, 0.160},
-                                          {0.430, 0.256, 0.238, 0.252, 0.132},
-                                          {0.540, 0.256, 0.246, 0.250, 0.114},
+  constexpr std::array<Level, 10> levels{{{0.030, 0.080, 0.060, 0.085, 0.272},
+                                          {0.090, 0.133, 0.096, 0.140, 0.256},
+                                          {0.160, 0.183, 0.133, 0.195, 0.230},
+                                          {0.240, 0.228, 0.170, 0.240, 0.199},
+                                          {0.330, 0.261, 0.210, 0.258, 0.160},
+                                          {0.430, 0.276, 0.238, 0.252, 0.132},
+                                          {0.540, 0.272, 0.246, 0.250, 0.114},
                                           {0.640, 0.245, 0.238, 0.245, 0.108},
                                           {0.740, 0.205, 0.205, 0.220, 0.093},
                                           {0.840, 0.130, 0.130, 0.150, 0.080}}};
@@ -58,20 +58,22 @@ const Loft& faceLoft() {
 }
 
 double nose(const Vec3& q) {
-  const RoundCone bridge{Vec3(0, 0.540, 0.338), Vec3(0, 0.352, 0.428), 0.0185, 0.0275};
+  const RoundCone bridge{Vec3(0, 0.545, 0.336), Vec3(0, 0.368, 0.420), 0.0200, 0.0240};
   const Vec3 m(std::abs(q.x()), q.y(), q.z());
-  const double wing = egg(m - Vec3(0.034, 0.334, 0.390), Vec3(0.023, 0.021, 0.032));
-  return smoothMin(bridge.value(q), wing, 0.050);
+  const double tip = egg(q - Vec3(0, 0.354, 0.418), Vec3(0.036, 0.030, 0.036));
+  const double wing = egg(m - Vec3(0.045, 0.337, 0.378), Vec3(0.026, 0.024, 0.034));
+  const double column = egg(q - Vec3(0, 0.326, 0.398), Vec3(0.013, 0.013, 0.032));
+  return smoothMin(smoothMin(bridge.value(q), tip, 0.040), smoothMin(wing, column, 0.020), 0.034);
 }
 
 // Lips: two soft rolls that follow the curve of the teeth and part in a dip; the upper one has a bow.
 double lips(const Vec3& q, double d) {
-  const double x = std::abs(q.x()), x2 = x * x, curve = 1.7 * x2, smile = 0.9 * x2;
-  const double bow = 0.006 * std::exp(-std::pow((x - 0.026) / 0.016, 2));
-  const double upper = egg(q - Vec3(0, 0.226 + smile + bow, 0.352 - curve), Vec3(0.088, 0.024, 0.034));
-  const double lower = egg(q - Vec3(0, 0.186 + smile, 0.342 - curve), Vec3(0.070, 0.029, 0.038));
+  const double x = std::abs(q.x()), x2 = x * x, curve = 1.7 * x2, smile = 0.6 * x2;
+  const double bow = 0.006 * std::exp(-std::pow((x - 0.030) / 0.018, 2));
+  const double upper = egg(q - Vec3(0, 0.226 + smile + bow, 0.352 - curve), Vec3(0.108, 0.025, 0.036));
+  const double lower = egg(q - Vec3(0, 0.186 + smile, 0.342 - curve), Vec3(0.086, 0.031, 0.040));
   d = smoothMin(d, smoothMin(upper, lower, 0.012), 0.034);
-  d = smoothMax(d, -egg(q - Vec3(0, 0.2070 + smile, 0.391 - curve), Vec3(0.092, 0.0060, 0.020)), 0.016);  // seam
+  d = smoothMax(d, -egg(q - Vec3(0, 0.2070 + smile, 0.391 - curve), Vec3(0.110, 0.0060, 0.020)), 0.016);  // seam
   return smoothMax(d, -egg(q - Vec3(0, 0.268, 0.418), Vec3(0.014, 0.032, 0.024)), 0.030);                  // philtrum
 }
 
@@ -83,11 +85,11 @@ double headWithoutEars(const Vec3& q) {
   // The jaw rises from the chin to the ears.
   static const Eigen::Matrix3d jaw_tilt = Eigen::AngleAxisd(0.46, Vec3::UnitX()).toRotationMatrix();
   d = smoothMin(d, egg(jaw_tilt.transpose() * (q - Vec3(0, 0.195, 0.155)), Vec3(0.168, 0.108, 0.205)), 0.10);
-  d = smoothMin(d, egg(q - Vec3(0, 0.078, 0.290), Vec3(0.064, 0.056, 0.066)), 0.07);        // chin
-  d = smoothMin(d, egg(m - Vec3(0.160, 0.415, 0.190), Vec3(0.092, 0.090, 0.112)), 0.14);    // cheeks
-  d = smoothMin(d, egg(m - Vec3(0.088, 0.590, 0.262), Vec3(0.092, 0.032, 0.074)), 0.090);   // brows
-  d = smoothMax(d, -egg(m - Vec3(0.112, 0.516, 0.455), Vec3(0.094, 0.054, 0.114)), 0.066);  // eye sockets
-  d = smoothMin(d, egg(m - Vec3(0.113, 0.498, 0.275), Vec3(0.070, 0.053, 0.078)), 0.016);   // closed lids
+  d = smoothMin(d, egg(q - Vec3(0, 0.078, 0.290), Vec3(0.074, 0.056, 0.066)), 0.07);        // chin
+  d = smoothMin(d, egg(m - Vec3(0.182, 0.424, 0.186), Vec3(0.092, 0.078, 0.106)), 0.14);    // cheeks
+  d = smoothMin(d, egg(m - Vec3(0.100, 0.590, 0.258), Vec3(0.102, 0.032, 0.074)), 0.090);   // brows
+  d = smoothMax(d, -egg(m - Vec3(0.130, 0.516, 0.450), Vec3(0.096, 0.054, 0.116)), 0.066);  // eye sockets
+  d = smoothMin(d, egg(m - Vec3(0.131, 0.500, 0.266), Vec3(0.078, 0.056, 0.082)), 0.016);   // closed lids
   d = smoothMin(d, nose(q), 0.046);
   return lips(q, d);
 }

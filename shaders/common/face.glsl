@@ -15,7 +15,7 @@ float hairNoise(vec2 p) {
 
 // Darkness of the brow's hairs: an arch that rises to its outer third and tapers there.
 float brow(vec2 m, float pixel) {
-  float along = (m.x - 0.046) / 0.150;  // 0 inner end .. 1 outer end
+  float along = (m.x - 0.056) / 0.160;  // 0 inner end .. 1 outer end
   float t = clamp(along, 0.0, 1.0);
   float line = 0.574 + 0.036 * t * (1.75 - t) - 0.026 * t * t * t * t;
   float half_width = mix(0.0125, 0.0035, smoothstep(0.15, 1.0, t));
@@ -29,12 +29,12 @@ float brow(vec2 m, float pixel) {
 
 // Height of the closed lids' edge: lowest in the middle of the eye.
 float lidEdge(float x) {
-  float u = (x - 0.114) / 0.063;
+  float u = (x - 0.132) / 0.070;
   return 0.4930 - 0.0190 * (1.0 - u * u) + 0.004 * u;
 }
 
 float lashes(vec2 m, float pixel) {
-  float u = (m.x - 0.114) / 0.063, edge = lidEdge(m.x);
+  float u = (m.x - 0.132) / 0.070, edge = lidEdge(m.x);
   float within = 1.0 - smoothstep(0.92, 1.06, abs(u));
   float line = band(m.y - edge, 0.0030 + 0.0010 * u, 0.0016 + pixel) * within;
   // Lashes fan out below the edge, longer at the outer corner.
@@ -47,11 +47,11 @@ float lashes(vec2 m, float pixel) {
 
 // Share of the lips' colour: x the lips, y the seam between them.
 vec2 lips(vec2 m, float pixel) {
-  float x2 = m.x * m.x, smile = 0.9 * x2, end = 1.0 - smoothstep(0.066, 0.084, m.x);
+  float x2 = m.x * m.x, smile = 0.6 * x2, end = 1.0 - smoothstep(0.084, 0.103, m.x);
   float seam = 0.2070 + smile;
-  float bow = 0.005 * exp(-(m.x - 0.026) * (m.x - 0.026) / 0.0003);
-  float upper = seam + (0.0290 + bow) * sqrt(clamp(1.0 - x2 / 0.0072, 0.0, 1.0));
-  float lower = seam - 0.0410 * sqrt(clamp(1.0 - x2 / 0.0064, 0.0, 1.0));
+  float bow = 0.005 * exp(-(m.x - 0.030) * (m.x - 0.030) / 0.0004);
+  float upper = seam + (0.0290 + bow) * sqrt(clamp(1.0 - x2 / 0.0108, 0.0, 1.0));
+  float lower = seam - 0.0410 * sqrt(clamp(1.0 - x2 / 0.0096, 0.0, 1.0));
   float soft = 0.004 + pixel;
   float lip = smoothstep(lower - soft, lower + soft, m.y) * (1.0 - smoothstep(upper - soft, upper + soft, m.y));
   return vec2(lip, band(m.y - seam, 0.0018, 0.0026 + pixel)) * end;
@@ -60,17 +60,17 @@ vec2 lips(vec2 m, float pixel) {
 // The share of the albedo that paint leaves, and in w what is left of the roughness. `brow_color`: of the brows' hairs.
 // pixel: head units that a pixel spans.
 vec4 facePaint(vec3 q, vec3 brow_color, float pixel) {
-  if (q.z < 0.16 || q.y < 0.10 || q.y > 0.68 || abs(q.x) > 0.25) return vec4(1.0);
+  if (q.z < 0.16 || q.y < 0.10 || q.y > 0.68 || abs(q.x) > 0.28) return vec4(1.0);
   vec2 m = vec2(abs(q.x), q.y);
   vec2 lip = lips(m, pixel);
   vec4 paint = mix(vec4(1.0), vec4(0.84, 0.56, 0.53, 0.68), lip.x);
   paint.rgb *= 1.0 - 0.6 * lip.y;
   // Warm cheeks and lids.
-  vec2 cheek = (m - vec2(0.170, 0.385)) / vec2(0.085, 0.065);
+  vec2 cheek = (m - vec2(0.188, 0.395)) / vec2(0.085, 0.065);
   paint.rgb *= mix(vec3(1.0), vec3(1.01, 0.94, 0.93), exp(-dot(cheek, cheek)));
-  vec2 lid = (m - vec2(0.115, 0.515)) / vec2(0.062, 0.024);
+  vec2 lid = (m - vec2(0.132, 0.517)) / vec2(0.070, 0.026);
   paint.rgb *= mix(vec3(1.0), vec3(0.86, 0.79, 0.77), exp(-dot(lid, lid)));
-  vec2 nostril = (m - vec2(0.0235, 0.3180)) / vec2(0.0120, 0.0060);
+  vec2 nostril = (m - vec2(0.0290, 0.3180)) / vec2(0.0130, 0.0060);
   paint.rgb *= 1.0 - 0.75 * (1.0 - smoothstep(0.6, 1.3, length(nostril))) * smoothstep(0.37, 0.39, q.z);
   paint.rgb = mix(paint.rgb, brow_color, 0.88 * brow(m, pixel));
   paint = mix(paint, vec4(0.09, 0.075, 0.07, 0.8), lashes(m, pixel));
