@@ -35,14 +35,27 @@ Kind kindOf(const std::string& file) {
   return Kind::kUnknown;
 }
 
+constexpr double kFits = 0.012;  // m of skin that added ellipsoids may leave out, or none are added
+
 void cover(Character& character) {
+  const std::vector<BodyEllipsoid> given = character.ellipsoids;
   const CoverReport report = coverSkin(character);
-  char note[200];
-  std::snprintf(
-      note, sizeof note,
-      "skin below the chin that hair reaches sticks out of %zu ellipsoids by %.1f mm at most (%s; %.1f mm before "
-      "%d were added)",
-      character.ellipsoids.size(), 1e3 * report.after, report.where.c_str(), 1e3 * report.before, report.added);
+  const double before = 1e3 * report.before, after = 1e3 * report.after;
+  char note[300];
+  if (report.after > kFits) {
+    character.ellipsoids = given;
+    std::snprintf(
+        note, sizeof note,
+        "skin below the chin that hair reaches sticks out of %zu ellipsoids by %.0f mm (%s), and %d more would "
+        "leave %.0f mm: --collider sdf suits this figure better",
+        given.size(), before, report.where.c_str(), report.added, after);
+  } else {
+    std::snprintf(note, sizeof note,
+                  "skin below the chin that hair reaches sticks out of %zu ellipsoids by %.1f mm at most (%s; %.1f mm "
+                  "before %d were added); they lie over it by %.1f mm on average (%.1f mm before)",
+                  character.ellipsoids.size(), after, report.where.c_str(), before, report.added, 1e3 * report.over,
+                  1e3 * report.over_before);
+  }
   character.notes.push_back(note);
 }
 
@@ -69,13 +82,6 @@ Character loadMannequin(const std::string& text, const std::string& file) {
   const HeadMeasure measure{inScalp({0, 0, 0}).y(), inScalp({0, 1, 0}).y(), inScalp({0, 0.585, -0.045})};
   sampleHead(&measure, character);
   fitParts(std::move(parts), character);
-  const Figure& figure = mannequin.field.figure;
-  const Coverage cover =
-      coverage(character, figure.pelvis.y() + 0.5 * (figure.neck_base.y() - figure.pelvis.y()), figure.height);
-  char note[120];
-  std::snprintf(note, sizeof note, "above the waist the skin sticks out of the ellipsoids by %.0f mm at most",
-                1000 * cover.worst);
-  character.notes.push_back(note);
   return character;
 }
 
@@ -106,7 +112,7 @@ Character loadCharacter(const std::string& motion_file, const std::string& parts
     if (const std::string note = plantFeet(character.skeleton, clip); !note.empty())
       character.notes.push_back(of + note);
   }
-  if (kind == Kind::kMot) cover(character);
+  cover(character);
   return character;
 }
 

@@ -98,27 +98,6 @@ void fitParts(std::vector<BodyPart> parts, Character& character) {
   character.notes.push_back(text);
 }
 
-Coverage coverage(const Character& character, double low, double high) {
-  Coverage c;
-  double outside = 0;
-  const Rigid to_scalp = (character.skeleton.joints[character.head_joint].rest_world * character.head_frame).inverse();
-  for (const auto& position : character.mesh.positions) {
-    const Vec3 p = position.cast<double>();
-    if (p.y() < low || p.y() > high) continue;
-    const Vec3 q = (to_scalp * p - character.scalp.center) / character.scalp.head_height;
-    if (std::abs(q.y() + 0.3) < 0.33 && q.norm() < 0.8 && (q.z() > 0.3 || std::abs(q.x()) > 0.28)) continue;
-    double gap = 1e9;
-    for (const BodyEllipsoid& e : character.ellipsoids)
-      gap = std::min(gap, ellipsoidGap(e, character.skeleton.joints[e.joint].rest_world.inverse() * p));
-    if (gap <= 0) continue;
-    c.worst = std::max(c.worst, gap);
-    c.mean += gap;
-    ++outside;
-  }
-  if (outside > 0) c.mean /= outside;
-  return c;
-}
-
 namespace {
 
 struct SurfaceSample {

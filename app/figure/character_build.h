@@ -38,13 +38,6 @@ std::vector<BodyPart> partsByJoint(const Character& character, const BodyRoles& 
 // `measure`: landmarks where they are known, else null.
 void sampleHead(const HeadMeasure* measure, Character& character);
 
-// How far (m) the rest-pose skin sticks out of all ellipsoids together, over the vertices between two heights: the
-// worst, and the mean over those that do. Face and ears stick out by nature and are left out.
-struct Coverage {
-  double worst = 0, mean = 0;
-};
-Coverage coverage(const Character& character, double low, double high);
-
 Character loadMannequin(const std::string& text, const std::string& file);
 Character loadRigidParts(const std::string& text, const std::string& file, const std::string& parts_dir);
 Character importSkinned(const std::string& file);

@@ -147,7 +147,7 @@ void addOptions(CLI::App& program, Asked& a) {
   program.add_option("--frames-budget-document", a.frames_budget.folder,
                      "also put --frames-budget's table and chart into this folder's performance.md");
   program.add_option("--skin-strands", a.skin.strands, "strands that --skin looks at")->check(CLI::Range(1, 100000));
-  program.add_option("--skin-document", a.skin.folder, "also keep --skin's table in this folder's data/skin.csv");
+  program.add_option("--skin-document", a.skin.folder, "also put --skin's table into this folder's skin.md, and every clip into data/skin.csv");
   program.add_option("--set", a.sets, "NAME=VALUE of a parameter for --collisions, --skin and --swing")->allow_extra_args(false);
   program.add_option("--conversion-document", a.conversion.folder,
                      "also put --conversion's tables into this folder's conversion.md");

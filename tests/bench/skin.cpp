@@ -30,19 +30,29 @@ constexpr double kFrame = 1.0 / 60;  // s
 constexpr int kEvery = 6;            // frames from one look to the next
 constexpr double kLongest = 60;      // s of a clip
 constexpr int kWidth = 1280, kHeight = 720;
-constexpr double kSeen = 1e-3, kDeepest = 4e-3;  // m
-constexpr double kShare = 1e-3;                  // of the points that may lie deeper than kSeen
-constexpr float kNear = 0.02f;                   // m: skin so near to a strand is skin that hair can reach
+constexpr double kSeen = 1e-3, kDeepest = 4e-3;                  // m
+constexpr double kShare = 1e-3;                                  // of the points that may lie deeper than kSeen
+constexpr const char* kModels = "/usr/share/assimp/models/FBX";  // Debian: assimp-testmodels
+constexpr const char* kModel = "huesitos.fbx";                   // the one that has a head
+constexpr float kNear = 0.02f;  // m: skin so near to a strand is skin that hair can reach
 
+// kind: the figures of a row of the document.
 struct Figure {
-  std::string file, parts, name;
+  std::string file, parts, name, kind;
 };
+
+std::string kindOf(const fs::path& file, bool own) {
+  const std::string ending = file.extension().string();
+  if (ending == ".mot") return "rigid parts (ARCSim)";
+  if (ending != ".bvh") return file.filename().string();
+  return own ? "mannequin, own clips" : "mannequin, captures";
+}
 
 std::vector<Figure> figuresOf(const SkinOptions& options) {
   const fs::path own = fs::path(app::findFile("walk.bvh", "", "clips")).parent_path();
   const fs::path shared = own / ".." / ".." / ".." / "shared";
   std::vector<Figure> figures;
-  for (const fs::path& folder : {own, shared / "mocap", shared / "arcsim", shared / "characters"}) {
+  for (const fs::path& folder : {own, shared / "mocap", shared / "arcsim", shared / "characters", fs::path(kModels)}) {
     if (!fs::exists(folder)) {
       std::printf("%s is not there: its figures are left out\n", folder.filename().c_str());
       continue;
@@ -51,8 +61,10 @@ std::vector<Figure> figuresOf(const SkinOptions& options) {
     for (const auto& entry : fs::directory_iterator(folder)) {
       const std::string ending = entry.path().extension().string(), name = entry.path().filename().string();
       if (!options.clips.empty() && std::ranges::find(options.clips, name) == options.clips.end()) continue;
-      if (ending == ".mot") found.push_back({entry.path().string(), (folder / "female-objs").string(), name});
-      if (ending == ".bvh" || ending == ".glb" || ending == ".fbx") found.push_back({entry.path().string(), "", name});
+      if (folder == kModels && name != kModel) continue;
+      const std::string parts = ending == ".mot" ? (folder / "female-objs").string() : "";
+      if (ending == ".mot" || ending == ".bvh" || ending == ".glb" || ending == ".fbx")
+        found.push_back({entry.path().string(), parts, name, kindOf(entry.path(), folder == own)});
     }
     std::ranges::sort(found, {}, &Figure::name);
     figures.insert(figures.end(), found.begin(), found.end());
@@ -68,6 +80,9 @@ struct Looked {
   std::vector<float> out;          // m, how far reachable skin lies outside of the ellipsoids; 0 inside
   double worst_out = 0;            // m
   std::string worst_joint;         // which carries the skin that is worst out
+
+  double share() const { return static_cast<double>(seen) / static_cast<double>(std::max(points, 1L)); }
+  bool holds() const { return share() <= kShare && deepest <= kDeepest; }
 };
 
 // Cells that hold a point, so that what is near them is found.
@@ -104,7 +119,7 @@ void lookAtSkin(const app::Demo& demo, const skin::DrawnSkin& skin, const NearCe
   app::poseEllipsoids(character, actor.shown_pose, actor.shown_pose, 0, ellipsoids);
   for (std::size_t v = 0; v < character.mesh.positions.size(); ++v) {
     const Vector3f& p = skin.vertices()[v];
-    if (!cells.near(p)) continue;
+    if (!cells.near(p) || skin.depth(p) > kSeen) continue;  // or hidden in another piece
     const double out = outOf(ellipsoids, p.cast<double>() + demo.origin);
     looked.out.push_back(static_cast<float>(out));
     if (out <= looked.worst_out) continue;
@@ -172,9 +187,7 @@ const std::vector<std::string> kHead{"style",       "clip",  "frames",       "po
                                      "deepest, px", "holds", "skin out, mm", "99.9 %, mm", "out by 3 mm", "where"};
 
 std::vector<std::string> rowOf(const std::string& style, const std::string& clip, Looked& looked, bool& all_hold) {
-  const double share = static_cast<double>(looked.seen) / static_cast<double>(std::max(looked.points, 1L));
-  const bool holds = share <= kShare && looked.deepest <= kDeepest;
-  all_hold = all_hold && holds;
+  all_hold = all_hold && looked.holds();
   std::ranges::sort(looked.out);
   const std::size_t count = looked.out.size();
   const double most = count == 0 ? 0 : looked.out[static_cast<std::size_t>(0.999 * static_cast<double>(count - 1))];
@@ -183,14 +196,46 @@ std::vector<std::string> rowOf(const std::string& style, const std::string& clip
           clip,
           formatted("%d", looked.frames),
           formatted("%ld", looked.points),
-          formatted("%.3f %%", 100 * share),
+          formatted("%.3f %%", 100 * looked.share()),
           formatted("%.2f", 1e3 * looked.deepest),
           formatted("%.1f", looked.pixels),
-          holds ? "yes" : "no",
+          looked.holds() ? "yes" : "no",
           formatted("%.1f", 1e3 * looked.worst_out),
           formatted("%.1f", 1e3 * most),
           formatted("%.2f %%", 100.0 * static_cast<double>(far) / static_cast<double>(std::max<std::size_t>(count, 1))),
           looked.worst_joint};
+}
+
+// The rows of the document: all clips of one kind of figure with one style.
+struct Row {
+  std::string kind, style, deepest_clip;
+  int clips = 0, hold = 0;
+  Looked all;
+};
+
+void addTo(std::vector<Row>& rows, const Figure& figure, const std::string& style, const Looked& looked) {
+  auto row = std::ranges::find_if(rows, [&](const Row& r) { return r.kind == figure.kind && r.style == style; });
+  if (row == rows.end()) row = rows.insert(rows.end(), Row{figure.kind, style, "", 0, 0, {}});
+  ++row->clips;
+  row->hold += looked.holds();
+  row->all.points += looked.points;
+  row->all.seen += looked.seen;
+  row->all.pixels = std::max(row->all.pixels, looked.pixels);
+  row->all.worst_out = std::max(row->all.worst_out, looked.worst_out);
+  if (looked.deepest < row->all.deepest || (looked.deepest == 0 && row->clips > 1)) return;
+  row->all.deepest = looked.deepest;
+  row->deepest_clip = figure.name.substr(0, figure.name.find('.'));
+}
+
+Table documentOf(const std::vector<Row>& rows) {
+  Table table{
+      {"figure", "style", "over 1 mm", "deepest, mm", "deepest, px", "in clip", "skin out, mm", "clips that hold"}, {}};
+  for (const Row& row : rows) {
+    table.rows.push_back({row.kind, row.style, formatted("%.3f %%", 100 * row.all.share()),
+                          formatted("%.1f", 1e3 * row.all.deepest), formatted("%.1f", row.all.pixels), row.deepest_clip,
+                          formatted("%.1f", 1e3 * row.all.worst_out), formatted("%d of %d", row.hold, row.clips)});
+  }
+  return table;
 }
 
 }  // namespace
@@ -199,10 +244,12 @@ bool runSkin(const SkinOptions& options) {
   const std::vector<std::string> styles =
       options.styles.empty() ? std::vector<std::string>{"short low", "shoulder low", "long low"} : options.styles;
   Table table{kHead, {}};
+  std::vector<Row> rows;
   bool all_hold = true;
   for (const std::string& style : styles) {
     for (const Figure& figure : figuresOf(options)) {
       Looked looked = play(figure, style, options);
+      addTo(rows, figure, style, looked);
       table.rows.push_back(rowOf(style, figure.name, looked, all_hold));
       for (const std::string& cell : table.rows.back())
         std::printf("%s%s", cell.c_str(), &cell == &table.rows.back().back() ? "" : ", ");
@@ -211,7 +258,10 @@ bool runSkin(const SkinOptions& options) {
     }
   }
   if (table.rows.empty()) throw app::InputError("", "--clips", "names no clip that is there", "such as walk.bvh");
-  if (!options.folder.empty()) writeTable(options.folder, "skin", table);
+  if (!options.folder.empty()) {
+    writeTable(options.folder, "skin", table);
+    writeMeasuredPart(options.folder + "/skin.md", "skin", documentOf(rows).markdown());
+  }
   return all_hold;
 }
 
