@@ -124,6 +124,13 @@ void overrideCharacter(const Options& options, CharacterSpec& spec) {
   for (const std::string& text : options.pins) spec.pins.push_back(pinFromText(text));
 }
 
+// A scene's name speaks of its motion: with another one it is another's.
+void nameAfterMotion(const Options& options, Scene& scene) {
+  if (options.motion.empty()) return;
+  const std::string motion = std::filesystem::path(options.motion).stem().string();
+  scene.name = options.scene.empty() ? motion : scene.name + ", with " + motion;
+}
+
 // "paper" is the preset of that name.
 void chooseSolver(const std::string& name, sim::SimParams& params) {
   if (name.empty()) return;
@@ -145,6 +152,7 @@ Scene sceneFromOptions(const Options& given) {
     overrideCharacter(options, spec);
     looks.push_back(&spec.look);
   }
+  nameAfterMotion(options, scene);
   if (!options.preset.empty()) loadPreset(presetFile(options.preset, ""), {&scene.sim, &scene.look, looks});
   // Before the sets: --set overrides a part of what --solver sets.
   chooseSolver(options.solver, scene.sim);

@@ -205,6 +205,14 @@ TEST(Options, FilesThatCannotBeUsedAreBadInput) {
   }
 }
 
+TEST(Options, TheSceneIsNamedAfterAnotherMotion) {
+  const auto nameOf = [](std::vector<std::string> words) { return app::sceneFromOptions(parse(words).options).name; };
+  const std::string own = nameOf({"assets/scenes/head_shake.json"});
+  EXPECT_EQ(nameOf({"--motion", "walk.bvh"}), "walk");
+  EXPECT_EQ(nameOf({"assets/scenes/head_shake.json", "--motion", "walk.bvh"}), own + ", with walk");
+  EXPECT_NE(nameOf({}), "walk");
+}
+
 TEST(Options, ThePapersSettingIsOneWordAndItsPreset) {
   const auto paramsOf = [](const std::vector<std::string>& words) {
     const sim::SimParams params = app::sceneFromOptions(parse(words).options).sim;
