@@ -1,50 +1,98 @@
-// hairmesh-convert IN OUT.obj: curves of other programs to a hair mesh.
+// hairmesh-convert IN OUT.obj: curves, strips and tubes of other programs to a hair mesh.
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "app/files/errors.h"
 #include "app/files/hair_file.h"
 #include "app/files/output_file.h"
+#include "app/files/polygon_file.h"
+#include "app/files/text_file.h"
 #include "app/groom/convert.h"
+#include "app/groom/groom_bytes.h"
+#include "app/groom/strip_convert.h"
 
 namespace {
 
 struct Arguments {
-  std::string in, out, preset;
-  app::ConvertOptions convert;
+  std::string in, out, preset, scalp;
+  double unit = 0;
+  app::ConvertOptions curves;
+  app::StripOptions strips;
 };
 
 const char* const kFooter =
-    R"(IN is told by its content: .hair, .abc, .usda, .tfx or .ply. OUT.obj is read by hairmesh --hair; beside it OUT.json has
-what makes the strands individual, as a preset for hairmesh --preset.
+    R"(IN is told by its content: curves (.hair, .abc, .usda, .tfx, .ply), or strips of quads, cards and tubes (.obj, .fbx,
+.glb, .gltf, .vrm). OUT.obj is read by hairmesh --hair; of curves OUT.json beside it has what makes the strands
+individual, as a preset for hairmesh --preset.
 
 Exit codes: 0 fine, 1 a file that cannot be written, 2 usage, 4 a file that cannot be used.)";
+
+void addCurveOptions(CLI::App& parser, Arguments& arguments) {
+  parser
+      .add_option(
+          "--vertices", arguments.curves.fit.vertices,
+          "Most vertices; by default the least of 400, 800, 1600 and 2400 with which the mean distance is within "
+          "1 % of the length and 95 % of the points within 3 %; of strips 4000")
+      ->check(CLI::Range(60, 20000));
+  parser
+      .add_option("--layers", arguments.curves.fit.layers,
+                  "Layers of every column; by default as the strands ask for, or the rows of a strip")
+      ->check(CLI::Range(3, 40));
+  parser.add_option("--unit", arguments.unit, "Metres in a unit of the file; by default as it says, or inferred")
+      ->check(CLI::PositiveNumber);
+  parser.add_flag("--reverse-strands", arguments.curves.reverse, "Strands are given from tip to root");
+}
+
+void addStripOptions(CLI::App& parser, Arguments& arguments) {
+  using app::RootEdge;
+  static const std::map<std::string, RootEdge> kEdges{{"auto", RootEdge::kAuto},
+                                                      {"scalp", RootEdge::kScalp},
+                                                      {"highest", RootEdge::kHighest},
+                                                      {"lowest", RootEdge::kLowest}};
+  app::StripOptions& strips = arguments.strips;
+  parser
+      .add_option(
+          "--root-edge", strips.root,
+          "Of strips and tubes, the end that is the root: scalp (nearest to it), highest, lowest, or auto: scalp "
+          "where there is one, else highest")
+      ->transform(CLI::CheckedTransformer(kEdges));
+  parser.add_flag("--other-end", strips.other_end,
+                  "Of strips and tubes, the root is the other end than --root-edge says");
+  parser.add_option("--flip-strips", strips.flipped, "Numbers of single strips, from 1, whose root is the other end")
+      ->delimiter(',');
+  parser.add_option(
+      "--scalp", arguments.scalp,
+      "Mesh of the scalp in the strips' unit and axes; by default objects of IN called scalp, head, body");
+  parser.add_option("--up", strips.up, "The axis that is up in a file of strips: y or z")
+      ->check(CLI::IsMember({'y', 'z'}));
+  parser
+      .add_option("--join", strips.join,
+                  "Metres: neighbouring strips nearer than that become one sheet; by default those that share vertices")
+      ->check(CLI::Range(0.0, 0.05));
+  parser
+      .add_option("--thickness", strips.mesh.thickness,
+                  "Metres that strips are thick at their roots; by default by their width")
+      ->check(CLI::Range(0.0002, 0.05));
+}
 
 // Throws CLI::ParseError.
 Arguments parse(int argc, char** argv, CLI::App& parser) {
   parser.name("hairmesh-convert");
   parser.footer(kFooter);
   Arguments arguments;
-  parser.add_option("IN", arguments.in, "Groom")->required();
+  parser.add_option("IN", arguments.in, "Groom: curves, strips or tubes")->required();
   parser.add_option("OUT", arguments.out, "Hair mesh to write (OBJ)")->required();
-  parser
-      .add_option(
-          "--vertices", arguments.convert.fit.vertices,
-          "Most vertices; by default the least of 400, 800, 1600 and 2400 with which the mean distance is within "
-          "1 % of the length and 95 % of the points within 3 %")
-      ->check(CLI::Range(60, 20000));
-  parser
-      .add_option("--layers", arguments.convert.fit.layers, "Layers of every column; by default as the strands ask for")
-      ->check(CLI::Range(3, 40));
-  parser
-      .add_option("--unit", arguments.convert.unit, "Metres in a unit of the file; by default as it says, or inferred")
-      ->check(CLI::PositiveNumber);
-  parser.add_flag("--reverse-strands", arguments.convert.reverse, "Strands are given from tip to root");
+  addCurveOptions(parser, arguments);
+  addStripOptions(parser, arguments);
   parser.parse(argc, argv);
-  arguments.convert.silhouettes = true;
+  arguments.curves.unit = arguments.strips.unit = arguments.unit;
+  arguments.curves.silhouettes = true;
+  arguments.strips.mesh.vertices = arguments.curves.fit.vertices;
+  arguments.strips.mesh.layers = arguments.curves.fit.layers;
   arguments.preset = std::filesystem::path(arguments.out).replace_extension(".json").string();
   return arguments;
 }
@@ -60,16 +108,38 @@ std::string presetText(const app::LookFit& fit, const std::string& name) {
   return nlohmann::ordered_json{{"name", name}, {"hair", hair}}.dump(2) + "\n";
 }
 
-int run(const Arguments& arguments) {
-  app::checkWritable(arguments.out);
+int convertCurves(const std::string& bytes, const Arguments& arguments) {
   app::GroomHints hints;
-  const app::Groom groom = app::readGroom(arguments.in, &hints);
-  const app::Conversion conversion = app::convertGroom(groom, hints, arguments.convert, arguments.in);
+  const app::Groom groom = app::readGroom(bytes, arguments.in, &hints);
+  const app::Conversion conversion = app::convertGroom(groom, hints, arguments.curves, arguments.in);
   app::writeFile(arguments.out, app::writeHairMesh(conversion.shape));
   app::writeFile(arguments.preset, presetText(conversion.look, std::filesystem::path(arguments.out).stem().string()));
   std::cout << app::conversionReport(conversion) << "written       " << arguments.out << " and " << arguments.preset
             << "\n";
   return app::kExitFine;
+}
+
+int convertPolygons(const Arguments& arguments) {
+  app::StripOptions options = arguments.strips;
+  std::optional<app::PolygonMesh> scalp;
+  if (!arguments.scalp.empty()) options.scalp = &scalp.emplace(app::readPolygons(arguments.scalp));
+  const app::StripConversion conversion = app::convertStrips(app::readPolygons(arguments.in), options, arguments.in);
+  app::writeFile(arguments.out, app::writeHairMesh(conversion.mesh.shape));
+  std::cout << app::stripReport(conversion) << "written       " << arguments.out << "\n";
+  return app::kExitFine;
+}
+
+int run(const Arguments& arguments) {
+  app::checkWritable(arguments.out);
+  const std::string bytes = app::readText(arguments.in, app::kMaxGroomFile);
+  if (app::groomFormat(bytes, arguments.in)) return convertCurves(bytes, arguments);
+  if (!app::hasPolygonEnding(arguments.in))
+    throw app::InputError(
+        arguments.in, "", "is no kind of groom that is read",
+        "give curves (.hair, .abc, .usda, .tfx, .ply), strips or tubes (.obj, .fbx, .glb, .gltf, .vrm)");
+  if (app::hasLayers(bytes))
+    throw app::InputError(arguments.in, "", "is a hair mesh already", "show it with hairmesh --hair");
+  return convertPolygons(arguments);
 }
 
 int fail(const std::exception& fault, int exit_code) {

@@ -10,6 +10,7 @@
 #include "app/groom/groom_file.h"
 #include "app/groom/groom_inspect.h"
 #include "app/groom/groom_writer.h"
+#include "app/groom/tfx_file.h"
 
 namespace {
 
@@ -83,7 +84,12 @@ int run(const CLI::App& parser, const Asked& asked) {
               << "\n";
   if (inspection.findings.empty()) std::cout << "nothing is wrong\n";
   if (asked.out.empty()) return app::kExitFine;
-  app::mendGroom(mendsOf(parser, asked, hints, inspection.mends), &head, groom);
+  app::GroomMends mends = mendsOf(parser, asked, hints, inspection.mends);
+  if (mends.points == 0 && asked.out.ends_with(".tfx")) {
+    mends.points = app::nearestTfxPoints(groom);
+    std::cout << "points: " << mends.points << " a strand, the power of two nearest to theirs (.tfx takes no other)\n";
+  }
+  app::mendGroom(mends, &head, groom);
   app::writeGroom(groom, asked.out);
   std::cout << groom.strandCount() << " strands written to " << asked.out << "\n";
   return app::kExitFine;

@@ -130,7 +130,8 @@ void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
   group.value("--resolution", options.resolution, "NAME", "Hair mesh resolution: low, medium, high or ultra")
       ->check(oneOf({"low", "medium", "high", "ultra"}));
   group.value("--hair", options.hair, "FILE",
-              "Hair mesh file (OBJ, one group a layer) or groom (.hair, .abc, .usda, .tfx, .ply) in place of a style");
+              "Hair in place of a style: a hair mesh (OBJ, one group a layer), curves (.hair, .abc, .usda, .tfx, .ply), or "
+              "strips and tubes (.obj, .fbx, .glb, .gltf, .vrm)");
   group.flag("--reverse-faces", options.reverse_faces,
              "Turn round the faces of a hair mesh file that is wound inwards");
   group
@@ -216,7 +217,10 @@ void addRunOptions(CLI::App& parser, Options& options) {
   group.value("--save-state-at", options.save_state_at, "N", "Write it after so many frames instead; the run goes on")
       ->check(within(1, kMaxFrames));
   group.value("--load-state", options.load_state, "FILE",
-              "Go on from a saved state: the same scene and options continue to the bit, with the next frame's number");
+              "Go on from a saved state, or the last of a cache: the same scene and options continue to the bit, with the "
+              "next frame's number");
+  group.value("--cache", options.cache, "FILE.hairmesh",
+              "Without a window: keep every frame of the run; dropped on the window, its timeline shows them to and fro");
   group.value("--screenshot", options.screenshot, "FILE.png",
               "Write the last frame, panels included, when the run ends");
   group.value("--panel", options.panel, "NAME", "Tab that is open at first: simulation, motion, hair, look or debug")
@@ -288,7 +292,8 @@ void finishExport(const Unchecked& unchecked, Options& options) {
   if (options.replay.empty() && std::max(spec.first, spec.last) >= options.frames)
     throw UsageError("--export-frames goes beyond the run's " + std::to_string(options.frames) +
                      " frames, 0 to " + std::to_string(options.frames - 1) + "; give more --frames");
-  for (const std::string* other : {&options.record, &options.report, &options.save_state, &options.screenshot})
+  for (const std::string* other :
+       {&options.record, &options.report, &options.save_state, &options.screenshot, &options.cache})
     if (*other == spec.file) throw UsageError("--export and another option name one file, '" + spec.file + "'; name two");
   if (unchecked.export_unit == "cm") spec.unit = 0.01;
   if (unchecked.export_unit == "mm") spec.unit = 0.001;
@@ -332,6 +337,9 @@ void finish(const Unchecked& unchecked, Options& options) {
   if (options.save_state_at > 0 && options.save_state.empty()) {
     throw UsageError("--save-state-at says when; add --save-state FILE");
   }
+  if (!options.cache.empty() && !options.cache.ends_with(".hairmesh"))
+    throw UsageError("--cache cannot be '" + options.cache + "'; name it .hairmesh");
+  if (!options.cache.empty() && !options.headless) options.no_images = true;  // pictures are drawn when asked for
   if (options.no_images) options.headless = true;
   finishExport(unchecked, options);
   if (!options.parts.empty() && options.motion.empty() && options.scene.empty()) {

@@ -49,7 +49,7 @@ struct Options {
   double ui_scale = 1;         // of texts and panels, over the display's own
   std::string panel;           // the tab that is open at first; empty: the first
   std::string record, replay;  // recordings of a run's inputs
-  std::string save_state, load_state;
+  std::string save_state, load_state, cache;
   int save_state_at = 0;  // frames of this run after which the state is saved; 0: the last
   std::string loop;       // what a clip does at its end; empty: the scene's
   ExportSpec hair_export;

@@ -85,6 +85,8 @@ Options sortedOut(Options options) {
       break;
     case FileKind::kProject:
       throw UsageError(file + " is a project; start the window without it and open it there");
+    case FileKind::kCache:
+      throw UsageError(file + " is a cache of simulated hair; name its scene, and it with --load-state");
     case FileKind::kState:
       throw UsageError(file + " is a saved state; name its scene, and it with --load-state");
   }

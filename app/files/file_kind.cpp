@@ -8,6 +8,7 @@
 
 #include "app/files/errors.h"
 #include "app/files/json_reader.h"
+#include "app/files/polygon_file.h"
 #include "app/files/text_file.h"
 #include "app/groom/groom_bytes.h"
 #include "app/groom/groom_file.h"
@@ -40,16 +41,22 @@ FileKind fileKind(const std::string& file) {
   }
   if (ending == ".obj") return FileKind::kHairMesh;
   if (ending == ".mot") return FileKind::kRigidMotion;
-  for (const char* known : {".bvh", ".glb", ".gltf", ".fbx", ".dae"}) {
+  if (ending == ".vrm") return FileKind::kHairMesh;
+  if (ending == ".glb" || ending == ".gltf" || ending == ".fbx")
+    return holdsStillMeshes(file) ? FileKind::kHairMesh : FileKind::kMotion;
+  for (const char* known : {".bvh", ".dae"}) {
     if (ending == known) return FileKind::kMotion;
   }
   if (hasGroomEnding(file)) return FileKind::kHairMesh;
+  if (ending == ".hairmesh") return FileKind::kCache;
   const std::string bytes = readText(file, kMaxGroomFile);
   if (bytes.starts_with("hairmesh-state ")) return FileKind::kState;
+  if (bytes.starts_with("hairmesh-cache ")) return FileKind::kCache;
   if (groomFormat(bytes, file)) return FileKind::kHairMesh;
-  throw InputError(file, "", "is no kind of file that this program reads",
-                   "give a scene or preset (.json), a motion (.bvh, .glb, .gltf, .fbx, .mot) a hair mesh (.obj) "
-                   "or a groom (.hair, .abc, .usda, .tfx, .ply)");
+  throw InputError(
+      file, "", "is no kind of file that this program reads",
+      "give a scene or preset (.json), a motion (.bvh, .glb, .gltf, .fbx, .mot), a hair mesh (.obj) "
+      "or a groom: curves (.hair, .abc, .usda, .tfx, .ply), strips or tubes (.obj, .fbx, .glb, .gltf, .vrm)");
 }
 
 std::string partsBeside(const std::string& motion_file) {

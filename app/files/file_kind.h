@@ -5,10 +5,10 @@
 
 namespace app {
 
-enum class FileKind { kScene, kPreset, kMotion, kRigidMotion, kHairMesh, kState, kProject };
+enum class FileKind { kScene, kPreset, kMotion, kRigidMotion, kHairMesh, kState, kCache, kProject };
 
-// By its ending; scenes and presets, both JSON, by their content, and so are saved states and grooms of any name.
-// Throws InputError for any other file.
+// By its ending; scenes and presets, both JSON, by their content, and so are saved states, grooms of any name, and what
+// glTF and FBX hold: without bones and animation it is hair. Throws InputError for any other file.
 FileKind fileKind(const std::string& file);
 
 // The folder of body parts that ARCSim's data keeps beside a .mot motion.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdio>
 #include <unordered_map>
 #include <utility>
 
@@ -10,6 +11,8 @@
 
 namespace app {
 namespace {
+
+constexpr double kSmallestHair = 0.002;  // m
 
 std::string layerName(int layer) {
   return "layer_" + std::to_string(layer);
@@ -226,9 +229,26 @@ bool validReversed(sim::HairMeshShape shape) {
   return true;
 }
 
+// A hair mesh of a few millimetres was written in kilometres, or in another unit that no head is measured in.
+void checkSize(const sim::HairMeshShape& shape, const std::string& file) {
+  if (shape.positions.empty()) return;
+  sim::Vec3 low = shape.positions.front(), high = low;
+  for (const sim::Vec3& p : shape.positions) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const double size = (high - low).maxCoeff();
+  if (size >= kSmallestHair || size == 0) return;
+  char text[120];
+  std::snprintf(text, sizeof text, "all of it is %.2g mm in size, read in metres", 1e3 * size);
+  throw InputError(file, "", text,
+                   size > 1e-5 && size < 2e-3 ? "it looks like kilometres: scale it by 1000" : "scale it to metres");
+}
+
 }  // namespace
 
-sim::HairMeshShape readHairMesh(std::string_view text, const std::string& file, bool reverse_faces) {
+sim::HairMeshShape readHairMesh(std::string_view text, const std::string& file, bool reverse_faces,
+                                const char* reverse_switch) {
   const ObjLayers obj = readObjLayers(text, file);
   Stacker stacker{file, obj};
   stacker.checkLayers();
@@ -238,12 +258,13 @@ sim::HairMeshShape readHairMesh(std::string_view text, const std::string& file, 
   stacker.checkUse();
   sim::HairMeshShape shape = stacker.shape();
   if (reverse_faces) reverse(shape);
+  checkSize(shape, file);
   try {
     sim::buildHairMesh(shape);
   } catch (const sim::MeshError& error) {
     if (validReversed(shape)) {
       throw InputError(file, "", "all faces are wound the other way",
-                       reverse_faces ? "leave out --reverse-faces" : "reverse the faces, or give --reverse-faces");
+                       (reverse_faces ? "leave out " : "reverse the faces, or give ") + std::string(reverse_switch));
     }
     throw InputError(file, stacker.placeOf(error.place), error.fault, error.mend);
   }

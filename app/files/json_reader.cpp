@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "app/files/text_scanner.h"
 #include "sim/field_text.h"
 
 namespace app {
@@ -36,6 +37,7 @@ std::string quote(const json& value) {
 }  // namespace
 
 json parseJson(std::string_view text, const std::string& file) {
+  refuseUtf16(text, file);
   std::vector<std::vector<std::string>> open_keys;
   const auto watch = [&](int depth, json::parse_event_t event, json& parsed) {
     if (depth > kDeepest) {
@@ -61,7 +63,7 @@ json parseJson(std::string_view text, const std::string& file) {
     throw InputError(file, lineAndColumn(text, error.byte), "not valid JSON: " + reason(error.what()),
                      "mend the syntax there");
   } catch (const json::exception& error) {
-    throw InputError(file, "", std::string("not usable JSON: ") + error.what(), "write numbers that fit a double");
+    throw InputError(file, "", "not usable JSON: " + reason(error.what()), "write numbers that fit a double");
   }
 }
 

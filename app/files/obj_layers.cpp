@@ -133,6 +133,7 @@ void ObjReader::readLine(std::string_view text) {
 }  // namespace
 
 ObjLayers readObjLayers(std::string_view text, const std::string& file) {
+  refuseUtf16(text, file);
   ObjReader reader{file, {}, 0, nullptr, {}};
   while (!text.empty()) {
     ++reader.line;

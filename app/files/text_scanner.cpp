@@ -124,4 +124,14 @@ bool sameWord(std::string_view a, std::string_view b) {
   return true;
 }
 
+void refuseUtf16(std::string_view bytes, const std::string& file) {
+  if (bytes.size() < 4) return;
+  const bool marked = bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff");
+  const auto letter = [&](std::size_t k) { return bytes[k] >= '\t' && bytes[k] < 127; };
+  const bool low = letter(0) && bytes[1] == 0 && letter(2) && bytes[3] == 0;
+  const bool high = bytes[0] == 0 && letter(1) && bytes[2] == 0 && letter(3);
+  if (marked || low || high)
+    throw InputError(file, "", "is text in UTF-16", "save it as UTF-8 or plain ASCII");
+}
+
 }  // namespace app

@@ -32,6 +32,10 @@ struct TextScanner {
   [[noreturn]] void failAt(int fault_line, const std::string& fault, const std::string& mend) const;
 };
 
+// Throws InputError for text in UTF-16, which editors of some systems save without a word. Bytes of other files are
+// none.
+void refuseUtf16(std::string_view bytes, const std::string& file);
+
 // A piece of the text fit for a message: quoted, printable, at most 32 characters.
 std::string quoted(std::string_view piece);
 // Whether two words are the same but for the case of ASCII letters.

@@ -1,7 +1,9 @@
 #include "app/groom/tfx_file.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 
 #include "app/files/errors.h"
 #include "app/groom/groom_bytes.h"
@@ -83,6 +85,17 @@ Groom readTfx(std::string_view bytes, const std::string& file) {
     groom.colors.emplace_back(color.x, color.y, color.z);
   }
   return groom;
+}
+
+int nearestTfxPoints(const Groom& groom) {
+  std::vector<std::size_t> counts;
+  for (std::size_t s = 0; s < groom.strandCount(); ++s) counts.push_back(groom.pointCount(s));
+  if (counts.empty()) return static_cast<int>(kLeastPoints);
+  const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2);
+  std::nth_element(counts.begin(), middle, counts.end());
+  const double power = std::round(std::log2(static_cast<double>(std::max<std::size_t>(*middle, 1))));
+  return std::clamp(1 << static_cast<int>(std::min(power, 6.0)), static_cast<int>(kLeastPoints),
+                    static_cast<int>(kMostPoints));
 }
 
 void writeTfx(const Groom& groom, const std::string& file, OutputFile& output) {

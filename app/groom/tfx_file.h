@@ -20,6 +20,9 @@ bool looksLikeTfx(std::string_view bytes);
 // A strand's thickness becomes the width of all its points. `file` names the bytes in messages. Throws InputError.
 Groom readTfx(std::string_view bytes, const std::string& file);
 
+// The number of points that the format has, nearest (in ratio) to the median of the strands'.
+int nearestTfxPoints(const Groom& groom);
+
 // Writes points, root UVs, colours, and as thickness the width of the root. Reading gives the same bits of what the
 // format holds. Throws OutputError naming a strand of another number of points than the first, or a number that the
 // format does not have.

@@ -91,7 +91,8 @@ hm_result hm_mesh_create_from_text(const char* text, size_t length, const char* 
   return guarded("hm_mesh_create_from_text", [&] {
     needs(text, "text");
     needs(mesh, "mesh");
-    *mesh = addMesh(app::readHairMesh(std::string_view(text, length), name ? name : "hair mesh", reverse_faces != 0));
+    *mesh = addMesh(app::readHairMesh(std::string_view(text, length), name ? name : "hair mesh", reverse_faces != 0,
+                                      "reverse_faces"));
   });
 }
 

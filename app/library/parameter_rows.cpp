@@ -35,6 +35,13 @@ hm_parameter describeRow(const Row& row, double default_value, bool of_strands) 
           static_cast<std::int32_t>(row.choices.size())};
 }
 
+// A step has ellipsoids to collide with and no signed distances.
+void refuseSdf(const sim::SimParams& params) {
+  if (params.collider == sim::ColliderKind::kSdf)
+    throw Fault{HM_ERROR_VALUE,
+                "collider cannot be sdf: the library takes no signed distances of a body; give ellipsoids with the step"};
+}
+
 static_assert(static_cast<int>(sim::FieldKind::kReal) == HM_REAL &&
               static_cast<int>(sim::FieldKind::kInteger) == HM_INTEGER &&
               static_cast<int>(sim::FieldKind::kSwitch) == HM_SWITCH &&
@@ -78,7 +85,10 @@ void setValue(const ParameterRow& row, double value, Hair& hair) {
                                     (whole ? "whole number" : "number") + " from " + sim::numberText(of.minimum) +
                                     " to " + sim::numberText(of.maximum) + (*of.unit ? " " : "") + of.unit};
   if (const auto* const* field = std::get_if<const sim::ParamField*>(&row)) {
-    (*field)->set(hair.params, value);
+    sim::SimParams changed = hair.params;
+    (*field)->set(changed, value);
+    refuseSdf(changed);
+    hair.params = changed;
   } else {
     std::get<const HairField*>(row)->set(hair.look, {value, 0, 0});
   }
@@ -87,7 +97,10 @@ void setValue(const ParameterRow& row, double value, Hair& hair) {
 void setText(const ParameterRow& row, std::string_view text, Hair& hair) {
   std::string fault;
   if (const auto* const* field = std::get_if<const sim::ParamField*>(&row)) {
-    fault = sim::setParam(hair.params, (*field)->name, text).fault;
+    sim::SimParams changed = hair.params;
+    fault = sim::setParam(changed, (*field)->name, text).fault;
+    refuseSdf(changed);
+    if (fault.empty()) hair.params = changed;
   } else {
     fault = setLook(hair.look, *std::get<const HairField*>(row), text);
   }

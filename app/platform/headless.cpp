@@ -20,6 +20,7 @@
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
 #include "app/scene/hair_export.h"
+#include "app/scene/sim_cache.h"
 #include "render/gl_messages.h"
 
 namespace app {
@@ -80,6 +81,7 @@ struct Run {
   RunReport report;
   std::optional<Pictures> pictures;
   std::optional<HairExport> hair_export;
+  std::optional<SimCacheWriter> cache;
   std::vector<unsigned char> pixels;
   int frames = 0;
   long first = 0;  // number of the first frame: a loaded state has some behind it
@@ -94,7 +96,7 @@ struct Run {
 };
 
 Demo openForPictures(Scene scene, const Options& options, double aspect) {
-  if (!options.hair_export.file.empty()) simulateAll(scene.skips);
+  if (!options.hair_export.file.empty() || !options.cache.empty()) simulateAll(scene.skips);
   Demo demo = openScene(std::move(scene), aspect);
   setDebugViews(options.debug, demo.debug);
   demo.governor.counted = demo.deadline.counted = true;  // the same pictures on every run
@@ -117,6 +119,7 @@ Run::Run(Scene scene, const Options& run_options) : options(run_options), tape(o
     first = demo.frames;
   }
   if (!options.hair_export.file.empty()) hair_export.emplace(options.hair_export, demo, report.fps, frames);
+  if (!options.cache.empty()) cache.emplace(options.cache, demo);
   if (!options.no_images) checkWritable(framePath(options.out, first));
   if (!options.no_images) {
     pictures.emplace(options.gl_debug);
@@ -156,6 +159,7 @@ void Run::drawFrames() {
   for (int frame = 0; frame < frames && !interrupted(); ++frame) {
     advanceFrame(demo, tape.turn(frame, frameSeconds(frame), demo), target);
     report.frames.push_back(demo.stats);
+    if (cache) cache->add(demo);
     if (frame + 1 == options.save_state_at) saveState();
     if (const std::string note = numericalNote(demo.stats); !note.empty())
       std::cerr << "hairmesh: frame " << frame << ": " << note << "\n";
@@ -193,6 +197,7 @@ int Run::finish() {
   }
   if (hair_export) std::cout << hair_export->finish();
   report.deadline = demo.deadline.seconds;
+  if (cache) std::cout << cache->finish(demo);
   std::cout << summary(report);
   if (pictures) {
     std::cout << report.frames.size() << " frames in " << options.out;

@@ -22,6 +22,7 @@
 #include "app/files/recording.h"
 #include "app/files/report.h"
 #include "app/platform/capture.h"
+#include "app/platform/hair_recorder.h"
 #include "app/platform/interrupt.h"
 #include "app/platform/opening_notes.h"
 #include "app/platform/shader_reload.h"
@@ -228,7 +229,7 @@ double frameSeconds(const Options& options, const Demo& demo, double& last) {
   const double moment = now();
   const double passed = moment - last;
   last = moment;
-  return options.frames_given || demo.capture.recording ? 1 / demo.scene.playback.fps : passed;
+  return options.frames_given || demo.capture.recording || demo.capture.hair ? 1 / demo.scene.playback.fps : passed;
 }
 
 // Takes events in, after a wait for them where nothing moves. Time that passes while nothing is drawn is not caught up
@@ -264,6 +265,7 @@ Demo openForWindow(Scene scene, const Options& options, double aspect) {
   Demo demo = openScene(std::move(scene), aspect, beside);
   if (!options.load_state.empty())
     loadDemoState(options.load_state, !options.camera.empty() || !options.framing.empty(), demo);
+  if (isSimCache(options.load_state)) openCache(options.load_state, demo);
   if (!options.save_state.empty()) checkWritable(options.save_state);
   setDebugViews(options.debug, demo.debug);
   for (const std::string& note : openingNotes(options, demo)) std::cerr << "hairmesh: " << note << "\n";
@@ -325,6 +327,7 @@ int runWindow(Scene scene, const Options& options) {
   ShaderWatch watch;
   const auto reload = [&] { return reloadSavedShaders(now(), watch, renderer, demo); };
   RedrawThrottle throttle;
+  HairRecorder hair(demo.scene.playback.fps);
   double last = now();
   int frame = 0;
   const int most = tape.frames().value_or(options.frames_given ? options.frames : kEndless);
@@ -343,6 +346,7 @@ int runWindow(Scene scene, const Options& options) {
     autosave.keep(now(), demo);
     demo.stats.skipped[kSkipEvents] = {throttle.waited(), 1, 0};
     writePictures(demo, target);
+    hair.frame(demo);
     if (frame + 1 == options.save_state_at) writeFile(options.save_state, demoStateBytes(demo));
     if (!options.report.empty()) run.frames.push_back(demo.stats);
     if (options.frames_given && frame + 1 == options.frames && !options.screenshot.empty()) {
@@ -352,6 +356,7 @@ int runWindow(Scene scene, const Options& options) {
     }
     glfwSwapBuffers(window.handle);
   }
+  hair.close(demo);
   return endRun(options, run, frame, tape, demo);
 }
 

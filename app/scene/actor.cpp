@@ -8,8 +8,10 @@
 #include "app/figure/root_cover.h"
 #include "app/files/errors.h"
 #include "app/files/hair_file.h"
+#include "app/files/polygon_file.h"
 #include "app/files/text_file.h"
 #include "app/groom/convert.h"
+#include "app/groom/strip_convert.h"
 #include "app/scene/frame_stats.h"
 #include "app/scene/sim_to_render.h"
 #include "app/scene/sleep.h"
@@ -73,8 +75,8 @@ std::string styleTitle(const CharacterSpec& spec) {
   return std::string(styleName(spec.style)) + " " + std::string(resolutionName(spec.resolution));
 }
 
-// A hair mesh from a file: an OBJ by layers, or a groom that is converted; its unit, axes and place as fitHair finds
-// them.
+// A hair mesh from a file: an OBJ by layers, or curves, strips or tubes that are converted; its unit, axes and place as
+// fitHair finds them.
 sim::HairMeshShape shapeFromFile(const CharacterSpec& spec, const Character& character, Haircut& haircut) {
   sim::HairMeshShape shape;
   const auto note = [&](const std::string& text) {
@@ -88,6 +90,10 @@ sim::HairMeshShape shapeFromFile(const CharacterSpec& spec, const Character& cha
     haircut.look = conversion.look;
     shape = conversion.shape;
     note(conversionNote(conversion));
+  } else if (hasPolygonEnding(spec.hair) && !hasLayers(bytes)) {
+    const StripConversion conversion = convertStrips(readPolygons(spec.hair), {}, spec.hair);
+    shape = conversion.mesh.shape;
+    note(stripNote(conversion));
   } else {
     shape = readHairMesh(bytes, spec.hair, spec.reverse_faces);
   }

@@ -124,6 +124,8 @@ void openAnyFile(const std::string& file, Demo& demo) {
       return post(Ask::kHairFile, "");
     case FileKind::kState:
       return post(Ask::kLoadState, "");
+    case FileKind::kCache:
+      return post(Ask::kOpenCache, "");
     case FileKind::kProject:
       return post(Ask::kOpenProject, "");
   }
@@ -308,6 +310,12 @@ constexpr Action kActions[] = {
        demo.capture.recording = request.value != 0;
        demo.capture.recorded = 0;
      }},
+    {Ask::kRecordHair,
+     [](const Request& request, Demo& demo) {
+       demo.capture.hair = request.value != 0;
+       demo.capture.hair_file = request.text;
+     }},
+    {Ask::kOpenCache, [](const Request& request, Demo& demo) { openCache(request.text, demo); }},
     {Ask::kBrush,
      [](const Request& request, Demo& demo) {
        applyBrush(parseBrush(request.name, request.text), demo.selected, demo);

@@ -298,6 +298,7 @@ void advanceFrame(Demo& demo, double seconds, const FrameTarget& target) {
   demo.stats = FrameStats{};
   const bool asked = !demo.requests.empty();
   applyRequests(demo);
+  leaveCachedFrame(demo);
   followColliders(demo);
 
   demo.running = governed(demo.scene.sim, demo.governor);

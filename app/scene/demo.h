@@ -31,6 +31,8 @@ struct Capture {
   bool recording = false;
   std::string folder;  // of the recording
   int recorded = 0;    // frames so far
+  bool hair = false;   // the simulated hair is written, see platform/hair_recorder.h
+  std::string hair_file;
 };
 
 struct Demo {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -215,7 +216,8 @@ std::span<const std::byte> bodyOf(const std::string& text, const std::string& fi
   if (!from.complete || head.size != from.left.size())
     throw InputError(
         file, "",
-        "has " + std::to_string(from.left.size()) + " bytes where " + std::to_string(head.size) + " were saved",
+        "has " + std::to_string(text.size()) + " bytes where " +
+            std::to_string(head.size + (text.size() - from.left.size())) + " were saved",
         kSaveAnew);
   if (sim::fingerprint(from.left) != head.checksum)
     throw InputError(file, "", "has been changed since it was saved", kSaveAnew);
@@ -223,6 +225,12 @@ std::span<const std::byte> bodyOf(const std::string& text, const std::string& fi
 }
 
 }  // namespace
+
+std::string demoIdentity(const Demo& demo) {
+  std::string text;
+  for (const Actor& actor : demo.actors) text += (text.empty() ? "" : "; ") + identity(actor);
+  return text;
+}
 
 std::string demoStateBytes(const Demo& demo) {
   sim::Bytes body, head;
@@ -239,6 +247,7 @@ std::string demoStateBytes(const Demo& demo) {
 }
 
 void loadDemoState(const std::string& file, bool keep_view, Demo& demo) {
+  if (isSimCache(file)) return SimCache(file, demo).resume(std::numeric_limits<long>::max(), keep_view, demo);
   restoreDemoState(readText(file), file, keep_view, demo);
 }
 

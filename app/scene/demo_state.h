@@ -18,6 +18,9 @@ inline constexpr unsigned kDemoStateVersion = 3;
 
 std::string demoStateBytes(const Demo& demo);
 
+// Which characters with which motion and hair a scene has, in words: a state fits where this is the same.
+std::string demoIdentity(const Demo& demo);
+
 // Puts the state of a file in place. `keep_view`: the camera's direction and distance stay.
 // Throws InputError when the file is no state, cut off, changed, of another version or of another scene; then nothing
 // has changed.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 #include <optional>
 #include <thread>
@@ -9,6 +10,7 @@
 #include "app/files/errors.h"
 #include "app/groom/glb_file.h"
 #include "app/groom/groom_writer.h"
+#include "app/groom/tfx_file.h"
 #include "render/fiber_scattering.h"
 #include "render/strands/strand_growth.h"
 
@@ -153,6 +155,7 @@ struct HairExport::Impl {
   std::optional<StrandExport> strands;
   std::optional<GroomWriter> writer;
   std::optional<GlbWriter> mesh;
+  std::string note;
   int moments = 0, frames = 0, last_frame = -1;
 };
 
@@ -203,7 +206,12 @@ HairExport::HairExport(const ExportSpec& spec, const Demo& demo, double fps, int
     impl_->mesh.emplace(spec.file, settings, cageTriangles(demo));
     return;
   }
-  impl_->strands.emplace(demo, spec.what, spec.points);
+  int points = spec.points;
+  if (points == 0 && spec.what == ExportWhat::kStrands && std::filesystem::path(spec.file).extension() == ".tfx") {
+    points = nearestTfxPoints(StrandExport(demo, spec.what, 0).last());
+    impl_->note = ", " + std::to_string(points) + " points each, the power of two nearest to those drawn (.tfx takes no other)";
+  }
+  impl_->strands.emplace(demo, spec.what, points);
   impl_->writer.emplace(spec.file, settings, taken > 1);
 }
 
@@ -226,7 +234,7 @@ std::string HairExport::finish() {
   if (impl_->strands) {
     const Groom& groom = impl_->strands->last();
     text += " of " + std::to_string(groom.strandCount()) + " strands with " + std::to_string(groom.points.size()) +
-            " points";
+            " points" + impl_->note;
   }
   return text + " exported to " + impl_->spec.file + "\n";
 }

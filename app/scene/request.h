@@ -39,6 +39,8 @@ enum class Ask {
   kSkip,         // name, value
   kScreenshot,   // text: file, empty for the next free name
   kRecord,       // value: 1 starts, 0 ends
+  kRecordHair,   // value: 1 starts, 0 ends; text: file, or an ending alone for the next free name; empty: a cache
+  kOpenCache,    // text: file; the timeline shows it. Empty: it shows what is kept in memory again
   kBrush,        // name: tool, text: a sample of a stroke on the selected character's hair; see groom_brush.h
   kSaveProject,  // text: file
   kOpenProject,  // text: file

@@ -12,6 +12,49 @@ namespace app {
 void forgetMoments(Timeline& timeline) {
   timeline.frames.clear();
   timeline.bytes = 0;
+  timeline.cache.reset();
+  timeline.shown_of_cache = -1;
+}
+
+bool timelineSpan(const Timeline& timeline, long& first, long& last) {
+  if (timeline.cache) {
+    first = timeline.cache->first();
+    last = timeline.cache->last();
+  } else if (!timeline.frames.empty()) {
+    first = timeline.frames.front().frame;
+    last = timeline.frames.back().frame;
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void openCache(const std::string& file, Demo& demo) {
+  Timeline& timeline = demo.timeline;
+  if (file.empty()) {
+    leaveCachedFrame(demo);
+    timeline.cache.reset();
+    timeline.shown_of_cache = -1;
+    return;
+  }
+  timeline.cache = std::make_unique<SimCache>(file, demo);
+  timeline.shown_of_cache = -1;
+  demo.message = "cache of frames " + std::to_string(timeline.cache->first()) + " to " +
+                 std::to_string(timeline.cache->last()) + "; drag along the timeline";
+  demo.message_is_fault = false;
+}
+
+void leaveCachedFrame(Demo& demo) {
+  Timeline& timeline = demo.timeline;
+  if (timeline.shown_of_cache < 0 || (demo.paused && demo.single_steps == 0)) return;
+  const long shown = std::exchange(timeline.shown_of_cache, -1);
+  if (!timeline.cache) return;
+  try {
+    timeline.cache->resume(shown, true, demo);
+  } catch (const std::exception& fault) {
+    demo.message = fault.what();
+    demo.message_is_fault = true;
+  }
 }
 
 void keepMoment(Demo& demo) {
@@ -27,8 +70,11 @@ void keepMoment(Demo& demo) {
     timeline.bytes -= timeline.frames.back().state.size();
     timeline.frames.pop_back();
   }
-  TimelineFrame kept{demo.frames, demoStateBytes(demo), std::exchange(timeline.cost, 0.0),
-                     std::exchange(timeline.contact, false), std::exchange(timeline.recovery, false),
+  TimelineFrame kept{demo.frames,
+                     demoStateBytes(demo),
+                     std::exchange(timeline.cost, 0.0),
+                     std::exchange(timeline.contact, false),
+                     std::exchange(timeline.recovery, false),
                      std::exchange(timeline.jump, false)};
   timeline.bytes += kept.state.size();
   timeline.frames.push_back(std::move(kept));
@@ -39,6 +85,14 @@ void keepMoment(Demo& demo) {
 }
 
 void rewindTo(long frame, Demo& demo) {
+  if (SimCache* cache = demo.timeline.cache.get()) {
+    const long within = std::clamp(frame, cache->first(), cache->last());
+    const bool paused = demo.paused;
+    cache->show(within, demo);
+    demo.paused = paused;
+    demo.timeline.shown_of_cache = within;
+    return;
+  }
   const std::deque<TimelineFrame>& frames = demo.timeline.frames;
   const auto after = std::upper_bound(frames.begin(), frames.end(), frame,
                                       [](long wanted, const TimelineFrame& kept) { return wanted < kept.frame; });

@@ -2,11 +2,12 @@
 #pragma once
 
 #include <deque>
+#include <memory>
 #include <string>
 
-namespace app {
+#include "app/scene/sim_cache.h"
 
-struct Demo;
+namespace app {
 
 // A kept moment; `state` as demoStateBytes.
 struct TimelineFrame {
@@ -22,12 +23,24 @@ struct Timeline {
   std::size_t bytes = 0;
   double cost = 0;  // since the last kept moment
   bool contact = false, recovery = false, jump = false;
+  std::unique_ptr<SimCache> cache;  // where there is one it is what the timeline shows
+  long shown_of_cache = -1;         // frame of it that is shown and not simulated; -1: none
 };
 
-inline constexpr long kTimelineEvery = 3;                           // frames between kept moments
+inline constexpr long kTimelineEvery = 3;                              // frames between kept moments
 inline constexpr std::size_t kTimelineBytes = std::size_t{192} << 20;  // the oldest go beyond it
 
 inline constexpr std::size_t kTimelineActors = 4;  // of larger crowds nothing is kept: it would cost too much
+
+// First and last frame that can be gone to; false where there is none.
+bool timelineSpan(const Timeline& timeline, long& first, long& last);
+
+// The timeline shows a cache from now on; with an empty name what is kept in memory. Throws InputError.
+void openCache(const std::string& file, Demo& demo);
+
+// Before a frame's steps: where a cached frame is shown, and time goes on, it goes on from the last whole state before
+// it. A fault becomes the demo's message.
+void leaveCachedFrame(Demo& demo);
 
 // What was kept is of other hair than what moves now.
 void forgetMoments(Timeline& timeline);
@@ -35,9 +48,9 @@ void forgetMoments(Timeline& timeline);
 // After a frame that took steps.
 void keepMoment(Demo& demo);
 
-// Goes to the last kept moment that is not after `frame`. What is kept beyond it stays until time goes on. Throws
-// InputError where none is kept. Steps from there end in the same bits as they did, with the same parameters; of hair
-// that brushes have reshaped, to rounding.
+// Goes to the last kept moment that is not after `frame`; of a cache it is shown at once, without simulating. What is
+// kept beyond it stays until time goes on. Throws InputError where none is kept. Steps from there end in the same bits
+// as they did, with the same parameters; of hair that brushes have reshaped, to rounding.
 void rewindTo(long frame, Demo& demo);
 
 }  // namespace app

@@ -32,7 +32,7 @@ const Purpose& purposeOf(BrowseFor what) {
       {BrowseFor::kHair,
        "Open a hair mesh or a groom",
        "Open",
-       {".obj", ".hair", ".abc", ".usda", ".tfx", ".ply"}},
+       {".obj", ".abc", ".usda", ".hair", ".ply", ".tfx", ".fbx", ".glb", ".gltf", ".vrm"}},
       {BrowseFor::kSaveScene, "Save the scene: style, motion, hair, camera, look, parameters", "Save", {".json"}}};
   return *std::find_if(std::begin(kPurposes), std::end(kPurposes) - 1,
                        [&](const Purpose& purpose) { return purpose.what == what; });

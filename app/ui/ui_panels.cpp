@@ -192,6 +192,20 @@ void stateRow(Demo& demo, UiState& ui) {
   noteItem("load_state", ui);
 }
 
+void recordHairRow(Demo& demo, UiState& ui) {
+  rowLabel("Record hair",
+           "Writes the strands of every frame from now on into the working folder, or of glb the hair mesh; a cache is "
+           "what the timeline shows");
+  if (demo.capture.hair) {
+    if (ImGui::Button("End##record_hair")) postRequest(demo, {Ask::kRecordHair, "", "", 0});
+    noteItem("record_hair_end", ui);
+    return;
+  }
+  static constexpr const char* kEndings[] = {".abc", ".usda", ".hair", ".ply", ".glb", ".hairmesh"};
+  const int pressed = segments("record_hair", {"abc", "usda", "hair", "ply", "glb", "cache"}, -1, ui);
+  if (pressed >= 0) postRequest(demo, {Ask::kRecordHair, "", kEndings[pressed], 1});
+}
+
 void playbackRows(const Actor& actor, Demo& demo, UiState& ui) {
   double speed = actor.playback.speed;
   rowLabel("Speed", "Clip seconds per second. The paper shows 10x; the hair's own time does not change.");
@@ -224,6 +238,7 @@ void playbackRows(const Actor& actor, Demo& demo, UiState& ui) {
   noteItem("hold", ui);
   loopRows(actor, demo, ui);
   stateRow(demo, ui);
+  recordHairRow(demo, ui);
 }
 
 void substepRow(Demo& demo, UiState& ui) {

@@ -16,10 +16,8 @@ constexpr float kHeight = 50, kLeastWidth = 240, kMargin = 12;
 constexpr double kWorst = 3;  // of the mean cost: a step to look at
 
 // The kept moment at a share of the strip.
-long frameAt(float share, const Timeline& timeline) {
-  const double first = static_cast<double>(timeline.frames.front().frame);
-  const double last = static_cast<double>(timeline.frames.back().frame);
-  return static_cast<long>(first + std::clamp(share, 0.0f, 1.0f) * (last - first) + 0.5);
+long frameAt(float share, long first, long last) {
+  return first + std::lround(std::clamp(share, 0.0f, 1.0f) * static_cast<double>(last - first));
 }
 
 void drawMarks(const Timeline& timeline, ImVec2 at, ImVec2 size, float scale) {
@@ -48,27 +46,47 @@ void strip(Demo& demo, UiState& ui) {
   noteItem("timeline", ui);
   ImDrawList* list = ImGui::GetWindowDrawList();
   list->AddRectFilled(at, {at.x + size.x, at.y + size.y}, ImGui::GetColorU32(ImGuiCol_FrameBg), 4);
-  if (timeline.frames.empty()) {
+  long first_frame = 0, last_frame = 0;
+  if (!timelineSpan(timeline, first_frame, last_frame)) {
     list->AddText({at.x + 8, at.y + 4}, ImGui::GetColorU32(ImGuiCol_TextDisabled), "fills while the hair moves");
     return;
   }
-  drawMarks(timeline, at, size, ui.text_scale);
-  const double first = static_cast<double>(timeline.frames.front().frame);
-  const double span = std::max(1.0, static_cast<double>(timeline.frames.back().frame) - first);
+  if (!timeline.cache) drawMarks(timeline, at, size, ui.text_scale);
+  const auto first = static_cast<double>(first_frame);
+  const double span = std::max(1.0, static_cast<double>(last_frame) - first);
   const double here = std::clamp((static_cast<double>(demo.frames) - first) / span, 0.0, 1.0);
   const float x = at.x + size.x * static_cast<float>(here);
   list->AddRectFilled({x - 1.5f, at.y - 2}, {x + 1.5f, at.y + size.y + 2}, ImGui::GetColorU32(ImGuiCol_CheckMark));
   const float share = (ImGui::GetIO().MousePos.x - at.x) / std::max(1.0f, size.x);
   if (ImGui::IsItemActive()) {
-    const long frame = frameAt(share, timeline);
+    const long frame = frameAt(share, first_frame, last_frame);
     if (!demo.paused) postRequest(demo, {Ask::kPause, "", "", 1});
     if (frame != ui.scrubbed) postRequest(demo, {Ask::kRewind, "", "", static_cast<double>(frame)});
     ui.scrubbed = frame;
   } else {
     ui.scrubbed = -1;
-    tip("Drag to see what was simulated; Space goes on from there. Green: contact, yellow: a slow step, blue: the head "
-        "jumped, red: recovery");
+    tip(timeline.cache ? "A cache: drag to see any of its frames; Space goes on from the last whole state before it"
+                       : "Drag to see what was simulated; Space goes on from there. Green: contact, yellow: a slow "
+                         "step, blue: the head "
+                         "jumped, red: recovery");
   }
+}
+
+// Writes a cache, and shows it when it ends; leaves the one that is shown.
+void cacheButton(Demo& demo, UiState& ui) {
+  const bool writing =
+      demo.capture.hair && (demo.capture.hair_file.empty() || demo.capture.hair_file.ends_with(".hairmesh"));
+  const char* const label = writing ? "End##cache" : demo.timeline.cache ? "Leave##cache" : "Cache##cache";
+  if (ImGui::Button(label)) {
+    if (!writing && demo.timeline.cache) {
+      postRequest(demo, {Ask::kOpenCache, "", ""});
+    } else {
+      postRequest(demo, {Ask::kRecordHair, "", "", writing ? 0.0 : 1.0});
+    }
+  }
+  noteItem("cache", ui);
+  tip("Writes every frame from now on into a .hairmesh file, which the timeline then shows to and fro at once");
+  ImGui::SameLine(0, 8);
 }
 
 }  // namespace
@@ -93,6 +111,7 @@ float timelinePanel(Demo& demo, UiState& ui, float left) {
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(text);
     ImGui::SameLine(0, 10);
+    cacheButton(demo, ui);
     strip(demo, ui);
   }
   ImGui::End();

@@ -54,6 +54,10 @@ int main(int count, char** arguments) {
   }
   size_t length = 0;
   char* text = readText(arguments[1], &length);
+  if (!length) {
+    fprintf(stderr, "%s: cannot be read, or is empty; give a hair mesh (OBJ)\n", arguments[1]);
+    return 1;
+  }
   const double seconds = count > 2 ? atof(arguments[2]) : 2;
   hm_mesh mesh;
   hm_hair hair;

@@ -18,7 +18,10 @@ def pose(time):
 
 
 def main(file, seconds=2.0):
-    mesh = hairmesh.Mesh.load(file)
+    try:
+        mesh = hairmesh.Mesh.load(file)
+    except (OSError, hairmesh.Error) as fault:
+        sys.exit(f"hello.py: {fault}")
     hair = hairmesh.Hair(mesh)
     tip = hair.positions[mesh.tips[0]]
     print(f"{len(mesh.tips)} columns, {len(mesh.rest)} vertices\n  time s     x m     y m     z m")
@@ -35,4 +38,4 @@ def main(file, seconds=2.0):
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main(*sys.argv[1:]) if len(sys.argv) in (2, 3) else sys.exit("hello.py HAIR.obj [SECONDS]")

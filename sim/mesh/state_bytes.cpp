@@ -76,14 +76,14 @@ std::string loadState(const HairMesh& mesh, std::span<const std::byte> bytes, Ha
   ByteReader from{bytes};
   Head head;
   readBytes(from, head);
-  if (!from.complete || head.magic != kMagic) return "is no saved state; give a file that a run saved";
+  if (!from.complete || head.magic != kMagic) return "is no saved state; give all the bytes that were saved";
   if (head.version != kStateVersion)
     return "is a state of version " + std::to_string(head.version) + ", not " + std::to_string(kStateVersion) +
            "; save it anew with this program";
   if (head.mesh != meshFingerprint(mesh)) return "is the state of another hair mesh; choose the one it was saved with";
   if (head.size != from.left.size())
-    return "has " + std::to_string(from.left.size()) + " bytes where " + std::to_string(head.size) +
-           " were saved; save it anew";
+    return "has " + std::to_string(bytes.size()) + " bytes where " +
+           std::to_string(head.size + (bytes.size() - from.left.size())) + " were saved; save it anew";
   HairState restored;
   const bool changed = fingerprint(from.left) != head.checksum;
   if (!changed) readBytes(from, restored);

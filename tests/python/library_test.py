@@ -132,6 +132,20 @@ class Library(unittest.TestCase):
             hair.step(dt=math.nan)
         with self.assertRaises(hairmesh.Error):
             hair.restore(b"no state")
+        state = hair.save()
+        with self.assertRaisesRegex(hairmesh.Error, f"has {len(state) - 1} bytes where {len(state)} were saved"):
+            hair.restore(state[:-1])
+        with self.assertRaisesRegex(hairmesh.Error, "collider cannot be sdf"):
+            hair.set(collider="sdf")
+
+    def test_faults_name_shape_and_dtype(self):
+        hair = hairmesh.Hair(self.mesh)
+        with self.assertRaisesRegex(TypeError, r"head is an array of shape \(4, 4\) and dtype float64; give hairmesh.pose"):
+            hair.step(head=np.eye(4))
+        with self.assertRaisesRegex(TypeError, r"pin 1 is an array of shape \(2,\) and dtype int64; give \(vertex"):
+            hair.step(pins=[(0, (0, 0, 0), (0, 0, 0), 1), (1, 2)])
+        with self.assertRaisesRegex(ValueError, r"roots is an array of shape \(3,\) and dtype int64; .*\(n, 3\).*float32"):
+            hair.step(roots=[1, 2, 3])
         self.assertEqual(hairmesh.version().count("."), 2)
 
 

@@ -76,17 +76,50 @@ def _view(place, owner):
     return array
 
 
-def _array(values, width):
+def _array(values, width, name):
     """`values` for the library, rows strided as they are; the second result keeps them alive."""
-    values = np.asarray(values)
-    if values.dtype not in (np.float32, np.float64):
-        values = values.astype(np.float64)
+    given = values
+    try:
+        values = np.asarray(values)
+        if values.dtype not in (np.float32, np.float64):
+            values = values.astype(np.float64)
+    except (TypeError, ValueError):
+        values = np.empty(0)
     if values.ndim != 2 or values.shape[1] != width:
-        raise ValueError(f"an array of shape (n, {width}) is needed, not {values.shape}")
+        raise ValueError(f"{name} is {_shown(given)}; give one of shape (n, {width}) and dtype float32 or float64")
     if values.strides[1] != values.itemsize or (values.strides[0] < 0):
         values = np.ascontiguousarray(values)
     kind = 1 if values.dtype == np.float32 else 0
     return _c.Array(values.ctypes.data, values.strides[0], len(values), kind), values
+
+
+def _shown(value):
+    """What a value is, for a message: an array's shape and dtype, else its type."""
+    if isinstance(value, (list, tuple)):
+        try:
+            value = np.asarray(value)
+        except ValueError:
+            return f"a {type(value).__name__} of unlike rows"
+    if isinstance(value, np.ndarray):
+        return f"an array of shape {value.shape} and dtype {value.dtype}"
+    return f"a {type(value).__name__}"
+
+
+def _pose(value, name):
+    if not isinstance(value, _c.Pose):
+        raise TypeError(f"{name} is {_shown(value)}; give hairmesh.pose(position, rotation): 3 numbers in m, and a unit "
+                        "quaternion x, y, z, w")
+    return value
+
+
+def _pin(value, number):
+    vector = ctypes.c_double * 3
+    try:
+        vertex, target, velocity, stiffness = value
+        return _c.Pin(int(vertex), vector(*target), vector(*velocity), float(stiffness))
+    except (TypeError, ValueError, IndexError):
+        raise TypeError(f"pin {number} is {_shown(value)}; give (vertex, target, velocity, stiffness): a whole number, 3 "
+                        "numbers in m, 3 in m/s, a number in N/m") from None
 
 
 class Mesh:
@@ -99,7 +132,7 @@ class Mesh:
         _c.lib.hm_default_mesh_settings(settings)
         lengths = np.ascontiguousarray(column_lengths, dtype=np.int32)
         corners = np.ascontiguousarray(faces, dtype=np.int32).reshape(-1, 4)
-        settings.positions, kept = _array(positions, 3)
+        settings.positions, kept = _array(positions, 3, "positions")
         settings.column_lengths, settings.column_count = lengths.ctypes.data, len(lengths)
         settings.faces, settings.face_count = corners.ctypes.data, len(corners)
         settings.reverse_faces = bool(reverse_faces)
@@ -160,7 +193,7 @@ class Hair:
         settings = _c.HairSettings()
         _c.lib.hm_default_hair_settings(settings)
         if head is not None:
-            settings.head = head
+            settings.head = _pose(head, "head")
         settings.measure_stages, settings.gradual = bool(measure_stages), bool(gradual)
         handle = _c.Hair()
         _c.lib.hm_hair_create(mesh._c, settings, handle)
@@ -208,13 +241,12 @@ class Hair:
         step.dt, step.max_work = dt, max_work
         step.time = self.time + dt if time is None else time
         if head is not None:
-            step.head = head
+            step.head = _pose(head, "head")
         kept = None
         if roots is not None:
-            step.roots, kept = _array(roots, 3)
+            step.roots, kept = _array(roots, 3, "roots")
         bodies = (_c.Ellipsoid * len(ellipsoids))(*[one._c for one in ellipsoids])
-        vector = ctypes.c_double * 3
-        holds = (_c.Pin * len(pins))(*[_c.Pin(int(v), vector(*at), vector(*speed), k) for v, at, speed, k in pins])
+        holds = (_c.Pin * len(pins))(*[_pin(pin, number) for number, pin in enumerate(pins)])
         step.ellipsoids, step.ellipsoid_count = ctypes.addressof(bodies), len(ellipsoids)
         step.pins, step.pin_count = ctypes.addressof(holds), len(pins)
         report = _c.Report()
@@ -226,11 +258,11 @@ class Hair:
 
     def reset(self, head=None):
         """Puts the hair to its rest shape, at rest."""
-        _c.lib.hm_hair_reset(self._c, head if head is not None else pose())
+        _c.lib.hm_hair_reset(self._c, _pose(head, "head") if head is not None else pose())
 
     def carry(self, before, now):
         """Carries the hair along rigidly from one pose of the head to another."""
-        _c.lib.hm_hair_carry(self._c, before, now)
+        _c.lib.hm_hair_carry(self._c, _pose(before, "before"), _pose(now, "now"))
 
     def save(self):
         """The state as bytes; steps go on from it in the same bits. Parameters and `time` are not part of it."""

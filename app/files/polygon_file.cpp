@@ -1,0 +1,174 @@
+#include "app/files/polygon_file.h"
+
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <array>
+#include <assimp/Importer.hpp>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "app/files/errors.h"
+#include "app/files/text_file.h"
+#include "app/files/text_scanner.h"
+
+namespace app {
+
+namespace {
+
+using Mat4 = Eigen::Matrix4d;
+
+constexpr std::size_t kMostCorners = 4'000'000, kMostNodes = 20'000;
+constexpr double kLargest = 1e6;  // of a coordinate
+constexpr const char* kExport = "export the strips or tubes again, as OBJ, FBX or glTF";
+
+std::string endingOf(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  return ending;
+}
+
+Mat4 toEigen(const aiMatrix4x4& m) {
+  Mat4 e;
+  e << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2, m.d3, m.d4;
+  return e;
+}
+
+const aiScene& importScene(const std::string& file, Assimp::Importer& importer) {
+  const std::string bytes = readText(file);
+  if (bytes.size() < 12) throw InputError(file, "", "is too short to be a polygon file", kExport);
+  if (endingOf(file) == ".obj" || endingOf(file) == ".gltf") refuseUtf16(bytes, file);
+  importer.SetPropertyBool("IMPORT_NO_SKELETON_MESHES", true);
+  const unsigned steps = aiProcess_ValidateDataStructure;
+  const aiScene* scene = nullptr;
+  try {
+    // VRM is binary glTF under another name.
+    scene = endingOf(file) == ".vrm" ? importer.ReadFileFromMemory(bytes.data(), bytes.size(), steps, "glb")
+                                     : importer.ReadFile(file, steps);
+  } catch (const std::exception& fault) {
+    throw InputError(file, "", std::string("cannot be read: ") + fault.what(), kExport);
+  }
+  if (!scene || !scene->mRootNode)
+    throw InputError(file, "", std::string("cannot be read: ") + importer.GetErrorString(), kExport);
+  return *scene;
+}
+
+struct Gatherer {
+  const std::string& file;
+  const aiScene& scene;
+  PolygonMesh out;
+
+  std::string nameOf(const aiNode& node, const aiMesh& mesh) const {
+    std::string name = node.mName.C_Str();
+    const auto add = [&](const std::string& more) {
+      if (!more.empty() && name.find(more) == std::string::npos) name += (name.empty() ? "" : " ") + more;
+    };
+    add(mesh.mName.C_Str());
+    if (mesh.mMaterialIndex < scene.mNumMaterials) {
+      const std::string material = scene.mMaterials[mesh.mMaterialIndex]->GetName().C_Str();
+      if (material != "DefaultMaterial") add(material);
+    }
+    return name.substr(0, 80);
+  }
+
+  void addFace(const aiMesh& mesh, const aiFace& face, int base, const std::string& name) {
+    if (face.mNumIndices < 3) return;  // points and lines
+    if (out.corners.size() + face.mNumIndices > kMostCorners)
+      throw InputError(file, name, "has over 4,000,000 corners", "reduce the mesh, or give the hair alone");
+    for (unsigned k = 0; k < face.mNumIndices; ++k) {
+      if (face.mIndices[k] >= mesh.mNumVertices)
+        throw InputError(file, name, "names a vertex that is not there", kExport);
+      out.corners.push_back(base + static_cast<int>(face.mIndices[k]));
+    }
+    out.face_first.push_back(out.corners.size());
+    out.face_object.push_back(static_cast<int>(out.objects.size()) - 1);
+  }
+
+  void addMesh(const aiNode& node, const aiMesh& mesh, const Mat4& to_world) {
+    const std::string name = nameOf(node, mesh);
+    out.objects.push_back(name);
+    const int base = static_cast<int>(out.positions.size());
+    if (out.positions.size() + mesh.mNumVertices > kMostCorners)
+      throw InputError(file, name, "has over 4,000,000 vertices", "reduce the mesh, or give the hair alone");
+    for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+      const aiVector3D p = mesh.mVertices[v];
+      const Eigen::Vector4d world = to_world * Eigen::Vector4d(p.x, p.y, p.z, 1);
+      if (!world.allFinite() || world.head<3>().cwiseAbs().maxCoeff() > kLargest)
+        throw InputError(file, name + ", vertex " + std::to_string(v), "is not at a finite place", kExport);
+      out.positions.push_back(world.head<3>());
+    }
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) addFace(mesh, mesh.mFaces[f], base, name);
+  }
+
+  void gather() {
+    std::vector<std::pair<const aiNode*, Mat4>> open{{scene.mRootNode, Mat4::Identity()}};
+    std::size_t nodes = 0;
+    while (!open.empty()) {
+      const auto [node, above] = open.back();
+      open.pop_back();
+      if (++nodes > kMostNodes) throw InputError(file, "", "has over 20,000 nodes", "export the hair alone");
+      const Mat4 world = above * toEigen(node->mTransformation);
+      for (unsigned m = 0; m < node->mNumMeshes; ++m) addMesh(*node, *scene.mMeshes[node->mMeshes[m]], world);
+      for (unsigned c = node->mNumChildren; c-- > 0;) open.emplace_back(node->mChildren[c], world);
+    }
+  }
+
+  void readUnit() {
+    const std::string ending = endingOf(file);
+    if (ending == ".glb" || ending == ".gltf" || ending == ".vrm") out.meters_per_unit = 1;
+    double centimetres = 0;
+    float single = 0;
+    if (!scene.mMetaData) return;
+    if (scene.mMetaData->Get("UnitScaleFactor", centimetres) && centimetres > 0)
+      out.meters_per_unit = 0.01 * centimetres;
+    if (scene.mMetaData->Get("UnitScaleFactor", single) && single > 0) out.meters_per_unit = 0.01 * single;
+  }
+};
+
+}  // namespace
+
+PolygonMesh readPolygons(const std::string& file) {
+  Assimp::Importer importer;
+  Gatherer gatherer{file, importScene(file, importer), {}};
+  gatherer.gather();
+  gatherer.readUnit();
+  if (gatherer.out.faceCount() == 0)
+    throw InputError(file, "", "holds no faces", "give strips of quads or tubes, one a lock of hair");
+  return std::move(gatherer.out);
+}
+
+bool hasPolygonEnding(const std::string& file) {
+  constexpr std::array<std::string_view, 5> kEndings{".obj", ".fbx", ".glb", ".gltf", ".vrm"};
+  return std::ranges::find(kEndings, endingOf(file)) != kEndings.end();
+}
+
+bool hasLayers(std::string_view text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find_first_of("\r\n", at), text.size());
+    std::string_view line = text.substr(at, end - at);
+    at = end + 1;
+    while (!line.empty() && (line.front() == ' ' || line.front() == '\t')) line.remove_prefix(1);
+    if (line.size() < 2 || (line[0] != 'g' && line[0] != 'o') || (line[1] != ' ' && line[1] != '\t')) continue;
+    for (std::size_t found = line.find("layer_"); found != std::string_view::npos;
+         found = line.find("layer_", found + 1)) {
+      const bool begins = line[found - 1] == ' ' || line[found - 1] == '\t';
+      if (begins && found + 6 < line.size() && std::isdigit(static_cast<unsigned char>(line[found + 6]))) return true;
+    }
+  }
+  return false;
+}
+
+bool holdsStillMeshes(const std::string& file) {
+  Assimp::Importer importer;
+  const aiScene& scene = importScene(file, importer);
+  if (scene.mNumAnimations > 0 || scene.mNumMeshes == 0) return false;
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    if (scene.mMeshes[m]->mNumBones > 0) return false;
+  }
+  return true;
+}
+
+}  // namespace app
