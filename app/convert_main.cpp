@@ -6,11 +6,14 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "app/figure/head_model.h"
+#include "app/files/data_path.h"
 #include "app/files/errors.h"
 #include "app/files/hair_file.h"
 #include "app/files/output_file.h"
 #include "app/files/polygon_file.h"
 #include "app/files/text_file.h"
+#include "app/groom/certain_mends.h"
 #include "app/groom/convert.h"
 #include "app/groom/groom_bytes.h"
 #include "app/groom/strip_convert.h"
@@ -18,8 +21,9 @@
 namespace {
 
 struct Arguments {
-  std::string in, out, preset, scalp;
+  std::string in, out, preset, scalp, mends, figure = "idle_turns.bvh";
   double unit = 0;
+  bool no_mend = false;
   app::ConvertOptions curves;
   app::StripOptions strips;
 };
@@ -44,6 +48,12 @@ void addCurveOptions(CLI::App& parser, Arguments& arguments) {
       ->check(CLI::Range(3, 40));
   parser.add_option("--unit", arguments.unit, "Metres in a unit of the file; by default as it says, or inferred")
       ->check(CLI::PositiveNumber);
+  parser.add_option(
+      "--mends", arguments.mends,
+      "Options of hairmesh-inspect that mend curves, in quotes: \"--up z --push-out\"; what is certain is "
+      "mended by itself, and said");
+  parser.add_flag("--no-mend", arguments.no_mend, "Curves are taken as they are, but for the unit");
+  parser.add_option("--figure", arguments.figure, "Motion or model whose head curves are held against (a mannequin's)");
   parser.add_flag("--reverse-strands", arguments.curves.reverse, "Strands are given from tip to root");
 }
 
@@ -108,10 +118,24 @@ std::string presetText(const app::LookFit& fit, const std::string& name) {
   return nlohmann::ordered_json{{"name", name}, {"hair", hair}}.dump(2) + "\n";
 }
 
+// Does what the inspector is certain of, as metres, y up, root first; returns what it says.
+std::string mend(const Arguments& arguments, app::GroomHints& hints, app::Groom& groom, app::ConvertOptions& options) {
+  const app::HeadModel head = app::headModelOf(app::loadCharacter(app::findFile(arguments.figure, "", "clips")));
+  if (options.unit > 0) hints.meters_per_unit = options.unit;
+  const std::string wishes = options.reverse ? arguments.mends + " --reverse all" : arguments.mends;
+  const app::MendReport report = app::mendCertain(hints, &head, wishes, groom);
+  options.reverse = false;
+  options.unit = report.unit_known ? 1 : 0;
+  hints = {};
+  return app::mendText(report);
+}
+
 int convertCurves(const std::string& bytes, const Arguments& arguments) {
   app::GroomHints hints;
-  const app::Groom groom = app::readGroom(bytes, arguments.in, &hints);
-  const app::Conversion conversion = app::convertGroom(groom, hints, arguments.curves, arguments.in);
+  app::Groom groom = app::readGroom(bytes, arguments.in, &hints);
+  app::ConvertOptions options = arguments.curves;
+  if (!arguments.no_mend) std::cout << mend(arguments, hints, groom, options);
+  const app::Conversion conversion = app::convertGroom(groom, hints, options, arguments.in);
   app::writeFile(arguments.out, app::writeHairMesh(conversion.shape));
   app::writeFile(arguments.preset, presetText(conversion.look, std::filesystem::path(arguments.out).stem().string()));
   std::cout << app::conversionReport(conversion) << "written       " << arguments.out << " and " << arguments.preset

@@ -132,6 +132,8 @@ void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
   group.value("--hair", options.hair, "FILE",
               "Hair in place of a style: a hair mesh (OBJ, one group a layer), curves (.hair, .abc, .usda, .tfx, .ply), or "
               "strips and tubes (.obj, .fbx, .glb, .gltf, .vrm)");
+  group.value("--mends", options.mends, "TEXT",
+              "Options of hairmesh-inspect for a hair file of curves, beside what is mended by itself: \"--up z --push-out\"");
   group.flag("--reverse-faces", options.reverse_faces,
              "Turn round the faces of a hair mesh file that is wound inwards");
   group

@@ -28,6 +28,7 @@ struct Options {
   std::vector<std::string> pins;                         // --pin JSON, see files/pin_spec.h
   std::string style, resolution;                         // empty: the scene's
   std::string hair, motion, parts, clip;                 // files; name of a clip
+  std::string mends;                                     // of the hair file, curves
   bool reverse_faces = false;                            // of the hair file
   std::string fit;                                       // of the hair file: on or off; empty: the scene's
   std::string write_hair;                                // OBJ of the first character's hair mesh, in place of a run

@@ -5,6 +5,7 @@
 #include "app/files/file_kind.h"
 #include "app/files/presets.h"
 #include "app/files/scene_file.h"
+#include "app/groom/certain_mends.h"
 #include "app/options.h"
 #include "sim/field_text.h"
 
@@ -100,6 +101,9 @@ void checkHairAndStyle(const Options& options) {
   if (options.reverse_faces && options.hair.empty()) {
     throw UsageError("--reverse-faces is about a hair mesh file; add --hair FILE");
   }
+  if (!options.mends.empty() && options.hair.empty()) throw UsageError("--mends is about a hair file; add --hair FILE");
+  GroomMends mends;
+  if (const std::string fault = readMends(options.mends, mends); !fault.empty()) throw UsageError("--mends: " + fault);
 }
 
 void overrideCharacter(const Options& options, CharacterSpec& spec) {
@@ -111,6 +115,7 @@ void overrideCharacter(const Options& options, CharacterSpec& spec) {
   if (!options.hair.empty()) {
     spec.hair = findFile(options.hair, "", "hair");
     spec.reverse_faces = options.reverse_faces;
+    spec.mends = options.mends;
   }
   if (!options.fit.empty()) spec.fit = options.fit == "on";
   if (!options.motion.empty()) {

@@ -28,7 +28,7 @@ struct AskName {
   std::string_view name;
 };
 // What can be recorded: all but the requests that write files.
-constexpr std::array<AskName, 36> kAskNames{{{Ask::kSetParam, "set"},
+constexpr std::array<AskName, 38> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kPause, "pause"},
                                              {Ask::kPauseMotion, "pause-motion"},
                                              {Ask::kSingleStep, "single-step"},
@@ -43,6 +43,8 @@ constexpr std::array<AskName, 36> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kResolution, "resolution"},
                                              {Ask::kMotionFile, "motion-file"},
                                              {Ask::kHairFile, "hair-file"},
+                                             {Ask::kHairMends, "hair-mends"},
+                                             {Ask::kOpenCache, "cache-file"},
                                              {Ask::kSceneFile, "scene-file"},
                                              {Ask::kPresetFile, "preset-file"},
                                              {Ask::kLoadState, "state-file"},

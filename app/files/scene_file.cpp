@@ -1,3 +1,4 @@
+#include "app/groom/certain_mends.h"
 #include "app/files/scene_file.h"
 
 #include <filesystem>
@@ -36,7 +37,7 @@ std::string readFileName(const JsonPlace& place, const std::string& kind) {
 }
 
 CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
-  place.expectObject({"motion", "parts", "clip", "style", "resolution", "hair", "reverse_faces", "fit", "position",
+  place.expectObject({"motion", "parts", "clip", "style", "resolution", "hair", "reverse_faces", "fit", "mends", "position",
                       "heading", "clip_offset", "loop", "look", "pins"});
   CharacterSpec spec;
   spec.look = look;
@@ -52,6 +53,11 @@ CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
   if (place.has("hair")) spec.hair = readFileName(place.at("hair"), "hair");
   if (place.has("reverse_faces")) spec.reverse_faces = place.at("reverse_faces").flag();
   if (place.has("fit")) spec.fit = place.at("fit").flag();
+  if (place.has("mends")) {
+    spec.mends = place.at("mends").text();
+    GroomMends mends;
+    if (const std::string fault = readMends(spec.mends, mends); !fault.empty()) place.at("mends").refuse(fault, "");
+  }
   if (place.has("position")) spec.position = toVec3(place.at("position").vector(-kFarthest, kFarthest));
   if (place.has("heading")) spec.heading = place.at("heading").number(-kTurn, kTurn);
   if (place.has("clip_offset")) spec.clip_offset = place.at("clip_offset").number(0, 1e5);
@@ -99,6 +105,7 @@ json writeCharacter(const CharacterSpec& spec) {
           {"hair", spec.hair},
           {"reverse_faces", spec.reverse_faces},
           {"fit", spec.fit},
+          {"mends", spec.mends},
           {"position", fromVec3(spec.position)},
           {"heading", spec.heading},
           {"clip_offset", spec.clip_offset},

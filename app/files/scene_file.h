@@ -4,7 +4,7 @@
 //   "name": "Walk",
 //   "characters": [{
 //     "motion": "walk.bvh", "parts": "", "clip": "", "style": "shoulder", "resolution": "medium", "hair": "",
-//     "reverse_faces": false, "fit": true,
+//     "reverse_faces": false, "fit": true, "mends": "",
 //     "position": [0, 0, 0], "heading": 0, "clip_offset": 0, "loop": "auto", "look": { a row of the hair table: value
 //     }, "pins": [ as pin_spec.h says ]
 //   }],
@@ -45,6 +45,7 @@ struct CharacterSpec {
   std::string hair;              // hair mesh OBJ in place of the built-in style; empty: the style
   bool reverse_faces = false;    // of that file: they are wound inwards
   bool fit = true;               // of that file: unit, axes and size are inferred where it does not fit the head
+  std::string mends;             // of curves: options of hairmesh-inspect, beside what is mended by itself
   Vec3 position = Vec3::Zero();  // m, added to the motion
   double heading = 0;            // rad about y, counter-clockwise from above
   double clip_offset = 0;        // s, where in the clip it begins

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <Eigen/IterativeLinearSolvers>
 #include <Eigen/LU>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
@@ -17,6 +18,9 @@ namespace {
 
 using Eigen::Vector3f;
 
+constexpr Eigen::Index kIterated = 2000;  // unknowns from which the system is solved by iteration
+constexpr int kMostIterations = 400;
+constexpr double kTolerance = 1e-5;                     // of the right-hand side
 constexpr float kStraight = 2e-3f;                      // weight of a strand's second differences beside its samples
 constexpr float kBeyond = 0.02f;                        // weight of a layer that a strand does not reach
 constexpr double kAlong = 0.1;                          // weight of a layer's way along its strand, over that across
@@ -328,6 +332,21 @@ Eigen::VectorXd penalizedRight(const ColumnSystem& system, const std::vector<int
   return right;
 }
 
+// By conjugate gradients from the present positions; false where they do not converge.
+bool solveFrom(const std::vector<int>& unknown, const sim::HairMeshShape& shape, const SparseMatrix& matrix,
+               const Eigen::VectorXd& right, Eigen::VectorXd& solved) {
+  Eigen::VectorXd start(matrix.rows());
+  for (std::size_t v = 0; v < unknown.size(); ++v) {
+    if (unknown[v] >= 0) start.segment<3>(3 * unknown[v]) = shape.positions[v];
+  }
+  Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower> solver;
+  solver.setTolerance(kTolerance);
+  solver.setMaxIterations(kMostIterations);
+  solver.compute(matrix);
+  solved = solver.solveWithGuess(right, start);
+  return solver.info() == Eigen::Success;
+}
+
 }  // namespace
 
 double fitColumns(const ColumnSystem& system, double fatness, const FitRounds& rounds, sim::HairMeshShape& shape) {
@@ -339,8 +358,13 @@ double fitColumns(const ColumnSystem& system, double fatness, const FitRounds& r
         round > 0 ? broken(shape, unknown, corners, fatness) : std::vector<Constraint>();
     const double penalty = system.usual * rounds.first *
                            std::pow(rounds.last / rounds.first, round / static_cast<double>(std::max(rounds.count, 1)));
-    solver.compute(penalized(system, unknown, constraints, penalty));
-    const Eigen::VectorXd solved = solver.solve(penalizedRight(system, unknown, constraints, penalty, shape));
+    const SparseMatrix matrix = penalized(system, unknown, constraints, penalty);
+    const Eigen::VectorXd right = penalizedRight(system, unknown, constraints, penalty, shape);
+    Eigen::VectorXd solved;
+    if (round == 0 || matrix.rows() < kIterated || !solveFrom(unknown, shape, matrix, right, solved)) {
+      solver.compute(matrix);
+      solved = solver.solve(right);
+    }
     for (std::size_t v = 0; v < unknown.size(); ++v) {
       if (unknown[v] < 0) continue;
       sim::Vec3 move = solved.segment<3>(3 * unknown[v]) - shape.positions[v];

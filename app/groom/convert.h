@@ -33,7 +33,9 @@ struct Conversion {
   std::string unit;  // in words
   double scale = 1;  // metres in a unit
   int strands = 0, left_out = 0;
-  double silhouette = -1;  // smallest overlap of six sides; negative: not compared
+  // Smallest overlaps of six sides; negative: not compared. Of the strands that grow from the given roots to the given
+  // lengths, and of as many that are dealt out over the hair mesh as when it is drawn.
+  double silhouette = -1, silhouette_drawn = -1;
   std::vector<Misfit> misfits;
 };
 

@@ -85,6 +85,17 @@ Groom growGroom(const sim::HairMeshShape& shape, const render::HairLook& look, i
   return groom;
 }
 
+Groom someStrands(const Groom& groom, std::size_t most) {
+  const std::size_t step = std::max<std::size_t>(1, (groom.strandCount() + most - 1) / most);
+  Groom some;
+  for (std::size_t s = 0; s < groom.strandCount(); s += step) {
+    const auto strand = groom.strand(s);
+    some.points.insert(some.points.end(), strand.begin(), strand.end());
+    some.strand_first.push_back(static_cast<std::uint32_t>(some.points.size()));
+  }
+  return some;
+}
+
 double silhouetteOverlap(const Groom& a, const Groom& b, double width) {
   Eigen::AlignedBox3f box;
   for (const Vector3f& p : a.points) box.extend(p);

@@ -10,6 +10,9 @@ namespace app {
 // About `strands` of them with `points` points each, dealt out over the faces by area as when they are drawn; metres.
 Groom growGroom(const sim::HairMeshShape& shape, const render::HairLook& look, int strands, int points);
 
+// Every nth strand, so that there are at most `most`.
+Groom someStrands(const Groom& groom, std::size_t most);
+
 // The smallest of six overlaps of the silhouettes of two grooms, seen from both ends of each axis at 0.6 m from their
 // middle: area of both over area of either, of strands that are `width` (m) wide.
 double silhouetteOverlap(const Groom& a, const Groom& b, double width = 0.003);

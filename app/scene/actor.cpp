@@ -4,15 +4,10 @@
 #include <atomic>
 #include <cmath>
 
-#include "app/figure/hair_fit.h"
 #include "app/figure/root_cover.h"
 #include "app/files/errors.h"
-#include "app/files/hair_file.h"
-#include "app/files/polygon_file.h"
-#include "app/files/text_file.h"
-#include "app/groom/convert.h"
-#include "app/groom/strip_convert.h"
 #include "app/scene/frame_stats.h"
+#include "app/scene/hair_from_file.h"
 #include "app/scene/sim_to_render.h"
 #include "app/scene/sleep.h"
 
@@ -75,35 +70,9 @@ std::string styleTitle(const CharacterSpec& spec) {
   return std::string(styleName(spec.style)) + " " + std::string(resolutionName(spec.resolution));
 }
 
-// A hair mesh from a file: an OBJ by layers, or curves, strips or tubes that are converted; its unit, axes and place as
-// fitHair finds them.
-sim::HairMeshShape shapeFromFile(const CharacterSpec& spec, const Character& character, Haircut& haircut) {
-  sim::HairMeshShape shape;
-  const auto note = [&](const std::string& text) {
-    if (!text.empty()) haircut.note += (haircut.note.empty() ? spec.hair + ": " : "; ") + text;
-  };
-  const std::string bytes = readText(spec.hair);
-  if (groomFormat(bytes, spec.hair)) {
-    GroomHints hints;
-    const Groom groom = readGroom(bytes, spec.hair, &hints);
-    const Conversion conversion = convertGroom(groom, hints, {}, spec.hair);
-    haircut.look = conversion.look;
-    shape = conversion.shape;
-    note(conversionNote(conversion));
-  } else if (hasPolygonEnding(spec.hair) && !hasLayers(bytes)) {
-    const StripConversion conversion = convertStrips(readPolygons(spec.hair), {}, spec.hair);
-    shape = conversion.mesh.shape;
-    note(stripNote(conversion));
-  } else {
-    shape = readHairMesh(bytes, spec.hair, spec.reverse_faces);
-  }
-  note(fitHair(character, spec.fit, shape));
-  return shape;
-}
-
 const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& asset_cache) {
   const std::string title = spec.hair.empty() ? styleTitle(spec) : spec.hair + (spec.reverse_faces ? " reversed" : "");
-  const std::string key = body.key + "|" + title + (spec.fit ? " fitted" : "");
+  const std::string key = body.key + "|" + title + (spec.fit ? " fitted " : "") + spec.mends;
   for (const auto& haircut : asset_cache.haircuts) {
     if (haircut->key == key) return *haircut;
   }
@@ -115,7 +84,7 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
   try {
     sim::HairMeshShape shape = spec.hair.empty()
                                    ? makeStyle(spec.style, spec.resolution, body.character.scalp, body.distance)
-                                   : shapeFromFile(spec, body.character, *haircut);
+                                   : hairFromFile(spec, body.character, *haircut);
     haircut->mesh = sim::buildHairMesh(std::move(shape));
   } catch (const sim::MeshError& error) {
     throw InputError(spec.hair.empty() ? "style " + title + " on " + spec.motion : spec.hair, error.place, error.fault,

@@ -13,6 +13,7 @@
 #include "app/figure/body_sdf.h"
 #include "app/figure/character.h"
 #include "app/files/scene_file.h"
+#include "app/groom/certain_mends.h"
 #include "app/groom/look_fit.h"
 #include "app/motion/playback.h"
 #include "app/scene/pins.h"
@@ -48,6 +49,7 @@ struct Haircut {
   std::uint64_t id = 0;
   std::string note;  // what was found of a file that does not fit the head, or was converted
   std::optional<LookFit> look;  // of a groom's strands
+  std::vector<MendedFinding> findings;  // of a groom, what the inspector says
   sim::HairMesh mesh;
   std::vector<render::HairFace> faces;
   std::vector<float> rest;  // positions of the rest shape, three floats a vertex

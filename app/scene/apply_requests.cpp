@@ -71,7 +71,16 @@ void changeStyle(const Request& request, Demo& demo) {
 void changeHairFile(const std::string& file, Demo& demo) {
   CharacterSpec spec = selectedActor(demo).spec;
   spec.hair = findFile(file, "", "hair");
+  spec.mends.clear();
   recast(spec, true, "hair mesh " + stem(file), demo);
+}
+
+void changeMends(const std::string& mends, Demo& demo) {
+  CharacterSpec spec = selectedActor(demo).spec;
+  GroomMends checked;
+  if (const std::string fault = readMends(mends, checked); !fault.empty()) throw InputError("", "mends", fault, "");
+  spec.mends = mends;
+  recast(spec, true, "hair mended", demo);
 }
 
 void changeMotion(const Request& request, Demo& demo) {
@@ -203,6 +212,7 @@ void saveReshapedHair(const std::string& scene_file, const Demo& demo, Scene& sc
         std::filesystem::path(scene_file).replace_extension().string() + "-hair" + std::to_string(i + 1) + ".obj";
     writeFile(beside.string(), writeHairMesh(demo.actors[i].haircut->mesh.shape));
     scene.characters[i].hair = beside.string();
+    scene.characters[i].mends.clear();
     scene.characters[i].fit = scene.characters[i].reverse_faces = false;
   }
 }
@@ -283,6 +293,7 @@ constexpr Action kActions[] = {
     {Ask::kResolution, changeStyle},
     {Ask::kMotionFile, changeMotion},
     {Ask::kHairFile, [](const Request& request, Demo& demo) { changeHairFile(request.text, demo); }},
+    {Ask::kHairMends, [](const Request& request, Demo& demo) { changeMends(request.text, demo); }},
     {Ask::kSceneFile, [](const Request& request, Demo& demo) { changeScene(request.text, demo); }},
     {Ask::kPresetFile, [](const Request& request, Demo& demo) { changePreset(request.text, demo); }},
     {Ask::kSavePreset, savePreset},

@@ -44,6 +44,7 @@ constexpr EditKind kEditKinds[] = {{Ask::kSetParam, kSettings, true, ""},
                                    {Ask::kStyle, kOfHair, false, "Style"},
                                    {Ask::kResolution, kOfHair, false, "Resolution"},
                                    {Ask::kHairFile, kOfHair, false, "Hair mesh"},
+                                   {Ask::kHairMends, kOfHair, false, "Mends"},
                                    {Ask::kRestart, kOfHair | kOfMotion, false, "To the start"},
                                    {Ask::kCarryAlong, kOfHair | kOfMotion, true, "Scrub"},
                                    {Ask::kClip, kOfHair | kOfMotion, false, "Clip"},
@@ -98,9 +99,9 @@ EditSide sideOf(const Demo& demo, int reach) {
 // until it is decided.
 bool sameCast(const CharacterSpec& a, const CharacterSpec& b) {
   const auto cast = [](const CharacterSpec& spec) {
-    const auto& [motion, parts, clip, style, resolution, hair, reverse_faces, fit, position, heading, clip_offset, loop,
+    const auto& [motion, parts, clip, style, resolution, hair, reverse_faces, fit, mends, position, heading, clip_offset, loop,
                  look, pins] = spec;
-    return std::tuple(motion, parts, clip, style, resolution, hair, reverse_faces, fit, position.x(), position.y(),
+    return std::tuple(motion, parts, clip, style, resolution, hair, reverse_faces, fit, mends, position.x(), position.y(),
                       position.z(), heading, loop, writePins(pins).dump());
   };
   return cast(a) == cast(b);

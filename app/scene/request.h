@@ -23,6 +23,7 @@ enum class Ask {
   kResolution,   // name
   kMotionFile,   // text: file
   kHairFile,     // text: file
+  kHairMends,    // text: options of hairmesh-inspect that the hair file is read with, in place of those before
   kSceneFile,    // text: file
   kPresetFile,   // text: file
   kSavePreset,   // text: file

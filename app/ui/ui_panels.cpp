@@ -82,8 +82,7 @@ std::string presetTitle(const Demo& demo, PresetMark& preset) {
     preset.scene = demo.scene.look;
   }
   const bool same = sameRows(sim::paramFields(), demo.scene.sim, preset.sim) &&
-                    sameRows(hairFields(), hair, preset.hair) &&
-                    sameRows(sceneFields(), demo.scene.look, preset.scene);
+                    sameRows(hairFields(), hair, preset.hair) && sameRows(sceneFields(), demo.scene.look, preset.scene);
   return readable(stem(preset.file)) + (same ? "" : ", changed");
 }
 
@@ -301,6 +300,42 @@ void motionTab(Demo& demo, UiState& ui) {
   }
 }
 
+namespace {
+
+// What the inspector says of curves from a file, with its mends as buttons.
+void inspectorSection(const Actor& actor, Demo& demo, UiState& ui) {
+  if (!actor.haircut->look || !actor.spec.fit || !section("Inspector", true)) return;
+  constexpr std::string_view kNoGuess = "--no-guess";
+  const std::string& mends = actor.spec.mends;
+  const std::size_t at = mends.find(kNoGuess);
+  bool guesses = at == std::string::npos;
+  rowLabel("Mend by itself", "What is certain is mended while the file is read");
+  if (ImGui::Checkbox("##guesses", &guesses)) {
+    std::string other = mends;
+    if (at == std::string::npos) other = std::string(kNoGuess) + " " + other;
+    if (at != std::string::npos) other.erase(at, kNoGuess.size());
+    postRequest(demo, {Ask::kHairMends, "", other});
+  }
+  noteItem("mend_certain", ui);
+  if (actor.haircut->findings.empty()) ImGui::TextDisabled("nothing is wrong");
+  for (const MendedFinding& one : actor.haircut->findings) {
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextUnformatted((one.finding.what + ": " + one.finding.text).c_str());
+    ImGui::PopTextWrapPos();
+    if (one.done) {
+      ImGui::TextDisabled("mended by %s", one.finding.mend.c_str());
+    } else if (one.finding.mend.find('|') == std::string::npos) {
+      if (ImGui::Button(("Mend##" + one.finding.what).c_str()))
+        postRequest(demo, {Ask::kHairMends, "", mends + (mends.empty() ? "" : " ") + one.finding.mend});
+      noteItem("mend " + one.finding.what, ui);
+      ImGui::SameLine(0, 6);
+      ImGui::TextDisabled("%s", one.finding.mend.c_str());
+    }
+  }
+}
+
+}  // namespace
+
 void hairTab(Demo& demo, UiState& ui) {
   const Actor& actor = selectedActor(demo);
   if (section("Brushes", true)) brushSection(ui);
@@ -325,6 +360,7 @@ void hairTab(Demo& demo, UiState& ui) {
          std::to_string(mesh.prisms.size()) + " in " + std::to_string(mesh.shape.root_faces.size()) + " bundles");
     fact("Length", metres(mesh.hair_length));
   }
+  inspectorSection(actor, demo, ui);
   for (const char* group : {"Strands", "Styling"}) {
     if (section(group, true)) hairGroup(group, demo, ui);
   }

@@ -1,0 +1,62 @@
+#include "app/scene/hair_from_file.h"
+
+#include "app/figure/hair_fit.h"
+#include "app/figure/head_model.h"
+#include "app/files/hair_file.h"
+#include "app/files/polygon_file.h"
+#include "app/files/text_file.h"
+#include "app/groom/convert.h"
+#include "app/groom/groom_bytes.h"
+#include "app/groom/strip_convert.h"
+
+namespace app {
+
+namespace {
+
+Conversion convertMended(const std::string& bytes, const CharacterSpec& spec, const Character& character,
+                         Haircut& haircut) {
+  GroomHints hints;
+  Groom groom = readGroom(bytes, spec.hair, &hints);
+  ConvertOptions options;
+  if (!spec.fit) return convertGroom(groom, hints, options, spec.hair);
+  const HeadModel head = headModelOf(character);
+  const MendReport report = mendCertain(hints, &head, spec.mends, groom);
+  haircut.findings = report.findings;
+  if (report.unit_known) options.unit = 1;
+  return convertGroom(groom, {}, options, spec.hair);
+}
+
+std::string mendedBy(const Haircut& haircut) {
+  std::string text;
+  for (const MendedFinding& one : haircut.findings) {
+    if (one.done) text += (text.empty() ? "mended by " : ", ") + one.finding.mend;
+  }
+  return text;
+}
+
+}  // namespace
+
+sim::HairMeshShape hairFromFile(const CharacterSpec& spec, const Character& character, Haircut& haircut) {
+  sim::HairMeshShape shape;
+  const auto note = [&](const std::string& text) {
+    if (!text.empty()) haircut.note += (haircut.note.empty() ? spec.hair + ": " : "; ") + text;
+  };
+  const std::string bytes = readText(spec.hair, kMaxGroomFile);
+  if (groomFormat(bytes, spec.hair)) {
+    const Conversion conversion = convertMended(bytes, spec, character, haircut);
+    haircut.look = conversion.look;
+    shape = conversion.shape;
+    note(mendedBy(haircut));
+    note(conversionNote(conversion));
+  } else if (hasPolygonEnding(spec.hair) && !hasLayers(bytes)) {
+    const StripConversion conversion = convertStrips(readPolygons(spec.hair), {}, spec.hair);
+    shape = conversion.mesh.shape;
+    note(stripNote(conversion));
+  } else {
+    shape = readHairMesh(bytes, spec.hair, spec.reverse_faces);
+  }
+  note(fitHair(character, spec.fit, shape));
+  return shape;
+}
+
+}  // namespace app

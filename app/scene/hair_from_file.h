@@ -1,0 +1,14 @@
+// Hair of a file, for the head at hand: a hair mesh as it is, or curves, strips and tubes that become one.
+#pragma once
+
+#include "app/figure/character.h"
+#include "app/scene/actor.h"
+
+namespace app {
+
+// Unit, axes and place are inferred as fitHair does, and curves mended as the inspector is certain of and the scene
+// asks for, where `spec.fit` says so. What was found and done goes to the haircut's note and findings, what makes a
+// groom's strands individual to its look. Throws InputError.
+sim::HairMeshShape hairFromFile(const CharacterSpec& spec, const Character& character, Haircut& haircut);
+
+}  // namespace app
