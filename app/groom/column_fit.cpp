@@ -19,8 +19,8 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr Eigen::Index kIterated = 2000;  // unknowns from which the system is solved by iteration
-constexpr int kMostIterations = 400;
-constexpr double kTolerance = 1e-5;                     // of the right-hand side
+constexpr int kMostIterations = 800;
+constexpr double kTolerance = 1e-6;                     // of the right-hand side
 constexpr float kStraight = 2e-3f;                      // weight of a strand's second differences beside its samples
 constexpr float kBeyond = 0.02f;                        // weight of a layer that a strand does not reach
 constexpr double kAlong = 0.1;                          // weight of a layer's way along its strand, over that across
