@@ -285,6 +285,14 @@ UiState uiOf(const Options& options) {
   return ui;
 }
 
+// What the window shows, panels included.
+void writeWindow(const std::string& file, const FrameTarget& target) {
+  if (file.empty()) return;
+  std::vector<unsigned char> pixels;
+  render::readFramebuffer(0, target.width, target.height, pixels);
+  writePng(file, target.width, target.height, pixels);
+}
+
 // After the last frame: what was asked to be written. Returns the exit code.
 int endRun(const Options& options, const RunReport& run, int frames, Tape& tape, Demo& demo) {
   if (!options.report.empty()) writeReport(options.report, run, demo);
@@ -349,11 +357,7 @@ int runWindow(Scene scene, const Options& options) {
     hair.frame(demo);
     if (frame + 1 == options.save_state_at) writeFile(options.save_state, demoStateBytes(demo));
     if (!options.report.empty()) run.frames.push_back(demo.stats);
-    if (options.frames_given && frame + 1 == options.frames && !options.screenshot.empty()) {
-      std::vector<unsigned char> pixels;
-      render::readFramebuffer(0, target.width, target.height, pixels);
-      writePng(options.screenshot, target.width, target.height, pixels);
-    }
+    if (options.frames_given && frame + 1 == options.frames) writeWindow(options.screenshot, target);
     glfwSwapBuffers(window.handle);
   }
   hair.close(demo);
