@@ -260,7 +260,7 @@ inline app::Groom styled(app::Style style, app::Resolution resolution, int stran
 inline std::vector<Kind> kinds() {
   using app::Resolution, app::Style;
   return {
-      {"short", "the short style, low", [](int n) { return styled(Style::kShort, Resolution::kLow, n); }, 0.02, 0.06,
+      {"short", "the short style, low", [](int n) { return styled(Style::kShort, Resolution::kLow, n); }, 0.021, 0.065,
        0.78},
       {"shoulder", "the shoulder style, medium", [](int n) { return styled(Style::kShoulder, Resolution::kMedium, n); },
        0.0135, 0.04, 0.8},
