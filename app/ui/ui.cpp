@@ -181,10 +181,11 @@ void sidebar(Demo& demo, UiState& ui, float below) {
 
 void timings(Demo& demo, UiState& ui) {
   const float margin = kMargin * ui.text_scale;
-  // Panels do not cover one another: without room beside the sidebar this one is left out.
+  // Panels cover neither one another nor the face: without room beside the sidebar, and in a narrow window until the
+  // panels are unfolded, this one is left out.
   const float room = ImGui::GetIO().DisplaySize.x - sidebarWidth(ui) - kTimingsWidth * ui.text_scale - 3 * margin;
   ui.timings_bottom = 0;
-  if (room < 0) return;
+  if (room < 0 || folded(ui)) return;
   ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x - margin, margin}, ImGuiCond_Always, {1, 0});
   ImGui::SetNextWindowSize({kTimingsWidth * ui.text_scale, 0});
   ImGui::SetNextWindowCollapsed(room < kAmpleWidth * ui.text_scale, ImGuiCond_FirstUseEver);

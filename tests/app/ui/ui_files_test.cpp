@@ -88,7 +88,7 @@ TEST_F(Panels, ANarrowWindowFoldsTheTabsUntilTheyAreAskedFor) {
     EXPECT_EQ(find("tab Debug"), nullptr) << size.x;
     ASSERT_NE(find("panels"), nullptr) << size.x;
     for (const UiItem& item : ui_.items) {
-      EXPECT_TRUE(item.y >= 0.5f * size.y || item.x >= 0.6f * size.x) << item.name << " covers the face";
+      EXPECT_TRUE(item.y >= 0.5f * size.y || item.x >= 0.6f * size.x) << item.name << " covers the face at " << size.x;
       EXPECT_LE(item.x + item.width, size.x) << item.name;
     }
     click("panels");
