@@ -76,6 +76,7 @@ void evaluateElements(const Elements<Kind, T>& elements, const auto& sums, T& en
     V3<T> x[N];
     for (int p = 0; p < N; ++p) x[p] = sums.position(v[p]);
     const auto c = Kind::condition(x, elements.rest[e], elements.shift[e]);
+    if (requires { Kind::kOneSided; } && c.value == 0) continue;
     const T k = elements.stiffness[e];
     T pull = k * c.value, dissipation = 0, rate = 0;
     if constexpr (MovingKind<Kind>) {

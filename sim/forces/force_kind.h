@@ -63,6 +63,7 @@ struct Modulus {
 //   condition(x, rest, shift)   C - s and its gradient; a type derived from Condition may carry more for `curvature`
 //   maxShift(rest)              bound of the balance of gravity's share of the shift
 //   kCurved                     whether there is a curvature
+//   kOneSided                   optional: where C - s is none, there is neither force nor Hessian
 //   curvature(condition, p, q)  the part of (C - s) d2C/dx_p dx_q that the Hessian keeps
 template <class Kind>
 concept ForceKind = requires(const ForceSource& source, const V3<double>* x, const V3<float>* y,

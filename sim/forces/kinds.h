@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/forces/bend.h"
+#include "sim/forces/fold.h"
 #include "sim/forces/force_kind.h"
 #include "sim/forces/pin.h"
 #include "sim/forces/shear.h"
@@ -54,6 +55,7 @@ using ForceKinds = KindList<  //
     Shear,                    //
     Bend,                     //
     Volume,                   //
+    Fold,                     //
     Pin>;
 
 static_assert(

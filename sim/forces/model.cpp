@@ -76,7 +76,8 @@ bool setStiffness(const ForceSource& source, ForceModel<double>& model) {
 }
 
 bool sameMaterial(const SimParams& a, const SimParams& b) {
-  bool same = a.density == b.density && a.sag_free == b.sag_free && (a.gravity == b.gravity || !a.sag_free);
+  bool same = (a.solver == Solver::kPaper) == (b.solver == Solver::kPaper) && a.density == b.density &&
+              a.sag_free == b.sag_free && (a.gravity == b.gravity || !a.sag_free);
   ForceKinds::forEach([&]<class Kind>() {
     for (const Modulus& modulus : Kind::kModuli) same = same && a.*modulus.param == b.*modulus.param;
   });

@@ -1,7 +1,8 @@
-#include "sim/linear/elimination_order.h"
-
+// Apart from layer_factor.cpp, for kernels are compiled without Eigen.
 #include <Eigen/OrderingMethods>
 #include <Eigen/Sparse>
+
+#include "sim/linear/layer_factor.h"
 
 namespace sim {
 

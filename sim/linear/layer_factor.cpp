@@ -4,7 +4,6 @@
 #include <map>
 #include <set>
 
-#include "sim/linear/elimination_order.h"
 #include "sim/linear/lane_blocks.h"
 
 namespace sim {

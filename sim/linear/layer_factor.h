@@ -13,6 +13,9 @@
 
 namespace sim {
 
+// Approximate minimum degree (Amestoy, Davis, Duff 1996; Eigen's implementation).
+std::vector<int> minimumDegreeOrder(const BlockPattern& pattern);
+
 // What one group of lanes is walked by; see the members of LayerFactor.
 struct LayerStructure {
   std::span<const int> below_first, updates;

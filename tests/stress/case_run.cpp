@@ -140,7 +140,9 @@ void step(double dt, Run& run) {
       const std::string_view name = field.name;
       if (std::string_view(field.group) == "Time" || name == "collider") continue;
       if (!run.one.switches && (name == "collide" || name == "collide_inner")) continue;
-      if (run.random.chance(0.3)) field.set(run.params, draw(field, run.random));
+      if (!run.random.chance(0.3)) continue;
+      const double drawn = draw(field, run.random);
+      if (hasNets(field, drawn)) field.set(run.params, drawn);
     }
   }
   if (run.one.upset == Upset::kFault && run.around.time() >= run.next_fault) {

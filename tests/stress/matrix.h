@@ -38,6 +38,9 @@ void addRedrawnParameters(Cases& cases);
 void addPaper(Cases& cases);
 // Any value that the parameter may have.
 double draw(const sim::ParamField& field, class Random& random);
+
+// Not so of the published step (Solver::kPaper), which random cases therefore leave out: the family `paper` compares it.
+bool hasNets(const sim::ParamField& field, double drawn);
 // matrix_states.cpp
 void addStates(Cases& cases);
 void addUpsets(Cases& cases);

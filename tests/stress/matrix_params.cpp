@@ -31,6 +31,10 @@ bool ownAxis(const sim::ParamField& field) {
 
 }  // namespace
 
+bool hasNets(const sim::ParamField& field, double drawn) {
+  return std::string_view(field.name) != "solver" || drawn != static_cast<double>(sim::Solver::kPaper);
+}
+
 double draw(const sim::ParamField& field, Random& random) {
   switch (field.kind) {
     case sim::FieldKind::kSwitch:
@@ -124,7 +128,8 @@ void addRandomParameters(std::uint64_t seed, Cases& cases) {
     const double share = random(0.1, 1);
     for (const sim::ParamField& field : sim::paramFields()) {
       if (ownAxis(field) || !random.chance(share)) continue;
-      one.params.emplace_back(field.name, draw(field, random));
+      const double drawn = draw(field, random);
+      if (hasNets(field, drawn)) one.params.emplace_back(field.name, drawn);
       // Ten iterations a solve, or a tolerance of a half, keep no such law.
       one.keeps_energy = one.keeps_energy && std::string_view(field.group) != "Numerics";
     }

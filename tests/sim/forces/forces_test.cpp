@@ -45,7 +45,10 @@ struct Element {
   std::vector<Vec3> rest;
 };
 
-// Some elements of the kind, from all over a mesh. Their vertices are numbered from the last to the first, so that
+template <class Kind>
+constexpr bool kOneSided = requires { Kind::kOneSided; };
+
+// Some elements of the kind, from all over a mesh; one-sided ones where they act, folded back by some two right angles. Their vertices are numbered from the last to the first, so that
 // blocks are turned.
 template <class Kind>
 std::vector<Element> elementsOf() {
@@ -64,6 +67,10 @@ std::vector<Element> elementsOf() {
     auto& vertices = table.vertices.emplace_back();
     for (int p = 0; p < Kind::kVertices; ++p) vertices[p] = Kind::kVertices - 1 - p;
     for (int p = Kind::kVertices - 1; p >= 0; --p) e.rest.push_back(mesh.shape.positions[one.vertices[p]]);
+    if constexpr (kOneSided<Kind>) {
+      const Vec3 u = e.rest[1] - e.rest[2];
+      e.rest[0] = e.rest[1] - 0.8 * u + 0.3 * u.norm() * u.unitOrthogonal();
+    }
     table.stiffness.push_back(one.stiffness), table.rest.push_back(one.rest), table.shift.push_back(one.shift);
     auto& slots = table.slots.emplace_back();
     const BlockPattern pattern = fullPattern(Kind::kVertices);
@@ -214,7 +221,7 @@ void expectGaussNewton(const Element& e, double size, test::Random& random) {
   const Eigen::MatrixXd expected = stiffness * g * g.transpose();
   const Eigen::MatrixXd matrix = matrixAt(e.model, pattern, x, 0);
   EXPECT_LT((matrix - expected).norm(), 1e-6 * expected.norm()) << Kind::kName;
-  if (size > 0) return;
+  if (size > 0 || kOneSided<Kind>) return;
   for (int i = 0; i < g.size(); ++i) {
     const Points fore = forceAt(e.model, along(x, h, unit(i))), back = forceAt(e.model, along(x, -h, unit(i)));
     const Eigen::VectorXd column = (test::stacked<double>(back) - test::stacked<double>(fore)) / (2 * h);

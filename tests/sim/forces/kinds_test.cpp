@@ -156,11 +156,19 @@ TEST(ForceKinds, EveryKindHasElementsOfItsOwnThatPullAndAreNamed) {
   test::Random random(3);
   std::vector<sim::V3<double>> x = test::plain<double>(hair.shape.positions);
   for (sim::V3<double>& at : x) at += test::plain<double>(random.vector(0.005));
+  std::vector<sim::V3<double>> folded = x;
+  for (int i = 0; i < hair.vertexCount(); ++i) {
+    if (hair.layer_of[i] % 2 == 0 && !hair.isRoot(i)) folded[i] = folded[i - 2];
+  }
   ForceKinds::forEach([&]<class Kind>() {
     sim::ForceModel<double> only;
     only.of<Kind>() = all.of<Kind>();
     EXPECT_EQ(only.kindsLeftOut().skipped, ForceKinds::kCount - 1);
-    EXPECT_GT(sim::evaluate<double>(only, x, {}), 0) << Kind::kName;
+    EXPECT_GT(sim::evaluate<double>(only, folded, {}), 0) << Kind::kName;
+    if constexpr (requires { Kind::kOneSided; }) {
+      const std::vector<sim::V3<double>> rest = test::plain<double>(hair.shape.positions);
+      EXPECT_EQ(sim::evaluate<double>(only, rest, {}), 0) << Kind::kName;
+    }
     sim::FaultReport fault_report;
     fault_report.vertex = all.of<Kind>().vertices[0][0];
     sim::nameForce(only, x, fault_report);

@@ -109,7 +109,7 @@ TEST(InversionRecovery, TheWayHomeIsTheSameUnderAMovingHead) {
   const Eigen::Isometry3d motion = Eigen::Translation3d(0.03, 0, 0.02) * Eigen::AngleAxisd(0.1, Vec3(1, 2, 0).normalized());
   Eigen::Isometry3d head = Eigen::Isometry3d::Identity();
   int guided = 0;
-  for (int n = 0; n < 120; ++n) {
+  for (int n = 0; n < 480; ++n) {
     const std::vector<Vec3> start = moving.state.positions;
     for (Vec3& x : moving.state.positions) x = motion * x;
     head = motion * head;
@@ -150,12 +150,12 @@ TEST(InversionRecovery, WhatTurnsOverAgainIsLeftInPeaceLongerEachTime) {
     EXPECT_GT(begun[k] - begun[k - 1], 1.3 * (begun[k - 1] - begun[k - 2])) << "the " << k << "th time";
 }
 
-// Mirrored through the roots, in the shortest style: forces alone leave tips on the wrong side of their neighbours.
-double distanceAfterMirroring(bool guided, int& columns) {
+// Mirrored through the roots, in the shortest style.
+double distanceAfterMirroring(sim::Solver solver, int& columns) {
   sim::SimParams params;
   params.collide = false;
-  params.volume *= 16;                               // softer hair recovers by itself
-  if (!guided) params.solver = sim::Solver::kPaper;  // no stabilization
+  params.volume *= 16;  // softer hair recovers with the published forces, too
+  params.solver = solver;
   const sim::HairMeshShape shape =
       app::makeStyle(app::Style::kShort, app::Resolution::kLow, tests::analyticScalp(), tests::bodyDistance);
   Hair hair(shape, params);
@@ -168,11 +168,11 @@ double distanceAfterMirroring(bool guided, int& columns) {
   return test::largestDistance(hair.state.positions, hair.mesh.shape.positions) / hair.mesh.hair_length;
 }
 
-TEST(InversionRecovery, HairMirroredThroughItsRootsComesToRestAndWithoutRecoveryDoesNot) {
+TEST(InversionRecovery, HairMirroredThroughItsRootsComesHomeByItsForcesAndByThePublishedOnesDoesNot) {
   int columns = 0;
-  EXPECT_LT(distanceAfterMirroring(true, columns), 0.01);
-  EXPECT_GT(columns, 0);
-  EXPECT_GT(distanceAfterMirroring(false, columns), 0.05);
+  EXPECT_LT(distanceAfterMirroring(sim::Solver::kDefault, columns), 0.01);
+  EXPECT_EQ(columns, 0) << "guided";
+  EXPECT_GT(distanceAfterMirroring(sim::Solver::kPaper, columns), 0.05);
   EXPECT_EQ(columns, 0);
 }
 
