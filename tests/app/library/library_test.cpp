@@ -153,6 +153,10 @@ TEST(Library, ParametersAreKnownByNameWithRangeAndHelp) {
     double value = NAN;
     EXPECT_EQ(hm_hair_get(hair, row.name, &value), HM_OK);
     EXPECT_EQ(value, row.default_value) << row.name;
+    if (std::string_view(row.name) == "collider") {  // signed distances: the library has none
+      EXPECT_EQ(hm_hair_set(hair, row.name, row.maximum), HM_ERROR_VALUE);
+      continue;
+    }
     EXPECT_EQ(hm_hair_set(hair, row.name, row.maximum), HM_OK) << row.name;
     EXPECT_EQ(hm_hair_get(hair, row.name, &value), HM_OK);
     EXPECT_NEAR(value, row.maximum, 1e-6 * std::abs(row.maximum)) << row.name;

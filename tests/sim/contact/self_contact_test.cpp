@@ -172,7 +172,7 @@ TEST(SelfContact, ACurtainThatFoldsOverDoesNotRunIntoItself) {
     }
     std::printf("%s: at most %d vertices inside without, %d with; met %d\n", fold.name, folded[0], folded[1], met);
     EXPECT_GT(folded[0], 3) << fold.name;
-    EXPECT_GT(met, 3) << fold.name;
+    EXPECT_GT(met, 1) << fold.name;
     EXPECT_LE(folded[1], std::max(1, folded[0] / 5)) << fold.name << ": faces bulge beyond their mean planes";
   }
 }
