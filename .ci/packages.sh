@@ -11,7 +11,9 @@ test_packages=(libgtest-dev libpng-dev xvfb python3)
 optional_test_packages=(libembree-dev assimp-testmodels libsuitesparse-dev libbullet-dev gnuplot-nox valgrind clang libclang-rt-14-dev
   glslang-tools mesa-vulkan-drivers
   # the Python package; the plots and the studies over it; the pages of include/hairmesh.h
-  python3-numpy python3-matplotlib python3-distributed doxygen)
+  python3-numpy python3-matplotlib python3-distributed doxygen
+  # films of --video
+  ffmpeg)
 
 installed() {
   [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]

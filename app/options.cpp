@@ -88,7 +88,7 @@ const char* const kExamples = R"(Examples:
   hairmesh --no-images --frames 240 --strands 10000 --export walk.abc    (.usda, .hair, .ply, .glb)
   hairmesh --motion dance.mot --parts female-objs --speed 2 --set friction=0.6 --set solver=paper
 
-Of an option that is given twice the last counts; --set, --skip and --pin add up.
+Of an option that is given twice the last counts; --set, --skip, --pin and --map add up.
 
 Exit codes: 0 fine, 1 OpenGL or numerical fault or a file that cannot be written, 2 usage, 3 no OpenGL context,
 4 a file that cannot be used, 130 interrupted.)";
@@ -156,6 +156,11 @@ void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
   group.values(
       "--pin", options.pins, "JSON",
       "Hold a vertex of the hair, for instance {\"column\": 3, \"to\": \"scalp\"}; keys as in a scene's \"pins\"");
+  group.value("--tie", options.tie, "NAME|JSON",
+              "Tie the hair: back, high, low, left, right, two (left and right), none, or JSON as a scene's \"ties\"");
+  group.values("--map", options.maps, "FIELD=FILE.png",
+               "Paint stiffness, length or density over the scalp: the head unrolled, its front in the middle, white "
+               "for the parameter's own value; may be given many times");
   group.values("--skip", options.skips, "NAME=on|off",
                "Switch a skip of the table, or all=off; may be given many times; --skips lists them");
   group.flag("--skips", unchecked.list_skips, "Print the table of skips and end");
@@ -199,6 +204,11 @@ void addPictureOptions(CLI::App& parser, Options& options, Unchecked& unchecked)
       ->check(oneOf({"geometry", "pulling"}));
   group.value("--debug", options.debug, "LIST",
               "Debug views, comma separated: mesh, external, tets, ellipsoids, contacts, velocities, pins");
+  group.value("--compare", options.compare, "WITH",
+              "Simulate beside it the same with a preset, a scene, a hair file or NAME=VALUE,... and show both; the "
+              "summary says by how many millimetres and milliseconds they differ");
+  group.value("--compare-view", options.compare_view, "NAME", "split by a line, or side by side: split or side (split)")
+      ->check(oneOf({"split", "side"}));
 }
 
 void addRunOptions(CLI::App& parser, Options& options) {
@@ -223,6 +233,8 @@ void addRunOptions(CLI::App& parser, Options& options) {
               "next frame's number");
   group.value("--cache", options.cache, "FILE.hairmesh",
               "Without a window: keep every frame of the run; dropped on the window, its timeline shows them to and fro");
+  group.value("--video", options.video, "FILE.mp4",
+              "Without a window: a film of the frames, by ffmpeg where it is installed; PNG files as well with --out");
   group.value("--screenshot", options.screenshot, "FILE.png",
               "Write the last frame, panels included, when the run ends");
   group.value("--panel", options.panel, "NAME", "Tab that is open at first: simulation, motion, hair, look or debug")
@@ -323,9 +335,16 @@ void finish(const Unchecked& unchecked, Options& options) {
   if (!options.record.empty() && options.record == options.replay) {
     throw UsageError("--record and --replay name one file; a recording cannot be read and written at once");
   }
-  if (options.no_images && !options.screenshot.empty()) {
-    throw UsageError("--no-images draws nothing that --screenshot could write; leave one of them out");
+  if (!options.compare_view.empty() && options.compare.empty()) {
+    throw UsageError("--compare-view says how; add --compare WITH");
   }
+  if (options.no_images && !(options.screenshot + options.video).empty()) {
+    throw UsageError(std::string("--no-images draws nothing that ") +
+                     (options.video.empty() ? "--screenshot" : "--video") + " could write; leave one of them out");
+  }
+  if (!options.video.empty() && !std::filesystem::path(options.video).has_extension())
+    throw UsageError("--video cannot be '" + options.video + "'; name it .mp4, .webm or .mkv");
+  if (!options.video.empty()) options.headless = true;
   if (!options.write_hair.empty() && std::filesystem::path(options.write_hair).extension() != ".obj") {
     throw UsageError("--write-hair cannot be '" + options.write_hair + "'; name it .obj, the format that is written");
   }
@@ -429,6 +448,7 @@ bool parseOptions(int argc, char** argv, Options& options, int& exit_code) {
     return false;
   }
   options.frames_given = parser.count("--frames") > 0;
+  options.out_given = parser.count("--out") > 0;
   refuseBesideReplay(parser, options);
   finish(unchecked, options);
   return true;

@@ -26,6 +26,8 @@ struct Options {
   std::vector<std::pair<std::string, std::string>> set;  // --set name=value
   std::vector<std::string> skips;                        // --skip name=on|off
   std::vector<std::string> pins;                         // --pin JSON, see files/pin_spec.h
+  std::vector<std::string> maps;                         // --map FIELD=FILE.png, see files/field_map.h
+  std::string tie;                                       // see files/tie_spec.h; empty: the scene's
   std::string style, resolution;                         // empty: the scene's
   std::string hair, motion, parts, clip;                 // files; name of a clip
   std::string mends;                                     // of the hair file, curves
@@ -43,6 +45,8 @@ struct Options {
   std::string preset;
   std::string solver;      // default or paper; empty: the scene's
   std::string debug;       // debug views, comma separated
+  std::string video;       // film of a headless run
+  bool out_given = false;  // a film alone leaves no PNG files
   std::string screenshot;  // PNG of the last frame, panels included
   bool no_images = false;
   bool gl_debug = false;  // headless: the driver checks every OpenGL call
@@ -52,6 +56,8 @@ struct Options {
   std::string record, replay;  // recordings of a run's inputs
   std::string save_state, load_state, cache;
   int save_state_at = 0;  // frames of this run after which the state is saved; 0: the last
+  std::string compare;             // what to compare with, see scene/comparison.h; empty: nothing
+  std::string compare_view;        // split or side
   std::string loop;       // what a clip does at its end; empty: the scene's
   ExportSpec hair_export;
 };

@@ -128,6 +128,13 @@ void overrideCharacter(const Options& options, CharacterSpec& spec) {
   if (!options.clip.empty()) spec.clip = options.clip;
   if (options.start >= 0) spec.clip_offset = options.start;
   if (!options.loop.empty()) spec.loop = *parseLoop(options.loop);
+  for (const std::string& text : options.maps) {
+    const std::size_t equals = std::min(text.find('='), text.size());
+    const std::string file = findFile(text.substr(std::min(text.size(), equals + 1)), "", "maps");
+    const std::string fault = equals == text.size() ? "write FIELD=FILE.png" : setMap(text.substr(0, equals), file, spec.maps);
+    if (!fault.empty()) throw UsageError("--map cannot be '" + text + "'; " + fault);
+  }
+  if (!options.tie.empty()) spec.ties = tiesFromText(options.tie);
   for (const std::string& text : options.pins) spec.pins.push_back(pinFromText(text));
 }
 

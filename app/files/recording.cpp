@@ -28,7 +28,7 @@ struct AskName {
   std::string_view name;
 };
 // What can be recorded: all but the requests that write files.
-constexpr std::array<AskName, 38> kAskNames{{{Ask::kSetParam, "set"},
+constexpr std::array<AskName, 46> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kPause, "pause"},
                                              {Ask::kPauseMotion, "pause-motion"},
                                              {Ask::kSingleStep, "single-step"},
@@ -65,7 +65,15 @@ constexpr std::array<AskName, 38> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kTurntable, "turntable"},
                                              {Ask::kUndo, "undo"},
                                              {Ask::kRedo, "redo"},
-                                             {Ask::kEndGesture, "end-gesture"}}};
+                                             {Ask::kEndGesture, "end-gesture"},
+                                             {Ask::kCompare, "compare"},
+                                             {Ask::kCompareView, "compare-view"},
+                                             {Ask::kMarkIn, "mark-in"},
+                                             {Ask::kMarkOut, "mark-out"},
+                                             {Ask::kBake, "bake"},
+                                             {Ask::kClearBake, "clear-bake"},
+                                             {Ask::kMap, "map"},
+                                             {Ask::kTie, "tie"}}};
 
 std::string_view nameOf(Ask what) {
   for (const AskName& row : kAskNames) {

@@ -36,9 +36,18 @@ std::string readFileName(const JsonPlace& place, const std::string& kind) {
   return file;
 }
 
+FieldFiles readMaps(const JsonPlace& place) {
+  place.expectObject({"stiffness", "length", "density"});
+  FieldFiles maps;
+  if (place.has("stiffness")) maps.stiffness = readFileName(place.at("stiffness"), "maps");
+  if (place.has("length")) maps.length = readFileName(place.at("length"), "maps");
+  if (place.has("density")) maps.density = readFileName(place.at("density"), "maps");
+  return maps;
+}
+
 CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
   place.expectObject({"motion", "parts", "clip", "style", "resolution", "hair", "reverse_faces", "fit", "mends", "position",
-                      "heading", "clip_offset", "loop", "look", "pins"});
+                      "heading", "clip_offset", "loop", "look", "pins", "ties", "maps"});
   CharacterSpec spec;
   spec.look = look;
   spec.motion =
@@ -64,6 +73,8 @@ CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
   if (place.has("loop")) spec.loop = *parseLoop(place.at("loop").choice(kLoopNames));
   if (place.has("look")) readHairRows(place.at("look"), spec.look);
   if (place.has("pins")) spec.pins = readPins(place.at("pins"));
+  if (place.has("maps")) spec.maps = readMaps(place.at("maps"));
+  if (place.has("ties")) spec.ties = readTies(place.at("ties"));
   return spec;
 }
 
@@ -111,7 +122,10 @@ json writeCharacter(const CharacterSpec& spec) {
           {"clip_offset", spec.clip_offset},
           {"loop", loopName(spec.loop)},
           {"look", writeHairRows(spec.look)},
-          {"pins", writePins(spec.pins)}};
+          {"pins", writePins(spec.pins)},
+          {"ties", writeTies(spec.ties)},
+          {"maps",
+           {{"stiffness", spec.maps.stiffness}, {"length", spec.maps.length}, {"density", spec.maps.density}}}};
 }
 
 }  // namespace

@@ -6,7 +6,8 @@
 //     "motion": "walk.bvh", "parts": "", "clip": "", "style": "shoulder", "resolution": "medium", "hair": "",
 //     "reverse_faces": false, "fit": true, "mends": "",
 //     "position": [0, 0, 0], "heading": 0, "clip_offset": 0, "loop": "auto", "look": { a row of the hair table: value
-//     }, "pins": [ as pin_spec.h says ]
+//     }, "pins": [ as pin_spec.h says ], "ties": [ as tie_spec.h says ],
+//     "maps": { "stiffness": "a.png", "length": "b.png", "density": "c.png", as field_map.h says }
 //   }],
 //   "camera": { "view": "three-quarter", "framing": "bust", "eye": [..], "target": [..], "fov": 0.5, "follow": true,
 //              "of_head": false },
@@ -24,7 +25,9 @@
 #include <vector>
 
 #include "app/figure/character.h"
+#include "app/files/field_map.h"
 #include "app/files/pin_spec.h"
+#include "app/files/tie_spec.h"
 #include "app/motion/playback.h"
 #include "app/scene/look_params.h"
 #include "app/scene/skips.h"
@@ -52,6 +55,8 @@ struct CharacterSpec {
   LoopKind loop = LoopKind::kAuto;
   CharacterLook look;
   std::vector<PinSpec> pins;
+  std::vector<TieSpec> ties;
+  FieldFiles maps;
 };
 
 // Where the camera stands at the first frame. With an eye and a target given the named view is not used.

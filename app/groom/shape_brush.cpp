@@ -10,6 +10,7 @@ namespace app {
 namespace {
 
 constexpr double kPuff = 0.004, kGrow = 0.03;  // m, share of the length: of one sample at full strength
+constexpr double kPinch = 0.08, kTwist = 0.10;  // share of the way to the middle; rad: of one sample at full strength
 constexpr double kLeastVolume = 0.02;          // of the mean corner volume, or half of what it is
 constexpr double kLeastEdge = 0.001;           // m, or half of what it is
 constexpr double kOffBody = 0.002;             // m, or as near as it is
@@ -59,6 +60,7 @@ ShapeBrushes::ShapeBrushes(const sim::HairMesh& mesh) {
 void ShapeBrushes::reach(const Brush& brush, const sim::HairMesh& mesh, std::span<const Vec3> seen) {
   for (std::size_t v = 0; v < weight_.size(); ++v)
     weight_[v] = mesh.isRoot(static_cast<int>(v)) ? 0 : brush.strength * brushReach(brush, seen[v]);
+  for (std::size_t v = 0; v < brush.frozen.size(); ++v) weight_[v] *= 1 - brush.frozen[v];
 }
 
 void ShapeBrushes::comb(const Brush&, const Vec3& along) {
@@ -82,6 +84,41 @@ void ShapeBrushes::puff(const Brush& brush, const sim::HairMesh& mesh) {
     Vec3 out = x[v] - brush.centre;
     out.y() = std::max(0.0, out.y());  // below the head's middle: level
     if (weight_[v] > 0 && out.norm() > 1e-6) wanted_[v] += kPuff * weight_[v] * out.normalized();
+  }
+}
+
+void ShapeBrushes::push(const sim::HairMesh& mesh, const std::function<double(const Vec3&)>& body) {
+  constexpr double kAside = 0.003;  // m, of the differences that give the normal
+  for (std::size_t v = 0; body && v < wanted_.size(); ++v) {
+    if (weight_[v] == 0) continue;
+    const Vec3& x = mesh.shape.positions[v];
+    Vec3 out;
+    for (int axis = 0; axis < 3; ++axis)
+      out[axis] = body(x + kAside * Vec3::Unit(axis)) - body(x - kAside * Vec3::Unit(axis));
+    if (out.norm() > 1e-9) wanted_[v] += kPuff * weight_[v] * out.normalized();
+  }
+}
+
+// Pinching, spreading and twisting: about a line along the hair through the middle of what is reached.
+void ShapeBrushes::aboutHair(BrushTool tool, const sim::HairMesh& mesh) {
+  const std::vector<Vec3>& x = mesh.shape.positions;
+  Vec3 middle = Vec3::Zero(), along = Vec3::Zero();
+  double sum = 0;
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    if (weight_[v] == 0) continue;
+    sum += weight_[v], middle += weight_[v] * x[v], along += weight_[v] * (x[v] - x[v - 1]);
+  }
+  if (sum == 0 || along.norm() < 1e-9) return;
+  middle /= sum, along.normalize();
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    if (weight_[v] == 0) continue;
+    const Vec3 off = x[v] - middle, across = off - off.dot(along) * along;
+    if (tool == BrushTool::kTwist) {
+      const double turn = kTwist * weight_[v];
+      wanted_[v] += std::sin(turn) * along.cross(across) - (1 - std::cos(turn)) * across;
+    } else {
+      wanted_[v] += (tool == BrushTool::kPinch ? -kPinch : kPinch) * weight_[v] * across;
+    }
   }
 }
 
@@ -212,6 +249,17 @@ int ShapeBrushes::apply(const Brush& brush, const sim::HairMesh& mesh, std::span
         break;
       case BrushTool::kPuff:
         puff(here, mesh);
+        break;
+      case BrushTool::kPush:
+        push(mesh, body);
+        break;
+      case BrushTool::kPinch:
+      case BrushTool::kSpread:
+      case BrushTool::kTwist:
+        aboutHair(brush.tool, mesh);
+        break;
+      case BrushTool::kFreeze:
+      case BrushTool::kThaw:
         break;
       case BrushTool::kCut:
       case BrushTool::kGrow:

@@ -1,6 +1,4 @@
-// Brushes on the rest shape of a hair mesh, placed where the moving hair is seen: combing, cutting, growing, smoothing,
-// puffing. Whatever a brush does, every prism stays positive, edges keep a length, and nothing comes nearer to the
-// body.
+// Brushes on the rest shape of a hair mesh, placed where the moving hair is seen. Whatever a brush does, every prism stays positive, edges keep a length, and nothing comes nearer to the body.
 //
 // All positions are in the scalp's frame, m.
 #pragma once
@@ -23,19 +21,27 @@ enum class BrushTool {
   kCut,     // columns end nearer the brush
   kGrow,    // columns become longer in their own shape
   kSmooth,  // towards the mean of the neighbours; lengths stay
-  kPuff     // away from the head's middle; lengths stay
+  kPuff,    // away from the head's middle; lengths stay
+  kPinch,   // towards the middle of what it reaches, across the hair; lengths stay
+  kSpread,  // away from there
+  kPush,    // out of the body, along its normal; lengths stay
+  kTwist,   // about the hair's own direction; lengths stay
+  kFreeze,  // moves nothing: what it reaches stays under other brushes
+  kThaw     // takes that back
 };
-inline constexpr std::array<std::string_view, 5> kBrushNames{"comb", "cut", "grow", "smooth", "puff"};
+inline constexpr std::array<std::string_view, 11> kBrushNames{"comb",  "cut",    "grow", "smooth", "puff",  "pinch",
+                                                              "spread", "push", "twist", "freeze", "thaw"};
 
 struct Brush {
   BrushTool tool = BrushTool::kComb;
-  Vec3 at = Vec3::Zero();                 // on the moving hair
-  Vec3 along = Vec3::Zero();              // of combing: the way from the last place to this one
-  double radius = 0.04;                   // m
-  double strength = 0.5;                  // 0 to 1
-  double falloff = 1;                     // of the reach: (1 - (distance / radius)^2)^falloff
-  std::optional<double> mirror;           // x of the plane across which the brush acts as well
-  Vec3 centre = Vec3::Zero();             // the head's middle, that puffing leads away from
+  Vec3 at = Vec3::Zero();             // on the moving hair
+  Vec3 along = Vec3::Zero();          // of combing: the way from the last place to this one
+  double radius = 0.04;               // m
+  double strength = 0.5;              // 0 to 1
+  double falloff = 1;                 // of the reach: (1 - (distance / radius)^2)^falloff
+  std::optional<double> mirror;       // x of the plane across which the brush acts as well
+  Vec3 centre = Vec3::Zero();         // the head's middle, that puffing leads away from
+  std::span<const float> frozen{};    // share of its way that each vertex does not go; empty: none is frozen
   double shortest = 0.03, longest = 1.2;  // m, columns that are cut and grown
 };
 
@@ -63,6 +69,8 @@ class ShapeBrushes {
   void comb(const Brush& brush, const Vec3& along);
   void smooth(const sim::HairMesh& mesh);
   void puff(const Brush& brush, const sim::HairMesh& mesh);
+  void push(const sim::HairMesh& mesh, const std::function<double(const Vec3&)>& body);
+  void aboutHair(BrushTool tool, const sim::HairMesh& mesh);
   void scaleColumns(const Brush& brush, const sim::HairMesh& mesh, std::span<const Vec3> seen);
   void keepLengths(const sim::HairMesh& mesh);
   void limit(const sim::HairMesh& mesh, const std::function<double(const Vec3&)>& body, std::vector<Vec3>& positions);

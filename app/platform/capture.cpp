@@ -10,36 +10,64 @@ namespace app {
 
 namespace {
 
-void writePicture(const std::string& file, Demo& demo, const FrameTarget& target) {
+std::vector<unsigned char> drawn(Demo& demo, const FrameTarget& target) {
   std::vector<unsigned char> pixels;
-  target.renderer->renderImage(frameInput(demo, target.width, target.height), pixels);
-  writePng(file, target.width, target.height, pixels);
+  if (demo.comparison.on() && target.pair) {
+    FrameTarget offscreen = target;
+    offscreen.pixels = &pixels;
+    drawFrame(demo, offscreen);
+  } else {
+    target.renderer->renderImage(frameInput(demo, target.width, target.height), pixels);
+  }
+  return pixels;
+}
+
+void say(const std::string& text, Demo& demo) {
+  demo.message = text;
+  demo.message_is_fault = false;
 }
 
 void writeScreenshot(Demo& demo, const FrameTarget& target) {
   Capture& capture = demo.capture;
   capture.screenshot = false;
   const std::string file = capture.screenshot_file.empty() ? freeName("hairmesh", ".png") : capture.screenshot_file;
-  writePicture(file, demo, target);
-  demo.message = "screenshot " + file;
-  demo.message_is_fault = false;
+  writePng(file, target.width, target.height, drawn(demo, target));
+  say("screenshot " + file, demo);
 }
 
-void recordFrame(Demo& demo, const FrameTarget& target) {
+}  // namespace
+
+void PictureWriter::recordFrame(Demo& demo, const FrameTarget& target) {
   Capture& capture = demo.capture;
   if (capture.recorded == 0) {
     capture.folder = freeName("recording", "");
     std::filesystem::create_directories(capture.folder);
-    demo.message = "recording into " + capture.folder;
-    demo.message_is_fault = false;
+    if (canWriteVideo())
+      film_ = std::make_unique<VideoWriter>(capture.folder + ".mp4", target.width, target.height,
+                                            demo.scene.playback.fps);
+    say("recording into " + capture.folder, demo);
   }
+  const std::vector<unsigned char> pixels = drawn(demo, target);
   char name[32];
   std::snprintf(name, sizeof name, "frame_%04d.png", capture.recorded);
-  writePicture((std::filesystem::path(capture.folder) / name).string(), demo, target);
+  writePng((std::filesystem::path(capture.folder) / name).string(), target.width, target.height, pixels);
+  // A film has one size: in another window size the pictures alone go on.
+  if (film_ && film_->width() == target.width && film_->height() == target.height) film_->add(pixels);
   capture.recorded += 1;
 }
 
-}  // namespace
+void PictureWriter::endRecording(Demo& demo) {
+  const Capture& capture = demo.capture;
+  std::string text = std::to_string(capture.recorded) + " frames in " + capture.folder;
+  if (film_) {
+    film_->finish();
+    text += " and " + film_->file();
+  } else {
+    text += "; with the package ffmpeg installed they would be a film as well";
+  }
+  film_.reset();
+  say(text, demo);
+}
 
 std::string freeName(const std::string& prefix, const std::string& ending) {
   for (int number = 1;; ++number) {
@@ -50,15 +78,19 @@ std::string freeName(const std::string& prefix, const std::string& ending) {
   }
 }
 
-void writePictures(Demo& demo, const FrameTarget& target) {
+void PictureWriter::write(Demo& demo, const FrameTarget& target) {
+  Capture& capture = demo.capture;
   try {
-    if (demo.capture.screenshot) writeScreenshot(demo, target);
-    if (demo.capture.recording) recordFrame(demo, target);
+    if (capture.screenshot) writeScreenshot(demo, target);
+    if (capture.recording) recordFrame(demo, target);
+    if (recording_ && !capture.recording) endRecording(demo);
   } catch (const std::exception& fault) {
     demo.message = fault.what();
     demo.message_is_fault = true;
-    demo.capture.screenshot = demo.capture.recording = false;
+    capture.screenshot = capture.recording = false;
+    film_.reset();
   }
+  recording_ = capture.recording;
 }
 
 }  // namespace app

@@ -17,6 +17,7 @@
 #include "app/platform/egl_context.h"
 #include "app/platform/interrupt.h"
 #include "app/platform/opening_notes.h"
+#include "app/platform/video.h"
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
 #include "app/scene/hair_export.h"
@@ -71,6 +72,7 @@ struct Pictures {
   explicit Pictures(bool debug) : context(debug) {}
   EglContext context;
   render::Renderer renderer{dataPath("shaders")};
+  render::PicturePair pair{dataPath("shaders")};
 };
 
 // One run from the first frame to the last, to an interrupt, or to a picture that cannot be written.
@@ -80,6 +82,8 @@ struct Run {
   Demo demo;
   RunReport report;
   std::optional<Pictures> pictures;
+  std::optional<VideoWriter> film;
+  bool png = true;  // a film alone leaves none
   std::optional<HairExport> hair_export;
   std::optional<SimCacheWriter> cache;
   std::vector<unsigned char> pixels;
@@ -110,7 +114,9 @@ Run::Run(Scene scene, const Options& run_options) : options(run_options), tape(o
   frames = tape.frames().value_or(options.frames);
   if (!options.report.empty()) checkWritable(options.report);
   if (!options.screenshot.empty()) checkWritable(options.screenshot);
-  if (!options.no_images) makeFolder(options.out);
+  png = !options.no_images && (options.video.empty() || options.out_given);
+  if (png) makeFolder(options.out);
+  if (!options.video.empty()) film.emplace(options.video, options.width, options.height, report.fps);
   if (!options.save_state.empty()) checkWritable(options.save_state);
   demo = openForPictures(std::move(scene), options, tape.aspect());
   if (!options.load_state.empty()) {
@@ -118,9 +124,11 @@ Run::Run(Scene scene, const Options& run_options) : options(run_options), tape(o
     loadDemoState(options.load_state, keep_view, demo);
     first = demo.frames;
   }
+  if (!options.compare.empty()) startComparison(options.compare, demo);
+  demo.comparison.side_by_side = options.compare_view == "side";
   if (!options.hair_export.file.empty()) hair_export.emplace(options.hair_export, demo, report.fps, frames);
   if (!options.cache.empty()) cache.emplace(options.cache, demo);
-  if (!options.no_images) checkWritable(framePath(options.out, first));
+  if (png) checkWritable(framePath(options.out, first));
   if (!options.no_images) {
     pictures.emplace(options.gl_debug);
     report.renderer = render::rendererName();
@@ -154,7 +162,7 @@ void Run::saveState() const {
 
 void Run::drawFrames() {
   FrameTarget target;
-  if (pictures) target = {&pictures->renderer, options.width, options.height, 0, &pixels, !options.report.empty(), {}};
+  if (pictures) target = {&pictures->renderer, options.width, options.height, 0, &pixels, !options.report.empty(), {}, &pictures->pair};
   double last_line = now();
   for (int frame = 0; frame < frames && !interrupted(); ++frame) {
     advanceFrame(demo, tape.turn(frame, frameSeconds(frame), demo), target);
@@ -167,7 +175,8 @@ void Run::drawFrames() {
       exportFrame(frame);
       continue;
     }
-    writePng(framePath(options.out, first + frame), options.width, options.height, pixels);
+    if (png) writePng(framePath(options.out, first + frame), options.width, options.height, pixels);
+    if (film) film->add(pixels);
     exportFrame(frame);
     // Software rasterizers take a second a frame; a person wants to see that it goes on.
     if (now() - last_line > kLineEvery) {
@@ -199,7 +208,12 @@ int Run::finish() {
   report.deadline = demo.deadline.seconds;
   if (cache) std::cout << cache->finish(demo);
   std::cout << summary(report);
-  if (pictures) {
+  if (demo.comparison.on()) std::cout << "against " << options.compare << ": " << comparisonText(demo) << "\n";
+  if (film) {
+    film->finish();
+    std::cout << report.frames.size() << " frames in " << options.video << "\n";
+  }
+  if (png) {
     std::cout << report.frames.size() << " frames in " << options.out;
     if (first > 0) std::cout << ", from " << framePath("", first);
     std::cout << "\n" << staleFrames(options.out, first + std::ssize(report.frames) - 1);

@@ -103,7 +103,7 @@ void onMouseMove(GLFWwindow* window, double x, double y) {
   s.mouse_x = x;
   s.mouse_y = y;
   const BrushState& brush = s.ui.brush;
-  const bool brushes = brush.stroking || (brush.over_hair && pressed(window, GLFW_MOUSE_BUTTON_LEFT));
+  const bool brushes = s.ui.line_held || brush.stroking || (brush.over_hair && pressed(window, GLFW_MOUSE_BUTTON_LEFT));
   if (ImGui::GetIO().WantCaptureMouse || brushes) return;
   int width = 1, height = 1;
   glfwGetWindowSize(window, &width, &height);
@@ -268,6 +268,8 @@ Demo openForWindow(Scene scene, const Options& options, double aspect) {
   if (isSimCache(options.load_state)) openCache(options.load_state, demo);
   if (!options.save_state.empty()) checkWritable(options.save_state);
   setDebugViews(options.debug, demo.debug);
+  if (!options.compare.empty()) startComparison(options.compare, demo);
+  demo.comparison.side_by_side = options.compare_view == "side";
   for (const std::string& note : openingNotes(options, demo)) std::cerr << "hairmesh: " << note << "\n";
   return demo;
 }
@@ -285,8 +287,8 @@ UiState uiOf(const Options& options) {
   return ui;
 }
 
-// What the window shows, panels included.
-void writeWindow(const std::string& file, const FrameTarget& target) {
+// The window as it is, panels included.
+void writeWhole(const std::string& file, const FrameTarget& target) {
   if (file.empty()) return;
   std::vector<unsigned char> pixels;
   render::readFramebuffer(0, target.width, target.height, pixels);
@@ -330,9 +332,12 @@ int runWindow(Scene scene, const Options& options) {
   run.start_seconds = now() - start;
 
   FrameTarget target;
+  render::PicturePair pair(dataPath("shaders"));
   target.renderer = &renderer;
+  target.pair = &pair;
   target.draw_panels = [&](Demo& shown) { drawPanels(shown, ui); };
   ShaderWatch watch;
+  PictureWriter pictures;
   const auto reload = [&] { return reloadSavedShaders(now(), watch, renderer, demo); };
   RedrawThrottle throttle;
   HairRecorder hair(demo.scene.playback.fps);
@@ -353,11 +358,11 @@ int runWindow(Scene scene, const Options& options) {
     if (!ui.to_forget.empty()) autosave.forget(std::exchange(ui.to_forget, ""));
     autosave.keep(now(), demo);
     demo.stats.skipped[kSkipEvents] = {throttle.waited(), 1, 0};
-    writePictures(demo, target);
+    pictures.write(demo, target);
     hair.frame(demo);
     if (frame + 1 == options.save_state_at) writeFile(options.save_state, demoStateBytes(demo));
     if (!options.report.empty()) run.frames.push_back(demo.stats);
-    if (options.frames_given && frame + 1 == options.frames) writeWindow(options.screenshot, target);
+    if (options.frames_given && frame + 1 == options.frames) writeWhole(options.screenshot, target);
     glfwSwapBuffers(window.handle);
   }
   hair.close(demo);

@@ -1,15 +1,15 @@
 #include "app/scene/actor.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "app/figure/root_cover.h"
 #include "app/files/errors.h"
 #include "app/scene/frame_stats.h"
-#include "app/scene/hair_from_file.h"
+#include "app/scene/haircuts.h"
 #include "app/scene/sim_to_render.h"
 #include "app/scene/sleep.h"
+#include "app/styles/tie_ring.h"
 
 namespace app {
 
@@ -21,13 +21,6 @@ constexpr double kSettlingDrag = 12;
 
 // s, after which what the coarse shape lacks at the change-over has faded to a third: slow enough not to be seen.
 constexpr double kRemainderTime = 1;
-
-// Never the same twice in a process: the renderer keeps GPU resources by these, also across scenes opened one after
-// another.
-std::uint64_t freshId() {
-  static std::atomic<std::uint64_t> next{1};
-  return next++;
-}
 
 // Joints that skin, ellipsoids or the scalp hang on, and those above them.
 std::vector<unsigned char> movingJoints(const Character& character) {
@@ -64,37 +57,6 @@ LoadedBody& loadBody(const CharacterSpec& spec, AssetCache& asset_cache) {
   body->id = freshId();
   asset_cache.bodies.push_back(std::move(body));
   return *asset_cache.bodies.back();
-}
-
-std::string styleTitle(const CharacterSpec& spec) {
-  return std::string(styleName(spec.style)) + " " + std::string(resolutionName(spec.resolution));
-}
-
-const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& asset_cache) {
-  const std::string title = spec.hair.empty() ? styleTitle(spec) : spec.hair + (spec.reverse_faces ? " reversed" : "");
-  const std::string key = body.key + "|" + title + (spec.fit ? " fitted " : "") + spec.mends;
-  for (const auto& haircut : asset_cache.haircuts) {
-    if (haircut->key == key) return *haircut;
-  }
-  auto haircut = std::make_unique<Haircut>();
-  haircut->key = key;
-  haircut->id = freshId();
-  // Built-in styles alone ask for the distance, and it is a grid that takes time to fill.
-  if (spec.hair.empty() && !body.distance) body.distance = restBodyDistance(body.character);
-  try {
-    sim::HairMeshShape shape = spec.hair.empty()
-                                   ? makeStyle(spec.style, spec.resolution, body.character.scalp, body.distance)
-                                   : hairFromFile(spec, body.character, *haircut);
-    haircut->mesh = sim::buildHairMesh(std::move(shape));
-  } catch (const sim::MeshError& error) {
-    throw InputError(spec.hair.empty() ? "style " + title + " on " + spec.motion : spec.hair, error.place, error.fault,
-                     error.mend);
-  }
-  haircut->faces = renderFaces(haircut->mesh);
-  blendPositions(haircut->mesh.shape.positions, haircut->mesh.shape.positions, 1, Vec3::Zero(), haircut->rest);
-  // Hair of a style that divides over the shoulders lies against itself: it sleeps as a whole.
-  asset_cache.haircuts.push_back(std::move(haircut));
-  return *asset_cache.haircuts.back();
 }
 
 const ScalpCover& coverScalp(const LoadedBody& body, const Haircut& haircut, AssetCache& asset_cache) {
@@ -227,6 +189,14 @@ Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, AssetCa
   actor.reach = reachOf(actor);
   placeActor(actor, true);
   actor.pins = findPins(spec.pins, actor.haircut->mesh, body.character, actor.pose);
+  const std::vector<int>& ring = actor.haircut->tied;
+  const Scalp& scalp = body.character.scalp;
+  const std::vector<Vec3> places =
+      ringPlaces(actor.haircut->mesh.shape, scalp, placeTies(spec.ties, scalp), ring);
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const Vec3 at = body.character.head_frame * places[k];
+    actor.pins.push_back({ring[k], body.character.head_joint, at, PinSpec::kForever, 0, PinSpec::kForever});
+  }
   for (const ActorPin& pin : actor.pins) markMoving(pin.joint, body.character.skeleton, body.moving_joints);
   return actor;
 }

@@ -51,10 +51,13 @@ struct Haircut {
   std::optional<LookFit> look;  // of a groom's strands
   std::vector<MendedFinding> findings;  // of a groom, what the inspector says
   sim::HairMesh mesh;
+  std::vector<int> tied;         // vertices in the rings of ties
+  std::vector<float> stiffness;  // painted, one a column; empty: not painted
   std::vector<render::HairFace> faces;
   std::vector<float> rest;  // positions of the rest shape, three floats a vertex
   // Of hair that brushes have reshaped, which one actor alone wears.
   bool edited = false;
+  std::vector<float> frozen;  // per vertex: share of a brush's way that it does not go; empty: none
   std::optional<sim::RestShape> reshape;
   mutable std::optional<ShapeBrushes> brushes;  // scratch
 };

@@ -83,6 +83,20 @@ void changeMends(const std::string& mends, Demo& demo) {
   recast(spec, true, "hair mended", demo);
 }
 
+void changeTies(const std::string& text, Demo& demo) {
+  CharacterSpec spec = selectedActor(demo).spec;
+  spec.ties = tiesFromText(text);
+  recast(spec, true, spec.ties.empty() ? "ties taken off" : "hair tied", demo);
+}
+
+void changeMap(const Request& request, Demo& demo) {
+  CharacterSpec spec = selectedActor(demo).spec;
+  const std::string file = request.text.empty() ? "" : findFile(request.text, "", "maps");
+  if (const std::string fault = setMap(request.name, file, spec.maps); !fault.empty())
+    throw InputError("", "map '" + request.name + "'", fault, "");
+  recast(spec, true, request.name + (file.empty() ? " no longer painted" : " painted by " + stem(file)), demo);
+}
+
 void changeMotion(const Request& request, Demo& demo) {
   CharacterSpec spec = selectedActor(demo).spec;
   spec.motion = findFile(request.text, "", "clips");
@@ -261,6 +275,15 @@ int stepsOf(const Request& request) {
   return static_cast<int>(std::clamp(request.value, 1.0, 1e6));
 }
 
+void compare(const Request& request, Demo& demo) {
+  if (request.value == 0) {
+    demo.comparison.other.clear();
+    return;
+  }
+  startComparison(request.text, demo);
+  showMessage("compared with " + (request.text.empty() ? "what it was" : stem(request.text)), demo);
+}
+
 struct Action {
   Ask what;
   void (*apply)(const Request&, Demo&);
@@ -319,7 +342,7 @@ constexpr Action kActions[] = {
     {Ask::kRecord,
      [](const Request& request, Demo& demo) {
        demo.capture.recording = request.value != 0;
-       demo.capture.recorded = 0;
+       if (demo.capture.recording) demo.capture.recorded = 0;
      }},
     {Ask::kRecordHair,
      [](const Request& request, Demo& demo) {
@@ -351,6 +374,22 @@ constexpr Action kActions[] = {
     {Ask::kUndo, [](const Request& request, Demo& demo) { undoEdits(stepsOf(request), demo); }},
     {Ask::kRedo, [](const Request& request, Demo& demo) { redoEdits(stepsOf(request), demo); }},
     {Ask::kEndGesture, [](const Request&, Demo& demo) { demo.edits.gesture = false; }},
+    {Ask::kCompare, compare},
+    {Ask::kCompareView,
+     [](const Request& request, Demo& demo) {
+       demo.comparison.side_by_side = request.name == "side";
+       demo.comparison.line = std::clamp(request.value, 0.0, 1.0);
+     }},
+    {Ask::kMarkIn, [](const Request& request, Demo& demo) { setInPoint(request.value != 0, demo); }},
+    {Ask::kMarkOut, [](const Request& request, Demo& demo) { setOutPoint(request.value != 0, demo); }},
+    {Ask::kBake, [](const Request& request, Demo& demo) { startBake(request.value, demo); }},
+    {Ask::kClearBake,
+     [](const Request&, Demo& demo) {
+       forgetMoments(demo.timeline);
+       demo.timeline.in = demo.timeline.out = -1;
+     }},
+    {Ask::kMap, changeMap},
+    {Ask::kTie, [](const Request& request, Demo& demo) { changeTies(request.text, demo); }},
 };
 
 constexpr bool rowsMatchRequests() {

@@ -106,17 +106,6 @@ render::DrawSkips drawSkips(const SkipSet& skips) {
   return draw;
 }
 
-void draw(Demo& demo, const FrameTarget& target) {
-  count(!target.renderer, demo.stats.always[kNoPicture]);
-  if (!target.renderer || target.width <= 0 || target.height <= 0) return;
-  demo.aspect = static_cast<double>(target.width) / target.height;
-  demo.picture_height = target.height;
-  const render::FrameInput input = frameInput(demo, target.width, target.height);
-  demo.stats.draw = target.pixels ? target.renderer->renderImage(input, *target.pixels, target.measure)
-                                  : target.renderer->renderFrame(input, target.framebuffer, target.measure);
-  addDrawing(demo.stats.draw.skip_counts, demo.stats.skipped);
-}
-
 // A frame that takes no step because time stands still has no times to tell.
 void addToHistory(Demo& demo) {
   if (demo.paused && demo.stats.steps == 0 && !demo.history.empty()) return;
@@ -293,10 +282,48 @@ render::FrameInput frameInput(Demo& demo, int width, int height) {
   return input;
 }
 
+namespace {
+
+// The demo and the one that it is compared with, in one picture.
+render::FrameReport drawPair(Demo& demo, const FrameTarget& target) {
+  const Comparison& comparison = demo.comparison;
+  const render::PairLayout layout{comparison.side_by_side, comparison.line};
+  const int left = render::firstWidth(layout, target.width), right = render::secondWidth(layout, target.width);
+  demo.aspect = static_cast<double>(left) / target.height;
+  Demo& other = demo.comparison.other.front();
+  const render::FrameInput first = frameInput(demo, left, target.height);
+  const render::FrameInput second = frameInput(other, right, target.height);
+  if (target.pixels) {
+    return target.pair->renderImage(*target.renderer, first, second, layout, target.width, *target.pixels,
+                                    target.measure);
+  }
+  return target.pair->renderFrame(*target.renderer, first, second, layout, target.width, target.framebuffer,
+                                  target.measure);
+}
+
+}  // namespace
+
+void drawFrame(Demo& demo, const FrameTarget& target) {
+  count(!target.renderer, demo.stats.always[kNoPicture]);
+  if (!target.renderer || target.width <= 0 || target.height <= 0) return;
+  demo.aspect = static_cast<double>(target.width) / target.height;
+  demo.picture_height = target.height;
+  if (demo.comparison.on() && target.pair) {
+    demo.stats.draw = drawPair(demo, target);
+    return addDrawing(demo.stats.draw.skip_counts, demo.stats.skipped);
+  }
+  const render::FrameInput input = frameInput(demo, target.width, target.height);
+  demo.stats.draw = target.pixels ? target.renderer->renderImage(input, *target.pixels, target.measure)
+                                  : target.renderer->renderFrame(input, target.framebuffer, target.measure);
+  addDrawing(demo.stats.draw.skip_counts, demo.stats.skipped);
+}
+
 void advanceFrame(Demo& demo, double seconds, const FrameTarget& target) {
   const double start = now();
+  followRange(demo);
   demo.stats = FrameStats{};
   const bool asked = !demo.requests.empty();
+  std::vector<Request> of_both = sharedRequests(demo.requests);
   applyRequests(demo);
   leaveCachedFrame(demo);
   followColliders(demo);
@@ -317,8 +344,9 @@ void advanceFrame(Demo& demo, double seconds, const FrameTarget& target) {
   advanceShownTime(seconds, demo);
   ++demo.frames;
   keepMoment(demo);
+  advanceCompared(seconds, std::move(of_both), demo);
 
-  timed(demo.stats.seconds[kTimeDraw], [&] { draw(demo, target); });
+  timed(demo.stats.seconds[kTimeDraw], [&] { drawFrame(demo, target); });
   if (target.draw_panels) {
     timed(demo.stats.seconds[kTimePanels], [&] { target.draw_panels(demo); });
   }

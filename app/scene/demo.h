@@ -13,6 +13,7 @@
 #include "app/scene/actor.h"
 #include "app/scene/background_load.h"
 #include "app/scene/camera.h"
+#include "app/scene/comparison.h"
 #include "app/scene/deadline.h"
 #include "app/scene/debug_views.h"
 #include "app/scene/edit_history.h"
@@ -20,6 +21,7 @@
 #include "app/scene/governor.h"
 #include "app/scene/request.h"
 #include "app/scene/timeline.h"
+#include "render/picture_pair.h"
 #include "render/renderer.h"
 
 namespace app {
@@ -57,6 +59,7 @@ struct Demo {
 
   EditHistory edits;
   Timeline timeline;
+  Comparison comparison;
   std::array<std::optional<Camera>, 4> bookmarks;
   double turntable = 0;  // rad/s
   BackgroundLoad loading;
@@ -85,6 +88,7 @@ struct FrameTarget {
   std::vector<unsigned char>* pixels = nullptr;  // when given: drawn offscreen and read back, RGBA, top row first
   bool measure = false;                          // stage times of the drawing
   std::function<void(Demo&)> draw_panels;        // empty: there are none
+  render::PicturePair* pair = nullptr;           // without it comparisons show the first picture alone
 };
 
 // Loads a scene and lets the hair come to rest. With `beside`, what can follow later is loaded beside the frames from
@@ -96,6 +100,9 @@ void advanceFrame(Demo& demo, double seconds, const FrameTarget& target);
 
 // What was found of hair mesh files that do not fit their heads; empty when all fit.
 std::string hairNotes(const Demo& demo);
+
+// Draws the demo as it is; advanceFrame does.
+void drawFrame(Demo& demo, const FrameTarget& target);
 
 // What advanceFrame hands to the renderer; spans point into the demo.
 render::FrameInput frameInput(Demo& demo, int width, int height);

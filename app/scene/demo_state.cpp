@@ -52,7 +52,8 @@ auto savedOf(A& actor) requires std::same_as<std::remove_const_t<A>, Actor> {
 template <class D>
 auto savedOf(D& demo) requires std::same_as<std::remove_const_t<D>, Demo> {
   auto& [scene, asset_cache, actors, selected, camera, aspect, picture_height, origin, shown_fraction, debug, clock,
-         governor, deadline, running, frames, shown_time, paused, single_steps, edits, timeline, bookmarks, turntable, loading, requests, message,
+         governor, deadline, running, frames, shown_time, paused, single_steps, edits, timeline, comparison,
+         bookmarks, turntable, loading, requests, message,
          message_is_fault, capture, stats, history, history_next, debug_geometry, hair_inputs, body_inputs] = demo;
   auto& [ahead, lost, steps, time, step] = clock;
   return std::tie(camera.anchor, camera.jumped, aspect, picture_height, origin, shown_fraction, ahead, lost, steps,
@@ -74,6 +75,7 @@ std::string identity(const Actor& actor) {
                                               std::string(resolutionName(spec.resolution))
                                         : name(spec.hair));
   if (!spec.parts.empty()) text += ", parts " + name(spec.parts);
+  if (!spec.ties.empty()) text += ", tied";
   if (spec.position != Vec3::Zero() || spec.heading != 0) {
     text += ", at";
     for (const double value : {spec.position.x(), spec.position.y(), spec.position.z(), spec.heading})

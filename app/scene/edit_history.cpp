@@ -45,6 +45,8 @@ constexpr EditKind kEditKinds[] = {{Ask::kSetParam, kSettings, true, ""},
                                    {Ask::kResolution, kOfHair, false, "Resolution"},
                                    {Ask::kHairFile, kOfHair, false, "Hair mesh"},
                                    {Ask::kHairMends, kOfHair, false, "Mends"},
+                                   {Ask::kTie, kOfHair, false, "Tie"},
+                                   {Ask::kMap, kOfHair, false, "Painted"},
                                    {Ask::kRestart, kOfHair | kOfMotion, false, "To the start"},
                                    {Ask::kCarryAlong, kOfHair | kOfMotion, true, "Scrub"},
                                    {Ask::kClip, kOfHair | kOfMotion, false, "Clip"},
@@ -69,7 +71,7 @@ std::string titleOf(const Request& request, const EditKind& kind) {
   if (request.what == Ask::kBrush) return request.name;
   std::string title = kind.title;
   if (!request.name.empty() && request.what != Ask::kMotionFile) title.append(" ").append(request.name);
-  if (!request.text.empty()) title.append(" ").append(spaced(stem(request.text)));
+  if (!request.text.empty()) title.append(" ").append(spaced(stem(request.text)).substr(0, 40));
   const bool number = request.what == Ask::kBudget || request.what == Ask::kDeadline || request.what == Ask::kSpeed;
   if (number) title.append(" ").append(sim::numberText(request.value));
   const bool toggle =
@@ -87,7 +89,7 @@ EditSide sideOf(const Demo& demo, int reach) {
   if (reach & kOfView) side.camera = demo.camera;
   if (!(reach & (kOfHair | kOfMotion))) return side;
   for (const Actor& actor : demo.actors) {
-    ActorMoment moment{scalpToWorld(actor.body->character, actor.pose), actor.hair, {}, {}};
+    ActorMoment moment{scalpToWorld(actor.body->character, actor.pose), actor.hair, {}, {}, actor.haircut->frozen};
     if (reach & kOfMotion) moment.playback = actor.playback;
     if (reach & kOfShape || actor.haircut->edited) moment.shape = actor.haircut->mesh.shape.positions;
     side.moments.push_back(std::move(moment));
@@ -100,9 +102,10 @@ EditSide sideOf(const Demo& demo, int reach) {
 bool sameCast(const CharacterSpec& a, const CharacterSpec& b) {
   const auto cast = [](const CharacterSpec& spec) {
     const auto& [motion, parts, clip, style, resolution, hair, reverse_faces, fit, mends, position, heading, clip_offset, loop,
-                 look, pins] = spec;
+                 look, pins, ties, maps] = spec;
     return std::tuple(motion, parts, clip, style, resolution, hair, reverse_faces, fit, mends, position.x(), position.y(),
-                      position.z(), heading, loop, writePins(pins).dump());
+                      position.z(), heading, loop, writePins(pins).dump(),
+                      writeTies(ties).dump(), maps.stiffness, maps.length, maps.density);
   };
   return cast(a) == cast(b);
 }
@@ -182,6 +185,7 @@ void bringBack(const EditSide& side, Demo& demo) {
     const ActorMoment& moment = side.moments[i];
     if (moment.hair.positions.size() != demo.actors[i].hair.positions.size()) continue;
     if (!moment.shape.empty()) reshapeHair(moment.shape, static_cast<int>(i), demo);
+    if (moment.frozen != demo.actors[i].haircut->frozen) freezeHair(moment.frozen, static_cast<int>(i), demo);
     bringBack(moment, demo.actors[i]);
   }
   if (side.camera) bringBackView(*side.camera, demo.camera);

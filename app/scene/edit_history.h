@@ -26,6 +26,7 @@ struct ActorMoment {
   sim::HairState hair;
   std::optional<Playback> playback;
   std::vector<Vec3> shape;  // rest positions of hair that brushes have reshaped or are about to
+  std::vector<float> frozen;
 };
 
 // What an edit can change, as it is at one moment.

@@ -6,6 +6,7 @@
 
 #include "app/files/errors.h"
 #include "app/scene/demo.h"
+#include "app/scene/painted_fields.h"
 #include "sim/field_text.h"
 
 namespace app {
@@ -42,6 +43,9 @@ Haircut& ownHaircut(Actor& actor, Demo& demo) {
   own->faces = worn.faces;
   own->rest = worn.rest;
   own->edited = worn.edited;
+  own->tied = worn.tied;
+  own->stiffness = worn.stiffness;
+  own->frozen = worn.frozen;
   actor.haircut = own.get();
   const std::unique_ptr<sim::StepContext> old = std::move(actor.context);
   actor.context = std::make_unique<sim::StepContext>(own->mesh, now);
@@ -73,7 +77,7 @@ std::string brushText(const BrushSample& sample) {
 BrushSample parseBrush(const std::string& tool, const std::string& text) {
   const auto name = std::ranges::find(kBrushNames, tool);
   if (name == kBrushNames.end())
-    throw InputError("", "brush '" + tool.substr(0, 40) + "'", "is unknown", "choose comb, cut, grow, smooth or puff");
+    throw InputError("", "brush '" + tool.substr(0, 40) + "'", "is unknown", sim::nameHint(tool, kBrushNames));
   std::array<double, 10> numbers{};
   std::size_t count = 0;
   bool fine = true;
@@ -104,6 +108,7 @@ void reshapeHair(const std::vector<Vec3>& positions, int index, Demo& demo) {
   if (!own.reshape) own.reshape.emplace(own.mesh);
   if (!own.reshape->set(positions, own.mesh))
     throw InputError("", "the hair", "would be flat or inverted in this shape", "make a smaller change");
+  applyStiffness(own.stiffness, own.mesh);
   dropWhatIsOfTheOldShape(own, actor, demo.asset_cache);
   own.edited = true;
   forgetMoments(demo.timeline);
@@ -115,6 +120,32 @@ void reshapeHair(const std::vector<Vec3>& positions, int index, Demo& demo) {
   actor.shown_still = false;
   wakeAll(actor);
 }
+
+void freezeHair(const std::vector<float>& frozen, int index, Demo& demo) {
+  ownHaircut(demo.actors[static_cast<std::size_t>(index)], demo).frozen = frozen;
+}
+
+namespace {
+
+// Paints the mask that other brushes heed.
+void paintFrozen(const Brush& brush, std::span<const Vec3> seen, int index, Demo& demo) {
+  std::vector<float> frozen = demo.actors[static_cast<std::size_t>(index)].haircut->frozen;
+  frozen.resize(seen.size());
+  const double way = brush.tool == BrushTool::kFreeze ? brush.strength : -brush.strength;
+  const auto touch = [&](const Vec3& at, std::size_t v) {
+    Brush here = brush;
+    here.at = at;
+    frozen[v] = static_cast<float>(std::clamp(frozen[v] + way * brushReach(here, seen[v]), 0.0, 1.0));
+  };
+  for (std::size_t v = 0; v < seen.size(); ++v) {
+    touch(brush.at, v);
+    if (brush.mirror) touch({2 * *brush.mirror - brush.at.x(), brush.at.y(), brush.at.z()}, v);
+  }
+  if (std::ranges::all_of(frozen, [](float share) { return share == 0; })) frozen.clear();
+  freezeHair(frozen, index, demo);
+}
+
+}  // namespace
 
 void applyBrush(const BrushSample& sample, int index, Demo& demo) {
   const Actor& actor = demo.actors[static_cast<std::size_t>(index)];
@@ -131,6 +162,9 @@ void applyBrush(const BrushSample& sample, int index, Demo& demo) {
   if (sample.mirror) brush.mirror = brush.centre.x();
   if (std::ranges::none_of(seen, [&](const Vec3& p) { return brushReach(brush, p) > 0; }))
     throw InputError("", "the brush", "reaches no hair", "move it onto the hair, or make it larger");
+  if (sample.tool == BrushTool::kFreeze || sample.tool == BrushTool::kThaw)
+    return paintFrozen(brush, seen, index, demo);
+  brush.frozen = actor.haircut->frozen;
   if (!actor.body->distance) actor.body->distance = restBodyDistance(actor.body->character);
   if (!actor.haircut->brushes) actor.haircut->brushes.emplace(mesh);
   const int moved = actor.haircut->brushes->apply(brush, mesh, seen, actor.body->distance, positions);

@@ -32,6 +32,9 @@ BrushSample parseBrush(const std::string& tool, const std::string& text);
 // then nothing has changed.
 void applyBrush(const BrushSample& sample, int actor, Demo& demo);
 
+// Gives the actor's hair another mask of what brushes leave as it is (one share a vertex, or none at all).
+void freezeHair(const std::vector<float>& frozen, int actor, Demo& demo);
+
 // Gives the actor's hair other rest positions (one a vertex, scalp frame, m). What moves goes on moving. Throws
 // InputError where a prism would not be positive; then nothing has changed.
 void reshapeHair(const std::vector<Vec3>& positions, int actor, Demo& demo);

@@ -53,6 +53,14 @@ enum class Ask {
   kUndo,         // value: so many steps back
   kRedo,         // value: so many steps on
   kEndGesture,   // a drag is over: what follows is a step of its own
+  kCompare,      // text: what to compare with, see comparison.h; value: 0 ends it
+  kCompareView,  // name: split or side; value: share of the picture left of the line
+  kMarkIn,       // value: 1 sets the timeline's in point at the present frame, 0 clears it
+  kMarkOut,      // likewise the out point
+  kBake,         // value: s to simulate ahead where there is no out point; see timeline.h
+  kClearBake,    // what the timeline keeps is forgotten
+  kMap,          // name: stiffness, length or density; text: the picture it is painted by, empty for none
+  kTie,          // text: ties of the selected character, see tiesFromText
   kCount
 };
 

@@ -10,6 +10,7 @@
 namespace app {
 
 void forgetMoments(Timeline& timeline) {
+  timeline.baking = false;
   timeline.frames.clear();
   timeline.bytes = 0;
   timeline.cache.reset();
@@ -64,23 +65,71 @@ void keepMoment(Demo& demo) {
   timeline.contact |= demo.stats.corrected > 0;
   timeline.recovery |= demo.stats.recoveries > 0;
   timeline.jump |= demo.stats.carried > 0;
+  const double clip_time = demo.actors.front().playback.time;
+  timeline.loop |= clip_time < std::exchange(timeline.clip_time, clip_time);
   if (demo.frames % kTimelineEvery != 0) return;
   // What was simulated from here before is no longer what follows.
   while (!timeline.frames.empty() && timeline.frames.back().frame >= demo.frames) {
     timeline.bytes -= timeline.frames.back().state.size();
     timeline.frames.pop_back();
   }
-  TimelineFrame kept{demo.frames,
-                     demoStateBytes(demo),
-                     std::exchange(timeline.cost, 0.0),
-                     std::exchange(timeline.contact, false),
-                     std::exchange(timeline.recovery, false),
-                     std::exchange(timeline.jump, false)};
+  TimelineFrame kept{demo.frames, demoStateBytes(demo), std::exchange(timeline.cost, 0.0),
+                     std::exchange(timeline.contact, false), std::exchange(timeline.recovery, false),
+                     std::exchange(timeline.jump, false), std::exchange(timeline.loop, false)};
   timeline.bytes += kept.state.size();
   timeline.frames.push_back(std::move(kept));
   while (timeline.bytes > kTimelineBytes && timeline.frames.size() > 1) {
     timeline.bytes -= timeline.frames.front().state.size();
     timeline.frames.pop_front();
+  }
+}
+
+void setInPoint(bool on, Demo& demo) {
+  Timeline& timeline = demo.timeline;
+  if (on && timeline.out >= 0 && demo.frames >= timeline.out)
+    throw InputError("", "", "the in point would lie behind the out point", "clear the out point first");
+  timeline.in = on ? demo.frames : -1;
+}
+
+void setOutPoint(bool on, Demo& demo) {
+  Timeline& timeline = demo.timeline;
+  if (on && demo.frames <= timeline.in)
+    throw InputError("", "", "the out point would lie before the in point", "go on a little, or clear the in point");
+  timeline.out = on ? demo.frames : -1;
+}
+
+void startBake(double seconds, Demo& demo) {
+  Timeline& timeline = demo.timeline;
+  if (!timeline.on || timeline.frames.empty())
+    throw InputError("", "", "there is nothing to bake yet", "let the hair move first");
+  if (timeline.in < 0) timeline.in = timeline.frames.back().frame;
+  rewindTo(timeline.in, demo);
+  timeline.in = demo.frames;
+  if (timeline.out <= timeline.in)
+    timeline.out = timeline.in + static_cast<long>(std::clamp(seconds, 0.1, 600.0) * demo.scene.playback.fps);
+  timeline.baking = true;
+  demo.paused = false;
+}
+
+void followRange(Demo& demo) {
+  if (std::exchange(demo.timeline.baking, false)) {
+    const double fps = demo.scene.playback.fps;
+    for (int k = 0; k < kBakedFrames && demo.frames < demo.timeline.out; ++k) advanceFrame(demo, 1 / fps, {});
+    demo.timeline.baking = demo.frames < demo.timeline.out;
+    if (demo.timeline.baking) return;
+    demo.message = "baked " + std::to_string(demo.timeline.out - demo.timeline.in) + " frames";
+    demo.message_is_fault = false;
+    demo.paused = true;
+    return rewindTo(demo.timeline.in, demo);
+  }
+  Timeline& timeline = demo.timeline;
+  if (demo.paused || timeline.in < 0 || timeline.out < 0 || demo.frames < timeline.out) return;
+  try {
+    rewindTo(timeline.in, demo);
+  } catch (const InputError&) {
+    timeline.in = timeline.out = -1;
+    demo.message = "the in point is no longer kept; it was cleared with the out point";
+    demo.message_is_fault = true;
   }
 }
 

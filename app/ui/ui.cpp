@@ -105,7 +105,7 @@ void fileRow(Demo& demo, UiState& ui) {
 void endGesture(Demo& demo, UiState& ui) {
   const auto edits = [](const Request& request) { return request.what != Ask::kEndGesture; };
   ui.dragging = ui.dragging || std::ranges::any_of(demo.requests, edits);
-  if (!ui.dragging || ImGui::IsAnyItemActive() || ui.brush.stroking) return;
+  if (!ui.dragging || ImGui::IsAnyItemActive() || ui.brush.stroking || ui.line_held) return;
   ui.dragging = false;
   postRequest(demo, {Ask::kEndGesture, "", ""});
 }
@@ -285,7 +285,8 @@ int tabIndex(std::string_view name) {
 
 void buildUi(Demo& demo, UiState& ui) {
   ui.items.clear();
-  brushFrame(demo, ui);
+  compareLine(demo, ui);
+  if (!ui.line_held) brushFrame(demo, ui);
   count(!ui.visible, demo.stats.always[kHiddenPanels]);
   float below = timelinePanel(demo, ui, folded(ui) ? 0 : sidebarWidth(ui) + kMargin * ui.text_scale);
   if (ui.visible) {

@@ -74,6 +74,7 @@ struct UiState {
   std::string offered, to_forget;  // project that an earlier run has left; one that a person does not want
   long scrubbed = -1;              // frame that the timeline is dragged to
   BrushState brush;
+  bool line_held = false;          // the line of a comparison is dragged
   std::string kept_folder;          // where the list of recent files is kept; empty: nowhere
   std::vector<std::string> recent;  // files opened last
   bool leaving = false;       // Esc was pressed once

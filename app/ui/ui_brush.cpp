@@ -44,13 +44,17 @@ void drawReach(const Vec3& place, const Demo& demo, const BrushState& brush, flo
   list->AddPolyline(ring, kRingPoints, IM_COL32(240, 172, 120, 235), ImDrawFlags_Closed, 1.6f * scale);
   Brush reach;
   reach.at = place, reach.radius = brush.radius, reach.falloff = brush.falloff;
-  for (const Vec3& p : actor.hair.positions) {
+  const std::vector<float>& frozen = actor.haircut->frozen;
+  for (std::size_t v = 0; v < actor.hair.positions.size(); ++v) {
+    const Vec3& p = actor.hair.positions[v];
     const double weight = brushReach(reach, p);
-    const auto pixel = weight > 0.02 ? pixelOf(p, size.x, size.y, demo.camera) : std::nullopt;
+    const float held = frozen.empty() ? 0 : frozen[v];
+    const auto pixel = weight > 0.02 || held > 0.02f ? pixelOf(p, size.x, size.y, demo.camera) : std::nullopt;
     if (!pixel) continue;
-    const int alpha = static_cast<int>(40 + 180 * weight);
-    list->AddCircleFilled({static_cast<float>((*pixel)[0]), static_cast<float>((*pixel)[1])}, 1.6f * scale,
-                          IM_COL32(255, 214, 170, alpha), 8);
+    const ImVec2 at(static_cast<float>((*pixel)[0]), static_cast<float>((*pixel)[1]));
+    const int alpha = static_cast<int>(40 + 180 * std::max(weight, double(held)));
+    list->AddCircleFilled(at, 1.6f * scale, held > 0.02f ? IM_COL32(120, 190, 255, alpha)
+                                                         : IM_COL32(255, 214, 170, alpha), 8);
   }
 }
 
@@ -84,6 +88,8 @@ void brushSection(UiState& ui) {
   BrushState& brush = ui.brush;
   const int pressed = segments("brush", {"Off", "Comb", "Cut", "Grow", "Smooth", "Puff"}, brush.tool + 1, ui);
   if (pressed >= 0) brush.tool = pressed - 1;
+  const int second = segments("brush", {"Pinch", "Spread", "Push", "Twist", "Freeze", "Thaw"}, brush.tool - 5, ui);
+  if (second >= 0) brush.tool = second + 5;
   ImGui::BeginDisabled(brush.tool < 0);
   const auto row = [&](const char* label, const char* help, const char* name, float low, float high, const char* format,
                        double shown_scale, double& value) {

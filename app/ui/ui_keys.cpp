@@ -15,6 +15,7 @@ namespace {
 constexpr KeyHelp kKeyHelp[] = {
     {"Space", "pause or go on"},
     {".  ,", "one simulation step; back to the moment kept before"},
+    {"I  O", "in and out point of the timeline, or off"},
     {"R", "hair to rest"},
     {"Home", "everything to the start"},
     {"C", "collapse the hair onto its roots"},
@@ -40,6 +41,8 @@ constexpr KeyHelp kKeyHelp[] = {
     {"wheel", "zoom"},
     {"drop a file", "scene, preset, motion or hair mesh"},
 };
+
+constexpr int kBrushChoices = 1 + static_cast<int>(kBrushNames.size());  // with none
 
 struct KeyAction {
   int key;
@@ -82,6 +85,8 @@ constexpr KeyAction kKeyActions[] = {
        postRequest(demo, {Ask::kPause, "", "", 1});
        postRequest(demo, {Ask::kRewind, "", "", static_cast<double>(demo.frames - 1)});
      }},
+    {'I', [](Demo& demo, UiState&) { toggle(Ask::kMarkIn, demo.timeline.in >= 0, demo); }},
+    {'O', [](Demo& demo, UiState&) { toggle(Ask::kMarkOut, demo.timeline.out >= 0, demo); }},
     {'R', [](Demo& demo, UiState&) { send(Ask::kReset, "", demo); }},
     {kKeyHome, [](Demo& demo, UiState&) { send(Ask::kRestart, "", demo); }},
     {'C', [](Demo& demo, UiState&) { send(Ask::kCollapse, "", demo); }},
@@ -106,7 +111,7 @@ constexpr KeyAction kKeyActions[] = {
     {'P', [](Demo& demo, UiState&) { send(Ask::kScreenshot, "", demo); }},
     {kKeyF12, [](Demo& demo, UiState&) { send(Ask::kScreenshot, "", demo); }},
     {'K', [](Demo& demo, UiState&) { toggle(Ask::kRecord, demo.capture.recording, demo); }},
-    {'G', [](Demo&, UiState& ui) { ui.brush.tool = (ui.brush.tool + 2) % 6 - 1; }},
+    {'G', [](Demo&, UiState& ui) { ui.brush.tool = (ui.brush.tool + 2) % kBrushChoices - 1; }},
     {'[', [](Demo&, UiState& ui) { ui.brush.radius = std::max(0.005, ui.brush.radius / 1.2); }},
     {']', [](Demo&, UiState& ui) { ui.brush.radius = std::min(0.2, ui.brush.radius * 1.2); }},
     {kKeyTab, [](Demo&, UiState& ui) { ui.visible = !ui.visible; }},

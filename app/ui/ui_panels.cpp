@@ -263,6 +263,7 @@ std::string metres(double value) {
 void simulationTab(Demo& demo, UiState& ui) {
   if (searchResults(demo, ui)) return;
   presetRow(demo, ui);
+  compareRows(demo, ui);
   ImGui::Spacing();
   for (const char* group : {"Material", "Contact", "World", "Rest shape", "Time", "Numerics"}) {
     const bool open = std::string_view(group) == "Material" || std::string_view(group) == "Contact";
@@ -334,6 +335,16 @@ void inspectorSection(const Actor& actor, Demo& demo, UiState& ui) {
   }
 }
 
+void tieRow(const Actor& actor, Demo& demo, UiState& ui) {
+  rowLabel("Tie", "A ring that gathers the hair to a tail and holds it to the head; two: left and right");
+  static constexpr const char* kNames[] = {"none", "high", "back", "low", "two"};
+  const std::vector<TieSpec>& ties = actor.spec.ties;
+  int chosen = ties.empty() ? 0 : ties.size() == 2 ? 4 : -1;
+  for (int k = 1; k < 4 && ties.size() == 1; ++k) chosen = ties[0].place == kNames[k] && !ties[0].at ? k : chosen;
+  const int pressed = segments("tie", {"None", "High", "Back", "Low", "Two"}, chosen, ui);
+  if (pressed >= 0) postRequest(demo, {Ask::kTie, "", kNames[pressed]});
+}
+
 }  // namespace
 
 void hairTab(Demo& demo, UiState& ui) {
@@ -349,6 +360,7 @@ void hairTab(Demo& demo, UiState& ui) {
                                     from_file ? -1 : static_cast<int>(actor.spec.resolution), ui);
     static constexpr const char* kResolutions[] = {"low", "medium", "high", "ultra"};
     if (resolution >= 0) postRequest(demo, {Ask::kResolution, kResolutions[resolution], ""});
+    tieRow(actor, demo, ui);
     rowLabel("Hair mesh file", "OBJ with one group a layer; see assets/hair/README.md");
     if (pathInput("##hair_path", from_file ? stem(actor.spec.hair).c_str() : "path, then Enter", BrowseFor::kHair,
                   ui.hair_path, ui)) {

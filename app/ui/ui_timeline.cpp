@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <tuple>
+#include <utility>
 
 #include "app/ui/ui_panels.h"
 #include "app/ui/ui_widgets.h"
@@ -12,7 +14,7 @@ namespace app {
 
 namespace {
 
-constexpr float kHeight = 50, kLeastWidth = 240, kMargin = 12;
+constexpr float kHeight = 50, kLeastWidth = 240, kButtonsWidth = 460, kMargin = 12;
 constexpr double kWorst = 3;  // of the mean cost: a step to look at
 
 // The kept moment at a share of the strip.
@@ -33,9 +35,51 @@ void drawMarks(const Timeline& timeline, ImVec2 at, ImVec2 size, float scale) {
     };
     if (frame.contact) mark(0.25f, IM_COL32(118, 178, 130, 200));
     if (frame.cost > kWorst * mean) mark(0.6f, IM_COL32(240, 196, 110, 230));
+    if (frame.loop) mark(0.45f, IM_COL32(200, 150, 230, 255));
     if (frame.jump) mark(0.8f, IM_COL32(86, 156, 190, 255));
     if (frame.recovery) mark(1, IM_COL32(235, 70, 60, 255));
   }
+}
+
+// Between in and out the strip is lighter; each point has its bracket.
+void drawRange(const Timeline& timeline, ImVec2 at, ImVec2 size) {
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  const double first = static_cast<double>(timeline.frames.front().frame);
+  const double span = std::max(1.0, static_cast<double>(timeline.frames.back().frame) - first);
+  const auto place = [&](long frame) {
+    return at.x + size.x * static_cast<float>(std::clamp((static_cast<double>(frame) - first) / span, 0.0, 1.0));
+  };
+  const float low = timeline.in >= 0 ? place(timeline.in) : at.x;
+  const float high = timeline.out >= 0 ? place(timeline.out) : at.x + size.x;
+  if (timeline.in >= 0 || timeline.out >= 0)
+    list->AddRectFilled({low, at.y}, {high, at.y + size.y}, IM_COL32(255, 255, 255, 20));
+  const ImU32 ink = ImGui::GetColorU32(ImGuiCol_Text);
+  for (const auto& [set, x, side] : {std::tuple(timeline.in >= 0, low, 5.0f), std::tuple(timeline.out >= 0, high, -5.0f)}) {
+    if (!set) continue;
+    list->AddLine({x, at.y}, {x, at.y + size.y}, ink, 1.5f);
+    for (const float y : {at.y, at.y + size.y - 1}) list->AddLine({x, y}, {x + side, y}, ink, 1.5f);
+  }
+}
+
+// In, out, bake, clear.
+void rangeButtons(Demo& demo, UiState& ui) {
+  constexpr double kBakeSeconds = 5;
+  const Timeline& timeline = demo.timeline;
+  const auto button = [&](const char* label, const char* help, bool lit, Request request) {
+    if (lit) ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_CheckMark));
+    if (ImGui::Button(label)) postRequest(demo, std::move(request));
+    if (lit) ImGui::PopStyleColor();
+    noteItem(std::string("range ") + label, ui);
+    tip(help);
+    ImGui::SameLine(0, 4);
+  };
+  button("In", "Playing goes on from here when it comes to the out point (I); again: off", timeline.in >= 0,
+         {Ask::kMarkIn, "", "", timeline.in >= 0 ? 0.0 : 1.0});
+  button("Out", "Playing goes back to the in point from here (O); again: off", timeline.out >= 0,
+         {Ask::kMarkOut, "", "", timeline.out >= 0 ? 0.0 : 1.0});
+  button("Bake", "Simulates from in to out, or five seconds on, faster than shown; then scrub", timeline.baking,
+         {Ask::kBake, "", "", kBakeSeconds});
+  button("Clear", "Forgets what was simulated, and both points", false, {Ask::kClearBake, "", ""});
 }
 
 void strip(Demo& demo, UiState& ui) {
@@ -54,6 +98,7 @@ void strip(Demo& demo, UiState& ui) {
   if (!timeline.cache) drawMarks(timeline, at, size, ui.text_scale);
   const auto first = static_cast<double>(first_frame);
   const double span = std::max(1.0, static_cast<double>(last_frame) - first);
+  if (!timeline.cache) drawRange(timeline, at, size);
   const double here = std::clamp((static_cast<double>(demo.frames) - first) / span, 0.0, 1.0);
   const float x = at.x + size.x * static_cast<float>(here);
   list->AddRectFilled({x - 1.5f, at.y - 2}, {x + 1.5f, at.y + size.y + 2}, ImGui::GetColorU32(ImGuiCol_CheckMark));
@@ -67,8 +112,7 @@ void strip(Demo& demo, UiState& ui) {
     ui.scrubbed = -1;
     tip(timeline.cache ? "A cache: drag to see any of its frames; Space goes on from the last whole state before it"
                        : "Drag to see what was simulated; Space goes on from there. Green: contact, yellow: a slow "
-                         "step, blue: the head "
-                         "jumped, red: recovery");
+                         "step, violet: the clip begins anew, blue: the head jumped, red: recovery");
   }
 }
 
@@ -112,6 +156,7 @@ float timelinePanel(Demo& demo, UiState& ui, float left) {
     ImGui::TextUnformatted(text);
     ImGui::SameLine(0, 10);
     cacheButton(demo, ui);
+    if (width > kButtonsWidth * scale) rangeButtons(demo, ui);
     strip(demo, ui);
   }
   ImGui::End();

@@ -8,6 +8,7 @@
 
 #include "app/files/errors.h"
 #include "tests/bench/accuracy_document.h"
+#include "tests/bench/brush_cost.h"
 #include "tests/bench/colliders.h"
 #include "tests/bench/collision_document.h"
 #include "tests/bench/collisions.h"
@@ -104,6 +105,10 @@ std::vector<Task> tasks() {
        "of hair; exits 1 where natural hair leaves its bounds",
        [](Asked& a) {
          if (!bench::runSwing(a.swing)) a.all_hold = false;
+       }},
+      {"--brushes", "what a brush's edit of 2,257 moving vertices costs, per tool; exits 1 where its p99 exceeds 8 ms",
+       [](Asked& a) {
+         if (!bench::runBrushCost()) a.all_hold = false;
        }},
       {"--conversion", "grooms of ten kinds to hair meshes: distances, silhouettes, time",
        [](Asked& a) { bench::runConversion(a.conversion); }},

@@ -131,6 +131,35 @@ TEST(GroomBrush, OffTheHairItSaysSoAndChangesNothing) {
   EXPECT_TRUE(demo.edits.steps.empty());
 }
 
+// Freezing changes no shape; what is frozen other brushes leave, until it is thawed or undone.
+TEST(GroomBrush, FrozenHairStaysUntilItIsThawed) {
+  app::Demo demo = app::openScene(sceneOf(app::Resolution::kLow, "idle_turns.bvh"), 1.5);
+  int tip = 0;
+  const sim::Vec3 at = frontTip(demo, tip);
+  const std::vector<sim::Vec3> before = demo.actors[0].haircut->mesh.shape.positions;
+  const auto stroke = [&](app::BrushTool tool) {
+    app::BrushSample sample;
+    sample.tool = tool;
+    sample.at = at, sample.along = {0.01, 0, 0.01};
+    sample.radius = 0.3, sample.strength = 1, sample.falloff = 0;
+    demo.requests = {{Ask::kBrush, std::string(app::kBrushNames[static_cast<std::size_t>(tool)]),
+                      app::brushText(sample)},
+                     {Ask::kEndGesture, "", ""}};
+    app::advanceFrame(demo, 0, {});
+    return demo.actors[0].haircut->mesh.shape.positions[static_cast<std::size_t>(tip)];
+  };
+  const sim::Vec3 start = before[static_cast<std::size_t>(tip)];
+  EXPECT_EQ(stroke(app::BrushTool::kFreeze), start);
+  EXPECT_EQ(stroke(app::BrushTool::kComb), start);
+  stroke(app::BrushTool::kThaw);
+  EXPECT_TRUE(demo.actors[0].haircut->frozen.empty());
+  EXPECT_NE(stroke(app::BrushTool::kComb), start);
+  demo.requests = {{Ask::kUndo, "", "", 3}};
+  app::advanceFrame(demo, 0, {});
+  EXPECT_FALSE(demo.actors[0].haircut->frozen.empty()) << "the thaw is undone as well";
+  EXPECT_EQ(demo.actors[0].haircut->mesh.shape.positions, before);
+}
+
 // One of three who wear a haircut is brushed: the others keep theirs.
 TEST(GroomBrush, OthersOfTheSameHaircutKeepTheirs) {
   app::Scene scene = sceneOf(app::Resolution::kLow, "idle_turns.bvh");
@@ -159,7 +188,7 @@ TEST(GroomBrush, ARecordedTakeReplaysToTheBit) {
   int tip = 0;
   for (int frame = 0; frame < 40; ++frame) {
     const sim::Vec3 at = frontTip(demo, tip);
-    const auto tool = static_cast<app::BrushTool>(frame / 6 % 5);
+    const auto tool = static_cast<app::BrushTool>(frame / 3 % 11);
     if (frame % 3 != 2 && frame < 30) demo.requests = {sampleAt(tool, at, {0.004, 0, 0.002})};
     if (frame == 33) demo.requests = {{Ask::kUndo, "", "", 2}};
     app::advanceFrame(demo, tape.turn(frame, 1.0 / 60, demo), {});

@@ -82,7 +82,8 @@ double lengthOf(const sim::HairMesh& mesh, std::span<const Vec3> x, int c) {
 TEST(ShapeBrush, WhateverAHandDoesEveryPrismStaysPositive) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> share(0, 1);
-  for (int tool = 0; tool < 5; ++tool) {
+  const auto away = [](const Vec3& p) { return (p - Vec3(0.3, 0.2, 0)).norm() - 0.01; };
+  for (int tool = 0; tool < static_cast<int>(BrushTool::kFreeze); ++tool) {
     sim::HairMesh mesh = combedMesh();
     sim::RestShape shape(mesh);
     app::ShapeBrushes brushes(mesh);
@@ -97,7 +98,7 @@ TEST(ShapeBrush, WhateverAHandDoesEveryPrismStaysPositive) {
       brush.strength = share(random);
       brush.falloff = 3 * share(random);
       if (k % 3 == 0) brush.mirror = 0.01;
-      moved += brushes.apply(brush, mesh, mesh.shape.positions, {}, positions);
+      moved += brushes.apply(brush, mesh, mesh.shape.positions, away, positions);
       ASSERT_TRUE(shape.set(positions, mesh)) << app::kBrushNames[static_cast<std::size_t>(tool)] << " " << k;
     }
     EXPECT_GT(moved, 500) << tool;
@@ -133,6 +134,56 @@ TEST(ShapeBrush, EachDoesWhatItsNameSays) {
     EXPECT_EQ(apply(tool), 0);
     EXPECT_EQ(after, before);
   }
+}
+
+// How far what a brush reaches lies from its middle, across the hair, in the mean square.
+double spreadOf(const sim::HairMesh& mesh, std::span<const Vec3> x, const Vec3& at) {
+  Vec3 middle = Vec3::Zero();
+  double sum = 0, count = 0;
+  for (const bool measure : {false, true}) {
+    for (std::size_t v = 0; v < x.size(); ++v) {
+      if ((mesh.shape.positions[v] - at).norm() > 0.04) continue;
+      if (measure) sum += (x[v] - middle / count).squaredNorm();
+      if (!measure) middle += x[v], ++count;
+    }
+  }
+  return sum;
+}
+
+TEST(ShapeBrush, PinchGathersSpreadPartsTwistTurnsPushLeadsOut) {
+  sim::HairMesh mesh = combedMesh();
+  app::ShapeBrushes brushes(mesh);
+  const std::vector<Vec3> before = mesh.shape.positions;
+  std::vector<Vec3> after;
+  app::Brush brush;
+  brush.at = before[static_cast<std::size_t>(mesh.shape.column_first[mesh.columnCount() / 2 + 1] - 2)];
+  brush.radius = 0.06;
+  const Vec3 under = brush.at - Vec3(0, 0, 0.3);
+  const auto body = [&](const Vec3& p) { return (p - under).norm() - 0.1; };
+  const auto apply = [&](BrushTool tool) {
+    brush.tool = tool;
+    return brushes.apply(brush, mesh, before, body, after);
+  };
+  const double spread = spreadOf(mesh, before, brush.at);
+  ASSERT_GT(apply(BrushTool::kPinch), 0);
+  EXPECT_LT(spreadOf(mesh, after, brush.at), spread);
+  ASSERT_GT(apply(BrushTool::kSpread), 0);
+  EXPECT_GT(spreadOf(mesh, after, brush.at), spread);
+  ASSERT_GT(apply(BrushTool::kTwist), 0);
+  EXPECT_NEAR(spreadOf(mesh, after, brush.at), spread, 0.05 * spread);
+  EXPECT_NE(after, before);
+  ASSERT_GT(apply(BrushTool::kPush), 0);
+  double nearer = 0, out = 0;
+  for (std::size_t v = 0; v < after.size(); ++v) {
+    nearer = std::max(nearer, body(before[v]) - body(after[v]));
+    out = std::max(out, body(after[v]) - body(before[v]));
+  }
+  EXPECT_GT(out, 1e-4);
+  EXPECT_LT(nearer, out);
+  // What is frozen stays.
+  const std::vector<float> frozen(before.size(), 1.0f);
+  brush.frozen = frozen;
+  EXPECT_EQ(apply(BrushTool::kTwist), 0);
 }
 
 // A ball in the way: nothing that the brush moves comes nearer to it than it was, or than the offset.

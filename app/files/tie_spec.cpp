@@ -1,0 +1,100 @@
+#include "app/files/tie_spec.h"
+
+#include <algorithm>
+#include <array>
+
+#include "app/files/errors.h"
+
+namespace app {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr double kFarthest = 0.5, kStandOff = 0.014;  // m
+
+struct TiePlace {
+  std::string_view name;
+  double x, y, z;  // direction from the head's middle
+  int side;
+};
+constexpr std::array kPlaces{TiePlace{"back", 0, 0.28, -0.96, 0}, TiePlace{"high", 0, 0.78, -0.62, 0},
+                             TiePlace{"low", 0, -0.12, -0.99, 0}, TiePlace{"left", 0.80, -0.12, -0.58, 1},
+                             TiePlace{"right", -0.80, -0.12, -0.58, -1}};
+
+const TiePlace* placeOf(std::string_view name) {
+  const auto at = std::ranges::find(kPlaces, name, &TiePlace::name);
+  return at == kPlaces.end() ? nullptr : &*at;
+}
+
+TieSpec readTie(const JsonPlace& place) {
+  place.expectObject({"at", "radius", "side", "above"});
+  TieSpec tie;
+  if (place.has("at") && place.at("at").value().is_string()) {
+    tie.place = place.at("at").choice({"back", "high", "low", "left", "right"});
+  } else if (place.has("at")) {
+    const auto at = place.at("at").vector(-kFarthest, kFarthest);
+    tie.at = sim::Vec3(at[0], at[1], at[2]);
+  }
+  if (place.has("radius")) tie.radius = place.at("radius").number(kThinnestTie, kWidestTie);
+  if (place.has("side")) tie.side = place.at("side").choice({"all", "left", "right"});
+  if (place.has("above")) tie.above = place.at("above").number(-1, 1);
+  return tie;
+}
+
+}  // namespace
+
+std::vector<TieSpec> readTies(const JsonPlace& place) {
+  std::vector<TieSpec> ties;
+  const std::size_t count = place.arraySize(kMaxTies);
+  for (std::size_t i = 0; i < count; ++i) ties.push_back(readTie(place.at(i)));
+  return ties;
+}
+
+json writeTies(const std::vector<TieSpec>& ties) {
+  json all = json::array();
+  for (const TieSpec& tie : ties) {
+    json one = {{"radius", tie.radius}, {"above", tie.above}};
+    one["at"] = tie.at ? json{tie.at->x(), tie.at->y(), tie.at->z()} : json(tie.place);
+    if (!tie.side.empty()) one["side"] = tie.side;
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+std::vector<TieSpec> tiesFromText(std::string_view text) {
+  if (text == "none" || text.empty()) return {};
+  TieSpec tie;
+  if (text == "two") {
+    std::vector<TieSpec> both(2, tie);
+    both[0].place = "left", both[1].place = "right";
+    return both;
+  }
+  if (placeOf(text)) {
+    tie.place = text;
+    return {tie};
+  }
+  if (!text.starts_with("[") && !text.starts_with("{"))
+    throw InputError("", "tie '" + std::string(text.substr(0, 40)) + "'", "is unknown",
+                     "choose back, high, low, left, right, two or none, or write JSON as in a scene's \"ties\"");
+  json parsed = parseJson(text, "--tie");
+  if (parsed.is_object()) parsed = json::array({parsed});
+  return readTies(JsonPlace(parsed, "--tie"));
+}
+
+std::vector<HairTie> placeTies(const std::vector<TieSpec>& ties, const Scalp& scalp) {
+  std::vector<HairTie> placed;
+  for (const TieSpec& spec : ties) {
+    HairTie tie;
+    const TiePlace& named = *placeOf(spec.place);
+    const sim::Vec3 way = sim::Vec3(named.x, named.y, named.z).normalized();
+    tie.at = spec.at.value_or(scalp.center + (scalp.radiusAt(way) + spec.radius + kStandOff) * way);
+    tie.radius = spec.radius;
+    tie.side = spec.side == "left" ? 1 : spec.side == "right" ? -1 : spec.side == "all" ? 0 : spec.at ? 0 : named.side;
+    tie.above = spec.above;
+    placed.push_back(tie);
+  }
+  return placed;
+}
+
+}  // namespace app

@@ -1,0 +1,111 @@
+#include "app/platform/video.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include "app/files/errors.h"
+#include "app/files/output_file.h"
+#include "sim/field_text.h"
+
+namespace app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string unfinishedName(const std::string& file) {
+  const fs::path path(file);
+  return (path.parent_path() / ("." + path.stem().string() + "-" + std::to_string(getpid()) +
+                                path.extension().string()))
+      .string();
+}
+
+std::vector<std::string> ffmpegWords(const std::string& file, int width, int height, double fps) {
+  // Most players want an even number of rows and columns, and colours at half of them.
+  return {"ffmpeg",     "-loglevel", "error", "-y",      "-f", "rawvideo", "-pixel_format", "rgba", "-video_size",
+          std::to_string(width) + "x" + std::to_string(height), "-framerate", sim::numberText(fps), "-i", "-", "-vf",
+          "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p", file};
+}
+
+// In the child: the frames come in, nothing goes out, and an interrupt of the program is the program's affair.
+[[noreturn]] void becomeFfmpeg(int frames, std::vector<std::string> words) {
+  setpgid(0, 0);
+  dup2(frames, 0);
+  const int quiet = open("/dev/null", O_WRONLY);
+  dup2(quiet, 1);
+  dup2(quiet, 2);
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  execvp("ffmpeg", arguments.data());
+  _exit(127);
+}
+
+}  // namespace
+
+bool canWriteVideo() {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    if (access((fs::path(folder) / "ffmpeg").c_str(), X_OK) == 0) return true;
+  }
+  return false;
+}
+
+VideoWriter::VideoWriter(const std::string& file, int width, int height, double fps)
+    : file_(file), unfinished_(unfinishedName(file)), width_(width), height_(height) {
+  if (!canWriteVideo())
+    throw OutputError(file, "needs ffmpeg, which is not installed",
+                      "apt-get install ffmpeg, or keep the frames as PNG with --out DIR");
+  checkWritable(file);
+  signal(SIGPIPE, SIG_IGN);
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) throw OutputError(file, "cannot be handed to ffmpeg", "try again");
+  std::vector<std::string> words = ffmpegWords(unfinished_, width, height, fps);
+  process_ = fork();
+  if (process_ == 0) becomeFfmpeg(ends[0], std::move(words));
+  ::close(ends[0]);
+  pipe_ = ends[1];
+  if (process_ < 0) throw OutputError(file, "cannot be handed to ffmpeg", "try again");
+}
+
+VideoWriter::~VideoWriter() {
+  if (process_ > 0) close();
+  std::error_code ignored;
+  fs::remove(unfinished_, ignored);
+}
+
+void VideoWriter::add(std::span<const unsigned char> rgba) {
+  while (!rgba.empty()) {
+    const ssize_t written = write(pipe_, rgba.data(), rgba.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0)
+      throw OutputError(file_, "was given up by ffmpeg", "check the disk, and the ending: .mp4, .webm or .mkv");
+    rgba = rgba.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+int VideoWriter::close() {
+  ::close(std::exchange(pipe_, -1));
+  int status = 0;
+  while (waitpid(process_, &status, 0) < 0 && errno == EINTR) continue;
+  process_ = -1;
+  return status;
+}
+
+void VideoWriter::finish() {
+  std::error_code error;
+  if (close() != 0 || (fs::rename(unfinished_, file_, error), error))
+    throw OutputError(file_, "could not be finished by ffmpeg", "check the disk, and the ending: .mp4, .webm or .mkv");
+}
+
+}  // namespace app

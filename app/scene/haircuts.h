@@ -1,0 +1,17 @@
+// Hair meshes as actors wear them: of a style or a file, painted, tied.
+#pragma once
+
+#include <cstdint>
+
+#include "app/scene/actor.h"
+
+namespace app {
+
+// Never the same twice in a process: the renderer keeps GPU resources by these, also across scenes opened one after
+// another.
+std::uint64_t freshId();
+
+// The haircut that `spec` asks for on a body, built on first use. Throws InputError.
+const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& asset_cache);
+
+}  // namespace app

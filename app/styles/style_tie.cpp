@@ -1,0 +1,283 @@
+// Directions from the head's middle are given by their angle to the tie's and their azimuth about it: hair is combed
+// along great circles to the tie, which keeps neighbours neighbours. The farther along its way, the higher over the
+// scalp: what comes from afar lies on what is rooted near.
+#include "app/styles/style_tie.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "app/styles/style_comb.h"
+#include "app/styles/style_untangle.h"
+#include "app/styles/tie_ring.h"
+
+namespace app {
+namespace {
+
+constexpr double kFatness = 0.05, kGap = 0.003;      // see untangle; m
+constexpr double kFatEnough = 0.012;                 // with less a wider ring is tried
+constexpr double kCoat = 0.010;                      // m over the scalp, half-way to the ring
+constexpr double kStep = 0.01, kTurn = 0.16;         // m; share of a step's heading that gravity takes
+constexpr double kSwell = 1.35, kTaper = 0.7;        // of the ring's radius: the tail's where it is widest, at its end
+constexpr double kShortestTail = 0.08;               // m
+constexpr int kSectors = 24;
+
+struct Path {
+  std::vector<Vec3> at, across, up;  // the tail's middle every kStep, and its section
+};
+
+// The columns that one tie takes, and how they come to it.
+struct Gathering {
+  const HairTie& tie;
+  const Scalp& scalp;
+  const BodyDistance& body;
+  Vec3 axis, e1, e2;                        // of the ring
+  std::array<double, kSectors> farthest{};  // angle of the farthest root by azimuth
+
+  Gathering(const HairTie& of, const Scalp& head, const BodyDistance& around) : tie(of), scalp(head), body(around) {
+    axis = (tie.at - scalp.center).normalized();
+    e1 = (std::abs(axis.y()) > 0.9 ? Vec3::UnitX() : Vec3::UnitY()).cross(axis).normalized();
+    e2 = axis.cross(e1);
+  }
+  double angleOf(const Vec3& root) const {
+    return std::acos(std::clamp((root - scalp.center).normalized().dot(axis), -1.0, 1.0));
+  }
+  double azimuthOf(const Vec3& root) const {
+    const Vec3 d = root - scalp.center;
+    return std::atan2(d.dot(e2), d.dot(e1));
+  }
+  void addRoot(const Vec3& root);
+  double farthestAt(double azimuth) const;
+  Vec3 inSection(const Vec3& root, double radius, const Vec3& across, const Vec3& up) const;
+  Vec3 onWay(const Vec3& root, double share) const;
+  Path tail(double length) const;
+};
+
+// Each root counts in its own sector and, a little less, in those beside it, so that the ring is filled evenly.
+void Gathering::addRoot(const Vec3& root) {
+  const double angle = angleOf(root), turn = azimuthOf(root) / (2 * std::numbers::pi) + 1;
+  const int sector = static_cast<int>(turn * kSectors) % kSectors;
+  for (int off = -3; off <= 3; ++off) {
+    double& far = farthest[static_cast<std::size_t>((sector + off + kSectors) % kSectors)];
+    far = std::max(far, angle * (1 - 0.04 * std::abs(off)));
+  }
+}
+
+double Gathering::farthestAt(double azimuth) const {
+  const double turn = (azimuth / (2 * std::numbers::pi) + 1) * kSectors - 0.5;
+  const int sector = static_cast<int>(std::floor(turn));
+  const double share = turn - sector;
+  const auto at = [&](int k) { return farthest[static_cast<std::size_t>((k + kSectors) % kSectors)]; };
+  return (1 - share) * at(sector) + share * at(sector + 1);
+}
+
+// Where a root's hair lies in a round section of the tail, from its middle.
+Vec3 Gathering::inSection(const Vec3& root, double radius, const Vec3& across, const Vec3& up) const {
+  const double azimuth = azimuthOf(root);
+  const double out = std::min(1.0, angleOf(root) / std::max(1e-6, farthestAt(azimuth)));
+  return radius * out * (std::cos(azimuth) * across + std::sin(azimuth) * up);
+}
+
+// On the way from root to ring, `share` 0 to 1.
+Vec3 Gathering::onWay(const Vec3& root, double share) const {
+  const Vec3 goal = tie.at + inSection(root, tie.radius, e1, e2);
+  const Vec3 to = (goal - scalp.center).normalized(), from = (root - scalp.center).normalized();
+  const double angle = std::acos(std::clamp(from.dot(to), -1.0, 1.0));
+  if (share <= 0) return root;
+  if (share >= 1) return goal;
+  const Vec3 turned = std::sin((1 - share) * angle) * from + std::sin(share * angle) * to;
+  const Vec3 along = angle < 1e-6 ? to : Vec3(turned / std::sin(angle));
+  const double here = (root - scalp.center).norm() - scalp.radiusAt(from);
+  const double high = (goal - scalp.center).norm() - scalp.radiusAt(to);
+  const double coat = 2 * kCoat * share;
+  const double over = here * (1 - share) + coat * (1 - share * share) + high * share * share * share;
+  return scalp.center + (scalp.radiusAt(along) + over) * along.normalized();
+}
+
+// Falls from the ring, stiff at first, around the body.
+Path Gathering::tail(double length) const {
+  Path path;
+  Vec3 p = tie.at, heading = axis, across = e1;
+  const int steps = static_cast<int>(std::ceil(length / kStep)) + 2;
+  for (int k = 0; k < steps; ++k) {
+    across = (across - across.dot(heading) * heading).normalized();
+    path.at.push_back(p), path.across.push_back(across), path.up.push_back(heading.cross(across));
+    heading = ((1 - kTurn) * heading + kTurn * Vec3(0, -1, 0)).normalized();
+    p += kStep * heading;
+    const double gap = kSwell * tie.radius + kGap, near = body(p);
+    if (near >= gap || k < 3) continue;
+    const Vec3 n = bodyNormal(body, p);
+    p += (gap - near) * n;
+    heading = (heading - std::min(0.0, heading.dot(n)) * n).normalized();
+  }
+  return path;
+}
+
+int tieOf(const sim::HairMeshShape& hair, const sim::RootFace& face, const Scalp& scalp, std::span<const HairTie> ties) {
+  Vec3 middle = Vec3::Zero();
+  for (int k = 0; k < face.corner_count; ++k)
+    middle += hair.positions[hair.column_first[face.columns[k]]] / face.corner_count;
+  middle -= scalp.center;
+  for (std::size_t t = 0; t < ties.size(); ++t) {
+    const bool taken = (ties[t].side == 0 || ties[t].side * middle.x() > 0) && middle.y() > ties[t].above;
+    if (taken) return static_cast<int>(t);
+  }
+  return -1;
+}
+
+// The hair with its columns doubled where bundles of different ties meet; `of` says for each column which tie takes it.
+// Columns stay in their order.
+sim::HairMeshShape divided(const sim::HairMeshShape& hair, const Scalp& scalp, std::span<const HairTie> ties,
+                      std::vector<int>& of) {
+  sim::HairMeshShape out;
+  std::map<std::pair<int, int>, int> copies;  // of (column, tie)
+  std::vector<int> taken;
+  for (const sim::RootFace& face : hair.root_faces) {
+    taken.push_back(tieOf(hair, face, scalp, ties));
+    for (int k = 0; k < face.corner_count; ++k) copies[{face.columns[k], taken.back()}] = 0;
+  }
+  for (auto& [key, copy] : copies) {
+    const auto [column, tie] = key;
+    copy = out.columnCount();
+    of.push_back(tie);
+    out.positions.insert(out.positions.end(), hair.positions.begin() + hair.column_first[column],
+                         hair.positions.begin() + hair.column_first[column + 1]);
+    out.column_first.push_back(static_cast<int>(out.positions.size()));
+  }
+  for (std::size_t f = 0; f < hair.root_faces.size(); ++f) {
+    sim::RootFace face = hair.root_faces[f];
+    for (int k = 0; k < face.corner_count; ++k) face.columns[k] = copies[{face.columns[k], taken[f]}];
+    out.root_faces.push_back(face);
+  }
+  return out;
+}
+
+double wayLength(const Gathering& gathering, const Vec3& root) {
+  double length = 0;
+  for (int k = 1; k <= 8; ++k) length += (gathering.onWay(root, k / 8.0) - gathering.onWay(root, (k - 1) / 8.0)).norm();
+  return length;
+}
+
+double columnLength(const sim::HairMeshShape& hair, int column) {
+  double length = 0;
+  for (int v = hair.column_first[column] + 1; v < hair.column_first[column + 1]; ++v)
+    length += (hair.positions[v] - hair.positions[v - 1]).norm();
+  return length;
+}
+
+// The layer that lies in the ring: the same of all columns of a tie.
+int ringLayer(int length) {
+  return std::clamp((2 * length) / 5, 2, length - 2);
+}
+
+void gather(const HairTie& tie, int number, const Scalp& scalp, const BodyDistance& body, const std::vector<int>& of,
+            TiedHair& tied) {
+  sim::HairMeshShape& shape = tied.shape;
+  Gathering gathering(tie, scalp, body);
+  std::vector<int> columns;
+  int shortest = 1 << 20;
+  for (int c = 0; c < shape.columnCount(); ++c) {
+    if (of[static_cast<std::size_t>(c)] != number || shape.columnLength(c) < 4) continue;
+    columns.push_back(c);
+    shortest = std::min(shortest, shape.columnLength(c));
+    gathering.addRoot(shape.positions[shape.column_first[c]]);
+  }
+  if (columns.empty()) return;
+  double left = 0;
+  for (const int c : columns)
+    left += (columnLength(shape, c) - wayLength(gathering, shape.positions[shape.column_first[c]])) / columns.size();
+  left = std::max(left, kShortestTail);
+  const Path path = gathering.tail(left);
+  const int ring = ringLayer(shortest);
+  for (const int c : columns) {
+    const int first = shape.column_first[c], count = shape.columnLength(c);
+    const Vec3 root = shape.positions[first];
+    for (int l = 1; l < count; ++l) {
+      if (l <= ring) {
+        shape.positions[first + l] = gathering.onWay(root, static_cast<double>(l) / ring);
+        continue;
+      }
+      const double share = static_cast<double>(l - ring) / (count - 1 - ring);
+      const double place = share * left / kStep;
+      const auto k = std::min(static_cast<std::size_t>(place), path.at.size() - 2);
+      const double t = place - static_cast<double>(k);
+      const double width = share < 0.3 ? 1 + (kSwell - 1) * share / 0.3
+                                       : kSwell + (kTaper - kSwell) * (share - 0.3) / 0.7;
+      const Vec3 across = ((1 - t) * path.across[k] + t * path.across[k + 1]).normalized();
+      const Vec3 up = ((1 - t) * path.up[k] + t * path.up[k + 1]).normalized();
+      shape.positions[first + l] = (1 - t) * path.at[k] + t * path.at[k + 1] +
+                                   gathering.inSection(root, width * tie.radius, across, up);
+    }
+    tied.rings[static_cast<std::size_t>(number)].push_back(first + ring);
+  }
+}
+
+}  // namespace
+
+namespace {
+
+double leastFatness(const sim::HairMeshShape& shape) {
+  double least = 1;
+  for (const sim::RootFace& face : shape.root_faces) {
+    const int n = face.corner_count;
+    for (int l = 0; l + 1 < shape.bundleLayers(face); ++l) {
+      for (int k = 0; k < 2 * n; ++k) {
+        std::array<Vec3, 4> p;
+        const std::array<int, 4> corner = sim::cornerTetOf(k, n);
+        for (std::size_t i = 0; i < 4; ++i)
+          p[i] = shape.positions[shape.column_first[face.columns[corner[i] % n]] + l + corner[i] / n];
+        least = std::min(least, cornerFatness(p[0], p[1], p[2], p[3]));
+      }
+    }
+  }
+  return least;
+}
+
+}  // namespace
+
+// Where a narrow ring leaves prisms inverted, the hair at rest is gathered to a wider one, and held by the narrow one.
+TiedHair tieHair(const sim::HairMeshShape& hair, const Scalp& scalp, const BodyDistance& body,
+                 std::span<const HairTie> ties) {
+  std::vector<int> of;
+  const sim::HairMeshShape parted = divided(hair, scalp, ties, of);
+  TiedHair best;
+  double fattest = -2;
+  for (const double wider : {1.2, 1.7, 2.4}) {
+    TiedHair tied{parted, std::vector<std::vector<int>>(ties.size())};
+    for (std::size_t t = 0; t < ties.size(); ++t) {
+      HairTie tie = ties[t];
+      tie.radius *= wider;
+      gather(tie, static_cast<int>(t), scalp, body, of, tied);
+    }
+    untangle(body, kFatness, kGap, tied.shape);
+    const double fatness = leastFatness(tied.shape);
+    if (fatness > fattest) fattest = fatness, best = std::move(tied);
+    if (fattest > kFatEnough) break;
+  }
+  return best;
+}
+
+std::vector<Vec3> ringPlaces(const sim::HairMeshShape& tied, const Scalp& scalp, std::span<const HairTie> ties,
+                             std::span<const int> ring) {
+  const BodyDistance none;
+  std::vector<Gathering> gatherings;
+  for (const HairTie& tie : ties) gatherings.emplace_back(tie, scalp, none);
+  const auto rootOf = [&](int vertex) {
+    const auto after = std::upper_bound(tied.column_first.begin(), tied.column_first.end(), vertex);
+    return tied.positions[*std::prev(after)];
+  };
+  const auto nearest = [&](int vertex) -> Gathering& {
+    return *std::min_element(gatherings.begin(), gatherings.end(), [&](const Gathering& a, const Gathering& b) {
+      const Vec3& p = tied.positions[vertex];
+      return (a.tie.at - p).norm() < (b.tie.at - p).norm();
+    });
+  };
+  for (const int vertex : ring) nearest(vertex).addRoot(rootOf(vertex));
+  std::vector<Vec3> places;
+  for (const int vertex : ring) places.push_back(nearest(vertex).onWay(rootOf(vertex), 1));
+  return places;
+}
+
+}  // namespace app

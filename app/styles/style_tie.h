@@ -1,0 +1,31 @@
+// Hair ties: a haircut combed over the scalp through rings, and hanging from them as tails.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "app/styles/hair_styles.h"
+
+namespace app {
+
+// A ring that stands off the scalp. `at` and directions are in the scalp's frame.
+struct HairTie {
+  Vec3 at = Vec3::Zero();  // m, the ring's middle; its axis leads away from the head's middle
+  double radius = 0.02;    // m
+  int side = 0;            // -1, 1: takes the hair of that side of the head alone (sign of x); 0: all
+  double above = -1e3;     // m over the head's middle: takes what is rooted higher alone
+};
+
+struct TiedHair {
+  sim::HairMeshShape shape;
+  std::vector<std::vector<int>> rings;  // per tie: the vertices in it, one a column
+};
+
+// Combs every bundle to the first tie that takes it: over the scalp, those rooted farther above those rooted nearer,
+// through the ring, and on as a tail as long as the hair has left in the mean. Bundles that no tie takes stay. Where
+// two ties part the hair, columns between them are doubled. Every prism is positive on the heads of the tests; the
+// caller's buildHairMesh says where one is not. Deterministic.
+TiedHair tieHair(const sim::HairMeshShape& hair, const Scalp& scalp, const BodyDistance& body,
+                 std::span<const HairTie> ties);
+
+}  // namespace app

@@ -1,0 +1,16 @@
+// Where a tie holds what it has gathered.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "app/styles/style_tie.h"
+
+namespace app {
+
+// For each vertex in a ring (TiedHair::rings, those of all ties in one list) its place within the nearest tie's radius:
+// m, scalp frame. The hair at rest is wider than that where its prisms need the room.
+std::vector<Vec3> ringPlaces(const sim::HairMeshShape& tied, const Scalp& scalp, std::span<const HairTie> ties,
+                             std::span<const int> ring);
+
+}  // namespace app

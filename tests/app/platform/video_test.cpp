@@ -1,0 +1,52 @@
+// Films: written whole where ffmpeg is, refused with the name of the package where it is not.
+#include "app/platform/video.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <vector>
+
+#include "app/files/output_file.h"
+#include "app/files/errors.h"
+#include "tests/run_program.h"
+
+namespace {
+
+TEST(Video, WithoutFfmpegOneMessageNamesThePackage) {
+  const std::string file = test::freshFolder("video_without") + "/film.mp4";
+  const test::Outcome outcome =
+      test::runProgram({"--video", file, "--frames", "1", "--size", "32x32", "--resolution", "low"},
+                       "sh -c 'p=$(command -v timeout); shift; PATH=/nowhere; export PATH; exec $p \"$@\"' sh");
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+  EXPECT_NE(outcome.err.find("apt-get install ffmpeg"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(file));
+}
+
+TEST(Video, AFilmIsWholeOrNotThere) {
+  if (!app::canWriteVideo()) GTEST_SKIP() << "ffmpeg is not installed";
+  const std::string folder = test::freshFolder("video"), file = folder + "/film.mp4";
+  // An odd size is rounded up.
+  const std::vector<unsigned char> grey(4 * 33 * 21, 128);
+  {
+    app::VideoWriter film(file, 33, 21, 30);
+    for (int frame = 0; frame < 12; ++frame) film.add(grey);
+    film.finish();
+  }
+  const std::string bytes = test::readAll(file);
+  ASSERT_GT(bytes.size(), 500u);
+  EXPECT_EQ(bytes.substr(4, 4), "ftyp");
+  {
+    app::VideoWriter cut(folder + "/cut.mp4", 33, 21, 30);
+    cut.add(grey);
+  }
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1) << "a film that was given up is left";
+  app::VideoWriter odd(folder + "/film.nothing", 33, 21, 30);
+  EXPECT_THROW(
+      {
+        for (int frame = 0; frame < 1000; ++frame) odd.add(grey);
+        odd.finish();
+      },
+      app::OutputError);
+}
+
+}  // namespace

@@ -1,0 +1,98 @@
+// Hair ties: tied hair is a valid hair mesh on the head, its ring holds, and it is asked for, undone and saved.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "app/files/data_path.h"
+#include "app/files/errors.h"
+#include "app/files/recording.h"
+#include "app/files/scene_file.h"
+#include "app/scene/demo.h"
+
+namespace {
+
+using app::Ask;
+
+app::Scene tiedScene(const std::string& ties, const char* clip, app::Resolution resolution,
+                     app::Style style = app::Style::kLong) {
+  app::Scene scene;
+  app::CharacterSpec spec;
+  spec.motion = app::dataPath(std::string("assets/clips/") + clip);
+  spec.style = style;
+  spec.resolution = resolution;
+  spec.ties = app::tiesFromText(ties);
+  scene.characters = {spec};
+  scene.playback.settle = 0.3;
+  return scene;
+}
+
+// Farthest that a vertex of a ring is from its tie's middle, over the tie's radius; m.
+double overOf(const app::Demo& demo) {
+  const app::Actor& actor = demo.actors[0];
+  const std::vector<app::HairTie> ties = app::placeTies(actor.spec.ties, actor.body->character.scalp);
+  const app::Rigid to_scalp = app::scalpToWorld(actor.body->character, actor.pose).inverse();
+  double over = -1;
+  for (const int v : actor.haircut->tied) {
+    const sim::Vec3 now = to_scalp * actor.hair.positions[static_cast<std::size_t>(v)];
+    double nearest = 1;
+    for (const app::HairTie& tie : ties) nearest = std::min(nearest, (now - tie.at).norm() - tie.radius);
+    over = std::max(over, nearest);
+  }
+  return over;
+}
+
+TEST(Ties, EveryPlaceAndStyleGivesAValidHairMeshWhoseRingIsFilled) {
+  for (const char* place : {"back", "high", "low", "two"}) {
+    for (const app::Style style : {app::Style::kLong, app::Style::kShoulder}) {
+      for (const app::Resolution resolution : {app::Resolution::kLow, app::Resolution::kMedium}) {
+        const app::Scene scene = tiedScene(place, "idle_turns.bvh", resolution, style);
+        const app::Demo demo = app::openScene(scene, 1.5);
+        const app::Haircut& haircut = *demo.actors[0].haircut;
+        EXPECT_GT(haircut.tied.size(), haircut.mesh.columnCount() * 0.6) << place;
+        EXPECT_LT(overOf(demo), 0.001) << place << " " << app::styleName(style) << " " << app::resolutionName(resolution);
+      }
+    }
+  }
+}
+
+TEST(Ties, TheRingHoldsWithinAMillimetreInAHeadShakeAtFourTimesItsSpeed) {
+  app::Scene scene = tiedScene("back", "head_shake.bvh", app::Resolution::kLow);
+  scene.playback.speed = 4;
+  app::Demo demo = app::openScene(std::move(scene), 1.5);
+  int recoveries = 0;
+  for (int frame = 0; frame < 180; ++frame) {
+    app::advanceFrame(demo, 1.0 / 60, {});
+    recoveries += demo.stats.recoveries;
+    ASSERT_LT(overOf(demo), 0.001) << "frame " << frame;
+  }
+  EXPECT_EQ(recoveries, 0);
+}
+
+TEST(Ties, AreTiedAndTakenOffAndTiedAgain) {
+  app::Demo demo = app::openScene(tiedScene("none", "idle_turns.bvh", app::Resolution::kLow), 1.5);
+  const std::string loose = app::stateHash(demo);
+  demo.requests = {{Ask::kTie, "", "back"}};
+  app::advanceFrame(demo, 0, {});
+  ASSERT_FALSE(demo.message_is_fault) << demo.message;
+  EXPECT_FALSE(demo.actors[0].haircut->tied.empty());
+  demo.requests = {{Ask::kUndo, "", "", 1}};
+  app::advanceFrame(demo, 0, {});
+  EXPECT_EQ(app::stateHash(demo), loose);
+  demo.requests = {{Ask::kTie, "", "sideways"}};
+  app::advanceFrame(demo, 0, {});
+  EXPECT_TRUE(demo.message_is_fault);
+  EXPECT_EQ(app::stateHash(demo), loose) << "what was there stays";
+  demo.requests = {{Ask::kTie, "", R"({"at": "back", "above": 0.5})"}};
+  app::advanceFrame(demo, 0, {});
+  EXPECT_NE(demo.message.find("takes no hair"), std::string::npos) << demo.message;
+}
+
+TEST(Ties, ASceneKeepsThem) {
+  app::Scene scene = tiedScene(R"([{"at": [0.01, 0.2, -0.1], "radius": 0.03}, {"at": "left"}])", "walk.bvh",
+                               app::Resolution::kLow);
+  const app::Scene back = app::readScene(app::writeScene(scene), "scene.json");
+  EXPECT_EQ(app::writeTies(back.characters[0].ties), app::writeTies(scene.characters[0].ties));
+  EXPECT_THROW(app::tiesFromText("{\"radius\": 9}"), app::InputError);
+}
+
+}  // namespace

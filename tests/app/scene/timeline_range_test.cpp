@@ -1,0 +1,90 @@
+// In and out points, baking and clearing of the timeline.
+#include <gtest/gtest.h>
+
+#include "app/files/data_path.h"
+#include "app/files/recording.h"
+#include "app/scene/demo.h"
+
+namespace {
+
+using app::Ask;
+
+app::Demo moving() {
+  app::Scene scene;
+  app::CharacterSpec spec;
+  spec.motion = app::dataPath("assets/clips/head_shake.bvh");
+  spec.style = app::Style::kShort;
+  spec.resolution = app::Resolution::kLow;
+  scene.characters = {spec};
+  scene.playback.settle = 0;
+  app::Demo demo = app::openScene(std::move(scene), 1.5);
+  demo.timeline.on = true;
+  return demo;
+}
+
+void play(int frames, app::Demo& demo) {
+  for (int frame = 0; frame < frames; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
+}
+
+void ask(Ask what, double value, app::Demo& demo) {
+  demo.requests = {{what, "", "", value}};
+  app::advanceFrame(demo, 0, {});
+}
+
+TEST(TimelineRange, PlayingGoesRoundBetweenInAndOutInTheSameBits) {
+  app::Demo demo = moving();
+  play(11, demo);
+  ask(Ask::kMarkIn, 1, demo);
+  const long in = demo.timeline.in;
+  play(18, demo);
+  ask(Ask::kMarkOut, 1, demo);
+  const long out = demo.timeline.out;
+  ASSERT_GT(out, in);
+  std::string first, second;
+  for (int k = 0; k < 200 && second.empty(); ++k) {
+    play(1, demo);
+    EXPECT_LE(demo.frames, out);
+    EXPECT_GE(demo.frames, in - app::kTimelineEvery);
+    if (demo.frames == out - 2) (first.empty() ? first : second) = app::stateHash(demo);
+  }
+  EXPECT_FALSE(first.empty());
+  EXPECT_EQ(first, second);
+  ask(Ask::kMarkOut, 0, demo);
+  play(40, demo);
+  EXPECT_GT(demo.frames, out) << "it still goes back";
+}
+
+TEST(TimelineRange, BakingFillsTheTimelineAndStandsAtItsStart) {
+  app::Demo demo = moving();
+  ask(Ask::kBake, 1, demo);
+  EXPECT_TRUE(demo.message_is_fault) << "nothing is kept yet";
+  play(6, demo);
+  const long before = demo.frames;
+  ask(Ask::kBake, 1, demo);
+  for (int k = 0; k < 60 && !demo.paused; ++k) play(1, demo);
+  EXPECT_TRUE(demo.paused);
+  EXPECT_LE(demo.frames, before + 1);
+  EXPECT_GE(demo.timeline.frames.back().frame, before + 50);
+  ask(Ask::kClearBake, 0, demo);
+  EXPECT_TRUE(demo.timeline.frames.empty());
+  EXPECT_LT(demo.timeline.in, 0);
+}
+
+TEST(TimelineRange, PointsStayInOrderAndLoopsAreMarked) {
+  app::Demo demo = moving();
+  play(10, demo);
+  ask(Ask::kMarkOut, 1, demo);
+  const long out = demo.timeline.out;
+  ask(Ask::kMarkIn, 1, demo);
+  EXPECT_TRUE(demo.message_is_fault);
+  EXPECT_LT(demo.timeline.in, 0);
+  EXPECT_EQ(demo.timeline.out, out);
+  ask(Ask::kMarkOut, 0, demo);
+  const int round = static_cast<int>(demo.actors[0].playedClip().duration() * 60);
+  play(round, demo);
+  int loops = 0;
+  for (const app::TimelineFrame& frame : demo.timeline.frames) loops += frame.loop;
+  EXPECT_EQ(loops, 1);
+}
+
+}  // namespace

@@ -1,0 +1,76 @@
+#include "tests/bench/brush_cost.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "app/files/data_path.h"
+#include "app/scene/demo.h"
+#include "app/scene/groom_brush.h"
+#include "tests/bench/cpu_clock.h"
+
+namespace bench {
+namespace {
+
+constexpr int kSamples = 200, kWarmUp = 30;
+constexpr double kBound = 8e-3;  // s
+
+double percentile(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+}
+
+app::Demo walkingHair() {
+  app::Scene scene;
+  app::CharacterSpec spec;
+  spec.motion = app::findFile("walk.bvh", "", "clips");
+  spec.style = app::Style::kLong;
+  spec.resolution = app::Resolution::kHigh;
+  scene.characters = {spec};
+  return app::openScene(std::move(scene), 1.5);
+}
+
+// A stroke that wanders over the hair, a sample a frame.
+app::Request sampleAt(int k, app::BrushTool tool, const app::Demo& demo) {
+  const app::Actor& actor = demo.actors[0];
+  const app::Rigid to_scalp = app::scalpToWorld(actor.body->character, actor.pose).inverse(Eigen::Isometry);
+  const std::size_t vertex = (static_cast<std::size_t>(k) * 131) % actor.hair.positions.size();
+  app::BrushSample sample;
+  sample.tool = tool;
+  sample.at = to_scalp * actor.hair.positions[vertex];
+  sample.along = {0.004 * std::cos(0.3 * k), 0.002, 0.004 * std::sin(0.3 * k)};
+  sample.radius = 0.05, sample.strength = 0.4;
+  return {app::Ask::kBrush, std::string(app::kBrushNames[static_cast<std::size_t>(tool)]), app::brushText(sample)};
+}
+
+std::vector<double> framesOf(bool edited, app::BrushTool tool) {
+  app::Demo demo = walkingHair();
+  std::vector<double> seconds;
+  for (int frame = 0; frame < kWarmUp + kSamples; ++frame) {
+    if (edited && frame >= kWarmUp) demo.requests = {sampleAt(frame, tool, demo)};
+    const double started = cpuSeconds();
+    app::advanceFrame(demo, 1.0 / 60, {});
+    if (frame >= kWarmUp) seconds.push_back(cpuSeconds() - started);
+  }
+  return seconds;
+}
+
+}  // namespace
+
+bool runBrushCost() {
+  const double still = percentile(framesOf(false, app::BrushTool::kComb), 0.5);
+  std::printf("long high, walking: a frame without an edit takes %.2f ms\n", 1e3 * still);
+  std::printf("| brush | median | p99 | p99 of the edit alone |\n|---|---|---|---|\n");
+  bool holds = true;
+  for (int tool = 0; tool < static_cast<int>(app::kBrushNames.size()); ++tool) {
+    const std::vector<double> frames = framesOf(true, static_cast<app::BrushTool>(tool));
+    const double worst = percentile(frames, 0.99);
+    std::printf("| %s | %.2f | %.2f | %.2f |\n", std::string(app::kBrushNames[static_cast<std::size_t>(tool)]).c_str(),
+                1e3 * percentile(frames, 0.5), 1e3 * worst, 1e3 * (worst - still));
+    holds = holds && worst - still <= kBound;
+  }
+  return holds;
+}
+
+}  // namespace bench
