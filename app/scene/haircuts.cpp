@@ -16,7 +16,7 @@ std::string styleTitle(const CharacterSpec& spec) {
 }
 
 // Ties the hair; `tied` takes the vertices in the rings.
-void tie(const CharacterSpec& spec, const LoadedBody& body, sim::HairMeshShape& shape, std::vector<int>& tied) {
+void applyTies(const CharacterSpec& spec, const LoadedBody& body, sim::HairMeshShape& shape, std::vector<int>& tied) {
   const Scalp& scalp = body.character.scalp;
   TiedHair result = tieHair(shape, scalp, body.distance, placeTies(spec.ties, scalp));
   shape = std::move(result.shape);
@@ -53,7 +53,7 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
                                    : hairFromFile(spec, body.character, *haircut);
     const Scalp& scalp = body.character.scalp;
     if (!spec.maps.length.empty()) paintLength(readFieldMap(spec.maps.length), scalp, shape);
-    if (!spec.ties.empty()) tie(spec, body, shape, haircut->tied);
+    if (!spec.ties.empty()) applyTies(spec, body, shape, haircut->tied);
     haircut->mesh = sim::buildHairMesh(std::move(shape));
     if (!spec.maps.stiffness.empty())
       haircut->stiffness = paintedStiffness(readFieldMap(spec.maps.stiffness), scalp, haircut->mesh.shape);
