@@ -52,7 +52,9 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
                                    ? makeStyle(spec.style, spec.resolution, body.character.scalp, body.distance)
                                    : hairFromFile(spec, body.character, *haircut);
     const Scalp& scalp = body.character.scalp;
-    if (!spec.maps.length.empty()) paintLength(readFieldMap(spec.maps.length), scalp, shape);
+    // Hair of a file may lie nearer to the body than a style's.
+    const BodyDistance around = spec.hair.empty() ? body.distance : [](const Vec3&) { return 1.0; };
+    if (!spec.maps.length.empty()) paintLength(readFieldMap(spec.maps.length), scalp, around, shape);
     if (!spec.ties.empty()) applyTies(spec, body, shape, haircut->tied);
     haircut->mesh = sim::buildHairMesh(std::move(shape));
     if (!spec.maps.stiffness.empty())

@@ -1,12 +1,20 @@
 #include "app/scene/painted_fields.h"
 
 #include <algorithm>
+#include <array>
+
+#include "app/styles/style_untangle.h"
 
 namespace app {
 
 using sim::Vec3;
 
 namespace {
+
+constexpr double kFatness = 0.05, kGap = 0.0025;  // see untangle; m
+constexpr double kFatEnough = 0.01;               // with less, lengths are softened more
+// Least length of a column over that of any of its root face.
+constexpr std::array kSteepest{0.5, 0.65, 0.8, 0.9, 1.0};
 
 double atRoot(const FieldMap& map, const Scalp& scalp, const sim::HairMeshShape& shape, int column) {
   return map.at(shape.positions[static_cast<std::size_t>(shape.column_first[static_cast<std::size_t>(column)])] -
@@ -27,15 +35,38 @@ void shorten(std::span<Vec3> x, double share) {
   }
 }
 
+// Raises shares until none is less than `step` times one of the same root face.
+void soften(const sim::HairMeshShape& shape, double step, std::vector<double>& shares) {
+  for (bool raised = true; raised;) {
+    raised = false;
+    for (const sim::RootFace& face : shape.root_faces) {
+      double most = 0;
+      for (int k = 0; k < face.corner_count; ++k) most = std::max(most, shares[static_cast<std::size_t>(face.columns[k])]);
+      for (int k = 0; k < face.corner_count; ++k) {
+        double& share = shares[static_cast<std::size_t>(face.columns[k])];
+        raised |= share < step * most;
+        share = std::max(share, step * most);
+      }
+    }
+  }
+}
+
 }  // namespace
 
-void paintLength(const FieldMap& map, const Scalp& scalp, sim::HairMeshShape& shape) {
-  for (int c = 0; c < shape.columnCount(); ++c) {
-    const double share = kLeastLength + (1 - kLeastLength) * atRoot(map, scalp, shape, c);
-    if (share >= 1) continue;
-    shorten(std::span(shape.positions).subspan(static_cast<std::size_t>(shape.column_first[static_cast<std::size_t>(c)]),
-                                               static_cast<std::size_t>(shape.columnLength(c))),
-            share);
+void paintLength(const FieldMap& map, const Scalp& scalp, const BodyDistance& body, sim::HairMeshShape& shape) {
+  std::vector<double> shares;
+  for (int c = 0; c < shape.columnCount(); ++c)
+    shares.push_back(kLeastLength + (1 - kLeastLength) * atRoot(map, scalp, shape, c));
+  if (*std::ranges::min_element(shares) >= 1) return;
+  const sim::HairMeshShape whole = shape;
+  for (const double step : kSteepest) {
+    soften(whole, step, shares);
+    shape.positions = whole.positions;
+    for (std::size_t c = 0; c < shares.size(); ++c)
+      shorten(std::span(shape.positions).subspan(static_cast<std::size_t>(shape.column_first[c]),
+                                                 static_cast<std::size_t>(shape.columnLength(static_cast<int>(c)))),
+              shares[c]);
+    if (untangle(body, kFatness, kGap, shape) > kFatEnough) return;
   }
 }
 

@@ -12,8 +12,9 @@ namespace app {
 
 inline constexpr double kLeastLength = 0.12, kLeastStiffness = 0.02;  // share that black leaves
 
-// Ends each column sooner along its own curve.
-void paintLength(const FieldMap& map, const Scalp& scalp, sim::HairMeshShape& shape);
+// Ends each column sooner along its own curve. Where the field falls faster from column to column than prisms can bear
+// the shorter column keeps more.
+void paintLength(const FieldMap& map, const Scalp& scalp, const BodyDistance& body, sim::HairMeshShape& shape);
 
 // The share of each column's stiffness.
 std::vector<float> paintedStiffness(const FieldMap& map, const Scalp& scalp, const sim::HairMeshShape& shape);
