@@ -305,6 +305,15 @@ int endRun(const Options& options, const RunReport& run, int frames, Tape& tape,
   return end.differs ? kExitFault : kExitFine;
 }
 
+// What a run's report says of it as a whole.
+RunReport reportOf(const Demo& demo, double start_seconds) {
+  RunReport run;
+  run.fps = demo.scene.playback.fps;
+  run.renderer = render::rendererName();
+  run.start_seconds = start_seconds;
+  return run;
+}
+
 }  // namespace
 
 int runWindow(Scene scene, const Options& options) {
@@ -326,10 +335,7 @@ int runWindow(Scene scene, const Options& options) {
   prepareUi(std::clamp(textScale(window.handle) * static_cast<float>(options.ui_scale), 0.5f, 4.0f), ui);
   render::Renderer renderer(dataPath("shaders"));
   if (!options.report.empty()) checkWritable(options.report);
-  RunReport run;
-  run.fps = demo.scene.playback.fps;
-  run.renderer = render::rendererName();
-  run.start_seconds = now() - start;
+  RunReport run = reportOf(demo, now() - start);
 
   FrameTarget target;
   render::PicturePair pair(dataPath("shaders"));
