@@ -275,6 +275,7 @@ void limitWork(double max_work, Parts& parts, SimParams& params) {
   params.max_iterations = std::min(params.max_iterations, bounds.iterations);
   limitCorrectionWork(bounds, params.solver == Solver::kPaper, parts.correction);
   parts.stabilization.energy_limit.energies = 0;
+  parts.stabilization.energy_limit.carried_energy.reset();
 }
 
 // Starts the clock and brings what is derived from mesh and parameters up to date. Returns the step's parameters.

@@ -91,25 +91,13 @@ struct SweptBall {
   SweptBall(const SweptBox& box, const Vec3& shift) : center(0.5 * (box.low[1] + box.high[1])) {
     const Vec3 way = center - 0.5 * (box.low[0] + box.high[0]) - shift;
     const double radius = 0.5 * std::max((box.high[0] - box.low[0]).norm(), (box.high[1] - box.low[1]).norm());
-    swept = radius + (1 + NearCollider::kStraight) * way.norm();
+    swept = radius + way.norm();
   }
-  SweptBall(const Vec3& start, const Vec3& end, const Vec3& shift)
-      : center(end), swept((1 + NearCollider::kStraight) * (end - start - shift).norm()) {}
+  SweptBall(const Vec3& start, const Vec3& end, const Vec3& shift) : center(end), swept((end - start - shift).norm()) {}
 };
 
-// Extends the collider's reach by its own motion. Let d be the vector from its centre to a ball's, w the ball's way
-// relative to the collider without its turn, and t the turn. The chord that sweep tests is at most |w| + t (|d| + |w|)
-// long, and every vertex stays within the ball's radius of the ball's own chord. So sweep and mayTouch find nothing
-// where |d| exceeds the sum of reach, radius and chord.
-void boundReach(const Vec3& shift, NearCollider& near) {
-  if (near.turned >= NearCollider::kStraight) return;  // met on arcs
-  const double way = (near.after - near.before - shift).norm();
-  near.stretch = 1 / (1 - near.turned);
-  near.margin = near.stretch * (near.reach + (1 + near.turned) * way + kRounding);
-}
-
 bool outOfReach(const SweptBall& ball, const NearCollider& near) {
-  const double far = near.margin + near.stretch * ball.swept;
+  const double far = near.margin + ball.swept;
   return (ball.center - near.after).squaredNorm() > far * far;
 }
 
@@ -141,18 +129,13 @@ void collectReached(const ContactSearch& search, const Vec3& shift, ContactScrat
 // way.
 void sweep(const ContactSearch& search, const NearCollider& near, const Vec3& start, const Vec3& end,
            Penetration& touch) {
-  const double from_start = (start - near.before).norm(), from_end = (end - near.after).norm();
-  const double speed = (end - start - (near.after - near.before)).norm() + near.turned * std::max(from_start, from_end);
-  if (speed < 0.5 * near.thin || from_end > near.reach + speed) return;
-  const double thin = near.thin, offset = search.margins.offset;
-  const Vec3 carried = near.carried(start), way = end - carried;
-  if (near.turned < NearCollider::kStraight && way.squaredNorm() < 0.25 * thin * thin) return;
-  // A turning collider may be met on an arc, any other on the chord.
-  if (near.turned < NearCollider::kStraight) {
-    const Vec3 from = carried - near.after;
-    const double t = std::clamp(-from.dot(way) / way.squaredNorm(), 0.0, 1.0);
-    if ((from + t * way).squaredNorm() >= near.reach * near.reach) return;
-  }
+  const double offset = search.margins.offset;
+  const Vec3 from = start - near.before, way = end - near.after - from;
+  const double nearest = way.isZero(0) ? 0 : std::clamp(-from.dot(way) / way.squaredNorm(), 0.0, 1.0);
+  if ((from + nearest * way).squaredNorm() >= near.reach * near.reach) return;
+  // How far it goes in the collider's frame: its motion there, and the height of the arc that a turn makes of a line.
+  const double strays = (from + way - near.turn * from).norm() + from.norm() * near.turned * near.turned / 8;
+  if (strays < 0.5 * near.thin) return;
   const int k = near.index;
   const std::optional<Vec3> entry = entryOf(search.colliders, near, offset, start, end);
   if (!entry) return;
@@ -323,7 +306,9 @@ void findPenetrations(const ContactSearch& search, std::span<const Vec3> positio
   const Vec3 shift = 0.5 * (whole.low[1] + whole.high[1] - whole.low[0] - whole.high[0]);
   collectNear(search, whole, scratch.near);
   const bool clustered = !scratch.cluster_of.empty();
-  for (NearCollider& near : scratch.near) boundReach(shift, near);
+  // How far a vertex is from a collider's centre does not depend on the collider's turn.
+  for (NearCollider& near : scratch.near)
+    near.margin = near.reach + (near.after - near.before - shift).norm() + kRounding;
   collectReached(search, shift, scratch);
   if (scratch.near.empty()) return;
   for (const int v : search.vertices) {

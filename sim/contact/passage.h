@@ -13,7 +13,6 @@ namespace sim {
 // A collider within reach of the hair, with its rigid motion over the step.
 struct NearCollider {
   static constexpr int kMaxChords = 8;
-  static constexpr double kStraight = 0.2;  // rad; where a collider turns less, a straight line bounds the way past it
 
   int index;
   Vec3 before, after;    // m, its centre
@@ -25,8 +24,8 @@ struct NearCollider {
   int chords = 1;
   std::array<Eigen::Matrix3d, kMaxChords + 1> local_turn;
   Vec3 outer, inner;  // 1/m, inverse radii: of the ellipsoid grown to the contact offset, and less what may be grazed
-  // A vertex that moves by s m within the step meets it only from within margin + stretch * s of its centre at the end.
-  double margin = INFINITY, stretch = 1;
+  double margin =
+      INFINITY;  // m: a vertex that moves by s meets it only from within margin + s of its centre at the end
 
   NearCollider(int index, const Ellipsoid& body, double thickness, double offset, double dt);
 

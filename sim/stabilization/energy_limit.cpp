@@ -15,9 +15,9 @@ constexpr double kLongStep = 1.0 / 50;  // s
 // No step is near to linear of hair that is limp, folded as it hangs: its load strains its walls by more than this; or
 // of hair that is stiffer one way by such a ratio than another (Modulus::uneven): it buckles.
 constexpr double kLimp = 1;
-constexpr int kTries = 8;          // of a shorter way
-constexpr double kWithin = 0.95;   // of the way that would end on the bound, were the energy quadratic along it
-constexpr double kLeastWay = 0.5;  // of the way, that a try leaves: energies of stretched hair rise faster
+constexpr int kTries = 5;          // of a shorter way
+constexpr double kWithin = 0.95;   // of the energy allowed and of the way, that a try aims at
+constexpr double kLeastWay = 0.5;  // of the way, that the first try leaves: energies of stretched hair rise faster
 constexpr double kStill = 1e-3;    // m/s of a body's surface against the roots
 
 enum class Motion { kCalm, kViolent, kNotFinite };
@@ -140,7 +140,8 @@ double dampersWork(const TakenStep& step, const EnergyLimit& scratch) {
 
 Account accountFor(const TakenStep& step, EnergyLimit& scratch, const HairState& state) {
   Account account;
-  account.carried = potential(step, scratch.carried, scratch);
+  if (!scratch.carried_energy) scratch.carried_energy = potential(step, scratch.carried, scratch);
+  account.carried = *scratch.carried_energy;
   account.bound = account.carried + dampersWork(step, scratch);
   for (int i = 0; i < step.mesh.vertexCount(); ++i) {
     if (step.mesh.isRoot(i)) continue;
@@ -169,18 +170,29 @@ void slowDown(const TakenStep& step, const EnergyLimit& scratch, double share, H
   state.previous_dt = 0;  // what came before says nothing any more about how it goes on
 }
 
-// Shortens the way of every vertex from `back`, whose potential energy is `least` (J), until its own is `most`: to
-// where an energy quadratic along the way would be so, tried so many times before giving the way up. Returns the share
-// of it that was kept and sets the energy stored there.
+// The share of a way at which an energy is `most`, where it is `end` at the way's end and, unless that is 1, `beyond`
+// at `past` times the way; all above what it is at the begin, J. It is taken for a quadratic of the way or, where it
+// rises faster, for a power of it halfway between that rise and a square.
+double shareWithin(double most, double end, double past, double beyond) {
+  if (!(most > 0)) return 0;
+  const double curved = past > 1 ? (beyond / past - end) / (past - 1) : end, slope = end - curved;
+  if (slope < 0) return std::pow(most / end, 1 / (1 + 0.5 * std::log(beyond / end) / std::log(past)));
+  return 2 * most / (slope + std::sqrt(std::max(0.0, slope * slope + 4 * curved * most)));
+}
+
+// Shortens the way of every vertex from `back`, whose potential energy is `least` (J), until its own is `most`, tried
+// so many times before giving the way up. Returns the share of it that was kept and sets the energy stored there.
 double shorten(const TakenStep& step, std::span<const Vec3> back, double least, double most, int tries, double& stored,
                EnergyLimit& scratch, HairState& state) {
-  double kept = 1;
+  double kept = 1, past = 1, beyond = 0;
   for (int k = 0; !(stored <= most) && kept > 0; ++k) {
-    const double quadratic = kWithin * std::sqrt(std::max(0.0, most - least) / (stored - least));
-    const double share = k >= tries ? 0 : std::isfinite(stored) ? std::clamp(quadratic, kLeastWay, kWithin) : kLeastWay;
+    const double end = stored - least, shortest = past > 1 ? 0 : kLeastWay;
+    const double fits = shareWithin(kWithin * (most - least), end, past, beyond);
+    const double share = k >= tries ? 0 : std::isfinite(end) ? std::clamp(fits, shortest, kWithin) : kLeastWay;
     for (std::size_t i = 0; i < back.size(); ++i) state.positions[i] = back[i] + share * (state.positions[i] - back[i]);
     kept *= share;
-    stored = potential(step, state.positions, scratch);
+    stored = share > 0 ? potential(step, state.positions, scratch) : least;
+    past = std::isfinite(end) && share > 0 ? 1 / share : 1, beyond = end;
   }
   return kept;
 }
@@ -219,6 +231,7 @@ EnergyLimit::EnergyLimit(const HairMesh& mesh) {
 }
 
 double limitEnergy(const TakenStep& step, bool solved, EnergyLimit& scratch, HairState& state) {
+  scratch.carried_energy.reset();
   const Motion motion = judge(step, state);
   if (motion == Motion::kNotFinite || (motion == Motion::kCalm && solved && !neverLinear(step))) return 1;
   carry(step, state, scratch);

@@ -16,6 +16,7 @@
 // that it buckles.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -40,7 +41,8 @@ struct TakenStep {
 struct EnergyLimit {
   std::vector<Vec3> carried, roots_before, roots_after;
   std::vector<V3<double>> plain;
-  int energies = 0;  // potential energies computed in this step
+  std::optional<double> carried_energy;  // J, potential, of the hair as the roots carry it in this step
+  int energies = 0;                      // potential energies computed in this step
   explicit EnergyLimit(const HairMesh& mesh);
 };
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <limits>
 
 #include "sim/stabilization/state_validation.h"
@@ -99,6 +100,30 @@ TEST(EnergyLimit, AStepThatEndsTooHighIsTakenBackUntilItFits) {
   const double bound = 0.5 * massOf(flung.hair) * 9;
   EXPECT_LE(energyAboveRest(flung.hair, Vec3::Zero()), bound * (1 + 1e-9));
   EXPECT_GT(energyAboveRest(flung.hair, Vec3::Zero()), 0.2 * bound) << "it was held back more than it need be";
+}
+
+// Ways of 2 cm to 3 m, from hair that has next to no energy to hair that has nearly enough.
+TEST(EnergyLimit, FindsTheWayThatFitsInFewTries) {
+  int ways = 0, energies = 0, most = 0;
+  for (double way = 0.02; way < 3; way *= 1.5) {
+    for (double speed = 0.001; speed < 100; speed *= 3) {
+      Flung flung;
+      for (Vec3& v : flung.start.velocities) v = Vec3(speed, 0, 0);
+      flung.fling(way);
+      const double kept = flung.limit();
+      if (kept == 1) continue;
+      EXPECT_GT(kept, 0) << way << " m, " << speed;
+      const double bound = 0.5 * massOf(flung.hair) * speed * speed;
+      EXPECT_LE(energyAboveRest(flung.hair, Vec3::Zero()), bound * (1 + 1e-9) + 1e-12) << way << " m, " << speed;
+      ++ways;
+      energies += flung.scratch.energies - 2;  // without those of both ends
+      most = std::max(most, flung.scratch.energies - 2);
+    }
+  }
+  std::printf("%d ways shortened by %.2f tries each, at most %d\n", ways, double(energies) / ways, most);
+  EXPECT_GT(ways, 50);
+  EXPECT_LE(most, 5);
+  EXPECT_LT(energies, 4 * ways);
 }
 
 // Hair with hardly a shear or volume force is folded by a wind that its stiff hinges bear: its motion is slow, and
