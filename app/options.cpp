@@ -144,6 +144,8 @@ void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
   group.value("--parts", options.parts, "DIR", "Folder of body0000.obj ... for a .mot motion");
   group.value("--clip", options.clip, "NAME", "Clip of a motion file that holds several");
   group.value("--preset", options.preset, "NAME", "Preset by name or file");
+  group.value("--environment", options.environment, "FILE.hdr",
+              "Light by a panorama (Radiance picture, twice as wide as high, its middle in front of the figure) in place of the scene's");
   group.values("--set", unchecked.sets, "NAME=VALUE", "Set a parameter of the tables; may be given many times");
   group.value(
       "--solver", options.solver, "NAME",

@@ -43,6 +43,7 @@ struct Options {
   std::string report;       // JSON file of timings and counters
   std::string strand_path;  // geometry or pulling
   std::string preset;
+  std::string environment;  // panorama whose light replaces the scene's; empty: none
   std::string solver;      // default or paper; empty: the scene's
   std::string debug;       // debug views, comma separated
   std::string video;       // film of a headless run

@@ -7,6 +7,7 @@
 #include "app/files/scene_file.h"
 #include "app/groom/certain_mends.h"
 #include "app/options.h"
+#include "app/scene/environment_light.h"
 #include "sim/field_text.h"
 
 namespace app {
@@ -168,6 +169,7 @@ Scene sceneFromOptions(const Options& given) {
   }
   nameAfterMotion(options, scene);
   if (!options.preset.empty()) loadPreset(presetFile(options.preset, ""), {&scene.sim, &scene.look, looks});
+  if (!options.environment.empty()) scene.look.light = environmentLight(options.environment, scene.look.light);
   // Before the sets: --set overrides a part of what --solver sets.
   chooseSolver(options.solver, scene.sim);
   for (const auto& [name, text] : options.set) {

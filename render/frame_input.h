@@ -39,7 +39,7 @@ struct HairLook {
   float frizz = 0.0007f;                          // m, small-scale noise amplitude
   float flyaways = 0.03f;                         // share of strands that leave their groups
   float flyaway_lift = 0.006f;                    // m that these stand off the hair
-  float hairline = 0.01f;                         // m from the hairline over which hair becomes sparse
+  float hairline = 0.018f;                        // m from the hairline over which hair becomes sparse
   float baby_hairs = 0.6f;                        // 0..1 share of short fine hairs at the hairline
   // Colour: melanin (d'Eon et al. 2011 / pbrt's eumelanin and pheomelanin concentrations) or picked reflectance.
   float eumelanin = 1.1f, pheomelanin = 0.35f;
@@ -112,8 +112,8 @@ struct CameraInput {
 
 struct LightInput {
   Float3 to_light{0.45f, 0.8f, 0.6f};  // key light's direction, towards the light
-  Float3 key{3.5f, 3.3f, 3.0f}, fill{0.28f, 0.32f, 0.40f}, rim{1.3f, 1.4f, 1.6f};
-  Float3 to_fill{-0.8f, 0.3f, 0.6f}, to_rim{-0.35f, 0.6f, -0.9f};
+  Float3 key{3.5f, 3.3f, 3.0f}, fill{0.28f, 0.32f, 0.40f}, rim{0.6f, 0.8f, 1.15f};
+  Float3 to_fill{-0.8f, 0.3f, 0.6f}, to_rim{-0.6f, 0.3f, -0.85f};
   Float3 ambient_sky{0.22f, 0.24f, 0.28f}, ambient_ground{0.11f, 0.10f, 0.09f};
   int shadow_size = 512;         // pixels a side of a hair's deep opacity map; the bodies' map has twice as many
   int shadow_strands = 8000;     // at most this many strands a hair cast shadow, standing for all; 0: all

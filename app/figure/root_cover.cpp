@@ -20,7 +20,7 @@ constexpr double kMargin = 0.0003;                  // m that the skin is drawn 
 
 // Share of the skin around that bears roots, from which on it counts and at which it is covered. Along a straight
 // hairline it is a half.
-constexpr double kBare = 0.25, kFull = 0.9;
+constexpr double kBare = 0.06, kFull = 0.9;
 
 // A piece of a root face.
 struct RootSample {

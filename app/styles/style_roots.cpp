@@ -29,12 +29,12 @@ constexpr std::array<Landmark, 7> kHairline{
     {{57, 17}, {74, 9}, {95, 10}, {116, -4}, {136, -20}, {158, -30}, {180, -33}}};
 
 // Both ends of the parting: front hairline, slightly left of the middle, and crown.
-constexpr Landmark kPartingFront{15, 38};
+constexpr Landmark kPartingFront{15, 35.2};
 constexpr Landmark kCrown{176, 62};
 
 // The forehead's hairline bulges towards these.
-constexpr Landmark kForeheadLeft{42, 33};
-constexpr Landmark kForeheadRight{-34, 38};
+constexpr Landmark kForeheadLeft{42, 28.2};
+constexpr Landmark kForeheadRight{-34, 33.2};
 
 Vec3 direction(const Landmark& l) {
   return scalpDirection(l.azimuth, l.elevation);

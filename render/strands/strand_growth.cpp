@@ -41,6 +41,10 @@ float layersAt(const Strand& strand, float metres) {
   return 2.0f * metres / std::max(strand.way.x() + root, 1e-6f);
 }
 
+float lockClosing(float t) {
+  return smoothstep(0.1f, 0.7f, t) * (1.0f - 0.6f * smoothstep(0.7f, 1.0f, t));
+}
+
 float clumpClosing(float t, uint clump_key) {
   const float reach = 0.3f + 0.4f * randomOf(clump_key, 6u);
   const float opens_again = 0.35f + 0.4f * randomOf(clump_key, 7u);
@@ -211,16 +215,16 @@ void StrandGrowth::thinHairline(const Root& root, Strand& strand) const {
   if (look_.hairline <= 0.0f) return;
   const float ragged = 0.6f * (randomOf(strand.clump_key, 23u) - 0.5f);
   const float inside = std::clamp(root.edge / look_.hairline + ragged, 0.0f, 1.0f);
-  if (randomOf(strand.key, 18u) > 0.3f + 0.7f * smoothstep(0.0f, 0.8f, inside)) strand.gain = 0.0f;
+  if (randomOf(strand.key, 18u) > 0.15f + 0.85f * smoothstep(0.0f, 0.8f, inside)) strand.gain = 0.0f;
   strand.rim = 1.0f - inside;
   strand.fine = randomOf(strand.key, 19u) < look_.baby_hairs * strand.rim ? 1.0f : 0.0f;
-  strand.astray = strand.fine * (0.2f + 0.6f * randomOf(strand.key, 6u)) * root.outward;
+  strand.astray = strand.fine * (0.1f + 0.4f * randomOf(strand.key, 6u)) * root.outward;
 }
 
 void StrandGrowth::cutStrand(const Root& root, Strand& strand) const {
   const float own = randomOf(strand.key, 4u), apart = strand.clump.norm() / (0.6f * std::max(look_.clump_size, 1e-4f));
-  const float early = 0.35f * own * own + 0.25f * randomOf(strand.clump_key, 4u) +
-                      0.2f * randomOf(strand.lock_key, 4u) + 0.2f * std::min(apart * apart, 1.0f);
+  const float early = 0.6f * own * own + 0.12f * randomOf(strand.clump_key, 4u) +
+                      0.13f * randomOf(strand.lock_key, 4u) + 0.15f * std::min(apart * apart, 1.0f);
   strand.end = root.cut * (1.0f - look_.length_variation * early);
   const Vector2f chance(randomOf(strand.key, 22u), randomOf(strand.key, 25u));
   if (strand.fine > 0.0f) {
@@ -273,7 +277,7 @@ Vector2f StrandGrowth::groupPull(const Strand& strand, float layer) const {
   const float t = layer / static_cast<float>(strand.layers - 1);
   Vector2f pull = strand.hold * look_.wisp * smoothstep(0.0f, 0.25f, t) * strand.wisp;
   pull += strand.hold * look_.clump * clumpClosing(t, strand.clump_key) * (strand.clump - pull);
-  pull += strand.hold * look_.lock * smoothstep(0.1f, 0.8f, t) * (strand.lock - pull);
+  pull += strand.hold * look_.lock * lockClosing(t) * (strand.lock - pull);
   return pull;
 }
 
@@ -308,7 +312,7 @@ void StrandGrowth::addWander(const Strand& strand, float s, Vector4f& bend) cons
   const float span =
       strand.loose + strand.fine > 0.0f ? std::max(strand.end, 1e-3f) : static_cast<float>(strand.layers - 1);
   const float t = s / span;
-  const float reach = look_.offset * (1.0f + 5.0f * strand.loose + 3.0f * strand.rim) + 0.3f * strand.fine * strand.metres;
+  const float reach = look_.offset * (1.0f + 5.0f * strand.loose + 3.0f * strand.rim) + 0.2f * strand.fine * strand.metres;
   const Vector2f away = reach * std::sqrt(randomOf(strand.key, 9u)) * onCircle(randomOf(strand.key, 8u));
   const Vector2f grow(t * (1.6f - 0.6f * t), (1.6f - 1.2f * t) / span);
   const float turns = 0.7f + 0.8f * randomOf(strand.key, 10u);

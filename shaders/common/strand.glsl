@@ -197,18 +197,18 @@ void thinHairline(in Root root, inout Strand strand) {
   if (waves.z <= 0.0) return;
   float ragged = 0.6 * (randomOf(strand.clump_key, 23u) - 0.5);  // a hairline is no smooth curve
   float inside = clamp(root.edge / waves.z + ragged, 0.0, 1.0);
-  if (randomOf(strand.key, 18u) > 0.3 + 0.7 * smoothstep(0.0, 0.8, inside)) strand.gain = 0.0;
+  if (randomOf(strand.key, 18u) > 0.15 + 0.85 * smoothstep(0.0, 0.8, inside)) strand.gain = 0.0;
   strand.rim = 1.0 - inside;
   strand.fine = randomOf(strand.key, 19u) < waves.w * strand.rim ? 1.0 : 0.0;
-  strand.astray = strand.fine * (0.2 + 0.6 * randomOf(strand.key, 6u)) * root.outward;
+  strand.astray = strand.fine * (0.1 + 0.4 * randomOf(strand.key, 6u)) * root.outward;
 }
 
 // Where a strand ends. Locks and clumps are cut to lengths of their own, each clump to a point; stray hairs are often
 // broken.
 void cutStrand(in Root root, inout Strand strand) {
   float own = randomOf(strand.key, 4u), apart = length(strand.clump) / (0.6 * max(clumping.y, 1e-4));
-  float early = 0.35 * own * own + 0.25 * randomOf(strand.clump_key, 4u) + 0.2 * randomOf(strand.lock_key, 4u) +
-                0.2 * min(apart * apart, 1.0);
+  float early = 0.6 * own * own + 0.12 * randomOf(strand.clump_key, 4u) + 0.13 * randomOf(strand.lock_key, 4u) +
+                0.15 * min(apart * apart, 1.0);
   strand.end = root.cut * (1.0 - shape.x * early);
   vec2 chance = vec2(randomOf(strand.key, 22u), randomOf(strand.key, 25u));
   if (strand.fine > 0.0) {
@@ -274,13 +274,16 @@ float clumpClosing(float t, uint clump_key) {
   return smoothstep(0.0, reach, t) * (1.0 - opens_again * smoothstep(0.6, 1.0, t));
 }
 
+// Likewise a lock.
+float lockClosing(float t) { return smoothstep(0.1, 0.7, t) * (1.0 - 0.6 * smoothstep(0.7, 1.0, t)); }
+
 // m in the rest scalp's plane: how far a strand has been drawn aside at a layer, by its groups or as a fine hair.
 vec2 groupPull(in Strand strand, float layer) {
   if (strand.fine > 0.0) return wayAt(strand, layer).x * strand.astray;
   float t = layer / float(strand.layers - 1);
   vec2 pull = strand.hold * groups.y * smoothstep(0.0, 0.25, t) * strand.wisp;
   pull += strand.hold * clumping.x * clumpClosing(t, strand.clump_key) * (strand.clump - pull);
-  return pull + strand.hold * groups.x * smoothstep(0.1, 0.8, t) * (strand.lock - pull);
+  return pull + strand.hold * groups.x * lockClosing(t) * (strand.lock - pull);
 }
 
 LayerPoint layerPoint(in Strand strand, int layer) {
@@ -351,7 +354,7 @@ vec2 swingAngle(vec2 way, float wave_length, float phase) {
 // A hair's own way beside its guide, over all of its length; stray and fine hairs go further astray.
 void addWander(in Strand strand, float s, inout vec4 bend) {
   float span = strand.loose + strand.fine > 0.0 ? max(strand.end, 1e-3) : float(strand.layers - 1), t = s / span;
-  float reach = shape.y * (1.0 + 5.0 * strand.loose + 3.0 * strand.rim) + 0.3 * strand.fine * strand.metres;
+  float reach = shape.y * (1.0 + 5.0 * strand.loose + 3.0 * strand.rim) + 0.2 * strand.fine * strand.metres;
   vec2 away = reach * sqrt(randomOf(strand.key, 9u)) * onCircle(randomOf(strand.key, 8u));
   vec2 grow = vec2(t * (1.6 - 0.6 * t), (1.6 - 1.2 * t) / span);
   float turns = 0.7 + 0.8 * randomOf(strand.key, 10u);

@@ -116,7 +116,7 @@ TEST_F(SkipsDraw, ExactSkipsChangeNoByte) {
     for (std::size_t i = 0; i < pictures[0].size(); ++i) {
       const golden::Difference difference = golden::compare(pictures[s][i], pictures[0][i], 0);
       const char* name = s < 2 ? "all" : kExact[s - 2].name;
-      EXPECT_LE(difference.outliers, moved ? 6 : 0) << name << ", picture " << i;
+      EXPECT_LE(difference.outliers, moved ? 20 : 0) << name << ", picture " << i;
       EXPECT_LE(difference.largest, moved ? 2 : 0) << name << ", picture " << i;
     }
     if (s < 2) continue;

@@ -340,8 +340,13 @@ TEST(Governor, SeveralCharactersShareTheBudget) {
     scene.playback.budget_ms = 0.6;
     app::Demo demo = app::openScene(std::move(scene), 1);
     demo.governor.counted = true;
-    for (int f = 0; f < 150; ++f) app::advanceFrame(demo, 1.0 / 60, {});
-    EXPECT_LE(1e3 * demo.governor.measured_cost, 1.1 * 0.6);
+    constexpr int kFrames = 150, kSettled = 90;
+    double cost = 0;  // the mean, as above
+    for (int f = 0; f < kFrames; ++f) {
+      app::advanceFrame(demo, 1.0 / 60, {});
+      if (f >= kSettled) cost += demo.governor.measured_cost / (kFrames - kSettled);
+    }
+    EXPECT_LE(1e3 * cost, 1.1 * 0.6);
     return demo.governor.rung;
   };
   EXPECT_GT(rungOf(1), rungOf(5));

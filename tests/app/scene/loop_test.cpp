@@ -273,7 +273,7 @@ TEST(BadInput, ClipsOfAFrameOrTwoAndWithAFarEndKeepTheHairUpright) {
 }
 
 TEST(FarAway, TheHairIsTheSameWithinRounding) {
-  constexpr int kEarly = 30;  // frames
+  constexpr int kEarly = 20;  // frames
   // Captured 100 m away, stood 100 m away, and at home.
   app::CharacterSpec spec = characterOf(writeClip("near.bvh", stridingBvh()));
   Demo near = open(spec);
