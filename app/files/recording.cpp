@@ -28,7 +28,7 @@ struct AskName {
   std::string_view name;
 };
 // What can be recorded: all but the requests that write files.
-constexpr std::array<AskName, 46> kAskNames{{{Ask::kSetParam, "set"},
+constexpr std::array<AskName, 47> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kPause, "pause"},
                                              {Ask::kPauseMotion, "pause-motion"},
                                              {Ask::kSingleStep, "single-step"},
@@ -73,7 +73,8 @@ constexpr std::array<AskName, 46> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kBake, "bake"},
                                              {Ask::kClearBake, "clear-bake"},
                                              {Ask::kMap, "map"},
-                                             {Ask::kTie, "tie"}}};
+                                             {Ask::kTie, "tie"},
+                                             {Ask::kVary, "vary"}}};
 
 std::string_view nameOf(Ask what) {
   for (const AskName& row : kAskNames) {

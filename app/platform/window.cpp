@@ -29,7 +29,9 @@
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
 #include "app/scene/level_of_detail.h"
+#include "app/scene/look_params.h"
 #include "app/scene/project.h"
+#include "app/scene/vary.h"
 #include "app/ui/redraw_throttle.h"
 #include "app/ui/input_queue.h"
 #include "app/ui/ui.h"
@@ -86,6 +88,8 @@ struct Session {
   UiState& ui;
   InputQueue input = {};
   double mouse_x = 0, mouse_y = 0;
+  double light_x = 0, light_y = 0;  // where a drag of the key light began
+  render::Float3 light_from{};      // the way to it there
   bool other_scale = false;  // the window has come to a display of another density
 };
 
@@ -95,6 +99,18 @@ Session& session(GLFWwindow* window) {
 
 bool pressed(GLFWwindow* window, int button) {
   return glfwGetMouseButton(window, button) == GLFW_PRESS;
+}
+
+// A drag of the key light to (x, y). Several moves may come in one frame: each counts from where the drag began.
+void turnLight(double x, double y, double height, Session& s) {
+  SceneLook look = s.demo.scene.look;
+  if (!std::exchange(s.ui.light_held, true)) {
+    s.light_x = x, s.light_y = y;
+    s.light_from = look.light.to_light;
+  }
+  look.light.to_light = turnedLight(s.light_from, x - s.light_x, y - s.light_y, height);
+  const SceneField& row = *findSceneField("to_light");
+  s.demo.requests.push_back({Ask::kSetParam, row.name, lookText(look, row)});
 }
 
 void onMouseMove(GLFWwindow* window, double x, double y) {
@@ -107,6 +123,8 @@ void onMouseMove(GLFWwindow* window, double x, double y) {
   if (ImGui::GetIO().WantCaptureMouse || brushes) return;
   int width = 1, height = 1;
   glfwGetWindowSize(window, &width, &height);
+  const bool control = glfwGetKey(window, GLFW_KEY_LEFT_CONTROL) == GLFW_PRESS;
+  if (control && pressed(window, GLFW_MOUSE_BUTTON_LEFT)) return turnLight(x, y, std::max(1, height), s);
   const bool shift = glfwGetKey(window, GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS;
   if (pressed(window, GLFW_MOUSE_BUTTON_RIGHT) || pressed(window, GLFW_MOUSE_BUTTON_MIDDLE) ||
       (shift && pressed(window, GLFW_MOUSE_BUTTON_LEFT))) {

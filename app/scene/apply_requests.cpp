@@ -15,6 +15,7 @@
 #include "app/scene/groom_brush.h"
 #include "app/scene/present_scene.h"
 #include "app/scene/project.h"
+#include "app/scene/vary.h"
 #include "sim/field_text.h"
 
 namespace app {
@@ -284,6 +285,13 @@ void compare(const Request& request, Demo& demo) {
   showMessage("compared with " + (request.text.empty() ? "what it was" : stem(request.text)), demo);
 }
 
+void vary(const Request& request, Demo& demo) {
+  double amount = 0;
+  if (!sim::parseNumber(request.text, amount) || amount < 0 || amount > kLargestVariation)
+    throw InputError("", "variation", "'" + request.text.substr(0, 40) + "' is no amount", "choose 0 to 2");
+  varyMaterial(amount, static_cast<std::uint64_t>(std::clamp(request.value, 0.0, 1e15)), demo.scene.sim);
+}
+
 struct Action {
   Ask what;
   void (*apply)(const Request&, Demo&);
@@ -390,6 +398,7 @@ constexpr Action kActions[] = {
      }},
     {Ask::kMap, changeMap},
     {Ask::kTie, [](const Request& request, Demo& demo) { changeTies(request.text, demo); }},
+    {Ask::kVary, vary},
 };
 
 constexpr bool rowsMatchRequests() {

@@ -33,6 +33,7 @@ constexpr EditKind kEditKinds[] = {{Ask::kSetParam, kSettings, true, ""},
                                    {Ask::kBudget, kSettings, true, "Budget"},
                                    {Ask::kDeadline, kSettings, true, "Deadline"},
                                    {Ask::kSpeed, kSettings, true, "Speed"},
+                                   {Ask::kVary, kSettings, false, "Variation"},
                                    {Ask::kDebugView, kSettings, false, "Debug view"},
                                    {Ask::kView, kOfView, false, "View"},
                                    {Ask::kFollow, kOfView, false, "Follow figure"},
@@ -71,8 +72,9 @@ std::string titleOf(const Request& request, const EditKind& kind) {
   if (request.what == Ask::kBrush) return request.name;
   std::string title = kind.title;
   if (!request.name.empty() && request.what != Ask::kMotionFile) title.append(" ").append(request.name);
-  if (!request.text.empty()) title.append(" ").append(spaced(stem(request.text)).substr(0, 40));
-  const bool number = request.what == Ask::kBudget || request.what == Ask::kDeadline || request.what == Ask::kSpeed;
+  if (!request.text.empty() && request.what != Ask::kVary) title.append(" ").append(spaced(stem(request.text)).substr(0, 40));
+  const bool number = request.what == Ask::kBudget || request.what == Ask::kDeadline ||
+                      request.what == Ask::kSpeed || request.what == Ask::kVary;
   if (number) title.append(" ").append(sim::numberText(request.value));
   const bool toggle =
       request.what == Ask::kSkip || request.what == Ask::kDebugView || request.what == Ask::kFollow;

@@ -61,6 +61,7 @@ enum class Ask {
   kClearBake,    // what the timeline keeps is forgotten
   kMap,          // name: stiffness, length or density; text: the picture it is painted by, empty for none
   kTie,          // text: ties of the selected character, see tiesFromText
+  kVary,         // value: seed; text: how far, see varyMaterial
   kCount
 };
 

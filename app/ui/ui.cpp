@@ -103,9 +103,10 @@ void fileRow(Demo& demo, UiState& ui) {
 
 // When a widget is let go that has asked for something, its gesture is over.
 void endGesture(Demo& demo, UiState& ui) {
+  ui.light_held = ui.light_held && ImGui::GetIO().MouseDown[0];
   const auto edits = [](const Request& request) { return request.what != Ask::kEndGesture; };
   ui.dragging = ui.dragging || std::ranges::any_of(demo.requests, edits);
-  if (!ui.dragging || ImGui::IsAnyItemActive() || ui.brush.stroking || ui.line_held) return;
+  if (!ui.dragging || ImGui::IsAnyItemActive() || ui.brush.stroking || ui.line_held || ui.light_held) return;
   ui.dragging = false;
   postRequest(demo, {Ask::kEndGesture, "", ""});
 }

@@ -52,6 +52,13 @@ struct PresetMark {
   SceneLook scene;
 };
 
+// Variations of the material that are tried one after another.
+struct VaryState {
+  double amount = 0.3;   // decades
+  int seed = 0;          // of the last one
+  std::size_t kept = 0;  // steps of the history after the one that was kept
+};
+
 struct UiState {
   bool visible = true;
   bool unfolded = false;  // in a window too narrow for sidebar and figure: the tabs are shown all the same
@@ -74,6 +81,8 @@ struct UiState {
   std::string offered, to_forget;  // project that an earlier run has left; one that a person does not want
   long scrubbed = -1;              // frame that the timeline is dragged to
   BrushState brush;
+  VaryState vary;
+  bool light_held = false;         // the key light is turned by a drag
   bool line_held = false;          // the line of a comparison is dragged
   std::string kept_folder;          // where the list of recent files is kept; empty: nowhere
   std::vector<std::string> recent;  // files opened last

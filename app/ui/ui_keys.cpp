@@ -38,6 +38,7 @@ constexpr KeyHelp kKeyHelp[] = {
     {"Esc", "close what is open; pressed twice, leave"},
     {"left drag", "orbit"},
     {"right drag", "pan"},
+    {"Ctrl left drag", "turn the key light"},
     {"wheel", "zoom"},
     {"drop a file", "scene, preset, motion or hair mesh"},
 };

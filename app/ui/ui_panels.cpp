@@ -9,6 +9,7 @@
 
 #include "app/files/data_path.h"
 #include "app/ui/ui_widgets.h"
+#include "sim/field_text.h"
 
 namespace app {
 
@@ -252,6 +253,29 @@ void substepRow(Demo& demo, UiState& ui) {
   postRequest(demo, {Ask::kSetParam, "time_step", sim::paramText(*sim::findParam("time_step"), wanted)});
 }
 
+// One variation replaces the last, until one is kept or something else is changed.
+void varyRow(Demo& demo, UiState& ui) {
+  rowLabel("Vary by", "Draws all rows of Material at random about what they are: so many decades up or down");
+  const float button = 52 * ui.text_scale;
+  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - 2 * button - 10);
+  slider("##vary", 0.02, 1, "%.2f", false, ui.vary.amount);
+  noteItem("vary_amount", ui);
+  const EditHistory& edits = demo.edits;
+  const bool varied = edits.done > 0 && edits.steps[edits.done - 1].request.what == Ask::kVary;
+  const bool replaces = varied && edits.done != ui.vary.kept;
+  ImGui::SameLine(0, 5);
+  if (ImGui::Button(replaces ? "Other" : "Vary", {button, 0})) {
+    if (replaces) postRequest(demo, {Ask::kUndo, "", "", 1});
+    postRequest(demo, {Ask::kVary, "", sim::numberText(ui.vary.amount), static_cast<double>(++ui.vary.seed)});
+  }
+  noteItem("vary", ui);
+  ImGui::SameLine(0, 5);
+  ImGui::BeginDisabled(!replaces);
+  if (ImGui::Button("Keep", {button, 0})) ui.vary.kept = edits.done;
+  noteItem("keep_variation", ui);
+  ImGui::EndDisabled();
+}
+
 std::string metres(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.0f cm", 100 * value);
@@ -264,6 +288,7 @@ void simulationTab(Demo& demo, UiState& ui) {
   if (searchResults(demo, ui)) return;
   presetRow(demo, ui);
   compareRows(demo, ui);
+  varyRow(demo, ui);
   ImGui::Spacing();
   for (const char* group : {"Material", "Contact", "World", "Rest shape", "Time", "Numerics"}) {
     const bool open = std::string_view(group) == "Material" || std::string_view(group) == "Contact";

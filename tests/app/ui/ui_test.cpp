@@ -255,4 +255,22 @@ TEST_F(Panels, AFaultCanBeReadAndClosedInWindowsOfAnySize) {
   }
 }
 
+TEST_F(Panels, OneVariationReplacesTheLastUntilItIsKept) {
+  openTab(0);
+  const auto press = [&](const char* name) {
+    std::vector<app::Request> wanted = click(name);
+    std::erase_if(wanted, [](const app::Request& request) { return request.what == app::Ask::kEndGesture; });
+    demo_.requests = wanted;
+    app::advanceFrame(demo_, 0, {});
+    return wanted;
+  };
+  EXPECT_EQ(press("vary").size(), 1u);
+  const double first = demo_.scene.sim.bend;
+  EXPECT_EQ(press("vary").size(), 2u) << "the last one is undone";
+  EXPECT_NE(demo_.scene.sim.bend, first);
+  press("keep_variation");
+  EXPECT_EQ(press("vary").size(), 1u);
+  EXPECT_EQ(demo_.edits.done, 2u);
+}
+
 }  // namespace
