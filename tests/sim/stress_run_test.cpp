@@ -51,6 +51,22 @@ TEST_F(StressRun, AFailureExitsWithOneAndPrintsACommandThatFailsAgain) {
   EXPECT_TRUE(outcome.out.ends_with("\n0 passed, 1 failed\n")) << outcome.out;
 }
 
+// Long hair that nothing holds out hangs in the shoulders.
+TEST_F(StressRun, StrandsUnderTheDrawnSkinFailACapture) {
+#ifndef HAIRMESH_EMBREE
+  GTEST_SKIP() << "strands are looked at where Embree is installed";
+#endif
+  if (!std::filesystem::exists(std::filesystem::path(HAIRMESH_SOURCE_DIR) / ".." / "shared" / "mocap"))
+    GTEST_SKIP() << "no captures are here";
+  const std::vector<std::string> walk{"--case", "capture/cmu_02_01_walk/go-on/1x/long-low"};
+  EXPECT_EQ(runStress(walk).exit_code, 0);
+  std::vector<std::string> sunk = walk;
+  sunk.insert(sunk.end(), {"--set", "collide=0", "--set", "gravity=30"});
+  const test::Outcome outcome = runStress(sunk);
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.out;
+  EXPECT_NE(outcome.out.find("under the drawn skin"), std::string::npos) << outcome.out;
+}
+
 TEST_F(StressRun, WhatIsNotDeclaredOrNoParameterIsRefused) {
   const test::Outcome nothing = runStress({"--case", "state/nowhere"});
   EXPECT_EQ(nothing.exit_code, 4);

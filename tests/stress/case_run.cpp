@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kShortestStep = 1e-3, kLongestStep = 0.5;  // s, of random paces
 constexpr double kFaultEvery = 0.1;                         // s
+constexpr int kFramesALook = 6;                             // at the skin
 constexpr double kIntruderThere = 0.3;                      // s, when a body that appears has done so
 
 // m that a vertex lies inside the colliders in use; zero outside.
@@ -55,6 +56,7 @@ Run::Run(const StressCase& c, std::uint64_t seed, Stage& s)
   hair.state = s.settled;
   hair.state.memory = {};
   applyStart(c, hair.mesh, random, hair.state);
+  if (c.sees_skin) skin.emplace(s);
 }
 
 sim::Vec3 windOf(const Run& run) {
@@ -178,6 +180,11 @@ void frame(Run& run) {
     }
   }
   checkOutside(run);
+  // Not within the grace of a jump, as vertices are not.
+  if (!run.skin || run.frames++ % kFramesALook != 0 || run.around.time() < run.last_intrusion + run.one.grace) return;
+  run.skin->look(run.stage.actor, run.hair.state.positions, run.skin_seen);
+  run.outcome.skin_share = run.skin_seen.share();
+  run.outcome.skin_deepest = run.skin_seen.deepest;
 }
 
 }  // namespace stress

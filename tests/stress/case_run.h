@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "app/motion/fixed_clock.h"
 #include "sim/step.h"
 #include "tests/stress/run_case.h"
+#include "tests/stress/skin_look.h"
 #include "tests/stress/surroundings.h"
 
 namespace stress {
@@ -31,6 +33,9 @@ struct Run {
   sim::SimParams params;
   app::FixedClock clock;
   Outcome outcome;
+  std::optional<SkinLook> skin;  // of a case that looks at it
+  SkinSeen skin_seen;
+  int frames = 0;
   double last_intrusion = 0;  // s
   double next_fault = 0;      // s
   double raised = 0;          // J, most energy since a body appeared within the hair

@@ -31,7 +31,8 @@ constexpr std::array<FamilyTitle, 11> kTitles{{
     {"scrub", "scrubbing backwards, jumps in time with and without carrying the hair along"},
     {"fault", "values not finite or absurd written into random vertices ten times a second"},
     {"capture",
-     "two rounds of each capture, in place and going on, at 1 to 20 times, seams included; a step's work bounded"},
+     "two rounds of each capture, in place and going on, at 1 to 20 times, seams included; a step's work bounded, "
+     "strands looked at against the drawn skin"},
     {"mixed", "draws over all axes at once"},
 }};
 

@@ -173,6 +173,7 @@ void addCaptures(Cases& cases) {
           one.loop = loop;
           one.max_work = kMaxStepWork;
           one.by_forces = speed == 1;
+          one.sees_skin = true;
           one.grace = 0.1;  // after the jump of a figure that stays in place
           cases.push_back(one);
         }

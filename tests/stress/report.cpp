@@ -21,7 +21,7 @@ std::string said(const char* format, auto... values) {
   return text;
 }
 
-constexpr std::size_t kNumbers = 20;
+constexpr std::size_t kNumbers = 22;
 constexpr const char* kVerdicts[] = {"passed", "failed", "skipped"};
 
 // The numbers of an outcome in the table's order, after the case's name and its verdict.
@@ -45,7 +45,9 @@ std::array<double, kNumbers> numbersOf(const Outcome& o) {
           static_cast<double>(o.guided),
           o.iterations,
           o.unsolved,
-          o.dearest};
+          o.dearest,
+          o.skin_share,
+          o.skin_deepest};
 }
 
 Outcome outcomeOf(const std::array<double, kNumbers>& n) {
@@ -56,6 +58,7 @@ Outcome outcomeOf(const std::array<double, kNumbers>& n) {
   o.energy_step = n[9], o.memory_growth = n[10], o.slowdown = n[11], o.recoveries = static_cast<int>(n[12]);
   o.carried = static_cast<int>(n[13]), o.steps = static_cast<int>(n[14]), o.cpu_seconds = n[15];
   o.guided = static_cast<int>(n[16]), o.iterations = n[17], o.unsolved = n[18], o.dearest = n[19];
+  o.skin_share = n[20], o.skin_deepest = n[21];
   return o;
 }
 
@@ -71,7 +74,8 @@ std::string csvHead() {
   return "case,verdict,with_body,other_rest,back_after_s,failed_at_s,distance,deepest_m,inside,unconstrained,energy_"
          "rise,energy_"
          "step,"
-         "memory_growth_mib,slowdown,recoveries,carried,steps,cpu_s,combed,iterations,unsolved,dearest,fault\n";
+         "memory_growth_mib,slowdown,recoveries,carried,steps,cpu_s,combed,iterations,unsolved,dearest,"
+         "skin_share,skin_deepest_m,fault\n";
 }
 
 std::string csvRow(const Result& result) {

@@ -270,6 +270,11 @@ StressCase withRounds(StressCase one, Stage& stage) {
 void judgeMotion(Run& run) {
   if (run.one.max_work > 0 && run.outcome.dearest > run.one.max_work)
     run.fail(said("a step took %.0f units a vertex, more than %.0f", run.outcome.dearest, run.one.max_work));
+  if (run.one.by_forces && run.outcome.skin_share > kSkinShare)
+    run.fail(said("%.2f %% of the strands' points lie %.0f mm under the drawn skin", 100 * run.outcome.skin_share,
+                  1e3 * kUnder));
+  if (run.one.by_forces && run.outcome.skin_deepest > kSkinDeepest)
+    run.fail(said("a strand lies %.1f mm under the drawn skin", 1e3 * run.outcome.skin_deepest));
   if (run.one.by_forces && run.outcome.guided > 0) run.fail(said("%.0f columns were guided home", run.outcome.guided));
 }
 

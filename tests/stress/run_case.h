@@ -14,6 +14,8 @@ inline constexpr double kDeepest = 1e-4;          // m inside a collider that is
 inline constexpr double kEnergyTolerance = 0.01;  // of the energy that the motion left
 inline constexpr double kMemoryGrowth = 1;        // MiB, of an endurance run
 inline constexpr double kSlowdown = 1.5;          // of an endurance run's steps
+inline constexpr double kSkinShare = 1e-3;        // of strands' points that may lie 1 mm under the drawn skin
+inline constexpr double kSkinDeepest = 4e-3;      // m that the deepest may lie under it
 
 enum class Verdict { kPassed, kFailed, kSkipped };
 
@@ -40,6 +42,7 @@ struct Outcome {
   double dearest = 0;     // units a vertex, of the motion's dearest step
   double unsolved = 0;    // share of the steps whose solve ended at its most iterations
   double cpu_seconds = 0;
+  double skin_share = 0, skin_deepest = 0;  // of drawn strands' points more than 1 mm under the drawn skin; m
 };
 
 // A clip that is not there makes a skipped case. `seed` is the run's; `trace` prints a line a step.

@@ -88,6 +88,7 @@ struct StressCase {
   double rounds = 0;         // of the clip, in place of seconds where there are any: 4 to 60 s
   std::string loop;          // what the figure does at the clip's end, as --loop; empty: what suits the clip
   double max_work = 0;       // units a vertex (sim/step_work.h) that no step of the motion exceeds; 0: not judged
+  bool sees_skin = false;    // strands are looked at against the drawn skin; judged where by_forces is
   bool by_forces = false;    // no column is guided home during the motion
   double rest = 1;           // s with the body there
   double release = 5;        // s without, from when the reference hair rests; back within rest + release

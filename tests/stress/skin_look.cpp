@@ -1,0 +1,84 @@
+#include "tests/stress/skin_look.h"
+
+#ifdef HAIRMESH_EMBREE
+
+#include <algorithm>
+
+#include "app/scene/sim_to_render.h"
+#include "render/strands/strand_growth.h"
+#include "tests/skin/drawn_skin.h"
+
+namespace stress {
+namespace {
+
+constexpr int kStrands = 150;
+
+render::BodyInput bodyOf(const app::Actor& actor, std::span<const render::Mat4> joints) {
+  const app::SkinnedMesh& mesh = actor.body->character.mesh;
+  render::BodyInput body;
+  body.positions = {mesh.positions.data()->data(), 3 * mesh.positions.size()};
+  body.normals = {mesh.normals.data()->data(), 3 * mesh.normals.size()};
+  body.triangles = mesh.triangles;
+  body.joints = {mesh.joints.data()->data(), 4 * mesh.joints.size()};
+  body.weights = {mesh.weights.data()->data(), 4 * mesh.weights.size()};
+  body.joint_matrices = joints;
+  body.scalp_id = actor.scalp->id;
+  body.root_cover = actor.scalp->cover;
+  return body;
+}
+
+}  // namespace
+
+struct SkinLook::Impl {
+  render::StrandGrowth growth;
+  std::vector<render::Mat4> joints;
+  std::vector<render::SkinEllipsoid> ellipsoids;
+  std::vector<float> positions;
+  std::vector<render::CurvePoint> strand;
+};
+
+SkinLook::SkinLook(const Stage& stage) {
+  const app::Actor& actor = stage.actor;
+  const app::CharacterLook& look = actor.spec.look;
+  impl_.reset(new Impl{
+      {actor.haircut->faces, actor.haircut->rest, kStrands, look.segments_per_layer, look.hair}, {}, {}, {}, {}});
+  impl_->strand.resize(static_cast<std::size_t>(impl_->growth.maxPoints()));
+}
+
+SkinLook::~SkinLook() = default;
+
+void SkinLook::look(const app::Actor& actor, std::span<const sim::Vec3> hair, SkinSeen& seen) {
+  Impl& my = *impl_;
+  const app::Character& character = actor.body->character;
+  const sim::Vec3 origin = hair.front();
+  app::blendPositions(hair, hair, 0, origin, my.positions);
+  app::jointMatrices(character.skeleton, actor.pose, origin, my.joints);
+  app::skinEllipsoids(character, actor.pose, origin, my.ellipsoids);
+  if (!my.growth.setPositions(my.positions)) return;  // not finite, or of another hair
+  my.growth.setSkin(my.ellipsoids);
+  const skin::DrawnSkin skin(bodyOf(actor, my.joints));
+  for (int number = 0; number < my.growth.strandCount(); ++number) {
+    const int count = my.growth.growDrawn(my.growth.strand(number), my.strand);
+    for (int i = 0; i < count; ++i) {
+      const double depth = skin.depth(my.strand[i].position);
+      ++seen.points;
+      seen.under += depth > kUnder;
+      seen.deepest = std::max(seen.deepest, depth);
+    }
+  }
+}
+
+}  // namespace stress
+
+#else
+
+namespace stress {
+
+struct SkinLook::Impl {};
+SkinLook::SkinLook(const Stage&) {}
+SkinLook::~SkinLook() = default;
+void SkinLook::look(const app::Actor&, std::span<const sim::Vec3>, SkinSeen&) {}
+
+}  // namespace stress
+
+#endif
