@@ -153,8 +153,18 @@ int convertPolygons(const Arguments& arguments) {
   return app::kExitFine;
 }
 
-int run(const Arguments& arguments) {
+// What is written is a hair mesh, and what is read stays.
+void checkOutput(const Arguments& arguments) {
+  std::error_code ignored;
+  if (std::filesystem::path(arguments.out).extension() != ".obj")
+    throw app::InputError(arguments.out, "", "is no name for a hair mesh", "name it .obj");
+  if (std::filesystem::equivalent(arguments.in, arguments.out, ignored))
+    throw app::InputError(arguments.out, "", "is what is read as well", "choose another name");
   app::checkWritable(arguments.out);
+}
+
+int run(const Arguments& arguments) {
+  checkOutput(arguments);
   const std::string bytes = app::readText(arguments.in, app::kMaxGroomFile);
   if (app::groomFormat(bytes, arguments.in)) return convertCurves(bytes, arguments);
   if (!app::hasPolygonEnding(arguments.in))

@@ -78,6 +78,11 @@ std::string freeName(const std::string& prefix, const std::string& ending) {
   }
 }
 
+void PictureWriter::close(Demo& demo) {
+  demo.capture.screenshot = demo.capture.recording = false;
+  write(demo, {});
+}
+
 void PictureWriter::write(Demo& demo, const FrameTarget& target) {
   Capture& capture = demo.capture;
   try {

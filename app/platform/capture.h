@@ -16,6 +16,9 @@ class PictureWriter {
   // message and end the recording.
   void write(Demo& demo, const FrameTarget& target);
 
+  // Finishes a recording that goes on: the program ends.
+  void close(Demo& demo);
+
  private:
   std::unique_ptr<VideoWriter> film_;
   bool recording_ = false;

@@ -389,6 +389,7 @@ int runWindow(Scene scene, const Options& options) {
     if (options.frames_given && frame + 1 == options.frames) writeWhole(options.screenshot, target);
     glfwSwapBuffers(window.handle);
   }
+  pictures.close(demo);
   hair.close(demo);
   return endRun(options, run, frame, tape, demo);
 }

@@ -97,11 +97,21 @@ void catchUp(const Demo& demo, Demo& other) {
   other.frames = demo.frames;
 }
 
+// The same hair in the same place, but for its resolution.
+bool comparable(const Demo& a, const Demo& b) {
+  return std::ranges::equal(a.actors, b.actors, [](const Actor& one, const Actor& other) {
+    const CharacterSpec &x = one.spec, &y = other.spec;
+    return x.style == y.style && x.hair == y.hair && writeTies(x.ties) == writeTies(y.ties) &&
+           x.maps.length == y.maps.length && x.motion == y.motion && x.position == y.position && x.heading == y.heading;
+  });
+}
+
 // Of hair with as many vertices vertex by vertex, of a style at two resolutions at the first one's vertices.
 HairDifference measure(const Demo& demo, const Demo& other) {
+  if (!comparable(demo, other)) return {};
   double squares = 0, worst = 0;
   std::size_t count = 0;
-  for (std::size_t i = 0; i < std::min(demo.actors.size(), other.actors.size()); ++i) {
+  for (std::size_t i = 0; i < demo.actors.size(); ++i) {
     const Actor &a = demo.actors[i], &b = other.actors[i];
     const sim::HairMesh &mesh = a.haircut->mesh, &from = b.haircut->mesh;
     std::vector<Vec3> moved = b.hair.positions;
@@ -117,7 +127,7 @@ HairDifference measure(const Demo& demo, const Demo& other) {
     }
     count += moved.size();
   }
-  return {std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, count))), std::sqrt(worst)};
+  return {true, std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, count))), std::sqrt(worst)};
 }
 
 constexpr std::array kOfBoth{Ask::kPause,     Ask::kPauseMotion, Ask::kSingleStep, Ask::kReset,
@@ -175,9 +185,11 @@ std::string comparisonText(const Demo& demo) {
   const Comparison& comparison = demo.comparison;
   if (!comparison.on()) return "";
   const double frames = static_cast<double>(std::max(1L, comparison.frames));
-  char text[200];
-  std::snprintf(text, sizeof text, "hair apart by %.3g mm RMS, %.3g mm at most; %.3g ms a frame against %.3g ms",
-                1e3 * comparison.rms_sum / frames, 1e3 * comparison.worst, 1e3 * comparison.seconds[0] / frames,
+  char apart[100] = "other hair", text[200];
+  if (comparison.now.known)
+    std::snprintf(apart, sizeof apart, "hair apart by %.3g mm RMS, %.3g mm at most", 1e3 * comparison.rms_sum / frames,
+                  1e3 * comparison.worst);
+  std::snprintf(text, sizeof text, "%s; %.3g ms a frame against %.3g ms", apart, 1e3 * comparison.seconds[0] / frames,
                 1e3 * comparison.seconds[1] / frames);
   return text;
 }

@@ -13,8 +13,9 @@ namespace app {
 
 struct Demo;
 
-// Of the same vertices of both, m.
+// Of the same vertices of both, m. Hair of another cut, on another figure or in another place has none.
 struct HairDifference {
+  bool known = false;
   double rms = 0, worst = 0;
 };
 
@@ -24,7 +25,7 @@ struct Comparison {
   bool side_by_side = false;
   double line = 0.5;                // share of the picture's width that is the first demo's
   HairDifference now;               // of this frame
-  double rms_sum = 0, worst = 0;    // over the frames so far, m
+  double rms_sum = 0, worst = 0;    // over the frames so far in which it is known, m
   double seconds[2] = {0, 0};       // of simulation so far: the first one's, the other's
   long frames = 0;
   bool on() const { return !other.empty(); }
@@ -41,7 +42,7 @@ std::vector<Request> sharedRequests(const std::vector<Request>& requests);
 // Advances the other one by what the first one has been advanced by, and measures.
 void advanceCompared(double seconds, std::vector<Request> requests, Demo& demo);
 
-// "hair apart by 3.1 mm RMS, 14 mm at most; 0.41 ms a frame against 0.38 ms"; empty without a comparison.
+// "hair apart by 3.1 mm RMS, 14 mm at most; 0.41 ms a frame against 0.38 ms", or "other hair; ..."; empty without a comparison.
 std::string comparisonText(const Demo& demo);
 
 }  // namespace app

@@ -61,6 +61,10 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
       haircut->stiffness = paintedStiffness(readFieldMap(spec.maps.stiffness), scalp, haircut->mesh.shape);
     applyStiffness(haircut->stiffness, haircut->mesh);
   } catch (const sim::MeshError& error) {
+    if (!spec.maps.length.empty())
+      throw InputError("map " + spec.maps.length, "length", "cuts hair so that its layers cross", "paint it lighter or more evenly");
+    if (!spec.ties.empty())
+      throw InputError("", "tie " + writeTies(spec.ties).dump(), "leaves the hair no room", "move it off the head, or make it wider");
     throw InputError(spec.hair.empty() ? "style " + title + " on " + spec.motion : spec.hair, error.place, error.fault,
                      error.mend);
   }

@@ -12,7 +12,8 @@ using sim::Vec3;
 namespace {
 
 constexpr double kFatness = 0.05, kGap = 0.0025;  // see untangle; m
-constexpr double kFatEnough = 0.01;               // with less, lengths are softened more
+constexpr double kFatEnough = 0.002;              // with less, lengths are softened more
+constexpr int kMostRounds = 16;                   // of untangling; evenly short hair takes the most
 // Least length of a column over that of any of its root face.
 constexpr std::array kSteepest{0.5, 0.65, 0.8, 0.9, 1.0};
 
@@ -35,9 +36,10 @@ void shorten(std::span<Vec3> x, double share) {
   }
 }
 
-// Raises shares until none is less than `step` times one of the same root face.
-void soften(const sim::HairMeshShape& shape, double step, std::vector<double>& shares) {
-  for (bool raised = true; raised;) {
+// Raises shares until none is less than `step` times one of the same root face; whether any was.
+bool soften(const sim::HairMeshShape& shape, double step, std::vector<double>& shares) {
+  bool any = false;
+  for (bool raised = true; raised; any |= raised) {
     raised = false;
     for (const sim::RootFace& face : shape.root_faces) {
       double most = 0;
@@ -49,6 +51,7 @@ void soften(const sim::HairMeshShape& shape, double step, std::vector<double>& s
       }
     }
   }
+  return any;
 }
 
 }  // namespace
@@ -60,13 +63,15 @@ void paintLength(const FieldMap& map, const Scalp& scalp, const BodyDistance& bo
   if (*std::ranges::min_element(shares) >= 1) return;
   const sim::HairMeshShape whole = shape;
   for (const double step : kSteepest) {
-    soften(whole, step, shares);
+    if (!soften(whole, step, shares) && step > kSteepest.front()) continue;
     shape.positions = whole.positions;
     for (std::size_t c = 0; c < shares.size(); ++c)
       shorten(std::span(shape.positions).subspan(static_cast<std::size_t>(shape.column_first[c]),
                                                  static_cast<std::size_t>(shape.columnLength(static_cast<int>(c)))),
               shares[c]);
-    if (untangle(body, kFatness, kGap, shape) > kFatEnough) return;
+    for (int round = 0; round < kMostRounds; ++round) {
+      if (untangle(body, kFatness, kGap, shape) > kFatEnough) return;
+    }
   }
 }
 

@@ -35,7 +35,10 @@ void differenceLines(const Demo& demo) {
   const double frames = static_cast<double>(std::max(1L, comparison.frames));
   char text[96];
   rowLabel("Apart", "Of the same vertices now, root mean square and worst");
-  std::snprintf(text, sizeof text, "%.1f mm, at most %.1f mm", 1e3 * comparison.now.rms, 1e3 * comparison.now.worst);
+  if (comparison.now.known)
+    std::snprintf(text, sizeof text, "%.1f mm, at most %.1f mm", 1e3 * comparison.now.rms, 1e3 * comparison.now.worst);
+  else
+    std::snprintf(text, sizeof text, "other hair");
   ImGui::TextDisabled("%s", text);
   rowLabel("Cost", "Milliseconds of simulation a frame, in the mean: left, right");
   std::snprintf(text, sizeof text, "%.2f and %.2f ms", 1e3 * comparison.seconds[0] / frames,

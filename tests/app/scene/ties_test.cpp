@@ -5,9 +5,11 @@
 
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
+#include "app/files/image_io.h"
 #include "app/files/recording.h"
 #include "app/files/scene_file.h"
 #include "app/scene/demo.h"
+#include "tests/run_program.h"
 
 namespace {
 
@@ -85,6 +87,37 @@ TEST(Ties, AreTiedAndTakenOffAndTiedAgain) {
   demo.requests = {{Ask::kTie, "", R"({"at": "back", "above": 0.5})"}};
   app::advanceFrame(demo, 0, {});
   EXPECT_NE(demo.message.find("takes no hair"), std::string::npos) << demo.message;
+}
+
+TEST(PaintedLength, EveryResolutionTakesShortHairAndHardEdges) {
+  const std::string folder = test::freshFolder("painted_length");
+  const auto map = [&](const char* name, std::vector<unsigned char> greys) {
+    std::vector<unsigned char> rgba;
+    for (const unsigned char grey : greys) rgba.insert(rgba.end(), {grey, grey, grey, 255});
+    const std::string file = folder + "/" + name + ".png";
+    app::writePng(file, static_cast<int>(greys.size()), 1, rgba);
+    return file;
+  };
+  const std::string half = map("half", {128}), black = map("black", {0}), edge = map("edge", {255, 255, 0, 0});
+  for (const app::Style style : {app::Style::kShort, app::Style::kShoulder, app::Style::kLong}) {
+    for (const app::Resolution resolution : {app::Resolution::kLow, app::Resolution::kMedium, app::Resolution::kHigh}) {
+      for (const std::string& file : {half, black, edge}) {
+        app::Scene scene = tiedScene("none", "idle_turns.bvh", resolution, style);
+        scene.playback.settle = 0;
+        scene.characters[0].maps.length = file;
+        EXPECT_NO_THROW(app::openScene(std::move(scene), 1.5)) << app::styleName(style) << " " << file;
+      }
+    }
+  }
+}
+
+TEST(Ties, ATieInsideTheHeadIsTold) {
+  try {
+    app::openScene(tiedScene(R"([{"at": [0, 0, 0]}])", "idle_turns.bvh", app::Resolution::kLow), 1.5);
+    ADD_FAILURE() << "accepted";
+  } catch (const app::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("tie "), std::string::npos) << error.what();
+  }
 }
 
 TEST(Ties, ASceneKeepsThem) {
