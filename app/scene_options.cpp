@@ -132,7 +132,7 @@ void overrideCharacter(const Options& options, CharacterSpec& spec) {
   for (const std::string& text : options.maps) {
     const std::size_t equals = std::min(text.find('='), text.size());
     const std::string file = findFile(text.substr(std::min(text.size(), equals + 1)), "", "maps");
-    const std::string fault = equals == text.size() ? "write FIELD=FILE.png" : setMap(text.substr(0, equals), file, spec.maps);
+    const std::string fault = equals + 1 >= text.size() ? "write FIELD=FILE.png" : setMap(text.substr(0, equals), file, spec.maps);
     if (!fault.empty()) throw UsageError("--map cannot be '" + text + "'; " + fault);
   }
   if (!options.tie.empty()) spec.ties = tiesFromText(options.tie);

@@ -54,7 +54,8 @@ bool hasGroomEnding(const std::string& file) {
 Groom readGroom(std::string_view bytes, const std::string& file, GroomHints* hints) {
   const std::optional<GroomFormat> format = groomFormat(bytes, file);
   if (!format) {
-    throw InputError(file, "", "is no kind of groom that is read", "give strands as .hair, .abc, .usda, .tfx or .ply");
+    throw InputError(file, "", "is no kind of groom that is read",
+                     "give strands as .hair, .abc, .usda, .tfx or .ply; strips, cards and tubes are read by hairmesh-convert");
   }
   switch (*format) {
     case GroomFormat::kHair:

@@ -236,7 +236,9 @@ std::string HairExport::finish() {
     text += " of " + std::to_string(groom.strandCount()) + " strands with " + std::to_string(groom.points.size()) +
             " points" + impl_->note;
   }
-  return text + " exported to " + impl_->spec.file + "\n";
+  const std::string& file = impl_->spec.file;
+  const bool numbered = impl_->writer && impl_->frames > 1 && !takesClip(file);
+  return text + " exported to " + (numbered ? numberedName(file, impl_->spec.first) + " and on" : file) + "\n";
 }
 
 void simulateAll(SkipSet& skips) {
