@@ -24,8 +24,8 @@ struct NearCollider {
   int chords = 1;
   std::array<Eigen::Matrix3d, kMaxChords + 1> local_turn;
   Vec3 outer, inner;  // 1/m, inverse radii: of the ellipsoid grown to the contact offset, and less what may be grazed
-  double margin =
-      INFINITY;  // m: a vertex that moves by s meets it only from within margin + s of its centre at the end
+  // m. A vertex that moves by s within the step meets it only from within margin + s of its centre at the end.
+  double margin = INFINITY;
 
   NearCollider(int index, const Ellipsoid& body, double thickness, double offset, double dt);
 

@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include "app/files/data_path.h"
 #include "app/files/image_io.h"
 #include "app/files/recording.h"
 #include "app/scene/demo.h"
+#include "tests/app/scene/small_scene.h"
 #include "tests/run_program.h"
 
 namespace {
@@ -14,14 +14,7 @@ namespace {
 using app::Ask;
 
 app::Demo shaken() {
-  app::Scene scene;
-  app::CharacterSpec spec;
-  spec.motion = app::dataPath("assets/clips/head_shake.bvh");
-  spec.style = app::Style::kShort;
-  spec.resolution = app::Resolution::kLow;
-  scene.characters = {spec};
-  scene.playback.settle = 0.2;
-  return app::openScene(std::move(scene), 1.5);
+  return app::openScene(test::smallScene("head_shake.bvh", 0.2), 1.5);
 }
 
 void play(int frames, app::Demo& demo) {

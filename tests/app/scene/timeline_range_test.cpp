@@ -1,23 +1,16 @@
 // In and out points, baking and clearing of the timeline.
 #include <gtest/gtest.h>
 
-#include "app/files/data_path.h"
 #include "app/files/recording.h"
 #include "app/scene/demo.h"
+#include "tests/app/scene/small_scene.h"
 
 namespace {
 
 using app::Ask;
 
 app::Demo moving() {
-  app::Scene scene;
-  app::CharacterSpec spec;
-  spec.motion = app::dataPath("assets/clips/head_shake.bvh");
-  spec.style = app::Style::kShort;
-  spec.resolution = app::Resolution::kLow;
-  scene.characters = {spec};
-  scene.playback.settle = 0;
-  app::Demo demo = app::openScene(std::move(scene), 1.5);
+  app::Demo demo = app::openScene(test::smallScene("head_shake.bvh"), 1.5);
   demo.timeline.on = true;
   return demo;
 }

@@ -5,8 +5,9 @@
 
 #include <cmath>
 
-#include "app/files/data_path.h"
 #include "app/scene/demo.h"
+#include "app/scene/light_drag.h"
+#include "tests/app/scene/small_scene.h"
 
 namespace {
 
@@ -40,14 +41,7 @@ TEST(Vary, TheSameSeedGivesTheSameBitsAndNoAmountNoChange) {
 }
 
 TEST(Vary, IsOneStepOfTheHistory) {
-  app::Scene scene;
-  app::CharacterSpec spec;
-  spec.motion = app::dataPath("assets/clips/idle_turns.bvh");
-  spec.style = app::Style::kShort;
-  spec.resolution = app::Resolution::kLow;
-  scene.characters = {spec};
-  scene.playback.settle = 0;
-  app::Demo demo = app::openScene(std::move(scene), 1.5);
+  app::Demo demo = app::openScene(test::smallScene("idle_turns.bvh"), 1.5);
   const std::string before = app::editHash(demo);
   demo.requests = {{app::Ask::kVary, "", "0.4", 3}};
   app::advanceFrame(demo, 0, {});
