@@ -216,9 +216,10 @@ TakenStep takenStep(const SimParams& params, const StepBase& base, double dt, co
 }
 
 // Bundles that met are pushed apart and the rest of the hair follows; what then lies in a foreign bundle is pushed
-// again.
+// again. Hair that is guided as a whole passes through itself: its bundles would hold it.
 void partBundles(const CorrectedStep& step, std::optional<SelfContact>& made, Parts& parts, HairState& state,
                  StepReport& report) {
+  if (report.guided == step.mesh.columnCount()) return;
   if (!made) made.emplace(step.mesh);
   SelfContact& self = *made;
   report.self_contacts = resolveSelfContacts({step.mesh, step.params, step.start, step.dt}, self, state);

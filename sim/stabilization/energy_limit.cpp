@@ -68,15 +68,9 @@ bool neverLinear(const TakenStep& step) {
 // Where the roots carry every vertex that does not move against them.
 void carry(const TakenStep& step, const HairState& state, EnergyLimit& scratch) {
   const HairMesh& mesh = step.mesh;
-  scratch.roots_before.clear(), scratch.roots_after.clear();
-  for (int c = 0; c < mesh.columnCount(); ++c) {
-    const int root = mesh.shape.column_first[c];
-    scratch.roots_before.push_back(step.positions[root]);
-    scratch.roots_after.push_back(state.positions[root]);
-  }
-  const Eigen::Isometry3d motion = rigidMotion(scratch.roots_before, scratch.roots_after);
-  for (std::size_t i = 0; i < state.positions.size(); ++i) scratch.carried[i] = motion * step.positions[i];
-  for (int c = 0; c < mesh.columnCount(); ++c) scratch.carried[mesh.shape.column_first[c]] = scratch.roots_after[c];
+  const Eigen::Isometry3d motion = rootMotion(mesh, step.positions, state.positions);
+  for (int i = 0; i < mesh.vertexCount(); ++i)
+    scratch.carried[i] = mesh.isRoot(i) ? state.positions[i] : Vec3(motion * step.positions[i]);
   for (const PinnedVertex& pin : step.pins) {
     if (pin.firm()) scratch.carried[pin.vertex] = pin.target;
   }
@@ -227,7 +221,6 @@ bool bodiesStandStill(const TakenStep& step, const Colliders& colliders, const E
 EnergyLimit::EnergyLimit(const HairMesh& mesh) {
   const int n = mesh.vertexCount();
   carried.resize(n), plain.resize(n);
-  roots_before.reserve(mesh.columnCount()), roots_after.reserve(mesh.columnCount());
 }
 
 double limitEnergy(const TakenStep& step, bool solved, EnergyLimit& scratch, HairState& state) {

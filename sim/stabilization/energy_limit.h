@@ -39,7 +39,7 @@ struct TakenStep {
 };
 
 struct EnergyLimit {
-  std::vector<Vec3> carried, roots_before, roots_after;
+  std::vector<Vec3> carried;
   std::vector<V3<double>> plain;
   std::optional<double> carried_energy;  // J, potential, of the hair as the roots carry it in this step
   int energies = 0;                      // potential energies computed in this step

@@ -41,15 +41,15 @@ bool begin(RecoveryMemory::Column& column) {
   return true;
 }
 
-void look(const HairMesh& mesh, double seconds, RecoveryScratch& scratch, HairState& state) {
+void look(const HairMesh& mesh, double seconds, std::vector<char>& touched, HairState& state) {
   RecoveryMemory& recovery = state.memory.recovery;
   for (RecoveryMemory::Column& column : recovery.columns) {
     column.wait = std::max(0.0, column.wait - seconds);
     column.upright += seconds;
     if (column.upright > kForgiven) column.backoff = 0;
   }
-  std::fill(scratch.touched.begin(), scratch.touched.end(), char{0});
-  for (const Contact& contact : state.contacts) scratch.touched[contact.vertex] = 1;
+  touched.assign(mesh.vertexCount(), 0);
+  for (const Contact& contact : state.contacts) touched[contact.vertex] = 1;
   const auto rests = [&](int v) {
     const Vec3& root = state.velocities[mesh.shape.column_first[mesh.column_of[v]]];
     return (state.velocities[v] - root).squaredNorm() < kStill * kStill;
@@ -61,7 +61,7 @@ void look(const HairMesh& mesh, double seconds, RecoveryScratch& scratch, HairSt
     if (!inverted) return;
     for (const int v : vertices) recovery.columns[mesh.column_of[v]].upright = 0;
     if (lasted < kInvertedFor) return;
-    if (std::any_of(vertices.begin(), vertices.end(), [&](int v) { return scratch.touched[v] != 0; })) return;
+    if (std::any_of(vertices.begin(), vertices.end(), [&](int v) { return touched[v] != 0; })) return;
     for (const int v : vertices) {
       RecoveryMemory::Column& column = recovery.columns[mesh.column_of[v]];
       if ((!again && column.backoff > 0) || !begin(column)) continue;
@@ -93,14 +93,8 @@ double left(double seconds) {
 
 }  // namespace
 
-RecoveryScratch::RecoveryScratch(const HairMesh& mesh) : touched(mesh.vertexCount()) {
-  for (int c = 0; c < mesh.columnCount(); ++c) rest_roots.push_back(mesh.shape.positions[mesh.shape.column_first[c]]);
-  roots_before = roots_now = rest_roots;
-}
-
-void guideTo(const HairMesh& mesh, const HairState& there, RecoveryScratch& scratch, RecoveryMemory& recovery) {
-  for (int c = 0; c < mesh.columnCount(); ++c) scratch.roots_now[c] = there.positions[mesh.shape.column_first[c]];
-  const Eigen::Isometry3d home = rigidMotion(scratch.rest_roots, scratch.roots_now).inverse();
+void guideTo(const HairMesh& mesh, const HairState& there, RecoveryMemory& recovery) {
+  const Eigen::Isometry3d home = rootMotion(mesh, there.positions, mesh.shape.positions);
   for (int c = 0; c < mesh.columnCount(); ++c) {
     RecoveryMemory::Column& column = recovery.columns[c];
     if (column.guided < 0) ++recovery.guided_columns;
@@ -110,23 +104,19 @@ void guideTo(const HairMesh& mesh, const HairState& there, RecoveryScratch& scra
   }
 }
 
-int recoverInversions(const RecoveredStep& step, RecoveryScratch& scratch, HairState& state) {
+int recoverInversions(const RecoveredStep& step, std::vector<char>& touched, HairState& state) {
   const HairMesh& mesh = step.mesh;
   RecoveryMemory& recovery = state.memory.recovery;
   recovery.since_look += step.dt;
   if (recovery.since_look >= kLookEvery) {
-    if (step.looks) look(mesh, recovery.since_look, scratch, state);
+    if (step.looks) look(mesh, recovery.since_look, touched, state);
     recovery.since_look = 0;
     recovery.guided_columns = static_cast<int>(
         std::count_if(recovery.columns.begin(), recovery.columns.end(), [](const auto& c) { return c.guided >= 0; }));
   }
   if (recovery.guided_columns == 0) return 0;
-  for (int c = 0; c < mesh.columnCount(); ++c) {
-    scratch.roots_before[c] = step.start[mesh.shape.column_first[c]];
-    scratch.roots_now[c] = state.positions[mesh.shape.column_first[c]];
-  }
-  const Eigen::Isometry3d before = rigidMotion(scratch.rest_roots, scratch.roots_before).inverse();
-  const Eigen::Isometry3d now = rigidMotion(scratch.rest_roots, scratch.roots_now);
+  const Eigen::Isometry3d before = rootMotion(mesh, step.start, mesh.shape.positions);
+  const Eigen::Isometry3d now = rootMotion(mesh, mesh.shape.positions, state.positions);
   for (int c = 0; c < mesh.columnCount(); ++c) {
     RecoveryMemory::Column& column = recovery.columns[c];
     if (column.guided < 0) continue;

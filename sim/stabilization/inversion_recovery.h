@@ -19,14 +19,6 @@ namespace sim {
 inline constexpr double kInvertedFor = 6;  // s
 inline constexpr double kRestWeight = 4;   // so 1.5 s at rest
 
-// Scratch, and what follows from the mesh.
-struct RecoveryScratch {
-  explicit RecoveryScratch(const HairMesh& mesh);
-
-  std::vector<Vec3> rest_roots, roots_before, roots_now;  // m, one per column
-  std::vector<char> touched;                              // by a body, per vertex
-};
-
 // The step that was taken: positions (m) at its start; `state` holds its end, and a memory that has its size.
 struct RecoveredStep {
   const HairMesh& mesh;
@@ -35,10 +27,11 @@ struct RecoveredStep {
   bool looks = true;  // for newly inverted columns, too
 };
 
-// Looks for inverted columns every 0.1 s, and moves those that are guided. Returns how many these are.
-int recoverInversions(const RecoveredStep& step, RecoveryScratch& scratch, HairState& state);
+// Looks for inverted columns every 0.1 s, and moves those that are guided. Returns how many these are. `touched`:
+// scratch.
+int recoverInversions(const RecoveredStep& step, std::vector<char>& touched, HairState& state);
 
 // Guides every column to where `there` has it, over the next steps.
-void guideTo(const HairMesh& mesh, const HairState& there, RecoveryScratch& scratch, RecoveryMemory& recovery);
+void guideTo(const HairMesh& mesh, const HairState& there, RecoveryMemory& recovery);
 
 }  // namespace sim

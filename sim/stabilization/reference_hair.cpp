@@ -41,10 +41,9 @@ double stirOf(double pull) {
   return std::sqrt(std::max(1.0, pull / kWeight));
 }
 
-void beginReference(const HairMesh& mesh, RecoveryScratch& scratch, HairState& state) {
+void beginReference(const HairMesh& mesh, HairState& state) {
   HairState& reference = state.memory.rest.reference.front();
-  for (int c = 0; c < mesh.columnCount(); ++c) scratch.roots_now[c] = state.positions[mesh.shape.column_first[c]];
-  const Eigen::Isometry3d head = rigidMotion(scratch.rest_roots, scratch.roots_now);
+  const Eigen::Isometry3d head = rootMotion(mesh, mesh.shape.positions, state.positions);
   for (int i = 0; i < mesh.vertexCount(); ++i) {
     reference.positions[i] = mesh.isRoot(i) ? state.positions[i] : Vec3(head * mesh.shape.positions[i]);
     reference.velocities[i].setZero();
@@ -55,7 +54,7 @@ void beginReference(const HairMesh& mesh, RecoveryScratch& scratch, HairState& s
 
 }  // namespace
 
-bool watchRest(const RestStep& step, RecoveryScratch& scratch, HairState& state) {
+bool watchRest(const RestStep& step, HairState& state) {
   RestMemory& rest = state.memory.rest;
   const double speed = fastest(state) / stirOf(step.pull);
   rest.wait = std::max(0.0, rest.wait - step.dt);
@@ -68,7 +67,7 @@ bool watchRest(const RestStep& step, RecoveryScratch& scratch, HairState& state)
   }
   rest.still += step.dt;
   if (rest.settling < 0) {
-    beginReference(step.mesh, scratch, state);
+    beginReference(step.mesh, state);
     // Nobody need find out where the rest shape would come to while the hair is in it and hardly moves.
     if (largestDistance(state, rest.reference.front()) < kAtHome * step.mesh.hair_length) {
       rest.settling = -1;
@@ -79,8 +78,7 @@ bool watchRest(const RestStep& step, RecoveryScratch& scratch, HairState& state)
   return true;
 }
 
-void judgeRest(const RestStep& step, const std::function<double(const HairState&)>& energy, RecoveryScratch& scratch,
-               HairState& state) {
+void judgeRest(const RestStep& step, const std::function<double(const HairState&)>& energy, HairState& state) {
   RestMemory& rest = state.memory.rest;
   const HairState& reference = rest.reference.front();
   const double stirring = fastest(reference);
@@ -98,7 +96,7 @@ void judgeRest(const RestStep& step, const std::function<double(const HairState&
     }
     return;
   }
-  guideTo(step.mesh, reference, scratch, state.memory.recovery);
+  guideTo(step.mesh, reference, state.memory.recovery);
   rest.kept_apart = false;
   rest.backoff = std::min(kMaxBackoff, std::max(kFirstBackoff, kBackoffGrowth * rest.backoff));
   rest.wait = rest.backoff;

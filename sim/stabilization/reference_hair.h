@@ -28,11 +28,10 @@ struct RestStep {
 };
 
 // Looks at the hair after a step. Returns whether its reference is to take one too. The memory has its size.
-bool watchRest(const RestStep& step, RecoveryScratch& scratch, HairState& state);
+bool watchRest(const RestStep& step, HairState& state);
 
 // After the reference's step: once both hang still, has the hair guided to where the reference is, if that is elsewhere
 // and lower by more than a small share of the scale. `energy`: mechanical, of a state (J).
-void judgeRest(const RestStep& step, const std::function<double(const HairState&)>& energy, RecoveryScratch& scratch,
-               HairState& state);
+void judgeRest(const RestStep& step, const std::function<double(const HairState&)>& energy, HairState& state);
 
 }  // namespace sim

@@ -54,7 +54,7 @@ StepInput teleport(const HairMesh& mesh, const StepInput& input, Stabilization& 
 
 }  // namespace
 
-Stabilization::Stabilization(const HairMesh& mesh) : recovery(mesh), energy_limit(mesh) {
+Stabilization::Stabilization(const HairMesh& mesh) : energy_limit(mesh), touched(mesh.vertexCount()) {
   limited_velocities.resize(mesh.vertexCount());
   plain_positions.reserve(mesh.vertexCount());
 }
@@ -78,7 +78,7 @@ void stabilize(const TakenStep& step, const StepInput& input, bool converged, St
   // Loose particles have no shape to be guided to.
   if (nets.inversion_recovery && step.params.volume > 0) {
     const bool looks = windLoad(step.params) < kStorm;
-    report.guided = recoverInversions({step.mesh, step.positions, step.dt, looks}, scratch.recovery, state);
+    report.guided = recoverInversions({step.mesh, step.positions, step.dt, looks}, scratch.touched, state);
   }
   if (nets.result_repair)
     repairState(step.mesh, step.model, input.roots, {step.positions, step.velocities}, false, scratch, state, report);
@@ -105,11 +105,11 @@ void finishStep(const TakenStep& step, const std::function<void(const SimParams&
   const Vec3 pull = step.params.air_drag * step.wind - Vec3(0, step.params.gravity, 0);
   const double weight = 9.81 * step.params.density * mesh.total_volume;  // N
   const RestStep rest{mesh, step.dt, pull.norm(), weight * mesh.hair_length, step.params.self_collide};
-  if (!watchRest(rest, scratch.recovery, state)) return;
+  if (!watchRest(rest, state)) return;
   SimParams params = step.params;
   params.max_iterations = std::max(params.max_iterations, kMinReferenceIterations);
   advance_reference(params, state.memory.rest.reference.front());
-  judgeRest(rest, energy, scratch.recovery, state);
+  judgeRest(rest, energy, state);
 }
 
 }  // namespace sim

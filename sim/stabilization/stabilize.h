@@ -21,8 +21,8 @@ namespace sim {
 struct Stabilization {
   SafetyNets nets;    // asked for
   SafetyNets active;  // in this step
-  RecoveryScratch recovery;
   EnergyLimit energy_limit;
+  std::vector<char> touched;  // by a body, per vertex
   std::vector<Vec3> limited_velocities;
   std::vector<V3<double>> plain_positions;
   std::vector<Vec3> root_positions;

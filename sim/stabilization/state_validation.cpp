@@ -86,13 +86,15 @@ StateFault examine(const HairMesh& mesh, const HairState& state, int vertex) {
   return speed.squaredNorm() > kFastest * kFastest ? StateFault::kTooFast : StateFault::kNone;
 }
 
-Eigen::Isometry3d rigidMotion(std::span<const Vec3> from, std::span<const Vec3> to) {
+namespace {
+
+// rigidMotion of so many points.
+Eigen::Isometry3d motionOf(int count, const auto& from, const auto& to) {
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
   Vec3 from_center = Vec3::Zero(), to_center = Vec3::Zero();
-  const double n = static_cast<double>(from.size());
-  for (std::size_t i = 0; i < from.size(); ++i) from_center += from[i] / n, to_center += to[i] / n;
+  for (int i = 0; i < count; ++i) from_center += from(i) / count, to_center += to(i) / count;
   Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
-  for (std::size_t i = 0; i < from.size(); ++i) moment += (to[i] - to_center) * (from[i] - from_center).transpose();
+  for (int i = 0; i < count; ++i) moment += (to(i) - to_center) * (from(i) - from_center).transpose();
   if (!moment.allFinite()) return motion;
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(moment, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Matrix3d turn = svd.matrixU() * svd.matrixV().transpose();
@@ -100,6 +102,21 @@ Eigen::Isometry3d rigidMotion(std::span<const Vec3> from, std::span<const Vec3> 
   motion.linear() = turn;
   motion.translation() = to_center - turn * from_center;
   return motion;
+}
+
+}  // namespace
+
+Eigen::Isometry3d rigidMotion(std::span<const Vec3> from, std::span<const Vec3> to) {
+  const auto at = [](std::span<const Vec3> points) { return [points](int i) { return points[i]; }; };
+  return motionOf(static_cast<int>(from.size()), at(from), at(to));
+}
+
+Eigen::Isometry3d rootMotion(const HairMesh& mesh, std::span<const Vec3> from, std::span<const Vec3> to) {
+  const std::vector<int>& first = mesh.shape.column_first;
+  if (std::all_of(first.begin(), first.end() - 1, [&](int root) { return from[root] == to[root]; }))
+    return Eigen::Isometry3d::Identity();
+  const auto at = [&](std::span<const Vec3> x) { return [&first, x](int c) { return x[first[c]]; }; };
+  return motionOf(mesh.columnCount(), at(from), at(to));
 }
 
 // The scalp has them all about as far from where they are going: a root that is not is brought to where the others say.
@@ -144,13 +161,7 @@ void repair(const HairMesh& mesh, std::span<const Vec3> roots, const KeptState& 
 
   const bool known = good.positions.size() == state.positions.size();
   const std::span<const Vec3> kept = known ? good.positions : mesh.shape.positions;
-  std::vector<Vec3> then, now;
-  for (int c = 0; c < mesh.columnCount(); ++c) {
-    then.push_back(kept[mesh.shape.column_first[c]]);
-    now.push_back(state.positions[mesh.shape.column_first[c]]);
-  }
-  // Where the roots have not moved the state is put back to the bit.
-  const Eigen::Isometry3d motion = then == now ? Eigen::Isometry3d::Identity() : rigidMotion(then, now);
+  const Eigen::Isometry3d motion = rootMotion(mesh, kept, state.positions);
   for (const int i : faulty) {
     const int root = rootOf(mesh, i);
     state.positions[i] = motion * kept[i];

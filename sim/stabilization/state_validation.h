@@ -37,6 +37,9 @@ StateFault examine(const HairMesh& mesh, const HairState& state, int vertex);
 // where a point is not finite. As many of one as of the other.
 Eigen::Isometry3d rigidMotion(std::span<const Vec3> from, std::span<const Vec3> to);
 
+// The same of the roots alone, between two places of a whole hair (m); to the bit the identity where they are the same.
+Eigen::Isometry3d rootMotion(const HairMesh& mesh, std::span<const Vec3> from, std::span<const Vec3> to);
+
 // What a repair puts back: one value per vertex, or none.
 struct KeptState {
   std::span<const Vec3> positions, velocities;  // m, m/s

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/forces/model.h"
+#include "sim/stabilization/inversion_recovery.h"
 #include "tests/test_meshes.h"
 
 namespace {
@@ -293,6 +294,29 @@ TEST(SelfContact, NothingNearNothingPaidAndTheAnswerKnowsNothingOfTheList) {
     ends[fresh] = hair.state;
   }
   EXPECT_EQ(test::largestDistance(ends[0].positions, ends[1].positions), 0);
+}
+
+// The rest check leads hair back that has come to rest on the wrong side of itself.
+TEST(SelfContact, HairThatIsGuidedHomePassesThroughItself) {
+  Hair hair(twoCurtains(0.06), quickHair());
+  hair.params.collide = false;
+  const sim::HairState home = hair.state;
+  const int half = hair.mesh.vertexCount() / 2;
+  for (int v = 0; v < half; ++v) {
+    if (!hair.mesh.isRoot(v)) hair.state.positions[v].x() += 0.12;
+  }
+  hair.step(1e-4);
+  sim::guideTo(hair.mesh, home, hair.state.memory.recovery);
+  int guided = 0, met = 0;
+  for (int n = 0; n < 60; ++n) {
+    const sim::StepReport report = hair.step(kFrame);
+    guided += report.guided > 0;
+    met += report.guided > 0 && report.self_contacts > 0;
+  }
+  EXPECT_GT(guided, 10);
+  EXPECT_EQ(met, 0) << "bundles held it";
+  const double off = test::largestDistance(hair.state.positions, home.positions);
+  EXPECT_LT(off, 0.01) << "of curtains 6 cm apart";
 }
 
 TEST(SelfContact, WhatOverlapsAtRestStaysAsItIs) {

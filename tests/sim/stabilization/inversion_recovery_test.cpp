@@ -34,7 +34,7 @@ bool concerned(const sim::HairMesh& mesh, int column, int other) {
 struct Frozen {
   sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(test::mixedPatch(5, 0.25)));
   sim::HairState state = sim::restState(mesh, Eigen::Isometry3d::Identity());
-  sim::RecoveryScratch scratch{mesh};
+  std::vector<char> touched;
 
   Frozen() { sim::sizeMemory(mesh, state.memory); }
 
@@ -43,7 +43,7 @@ struct Frozen {
     int most = 0;
     for (double t = 0; t < seconds; t += dt) {
       const std::vector<Vec3> start = state.positions;
-      most = std::max(most, sim::recoverInversions({mesh, start, dt}, scratch, state));
+      most = std::max(most, sim::recoverInversions({mesh, start, dt}, touched, state));
     }
     return most;
   }
@@ -94,7 +94,7 @@ TEST(InversionRecovery, TheTargetTurnsWithTheHead) {
     const std::vector<Vec3> start = hair.state.positions;
     for (Vec3& x : hair.state.positions) x = motion * x;
     head = motion * head;
-    sim::recoverInversions({hair.mesh, start, kFrame}, hair.scratch, hair.state);
+    sim::recoverInversions({hair.mesh, start, kFrame}, hair.touched, hair.state);
   }
   double worst = 0;
   for (int i = 0; i < hair.mesh.vertexCount(); ++i)
@@ -113,7 +113,7 @@ TEST(InversionRecovery, TheWayHomeIsTheSameUnderAMovingHead) {
     const std::vector<Vec3> start = moving.state.positions;
     for (Vec3& x : moving.state.positions) x = motion * x;
     head = motion * head;
-    guided = std::max(guided, sim::recoverInversions({moving.mesh, start, kFrame}, moving.scratch, moving.state));
+    guided = std::max(guided, sim::recoverInversions({moving.mesh, start, kFrame}, moving.touched, moving.state));
     still.pass(0.5 * kFrame);
     for (int i = 0; i < still.mesh.vertexCount(); ++i)
       ASSERT_LT((moving.state.positions[i] - head * still.state.positions[i]).norm(), 1e-9) << i << " in step " << n;
@@ -140,7 +140,7 @@ TEST(InversionRecovery, WhatTurnsOverAgainIsLeftInPeaceLongerEachTime) {
   bool guided_columns = false;
   for (double t = 0; t < 60; t += kFrame) {
     const std::vector<Vec3> start = hair.state.positions;
-    const bool now = sim::recoverInversions({hair.mesh, start, kFrame}, hair.scratch, hair.state) > 0;
+    const bool now = sim::recoverInversions({hair.mesh, start, kFrame}, hair.touched, hair.state) > 0;
     if (now && !guided_columns) begun.push_back(t);
     if (!now) turnOver(5, hair.mesh, hair.state);
     guided_columns = now;

@@ -17,7 +17,7 @@ constexpr double kGravity = 9.81;  // m/s^2
 struct Resting {
   sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(test::mixedPatch(5, 0.25)));
   sim::HairState state = sim::restState(mesh, Eigen::Isometry3d::Identity());
-  sim::RecoveryScratch scratch{mesh};
+  std::vector<char> touched;
   bool self_contact = false;
 
   explicit Resting(double share) {
@@ -35,11 +35,11 @@ struct Resting {
     bool led = false;
     for (double t = 0; t < seconds; t += kFrame) {
       const std::vector<Vec3> start = state.positions;
-      led = sim::recoverInversions({mesh, start, kFrame}, scratch, state) > 0 || led;
+      led = sim::recoverInversions({mesh, start, kFrame}, touched, state) > 0 || led;
       if (state.memory.recovery.guided_columns == 0)
         std::fill(state.velocities.begin(), state.velocities.end(), Vec3::Zero());
       const auto energy = [&](const sim::HairState& one) { return &one == &state ? higher : 0; };
-      if (sim::watchRest(step(), scratch, state)) judgeRest(step(), energy, scratch, state);
+      if (sim::watchRest(step(), state)) judgeRest(step(), energy, state);
     }
     return led;
   }
@@ -80,7 +80,7 @@ TEST(RestCheck, HairThatABodyHoldsIsLeftWhereItIs) {
 TEST(RestCheck, HairThatMovesIsNotJudged) {
   Resting hair(0.05);
   for (Vec3& v : hair.state.velocities) v = Vec3(1, 0, 0);
-  EXPECT_FALSE(sim::watchRest(hair.step(), hair.scratch, hair.state));
+  EXPECT_FALSE(sim::watchRest(hair.step(), hair.state));
 }
 
 }  // namespace
