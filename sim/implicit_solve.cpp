@@ -83,12 +83,6 @@ void ImplicitSolver<T>::setModel(const HairMesh& mesh, const ForceModel<double>&
   two_level.drop();
 }
 
-template <class T>
-void ImplicitSolver<T>::setRestShifts(const HairMesh& mesh, const ForceModel<double>& source) {
-  model.setElements(mesh, layout, source);
-  two_level.drop();
-}
-
 // Packs positions and velocities and runs the kernels.
 template <class T>
 T ImplicitSolver<T>::evaluateForces(std::span<const V3<T>> at, ColumnEvaluation<T> out,

@@ -54,7 +54,6 @@ struct ImplicitSolver {
 
   explicit ImplicitSolver(const HairMesh& mesh);
   void setModel(const HairMesh& mesh, const ForceModel<double>& source, double density);
-  void setRestShifts(const HairMesh& mesh, const ForceModel<double>& source);  // nothing else of the model changed
 
   // Solves for the velocities at the step's end, from the guess in `velocities`, which it overwrites. Roots take the
   // velocities given there; contacts constrain their vertices, are dropped when they would pull, and stick or slide by

@@ -98,10 +98,6 @@ struct Refresh {
 // Derived values follow the parameters that they depend on, from where `memory` is.
 Refresh refreshModel(const SimParams& params, MaterialMemory& memory, Parts& parts) {
   Material& material = parts.material;
-  const auto tell = [&](auto&& take) {
-    if (parts.single_solver) take(*parts.single_solver);
-    if (parts.double_solver) take(*parts.double_solver);
-  };
   const auto setModel = [&](auto& solver) { solver.setModel(*parts.mesh, material.model, params.density); };
   const bool changed = !memory.known || !sameMaterial(params, memory.params), follows = parts.gradual && memory.known;
   bool other = material.recall(changed && !follows ? MaterialMemory{true, params, params, params} : memory);
@@ -110,11 +106,11 @@ Refresh refreshModel(const SimParams& params, MaterialMemory& memory, Parts& par
     material.follow(params);
     other = true;
   } else if (!changed && material.work()) {
-    tell([&](auto& solver) { solver.setRestShifts(*parts.mesh, material.model); });
-    refresh.changed = true;
+    other = refresh.changed = true;
   }
   memory = material.memory();
-  if (other) tell(setModel);
+  if (other && parts.single_solver) setModel(*parts.single_solver);
+  if (other && parts.double_solver) setModel(*parts.double_solver);
   const auto ready = [&](auto& solver) {
     if (!solver) {
       solver.emplace(*parts.mesh);
@@ -246,13 +242,18 @@ double energyOf(const SimParams& params, const Vec3& wind, const HairState& stat
   return energy + evaluate<double>(parts.material.model, parts.plain_positions, {});
 }
 
+std::span<const Vec3> rememberStart(const HairState& state, Parts& parts) {
+  parts.start_positions = state.positions;
+  parts.start_velocities = state.velocities;
+  return parts.start_positions;
+}
+
 // One step of the reference hair: solve, integration, energy limit and, where it is kept apart, self-contact.
 void advanceReference(const SimParams& params, const StepInput& input, double dt, HairMemory& memory, Parts& parts,
                       HairState& reference, StepReport& report) {
   const HairMesh& mesh = *parts.mesh;
   Stabilization& nets = parts.stabilization;
-  parts.start_positions = reference.positions;
-  parts.start_velocities = reference.velocities;
+  rememberStart(reference, parts);
   const StepBase base = integratorBase(params, input, dt, reference, parts);
   rootsFollowScalp(input, base, mesh, reference);
   StepReport own;
@@ -292,12 +293,6 @@ SimParams beginStep(const HairMesh& mesh, const SimParams& asked, double max_wor
   report.refreshes = {!refresh.made, 1};
   if (refresh.changed) state.memory.solve.two_level.forget();
   return params;
-}
-
-std::span<const Vec3> rememberStart(const HairState& state, Parts& parts) {
-  parts.start_positions = state.positions;
-  parts.start_velocities = state.velocities;
-  return parts.start_positions;
 }
 
 void endStep(const TakenStep& taken, const StepInput& input, Parts& parts, HairState& state, StepReport& report) {

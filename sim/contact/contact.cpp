@@ -12,6 +12,7 @@ namespace sim {
 namespace {
 
 constexpr int kProjections = 6;      // alternating projections between overlapping colliders
+constexpr int kBriefly = 2;          // of them, beyond ContactSearch::max_points
 constexpr double kSlackShare = 0.2;  // of the contact offset
 constexpr double kRestoring = 0.2;   // share of the depth below the offset that a step closes
 // Energy budget, per unit density (m^5/s^2), for lifting a vertex to the contact offset: 3 cm^3 of hair by 1 cm.
@@ -317,10 +318,12 @@ void findPenetrations(const ContactSearch& search, std::span<const Vec3> positio
     Vec3 p = positions[v];
     Penetration hit{v, -1, p, Vec3::UnitY(), 0, false, 0};
     bool out = false;
-    for (int round = 0; round < kProjections && !out; ++round) {
+    const bool brief = search.colliders.counted && *search.colliders.counted > search.max_points;
+    for (int round = 0; round < (brief ? kBriefly : kProjections) && !out; ++round) {
       Penetration deepest{v, -1, p, Vec3::UnitY(), round == 0 ? 1e-9 : kMet, false, 0};
       const auto test = [&](const NearCollider& near) {
-        const Penetration touch = touchOf(search, near, v, p, round == 0);
+        const bool swept = round == 0 && (!brief || deepest.collider < 0);
+        const Penetration touch = touchOf(search, near, v, p, swept);
         if (touch.depth > deepest.depth) deepest = touch;
       };
       // The bounds hold for the path of the step, not for a projected position.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -40,6 +41,8 @@ struct ContactSearch {
   std::span<const Vec3> start;  // m, positions at the step's start; empty: no paths, no initial overlaps
   double dt = 0;                // s
   ContactMargins margins{};
+  // Closest points counted by the colliders, beyond which a vertex has one passage and few projections.
+  long max_points = std::numeric_limits<long>::max();
 };
 
 // Positions (m) of some vertices at the start (0) and at the end (1) of a step.

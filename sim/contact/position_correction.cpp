@@ -122,7 +122,7 @@ void beginCorrections(PositionCorrection& scratch) {
 bool findContacts(const CorrectedStep& step, PositionCorrection& scratch, const HairState& state, StepReport& report) {
   if (scratch.round > 0 && (scratch.moved == 0 || scratch.round > kRounds + kPlainRounds)) return false;
   ContactSearch search{step.params.collide_inner ? scratch.all_vertices : step.mesh.external_vertices, step.colliders,
-                       step.start, step.dt, contactMargins(step.params, step.dt)};
+                       step.start, step.dt, contactMargins(step.params, step.dt), scratch.max_points};
   const bool cut = scratch.points > scratch.max_points;
   report.corrections_cut = report.corrections_cut || cut;
   // Where the way out of one body leads through another, swept tests would alternate: from here on only final
@@ -193,16 +193,14 @@ void followPushed(const CorrectedStep& step, std::span<const Vec3> unmoved, std:
 }
 
 void slowPushed(const CorrectedStep& step, std::span<const Vec3> unpushed, HairState& state) {
-  for (int c = 0; c < step.mesh.columnCount(); ++c) {
-    const int root = step.mesh.shape.column_first[c];
+  for (int i = 0; i < step.mesh.vertexCount(); ++i) {
+    if (state.positions[i] == unpushed[i]) continue;
+    const int root = step.mesh.shape.column_first[step.mesh.column_of[i]];
     const Vec3 carried = state.positions[root] - step.start[root], carrying = state.velocities[root];
-    for (int i = root + 1; i < step.mesh.shape.column_first[c + 1]; ++i) {
-      if (state.positions[i] == unpushed[i]) continue;
-      const Vec3 way = (state.positions[i] - step.start[i] - carried) / step.dt;
-      if (way.squaredNorm() >= (state.velocities[i] - carrying).squaredNorm()) continue;
-      state.velocities[i] = carrying + way;
-      state.restartHistory(i, step.dt);
-    }
+    const Vec3 way = (state.positions[i] - step.start[i] - carried) / step.dt;
+    if (way.squaredNorm() >= (state.velocities[i] - carrying).squaredNorm()) continue;
+    state.velocities[i] = carrying + way;
+    state.restartHistory(i, step.dt);
   }
 }
 

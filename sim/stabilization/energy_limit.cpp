@@ -36,14 +36,12 @@ Motion judge(const TakenStep& step, const HairState& state) {
   forEachModulus([&](const Modulus& modulus) { soft = std::min(soft, modulus.gentle / (params.*modulus.param)); });
   const double most = (step.dt > kLongStep ? kGentleLong : kGentle) * std::sqrt(soft) * step.mesh.hair_length;
   Motion motion = Motion::kCalm;
-  for (int c = 0; c < step.mesh.columnCount(); ++c) {
-    const int root = step.mesh.shape.column_first[c];
+  for (int i = 0; i < step.mesh.vertexCount(); ++i) {
+    const int root = step.mesh.shape.column_first[step.mesh.column_of[i]];
     const Vec3 carried = state.positions[root] - step.positions[root];
-    for (int i = root + 1; i < step.mesh.shape.column_first[c + 1]; ++i) {
-      const double way = (state.positions[i] - step.positions[i] - carried).squaredNorm();
-      if (!std::isfinite(way) || !state.velocities[i].allFinite()) return Motion::kNotFinite;
-      if (way > most * most) motion = Motion::kViolent;
-    }
+    const double way = (state.positions[i] - step.positions[i] - carried).squaredNorm();
+    if (!std::isfinite(way) || !state.velocities[i].allFinite()) return Motion::kNotFinite;
+    if (way > most * most) motion = Motion::kViolent;
   }
   return motion;
 }
@@ -102,9 +100,9 @@ struct Account {
   double kinetic = 0;  // that it ends with
 };
 
-double kineticOf(const TakenStep& step, const EnergyLimit& scratch, const HairState& state, int i) {
+double kineticOf(const TakenStep& step, const EnergyLimit& scratch, const Vec3& velocity, int i) {
   const double mass = step.params.density * step.mesh.vertex_volume[i];
-  return 0.5 * mass * (state.velocities[i] - carrying(step, scratch, i)).squaredNorm();
+  return 0.5 * mass * (velocity - carrying(step, scratch, i)).squaredNorm();
 }
 
 // Most that the dampers of elements which the step's input moves can do (J): with r the rate of the condition where the
@@ -139,10 +137,8 @@ Account accountFor(const TakenStep& step, EnergyLimit& scratch, const HairState&
   account.bound = account.carried + dampersWork(step, scratch);
   for (int i = 0; i < step.mesh.vertexCount(); ++i) {
     if (step.mesh.isRoot(i)) continue;
-    const double mass = step.params.density * step.mesh.vertex_volume[i];
-    const Vec3 carried = carrying(step, scratch, i);
-    account.bound += 0.5 * mass * (step.velocities[i] - carried).squaredNorm();
-    account.kinetic += kineticOf(step, scratch, state, i);
+    account.bound += kineticOf(step, scratch, step.velocities[i], i);
+    account.kinetic += kineticOf(step, scratch, state.velocities[i], i);
   }
   // What bodies push: their pressure along its normal, and friction of at most its share.
   for (const Contact& contact : state.contacts) {
@@ -210,9 +206,8 @@ double bringBelowBound(const TakenStep& step, int tries, EnergyLimit& scratch, H
 bool bodiesStandStill(const TakenStep& step, const Colliders& colliders, const EnergyLimit& scratch,
                       const HairState& state) {
   return std::all_of(state.contacts.begin(), state.contacts.end(), [&](const Contact& contact) {
-    const Vec3& x = scratch.carried[contact.vertex];
-    const Vec3 carrying = (x - step.positions[contact.vertex]) / step.dt;
-    return (surfaceVelocity(colliders.body(contact.collider), x) - carrying).norm() < kStill;
+    const Vec3 surface = surfaceVelocity(colliders.body(contact.collider), scratch.carried[contact.vertex]);
+    return (surface - carrying(step, scratch, contact.vertex)).norm() < kStill;
   });
 }
 

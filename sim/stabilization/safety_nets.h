@@ -14,13 +14,14 @@ struct SafetyNets {
   bool teleport = true;             // hair carried along over jumps of the roots
   bool oscillation_damping = true;  // oscillation_damping.h
   bool step_energy = true;          // energy_limit.h, limitEnergy
+  bool stretch_limit = true;        // stabilize.cpp, limitStretch
   bool correction_energy = true;    // limitCorrections
   bool inversion_recovery = true;   // inversion_recovery.h
   bool reference_hair = true;       // reference_hair.h
 };
 
 // Solver::kPaper: the step as published. Only values that are not finite or absurd are repaired.
-inline constexpr SafetyNets kAsPublished{false, true, true, false, false, false, false, false, false};
+inline constexpr SafetyNets kAsPublished{false, true, true, false, false, false, false, false, false, false};
 
 struct SafetyNetName {
   const char* name;
@@ -33,6 +34,7 @@ inline constexpr std::array kSafetyNets{
     SafetyNetName{"teleport", &SafetyNets::teleport},
     SafetyNetName{"oscillation-damping", &SafetyNets::oscillation_damping},
     SafetyNetName{"step-energy", &SafetyNets::step_energy},
+    SafetyNetName{"stretch-limit", &SafetyNets::stretch_limit},
     SafetyNetName{"correction-energy", &SafetyNets::correction_energy},
     SafetyNetName{"inversion-recovery", &SafetyNets::inversion_recovery},
     SafetyNetName{"reference-hair", &SafetyNets::reference_hair},

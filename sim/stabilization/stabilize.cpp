@@ -9,6 +9,7 @@
 namespace sim {
 namespace {
 
+constexpr double kMaxStretch = 2;             // times the hair between root and vertex
 constexpr double kStorm = 5;                  // m/s^2 of wind, above which the rest shape is not where hair belongs
 constexpr int kMinReferenceIterations = 300;  // a reference hair of loose solves might hang wherever they leave it
 constexpr double kAtOnce = 1e6;               // m/s
@@ -52,11 +53,27 @@ StepInput teleport(const HairMesh& mesh, const StepInput& input, Stabilization& 
   return still;
 }
 
+// Bodies faster than hair can follow draw it out further in every step.
+void limitStretch(const HairMesh& mesh, std::span<const double> reach, HairState& state) {
+  for (int i = 0; i < mesh.vertexCount(); ++i) {
+    const int root = mesh.shape.column_first[mesh.column_of[i]];
+    const Vec3 arm = state.positions[i] - state.positions[root];
+    const double square = arm.squaredNorm();
+    if (!(square > reach[i] * reach[i])) continue;
+    state.positions[i] = state.positions[root] + reach[i] / std::sqrt(square) * arm;
+    const double away = (state.velocities[i] - state.velocities[root]).dot(arm) / square;
+    state.velocities[i] -= std::max(0.0, away) * arm;
+    state.restartHistory(i, state.previous_dt);
+  }
+}
+
 }  // namespace
 
 Stabilization::Stabilization(const HairMesh& mesh) : energy_limit(mesh), touched(mesh.vertexCount()) {
   limited_velocities.resize(mesh.vertexCount());
   plain_positions.reserve(mesh.vertexCount());
+  for (int i = 0; i < mesh.vertexCount(); ++i)
+    reach.push_back(mesh.isRoot(i) ? 0 : reach.back() + kMaxStretch * restLength(mesh, i - 1, i));
 }
 
 StepInput admitState(const HairMesh& mesh, const ForceModel<double>& model, const StepInput& input, double dt,
@@ -75,7 +92,8 @@ void stabilize(const TakenStep& step, const StepInput& input, bool converged, St
   const SafetyNets& nets = scratch.active;
   const bool held = nets.oscillation_damping && dampOscillation(step.mesh, step.positions, state) > 0;
   if (nets.step_energy) limitEnergy(step, converged && !held, scratch.energy_limit, state);
-  // Loose particles have no shape to be guided to.
+  // Loose particles have no length, and no shape to be guided to.
+  if (nets.stretch_limit && step.params.volume > 0) limitStretch(step.mesh, scratch.reach, state);
   if (nets.inversion_recovery && step.params.volume > 0) {
     const bool looks = windLoad(step.params) < kStorm;
     report.guided = recoverInversions({step.mesh, step.positions, step.dt, looks}, scratch.touched, state);

@@ -23,6 +23,7 @@ struct Stabilization {
   SafetyNets active;  // in this step
   EnergyLimit energy_limit;
   std::vector<char> touched;  // by a body, per vertex
+  std::vector<double> reach;  // m, the farthest that a vertex may be from its root
   std::vector<Vec3> limited_velocities;
   std::vector<V3<double>> plain_positions;
   std::vector<Vec3> root_positions;
@@ -40,8 +41,8 @@ struct Stabilization {
 StepInput admitState(const HairMesh& mesh, const ForceModel<double>& model, const StepInput& input, double dt,
                      SimParams& params, Stabilization& scratch, HairState& state, StepReport& report);
 
-// After integration: oscillation damping, energy limit, inversion recovery, repair of what is not finite or absurd.
-// `converged`: the solve did.
+// After integration: oscillation damping, energy limit, stretch limit (no vertex farther from its root than twice the
+// hair between them), inversion recovery, repair of what is not finite or absurd. `converged`: the solve did.
 void stabilize(const TakenStep& step, const StepInput& input, bool converged, Stabilization& scratch, HairState& state,
                StepReport& report);
 

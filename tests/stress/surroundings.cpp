@@ -81,6 +81,8 @@ void Surroundings::playClip(double dt) {
   if (jumps && std::floor((time_ + dt) / kQuarter) > std::floor(time_ / kQuarter)) {
     playback.time = random_(0, length);
     carries_ = intrudes_ = one_.play == Play::kCarryJumps;
+    // As in the window, bodies that are carried along with the hair have not moved.
+    if (carries_) before_.clear(), parts_before_.clear();
   } else if (jumps) {
     playback.time = std::fmod(playback.time + dt, length);
   }

@@ -122,6 +122,33 @@ struct Beaten {
   }
 };
 
+// A pack of overlapping bodies that passes through the hair within a step, to and fro, as the body of a figure does whose
+// clip is played at twenty times its speed.
+TEST(StepWork, OfContactsIsBoundedWhereManyBodiesPassInOneStep) {
+  Beaten beaten;
+  std::vector<Ellipsoid>& bodies = beaten.bodies;
+  bodies.resize(30);
+  const int vertices = beaten.hair.mesh.vertexCount();
+  double most = 0, deepest = 0;
+  for (int n = 0; n < 40; ++n) {
+    for (int b = 0; b < 30; ++b) {
+      const Vec3 center(n % 2 ? 0.7 : -0.7, -0.3 + 0.01 * b, 0.1 * std::sin(b));
+      bodies[b].radii = Vec3(0.08, 0.1, 0.12);
+      bodies[b].velocity = (center - bodies[b].center) / kFrame;
+      bodies[b].center = center;
+    }
+    const sim::StepInput input{beaten.hair.roots, bodies, n * kFrame};
+    const sim::StepReport report =
+        sim::advance(beaten.hair.mesh, beaten.hair.params, input, kFrame, beaten.hair.context, beaten.hair.state);
+    if (n > 0) most = std::max(most, static_cast<double>(report.work.surface_points) / vertices);
+    deepest = std::max(deepest, beaten.depth());
+  }
+  std::printf("at most %.1f closest points a vertex\n", most);
+  EXPECT_GT(most, 3);
+  EXPECT_LT(most, 8);
+  EXPECT_LT(deepest, 1e-6);
+}
+
 TEST(StepWork, IsTheSameWheneverTheSameStepsAreTaken) {
   Beaten one, other;
   for (int n = 0; n < 60; ++n) {

@@ -48,6 +48,32 @@ void report(const char* name, const Outcome& outcome) {
               100 * outcome.start, 100 * outcome.end, outcome.smallest_volume, outcome.recoveries);
 }
 
+// Not in the step as published.
+TEST(Recovery, NoVertexIsFartherFromItsRootThanTwiceTheHairBetween) {
+  for (const bool published : {false, true}) {
+    Hair hair(test::combedShape(patch()), runningHair());
+    if (published) hair.params.solver = sim::Solver::kPaper;
+    for (int i = 0; i < hair.mesh.vertexCount(); ++i) {
+      const Vec3& root = hair.mesh.shape.positions[hair.mesh.shape.column_first[hair.mesh.column_of[i]]];
+      hair.state.positions[i] = root + 3 * (hair.state.positions[i] - root);
+    }
+    hair.step(1e-5);
+    double most = 0;
+    for (int c = 0; c < hair.mesh.columnCount(); ++c) {
+      const int root = hair.mesh.shape.column_first[c];
+      double length = 0;
+      for (int i = root + 1; i < hair.mesh.shape.column_first[c + 1]; ++i) {
+        length += (hair.mesh.shape.positions[i] - hair.mesh.shape.positions[i - 1]).norm();
+        most = std::max(most, (hair.state.positions[i] - hair.state.positions[root]).norm() / length);
+      }
+    }
+    if (published)
+      EXPECT_GT(most, 2.5);
+    else
+      EXPECT_NEAR(most, 2, 1e-6);
+  }
+}
+
 TEST(Recovery, FromAllVerticesOnTheirRoots) {
   for (const bool sag_free : {true, false}) {
     sim::SimParams params = runningHair();
