@@ -50,9 +50,11 @@ void look(const HairMesh& mesh, double seconds, std::vector<char>& touched, Hair
   }
   touched.assign(mesh.vertexCount(), 0);
   for (const Contact& contact : state.contacts) touched[contact.vertex] = 1;
+  // With all of its column: near the roots nothing moves fast while the hair above is on its way home.
   const auto rests = [&](int v) {
-    const Vec3& root = state.velocities[mesh.shape.column_first[mesh.column_of[v]]];
-    return (state.velocities[v] - root).squaredNorm() < kStill * kStill;
+    const auto root = state.velocities.begin() + mesh.shape.column_first[mesh.column_of[v]];
+    const auto still = [&](const Vec3& u) { return (u - *root).squaredNorm() < kStill * kStill; };
+    return std::all_of(root, root + mesh.shape.columnLength(mesh.column_of[v]), still);
   };
   // Counts how long an element has been inverted, and guides its columns when it has been long enough.
   const auto count = [&](bool inverted, bool again, std::span<const int> vertices, double& lasted) {

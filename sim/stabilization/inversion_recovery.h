@@ -3,7 +3,7 @@
 // A tip thrown through its neighbours keeps the length of every edge. The way back leads through a flat prism, so the
 // mirrored shape can be an equilibrium of all forces, the volume force included. Forces come first: an element (a
 // corner tetrahedron below kInvertedShare of its rest volume, a column folded back on itself) must stay inverted for
-// kInvertedFor seconds, of which each that it spends at rest counts kRestWeight times. Then its columns move to the
+// kInvertedFor seconds, of which each that its columns spend at rest counts kRestWeight times. Then these move to the
 // rest shape within kGuideTime seconds, along lines that are straight as seen from the head. Bodies push them out as
 // ever, and columns that a body holds are left alone. A column that inverts again waits four times as long each time.
 #pragma once

@@ -70,6 +70,7 @@ void addParameters(Cases& cases) {
         dance.params = {{field.name, value}};
         dance.release = kSlowRelease;
         dance.keeps_energy = std::string_view(field.group) != "Numerics";
+        dance.returns = hasNets(field, value);
         // Of frames that are long enough for it to matter.
         if (std::string_view(field.name) == "max_steps_per_frame") dance.pace = Pace::kRandomFrames;
         dance.in_short = hair.style == app::Style::kShort;

@@ -242,7 +242,7 @@ void waitForRest(Run& run) {
     back = waitUntilBack(run.one.release, true, references, energy, run);
   }
   if (back) run.outcome.back_after = run.around.time() - stopped;
-  if (!back && !run.failed()) {
+  if (!back && !run.failed() && run.one.returns) {
     run.fail(said("still %.1f %% of the hair's length from rest %.1f s after the motion stopped",
                   100 * run.outcome.distance, run.around.time() - stopped) +
              ", vertex " + std::to_string(run.outcome.worst_vertex) +

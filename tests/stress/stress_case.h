@@ -95,6 +95,7 @@ struct StressCase {
   double grace = 0;          // s after each start or appearance in which vertices may still be inside
   bool recovers = false;     // state repairs are expected
   sim::SafetyNets nets;      // in use; less than all to measure what one saves
+  bool returns = true;       // judged by its way back to rest too: not the published step, which has no nets
   bool compared = false;     // a peer's setting, shown beside ours and not counted
   bool keeps_energy = true;  // judged by its energy too: not where the numerics are turned to their coarsest
   bool meets = false;        // the body that is added must come upon the hair

@@ -70,6 +70,21 @@ TEST(InversionRecovery, InvertedColumnsAreGuidedToRestAndOthersKeepEveryBit) {
   }
 }
 
+// A squeezed root layer counts as held only where nothing of its columns moves.
+TEST(InversionRecovery, WaitsWhileAnythingOfAColumnIsOnItsWay) {
+  for (const bool moves : {false, true}) {
+    Frozen hair;
+    const int column = 5, first = hair.mesh.shape.column_first[column], end = hair.mesh.shape.column_first[column + 1];
+    turnOver(column, hair.mesh, hair.state);
+    if (moves) {
+      for (int c = 0; c < hair.mesh.columnCount(); ++c)
+        hair.state.velocities[hair.mesh.shape.column_first[c + 1] - 1] = Vec3(0.1, 0, 0);
+    }
+    EXPECT_EQ(hair.pass(0.9 * sim::kInvertedFor) > 0, !moves);
+    EXPECT_GT(end - first, 2);
+  }
+}
+
 TEST(InversionRecovery, NoVertexIsThrownAtAnyTimeStep) {
   for (const double dt : {1.0 / 240, 1.0 / 60, 0.1, 0.5}) {
     Frozen hair;
