@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "app/files/text_scanner.h"
@@ -69,6 +70,18 @@ json parseJson(std::string_view text, const std::string& file) {
 
 void JsonPlace::refuse(const std::string& fault, const std::string& mend) const {
   throw InputError(file_, pointer_.empty() ? "/" : pointer_, fault, mend);
+}
+
+bool JsonPlace::has(const std::string& key) const {
+  return value_->contains(key);
+}
+
+JsonPlace JsonPlace::at(const std::string& key) const {
+  return {value_->at(key), file_, pointer_ + "/" + key};
+}
+
+JsonPlace JsonPlace::at(std::size_t index) const {
+  return {value_->at(index), file_, pointer_ + "/" + std::to_string(index)};
 }
 
 void JsonPlace::expectObject(std::span<const std::string_view> known) const {

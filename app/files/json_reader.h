@@ -3,7 +3,7 @@
 
 #include <array>
 #include <initializer_list>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <string_view>
@@ -30,12 +30,12 @@ class JsonPlace {
   void expectObject(std::initializer_list<std::string_view> known) const {
     expectObject({known.begin(), known.size()});
   }
-  bool has(const std::string& key) const { return value_->contains(key); }
-  JsonPlace at(const std::string& key) const { return {value_->at(key), file_, pointer_ + "/" + key}; }
+  bool has(const std::string& key) const;
+  JsonPlace at(const std::string& key) const;
 
   // Elements of an array of at most `limit` entries.
   std::size_t arraySize(std::size_t limit) const;
-  JsonPlace at(std::size_t index) const { return {value_->at(index), file_, pointer_ + "/" + std::to_string(index)}; }
+  JsonPlace at(std::size_t index) const;
 
   // Read the value itself, checked.
   double number(double minimum, double maximum) const;

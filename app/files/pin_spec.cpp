@@ -1,6 +1,7 @@
 #include "app/files/pin_spec.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 namespace app {
 

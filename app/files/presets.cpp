@@ -1,6 +1,7 @@
 #include "app/files/presets.h"
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <vector>
 

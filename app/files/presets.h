@@ -3,7 +3,6 @@
 // does not matter which preset was chosen before. All other groups keep their values.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <string_view>

@@ -2,6 +2,7 @@
 #include "app/files/scene_file.h"
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "app/files/data_path.h"
 #include "app/files/json_reader.h"

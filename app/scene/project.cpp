@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "app/files/errors.h"
 #include "app/files/folder_list.h"
