@@ -16,23 +16,23 @@ endforeach()
 add_library(hairmesh::sim ALIAS hair_sim)
 set_target_properties(hair_sim PROPERTIES EXPORT_NAME sim OUTPUT_NAME hairmesh_sim)
 
-# Objects of their own: they can be moved, and show nothing but what the interface marks.
+# What the program does not have as well.
 file(GLOB library_sources CONFIGURE_DEPENDS app/library/*.cpp)
 set(allocator_source ${CMAKE_CURRENT_SOURCE_DIR}/app/library/allocator.cpp)
 list(REMOVE_ITEM library_sources ${allocator_source})
-add_library(hairmesh_objects OBJECT ${sim_sources} ${strand_sources} ${library_sources}
+add_library(hairmesh_objects OBJECT ${library_sources}
   app/files/errors.cpp app/files/hair_file.cpp app/files/obj_layers.cpp app/files/text_scanner.cpp
   app/scene/look_params.cpp app/scene/render_faces.cpp)
 target_link_libraries(hairmesh_objects PRIVATE hair_options Eigen3::Eigen)
-target_precompile_headers(hairmesh_objects PRIVATE ${common_headers})
+target_precompile_headers(hairmesh_objects REUSE_FROM hair_sim)
+set(all_objects $<TARGET_OBJECTS:hair_sim> $<TARGET_OBJECTS:hair_strands> $<TARGET_OBJECTS:hairmesh_objects>)
 
-add_library(hairmesh_shared SHARED $<TARGET_OBJECTS:hairmesh_objects> ${allocator_source})
-add_library(hairmesh_static STATIC $<TARGET_OBJECTS:hairmesh_objects> ${allocator_source})
+add_library(hairmesh_shared SHARED ${all_objects} ${allocator_source})
+add_library(hairmesh_static STATIC ${all_objects} ${allocator_source})
 add_library(hairmesh::hairmesh ALIAS hairmesh_shared)
 add_library(hairmesh::static ALIAS hairmesh_static)
-foreach(target hairmesh_objects hairmesh_shared hairmesh_static)
-  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
-    VISIBILITY_INLINES_HIDDEN ON OUTPUT_NAME hairmesh)
+foreach(target hairmesh_shared hairmesh_static)
+  set_target_properties(${target} PROPERTIES OUTPUT_NAME hairmesh)
 endforeach()
 foreach(target hairmesh_shared hairmesh_static)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:hair_options> $<BUILD_INTERFACE:Eigen3::Eigen>)

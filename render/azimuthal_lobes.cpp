@@ -7,14 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 
 namespace render {
 namespace {
 
 using shared::kScatterPhi;
 using shared::kScatterTheta;
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr int kOffsets = 100;
 
 float fresnel(float cos_i, float eta) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <numbers>
 #include <vector>
 
 #include "render/frame_input.h"
@@ -9,6 +10,7 @@
 
 namespace render {
 
+constexpr float kPi = std::numbers::pi_v<float>;
 constexpr int kLobes = 3;  // R, TT, TRT and all beyond
 
 struct AzimuthalLobes {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 
 #include "render/azimuthal_lobes.h"
 #include "render/hair_volume.h"
@@ -15,7 +14,6 @@ namespace {
 using shared::kScatterPhi;
 using shared::kScatterTheta;
 using shared::kVolumeSteps;
-constexpr float kPi = std::numbers::pi_v<float>;
 
 std::size_t texelAt(int slice, int row, int column) {
   return 4 * static_cast<std::size_t>((slice * kScatterTheta + row) * kScatterPhi + column);

@@ -14,9 +14,8 @@ namespace {
 using shared::kScatterPhi;
 using shared::kVolumeSteps;
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kDirections = 8;
-constexpr double kStep = kPi / kDirections;
+constexpr double kStep = std::numbers::pi / kDirections;
 constexpr double kLargestAlbedo = 1 - 1e-4;  // without loss two solutions of the equations fall together
 using Matrix = Eigen::Matrix<double, kDirections, kDirections>;
 using Vector = Eigen::Matrix<double, kDirections, 1>;
@@ -45,8 +44,8 @@ struct Azimuth {
     constexpr int kSamples = 5;
     double sum = 0;
     for (int k = 0; k < kSamples; ++k) {
-      const double x = std::abs(std::remainder(phi + kStep * ((k + 0.5) / kSamples - 0.5), 2 * kPi));
-      const double at = x / kPi * (kScatterPhi - 1);
+      const double x = std::abs(std::remainder(phi + kStep * ((k + 0.5) / kSamples - 0.5), 2 * std::numbers::pi));
+      const double at = x / std::numbers::pi * (kScatterPhi - 1);
       const int j = std::min(static_cast<int>(at), kScatterPhi - 2);
       sum += value[j] + (at - j) * (value[j + 1] - value[j]);
     }
@@ -61,10 +60,10 @@ class Slab {
     Vector source;
     for (int to = 0; to < kDirections; ++to) {
       mu_[to] = std::cos(direction(to));
-      source[to] = azimuth.around(direction(to) - kPi);
+      source[to] = azimuth.around(direction(to) - std::numbers::pi);
       for (int from = 0; from < kDirections; ++from) {
-        scatter_(to, from) = azimuth.around(direction(to) - direction(from) - kPi) +
-                             azimuth.around(direction(to) + direction(from) - kPi);
+        scatter_(to, from) = azimuth.around(direction(to) - direction(from) - std::numbers::pi) +
+                             azimuth.around(direction(to) + direction(from) - std::numbers::pi);
       }
     }
     source *= azimuth.albedo / (2 * kStep * source.sum());

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace render {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr int kNodes = shared::kScatterPhi, kHalf = kNodes / 2;
 constexpr int kQuadrature = 4 * kNodes;  // inclinations of integrals: finer than the narrowest lobe
 constexpr int kSweeps = 40;

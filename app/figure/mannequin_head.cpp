@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/figure/mannequin_field.h"
+#include "app/figure/smoothstep.h"
 
 namespace app {
 
@@ -16,11 +17,6 @@ double egg(const Vec3& p, const Vec3& r) {
   const double k0 = u.norm(), k1 = u.cwiseQuotient(r).norm();
   if (k0 < 0.2) return (k0 - 1) * r.minCoeff();
   return k0 * (k0 - 1) / k1;
-}
-
-double smoothstep(double a, double b, double x) {
-  const double t = std::clamp((x - a) / (b - a), 0.0, 1.0);
-  return t * t * (3 - 2 * t);
 }
 
 double cranium(const Vec3& q) {

@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/figure/smoothstep.h"
+
 namespace app {
 
 namespace {
-
-double smoothstep(double a, double b, double x) {
-  const double t = std::clamp((x - a) / (b - a), 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
 
 // Weights over all joints, sparse.
 struct Weights {

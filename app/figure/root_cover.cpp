@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <unordered_map>
 
+#include "app/figure/smoothstep.h"
+
 namespace app {
 
 namespace {
@@ -75,11 +77,6 @@ class Cubes {
   double side_;
   std::unordered_map<std::uint64_t, std::vector<int>> vertices_;
 };
-
-double smoothstep(double a, double b, double x) {
-  const double t = std::clamp((x - a) / (b - a), 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
 
 }  // namespace
 

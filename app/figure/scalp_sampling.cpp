@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "app/figure/smoothstep.h"
+
 namespace app {
 
 namespace {
@@ -130,11 +132,6 @@ std::vector<double> opened(const std::vector<double>& radius, double angle) {
         }
   }
   return current;
-}
-
-double smoothstep(double a, double b, double x) {
-  const double t = std::clamp((x - a) / (b - a), 0.0, 1.0);
-  return t * t * (3 - 2 * t);
 }
 
 // Ears: bumps at the sides, between the temples' level and the jaw. Their outline is smoothed over what lies beneath.

@@ -17,7 +17,7 @@ constexpr double kAside = 0.75;    // head heights from the head's axis, as far 
 constexpr double kAir = 0.014;     // m in front of the skin: nothing is to lie there but hair
 constexpr double kClear = 0.006;   // m, that such a place is at least off the ellipsoids and other skin
 constexpr float kFinest = 0.004f;  // m, spacing of samples
-constexpr double kAround = 0.04;   // m: skin so near is asked
+constexpr double kAskedWithin = 0.04;   // m: skin so near is asked
 
 // The rest pose, then moments evenly over all clips.
 std::vector<Pose> momentsOf(const Character& character, int moments) {
@@ -128,7 +128,7 @@ void addAir(const Character& character, PosedSkin& skin) {
     const Vec3 air = sample.rest + kAir * sample.normal;
     const bool taken = std::ranges::any_of(skin.samples, [&](const SkinSample& other) {
       const Vec3 apart = air - other.rest;
-      return apart.squaredNorm() < kAround * kAround && apart.dot(other.normal) < kClear;
+      return apart.squaredNorm() < kAskedWithin * kAskedWithin && apart.dot(other.normal) < kClear;
     });
     if (!taken && gapAtRest(character, air) > kClear) skin.air.push_back(air);
   }

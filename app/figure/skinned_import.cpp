@@ -23,7 +23,7 @@ namespace {
 
 using Mat4 = Eigen::Matrix4d;
 
-constexpr std::size_t kMaxJoints = 2048, kMaxVertices = 4'000'000, kMaxSamples = 6'000'000;
+constexpr std::size_t kMaxJoints = 2048, kMaxVertices = 4'000'000, kMaxKeys = 6'000'000;
 constexpr double kSampleRate = 60;  // frames a second at which curves are sampled
 
 Mat4 toEigen(const aiMatrix4x4& m) {
@@ -311,7 +311,7 @@ Clip sampleClip(const Import& import, const aiAnimation& animation, const std::s
   clip.frame_time = 1 / kSampleRate;
   clip.joint_count = static_cast<int>(import.nodes.size());
   const double wanted = seconds * kSampleRate + 1;
-  if (wanted * clip.joint_count > static_cast<double>(kMaxSamples))
+  if (wanted * clip.joint_count > static_cast<double>(kMaxKeys))
     import.fail(place,
                 "lasts " + std::to_string(static_cast<long long>(std::min(seconds, 1e15))) + " s, too long to sample",
                 "cut the clip");

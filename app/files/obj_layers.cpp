@@ -13,7 +13,7 @@ namespace {
 constexpr double kLargestCoordinate = 1e3;  // m
 constexpr std::string_view kLayerPrefix = "layer_", kBundlePrefix = "bundle_";
 
-bool isBlank(char c) {
+bool isObjBlank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
 }
 bool isDigit(char c) {
@@ -23,9 +23,9 @@ bool isDigit(char c) {
 // Takes the first word off a line; empty at its end or at a comment.
 std::string_view nextWord(std::string_view& line) {
   std::size_t begin = 0;
-  while (begin < line.size() && isBlank(line[begin])) ++begin;
+  while (begin < line.size() && isObjBlank(line[begin])) ++begin;
   std::size_t end = begin;
-  while (end < line.size() && !isBlank(line[end]) && line[end] != '#') ++end;
+  while (end < line.size() && !isObjBlank(line[end]) && line[end] != '#') ++end;
   const std::string_view word = line.substr(begin, end - begin);
   line = word.empty() ? std::string_view() : line.substr(end);
   return word;

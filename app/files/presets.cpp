@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kLargestFile = std::size_t{4} << 20;
+constexpr std::size_t kLargestPreset = std::size_t{4} << 20;
 
 template <class Field>
 std::vector<std::string_view> namesOf(std::span<const Field> table) {
@@ -169,7 +169,7 @@ void applyPreset(std::string_view text, const std::string& file, const PresetTar
 }
 
 void loadPreset(const std::string& file, const PresetTarget& target) {
-  applyPreset(readText(file, kLargestFile), file, target);
+  applyPreset(readText(file, kLargestPreset), file, target);
 }
 
 std::string writePreset(const std::string& name, const sim::SimParams& params, const CharacterLook& hair,

@@ -20,7 +20,7 @@ using nlohmann::json;
 constexpr int kVersion = 2;
 constexpr std::size_t kMaxRequests = 1000;                    // a frame
 constexpr double kLongestFrame = 1e6, kLargestValue = 1e300;  // s; of a request's value
-constexpr double kFarthest = 1e6, kMaxTurn = 1e3;             // m, rad; of a view
+constexpr double kFarthestView = 1e6, kMaxTurn = 1e3;             // m, rad; of a view
 constexpr double kMaxAspect = 1e5, kTallest = 1e5;
 
 struct AskName {
@@ -110,11 +110,11 @@ RecordedView readView(const JsonPlace& place) {
   place.expectObject({"target", "yaw", "pitch", "distance", "aspect", "height"});
   if (place.value().size() != 6) place.refuse("is no view", "write target, yaw, pitch, distance, aspect and height");
   RecordedView view;
-  const std::array<double, 3> target = place.at("target").vector(-kFarthest, kFarthest);
+  const std::array<double, 3> target = place.at("target").vector(-kFarthestView, kFarthestView);
   view.target = {target[0], target[1], target[2]};
   view.yaw = place.at("yaw").number(-kMaxTurn, kMaxTurn);
   view.pitch = place.at("pitch").number(-kMaxTurn, kMaxTurn);
-  view.distance = place.at("distance").number(1e-6, kFarthest);
+  view.distance = place.at("distance").number(1e-6, kFarthestView);
   view.aspect = place.at("aspect").number(1 / kMaxAspect, kMaxAspect);
   view.height = static_cast<int>(place.at("height").number(1, kTallest));
   return view;

@@ -15,8 +15,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kLargestFile = std::size_t{16} << 20;
-constexpr double kFarthest = 1000;  // m
+constexpr std::size_t kLargestScene = std::size_t{16} << 20;
+constexpr double kFarthestPlace = 1000;  // m
 constexpr double kTurn = 2 * 3.14159265358979323846;
 
 Vec3 toVec3(const std::array<double, 3>& values) {
@@ -68,7 +68,7 @@ CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
     GroomMends mends;
     if (const std::string fault = readMends(spec.mends, mends); !fault.empty()) place.at("mends").refuse(fault, "");
   }
-  if (place.has("position")) spec.position = toVec3(place.at("position").vector(-kFarthest, kFarthest));
+  if (place.has("position")) spec.position = toVec3(place.at("position").vector(-kFarthestPlace, kFarthestPlace));
   if (place.has("heading")) spec.heading = place.at("heading").number(-kTurn, kTurn);
   if (place.has("clip_offset")) spec.clip_offset = place.at("clip_offset").number(0, 1e5);
   if (place.has("loop")) spec.loop = *parseLoop(place.at("loop").choice(kLoopNames));
@@ -86,8 +86,8 @@ CameraSpec readCamera(const JsonPlace& place) {
   if (place.has("framing")) camera.framing = place.at("framing").choice({"head", "bust", "figure"});
   if (place.has("eye") != place.has("target")) place.refuse("has only one of eye and target", "give both or neither");
   if (place.has("eye")) {
-    camera.eye = toVec3(place.at("eye").vector(-kFarthest, kFarthest));
-    camera.target = toVec3(place.at("target").vector(-kFarthest, kFarthest));
+    camera.eye = toVec3(place.at("eye").vector(-kFarthestPlace, kFarthestPlace));
+    camera.target = toVec3(place.at("target").vector(-kFarthestPlace, kFarthestPlace));
     if ((*camera.eye - *camera.target).norm() < 1e-3) place.refuse("has its eye in its target", "move them apart");
   }
   if (place.has("fov")) camera.fov = place.at("fov").number(0.05, 2.5);
@@ -175,7 +175,7 @@ Scene readScene(std::string_view text, const std::string& file) {
 }
 
 Scene loadScene(const std::string& file) {
-  return readScene(readText(file, kLargestFile), file);
+  return readScene(readText(file, kLargestScene), file);
 }
 
 std::string writeScene(const Scene& scene) {

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kFarthest = 0.5, kStandOff = 0.014;  // m
+constexpr double kFarthestTie = 0.5, kStandOff = 0.014;  // m
 
 struct TiePlace {
   std::string_view name;
@@ -34,7 +34,7 @@ TieSpec readTie(const JsonPlace& place) {
   if (place.has("at") && place.at("at").value().is_string()) {
     tie.place = place.at("at").choice({"back", "high", "low", "left", "right"});
   } else if (place.has("at")) {
-    const auto at = place.at("at").vector(-kFarthest, kFarthest);
+    const auto at = place.at("at").vector(-kFarthestTie, kFarthestTie);
     tie.at = sim::Vec3(at[0], at[1], at[2]);
   }
   if (place.has("radius")) tie.radius = place.at("radius").number(kThinnestTie, kWidestTie);

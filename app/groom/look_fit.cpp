@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr int kPoints = 96;  // of a strand that is measured
+constexpr int kFitPoints = 96;  // of a strand that is measured
 constexpr std::size_t kMostStrands = 4000;
 constexpr int kMostTurns = 16;
 constexpr double kFewestTurns = 2.5, kQuickTurns = 3;  // slower turns are wander
@@ -172,7 +172,7 @@ LookFit fitLook(const Groom& groom, double scale, const StrandSamples& strands, 
   const GrowthMap growth(fit.shape);
   const std::size_t step = std::max<std::size_t>(1, strands.strandCount() / kMostStrands);
   std::vector<StrandMeasure> measures;
-  std::vector<Vector3f> given, strand(kPoints), grown(kPoints);
+  std::vector<Vector3f> given, strand(kFitPoints), grown(kFitPoints);
   for (std::size_t s = 0; s < strands.strandCount(); s += step) {
     given.clear();
     for (const Vector3f& p : groom.strand(static_cast<std::size_t>(strands.source[s])))

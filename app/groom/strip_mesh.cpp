@@ -18,14 +18,8 @@ using Row = std::vector<Vec3>;
 
 constexpr double kThinnest = 0.002, kThickest = 0.008, kOfWidth = 0.35;  // m, m, of a quad's width
 constexpr double kAtTip = 0.5;                                           // of the thickness at the root
-constexpr std::size_t kLeastLayers = 4, kFewSides = 4, kMostSides = 8;
+constexpr std::size_t kLeastLayers = 4, kFewSides = 4, kTubeSides = 8;
 constexpr double kFatness = 0.05;  // of untangled corners
-
-Vec3 middleOf(const Row& row) {
-  Vec3 sum = Vec3::Zero();
-  for (const Vec3& p : row) sum += p;
-  return sum / static_cast<double>(row.size());
-}
 
 double ringArea(const Row& ring) {
   const Vec3 middle = middleOf(ring);
@@ -82,7 +76,7 @@ std::size_t verticesOf(const std::vector<StripRows>& strips) {
 // Layers as asked, and no more vertices than asked where that can be had: first by sides of tubes, then by layers.
 bool fitBudget(const StripMeshOptions& options, std::vector<StripRows>& strips) {
   for (StripRows& strip : strips) {
-    if (strip.tube) reduceSides(kMostSides, strip);
+    if (strip.tube) reduceSides(kTubeSides, strip);
     setLayers(options.layers > 1 ? static_cast<std::size_t>(options.layers) : std::max(kLeastLayers, strip.rows.size()),
               strip);
   }

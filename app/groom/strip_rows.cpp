@@ -10,6 +10,12 @@
 
 namespace app {
 
+Eigen::Vector3d middleOf(const std::vector<Eigen::Vector3d>& row) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : row) sum += p;
+  return sum / static_cast<double>(row.size());
+}
+
 namespace {
 
 using Eigen::Vector3d;
@@ -19,12 +25,6 @@ constexpr double kFlatCap = 0.35;       // of a ring's radius: a single vertex n
 constexpr double kOpened = 0.2;         // of its neighbour's width: what a pointed row is opened to
 constexpr double kLeastFollowed = 0.6;  // of the rows: with fewer the piece is refused
 constexpr std::size_t kMostSides = 256;
-
-Vector3d middleOf(const Row& row) {
-  Vector3d sum = Vector3d::Zero();
-  for (const Vector3d& p : row) sum += p;
-  return sum / static_cast<double>(row.size());
-}
 
 std::vector<int> levelsFrom(const StripPatch& patch, const StripEnds& ends) {
   std::vector<int> level(patch.at.size(), -1), open = ends.root;

@@ -21,6 +21,9 @@ struct StripRows {
   int cut_rows = 0;  // rows at the tip that could not be followed, left out
 };
 
+// Mean of the points of a row.
+Eigen::Vector3d middleOf(const std::vector<Eigen::Vector3d>& row);
+
 // How far a point is from where hair is rooted: the lower, the nearer.
 using RootMeasure = std::function<double(const Eigen::Vector3d&)>;
 

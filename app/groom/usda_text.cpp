@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kDeepest = 64;  // prims below one another
 
-bool isBlank(char c) {
+bool isUsdaBlank(char c) {
   return static_cast<unsigned char>(c) <= ' ';
 }
 bool isWord(char c) {
@@ -70,7 +70,7 @@ class Scanner {
 
 void Scanner::skipBlanks() {
   while (at_ < text_.size()) {
-    if (isBlank(text_[at_]) || text_[at_] == ';') {
+    if (isUsdaBlank(text_[at_]) || text_[at_] == ';') {
       ++at_;
     } else if (text_[at_] == '#') {
       at_ = std::min(text_.find('\n', at_), text_.size());
@@ -138,7 +138,7 @@ bool isWanted(std::string_view name) {
          name.starts_with("xformOp");
 }
 
-struct Reader {
+struct TextReader {
   std::string_view text;
   const std::string& file;
   Scanner scanner;
@@ -157,12 +157,12 @@ struct Reader {
   Eigen::Affine3d operation(std::string_view name, const UsdaPrim& prim) const;
 };
 
-double Reader::numberOf(std::string_view value) const {
+double TextReader::numberOf(std::string_view value) const {
   const std::vector<double> numbers = usdaNumbers<double>(value, text, file);
   return numbers.size() == 1 ? numbers[0] : 0;
 }
 
-void Reader::stageMetadata() {
+void TextReader::stageMetadata() {
   if (!scanner.take('(')) return;
   while (!scanner.take(')')) {
     if (scanner.peek() == '"' || scanner.peek() == '\'') {  // a comment
@@ -180,7 +180,7 @@ void Reader::stageMetadata() {
   }
 }
 
-void Reader::prims(const Eigen::Affine3d& above, int depth) {
+void TextReader::prims(const Eigen::Affine3d& above, int depth) {
   while (!scanner.done()) {
     const std::string_view specifier = scanner.word();
     if (specifier != "def" && specifier != "over" && specifier != "class") scanner.fail("a prim should begin here");
@@ -188,7 +188,7 @@ void Reader::prims(const Eigen::Affine3d& above, int depth) {
   }
 }
 
-void Reader::prim(const Eigen::Affine3d& above, int depth) {
+void TextReader::prim(const Eigen::Affine3d& above, int depth) {
   if (depth > kDeepest) scanner.fail("prims lie more than 64 deep");
   UsdaPrim prim;
   prim.at = scanner.at();
@@ -200,7 +200,7 @@ void Reader::prim(const Eigen::Affine3d& above, int depth) {
 }
 
 // Prims below come after the attributes that place them, as every writer has it; a place told later would be lost.
-void Reader::body(UsdaPrim& prim, const Eigen::Affine3d& above, int depth) {
+void TextReader::body(UsdaPrim& prim, const Eigen::Affine3d& above, int depth) {
   bool placed = false;
   const auto settle = [&] {
     if (!placed) prim.place = above * placeOf(prim);
@@ -223,13 +223,13 @@ void Reader::body(UsdaPrim& prim, const Eigen::Affine3d& above, int depth) {
 }
 
 // Passed over: which variant is chosen is told elsewhere.
-void Reader::variantSet() {
+void TextReader::variantSet() {
   scanner.quotedText();
   scanner.expect('=');
   scanner.value();
 }
 
-void Reader::attribute(std::string_view first, UsdaPrim& prim) {
+void TextReader::attribute(std::string_view first, UsdaPrim& prim) {
   // [custom] [uniform] [prepend ...] type[] name, or rel name, or reorder names.
   std::string_view name = first;
   std::string_view before;
@@ -271,7 +271,7 @@ void Reader::attribute(std::string_view first, UsdaPrim& prim) {
   if (!interpolation.empty()) kept.interpolation = interpolation;
 }
 
-std::vector<UsdaSample> Reader::samples() {
+std::vector<UsdaSample> TextReader::samples() {
   std::vector<UsdaSample> all;
   scanner.expect('{');
   while (!scanner.take('}')) {
@@ -287,7 +287,7 @@ std::vector<UsdaSample> Reader::samples() {
   return all;
 }
 
-std::string Reader::interpolationOf(std::string_view metadata) const {
+std::string TextReader::interpolationOf(std::string_view metadata) const {
   const std::size_t key = metadata.find("interpolation");
   if (key == std::string_view::npos) return "";
   const std::size_t open = metadata.find('"', key), close = metadata.find('"', open + 1);
@@ -300,7 +300,7 @@ Eigen::Affine3d turned(double degrees, int axis) {
 }
 
 // "xformOp:rotateXYZ:suffix" and its value. Matrices are kept for row vectors.
-Eigen::Affine3d Reader::operation(std::string_view name, const UsdaPrim& prim) const {
+Eigen::Affine3d TextReader::operation(std::string_view name, const UsdaPrim& prim) const {
   constexpr std::string_view kBegin = "xformOp:";
   std::string_view kind = name.substr(std::min(kBegin.size(), name.size()));
   kind = kind.substr(0, kind.find(':'));
@@ -324,7 +324,7 @@ Eigen::Affine3d Reader::operation(std::string_view name, const UsdaPrim& prim) c
                    "apply the transforms before exporting");
 }
 
-Eigen::Affine3d Reader::placeOf(const UsdaPrim& prim) const {
+Eigen::Affine3d TextReader::placeOf(const UsdaPrim& prim) const {
   Eigen::Affine3d place = Eigen::Affine3d::Identity();
   const auto order = prim.attributes.find("xformOpOrder");
   if (order == prim.attributes.end()) return place;
@@ -344,7 +344,7 @@ std::string_view UsdaAttribute::at(std::size_t moment) const {
 }
 
 UsdaLayer readUsdaLayer(std::string_view text, const std::string& file) {
-  Reader reader{text, file, Scanner(text, file), {}};
+  TextReader reader{text, file, Scanner(text, file), {}};
   reader.stageMetadata();
   reader.prims(Eigen::Affine3d::Identity(), 0);
   return std::move(reader.layer);
@@ -356,7 +356,7 @@ std::vector<Number> usdaNumbers(std::string_view value, std::string_view text, c
   const char* at = value.data();
   const char* const end = at + value.size();
   while (at < end) {
-    if (isBlank(*at) || *at == ',' || *at == '[' || *at == ']' || *at == '(' || *at == ')') {
+    if (isUsdaBlank(*at) || *at == ',' || *at == '[' || *at == ']' || *at == '(' || *at == ')') {
       ++at;
       continue;
     }

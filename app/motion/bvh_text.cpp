@@ -35,7 +35,7 @@ void expect(TextScanner& scanner, std::string_view wanted) {
     scanner.fail("the text ends where '" + std::string(wanted) + "' should stand", "complete the file");
   }
   if (!sameWord(found, wanted)) {
-    scanner.fail("found " + quoted(found) + " where '" + std::string(wanted) + "' should stand",
+    scanner.fail("found " + app::quoted(found) + " where '" + std::string(wanted) + "' should stand",
                  "check that the file is a complete BVH file");
   }
 }
@@ -59,7 +59,7 @@ void readChannels(TextScanner& scanner, BvhText& bvh, BvhTextJoint& joint) {
     const std::string_view word = scanner.word();
     BvhChannel channel;
     if (!readChannelName(word, channel)) {
-      scanner.fail(word.empty() ? "the text ends inside CHANNELS" : quoted(word) + " is not a channel",
+      scanner.fail(word.empty() ? "the text ends inside CHANNELS" : app::quoted(word) + " is not a channel",
                    "use Xposition, Yposition, Zposition, Xrotation, Yrotation, Zrotation, as many as CHANNELS says");
     }
     joint.channels.push_back(channel);
@@ -111,9 +111,9 @@ void readHierarchy(TextScanner& scanner, BvhText& bvh) {
     } else if (word == "}") {
       current = joint.parent;
     } else if (word.empty()) {
-      scanner.fail("the text ends inside joint " + quoted(joint.name), "close every brace and add the motion");
+      scanner.fail("the text ends inside joint " + app::quoted(joint.name), "close every brace and add the motion");
     } else {
-      scanner.fail("found " + quoted(word) + " inside joint " + quoted(joint.name),
+      scanner.fail("found " + app::quoted(word) + " inside joint " + app::quoted(joint.name),
                    "expected OFFSET, CHANNELS, JOINT, End Site or a closing brace");
     }
   }
@@ -122,7 +122,7 @@ void readHierarchy(TextScanner& scanner, BvhText& bvh) {
   if (next == "}") scanner.fail("a closing brace too many", "match the braces");
   if (next.empty()) scanner.fail("the text ends before MOTION", "complete the file");
   if (!sameWord(next, "MOTION"))
-    scanner.fail("found " + quoted(next) + " where MOTION should stand", "match the braces");
+    scanner.fail("found " + app::quoted(next) + " where MOTION should stand", "match the braces");
 }
 
 void readMotionHead(TextScanner& scanner, BvhText& bvh) {

@@ -9,7 +9,7 @@ namespace {
 // A step that rounding alone would ask for is not taken: sixty sixtieths make sixty steps.
 constexpr double kSlack = 1e-6;
 // Longer frames (a debugger, a laptop's lid) are not caught up with at all.
-constexpr double kLongestFrame = 10;
+constexpr double kLongestWait = 10;
 
 void countSteps(int steps, double step, FixedClock& clock) {
   if (steps <= 0) return;
@@ -21,9 +21,9 @@ void countSteps(int steps, double step, FixedClock& clock) {
 
 int tick(double seconds, double step, int most, FixedClock& clock) {
   if (!(seconds > 0)) return 0;
-  if (seconds > kLongestFrame) {
-    clock.lost += std::isfinite(seconds) ? seconds - kLongestFrame : 0;
-    seconds = kLongestFrame;
+  if (seconds > kLongestWait) {
+    clock.lost += std::isfinite(seconds) ? seconds - kLongestWait : 0;
+    seconds = kLongestWait;
   }
   clock.ahead -= seconds;
   if (clock.ahead >= -kSlack * step) return 0;

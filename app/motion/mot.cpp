@@ -11,7 +11,7 @@ namespace app {
 namespace {
 
 constexpr int kMaxBodies = 4096;
-constexpr int kMaxFrames = 10'000'000;
+constexpr int kMaxMotFrames = 10'000'000;
 
 struct BodyText {
   std::vector<Vec3> positions;
@@ -27,7 +27,7 @@ int readFrameCount(TextScanner& scanner) {
   if (!sameWord(word, "NumFrames:")) {
     scanner.fail("'NumFrames:' should open the file", "give an ARCSim .mot file");
   }
-  const long long frames = scanner.count("NumFrames", kMaxFrames);
+  const long long frames = scanner.count("NumFrames", kMaxMotFrames);
   if (frames < 2) scanner.fail("the motion has fewer than two frames", "give a motion with at least two frames");
   // A body's frame takes at least 'x y z' and 'w x y z', 14 characters with their separators: checked before
   // allocation.

@@ -1,6 +1,7 @@
 #include "app/scene/edit_history.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <tuple>
 #include <utility>
 

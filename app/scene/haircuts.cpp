@@ -1,6 +1,7 @@
 #include "app/scene/haircuts.h"
 
 #include <atomic>
+#include <nlohmann/json.hpp>
 
 #include "app/files/errors.h"
 #include "app/scene/hair_from_file.h"

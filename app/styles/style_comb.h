@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/figure/smoothstep.h"
 #include "app/styles/hair_styles.h"
 #include "app/styles/style_roots.h"
 
@@ -38,12 +39,6 @@ struct Coat {
   bool inFront(int sheet) const { return std::min(sheet, sheets - 1 - sheet) < front_sheets; }
   std::size_t index(int sheet, int row) const { return static_cast<std::size_t>(sheet) * rows + row; }
 };
-
-// 0 below a, 1 above b, a cubic between.
-inline double smoothstep(double a, double b, double x) {
-  const double t = std::clamp((x - a) / (b - a), 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
 
 Coat combCoat(Style style, const Scalp& scalp, const BodyDistance& body, const FlowLines& lines);
 

@@ -16,7 +16,7 @@
 namespace app {
 namespace {
 
-constexpr double kFatness = 0.05, kGap = 0.003;      // see untangle; m
+constexpr double kTieFatness = 0.05, kTieGap = 0.003;      // see untangle; m
 constexpr double kFatEnough = 0.012;                 // with less a wider ring is tried
 constexpr double kCoat = 0.010;                      // m over the scalp, half-way to the ring
 constexpr double kStep = 0.01, kTurn = 0.16;         // m; share of a step's heading that gravity takes
@@ -106,7 +106,7 @@ Path Gathering::tail(double length) const {
     path.at.push_back(p), path.across.push_back(across), path.up.push_back(heading.cross(across));
     heading = ((1 - kTurn) * heading + kTurn * Vec3(0, -1, 0)).normalized();
     p += kStep * heading;
-    const double gap = kSwell * tie.radius + kGap, near = body(p);
+    const double gap = kSwell * tie.radius + kTieGap, near = body(p);
     if (near >= gap || k < 3) continue;
     const Vec3 n = bodyNormal(body, p);
     p += (gap - near) * n;
@@ -251,7 +251,7 @@ TiedHair tieHair(const sim::HairMeshShape& hair, const Scalp& scalp, const BodyD
       tie.radius *= wider;
       gather(tie, static_cast<int>(t), scalp, body, of, tied);
     }
-    untangle(body, kFatness, kGap, tied.shape);
+    untangle(body, kTieFatness, kTieGap, tied.shape);
     const double fatness = leastFatness(tied.shape);
     if (fatness > fattest) fattest = fatness, best = std::move(tied);
     if (fattest > kFatEnough) break;

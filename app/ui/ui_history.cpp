@@ -11,7 +11,7 @@ namespace app {
 
 namespace {
 
-constexpr float kWidth = 292, kLeastHeight = 130, kMargin = 12;
+constexpr float kHistoryWidth = 292, kLeastHeight = 130, kMargin = 12;
 
 // A slider's step carries its row's title; others say what they are.
 std::string titleOf(const EditStep& step) {
@@ -43,7 +43,7 @@ void historyPanel(Demo& demo, UiState& ui) {
   if (!ui.history || !ui.visible) return;
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const float scale = ui.text_scale, margin = kMargin * scale;
-  const float width = std::min(kWidth * scale, size.x - 2 * margin);
+  const float width = std::min(kHistoryWidth * scale, size.x - 2 * margin);
   // Below the timings where they leave room.
   const float room = size.y - ui.timings_bottom - 2 * margin;
   const float height = std::clamp(room, std::min(kLeastHeight * scale, size.y - 2 * margin), 0.5f * size.y);

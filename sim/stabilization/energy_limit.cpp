@@ -18,7 +18,7 @@ constexpr double kLimp = 1;
 constexpr int kTries = 5;          // of a shorter way
 constexpr double kWithin = 0.95;   // of the energy allowed and of the way, that a try aims at
 constexpr double kLeastWay = 0.5;  // of the way, that the first try leaves: energies of stretched hair rise faster
-constexpr double kStill = 1e-3;    // m/s of a body's surface against the roots
+constexpr double kStillBody = 1e-3;    // m/s of a body's surface against the roots
 
 enum class Motion { kCalm, kViolent, kNotFinite };
 
@@ -207,7 +207,7 @@ bool bodiesStandStill(const TakenStep& step, const Colliders& colliders, const E
                       const HairState& state) {
   return std::all_of(state.contacts.begin(), state.contacts.end(), [&](const Contact& contact) {
     const Vec3 surface = surfaceVelocity(colliders.body(contact.collider), scratch.carried[contact.vertex]);
-    return (surface - carrying(step, scratch, contact.vertex)).norm() < kStill;
+    return (surface - carrying(step, scratch, contact.vertex)).norm() < kStillBody;
   });
 }
 

@@ -11,14 +11,14 @@ namespace {
 constexpr double kLookEvery = 0.1;        // s
 constexpr double kInvertedShare = -0.05;  // of the rest volume: beyond flat
 constexpr double kSqueezed = 0.5;         // of the rest volume, of tetrahedra at rest: wound around their neighbours
-constexpr double kStill = 0.02;           // m/s against the root
+constexpr double kStillColumn = 0.02;           // m/s against the root
 constexpr double kFolded = -0.5;          // cosine between a column's segments, where at rest it is above zero
 constexpr double kGuideTime = 0.4;        // s
 constexpr double kSoon = 1e-3;            // s before the end that count as the end
-constexpr double kFirstBackoff = 0.5;     // s
-constexpr double kMaxBackoff = 600;       // s
+constexpr double kFirstColumnBackoff = 0.5;     // s
+constexpr double kMaxColumnBackoff = 600;       // s
 // Strong wind may hold hair inverted for good.
-constexpr double kBackoffGrowth = 4;
+constexpr double kColumnBackoffGrowth = 4;
 constexpr double kForgiven = 10;  // s upright after which a column's backoff begins anew
 
 double volumeOf(const CornerTet& tet, const std::vector<Vec3>& x) {
@@ -36,7 +36,7 @@ double cosineAt(const int (&segment)[3], const std::vector<Vec3>& x) {
 bool begin(RecoveryMemory::Column& column) {
   if (column.guided >= 0 || column.wait > 0) return false;
   column.guided = 0;
-  column.backoff = std::min(kMaxBackoff, std::max(kFirstBackoff, kBackoffGrowth * column.backoff));
+  column.backoff = std::min(kMaxColumnBackoff, std::max(kFirstColumnBackoff, kColumnBackoffGrowth * column.backoff));
   column.wait = kGuideTime + column.backoff;
   return true;
 }
@@ -53,7 +53,7 @@ void look(const HairMesh& mesh, double seconds, std::vector<char>& touched, Hair
   // With all of its column: near the roots nothing moves fast while the hair above is on its way home.
   const auto rests = [&](int v) {
     const auto root = state.velocities.begin() + mesh.shape.column_first[mesh.column_of[v]];
-    const auto still = [&](const Vec3& u) { return (u - *root).squaredNorm() < kStill * kStill; };
+    const auto still = [&](const Vec3& u) { return (u - *root).squaredNorm() < kStillColumn * kStillColumn; };
     return std::all_of(root, root + mesh.shape.columnLength(mesh.column_of[v]), still);
   };
   // Counts how long an element has been inverted, and guides its columns when it has been long enough.
