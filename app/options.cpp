@@ -160,6 +160,9 @@ void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
       "Hold a vertex of the hair, for instance {\"column\": 3, \"to\": \"scalp\"}; keys as in a scene's \"pins\"");
   group.value("--tie", options.tie, "NAME|JSON",
               "Tie the hair: back, high, low, left, right, two (left and right), none, or JSON as a scene's \"ties\"");
+  group.values("--attach", options.attachments, "FILE@JOINT",
+               "Wear a mesh that the hair collides with (hat, glasses, collar; OBJ, FBX, glTF): a joint's name, or head, "
+               "neck, chest; JSON as in a scene's \"attachments\"; none; may be given many times");
   group.values("--map", options.maps, "FIELD=FILE.png",
                "Paint stiffness, length or density over the scalp: the head unrolled, its front in the middle, white "
                "for the parameter's own value; may be given many times");

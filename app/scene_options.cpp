@@ -85,6 +85,9 @@ Options sortedOut(Options options) {
     case FileKind::kHairMesh:
       fill("--hair", options.hair, file);
       break;
+    case FileKind::kAttachment:
+      options.attachments.push_back(file);
+      break;
     case FileKind::kProject:
       throw UsageError(file + " is a project; start the window without it and open it there");
     case FileKind::kCache:
@@ -136,6 +139,11 @@ void overrideCharacter(const Options& options, CharacterSpec& spec) {
     if (!fault.empty()) throw UsageError("--map cannot be '" + text + "'; " + fault);
   }
   if (!options.tie.empty()) spec.ties = tiesFromText(options.tie);
+  for (const std::string& text : options.attachments) {
+    const std::vector<AttachmentSpec> given = attachmentsFromText(text);
+    if (given.empty()) spec.attachments.clear();
+    spec.attachments.insert(spec.attachments.end(), given.begin(), given.end());
+  }
   for (const std::string& text : options.pins) spec.pins.push_back(pinFromText(text));
 }
 

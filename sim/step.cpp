@@ -203,7 +203,7 @@ void integratePositions(const StepInput& input, const StepBase& base, double dt,
 
 Colliders collidersOf(const SimParams& params, const StepInput& input, Parts& parts) {
   return {input.ellipsoids, params.collider == ColliderKind::kSdf ? input.parts : std::span<const BodySdf>(),
-          &parts.correction.points};
+          &parts.correction.points, input.attached};
 }
 
 TakenStep takenStep(const SimParams& params, const StepBase& base, double dt, const Parts& parts) {

@@ -18,6 +18,7 @@ struct StepInput {
   std::span<const BodySdf> parts{};       // the same body as signed distances, for ColliderKind::kSdf; may be none
   std::span<const PinnedVertex> pins{};   // vertices drawn to points that move with joints, the scalp or not at all
   double max_work = INFINITY;             // workUnits (step_work.h) that the step should keep within
+  std::span<const BodySdf> attached{};    // collided with beside the body, whatever its kind: hats and the like
 };
 
 }  // namespace sim

@@ -119,24 +119,26 @@ std::vector<PartDistance> partDistances(const Character& character) {
   return parts;
 }
 
+void posePartDistance(const PartDistance& part, const Pose& pose, const Pose& previous, double dt,
+                      sim::BodySdf& posed) {
+  // The grid's frame is the joint's, its box lies about the centre.
+  BodyEllipsoid ball;
+  ball.joint = part.joint;
+  ball.center = part.center;
+  ball.radii = Vec3::Constant(part.radius);
+  poseEllipsoid(ball, pose, previous, dt, posed.bounds);
+  sim::DistanceGrid& grid = posed.grid;
+  grid.low = part.grid.low - part.center;
+  grid.spacing = part.grid.h;
+  grid.nodes = part.grid.n;
+  grid.values = part.grid.distance;
+  grid.deepest = part.deepest;
+}
+
 void posePartDistances(const std::vector<PartDistance>& parts, const Pose& pose, const Pose& previous, double dt,
                        std::vector<sim::BodySdf>& posed) {
   posed.resize(parts.size());
-  for (std::size_t k = 0; k < parts.size(); ++k) {
-    const PartDistance& part = parts[k];
-    // The grid's frame is the joint's, its box lies about the centre.
-    BodyEllipsoid ball;
-    ball.joint = part.joint;
-    ball.center = part.center;
-    ball.radii = Vec3::Constant(part.radius);
-    poseEllipsoid(ball, pose, previous, dt, posed[k].bounds);
-    sim::DistanceGrid& grid = posed[k].grid;
-    grid.low = part.grid.low - part.center;
-    grid.spacing = part.grid.h;
-    grid.nodes = part.grid.n;
-    grid.values = part.grid.distance;
-    grid.deepest = part.deepest;
-  }
+  for (std::size_t k = 0; k < parts.size(); ++k) posePartDistance(parts[k], pose, previous, dt, posed[k]);
 }
 
 }  // namespace app

@@ -25,6 +25,9 @@ struct PartDistance {
 // own.
 std::vector<PartDistance> partDistances(const Character& character);
 
+// One part in a pose, with velocities from `previous` over dt when dt > 0. The span points into `part`.
+void posePartDistance(const PartDistance& part, const Pose& pose, const Pose& previous, double dt, sim::BodySdf& posed);
+
 // The parts of a pose, with velocities from `previous` over dt when dt > 0. Spans point into `parts`.
 void posePartDistances(const std::vector<PartDistance>& parts, const Pose& pose, const Pose& previous, double dt,
                        std::vector<sim::BodySdf>& posed);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "app/figure/attachment.h"
 #include "app/files/errors.h"
 #include "app/files/json_reader.h"
 #include "app/files/polygon_file.h"
@@ -30,6 +31,15 @@ bool looksLikeScene(const nlohmann::json& text) {
   });
 }
 
+FileKind kindOfStillMesh(const std::string& file) {
+  if (hasLayers(readText(file))) return FileKind::kHairMesh;
+  try {
+    return looksWorn(readPolygons(file)) ? FileKind::kAttachment : FileKind::kHairMesh;
+  } catch (const InputError&) {
+    return FileKind::kHairMesh;  // whose reader says what is wrong
+  }
+}
+
 }  // namespace
 
 FileKind fileKind(const std::string& file) {
@@ -40,11 +50,11 @@ FileKind fileKind(const std::string& file) {
     if (text.is_object() && text.contains("hairmesh-project")) return FileKind::kProject;
     return looksLikeScene(text) ? FileKind::kScene : FileKind::kPreset;
   }
-  if (ending == ".obj") return FileKind::kHairMesh;
+  if (ending == ".obj") return kindOfStillMesh(file);
   if (ending == ".mot") return FileKind::kRigidMotion;
   if (ending == ".vrm") return FileKind::kHairMesh;
   if (ending == ".glb" || ending == ".gltf" || ending == ".fbx")
-    return holdsStillMeshes(file) ? FileKind::kHairMesh : FileKind::kMotion;
+    return holdsStillMeshes(file) ? kindOfStillMesh(file) : FileKind::kMotion;
   for (const char* known : {".bvh", ".dae"}) {
     if (ending == known) return FileKind::kMotion;
   }

@@ -12,7 +12,7 @@
 namespace app {
 namespace {
 
-constexpr int kMaxSide = 8192;                           // pixels
+constexpr int kMaxPanoramaSide = 8192;                           // pixels
 constexpr int kNarrowestPacked = 8, kWidestPacked = 32767;  // pixels: rows of other widths are never packed
 constexpr int kBias = 136;  // of the exponent, with the eight bits of the mantissa
 
@@ -61,7 +61,7 @@ class Reader {
     const bool read = std::sscanf(size.c_str(), "-Y %9d +X %9d%n", &height_, &width_, &end) == 2;
     if (!read || end != static_cast<int>(size.size()) || width_ < 1 || height_ < 1)
       refuse("size", "is not -Y HEIGHT +X WIDTH", "save it with the top row first and each row from the left");
-    if (std::max(width_, height_) > kMaxSide)
+    if (std::max(width_, height_) > kMaxPanoramaSide)
       refuse("size", "is larger than 8192 pixels a side", "scale it down, 1024x512 is enough");
   }
 

@@ -28,7 +28,7 @@ struct AskName {
   std::string_view name;
 };
 // What can be recorded: all but the requests that write files.
-constexpr std::array<AskName, 47> kAskNames{{{Ask::kSetParam, "set"},
+constexpr std::array<AskName, 48> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kPause, "pause"},
                                              {Ask::kPauseMotion, "pause-motion"},
                                              {Ask::kSingleStep, "single-step"},
@@ -74,6 +74,7 @@ constexpr std::array<AskName, 47> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kClearBake, "clear-bake"},
                                              {Ask::kMap, "map"},
                                              {Ask::kTie, "tie"},
+                                             {Ask::kAttach, "attach"},
                                              {Ask::kVary, "vary"}}};
 
 std::string_view nameOf(Ask what) {

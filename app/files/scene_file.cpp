@@ -48,7 +48,7 @@ FieldFiles readMaps(const JsonPlace& place) {
 
 CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
   place.expectObject({"motion", "parts", "clip", "style", "resolution", "hair", "reverse_faces", "fit", "mends", "position",
-                      "heading", "clip_offset", "loop", "look", "pins", "ties", "maps"});
+                      "heading", "clip_offset", "loop", "look", "pins", "ties", "attachments", "maps"});
   CharacterSpec spec;
   spec.look = look;
   spec.motion =
@@ -76,6 +76,7 @@ CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
   if (place.has("pins")) spec.pins = readPins(place.at("pins"));
   if (place.has("maps")) spec.maps = readMaps(place.at("maps"));
   if (place.has("ties")) spec.ties = readTies(place.at("ties"));
+  if (place.has("attachments")) spec.attachments = readAttachments(place.at("attachments"));
   return spec;
 }
 
@@ -125,6 +126,7 @@ json writeCharacter(const CharacterSpec& spec) {
           {"look", writeHairRows(spec.look)},
           {"pins", writePins(spec.pins)},
           {"ties", writeTies(spec.ties)},
+          {"attachments", writeAttachments(spec.attachments)},
           {"maps",
            {{"stiffness", spec.maps.stiffness}, {"length", spec.maps.length}, {"density", spec.maps.density}}}};
 }

@@ -7,6 +7,7 @@
 //     "reverse_faces": false, "fit": true, "mends": "",
 //     "position": [0, 0, 0], "heading": 0, "clip_offset": 0, "loop": "auto", "look": { a row of the hair table: value
 //     }, "pins": [ as pin_spec.h says ], "ties": [ as tie_spec.h says ],
+//     "attachments": [ as attachment_spec.h says ],
 //     "maps": { "stiffness": "a.png", "length": "b.png", "density": "c.png", as field_map.h says }
 //   }],
 //   "camera": { "view": "three-quarter", "framing": "bust", "eye": [..], "target": [..], "fov": 0.5, "follow": true,
@@ -25,6 +26,7 @@
 #include <vector>
 
 #include "app/figure/character.h"
+#include "app/files/attachment_spec.h"
 #include "app/files/field_map.h"
 #include "app/files/pin_spec.h"
 #include "app/files/tie_spec.h"
@@ -56,6 +58,7 @@ struct CharacterSpec {
   CharacterLook look;
   std::vector<PinSpec> pins;
   std::vector<TieSpec> ties;
+  std::vector<AttachmentSpec> attachments;
   FieldFiles maps;
 };
 

@@ -5,6 +5,7 @@
 
 #include "app/figure/root_cover.h"
 #include "app/files/errors.h"
+#include "app/scene/attachments.h"
 #include "app/scene/frame_stats.h"
 #include "app/scene/haircuts.h"
 #include "app/scene/sim_to_render.h"
@@ -166,8 +167,22 @@ sim::StepInput stepInput(const sim::SimParams& params, double step, double time,
     }
     posePartDistances(body.parts, actor.pose, actor.previous_pose, step, actor.parts);
   }
+  poseAttachments(step, actor);
   posePins(actor.pins, actor.pose, actor.previous_pose, time, step, actor.pinned);
-  return {actor.roots, actor.ellipsoids, time, actor.parts, actor.pinned, actor.max_work};
+  return {actor.roots, actor.ellipsoids, time, actor.parts, actor.pinned, actor.max_work, actor.worn_distances};
+}
+
+}  // namespace
+
+namespace {
+
+// What lies under an attachment stays there.
+void holdCovered(Actor& actor) {
+  const Character& character = actor.body->character;
+  for (const int v : actor.haircut->covered) {
+    const Vec3 at = character.head_frame * actor.haircut->mesh.shape.positions[static_cast<std::size_t>(v)];
+    actor.pins.push_back({v, character.head_joint, at, PinSpec::kForever, 0, PinSpec::kForever});
+  }
 }
 
 }  // namespace
@@ -178,6 +193,7 @@ Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, AssetCa
   LoadedBody& body = loadBody(spec, asset_cache);
   actor.body = &body;
   actor.haircut = &cutHair(spec, body, asset_cache);
+  for (const Attachment* mesh : attach(spec, body, asset_cache)) actor.worn.push_back({mesh, freshId(), {}});
   if (actor.haircut->look) takeUnset(*actor.haircut->look, actor.spec.look.hair);
   actor.scalp = &coverScalp(body, *actor.haircut, asset_cache);
   actor.clip = findClip(spec, actor.body->character);
@@ -197,13 +213,16 @@ Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, AssetCa
     const Vec3 at = body.character.head_frame * places[k];
     actor.pins.push_back({ring[k], body.character.head_joint, at, PinSpec::kForever, 0, PinSpec::kForever});
   }
+  holdCovered(actor);
+  for (const WornAttachment& worn : actor.worn)
+    markMoving(worn.mesh->part.joint, body.character.skeleton, body.moving_joints);
   for (const ActorPin& pin : actor.pins) markMoving(pin.joint, body.character.skeleton, body.moving_joints);
   return actor;
 }
 
 const HaircutPair* coarsePair(const Actor& actor, Resolution resolution, AssetCache& asset_cache) {
   const Resolution own = actor.spec.resolution;
-  if (!actor.spec.hair.empty() || actor.haircut->edited || own == resolution || own == Resolution::kMinimal) return nullptr;
+  if (!actor.spec.hair.empty() || actor.haircut->edited || !actor.worn.empty() || own == resolution || own == Resolution::kMinimal) return nullptr;
   for (const auto& pair : asset_cache.pairs) {
     if (pair->fine == actor.haircut && pair->resolution == resolution) return pair.get();
   }
@@ -223,7 +242,8 @@ void tidy(const std::vector<Actor>& actors, AssetCache& asset_cache) {
   const auto worn = [&](const auto& entry) {
     return std::any_of(actors.begin(), actors.end(), [&](const Actor& actor) {
       const HaircutPair* pair = actor.coarse.pair;
-      return static_cast<const void*>(actor.body) == entry.get() ||
+      const auto is = [&](const WornAttachment& one) { return static_cast<const void*>(one.mesh) == entry.get(); };
+      return std::ranges::any_of(actor.worn, is) || static_cast<const void*>(actor.body) == entry.get() ||
              static_cast<const void*>(actor.haircut) == entry.get() ||
              static_cast<const void*>(actor.scalp) == entry.get() ||
              (pair &&
@@ -233,6 +253,7 @@ void tidy(const std::vector<Actor>& actors, AssetCache& asset_cache) {
   std::erase_if(asset_cache.pairs, [&](const auto& pair) { return !worn(pair); });
   std::erase_if(asset_cache.bodies, [&](const auto& body) { return !worn(body); });
   std::erase_if(asset_cache.haircuts, [&](const auto& haircut) { return !worn(haircut); });
+  std::erase_if(asset_cache.attachments, [&](const auto& attachment) { return !worn(attachment); });
   std::erase_if(asset_cache.covers, [&](const auto& scalp) { return !worn(scalp); });
 }
 
@@ -420,7 +441,8 @@ void showActor(double fraction, const Vec3& origin, Actor& actor) {
   if (blendPositions(actor.previous_positions, actor.hair.positions, within, origin, actor.shown_positions)) {
     ++actor.position_revision;
   }
-  if (jointMatrices(actor.body->character.skeleton, actor.shown_pose, origin, actor.joint_matrices))
+  const bool moved = showAttachments(origin, actor);
+  if (jointMatrices(actor.body->character.skeleton, actor.shown_pose, origin, actor.joint_matrices) || moved)
     ++actor.pose_revision;
   skinEllipsoids(actor.body->character, actor.shown_pose, origin, actor.shown_skin);
   actor.shown_still = actor.pose_still && (actor.sleep.asleep || actor.unseen);

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "app/figure/attachment.h"
 #include "app/figure/body_sdf.h"
 #include "app/figure/character.h"
 #include "app/files/scene_file.h"
@@ -52,6 +53,7 @@ struct Haircut {
   std::vector<MendedFinding> findings;  // of a groom, what the inspector says
   sim::HairMesh mesh;
   std::vector<int> tied;         // vertices in the rings of ties
+  std::vector<int> covered;      // vertices under attachments, which hold them
   std::vector<float> stiffness;  // painted, one a column; empty: not painted
   std::vector<render::HairFace> faces;
   std::vector<float> rest;  // positions of the rest shape, three floats a vertex
@@ -68,6 +70,13 @@ struct ScalpCover {
   std::vector<float> cover;
 };
 
+// An attachment on one actor.
+struct WornAttachment {
+  const Attachment* mesh = nullptr;
+  std::uint64_t id = 0;   // of what is drawn
+  render::Mat4 matrix{};  // joint to world, less the picture's origin
+};
+
 // Two resolutions of a style on one head, and the transfers between them.
 struct HaircutPair {
   const Haircut* fine = nullptr;
@@ -82,6 +91,7 @@ struct AssetCache {
   std::vector<std::unique_ptr<Haircut>> haircuts;
   std::vector<std::unique_ptr<HaircutPair>> pairs;
   std::vector<std::unique_ptr<ScalpCover>> covers;
+  std::vector<std::unique_ptr<Attachment>> attachments;
 };
 
 // How much care the simulation takes of an actor.
@@ -119,6 +129,8 @@ struct Actor {
   std::vector<sim::Vec3> previous_positions;
   std::vector<sim::Ellipsoid> ellipsoids;
   std::vector<sim::BodySdf> parts;  // the same body as signed distances, where they are collided with
+  std::vector<WornAttachment> worn;
+  std::vector<sim::BodySdf> worn_distances;
   std::vector<sim::Vec3> roots;
   std::vector<ActorPin> pins;
   std::vector<sim::PinnedVertex> pinned;  // those that are on, as the last step saw them

@@ -49,7 +49,8 @@ void recast(const CharacterSpec& spec, bool same_motion, const std::string& titl
   settleActor(demo.scene.sim, demo.scene.playback.settle, fresh);
   fresh.context->refreshGradually(true);
   replaceActor(std::move(fresh), demo.selected, same_motion, demo);
-  showMessage(selectedActor(demo).haircut->note.empty() ? title : hairNotes(demo), demo);
+  const std::string notes = hairNotes(demo);
+  showMessage(notes.empty() ? title : notes, demo);
 }
 
 void changeStyle(const Request& request, Demo& demo) {
@@ -88,6 +89,22 @@ void changeTies(const std::string& text, Demo& demo) {
   CharacterSpec spec = selectedActor(demo).spec;
   spec.ties = tiesFromText(text);
   recast(spec, true, spec.ties.empty() ? "ties taken off" : "hair tied", demo);
+}
+
+void changeAttachments(const Request& request, Demo& demo) {
+  CharacterSpec spec = selectedActor(demo).spec;
+  std::vector<AttachmentSpec> given = attachmentsFromText(request.text);
+  if (request.name == "add") given.insert(given.begin(), spec.attachments.begin(), spec.attachments.end());
+  if (given.size() > kMaxAttachments)
+    throw InputError("", "attachments", "are more than " + std::to_string(kMaxAttachments), "take one off first");
+  const bool same = wornText(given) == wornText(spec.attachments);
+  spec.attachments = std::move(given);
+  if (same) {
+    selectedActor(demo).spec.attachments = spec.attachments;
+    return;
+  }
+  recast(spec, true, spec.attachments.empty() ? "attachments taken off" : "wears " + stem(spec.attachments.back().file),
+         demo);
 }
 
 void changeMap(const Request& request, Demo& demo) {
@@ -146,6 +163,8 @@ void openAnyFile(const std::string& file, Demo& demo) {
       return post(Ask::kMotionFile, partsBeside(file));
     case FileKind::kHairMesh:
       return post(Ask::kHairFile, "");
+    case FileKind::kAttachment:
+      return post(Ask::kAttach, "add");
     case FileKind::kState:
       return post(Ask::kLoadState, "");
     case FileKind::kCache:
@@ -398,6 +417,7 @@ constexpr Action kActions[] = {
      }},
     {Ask::kMap, changeMap},
     {Ask::kTie, [](const Request& request, Demo& demo) { changeTies(request.text, demo); }},
+    {Ask::kAttach, changeAttachments},
     {Ask::kVary, vary},
 };
 

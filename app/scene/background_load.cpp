@@ -54,6 +54,7 @@ void recastLoaded(Loaded& loaded, Demo& demo) {
   for (auto& body : loaded.asset_cache.bodies) demo.asset_cache.bodies.push_back(std::move(body));
   for (auto& haircut : loaded.asset_cache.haircuts) demo.asset_cache.haircuts.push_back(std::move(haircut));
   for (auto& scalp : loaded.asset_cache.covers) demo.asset_cache.covers.push_back(std::move(scalp));
+  for (auto& one : loaded.asset_cache.attachments) demo.asset_cache.attachments.push_back(std::move(one));
   fresh.playback.speed = old.playback.speed;
   fresh.playback.paused = old.playback.paused;
   if (loaded.order.same_motion) {

@@ -103,6 +103,7 @@ bool comparable(const Demo& a, const Demo& b) {
   return std::ranges::equal(a.actors, b.actors, [](const Actor& one, const Actor& other) {
     const CharacterSpec &x = one.spec, &y = other.spec;
     return x.style == y.style && x.hair == y.hair && writeTies(x.ties) == writeTies(y.ties) &&
+           wornText(x.attachments) == wornText(y.attachments) &&
            x.maps.length == y.maps.length && x.motion == y.motion && x.position == y.position && x.heading == y.heading;
   });
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "app/scene/attachments.h"
 #include "app/scene/level_of_detail.h"
 #include "app/scene/sim_to_render.h"
 #include "render/fiber_scattering.h"
@@ -162,6 +163,24 @@ render::BodyInput bodyInput(const Actor& actor, bool show_strands) {
   return input;
 }
 
+render::BodyInput attachmentInput(const Actor& actor, std::size_t k) {
+  const WornAttachment& worn = actor.worn[k];
+  const Attachment& mesh = *worn.mesh;
+  render::BodyInput input;
+  input.id = worn.id;
+  input.mesh_id = mesh.id;
+  input.positions = {mesh.positions.data()->data(), 3 * mesh.positions.size()};
+  input.normals = {mesh.normals.data()->data(), 3 * mesh.normals.size()};
+  input.triangles = mesh.triangles;
+  input.joints = {mesh.joints.data()->data(), 4 * mesh.joints.size()};
+  input.weights = {mesh.weights.data()->data(), 4 * mesh.weights.size()};
+  input.joint_matrices = {&worn.matrix, 1};
+  input.pose_revision = actor.pose_revision;
+  input.color = actor.spec.attachments[k].color;
+  input.roughness = actor.spec.attachments[k].roughness;
+  return input;
+}
+
 }  // namespace
 
 void addDrawing(const render::DrawSkipCounts& drawing, SkipCounts& counts) {
@@ -229,8 +248,8 @@ std::string numericalNote(const FrameStats& stats) {
 std::string hairNotes(const Demo& demo) {
   std::string notes;
   for (const Actor& actor : demo.actors) {
-    const std::string& note = actor.haircut->note;
-    if (!note.empty() && notes.find(note) == std::string::npos) notes += (notes.empty() ? "" : "\n") + note;
+    for (const std::string& note : {actor.haircut->note, attachmentNotes(actor)})
+      if (!note.empty() && notes.find(note) == std::string::npos) notes += (notes.empty() ? "" : "\n") + note;
   }
   return notes;
 }
@@ -266,6 +285,7 @@ render::FrameInput frameInput(Demo& demo, int width, int height) {
   for (const Actor& actor : demo.actors) {
     demo.hair_inputs.push_back(hairInput(actor));
     demo.body_inputs.push_back(bodyInput(actor, demo.scene.look.view.show_strands));
+    for (std::size_t k = 0; k < actor.worn.size(); ++k) demo.body_inputs.push_back(attachmentInput(actor, k));
   }
   render::FrameInput input;
   input.width = width;

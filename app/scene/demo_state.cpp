@@ -39,7 +39,7 @@ auto savedOf(P& playback) requires std::same_as<std::remove_const_t<P>, Playback
 template <class A>
 auto savedOf(A& actor) requires std::same_as<std::remove_const_t<A>, Actor> {
   auto& [id, spec, body, haircut, scalp, clip, playback, reach, jumped, pose, previous_pose, hair, previous_positions,
-         ellipsoids, parts, roots, pins, pinned, context, last_report, error_meter, detail, coarse, sleep, span, ahead,
+         ellipsoids, parts, worn, worn_distances, roots, pins, pinned, context, last_report, error_meter, detail, coarse, sleep, span, ahead,
          steps, posed_time, pose_still, unseen, shown_still, usual_step, max_work, shown_pose, shown_positions,
          shown_skin, joint_matrices, layout_revision, position_revision, pose_revision] = actor;
   auto& [step_span, coarse_mesh, seen] = detail;
@@ -76,6 +76,7 @@ std::string identity(const Actor& actor) {
                                         : name(spec.hair));
   if (!spec.parts.empty()) text += ", parts " + name(spec.parts);
   if (!spec.ties.empty()) text += ", tied";
+  for (const AttachmentSpec& one : spec.attachments) text += ", wears " + name(one.file);
   if (spec.position != Vec3::Zero() || spec.heading != 0) {
     text += ", at";
     for (const double value : {spec.position.x(), spec.position.y(), spec.position.z(), spec.heading})

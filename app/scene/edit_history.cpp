@@ -48,6 +48,7 @@ constexpr EditKind kEditKinds[] = {{Ask::kSetParam, kSettings, true, ""},
                                    {Ask::kHairFile, kOfHair, false, "Hair mesh"},
                                    {Ask::kHairMends, kOfHair, false, "Mends"},
                                    {Ask::kTie, kOfHair, false, "Tie"},
+                                   {Ask::kAttach, kOfHair, false, "Attachment"},
                                    {Ask::kMap, kOfHair, false, "Painted"},
                                    {Ask::kRestart, kOfHair | kOfMotion, false, "To the start"},
                                    {Ask::kCarryAlong, kOfHair | kOfMotion, true, "Scrub"},
@@ -105,10 +106,10 @@ EditSide sideOf(const Demo& demo, int reach) {
 bool sameCast(const CharacterSpec& a, const CharacterSpec& b) {
   const auto cast = [](const CharacterSpec& spec) {
     const auto& [motion, parts, clip, style, resolution, hair, reverse_faces, fit, mends, position, heading, clip_offset, loop,
-                 look, pins, ties, maps] = spec;
+                 look, pins, ties, attachments, maps] = spec;
     return std::tuple(motion, parts, clip, style, resolution, hair, reverse_faces, fit, mends, position.x(), position.y(),
                       position.z(), heading, loop, writePins(pins).dump(),
-                      writeTies(ties).dump(), maps.stiffness, maps.length, maps.density);
+                      writeTies(ties).dump(), wornText(attachments), maps.stiffness, maps.length, maps.density);
   };
   return cast(a) == cast(b);
 }

@@ -44,6 +44,7 @@ Haircut& ownHaircut(Actor& actor, Demo& demo) {
   own->rest = worn.rest;
   own->edited = worn.edited;
   own->tied = worn.tied;
+  own->covered = worn.covered;
   own->stiffness = worn.stiffness;
   own->frozen = worn.frozen;
   actor.haircut = own.get();

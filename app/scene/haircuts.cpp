@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/files/errors.h"
+#include "app/scene/attachments.h"
 #include "app/scene/hair_from_file.h"
 #include "app/scene/painted_fields.h"
 #include "app/scene/sim_to_render.h"
@@ -39,15 +40,18 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
   const std::string title = spec.hair.empty() ? styleTitle(spec) : spec.hair + (spec.reverse_faces ? " reversed" : "");
   const std::string ties = spec.ties.empty() ? "" : " tied " + writeTies(spec.ties).dump();
   const std::string painted = "|" + spec.maps.stiffness + "|" + spec.maps.length + "|" + spec.maps.density;
-  const std::string key = body.key + "|" + title + (spec.fit ? " fitted " : "") + spec.mends + ties + painted;
+  const std::vector<const Attachment*> worn = attach(spec, body, asset_cache);
+  std::string under;
+  for (const Attachment* attachment : worn) under += "|" + attachment->key;
+  const std::string key = body.key + "|" + title + (spec.fit ? " fitted " : "") + spec.mends + ties + painted + under;
   for (const auto& haircut : asset_cache.haircuts) {
     if (haircut->key == key) return *haircut;
   }
   auto haircut = std::make_unique<Haircut>();
   haircut->key = key;
   haircut->id = freshId();
-  // Built-in styles and ties alone ask for the distance, and it is a grid that takes time to fill.
-  if ((spec.hair.empty() || !spec.ties.empty()) && !body.distance) body.distance = restBodyDistance(body.character);
+  // Built-in styles, ties and attachments ask for the distance, and it is a grid that takes time to fill.
+  if ((spec.hair.empty() || !spec.ties.empty() || !worn.empty()) && !body.distance) body.distance = restBodyDistance(body.character);
   try {
     sim::HairMeshShape shape = spec.hair.empty()
                                    ? makeStyle(spec.style, spec.resolution, body.character.scalp, body.distance)
@@ -57,6 +61,7 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
     const BodyDistance around = spec.hair.empty() ? body.distance : [](const Vec3&) { return 1.0; };
     if (!spec.maps.length.empty()) paintLength(readFieldMap(spec.maps.length), scalp, around, shape);
     if (!spec.ties.empty()) applyTies(spec, body, shape, haircut->tied);
+    haircut->covered = layUnder(worn, scalp, body.distance, shape);
     haircut->mesh = sim::buildHairMesh(std::move(shape));
     if (!spec.maps.stiffness.empty())
       haircut->stiffness = paintedStiffness(readFieldMap(spec.maps.stiffness), scalp, haircut->mesh.shape);
@@ -64,6 +69,8 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
   } catch (const sim::MeshError& error) {
     if (!spec.maps.length.empty())
       throw InputError("map " + spec.maps.length, "length", "cuts hair so that its layers cross", "paint it lighter or more evenly");
+    if (!haircut->covered.empty())
+      throw InputError(spec.attachments.front().file, "", "leaves the hair no room", "make it wider, or move it off the head");
     if (!spec.ties.empty())
       throw InputError("", "tie " + writeTies(spec.ties).dump(), "leaves the hair no room", "move it off the head, or make it wider");
     throw InputError(spec.hair.empty() ? "style " + title + " on " + spec.motion : spec.hair, error.place, error.fault,

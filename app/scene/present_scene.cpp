@@ -40,6 +40,7 @@ Scene movable(Scene scene) {
     makeMovable("clips", spec.motion);
     makeMovable("clips", spec.parts);
     makeMovable("hair", spec.hair);
+    for (AttachmentSpec& one : spec.attachments) makeMovable("attachments", one.file);
     for (std::string* map : {&spec.maps.stiffness, &spec.maps.length, &spec.maps.density}) makeMovable("maps", *map);
   }
   return scene;

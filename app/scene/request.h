@@ -61,6 +61,8 @@ enum class Ask {
   kClearBake,    // what the timeline keeps is forgotten
   kMap,          // name: stiffness, length or density; text: the picture it is painted by, empty for none
   kTie,          // text: ties of the selected character, see tiesFromText
+  kAttach,       // text: attachments of the selected character in place of those before, see attachmentsFromText;
+                 // name: add, beside those before
   kVary,         // value: seed; text: how far, see varyMaterial
   kCount
 };

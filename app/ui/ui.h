@@ -82,6 +82,8 @@ struct UiState {
   long scrubbed = -1;              // frame that the timeline is dragged to
   BrushState brush;
   VaryState vary;
+  std::vector<AttachmentSpec> worn;  // as their colours are being edited
+  bool worn_edited = false;
   bool light_held = false;         // the key light is turned by a drag
   bool line_held = false;          // the line of a comparison is dragged
   std::string kept_folder;          // where the list of recent files is kept; empty: nowhere
@@ -89,7 +91,7 @@ struct UiState {
   bool leaving = false;       // Esc was pressed once
   std::string shown_message;
   double message_since = 0;                                // s of ImGui's clock
-  std::vector<std::string> scenes, presets, clips, hairs;  // files on offer
+  std::vector<std::string> scenes, presets, clips, hairs, attachments;  // files on offer
   std::vector<UiItem> items;
 };
 

@@ -397,6 +397,8 @@ void hairTab(Demo& demo, UiState& ui) {
          std::to_string(mesh.prisms.size()) + " in " + std::to_string(mesh.shape.root_faces.size()) + " bundles");
     fact("Length", metres(mesh.hair_length));
   }
+  if (section("Worn", false)) attachmentSection(demo, ui);
+  noteItem("section Worn", ui);
   inspectorSection(actor, demo, ui);
   for (const char* group : {"Strands", "Styling"}) {
     if (section(group, true)) hairGroup(group, demo, ui);

@@ -28,6 +28,9 @@ void cameraRows(Demo& demo, UiState& ui);
 void brushSection(UiState& ui);
 void brushFrame(Demo& demo, UiState& ui);
 
+// What the character wears.
+void attachmentSection(Demo& demo, UiState& ui);
+
 // What the scene is compared with; and, before the panels, the line between the two, which a drag moves.
 void compareRows(Demo& demo, UiState& ui);
 void compareLine(Demo& demo, UiState& ui);

@@ -94,6 +94,7 @@ void prepareUi(float text_scale, UiState& ui) {
   ui.presets = listAssets("presets", {".json"});
   ui.clips = listAssets("clips", {".bvh", ".glb", ".gltf", ".fbx"});
   ui.hairs = listAssets("hair", {".obj"});
+  ui.attachments = listAssets("attachments", {".obj", ".glb", ".gltf", ".fbx"});
 }
 
 }  // namespace app

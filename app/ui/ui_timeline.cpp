@@ -14,7 +14,7 @@ namespace app {
 
 namespace {
 
-constexpr float kHeight = 50, kLeastWidth = 240, kButtonsWidth = 460, kMargin = 12;
+constexpr float kTimelineHeight = 50, kLeastWidth = 240, kButtonsWidth = 460, kTimelineMargin = 12;
 constexpr double kWorst = 3;  // of the mean cost: a step to look at
 
 // The kept moment at a share of the strip.
@@ -138,12 +138,12 @@ void cacheButton(Demo& demo, UiState& ui) {
 float timelinePanel(Demo& demo, UiState& ui, float left) {
   if (!ui.visible || !demo.timeline.on) return 0;
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  const float scale = ui.text_scale, margin = kMargin * scale;
-  const float right = ui.history ? (292 + kMargin) * scale : 0;
+  const float scale = ui.text_scale, margin = kTimelineMargin * scale;
+  const float right = ui.history ? (292 + kTimelineMargin) * scale : 0;
   const float width = size.x - left - right - 2 * margin;
-  if (width < kLeastWidth * scale || size.y < 4 * kHeight * scale) return 0;
+  if (width < kLeastWidth * scale || size.y < 4 * kTimelineHeight * scale) return 0;
   ImGui::SetNextWindowPos({left + margin, size.y - margin}, ImGuiCond_Always, {0, 1});
-  ImGui::SetNextWindowSize({width, kHeight * scale});
+  ImGui::SetNextWindowSize({width, kTimelineHeight * scale});
   const ImGuiWindowFlags flags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                                  ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoBringToFrontOnFocus;
   if (ImGui::Begin("timeline", nullptr, flags)) {
@@ -160,7 +160,7 @@ float timelinePanel(Demo& demo, UiState& ui, float left) {
     strip(demo, ui);
   }
   ImGui::End();
-  return (kHeight + kMargin) * scale;
+  return (kTimelineHeight + kTimelineMargin) * scale;
 }
 
 void offerPanel(Demo& demo, UiState& ui) {

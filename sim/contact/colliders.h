@@ -60,21 +60,27 @@ struct BodySdf {
 // Distance from the grid, normal from its slope. Error: the grid's.
 SurfacePoint closestPoint(const BodySdf& part, const Vec3& p);
 
-// The colliders of a step, of either kind, by index.
+// The colliders of a step by index: the body's, of one kind, then what is attached to it.
 struct Colliders {
   std::span<const Ellipsoid> ellipsoids{};
   std::span<const BodySdf> parts{};  // in place of the ellipsoids where there are any
   long* counted = nullptr;           // where there is one: the closest points asked for (StepWork::surface_points)
+  std::span<const BodySdf> attached{};
 
-  int count() const { return static_cast<int>(parts.empty() ? ellipsoids.size() : parts.size()); }
+  int bodies() const { return static_cast<int>(parts.empty() ? ellipsoids.size() : parts.size()); }
+  int count() const { return bodies() + static_cast<int>(attached.size()); }
+  // Null: collider k is an ellipsoid.
+  const BodySdf* sdf(int k) const {
+    return k >= bodies() ? &attached[k - bodies()] : parts.empty() ? nullptr : &parts[k];
+  }
   // Pose, motion and bounds of collider k.
-  const Ellipsoid& body(int k) const { return parts.empty() ? ellipsoids[k] : parts[k].bounds; }
+  const Ellipsoid& body(int k) const { return sdf(k) ? sdf(k)->bounds : ellipsoids[k]; }
   SurfacePoint closest(int k, const Vec3& p) const {
     if (counted) ++*counted;
-    return parts.empty() ? closestPoint(ellipsoids[k], p) : closestPoint(parts[k], p);
+    return sdf(k) ? closestPoint(*sdf(k), p) : closestPoint(ellipsoids[k], p);
   }
   // m, from the middle of collider k to its surface.
-  double thickness(int k) const { return parts.empty() ? ellipsoids[k].radii.minCoeff() : parts[k].grid.deepest; }
+  double thickness(int k) const { return sdf(k) ? sdf(k)->grid.deepest : ellipsoids[k].radii.minCoeff(); }
 };
 
 }  // namespace sim

@@ -20,12 +20,9 @@ constexpr double kLiftWork = 3e-7;
 constexpr double kReach = 0.01;  // m off the surface at which a contact is dropped; less may be a slide over an edge
 constexpr double kCreep = 1e-3, kNoSlip = 1e-9;  // m/s
 constexpr double kLeaving = 1;                   // m/s away from the body at which a contact is dropped
-// Paths past a collider
-constexpr double kMet = 1e-5;  // m
-// Bounds of clusters
+constexpr double kMet = 1e-5;                    // m, on a path past a collider
 constexpr int kMaxClustered = 16;   // vertices of a cluster
 constexpr double kRounding = 1e-6;  // m, above the rounding of the tests that the bounds stand for
-// Out of overlapping bodies
 constexpr double kNeighbour = 0.005;  // m; bodies so near to a vertex count as around it
 constexpr double kStride = 1e-5;      // m, from one body to the next
 constexpr int kMaxLeaves = 32;
@@ -137,17 +134,16 @@ void sweep(const ContactSearch& search, const NearCollider& near, const Vec3& st
   // How far it goes in the collider's frame: its motion there, and the height of the arc that a turn makes of a line.
   const double strays = (from + way - near.turn * from).norm() + from.norm() * near.turned * near.turned / 8;
   if (strays < 0.5 * near.thin) return;
-  const int k = near.index;
   const std::optional<Vec3> entry = entryOf(search.colliders, near, offset, start, end);
   if (!entry) return;
-  const Ellipsoid& body = search.colliders.body(k);
+  const Ellipsoid& body = search.colliders.body(near.index);
   const Vec3 met = body.center + body.rotation * *entry;
-  const Vec3 normal = search.colliders.parts.empty()
-                          ? Vec3(body.rotation * entry->cwiseProduct(near.outer.cwiseAbs2()).normalized())
-                          : search.colliders.closest(k, met).normal;
+  const Vec3 normal = search.colliders.sdf(near.index)
+                          ? search.colliders.closest(near.index, met).normal
+                          : Vec3(body.rotation * entry->cwiseProduct(near.outer.cwiseAbs2()).normalized());
   if (touch.depth > 0 && touch.normal.dot(normal) >= 0) return;  // the nearest way out is on that side
   const Vec3 rest = end - met;
-  const SurfacePoint slid = search.colliders.closest(k, met + rest - rest.dot(normal) * normal);
+  const SurfacePoint slid = search.colliders.closest(near.index, met + rest - rest.dot(normal) * normal);
   touch.target = slid.point + offset * slid.normal;
   touch.normal = slid.normal;
   touch.depth = std::max(touch.depth, (end - touch.target).norm());
@@ -227,20 +223,19 @@ double wayOut(const ContactSearch& search, int k, const Vec3& p, const Vec3& dir
   const double offset = search.margins.offset;
   const Ellipsoid& body = search.colliders.body(k);
   if (!mayTouch(body, offset, p)) return 0;
-  if (search.colliders.parts.empty()) return leavesAt(body, offset, p, direction);
+  if (!search.colliders.sdf(k)) return leavesAt(body, offset, p, direction);
   return std::max(0.0, 2 * (offset - search.colliders.closest(k, p).distance));
 }
 
 // Where projections alternate between overlapping bodies: goes straight away from the mean centre of the bodies around
 // the vertex until it is outside all of them. Leaves `hit` as it is where none is around.
 void leaveAll(const ContactSearch& search, const ContactScratch& scratch, Penetration& hit) {
-  const auto body = [&](const NearCollider& near) -> const Ellipsoid& { return search.colliders.body(near.index); };
   const double offset = search.margins.offset;
   Vec3 centers = Vec3::Zero();
   int count = 0;
   for (const NearCollider& near : scratch.near) {
-    if (!mayTouch(body(near), offset + kNeighbour, hit.target)) continue;
-    centers += body(near).center;
+    if (!mayTouch(search.colliders.body(near.index), offset + kNeighbour, hit.target)) continue;
+    centers += search.colliders.body(near.index).center;
     ++count;
   }
   if (count == 0) return;
@@ -335,8 +330,7 @@ void findPenetrations(const ContactSearch& search, std::span<const Vec3> positio
       } else {
         for (const NearCollider& near : scratch.near) test(near);
       }
-      out = deepest.collider < 0;
-      if (out) break;
+      if ((out = deepest.collider < 0)) break;
       if (hit.collider >= 0) deepest.depth = hit.depth;  // that of the first projection
       deepest.initial_overlap = deepest.initial_overlap || hit.initial_overlap;
       deepest.left = std::max(deepest.left, hit.left);

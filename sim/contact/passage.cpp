@@ -88,8 +88,8 @@ NearCollider::NearCollider(int k, const Ellipsoid& body, double thickness, doubl
 
 std::optional<Vec3> entryOf(const Colliders& colliders, const NearCollider& near, double offset, const Vec3& start,
                             const Vec3& end) {
-  if (colliders.parts.empty()) return enterEllipsoid(near, start, end);
-  return enterGrid(colliders.parts[near.index].grid, near, offset, start, end);
+  const BodySdf* sdf = colliders.sdf(near.index);
+  return sdf ? enterGrid(sdf->grid, near, offset, start, end) : enterEllipsoid(near, start, end);
 }
 
 }  // namespace sim

@@ -105,8 +105,7 @@ PositionCorrection::PositionCorrection(const HairMesh& mesh) : minimizer(mesh) {
 }
 
 void limitCorrectionWork(const WorkBounds& bounds, bool published, PositionCorrection& scratch) {
-  scratch.points = 0;
-  scratch.minimizations = 0;
+  scratch.points = scratch.minimizations = 0;
   scratch.max_points = std::numeric_limits<long>::max();
   scratch.max_minimizations = (kRounds + kPlainRounds) * kMaxMinimization;
   if (published) return;

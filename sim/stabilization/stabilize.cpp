@@ -43,13 +43,14 @@ StepInput teleport(const HairMesh& mesh, const StepInput& input, Stabilization& 
   scratch.still_bodies.assign(input.ellipsoids.begin(), input.ellipsoids.end());
   for (Ellipsoid& body : scratch.still_bodies) body.velocity = body.angular_velocity = Vec3::Zero();
   scratch.still_parts.assign(input.parts.begin(), input.parts.end());
+  scratch.still_parts.insert(scratch.still_parts.end(), input.attached.begin(), input.attached.end());
   for (BodySdf& part : scratch.still_parts) part.bounds.velocity = part.bounds.angular_velocity = Vec3::Zero();
   scratch.still_pins.assign(input.pins.begin(), input.pins.end());
   for (PinnedVertex& pin : scratch.still_pins) pin.velocity.setZero();
   StepInput still = input;
-  still.pins = scratch.still_pins;
-  still.ellipsoids = scratch.still_bodies;
-  still.parts = scratch.still_parts;
+  still.ellipsoids = scratch.still_bodies, still.pins = scratch.still_pins;
+  still.parts = std::span(scratch.still_parts).first(input.parts.size());
+  still.attached = std::span(scratch.still_parts).subspan(input.parts.size());
   return still;
 }
 

@@ -1,0 +1,290 @@
+#include "app/figure/attachment.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <numbers>
+#include <numeric>
+
+#include "app/files/data_path.h"
+#include "app/files/errors.h"
+#include "app/files/polygon_file.h"
+#include "sim/field_text.h"
+
+namespace app {
+
+namespace {
+
+constexpr double kSmallestWorn = 0.07, kLargestWorn = 0.65;    // m, the longest side of what is worn; less than ten times apart
+constexpr double kNearJoint = 0.35;                         // m, from its joint
+constexpr double kWornSpacing = 0.0025, kMostWornNodes = 1.2e6;  // m, of the grid
+constexpr double kSharpEdge = 0.5;                         // cosine between faces that are shaded as one
+constexpr double kWeld = 1e-5;                         // of the size; vertices so near are one
+constexpr int kMostPieces = 8;
+constexpr double kSlender = 0.4;  // of the longest side, the second one of what is worn
+constexpr const char* kGiveSolid = "give a closed mesh: OBJ, FBX or glTF";
+
+struct WornUnit {
+  const char* name;
+  double metres;
+};
+constexpr std::array<WornUnit, 3> kWornUnits{{{"metres", 1}, {"centimetres", 0.01}, {"millimetres", 0.001}}};
+
+struct ClosedSurface {
+  std::vector<Vec3> points;  // welded
+  std::vector<std::array<int, 3>> faces;
+};
+
+// Places of a file that are one, with faces as triangles.
+ClosedSurface weld(const PolygonMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : mesh.positions) box.extend(p);
+  const double cell = std::max(1e-12, kWeld * box.sizes().maxCoeff());
+  std::map<std::array<long, 3>, int> seen;
+  ClosedSurface surface;
+  std::vector<int> welded;
+  for (const Vec3& p : mesh.positions) {
+    const Eigen::Vector3d at = (p - box.min()) / cell;
+    const auto [found, fresh] = seen.try_emplace({std::lround(at.x()), std::lround(at.y()), std::lround(at.z())},
+                                                 static_cast<int>(surface.points.size()));
+    if (fresh) surface.points.push_back(p);
+    welded.push_back(found->second);
+  }
+  for (std::size_t f = 0; f < mesh.faceCount(); ++f) {
+    const auto corners = mesh.face(f);
+    for (std::size_t k = 2; k < corners.size(); ++k) {
+      const std::array<int, 3> face{welded[static_cast<std::size_t>(corners[0])],
+                                    welded[static_cast<std::size_t>(corners[k - 1])],
+                                    welded[static_cast<std::size_t>(corners[k])]};
+      if (face[0] != face[1] && face[1] != face[2] && face[2] != face[0]) surface.faces.push_back(face);
+    }
+  }
+  return surface;
+}
+
+// Edges that lack the face of their other side.
+int openEdges(const ClosedSurface& surface) {
+  std::map<std::pair<int, int>, int> sides;
+  for (const auto& f : surface.faces) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int a = f[k], b = f[(k + 1) % 3];
+      sides[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
+    }
+  }
+  return static_cast<int>(std::ranges::count_if(sides, [](const auto& side) { return side.second != 0; }));
+}
+
+// Per vertex: the first vertex of its connected piece.
+std::vector<int> piecesOf(const ClosedSurface& surface) {
+  std::vector<int> above(surface.points.size());
+  std::iota(above.begin(), above.end(), 0);
+  const auto top = [&](int v) {
+    while (above[static_cast<std::size_t>(v)] != v) {
+      int& up = above[static_cast<std::size_t>(v)];
+      v = up = above[static_cast<std::size_t>(up)];
+    }
+    return v;
+  };
+  for (const auto& f : surface.faces) {
+    for (const int v : {f[1], f[2]}) {
+      const int one = top(f[0]), other = top(v);
+      above[static_cast<std::size_t>(std::max(one, other))] = std::min(one, other);
+    }
+  }
+  for (std::size_t v = 0; v < above.size(); ++v) above[v] = top(static_cast<int>(v));
+  return above;
+}
+
+// Turns round the pieces whose faces are wound inwards: those of negative volume. Returns the number of pieces.
+int turnOutwards(ClosedSurface& surface) {
+  const std::vector<int> piece = piecesOf(surface);
+  std::map<int, double> volume;
+  const auto at = [&](int v) -> const Vec3& { return surface.points[static_cast<std::size_t>(v)]; };
+  for (const auto& f : surface.faces)
+    volume[piece[static_cast<std::size_t>(f[0])]] += at(f[0]).dot(at(f[1]).cross(at(f[2]))) / 6;
+  for (auto& f : surface.faces) {
+    if (volume[piece[static_cast<std::size_t>(f[0])]] < 0) std::swap(f[1], f[2]);
+  }
+  return static_cast<int>(volume.size());
+}
+
+ClosedSurface readSurface(const std::string& file, PolygonMesh& mesh) {
+  try {
+    mesh = readPolygons(file);
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    throw InputError("", "", text.substr(0, text.find("; ")), kGiveSolid);
+  }
+  ClosedSurface surface = weld(mesh);
+  if (surface.faces.size() < 4) throw InputError(file, "", "is no solid: it has under four faces", kGiveSolid);
+  if (const int open = openEdges(surface); open > 0)
+    throw InputError(file, "", "is open: " + std::to_string(open) + " edges lack a face on one side",
+                     "close it, or give the sheet a thickness");
+  turnOutwards(surface);
+  return surface;
+}
+
+int wornJoint(const AttachmentSpec& spec, const Character& character) {
+  std::vector<std::string_view> names{"head"};
+  for (std::size_t j = 0; j < character.skeleton.joints.size(); ++j) {
+    if (character.skeleton.joints[j].name == spec.joint) return static_cast<int>(j);
+    names.push_back(character.skeleton.joints[j].name);
+  }
+  if (spec.joint == "head") return character.head_joint;
+  for (const BodyEllipsoid& part : character.ellipsoids) {
+    if (part.name == spec.joint) return part.joint;
+    names.push_back(part.name);
+  }
+  throw InputError(spec.file, "joint '" + spec.joint.substr(0, 80) + "'", "the figure has no such joint",
+                   sim::nameHint(spec.joint, names));
+}
+
+std::string millimetresOf(double metres) {
+  return std::to_string(std::lround(1000 * metres)) + " mm";
+}
+
+// Metres per unit: that of the file where it is as large as what is worn, else the one that makes it so.
+const WornUnit& wornUnit(const AttachmentSpec& spec, const PolygonMesh& mesh, double longest, std::string& note) {
+  static WornUnit said{"the file's unit", 1};
+  const auto fits = [&](double metres) { return longest * metres >= kSmallestWorn && longest * metres <= kLargestWorn; };
+  if (mesh.meters_per_unit && fits(*mesh.meters_per_unit)) return said.metres = *mesh.meters_per_unit, said;
+  for (const WornUnit& unit : kWornUnits) {
+    if (!fits(unit.metres)) continue;
+    if (unit.metres != 1) note = std::string("read in ") + unit.name;
+    return unit;
+  }
+  throw InputError(spec.file, "size",
+                   "is " + sim::numberText(longest) + " units, which in metres, centimetres or millimetres is nothing to wear",
+                   "give \"scale\", metres per unit");
+}
+
+// Brings the points into the joint's upright frame, m.
+void placeAt(const AttachmentSpec& spec, const PolygonMesh& mesh, const Vec3& joint, ClosedSurface& surface, std::string& note) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : surface.points) box.extend(p);
+  const double scale = spec.scale > 0 ? spec.scale : wornUnit(spec, mesh, box.sizes().maxCoeff(), note).metres;
+  const Vec3 middle = scale * box.center();
+  Vec3 origin = Vec3::Zero();
+  if (spec.scale == 0 && middle.norm() > kNearJoint) {
+    if ((middle - joint).norm() > kNearJoint)
+      throw InputError(spec.file, "place",
+                       "lies " + millimetresOf(std::min(middle.norm(), (middle - joint).norm())) + " from the joint '" +
+                           spec.joint + "'",
+                       "model it about the joint, or give \"scale\" and \"at\"");
+    origin = joint;
+    note += std::string(note.empty() ? "read" : ",") + " about the figure's origin";
+  }
+  constexpr double kDegree = std::numbers::pi / 180;
+  const Eigen::Matrix3d turn = (Eigen::AngleAxisd(kDegree * spec.turn.z(), Vec3::UnitZ()) *
+                                Eigen::AngleAxisd(kDegree * spec.turn.y(), Vec3::UnitY()) *
+                                Eigen::AngleAxisd(kDegree * spec.turn.x(), Vec3::UnitX()))
+                                   .toRotationMatrix();
+  for (Vec3& p : surface.points) p = turn * (scale * p - origin) + spec.at;
+}
+
+// Signed distances; the same as of a body's part.
+PartDistance distancesOf(const ClosedSurface& surface, int joint) {
+  PartDistance part;
+  part.joint = joint;
+  std::vector<Triangle> triangles;
+  Eigen::AlignedBox3d box;
+  for (const auto& f : surface.faces) {
+    Triangle triangle;
+    for (std::size_t k = 0; k < 3; ++k) box.extend(triangle[k] = surface.points[static_cast<std::size_t>(f[k])]);
+    triangles.push_back(triangle);
+  }
+  part.triangles = static_cast<int>(triangles.size());
+  const Vec3 sizes = box.sizes() + Vec3::Constant(6 * kWornSpacing);
+  const double spacing = std::max(kWornSpacing, std::cbrt(sizes.prod() / kMostWornNodes));
+  const Vec3 pad = Vec3::Constant(3 * spacing);
+  part.grid = layOutGrid(box.min() - pad, box.max() + pad, spacing);
+  fillGrid(triangles, 2.5 * spacing, part.grid);
+  for (const float d : part.grid.distance) part.deepest = std::max(part.deepest, -static_cast<double>(d));
+  part.center = box.center();
+  part.radius = 0.5 * box.sizes().norm() + 2 * spacing;
+  return part;
+}
+
+// Vertices for drawing: where faces meet at a sharp edge each side has its own, with its own normal.
+void shadeAttachment(const ClosedSurface& surface, Attachment& out) {
+  std::vector<Vec3> face_normals;
+  std::vector<std::vector<int>> around(surface.points.size());
+  for (std::size_t f = 0; f < surface.faces.size(); ++f) {
+    std::array<Vec3, 3> p;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto v = static_cast<std::size_t>(surface.faces[f][k]);
+      p[k] = surface.points[v];
+      around[v].push_back(static_cast<int>(f));
+    }
+    face_normals.push_back((p[1] - p[0]).cross(p[2] - p[0]));  // as long as twice the area
+  }
+  for (std::size_t f = 0; f < surface.faces.size(); ++f) {
+    const Vec3 own = face_normals[f].normalized();
+    for (const int corner : surface.faces[f]) {
+      Vec3 normal = Vec3::Zero();
+      for (const int g : around[static_cast<std::size_t>(corner)]) {
+        const Vec3& other = face_normals[static_cast<std::size_t>(g)];
+        if (own.dot(other.normalized()) > kSharpEdge) normal += other;
+      }
+      out.triangles.push_back(static_cast<std::uint32_t>(out.positions.size()));
+      out.positions.push_back(surface.points[static_cast<std::size_t>(corner)].cast<float>());
+      out.normals.push_back((normal.norm() > 0 ? normal.normalized() : own).cast<float>());
+    }
+  }
+  out.joints.assign(out.positions.size(), {0, 0, 0, 0});
+  out.weights.assign(out.positions.size(), {1, 0, 0, 0});
+}
+
+}  // namespace
+
+Attachment loadAttachment(const AttachmentSpec& spec, const Character& character) {
+  PolygonMesh mesh;
+  ClosedSurface surface = readSurface(spec.file, mesh);
+  const int joint = wornJoint(spec, character);
+  const Joint& carrier = character.skeleton.joints[static_cast<std::size_t>(joint)];
+  const Rigid scalp = character.skeleton.joints[static_cast<std::size_t>(character.head_joint)].rest_world *
+                      character.head_frame;
+  // Upright as the scalp's frame, about the joint.
+  Rigid upright = Rigid::Identity();
+  upright.linear() = scalp.linear();
+  upright.translation() = carrier.rest_world.translation();
+  Attachment out;
+  std::string note;
+  placeAt(spec, mesh, scalp.linear().transpose() * carrier.rest_world.translation(), surface, note);
+  if (!note.empty()) out.note = stem(spec.file) + ": " + note;
+  const Rigid to_joint = carrier.rest_world.inverse(Eigen::Isometry) * upright;
+  for (Vec3& p : surface.points) p = to_joint * p;
+  out.part = distancesOf(surface, joint);
+  if (!(out.part.deepest > 0))
+    throw InputError(spec.file, "", "is too thin to collide with", "make it at least 3 mm thick");
+  out.to_scalp = scalp.inverse(Eigen::Isometry) * carrier.rest_world;
+  shadeAttachment(surface, out);
+  return out;
+}
+
+bool looksWorn(const PolygonMesh& mesh) {
+  ClosedSurface surface = weld(mesh);
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : surface.points) box.extend(p);
+  std::array<double, 3> sides{box.sizes().x(), box.sizes().y(), box.sizes().z()};
+  std::ranges::sort(sides);
+  return surface.faces.size() >= 4 && sides[1] > kSlender * sides[2] && openEdges(surface) == 0 &&
+         turnOutwards(surface) <= kMostPieces;
+}
+
+double meetsAlong(const Attachment& attachment, const Scalp& scalp, const Vec3& direction, double most) {
+  constexpr double kStride = 0.001, kUnder = 0.004;  // m
+  const Vec3 along = direction.normalized();
+  const Rigid to_joint = attachment.to_scalp.inverse(Eigen::Isometry);
+  const double start = scalp.radiusAt(along);
+  for (double r = start - kUnder; r < start + most;) {
+    const double distance = attachment.part.grid.interpolate(to_joint * (scalp.center + r * along));
+    if (distance <= 0) return r;
+    r += std::max(kStride, 0.7 * distance);
+  }
+  return INFINITY;
+}
+
+}  // namespace app

@@ -1,0 +1,43 @@
+// Attachments as a scene file has them: hats, glasses, collars; meshes fixed to a joint, drawn and collided with.
+//
+//   "attachments": [{ "file": "beanie.obj", "joint": "head", "at": [x, y, z], "turn": [x, y, z], "scale": 0.01,
+//                     "color": [r, g, b], "roughness": 0.8 }]
+// The mesh lies in the joint's frame at rest: origin at the joint, x to the figure's left, y up, z forward. "at" (m)
+// and "turn" (degrees about x, then y, then z) are added. "scale" is metres per unit of the file; left out, unit and
+// origin are inferred where they are certain. "joint" is a joint's name or a body part's ("head", "neck", "chest").
+// Every key but the file may be left out.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/files/json_reader.h"
+#include "sim/mesh/hair_mesh.h"
+
+namespace app {
+
+struct AttachmentSpec {
+  std::string file;
+  std::string joint = "head";
+  sim::Vec3 at = sim::Vec3::Zero();    // m
+  sim::Vec3 turn = sim::Vec3::Zero();  // degrees
+  double scale = 0;                    // m per unit; 0: inferred
+  std::array<float, 3> color{0.10f, 0.16f, 0.24f};
+  float roughness = 0.8f;
+};
+
+inline constexpr std::size_t kMaxAttachments = 8;
+
+// Throws InputError.
+std::vector<AttachmentSpec> readAttachments(const JsonPlace& place);
+nlohmann::json writeAttachments(const std::vector<AttachmentSpec>& attachments);
+
+// The same as text without their colours: equal where they need not be made anew.
+std::string wornText(std::vector<AttachmentSpec> attachments);
+
+// From the command line or a panel: none, FILE, FILE@JOINT, or JSON as in a scene. Throws InputError.
+std::vector<AttachmentSpec> attachmentsFromText(std::string_view text);
+
+}  // namespace app

@@ -1,0 +1,154 @@
+#include "app/scene/attachments.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/files/data_path.h"
+#include "app/files/errors.h"
+#include "app/scene/haircuts.h"
+#include "app/styles/style_untangle.h"
+
+namespace app {
+
+namespace {
+
+constexpr double kOverHead = 0.10;                    // m off the scalp, within which an attachment lies over it
+constexpr double kUnderside = 0.0045, kLeastRoom = 0.0035;  // m that hair keeps off the inside; least room over the scalp
+constexpr double kInside = 0.002, kDeep = 0.004;   // m, of roots and of other vertices in the solid
+constexpr double kMostEnclosed = 0.25;             // of the hair, in the solid
+constexpr double kLaidFatness = 0.04, kLaidGap = 0.002;    // see untangle; m
+constexpr int kLaidRounds = 6;                     // of untangling
+constexpr int kRays = 400;
+
+double distanceTo(const Attachment& attachment, const Vec3& p) {
+  return attachment.part.grid.interpolate(attachment.to_scalp.inverse(Eigen::Isometry) * p);
+}
+
+[[noreturn]] void refuseWorn(const Attachment& attachment, const std::string& fault, const char* mend) {
+  throw InputError(attachment.key.substr(0, attachment.key.find('|')), "", fault, mend);
+}
+
+// Whether it surrounds the head: rays evenly over the sphere (Fibonacci's spiral) all meet it.
+bool surrounds(const Attachment& attachment, const Scalp& scalp) {
+  for (int k = 0; k < kRays; ++k) {
+    const double y = 1 - 2 * (k + 0.5) / kRays, ring = std::sqrt(1 - y * y), turn = 2.399963229728653 * k;
+    const Vec3 along(ring * std::sin(turn), y, ring * std::cos(turn));
+    if (std::isinf(meetsAlong(attachment, scalp, along, 3 * kOverHead))) return false;
+  }
+  return true;
+}
+
+void checkRoom(const Attachment& attachment, const Scalp& scalp, const sim::HairMeshShape& shape) {
+  int roots = 0;
+  for (const int root : shape.column_first) {
+    if (root >= static_cast<int>(shape.positions.size())) break;
+    roots += distanceTo(attachment, shape.positions[static_cast<std::size_t>(root)]) < -kInside;
+  }
+  if (roots > 0)
+    refuseWorn(attachment, "encloses " + std::to_string(roots) + " of the head's " + std::to_string(shape.columnCount()) +
+                           " hair roots",
+           "make it hollow or larger, or move it off the head with \"at\"");
+  if (surrounds(attachment, scalp))
+    refuseWorn(attachment, "encloses the whole head", "leave it open where hair and neck come out");
+}
+
+void checkHair(const Attachment& attachment, const sim::HairMeshShape& shape) {
+  const auto in = std::ranges::count_if(shape.positions,
+                                        [&](const Vec3& p) { return distanceTo(attachment, p) < -kDeep; });
+  if (static_cast<double>(in) > kMostEnclosed * static_cast<double>(shape.positions.size()))
+    refuseWorn(attachment, "encloses the hair: " + std::to_string(in) + " of its " +
+                           std::to_string(shape.positions.size()) + " vertices lie in it",
+           "make it smaller, or move it out of the hair with \"at\"");
+}
+
+// The vertices under one attachment, moved to lie there.
+std::vector<int> layUnderOne(const Attachment& attachment, const Scalp& scalp, sim::HairMeshShape& shape) {
+  std::vector<int> under;
+  for (int c = 0; c < shape.columnCount(); ++c) {
+    const int first = shape.column_first[static_cast<std::size_t>(c)];
+    const Vec3 root = shape.positions[static_cast<std::size_t>(first)] - scalp.center;
+    if (std::isinf(meetsAlong(attachment, scalp, root, kOverHead))) continue;
+    for (int v = first + 1; v < first + shape.columnLength(c); ++v) {
+      Vec3& p = shape.positions[static_cast<std::size_t>(v)];
+      const Vec3 out = p - scalp.center;
+      const double meets = meetsAlong(attachment, scalp, out, kOverHead);
+      if (std::isinf(meets)) break;  // it has come out
+      const double floor = scalp.radiusAt(out), room = std::max(kLeastRoom, meets - kUnderside - floor);
+      const double height = std::max(0.0, out.norm() - floor);
+      p = scalp.center + (floor + room * (1 - std::exp(-height / room))) / out.norm() * out;
+      under.push_back(v);
+    }
+  }
+  return under;
+}
+
+}  // namespace
+
+std::vector<const Attachment*> attach(const CharacterSpec& spec, const LoadedBody& body, AssetCache& asset_cache) {
+  std::vector<const Attachment*> worn;
+  for (const AttachmentSpec& one : spec.attachments) {
+    const std::string key = one.file + "|" + body.key + wornText({one});
+    auto& cached = asset_cache.attachments;
+    auto found = std::ranges::find_if(cached, [&](const auto& entry) { return entry->key == key; });
+    if (found == cached.end()) {
+      auto fresh = std::make_unique<Attachment>(loadAttachment(one, body.character));
+      fresh->key = key;
+      fresh->id = freshId();
+      cached.push_back(std::move(fresh));
+      found = cached.end() - 1;
+    }
+    worn.push_back(found->get());
+  }
+  return worn;
+}
+
+std::vector<int> layUnder(std::span<const Attachment* const> attachments, const Scalp& scalp, const BodyDistance& body,
+                          sim::HairMeshShape& shape) {
+  std::vector<int> under;
+  for (const Attachment* attachment : attachments) {
+    checkRoom(*attachment, scalp, shape);
+    const std::vector<int> more = layUnderOne(*attachment, scalp, shape);
+    under.insert(under.end(), more.begin(), more.end());
+  }
+  if (!under.empty()) {
+    std::ranges::sort(under);
+    under.erase(std::unique(under.begin(), under.end()), under.end());
+    const auto around = [&](const Vec3& p) {
+      double nearest = body(p);
+      for (const Attachment* attachment : attachments) nearest = std::min(nearest, distanceTo(*attachment, p));
+      return nearest;
+    };
+    for (int round = 0; round < kLaidRounds && untangle(around, kLaidFatness, kLaidGap, shape) < kLaidFatness / 2; ++round) {
+    }
+  }
+  for (const Attachment* attachment : attachments) checkHair(*attachment, shape);
+  return under;
+}
+
+void poseAttachments(double dt, Actor& actor) {
+  actor.worn_distances.clear();
+  for (const WornAttachment& worn : actor.worn) posePartDistance(worn.mesh->part, actor.pose, actor.previous_pose, dt,
+                                                                 actor.worn_distances.emplace_back());
+}
+
+bool showAttachments(const Vec3& origin, Actor& actor) {
+  bool changed = false;
+  for (WornAttachment& worn : actor.worn) {
+    Rigid carried = actor.shown_pose.world[static_cast<std::size_t>(worn.mesh->part.joint)];
+    carried.translation() -= origin;
+    const Eigen::Matrix4f m = carried.matrix().cast<float>();
+    changed = changed || !std::equal(m.data(), m.data() + 16, worn.matrix.begin());
+    std::copy(m.data(), m.data() + 16, worn.matrix.begin());
+  }
+  return changed;
+}
+
+std::string attachmentNotes(const Actor& actor) {
+  std::string notes;
+  for (const WornAttachment& worn : actor.worn) {
+    if (!worn.mesh->note.empty()) notes += (notes.empty() ? "" : "\n") + worn.mesh->note;
+  }
+  return notes;
+}
+
+}  // namespace app

@@ -1,0 +1,32 @@
+// What figures wear: loaded once, posed with its joint, collided with beside the body, drawn as a body of its own; and
+// what a hat does to the hair under it.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/figure/attachment.h"
+#include "app/scene/actor.h"
+
+namespace app {
+
+// The attachments of a character on its body, each read on first use. Throws InputError.
+std::vector<const Attachment*> attach(const CharacterSpec& spec, const LoadedBody& body, AssetCache& asset_cache);
+
+// Lays the hair that is rooted under an attachment of the head beneath it: each vertex nearer to the scalp, in
+// proportion to how far it stands off. Returns the vertices that lie under it, roots left out. Throws InputError
+// where the attachment encloses the head, its roots or the hair.
+std::vector<int> layUnder(std::span<const Attachment* const> attachments, const Scalp& scalp, const BodyDistance& body,
+                          sim::HairMeshShape& shape);
+
+// Signed distances of a pose, with velocities from the previous one over dt.
+void poseAttachments(double dt, Actor& actor);
+
+// Matrices of the shown pose relative to `origin` (m). Returns whether any bit changed.
+bool showAttachments(const Vec3& origin, Actor& actor);
+
+// What was inferred of the actor's attachments, a line each.
+std::string attachmentNotes(const Actor& actor);
+
+}  // namespace app

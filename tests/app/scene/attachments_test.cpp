@@ -1,0 +1,166 @@
+// Hats, glasses, collars: the hair stays outside of them and under them, what cannot be worn is told, and they are put
+// on, undone, saved and recorded.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "app/files/errors.h"
+#include "app/files/file_kind.h"
+#include "app/files/recording.h"
+#include "app/scene/attachments.h"
+#include "tests/app/scene/small_scene.h"
+#include "tests/run_program.h"
+
+namespace {
+
+using app::Ask;
+
+app::Scene wearing(const std::string& text, app::Style style = app::Style::kLong, const char* clip = "walk.bvh") {
+  app::Scene scene = test::smallScene(clip, 0.5);
+  scene.characters[0].style = style;
+  scene.characters[0].attachments = app::attachmentsFromText(text);
+  return scene;
+}
+
+std::string refusalOf(const std::string& text) {
+  try {
+    app::openScene(wearing(text), 1.5);
+  } catch (const app::InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+// m, how deep the deepest vertex lies in what the first character wears, roots left out.
+double deepestOf(const app::Demo& demo) {
+  double deepest = 0;
+  const app::Actor& actor = demo.actors[0];
+  for (const app::WornAttachment& worn : actor.worn) {
+    const app::Rigid to_joint = actor.pose.world[static_cast<std::size_t>(worn.mesh->part.joint)].inverse();
+    for (int v = 0; v < actor.haircut->mesh.vertexCount(); ++v) {
+      if (actor.haircut->mesh.isRoot(v)) continue;
+      deepest = std::max(deepest, -worn.mesh->part.grid.interpolate(to_joint * actor.hair.positions[static_cast<std::size_t>(v)]));
+    }
+  }
+  return deepest;
+}
+
+// A box between two corners as OBJ, m about the head joint; `open` leaves one side out.
+std::string box(const std::string& name, const sim::Vec3& low, const sim::Vec3& high, bool open = false) {
+  const std::string file = test::freshFolder("attachments_" + name) + "/" + name + ".obj";
+  std::ofstream out(file);
+  for (int k = 0; k < 8; ++k)
+    out << "v " << (k & 1 ? high.x() : low.x()) << " " << (k & 2 ? high.y() : low.y()) << " "
+        << (k & 4 ? high.z() : low.z()) << "\n";
+  out << "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\n";
+  if (!open) out << "f 2 4 8 6\n";
+  return file;
+}
+
+TEST(Attachments, TheHairStaysOutsideInAWalkAndAHeadShake) {
+  for (const char* file : {"beanie.obj", "headband.obj", "sun_hat.obj", "glasses.obj"}) {
+    for (const app::Style style : {app::Style::kShort, app::Style::kShoulder, app::Style::kLong}) {
+      app::Demo demo = app::openScene(wearing(file, style, "head_shake.bvh"), 1.5);
+      EXPECT_LT(deepestOf(demo), 0.001) << file << " " << app::styleName(style) << " at rest";
+      double deepest = 0;
+      int recoveries = 0;
+      for (int frame = 0; frame < 90; ++frame) {
+        app::advanceFrame(demo, 1.0 / 60, {});
+        deepest = std::max(deepest, deepestOf(demo));
+        recoveries += demo.stats.recoveries;
+      }
+      std::printf("%s %s: %.2f mm, %zu vertices under it\n", file, std::string(app::styleName(style)).c_str(),
+                  1000 * deepest, demo.actors[0].haircut->covered.size());
+      EXPECT_LT(deepest, 0.003) << file << " " << app::styleName(style);
+      EXPECT_EQ(recoveries, 0);
+    }
+  }
+}
+
+TEST(Attachments, WhatCannotBeWornIsTold) {
+  const auto told = [](const std::string& text, const std::string& part) {
+    const std::string refusal = refusalOf(text);
+    EXPECT_NE(refusal.find(part), std::string::npos) << refusal;
+    EXPECT_NE(refusal.find("; "), std::string::npos) << "no mend: " << refusal;
+  };
+  const sim::Vec3 a(-0.2, -0.1, -0.2), b(0.2, 0.3, 0.2);
+  told(box("solid", a, b), "encloses");
+  told(box("open", a, b, true), "is open: 4 edges");
+  told("beanie.obj@hed", "no such joint");
+  told("nothing.obj", "is not there");
+  told(R"({"file": "beanie.obj", "at": [0, -0.05, 0]})", "encloses");
+  told(box("far", sim::Vec3(4, 4, 4), sim::Vec3(4.2, 4.2, 4.2)), "from the joint");
+  told(box("huge", sim::Vec3(-3, -3, -3), sim::Vec3(3, 3, 3)), "nothing to wear");
+  const std::string text = test::freshFolder("attachments_text") + "/hat.obj";
+  std::ofstream(text) << "a hat, as a poem\n";
+  EXPECT_NE(refusalOf(text), "accepted");
+  const test::Outcome run =
+      test::runProgram({"--headless", "--no-images", "--frames", "1", "--attach", box("open2", a, b, true)});
+  EXPECT_EQ(run.exit_code, app::kExitBadInput) << run.err;
+}
+
+TEST(Attachments, UnitAndOriginAreInferredAndTold) {
+  const app::Demo metres = app::openScene(wearing("beanie.obj"), 1.5);
+  EXPECT_EQ(metres.message, "");
+  const std::string file = test::freshFolder("attachments_unit") + "/cap.obj";
+  {
+    std::ifstream in(app::dataPath("assets/attachments/beanie.obj"));
+    std::ofstream out(file);
+    for (std::string line; std::getline(in, line);) {
+      double x = 0, y = 0, z = 0;
+      if (std::sscanf(line.c_str(), "v %lf %lf %lf", &x, &y, &z) == 3) {
+        out << "v " << 100 * x << " " << 100 * y << " " << 100 * z << "\n";
+      } else {
+        out << line << "\n";
+      }
+    }
+  }
+  const app::Demo centimetres = app::openScene(wearing(file), 1.5);
+  EXPECT_NE(centimetres.message.find("read in centimetres"), std::string::npos) << centimetres.message;
+  EXPECT_NEAR(centimetres.actors[0].worn[0].mesh->part.radius, metres.actors[0].worn[0].mesh->part.radius, 1e-6);
+}
+
+TEST(Attachments, AreDroppedUndoneAndTakenOff) {
+  app::Demo demo = app::openScene(wearing("none"), 1.5);
+  const std::string bare = app::stateHash(demo), hat = app::dataPath("assets/attachments/beanie.obj");
+  EXPECT_EQ(app::fileKind(hat), app::FileKind::kAttachment);
+  EXPECT_EQ(app::fileKind(app::dataPath("assets/hair/bob_example.obj")), app::FileKind::kHairMesh);
+  demo.requests = {{Ask::kOpenFile, "", hat}};
+  app::advanceFrame(demo, 0, {});
+  ASSERT_FALSE(demo.message_is_fault) << demo.message;
+  ASSERT_EQ(demo.actors[0].worn.size(), 1u);
+  EXPECT_EQ(app::frameInput(demo, 64, 64).bodies.size(), 2u);
+  demo.requests = {{Ask::kAttach, "add", "glasses.obj"}};
+  app::advanceFrame(demo, 0, {});
+  EXPECT_EQ(demo.actors[0].worn.size(), 2u) << demo.message;
+  const std::string both = app::stateHash(demo);
+  demo.requests = {{Ask::kAttach, "add", box("solid2", sim::Vec3(-0.2, -0.1, -0.2), sim::Vec3(0.2, 0.3, 0.2))}};
+  app::advanceFrame(demo, 0, {});
+  EXPECT_TRUE(demo.message_is_fault);
+  EXPECT_EQ(app::stateHash(demo), both) << "what was there stays";
+  demo.requests = {{Ask::kUndo, "", "", 2}};
+  app::advanceFrame(demo, 0, {});
+  EXPECT_EQ(app::stateHash(demo), bare);
+  demo.requests = {{Ask::kRedo, "", "", 1}};
+  app::advanceFrame(demo, 0, {});
+  EXPECT_EQ(demo.actors[0].worn.size(), 1u);
+  demo.requests = {{Ask::kAttach, "", "none"}};
+  app::advanceFrame(demo, 0, {});
+  EXPECT_TRUE(demo.actors[0].worn.empty());
+}
+
+TEST(Attachments, ASceneKeepsThemAndATakeReplaysThemToTheBit) {
+  const app::Scene scene = wearing(R"([{"file": "beanie.obj", "at": [0, 0.01, 0], "turn": [5, 0, 0]}])");
+  const app::Scene back = app::readScene(app::writeScene(scene), "scene.json");
+  EXPECT_EQ(app::wornText(back.characters[0].attachments), app::wornText(scene.characters[0].attachments));
+  const std::string take = test::freshFolder("attachments_take") + "/take";
+  const std::string scene_file = app::dataPath("assets/scenes/beanie.json");
+  const test::Outcome record =
+      test::runProgram({"--headless", "--no-images", "--frames", "20", scene_file, "--record", take});
+  EXPECT_EQ(record.exit_code, 0) << record.err;
+  const test::Outcome replay = test::runProgram({"--headless", "--no-images", "--replay", take});
+  EXPECT_NE((replay.out + replay.err).find("to the bit"), std::string::npos) << replay.out << replay.err;
+}
+
+}  // namespace
