@@ -28,6 +28,7 @@ struct Options {
   std::vector<std::string> pins;                         // --pin JSON, see files/pin_spec.h
   std::vector<std::string> maps;                         // --map FIELD=FILE.png, see files/field_map.h
   std::vector<std::string> attachments;                  // --attach FILE@JOINT, see files/attachment_spec.h
+  std::vector<std::string> curves;                       // --curve FIELD=ROOT,...,TIP, see files/field_map.h
   std::string tie;                                       // see files/tie_spec.h; empty: the scene's
   std::string style, resolution;                         // empty: the scene's
   std::string hair, motion, parts, clip;                 // files; name of a clip

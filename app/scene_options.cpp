@@ -138,6 +138,10 @@ void overrideCharacter(const Options& options, CharacterSpec& spec) {
     const std::string fault = equals + 1 >= text.size() ? "write FIELD=FILE.png" : setMap(text.substr(0, equals), file, spec.maps);
     if (!fault.empty()) throw UsageError("--map cannot be '" + text + "'; " + fault);
   }
+  for (const std::string& text : options.curves) {
+    const std::size_t equals = std::min(text.find('='), text.size());
+    setCurve(text.substr(0, equals), text.substr(std::min(text.size(), equals + 1)), spec.curves);
+  }
   if (!options.tie.empty()) spec.ties = tiesFromText(options.tie);
   for (const std::string& text : options.attachments) {
     const std::vector<AttachmentSpec> given = attachmentsFromText(text);

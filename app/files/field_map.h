@@ -1,14 +1,20 @@
-// Scalar fields over the scalp, painted as grey pictures.
+// Scalar fields over the scalp, painted as grey pictures, and curves of them from root to tip.
 //
 // A picture is the head unrolled: its middle column is the front, its sides the back, its left half the figure's right
 // side; its top row is the crown, the row half-way down lies level with the tops of the ears. White stands for the
-// parameter's own value, black for its least.
+// parameter's own value, black for its least. It is a PNG file, or the bytes of one in text (RFC 2397,
+// "data:image/png;base64,..."), as brushes in the window leave it.
+//
+// A curve is a list of shares of the parameter's value, evenly spaced from root to tip: "curves": { "stiffness":
+// [1, 0.5, 0.2] }; linear in between.
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "app/files/json_reader.h"
 #include "sim/mesh/hair_mesh.h"
 
 namespace app {
@@ -21,16 +27,46 @@ struct FieldMap {
   double at(const sim::Vec3& direction) const;
 };
 
-// The luminance of a PNG. Throws InputError.
-FieldMap readFieldMap(const std::string& file);
+// The direction of a pixel's middle.
+sim::Vec3 directionOf(const FieldMap& map, int column, int row);
+
+// The luminance of a PNG, of a file or in text. Throws InputError.
+FieldMap readFieldMap(const std::string& picture);
+
+// As text that readFieldMap reads back, in 256 greys.
+std::string pictureText(const FieldMap& map);
+bool isPictureText(std::string_view picture);
 
 // The pictures that a character is painted with; empty: none.
 struct FieldFiles {
-  std::string stiffness, length, density;
+  std::string stiffness, length, density, mass;
   bool operator==(const FieldFiles&) const = default;
 };
 
+inline constexpr std::array<std::string_view, 4> kFieldNames{"stiffness", "length", "density", "mass"};
+
+// The picture of a field; null for a name of none.
+std::string* findMap(std::string_view name, FieldFiles& maps);
+
 // Gives the field of a name another picture. Returns what is wrong with the name, empty when fine.
-std::string setMap(std::string_view name, const std::string& file, FieldFiles& maps);
+std::string setMap(std::string_view name, const std::string& picture, FieldFiles& maps);
+
+// Shares from root to tip; empty: 1 everywhere.
+struct FieldCurves {
+  std::vector<double> stiffness, mass;
+  bool operator==(const FieldCurves&) const = default;
+};
+
+inline constexpr std::size_t kMaxCurvePoints = 32;
+inline constexpr double kLargestShare = 10;
+
+// At a share of the way from root to tip.
+double curveAt(const std::vector<double>& curve, double along);
+
+// Throw InputError.
+FieldCurves readCurves(const JsonPlace& place);
+nlohmann::json writeCurves(const FieldCurves& curves);
+// "1,0.5,0.2", or none.
+void setCurve(const std::string& name, const std::string& text, FieldCurves& curves);
 
 }  // namespace app

@@ -1,12 +1,15 @@
 #include "app/files/image_io.h"
 
+#include <algorithm>
 #include <cassert>
+#include <climits>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
 
 #include "app/files/errors.h"
 #include "app/files/output_file.h"
+#include "app/files/text_file.h"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"
@@ -26,6 +29,7 @@ namespace app {
 namespace {
 
 constexpr int kMaxSide = 16384;
+constexpr std::size_t kLargestPng = std::size_t{1} << 30;
 
 bool isOpaque(std::span<const unsigned char> rgba) {
   for (std::size_t i = 3; i < rgba.size(); i += 4) {
@@ -36,7 +40,7 @@ bool isOpaque(std::span<const unsigned char> rgba) {
 
 }  // namespace
 
-void writePng(const std::string& file, int width, int height, std::span<const unsigned char> rgba) {
+std::string pngBytes(int width, int height, std::span<const unsigned char> rgba) {
   assert(width > 0 && height > 0 && rgba.size() == static_cast<std::size_t>(width) * height * 4);
   std::string png;
   const auto append = [](void* text, void* bytes, int size) {
@@ -51,25 +55,36 @@ void writePng(const std::string& file, int width, int height, std::span<const un
   } else {
     stbi_write_png_to_func(append, &png, width, height, 4, rgba.data(), 4 * width);
   }
+  return png;
+}
+
+void writePng(const std::string& file, int width, int height, std::span<const unsigned char> rgba) {
+  const std::string png = pngBytes(width, height, rgba);
   if (png.empty()) throw OutputError(file, "cannot be encoded as PNG", "free some memory");
   writeFile(file, png);
+}
+
+Image readPngBytes(std::string_view bytes, const std::string& name) {
+  const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
+  const int size = static_cast<int>(std::min<std::size_t>(bytes.size(), INT_MAX));
+  Image image;
+  int channels = 0;
+  const bool known = stbi_info_from_memory(data, size, &image.width, &image.height, &channels) != 0;
+  if (known && (image.width > kMaxSide || image.height > kMaxSide)) {
+    throw InputError(name, "size", "is larger than 16384 pixels a side", "scale the image down");
+  }
+  const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
+      known ? stbi_load_from_memory(data, size, &image.width, &image.height, &channels, 4) : nullptr, stbi_image_free);
+  if (!pixels) throw InputError(name, "image data", "is not a readable PNG", "save it again as PNG");
+  image.rgba.assign(pixels.get(), pixels.get() + static_cast<std::size_t>(image.width) * image.height * 4);
+  return image;
 }
 
 Image readPng(const std::string& file) {
   if (!std::filesystem::is_regular_file(file)) {
     throw InputError(file, "input image", "is not a file", "name an existing PNG file");
   }
-  Image image;
-  int channels = 0;
-  const bool known = stbi_info(file.c_str(), &image.width, &image.height, &channels) != 0;
-  if (known && (image.width > kMaxSide || image.height > kMaxSide)) {
-    throw InputError(file, "size", "is larger than 16384 pixels a side", "scale the image down");
-  }
-  const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
-      known ? stbi_load(file.c_str(), &image.width, &image.height, &channels, 4) : nullptr, stbi_image_free);
-  if (!pixels) throw InputError(file, "image data", "is not a readable PNG", "save it again as PNG");
-  image.rgba.assign(pixels.get(), pixels.get() + static_cast<std::size_t>(image.width) * image.height * 4);
-  return image;
+  return readPngBytes(readText(file, kLargestPng), file);
 }
 
 }  // namespace app

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace app {
@@ -15,6 +16,12 @@ struct Image {
 
 // Writes a PNG (alpha left out when every pixel is opaque). Throws OutputError.
 void writePng(const std::string& file, int width, int height, std::span<const unsigned char> rgba);
+
+// The same as bytes.
+std::string pngBytes(int width, int height, std::span<const unsigned char> rgba);
+
+// Reads a PNG of those bytes; `name` is for messages. Throws InputError.
+Image readPngBytes(std::string_view bytes, const std::string& name);
 
 // Reads a PNG. Throws InputError when it is missing, broken or larger than 16,384 pixels a side.
 Image readPng(const std::string& file);

@@ -28,7 +28,7 @@ struct AskName {
   std::string_view name;
 };
 // What can be recorded: all but the requests that write files.
-constexpr std::array<AskName, 48> kAskNames{{{Ask::kSetParam, "set"},
+constexpr std::array<AskName, 50> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kPause, "pause"},
                                              {Ask::kPauseMotion, "pause-motion"},
                                              {Ask::kSingleStep, "single-step"},
@@ -75,6 +75,8 @@ constexpr std::array<AskName, 48> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kMap, "map"},
                                              {Ask::kTie, "tie"},
                                              {Ask::kAttach, "attach"},
+                                             {Ask::kPaint, "paint"},
+                                             {Ask::kCurve, "curve"},
                                              {Ask::kVary, "vary"}}};
 
 std::string_view nameOf(Ask what) {

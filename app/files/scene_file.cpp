@@ -38,17 +38,27 @@ std::string readFileName(const JsonPlace& place, const std::string& kind) {
 }
 
 FieldFiles readMaps(const JsonPlace& place) {
-  place.expectObject({"stiffness", "length", "density"});
+  place.expectObject(kFieldNames);
   FieldFiles maps;
-  if (place.has("stiffness")) maps.stiffness = readFileName(place.at("stiffness"), "maps");
-  if (place.has("length")) maps.length = readFileName(place.at("length"), "maps");
-  if (place.has("density")) maps.density = readFileName(place.at("density"), "maps");
+  for (const std::string_view name : kFieldNames) {
+    if (!place.has(std::string(name))) continue;
+    const JsonPlace picture = place.at(std::string(name));
+    const std::string text = picture.text();
+    *findMap(name, maps) = isPictureText(text) ? text : readFileName(picture, "maps");
+  }
   return maps;
+}
+
+json writeMaps(FieldFiles maps) {
+  json written = json::object();
+  for (const std::string_view name : kFieldNames) written[std::string(name)] = *findMap(name, maps);
+  return written;
 }
 
 CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
   place.expectObject({"motion", "parts", "clip", "style", "resolution", "hair", "reverse_faces", "fit", "mends", "position",
-                      "heading", "clip_offset", "loop", "look", "pins", "ties", "attachments", "maps"});
+                      "heading", "clip_offset", "loop", "look", "pins", "ties", "attachments", "maps",
+                      "curves"});
   CharacterSpec spec;
   spec.look = look;
   spec.motion =
@@ -75,6 +85,7 @@ CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
   if (place.has("look")) readHairRows(place.at("look"), spec.look);
   if (place.has("pins")) spec.pins = readPins(place.at("pins"));
   if (place.has("maps")) spec.maps = readMaps(place.at("maps"));
+  if (place.has("curves")) spec.curves = readCurves(place.at("curves"));
   if (place.has("ties")) spec.ties = readTies(place.at("ties"));
   if (place.has("attachments")) spec.attachments = readAttachments(place.at("attachments"));
   return spec;
@@ -127,8 +138,8 @@ json writeCharacter(const CharacterSpec& spec) {
           {"pins", writePins(spec.pins)},
           {"ties", writeTies(spec.ties)},
           {"attachments", writeAttachments(spec.attachments)},
-          {"maps",
-           {{"stiffness", spec.maps.stiffness}, {"length", spec.maps.length}, {"density", spec.maps.density}}}};
+          {"maps", writeMaps(spec.maps)},
+          {"curves", writeCurves(spec.curves)}};
 }
 
 }  // namespace

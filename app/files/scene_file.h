@@ -8,7 +8,8 @@
 //     "position": [0, 0, 0], "heading": 0, "clip_offset": 0, "loop": "auto", "look": { a row of the hair table: value
 //     }, "pins": [ as pin_spec.h says ], "ties": [ as tie_spec.h says ],
 //     "attachments": [ as attachment_spec.h says ],
-//     "maps": { "stiffness": "a.png", "length": "b.png", "density": "c.png", as field_map.h says }
+//     "maps": { "stiffness": "a.png", "length": "b.png", "density": "c.png", "mass": "d.png" },
+//     "curves": { "stiffness": [1, 0.5] }, both as field_map.h says
 //   }],
 //   "camera": { "view": "three-quarter", "framing": "bust", "eye": [..], "target": [..], "fov": 0.5, "follow": true,
 //              "of_head": false },
@@ -60,6 +61,7 @@ struct CharacterSpec {
   std::vector<TieSpec> ties;
   std::vector<AttachmentSpec> attachments;
   FieldFiles maps;
+  FieldCurves curves;
 };
 
 // Where the camera stands at the first frame. With an eye and a target given the named view is not used.

@@ -17,6 +17,7 @@
 #include "app/groom/certain_mends.h"
 #include "app/groom/look_fit.h"
 #include "app/motion/playback.h"
+#include "app/scene/painted_fields.h"
 #include "app/scene/pins.h"
 #include "app/scene/step_error.h"
 #include "render/frame_input.h"
@@ -54,7 +55,8 @@ struct Haircut {
   sim::HairMesh mesh;
   std::vector<int> tied;         // vertices in the rings of ties
   std::vector<int> covered;      // vertices under attachments, which hold them
-  std::vector<float> stiffness;  // painted, one a column; empty: not painted
+  PaintedShares shares;
+  std::vector<Vec3> unpainted, painted;  // rest positions before and after a painted length; none where hair is tied
   std::vector<render::HairFace> faces;
   std::vector<float> rest;  // positions of the rest shape, three floats a vertex
   // Of hair that brushes have reshaped, which one actor alone wears.

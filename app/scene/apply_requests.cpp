@@ -13,6 +13,7 @@
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
 #include "app/scene/groom_brush.h"
+#include "app/scene/paint_brush.h"
 #include "app/scene/present_scene.h"
 #include "app/scene/project.h"
 #include "app/scene/vary.h"
@@ -109,7 +110,8 @@ void changeAttachments(const Request& request, Demo& demo) {
 
 void changeMap(const Request& request, Demo& demo) {
   CharacterSpec spec = selectedActor(demo).spec;
-  const std::string file = request.text.empty() ? "" : findFile(request.text, "", "maps");
+  const bool none = request.text.empty() || isPictureText(request.text);
+  const std::string file = none ? request.text : findFile(request.text, "", "maps");
   if (const std::string fault = setMap(request.name, file, spec.maps); !fault.empty())
     throw InputError("", "map '" + request.name + "'", fault, "");
   recast(spec, true, request.name + (file.empty() ? " no longer painted" : " painted by " + stem(file)), demo);
@@ -241,12 +243,13 @@ void savePreset(const Request& request, Demo& demo) {
 // Hair that brushes have reshaped becomes a file of its own beside the scene.
 void saveReshapedHair(const std::string& scene_file, const Demo& demo, Scene& scene) {
   for (std::size_t i = 0; i < demo.actors.size(); ++i) {
-    if (!demo.actors[i].haircut->edited) continue;
+    if (!reshapedByHand(*demo.actors[i].haircut)) continue;
     const std::filesystem::path beside =
         std::filesystem::path(scene_file).replace_extension().string() + "-hair" + std::to_string(i + 1) + ".obj";
     writeFile(beside.string(), writeHairMesh(demo.actors[i].haircut->mesh.shape));
     scene.characters[i].hair = beside.string();
     scene.characters[i].mends.clear();
+    scene.characters[i].maps.length.clear();  // it is in the shape
     scene.characters[i].fit = scene.characters[i].reverse_faces = false;
   }
 }
@@ -418,6 +421,12 @@ constexpr Action kActions[] = {
     {Ask::kMap, changeMap},
     {Ask::kTie, [](const Request& request, Demo& demo) { changeTies(request.text, demo); }},
     {Ask::kAttach, changeAttachments},
+    {Ask::kPaint,
+     [](const Request& request, Demo& demo) {
+       applyPaint(parsePaint(request.name, request.text), demo.selected, demo);
+     }},
+    {Ask::kCurve,
+     [](const Request& request, Demo& demo) { applyCurve(request.name, request.text, demo.selected, demo); }},
     {Ask::kVary, vary},
 };
 

@@ -41,6 +41,8 @@ constexpr EditKind kEditKinds[] = {{Ask::kSetParam, kSettings, true, ""},
                                    {Ask::kGoToView, kOfView, false, "Kept view"},
                                    {Ask::kLens, kOfView, true, "Lens"},
                                    {Ask::kBrush, kOfHair | kOfShape, true, ""},
+                                   {Ask::kPaint, kOfHair | kOfShape, true, "Paint"},
+                                   {Ask::kCurve, kOfHair | kOfShape, true, "Curve of"},
                                    {Ask::kReset, kOfHair, false, "Hair to rest"},
                                    {Ask::kCollapse, kOfHair, false, "Collapse"},
                                    {Ask::kStyle, kOfHair, false, "Style"},
@@ -74,7 +76,8 @@ std::string titleOf(const Request& request, const EditKind& kind) {
   if (request.what == Ask::kBrush) return request.name;
   std::string title = kind.title;
   if (!request.name.empty() && request.what != Ask::kMotionFile) title.append(" ").append(request.name);
-  if (!request.text.empty() && request.what != Ask::kVary) title.append(" ").append(spaced(stem(request.text)).substr(0, 40));
+  const bool sample = request.what == Ask::kPaint;
+  if (!request.text.empty() && request.what != Ask::kVary && !sample) title.append(" ").append(spaced(stem(request.text)).substr(0, 40));
   const bool number = request.what == Ask::kBudget || request.what == Ask::kDeadline ||
                       request.what == Ask::kSpeed || request.what == Ask::kVary;
   if (number) title.append(" ").append(sim::numberText(request.value));
@@ -106,10 +109,11 @@ EditSide sideOf(const Demo& demo, int reach) {
 bool sameCast(const CharacterSpec& a, const CharacterSpec& b) {
   const auto cast = [](const CharacterSpec& spec) {
     const auto& [motion, parts, clip, style, resolution, hair, reverse_faces, fit, mends, position, heading, clip_offset, loop,
-                 look, pins, ties, attachments, maps] = spec;
+                 look, pins, ties, attachments, maps, curves] = spec;
     return std::tuple(motion, parts, clip, style, resolution, hair, reverse_faces, fit, mends, position.x(), position.y(),
                       position.z(), heading, loop, writePins(pins).dump(),
-                      writeTies(ties).dump(), wornText(attachments), maps.stiffness, maps.length, maps.density);
+                      writeTies(ties).dump(), wornText(attachments), maps.stiffness, maps.length, maps.density,
+                      maps.mass, writeCurves(curves).dump());
   };
   return cast(a) == cast(b);
 }

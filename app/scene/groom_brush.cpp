@@ -26,7 +26,8 @@ bool wornByOthers(const Actor& actor, const Demo& demo) {
          std::ranges::any_of(demo.asset_cache.pairs, [&](const auto& pair) { return pair->coarse == actor.haircut; });
 }
 
-// The actor's haircut, its own from now on.
+}  // namespace
+
 Haircut& ownHaircut(Actor& actor, Demo& demo) {
   AssetCache& asset_cache = demo.asset_cache;
   const auto found =
@@ -45,7 +46,8 @@ Haircut& ownHaircut(Actor& actor, Demo& demo) {
   own->edited = worn.edited;
   own->tied = worn.tied;
   own->covered = worn.covered;
-  own->stiffness = worn.stiffness;
+  own->shares = worn.shares;
+  own->unpainted = worn.unpainted, own->painted = worn.painted;
   own->frozen = worn.frozen;
   actor.haircut = own.get();
   const std::unique_ptr<sim::StepContext> old = std::move(actor.context);
@@ -55,12 +57,31 @@ Haircut& ownHaircut(Actor& actor, Demo& demo) {
   return *asset_cache.haircuts.back();
 }
 
+namespace {
+
 // A coarser mesh of the style is not of this shape.
 void dropWhatIsOfTheOldShape(Haircut& own, Actor& actor, AssetCache& asset_cache) {
   if (actor.coarse.active) leaveCoarse(actor);
   actor.coarse.pair = nullptr;
   actor.detail.coarse.reset();
   std::erase_if(asset_cache.pairs, [&](const auto& pair) { return pair->fine == &own; });
+}
+
+// Makes the rest quantities of a shape and what is painted. What moves goes on moving. Throws InputError where a prism
+// would not be positive; then nothing has changed.
+Haircut& remake(const std::vector<Vec3>& positions, int index, Demo& demo) {
+  Actor& actor = demo.actors[static_cast<std::size_t>(index)];
+  Haircut& own = ownHaircut(actor, demo);
+  if (!own.reshape) own.reshape.emplace(own.mesh);
+  if (!own.reshape->set(positions, own.mesh))
+    throw InputError("", "the hair", "would be flat or inverted in this shape", "make a smaller change");
+  applyShares(own.shares, own.mesh);
+  dropWhatIsOfTheOldShape(own, actor, demo.asset_cache);
+  forgetMoments(demo.timeline);
+  actor.context->reshape(actor.hair);
+  actor.shown_still = false;
+  wakeAll(actor);
+  return own;
 }
 
 }  // namespace
@@ -75,18 +96,24 @@ std::string brushText(const BrushSample& sample) {
   return text;
 }
 
+std::size_t numbersOf(std::string_view text, std::span<double> numbers) {
+  std::size_t count = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(' ', at), text.size());
+    if (count == numbers.size() || !sim::parseNumber(text.substr(at, end - at), numbers[count++]))
+      return numbers.size() + 1;
+    at = end + 1;
+  }
+  return count;
+}
+
 BrushSample parseBrush(const std::string& tool, const std::string& text) {
   const auto name = std::ranges::find(kBrushNames, tool);
   if (name == kBrushNames.end())
     throw InputError("", "brush '" + tool.substr(0, 40) + "'", "is unknown", sim::nameHint(tool, kBrushNames));
   std::array<double, 10> numbers{};
-  std::size_t count = 0;
+  const std::size_t count = numbersOf(text, numbers);
   bool fine = true;
-  for (std::size_t at = 0; fine && at < text.size();) {
-    const std::size_t end = std::min(text.find(' ', at), text.size());
-    fine = count < numbers.size() && sim::parseNumber(std::string_view(text).substr(at, end - at), numbers[count++]);
-    at = end + 1;
-  }
   const auto within = [](double value, double low, double high) { return value >= low && value <= high; };
   for (int k = 0; k < 6; ++k) fine = fine && within(numbers[k], -kFarthest, kFarthest);
   fine = fine && count == numbers.size() && within(numbers[6], kSmallestBrush, kLargestBrush) &&
@@ -104,22 +131,23 @@ BrushSample parseBrush(const std::string& tool, const std::string& text) {
 }
 
 void reshapeHair(const std::vector<Vec3>& positions, int index, Demo& demo) {
-  Actor& actor = demo.actors[static_cast<std::size_t>(index)];
-  Haircut& own = ownHaircut(actor, demo);
-  if (!own.reshape) own.reshape.emplace(own.mesh);
-  if (!own.reshape->set(positions, own.mesh))
-    throw InputError("", "the hair", "would be flat or inverted in this shape", "make a smaller change");
-  applyStiffness(own.stiffness, own.mesh);
-  dropWhatIsOfTheOldShape(own, actor, demo.asset_cache);
+  Haircut& own = remake(positions, index, demo);
   own.edited = true;
-  forgetMoments(demo.timeline);
   for (std::size_t v = 0; v < positions.size(); ++v) {
     for (std::size_t axis = 0; axis < 3; ++axis)
       own.rest[3 * v + axis] = static_cast<float>(positions[v][static_cast<int>(axis)]);
   }
-  actor.context->reshape(actor.hair);
-  actor.shown_still = false;
-  wakeAll(actor);
+}
+
+void repaintHair(const PaintedShares& shares, int index, Demo& demo) {
+  Actor& actor = demo.actors[static_cast<std::size_t>(index)];
+  if (shares == actor.haircut->shares) return;
+  ownHaircut(actor, demo).shares = shares;
+  remake(std::vector<Vec3>(actor.haircut->mesh.shape.positions), index, demo);
+}
+
+bool reshapedByHand(const Haircut& haircut) {
+  return haircut.edited && haircut.mesh.shape.positions != haircut.painted;
 }
 
 void freezeHair(const std::vector<float>& frozen, int index, Demo& demo) {

@@ -2,7 +2,9 @@
 // shape while the hair goes on moving.
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/scene/actor.h"
@@ -23,6 +25,10 @@ struct BrushSample {
 inline constexpr double kSmallestBrush = 0.003, kLargestBrush = 0.3;  // m
 inline constexpr double kLargestFalloff = 8;
 
+// The numbers of a text, with blanks between; their count, one more than there is room for where they are more or no
+// numbers.
+std::size_t numbersOf(std::string_view text, std::span<double> numbers);
+
 // "x y z  x y z  radius strength falloff mirror"; parseBrush reads the same bits back.
 std::string brushText(const BrushSample& sample);
 // `tool`: as kBrushNames. Throws InputError.
@@ -31,6 +37,15 @@ BrushSample parseBrush(const std::string& tool, const std::string& text);
 // Changes the rest shape of the actor's hair, which becomes its own. Throws InputError where the brush reaches no hair;
 // then nothing has changed.
 void applyBrush(const BrushSample& sample, int actor, Demo& demo);
+
+// Gives the actor's hair other painted shares. What moves goes on moving.
+void repaintHair(const PaintedShares& shares, int actor, Demo& demo);
+
+// Whether the rest shape is another than style or file, painted length, ties and attachments make it.
+bool reshapedByHand(const Haircut& haircut);
+
+// The actor's haircut, its own from now on.
+Haircut& ownHaircut(Actor& actor, Demo& demo);
 
 // Gives the actor's hair another mask of what brushes leave as it is (one share a vertex, or none at all).
 void freezeHair(const std::vector<float>& frozen, int actor, Demo& demo);

@@ -39,7 +39,9 @@ std::uint64_t freshId() {
 const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& asset_cache) {
   const std::string title = spec.hair.empty() ? styleTitle(spec) : spec.hair + (spec.reverse_faces ? " reversed" : "");
   const std::string ties = spec.ties.empty() ? "" : " tied " + writeTies(spec.ties).dump();
-  const std::string painted = "|" + spec.maps.stiffness + "|" + spec.maps.length + "|" + spec.maps.density;
+  std::string painted = writeCurves(spec.curves).dump();
+  for (const std::string* map : {&spec.maps.stiffness, &spec.maps.length, &spec.maps.density, &spec.maps.mass})
+    painted += "|" + *map;
   const std::vector<const Attachment*> worn = attach(spec, body, asset_cache);
   std::string under;
   for (const Attachment* attachment : worn) under += "|" + attachment->key;
@@ -59,16 +61,18 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
     const Scalp& scalp = body.character.scalp;
     // Hair of a file may lie nearer to the body than a style's.
     const BodyDistance around = spec.hair.empty() ? body.distance : [](const Vec3&) { return 1.0; };
+    haircut->unpainted = shape.positions;
     if (!spec.maps.length.empty()) paintLength(readFieldMap(spec.maps.length), scalp, around, shape);
     if (!spec.ties.empty()) applyTies(spec, body, shape, haircut->tied);
+    haircut->painted = shape.positions;
     haircut->covered = layUnder(worn, scalp, body.distance, shape);
+    if (!spec.ties.empty() || !haircut->covered.empty()) haircut->unpainted.clear();
     haircut->mesh = sim::buildHairMesh(std::move(shape));
-    if (!spec.maps.stiffness.empty())
-      haircut->stiffness = paintedStiffness(readFieldMap(spec.maps.stiffness), scalp, haircut->mesh.shape);
-    applyStiffness(haircut->stiffness, haircut->mesh);
+    haircut->shares = paintedShares(spec.maps, spec.curves, scalp, haircut->mesh.shape);
+    applyShares(haircut->shares, haircut->mesh);
   } catch (const sim::MeshError& error) {
     if (!spec.maps.length.empty())
-      throw InputError("map " + spec.maps.length, "length", "cuts hair so that its layers cross", "paint it lighter or more evenly");
+      throw InputError("map " + spec.maps.length.substr(0, 80), "length", "cuts hair so that its layers cross", "paint it lighter or more evenly");
     if (!haircut->covered.empty())
       throw InputError(spec.attachments.front().file, "", "leaves the hair no room", "make it wider, or move it off the head");
     if (!spec.ties.empty())

@@ -75,18 +75,40 @@ void paintLength(const FieldMap& map, const Scalp& scalp, const BodyDistance& bo
   }
 }
 
-std::vector<float> paintedStiffness(const FieldMap& map, const Scalp& scalp, const sim::HairMeshShape& shape) {
-  std::vector<float> shares;
-  for (int c = 0; c < shape.columnCount(); ++c)
-    shares.push_back(static_cast<float>(kLeastStiffness + (1 - kLeastStiffness) * atRoot(map, scalp, shape, c)));
+namespace {
+
+// One a vertex; empty where all are 1.
+std::vector<float> sharesOf(const std::string& picture, const std::vector<double>& curve, double least,
+                            const Scalp& scalp, const sim::HairMeshShape& shape) {
+  if (picture.empty() && curve.empty()) return {};
+  const FieldMap map = picture.empty() ? FieldMap{1, 1, {1}} : readFieldMap(picture);
+  std::vector<float> shares(shape.positions.size(), 1);
+  for (int c = 0; c < shape.columnCount(); ++c) {
+    const double whole = least + (1 - least) * atRoot(map, scalp, shape, c);
+    const int length = shape.columnLength(c);
+    for (int k = 0; k < length; ++k) {
+      const auto v = static_cast<std::size_t>(shape.column_first[static_cast<std::size_t>(c)] + k);
+      shares[v] = static_cast<float>(whole * curveAt(curve, k / std::max(1.0, length - 1.0)));
+    }
+  }
+  if (std::ranges::all_of(shares, [](float share) { return share == 1; })) return {};
   return shares;
 }
 
-void applyStiffness(std::span<const float> shares, sim::HairMesh& mesh) {
-  if (shares.empty()) return;
+}  // namespace
+
+PaintedShares paintedShares(const FieldFiles& maps, const FieldCurves& curves, const Scalp& scalp,
+                            const sim::HairMeshShape& shape) {
+  return {sharesOf(maps.stiffness, curves.stiffness, kLeastStiffness, scalp, shape),
+          sharesOf(maps.mass, curves.mass, kLeastMass, scalp, shape)};
+}
+
+void applyShares(const PaintedShares& shares, sim::HairMesh& mesh) {
+  for (std::size_t v = 0; v < shares.mass.size(); ++v) mesh.vertex_volume[v] *= static_cast<double>(shares.mass[v]);
+  if (shares.stiffness.empty()) return;
   const auto scale = [&](const auto& vertices, double& volume) {
     double sum = 0;
-    for (const int v : vertices) sum += shares[static_cast<std::size_t>(mesh.column_of[static_cast<std::size_t>(v)])];
+    for (const int v : vertices) sum += static_cast<double>(shares.stiffness[static_cast<std::size_t>(v)]);
     volume *= sum / static_cast<double>(std::size(vertices));
   };
   for (auto* edges : {&mesh.horizontal_edges, &mesh.vertical_edges}) {

@@ -1,7 +1,6 @@
 // Fields painted over the scalp and what they do to a hair mesh. A field of white everywhere changes no bit.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "app/files/field_map.h"
@@ -10,17 +9,25 @@
 
 namespace app {
 
-inline constexpr double kLeastLength = 0.12, kLeastStiffness = 0.02;  // share that black leaves
+// Share that black leaves.
+inline constexpr double kLeastLength = 0.12, kLeastStiffness = 0.02, kLeastMass = 0.1;
 
 // Ends each column sooner along its own curve. Where the field falls faster from column to column than prisms can bear
 // the shorter column keeps more.
 void paintLength(const FieldMap& map, const Scalp& scalp, const BodyDistance& body, sim::HairMeshShape& shape);
 
-// The share of each column's stiffness.
-std::vector<float> paintedStiffness(const FieldMap& map, const Scalp& scalp, const sim::HairMeshShape& shape);
-// Scales the volumes that elements stand for, and with them their stiffnesses; masses stay. After every change of the
-// rest shape anew. `shares`: one a column, or none at all.
-void applyStiffness(std::span<const float> shares, sim::HairMesh& mesh);
+// Shares of the parameters' values, one a vertex; empty: 1 everywhere.
+struct PaintedShares {
+  std::vector<float> stiffness, mass;
+  bool operator==(const PaintedShares&) const = default;
+};
+
+// Of pictures and curves.
+PaintedShares paintedShares(const FieldFiles& maps, const FieldCurves& curves, const Scalp& scalp,
+                            const sim::HairMeshShape& shape);
+// Scales the volumes that elements stand for, and with them their stiffnesses, and those that masses are made of. After
+// every change of the rest shape anew.
+void applyShares(const PaintedShares& shares, sim::HairMesh& mesh);
 
 // Deals strands out by the field as well.
 void paintDensity(const FieldMap& map, const Scalp& scalp, const sim::HairMesh& mesh,

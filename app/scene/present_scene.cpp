@@ -11,7 +11,7 @@ namespace {
 namespace fs = std::filesystem;
 
 void makeMovable(const std::string& kind, std::string& file) {
-  if (file.empty()) return;
+  if (file.empty() || isPictureText(file)) return;
   std::error_code ignored;
   const fs::path whole = fs::weakly_canonical(file, ignored);
   const fs::path ours = fs::weakly_canonical(dataPath("assets/" + kind), ignored);
@@ -41,7 +41,8 @@ Scene movable(Scene scene) {
     makeMovable("clips", spec.parts);
     makeMovable("hair", spec.hair);
     for (AttachmentSpec& one : spec.attachments) makeMovable("attachments", one.file);
-    for (std::string* map : {&spec.maps.stiffness, &spec.maps.length, &spec.maps.density}) makeMovable("maps", *map);
+    for (std::string* map : {&spec.maps.stiffness, &spec.maps.length, &spec.maps.density, &spec.maps.mass})
+      makeMovable("maps", *map);
   }
   return scene;
 }

@@ -59,10 +59,12 @@ enum class Ask {
   kMarkOut,      // likewise the out point
   kBake,         // value: s to simulate ahead where there is no out point; see timeline.h
   kClearBake,    // what the timeline keeps is forgotten
-  kMap,          // name: stiffness, length or density; text: the picture it is painted by, empty for none
+  kMap,          // name: of a field, see field_map.h; text: the picture it is painted by, empty for none
   kTie,          // text: ties of the selected character, see tiesFromText
   kAttach,       // text: attachments of the selected character in place of those before, see attachmentsFromText;
                  // name: add, beside those before
+  kPaint,        // name: field, text: a sample of a stroke; see paint_brush.h
+  kCurve,        // name: field, text: shares from root to tip; see setCurve
   kVary,         // value: seed; text: how far, see varyMaterial
   kCount
 };

@@ -35,7 +35,9 @@ struct FileBrowser {
 
 // The brush in a person's hand.
 struct BrushState {
-  int tool = -1;  // of BrushTool; -1: none
+  int tool = -1;   // of BrushTool; -1: none
+  int field = -1;  // of kFieldNames, that is painted in place of a tool; -1: none
+  double value = 0.2;  // that it is painted with
   double radius = 0.04, strength = 0.5, falloff = 1;  // m
   bool mirror = false;
   bool over_hair = false, stroking = false;  // then a drag is the brush's, not the camera's

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "app/scene/groom_brush.h"
+#include "app/scene/paint_brush.h"
 #include "app/scene/picking.h"
 #include "app/ui/ui_panels.h"
 #include "app/ui/ui_widgets.h"
@@ -24,6 +25,31 @@ Rigid worldToScalp(const Actor& actor) {
 Vec3 inPlane(const Ray& ray, const Vec3& place, const Vec3& facing) {
   const double slope = ray.along.dot(facing);
   return std::abs(slope) < 1e-6 ? place : Vec3(ray.from + (place - ray.from).dot(facing) / slope * ray.along);
+}
+
+// The painted field at the roots, black to white as its picture; under the ring brighter.
+void drawField(const Vec3& place, const Demo& demo, const BrushState& brush, float scale) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const Actor& actor = selectedActor(demo);
+  FieldFiles maps = actor.spec.maps;
+  const std::string& picture = *findMap(kFieldNames[static_cast<std::size_t>(brush.field)], maps);
+  const FieldMap map = picture.empty() ? FieldMap{1, 1, {1}} : readFieldMap(picture);
+  const sim::HairMesh& mesh = actor.haircut->mesh;
+  Brush reach;
+  reach.at = place, reach.radius = brush.radius, reach.falloff = brush.falloff;
+  for (int c = 0; c < mesh.columnCount(); ++c) {
+    const auto root = static_cast<std::size_t>(mesh.shape.column_first[static_cast<std::size_t>(c)]);
+    const int grey = static_cast<int>(255 * map.at(mesh.shape.positions[root] - actor.body->character.scalp.center));
+    double weight = 0;
+    for (int k = 0; k < mesh.shape.columnLength(c); ++k)
+      weight = std::max(weight, brushReach(reach, actor.hair.positions[root + static_cast<std::size_t>(k)]));
+    const auto pixel = pixelOf(actor.hair.positions[root + 1], size.x, size.y, demo.camera);
+    if (!pixel) continue;
+    const ImVec2 at(static_cast<float>((*pixel)[0]), static_cast<float>((*pixel)[1]));
+    ImDrawList* list = ImGui::GetBackgroundDrawList();
+    list->AddCircleFilled(at, 4.2f * scale, weight > 0.02 ? IM_COL32(240, 172, 120, 235) : IM_COL32(20, 20, 24, 200), 12);
+    list->AddCircleFilled(at, 3.0f * scale, IM_COL32(grey, grey, grey, 255), 12);
+  }
 }
 
 // What the brush reaches: its ring, and a dot at each vertex, the brighter the more it is moved.
@@ -68,9 +94,19 @@ void postSample(const Vec3& at, const Vec3& along, Demo& demo, const BrushState&
                      brushText(sample)});
 }
 
+void postPaint(const Vec3& at, Demo& demo, const BrushState& brush) {
+  const std::string field(kFieldNames[static_cast<std::size_t>(brush.field)]);
+  PaintSample sample{field, at, brush.radius, brush.strength, brush.falloff, brush.mirror, brush.value};
+  postRequest(demo, {Ask::kPaint, field, paintText(sample)});
+}
+
 // One frame of a drag. Combing moves by the way of the hand; the others act as long as the button is held.
 void stroke(const Ray& ray, const std::optional<Vec3>& hit, Demo& demo, BrushState& brush) {
   const Rigid to_scalp = worldToScalp(selectedActor(demo));
+  if (brush.field >= 0) {
+    if (hit) postPaint(to_scalp * *hit, demo, brush);
+    return;
+  }
   if (brush.tool != static_cast<int>(BrushTool::kComb)) {
     if (hit) postSample(to_scalp * *hit, Vec3::Zero(), demo, brush);
     return;
@@ -84,13 +120,26 @@ void stroke(const Ray& ray, const std::optional<Vec3>& hit, Demo& demo, BrushSta
 
 }  // namespace
 
+namespace {
+
+void paintRow(UiState& ui) {
+  BrushState& brush = ui.brush;
+  rowLabel("Paint", "Draws a field over the scalp towards a value, at the roots of the hair within the ring");
+  const int pressed = segments("paint", {"Off", "Stiff", "Length", "Density", "Mass"}, brush.field + 1, ui);
+  if (pressed >= 0) brush.field = pressed - 1;
+  if (pressed > 0) brush.tool = -1;
+}
+
+}  // namespace
+
 void brushSection(UiState& ui) {
   BrushState& brush = ui.brush;
   const int pressed = segments("brush", {"Off", "Comb", "Cut", "Grow", "Smooth", "Puff"}, brush.tool + 1, ui);
-  if (pressed >= 0) brush.tool = pressed - 1;
+  if (pressed >= 0) brush.tool = pressed - 1, brush.field = -1;
   const int second = segments("brush", {"Pinch", "Spread", "Push", "Twist", "Freeze", "Thaw"}, brush.tool - 5, ui);
-  if (second >= 0) brush.tool = second + 5;
-  ImGui::BeginDisabled(brush.tool < 0);
+  if (second >= 0) brush.tool = second + 5, brush.field = -1;
+  paintRow(ui);
+  ImGui::BeginDisabled(brush.tool < 0 && brush.field < 0);
   const auto row = [&](const char* label, const char* help, const char* name, float low, float high, const char* format,
                        double shown_scale, double& value) {
     rowLabel(label, help);
@@ -104,10 +153,29 @@ void brushSection(UiState& ui) {
   row("Strength", "Share of the way that the middle of the brush takes", "brush_strength", 0.02f, 1, "%.2f", 1,
       brush.strength);
   row("Falloff", "0: all within the ring alike; larger: softer edge", "brush_falloff", 0, 4, "%.1f", 1, brush.falloff);
+  if (brush.field >= 0) row("Value", "Painted share: 1 is the parameter's own value, 0 its least", "brush_value", 0, 1, "%.2f", 1, brush.value);
   rowLabel("Mirror", "Acts on the other side of the head as well");
   ImGui::Checkbox("##brush_mirror", &brush.mirror);
   noteItem("brush_mirror", ui);
   ImGui::EndDisabled();
+}
+
+void curveRows(Demo& demo, UiState& ui) {
+  const FieldCurves& curves = selectedActor(demo).spec.curves;
+  const auto row = [&](const char* label, const std::string& name, const std::vector<double>& curve) {
+    rowLabel(label, "Shares of the value at the root, half-way and at the tip");
+    std::array<float, 3> shares;
+    for (std::size_t k = 0; k < 3; ++k) shares[k] = static_cast<float>(curveAt(curve, 0.5 * static_cast<double>(k)));
+    ImGui::SetNextItemWidth(-1);
+    if (ImGui::SliderFloat3(("##curve_" + name).c_str(), shares.data(), 0.05f, 3, "%.2f", ImGuiSliderFlags_AlwaysClamp)) {
+      std::string text;
+      for (const float share : shares) text.append(text.empty() ? "" : ",").append(std::to_string(share));
+      postRequest(demo, {Ask::kCurve, name, text});
+    }
+    noteItem("curve_" + name, ui);
+  };
+  row("Stiffness", "stiffness", curves.stiffness);
+  row("Mass", "mass", curves.mass);
 }
 
 void brushFrame(Demo& demo, UiState& ui) {
@@ -116,7 +184,7 @@ void brushFrame(Demo& demo, UiState& ui) {
   const bool held = io.MouseDown[0], begins = held && !brush.held;
   brush.held = held;
   brush.over_hair = false;
-  if (brush.tool < 0 || (io.WantCaptureMouse && !brush.stroking) || io.DisplaySize.y < 1) {
+  if ((brush.tool < 0 && brush.field < 0) || (io.WantCaptureMouse && !brush.stroking) || io.DisplaySize.y < 1) {
     brush.stroking = false;
     return;
   }
@@ -130,6 +198,7 @@ void brushFrame(Demo& demo, UiState& ui) {
   brush.stroking = brush.stroking && held;
   if (brush.stroking) stroke(ray, hit, demo, brush);
   const Vec3 combed = worldToScalp(selectedActor(demo)).inverse(Eigen::Isometry) * brush.last;
+  if (brush.field >= 0) drawField(hit.value_or(Vec3::Constant(1e6)), demo, brush, ui.text_scale);
   if (hit || brush.stroking) drawReach(brush.stroking && !hit ? combed : *hit, demo, brush, ui.text_scale);
 }
 

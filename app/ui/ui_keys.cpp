@@ -112,7 +112,7 @@ constexpr KeyAction kKeyActions[] = {
     {'P', [](Demo& demo, UiState&) { send(Ask::kScreenshot, "", demo); }},
     {kKeyF12, [](Demo& demo, UiState&) { send(Ask::kScreenshot, "", demo); }},
     {'K', [](Demo& demo, UiState&) { toggle(Ask::kRecord, demo.capture.recording, demo); }},
-    {'G', [](Demo&, UiState& ui) { ui.brush.tool = (ui.brush.tool + 2) % kBrushChoices - 1; }},
+    {'G', [](Demo&, UiState& ui) { ui.brush.tool = (ui.brush.tool + 2) % kBrushChoices - 1, ui.brush.field = -1; }},
     {'[', [](Demo&, UiState& ui) { ui.brush.radius = std::max(0.005, ui.brush.radius / 1.2); }},
     {']', [](Demo&, UiState& ui) { ui.brush.radius = std::min(0.2, ui.brush.radius * 1.2); }},
     {kKeyTab, [](Demo&, UiState& ui) { ui.visible = !ui.visible; }},

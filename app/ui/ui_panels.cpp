@@ -399,6 +399,8 @@ void hairTab(Demo& demo, UiState& ui) {
   }
   if (section("Worn", false)) attachmentSection(demo, ui);
   noteItem("section Worn", ui);
+  if (section("Root to tip", false)) curveRows(demo, ui);
+  noteItem("section Root to tip", ui);
   inspectorSection(actor, demo, ui);
   for (const char* group : {"Strands", "Styling"}) {
     if (section(group, true)) hairGroup(group, demo, ui);

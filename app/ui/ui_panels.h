@@ -28,6 +28,9 @@ void cameraRows(Demo& demo, UiState& ui);
 void brushSection(UiState& ui);
 void brushFrame(Demo& demo, UiState& ui);
 
+// Curves of stiffness and mass from root to tip.
+void curveRows(Demo& demo, UiState& ui);
+
 // What the character wears.
 void attachmentSection(Demo& demo, UiState& ui);
 

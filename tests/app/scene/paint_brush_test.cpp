@@ -1,0 +1,177 @@
+// Painted fields: white changes no bit, strokes change the hair and are undone, saved and replayed to the bit, and what
+// cannot be painted is told.
+#include "app/scene/paint_brush.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/files/errors.h"
+#include "app/files/image_io.h"
+#include "app/files/recording.h"
+#include "app/scene/project.h"
+#include "tests/app/scene/small_scene.h"
+#include "tests/run_program.h"
+
+namespace {
+
+using app::Ask;
+
+app::Demo open(app::Scene scene) {
+  return app::openScene(std::move(scene), 1.5);
+}
+
+// A stroke on the crown's hair of the first character.
+app::Request paintOf(const std::string& field, double value, double radius = 0.08) {
+  app::PaintSample sample{field, sim::Vec3(0.05, 0.17, 0), radius, 0.8, 1, true, value};
+  return {Ask::kPaint, field, app::paintText(sample)};
+}
+
+void frames(int count, app::Demo& demo) {
+  for (int k = 0; k < count; ++k) app::advanceFrame(demo, 1.0 / 60, {});
+}
+
+// m, of all columns.
+double lengthOf(const app::Demo& demo) {
+  const sim::HairMesh& mesh = demo.actors[0].haircut->mesh;
+  double sum = 0;
+  for (int v = 1; v < mesh.vertexCount(); ++v) {
+    if (mesh.isRoot(v)) continue;
+    const auto at = static_cast<std::size_t>(v);
+    sum += (mesh.shape.positions[at] - mesh.shape.positions[at - 1]).norm();
+  }
+  return sum;
+}
+
+std::string whitePicture() {
+  return app::pictureText({4, 2, std::vector<float>(8, 1)});
+}
+
+TEST(PaintBrush, ASampleReadsBackToTheSameBits) {
+  app::PaintSample sample{"mass", sim::Vec3(0.1, -1.0 / 3, 2e-17), 0.0123456789, 1.0 / 7, 2.5, true, 0.3};
+  EXPECT_EQ(app::paintText(app::parsePaint("mass", app::paintText(sample))), app::paintText(sample));
+  EXPECT_THROW(app::parsePaint("colour", app::paintText(sample)), app::InputError);
+  for (const char* text : {"", "1 2 3", "0 0 0 9 1 1 0 0", "0 0 0 0.1 1 1 0 2", "0 0 0 0.1 nan 1 0 0"})
+    EXPECT_THROW(app::parsePaint("mass", text), app::InputError) << text;
+}
+
+TEST(PaintBrush, APictureInTextReadsBackToTheSameGreys) {
+  for (int count : {1, 2, 3, 7, 64}) {
+    app::FieldMap map{count, 1, {}};
+    for (int k = 0; k < count; ++k) map.value.push_back(static_cast<float>(k * 3 % 256) / 255);
+    const app::FieldMap back = app::readFieldMap(app::pictureText(map));
+    ASSERT_EQ(back.width, count);
+    for (std::size_t k = 0; k < map.value.size(); ++k) EXPECT_NEAR(back.value[k], map.value[k], 1e-6);
+  }
+  EXPECT_THROW(app::readFieldMap("data:image/png;base64,????"), app::InputError);
+}
+
+TEST(PaintBrush, WhiteFieldsAndCurvesOfOneGiveTheScalarsResultToTheBit) {
+  app::Demo plain = open(test::smallScene("walk.bvh", 0.3));
+  app::Scene scene = test::smallScene("walk.bvh", 0.3);
+  for (const std::string_view name : app::kFieldNames)
+    *app::findMap(name, scene.characters[0].maps) = whitePicture();
+  scene.characters[0].curves = {{1, 1, 1}, {1, 1}};
+  app::Demo painted = open(std::move(scene));
+  frames(20, plain);
+  painted.requests = {paintOf("stiffness", 1), paintOf("mass", 1)};
+  frames(20, painted);
+  EXPECT_FALSE(painted.message_is_fault) << painted.message;
+  EXPECT_EQ(app::stateHash(plain), app::stateHash(painted));
+}
+
+TEST(PaintBrush, AUniformCurveIsAsMuchAsTheParameter) {
+  app::Scene half = test::smallScene("walk.bvh", 0.3), curve = half;
+  half.sim.density *= 2;
+  curve.characters[0].curves.mass = {2};
+  app::Demo one = open(std::move(half)), other = open(std::move(curve));
+  frames(1, one), frames(1, other);
+  double apart = 0;
+  for (std::size_t v = 0; v < one.actors[0].hair.positions.size(); ++v)
+    apart = std::max(apart, (one.actors[0].hair.positions[v] - other.actors[0].hair.positions[v]).norm());
+  EXPECT_LT(apart, 0.02);
+}
+
+TEST(PaintBrush, EveryFieldIsPaintedAndUndone) {
+  for (const std::string_view name : app::kFieldNames) {
+    const std::string field(name);
+    app::Demo demo = open(test::smallScene("walk.bvh", 0.3));
+    frames(5, demo);
+    const std::string before = app::stateHash(demo);
+    const float area = demo.actors[0].haircut->faces[0].area;
+    const double length = lengthOf(demo);
+    for (int k = 0; k < 6; ++k) {
+      demo.requests = {paintOf(field, 0.1)};
+      app::advanceFrame(demo, 0, {});
+      ASSERT_FALSE(demo.message_is_fault) << demo.message;
+    }
+    const app::Haircut& cut = *demo.actors[0].haircut;
+    app::FieldFiles maps = demo.actors[0].spec.maps;
+    const app::FieldMap map = app::readFieldMap(*app::findMap(field, maps));
+    EXPECT_LT(*std::ranges::min_element(map.value), 0.2) << field;
+    EXPECT_GT(*std::ranges::max_element(map.value), 0.9) << field << ": the brush is everywhere";
+    if (field == "stiffness") {
+      EXPECT_LT(*std::ranges::min_element(cut.shares.stiffness), 0.4f);
+    }
+    if (field == "mass") {
+      EXPECT_LT(*std::ranges::min_element(cut.shares.mass), 0.5f);
+    }
+    if (field == "length") {
+      EXPECT_LT(lengthOf(demo), 0.97 * length);
+    }
+    if (field == "density") {
+      EXPECT_TRUE(std::ranges::any_of(cut.faces, [&](const auto& face) { return face.area < area; }));
+    }
+    EXPECT_EQ(demo.edits.steps.size(), 1u) << "a stroke is one step";
+    demo.requests = {{Ask::kUndo, "", "", 1}};
+    app::advanceFrame(demo, 0, {});
+    EXPECT_EQ(app::stateHash(demo), before) << field;
+    EXPECT_EQ(demo.actors[0].spec.maps, app::FieldFiles{});
+    EXPECT_TRUE(demo.actors[0].haircut->shares.stiffness.empty() && demo.actors[0].haircut->shares.mass.empty());
+    demo.requests = {{Ask::kRedo, "", "", 1}};
+    frames(10, demo);
+    EXPECT_EQ(demo.actors[0].spec.maps, maps) << field;
+    EXPECT_EQ(demo.stats.recoveries, 0);
+  }
+}
+
+TEST(PaintBrush, WhatCannotBePaintedIsToldAndStays) {
+  app::Scene scene = test::smallScene("walk.bvh");
+  scene.characters[0].style = app::Style::kLong;
+  scene.characters[0].ties = app::tiesFromText("back");
+  app::Demo demo = open(std::move(scene));
+  const std::string before = app::stateHash(demo);
+  const auto told = [&](app::Request request, const std::string& part) {
+    demo.requests = {std::move(request)};
+    app::advanceFrame(demo, 0, {});
+    EXPECT_TRUE(demo.message_is_fault);
+    EXPECT_NE(demo.message.find(part), std::string::npos) << demo.message;
+    EXPECT_EQ(app::stateHash(demo), before);
+    EXPECT_EQ(demo.actors[0].spec.maps, app::FieldFiles{});
+  };
+  told(paintOf("length", 0), "tied");
+  told({Ask::kPaint, "stiffness", "5 5 5 0.03 1 1 0 0"}, "reaches no hair");
+  told({Ask::kCurve, "stiffness", "1,x"}, "no list of shares");
+  told({Ask::kCurve, "stiffness", "0"}, "no list of shares");
+  told({Ask::kCurve, "length", "1"}, "no field");
+}
+
+TEST(PaintBrush, ASceneAndAProjectKeepIt) {
+  app::Demo demo = open(test::smallScene("walk.bvh", 0.2));
+  demo.requests = {paintOf("stiffness", 0), paintOf("length", 0.3), paintOf("mass", 0.4), {Ask::kCurve, "mass", "1,0.5"}};
+  frames(5, demo);
+  ASSERT_FALSE(demo.message_is_fault) << demo.message;
+  const app::Scene back = app::readScene(app::writeScene(demo.scene), "scene.json");
+  EXPECT_EQ(back.characters.size(), 1u);
+  const std::string file = test::freshFolder("painted_project") + "/project.json";
+  app::saveProject(file, demo);
+  app::Demo other = open(test::smallScene("walk.bvh"));
+  app::openProject(file, other);
+  EXPECT_EQ(app::stateHash(other), app::stateHash(demo));
+  EXPECT_EQ(other.actors[0].spec.maps, demo.actors[0].spec.maps);
+  EXPECT_EQ(other.actors[0].spec.curves, demo.actors[0].spec.curves);
+  EXPECT_EQ(other.actors[0].haircut->mesh.shape.positions, demo.actors[0].haircut->mesh.shape.positions);
+}
+
+}  // namespace
