@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+"""Writes the hands of five hairdos as takes: strokes, paint, ties and hats on a built-in style while it moves. Give each
+its end by replaying it: make_takes.py PROGRAM. See app/files/recording.h; places are metres in the scalp's frame."""
+import json
+import math
+import os
+import subprocess
+import sys
+
+
+def scene(name, style, motion="idle_turns.bvh", **more):
+    character = {"motion": motion, "style": style, "resolution": "medium", **more}
+    return {"name": name, "characters": [character], "camera": {"view": "three-quarter", "framing": "head"}, "playback": {"settle": 1.0}}
+
+
+def brush(tool, at, along=(0, 0, 0), radius=0.04, strength=0.5, falloff=1, mirror=0):
+    return ["brush", tool, " ".join(repr(float(v)) for v in (*at, *along, radius, strength, falloff, mirror)), 0]
+
+
+def paint(field, at, value, radius=0.05, strength=0.6, mirror=1):
+    return ["paint", field, " ".join(repr(float(v)) for v in (*at, radius, strength, 1, mirror, value)), 0]
+
+
+def ask(what, name="", text="", value=0):
+    return [what, name, text, value]
+
+
+def ring(height, radius, n, start=0.6, end=2 * math.pi - 0.6):
+    """Places around the head from the left temple over the nape to the right one."""
+    turns = [start + (end - start) * k / (n - 1) for k in range(n)]
+    return [(radius * math.sin(t), height, radius * math.cos(t) - 0.01) for t in turns]
+
+
+def chin_bob():
+    """Cut level with the chin, all around; ends drawn in; a fringe painted short."""
+    for round in range(2):
+        for p in ring(-0.035, 0.105, 24):
+            yield [brush("cut", p, radius=0.045, strength=0.8)]
+    yield [ask("end-gesture")]
+    for p in ring(-0.01, 0.10, 24):
+        yield [brush("pinch", p, radius=0.05, strength=0.25)]
+    yield [ask("end-gesture"), ask("curve", "stiffness", "1,1.2,2")]
+
+
+def crest():
+    """Sides painted short and stiff, what is left on top combed up and puffed."""
+    for k in range(24):
+        height = 0.05 + 0.09 * (k % 12) / 11
+        yield [paint("length", (0.085, height, -0.05 + 0.004 * k), 0.05, radius=0.05)]
+    yield [ask("end-gesture")]
+    for k in range(20):
+        yield [paint("stiffness", (0.0, 0.19, 0.07 - 0.008 * k), 1.0, radius=0.06)]
+    yield [ask("end-gesture")]
+    for k in range(30):
+        yield [brush("puff", (0.0, 0.185, 0.06 - 0.005 * k), radius=0.06, strength=0.35)]
+
+
+def side_sweep():
+    """Front and crown combed over to the figure's left, ends twisted."""
+    yield [ask("set", "sag_free", "on")]
+    for stroke in range(4):
+        for k in range(14):
+            t = k / 13
+            at = (-0.05 + 0.11 * t, 0.175 - 0.05 * t * t, 0.06 - 0.03 * stroke)
+            yield [brush("comb", at, (0.009, -0.001 - 0.005 * t, 0.0), radius=0.05, strength=0.7)]
+        yield [ask("end-gesture")]
+    for k in range(16):
+        yield [brush("twist", (0.10, -0.05 - 0.008 * k, 0.02), radius=0.05, strength=0.4)]
+
+
+def half_up():
+    """What is rooted high is tied behind the head, the rest spread and its ends cut."""
+    yield [ask("tie", "", json.dumps({"at": "back", "radius": 0.02, "above": 0.03}))]
+    for k in range(10):
+        yield []
+    for p in ring(-0.12, 0.12, 24, 1.2, 2 * math.pi - 1.2):
+        yield [brush("spread", p, radius=0.06, strength=0.3)]
+    yield [ask("end-gesture")]
+    for p in ring(-0.22, 0.13, 24, 1.2, 2 * math.pi - 1.2):
+        yield [brush("cut", p, radius=0.05, strength=0.7)]
+
+
+def under_the_beanie():
+    """Grown a little, a beanie put on, the ends that hang out turned outwards and made heavier."""
+    for p in ring(-0.10, 0.11, 24):
+        yield [brush("grow", p, radius=0.05, strength=0.3)]
+    yield [ask("end-gesture"), ask("attach", "add", "beanie.obj")]
+    for k in range(10):
+        yield []
+    for p in ring(-0.06, 0.11, 24):
+        yield [brush("push", p, radius=0.05, strength=0.4)]
+    yield [ask("end-gesture"), ask("curve", "mass", "1,1,1.5")]
+
+
+TAKES = {
+    "chin_bob": (scene("Chin bob", "shoulder"), chin_bob),
+    "crest": (scene("Crest", "short"), crest),
+    "side_sweep": (scene("Side sweep", "long"), side_sweep),
+    "half_up": (scene("Half up", "long"), half_up),
+    "under_the_beanie": (scene("Under the beanie", "shoulder"), under_the_beanie),
+}
+
+for name, (opening, hands) in TAKES.items():
+    draft = name + ".draft"
+    with open(draft, "w") as file:
+        file.write(json.dumps({"hairmesh-recording": 2, "aspect": 1.0, "skips_off": []}) + "\n" + json.dumps(opening) + "\n")
+        frames = list(hands()) + [[]] * 20
+        for requests in frames:
+            file.write(json.dumps([1 / 60, *requests]) + "\n")
+    run = subprocess.run([sys.argv[1], "--headless", "--no-images", "--replay", draft, "--record", name + ".take"], capture_output=True, text=True)
+    os.remove(draft)
+    lines = open(name + ".take").read().splitlines()
+    recorded = json.loads(lines[1])
+    recorded["characters"][0]["motion"] = opening["characters"][0]["motion"]  # without a folder
+    lines[1] = json.dumps(recorded, separators=(",", ":"))
+    open(name + ".take", "w").write("\n".join(lines) + "\n")
+    print(name, len(frames), "frames", run.stdout.strip().splitlines()[-1:], run.stderr.strip()[-300:])
+    run.check_returncode()

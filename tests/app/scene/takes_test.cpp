@@ -1,0 +1,53 @@
+// The hairdos of assets/takes are made again by their hands alone: without a fault, to the bit.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "app/files/data_path.h"
+#include "app/files/recording.h"
+#include "app/files/text_file.h"
+#include "app/scene/demo.h"
+
+namespace {
+
+struct Made {
+  std::string state, fault;
+  std::size_t edits = 0;
+};
+
+Made make(const app::Recording& take) {
+  app::Demo demo = app::openScene(take.scene, take.aspect.value_or(1));
+  demo.governor.counted = demo.deadline.counted = true;
+  demo.timeline.on = true;
+  Made made;
+  for (const app::RecordedFrame& frame : take.frames) {
+    demo.message_is_fault = false;
+    demo.requests = frame.requests;
+    app::advanceFrame(demo, frame.seconds, {});
+    if (demo.message_is_fault && made.fault.empty()) made.fault = demo.message;
+  }
+  made.state = app::stateHash(demo);
+  made.edits = demo.edits.steps.size();
+  return made;
+}
+
+// Kernels are chosen by the processor, so the recorded end is that of its kind alone; twice on one must agree.
+TEST(Takes, FiveHairdosAreMadeAgainToTheBit) {
+  std::vector<std::string> files = app::listAssets("takes", {".take"});
+  ASSERT_EQ(files.size(), 5u);
+  int recorded = 0;
+  for (const std::string& file : files) {
+    const app::Recording take = app::readRecording(app::readText(file), file);
+    const Made once = make(take), again = make(take);
+    EXPECT_EQ(once.fault, "") << file;
+    EXPECT_GE(once.edits, 2u) << file;
+    EXPECT_EQ(once.state, again.state) << file;
+    recorded += once.state == take.state;
+    std::printf("%s: %zu frames, %.1f s\n", app::stem(file).c_str(), take.frames.size(),
+                static_cast<double>(take.frames.size()) / 60);
+  }
+  if (recorded != 5) std::printf("%d of 5 end as on the processor that recorded them\n", recorded);
+}
+
+}  // namespace
