@@ -397,7 +397,7 @@ void hairTab(Demo& demo, UiState& ui) {
          std::to_string(mesh.prisms.size()) + " in " + std::to_string(mesh.shape.root_faces.size()) + " bundles");
     fact("Length", metres(mesh.hair_length));
   }
-  if (section("Worn", false)) attachmentSection(demo, ui);
+  if (section("Worn", !actor.spec.attachments.empty())) attachmentSection(demo, ui);
   noteItem("section Worn", ui);
   if (section("Root to tip", false)) curveRows(demo, ui);
   noteItem("section Root to tip", ui);

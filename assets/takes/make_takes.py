@@ -25,7 +25,7 @@ def ask(what, name="", text="", value=0):
     return [what, name, text, value]
 
 
-def ring(height, radius, n, start=0.6, end=2 * math.pi - 0.6):
+def ring(height, radius, n, start=1.0, end=2 * math.pi - 1.0):
     """Places around the head from the left temple over the nape to the right one."""
     turns = [start + (end - start) * k / (n - 1) for k in range(n)]
     return [(radius * math.sin(t), height, radius * math.cos(t) - 0.01) for t in turns]
@@ -33,12 +33,11 @@ def ring(height, radius, n, start=0.6, end=2 * math.pi - 0.6):
 
 def chin_bob():
     """Cut level with the chin, all around; ends drawn in; a fringe painted short."""
-    for round in range(2):
-        for p in ring(-0.035, 0.105, 24):
-            yield [brush("cut", p, radius=0.045, strength=0.8)]
+    for p in ring(-0.035, 0.105, 24):
+        yield [brush("cut", p, radius=0.06, strength=0.9)]
     yield [ask("end-gesture")]
-    for p in ring(-0.01, 0.10, 24):
-        yield [brush("pinch", p, radius=0.05, strength=0.25)]
+    for p in ring(0.02, 0.09, 24):
+        yield [brush("pinch", p, radius=0.07, strength=0.25)]
     yield [ask("end-gesture"), ask("curve", "stiffness", "1,1.2,2")]
 
 
@@ -65,30 +64,30 @@ def side_sweep():
             yield [brush("comb", at, (0.009, -0.001 - 0.005 * t, 0.0), radius=0.05, strength=0.7)]
         yield [ask("end-gesture")]
     for k in range(16):
-        yield [brush("twist", (0.10, -0.05 - 0.008 * k, 0.02), radius=0.05, strength=0.4)]
+        yield [brush("twist", (0.09, -0.02 - 0.006 * k, 0.0), radius=0.09, strength=0.4)]
 
 
 def half_up():
     """What is rooted high is tied behind the head, the rest spread and its ends cut."""
-    yield [ask("tie", "", json.dumps({"at": "back", "radius": 0.02, "above": 0.03}))]
+    yield [ask("tie", "", json.dumps({"at": "back", "radius": 0.02, "above": -0.02}))]
     for k in range(10):
         yield []
-    for p in ring(-0.12, 0.12, 24, 1.2, 2 * math.pi - 1.2):
-        yield [brush("spread", p, radius=0.06, strength=0.3)]
+    for p in ring(-0.05, 0.10, 20, 2.4, 2 * math.pi - 2.4):
+        yield [brush("spread", p, radius=0.09, strength=0.3)]
     yield [ask("end-gesture")]
-    for p in ring(-0.22, 0.13, 24, 1.2, 2 * math.pi - 1.2):
-        yield [brush("cut", p, radius=0.05, strength=0.7)]
+    for p in ring(-0.15, 0.10, 20, 2.4, 2 * math.pi - 2.4):
+        yield [brush("cut", p, radius=0.09, strength=0.5)]
 
 
 def under_the_beanie():
     """Grown a little, a beanie put on, the ends that hang out turned outwards and made heavier."""
-    for p in ring(-0.10, 0.11, 24):
-        yield [brush("grow", p, radius=0.05, strength=0.3)]
+    for p in ring(-0.05, 0.10, 24):
+        yield [brush("grow", p, radius=0.07, strength=0.3)]
     yield [ask("end-gesture"), ask("attach", "add", "beanie.obj")]
     for k in range(10):
         yield []
-    for p in ring(-0.06, 0.11, 24):
-        yield [brush("push", p, radius=0.05, strength=0.4)]
+    for p in ring(-0.04, 0.10, 24):
+        yield [brush("push", p, radius=0.08, strength=0.4)]
     yield [ask("end-gesture"), ask("curve", "mass", "1,1,1.5")]
 
 

@@ -25,7 +25,7 @@ Made make(const app::Recording& take) {
     demo.message_is_fault = false;
     demo.requests = frame.requests;
     app::advanceFrame(demo, frame.seconds, {});
-    if (demo.message_is_fault && made.fault.empty()) made.fault = demo.message;
+    if (demo.message_is_fault) made.fault += "frame " + std::to_string(demo.frames) + ": " + demo.message + "\n";
   }
   made.state = app::stateHash(demo);
   made.edits = demo.edits.steps.size();
