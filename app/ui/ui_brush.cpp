@@ -124,8 +124,8 @@ namespace {
 
 void paintRow(UiState& ui) {
   BrushState& brush = ui.brush;
-  rowLabel("Paint", "Draws a field over the scalp towards a value, at the roots of the hair within the ring");
-  const int pressed = segments("paint", {"Off", "Stiff", "Length", "Density", "Mass"}, brush.field + 1, ui);
+  const int pressed = segments("paint", {"No paint", "Stiff", "Length", "Density", "Mass"}, brush.field + 1, ui);
+  tip("Draws a field over the scalp towards a value, at the roots of the hair within the ring");
   if (pressed >= 0) brush.field = pressed - 1;
   if (pressed > 0) brush.tool = -1;
 }
