@@ -132,7 +132,9 @@ struct LineVertex {
   std::array<float, 4> color;
 };  // debug; colour with alpha, not premultiplied
 
-enum class StrandPath { kGeometry, kPulling };
+// Who grows the strands: the geometry stage, vertex pulling, or compute shaders with a rasterizer on the CPU (see
+// software_strands.h). kAuto: what suits the driver (see driver.h). The pictures agree.
+enum class StrandPath { kGeometry, kPulling, kSoftware, kAuto };
 
 struct ViewOptions {
   int samples = 4;  // multisampling, clamped to what the context has
@@ -141,7 +143,7 @@ struct ViewOptions {
       ground_color{0.085f, 0.084f, 0.086f};
   float ground_height = 0;  // m
   bool ground = true, show_strands = true, show_body = true;
-  StrandPath strand_path = StrandPath::kGeometry;
+  StrandPath strand_path = StrandPath::kAuto;
   float strands_per_pixel = 40.0f;  // of the hair's projected diameter: strands drawn when it is small
   float segment_error = 0.2f;       // pixels that a straight segment may leave its curve by
 
@@ -160,6 +162,9 @@ struct DrawSkips {
   bool strands = true;         // strand count and width follow the projected size
   bool segments = true;        // segments follow curvature and projected size
   bool shadow_detail = true;   // shadow strands and map size follow the projected size
+  bool skin = true;            // strands are held only against skin that they can meet
+  bool shading = true;         // in software, only points of strands that some sample shows are shaded
+  bool hair_light = true;      // hair's shadow on fine bodies is looked up at their vertices
   bool sky_visibility = true;  // soft light inside far hair is renewed now and then
 
   bool operator==(const DrawSkips&) const = default;

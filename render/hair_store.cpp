@@ -1,11 +1,13 @@
 #include "render/hair_store.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <utility>
 
 #include "render/fiber_scattering.h"
+#include "render/skin_reach.h"
 #include "render/strands/skin_lift.h"
 #include "shaders/shared.h"
 
@@ -18,14 +20,17 @@ bool allFinite(std::span<const float> values) {
   return std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
 }
 
-// Fills a buffer texture of RGBA floats, making it anew when its size changes. Returns the bytes uploaded.
-long fillTexels(std::span<const float> texels, Buffer& buffer, Texture& texture, GLsizeiptr& bytes) {
+// Fills a buffer texture, of RGBA floats or another format, making it anew when its size changes. Returns the bytes
+// uploaded.
+template <class T>
+long fillTexels(std::span<const T> texels, Buffer& buffer, Texture& texture, GLsizeiptr& bytes,
+                GLenum format = GL_RGBA32F) {
   const auto wanted = static_cast<GLsizeiptr>(texels.size_bytes());
   if (!buffer || bytes != wanted) {
     buffer = makeBuffer();
     texture = makeTexture(GL_TEXTURE_BUFFER);
     glNamedBufferStorage(buffer.id(), wanted, texels.data(), GL_DYNAMIC_STORAGE_BIT);
-    glTextureBuffer(texture.id(), GL_RGBA32F, buffer.id());
+    glTextureBuffer(texture.id(), format, buffer.id());
     bytes = wanted;
   } else {
     glNamedBufferSubData(buffer.id(), 0, wanted, texels.data());
@@ -59,7 +64,7 @@ long uploadStyle(HairStyle& style, std::vector<float>& texels) {
     texels.insert(texels.end(),
                   {static_cast<float>(first[i + 1]), static_cast<float>(i), 0, static_cast<float>(first[i])});
   }
-  return fillTexels(texels, style.buffer, style.texture, style.bytes);
+  return fillTexels<float>(texels, style.buffer, style.texture, style.bytes);
 }
 
 long uploadScattering(HairScattering& hair) {
@@ -104,7 +109,7 @@ long uploadBlock(HairResources& hair) {
   block.backward_albedo = asVec4(hair.scattering->backward_albedo);
   block.center = asVec4(hair.head.radius > 0 ? hair.head.center : hair.bounds.center());
   block.ball = asVec4(hair.bounds.center(), 0.5f * hair.bounds.diagonal() + sidewaysReach(look));
-  block.skin_count = {static_cast<int>(hair.skin.size()), 0, 0, 0};
+  block.skin_count = {static_cast<int>(hair.skin.size()), std::max(hair.layout().max_layers - 1, 1), 0, 0};
   for (std::size_t i = 0; i < hair.skin.size(); ++i)
     std::copy(hair.skin[i].to_ball.begin(), hair.skin[i].to_ball.end(), block.skin_rows.begin() + 3 * static_cast<long>(i));
   if (!hair.block) {
@@ -185,7 +190,7 @@ int HairResources::chunksPerStrand(const HairDraw& draw) const {
 
 long HairResources::gpuBytes() const {
   if (!drawable) return 0;
-  return static_cast<long>(vertex_bytes) + static_cast<long>(sizeof(shared::HairBlock));
+  return static_cast<long>(vertex_bytes + skin_bytes) + static_cast<long>(sizeof(shared::HairBlock));
 }
 
 long HairStore::gpuBytes() const {
@@ -236,6 +241,16 @@ HairScattering& HairStore::scatteringOf(const HairLook& look, long& uploaded) {
   return scattering;
 }
 
+long HairStore::uploadSkin(HairResources& hair, std::span<const float> positions, const DrawSkips& skips) {
+  if (hair.skin.empty()) return 0;
+  reachSkin(hair.layout(), positions, hair.skin, sidewaysReach(hair.look), hair.skin_reached);
+  if (!skips.skin) std::fill(hair.skin_reached.begin(), hair.skin_reached.end(), ~std::uint64_t{0});
+  const auto ellipsoids = static_cast<long>(hair.skin.size());
+  for (const std::uint64_t reached : hair.skin_reached)
+    skip_counts_.skin += {std::max(ellipsoids - std::popcount(reached), 0L), ellipsoids};
+  return fillTexels<std::uint64_t>(hair.skin_reached, hair.skin_buffer, hair.skin_texture, hair.skin_bytes, GL_RG32UI);
+}
+
 long HairStore::uploadVertices(HairResources& hair, std::span<const float> positions, bool renew_light,
                                const DrawSkips& skips) {
   const HairLayout& layout = hair.layout();
@@ -268,7 +283,7 @@ long HairStore::uploadVertices(HairResources& hair, std::span<const float> posit
   if (!skips.rows || hair.texels.size() != texels_.size() ||
       hair.vertex_bytes != static_cast<GLsizeiptr>(texels_.size() * sizeof(float))) {
     hair.texels = texels_;
-    return fillTexels(texels_, hair.vertex_buffer, hair.vertex_texture, hair.vertex_bytes);
+    return fillTexels<float>(texels_, hair.vertex_buffer, hair.vertex_texture, hair.vertex_bytes);
   }
   const auto differ = std::mismatch(texels_.begin(), texels_.end(), hair.texels.begin());
   const auto first = static_cast<std::size_t>(differ.first - texels_.begin()) / kRow * kRow;
@@ -321,6 +336,7 @@ long HairStore::refresh(HairResources& hair, const HairInput& input, const DrawS
   hair.light_revision = light_revision_;
   hair.skin = std::move(skin);
   const bool renew = fresh_count || fresh_look || light_moved;
+  uploaded += uploadSkin(hair, input.positions, skips);
   if (!renew && !fresh_positions) return uploaded + uploadBlock(hair);
   return uploaded + uploadVertices(hair, input.positions, renew, skips) + uploadBlock(hair);
 }
@@ -377,6 +393,7 @@ void HairStore::bind(HairResources& hair, const HairDraw& draw, const Texture* t
   glBindBufferBase(GL_UNIFORM_BUFFER, 1, hair.block.id());
   glBindTextureUnit(shared::kUnitVertices, hair.vertex_texture.id());
   glBindTextureUnit(shared::kUnitLayout, hair.style->texture.id());
+  glBindTextureUnit(shared::kUnitSkin, hair.skin.empty() ? 0 : hair.skin_texture.id());
   glBindTextureUnit(shared::kUnitTable, full ? hair.style->texture.id() : table->id());
   glBindTextureUnit(shared::kUnitScattering, hair.scattering->table.id());
 }

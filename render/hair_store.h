@@ -65,7 +65,11 @@ struct HairResources {
   Bounds bounds, around;                    // of the vertices; with room for all strands
   int strands = -1, segments = 0, asked_segments = 0;  // segments: a layer, with those that curls need
   HairLook look;
-  std::vector<SkinEllipsoid> skin;  // near the hair
+  std::vector<SkinEllipsoid> skin;         // near the hair
+  std::vector<std::uint64_t> skin_reached;  // see skin_reach.h
+  Buffer skin_buffer;
+  Texture skin_texture;
+  GLsizeiptr skin_bytes = 0;
   bool seen = false, drawable = false;  // drawable: has faces and finite positions
   std::uint64_t revision = 0;           // counts changes of anything that is drawn of it
   Buffer vertex_buffer, block;
@@ -113,6 +117,7 @@ class HairStore {
   HairStyle& styleOf(const HairInput& input, int strands, long& uploaded);
   HairScattering& scatteringOf(const HairLook& look, long& uploaded);
   long refresh(HairResources& hair, const HairInput& input, const DrawSkips& skips);
+  long uploadSkin(HairResources& hair, std::span<const float> positions, const DrawSkips& skips);
   long uploadVertices(HairResources& hair, std::span<const float> positions, bool renew_light, const DrawSkips& skips);
 
   std::vector<HairResources> hairs_;

@@ -57,6 +57,18 @@ const int kUnitBodyDepth = 7;
 const int kUnitJoints = 8;
 const int kUnitColor = 9;
 const int kUnitTable = 10;
+const int kUnitSkin = 11;
+
+// Strands' points between the stages of the software path (render/software_strands.h, render/software_shadow.h).
+const int kStrandGroup = 32;   // invocations of a group
+const int kPointTexels = 3;    // position, share of the strand's length; tangent, sky visibility; depths along fill and
+                               // rim, before the point and behind it
+const int kSlotRibbons = 0;    // two texels a point, see strand_raster.h
+const int kSlotStrands = 1;
+const int kSlotPoints = 2;
+const int kSlotSeen = 3;       // numbers of the points that are shaded
+const int kSlotColors = 4;
+const int kSlotSamples = 5;    // see strand_raster.h
 
 // Strands out of the skin (shaders/common/skin.glsl).
 const int kMaxSkin = 48;          // ellipsoids of a hair
@@ -133,7 +145,7 @@ SHARED_BLOCK(1, HairBlock) {
   vec4 backward_albedo;  // mean backward scattering attenuation a_b
   vec4 center;           // world: the middle of the head under the hair
   vec4 ball;             // world: a ball around the whole hair; w: its radius, m
-  ivec4 skin_count;      // ellipsoids that strands are lifted out of
+  ivec4 skin_count;      // ellipsoids that strands are lifted out of; steps from layer to layer of a face
   SHARED_ARRAY(vec4, skin_rows, 3 * kMaxSkin);  // three rows each: world to the ball of radius one
 };
 

@@ -4,8 +4,6 @@ int lastPoint(in Strand strand) { return int(ceil(strand.end * strand.segments -
 
 float strandDither(in Strand strand) { return randomOf(strand.key, 30u); }
 
-int layerOf(in Strand strand, float s) { return clamp(int(s), 0, strand.layers - 2); }
-
 // Radius at `along` of the strand, and how much wider than that it must be drawn to be no thinner than the least width.
 float strandRadius(in Strand strand, float along) {
   return strand.gain * width.x * mix(1.0, width.y, along * along);

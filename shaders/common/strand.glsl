@@ -16,6 +16,7 @@
 
 layout(binding = kUnitVertices) uniform samplerBuffer vertex_texels;
 layout(binding = kUnitLayout) uniform samplerBuffer layout_texels;
+layout(binding = kUnitSkin) uniform usamplerBuffer skin_texels;  // see leaveSkin: of each face, layer by layer
 layout(binding = kUnitTable) uniform samplerBuffer table_texels;  // which strands of which faces are drawn
 
 const float kPi = 3.14159265358979;
@@ -23,6 +24,7 @@ const float kPi = 3.14159265358979;
 struct Strand {
   ivec4 first;  // first vertex of each corner's column; [3] repeats [2] with weight 0 in a triangle
   int layers;
+  int face;        // of the layout
   vec4 weight;   // of positions
   vec4 along_u;  // of gradients du
   vec4 along_v;  // of gradients dv
@@ -243,6 +245,7 @@ Strand makeStrand(int number) {
   Strand strand;
   strand.first = ivec4(first);
   strand.layers = int(extent.x);
+  strand.face = low;
   uint index = uint(number - int(dealt.w));
   strand.key = hash(hash(uint(low), index), uint(counts.w));
   strand.segments = dealt.z > 0.0 ? dealt.z : detail.w;
@@ -420,6 +423,12 @@ vec2 lifted(in Strand strand, float s) {
   return lift * opening(wayAt(strand, s), 0.3 * min(strand.metres, 0.15) + 1e-4);
 }
 
+int layerOf(in Strand strand, float s) { return clamp(int(s), 0, strand.layers - 2); }
+
+uvec2 skinNear(in Strand strand, int layer) {
+  return skin_count.x > 0 ? texelFetch(skin_texels, strand.face * skin_count.y + layer).xy : uvec2(0u);
+}
+
 CurvePoint curvePoint(in Strand strand, in LayerWindow window, float s, float fraction) {
   vec3 p0 = window.before, p1 = window.from.position, p2 = window.to.position, p3 = window.after;
   float f = fraction;
@@ -442,7 +451,7 @@ CurvePoint curvePoint(in Strand strand, in LayerWindow window, float s, float fr
     along += lift.y * outward;
   }
   along = unitOr(along, axis);
-  leaveSkin(s, point.position, along);
+  leaveSkin(skinNear(strand, layerOf(strand, s)), s, point.position, along);
   point.tangent = unitOr(along, axis);
   point.light = mix(window.from.light, window.to.light, f);
   point.behind = mix(window.from.behind, window.to.behind, f);

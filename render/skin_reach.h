@@ -1,0 +1,19 @@
+// Which ellipsoids of skin the strands of each bundle can meet between two layers: of the others
+// shaders/common/skin.glsl looks at none.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "render/frame_input.h"
+#include "render/strands/hair_layout.h"
+
+namespace render {
+
+// Sets bit i of reached[face * (max_layers - 1) + layer] where strands between `layer` and the next one may be lifted
+// out of skin[i]; positions: 3 floats a vertex. sideways: m, how far strands may leave the hull of the hair mesh.
+void reachSkin(const HairLayout& layout, std::span<const float> positions, std::span<const SkinEllipsoid> skin,
+               float sideways, std::vector<std::uint64_t>& reached);
+
+}  // namespace render
