@@ -126,6 +126,15 @@ void describeVertices(BodyMesh& mesh) {
   glVertexArrayAttribBinding(array, kCoverAttribute, 1);
 }
 
+float edgeLength(const BodyInput& input) {
+  double sum = 0;
+  for (std::size_t t = 0; t < input.triangles.size(); ++t) {
+    const std::size_t next = t % 3 == 2 ? t - 2 : t + 1;
+    sum += (restPosition(input, input.triangles[t]) - restPosition(input, input.triangles[next])).squaredNorm();
+  }
+  return static_cast<float>(std::sqrt(sum / static_cast<double>(std::max<std::size_t>(input.triangles.size(), 1))));
+}
+
 long upload(const void* data, std::size_t bytes, Buffer& buffer) {
   buffer = makeBuffer();
   glNamedBufferStorage(buffer.id(), static_cast<GLsizeiptr>(bytes), data, 0);
@@ -141,6 +150,7 @@ BodyMesh makeBodyMesh(const BodyInput& input, long& uploaded) {
   mesh.index_count = static_cast<int>(input.triangles.size());
   mesh.joint_count = static_cast<int>(input.joint_matrices.size());
   mesh.joint_boxes = jointBoxes(input);
+  mesh.spacing = edgeLength(input);
   const std::vector<BodyVertex> vertices = verticesOf(input);
   std::vector<std::uint32_t> triangles = trianglesByJoint(input);
   mesh.by_joint = groupByJoint(input, triangles);

@@ -1,4 +1,5 @@
 // The bodies, lit.
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -14,29 +15,31 @@ class BodyPass {
   static constexpr const char* kName = "bodies";
   static constexpr Target kTarget = Target::kRadiance;
   struct Input {
-    bool show = true, cull_bodies = true, cull_parts = true;
+    bool show = true, cull_bodies = true, cull_parts = true, light_at_vertices = true;
     bool operator==(const Input&) const = default;
   };
   static Input inputOf(const FrameInput& frame) {
-    return {frame.view.show_body, frame.skips.view, frame.skips.body_parts};
+    return {frame.view.show_body, frame.skips.view, frame.skips.body_parts, frame.skips.hair_light};
   }
 
   explicit BodyPass(const std::string& shader_dir);
   void draw(const Input& input, Stage& stage, FrameReport& report);
-  ReloadReport reload(Reload which) { return reloadPrograms({&lit_, &lit_small_}, which); }
+  ReloadReport reload(Reload which) { return reloadPrograms({&lit_, &lit_coarse_, &lit_small_}, which); }
 
  private:
   // Fills counts_ and offsets_ with the triangles whose joint may be in view. Returns how many are left out.
   long chooseTriangles(const Body& body, const BodyMesh& mesh, const Frustum* cull);
 
-  ShaderProgram lit_;        // per pixel
-  ShaderProgram lit_small_;  // per vertex, for bodies of few pixels
+  ShaderProgram lit_;         // per pixel, but for the hair's shadow: at the vertices
+  ShaderProgram lit_coarse_;  // all of it per pixel, for meshes too coarse for that
+  ShaderProgram lit_small_;   // per vertex, for bodies of few pixels
   std::vector<int> counts_;
   std::vector<const void*> offsets_;
 };
 
 BodyPass::BodyPass(const std::string& shader_dir)
-    : lit_(shader_dir, {{"body.vert", "body.frag"}, {}, {}}),
+    : lit_(shader_dir, {{"body.vert", "body.frag"}, {"HAIR_LIGHT_AT_VERTICES"}, {}}),
+      lit_coarse_(shader_dir, {{"body.vert", "body.frag"}, {}, {}}),
       lit_small_(shader_dir, {{"body_small.vert", "body_small.frag"}, {}, {}}) {}
 
 long BodyPass::chooseTriangles(const Body& body, const BodyMesh& mesh, const Frustum* cull) {
@@ -63,9 +66,17 @@ long BodyPass::chooseTriangles(const Body& body, const BodyMesh& mesh, const Fru
   return skipped;
 }
 
+// A disc of the hair's shadow (kMinRadius of shadow.glsl) is as wide as this many metres: nothing finer is in it.
+constexpr float kShadowDisc = 0.016f;
+
+bool hasFineVertices(const Body& body, const BodyMesh& mesh) {
+  const Mat4& matrix = body.joint_matrices.front();
+  return mesh.spacing * std::hypot(matrix[0], matrix[1], matrix[2]) <= kShadowDisc;
+}
+
 void BodyPass::draw(const Input& input, Stage& stage, FrameReport& report) {
   if (!input.show) return;
-  for (ShaderProgram* program : {&lit_small_, &lit_}) {
+  for (ShaderProgram* program : {&lit_small_, &lit_coarse_, &lit_}) {
     program->use();
     glUniformMatrix4fv(0, 1, GL_FALSE, stage.view_projection.data());
   }
@@ -90,7 +101,9 @@ void BodyPass::draw(const Input& input, Stage& stage, FrameReport& report) {
     }
     report.skip_counts.body_parts.skipped += chooseTriangles(body, mesh, input.cull_parts ? &frustum : nullptr);
     if (counts_.empty()) continue;
-    lit_.use();
+    const bool at_vertices = input.light_at_vertices && hasFineVertices(body, mesh);
+    report.skip_counts.hair_light += {at_vertices ? triangles : 0, triangles};
+    (at_vertices ? lit_ : lit_coarse_).use();
     stage.bodies.bind(body, mesh);
     glMultiDrawElements(GL_TRIANGLES, counts_.data(), GL_UNSIGNED_INT, offsets_.data(),
                         static_cast<GLsizei>(counts_.size()));

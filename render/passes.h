@@ -11,8 +11,8 @@ inline constexpr PassMaker kPasses[]{
     makePass<class HairShadowPass>,  //
     makePass<class BodyShadowPass>,  //
     makePass<class BackdropPass>,    //
-    makePass<class BodyPass>,        //
     makePass<class StrandPass>,      //
+    makePass<class BodyPass>,        //
     makePass<class DebugPass>,       //
     makePass<class ToneMapPass>,     //
 };

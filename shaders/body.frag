@@ -5,8 +5,14 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in float cover;
 layout(location = 3) in vec3 rest;
 layout(location = 4) in float garment;
+#ifdef HAIR_LIGHT_AT_VERTICES
+layout(location = 5) in float through_hair;
+#endif
 layout(location = 0) out vec4 color;
 
 void main() {
-  color = vec4(bodyRadiance(rest, world, normal, cover, garment), 1.0);
+#ifndef HAIR_LIGHT_AT_VERTICES
+  float through_hair = forward.w > 0.0 ? hairLightOnSurface(world) : 1.0;
+#endif
+  color = vec4(bodyRadiance(rest, world, normal, cover, garment, through_hair), 1.0);
 }

@@ -5,11 +5,18 @@ layout(location = 1) out vec3 normal;
 layout(location = 2) out float cover;
 layout(location = 3) out vec3 rest;
 layout(location = 4) out float garment;
+#ifdef HAIR_LIGHT_AT_VERTICES
+#include "common/shadow.glsl"
+layout(location = 5) out float through_hair;
+#endif
 
 void main() {
   skin(world, normal);
   cover = root_cover.x;
   rest = rest_position;
   garment = cloth;
+#ifdef HAIR_LIGHT_AT_VERTICES
+  through_hair = forward.w > 0.0 ? hairLightOnSurface(world) : 1.0;
+#endif
   gl_Position = clip_from_world * vec4(world, 1.0);
 }

@@ -8,6 +8,7 @@ layout(location = 0) out vec3 radiance;
 void main() {
   vec3 world, normal;
   skin(world, normal);
-  radiance = bodyRadiance(rest_position, world, normal, root_cover.x, cloth);
+  radiance = bodyRadiance(rest_position, world, normal, root_cover.x, cloth,
+                          forward.w > 0.0 ? hairLightOnSurface(world) : 1.0);
   gl_Position = clip_from_world * vec4(world, 1.0);
 }

@@ -8,8 +8,8 @@
 const float kRootShade = 0.65, kRootPasses = 0.6, kRootMeeting = 0.75;
 
 // rest: the point in the rest pose, m. cover: 0 bare skin .. 1 among the roots of a hair. garment: m from its edge,
-// negative under it.
-vec3 bodyRadiance(vec3 rest, vec3 world, vec3 normal, float cover, float garment) {
+// negative under it. through_hair: share of the key light left after the hair.
+vec3 bodyRadiance(vec3 rest, vec3 world, vec3 normal, float cover, float garment, float through_hair) {
   vec3 to_eye = normalize(eye.xyz - world), n = normalize(normal);
   if (dot(n, to_eye) < 0.0)
     n = normalize(n - 1.02 * dot(n, to_eye) * to_eye);  // interpolated normals may tip over the rim
@@ -28,11 +28,7 @@ vec3 bodyRadiance(vec3 rest, vec3 world, vec3 normal, float cover, float garment
   albedo = mix(albedo, cloth_color.rgb * (1.0 - 0.25 * smoothstep(-0.004, -0.002, garment)), dressed);  // a hem
   roughness = mix(roughness, 0.95, dressed);
   vec3 wrap = mix(kSkinWrap, vec3(0.05), dressed);
-  float through_hair = 1.0, lit = 1.0;
-  if (forward.w > 0.0) {
-    through_hair = hairLightOnSurface(world);
-    lit = bodyLightOnSurface(world, n);
-  }
+  float lit = forward.w > 0.0 ? bodyLightOnSurface(world, n) : 1.0;
   // The maps know the roots as well, but at a parting the hair leaves sideways and light from above meets none of it:
   // the darker of the two holds, so that no root shades twice.
   vec3 key_light = lit * min(vec3(through_hair), among_roots) * key.rgb;
