@@ -207,8 +207,8 @@ void addPictureOptions(CLI::App& parser, Options& options, Unchecked& unchecked)
       ->check(oneOf({"head", "bust", "figure"}));
   group.value("--strands", options.strands, "N", "Strands to draw over a whole head")
       ->check(within(0, findHairField("strands")->maximum));
-  group.value("--strand-path", options.strand_path, "NAME", "Shader stage that grows strands: geometry or pulling")
-      ->check(oneOf({"geometry", "pulling"}));
+  group.value("--strand-path", options.strand_path, "NAME", "What draws strands: geometry, pulling, software, or auto: what suits the driver (auto)")
+      ->check(oneOf({"geometry", "pulling", "software", "auto"}));
   group.value("--debug", options.debug, "LIST",
               "Debug views, comma separated: mesh, external, tets, ellipsoids, contacts, velocities, pins");
   group.value("--compare", options.compare, "WITH",

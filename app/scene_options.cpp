@@ -195,8 +195,8 @@ Scene sceneFromOptions(const Options& given) {
   if (options.strands >= 0) {
     for (CharacterLook* look : looks) look->strands = options.strands;
   }
-  if (options.strand_path == "pulling") scene.look.view.strand_path = render::StrandPath::kPulling;
-  if (options.strand_path == "geometry") scene.look.view.strand_path = render::StrandPath::kGeometry;
+  if (!options.strand_path.empty())
+    setAnywhere("strand_path", options.strand_path, scene.sim, looks, scene.look);
   if (options.speed >= 0) scene.playback.speed = options.speed;
   if (options.budget_ms >= 0) scene.playback.budget_ms = options.budget_ms;
   if (options.deadline_ms >= 0) scene.playback.deadline_ms = options.deadline_ms;

@@ -1,7 +1,8 @@
 #include "render/gpu_timer.h"
 
 #include <cstddef>
-#include <string>
+
+#include "render/driver.h"
 
 namespace render {
 
@@ -11,9 +12,7 @@ void GpuTimer::start(bool measure) {
   clocks_.clear();
   if (!measure_) return;
   if (!decided_) {
-    const std::string name = rendererName();
-    software_ = name.find("llvmpipe") != std::string::npos || name.find("softpipe") != std::string::npos ||
-                name.find("SWR") != std::string::npos;
+    software_ = rasterizesInSoftware();
     decided_ = true;
   }
   mark(nullptr);

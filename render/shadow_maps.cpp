@@ -365,6 +365,23 @@ void ShadowMaps::beginOpacity(const HairMap& map) {
   glBindTextureUnit(shared::kUnitHairDepth, hair_depth_.id());
 }
 
+void ShadowMaps::describeTile(std::size_t map, OpacityTile& tile) const {
+  const shared::vec4& size = maps_.hair_shadow_size[map];
+  tile.side = hair_maps_[map].tile.side;
+  tile.depth_range = size[2];
+  tile.thickness = size[3];
+}
+
+void ShadowMaps::fillHairMap(std::size_t map, const OpacityTile& filled) {
+  const Tile& tile = hair_maps_[map].tile;
+  const auto put = [&](const Texture& texture, GLenum format, const void* texels) {
+    glTextureSubImage3D(texture.id(), 0, tile.x, tile.y, tile.layer, tile.side, tile.side, 1, format, GL_FLOAT, texels);
+  };
+  put(hair_depth_, GL_DEPTH_COMPONENT, filled.depth.data());
+  put(opacity_near_, GL_RGBA, filled.near.data());
+  put(opacity_far_, GL_RGBA, filled.far.data());
+}
+
 void ShadowMaps::finishOpacity() {
   glGenerateTextureMipmap(opacity_far_.id());
 }

@@ -12,6 +12,7 @@
 
 #include "render/body_store.h"
 #include "render/hair_store.h"
+#include "render/line_raster.h"
 #include "render/plan_input.h"
 #include "render/renderer.h"
 #include "render/view_math.h"
@@ -69,6 +70,10 @@ class ShadowMaps {
   void beginOpacity(const HairMap& map);
   void beginBodyInHairDepth(const HairMap& map);
   void beginBodyDepth(std::size_t map);
+
+  // What a tile filled on the CPU has to know; and one that is filled, put in its place.
+  void describeTile(std::size_t map, OpacityTile& tile) const;
+  void fillHairMap(std::size_t map, const OpacityTile& tile);
 
   // Averages the opacity of all hairs' maps over ever coarser texels, once those that changed are drawn.
   void finishOpacity();

@@ -1,8 +1,10 @@
 // The key light's shadow maps, as shadow_maps.h plans them; maps that show already what they should are kept.
 #include <string>
 
+#include "render/driver.h"
 #include "render/pass.h"
 #include "render/shadow_maps.h"
+#include "render/software_shadow.h"
 #include "render/stage.h"
 #include "render/strand_draw.h"
 
@@ -26,7 +28,7 @@ class HairShadowPass {
   static constexpr Target kTarget = Target::kRadiance;
   struct Input {
     bool keep_maps = true, cull_bodies = true;
-    StrandPath path = StrandPath::kGeometry;
+    StrandPath path = StrandPath::kAuto;
     bool operator==(const Input&) const = default;
   };
   static Input inputOf(const FrameInput& frame) {
@@ -38,11 +40,11 @@ class HairShadowPass {
   ReloadReport reload(Reload which);
 
  private:
-  // Draws a bound hair into a map.
-  void drawStrands(const Input& input, const HairResources& hair, ShaderProgram& geometry,
-                   ShaderProgram& pulling) const;
+  // Draws a bound hair's strands into a map, by shader stages.
+  void drawStages(StrandPath path, const HairResources& hair, const ShadowMaps::HairMap& map, ShadowMaps& shadows);
 
   ShaderProgram depth_geometry_, depth_pulling_, opacity_geometry_, opacity_pulling_, body_depth_;
+  SoftwareShadow software_;
   VertexArray no_attributes_;
 };
 
@@ -71,16 +73,28 @@ HairShadowPass::HairShadowPass(const std::string& shader_dir)
       opacity_geometry_(shader_dir, {{"strand.vert", "strand_shadow.geom", "opacity.frag"}, {}, {}}),
       opacity_pulling_(shader_dir, {{"strand_shadow_pull.vert", "opacity.frag"}, {}, {}}),
       body_depth_(shader_dir, {{"body.vert", "depth_only.frag"}, {}, {}}),
+      software_(shader_dir),
       no_attributes_(makeVertexArray()) {}
 
-void HairShadowPass::drawStrands(const Input& input, const HairResources& hair, ShaderProgram& geometry,
-                                 ShaderProgram& pulling) const {
-  (input.path == StrandPath::kGeometry ? geometry : pulling).use();
-  issueStrands(hair, hair.shadow_draw, input.path, {GL_LINE_STRIP, 1});
+void HairShadowPass::drawStages(StrandPath path, const HairResources& hair, const ShadowMaps::HairMap& map,
+                                ShadowMaps& shadows) {
+  const bool geometry = path == StrandPath::kGeometry;
+  const StrandTopology line{GL_LINE_STRIP, 1};
+  glBindVertexArray(no_attributes_.id());
+  shadows.beginHairDepth(map);
+  (geometry ? depth_geometry_ : depth_pulling_).use();
+  issueStrands(hair, hair.shadow_draw, path, line);
+  shadows.beginOpacity(map);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE);
+  (geometry ? opacity_geometry_ : opacity_pulling_).use();
+  issueStrands(hair, hair.shadow_draw, path, line);
+  glDisable(GL_BLEND);
 }
 
 void HairShadowPass::draw(const Input& input, Stage& stage, FrameReport& report) {
   ShadowMaps& shadows = stage.shadows;
+  const StrandPath path = pathFor(input.path);
   bool changed = false;
   for (std::size_t i = 0; i < shadows.hairMaps().size(); ++i) {
     const bool kept = shadows.claimHairMap(i) && input.keep_maps;
@@ -91,14 +105,10 @@ void HairShadowPass::draw(const Input& input, Stage& stage, FrameReport& report)
     HairResources& hair = stage.hairs.hairs()[map.hair];
     hair.shadow_draw.shadow_map = static_cast<int>(i);
     HairStore::bind(hair, hair.shadow_draw, &stage.detail.table());
-    glBindVertexArray(no_attributes_.id());
-    shadows.beginHairDepth(map);
-    drawStrands(input, hair, depth_geometry_, depth_pulling_);
-    shadows.beginOpacity(map);
-    glEnable(GL_BLEND);
-    glBlendFunc(GL_ONE, GL_ONE);
-    drawStrands(input, hair, opacity_geometry_, opacity_pulling_);
-    glDisable(GL_BLEND);
+    if (path == StrandPath::kSoftware)
+      software_.draw(hair, i, shadows);
+    else
+      drawStages(path, hair, map, shadows);
     report.draw_calls += 2;
     if (shadows.bodyMaps().empty()) continue;
     shadows.beginBodyInHairDepth(map);
@@ -109,8 +119,10 @@ void HairShadowPass::draw(const Input& input, Stage& stage, FrameReport& report)
 }
 
 ReloadReport HairShadowPass::reload(Reload which) {
-  return reloadPrograms({&depth_geometry_, &depth_pulling_, &opacity_geometry_, &opacity_pulling_, &body_depth_},
-                        which);
+  ReloadReport report =
+      reloadPrograms({&depth_geometry_, &depth_pulling_, &opacity_geometry_, &opacity_pulling_, &body_depth_}, which);
+  report += software_.reload(which);
+  return report;
 }
 
 BodyShadowPass::BodyShadowPass(const std::string& shader_dir)

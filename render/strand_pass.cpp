@@ -1,7 +1,9 @@
-// Draws strands, lit: by the geometry stage or by vertex pulling, the same curves either way.
+// Draws strands, lit: by the geometry stage, by vertex pulling or in software, the same curves each way.
 #include <string>
 
+#include "render/driver.h"
 #include "render/pass.h"
+#include "render/software_strands.h"
 #include "render/stage.h"
 #include "render/strand_draw.h"
 #include "shaders/shared.h"
@@ -13,18 +15,27 @@ class StrandPass {
   static constexpr const char* kName = "strands";
   static constexpr Target kTarget = Target::kRadiance;
   struct Input {
-    bool show = true;
-    StrandPath path = StrandPath::kGeometry;
+    bool show = true, shade_all = false;
+    StrandPath path = StrandPath::kAuto;
     bool operator==(const Input&) const = default;
   };
-  static Input inputOf(const FrameInput& frame) { return {frame.view.show_strands, frame.view.strand_path}; }
+  static Input inputOf(const FrameInput& frame) {
+    return {frame.view.show_strands, !frame.skips.shading, frame.view.strand_path};
+  }
 
   explicit StrandPass(const std::string& shader_dir);
   void draw(const Input& input, Stage& stage, FrameReport& report);
-  ReloadReport reload(Reload which) { return reloadPrograms({&geometry_, &pulling_}, which); }
+  ReloadReport reload(Reload which) {
+    ReloadReport report = reloadPrograms({&geometry_, &pulling_}, which);
+    report += software_.reload(which);
+    return report;
+  }
 
  private:
+  StrandCount drawStages(StrandPath path, Stage& stage);
+
   ShaderProgram geometry_, pulling_;
+  SoftwareStrands software_;
   VertexArray no_attributes_;
 };
 
@@ -35,10 +46,10 @@ static_assert(shared::kChunkPoints * shared::kLineComponents <= shared::kMaxOutp
 StrandPass::StrandPass(const std::string& shader_dir)
     : geometry_(shader_dir, {{"strand.vert", "strand.geom", "strand.frag"}, {}, {}}),
       pulling_(shader_dir, {{"strand_pull.vert", "strand.frag"}, {}, {}}),
+      software_(shader_dir),
       no_attributes_(makeVertexArray()) {}
 
-void StrandPass::draw(const Input& input, Stage& stage, FrameReport& report) {
-  if (!input.show) return;
+StrandCount StrandPass::drawStages(StrandPath path, Stage& stage) {
   StrandCount count;
   stage.shadows.bindMaps();
   glBindVertexArray(no_attributes_.id());
@@ -47,9 +58,19 @@ void StrandPass::draw(const Input& input, Stage& stage, FrameReport& report) {
     if (!hair.drawable || !hair.in_view) continue;
     hair.view_draw.shadow_map = stage.shadows.mapOf(i);
     HairStore::bind(hair, hair.view_draw, &stage.detail.table());
-    (input.path == StrandPath::kGeometry ? geometry_ : pulling_).use();
-    count += issueStrands(hair, hair.view_draw, input.path, {GL_TRIANGLE_STRIP, 2});
+    (path == StrandPath::kGeometry ? geometry_ : pulling_).use();
+    count += issueStrands(hair, hair.view_draw, path, {GL_TRIANGLE_STRIP, 2});
   }
+  return count;
+}
+
+void StrandPass::draw(const Input& input, Stage& stage, FrameReport& report) {
+  if (!input.show) return;
+  StrandPath path = pathFor(input.path);
+  StrandCount count;
+  if (path == StrandPath::kSoftware && !software_.draw(stage, input.shade_all, count, report.skip_counts.shading))
+    path = StrandPath::kGeometry;
+  if (path != StrandPath::kSoftware) count = drawStages(path, stage);
   report.strands_drawn = count.strands;
   report.strand_vertices = count.vertices;
   report.draw_calls += count.draw_calls;

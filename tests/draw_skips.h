@@ -17,6 +17,7 @@ inline render::DrawSkips none() {
   render::DrawSkips skips;
   skips.frame = skips.rows = skips.shadows = skips.view = skips.shadow_view = skips.body_parts = false;
   skips.body_detail = skips.strands = skips.segments = skips.shadow_detail = skips.sky_visibility = false;
+  skips.skin = skips.shading = skips.hair_light = false;
   return skips;
 }
 

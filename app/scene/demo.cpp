@@ -103,6 +103,9 @@ render::DrawSkips drawSkips(const SkipSet& skips) {
   draw.strands = skips[kSkipStrands];
   draw.segments = skips[kSkipSegments];
   draw.shadow_detail = skips[kSkipShadowDetail];
+  draw.skin = skips[kSkipSkin];
+  draw.shading = skips[kSkipShading];
+  draw.hair_light = skips[kSkipHairLight];
   draw.sky_visibility = skips[kSkipSkyVisibility];
   return draw;
 }
@@ -198,6 +201,9 @@ void addDrawing(const render::DrawSkipCounts& drawing, SkipCounts& counts) {
   add(kSkipStrands, drawing.strands);
   add(kSkipSegments, drawing.segments);
   add(kSkipShadowDetail, drawing.shadow_detail);
+  add(kSkipSkin, drawing.skin);
+  add(kSkipShading, drawing.shading);
+  add(kSkipHairLight, drawing.hair_light);
   add(kSkipSkyVisibility, drawing.sky_visibility);
 }
 

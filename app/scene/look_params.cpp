@@ -19,7 +19,7 @@ struct Range {
 };
 
 constexpr bool kLog = true;
-constexpr std::array<const char*, 2> kStrandPaths{"geometry", "pulling"};
+constexpr std::array<const char*, 4> kStrandPaths{"geometry", "pulling", "software", "auto"};
 
 // 0.35f as a double is 0.3499999940395355; a person and a preset want to read 0.35, which gives the same float back.
 double plain(float value) {
@@ -169,7 +169,8 @@ std::vector<SceneField> makeSceneTable() {
   const auto color = [](SceneField row) { return shaped(LookShape::kColor, row); };
   const auto direction = [](SceneField row) { return shaped(LookShape::kDirection, row); };
   SceneField strand_path = scene<VIEW(strand_path)>("strand_path", "Picture", "", {0, kStrandPaths.size() - 1.0},
-                                                    "Which shader stage grows the strands; the pictures agree.");
+                                                    "What draws the strands: a shader stage, or shaders and the CPU where the driver has no GPU; auto "
+                                                    "is what suits the driver. The pictures agree.");
   strand_path.choices = kStrandPaths;
   return {
       color(scene<LIGHT(key)>("key", "Light", "", {0, 50}, "Colour and strength of the key light.")),

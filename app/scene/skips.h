@@ -27,6 +27,9 @@ enum SkipId {
   kSkipStrands,
   kSkipSegments,
   kSkipShadowDetail,
+  kSkipSkin,
+  kSkipShading,
+  kSkipHairLight,
   kSkipSkyVisibility,
   kSkipEvents,
   kSkipCount

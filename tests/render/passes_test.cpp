@@ -45,7 +45,7 @@ MEMBERS(LightInput, to_light, key, fill, rim, to_fill, to_rim, ambient_sky, ambi
 MEMBERS(ViewOptions, samples, exposure, backdrop_top, backdrop_bottom, ground_color, ground_height, ground,
         show_strands, show_body, strand_path, strands_per_pixel, segment_error)
 MEMBERS(DrawSkips, frame, rows, shadows, view, shadow_view, body_parts, body_detail, strands, segments, shadow_detail,
-        sky_visibility)
+        skin, shading, hair_light, sky_visibility)
 MEMBERS(HairLook, strand_radius, strands_represented, width_compensation, least_pixels, taper, length_variation, offset,
         clump, clump_size, lock, wisp, drift, curl_radius, curl_pitch, wave_height, wave_length, frizz, flyaways,
         flyaway_lift, hairline, baby_hairs, eumelanin, pheomelanin, use_color, color,
@@ -233,9 +233,11 @@ const std::set<std::string> kUnseen{"frame.bodies.id",
                                     "frame.skips.body_parts",
                                     "frame.skips.frame",
                                     "frame.skips.rows",
+                                    "frame.skips.shading",
                                     "frame.skips.shadow_detail",
                                     "frame.skips.shadow_view",
                                     "frame.skips.shadows",
+                                    "frame.skips.skin",
                                     "frame.skips.sky_visibility",
                                     "frame.skips.view",
                                     "frame.view.strand_path"};

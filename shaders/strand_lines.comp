@@ -1,0 +1,30 @@
+// Grows the strands that cast a hair's shadow, in the texels of its map, for line_raster.h: an invocation is a strand.
+#include "shared.h"
+#include "common/hash.glsl"
+#include "common/strand.glsl"
+#include "common/ribbon.glsl"
+#include "common/opacity_line.glsl"
+
+layout(local_size_x = kStrandGroup) in;
+layout(std430, binding = kSlotStrands) writeonly restrict buffer Strands { uint strands[]; };  // points of a strand
+layout(std430, binding = kSlotPoints) writeonly restrict buffer Points { vec4 points[]; };  // texels, depth, opacity
+
+void main() {
+  int number = int(gl_GlobalInvocationID.x);
+  if (number >= draw.x) return;
+  Strand strand = makeStrand(number);
+  int last = lastPoint(strand), first = number * draw.z;
+  bool shades = last > 0 && strand.gain > 0.0;
+  strands[number] = shades ? uint(last + 1) : 0u;
+  if (!shades) return;
+  float side = hair_shadow_size[draw.w].y;
+  int layer = 0;
+  LayerWindow window = layerWindow(strand, layer);
+  for (int index = 0; index <= last; ++index) {
+    float s = pointParameter(strand, index);
+    moveWindow(strand, layerOf(strand, s), layer, window);
+    CurvePoint point = curvePoint(strand, window, s, s - float(layer));
+    vec4 clip = hair_shadow[draw.w] * vec4(point.position, 1.0);
+    points[first + index] = vec4((0.5 + 0.5 * clip.xy) * side, 0.5 + 0.5 * clip.z, lineOpacity(strand, point.tangent));
+  }
+}

@@ -1,0 +1,43 @@
+// Grows the strands of a hair once and projects them, for strand_raster.h: an invocation is a strand.
+#include "shared.h"
+#include "common/hash.glsl"
+#include "common/strand.glsl"
+#include "common/ribbon.glsl"
+
+layout(local_size_x = kStrandGroup) in;
+layout(std430, binding = kSlotRibbons) writeonly restrict buffer Ribbons { vec4 ribbons[]; };
+layout(std430, binding = kSlotStrands) writeonly restrict buffer Strands { uvec4 strands[]; };
+layout(std430, binding = kSlotPoints) writeonly restrict buffer Points { vec4 points[]; };
+
+vec2 toPixels(vec4 clip) { return (0.5 + 0.5 * clip.xy / clip.w) * viewport.xy; }
+
+void storeRibbon(int at, in CurvePoint point, in RibbonPoint ribbon) {
+  vec4 clip = view_projection * vec4(point.position, 1.0);
+  bool before = clip.z < -clip.w || clip.w <= 0.0;  // of the near plane
+  vec2 left = toPixels(view_projection * vec4(point.position - ribbon.aside, 1.0));
+  vec2 right = toPixels(view_projection * vec4(point.position + ribbon.aside, 1.0));
+  ribbons[2 * at] = vec4(left, right);
+  ribbons[2 * at + 1] = vec4(before ? -1.0 : 0.5 + 0.5 * clip.z / clip.w, ribbon.coverage, 0.0, 0.0);
+}
+
+void main() {
+  int number = int(gl_GlobalInvocationID.x);
+  if (number >= draw.x) return;
+  Strand strand = makeStrand(number);
+  float dither = strandDither(strand);
+  int last = lastShownPoint(strand, dither), first = number * draw.z;
+  strands[number] = uvec4(uint(last < 1 ? 0 : last + 1), floatBitsToUint(dither), strand.key, strand.clump_key);
+  if (last < 1) return;
+  int layer = 0;
+  LayerWindow window = layerWindow(strand, layer);
+  for (int index = 0; index <= last; ++index) {
+    float s = pointParameter(strand, index);
+    moveWindow(strand, layerOf(strand, s), layer, window);
+    CurvePoint point = curvePoint(strand, window, s, s - float(layer));
+    storeRibbon(first + index, point, ribbonPoint(strand, point));
+    int at = kPointTexels * (first + index);
+    points[at] = vec4(point.position, point.along);
+    points[at + 1] = vec4(point.tangent, point.light.x);
+    points[at + 2] = vec4(point.light.yz, point.behind);
+  }
+}
