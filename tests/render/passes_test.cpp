@@ -110,6 +110,8 @@ struct Scene {
     bodies[0].face_height = 0.25f;
     bodies[0].face_paint = 0.6f;
     frame = synthetic::frameInput(hairs, bodies, 96, 64);
+    // The software path rounds depths otherwise with every other near plane: a level or two in a pixel.
+    frame.view.strand_path = render::StrandPath::kGeometry;
     frame.camera.eye = {0.25f, 1.6f, 0.6f};
     frame.light.shadow_size = 128;
     frame.light.shadow_strands = 100;
@@ -232,6 +234,7 @@ const std::set<std::string> kUnseen{"frame.bodies.id",
                                     "frame.skips.body_detail",
                                     "frame.skips.body_parts",
                                     "frame.skips.frame",
+                                    "frame.skips.hair_light",  // of a body as coarse
                                     "frame.skips.rows",
                                     "frame.skips.shading",
                                     "frame.skips.shadow_detail",
