@@ -13,6 +13,7 @@ constexpr double kTautness = 0.9;          // how nearly hanging hair spans holl
 constexpr double kTautnessInFront = 0.25;  // below the jaw: hair lies on the chest
 constexpr double kCloseBeside = 0.9;       // of the way from one flow line to the next, at either side of the divide
 constexpr double kDivide = 0.35;           // hair rooted in front of this backness falls in front of the shoulders
+constexpr double kSweptBehind = 0.33;      // backness from which on no hair is swept forward
 
 // What one style wants. Heights are in head heights above the scalp's centre.
 struct Cut {
@@ -21,11 +22,12 @@ struct Cut {
   bool from_shoulders, divides;
   double tautness;  // how nearly the outer guide hangs straight from the widest part of the head
   double slant;     // m that what is rooted at the hairline ends below what is rooted at the parting
+  double sweep;     // m that the front hair falls over the forehead and the temple before its hairline
 };
 
-constexpr std::array kCuts{Cut{0.017, -0.20, -0.25, -0.40, false, false, 0.35, 0.020},  // by Style
-                           Cut{0.019, 0.05, 0.05, 0.0, true, false, 0.6, 0.030},
-                           Cut{0.020, -0.50, -0.90, -1.08, true, true, 0.8, 0.045}};
+constexpr std::array kCuts{Cut{0.017, -0.20, -0.25, -0.40, false, false, 0.35, 0.020, 0.009},  // by Style
+                           Cut{0.019, 0.05, 0.05, 0.0, true, false, 0.6, 0.030, 0.009},
+                           Cut{0.020, -0.50, -0.90, -1.08, true, true, 0.8, 0.045, 0}};
 
 // Hair leaves the scalp at about 25 degrees until it lies on the hair below, a little higher at the crown.
 constexpr double kLift = 0.0035, kLiftAtCrown = 0.0065;          // m
@@ -77,6 +79,7 @@ struct Comber {
   Vec3 aim(int sheet) const;
   Vec3 keepOff(int sheet, Vec3 p, double gap) const;
   double tautnessAt(int sheet, double height, double tautness) const;
+  void sweepFront();
   bool fall(int sheet);
   void cutAboveShoulders();
   void fallAll();
@@ -182,6 +185,22 @@ bool Comber::fall(int sheet) {
   return true;
 }
 
+// The front hair leaves its flow line for the forehead and the temple, the foremost by most, and frames the face.
+void Comber::sweepFront() {
+  coat.swept.assign(coat.inner.size(), Vec3::Zero());
+  for (int s = 0; s < coat.sheets; ++s) {
+    const double share = 1 - smoothstep(0.0, kSweptBehind, backness(s));
+    const int foremost = 2 * s < coat.sheets ? 0 : coat.sheets - 1, inward = foremost == 0 ? 4 : coat.sheets - 5;
+    for (int r = 0; r < coat.rows && share > 0; ++r) {
+      const int row = std::min(r, coat.scalp_rows - 1);
+      const Vec3& root = lines.at(s, row);
+      const double far = cut.sweep * share * smoothstep(0.0, 0.6, row / (coat.scalp_rows - 1.0));
+      const Vec3 forward = (lines.at(foremost, row) - lines.at(inward, row)).normalized();
+      coat.swept[coat.index(s, r)] = skinPoint(scalp, root + far * forward - scalp.center) - root;
+    }
+  }
+}
+
 // Lifts the cut of the sheets beside those that lie on the shoulders, so that it stays one smooth line.
 void Comber::cutAboveShoulders() {
   constexpr double kSteepest = 0.002;  // m from one sheet to the next
@@ -200,8 +219,10 @@ void Comber::fallAll() {
   const int below = static_cast<int>(1.25 * (0.35 * scalp.head_height - lowest) / kRowStep) + 8;
   coat.rows = coat.scalp_rows + below;
   coat.inner.resize(static_cast<std::size_t>(coat.sheets) * coat.rows);
+  sweepFront();
   for (int s = 0; s < coat.sheets; ++s) {
-    for (int r = 0; r < coat.scalp_rows; ++r) coat.inner[coat.index(s, r)] = lines.at(s, r);
+    for (int r = 0; r < coat.scalp_rows; ++r)
+      coat.inner[coat.index(s, r)] = lines.at(s, r) + coat.swept[coat.index(s, r)];
     while (!fall(s)) continue;
   }
   if (!cut.divides && cut.from_shoulders) cutAboveShoulders();

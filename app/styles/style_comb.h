@@ -30,6 +30,7 @@ struct Coat {
   int sheets = 0, rows = 0, scalp_rows = 0;
   std::vector<Vec3> inner, outer;  // m, sheets x rows
   std::vector<Vec3> up;            // unit, sheets x rows: off the inner guide towards the outer one
+  std::vector<Vec3> swept;         // m, sheets x rows: how far the inner guide lies before the roots' flow lines
   std::vector<double> travelled;   // m, sheets x rows: arc length of the inner guide from the parting
   std::vector<double> cut_row;     // per sheet: the row where the hair is cut
   int front_sheets = 0;            // of each half, that fall in front of the shoulders; the others fall behind

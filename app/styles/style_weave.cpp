@@ -7,7 +7,8 @@
 namespace app {
 namespace {
 
-constexpr double kTurn = 0.01;  // m of way over which a column takes up the step
+constexpr double kTurn = 0.01;        // m of way over which a column takes up the step
+constexpr double kSweptAfter = 0.05;  // m of way from its root over which a column takes up the sweep over the forehead
 
 // A column to be: the sheet it runs in and its rank, 0 at the hairline to 1 at the parting.
 struct Plait {
@@ -58,10 +59,11 @@ void layColumn(const Coat& coat, const Weave& plan, const Plait& plait, Woven& w
   const double root = (1 - plait.rank) * rise.hairline;
   for (int l = 0; l < plait.layers; ++l) {
     const double way = wayAt(coat, plan, plait, l), row = rowAt(coat, sheet, way), full = rise.height(1, way);
+    const double late = 1 - smoothstep(0.0, kSweptAfter, way - root);
     const Vec3 inner = sampleRow(coat, coat.inner, sheet, row), up = sampleRow(coat, coat.up, sheet, row).normalized();
     const double thickness = (sampleRow(coat, coat.outer, sheet, row) - inner).norm();
     const double height = full > 0 ? rise.height(plait.rank, way - root) / full * thickness : 0.0;
-    woven.shape.positions.push_back(inner + height * up);
+    woven.shape.positions.push_back(inner - late * sampleRow(coat, coat.swept, sheet, row) + height * up);
     woven.up.push_back(up);
   }
   woven.shape.column_first.push_back(static_cast<int>(woven.shape.positions.size()));
