@@ -24,7 +24,7 @@ std::vector<std::string> choicesOf(const char* parameter) {
 }
 
 constexpr int kSmallestSide = 16, kLargestSide = 8192, kMaxFrames = 1000000;
-constexpr int kMostExportPoints = 1024, kMostExportSamples = 32;
+constexpr int kMaxExportPoints = 1024, kMaxExportSamples = 32;
 
 // "1280x720".
 bool parseSize(const std::string& text, int& width, int& height) {
@@ -263,11 +263,11 @@ void addExportOptions(CLI::App& parser, Options& options, Unchecked& unchecked) 
              "strands as drawn, guides (the hair mesh's columns), or mesh (.glb alone; its default)")
       ->check(oneOf({"strands", "guides", "mesh"}));
   group.value("--export-points", spec.points, "N", "Points a strand, evenly from root to tip (as drawn)")
-      ->check(within(2, kMostExportPoints));
+      ->check(within(2, kMaxExportPoints));
   group.value("--export-frames", unchecked.export_frames, "A-B", "Frames of the run, from 0, that are exported (all)");
   group.value("--export-every", spec.every, "N", "Every nth of them (1)")->check(within(1, kMaxFrames));
   group.value("--export-samples", spec.samples, "N", "Moments a frame, for motion blur: .abc, .usda, .glb (1)")
-      ->check(within(1, kMostExportSamples));
+      ->check(within(1, kMaxExportSamples));
   group.value("--export-shutter", spec.shutter, "X", "Of a frame's length, from its first moment to its last (0.5)")
       ->check(within(0.01, 1));
   group.value("--export-unit", unchecked.export_unit, "NAME", "Unit of the file's numbers: m, cm, mm or in (m)")

@@ -11,9 +11,9 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kFewestStrands = 300;     // of a hair, however small it is
+constexpr float kMinStrands = 300;     // of a hair, however small it is
 constexpr float kFadeShare = 0.4f;        // of the strands drawn are about to leave
-constexpr float kFewestSegments = 0.25f;  // a layer
+constexpr float kMinSegments = 0.25f;  // a layer
 constexpr float kLongestSegment = 12;     // pixels: light changes along a strand, and is worked out at its points
 constexpr float kShortestSegment = 2.5f;  // pixels: finer cannot be seen
 
@@ -58,7 +58,7 @@ void HairDetail::planView(const PlanInput& input, const Frustum& frustum, HairRe
   const HairLayout& layout = hair.layout();
   const std::size_t faces = layout.faces.size();
   HairDraw& draw = hair.view_draw;
-  const float wanted = std::max(input.strands_per_pixel * hair.pixels, kFewestStrands);
+  const float wanted = std::max(input.strands_per_pixel * hair.pixels, kMinStrands);
   const float share = input.skips.strands ? std::min(wanted / static_cast<float>(std::max(hair.strands, 1)), 1.0f) : 1;
   fadeTo(share, draw);
 
@@ -73,7 +73,7 @@ void HairDetail::planView(const PlanInput& input, const Frustum& frustum, HairRe
       // A chord leaves a curve of second derivative b by b / (8 n^2); a Catmull-Rom's is at most twice its vertices'.
       const float bent = std::sqrt((2 * hair.face_bend[f] + own) * a_metre / (8 * error));
       const float needed = std::min(std::max(bent, layer_pixels / kLongestSegment), layer_pixels / kShortestSegment);
-      segments_[f] = std::clamp(needed, std::min(kFewestSegments, full), full);
+      segments_[f] = std::clamp(needed, std::min(kMinSegments, full), full);
     }
   }
   const bool cull = input.skips.view && !std::all_of(hair.face_bounds.begin(), hair.face_bounds.end(),
@@ -118,7 +118,7 @@ void HairDetail::planShadow(const PlanInput& input, HairResources& hair, DrawSki
   float wanted = light.shadow_strands > 0 ? static_cast<float>(light.shadow_strands) : strands;
   const float most = std::min(wanted, strands);
   if (input.skips.shadow_detail)
-    wanted = std::min(wanted, std::max(light.shadow_strands_per_pixel * hair.pixels, kFewestStrands));
+    wanted = std::min(wanted, std::max(light.shadow_strands_per_pixel * hair.pixels, kMinStrands));
   const float share = std::min(wanted / strands, 1.0f);
   fadeTo(share, draw);
   skip_counts.shadow_detail.of += std::lround(most);
@@ -126,7 +126,7 @@ void HairDetail::planShadow(const PlanInput& input, HairResources& hair, DrawSki
   const float layer_pixels = hair.layer_length * hair.pixels / std::max(hair.bounds.diagonal(), 1e-6f);
   const auto full = static_cast<float>(draw.segments);
   const float segments = input.skips.shadow_detail
-                             ? std::clamp(layer_pixels / (2 * kShortestSegment), std::min(kFewestSegments, full), full)
+                             ? std::clamp(layer_pixels / (2 * kShortestSegment), std::min(kMinSegments, full), full)
                              : full;
   draw.table_first = static_cast<int>(texels_.size() / 4);
   draw.table_strands = draw.table_entries = 0;

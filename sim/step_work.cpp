@@ -28,9 +28,9 @@ double workUnits(int vertices, const StepWork& work) {
 }
 
 WorkBounds boundsWithin(int vertices, double units) {
-  constexpr double kMost = 1e6;
+  constexpr double kMaxCount = 1e6;
   const double each = units / std::max(1, vertices) - kSolve - kFactors - kCoarseSpace - kEnergies * kEnergy;
-  const double left = std::clamp(each, 0.0, kMost);
+  const double left = std::clamp(each, 0.0, kMaxCount);
   WorkBounds bounds;
   bounds.iterations = std::max(1, static_cast<int>(kSolveShare * left));
   bounds.minimizations = static_cast<int>(kFollowShare * left / kMinimization);

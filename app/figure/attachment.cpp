@@ -19,10 +19,10 @@ namespace {
 
 constexpr double kSmallestWorn = 0.07, kLargestWorn = 0.65;    // m, the longest side of what is worn; less than ten times apart
 constexpr double kNearJoint = 0.35;                         // m, from its joint
-constexpr double kWornSpacing = 0.0025, kMostWornNodes = 1.2e6;  // m, of the grid
+constexpr double kWornSpacing = 0.0025, kMaxWornNodes = 1.2e6;  // m, of the grid
 constexpr double kSharpEdge = 0.5;                         // cosine between faces that are shaded as one
 constexpr double kWeld = 1e-5;                         // of the size; vertices so near are one
-constexpr int kMostPieces = 8;
+constexpr int kMaxPieces = 8;
 constexpr double kSlender = 0.4;  // of the longest side, the second one of what is worn
 constexpr const char* kGiveSolid = "give a closed mesh: OBJ, FBX or glTF";
 
@@ -197,7 +197,7 @@ PartDistance distancesOf(const ClosedSurface& surface, int joint) {
   }
   part.triangles = static_cast<int>(triangles.size());
   const Vec3 sizes = box.sizes() + Vec3::Constant(6 * kWornSpacing);
-  const double spacing = std::max(kWornSpacing, std::cbrt(sizes.prod() / kMostWornNodes));
+  const double spacing = std::max(kWornSpacing, std::cbrt(sizes.prod() / kMaxWornNodes));
   const Vec3 pad = Vec3::Constant(3 * spacing);
   part.grid = layOutGrid(box.min() - pad, box.max() + pad, spacing);
   fillGrid(triangles, 2.5 * spacing, part.grid);
@@ -271,7 +271,7 @@ bool looksWorn(const PolygonMesh& mesh) {
   std::array<double, 3> sides{box.sizes().x(), box.sizes().y(), box.sizes().z()};
   std::ranges::sort(sides);
   return surface.faces.size() >= 4 && sides[1] > kSlender * sides[2] && openEdges(surface) == 0 &&
-         turnOutwards(surface) <= kMostPieces;
+         turnOutwards(surface) <= kMaxPieces;
 }
 
 double meetsAlong(const Attachment& attachment, const Scalp& scalp, const Vec3& direction, double most) {

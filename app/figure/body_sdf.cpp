@@ -12,7 +12,7 @@ constexpr float kBelongs = 0.35f;   // share of a vertex's weights from which it
 constexpr double kFinest = 0.005;   // m, spacing of the grids
 constexpr double kNodesAlong = 64;  // at most about so many nodes along a part
 constexpr double kMaxNodes = 4e5;   // of one grid
-constexpr int kFewestTriangles = 12;
+constexpr int kMinTriangles = 12;
 
 // The joint with an ellipsoid that a joint moves with: itself or the nearest above it; -1: none.
 std::vector<int> carriers(const Character& character) {
@@ -112,7 +112,7 @@ std::vector<PartDistance> partDistances(const Character& character) {
       if (!belongs[i[0]] && !belongs[i[1]] && !belongs[i[2]]) continue;
       faces.push_back({welded[i[0]], welded[i[1]], welded[i[2]]});
     }
-    if (static_cast<int>(faces.size()) < kFewestTriangles) continue;
+    if (static_cast<int>(faces.size()) < kMinTriangles) continue;
     PartDistance part = makePart(joint, faces, points);
     if (part.deepest > 0) parts.push_back(std::move(part));
   }

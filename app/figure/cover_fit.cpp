@@ -9,7 +9,7 @@ namespace {
 
 using CoverParams = Eigen::Matrix<double, 9, 1>;  // centre shift (m), rotation vector (rad), change of radii (m)
 
-constexpr double kLeastRadius = 0.005;  // m
+constexpr double kMinRadius = 0.005;  // m
 constexpr double kDeep = 0.04;        // m: what lies deeper does not count
 constexpr double kTight = 0.0007;     // m: own points are to lie so far inside
 constexpr double kOutside = 8;        // weight of an own point that sticks out
@@ -21,7 +21,7 @@ BodyEllipsoid movedCover(const BodyEllipsoid& start, const CoverParams& x) {
   const Vec3 turn = x.segment<3>(3);
   if (const double angle = turn.norm(); angle > 1e-12)
     e.rotation = (Eigen::AngleAxisd(angle, turn / angle) * start.rotation).normalized();
-  e.radii = (start.radii + x.tail<3>()).cwiseMax(kLeastRadius);
+  e.radii = (start.radii + x.tail<3>()).cwiseMax(kMinRadius);
   return e;
 }
 

@@ -12,8 +12,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kFarthestPlace = 3, kMostTurn = 180;              // m, degrees
-constexpr double kLeastUnit = 1e-5, kMostUnit = 100;  // m per unit
+constexpr double kFarthestPlace = 3, kMaxTurn = 180;              // m, degrees
+constexpr double kMinUnit = 1e-5, kMaxUnit = 100;  // m per unit
 
 sim::Vec3 vectorFrom(const std::array<double, 3>& values) {
   return {values[0], values[1], values[2]};
@@ -35,8 +35,8 @@ AttachmentSpec readAttachment(const JsonPlace& place) {
                             "check the path; it is looked for beside the scene and in assets/attachments");
   if (place.has("joint")) one.joint = place.at("joint").text();
   if (place.has("at")) one.at = vectorFrom(place.at("at").vector(-kFarthestPlace, kFarthestPlace));
-  if (place.has("turn")) one.turn = vectorFrom(place.at("turn").vector(-kMostTurn, kMostTurn));
-  if (place.has("scale")) one.scale = place.at("scale").number(kLeastUnit, kMostUnit);
+  if (place.has("turn")) one.turn = vectorFrom(place.at("turn").vector(-kMaxTurn, kMaxTurn));
+  if (place.has("scale")) one.scale = place.at("scale").number(kMinUnit, kMaxUnit);
   if (place.has("color")) {
     const std::array<double, 3> color = place.at("color").vector(0, 1);
     for (std::size_t k = 0; k < 3; ++k) one.color[k] = static_cast<float>(color[k]);

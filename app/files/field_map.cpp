@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view kPictureText = "data:image/png;base64,";
 constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-constexpr double kLeastShare = 0.01;  // of a curve
+constexpr double kMinShare = 0.01;  // of a curve
 
 std::string toBase64(std::string_view bytes) {
   std::string text;
@@ -134,7 +134,7 @@ FieldCurves readCurves(const JsonPlace& place) {
     const JsonPlace points = place.at(name);
     const std::size_t count = points.arraySize(kMaxCurvePoints);
     for (std::size_t k = 0; k < count; ++k)
-      findCurve(name, curves)->push_back(points.at(k).number(kLeastShare, kLargestShare));
+      findCurve(name, curves)->push_back(points.at(k).number(kMinShare, kLargestShare));
   }
   return curves;
 }
@@ -150,7 +150,7 @@ void setCurve(const std::string& name, const std::string& text, FieldCurves& cur
   for (std::size_t at = 0; text != "none" && at < text.size();) {
     const std::size_t end = std::min(text.find(',', at), text.size());
     double point = 0;
-    if (!sim::parseNumber(std::string_view(text).substr(at, end - at), point) || point < kLeastShare ||
+    if (!sim::parseNumber(std::string_view(text).substr(at, end - at), point) || point < kMinShare ||
         point > kLargestShare || points.size() == kMaxCurvePoints)
       throw InputError("", "curve '" + text.substr(0, 40) + "'", "is no list of shares",
                        "write up to 32 numbers from 0.01 to 10 with commas, from root to tip, or none");

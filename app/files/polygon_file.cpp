@@ -21,7 +21,7 @@ namespace {
 
 using Mat4 = Eigen::Matrix4d;
 
-constexpr std::size_t kMostCorners = 4'000'000, kMostNodes = 20'000;
+constexpr std::size_t kMaxCorners = 4'000'000, kMaxNodes = 20'000;
 constexpr double kLargest = 1e6;  // of a coordinate
 constexpr const char* kExport = "export the strips or tubes again, as OBJ, FBX or glTF";
 
@@ -76,7 +76,7 @@ struct Gatherer {
 
   void addFace(const aiMesh& mesh, const aiFace& face, int base, const std::string& name) {
     if (face.mNumIndices < 3) return;  // points and lines
-    if (out.corners.size() + face.mNumIndices > kMostCorners)
+    if (out.corners.size() + face.mNumIndices > kMaxCorners)
       throw InputError(file, name, "has over 4,000,000 corners", "reduce the mesh, or give the hair alone");
     for (unsigned k = 0; k < face.mNumIndices; ++k) {
       if (face.mIndices[k] >= mesh.mNumVertices)
@@ -91,7 +91,7 @@ struct Gatherer {
     const std::string name = nameOf(node, mesh);
     out.objects.push_back(name);
     const int base = static_cast<int>(out.positions.size());
-    if (out.positions.size() + mesh.mNumVertices > kMostCorners)
+    if (out.positions.size() + mesh.mNumVertices > kMaxCorners)
       throw InputError(file, name, "has over 4,000,000 vertices", "reduce the mesh, or give the hair alone");
     for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
       const aiVector3D p = mesh.mVertices[v];
@@ -109,7 +109,7 @@ struct Gatherer {
     while (!open.empty()) {
       const auto [node, above] = open.back();
       open.pop_back();
-      if (++nodes > kMostNodes) throw InputError(file, "", "has over 20,000 nodes", "export the hair alone");
+      if (++nodes > kMaxNodes) throw InputError(file, "", "has over 20,000 nodes", "export the hair alone");
       const Mat4 world = above * toEigen(node->mTransformation);
       for (unsigned m = 0; m < node->mNumMeshes; ++m) addMesh(*node, *scene.mMeshes[node->mMeshes[m]], world);
       for (unsigned c = node->mNumChildren; c-- > 0;) open.emplace_back(node->mChildren[c], world);

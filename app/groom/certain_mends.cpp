@@ -11,7 +11,7 @@ namespace app {
 
 namespace {
 
-constexpr std::size_t kFewestStrands = 20;  // of which the inspector tells a unit
+constexpr std::size_t kMinStrands = 20;  // of which the inspector tells a unit
 
 struct Unit {
   std::string_view name;
@@ -110,7 +110,7 @@ MendReport mendCertain(const GroomHints& hints, const HeadModel* head, const std
   const bool guesses = wishes.find("--no-guess") == std::string::npos;
   const GroomFinding* const unit = inspection.find("unit");
   report.unit_known = wishes.find("--unit") != std::string::npos || told != 1 || (guesses && unit && unit->certain) ||
-                      (!unit && groom.strandCount() >= kFewestStrands);
+                      (!unit && groom.strandCount() >= kMinStrands);
   for (const GroomFinding& finding : inspection.findings) {
     const std::string option = finding.mend.substr(0, finding.mend.find(' '));
     report.findings.push_back({finding, (guesses && finding.certain) || wishes.find(option) != std::string::npos});

@@ -19,7 +19,7 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr Eigen::Index kIterated = 2000;  // unknowns from which the system is solved by iteration
-constexpr int kMostIterations = 800;
+constexpr int kMaxIterations = 800;
 constexpr double kTolerance = 1e-6;                     // of the right-hand side
 constexpr float kStraight = 2e-3f;                      // weight of a strand's second differences beside its samples
 constexpr float kBeyond = 0.02f;                        // weight of a layer that a strand does not reach
@@ -341,7 +341,7 @@ bool solveFrom(const std::vector<int>& unknown, const sim::HairMeshShape& shape,
   }
   Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower> solver;
   solver.setTolerance(kTolerance);
-  solver.setMaxIterations(kMostIterations);
+  solver.setMaxIterations(kMaxIterations);
   solver.compute(matrix);
   solved = solver.solveWithGuess(right, start);
   return solver.info() == Eigen::Success;

@@ -17,7 +17,7 @@ constexpr int kSamples = 25;                       // points a strand
 constexpr std::size_t kSilhouetteStrands = 10000;  // that silhouettes are drawn of
 constexpr double kMisfit = 0.03;                   // of the hair's length
 constexpr float kTogether = 0.012f;                // m, between roots of strands that are told of as one
-constexpr std::size_t kMostMisfits = 6;            // groups that are told of
+constexpr std::size_t kMaxMisfits = 6;            // groups that are told of
 constexpr double kCrossing = 0.35;                 // rad-like, of strands that root together
 
 Groom reversed(Groom groom) {
@@ -222,12 +222,12 @@ std::string conversionReport(const Conversion& conversion) {
     text += line("silhouette    overlaps by at least %.3f from six sides, by %.3f with strands dealt out anew",
                  conversion.silhouette, conversion.silhouette_drawn);
   text += characterLine(conversion.look);
-  for (std::size_t k = 0; k < std::min(kMostMisfits, conversion.misfits.size()); ++k)
+  for (std::size_t k = 0; k < std::min(kMaxMisfits, conversion.misfits.size()); ++k)
     text += misfitLine(conversion.misfits[k], error);
-  if (conversion.misfits.size() > kMostMisfits) {
+  if (conversion.misfits.size() > kMaxMisfits) {
     int rest = 0;
-    for (std::size_t k = kMostMisfits; k < conversion.misfits.size(); ++k) rest += conversion.misfits[k].strands;
-    text += line("              and %d strands in %zu smaller groups", rest, conversion.misfits.size() - kMostMisfits);
+    for (std::size_t k = kMaxMisfits; k < conversion.misfits.size(); ++k) rest += conversion.misfits[k].strands;
+    text += line("              and %d strands in %zu smaller groups", rest, conversion.misfits.size() - kMaxMisfits);
   }
   return text;
 }

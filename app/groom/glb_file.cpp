@@ -67,7 +67,7 @@ GlbWriter::GlbWriter(std::string file, ClipSettings settings, std::vector<std::u
     : file_(std::move(file)), settings_(std::move(settings)), triangles_(std::move(triangles)) {}
 
 void GlbWriter::add(const std::vector<Eigen::Vector3f>& vertices) {
-  if (moments_.size() == kMostGlbMoments)
+  if (moments_.size() == kMaxGlbMoments)
     throw OutputError(file_, "a .glb file is given at most 1000 moments",
                       "export every second frame, --export-every 2");
   if (vertices.empty() || (!moments_.empty() && vertices.size() != moments_[0].size()))

@@ -15,7 +15,7 @@
 
 namespace app {
 
-inline constexpr std::size_t kMostGlbMoments = 1000;  // weights take a float for every pair of them
+inline constexpr std::size_t kMaxGlbMoments = 1000;  // weights take a float for every pair of them
 
 // Keeps all moments in memory, 12 bytes a vertex each, and writes the file when it is finished.
 class GlbWriter {
@@ -23,7 +23,7 @@ class GlbWriter {
   // triangles: three numbers of vertices each, counter-clockwise from outside.
   GlbWriter(std::string file, ClipSettings settings, std::vector<std::uint32_t> triangles);
 
-  // Throws OutputError for another number of vertices than at first, and beyond kMostGlbMoments.
+  // Throws OutputError for another number of vertices than at first, and beyond kMaxGlbMoments.
   void add(const std::vector<Eigen::Vector3f>& vertices);
   // Throws OutputError when the file could not be written.
   void finish();

@@ -18,16 +18,16 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-constexpr std::size_t kFewest = 20;  // strands
+constexpr std::size_t kMinCount = 20;  // strands
 constexpr std::size_t kFitStrands = 5000, kTrialStrands = 3000;
 constexpr int kSlides = 2, kRounds = 5;
-constexpr double kFatness = 0.012, kLeastFatness = 0.003,
+constexpr double kFatness = 0.012, kMinFatness = 0.003,
                  kFlat = 1e-4;                           // of corner tetrahedra: aimed for, held, refused
 constexpr float kShortestLength = 0.012f;                // m, of a column
 constexpr double kShortestLayer = 0.0045;                // m, of the median strand
-constexpr double kLeastDensity = 0.5;                    // of layers where hair is straight, over the mean
+constexpr double kMinDensity = 0.5;                    // of layers where hair is straight, over the mean
 constexpr double kMeanBound = 0.01, kShareBound = 0.03;  // of the strands' length: what a fit is content with
-constexpr int kFewestLayers = 5, kMostLayers = 16;
+constexpr int kMinLayers = 5, kMaxLayers = 16;
 constexpr double kSquareness = 0.5;
 constexpr double kBareCost = 0.3;  // of the strands' length: how far off a bare face is taken to be
 constexpr int kPerLayer = 4;       // points of a grown strand
@@ -68,7 +68,7 @@ std::vector<double> layerKnots(const RootRaster& raster, int layers) {
   std::vector<double> passed{0};
   for (std::size_t k = 0; k + 1 < bend.size(); ++k) {
     const double here = mean > 0 ? 0.5 * (bend[k] + bend[k + 1]) / mean : 1;
-    passed.push_back(passed.back() + kLeastDensity + std::min(std::sqrt(here), 2.0));
+    passed.push_back(passed.back() + kMinDensity + std::min(std::sqrt(here), 2.0));
   }
   std::vector<double> knots{0};
   for (int l = 1; l + 1 < layers; ++l) {
@@ -228,11 +228,11 @@ void settle(Draft& draft) {
     rounds.anew = slide == 0;
     draft.fit.flattest = fitColumns(columnSystem(draft.targets, shape), kFatness, rounds, shape);
   }
-  if (draft.fit.flattest < kLeastFatness)
+  if (draft.fit.flattest < kMinFatness)
     draft.fit.flattest = fitColumns(columnSystem(draft.targets, shape), 2 * kFatness, {2 * kRounds, 30, 30}, shape);
-  if (draft.fit.flattest >= kLeastFatness) return;
+  if (draft.fit.flattest >= kMinFatness) return;
   const BodyDistance nobody = [](const sim::Vec3&) { return 1.0; };
-  draft.fit.flattest = untangle(nobody, kLeastFatness, 0, shape);
+  draft.fit.flattest = untangle(nobody, kMinFatness, 0, shape);
   if (draft.fit.flattest <= kFlat) dropFlat(draft);
 }
 
@@ -313,8 +313,8 @@ int usualLayers(const RootRaster& raster, double length, int vertices) {
   const auto full =
       std::count_if(raster.cells.begin(), raster.cells.end(), [](const RootCell& cell) { return cell.region >= 0; });
   const double area = static_cast<double>(full) * raster.size * raster.size;
-  int layers = kFewestLayers;
-  while (layers < kMostLayers && length / layers > kShortestLayer &&
+  int layers = kMinLayers;
+  while (layers < kMaxLayers && length / layers > kShortestLayer &&
          layers * (layers - 1.0) * (layers - 1.0) < kSquareness * length * length * vertices / area)
     ++layers;
   return layers;
@@ -346,9 +346,9 @@ void growStrand(const HairFit& fit, const GrowthMap& growth, const StrandFit& st
 }
 
 HairFit fitGroom(const StrandSamples& strands, const FitOptions& options) {
-  if (strands.strandCount() < kFewest)
+  if (strands.strandCount() < kMinCount)
     throw std::runtime_error("it has " + std::to_string(strands.strandCount()) +
-                             " strands; a hair mesh takes at least " + std::to_string(kFewest));
+                             " strands; a hair mesh takes at least " + std::to_string(kMinCount));
   const RootRaster raster = rasterRoots(strands);
   const double length = quantile(strands.length, 0.5);
   std::vector<int> budgets{400, 800, 1600, 2400};

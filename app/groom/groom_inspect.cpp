@@ -16,12 +16,12 @@ using Eigen::Vector3f;
 
 namespace {
 
-constexpr std::size_t kMostStrands = 2000;  // looked at
+constexpr std::size_t kMaxStrands = 2000;  // looked at
 constexpr double kSkullRadius = 0.09;       // m, of the sphere that roots lie about
 constexpr float kThinnest = 8e-6f;          // m, a diameter
 constexpr float kUsualWidth = 8e-5f, kWidest = 4e-4f, kAllHairs = 1e5f;
 constexpr float kFar = 0.018f, kFloating = 0.03f, kDeep = 0.006f;  // m
-constexpr std::size_t kManyPoints = 256, kFewestRoots = 20;
+constexpr std::size_t kManyPoints = 256, kMinRoots = 20;
 
 std::string textOf(const char* format, double a, double b = 0) {
   std::array<char, 160> text;
@@ -70,7 +70,7 @@ struct Inspector {
 // Strands that no program can use, and numbers of points.
 void Inspector::strands() {
   const std::size_t all = groom.strandCount();
-  ends = strandEnds(groom, kMostStrands);
+  ends = strandEnds(groom, kMaxStrands);
   if (ends.non_finite > 0)
     add("non-finite", countText(ends.non_finite, all, "have points that are no finite numbers"), "--drop-bad", true);
   if (ends.zero_length > 0) add("zero-length", countText(ends.zero_length, all, "have no length"), "--drop-bad", true);
@@ -86,7 +86,7 @@ void Inspector::strands() {
 void Inspector::direction() {
   const SphereFit roots = fitSphere(ends.first), tips = fitSphere(ends.last);
   skull = roots;
-  if (ends.first.size() < kFewestRoots) return;
+  if (ends.first.size() < kMinRoots) return;
   const float out = shareOutside(roots, ends.last), in = shareOutside(tips, ends.first);
   const bool skull_at_tips = tips.spread < 0.08f && tips.coverage > 0.03f && in > out - 0.3f;
   const bool all = skull_at_tips && (tips.radius < roots.radius / 1.1f || roots.coverage < 0.03f);
@@ -114,7 +114,7 @@ void Inspector::direction() {
 void Inspector::unit() {
   const double told = hints.meters_per_unit.value_or(1);
   result.mends.unit = told;
-  if (ends.first.size() < kFewestRoots || !(skull.radius > 0)) return;
+  if (ends.first.size() < kMinRoots || !(skull.radius > 0)) return;
   const auto off = [this](double meters) { return std::abs(std::log(meters * skull.radius / kSkullRadius)); };
   const Unit* best = &kUnits[0];
   for (const Unit& unit : kUnits) best = off(unit.meters) < off(best->meters) ? &unit : best;
@@ -149,7 +149,7 @@ void Inspector::turn(const Matrix3f& matrix) {
 
 // Hair grows on the upper side of a skull and hangs down.
 void Inspector::axes() {
-  if (ends.first.size() < kFewestRoots) return;
+  if (ends.first.size() < kMinRoots) return;
   Vector3f cap = Vector3f::Zero(), hang = Vector3f::Zero();
   float length = 0;
   for (std::size_t n = 0; n < ends.first.size(); ++n) {
@@ -176,7 +176,7 @@ void Inspector::axes() {
 
 // More hair grows behind the middle of the skull than before it.
 void Inspector::facing() {
-  if (ends.first.size() < kFewestRoots) return;
+  if (ends.first.size() < kMinRoots) return;
   Vector3f cap = Vector3f::Zero();
   for (const Vector3f& root : ends.first) cap += (root - skull.center) / skull.radius;
   cap /= static_cast<float>(ends.first.size());
@@ -237,7 +237,7 @@ Vector3f Inspector::moveToHead(const std::vector<Vector3f>& roots) const {
 }
 
 void Inspector::place() {
-  if (head == nullptr || ends.first.size() < kFewestRoots) return;
+  if (head == nullptr || ends.first.size() < kMinRoots) return;
   std::vector<Vector3f> roots = ends.first;
   const auto median = [&] {
     std::vector<float> off;

@@ -21,7 +21,7 @@ struct Header {
 };
 static_assert(sizeof(Header) == 128);
 
-constexpr std::size_t kMostSegments = 65535;
+constexpr std::size_t kMaxSegments = 65535;
 
 // First point of every strand. The segments of all strands must come to the header's points.
 void readSegments(const Header& header, ByteReader& reader, Groom& groom) {
@@ -68,7 +68,7 @@ std::vector<std::uint16_t> segmentsOf(const Groom& groom, const std::string& fil
   std::vector<std::uint16_t> segments(groom.strandCount());
   for (std::size_t s = 0; s < segments.size(); ++s) {
     const std::size_t points = groom.pointCount(s);
-    if (points == 0 || points > kMostSegments + 1) {
+    if (points == 0 || points > kMaxSegments + 1) {
       throw OutputError(file,
                         "strand " + std::to_string(s) + " has " + std::to_string(points) +
                             " points; a .hair file holds 1 to 65536 a strand",

@@ -13,13 +13,13 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr int kFitPoints = 96;  // of a strand that is measured
-constexpr std::size_t kMostStrands = 4000;
-constexpr int kMostTurns = 16;
-constexpr double kFewestTurns = 2.5, kQuickTurns = 3;  // slower turns are wander
+constexpr std::size_t kMaxStrands = 4000;
+constexpr int kMaxTurns = 16;
+constexpr double kMinTurns = 2.5, kQuickTurns = 3;  // slower turns are wander
 constexpr double kOpening = 0.35;         // share of the length over which curls open, shaders/common/strand.glsl
 constexpr double kSmallestCurl = 0.0012;  // m
 constexpr double kClearCurl = 0.5;        // of a strand's wander that one rotation explains
-constexpr std::size_t kFewest = 5;        // strands of a bundle
+constexpr std::size_t kMinCount = 5;        // strands of a bundle
 // Root mean square of frizz and offset over a strand, in their own amplitudes: of grow(t) = t (1.6 - 0.6 t), two sines,
 // and a disc (shaders/common/strand.glsl).
 constexpr double kFrizzSpread = 0.667, kOffsetSpread = 0.31;
@@ -89,7 +89,7 @@ double rootMeanSquare(const std::vector<std::complex<double>>& way) {
 void measureWander(const std::vector<std::complex<double>>& way, StrandMeasure& measure) {
   const std::vector<std::complex<double>> part = quickPart(way, kQuickTurns);
   double best = 0;
-  for (double turns = kFewestTurns; turns <= kMostTurns; turns += 0.25) {
+  for (double turns = kMinTurns; turns <= kMaxTurns; turns += 0.25) {
     const double amplitude = amplitudeOf(part, turns);
     if (amplitude <= best) continue;
     best = amplitude;
@@ -137,7 +137,7 @@ double clumpOf(const StrandSamples& strands, const HairFit& fit, const GrowthMap
   std::vector<float> ratios;
   const std::size_t at = static_cast<std::size_t>(kClumpClosed * (strands.count - 1));
   std::vector<Vector3f> one(static_cast<std::size_t>(strands.count)), other = one;
-  for (std::size_t s = 0; s < strands.strandCount() && ratios.size() < kMostStrands; ++s) {
+  for (std::size_t s = 0; s < strands.strandCount() && ratios.size() < kMaxStrands; ++s) {
     const Vector3f root = strands.strand(s)[0];
     const auto cell = [&](int k) { return static_cast<int>(std::floor(root[k] / kNearRoots)); };
     const auto [entry, added] = seen.try_emplace({cell(0), cell(1), cell(2)}, s);
@@ -170,7 +170,7 @@ void measureWidths(const Groom& groom, double scale, LookFit& look) {
 
 LookFit fitLook(const Groom& groom, double scale, const StrandSamples& strands, const HairFit& fit) {
   const GrowthMap growth(fit.shape);
-  const std::size_t step = std::max<std::size_t>(1, strands.strandCount() / kMostStrands);
+  const std::size_t step = std::max<std::size_t>(1, strands.strandCount() / kMaxStrands);
   std::vector<StrandMeasure> measures;
   std::vector<Vector3f> given, strand(kFitPoints), grown(kFitPoints);
   for (std::size_t s = 0; s < strands.strandCount(); s += step) {
@@ -196,7 +196,7 @@ LookFit fitLook(const Groom& groom, double scale, const StrandSamples& strands, 
   look.all.clump = clumpOf(strands, fit, growth);
   look.bundles.assign(fit.shape.root_faces.size(), look.all);
   for (const auto& [face, of] : of_face) {
-    if (of.size() < kFewest) continue;
+    if (of.size() < kMinCount) continue;
     StrandCharacter& bundle = look.bundles[static_cast<std::size_t>(face)] = summary(of, fit.error.strand_length);
     bundle.clump = look.all.clump;
   }

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kPuff = 0.004, kGrow = 0.03;  // m, share of the length: of one sample at full strength
 constexpr double kPinch = 0.08, kTwist = 0.10;  // share of the way to the middle; rad: of one sample at full strength
-constexpr double kLeastVolume = 0.02;          // of the mean corner volume, or half of what it is
-constexpr double kLeastEdge = 0.001;           // m, or half of what it is
+constexpr double kMinVolume = 0.02;          // of the mean corner volume, or half of what it is
+constexpr double kMinEdge = 0.001;           // m, or half of what it is
 constexpr double kOffBody = 0.002;             // m, or as near as it is
 constexpr int kHalvings = 8, kRounds = 24;     // of a stroke that goes too far, before what it spoils stays
 constexpr double kMoved = 1e-7;                // m
@@ -198,7 +198,7 @@ void ShapeBrushes::limit(const sim::HairMesh& mesh, const std::function<double(c
     sum += mesh.tets[t].rest_volume;
     if (std::ranges::any_of(mesh.tets[t].v, [&](int v) { return touched_[v]; })) tets_.push_back(static_cast<int>(t));
   }
-  const double least = kLeastVolume * sum / static_cast<double>(mesh.tets.size());
+  const double least = kMinVolume * sum / static_cast<double>(mesh.tets.size());
   bool valid = false;
   for (int round = 0; round < kRounds && !valid; ++round) {
     for (std::size_t v = 0; v < n; ++v) positions[v] = x[v] + share_[v] * (wanted_[v] - x[v]);
@@ -217,7 +217,7 @@ void ShapeBrushes::limit(const sim::HairMesh& mesh, const std::function<double(c
       for (const sim::Edge& edge : *edges) {
         if (share_[edge.a] == 0 && share_[edge.b] == 0) continue;
         const double length = (positions[edge.a] - positions[edge.b]).norm();
-        if (length < std::min(kLeastEdge, 0.5 * edge.rest_length)) spoilt(edge.a), spoilt(edge.b);
+        if (length < std::min(kMinEdge, 0.5 * edge.rest_length)) spoilt(edge.a), spoilt(edge.b);
       }
     }
     for (std::size_t v = 0; body && v < n; ++v) {

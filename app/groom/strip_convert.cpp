@@ -17,8 +17,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kMostPatches = 20000, kMostScalpPoints = 20000, kToldOf = 6;
-constexpr double kLeastSpread = 0.015, kMostSpread = 0.35;  // m, of the roots of a unit that is said
+constexpr std::size_t kMaxPatches = 20000, kMaxScalpPoints = 20000, kToldOf = 6;
+constexpr double kMinSpread = 0.015, kMaxSpread = 0.35;  // m, of the roots of a unit that is said
 
 constexpr const char* kGive =
     "give strips of quads from root to tip, or tubes; of a hair mesh name the groups layer_0, layer_1, ...";
@@ -68,7 +68,7 @@ std::vector<Vector3d> scalpPoints(const PolygonMesh& mesh, const std::vector<boo
     for (const int corner : mesh.face(f)) sum += mesh.positions[static_cast<std::size_t>(corner)];
     points.push_back(sum / static_cast<double>(mesh.face(f).size()));
   }
-  const std::size_t every = points.size() / kMostScalpPoints + 1;
+  const std::size_t every = points.size() / kMaxScalpPoints + 1;
   std::vector<Vector3d> some;
   for (std::size_t i = 0; i < points.size(); i += every) some.push_back(points[i]);
   return some;
@@ -116,7 +116,7 @@ double unitOf(const std::vector<StripRows>& strips, double asked, std::optional<
     }
   }
   const double spread = std::sqrt(square / std::max(1.0, count));
-  const bool plausible = said && *said * spread > kLeastSpread && *said * spread < kMostSpread;
+  const bool plausible = said && *said * spread > kMinSpread && *said * spread < kMaxSpread;
   if (asked > 0 || plausible) {
     std::snprintf(text, sizeof text, "units of %g m%s", asked > 0 ? asked : *said,
                   asked > 0 ? "" : ", as the file says");
@@ -188,7 +188,7 @@ StripConversion convertStrips(const PolygonMesh& mesh, const StripOptions& optio
   // The unit is not known yet: joining needs it as the file says.
   const double guess = options.unit > 0 ? options.unit : mesh.meters_per_unit.value_or(1);
   const std::vector<StripPatch> patches = stripPatches(mesh, roles.hair, options.join / guess);
-  if (patches.empty() || patches.size() > kMostPatches)
+  if (patches.empty() || patches.size() > kMaxPatches)
     throw InputError(file, "", patches.empty() ? "holds no faces of hair" : "has over 20,000 separate pieces", kGive);
   checkNumbers(options, patches.size(), file);
   const std::vector<Vector3d> scalp =

@@ -18,7 +18,7 @@ using Row = std::vector<Vec3>;
 
 constexpr double kThinnest = 0.002, kThickest = 0.008, kOfWidth = 0.35;  // m, m, of a quad's width
 constexpr double kAtTip = 0.5;                                           // of the thickness at the root
-constexpr std::size_t kLeastLayers = 4, kFewSides = 4, kTubeSides = 8;
+constexpr std::size_t kMinLayers = 4, kFewSides = 4, kTubeSides = 8;
 constexpr double kFatness = 0.05;  // of untangled corners
 
 double ringArea(const Row& ring) {
@@ -77,7 +77,7 @@ std::size_t verticesOf(const std::vector<StripRows>& strips) {
 bool fitBudget(const StripMeshOptions& options, std::vector<StripRows>& strips) {
   for (StripRows& strip : strips) {
     if (strip.tube) reduceSides(kTubeSides, strip);
-    setLayers(options.layers > 1 ? static_cast<std::size_t>(options.layers) : std::max(kLeastLayers, strip.rows.size()),
+    setLayers(options.layers > 1 ? static_cast<std::size_t>(options.layers) : std::max(kMinLayers, strip.rows.size()),
               strip);
   }
   const auto most = static_cast<std::size_t>(options.vertices > 0 ? options.vertices : kStripVertices);
@@ -87,9 +87,9 @@ bool fitBudget(const StripMeshOptions& options, std::vector<StripRows>& strips) 
   }
   std::size_t longest = 0;
   for (const StripRows& strip : strips) longest = std::max(longest, strip.rows.size());
-  for (std::size_t cap = longest; options.layers < 2 && cap > kLeastLayers && verticesOf(strips) > most; --cap) {
+  for (std::size_t cap = longest; options.layers < 2 && cap > kMinLayers && verticesOf(strips) > most; --cap) {
     for (StripRows& strip : strips) {
-      if (strip.rows.size() >= cap) setLayers(std::max(kLeastLayers, cap - 1), strip);
+      if (strip.rows.size() >= cap) setLayers(std::max(kMinLayers, cap - 1), strip);
     }
   }
   return true;
@@ -219,9 +219,9 @@ StripMesh meshOfStrips(const std::vector<StripRows>& given, const StripMeshOptio
   std::vector<StripRows> strips = given;
   StripMesh out;
   out.thinned = fitBudget(options, strips);
-  if (verticesOf(strips) > kMostStripVertices)
+  if (verticesOf(strips) > kMaxStripVertices)
     throw std::runtime_error("its strips would have " + std::to_string(verticesOf(strips)) + " vertices, more than " +
-                             std::to_string(kMostStripVertices));
+                             std::to_string(kMaxStripVertices));
   std::vector<double> thick;
   for (std::size_t s = 0; s < strips.size(); ++s) {
     const StripRows& strip = strips[s];

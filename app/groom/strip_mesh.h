@@ -20,7 +20,7 @@ struct StripMeshOptions {
 };
 
 inline constexpr int kStripVertices = 4000;        // asked for when nothing is said
-inline constexpr int kMostStripVertices = 100000;  // more are refused
+inline constexpr int kMaxStripVertices = 100000;  // more are refused
 
 struct StripMesh {
   sim::HairMeshShape shape;   // has passed sim::buildHairMesh
@@ -30,7 +30,7 @@ struct StripMesh {
   double thickness = 0;  // m, median of the strips'; 0: there are tubes alone
 };
 
-// Metres. Throws std::runtime_error where no strip is left or the vertices are over kMostStripVertices.
+// Metres. Throws std::runtime_error where no strip is left or the vertices are over kMaxStripVertices.
 StripMesh meshOfStrips(const std::vector<StripRows>& strips, const StripMeshOptions& options);
 
 }  // namespace app

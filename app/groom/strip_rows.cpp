@@ -23,8 +23,8 @@ using Row = std::vector<Vector3d>;
 
 constexpr double kFlatCap = 0.35;       // of a ring's radius: a single vertex no further from its plane closes it
 constexpr double kOpened = 0.2;         // of its neighbour's width: what a pointed row is opened to
-constexpr double kLeastFollowed = 0.6;  // of the rows: with fewer the piece is refused
-constexpr std::size_t kMostSides = 256;
+constexpr double kMinFollowed = 0.6;  // of the rows: with fewer the piece is refused
+constexpr std::size_t kMaxSides = 256;
 
 std::vector<int> levelsFrom(const StripPatch& patch, const StripEnds& ends) {
   std::vector<int> level(patch.at.size(), -1), open = ends.root;
@@ -168,7 +168,7 @@ std::string finishRows(StripRows& out) {
   std::size_t width = 0;
   for (const Row& row : rows) width = std::max(width, row.size());
   if (width < (out.tube ? 3u : 2u)) return "is no wider than a line";
-  if (width > kMostSides) return "is over " + std::to_string(kMostSides) + " vertices wide";
+  if (width > kMaxSides) return "is over " + std::to_string(kMaxSides) + " vertices wide";
   for (Row& row : rows) row = withPoints(row, width, out.tube);
   for (std::size_t r = 1; r < rows.size(); ++r) {
     if (rows[r].size() > 1 && rows[r - 1].size() > 1) alignRow(rows[r - 1], out.tube, rows[r]);
@@ -201,7 +201,7 @@ std::string stripRows(const StripPatch& patch, const RootMeasure& measure, bool 
     }
     out.rows.push_back(placesOf(patch, order));
   }
-  if (static_cast<double>(out.rows.size()) < kLeastFollowed * static_cast<double>(count) || out.rows.size() < 2)
+  if (static_cast<double>(out.rows.size()) < kMinFollowed * static_cast<double>(count) || out.rows.size() < 2)
     return "has no rows that can be followed beyond row " + std::to_string(out.rows.size());
   return finishRows(out);
 }

@@ -20,7 +20,7 @@ struct Header {
 };
 static_assert(sizeof(Header) == 160);
 
-constexpr std::uint32_t kLeastPoints = 4, kMostPoints = 64;
+constexpr std::uint32_t kMinPoints = 4, kMaxPoints = 64;
 
 struct Float4 {
   float x, y, z, w;
@@ -38,7 +38,7 @@ void checkCounts(const Groom& groom, std::size_t points, const std::string& file
                           " points and the first has " + std::to_string(points) + "; a .tfx file has one number",
                       "export with one number of points, --export-points 16");
   }
-  if (points >= kLeastPoints && points <= kMostPoints && std::has_single_bit(points)) return;
+  if (points >= kMinPoints && points <= kMaxPoints && std::has_single_bit(points)) return;
   throw OutputError(file, "strands of " + std::to_string(points) + " points; a .tfx file holds 4, 8, 16, 32 or 64",
                     "export with such a number, --export-points 16");
 }
@@ -90,16 +90,16 @@ Groom readTfx(std::string_view bytes, const std::string& file) {
 int nearestTfxPoints(const Groom& groom) {
   std::vector<std::size_t> counts;
   for (std::size_t s = 0; s < groom.strandCount(); ++s) counts.push_back(groom.pointCount(s));
-  if (counts.empty()) return static_cast<int>(kLeastPoints);
+  if (counts.empty()) return static_cast<int>(kMinPoints);
   const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2);
   std::nth_element(counts.begin(), middle, counts.end());
   const double power = std::round(std::log2(static_cast<double>(std::max<std::size_t>(*middle, 1))));
-  return std::clamp(1 << static_cast<int>(std::min(power, 6.0)), static_cast<int>(kLeastPoints),
-                    static_cast<int>(kMostPoints));
+  return std::clamp(1 << static_cast<int>(std::min(power, 6.0)), static_cast<int>(kMinPoints),
+                    static_cast<int>(kMaxPoints));
 }
 
 void writeTfx(const Groom& groom, const std::string& file, OutputFile& output) {
-  const std::size_t points = groom.strandCount() > 0 ? groom.pointCount(0) : kLeastPoints;
+  const std::size_t points = groom.strandCount() > 0 ? groom.pointCount(0) : kMinPoints;
   checkCounts(groom, points, file);
   Header header;
   header.strands = static_cast<std::uint32_t>(groom.strandCount());

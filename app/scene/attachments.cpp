@@ -13,9 +13,9 @@ namespace app {
 namespace {
 
 constexpr double kOverHead = 0.10;                    // m off the scalp, within which an attachment lies over it
-constexpr double kUnderside = 0.0045, kLeastRoom = 0.0035;  // m that hair keeps off the inside; least room over the scalp
+constexpr double kUnderside = 0.0045, kMinRoom = 0.0035;  // m that hair keeps off the inside; least room over the scalp
 constexpr double kInside = 0.002, kDeep = 0.004;   // m, of roots and of other vertices in the solid
-constexpr double kMostEnclosed = 0.25;             // of the hair, in the solid
+constexpr double kMaxEnclosed = 0.25;             // of the hair, in the solid
 constexpr double kLaidFatness = 0.04, kLaidGap = 0.002;    // see untangle; m
 constexpr int kLaidRounds = 6;                     // of untangling
 constexpr int kRays = 400;
@@ -55,7 +55,7 @@ void checkRoom(const Attachment& attachment, const Scalp& scalp, const sim::Hair
 void checkHair(const Attachment& attachment, const sim::HairMeshShape& shape) {
   const auto in = std::ranges::count_if(shape.positions,
                                         [&](const Vec3& p) { return distanceTo(attachment, p) < -kDeep; });
-  if (static_cast<double>(in) > kMostEnclosed * static_cast<double>(shape.positions.size()))
+  if (static_cast<double>(in) > kMaxEnclosed * static_cast<double>(shape.positions.size()))
     refuseWorn(attachment, "encloses the hair: " + std::to_string(in) + " of its " +
                            std::to_string(shape.positions.size()) + " vertices lie in it",
            "make it smaller, or move it out of the hair with \"at\"");
@@ -73,7 +73,7 @@ std::vector<int> layUnderOne(const Attachment& attachment, const Scalp& scalp, s
       const Vec3 out = p - scalp.center;
       const double meets = meetsAlong(attachment, scalp, out, kOverHead);
       if (std::isinf(meets)) break;  // it has come out
-      const double floor = scalp.radiusAt(out), room = std::max(kLeastRoom, meets - kUnderside - floor);
+      const double floor = scalp.radiusAt(out), room = std::max(kMinRoom, meets - kUnderside - floor);
       const double height = std::max(0.0, out.norm() - floor);
       p = scalp.center + (floor + room * (1 - std::exp(-height / room))) / out.norm() * out;
       under.push_back(v);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kWindow = 0.5;  // simulated s between decisions; two of them see a walk's cycle
 constexpr double kFirstWindow = 0.15;
-constexpr int kFewestFrames = 8;
+constexpr int kMinFrames = 8;
 // After a change solves begin with no earlier solutions to start from: steps, and s, that say little.
 constexpr double kSettleSteps = 30, kSettle = 0.1;
 constexpr double kOver = 1.04;      // times the budget: mean of two windows from which a coarser rung is taken
@@ -106,7 +106,7 @@ bool observe(const FrameCost& frame, Governor& governor) {
   window.cost += frame.cost;
   window.error += frame.error * frame.simulated;
   ++window.frames;
-  if (window.simulated < (governor.calibrated ? kWindow : kFirstWindow) || window.frames < kFewestFrames) return false;
+  if (window.simulated < (governor.calibrated ? kWindow : kFirstWindow) || window.frames < kMinFrames) return false;
 
   const double present = window.cost / window.simulated;
   const double per_frame = window.shown / window.frames;

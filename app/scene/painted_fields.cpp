@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kFatness = 0.05, kGap = 0.0025;  // see untangle; m
 constexpr double kFatEnough = 0.002;              // with less, lengths are softened more
-constexpr int kMostRounds = 16;                   // of untangling; evenly short hair takes the most
+constexpr int kMaxRounds = 16;                   // of untangling; evenly short hair takes the most
 // Least length of a column over that of any of its root face.
 constexpr std::array kSteepest{0.5, 0.65, 0.8, 0.9, 1.0};
 
@@ -59,7 +59,7 @@ bool soften(const sim::HairMeshShape& shape, double step, std::vector<double>& s
 void paintLength(const FieldMap& map, const Scalp& scalp, const BodyDistance& body, sim::HairMeshShape& shape) {
   std::vector<double> shares;
   for (int c = 0; c < shape.columnCount(); ++c)
-    shares.push_back(kLeastLength + (1 - kLeastLength) * atRoot(map, scalp, shape, c));
+    shares.push_back(kMinLength + (1 - kMinLength) * atRoot(map, scalp, shape, c));
   if (*std::ranges::min_element(shares) >= 1) return;
   const sim::HairMeshShape whole = shape;
   for (const double step : kSteepest) {
@@ -69,7 +69,7 @@ void paintLength(const FieldMap& map, const Scalp& scalp, const BodyDistance& bo
       shorten(std::span(shape.positions).subspan(static_cast<std::size_t>(shape.column_first[c]),
                                                  static_cast<std::size_t>(shape.columnLength(static_cast<int>(c)))),
               shares[c]);
-    for (int round = 0; round < kMostRounds; ++round) {
+    for (int round = 0; round < kMaxRounds; ++round) {
       if (untangle(body, kFatness, kGap, shape) > kFatEnough) return;
     }
   }
@@ -99,8 +99,8 @@ std::vector<float> sharesOf(const std::string& picture, const std::vector<double
 
 PaintedShares paintedShares(const FieldFiles& maps, const FieldCurves& curves, const Scalp& scalp,
                             const sim::HairMeshShape& shape) {
-  return {sharesOf(maps.stiffness, curves.stiffness, kLeastStiffness, scalp, shape),
-          sharesOf(maps.mass, curves.mass, kLeastMass, scalp, shape)};
+  return {sharesOf(maps.stiffness, curves.stiffness, kMinStiffness, scalp, shape),
+          sharesOf(maps.mass, curves.mass, kMinMass, scalp, shape)};
 }
 
 void applyShares(const PaintedShares& shares, sim::HairMesh& mesh) {

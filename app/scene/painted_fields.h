@@ -10,7 +10,7 @@
 namespace app {
 
 // Share that black leaves.
-inline constexpr double kLeastLength = 0.12, kLeastStiffness = 0.02, kLeastMass = 0.1;
+inline constexpr double kMinLength = 0.12, kMinStiffness = 0.02, kMinMass = 0.1;
 
 // Ends each column sooner along its own curve. Where the field falls faster from column to column than prisms can bear
 // the shorter column keeps more.

@@ -17,7 +17,7 @@ namespace {
 constexpr std::string_view kTitle = "hairmesh-cache ";
 constexpr const char* kWriteAnew = "write it anew with --cache";
 constexpr std::size_t kHeadAt = 17;  // bytes of the first line
-constexpr std::uint64_t kMostIdentity = 1 << 20, kEntryBytes = 24;
+constexpr std::uint64_t kMaxIdentity = 1 << 20, kEntryBytes = 24;
 
 std::string titleLine() {
   return std::string(kTitle) + std::to_string(kCacheVersion) + "\n";
@@ -181,7 +181,7 @@ SimCache::SimCache(const std::string& file, const Demo& demo) : file_(file), str
   std::uint64_t index_at = 0, frames = 0, identity_size = 0;
   for (std::uint64_t* value : {&index_at, &frames, &identity_size})
     stream_.read(reinterpret_cast<char*>(value), sizeof *value);
-  if (!stream_ || identity_size > std::min(size, kMostIdentity)) throw InputError(file, "", "is cut off", kWriteAnew);
+  if (!stream_ || identity_size > std::min(size, kMaxIdentity)) throw InputError(file, "", "is cut off", kWriteAnew);
   std::string identity(identity_size, '\0');
   stream_.read(identity.data(), static_cast<std::streamsize>(identity_size));
   if (index_at == 0) throw InputError(file, "", "was never finished", kWriteAnew);

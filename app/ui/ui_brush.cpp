@@ -14,7 +14,7 @@ namespace app {
 
 namespace {
 
-constexpr double kLeastWay = 0.0015;  // m between two samples of combing
+constexpr double kMinWay = 0.0015;  // m between two samples of combing
 constexpr int kRingPoints = 48;
 
 Rigid worldToScalp(const Actor& actor) {
@@ -113,7 +113,7 @@ void stroke(const Ray& ray, const std::optional<Vec3>& hit, Demo& demo, BrushSta
   }
   const Vec3 last = to_scalp.inverse(Eigen::Isometry) * brush.last;
   const Vec3 now = inPlane(ray, last, viewBack(demo.camera)), way = now - last;
-  if (way.norm() < kLeastWay) return;
+  if (way.norm() < kMinWay) return;
   postSample(brush.last, to_scalp.linear() * way, demo, brush);
   brush.last = to_scalp * now;
 }

@@ -11,7 +11,7 @@ namespace app {
 
 namespace {
 
-constexpr float kHistoryWidth = 292, kLeastHeight = 130, kMargin = 12;
+constexpr float kHistoryWidth = 292, kMinHeight = 130, kMargin = 12;
 
 // A slider's step carries its row's title; others say what they are.
 std::string titleOf(const EditStep& step) {
@@ -46,7 +46,7 @@ void historyPanel(Demo& demo, UiState& ui) {
   const float width = std::min(kHistoryWidth * scale, size.x - 2 * margin);
   // Below the timings where they leave room.
   const float room = size.y - ui.timings_bottom - 2 * margin;
-  const float height = std::clamp(room, std::min(kLeastHeight * scale, size.y - 2 * margin), 0.5f * size.y);
+  const float height = std::clamp(room, std::min(kMinHeight * scale, size.y - 2 * margin), 0.5f * size.y);
   ImGui::SetNextWindowPos({size.x - margin, size.y - margin}, ImGuiCond_Always, {1, 1});
   ImGui::SetNextWindowSize({std::max(32.0f, width), std::max(32.0f, height)});
   const ImGuiWindowFlags flags = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse;

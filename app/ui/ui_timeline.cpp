@@ -14,7 +14,7 @@ namespace app {
 
 namespace {
 
-constexpr float kTimelineHeight = 50, kLeastWidth = 240, kButtonsWidth = 460, kTimelineMargin = 12;
+constexpr float kTimelineHeight = 50, kMinWidth = 240, kButtonsWidth = 460, kTimelineMargin = 12;
 constexpr double kWorst = 3;  // of the mean cost: a step to look at
 
 // The kept moment at a share of the strip.
@@ -141,7 +141,7 @@ float timelinePanel(Demo& demo, UiState& ui, float left) {
   const float scale = ui.text_scale, margin = kTimelineMargin * scale;
   const float right = ui.history ? (292 + kTimelineMargin) * scale : 0;
   const float width = size.x - left - right - 2 * margin;
-  if (width < kLeastWidth * scale || size.y < 4 * kTimelineHeight * scale) return 0;
+  if (width < kMinWidth * scale || size.y < 4 * kTimelineHeight * scale) return 0;
   ImGui::SetNextWindowPos({left + margin, size.y - margin}, ImGuiCond_Always, {0, 1});
   ImGui::SetNextWindowSize({width, kTimelineHeight * scale});
   const ImGuiWindowFlags flags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |

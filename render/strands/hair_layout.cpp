@@ -192,11 +192,11 @@ Vector3f middleOfHead(const HairLayout& layout, std::span<const float> positions
 }
 
 int segmentsFor(const HairLayout& layout, const HairLook& look, int asked) {
-  constexpr int kMost = 32;
+  constexpr int kMaxCount = 32;
   float turns = 0;  // of the sharpest bends, in pieces a metre
   if (look.curl_radius > 0) turns = 12 / (0.8f * std::max(look.curl_pitch, 1e-3f));
   if (look.wave_height > 0) turns = std::max(turns, 8 / (0.85f * std::max(look.wave_length, 1e-3f)));
-  const int needed = static_cast<int>(std::min(std::ceil(turns * layout.layer_length), static_cast<float>(kMost)));
+  const int needed = static_cast<int>(std::min(std::ceil(turns * layout.layer_length), static_cast<float>(kMaxCount)));
   return std::max(std::clamp(asked, 1, 8), needed);
 }
 

@@ -11,7 +11,7 @@
 namespace reference {
 namespace {
 
-constexpr int kMostBounces = 400, kCertainBounces = 8;
+constexpr int kMaxBounces = 400, kCertainBounces = 8;
 constexpr float kAside = 2.5f;  // radii that a ray starts off its strand
 
 // Rays through a picture's pixels.
@@ -43,7 +43,7 @@ float startOff(const Hit& hit, const Vector3f& direction) {
 Vector3f scatteredOn(const TracedScene& scene, const Fiber& fiber, Hit hit, Vector3f to_eye, const Vector3f& to_key,
                      Random& random) {
   Vector3f share = Vector3f::Ones(), sum = Vector3f::Zero();
-  for (int bounce = 0; bounce < kMostBounces; ++bounce) {
+  for (int bounce = 0; bounce < kMaxBounces; ++bounce) {
     const Fiber::Sample sample = fiber.drawLight(hit.tangent, to_eye, random);
     share = share.cwiseProduct(sample.share);
     if (bounce >= kCertainBounces) {
