@@ -18,7 +18,7 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-constexpr std::size_t kMinCount = 20;  // strands
+constexpr std::size_t kMinGroomStrands = 20;  // strands
 constexpr std::size_t kFitStrands = 5000, kTrialStrands = 3000;
 constexpr int kSlides = 2, kRounds = 5;
 constexpr double kFatness = 0.012, kMinFatness = 0.003,
@@ -346,9 +346,9 @@ void growStrand(const HairFit& fit, const GrowthMap& growth, const StrandFit& st
 }
 
 HairFit fitGroom(const StrandSamples& strands, const FitOptions& options) {
-  if (strands.strandCount() < kMinCount)
+  if (strands.strandCount() < kMinGroomStrands)
     throw std::runtime_error("it has " + std::to_string(strands.strandCount()) +
-                             " strands; a hair mesh takes at least " + std::to_string(kMinCount));
+                             " strands; a hair mesh takes at least " + std::to_string(kMinGroomStrands));
   const RootRaster raster = rasterRoots(strands);
   const double length = quantile(strands.length, 0.5);
   std::vector<int> budgets{400, 800, 1600, 2400};

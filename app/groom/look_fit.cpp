@@ -19,7 +19,7 @@ constexpr double kMinTurns = 2.5, kQuickTurns = 3;  // slower turns are wander
 constexpr double kOpening = 0.35;         // share of the length over which curls open, shaders/common/strand.glsl
 constexpr double kSmallestCurl = 0.0012;  // m
 constexpr double kClearCurl = 0.5;        // of a strand's wander that one rotation explains
-constexpr std::size_t kMinCount = 5;        // strands of a bundle
+constexpr std::size_t kMinBundleStrands = 5;        // strands of a bundle
 // Root mean square of frizz and offset over a strand, in their own amplitudes: of grow(t) = t (1.6 - 0.6 t), two sines,
 // and a disc (shaders/common/strand.glsl).
 constexpr double kFrizzSpread = 0.667, kOffsetSpread = 0.31;
@@ -196,7 +196,7 @@ LookFit fitLook(const Groom& groom, double scale, const StrandSamples& strands, 
   look.all.clump = clumpOf(strands, fit, growth);
   look.bundles.assign(fit.shape.root_faces.size(), look.all);
   for (const auto& [face, of] : of_face) {
-    if (of.size() < kMinCount) continue;
+    if (of.size() < kMinBundleStrands) continue;
     StrandCharacter& bundle = look.bundles[static_cast<std::size_t>(face)] = summary(of, fit.error.strand_length);
     bundle.clump = look.all.clump;
   }
