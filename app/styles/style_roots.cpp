@@ -26,7 +26,7 @@ struct Landmark {
 // The hairline from the temple over the ear to the nape, seen from the middle of the cranium level with the top of the
 // ears.
 constexpr std::array<Landmark, 7> kHairline{
-    {{56, 15}, {73, 6}, {95, 10}, {116, -4}, {136, -20}, {158, -30}, {180, -33}}};
+    {{57, 17}, {74, 9}, {95, 10}, {116, -4}, {136, -20}, {158, -30}, {180, -33}}};
 
 // Both ends of the parting: front hairline, slightly left of the middle, and crown.
 constexpr Landmark kPartingFront{15, 35.2};
