@@ -129,11 +129,13 @@ void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
       ->check(oneOf({"short", "shoulder", "long"}));
   group.value("--resolution", options.resolution, "NAME", "Hair mesh resolution: low, medium, high or ultra")
       ->check(oneOf({"low", "medium", "high", "ultra"}));
-  group.value("--hair", options.hair, "FILE",
-              "Hair in place of a style: a hair mesh (OBJ, one group a layer), curves (.hair, .abc, .usda, .tfx, .ply), or "
-              "strips and tubes (.obj, .fbx, .glb, .gltf, .vrm)");
-  group.value("--mends", options.mends, "TEXT",
-              "Options of hairmesh-inspect for a hair file of curves, beside what is mended by itself: \"--up z --push-out\"");
+  group.value(
+      "--hair", options.hair, "FILE",
+      "Hair in place of a style: a hair mesh (OBJ, one group a layer), curves (.hair, .abc, .usda, .tfx, .ply), or "
+      "strips and tubes (.obj, .fbx, .glb, .gltf, .vrm)");
+  group.value(
+      "--mends", options.mends, "TEXT",
+      "Options of hairmesh-inspect for a hair file of curves, beside what is mended by itself: \"--up z --push-out\"");
   group.flag("--reverse-faces", options.reverse_faces,
              "Turn round the faces of a hair mesh file that is wound inwards");
   group
@@ -145,7 +147,8 @@ void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
   group.value("--clip", options.clip, "NAME", "Clip of a motion file that holds several");
   group.value("--preset", options.preset, "NAME", "Preset by name or file");
   group.value("--environment", options.environment, "FILE.hdr",
-              "Light by a panorama (Radiance picture, twice as wide as high, its middle in front of the figure) in place of the scene's");
+              "Light by a panorama (Radiance picture, twice as wide as high, its middle in front of the figure) in "
+              "place of the scene's");
   group.values("--set", unchecked.sets, "NAME=VALUE", "Set a parameter of the tables; may be given many times");
   group.value(
       "--solver", options.solver, "NAME",
@@ -160,14 +163,17 @@ void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
       "Hold a vertex of the hair, for instance {\"column\": 3, \"to\": \"scalp\"}; keys as in a scene's \"pins\"");
   group.value("--tie", options.tie, "NAME|JSON",
               "Tie the hair: back, high, low, left, right, two (left and right), none, or JSON as a scene's \"ties\"");
-  group.values("--attach", options.attachments, "FILE@JOINT",
-               "Wear a mesh that the hair collides with (hat, glasses, collar; OBJ, FBX, glTF): a joint's name, or head, "
-               "neck, chest; JSON as in a scene's \"attachments\"; none; may be given many times");
-  group.values("--map", options.maps, "FIELD=FILE.png",
-               "Paint stiffness, length, density or mass over the scalp: the head unrolled, its front in the middle, white "
-               "for the parameter's own value; may be given many times");
-  group.values("--curve", options.curves, "FIELD=SHARES",
-               "Shares of stiffness or mass from root to tip, with commas: stiffness=1,0.5,0.2; may be given many times");
+  group.values(
+      "--attach", options.attachments, "FILE@JOINT",
+      "Wear a mesh that the hair collides with (hat, glasses, collar; OBJ, FBX, glTF): a joint's name, or head, "
+      "neck, chest; JSON as in a scene's \"attachments\"; none; may be given many times");
+  group.values(
+      "--map", options.maps, "FIELD=FILE.png",
+      "Paint stiffness, length, density or mass over the scalp: the head unrolled, its front in the middle, white "
+      "for the parameter's own value; may be given many times");
+  group.values(
+      "--curve", options.curves, "FIELD=SHARES",
+      "Shares of stiffness or mass from root to tip, with commas: stiffness=1,0.5,0.2; may be given many times");
   group.values("--skip", options.skips, "NAME=on|off",
                "Switch a skip of the table, or all=off; may be given many times; --skips lists them");
   group.flag("--skips", unchecked.list_skips, "Print the table of skips and end");
@@ -207,14 +213,17 @@ void addPictureOptions(CLI::App& parser, Options& options, Unchecked& unchecked)
       ->check(oneOf({"head", "bust", "figure"}));
   group.value("--strands", options.strands, "N", "Strands to draw over a whole head")
       ->check(within(0, findHairField("strands")->maximum));
-  group.value("--strand-path", options.strand_path, "NAME", "What draws strands: geometry, pulling, software, or auto: what suits the driver (auto)")
+  group
+      .value("--strand-path", options.strand_path, "NAME",
+             "What draws strands: geometry, pulling, software, or auto: what suits the driver (auto)")
       ->check(oneOf({"geometry", "pulling", "software", "auto"}));
   group.value("--debug", options.debug, "LIST",
               "Debug views, comma separated: mesh, external, tets, ellipsoids, contacts, velocities, pins");
   group.value("--compare", options.compare, "WITH",
               "Simulate beside it the same with a preset, a scene, a hair file or NAME=VALUE,... and show both; the "
               "summary says by how many millimetres and milliseconds they differ");
-  group.value("--compare-view", options.compare_view, "NAME", "split by a line, or side by side: split or side (split)")
+  group
+      .value("--compare-view", options.compare_view, "NAME", "split by a line, or side by side: split or side (split)")
       ->check(oneOf({"split", "side"}));
 }
 
@@ -235,11 +244,13 @@ void addRunOptions(CLI::App& parser, Options& options) {
               "Write the state after the last frame (of every character: motion, hair, sleep, level of detail)");
   group.value("--save-state-at", options.save_state_at, "N", "Write it after so many frames instead; the run goes on")
       ->check(within(1, kMaxFrames));
-  group.value("--load-state", options.load_state, "FILE",
-              "Go on from a saved state, or the last of a cache: the same scene and options continue to the bit, with the "
-              "next frame's number");
-  group.value("--cache", options.cache, "FILE.hairmesh",
-              "Without a window: keep every frame of the run; dropped on the window, its timeline shows them to and fro");
+  group.value(
+      "--load-state", options.load_state, "FILE",
+      "Go on from a saved state, or the last of a cache: the same scene and options continue to the bit, with the "
+      "next frame's number");
+  group.value(
+      "--cache", options.cache, "FILE.hairmesh",
+      "Without a window: keep every frame of the run; dropped on the window, its timeline shows them to and fro");
   group.value("--video", options.video, "FILE.mp4",
               "Without a window: a film of the frames, by ffmpeg where it is installed; PNG files as well with --out");
   group.value("--screenshot", options.screenshot, "FILE.png",
@@ -311,11 +322,12 @@ void finishExport(const Unchecked& unchecked, Options& options) {
   if (spec.samples > 1 && !(options.record + options.replay + options.save_state + options.load_state).empty())
     throw UsageError("--export-samples does not go with recordings and states, whose frames have one moment");
   if (options.replay.empty() && std::max(spec.first, spec.last) >= options.frames)
-    throw UsageError("--export-frames goes beyond the run's " + std::to_string(options.frames) +
-                     " frames, 0 to " + std::to_string(options.frames - 1) + "; give more --frames");
+    throw UsageError("--export-frames goes beyond the run's " + std::to_string(options.frames) + " frames, 0 to " +
+                     std::to_string(options.frames - 1) + "; give more --frames");
   for (const std::string* other :
        {&options.record, &options.report, &options.save_state, &options.screenshot, &options.cache})
-    if (*other == spec.file) throw UsageError("--export and another option name one file, '" + spec.file + "'; name two");
+    if (*other == spec.file)
+      throw UsageError("--export and another option name one file, '" + spec.file + "'; name two");
   if (unchecked.export_unit == "cm") spec.unit = 0.01;
   if (unchecked.export_unit == "mm") spec.unit = 0.001;
   if (unchecked.export_unit == "in") spec.unit = 0.0254;
@@ -384,15 +396,15 @@ std::string parseFault(const CLI::ParseError& error, const CLI::App& parser) {
   const std::string words = error.what(), help = "; hairmesh --help lists the options";
   if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
     const std::string extra = parser.remaining().empty() ? "" : parser.remaining().front();
-    if (!extra.starts_with("-")) return "'" + extra + "' is one file too many; name others by --motion, --hair, --preset";
+    if (!extra.starts_with("-"))
+      return "'" + extra + "' is one file too many; name others by --motion, --hair, --preset";
     std::vector<std::string> names;
     for (const CLI::Option* option : parser.get_options()) {
       for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
     }
     const std::vector<std::string_view> candidates(names.begin(), names.end());
     const std::string_view near = sim::nearestName(extra.substr(0, extra.find('=')), candidates);
-    return "there is no option '" + extra + "'" +
-           (near.empty() ? help : "; did you mean '" + std::string(near) + "'?");
+    return "there is no option '" + extra + "'" + (near.empty() ? help : "; did you mean '" + std::string(near) + "'?");
   }
   const std::string name = words.substr(0, words.find(':'));
   const CLI::Option* option = parser.get_option_no_throw(name);
@@ -405,7 +417,8 @@ std::string parseFault(const CLI::ParseError& error, const CLI::App& parser) {
   return words + help;
 }
 
-// A replay has its scene and its frames from the recording: what would choose others is refused rather than left unused.
+// A replay has its scene and its frames from the recording: what would choose others is refused rather than left
+// unused.
 void refuseBesideReplay(const CLI::App& parser, const Options& options) {
   if (options.replay.empty()) return;
   std::string unused;

@@ -46,11 +46,11 @@ struct Options {
   std::string strand_path;  // geometry, pulling, software or auto
   std::string preset;
   std::string environment;  // panorama whose light replaces the scene's; empty: none
-  std::string solver;      // default or paper; empty: the scene's
-  std::string debug;       // debug views, comma separated
-  std::string video;       // film of a headless run
-  bool out_given = false;  // a film alone leaves no PNG files
-  std::string screenshot;  // PNG of the last frame, panels included
+  std::string solver;       // default or paper; empty: the scene's
+  std::string debug;        // debug views, comma separated
+  std::string video;        // film of a headless run
+  bool out_given = false;   // a film alone leaves no PNG files
+  std::string screenshot;   // PNG of the last frame, panels included
   bool no_images = false;
   bool gl_debug = false;  // headless: the driver checks every OpenGL call
   bool hide_panels = false;
@@ -58,10 +58,10 @@ struct Options {
   std::string panel;           // the tab that is open at first; empty: the first
   std::string record, replay;  // recordings of a run's inputs
   std::string save_state, load_state, cache;
-  int save_state_at = 0;  // frames of this run after which the state is saved; 0: the last
-  std::string compare;             // what to compare with, see scene/comparison.h; empty: nothing
-  std::string compare_view;        // split or side
-  std::string loop;       // what a clip does at its end; empty: the scene's
+  int save_state_at = 0;     // frames of this run after which the state is saved; 0: the last
+  std::string compare;       // what to compare with, see scene/comparison.h; empty: nothing
+  std::string compare_view;  // split or side
+  std::string loop;          // what a clip does at its end; empty: the scene's
   ExportSpec hair_export;
 };
 

@@ -135,7 +135,8 @@ void overrideCharacter(const Options& options, CharacterSpec& spec) {
   for (const std::string& text : options.maps) {
     const std::size_t equals = std::min(text.find('='), text.size());
     const std::string file = findFile(text.substr(std::min(text.size(), equals + 1)), "", "maps");
-    const std::string fault = equals + 1 >= text.size() ? "write FIELD=FILE.png" : setMap(text.substr(0, equals), file, spec.maps);
+    const std::string fault =
+        equals + 1 >= text.size() ? "write FIELD=FILE.png" : setMap(text.substr(0, equals), file, spec.maps);
     if (!fault.empty()) throw UsageError("--map cannot be '" + text + "'; " + fault);
   }
   for (const std::string& text : options.curves) {
@@ -195,8 +196,7 @@ Scene sceneFromOptions(const Options& given) {
   if (options.strands >= 0) {
     for (CharacterLook* look : looks) look->strands = options.strands;
   }
-  if (!options.strand_path.empty())
-    setAnywhere("strand_path", options.strand_path, scene.sim, looks, scene.look);
+  if (!options.strand_path.empty()) setAnywhere("strand_path", options.strand_path, scene.sim, looks, scene.look);
   if (options.speed >= 0) scene.playback.speed = options.speed;
   if (options.budget_ms >= 0) scene.playback.budget_ms = options.budget_ms;
   if (options.deadline_ms >= 0) scene.playback.deadline_ms = options.deadline_ms;

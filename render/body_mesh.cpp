@@ -19,7 +19,8 @@ struct BodyVertex {
 bool isSound(const BodyInput& input) {
   const std::size_t vertices = input.positions.size() / 3;
   if (vertices == 0 || input.normals.size() != 3 * vertices || input.joints.size() != 4 * vertices ||
-      input.weights.size() != 4 * vertices || (!input.cloth.empty() && input.cloth.size() != vertices) || input.triangles.size() % 3 != 0 || input.joint_matrices.empty()) {
+      input.weights.size() != 4 * vertices || (!input.cloth.empty() && input.cloth.size() != vertices) ||
+      input.triangles.size() % 3 != 0 || input.joint_matrices.empty()) {
     return false;
   }
   const auto joint_count = input.joint_matrices.size();

@@ -31,7 +31,7 @@ struct BodyMesh {
   std::vector<JointTriangles> by_joint;
   Buffer vertices, indices;
   VertexArray attributes;
-  float spacing = 0;                                      // root mean square length of the edges, rest pose
+  float spacing = 0;                                     // root mean square length of the edges, rest pose
   int index_count = 0, joint_count = 0;                  // index_count 0: the input was unsound, nothing is drawn
   std::array<IndexRange, kBodyCells.size() + 1> levels;  // full, then ever coarser
   std::vector<Bounds> joint_boxes;                       // rest pose

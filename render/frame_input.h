@@ -28,10 +28,10 @@ struct HairLook {
       0.6f;                   // drawn radius = strand_radius * (strands_represented / strands)^this; 0: none, 1: all
   float least_pixels = 1.0f;  // strands thinner than this are drawn this wide and fade by coverage
   float taper = 0.5f;         // tip radius over root radius; cut hair is blunt
-  float length_variation = 0.16f;  // strands end up to this share of their length early
-  float offset = 0.0012f;          // m, random sideways wander that grows along the strand
-  float clump = 0.5f;              // 0..1 pull towards the clump's centre strand, opening and closing along the length
-  float clump_size = 0.012f;       // m, typical spacing of clumps on the scalp
+  float length_variation = 0.16f;   // strands end up to this share of their length early
+  float offset = 0.0012f;           // m, random sideways wander that grows along the strand
+  float clump = 0.5f;               // 0..1 pull towards the clump's centre strand, opening and closing along the length
+  float clump_size = 0.012f;        // m, typical spacing of clumps on the scalp
   float lock = 0.3f, wisp = 0.35f;  // 0..1 pull of clumps into locks, of hairs into wisps: 3.2 and 0.3 clump sizes
   float drift = 0.002f;             // m, how far locks and clumps stray along their length
   float curl_radius = 0.0f, curl_pitch = 0.035f;  // m; m of hair a turn
@@ -49,8 +49,8 @@ struct HairLook {
   float beta_m = 0.24f, beta_n = 0.3f;  // longitudinal and azimuthal roughness, 0..1
   float eta = 1.55f;
   float cuticle_angle = 0.05f;  // rad, scale tilt that shifts the R and TRT highlights
-  float specular = 1;  // of R and TRT; what they gain, the light that passes through loses
-  float diffuse = 1;   // 0..1, share of the light between strands that is kept
+  float specular = 1;           // of R and TRT; what they gain, the light that passes through loses
+  float diffuse = 1;            // 0..1, share of the light between strands that is kept
   std::uint32_t seed = 1;
 
   bool operator==(const HairLook&) const = default;
@@ -95,9 +95,9 @@ struct BodyInput {
   Float3 root_color{};                // share of light that the roots leave what is seen through them; see rootColor
   float scalp_tint = 0;               // 0..1, strength of shade and colour
   // Brows, lashes and lips are painted where shaders/common/face.glsl has them.
-  Float3 face_origin{};   // m, rest pose: the chin's level under the base of the skull
-  float face_height = 0;  // m from chin to crown; 0: no face is painted
-  float face_paint = 1;   // 0..1, strength
+  Float3 face_origin{};          // m, rest pose: the chin's level under the base of the skull
+  float face_height = 0;         // m from chin to crown; 0: no face is painted
+  float face_paint = 1;          // 0..1, strength
   std::span<const float> cloth;  // 1 a vertex: m from a garment's edge, negative under it; empty: bare
   bool dressed = true;           // whether the garment is worn
   Float3 cloth_color{0.105f, 0.11f, 0.12f};

@@ -11,9 +11,9 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kMinStrands = 300;     // of a hair, however small it is
+constexpr float kMinStrands = 300;        // of a hair, however small it is
 constexpr float kFadeShare = 0.4f;        // of the strands drawn are about to leave
-constexpr float kMinSegments = 0.25f;  // a layer
+constexpr float kMinSegments = 0.25f;     // a layer
 constexpr float kLongestSegment = 12;     // pixels: light changes along a strand, and is worked out at its points
 constexpr float kShortestSegment = 2.5f;  // pixels: finer cannot be seen
 

@@ -111,7 +111,8 @@ long uploadBlock(HairResources& hair) {
   block.ball = asVec4(hair.bounds.center(), 0.5f * hair.bounds.diagonal() + sidewaysReach(look));
   block.skin_count = {static_cast<int>(hair.skin.size()), std::max(hair.layout().max_layers - 1, 1), 0, 0};
   for (std::size_t i = 0; i < hair.skin.size(); ++i)
-    std::copy(hair.skin[i].to_ball.begin(), hair.skin[i].to_ball.end(), block.skin_rows.begin() + 3 * static_cast<long>(i));
+    std::copy(hair.skin[i].to_ball.begin(), hair.skin[i].to_ball.end(),
+              block.skin_rows.begin() + 3 * static_cast<long>(i));
   if (!hair.block) {
     hair.block = makeBuffer();
     glNamedBufferStorage(hair.block.id(), sizeof(block), nullptr, GL_DYNAMIC_STORAGE_BIT);

@@ -10,9 +10,9 @@
 
 #include "render/frame_input.h"
 #include "render/gl_object.h"
-#include "render/strands/hair_layout.h"
 #include "render/renderer.h"
 #include "render/sky_visibility.h"
+#include "render/strands/hair_layout.h"
 #include "render/view_math.h"
 
 namespace render {
@@ -56,16 +56,16 @@ struct HairResources {
   HairStyle* style = nullptr;
   HairScattering* scattering = nullptr;
   HeadBall head;
-  std::vector<SoftLight> soft_light;        // per vertex
-  std::vector<float> texels;                // as uploaded
-  std::vector<Bounds> face_bounds;          // m, around all strands of a face
-  std::vector<float> face_bend;             // m, how far a face's strands turn away within a layer
-  float layer_length = 0;                   // m, the longest
-  int soft_light_age = 0;                   // uploads since it was made
-  Bounds bounds, around;                    // of the vertices; with room for all strands
+  std::vector<SoftLight> soft_light;                   // per vertex
+  std::vector<float> texels;                           // as uploaded
+  std::vector<Bounds> face_bounds;                     // m, around all strands of a face
+  std::vector<float> face_bend;                        // m, how far a face's strands turn away within a layer
+  float layer_length = 0;                              // m, the longest
+  int soft_light_age = 0;                              // uploads since it was made
+  Bounds bounds, around;                               // of the vertices; with room for all strands
   int strands = -1, segments = 0, asked_segments = 0;  // segments: a layer, with those that curls need
   HairLook look;
-  std::vector<SkinEllipsoid> skin;         // near the hair
+  std::vector<SkinEllipsoid> skin;          // near the hair
   std::vector<std::uint64_t> skin_reached;  // see skin_reach.h
   Buffer skin_buffer;
   Texture skin_texture;

@@ -27,8 +27,8 @@ struct SkipCount {
 
 // One count for each of the DrawSkips.
 struct DrawSkipCounts {
-  SkipCount frame, rows, shadows, view, shadow_view, body_parts, body_detail, strands, segments, shadow_detail,
-      skin, shading, hair_light, sky_visibility;
+  SkipCount frame, rows, shadows, view, shadow_view, body_parts, body_detail, strands, segments, shadow_detail, skin,
+      shading, hair_light, sky_visibility;
 };
 
 // What a frame did. Times: GPU timer queries where the driver's are usable, glFinish and a steady clock on software

@@ -36,11 +36,11 @@ const int kVertexTexels = 3;  // position + sky visibility, du + depths along fi
 const float kDepthSteps = 128.0;
 const float kDeepest = 32.0;
 const float kBackReach = 0.012;  // m: light comes back from hair as far behind a strand
-const int kFaceTexels = 3;    // first vertices; columns; layers, first strand, end strand, edge (see HairLayout)
-const int kTableTexels = 1;   // end strand, face, segments a layer (0: the hair's), first strand
-const int kColumnTexels = 4;  // rest position + last layer of the shortest bundle around, rest axes u and v, each
-                              // with the part of the way to bare skin along it; way of hair (m a layer, m a layer^2)
-                              // and distance to the hairline (m)
+const int kFaceTexels = 3;       // first vertices; columns; layers, first strand, end strand, edge (see HairLayout)
+const int kTableTexels = 1;      // end strand, face, segments a layer (0: the hair's), first strand
+const int kColumnTexels = 4;     // rest position + last layer of the shortest bundle around, rest axes u and v, each
+                                 // with the part of the way to bare skin along it; way of hair (m a layer, m a layer^2)
+                                 // and distance to the hairline (m)
 // Sizes of a lock and of a wisp over that of a clump.
 const float kLockSize = 3.2;
 const float kWispSize = 0.3;
@@ -60,34 +60,35 @@ const int kUnitTable = 10;
 const int kUnitSkin = 11;
 
 // Strands' points between the stages of the software path (render/software_strands.h, render/software_shadow.h).
-const int kStrandGroup = 32;   // invocations of a group
-const int kPointTexels = 3;    // position, share of the strand's length; tangent, sky visibility; depths along fill and
-                               // rim, before the point and behind it
-const int kSlotRibbons = 0;    // two texels a point, see strand_raster.h
+const int kStrandGroup = 32;  // invocations of a group
+const int kPointTexels = 3;   // position, share of the strand's length; tangent, sky visibility; depths along fill and
+                              // rim, before the point and behind it
+const int kSlotRibbons = 0;   // two texels a point, see strand_raster.h
 const int kSlotStrands = 1;
 const int kSlotPoints = 2;
-const int kSlotSeen = 3;       // numbers of the points that are shaded
+const int kSlotSeen = 3;  // numbers of the points that are shaded
 const int kSlotColors = 4;
-const int kSlotSamples = 5;    // see strand_raster.h
+const int kSlotSamples = 5;  // see strand_raster.h
 
 // Strands out of the skin (shaders/common/skin.glsl).
 const int kMaxSkin = 48;          // ellipsoids of a hair
 const float kSkinGap = 0.0005;    // m, off an ellipsoid
 const float kSkinBlend = 0.0015;  // m, on either side of that: there the lift sets in
-const float kSkinFar = 4.0;       // squared distance from the middle, in the ellipsoid's own measure: nothing beyond is lifted
-const float kSkinMiddle = 0.04;   // the same: nothing nearer is
-const float kSkinWhole = 0.25;    // the same: all farther out are lifted whole
+const float kSkinFar =
+    4.0;  // squared distance from the middle, in the ellipsoid's own measure: nothing beyond is lifted
+const float kSkinMiddle = 0.04;  // the same: nothing nearer is
+const float kSkinWhole = 0.25;   // the same: all farther out are lifted whole
 
-// Scattering table (fiber_scattering.h). Slices 0 to 2: N_p of R, TT, TRT: kScatterPhi angles over [0, pi], kScatterTheta
-// cosines over [0, 1]. Slice 3: first row: norms of the lobes over kScatterPhi inclinations in [-pi/2, pi/2]; last row:
-// what the eye's inclination adds to them. Slice 4: light of several fibres, kVolumeSteps depths in front by as many
-// behind, three blocks side by side for the powers 0, 1, 2 of the azimuth's cosine.
+// Scattering table (fiber_scattering.h). Slices 0 to 2: N_p of R, TT, TRT: kScatterPhi angles over [0, pi],
+// kScatterTheta cosines over [0, 1]. Slice 3: first row: norms of the lobes over kScatterPhi inclinations in [-pi/2,
+// pi/2]; last row: what the eye's inclination adds to them. Slice 4: light of several fibres, kVolumeSteps depths in
+// front by as many behind, three blocks side by side for the powers 0, 1, 2 of the azimuth's cosine.
 const int kScatterPhi = 48;
 const int kScatterTheta = 16;
 const int kScatterSlices = 5;
-const int kVolumeSteps = 16;      // step i: optical depth kVolumeDepth i / (kVolumeSteps - i)
+const int kVolumeSteps = 16;  // step i: optical depth kVolumeDepth i / (kVolumeSteps - i)
 const float kVolumeDepth = 2.0;
-const float kGrazing = 0.6;       // see longitudinal_lobes.h
+const float kGrazing = 0.6;        // see longitudinal_lobes.h
 const float kVolumeSpread = 0.55;  // rad: deviation over the half angle of light that several fibres scattered
 
 SHARED_BLOCK(0, FrameBlock) {
@@ -150,9 +151,9 @@ SHARED_BLOCK(1, HairBlock) {
 };
 
 SHARED_BLOCK(2, BodyBlock) {
-  vec4 body_color;  // linear; w: roughness
-  vec4 root_color;  // share of light that hair roots leave the skin between them; w: strength of their tint and shade
-  vec4 face;        // rest pose, m: origin of the head units of face.glsl; w: head units a metre
+  vec4 body_color;   // linear; w: roughness
+  vec4 root_color;   // share of light that hair roots leave the skin between them; w: strength of their tint and shade
+  vec4 face;         // rest pose, m: origin of the head units of face.glsl; w: head units a metre
   vec4 cloth_color;  // linear; w: 1 where the garment is worn
   vec4 paint;        // x: strength of the face's paint, 0..1
 };

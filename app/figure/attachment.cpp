@@ -17,11 +17,12 @@ namespace app {
 
 namespace {
 
-constexpr double kSmallestWorn = 0.07, kLargestWorn = 0.65;    // m, the longest side of what is worn; less than ten times apart
-constexpr double kNearJoint = 0.35;                         // m, from its joint
+constexpr double kSmallestWorn = 0.07,
+                 kLargestWorn = 0.65;  // m, the longest side of what is worn; less than ten times apart
+constexpr double kNearJoint = 0.35;    // m, from its joint
 constexpr double kWornSpacing = 0.0025, kMaxWornNodes = 1.2e6;  // m, of the grid
-constexpr double kSharpEdge = 0.5;                         // cosine between faces that are shaded as one
-constexpr double kWeld = 1e-5;                         // of the size; vertices so near are one
+constexpr double kSharpEdge = 0.5;                              // cosine between faces that are shaded as one
+constexpr double kWeld = 1e-5;                                  // of the size; vertices so near are one
 constexpr int kMaxPieces = 8;
 constexpr double kSlender = 0.4;  // of the longest side, the second one of what is worn
 constexpr const char* kGiveSolid = "give a closed mesh: OBJ, FBX or glTF";
@@ -148,20 +149,24 @@ std::string millimetresOf(double metres) {
 // Metres per unit: that of the file where it is as large as what is worn, else the one that makes it so.
 const WornUnit& wornUnit(const AttachmentSpec& spec, const PolygonMesh& mesh, double longest, std::string& note) {
   static WornUnit said{"the file's unit", 1};
-  const auto fits = [&](double metres) { return longest * metres >= kSmallestWorn && longest * metres <= kLargestWorn; };
+  const auto fits = [&](double metres) {
+    return longest * metres >= kSmallestWorn && longest * metres <= kLargestWorn;
+  };
   if (mesh.meters_per_unit && fits(*mesh.meters_per_unit)) return said.metres = *mesh.meters_per_unit, said;
   for (const WornUnit& unit : kWornUnits) {
     if (!fits(unit.metres)) continue;
     if (unit.metres != 1) note = std::string("read in ") + unit.name;
     return unit;
   }
-  throw InputError(spec.file, "size",
-                   "is " + sim::numberText(longest) + " units, which in metres, centimetres or millimetres is nothing to wear",
-                   "give \"scale\", metres per unit");
+  throw InputError(
+      spec.file, "size",
+      "is " + sim::numberText(longest) + " units, which in metres, centimetres or millimetres is nothing to wear",
+      "give \"scale\", metres per unit");
 }
 
 // Brings the points into the joint's upright frame, m.
-void placeAt(const AttachmentSpec& spec, const PolygonMesh& mesh, const Vec3& joint, ClosedSurface& surface, std::string& note) {
+void placeAt(const AttachmentSpec& spec, const PolygonMesh& mesh, const Vec3& joint, ClosedSurface& surface,
+             std::string& note) {
   Eigen::AlignedBox3d box;
   for (const Vec3& p : surface.points) box.extend(p);
   const double scale = spec.scale > 0 ? spec.scale : wornUnit(spec, mesh, box.sizes().maxCoeff(), note).metres;
@@ -244,8 +249,8 @@ Attachment loadAttachment(const AttachmentSpec& spec, const Character& character
   ClosedSurface surface = readSurface(spec.file, mesh);
   const int joint = wornJoint(spec, character);
   const Joint& carrier = character.skeleton.joints[static_cast<std::size_t>(joint)];
-  const Rigid scalp = character.skeleton.joints[static_cast<std::size_t>(character.head_joint)].rest_world *
-                      character.head_frame;
+  const Rigid scalp =
+      character.skeleton.joints[static_cast<std::size_t>(character.head_joint)].rest_world * character.head_frame;
   // Upright as the scalp's frame, about the joint.
   Rigid upright = Rigid::Identity();
   upright.linear() = scalp.linear();

@@ -13,7 +13,7 @@ constexpr double kMinRadius = 0.005;  // m
 constexpr double kDeep = 0.04;        // m: what lies deeper does not count
 constexpr double kTight = 0.0007;     // m: own points are to lie so far inside
 constexpr double kOutside = 8;        // weight of an own point that sticks out
-constexpr double kFarOut = 0.002;        // m out, at which that doubles
+constexpr double kFarOut = 0.002;     // m out, at which that doubles
 
 BodyEllipsoid movedCover(const BodyEllipsoid& start, const CoverParams& x) {
   BodyEllipsoid e = start;
@@ -33,7 +33,8 @@ double weightOf(const CoverPoint& p, double gap) {
   return p.weight * in;
 }
 
-double costOf(std::span<const CoverPoint> points, const BodyEllipsoid& e, const CoverParams& x, const CoverParams& held) {
+double costOf(std::span<const CoverPoint> points, const BodyEllipsoid& e, const CoverParams& x,
+              const CoverParams& held) {
   double cost = held.cwiseProduct(x).squaredNorm();
   for (const CoverPoint& p : points) {
     const double gap = ellipsoidGap(e, p.position), target = p.own ? gap + kTight : gap;

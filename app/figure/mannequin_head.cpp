@@ -70,7 +70,7 @@ double lips(const Vec3& q, double d) {
   const double lower = egg(q - Vec3(0, 0.186 + smile, 0.342 - curve), Vec3(0.086, 0.031, 0.040));
   d = smoothMin(d, smoothMin(upper, lower, 0.012), 0.034);
   d = smoothMax(d, -egg(q - Vec3(0, 0.2070 + smile, 0.391 - curve), Vec3(0.110, 0.0060, 0.020)), 0.016);  // seam
-  return smoothMax(d, -egg(q - Vec3(0, 0.268, 0.418), Vec3(0.014, 0.032, 0.024)), 0.030);                  // philtrum
+  return smoothMax(d, -egg(q - Vec3(0, 0.268, 0.418), Vec3(0.014, 0.032, 0.024)), 0.030);                 // philtrum
 }
 
 }  // namespace

@@ -180,7 +180,8 @@ double garment(const BodyField& body, const Vec3& p) {
   const Figure& f = body.figure;
   const double s = f.height / 1.70, across = std::abs(p.x() - f.neck_base.x()) / s;
   const double dip = p.z() > f.neck_base.z() ? 0.085 : 0.055;
-  const double neckline = f.shoulder_level + s * (0.055 - (dip + 0.055) * (1 - std::pow(std::min(across / 0.105, 1.0), 3)));
+  const double neckline =
+      f.shoulder_level + s * (0.055 - (dip + 0.055) * (1 - std::pow(std::min(across / 0.105, 1.0), 3)));
   const double covered = std::min({r.trunk, r.legs[0], r.legs[1]});
   const double bare = std::min({r.arms[0], r.arms[1], r.neck, r.head});
   return std::max({covered - bare, p.y() - neckline, f.sole + 0.095 * s - p.y()});

@@ -183,7 +183,7 @@ HeadMeasure measureHead(std::span<const Vec3> vertices) {
 }
 
 Scalp sampleScalp(std::span<const Vec3> vertices, std::span<const std::uint32_t> triangles,
-                       const HeadMeasure& measure) {
+                  const HeadMeasure& measure) {
   Scalp scalp;
   scalp.center = measure.center;
   scalp.head_height = measure.crown - measure.chin;

@@ -12,12 +12,12 @@
 namespace app {
 namespace {
 
-constexpr double kReach = 3.0;     // head heights from the head's middle, as far as hair comes
-constexpr double kAside = 0.75;    // head heights from the head's axis, as far as the head reaches
-constexpr double kAir = 0.014;     // m in front of the skin: nothing is to lie there but hair
-constexpr double kClear = 0.006;   // m, that such a place is at least off the ellipsoids and other skin
-constexpr float kFinest = 0.004f;  // m, spacing of samples
-constexpr double kAskedWithin = 0.04;   // m: skin so near is asked
+constexpr double kReach = 3.0;         // head heights from the head's middle, as far as hair comes
+constexpr double kAside = 0.75;        // head heights from the head's axis, as far as the head reaches
+constexpr double kAir = 0.014;         // m in front of the skin: nothing is to lie there but hair
+constexpr double kClear = 0.006;       // m, that such a place is at least off the ellipsoids and other skin
+constexpr float kFinest = 0.004f;      // m, spacing of samples
+constexpr double kAskedWithin = 0.04;  // m: skin so near is asked
 
 // The rest pose, then moments evenly over all clips.
 std::vector<Pose> momentsOf(const Character& character, int moments) {

@@ -12,8 +12,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kFarthestPlace = 3, kMaxTurn = 180;              // m, degrees
-constexpr double kMinUnit = 1e-5, kMaxUnit = 100;  // m per unit
+constexpr double kFarthestPlace = 3, kMaxTurn = 180;  // m, degrees
+constexpr double kMinUnit = 1e-5, kMaxUnit = 100;     // m per unit
 
 sim::Vec3 vectorFrom(const std::array<double, 3>& values) {
   return {values[0], values[1], values[2]};

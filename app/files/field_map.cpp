@@ -22,8 +22,7 @@ std::string toBase64(std::string_view bytes) {
     unsigned bits = 0;
     for (std::size_t k = 0; k < 3; ++k)
       bits = bits << 8 | (at + k < bytes.size() ? static_cast<unsigned char>(bytes[at + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k)
-      text += at + k > bytes.size() ? '=' : kDigits[bits >> (18 - 6 * k) & 63];
+    for (std::size_t k = 0; k < 4; ++k) text += at + k > bytes.size() ? '=' : kDigits[bits >> (18 - 6 * k) & 63];
   }
   return text;
 }
@@ -68,8 +67,8 @@ double FieldMap::at(const sim::Vec3& direction) const {
   const double s = u - column, t = v - row;
   const auto texel = [&](int r, int c) {
     const int x = (c % width + width) % width, y = std::min(r, height - 1);
-    return static_cast<double>(value[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                                     static_cast<std::size_t>(x)]);
+    return static_cast<double>(
+        value[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)]);
   };
   const double upper = texel(row, column) + s * (texel(row, column + 1) - texel(row, column));
   const double lower = texel(row + 1, column) + s * (texel(row + 1, column + 1) - texel(row + 1, column));
@@ -83,9 +82,10 @@ sim::Vec3 directionOf(const FieldMap& map, int column, int row) {
 }
 
 FieldMap readFieldMap(const std::string& picture) {
-  const Image image = isPictureText(picture)
-                          ? readPngBytes(fromBase64(std::string_view(picture).substr(kPictureText.size())), "painted field")
-                          : readPng(picture);
+  const Image image =
+      isPictureText(picture)
+          ? readPngBytes(fromBase64(std::string_view(picture).substr(kPictureText.size())), "painted field")
+          : readPng(picture);
   FieldMap map{image.width, image.height, {}};
   for (std::size_t i = 0; i + 3 < image.rgba.size(); i += 4) {
     const int grey = 2126 * image.rgba[i] + 7152 * image.rgba[i + 1] + 722 * image.rgba[i + 2];

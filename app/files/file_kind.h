@@ -8,7 +8,8 @@ namespace app {
 enum class FileKind { kScene, kPreset, kMotion, kRigidMotion, kHairMesh, kState, kCache, kProject, kAttachment };
 
 // By its ending; scenes and presets, both JSON, by their content, and so are saved states, grooms of any name, and what
-// glTF and FBX hold: without bones and animation it is hair, or what looks worn (app/figure/attachment.h). Throws InputError for any other file.
+// glTF and FBX hold: without bones and animation it is hair, or what looks worn (app/figure/attachment.h). Throws
+// InputError for any other file.
 FileKind fileKind(const std::string& file);
 
 // The folder of body parts that ARCSim's data keeps beside a .mot motion.

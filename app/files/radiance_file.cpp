@@ -12,9 +12,9 @@
 namespace app {
 namespace {
 
-constexpr int kMaxPanoramaSide = 8192;                           // pixels
+constexpr int kMaxPanoramaSide = 8192;                      // pixels
 constexpr int kNarrowestPacked = 8, kWidestPacked = 32767;  // pixels: rows of other widths are never packed
-constexpr int kBias = 136;  // of the exponent, with the eight bits of the mantissa
+constexpr int kBias = 136;                                  // of the exponent, with the eight bits of the mantissa
 
 // A library that Debian has reads such files too (stb_image 2.27), and never ends on one that is broken off.
 class Reader {
@@ -73,8 +73,8 @@ class Reader {
   void readRow(std::vector<std::array<unsigned char, 4>>& row) {
     std::array<unsigned char, 4> first{};
     for (unsigned char& b : first) b = byte();
-    const bool packed = width_ >= kNarrowestPacked && width_ <= kWidestPacked && first[0] == 2 && first[1] == 2 &&
-                        first[2] < 128;
+    const bool packed =
+        width_ >= kNarrowestPacked && width_ <= kWidestPacked && first[0] == 2 && first[1] == 2 && first[2] < 128;
     if (!packed) {
       row[0] = first;
       for (std::size_t i = 1; i < row.size(); ++i)

@@ -1,4 +1,3 @@
-#include "app/groom/certain_mends.h"
 #include "app/files/scene_file.h"
 
 #include <filesystem>
@@ -8,6 +7,7 @@
 #include "app/files/json_reader.h"
 #include "app/files/presets.h"
 #include "app/files/text_file.h"
+#include "app/groom/certain_mends.h"
 
 namespace app {
 
@@ -56,8 +56,8 @@ json writeMaps(FieldFiles maps) {
 }
 
 CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
-  place.expectObject({"motion", "parts", "clip", "style", "resolution", "hair", "reverse_faces", "fit", "mends", "position",
-                      "heading", "clip_offset", "loop", "look", "pins", "ties", "attachments", "maps",
+  place.expectObject({"motion", "parts", "clip", "style", "resolution", "hair", "reverse_faces", "fit", "mends",
+                      "position", "heading", "clip_offset", "loop", "look", "pins", "ties", "attachments", "maps",
                       "curves"});
   CharacterSpec spec;
   spec.look = look;
@@ -152,8 +152,7 @@ std::optional<Style> parseStyle(std::string_view name) {
 }
 
 std::optional<Resolution> parseResolution(std::string_view name) {
-  for (const Resolution resolution :
-       {Resolution::kLow, Resolution::kMedium, Resolution::kHigh, Resolution::kUltra}) {
+  for (const Resolution resolution : {Resolution::kLow, Resolution::kMedium, Resolution::kHigh, Resolution::kUltra}) {
     if (name == resolutionName(resolution)) return resolution;
   }
   return {};

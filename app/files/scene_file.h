@@ -34,8 +34,8 @@
 #include "app/motion/playback.h"
 #include "app/scene/look_params.h"
 #include "app/scene/skips.h"
-#include "sim/sim_params.h"
 #include "app/styles/hair_styles.h"
+#include "sim/sim_params.h"
 
 namespace app {
 

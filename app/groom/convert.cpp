@@ -17,7 +17,7 @@ constexpr int kSamples = 25;                       // points a strand
 constexpr std::size_t kSilhouetteStrands = 10000;  // that silhouettes are drawn of
 constexpr double kMisfit = 0.03;                   // of the hair's length
 constexpr float kTogether = 0.012f;                // m, between roots of strands that are told of as one
-constexpr std::size_t kMaxMisfits = 6;            // groups that are told of
+constexpr std::size_t kMaxMisfits = 6;             // groups that are told of
 constexpr double kCrossing = 0.35;                 // rad-like, of strands that root together
 
 Groom reversed(Groom groom) {

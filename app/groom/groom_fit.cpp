@@ -25,7 +25,7 @@ constexpr double kFatness = 0.012, kMinFatness = 0.003,
                  kFlat = 1e-4;                           // of corner tetrahedra: aimed for, held, refused
 constexpr float kShortestLength = 0.012f;                // m, of a column
 constexpr double kShortestLayer = 0.0045;                // m, of the median strand
-constexpr double kMinDensity = 0.5;                    // of layers where hair is straight, over the mean
+constexpr double kMinDensity = 0.5;                      // of layers where hair is straight, over the mean
 constexpr double kMeanBound = 0.01, kShareBound = 0.03;  // of the strands' length: what a fit is content with
 constexpr int kMinLayers = 5, kMaxLayers = 16;
 constexpr double kSquareness = 0.5;

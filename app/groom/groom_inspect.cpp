@@ -17,8 +17,8 @@ using Eigen::Vector3f;
 namespace {
 
 constexpr std::size_t kMaxStrands = 2000;  // looked at
-constexpr double kSkullRadius = 0.09;       // m, of the sphere that roots lie about
-constexpr float kThinnest = 8e-6f;          // m, a diameter
+constexpr double kSkullRadius = 0.09;      // m, of the sphere that roots lie about
+constexpr float kThinnest = 8e-6f;         // m, a diameter
 constexpr float kUsualWidth = 8e-5f, kWidest = 4e-4f, kAllHairs = 1e5f;
 constexpr float kFar = 0.018f, kFloating = 0.03f, kDeep = 0.006f;  // m
 constexpr std::size_t kManyPoints = 256, kMinRoots = 20;

@@ -16,10 +16,10 @@ constexpr int kFitPoints = 96;  // of a strand that is measured
 constexpr std::size_t kMaxStrands = 4000;
 constexpr int kMaxTurns = 16;
 constexpr double kMinTurns = 2.5, kQuickTurns = 3;  // slower turns are wander
-constexpr double kOpening = 0.35;         // share of the length over which curls open, shaders/common/strand.glsl
-constexpr double kSmallestCurl = 0.0012;  // m
-constexpr double kClearCurl = 0.5;        // of a strand's wander that one rotation explains
-constexpr std::size_t kMinBundleStrands = 5;        // strands of a bundle
+constexpr double kOpening = 0.35;             // share of the length over which curls open, shaders/common/strand.glsl
+constexpr double kSmallestCurl = 0.0012;      // m
+constexpr double kClearCurl = 0.5;            // of a strand's wander that one rotation explains
+constexpr std::size_t kMinBundleStrands = 5;  // strands of a bundle
 // Root mean square of frizz and offset over a strand, in their own amplitudes: of grow(t) = t (1.6 - 0.6 t), two sines,
 // and a disc (shaders/common/strand.glsl).
 constexpr double kFrizzSpread = 0.667, kOffsetSpread = 0.31;

@@ -9,13 +9,13 @@ namespace app {
 
 namespace {
 
-constexpr double kPuff = 0.004, kGrow = 0.03;  // m, share of the length: of one sample at full strength
+constexpr double kPuff = 0.004, kGrow = 0.03;   // m, share of the length: of one sample at full strength
 constexpr double kPinch = 0.08, kTwist = 0.10;  // share of the way to the middle; rad: of one sample at full strength
-constexpr double kMinVolume = 0.02;          // of the mean corner volume, or half of what it is
-constexpr double kMinEdge = 0.001;           // m, or half of what it is
-constexpr double kOffBody = 0.002;             // m, or as near as it is
-constexpr int kHalvings = 8, kRounds = 24;     // of a stroke that goes too far, before what it spoils stays
-constexpr double kMoved = 1e-7;                // m
+constexpr double kMinVolume = 0.02;             // of the mean corner volume, or half of what it is
+constexpr double kMinEdge = 0.001;              // m, or half of what it is
+constexpr double kOffBody = 0.002;              // m, or as near as it is
+constexpr int kHalvings = 8, kRounds = 24;      // of a stroke that goes too far, before what it spoils stays
+constexpr double kMoved = 1e-7;                 // m
 
 Vec3 mirrored(Vec3 v, double plane) {
   v.x() = 2 * plane - v.x();

@@ -19,7 +19,7 @@ struct StripMeshOptions {
   double thickness = 0;  // m, of strips at their roots; 0: a third of a quad's width, 2 to 8 mm
 };
 
-inline constexpr int kStripVertices = 4000;        // asked for when nothing is said
+inline constexpr int kStripVertices = 4000;       // asked for when nothing is said
 inline constexpr int kMaxStripVertices = 100000;  // more are refused
 
 struct StripMesh {

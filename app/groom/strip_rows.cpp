@@ -21,8 +21,8 @@ namespace {
 using Eigen::Vector3d;
 using Row = std::vector<Vector3d>;
 
-constexpr double kFlatCap = 0.35;       // of a ring's radius: a single vertex no further from its plane closes it
-constexpr double kOpened = 0.2;         // of its neighbour's width: what a pointed row is opened to
+constexpr double kFlatCap = 0.35;     // of a ring's radius: a single vertex no further from its plane closes it
+constexpr double kOpened = 0.2;       // of its neighbour's width: what a pointed row is opened to
 constexpr double kMinFollowed = 0.6;  // of the rows: with fewer the piece is refused
 constexpr std::size_t kMaxSides = 256;
 

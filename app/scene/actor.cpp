@@ -207,8 +207,7 @@ Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, AssetCa
   actor.pins = findPins(spec.pins, actor.haircut->mesh, body.character, actor.pose);
   const std::vector<int>& ring = actor.haircut->tied;
   const Scalp& scalp = body.character.scalp;
-  const std::vector<Vec3> places =
-      ringPlaces(actor.haircut->mesh.shape, scalp, placeTies(spec.ties, scalp), ring);
+  const std::vector<Vec3> places = ringPlaces(actor.haircut->mesh.shape, scalp, placeTies(spec.ties, scalp), ring);
   for (std::size_t k = 0; k < ring.size(); ++k) {
     const Vec3 at = body.character.head_frame * places[k];
     actor.pins.push_back({ring[k], body.character.head_joint, at, PinSpec::kForever, 0, PinSpec::kForever});
@@ -222,7 +221,9 @@ Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, AssetCa
 
 const HaircutPair* coarsePair(const Actor& actor, Resolution resolution, AssetCache& asset_cache) {
   const Resolution own = actor.spec.resolution;
-  if (!actor.spec.hair.empty() || actor.haircut->edited || !actor.worn.empty() || own == resolution || own == Resolution::kMinimal) return nullptr;
+  if (!actor.spec.hair.empty() || actor.haircut->edited || !actor.worn.empty() || own == resolution ||
+      own == Resolution::kMinimal)
+    return nullptr;
   for (const auto& pair : asset_cache.pairs) {
     if (pair->fine == actor.haircut && pair->resolution == resolution) return pair.get();
   }

@@ -16,6 +16,7 @@
 #include "app/files/scene_file.h"
 #include "app/groom/certain_mends.h"
 #include "app/groom/look_fit.h"
+#include "app/groom/shape_brush.h"
 #include "app/motion/playback.h"
 #include "app/scene/painted_fields.h"
 #include "app/scene/pins.h"
@@ -24,7 +25,6 @@
 #include "sim/mesh/hair_mesh.h"
 #include "sim/mesh/hair_state.h"
 #include "sim/mesh/rest_shape.h"
-#include "app/groom/shape_brush.h"
 #include "sim/mesh/shape_transfer.h"
 #include "sim/sleep.h"
 #include "sim/step.h"
@@ -49,12 +49,12 @@ struct LoadedBody {
 struct Haircut {
   std::string key;
   std::uint64_t id = 0;
-  std::string note;  // what was found of a file that does not fit the head, or was converted
-  std::optional<LookFit> look;  // of a groom's strands
+  std::string note;                     // what was found of a file that does not fit the head, or was converted
+  std::optional<LookFit> look;          // of a groom's strands
   std::vector<MendedFinding> findings;  // of a groom, what the inspector says
   sim::HairMesh mesh;
-  std::vector<int> tied;         // vertices in the rings of ties
-  std::vector<int> covered;      // vertices under attachments, which hold them
+  std::vector<int> tied;     // vertices in the rings of ties
+  std::vector<int> covered;  // vertices under attachments, which hold them
   PaintedShares shares;
   std::vector<Vec3> unpainted, painted;  // rest positions before and after a painted length; none where hair is tied
   std::vector<render::HairFace> faces;
@@ -98,9 +98,9 @@ struct AssetCache {
 
 // How much care the simulation takes of an actor.
 struct SimDetail {
-  int step_span = 1;                      // simulation steps that one step of the actor covers
+  int step_span = 1;                 // simulation steps that one step of the actor covers
   std::optional<Resolution> coarse;  // of its style, simulated in place of its own
-  bool seen = true;                       // neither figure nor shadow can be in the picture otherwise
+  bool seen = true;                  // neither figure nor shadow can be in the picture otherwise
 };
 
 // The hair of an actor that is simulated at a lower resolution. Its own hair state is then filled from this one.

@@ -67,8 +67,7 @@ void changeStyle(const Request& request, Demo& demo) {
     spec.resolution = *resolution;
   }
   spec.hair.clear();
-  recast(spec, true, std::string(styleName(spec.style)) + " " + std::string(resolutionName(spec.resolution)),
-         demo);
+  recast(spec, true, std::string(styleName(spec.style)) + " " + std::string(resolutionName(spec.resolution)), demo);
 }
 
 void changeHairFile(const std::string& file, Demo& demo) {
@@ -380,10 +379,8 @@ constexpr Action kActions[] = {
        demo.capture.hair_file = request.text;
      }},
     {Ask::kOpenCache, [](const Request& request, Demo& demo) { openCache(request.text, demo); }},
-    {Ask::kBrush,
-     [](const Request& request, Demo& demo) {
-       applyBrush(parseBrush(request.name, request.text), demo.selected, demo);
-     }},
+    {Ask::kBrush, [](const Request& request,
+                     Demo& demo) { applyBrush(parseBrush(request.name, request.text), demo.selected, demo); }},
     {Ask::kSaveProject,
      [](const Request& request, Demo& demo) {
        saveProject(request.text, demo);
@@ -397,8 +394,7 @@ constexpr Action kActions[] = {
     {Ask::kRewind, [](const Request& request, Demo& demo) { rewindTo(frameOf(request), demo); }},
     {Ask::kKeepView, keepView},
     {Ask::kGoToView, goToView},
-    {Ask::kLens,
-     [](const Request& request, Demo& demo) { demo.camera.fov = std::clamp(request.value, 0.05, 2.5); }},
+    {Ask::kLens, [](const Request& request, Demo& demo) { demo.camera.fov = std::clamp(request.value, 0.05, 2.5); }},
     {Ask::kTurntable,
      [](const Request& request, Demo& demo) { demo.turntable = std::clamp(request.value, -10.0, 10.0); }},
     {Ask::kUndo, [](const Request& request, Demo& demo) { undoEdits(stepsOf(request), demo); }},
@@ -421,10 +417,8 @@ constexpr Action kActions[] = {
     {Ask::kMap, changeMap},
     {Ask::kTie, [](const Request& request, Demo& demo) { changeTies(request.text, demo); }},
     {Ask::kAttach, changeAttachments},
-    {Ask::kPaint,
-     [](const Request& request, Demo& demo) {
-       applyPaint(parsePaint(request.name, request.text), demo.selected, demo);
-     }},
+    {Ask::kPaint, [](const Request& request,
+                     Demo& demo) { applyPaint(parsePaint(request.name, request.text), demo.selected, demo); }},
     {Ask::kCurve,
      [](const Request& request, Demo& demo) { applyCurve(request.name, request.text, demo.selected, demo); }},
     {Ask::kVary, vary},

@@ -12,12 +12,12 @@ namespace app {
 
 namespace {
 
-constexpr double kOverHead = 0.10;                    // m off the scalp, within which an attachment lies over it
+constexpr double kOverHead = 0.10;                        // m off the scalp, within which an attachment lies over it
 constexpr double kUnderside = 0.0045, kMinRoom = 0.0035;  // m that hair keeps off the inside; least room over the scalp
-constexpr double kInside = 0.002, kDeep = 0.004;   // m, of roots and of other vertices in the solid
-constexpr double kMaxEnclosed = 0.25;             // of the hair, in the solid
-constexpr double kLaidFatness = 0.04, kLaidGap = 0.002;    // see untangle; m
-constexpr int kLaidRounds = 6;                     // of untangling
+constexpr double kInside = 0.002, kDeep = 0.004;          // m, of roots and of other vertices in the solid
+constexpr double kMaxEnclosed = 0.25;                     // of the hair, in the solid
+constexpr double kLaidFatness = 0.04, kLaidGap = 0.002;   // see untangle; m
+constexpr int kLaidRounds = 6;                            // of untangling
 constexpr int kRays = 400;
 
 double distanceTo(const Attachment& attachment, const Vec3& p) {
@@ -45,20 +45,22 @@ void checkRoom(const Attachment& attachment, const Scalp& scalp, const sim::Hair
     roots += distanceTo(attachment, shape.positions[static_cast<std::size_t>(root)]) < -kInside;
   }
   if (roots > 0)
-    refuseWorn(attachment, "encloses " + std::to_string(roots) + " of the head's " + std::to_string(shape.columnCount()) +
-                           " hair roots",
-           "make it hollow or larger, or move it off the head with \"at\"");
+    refuseWorn(
+        attachment,
+        "encloses " + std::to_string(roots) + " of the head's " + std::to_string(shape.columnCount()) + " hair roots",
+        "make it hollow or larger, or move it off the head with \"at\"");
   if (surrounds(attachment, scalp))
     refuseWorn(attachment, "encloses the whole head", "leave it open where hair and neck come out");
 }
 
 void checkHair(const Attachment& attachment, const sim::HairMeshShape& shape) {
-  const auto in = std::ranges::count_if(shape.positions,
-                                        [&](const Vec3& p) { return distanceTo(attachment, p) < -kDeep; });
+  const auto in =
+      std::ranges::count_if(shape.positions, [&](const Vec3& p) { return distanceTo(attachment, p) < -kDeep; });
   if (static_cast<double>(in) > kMaxEnclosed * static_cast<double>(shape.positions.size()))
-    refuseWorn(attachment, "encloses the hair: " + std::to_string(in) + " of its " +
-                           std::to_string(shape.positions.size()) + " vertices lie in it",
-           "make it smaller, or move it out of the hair with \"at\"");
+    refuseWorn(attachment,
+               "encloses the hair: " + std::to_string(in) + " of its " + std::to_string(shape.positions.size()) +
+                   " vertices lie in it",
+               "make it smaller, or move it out of the hair with \"at\"");
 }
 
 // The vertices under one attachment, moved to lie there.
@@ -118,7 +120,8 @@ std::vector<int> layUnder(std::span<const Attachment* const> attachments, const 
       for (const Attachment* attachment : attachments) nearest = std::min(nearest, distanceTo(*attachment, p));
       return nearest;
     };
-    for (int round = 0; round < kLaidRounds && untangle(around, kLaidFatness, kLaidGap, shape) < kLaidFatness / 2; ++round) {
+    for (int round = 0; round < kLaidRounds && untangle(around, kLaidFatness, kLaidGap, shape) < kLaidFatness / 2;
+         ++round) {
     }
   }
   for (const Attachment* attachment : attachments) checkHair(*attachment, shape);
@@ -127,8 +130,8 @@ std::vector<int> layUnder(std::span<const Attachment* const> attachments, const 
 
 void poseAttachments(double dt, Actor& actor) {
   actor.worn_distances.clear();
-  for (const WornAttachment& worn : actor.worn) posePartDistance(worn.mesh->part, actor.pose, actor.previous_pose, dt,
-                                                                 actor.worn_distances.emplace_back());
+  for (const WornAttachment& worn : actor.worn)
+    posePartDistance(worn.mesh->part, actor.pose, actor.previous_pose, dt, actor.worn_distances.emplace_back());
 }
 
 bool showAttachments(const Vec3& origin, Actor& actor) {

@@ -68,7 +68,8 @@ void recastLoaded(Loaded& loaded, Demo& demo) {
 
 std::string loadingNote(const Demo& demo) {
   if (demo.loading.running.valid()) return "loading " + demo.loading.title;
-  const bool parts = std::ranges::any_of(demo.actors, [](const Actor& actor) { return actor.body->parts_coming.valid(); });
+  const bool parts =
+      std::ranges::any_of(demo.actors, [](const Actor& actor) { return actor.body->parts_coming.valid(); });
   return parts ? "making the signed distances of the body" : "";
 }
 

@@ -32,8 +32,7 @@ void setAll(const std::string& text, Scene& scene) {
   std::vector<CharacterLook*> looks = looksOf(scene);
   for (std::size_t at = 0; at <= text.size();) {
     const std::size_t end = std::min(text.find(',', at), text.size()), equals = text.find('=', at);
-    if (equals >= end)
-      throw InputError("", "'" + text.substr(at, end - at) + "'", "is no setting", "write NAME=VALUE");
+    if (equals >= end) throw InputError("", "'" + text.substr(at, end - at) + "'", "is no setting", "write NAME=VALUE");
     const std::string fault = setAnywhere(text.substr(at, equals - at), text.substr(equals + 1, end - equals - 1),
                                           scene.sim, looks, scene.look);
     if (!fault.empty()) throw InputError("", "compared setting", fault, "");
@@ -103,8 +102,8 @@ bool comparable(const Demo& a, const Demo& b) {
   return std::ranges::equal(a.actors, b.actors, [](const Actor& one, const Actor& other) {
     const CharacterSpec &x = one.spec, &y = other.spec;
     return x.style == y.style && x.hair == y.hair && writeTies(x.ties) == writeTies(y.ties) &&
-           wornText(x.attachments) == wornText(y.attachments) &&
-           x.maps.length == y.maps.length && x.motion == y.motion && x.position == y.position && x.heading == y.heading;
+           wornText(x.attachments) == wornText(y.attachments) && x.maps.length == y.maps.length &&
+           x.motion == y.motion && x.position == y.position && x.heading == y.heading;
   });
 }
 
@@ -119,8 +118,8 @@ HairDifference measure(const Demo& demo, const Demo& other) {
     std::vector<Vec3> moved = b.hair.positions;
     if (moved.size() != a.hair.positions.size()) {
       moved.resize(a.hair.positions.size());
-      sim::transferPositions(sim::makeShapeTransfer(from, mesh), from, mesh,
-                             scalpToWorld(b.body->character, b.pose), b.hair.positions, moved);
+      sim::transferPositions(sim::makeShapeTransfer(from, mesh), from, mesh, scalpToWorld(b.body->character, b.pose),
+                             b.hair.positions, moved);
     }
     for (std::size_t v = 0; v < moved.size(); ++v) {
       const double apart = (moved[v] - a.hair.positions[v]).squaredNorm();
@@ -132,10 +131,9 @@ HairDifference measure(const Demo& demo, const Demo& other) {
   return {true, std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, count))), std::sqrt(worst)};
 }
 
-constexpr std::array kOfBoth{Ask::kPause,     Ask::kPauseMotion, Ask::kSingleStep, Ask::kReset,
-                             Ask::kRestart,   Ask::kCollapse,    Ask::kCarryAlong, Ask::kSpeed,
-                             Ask::kLoop,      Ask::kClip,        Ask::kSelect,     Ask::kDebugView,
-                             Ask::kRewind,    Ask::kMotionFile,  Ask::kClearBake};
+constexpr std::array kOfBoth{Ask::kPause,    Ask::kPauseMotion, Ask::kSingleStep, Ask::kReset,      Ask::kRestart,
+                             Ask::kCollapse, Ask::kCarryAlong,  Ask::kSpeed,      Ask::kLoop,       Ask::kClip,
+                             Ask::kSelect,   Ask::kDebugView,   Ask::kRewind,     Ask::kMotionFile, Ask::kClearBake};
 
 }  // namespace
 

@@ -39,9 +39,10 @@ auto savedOf(P& playback) requires std::same_as<std::remove_const_t<P>, Playback
 template <class A>
 auto savedOf(A& actor) requires std::same_as<std::remove_const_t<A>, Actor> {
   auto& [id, spec, body, haircut, scalp, clip, playback, reach, jumped, pose, previous_pose, hair, previous_positions,
-         ellipsoids, parts, worn, worn_distances, roots, pins, pinned, context, last_report, error_meter, detail, coarse, sleep, span, ahead,
-         steps, posed_time, pose_still, unseen, shown_still, usual_step, max_work, shown_pose, shown_positions,
-         shown_skin, joint_matrices, layout_revision, position_revision, pose_revision] = actor;
+         ellipsoids, parts, worn, worn_distances, roots, pins, pinned, context, last_report, error_meter, detail,
+         coarse, sleep, span, ahead, steps, posed_time, pose_still, unseen, shown_still, usual_step, max_work,
+         shown_pose, shown_positions, shown_skin, joint_matrices, layout_revision, position_revision, pose_revision] =
+      actor;
   auto& [step_span, coarse_mesh, seen] = detail;
   return std::tuple_cat(savedOf(playback),
                         std::tie(jumped, pose.world, previous_pose.world, previous_positions, ellipsoids, roots, pinned,
@@ -52,9 +53,9 @@ auto savedOf(A& actor) requires std::same_as<std::remove_const_t<A>, Actor> {
 template <class D>
 auto savedOf(D& demo) requires std::same_as<std::remove_const_t<D>, Demo> {
   auto& [scene, asset_cache, actors, selected, camera, aspect, picture_height, origin, shown_fraction, debug, clock,
-         governor, deadline, running, frames, shown_time, paused, single_steps, edits, timeline, comparison,
-         bookmarks, turntable, loading, requests, message,
-         message_is_fault, capture, stats, history, history_next, debug_geometry, hair_inputs, body_inputs] = demo;
+         governor, deadline, running, frames, shown_time, paused, single_steps, edits, timeline, comparison, bookmarks,
+         turntable, loading, requests, message, message_is_fault, capture, stats, history, history_next, debug_geometry,
+         hair_inputs, body_inputs] = demo;
   auto& [ahead, lost, steps, time, step] = clock;
   return std::tie(camera.anchor, camera.jumped, aspect, picture_height, origin, shown_fraction, ahead, lost, steps,
                   time, step, frames, shown_time, paused);
@@ -70,10 +71,10 @@ auto viewOf(C& camera) {
 std::string identity(const Actor& actor) {
   const CharacterSpec& spec = actor.spec;
   const auto name = [](const std::string& file) { return std::filesystem::path(file).filename().string(); };
-  std::string text = name(spec.motion) + ", clip '" + actor.playedClip().name + "', " +
-                     (spec.hair.empty() ? std::string(styleName(spec.style)) + " " +
-                                              std::string(resolutionName(spec.resolution))
-                                        : name(spec.hair));
+  std::string text =
+      name(spec.motion) + ", clip '" + actor.playedClip().name + "', " +
+      (spec.hair.empty() ? std::string(styleName(spec.style)) + " " + std::string(resolutionName(spec.resolution))
+                         : name(spec.hair));
   if (!spec.parts.empty()) text += ", parts " + name(spec.parts);
   if (!spec.ties.empty()) text += ", tied";
   for (const AttachmentSpec& one : spec.attachments) text += ", wears " + name(one.file);
@@ -217,11 +218,10 @@ std::span<const std::byte> bodyOf(const std::string& text, const std::string& fi
   Head head;
   sim::readBytes(from, head);
   if (!from.complete || head.size != from.left.size())
-    throw InputError(
-        file, "",
-        "has " + std::to_string(text.size()) + " bytes where " +
-            std::to_string(head.size + (text.size() - from.left.size())) + " were saved",
-        kSaveAnew);
+    throw InputError(file, "",
+                     "has " + std::to_string(text.size()) + " bytes where " +
+                         std::to_string(head.size + (text.size() - from.left.size())) + " were saved",
+                     kSaveAnew);
   if (sim::fingerprint(from.left) != head.checksum)
     throw InputError(file, "", "has been changed since it was saved", kSaveAnew);
   return from.left;

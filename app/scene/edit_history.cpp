@@ -77,12 +77,12 @@ std::string titleOf(const Request& request, const EditKind& kind) {
   std::string title = kind.title;
   if (!request.name.empty() && request.what != Ask::kMotionFile) title.append(" ").append(request.name);
   const bool sample = request.what == Ask::kPaint;
-  if (!request.text.empty() && request.what != Ask::kVary && !sample) title.append(" ").append(spaced(stem(request.text)).substr(0, 40));
-  const bool number = request.what == Ask::kBudget || request.what == Ask::kDeadline ||
-                      request.what == Ask::kSpeed || request.what == Ask::kVary;
+  if (!request.text.empty() && request.what != Ask::kVary && !sample)
+    title.append(" ").append(spaced(stem(request.text)).substr(0, 40));
+  const bool number = request.what == Ask::kBudget || request.what == Ask::kDeadline || request.what == Ask::kSpeed ||
+                      request.what == Ask::kVary;
   if (number) title.append(" ").append(sim::numberText(request.value));
-  const bool toggle =
-      request.what == Ask::kSkip || request.what == Ask::kDebugView || request.what == Ask::kFollow;
+  const bool toggle = request.what == Ask::kSkip || request.what == Ask::kDebugView || request.what == Ask::kFollow;
   if (toggle) title += request.value != 0 ? " on" : " off";
   return title;
 }
@@ -108,12 +108,12 @@ EditSide sideOf(const Demo& demo, int reach) {
 // until it is decided.
 bool sameCast(const CharacterSpec& a, const CharacterSpec& b) {
   const auto cast = [](const CharacterSpec& spec) {
-    const auto& [motion, parts, clip, style, resolution, hair, reverse_faces, fit, mends, position, heading, clip_offset, loop,
-                 look, pins, ties, attachments, maps, curves] = spec;
-    return std::tuple(motion, parts, clip, style, resolution, hair, reverse_faces, fit, mends, position.x(), position.y(),
-                      position.z(), heading, loop, writePins(pins).dump(),
-                      writeTies(ties).dump(), wornText(attachments), maps.stiffness, maps.length, maps.density,
-                      maps.mass, writeCurves(curves).dump());
+    const auto& [motion, parts, clip, style, resolution, hair, reverse_faces, fit, mends, position, heading,
+                 clip_offset, loop, look, pins, ties, attachments, maps, curves] = spec;
+    return std::tuple(motion, parts, clip, style, resolution, hair, reverse_faces, fit, mends, position.x(),
+                      position.y(), position.z(), heading, loop, writePins(pins).dump(), writeTies(ties).dump(),
+                      wornText(attachments), maps.stiffness, maps.length, maps.density, maps.mass,
+                      writeCurves(curves).dump());
   };
   return cast(a) == cast(b);
 }
@@ -183,7 +183,8 @@ void bringBack(const EditSide& side, Demo& demo) {
     demo.paused = paused;
   } else {
     for (std::size_t i = 0; i < demo.actors.size(); ++i) {
-      const bool another_shape = demo.actors[i].haircut->edited && !side.moments.empty() && side.moments[i].shape.empty();
+      const bool another_shape =
+          demo.actors[i].haircut->edited && !side.moments.empty() && side.moments[i].shape.empty();
       if (another_shape || !sameCast(side.cast[i], demo.actors[i].spec))
         castAnew(side.cast[i], side.moments.empty() ? nullptr : &side.moments[i], static_cast<int>(i), demo);
     }

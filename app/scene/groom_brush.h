@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "app/scene/actor.h"
 #include "app/groom/shape_brush.h"
+#include "app/scene/actor.h"
 
 namespace app {
 

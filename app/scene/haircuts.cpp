@@ -53,7 +53,8 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
   haircut->key = key;
   haircut->id = freshId();
   // Built-in styles, ties and attachments ask for the distance, and it is a grid that takes time to fill.
-  if ((spec.hair.empty() || !spec.ties.empty() || !worn.empty()) && !body.distance) body.distance = restBodyDistance(body.character);
+  if ((spec.hair.empty() || !spec.ties.empty() || !worn.empty()) && !body.distance)
+    body.distance = restBodyDistance(body.character);
   try {
     sim::HairMeshShape shape = spec.hair.empty()
                                    ? makeStyle(spec.style, spec.resolution, body.character.scalp, body.distance)
@@ -72,11 +73,14 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
     applyShares(haircut->shares, haircut->mesh);
   } catch (const sim::MeshError& error) {
     if (!spec.maps.length.empty())
-      throw InputError("map " + spec.maps.length.substr(0, 80), "length", "cuts hair so that its layers cross", "paint it lighter or more evenly");
+      throw InputError("map " + spec.maps.length.substr(0, 80), "length", "cuts hair so that its layers cross",
+                       "paint it lighter or more evenly");
     if (!haircut->covered.empty())
-      throw InputError(spec.attachments.front().file, "", "leaves the hair no room", "make it wider, or move it off the head");
+      throw InputError(spec.attachments.front().file, "", "leaves the hair no room",
+                       "make it wider, or move it off the head");
     if (!spec.ties.empty())
-      throw InputError("", "tie " + writeTies(spec.ties).dump(), "leaves the hair no room", "move it off the head, or make it wider");
+      throw InputError("", "tie " + writeTies(spec.ties).dump(), "leaves the hair no room",
+                       "move it off the head, or make it wider");
     throw InputError(spec.hair.empty() ? "style " + title + " on " + spec.motion : spec.hair, error.place, error.fault,
                      error.mend);
   }

@@ -89,7 +89,10 @@ LookField<Owner> shaped(LookShape shape, LookField<Owner> row) {
   return row;
 }
 
-#define BODY(member) [](auto& look) -> auto& { return look.member; }
+#define BODY(member)        \
+  [](auto& look) -> auto& { \
+    return look.member;     \
+  }
 #define HAIR(member)         \
   [](auto& look) -> auto& {  \
     return look.hair.member; \
@@ -110,8 +113,8 @@ std::vector<HairField> makeHairTable() {
 > ("strands", "Strands", "", {0, 300000, kLog}, "Strands grown over the whole head."), hair < [](auto& look) -> auto& {
   return look.segments_per_layer;
 }
-> ("segments_per_layer", "Strands", "", {1, 8}, "Straight pieces drawn between two layers of the hair mesh."),
-    hair < [](auto& look) -> auto& {
+> ("segments_per_layer", "Strands", "", {1, 8}, "Straight pieces drawn between two layers of the hair mesh."), hair < [
+](auto& look) -> auto& {
   return look.lift_strands;
 }
 > ("lift_strands", "Strands", "", {0, 1}, "Drawn strands leave the skin where a bundle between vertices would cut it."),
@@ -152,8 +155,7 @@ std::vector<HairField> makeHairTable() {
                               "Tilt of the cuticle's scales; moves the two highlights apart."),
     hair<HAIR(specular)>("specular", "Shine", "", {0, 4},
                          "Strength of the highlights; what they gain, light that passes through strands loses."),
-    hair<HAIR(diffuse)>("diffuse", "Shine", "", {0, 1},
-                        "Share that is kept of light scattered from strand to strand."),
+    hair<HAIR(diffuse)>("diffuse", "Shine", "", {0, 1}, "Share that is kept of light scattered from strand to strand."),
     color(hair<BODY(body_color)>("body_color", "Body", "", {0, 1}, "Colour of the mannequin, linear RGB.")),
     hair<BODY(body_roughness)>("body_roughness", "Body", "", {0.05, 1}, "Roughness of the mannequin's surface."),
     hair<BODY(scalp_tint)>("scalp_tint", "Body", "", {0, 1},
@@ -168,9 +170,10 @@ std::vector<HairField> makeHairTable() {
 std::vector<SceneField> makeSceneTable() {
   const auto color = [](SceneField row) { return shaped(LookShape::kColor, row); };
   const auto direction = [](SceneField row) { return shaped(LookShape::kDirection, row); };
-  SceneField strand_path = scene<VIEW(strand_path)>("strand_path", "Picture", "", {0, kStrandPaths.size() - 1.0},
-                                                    "What draws the strands: a shader stage, or shaders and the CPU where the driver has no GPU; auto "
-                                                    "is what suits the driver. The pictures agree.");
+  SceneField strand_path = scene<VIEW(strand_path)>(
+      "strand_path", "Picture", "", {0, kStrandPaths.size() - 1.0},
+      "What draws the strands: a shader stage, or shaders and the CPU where the driver has no GPU; auto "
+      "is what suits the driver. The pictures agree.");
   strand_path.choices = kStrandPaths;
   return {
       color(scene<LIGHT(key)>("key", "Light", "", {0, 50}, "Colour and strength of the key light.")),

@@ -15,9 +15,9 @@ namespace app {
 
 namespace {
 
-constexpr int kPictureWidth = 64, kPictureHeight = 32;                // pixels: 9 mm of scalp
+constexpr int kPictureWidth = 64, kPictureHeight = 32;  // pixels: 9 mm of scalp
 constexpr double kSpread = 0.12, kFarthestRoot = 0.45;  // rad: how far a root speaks for the scalp around it
-constexpr double kFarthestStroke = 100;                       // m
+constexpr double kFarthestStroke = 100;                 // m
 constexpr double kNothing = 1e-3;                       // of a brush's weight
 
 // The picture at the brushes' resolution; white where there is none.

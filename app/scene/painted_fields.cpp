@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kFatness = 0.05, kGap = 0.0025;  // see untangle; m
 constexpr double kFatEnough = 0.002;              // with less, lengths are softened more
-constexpr int kMaxRounds = 16;                   // of untangling; evenly short hair takes the most
+constexpr int kMaxRounds = 16;                    // of untangling; evenly short hair takes the most
 // Least length of a column over that of any of its root face.
 constexpr std::array kSteepest{0.5, 0.65, 0.8, 0.9, 1.0};
 
@@ -43,7 +43,8 @@ bool soften(const sim::HairMeshShape& shape, double step, std::vector<double>& s
     raised = false;
     for (const sim::RootFace& face : shape.root_faces) {
       double most = 0;
-      for (int k = 0; k < face.corner_count; ++k) most = std::max(most, shares[static_cast<std::size_t>(face.columns[k])]);
+      for (int k = 0; k < face.corner_count; ++k)
+        most = std::max(most, shares[static_cast<std::size_t>(face.columns[k])]);
       for (int k = 0; k < face.corner_count; ++k) {
         double& share = shares[static_cast<std::size_t>(face.columns[k])];
         raised |= share < step * most;
@@ -66,8 +67,9 @@ void paintLength(const FieldMap& map, const Scalp& scalp, const BodyDistance& bo
     if (!soften(whole, step, shares) && step > kSteepest.front()) continue;
     shape.positions = whole.positions;
     for (std::size_t c = 0; c < shares.size(); ++c)
-      shorten(std::span(shape.positions).subspan(static_cast<std::size_t>(shape.column_first[c]),
-                                                 static_cast<std::size_t>(shape.columnLength(static_cast<int>(c)))),
+      shorten(std::span(shape.positions)
+                  .subspan(static_cast<std::size_t>(shape.column_first[c]),
+                           static_cast<std::size_t>(shape.columnLength(static_cast<int>(c)))),
               shares[c]);
     for (int round = 0; round < kMaxRounds; ++round) {
       if (untangle(body, kFatness, kGap, shape) > kFatEnough) return;

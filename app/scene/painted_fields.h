@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "app/files/field_map.h"
-#include "render/frame_input.h"
 #include "app/styles/hair_styles.h"
+#include "render/frame_input.h"
 
 namespace app {
 

@@ -85,8 +85,8 @@ void openProject(const std::string& file, Demo& demo) {
   if (!parsed.is_object() || !place.has(kKey)) place.refuse("is no project", "give a file that Save project wrote");
   const double version = place.at(kKey).number(1, 1e6);
   if (version > kProjectVersion)
-    place.refuse("is a project of version " + std::to_string(static_cast<int>(version)) + ", newer than this program's " +
-                     std::to_string(kProjectVersion),
+    place.refuse("is a project of version " + std::to_string(static_cast<int>(version)) +
+                     ", newer than this program's " + std::to_string(kProjectVersion),
                  "open it with the program that saved it, or a newer one");
   place.expectObject({kKey, "scene", "binary", "checksum"});
   for (const char* key : {"scene", "binary", "checksum"}) {

@@ -16,12 +16,12 @@
 namespace app {
 namespace {
 
-constexpr double kTieFatness = 0.05, kTieGap = 0.003;      // see untangle; m
-constexpr double kFatEnough = 0.012;                 // with less a wider ring is tried
-constexpr double kCoat = 0.010;                      // m over the scalp, half-way to the ring
-constexpr double kStep = 0.01, kTurn = 0.16;         // m; share of a step's heading that gravity takes
-constexpr double kSwell = 1.35, kTaper = 0.7;        // of the ring's radius: the tail's where it is widest, at its end
-constexpr double kShortestTail = 0.08;               // m
+constexpr double kTieFatness = 0.05, kTieGap = 0.003;  // see untangle; m
+constexpr double kFatEnough = 0.012;                   // with less a wider ring is tried
+constexpr double kCoat = 0.010;                        // m over the scalp, half-way to the ring
+constexpr double kStep = 0.01, kTurn = 0.16;           // m; share of a step's heading that gravity takes
+constexpr double kSwell = 1.35, kTaper = 0.7;  // of the ring's radius: the tail's where it is widest, at its end
+constexpr double kShortestTail = 0.08;         // m
 constexpr int kSectors = 24;
 
 struct Path {
@@ -115,7 +115,8 @@ Path Gathering::tail(double length) const {
   return path;
 }
 
-int tieOf(const sim::HairMeshShape& hair, const sim::RootFace& face, const Scalp& scalp, std::span<const HairTie> ties) {
+int tieOf(const sim::HairMeshShape& hair, const sim::RootFace& face, const Scalp& scalp,
+          std::span<const HairTie> ties) {
   Vec3 middle = Vec3::Zero();
   for (int k = 0; k < face.corner_count; ++k)
     middle += hair.positions[hair.column_first[face.columns[k]]] / face.corner_count;
@@ -130,7 +131,7 @@ int tieOf(const sim::HairMeshShape& hair, const sim::RootFace& face, const Scalp
 // The hair with its columns doubled where bundles of different ties meet; `of` says for each column which tie takes it.
 // Columns stay in their order.
 sim::HairMeshShape divided(const sim::HairMeshShape& hair, const Scalp& scalp, std::span<const HairTie> ties,
-                      std::vector<int>& of) {
+                           std::vector<int>& of) {
   sim::HairMeshShape out;
   std::map<std::pair<int, int>, int> copies;  // of (column, tie)
   std::vector<int> taken;
@@ -203,12 +204,12 @@ void gather(const HairTie& tie, int number, const Scalp& scalp, const BodyDistan
       const double place = share * left / kStep;
       const auto k = std::min(static_cast<std::size_t>(place), path.at.size() - 2);
       const double t = place - static_cast<double>(k);
-      const double width = share < 0.3 ? 1 + (kSwell - 1) * share / 0.3
-                                       : kSwell + (kTaper - kSwell) * (share - 0.3) / 0.7;
+      const double width =
+          share < 0.3 ? 1 + (kSwell - 1) * share / 0.3 : kSwell + (kTaper - kSwell) * (share - 0.3) / 0.7;
       const Vec3 across = ((1 - t) * path.across[k] + t * path.across[k + 1]).normalized();
       const Vec3 up = ((1 - t) * path.up[k] + t * path.up[k + 1]).normalized();
-      shape.positions[first + l] = (1 - t) * path.at[k] + t * path.at[k + 1] +
-                                   gathering.inSection(root, width * tie.radius, across, up);
+      shape.positions[first + l] =
+          (1 - t) * path.at[k] + t * path.at[k + 1] + gathering.inSection(root, width * tie.radius, across, up);
     }
     tied.rings[static_cast<std::size_t>(number)].push_back(first + ring);
   }

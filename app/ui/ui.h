@@ -35,9 +35,9 @@ struct FileBrowser {
 
 // The brush in a person's hand.
 struct BrushState {
-  int tool = -1;   // of BrushTool; -1: none
-  int field = -1;  // of kFieldNames, that is painted in place of a tool; -1: none
-  double value = 0.2;  // that it is painted with
+  int tool = -1;                                      // of BrushTool; -1: none
+  int field = -1;                                     // of kFieldNames, that is painted in place of a tool; -1: none
+  double value = 0.2;                                 // that it is painted with
   double radius = 0.04, strength = 0.5, falloff = 1;  // m
   bool mirror = false;
   bool over_hair = false, stroking = false;  // then a drag is the brush's, not the camera's
@@ -86,13 +86,13 @@ struct UiState {
   VaryState vary;
   std::vector<AttachmentSpec> worn;  // as their colours are being edited
   bool worn_edited = false;
-  bool light_held = false;         // the key light is turned by a drag
-  bool line_held = false;          // the line of a comparison is dragged
+  bool light_held = false;          // the key light is turned by a drag
+  bool line_held = false;           // the line of a comparison is dragged
   std::string kept_folder;          // where the list of recent files is kept; empty: nowhere
   std::vector<std::string> recent;  // files opened last
-  bool leaving = false;       // Esc was pressed once
+  bool leaving = false;             // Esc was pressed once
   std::string shown_message;
-  double message_since = 0;                                // s of ImGui's clock
+  double message_since = 0;                                             // s of ImGui's clock
   std::vector<std::string> scenes, presets, clips, hairs, attachments;  // files on offer
   std::vector<UiItem> items;
 };

@@ -47,7 +47,8 @@ void drawField(const Vec3& place, const Demo& demo, const BrushState& brush, flo
     if (!pixel) continue;
     const ImVec2 at(static_cast<float>((*pixel)[0]), static_cast<float>((*pixel)[1]));
     ImDrawList* list = ImGui::GetBackgroundDrawList();
-    list->AddCircleFilled(at, 4.2f * scale, weight > 0.02 ? IM_COL32(240, 172, 120, 235) : IM_COL32(20, 20, 24, 200), 12);
+    list->AddCircleFilled(at, 4.2f * scale, weight > 0.02 ? IM_COL32(240, 172, 120, 235) : IM_COL32(20, 20, 24, 200),
+                          12);
     list->AddCircleFilled(at, 3.0f * scale, IM_COL32(grey, grey, grey, 255), 12);
   }
 }
@@ -61,8 +62,8 @@ void drawReach(const Vec3& place, const Demo& demo, const BrushState& brush, flo
   ImVec2 ring[kRingPoints];
   for (int k = 0; k < kRingPoints; ++k) {
     const double turn = 2 * 3.14159265358979 * k / kRingPoints;
-    const auto pixel = pixelOf(place + brush.radius * (std::cos(turn) * right + std::sin(turn) * up), size.x, size.y,
-                               demo.camera);
+    const auto pixel =
+        pixelOf(place + brush.radius * (std::cos(turn) * right + std::sin(turn) * up), size.x, size.y, demo.camera);
     if (!pixel) return;
     ring[k] = {static_cast<float>((*pixel)[0]), static_cast<float>((*pixel)[1])};
   }
@@ -79,8 +80,8 @@ void drawReach(const Vec3& place, const Demo& demo, const BrushState& brush, flo
     if (!pixel) continue;
     const ImVec2 at(static_cast<float>((*pixel)[0]), static_cast<float>((*pixel)[1]));
     const int alpha = static_cast<int>(40 + 180 * std::max(weight, double(held)));
-    list->AddCircleFilled(at, 1.6f * scale, held > 0.02f ? IM_COL32(120, 190, 255, alpha)
-                                                         : IM_COL32(255, 214, 170, alpha), 8);
+    list->AddCircleFilled(at, 1.6f * scale,
+                          held > 0.02f ? IM_COL32(120, 190, 255, alpha) : IM_COL32(255, 214, 170, alpha), 8);
   }
 }
 
@@ -90,8 +91,7 @@ void postSample(const Vec3& at, const Vec3& along, Demo& demo, const BrushState&
   sample.at = at, sample.along = along;
   sample.radius = brush.radius, sample.strength = brush.strength, sample.falloff = brush.falloff;
   sample.mirror = brush.mirror;
-  postRequest(demo, {Ask::kBrush, std::string(kBrushNames[static_cast<std::size_t>(brush.tool)]),
-                     brushText(sample)});
+  postRequest(demo, {Ask::kBrush, std::string(kBrushNames[static_cast<std::size_t>(brush.tool)]), brushText(sample)});
 }
 
 void postPaint(const Vec3& at, Demo& demo, const BrushState& brush) {
@@ -153,7 +153,9 @@ void brushSection(UiState& ui) {
   row("Strength", "Share of the way that the middle of the brush takes", "brush_strength", 0.02f, 1, "%.2f", 1,
       brush.strength);
   row("Falloff", "0: all within the ring alike; larger: softer edge", "brush_falloff", 0, 4, "%.1f", 1, brush.falloff);
-  if (brush.field >= 0) row("Value", "Painted share: 1 is the parameter's own value, 0 its least", "brush_value", 0, 1, "%.2f", 1, brush.value);
+  if (brush.field >= 0)
+    row("Value", "Painted share: 1 is the parameter's own value, 0 its least", "brush_value", 0, 1, "%.2f", 1,
+        brush.value);
   rowLabel("Mirror", "Acts on the other side of the head as well");
   ImGui::Checkbox("##brush_mirror", &brush.mirror);
   noteItem("brush_mirror", ui);
@@ -167,7 +169,8 @@ void curveRows(Demo& demo, UiState& ui) {
     std::array<float, 3> shares;
     for (std::size_t k = 0; k < 3; ++k) shares[k] = static_cast<float>(curveAt(curve, 0.5 * static_cast<double>(k)));
     ImGui::SetNextItemWidth(-1);
-    if (ImGui::SliderFloat3(("##curve_" + name).c_str(), shares.data(), 0.05f, 3, "%.2f", ImGuiSliderFlags_AlwaysClamp)) {
+    if (ImGui::SliderFloat3(("##curve_" + name).c_str(), shares.data(), 0.05f, 3, "%.2f",
+                            ImGuiSliderFlags_AlwaysClamp)) {
       std::string text;
       for (const float share : shares) text.append(text.empty() ? "" : ",").append(std::to_string(share));
       postRequest(demo, {Ask::kCurve, name, text});

@@ -131,9 +131,18 @@ struct ChordAction {
 };
 
 constexpr ChordAction kChordActions[] = {
-    {'Z', kControl, [](Demo& demo, UiState&) { postRequest(demo, {Ask::kUndo, "", "", 1}); }},
-    {'Z', kControl | kShift, [](Demo& demo, UiState&) { postRequest(demo, {Ask::kRedo, "", "", 1}); }},
-    {'Y', kControl, [](Demo& demo, UiState&) { postRequest(demo, {Ask::kRedo, "", "", 1}); }},
+    {'Z', kControl,
+     [](Demo& demo, UiState&) {
+       postRequest(demo, {Ask::kUndo, "", "", 1});
+     }},
+    {'Z', kControl | kShift,
+     [](Demo& demo, UiState&) {
+       postRequest(demo, {Ask::kRedo, "", "", 1});
+     }},
+    {'Y', kControl,
+     [](Demo& demo, UiState&) {
+       postRequest(demo, {Ask::kRedo, "", "", 1});
+     }},
     {'O', kControl, [](Demo&, UiState& ui) { browseFor(BrowseFor::kOpen, ui); }},
     {'S', kControl, [](Demo&, UiState& ui) { browseFor(BrowseFor::kSaveScene, ui); }},
     {'=', kControl, [](Demo&, UiState& ui) { ui.zoom_texts *= 1.1f; }},

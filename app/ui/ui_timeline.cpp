@@ -54,7 +54,8 @@ void drawRange(const Timeline& timeline, ImVec2 at, ImVec2 size) {
   if (timeline.in >= 0 || timeline.out >= 0)
     list->AddRectFilled({low, at.y}, {high, at.y + size.y}, IM_COL32(255, 255, 255, 20));
   const ImU32 ink = ImGui::GetColorU32(ImGuiCol_Text);
-  for (const auto& [set, x, side] : {std::tuple(timeline.in >= 0, low, 5.0f), std::tuple(timeline.out >= 0, high, -5.0f)}) {
+  for (const auto& [set, x, side] :
+       {std::tuple(timeline.in >= 0, low, 5.0f), std::tuple(timeline.out >= 0, high, -5.0f)}) {
     if (!set) continue;
     list->AddLine({x, at.y}, {x, at.y + size.y}, ink, 1.5f);
     for (const float y : {at.y, at.y + size.y - 1}) list->AddLine({x, y}, {x + side, y}, ink, 1.5f);

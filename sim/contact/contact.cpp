@@ -21,10 +21,10 @@ constexpr double kReach = 0.01;  // m off the surface at which a contact is drop
 constexpr double kCreep = 1e-3, kNoSlip = 1e-9;  // m/s
 constexpr double kLeaving = 1;                   // m/s away from the body at which a contact is dropped
 constexpr double kMet = 1e-5;                    // m, on a path past a collider
-constexpr int kMaxClustered = 16;   // vertices of a cluster
-constexpr double kRounding = 1e-6;  // m, above the rounding of the tests that the bounds stand for
-constexpr double kNeighbour = 0.005;  // m; bodies so near to a vertex count as around it
-constexpr double kStride = 1e-5;      // m, from one body to the next
+constexpr int kMaxClustered = 16;                // vertices of a cluster
+constexpr double kRounding = 1e-6;               // m, above the rounding of the tests that the bounds stand for
+constexpr double kNeighbour = 0.005;             // m; bodies so near to a vertex count as around it
+constexpr double kStride = 1e-5;                 // m, from one body to the next
 constexpr int kMaxLeaves = 32;
 
 // False only if p lies farther than `offset` off the surface.

@@ -15,10 +15,10 @@ constexpr double kLongStep = 1.0 / 50;  // s
 // No step is near to linear of hair that is limp, folded as it hangs: its load strains its walls by more than this; or
 // of hair that is stiffer one way by such a ratio than another (Modulus::uneven): it buckles.
 constexpr double kLimp = 1;
-constexpr int kTries = 5;          // of a shorter way
-constexpr double kWithin = 0.95;   // of the energy allowed and of the way, that a try aims at
-constexpr double kMinWay = 0.5;  // of the way, that the first try leaves: energies of stretched hair rise faster
-constexpr double kStillBody = 1e-3;    // m/s of a body's surface against the roots
+constexpr int kTries = 5;            // of a shorter way
+constexpr double kWithin = 0.95;     // of the energy allowed and of the way, that a try aims at
+constexpr double kMinWay = 0.5;      // of the way, that the first try leaves: energies of stretched hair rise faster
+constexpr double kStillBody = 1e-3;  // m/s of a body's surface against the roots
 
 enum class Motion { kCalm, kViolent, kNotFinite };
 

@@ -8,15 +8,15 @@
 namespace sim {
 namespace {
 
-constexpr double kLookEvery = 0.1;        // s
-constexpr double kInvertedShare = -0.05;  // of the rest volume: beyond flat
-constexpr double kSqueezed = 0.5;         // of the rest volume, of tetrahedra at rest: wound around their neighbours
-constexpr double kStillColumn = 0.02;           // m/s against the root
-constexpr double kFolded = -0.5;          // cosine between a column's segments, where at rest it is above zero
-constexpr double kGuideTime = 0.4;        // s
-constexpr double kSoon = 1e-3;            // s before the end that count as the end
-constexpr double kFirstColumnBackoff = 0.5;     // s
-constexpr double kMaxColumnBackoff = 600;       // s
+constexpr double kLookEvery = 0.1;           // s
+constexpr double kInvertedShare = -0.05;     // of the rest volume: beyond flat
+constexpr double kSqueezed = 0.5;            // of the rest volume, of tetrahedra at rest: wound around their neighbours
+constexpr double kStillColumn = 0.02;        // m/s against the root
+constexpr double kFolded = -0.5;             // cosine between a column's segments, where at rest it is above zero
+constexpr double kGuideTime = 0.4;           // s
+constexpr double kSoon = 1e-3;               // s before the end that count as the end
+constexpr double kFirstColumnBackoff = 0.5;  // s
+constexpr double kMaxColumnBackoff = 600;    // s
 // Strong wind may hold hair inverted for good.
 constexpr double kColumnBackoffGrowth = 4;
 constexpr double kForgiven = 10;  // s upright after which a column's backoff begins anew

@@ -9,16 +9,16 @@ namespace sim {
 namespace {
 
 // Speeds under another pull are to one another as its root (Froude 1872).
-constexpr double kWeight = 9.81;          // m/s^2
-constexpr double kStillHair = 0.02;           // m/s: slower hair hangs still, unless it
-constexpr double kOnItsWay = 1;           // s, would in so long go as far as the reference is off
-constexpr double kStillFor = 0.5;         // s
-constexpr double kReferenceStill = 5e-3;  // m/s
-constexpr double kMaxSettling = 60;       // s, after which a reference that goes on swinging is taken as it is
-constexpr double kElsewhere = 0.006;      // of the hair's length: what is nearer to its reference is at home
-constexpr double kAtHome = 0.003;         // of the hair's length, from the rest shape itself
-constexpr double kHigher = 5e-5;          // of the hair's weight times its length
-constexpr double kMoving = 3 * kStillHair;    // m/s: hair so fast is on its way to another rest
+constexpr double kWeight = 9.81;            // m/s^2
+constexpr double kStillHair = 0.02;         // m/s: slower hair hangs still, unless it
+constexpr double kOnItsWay = 1;             // s, would in so long go as far as the reference is off
+constexpr double kStillFor = 0.5;           // s
+constexpr double kReferenceStill = 5e-3;    // m/s
+constexpr double kMaxSettling = 60;         // s, after which a reference that goes on swinging is taken as it is
+constexpr double kElsewhere = 0.006;        // of the hair's length: what is nearer to its reference is at home
+constexpr double kAtHome = 0.003;           // of the hair's length, from the rest shape itself
+constexpr double kHigher = 5e-5;            // of the hair's weight times its length
+constexpr double kMoving = 3 * kStillHair;  // m/s: hair so fast is on its way to another rest
 
 constexpr double kFirstBackoff = 1, kMaxBackoff = 60;  // s between one time that the hair is guided and the next
 constexpr double kBackoffGrowth = 2;

@@ -48,12 +48,13 @@ MEMBERS(DrawSkips, frame, rows, shadows, view, shadow_view, body_parts, body_det
         skin, shading, hair_light, sky_visibility)
 MEMBERS(HairLook, strand_radius, strands_represented, width_compensation, least_pixels, taper, length_variation, offset,
         clump, clump_size, lock, wisp, drift, curl_radius, curl_pitch, wave_height, wave_length, frizz, flyaways,
-        flyaway_lift, hairline, baby_hairs, eumelanin, pheomelanin, use_color, color,
-        root_darkening, tint_variation, beta_m, beta_n, eta, cuticle_angle, specular, diffuse, seed)
+        flyaway_lift, hairline, baby_hairs, eumelanin, pheomelanin, use_color, color, root_darkening, tint_variation,
+        beta_m, beta_n, eta, cuticle_angle, specular, diffuse, seed)
 MEMBERS(HairInput, id, layout_revision, position_revision, layout_id, faces, positions, rest, strands,
         segments_per_layer, look, skin)
 MEMBERS(BodyInput, id, mesh_id, positions, normals, triangles, joints, weights, joint_matrices, pose_revision, color,
-        roughness, scalp_id, root_cover, root_color, scalp_tint, face_origin, face_height, face_paint, cloth, dressed, cloth_color)
+        roughness, scalp_id, root_cover, root_color, scalp_tint, face_origin, face_height, face_paint, cloth, dressed,
+        cloth_color)
 MEMBERS(FrameInput, width, height, camera, light, view, skips, hairs, bodies, debug_lines, debug_triangles,
         debug_points)
 #undef MEMBERS

@@ -1,5 +1,7 @@
 // Hats, glasses, collars: the hair stays outside of them and under them, what cannot be worn is told, and they are put
 // on, undone, saved and recorded.
+#include "app/scene/attachments.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +10,6 @@
 #include "app/files/errors.h"
 #include "app/files/file_kind.h"
 #include "app/files/recording.h"
-#include "app/scene/attachments.h"
 #include "tests/app/scene/small_scene.h"
 #include "tests/run_program.h"
 
@@ -40,7 +41,8 @@ double deepestOf(const app::Demo& demo) {
     const app::Rigid to_joint = actor.pose.world[static_cast<std::size_t>(worn.mesh->part.joint)].inverse();
     for (int v = 0; v < actor.haircut->mesh.vertexCount(); ++v) {
       if (actor.haircut->mesh.isRoot(v)) continue;
-      deepest = std::max(deepest, -worn.mesh->part.grid.interpolate(to_joint * actor.hair.positions[static_cast<std::size_t>(v)]));
+      deepest = std::max(
+          deepest, -worn.mesh->part.grid.interpolate(to_joint * actor.hair.positions[static_cast<std::size_t>(v)]));
     }
   }
   return deepest;

@@ -70,8 +70,7 @@ TEST(PaintBrush, APictureInTextReadsBackToTheSameGreys) {
 TEST(PaintBrush, WhiteFieldsAndCurvesOfOneGiveTheScalarsResultToTheBit) {
   app::Demo plain = open(test::smallScene("walk.bvh", 0.3));
   app::Scene scene = test::smallScene("walk.bvh", 0.3);
-  for (const std::string_view name : app::kFieldNames)
-    *app::findMap(name, scene.characters[0].maps) = whitePicture();
+  for (const std::string_view name : app::kFieldNames) *app::findMap(name, scene.characters[0].maps) = whitePicture();
   scene.characters[0].curves = {{1, 1, 1}, {1, 1}};
   app::Demo painted = open(std::move(scene));
   frames(20, plain);
@@ -159,7 +158,8 @@ TEST(PaintBrush, WhatCannotBePaintedIsToldAndStays) {
 
 TEST(PaintBrush, ASceneAndAProjectKeepIt) {
   app::Demo demo = open(test::smallScene("walk.bvh", 0.2));
-  demo.requests = {paintOf("stiffness", 0), paintOf("length", 0.3), paintOf("mass", 0.4), {Ask::kCurve, "mass", "1,0.5"}};
+  demo.requests = {
+      paintOf("stiffness", 0), paintOf("length", 0.3), paintOf("mass", 0.4), {Ask::kCurve, "mass", "1,0.5"}};
   frames(5, demo);
   ASSERT_FALSE(demo.message_is_fault) << demo.message;
   const app::Scene back = app::readScene(app::writeScene(demo.scene), "scene.json");

@@ -52,7 +52,8 @@ TEST(Ties, EveryPlaceAndStyleGivesAValidHairMeshWhoseRingIsFilled) {
         const app::Demo demo = app::openScene(scene, 1.5);
         const app::Haircut& haircut = *demo.actors[0].haircut;
         EXPECT_GT(haircut.tied.size(), haircut.mesh.columnCount() * 0.6) << place;
-        EXPECT_LT(overOf(demo), 0.001) << place << " " << app::styleName(style) << " " << app::resolutionName(resolution);
+        EXPECT_LT(overOf(demo), 0.001) << place << " " << app::styleName(style) << " "
+                                       << app::resolutionName(resolution);
       }
     }
   }
@@ -122,8 +123,8 @@ TEST(Ties, ATieInsideTheHeadIsTold) {
 }
 
 TEST(Ties, ASceneKeepsThem) {
-  app::Scene scene = tiedScene(R"([{"at": [0.01, 0.2, -0.1], "radius": 0.03}, {"at": "left"}])", "walk.bvh",
-                               app::Resolution::kLow);
+  app::Scene scene =
+      tiedScene(R"([{"at": [0.01, 0.2, -0.1], "radius": 0.03}, {"at": "left"}])", "walk.bvh", app::Resolution::kLow);
   const app::Scene back = app::readScene(app::writeScene(scene), "scene.json");
   EXPECT_EQ(app::writeTies(back.characters[0].ties), app::writeTies(scene.characters[0].ties));
   EXPECT_THROW(app::tiesFromText("{\"radius\": 9}"), app::InputError);
