@@ -120,12 +120,9 @@ void beginCorrections(PositionCorrection& scratch) {
 
 bool findContacts(const CorrectedStep& step, PositionCorrection& scratch, const HairState& state, StepReport& report) {
   if (scratch.round > 0 && (scratch.moved == 0 || scratch.round > kRounds + kPlainRounds)) return false;
-  ContactSearch search{step.params.collide_inner ? scratch.all_vertices : step.mesh.external_vertices,
-                       step.colliders,
-                       step.start,
-                       step.dt,
-                       contactMargins(step.params, step.dt),
-                       scratch.max_points};
+  const auto& vertices = step.params.collide_inner ? scratch.all_vertices : step.mesh.external_vertices;
+  const auto margins = contactMargins(step.params, step.dt);
+  ContactSearch search{vertices, step.colliders, step.start, step.dt, margins, scratch.max_points};
   const bool cut = scratch.points > scratch.max_points;
   report.corrections_cut = report.corrections_cut || cut;
   // Where the way out of one body leads through another, swept tests would alternate: from here on only final
