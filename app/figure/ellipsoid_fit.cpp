@@ -11,7 +11,7 @@ namespace {
 using Params = Eigen::Matrix<double, 9, 1>;  // centre shift (m), rotation vector (rad), change of radii (m)
 
 constexpr double kOutlier = 0.010;    // m: gaps beyond count less and less
-constexpr double kMinRadius = 0.005;  // m
+constexpr double kMinEllipsoidRadius = 0.005;  // m
 
 BodyEllipsoid moved(const BodyEllipsoid& start, const Params& x) {
   BodyEllipsoid e = start;
@@ -19,7 +19,7 @@ BodyEllipsoid moved(const BodyEllipsoid& start, const Params& x) {
   const Vec3 turn = x.segment<3>(3);
   if (const double angle = turn.norm(); angle > 1e-12)
     e.rotation = (Eigen::AngleAxisd(angle, turn / angle) * start.rotation).normalized();
-  e.radii = (start.radii + x.tail<3>()).cwiseMax(kMinRadius);
+  e.radii = (start.radii + x.tail<3>()).cwiseMax(kMinEllipsoidRadius);
   return e;
 }
 
@@ -86,7 +86,7 @@ BodyEllipsoid principalEllipsoid(std::span<const FitPoint> points) {
   e.center = mean;
   e.rotation = Eigen::Quaterniond(axes);
   // A sphere's surface has variance r^2 / 3 along each axis.
-  e.radii = (3 * solver.eigenvalues()).cwiseMax(kMinRadius * kMinRadius).cwiseSqrt();
+  e.radii = (3 * solver.eigenvalues()).cwiseMax(kMinEllipsoidRadius * kMinRadius).cwiseSqrt();
   return e;
 }
 
