@@ -141,10 +141,14 @@ void overrideCharacter(const Options& options, CharacterSpec& spec) {
   }
   for (const std::string& text : options.curves) {
     const std::size_t equals = std::min(text.find('='), text.size());
+    if (equals + 1 >= text.size())
+      throw UsageError("--curve cannot be '" + text +
+                       "'; write FIELD=SHARES, for instance stiffness=1,0.5,0.2, or FIELD=none");
     setCurve(text.substr(0, equals), text.substr(std::min(text.size(), equals + 1)), spec.curves);
   }
   if (!options.tie.empty()) spec.ties = tiesFromText(options.tie);
   for (const std::string& text : options.attachments) {
+    if (text.empty()) throw UsageError("--attach cannot be empty; write FILE@JOINT, or none");
     const std::vector<AttachmentSpec> given = attachmentsFromText(text);
     if (given.empty()) spec.attachments.clear();
     spec.attachments.insert(spec.attachments.end(), given.begin(), given.end());

@@ -127,6 +127,19 @@ ClosedSurface readSurface(const std::string& file, PolygonMesh& mesh) {
   return surface;
 }
 
+// The first of them, each once.
+std::string listed(const std::vector<std::string_view>& names) {
+  constexpr std::size_t kMaxListed = 24;
+  std::string list;
+  std::size_t count = 0;
+  for (auto at = names.begin(); at != names.end(); ++at) {
+    if (std::find(names.begin(), at, *at) != at) continue;
+    if (++count > kMaxListed) return list + " and more";
+    list += (list.empty() ? "" : ", ") + std::string(*at);
+  }
+  return list;
+}
+
 int wornJoint(const AttachmentSpec& spec, const Character& character) {
   std::vector<std::string_view> names{"head"};
   for (std::size_t j = 0; j < character.skeleton.joints.size(); ++j) {
@@ -138,8 +151,9 @@ int wornJoint(const AttachmentSpec& spec, const Character& character) {
     if (part.name == spec.joint) return part.joint;
     names.push_back(part.name);
   }
+  const std::string_view near = sim::nearestName(spec.joint, names);
   throw InputError(spec.file, "joint '" + spec.joint.substr(0, 80) + "'", "the figure has no such joint",
-                   sim::nameHint(spec.joint, names));
+                   near.empty() ? "known are " + listed(names) : "did you mean '" + std::string(near) + "'?");
 }
 
 std::string millimetresOf(double metres) {
@@ -158,10 +172,10 @@ const WornUnit& wornUnit(const AttachmentSpec& spec, const PolygonMesh& mesh, do
     if (unit.metres != 1) note = std::string("read in ") + unit.name;
     return unit;
   }
-  throw InputError(
-      spec.file, "size",
-      "is " + sim::numberText(longest) + " units, which in metres, centimetres or millimetres is nothing to wear",
-      "give \"scale\", metres per unit");
+  throw InputError(spec.file, "size",
+                   "is " + sim::numberText(std::round(1e4 * longest) / 1e4) +
+                       " units, which in metres, centimetres or millimetres is nothing to wear",
+                   "give \"scale\", metres per unit");
 }
 
 // Brings the points into the joint's upright frame, m.

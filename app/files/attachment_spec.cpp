@@ -30,6 +30,8 @@ AttachmentSpec readAttachment(const JsonPlace& place) {
   const std::string name = place.at("file").text();
   one.file = findFile(name, place.file(), "attachments");
   std::error_code ignored;
+  if (std::filesystem::is_directory(one.file, ignored))
+    place.at("file").refuse("names '" + name.substr(0, 200) + "', which is a folder", "name a mesh: OBJ, FBX or glTF");
   if (!std::filesystem::is_regular_file(one.file, ignored))
     place.at("file").refuse("names '" + name.substr(0, 200) + "', which is not there",
                             "check the path; it is looked for beside the scene and in assets/attachments");

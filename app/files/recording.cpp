@@ -315,7 +315,8 @@ Tape::End Tape::end(const Demo& demo) {
   } else {
     end.differs = state != replay_->state;
     end.message += "replayed " + count + ", " +
-                   (end.differs ? "but the state is " + state + ", not " + replay_->state
+                   (end.differs ? "but the state is " + state + ", not " + replay_->state +
+                                      "; another build or kind of processor than the one that recorded ends so too"
                                 : "the state is the recorded one to the bit: " + state) +
                    "\n";
   }

@@ -75,6 +75,9 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
     if (!spec.maps.length.empty())
       throw InputError("map " + spec.maps.length.substr(0, 80), "length", "cuts hair so that its layers cross",
                        "paint it lighter or more evenly");
+    if (!haircut->covered.empty() && !spec.ties.empty())
+      throw InputError(spec.attachments.front().file, "with a tie", "leaves the tied hair no room",
+                       "tie it where nothing lies over it, or take off one of the two");
     if (!haircut->covered.empty())
       throw InputError(spec.attachments.front().file, "", "leaves the hair no room",
                        "make it wider, or move it off the head");
