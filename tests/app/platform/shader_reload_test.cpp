@@ -113,7 +113,7 @@ TEST_F(ShaderReload, TheWindowLooksNowAndThenAndShowsWhatCameOfIt) {
   EXPECT_FALSE(app::reloadSavedShaders(moment + 0.5 * app::kShaderLook, watch, renderer, demo)) << "too early";
   EXPECT_TRUE(app::reloadSavedShaders(moment += app::kShaderLook, watch, renderer, demo));
   EXPECT_TRUE(demo.message_is_fault);
-  EXPECT_NE(demo.message.find("body.frag:18"), std::string::npos) << demo.message;
+  EXPECT_NE(demo.message.find("body.frag:17"), std::string::npos) << demo.message;
   EXPECT_FALSE(app::reloadSavedShaders(moment += app::kShaderLook, watch, renderer, demo));
   EXPECT_TRUE(demo.message_is_fault) << "the message stays while the file is broken";
   replace("body.frag", "uncovered", "cover");
