@@ -86,7 +86,7 @@ BodyEllipsoid principalEllipsoid(std::span<const FitPoint> points) {
   e.center = mean;
   e.rotation = Eigen::Quaterniond(axes);
   // A sphere's surface has variance r^2 / 3 along each axis.
-  e.radii = (3 * solver.eigenvalues()).cwiseMax(kMinEllipsoidRadius * kMinRadius).cwiseSqrt();
+  e.radii = (3 * solver.eigenvalues()).cwiseMax(kMinEllipsoidRadius * kMinEllipsoidRadius).cwiseSqrt();
   return e;
 }
 
