@@ -10,7 +10,7 @@ namespace {
 
 using Params = Eigen::Matrix<double, 9, 1>;  // centre shift (m), rotation vector (rad), change of radii (m)
 
-constexpr double kOutlier = 0.010;    // m: gaps beyond count less and less
+constexpr double kOutlier = 0.010;             // m: gaps beyond count less and less
 constexpr double kMinEllipsoidRadius = 0.005;  // m
 
 BodyEllipsoid moved(const BodyEllipsoid& start, const Params& x) {
