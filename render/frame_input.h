@@ -132,7 +132,7 @@ struct LineVertex {
   std::array<float, 4> color;
 };  // debug; colour with alpha, not premultiplied
 
-// Who grows the strands: the geometry stage, vertex pulling, or compute shaders with a rasterizer on the CPU (see
+// What grows the strands: the geometry stage, vertex pulling, or compute shaders with a rasterizer on the CPU (see
 // software_strands.h). kAuto: what suits the driver (see driver.h). The pictures agree.
 enum class StrandPath { kGeometry, kPulling, kSoftware, kAuto };
 

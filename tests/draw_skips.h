@@ -21,6 +21,14 @@ inline render::DrawSkips none() {
   return skips;
 }
 
+inline app::Image draw(render::Renderer& renderer, const render::FrameInput& frame,
+                       render::FrameReport* report = nullptr) {
+  app::Image image{frame.width, frame.height, {}};
+  const render::FrameReport drawn = renderer.renderImage(frame, image.rgba);
+  if (report != nullptr) *report = drawn;
+  return image;
+}
+
 struct NamedSkip {
   const char* name;
   bool render::DrawSkips::*on;

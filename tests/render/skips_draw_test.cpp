@@ -20,6 +20,8 @@
 
 namespace {
 
+using draw_skips::draw;
+
 constexpr int kWidth = 320, kHeight = 180;
 
 using draw_skips::differenceOver, draw_skips::kBodyBound, draw_skips::kDetailBound, draw_skips::kExact,
@@ -68,16 +70,7 @@ struct Crowd {
   }
 };
 
-class SkipsDraw : public gl_fixture::GlTest {
- protected:
-  static app::Image draw(render::Renderer& renderer, const render::FrameInput& frame,
-                         render::FrameReport* report = nullptr) {
-    app::Image image{frame.width, frame.height, {}};
-    const render::FrameReport drawn = renderer.renderImage(frame, image.rgba);
-    if (report != nullptr) *report = drawn;
-    return image;
-  }
-};
+class SkipsDraw : public gl_fixture::GlTest {};
 
 // A sequence in which hair, bodies, light and camera move and stand still in turn, seen near and partly outside.
 TEST_F(SkipsDraw, ExactSkipsChangeNoByte) {

@@ -20,6 +20,8 @@
 
 namespace {
 
+using draw_skips::draw;
+
 using render::StrandPath;
 
 constexpr int kWidth = 320, kHeight = 180;
@@ -61,13 +63,6 @@ struct Scene {
 
 class Software : public gl_fixture::GlTest {
  protected:
-  static app::Image draw(render::Renderer& renderer, const render::FrameInput& frame,
-                         render::FrameReport* report = nullptr) {
-    app::Image image{frame.width, frame.height, {}};
-    const render::FrameReport drawn = renderer.renderImage(frame, image.rgba);
-    if (report != nullptr) *report = drawn;
-    return image;
-  }
   // Drivers place the edges of triangles to within a 256th of a pixel, and lines by rules of their own; and the shader
   // stages carry light on past a segment's end to a pixel's middle.
   static void expectAlike(const app::Image& a, const app::Image& b, const std::string& what) {
