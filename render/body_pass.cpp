@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "render/body_store.h"
+#include "render/body/body_store.h"
 #include "render/pass.h"
 #include "render/stage.h"
 

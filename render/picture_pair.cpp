@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "render/render_target.h"
+#include "render/gl/render_target.h"
 
 namespace render {
 

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "render/gpu_timer.h"
+#include "render/gl/gpu_timer.h"
+#include "render/gl/render_target.h"
 #include "render/passes.h"
-#include "render/render_target.h"
 #include "render/stage.h"
 
 namespace render {

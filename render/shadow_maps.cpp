@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "render/shadow_grid.h"
+#include "render/light/shadow_grid.h"
 
 namespace render {
 namespace {

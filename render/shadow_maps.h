@@ -10,11 +10,11 @@
 #include <span>
 #include <vector>
 
-#include "render/body_store.h"
-#include "render/hair_store.h"
-#include "render/line_raster.h"
+#include "render/body/body_store.h"
+#include "render/hair/hair_store.h"
 #include "render/plan_input.h"
 #include "render/renderer.h"
+#include "render/software/line_raster.h"
 #include "render/view_math.h"
 #include "shaders/shared.h"
 

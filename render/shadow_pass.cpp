@@ -1,12 +1,12 @@
 // The key light's shadow maps, as shadow_maps.h plans them; maps that show already what they should are kept.
 #include <string>
 
-#include "render/driver.h"
+#include "render/gl/driver.h"
+#include "render/hair/strand_draw.h"
 #include "render/pass.h"
 #include "render/shadow_maps.h"
-#include "render/software_shadow.h"
+#include "render/software/software_shadow.h"
 #include "render/stage.h"
-#include "render/strand_draw.h"
 
 namespace render {
 namespace {

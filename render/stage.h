@@ -9,11 +9,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/body_store.h"
+#include "render/body/body_store.h"
 #include "render/frame_input.h"
-#include "render/hair_detail.h"
-#include "render/hair_store.h"
-#include "render/render_target.h"
+#include "render/gl/render_target.h"
+#include "render/hair/hair_detail.h"
+#include "render/hair/hair_store.h"
 #include "render/renderer.h"
 #include "render/shadow_maps.h"
 

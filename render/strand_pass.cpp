@@ -1,11 +1,11 @@
 // Draws strands, lit: by the geometry stage, by vertex pulling or in software, the same curves each way.
 #include <string>
 
-#include "render/driver.h"
+#include "render/gl/driver.h"
+#include "render/hair/strand_draw.h"
 #include "render/pass.h"
-#include "render/software_strands.h"
+#include "render/software/software_strands.h"
 #include "render/stage.h"
-#include "render/strand_draw.h"
 #include "shaders/shared.h"
 
 namespace render {

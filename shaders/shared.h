@@ -59,7 +59,8 @@ const int kUnitColor = 9;
 const int kUnitTable = 10;
 const int kUnitSkin = 11;
 
-// Strands' points between the stages of the software path (render/software_strands.h, render/software_shadow.h).
+// Strands' points between the stages of the software path (render/software/software_strands.h,
+// render/software/software_shadow.h).
 const int kStrandGroup = 32;  // invocations of a group
 const int kPointTexels = 3;   // position, share of the strand's length; tangent, sky visibility; depths along fill and
                               // rim, before the point and behind it

@@ -8,9 +8,9 @@
 #include <random>
 #include <vector>
 
-#include "render/azimuthal_lobes.h"
-#include "render/fiber_scattering.h"
-#include "render/longitudinal_lobes.h"
+#include "render/light/azimuthal_lobes.h"
+#include "render/light/fiber_scattering.h"
+#include "render/light/longitudinal_lobes.h"
 
 namespace slab_walk {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "render/hair_store.h"
-#include "render/render_target.h"
-#include "render/shader.h"
-#include "render/strand_draw.h"
+#include "render/gl/render_target.h"
+#include "render/gl/shader.h"
+#include "render/hair/hair_store.h"
+#include "render/hair/strand_draw.h"
 #include "shaders/shared.h"
 
 namespace strand_capture {

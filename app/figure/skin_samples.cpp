@@ -7,7 +7,7 @@
 
 #include "app/figure/character_build.h"
 #include "app/figure/ellipsoid_fit.h"
-#include "render/skinning.h"
+#include "render/body/skinning.h"
 
 namespace app {
 namespace {

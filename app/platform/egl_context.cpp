@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "app/files/errors.h"
-#include "render/gl_messages.h"
+#include "render/gl/gl_messages.h"
 #include "render/renderer.h"
 
 namespace app {

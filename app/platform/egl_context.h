@@ -11,7 +11,7 @@ namespace app {
 class EglContext {
  public:
   // Throws ContextError that lists every attempt and how each failed. `debug`: the driver checks every call; see
-  // render/gl_messages.h.
+  // render/gl/gl_messages.h.
   explicit EglContext(bool debug = false);
   ~EglContext();
   EglContext(EglContext&& other) noexcept;

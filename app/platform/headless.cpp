@@ -22,7 +22,7 @@
 #include "app/scene/demo_state.h"
 #include "app/scene/hair_export.h"
 #include "app/scene/sim_cache.h"
-#include "render/gl_messages.h"
+#include "render/gl/gl_messages.h"
 
 namespace app {
 
@@ -162,7 +162,9 @@ void Run::saveState() const {
 
 void Run::drawFrames() {
   FrameTarget target;
-  if (pictures) target = {&pictures->renderer, options.width, options.height, 0, &pixels, !options.report.empty(), {}, &pictures->pair};
+  if (pictures)
+    target = {&pictures->renderer, options.width, options.height, 0, &pixels, !options.report.empty(), {},
+              &pictures->pair};
   double last_line = now();
   for (int frame = 0; frame < frames && !interrupted(); ++frame) {
     advanceFrame(demo, tape.turn(frame, frameSeconds(frame), demo), target);

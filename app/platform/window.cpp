@@ -32,11 +32,11 @@
 #include "app/scene/light_drag.h"
 #include "app/scene/look_params.h"
 #include "app/scene/project.h"
-#include "app/ui/redraw_throttle.h"
 #include "app/ui/input_queue.h"
+#include "app/ui/redraw_throttle.h"
 #include "app/ui/ui.h"
 #include "app/ui/ui_panels.h"
-#include "render/read_back.h"
+#include "render/gl/read_back.h"
 
 namespace app {
 
@@ -90,7 +90,7 @@ struct Session {
   double mouse_x = 0, mouse_y = 0;
   double light_x = 0, light_y = 0;  // where a drag of the key light began
   render::Float3 light_from{};      // the way to it there
-  bool other_scale = false;  // the window has come to a display of another density
+  bool other_scale = false;         // the window has come to a display of another density
 };
 
 Session& session(GLFWwindow* window) {

@@ -7,7 +7,7 @@
 #include "app/scene/attachments.h"
 #include "app/scene/level_of_detail.h"
 #include "app/scene/sim_to_render.h"
-#include "render/fiber_scattering.h"
+#include "render/light/fiber_scattering.h"
 
 namespace app {
 

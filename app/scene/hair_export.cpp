@@ -11,7 +11,7 @@
 #include "app/groom/glb_file.h"
 #include "app/groom/groom_writer.h"
 #include "app/groom/tfx_file.h"
-#include "render/fiber_scattering.h"
+#include "render/light/fiber_scattering.h"
 #include "render/strands/strand_growth.h"
 
 namespace app {
@@ -209,7 +209,8 @@ HairExport::HairExport(const ExportSpec& spec, const Demo& demo, double fps, int
   int points = spec.points;
   if (points == 0 && spec.what == ExportWhat::kStrands && std::filesystem::path(spec.file).extension() == ".tfx") {
     points = nearestTfxPoints(StrandExport(demo, spec.what, 0).last());
-    impl_->note = ", " + std::to_string(points) + " points each, the power of two nearest to those drawn (.tfx takes no other)";
+    impl_->note =
+        ", " + std::to_string(points) + " points each, the power of two nearest to those drawn (.tfx takes no other)";
   }
   impl_->strands.emplace(demo, spec.what, points);
   impl_->writer.emplace(spec.file, settings, taken > 1);

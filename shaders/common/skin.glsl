@@ -1,14 +1,15 @@
 // Drawn strands are lifted out of the skin, which ellipsoids stand for: between vertices of the hair mesh, where the
 // simulation holds nothing outside. CPU: render/strands/skin_lift.h.
 
-// A point at a gap (m, signed) from an ellipsoid is moved along its normal to the gap f(gap): kSkinGap below -kSkinBlend,
-// the gap itself above kSkinBlend, both counted from kSkinGap, and a parabola between. f rises with a continuous slope,
-// so that a strand keeps its bends round and none pops up as hair or body moves. Near the middle of an ellipsoid, where
-// the way out turns about, nothing is lifted. s: curve parameter, in layers; the first layer leads from the root, which
-// stays, to full lift. Gap and normal are of first order (gradient of the distance to the middle in the ellipsoid's own
-// measure); the second round takes up what that leaves, and what one ellipsoid pushes into another.
+// A point at a gap (m, signed) from an ellipsoid is moved along its normal to the gap f(gap): kSkinGap below
+// -kSkinBlend, the gap itself above kSkinBlend, both counted from kSkinGap, and a parabola between. f rises with a
+// continuous slope, so that a strand keeps its bends round and none pops up as hair or body moves. Near the middle of
+// an ellipsoid, where the way out turns about, nothing is lifted. s: curve parameter, in layers; the first layer leads
+// from the root, which stays, to full lift. Gap and normal are of first order (gradient of the distance to the middle
+// in the ellipsoid's own measure); the second round takes up what that leaves, and what one ellipsoid pushes into
+// another.
 //
-// near: a bit for each ellipsoid that the strand can meet between its two layers (render/skin_reach.h).
+// near: a bit for each ellipsoid that the strand can meet between its two layers (render/hair/skin_reach.h).
 void leaveSkin(uvec2 near, float s, inout vec3 position, inout vec3 tangent) {
   float root = smoothstep(0.0, 1.0, s);
   bool moved = near != uvec2(0u);

@@ -1,5 +1,5 @@
 // Skins a vertex of a body. The float buffer texture holds, after one texel with the texels of a joint: two, a dual
-// quaternion (Kavan et al. 2007; render/skinning.h), or three, the rows of a matrix, where joints scale.
+// quaternion (Kavan et al. 2007; render/body/skinning.h), or three, the rows of a matrix, where joints scale.
 
 layout(binding = kUnitJoints) uniform samplerBuffer joint_motions;
 layout(location = 0) in vec3 rest_position;
@@ -7,7 +7,7 @@ layout(location = 1) in vec3 rest_normal;
 layout(location = 2) in uvec4 joints;
 layout(location = 3) in vec4 weights;
 layout(location = 4) in vec2 root_cover;  // 0 bare skin .. 1 among the roots of a hair; m that these lie under it
-layout(location = 5) in float cloth;  // m from a garment's edge, negative under it
+layout(location = 5) in float cloth;      // m from a garment's edge, negative under it
 layout(location = 0) uniform mat4 clip_from_world;
 
 void skinRigid(vec3 rest, out vec3 world, out vec3 normal) {

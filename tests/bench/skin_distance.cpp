@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "render/skinning.h"
+#include "render/body/skinning.h"
 
 namespace bench {
 namespace {

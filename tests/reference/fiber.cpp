@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "render/fiber_scattering.h"
-#include "render/longitudinal_lobes.h"
+#include "render/light/fiber_scattering.h"
+#include "render/light/longitudinal_lobes.h"
 
 namespace reference {
 namespace {

@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
-#include "render/azimuthal_lobes.h"
 #include "render/frame_input.h"
+#include "render/light/azimuthal_lobes.h"
 
 namespace reference {
 

@@ -9,9 +9,9 @@
 #include <random>
 #include <vector>
 
-#include "render/hair_store.h"
-#include "render/render_target.h"
-#include "render/shader.h"
+#include "render/gl/render_target.h"
+#include "render/gl/shader.h"
+#include "render/hair/hair_store.h"
 #include "shaders/shared.h"
 #include "tests/gl_fixture.h"
 #include "tests/slab_walk.h"

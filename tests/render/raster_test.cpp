@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/line_raster.h"
-#include "render/strand_raster.h"
+#include "render/software/line_raster.h"
+#include "render/software/strand_raster.h"
 #include "shaders/shared.h"
 
 namespace {

@@ -1,5 +1,5 @@
 // Pictures are read back top row first: OpenGL's first row is the bottom one.
-#include "render/read_back.h"
+#include "render/gl/read_back.h"
 
 #include <GL/glew.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <array>
 #include <vector>
 
-#include "render/render_target.h"
+#include "render/gl/render_target.h"
 #include "tests/gl_fixture.h"
 
 namespace {

@@ -8,10 +8,10 @@
 #include <limits>
 #include <stdexcept>
 
+#include "render/gl/render_target.h"
+#include "render/gl/shader.h"
 #include "render/passes.h"
-#include "render/render_target.h"
 #include "render/renderer.h"
-#include "render/shader.h"
 #include "render/stage.h"
 #include "tests/draw_skips.h"
 #include "tests/gl_fixture.h"
@@ -171,10 +171,7 @@ TEST_F(RenderTest, EverySettingOfTheLookChangesThePicture) {
       {"wave_height", [](Look& l) { l.wave_height = 0.02f; }},
       {"frizz", [](Look& l) { l.frizz = 0.01f; }},
       {"flyaways", [](Look& l) { l.flyaways = 0.6f; }},
-      {"flyaway_lift",
-       [](Look& l) {
-         l.flyaways = 0.6f, l.flyaway_lift = 0.03f;
-       }},
+      {"flyaway_lift", [](Look& l) { l.flyaways = 0.6f, l.flyaway_lift = 0.03f; }},
       {"hairline", [](Look& l) { l.hairline = 0.03f; }},
       {"baby_hairs", [](Look& l) { l.baby_hairs = 0; }},
       {"eumelanin", [](Look& l) { l.eumelanin = 0.1f; }},

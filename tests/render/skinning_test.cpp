@@ -1,5 +1,5 @@
 // Skinning: what the shaders draw, and the girth of a bent elbow.
-#include "render/skinning.h"
+#include "render/body/skinning.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <vector>
 
-#include "render/body_store.h"
-#include "render/render_target.h"
-#include "render/shader.h"
+#include "render/body/body_store.h"
+#include "render/gl/render_target.h"
+#include "render/gl/shader.h"
 #include "shaders/shared.h"
 #include "tests/gl_fixture.h"
 

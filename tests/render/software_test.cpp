@@ -10,9 +10,9 @@
 
 #include "app/files/data_path.h"
 #include "app/scene/demo.h"
-#include "render/driver.h"
+#include "render/gl/driver.h"
 #include "render/renderer.h"
-#include "render/software_strands.h"
+#include "render/software/software_strands.h"
 #include "tests/draw_skips.h"
 #include "tests/gl_fixture.h"
 #include "tests/golden_compare.h"

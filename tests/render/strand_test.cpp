@@ -8,11 +8,11 @@
 #include <map>
 #include <numbers>
 
-#include "render/density_grid.h"
-#include "render/fiber_scattering.h"
+#include "render/hair/hair_store.h"
+#include "render/light/density_grid.h"
+#include "render/light/fiber_scattering.h"
+#include "render/light/sky_visibility.h"
 #include "render/strands/hair_layout.h"
-#include "render/hair_store.h"
-#include "render/sky_visibility.h"
 #include "shaders/shared.h"
 #include "tests/gl_fixture.h"
 #include "tests/strand_capture.h"

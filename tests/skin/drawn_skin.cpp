@@ -10,7 +10,7 @@
 #include <map>
 #include <numeric>
 
-#include "render/skinning.h"
+#include "render/body/skinning.h"
 
 namespace skin {
 namespace {

@@ -12,9 +12,9 @@
 #include "app/files/data_path.h"
 #include "app/scene/demo.h"
 #include "app/scene/sim_to_render.h"
-#include "render/fiber_scattering.h"
-#include "render/renderer.h"
 #include "app/styles/style_roots.h"
+#include "render/light/fiber_scattering.h"
+#include "render/renderer.h"
 #include "tests/gl_fixture.h"
 #include "tests/golden_compare.h"
 

@@ -1,0 +1,167 @@
+#include "render/light/sky_visibility.h"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "shaders/shared.h"
+
+namespace render {
+namespace {
+
+using Eigen::Vector3f;
+
+// Light finds its way between clumps that the lattice doesn't resolve: less is stopped than by hairs strewn evenly.
+// Held to traced light; see docs/picture.md.
+constexpr float kClumpGaps = 0.4f;
+constexpr float kHeadDepth = 6.0f;  // optical depth of a ray through the head's middle; softened at its rim
+constexpr float kSpacing = 0.012f;  // m between the points that stand for a prism's hair
+constexpr int kMaxPoints = 6;       // of them along a prism's height
+
+Vector3f vertexAt(std::span<const float> positions, int vertex) {
+  return Vector3f(positions[3 * vertex], positions[3 * vertex + 1], positions[3 * vertex + 2]);
+}
+
+// Up, four around at 35 degrees and two low ones: the sky weighs more than the floor.
+const std::array<Vector3f, 7>& skyDirections() {
+  static const std::array<Vector3f, 7> directions{Vector3f(0, 1, 0),
+                                                  Vector3f(0.82f, 0.57f, 0),
+                                                  Vector3f(-0.82f, 0.57f, 0),
+                                                  Vector3f(0, 0.57f, 0.82f),
+                                                  Vector3f(0, 0.57f, -0.82f),
+                                                  Vector3f(0.68f, -0.26f, 0.68f),
+                                                  Vector3f(-0.68f, -0.26f, -0.68f)};
+  return directions;
+}
+
+// gap: from the place to the head's middle.
+float headDepth(const Vector3f& gap, float radius, const Vector3f& direction) {
+  if (radius <= 0) return 0;
+  const float ahead = gap.dot(direction);
+  if (ahead <= 0) return 0;
+  const float miss = std::sqrt(std::max(gap.squaredNorm() - ahead * ahead, 0.0f)) / radius;
+  return kHeadDepth * std::clamp((1.05f - miss) / 0.35f, 0.0f, 1.0f);
+}
+
+}  // namespace
+
+Eigen::Isometry3f headFrame(const HairLayout& layout, std::span<const float> positions) {
+  Eigen::Isometry3f frame = Eigen::Isometry3f::Identity();
+  if (layout.columns.empty()) return frame;
+  Vector3f rest = Vector3f::Zero(), now = Vector3f::Zero();
+  for (const HairColumn& column : layout.columns) {
+    rest += column.rest;
+    now += vertexAt(positions, column.first_vertex);
+  }
+  rest /= static_cast<float>(layout.columns.size());
+  now /= static_cast<float>(layout.columns.size());
+  Eigen::Matrix3f covariance = Eigen::Matrix3f::Zero();
+  for (const HairColumn& column : layout.columns)
+    covariance += (vertexAt(positions, column.first_vertex) - now) * (column.rest - rest).transpose();
+  const Eigen::JacobiSVD<Eigen::Matrix3f> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Matrix3f turn = svd.matrixU();
+  if (turn.determinant() * svd.matrixV().determinant() < 0) turn.col(2) *= -1;
+  frame.linear() = turn * svd.matrixV().transpose();
+  frame.translation() = now - frame.linear() * rest;
+  return frame;
+}
+
+float packDepths(const LightDepths& depths) {
+  const float front = std::clamp(depths.front, 0.0f, shared::kDeepest),
+              behind = std::clamp(depths.behind / shared::kDeepest, 0.0f, 0.999f);
+  return std::floor(front * shared::kDepthSteps + 0.5f) + behind;
+}
+
+void SkyVisibility::placeVertices(const HairLayout& layout, std::span<const float> positions) {
+  frame_ = headFrame(layout, positions);
+  const Eigen::Isometry3f to_head = frame_.inverse();
+  head_center_ = to_head * head_.center;
+  Bounds bounds;
+  vertices_.resize(static_cast<std::size_t>(layout.vertex_count));
+  for (int v = 0; v < layout.vertex_count; ++v) {
+    vertices_[static_cast<std::size_t>(v)] = to_head * vertexAt(positions, v);
+    bounds.add(vertices_[static_cast<std::size_t>(v)]);
+  }
+  grid_.place(bounds);
+}
+
+void SkyVisibility::fillGrid(const HairLayout& layout, float hair_width) {
+  double area = 0;
+  for (const HairFace& face : layout.faces) area += std::max(face.area, 0.0f);
+  // pi / 4: mean projected width of a cylinder over the angles it is crossed at.
+  const float per_area = area > 0 ? static_cast<float>(hair_width / area) * 0.785f * kClumpGaps : 0.0f;
+  for (const HairFace& face : layout.faces) {
+    const int corners = face.first_vertex[3] < 0 ? 3 : 4;
+    const auto vertex = [&](int corner, int layer) -> const Vector3f& {
+      return vertices_[static_cast<std::size_t>(face.first_vertex[corner] + layer)];
+    };
+    const auto middle = [&](int layer) {
+      Vector3f sum = Vector3f::Zero();
+      for (int k = 0; k < corners; ++k) sum += vertex(k, layer);
+      return Vector3f(sum / static_cast<float>(corners));
+    };
+    Vector3f lower = middle(0);
+    for (int layer = 0; layer + 1 < face.layers; ++layer) {
+      const Vector3f upper = middle(layer + 1);
+      const float length = (upper - lower).norm();
+      const int points = std::clamp(static_cast<int>(std::ceil(length / kSpacing)), 1, kMaxPoints);
+      const float extinction = per_area * face.area * length / static_cast<float>(points * corners);
+      for (int k = 0; k < corners; ++k) {
+        // Half way from the middle to the corner: spreads a prism over the nodes that it fills.
+        const Vector3f from = 0.5f * (lower + vertex(k, layer)), to = 0.5f * (upper + vertex(k, layer + 1));
+        for (int point = 0; point < points; ++point) {
+          const float t = (static_cast<float>(point) + 0.5f) / static_cast<float>(points);
+          grid_.add((1 - t) * from + t * to, extinction);
+        }
+      }
+      lower = upper;
+    }
+  }
+}
+
+void SkyVisibility::lookTowards(const Vector3f& direction) {
+  grid_.sweep(direction, swept_);
+  depths_.resize(vertices_.size());
+  for (std::size_t v = 0; v < vertices_.size(); ++v)
+    depths_[v] = grid_.sample(swept_, vertices_[v]) + headDepth(head_center_ - vertices_[v], head_.radius, direction);
+}
+
+// Hair alone: the head sends little back.
+float SkyVisibility::depthBehind(const Vector3f& from, const Vector3f& to_light) const {
+  constexpr int kSteps = 2;
+  const float step_length = shared::kBackReach / kSteps;
+  float depth = 0;
+  for (int step = 0; step < kSteps; ++step) {
+    const Vector3f at = from - (static_cast<float>(step) + 0.5f) * step_length * to_light;
+    if ((at - head_center_).norm() < head_.radius) break;
+    depth += step_length * grid_.density(at);
+  }
+  return depth;
+}
+
+void SkyVisibility::compute(const HairLayout& layout, std::span<const float> positions, float hair_width,
+                            const Vector3f& to_fill, const Vector3f& to_rim) {
+  head_ = fitHead(layout, positions);
+  placeVertices(layout, positions);
+  fillGrid(layout, hair_width);
+  const auto to_head = [&](const Vector3f& direction) { return Vector3f(frame_.linear().transpose() * direction); };
+  values_.assign(vertices_.size(), SoftLight{});
+  for (SoftLight& value : values_) value.sky = 0;
+  for (const Vector3f& direction : skyDirections()) {
+    lookTowards(to_head(direction));
+    for (std::size_t v = 0; v < vertices_.size(); ++v)
+      values_[v].sky += std::exp(-depths_[v]) / static_cast<float>(skyDirections().size());
+  }
+  const auto light = [&](const Vector3f& to_light, LightDepths SoftLight::*depths) {
+    const Vector3f direction = to_head(to_light);
+    lookTowards(direction);
+    for (std::size_t v = 0; v < vertices_.size(); ++v)
+      values_[v].*depths = {depths_[v], depthBehind(vertices_[v], direction)};
+  };
+  light(to_fill, &SoftLight::fill);
+  light(to_rim, &SoftLight::rim);
+}
+
+}  // namespace render

@@ -1,0 +1,57 @@
+// How much light of the sky, the fill and the rim light reaches each hair mesh vertex: optical depths through a lattice
+// of hair density that is fixed to the head, and the head as a ball fitted to the roots. Soft light needs no more; the
+// key light has its deep opacity maps. A hair mesh knows its prisms' volumes, so the density is exact when hair is
+// squeezed or spread.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <span>
+#include <vector>
+
+#include "render/frame_input.h"
+#include "render/light/density_grid.h"
+#include "render/strands/hair_layout.h"
+
+namespace render {
+
+// The rigid motion of the roots since they were at rest: least squares (Kabsch 1976).
+Eigen::Isometry3f headFrame(const HairLayout& layout, std::span<const float> positions);
+
+// Optical depths of a light: between it and the vertex, and behind the vertex as far as light comes back from.
+struct LightDepths {
+  float front = 0, behind = 0;
+};
+// Both in one float, as the shaders read them; see shared.h.
+float packDepths(const LightDepths& depths);
+
+struct SoftLight {
+  float sky = 1;  // 0..1, mean transmittance over the upper directions
+  LightDepths fill, rim;
+};
+
+class SkyVisibility {
+ public:
+  // hair_width: summed projected diameter of all hairs, m (number of hairs times diameter). to_fill, to_rim: unit.
+  void compute(const HairLayout& layout, std::span<const float> positions, float hair_width,
+               const Eigen::Vector3f& to_fill, const Eigen::Vector3f& to_rim);
+  std::span<const SoftLight> values() const { return values_; }  // one a vertex
+  const HeadBall& head() const { return head_; }
+
+ private:
+  void placeVertices(const HairLayout& layout, std::span<const float> positions);
+  void fillGrid(const HairLayout& layout, float hair_width);
+  // Optical depths towards a direction of the head's frame, for all vertices; see depths_.
+  void lookTowards(const Eigen::Vector3f& direction);
+  float depthBehind(const Eigen::Vector3f& from, const Eigen::Vector3f& to_light) const;
+
+  DensityGrid grid_;
+  HeadBall head_;
+  Eigen::Vector3f head_center_ = Eigen::Vector3f::Zero();  // in the head's frame
+  Eigen::Isometry3f frame_ = Eigen::Isometry3f::Identity();
+  std::vector<Eigen::Vector3f> vertices_;  // in the head's frame
+  std::vector<float> swept_, depths_;
+  std::vector<SoftLight> values_;
+};
+
+}  // namespace render
