@@ -15,9 +15,9 @@
 #include <string>
 
 #include "render/frame_input.h"
+#include "render/frame_report.h"
 #include "render/gl/shader.h"
 #include "render/pass_entry.h"
-#include "render/renderer.h"
 
 namespace render {
 

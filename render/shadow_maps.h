@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "render/body/body_store.h"
+#include "render/frame_report.h"
 #include "render/hair/hair_store.h"
 #include "render/plan_input.h"
-#include "render/renderer.h"
 #include "render/software/line_raster.h"
 #include "render/view_math.h"
 #include "shaders/shared.h"

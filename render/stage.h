@@ -11,10 +11,10 @@
 
 #include "render/body/body_store.h"
 #include "render/frame_input.h"
+#include "render/frame_report.h"
 #include "render/gl/render_target.h"
 #include "render/hair/hair_detail.h"
 #include "render/hair/hair_store.h"
-#include "render/renderer.h"
 #include "render/shadow_maps.h"
 
 namespace render {

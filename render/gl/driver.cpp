@@ -1,8 +1,8 @@
 #include "render/gl/driver.h"
 
-#include <string>
+#include <GL/glew.h>
 
-#include "render/renderer.h"
+#include <string>
 
 namespace render {
 namespace {
@@ -12,6 +12,26 @@ bool isNamed(const std::string& renderer, const char* driver) {
 }
 
 }  // namespace
+
+std::string initGl() {
+  glewExperimental = GL_TRUE;
+  const GLenum status = glewInit();
+  if (status != GLEW_OK && status != GLEW_ERROR_NO_GLX_DISPLAY) {
+    return std::string("GLEW cannot load OpenGL: ") + reinterpret_cast<const char*>(glewGetErrorString(status));
+  }
+  if (glCreateTextures == nullptr) return "OpenGL 4.5 functions are missing; a newer driver is needed";
+  return {};
+}
+
+std::string rendererName() {
+  std::string name;
+  for (GLenum part : {GL_VENDOR, GL_RENDERER, GL_VERSION}) {
+    const GLubyte* text = glGetString(part);
+    if (!name.empty()) name += " / ";
+    name += text != nullptr ? reinterpret_cast<const char*>(text) : "unknown";
+  }
+  return name;
+}
 
 bool rasterizesInSoftware() {
   const std::string name = rendererName();

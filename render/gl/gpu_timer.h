@@ -4,8 +4,8 @@
 #include <chrono>
 #include <vector>
 
+#include "render/frame_report.h"
 #include "render/gl/gl_object.h"
-#include "render/renderer.h"
 
 namespace render {
 

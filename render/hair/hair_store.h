@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "render/frame_input.h"
+#include "render/frame_report.h"
 #include "render/gl/gl_object.h"
 #include "render/light/sky_visibility.h"
-#include "render/renderer.h"
 #include "render/strands/hair_layout.h"
 #include "render/view_math.h"
 
