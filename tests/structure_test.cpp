@@ -69,6 +69,17 @@ TEST(Structure, StrandsAreGrownWithoutOpenGl) {
   EXPECT_EQ(includesOf("render/strands", "GL/|render/(?!strands/|frame_input\\.h)|shaders/(?!shared\\.h)"), "");
 }
 
+// OpenGL and light below bodies and hair, those below the software path; passes, stage and renderer above them all.
+TEST(Structure, RoomsOfTheRendererStandOnThoseBelow) {
+  EXPECT_EQ(includesOf("render/gl", "render/(?!gl/|frame_input\\.h|frame_report\\.h|reload\\.h)"), "");
+  EXPECT_EQ(includesOf("render/light", "render/(?!light/|strands/|frame_input\\.h|view_math\\.h)"), "");
+  EXPECT_EQ(includesOf("render/body", "render/(?!body/|gl/|frame_input\\.h|view_math\\.h)"), "");
+  EXPECT_EQ(includesOf("render/hair",
+                       "render/(?!(hair|gl|light|strands)/|frame_(input|report)\\.h|(plan_input|view_math)\\.h)"),
+            "");
+  EXPECT_EQ(includesOf("render/software", "render/(renderer|passes|pass|pass_entry)\\.h"), "");
+}
+
 TEST(Structure, SimulatorAndRendererMeetOnlyWhereTheyShould) {
   // Files of app that include both rooms' doors: the hand-over, the demo and its parts, the tables over both, and
   // what fits hair meshes to strands.
