@@ -101,6 +101,10 @@ struct BodyInput {
   std::span<const float> cloth;  // 1 a vertex: m from a garment's edge, negative under it; empty: bare
   bool dressed = true;           // whether the garment is worn
   Float3 cloth_color{0.105f, 0.11f, 0.12f};
+  // Colours that the mesh brings along, uploaded with it. In place of `color`, if they are sound.
+  std::span<const float> material_places;  // 3 a vertex: u to the right and v down, repeated beyond 0..1; which picture
+  std::span<const std::vector<std::uint32_t>> materials;  // square pictures of one size: RGBA8, sRGB, top row first
+  bool own_materials = true;                              // whether they are shown
 };
 
 struct CameraInput {

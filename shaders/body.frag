@@ -1,5 +1,6 @@
 #include "shared.h"
 #include "common/body_light.glsl"
+#include "common/materials.glsl"
 layout(location = 0) in vec3 world;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in float cover;
@@ -8,11 +9,12 @@ layout(location = 4) in float garment;
 #ifdef HAIR_LIGHT_AT_VERTICES
 layout(location = 5) in float through_hair;
 #endif
+layout(location = 6) in vec3 place;
 layout(location = 0) out vec4 color;
 
 void main() {
 #ifndef HAIR_LIGHT_AT_VERTICES
   float through_hair = forward.w > 0.0 ? hairLightOnSurface(world) : 1.0;
 #endif
-  color = vec4(bodyRadiance(rest, world, normal, cover, garment, through_hair), 1.0);
+  color = vec4(bodyRadiance(materialColor(place), rest, world, normal, cover, garment, through_hair), 1.0);
 }

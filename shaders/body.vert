@@ -5,6 +5,7 @@ layout(location = 1) out vec3 normal;
 layout(location = 2) out float cover;
 layout(location = 3) out vec3 rest;
 layout(location = 4) out float garment;
+layout(location = 6) out vec3 place;
 #ifdef HAIR_LIGHT_AT_VERTICES
 #include "common/shadow.glsl"
 layout(location = 5) out float through_hair;
@@ -15,6 +16,7 @@ void main() {
   cover = root_cover.x;
   rest = rest_position;
   garment = cloth;
+  place = material_place;
 #ifdef HAIR_LIGHT_AT_VERTICES
   through_hair = forward.w > 0.0 ? hairLightOnSurface(world) : 1.0;
 #endif

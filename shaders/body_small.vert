@@ -3,12 +3,16 @@
 #include "shared.h"
 #include "common/skinning.glsl"
 #include "common/body_light.glsl"
+#include "common/materials.glsl"
 layout(location = 0) out vec3 radiance;
+
+const float kSmallLevel = 4.0;  // a vertex stands for many texels
 
 void main() {
   vec3 world, normal;
   skin(world, normal);
-  radiance = bodyRadiance(rest_position, world, normal, root_cover.x, cloth,
+  vec3 base = materialColorAt(material_place, kSmallLevel);
+  radiance = bodyRadiance(base, rest_position, world, normal, root_cover.x, cloth,
                           forward.w > 0.0 ? hairLightOnSurface(world) : 1.0);
   gl_Position = clip_from_world * vec4(world, 1.0);
 }

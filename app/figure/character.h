@@ -54,6 +54,9 @@ struct SkinnedMesh {
   std::vector<std::array<std::uint16_t, 4>> joints;
   std::vector<std::array<float, 4>> weights;
   std::vector<float> cloth;  // m from a garment's edge, negative under it; empty: bare
+  // Colours that the file brings; empty: none. See mesh_materials.h.
+  std::vector<Eigen::Vector3f> material_places;       // u to the right, v down; the material's number
+  std::vector<std::vector<std::uint32_t>> materials;  // a square picture each, of one size: RGBA8, sRGB, top row first
 };
 
 // A collision ellipsoid fixed to a joint.

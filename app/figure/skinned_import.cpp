@@ -13,6 +13,7 @@
 #include <unordered_map>
 
 #include "app/figure/character_build.h"
+#include "app/figure/mesh_materials.h"
 #include "app/files/errors.h"
 #include "app/files/text_file.h"
 #include "app/motion/motion.h"
@@ -171,13 +172,16 @@ void appendVertex(const Import& import, const aiMesh& source, const Skin& skin, 
   mesh.weights.push_back(weights);
 }
 
-void appendMesh(const Import& import, const aiMesh& source, int node, SkinnedMesh& mesh) {
+void appendMesh(const Import& import, const aiMesh& source, int node, SkinnedMesh& mesh, MaterialList& materials) {
   const std::string place = meshName(source);
   if (mesh.positions.size() + source.mNumVertices > kMaxVertices)
     import.fail(place, "has too many vertices", "reduce the mesh below four million");
   const Skin skin = readSkin(import, source, place);
   const auto base = static_cast<std::uint32_t>(mesh.positions.size());
-  for (unsigned v = 0; v < source.mNumVertices; ++v) appendVertex(import, source, skin, node, v, mesh);
+  for (unsigned v = 0; v < source.mNumVertices; ++v) {
+    appendVertex(import, source, skin, node, v, mesh);
+    materials.appendPlace(source, v, mesh);
+  }
   for (unsigned f = 0; f < source.mNumFaces; ++f) {
     const aiFace& face = source.mFaces[f];
     if (face.mNumIndices != 3) continue;
@@ -189,11 +193,12 @@ void appendMesh(const Import& import, const aiMesh& source, int node, SkinnedMes
   }
 }
 
-SkinnedMesh gatherMesh(const Import& import) {
+SkinnedMesh gatherMesh(const Import& import, MaterialList& materials) {
   SkinnedMesh mesh;
   for (std::size_t n = 0; n < import.nodes.size(); ++n)
     for (unsigned m = 0; m < import.nodes[n].source->mNumMeshes; ++m)
-      appendMesh(import, *import.scene->mMeshes[import.nodes[n].source->mMeshes[m]], static_cast<int>(n), mesh);
+      appendMesh(import, *import.scene->mMeshes[import.nodes[n].source->mMeshes[m]], static_cast<int>(n), mesh,
+                 materials);
   if (mesh.triangles.empty())
     import.fail("", "holds no mesh with triangles",
                 "export the character with its skinned mesh, or give a .bvh motion");
@@ -358,7 +363,8 @@ bool carriesSkin(const Character& character, int joint) {
 
 Character assemble(Import& import) {
   Character character;
-  const SkinnedMesh raw = gatherMesh(import);
+  MaterialList materials;
+  const SkinnedMesh raw = gatherMesh(import, materials);
   bool is_neck = false;
   Skeleton skeleton = buildSkeleton(import);
   int head = findHeadJoint(skeleton, referenceOf(skeleton), is_neck);
@@ -367,7 +373,8 @@ Character assemble(Import& import) {
     import.fail("skeleton", "no joint of " + std::to_string(skeleton.joints.size()) + " can carry a head",
                 "name the joint that turns the head 'Head'");
   inferUnits(raw, head, import);
-  character.mesh = gatherMesh(import);
+  character.mesh = gatherMesh(import, materials);
+  materials.fill(*import.scene, import.file, character.mesh, import.notes);
   character.skeleton = skeleton = buildSkeleton(import);
   if (!carriesSkin(character, head))
     import.fail("skeleton", "joint '" + skeleton.joints[head].name + "', taken for the head, carries no skin",

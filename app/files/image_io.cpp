@@ -22,6 +22,9 @@
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
+#define STBI_ONLY_TGA
+#define STBI_ONLY_BMP
 #include <stb/stb_image.h>
 #pragma GCC diagnostic pop
 
@@ -64,20 +67,28 @@ void writePng(const std::string& file, int width, int height, std::span<const un
   writeFile(file, png);
 }
 
-Image readPngBytes(std::string_view bytes, const std::string& name) {
+Image readPictureBytes(std::string_view bytes, const std::string& name, int max_side) {
   const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
   const int size = static_cast<int>(std::min<std::size_t>(bytes.size(), INT_MAX));
   Image image;
   int channels = 0;
   const bool known = stbi_info_from_memory(data, size, &image.width, &image.height, &channels) != 0;
-  if (known && (image.width > kMaxSide || image.height > kMaxSide)) {
-    throw InputError(name, "size", "is larger than 16384 pixels a side", "scale the image down");
+  if (known && (image.width > max_side || image.height > max_side)) {
+    throw InputError(name, "size", "is larger than " + std::to_string(max_side) + " pixels a side",
+                     "scale the image down");
   }
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       known ? stbi_load_from_memory(data, size, &image.width, &image.height, &channels, 4) : nullptr, stbi_image_free);
-  if (!pixels) throw InputError(name, "image data", "is not a readable PNG", "save it again as PNG");
+  if (!pixels) throw InputError(name, "image data", "is not a readable picture", "save it again as PNG");
   image.rgba.assign(pixels.get(), pixels.get() + static_cast<std::size_t>(image.width) * image.height * 4);
   return image;
+}
+
+Image readPngBytes(std::string_view bytes, const std::string& name) {
+  constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
+  if (!bytes.starts_with(kSignature))
+    throw InputError(name, "image data", "is not a readable PNG", "save it again as PNG");
+  return readPictureBytes(bytes, name, kMaxSide);
 }
 
 Image readPng(const std::string& file) {

@@ -1,4 +1,4 @@
-// PNG files in and out.
+// Pictures in, PNG files out.
 #pragma once
 
 #include <span>
@@ -22,6 +22,9 @@ std::string pngBytes(int width, int height, std::span<const unsigned char> rgba)
 
 // Reads a PNG of those bytes; `name` is for messages. Throws InputError.
 Image readPngBytes(std::string_view bytes, const std::string& name);
+
+// Reads a PNG, JPEG, TGA or BMP of those bytes. Throws InputError, also where a side is longer than `max_side` pixels.
+Image readPictureBytes(std::string_view bytes, const std::string& name, int max_side);
 
 // Reads a PNG. Throws InputError when it is missing, broken or larger than 16,384 pixels a side.
 Image readPng(const std::string& file);

@@ -163,6 +163,11 @@ render::BodyInput bodyInput(const Actor& actor, bool show_strands) {
   input.cloth = mesh.cloth;
   input.dressed = actor.spec.look.dressed;
   input.cloth_color = actor.spec.look.cloth_color;
+  if (!mesh.materials.empty()) {
+    input.material_places = {mesh.material_places.data()->data(), 3 * mesh.material_places.size()};
+    input.materials = mesh.materials;
+    input.own_materials = actor.spec.look.own_materials;
+  }
   return input;
 }
 

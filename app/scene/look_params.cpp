@@ -157,6 +157,8 @@ std::vector<HairField> makeHairTable() {
                          "Strength of the highlights; what they gain, light that passes through strands loses."),
     hair<HAIR(diffuse)>("diffuse", "Shine", "", {0, 1}, "Share that is kept of light scattered from strand to strand."),
     color(hair<BODY(body_color)>("body_color", "Body", "", {0, 1}, "Colour of the mannequin, linear RGB.")),
+    hair<BODY(own_materials)>("own_materials", "Body", "", {0, 1},
+                              "Whether a figure shows the colours and pictures of its file in place of body_color."),
     hair<BODY(body_roughness)>("body_roughness", "Body", "", {0.05, 1}, "Roughness of the mannequin's surface."),
     hair<BODY(scalp_tint)>("scalp_tint", "Body", "", {0, 1},
                            "How much the roots shade and colour the skin between them, as at the parting."),

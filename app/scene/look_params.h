@@ -19,12 +19,13 @@ struct CharacterLook {
   int strands = 20000;
   int segments_per_layer = 3;
   render::Float3 body_color = render::BodyInput{}.color;
+  bool own_materials = true;  // of a figure whose file brings some
   float body_roughness = render::BodyInput{}.roughness;
   bool lift_strands = true;  // out of the skin, see HairInput::skin
-  float scalp_tint = 0.8f;  // how much the hair's roots shade and colour the skin between them, 0..1
-  bool dressed = true;      // a garment on a grown mannequin
+  float scalp_tint = 0.8f;   // how much the hair's roots shade and colour the skin between them, 0..1
+  bool dressed = true;       // a garment on a grown mannequin
   render::Float3 cloth_color = render::BodyInput{}.cloth_color;
-  float face_paint = 1;     // of brows, lashes and lips of a grown mannequin, 0..1
+  float face_paint = 1;  // of brows, lashes and lips of a grown mannequin, 0..1
 };
 
 // What all characters of a scene share.

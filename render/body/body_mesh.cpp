@@ -125,6 +125,8 @@ void describeVertices(BodyMesh& mesh) {
   attribute(array, 5, 1, GL_FLOAT, offsetof(BodyVertex, cloth));
   glVertexArrayAttribFormat(array, kCoverAttribute, 2, GL_FLOAT, GL_FALSE, 0);
   glVertexArrayAttribBinding(array, kCoverAttribute, 1);
+  glVertexArrayAttribFormat(array, kPlaceAttribute, 3, GL_FLOAT, GL_FALSE, 0);
+  glVertexArrayAttribBinding(array, kPlaceAttribute, 2);
 }
 
 float edgeLength(const BodyInput& input) {
@@ -140,6 +142,37 @@ long upload(const void* data, std::size_t bytes, Buffer& buffer) {
   buffer = makeBuffer();
   glNamedBufferStorage(buffer.id(), static_cast<GLsizeiptr>(bytes), data, 0);
   return static_cast<long>(bytes);
+}
+
+bool hasSoundMaterials(const BodyInput& input) {
+  if (input.materials.empty() || input.material_places.size() != input.positions.size()) return false;
+  const std::size_t texels = input.materials[0].size();
+  const auto side = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(texels))));
+  return texels > 0 && side * side == texels &&
+         std::all_of(input.materials.begin(), input.materials.end(),
+                     [&](const auto& m) { return m.size() == texels; }) &&
+         std::all_of(input.material_places.begin(), input.material_places.end(),
+                     [](float v) { return std::isfinite(v); });
+}
+
+// The pictures as an array texture with all its levels of detail.
+long uploadMaterials(const BodyInput& input, BodyMesh& mesh) {
+  if (!hasSoundMaterials(input)) return 0;
+  const auto side = static_cast<GLsizei>(std::lround(std::sqrt(static_cast<double>(input.materials[0].size()))));
+  const auto count = static_cast<GLsizei>(input.materials.size());
+  mesh.materials = makeTexture(GL_TEXTURE_2D_ARRAY);
+  const GLuint texture = mesh.materials.id();
+  glTextureStorage3D(texture, 1 + static_cast<GLsizei>(std::log2(side)), GL_SRGB8_ALPHA8, side, side, count);
+  for (GLsizei k = 0; k < count; ++k) {
+    glTextureSubImage3D(texture, 0, 0, 0, k, side, side, 1, GL_RGBA, GL_UNSIGNED_INT_8_8_8_8_REV,
+                        input.materials[static_cast<std::size_t>(k)].data());
+  }
+  glGenerateTextureMipmap(texture);
+  glTextureParameteri(texture, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  long bytes = upload(input.material_places.data(), input.material_places.size_bytes(), mesh.material_places);
+  glVertexArrayVertexBuffer(mesh.attributes.id(), 2, mesh.material_places.id(), 0, 3 * sizeof(float));
+  glEnableVertexArrayAttrib(mesh.attributes.id(), kPlaceAttribute);
+  return bytes + 4L * side * side * count;
 }
 
 }  // namespace
@@ -164,6 +197,7 @@ BodyMesh makeBodyMesh(const BodyInput& input, long& uploaded) {
   uploaded += upload(vertices.data(), vertices.size() * sizeof(BodyVertex), mesh.vertices);
   uploaded += upload(triangles.data(), triangles.size() * sizeof(std::uint32_t), mesh.indices);
   describeVertices(mesh);
+  uploaded += uploadMaterials(input, mesh);
   return mesh;
 }
 

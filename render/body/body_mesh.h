@@ -12,6 +12,7 @@
 
 namespace render {
 
+inline constexpr GLuint kPlaceAttribute = 6;  // of a material, from a buffer of its own; as in skinning.glsl
 inline constexpr GLuint kCoverAttribute = 4;  // root cover, from a buffer of its own; as in skinning.glsl
 
 // Triangles whose first corner hangs mostly on one joint.
@@ -31,6 +32,8 @@ struct BodyMesh {
   std::vector<JointTriangles> by_joint;
   Buffer vertices, indices;
   VertexArray attributes;
+  Buffer material_places;
+  Texture materials;                                     // none: the mesh brings no sound colours of its own
   float spacing = 0;                                     // root mean square length of the edges, rest pose
   int index_count = 0, joint_count = 0;                  // index_count 0: the input was unsound, nothing is drawn
   std::array<IndexRange, kBodyCells.size() + 1> levels;  // full, then ever coarser

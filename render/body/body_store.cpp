@@ -114,21 +114,23 @@ std::uint64_t BodyStore::scalpOf(const BodyInput& input, long& uploaded) {
   return found->id;
 }
 
-void BodyStore::refreshLook(Body& body, const BodyInput& input, long& uploaded) {
+void BodyStore::refreshLook(Body& body, const BodyMesh& mesh, const BodyInput& input, long& uploaded) {
   const std::uint64_t scalp_id = scalpOf(input, uploaded);
   if (scalp_id != body.scalp_id) body.change = ++changes_;  // its shape is another as well
   body.scalp_id = scalp_id;
-  const BodyFinish finish{input.color,       input.root_color, input.roughness,   input.scalp_tint, input.face_origin,
-                          input.face_height, input.face_paint, input.cloth_color, input.dressed};
+  const BodyFinish finish{
+      input.color,       input.root_color, input.roughness,   input.scalp_tint, input.face_origin,
+      input.face_height, input.face_paint, input.cloth_color, input.dressed,    input.own_materials && mesh.materials};
   if (body.block && body.finish == finish) return;
   ++look_changes_;
   body.finish = finish;
   const bool painted = finish.face_height > 0;
-  const shared::BodyBlock block{asVec4(finish.color, std::clamp(finish.roughness, 0.05f, 1.0f)),
-                                asVec4(finish.root_color, std::clamp(finish.scalp_tint, 0.0f, 1.0f)),
-                                asVec4(finish.face_origin, painted ? 1 / finish.face_height : 0),
-                                asVec4(finish.cloth_color, finish.dressed ? 1 : 0),
-                                {painted ? std::clamp(finish.face_paint, 0.0f, 1.0f) : 0, 0, 0, 0}};
+  const shared::BodyBlock block{
+      asVec4(finish.color, std::clamp(finish.roughness, 0.05f, 1.0f)),
+      asVec4(finish.root_color, std::clamp(finish.scalp_tint, 0.0f, 1.0f)),
+      asVec4(finish.face_origin, painted ? 1 / finish.face_height : 0),
+      asVec4(finish.cloth_color, finish.dressed ? 1 : 0),
+      {painted ? std::clamp(finish.face_paint, 0.0f, 1.0f) : 0, finish.own_materials ? 1.0f : 0.0f, 0, 0}};
   body.block = makeBuffer();
   glNamedBufferStorage(body.block.id(), sizeof(block), &block, 0);
   uploaded += sizeof(block);
@@ -154,7 +156,7 @@ long BodyStore::update(std::span<const BodyInput> inputs) {
     if (!refreshPose(body, mesh, input, uploaded)) continue;
     body.seen = true;
     body.mesh_id = input.mesh_id;
-    refreshLook(body, input, uploaded);
+    refreshLook(body, mesh, input, uploaded);
     bounds_.add(body.bounds);
   }
   if (std::erase_if(bodies_, [](const Body& body) { return !body.seen; }) > 0) ++changes_;
@@ -182,6 +184,7 @@ const BodyMesh& BodyStore::meshOf(const Body& body) const {
 void BodyStore::bind(const Body& body, const BodyMesh& mesh) const {
   glBindBufferBase(GL_UNIFORM_BUFFER, 2, body.block.id());
   glBindTextureUnit(shared::kUnitJoints, body.joint_texture.id());
+  glBindTextureUnit(shared::kUnitMaterials, mesh.materials ? mesh.materials.id() : 0);
   const GLuint array = mesh.attributes.id();
   const auto scalp = std::find_if(scalps_.begin(), scalps_.end(),
                                   [&](const Scalp& s) { return s.mesh_id == body.mesh_id && s.id == body.scalp_id; });

@@ -20,7 +20,7 @@ struct BodyFinish {
   Float3 face_origin{};
   float face_height = 0, face_paint = 0;
   Float3 cloth_color{};
-  bool dressed = true;
+  bool dressed = true, own_materials = false;
   bool operator==(const BodyFinish&) const = default;
 };
 
@@ -83,7 +83,7 @@ class BodyStore {
   const BodyMesh& meshOf(const BodyInput& input, long& uploaded);
   // The id of the body's scalp on the GPU; 0 where it has none.
   std::uint64_t scalpOf(const BodyInput& input, long& uploaded);
-  void refreshLook(Body& body, const BodyInput& input, long& uploaded);
+  void refreshLook(Body& body, const BodyMesh& mesh, const BodyInput& input, long& uploaded);
   bool refreshPose(Body& body, const BodyMesh& mesh, const BodyInput& input, long& uploaded);
 
   std::vector<BodyMesh> meshes_;

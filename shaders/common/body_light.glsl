@@ -7,15 +7,15 @@
 // to it, and share of what the skin sends on that meets them again.
 const float kRootShade = 0.65, kRootPasses = 0.6, kRootMeeting = 0.75;
 
-// rest: the point in the rest pose, m. cover: 0 bare skin .. 1 among the roots of a hair. garment: m from its edge,
+// base: colour without roots, paint and garment, linear. rest: the point in the rest pose, m. cover: 0 bare skin .. 1 among the roots of a hair. garment: m from its edge,
 // negative under it. through_hair: share of the key light left after the hair.
-vec3 bodyRadiance(vec3 rest, vec3 world, vec3 normal, float cover, float garment, float through_hair) {
+vec3 bodyRadiance(vec3 base, vec3 rest, vec3 world, vec3 normal, float cover, float garment, float through_hair) {
   vec3 to_eye = normalize(eye.xyz - world), n = normalize(normal);
   if (dot(n, to_eye) < 0.0)
     n = normalize(n - 1.02 * dot(n, to_eye) * to_eye);  // interpolated normals may tip over the rim
   float roots = root_color.w * cover;
   vec3 among_roots = 1.0 - kRootShade * roots * (1.0 - kRootPasses * root_color.rgb);
-  vec3 albedo = body_color.rgb * mix(vec3(1.0), root_color.rgb, kRootMeeting * roots);
+  vec3 albedo = base * mix(vec3(1.0), root_color.rgb, kRootMeeting * roots);
   float roughness = mix(body_color.a, 1.0, roots);
   float pixel = eye.w * length(eye.xyz - world);
   if (paint.x > 0.0) {

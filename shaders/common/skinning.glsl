@@ -8,6 +8,7 @@ layout(location = 2) in uvec4 joints;
 layout(location = 3) in vec4 weights;
 layout(location = 4) in vec2 root_cover;  // 0 bare skin .. 1 among the roots of a hair; m that these lie under it
 layout(location = 5) in float cloth;      // m from a garment's edge, negative under it
+layout(location = 6) in vec3 material_place;  // u, v and number of a picture of materials.glsl
 layout(location = 0) uniform mat4 clip_from_world;
 
 void skinRigid(vec3 rest, out vec3 world, out vec3 normal) {

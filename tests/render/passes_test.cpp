@@ -54,7 +54,7 @@ MEMBERS(HairInput, id, layout_revision, position_revision, layout_id, faces, pos
         segments_per_layer, look, skin)
 MEMBERS(BodyInput, id, mesh_id, positions, normals, triangles, joints, weights, joint_matrices, pose_revision, color,
         roughness, scalp_id, root_cover, root_color, scalp_tint, face_origin, face_height, face_paint, cloth, dressed,
-        cloth_color)
+        cloth_color, material_places, materials, own_materials)
 MEMBERS(FrameInput, width, height, camera, light, view, skips, hairs, bodies, debug_lines, debug_triangles,
         debug_points)
 #undef MEMBERS
@@ -86,7 +86,8 @@ void change(render::StrandPath& value) {
 struct Scene {
   synthetic::Hair hair = synthetic::makeHair(5);
   synthetic::Body body = synthetic::makeBody();
-  std::vector<float> cover, rest, cloth;
+  std::vector<float> cover, rest, cloth, places;
+  std::vector<std::vector<std::uint32_t>> materials{{0xff405070u}, {0xff704050u}};
   std::vector<render::SkinEllipsoid> skin;
   std::vector<render::HairInput> hairs;
   std::vector<render::BodyInput> bodies;
@@ -106,6 +107,10 @@ struct Scene {
     bodies[0].root_cover = cover;
     for (std::size_t v = 1; v < body.positions.size(); v += 3) cloth.push_back(body.positions[v] - 1.42f);
     bodies[0].cloth = cloth;
+    for (std::size_t v = 0; v < body.positions.size(); v += 3)
+      places.insert(places.end(), {body.positions[v], body.positions[v + 1], body.positions[v] > 0 ? 1.0f : 0.0f});
+    bodies[0].material_places = places;
+    bodies[0].materials = materials;
     // The synthetic body's front lies where face.glsl paints lips and brows.
     bodies[0].face_origin = {0, 1.45f, 0};
     bodies[0].face_height = 0.25f;
@@ -139,12 +144,13 @@ struct Scene {
       return;
     }
     const bool of_hair = &values == &hairs[0].positions, of_cover = &values == &bodies[0].root_cover;
-    std::vector<float>& numbers = of_hair                         ? hair.positions
-                                  : of_cover                      ? cover
-                                  : &values == &bodies[0].normals ? body.normals
-                                  : &values == &bodies[0].weights ? body.weights
-                                  : &values == &bodies[0].cloth   ? cloth
-                                                                  : body.positions;
+    std::vector<float>& numbers = of_hair                                 ? hair.positions
+                                  : of_cover                              ? cover
+                                  : &values == &bodies[0].normals         ? body.normals
+                                  : &values == &bodies[0].weights         ? body.weights
+                                  : &values == &bodies[0].cloth           ? cloth
+                                  : &values == &bodies[0].material_places ? places
+                                                                          : body.positions;
     for (std::size_t i = 0; i < numbers.size(); i += 2) numbers[i] = 0.95f * numbers[i] + 0.01f;
     ++(of_hair ? hairs[0].position_revision : of_cover ? bodies[0].scalp_id : bodies[0].mesh_id);
   }
@@ -155,6 +161,10 @@ struct Scene {
   void change(std::span<const std::uint32_t>&) {
     body.triangles.resize(body.triangles.size() / 2 / 3 * 3);
     bodies[0].triangles = body.triangles;
+    ++bodies[0].mesh_id;
+  }
+  void change(std::span<const std::vector<std::uint32_t>>&) {
+    materials[0][0] ^= 0x00ffffffu;
     ++bodies[0].mesh_id;
   }
   void change(std::span<const std::uint16_t>&) { ++bodies[0].mesh_id; }  // there is one joint only
@@ -216,7 +226,8 @@ struct Scene {
 
 // What may change without this picture changing: identities and revisions, exact skips and those of small pictures, the
 // other path to the same strands, and what other members switch off here.
-const std::set<std::string> kUnseen{"frame.bodies.id",
+const std::set<std::string> kUnseen{"frame.bodies.color",  // the mesh brings its own
+                                    "frame.bodies.id",
                                     "frame.bodies.joints",
                                     "frame.bodies.mesh_id",
                                     "frame.bodies.pose_revision",
