@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "render/software/bands.h"
+
 namespace render {
 
 // A point of a strand in its map: texels from the tile's corner, depth 0..1, and the opacity of the line that ends
@@ -31,7 +33,7 @@ struct OpacityTile {
   std::vector<std::array<float, 4>> near, far;  // opacity of layers 0..3; of 4..6 and of all hair
 };
 
-// Fills depth, near and far.
-void rasterizeLines(const StoredLines& lines, OpacityTile& tile);
+// Fills depth, near and far, the same for every number of bands.
+void rasterizeLines(const StoredLines& lines, OpacityTile& tile, int bands = bandCount());
 
 }  // namespace render

@@ -143,6 +143,54 @@ void fillStep(const std::array<Point, 4>& corners, const Segment& segment, const
   }
 }
 
+Segment segmentOf(const RibbonEdges& from, const RibbonEdges& to) {
+  Segment segment;
+  segment.progress = progressOf({0.5f * (from.left_x + from.right_x), 0.5f * (from.left_y + from.right_y)},
+                                {0.5f * (to.left_x + to.right_x), 0.5f * (to.left_y + to.right_y)});
+  segment.depth = from.depth;
+  segment.depth_step = to.depth - from.depth;
+  segment.coverage = from.coverage;
+  segment.coverage_step = to.coverage - from.coverage;
+  return segment;
+}
+
+constexpr int kStripe = 32;  // rows; bands take stripes in turns, for hair is not as thick everywhere
+
+// Calls visit(part) for the parts of a box in a band's stripes.
+template <class Visit>
+void eachStripe(const PixelBox& box, int band, int bands, const Visit& visit) {
+  for (int stripe = box.low_y / kStripe; stripe * kStripe < box.high_y; ++stripe) {
+    if (stripe % bands != band) continue;
+    visit(PixelBox{box.low_x, std::max(box.low_y, stripe * kStripe), box.high_x,
+                   std::min(box.high_y, (stripe + 1) * kStripe)});
+  }
+}
+
+// Shows the strands in the stripes of a band.
+PixelBox rasterizeBand(const StoredHair& hair, int band, int bands, SampleGrid& grid) {
+  PixelBox touched;
+  for (std::size_t n = 0; n < hair.strands.size(); ++n) {
+    const StoredStrand& strand = hair.strands[n];
+    for (std::size_t i = 0; i + 1 < strand.points; ++i) {
+      const std::size_t at = n * hair.stride + i;
+      const RibbonEdges &from = hair.points[at], &to = hair.points[at + 1];
+      if (from.depth < 0 || to.depth < 0) continue;
+      const std::array<Point, 4> corners{
+          {{from.left_x, from.left_y}, {from.right_x, from.right_y}, {to.right_x, to.right_y}, {to.left_x, to.left_y}}};
+      const PixelBox box = boxAround(corners, grid);
+      if (box.empty()) continue;
+      eachStripe(box, band, bands, [&](const PixelBox& part) {
+        touched.add(part);
+        Segment segment = segmentOf(from, to);
+        segment.dither = strand.dither;
+        segment.point = hair.first_point + static_cast<std::uint32_t>(at);
+        fillStep(corners, segment, part, grid);
+      });
+    }
+  }
+  return touched;
+}
+
 }  // namespace
 
 void PixelBox::add(const PixelBox& other) {
@@ -157,32 +205,12 @@ void PixelBox::add(const PixelBox& other) {
   high_y = std::max(high_y, other.high_y);
 }
 
-PixelBox rasterizeStrands(const StoredHair& hair, SampleGrid& grid) {
-  PixelBox touched;
-  for (std::size_t n = 0; n < hair.strands.size(); ++n) {
-    const StoredStrand& strand = hair.strands[n];
-    for (std::size_t i = 0; i + 1 < strand.points; ++i) {
-      const std::size_t at = n * hair.stride + i;
-      const RibbonEdges &from = hair.points[at], &to = hair.points[at + 1];
-      if (from.depth < 0 || to.depth < 0) continue;
-      const std::array<Point, 4> corners{
-          {{from.left_x, from.left_y}, {from.right_x, from.right_y}, {to.right_x, to.right_y}, {to.left_x, to.left_y}}};
-      const PixelBox box = boxAround(corners, grid);
-      if (box.empty()) continue;
-      touched.add(box);
-      Segment segment;
-      segment.progress = progressOf({0.5f * (from.left_x + from.right_x), 0.5f * (from.left_y + from.right_y)},
-                                    {0.5f * (to.left_x + to.right_x), 0.5f * (to.left_y + to.right_y)});
-      segment.depth = from.depth;
-      segment.depth_step = to.depth - from.depth;
-      segment.coverage = from.coverage;
-      segment.coverage_step = to.coverage - from.coverage;
-      segment.dither = strand.dither;
-      segment.point = hair.first_point + static_cast<std::uint32_t>(at);
-      fillStep(corners, segment, box, grid);
-    }
-  }
-  return touched;
+PixelBox rasterizeStrands(const StoredHair& hair, SampleGrid& grid, int bands) {
+  std::vector<PixelBox> touched(static_cast<std::size_t>(bands));
+  inBands(bands, [&](int band) { touched[static_cast<std::size_t>(band)] = rasterizeBand(hair, band, bands, grid); });
+  PixelBox all;
+  for (const PixelBox& box : touched) all.add(box);
+  return all;
 }
 
 void clearSamples(const PixelBox& box, SampleGrid& grid) {

@@ -10,6 +10,8 @@
 #include <span>
 #include <vector>
 
+#include "render/software/bands.h"
+
 namespace render {
 
 // A ribbon's point as strand_points.comp stores it. Pixels, from below; depth 0..1, negative before the near plane.
@@ -62,8 +64,8 @@ struct StoredHair {
   std::uint32_t stride = 0, first_point = 0;
 };
 
-// Returns the pixels that it may have touched.
-PixelBox rasterizeStrands(const StoredHair& hair, SampleGrid& grid);
+// Returns the pixels that it may have touched. The samples are the same for every number of bands.
+PixelBox rasterizeStrands(const StoredHair& hair, SampleGrid& grid, int bands = bandCount());
 
 // Takes all samples off the pixels of a box.
 void clearSamples(const PixelBox& box, SampleGrid& grid);

@@ -1,9 +1,11 @@
 // The rasterizers of the software path, against what they should fill, sample by sample.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <random>
 #include <vector>
 
 #include "render/software/line_raster.h"
@@ -149,6 +151,60 @@ TEST(LineRaster, LayersHoldWhatLiesInThem) {
   EXPECT_FLOAT_EQ(tile.far[at][2], 0.5f);
   EXPECT_FLOAT_EQ(tile.far[at][3], 0.5f);
   EXPECT_FLOAT_EQ(tile.near[0][0] + tile.far[0][3], 0);
+}
+
+// Strands every way over a picture, some of them beyond its edges.
+std::vector<render::RibbonEdges> scatteredPoints(std::size_t count, float side) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> place(-0.2f * side, 1.2f * side), share(0, 1);
+  std::vector<render::RibbonEdges> points;
+  for (std::size_t k = 0; k < count; ++k) {
+    const float x = place(random), y = place(random);
+    points.push_back({x, y, x + 2 * share(random), y + 2 * share(random), share(random), share(random), {}});
+  }
+  return points;
+}
+
+TEST(StrandRaster, BandsChangeNoSample) {
+  constexpr int kWidth = 90, kHeight = 170;
+  constexpr std::uint32_t kStride = 6;
+  const std::vector<render::RibbonEdges> points = scatteredPoints(300 * kStride, 170);
+  const std::vector<render::StoredStrand> strands(300, {kStride, 0.3f, 0, 0});
+  const auto drawn = [&](int bands) {
+    std::vector<render::SampledPixel> pixels(kWidth * kHeight);
+    render::SampleGrid grid{pixels, kWidth, kHeight, Picture().grid.pattern};
+    render::clearSamples({0, 0, kWidth, kHeight}, grid);
+    const render::PixelBox box = render::rasterizeStrands({strands, points, kStride, 0}, grid, bands);
+    EXPECT_EQ(box.high_x - box.low_x + box.high_y - box.low_y, kWidth + kHeight);
+    std::vector<std::uint32_t> shown;
+    for (const render::SampledPixel& pixel : pixels) shown.insert(shown.end(), pixel.shown.begin(), pixel.shown.end());
+    return shown;
+  };
+  const std::vector<std::uint32_t> whole = drawn(1);
+  EXPECT_GT(std::count_if(whole.begin(), whole.end(), [](std::uint32_t s) { return s > 0; }), kWidth * kHeight);
+  for (const int bands : {2, 3, 8}) EXPECT_EQ(drawn(bands), whole) << bands << " bands";
+}
+
+TEST(LineRaster, BandsChangeNoTexel) {
+  constexpr std::uint32_t kStride = 6;
+  std::vector<render::LinePoint> points;
+  for (const render::RibbonEdges& point : scatteredPoints(300 * kStride, 64))
+    points.push_back({point.left_x, point.left_y, point.depth, point.coverage});
+  const std::vector<std::uint32_t> counts(300, kStride);
+  const auto drawn = [&](int bands) {
+    render::OpacityTile tile;
+    tile.side = 64;
+    render::rasterizeLines({counts, points, kStride}, tile, bands);
+    return tile;
+  };
+  const render::OpacityTile whole = drawn(1);
+  EXPECT_GT(std::count_if(whole.far.begin(), whole.far.end(), [](const auto& far) { return far[3] > 0; }), 64 * 32);
+  for (const int bands : {2, 3, 8}) {
+    const render::OpacityTile tile = drawn(bands);
+    EXPECT_EQ(tile.depth, whole.depth);
+    EXPECT_EQ(tile.near, whole.near);
+    EXPECT_EQ(tile.far, whole.far);
+  }
 }
 
 }  // namespace
