@@ -185,6 +185,20 @@ TEST(StrandRaster, BandsChangeNoSample) {
   for (const int bands : {2, 3, 8}) EXPECT_EQ(drawn(bands), whole) << bands << " bands";
 }
 
+TEST(StrandRaster, BandsLeaveNoRowBetweenThem) {
+  constexpr int kWidth = 4, kHeight = 300;
+  for (const int bands : {1, 2, 3}) {
+    std::vector<render::SampledPixel> pixels(kWidth * kHeight);
+    render::SampleGrid grid{pixels, kWidth, kHeight, Picture().grid.pattern};
+    render::clearSamples({0, 0, kWidth, kHeight}, grid);
+    const render::StoredStrand strand{2, 0.5f, 0, 0};
+    render::rasterizeStrands({{&strand, 1}, ribbon({{2, -1}, {2, 301}}, {3, 0}, 0.5f), 2, 0}, grid, bands);
+    for (std::size_t at = 0; at < pixels.size(); ++at) {
+      for (const float depth : pixels[at].depth) ASSERT_LT(depth, 1) << bands << " bands, row " << at / kWidth;
+    }
+  }
+}
+
 TEST(LineRaster, BandsChangeNoTexel) {
   constexpr std::uint32_t kStride = 6;
   std::vector<render::LinePoint> points;
