@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -361,7 +362,8 @@ void finish(const Unchecked& unchecked, Options& options) {
     throw UsageError(std::string("--no-images draws nothing that ") +
                      (options.video.empty() ? "--screenshot" : "--video") + " could write; leave one of them out");
   }
-  if (!options.video.empty() && !std::filesystem::path(options.video).has_extension())
+  constexpr std::array<std::string_view, 6> kFilms{".mp4", ".webm", ".mkv", ".mov", ".avi", ".gif"};
+  if (!options.video.empty() && !std::ranges::count(kFilms, std::filesystem::path(options.video).extension().string()))
     throw UsageError("--video cannot be '" + options.video + "'; name it .mp4, .webm or .mkv");
   if (!options.video.empty()) options.headless = true;
   if (!options.write_hair.empty() && std::filesystem::path(options.write_hair).extension() != ".obj") {

@@ -1,5 +1,7 @@
 #include <filesystem>
+#include <utility>
 
+#include "app/debug_option.h"
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
 #include "app/files/file_kind.h"
@@ -7,6 +9,7 @@
 #include "app/files/scene_file.h"
 #include "app/groom/certain_mends.h"
 #include "app/options.h"
+#include "app/scene/comparison.h"
 #include "app/scene/environment_light.h"
 #include "sim/field_text.h"
 
@@ -110,6 +113,43 @@ void checkHairAndStyle(const Options& options) {
   if (const std::string fault = readMends(options.mends, mends); !fault.empty()) throw UsageError("--mends: " + fault);
 }
 
+// Reads what an option was given. A fault of the value is a mistake of the command line, one of a file that it names is
+// that file's: both messages begin with the option.
+template <class Read>
+void readValue(const std::string& option, const Read& read) {
+  try {
+    read();
+  } catch (const InputError& fault) {
+    const std::string words = fault.what();
+    if (!fault.of_file) throw UsageError(option + ": " + words);
+    throw InputError(option, "", words.substr(0, words.find("; ")),
+                     words.find("; ") == std::string::npos ? "" : words.substr(words.find("; ") + 2));
+  }
+}
+
+// NAME and VALUE of "NAME=VALUE"; either is empty where it is missing.
+std::pair<std::string, std::string> assigned(const std::string& text) {
+  const std::size_t equals = std::min(text.find('='), text.size());
+  return {text.substr(0, equals), text.substr(std::min(text.size(), equals + 1))};
+}
+
+void overrideFields(const Options& options, CharacterSpec& spec) {
+  for (const std::string& text : options.maps) {
+    const auto [field, file] = assigned(text);
+    const std::string fault = field.empty() || file.empty()
+                                  ? "write FIELD=FILE.png, for instance length=assets/maps/bob_length.png"
+                                  : setMap(field, findFile(file, "", "maps"), spec.maps);
+    if (!fault.empty()) throw UsageError("--map cannot be '" + text + "'; " + fault);
+  }
+  for (const std::string& text : options.curves) {
+    const auto [field, shares] = assigned(text);
+    if (field.empty() || shares.empty())
+      throw UsageError("--curve cannot be '" + text +
+                       "'; write FIELD=SHARES, for instance stiffness=1,0.5,0.2, or FIELD=none");
+    readValue("--curve " + field, [&] { setCurve(field, shares, spec.curves); });
+  }
+}
+
 void overrideCharacter(const Options& options, CharacterSpec& spec) {
   if (!options.style.empty()) {
     spec.style = *parseStyle(options.style);
@@ -132,28 +172,19 @@ void overrideCharacter(const Options& options, CharacterSpec& spec) {
   if (!options.clip.empty()) spec.clip = options.clip;
   if (options.start >= 0) spec.clip_offset = options.start;
   if (!options.loop.empty()) spec.loop = *parseLoop(options.loop);
-  for (const std::string& text : options.maps) {
-    const std::size_t equals = std::min(text.find('='), text.size());
-    const std::string file = findFile(text.substr(std::min(text.size(), equals + 1)), "", "maps");
-    const std::string fault =
-        equals + 1 >= text.size() ? "write FIELD=FILE.png" : setMap(text.substr(0, equals), file, spec.maps);
-    if (!fault.empty()) throw UsageError("--map cannot be '" + text + "'; " + fault);
-  }
-  for (const std::string& text : options.curves) {
-    const std::size_t equals = std::min(text.find('='), text.size());
-    if (equals + 1 >= text.size())
-      throw UsageError("--curve cannot be '" + text +
-                       "'; write FIELD=SHARES, for instance stiffness=1,0.5,0.2, or FIELD=none");
-    setCurve(text.substr(0, equals), text.substr(std::min(text.size(), equals + 1)), spec.curves);
-  }
-  if (!options.tie.empty()) spec.ties = tiesFromText(options.tie);
+  overrideFields(options, spec);
+  if (!options.tie.empty()) readValue("--tie", [&] { spec.ties = tiesFromText(options.tie); });
   for (const std::string& text : options.attachments) {
-    if (text.empty()) throw UsageError("--attach cannot be empty; write FILE@JOINT, or none");
-    const std::vector<AttachmentSpec> given = attachmentsFromText(text);
+    std::vector<AttachmentSpec> given;
+    readValue("--attach", [&] { given = attachmentsFromText(text); });
     if (given.empty()) spec.attachments.clear();
     spec.attachments.insert(spec.attachments.end(), given.begin(), given.end());
   }
-  for (const std::string& text : options.pins) spec.pins.push_back(pinFromText(text));
+  if (spec.attachments.size() > kMaxAttachments)
+    throw UsageError("--attach: the figure would wear " + std::to_string(spec.attachments.size()) +
+                     " things; at most " + std::to_string(kMaxAttachments) +
+                     " are allowed, and --attach none takes off the scene's");
+  for (const std::string& text : options.pins) readValue("--pin", [&] { spec.pins.push_back(pinFromText(text)); });
 }
 
 // A scene's name speaks of its motion: with another one it is another's.
@@ -185,7 +216,8 @@ Scene sceneFromOptions(const Options& given) {
     looks.push_back(&spec.look);
   }
   nameAfterMotion(options, scene);
-  if (!options.preset.empty()) loadPreset(presetFile(options.preset, ""), {&scene.sim, &scene.look, looks});
+  if (!options.preset.empty())
+    readValue("--preset", [&] { loadPreset(presetFile(options.preset, ""), {&scene.sim, &scene.look, looks}); });
   if (!options.environment.empty()) scene.look.light = environmentLight(options.environment, scene.look.light);
   // Before the sets: --set overrides a part of what --solver sets.
   chooseSolver(options.solver, scene.sim);
@@ -207,6 +239,9 @@ Scene sceneFromOptions(const Options& given) {
   if (options.fps > 0) scene.playback.fps = options.fps;
   if (!options.camera.empty()) setCamera(options.camera, scene.camera);
   if (!options.framing.empty()) scene.camera.framing = options.framing;
+  DebugViews checked;
+  setDebugViews(options.debug, checked);
+  if (!options.compare.empty()) readValue("--compare", [&] { comparedScene(options.compare, scene); });
   return scene;
 }
 

@@ -15,7 +15,7 @@ std::string message(const std::string& file, const std::string& place, const std
 
 InputError::InputError(const std::string& file, const std::string& place, const std::string& fault,
                        const std::string& mend)
-    : std::runtime_error(message(file, place, fault, mend)) {}
+    : std::runtime_error(message(file, place, fault, mend)), of_file(!file.empty()) {}
 
 OutputError::OutputError(const std::string& file, const std::string& fault, const std::string& mend)
     : std::runtime_error(message(file, "", fault, mend)) {}

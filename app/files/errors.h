@@ -19,6 +19,7 @@ enum ExitCode {
 // A file or value that cannot be used. what() is the whole message: "FILE: PLACE: FAULT; MEND".
 struct InputError : std::runtime_error {
   InputError(const std::string& file, const std::string& place, const std::string& fault, const std::string& mend);
+  bool of_file;  // a file is named; else the fault is in a value that was typed
 };
 
 // A file that cannot be written. Exit code kExitFault.

@@ -56,6 +56,26 @@ std::vector<double>* findCurve(std::string_view name, FieldCurves& curves) {
   return name == "stiffness" ? &curves.stiffness : name == "mass" ? &curves.mass : nullptr;
 }
 
+// What of the picture is not as a field's picture should be.
+std::string noteOf(const Image& image, const std::vector<float>& value) {
+  constexpr int kTint = 12, kSolid = 250;  // of 255
+  std::size_t coloured = 0, clear = 0;
+  for (std::size_t i = 0; i + 3 < image.rgba.size(); i += 4) {
+    const auto [low, high] = std::minmax({image.rgba[i], image.rgba[i + 1], image.rgba[i + 2]});
+    coloured += high - low > kTint;
+    clear += image.rgba[i + 3] < kSolid;
+  }
+  const bool even = std::ranges::all_of(value, [&](float one) { return one == value.front(); });
+  std::string note;
+  const auto add = [&](const std::string& more) { note += (note.empty() ? "" : ", and ") + more; };
+  if (coloured > 0) add("is coloured: its brightness is read (grey is expected, white for the parameter's own value)");
+  if (clear > 0) add("is transparent in places: the colour beneath is read (an opaque picture is expected)");
+  if (!even && image.width != 2 * image.height)
+    add("is " + std::to_string(image.width) + "x" + std::to_string(image.height) +
+        ": it is stretched over the head (twice as wide as high is expected)");
+  return note;
+}
+
 }  // namespace
 
 double FieldMap::at(const sim::Vec3& direction) const {
@@ -86,12 +106,23 @@ FieldMap readFieldMap(const std::string& picture) {
       isPictureText(picture)
           ? readPngBytes(fromBase64(std::string_view(picture).substr(kPictureText.size())), "painted field")
           : readPng(picture);
-  FieldMap map{image.width, image.height, {}};
+  FieldMap map{image.width, image.height, {}, {}};
   for (std::size_t i = 0; i + 3 < image.rgba.size(); i += 4) {
     const int grey = 2126 * image.rgba[i] + 7152 * image.rgba[i + 1] + 722 * image.rgba[i + 2];
     map.value.push_back(static_cast<float>(grey) / 2550000.0f);
   }
+  map.note = noteOf(image, map.value);
   return map;
+}
+
+std::string mapNotes(const FieldFiles& maps) {
+  std::string notes;
+  for (const std::string* picture : {&maps.stiffness, &maps.length, &maps.density, &maps.mass}) {
+    if (picture->empty() || isPictureText(*picture)) continue;
+    const std::string note = readFieldMap(*picture).note, line = *picture + " " + note;
+    if (!note.empty() && notes.find(line) == std::string::npos) notes += (notes.empty() ? "" : "\n") + line;
+  }
+  return notes;
 }
 
 std::string pictureText(const FieldMap& map) {
@@ -145,14 +176,14 @@ nlohmann::json writeCurves(const FieldCurves& curves) {
 
 void setCurve(const std::string& name, const std::string& text, FieldCurves& curves) {
   std::vector<double>* curve = findCurve(name, curves);
-  if (!curve) throw InputError("", "curve '" + name.substr(0, 40) + "'", "is of no field", "choose stiffness or mass");
+  if (!curve) throw InputError("", "field '" + name.substr(0, 40) + "'", "has no curve", "choose stiffness or mass");
   std::vector<double> points;
-  for (std::size_t at = 0; text != "none" && at < text.size();) {
+  for (std::size_t at = 0; text != "none" && at <= text.size();) {
     const std::size_t end = std::min(text.find(',', at), text.size());
     double point = 0;
     if (!sim::parseNumber(std::string_view(text).substr(at, end - at), point) || point < kMinShare ||
         point > kLargestShare || points.size() == kMaxCurvePoints)
-      throw InputError("", "curve '" + text.substr(0, 40) + "'", "is no list of shares",
+      throw InputError("", "'" + text.substr(0, 40) + "'", "is no list of shares",
                        "write up to 32 numbers from 0.01 to 10 with commas, from root to tip, or none");
     points.push_back(point);
     at = end + 1;

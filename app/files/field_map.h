@@ -22,6 +22,7 @@ namespace app {
 struct FieldMap {
   int width = 0, height = 0;
   std::vector<float> value;  // 0 to 1, top row first
+  std::string note{};        // what was read otherwise than it looks, and what is expected; empty: nothing
 
   // In a direction from the head's middle (need not be unit), bilinear; the left and right sides meet.
   double at(const sim::Vec3& direction) const;
@@ -30,7 +31,7 @@ struct FieldMap {
 // The direction of a pixel's middle.
 sim::Vec3 directionOf(const FieldMap& map, int column, int row);
 
-// The luminance of a PNG, of a file or in text. Throws InputError.
+// The luminance of a PNG, of a file or in text, over the whole head whatever its sides. Throws InputError.
 FieldMap readFieldMap(const std::string& picture);
 
 // As text that readFieldMap reads back, in 256 greys.
@@ -42,6 +43,9 @@ struct FieldFiles {
   std::string stiffness, length, density, mass;
   bool operator==(const FieldFiles&) const = default;
 };
+
+// The notes of pictures that are files, a line each, with their names. Throws InputError.
+std::string mapNotes(const FieldFiles& maps);
 
 inline constexpr std::array<std::string_view, 4> kFieldNames{"stiffness", "length", "density", "mass"};
 

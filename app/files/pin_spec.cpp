@@ -71,8 +71,8 @@ json writePins(const std::vector<PinSpec>& pins) {
 }
 
 PinSpec pinFromText(std::string_view text) {
-  const json parsed = parseJson(text, "--pin");
-  return readPin(JsonPlace(parsed, "--pin"));
+  const json parsed = parseJson(text, "");
+  return readPin(JsonPlace(parsed, ""));
 }
 
 }  // namespace app

@@ -189,7 +189,7 @@ std::string presetFile(const std::string& name, const std::string& base_file) {
   std::string known;
   for (const std::string& preset : listAssets("presets", {".json"}))
     known += (known.empty() ? "" : ", ") + stem(preset);
-  throw InputError("", "", "there is no preset '" + name + "'", "choose one of " + known + ", or name a file");
+  throw InputError("preset '" + name + "'", "", "is not there", "choose one of " + known + ", or name a file");
 }
 
 }  // namespace app

@@ -35,7 +35,7 @@ void setAll(const std::string& text, Scene& scene) {
     if (equals >= end) throw InputError("", "'" + text.substr(at, end - at) + "'", "is no setting", "write NAME=VALUE");
     const std::string fault = setAnywhere(text.substr(at, equals - at), text.substr(equals + 1, end - equals - 1),
                                           scene.sim, looks, scene.look);
-    if (!fault.empty()) throw InputError("", "compared setting", fault, "");
+    if (!fault.empty()) throw InputError("", text.substr(at, equals - at), fault, "");
     at = end + 1;
   }
 }
@@ -57,8 +57,9 @@ Scene sceneFromFile(const std::string& file, Scene scene) {
   }
 }
 
-Scene comparedScene(const std::string& with, const Demo& demo) {
-  Scene scene = presentScene(demo);
+}  // namespace
+
+Scene comparedScene(const std::string& with, Scene scene) {
   if (with.empty()) return scene;
   if (with.find('=') != std::string::npos) {
     setAll(with, scene);
@@ -70,6 +71,8 @@ Scene comparedScene(const std::string& with, const Demo& demo) {
   if (!std::filesystem::exists(file, ignored)) file = presetFile(with, "");
   return sceneFromFile(file, std::move(scene));
 }
+
+namespace {
 
 bool sameHair(const Demo& a, const Demo& b) {
   return std::ranges::equal(a.actors, b.actors, [](const Actor& one, const Actor& other) {
@@ -138,7 +141,7 @@ constexpr std::array kOfBoth{Ask::kPause,    Ask::kPauseMotion, Ask::kSingleStep
 }  // namespace
 
 void startComparison(const std::string& with, Demo& demo) {
-  Demo other = openScene(comparedScene(with, demo), demo.aspect);
+  Demo other = openScene(comparedScene(with, presentScene(demo)), demo.aspect);
   if (demo.frames > 0) catchUp(demo, other);
   other.paused = demo.paused;
   other.timeline.on = demo.timeline.on;

@@ -83,7 +83,7 @@ namespace {
 std::vector<float> sharesOf(const std::string& picture, const std::vector<double>& curve, double least,
                             const Scalp& scalp, const sim::HairMeshShape& shape) {
   if (picture.empty() && curve.empty()) return {};
-  const FieldMap map = picture.empty() ? FieldMap{1, 1, {1}} : readFieldMap(picture);
+  const FieldMap map = picture.empty() ? FieldMap{1, 1, {1}, {}} : readFieldMap(picture);
   std::vector<float> shares(shape.positions.size(), 1);
   for (int c = 0; c < shape.columnCount(); ++c) {
     const double whole = least + (1 - least) * atRoot(map, scalp, shape, c);

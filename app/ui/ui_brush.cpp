@@ -33,7 +33,7 @@ void drawField(const Vec3& place, const Demo& demo, const BrushState& brush, flo
   const Actor& actor = selectedActor(demo);
   FieldFiles maps = actor.spec.maps;
   const std::string& picture = *findMap(kFieldNames[static_cast<std::size_t>(brush.field)], maps);
-  const FieldMap map = picture.empty() ? FieldMap{1, 1, {1}} : readFieldMap(picture);
+  const FieldMap map = picture.empty() ? FieldMap{1, 1, {1}, {}} : readFieldMap(picture);
   const sim::HairMesh& mesh = actor.haircut->mesh;
   Brush reach;
   reach.at = place, reach.radius = brush.radius, reach.falloff = brush.falloff;

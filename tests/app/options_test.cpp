@@ -153,6 +153,64 @@ TEST(Options, WhatTheParserCannotReadIsToldInWordsOfOurOwn) {
   }
 }
 
+TEST(Options, AMistakeInAValueIsOfTheCommandLineAndNamesItsOption) {
+  for (const auto& [option, value] : std::vector<std::pair<std::string, std::string>>{{"--curve", "stiffness=a"},
+                                                                                      {"--curve", "stiffness=1,"},
+                                                                                      {"--curve", "stiffness="},
+                                                                                      {"--curve", "flow=1"},
+                                                                                      {"--curve", "=1"},
+                                                                                      {"--tie", "sideways"},
+                                                                                      {"--tie", "{\"at\": 3}"},
+                                                                                      {"--tie", "[{"},
+                                                                                      {"--tie", "{\"radius\": 9}"},
+                                                                                      {"--compare", "frction=1"},
+                                                                                      {"--compare", "friction="},
+                                                                                      {"--compare", "friction=0.5,"},
+                                                                                      {"--pin", "{"},
+                                                                                      {"--pin", "{\"column\": 1}"},
+                                                                                      {"--pin", "3"},
+                                                                                      {"--map", "length"},
+                                                                                      {"--map", "length="},
+                                                                                      {"--map", "lenght=a.png"},
+                                                                                      {"--attach", "beanie.obj@"},
+                                                                                      {"--attach", "{\"fil\": 1}"},
+                                                                                      {"--attach", "[{\"file\": 3}]"},
+                                                                                      {"--mends", "--up q"},
+                                                                                      {"--video", "film.txt"},
+                                                                                      {"--debug", "mesh,"},
+                                                                                      {"--export-frames", "9-3"},
+                                                                                      {"--set", "friction="},
+                                                                                      {"--skip", "sleep=half"},
+                                                                                      {"--export", "strands.doc"},
+                                                                                      {"--size", "12x"},
+                                                                                      {"--camera", "1,2,3,4,5,"}}) {
+    std::vector<std::string> words{"--headless", "--frames", "1", option, value};
+    if (option == "--mends") words.insert(words.end(), {"--hair", "bob_example.obj"});
+    if (option == "--export-frames") words.insert(words.end(), {"--export", "a.abc"});
+    const Outcome outcome = runProgram(words);
+    expectOneMessage(outcome, app::kExitUsage, option + " " + value);
+    EXPECT_NE(outcome.err.find(option), std::string::npos) << value << ": " << outcome.err;
+  }
+  for (const auto& [option, value] : std::vector<std::pair<std::string, std::string>>{{"--attach", "nothing.obj"},
+                                                                                      {"--attach", "nothing@head.obj"},
+                                                                                      {"--compare", "nothing"},
+                                                                                      {"--preset", "nothing"}}) {
+    const Outcome outcome = runProgram({"--headless", "--frames", "1", option, value});
+    expectOneMessage(outcome, app::kExitBadInput, option + " " + value);
+    EXPECT_TRUE(outcome.err.starts_with("hairmesh: " + option)) << outcome.err;
+    EXPECT_EQ(outcome.err.find("/0"), std::string::npos) << outcome.err;
+  }
+}
+
+TEST(Options, ARefusedRunLeavesNoFolderBehind) {
+  const std::string folder = test::freshFolder("no_folder"), text = folder + "/words.obj";
+  std::ofstream(text) << "not a mesh";
+  const Outcome outcome = runProgram({"--headless", "--frames", "1", "--out", folder + "/a/b", "--hair", text});
+  expectOneMessage(outcome, app::kExitBadInput, "words.obj");
+  EXPECT_FALSE(std::filesystem::exists(folder + "/a"));
+  EXPECT_TRUE(std::filesystem::exists(text));
+}
+
 TEST(Options, WhatARunLeavesUndoneItSays) {
   const Outcome late =
       runProgram({"--no-images", "--frames", "2", "--resolution", "low", "--style", "short", "--start", "99999"});
@@ -161,7 +219,8 @@ TEST(Options, WhatARunLeavesUndoneItSays) {
   const Outcome hurried =
       runProgram({"--no-images", "--frames", "4", "--resolution", "low", "--style", "short", "--deadline-ms", "1e-5"});
   EXPECT_NE(hurried.out.find("deadline   1e-05 ms: not kept in"), std::string::npos) << hurried.out;
-  EXPECT_EQ(runProgram({"--no-images", "--frames", "2", "--resolution", "low"}).out.find("deadline"), std::string::npos);
+  EXPECT_EQ(runProgram({"--no-images", "--frames", "2", "--resolution", "low"}).out.find("deadline"),
+            std::string::npos);
   EXPECT_NE(runProgram({"--help"}).out.find("given twice the last counts"), std::string::npos);
 }
 
@@ -266,7 +325,7 @@ TEST(Options, ChoicesThatAreNoMoreSayWhatTakesTheirPlace) {
 TEST(Options, AnUnknownPresetIsAnsweredWithThoseThereAre) {
   const Outcome outcome = runProgram({"--preset", "foo", "--no-images", "--frames", "1"});
   expectOneMessage(outcome, app::kExitBadInput, "--preset foo");
-  EXPECT_NE(outcome.err.find("'foo'; choose one of auburn, black"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("'foo': is not there; choose one of auburn, black"), std::string::npos) << outcome.err;
 }
 
 TEST(Options, AFileNamedWithoutAnOptionGoesWhereItsKindBelongs) {

@@ -174,4 +174,32 @@ TEST(PaintBrush, ASceneAndAProjectKeepIt) {
   EXPECT_EQ(other.actors[0].haircut->mesh.shape.positions, demo.actors[0].haircut->mesh.shape.positions);
 }
 
+TEST(PaintBrush, AMapThatIsNotAsExpectedIsSaidWithItsFile) {
+  const std::string folder = test::freshFolder("odd_map");
+  const auto noteOf = [&](const char* name, int width, int height, std::array<unsigned char, 4> left) {
+    std::vector<unsigned char> rgba;
+    for (int k = 0; k < width * height; ++k) {
+      if (k % width < width / 2) {
+        rgba.insert(rgba.end(), left.begin(), left.end());
+      } else {
+        rgba.insert(rgba.end(), {255, 255, 255, 255});
+      }
+    }
+    app::FieldFiles maps;
+    maps.mass = folder + "/" + name;
+    app::writePng(maps.mass, width, height, rgba);
+    const std::string notes = app::mapNotes(maps);
+    EXPECT_TRUE(notes.empty() || notes.starts_with(maps.mass + " is ")) << notes;
+    return notes;
+  };
+  EXPECT_EQ(noteOf("grey.png", 64, 32, {90, 90, 90, 255}), "");
+  EXPECT_NE(noteOf("blue.png", 64, 32, {20, 40, 200, 255}).find("coloured"), std::string::npos);
+  EXPECT_NE(noteOf("glass.png", 64, 32, {90, 90, 90, 0}).find("transparent"), std::string::npos);
+  EXPECT_NE(noteOf("square.png", 50, 50, {90, 90, 90, 255}).find("50x50"), std::string::npos);
+  EXPECT_EQ(noteOf("white.png", 50, 50, {255, 255, 255, 255}), "") << "the same everywhere, whatever its sides";
+  app::Scene scene = test::smallScene("idle_turns.bvh");
+  scene.characters[0].maps.mass = folder + "/blue.png";
+  EXPECT_NE(app::openScene(std::move(scene), 1.5).message.find("blue.png is coloured"), std::string::npos);
+}
+
 }  // namespace
