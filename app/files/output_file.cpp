@@ -65,6 +65,24 @@ void OutputFile::fail(int error) {
                                       : "choose a folder that exists and may be written to");
 }
 
+OutputFolder::OutputFolder(const std::string& folder, const std::string& mend) {
+  std::error_code error, ignored;
+  for (fs::path path = fs::absolute(folder, ignored).lexically_normal(); !fs::exists(path, ignored);
+       path = path.parent_path()) {
+    if (path.has_filename()) made_.push_back(path.string());
+    if (path == path.parent_path()) break;
+  }
+  fs::create_directories(folder, error);
+  if (fs::is_directory(folder, ignored)) return;
+  made_.clear();
+  throw OutputError(folder, "is not a folder and cannot be made one: " + error.message(), mend);
+}
+
+OutputFolder::~OutputFolder() {
+  std::error_code ignored;
+  for (const std::string& path : made_) fs::remove(path, ignored);  // none that holds something
+}
+
 void writeFile(const std::string& file, std::string_view bytes) {
   OutputFile output(file);
   output.write(bytes);

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace app {
 
@@ -32,6 +33,20 @@ class OutputFile {
   std::string target_;     // what a link leads to
   std::string temporary_;  // empty: written directly
   std::FILE* stream_ = nullptr;
+};
+
+// A folder for what a run writes, made with those above it where they are missing. Of those that it has made nothing
+// stays that is empty in the end.
+class OutputFolder {
+ public:
+  // Throws OutputError with `mend` where it cannot be made.
+  OutputFolder(const std::string& folder, const std::string& mend);
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+ private:
+  std::vector<std::string> made_;  // the innermost first
 };
 
 // The whole of a file at once. Throws OutputError.

@@ -43,8 +43,8 @@ void PictureWriter::recordFrame(Demo& demo, const FrameTarget& target) {
     capture.folder = freeName("recording", "");
     std::filesystem::create_directories(capture.folder);
     if (canWriteVideo())
-      film_ = std::make_unique<VideoWriter>(capture.folder + ".mp4", target.width, target.height,
-                                            demo.scene.playback.fps);
+      film_ =
+          std::make_unique<VideoWriter>(capture.folder + ".mp4", target.width, target.height, demo.scene.playback.fps);
     say("recording into " + capture.folder, demo);
   }
   const std::vector<unsigned char> pixels = drawn(demo, target);
@@ -61,7 +61,7 @@ void PictureWriter::endRecording(Demo& demo) {
   std::string text = std::to_string(capture.recorded) + " frames in " + capture.folder;
   if (film_) {
     film_->finish();
-    text += " and " + film_->file();
+    text += " and " + film_->file() + film_->sizeNote();
   } else {
     text += "; with the package ffmpeg installed they would be a film as well";
   }

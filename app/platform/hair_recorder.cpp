@@ -24,7 +24,9 @@ std::string strandsOf(const Demo& demo) {
 
 void HairRecorder::begin(Demo& demo) {
   const std::string asked = demo.capture.hair_file;
-  const std::string file = asked.empty() ? freeName("hair", ".hairmesh") : asked[0] == '.' ? freeName("hair", asked) : asked;
+  const std::string file = asked.empty()     ? freeName("hair", ".hairmesh")
+                           : asked[0] == '.' ? freeName("hair", asked)
+                                             : asked;
   frames_ = 0;
   strands_ = strandsOf(demo);
   if (file.ends_with(".hairmesh")) {
@@ -47,7 +49,7 @@ void HairRecorder::finish(Demo& demo) {
     cache_.reset();
     if (strandsOf(demo) == strands_) openCache(file, demo);
   } else {
-    text = export_->finish();
+    text = export_->finish(demo);
     export_.reset();
   }
   demo.message = text.substr(0, text.find('\n'));

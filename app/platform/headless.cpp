@@ -36,15 +36,6 @@ std::string framePath(const std::string& folder, long frame) {
   return (std::filesystem::path(folder) / name).string();
 }
 
-void makeFolder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (!std::filesystem::is_directory(folder)) {
-    throw OutputError(folder, "is not a folder and cannot be made one: " + error.message(),
-                      "choose another with --out DIR");
-  }
-}
-
 // The number in "frame_0123.png", or -1.
 long frameNumber(const std::string& name) {
   static const std::regex pattern("frame_([0-9]{4,9})\\.png");
@@ -81,6 +72,7 @@ struct Run {
   Tape tape;
   Demo demo;
   RunReport report;
+  std::optional<OutputFolder> folder;
   std::optional<Pictures> pictures;
   std::optional<VideoWriter> film;
   bool png = true;  // a film alone leaves none
@@ -115,7 +107,7 @@ Run::Run(Scene scene, const Options& run_options) : options(run_options), tape(o
   if (!options.report.empty()) checkWritable(options.report);
   if (!options.screenshot.empty()) checkWritable(options.screenshot);
   png = !options.no_images && (options.video.empty() || options.out_given);
-  if (png) makeFolder(options.out);
+  if (png) folder.emplace(options.out, "choose another with --out DIR");
   if (!options.video.empty()) film.emplace(options.video, options.width, options.height, report.fps);
   if (!options.save_state.empty()) checkWritable(options.save_state);
   demo = openForPictures(std::move(scene), options, tape.aspect());
@@ -206,14 +198,14 @@ int Run::finish() {
     std::cout << stem(actor.spec.motion) << ": at the clip's end: " << loopText(actor.playback.loop) << "\n";
     if (demo.actors.size() > 1) break;
   }
-  if (hair_export) std::cout << hair_export->finish();
+  if (hair_export) std::cout << hair_export->finish(demo);
   report.deadline = demo.deadline.seconds;
   if (cache) std::cout << cache->finish(demo);
   std::cout << summary(report);
   if (demo.comparison.on()) std::cout << "against " << options.compare << ": " << comparisonText(demo) << "\n";
   if (film) {
     film->finish();
-    std::cout << report.frames.size() << " frames in " << options.video << "\n";
+    std::cout << report.frames.size() << " frames in " << options.video << film->sizeNote() << "\n";
   }
   if (png) {
     std::cout << report.frames.size() << " frames in " << options.out;

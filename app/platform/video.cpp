@@ -24,16 +24,32 @@ namespace fs = std::filesystem;
 
 std::string unfinishedName(const std::string& file) {
   const fs::path path(file);
-  return (path.parent_path() / ("." + path.stem().string() + "-" + std::to_string(getpid()) +
-                                path.extension().string()))
+  return (path.parent_path() /
+          ("." + path.stem().string() + "-" + std::to_string(getpid()) + path.extension().string()))
       .string();
 }
 
 std::vector<std::string> ffmpegWords(const std::string& file, int width, int height, double fps) {
   // Most players want an even number of rows and columns, and colours at half of them.
-  return {"ffmpeg",     "-loglevel", "error", "-y",      "-f", "rawvideo", "-pixel_format", "rgba", "-video_size",
-          std::to_string(width) + "x" + std::to_string(height), "-framerate", sim::numberText(fps), "-i", "-", "-vf",
-          "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p", file};
+  return {"ffmpeg",
+          "-loglevel",
+          "error",
+          "-y",
+          "-f",
+          "rawvideo",
+          "-pixel_format",
+          "rgba",
+          "-video_size",
+          std::to_string(width) + "x" + std::to_string(height),
+          "-framerate",
+          sim::numberText(fps),
+          "-i",
+          "-",
+          "-vf",
+          "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+          "-pix_fmt",
+          "yuv420p",
+          file};
 }
 
 // In the child: the frames come in, nothing goes out, and an interrupt of the program is the program's affair.
@@ -92,6 +108,14 @@ void VideoWriter::add(std::span<const unsigned char> rgba) {
       throw OutputError(file_, "was given up by ffmpeg", "check the disk, and the ending: .mp4, .webm or .mkv");
     rgba = rgba.subspan(static_cast<std::size_t>(written));
   }
+}
+
+std::string VideoWriter::sizeNote() const {
+  const int width = (width_ + 1) / 2 * 2, height = (height_ + 1) / 2 * 2;
+  if (width == width_ && height == height_) return "";
+  const auto text = [](int w, int h) { return std::to_string(w) + "x" + std::to_string(h); };
+  return "; its pictures are " + text(width, height) + ", not " + text(width_, height_) +
+         ": a film's sides are even, so black was added at the right or below";
 }
 
 int VideoWriter::close() {

@@ -24,6 +24,8 @@ class VideoWriter {
   void add(std::span<const unsigned char> rgba);
   // Waits for ffmpeg and puts the film in place. Throws OutputError.
   void finish();
+  // "; of 642x362 pixels, ..." where the frames are of an odd number of rows or columns; else empty.
+  std::string sizeNote() const;
   const std::string& file() const { return file_; }
   int width() const { return width_; }
   int height() const { return height_; }

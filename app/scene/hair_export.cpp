@@ -7,6 +7,7 @@
 #include <optional>
 #include <thread>
 
+#include "app/files/data_path.h"
 #include "app/files/errors.h"
 #include "app/groom/glb_file.h"
 #include "app/groom/groom_writer.h"
@@ -188,6 +189,18 @@ std::vector<Vector3f> cageVertices(const Demo& demo, double unit) {
   return vertices;
 }
 
+// What is worn is a mesh of its own, which an export of hair leaves out.
+std::string wornNote(const Demo& demo) {
+  std::string names;
+  for (const Actor& actor : demo.actors) {
+    for (const AttachmentSpec& one : actor.spec.attachments) {
+      const std::string name = stem(one.file);
+      if (names.find(name) == std::string::npos) names += (names.empty() ? "" : ", ") + name;
+    }
+  }
+  return names.empty() ? "" : "; the hair alone, without what is worn (" + names + ")";
+}
+
 }  // namespace
 
 HairExport::~HairExport() = default;
@@ -196,6 +209,7 @@ HairExport::HairExport(const ExportSpec& spec, const Demo& demo, double fps, int
     : impl_(std::make_unique<Impl>()) {
   impl_->spec = spec;
   ClipSettings settings{fps / spec.every, spec.first / fps, {}, spec.unit};
+  settings.world_heads = static_cast<int>(demo.actors.size());
   settings.offsets.clear();
   for (int n = 0; n < spec.samples; ++n)
     settings.offsets.push_back(n * spec.shutter / (std::max(spec.samples - 1, 1) * fps));
@@ -227,7 +241,7 @@ void HairExport::add(const Demo& demo, int frame) {
   impl_->last_frame = frame;
 }
 
-std::string HairExport::finish() {
+std::string HairExport::finish(const Demo& demo) {
   if (impl_->mesh) impl_->mesh->finish();
   if (impl_->writer) impl_->writer->finish();
   std::string text = std::to_string(impl_->frames) + " frames";
@@ -239,7 +253,8 @@ std::string HairExport::finish() {
   }
   const std::string& file = impl_->spec.file;
   const bool numbered = impl_->writer && impl_->frames > 1 && !takesClip(file);
-  return text + " exported to " + (numbered ? numberedName(file, impl_->spec.first) + " and on" : file) + "\n";
+  return text + " exported to " + (numbered ? numberedName(file, impl_->spec.first) + " and on" : file) +
+         wornNote(demo) + "\n";
 }
 
 void simulateAll(SkipSet& skips) {

@@ -44,8 +44,8 @@ class HairExport {
 
   // Takes what the demo shows now as a moment of frame `frame`. Throws OutputError.
   void add(const Demo& demo, int frame);
-  // Returns what was written, for the terminal. Throws OutputError.
-  std::string finish();
+  // Returns what was written, and what the figures wear that was not, for the terminal. Throws OutputError.
+  std::string finish(const Demo& demo);
 
  private:
   struct Impl;

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "app/files/output_file.h"
 #include "app/files/errors.h"
+#include "app/files/output_file.h"
 #include "tests/run_program.h"
 
 namespace {
@@ -31,6 +31,7 @@ TEST(Video, AFilmIsWholeOrNotThere) {
     app::VideoWriter film(file, 33, 21, 30);
     for (int frame = 0; frame < 12; ++frame) film.add(grey);
     film.finish();
+    EXPECT_NE(film.sizeNote().find("34x22, not 33x21"), std::string::npos) << film.sizeNote();
   }
   const std::string bytes = test::readAll(file);
   ASSERT_GT(bytes.size(), 500u);
@@ -40,6 +41,7 @@ TEST(Video, AFilmIsWholeOrNotThere) {
     cut.add(grey);
   }
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1) << "a film that was given up is left";
+  EXPECT_EQ(app::VideoWriter(folder + "/even.mp4", 32, 22, 30).sizeNote(), "");
   app::VideoWriter odd(folder + "/film.nothing", 33, 21, 30);
   EXPECT_THROW(
       {
