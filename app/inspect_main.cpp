@@ -1,5 +1,6 @@
 // hairmesh-inspect: what is wrong with a groom, and what mends it.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <exception>
 #include <iostream>
 #include <optional>
@@ -80,9 +81,9 @@ int run(const CLI::App& parser, const Asked& asked) {
   const app::GroomInspection inspection = app::inspectGroom(groom, hints, &head);
   std::cout << asked.file << ": " << inspection.summary << "\n";
   for (const app::GroomFinding& finding : inspection.findings)
-    std::cout << finding.what << ": " << finding.text << "; " << finding.mend << (finding.certain ? " (certain)" : "")
-              << "\n";
-  if (inspection.findings.empty()) std::cout << "nothing is wrong\n";
+    std::cout << (finding.fault ? "" : "no fault: ") << finding.what << ": " << finding.text << "; " << finding.mend
+              << (finding.certain ? " (certain)" : "") << "\n";
+  if (std::ranges::none_of(inspection.findings, &app::GroomFinding::fault)) std::cout << "nothing is wrong\n";
   if (asked.out.empty()) return app::kExitFine;
   app::GroomMends mends = mendsOf(parser, asked, hints, inspection.mends);
   if (mends.points == 0 && asked.out.ends_with(".tfx")) {

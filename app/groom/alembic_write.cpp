@@ -5,6 +5,7 @@
 #include "app/groom/alembic_file.h"
 #include "app/groom/alembic_property.h"
 #include "app/groom/groom_bytes.h"
+#include "app/groom/groom_hints.h"
 
 namespace app {
 
@@ -168,7 +169,9 @@ std::string AlembicWriter::Impl::timeSamplings() const {
 }
 
 void AlembicWriter::Impl::finish() {
-  const std::string about = "_ai_AlembicVersion=Alembic 1.8.6;_ai_Application=hairmesh";
+  const std::string about =
+      "_ai_AlembicVersion=Alembic 1.8.6;_ai_Application=hairmesh" +
+      (times.world_heads > 0 ? ";_ai_Description=" + worldMark(times.world_heads, times.meters_per_unit) : "");
   const std::vector<Object> objects{{"groom", kCurves + ";schemaObjTitle=AbcGeom_Curve_v2:.geom", curvesObject()}};
   const std::uint64_t top =
       ogawa.group({compoundGroup({}), objects[0].group, ogawa.data({objectHeaders(objects, hash, table)})});

@@ -54,9 +54,11 @@ bool hasGroomEnding(const std::string& file) {
 Groom readGroom(std::string_view bytes, const std::string& file, GroomHints* hints) {
   const std::optional<GroomFormat> format = groomFormat(bytes, file);
   if (!format) {
-    throw InputError(file, "", "is no kind of groom that is read",
-                     "give strands as .hair, .abc, .usda, .tfx or .ply; strips, cards and tubes are read by hairmesh-convert");
+    throw InputError(
+        file, "", "is no kind of groom that is read",
+        "give strands as .hair, .abc, .usda, .tfx or .ply; strips, cards and tubes are read by hairmesh-convert");
   }
+  if (hints) readWorldMark(bytes, *hints);
   switch (*format) {
     case GroomFormat::kHair:
       return readHairStrands(bytes, file);

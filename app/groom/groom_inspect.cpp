@@ -53,8 +53,10 @@ struct Inspector {
   SphereFit skull{};  // of the roots, in metres and our axes once these are known
 
   void add(const char* what, std::string text, std::string mend, bool certain) {
-    result.findings.push_back({what, std::move(text), std::move(mend), certain});
+    result.findings.push_back({what, std::move(text), std::move(mend), certain, true});
   }
+  bool inWorld() const { return hints.world_heads > 0; }
+  bool crowd() const { return hints.world_heads > 1; }
   void strands();
   void direction();
   void unit();
@@ -86,7 +88,7 @@ void Inspector::strands() {
 void Inspector::direction() {
   const SphereFit roots = fitSphere(ends.first), tips = fitSphere(ends.last);
   skull = roots;
-  if (ends.first.size() < kMinRoots) return;
+  if (ends.first.size() < kMinRoots || inWorld()) return;
   const float out = shareOutside(roots, ends.last), in = shareOutside(tips, ends.first);
   const bool skull_at_tips = tips.spread < 0.08f && tips.coverage > 0.03f && in > out - 0.3f;
   const bool all = skull_at_tips && (tips.radius < roots.radius / 1.1f || roots.coverage < 0.03f);
@@ -118,8 +120,8 @@ void Inspector::unit() {
   const auto off = [this](double meters) { return std::abs(std::log(meters * skull.radius / kSkullRadius)); };
   const Unit* best = &kUnits[0];
   for (const Unit& unit : kUnits) best = off(unit.meters) < off(best->meters) ? &unit : best;
-  const bool fits = off(best->meters) < std::log(1.45);
-  if (std::abs(best->meters / told - 1) > 0.01 && (off(told) > std::log(1.45) || !fits)) {
+  const bool fits = inWorld() || off(best->meters) < std::log(1.45);
+  if (!inWorld() && std::abs(best->meters / told - 1) > 0.01 && (off(told) > std::log(1.45) || !fits)) {
     if (fits) result.mends.unit = best->meters;
     add("unit",
         textOf("the roots lie about a skull of radius %.3g, which fits ", skull.radius) + best->name +
@@ -149,7 +151,7 @@ void Inspector::turn(const Matrix3f& matrix) {
 
 // Hair grows on the upper side of a skull and hangs down.
 void Inspector::axes() {
-  if (ends.first.size() < kMinRoots) return;
+  if (ends.first.size() < kMinRoots || inWorld()) return;
   Vector3f cap = Vector3f::Zero(), hang = Vector3f::Zero();
   float length = 0;
   for (std::size_t n = 0; n < ends.first.size(); ++n) {
@@ -176,7 +178,7 @@ void Inspector::axes() {
 
 // More hair grows behind the middle of the skull than before it.
 void Inspector::facing() {
-  if (ends.first.size() < kMinRoots) return;
+  if (ends.first.size() < kMinRoots || crowd()) return;
   Vector3f cap = Vector3f::Zero();
   for (const Vector3f& root : ends.first) cap += (root - skull.center) / skull.radius;
   cap /= static_cast<float>(ends.first.size());
@@ -184,6 +186,8 @@ void Inspector::facing() {
   const double degrees = cap.z() > std::abs(cap.x()) ? 180 : cap.x() > 0 ? 90 : -90;
   add("facing", textOf("the hair grows on the wrong side: the face would look %.0f degrees aside", std::abs(degrees)),
       textOf("--turn %.0f", degrees), true);
+  result.findings.back().fault = !inWorld();
+  if (inWorld()) result.findings.back().text = textOf("the head looks %.0f degrees aside", std::abs(degrees));
   turn(turnedAbout(degrees));
 }
 
@@ -237,7 +241,7 @@ Vector3f Inspector::moveToHead(const std::vector<Vector3f>& roots) const {
 }
 
 void Inspector::place() {
-  if (head == nullptr || ends.first.size() < kMinRoots) return;
+  if (head == nullptr || ends.first.size() < kMinRoots || crowd()) return;
   std::vector<Vector3f> roots = ends.first;
   const auto median = [&] {
     std::vector<float> off;
@@ -252,6 +256,9 @@ void Inspector::place() {
     std::array<char, 96> option;
     std::snprintf(option.data(), option.size(), "--move %.3f,%.3f,%.3f", move.x(), move.y(), move.z());
     add("roots", textOf("the roots lie %.3g m from the scalp", before), option.data(), certain);
+    result.findings.back().fault = !inWorld();
+    if (inWorld())
+      result.findings.back().text = textOf("the hair is on a head in the world, %.3g m from the figure's own", before);
     if (!certain) return;
     result.mends.move = move;
   } else {
@@ -260,7 +267,7 @@ void Inspector::place() {
     if (floating > 0)
       add("roots", countText(floating, roots.size(), "begin more than 3 cm from the scalp"), "--drop-far 0.03", false);
   }
-  body(roots);
+  if (!inWorld()) body(roots);  // the figure's pose is not that of rest
 }
 
 // Strands that go into the body beyond their first tenth.

@@ -30,9 +30,9 @@ struct GroomMends {
   float width_scale = 1;                               // of widths, beside the unit
   int points = 0;                                      // a strand, evenly along its length; 0: as they are
   Eigen::Vector3f move = Eigen::Vector3f::Zero();      // m
-  float drop_far = 0;                                // m from the body beyond which a root's strand goes; 0: none does
-  float width = 0;                                   // m, in place of widths that are 0, negative or no number; 0: none
-  bool push_out = false;                               // points inside the body, to its surface
+  float drop_far = 0;     // m from the body beyond which a root's strand goes; 0: none does
+  float width = 0;        // m, in place of widths that are 0, negative or no number; 0: none
+  bool push_out = false;  // points inside the body, to its surface
 };
 
 struct GroomFinding {
@@ -40,6 +40,7 @@ struct GroomFinding {
   std::string text;  // what was found, with numbers
   std::string mend;  // the option that mends it
   bool certain = false;
+  bool fault = true;  // else it is so by right: an export lies in the world, and facing and place are that figure's
 };
 
 struct GroomInspection {

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "app/files/errors.h"
+#include "app/groom/groom_hints.h"
 #include "app/groom/hair_strands_file.h"
 #include "app/groom/ply_file.h"
 #include "app/groom/tfx_file.h"
@@ -21,12 +22,12 @@ std::string endingOf(const std::string& file) {
   return ending;
 }
 
-void writeFrame(const Groom& groom, const std::string& file) {
+void writeFrame(const Groom& groom, const std::string& file, const std::string& mark) {
   OutputFile output(file);
   const std::string ending = endingOf(file);
-  if (ending == ".hair") writeHairStrands(groom, file, output);
-  if (ending == ".ply") writePlyStrands(groom, false, output);
-  if (ending == ".tfx") writeTfx(groom, file, output);
+  if (ending == ".hair") writeHairStrands(groom, file, output, mark);
+  if (ending == ".ply") writePlyStrands(groom, false, output, mark);
+  if (ending == ".tfx") writeTfx(groom, file, output, mark);
   output.commit();
 }
 
@@ -50,7 +51,9 @@ std::string numberedName(const std::string& file, long frame) {
 }
 
 GroomWriter::GroomWriter(const std::string& file, const ClipSettings& settings, bool numbered)
-    : file_(file), numbered_(numbered) {
+    : file_(file),
+      numbered_(numbered),
+      mark_(settings.world_heads > 0 ? worldMark(settings.world_heads, settings.meters_per_unit) : "") {
   const std::string ending = endingOf(file);
   if (!isGroomOutput(file))
     throw OutputError(file, "is no kind of groom that is written", "name it .abc, .usda, .hair, .ply or .tfx");
@@ -69,7 +72,7 @@ void GroomWriter::add(const Groom& groom, long frame) {
   } else if (auto* usda = std::get_if<UsdaWriter>(&clip_)) {
     usda->add(groom);
   } else {
-    writeFrame(groom, numbered_ ? numberedName(file_, frame) : file_);
+    writeFrame(groom, numbered_ ? numberedName(file_, frame) : file_, mark_);
   }
 }
 

@@ -33,6 +33,7 @@ class GroomWriter {
  private:
   std::string file_;
   bool numbered_;
+  std::string mark_;  // worldMark, or empty
   std::variant<std::monostate, AlembicWriter, UsdaWriter> clip_;
 };
 

@@ -102,14 +102,13 @@ Groom readHairStrands(std::string_view bytes, const std::string& file) {
   return groom;
 }
 
-void writeHairStrands(const Groom& groom, const std::string& file, OutputFile& output) {
+void writeHairStrands(const Groom& groom, const std::string& file, OutputFile& output, std::string_view text) {
   const std::vector<std::uint16_t> segments = segmentsOf(groom, file);
   Header header;
   header.strands = static_cast<std::uint32_t>(groom.strandCount());
   header.points = static_cast<std::uint32_t>(groom.points.size());
   header.flags = kSegments | kPoints | (groom.widths.empty() ? 0u : kThickness) | (groom.colors.empty() ? 0u : kColors);
-  constexpr std::string_view kText = "hairmesh";
-  kText.copy(header.text.data(), kText.size());
+  (text.empty() ? "hairmesh" : text).copy(header.text.data(), header.text.size() - 1);
   output.write(bytesOf(header));
   output.write(bytesOf(segments));
   output.write(bytesOf(groom.points));

@@ -219,11 +219,12 @@ struct Rows {
   }
 };
 
-std::string headerOf(const Groom& groom, bool text) {
+std::string headerOf(const Groom& groom, bool text, const std::string& comment) {
   std::size_t edges = 0;
   for (std::size_t s = 0; s < groom.strandCount(); ++s) edges += std::max<std::size_t>(groom.pointCount(s), 1) - 1;
   std::string header = "ply\nformat " + std::string(text ? "ascii" : "binary_little_endian") +
-                       " 1.0\ncomment strands by hairmesh, root first\nelement vertex " +
+                       " 1.0\ncomment strands by hairmesh, root first\n" +
+                       (comment.empty() ? "" : "comment " + comment + "\n") + "element vertex " +
                        std::to_string(groom.points.size()) + "\n";
   const auto add = [&header](bool has, std::initializer_list<const char*> lines) {
     for (const char* line : lines) header += has ? "property " + std::string(line) + "\n" : "";
@@ -271,8 +272,8 @@ Groom readPlyStrands(std::string_view bytes, const std::string& file) {
   return std::move(told.groom);
 }
 
-void writePlyStrands(const Groom& groom, bool text, OutputFile& output) {
-  output.write(headerOf(groom, text));
+void writePlyStrands(const Groom& groom, bool text, OutputFile& output, const std::string& comment) {
+  output.write(headerOf(groom, text, comment));
   Rows rows{text, output, {}};
   for (std::size_t p = 0; p < groom.points.size(); ++p) {
     for (const float value : groom.points[p]) rows.put(value);

@@ -23,6 +23,7 @@ Groom readPlyStrands(std::string_view bytes, const std::string& file);
 
 // Writes every array; edges stand beside the strands for programs that draw edges. Reading gives the same bits, of text
 // too. Throws OutputError.
-void writePlyStrands(const Groom& groom, bool text, OutputFile& output);
+// `comment`: one line for the header.
+void writePlyStrands(const Groom& groom, bool text, OutputFile& output, const std::string& comment = "");
 
 }  // namespace app

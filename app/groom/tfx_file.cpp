@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 
 #include "app/files/errors.h"
 #include "app/groom/groom_bytes.h"
@@ -98,7 +99,7 @@ int nearestTfxPoints(const Groom& groom) {
                     static_cast<int>(kMaxPoints));
 }
 
-void writeTfx(const Groom& groom, const std::string& file, OutputFile& output) {
+void writeTfx(const Groom& groom, const std::string& file, OutputFile& output, std::string_view text) {
   const std::size_t points = groom.strandCount() > 0 ? groom.pointCount(0) : kMinPoints;
   checkCounts(groom, points, file);
   Header header;
@@ -115,6 +116,7 @@ void writeTfx(const Groom& groom, const std::string& file, OutputFile& output) {
   place(header.thickness, !groom.widths.empty(), groom.strandCount() * sizeof(float));
   place(header.colors, !groom.colors.empty(), groom.points.size() * sizeof(Float4));
   if (end > UINT32_MAX) throw OutputError(file, "a .tfx file ends at 4 GB", "export fewer strands");
+  std::memcpy(header.reserved.data(), text.data(), std::min(text.size(), sizeof header.reserved));
   output.write(bytesOf(header));
   for (const Eigen::Vector3f& p : groom.points) output.write(bytesOf(Float4{p.x(), p.y(), p.z(), 1}));
   output.write(bytesOf(groom.root_uvs));

@@ -26,6 +26,7 @@ int nearestTfxPoints(const Groom& groom);
 // Writes points, root UVs, colours, and as thickness the width of the root. Reading gives the same bits of what the
 // format holds. Throws OutputError naming a strand of another number of points than the first, or a number that the
 // format does not have.
-void writeTfx(const Groom& groom, const std::string& file, OutputFile& output);
+// `text`: up to 128 bytes for the reserved numbers.
+void writeTfx(const Groom& groom, const std::string& file, OutputFile& output, std::string_view text = "");
 
 }  // namespace app

@@ -5,6 +5,7 @@
 
 #include "app/files/errors.h"
 #include "app/files/output_file.h"
+#include "app/groom/groom_hints.h"
 #include "app/groom/usda_file.h"
 
 namespace app {
@@ -94,7 +95,9 @@ void UsdaWriter::Impl::array(const char* what, const Number* numbers, std::size_
 // Everything but the points, and how these begin.
 void UsdaWriter::Impl::head(const Groom& groom) {
   strand_first = groom.strand_first;
-  pending = "#usda 1.0\n(\n    defaultPrim = \"hair\"\n    doc = \"\"\"strands by hairmesh, root first\"\"\"\n";
+  pending = "#usda 1.0\n(\n    defaultPrim = \"hair\"\n    doc = \"\"\"strands by hairmesh, root first" +
+            (settings.world_heads > 0 ? "; " + worldMark(settings.world_heads, settings.meters_per_unit) : "") +
+            "\"\"\"\n";
   pending += "    metersPerUnit = " + textOf(settings.meters_per_unit) +
              "\n    upAxis = \"Y\"\n    timeCodesPerSecond = " + textOf(settings.fps) +
              "\n    framesPerSecond = " + textOf(settings.fps) + "\n    startTimeCode = " + textOf(codeOf(0)) +

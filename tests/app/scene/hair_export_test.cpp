@@ -6,8 +6,11 @@
 
 #include <cstring>
 
+#include "app/figure/head_model.h"
+#include "app/files/data_path.h"
 #include "app/groom/alembic_file.h"
 #include "app/groom/groom_file.h"
+#include "app/groom/groom_inspect.h"
 #include "app/groom/usda_file.h"
 #include "tests/app/groom/groom_samples.h"
 #include "tests/app/groom/second_reader.h"
@@ -175,8 +178,39 @@ TEST(HairExport, WhatCannotBeAskedForIsNamed) {
   EXPECT_EQ(test::lacking(fault({"--export", "a.glb", "--export-what", "strands"}), "glTF has no curves"), "");
   EXPECT_EQ(test::lacking(fault({"--export", "a.ply", "--export-samples", "3"}), "takes a clip"), "");
   EXPECT_EQ(test::lacking(fault({"--export", "a.abc", "--export-frames", "9-3"}), "FIRST-LAST"), "");
-  EXPECT_EQ(test::lacking(fault({"--frames", "3", "--export", "a.abc", "--export-frames", "1-9"}), "frames, 0 to 2"), "");
+  EXPECT_EQ(test::lacking(fault({"--frames", "3", "--export", "a.abc", "--export-frames", "1-9"}), "frames, 0 to 2"),
+            "");
   EXPECT_EQ(test::lacking(fault({"--export", "a.abc", "--record", "a.abc"}), "name two"), "");
+}
+
+// What the program has written is no groom with faults, whatever the pose, the unit and the number of figures.
+TEST(HairExport, TheInspectorFindsNoFaultInWhatIsExported) {
+  const std::string folder = test::freshFolder("export_inspected");
+  const app::HeadModel head = app::headModelOf(app::loadCharacter(app::dataPath("assets/clips/idle_turns.bvh")));
+  const std::vector<std::vector<std::string>> runs{{"--motion", "walk.bvh", "--export-unit", "cm"},
+                                                   {"--motion", "head_shake.bvh", "--export-unit", "mm"},
+                                                   {"--motion", "jump_spin.bvh", "--style", "long"},
+                                                   {"pony_tail.json", "--export-unit", "in"},
+                                                   {"trio.json"}};
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    for (const char* ending : {"abc", "usda", "hair", "ply", "tfx"}) {
+      const std::string file = folder + "/" + std::to_string(r) + "." + ending;
+      std::vector<std::string> words{"--no-images",     "--strands", "400",      "--frames", "31",
+                                     "--export-frames", "30",        "--export", file};
+      words.insert(words.end(), runs[r].begin(), runs[r].end());
+      ASSERT_EQ(test::runProgram(words).exit_code, 0) << file;
+      app::GroomHints hints;
+      const app::Groom groom = app::readGroom(file, &hints);
+      EXPECT_EQ(hints.world_heads, r == 4 ? 3 : 1) << file;
+      const app::GroomInspection inspection = app::inspectGroom(groom, hints, &head);
+      bool placed = false;
+      for (const app::GroomFinding& finding : inspection.findings) {
+        EXPECT_FALSE(finding.fault) << file << ": " << finding.what << ": " << finding.text;
+        placed = placed || (finding.what == "roots" && finding.certain);
+      }
+      EXPECT_EQ(placed, r != 4) << file << ": where its head is, is told for --hair";
+    }
+  }
 }
 
 }  // namespace
