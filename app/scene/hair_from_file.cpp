@@ -2,6 +2,7 @@
 
 #include "app/figure/hair_fit.h"
 #include "app/figure/head_model.h"
+#include "app/files/errors.h"
 #include "app/files/hair_file.h"
 #include "app/files/polygon_file.h"
 #include "app/files/text_file.h"
@@ -24,6 +25,35 @@ Conversion convertMended(const std::string& bytes, const CharacterSpec& spec, co
   haircut.findings = report.findings;
   if (report.unit_known) options.unit = 1;
   return convertGroom(groom, {}, options, spec.hair);
+}
+
+struct PlacedStrips {
+  sim::HairMeshShape shape;
+  std::string strips, fit;  // what is said of them, and of their place
+};
+
+PlacedStrips placeStrips(const PolygonMesh& mesh, char up, const CharacterSpec& spec, const Character& character) {
+  StripOptions options;
+  options.up = up;
+  const StripConversion conversion = convertStrips(mesh, options, spec.hair);
+  PlacedStrips placed{conversion.mesh.shape, stripNote(conversion), ""};
+  placed.fit = fitHair(character, spec.fit, placed.shape);
+  return placed;
+}
+
+// Strips are rooted at their highest ends, and their file does not say which axis is up. Away from the head it is y or
+// z, whichever brings the roots nearer to the scalp.
+PlacedStrips placeStrips(const CharacterSpec& spec, const Character& character) {
+  const PolygonMesh mesh = readPolygons(spec.hair);
+  PlacedStrips placed = placeStrips(mesh, 'y', spec, character);
+  if (!spec.fit || placed.fit.empty()) return placed;
+  try {
+    PlacedStrips turned = placeStrips(mesh, 'z', spec, character);
+    const auto off = [&](const PlacedStrips& one) { return rootDistance(one.shape, character.scalp); };
+    return off(turned) < off(placed) ? turned : placed;
+  } catch (const InputError&) {
+    return placed;  // no strips with z up
+  }
 }
 
 std::string mendedBy(const Haircut& haircut) {
@@ -49,9 +79,10 @@ sim::HairMeshShape hairFromFile(const CharacterSpec& spec, const Character& char
     note(mendedBy(haircut));
     note(conversionNote(conversion));
   } else if (hasPolygonEnding(spec.hair) && !hasLayers(bytes)) {
-    const StripConversion conversion = convertStrips(readPolygons(spec.hair), {}, spec.hair);
-    shape = conversion.mesh.shape;
-    note(stripNote(conversion));
+    PlacedStrips placed = placeStrips(spec, character);
+    note(placed.strips);
+    note(placed.fit);
+    return std::move(placed.shape);
   } else {
     shape = readHairMesh(bytes, spec.hair, spec.reverse_faces);
   }

@@ -3,9 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <sstream>
+#include <string>
+
 #include "app/files/data_path.h"
 #include "app/files/hair_file.h"
 #include "app/files/output_file.h"
+#include "app/scene/hair_from_file.h"
+#include "tests/app/groom/strip_samples.h"
 #include "tests/run_program.h"
 
 namespace {
@@ -143,6 +149,39 @@ TEST(HairFit, TheProgramSaysItOnceAndReadsIt) {
   const test::Outcome left = test::runProgram(off);
   EXPECT_EQ(left.exit_code, 0) << left.err;
   EXPECT_NE(left.err.find("--fit on reads it so"), std::string::npos) << left.err;
+}
+
+// Strips are rooted at their highest ends: which ends these are depends on the axis that is up.
+TEST(HairFit, StripsAwayFromTheHeadAreBroughtToItWithEitherAxisUp) {
+  const std::string folder = test::freshFolder("fit_strips");
+  for (const bool z_up : {false, true}) {
+    strip_samples::ObjText made;
+    for (const Vec3& root : strip_samples::rootsOnHead(60)) strip_samples::card(root, 1, 6, 0.3, 0, made);
+    std::string text;
+    std::istringstream lines(made.text);
+    for (std::string line; std::getline(lines, line);) {
+      double x = 0, y = 0, z = 0;
+      if (std::sscanf(line.c_str(), "v %lf %lf %lf", &x, &y, &z) == 3) {
+        const Vec3 p = Vec3(2, 3, 1) + (z_up ? Vec3(x, -z, y) : Vec3(x, y, z));
+        line = "v " + std::to_string(p.x()) + " " + std::to_string(p.y()) + " " + std::to_string(p.z());
+      }
+      text += line + "\n";
+    }
+    app::CharacterSpec spec;
+    spec.hair = folder + (z_up ? "/z.obj" : "/y.obj");
+    app::writeFile(spec.hair, text);
+    app::Haircut haircut;
+    const sim::HairMeshShape shape = app::hairFromFile(spec, figure(), haircut);
+    EXPECT_LT(app::rootDistance(shape, figure().scalp), app::kFarRoots) << haircut.note;
+    EXPECT_EQ(haircut.note.find("z up, facing") != std::string::npos, z_up) << haircut.note;
+    double fall = 0;
+    for (int c = 0; c < shape.columnCount(); ++c) {
+      const int root = shape.column_first[static_cast<std::size_t>(c)];
+      fall += shape.positions[static_cast<std::size_t>(root)].y() -
+              shape.positions[static_cast<std::size_t>(root + shape.columnLength(c) - 1)].y();
+    }
+    EXPECT_GT(fall / shape.columnCount(), 0.1);
+  }
 }
 
 }  // namespace
