@@ -233,9 +233,15 @@ float textScale(GLFWwindow* window) {
   return std::clamp(x, 1.0f, 3.0f);
 }
 
-// Texts follow the display that the window is on, and what a person has made of them.
+// That of the display that the window is on, times what a person has made of it, as far as the window has room.
+float wantedTextScale(GLFWwindow* window, double asked, float zoom) {
+  int width = 1, height = 1;
+  glfwGetFramebufferSize(window, &width, &height);
+  return fittingTextScale(textScale(window) * static_cast<float>(asked) * zoom, width, height);
+}
+
 void followTextScale(GLFWwindow* window, double asked, Session& s) {
-  const float wanted = std::clamp(textScale(window) * static_cast<float>(asked) * s.ui.zoom_texts, 0.5f, 4.0f);
+  const float wanted = wantedTextScale(window, asked, s.ui.zoom_texts);
   if (!std::exchange(s.other_scale, false) && std::abs(wanted - s.ui.text_scale) < 1e-3f) return;
   ImGui_ImplOpenGL3_DestroyFontsTexture();
   prepareUi(wanted, s.ui);
@@ -300,6 +306,7 @@ UiState uiOf(const Options& options) {
   UiState ui;
   ui.visible = !options.hide_panels;
   ui.open_tab = tabIndex(options.panel);
+  ui.unfolded = !options.panel.empty();
   ui.kept_folder = options.frames_given ? "" : keptFolder();  // runs of so many frames leave nothing behind
   ui.recent = readRecent(ui.kept_folder);
   return ui;
@@ -350,7 +357,7 @@ int runWindow(Scene scene, const Options& options) {
   setCallbacks(window.handle, callbacks);
   PanelBackends backends(window.handle);
   setKeyCallbacks(window.handle);
-  prepareUi(std::clamp(textScale(window.handle) * static_cast<float>(options.ui_scale), 0.5f, 4.0f), ui);
+  prepareUi(wantedTextScale(window.handle, options.ui_scale, 1), ui);
   render::Renderer renderer(dataPath("shaders"));
   if (!options.report.empty()) checkWritable(options.report);
   RunReport run = reportOf(demo, now() - start);

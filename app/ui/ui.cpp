@@ -16,8 +16,8 @@ namespace {
 
 constexpr float kMargin = 12, kSidebarWidth = 348, kTimingsWidth = 292;
 constexpr float kMessageWidth = 520, kMinMessageWidth = 240;
-constexpr float kFaceWidth = 168;    // in the window's middle; where the sidebar covers it the tabs are folded away
-constexpr float kAmpleWidth = 340;   // between sidebar and timings; with less the timings begin folded
+constexpr float kFaceWidth = 168;   // in the window's middle; where the sidebar covers it the tabs are folded away
+constexpr float kAmpleWidth = 340;  // between sidebar and timings; with less the timings begin folded
 constexpr double kMessageTime = 6;  // s; faults stay until clicked
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoBringToFrontOnFocus;
@@ -182,10 +182,11 @@ void sidebar(Demo& demo, UiState& ui, float below) {
 
 void timings(Demo& demo, UiState& ui) {
   const float margin = kMargin * ui.text_scale;
-  // Panels cover neither one another nor the face: without room beside the sidebar, and in a narrow window until the
-  // panels are unfolded, this one is left out.
+  // Panels cover neither one another nor the face: without room beside the sidebar this one is in the Debug tab, and in
+  // a narrow window it is left out until the panels are unfolded.
   const float room = ImGui::GetIO().DisplaySize.x - sidebarWidth(ui) - kTimingsWidth * ui.text_scale - 3 * margin;
   ui.timings_bottom = 0;
+  ui.timings_in_tab = room < 0;
   if (room < 0 || folded(ui)) return;
   ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x - margin, margin}, ImGuiCond_Always, {1, 0});
   ImGui::SetNextWindowSize({kTimingsWidth * ui.text_scale, 0});

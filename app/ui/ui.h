@@ -73,6 +73,7 @@ struct UiState {
   bool reload_shaders = false;  // asked for by a key
   int open_tab = -1;            // asked for by a key or a test; -1: leave
   float timings_bottom = 0;     // px; 0: they are not shown
+  bool timings_in_tab = false;  // for want of room beside the sidebar they are in the Debug tab
   float text_scale = 1;         // of a dense display
   ImFont* heading = nullptr;
   std::array<char, 512> motion_path{}, parts_path{}, hair_path{}, scene_path{};
@@ -99,6 +100,10 @@ struct UiState {
 
 // Sets fonts and colours of the current ImGui context, and looks up the files on offer.
 void prepareUi(float text_scale, UiState& ui);
+
+// The text scale that is wanted or, in a window of so many pixels, the largest with which the panels have room: 400 by
+// 300 points. 0.5 to 4, below what is wanted in steps of an eighth.
+float fittingTextScale(float wanted, int width, int height);
 
 // Number of the tab of that name ("motion"), for UiState::open_tab; -1 when there is none.
 int tabIndex(std::string_view name);

@@ -417,6 +417,7 @@ void lookTab(Demo& demo, UiState& ui) {
 }
 
 void debugTab(Demo& demo, UiState& ui) {
+  if (ui.timings_in_tab && section("Timings", true)) timingsPanel(demo, ui);
   for (const DebugView& view : kDebugViews) {
     bool on = demo.debug.*view.on;
     if (ImGui::Checkbox(view.label.data(), &on))

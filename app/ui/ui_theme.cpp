@@ -1,6 +1,8 @@
 // Fonts and colours of the panels.
 #include <imgui/imgui.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "app/files/data_path.h"
@@ -65,6 +67,12 @@ void setColors(ImGuiStyle& style) {
 }
 
 }  // namespace
+
+float fittingTextScale(float wanted, int width, int height) {
+  constexpr float kLeastWidth = 400, kLeastHeight = 300;  // points
+  const float room = std::min(static_cast<float>(width) / kLeastWidth, static_cast<float>(height) / kLeastHeight);
+  return std::clamp(wanted <= room ? wanted : std::floor(8 * room) / 8, 0.5f, 4.0f);
+}
 
 void prepareUi(float text_scale, UiState& ui) {
   ui.text_scale = text_scale;

@@ -14,8 +14,9 @@ namespace app {
 
 namespace {
 
-constexpr float kTimelineHeight = 50, kMinWidth = 240, kButtonsWidth = 460, kTimelineMargin = 12;
-constexpr double kWorst = 3;  // of the mean cost: a step to look at
+constexpr float kTimelineHeight = 50, kMinWidth = 280, kOneRowWidth = 560, kTimelineMargin = 12;
+constexpr float kButtonRow = 28, kMinHeight = 290;  // points; of a second row, of the window
+constexpr double kWorst = 3;                        // of the mean cost: a step to look at
 
 // The kept moment at a share of the strip.
 long frameAt(float share, long first, long last) {
@@ -142,9 +143,11 @@ float timelinePanel(Demo& demo, UiState& ui, float left) {
   const float scale = ui.text_scale, margin = kTimelineMargin * scale;
   const float right = ui.history ? (292 + kTimelineMargin) * scale : 0;
   const float width = size.x - left - right - 2 * margin;
-  if (width < kMinWidth * scale || size.y < 4 * kTimelineHeight * scale) return 0;
+  if (width < kMinWidth * scale || size.y < kMinHeight * scale) return 0;
+  const bool one_row = width > kOneRowWidth * scale;
+  const float height = kTimelineHeight + (one_row ? 0 : kButtonRow);
   ImGui::SetNextWindowPos({left + margin, size.y - margin}, ImGuiCond_Always, {0, 1});
-  ImGui::SetNextWindowSize({width, kTimelineHeight * scale});
+  ImGui::SetNextWindowSize({width, height * scale});
   const ImGuiWindowFlags flags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                                  ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoBringToFrontOnFocus;
   if (ImGui::Begin("timeline", nullptr, flags)) {
@@ -156,12 +159,12 @@ float timelinePanel(Demo& demo, UiState& ui, float left) {
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(text);
     ImGui::SameLine(0, 10);
-    cacheButton(demo, ui);
-    if (width > kButtonsWidth * scale) rangeButtons(demo, ui);
+    if (one_row) cacheButton(demo, ui), rangeButtons(demo, ui);
     strip(demo, ui);
+    if (!one_row) cacheButton(demo, ui), rangeButtons(demo, ui);
   }
   ImGui::End();
-  return (kTimelineHeight + kTimelineMargin) * scale;
+  return (height + kTimelineMargin) * scale;
 }
 
 void offerPanel(Demo& demo, UiState& ui) {

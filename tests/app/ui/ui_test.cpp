@@ -255,6 +255,38 @@ TEST_F(Panels, AFaultCanBeReadAndClosedInWindowsOfAnySize) {
   }
 }
 
+// In points, from 400 x 300 on; smaller windows and larger texts come to these by fittingTextScale.
+TEST_F(Panels, EverythingIsReachedInSmallWindows) {
+  for (const ImVec2 size : {ImVec2(400, 300), ImVec2(500, 350), ImVec2(640, 400), ImVec2(960, 600)}) {
+    ImGui::GetIO().DisplaySize = size;
+    demo_.timeline.on = true;
+    const auto within = [&](const char* name) {
+      const UiItem* item = find(name);
+      EXPECT_NE(item, nullptr) << name << " at " << size.x;
+      if (!item) return;
+      EXPECT_TRUE(item->x >= 0 && item->y >= 0 && item->x + item->width <= size.x && item->y + item->height <= size.y)
+          << name << " at " << size.x;
+    };
+    ui_.unfolded = false;
+    for (int k = 0; k < 3; ++k) frame();
+    for (const char* name : {"timeline", "cache", "range In", "range Out", "range Bake", "range Clear"}) within(name);
+    const UiItem *strip = find("timeline"), *bake = find("range Bake"), *pause = find("pause");
+    ASSERT_TRUE(strip && bake && pause);
+    EXPECT_FALSE(overlap(*strip, *bake)) << size.x;
+    EXPECT_FALSE(overlap(*pause, *bake) || overlap(*pause, *strip)) << size.x;
+    EXPECT_GT(strip->width, 100) << size.x;
+    ui_.unfolded = true;
+    for (int tab = 0; tab < 5; ++tab) openTab(tab);
+    for (const char* name : {"tab Simulation", "tab Motion", "tab Hair", "tab Look", "tab Debug", "file History"})
+      within(name);
+    EXPECT_NE(find("stage_bar"), nullptr) << "timings at " << size.x;
+  }
+  EXPECT_EQ(app::fittingTextScale(2, 960, 600), 2);
+  EXPECT_EQ(app::fittingTextScale(2, 640, 400), 1.25f);
+  EXPECT_EQ(app::fittingTextScale(1, 500, 350), 1);
+  EXPECT_EQ(app::fittingTextScale(1, 100, 100), 0.5f);
+}
+
 TEST_F(Panels, OneVariationReplacesTheLastUntilItIsKept) {
   openTab(0);
   const auto press = [&](const char* name) {
