@@ -17,7 +17,8 @@ struct HairFace {
   std::array<int, 4> first_vertex{-1, -1, -1,
                                   -1};  // corner k, layer l is vertex first_vertex[k] + l; [3] = -1: triangle
   int layers = 0;
-  float area = 0;  // m^2 of the root face: strands are dealt out in proportion
+  float area = 0;        // m^2 of the root face: strands are dealt out in proportion
+  bool covered = false;  // under a hat, out of which a stray strand would stick: it has none
 };
 
 // How strands vary and look. Lengths in metres.

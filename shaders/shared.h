@@ -36,7 +36,7 @@ const int kVertexTexels = 3;  // position + sky visibility, du + depths along fi
 const float kDepthSteps = 128.0;
 const float kDeepest = 32.0;
 const float kBackReach = 0.012;  // m: light comes back from hair as far behind a strand
-const int kFaceTexels = 3;       // first vertices; columns; layers, first strand, end strand, edge (see HairLayout)
+const int kFaceTexels = 3;       // first vertices; columns; layers (negative: covered), first strand, end strand, edge
 const int kTableTexels = 1;      // end strand, face, segments a layer (0: the hair's), first strand
 const int kColumnTexels = 4;     // rest position + last layer of the shortest bundle around, rest axes u and v, each
                                  // with the part of the way to bare skin along it; way of hair (m a layer, m a layer^2)

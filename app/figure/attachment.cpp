@@ -111,6 +111,20 @@ int turnOutwards(ClosedSurface& surface) {
   return static_cast<int>(volume.size());
 }
 
+// Of the material that covers the largest area.
+std::optional<std::array<float, 3>> colorOf(const PolygonMesh& mesh) {
+  std::map<std::array<float, 3>, double> areas;
+  for (std::size_t f = 0; f < mesh.faceCount(); ++f) {
+    const auto& color = mesh.colors[static_cast<std::size_t>(mesh.face_object[f])];
+    const auto corners = mesh.face(f);
+    const auto at = [&](std::size_t k) { return mesh.positions[static_cast<std::size_t>(corners[k])]; };
+    for (std::size_t k = 2; color && k < corners.size(); ++k)
+      areas[*color] += (at(k - 1) - at(0)).cross(at(k) - at(0)).norm();
+  }
+  if (areas.empty()) return std::nullopt;
+  return std::ranges::max_element(areas, {}, [](const auto& one) { return one.second; })->first;
+}
+
 ClosedSurface readSurface(const std::string& file, PolygonMesh& mesh) {
   try {
     mesh = readPolygons(file);
@@ -119,10 +133,12 @@ ClosedSurface readSurface(const std::string& file, PolygonMesh& mesh) {
     throw InputError("", "", text.substr(0, text.find("; ")), kGiveSolid);
   }
   ClosedSurface surface = weld(mesh);
-  if (surface.faces.size() < 4) throw InputError(file, "", "is no solid: it has under four faces", kGiveSolid);
+  if (surface.faces.empty()) throw InputError(file, "", "holds no face of any area", kGiveSolid);
   if (const int open = openEdges(surface); open > 0)
-    throw InputError(file, "", "is open: " + std::to_string(open) + " edges lack a face on one side",
-                     "close it, or give the sheet a thickness");
+    throw InputError(file, "",
+                     "is open: " + std::to_string(open) +
+                         " edges lack a face on one side, and hair is kept out of what a mesh encloses",
+                     "close it, or give the sheet a thickness of 3 mm or more (Blender: Solidify)");
   turnOutwards(surface);
   return surface;
 }
@@ -273,6 +289,7 @@ Attachment loadAttachment(const AttachmentSpec& spec, const Character& character
   std::string note;
   placeAt(spec, mesh, scalp.linear().transpose() * carrier.rest_world.translation(), surface, note);
   if (!note.empty()) out.note = stem(spec.file) + ": " + note;
+  out.color = colorOf(mesh);
   const Rigid to_joint = carrier.rest_world.inverse(Eigen::Isometry) * upright;
   for (Vec3& p : surface.points) p = to_joint * p;
   out.part = distancesOf(surface, joint);

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +19,7 @@ struct Attachment {
   std::string key;
   std::uint64_t id = 0;
   std::string note;                                  // what was inferred; empty: nothing
+  std::optional<std::array<float, 3>> color;         // of its largest material, linear; none: the file has none
   std::vector<Eigen::Vector3f> positions, normals;   // m, joint frame; a vertex a smooth side of an edge
   std::vector<std::uint32_t> triangles;              // counter-clockwise from outside
   std::vector<std::array<std::uint16_t, 4>> joints;  // the one joint there is

@@ -23,27 +23,58 @@ json jsonFrom(const sim::Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
+bool isFile(const std::string& file) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(file, ignored);
+}
+
+const char* whatInPlace(const std::string& file) {
+  std::error_code ignored;
+  return std::filesystem::is_directory(file, ignored) ? "is a folder" : "is not there";
+}
+
+[[noreturn]] void refuseFile(const std::string& name, const std::string& file) {
+  throw InputError(name.substr(0, 200), "", whatInPlace(file),
+                   "name a mesh: OBJ, FBX or glTF; it is looked for in the working folder and in assets/attachments");
+}
+
 AttachmentSpec readAttachment(const JsonPlace& place) {
   place.expectObject({"file", "joint", "at", "turn", "scale", "color", "roughness"});
   AttachmentSpec one;
   if (!place.has("file")) place.refuse("names no file", "give \"file\" a mesh: OBJ, FBX or glTF");
   const std::string name = place.at("file").text();
   one.file = findFile(name, place.file(), "attachments");
-  std::error_code ignored;
-  if (std::filesystem::is_directory(one.file, ignored))
-    place.at("file").refuse("names '" + name.substr(0, 200) + "', which is a folder", "name a mesh: OBJ, FBX or glTF");
-  if (!std::filesystem::is_regular_file(one.file, ignored))
-    place.at("file").refuse("names '" + name.substr(0, 200) + "', which is not there",
-                            "check the path; it is looked for beside the scene and in assets/attachments");
+  if (!isFile(one.file) && place.file().empty()) refuseFile(name, one.file);
+  if (!isFile(one.file))
+    place.at("file").refuse(
+        "names '" + name.substr(0, 200) + "', which " + whatInPlace(one.file),
+        "name a mesh: OBJ, FBX or glTF; it is looked for beside the scene and in assets/attachments");
   if (place.has("joint")) one.joint = place.at("joint").text();
   if (place.has("at")) one.at = vectorFrom(place.at("at").vector(-kFarthestPlace, kFarthestPlace));
   if (place.has("turn")) one.turn = vectorFrom(place.at("turn").vector(-kMaxTurn, kMaxTurn));
   if (place.has("scale")) one.scale = place.at("scale").number(kMinUnit, kMaxUnit);
   if (place.has("color")) {
     const std::array<double, 3> color = place.at("color").vector(0, 1);
-    for (std::size_t k = 0; k < 3; ++k) one.color[k] = static_cast<float>(color[k]);
+    one.color = {static_cast<float>(color[0]), static_cast<float>(color[1]), static_cast<float>(color[2])};
   }
   if (place.has("roughness")) one.roughness = static_cast<float>(place.at("roughness").number(0.05, 1));
+  return one;
+}
+
+// FILE, or FILE@JOINT where all of the text names no file.
+AttachmentSpec fileAtJoint(const std::string& text) {
+  AttachmentSpec one;
+  one.file = findFile(text, "", "attachments");
+  const std::size_t at = text.rfind('@');
+  if (isFile(one.file) || at == std::string::npos) {
+    if (!isFile(one.file)) refuseFile(text, one.file);
+    return one;
+  }
+  one.file = findFile(text.substr(0, at), "", "attachments");
+  one.joint = text.substr(at + 1);
+  if (!isFile(one.file)) refuseFile(text.substr(0, at), one.file);
+  if (one.joint.empty())
+    throw InputError("", "'" + text.substr(0, 200) + "'", "names no joint after its @", "write FILE@JOINT, or FILE");
   return one;
 }
 
@@ -59,7 +90,8 @@ std::vector<AttachmentSpec> readAttachments(const JsonPlace& place) {
 json writeAttachments(const std::vector<AttachmentSpec>& attachments) {
   json all = json::array();
   for (const AttachmentSpec& one : attachments) {
-    json written = {{"file", one.file}, {"joint", one.joint}, {"color", one.color}, {"roughness", one.roughness}};
+    json written = {{"file", one.file}, {"joint", one.joint}, {"roughness", one.roughness}};
+    if (one.color) written["color"] = *one.color;
     if (one.at != sim::Vec3::Zero()) written["at"] = jsonFrom(one.at);
     if (one.turn != sim::Vec3::Zero()) written["turn"] = jsonFrom(one.turn);
     if (one.scale > 0) written["scale"] = one.scale;
@@ -75,16 +107,10 @@ std::string wornText(std::vector<AttachmentSpec> attachments) {
 
 std::vector<AttachmentSpec> attachmentsFromText(std::string_view text) {
   if (text == "none" || text.empty()) return {};
-  json given;
-  if (text.starts_with("[") || text.starts_with("{")) {
-    given = parseJson(text, "--attach");
-  } else {
-    const std::size_t at = text.rfind('@');
-    given = {{"file", text.substr(0, at)}};
-    if (at != std::string_view::npos) given["joint"] = text.substr(at + 1);
-  }
-  if (given.is_object()) given = json::array({given});
-  return readAttachments(JsonPlace(given, "--attach"));
+  if (!text.starts_with("[") && !text.starts_with("{")) return {fileAtJoint(std::string(text))};
+  const json given = parseJson(text, "");
+  const JsonPlace place(given, "");
+  return given.is_object() ? std::vector{readAttachment(place)} : readAttachments(place);
 }
 
 }  // namespace app

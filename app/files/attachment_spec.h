@@ -4,11 +4,12 @@
 //                     "color": [r, g, b], "roughness": 0.8 }]
 // The mesh lies in the joint's frame at rest: origin at the joint, x to the figure's left, y up, z forward. "at" (m)
 // and "turn" (degrees about x, then y, then z) are added. "scale" is metres per unit of the file; left out, unit and
-// origin are inferred where they are certain. "joint" is a joint's name or a body part's ("head", "neck", "chest").
-// Every key but the file may be left out.
+// origin are inferred where they are certain. "color" left out is that of the file's material. "joint" is a joint's
+// name or a body part's ("head", "neck", "chest"). Every key but the file may be left out.
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,10 +22,10 @@ namespace app {
 struct AttachmentSpec {
   std::string file;
   std::string joint = "head";
-  sim::Vec3 at = sim::Vec3::Zero();    // m
-  sim::Vec3 turn = sim::Vec3::Zero();  // degrees
-  double scale = 0;                    // m per unit; 0: inferred
-  std::array<float, 3> color{0.10f, 0.16f, 0.24f};
+  sim::Vec3 at = sim::Vec3::Zero();           // m
+  sim::Vec3 turn = sim::Vec3::Zero();         // degrees
+  double scale = 0;                           // m per unit; 0: inferred
+  std::optional<std::array<float, 3>> color;  // linear; none: that of the file's material
   float roughness = 0.8f;
 };
 
@@ -37,7 +38,8 @@ nlohmann::json writeAttachments(const std::vector<AttachmentSpec>& attachments);
 // The same as text without their colours: equal where they need not be made anew.
 std::string wornText(std::vector<AttachmentSpec> attachments);
 
-// From the command line or a panel: none, FILE, FILE@JOINT, or JSON as in a scene. Throws InputError.
+// From the command line or a panel: none, FILE, FILE@JOINT, or JSON as in a scene. A file's name may have an @: the
+// last one leads to a joint where all of the text names no file. Throws InputError.
 std::vector<AttachmentSpec> attachmentsFromText(std::string_view text);
 
 }  // namespace app

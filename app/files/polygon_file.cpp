@@ -1,5 +1,6 @@
 #include "app/files/polygon_file.h"
 
+#include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
@@ -74,6 +75,19 @@ struct Gatherer {
     return name.substr(0, 80);
   }
 
+  // glTF's base colour, Kd of an OBJ's library, FBX' diffuse colour; none where assimp has put in a material of its
+  // own.
+  std::optional<std::array<float, 3>> colorOf(const aiMesh& mesh) const {
+    if (mesh.mMaterialIndex >= scene.mNumMaterials) return std::nullopt;
+    const aiMaterial& material = *scene.mMaterials[mesh.mMaterialIndex];
+    aiColor4D color;
+    if (material.GetName() == aiString(AI_DEFAULT_MATERIAL_NAME) ||
+        material.Get(AI_MATKEY_COLOR_DIFFUSE, color) != aiReturn_SUCCESS)
+      return std::nullopt;
+    const auto share = [](float value) { return std::isfinite(value) ? std::clamp(value, 0.0f, 1.0f) : 0.0f; };
+    return std::array{share(color.r), share(color.g), share(color.b)};
+  }
+
   void addFace(const aiMesh& mesh, const aiFace& face, int base, const std::string& name) {
     if (face.mNumIndices < 3) return;  // points and lines
     if (out.corners.size() + face.mNumIndices > kMaxCorners)
@@ -90,6 +104,7 @@ struct Gatherer {
   void addMesh(const aiNode& node, const aiMesh& mesh, const Mat4& to_world) {
     const std::string name = nameOf(node, mesh);
     out.objects.push_back(name);
+    out.colors.push_back(colorOf(mesh));
     const int base = static_cast<int>(out.positions.size());
     if (out.positions.size() + mesh.mNumVertices > kMaxCorners)
       throw InputError(file, name, "has over 4,000,000 vertices", "reduce the mesh, or give the hair alone");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "app/files/errors.h"
@@ -26,6 +27,11 @@ constexpr std::array kPlaces{TiePlace{"back", 0, 0.28, -0.96, 0}, TiePlace{"high
 const TiePlace* placeOf(std::string_view name) {
   const auto at = std::ranges::find(kPlaces, name, &TiePlace::name);
   return at == kPlaces.end() ? nullptr : &*at;
+}
+
+sim::Vec3 lowered(const sim::Vec3& way, double angle) {
+  const double level = std::hypot(way.x(), way.z()), height = std::atan2(way.y(), level) - angle;
+  return {std::cos(height) * way.x() / level, std::sin(height), std::cos(height) * way.z() / level};
 }
 
 TieSpec readTie(const JsonPlace& place) {
@@ -78,17 +84,17 @@ std::vector<TieSpec> tiesFromText(std::string_view text) {
   if (!text.starts_with("[") && !text.starts_with("{"))
     throw InputError("", "tie '" + std::string(text.substr(0, 40)) + "'", "is unknown",
                      "choose back, high, low, left, right, two or none, or write JSON as in a scene's \"ties\"");
-  json parsed = parseJson(text, "--tie");
-  if (parsed.is_object()) parsed = json::array({parsed});
-  return readTies(JsonPlace(parsed, "--tie"));
+  const json parsed = parseJson(text, "");
+  const JsonPlace place(parsed, "");
+  return parsed.is_object() ? std::vector{readTie(place)} : readTies(place);
 }
 
-std::vector<HairTie> placeTies(const std::vector<TieSpec>& ties, const Scalp& scalp) {
+std::vector<HairTie> placeTies(const std::vector<TieSpec>& ties, const Scalp& scalp, double lower) {
   std::vector<HairTie> placed;
   for (const TieSpec& spec : ties) {
     HairTie tie;
     const TiePlace& named = *placeOf(spec.place);
-    const sim::Vec3 way = sim::Vec3(named.x, named.y, named.z).normalized();
+    const sim::Vec3 way = lowered(sim::Vec3(named.x, named.y, named.z).normalized(), lower);
     tie.at = spec.at.value_or(scalp.center + (scalp.radiusAt(way) + spec.radius + kStandOff) * way);
     tie.radius = spec.radius;
     tie.side = spec.side == "left" ? 1 : spec.side == "right" ? -1 : spec.side == "all" ? 0 : spec.at ? 0 : named.side;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -16,9 +17,10 @@ struct PolygonMesh {
   std::vector<Eigen::Vector3d> positions;  // in the file's unit and axes, nodes' transforms applied
   std::vector<std::size_t> face_first{0};
   std::vector<int> corners;
-  std::vector<int> face_object;           // per face: index of `objects`
-  std::vector<std::string> objects;       // names of node, mesh and material, with blanks between
-  std::optional<double> meters_per_unit;  // as the file says
+  std::vector<int> face_object;                             // per face: index of `objects`
+  std::vector<std::string> objects;                         // names of node, mesh and material, with blanks between
+  std::vector<std::optional<std::array<float, 3>>> colors;  // per object: its material's, linear; none: it has none
+  std::optional<double> meters_per_unit;                    // as the file says
 
   std::size_t faceCount() const { return face_first.size() - 1; }
   std::span<const int> face(std::size_t f) const {

@@ -206,8 +206,8 @@ Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, AssetCa
   placeActor(actor, true);
   actor.pins = findPins(spec.pins, actor.haircut->mesh, body.character, actor.pose);
   const std::vector<int>& ring = actor.haircut->tied;
-  const Scalp& scalp = body.character.scalp;
-  const std::vector<Vec3> places = ringPlaces(actor.haircut->mesh.shape, scalp, placeTies(spec.ties, scalp), ring);
+  const std::vector<Vec3> places =
+      ringPlaces(actor.haircut->mesh.shape, body.character.scalp, actor.haircut->ties, ring);
   for (std::size_t k = 0; k < ring.size(); ++k) {
     const Vec3 at = body.character.head_frame * places[k];
     actor.pins.push_back({ring[k], body.character.head_joint, at, PinSpec::kForever, 0, PinSpec::kForever});

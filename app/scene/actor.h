@@ -21,6 +21,7 @@
 #include "app/scene/painted_fields.h"
 #include "app/scene/pins.h"
 #include "app/scene/step_error.h"
+#include "app/styles/style_tie.h"
 #include "render/frame_input.h"
 #include "sim/mesh/hair_mesh.h"
 #include "sim/mesh/hair_state.h"
@@ -53,8 +54,9 @@ struct Haircut {
   std::optional<LookFit> look;          // of a groom's strands
   std::vector<MendedFinding> findings;  // of a groom, what the inspector says
   sim::HairMesh mesh;
-  std::vector<int> tied;     // vertices in the rings of ties
-  std::vector<int> covered;  // vertices under attachments, which hold them
+  std::vector<HairTie> ties;  // where they are
+  std::vector<int> tied;      // vertices in the rings of ties
+  std::vector<int> covered;   // vertices under attachments, which hold them
   PaintedShares shares;
   std::vector<Vec3> unpainted, painted;  // rest positions before and after a painted length; none where hair is tied
   std::vector<render::HairFace> faces;

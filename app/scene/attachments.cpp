@@ -146,10 +146,24 @@ bool showAttachments(const Vec3& origin, Actor& actor) {
   return changed;
 }
 
+std::array<float, 3> wornColor(const Actor& actor, std::size_t k) {
+  constexpr std::array kPlain{0.10f, 0.16f, 0.24f};  // of a file without a material
+  if (k >= std::min(actor.worn.size(), actor.spec.attachments.size())) return kPlain;
+  return actor.spec.attachments[k].color.value_or(actor.worn[k].mesh->color.value_or(kPlain));
+}
+
 std::string attachmentNotes(const Actor& actor) {
-  std::string notes;
+  std::vector<std::string> lines;
   for (const WornAttachment& worn : actor.worn) {
-    if (!worn.mesh->note.empty()) notes += (notes.empty() ? "" : "\n") + worn.mesh->note;
+    if (!worn.mesh->note.empty()) lines.push_back(worn.mesh->note);
+    const auto same = [&](const WornAttachment& other) { return other.mesh == worn.mesh; };
+    const std::string file = worn.mesh->key.substr(0, worn.mesh->key.find('|'));
+    if (const auto times = std::ranges::count_if(actor.worn, same); times > 1)
+      lines.push_back(stem(file) + " is worn " + std::to_string(times) + " times in one place; take the others off");
+  }
+  std::string notes;
+  for (auto line = lines.begin(); line != lines.end(); ++line) {
+    if (std::find(lines.begin(), line, *line) == line) notes += (notes.empty() ? "" : "\n") + *line;
   }
   return notes;
 }

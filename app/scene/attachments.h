@@ -2,6 +2,8 @@
 // what a hat does to the hair under it.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,7 +28,10 @@ void poseAttachments(double dt, Actor& actor);
 // Matrices of the shown pose relative to `origin` (m). Returns whether any bit changed.
 bool showAttachments(const Vec3& origin, Actor& actor);
 
-// What was inferred of the actor's attachments, a line each.
+// The colour that one of the actor's attachments is drawn in, linear.
+std::array<float, 3> wornColor(const Actor& actor, std::size_t k);
+
+// What was inferred of the actor's attachments, and which is worn twice, a line each.
 std::string attachmentNotes(const Actor& actor);
 
 }  // namespace app

@@ -184,7 +184,7 @@ render::BodyInput attachmentInput(const Actor& actor, std::size_t k) {
   input.weights = {mesh.weights.data()->data(), 4 * mesh.weights.size()};
   input.joint_matrices = {&worn.matrix, 1};
   input.pose_revision = actor.pose_revision;
-  input.color = actor.spec.attachments[k].color;
+  input.color = wornColor(actor, k);
   input.roughness = actor.spec.attachments[k].roughness;
   return input;
 }

@@ -44,6 +44,7 @@ Haircut& ownHaircut(Actor& actor, Demo& demo) {
   own->faces = worn.faces;
   own->rest = worn.rest;
   own->edited = worn.edited;
+  own->ties = worn.ties;
   own->tied = worn.tied;
   own->covered = worn.covered;
   own->shares = worn.shares;

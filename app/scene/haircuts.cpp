@@ -1,8 +1,13 @@
 #include "app/scene/haircuts.h"
 
+#include <algorithm>
+#include <array>
 #include <atomic>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <span>
 
+#include "app/files/data_path.h"
 #include "app/files/errors.h"
 #include "app/scene/attachments.h"
 #include "app/scene/hair_from_file.h"
@@ -17,16 +22,87 @@ std::string styleTitle(const CharacterSpec& spec) {
   return std::string(styleName(spec.style)) + " " + std::string(resolutionName(spec.resolution));
 }
 
-// Ties the hair; `tied` takes the vertices in the rings.
-void applyTies(const CharacterSpec& spec, const LoadedBody& body, sim::HairMeshShape& shape, std::vector<int>& tied) {
-  const Scalp& scalp = body.character.scalp;
-  TiedHair result = tieHair(shape, scalp, body.distance, placeTies(spec.ties, scalp));
+// What is said where ties are elsewhere than they are named.
+std::string loweredNote(const CharacterSpec& spec, const Scalp& scalp, double lower) {
+  double most = 0;
+  const std::vector<HairTie> asked = placeTies(spec.ties, scalp), placed = placeTies(spec.ties, scalp, lower);
+  for (std::size_t t = 0; t < asked.size(); ++t) most = std::max(most, (asked[t].at - placed[t].at).norm());
+  return "tied " + std::to_string(std::lround(1000 * most)) + " mm lower, to leave the hair room under " +
+         stem(spec.attachments.front().file);
+}
+
+// rad, that ties are lowered by, one after another, where what is worn leaves the tied hair no room.
+constexpr std::array kLowered{0.0, 0.15, 0.3, 0.45, 0.6, 0.75};
+
+void applyTies(const CharacterSpec& spec, const LoadedBody& body, sim::HairMeshShape& shape, Haircut& haircut) {
+  TiedHair result = tieHair(shape, body.character.scalp, body.distance, haircut.ties);
   shape = std::move(result.shape);
+  haircut.tied.clear();
   for (const std::vector<int>& ring : result.rings) {
     if (ring.empty())
       throw InputError("", "tie " + writeTies(spec.ties).dump(), "takes no hair", "move it, or widen what it takes");
-    tied.insert(tied.end(), ring.begin(), ring.end());
+    haircut.tied.insert(haircut.tied.end(), ring.begin(), ring.end());
   }
+}
+
+// The hair as it grows, cut by a map.
+sim::HairMeshShape grownHair(const CharacterSpec& spec, const LoadedBody& body, Haircut& haircut) {
+  const Scalp& scalp = body.character.scalp;
+  sim::HairMeshShape shape = spec.hair.empty() ? makeStyle(spec.style, spec.resolution, scalp, body.distance)
+                                               : hairFromFile(spec, body.character, haircut);
+  // Hair of a file may lie nearer to the body than a style's.
+  const BodyDistance around = spec.hair.empty() ? body.distance : [](const Vec3&) { return 1.0; };
+  haircut.unpainted = shape.positions;
+  if (!spec.maps.length.empty()) paintLength(readFieldMap(spec.maps.length), scalp, around, shape);
+  return shape;
+}
+
+// Tied and under what is worn. Throws sim::MeshError where there is no room.
+void dressHair(const CharacterSpec& spec, const LoadedBody& body, std::span<const Attachment* const> worn,
+               sim::HairMeshShape shape, Haircut& haircut) {
+  const Scalp& scalp = body.character.scalp;
+  if (!spec.ties.empty()) applyTies(spec, body, shape, haircut);
+  haircut.painted = shape.positions;
+  haircut.covered = layUnder(worn, scalp, body.distance, shape);
+  if (!spec.ties.empty() || !haircut.covered.empty()) haircut.unpainted.clear();
+  haircut.mesh = sim::buildHairMesh(std::move(shape));
+}
+
+// The same with the ties where they are named or, where there is no room, as little lower as there is.
+void dressWhereThereIsRoom(const CharacterSpec& spec, const LoadedBody& body, std::span<const Attachment* const> worn,
+                           const sim::HairMeshShape& shape, Haircut& haircut) {
+  const bool named = std::ranges::any_of(spec.ties, [](const TieSpec& tie) { return !tie.at; });
+  const std::size_t tries = named && !worn.empty() ? kLowered.size() : 1;
+  for (std::size_t k = 0; k < tries; ++k) {
+    haircut.ties = placeTies(spec.ties, body.character.scalp, kLowered[k]);
+    try {
+      dressHair(spec, body, worn, shape, haircut);
+    } catch (const sim::MeshError&) {
+      if (k + 1 == tries) throw;
+      continue;
+    }
+    if (k > 0)
+      haircut.note += (haircut.note.empty() ? "" : "\n") + loweredNote(spec, body.character.scalp, kLowered[k]);
+    return;
+  }
+}
+
+[[noreturn]] void refuseHair(const CharacterSpec& spec, const std::string& title, const Haircut& haircut,
+                             const sim::MeshError& error) {
+  if (!spec.maps.length.empty())
+    throw InputError("map " + spec.maps.length.substr(0, 80), "length", "cuts hair so that its layers cross",
+                     "paint it lighter or more evenly");
+  if (!haircut.covered.empty() && !spec.ties.empty())
+    throw InputError(spec.attachments.front().file, "with a tie", "leaves the tied hair no room",
+                     "tie it where nothing lies over it, or take off one of the two");
+  if (!haircut.covered.empty())
+    throw InputError(spec.attachments.front().file, "", "leaves the hair no room",
+                     "make it wider, or move it off the head");
+  if (!spec.ties.empty())
+    throw InputError("", "tie " + writeTies(spec.ties).dump(), "leaves the hair no room",
+                     "move it off the head, or make it wider");
+  throw InputError(spec.hair.empty() ? "style " + title + " on " + spec.motion : spec.hair, error.place, error.fault,
+                   error.mend);
 }
 
 }  // namespace
@@ -34,6 +110,14 @@ void applyTies(const CharacterSpec& spec, const LoadedBody& body, sim::HairMeshS
 std::uint64_t freshId() {
   static std::atomic<std::uint64_t> next{1};
   return next++;
+}
+
+void markCovered(const Haircut& haircut, std::vector<render::HairFace>& faces) {
+  for (render::HairFace& face : faces) {
+    face.covered = std::ranges::any_of(face.first_vertex, [&](int root) {
+      return root >= 0 && std::ranges::binary_search(haircut.covered, root + 1);
+    });
+  }
 }
 
 const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& asset_cache) {
@@ -56,38 +140,17 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
   if ((spec.hair.empty() || !spec.ties.empty() || !worn.empty()) && !body.distance)
     body.distance = restBodyDistance(body.character);
   try {
-    sim::HairMeshShape shape = spec.hair.empty()
-                                   ? makeStyle(spec.style, spec.resolution, body.character.scalp, body.distance)
-                                   : hairFromFile(spec, body.character, *haircut);
-    const Scalp& scalp = body.character.scalp;
-    // Hair of a file may lie nearer to the body than a style's.
-    const BodyDistance around = spec.hair.empty() ? body.distance : [](const Vec3&) { return 1.0; };
-    haircut->unpainted = shape.positions;
-    if (!spec.maps.length.empty()) paintLength(readFieldMap(spec.maps.length), scalp, around, shape);
-    if (!spec.ties.empty()) applyTies(spec, body, shape, haircut->tied);
-    haircut->painted = shape.positions;
-    haircut->covered = layUnder(worn, scalp, body.distance, shape);
-    if (!spec.ties.empty() || !haircut->covered.empty()) haircut->unpainted.clear();
-    haircut->mesh = sim::buildHairMesh(std::move(shape));
-    haircut->shares = paintedShares(spec.maps, spec.curves, scalp, haircut->mesh.shape);
+    const sim::HairMeshShape shape = grownHair(spec, body, *haircut);
+    dressWhereThereIsRoom(spec, body, worn, shape, *haircut);
+    haircut->shares = paintedShares(spec.maps, spec.curves, body.character.scalp, haircut->mesh.shape);
     applyShares(haircut->shares, haircut->mesh);
   } catch (const sim::MeshError& error) {
-    if (!spec.maps.length.empty())
-      throw InputError("map " + spec.maps.length.substr(0, 80), "length", "cuts hair so that its layers cross",
-                       "paint it lighter or more evenly");
-    if (!haircut->covered.empty() && !spec.ties.empty())
-      throw InputError(spec.attachments.front().file, "with a tie", "leaves the tied hair no room",
-                       "tie it where nothing lies over it, or take off one of the two");
-    if (!haircut->covered.empty())
-      throw InputError(spec.attachments.front().file, "", "leaves the hair no room",
-                       "make it wider, or move it off the head");
-    if (!spec.ties.empty())
-      throw InputError("", "tie " + writeTies(spec.ties).dump(), "leaves the hair no room",
-                       "move it off the head, or make it wider");
-    throw InputError(spec.hair.empty() ? "style " + title + " on " + spec.motion : spec.hair, error.place, error.fault,
-                     error.mend);
+    refuseHair(spec, title, *haircut, error);
   }
+  if (const std::string notes = mapNotes(spec.maps); !notes.empty())
+    haircut->note += (haircut->note.empty() ? "" : "\n") + notes;
   haircut->faces = renderFaces(haircut->mesh);
+  markCovered(*haircut, haircut->faces);
   if (!spec.maps.density.empty())
     paintDensity(readFieldMap(spec.maps.density), body.character.scalp, haircut->mesh, haircut->faces);
   blendPositions(haircut->mesh.shape.positions, haircut->mesh.shape.positions, 1, Vec3::Zero(), haircut->rest);

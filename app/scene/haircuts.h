@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "app/scene/actor.h"
 
@@ -10,6 +11,9 @@ namespace app {
 // Never the same twice in a process: the renderer keeps GPU resources by these, also across scenes opened one after
 // another.
 std::uint64_t freshId();
+
+// Marks the faces of a haircut that lie under an attachment.
+void markCovered(const Haircut& haircut, std::vector<render::HairFace>& faces);
 
 // The haircut that `spec` asks for on a body, built on first use. Throws InputError.
 const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& asset_cache);

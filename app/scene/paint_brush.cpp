@@ -97,6 +97,7 @@ void repaintDensity(const FieldMap& map, int index, Demo& demo) {
   Actor& actor = demo.actors[static_cast<std::size_t>(index)];
   Haircut& own = ownHaircut(actor, demo);
   own.faces = renderFaces(own.mesh);
+  markCovered(own, own.faces);
   paintDensity(map, actor.body->character.scalp, own.mesh, own.faces);
   own.id = freshId();
   ++actor.layout_revision;

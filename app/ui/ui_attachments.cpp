@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/files/data_path.h"
+#include "app/scene/attachments.h"
 #include "app/ui/ui_panels.h"
 #include "app/ui/ui_widgets.h"
 
@@ -20,7 +21,9 @@ void wornRow(std::size_t k, Demo& demo, UiState& ui) {
   AttachmentSpec& one = ui.worn[k];
   rowLabel(readable(stem(one.file)), "At the joint " + one.joint + ": " + one.file);
   ImGui::PushID(static_cast<int>(k));
-  if (ImGui::ColorEdit3("##color", one.color.data(), ImGuiColorEditFlags_NoInputs)) ui.worn_edited = true;
+  std::array<float, 3> color = one.color.value_or(wornColor(selectedActor(demo), k));
+  if (ImGui::ColorEdit3("##color", color.data(), ImGuiColorEditFlags_NoInputs))
+    one.color = color, ui.worn_edited = true;
   ImGui::SameLine();
   if (ImGui::SmallButton("Take off")) {
     std::vector<AttachmentSpec> all = ui.worn;

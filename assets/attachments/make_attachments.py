@@ -31,9 +31,12 @@ class Mesh:
             a, b = ring[k], ring[(k + 1) % len(ring)]
             self.faces.append((top, b, a) if turned else (top, a, b))
 
-    def write(self, name, what):
+    def write(self, name, what, color):
+        """Kd: linear reflectance."""
+        with open(name + ".mtl", "w") as file:
+            file.write("newmtl %s\nKd %g %g %g\n" % (name, *color))
         with open(name + ".obj", "w") as file:
-            file.write(f"# {what}. Metres about the head joint; made by make_attachments.py.\no {name}\n")
+            file.write(f"# {what}. Metres about the head joint; made by make_attachments.py.\nmtllib {name}.mtl\no {name}\nusemtl {name}\n")
             for p in self.points:
                 file.write("v %.5f %.5f %.5f\n" % p)
             for f in self.faces:
@@ -61,11 +64,13 @@ def crown(mesh, rim, inside, outside, segments=96, rows=26):
 
 def beanie():
     mesh = Mesh()
-    rim = lambda t: math.radians(83 - 17 * math.cos(t))
-    ribs = lambda t, s: 0.0007 * math.cos(24 * t) * min(1, 3 * s)
-    cuff = lambda s: 0.0035 / (1 + math.exp(-60 * (s - 0.76)))
-    crown(mesh, rim, lambda t, s: 0.012, lambda t, s: 0.020 + 0.006 * (1 - s) + ribs(t, s) + cuff(s))
-    mesh.write("beanie", "A knitted cap")
+    rim = lambda t: math.radians(95 - 14 * math.cos(t))
+    ribs = lambda t, s: 0.0008 * math.cos(24 * t) * min(1, 3 * s)
+    cuff = lambda s: 0.0032 / (1 + math.exp(-90 * (s - 0.74)))
+    slack = lambda s: 0.011 * (1 - s) ** 1.5
+    snug = lambda t, s: -(0.0035 + 0.003 * max(0, math.cos(t))) * max(0, (s - 0.6) / 0.4) ** 2
+    crown(mesh, rim, lambda t, s: 0.012 + snug(t, s), lambda t, s: 0.0185 + slack(s) + snug(t, s) + ribs(t, s) + cuff(s))
+    mesh.write("beanie", "A knitted cap", (0.28, 0.05, 0.06))
 
 
 def sun_hat():
@@ -86,7 +91,7 @@ def sun_hat():
     rings = mesh.sheet(outer + upper + lower + inner)
     mesh.cap(rings[0], on_head(0, 0, 0.019), False)
     mesh.cap(rings[-1], on_head(0, 0, 0.012), True)
-    mesh.write("sun_hat", "A hat with a brim")
+    mesh.write("sun_hat", "A hat with a brim", (0.62, 0.46, 0.24))
 
 
 def headband():
@@ -99,7 +104,7 @@ def headband():
         return (x, y + half * math.sin(a), z)
 
     mesh.sheet([[corner(t, a) for t in turns(96)] for a in turns(16)], closed_rows=True)
-    mesh.write("headband", "A band about forehead and nape")
+    mesh.write("headband", "A band about forehead and nape", (0.10, 0.16, 0.24))
 
 
 def tube(mesh, path, radius, closed):
@@ -133,7 +138,7 @@ def glasses():
         arm = [(side * 0.058, 0.088, 0.092), (side * 0.070, 0.088, 0.080), (side * 0.081, 0.088, 0.050), (side * 0.083, 0.088, 0.0), (side * 0.081, 0.082, -0.020), (side * 0.078, 0.065, -0.034)]
         tube(mesh, arm, 0.0025, False)
     tube(mesh, [(-0.0085, 0.086, 0.0975), (0, 0.090, 0.099), (0.0085, 0.086, 0.0975)], 0.0025, False)
-    mesh.write("glasses", "A pair of glasses")
+    mesh.write("glasses", "A pair of glasses", (0.02, 0.018, 0.016))
 
 
 beanie()

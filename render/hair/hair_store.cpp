@@ -51,8 +51,9 @@ long uploadStyle(HairStyle& style, std::vector<float>& texels) {
     const HairFace& face = style.layout.faces[i];
     for (int vertex : face.first_vertex) texels.push_back(static_cast<float>(vertex));
     for (int column : style.layout.face_columns[i]) texels.push_back(static_cast<float>(column));
-    texels.insert(texels.end(), {static_cast<float>(face.layers), static_cast<float>(first[i]),
-                                 static_cast<float>(first[i + 1]), style.layout.face_edge[i]});
+    texels.insert(texels.end(),
+                  {static_cast<float>(face.covered ? -face.layers : face.layers), static_cast<float>(first[i]),
+                   static_cast<float>(first[i + 1]), style.layout.face_edge[i]});
   }
   for (const HairColumn& column : style.layout.columns) {
     append(texels, column.rest, static_cast<float>(column.shortest_bundle - 1));

@@ -256,7 +256,7 @@ Strand StrandGrowth::strand(int number) const {
   const float rank = (static_cast<float>(index) + unitFloat(hash(of + 0x2545f4u, look_.seed))) /
                      std::max(static_cast<float>(end) - static_cast<float>(first), 1.0f);
   strand.gain = fade_.gain * std::clamp((fade_.to - rank) / (fade_.to - fade_.from), 0.0f, 1.0f);
-  strand.loose = randomOf(strand.key, 3u) < look_.flyaways ? 1.0f : 0.0f;
+  strand.loose = !face.covered && randomOf(strand.key, 3u) < look_.flyaways ? 1.0f : 0.0f;
   strand.root = facePoint(of, index, strand.key, look_.seed);
   if (corners == 4)
     weighQuad(strand.root, columns, strand);
@@ -312,7 +312,8 @@ void StrandGrowth::addWander(const Strand& strand, float s, Vector4f& bend) cons
   const float span =
       strand.loose + strand.fine > 0.0f ? std::max(strand.end, 1e-3f) : static_cast<float>(strand.layers - 1);
   const float t = s / span;
-  const float reach = look_.offset * (1.0f + 5.0f * strand.loose + 3.0f * strand.rim) + 0.2f * strand.fine * strand.metres;
+  const float reach =
+      look_.offset * (1.0f + 5.0f * strand.loose + 3.0f * strand.rim) + 0.2f * strand.fine * strand.metres;
   const Vector2f away = reach * std::sqrt(randomOf(strand.key, 9u)) * onCircle(randomOf(strand.key, 8u));
   const Vector2f grow(t * (1.6f - 0.6f * t), (1.6f - 1.2f * t) / span);
   const float turns = 0.7f + 0.8f * randomOf(strand.key, 10u);

@@ -244,7 +244,8 @@ Strand makeStrand(int number) {
   }
   Strand strand;
   strand.first = ivec4(first);
-  strand.layers = int(extent.x);
+  bool covered = extent.x < 0.0;
+  strand.layers = int(abs(extent.x));
   strand.face = low;
   uint index = uint(number - int(dealt.w));
   strand.key = hash(hash(uint(low), index), uint(counts.w));
@@ -253,7 +254,7 @@ Strand makeStrand(int number) {
   float rank = (float(index) + unitFloat(hash(uint(low) + 0x2545f4u, uint(counts.w)))) / max(extent.z - extent.y, 1.0);
   strand.gain = detail.z * clamp((detail.y - rank) / (detail.y - detail.x), 0.0, 1.0);
   strand.along_u = strand.along_v = vec4(0.0);
-  strand.loose = randomOf(strand.key, 3u) < clumping.w ? 1.0 : 0.0;
+  strand.loose = !covered && randomOf(strand.key, 3u) < clumping.w ? 1.0 : 0.0;
   strand.fine = 0.0;
   vec2 point = facePoint(uint(low), index, strand.key);
   if (corners == 4)

@@ -5,11 +5,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
 #include <fstream>
 
 #include "app/files/errors.h"
 #include "app/files/file_kind.h"
 #include "app/files/recording.h"
+#include "app/scene/hair_export.h"
 #include "tests/app/scene/small_scene.h"
 #include "tests/run_program.h"
 
@@ -100,6 +104,103 @@ TEST(Attachments, WhatCannotBeWornIsTold) {
   const test::Outcome run =
       test::runProgram({"--headless", "--no-images", "--frames", "1", "--attach", box("open2", a, b, true)});
   EXPECT_EQ(run.exit_code, app::kExitBadInput) << run.err;
+}
+
+TEST(Attachments, ASheetIsToldThatAClosedMeshIsNeeded) {
+  const std::string file = test::freshFolder("attachments_sheet") + "/sheet.obj";
+  std::ofstream(file) << "v -0.1 0.2 -0.1\nv 0.1 0.2 -0.1\nv 0.1 0.2 0.1\nv -0.1 0.2 0.1\nf 1 2 3 4\n";
+  const std::string refusal = refusalOf(file);
+  EXPECT_NE(refusal.find("is open: 4 edges"), std::string::npos) << refusal;
+  EXPECT_NE(refusal.find("a thickness"), std::string::npos) << refusal;
+}
+
+TEST(Attachments, AnAtInAFilesNameNeedsNoJoint) {
+  const std::string folder = test::freshFolder("attachments_at"), file = folder + "/cap@home.obj";
+  std::filesystem::copy_file(app::dataPath("assets/attachments/beanie.obj"), file);
+  const auto given = app::attachmentsFromText(file), placed = app::attachmentsFromText(file + "@Neck");
+  EXPECT_EQ(given.at(0).file, file);
+  EXPECT_EQ(given.at(0).joint, "head");
+  EXPECT_EQ(placed.at(0).file, file);
+  EXPECT_EQ(placed.at(0).joint, "Neck");
+  EXPECT_EQ(refusalOf(file), "accepted");
+}
+
+TEST(Attachments, TheSameTwiceIsSaidOnce) {
+  const app::Demo twice = app::openScene(wearing(R"([{"file": "beanie.obj"}, {"file": "beanie.obj"}])"), 1.5);
+  EXPECT_EQ(twice.message, "beanie is worn 2 times in one place; take the others off");
+  const app::Demo both = app::openScene(wearing(R"([{"file": "headband.obj"}, {"file": "glasses.obj"}])"), 1.5);
+  EXPECT_EQ(both.message, "");
+}
+
+TEST(Attachments, TheFilesMaterialGivesTheColourUnlessTheSceneDoes) {
+  const std::string file = box("dyed", sim::Vec3(-0.05, 0.3, -0.05), sim::Vec3(0.05, 0.4, 0.05));
+  const std::string shape = test::readAll(file);
+  std::ofstream(std::filesystem::path(file).replace_extension(".mtl")) << "newmtl felt\nKd 0.5 0.25 0.125\n";
+  std::ofstream(file) << "mtllib dyed.mtl\nusemtl felt\n" << shape;
+  const app::Demo demo = app::openScene(wearing(file), 1.5);
+  EXPECT_EQ(app::wornColor(demo.actors[0], 0), (std::array{0.5f, 0.25f, 0.125f}));
+  const app::Demo picked = app::openScene(wearing(R"({"file": ")" + file + R"(", "color": [1, 0, 0]})"), 1.5);
+  EXPECT_EQ(app::wornColor(picked.actors[0], 0), (std::array{1.0f, 0.0f, 0.0f}));
+  const app::Scene back = app::readScene(app::writeScene(wearing(file)), "scene.json");
+  EXPECT_FALSE(back.characters[0].attachments[0].color.has_value());
+}
+
+// Strands that go from under a hat to its outside through its dome.
+int piercing(const app::Demo& demo) {
+  const app::Actor& actor = demo.actors[0];
+  const app::Scalp& scalp = actor.body->character.scalp;
+  const app::Rigid to_scalp = app::scalpToWorld(actor.body->character, actor.shown_pose).inverse();
+  app::StrandExport strands(demo, app::ExportWhat::kStrands, 0);
+  const app::Groom& groom = strands.groom(demo, 1);
+  int count = 0;
+  for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+    bool under = false, out = false;
+    for (const Eigen::Vector3f& point : groom.strand(s)) {
+      const app::Vec3 p = to_scalp * point.cast<double>() - scalp.center;
+      const double meets = app::meetsAlong(*actor.worn[0].mesh, scalp, p, 0.04);
+      under = under || p.norm() < meets;
+      out = out || (under && std::isfinite(meets) && p.norm() > meets + 0.0075);
+    }
+    count += out;
+  }
+  return count;
+}
+
+TEST(Attachments, NoStrandPiercesAHatOverTiedOrLooseHair) {
+  for (const char* tie : {"none", "back", "low"}) {
+    app::Scene scene = wearing("sun_hat.obj");
+    scene.characters[0].ties = app::tiesFromText(tie);
+    app::Demo demo = app::openScene(std::move(scene), 1.5);
+    app::advanceFrame(demo, 0, {});
+    EXPECT_EQ(piercing(demo), 0) << tie;
+  }
+}
+
+TEST(Attachments, ATieUnderACapGoesBelowItsRim) {
+  for (const char* style : {"shoulder", "long"}) {
+    app::Scene scene = wearing("beanie.obj", *app::parseStyle(style));
+    scene.characters[0].ties = app::tiesFromText("back");
+    app::Demo demo = app::openScene(std::move(scene), 1.5);
+    EXPECT_NE(demo.message.find("mm lower, to leave the hair room under beanie"), std::string::npos) << demo.message;
+    for (int frame = 0; frame < 30; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
+    EXPECT_LT(deepestOf(demo), 0.003) << style;
+    EXPECT_GT(demo.actors[0].haircut->tied.size(), 0.6 * demo.actors[0].haircut->mesh.columnCount());
+    const app::HairTie& ring = demo.actors[0].haircut->ties.at(0);
+    const app::Scalp& scalp = demo.actors[0].body->character.scalp;
+    EXPECT_TRUE(std::isinf(app::meetsAlong(*demo.actors[0].worn[0].mesh, scalp, ring.at - scalp.center, 0.04)));
+  }
+}
+
+TEST(Attachments, AnExportSaysThatItLeavesThemOut) {
+  const std::string folder = test::freshFolder("attachments_export");
+  for (const char* file : {"/hair.glb", "/hair.ply"}) {
+    std::vector<std::string> words{"--no-images", "--frames", "1",        "--resolution", "low",
+                                   "--strands",   "300",      "--export", folder + file};
+    EXPECT_EQ(test::runProgram(words).out.find("without what is worn"), std::string::npos);
+    words.insert(words.end(), {"--attach", "beanie.obj"});
+    const test::Outcome run = test::runProgram(words);
+    EXPECT_NE(run.out.find("without what is worn (beanie)"), std::string::npos) << run.out << run.err;
+  }
 }
 
 TEST(Attachments, UnitAndOriginAreInferredAndTold) {
