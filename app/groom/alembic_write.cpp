@@ -5,7 +5,7 @@
 #include "app/groom/alembic_file.h"
 #include "app/groom/alembic_property.h"
 #include "app/groom/groom_bytes.h"
-#include "app/groom/groom_hints.h"
+#include "app/groom/groom_file.h"
 
 namespace app {
 

@@ -26,4 +26,9 @@ bool hasGroomEnding(const std::string& file);
 Groom readGroom(const std::string& file, GroomHints* hints = nullptr);
 Groom readGroom(std::string_view bytes, const std::string& file, GroomHints* hints = nullptr);
 
+// What an export says of itself wherever its format has room for text: "hairmesh world of 1 heads, y up, unit 0.01 m".
+std::string worldMark(int heads, double meters_per_unit);
+// Takes it from the beginning or the end of a file's bytes.
+void readWorldMark(std::string_view bytes, GroomHints& hints);
+
 }  // namespace app

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
-#include <string_view>
 
 namespace app {
 
@@ -12,10 +10,5 @@ struct GroomHints {
   std::optional<char> up;  // 'Y' or 'Z'
   int world_heads = 0;     // of an export of this program: y up, each head where its figure holds it; 0: no such file
 };
-
-// What an export says of itself wherever its format has room for text: "hairmesh world of 1 heads, y up, unit 0.01 m".
-std::string worldMark(int heads, double meters_per_unit);
-// Takes it from the beginning or the end of a file's bytes.
-void readWorldMark(std::string_view bytes, GroomHints& hints);
 
 }  // namespace app

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "app/files/errors.h"
-#include "app/groom/groom_hints.h"
+#include "app/groom/groom_file.h"
 #include "app/groom/hair_strands_file.h"
 #include "app/groom/ply_file.h"
 #include "app/groom/tfx_file.h"

@@ -5,7 +5,7 @@
 // default segments, default thickness, default transparency, default colour, 88 bytes of text; then the arrays that the
 // flags name, in that order: 16-bit segments a strand, three floats a point, a float a point, a float a point, three
 // floats a point. Numbers are little-endian. Neither unit nor axes are told; the models of that page are z-up. What
-// this program exports says in the text what worldMark (groom_hints.h) has.
+// this program exports says in the text what worldMark (groom_file.h) has.
 #pragma once
 
 #include <string>

@@ -5,7 +5,7 @@
 
 #include "app/files/errors.h"
 #include "app/files/output_file.h"
-#include "app/groom/groom_hints.h"
+#include "app/groom/groom_file.h"
 #include "app/groom/usda_file.h"
 
 namespace app {

@@ -64,6 +64,7 @@ PosedHair posedStyle(app::Style style, app::Resolution resolution) {
       sim::buildHairMesh(app::makeStyle(style, resolution, tests::analyticScalp(), tests::bodyDistance));
   PosedHair hair;
   hair.faces = app::renderFaces(mesh);
+  for (std::size_t f = 0; f < hair.faces.size(); f += 3) hair.faces[f].covered = true;
   for (const sim::Vec3& p : mesh.shape.positions) {
     const Vector3f q = p.cast<float>();
     hair.rest.insert(hair.rest.end(), {q.x(), q.y() + 1.6f, q.z()});
