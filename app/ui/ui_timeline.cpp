@@ -15,8 +15,8 @@ namespace app {
 namespace {
 
 constexpr float kTimelineHeight = 50, kMinWidth = 280, kOneRowWidth = 560, kTimelineMargin = 12;
-constexpr float kButtonRow = 28, kMinHeight = 290;  // points; of a second row, of the window
-constexpr double kWorst = 3;                        // of the mean cost: a step to look at
+constexpr float kButtonRow = 28, kLeastWindow = 290;  // points; of a second row, of the window
+constexpr double kWorst = 3;                          // of the mean cost: a step to look at
 
 // The kept moment at a share of the strip.
 long frameAt(float share, long first, long last) {
@@ -143,7 +143,7 @@ float timelinePanel(Demo& demo, UiState& ui, float left) {
   const float scale = ui.text_scale, margin = kTimelineMargin * scale;
   const float right = ui.history ? (292 + kTimelineMargin) * scale : 0;
   const float width = size.x - left - right - 2 * margin;
-  if (width < kMinWidth * scale || size.y < kMinHeight * scale) return 0;
+  if (width < kMinWidth * scale || size.y < kLeastWindow * scale) return 0;
   const bool one_row = width > kOneRowWidth * scale;
   const float height = kTimelineHeight + (one_row ? 0 : kButtonRow);
   ImGui::SetNextWindowPos({left + margin, size.y - margin}, ImGuiCond_Always, {0, 1});
