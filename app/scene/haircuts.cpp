@@ -94,7 +94,7 @@ void dressWhereThereIsRoom(const CharacterSpec& spec, const LoadedBody& body, st
                      "paint it lighter or more evenly");
   if (!haircut.covered.empty() && !spec.ties.empty())
     throw InputError(spec.attachments.front().file, "with a tie", "leaves the tied hair no room",
-                     "tie it where nothing lies over it, or take off one of the two");
+                     "take a coarser hair mesh (low) or longer hair, or take off one of the two");
   if (!haircut.covered.empty())
     throw InputError(spec.attachments.front().file, "", "leaves the hair no room",
                      "make it wider, or move it off the head");
