@@ -57,6 +57,21 @@ struct HairLook {
   bool operator==(const HairLook&) const = default;
 };
 
+// Shares of a look's values at a strand's root, or at a place along strands; a strand has the product of both.
+struct LookShare {
+  float width = 1, clump = 1, curl = 1;  // of strand_radius, clump, curl_radius
+  float roughness = 1;                   // of the highlights' width along the strand (beta_m)
+  Float3 color{1, 1, 1};                 // of the light that passes through pigment, linear
+
+  bool operator==(const LookShare&) const = default;
+};
+
+// Both empty: 1 everywhere.
+struct LookShares {
+  std::span<const LookShare> roots;  // one a vertex, at most 1, of which those of roots count; linear between them
+  std::span<const LookShare> along;  // at least two, evenly from each strand's root to its tip
+};
+
 // An ellipsoid of skin: the affine map of the world to the ball of radius one, row by row, 1/m and translation.
 struct SkinEllipsoid {
   std::array<std::array<float, 4>, 3> to_ball{};
@@ -75,6 +90,7 @@ struct HairInput {
   int strands = 20000;               // over the whole hair
   int segments_per_layer = 3;        // 1..8
   HairLook look;
+  LookShares shares;                    // they go with the layout
   std::span<const SkinEllipsoid> skin;  // drawn strands are lifted out of these; the nearest 48
 };
 

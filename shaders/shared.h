@@ -41,6 +41,7 @@ const int kTableTexels = 1;      // end strand, face, segments a layer (0: the h
 const int kColumnTexels = 4;     // rest position + last layer of the shortest bundle around, rest axes u and v, each
                                  // with the part of the way to bare skin along it; way of hair (m a layer, m a layer^2)
                                  // and distance to the hairline (m)
+const int kShareTexels = 2;      // shares of width, clump, curl and roughness; of colour
 // Sizes of a lock and of a wisp over that of a clump.
 const float kLockSize = 3.2;
 const float kWispSize = 0.3;
@@ -146,8 +147,10 @@ SHARED_BLOCK(1, HairBlock) {
   vec4 gain;             // share of the real hairs' width that is drawn, diffuse, root darkening, tint variation
   vec4 forward_albedo;   // mean forward scattering attenuation a_f (Zinke et al. 2008)
   vec4 backward_albedo;  // mean backward scattering attenuation a_b
-  vec4 center;           // world: the middle of the head under the hair
+  vec4 center;           // world: the middle of the head under the hair; w: largest share of width along strands
   vec4 ball;             // world: a ball around the whole hair; w: its radius, m
+  ivec4 shares;          // painted shares of the look: first texel of the columns', 0: none; first texel and number of
+                         // those along strands
   ivec4 skin_count;      // ellipsoids that strands are lifted out of; steps from layer to layer of a face
   SHARED_ARRAY(vec4, skin_rows, 3 * kMaxSkin);  // three rows each: world to the ball of radius one
 };

@@ -25,6 +25,6 @@ void main() {
     moveWindow(strand, layerOf(strand, s), layer, window);
     CurvePoint point = curvePoint(strand, window, s, s - float(layer));
     vec4 clip = hair_shadow[draw.w] * vec4(point.position, 1.0);
-    points[first + index] = vec4((0.5 + 0.5 * clip.xy) * side, 0.5 + 0.5 * clip.z, lineOpacity(strand, point.tangent));
+    points[first + index] = vec4((0.5 + 0.5 * clip.xy) * side, 0.5 + 0.5 * clip.z, lineOpacity(strand, point));
   }
 }

@@ -26,7 +26,8 @@ void main() {
   Strand strand = makeStrand(number);
   float dither = strandDither(strand);
   int last = lastShownPoint(strand, dither), first = number * draw.z;
-  strands[number] = uvec4(uint(last < 1 ? 0 : last + 1), floatBitsToUint(dither), strand.key, strand.clump_key);
+  strands[2 * number] = uvec4(uint(last < 1 ? 0 : last + 1), floatBitsToUint(dither), strand.key, strand.clump_key);
+  strands[2 * number + 1] = floatBitsToUint(vec4(strand.share.color, strand.share.of.w));
   if (last < 1) return;
   int layer = 0;
   LayerWindow window = layerWindow(strand, layer);

@@ -17,10 +17,12 @@ void main() {
   int listed = int(gl_GlobalInvocationID.x);
   if (listed >= count) return;
   int at = seen[listed];
-  uvec4 of = strands[at / draw.z];
+  uvec4 of = strands[2 * (at / draw.z)];
+  vec4 share = uintBitsToFloat(strands[2 * (at / draw.z) + 1]);
   Strand strand;
   strand.key = of.z;
   strand.clump_key = of.w;
+  strand.share = StrandShare(vec4(1.0, 1.0, 1.0, share.w), share.rgb);
   vec4 place = points[kPointTexels * at], along = points[kPointTexels * at + 1], depths = points[kPointTexels * at + 2];
   CurvePoint point = CurvePoint(place.xyz, along.xyz, vec3(along.w, depths.xy), depths.zw, place.w);
   colors[first_color + at] = vec4(shadeStrand(strand, point), 0.0);

@@ -24,7 +24,7 @@ void main() {
     float s = pointParameter(strand, index);
     moveWindow(strand, layerOf(strand, s), layer, window);
     CurvePoint point = curvePoint(strand, window, s, s - float(layer));
-    strand_opacity = lineOpacity(strand, point.tangent);
+    strand_opacity = lineOpacity(strand, point);
     gl_Position = hair_shadow[draw.w] * vec4(point.position, 1.0);
 #ifdef CAPTURE_POINTS
     captured = vec4(point.position, float(number));

@@ -17,6 +17,6 @@ void main() {
   float s = pointParameter(strand, min(gl_VertexID, lastPoint(strand)));
   int layer = layerOf(strand, s);
   CurvePoint point = curvePoint(strand, layerWindow(strand, layer), s, s - float(layer));
-  strand_opacity = lineOpacity(strand, point.tangent);
+  strand_opacity = lineOpacity(strand, point);
   gl_Position = hair_shadow[draw.w] * vec4(point.position, 1.0);
 }

@@ -35,11 +35,11 @@ int keptStrands(int count, const HairDraw& draw) {
 
 // How far (m a layer^2) a strand's own bends turn it away: amplitude times the square of the angle within a layer; see
 // sideways() of the shader. layer_length: m.
-float ownBend(const HairLook& look, int layers, float layer_length) {
+float ownBend(const HairLook& look, float curl_share, int layers, float layer_length) {
   const auto square = [](float x) { return x * x; };
   const float turn = 6.2831853f / static_cast<float>(std::max(layers - 1, 1)), way = 6.2831853f * layer_length;
   return 0.4f * look.offset * square(1.2f * turn) + look.drift * square(way / 0.12f) +
-         1.1f * look.curl_radius * square(way / std::max(look.curl_pitch, 1e-3f)) +
+         1.1f * curl_share * look.curl_radius * square(way / std::max(look.curl_pitch, 1e-3f)) +
          0.5f * look.wave_height * square(way / std::max(look.wave_length, 1e-3f)) +
          0.4f * look.frizz * square(way / 0.05f);
 }
@@ -66,7 +66,7 @@ void HairDetail::planView(const PlanInput& input, const Frustum& frustum, HairRe
   segments_.assign(faces, full);
   if (input.skips.segments) {
     const float a_metre = hair.pixels / std::max(hair.bounds.diagonal(), 1e-6f),
-                own = ownBend(hair.look, layout.max_layers, hair.layer_length);
+                own = ownBend(hair.look, layout.curl_share, layout.max_layers, hair.layer_length);
     const float layer_pixels = hair.layer_length * a_metre;
     const float error = std::max(input.segment_error, 1e-3f);
     for (std::size_t f = 0; f < faces; ++f) {

@@ -61,6 +61,11 @@ long uploadStyle(HairStyle& style, std::vector<float>& texels) {
     append(texels, column.axis_v, column.outward.y());
     texels.insert(texels.end(), {column.way.x(), column.way.y(), column.edge, 0});
   }
+  for (const auto* shares : {&style.layout.root_shares, &style.layout.along_shares}) {
+    for (const LookShare& share : *shares)
+      texels.insert(texels.end(), {share.width, share.clump, share.curl, share.roughness, share.color[0],
+                                   share.color[1], share.color[2], 0});
+  }
   for (std::size_t i = 0; i < style.layout.faces.size(); ++i) {
     texels.insert(texels.end(),
                   {static_cast<float>(first[i + 1]), static_cast<float>(i), 0, static_cast<float>(first[i])});
@@ -108,9 +113,15 @@ long uploadBlock(HairResources& hair) {
   block.gain = {covered, std::clamp(look.diffuse, 0.0f, 1.0f), look.root_darkening, look.tint_variation};
   block.forward_albedo = asVec4(hair.scattering->forward_albedo);
   block.backward_albedo = asVec4(hair.scattering->backward_albedo);
-  block.center = asVec4(hair.head.radius > 0 ? hair.head.center : hair.bounds.center());
-  block.ball = asVec4(hair.bounds.center(), 0.5f * hair.bounds.diagonal() + sidewaysReach(look));
-  block.skin_count = {static_cast<int>(hair.skin.size()), std::max(hair.layout().max_layers - 1, 1), 0, 0};
+  const HairLayout& layout = hair.layout();
+  block.center = asVec4(hair.head.radius > 0 ? hair.head.center : hair.bounds.center(), layout.width_share);
+  block.ball = asVec4(hair.bounds.center(), 0.5f * hair.bounds.diagonal() + sidewaysReach(look, layout.curl_share));
+  if (!layout.root_shares.empty()) {
+    const int along = static_cast<int>(layout.along_shares.size()),
+              first = hair.style->fullTableTexel() - along * shared::kShareTexels;
+    block.shares = {first - static_cast<int>(layout.root_shares.size()) * shared::kShareTexels, first, along, 0};
+  }
+  block.skin_count = {static_cast<int>(hair.skin.size()), std::max(layout.max_layers - 1, 1), 0, 0};
   for (std::size_t i = 0; i < hair.skin.size(); ++i)
     std::copy(hair.skin[i].to_ball.begin(), hair.skin[i].to_ball.end(),
               block.skin_rows.begin() + 3 * static_cast<long>(i));
@@ -138,7 +149,7 @@ void measureFaces(std::span<const float> positions, HairResources& hair) {
   hair.face_bounds.resize(layout.faces.size());
   hair.face_bend.resize(layout.faces.size());
   hair.layer_length = 0;
-  const float reach = sidewaysReach(hair.look);
+  const float reach = sidewaysReach(hair.look, layout.curl_share);
   for (std::size_t f = 0; f < layout.faces.size(); ++f) {
     const HairFace& face = layout.faces[f];
     const int corners = face.first_vertex[3] < 0 ? 3 : 4;
@@ -170,14 +181,15 @@ constexpr float kSoftLightPixels = 110;
 
 }  // namespace
 
-float sidewaysReach(const HairLook& look) {
-  return 0.01f + 6 * look.offset + 2.5f * look.drift + 1.5f * look.curl_radius + 0.6f * look.wave_height +
+float sidewaysReach(const HairLook& look, float curl_share) {
+  return 0.01f + 6 * look.offset + 2.5f * look.drift + 1.5f * curl_share * look.curl_radius + 0.6f * look.wave_height +
          3 * look.frizz + 2 * look.flyaway_lift + look.clump_size * (1 + 2 * look.lock);
 }
 
 int HairStyle::fullTableTexel() const {
   return static_cast<int>(layout.faces.size()) * shared::kFaceTexels +
-         static_cast<int>(layout.columns.size()) * shared::kColumnTexels;
+         static_cast<int>(layout.columns.size()) * shared::kColumnTexels +
+         static_cast<int>(layout.root_shares.size() + layout.along_shares.size()) * shared::kShareTexels;
 }
 
 int HairResources::pointsPerStrand(const HairDraw& draw) const {
@@ -227,8 +239,8 @@ HairStyle& HairStore::styleOf(const HairInput& input, int strands, long& uploade
   style.layout_id = input.layout_id;
   style.layout_revision = input.layout_revision;
   style.strands = strands;
-  style.layout =
-      makeHairLayout(input.faces, input.rest.size() == input.positions.size() ? input.rest : input.positions);
+  const bool has_rest = input.rest.size() == input.positions.size();
+  style.layout = makeHairLayout(input.faces, has_rest ? input.rest : input.positions, input.shares);
   if (!style.layout.faces.empty()) uploaded += uploadStyle(style, texels_);
   return style;
 }
@@ -245,7 +257,7 @@ HairScattering& HairStore::scatteringOf(const HairLook& look, long& uploaded) {
 
 long HairStore::uploadSkin(HairResources& hair, std::span<const float> positions, const DrawSkips& skips) {
   if (hair.skin.empty()) return 0;
-  reachSkin(hair.layout(), positions, hair.skin, sidewaysReach(hair.look), hair.skin_reached);
+  reachSkin(hair.layout(), positions, hair.skin, sidewaysReach(hair.look, hair.layout().curl_share), hair.skin_reached);
   if (!skips.skin) std::fill(hair.skin_reached.begin(), hair.skin_reached.end(), ~std::uint64_t{0});
   const auto ellipsoids = static_cast<long>(hair.skin.size());
   for (const std::uint64_t reached : hair.skin_reached)
@@ -359,7 +371,7 @@ long HairStore::update(std::span<const HairInput> inputs, const LightInput& ligh
     }
     // With room for the strands that leave the hull, and a little for what the hull itself may not hold.
     hair.around = hair.bounds;
-    const float margin = sidewaysReach(inputs[i].look) + 0.25f * hair.bounds.diagonal();
+    const float margin = sidewaysReach(inputs[i].look, curlShare(inputs[i].shares)) + 0.25f * hair.bounds.diagonal();
     hair.around.low.array() -= margin;
     hair.around.high.array() += margin;
     hair.in_view = hair.bounds.empty() || gate.admits(hair.around);

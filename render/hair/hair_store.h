@@ -131,7 +131,7 @@ class HairStore {
   DrawSkipCounts skip_counts_;
 };
 
-// How far (m) a strand may leave the hull of the hair mesh sideways by its look.
-float sidewaysReach(const HairLook& look);
+// How far (m) a strand may leave the hull of the hair mesh sideways by its look. curl_share: of the curls' radius.
+float sidewaysReach(const HairLook& look, float curl_share = 1);
 
 }  // namespace render

@@ -9,7 +9,7 @@ using namespace shared;
 
 // Hairs begin at multiples of so many strands, points and entries: OpenGL binds from multiples of 256 bytes.
 constexpr std::uint32_t kAlign = 64;
-constexpr GLsizeiptr kTexel = 4 * sizeof(float);
+constexpr GLsizeiptr kTexel = 4 * sizeof(float), kStrand = sizeof(StoredStrand);
 
 std::uint32_t aligned(std::uint32_t count) {
   return (count + kAlign - 1) / kAlign * kAlign;
@@ -60,13 +60,13 @@ bool SoftwareStrands::place(Stage& stage) {
 void SoftwareStrands::bind(Stage& stage, const Placed& placed) {
   HairResources& hair = stage.hairs.hairs()[placed.hair];
   HairStore::bind(hair, hair.view_draw, &stage.detail.table());
-  strands_.bind(kSlotStrands, placed.first_strand * kTexel);
+  strands_.bind(kSlotStrands, placed.first_strand * kStrand);
   points_.bind(kSlotPoints, placed.first_point * kPointTexels * kTexel);
 }
 
 void SoftwareStrands::grow(Stage& stage) {
   ribbons_.reserve(point_count_ * static_cast<GLsizeiptr>(sizeof(RibbonEdges)));
-  strands_.reserve(strand_count_ * static_cast<GLsizeiptr>(sizeof(StoredStrand)));
+  strands_.reserve(strand_count_ * kStrand);
   points_.reserve(point_count_ * kPointTexels * kTexel);
   colors_.reserve(point_count_ * kTexel);
   grow_.use();

@@ -121,9 +121,28 @@ void joinNeighbours(HairLayout& layout) {
   }
 }
 
+// Where only one of the two is painted the other is 1.
+void takeShares(const LookShares& shares, HairLayout& layout) {
+  const bool fits = shares.roots.size() == static_cast<std::size_t>(layout.vertex_count);
+  if (!fits && shares.along.size() < 2) return;
+  for (const HairColumn& column : layout.columns)
+    layout.root_shares.push_back(fits ? shares.roots[static_cast<std::size_t>(column.first_vertex)] : LookShare{});
+  layout.along_shares.assign(shares.along.begin(), shares.along.end());
+  if (layout.along_shares.size() < 2) layout.along_shares.assign(2, LookShare{});
+  layout.curl_share = curlShare(shares);
+  layout.width_share = 0;
+  for (const LookShare& share : layout.along_shares) layout.width_share = std::max(layout.width_share, share.width);
+}
+
 }  // namespace
 
-HairLayout makeHairLayout(std::span<const HairFace> faces, std::span<const float> positions) {
+float curlShare(const LookShares& shares) {
+  float most = shares.along.empty() ? 1.0f : 0.0f;
+  for (const LookShare& share : shares.along) most = std::max(most, share.curl);
+  return most;
+}
+
+HairLayout makeHairLayout(std::span<const HairFace> faces, std::span<const float> positions, const LookShares& shares) {
   HairLayout layout;
   layout.vertex_count = static_cast<int>(positions.size() / 3);
   std::map<int, int> column_of_first;
@@ -156,6 +175,7 @@ HairLayout makeHairLayout(std::span<const HairFace> faces, std::span<const float
   setTangentPlanes(layout, up);
   joinNeighbours(layout);
   measureHairline(layout);
+  takeShares(shares, layout);
   return layout;
 }
 

@@ -38,6 +38,8 @@ struct HairLayout {
   std::vector<std::array<int, 4>> face_columns;  // [3] = -1: triangle
   std::vector<float> face_edge;  // m: how much further from the hairline a face's middle is than its corners tell
   std::vector<HairColumn> columns;
+  std::vector<LookShare> root_shares, along_shares;  // a column; from root to tip; both or neither
+  float curl_share = 1, width_share = 1;             // largest of them
   int vertex_count = 0, max_layers = 0;
   float layer_length = 0;  // m at rest, of the longest layer
 };
@@ -50,7 +52,12 @@ struct HeadBall {
 
 // positions: 3 floats a vertex. Faces of fewer than two layers or with vertices out of range are left out: they can
 // carry no strand, and nothing may be read past the end of the positions.
-HairLayout makeHairLayout(std::span<const HairFace> faces, std::span<const float> positions);
+// The shares of the look are taken where there is one a vertex.
+HairLayout makeHairLayout(std::span<const HairFace> faces, std::span<const float> positions,
+                          const LookShares& shares = {});
+
+// Largest share of curls' radius along strands.
+float curlShare(const LookShares& shares);
 
 // Least squares; stands still in the frame of the roots.
 HeadBall fitHead(const HairLayout& layout, std::span<const float> positions);

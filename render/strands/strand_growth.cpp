@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "render/strands/look_share.h"
 #include "render/strands/shader_math.h"
 #include "render/strands/skin_lift.h"
 
@@ -87,8 +88,8 @@ int layerOf(const Strand& strand, float s) {
 }  // namespace
 
 StrandGrowth::StrandGrowth(std::span<const HairFace> faces, std::span<const float> rest, int strands,
-                           int segments_per_layer, const HairLook& look)
-    : layout_(makeHairLayout(faces, rest)),
+                           int segments_per_layer, const HairLook& look, const LookShares& shares)
+    : layout_(makeHairLayout(faces, rest, shares)),
       asked_segments_(segments_per_layer),
       texels_(static_cast<std::size_t>(kVertexTexels) * layout_.vertex_count, Vector4f::Zero()) {
   if (!layout_.faces.empty()) first_strand_ = dealStrands(layout_, std::clamp(strands, 0, 1 << 24));
@@ -266,6 +267,7 @@ Strand StrandGrowth::strand(int number) const {
   const Vector2f& p = strand.root;
   root.edge += layout_.face_edge[low] * (corners == 4 ? 16.0f * p.x() * p.y() * (1.0f - p.x()) * (1.0f - p.y())
                                                       : 27.0f * strand.blend[0] * strand.blend[1] * strand.blend[2]);
+  strand.share = shareOfRoot(layout_, columns, strand.blend);
   joinGroups(root, strand);
   thinHairline(root, strand);
   cutStrand(root, strand);
@@ -276,7 +278,10 @@ Vector2f StrandGrowth::groupPull(const Strand& strand, float layer) const {
   if (strand.fine > 0.0f) return wayAt(strand, layer).x() * strand.astray;
   const float t = layer / static_cast<float>(strand.layers - 1);
   Vector2f pull = strand.hold * look_.wisp * smoothstep(0.0f, 0.25f, t) * strand.wisp;
-  pull += strand.hold * look_.clump * clumpClosing(t, strand.clump_key) * (strand.clump - pull);
+  float clump = look_.clump;
+  if (!layout_.root_shares.empty())
+    clump *= strand.share.clump * shareAlong(layout_, layer / std::max(strand.end, 1e-3f)).clump;
+  pull += strand.hold * clump * clumpClosing(t, strand.clump_key) * (strand.clump - pull);
   pull += strand.hold * look_.lock * lockClosing(t) * (strand.lock - pull);
   return pull;
 }
@@ -330,14 +335,20 @@ void StrandGrowth::addDrift(const Strand& strand, const Vector2f& way, Vector4f&
            swingAngle(way, 0.06f + 0.07f * randomOf(strand.clump_key, 11u), randomOf(strand.clump_key, 12u)));
 }
 
-void StrandGrowth::addCurl(const Strand& strand, const Vector2f& way, Vector4f& bend) const {
+void StrandGrowth::addCurl(const Strand& strand, float s, const Vector2f& way, Vector4f& bend) const {
   const float pitch = std::max(look_.curl_pitch, 1e-3f) * (0.8f + 0.4f * randomOf(strand.clump_key, 8u));
   const float hand = randomOf(strand.clump_key, 13u) < 0.5f ? -1.0f : 1.0f;
   const Vector2f angle =
       swingAngle(way, pitch, randomOf(strand.clump_key, 9u) + 0.15f * (randomOf(strand.key, 12u) - 0.5f));
-  const Vector2f radius = look_.curl_radius *
-                          (0.7f + 0.4f * randomOf(strand.clump_key, 14u) + 0.3f * randomOf(strand.key, 13u)) *
-                          opening(way, 0.025f);
+  Vector2f radius = look_.curl_radius *
+                    (0.7f + 0.4f * randomOf(strand.clump_key, 14u) + 0.3f * randomOf(strand.key, 13u)) *
+                    opening(way, 0.025f);
+  if (!layout_.root_shares.empty()) {
+    const float span = std::max(strand.end, 1e-3f);
+    LookShare rate;
+    const float share = shareAlong(layout_, s / span, &rate).curl;
+    radius = strand.share.curl * Vector2f(radius.x() * share, radius.y() * share + radius.x() * rate.curl / span);
+  }
   const float c = std::cos(angle.x()), d = hand * std::sin(angle.x());
   bend += Vector4f(radius.x() * c, radius.x() * d, radius.y() * c - radius.x() * d * hand * angle.y(),
                    radius.y() * d + radius.x() * c * hand * angle.y());
@@ -364,7 +375,7 @@ Vector4f StrandGrowth::sideways(const Strand& strand, float s) const {
   Vector4f bend = Vector4f::Zero();
   addWander(strand, s, bend);
   if (look_.drift > 0.0f) addDrift(strand, way, bend);
-  if (look_.curl_radius > 0.0f) addCurl(strand, way, bend);
+  if (look_.curl_radius > 0.0f) addCurl(strand, s, way, bend);
   if (look_.wave_height > 0.0f) addWave(strand, way, bend);
   if (look_.frizz > 0.0f) addFrizz(strand, way, bend);
   return bend;
@@ -450,7 +461,13 @@ void StrandGrowth::growEven(const Strand& strand, std::span<CurvePoint> points) 
 }
 
 float StrandGrowth::radius(const Strand& strand, float along) const {
-  return strand.gain * root_radius_ * mix(1.0f, look_.taper, along * along);
+  const float radius = strand.gain * root_radius_ * mix(1.0f, look_.taper, along * along);
+  return layout_.root_shares.empty() ? radius : radius * strand.share.width * shareAlong(layout_, along).width;
+}
+
+Float3 StrandGrowth::color(const Strand& strand, float along) const {
+  const Float3 here = shareAlong(layout_, along).color, &root = strand.share.color;
+  return {root[0] * here[0], root[1] * here[1], root[2] * here[2]};
 }
 
 }  // namespace render

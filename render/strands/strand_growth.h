@@ -26,9 +26,9 @@ struct StrandFade {
 struct Strand {
   std::array<int, 4> first{};  // first vertex of each corner's column; [3] repeats [2] with weight 0 in a triangle
   int layers = 0;
-  std::array<float, 4> weight{};                   // of positions
-  std::array<float, 4> along_u{}, along_v{};       // of gradients du, dv
-  std::array<float, 4> blend{};                    // linear weights: frames
+  std::array<float, 4> weight{};              // of positions
+  std::array<float, 4> along_u{}, along_v{};  // of gradients du, dv
+  std::array<float, 4> blend{};               // linear weights: frames
   // m in the rest scalp's plane: from the root to the middles of its groups.
   Eigen::Vector2f wisp = Eigen::Vector2f::Zero(), clump = Eigen::Vector2f::Zero(), lock = Eigen::Vector2f::Zero();
   Eigen::Vector2f way = Eigen::Vector2f::Zero();       // m of hair from the root to s layers at rest: s (x + y s)
@@ -41,9 +41,10 @@ struct Strand {
   Eigen::Vector2f astray = Eigen::Vector2f::Zero();    // m a m of hair: how a fine hair leaves the others
   float hold = 0;                                      // 0..1: how far it goes along with its groups
   float segments = 1;                                  // a layer
-  float gain = 1;                                  // of width: how many strands this one stands for; 0: not grown
-  int face = 0;                                    // of the layout
-  Eigen::Vector2f root = Eigen::Vector2f::Zero();  // in the unit square of the face, corners 0, 1, 2, 3 around it
+  float gain = 1;                                      // of width: how many strands this one stands for; 0: not grown
+  int face = 0;                                        // of the layout
+  Eigen::Vector2f root = Eigen::Vector2f::Zero();      // in the unit square of the face, corners 0, 1, 2, 3 around it
+  LookShare share;                                     // painted, of its root
 };
 
 struct CurvePoint {
@@ -54,10 +55,10 @@ struct CurvePoint {
 
 class StrandGrowth {
  public:
-  // faces, rest, strands, segments_per_layer, look: as in HairInput, with the same limits; what they make is the same
-  // for every pose. rest: 3 floats a vertex. Without usable faces there are no strands.
+  // faces, rest, strands, segments_per_layer, look, shares: as in HairInput, with the same limits; what they make is
+  // the same for every pose. rest: 3 floats a vertex. Without usable faces there are no strands.
   StrandGrowth(std::span<const HairFace> faces, std::span<const float> rest, int strands, int segments_per_layer,
-               const HairLook& look);
+               const HairLook& look, const LookShares& shares = {});
 
   // The pose that strands are grown from: 3 floats a vertex, as many as of `rest`. Allocates at its first call alone.
   // Returns false, and changes nothing, where the number is another one or a value is not finite.
@@ -85,6 +86,8 @@ class StrandGrowth {
 
   // m, as drawn: with what strands left out add, before it is widened to what a pixel can show.
   float radius(const Strand& strand, float along) const;
+  // Share of the light that passes through its pigment, painted.
+  Float3 color(const Strand& strand, float along) const;
 
  private:
   struct LayerPoint {
@@ -123,7 +126,7 @@ class StrandGrowth {
   void moveWindow(const Strand& strand, int wanted, int& layer, LayerWindow& window) const;
   void addWander(const Strand& strand, float s, Eigen::Vector4f& bend) const;
   void addDrift(const Strand& strand, const Eigen::Vector2f& way, Eigen::Vector4f& bend) const;
-  void addCurl(const Strand& strand, const Eigen::Vector2f& way, Eigen::Vector4f& bend) const;
+  void addCurl(const Strand& strand, float s, const Eigen::Vector2f& way, Eigen::Vector4f& bend) const;
   void addWave(const Strand& strand, const Eigen::Vector2f& way, Eigen::Vector4f& bend) const;
   void addFrizz(const Strand& strand, const Eigen::Vector2f& way, Eigen::Vector4f& bend) const;
   Eigen::Vector4f sideways(const Strand& strand, float s) const;
@@ -137,10 +140,10 @@ class StrandGrowth {
   HairLook look_;
   std::vector<SkinEllipsoid> skin_;
   StrandFade fade_;
-  int asked_segments_;     // a layer
-  float segments_ = 1;     // a layer, with those that curls need
+  int asked_segments_;                                // a layer
+  float segments_ = 1;                                // a layer, with those that curls need
   Eigen::Vector3f center_ = Eigen::Vector3f::Zero();  // m: the middle of the head
-  float root_radius_ = 0;  // m, as drawn
+  float root_radius_ = 0;                             // m, as drawn
   std::vector<Eigen::Matrix<float, 3, 2>> gradients_;
   std::vector<Eigen::Vector4f> texels_;  // 3 a vertex: position, du, dv, as on the GPU
 };

@@ -6,7 +6,8 @@ float strandDither(in Strand strand) { return randomOf(strand.key, 30u); }
 
 // Radius at `along` of the strand, and how much wider than that it must be drawn to be no thinner than the least width.
 float strandRadius(in Strand strand, float along) {
-  return strand.gain * width.x * mix(1.0, width.y, along * along);
+  float radius = strand.gain * width.x * mix(1.0, width.y, along * along);
+  return shares.x > 0 ? radius * strand.share.of.x * shareAlong(along, 0).x : radius;
 }
 
 // The last point whose ribbon can still take a sample (see strand.frag), taken conservatively from the nearest point of
@@ -15,8 +16,9 @@ float strandRadius(in Strand strand, float along) {
 int lastShownPoint(in Strand strand, float dither) {
   float nearest = max(dot(ball.xyz - eye.xyz, forward.xyz) - ball.w, 1e-3);
   float needed = (1.0 - dither) / sky.w * (0.5 * width.w * eye.w * nearest) / (strand.gain * width.x);  // share of the root's radius
+  if (shares.x > 0) needed /= strand.share.of.x * center.w;
   if (!(needed <= 1.0)) return -1;
-  float along = width.y < 1.0 ? sqrt((1.0 - needed) / (1.0 - width.y)) : 1.0;
+  float along = width.y < 1.0 && shares.z == 0 ? sqrt((1.0 - needed) / (1.0 - width.y)) : 1.0;
   return along >= 1.0 ? lastPoint(strand) : int(ceil(along * strand.end * strand.segments));
 }
 

@@ -21,6 +21,8 @@ layout(binding = kUnitTable) uniform samplerBuffer table_texels;  // which stran
 
 const float kPi = 3.14159265358979;
 
+#include "common/strand_share.glsl"
+
 struct Strand {
   ivec4 first;  // first vertex of each corner's column; [3] repeats [2] with weight 0 in a triangle
   int layers;
@@ -45,6 +47,7 @@ struct Strand {
   float hold;      // 0..1: how far it goes along with its groups
   float segments;  // a layer
   float gain;      // of width and opacity: how many strands this one stands for; 0: left out
+  StrandShare share;  // of its root
 };
 
 struct LayerPoint {
@@ -264,6 +267,7 @@ Strand makeStrand(int number) {
   Root root = rootOf(columns, corners, columns_at, strand);
   root.edge += extent.w * (corners == 4 ? 16.0 * point.x * point.y * (1.0 - point.x) * (1.0 - point.y)
                                         : 27.0 * strand.blend.x * strand.blend.y * strand.blend.z);
+  strand.share = shareOfRoot(columns, corners, strand.blend);
   joinGroups(root, strand);
   thinHairline(root, strand);
   cutStrand(root, strand);
@@ -286,7 +290,9 @@ vec2 groupPull(in Strand strand, float layer) {
   if (strand.fine > 0.0) return wayAt(strand, layer).x * strand.astray;
   float t = layer / float(strand.layers - 1);
   vec2 pull = strand.hold * groups.y * smoothstep(0.0, 0.25, t) * strand.wisp;
-  pull += strand.hold * clumping.x * clumpClosing(t, strand.clump_key) * (strand.clump - pull);
+  float clump = clumping.x;
+  if (shares.x > 0) clump *= strand.share.of.y * shareAlong(layer / max(strand.end, 1e-3), 0).y;
+  pull += strand.hold * clump * clumpClosing(t, strand.clump_key) * (strand.clump - pull);
   return pull + strand.hold * groups.x * lockClosing(t) * (strand.lock - pull);
 }
 
@@ -376,12 +382,16 @@ void addDrift(in Strand strand, vec2 way, inout vec4 bend) {
 }
 
 // A helix. Pitch, hand and phase are the clump's, a little of the phase and of the radius the strand's.
-void addCurl(in Strand strand, vec2 way, inout vec4 bend) {
+void addCurl(in Strand strand, float s, vec2 way, inout vec4 bend) {
   float pitch = max(shape.w, 1e-3) * (0.8 + 0.4 * randomOf(strand.clump_key, 8u));
   float hand = randomOf(strand.clump_key, 13u) < 0.5 ? -1.0 : 1.0;
   vec2 angle = swingAngle(way, pitch, randomOf(strand.clump_key, 9u) + 0.15 * (randomOf(strand.key, 12u) - 0.5));
   vec2 radius = shape.z * (0.7 + 0.4 * randomOf(strand.clump_key, 14u) + 0.3 * randomOf(strand.key, 13u)) *
                 opening(way, 0.025);
+  if (shares.x > 0) {
+    vec4 rate, share = shareAlong(s / max(strand.end, 1e-3), 0, rate);
+    radius = strand.share.of.z * vec2(radius.x * share.z, radius.y * share.z + radius.x * rate.z / max(strand.end, 1e-3));
+  }
   float c = cos(angle.x), d = hand * sin(angle.x);
   bend += vec4(radius.x * c, radius.x * d, radius.y * c - radius.x * d * hand * angle.y,
                radius.y * d + radius.x * c * hand * angle.y);
@@ -411,7 +421,7 @@ vec4 sideways(in Strand strand, float s) {
   vec4 bend = vec4(0.0);
   addWander(strand, s, bend);
   if (groups.z > 0.0) addDrift(strand, way, bend);
-  if (shape.z > 0.0) addCurl(strand, way, bend);
+  if (shape.z > 0.0) addCurl(strand, s, way, bend);
   if (waves.x > 0.0) addWave(strand, way, bend);
   if (clumping.z > 0.0) addFrizz(strand, way, bend);
   return bend;

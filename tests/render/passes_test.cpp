@@ -50,8 +50,9 @@ MEMBERS(HairLook, strand_radius, strands_represented, width_compensation, least_
         clump, clump_size, lock, wisp, drift, curl_radius, curl_pitch, wave_height, wave_length, frizz, flyaways,
         flyaway_lift, hairline, baby_hairs, eumelanin, pheomelanin, use_color, color, root_darkening, tint_variation,
         beta_m, beta_n, eta, cuticle_angle, specular, diffuse, seed)
+MEMBERS(LookShares, roots, along)
 MEMBERS(HairInput, id, layout_revision, position_revision, layout_id, faces, positions, rest, strands,
-        segments_per_layer, look, skin)
+        segments_per_layer, look, shares, skin)
 MEMBERS(BodyInput, id, mesh_id, positions, normals, triangles, joints, weights, joint_matrices, pose_revision, color,
         roughness, scalp_id, root_cover, root_color, scalp_tint, face_origin, face_height, face_paint, cloth, dressed,
         cloth_color, material_places, materials, own_materials)
@@ -89,6 +90,7 @@ struct Scene {
   std::vector<float> cover, rest, cloth, places;
   std::vector<std::vector<std::uint32_t>> materials{{0xff405070u}, {0xff704050u}};
   std::vector<render::SkinEllipsoid> skin;
+  std::vector<render::LookShare> shares;
   std::vector<render::HairInput> hairs;
   std::vector<render::BodyInput> bodies;
   std::vector<render::LineVertex> shape;
@@ -157,6 +159,11 @@ struct Scene {
   void change(std::span<const render::SkinEllipsoid>& of) {
     skin.push_back(synthetic::skinBall({0.05f, synthetic::kHeadHeight, 0.05f}, 1.05f * synthetic::kHeadRadius));
     of = skin;
+  }
+  void change(std::span<const render::LookShare>& of) {
+    shares.assign(hair.positions.size() / 3, {0.5f, 1, 1, 0.5f, {1, 0.5f, 0.2f}});
+    of = shares;
+    ++hairs[0].layout_revision;
   }
   void change(std::span<const std::uint32_t>&) {
     body.triangles.resize(body.triangles.size() / 2 / 3 * 3);

@@ -44,7 +44,7 @@ std::vector<render::RibbonEdges> ribbon(const std::vector<std::array<float, 2>>&
 }
 
 render::PixelBox fill(const std::vector<render::RibbonEdges>& points, Picture& picture, std::uint32_t first = 0) {
-  const render::StoredStrand strand{static_cast<std::uint32_t>(points.size()), 0.5f, 0, 0};
+  const render::StoredStrand strand{static_cast<std::uint32_t>(points.size()), 0.5f, 0, 0, {}};
   return render::rasterizeStrands({{&strand, 1}, points, static_cast<std::uint32_t>(points.size()), first},
                                   picture.grid);
 }
