@@ -1,6 +1,7 @@
 #include "app/files/field_map.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -52,8 +53,59 @@ std::string fieldHint() {
   return names;
 }
 
-std::vector<double>* findCurve(std::string_view name, FieldCurves& curves) {
-  return name == "stiffness" ? &curves.stiffness : name == "mass" ? &curves.mass : nullptr;
+std::string curveHint() {
+  std::string names;
+  for (const std::string_view name : kCurveNames) names.append(names.empty() ? "" : ", ").append(name);
+  return names;
+}
+
+constexpr std::array kMapMembers{&FieldFiles::stiffness, &FieldFiles::length,   &FieldFiles::density, &FieldFiles::mass,
+                                 &FieldFiles::bend,      &FieldFiles::width,    &FieldFiles::clump,   &FieldFiles::curl,
+                                 &FieldFiles::color,     &FieldFiles::roughness};
+static_assert(kMapMembers.size() == kFieldNames.size());
+
+using Curve = std::vector<double> FieldCurves::*;
+constexpr std::array<Curve, kCurveNames.size()> kCurveMembers{&FieldCurves::stiffness,
+                                                              &FieldCurves::mass,
+                                                              &FieldCurves::bend,
+                                                              &FieldCurves::width,
+                                                              &FieldCurves::clump,
+                                                              &FieldCurves::curl,
+                                                              nullptr,
+                                                              &FieldCurves::roughness};
+
+// Null for color, which has three channels, and for a name of none.
+Curve findCurve(std::string_view name) {
+  const auto at = std::ranges::find(kCurveNames, name);
+  return at == kCurveNames.end() ? nullptr : kCurveMembers[static_cast<std::size_t>(at - kCurveNames.begin())];
+}
+
+bool isShare(double share) {
+  return share >= kMinShare && share <= kLargestShare;
+}
+
+// "#rrggbb" as shares of light, or one number for all three.
+bool parseColor(std::string_view text, std::array<double, 3>& color) {
+  if (text.size() != 7 || text[0] != '#') {
+    double share = 0;
+    if (!sim::parseNumber(text, share) || !isShare(share)) return false;
+    color = {share, share, share};
+    return true;
+  }
+  for (std::size_t c = 0; c < 3; ++c) {
+    int value = 0;
+    const char* const first = text.data() + 1 + 2 * c;
+    if (std::from_chars(first, first + 2, value, 16).ptr != first + 2 || value < 0) return false;
+    color[c] = linearShare(value / 255.0);
+  }
+  return true;
+}
+
+// The segment of a curve of `count` points at `along`: its first point, and how far along it.
+std::pair<std::size_t, double> segmentAt(std::size_t count, double along) {
+  const double at = std::clamp(along, 0.0, 1.0) * static_cast<double>(count - 1);
+  const std::size_t first = std::min(static_cast<std::size_t>(at), count - 1);
+  return {first, at - static_cast<double>(first)};
 }
 
 // What of the picture is not as a field's picture should be.
@@ -101,11 +153,36 @@ sim::Vec3 directionOf(const FieldMap& map, int column, int row) {
   return {std::sin(polar) * std::sin(azimuth), std::cos(polar), std::sin(polar) * std::cos(azimuth)};
 }
 
+double linearShare(double value) {
+  return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+}
+
+double pictureValue(double share) {
+  const double value = share <= 0.0031308 ? 12.92 * share : 1.055 * std::pow(share, 1 / 2.4) - 0.055;
+  return std::clamp(value, 0.0, 1.0);
+}
+
+namespace {
+
+Image readPicture(const std::string& picture) {
+  if (!isPictureText(picture)) return readPng(picture);
+  return readPngBytes(fromBase64(std::string_view(picture).substr(kPictureText.size())), "painted field");
+}
+
+std::string channelsText(const FieldMap& red, const FieldMap& green, const FieldMap& blue) {
+  std::vector<unsigned char> rgba;
+  const auto byte = [](float value) {
+    return static_cast<unsigned char>(std::lround(255 * std::clamp(value, 0.0f, 1.0f)));
+  };
+  for (std::size_t i = 0; i < red.value.size(); ++i)
+    rgba.insert(rgba.end(), {byte(red.value[i]), byte(green.value[i]), byte(blue.value[i]), 255});
+  return std::string(kPictureText) + toBase64(pngBytes(red.width, red.height, rgba));
+}
+
+}  // namespace
+
 FieldMap readFieldMap(const std::string& picture) {
-  const Image image =
-      isPictureText(picture)
-          ? readPngBytes(fromBase64(std::string_view(picture).substr(kPictureText.size())), "painted field")
-          : readPng(picture);
+  const Image image = readPicture(picture);
   FieldMap map{image.width, image.height, {}, {}};
   for (std::size_t i = 0; i + 3 < image.rgba.size(); i += 4) {
     const int grey = 2126 * image.rgba[i] + 7152 * image.rgba[i + 1] + 722 * image.rgba[i + 2];
@@ -117,21 +194,32 @@ FieldMap readFieldMap(const std::string& picture) {
 
 std::string mapNotes(const FieldFiles& maps) {
   std::string notes;
-  for (const std::string* picture : {&maps.stiffness, &maps.length, &maps.density, &maps.mass}) {
-    if (picture->empty() || isPictureText(*picture)) continue;
-    const std::string note = readFieldMap(*picture).note, line = *picture + " " + note;
+  for (const auto member : kMapMembers) {
+    const std::string& picture = maps.*member;
+    if (picture.empty() || isPictureText(picture) || member == &FieldFiles::color) continue;
+    const std::string note = readFieldMap(picture).note, line = picture + " " + note;
     if (!note.empty() && notes.find(line) == std::string::npos) notes += (notes.empty() ? "" : "\n") + line;
   }
   return notes;
 }
 
-std::string pictureText(const FieldMap& map) {
-  std::vector<unsigned char> rgba;
-  for (const float value : map.value) {
-    const auto grey = static_cast<unsigned char>(std::lround(255 * std::clamp(value, 0.0f, 1.0f)));
-    rgba.insert(rgba.end(), {grey, grey, grey, 255});
+ColorMap readColorMap(const std::string& picture) {
+  const Image image = readPicture(picture);
+  ColorMap map;
+  for (std::size_t c = 0; c < 3; ++c) {
+    map[c] = {image.width, image.height, {}, {}};
+    for (std::size_t i = c; i < image.rgba.size(); i += 4)
+      map[c].value.push_back(static_cast<float>(image.rgba[i]) / 255.0f);
   }
-  return std::string(kPictureText) + toBase64(pngBytes(map.width, map.height, rgba));
+  return map;
+}
+
+std::string pictureText(const FieldMap& map) {
+  return channelsText(map, map, map);
+}
+
+std::string pictureText(const ColorMap& map) {
+  return channelsText(map[0], map[1], map[2]);
 }
 
 bool isPictureText(std::string_view picture) {
@@ -139,9 +227,12 @@ bool isPictureText(std::string_view picture) {
 }
 
 std::string* findMap(std::string_view name, FieldFiles& maps) {
-  const std::array<std::string*, kFieldNames.size()> pictures{&maps.stiffness, &maps.length, &maps.density, &maps.mass};
   const auto at = std::ranges::find(kFieldNames, name);
-  return at == kFieldNames.end() ? nullptr : pictures[static_cast<std::size_t>(at - kFieldNames.begin())];
+  return at == kFieldNames.end() ? nullptr : &(maps.*kMapMembers[static_cast<std::size_t>(at - kFieldNames.begin())]);
+}
+
+const std::string& mapOf(std::string_view name, const FieldFiles& maps) {
+  return maps.*kMapMembers[static_cast<std::size_t>(std::ranges::find(kFieldNames, name) - kFieldNames.begin())];
 }
 
 std::string setMap(std::string_view name, const std::string& picture, FieldFiles& maps) {
@@ -151,44 +242,84 @@ std::string setMap(std::string_view name, const std::string& picture, FieldFiles
 
 double curveAt(const std::vector<double>& curve, double along) {
   if (curve.empty()) return 1;
-  const double at = std::clamp(along, 0.0, 1.0) * static_cast<double>(curve.size() - 1);
-  const std::size_t first = std::min(static_cast<std::size_t>(at), curve.size() - 1);
-  const std::size_t second = std::min(first + 1, curve.size() - 1);
-  return curve[first] + (at - static_cast<double>(first)) * (curve[second] - curve[first]);
+  const auto [first, within] = segmentAt(curve.size(), along);
+  return curve[first] + within * (curve[std::min(first + 1, curve.size() - 1)] - curve[first]);
 }
 
+std::array<double, 3> colorAt(const std::vector<std::array<double, 3>>& curve, double along) {
+  if (curve.empty()) return {1, 1, 1};
+  const auto [first, within] = segmentAt(curve.size(), along);
+  const std::array<double, 3>&from = curve[first], &to = curve[std::min(first + 1, curve.size() - 1)];
+  return {from[0] + within * (to[0] - from[0]), from[1] + within * (to[1] - from[1]),
+          from[2] + within * (to[2] - from[2])};
+}
+
+const std::vector<double>& curveOf(std::string_view name, const FieldCurves& curves) {
+  return curves.*findCurve(name);
+}
+
+namespace {
+
+std::array<double, 3> readColor(const JsonPlace& point) {
+  if (point.value().is_array()) return point.vector(0, kLargestShare);
+  std::array<double, 3> color{};
+  if (!point.value().is_string()) {
+    color.fill(point.number(kMinShare, kLargestShare));
+  } else if (const std::string text = point.text(); text.empty() || text[0] != '#' || !parseColor(text, color)) {
+    point.refuse("is no colour", "write \"#rrggbb\", a share of light, or three");
+  }
+  return color;
+}
+
+}  // namespace
+
 FieldCurves readCurves(const JsonPlace& place) {
-  place.expectObject({"stiffness", "mass"});
+  place.expectObject(kCurveNames);
   FieldCurves curves;
-  for (const char* name : {"stiffness", "mass"}) {
-    if (!place.has(name)) continue;
-    const JsonPlace points = place.at(name);
+  for (const std::string_view name : kCurveNames) {
+    if (!place.has(std::string(name))) continue;
+    const JsonPlace points = place.at(std::string(name));
     const std::size_t count = points.arraySize(kMaxCurvePoints);
-    for (std::size_t k = 0; k < count; ++k)
-      findCurve(name, curves)->push_back(points.at(k).number(kMinShare, kLargestShare));
+    const Curve curve = findCurve(name);
+    for (std::size_t k = 0; k < count; ++k) {
+      if (curve)
+        (curves.*curve).push_back(points.at(k).number(kMinShare, kLargestShare));
+      else
+        curves.color.push_back(readColor(points.at(k)));
+    }
   }
   return curves;
 }
 
 nlohmann::json writeCurves(const FieldCurves& curves) {
-  return {{"stiffness", curves.stiffness}, {"mass", curves.mass}};
+  nlohmann::json written{{"color", curves.color}};
+  for (const std::string_view name : kCurveNames)
+    if (name != "color") written[std::string(name)] = curveOf(name, curves);
+  return written;
 }
 
 void setCurve(const std::string& name, const std::string& text, FieldCurves& curves) {
-  std::vector<double>* curve = findCurve(name, curves);
-  if (!curve) throw InputError("", "field '" + name.substr(0, 40) + "'", "has no curve", "choose stiffness or mass");
-  std::vector<double> points;
+  const Curve curve = findCurve(name);
+  if (!curve && name != "color")
+    throw InputError("", "curve '" + name.substr(0, 40) + "'", "is of no field", "choose one of " + curveHint());
+  std::vector<std::array<double, 3>> points;
   for (std::size_t at = 0; text != "none" && at <= text.size();) {
     const std::size_t end = std::min(text.find(',', at), text.size());
-    double point = 0;
-    if (!sim::parseNumber(std::string_view(text).substr(at, end - at), point) || point < kMinShare ||
-        point > kLargestShare || points.size() == kMaxCurvePoints)
-      throw InputError("", "'" + text.substr(0, 40) + "'", "is no list of shares",
-                       "write up to 32 numbers from 0.01 to 10 with commas, from root to tip, or none");
+    const std::string_view word = std::string_view(text).substr(at, end - at);
+    std::array<double, 3> point{};
+    if (!parseColor(word, point) || (curve && word[0] == '#') || points.size() == kMaxCurvePoints)
+      throw InputError("", "curve '" + text.substr(0, 40) + "'", "is no list of shares",
+                       "write up to 32 numbers from 0.01 to 10 with commas, from root to tip, or none" +
+                           std::string(curve ? "" : "; a colour may be #rrggbb"));
     points.push_back(point);
     at = end + 1;
   }
-  *curve = std::move(points);
+  if (!curve) {
+    curves.color = std::move(points);
+    return;
+  }
+  (curves.*curve).clear();
+  for (const std::array<double, 3>& point : points) (curves.*curve).push_back(point[0]);
 }
 
 }  // namespace app

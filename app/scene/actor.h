@@ -58,6 +58,7 @@ struct Haircut {
   std::vector<int> tied;      // vertices in the rings of ties
   std::vector<int> covered;   // vertices under attachments, which hold them
   PaintedShares shares;
+  PaintedLook look_shares;
   std::vector<Vec3> unpainted, painted;  // rest positions before and after a painted length; none where hair is tied
   std::vector<render::HairFace> faces;
   std::vector<float> rest;  // positions of the rest shape, three floats a vertex

@@ -133,6 +133,7 @@ render::HairInput hairInput(const Actor& actor) {
   input.strands = actor.spec.look.strands;
   input.segments_per_layer = actor.spec.look.segments_per_layer;
   input.look = actor.spec.look.hair;
+  input.shares = actor.haircut->look_shares.shares();
   if (actor.spec.look.lift_strands) input.skin = actor.shown_skin;
   return input;
 }

@@ -104,6 +104,12 @@ EditSide sideOf(const Demo& demo, int reach) {
   return side;
 }
 
+std::string mapsText(const FieldFiles& maps) {
+  std::string text;
+  for (const std::string_view field : kFieldNames) text += mapOf(field, maps) + "|";
+  return text;
+}
+
 // Whether one actor can play both without being made anew. All members are named, so that a new one does not compile
 // until it is decided.
 bool sameCast(const CharacterSpec& a, const CharacterSpec& b) {
@@ -112,8 +118,7 @@ bool sameCast(const CharacterSpec& a, const CharacterSpec& b) {
                  clip_offset, loop, look, pins, ties, attachments, maps, curves] = spec;
     return std::tuple(motion, parts, clip, style, resolution, hair, reverse_faces, fit, mends, position.x(),
                       position.y(), position.z(), heading, loop, writePins(pins).dump(), writeTies(ties).dump(),
-                      wornText(attachments), maps.stiffness, maps.length, maps.density, maps.mass,
-                      writeCurves(curves).dump());
+                      wornText(attachments), mapsText(maps), writeCurves(curves).dump());
   };
   return cast(a) == cast(b);
 }

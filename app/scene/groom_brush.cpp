@@ -47,7 +47,7 @@ Haircut& ownHaircut(Actor& actor, Demo& demo) {
   own->ties = worn.ties;
   own->tied = worn.tied;
   own->covered = worn.covered;
-  own->shares = worn.shares;
+  own->shares = worn.shares, own->look_shares = worn.look_shares;
   own->unpainted = worn.unpainted, own->painted = worn.painted;
   own->frozen = worn.frozen;
   actor.haircut = own.get();

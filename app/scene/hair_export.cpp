@@ -82,8 +82,10 @@ StrandExport::StrandExport(const Demo& demo, ExportWhat what, int points) : what
     Vector3f middle = Vector3f::Zero();
     for (int c = 0; c < shape.columnCount(); ++c)
       middle += shape.positions[shape.column_first[c]].cast<float>() / static_cast<float>(shape.columnCount());
-    grown_.push_back(std::make_unique<Grown>(
-        Grown{{haircut.faces, haircut.rest, look.strands, look.segments_per_layer, look.hair}, {}, 0}));
+    grown_.push_back(std::make_unique<Grown>(Grown{
+        {haircut.faces, haircut.rest, look.strands, look.segments_per_layer, look.hair, haircut.look_shares.shares()},
+        {},
+        0}));
     Grown& grown = *grown_.back();
     grown.first_strand = groom_.strandCount();
     grown.growth.setPositions(haircut.rest);
@@ -103,7 +105,7 @@ StrandExport::StrandExport(const Demo& demo, ExportWhat what, int points) : what
       addStrand(static_cast<std::size_t>(points_ > 0 ? points_ : drawn), sphericalUv(ends[0].position - middle),
                 number);
     }
-    groom_.colors.resize(groom_.points.size(), hairColor(look.hair));
+    groom_.colors.resize(groom_.points.size(), hairColor(look.hair));  // guides'; strands' are dyed as they grow
     ++character;
   }
   groom_.widths.resize(groom_.points.size());
@@ -131,6 +133,7 @@ const Groom& StrandExport::groom(const Demo& demo, double unit) {
       }
       continue;
     }
+    const Vector3f color = hairColor(actor.spec.look.hair);
     inParts(grown.strands.size(), [&](std::size_t begin, std::size_t end) {
       std::vector<render::CurvePoint> points(static_cast<std::size_t>(std::max(points_, grown.growth.maxPoints())));
       for (std::size_t s = begin; s < end; ++s) {
@@ -144,6 +147,8 @@ const Groom& StrandExport::groom(const Demo& demo, double unit) {
         for (std::size_t p = 0; p < own.size(); ++p) {
           groom_.points[first + p] = scale * (own[p].position + origin);
           groom_.widths[first + p] = 2 * scale * grown.growth.radius(grown.strands[s], own[p].along);
+          const render::Float3 dyed = grown.growth.color(grown.strands[s], own[p].along);
+          groom_.colors[first + p] = color.cwiseProduct(Vector3f(dyed[0], dyed[1], dyed[2]));
         }
       }
     });

@@ -124,8 +124,7 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
   const std::string title = spec.hair.empty() ? styleTitle(spec) : spec.hair + (spec.reverse_faces ? " reversed" : "");
   const std::string ties = spec.ties.empty() ? "" : " tied " + writeTies(spec.ties).dump();
   std::string painted = writeCurves(spec.curves).dump();
-  for (const std::string* map : {&spec.maps.stiffness, &spec.maps.length, &spec.maps.density, &spec.maps.mass})
-    painted += "|" + *map;
+  for (const std::string_view field : kFieldNames) painted += "|" + mapOf(field, spec.maps);
   const std::vector<const Attachment*> worn = attach(spec, body, asset_cache);
   std::string under;
   for (const Attachment* attachment : worn) under += "|" + attachment->key;
@@ -153,6 +152,7 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
   markCovered(*haircut, haircut->faces);
   if (!spec.maps.density.empty())
     paintDensity(readFieldMap(spec.maps.density), body.character.scalp, haircut->mesh, haircut->faces);
+  haircut->look_shares = paintedLook(spec.maps, spec.curves, body.character.scalp, haircut->mesh.shape);
   blendPositions(haircut->mesh.shape.positions, haircut->mesh.shape.positions, 1, Vec3::Zero(), haircut->rest);
   // Hair of a style that divides over the shoulders lies against itself: it sleeps as a whole.
   asset_cache.haircuts.push_back(std::move(haircut));

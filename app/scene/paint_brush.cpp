@@ -20,11 +20,13 @@ constexpr double kSpread = 0.12, kFarthestRoot = 0.45;  // rad: how far a root s
 constexpr double kFarthestStroke = 100;                 // m
 constexpr double kNothing = 1e-3;                       // of a brush's weight
 
-// The picture at the brushes' resolution; white where there is none.
-FieldMap paintable(const std::string& picture) {
-  FieldMap map{kPictureWidth, kPictureHeight, std::vector<float>(kPictureWidth * kPictureHeight, 1)};
-  if (picture.empty()) return map;
-  FieldMap given = readFieldMap(picture);
+FieldMap white() {
+  return {kPictureWidth, kPictureHeight, std::vector<float>(kPictureWidth * kPictureHeight, 1)};
+}
+
+// A picture at the brushes' resolution.
+FieldMap paintable(FieldMap given) {
+  FieldMap map = white();
   if (given.width == kPictureWidth && given.height == kPictureHeight) return given;
   for (int row = 0; row < kPictureHeight; ++row) {
     for (int column = 0; column < kPictureWidth; ++column)
@@ -82,15 +84,37 @@ float drawnTowards(double value, double share, float now) {
   return static_cast<float>(static_cast<double>(now) + std::copysign(std::min(std::abs(way), step), way));
 }
 
-void dab(const PaintSample& sample, const std::vector<TouchedRoot>& roots, FieldMap& map) {
+void dab(const PaintSample& sample, double wanted, const std::vector<TouchedRoot>& roots, FieldMap& map) {
   for (int row = 0; row < map.height; ++row) {
     for (int column = 0; column < map.width; ++column) {
       const double weight = weightAt(directionOf(map, column, row), roots);
       if (weight < kNothing) continue;
       float& value = map.value[static_cast<std::size_t>(row * map.width + column)];
-      value = drawnTowards(sample.value, sample.strength * weight, value);
+      value = drawnTowards(wanted, sample.strength * weight, value);
     }
   }
+}
+
+// The field's picture after a sample of a stroke.
+std::string painted(const PaintSample& sample, const std::vector<TouchedRoot>& roots, const std::string& picture) {
+  if (sample.field != "color") {
+    FieldMap map = picture.empty() ? white() : paintable(readFieldMap(picture));
+    dab(sample, sample.value, roots, map);
+    return pictureText(map);
+  }
+  ColorMap map = picture.empty() ? ColorMap{white(), white(), white()} : readColorMap(picture);
+  for (std::size_t c = 0; c < 3; ++c) {
+    map[c] = paintable(std::move(map[c]));
+    dab(sample, sample.color[c], roots, map[c]);
+  }
+  return pictureText(map);
+}
+
+// Faces, or shares of the look, have changed.
+void drawAnew(Haircut& own, Actor& actor) {
+  own.id = freshId();
+  ++actor.layout_revision;
+  actor.shown_still = false;
 }
 
 void repaintDensity(const FieldMap& map, int index, Demo& demo) {
@@ -99,9 +123,15 @@ void repaintDensity(const FieldMap& map, int index, Demo& demo) {
   own.faces = renderFaces(own.mesh);
   markCovered(own, own.faces);
   paintDensity(map, actor.body->character.scalp, own.mesh, own.faces);
-  own.id = freshId();
-  ++actor.layout_revision;
-  actor.shown_still = false;
+  drawAnew(own, actor);
+}
+
+void repaintLook(const FieldFiles& maps, const FieldCurves& curves, int index, Demo& demo) {
+  Actor& actor = demo.actors[static_cast<std::size_t>(index)];
+  PaintedLook look = paintedLook(maps, curves, actor.body->character.scalp, actor.haircut->mesh.shape);
+  Haircut& own = ownHaircut(actor, demo);
+  own.look_shares = std::move(look);
+  drawAnew(own, actor);
 }
 
 void repaintLength(const FieldMap& map, int index, Demo& demo) {
@@ -123,25 +153,37 @@ void repaintLength(const FieldMap& map, int index, Demo& demo) {
 
 std::string paintText(const PaintSample& sample) {
   std::string text;
+  const auto add = [&](double value) { text.append(text.empty() ? "" : " ").append(sim::numberText(value)); };
   for (const double value : {sample.at.x(), sample.at.y(), sample.at.z(), sample.radius, sample.strength,
-                             sample.falloff, sample.mirror ? 1.0 : 0.0, sample.value})
-    text.append(text.empty() ? "" : " ").append(sim::numberText(value));
+                             sample.falloff, sample.mirror ? 1.0 : 0.0})
+    add(value);
+  if (sample.field != "color") add(sample.value);
+  for (std::size_t c = 0; c < 3 && sample.field == "color"; ++c) add(sample.color[c]);
   return text;
 }
 
 PaintSample parsePaint(const std::string& field, const std::string& text) {
   if (std::ranges::find(kFieldNames, field) == kFieldNames.end())
     throw InputError("", "field '" + field.substr(0, 40) + "'", "is unknown", sim::nameHint(field, kFieldNames));
-  std::array<double, 8> numbers{};
+  const bool color = field == "color";
+  std::array<double, 10> numbers{};
   const std::size_t count = numbersOf(text, numbers);
   const auto within = [](double value, double low, double high) { return value >= low && value <= high; };
-  bool fine = count == numbers.size() && within(numbers[3], kSmallestBrush, kLargestBrush) &&
-              within(numbers[4], 0, 1) && within(numbers[5], 0, kLargestFalloff) && within(numbers[7], 0, 1);
+  bool fine = count == (color ? 10u : 8u) && within(numbers[3], kSmallestBrush, kLargestBrush) &&
+              within(numbers[4], 0, 1) && within(numbers[5], 0, kLargestFalloff) && within(numbers[7], 0, 1) &&
+              within(numbers[8], 0, 1) && within(numbers[9], 0, 1);
   for (std::size_t k = 0; k < 3; ++k) fine = fine && within(numbers[k], -kFarthestStroke, kFarthestStroke);
   if (!fine)
-    throw InputError("", "stroke of paint", "is not eight numbers in their ranges",
-                     "write x y z, radius 0.003 to 0.3, strength 0 to 1, falloff 0 to 8, mirror 0 or 1, value 0 to 1");
-  return {field, {numbers[0], numbers[1], numbers[2]}, numbers[3], numbers[4], numbers[5], numbers[6] != 0, numbers[7]};
+    throw InputError("", "stroke of paint",
+                     std::string("is not ") + (color ? "ten" : "eight") + " numbers in their ranges",
+                     std::string("write x y z, radius 0.003 to 0.3, strength 0 to 1, falloff 0 to 8, mirror 0 or 1, ") +
+                         (color ? "red, green and blue 0 to 1" : "value 0 to 1"));
+  PaintSample sample{field, {numbers[0], numbers[1], numbers[2]}, numbers[3], numbers[4], numbers[5], numbers[6] != 0};
+  if (color)
+    sample.color = {numbers[7], numbers[8], numbers[9]};
+  else
+    sample.value = numbers[7];
+  return sample;
 }
 
 void applyPaint(const PaintSample& sample, int index, Demo& demo) {
@@ -151,14 +193,14 @@ void applyPaint(const PaintSample& sample, int index, Demo& demo) {
     throw InputError("", "the paint", "reaches no hair", "move it onto the hair, or make the brush larger");
   FieldFiles maps = actor.spec.maps;
   std::string& picture = *findMap(sample.field, maps);
-  FieldMap map = paintable(picture);
-  dab(sample, roots, map);
-  picture = pictureText(map);
-  map = readFieldMap(picture);  // as it will be read again
+  picture = painted(sample, roots, picture);
+  // As it will be read again.
   if (sample.field == "length") {
-    repaintLength(map, index, demo);
+    repaintLength(readFieldMap(picture), index, demo);
   } else if (sample.field == "density") {
-    repaintDensity(map, index, demo);
+    repaintDensity(readFieldMap(picture), index, demo);
+  } else if (isOfLook(sample.field)) {
+    repaintLook(maps, actor.spec.curves, index, demo);
   } else {
     repaintHair(paintedShares(maps, actor.spec.curves, actor.body->character.scalp, actor.haircut->mesh.shape), index,
                 demo);
@@ -170,8 +212,11 @@ void applyCurve(const std::string& name, const std::string& text, int index, Dem
   Actor& actor = demo.actors[static_cast<std::size_t>(index)];
   FieldCurves curves = actor.spec.curves;
   setCurve(name, text, curves);
-  repaintHair(paintedShares(actor.spec.maps, curves, actor.body->character.scalp, actor.haircut->mesh.shape), index,
-              demo);
+  if (isOfLook(name))
+    repaintLook(actor.spec.maps, curves, index, demo);
+  else
+    repaintHair(paintedShares(actor.spec.maps, curves, actor.body->character.scalp, actor.haircut->mesh.shape), index,
+                demo);
   actor.spec.curves = std::move(curves);
 }
 

@@ -2,6 +2,7 @@
 // goes on moving.
 #pragma once
 
+#include <array>
 #include <string>
 
 #include "app/files/field_map.h"
@@ -15,17 +16,19 @@ struct PaintSample {
   Vec3 at = Vec3::Zero();
   double radius = 0.04, strength = 0.5, falloff = 1;
   bool mirror = false;
-  double value = 0;  // 0 to 1
+  double value = 0;               // 0 to 1
+  std::array<double, 3> color{};  // in its place for the field "color": of a picture, 0 to 1
 };
 
-// "x y z  radius strength falloff mirror  value"; parsePaint reads the same bits back.
+// "x y z  radius strength falloff mirror  value", of a colour "... red green blue"; parsePaint reads the same bits
+// back.
 std::string paintText(const PaintSample& sample);
 // Throws InputError.
 PaintSample parsePaint(const std::string& field, const std::string& text);
 
-// Changes the picture of the field in the actor's spec and what it does to the hair. Throws InputError where the brush
-// reaches no hair, or the length of hair that is tied, covered or reshaped by hand would be painted; then nothing has
-// changed.
+// Changes the picture of the field in the actor's spec and what it does to the hair, or to its look. Throws InputError
+// where the brush reaches no hair, or the length of hair that is tied, covered or reshaped by hand would be painted;
+// then nothing has changed.
 void applyPaint(const PaintSample& sample, int actor, Demo& demo);
 
 // Gives the actor's hair another curve from root to tip, see setCurve. Throws InputError.

@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kFatness = 0.05, kGap = 0.0025;  // see untangle; m
 constexpr double kFatEnough = 0.002;              // with less, lengths are softened more
-constexpr int kMaxRounds = 16;                    // of untangling; evenly short hair takes the most
+constexpr double kMinBendShare = 0.02, kMinWidthShare = 0.1, kMinRoughnessShare = 0.2;  // that black leaves
+constexpr int kMaxRounds = 16;  // of untangling; evenly short hair takes the most
 // Least length of a column over that of any of its root face.
 constexpr std::array kSteepest{0.5, 0.65, 0.8, 0.9, 1.0};
 
@@ -102,23 +103,96 @@ std::vector<float> sharesOf(const std::string& picture, const std::vector<double
 PaintedShares paintedShares(const FieldFiles& maps, const FieldCurves& curves, const Scalp& scalp,
                             const sim::HairMeshShape& shape) {
   return {sharesOf(maps.stiffness, curves.stiffness, kMinStiffness, scalp, shape),
-          sharesOf(maps.mass, curves.mass, kMinMass, scalp, shape)};
+          sharesOf(maps.mass, curves.mass, kMinMass, scalp, shape),
+          sharesOf(maps.bend, curves.bend, kMinBendShare, scalp, shape)};
 }
 
 void applyShares(const PaintedShares& shares, sim::HairMesh& mesh) {
   for (std::size_t v = 0; v < shares.mass.size(); ++v) mesh.vertex_volume[v] *= static_cast<double>(shares.mass[v]);
-  if (shares.stiffness.empty()) return;
-  const auto scale = [&](const auto& vertices, double& volume) {
+  const auto scale = [](const std::vector<float>& by, const auto& vertices, double& volume) {
+    if (by.empty()) return;
     double sum = 0;
-    for (const int v : vertices) sum += static_cast<double>(shares.stiffness[static_cast<std::size_t>(v)]);
+    for (const int v : vertices) sum += static_cast<double>(by[static_cast<std::size_t>(v)]);
     volume *= sum / static_cast<double>(std::size(vertices));
   };
-  for (auto* edges : {&mesh.horizontal_edges, &mesh.vertical_edges}) {
-    for (sim::Edge& edge : *edges) scale(std::array{edge.a, edge.b}, edge.volume);
+  for (sim::Hinge& hinge : mesh.hinges) {
+    scale(shares.stiffness, hinge.v, hinge.volume);
+    scale(shares.bend, hinge.v, hinge.volume);
   }
-  for (sim::Wall& wall : mesh.walls) scale(wall.v, wall.volume);
-  for (sim::Hinge& hinge : mesh.hinges) scale(hinge.v, hinge.volume);
-  for (sim::CornerTet& tet : mesh.tets) scale(tet.v, tet.volume);
+  if (shares.stiffness.empty()) return;
+  for (auto* edges : {&mesh.horizontal_edges, &mesh.vertical_edges}) {
+    for (sim::Edge& edge : *edges) scale(shares.stiffness, std::array{edge.a, edge.b}, edge.volume);
+  }
+  for (sim::Wall& wall : mesh.walls) scale(shares.stiffness, wall.v, wall.volume);
+  for (sim::CornerTet& tet : mesh.tets) scale(shares.stiffness, tet.v, tet.volume);
+}
+
+namespace {
+
+constexpr int kAlongPieces = 60;  // of a curve from root to tip: exact for curves of 2 to 7, 11, 13, 16, 21, 31 points
+
+// Of the look, those with one channel.
+struct ShareField {
+  std::string_view name;
+  float render::LookShare::*share;
+  double least;
+};
+constexpr std::array kShareFields{ShareField{"width", &render::LookShare::width, kMinWidthShare},
+                                 ShareField{"clump", &render::LookShare::clump, 0},
+                                 ShareField{"curl", &render::LookShare::curl, 0},
+                                 ShareField{"roughness", &render::LookShare::roughness, kMinRoughnessShare}};
+
+// Calls set(share, root) for the share of every root, root: from the head's middle.
+void atRoots(const Scalp& scalp, const sim::HairMeshShape& shape, std::vector<render::LookShare>& roots,
+             const auto& set) {
+  roots.resize(shape.positions.size());
+  for (int c = 0; c < shape.columnCount(); ++c) {
+    const auto v = static_cast<std::size_t>(shape.column_first[static_cast<std::size_t>(c)]);
+    set(roots[v], Vec3(shape.positions[v] - scalp.center));
+  }
+}
+
+void dropOnes(std::vector<render::LookShare>& shares) {
+  if (std::ranges::all_of(shares, [](const render::LookShare& share) { return share == render::LookShare{}; }))
+    shares.clear();
+}
+
+}  // namespace
+
+bool isOfLook(std::string_view name) {
+  return name == "color" ||
+         std::ranges::any_of(kShareFields, [&](const ShareField& field) { return field.name == name; });
+}
+
+PaintedLook paintedLook(const FieldFiles& maps, const FieldCurves& curves, const Scalp& scalp,
+                        const sim::HairMeshShape& shape) {
+  PaintedLook look;
+  look.along.resize(kAlongPieces + 1);
+  const auto place = [](std::size_t k) { return static_cast<double>(k) / kAlongPieces; };
+  for (const ShareField& field : kShareFields) {
+    for (std::size_t k = 0; k < look.along.size(); ++k)
+      look.along[k].*field.share = static_cast<float>(curveAt(curveOf(field.name, curves), place(k)));
+    if (mapOf(field.name, maps).empty()) continue;
+    const FieldMap map = readFieldMap(mapOf(field.name, maps));
+    atRoots(scalp, shape, look.roots, [&](render::LookShare& share, const Vec3& root) {
+      share.*field.share = static_cast<float>(field.least + (1 - field.least) * map.at(root));
+    });
+  }
+  for (std::size_t k = 0; k < look.along.size(); ++k) {
+    const std::array<double, 3> color = colorAt(curves.color, place(k));
+    for (std::size_t c = 0; c < 3; ++c) look.along[k].color[c] = static_cast<float>(color[c]);
+  }
+  if (!maps.color.empty()) {
+    ColorMap map = readColorMap(maps.color);
+    for (FieldMap& channel : map)
+      for (float& value : channel.value) value = static_cast<float>(linearShare(static_cast<double>(value)));
+    atRoots(scalp, shape, look.roots, [&](render::LookShare& share, const Vec3& root) {
+      for (std::size_t c = 0; c < 3; ++c) share.color[c] = static_cast<float>(map[c].at(root));
+    });
+  }
+  dropOnes(look.roots);
+  dropOnes(look.along);
+  return look;
 }
 
 void paintDensity(const FieldMap& map, const Scalp& scalp, const sim::HairMesh& mesh,

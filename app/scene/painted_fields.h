@@ -1,6 +1,7 @@
 // Fields painted over the scalp and what they do to a hair mesh. A field of white everywhere changes no bit.
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "app/files/field_map.h"
@@ -18,7 +19,7 @@ void paintLength(const FieldMap& map, const Scalp& scalp, const BodyDistance& bo
 
 // Shares of the parameters' values, one a vertex; empty: 1 everywhere.
 struct PaintedShares {
-  std::vector<float> stiffness, mass;
+  std::vector<float> stiffness, mass, bend;
   bool operator==(const PaintedShares&) const = default;
 };
 
@@ -28,6 +29,17 @@ PaintedShares paintedShares(const FieldFiles& maps, const FieldCurves& curves, c
 // Scales the volumes that elements stand for, and with them their stiffnesses, and those that masses are made of. After
 // every change of the rest shape anew.
 void applyShares(const PaintedShares& shares, sim::HairMesh& mesh);
+
+// Shares of the look, by roots (one a vertex) and along strands; empty: 1 everywhere.
+struct PaintedLook {
+  std::vector<render::LookShare> roots, along;
+  render::LookShares shares() const { return {roots, along}; }
+};
+
+PaintedLook paintedLook(const FieldFiles& maps, const FieldCurves& curves, const Scalp& scalp,
+                        const sim::HairMeshShape& shape);
+// Whether a field or a curve acts on what is drawn alone.
+bool isOfLook(std::string_view name);
 
 // Deals strands out by the field as well.
 void paintDensity(const FieldMap& map, const Scalp& scalp, const sim::HairMesh& mesh,

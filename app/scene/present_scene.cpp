@@ -41,8 +41,7 @@ Scene movable(Scene scene) {
     makeMovable("clips", spec.parts);
     makeMovable("hair", spec.hair);
     for (AttachmentSpec& one : spec.attachments) makeMovable("attachments", one.file);
-    for (std::string* map : {&spec.maps.stiffness, &spec.maps.length, &spec.maps.density, &spec.maps.mass})
-      makeMovable("maps", *map);
+    for (const std::string_view field : kFieldNames) makeMovable("maps", *findMap(field, spec.maps));
   }
   return scene;
 }

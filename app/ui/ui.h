@@ -38,6 +38,7 @@ struct BrushState {
   int tool = -1;                                      // of BrushTool; -1: none
   int field = -1;                                     // of kFieldNames, that is painted in place of a tool; -1: none
   double value = 0.2;                                 // that it is painted with
+  std::array<float, 3> color{0.75f, 0.25f, 0.2f};     // in its place for the field "color"
   double radius = 0.04, strength = 0.5, falloff = 1;  // m
   bool mirror = false;
   bool over_hair = false, stroking = false;  // then a drag is the brush's, not the camera's

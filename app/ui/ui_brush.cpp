@@ -2,7 +2,10 @@
 #include <imgui/imgui.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
+#include <cstdio>
 
 #include "app/scene/groom_brush.h"
 #include "app/scene/paint_brush.h"
@@ -27,19 +30,26 @@ Vec3 inPlane(const Ray& ray, const Vec3& place, const Vec3& facing) {
   return std::abs(slope) < 1e-6 ? place : Vec3(ray.from + (place - ray.from).dot(facing) / slope * ray.along);
 }
 
-// The painted field at the roots, black to white as its picture; under the ring brighter.
+bool paintsColor(const BrushState& brush) {
+  return brush.field >= 0 && kFieldNames[static_cast<std::size_t>(brush.field)] == "color";
+}
+
+// The painted field at the roots, in the colours of its picture; under the ring brighter.
 void drawField(const Vec3& place, const Demo& demo, const BrushState& brush, float scale) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const Actor& actor = selectedActor(demo);
-  FieldFiles maps = actor.spec.maps;
-  const std::string& picture = *findMap(kFieldNames[static_cast<std::size_t>(brush.field)], maps);
-  const FieldMap map = picture.empty() ? FieldMap{1, 1, {1}, {}} : readFieldMap(picture);
+  const std::string& picture = mapOf(kFieldNames[static_cast<std::size_t>(brush.field)], actor.spec.maps);
+  const FieldMap white{1, 1, {1}, {}};
+  ColorMap map{white, white, white};
+  if (!picture.empty() && paintsColor(brush)) map = readColorMap(picture);
+  if (!picture.empty() && !paintsColor(brush)) map[0] = readFieldMap(picture), map[1] = map[2] = map[0];
   const sim::HairMesh& mesh = actor.haircut->mesh;
   Brush reach;
   reach.at = place, reach.radius = brush.radius, reach.falloff = brush.falloff;
   for (int c = 0; c < mesh.columnCount(); ++c) {
     const auto root = static_cast<std::size_t>(mesh.shape.column_first[static_cast<std::size_t>(c)]);
-    const int grey = static_cast<int>(255 * map.at(mesh.shape.positions[root] - actor.body->character.scalp.center));
+    const Vec3 direction = mesh.shape.positions[root] - actor.body->character.scalp.center;
+    const auto shade = [&](std::size_t channel) { return static_cast<int>(255 * map[channel].at(direction)); };
     double weight = 0;
     for (int k = 0; k < mesh.shape.columnLength(c); ++k)
       weight = std::max(weight, brushReach(reach, actor.hair.positions[root + static_cast<std::size_t>(k)]));
@@ -49,7 +59,7 @@ void drawField(const Vec3& place, const Demo& demo, const BrushState& brush, flo
     ImDrawList* list = ImGui::GetBackgroundDrawList();
     list->AddCircleFilled(at, 4.2f * scale, weight > 0.02 ? IM_COL32(240, 172, 120, 235) : IM_COL32(20, 20, 24, 200),
                           12);
-    list->AddCircleFilled(at, 3.0f * scale, IM_COL32(grey, grey, grey, 255), 12);
+    list->AddCircleFilled(at, 3.0f * scale, IM_COL32(shade(0), shade(1), shade(2), 255), 12);
   }
 }
 
@@ -97,6 +107,7 @@ void postSample(const Vec3& at, const Vec3& along, Demo& demo, const BrushState&
 void postPaint(const Vec3& at, Demo& demo, const BrushState& brush) {
   const std::string field(kFieldNames[static_cast<std::size_t>(brush.field)]);
   PaintSample sample{field, at, brush.radius, brush.strength, brush.falloff, brush.mirror, brush.value};
+  for (std::size_t c = 0; c < 3; ++c) sample.color[c] = static_cast<double>(brush.color[c]);
   postRequest(demo, {Ask::kPaint, field, paintText(sample)});
 }
 
@@ -124,10 +135,52 @@ namespace {
 
 void paintRow(UiState& ui) {
   BrushState& brush = ui.brush;
-  const int pressed = segments("paint", {"No paint", "Stiff", "Length", "Density", "Mass"}, brush.field + 1, ui);
-  tip("Draws a field over the scalp towards a value, at the roots of the hair within the ring");
-  if (pressed >= 0) brush.field = pressed - 1;
-  if (pressed > 0) brush.tool = -1;
+  const auto row = [&](std::initializer_list<const char*> labels, int before) {
+    const int pressed = segments("paint", labels, brush.field - before, ui);
+    tip("Draws a field over the scalp towards a value, at the roots of the hair within the ring");
+    if (pressed < 0) return;
+    brush.field = before + pressed;
+    if (brush.field >= 0) brush.tool = -1;
+  };
+  row({"No paint", "Stiff", "Length", "Density", "Mass"}, -1);
+  row({"Bend", "Width", "Clump"}, 4);
+  row({"Curl", "Color", "Rough"}, 7);
+}
+
+void colorRow(UiState& ui) {
+  rowLabel("Color", "Share of the light that passes through pigment: white leaves the hair its own colour");
+  ImGui::SetNextItemWidth(-1);
+  ImGui::ColorEdit3("##brush_color", ui.brush.color.data(), ImGuiColorEditFlags_DisplayRGB);
+  noteItem("brush_color", ui);
+}
+
+// Colours at the root, half-way and at the tip.
+void colorCurveRows(const FieldCurves& curves, Demo& demo, UiState& ui) {
+  constexpr std::array kPlaces{"Color, root", "Color, middle", "Color, tip"};
+  std::array<std::array<float, 3>, 3> colors;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::array<double, 3> light = colorAt(curves.color, 0.5 * static_cast<double>(k));
+    for (std::size_t c = 0; c < 3; ++c) colors[k][c] = static_cast<float>(pictureValue(light[c]));
+  }
+  bool changed = false;
+  for (std::size_t k = 0; k < 3; ++k) {
+    rowLabel(kPlaces[k], "Share of the light that passes through pigment; white leaves it as it is");
+    ImGui::SetNextItemWidth(-1);
+    const std::string name = "curve_color" + std::to_string(k);
+    changed |= ImGui::ColorEdit3(("##" + name).c_str(), colors[k].data(), ImGuiColorEditFlags_DisplayRGB);
+    noteItem(name, ui);
+  }
+  if (!changed) return;
+  std::string text;
+  for (const std::array<float, 3>& color : colors) {
+    std::array<char, 8> hex{};
+    const auto byte = [&](std::size_t c) {
+      return static_cast<unsigned>(std::lround(255 * std::clamp(color[c], 0.0f, 1.0f)));
+    };
+    std::snprintf(hex.data(), hex.size(), "#%02x%02x%02x", byte(0), byte(1), byte(2));
+    text.append(text.empty() ? "" : ",").append(hex.data());
+  }
+  postRequest(demo, {Ask::kCurve, "color", text});
 }
 
 }  // namespace
@@ -153,7 +206,8 @@ void brushSection(UiState& ui) {
   row("Strength", "Share of the way that the middle of the brush takes", "brush_strength", 0.02f, 1, "%.2f", 1,
       brush.strength);
   row("Falloff", "0: all within the ring alike; larger: softer edge", "brush_falloff", 0, 4, "%.1f", 1, brush.falloff);
-  if (brush.field >= 0)
+  if (paintsColor(brush)) colorRow(ui);
+  if (brush.field >= 0 && !paintsColor(brush))
     row("Value", "Painted share: 1 is the parameter's own value, 0 its least", "brush_value", 0, 1, "%.2f", 1,
         brush.value);
   rowLabel("Mirror", "Acts on the other side of the head as well");
@@ -177,8 +231,14 @@ void curveRows(Demo& demo, UiState& ui) {
     }
     noteItem("curve_" + name, ui);
   };
-  row("Stiffness", "stiffness", curves.stiffness);
-  row("Mass", "mass", curves.mass);
+  for (const std::string_view name : kCurveNames) {
+    std::string label(name);
+    label[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(label[0])));
+    if (name == "color")
+      colorCurveRows(curves, demo, ui);
+    else
+      row(label.c_str(), std::string(name), curveOf(name, curves));
+  }
 }
 
 void brushFrame(Demo& demo, UiState& ui) {

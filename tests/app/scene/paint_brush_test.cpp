@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "app/files/errors.h"
 #include "app/files/image_io.h"
@@ -25,6 +26,7 @@ app::Demo open(app::Scene scene) {
 // A stroke on the crown's hair of the first character.
 app::Request paintOf(const std::string& field, double value, double radius = 0.08) {
   app::PaintSample sample{field, sim::Vec3(0.05, 0.17, 0), radius, 0.8, 1, true, value};
+  sample.color = {value, value, value};
   return {Ask::kPaint, field, app::paintText(sample)};
 }
 
@@ -45,13 +47,17 @@ double lengthOf(const app::Demo& demo) {
 }
 
 std::string whitePicture() {
-  return app::pictureText({4, 2, std::vector<float>(8, 1)});
+  return app::pictureText(app::FieldMap{4, 2, std::vector<float>(8, 1)});
 }
 
 TEST(PaintBrush, ASampleReadsBackToTheSameBits) {
   app::PaintSample sample{"mass", sim::Vec3(0.1, -1.0 / 3, 2e-17), 0.0123456789, 1.0 / 7, 2.5, true, 0.3};
   EXPECT_EQ(app::paintText(app::parsePaint("mass", app::paintText(sample))), app::paintText(sample));
   EXPECT_THROW(app::parsePaint("colour", app::paintText(sample)), app::InputError);
+  EXPECT_THROW(app::parsePaint("color", app::paintText(sample)), app::InputError) << "of one channel";
+  app::PaintSample dye{"color", sample.at, 0.01, 1, 1, false, 0, {0.1, 1.0 / 3, 1}};
+  EXPECT_EQ(app::paintText(app::parsePaint("color", app::paintText(dye))), app::paintText(dye));
+  EXPECT_THROW(app::parsePaint("mass", app::paintText(dye)), app::InputError) << "of three channels";
   for (const char* text : {"", "1 2 3", "0 0 0 9 1 1 0 0", "0 0 0 0.1 1 1 0 2", "0 0 0 0.1 nan 1 0 0"})
     EXPECT_THROW(app::parsePaint("mass", text), app::InputError) << text;
 }
@@ -65,19 +71,45 @@ TEST(PaintBrush, APictureInTextReadsBackToTheSameGreys) {
     for (std::size_t k = 0; k < map.value.size(); ++k) EXPECT_NEAR(back.value[k], map.value[k], 1e-6);
   }
   EXPECT_THROW(app::readFieldMap("data:image/png;base64,????"), app::InputError);
+  const app::FieldMap red{2, 1, {0.2f, 1}}, blue{2, 1, {0, 0.6f}};
+  const app::ColorMap color = app::readColorMap(app::pictureText(app::ColorMap{red, red, blue}));
+  EXPECT_EQ(color[1].value, red.value);
+  EXPECT_EQ(color[2].value, blue.value);
+}
+
+TEST(PaintBrush, SharesOfLightAndPicturesGoForthAndBack) {
+  EXPECT_EQ(app::linearShare(1), 1) << "white changes no bit";
+  for (const double value : {0.0, 0.02, 0.3, 0.99})
+    EXPECT_NEAR(app::pictureValue(app::linearShare(value)), value, 1e-9);
 }
 
 TEST(PaintBrush, WhiteFieldsAndCurvesOfOneGiveTheScalarsResultToTheBit) {
   app::Demo plain = open(test::smallScene("walk.bvh", 0.3));
   app::Scene scene = test::smallScene("walk.bvh", 0.3);
   for (const std::string_view name : app::kFieldNames) *app::findMap(name, scene.characters[0].maps) = whitePicture();
-  scene.characters[0].curves = {{1, 1, 1}, {1, 1}};
+  for (const std::string_view name : app::kCurveNames)
+    app::setCurve(std::string(name), name == "color" ? "#ffffff,1" : "1,1,1", scene.characters[0].curves);
   app::Demo painted = open(std::move(scene));
   frames(20, plain);
-  painted.requests = {paintOf("stiffness", 1), paintOf("mass", 1)};
+  painted.requests = {paintOf("stiffness", 1), paintOf("mass", 1), paintOf("bend", 1), paintOf("color", 1),
+                      paintOf("curl", 1)};
   frames(20, painted);
   EXPECT_FALSE(painted.message_is_fault) << painted.message;
   EXPECT_EQ(app::stateHash(plain), app::stateHash(painted));
+  const app::PaintedLook& look = painted.actors[0].haircut->look_shares;
+  EXPECT_TRUE(look.roots.empty() && look.along.empty()) << "the renderer is given nothing";
+}
+
+TEST(PaintBrush, AUniformCurveOfBendIsTheParameter) {
+  app::Scene half = test::smallScene("walk.bvh", 0.3), curve = half;
+  half.sim.bend *= 0.5;
+  curve.characters[0].curves.bend = {0.5, 0.5};
+  app::Demo one = open(std::move(half)), other = open(std::move(curve));
+  frames(10, one), frames(10, other);
+  double apart = 0;
+  for (std::size_t v = 0; v < one.actors[0].hair.positions.size(); ++v)
+    apart = std::max(apart, (one.actors[0].hair.positions[v] - other.actors[0].hair.positions[v]).norm());
+  EXPECT_LT(apart, 1e-9) << "a power of two";
 }
 
 TEST(PaintBrush, AUniformCurveIsAsMuchAsTheParameter) {
@@ -113,6 +145,17 @@ TEST(PaintBrush, EveryFieldIsPaintedAndUndone) {
     if (field == "stiffness") {
       EXPECT_LT(*std::ranges::min_element(cut.shares.stiffness), 0.4f);
     }
+    if (field == "bend") {
+      EXPECT_LT(*std::ranges::min_element(cut.shares.bend), 0.4f);
+      EXPECT_TRUE(cut.shares.stiffness.empty());
+    }
+    EXPECT_EQ(cut.look_shares.roots.empty(), !app::isOfLook(field)) << field;
+    if (app::isOfLook(field)) {
+      const auto shown = [&](const render::LookShare& share) {
+        return std::min({share.width, share.clump, share.curl, share.roughness, share.color[2]});
+      };
+      EXPECT_LT(std::ranges::min(cut.look_shares.roots | std::views::transform(shown)), 0.5f) << field;
+    }
     if (field == "mass") {
       EXPECT_LT(*std::ranges::min_element(cut.shares.mass), 0.5f);
     }
@@ -127,7 +170,8 @@ TEST(PaintBrush, EveryFieldIsPaintedAndUndone) {
     app::advanceFrame(demo, 0, {});
     EXPECT_EQ(app::stateHash(demo), before) << field;
     EXPECT_EQ(demo.actors[0].spec.maps, app::FieldFiles{});
-    EXPECT_TRUE(demo.actors[0].haircut->shares.stiffness.empty() && demo.actors[0].haircut->shares.mass.empty());
+    EXPECT_EQ(demo.actors[0].haircut->shares, app::PaintedShares{});
+    EXPECT_TRUE(demo.actors[0].haircut->look_shares.roots.empty());
     demo.requests = {{Ask::kRedo, "", "", 1}};
     frames(10, demo);
     EXPECT_EQ(demo.actors[0].spec.maps, maps) << field;
@@ -154,12 +198,41 @@ TEST(PaintBrush, WhatCannotBePaintedIsToldAndStays) {
   told({Ask::kCurve, "stiffness", "1,x"}, "no list of shares");
   told({Ask::kCurve, "stiffness", "0"}, "no list of shares");
   told({Ask::kCurve, "length", "1"}, "no field");
+  told({Ask::kCurve, "width", "#ffffff"}, "no list of shares");
+  told({Ask::kCurve, "color", "#fffffg"}, "no list of shares");
+  told({Ask::kPaint, "color", "0 0.2 0 0.03 1 1 0 0"}, "not ten numbers");
+  told({Ask::kMap, "curl", "walk.bvh"}, "walk.bvh");
+}
+
+TEST(PaintBrush, CurvesOfTheLookAreDrawnAndUndone) {
+  app::Demo demo = open(test::smallScene("walk.bvh", 0.3));
+  frames(2, demo);
+  const std::string before = app::stateHash(demo);
+  demo.requests = {{Ask::kCurve, "color", "#ffffff,#ff0000"}, {Ask::kCurve, "curl", "0.5,2"}};
+  app::advanceFrame(demo, 0, {});
+  ASSERT_FALSE(demo.message_is_fault) << demo.message;
+  const std::vector<render::LookShare>& along = demo.actors[0].haircut->look_shares.along;
+  ASSERT_FALSE(along.empty());
+  EXPECT_EQ(along.front().color, (render::Float3{1, 1, 1}));
+  EXPECT_EQ(along.back().color, (render::Float3{1, 0, 0}));
+  EXPECT_FLOAT_EQ(along.front().curl, 0.5f);
+  EXPECT_FLOAT_EQ(along.back().curl, 2);
+  EXPECT_EQ(app::stateHash(demo), before) << "what is drawn alone moves nothing";
+  demo.requests = {{Ask::kUndo, "", "", 2}};
+  app::advanceFrame(demo, 0, {});
+  EXPECT_TRUE(demo.actors[0].haircut->look_shares.along.empty());
+  EXPECT_EQ(demo.actors[0].spec.curves, app::FieldCurves{});
 }
 
 TEST(PaintBrush, ASceneAndAProjectKeepIt) {
   app::Demo demo = open(test::smallScene("walk.bvh", 0.2));
-  demo.requests = {
-      paintOf("stiffness", 0), paintOf("length", 0.3), paintOf("mass", 0.4), {Ask::kCurve, "mass", "1,0.5"}};
+  demo.requests = {paintOf("stiffness", 0),
+                   paintOf("length", 0.3),
+                   paintOf("mass", 0.4),
+                   {Ask::kCurve, "mass", "1,0.5"},
+                   paintOf("color", 0.4),
+                   paintOf("bend", 0.3),
+                   {Ask::kCurve, "color", "1,#804020"}};
   frames(5, demo);
   ASSERT_FALSE(demo.message_is_fault) << demo.message;
   const app::Scene back = app::readScene(app::writeScene(demo.scene), "scene.json");
