@@ -28,7 +28,7 @@ struct AskName {
   std::string_view name;
 };
 // What can be recorded: all but the requests that write files.
-constexpr std::array<AskName, 50> kAskNames{{{Ask::kSetParam, "set"},
+constexpr std::array<AskName, 52> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kPause, "pause"},
                                              {Ask::kPauseMotion, "pause-motion"},
                                              {Ask::kSingleStep, "single-step"},
@@ -57,6 +57,8 @@ constexpr std::array<AskName, 50> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kDeadline, "deadline"},
                                              {Ask::kSkip, "skip"},
                                              {Ask::kBrush, "brush"},
+                                             {Ask::kMove, "move"},
+                                             {Ask::kMesh, "mesh"},
                                              {Ask::kOpenProject, "project-file"},
                                              {Ask::kRewind, "rewind"},
                                              {Ask::kKeepView, "keep-view"},

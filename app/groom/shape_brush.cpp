@@ -269,11 +269,73 @@ int ShapeBrushes::apply(const Brush& brush, const sim::HairMesh& mesh, std::span
   }
   const bool scales = brush.tool == BrushTool::kCut || brush.tool == BrushTool::kGrow;
   if (!scales) keepLengths(mesh);
+  return finish(mesh, body, positions);
+}
+
+int ShapeBrushes::finish(const sim::HairMesh& mesh, const std::function<double(const Vec3&)>& body,
+                         std::vector<Vec3>& positions) {
+  const std::vector<Vec3>& x = mesh.shape.positions;
   positions.assign(x.begin(), x.end());
   limit(mesh, body, positions);
   int moved = 0;
   for (std::size_t v = 0; v < x.size(); ++v) moved += (positions[v] - x[v]).squaredNorm() > kMoved * kMoved;
   return moved;
+}
+
+std::vector<double> reachAround(std::span<const int> led, std::span<const Vec3> seen, double radius, double falloff) {
+  std::vector<double> reach(seen.size(), 0);
+  Brush brush;
+  brush.radius = radius, brush.falloff = falloff;
+  for (std::size_t v = 0; v < seen.size() && radius > 0; ++v) {
+    double least = INFINITY;
+    for (const int l : led) {
+      const double apart = (seen[v] - seen[static_cast<std::size_t>(l)]).squaredNorm();
+      if (apart < least) least = apart, brush.at = seen[static_cast<std::size_t>(l)];
+    }
+    if (least < radius * radius) reach[v] = brushReach(brush, seen[v]);
+  }
+  for (const int l : led) reach[static_cast<std::size_t>(l)] = 1;
+  return reach;
+}
+
+namespace {
+
+// The vertices of the same layers nearest to where a mirror shows those that are led, at rest.
+std::vector<int> acrossMirror(const HairMove& move, const sim::HairMesh& mesh) {
+  const std::vector<Vec3>& x = mesh.shape.positions;
+  std::vector<int> across;
+  for (const int v : move.vertices) {
+    const Vec3 place = mirrored(x[static_cast<std::size_t>(v)], *move.mirror);
+    int nearest = -1;
+    double least = INFINITY;
+    for (int u = 0; u < mesh.vertexCount(); ++u) {
+      if (mesh.layer_of[static_cast<std::size_t>(u)] != mesh.layer_of[static_cast<std::size_t>(v)]) continue;
+      const double apart = (x[static_cast<std::size_t>(u)] - place).squaredNorm();
+      if (apart < least) least = apart, nearest = u;
+    }
+    if (std::ranges::find(across, nearest) == across.end()) across.push_back(nearest);
+  }
+  return across;
+}
+
+}  // namespace
+
+int ShapeBrushes::move(const HairMove& move, const sim::HairMesh& mesh, std::span<const Vec3> seen,
+                       const std::function<double(const Vec3&)>& body, std::vector<Vec3>& positions) {
+  const std::vector<Vec3>& x = mesh.shape.positions;
+  wanted_.assign(x.begin(), x.end());
+  const std::vector<double> here = reachAround(move.vertices, seen, move.radius, move.falloff);
+  std::vector<double> there;
+  if (move.mirror) there = reachAround(acrossMirror(move, mesh), seen, move.radius, move.falloff);
+  const Vec3 other(-move.along.x(), move.along.y(), move.along.z());
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    if (mesh.isRoot(static_cast<int>(v))) continue;
+    const double a = here[v], b = there.empty() ? 0 : there[v];
+    const double free = move.frozen.empty() ? 1 : 1 - static_cast<double>(move.frozen[v]);
+    // What both sides lead goes between the two ways.
+    if (a > 0 || b > 0) wanted_[v] += free / std::max(1.0, a + b) * (a * move.along + b * other);
+  }
+  return finish(mesh, body, positions);
 }
 
 }  // namespace app

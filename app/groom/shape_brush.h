@@ -48,6 +48,18 @@ struct Brush {
 // How much a brush reaches of a vertex seen at a place: 0 outside, 1 in the middle.
 double brushReach(const Brush& brush, const Vec3& seen);
 
+// Vertices that a hand leads, and the hair around them that follows. Lengths follow too.
+struct HairMove {
+  std::vector<int> vertices;          // that go all of the way
+  Vec3 along = Vec3::Zero();          // m
+  double radius = 0.04, falloff = 1;  // of the hair around, as a brush's
+  std::optional<double> mirror;       // x of the plane across which hair goes the mirrored way
+  std::span<const float> frozen{};    // as a brush's
+};
+
+// How much each vertex follows those that are led: 1 of these, else what a brush reaches about the nearest of them.
+std::vector<double> reachAround(std::span<const int> led, std::span<const Vec3> seen, double radius, double falloff);
+
 class ShapeBrushes {
  public:
   explicit ShapeBrushes(const sim::HairMesh& mesh);
@@ -57,6 +69,10 @@ class ShapeBrushes {
   // moves: 0 where it reaches none, or where all that it reaches is as short, as long or as close as it may be.
   int apply(const Brush& brush, const sim::HairMesh& mesh, std::span<const Vec3> seen,
             const std::function<double(const Vec3&)>& body, std::vector<Vec3>& positions);
+
+  // The same of a move.
+  int move(const HairMove& move, const sim::HairMesh& mesh, std::span<const Vec3> seen,
+           const std::function<double(const Vec3&)>& body, std::vector<Vec3>& positions);
 
  private:
   std::vector<int> neighbour_first_, neighbours_;  // of each vertex: within its layer, and in its column
@@ -73,6 +89,7 @@ class ShapeBrushes {
   void aboutHair(BrushTool tool, const sim::HairMesh& mesh);
   void scaleColumns(const Brush& brush, const sim::HairMesh& mesh, std::span<const Vec3> seen);
   void keepLengths(const sim::HairMesh& mesh);
+  int finish(const sim::HairMesh& mesh, const std::function<double(const Vec3&)>& body, std::vector<Vec3>& positions);
   void limit(const sim::HairMesh& mesh, const std::function<double(const Vec3&)>& body, std::vector<Vec3>& positions);
 };
 

@@ -239,6 +239,20 @@ const HaircutPair* coarsePair(const Actor& actor, Resolution resolution, AssetCa
   return asset_cache.pairs.back().get();
 }
 
+void wearHaircut(const Haircut& haircut, Actor& actor, AssetCache& asset_cache) {
+  actor.haircut = &haircut;
+  actor.scalp = &coverScalp(*actor.body, haircut, asset_cache);
+  actor.context = std::make_unique<sim::StepContext>(haircut.mesh, now);
+  actor.context->refreshGradually(true);
+  actor.coarse = {};
+  actor.detail.coarse.reset();
+  followScalp(actor, haircut, actor.roots);
+  actor.error_meter = {};
+  actor.sleep = {};
+  ++actor.layout_revision;
+  actor.shown_still = false;
+}
+
 void tidy(const std::vector<Actor>& actors, AssetCache& asset_cache) {
   const auto worn = [&](const auto& entry) {
     return std::any_of(actors.begin(), actors.end(), [&](const Actor& actor) {

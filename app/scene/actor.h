@@ -64,6 +64,7 @@ struct Haircut {
   std::vector<float> rest;  // positions of the rest shape, three floats a vertex
   // Of hair that brushes have reshaped, which one actor alone wears.
   bool edited = false;
+  bool remeshed = false;      // its structure is another than style or file, ties and attachments make it
   std::vector<float> frozen;  // per vertex: share of a brush's way that it does not go; empty: none
   std::optional<sim::RestShape> reshape;
   mutable std::optional<ShapeBrushes> brushes;  // scratch
@@ -173,6 +174,9 @@ Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, AssetCa
 // The actor's style at low or minimal resolution with the transfers to it and back, made on first use; null
 // for hair from a file and for hair that is already as coarse.
 const HaircutPair* coarsePair(const Actor& actor, Resolution resolution, AssetCache& asset_cache);
+
+// The actor wears another haircut from now on. Its hair must be of that mesh already; what moves goes on moving.
+void wearHaircut(const Haircut& haircut, Actor& actor, AssetCache& asset_cache);
 
 // Drops what no actor wears.
 void tidy(const std::vector<Actor>& actors, AssetCache& asset_cache);

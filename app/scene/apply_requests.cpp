@@ -13,6 +13,7 @@
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
 #include "app/scene/groom_brush.h"
+#include "app/scene/mesh_change.h"
 #include "app/scene/paint_brush.h"
 #include "app/scene/present_scene.h"
 #include "app/scene/project.h"
@@ -381,6 +382,10 @@ constexpr Action kActions[] = {
     {Ask::kOpenCache, [](const Request& request, Demo& demo) { openCache(request.text, demo); }},
     {Ask::kBrush, [](const Request& request,
                      Demo& demo) { applyBrush(parseBrush(request.name, request.text), demo.selected, demo); }},
+    {Ask::kMove,
+     [](const Request& request, Demo& demo) { applyMove(parseMove(request.name, request.text), demo.selected, demo); }},
+    {Ask::kMesh,
+     [](const Request& request, Demo& demo) { applyMeshChange(request.name, request.text, demo.selected, demo); }},
     {Ask::kSaveProject,
      [](const Request& request, Demo& demo) {
        saveProject(request.text, demo);

@@ -15,6 +15,7 @@
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
 #include "app/scene/groom_brush.h"
+#include "app/scene/mesh_change.h"
 #include "app/scene/present_scene.h"
 
 namespace app {
@@ -76,7 +77,8 @@ namespace {
 
 bool sameHair(const Demo& a, const Demo& b) {
   return std::ranges::equal(a.actors, b.actors, [](const Actor& one, const Actor& other) {
-    return one.haircut->mesh.vertexCount() == other.haircut->mesh.vertexCount() && one.spec.hair == other.spec.hair &&
+    const bool as_many = one.haircut->mesh.vertexCount() == other.haircut->mesh.vertexCount();
+    return (as_many || one.haircut->remeshed) && one.spec.hair == other.spec.hair &&
            one.spec.style == other.spec.style && one.spec.motion == other.spec.motion;
   });
 }
@@ -85,7 +87,9 @@ bool sameHair(const Demo& a, const Demo& b) {
 void catchUp(const Demo& demo, Demo& other) {
   if (sameHair(demo, other)) {
     for (std::size_t i = 0; i < demo.actors.size(); ++i) {
-      if (demo.actors[i].haircut->edited)
+      if (demo.actors[i].haircut->remeshed)
+        bringBackShape(demo.actors[i].haircut->mesh.shape, static_cast<int>(i), other);
+      else if (demo.actors[i].haircut->edited)
         reshapeHair(demo.actors[i].haircut->mesh.shape.positions, static_cast<int>(i), other);
     }
     return restoreDemoState(demoStateBytes(demo), "comparison", true, other);

@@ -77,6 +77,7 @@ std::string identity(const Actor& actor) {
                          : name(spec.hair));
   if (!spec.parts.empty()) text += ", parts " + name(spec.parts);
   if (!spec.ties.empty()) text += ", tied";
+  if (actor.haircut->remeshed) text += ", a mesh of its own";
   for (const AttachmentSpec& one : spec.attachments) text += ", wears " + name(one.file);
   if (spec.position != Vec3::Zero() || spec.heading != 0) {
     text += ", at";

@@ -10,6 +10,7 @@
 #include "app/files/recording.h"
 #include "app/scene/demo.h"
 #include "app/scene/groom_brush.h"
+#include "app/scene/mesh_change.h"
 #include "app/scene/present_scene.h"
 #include "sim/field_text.h"
 
@@ -41,6 +42,8 @@ constexpr EditKind kEditKinds[] = {{Ask::kSetParam, kSettings, true, ""},
                                    {Ask::kGoToView, kOfView, false, "Kept view"},
                                    {Ask::kLens, kOfView, true, "Lens"},
                                    {Ask::kBrush, kOfHair | kOfShape, true, ""},
+                                   {Ask::kMove, kOfHair | kOfShape, true, "move"},
+                                   {Ask::kMesh, kOfHair | kOfShape, false, ""},
                                    {Ask::kPaint, kOfHair | kOfShape, true, "Paint"},
                                    {Ask::kCurve, kOfHair | kOfShape, true, "Curve of"},
                                    {Ask::kReset, kOfHair, false, "Hair to rest"},
@@ -67,13 +70,16 @@ const EditKind* kindOf(Ask what) {
 }
 
 std::string spaced(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == '_' || c == '-'; }, ' ');
   return name;
 }
 
 std::string titleOf(const Request& request, const EditKind& kind) {
   if (request.what == Ask::kSetParam) return spaced(request.name).append(" ").append(request.text);
   if (request.what == Ask::kBrush) return request.name;
+  if (request.what == Ask::kMove) return kind.title + (" " + request.name);
+  if (request.what == Ask::kMesh) return spaced(request.name);
   std::string title = kind.title;
   if (!request.name.empty() && request.what != Ask::kMotionFile) title.append(" ").append(request.name);
   const bool sample = request.what == Ask::kPaint;
@@ -96,9 +102,11 @@ EditSide sideOf(const Demo& demo, int reach) {
   if (reach & kOfView) side.camera = demo.camera;
   if (!(reach & (kOfHair | kOfMotion))) return side;
   for (const Actor& actor : demo.actors) {
-    ActorMoment moment{scalpToWorld(actor.body->character, actor.pose), actor.hair, {}, {}, actor.haircut->frozen};
+    const Haircut& haircut = *actor.haircut;
+    const Rigid head = scalpToWorld(actor.body->character, actor.pose);
+    ActorMoment moment{head, actor.hair, {}, {}, haircut.remeshed, haircut.frozen};
     if (reach & kOfMotion) moment.playback = actor.playback;
-    if (reach & kOfShape || actor.haircut->edited) moment.shape = actor.haircut->mesh.shape.positions;
+    if (reach & kOfShape || haircut.edited) moment.shape = haircut.mesh.shape;
     side.moments.push_back(std::move(moment));
   }
   return side;
@@ -188,17 +196,24 @@ void bringBack(const EditSide& side, Demo& demo) {
     demo.paused = paused;
   } else {
     for (std::size_t i = 0; i < demo.actors.size(); ++i) {
+      const Haircut& worn = *demo.actors[i].haircut;
+      const ActorMoment* moment = side.moments.empty() ? nullptr : &side.moments[i];
       const bool another_shape =
-          demo.actors[i].haircut->edited && !side.moments.empty() && side.moments[i].shape.empty();
+          moment && ((worn.edited && moment->shape.positions.empty()) || (worn.remeshed && !moment->remeshed));
       if (another_shape || !sameCast(side.cast[i], demo.actors[i].spec))
-        castAnew(side.cast[i], side.moments.empty() ? nullptr : &side.moments[i], static_cast<int>(i), demo);
+        castAnew(side.cast[i], moment, static_cast<int>(i), demo);
     }
   }
   bringBackSettings(side, demo);
   for (std::size_t i = 0; i < side.moments.size(); ++i) {
     const ActorMoment& moment = side.moments[i];
-    if (moment.hair.positions.size() != demo.actors[i].hair.positions.size()) continue;
-    if (!moment.shape.empty()) reshapeHair(moment.shape, static_cast<int>(i), demo);
+    if (moment.remeshed) {
+      bringBackShape(moment.shape, static_cast<int>(i), demo);
+    } else if (moment.hair.positions.size() != demo.actors[i].hair.positions.size()) {
+      continue;
+    } else if (!moment.shape.positions.empty()) {
+      reshapeHair(moment.shape.positions, static_cast<int>(i), demo);
+    }
     if (moment.frozen != demo.actors[i].haircut->frozen) freezeHair(moment.frozen, static_cast<int>(i), demo);
     bringBack(moment, demo.actors[i]);
   }

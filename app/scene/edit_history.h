@@ -14,6 +14,7 @@
 #include "app/scene/camera.h"
 #include "app/scene/debug_views.h"
 #include "app/scene/request.h"
+#include "sim/mesh/hair_mesh.h"
 #include "sim/mesh/hair_state.h"
 
 namespace app {
@@ -25,7 +26,8 @@ struct ActorMoment {
   Rigid head = Rigid::Identity();  // scalp frame to world
   sim::HairState hair;
   std::optional<Playback> playback;
-  std::vector<Vec3> shape;  // rest positions of hair that brushes have reshaped or are about to
+  sim::HairMeshShape shape;  // of hair that brushes have reshaped or are about to; else without positions
+  bool remeshed = false;     // that shape has a structure of its own
   std::vector<float> frozen;
 };
 

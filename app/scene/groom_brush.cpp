@@ -15,11 +15,6 @@ namespace {
 
 constexpr double kFarthest = 100;  // m
 
-std::string fresh(const std::string& key) {
-  static std::atomic<int> next{1};
-  return key.substr(0, key.find("|edited")) + "|edited" + std::to_string(next++);
-}
-
 bool wornByOthers(const Actor& actor, const Demo& demo) {
   const auto wears = [&](const Actor& one) { return one.haircut == actor.haircut; };
   return std::ranges::count_if(demo.actors, wears) > 1 ||
@@ -28,22 +23,27 @@ bool wornByOthers(const Actor& actor, const Demo& demo) {
 
 }  // namespace
 
+std::string freshKey(const std::string& key) {
+  static std::atomic<int> next{1};
+  return key.substr(0, key.find("|edited")) + "|edited" + std::to_string(next++);
+}
+
 Haircut& ownHaircut(Actor& actor, Demo& demo) {
   AssetCache& asset_cache = demo.asset_cache;
   const auto found =
       std::ranges::find_if(asset_cache.haircuts, [&](const auto& one) { return one.get() == actor.haircut; });
   Haircut& worn = **found;
   if (!wornByOthers(actor, demo)) {
-    worn.key = fresh(worn.key);
+    worn.key = freshKey(worn.key);
     return worn;
   }
   auto own = std::make_unique<Haircut>();
-  own->key = fresh(worn.key);
+  own->key = freshKey(worn.key);
   own->id = worn.id;
   own->mesh = worn.mesh;
   own->faces = worn.faces;
   own->rest = worn.rest;
-  own->edited = worn.edited;
+  own->edited = worn.edited, own->remeshed = worn.remeshed;
   own->ties = worn.ties;
   own->tied = worn.tied;
   own->covered = worn.covered;
@@ -177,13 +177,25 @@ void paintFrozen(const Brush& brush, std::span<const Vec3> seen, int index, Demo
 
 }  // namespace
 
+std::vector<Vec3> seenFromScalp(const Actor& actor) {
+  const Rigid to_scalp = scalpToWorld(actor.body->character, actor.pose).inverse(Eigen::Isometry);
+  std::vector<Vec3> seen;
+  seen.reserve(actor.hair.positions.size());
+  for (const Vec3& p : actor.hair.positions) seen.push_back(to_scalp * p);
+  return seen;
+}
+
+ShapeBrushes& handsOn(const Actor& actor) {
+  if (!actor.body->distance) actor.body->distance = restBodyDistance(actor.body->character);
+  if (!actor.haircut->brushes) actor.haircut->brushes.emplace(actor.haircut->mesh);
+  return *actor.haircut->brushes;
+}
+
 void applyBrush(const BrushSample& sample, int index, Demo& demo) {
   const Actor& actor = demo.actors[static_cast<std::size_t>(index)];
   const sim::HairMesh& mesh = actor.haircut->mesh;
-  const Rigid to_scalp = scalpToWorld(actor.body->character, actor.pose).inverse(Eigen::Isometry);
-  std::vector<Vec3> seen, positions;
-  seen.reserve(actor.hair.positions.size());
-  for (const Vec3& p : actor.hair.positions) seen.push_back(to_scalp * p);
+  const std::vector<Vec3> seen = seenFromScalp(actor);
+  std::vector<Vec3> positions;
   Brush brush;
   brush.tool = sample.tool;
   brush.at = sample.at, brush.along = sample.along;
@@ -195,9 +207,7 @@ void applyBrush(const BrushSample& sample, int index, Demo& demo) {
   if (sample.tool == BrushTool::kFreeze || sample.tool == BrushTool::kThaw)
     return paintFrozen(brush, seen, index, demo);
   brush.frozen = actor.haircut->frozen;
-  if (!actor.body->distance) actor.body->distance = restBodyDistance(actor.body->character);
-  if (!actor.haircut->brushes) actor.haircut->brushes.emplace(mesh);
-  const int moved = actor.haircut->brushes->apply(brush, mesh, seen, actor.body->distance, positions);
+  const int moved = handsOn(actor).apply(brush, mesh, seen, actor.body->distance, positions);
   if (moved > 0) reshapeHair(positions, index, demo);
 }
 

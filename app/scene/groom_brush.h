@@ -38,6 +38,13 @@ BrushSample parseBrush(const std::string& tool, const std::string& text);
 // then nothing has changed.
 void applyBrush(const BrushSample& sample, int actor, Demo& demo);
 
+// The moving hair in the scalp's frame, m; and what shapes it, with the distance to the body, made on first use.
+std::vector<Vec3> seenFromScalp(const Actor& actor);
+ShapeBrushes& handsOn(const Actor& actor);
+
+// Of a haircut that was changed by hand; never the same twice.
+std::string freshKey(const std::string& key);
+
 // Gives the actor's hair other painted shares. What moves goes on moving.
 void repaintHair(const PaintedShares& shares, int actor, Demo& demo);
 

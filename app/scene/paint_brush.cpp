@@ -137,6 +137,8 @@ void repaintLook(const FieldFiles& maps, const FieldCurves& curves, int index, D
 void repaintLength(const FieldMap& map, int index, Demo& demo) {
   const Actor& actor = demo.actors[static_cast<std::size_t>(index)];
   const Haircut& worn = *actor.haircut;
+  if (worn.remeshed)
+    throw InputError("", "length", "of hair whose mesh was changed is not painted", "use the brushes cut and grow");
   if (worn.unpainted.empty())
     throw InputError("", "length", "of hair that is tied or under an attachment is not painted", "take that off first");
   if (reshapedByHand(worn))

@@ -46,17 +46,30 @@ std::optional<std::array<double, 2>> pixelOf(const Vec3& point, double width, do
   return std::array{0.5 * width + scale * way.dot(eye.right), 0.5 * height - scale * way.dot(eye.up)};
 }
 
-std::optional<Vec3> pickHair(const Ray& ray, const Actor& actor) {
+Vec3 pointInPlane(const Ray& ray, const Vec3& place, const Vec3& facing) {
+  const double slope = ray.along.dot(facing);
+  return std::abs(slope) < 1e-6 ? place : Vec3(ray.from + (place - ray.from).dot(facing) / slope * ray.along);
+}
+
+std::optional<HairHit> pickHairFace(const Ray& ray, const Actor& actor) {
   const std::vector<Vec3>& x = actor.hair.positions;
+  const std::vector<sim::ExternalFace>& faces = actor.haircut->mesh.external_faces;
   double nearest = INFINITY;
-  for (const sim::ExternalFace& face : actor.haircut->mesh.external_faces) {
+  int met = 0;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const sim::ExternalFace& face = faces[f];
     for (int k = 2; k < face.corner_count; ++k) {
       const double distance = meet(ray, x[face.v[0]], x[face.v[k - 1]], x[face.v[k]]);
-      if (distance > 0 && distance < nearest) nearest = distance;
+      if (distance > 0 && distance < nearest) nearest = distance, met = static_cast<int>(f);
     }
   }
   if (!std::isfinite(nearest)) return {};
-  return ray.from + nearest * ray.along;
+  return HairHit{ray.from + nearest * ray.along, met};
+}
+
+std::optional<Vec3> pickHair(const Ray& ray, const Actor& actor) {
+  const std::optional<HairHit> hit = pickHairFace(ray, actor);
+  return hit ? std::optional<Vec3>(hit->at) : std::nullopt;
 }
 
 }  // namespace app

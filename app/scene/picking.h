@@ -19,7 +19,15 @@ Ray rayThrough(double x, double y, double width, double height, const Camera& ca
 // The pixel of a point (m, world); nothing behind the eye.
 std::optional<std::array<double, 2>> pixelOf(const Vec3& point, double width, double height, const Camera& camera);
 
-// Where a ray meets the outside of the actor's hair first.
+// The ray's point in the plane through `place` that faces the camera; `place` where there is none.
+Vec3 pointInPlane(const Ray& ray, const Vec3& place, const Vec3& facing);
+
+// Where a ray meets the outside of the actor's hair first, and which external face is there.
+struct HairHit {
+  Vec3 at = Vec3::Zero();
+  int face = 0;
+};
+std::optional<HairHit> pickHairFace(const Ray& ray, const Actor& actor);
 std::optional<Vec3> pickHair(const Ray& ray, const Actor& actor);
 
 }  // namespace app

@@ -3,6 +3,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -16,6 +17,7 @@
 #include "app/files/text_file.h"
 #include "app/scene/demo_state.h"
 #include "app/scene/groom_brush.h"
+#include "app/scene/mesh_change.h"
 #include "app/scene/present_scene.h"
 #include "sim/mesh/field_bytes.h"
 
@@ -41,8 +43,15 @@ std::string textOf(const sim::Bytes& bytes) {
 
 sim::Bytes binaryOf(const Demo& demo) {
   sim::Bytes bytes;
-  for (const Actor& actor : demo.actors)
-    sim::writeBytes(actor.haircut->edited ? actor.haircut->mesh.shape.positions : std::vector<Vec3>(), bytes);
+  for (const Actor& actor : demo.actors) {
+    const sim::HairMeshShape& shape = actor.haircut->mesh.shape;
+    sim::writeBytes(actor.haircut->edited ? shape.positions : std::vector<Vec3>(), bytes);
+    sim::writeBytes(actor.haircut->remeshed ? shape.column_first : std::vector<int>(), bytes);
+    std::vector<std::array<int, 5>> faces;  // corner count and columns
+    for (const sim::RootFace& face : shape.root_faces)
+      faces.push_back({face.corner_count, face.columns[0], face.columns[1], face.columns[2], face.columns[3]});
+    sim::writeBytes(actor.haircut->remeshed ? faces : std::vector<std::array<int, 5>>(), bytes);
+  }
   const std::string state = demoStateBytes(demo);
   sim::writeBytes(std::vector<char>(state.begin(), state.end()), bytes);
   return bytes;
@@ -60,6 +69,26 @@ std::string binaryNamedBy(const std::string& file) {
 
 std::string besides(const std::string& file, const std::string& name) {
   return (fs::path(file).parent_path() / fs::path(name).filename()).string();
+}
+
+// The shape of one character's hair, where brushes have made it another.
+void takeShape(sim::ByteReader& from, double version, const std::string& file, int index, Demo& demo) {
+  sim::HairMeshShape shape;
+  std::vector<std::array<int, 5>> faces;
+  std::vector<int> columns;
+  sim::readBytes(from, shape.positions);
+  if (version > 1) {
+    sim::readBytes(from, columns);
+    sim::readBytes(from, faces);
+  }
+  if (shape.positions.empty()) return;
+  const std::size_t vertices = demo.actors[static_cast<std::size_t>(index)].hair.positions.size();
+  if (!from.complete || (columns.empty() && shape.positions.size() != vertices))
+    throw InputError(file, "", "does not fit the scene", "save the project anew");
+  if (columns.empty()) return reshapeHair(shape.positions, index, demo);
+  shape.column_first = columns;
+  for (const auto& [corners, a, b, c, d] : faces) shape.root_faces.push_back({corners, {a, b, c, d}});
+  remeshHair(std::move(shape), {}, index, demo);
 }
 
 }  // namespace
@@ -99,14 +128,8 @@ void openProject(const std::string& file, Demo& demo) {
     throw InputError(binary_file, "", "is not the one that " + file + " was saved with", "save the project anew");
   Demo fresh = openScene(readScene(parsed.at("scene").dump(), file), demo.aspect);
   sim::ByteReader from{bytes};
-  for (std::size_t i = 0; i < fresh.actors.size(); ++i) {
-    std::vector<Vec3> shape;
-    sim::readBytes(from, shape);
-    if (shape.empty()) continue;
-    if (!from.complete || shape.size() != fresh.actors[i].hair.positions.size())
-      throw InputError(binary_file, "", "does not fit the scene", "save the project anew");
-    reshapeHair(shape, static_cast<int>(i), fresh);
-  }
+  for (std::size_t i = 0; i < fresh.actors.size(); ++i)
+    takeShape(from, version, binary_file, static_cast<int>(i), fresh);
   std::vector<char> state;
   sim::readBytes(from, state);
   restoreDemoState(std::string(state.begin(), state.end()), binary_file, false, fresh);

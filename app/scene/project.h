@@ -2,8 +2,8 @@
 // the bit where no brush has reshaped the hair, else from the same bits and to rounding afterwards (what a step derives
 // from the rest shape in advance is then made from another one).
 //
-// A project is a JSON file: {"hairmesh-project": 1, "scene": as scene_file.h says, "binary": name, "checksum": text}.
-// The binary beside it holds reshaped rest positions and the state (demo_state.h); it is NAME-CHECKSUM.bin, so that a
+// A project is a JSON file: {"hairmesh-project": 2, "scene": as scene_file.h says, "binary": name, "checksum": text}.
+// The binary beside it holds reshaped rest positions, from version 2 on the structure of hair meshes that were changed, and the state (demo_state.h); it is NAME-CHECKSUM.bin, so that a
 // project that cannot be saved leaves the one that was there with its own.
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace app {
 
-inline constexpr int kProjectVersion = 1;
+inline constexpr int kProjectVersion = 2;
 
 // Throws OutputError; then the project that was there is whole.
 void saveProject(const std::string& file, const Demo& demo);

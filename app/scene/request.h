@@ -43,6 +43,8 @@ enum class Ask {
   kRecordHair,   // value: 1 starts, 0 ends; text: file, or an ending alone for the next free name; empty: a cache
   kOpenCache,    // text: file; the timeline shows it. Empty: it shows what is kept in memory again
   kBrush,        // name: tool, text: a sample of a stroke on the selected character's hair; see groom_brush.h
+  kMove,         // name: element, text: a sample of a drag of what is chosen; see mesh_change.h
+  kMesh,         // name: change of the hair mesh's structure, text: what it is given; see mesh_change.h
   kSaveProject,  // text: file
   kOpenProject,  // text: file
   kRewind,       // value: number of the frame to go back to; see timeline.h

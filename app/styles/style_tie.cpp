@@ -19,7 +19,7 @@ namespace {
 constexpr double kTieFatness = 0.05, kTieGap = 0.003;  // see untangle; m
 constexpr double kFatEnough = 0.012;                   // with less a wider ring is tried
 constexpr double kCoat = 0.010;                        // m over the scalp, half-way to the ring
-constexpr double kStep = 0.01, kTurn = 0.16;           // m; share of a step's heading that gravity takes
+constexpr double kStep = 0.01, kBend = 0.16;           // m; share of a step's heading that gravity takes
 constexpr double kSwell = 1.35, kTaper = 0.7;  // of the ring's radius: the tail's where it is widest, at its end
 constexpr double kShortestTail = 0.08;         // m
 constexpr int kSectors = 24;
@@ -104,7 +104,7 @@ Path Gathering::tail(double length) const {
   for (int k = 0; k < steps; ++k) {
     across = (across - across.dot(heading) * heading).normalized();
     path.at.push_back(p), path.across.push_back(across), path.up.push_back(heading.cross(across));
-    heading = ((1 - kTurn) * heading + kTurn * Vec3(0, -1, 0)).normalized();
+    heading = ((1 - kBend) * heading + kBend * Vec3(0, -1, 0)).normalized();
     p += kStep * heading;
     const double gap = kSwell * tie.radius + kTieGap, near = body(p);
     if (near >= gap || k < 3) continue;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -46,6 +47,13 @@ struct BrushState {
   Vec3 last = Vec3::Zero();                  // m, scalp frame: where combing has come to
 };
 
+// The elements of the hair mesh in a person's hand; radius, falloff and mirror are the brush's.
+struct SelectState {
+  int element = -1;           // of kElementNames; -1: none are chosen
+  std::vector<int> chosen;    // as MoveSample has them
+  std::uint64_t haircut = 0;  // whose they are
+};
+
 // The parameters as a preset left them, to tell whether they have been changed since.
 struct PresetMark {
   std::string file;      // empty: no preset was chosen
@@ -85,6 +93,7 @@ struct UiState {
   std::string offered, to_forget;  // project that an earlier run has left; one that a person does not want
   long scrubbed = -1;              // frame that the timeline is dragged to
   BrushState brush;
+  SelectState select;
   VaryState vary;
   std::vector<AttachmentSpec> worn;  // as their colours are being edited
   bool worn_edited = false;

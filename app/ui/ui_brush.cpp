@@ -24,12 +24,6 @@ Rigid worldToScalp(const Actor& actor) {
   return scalpToWorld(actor.body->character, actor.pose).inverse(Eigen::Isometry);
 }
 
-// The ray's point in the plane through `place` that faces the camera.
-Vec3 inPlane(const Ray& ray, const Vec3& place, const Vec3& facing) {
-  const double slope = ray.along.dot(facing);
-  return std::abs(slope) < 1e-6 ? place : Vec3(ray.from + (place - ray.from).dot(facing) / slope * ray.along);
-}
-
 bool paintsColor(const BrushState& brush) {
   return brush.field >= 0 && kFieldNames[static_cast<std::size_t>(brush.field)] == "color";
 }
@@ -123,7 +117,7 @@ void stroke(const Ray& ray, const std::optional<Vec3>& hit, Demo& demo, BrushSta
     return;
   }
   const Vec3 last = to_scalp.inverse(Eigen::Isometry) * brush.last;
-  const Vec3 now = inPlane(ray, last, viewBack(demo.camera)), way = now - last;
+  const Vec3 now = pointInPlane(ray, last, viewBack(demo.camera)), way = now - last;
   if (way.norm() < kMinWay) return;
   postSample(brush.last, to_scalp.linear() * way, demo, brush);
   brush.last = to_scalp * now;
@@ -140,7 +134,7 @@ void paintRow(UiState& ui) {
     tip("Draws a field over the scalp towards a value, at the roots of the hair within the ring");
     if (pressed < 0) return;
     brush.field = before + pressed;
-    if (brush.field >= 0) brush.tool = -1;
+    if (brush.field >= 0) brush.tool = -1, ui.select.element = -1;
   };
   row({"No paint", "Stiff", "Length", "Density", "Mass"}, -1);
   row({"Bend", "Width", "Clump"}, 4);
@@ -185,14 +179,15 @@ void colorCurveRows(const FieldCurves& curves, Demo& demo, UiState& ui) {
 
 }  // namespace
 
-void brushSection(UiState& ui) {
+void brushSection(Demo& demo, UiState& ui) {
   BrushState& brush = ui.brush;
   const int pressed = segments("brush", {"Off", "Comb", "Cut", "Grow", "Smooth", "Puff"}, brush.tool + 1, ui);
-  if (pressed >= 0) brush.tool = pressed - 1, brush.field = -1;
+  if (pressed >= 0) brush.tool = pressed - 1, brush.field = -1, ui.select.element = -1;
   const int second = segments("brush", {"Pinch", "Spread", "Push", "Twist", "Freeze", "Thaw"}, brush.tool - 5, ui);
-  if (second >= 0) brush.tool = second + 5, brush.field = -1;
+  if (second >= 0) brush.tool = second + 5, brush.field = -1, ui.select.element = -1;
   paintRow(ui);
-  ImGui::BeginDisabled(brush.tool < 0 && brush.field < 0);
+  selectRow(demo, ui);
+  ImGui::BeginDisabled(brush.tool < 0 && brush.field < 0 && ui.select.element < 0);
   const auto row = [&](const char* label, const char* help, const char* name, float low, float high, const char* format,
                        double shown_scale, double& value) {
     rowLabel(label, help);
@@ -247,6 +242,7 @@ void brushFrame(Demo& demo, UiState& ui) {
   const bool held = io.MouseDown[0], begins = held && !brush.held;
   brush.held = held;
   brush.over_hair = false;
+  if (ui.select.element >= 0 && io.DisplaySize.y >= 1) return selectFrame(begins, demo, ui);
   if ((brush.tool < 0 && brush.field < 0) || (io.WantCaptureMouse && !brush.stroking) || io.DisplaySize.y < 1) {
     brush.stroking = false;
     return;

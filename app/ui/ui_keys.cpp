@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/scene/mesh_change.h"
 #include "app/ui/ui.h"
 #include "app/ui/ui_panels.h"
 #include "app/ui/ui_widgets.h"
@@ -29,6 +30,7 @@ constexpr KeyHelp kKeyHelp[] = {
     {"K", "record a PNG sequence"},
     {"F5", "reload the shaders (also reloaded when saved)"},
     {"G  [  ]", "next brush or none; smaller, larger. Drag on the hair to use it"},
+    {"X  arrows", "choose vertices, edges, columns, layers or none; move what is chosen, farther with Shift"},
     {"Ctrl Z", "undo; with Shift, or Ctrl Y: do again"},
     {"Ctrl O  Ctrl S", "open a file, save the scene"},
     {"Up  Down", "the keyboard goes to the panels: arrows, Space, Enter; Esc lets go"},
@@ -44,6 +46,7 @@ constexpr KeyHelp kKeyHelp[] = {
 };
 
 constexpr int kBrushChoices = 1 + static_cast<int>(kBrushNames.size());  // with none
+constexpr int kElementChoices = 1 + static_cast<int>(kElementNames.size());
 
 struct KeyAction {
   int key;
@@ -112,7 +115,12 @@ constexpr KeyAction kKeyActions[] = {
     {'P', [](Demo& demo, UiState&) { send(Ask::kScreenshot, "", demo); }},
     {kKeyF12, [](Demo& demo, UiState&) { send(Ask::kScreenshot, "", demo); }},
     {'K', [](Demo& demo, UiState&) { toggle(Ask::kRecord, demo.capture.recording, demo); }},
-    {'G', [](Demo&, UiState& ui) { ui.brush.tool = (ui.brush.tool + 2) % kBrushChoices - 1, ui.brush.field = -1; }},
+    {'G',
+     [](Demo&, UiState& ui) {
+       ui.brush.tool = (ui.brush.tool + 2) % kBrushChoices - 1, ui.brush.field = -1;
+       ui.select.element = -1;
+     }},
+    {'X', [](Demo&, UiState& ui) { chooseElement((ui.select.element + 2) % kElementChoices - 1, ui); }},
     {'[', [](Demo&, UiState& ui) { ui.brush.radius = std::max(0.005, ui.brush.radius / 1.2); }},
     {']', [](Demo&, UiState& ui) { ui.brush.radius = std::min(0.2, ui.brush.radius * 1.2); }},
     {kKeyTab, [](Demo&, UiState& ui) { ui.visible = !ui.visible; }},
@@ -170,6 +178,7 @@ bool pressKey(int key, Demo& demo, UiState& ui, int modifiers) {
     return true;
   }
   if (modifiers & kControl) return false;
+  if (nudgeChosen(key, modifiers & kShift, demo, ui)) return true;
   for (const KeyAction& row : kKeyActions) {
     if (row.key != key) continue;
     if (key != kKeyEscape) ui.leaving = false;

@@ -374,7 +374,7 @@ void tieRow(const Actor& actor, Demo& demo, UiState& ui) {
 
 void hairTab(Demo& demo, UiState& ui) {
   const Actor& actor = selectedActor(demo);
-  if (section("Brushes", true)) brushSection(ui);
+  if (section("Brushes", true)) brushSection(demo, ui);
   if (section("Haircut", true)) {
     const bool from_file = !actor.spec.hair.empty();
     const int style =

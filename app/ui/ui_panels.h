@@ -25,8 +25,15 @@ void offerPanel(Demo& demo, UiState& ui);
 void cameraRows(Demo& demo, UiState& ui);
 
 // The brushes' settings; and, before the panels, their ring on the hair and what a drag asks for.
-void brushSection(UiState& ui);
+void brushSection(Demo& demo, UiState& ui);
 void brushFrame(Demo& demo, UiState& ui);
+
+// Elements of the hair mesh: the row that chooses them and changes the mesh; before the panels, what is chosen and what
+// a drag asks for (`begins`: the button has gone down); another kind of them; and what an arrow key does, if it does.
+void selectRow(Demo& demo, UiState& ui);
+void selectFrame(bool begins, Demo& demo, UiState& ui);
+void chooseElement(int element, UiState& ui);
+bool nudgeChosen(int key, bool far, Demo& demo, UiState& ui);
 
 // Curves of stiffness and mass from root to tip.
 void curveRows(Demo& demo, UiState& ui);

@@ -1,4 +1,5 @@
-// What an edit by a brush costs: the frame in which a sample of a stroke is applied, beside frames without one.
+// What an edit by a brush or a drag of the hair mesh costs: the frame in which a sample of it is applied, beside frames
+// without one.
 #pragma once
 
 namespace bench {

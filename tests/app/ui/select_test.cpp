@@ -1,0 +1,127 @@
+// Choosing parts of the hair mesh with the mouse, and what drags, arrow keys and buttons then ask for.
+#include <gtest/gtest.h>
+
+#include "app/scene/mesh_change.h"
+#include "app/scene/picking.h"
+#include "app/ui/ui_panels.h"
+#include "tests/app/ui/panels.h"
+
+namespace {
+
+using test::Ask;
+using test::Request;
+
+class Select : public test::Panels {
+ protected:
+  // A pixel right of the panels where the hair is, `number` of them in a row apart; (-1, -1): there is none.
+  ImVec2 onHair(int number) {
+    for (float y = 60; y < 600; y += 20) {
+      for (float x = 560; x < 1100; x += 20) {
+        if (app::pickHair(app::rayThrough(x, y, 1280, 720, demo_.camera), demo_.actors[0]) && number-- == 0)
+          return {x, y};
+      }
+    }
+    return {-1, -1};
+  }
+  std::vector<Request> press(const ImVec2& at, float dx = 0) {
+    ImGuiIO& io = ImGui::GetIO();
+    std::vector<Request> all;
+    const auto collect = [&] {
+      const auto more = frame();
+      all.insert(all.end(), more.begin(), more.end());
+    };
+    io.MousePos = at;
+    collect();
+    io.MouseDown[0] = true;
+    collect();
+    io.MousePos.x += dx;
+    collect();
+    io.MouseDown[0] = false;
+    collect();
+    collect();
+    return all;
+  }
+};
+
+TEST_F(Select, AClickChoosesAndShiftAddsAndTakesAway) {
+  openTab(app::tabIndex("hair"));
+  click("select Vertex");
+  ASSERT_EQ(ui_.select.element, 0);
+  const ImVec2 first = onHair(3), second = onHair(60);
+  ASSERT_GT(second.x, 0);
+  EXPECT_TRUE(press(first).empty());
+  ASSERT_EQ(ui_.select.chosen.size(), 1u);
+  const int vertex = ui_.select.chosen[0];
+  ImGui::GetIO().KeyShift = true;
+  press(second);
+  EXPECT_EQ(ui_.select.chosen.size(), 2u);
+  press(second);
+  EXPECT_EQ(ui_.select.chosen, std::vector<int>{vertex});
+  ImGui::GetIO().KeyShift = false;
+  press(second);
+  EXPECT_EQ(ui_.select.chosen.size(), 1u);
+  EXPECT_NE(ui_.select.chosen[0], vertex);
+}
+
+TEST_F(Select, ADragAsksForMovesAndEndsItsGesture) {
+  app::chooseElement(static_cast<int>(app::MeshElement::kColumn), ui_);
+  const std::vector<Request> asked = press(onHair(40), 25);
+  ASSERT_TRUE(this->asked(asked, Ask::kMove, "column"));
+  EXPECT_TRUE(this->asked(asked, Ask::kEndGesture));
+  for (const Request& request : asked) {
+    if (request.what != Ask::kMove) continue;
+    const app::MoveSample sample = app::parseMove(request.name, request.text);
+    EXPECT_EQ(sample.chosen, ui_.select.chosen);
+    EXPECT_GT(sample.along.norm(), 0.001);
+  }
+}
+
+TEST_F(Select, ArrowKeysMoveWhatIsChosenAndElseReachThePanels) {
+  EXPECT_TRUE(app::pressKey(app::kKeyUp, demo_, ui_));
+  EXPECT_TRUE(ui_.focus_panels);
+  ui_.focus_panels = false;
+  app::pressKey('X', demo_, ui_);
+  EXPECT_EQ(ui_.select.element, static_cast<int>(app::MeshElement::kVertex));
+  press(onHair(20));
+  ASSERT_EQ(ui_.select.chosen.size(), 1u);
+  demo_.requests.clear();
+  EXPECT_TRUE(app::pressKey(app::kKeyUp, demo_, ui_));
+  EXPECT_FALSE(ui_.focus_panels);
+  EXPECT_TRUE(app::pressKey(app::kKeyLeft, demo_, ui_, app::kShift));
+  ASSERT_EQ(demo_.requests.size(), 2u);
+  EXPECT_NEAR(app::parseMove("vertex", demo_.requests[0].text).along.norm(), 0.002, 1e-9);
+  EXPECT_NEAR(app::parseMove("vertex", demo_.requests[1].text).along.norm(), 0.01, 1e-9);
+}
+
+TEST_F(Select, ButtonsAskForChangesOfTheMesh) {
+  openTab(app::tabIndex("hair"));
+  click("select Layer");
+  press(onHair(80));
+  ASSERT_EQ(ui_.select.chosen.size(), 1u);
+  const std::string layer = std::to_string(ui_.select.chosen[0]);
+  const std::vector<Request> asked = click("mesh Layer +");
+  ASSERT_TRUE(this->asked(asked, Ask::kMesh, "add-layer"));
+  for (const Request& request : asked) {
+    if (request.what == Ask::kMesh) {
+      EXPECT_EQ(request.text, layer);
+    }
+  }
+  demo_.requests = asked;
+  app::advanceFrame(demo_, 0, {});
+  EXPECT_FALSE(demo_.message_is_fault) << demo_.message;
+  frame();
+  EXPECT_TRUE(ui_.select.chosen.empty()) << "they were of the mesh before";
+}
+
+TEST_F(Select, BrushesAndSelectionTakeTurns) {
+  openTab(app::tabIndex("hair"));
+  click("select Edge");
+  EXPECT_EQ(ui_.select.element, static_cast<int>(app::MeshElement::kEdge));
+  click("brush Comb");
+  EXPECT_EQ(ui_.select.element, -1);
+  EXPECT_EQ(ui_.brush.tool, 0);
+  click("select Column");
+  EXPECT_EQ(ui_.brush.tool, -1);
+}
+
+}  // namespace
