@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/contact/colliders.h"
 #include "app/styles/hair_styles.h"
+#include "sim/contact/colliders.h"
 
 namespace app {
 

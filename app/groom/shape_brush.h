@@ -1,4 +1,5 @@
-// Brushes on the rest shape of a hair mesh, placed where the moving hair is seen. Whatever a brush does, every prism stays positive, edges keep a length, and nothing comes nearer to the body.
+// Brushes on the rest shape of a hair mesh, placed where the moving hair is seen. Whatever a brush does, every prism
+// stays positive, edges keep a length, and nothing comes nearer to the body.
 //
 // All positions are in the scalp's frame, m.
 #pragma once
@@ -29,19 +30,19 @@ enum class BrushTool {
   kFreeze,  // moves nothing: what it reaches stays under other brushes
   kThaw     // takes that back
 };
-inline constexpr std::array<std::string_view, 11> kBrushNames{"comb",  "cut",    "grow", "smooth", "puff",  "pinch",
+inline constexpr std::array<std::string_view, 11> kBrushNames{"comb",   "cut",  "grow",  "smooth", "puff", "pinch",
                                                               "spread", "push", "twist", "freeze", "thaw"};
 
 struct Brush {
   BrushTool tool = BrushTool::kComb;
-  Vec3 at = Vec3::Zero();             // on the moving hair
-  Vec3 along = Vec3::Zero();          // of combing: the way from the last place to this one
-  double radius = 0.04;               // m
-  double strength = 0.5;              // 0 to 1
-  double falloff = 1;                 // of the reach: (1 - (distance / radius)^2)^falloff
-  std::optional<double> mirror;       // x of the plane across which the brush acts as well
-  Vec3 centre = Vec3::Zero();         // the head's middle, that puffing leads away from
-  std::span<const float> frozen{};    // share of its way that each vertex does not go; empty: none is frozen
+  Vec3 at = Vec3::Zero();                 // on the moving hair
+  Vec3 along = Vec3::Zero();              // of combing: the way from the last place to this one
+  double radius = 0.04;                   // m
+  double strength = 0.5;                  // 0 to 1
+  double falloff = 1;                     // of the reach: (1 - (distance / radius)^2)^falloff
+  std::optional<double> mirror;           // x of the plane across which the brush acts as well
+  Vec3 centre = Vec3::Zero();             // the head's middle, that puffing leads away from
+  std::span<const float> frozen{};        // share of its way that each vertex does not go; empty: none is frozen
   double shortest = 0.03, longest = 1.2;  // m, columns that are cut and grown
 };
 

@@ -3,8 +3,9 @@
 // from the rest shape in advance is then made from another one).
 //
 // A project is a JSON file: {"hairmesh-project": 2, "scene": as scene_file.h says, "binary": name, "checksum": text}.
-// The binary beside it holds reshaped rest positions, from version 2 on the structure of hair meshes that were changed, and the state (demo_state.h); it is NAME-CHECKSUM.bin, so that a
-// project that cannot be saved leaves the one that was there with its own.
+// The binary beside it holds reshaped rest positions, from version 2 on the structure of hair meshes that were changed,
+// and the state (demo_state.h); it is NAME-CHECKSUM.bin, so that a project that cannot be saved leaves the one that was
+// there with its own.
 #pragma once
 
 #include <string>
