@@ -11,7 +11,7 @@ void setDebugViews(const std::string& list, DebugViews& views) {
   std::vector<std::string_view> known;
   for (const DebugView& view : kDebugViews) known.push_back(view.name);
   std::size_t begin = 0;
-  while (begin < list.size()) {
+  while (!list.empty() && begin <= list.size()) {
     const std::size_t end = std::min(list.find(',', begin), list.size());
     const std::string name = list.substr(begin, end - begin);
     bool found = false;

@@ -167,7 +167,7 @@ TEST(Options, AMistakeInAValueIsOfTheCommandLineAndNamesItsOption) {
                                                                                       {"--compare", "friction="},
                                                                                       {"--compare", "friction=0.5,"},
                                                                                       {"--pin", "{"},
-                                                                                      {"--pin", "{\"column\": 1}"},
+                                                                                      {"--pin", "{\"colum\": 1}"},
                                                                                       {"--pin", "3"},
                                                                                       {"--map", "length"},
                                                                                       {"--map", "length="},
@@ -197,7 +197,7 @@ TEST(Options, AMistakeInAValueIsOfTheCommandLineAndNamesItsOption) {
                                                                                       {"--preset", "nothing"}}) {
     const Outcome outcome = runProgram({"--headless", "--frames", "1", option, value});
     expectOneMessage(outcome, app::kExitBadInput, option + " " + value);
-    EXPECT_TRUE(outcome.err.starts_with("hairmesh: " + option)) << outcome.err;
+    EXPECT_TRUE(outcome.err.starts_with(std::string("hairmesh: ") + option)) << outcome.err;
     EXPECT_EQ(outcome.err.find("/0"), std::string::npos) << outcome.err;
   }
 }
