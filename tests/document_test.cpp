@@ -50,6 +50,8 @@ TEST(Table, FoldsNumbersUnderTheirKeyAndJoinsByIt) {
 
 TEST(Documents, ShowWhatStandsInTheirData) {
   EXPECT_EQ(partOf("gate.md", "figures"), columns(dataOf("gate"), {"figure", "value", "bound", "holds"}).markdown());
+  EXPECT_EQ(partOf("drawing.md", "draw-scenes"), dataOf("draw_scenes").markdown());
+  EXPECT_EQ(partOf("drawing.md", "draw-settings"), dataOf("draw_settings").markdown());
   EXPECT_EQ(partOf("collision.md", "crossing"), bench::folded(dataOf("collision_crossing"), {"speed, m/s"},
                                                               {{"vertices met", Fold::kSum},
                                                                {"slid over the rim", Fold::kSum},

@@ -7,6 +7,7 @@
 
 #include "app/files/errors.h"
 #include "tests/bench/cpu_clock.h"
+#include "tests/bench/gate_drawing.h"
 #include "tests/bench/gate_motion.h"
 #include "tests/bench/gate_sweep.h"
 #include "tests/bench/measured_part.h"
@@ -160,6 +161,7 @@ std::vector<Figure> measureFigures(const GateOptions& options) {
   addSpeedFigures(options, report);
   addConsistencyFigures([&](const Figure& figure) { report.add(figure); });
   addSweepFigures(options, [&](const Figure& figure) { report.add(figure); });
+  addDrawingFigures(options, [&](const Figure& figure) { report.add(figure); });
   return std::move(report.figures);
 }
 

@@ -15,6 +15,7 @@
 #include "tests/bench/consistency.h"
 #include "tests/bench/contact_sheet.h"
 #include "tests/bench/conversion.h"
+#include "tests/bench/draw_pareto.h"
 #include "tests/bench/frames_budget.h"
 #include "tests/bench/gate.h"
 #include "tests/bench/ladder.h"
@@ -66,6 +67,10 @@ std::vector<Task> tasks() {
        [](Asked& a) { bench::runSolverChart(a.solvers); }},
       {"--pareto", "run time against error, for every scene and way to simulate it",
        [](Asked& a) { bench::runPareto(a.pareto); }},
+      {"--draw-pareto", "drawing time against the picture's error, for every scene and setting; drawing.md in --out",
+       [](Asked& a) {
+         bench::runDrawPareto({a.pareto.scenes, a.pareto.folder, a.pareto.runs, a.pareto.quick});
+       }},
       {"--consistency", "whether resolutions and time steps follow the same motion; tables of consistency.md in --out",
        [](Asked& a) { bench::runConsistency({a.pareto.folder}); }},
       {"--ladder", "cost and error of the budget governor's settings; a performance.md in --out gets their table",
@@ -130,7 +135,8 @@ void addOptions(CLI::App& program, Asked& a) {
   program.add_option("--cell", a.sheet.cell_height, "height of a picture of the sheet, pixels")
       ->check(CLI::Range(32, 2048));
   program.add_option("--strands", a.sheet.strands, "strands a picture")->check(CLI::Range(1, 1000000));
-  program.add_option("--scenes", a.pareto.scenes, "scenes of --pareto, comma separated")->delimiter(',');
+  program.add_option("--scenes", a.pareto.scenes, "scenes of --pareto, --draw-pareto and --skipping, comma separated")
+      ->delimiter(',');
   program.add_option("--out", a.pareto.folder, "folder of what is written")->default_val("pareto");
   program.add_option("--references", a.pareto.references,
                      "folder in which --pareto and --gate keep their reference trajectories");
@@ -152,8 +158,10 @@ void addOptions(CLI::App& program, Asked& a) {
   program.add_option("--frames-budget-document", a.frames_budget.folder,
                      "also put --frames-budget's table and chart into this folder's performance.md");
   program.add_option("--skin-strands", a.skin.strands, "strands that --skin looks at")->check(CLI::Range(1, 100000));
-  program.add_option("--skin-document", a.skin.folder, "also put --skin's table into this folder's skin.md, and every clip into data/skin.csv");
-  program.add_option("--set", a.sets, "NAME=VALUE of a parameter for --collisions, --skin and --swing")->allow_extra_args(false);
+  program.add_option("--skin-document", a.skin.folder,
+                     "also put --skin's table into this folder's skin.md, and every clip into data/skin.csv");
+  program.add_option("--set", a.sets, "NAME=VALUE of a parameter for --collisions, --skin and --swing")
+      ->allow_extra_args(false);
   program.add_option("--conversion-document", a.conversion.folder,
                      "also put --conversion's tables into this folder's conversion.md");
   program.add_option("--rounds", a.gate.rounds, "turns that the compared ways of --gate take")
