@@ -195,6 +195,11 @@ void addPlaybackOptions(CLI::App& parser, Options& options) {
              "chosen by the governor; 0: off")
       ->check(within(0, kLargestBudget));
   group
+      .value("--draw-budget-ms", options.draw_budget_ms, "X",
+             "Hold the drawing of a frame to so many milliseconds, measured: strands and segments are then thinned by "
+             "the drawing governor, and pictures do not repeat to the bit; 0: off")
+      ->check(within(0, kLargestBudget));
+  group
       .value("--deadline-ms", options.deadline_ms, "X",
              "Let the simulation of no frame take more than so many milliseconds, by counted work: steps, iterations "
              "and corrections beyond are left out; 0: no deadline")
@@ -363,6 +368,8 @@ void finish(const Unchecked& unchecked, Options& options) {
     throw UsageError(std::string("--no-images draws nothing that ") +
                      (options.video.empty() ? "--screenshot" : "--video") + " could write; leave one of them out");
   }
+  if (options.no_images && options.draw_budget_ms > 0)
+    throw UsageError("--no-images draws nothing that --draw-budget-ms could hold; leave one of them out");
   constexpr std::array<std::string_view, 6> kFilms{".mp4", ".webm", ".mkv", ".mov", ".avi", ".gif"};
   if (!options.video.empty() && !std::ranges::count(kFilms, std::filesystem::path(options.video).extension().string()))
     throw UsageError("--video cannot be '" + options.video + "'; name it .mp4, .webm or .mkv");

@@ -235,6 +235,7 @@ Scene sceneFromOptions(const Options& given) {
   if (!options.strand_path.empty()) setAnywhere("strand_path", options.strand_path, scene.sim, looks, scene.look);
   if (options.speed >= 0) scene.playback.speed = options.speed;
   if (options.budget_ms >= 0) scene.playback.budget_ms = options.budget_ms;
+  if (options.draw_budget_ms >= 0) scene.playback.draw_budget_ms = options.draw_budget_ms;
   if (options.deadline_ms >= 0) scene.playback.deadline_ms = options.deadline_ms;
   if (options.fps > 0) scene.playback.fps = options.fps;
   if (!options.camera.empty()) setCamera(options.camera, scene.camera);

@@ -15,7 +15,7 @@ struct PlanInput {
   float ground_height = 0;
   bool show_strands = true;
   StrandPath strand_path = StrandPath::kGeometry;
-  float strands_per_pixel = 0, segment_error = 0;
+  float strands_per_pixel = 0, strand_share = 1, segment_error = 0;
 
   bool operator==(const PlanInput&) const = default;
 };

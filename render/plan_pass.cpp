@@ -75,6 +75,7 @@ PlanPass::Input PlanPass::inputOf(const FrameInput& frame) {
   input.show_strands = view.show_strands;
   input.strand_path = view.strand_path;
   input.strands_per_pixel = view.strands_per_pixel;
+  input.strand_share = view.strand_share;
   input.segment_error = view.segment_error;
   return input;
 }

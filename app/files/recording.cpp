@@ -28,7 +28,7 @@ struct AskName {
   std::string_view name;
 };
 // What can be recorded: all but the requests that write files.
-constexpr std::array<AskName, 52> kAskNames{{{Ask::kSetParam, "set"},
+constexpr std::array<AskName, 53> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kPause, "pause"},
                                              {Ask::kPauseMotion, "pause-motion"},
                                              {Ask::kSingleStep, "single-step"},
@@ -54,6 +54,7 @@ constexpr std::array<AskName, 52> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kFollow, "follow"},
                                              {Ask::kDebugView, "debug-view"},
                                              {Ask::kBudget, "budget"},
+                                             {Ask::kDrawBudget, "draw-budget"},
                                              {Ask::kDeadline, "deadline"},
                                              {Ask::kSkip, "skip"},
                                              {Ask::kBrush, "brush"},

@@ -88,6 +88,7 @@ json frameJson(const FrameStats& stats, std::size_t index, double fps) {
           {"max_penetration", stats.max_penetration},
           {"recoveries", stats.recoveries},
           {"rung", stats.rung},
+          {"draw_rung", stats.draw_rung},
           {"trouble", sim::faultText(stats.fault_report)},
           {"carried", stats.carried},
           {"combed", stats.guided},
@@ -171,6 +172,31 @@ json budgetJson(const RunReport& run, const Demo& demo) {
           {"rungs", rungs}};
 }
 
+// How the drawing's budget was held, rung by rung.
+json drawBudgetJson(const RunReport& run, const Demo& demo) {
+  const DrawGovernor& governor = demo.draw_governor;
+  if (governor.budget <= 0) return nullptr;
+  json rungs = json::array();
+  for (int k = 0; k < static_cast<int>(drawLadder().size()); ++k) {
+    std::vector<double> measured;
+    for (const FrameStats& frame : run.frames) {
+      if (frame.draw_rung == k && !frame.draw.stages.empty()) measured.push_back(frame.drawing());
+    }
+    if (measured.empty()) continue;
+    rungs.push_back({{"rung", k},
+                     {"name", drawLadder()[k].name},
+                     {"frames", measured.size()},
+                     {"measured_milliseconds", milliseconds(measured)}});
+  }
+  return {{"budget_milliseconds", 1e3 * governor.budget},
+          {"rung", governor.rung},
+          {"name", drawRungName(governor)},
+          {"measured_milliseconds", 1e3 * governor.measured_cost},
+          {"changes", governor.changes},
+          {"over_budget", governor.over_budget},
+          {"rungs", rungs}};
+}
+
 }  // namespace
 
 std::vector<std::string> limitNotes(const Demo& demo) {
@@ -218,6 +244,7 @@ void writeReport(const std::string& file, const RunReport& run, const Demo& demo
       {"characters", characters},
       {"time_step", demo.running.time_step},
       {"budget", budgetJson(run, demo)},
+      {"draw_budget", drawBudgetJson(run, demo)},
       {"skips", switches},
       {"fps", run.fps},
       {"start_milliseconds", 1e3 * run.start_seconds},

@@ -110,13 +110,14 @@ CameraSpec readCamera(const JsonPlace& place) {
 }
 
 PlaybackSpec readPlayback(const JsonPlace& place) {
-  place.expectObject({"speed", "fps", "settle", "budget_ms", "deadline_ms"});
+  place.expectObject({"speed", "fps", "settle", "budget_ms", "deadline_ms", "draw_budget_ms"});
   PlaybackSpec playback;
   if (place.has("speed")) playback.speed = place.at("speed").number(0, kFastestPlayback);
   if (place.has("fps")) playback.fps = place.at("fps").number(kSlowestFps, kFastestFps);
   if (place.has("settle")) playback.settle = place.at("settle").number(0, 10);
   if (place.has("budget_ms")) playback.budget_ms = place.at("budget_ms").number(0, kLargestBudget);
   if (place.has("deadline_ms")) playback.deadline_ms = place.at("deadline_ms").number(0, kLargestBudget);
+  if (place.has("draw_budget_ms")) playback.draw_budget_ms = place.at("draw_budget_ms").number(0, kLargestBudget);
   return playback;
 }
 
@@ -213,7 +214,8 @@ std::string writeScene(const Scene& scene) {
                        {"fps", scene.playback.fps},
                        {"settle", scene.playback.settle},
                        {"budget_ms", scene.playback.budget_ms},
-                       {"deadline_ms", scene.playback.deadline_ms}}}};
+                       {"deadline_ms", scene.playback.deadline_ms},
+                       {"draw_budget_ms", scene.playback.draw_budget_ms}}}};
   return text.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 

@@ -14,7 +14,7 @@
 //   "camera": { "view": "three-quarter", "framing": "bust", "eye": [..], "target": [..], "fov": 0.5, "follow": true,
 //              "of_head": false },
 //   "light": { row: value }, "view": { row: value }, "sim": { row: value },
-//   "playback": { "speed": 1, "fps": 60, "settle": 0.5, "budget_ms": 0, "deadline_ms": 0 },
+//   "playback": { "speed": 1, "fps": 60, "settle": 0.5, "budget_ms": 0, "deadline_ms": 0, "draw_budget_ms": 0 },
 //   "preset": "soft"
 // }
 // Every key but "characters" may be left out. Files are searched as findFile says.
@@ -75,11 +75,12 @@ struct CameraSpec {
 };
 
 struct PlaybackSpec {
-  double speed = 1;        // clip seconds per second
-  double fps = 60;         // frames per second of a headless run
-  double settle = 0.5;     // s of simulation before the first frame
-  double budget_ms = 0;    // of simulation a frame that the governor holds to; 0: it is off
-  double deadline_ms = 0;  // of simulation that no frame exceeds; 0: none
+  double speed = 1;           // clip seconds per second
+  double fps = 60;            // frames per second of a headless run
+  double settle = 0.5;        // s of simulation before the first frame
+  double budget_ms = 0;       // of simulation a frame that the governor holds to; 0: it is off
+  double deadline_ms = 0;     // of simulation that no frame exceeds; 0: none
+  double draw_budget_ms = 0;  // of drawing a frame that the drawing governor holds to; 0: it is off
 };
 
 struct Scene {

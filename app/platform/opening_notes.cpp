@@ -15,6 +15,8 @@ std::vector<std::string> openingNotes(const Options& options, const Demo& demo) 
     notes.push_back("--start " + sim::numberText(options.start) + " lies beyond the clip's " +
                     sim::numberText(duration) + " s; it begins at " + sim::numberText(first.playback.time) + " s");
   }
+  if (demo.draw_governor.budget > 0 && options.headless && !options.no_images)
+    notes.push_back("--draw-budget-ms goes by measured time: these pictures do not repeat to the bit");
   return notes;
 }
 

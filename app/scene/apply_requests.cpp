@@ -228,6 +228,12 @@ void setBudget(const Request& request, Demo& demo) {
   setBudget(1e-3 * budget, demo.governor);
 }
 
+void setDrawBudget(const Request& request, Demo& demo) {
+  double& budget = demo.scene.playback.draw_budget_ms;
+  budget = std::isfinite(request.value) ? std::clamp(request.value, 0.0, kLargestBudget) : 0;
+  setDrawBudget(1e-3 * budget, demo.draw_governor);
+}
+
 void setDeadline(const Request& request, Demo& demo) {
   double& deadline = demo.scene.playback.deadline_ms;
   deadline = std::isfinite(request.value) ? std::clamp(request.value, 0.0, kLargestBudget) : 0;
@@ -362,6 +368,7 @@ constexpr Action kActions[] = {
     {Ask::kFollow, [](const Request& request, Demo& demo) { demo.camera.follow = request.value != 0; }},
     {Ask::kDebugView, setDebugView},
     {Ask::kBudget, setBudget},
+    {Ask::kDrawBudget, setDrawBudget},
     {Ask::kDeadline, setDeadline},
     {Ask::kSkip, switchSkip},
     {Ask::kScreenshot,

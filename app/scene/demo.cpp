@@ -53,6 +53,14 @@ void updateGovernor(double seconds, int steps, Demo& demo) {
   observe(frame, demo.governor);
 }
 
+// What the drawing of the frame took, to its governor. A frame that was kept took nothing, and says nothing.
+void updateDrawGovernor(double seconds, Demo& demo) {
+  const render::FrameReport& drawn = demo.stats.draw;
+  demo.stats.draw_rung = demo.draw_governor.budget > 0 ? demo.draw_governor.rung : -1;
+  if (demo.stats.draw_rung < 0 || drawn.stages.empty() || drawn.skip_counts.frame.skipped > 0) return;
+  observeDrawing(seconds, demo.stats.drawing(), demo.draw_governor);
+}
+
 // Nothing is handed over when neither a step nor the clock has moved since the last time.
 void handOverPositions(bool moved, Demo& demo) {
   const double fraction = shownFraction(demo.clock, demo.running.time_step);
@@ -278,6 +286,7 @@ Demo openScene(Scene scene, double aspect, bool beside) {
   followColliders(demo);
   demo.running = demo.scene.sim;
   setBudget(1e-3 * demo.scene.playback.budget_ms, demo.governor);
+  setDrawBudget(1e-3 * demo.scene.playback.draw_budget_ms, demo.draw_governor);
   demo.deadline.seconds = 1e-3 * demo.scene.playback.deadline_ms;
   const double settle = demo.scene.playback.settle;
   settleActor(demo.scene.sim, settle, demo.actors.front());
@@ -311,26 +320,28 @@ render::FrameInput frameInput(Demo& demo, int width, int height) {
   input.debug_lines = demo.debug_geometry.lines;
   input.debug_triangles = demo.debug_geometry.triangles;
   input.debug_points = demo.debug_geometry.points;
+  governDrawing(demo.draw_governor, input);
   return input;
 }
 
 namespace {
 
-// The demo and the one that it is compared with, in one picture.
-render::FrameReport drawPair(Demo& demo, const FrameTarget& target) {
+// The demo and the one that it is compared with, in one picture, and in the same detail.
+render::FrameReport drawPair(Demo& demo, const FrameTarget& target, bool measure) {
   const Comparison& comparison = demo.comparison;
   const render::PairLayout layout{comparison.side_by_side, comparison.line};
   const int left = render::firstWidth(layout, target.width), right = render::secondWidth(layout, target.width);
   demo.aspect = static_cast<double>(left) / target.height;
   Demo& other = demo.comparison.other.front();
+  other.draw_governor = demo.draw_governor;
   const render::FrameInput first = frameInput(demo, left, target.height);
   const render::FrameInput second = frameInput(other, right, target.height);
   if (target.pixels) {
     return target.pair->renderImage(*target.renderer, first, second, layout, target.width, *target.pixels,
-                                    target.measure);
+                                    measure);
   }
   return target.pair->renderFrame(*target.renderer, first, second, layout, target.width, target.framebuffer,
-                                  target.measure);
+                                  measure);
 }
 
 }  // namespace
@@ -340,13 +351,14 @@ void drawFrame(Demo& demo, const FrameTarget& target) {
   if (!target.renderer || target.width <= 0 || target.height <= 0) return;
   demo.aspect = static_cast<double>(target.width) / target.height;
   demo.picture_height = target.height;
+  const bool measure = target.measure || demo.draw_governor.budget > 0;
   if (demo.comparison.on() && target.pair) {
-    demo.stats.draw = drawPair(demo, target);
+    demo.stats.draw = drawPair(demo, target, measure);
     return addDrawing(demo.stats.draw.skip_counts, demo.stats.skipped);
   }
   const render::FrameInput input = frameInput(demo, target.width, target.height);
-  demo.stats.draw = target.pixels ? target.renderer->renderImage(input, *target.pixels, target.measure)
-                                  : target.renderer->renderFrame(input, target.framebuffer, target.measure);
+  demo.stats.draw = target.pixels ? target.renderer->renderImage(input, *target.pixels, measure)
+                                  : target.renderer->renderFrame(input, target.framebuffer, measure);
   addDrawing(demo.stats.draw.skip_counts, demo.stats.skipped);
 }
 
@@ -378,7 +390,9 @@ void advanceFrame(Demo& demo, double seconds, const FrameTarget& target) {
   keepMoment(demo);
   advanceCompared(seconds, std::move(of_both), demo);
 
+  glide(seconds, demo.draw_governor);
   timed(demo.stats.seconds[kTimeDraw], [&] { drawFrame(demo, target); });
+  updateDrawGovernor(seconds, demo);
   if (target.draw_panels) {
     timed(demo.stats.seconds[kTimePanels], [&] { target.draw_panels(demo); });
   }

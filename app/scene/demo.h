@@ -16,6 +16,7 @@
 #include "app/scene/comparison.h"
 #include "app/scene/deadline.h"
 #include "app/scene/debug_views.h"
+#include "app/scene/draw_governor.h"
 #include "app/scene/edit_history.h"
 #include "app/scene/frame_stats.h"
 #include "app/scene/governor.h"
@@ -50,6 +51,7 @@ struct Demo {
   DebugViews debug;
   FixedClock clock;
   Governor governor;
+  DrawGovernor draw_governor;
   Deadline deadline;
   sim::SimParams running;  // the scene's parameters as the governor lets them run
   long frames = 0;         // shown since the scene began

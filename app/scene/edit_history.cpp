@@ -33,6 +33,7 @@ constexpr EditKind kEditKinds[] = {{Ask::kSetParam, kSettings, true, ""},
                                    {Ask::kPresetFile, kSettings, false, "Preset"},
                                    {Ask::kSkip, kSettings, false, "Skip"},
                                    {Ask::kBudget, kSettings, true, "Budget"},
+                                   {Ask::kDrawBudget, kSettings, true, "Drawing budget"},
                                    {Ask::kDeadline, kSettings, true, "Deadline"},
                                    {Ask::kSpeed, kSettings, true, "Speed"},
                                    {Ask::kVary, kSettings, false, "Variation"},
@@ -85,8 +86,8 @@ std::string titleOf(const Request& request, const EditKind& kind) {
   const bool sample = request.what == Ask::kPaint;
   if (!request.text.empty() && request.what != Ask::kVary && !sample)
     title.append(" ").append(spaced(stem(request.text)).substr(0, 40));
-  const bool number = request.what == Ask::kBudget || request.what == Ask::kDeadline || request.what == Ask::kSpeed ||
-                      request.what == Ask::kVary;
+  const bool number = request.what == Ask::kBudget || request.what == Ask::kDrawBudget ||
+                      request.what == Ask::kDeadline || request.what == Ask::kSpeed || request.what == Ask::kVary;
   if (number) title.append(" ").append(sim::numberText(request.value));
   const bool toggle = request.what == Ask::kSkip || request.what == Ask::kDebugView || request.what == Ask::kFollow;
   if (toggle) title += request.value != 0 ? " on" : " off";
@@ -166,13 +167,15 @@ void bringBack(const ActorMoment& moment, Actor& actor) {
 
 void bringBackSettings(const EditSide& side, Demo& demo) {
   Scene& scene = demo.scene;
-  const double budget = scene.playback.budget_ms;
+  const double budget = scene.playback.budget_ms, draw_budget = scene.playback.draw_budget_ms;
   scene = side.scene;
   for (std::size_t i = 0; i < demo.actors.size(); ++i) {
     demo.actors[i].spec = side.cast[i];
     demo.actors[i].playback.speed = scene.playback.speed;
   }
   if (scene.playback.budget_ms != budget) setBudget(1e-3 * scene.playback.budget_ms, demo.governor);
+  if (scene.playback.draw_budget_ms != draw_budget)
+    setDrawBudget(1e-3 * scene.playback.draw_budget_ms, demo.draw_governor);
   demo.deadline.seconds = 1e-3 * scene.playback.deadline_ms;
   demo.selected = std::clamp(side.selected, 0, static_cast<int>(demo.actors.size()) - 1);
   demo.debug = side.debug;

@@ -44,6 +44,7 @@ struct FrameStats {
   int contacts = 0, corrected = 0, recoveries = 0;
   double max_penetration = 0;     // m
   int rung = -1;                  // of the budget governor; -1: it is off
+  int draw_rung = -1;             // of the drawing governor; -1: it is off
   double counted_cost = 0;        // s; this and the next only where it is on
   double step_error = 0;          // sum over steps and characters, see step_error.h
   int guided = 0;                 // columns that stayed turned over and are being led back to rest
@@ -56,6 +57,12 @@ struct FrameStats {
   double simulation() const {
     return seconds[kTimeForces] + seconds[kTimeSolve] + seconds[kTimeCollision] + seconds[kTimeMinimization] +
            seconds[kTimeStepOther];
+  }
+  // s of the passes, by the driver's timer; 0 where they were not measured.
+  double drawing() const {
+    double milliseconds = 0;
+    for (const render::StageTime& stage : draw.stages) milliseconds += stage.milliseconds;
+    return 1e-3 * milliseconds;
   }
 };
 

@@ -36,6 +36,7 @@ enum class Ask {
   kFollow,       // value
   kDebugView,    // name, value
   kBudget,       // value: ms of simulation a frame; 0: the person's own settings hold
+  kDrawBudget,   // value: ms of drawing a frame; 0: all is drawn as it is set
   kDeadline,     // value: ms that the simulation of a frame takes at most; 0: none
   kSkip,         // name, value
   kScreenshot,   // text: file, empty for the next free name

@@ -1,4 +1,4 @@
-// The budget governor's and the deadline's corner of the timings panel.
+// The two budget governors' and the deadline's corner of the timings panel.
 #include <imgui/imgui.h>
 
 #include <algorithm>
@@ -12,6 +12,7 @@ namespace app {
 namespace {
 
 constexpr float kSmallest = 0.05f, kLargest = 50;  // ms, of the slider; --budget-ms takes more
+constexpr float kLargestDrawing = 500;             // ms, of the drawing's slider
 constexpr double kUsualDeadline = 8;               // ms: half a frame of 60 a second
 constexpr double kHeadroom = 1.5;                  // of the present cost, when the governor is switched on
 
@@ -41,6 +42,12 @@ void leftOutLine(const Demo& demo) {
                 corrections);
   line("left out", text);
   tip("Over the frames of the plot: motion that was not simulated, steps whose solve or corrections ended early");
+}
+
+double recentDrawing(const Demo& demo) {
+  double sum = 0;
+  for (const FrameStats& frame : demo.history) sum += frame.seconds[kTimeDraw];
+  return demo.history.empty() ? 0 : sum / static_cast<double>(demo.history.size());
 }
 
 void deadlineLines(Demo& demo, UiState& ui) {
@@ -94,6 +101,35 @@ void governorLines(Demo& demo, UiState& ui) {
 }
 
 }  // namespace
+
+void drawBudgetLines(Demo& demo, UiState& ui) {
+  const DrawGovernor& governor = demo.draw_governor;
+  bool on = governor.budget > 0;
+  if (ImGui::Checkbox("Draw within", &on)) {
+    const double start = std::clamp(1e3 * recentDrawing(demo), double(kSmallest), double(kLargestDrawing));
+    postRequest(demo, {Ask::kDrawBudget, "", "", on ? start : 0.0});
+  }
+  noteItem("draw budget on", ui);
+  tip("Thins strands and segments so that the drawing takes so long a frame, and no longer");
+  if (!on) return;
+  ImGui::SameLine(0.46f * ImGui::GetWindowWidth());
+  ImGui::SetNextItemWidth(-1);
+  float budget = static_cast<float>(1e3 * governor.budget);
+  {
+    const MarksBelowDigits marks;
+    if (ImGui::SliderFloat("##draw_budget", &budget, kSmallest, kLargestDrawing, "%.1f ms a frame",
+                           ImGuiSliderFlags_Logarithmic))
+      postRequest(demo, {Ask::kDrawBudget, "", "", budget});
+  }
+  noteItem("draw budget", ui);
+  char text[96];
+  std::snprintf(text, sizeof text, "%d of %d", governor.rung, static_cast<int>(drawLadder().size()) - 1);
+  line("rung", text);
+  line("draws", drawRungName(governor).c_str());
+  std::snprintf(text, sizeof text, "%.2f", 1e3 * governor.measured_cost);
+  line("ms a frame", text);
+  if (governor.over_budget) ImGui::TextDisabled("the cheapest setting takes longer");
+}
 
 void budgetLines(Demo& demo, UiState& ui) {
   governorLines(demo, ui);

@@ -55,5 +55,7 @@ void openFile(const std::string& file, Demo& demo, UiState& ui);
 
 // The frame budget: a switch, its milliseconds, and what the governor makes of them.
 void budgetLines(Demo& demo, UiState& ui);
+// The same of the drawing's budget.
+void drawBudgetLines(Demo& demo, UiState& ui);
 
 }  // namespace app

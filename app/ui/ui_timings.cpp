@@ -169,6 +169,7 @@ void timingsPanel(Demo& demo, UiState& ui) {
   ImGui::TextDisabled("%s ms", shortMilliseconds(sum(stages, 0, kFrameStageCount - 1)).c_str());
   stackedBar(stages, 0, kFrameStageCount - 1, 8 * scale);
   legend(stages, kTimeCharacter, kTimePanels, scale);
+  drawBudgetLines(demo, ui);
   ImGui::Separator();
   solverLines(demo);
 }

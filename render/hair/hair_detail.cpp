@@ -12,6 +12,7 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr float kMinStrands = 300;        // of a hair, however small it is
+constexpr float kMinShare = 1e-3f;        // of strands that a frame asks for
 constexpr float kFadeShare = 0.4f;        // of the strands drawn are about to leave
 constexpr float kMinSegments = 0.25f;     // a layer
 constexpr float kLongestSegment = 12;     // pixels: light changes along a strand, and is worked out at its points
@@ -59,7 +60,9 @@ void HairDetail::planView(const PlanInput& input, const Frustum& frustum, HairRe
   const std::size_t faces = layout.faces.size();
   HairDraw& draw = hair.view_draw;
   const float wanted = std::max(input.strands_per_pixel * hair.pixels, kMinStrands);
-  const float share = input.skips.strands ? std::min(wanted / static_cast<float>(std::max(hair.strands, 1)), 1.0f) : 1;
+  const float needed_share =
+      input.skips.strands ? std::min(wanted / static_cast<float>(std::max(hair.strands, 1)), 1.0f) : 1;
+  const float share = std::clamp(input.strand_share, kMinShare, 1.0f) * needed_share;
   fadeTo(share, draw);
 
   const auto full = static_cast<float>(hair.segments);
@@ -119,7 +122,7 @@ void HairDetail::planShadow(const PlanInput& input, HairResources& hair, DrawSki
   const float most = std::min(wanted, strands);
   if (input.skips.shadow_detail)
     wanted = std::min(wanted, std::max(light.shadow_strands_per_pixel * hair.pixels, kMinStrands));
-  const float share = std::min(wanted / strands, 1.0f);
+  const float share = std::clamp(light.shadow_strand_share, kMinShare, 1.0f) * std::min(wanted / strands, 1.0f);
   fadeTo(share, draw);
   skip_counts.shadow_detail.of += std::lround(most);
   if (share >= 1) return;

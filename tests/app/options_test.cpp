@@ -74,9 +74,10 @@ TEST(Options, NothingGivenLeavesAllToTheScene) {
 }
 
 TEST(Options, OverridesReachTheScene) {
-  Options options = parse({"--style", "long", "--resolution", "low", "--speed", "3", "--strands", "77", "--set",
-                           "friction=0.5", "--set", "taper=0.9", "--camera", "back", "--loop", "go-on"})
-                        .options;
+  Options options =
+      parse({"--style", "long", "--resolution", "low", "--speed", "3", "--strands", "77", "--set", "friction=0.5",
+             "--set", "taper=0.9", "--camera", "back", "--loop", "go-on", "--draw-budget-ms", "7"})
+          .options;
   const app::Scene scene = app::sceneFromOptions(options);
   ASSERT_EQ(scene.characters.size(), 1u);
   EXPECT_EQ(scene.characters[0].style, app::Style::kLong);
@@ -85,6 +86,7 @@ TEST(Options, OverridesReachTheScene) {
   EXPECT_EQ(scene.characters[0].look.hair.taper, 0.9f);
   EXPECT_EQ(scene.characters[0].loop, app::LoopKind::kGoOn);
   EXPECT_EQ(scene.playback.speed, 3);
+  EXPECT_EQ(scene.playback.draw_budget_ms, 7);
   EXPECT_EQ(scene.sim.friction, 0.5);
   EXPECT_EQ(scene.camera.view, "back");
 }
@@ -106,6 +108,11 @@ TEST(Options, MisuseIsUsageAndSaysSoInOneLine) {
                                                       {"--speed", "-1"},
                                                       {"--speed", "nan"},
                                                       {"--speed", "1e30"},
+                                                      {"--draw-budget-ms", "-1"},
+                                                      {"--draw-budget-ms", "nan"},
+                                                      {"--draw-budget-ms", "5ms"},
+                                                      {"--draw-budget-ms", "1e9"},
+                                                      {"--no-images", "--frames", "1", "--draw-budget-ms", "5"},
                                                       {"--fps", "0"},
                                                       {"--fps", "inf"},
                                                       {"--strands", "-1"},

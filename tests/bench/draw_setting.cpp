@@ -4,6 +4,7 @@
 #include <cassert>
 #include <iterator>
 
+#include "app/scene/draw_governor.h"
 #include "sim/field_text.h"
 
 namespace bench {
@@ -18,6 +19,7 @@ struct Factor {
 };
 
 constexpr const char* kPathFactor = "strand_path";
+constexpr const char* kRungFactor = "rung";  // of the drawing governor
 constexpr const char* kPathNames[] = {"geometry", "pulling", "software"};
 
 constexpr Factor kFactors[] = {
@@ -42,6 +44,13 @@ constexpr Factor kFactors[] = {
      [](double value, render::FrameInput& frame, Hairs&) { frame.light.shadow_strands = static_cast<int>(value); }},
     {"shadow_strands_per_pixel", [](double value, render::FrameInput& frame,
                                     Hairs&) { frame.light.shadow_strands_per_pixel = static_cast<float>(value); }},
+    {kRungFactor,
+     [](double value, render::FrameInput& frame, Hairs&) {
+       app::DrawGovernor governor;
+       governor.budget = 1;
+       governor.place = value;
+       app::governDrawing(governor, frame);
+     }},
     {kPathFactor, [](double value, render::FrameInput& frame,
                      Hairs&) { frame.view.strand_path = static_cast<render::StrandPath>(static_cast<int>(value)); }},
 };
@@ -104,6 +113,8 @@ std::vector<DrawSetting> settingsToDraw(bool quick) {
       settings.push_back({{{tried.name, tried.values[k]}}});
   }
   for (const DrawSetting& setting : combinations()) settings.push_back(setting);
+  for (std::size_t k = 1; k < app::drawLadder().size(); ++k)
+    settings.push_back({{{kRungFactor, static_cast<double>(k)}}});
   return settings;
 }
 

@@ -18,8 +18,8 @@ struct DrawSetting {
   void apply(render::FrameInput& frame, std::vector<render::HairInput>& hairs) const;
 };
 
-// The default first; then one factor at a time, and a few combinations. `quick`: those alone that came near the front
-// of a scene.
+// The default first; then one factor at a time, a few combinations, and the rungs of the drawing governor
+// (app/scene/draw_governor.h). `quick`: those alone that came near the front of a scene.
 std::vector<DrawSetting> settingsToDraw(bool quick);
 
 }  // namespace bench

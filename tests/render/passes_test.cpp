@@ -41,9 +41,10 @@ Members<T...> makeMembers(const char* names, std::tuple<T&...> values) {
   }
 MEMBERS(CameraInput, eye, target, up, fov_y, near_plane, far_plane)
 MEMBERS(LightInput, to_light, key, fill, rim, to_fill, to_rim, ambient_sky, ambient_ground, shadow_size, shadow_strands,
-        opacity_layers, layer_thickness, shadow_strength, shadow_strands_per_pixel, shadows)
+        opacity_layers, layer_thickness, shadow_strength, shadow_strands_per_pixel,
+        shadow_strand_share, shadows)
 MEMBERS(ViewOptions, samples, exposure, backdrop_top, backdrop_bottom, ground_color, ground_height, ground,
-        show_strands, show_body, strand_path, strands_per_pixel, segment_error)
+        show_strands, show_body, strand_path, strands_per_pixel, strand_share, segment_error)
 MEMBERS(DrawSkips, frame, rows, shadows, view, shadow_view, body_parts, body_detail, strands, segments, shadow_detail,
         skin, shading, hair_light, sky_visibility)
 MEMBERS(HairLook, strand_radius, strands_represented, width_compensation, least_pixels, taper, length_variation, offset,
@@ -126,6 +127,7 @@ struct Scene {
     frame.light.opacity_layers = 4;
     frame.view.samples = 2;
     frame.view.strands_per_pixel = 3;
+    frame.view.strand_share = frame.light.shadow_strand_share = 0.7f;
     // Of the approximate skips, those whose picture does not depend on earlier frames.
     frame.skips = draw_skips::exact();
     frame.skips.strands = frame.skips.segments = true;

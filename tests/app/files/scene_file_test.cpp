@@ -52,6 +52,7 @@ TEST(SceneFile, WritingAndReadingKeepsEveryRow) {
   scene.characters[0].position = {1.25, 0, -3};
   scene.characters[0].heading = 0.5;
   scene.characters[0].loop = app::LoopKind::kInPlace;
+  scene.playback.draw_budget_ms = 12.5;
   scene.camera.eye = app::Vec3(0.1, 0.2, 0.3);
   scene.camera.target = app::Vec3(1, 2, 3);
   const Scene copy = app::readScene(app::writeScene(scene), scene.file);
@@ -62,6 +63,7 @@ TEST(SceneFile, WritingAndReadingKeepsEveryRow) {
   }
   EXPECT_EQ(copy.characters[0].position, scene.characters[0].position);
   EXPECT_EQ(copy.characters[0].loop, scene.characters[0].loop);
+  EXPECT_EQ(copy.playback.draw_budget_ms, 12.5);
   EXPECT_EQ(*copy.camera.eye, *scene.camera.eye);
   EXPECT_EQ(app::writeScene(copy), app::writeScene(scene));
 }
@@ -95,6 +97,8 @@ TEST(SceneFile, FaultsNameFilePlaceAndMend) {
       {R"({"characters": [{}], "camera": {"eye": [0, 0, 1]}})", "/camera", "both"},
       {R"({"characters": [{}], "camera": {"eye": [0, 0, 1], "target": [0, 0, 1]}})", "/camera", "apart"},
       {R"({"characters": [{}], "playback": {"fps": 0}})", "/playback/fps", "from 1"},
+      {R"({"characters": [{}], "playback": {"draw_budget_ms": -1}})", "/playback/draw_budget_ms", "from 0"},
+      {R"({"characters": [{}], "playback": {"draw_budget_ms": "5"}})", "/playback/draw_budget_ms", "number"},
       {R"({"characters": [{}], "preset": "no such preset"})", "no such preset", ""},
       {R"({"characters": [{}], "name": "a", "name": "b"})", "name", "one of the two"},
       {"{\"characters\": [{}],\n\"sim\": {\"friction\": 1e999}}", "scene.json", "number"},

@@ -117,6 +117,8 @@ Request randomEdit(std::mt19937& random) {
     case 25:
     case 26:
       return {Ask::kBudget, "", "", number(5)};
+    case 28:
+      return {Ask::kDrawBudget, "", "", number(5)};
     case 27:
       return {Ask::kDeadline, "", "", number(5)};
     default:

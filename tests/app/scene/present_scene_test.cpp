@@ -28,7 +28,8 @@ TEST(PresentScene, SavedAndOpenedItIsTheSame) {
   demo.requests = {{Ask::kSetParam, "density", "90"},        {Ask::kSetParam, "beta_m", "0.41"},
                    {Ask::kSetParam, "key", "1,0.5,0.25"},    {Ask::kSpeed, "", "", 3},
                    {Ask::kMotionFile, "", "walk.bvh"},       {Ask::kLoop, "in-place", ""},
-                   {Ask::kView, "back", ""},                 {Ask::kBudget, "", "", 2}};
+                   {Ask::kView, "back", ""},                 {Ask::kBudget, "", "", 2},
+                   {Ask::kDrawBudget, "", "", 40}};
   app::advanceFrame(demo, 0, {});
   ASSERT_FALSE(demo.message_is_fault) << demo.message;
   app::orbit(40, 25, 720, demo.camera);
@@ -43,6 +44,8 @@ TEST(PresentScene, SavedAndOpenedItIsTheSame) {
   EXPECT_EQ(opened.scene.sim.density, 90);
   EXPECT_EQ(opened.scene.playback.speed, 3);
   EXPECT_EQ(opened.scene.playback.budget_ms, 2);
+  EXPECT_EQ(opened.scene.playback.draw_budget_ms, 40);
+  EXPECT_EQ(opened.draw_governor.budget, 0.04);
   EXPECT_EQ(opened.actors[0].spec.loop, app::LoopKind::kInPlace);
   EXPECT_TRUE(opened.actors[0].spec.motion.ends_with("walk.bvh"));
   EXPECT_EQ(app::writeScene(app::movable(app::presentScene(opened))).size(),
