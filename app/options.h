@@ -37,8 +37,8 @@ struct Options {
   std::string fit;                                       // of the hair file: on or off; empty: the scene's
   std::string write_hair;                                // OBJ of the first character's hair mesh, in place of a run
   double budget_ms = -1, deadline_ms = -1, draw_budget_ms = -1;  // negative: the scene's
-  double speed = -1, fps = -1;                           // negative: the scene's
-  double start = -1;                                     // s into the clip; negative: the scene's
+  double speed = -1, fps = -1;                                   // negative: the scene's
+  double start = -1;                                             // s into the clip; negative: the scene's
   int strands = -1;
   std::string camera;       // front, side, back, top, three-quarter or "ex,ey,ez,tx,ty,tz"
   std::string framing;      // head, bust or figure

@@ -142,7 +142,7 @@ struct LightInput {
   float layer_thickness = 0.0f;  // m of the first layer; 0: derived from the hair's extent
   float shadow_strength = 1.0f;  // scales opacity
   float shadow_strands_per_pixel =
-      24.0f;  // of the hair's projected diameter: strands that cast shadow when it is small
+      24.0f;                      // of the hair's projected diameter: strands that cast shadow when it is small
   float shadow_strand_share = 1;  // of those, this share casts shadow, each standing for more hairs
   bool shadows = true;
 

@@ -337,11 +337,9 @@ render::FrameReport drawPair(Demo& demo, const FrameTarget& target, bool measure
   const render::FrameInput first = frameInput(demo, left, target.height);
   const render::FrameInput second = frameInput(other, right, target.height);
   if (target.pixels) {
-    return target.pair->renderImage(*target.renderer, first, second, layout, target.width, *target.pixels,
-                                    measure);
+    return target.pair->renderImage(*target.renderer, first, second, layout, target.width, *target.pixels, measure);
   }
-  return target.pair->renderFrame(*target.renderer, first, second, layout, target.width, target.framebuffer,
-                                  measure);
+  return target.pair->renderFrame(*target.renderer, first, second, layout, target.width, target.framebuffer, measure);
 }
 
 }  // namespace

@@ -20,8 +20,8 @@ namespace bench {
 namespace {
 
 using app::Resolution;
-using sim::SimParams;
 using app::Style;
+using sim::SimParams;
 
 constexpr double kWalk = 1.0;  // s of the walk that ratios and errors are taken from
 constexpr double kFrame = 1.0 / 60;

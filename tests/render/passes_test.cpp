@@ -41,8 +41,7 @@ Members<T...> makeMembers(const char* names, std::tuple<T&...> values) {
   }
 MEMBERS(CameraInput, eye, target, up, fov_y, near_plane, far_plane)
 MEMBERS(LightInput, to_light, key, fill, rim, to_fill, to_rim, ambient_sky, ambient_ground, shadow_size, shadow_strands,
-        opacity_layers, layer_thickness, shadow_strength, shadow_strands_per_pixel,
-        shadow_strand_share, shadows)
+        opacity_layers, layer_thickness, shadow_strength, shadow_strands_per_pixel, shadow_strand_share, shadows)
 MEMBERS(ViewOptions, samples, exposure, backdrop_top, backdrop_bottom, ground_color, ground_height, ground,
         show_strands, show_body, strand_path, strands_per_pixel, strand_share, segment_error)
 MEMBERS(DrawSkips, frame, rows, shadows, view, shadow_view, body_parts, body_detail, strands, segments, shadow_detail,

@@ -25,11 +25,10 @@ app::Demo smallDemo() {
 
 TEST(PresentScene, SavedAndOpenedItIsTheSame) {
   app::Demo demo = smallDemo();
-  demo.requests = {{Ask::kSetParam, "density", "90"},        {Ask::kSetParam, "beta_m", "0.41"},
-                   {Ask::kSetParam, "key", "1,0.5,0.25"},    {Ask::kSpeed, "", "", 3},
-                   {Ask::kMotionFile, "", "walk.bvh"},       {Ask::kLoop, "in-place", ""},
-                   {Ask::kView, "back", ""},                 {Ask::kBudget, "", "", 2},
-                   {Ask::kDrawBudget, "", "", 40}};
+  demo.requests = {
+      {Ask::kSetParam, "density", "90"}, {Ask::kSetParam, "beta_m", "0.41"}, {Ask::kSetParam, "key", "1,0.5,0.25"},
+      {Ask::kSpeed, "", "", 3},          {Ask::kMotionFile, "", "walk.bvh"}, {Ask::kLoop, "in-place", ""},
+      {Ask::kView, "back", ""},          {Ask::kBudget, "", "", 2},          {Ask::kDrawBudget, "", "", 40}};
   app::advanceFrame(demo, 0, {});
   ASSERT_FALSE(demo.message_is_fault) << demo.message;
   app::orbit(40, 25, 720, demo.camera);
