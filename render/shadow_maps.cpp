@@ -91,7 +91,13 @@ int tileFor(float texels, int size) {
 
 }  // namespace
 
-ShadowMaps::ShadowMaps() : framebuffer_(makeFramebuffer()) {}
+ShadowMaps::ShadowMaps() : framebuffer_(makeFramebuffer()), plain_(makeSampler()) {
+  glSamplerParameteri(plain_.id(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glSamplerParameteri(plain_.id(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  glSamplerParameteri(plain_.id(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glSamplerParameteri(plain_.id(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  glSamplerParameteri(plain_.id(), GL_TEXTURE_COMPARE_MODE, GL_NONE);
+}
 
 void ShadowMaps::allocate(const TextureExtent& extent) {
   const bool same_size = extent.width == extent_.width;
@@ -404,6 +410,8 @@ void ShadowMaps::bindMaps() const {
   glBindTextureUnit(shared::kUnitHairDepth, hair_depth_.id());
   glBindTextureUnit(shared::kUnitBodyInHairDepth, body_in_hair_depth_.id());
   glBindTextureUnit(shared::kUnitBodyDepth, body_depth_.id());
+  glBindTextureUnit(shared::kUnitBodyDepthPlain, body_depth_.id());
+  glBindSampler(shared::kUnitBodyDepthPlain, plain_.id());
 }
 
 void ShadowMaps::forget() {

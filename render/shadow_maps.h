@@ -113,6 +113,7 @@ class ShadowMaps {
 
   Framebuffer framebuffer_;
   Texture opacity_near_, opacity_far_, hair_depth_, body_in_hair_depth_, body_depth_;
+  Sampler plain_;  // for depth that is read and not compared
   Buffer block_, grid_block_;
   TextureExtent extent_;  // of the hairs' maps; a whole tile is as wide
   int steps_down_ = 0;    // from as many texels a pixel as are wanted to those there is room for

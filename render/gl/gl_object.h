@@ -42,6 +42,9 @@ struct BufferTraits {
 struct TextureTraits {
   static void destroy(GLuint id) { glDeleteTextures(1, &id); }
 };
+struct SamplerTraits {
+  static void destroy(GLuint id) { glDeleteSamplers(1, &id); }
+};
 struct VertexArrayTraits {
   static void destroy(GLuint id) { glDeleteVertexArrays(1, &id); }
 };
@@ -60,6 +63,7 @@ struct ProgramTraits {
 
 using Buffer = GlObject<BufferTraits>;
 using Texture = GlObject<TextureTraits>;
+using Sampler = GlObject<SamplerTraits>;
 using VertexArray = GlObject<VertexArrayTraits>;
 using Framebuffer = GlObject<FramebufferTraits>;
 using Query = GlObject<QueryTraits>;
@@ -75,6 +79,11 @@ inline Texture makeTexture(GLenum target) {
   GLuint id = 0;
   glCreateTextures(target, 1, &id);
   return Texture(id);
+}
+inline Sampler makeSampler() {
+  GLuint id = 0;
+  glCreateSamplers(1, &id);
+  return Sampler(id);
 }
 inline VertexArray makeVertexArray() {
   GLuint id = 0;

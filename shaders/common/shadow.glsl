@@ -7,6 +7,7 @@ layout(binding = kUnitOpacityFar) uniform sampler2DArray opacity_far;    // laye
 layout(binding = kUnitHairDepth) uniform sampler2DArray hair_depth;
 layout(binding = kUnitBodyInHairDepth) uniform sampler2DArrayShadow body_in_hair_depth;
 layout(binding = kUnitBodyDepth) uniform sampler2DArrayShadow body_depth;
+layout(binding = kUnitBodyDepthPlain) uniform sampler2DArray body_depth_plain;
 
 // Light-space texture coordinates and depth of a world point in hair shadow map `map`; outside of [0, 1] where not
 // covered.
@@ -75,7 +76,7 @@ float bodyLightOnHair(int map, vec3 at) {
 }
 
 // A lamp of some size: hair's shadow widens with the distance from the hair. m at the hair; rad.
-const float kMinRadius = 0.008, kLampAngle = 0.035;
+const float kMinRadius = 0.008, kLampAngle = 0.1;
 const int kTaps = 12;
 
 // Tap `i` of so many on a disc of radius 1: a spiral of golden angles (Vogel 1979).
@@ -151,18 +152,46 @@ float hairLightOnSurface(vec3 world) {
   return light;
 }
 
-// Light left after the bodies, for a point of body or ground: percentage-closer filtering over 3 x 3 taps, in the first
-// map that covers the point.
+// x: how far above a point the bodies stand that may shade it (m), over a disc: the mean of what is found. y: the share
+// of the taps that found one. Surfaces that the light grazes rise towards it themselves: `rise` (m a m) counts for
+// nothing.
+const float kBodyReach = 0.04;  // m
+const int kSoughtTaps = 12, kBodyTaps = 24;
+vec2 bodiesAbove(int map, vec3 at, vec2 scale, float rise) {
+  vec2 sum = vec2(0.0);
+  for (int i = 0; i < kSoughtTaps; ++i) {
+    vec2 tap = kBodyReach * discTap(i, float(kSoughtTaps));
+    float first = textureLod(body_depth_plain, vec3(at.xy + tap * scale.x, map), 0.0).r;
+    float height = (at.z - first) / scale.y - rise * length(tap), weight = clamp((height - 0.002) / 0.006, 0.0, 1.0);
+    if (first >= 1.0) weight = 0.0;
+    sum += weight * vec2(height, 1.0);
+  }
+  return vec2(sum.x / max(sum.y, 1e-6), sum.y / float(kSoughtTaps));
+}
+
+// Light left after the bodies, for a point of body or ground, in the first map that covers it: percentage-closer
+// filtering over a disc as wide as the lamp draws the shadow's edge out (Fernando 2005). Full light and full shadow need
+// no filter.
 float bodyLightOnSurface(vec3 world, vec3 normal) {
   for (int map = 0; map < int(opacity.w); ++map) {
-    vec3 at = (body_shadow[map] * vec4(world + normal * 0.012, 1.0)).xyz * 0.5 + 0.5;
+    mat4 to_map = body_shadow[map];
+    vec3 at = (to_map * vec4(world + normal * 0.012, 1.0)).xyz * 0.5 + 0.5;
     if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) continue;
-    at.z = min(at.z, 1.0);  // the ground lies behind the frustum around the bodies, and behind every one of them
-    float sum = 0.0, texel = 1.4 / float(textureSize(body_depth, 0).x);
-    for (int y = -1; y <= 1; ++y)
-      for (int x = -1; x <= 1; ++x)
-        sum += texture(body_depth, vec4(at.xy + vec2(x, y) * texel, map, at.z - 0.0012));
-    return sum / 9.0;
+    // Of the map, a metre: of its side and of its depth.
+    vec2 scale = 0.5 * vec2(length(vec3(to_map[0].x, to_map[1].x, to_map[2].x)),
+                            length(vec3(to_map[0].z, to_map[1].z, to_map[2].z)));
+    float facing = max(dot(normal, to_key.xyz), 0.3), rise = sqrt(1.0 - facing * facing) / facing;
+    vec2 above = bodiesAbove(map, at, scale, rise);
+    float texel = 2.0 / (float(textureSize(body_depth, 0).x) * scale.x);  // m
+    float reach = clamp(0.5 * kLampAngle * above.x, texel, kBodyReach), sum = 0.0;
+    int taps = above.y > 0.0 && above.y < 1.0 ? kBodyTaps : 0;
+    for (int i = 0; i < taps; ++i) {
+      vec2 tap = reach * discTap(i, float(kBodyTaps));
+      // The ground lies behind the frustum around the bodies, and behind every one of them.
+      float depth = min(at.z - 0.0012 - rise * length(tap) * scale.y, 0.9988);
+      sum += texture(body_depth, vec4(at.xy + tap * scale.x, map, depth));
+    }
+    return taps > 0 ? sum / float(kBodyTaps) : above.y > 0.0 ? 0.0 : 1.0;
   }
   return 1.0;
 }
