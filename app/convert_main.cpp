@@ -113,7 +113,8 @@ std::string presetText(const app::LookFit& fit, const std::string& name) {
   nlohmann::ordered_json hair{
       {"length_variation", look.length_variation}, {"offset", look.offset},         {"clump", look.clump},
       {"curl_radius", look.curl_radius},           {"curl_pitch", look.curl_pitch}, {"frizz", look.frizz}};
-  for (const char* none : {"lock", "wisp", "drift", "hairline", "baby_hairs", "flyaways"}) hair[none] = 0;
+  for (const char* none : {"lock", "wisp", "drift", "root_spread", "hairline", "baby_hairs", "flyaways"})
+    hair[none] = 0;
   if (fit.taper >= 0) hair["taper"] = look.taper;
   return nlohmann::ordered_json{{"name", name}, {"hair", hair}}.dump(2) + "\n";
 }

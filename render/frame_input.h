@@ -35,6 +35,7 @@ struct HairLook {
   float clump_size = 0.012f;        // m, typical spacing of clumps on the scalp
   float lock = 0.3f, wisp = 0.35f;  // 0..1 pull of clumps into locks, of hairs into wisps: 3.2 and 0.3 clump sizes
   float drift = 0.002f;             // m, how far locks and clumps stray along their length
+  float root_spread = 0.0026f;      // m that hairs fan out beside each other on their first centimetres
   float curl_radius = 0.0f, curl_pitch = 0.035f;  // m; m of hair a turn
   float wave_height = 0.0f, wave_length = 0.06f;  // m, from crest to trough and from crest to crest
   float frizz = 0.0007f;                          // m, small-scale noise amplitude
@@ -49,9 +50,10 @@ struct HairLook {
   float root_darkening = 0.35f, tint_variation = 0.2f;
   float beta_m = 0.24f, beta_n = 0.3f;  // longitudinal and azimuthal roughness, 0..1
   float eta = 1.55f;
-  float cuticle_angle = 0.05f;  // rad, scale tilt that shifts the R and TRT highlights
-  float specular = 1;           // of R and TRT; what they gain, the light that passes through loses
-  float diffuse = 1;            // 0..1, share of the light between strands that is kept
+  float cuticle_angle = 0.05f;    // rad, scale tilt that shifts the R and TRT highlights
+  float shine_variation = 0.25f;  // rad, tilt of a strand's highlights against the others', at most
+  float specular = 1;             // of R and TRT; what they gain, the light that passes through loses
+  float diffuse = 1;              // 0..1, share of the light between strands that is kept
   std::uint32_t seed = 1;
 
   bool operator==(const HairLook&) const = default;

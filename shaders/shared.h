@@ -45,6 +45,7 @@ const int kShareTexels = 2;      // shares of width, clump, curl and roughness; 
 // Sizes of a lock and of a wisp over that of a clump.
 const float kLockSize = 3.2;
 const float kWispSize = 0.3;
+const float kFanReach = 0.015;  // m of hair, to where hairs that fan out at the roots are farthest apart
 
 // Texture units.
 const int kUnitVertices = 0;
@@ -60,6 +61,7 @@ const int kUnitColor = 9;
 const int kUnitTable = 10;
 const int kUnitSkin = 11;
 const int kUnitMaterials = 12;
+const int kUnitBodyDepthPlain = 13;  // the same as kUnitBodyDepth, read and not compared
 
 // Strands' points between the stages of the software path (render/software/software_strands.h,
 // render/software/software_shadow.h).
@@ -134,15 +136,16 @@ SHARED_BLOCK(4, ShadowGridBlock) {
 };
 
 SHARED_BLOCK(1, HairBlock) {
-  ivec4 counts;   // faces, entries of the draw table, its first texel, seed
-  ivec4 draw;     // strands, chunks a strand, points a strand, own shadow map or -1
-  vec4 detail;    // strands of a rank below x are drawn, above y are not; width gain; segments a layer
-  vec4 width;     // drawn radius at the root (m), tip over root, projected diameter of the hairs one strand stands for
-                  // (m), least width (pixels)
-  vec4 shape;     // length variation, offset (m), curl radius (m), curl pitch (m a turn)
-  vec4 clumping;  // clump, clump size (m), frizz (m), share of flyaways
-  vec4 groups;    // lock, wisp, drift of locks and clumps (m), lift of flyaways (m)
-  vec4 waves;     // wave height (m), wave length (m), width of the hairline (m), share of fine hairs there
+  ivec4 counts;    // faces, entries of the draw table, its first texel, seed
+  ivec4 draw;      // strands, chunks a strand, points a strand, own shadow map or -1
+  vec4 detail;     // strands of a rank below x are drawn, above y are not; width gain; segments a layer
+  vec4 width;      // drawn radius at the root (m), tip over root, projected diameter of the hairs one strand stands for
+                   // (m), least width (pixels)
+  vec4 shape;      // length variation, offset (m), curl radius (m), curl pitch (m a turn)
+  vec4 clumping;   // clump, clump size (m), frizz (m), share of flyaways
+  vec4 groups;     // lock, wisp, drift of locks and clumps (m), lift of flyaways (m)
+  vec4 waves;      // wave height (m), wave length (m), width of the hairline (m), share of fine hairs there
+  vec4 variation;  // spread of the roots (m), tilt of a strand's highlights at most (rad)
   vec4 lobe_width;       // standard deviations (rad) of R, TT, TRT over the half angle; w: cuticle angle
   vec4 gain;             // share of the real hairs' width that is drawn, diffuse, root darkening, tint variation
   vec4 forward_albedo;   // mean forward scattering attenuation a_f (Zinke et al. 2008)

@@ -252,7 +252,7 @@ inline app::Groom twoWays(int strands) {
 inline app::Groom styled(app::Style style, app::Resolution resolution, int strands) {
   render::HairLook look;
   look.offset = look.clump = look.frizz = look.flyaways = 0;
-  look.lock = look.wisp = look.drift = look.hairline = look.baby_hairs = 0;
+  look.lock = look.wisp = look.drift = look.root_spread = look.hairline = look.baby_hairs = 0;
   return app::growGroom(app::makeStyle(style, resolution, tests::analyticScalp(), tests::bodyDistance), look, strands,
                         33);
 }

@@ -159,8 +159,8 @@ inline Body makeBody() {
 // Every variation off: strands are the hair mesh's own curves.
 inline render::HairLook plainLook() {
   render::HairLook look;
-  look.length_variation = look.offset = look.clump = look.lock = look.wisp = look.drift = look.curl_radius =
-      look.wave_height = look.frizz = look.flyaways = look.hairline = 0;
+  look.length_variation = look.offset = look.clump = look.lock = look.wisp = look.drift = look.root_spread =
+      look.curl_radius = look.wave_height = look.frizz = look.flyaways = look.hairline = 0;
   return look;
 }
 

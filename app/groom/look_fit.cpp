@@ -212,7 +212,7 @@ void takeLook(const LookFit& fit, render::HairLook& look) {
   look.offset = static_cast<float>(std::min(fit.all.offset, 0.02));
   look.clump = static_cast<float>(fit.all.clump);
   // What the groom has in its strands' places is not added once more.
-  look.lock = look.wisp = look.drift = look.hairline = look.baby_hairs = look.flyaways = 0;
+  look.lock = look.wisp = look.drift = look.root_spread = look.hairline = look.baby_hairs = look.flyaways = 0;
   if (fit.taper >= 0) look.taper = static_cast<float>(fit.taper);
 }
 
@@ -224,7 +224,8 @@ void takeUnset(const LookFit& fit, render::HairLook& look) {
        {&render::HairLook::length_variation, &render::HairLook::offset, &render::HairLook::clump,
         &render::HairLook::curl_radius, &render::HairLook::curl_pitch, &render::HairLook::frizz,
         &render::HairLook::taper, &render::HairLook::lock, &render::HairLook::wisp, &render::HairLook::drift,
-        &render::HairLook::hairline, &render::HairLook::baby_hairs, &render::HairLook::flyaways}) {
+        &render::HairLook::root_spread, &render::HairLook::hairline, &render::HairLook::baby_hairs,
+        &render::HairLook::flyaways}) {
     if (look.*row == usual.*row) look.*row = fitted.*row;
   }
 }

@@ -107,6 +107,7 @@ long uploadBlock(HairResources& hair) {
   block.clumping = {look.clump, look.clump_size, look.frizz, look.flyaways};
   block.groups = {look.lock, look.wisp, look.drift, look.flyaway_lift};
   block.waves = {look.wave_height, look.wave_length, look.hairline, look.baby_hairs};
+  block.variation = {look.root_spread, look.shine_variation, 0, 0};
   block.lobe_width = {widths[0], widths[1], widths[2], look.cuticle_angle};
   // Share of the real hairs' width that is drawn; under a half the gaps would let all light in.
   const float covered = std::clamp(std::pow(represented, look.width_compensation - 1), 0.5f, 1.0f);
@@ -182,7 +183,7 @@ constexpr float kSoftLightPixels = 110;
 }  // namespace
 
 float sidewaysReach(const HairLook& look, float curl_share) {
-  return 0.01f + 6 * look.offset + 2.5f * look.drift + 1.5f * curl_share * look.curl_radius + 0.6f * look.wave_height +
+  return 0.01f + 6 * look.offset + 2 * look.root_spread + look.hairline + 2.5f * look.drift + 1.5f * curl_share * look.curl_radius + 0.6f * look.wave_height +
          3 * look.frizz + 2 * look.flyaway_lift + look.clump_size * (1 + 2 * look.lock);
 }
 

@@ -20,7 +20,7 @@ using Eigen::Vector4f;
 
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr int kVertexTexels = 3;
-constexpr float kLockSize = 3.2f, kWispSize = 0.3f;  // as in shaders/shared.h
+constexpr float kLockSize = 3.2f, kWispSize = 0.3f, kFanReach = 0.015f;  // as in shaders/shared.h
 
 Vector2f facePoint(uint face, uint index, uint key, uint seed) {
   const Vector2f shift(unitFloat(hash(face, seed)), unitFloat(hash(face + 0x51ed27u, seed)));
@@ -208,6 +208,8 @@ void StrandGrowth::joinGroups(const Root& root, Strand& strand) const {
   strand.clump = size * inPlane(clump.gap);
   strand.lock = kLockSize * size * inPlane(lock.gap);
   strand.wisp = kWispSize * size * inPlane(wisp.gap);
+  strand.fan =
+      2.718282f * look_.root_spread * std::sqrt(randomOf(strand.key, 32u)) * onCircle(randomOf(strand.key, 33u));
   const float frizzy = std::min(look_.frizz * 200.0f, 0.8f) * randomOf(strand.key, 24u);
   strand.hold = (1.0f - strand.loose) * (1.0f - frizzy) * (0.75f + 0.25f * randomOf(strand.key, 5u));
 }
@@ -216,22 +218,28 @@ void StrandGrowth::thinHairline(const Root& root, Strand& strand) const {
   if (look_.hairline <= 0.0f) return;
   const float ragged = 0.6f * (randomOf(strand.clump_key, 23u) - 0.5f);
   const float inside = std::clamp(root.edge / look_.hairline + ragged, 0.0f, 1.0f);
-  if (randomOf(strand.key, 18u) > 0.15f + 0.85f * smoothstep(0.0f, 0.8f, inside)) strand.gain = 0.0f;
+  const float chance = randomOf(strand.key, 18u), grown = 0.15f + 0.85f * smoothstep(0.0f, 0.8f, inside);
   strand.rim = 1.0f - inside;
   strand.fine = randomOf(strand.key, 19u) < look_.baby_hairs * strand.rim ? 1.0f : 0.0f;
-  strand.astray = strand.fine * (0.1f + 0.4f * randomOf(strand.key, 6u)) * root.outward;
+  if (chance > mix(grown, 1.0f, 0.8f * strand.fine)) strand.gain = 0.0f;
+  strand.astray = strand.fine * (0.9f * randomOf(strand.key, 6u) - 0.3f) * root.outward;
+  const float alone = randomOf(strand.key, 31u), wisp = randomOf(strand.clump_key, 31u);
+  const float before = 0.35f * (alone * alone + wisp * wisp * wisp);
+  strand.shift = strand.rim * look_.hairline * before * root.outward;
+  strand.gain *= 1.0f - mix(0.3f, 0.6f, strand.fine) * strand.rim * alone;
 }
 
 void StrandGrowth::cutStrand(const Root& root, Strand& strand) const {
   const float own = randomOf(strand.key, 4u), apart = strand.clump.norm() / (0.6f * std::max(look_.clump_size, 1e-4f));
-  const float early = 0.6f * own * own + 0.12f * randomOf(strand.clump_key, 4u) +
-                      0.13f * randomOf(strand.lock_key, 4u) + 0.15f * std::min(apart * apart, 1.0f);
+  const float early = 0.4f * own * own + 0.25f * randomOf(strand.clump_key, 4u) + 0.2f * randomOf(strand.lock_key, 4u) +
+                      0.15f * std::min(apart * apart, 1.0f);
   strand.end = root.cut * (1.0f - look_.length_variation * early);
   const Vector2f chance(randomOf(strand.key, 22u), randomOf(strand.key, 25u));
   if (strand.fine > 0.0f) {
-    strand.end = std::min(strand.end, layersAt(strand, 0.006f + 0.022f * chance.x() * chance.x()));
-    strand.gain *= 0.7f;
+    strand.end = std::min(strand.end, layersAt(strand, 0.006f + 0.028f * chance.x() * chance.x()));
+    strand.gain *= 0.25f + 0.3f * chance.y();
     strand.hold = 0.0f;
+    if (2.0f * strand.end <= static_cast<float>(strand.layers - 1)) strand.segments *= 2.0f;
   } else if (strand.loose > 0.0f) {
     if (chance.x() < 0.4f) strand.end = std::min(strand.end, layersAt(strand, 0.02f + 0.12f * chance.y()));
     strand.gain *= 0.7f;
@@ -275,7 +283,9 @@ Strand StrandGrowth::strand(int number) const {
 }
 
 Vector2f StrandGrowth::groupPull(const Strand& strand, float layer) const {
-  if (strand.fine > 0.0f) return wayAt(strand, layer).x() * strand.astray;
+  const float way = wayAt(strand, layer).x(), far = way / kFanReach;
+  const Vector2f own = strand.shift + far * std::exp(-far) * strand.fan;
+  if (strand.fine > 0.0f) return own + way * strand.astray;
   const float t = layer / static_cast<float>(strand.layers - 1);
   Vector2f pull = strand.hold * look_.wisp * smoothstep(0.0f, 0.25f, t) * strand.wisp;
   float clump = look_.clump;
@@ -283,7 +293,7 @@ Vector2f StrandGrowth::groupPull(const Strand& strand, float layer) const {
     clump *= strand.share.clump * shareAlong(layout_, layer / std::max(strand.end, 1e-3f)).clump;
   pull += strand.hold * clump * clumpClosing(t, strand.clump_key) * (strand.clump - pull);
   pull += strand.hold * look_.lock * lockClosing(t) * (strand.lock - pull);
-  return pull;
+  return own + pull;
 }
 
 StrandGrowth::LayerPoint StrandGrowth::layerPoint(const Strand& strand, int layer) const {
@@ -318,7 +328,7 @@ void StrandGrowth::addWander(const Strand& strand, float s, Vector4f& bend) cons
       strand.loose + strand.fine > 0.0f ? std::max(strand.end, 1e-3f) : static_cast<float>(strand.layers - 1);
   const float t = s / span;
   const float reach =
-      look_.offset * (1.0f + 5.0f * strand.loose + 3.0f * strand.rim) + 0.2f * strand.fine * strand.metres;
+      look_.offset * (1.0f + 5.0f * strand.loose + 3.0f * strand.rim) + 0.06f * strand.fine * strand.metres;
   const Vector2f away = reach * std::sqrt(randomOf(strand.key, 9u)) * onCircle(randomOf(strand.key, 8u));
   const Vector2f grow(t * (1.6f - 0.6f * t), (1.6f - 1.2f * t) / span);
   const float turns = 0.7f + 0.8f * randomOf(strand.key, 10u);

@@ -39,6 +39,8 @@ struct Strand {
   float fine = 0;                                      // 1 for a short fine hair of the hairline, else 0
   float rim = 0;                                       // 1 at the hairline .. 0 well inside
   Eigen::Vector2f astray = Eigen::Vector2f::Zero();    // m a m of hair: how a fine hair leaves the others
+  Eigen::Vector2f shift = Eigen::Vector2f::Zero();     // m: how far before the hairline it roots
+  Eigen::Vector2f fan = Eigen::Vector2f::Zero();       // m: e times how far it goes aside near its root
   float hold = 0;                                      // 0..1: how far it goes along with its groups
   float segments = 1;                                  // a layer
   float gain = 1;                                      // of width: how many strands this one stands for; 0: not grown

@@ -114,7 +114,11 @@ vec3 strandTint(in Strand strand, float along) {
 vec3 shadeStrand(in Strand strand, in CurvePoint point) {
   vec3 to_eye = normalize(eye.xyz - point.position), tint = strandTint(strand, point.along);
   float rough = shares.x > 0 ? strand.share.of.w * shareAlong(point.along, 0).w : 1.0;
-  EyeSide side = eyeSide(point.tangent, to_eye, rough);
+  vec3 outward = unitOr(point.position - center.xyz, vec3(0.0, 1.0, 0.0));
+  // Scales and bends too small to be drawn tilt each strand's highlights, those of a clump alike.
+  float tilt = variation.y * (1.2 * randomOf(strand.key, 34u) + 0.8 * randomOf(strand.clump_key, 34u) - 1.0);
+  vec3 tangent = point.tangent + tilt * (outward - point.tangent * dot(outward, point.tangent));
+  EyeSide side = eyeSide(unitOr(tangent, point.tangent), to_eye, rough);
   vec2 tau_fill = vec2(point.light.y, point.behind.x), tau_rim = vec2(point.light.z, point.behind.y);
   vec2 tau_key = 0.5 * (tau_fill + tau_rim);
   float lit = 1.0;
@@ -127,7 +131,6 @@ vec3 shadeStrand(in Strand strand, in CurvePoint point) {
   tau_key.x *= gain.x;
   tau_fill.x *= gain.x;
   tau_rim.x *= gain.x;
-  vec3 outward = unitOr(point.position - center.xyz, vec3(0.0, 1.0, 0.0));
   vec3 slant = max(abs(vec3(dot(outward, to_key.xyz), dot(outward, to_fill.xyz), dot(outward, to_rim.xyz))), 0.1);
   vec3 radiance = lit * key.rgb * scatterLight(scatterGeometry(side, to_key.xyz), tau_key, slant.x, tint);
   radiance += fill.rgb * scatterLight(scatterGeometry(side, to_fill.xyz), tau_fill, slant.y, tint);

@@ -44,6 +44,8 @@ struct Strand {
   float fine;      // 1 for a short fine hair of the hairline, else 0
   float rim;       // 1 at the hairline .. 0 well inside
   vec2 astray;     // m a m of hair, in the rest scalp's plane: how a fine hair leaves the others
+  vec2 shift;      // m, in the same: how far before the hairline it roots
+  vec2 fan;        // m, in the same: e times how far it goes aside before it falls in with the others
   float hold;      // 0..1: how far it goes along with its groups
   float segments;  // a layer
   float gain;      // of width and opacity: how many strands this one stands for; 0: left out
@@ -180,6 +182,8 @@ Group groupOf(vec3 root, float size, uint level) {
 
 vec2 inPlane(in Root root, vec3 gap) { return vec2(dot(gap, root.axis_u), dot(gap, root.axis_v)); }
 
+vec2 onCircle(float turn) { return vec2(cos(2.0 * kPi * turn), sin(2.0 * kPi * turn)); }
+
 // Hairs keep together in wisps, wisps in clumps, clumps in locks.
 void joinGroups(in Root root, inout Strand strand) {
   float size = max(clumping.y, 1e-4);
@@ -190,6 +194,7 @@ void joinGroups(in Root root, inout Strand strand) {
   strand.clump = size * inPlane(root, clump.gap);
   strand.lock = kLockSize * size * inPlane(root, lock.gap);
   strand.wisp = kWispSize * size * inPlane(root, wisp.gap);
+  strand.fan = 2.718282 * variation.x * sqrt(randomOf(strand.key, 32u)) * onCircle(randomOf(strand.key, 33u));
   // Frizzy hairs leave their groups.
   float frizzy = min(clumping.z * 200.0, 0.8) * randomOf(strand.key, 24u);
   strand.hold = (1.0 - strand.loose) * (1.0 - frizzy) * (0.75 + 0.25 * randomOf(strand.key, 5u));
@@ -198,28 +203,36 @@ void joinGroups(in Root root, inout Strand strand) {
 // Towards the hairline fewer hairs grow, and more of them are short and fine.
 void thinHairline(in Root root, inout Strand strand) {
   strand.rim = 0.0;
-  strand.astray = vec2(0.0);
+  strand.astray = strand.shift = vec2(0.0);
   if (waves.z <= 0.0) return;
   float ragged = 0.6 * (randomOf(strand.clump_key, 23u) - 0.5);  // a hairline is no smooth curve
   float inside = clamp(root.edge / waves.z + ragged, 0.0, 1.0);
-  if (randomOf(strand.key, 18u) > 0.15 + 0.85 * smoothstep(0.0, 0.8, inside)) strand.gain = 0.0;
+  float chance = randomOf(strand.key, 18u), grown = 0.15 + 0.85 * smoothstep(0.0, 0.8, inside);
   strand.rim = 1.0 - inside;
   strand.fine = randomOf(strand.key, 19u) < waves.w * strand.rim ? 1.0 : 0.0;
-  strand.astray = strand.fine * (0.1 + 0.4 * randomOf(strand.key, 6u)) * root.outward;
+  // Of fine hairs more are left than of others.
+  if (chance > mix(grown, 1.0, 0.8 * strand.fine)) strand.gain = 0.0;
+  strand.astray = strand.fine * (0.9 * randomOf(strand.key, 6u) - 0.3) * root.outward;
+  // Some root before the others, alone or as a wisp.
+  float alone = randomOf(strand.key, 31u), wisp = randomOf(strand.clump_key, 31u);
+  float before = 0.35 * (alone * alone + wisp * wisp * wisp);
+  strand.shift = strand.rim * waves.z * before * root.outward;
+  strand.gain *= 1.0 - mix(0.3, 0.6, strand.fine) * strand.rim * alone;
 }
 
 // Where a strand ends. Locks and clumps are cut to lengths of their own, each clump to a point; stray hairs are often
 // broken.
 void cutStrand(in Root root, inout Strand strand) {
   float own = randomOf(strand.key, 4u), apart = length(strand.clump) / (0.6 * max(clumping.y, 1e-4));
-  float early = 0.6 * own * own + 0.12 * randomOf(strand.clump_key, 4u) + 0.13 * randomOf(strand.lock_key, 4u) +
+  float early = 0.4 * own * own + 0.25 * randomOf(strand.clump_key, 4u) + 0.2 * randomOf(strand.lock_key, 4u) +
                 0.15 * min(apart * apart, 1.0);
   strand.end = root.cut * (1.0 - shape.x * early);
   vec2 chance = vec2(randomOf(strand.key, 22u), randomOf(strand.key, 25u));
   if (strand.fine > 0.0) {
-    strand.end = min(strand.end, layersAt(strand, 0.006 + 0.022 * chance.x * chance.x));
-    strand.gain *= 0.7;
+    strand.end = min(strand.end, layersAt(strand, 0.006 + 0.028 * chance.x * chance.x));
+    strand.gain *= 0.25 + 0.3 * chance.y;
     strand.hold = 0.0;
+    if (2.0 * strand.end <= float(strand.layers - 1)) strand.segments *= 2.0;
   } else if (strand.loose > 0.0) {
     if (chance.x < 0.4) strand.end = min(strand.end, layersAt(strand, 0.02 + 0.12 * chance.y));
     strand.gain *= 0.7;
@@ -287,13 +300,15 @@ float lockClosing(float t) { return smoothstep(0.1, 0.7, t) * (1.0 - 0.6 * smoot
 
 // m in the rest scalp's plane: how far a strand has been drawn aside at a layer, by its groups or as a fine hair.
 vec2 groupPull(in Strand strand, float layer) {
-  if (strand.fine > 0.0) return wayAt(strand, layer).x * strand.astray;
+  float way = wayAt(strand, layer).x, far = way / kFanReach;
+  vec2 own = strand.shift + far * exp(-far) * strand.fan;
+  if (strand.fine > 0.0) return own + way * strand.astray;
   float t = layer / float(strand.layers - 1);
   vec2 pull = strand.hold * groups.y * smoothstep(0.0, 0.25, t) * strand.wisp;
   float clump = clumping.x;
   if (shares.x > 0) clump *= strand.share.of.y * shareAlong(layer / max(strand.end, 1e-3), 0).y;
   pull += strand.hold * clump * clumpClosing(t, strand.clump_key) * (strand.clump - pull);
-  return pull + strand.hold * groups.x * lockClosing(t) * (strand.lock - pull);
+  return own + pull + strand.hold * groups.x * lockClosing(t) * (strand.lock - pull);
 }
 
 LayerPoint layerPoint(in Strand strand, int layer) {
@@ -353,8 +368,6 @@ void addSwing(inout vec4 bend, vec2 away, vec2 open, vec2 angle) {
   bend.zw += (open.y * sine + open.x * cos(angle.x) * angle.y) * away;
 }
 
-vec2 onCircle(float turn) { return vec2(cos(2.0 * kPi * turn), sin(2.0 * kPi * turn)); }
-
 // The angle of a swing of some wave length (m) and phase (in turns), with its rate by s.
 vec2 swingAngle(vec2 way, float wave_length, float phase) {
   float rate = 2.0 * kPi / wave_length;
@@ -364,7 +377,7 @@ vec2 swingAngle(vec2 way, float wave_length, float phase) {
 // A hair's own way beside its guide, over all of its length; stray and fine hairs go further astray.
 void addWander(in Strand strand, float s, inout vec4 bend) {
   float span = strand.loose + strand.fine > 0.0 ? max(strand.end, 1e-3) : float(strand.layers - 1), t = s / span;
-  float reach = shape.y * (1.0 + 5.0 * strand.loose + 3.0 * strand.rim) + 0.2 * strand.fine * strand.metres;
+  float reach = shape.y * (1.0 + 5.0 * strand.loose + 3.0 * strand.rim) + 0.06 * strand.fine * strand.metres;
   vec2 away = reach * sqrt(randomOf(strand.key, 9u)) * onCircle(randomOf(strand.key, 8u));
   vec2 grow = vec2(t * (1.6 - 0.6 * t), (1.6 - 1.2 * t) / span);
   float turns = 0.7 + 0.8 * randomOf(strand.key, 10u);

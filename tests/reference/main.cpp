@@ -49,7 +49,8 @@ app::Demo openStyle(const std::string& style, const Asked& asked) {
   }
   app::Scene scene = app::sceneFromOptions(options);
   // One colour for all strands, as the tracer has.
-  scene.characters.front().look.hair.tint_variation = scene.characters.front().look.hair.root_darkening = 0;
+  render::HairLook& hair = scene.characters.front().look.hair;
+  hair.tint_variation = hair.root_darkening = hair.shine_variation = 0;
   app::Demo demo = app::openScene(std::move(scene), static_cast<double>(asked.trace.width) / asked.trace.height);
   app::advanceFrame(demo, 0, {});
   return demo;

@@ -47,9 +47,9 @@ MEMBERS(ViewOptions, samples, exposure, backdrop_top, backdrop_bottom, ground_co
 MEMBERS(DrawSkips, frame, rows, shadows, view, shadow_view, body_parts, body_detail, strands, segments, shadow_detail,
         skin, shading, hair_light, sky_visibility)
 MEMBERS(HairLook, strand_radius, strands_represented, width_compensation, least_pixels, taper, length_variation, offset,
-        clump, clump_size, lock, wisp, drift, curl_radius, curl_pitch, wave_height, wave_length, frizz, flyaways,
-        flyaway_lift, hairline, baby_hairs, eumelanin, pheomelanin, use_color, color, root_darkening, tint_variation,
-        beta_m, beta_n, eta, cuticle_angle, specular, diffuse, seed)
+        clump, clump_size, lock, wisp, drift, root_spread, curl_radius, curl_pitch, wave_height, wave_length, frizz,
+        flyaways, flyaway_lift, hairline, baby_hairs, eumelanin, pheomelanin, use_color, color, root_darkening,
+        tint_variation, beta_m, beta_n, eta, cuticle_angle, shine_variation, specular, diffuse, seed)
 MEMBERS(LookShares, roots, along)
 MEMBERS(HairInput, id, layout_revision, position_revision, layout_id, faces, positions, rest, strands,
         segments_per_layer, look, shares, skin)
