@@ -5,6 +5,7 @@
 #include <imgui/imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -31,6 +32,34 @@ TEST_F(Panels, TheTransportButtonsAskForWhatTheyShow) {
   EXPECT_TRUE(asked(click("record"), Ask::kRecord));
   click("help");
   EXPECT_TRUE(ui_.help);
+}
+
+TEST_F(Panels, EveryFieldIsChosenToBePaintedAndColorIsPicked) {
+  click("tab Hair");
+  const std::array labels{"Stiff", "Length", "Density", "Mass", "Bend", "Width", "Clump", "Curl", "Color", "Rough"};
+  ASSERT_EQ(labels.size(), app::kFieldNames.size());
+  for (std::size_t k = 0; k < labels.size(); ++k) {
+    click(std::string("paint ") + labels[k]);
+    EXPECT_EQ(ui_.brush.field, static_cast<int>(k)) << labels[k];
+    const bool color = app::kFieldNames[k] == "color";
+    EXPECT_EQ(find("brush_color") != nullptr, color);
+    EXPECT_EQ(find("brush_value") != nullptr, !color);
+  }
+  click("paint No paint");
+  EXPECT_EQ(ui_.brush.field, -1);
+}
+
+TEST_F(Panels, CurvesOfEveryFieldAreAskedFor) {
+  ImGui::GetIO().DisplaySize = {1280, 1600};  // all rows
+  click("tab Hair");
+  click("section Root to tip");
+  for (const std::string_view name : app::kCurveNames) {
+    const std::string row = "curve_" + std::string(name) + (name == "color" ? "2" : "");
+    const std::vector<app::Request> requests = click(row, 0.2f, -8);
+    EXPECT_TRUE(std::ranges::any_of(requests, [&](const app::Request& one) {
+      return one.what == Ask::kCurve && one.name == name;
+    })) << row;
+  }
 }
 
 TEST_F(Panels, EveryTabOpensByAClickOnIt) {
