@@ -5,15 +5,19 @@
 
 #include "app/files/errors.h"
 #include "app/styles/style_comb.h"
+#include "app/styles/style_untangle.h"
 
 namespace app {
 
 namespace {
 
-constexpr double kClear = 0.002;                            // m off the body, or as near as the hair was
-constexpr int kCurvePoints = 6;                             // a segment, of the curves that are compared
-constexpr int kReachOfLayer = 3;                            // layers beyond which a curve does not follow a vertex
-constexpr std::array kSlides{0.0, 0.1, 0.2, 0.3};           // layers, towards the one that is taken away
+constexpr double kClear = 0.002;                   // m off the body, or as near as the hair was
+constexpr int kCurvePoints = 6;                    // a segment, of the curves that are compared
+constexpr int kReachOfLayer = 3;                   // layers beyond which a curve does not follow a vertex
+constexpr std::array kSlides{0.0, 0.1, 0.2, 0.3};  // layers, towards the one that is taken away
+constexpr double kFat = 0.02;                      // see untangle
+constexpr int kUntanglings = 4;
+constexpr double kMostPasses = 16;                          // over the tips
 constexpr std::array kStraight{0.0, 0.25, 0.5, 0.75, 1.0};  // share of the chord in place of the curve
 
 int longestColumn(const sim::HairMeshShape& shape) {
@@ -51,15 +55,16 @@ double farthest(std::span<const Vec3> points, std::span<const Vec3> line) {
   return most;
 }
 
-// m, between the curves about `layer`. Where the tip is another, what is beyond either end does not count.
-double apart(const sim::HairMeshShape& before, const sim::HairMeshShape& after, int layer) {
+// m, between the curves up to `reach` layers from `layer`. Where the tip is another, what is beyond either end does not
+// count.
+double apart(const sim::HairMeshShape& before, const sim::HairMeshShape& after, int layer, int reach) {
   double most = 0;
   for (int c = 0; c < before.columnCount(); ++c) {
     const std::span<const Vec3> old = columnOf(before, c), fresh = columnOf(after, c);
     const int more = static_cast<int>(fresh.size()) - static_cast<int>(old.size());
-    if (more == 0) continue;
-    const int first = std::max(0, layer - kReachOfLayer);
-    const int last = std::min(static_cast<int>(old.size()) - 1, layer + kReachOfLayer);
+    if (more == 0 && reach <= kReachOfLayer) continue;
+    const int first = std::max(0, layer - reach);
+    const int last = std::min(static_cast<int>(old.size()) - 1, layer + reach);
     const bool same_tip = (old.back() - fresh.back()).norm() < 1e-9;
     const std::vector<Vec3> a = curveBetween(old, first, last);
     const std::vector<Vec3> b = curveBetween(fresh, first, std::min(last + more, static_cast<int>(fresh.size()) - 1));
@@ -119,26 +124,45 @@ bool isValid(const sim::HairMeshShape& shape) {
   }
 }
 
-// After the last layer columns go on in the mean direction of those around them, so that tapered ends do not cross.
-void evenTips(const sim::HairMeshShape& shape, int layer, EditedMesh& edited) {
+// Moves vertices, as little as it can, until the mesh is valid; whether it is.
+bool untangled(const sim::HairMeshShape& before, const BodyDistance& body, int layer, EditedMesh& edited) {
+  const BodyDistance around = body ? body : [](const Vec3&) { return 1.0; };
+  for (int round = 0; round < kUntanglings; ++round) {
+    if (untangle(around, kFat, kClear, edited.shape) > 0) break;
+  }
+  edited.moved = apart(before, edited.shape, layer, kMaxEditedLayers);
+  return isValid(edited.shape);
+}
+
+// After the last layer columns go on in the mean direction of those around them, the more so with every pass, so that
+// tapered ends do not cross.
+void evenTips(const sim::HairMeshShape& shape, int layer, int passes, EditedMesh& edited) {
   const auto columns = static_cast<std::size_t>(shape.columnCount());
-  std::vector<Vec3> sum(columns, Vec3::Zero());
-  std::vector<int> count(columns, 0);
-  for (const sim::RootFace& face : shape.root_faces) {
-    if (shape.bundleLayers(face) <= layer) continue;
-    for (int k = 0; k < face.corner_count; ++k) {
-      for (int other = 0; other < face.corner_count; ++other) {
-        const std::span<const Vec3> column = columnOf(shape, face.columns[static_cast<std::size_t>(other)]);
+  std::vector<Vec3> ways(columns, Vec3::Zero());
+  for (std::size_t c = 0; c < columns; ++c) {
+    const std::span<const Vec3> column = columnOf(shape, static_cast<int>(c));
+    ways[c] = column.back() - column[column.size() - 2];
+  }
+  for (int pass = 0; pass < passes; ++pass) {
+    std::vector<Vec3> sum(columns, Vec3::Zero());
+    std::vector<int> count(columns, 0);
+    for (const sim::RootFace& face : shape.root_faces) {
+      if (shape.bundleLayers(face) <= layer) continue;
+      for (int k = 0; k < face.corner_count; ++k) {
         const auto of = static_cast<std::size_t>(face.columns[static_cast<std::size_t>(k)]);
-        sum[of] += column[static_cast<std::size_t>(layer)] - column[static_cast<std::size_t>(layer) - 1];
-        ++count[of];
+        for (int other = 0; other < face.corner_count; ++other)
+          sum[of] += ways[static_cast<std::size_t>(face.columns[static_cast<std::size_t>(other)])];
+        count[of] += face.corner_count;
       }
+    }
+    for (std::size_t c = 0; c < columns; ++c) {
+      if (count[c] > 0) ways[c] = sum[c] / count[c];
     }
   }
   for (std::size_t c = 0; c < columns; ++c) {
-    const auto last = static_cast<std::size_t>(edited.shape.column_first[c + 1]) - 1;
-    if (edited.shape.columnLength(static_cast<int>(c)) == layer + 2 && count[c] > 0)
-      edited.shape.positions[last] = edited.shape.positions[last - 1] + sum[c] / count[c];
+    const auto tip = static_cast<std::size_t>(edited.shape.column_first[c + 1]) - 1;
+    if (edited.shape.columnLength(static_cast<int>(c)) == layer + 2)
+      edited.shape.positions[tip] = edited.shape.positions[tip - 1] + ways[c];
   }
 }
 
@@ -174,12 +198,15 @@ EditedMesh addLayer(const sim::HairMeshShape& shape, int after, const BodyDistan
   }
   for (const double straight : kStraight) {
     EditedMesh edited = byPlan(shape, plan, straight);
-    if (tip && straight > 0) evenTips(shape, after, edited);
+    if (tip) evenTips(shape, after, static_cast<int>(kMostPasses * straight), edited);
     clearOfBody(shape, body, edited);
     if (!isValid(edited.shape)) continue;
-    edited.moved = apart(shape, edited.shape, after);
+    edited.moved = apart(shape, edited.shape, after, kReachOfLayer);
     return edited;
   }
+  EditedMesh edited = byPlan(shape, plan, 0);
+  if (tip) evenTips(shape, after, static_cast<int>(kMostPasses), edited);
+  if (untangled(shape, body, after, edited)) return edited;
   throw InputError("", "a layer after layer " + std::to_string(after), "would leave prisms flat or inverted",
                    "smooth the hair there first");
 }
@@ -194,7 +221,7 @@ EditedMesh removeLayer(const sim::HairMeshShape& shape, int layer, const BodyDis
     if (shape.columnLength(c) == 2 && layer == 1)
       throw InputError("", "layer 1", "is the last one of column " + std::to_string(c), "a bundle needs two layers");
   }
-  EditedMesh best;
+  EditedMesh best, plain;
   best.moved = INFINITY;
   for (const double slide : kSlides) {
     if (slide > 0 && layer == layers - 1) break;
@@ -209,15 +236,17 @@ EditedMesh removeLayer(const sim::HairMeshShape& shape, int layer, const BodyDis
     }
     EditedMesh edited = byPlan(shape, plan, 0);
     clearOfBody(shape, body, edited);
+    if (slide == 0) plain = edited;
     if (!isValid(edited.shape)) continue;
-    edited.moved = apart(shape, edited.shape, layer);
+    edited.moved = apart(shape, edited.shape, layer, kReachOfLayer);
     if (edited.moved < best.moved) best = std::move(edited);
   }
-  if (!std::isfinite(best.moved))
+  if (std::isfinite(best.moved)) return best;
+  if (!untangled(shape, body, layer, plain))
     throw InputError("", "layer " + std::to_string(layer),
                      "holds prisms open that would be flat or inverted without it",
                      "choose another one, or smooth the hair there first");
-  return best;
+  return plain;
 }
 
 }  // namespace app

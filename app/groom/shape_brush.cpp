@@ -199,33 +199,44 @@ void ShapeBrushes::limit(const sim::HairMesh& mesh, const std::function<double(c
     if (std::ranges::any_of(mesh.tets[t].v, [&](int v) { return touched_[v]; })) tets_.push_back(static_cast<int>(t));
   }
   const double least = kMinVolume * sum / static_cast<double>(mesh.tets.size());
+  std::vector<const sim::Edge*> near;
+  for (const auto* edges : {&mesh.horizontal_edges, &mesh.vertical_edges}) {
+    for (const sim::Edge& edge : *edges) {
+      if (touched_[edge.a] || touched_[edge.b]) near.push_back(&edge);
+    }
+  }
+  std::vector<unsigned char> moves = touched_;
   bool valid = false;
   for (int round = 0; round < kRounds && !valid; ++round) {
-    for (std::size_t v = 0; v < n; ++v) positions[v] = x[v] + share_[v] * (wanted_[v] - x[v]);
+    for (std::size_t v = 0; v < n; ++v) {
+      if (moves[v]) positions[v] = x[v] + share_[v] * (wanted_[v] - x[v]);
+    }
     valid = true;
     std::fill(touched_.begin(), touched_.end(), 0);
+    const auto changed = [&](int v) { return moves[v] != 0; };
     const auto spoilt = [&](int v) {
       valid = false;
       touched_[v] = 1;
     };
+    // What was found fine and has not changed is fine.
     for (const int t : tets_) {
       const sim::CornerTet& tet = mesh.tets[t];
+      if (std::ranges::none_of(tet.v, changed)) continue;
       const bool fine = sim::cornerVolume(tet.v, positions) >= std::min(least, 0.5 * tet.rest_volume);
       if (!fine) std::ranges::for_each(tet.v, spoilt);
     }
-    for (const auto* edges : {&mesh.horizontal_edges, &mesh.vertical_edges}) {
-      for (const sim::Edge& edge : *edges) {
-        if (share_[edge.a] == 0 && share_[edge.b] == 0) continue;
-        const double length = (positions[edge.a] - positions[edge.b]).norm();
-        if (length < std::min(kMinEdge, 0.5 * edge.rest_length)) spoilt(edge.a), spoilt(edge.b);
-      }
+    for (const sim::Edge* edge : near) {
+      if (!changed(edge->a) && !changed(edge->b)) continue;
+      const double length = (positions[edge->a] - positions[edge->b]).norm();
+      if (length < std::min(kMinEdge, 0.5 * edge->rest_length)) spoilt(edge->a), spoilt(edge->b);
     }
     for (std::size_t v = 0; body && v < n; ++v) {
-      if (share_[v] == 0) continue;
+      if (!moves[v] || share_[v] == 0) continue;
       const double distance = body(positions[v]);
       if (distance < kOffBody && distance < body(x[v])) spoilt(static_cast<int>(v));
     }
     for (std::size_t v = 0; v < n; ++v) {
+      moves[v] = touched_[v] && share_[v] > 0;
       if (touched_[v]) share_[v] = round < kHalvings ? 0.5 * share_[v] : 0;
     }
   }
