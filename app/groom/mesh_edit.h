@@ -1,6 +1,7 @@
 // Changes of a hair mesh's structure: a layer more or fewer, a parting drawn or closed, bundles grown at the border.
 //
-// Every result is a valid hair mesh (buildHairMesh takes it) outside of the body. What would not be is refused by an
+// Every result is a valid hair mesh (buildHairMesh takes it); where prisms would be flat what is around gives way (see
+// untangle). New places are outside of the body. What would not be valid is refused by an
 // InputError, and so is the removal of a last layer. All positions are rest positions in the scalp's frame, m.
 #pragma once
 
