@@ -8,6 +8,8 @@
 #include <numbers>
 #include <vector>
 
+#include "app/files/median.h"
+
 namespace app {
 
 namespace {
@@ -75,13 +77,6 @@ Vec3 nearestOnScalp(const Vec3& p, const Scalp& scalp) {
   const Vec3 out = p - scalp.center;
   const double far = out.norm();
   return far < 1e-9 ? p : Vec3(scalp.center + scalp.radiusAt(out) / far * out);
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 double distanceOf(const std::vector<Vec3>& roots, const Reading& reading, const Scalp& scalp) {
@@ -156,7 +151,8 @@ bool plausible(const std::vector<Vec3>& roots, const Vec3& hang, const Reading& 
   const double scale = reading.linear.col(0).norm();
   const double spread = scale * cloudOf(roots).spread / hairyScalp(scalp).spread;
   const Vec3 way = reading.linear * hang / scale;
-  return spread >= kSmallestSpread && spread <= kLargestScale && (way.norm() < kHangs || -way.y() >= kDown * way.norm());
+  return spread >= kSmallestSpread && spread <= kLargestScale &&
+         (way.norm() < kHangs || -way.y() >= kDown * way.norm());
 }
 
 // The scale and shift, without a turn, that bring the roots to the scalp: first over where hair grows, then by closest

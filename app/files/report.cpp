@@ -6,6 +6,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "app/files/median.h"
 #include "app/files/output_file.h"
 #include "sim/stabilization/parameter_limits.h"
 
@@ -14,13 +15,6 @@ namespace app {
 namespace {
 
 using nlohmann::json;
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 json milliseconds(const std::vector<double>& seconds) {
   double sum = 0, longest = 0;

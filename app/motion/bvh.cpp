@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "app/files/errors.h"
+#include "app/files/median.h"
 #include "app/motion/bvh_text.h"
 #include "app/motion/motion.h"
 
@@ -125,12 +126,6 @@ Eigen::AlignedBox3d bounds(const BvhText& bvh, const WorldFrame& world) {
     if (bvh.joints[j].has_end_site) box.extend(world.positions[j] + world.rotations[j] * bvh.joints[j].end_site);
   }
   return box;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // Figures whose height is plausible in one of these units are taken to be in it. The ranges of height are disjoint:
@@ -289,7 +284,8 @@ std::vector<std::string> describe(const BvhText& bvh, const Inference& inferred)
   if (inferred.rest_is_folded) note("rest pose: the file has none that stands; frame %d taken", inferred.upright_frame);
   note("frame rate: %.4g per second, %d frames, %.2f s", 1 / bvh.frame_time, bvh.frame_count,
        bvh.frame_time * (bvh.frame_count - 1));
-  if (inferred.rest_frames == 1) notes.emplace_back("frame 0 is a rest pose apart from the motion: left out of the clip");
+  if (inferred.rest_frames == 1)
+    notes.emplace_back("frame 0 is a rest pose apart from the motion: left out of the clip");
   if (inferred.rest_frames > 1)
     note("frames 0 to %d lead from a rest pose into the motion: left out of the clip", inferred.rest_frames - 1);
   if (bvh.has_surplus_row) notes.emplace_back("one row more than 'Frames:' says: left out");

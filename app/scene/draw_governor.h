@@ -1,14 +1,15 @@
 // The drawing governor: holds the drawing of a frame to so many milliseconds by walking a ladder of measured settings.
 //
-// A rung thins strands and shadow strands by the level of detail (render/hair_detail.h: strands leave one after
+// A rung thins strands and shadow strands by the level of detail (render/hair/hair_detail.h: strands leave one after
 // another, fading, and those that stay grow wider) and lets segments grow longer. The governor watches what the drawing
 // of a frame takes on this machine, goes one rung down when that is over the budget and one up when the finer rung's
 // predicted time fits well below it. Between two rungs settings glide, so that nothing pops. What a climb really cost
 // is remembered, and one that had to be taken back lets the next one wait twice as long: it never swings between two
 // rungs.
 //
-// Time is what the driver's timer queries say, wall time where it draws on the CPU (render/gpu_timer.h). Pictures drawn
-// under a budget depend on the machine: two runs do not repeat to the bit. Hair and recordings do not depend on them.
+// Time is what the driver's timer queries say, wall time where it draws on the CPU (render/gl/gpu_timer.h). Pictures
+// drawn under a budget depend on the machine: two runs do not repeat to the bit. Hair and recordings do not depend on
+// them.
 #pragma once
 
 #include <array>

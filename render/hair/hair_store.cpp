@@ -183,8 +183,9 @@ constexpr float kSoftLightPixels = 110;
 }  // namespace
 
 float sidewaysReach(const HairLook& look, float curl_share) {
-  return 0.01f + 6 * look.offset + 2 * look.root_spread + look.hairline + 2.5f * look.drift + 1.5f * curl_share * look.curl_radius + 0.6f * look.wave_height +
-         3 * look.frizz + 2 * look.flyaway_lift + look.clump_size * (1 + 2 * look.lock);
+  return 0.01f + 6 * look.offset + 2 * look.root_spread + look.hairline + 2.5f * look.drift +
+         1.5f * curl_share * look.curl_radius + 0.6f * look.wave_height + 3 * look.frizz + 2 * look.flyaway_lift +
+         look.clump_size * (1 + 2 * look.lock);
 }
 
 int HairStyle::fullTableTexel() const {

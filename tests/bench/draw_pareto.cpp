@@ -11,7 +11,7 @@
 
 #include "app/files/data_path.h"
 #include "app/platform/egl_context.h"
-#include "render/driver.h"
+#include "render/gl/driver.h"
 #include "tests/bench/draw_sweep.h"
 #include "tests/bench/gnuplot.h"
 #include "tests/bench/measured_part.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/driver.h"
+#include "render/gl/driver.h"
 #include "tests/bench/cpu_clock.h"
 
 namespace bench {
