@@ -24,23 +24,34 @@ class BodyPass {
 
   explicit BodyPass(const std::string& shader_dir);
   void draw(const Input& input, Stage& stage, FrameReport& report);
-  ReloadReport reload(Reload which) { return reloadPrograms({&lit_, &lit_coarse_, &lit_small_}, which); }
+  ReloadReport reload(Reload which) {
+    return reloadPrograms({&plain_.lit, &plain_.coarse, &plain_.small, &own_.lit, &own_.coarse, &own_.small}, which);
+  }
 
  private:
   // Fills counts_ and offsets_ with the triangles whose joint may be in view. Returns how many are left out.
   long chooseTriangles(const Body& body, const BodyMesh& mesh, const Frustum* cull);
 
-  ShaderProgram lit_;         // per pixel, but for the hair's shadow: at the vertices
-  ShaderProgram lit_coarse_;  // all of it per pixel, for meshes too coarse for that
-  ShaderProgram lit_small_;   // per vertex, for bodies of few pixels
+  struct Programs {
+    ShaderProgram lit;     // per pixel, but for the hair's shadow: at the vertices
+    ShaderProgram coarse;  // all of it per pixel, for meshes too coarse for that
+    ShaderProgram small;   // per vertex, for bodies of few pixels
+    Programs(const std::string& shader_dir, const std::vector<std::string>& defines);
+  };
+  Programs plain_, own_;  // of one colour; of the mesh's own materials
   std::vector<int> counts_;
   std::vector<const void*> offsets_;
 };
 
-BodyPass::BodyPass(const std::string& shader_dir)
-    : lit_(shader_dir, {{"body.vert", "body.frag"}, {"HAIR_LIGHT_AT_VERTICES"}, {}}),
-      lit_coarse_(shader_dir, {{"body.vert", "body.frag"}, {}, {}}),
-      lit_small_(shader_dir, {{"body_small.vert", "body_small.frag"}, {}, {}}) {}
+BodyPass::Programs::Programs(const std::string& shader_dir, const std::vector<std::string>& defines)
+    : coarse(shader_dir, {{"body.vert", "body.frag"}, defines, {}}),
+      small(shader_dir, {{"body_small.vert", "body_small.frag"}, defines, {}}) {
+  std::vector<std::string> at_vertices = defines;
+  at_vertices.push_back("HAIR_LIGHT_AT_VERTICES");
+  lit = ShaderProgram(shader_dir, {{"body.vert", "body.frag"}, at_vertices, {}});
+}
+
+BodyPass::BodyPass(const std::string& shader_dir) : plain_(shader_dir, {}), own_(shader_dir, {"OWN_MATERIALS"}) {}
 
 long BodyPass::chooseTriangles(const Body& body, const BodyMesh& mesh, const Frustum* cull) {
   counts_.clear();
@@ -76,7 +87,7 @@ bool hasFineVertices(const Body& body, const BodyMesh& mesh) {
 
 void BodyPass::draw(const Input& input, Stage& stage, FrameReport& report) {
   if (!input.show) return;
-  for (ShaderProgram* program : {&lit_small_, &lit_coarse_, &lit_}) {
+  for (ShaderProgram* program : {&own_.small, &own_.coarse, &own_.lit, &plain_.small, &plain_.coarse, &plain_.lit}) {
     program->use();
     glUniformMatrix4fv(0, 1, GL_FALSE, stage.view_projection.data());
   }
@@ -84,6 +95,7 @@ void BodyPass::draw(const Input& input, Stage& stage, FrameReport& report) {
   const Frustum frustum(stage.view_projection, 0.01f);
   for (const Body& body : stage.bodies.bodies()) {
     const BodyMesh& mesh = stage.bodies.meshOf(body);
+    Programs& programs = body.finish.own_materials ? own_ : plain_;
     const long triangles = mesh.index_count / 3;
     report.skip_counts.body_parts.of += triangles;
     if (input.cull_bodies && !frustum.maySee(body.around())) {
@@ -93,7 +105,7 @@ void BodyPass::draw(const Input& input, Stage& stage, FrameReport& report) {
     report.skip_counts.body_detail.of += triangles;
     if (body.level > 0) {
       report.skip_counts.body_detail.skipped += triangles - mesh.levels[static_cast<std::size_t>(body.level)].count / 3;
-      lit_small_.use();
+      programs.small.use();
       stage.bodies.bind(body, mesh);
       BodyStore::drawLevel(body, mesh);
       report.draw_calls += 1;
@@ -103,7 +115,7 @@ void BodyPass::draw(const Input& input, Stage& stage, FrameReport& report) {
     if (counts_.empty()) continue;
     const bool at_vertices = input.light_at_vertices && hasFineVertices(body, mesh);
     report.skip_counts.hair_light += {at_vertices ? triangles : 0, triangles};
-    (at_vertices ? lit_ : lit_coarse_).use();
+    (at_vertices ? programs.lit : programs.coarse).use();
     stage.bodies.bind(body, mesh);
     glMultiDrawElements(GL_TRIANGLES, counts_.data(), GL_UNSIGNED_INT, offsets_.data(),
                         static_cast<GLsizei>(counts_.size()));

@@ -9,7 +9,11 @@ layout(location = 4) in float garment;
 #ifdef HAIR_LIGHT_AT_VERTICES
 layout(location = 5) in float through_hair;
 #endif
+#ifdef OWN_MATERIALS
 layout(location = 6) in vec3 place;
+#else
+const vec3 place = vec3(0.0);
+#endif
 layout(location = 0) out vec4 color;
 
 void main() {

@@ -5,7 +5,9 @@ layout(location = 1) out vec3 normal;
 layout(location = 2) out float cover;
 layout(location = 3) out vec3 rest;
 layout(location = 4) out float garment;
+#ifdef OWN_MATERIALS
 layout(location = 6) out vec3 place;
+#endif
 #ifdef HAIR_LIGHT_AT_VERTICES
 #include "common/shadow.glsl"
 layout(location = 5) out float through_hair;
@@ -16,7 +18,9 @@ void main() {
   cover = root_cover.x;
   rest = rest_position;
   garment = cloth;
+#ifdef OWN_MATERIALS
   place = material_place;
+#endif
 #ifdef HAIR_LIGHT_AT_VERTICES
   through_hair = forward.w > 0.0 ? hairLightOnSurface(world) : 1.0;
 #endif

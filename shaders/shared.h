@@ -163,7 +163,7 @@ SHARED_BLOCK(2, BodyBlock) {
   vec4 root_color;   // share of light that hair roots leave the skin between them; w: strength of their tint and shade
   vec4 face;         // rest pose, m: origin of the head units of face.glsl; w: head units a metre
   vec4 cloth_color;  // linear; w: 1 where the garment is worn
-  vec4 paint;        // x: strength of the face's paint, 0..1; y: 1 where the mesh's own materials are shown
+  vec4 paint;        // x: strength of the face's paint, 0..1
 };
 
 #ifdef __cplusplus

@@ -125,12 +125,11 @@ void BodyStore::refreshLook(Body& body, const BodyMesh& mesh, const BodyInput& i
   ++look_changes_;
   body.finish = finish;
   const bool painted = finish.face_height > 0;
-  const shared::BodyBlock block{
-      asVec4(finish.color, std::clamp(finish.roughness, 0.05f, 1.0f)),
-      asVec4(finish.root_color, std::clamp(finish.scalp_tint, 0.0f, 1.0f)),
-      asVec4(finish.face_origin, painted ? 1 / finish.face_height : 0),
-      asVec4(finish.cloth_color, finish.dressed ? 1 : 0),
-      {painted ? std::clamp(finish.face_paint, 0.0f, 1.0f) : 0, finish.own_materials ? 1.0f : 0.0f, 0, 0}};
+  const shared::BodyBlock block{asVec4(finish.color, std::clamp(finish.roughness, 0.05f, 1.0f)),
+                                asVec4(finish.root_color, std::clamp(finish.scalp_tint, 0.0f, 1.0f)),
+                                asVec4(finish.face_origin, painted ? 1 / finish.face_height : 0),
+                                asVec4(finish.cloth_color, finish.dressed ? 1 : 0),
+                                {painted ? std::clamp(finish.face_paint, 0.0f, 1.0f) : 0, 0, 0, 0}};
   body.block = makeBuffer();
   glNamedBufferStorage(body.block.id(), sizeof(block), &block, 0);
   uploaded += sizeof(block);
@@ -184,7 +183,7 @@ const BodyMesh& BodyStore::meshOf(const Body& body) const {
 void BodyStore::bind(const Body& body, const BodyMesh& mesh) const {
   glBindBufferBase(GL_UNIFORM_BUFFER, 2, body.block.id());
   glBindTextureUnit(shared::kUnitJoints, body.joint_texture.id());
-  glBindTextureUnit(shared::kUnitMaterials, mesh.materials ? mesh.materials.id() : 0);
+  if (mesh.materials) glBindTextureUnit(shared::kUnitMaterials, mesh.materials.id());
   const GLuint array = mesh.attributes.id();
   const auto scalp = std::find_if(scalps_.begin(), scalps_.end(),
                                   [&](const Scalp& s) { return s.mesh_id == body.mesh_id && s.id == body.scalp_id; });

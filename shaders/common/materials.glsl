@@ -1,12 +1,13 @@
-// Colours of a body: one, or those that its mesh brings along.
+// Colour of a body: one, or with OWN_MATERIALS those that its mesh brings along. place: u, v and the picture's number.
+#ifdef OWN_MATERIALS
 layout(binding = kUnitMaterials) uniform sampler2DArray materials;
 
-// place: u, v and the picture's number. Where derivatives are to be had.
-vec3 materialColor(vec3 place) {
-  return paint.y > 0.0 ? texture(materials, place).rgb : body_color.rgb;
-}
+// Where derivatives are to be had.
+vec3 materialColor(vec3 place) { return texture(materials, place).rgb; }
 
-// The same of a vertex, of the picture at that level of detail.
-vec3 materialColorAt(vec3 place, float level) {
-  return paint.y > 0.0 ? textureLod(materials, place, level).rgb : body_color.rgb;
-}
+// At a vertex, of the picture at that level of detail.
+vec3 materialColorAt(vec3 place, float level) { return textureLod(materials, place, level).rgb; }
+#else
+vec3 materialColor(vec3 place) { return body_color.rgb; }
+vec3 materialColorAt(vec3 place, float level) { return body_color.rgb; }
+#endif
