@@ -47,7 +47,7 @@ BodyPass::Programs::Programs(const std::string& shader_dir, const std::vector<st
     : coarse(shader_dir, {{"body.vert", "body.frag"}, defines, {}}),
       small(shader_dir, {{"body_small.vert", "body_small.frag"}, defines, {}}) {
   std::vector<std::string> at_vertices = defines;
-  at_vertices.push_back("HAIR_LIGHT_AT_VERTICES");
+  at_vertices.emplace_back("HAIR_LIGHT_AT_VERTICES");
   lit = ShaderProgram(shader_dir, {{"body.vert", "body.frag"}, at_vertices, {}});
 }
 

@@ -26,7 +26,7 @@ struct ObjText {
   void object(const std::string& name) { text += "o " + name + "\n"; }
   void face(const std::vector<int>& corners) {
     text += "f";
-    for (const int c : corners) text += " " + std::to_string(c);
+    for (const int c : corners) text.append(" ").append(std::to_string(c));
     text += "\n";
   }
   // `cut`: as two triangles, alternately over either diagonal where it is 2.
