@@ -79,11 +79,13 @@ float bodyLightOnHair(int map, vec3 at) {
 const float kMinRadius = 0.008, kLampAngle = 0.1;
 const int kTaps = 12;
 
-// Tap `i` of so many on a disc of radius 1: a spiral of golden angles (Vogel 1979).
-vec2 discTap(int i, float taps) {
-  float turn = 2.399963 * float(i);
-  return sqrt((float(i) + 0.5) / taps) * vec2(cos(turn), sin(turn));
-}
+// Taps on a disc of radius 1 lie on a spiral of golden angles (Vogel 1979): the first has this direction, the next is
+// turned by one angle more, for turning costs less than a sine.
+const vec2 kFirstTap = vec2(1.0, 0.0);
+vec2 nextTap(vec2 way) { return vec2(-0.737369 * way.x - 0.675490 * way.y, 0.675490 * way.x - 0.737369 * way.y); }
+
+// Tap `i` of so many, in its direction.
+vec2 discTap(int i, float taps, vec2 way) { return sqrt((float(i) + 0.5) / taps) * way; }
 
 // Optical depth of all hair of a map along the light, averaged over texels of a level.
 float wholeOpticalDepth(int map, vec2 at, float level) {
@@ -96,8 +98,9 @@ float lightBehindHair(int map, vec3 at, int taps) {
   float reach = (kMinRadius + 0.5 * kLampAngle * above) / hair_shadow_size[map].x;
   float level = clamp(log2(reach * hair_shadow_size[map].y * 0.5), 0.0, float(kOpacityLevels - 1));
   float sum = 0.0;
-  for (int i = 0; i < taps; ++i) {
-    vec2 tap = at.xy + reach * discTap(i, float(kTaps));
+  vec2 way = kFirstTap;
+  for (int i = 0; i < taps; ++i, way = nextTap(way)) {
+    vec2 tap = at.xy + reach * discTap(i, float(kTaps), way);
     bool inside = all(greaterThan(tap, vec2(0.0))) && all(lessThan(tap, vec2(1.0)));
     sum += inside ? exp(-wholeOpticalDepth(map, tap, level)) : 1.0;
   }
@@ -109,8 +112,9 @@ float lightBehindHair(int map, vec3 at, int taps) {
 float lightBetweenHair(int map, vec3 at, int sought) {
   const float kSought = 0.03, kNear = 0.01;  // m
   float above = 0.0, found = 0.0;
-  for (int i = 0; i < sought; ++i) {
-    vec2 tap = kSought * discTap(i, 9.0);
+  vec2 way = kFirstTap;
+  for (int i = 0; i < sought; ++i, way = nextTap(way)) {
+    vec2 tap = kSought * discTap(i, 9.0, way);
     float first = textureLod(hair_depth, hairShadowTexel(map, at.xy + tap / hair_shadow_size[map].x), 0.0).r;
     float height = (at.z - first) * hair_shadow_size[map].z, weight = clamp(height / kNear, 0.0, 1.0);
     above += weight * height;
@@ -119,8 +123,9 @@ float lightBetweenHair(int map, vec3 at, int sought) {
   above /= max(found, 1e-6);
   float reach = (kMinRadius + 0.5 * kLampAngle * above) / hair_shadow_size[map].x, sum = 0.0;
   int taps = found > 0.0 ? kTaps : 0;
-  for (int i = 0; i < taps; ++i)
-    sum += exp(-hairOpticalDepth(map, vec3(at.xy + reach * discTap(i, float(kTaps)), at.z)));
+  way = kFirstTap;
+  for (int i = 0; i < taps; ++i, way = nextTap(way))
+    sum += exp(-hairOpticalDepth(map, vec3(at.xy + reach * discTap(i, float(kTaps), way), at.z)));
   return mix(1.0, sum / float(kTaps), min(4.0 * found, 1.0));
 }
 
@@ -156,11 +161,13 @@ float hairLightOnSurface(vec3 world) {
 // of the taps that found one. Surfaces that the light grazes rise towards it themselves: `rise` (m a m) counts for
 // nothing.
 const float kBodyReach = 0.04;  // m
-const int kSoughtTaps = 12, kBodyTaps = 24;
-vec2 bodiesAbove(int map, vec3 at, vec2 scale, float rise) {
-  vec2 sum = vec2(0.0);
-  for (int i = 0; i < kSoughtTaps; ++i) {
-    vec2 tap = kBodyReach * discTap(i, float(kSoughtTaps));
+const float kLeastFacing = -0.27;  // a surface turned farther from the light gets none, wrapped or not (surface.glsl)
+const int kSoughtTaps = 8, kBodyTaps = 12;
+const float kEdge = 0.02;  // share of taps, from full light and from full shadow, that is no edge
+vec2 bodiesAbove(int map, vec3 at, vec2 scale, float rise, int sought) {
+  vec2 sum = vec2(0.0), way = kFirstTap;
+  for (int i = 0; i < sought; ++i, way = nextTap(way)) {
+    vec2 tap = kBodyReach * discTap(i, float(kSoughtTaps), way);
     float first = textureLod(body_depth_plain, vec3(at.xy + tap * scale.x, map), 0.0).r;
     float height = (at.z - first) / scale.y - rise * length(tap), weight = clamp((height - 0.002) / 0.006, 0.0, 1.0);
     if (first >= 1.0) weight = 0.0;
@@ -180,18 +187,19 @@ float bodyLightOnSurface(vec3 world, vec3 normal) {
     // Of the map, a metre: of its side and of its depth.
     vec2 scale = 0.5 * vec2(length(vec3(to_map[0].x, to_map[1].x, to_map[2].x)),
                             length(vec3(to_map[0].z, to_map[1].z, to_map[2].z)));
-    float facing = max(dot(normal, to_key.xyz), 0.3), rise = sqrt(1.0 - facing * facing) / facing;
-    vec2 above = bodiesAbove(map, at, scale, rise);
+    float towards = dot(normal, to_key.xyz), facing = max(towards, 0.3), rise = sqrt(1.0 - facing * facing) / facing;
+    vec2 above = bodiesAbove(map, at, scale, rise, towards > kLeastFacing ? kSoughtTaps : 0);
     float texel = 2.0 / (float(textureSize(body_depth, 0).x) * scale.x);  // m
     float reach = clamp(0.5 * kLampAngle * above.x, texel, kBodyReach), sum = 0.0;
-    int taps = above.y > 0.0 && above.y < 1.0 ? kBodyTaps : 0;
-    for (int i = 0; i < taps; ++i) {
-      vec2 tap = reach * discTap(i, float(kBodyTaps));
+    int taps = above.y > kEdge && above.y < 1.0 - kEdge ? kBodyTaps : 0;
+    vec2 way = kFirstTap;
+    for (int i = 0; i < taps; ++i, way = nextTap(way)) {
+      vec2 tap = reach * discTap(i, float(kBodyTaps), way);
       // The ground lies behind the frustum around the bodies, and behind every one of them.
       float depth = min(at.z - 0.0012 - rise * length(tap) * scale.y, 0.9988);
       sum += texture(body_depth, vec4(at.xy + tap * scale.x, map, depth));
     }
-    return taps > 0 ? sum / float(kBodyTaps) : above.y > 0.0 ? 0.0 : 1.0;
+    return taps > 0 ? sum / float(kBodyTaps) : above.y > kEdge ? 0.0 : 1.0;
   }
   return 1.0;
 }
