@@ -88,7 +88,8 @@ struct Scene {
   synthetic::Hair hair = synthetic::makeHair(5);
   synthetic::Body body = synthetic::makeBody();
   std::vector<float> cover, rest, cloth, places;
-  std::vector<std::vector<std::uint32_t>> materials{{0xff405070u}, {0xff704050u}};
+  std::vector<std::vector<std::uint32_t>> materials{{0xff405070u, 0xff80a050u, 0xff703050u, 0xff205030u},
+                                                    {0xff704050u, 0xff306090u, 0xff907050u, 0xff504030u}};
   std::vector<render::SkinEllipsoid> skin;
   std::vector<render::LookShare> shares;
   std::vector<render::HairInput> hairs;
