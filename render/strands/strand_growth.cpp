@@ -278,6 +278,7 @@ Strand StrandGrowth::strand(int number) const {
   strand.share = shareOfRoot(layout_, columns, strand.blend);
   joinGroups(root, strand);
   thinHairline(root, strand);
+  if (face.covered) strand.fan = strand.shift = Vector2f::Zero();
   cutStrand(root, strand);
   return strand;
 }

@@ -283,6 +283,7 @@ Strand makeStrand(int number) {
   strand.share = shareOfRoot(columns, corners, strand.blend);
   joinGroups(root, strand);
   thinHairline(root, strand);
+  if (covered) strand.fan = strand.shift = vec2(0.0);  // nothing leaves its place under a hat
   cutStrand(root, strand);
   return strand;
 }

@@ -60,7 +60,7 @@ TEST_F(ShaderReload, ASavedIncludeChangesThePictureAsAFreshStartWould) {
        {std::array{"common/backdrop.glsl", "return sweep", "return vec3(0.5, 0.0, 0.0) + sweep"},
         std::array{"common/surface.glsl", "return albedo * diffuse", "return 0.3 * albedo * diffuse"},
         std::array{"common/hair_shading.glsl", "return radiance;", "return 3.0 * radiance;"},
-        std::array{"common/opacity_line.glsl", "return width.z", "return 9.0 * width.z"},
+        std::array{"common/opacity_line.glsl", "opacity = width.z", "opacity = 9.0 * width.z"},
         std::array{"body.vert", "clip_from_world * vec4(world, 1.0)", "clip_from_world * vec4(world.xy, 0.2, 1.0)"},
         std::array{"tone_map.frag", "exposure * texelFetch", "0.5 * exposure * texelFetch"}}) {
     const auto last = draw(renderer);
@@ -110,10 +110,12 @@ TEST_F(ShaderReload, TheWindowLooksNowAndThenAndShowsWhatCameOfIt) {
   double moment = 10;
   EXPECT_FALSE(app::reloadSavedShaders(moment, watch, renderer, demo));
   replace("body.frag", "normal, cover, garment,", "normal, uncovered, garment,");
+  const std::string broken = text("body.frag");
+  const auto lines = std::count(broken.begin(), broken.begin() + static_cast<long>(broken.find("uncovered")), '\n');
   EXPECT_FALSE(app::reloadSavedShaders(moment + 0.5 * app::kShaderLook, watch, renderer, demo)) << "too early";
   EXPECT_TRUE(app::reloadSavedShaders(moment += app::kShaderLook, watch, renderer, demo));
   EXPECT_TRUE(demo.message_is_fault);
-  EXPECT_NE(demo.message.find("body.frag:17"), std::string::npos) << demo.message;
+  EXPECT_NE(demo.message.find("body.frag:" + std::to_string(lines + 1)), std::string::npos) << demo.message;
   EXPECT_FALSE(app::reloadSavedShaders(moment += app::kShaderLook, watch, renderer, demo));
   EXPECT_TRUE(demo.message_is_fault) << "the message stays while the file is broken";
   replace("body.frag", "uncovered", "cover");
