@@ -28,7 +28,7 @@ vec3 bodyRadiance(vec3 base, vec3 rest, vec3 world, vec3 normal, float cover, fl
   albedo = mix(albedo, cloth_color.rgb * (1.0 - 0.25 * smoothstep(-0.004, -0.002, garment)), dressed);  // a hem
   roughness = mix(roughness, 0.95, dressed);
   vec3 wrap = mix(kSkinWrap, vec3(0.05), dressed);
-  float lit = forward.w > 0.0 ? bodyLightOnSurface(world, n) : 1.0;
+  float lit = forward.w > 0.0 ? bodyLightOnSurface(world, n, kBodyTaps) : 1.0;
   // The maps know the roots as well, but at a parting the hair leaves sideways and light from above meets none of it:
   // the darker of the two holds, so that no root shades twice.
   vec3 key_light = lit * min(vec3(through_hair), among_roots) * key.rgb;

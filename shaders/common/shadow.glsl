@@ -162,7 +162,8 @@ float hairLightOnSurface(vec3 world) {
 // nothing.
 const float kBodyReach = 0.04;  // m
 const float kLeastFacing = -0.27;  // a surface turned farther from the light gets none, wrapped or not (surface.glsl)
-const int kSoughtTaps = 8, kBodyTaps = 12;
+const int kSoughtTaps = 8;
+const int kBodyTaps = 12, kGroundTaps = 32;  // a plain ground shows every tap
 const float kEdge = 0.02;  // share of taps, from full light and from full shadow, that is no edge
 vec2 bodiesAbove(int map, vec3 at, vec2 scale, float rise, int sought) {
   vec2 sum = vec2(0.0), way = kFirstTap;
@@ -178,8 +179,8 @@ vec2 bodiesAbove(int map, vec3 at, vec2 scale, float rise, int sought) {
 
 // Light left after the bodies, for a point of body or ground, in the first map that covers it: percentage-closer
 // filtering over a disc as wide as the lamp draws the shadow's edge out (Fernando 2005). Full light and full shadow need
-// no filter.
-float bodyLightOnSurface(vec3 world, vec3 normal) {
+// no filter. most: taps.
+float bodyLightOnSurface(vec3 world, vec3 normal, int most) {
   for (int map = 0; map < int(opacity.w); ++map) {
     mat4 to_map = body_shadow[map];
     vec3 at = (to_map * vec4(world + normal * 0.012, 1.0)).xyz * 0.5 + 0.5;
@@ -191,15 +192,15 @@ float bodyLightOnSurface(vec3 world, vec3 normal) {
     vec2 above = bodiesAbove(map, at, scale, rise, towards > kLeastFacing ? kSoughtTaps : 0);
     float texel = 2.0 / (float(textureSize(body_depth, 0).x) * scale.x);  // m
     float reach = clamp(0.5 * kLampAngle * above.x, texel, kBodyReach), sum = 0.0;
-    int taps = above.y > kEdge && above.y < 1.0 - kEdge ? kBodyTaps : 0;
+    int taps = above.y > kEdge && above.y < 1.0 - kEdge ? most : 0;
     vec2 way = kFirstTap;
     for (int i = 0; i < taps; ++i, way = nextTap(way)) {
-      vec2 tap = reach * discTap(i, float(kBodyTaps), way);
+      vec2 tap = reach * discTap(i, float(most), way);
       // The ground lies behind the frustum around the bodies, and behind every one of them.
       float depth = min(at.z - 0.0012 - rise * length(tap) * scale.y, 0.9988);
       sum += texture(body_depth, vec4(at.xy + tap * scale.x, map, depth));
     }
-    return taps > 0 ? sum / float(kBodyTaps) : above.y > kEdge ? 0.0 : 1.0;
+    return taps > 0 ? sum / float(most) : above.y > kEdge ? 0.0 : 1.0;
   }
   return 1.0;
 }
