@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
   app::Options options;
   int exit_code = app::kExitFine;
   try {
-    if (app::parseOptions(argc, argv, options, exit_code)) exit_code = run(options);
+    if (app::parseOptions(argc, argv, options, exit_code)) exit_code = run(app::sortedOut(options));
     std::cout.flush();
     if (!std::cout) throw app::OutputError("standard output", "cannot be written", "check where it is led to");
     return exit_code;

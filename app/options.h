@@ -16,7 +16,8 @@ struct UsageError : std::runtime_error {
 };
 
 struct Options {
-  std::string scene;  // scene.json, or any other file that is opened; or empty
+  std::string scene;    // scene.json, or any other file that is opened; or empty
+  std::string project;  // opened in the scene's place
   bool headless = false;
   int frames = 120;
   bool frames_given = false;  // a window runs on when not

@@ -64,43 +64,6 @@ void fill(const char* option, std::string& value, const std::string& file) {
                    near.empty() ? "check the path" : "did you mean '" + std::string(near) + "'?");
 }
 
-// A file named without an option goes where its kind belongs.
-Options sortedOut(Options options) {
-  if (options.scene.empty()) return options;
-  std::string file = options.scene;
-  for (const char* kind : {"hair", "clips", "presets", "scenes"}) file = findFile(file, "", kind);
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) refuseMissing(options.scene);
-  options.scene.clear();
-  switch (fileKind(file)) {
-    case FileKind::kScene:
-      options.scene = file;
-      break;
-    case FileKind::kPreset:
-      fill("--preset", options.preset, file);
-      break;
-    case FileKind::kRigidMotion:
-      if (options.parts.empty()) options.parts = partsBeside(file);
-      [[fallthrough]];
-    case FileKind::kMotion:
-      fill("--motion", options.motion, file);
-      break;
-    case FileKind::kHairMesh:
-      fill("--hair", options.hair, file);
-      break;
-    case FileKind::kAttachment:
-      options.attachments.push_back(file);
-      break;
-    case FileKind::kProject:
-      throw UsageError(file + " is a project; start the window without it and open it there");
-    case FileKind::kCache:
-      throw UsageError(file + " is a cache of simulated hair; name its scene, and it with --load-state");
-    case FileKind::kState:
-      throw UsageError(file + " is a saved state; name its scene, and it with --load-state");
-  }
-  return options;
-}
-
 void checkHairAndStyle(const Options& options) {
   if (!options.hair.empty() && !options.style.empty()) {
     throw UsageError("--hair and --style exclude each other; give one of them");
@@ -205,6 +168,43 @@ void chooseSolver(const std::string& name, sim::SimParams& params) {
 
 }  // namespace
 
+Options sortedOut(Options options) {
+  if (options.scene.empty()) return options;
+  std::string file = options.scene;
+  for (const char* kind : {"hair", "clips", "presets", "scenes"}) file = findFile(file, "", kind);
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) refuseMissing(options.scene);
+  options.scene.clear();
+  switch (fileKind(file)) {
+    case FileKind::kScene:
+      options.scene = file;
+      break;
+    case FileKind::kPreset:
+      fill("--preset", options.preset, file);
+      break;
+    case FileKind::kRigidMotion:
+      if (options.parts.empty()) options.parts = partsBeside(file);
+      [[fallthrough]];
+    case FileKind::kMotion:
+      fill("--motion", options.motion, file);
+      break;
+    case FileKind::kHairMesh:
+      fill("--hair", options.hair, file);
+      break;
+    case FileKind::kAttachment:
+      options.attachments.push_back(file);
+      break;
+    case FileKind::kProject:
+      options.project = file;
+      break;
+    case FileKind::kCache:
+      throw UsageError(file + " is a cache of simulated hair; name its scene, and it with --load-state");
+    case FileKind::kState:
+      throw UsageError(file + " is a saved state; name its scene, and it with --load-state");
+  }
+  return options;
+}
+
 Scene sceneFromOptions(const Options& given) {
   const Options options = sortedOut(given);
   checkHairAndStyle(options);
@@ -243,6 +243,8 @@ Scene sceneFromOptions(const Options& given) {
   DebugViews checked;
   setDebugViews(options.debug, checked);
   if (!options.compare.empty()) readValue("--compare", [&] { comparedScene(options.compare, scene); });
+  if (!options.project.empty() && writeScene(scene) != writeScene(sceneFromOptions({})))
+    throw UsageError(options.project + " brings its own scene: leave out the options that would change it");
   return scene;
 }
 

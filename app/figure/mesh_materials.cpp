@@ -13,6 +13,7 @@
 #include <optional>
 #include <utility>
 
+#include "app/figure/uri_files.h"
 #include "app/files/errors.h"
 #include "app/files/image_io.h"
 #include "app/files/text_file.h"
@@ -68,8 +69,8 @@ Image readPicture(const aiScene& scene, const std::string& file, const aiString&
   }
   std::string name = path.C_Str();
   std::replace(name.begin(), name.end(), '\\', '/');
-  const std::filesystem::path beside = std::filesystem::path(file).parent_path() / name;
-  return readPictureBytes(readText(beside.string()), beside.string(), kMaxPictureSide);
+  const std::string beside = fileOfUri((std::filesystem::path(file).parent_path() / name).string());
+  return readPictureBytes(readText(beside), beside, kMaxPictureSide);
 }
 
 BaseColor readMaterial(const aiScene& scene, const std::string& file, const aiMaterial& material,

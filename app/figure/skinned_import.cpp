@@ -14,6 +14,7 @@
 
 #include "app/figure/character_build.h"
 #include "app/figure/mesh_materials.h"
+#include "app/figure/uri_files.h"
 #include "app/files/errors.h"
 #include "app/files/text_file.h"
 #include "app/motion/motion.h"
@@ -422,6 +423,7 @@ Character importSkinned(const std::string& file) {
     throw InputError(file, "", "is too short to be a character", "give a complete .glb, .gltf, .fbx or .dae file");
   Import import(file);
   Assimp::Importer importer;
+  importer.SetIOHandler(new UriFiles);  // the importer's from here on
   importer.SetPropertyBool("IMPORT_NO_SKELETON_MESHES", true);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   try {

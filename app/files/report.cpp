@@ -258,18 +258,18 @@ void writeReport(const std::string& file, const RunReport& run, const Demo& demo
 namespace {
 
 // How the deadline was kept; empty without one.
-std::string deadlineLine(const RunReport& run) {
-  if (run.deadline <= 0 || run.frames.empty()) return "";
+std::string deadlineLine(const RunReport& run, double deadline) {
+  if (deadline <= 0 || run.frames.empty()) return "";
   int over = 0, cut = 0;
   double longest = 0;
   for (const FrameStats& frame : run.frames) {
-    over += frame.simulation() > run.deadline;
+    over += frame.simulation() > deadline;
     cut += frame.solves_cut > 0 || frame.corrections_cut > 0;
     longest = std::max(longest, frame.simulation());
   }
   std::ostringstream text;
   text.precision(3);
-  text << "  deadline   " << 1e3 * run.deadline << " ms: ";
+  text << "  deadline   " << 1e3 * deadline << " ms: ";
   if (over == 0) text << "kept in every frame";
   if (over > 0) text << "not kept in " << over << " of " << run.frames.size() << " frames";
   text << ", the longest took " << 1e3 * longest << " ms; work left out in " << cut << " frames, "
@@ -277,9 +277,25 @@ std::string deadlineLine(const RunReport& run) {
   return text.str();
 }
 
+// How a budget was held in the frames that `pick` has a time for, in seconds; empty without one.
+template <class Pick>
+std::string budgetLine(const char* name, double budget, const std::string& rung, const RunReport& run, Pick pick) {
+  std::vector<double> times = gather(run, pick);
+  std::erase_if(times, [](double seconds) { return seconds <= 0; });
+  if (budget <= 0 || times.empty()) return "";
+  const auto over = std::ranges::count_if(times, [&](double seconds) { return seconds > budget; });
+  std::ostringstream text;
+  text.precision(3);
+  text << "  budget of " << name << " " << 1e3 * budget << " ms: ";
+  if (over == 0) text << "held in every frame";
+  if (over > 0) text << "not held in " << over << " of " << times.size() << " frames";
+  text << "; the last had \"" << rung << "\"\n";
+  return text.str();
+}
+
 }  // namespace
 
-std::string summary(const RunReport& run) {
+std::string summary(const RunReport& run, const Demo& demo) {
   const auto line = [&](const char* name, auto pick) {
     std::ostringstream text;
     text.precision(3);
@@ -289,7 +305,12 @@ std::string summary(const RunReport& run) {
   return "median of " + std::to_string(run.frames.size()) + " frames:\n" +
          line("frame     ", [](const FrameStats& f) { return f.whole; }) +
          line("simulation", [](const FrameStats& f) { return f.simulation(); }) +
-         line("drawing   ", [](const FrameStats& f) { return f.seconds[kTimeDraw]; }) + deadlineLine(run);
+         line("drawing   ", [](const FrameStats& f) { return f.seconds[kTimeDraw]; }) +
+         budgetLine("simulation", demo.governor.budget, rungName(demo.governor), run,
+                    [](const FrameStats& f) { return f.simulation(); }) +
+         budgetLine("drawing", demo.draw_governor.budget, drawRungName(demo.draw_governor), run,
+                    [](const FrameStats& f) { return f.draw.stages.empty() ? 0 : f.seconds[kTimeDraw]; }) +
+         deadlineLine(run, demo.deadline.seconds);
 }
 
 }  // namespace app

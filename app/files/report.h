@@ -13,7 +13,6 @@ struct RunReport {
   std::string renderer;      // of the context; empty without one
   double start_seconds = 0;  // load and settle
   double fps = 0;
-  double deadline = 0;  // s of a frame's simulation; 0: none
   std::vector<FrameStats> frames;
 };
 
@@ -23,7 +22,7 @@ std::vector<std::string> limitNotes(const Demo& demo);
 // Throws OutputError.
 void writeReport(const std::string& file, const RunReport& run, const Demo& demo);
 
-// One line a stage and how a deadline was kept, for the terminal.
-std::string summary(const RunReport& run);
+// One line a stage, and how budgets and a deadline were kept, for the terminal.
+std::string summary(const RunReport& run, const Demo& demo);
 
 }  // namespace app

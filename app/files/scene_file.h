@@ -105,6 +105,10 @@ Scene loadScene(const std::string& file);
 // The scene as text that readScene reads back to the same scene. File names are written as they were found.
 std::string writeScene(const Scene& scene);
 
+// The options with the file that stands alone where its kind belongs. Throws InputError, or UsageError for a kind that
+// cannot be opened so.
+Options sortedOut(Options options);
+
 // The scene that the command line asks for: its scene file or the default one, then the overrides of the options.
 // Throws InputError, or UsageError for an option's value.
 Scene sceneFromOptions(const Options& options);

@@ -21,6 +21,7 @@
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
 #include "app/scene/hair_export.h"
+#include "app/scene/project.h"
 #include "app/scene/sim_cache.h"
 #include "render/gl/gl_messages.h"
 
@@ -94,6 +95,10 @@ struct Run {
 Demo openForPictures(Scene scene, const Options& options, double aspect) {
   if (!options.hair_export.file.empty() || !options.cache.empty()) simulateAll(scene.skips);
   Demo demo = openScene(std::move(scene), aspect);
+  if (!options.project.empty()) {
+    openProject(options.project, demo);
+    if (!options.hair_export.file.empty() || !options.cache.empty()) simulateAll(demo.scene.skips);
+  }
   setDebugViews(options.debug, demo.debug);
   demo.governor.counted = demo.deadline.counted = true;  // the same pictures on every run
   for (const std::string& note : openingNotes(options, demo)) std::cerr << "hairmesh: " << note << "\n";
@@ -158,6 +163,7 @@ void Run::drawFrames() {
     target = {&pictures->renderer, options.width, options.height, 0, &pixels, !options.report.empty(), {},
               &pictures->pair};
   double last_line = now();
+  std::string told = demo.message;  // with the opening notes
   for (int frame = 0; frame < frames && !interrupted(); ++frame) {
     advanceFrame(demo, tape.turn(frame, frameSeconds(frame), demo), target);
     report.frames.push_back(demo.stats);
@@ -165,6 +171,9 @@ void Run::drawFrames() {
     if (frame + 1 == options.save_state_at) saveState();
     if (const std::string note = numericalNote(demo.stats); !note.empty())
       std::cerr << "hairmesh: frame " << frame << ": " << note << "\n";
+    if (demo.message_is_fault && !demo.message.empty() && demo.message != told)
+      std::cerr << "hairmesh: frame " << frame << ": " << demo.message << "\n";
+    told = demo.message;
     if (!pictures) {
       exportFrame(frame);
       continue;
@@ -199,9 +208,8 @@ int Run::finish() {
     if (demo.actors.size() > 1) break;
   }
   if (hair_export) std::cout << hair_export->finish(demo);
-  report.deadline = demo.deadline.seconds;
   if (cache) std::cout << cache->finish(demo);
-  std::cout << summary(report);
+  std::cout << summary(report, demo);
   if (demo.comparison.on()) std::cout << "against " << options.compare << ": " << comparisonText(demo) << "\n";
   if (film) {
     film->finish();

@@ -2,9 +2,12 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <filesystem>
@@ -34,6 +37,7 @@ std::vector<std::string> ffmpegWords(const std::string& file, int width, int hei
   return {"ffmpeg",
           "-loglevel",
           "error",
+          "-xerror",
           "-y",
           "-f",
           "rawvideo",
@@ -52,13 +56,12 @@ std::vector<std::string> ffmpegWords(const std::string& file, int width, int hei
           file};
 }
 
-// In the child: the frames come in, nothing goes out, and an interrupt of the program is the program's affair.
-[[noreturn]] void becomeFfmpeg(int frames, std::vector<std::string> words) {
+// In the child: the frames come in, only faults go out, and an interrupt of the program is the program's affair.
+[[noreturn]] void becomeFfmpeg(int frames, int faults, std::vector<std::string> words) {
   setpgid(0, 0);
   dup2(frames, 0);
-  const int quiet = open("/dev/null", O_WRONLY);
-  dup2(quiet, 1);
-  dup2(quiet, 2);
+  dup2(open("/dev/null", O_WRONLY), 1);
+  dup2(faults, 2);
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -86,9 +89,10 @@ VideoWriter::VideoWriter(const std::string& file, int width, int height, double 
   signal(SIGPIPE, SIG_IGN);
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw OutputError(file, "cannot be handed to ffmpeg", "try again");
+  faults_ = memfd_create("faults", MFD_CLOEXEC);
   std::vector<std::string> words = ffmpegWords(unfinished_, width, height, fps);
   process_ = fork();
-  if (process_ == 0) becomeFfmpeg(ends[0], std::move(words));
+  if (process_ == 0) becomeFfmpeg(ends[0], faults_, std::move(words));
   ::close(ends[0]);
   pipe_ = ends[1];
   if (process_ < 0) throw OutputError(file, "cannot be handed to ffmpeg", "try again");
@@ -96,6 +100,7 @@ VideoWriter::VideoWriter(const std::string& file, int width, int height, double 
 
 VideoWriter::~VideoWriter() {
   if (process_ > 0) close();
+  ::close(faults_);
   std::error_code ignored;
   fs::remove(unfinished_, ignored);
 }
@@ -104,8 +109,10 @@ void VideoWriter::add(std::span<const unsigned char> rgba) {
   while (!rgba.empty()) {
     const ssize_t written = write(pipe_, rgba.data(), rgba.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written <= 0)
-      throw OutputError(file_, "was given up by ffmpeg", "check the disk, and the ending: .mp4, .webm or .mkv");
+    if (written <= 0) {
+      close();
+      refuse("was given up by ffmpeg");
+    }
     rgba = rgba.subspan(static_cast<std::size_t>(written));
   }
 }
@@ -126,10 +133,24 @@ int VideoWriter::close() {
   return status;
 }
 
+void VideoWriter::refuse(const char* what) const {
+  const std::string words = faultWords();
+  throw OutputError(file_, what + (words.empty() ? "" : " (" + words + ")"),
+                    "check the disk, and the ending: .mp4, .webm or .mkv");
+}
+
+std::string VideoWriter::faultWords() const {
+  std::array<char, 400> text{};
+  const ssize_t length = pread(faults_, text.data(), text.size(), 0);
+  std::string first;
+  std::getline(std::istringstream(std::string(text.data(), static_cast<std::size_t>(std::max<ssize_t>(length, 0)))), first);
+  return first;
+}
+
 void VideoWriter::finish() {
   std::error_code error;
-  if (close() != 0 || (fs::rename(unfinished_, file_, error), error))
-    throw OutputError(file_, "could not be finished by ffmpeg", "check the disk, and the ending: .mp4, .webm or .mkv");
+  if (close() != 0 || !faultWords().empty() || (fs::rename(unfinished_, file_, error), error))
+    refuse("could not be finished by ffmpeg");
 }
 
 }  // namespace app

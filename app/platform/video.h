@@ -34,9 +34,11 @@ class VideoWriter {
   std::string file_, unfinished_;
   int width_, height_;
   pid_t process_ = -1;
-  int pipe_ = -1;
+  int pipe_ = -1, faults_ = -1;  // faults_: what ffmpeg says at its level "error", in memory
 
-  int close();  // returns ffmpeg's exit status
+  int close();                     // returns ffmpeg's exit status
+  std::string faultWords() const;  // its first line; empty: none
+  [[noreturn]] void refuse(const char* what) const;
 };
 
 }  // namespace app

@@ -287,6 +287,7 @@ Demo openForWindow(Scene scene, const Options& options, double aspect) {
   // Runs of so many frames and recordings show the same on every run.
   const bool beside = !options.frames_given && options.record.empty() && options.replay.empty();
   Demo demo = openScene(std::move(scene), aspect, beside);
+  if (!options.project.empty()) openProject(options.project, demo);
   if (!options.load_state.empty())
     loadDemoState(options.load_state, !options.camera.empty() || !options.framing.empty(), demo);
   if (isSimCache(options.load_state)) openCache(options.load_state, demo);

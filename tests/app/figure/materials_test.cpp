@@ -48,7 +48,7 @@ struct Ball {
 std::string writeFigure(const std::string& name, const std::string& materials) {
   fs::create_directories(kFolder);
   const Ball ball;
-  std::ofstream bin(kFolder / "ball.bin", std::ios::binary);
+  std::ofstream bin(kFolder / "a ball.bin", std::ios::binary);
   const auto put = [&](const auto& values) {
     const auto bytes = values.size() * sizeof(values[0]);
     bin.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(bytes));
@@ -65,7 +65,7 @@ std::string writeFigure(const std::string& name, const std::string& materials) {
       << R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[)"
       << R"({"name":"Hips","mesh":0,"translation":[0,0.8,0],"scale":[0.2,0.7,0.15],"children":[1]},)"
       << R"({"name":"Head","mesh":1,"translation":[0,1.1,0],"scale":[0.5,0.16,0.7]}],)"
-      << R"("meshes":[)" << mesh(0) << "," << mesh(1) << "]," << materials << R"(,"buffers":[{"uri":"ball.bin",)"
+      << R"("meshes":[)" << mesh(0) << "," << mesh(1) << "]," << materials << R"(,"buffers":[{"uri":"a%20ball.bin",)"
       << R"("byteLength":)" << second + ball.indices.size() * 2 << R"(}],"bufferViews":[)"
       << R"({"buffer":0,"byteOffset":0,"byteLength":)" << positions << R"(},{"buffer":0,"byteOffset":)" << first
       << R"(,"byteLength":)" << places << R"(},{"buffer":0,"byteOffset":)" << second << R"(,"byteLength":)" << indices
@@ -102,8 +102,8 @@ TEST(Materials, ColourAndPictureComeWithTheFigure) {
     const auto ramp = static_cast<unsigned char>(16 * t);
     rgba.insert(rgba.end(), {ramp, static_cast<unsigned char>(255 - ramp), 40, 255});
   }
-  app::writePng((kFolder / "face.png").string(), 4, 4, rgba);
-  const app::Character figure = app::loadCharacter(writeFigure("two.gltf", twoMaterials("face.png")));
+  app::writePng((kFolder / "a face.png").string(), 4, 4, rgba);
+  const app::Character figure = app::loadCharacter(writeFigure("two.gltf", twoMaterials("a%20f%61ce.png")));
   ASSERT_EQ(figure.mesh.materials.size(), 2u);
   ASSERT_EQ(figure.mesh.material_places.size(), figure.mesh.positions.size());
   // The curve of sRGB at 0.5, 0.2 and 0.1: 188, 124 and 89.

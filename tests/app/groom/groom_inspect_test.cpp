@@ -172,6 +172,25 @@ TEST(GroomInspect, SaysNothingOfAGroomThatFits) {
   }
 }
 
+TEST(GroomInspect, AnExportOfAHalfBaldHeadIsNotTurned) {
+  const app::HeadModel model = head();
+  app::GroomHints hints;
+  hints.meters_per_unit = 1;
+  hints.world_heads = 1;
+  for (const float side : {-1.0f, 1.0f}) {
+    const app::Groom whole = combedGroom(300, 7);
+    app::Groom groom;
+    for (std::size_t s = 0; s < whole.strandCount(); ++s) {
+      const auto strand = whole.strand(s);
+      if (side * strand[0].x() < 0) continue;
+      groom.points.insert(groom.points.end(), strand.begin(), strand.end());
+      groom.strand_first.push_back(static_cast<std::uint32_t>(groom.points.size()));
+    }
+    ASSERT_GT(groom.strandCount(), 100u);
+    EXPECT_EQ(namesOf(app::inspectGroom(groom, hints, &model)), "");
+  }
+}
+
 TEST(GroomInspect, NamesEveryOfTwoHundredAndSeventyFiveSeededDefects) {
   const std::string folder = test::freshFolder("inspect_defects");
   std::map<std::string, int> planted, named;

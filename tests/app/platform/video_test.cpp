@@ -2,6 +2,7 @@
 #include "app/platform/video.h"
 
 #include <gtest/gtest.h>
+#include <sys/mount.h>
 
 #include <filesystem>
 #include <vector>
@@ -49,6 +50,27 @@ TEST(Video, AFilmIsWholeOrNotThere) {
         odd.finish();
       },
       app::OutputError);
+}
+
+// ffmpeg holds a short film back until its end: only then does the disk turn out to be full.
+TEST(Video, AFilmThatTheDiskCannotHoldEndsInAFault) {
+  if (!app::canWriteVideo()) GTEST_SKIP() << "ffmpeg is not installed";
+  const std::string folder = test::freshFolder("video_full");
+  if (::mount("none", folder.c_str(), "tmpfs", 0, "size=4k") != 0)
+    GTEST_SKIP() << "mounting a small disk needs root";
+  std::string fault;
+  try {
+    app::VideoWriter film(folder + "/film.mp4", 320, 240, 30);
+    std::vector<unsigned char> noise(4 * 320 * 240);
+    for (std::size_t n = 0; n < noise.size(); ++n) noise[n] = static_cast<unsigned char>(n * n / 7);
+    film.add(noise);
+    film.finish();
+  } catch (const app::OutputError& error) {
+    fault = error.what();
+  }
+  EXPECT_NE(fault.find("No space left on device"), std::string::npos) << fault;
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+  ::umount2(folder.c_str(), MNT_DETACH);
 }
 
 }  // namespace

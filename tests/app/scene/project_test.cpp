@@ -67,6 +67,18 @@ TEST(Project, GoesOnWhereItWasLeftToTheBit) {
   EXPECT_EQ(app::stateHash(other), app::stateHash(demo));
 }
 
+TEST(Project, OpensFromTheCommandLineAloneAndGoesOn) {
+  const std::string file = test::freshFolder("project_line") + "/mine.json";
+  app::Demo demo = app::openScene(smallScene(), 1.5);
+  goOn(25, demo);
+  app::saveProject(file, demo);
+  const test::Outcome opened = test::runProgram({"--no-images", "--frames", "2", file});
+  EXPECT_EQ(opened.exit_code, 0) << opened.err;
+  const test::Outcome changed = test::runProgram({"--no-images", "--frames", "2", file, "--style", "short"});
+  EXPECT_EQ(changed.exit_code, app::kExitUsage) << changed.err;
+  EXPECT_NE(changed.err.find("brings its own scene"), std::string::npos) << changed.err;
+}
+
 TEST(Project, KeepsBrushedHairAndGoesOnWithIt) {
   const std::string file = test::freshFolder("project") + "/mine.json";
   app::Demo demo = brushedDemo(60);
