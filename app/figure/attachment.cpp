@@ -219,6 +219,20 @@ void placeAt(const AttachmentSpec& spec, const PolygonMesh& mesh, const Vec3& jo
   for (Vec3& p : surface.points) p = turn * (scale * p - origin) + spec.at;
 }
 
+// What is wrong with its place, in the joint's frame, though it can be worn; empty: nothing.
+std::string placeNote(const ClosedSurface& surface, const Rigid& to_scalp, const Scalp& scalp, bool of_head) {
+  double nearest = INFINITY;
+  bool inside = of_head;
+  for (const Vec3& p : surface.points) {
+    const Vec3 from_middle = to_scalp * p - scalp.center;
+    nearest = std::min(nearest, p.norm());
+    inside = inside && from_middle.norm() < scalp.radiusAt(from_middle.normalized());
+  }
+  if (inside) return "lies wholly inside the head; give \"scale\", metres per unit (0.0254 for inches), or \"at\"";
+  if (nearest > kNearJoint) return "lies " + millimetresOf(nearest) + " from its joint; look at \"scale\" and \"at\"";
+  return "";
+}
+
 // Signed distances; the same as of a body's part.
 PartDistance distancesOf(const ClosedSurface& surface, int joint) {
   PartDistance part;
@@ -288,7 +302,6 @@ Attachment loadAttachment(const AttachmentSpec& spec, const Character& character
   Attachment out;
   std::string note;
   placeAt(spec, mesh, scalp.linear().transpose() * carrier.rest_world.translation(), surface, note);
-  if (!note.empty()) out.note = stem(spec.file) + ": " + note;
   out.color = colorOf(mesh);
   const Rigid to_joint = carrier.rest_world.inverse(Eigen::Isometry) * upright;
   for (Vec3& p : surface.points) p = to_joint * p;
@@ -296,6 +309,9 @@ Attachment loadAttachment(const AttachmentSpec& spec, const Character& character
   if (!(out.part.deepest > 0))
     throw InputError(spec.file, "", "is too thin to collide with", "make it at least 3 mm thick");
   out.to_scalp = scalp.inverse(Eigen::Isometry) * carrier.rest_world;
+  const std::string place = placeNote(surface, out.to_scalp, character.scalp, joint == character.head_joint);
+  if (!place.empty()) note += (note.empty() ? "" : ", ") + place;
+  if (!note.empty()) out.note = stem(spec.file) + ": " + note;
   shadeAttachment(surface, out);
   return out;
 }

@@ -19,7 +19,7 @@ using nlohmann::json;
 
 constexpr int kVersion = 2;
 constexpr std::size_t kMaxRequests = 1000;                    // a frame
-constexpr double kLongestStep = 1e6, kLargestValue = 1e300;  // s; of a request's value
+constexpr double kLongestStep = 1e6, kLargestValue = 1e300;   // s; of a request's value
 constexpr double kFarthestView = 1e6, kMaxTurn = 1e3;         // m, rad; of a view
 constexpr double kMaxAspect = 1e5, kTallest = 1e5;
 

@@ -1,5 +1,7 @@
 #include "app/platform/opening_notes.h"
 
+#include <tuple>
+
 #include "app/files/report.h"
 #include "sim/field_text.h"
 
@@ -14,6 +16,11 @@ std::vector<std::string> openingNotes(const Options& options, const Demo& demo) 
   if (options.start > duration) {
     notes.push_back("--start " + sim::numberText(options.start) + " lies beyond the clip's " +
                     sim::numberText(duration) + " s; it begins at " + sim::numberText(first.playback.time) + " s");
+  }
+  for (const auto& [field, parameter, value] : {std::tuple("curl", "curl_radius", first.spec.look.hair.curl_radius),
+                                                std::tuple("clump", "clump", first.spec.look.hair.clump)}) {
+    if (value == 0 && (!mapOf(field, first.spec.maps).empty() || !curveOf(field, first.spec.curves).empty()))
+      notes.push_back(std::string("painted ") + field + " changes nothing while " + parameter + " is 0");
   }
   if (demo.draw_governor.budget > 0 && options.headless && !options.no_images)
     notes.push_back("--draw-budget-ms goes by measured time: these pictures do not repeat to the bit");

@@ -143,7 +143,8 @@ std::string VideoWriter::faultWords() const {
   std::array<char, 400> text{};
   const ssize_t length = pread(faults_, text.data(), text.size(), 0);
   std::string first;
-  std::getline(std::istringstream(std::string(text.data(), static_cast<std::size_t>(std::max<ssize_t>(length, 0)))), first);
+  std::getline(std::istringstream(std::string(text.data(), static_cast<std::size_t>(std::max<ssize_t>(length, 0)))),
+               first);
   return first;
 }
 

@@ -56,8 +56,7 @@ TEST(Video, AFilmIsWholeOrNotThere) {
 TEST(Video, AFilmThatTheDiskCannotHoldEndsInAFault) {
   if (!app::canWriteVideo()) GTEST_SKIP() << "ffmpeg is not installed";
   const std::string folder = test::freshFolder("video_full");
-  if (::mount("none", folder.c_str(), "tmpfs", 0, "size=4k") != 0)
-    GTEST_SKIP() << "mounting a small disk needs root";
+  if (::mount("none", folder.c_str(), "tmpfs", 0, "size=4k") != 0) GTEST_SKIP() << "mounting a small disk needs root";
   std::string fault;
   try {
     app::VideoWriter film(folder + "/film.mp4", 320, 240, 30);

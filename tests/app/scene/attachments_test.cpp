@@ -206,25 +206,35 @@ TEST(Attachments, AnExportSaysThatItLeavesThemOut) {
   }
 }
 
+// The beanie in another unit.
+std::string beanieIn(double units_per_metre) {
+  const std::string file = test::freshFolder("attachments_unit") + "/cap.obj";
+  std::ifstream in(app::dataPath("assets/attachments/beanie.obj"));
+  std::ofstream out(file);
+  for (std::string line; std::getline(in, line);) {
+    double x = 0, y = 0, z = 0;
+    if (std::sscanf(line.c_str(), "v %lf %lf %lf", &x, &y, &z) == 3) {
+      out << "v " << units_per_metre * x << " " << units_per_metre * y << " " << units_per_metre * z << "\n";
+    } else {
+      out << line << "\n";
+    }
+  }
+  return file;
+}
+
 TEST(Attachments, UnitAndOriginAreInferredAndTold) {
   const app::Demo metres = app::openScene(wearing("beanie.obj"), 1.5);
   EXPECT_EQ(metres.message, "");
-  const std::string file = test::freshFolder("attachments_unit") + "/cap.obj";
-  {
-    std::ifstream in(app::dataPath("assets/attachments/beanie.obj"));
-    std::ofstream out(file);
-    for (std::string line; std::getline(in, line);) {
-      double x = 0, y = 0, z = 0;
-      if (std::sscanf(line.c_str(), "v %lf %lf %lf", &x, &y, &z) == 3) {
-        out << "v " << 100 * x << " " << 100 * y << " " << 100 * z << "\n";
-      } else {
-        out << line << "\n";
-      }
-    }
-  }
-  const app::Demo centimetres = app::openScene(wearing(file), 1.5);
+  const app::Demo centimetres = app::openScene(wearing(beanieIn(100)), 1.5);
   EXPECT_NE(centimetres.message.find("read in centimetres"), std::string::npos) << centimetres.message;
   EXPECT_NEAR(centimetres.actors[0].worn[0].mesh->part.radius, metres.actors[0].worn[0].mesh->part.radius, 1e-6);
+}
+
+TEST(Attachments, OneInInchesOrFarOffIsSaidToBeNowhereToBeSeen) {
+  const app::Demo inches = app::openScene(wearing(beanieIn(1 / 0.0254)), 1.5);
+  EXPECT_NE(inches.message.find("lies wholly inside the head; give \"scale\""), std::string::npos) << inches.message;
+  const app::Demo far = app::openScene(wearing(R"({"file": "beanie.obj", "at": [0, 3, 0]})"), 1.5);
+  EXPECT_NE(far.message.find("from its joint; look at \"scale\" and \"at\""), std::string::npos) << far.message;
 }
 
 TEST(Attachments, AreDroppedUndoneAndTakenOff) {
