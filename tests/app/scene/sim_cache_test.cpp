@@ -123,8 +123,7 @@ TEST(SimCache, IsSmallBesideTheStates) {
   EXPECT_LT(static_cast<double>(std::filesystem::file_size(cached().file)), 0.25 * states);
 }
 
-std::string faultOf(const std::string& file, app::Style style = app::Style::kShort) {
-  app::Demo demo = opened(style);
+std::string faultOf(const std::string& file, app::Demo& demo) {
   const std::string before = app::demoStateBytes(demo);
   try {
     app::SimCache(file, demo).show(40, demo);
@@ -138,12 +137,13 @@ std::string faultOf(const std::string& file, app::Style style = app::Style::kSho
 TEST(SimCache, RefusesOtherHairAndWhatWasChanged) {
   const std::string whole = test::readAll(cached().file);
   const std::string file = test::freshFolder("sim_cache_bad") + "/bad.hairmesh";
+  app::Demo demo = opened(), other = opened(app::Style::kLong);
   const auto written = [&](const std::string& bytes) {
     std::ofstream(file, std::ios::binary) << bytes;
-    return faultOf(file);
+    return faultOf(file, demo);
   };
   EXPECT_EQ(written(whole), "");
-  EXPECT_NE(faultOf(cached().file, app::Style::kLong).find("is of other hair"), std::string::npos);
+  EXPECT_NE(faultOf(cached().file, other).find("is of other hair"), std::string::npos);
   EXPECT_NE(written("hairmesh-cache 9\n" + whole.substr(17)).find("another version"), std::string::npos);
   EXPECT_NE(written("hello").find("no cache"), std::string::npos);
   EXPECT_NE(written(whole.substr(0, whole.size() / 2)).find("cut off"), std::string::npos);
