@@ -19,7 +19,7 @@ using nlohmann::json;
 
 constexpr int kVersion = 2;
 constexpr std::size_t kMaxRequests = 1000;                    // a frame
-constexpr double kLongestStep = 1e6, kLargestValue = 1e300;   // s; of a request's value
+constexpr double kMostSeconds = 1e6, kLargestValue = 1e300;   // s; of a request's value
 constexpr double kFarthestView = 1e6, kMaxTurn = 1e3;         // m, rad; of a view
 constexpr double kMaxAspect = 1e5, kTallest = 1e5;
 
@@ -153,7 +153,7 @@ RecordedFrame readFrame(const JsonPlace& place) {
   const std::size_t entries = place.arraySize(kMaxRequests + 2);
   if (entries == 0) place.refuse("is no frame", "write [seconds, requests ...]");
   RecordedFrame frame;
-  frame.seconds = place.at(std::size_t{0}).number(0, kLongestStep);
+  frame.seconds = place.at(std::size_t{0}).number(0, kMostSeconds);
   std::size_t next = 1;
   if (next < entries && place.at(next).value().is_object()) frame.view = readView(place.at(next++));
   for (; next < entries; ++next) frame.requests.push_back(readRequest(place.at(next)));

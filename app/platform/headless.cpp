@@ -93,11 +93,12 @@ struct Run {
 };
 
 Demo openForPictures(Scene scene, const Options& options, double aspect) {
-  if (!options.hair_export.file.empty() || !options.cache.empty()) simulateAll(scene.skips);
+  const bool kept_whole = !options.hair_export.file.empty() || !options.cache.empty();
+  if (kept_whole) simulateAll(scene.skips);
   Demo demo = openScene(std::move(scene), aspect);
   if (!options.project.empty()) {
     openProject(options.project, demo);
-    if (!options.hair_export.file.empty() || !options.cache.empty()) simulateAll(demo.scene.skips);
+    if (kept_whole) simulateAll(demo.scene.skips);
   }
   setDebugViews(options.debug, demo.debug);
   demo.governor.counted = demo.deadline.counted = true;  // the same pictures on every run
