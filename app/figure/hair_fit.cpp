@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "app/files/length_units.h"
 #include "app/files/median.h"
 
 namespace app {
@@ -22,13 +23,6 @@ constexpr double kSmallestSpread = 0.2;                      // of the roots ove
 // degrees.
 constexpr double kHangs = 0.5, kDown = 0.34;
 constexpr int kFitSteps = 20;
-
-struct Unit {
-  const char* name;
-  double metres;
-};
-constexpr std::array<Unit, 5> kUnits{
-    {{"metres", 1}, {"centimetres", 0.01}, {"millimetres", 0.001}, {"inches", 0.0254}, {"feet", 0.3048}}};
 
 struct Axes {
   const char* name;
@@ -46,7 +40,7 @@ const std::array<Axes, 4>& axesKnown() {
 
 // How a file's coordinates become the scalp's.
 struct Reading {
-  const Unit* unit = &kUnits[0];
+  const LengthUnit* unit = &kLengthUnits[0];
   const Axes* axes = &axesKnown()[0];
   bool from_ground = false;  // the origin is the figure's, not the head joint
   Eigen::Matrix3d linear = Eigen::Matrix3d::Identity();
@@ -93,7 +87,7 @@ std::vector<Reading> readings(const Character& character) {
   std::vector<Reading> all;
   for (const bool from_ground : {false, true}) {
     for (const Axes& axes : axesKnown()) {
-      for (const Unit& unit : kUnits) {
+      for (const LengthUnit& unit : kLengthUnits) {
         Reading reading{&unit, &axes, from_ground};
         for (int k = 0; k < 3; ++k) reading.linear.row(k) = unit.metres * axes.rows[static_cast<std::size_t>(k)];
         if (from_ground) {
@@ -212,7 +206,7 @@ std::string length(double metres) {
 std::string looksLike(const Reading& reading) {
   std::string text;
   const auto add = [&](const std::string& more) { text += (text.empty() ? "" : ", ") + more; };
-  if (reading.unit != &kUnits[0]) add(reading.unit->name);
+  if (reading.unit != &kLengthUnits[0]) add(reading.unit->words);
   if (reading.axes != &axesKnown()[0]) add(reading.axes->name);
   if (reading.from_ground) add("the figure's origin");
   return text;

@@ -12,7 +12,7 @@ namespace app {
 namespace {
 
 constexpr int kBlock = 4;  // nodes a side of the blocks that are skipped when far from the surface
-constexpr double kMaxNodes = 12e6;
+constexpr double kMaxGridNodes = 12e6;
 
 struct Lattice {
   int nx = 0, ny = 0, nz = 0;
@@ -58,7 +58,7 @@ Lattice layOut(const MeshGrid& g) {
       cells_z = std::max(cells_z, (std::abs(ball.center.z() - l.cz) + ball.radius) / size);
     }
     const double nodes = (2 * cells_x + 4) * (2 * cells_z + 4) * l.ny;
-    if (nodes > kMaxNodes) continue;
+    if (nodes > kMaxGridNodes) continue;
     l.nx = 2 * static_cast<int>(std::ceil(cells_x)) + 2;
     l.nz = 2 * static_cast<int>(std::ceil(cells_z)) + 2;
     l.value.assign(static_cast<std::size_t>(l.nx) * l.ny * l.nz, 1.0f);

@@ -12,9 +12,9 @@ namespace app {
 namespace {
 
 // On a head of this height; in proportion on others.
-constexpr double kHeadHeight = 0.23;  // m
-constexpr double kReach = 0.008;      // m, along the skin: how far a root shades the skin around it
-constexpr double kSpacing = 0.003;    // m, between the samples of a root face
+constexpr double kHeadHeight = 0.23;   // m
+constexpr double kShadeReach = 0.008;  // m, along the skin: how far a root shades the skin around it
+constexpr double kSpacing = 0.003;     // m, between the samples of a root face
 // m between skin and root, across the skin: as good as on it up to the first, of another head from the second on.
 constexpr double kNear = 0.012, kApart = 0.018;
 constexpr double kOnScalp = 0.002, kOnEar = 0.006;  // m of skin above the scalp, which is without ears
@@ -82,12 +82,12 @@ class Cubes {
 
 std::vector<float> rootCover(const Character& character, const sim::HairMesh& hair) {
   const SkinnedMesh& mesh = character.mesh;
-  const double scale = character.scalp.head_height / kHeadHeight, reach = scale * kReach;
+  const double scale = character.scalp.head_height / kHeadHeight, reach = scale * kShadeReach;
   const Rigid to_scalp = scalpToWorld(character, restPose(character.skeleton)).inverse();
   const std::size_t count = mesh.positions.size();
   std::vector<Vec3> places(count), normals(count);
   std::vector<double> on_scalp(count), share(count, 0.0), depth(count, 0.0);
-  Cubes cubes(scale * std::hypot(kReach, kApart));
+  Cubes cubes(scale * std::hypot(kShadeReach, kApart));
   for (std::size_t v = 0; v < count; ++v) {
     places[v] = to_scalp * mesh.positions[v].cast<double>();
     normals[v] = to_scalp.linear() * mesh.normals[v].cast<double>();

@@ -12,12 +12,12 @@
 namespace app {
 namespace {
 
-constexpr double kReach = 3.0;         // head heights from the head's middle, as far as hair comes
-constexpr double kAside = 0.75;        // head heights from the head's axis, as far as the head reaches
-constexpr double kAir = 0.014;         // m in front of the skin: nothing is to lie there but hair
-constexpr double kClear = 0.006;       // m, that such a place is at least off the ellipsoids and other skin
-constexpr float kFinest = 0.004f;      // m, spacing of samples
-constexpr double kAskedWithin = 0.04;  // m: skin so near is asked
+constexpr double kReach = 3.0;            // head heights from the head's middle, as far as hair comes
+constexpr double kAside = 0.75;           // head heights from the head's axis, as far as the head reaches
+constexpr double kAir = 0.014;            // m in front of the skin: nothing is to lie there but hair
+constexpr double kClear = 0.006;          // m, that such a place is at least off the ellipsoids and other skin
+constexpr float kFinestSpacing = 0.004f;  // m, spacing of samples
+constexpr double kAskedWithin = 0.04;     // m: skin so near is asked
 
 // The rest pose, then moments evenly over all clips.
 std::vector<Pose> momentsOf(const Character& character, int moments) {
@@ -100,7 +100,7 @@ std::vector<std::size_t> thinned(const SkinnedMesh& mesh, const std::vector<std:
     if (std::ranges::any_of(near, [&](const auto& moment) { return moment[v] != 0; })) all.push_back(v);
   }
   std::vector<std::size_t> some = all;
-  for (float cell = kFinest; some.size() > most; cell *= 1.2f) some = oneACell(mesh, all, cell);
+  for (float cell = kFinestSpacing; some.size() > most; cell *= 1.2f) some = oneACell(mesh, all, cell);
   return some;
 }
 

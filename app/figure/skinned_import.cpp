@@ -229,9 +229,9 @@ void inferUnits(const SkinnedMesh& raw, int head, Import& import) {
   char text[160];
   double unit = 0;
   const char* name = "";
-  constexpr std::array<std::pair<double, const char*>, 4> kUnits{
+  constexpr std::array<std::pair<double, const char*>, 4> kFigureUnits{
       {{1.0, "metres"}, {0.01, "centimetres"}, {0.0254, "inches"}, {0.001, "millimetres"}}};
-  for (const auto& [candidate, unit_name] : kUnits) {
+  for (const auto& [candidate, unit_name] : kFigureUnits) {
     if (height * candidate >= 1.2 && height * candidate <= 2.2) {
       unit = candidate;
       name = unit_name;

@@ -12,8 +12,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kFarthestPlace = 3, kMaxTurn = 180;  // m, degrees
-constexpr double kMinUnit = 1e-5, kMaxUnit = 100;     // m per unit
+constexpr double kFarthestAttachment = 3, kMaxTurn = 180;  // m, degrees
+constexpr double kMinUnit = 1e-5, kMaxUnit = 100;          // m per unit
 
 sim::Vec3 vectorFrom(const std::array<double, 3>& values) {
   return {values[0], values[1], values[2]};
@@ -50,7 +50,7 @@ AttachmentSpec readAttachment(const JsonPlace& place) {
         "names '" + name.substr(0, 200) + "', which " + whatInPlace(one.file),
         "name a mesh: OBJ, FBX or glTF; it is looked for beside the scene and in assets/attachments");
   if (place.has("joint")) one.joint = place.at("joint").text();
-  if (place.has("at")) one.at = vectorFrom(place.at("at").vector(-kFarthestPlace, kFarthestPlace));
+  if (place.has("at")) one.at = vectorFrom(place.at("at").vector(-kFarthestAttachment, kFarthestAttachment));
   if (place.has("turn")) one.turn = vectorFrom(place.at("turn").vector(-kMaxTurn, kMaxTurn));
   if (place.has("scale")) one.scale = place.at("scale").number(kMinUnit, kMaxUnit);
   if (place.has("color")) {

@@ -18,10 +18,10 @@ namespace {
 using nlohmann::json;
 
 constexpr int kVersion = 2;
-constexpr std::size_t kMaxRequests = 1000;                    // a frame
-constexpr double kMostSeconds = 1e6, kLargestValue = 1e300;   // s; of a request's value
-constexpr double kFarthestView = 1e6, kMaxTurn = 1e3;         // m, rad; of a view
-constexpr double kMaxAspect = 1e5, kTallest = 1e5;
+constexpr std::size_t kMaxRequests = 1000;                   // a frame
+constexpr double kMostSeconds = 1e6, kLargestValue = 1e300;  // s; of a request's value
+constexpr double kFarthestView = 1e6, kMaxViewTurn = 1e3;    // m, rad; of a view
+constexpr double kMaxAspect = 1e5, kTallestPicture = 1e5;
 
 struct AskName {
   Ask what;
@@ -118,11 +118,11 @@ RecordedView readView(const JsonPlace& place) {
   RecordedView view;
   const std::array<double, 3> target = place.at("target").vector(-kFarthestView, kFarthestView);
   view.target = {target[0], target[1], target[2]};
-  view.yaw = place.at("yaw").number(-kMaxTurn, kMaxTurn);
-  view.pitch = place.at("pitch").number(-kMaxTurn, kMaxTurn);
+  view.yaw = place.at("yaw").number(-kMaxViewTurn, kMaxViewTurn);
+  view.pitch = place.at("pitch").number(-kMaxViewTurn, kMaxViewTurn);
   view.distance = place.at("distance").number(1e-6, kFarthestView);
   view.aspect = place.at("aspect").number(1 / kMaxAspect, kMaxAspect);
-  view.height = static_cast<int>(place.at("height").number(1, kTallest));
+  view.height = static_cast<int>(place.at("height").number(1, kTallestPicture));
   return view;
 }
 

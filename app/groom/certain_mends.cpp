@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "app/files/errors.h"
+#include "app/files/length_units.h"
 #include "sim/field_text.h"
 
 namespace app {
@@ -12,12 +13,6 @@ namespace app {
 namespace {
 
 constexpr std::size_t kMinStrands = 20;  // of which the inspector tells a unit
-
-struct Unit {
-  std::string_view name;
-  double metres;
-};
-constexpr std::array<Unit, 5> kUnits{{{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}}};
 
 std::string_view nextWord(std::string_view& text) {
   const std::size_t begin = std::min(text.find_first_not_of(' '), text.size());
@@ -48,9 +43,9 @@ bool readFlag(std::string_view option, GroomMends& mends) {
 
 bool readWord(std::string_view option, std::string_view value, GroomMends& mends) {
   if (option == "--unit") {
-    const auto* const unit = std::ranges::find(kUnits, value, &Unit::name);
-    if (unit != kUnits.end()) mends.unit = unit->metres;
-    return unit != kUnits.end();
+    const auto* const unit = std::ranges::find(kLengthUnits, value, &LengthUnit::name);
+    if (unit != kLengthUnits.end()) mends.unit = unit->metres;
+    return unit != kLengthUnits.end();
   }
   if (option == "--up") {
     const std::optional<Eigen::Matrix3f> axes = axesOfUp(value);

@@ -25,7 +25,7 @@ constexpr float kStraight = 2e-3f;                      // weight of a strand's 
 constexpr float kBeyond = 0.02f;                        // weight of a layer that a strand does not reach
 constexpr double kAlong = 0.1;                          // weight of a layer's way along its strand, over that across
 constexpr float kSlope = 0.05f, kFarthestSlide = 0.5f;  // layers
-constexpr double kMargin = 1.3;                         // of the fatness that is aimed for
+constexpr double kFatnessMargin = 1.3;                  // of the fatness that is aimed for
 constexpr double kLargestMove = 0.01;                   // m a round
 constexpr double kShortestEdge = 0.0035;                // m
 constexpr double kAlike = 0.01;                         // weight of neighbours' difference beside a column's strands
@@ -241,7 +241,7 @@ bool cornerConstraint(const sim::HairMeshShape& shape, const std::vector<int>& u
     return shape.positions[static_cast<std::size_t>(corner[k])];
   };
   const sim::Vec3 a = at(1) - at(0), b = at(2) - at(0), c = at(3) - at(0);
-  const double box = a.norm() * b.norm() * c.norm(), lacking = kMargin * fatness * box - a.cross(b).dot(c);
+  const double box = a.norm() * b.norm() * c.norm(), lacking = kFatnessMargin * fatness * box - a.cross(b).dot(c);
   if (lacking <= 0) return false;
   out.v = corner;
   out.slope = {sim::Vec3::Zero(), b.cross(c), c.cross(a), a.cross(b)};

@@ -7,6 +7,7 @@
 
 #include "app/files/errors.h"
 #include "app/groom/grown_groom.h"
+#include "app/groom/report_line.h"
 
 namespace app {
 namespace {
@@ -31,19 +32,19 @@ Groom reversed(Groom groom) {
   return groom;
 }
 
-using Cell = std::array<int, 3>;
+using GridCell = std::array<int, 3>;
 
-Cell cellOf(const Vector3f& root) {
+GridCell cellOf(const Vector3f& root) {
   return {static_cast<int>(std::floor(root.x() / kTogether)), static_cast<int>(std::floor(root.y() / kTogether)),
           static_cast<int>(std::floor(root.z() / kTogether))};
 }
 
 // Cells of misfits that touch each other, gathered from one of them.
-std::vector<std::size_t> gather(const Cell& start, std::map<Cell, std::vector<std::size_t>>& cells) {
+std::vector<std::size_t> gather(const GridCell& start, std::map<GridCell, std::vector<std::size_t>>& cells) {
   std::vector<std::size_t> strands;
-  std::vector<Cell> queue{start};
+  std::vector<GridCell> queue{start};
   while (!queue.empty()) {
-    const Cell cell = queue.back();
+    const GridCell cell = queue.back();
     queue.pop_back();
     const auto entry = cells.find(cell);
     if (entry == cells.end()) continue;
@@ -58,7 +59,7 @@ std::vector<std::size_t> gather(const Cell& start, std::map<Cell, std::vector<st
 
 // Whether strands whose roots share a cell go apart, on the mean over pairs that follow each other.
 bool goApart(const StrandSamples& samples, const std::vector<std::size_t>& of) {
-  std::map<Cell, std::size_t> seen;
+  std::map<GridCell, std::size_t> seen;
   double sum = 0, count = 0;
   for (const std::size_t s : of) {
     const auto [entry, added] = seen.try_emplace(cellOf(samples.strand(s)[0]), s);
@@ -74,7 +75,7 @@ bool goApart(const StrandSamples& samples, const std::vector<std::size_t>& of) {
 }
 
 std::vector<Misfit> findMisfits(const StrandSamples& samples, const HairFit& fit) {
-  std::map<Cell, std::vector<std::size_t>> cells;
+  std::map<GridCell, std::vector<std::size_t>> cells;
   for (std::size_t s = 0; s < samples.strandCount(); ++s) {
     if (fit.error.of_strand[s] > kMisfit * fit.error.strand_length) cells[cellOf(samples.strand(s)[0])].push_back(s);
   }
@@ -98,15 +99,8 @@ std::vector<Misfit> findMisfits(const StrandSamples& samples, const HairFit& fit
   return all;
 }
 
-template <class... Values>
-std::string line(const char* format, Values... values) {
-  char text[400];
-  std::snprintf(text, sizeof text, format, values...);
-  return std::string(text) + "\n";
-}
-
 std::string misfitLine(const Misfit& misfit, const FitError& error) {
-  return line(
+  return reportLine(
       "does not fit  %d strand%s of number %d to %d, rooted about (%.3f, %.3f, %.3f) m: %.0f mm off, up to %.0f mm "
       "(%.0f %% of the length)%s",
       misfit.strands, misfit.strands == 1 ? "" : "s", misfit.first, misfit.last, misfit.root.x(), misfit.root.y(),
@@ -203,31 +197,32 @@ Conversion convertGroom(const Groom& given, const GroomHints& hints, const Conve
 std::string conversionReport(const Conversion& conversion) {
   const HairFit& fit = conversion.fit;
   const FitError& error = fit.error;
-  std::string text = line("read          %d strands in %s, median length %.3f m", conversion.strands,
-                          conversion.unit.c_str(), error.strand_length);
+  std::string text = reportLine("read          %d strands in %s, median length %.3f m", conversion.strands,
+                                conversion.unit.c_str(), error.strand_length);
   if (conversion.left_out > 0)
-    text +=
-        line("left out      %d strands: fewer than two points, not finite or shorter than 1 mm", conversion.left_out);
-  text += line("hair mesh     %d vertices in %d columns of %zu layers; %zu root faces in %d region%s",
-               fit.shape.vertexCount(), fit.shape.columnCount(), fit.knots.size(), fit.shape.root_faces.size(),
-               fit.regions, fit.regions == 1 ? "" : "s");
+    text += reportLine("left out      %d strands: fewer than two points, not finite or shorter than 1 mm",
+                       conversion.left_out);
+  text += reportLine("hair mesh     %d vertices in %d columns of %zu layers; %zu root faces in %d region%s",
+                     fit.shape.vertexCount(), fit.shape.columnCount(), fit.knots.size(), fit.shape.root_faces.size(),
+                     fit.regions, fit.regions == 1 ? "" : "s");
   if (fit.dropped_faces > 0)
-    text += line("left bare     %d root faces: strands over them go through each other", fit.dropped_faces);
-  text += line(
+    text += reportLine("left bare     %d root faces: strands over them go through each other", fit.dropped_faces);
+  text += reportLine(
       "distance      mean %.2f %% of the length (%.1f mm), 95 %% within %.2f %% (%.1f mm), largest %.0f mm; roots %.1f "
       "mm",
       100 * error.mean / error.strand_length, 1e3 * error.mean, 100 * error.share95 / error.strand_length,
       1e3 * error.share95, 1e3 * error.largest, 1e3 * error.root_mean);
   if (conversion.silhouette >= 0)
-    text += line("silhouette    overlaps by at least %.3f from six sides, by %.3f with strands dealt out anew",
-                 conversion.silhouette, conversion.silhouette_drawn);
+    text += reportLine("silhouette    overlaps by at least %.3f from six sides, by %.3f with strands dealt out anew",
+                       conversion.silhouette, conversion.silhouette_drawn);
   text += characterLine(conversion.look);
   for (std::size_t k = 0; k < std::min(kMaxMisfits, conversion.misfits.size()); ++k)
     text += misfitLine(conversion.misfits[k], error);
   if (conversion.misfits.size() > kMaxMisfits) {
     int rest = 0;
     for (std::size_t k = kMaxMisfits; k < conversion.misfits.size(); ++k) rest += conversion.misfits[k].strands;
-    text += line("              and %d strands in %zu smaller groups", rest, conversion.misfits.size() - kMaxMisfits);
+    text +=
+        reportLine("              and %d strands in %zu smaller groups", rest, conversion.misfits.size() - kMaxMisfits);
   }
   return text;
 }

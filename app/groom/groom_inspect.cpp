@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "app/files/length_units.h"
 #include "app/groom/groom_shape.h"
 
 namespace app {
@@ -16,10 +17,10 @@ using Eigen::Vector3f;
 
 namespace {
 
-constexpr std::size_t kMaxStrands = 2000;  // looked at
-constexpr double kSkullRadius = 0.09;      // m, of the sphere that roots lie about
-constexpr float kThinnest = 8e-6f;         // m, a diameter
-constexpr float kUsualWidth = 8e-5f, kWidest = 4e-4f, kAllHairs = 1e5f;
+constexpr std::size_t kMaxInspected = 2000;  // looked at
+constexpr double kSkullRadius = 0.09;        // m, of the sphere that roots lie about
+constexpr float kThinnestHair = 8e-6f;       // m, a diameter
+constexpr float kUsualWidth = 8e-5f, kWidestHair = 4e-4f, kAllHairs = 1e5f;
 constexpr float kFar = 0.018f, kFloating = 0.03f, kDeep = 0.006f;  // m
 constexpr std::size_t kManyPoints = 256, kMinRoots = 20;
 
@@ -37,12 +38,6 @@ float shareOutside(const SphereFit& sphere, const std::vector<Vector3f>& points)
       points, [&](const Vector3f& p) { return (p - sphere.center).norm() > 0.95f * sphere.radius; });
   return static_cast<float>(outside) / static_cast<float>(points.size());
 }
-
-struct Unit {
-  const char* name;
-  double meters;
-};
-constexpr std::array<Unit, 5> kUnits{{{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}}};
 
 struct Inspector {
   const Groom& groom;
@@ -74,7 +69,7 @@ struct Inspector {
 // Strands that no program can use, and numbers of points.
 void Inspector::strands() {
   const std::size_t all = groom.strandCount();
-  ends = strandEnds(groom, kMaxStrands);
+  ends = strandEnds(groom, kMaxInspected);
   if (ends.non_finite > 0)
     add("non-finite", countText(ends.non_finite, all, "have points that are no finite numbers"), "--drop-bad", true);
   if (ends.zero_length > 0) add("zero-length", countText(ends.zero_length, all, "have no length"), "--drop-bad", true);
@@ -120,11 +115,11 @@ void Inspector::unit() {
   result.mends.unit = told;
   if (ends.first.size() < kMinRoots || !(skull.radius > 0)) return;
   const auto off = [this](double meters) { return std::abs(std::log(meters * skull.radius / kSkullRadius)); };
-  const Unit* best = &kUnits[0];
-  for (const Unit& unit : kUnits) best = off(unit.meters) < off(best->meters) ? &unit : best;
-  const bool fits = inWorld() || off(best->meters) < std::log(1.45);
-  if (!inWorld() && std::abs(best->meters / told - 1) > 0.01 && (off(told) > std::log(1.45) || !fits)) {
-    if (fits) result.mends.unit = best->meters;
+  const LengthUnit* best = &kLengthUnits[0];
+  for (const LengthUnit& unit : kLengthUnits) best = off(unit.metres) < off(best->metres) ? &unit : best;
+  const bool fits = inWorld() || off(best->metres) < std::log(1.45);
+  if (!inWorld() && std::abs(best->metres / told - 1) > 0.01 && (off(told) > std::log(1.45) || !fits)) {
+    if (fits) result.mends.unit = best->metres;
     add("unit",
         textOf("the roots lie about a skull of radius %.3g, which fits ", skull.radius) + best->name +
             (hints.meters_per_unit ? textOf("; the file tells %g m a unit", told) : ", not m"),
@@ -213,12 +208,12 @@ void Inspector::widths() {
   }
   if (usable.empty()) return;
   const float middle = medianOf(usable);
-  const float widest = std::max(kWidest, 1.5f * kUsualWidth * kAllHairs / static_cast<float>(groom.strandCount()));
+  const float widest = std::max(kWidestHair, 1.5f * kUsualWidth * kAllHairs / static_cast<float>(groom.strandCount()));
   const float most = std::min(widest, 5e-3f);
-  if (middle >= kThinnest && middle <= most) return;
+  if (middle >= kThinnestHair && middle <= most) return;
   const double powers =
-      std::round(std::log10((middle < kThinnest ? kUsualWidth : std::sqrt(kUsualWidth * most)) / middle));
-  const double scale = std::pow(10.0, powers == 0 ? (middle < kThinnest ? 1 : -1) : powers);
+      std::round(std::log10((middle < kThinnestHair ? kUsualWidth : std::sqrt(kUsualWidth * most)) / middle));
+  const double scale = std::pow(10.0, powers == 0 ? (middle < kThinnestHair ? 1 : -1) : powers);
   result.mends.width_scale = static_cast<float>(scale);
   add("widths", textOf("the strands are %.3g mm wide; hair is %.2g mm", 1e3 * middle, 1e3 * kUsualWidth),
       textOf("--width-scale %g", scale), true);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t kSegments = 1, kPoints = 2, kThickness = 4, kTransparency = 8, kColors = 16;  // flags
 
-struct Header {
+struct HairHeader {
   std::array<char, 4> magic{'H', 'A', 'I', 'R'};
   std::uint32_t strands = 0, points = 0, flags = 0;
   std::uint32_t segments = 0;  // of every strand, where there is no array
@@ -19,12 +19,12 @@ struct Header {
   std::array<float, 3> color{1, 1, 1};
   std::array<char, 88> text{};
 };
-static_assert(sizeof(Header) == 128);
+static_assert(sizeof(HairHeader) == 128);
 
 constexpr std::size_t kMaxSegments = 65535;
 
 // First point of every strand. The segments of all strands must come to the header's points.
-void readSegments(const Header& header, ByteReader& reader, Groom& groom) {
+void readSegments(const HairHeader& header, ByteReader& reader, Groom& groom) {
   std::vector<std::uint16_t> segments;
   if (header.flags & kSegments) reader.array(header.strands, "segments of the strands", segments);
   if (segments.empty() && header.strands > header.points) {
@@ -45,7 +45,7 @@ void readSegments(const Header& header, ByteReader& reader, Groom& groom) {
               "the file is damaged; export it again");
 }
 
-void readArrays(const Header& header, ByteReader& reader, Groom& groom) {
+void readArrays(const HairHeader& header, ByteReader& reader, Groom& groom) {
   reader.array(header.points, "points", groom.points);
   if (header.flags & kThickness) {
     reader.array(header.points, "thickness of the points", groom.widths);
@@ -83,8 +83,8 @@ std::vector<std::uint16_t> segmentsOf(const Groom& groom, const std::string& fil
 
 Groom readHairStrands(std::string_view bytes, const std::string& file) {
   ByteReader reader{bytes, file};
-  const auto header = reader.number<Header>("the 128 bytes of the header");
-  if (header.magic != Header().magic) {
+  const auto header = reader.number<HairHeader>("the 128 bytes of the header");
+  if (header.magic != HairHeader().magic) {
     reader.at = 0;
     reader.fail("the file does not begin with 'HAIR'", "give a .hair file of strands");
   }
@@ -104,7 +104,7 @@ Groom readHairStrands(std::string_view bytes, const std::string& file) {
 
 void writeHairStrands(const Groom& groom, const std::string& file, OutputFile& output, std::string_view text) {
   const std::vector<std::uint16_t> segments = segmentsOf(groom, file);
-  Header header;
+  HairHeader header;
   header.strands = static_cast<std::uint32_t>(groom.strandCount());
   header.points = static_cast<std::uint32_t>(groom.points.size());
   header.flags = kSegments | kPoints | (groom.widths.empty() ? 0u : kThickness) | (groom.colors.empty() ? 0u : kColors);

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr int kFitPoints = 96;  // of a strand that is measured
-constexpr std::size_t kMaxStrands = 4000;
+constexpr std::size_t kMaxLooked = 4000;
 constexpr int kMaxTurns = 16;
 constexpr double kMinTurns = 2.5, kQuickTurns = 3;  // slower turns are wander
 constexpr double kOpening = 0.35;             // share of the length over which curls open, shaders/common/strand.glsl
@@ -137,7 +137,7 @@ double clumpOf(const StrandSamples& strands, const HairFit& fit, const GrowthMap
   std::vector<float> ratios;
   const std::size_t at = static_cast<std::size_t>(kClumpClosed * (strands.count - 1));
   std::vector<Vector3f> one(static_cast<std::size_t>(strands.count)), other = one;
-  for (std::size_t s = 0; s < strands.strandCount() && ratios.size() < kMaxStrands; ++s) {
+  for (std::size_t s = 0; s < strands.strandCount() && ratios.size() < kMaxLooked; ++s) {
     const Vector3f root = strands.strand(s)[0];
     const auto cell = [&](int k) { return static_cast<int>(std::floor(root[k] / kNearRoots)); };
     const auto [entry, added] = seen.try_emplace({cell(0), cell(1), cell(2)}, s);
@@ -170,7 +170,7 @@ void measureWidths(const Groom& groom, double scale, LookFit& look) {
 
 LookFit fitLook(const Groom& groom, double scale, const StrandSamples& strands, const HairFit& fit) {
   const GrowthMap growth(fit.shape);
-  const std::size_t step = std::max<std::size_t>(1, strands.strandCount() / kMaxStrands);
+  const std::size_t step = std::max<std::size_t>(1, strands.strandCount() / kMaxLooked);
   std::vector<StrandMeasure> measures;
   std::vector<Vector3f> given, strand(kFitPoints), grown(kFitPoints);
   for (std::size_t s = 0; s < strands.strandCount(); s += step) {

@@ -11,14 +11,14 @@ namespace app {
 
 namespace {
 
-constexpr double kClear = 0.002;                   // m off the body, or as near as the hair was
-constexpr int kCurvePoints = 6;                    // a segment, of the curves that are compared
-constexpr int kReachOfLayer = 3;                   // layers beyond which a curve does not follow a vertex
-constexpr std::array kSlides{0.0, 0.1, 0.2, 0.3};  // layers, towards the one that is taken away
-constexpr double kFat = 0.02;                      // see untangle
+constexpr double kClear = 0.002;                        // m off the body, or as near as the hair was
+constexpr int kCurvePoints = 6;                         // a segment, of the curves that are compared
+constexpr int kReachOfLayer = 3;                        // layers beyond which a curve does not follow a vertex
+constexpr std::array kSlideShares{0.0, 0.1, 0.2, 0.3};  // layers, towards the one that is taken away
+constexpr double kFat = 0.02;                           // see untangle
 constexpr int kUntanglings = 4;
-constexpr double kMostPasses = 16;                          // over the tips
-constexpr std::array kStraight{0.0, 0.25, 0.5, 0.75, 1.0};  // share of the chord in place of the curve
+constexpr double kMostPasses = 16;                             // over the tips
+constexpr std::array kChordShares{0.0, 0.25, 0.5, 0.75, 1.0};  // share of the chord in place of the curve
 
 int longestColumn(const sim::HairMeshShape& shape) {
   int most = 0;
@@ -196,7 +196,7 @@ EditedMesh addLayer(const sim::HairMeshShape& shape, int after, const BodyDistan
       if (l == after && (tip || l + 1 < shape.columnLength(c))) column.push_back(tip ? l + 1 : l + 0.5);
     }
   }
-  for (const double straight : kStraight) {
+  for (const double straight : kChordShares) {
     EditedMesh edited = byPlan(shape, plan, straight);
     if (tip) evenTips(shape, after, static_cast<int>(kMostPasses * straight), edited);
     clearOfBody(shape, body, edited);
@@ -223,7 +223,7 @@ EditedMesh removeLayer(const sim::HairMeshShape& shape, int layer, const BodyDis
   }
   EditedMesh best, plain;
   best.moved = INFINITY;
-  for (const double slide : kSlides) {
+  for (const double slide : kSlideShares) {
     if (slide > 0 && layer == layers - 1) break;
     LayerPlan plan;
     for (int c = 0; c < shape.columnCount(); ++c) {

@@ -16,10 +16,10 @@ namespace app {
 
 namespace {
 
-constexpr double kSameRoot = 0.001;                     // m, between columns that are welded
-constexpr double kNarrowest = 0.006, kWidest = 0.03;    // m, of a bundle at its root
-constexpr double kTooNear = 0.5;                        // of that: roots of other hair within it
-constexpr double kFatness = 0.03, kGapToBody = 0.0025;  // see untangle; m
+constexpr double kSameRoot = 0.001;                           // m, between columns that are welded
+constexpr double kNarrowestRoot = 0.006, kWidestRoot = 0.03;  // m, of a bundle at its root
+constexpr double kTooNear = 0.5;                              // of that: roots of other hair within it
+constexpr double kPartedFatness = 0.03, kGapToBody = 0.0025;  // see untangle; m
 constexpr int kMostUntanglings = 8;
 
 using RootEdgeKey = std::pair<int, int>;  // columns, the lower one first
@@ -241,7 +241,7 @@ std::map<int, Vec3> rootsBeside(const sim::HairMeshShape& shape, const std::vect
   std::map<int, Vec3> roots;
   for (const auto& [c, away] : out) {
     const Vec3 here = rootOf(shape, c) - scalp.center;
-    const double wide = std::clamp(length[c] / count[c], kNarrowest, kWidest);
+    const double wide = std::clamp(length[c] / count[c], kNarrowestRoot, kWidestRoot);
     const Vec3 way = here + wide * away.normalized();
     roots[c] = scalp.center + (scalp.radiusAt(way) + here.norm() - scalp.radiusAt(here)) * way.normalized();
     for (int other = 0; other < shape.columnCount(); ++other) {
@@ -277,7 +277,8 @@ EditedMesh extrudeColumns(const sim::HairMeshShape& shape, std::span<const Colum
   for (const ColumnPair& edge : border)
     edited.shape.root_faces.push_back({4, {edge.b, edge.a, fresh[edge.a], fresh[edge.b]}});
   const BodyDistance around = body ? body : [](const Vec3&) { return 1.0; };
-  for (int round = 0; round < kMostUntanglings && untangle(around, kFatness, kGapToBody, edited.shape) <= 0; ++round) {
+  for (int round = 0; round < kMostUntanglings && untangle(around, kPartedFatness, kGapToBody, edited.shape) <= 0;
+       ++round) {
   }
   for (std::size_t v = 0; v < shape.positions.size(); ++v)
     edited.moved = std::max(edited.moved, (edited.shape.positions[v] - shape.positions[v]).norm());

@@ -133,12 +133,12 @@ void PlyRows::readHeader() {
       continue;
     }
     --line_;
-    fail(quoted(words[0]) + " begins no line that a PLY header may have here", "export the file again");
+    fail(app::quoted(words[0]) + " begins no line that a PLY header may have here", "export the file again");
   }
   if (!told) fail("the header names no format", "write 'format ascii 1.0' or a binary one");
   for (const PlyElement& element : elements_) {
     if (element.count > 0 && element.properties.empty())
-      fail("element " + quoted(element.name) + " has rows without properties", "export the file again");
+      fail("element " + app::quoted(element.name) + " has rows without properties", "export the file again");
   }
 }
 
@@ -157,7 +157,7 @@ double PlyRows::number(int type) {
     double value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (word.empty() || end != word.data() + word.size() || error == std::errc::invalid_argument)
-      fail(word.empty() ? "the rows end early" : quoted(word) + " is not a number", "export the file again");
+      fail(word.empty() ? "the rows end early" : app::quoted(word) + " is not a number", "export the file again");
     return value;
   }
   const std::size_t size = kBytes[static_cast<std::size_t>(type)];

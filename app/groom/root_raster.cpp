@@ -35,11 +35,11 @@ void layRaster(const std::vector<Vector2f>& at, float size, RootRaster& raster) 
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
-  constexpr int kMargin = 3;  // cells
+  constexpr int kRasterMargin = 3;  // cells
   raster.size = size;
-  raster.origin = low.array() - kMargin * size;
-  raster.columns = static_cast<int>((high.x() - low.x()) / size) + 1 + 2 * kMargin;
-  raster.rows = static_cast<int>((high.y() - low.y()) / size) + 1 + 2 * kMargin;
+  raster.origin = low.array() - kRasterMargin * size;
+  raster.columns = static_cast<int>((high.x() - low.x()) / size) + 1 + 2 * kRasterMargin;
+  raster.rows = static_cast<int>((high.y() - low.y()) / size) + 1 + 2 * kRasterMargin;
   raster.cells.assign(static_cast<std::size_t>(raster.columns * raster.rows), {});
   raster.cell_of.resize(at.size());
   for (std::size_t s = 0; s < at.size(); ++s) {

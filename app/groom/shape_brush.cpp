@@ -14,8 +14,8 @@ constexpr double kPinch = 0.08, kTwist = 0.10;  // share of the way to the middl
 constexpr double kMinVolume = 0.02;             // of the mean corner volume, or half of what it is
 constexpr double kMinEdge = 0.001;              // m, or half of what it is
 constexpr double kOffBody = 0.002;              // m, or as near as it is
-constexpr int kHalvings = 8, kRounds = 24;      // of a stroke that goes too far, before what it spoils stays
-constexpr double kMoved = 1e-7;                 // m
+constexpr int kHalvings = 8, kStrokeUntanglings = 24;  // of a stroke that goes too far, before what it spoils stays
+constexpr double kMoved = 1e-7;                        // m
 
 Vec3 mirrored(Vec3 v, double plane) {
   v.x() = 2 * plane - v.x();
@@ -207,7 +207,7 @@ void ShapeBrushes::limit(const sim::HairMesh& mesh, const std::function<double(c
   }
   std::vector<unsigned char> moves = touched_;
   bool valid = false;
-  for (int round = 0; round < kRounds && !valid; ++round) {
+  for (int round = 0; round < kStrokeUntanglings && !valid; ++round) {
     for (std::size_t v = 0; v < n; ++v) {
       if (moves[v]) positions[v] = x[v] + share_[v] * (wanted_[v] - x[v]);
     }

@@ -1,8 +1,9 @@
 #include "app/groom/strand_samples.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+
+#include "app/files/length_units.h"
 
 namespace app {
 namespace {
@@ -82,12 +83,6 @@ double quantile(std::vector<float> values, double share) {
 }
 
 double inferUnit(const Groom& groom, std::string& name) {
-  struct Unit {
-    const char* name;
-    double metres;
-  };
-  static constexpr std::array<Unit, 5> kUnits{
-      {{"metres", 1}, {"centimetres", 0.01}, {"millimetres", 0.001}, {"inches", 0.0254}, {"feet", 0.3048}}};
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   double square = 0, count = 0;
   for (std::size_t s = 0; s < groom.strandCount(); ++s) {
@@ -99,14 +94,14 @@ double inferUnit(const Groom& groom, std::string& name) {
     square += away.dot(root - middle);
   }
   const double spread = count > 1 ? std::sqrt(square / count) : kHeadSpread;
-  const Unit* best = &kUnits[0];
-  const auto miss = [&](const Unit& unit) {
+  const LengthUnit* best = &kLengthUnits[0];
+  const auto miss = [&](const LengthUnit& unit) {
     return std::abs(std::log(std::max(spread, 1e-30) * unit.metres / kHeadSpread));
   };
-  for (const Unit& unit : kUnits) {
+  for (const LengthUnit& unit : kLengthUnits) {
     if (miss(unit) < miss(*best)) best = &unit;
   }
-  name = best->name;
+  name = best->words;
   return best->metres;
 }
 

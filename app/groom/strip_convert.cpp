@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "app/files/errors.h"
+#include "app/groom/report_line.h"
 #include "app/groom/strand_samples.h"
 
 namespace app {
@@ -163,13 +164,6 @@ void checkNumbers(const StripOptions& options, std::size_t count, const std::str
   }
 }
 
-template <class... Values>
-std::string line(const char* format, Values... values) {
-  char text[400];
-  std::snprintf(text, sizeof text, format, values...);
-  return std::string(text) + "\n";
-}
-
 std::string counted(int number, const char* what) {
   return std::to_string(number) + " " + what + (number == 1 ? "" : "s");
 }
@@ -223,19 +217,20 @@ StripConversion convertStrips(const PolygonMesh& mesh, const StripOptions& optio
 
 std::string stripReport(const StripConversion& conversion) {
   const StripMesh& mesh = conversion.mesh;
-  std::string text = line("read          %s in %s", kinds(conversion).c_str(), conversion.unit.c_str());
-  if (!conversion.scalp.empty()) text += line("scalp         %.300s", conversion.scalp.c_str());
-  text += line("root edges    %s; --root-edge and --flip-strips overrule it", conversion.roots.c_str());
-  text += line("hair mesh     %d vertices in %d columns of %d to %d layers; %zu root faces%s", mesh.shape.vertexCount(),
-               mesh.shape.columnCount(), mesh.least_layers, mesh.most_layers, mesh.shape.root_faces.size(),
-               mesh.thinned ? "; rows were left out, --vertices asks for more" : "");
-  if (mesh.thickness > 0) text += line("thickness     %.1f mm of strips at their roots", 1e3 * mesh.thickness);
+  std::string text = reportLine("read          %s in %s", kinds(conversion).c_str(), conversion.unit.c_str());
+  if (!conversion.scalp.empty()) text += reportLine("scalp         %.300s", conversion.scalp.c_str());
+  text += reportLine("root edges    %s; --root-edge and --flip-strips overrule it", conversion.roots.c_str());
+  text +=
+      reportLine("hair mesh     %d vertices in %d columns of %d to %d layers; %zu root faces%s",
+                 mesh.shape.vertexCount(), mesh.shape.columnCount(), mesh.least_layers, mesh.most_layers,
+                 mesh.shape.root_faces.size(), mesh.thinned ? "; rows were left out, --vertices asks for more" : "");
+  if (mesh.thickness > 0) text += reportLine("thickness     %.1f mm of strips at their roots", 1e3 * mesh.thickness);
   if (conversion.cut > 0)
-    text += line("cut short     %s whose last rows are no rows", counted(conversion.cut, "strip").c_str());
+    text += reportLine("cut short     %s whose last rows are no rows", counted(conversion.cut, "strip").c_str());
   for (std::size_t k = 0; k < std::min(kToldOf, conversion.left_out.size()); ++k)
-    text += line("left out      %.300s", conversion.left_out[k].c_str());
+    text += reportLine("left out      %.300s", conversion.left_out[k].c_str());
   if (conversion.left_out.size() > kToldOf)
-    text += line("              and %zu more", conversion.left_out.size() - kToldOf);
+    text += reportLine("              and %zu more", conversion.left_out.size() - kToldOf);
   return text;
 }
 

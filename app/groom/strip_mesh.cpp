@@ -16,10 +16,10 @@ namespace {
 using sim::Vec3;
 using Row = std::vector<Vec3>;
 
-constexpr double kThinnest = 0.002, kThickest = 0.008, kOfWidth = 0.35;  // m, m, of a quad's width
-constexpr double kAtTip = 0.5;                                           // of the thickness at the root
-constexpr std::size_t kMinLayers = 4, kFewSides = 4, kTubeSides = 8;
-constexpr double kFatness = 0.05;  // of untangled corners
+constexpr double kThinnestStrip = 0.002, kThickestStrip = 0.008, kOfWidth = 0.35;  // m, m, of a quad's width
+constexpr double kAtTip = 0.5;                                                     // of the thickness at the root
+constexpr std::size_t kFewestLayers = 4, kFewSides = 4, kTubeSides = 8;
+constexpr double kCornerFatness = 0.05;  // of untangled corners
 
 double ringArea(const Row& ring) {
   const Vec3 middle = middleOf(ring);
@@ -77,8 +77,9 @@ std::size_t verticesOf(const std::vector<StripRows>& strips) {
 bool fitBudget(const StripMeshOptions& options, std::vector<StripRows>& strips) {
   for (StripRows& strip : strips) {
     if (strip.tube) reduceSides(kTubeSides, strip);
-    setLayers(options.layers > 1 ? static_cast<std::size_t>(options.layers) : std::max(kMinLayers, strip.rows.size()),
-              strip);
+    setLayers(
+        options.layers > 1 ? static_cast<std::size_t>(options.layers) : std::max(kFewestLayers, strip.rows.size()),
+        strip);
   }
   const auto most = static_cast<std::size_t>(options.vertices > 0 ? options.vertices : kStripVertices);
   if (verticesOf(strips) <= most) return false;
@@ -87,9 +88,9 @@ bool fitBudget(const StripMeshOptions& options, std::vector<StripRows>& strips) 
   }
   std::size_t longest = 0;
   for (const StripRows& strip : strips) longest = std::max(longest, strip.rows.size());
-  for (std::size_t cap = longest; options.layers < 2 && cap > kMinLayers && verticesOf(strips) > most; --cap) {
+  for (std::size_t cap = longest; options.layers < 2 && cap > kFewestLayers && verticesOf(strips) > most; --cap) {
     for (StripRows& strip : strips) {
-      if (strip.rows.size() >= cap) setLayers(std::max(kMinLayers, cap - 1), strip);
+      if (strip.rows.size() >= cap) setLayers(std::max(kFewestLayers, cap - 1), strip);
     }
   }
   return true;
@@ -205,7 +206,7 @@ std::optional<sim::HairMeshShape> shapeOf(const StripRows& strip, double& thickn
     append(columns, faces, shape);
     if (valid(shape)) return shape;
     if (attempt + 1 == (strip.tube ? 2 : 4)) {
-      untangle([](const Vec3&) { return 1.0; }, kFatness, 0, shape);
+      untangle([](const Vec3&) { return 1.0; }, kCornerFatness, 0, shape);
       if (valid(shape)) return shape;
     }
     thickness /= 2;
@@ -227,8 +228,8 @@ StripMesh meshOfStrips(const std::vector<StripRows>& given, const StripMeshOptio
     const StripRows& strip = strips[s];
     double thickness = 0;
     if (!strip.tube)
-      thickness =
-          options.thickness > 0 ? options.thickness : std::clamp(kOfWidth * meanQuadWidth(strip), kThinnest, kThickest);
+      thickness = options.thickness > 0 ? options.thickness
+                                        : std::clamp(kOfWidth * meanQuadWidth(strip), kThinnestStrip, kThickestStrip);
     const std::optional<sim::HairMeshShape> one = shapeOf(strip, thickness);
     if (!one) {
       out.left_out.push_back(static_cast<int>(s));

@@ -17,17 +17,17 @@ using Eigen::Vector3d;
 
 constexpr double kSamePlace = 1e-6;  // of the extent
 
-using Cell = std::array<long long, 3>;
+using CornerCell = std::array<long long, 3>;
 
 struct CellHash {
-  std::size_t operator()(const Cell& cell) const {
+  std::size_t operator()(const CornerCell& cell) const {
     std::size_t hash = 0;
     for (const long long k : cell) hash = hash * 1000003u + static_cast<std::size_t>(k);
     return hash;
   }
 };
 
-Cell cellOf(const Vector3d& p, double size) {
+CornerCell cellOf(const Vector3d& p, double size) {
   return {std::llround(p.x() / size), std::llround(p.y() / size), std::llround(p.z() / size)};
 }
 
@@ -85,7 +85,7 @@ void addFace(std::vector<int> face, int object, std::set<std::vector<int>>& seen
 Welded weld(const PolygonMesh& mesh, const std::vector<bool>& taken) {
   Welded out;
   const double size = kSamePlace * extentOf(mesh);
-  std::unordered_map<Cell, int, CellHash> places;
+  std::unordered_map<CornerCell, int, CellHash> places;
   std::set<std::vector<int>> seen;
   for (std::size_t f = 0; f < mesh.faceCount(); ++f) {
     if (!taken[static_cast<std::size_t>(mesh.face_object[f])]) continue;
@@ -125,13 +125,13 @@ void joinNear(double join, Welded& mesh) {
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     for (const int v : mesh.faces[f]) piece[static_cast<std::size_t>(v)] = sets.find(static_cast<int>(f));
   }
-  std::unordered_map<Cell, std::vector<int>, CellHash> cells;
+  std::unordered_map<CornerCell, std::vector<int>, CellHash> cells;
   for (std::size_t v = 0; v < mesh.at.size(); ++v) cells[cellOf(mesh.at[v], join)].push_back(static_cast<int>(v));
   std::vector<int> stands_for(mesh.at.size());
   std::iota(stands_for.begin(), stands_for.end(), 0);
   for (std::size_t v = 0; v < mesh.at.size(); ++v) {
     if (stands_for[v] != static_cast<int>(v)) continue;
-    const Cell middle = cellOf(mesh.at[v], join);
+    const CornerCell middle = cellOf(mesh.at[v], join);
     for (long long n = 0; n < 27; ++n) {
       const auto cell = cells.find({middle[0] + n % 3 - 1, middle[1] + n / 3 % 3 - 1, middle[2] + n / 9 - 1});
       if (cell == cells.end()) continue;

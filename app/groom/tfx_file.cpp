@@ -13,13 +13,13 @@ namespace app {
 
 namespace {
 
-struct Header {
+struct TfxHeader {
   float version = 4;
   std::uint32_t strands = 0, points = 0;                                                // points a strand
   std::uint32_t positions = 0, root_uvs = 0, point_uvs = 0, thickness = 0, colors = 0;  // offsets, bytes
   std::array<std::uint32_t, 32> reserved{};
 };
-static_assert(sizeof(Header) == 160);
+static_assert(sizeof(TfxHeader) == 160);
 
 constexpr std::uint32_t kMinPoints = 4, kMaxPoints = 64;
 
@@ -47,16 +47,16 @@ void checkCounts(const Groom& groom, std::size_t points, const std::string& file
 }  // namespace
 
 bool looksLikeTfx(std::string_view bytes) {
-  if (bytes.size() < sizeof(Header)) return false;
+  if (bytes.size() < sizeof(TfxHeader)) return false;
   ByteReader reader{bytes, ""};
-  const auto header = reader.number<Header>("");
+  const auto header = reader.number<TfxHeader>("");
   return header.version >= 1 && header.version < 10 && header.points >= 2 && header.points <= 4096 &&
-         header.strands > 0 && header.positions >= sizeof(Header) && header.positions < bytes.size();
+         header.strands > 0 && header.positions >= sizeof(TfxHeader) && header.positions < bytes.size();
 }
 
 Groom readTfx(std::string_view bytes, const std::string& file) {
   ByteReader reader{bytes, file};
-  const auto header = reader.number<Header>("the 160 bytes of the header");
+  const auto header = reader.number<TfxHeader>("the 160 bytes of the header");
   const std::uint64_t points = std::uint64_t{header.strands} * header.points;
   if (header.points == 0) reader.fail("the header gives strands of no points", "export the file again");
   checkGroomSize(file, "header", header.strands, points);
@@ -102,10 +102,10 @@ int nearestTfxPoints(const Groom& groom) {
 void writeTfx(const Groom& groom, const std::string& file, OutputFile& output, std::string_view text) {
   const std::size_t points = groom.strandCount() > 0 ? groom.pointCount(0) : kMinPoints;
   checkCounts(groom, points, file);
-  Header header;
+  TfxHeader header;
   header.strands = static_cast<std::uint32_t>(groom.strandCount());
   header.points = static_cast<std::uint32_t>(points);
-  std::uint64_t end = sizeof(Header);
+  std::uint64_t end = sizeof(TfxHeader);
   const auto place = [&end](std::uint32_t& offset, bool has, std::uint64_t bytes) {
     if (!has) return;
     offset = static_cast<std::uint32_t>(end);

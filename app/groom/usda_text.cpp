@@ -14,7 +14,7 @@ namespace app {
 
 namespace {
 
-constexpr int kDeepest = 64;  // prims below one another
+constexpr int kDeepestPrim = 64;  // prims below one another
 
 bool isUsdaBlank(char c) {
   return static_cast<unsigned char>(c) <= ' ';
@@ -189,7 +189,7 @@ void TextReader::prims(const Eigen::Affine3d& above, int depth) {
 }
 
 void TextReader::prim(const Eigen::Affine3d& above, int depth) {
-  if (depth > kDeepest) scanner.fail("prims lie more than 64 deep");
+  if (depth > kDeepestPrim) scanner.fail("prims lie more than 64 deep");
   UsdaPrim prim;
   prim.at = scanner.at();
   prim.type = scanner.word();
@@ -252,9 +252,9 @@ void TextReader::attribute(std::string_view first, UsdaPrim& prim) {
     before = name;
     name = word;
   }
-  constexpr std::string_view kSamples = ".timeSamples";
-  const bool sampled = name.ends_with(kSamples);
-  if (sampled) name.remove_suffix(kSamples.size());
+  constexpr std::string_view kSampled = ".timeSamples";
+  const bool sampled = name.ends_with(kSampled);
+  if (sampled) name.remove_suffix(kSampled.size());
   const bool wanted = isWanted(name);
   UsdaAttribute unwanted;
   UsdaAttribute& kept = wanted ? prim.attributes[std::string(name)] : unwanted;

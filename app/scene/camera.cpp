@@ -9,14 +9,14 @@ namespace app {
 
 namespace {
 
-constexpr double kHighestPitch = 1.5, kNearest = 0.15, kFarthest = 50;
-constexpr double kFollowLag = 0.25;  // s
-constexpr double kOrbitSpeed = 3.2;  // rad per picture height
-constexpr double kZoomStep = 0.9;    // per notch
-constexpr double kStray = 0.15;      // of half the picture: how far the head may leave its place in it
-constexpr double kNearer = 0.1;      // of the distance: and how much nearer or farther it may come
-constexpr double kMargin = 1.06;     // around a whole figure
-constexpr double kFullAspect = 1.0;  // narrower pictures step back
+constexpr double kHighestPitch = 1.5, kNearest = 0.15, kFarthestEye = 50;
+constexpr double kFollowLag = 0.25;    // s
+constexpr double kOrbitSpeed = 3.2;    // rad per picture height
+constexpr double kZoomStep = 0.9;      // per notch
+constexpr double kStray = 0.15;        // of half the picture: how far the head may leave its place in it
+constexpr double kNearer = 0.1;        // of the distance: and how much nearer or farther it may come
+constexpr double kFrameMargin = 1.06;  // around a whole figure
+constexpr double kFullAspect = 1.0;    // narrower pictures step back
 
 // m, heights of the picture's edges about the middle of the cranium.
 struct Framing {
@@ -110,7 +110,7 @@ void frameFigure(const std::string& name, const Actor& actor, double aspect, Cam
   for (int corner = 0; corner < 8; ++corner) {
     const Vec3 p = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)) - camera.target;
     const double half = std::max(std::abs(p.dot(view.up)), std::abs(p.dot(view.right)) / aspect);
-    camera.distance = std::max(camera.distance, kMargin * half / slope + p.dot(view.back));
+    camera.distance = std::max(camera.distance, kFrameMargin * half / slope + p.dot(view.back));
   }
 }
 
@@ -147,7 +147,7 @@ void pan(double dx, double dy, double height, Camera& camera) {
 }
 
 void zoom(double notches, Camera& camera) {
-  camera.distance = std::clamp(camera.distance * std::pow(kZoomStep, notches), kNearest, kFarthest);
+  camera.distance = std::clamp(camera.distance * std::pow(kZoomStep, notches), kNearest, kFarthestEye);
 }
 
 void turnTo(const std::string& view, const Actor& actor, Camera& camera) {

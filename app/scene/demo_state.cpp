@@ -18,7 +18,7 @@ namespace app {
 
 namespace {
 
-constexpr std::string_view kTitle = "hairmesh-state ";
+constexpr std::string_view kStateTitle = "hairmesh-state ";
 constexpr const char* kSaveAnew = "save it anew with --save-state";
 
 // What follows the line of title and version.
@@ -208,9 +208,9 @@ void install(SavedActor saved, const Vec3& origin, Actor& actor) {
 // Takes title, version, size and checksum off the bytes of a file, or throws what is wrong with them.
 std::span<const std::byte> bodyOf(const std::string& text, const std::string& file) {
   const std::size_t end = text.find('\n');
-  if (!text.starts_with(kTitle) || end == std::string::npos)
+  if (!text.starts_with(kStateTitle) || end == std::string::npos)
     throw InputError(file, "", "is no saved state", "give a file that --save-state wrote");
-  const std::string version = text.substr(kTitle.size(), end - kTitle.size());
+  const std::string version = text.substr(kStateTitle.size(), end - kStateTitle.size());
   if (version != std::to_string(kDemoStateVersion))
     throw InputError(file, "",
                      "is a state of version " + version.substr(0, 20) + ", not " + std::to_string(kDemoStateVersion),
@@ -245,7 +245,7 @@ std::string demoStateBytes(const Demo& demo) {
   sim::writeBytes(demo.governor, body);
   sim::writeBytes(demo.deadline, body);
   sim::writeBytes(Head{body.size(), sim::fingerprint(body)}, head);
-  std::string text = std::string(kTitle) + std::to_string(kDemoStateVersion) + "\n";
+  std::string text = std::string(kStateTitle) + std::to_string(kDemoStateVersion) + "\n";
   for (const sim::Bytes& bytes : {head, body}) text.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   return text;
 }

@@ -14,16 +14,16 @@ namespace app {
 
 namespace {
 
-constexpr std::string_view kTitle = "hairmesh-cache ";
+constexpr std::string_view kCacheTitle = "hairmesh-cache ";
 constexpr const char* kWriteAnew = "write it anew with --cache";
 constexpr std::size_t kHeadAt = 17;  // bytes of the first line
 constexpr std::uint64_t kMaxIdentity = 1 << 20, kEntryBytes = 24;
 
 std::string titleLine() {
-  return std::string(kTitle) + std::to_string(kCacheVersion) + "\n";
+  return std::string(kCacheTitle) + std::to_string(kCacheVersion) + "\n";
 }
 
-std::string_view viewOf(const sim::Bytes& bytes) {
+std::string_view charactersOf(const sim::Bytes& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
@@ -117,7 +117,7 @@ SimCacheWriter::SimCacheWriter(const std::string& file, const Demo& demo) : name
   sim::writeBytes(std::uint64_t{0}, head);
   sim::writeBytes(std::uint64_t{identity.size()}, head);
   put(titleLine());
-  put(viewOf(head));
+  put(charactersOf(head));
   put(identity);
 }
 
@@ -135,8 +135,8 @@ void SimCacheWriter::addRecord(const Demo& demo, bool key) {
   sim::writeBytes(demo.shown_time, head);
   sim::writeBytes(sim::fingerprint(body), head);
   index_.push_back({demo.frames, written_, static_cast<std::uint32_t>(head.size() + body.size()), key ? 1u : 0u});
-  put(viewOf(head));
-  put(viewOf(body));
+  put(charactersOf(head));
+  put(charactersOf(body));
 }
 
 void SimCacheWriter::add(const Demo& demo) {
@@ -160,11 +160,11 @@ std::string SimCacheWriter::finish(const Demo& demo) {
   }
   sim::writeBytes(sim::fingerprint(index), index);
   const std::uint64_t index_at = written_;
-  put(viewOf(index));
+  put(charactersOf(index));
   sim::Bytes head;
   sim::writeBytes(index_at, head);
   sim::writeBytes(std::uint64_t{index_.size()}, head);
-  out_.overwrite(static_cast<long>(kHeadAt), viewOf(head));
+  out_.overwrite(static_cast<long>(kHeadAt), charactersOf(head));
   out_.commit();
   return std::to_string(index_.size()) + " frames cached in " + name_ + ", " + std::to_string((written_ + 512) / 1024) +
          " KB\n";
@@ -176,7 +176,7 @@ SimCache::SimCache(const std::string& file, const Demo& demo) : file_(file), str
   if (error || !stream_) throw InputError(file, "", "there is no such file, or it cannot be opened", "check the path");
   std::string title(titleLine().size(), '\0');
   stream_.read(title.data(), static_cast<std::streamsize>(title.size()));
-  if (!title.starts_with(kTitle)) throw InputError(file, "", "is no cache of simulated hair", kWriteAnew);
+  if (!title.starts_with(kCacheTitle)) throw InputError(file, "", "is no cache of simulated hair", kWriteAnew);
   if (title != titleLine()) throw InputError(file, "", "is a cache of another version", kWriteAnew);
   std::uint64_t index_at = 0, frames = 0, identity_size = 0;
   for (std::uint64_t* value : {&index_at, &frames, &identity_size})
@@ -270,9 +270,9 @@ void SimCache::show(long frame, Demo& demo) {
 }
 
 bool isSimCache(const std::string& file) {
-  std::string title(kTitle.size(), '\0');
+  std::string title(kCacheTitle.size(), '\0');
   return std::ifstream(file, std::ios::binary).read(title.data(), static_cast<std::streamsize>(title.size())) &&
-         title == kTitle;
+         title == kCacheTitle;
 }
 
 }  // namespace app

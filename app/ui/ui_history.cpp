@@ -11,7 +11,7 @@ namespace app {
 
 namespace {
 
-constexpr float kHistoryWidth = 292, kMinHeight = 130, kMargin = 12;
+constexpr float kHistoryWidth = 292, kMinHeight = 130, kHistoryMargin = 12;
 
 // A slider's step carries its row's title; others say what they are.
 std::string titleOf(const EditStep& step) {
@@ -42,7 +42,7 @@ void momentLine(std::size_t done, const std::string& title, Demo& demo, UiState&
 void historyPanel(Demo& demo, UiState& ui) {
   if (!ui.history || !ui.visible) return;
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  const float scale = ui.text_scale, margin = kMargin * scale;
+  const float scale = ui.text_scale, margin = kHistoryMargin * scale;
   const float width = std::min(kHistoryWidth * scale, size.x - 2 * margin);
   // Below the timings where they leave room.
   const float room = size.y - ui.timings_bottom - 2 * margin;

@@ -2,6 +2,7 @@
 // I, t optical depth: mu dI/dt = -I + P I + source exp(-t). Even in psi, so psi in (0, pi) is enough.
 #include "render/light/hair_volume.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
@@ -17,9 +18,9 @@ using shared::kVolumeSteps;
 constexpr int kDirections = 8;
 constexpr double kStep = std::numbers::pi / kDirections;
 constexpr double kLargestAlbedo = 1 - 1e-4;  // without loss two solutions of the equations fall together
-using Matrix = Eigen::Matrix<double, kDirections, kDirections>;
-using Vector = Eigen::Matrix<double, kDirections, 1>;
-using Fit = Eigen::Matrix<double, 3, kDirections>;
+// Sizes are told when it runs: with sizes that are types, this file takes half a minute to compile.
+using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kDirections, kDirections>;
+using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kDirections, 1>;
 
 double direction(int j) {
   return (j + 0.5) * kStep;
@@ -57,7 +58,7 @@ struct Azimuth {
 class Slab {
  public:
   explicit Slab(const Azimuth& azimuth) {
-    Vector source;
+    Vector source(kDirections);
     for (int to = 0; to < kDirections; ++to) {
       mu_[to] = std::cos(direction(to));
       source[to] = azimuth.around(direction(to) - std::numbers::pi);
@@ -67,20 +68,23 @@ class Slab {
       }
     }
     source *= azimuth.albedo / (2 * kStep * source.sum());
-    for (int from = 0; from < kDirections; ++from) scatter_.col(from) *= azimuth.albedo / scatter_.col(from).sum();
-    const Matrix loss = scatter_ - Matrix::Identity();
-    const Eigen::EigenSolver<Matrix> eigen(mu_.cwiseInverse().asDiagonal() * loss);
-    rate_ = eigen.eigenvalues().real();
-    modes_ = eigen.eigenvectors().real();
-    follows_ = (loss + Matrix(mu_.asDiagonal())).partialPivLu().solve(-source);
+    scatter_ *= azimuth.albedo / scatter_.col(0).sum();  // symmetric, and all its columns have one sum
+    // A mode v of rate r: mu r v = -loss v. With loss = L L^T, L^-1 mu L^-T has the eigenvalue -1 / r for L^T v.
+    const Matrix loss = Matrix::Identity(kDirections, kDirections) - scatter_;
+    const Eigen::LLT<Matrix> factor(loss);
+    const Matrix half = factor.matrixL().solve(Matrix(mu_.asDiagonal()));
+    const Eigen::SelfAdjointEigenSolver<Matrix> eigen(factor.matrixL().solve(half.transpose()));
+    rate_ = -eigen.eigenvalues().cwiseInverse();
+    modes_ = factor.matrixU().solve(eigen.eigenvectors());
+    follows_ = (loss - Matrix(mu_.asDiagonal())).partialPivLu().solve(source);
   }
 
   // What a fibre at depth `front` sends on, by direction.
   Vector sentOn(double front, double behind) const {
     const double thickness = front + behind;
     const Matrix at_front = modesAt(0, thickness), at_back = modesAt(thickness, thickness);
-    Matrix edges;
-    Vector none;
+    Matrix edges(kDirections, kDirections);
+    Vector none(kDirections);
     for (int j = 0; j < kDirections; ++j) {
       edges.row(j) = mu_[j] > 0 ? at_front.row(j) : at_back.row(j);
       none[j] = mu_[j] > 0 ? -follows_[j] : -follows_[j] * std::exp(-thickness);
@@ -92,24 +96,25 @@ class Slab {
  private:
   // Modes that grow are measured from the back, so that none overflows.
   Matrix modesAt(double depth, double thickness) const {
-    Vector size;
+    Vector size(kDirections);
     for (int k = 0; k < kDirections; ++k)
       size[k] = std::exp(rate_[k] > 0 ? rate_[k] * (depth - thickness) : rate_[k] * depth);
     return modes_ * size.asDiagonal();
   }
 
-  Vector mu_, rate_, follows_;
-  Matrix scatter_, modes_;
+  Vector mu_{kDirections}, rate_, follows_;
+  Matrix scatter_{kDirections, kDirections}, modes_;
 };
 
 // Least squares by the powers of the cosine of the azimuth between light and eye, which is -mu.
-Fit quadraticFit() {
-  Eigen::Matrix<double, kDirections, 3> powers;
+Matrix quadraticFit() {
+  Matrix powers(kDirections, 3);
   for (int j = 0; j < kDirections; ++j) {
     const double x = -std::cos(direction(j));
     powers.row(j) << 1, x, x * x;
   }
-  return (powers.transpose() * powers).inverse() * powers.transpose();
+  const Matrix normal = powers.transpose() * powers;
+  return normal.partialPivLu().solve(powers.transpose());
 }
 
 double depthOf(int step) {
@@ -119,7 +124,7 @@ double depthOf(int step) {
 }  // namespace
 
 std::vector<VolumeLight> tabulateVolume(const AzimuthalLobes& azimuth) {
-  static const Fit fit = quadraticFit();
+  static const Matrix fit = quadraticFit();
   std::vector<VolumeLight> table(static_cast<std::size_t>(kVolumeSteps * kVolumeSteps));
   for (int channel = 0; channel < 3; ++channel) {
     const Slab slab(Azimuth(azimuth, channel));
