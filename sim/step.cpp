@@ -40,6 +40,7 @@ struct StepContext::Parts {
   // Scratch of a step.
   std::vector<PinnedVertex> pins;  // that hold
   std::vector<Vec3> x_hat, v_hat, start_positions, start_velocities, unpushed;
+  bool restarted = false;                   // the step before was taken back, or there was none
   std::vector<V3<double>> plain_positions;  // for the force model, which is plain arrays
 
   Parts(const HairMesh& m, double (*c)())
@@ -207,8 +208,8 @@ Colliders collidersOf(const SimParams& params, const StepInput& input, Parts& pa
 }
 
 TakenStep takenStep(const SimParams& params, const StepBase& base, double dt, const Parts& parts) {
-  return {*parts.mesh, params,    parts.material.model, parts.start_positions, parts.start_velocities, dt,
-          base.wind,   parts.pins};
+  return {*parts.mesh, params,    parts.material.model, parts.start_positions, parts.start_velocities,
+          dt,          base.wind, parts.pins,           parts.restarted};
 }
 
 // Bundles that met are pushed apart and the rest of the hair follows; what then lies in a foreign bundle is pushed
@@ -245,6 +246,7 @@ double energyOf(const SimParams& params, const Vec3& wind, const HairState& stat
 std::span<const Vec3> rememberStart(const HairState& state, Parts& parts) {
   parts.start_positions = state.positions;
   parts.start_velocities = state.velocities;
+  parts.restarted = state.previous_dt <= 0;
   return parts.start_positions;
 }
 

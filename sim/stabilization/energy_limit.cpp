@@ -221,7 +221,8 @@ EnergyLimit::EnergyLimit(const HairMesh& mesh) {
 double limitEnergy(const TakenStep& step, bool solved, EnergyLimit& scratch, HairState& state) {
   scratch.carried_energy.reset();
   const Motion motion = judge(step, state);
-  if (motion == Motion::kNotFinite || (motion == Motion::kCalm && solved && !neverLinear(step))) return 1;
+  if (motion == Motion::kNotFinite || (motion == Motion::kCalm && solved && !step.restarted && !neverLinear(step)))
+    return 1;
   carry(step, state, scratch);
   return bringBelowBound(step, kTries, scratch, state);
 }

@@ -13,7 +13,8 @@
 //
 // A gentle step of hair as styles have it is near to linear, and not looked at. Never near to linear is hair that hangs
 // folded because its load strains its walls by more than their length, or that is so much stiffer one way than another
-// that it buckles.
+// that it buckles; and hair that was stopped or taken back in the step before: what it was kept from, it does in the
+// next.
 #pragma once
 
 #include <optional>
@@ -36,6 +37,7 @@ struct TakenStep {
   double dt;                                    // s
   Vec3 wind;                                    // m/s
   std::span<const PinnedVertex> pins{};         // that hold
+  bool restarted = false;                       // the hair was stopped, taken back or set before it
 };
 
 struct EnergyLimit {
@@ -47,8 +49,8 @@ struct EnergyLimit {
 };
 
 // Does nothing to a step that leaves a value not finite, that ends below its bound, or that is gentle, of firm hair,
-// and was solved to its end with the bodies of the step before (`solved`). Returns the share of the step's motion
-// against the roots that was kept, 1 where all was.
+// and was solved to its end with the bodies of the step before (`solved`), and that goes on from a step that was kept.
+// Returns the share of the step's motion against the roots that was kept, 1 where all was.
 double limitEnergy(const TakenStep& step, bool solved, EnergyLimit& scratch, HairState& state);
 
 // The same for a step, gentle or not, whose contacts or self-contacts have moved vertices: what these store or lift,

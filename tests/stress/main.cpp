@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <fstream>
 #include <iostream>
+#include <map>
 
 #include "app/files/errors.h"
 #include "app/scene/frame_stats.h"
@@ -185,6 +186,19 @@ void checkAnyChosen(const Options& options, const std::vector<StressCase>& cases
   throw app::InputError("", "case '" + options.pattern + "'", "is not declared", "see hairmesh-stress --list");
 }
 
+// In the matrix's order, however its parts were dealt.
+std::vector<Result> resultsOf(const std::vector<std::string>& files, const std::vector<StressCase>& cases) {
+  std::map<std::string, std::size_t> place;
+  for (std::size_t k = 0; k < cases.size(); ++k) place[cases[k].name] = k;
+  std::vector<Result> results;
+  for (const std::string& file : files) {
+    const std::vector<Result> some = stress::readCsv(file, cases);
+    results.insert(results.end(), some.begin(), some.end());
+  }
+  std::ranges::stable_sort(results, {}, [&](const Result& result) { return place[result.one.name]; });
+  return results;
+}
+
 int run(const Options& options) {
   std::vector<StressCase> cases = stress::declareCases(options.seed);
   if (options.results.empty()) checkAnyChosen(options, cases);
@@ -201,10 +215,7 @@ int run(const Options& options) {
   if (options.results.empty()) {
     results = runCases(options, cases);
   } else {
-    for (const std::string& file : options.results) {
-      const std::vector<Result> some = stress::readCsv(file, cases);
-      results.insert(results.end(), some.begin(), some.end());
-    }
+    results = resultsOf(options.results, cases);
   }
   if (!options.document.empty())
     stress::writeDocument(results, options.short_run ? "--short" : "--long", options.seed, options.document);
