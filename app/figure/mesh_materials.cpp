@@ -38,11 +38,14 @@ struct BaseColor {
   std::optional<Image> picture;
 };
 
-std::array<float, 3> factorOf(const aiMaterial& material) {
+std::array<float, 3> factorOf(const aiMaterial& material, std::vector<std::string>& notes) {
   aiColor4D color(1, 1, 1, 1);
   const bool is_linear = material.Get(AI_MATKEY_BASE_COLOR, color) == AI_SUCCESS;
   if (!is_linear && material.Get(AI_MATKEY_COLOR_DIFFUSE, color) != AI_SUCCESS) return {1, 1, 1};
   std::array<float, 3> linear{color.r, color.g, color.b};
+  if (std::ranges::any_of(linear, [](float c) { return !(c >= 0 && c <= 1); }))
+    notes.push_back("material '" + std::string(material.GetName().C_Str()) +
+                    "': its colour is not within 0 and 1 and is brought there; export the figure again");
   for (float& c : linear) {
     c = std::isfinite(c) ? std::clamp(c, 0.0f, 1.0f) : 1.0f;
     if (!is_linear) c = decoded(c);
@@ -75,7 +78,7 @@ Image readPicture(const aiScene& scene, const std::string& file, const aiString&
 
 BaseColor readMaterial(const aiScene& scene, const std::string& file, const aiMaterial& material,
                        std::vector<std::string>& notes) {
-  BaseColor base{factorOf(material), std::nullopt};
+  BaseColor base{factorOf(material, notes), std::nullopt};
   aiString path;
   if (material.GetTexture(aiTextureType_BASE_COLOR, 0, &path) != AI_SUCCESS &&
       material.GetTexture(aiTextureType_DIFFUSE, 0, &path) != AI_SUCCESS) {

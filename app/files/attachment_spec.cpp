@@ -106,7 +106,8 @@ std::string wornText(std::vector<AttachmentSpec> attachments) {
 }
 
 std::vector<AttachmentSpec> attachmentsFromText(std::string_view text) {
-  if (text == "none" || text.empty()) return {};
+  if (text == "none") return {};
+  if (text.empty()) throw InputError("", "''", "names nothing to wear", "write FILE@JOINT, or none");
   if (!text.starts_with("[") && !text.starts_with("{")) return {fileAtJoint(std::string(text))};
   const json given = parseJson(text, "");
   const JsonPlace place(given, "");

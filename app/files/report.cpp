@@ -8,6 +8,7 @@
 
 #include "app/files/median.h"
 #include "app/files/output_file.h"
+#include "app/files/report_line.h"
 #include "sim/stabilization/parameter_limits.h"
 
 namespace app {
@@ -302,10 +303,11 @@ std::string summary(const RunReport& run, const Demo& demo) {
     text << "  " << name << " " << 1e3 * median(gather(run, pick)) << " ms\n";
     return text.str();
   };
-  return "median of " + std::to_string(run.frames.size()) + " frames:\n" +
+  const bool drawn = std::ranges::any_of(run.frames, [](const FrameStats& f) { return !f.draw.stages.empty(); });
+  return "median of " + countOf(run.frames.size(), "frame") + ":\n" +
          line("frame     ", [](const FrameStats& f) { return f.whole; }) +
          line("simulation", [](const FrameStats& f) { return f.simulation(); }) +
-         line("drawing   ", [](const FrameStats& f) { return f.seconds[kTimeDraw]; }) +
+         (drawn ? line("drawing   ", [](const FrameStats& f) { return f.seconds[kTimeDraw]; }) : "") +
          budgetLine("simulation", demo.governor.budget, rungName(demo.governor), run,
                     [](const FrameStats& f) { return f.simulation(); }) +
          budgetLine("drawing", demo.draw_governor.budget, drawRungName(demo.draw_governor), run,

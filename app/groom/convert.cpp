@@ -6,8 +6,8 @@
 #include <map>
 
 #include "app/files/errors.h"
+#include "app/files/report_line.h"
 #include "app/groom/grown_groom.h"
-#include "app/groom/report_line.h"
 
 namespace app {
 namespace {

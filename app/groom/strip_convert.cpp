@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "app/files/errors.h"
-#include "app/groom/report_line.h"
+#include "app/files/report_line.h"
 #include "app/groom/strand_samples.h"
 
 namespace app {
@@ -164,14 +164,10 @@ void checkNumbers(const StripOptions& options, std::size_t count, const std::str
   }
 }
 
-std::string counted(int number, const char* what) {
-  return std::to_string(number) + " " + what + (number == 1 ? "" : "s");
-}
-
 std::string kinds(const StripConversion& conversion) {
-  std::string text = counted(conversion.strips, "strip");
+  std::string text = countOf(conversion.strips, "strip");
   if (conversion.joined > 0) text += " (" + std::to_string(conversion.joined) + " of several quads across)";
-  return text + " and " + counted(conversion.tubes, "tube");
+  return text + " and " + countOf(conversion.tubes, "tube");
 }
 
 }  // namespace
@@ -226,7 +222,7 @@ std::string stripReport(const StripConversion& conversion) {
                  mesh.shape.root_faces.size(), mesh.thinned ? "; rows were left out, --vertices asks for more" : "");
   if (mesh.thickness > 0) text += reportLine("thickness     %.1f mm of strips at their roots", 1e3 * mesh.thickness);
   if (conversion.cut > 0)
-    text += reportLine("cut short     %s whose last rows are no rows", counted(conversion.cut, "strip").c_str());
+    text += reportLine("cut short     %s whose last rows are no rows", countOf(conversion.cut, "strip").c_str());
   for (std::size_t k = 0; k < std::min(kToldOf, conversion.left_out.size()); ++k)
     text += reportLine("left out      %.300s", conversion.left_out[k].c_str());
   if (conversion.left_out.size() > kToldOf)

@@ -5,6 +5,7 @@
 
 #include "app/files/errors.h"
 #include "app/files/image_io.h"
+#include "app/files/report_line.h"
 
 namespace app {
 
@@ -58,7 +59,7 @@ void PictureWriter::recordFrame(Demo& demo, const FrameTarget& target) {
 
 void PictureWriter::endRecording(Demo& demo) {
   const Capture& capture = demo.capture;
-  std::string text = std::to_string(capture.recorded) + " frames in " + capture.folder;
+  std::string text = countOf(capture.recorded, "frame") + " in " + capture.folder;
   if (film_) {
     film_->finish();
     text += " and " + film_->file() + film_->sizeNote();

@@ -14,6 +14,7 @@
 #include "app/files/output_file.h"
 #include "app/files/recording.h"
 #include "app/files/report.h"
+#include "app/files/report_line.h"
 #include "app/platform/egl_context.h"
 #include "app/platform/interrupt.h"
 #include "app/platform/opening_notes.h"
@@ -95,11 +96,8 @@ struct Run {
 Demo openForPictures(Scene scene, const Options& options, double aspect) {
   const bool kept_whole = !options.hair_export.file.empty() || !options.cache.empty();
   if (kept_whole) simulateAll(scene.skips);
-  Demo demo = openScene(std::move(scene), aspect);
-  if (!options.project.empty()) {
-    openProject(options.project, demo);
-    if (kept_whole) simulateAll(demo.scene.skips);
-  }
+  Demo demo = options.project.empty() ? openScene(std::move(scene), aspect) : readProject(options.project, aspect);
+  if (kept_whole) simulateAll(demo.scene.skips);
   setDebugViews(options.debug, demo.debug);
   demo.governor.counted = demo.deadline.counted = true;  // the same pictures on every run
   for (const std::string& note : openingNotes(options, demo)) std::cerr << "hairmesh: " << note << "\n";
@@ -214,10 +212,10 @@ int Run::finish() {
   if (demo.comparison.on()) std::cout << "against " << options.compare << ": " << comparisonText(demo) << "\n";
   if (film) {
     film->finish();
-    std::cout << report.frames.size() << " frames in " << options.video << film->sizeNote() << "\n";
+    std::cout << countOf(report.frames.size(), "frame") << " in " << options.video << film->sizeNote() << "\n";
   }
   if (png) {
-    std::cout << report.frames.size() << " frames in " << options.out;
+    std::cout << countOf(report.frames.size(), "frame") << " in " << options.out;
     if (first > 0) std::cout << ", from " << framePath("", first);
     std::cout << "\n" << staleFrames(options.out, first + std::ssize(report.frames) - 1);
   }

@@ -286,8 +286,9 @@ void pollOrWait(bool may_wait, const Demo& demo, const std::function<bool()>& re
 Demo openForWindow(Scene scene, const Options& options, double aspect) {
   // Runs of so many frames and recordings show the same on every run.
   const bool beside = !options.frames_given && options.record.empty() && options.replay.empty();
-  Demo demo = openScene(std::move(scene), aspect, beside);
-  if (!options.project.empty()) openProject(options.project, demo);
+  Demo demo =
+      options.project.empty() ? openScene(std::move(scene), aspect, beside) : readProject(options.project, aspect);
+  demo.loading.on = beside;
   if (!options.load_state.empty())
     loadDemoState(options.load_state, !options.camera.empty() || !options.framing.empty(), demo);
   if (isSimCache(options.load_state)) openCache(options.load_state, demo);

@@ -108,7 +108,7 @@ void saveProject(const std::string& file, const Demo& demo) {
   if (!before.empty() && before != name) fs::remove(besides(file, before), ignored);
 }
 
-void openProject(const std::string& file, Demo& demo) {
+Demo readProject(const std::string& file, double aspect) {
   const json parsed = parseJson(readText(file), file);
   const JsonPlace place(parsed, file);
   if (!parsed.is_object() || !place.has(kKey)) place.refuse("is no project", "give a file that Save project wrote");
@@ -126,7 +126,7 @@ void openProject(const std::string& file, Demo& demo) {
   const auto bytes = std::as_bytes(std::span(binary));
   if (hex(sim::fingerprint(bytes)) != place.at("checksum").text())
     throw InputError(binary_file, "", "is not the one that " + file + " was saved with", "save the project anew");
-  Demo fresh = openScene(readScene(parsed.at("scene").dump(), file), demo.aspect);
+  Demo fresh = openScene(readScene(parsed.at("scene").dump(), file), aspect);
   sim::ByteReader from{bytes};
   for (std::size_t i = 0; i < fresh.actors.size(); ++i)
     takeShape(from, version, binary_file, static_cast<int>(i), fresh);
@@ -134,7 +134,11 @@ void openProject(const std::string& file, Demo& demo) {
   sim::readBytes(from, state);
   restoreDemoState(std::string(state.begin(), state.end()), binary_file, false, fresh);
   fresh.scene.file = file;
-  replaceScene(std::move(fresh), demo);
+  return fresh;
+}
+
+void openProject(const std::string& file, Demo& demo) {
+  replaceScene(readProject(file, demo.aspect), demo);
   demo.edits = {};
 }
 

@@ -19,6 +19,9 @@ inline constexpr int kProjectVersion = 2;
 // Throws OutputError; then the project that was there is whole.
 void saveProject(const std::string& file, const Demo& demo);
 
+// Opens it for pictures of `aspect` (width over height). Throws InputError as openProject does.
+Demo readProject(const std::string& file, double aspect);
+
 // Opens it in the demo's place. Throws InputError (no project, of a newer version, its binary gone or changed); then
 // nothing has changed.
 void openProject(const std::string& file, Demo& demo);

@@ -12,4 +12,9 @@ std::string reportLine(const char* format, Values... values) {
   return std::string(text) + "\n";
 }
 
+// "1 frame", "2 frames".
+inline std::string countOf(auto number, const char* what) {
+  return std::to_string(number) + " " + what + (number == 1 ? "" : "s");
+}
+
 }  // namespace app
