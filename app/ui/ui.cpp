@@ -93,7 +93,13 @@ void transportRow(Demo& demo, UiState& ui) {
 }
 
 void fileRow(Demo& demo, UiState& ui) {
-  const int pressed = segments("file", {"Open", "Save", "Undo", "Redo", "History"}, ui.history ? 4 : -1, ui);
+  const int pressed = segments("file",
+                               {{"Open", "Opens a scene, a project, hair, a figure or a motion"},
+                                {"Save", "Saves the scene, or a project with the hair as it is"},
+                                {"Undo", "Takes the last change back"},
+                                {"Redo", "Makes it again"},
+                                {"History", "Lists all changes, to go to any of them"}},
+                               ui.history ? 4 : -1, ui);
   if (pressed == 0) browseFor(BrowseFor::kOpen, ui);
   if (pressed == 1) browseFor(BrowseFor::kSaveScene, ui);
   if (pressed == 2) postRequest(demo, {Ask::kUndo, "", "", 1});

@@ -129,16 +129,27 @@ namespace {
 
 void paintRow(UiState& ui) {
   BrushState& brush = ui.brush;
-  const auto row = [&](std::initializer_list<const char*> labels, int before) {
-    const int pressed = segments("paint", labels, brush.field - before, ui);
-    tip("Draws a field over the scalp towards a value, at the roots of the hair within the ring");
+  const auto row = [&](std::initializer_list<Segment> fields, int before) {
+    const int pressed = segments("paint", fields, brush.field - before, ui);
     if (pressed < 0) return;
     brush.field = before + pressed;
     if (brush.field >= 0) brush.tool = -1, ui.select.element = -1;
   };
-  row({"No paint", "Stiff", "Length", "Density", "Mass"}, -1);
-  row({"Bend", "Width", "Clump"}, 4);
-  row({"Curl", "Color", "Rough"}, 7);
+  // Each draws a field over the scalp towards a value, at the roots of the hair within the ring.
+  row({"No paint",
+       {"Stiff", "Paints how stiff the hair is, as a share of the parameters' stiffness"},
+       {"Length", "Paints how long the hair is, as a share of the style's"},
+       {"Density", "Paints how many strands grow there, as a share"},
+       {"Mass", "Paints how heavy the hair is, as a share"}},
+      -1);
+  row({{"Bend", "Paints the resistance to bending alone, as a share"},
+       {"Width", "Paints how thick the strands are, as a share"},
+       {"Clump", "Paints how far strands gather to locks, as a share"}},
+      4);
+  row({{"Curl", "Paints how wide the curls are, as a share; without curls nothing shows"},
+       {"Color", "Paints a pigment over the hair's own colour"},
+       {"Rough", "Paints how wide the highlights are, as a share"}},
+      7);
 }
 
 void colorRow(UiState& ui) {
@@ -181,9 +192,23 @@ void colorCurveRows(const FieldCurves& curves, Demo& demo, UiState& ui) {
 
 void brushSection(Demo& demo, UiState& ui) {
   BrushState& brush = ui.brush;
-  const int pressed = segments("brush", {"Off", "Comb", "Cut", "Grow", "Smooth", "Puff"}, brush.tool + 1, ui);
+  const int pressed = segments("brush",
+                               {"Off",
+                                {"Comb", "Turns the hair along the stroke; lengths stay"},
+                                {"Cut", "Ends the hair nearer to the ring"},
+                                {"Grow", "Makes the hair longer"},
+                                {"Smooth", "Evens bends and differences between neighbours"},
+                                {"Puff", "Lifts the hair off the head"}},
+                               brush.tool + 1, ui);
   if (pressed >= 0) brush.tool = pressed - 1, brush.field = -1, ui.select.element = -1;
-  const int second = segments("brush", {"Pinch", "Spread", "Push", "Twist", "Freeze", "Thaw"}, brush.tool - 5, ui);
+  const int second = segments("brush",
+                              {{"Pinch", "Draws the hair together towards the ring's middle"},
+                               {"Spread", "Drives it apart from there"},
+                               {"Push", "Pushes the hair out of the body"},
+                               {"Twist", "Winds the hair about its own line"},
+                               {"Freeze", "Keeps the hair from being changed by other brushes"},
+                               {"Thaw", "Lets it be changed again"}},
+                              brush.tool - 5, ui);
   if (second >= 0) brush.tool = second + 5, brush.field = -1, ui.select.element = -1;
   paintRow(ui);
   selectRow(demo, ui);

@@ -210,15 +210,24 @@ std::string changeText(MeshChange change, const SelectState& select, const sim::
 
 void selectRow(Demo& demo, UiState& ui) {
   SelectState& select = ui.select;
-  const int pressed = segments("select", {"No select", "Vertex", "Edge", "Column", "Layer"}, select.element + 1, ui);
-  tip("Click chooses parts of the hair mesh, Shift adds, a drag or arrow keys move them");
+  const int pressed = segments("select",
+                               {"No select",
+                                {"Vertex", "Click chooses a vertex, Shift adds; a drag or arrow keys move it"},
+                                {"Edge", "Click chooses an edge, Shift adds; a drag or arrow keys move it"},
+                                {"Column", "Click chooses all from a root to its tip, Shift adds; a drag moves it"},
+                                {"Layer", "Click chooses all as far from the roots, Shift adds; a drag moves it"}},
+                               select.element + 1, ui);
   if (pressed >= 0) chooseElement(pressed - 1, ui);
   if (select.element < 0) return;
   followMesh(selectedActor(demo), select);
   ImGui::BeginDisabled(select.chosen.empty());
-  const int change = segments("mesh", {"Layer +", "Layer -", "Part", "Weld", "Extrude"}, -1, ui);
-  tip("A layer beyond the chosen one; that layer taken away; a parting along chosen edges or columns; one closed; new "
-      "bundles at chosen edges of the border");
+  const int change = segments("mesh",
+                              {{"Layer +", "Adds a layer beyond the chosen one"},
+                               {"Layer -", "Takes the chosen layer away"},
+                               {"Part", "Draws a parting along the chosen edges or columns"},
+                               {"Weld", "Closes the parting there"},
+                               {"Extrude", "Grows new bundles at chosen edges of the border"}},
+                              -1, ui);
   ImGui::EndDisabled();
   if (change < 0) return;
   const std::string name(kMeshChangeNames[static_cast<std::size_t>(change)]);

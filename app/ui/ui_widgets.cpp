@@ -401,14 +401,14 @@ bool iconButton(Icon icon, const char* name, const std::string& help, bool lit, 
   return pressed;
 }
 
-int segments(const char* name, std::initializer_list<const char*> labels, int chosen, UiState& ui) {
+int segments(const char* name, std::initializer_list<Segment> row, int chosen, UiState& ui) {
   int pressed = -1, index = 0;
   const float gap = 3;
-  const float count = static_cast<float>(labels.size());
+  const float count = static_cast<float>(row.size());
   const float width = (ImGui::GetContentRegionAvail().x - gap * (count - 1)) / count;
   ImGui::PushID(name);
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {2, ImGui::GetStyle().FramePadding.y});
-  for (const char* label : labels) {
+  for (const auto& [label, help] : row) {
     if (index) ImGui::SameLine(0, gap);
     const bool lit = index == chosen;
     if (lit) {
@@ -419,6 +419,7 @@ int segments(const char* name, std::initializer_list<const char*> labels, int ch
     if (ImGui::Button(label, {width, 0})) pressed = index;
     if (lit) ImGui::PopStyleColor(3);
     noteItem(std::string(name) + " " + label, ui);
+    tip(help);
     ++index;
   }
   ImGui::PopStyleVar();

@@ -50,8 +50,14 @@ void rowLabel(const std::string& text, const std::string& help);
 enum class Icon { kPlay, kPause, kStep, kReset, kRestart, kCollapse, kPhoto, kRecord, kHelp, kPanels, kBack };
 bool iconButton(Icon icon, const char* name, const std::string& help, bool lit, UiState& ui);
 
+struct Segment {
+  const char* label;
+  const char* help;  // shown over it
+  Segment(const char* shown, const char* said = "") : label(shown), help(said) {}
+};
+
 // Buttons side by side, one of them chosen. Returns the index pressed, or -1.
-int segments(const char* name, std::initializer_list<const char*> labels, int chosen, UiState& ui);
+int segments(const char* name, std::initializer_list<Segment> row, int chosen, UiState& ui);
 
 // What a parameter row is called in the panels.
 std::string rowTitle(std::string_view name);
