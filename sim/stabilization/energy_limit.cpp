@@ -187,8 +187,7 @@ double shorten(const TakenStep& step, std::span<const Vec3> back, double least, 
   return kept;
 }
 
-// Brings a step whose carried positions are known below its bound, by at most so many tries of a shorter way. Returns
-// the share of the motion that was kept.
+// Brings a step below its bound, by at most so many tries of a shorter way. Returns the share of the motion kept.
 double bringBelowBound(const TakenStep& step, int tries, EnergyLimit& scratch, HairState& state) {
   const Account account = accountFor(step, scratch, state);
   if (!std::isfinite(account.bound)) return 1;
@@ -201,8 +200,7 @@ double bringBelowBound(const TakenStep& step, int tries, EnergyLimit& scratch, H
   return kept;
 }
 
-// Whether every body that the hair touches moves as the roots carry it: seen from them it stands still and does no
-// work.
+// Whether every body that the hair touches moves as the roots carry it: seen from them it does no work.
 bool bodiesStandStill(const TakenStep& step, const Colliders& colliders, const EnergyLimit& scratch,
                       const HairState& state) {
   return std::all_of(state.contacts.begin(), state.contacts.end(), [&](const Contact& contact) {
@@ -221,8 +219,8 @@ EnergyLimit::EnergyLimit(const HairMesh& mesh) {
 double limitEnergy(const TakenStep& step, bool solved, EnergyLimit& scratch, HairState& state) {
   scratch.carried_energy.reset();
   const Motion motion = judge(step, state);
-  if (motion == Motion::kNotFinite || (motion == Motion::kCalm && solved && !step.restarted && !neverLinear(step)))
-    return 1;
+  const bool gentle = motion == Motion::kCalm && solved && !step.restarted && !neverLinear(step);
+  if (gentle || motion == Motion::kNotFinite) return 1;
   carry(step, state, scratch);
   return bringBelowBound(step, kTries, scratch, state);
 }

@@ -13,8 +13,7 @@
 //
 // A gentle step of hair as styles have it is near to linear, and not looked at. Never near to linear is hair that hangs
 // folded because its load strains its walls by more than their length, or that is so much stiffer one way than another
-// that it buckles; and hair that was stopped or taken back in the step before: what it was kept from, it does in the
-// next.
+// that it buckles. Hair that was stopped in the step before does in this one what it was kept from.
 #pragma once
 
 #include <optional>
@@ -49,8 +48,8 @@ struct EnergyLimit {
 };
 
 // Does nothing to a step that leaves a value not finite, that ends below its bound, or that is gentle, of firm hair,
-// and was solved to its end with the bodies of the step before (`solved`), and that goes on from a step that was kept.
-// Returns the share of the step's motion against the roots that was kept, 1 where all was.
+// not restarted and solved to its end with the bodies of the step before (`solved`). Returns the share of the step's
+// motion against the roots that was kept, 1 where all was.
 double limitEnergy(const TakenStep& step, bool solved, EnergyLimit& scratch, HairState& state);
 
 // The same for a step, gentle or not, whose contacts or self-contacts have moved vertices: what these store or lift,

@@ -17,9 +17,8 @@ constexpr double kGuideTime = 0.4;           // s
 constexpr double kSoon = 1e-3;               // s before the end that count as the end
 constexpr double kFirstColumnBackoff = 0.5;  // s
 constexpr double kMaxColumnBackoff = 600;    // s
-// Strong wind may hold hair inverted for good.
-constexpr double kColumnBackoffGrowth = 4;
-constexpr double kForgiven = 10;  // s upright after which a column's backoff begins anew
+constexpr double kColumnBackoffGrowth = 4;   // strong wind may hold hair inverted for good
+constexpr double kForgiven = 10;             // s upright after which a column's backoff begins anew
 
 double volumeOf(const CornerTet& tet, const std::vector<Vec3>& x) {
   const Vec3& o = x[tet.v[0]];

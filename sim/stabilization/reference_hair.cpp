@@ -19,7 +19,6 @@ constexpr double kElsewhere = 0.006;        // of the hair's length: what is nea
 constexpr double kAtHome = 0.003;           // of the hair's length, from the rest shape itself
 constexpr double kHigher = 5e-5;            // of the hair's weight times its length
 constexpr double kMoving = 3 * kStillHair;  // m/s: hair so fast is on its way to another rest
-
 constexpr double kFirstBackoff = 1, kMaxBackoff = 60;  // s between one time that the hair is guided and the next
 constexpr double kBackoffGrowth = 2;
 
