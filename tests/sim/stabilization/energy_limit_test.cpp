@@ -86,9 +86,10 @@ struct Flung {
       hair.state.velocities[i] = step / kFrame;
     }
   }
-  double limit() {
-    return sim::limitEnergy({hair.mesh, hair.params, model, start.positions, start.velocities, kFrame, Vec3::Zero()},
-                            true, scratch, hair.state);
+  double limit(bool restarted = false) {
+    const sim::TakenStep step{hair.mesh, hair.params,  model, start.positions, start.velocities,
+                              kFrame,    Vec3::Zero(), {},    restarted};
+    return sim::limitEnergy(step, true, scratch, hair.state);
   }
 };
 
@@ -100,6 +101,24 @@ TEST(EnergyLimit, AStepThatEndsTooHighIsTakenBackUntilItFits) {
   const double bound = 0.5 * massOf(flung.hair) * 9;
   EXPECT_LE(energyAboveRest(flung.hair, Vec3::Zero()), bound * (1 + 1e-9));
   EXPECT_GT(energyAboveRest(flung.hair, Vec3::Zero()), 0.2 * bound) << "it was held back more than it need be";
+}
+
+TEST(EnergyLimit, AGentleStepIsLookedAtWhereTheHairWasStoppedBeforeIt) {
+  Flung trusted, stopped;
+  trusted.fling(0.002), stopped.fling(0.002);
+  EXPECT_EQ(trusted.limit(), 1);
+  EXPECT_EQ(trusted.scratch.energies, 0);
+  EXPECT_LT(stopped.limit(true), 1);
+  EXPECT_LE(energyAboveRest(stopped.hair, Vec3::Zero()), 1e-12);
+}
+
+TEST(EnergyLimit, TheFirstStepAndThatAfterAResetAreLookedAtAndNoneAfterThem) {
+  Hair hair(test::combedShape(test::mixedPatch(7, 0.3)), hairWithoutBody());
+  EXPECT_GT(hair.step(kFrame).work.energies, 0);
+  EXPECT_EQ(hair.step(kFrame).work.energies, 0);
+  hair.state.previous_dt = 0;
+  EXPECT_GT(hair.step(kFrame).work.energies, 0);
+  EXPECT_EQ(hair.step(kFrame).work.energies, 0);
 }
 
 // Ways of 2 cm to 3 m, from hair that has next to no energy to hair that has nearly enough.
