@@ -195,7 +195,7 @@ void brushSection(Demo& demo, UiState& ui) {
   const int pressed = segments("brush",
                                {"Off",
                                 {"Comb", "Turns the hair along the stroke; lengths stay"},
-                                {"Cut", "Ends the hair nearer to the ring"},
+                                {"Cut", "Cuts the hair back to where the ring is"},
                                 {"Grow", "Makes the hair longer"},
                                 {"Smooth", "Evens bends and differences between neighbours"},
                                 {"Puff", "Lifts the hair off the head"}},
