@@ -53,7 +53,7 @@ known_packages() {
   done
 }
 
-# configure FOLDER ON|OFF [OPTION...]: configures a Release build, with or without the tests. The sources of a folder are compiled as one: a quarter of the time.
+# configure FOLDER ON|OFF [OPTION...]: configures a Release build, with or without the tests. The sources of a folder are compiled as one.
 configure() {
   local generator=()
   if [ ! -f "$1/CMakeCache.txt" ] && command -v ninja >/dev/null; then generator=(-G Ninja); fi

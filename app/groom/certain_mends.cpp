@@ -1,7 +1,6 @@
 #include "app/groom/certain_mends.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "app/files/errors.h"

@@ -1,5 +1,6 @@
 // hairmesh-stress: the stability stress test.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <iostream>

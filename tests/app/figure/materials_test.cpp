@@ -128,6 +128,16 @@ TEST(Materials, APictureThatIsMissingIsSaidAndItsColourStays) {
   EXPECT_TRUE(says(figure, "material 'face' is shown without its picture"));
 }
 
+TEST(Materials, AColourOutOfRangeIsBroughtThereAndSaid) {
+  const std::string bright =
+      R"("materials":[{"name":"suit","pbrMetallicRoughness":{"baseColorFactor":[2,0.2,-1,1]}},{"name":"face"}])";
+  const app::Character figure = app::loadCharacter(writeFigure("bright.gltf", bright));
+  ASSERT_EQ(figure.mesh.materials.size(), 2u);
+  EXPECT_EQ(figure.mesh.materials[0].at(0), 0xff007cffu);
+  EXPECT_TRUE(says(figure, "material 'suit': its colour is not within 0 and 1"));
+  EXPECT_FALSE(says(figure, "material 'face'"));
+}
+
 TEST(Materials, AFileOfGreyBringsNone) {
   const std::string grey = R"("materials":[{"pbrMetallicRoughness":{"baseColorFactor":[0.6,0.6,0.6,1]}},{}])";
   const app::Character figure = app::loadCharacter(writeFigure("grey.gltf", grey));

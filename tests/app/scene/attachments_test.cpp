@@ -125,6 +125,11 @@ TEST(Attachments, AnAtInAFilesNameNeedsNoJoint) {
   EXPECT_EQ(refusalOf(file), "accepted");
 }
 
+TEST(Attachments, NothingIsRefusedAndNoneIsNone) {
+  EXPECT_THROW(app::attachmentsFromText(""), app::InputError);
+  EXPECT_TRUE(app::attachmentsFromText("none").empty());
+}
+
 TEST(Attachments, TheSameTwiceIsSaidOnce) {
   const app::Demo twice = app::openScene(wearing(R"([{"file": "beanie.obj"}, {"file": "beanie.obj"}])"), 1.5);
   EXPECT_EQ(twice.message, "beanie is worn 2 times in one place; take the others off");
