@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "app/figure/arm_clearance.h"
 #include "app/figure/character_build.h"
 #include "app/figure/limb_check.h"
 #include "app/figure/mannequin_parts.h"
@@ -112,6 +113,7 @@ Character loadCharacter(const std::string& motion_file, const std::string& parts
     for (const std::string& note : repairClip(character.skeleton, clip)) character.notes.push_back(of + note);
     if (const std::string note = plantFeet(character.skeleton, clip); !note.empty())
       character.notes.push_back(of + note);
+    if (const std::string note = clearArms(character, clip); !note.empty()) character.notes.push_back(of + note);
     if (const std::string note = limbNote(character, clip); !note.empty()) character.notes.push_back(of + note);
   }
   cover(character);
