@@ -164,7 +164,7 @@ void slowDown(const TakenStep& step, const EnergyLimit& scratch, double share, H
 // at `past` times the way; all above what it is at the begin, J. It is taken for a quadratic of the way or, where it
 // rises faster, for a power of it halfway between that rise and a square.
 double shareWithin(double most, double end, double past, double beyond) {
-  if (!(most > 0)) return 0;
+  if (!(most > 0)) return kMinWay;
   const double curved = past > 1 ? (beyond / past - end) / (past - 1) : end, slope = end - curved;
   if (slope < 0) return std::pow(most / end, 1 / (1 + 0.5 * std::log(beyond / end) / std::log(past)));
   return 2 * most / (slope + std::sqrt(std::max(0.0, slope * slope + 4 * curved * most)));

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
 
 #include "sim/stabilization/state_validation.h"
 #include "tests/test_meshes.h"
@@ -110,6 +112,27 @@ TEST(EnergyLimit, AGentleStepIsLookedAtWhereTheHairWasStoppedBeforeIt) {
   EXPECT_EQ(trusted.scratch.energies, 0);
   EXPECT_LT(stopped.limit(true), 1);
   EXPECT_LE(energyAboveRest(stopped.hair, Vec3::Zero()), 1e-12);
+}
+
+// Hair that stands off its rest, and a step that shoots over it by four times as much: its first quarter leads down.
+TEST(EnergyLimit, HairThatStandsStillIsNotHeldWhereAShorterWayLeadsDown) {
+  Flung flung;
+  const sim::HairState rest = flung.hair.state;
+  for (int i = 0; i < flung.hair.mesh.vertexCount(); ++i) {
+    if (flung.hair.mesh.isRoot(i)) continue;
+    const Vec3 off(0.01 * std::sin(3 * i), 0.01 * std::cos(5 * i), 0.01 * std::sin(7 * i));
+    flung.start.positions[i] += off;
+    flung.start.velocities[i].setZero();
+    flung.hair.state.positions[i] -= 4 * off;
+    flung.hair.state.velocities[i] = -5 * off / kFrame;
+  }
+  const sim::HairState end = std::exchange(flung.hair.state, flung.start);
+  const double before = energyAboveRest(flung.hair, Vec3::Zero());
+  flung.hair.state = end;
+  const double kept = flung.limit(true);
+  EXPECT_GT(kept, 0.1);
+  EXPECT_LT(kept, 0.5);
+  EXPECT_LT(energyAboveRest(flung.hair, Vec3::Zero()), before);
 }
 
 TEST(EnergyLimit, TheFirstStepAndThatAfterAResetAreLookedAtAndNoneAfterThem) {
