@@ -11,6 +11,7 @@
 #include "app/options.h"
 #include "app/scene/comparison.h"
 #include "app/scene/environment_light.h"
+#include "app/scene/project.h"
 #include "sim/field_text.h"
 
 namespace app {
@@ -157,6 +158,32 @@ void nameAfterMotion(const Options& options, Scene& scene) {
   scene.name = options.scene.empty() ? motion : scene.name + ", with " + motion;
 }
 
+// A project's hair and motion are as they were left: options that would give others are refused.
+void refuseBesideProject(const Options& options) {
+  const std::pair<const char*, bool> given[] = {
+      {"--style", !options.style.empty()},        {"--resolution", !options.resolution.empty()},
+      {"--hair", !options.hair.empty()},          {"--fit", !options.fit.empty()},
+      {"--motion", !options.motion.empty()},      {"--parts", !options.parts.empty()},
+      {"--clip", !options.clip.empty()},          {"--start", options.start >= 0},
+      {"--loop", !options.loop.empty()},          {"--tie", !options.tie.empty()},
+      {"--attach", !options.attachments.empty()}, {"--pin", !options.pins.empty()},
+      {"--map", !options.maps.empty()},           {"--curve", !options.curves.empty()}};
+  std::string others;
+  for (const auto& [name, is_given] : given)
+    if (is_given) others += (others.empty() ? "" : ", ") + std::string(name);
+  if (!others.empty())
+    throw UsageError(options.project + " is a project, which brings its own hair and motion; leave out " + others);
+}
+
+// What the options start from.
+Scene firstScene(const Options& options) {
+  if (options.project.empty())
+    return loadScene(options.scene.empty() ? dataPath("assets/scenes/default.json")
+                                           : findFile(options.scene, "", "scenes"));
+  refuseBesideProject(options);
+  return projectScene(options.project);
+}
+
 // "paper" is the preset of that name.
 void chooseSolver(const std::string& name, sim::SimParams& params) {
   if (name.empty()) return;
@@ -208,8 +235,7 @@ Options sortedOut(Options options) {
 Scene sceneFromOptions(const Options& given) {
   const Options options = sortedOut(given);
   checkHairAndStyle(options);
-  Scene scene =
-      loadScene(options.scene.empty() ? dataPath("assets/scenes/default.json") : findFile(options.scene, "", "scenes"));
+  Scene scene = firstScene(options);
   std::vector<CharacterLook*> looks;
   for (CharacterSpec& spec : scene.characters) {
     overrideCharacter(options, spec);
@@ -243,8 +269,10 @@ Scene sceneFromOptions(const Options& given) {
   DebugViews checked;
   setDebugViews(options.debug, checked);
   if (!options.compare.empty()) readValue("--compare", [&] { comparedScene(options.compare, scene); });
-  if (!options.project.empty() && writeScene(scene) != writeScene(sceneFromOptions({})))
-    throw UsageError(options.project + " brings its own scene: leave out the options that would change it");
+  if (!(options.project.empty() || options.record.empty()) &&
+      writeScene(scene) != writeScene(projectScene(options.project)))
+    throw UsageError("--record takes " + options.project +
+                     " as it was saved: leave out the options that change it, or save it with the changes first");
   return scene;
 }
 

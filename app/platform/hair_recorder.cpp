@@ -43,7 +43,11 @@ void HairRecorder::begin(Demo& demo) {
 
 void HairRecorder::finish(Demo& demo) {
   std::string text;
-  if (cache_) {
+  if (frames_ == 0) {
+    text = "no hair was recorded: it stood still";
+    cache_.reset();
+    export_.reset();
+  } else if (cache_) {
     text = cache_->finish(demo);
     const std::string file = cache_->file();
     cache_.reset();

@@ -17,12 +17,11 @@
 #include "app/files/report_line.h"
 #include "app/platform/egl_context.h"
 #include "app/platform/interrupt.h"
-#include "app/platform/opening_notes.h"
+#include "app/platform/opening.h"
 #include "app/platform/video.h"
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
 #include "app/scene/hair_export.h"
-#include "app/scene/project.h"
 #include "app/scene/sim_cache.h"
 #include "render/gl/gl_messages.h"
 
@@ -96,7 +95,7 @@ struct Run {
 Demo openForPictures(Scene scene, const Options& options, double aspect) {
   const bool kept_whole = !options.hair_export.file.empty() || !options.cache.empty();
   if (kept_whole) simulateAll(scene.skips);
-  Demo demo = options.project.empty() ? openScene(std::move(scene), aspect) : readProject(options.project, aspect);
+  Demo demo = openAsked(std::move(scene), options, aspect, false);
   if (kept_whole) simulateAll(demo.scene.skips);
   setDebugViews(options.debug, demo.debug);
   demo.governor.counted = demo.deadline.counted = true;  // the same pictures on every run

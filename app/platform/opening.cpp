@@ -1,11 +1,26 @@
-#include "app/platform/opening_notes.h"
+#include "app/platform/opening.h"
 
+#include <filesystem>
 #include <tuple>
 
 #include "app/files/report.h"
+#include "app/scene/project.h"
 #include "sim/field_text.h"
 
 namespace app {
+
+Demo openAsked(Scene scene, const Options& options, double aspect, bool beside) {
+  if (options.project.empty()) return openScene(std::move(scene), aspect, beside);
+  const bool keep_view = !options.camera.empty() || !options.framing.empty();
+  Demo demo = readProject(options.project, scene, keep_view, aspect);
+  const bool stands = demo.paused && options.headless;
+  if (!options.record.empty()) {
+    demo = openScene(std::move(scene), aspect, beside);
+    demo.requests.push_back({Ask::kOpenProject, "", std::filesystem::absolute(options.project).string()});
+  }
+  if (stands) demo.requests.push_back({Ask::kPause, ""});
+  return demo;
+}
 
 std::vector<std::string> openingNotes(const Options& options, const Demo& demo) {
   std::vector<std::string> notes;

@@ -1,4 +1,4 @@
-// What a person should know of a scene before its first frame: what was inferred, limited or begins elsewhere.
+// The demo that a command line asks for, and what a person should know of it before its first frame.
 #pragma once
 
 #include <string>
@@ -9,7 +9,12 @@
 
 namespace app {
 
-// A line each, for the terminal.
+// Opens the scene, or the project with these settings, for pictures of `aspect`. A recorded run opens its project by a
+// request, so that the replay does. Without a window a project that was saved paused plays. `beside`: large figures may
+// load beside the first frames. Throws InputError.
+Demo openAsked(Scene scene, const Options& options, double aspect, bool beside);
+
+// What was inferred, limited or begins elsewhere: a line each, for the terminal.
 std::vector<std::string> openingNotes(const Options& options, const Demo& demo);
 
 }  // namespace app

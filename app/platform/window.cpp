@@ -24,7 +24,7 @@
 #include "app/platform/capture.h"
 #include "app/platform/hair_recorder.h"
 #include "app/platform/interrupt.h"
-#include "app/platform/opening_notes.h"
+#include "app/platform/opening.h"
 #include "app/platform/shader_reload.h"
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
@@ -286,8 +286,7 @@ void pollOrWait(bool may_wait, const Demo& demo, const std::function<bool()>& re
 Demo openForWindow(Scene scene, const Options& options, double aspect) {
   // Runs of so many frames and recordings show the same on every run.
   const bool beside = !options.frames_given && options.record.empty() && options.replay.empty();
-  Demo demo =
-      options.project.empty() ? openScene(std::move(scene), aspect, beside) : readProject(options.project, aspect);
+  Demo demo = openAsked(std::move(scene), options, aspect, beside);
   demo.loading.on = beside;
   if (!options.load_state.empty())
     loadDemoState(options.load_state, !options.camera.empty() || !options.framing.empty(), demo);

@@ -108,8 +108,10 @@ void saveProject(const std::string& file, const Demo& demo) {
   if (!before.empty() && before != name) fs::remove(besides(file, before), ignored);
 }
 
-Demo readProject(const std::string& file, double aspect) {
-  const json parsed = parseJson(readText(file), file);
+namespace {
+
+json parseProject(const std::string& file) {
+  json parsed = parseJson(readText(file), file);
   const JsonPlace place(parsed, file);
   if (!parsed.is_object() || !place.has(kKey)) place.refuse("is no project", "give a file that Save project wrote");
   const double version = place.at(kKey).number(1, 1e6);
@@ -121,24 +123,36 @@ Demo readProject(const std::string& file, double aspect) {
   for (const char* key : {"scene", "binary", "checksum"}) {
     if (!place.has(key)) place.refuse(std::string("lacks \"") + key + "\"", "save it anew");
   }
+  return parsed;
+}
+
+}  // namespace
+
+Scene projectScene(const std::string& file) {
+  return readScene(parseProject(file).at("scene").dump(), file);
+}
+
+Demo readProject(const std::string& file, Scene scene, bool keep_view, double aspect) {
+  const json parsed = parseProject(file);
+  const JsonPlace place(parsed, file);
   const std::string binary_file = besides(file, place.at("binary").text());
   const std::string binary = readText(binary_file);
   const auto bytes = std::as_bytes(std::span(binary));
   if (hex(sim::fingerprint(bytes)) != place.at("checksum").text())
     throw InputError(binary_file, "", "is not the one that " + file + " was saved with", "save the project anew");
-  Demo fresh = openScene(readScene(parsed.at("scene").dump(), file), aspect);
+  Demo fresh = openScene(std::move(scene), aspect);
   sim::ByteReader from{bytes};
   for (std::size_t i = 0; i < fresh.actors.size(); ++i)
-    takeShape(from, version, binary_file, static_cast<int>(i), fresh);
+    takeShape(from, place.at(kKey).number(1, 1e6), binary_file, static_cast<int>(i), fresh);
   std::vector<char> state;
   sim::readBytes(from, state);
-  restoreDemoState(std::string(state.begin(), state.end()), binary_file, false, fresh);
+  restoreDemoState(std::string(state.begin(), state.end()), binary_file, keep_view, fresh);
   fresh.scene.file = file;
   return fresh;
 }
 
 void openProject(const std::string& file, Demo& demo) {
-  replaceScene(readProject(file, demo.aspect), demo);
+  replaceScene(readProject(file, projectScene(file), false, demo.aspect), demo);
   demo.edits = {};
 }
 

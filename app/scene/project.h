@@ -19,8 +19,12 @@ inline constexpr int kProjectVersion = 2;
 // Throws OutputError; then the project that was there is whole.
 void saveProject(const std::string& file, const Demo& demo);
 
-// Opens it for pictures of `aspect` (width over height). Throws InputError as openProject does.
-Demo readProject(const std::string& file, double aspect);
+// The scene that it holds. Throws InputError as openProject does.
+Scene projectScene(const std::string& file);
+
+// Opens it for pictures of `aspect` (width over height), with its own scene or another one of the same figures and hair.
+// `keep_view`: the camera is the scene's and not where it was left. Throws InputError as openProject does.
+Demo readProject(const std::string& file, Scene scene, bool keep_view, double aspect);
 
 // Opens it in the demo's place. Throws InputError (no project, of a newer version, its binary gone or changed); then
 // nothing has changed.

@@ -67,7 +67,7 @@ TEST(Project, GoesOnWhereItWasLeftToTheBit) {
   EXPECT_EQ(app::stateHash(other), app::stateHash(demo));
 }
 
-TEST(Project, OpensFromTheCommandLineAloneAndGoesOn) {
+TEST(Project, OpensFromTheCommandLineWithOtherSettingsButNoOtherHair) {
   const std::string file = test::freshFolder("project_line") + "/mine.json";
   app::Demo demo = app::openScene(smallScene(), 1.5);
   goOn(25, demo);
@@ -76,7 +76,37 @@ TEST(Project, OpensFromTheCommandLineAloneAndGoesOn) {
   EXPECT_EQ(opened.exit_code, 0) << opened.err;
   const test::Outcome changed = test::runProgram({"--no-images", "--frames", "2", file, "--style", "short"});
   EXPECT_EQ(changed.exit_code, app::kExitUsage) << changed.err;
-  EXPECT_NE(changed.err.find("brings its own scene"), std::string::npos) << changed.err;
+  EXPECT_NE(changed.err.find("leave out --style"), std::string::npos) << changed.err;
+  const test::Outcome set = test::runProgram({"--no-images", "--frames", "2", file, "--camera", "back", "--fps", "24",
+                                              "--preset", "stiff", "--set", "density=70", "--strands", "900"});
+  EXPECT_EQ(set.exit_code, 0) << set.err;
+
+  app::Scene scene = app::projectScene(file);
+  scene.sim.density = 70;
+  scene.camera.view = "back";
+  const app::Demo plain = app::readProject(file, app::projectScene(file), false, 1.5);
+  const app::Demo other = app::readProject(file, scene, true, 1.5);
+  EXPECT_EQ(other.scene.sim.density, 70);
+  EXPECT_EQ(plain.camera.yaw, demo.camera.yaw);
+  EXPECT_GT(std::abs(std::remainder(other.camera.yaw - plain.camera.yaw, 2 * EIGEN_PI)), 1);
+  EXPECT_EQ(app::stateHash(other), app::stateHash(plain));
+}
+
+// Saved in the middle of a walk with a cut fringe, and paused.
+TEST(Project, ARecordedRunOfOneReplaysToTheBitAndPlaysThoughItWasPaused) {
+  const std::string folder = test::freshFolder("project_record"), file = folder + "/mine.json";
+  app::Demo demo = brushedDemo(20);
+  demo.paused = true;
+  app::saveProject(file, demo);
+  const std::string before = app::stateHash(demo);
+  const test::Outcome run = test::runProgram({"--no-images", "--frames", "8", file, "--record", folder + "/run.take"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(app::readText(folder + "/run.take").find(before), std::string::npos) << "nothing moved";
+  const test::Outcome replay = test::runProgram({"--no-images", "--replay", folder + "/run.take"});
+  EXPECT_EQ(replay.exit_code, 0) << replay.err << replay.out;
+  const test::Outcome changed = test::runProgram(
+      {"--no-images", "--frames", "2", file, "--record", folder + "/other.take", "--set", "density=70"});
+  EXPECT_EQ(changed.exit_code, app::kExitUsage) << changed.err;
 }
 
 TEST(Project, KeepsBrushedHairAndGoesOnWithIt) {
