@@ -265,14 +265,17 @@ void help(UiState& ui) {
     ImGui::PopFont();
     ImGui::Separator();
     if (ImGui::BeginTable("keys", 2)) {
-      ImGui::TableSetupColumn("key", ImGuiTableColumnFlags_WidthFixed, 110 * ui.text_scale);
-      ImGui::TableSetupColumn("what", ImGuiTableColumnFlags_WidthFixed, 290 * ui.text_scale);
+      float widest = 0;
+      for (const KeyHelp& key : keyHelp()) widest = std::max(widest, ImGui::CalcTextSize(key.what).x);
+      const float first = 110 * ui.text_scale, room = size.x - margin - first - 60 * ui.text_scale;
+      ImGui::TableSetupColumn("key", ImGuiTableColumnFlags_WidthFixed, first);
+      ImGui::TableSetupColumn("what", ImGuiTableColumnFlags_WidthFixed, std::max(80.0f, std::min(widest, room)));
       for (const KeyHelp& key : keyHelp()) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
         ImGui::TextColored(ImGui::GetStyleColorVec4(ImGuiCol_CheckMark), "%s", key.keys);
         ImGui::TableNextColumn();
-        ImGui::TextUnformatted(key.what);
+        ImGui::TextWrapped("%s", key.what);
       }
       ImGui::EndTable();
     }

@@ -32,6 +32,7 @@ struct FileBrowser {
   std::array<char, 512> name{};
   std::string to_replace;  // is there already and is written on the second press
   bool project = false;    // what is saved: all that moves as well
+  bool opened = false;     // since the last frame: the name is ready to be typed
 };
 
 // The brush in a person's hand.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <utility>
 
 #include "app/files/data_path.h"
 #include "app/ui/ui_panels.h"
@@ -166,6 +167,7 @@ void nameRow(Demo& demo, UiState& ui, std::string chosen) {
   const bool replaces = !browser.to_replace.empty() && browser.to_replace == typed;
   const float button = 74 * ui.text_scale;
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - 2 * button - 10);
+  if (std::exchange(browser.opened, false)) ImGui::SetKeyboardFocusHere();
   const bool entered = ImGui::InputTextWithHint("##file_name", "name or path, then Enter", browser.name.data(),
                                                 browser.name.size(), ImGuiInputTextFlags_EnterReturnsTrue);
   noteItem("file_name", ui);
@@ -186,6 +188,7 @@ void nameRow(Demo& demo, UiState& ui, std::string chosen) {
 void browseFor(BrowseFor what, UiState& ui) {
   FileBrowser& browser = ui.browser;
   browser.what = what;
+  browser.opened = true;
   browser.to_replace.clear();
   setName("", browser);
   goTo(browser.folder.empty() ? "." : browser.folder, browser);

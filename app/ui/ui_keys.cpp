@@ -171,6 +171,8 @@ bool panelsTakeKey(int key) {
 }
 
 bool pressKey(int key, Demo& demo, UiState& ui, int modifiers) {
+  // Whoever types a file's name means nothing else by it.
+  if (ui.browser.what != BrowseFor::kNothing && key != kKeyEscape) return false;
   for (const ChordAction& row : kChordActions) {
     if (row.key != key || row.modifiers != modifiers) continue;
     ui.leaving = false;

@@ -403,9 +403,10 @@ bool iconButton(Icon icon, const char* name, const std::string& help, bool lit, 
 
 int segments(const char* name, std::initializer_list<Segment> row, int chosen, UiState& ui) {
   int pressed = -1, index = 0;
-  const float gap = 3;
-  const float count = static_cast<float>(row.size());
-  const float width = (ImGui::GetContentRegionAvail().x - gap * (count - 1)) / count;
+  const float gap = 3, count = static_cast<float>(row.size());
+  // Every button gets its text's width and an even share of what is left.
+  float left = ImGui::GetContentRegionAvail().x - gap * (count - 1);
+  for (const Segment& segment : row) left -= ImGui::CalcTextSize(segment.label).x;
   ImGui::PushID(name);
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {2, ImGui::GetStyle().FramePadding.y});
   for (const auto& [label, help] : row) {
@@ -416,7 +417,7 @@ int segments(const char* name, std::initializer_list<Segment> row, int chosen, U
       ImGui::PushStyleColor(ImGuiCol_ButtonHovered, ImGui::GetStyleColorVec4(ImGuiCol_SliderGrabActive));
       ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(0.07f, 0.07f, 0.08f, 1));
     }
-    if (ImGui::Button(label, {width, 0})) pressed = index;
+    if (ImGui::Button(label, {ImGui::CalcTextSize(label).x + std::max(left / count, 2.0f), 0})) pressed = index;
     if (lit) ImGui::PopStyleColor(3);
     noteItem(std::string(name) + " " + label, ui);
     tip(help);

@@ -49,6 +49,22 @@ TEST_F(Panels, AFileIsFoundAndOpenedAndThenIsAmongTheRecentOnes) {
   EXPECT_FALSE(ui_.leaving);
 }
 
+// What is typed there would else paint, reset, or quit.
+TEST_F(Panels, WhileAFileIsNamedKeysAreTextAndTheNameIsReadyToBeTyped) {
+  ui_.browser.folder = test::freshFolder("ui_name");
+  EXPECT_TRUE(app::pressKey('O', demo_, ui_, app::kControl));
+  for (int k = 0; k < 3; ++k) frame();
+  EXPECT_TRUE(ImGui::GetIO().WantTextInput);
+  demo_.requests.clear();
+  for (const int key : {int('R'), int('C'), int(' '), int('/'), int(app::kKeyTab), int(app::kKeyHome)})
+    EXPECT_FALSE(app::pressKey(key, demo_, ui_)) << key;
+  EXPECT_FALSE(app::pressKey('Z', demo_, ui_, app::kControl));
+  EXPECT_TRUE(demo_.requests.empty());
+  EXPECT_FALSE(ui_.help);
+  EXPECT_TRUE(app::pressKey(app::kKeyEscape, demo_, ui_));
+  EXPECT_TRUE(app::pressKey('R', demo_, ui_));
+}
+
 TEST_F(Panels, ASceneIsSavedAndOneThatIsThereOnlyOnASecondPress) {
   const std::string folder = test::freshFolder("ui_save_scene");
   std::ofstream(folder + "/there.json") << "{}";
