@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kPuff = 0.004, kGrow = 0.03;   // m, share of the length: of one sample at full strength
 constexpr double kPinch = 0.08, kTwist = 0.10;  // share of the way to the middle; rad: of one sample at full strength
-constexpr double kMinVolume = 0.02;             // of the mean corner volume, or half of what it is
-constexpr double kMinEdge = 0.001;              // m, or half of what it is
+constexpr double kMinVolume = 0.02;             // of the mean corner volume
+constexpr double kMinEdge = 0.001;              // m
 constexpr double kOffBody = 0.002;              // m, or as near as it is
 constexpr int kHalvings = 8, kStrokeUntanglings = 24;  // of a stroke that goes too far, before what it spoils stays
 constexpr double kMoved = 1e-7;                        // m
@@ -184,6 +184,16 @@ void ShapeBrushes::keepLengths(const sim::HairMesh& mesh) {
 }
 
 // Each vertex goes as far of its way as leaves what hangs on it valid.
+namespace {
+
+// What is smaller than the bound already may become half as large once more and again, down to a twentieth of the
+// bound.
+double atLeast(double bound, double present) {
+  return std::min({bound, std::max(0.5 * present, 0.05 * bound), present});
+}
+
+}  // namespace
+
 void ShapeBrushes::limit(const sim::HairMesh& mesh, const std::function<double(const Vec3&)>& body,
                          std::vector<Vec3>& positions) {
   const std::vector<Vec3>& x = mesh.shape.positions;
@@ -198,7 +208,7 @@ void ShapeBrushes::limit(const sim::HairMesh& mesh, const std::function<double(c
     sum += mesh.tets[t].rest_volume;
     if (std::ranges::any_of(mesh.tets[t].v, [&](int v) { return touched_[v]; })) tets_.push_back(static_cast<int>(t));
   }
-  const double least = kMinVolume * sum / static_cast<double>(mesh.tets.size());
+  const double mean = sum / static_cast<double>(mesh.tets.size());
   std::vector<const sim::Edge*> near;
   for (const auto* edges : {&mesh.horizontal_edges, &mesh.vertical_edges}) {
     for (const sim::Edge& edge : *edges) {
@@ -222,13 +232,13 @@ void ShapeBrushes::limit(const sim::HairMesh& mesh, const std::function<double(c
     for (const int t : tets_) {
       const sim::CornerTet& tet = mesh.tets[t];
       if (std::ranges::none_of(tet.v, changed)) continue;
-      const bool fine = sim::cornerVolume(tet.v, positions) >= std::min(least, 0.5 * tet.rest_volume);
+      const bool fine = sim::cornerVolume(tet.v, positions) >= atLeast(kMinVolume * mean, tet.rest_volume);
       if (!fine) std::ranges::for_each(tet.v, spoilt);
     }
     for (const sim::Edge* edge : near) {
       if (!changed(edge->a) && !changed(edge->b)) continue;
       const double length = (positions[edge->a] - positions[edge->b]).norm();
-      if (length < std::min(kMinEdge, 0.5 * edge->rest_length)) spoilt(edge->a), spoilt(edge->b);
+      if (length < atLeast(kMinEdge, edge->rest_length)) spoilt(edge->a), spoilt(edge->b);
     }
     for (std::size_t v = 0; body && v < n; ++v) {
       if (!moves[v] || share_[v] == 0) continue;
