@@ -19,6 +19,8 @@ constexpr const char* kAbout =
     "Says what is wrong with a groom (.abc, .usda, .hair, .ply, .tfx) and which option mends it. What is certain is "
     "mended by itself in what --out writes; options overrule it.";
 
+const std::map<std::string, double> kUnits{{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}};
+
 struct Asked {
   std::string file, out, figure = "idle_turns.bvh";
   std::string unit, up, reverse;
@@ -54,10 +56,11 @@ app::GroomMends mendsOf(const CLI::App& parser, const Asked& asked, const app::G
                         const app::GroomMends& found) {
   app::GroomMends mends = asked.no_guess ? app::GroomMends() : found;
   if (asked.no_guess) mends.unit = hints.meters_per_unit.value_or(1);
-  const std::map<std::string, double> units{{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}};
-  if (!asked.unit.empty()) mends.unit = units.at(asked.unit);
-  if (!asked.up.empty()) mends.axes = *app::axesOfUp(asked.up);
-  if (asked.turn) mends.axes = app::turnedAbout(*asked.turn) * mends.axes;
+  if (asked.no_guess) {
+    if (!asked.unit.empty()) mends.unit = kUnits.at(asked.unit);
+    if (!asked.up.empty()) mends.axes = *app::axesOfUp(asked.up);
+    if (asked.turn) mends.axes = app::turnedAbout(*asked.turn) * mends.axes;
+  }
   if (asked.reverse == "none") mends.reverse = app::Reverse::kNone;
   if (asked.reverse == "found") mends.reverse = app::Reverse::kFound;
   if (asked.reverse == "all") mends.reverse = app::Reverse::kAll;
@@ -78,11 +81,15 @@ int run(const CLI::App& parser, const Asked& asked) {
   app::GroomHints hints;
   app::Groom groom = app::readGroom(asked.file, &hints);
   const app::HeadModel head = app::headModelOf(app::loadCharacter(app::findFile(asked.figure, "", "clips")));
-  const app::GroomInspection inspection = app::inspectGroom(groom, hints, &head);
+  app::GroomHints known = hints;
+  if (!asked.unit.empty()) known.meters_per_unit = kUnits.at(asked.unit), known.unit_given = true;
+  if (!asked.up.empty()) known.axes = app::axesOfUp(asked.up);
+  if (asked.turn) known.turn = app::turnedAbout(*asked.turn);
+  const app::GroomInspection inspection = app::inspectGroom(groom, known, &head);
   std::cout << asked.file << ": " << inspection.summary << "\n";
   for (const app::GroomFinding& finding : inspection.findings)
-    std::cout << (finding.fault ? "" : "no fault: ") << finding.what << ": " << finding.text << "; " << finding.mend
-              << (finding.certain ? " (certain)" : "") << "\n";
+    std::cout << (finding.fault ? "" : "no fault: ") << finding.what << ": " << finding.text
+              << (finding.mend.empty() ? "" : "; ") << finding.mend << (finding.certain ? " (certain)" : "") << "\n";
   if (std::ranges::none_of(inspection.findings, &app::GroomFinding::fault)) std::cout << "nothing is wrong\n";
   if (asked.out.empty()) return app::kExitFine;
   app::GroomMends mends = mendsOf(parser, asked, hints, inspection.mends);

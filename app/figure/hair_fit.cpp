@@ -149,10 +149,11 @@ bool plausible(const std::vector<Vec3>& roots, const Vec3& hang, const Reading& 
          (way.norm() < kHangs || -way.y() >= kDown * way.norm());
 }
 
-// The scale and shift, without a turn, that bring the roots to the scalp: first over where hair grows, then by closest
-// points again and again.
-Reading broughtToScalp(const std::vector<Vec3>& roots, Reading reading, const Scalp& scalp) {
-  const auto rescale = [&](double scale, const Vec3& from, const Vec3& to) {
+// The shift and, where it is `sized`, the scale, without a turn, that bring the roots to the scalp: first over where
+// hair grows, then by closest points again and again.
+Reading broughtToScalp(const std::vector<Vec3>& roots, bool sized, Reading reading, const Scalp& scalp) {
+  const auto rescale = [&](double asked, const Vec3& from, const Vec3& to) {
+    const double scale = sized ? asked : 1;
     reading.linear *= scale;
     reading.shift = to + scale * (reading.shift - from);
   };
@@ -180,13 +181,13 @@ double scaleOf(const Reading& reading) {
   return reading.linear.col(0).norm() / reading.unit->metres;
 }
 
-// The readings that can be hair for another head, brought to this one.
+// The readings that can be hair for another head, brought to this one: of that head's size, or sized to this one.
 std::vector<Reading> forOtherHeads(const std::vector<Reading>& all, const std::vector<Vec3>& roots, const Vec3& hang,
-                                   const Scalp& scalp) {
+                                   bool sized, const Scalp& scalp) {
   std::vector<Reading> moved;
   for (const Reading& reading : all) {
     if (reading.from_ground) continue;  // the place is found anyway
-    const Reading one = broughtToScalp(roots, reading, scalp);
+    const Reading one = broughtToScalp(roots, sized, reading, scalp);
     const double scale = scaleOf(one);
     if (scale >= kSmallestScale && scale <= kLargestScale && plausible(roots, hang, one, scalp)) moved.push_back(one);
   }
@@ -213,9 +214,9 @@ std::string looksLike(const Reading& reading) {
 }
 
 std::string anotherHeads(const Reading& reading) {
-  char text[64];
-  std::snprintf(text, sizeof text, "hair for another head, scaled by %.2f and moved by ", scaleOf(reading));
-  return text + length(reading.shift.norm());
+  char text[64] = "";
+  if (std::abs(scaleOf(reading) - 1) > 1e-9) std::snprintf(text, sizeof text, "scaled by %.2f and ", scaleOf(reading));
+  return "hair for another head, " + (text + ("moved by " + length(reading.shift.norm())));
 }
 
 }  // namespace
@@ -242,7 +243,10 @@ std::string fitHair(const Character& character, bool mend, sim::HairMeshShape& s
   Reading found = as_made.empty() ? Reading{} : *best(as_made);
   std::string like = looksLike(found);
   if (as_made.empty() || distanceOf(roots, found, scalp) > limit) {
-    const std::vector<Reading> moved = forOtherHeads(all, roots, hang, scalp);
+    // Few roots fit a smaller head better; hair keeps its size where its place alone is enough.
+    std::vector<Reading> moved = forOtherHeads(all, roots, hang, false, scalp);
+    if (moved.empty() || distanceOf(roots, *best(moved), scalp) > kCloser * limit)
+      moved = forOtherHeads(all, roots, hang, true, scalp);
     if (moved.empty() || distanceOf(roots, *best(moved), scalp) > kCloser * limit)
       return "its roots are " + length(before) +
              " from the scalp, in no unit, axes or size that is known; it should be in metres, y up, about the head "

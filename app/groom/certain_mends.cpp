@@ -94,11 +94,21 @@ std::string readMends(std::string_view text, GroomMends& mends) {
 }
 
 MendReport mendCertain(const GroomHints& hints, const HeadModel* head, const std::string& wishes, Groom& groom) {
-  const GroomInspection inspection = inspectGroom(groom, hints, head);
+  GroomMends given;
+  if (const std::string fault = readMends(wishes, given); !fault.empty()) throw InputError("", "mends", fault, "");
+  // What is given is looked at as given: what is found besides goes with it.
+  GroomHints known = hints;
+  const auto wished = [&](const char* option) { return wishes.find(option) != std::string::npos; };
+  if (wished("--unit")) known.meters_per_unit = given.unit, known.unit_given = true;
+  // With an axis its turn is in it.
+  if (wished("--up")) known.axes = given.axes;
+  if (wished("--turn")) known.turn = wished("--up") ? Eigen::Matrix3f(Eigen::Matrix3f::Identity()) : given.axes;
+  const GroomInspection inspection = inspectGroom(groom, known, head);
   GroomMends mends = inspection.mends;
   const double told = hints.meters_per_unit.value_or(1);
-  if (wishes.find("--no-guess") != std::string::npos) mends.unit = told;
-  if (const std::string fault = readMends(wishes, mends); !fault.empty()) throw InputError("", "mends", fault, "");
+  if (wished("--no-guess")) mends.unit = told;
+  readMends(wishes, mends);
+  if (!wished("--no-guess")) mends.axes = inspection.mends.axes;
   if (wishes.find("--no-guess") != std::string::npos && wishes.find("--unit") == std::string::npos) mends.unit = told;
   MendReport report;
   const bool guesses = wishes.find("--no-guess") == std::string::npos;

@@ -55,6 +55,7 @@ struct Inspector {
   void strands();
   void direction();
   void unit();
+  void toMetres();
   void axes();
   void facing();
   void widths();
@@ -75,6 +76,7 @@ void Inspector::strands() {
   if (ends.zero_length > 0) add("zero-length", countText(ends.zero_length, all, "have no length"), "--drop-bad", true);
   if (ends.too_short > 0)
     add("points", countText(ends.too_short, all, "have fewer than two points"), "--drop-bad", true);
+  if (all < kMinRoots) add("strands", countText(all, kMinRoots, "that a hair mesh is made of at the least"), "", false);
   result.mends.drop_bad = ends.non_finite + ends.zero_length + ends.too_short > 0;
   std::size_t many = 0;
   for (std::size_t s = 0; s < all; ++s) many += groom.pointCount(s) > kManyPoints;
@@ -113,6 +115,7 @@ void Inspector::direction() {
 void Inspector::unit() {
   const double told = hints.meters_per_unit.value_or(1);
   result.mends.unit = told;
+  if (hints.unit_given) return toMetres();
   if (ends.first.size() < kMinRoots || !(skull.radius > 0)) return;
   const auto off = [this](double meters) { return std::abs(std::log(meters * skull.radius / kSkullRadius)); };
   const LengthUnit* best = &kLengthUnits[0];
@@ -130,6 +133,10 @@ void Inspector::unit() {
                skull.radius * told),
         "--unit m|cm|mm|in|ft", false);
   }
+  toMetres();
+}
+
+void Inspector::toMetres() {
   const auto scale = static_cast<float>(result.mends.unit);
   skull.center *= scale;
   skull.radius *= scale;
@@ -146,8 +153,10 @@ void Inspector::turn(const Matrix3f& matrix) {
   }
 }
 
-// Hair grows on the upper side of a skull and hangs down.
+// Hair grows on the upper side of a skull and hangs down. Hair that stands away from where it grows, as a mohawk's or
+// stubble, says nothing of down.
 void Inspector::axes() {
+  if (hints.axes) return turn(*hints.axes);
   if (ends.first.size() < kMinRoots || inWorld()) return;
   Vector3f cap = Vector3f::Zero(), hang = Vector3f::Zero();
   float length = 0;
@@ -161,8 +170,9 @@ void Inspector::axes() {
   constexpr std::array<std::string_view, 6> kNames{"y", "z", "-y", "-z", "x", "-x"};
   constexpr std::array<std::array<float, 3>, 6> kUps{
       {{0, 1, 0}, {0, 0, 1}, {0, -1, 0}, {0, 0, -1}, {1, 0, 0}, {-1, 0, 0}}};
+  const Vector3f up = cap.dot(hang) > 0.5f * cap.norm() * hang.norm() ? cap : Vector3f(cap - 1.5f * hang);
   std::array<float, 6> scores{};
-  for (std::size_t n = 0; n < 6; ++n) scores[n] = Vector3f(kUps[n].data()).dot(cap - 1.5f * hang);
+  for (std::size_t n = 0; n < 6; ++n) scores[n] = Vector3f(kUps[n].data()).dot(up);
   const auto best = static_cast<std::size_t>(std::ranges::max_element(scores) - scores.begin());
   if (best == 0) return;
   std::array<float, 6> sorted = scores;
@@ -174,13 +184,14 @@ void Inspector::axes() {
 }
 
 // More hair grows behind the middle of the skull than before it; where a scalp is half bald by intent, its roots lie
-// nearer to the head as they are.
+// nearer to the head as they are. A beard, which grows below the middle, grows before it.
 void Inspector::facing() {
+  if (hints.turn) return turn(*hints.turn);
   if (ends.first.size() < kMinRoots || crowd()) return;
   Vector3f cap = Vector3f::Zero();
   for (const Vector3f& root : ends.first) cap += (root - skull.center) / skull.radius;
   cap /= static_cast<float>(ends.first.size());
-  if (-cap.z() >= std::abs(cap.x()) || std::hypot(cap.x(), cap.z()) < 0.1f) return;
+  if (cap.y() < 0 || -cap.z() >= std::abs(cap.x()) || std::hypot(cap.x(), cap.z()) < 0.1f) return;
   const double degrees = cap.z() > std::abs(cap.x()) ? 180 : cap.x() > 0 ? 90 : -90;
   // A head is longer than wide: hair a quarter turn aside leaves it by 8 mm, hair that is turned right by 0.3 mm.
   if (head != nullptr && offHeadTurned(turnedAbout(degrees)) > 2 * offHeadTurned(Matrix3f::Identity())) return;
