@@ -18,6 +18,7 @@ namespace {
 constexpr double kHead = 0.23;                               // m, the head that limits are given for
 constexpr double kSmallestScale = 0.6, kLargestScale = 1.6;  // of another head's hair
 constexpr double kCloser = 0.5;                              // of the limit: where size and place are fitted as well
+constexpr double kMuchCloser = 0.25;                         // by size as well, than by place alone
 constexpr double kSmallestSpread = 0.2;                      // of the roots over that of the scalp
 // Hair hangs when its tips' mean way from the roots is so much of their mean length; then it points down within 70
 // degrees.
@@ -82,12 +83,13 @@ double distanceOf(const std::vector<Vec3>& roots, const Reading& reading, const 
   return median(std::move(gaps));
 }
 
-std::vector<Reading> readings(const Character& character) {
+std::vector<Reading> readings(const Character& character, bool in_metres) {
   const Rigid from_figure = scalpToWorld(character, restPose(character.skeleton)).inverse();
   std::vector<Reading> all;
   for (const bool from_ground : {false, true}) {
     for (const Axes& axes : axesKnown()) {
       for (const LengthUnit& unit : kLengthUnits) {
+        if (in_metres && &unit != &kLengthUnits[0]) continue;
         Reading reading{&unit, &axes, from_ground};
         for (int k = 0; k < 3; ++k) reading.linear.row(k) = unit.metres * axes.rows[static_cast<std::size_t>(k)];
         if (from_ground) {
@@ -189,7 +191,10 @@ std::vector<Reading> forOtherHeads(const std::vector<Reading>& all, const std::v
     if (reading.from_ground) continue;  // the place is found anyway
     const Reading one = broughtToScalp(roots, sized, reading, scalp);
     const double scale = scaleOf(one);
-    if (scale >= kSmallestScale && scale <= kLargestScale && plausible(roots, hang, one, scalp)) moved.push_back(one);
+    // A small patch of roots fits everywhere.
+    const double spread = one.linear.col(0).norm() * cloudOf(roots).spread / hairyScalp(scalp).spread;
+    if (std::min(scale, spread) >= kSmallestScale && scale <= kLargestScale && plausible(roots, hang, one, scalp))
+      moved.push_back(one);
   }
   return moved;
 }
@@ -225,13 +230,13 @@ double rootDistance(const sim::HairMeshShape& shape, const Scalp& scalp) {
   return distanceOf(rootsOf(shape), Reading{}, scalp);
 }
 
-std::string fitHair(const Character& character, bool mend, sim::HairMeshShape& shape) {
+std::string fitHair(const Character& character, bool mend, sim::HairMeshShape& shape, bool in_metres) {
   const Scalp& scalp = character.scalp;
   const std::vector<Vec3> roots = rootsOf(shape);
   const double limit = kFarRoots * scalp.head_height / kHead, before = rootDistance(shape, scalp);
   if (roots.empty() || before <= limit) return "";
   const Vec3 hang = hangOf(shape);
-  const std::vector<Reading> all = readings(character);
+  const std::vector<Reading> all = readings(character, in_metres);
   const auto best = [&](const std::vector<Reading>& of) {
     return std::min_element(of.begin(), of.end(), [&](const Reading& a, const Reading& b) {
       return misfit(roots, a, scalp) < misfit(roots, b, scalp);
@@ -243,10 +248,13 @@ std::string fitHair(const Character& character, bool mend, sim::HairMeshShape& s
   Reading found = as_made.empty() ? Reading{} : *best(as_made);
   std::string like = looksLike(found);
   if (as_made.empty() || distanceOf(roots, found, scalp) > limit) {
-    // Few roots fit a smaller head better; hair keeps its size where its place alone is enough.
+    // A head of another shape is fitted somewhat better in another size: hair keeps its own unless that is much better.
     std::vector<Reading> moved = forOtherHeads(all, roots, hang, false, scalp);
-    if (moved.empty() || distanceOf(roots, *best(moved), scalp) > kCloser * limit)
-      moved = forOtherHeads(all, roots, hang, true, scalp);
+    std::vector<Reading> sized = forOtherHeads(all, roots, hang, true, scalp);
+    const auto off = [&](const std::vector<Reading>& of) {
+      return of.empty() ? INFINITY : distanceOf(roots, *best(of), scalp);
+    };
+    if (off(moved) > kCloser * limit || off(sized) < kMuchCloser * off(moved)) moved = std::move(sized);
     if (moved.empty() || distanceOf(roots, *best(moved), scalp) > kCloser * limit)
       return "its roots are " + length(before) +
              " from the scalp, in no unit, axes or size that is known; it should be in metres, y up, about the head "

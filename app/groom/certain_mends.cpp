@@ -119,6 +119,7 @@ MendReport mendCertain(const GroomHints& hints, const HeadModel* head, const std
     const std::string option = finding.mend.substr(0, finding.mend.find(' '));
     report.findings.push_back({finding, (guesses && finding.certain) || wishes.find(option) != std::string::npos});
   }
+  report.on_head = inspection.on_head && !wished("--no-guess") && !wished("--move");
   mendGroom(mends, head, groom);
   return report;
 }

@@ -17,6 +17,7 @@ struct MendedFinding {
 struct MendReport {
   std::vector<MendedFinding> findings;
   bool unit_known = false;  // points are metres now; else they are in the file's unit
+  bool on_head = false;     // roots lie on the head now, in the median
 };
 
 // Puts options of hairmesh-inspect in place of what was found: "--unit cm --up z --turn 180 --reverse all --width-scale

@@ -271,6 +271,7 @@ void Inspector::place() {
   if (head == nullptr || ends.first.size() < kMinRoots || crowd()) return;
   std::vector<Vector3f> roots = ends.first;
   const float before = offHead(roots);
+  result.on_head = before <= kFar;
   if (before > kFar) {
     const Vector3f move = moveToHead(roots, skull.center);
     for (Vector3f& root : roots) root += move;
@@ -281,6 +282,7 @@ void Inspector::place() {
     result.findings.back().fault = !inWorld();
     if (inWorld())
       result.findings.back().text = textOf("the hair is on a head in the world, %.3g m from the figure's own", before);
+    result.on_head = certain;
     if (!certain) return;
     result.mends.move = move;
   } else {

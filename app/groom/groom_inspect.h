@@ -46,7 +46,8 @@ struct GroomFinding {
 struct GroomInspection {
   std::string summary;  // strands, points, extent
   std::vector<GroomFinding> findings;
-  GroomMends mends;  // of what is certain
+  GroomMends mends;      // of what is certain
+  bool on_head = false;  // whether the roots lie on the head after these, in the median
 
   const GroomFinding* find(std::string_view what) const;
 };

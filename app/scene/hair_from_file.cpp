@@ -14,8 +14,9 @@ namespace app {
 
 namespace {
 
+// on_head: whether its roots lie on the figure's head now, beards too.
 Conversion convertMended(const std::string& bytes, const CharacterSpec& spec, const Character& character,
-                         Haircut& haircut) {
+                         Haircut& haircut, bool& on_head) {
   GroomHints hints;
   Groom groom = readGroom(bytes, spec.hair, &hints);
   ConvertOptions options;
@@ -23,6 +24,7 @@ Conversion convertMended(const std::string& bytes, const CharacterSpec& spec, co
   const HeadModel head = headModelOf(character);
   const MendReport report = mendCertain(hints, &head, spec.mends, groom);
   haircut.findings = report.findings;
+  on_head = report.on_head;
   if (report.unit_known) options.unit = 1;
   return convertGroom(groom, {}, options, spec.hair);
 }
@@ -37,7 +39,7 @@ PlacedStrips placeStrips(const PolygonMesh& mesh, char up, const CharacterSpec& 
   options.up = up;
   const StripConversion conversion = convertStrips(mesh, options, spec.hair);
   PlacedStrips placed{conversion.mesh.shape, stripNote(conversion), ""};
-  placed.fit = fitHair(character, spec.fit, placed.shape);
+  placed.fit = fitHair(character, spec.fit, placed.shape, true);
   return placed;
 }
 
@@ -50,7 +52,7 @@ PlacedStrips placeStrips(const CharacterSpec& spec, const Character& character) 
   try {
     PlacedStrips turned = placeStrips(mesh, 'z', spec, character);
     const auto off = [&](const PlacedStrips& one) { return rootDistance(one.shape, character.scalp); };
-    return off(turned) < off(placed) ? turned : placed;
+    return off(placed) > 0.5 * kFarRoots && off(turned) < off(placed) ? turned : placed;
   } catch (const InputError&) {
     return placed;  // no strips with z up
   }
@@ -68,12 +70,13 @@ std::string mendedBy(const Haircut& haircut) {
 
 sim::HairMeshShape hairFromFile(const CharacterSpec& spec, const Character& character, Haircut& haircut) {
   sim::HairMeshShape shape;
+  bool on_head = false;
   const auto note = [&](const std::string& text) {
     if (!text.empty()) haircut.note += (haircut.note.empty() ? spec.hair + ": " : "; ") + text;
   };
   const std::string bytes = readText(spec.hair, kMaxGroomFile);
   if (groomFormat(bytes, spec.hair)) {
-    const Conversion conversion = convertMended(bytes, spec, character, haircut);
+    const Conversion conversion = convertMended(bytes, spec, character, haircut, on_head);
     haircut.look = conversion.look;
     shape = conversion.shape;
     note(mendedBy(haircut));
@@ -86,7 +89,7 @@ sim::HairMeshShape hairFromFile(const CharacterSpec& spec, const Character& char
   } else {
     shape = readHairMesh(bytes, spec.hair, spec.reverse_faces);
   }
-  note(fitHair(character, spec.fit, shape));
+  if (!on_head) note(fitHair(character, spec.fit, shape));
   return shape;
 }
 
