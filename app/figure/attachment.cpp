@@ -20,6 +20,8 @@ namespace {
 constexpr double kSmallestWorn = 0.07,
                  kLargestWorn = 0.65;  // m, the longest side of what is worn; less than ten times apart
 constexpr double kNearJoint = 0.35;    // m, from its joint
+constexpr double kSwallowed = 0.8;     // of its points, inside the head
+constexpr double kHatSize = 0.08;      // m, the shortest side of a hat; how far before the head it lies
 constexpr double kWornSpacing = 0.0025, kMaxWornNodes = 1.2e6;  // m, of the grid
 constexpr double kSharpEdge = 0.5;                              // cosine between faces that are shaded as one
 constexpr double kWeld = 1e-5;                                  // of the size; vertices so near are one
@@ -222,13 +224,22 @@ void placeAt(const AttachmentSpec& spec, const PolygonMesh& mesh, const Vec3& jo
 // What is wrong with its place, in the joint's frame, though it can be worn; empty: nothing.
 std::string placeNote(const ClosedSurface& surface, const Rigid& to_scalp, const Scalp& scalp, bool of_head) {
   double nearest = INFINITY;
-  bool inside = of_head;
+  std::size_t inside = 0;
+  Eigen::AlignedBox3d box;
   for (const Vec3& p : surface.points) {
     const Vec3 from_middle = to_scalp * p - scalp.center;
     nearest = std::min(nearest, p.norm());
-    inside = inside && from_middle.norm() < scalp.radiusAt(from_middle.normalized());
+    inside += from_middle.norm() < scalp.radiusAt(from_middle.normalized());
+    box.extend(from_middle);
   }
-  if (inside) return "lies wholly inside the head; give \"scale\", metres per unit (0.0254 for inches), or \"at\"";
+  if (of_head && static_cast<double>(inside) > kSwallowed * static_cast<double>(surface.points.size()))
+    return "lies " + std::string(inside == surface.points.size() ? "wholly" : "for the most part") +
+           " inside the head; give \"scale\", metres per unit (0.0254 for inches), or \"at\"";
+  // A hat sits on the head; glasses are thin.
+  const Vec3 middle = box.center();
+  if (of_head && box.sizes().minCoeff() > kHatSize && std::abs(middle.z()) > std::max(kHatSize, std::abs(middle.y())))
+    return std::string("lies ") + (middle.z() > 0 ? "before" : "behind") +
+           " the head; where z is up in the file, give \"turn\": [-90, 0, 0]";
   if (nearest > kNearJoint) return "lies " + millimetresOf(nearest) + " from its joint; look at \"scale\" and \"at\"";
   return "";
 }

@@ -237,8 +237,13 @@ std::string conversionNote(const Conversion& conversion) {
                 "within %.1f %%",
                 conversion.strands, conversion.unit.c_str(), conversion.shape.vertexCount(),
                 100 * error.mean / error.strand_length, 100 * error.share95 / error.strand_length);
-  return text + (astray > 0 ? "; " + std::to_string(astray) + " strands do not fit (hairmesh-convert says which)"
-                            : std::string());
+  std::string note = text;
+  if (astray > 0) note += "; " + countOf(astray, "strand") + " of them do not fit (hairmesh-convert says which)";
+  const int bare = conversion.fit.dropped_faces, faces = static_cast<int>(conversion.shape.root_faces.size());
+  if (bare > 0)
+    note += "; " + std::to_string(100 * bare / (bare + faces)) +
+            " % of the scalp under them is left bare, for strands over it go through each other";
+  return note;
 }
 
 }  // namespace app

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "app/files/length_units.h"
+#include "app/files/report_line.h"
 #include "app/groom/groom_shape.h"
 
 namespace app {
@@ -334,7 +335,7 @@ GroomInspection inspectGroom(const Groom& groom, const GroomHints& hints, const 
   std::vector<float> counts;
   for (std::size_t s = 0; s < groom.strandCount(); ++s) counts.push_back(static_cast<float>(groom.pointCount(s)));
   inspector.result.summary =
-      std::to_string(groom.strandCount()) + " strands, " + std::to_string(groom.points.size()) + " points, " +
+      countOf(groom.strandCount(), "strand") + ", " + countOf(groom.points.size(), "point") + ", " +
       textOf("%.0f a strand (median), %.3g m across", medianOf(counts), groomSize(groom) * inspector.result.mends.unit);
   return std::move(inspector.result);
 }

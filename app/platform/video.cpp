@@ -50,7 +50,7 @@ std::vector<std::string> ffmpegWords(const std::string& file, int width, int hei
           "-i",
           "-",
           "-vf",
-          "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+          "scale=ceil(iw/2)*2:ceil(ih/2)*2",
           "-pix_fmt",
           "yuv420p",
           file};

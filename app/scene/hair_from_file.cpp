@@ -75,6 +75,9 @@ sim::HairMeshShape hairFromFile(const CharacterSpec& spec, const Character& char
     if (!text.empty()) haircut.note += (haircut.note.empty() ? spec.hair + ": " : "; ") + text;
   };
   const std::string bytes = readText(spec.hair, kMaxGroomFile);
+  if (bytes.starts_with("glTF") && bytes.find("\"generator\":\"hairmesh\"") != std::string::npos)
+    throw InputError(spec.hair, "", "is a moving hair mesh that this program has exported, and is not read back",
+                     "export strands (.abc, .usda, .hair, .ply), or write the hair mesh (--write-hair FILE.obj)");
   if (groomFormat(bytes, spec.hair)) {
     const Conversion conversion = convertMended(bytes, spec, character, haircut, on_head);
     haircut.look = conversion.look;

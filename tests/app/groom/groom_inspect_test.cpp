@@ -341,4 +341,56 @@ TEST(CertainMends, AreOverruledByWishes) {
   EXPECT_EQ(mends.move, Vector3f(0, 0.1f, -0.2f));
 }
 
+// Strands of 12 cm that stand off the head in a strip from brow to nape, or hang from the chin.
+app::Groom strip(bool beard) {
+  const app::HeadModel model = head();
+  Random random{std::mt19937(3)};
+  app::Groom groom;
+  for (int s = 0; s < 400; ++s) {
+    const float around = beard ? random.between(-0.9f, 0.9f) : random.between(-0.12f, 0.12f);
+    const float over = beard ? random.between(-0.9f, -0.5f) : random.between(0.5f, 2.6f);
+    const Vector3f direction =
+        beard ? Vector3f(std::sin(around) * std::cos(over), std::sin(over), std::cos(around) * std::cos(over))
+              : Vector3f(around, std::sin(over), std::cos(over)).normalized();
+    Vector3f at = model.center;
+    for (float out = 0; model.distance(at) < 0.0005f && out < 0.3f; out += 0.0005f) at = model.center + out * direction;
+    const Vector3f way = beard ? Vector3f(0.3f * direction + Vector3f(0, -1, 0)).normalized() : direction;
+    for (int p = 0; p < 8; ++p) groom.points.push_back(at + 0.12f * static_cast<float>(p) / 7 * way);
+    groom.strand_first.push_back(static_cast<std::uint32_t>(groom.points.size()));
+  }
+  return groom;
+}
+
+TEST(CertainMends, LeaveAMohawkUprightAndABeardOnTheChin) {
+  const app::HeadModel model = head();
+  for (const bool beard : {false, true}) {
+    const app::Groom clean = strip(beard);
+    app::Groom groom = clean;
+    const app::MendReport report = app::mendCertain({}, &model, "", groom);
+    EXPECT_TRUE(report.on_head) << app::mendText(report);
+    ASSERT_EQ(groom.points.size(), clean.points.size());
+    float far = 0;
+    for (std::size_t p = 0; p < groom.points.size(); ++p)
+      far = std::max(far, (groom.points[p] - clean.points[p]).norm());
+    EXPECT_LT(far, 0.02f) << (beard ? "beard: " : "mohawk: ") << app::mendText(report);
+  }
+}
+
+// The place is sought for the axes that were given.
+TEST(CertainMends, PlaceTheHairForTheAxesThatWereGiven) {
+  const app::HeadModel model = head();
+  const app::Groom clean = combedGroom(300, 5);
+  app::Groom groom = clean;
+  moveAll(groom, turnOf("z"), 1, Vector3f(0, 0, 0.4f));
+  const app::MendReport report = app::mendCertain({}, &model, "--up z", groom);
+  EXPECT_TRUE(report.on_head) << app::mendText(report);
+  EXPECT_LT((groom.points[0] - clean.points[0]).norm(), 0.02f) << app::mendText(report);
+}
+
+TEST(GroomInspect, SaysThatAHandfulOfStrandsIsTooFew) {
+  const app::HeadModel model = head();
+  EXPECT_NE(app::inspectGroom(combedGroom(5, 1), {}, &model).find("strands"), nullptr);
+  EXPECT_EQ(app::inspectGroom(combedGroom(50, 1), {}, &model).find("strands"), nullptr);
+}
+
 }  // namespace

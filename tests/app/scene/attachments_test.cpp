@@ -238,6 +238,8 @@ TEST(Attachments, UnitAndOriginAreInferredAndTold) {
 TEST(Attachments, OneInInchesOrFarOffIsSaidToBeNowhereToBeSeen) {
   const app::Demo inches = app::openScene(wearing(beanieIn(1 / 0.0254)), 1.5);
   EXPECT_NE(inches.message.find("lies wholly inside the head; give \"scale\""), std::string::npos) << inches.message;
+  const app::Demo lying = app::openScene(wearing(R"({"file": "beanie.obj", "turn": [90, 0, 0]})"), 1.5);
+  EXPECT_NE(lying.message.find("give \"turn\": [-90, 0, 0]"), std::string::npos) << lying.message;
   const app::Demo far = app::openScene(wearing(R"({"file": "beanie.obj", "at": [0, 3, 0]})"), 1.5);
   EXPECT_NE(far.message.find("from its joint; look at \"scale\" and \"at\""), std::string::npos) << far.message;
 }

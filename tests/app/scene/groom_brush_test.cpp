@@ -47,6 +47,24 @@ app::Request sampleAt(app::BrushTool tool, const sim::Vec3& at, const sim::Vec3&
   return {Ask::kBrush, std::string(app::kBrushNames[static_cast<std::size_t>(tool)]), app::brushText(sample)};
 }
 
+// At one place, until all that it reaches is as short as it may be.
+TEST(GroomBrush, CuttingAgainAndAgainIsNoFault) {
+  app::Demo demo = app::openScene(sceneOf(app::Resolution::kMedium, "idle_turns.bvh"), 1.5);
+  app::advanceFrame(demo, 0, {});
+  int tip = -1;
+  frontTip(demo, tip);
+  const double before = demo.actors[0].haircut->mesh.total_volume;
+  for (int n = 0; n < 60; ++n) {
+    const app::Actor& actor = demo.actors[0];
+    const sim::Vec3 at = app::scalpToWorld(actor.body->character, actor.pose).inverse() *
+                         actor.hair.positions[static_cast<std::size_t>(tip)];
+    demo.requests = {sampleAt(app::BrushTool::kCut, at, {0.01, 0, 0})};
+    app::advanceFrame(demo, 1.0 / 60, {});
+    ASSERT_FALSE(demo.message_is_fault) << n << ": " << demo.message;
+  }
+  EXPECT_LT(demo.actors[0].haircut->mesh.total_volume, 0.995 * before);
+}
+
 TEST(GroomBrush, ASampleReadsBackToTheSameBits) {
   app::BrushSample sample;
   sample.at = {0.1, -1.0 / 3, 2e-17};
@@ -142,9 +160,9 @@ TEST(GroomBrush, FrozenHairStaysUntilItIsThawed) {
     sample.tool = tool;
     sample.at = at, sample.along = {0.01, 0, 0.01};
     sample.radius = 0.3, sample.strength = 1, sample.falloff = 0;
-    demo.requests = {{Ask::kBrush, std::string(app::kBrushNames[static_cast<std::size_t>(tool)]),
-                      app::brushText(sample)},
-                     {Ask::kEndGesture, "", ""}};
+    demo.requests = {
+        {Ask::kBrush, std::string(app::kBrushNames[static_cast<std::size_t>(tool)]), app::brushText(sample)},
+        {Ask::kEndGesture, "", ""}};
     app::advanceFrame(demo, 0, {});
     return demo.actors[0].haircut->mesh.shape.positions[static_cast<std::size_t>(tip)];
   };

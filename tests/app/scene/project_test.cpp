@@ -84,6 +84,8 @@ TEST(Project, OpensFromTheCommandLineWithOtherSettingsButNoOtherHair) {
   app::Scene scene = app::projectScene(file);
   scene.sim.density = 70;
   scene.camera.view = "back";
+  scene.camera.eye.reset();
+  scene.camera.target.reset();
   const app::Demo plain = app::readProject(file, app::projectScene(file), false, 1.5);
   const app::Demo other = app::readProject(file, scene, true, 1.5);
   EXPECT_EQ(other.scene.sim.density, 70);

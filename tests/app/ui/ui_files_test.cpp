@@ -71,8 +71,10 @@ TEST_F(Panels, ASceneIsSavedAndOneThatIsThereOnlyOnASecondPress) {
   ui_.browser.folder = folder;
   for (const std::string name : {"fresh", "there"}) {
     click("file Save");
-    std::copy(name.begin(), name.end() + 1, ui_.browser.name.begin());
     frame();
+    for (const char letter : name) ImGui::GetIO().AddInputCharacter(static_cast<unsigned>(letter));
+    frame();
+    EXPECT_EQ(ui_.browser.name.data(), name);
     const auto first = click("file_take");
     if (name == "there") {
       EXPECT_EQ(requestOf(first, Ask::kSaveScene), nullptr);
