@@ -218,6 +218,8 @@ void addPictureOptions(CLI::App& parser, Options& options, Unchecked& unchecked)
               "front, three-quarter, side, back, top, or eye and target in metres: ex,ey,ez,tx,ty,tz");
   group.value("--framing", options.framing, "NAME", "How much is in the picture: head, bust or figure")
       ->check(oneOf({"head", "bust", "figure"}));
+  group.value("--turntable", options.turntable, "X", "Degrees a second that the camera goes round the figure (0)")
+      ->check(within(-360, 360));
   group.value("--strands", options.strands, "N", "Strands to draw over a whole head")
       ->check(within(0, findHairField("strands")->maximum));
   group
@@ -435,7 +437,8 @@ void refuseBesideReplay(const CLI::App& parser, const Options& options) {
   for (const CLI::Option* option : parser.get_options()) {
     const std::string name = option->get_single_name(), group = option->get_group();
     const bool of_scene = group == "What is shown" || group == "Playback" || name == "scene" || name == "frames" ||
-                          name == "camera" || name == "framing" || name == "strands" || name == "strand-path";
+                          name == "camera" || name == "framing" || name == "turntable" || name == "strands" ||
+                          name == "strand-path";
     if (option->count() > 0 && of_scene) unused += (unused.empty() ? "" : ", ") + option->get_name();
   }
   if (!unused.empty()) {

@@ -1,6 +1,7 @@
 #include "app/platform/opening.h"
 
 #include <filesystem>
+#include <numbers>
 #include <tuple>
 
 #include "app/files/report.h"
@@ -9,7 +10,9 @@
 
 namespace app {
 
-Demo openAsked(Scene scene, const Options& options, double aspect, bool beside) {
+namespace {
+
+Demo openFile(Scene scene, const Options& options, double aspect, bool beside) {
   if (options.project.empty()) return openScene(std::move(scene), aspect, beside);
   const bool keep_view = !options.camera.empty() || !options.framing.empty();
   Demo demo = readProject(options.project, scene, keep_view, aspect);
@@ -19,6 +22,15 @@ Demo openAsked(Scene scene, const Options& options, double aspect, bool beside) 
     demo.requests.push_back({Ask::kOpenProject, "", std::filesystem::absolute(options.project).string()});
   }
   if (stands) demo.requests.push_back({Ask::kPause, ""});
+  return demo;
+}
+
+}  // namespace
+
+Demo openAsked(Scene scene, const Options& options, double aspect, bool beside) {
+  Demo demo = openFile(std::move(scene), options, aspect, beside);
+  if (options.turntable != 0)
+    demo.requests.push_back({Ask::kTurntable, "", "", options.turntable * std::numbers::pi / 180});
   return demo;
 }
 

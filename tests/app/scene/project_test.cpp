@@ -77,8 +77,9 @@ TEST(Project, OpensFromTheCommandLineWithOtherSettingsButNoOtherHair) {
   const test::Outcome changed = test::runProgram({"--no-images", "--frames", "2", file, "--style", "short"});
   EXPECT_EQ(changed.exit_code, app::kExitUsage) << changed.err;
   EXPECT_NE(changed.err.find("leave out --style"), std::string::npos) << changed.err;
-  const test::Outcome set = test::runProgram({"--no-images", "--frames", "2", file, "--camera", "back", "--fps", "24",
-                                              "--preset", "stiff", "--set", "density=70", "--strands", "900"});
+  const test::Outcome set =
+      test::runProgram({"--no-images", "--frames", "2", file, "--camera", "back", "--fps", "24", "--preset", "stiff",
+                        "--set", "density=70", "--strands", "900", "--turntable", "30"});
   EXPECT_EQ(set.exit_code, 0) << set.err;
 
   app::Scene scene = app::projectScene(file);
