@@ -41,13 +41,16 @@ void addCurveOptions(CLI::App& parser, Arguments& arguments) {
           "--vertices", arguments.curves.fit.vertices,
           "Most vertices; by default the least of 400, 800, 1600 and 2400 with which the mean distance is within "
           "1 % of the length and 95 % of the points within 3 %; of strips 4000")
-      ->check(CLI::Range(60, 20000));
+      ->check(CLI::Range(60, 20000))
+      ->option_text("N (60 to 20000)");
   parser
       .add_option("--layers", arguments.curves.fit.layers,
                   "Layers of every column; by default as the strands ask for, or the rows of a strip")
-      ->check(CLI::Range(3, 40));
+      ->check(CLI::Range(3, 40))
+      ->option_text("N (3 to 40)");
   parser.add_option("--unit", arguments.unit, "Metres in a unit of the file; by default as it says, or inferred")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::PositiveNumber)
+      ->option_text("METRES");
   parser.add_option(
       "--mends", arguments.mends,
       "Options of hairmesh-inspect that mend curves, in quotes: \"--up z --push-out\"; what is certain is "
@@ -69,7 +72,8 @@ void addStripOptions(CLI::App& parser, Arguments& arguments) {
           "--root-edge", strips.root,
           "Of strips and tubes, the end that is the root: scalp (nearest to it), highest, lowest, or auto: scalp "
           "where there is one, else highest")
-      ->transform(CLI::CheckedTransformer(kEdges));
+      ->transform(CLI::CheckedTransformer(kEdges))
+      ->option_text("END");
   parser.add_flag("--other-end", strips.other_end,
                   "Of strips and tubes, the root is the other end than --root-edge says");
   parser.add_option("--flip-strips", strips.flipped, "Numbers of single strips, from 1, whose root is the other end")
@@ -78,15 +82,18 @@ void addStripOptions(CLI::App& parser, Arguments& arguments) {
       "--scalp", arguments.scalp,
       "Mesh of the scalp in the strips' unit and axes; by default objects of IN called scalp, head, body");
   parser.add_option("--up", strips.up, "The axis that is up in a file of strips: y or z")
-      ->check(CLI::IsMember({'y', 'z'}));
+      ->check(CLI::IsMember({'y', 'z'}))
+      ->option_text("AXIS");
   parser
       .add_option("--join", strips.join,
                   "Metres: neighbouring strips nearer than that become one sheet; by default those that share vertices")
-      ->check(CLI::Range(0.0, 0.05));
+      ->check(CLI::Range(0.0, 0.05))
+      ->option_text("METRES (0 to 0.05)");
   parser
       .add_option("--thickness", strips.mesh.thickness,
                   "Metres that strips are thick at their roots; by default by their width")
-      ->check(CLI::Range(0.0002, 0.05));
+      ->check(CLI::Range(0.0002, 0.05))
+      ->option_text("METRES (0.0002 to 0.05)");
 }
 
 // Throws CLI::ParseError.

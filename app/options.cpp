@@ -374,7 +374,7 @@ void finish(const Unchecked& unchecked, Options& options) {
     throw UsageError("--no-images draws nothing that --draw-budget-ms could hold; leave one of them out");
   constexpr std::array<std::string_view, 6> kFilms{".mp4", ".webm", ".mkv", ".mov", ".avi", ".gif"};
   if (!options.video.empty() && !std::ranges::count(kFilms, std::filesystem::path(options.video).extension().string()))
-    throw UsageError("--video cannot be '" + options.video + "'; name it .mp4, .webm or .mkv");
+    throw UsageError("--video cannot be '" + options.video + "'; name it .mp4, .webm, .mkv, .mov, .avi or .gif");
   if (!options.video.empty()) options.headless = true;
   if (!options.write_hair.empty() && std::filesystem::path(options.write_hair).extension() != ".obj") {
     throw UsageError("--write-hair cannot be '" + options.write_hair + "'; name it .obj, the format that is written");

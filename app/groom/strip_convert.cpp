@@ -216,10 +216,11 @@ std::string stripReport(const StripConversion& conversion) {
   std::string text = reportLine("read          %s in %s", kinds(conversion).c_str(), conversion.unit.c_str());
   if (!conversion.scalp.empty()) text += reportLine("scalp         %.300s", conversion.scalp.c_str());
   text += reportLine("root edges    %s; --root-edge and --flip-strips overrule it", conversion.roots.c_str());
+  const std::string least = mesh.least_layers < mesh.most_layers ? std::to_string(mesh.least_layers) + " to " : "";
   text +=
-      reportLine("hair mesh     %d vertices in %d columns of %d to %d layers; %zu root faces%s",
-                 mesh.shape.vertexCount(), mesh.shape.columnCount(), mesh.least_layers, mesh.most_layers,
-                 mesh.shape.root_faces.size(), mesh.thinned ? "; rows were left out, --vertices asks for more" : "");
+      reportLine("hair mesh     %d vertices in %d columns of %s%d layers; %zu root faces%s", mesh.shape.vertexCount(),
+                 mesh.shape.columnCount(), least.c_str(), mesh.most_layers, mesh.shape.root_faces.size(),
+                 mesh.thinned ? "; rows were left out, --vertices asks for more" : "");
   if (mesh.thickness > 0) text += reportLine("thickness     %.1f mm of strips at their roots", 1e3 * mesh.thickness);
   if (conversion.cut > 0)
     text += reportLine("cut short     %s whose last rows are no rows", countOf(conversion.cut, "strip").c_str());
