@@ -8,6 +8,7 @@
 #include "app/figure/head_model.h"
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
+#include "app/files/length_units.h"
 #include "app/groom/groom_file.h"
 #include "app/groom/groom_inspect.h"
 #include "app/groom/groom_writer.h"
@@ -19,7 +20,9 @@ constexpr const char* kAbout =
     "Says what is wrong with a groom (.abc, .usda, .hair, .ply, .tfx) and which option mends it. What is certain is "
     "mended by itself in what --out writes; options overrule it.";
 
-const std::map<std::string, double> kUnits{{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}};
+double metresOf(const std::string& unit) {
+  return std::ranges::find(app::kLengthUnits, unit, &app::LengthUnit::name)->metres;
+}
 
 struct Asked {
   std::string file, out, figure = "idle_turns.bvh";
@@ -57,7 +60,7 @@ app::GroomMends mendsOf(const CLI::App& parser, const Asked& asked, const app::G
   app::GroomMends mends = asked.no_guess ? app::GroomMends() : found;
   if (asked.no_guess) mends.unit = hints.meters_per_unit.value_or(1);
   if (asked.no_guess) {
-    if (!asked.unit.empty()) mends.unit = kUnits.at(asked.unit);
+    if (!asked.unit.empty()) mends.unit = metresOf(asked.unit);
     if (!asked.up.empty()) mends.axes = *app::axesOfUp(asked.up);
     if (asked.turn) mends.axes = app::turnedAbout(*asked.turn) * mends.axes;
   }
@@ -82,7 +85,7 @@ int run(const CLI::App& parser, const Asked& asked) {
   app::Groom groom = app::readGroom(asked.file, &hints);
   const app::HeadModel head = app::headModelOf(app::loadCharacter(app::findFile(asked.figure, "", "clips")));
   app::GroomHints known = hints;
-  if (!asked.unit.empty()) known.meters_per_unit = kUnits.at(asked.unit), known.unit_given = true;
+  if (!asked.unit.empty()) known.meters_per_unit = metresOf(asked.unit), known.unit_given = true;
   if (!asked.up.empty()) known.axes = app::axesOfUp(asked.up);
   if (asked.turn) known.turn = app::turnedAbout(*asked.turn);
   const app::GroomInspection inspection = app::inspectGroom(groom, known, &head);

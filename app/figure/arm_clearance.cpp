@@ -1,10 +1,9 @@
 #include "app/figure/arm_clearance.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
-#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "app/figure/ellipsoid_fit.h"
@@ -16,8 +15,10 @@ namespace {
 constexpr double kTouch = 0.002;   // m under the skin that needs no turn
 constexpr double kRoom = 0.004;    // m over the skin, where one is turned
 constexpr double kMostTurn = 0.7;  // rad
-constexpr double kEvenOver = 0.1;  // s
-constexpr int kTurns = 24, kEvenings = 3;
+constexpr double kNoTurn = 1e-6;   // rad
+constexpr double kEvenOver = 0.1;  // s, that turns are evened out over
+constexpr int kTurns = 24;         // small ones, that make up a turn
+constexpr int kEvenings = 3;       // each over half the time of the one before
 
 // A place on a limb's middle line and how thick the limb is there.
 struct LimbPlace {
@@ -86,37 +87,39 @@ struct Contact {
   Vec3 place = Vec3::Zero(), normal = Vec3::UnitY();
 };
 
+// What an arm is turned by.
+struct Turns {
+  std::vector<Vec3> by;          // one a frame, about axes of the world; empty where nothing is touched
+  double deepest = 0, left = 0;  // m, before and after
+};
+
 class Clearance {
  public:
   Clearance(const Character& character, Arm arm)
       : character_(character), arm_(std::move(arm)), body_(bodyOf(character)) {}
 
-  // The turns of the shoulder, one a frame, about axes of the world; empty where nothing is touched.
-  std::vector<Vec3> turns(const Clip& clip) {
+  Turns turns(const Clip& clip) {
     look(clip);
-    const int last = clip.frameCount() - 1;
-    std::vector<Vec3> turns(moments_.size(), Vec3::Zero());
-    deepest_ = 0;
-    for (const Moment& moment : moments_) deepest_ = std::max(deepest_, contact(moment, Vec3::Zero()).depth);
-    if (deepest_ < kTouch) return {};
+    Turns turns;
+    std::vector<Vec3>& by = turns.by;
+    by.assign(moments_.size(), Vec3::Zero());
+    turns.deepest = deepestWith(by);
+    if (turns.deepest < kTouch) return {};
     // Onward and back, each from its neighbour's turn, so that a limb stays on the side that it came from.
+    const int count = clip.frameCount();
     const double keeps = std::exp(-clip.frame_time / kEvenOver);
-    std::vector<Vec3> onward = turns, back = turns;
-    for (int f = 0; f <= last; ++f) onward[at(f)] = clear(f, f > 0 ? Vec3(keeps * onward[at(f - 1)]) : Vec3::Zero());
-    for (int f = last; f >= 0; --f) back[at(f)] = clear(f, f < last ? Vec3(keeps * back[at(f + 1)]) : Vec3::Zero());
-    for (int f = 0; f <= last; ++f) turns[at(f)] = 0.5 * (onward[at(f)] + back[at(f)]);
+    std::vector<Vec3> onward = by, back = by;
+    for (int f = 0; f < count; ++f) onward[at(f)] = clear(f, f > 0 ? Vec3(keeps * onward[at(f - 1)]) : Vec3::Zero());
+    for (int f = count - 1; f >= 0; --f)
+      back[at(f)] = clear(f, f + 1 < count ? Vec3(keeps * back[at(f + 1)]) : Vec3::Zero());
+    for (int f = 0; f < count; ++f) by[at(f)] = 0.5 * (onward[at(f)] + back[at(f)]);
     for (int round = 0; round < kEvenings; ++round) {
-      turns = evened(turns, clip.frame_time, kEvenOver / (1 << round));
-      if (round + 1 < kEvenings)
-        for (int f = 0; f <= last; ++f) turns[at(f)] = clear(f, turns[at(f)]);
+      for (int f = 0; f < count && round > 0; ++f) by[at(f)] = clear(f, by[at(f)]);
+      by = evened(by, clip.frame_time, kEvenOver / (1 << round));
     }
-    left_ = 0;
-    for (int f = 0; f <= last; ++f) left_ = std::max(left_, contact(moments_[at(f)], turns[at(f)]).depth);
+    turns.left = deepestWith(by);
     return turns;
   }
-
-  double deepest() const { return deepest_; }  // m, before
-  double left() const { return left_; }        // m, after
 
  private:
   static std::size_t at(int index) { return static_cast<std::size_t>(index); }
@@ -136,6 +139,7 @@ class Clearance {
     }
   }
 
+  // The deepest of the turned arm with the body.
   Contact contact(const Moment& moment, const Vec3& turn) const {
     Contact deepest;
     const Eigen::Quaterniond rotation = turnBy(turn);
@@ -155,6 +159,13 @@ class Clearance {
     return deepest;
   }
 
+  double deepestWith(const std::vector<Vec3>& turns) const {
+    double deepest = 0;
+    for (std::size_t f = 0; f < turns.size(); ++f) deepest = std::max(deepest, contact(moments_[f], turns[f]).depth);
+    return deepest;
+  }
+
+  // The turn at a frame that leaves no contact, from a given one on.
   Vec3 clear(int frame, Vec3 turn) const {
     const Moment& moment = moments_[at(frame)];
     for (int k = 0; k < kTurns; ++k) {
@@ -167,6 +178,7 @@ class Clearance {
     return turn;
   }
 
+  // Weighted means over the frames around.
   static std::vector<Vec3> evened(const std::vector<Vec3>& turns, double frame_time, double over) {
     std::vector<Vec3> even(turns.size(), Vec3::Zero());
     const int reach = static_cast<int>(std::ceil(2 * over / frame_time)), count = static_cast<int>(turns.size());
@@ -185,9 +197,23 @@ class Clearance {
   const Character& character_;
   Arm arm_;
   std::vector<BodyEllipsoid> body_;
-  std::vector<Moment> moments_;
-  double deepest_ = 0, left_ = 0;
+  std::vector<Moment> moments_;  // one a frame
 };
+
+// Turns a joint about its own place, in the world.
+void turnJoint(const Skeleton& skeleton, int joint, const std::vector<Vec3>& by, Clip& clip) {
+  const int parent = skeleton.joints[static_cast<std::size_t>(joint)].parent;
+  Pose pose;
+  for (int f = 0; f < clip.frameCount(); ++f) {
+    const Vec3& turn = by[static_cast<std::size_t>(f)];
+    if (turn.norm() < kNoTurn) continue;
+    samplePose(skeleton, clip, f * clip.frame_time, pose);
+    Eigen::Quaterniond above = Eigen::Quaterniond::Identity();
+    if (parent >= 0) above = Eigen::Quaterniond(pose.world[static_cast<std::size_t>(parent)].linear());
+    Eigen::Quaterniond& own = clip.rotations[static_cast<std::size_t>(f * clip.joint_count + joint)];
+    own = (above.conjugate() * turnBy(turn) * above * own).normalized();
+  }
+}
 
 }  // namespace
 
@@ -197,23 +223,11 @@ std::string clearArms(const Character& character, Clip& clip) {
     Arm arm = armOf(character, side);
     if (arm.shoulder < 0) continue;
     const int shoulder = arm.shoulder;
-    Clearance clearance(character, std::move(arm));
-    const std::vector<Vec3> turns = clearance.turns(clip);
-    if (turns.empty()) continue;
-    const int parent = character.skeleton.joints[static_cast<std::size_t>(shoulder)].parent;
-    std::vector<Eigen::Quaterniond> turned;
-    Pose pose;
-    for (int f = 0; f < clip.frameCount(); ++f) {
-      samplePose(character.skeleton, clip, f * clip.frame_time, pose);
-      const Eigen::Quaterniond base(parent < 0
-                                        ? Eigen::Matrix3d(Eigen::Matrix3d::Identity())
-                                        : Eigen::Matrix3d(pose.world[static_cast<std::size_t>(parent)].linear()));
-      Eigen::Quaterniond& own = clip.rotations[static_cast<std::size_t>(f * clip.joint_count + shoulder)];
-      if (turns[static_cast<std::size_t>(f)].norm() > 1e-6)
-        own = (base.conjugate() * turnBy(turns[static_cast<std::size_t>(f)]) * base * own).normalized();
-    }
-    deepest = std::max(deepest, clearance.deepest());
-    left = std::max(left, clearance.left());
+    const Turns turns = Clearance(character, std::move(arm)).turns(clip);
+    if (turns.by.empty()) continue;
+    turnJoint(character.skeleton, shoulder, turns.by, clip);
+    deepest = std::max(deepest, turns.deepest);
+    left = std::max(left, turns.left);
   }
   if (deepest == 0) return {};
   char line[160];

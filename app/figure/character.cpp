@@ -7,7 +7,6 @@
 
 #include "app/figure/arm_clearance.h"
 #include "app/figure/character_build.h"
-#include "app/figure/limb_check.h"
 #include "app/figure/mannequin_parts.h"
 #include "app/figure/skin_cover.h"
 #include "app/files/errors.h"
@@ -114,7 +113,6 @@ Character loadCharacter(const std::string& motion_file, const std::string& parts
     if (const std::string note = plantFeet(character.skeleton, clip); !note.empty())
       character.notes.push_back(of + note);
     if (const std::string note = clearArms(character, clip); !note.empty()) character.notes.push_back(of + note);
-    if (const std::string note = limbNote(character, clip); !note.empty()) character.notes.push_back(of + note);
   }
   cover(character);
   return character;

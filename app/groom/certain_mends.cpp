@@ -93,33 +93,42 @@ std::string readMends(std::string_view text, GroomMends& mends) {
   return "";
 }
 
+namespace {
+
+bool wished(std::string_view option, std::string_view wishes) {
+  return !option.empty() && wishes.find(option) != std::string_view::npos;
+}
+
+// What is given is looked at as given: what is found besides goes with it.
+GroomHints withGiven(const GroomMends& given, std::string_view wishes, GroomHints hints) {
+  if (wished("--unit", wishes)) hints.meters_per_unit = given.unit, hints.unit_given = true;
+  // With an axis its turn is in it.
+  if (wished("--up", wishes)) hints.axes = given.axes;
+  if (wished("--turn", wishes)) hints.turn = hints.axes ? Eigen::Matrix3f(Eigen::Matrix3f::Identity()) : given.axes;
+  return hints;
+}
+
+}  // namespace
+
 MendReport mendCertain(const GroomHints& hints, const HeadModel* head, const std::string& wishes, Groom& groom) {
   GroomMends given;
   if (const std::string fault = readMends(wishes, given); !fault.empty()) throw InputError("", "mends", fault, "");
-  // What is given is looked at as given: what is found besides goes with it.
-  GroomHints known = hints;
-  const auto wished = [&](const char* option) { return wishes.find(option) != std::string::npos; };
-  if (wished("--unit")) known.meters_per_unit = given.unit, known.unit_given = true;
-  // With an axis its turn is in it.
-  if (wished("--up")) known.axes = given.axes;
-  if (wished("--turn")) known.turn = wished("--up") ? Eigen::Matrix3f(Eigen::Matrix3f::Identity()) : given.axes;
-  const GroomInspection inspection = inspectGroom(groom, known, head);
-  GroomMends mends = inspection.mends;
+  const GroomInspection inspection = inspectGroom(groom, withGiven(given, wishes, hints), head);
+  const bool guesses = !wished("--no-guess", wishes), unit_given = wished("--unit", wishes);
   const double told = hints.meters_per_unit.value_or(1);
-  if (wished("--no-guess")) mends.unit = told;
+  GroomMends mends = inspection.mends;
   readMends(wishes, mends);
-  if (!wished("--no-guess")) mends.axes = inspection.mends.axes;
-  if (wishes.find("--no-guess") != std::string::npos && wishes.find("--unit") == std::string::npos) mends.unit = told;
+  if (guesses) mends.axes = inspection.mends.axes;
+  if (!guesses && !unit_given) mends.unit = told;
   MendReport report;
-  const bool guesses = wishes.find("--no-guess") == std::string::npos;
   const GroomFinding* const unit = inspection.find("unit");
-  report.unit_known = wishes.find("--unit") != std::string::npos || told != 1 || (guesses && unit && unit->certain) ||
-                      (!unit && groom.strandCount() >= kMinStrands);
+  report.unit_known =
+      unit_given || told != 1 || (guesses && unit && unit->certain) || (!unit && groom.strandCount() >= kMinStrands);
   for (const GroomFinding& finding : inspection.findings) {
     const std::string option = finding.mend.substr(0, finding.mend.find(' '));
-    report.findings.push_back({finding, (guesses && finding.certain) || wishes.find(option) != std::string::npos});
+    report.findings.push_back({finding, (guesses && finding.certain) || wished(option, wishes)});
   }
-  report.on_head = inspection.on_head && !wished("--no-guess") && !wished("--move");
+  report.on_head = inspection.on_head && guesses && !wished("--move", wishes);
   mendGroom(mends, head, groom);
   return report;
 }
@@ -128,8 +137,8 @@ std::string mendText(const MendReport& report) {
   std::string text;
   for (const MendedFinding& one : report.findings) {
     const std::string label = one.done ? "mended" : "found";
-    text += label + std::string(14 - label.size(), ' ') + one.finding.what + ": " + one.finding.text + " (" +
-            one.finding.mend + (one.done ? ")" : " mends it)") + "\n";
+    const std::string mend = one.finding.mend.empty() ? "" : " (" + one.finding.mend + (one.done ? ")" : " mends it)");
+    text += label + std::string(14 - label.size(), ' ') + one.finding.what + ": " + one.finding.text + mend + "\n";
   }
   return text;
 }

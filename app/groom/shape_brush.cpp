@@ -186,7 +186,7 @@ void ShapeBrushes::keepLengths(const sim::HairMesh& mesh) {
 // Each vertex goes as far of its way as leaves what hangs on it valid.
 namespace {
 
-// What is smaller than the bound already may become half as large once more and again, down to a twentieth of the
+// The least that a brush may leave of a measure. Below the bound it may halve what there is, down to a twentieth of the
 // bound.
 double atLeast(double bound, double present) {
   return std::min({bound, std::max(0.5 * present, 0.05 * bound), present});

@@ -37,6 +37,7 @@ Demo openAsked(Scene scene, const Options& options, double aspect, bool beside) 
 std::vector<std::string> openingNotes(const Options& options, const Demo& demo) {
   std::vector<std::string> notes;
   if (!demo.message.empty()) notes.push_back(demo.message);
+  if (demo.paused && options.headless) notes.push_back(options.project + " was saved paused; here it plays");
   for (std::string& note : limitNotes(demo)) notes.push_back(std::move(note));
   const Actor& first = demo.actors.front();
   const double duration = first.playedClip().duration();

@@ -9,9 +9,9 @@
 
 namespace app {
 
-// Opens the scene, or the project with these settings, for pictures of `aspect`. A recorded run opens its project by a
-// request, so that the replay does; a turntable is one as well. Without a window a project that was saved paused plays. `beside`: large figures may
-// load beside the first frames. Throws InputError.
+// Opens the scene, or the project with these settings, for pictures of `aspect`. What a replay has to do again is a
+// request: opening the project of a recorded run, and the turntable. Without a window a project that was saved paused
+// plays. `beside`: large figures may load beside the first frames. Throws InputError.
 Demo openAsked(Scene scene, const Options& options, double aspect, bool beside);
 
 // What was inferred, limited or begins elsewhere: a line each, for the terminal.

@@ -8,7 +8,6 @@
 #include <filesystem>
 
 #include "app/figure/character_build.h"
-#include "app/figure/limb_check.h"
 
 namespace {
 
@@ -125,36 +124,6 @@ TEST(SkinCover, IsTheSameEveryTimeAndAddsNoneWhereNoneIsAsked) {
     EXPECT_EQ(a.ellipsoids[e].center, b.ellipsoids[e].center);
     EXPECT_EQ(a.ellipsoids[e].radii, b.ellipsoids[e].radii);
   }
-}
-
-// A hand of 4 cm goes 3 cm and then 10 cm into the chest, whose radius is 15 cm.
-TEST(LimbCheck, SaysHowFarAClipLeadsAHandIntoTheChest) {
-  app::Character c;
-  for (const char* name : {"chest", "left_hand"}) {
-    app::Joint joint;
-    joint.name = name;
-    c.skeleton.joints.push_back(joint);
-    app::BodyEllipsoid e;
-    e.name = name;
-    e.joint = static_cast<int>(c.ellipsoids.size());
-    e.radii = Vec3::Constant(c.ellipsoids.empty() ? 0.15 : 0.04);
-    c.ellipsoids.push_back(e);
-  }
-  app::Clip clip;
-  clip.frame_time = 1;
-  clip.joint_count = 2;
-  const auto add = [&](double apart) {
-    clip.rotations.insert(clip.rotations.end(), 2, Eigen::Quaterniond::Identity());
-    clip.translations.insert(clip.translations.end(), {Vec3::Zero(), Vec3(0, 0, apart)});
-  };
-  for (const double apart : {0.30, 0.16, 0.30}) add(apart);
-  EXPECT_NEAR(app::limbInTrunk(c, clip).depth, 0.03, 0.003);
-  EXPECT_EQ(app::limbNote(c, clip), "");
-  add(0.09);
-  const app::LimbInTrunk in = app::limbInTrunk(c, clip);
-  EXPECT_NEAR(in.depth, 0.10, 0.003);
-  EXPECT_NEAR(in.time, 3, 0.11);
-  EXPECT_NE(app::limbNote(c, clip).find("the left hand 10"), std::string::npos) << app::limbNote(c, clip);
 }
 
 // Between the moments that the ellipsoids were fitted at: the trunk's skin in front, where no other part ends.
