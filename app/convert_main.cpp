@@ -13,10 +13,10 @@
 #include "app/files/output_file.h"
 #include "app/files/polygon_file.h"
 #include "app/files/text_file.h"
-#include "app/groom/certain_mends.h"
 #include "app/groom/convert.h"
-#include "app/groom/groom_bytes.h"
-#include "app/groom/strip_convert.h"
+#include "app/groom/formats/groom_bytes.h"
+#include "app/groom/inspect/certain_mends.h"
+#include "app/groom/strips/strip_convert.h"
 
 namespace {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "app/scene/debug_views.h"
+#include "app/scene/view/debug_views.h"
 
 namespace app {
 

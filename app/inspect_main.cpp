@@ -9,10 +9,10 @@
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
 #include "app/files/length_units.h"
+#include "app/groom/formats/tfx_file.h"
 #include "app/groom/groom_file.h"
-#include "app/groom/groom_inspect.h"
 #include "app/groom/groom_writer.h"
-#include "app/groom/tfx_file.h"
+#include "app/groom/inspect/groom_inspect.h"
 
 namespace {
 

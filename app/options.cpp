@@ -10,9 +10,9 @@
 #include "app/files/errors.h"
 #include "app/files/scene_file.h"
 #include "app/groom/groom_writer.h"
-#include "app/scene/look_params.h"
+#include "app/scene/detail/skips.h"
 #include "app/scene/parameter_table.h"
-#include "app/scene/skips.h"
+#include "app/scene/view/look_params.h"
 #include "sim/field_text.h"
 
 namespace app {

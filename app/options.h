@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/scene/export_spec.h"
+#include "app/scene/record/export_spec.h"
 
 namespace app {
 
@@ -40,7 +40,7 @@ struct Options {
   double budget_ms = -1, deadline_ms = -1, draw_budget_ms = -1;  // negative: the scene's
   double speed = -1, fps = -1;                                   // negative: the scene's
   double start = -1;                                             // s into the clip; negative: the scene's
-  double turntable = 0;  // degrees a second that the camera goes round
+  double turntable = 0;                                          // degrees a second that the camera goes round
   int strands = -1;
   std::string camera;       // front, side, back, top, three-quarter or "ex,ey,ez,tx,ty,tz"
   std::string framing;      // head, bust or figure

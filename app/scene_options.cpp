@@ -7,11 +7,11 @@
 #include "app/files/file_kind.h"
 #include "app/files/presets.h"
 #include "app/files/scene_file.h"
-#include "app/groom/certain_mends.h"
+#include "app/groom/inspect/certain_mends.h"
 #include "app/options.h"
 #include "app/scene/comparison.h"
-#include "app/scene/environment_light.h"
 #include "app/scene/project.h"
+#include "app/scene/view/environment_light.h"
 #include "sim/field_text.h"
 
 namespace app {

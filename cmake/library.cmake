@@ -22,7 +22,7 @@ set(allocator_source ${CMAKE_CURRENT_SOURCE_DIR}/app/library/allocator.cpp)
 list(REMOVE_ITEM library_sources ${allocator_source})
 add_library(hairmesh_objects OBJECT ${library_sources}
   app/files/errors.cpp app/files/hair_file.cpp app/files/obj_layers.cpp app/files/text_scanner.cpp
-  app/scene/look_params.cpp app/scene/render_faces.cpp)
+  app/scene/view/look_params.cpp app/scene/edit/render_faces.cpp)
 target_link_libraries(hairmesh_objects PRIVATE hair_options Eigen3::Eigen)
 target_precompile_headers(hairmesh_objects REUSE_FROM hair_sim)
 compile_folders_as_one(hairmesh_objects)

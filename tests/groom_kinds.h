@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "app/groom/fit/grown_groom.h"
 #include "app/groom/groom.h"
-#include "app/groom/grown_groom.h"
 #include "app/styles/hair_styles.h"
 #include "tests/analytic_head.h"
 

@@ -11,7 +11,7 @@
 #include "app/figure/body_sdf.h"
 #include "app/figure/character.h"
 #include "app/files/attachment_spec.h"
-#include "app/groom/polygon_mesh.h"
+#include "app/groom/strips/polygon_mesh.h"
 
 namespace app {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "app/groom/groom_shape.h"
+#include "app/groom/inspect/groom_shape.h"
 
 namespace app {
 

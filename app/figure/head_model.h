@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/figure/character.h"
-#include "app/groom/groom_inspect.h"
+#include "app/groom/inspect/groom_inspect.h"
 
 namespace app {
 

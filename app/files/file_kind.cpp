@@ -12,7 +12,7 @@
 #include "app/files/json_reader.h"
 #include "app/files/polygon_file.h"
 #include "app/files/text_file.h"
-#include "app/groom/groom_bytes.h"
+#include "app/groom/formats/groom_bytes.h"
 #include "app/groom/groom_file.h"
 #include "sim/field_text.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "app/groom/polygon_mesh.h"
+#include "app/groom/strips/polygon_mesh.h"
 
 namespace app {
 

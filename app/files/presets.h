@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "app/files/json_reader.h"
-#include "app/scene/look_params.h"
+#include "app/scene/view/look_params.h"
 
 namespace app {
 

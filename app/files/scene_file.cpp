@@ -7,7 +7,7 @@
 #include "app/files/json_reader.h"
 #include "app/files/presets.h"
 #include "app/files/text_file.h"
-#include "app/groom/certain_mends.h"
+#include "app/groom/inspect/certain_mends.h"
 
 namespace app {
 

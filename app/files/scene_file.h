@@ -32,8 +32,8 @@
 #include "app/files/pin_spec.h"
 #include "app/files/tie_spec.h"
 #include "app/motion/playback.h"
-#include "app/scene/look_params.h"
-#include "app/scene/skips.h"
+#include "app/scene/detail/skips.h"
+#include "app/scene/view/look_params.h"
 #include "app/styles/hair_styles.h"
 #include "sim/sim_params.h"
 

@@ -7,7 +7,7 @@
 
 #include "app/files/errors.h"
 #include "app/files/report_line.h"
-#include "app/groom/grown_groom.h"
+#include "app/groom/fit/grown_groom.h"
 
 namespace app {
 namespace {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "app/groom/fit/groom_fit.h"
+#include "app/groom/fit/look_fit.h"
 #include "app/groom/groom_file.h"
-#include "app/groom/groom_fit.h"
-#include "app/groom/look_fit.h"
 
 namespace app {
 

@@ -7,12 +7,12 @@
 
 #include "app/files/errors.h"
 #include "app/files/text_file.h"
-#include "app/groom/alembic_file.h"
-#include "app/groom/groom_bytes.h"
-#include "app/groom/hair_strands_file.h"
-#include "app/groom/ply_file.h"
-#include "app/groom/tfx_file.h"
-#include "app/groom/usda_file.h"
+#include "app/groom/formats/alembic_file.h"
+#include "app/groom/formats/groom_bytes.h"
+#include "app/groom/formats/hair_strands_file.h"
+#include "app/groom/formats/ply_file.h"
+#include "app/groom/formats/tfx_file.h"
+#include "app/groom/formats/usda_file.h"
 #include "sim/field_text.h"
 
 namespace app {

@@ -7,10 +7,10 @@
 #include <filesystem>
 
 #include "app/files/errors.h"
+#include "app/groom/formats/hair_strands_file.h"
+#include "app/groom/formats/ply_file.h"
+#include "app/groom/formats/tfx_file.h"
 #include "app/groom/groom_file.h"
-#include "app/groom/hair_strands_file.h"
-#include "app/groom/ply_file.h"
-#include "app/groom/tfx_file.h"
 
 namespace app {
 

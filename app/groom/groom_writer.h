@@ -5,10 +5,10 @@
 #include <string>
 #include <variant>
 
-#include "app/groom/alembic_file.h"
 #include "app/groom/clip_settings.h"
+#include "app/groom/formats/alembic_file.h"
+#include "app/groom/formats/usda_file.h"
 #include "app/groom/groom.h"
-#include "app/groom/usda_file.h"
 
 namespace app {
 

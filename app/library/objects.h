@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "app/library/handles.h"
-#include "app/scene/look_params.h"
+#include "app/scene/view/look_params.h"
 #include "render/strands/strand_growth.h"
 #include "sim/step.h"
 

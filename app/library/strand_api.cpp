@@ -4,7 +4,7 @@
 
 #include "app/library/convert.h"
 #include "app/library/objects.h"
-#include "app/scene/render_faces.h"
+#include "app/scene/edit/render_faces.h"
 
 namespace app::library {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "app/scene/demo.h"
-#include "app/scene/hair_export.h"
-#include "app/scene/sim_cache.h"
+#include "app/scene/record/hair_export.h"
+#include "app/scene/record/sim_cache.h"
 
 namespace app {
 

@@ -21,8 +21,8 @@
 #include "app/platform/video.h"
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
-#include "app/scene/hair_export.h"
-#include "app/scene/sim_cache.h"
+#include "app/scene/record/hair_export.h"
+#include "app/scene/record/sim_cache.h"
 #include "render/gl/gl_messages.h"
 
 namespace app {

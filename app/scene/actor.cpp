@@ -6,10 +6,10 @@
 #include "app/figure/root_cover.h"
 #include "app/files/errors.h"
 #include "app/scene/attachments.h"
+#include "app/scene/detail/sleep.h"
 #include "app/scene/frame_stats.h"
 #include "app/scene/haircuts.h"
 #include "app/scene/sim_to_render.h"
-#include "app/scene/sleep.h"
 #include "app/styles/tie_ring.h"
 
 namespace app {

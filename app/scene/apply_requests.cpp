@@ -12,12 +12,12 @@
 #include "app/files/presets.h"
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
-#include "app/scene/groom_brush.h"
-#include "app/scene/mesh_change.h"
-#include "app/scene/paint_brush.h"
+#include "app/scene/edit/groom_brush.h"
+#include "app/scene/edit/mesh_change.h"
+#include "app/scene/edit/paint_brush.h"
+#include "app/scene/edit/vary.h"
 #include "app/scene/present_scene.h"
 #include "app/scene/project.h"
-#include "app/scene/vary.h"
 #include "sim/field_text.h"
 
 namespace app {

@@ -14,8 +14,8 @@
 #include "app/files/presets.h"
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
-#include "app/scene/groom_brush.h"
-#include "app/scene/mesh_change.h"
+#include "app/scene/edit/groom_brush.h"
+#include "app/scene/edit/mesh_change.h"
 #include "app/scene/present_scene.h"
 
 namespace app {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "app/scene/attachments.h"
-#include "app/scene/level_of_detail.h"
+#include "app/scene/detail/level_of_detail.h"
 #include "app/scene/sim_to_render.h"
 #include "render/light/fiber_scattering.h"
 

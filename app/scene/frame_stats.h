@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/scene/skips.h"
+#include "app/scene/detail/skips.h"
 #include "render/renderer.h"
 #include "sim/step.h"
 

@@ -7,8 +7,8 @@
 #include "app/files/polygon_file.h"
 #include "app/files/text_file.h"
 #include "app/groom/convert.h"
-#include "app/groom/groom_bytes.h"
-#include "app/groom/strip_convert.h"
+#include "app/groom/formats/groom_bytes.h"
+#include "app/groom/strips/strip_convert.h"
 
 namespace app {
 

@@ -10,8 +10,8 @@
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
 #include "app/scene/attachments.h"
+#include "app/scene/edit/painted_fields.h"
 #include "app/scene/hair_from_file.h"
-#include "app/scene/painted_fields.h"
 #include "app/scene/sim_to_render.h"
 
 namespace app {

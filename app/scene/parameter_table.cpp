@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "app/scene/look_params.h"
+#include "app/scene/view/look_params.h"
 #include "sim/field_text.h"
 
 namespace app {

@@ -16,8 +16,8 @@
 #include "app/files/output_file.h"
 #include "app/files/text_file.h"
 #include "app/scene/demo_state.h"
-#include "app/scene/groom_brush.h"
-#include "app/scene/mesh_change.h"
+#include "app/scene/edit/groom_brush.h"
+#include "app/scene/edit/mesh_change.h"
 #include "app/scene/present_scene.h"
 #include "sim/mesh/field_bytes.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "app/figure/character.h"
-#include "app/scene/render_faces.h"
+#include "app/scene/edit/render_faces.h"
 #include "render/frame_input.h"
 #include "sim/mesh/hair_mesh.h"
 

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "app/scene/groom_brush.h"
-#include "app/scene/paint_brush.h"
-#include "app/scene/picking.h"
+#include "app/scene/edit/groom_brush.h"
+#include "app/scene/edit/paint_brush.h"
+#include "app/scene/edit/picking.h"
 #include "app/ui/ui_panels.h"
 #include "app/ui/ui_widgets.h"
 

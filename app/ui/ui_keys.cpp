@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "app/scene/mesh_change.h"
+#include "app/scene/edit/mesh_change.h"
 #include "app/ui/ui.h"
 #include "app/ui/ui_panels.h"
 #include "app/ui/ui_widgets.h"

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <set>
 
-#include "app/scene/groom_brush.h"
-#include "app/scene/mesh_change.h"
-#include "app/scene/picking.h"
+#include "app/scene/edit/groom_brush.h"
+#include "app/scene/edit/mesh_change.h"
+#include "app/scene/edit/picking.h"
 #include "app/ui/ui_panels.h"
 #include "app/ui/ui_widgets.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "app/scene/look_params.h"
+#include "app/scene/view/look_params.h"
 #include "app/ui/ui.h"
 
 namespace app {

@@ -9,8 +9,8 @@
 
 #include "app/files/data_path.h"
 #include "app/scene/demo.h"
-#include "app/scene/groom_brush.h"
-#include "app/scene/mesh_change.h"
+#include "app/scene/edit/groom_brush.h"
+#include "app/scene/edit/mesh_change.h"
 #include "tests/bench/cpu_clock.h"
 
 namespace bench {

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <iterator>
 
-#include "app/scene/draw_governor.h"
+#include "app/scene/detail/draw_governor.h"
 #include "sim/field_text.h"
 
 namespace bench {

@@ -19,7 +19,7 @@ struct DrawSetting {
 };
 
 // The default first; then one factor at a time, a few combinations, and the rungs of the drawing governor
-// (app/scene/draw_governor.h). `quick`: those alone that came near the front of a scene.
+// (app/scene/detail/draw_governor.h). `quick`: those alone that came near the front of a scene.
 std::vector<DrawSetting> settingsToDraw(bool quick);
 
 }  // namespace bench

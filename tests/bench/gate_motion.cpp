@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "app/scene/governor.h"
+#include "app/scene/detail/governor.h"
 #include "tests/bench/consistency.h"
 #include "tests/bench/cpu_clock.h"
 #include "tests/bench/measured_part.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "app/files/data_path.h"
-#include "app/scene/governor.h"
+#include "app/scene/detail/governor.h"
 #include "tests/bench/cpu_clock.h"
 #include "tests/bench/measured_part.h"
 #include "tests/bench/table.h"

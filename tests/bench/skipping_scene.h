@@ -6,7 +6,7 @@
 
 #include "app/files/image_io.h"
 #include "app/files/scene_file.h"
-#include "app/scene/skips.h"
+#include "app/scene/detail/skips.h"
 
 namespace bench {
 

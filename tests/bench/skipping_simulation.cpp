@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "app/files/data_path.h"
-#include "app/scene/level_of_detail.h"
+#include "app/scene/detail/level_of_detail.h"
 #include "tests/bench/cpu_clock.h"
 
 namespace bench {

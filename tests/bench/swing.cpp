@@ -11,7 +11,7 @@
 #include "app/files/errors.h"
 #include "app/files/presets.h"
 #include "app/files/text_file.h"
-#include "app/scene/look_params.h"
+#include "app/scene/view/look_params.h"
 #include "sim/mesh/hair_mesh.h"
 #include "sim/step.h"
 #include "tests/analytic_head.h"
@@ -21,7 +21,7 @@ namespace {
 
 using sim::Vec3;
 
-constexpr double kNape = -0.05;  // m: hair hangs free below
+constexpr double kNape = -0.05;                                 // m: hair hangs free below
 constexpr double kTurn = std::numbers::pi / 3, kTurning = 0.3;  // rad, s
 constexpr double kStill = std::numbers::pi / 90;                // rad
 
@@ -164,8 +164,9 @@ FollowThrough measureFollowThrough(app::Style style, app::Resolution resolution,
 
 bool runSwing(const SwingOptions& options) {
   bool hold = true;
-  std::printf("| preset | style | free length, m | frequency over a chain's | damping ratio | lag, deg | overshoot, deg | "
-              "settled after, s |\n|---|---|---|---|---|---|---|---|\n");
+  std::printf(
+      "| preset | style | free length, m | frequency over a chain's | damping ratio | lag, deg | overshoot, deg | "
+      "settled after, s |\n|---|---|---|---|---|---|---|---|\n");
   for (const char* preset : {"", "natural", "fine", "thick", "wet", "sprayed"}) {
     sim::SimParams params;
     app::CharacterLook look;

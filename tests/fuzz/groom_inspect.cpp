@@ -1,5 +1,5 @@
 // Fuzz target: any groom, told by its content, inspected and mended.
-#include "app/groom/groom_inspect.h"
+#include "app/groom/inspect/groom_inspect.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "app/files/errors.h"
-#include "app/groom/usda_file.h"
+#include "app/groom/formats/usda_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);

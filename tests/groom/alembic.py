@@ -1,5 +1,5 @@
-# Alembic curves in an Ogawa container, from the container's and the schema's description (see app/groom/ogawa.h,
-# app/groom/alembic_property.h and app/groom/alembic_file.h for the sources).
+# Alembic curves in an Ogawa container, from the container's and the schema's description (see app/groom/formats/ogawa.h,
+# app/groom/formats/alembic_property.h and app/groom/formats/alembic_file.h for the sources).
 import array
 import struct
 

@@ -1,4 +1,4 @@
-# Strands in PLY, from G. Turk's description of the format and the names in app/groom/ply_file.h. Strands are found twice,
+# Strands in PLY, from G. Turk's description of the format and the names in app/groom/formats/ply_file.h. Strands are found twice,
 # by the element "strand" and by the edges.
 import array
 import struct

@@ -1,4 +1,4 @@
-# TressFX hair, from the description of its header (see app/groom/tfx_file.h).
+# TressFX hair, from the description of its header (see app/groom/formats/tfx_file.h).
 import array
 import struct
 

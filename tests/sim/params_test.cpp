@@ -5,8 +5,8 @@
 #include <set>
 #include <string>
 
-#include "app/scene/look_params.h"
 #include "app/scene/parameter_table.h"
+#include "app/scene/view/look_params.h"
 #include "sim/field_text.h"
 #include "sim/sim_params.h"
 

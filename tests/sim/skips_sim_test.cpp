@@ -9,8 +9,8 @@
 
 #include "app/files/data_path.h"
 #include "app/options.h"
-#include "app/scene/level_of_detail.h"
-#include "app/scene/skips.h"
+#include "app/scene/detail/level_of_detail.h"
+#include "app/scene/detail/skips.h"
 #include "app/ui/redraw_throttle.h"
 
 namespace {

@@ -8,7 +8,7 @@
 #include "app/files/data_path.h"
 #include "app/files/hair_file.h"
 #include "app/scene/demo.h"
-#include "app/scene/sleep.h"
+#include "app/scene/detail/sleep.h"
 #include "sim/forces/kernels.h"
 #include "tests/test_meshes.h"
 

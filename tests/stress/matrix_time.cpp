@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 
-#include "app/scene/governor.h"
+#include "app/scene/detail/governor.h"
 #include "sim/field_text.h"
 #include "tests/stress/matrix.h"
 #include "tests/stress/stage.h"

@@ -4,8 +4,8 @@
 #include <cstring>
 
 #include "app/files/errors.h"
-#include "app/groom/alembic_file.h"
-#include "app/groom/alembic_property.h"
+#include "app/groom/formats/alembic_file.h"
+#include "app/groom/formats/alembic_property.h"
 #include "app/groom/groom_file.h"
 #include "tests/app/groom/groom_samples.h"
 #include "tests/app/groom/second_reader.h"

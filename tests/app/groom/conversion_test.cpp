@@ -7,7 +7,7 @@
 #include "app/files/errors.h"
 #include "app/files/hair_file.h"
 #include "app/groom/convert.h"
-#include "app/groom/root_mesh.h"
+#include "app/groom/fit/root_mesh.h"
 #include "tests/groom_kinds.h"
 
 namespace app {

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "app/files/errors.h"
+#include "app/groom/formats/ply_file.h"
+#include "app/groom/formats/tfx_file.h"
 #include "app/groom/groom_file.h"
-#include "app/groom/ply_file.h"
-#include "app/groom/tfx_file.h"
 #include "tests/app/groom/groom_samples.h"
 #include "tests/app/groom/second_reader.h"
 

@@ -1,6 +1,6 @@
 // The inspector: grooms with one seeded defect each, over all formats; every defect is named, and its mend brings the
 // groom back.
-#include "app/groom/groom_inspect.h"
+#include "app/groom/inspect/groom_inspect.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <map>
 #include <numbers>
 
-#include "app/groom/certain_mends.h"
 #include "app/groom/groom_file.h"
 #include "app/groom/groom_writer.h"
+#include "app/groom/inspect/certain_mends.h"
 #include "tests/analytic_head.h"
 #include "tests/app/groom/groom_samples.h"
 #include "tests/run_program.h"

@@ -1,5 +1,5 @@
 // Changes of a hair mesh's structure: valid afterwards, strands where they were, what cannot be is refused.
-#include "app/groom/mesh_edit.h"
+#include "app/groom/edit/mesh_edit.h"
 
 #include <gtest/gtest.h>
 

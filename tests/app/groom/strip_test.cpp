@@ -8,7 +8,7 @@
 #include "app/files/errors.h"
 #include "app/files/hair_file.h"
 #include "app/files/polygon_file.h"
-#include "app/groom/strip_convert.h"
+#include "app/groom/strips/strip_convert.h"
 #include "tests/app/groom/strip_samples.h"
 #include "tests/run_program.h"
 

@@ -6,8 +6,8 @@
 #include <cstdlib>
 
 #include "app/files/errors.h"
+#include "app/groom/formats/usda_file.h"
 #include "app/groom/groom_file.h"
-#include "app/groom/usda_file.h"
 #include "tests/app/groom/groom_samples.h"
 #include "tests/app/groom/second_reader.h"
 

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "app/files/hair_file.h"
-#include "app/scene/render_faces.h"
+#include "app/scene/edit/render_faces.h"
 #include "render/strands/strand_growth.h"
 #include "tests/app/library/library_hair.h"
 

@@ -10,8 +10,8 @@
 #include <string>
 
 #include "app/files/data_path.h"
-#include "app/scene/debug_views.h"
 #include "app/scene/sim_to_render.h"
+#include "app/scene/view/debug_views.h"
 #include "tests/run_program.h"
 
 namespace {

@@ -13,7 +13,7 @@
 #include "app/files/errors.h"
 #include "app/files/file_kind.h"
 #include "app/files/recording.h"
-#include "app/scene/hair_export.h"
+#include "app/scene/record/hair_export.h"
 #include "tests/app/scene/small_scene.h"
 #include "tests/run_program.h"
 

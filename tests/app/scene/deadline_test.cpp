@@ -1,5 +1,5 @@
 // The deadline of a frame's simulation: held by counted work, whatever the motion; what is left out is told.
-#include "app/scene/deadline.h"
+#include "app/scene/detail/deadline.h"
 
 #include <gtest/gtest.h>
 

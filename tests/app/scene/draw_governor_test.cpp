@@ -1,6 +1,6 @@
 // The drawing governor against machines that it does not know, by a clock that is fed in: budgets are held, nothing
 // swings, detail comes back, settings glide, and bad values are refused.
-#include "app/scene/draw_governor.h"
+#include "app/scene/detail/draw_governor.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Undo brings back to the bit what was there, redo what was undone; a gesture is one step.
-#include "app/scene/edit_history.h"
+#include "app/scene/edit/edit_history.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // A panorama's light: where it comes from, how much of it, and what cannot be read.
-#include "app/scene/environment_light.h"
+#include "app/scene/view/environment_light.h"
 
 #include <gtest/gtest.h>
 
@@ -68,8 +68,8 @@ TEST(EnvironmentLight, EvenLightComesFromAllAround) {
 
 TEST(EnvironmentLight, LampsAreFoundStrongestFirst) {
   app::RadiancePicture picture = evenly(256, 0.05f);
-  addPatch(picture, 64, 32, 3, {90, 80, 70});    // left of the middle by 90 degrees: +x; 45 degrees up
-  addPatch(picture, 128, 64, 3, {20, 20, 20});   // the middle: +z
+  addPatch(picture, 64, 32, 3, {90, 80, 70});   // left of the middle by 90 degrees: +x; 45 degrees up
+  addPatch(picture, 128, 64, 3, {20, 20, 20});  // the middle: +z
   addPatch(picture, 210, 60, 3, {8, 10, 12});
   const render::LightInput light = app::environmentLight("lamps", picture, {});
   EXPECT_NEAR(light.to_light[0], std::sqrt(0.5), 0.06);

@@ -1,6 +1,6 @@
 // The budget governor against cost models that it does not know: budgets are held, errors fall as budgets grow, nothing
 // swings; and with real hair: no pop, no recovery, the same frames on every run.
-#include "app/scene/governor.h"
+#include "app/scene/detail/governor.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "app/files/data_path.h"
 #include "app/scene/demo.h"
-#include "app/scene/step_error.h"
+#include "app/scene/detail/step_error.h"
 #include "tests/test_meshes.h"
 
 namespace {

@@ -1,5 +1,5 @@
 // Strokes on moving hair: the hair follows, stays, is undone, and a recorded take of it replays to the bit.
-#include "app/scene/groom_brush.h"
+#include "app/scene/edit/groom_brush.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include "app/files/errors.h"
 #include "app/files/recording.h"
 #include "app/scene/demo.h"
-#include "app/scene/picking.h"
+#include "app/scene/edit/picking.h"
 #include "tests/run_program.h"
 
 namespace {

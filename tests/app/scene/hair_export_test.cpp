@@ -1,6 +1,6 @@
 // The hair that is simulated, into files: every format has the same strands in every frame, where and as they are
 // drawn.
-#include "app/scene/hair_export.h"
+#include "app/scene/record/hair_export.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 
 #include "app/figure/head_model.h"
 #include "app/files/data_path.h"
-#include "app/groom/alembic_file.h"
+#include "app/groom/formats/alembic_file.h"
+#include "app/groom/formats/usda_file.h"
 #include "app/groom/groom_file.h"
-#include "app/groom/groom_inspect.h"
-#include "app/groom/usda_file.h"
+#include "app/groom/inspect/groom_inspect.h"
 #include "tests/app/groom/groom_samples.h"
 #include "tests/app/groom/second_reader.h"
 

@@ -1,6 +1,6 @@
 // From how many pixels on a figure is simulated with less care: the sizes of docs/skipping.md, measured here with the
 // camera that the picture is drawn with.
-#include "app/scene/level_of_detail.h"
+#include "app/scene/detail/level_of_detail.h"
 
 #include <gtest/gtest.h>
 

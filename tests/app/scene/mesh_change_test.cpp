@@ -1,6 +1,6 @@
 // The hair mesh in a hand while the hair moves: what is chosen goes where it is led, the structure changes, all of it
 // is undone, recorded and kept.
-#include "app/scene/mesh_change.h"
+#include "app/scene/edit/mesh_change.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "app/files/errors.h"
 #include "app/files/recording.h"
 #include "app/scene/demo.h"
-#include "app/scene/groom_brush.h"
+#include "app/scene/edit/groom_brush.h"
 #include "app/scene/project.h"
 #include "tests/run_program.h"
 

@@ -1,6 +1,6 @@
 // Painted fields: white changes no bit, strokes change the hair and are undone, saved and replayed to the bit, and what
 // cannot be painted is told.
-#include "app/scene/paint_brush.h"
+#include "app/scene/edit/paint_brush.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include "app/files/errors.h"
 #include "app/scene/actor.h"
 #include "app/scene/demo.h"
-#include "app/scene/sleep.h"
+#include "app/scene/detail/sleep.h"
 
 namespace {
 

@@ -13,7 +13,7 @@
 #include "app/files/file_kind.h"
 #include "app/files/recording.h"
 #include "app/files/text_file.h"
-#include "app/scene/groom_brush.h"
+#include "app/scene/edit/groom_brush.h"
 #include "tests/run_program.h"
 
 namespace {

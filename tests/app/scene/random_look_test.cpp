@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "app/scene/look_params.h"
+#include "app/scene/view/look_params.h"
 #include "render/renderer.h"
 #include "tests/gl_fixture.h"
 #include "tests/synthetic_hair.h"

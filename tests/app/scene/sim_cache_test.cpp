@@ -1,6 +1,6 @@
 // A cache of simulated hair: any frame is shown at once as it was, its key frames go on to the bit, and what is not it
 // is refused.
-#include "app/scene/sim_cache.h"
+#include "app/scene/record/sim_cache.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // Variations of the material, and the key light that a drag turns.
-#include "app/scene/vary.h"
+#include "app/scene/edit/vary.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "app/scene/demo.h"
-#include "app/scene/light_drag.h"
+#include "app/scene/view/light_drag.h"
 #include "tests/app/scene/small_scene.h"
 
 namespace {

@@ -1,8 +1,8 @@
 // Choosing parts of the hair mesh with the mouse, and what drags, arrow keys and buttons then ask for.
 #include <gtest/gtest.h>
 
-#include "app/scene/mesh_change.h"
-#include "app/scene/picking.h"
+#include "app/scene/edit/mesh_change.h"
+#include "app/scene/edit/picking.h"
 #include "app/ui/ui_panels.h"
 #include "tests/app/ui/panels.h"
 

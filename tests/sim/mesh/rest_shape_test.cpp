@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "app/groom/edit/shape_brush.h"
 #include "sim/mesh/rest_measures.h"
-#include "app/groom/shape_brush.h"
 #include "tests/test_meshes.h"
 
 namespace {

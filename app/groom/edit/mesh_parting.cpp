@@ -1,0 +1,289 @@
+// Edits of which columns bundles share, and new bundles at the border.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "app/files/errors.h"
+#include "app/groom/edit/mesh_edit.h"
+#include "app/styles/style_untangle.h"
+
+namespace app {
+
+namespace {
+
+constexpr double kSameRoot = 0.001;                           // m, between columns that are welded
+constexpr double kNarrowestRoot = 0.006, kWidestRoot = 0.03;  // m, of a bundle at its root
+constexpr double kTooNear = 0.5;                              // of that: roots of other hair within it
+constexpr double kPartedFatness = 0.03, kGapToBody = 0.0025;  // see untangle; m
+constexpr int kMostUntanglings = 8;
+
+using RootEdgeKey = std::pair<int, int>;  // columns, the lower one first
+
+RootEdgeKey keyOf(int a, int b) {
+  return {std::min(a, b), std::max(a, b)};
+}
+
+// The faces at each root edge.
+std::map<RootEdgeKey, std::vector<int>> facesAtEdges(const sim::HairMeshShape& shape) {
+  std::map<RootEdgeKey, std::vector<int>> faces;
+  for (std::size_t f = 0; f < shape.root_faces.size(); ++f) {
+    const sim::RootFace& face = shape.root_faces[f];
+    for (int k = 0; k < face.corner_count; ++k)
+      faces[keyOf(face.columns[static_cast<std::size_t>(k)],
+                  face.columns[static_cast<std::size_t>((k + 1) % face.corner_count)])]
+          .push_back(static_cast<int>(f));
+  }
+  return faces;
+}
+
+int firstVertex(const sim::HairMeshShape& shape, int column) {
+  return shape.column_first[static_cast<std::size_t>(column)];
+}
+
+const Vec3& rootOf(const sim::HairMeshShape& shape, int column) {
+  return shape.positions[static_cast<std::size_t>(firstVertex(shape, column))];
+}
+
+// Adds the first `length` vertices of an old column as a new one.
+void copyColumn(const sim::HairMeshShape& shape, int column, int length, EditedMesh& edited) {
+  const int first = firstVertex(shape, column);
+  for (int v = first; v < first + length; ++v) {
+    edited.shape.positions.push_back(shape.positions[static_cast<std::size_t>(v)]);
+    edited.sources.push_back({v, v, 0});
+  }
+  edited.shape.column_first.push_back(static_cast<int>(edited.shape.positions.size()));
+}
+
+void requireValid(const sim::HairMeshShape& shape, const char* what, const char* mend) {
+  try {
+    sim::buildHairMesh(shape);
+  } catch (const sim::MeshError& error) {
+    throw InputError("", what, "would spoil " + error.place + ", where " + error.fault, mend);
+  }
+}
+
+// The faces about a column in groups that hang together by edges at it which are not cut.
+std::vector<std::vector<int>> fansAbout(int column, const std::vector<int>& faces, const sim::HairMeshShape& shape,
+                                        const std::map<RootEdgeKey, std::vector<int>>& at_edges,
+                                        const std::set<RootEdgeKey>& cut) {
+  std::vector<std::vector<int>> fans;
+  std::set<int> left(faces.begin(), faces.end());
+  while (!left.empty()) {
+    std::vector<int> fan{*left.begin()};
+    left.erase(left.begin());
+    for (std::size_t next = 0; next < fan.size(); ++next) {
+      const sim::RootFace& face = shape.root_faces[static_cast<std::size_t>(fan[next])];
+      for (int k = 0; k < face.corner_count; ++k) {
+        const RootEdgeKey edge = keyOf(face.columns[static_cast<std::size_t>(k)],
+                                       face.columns[static_cast<std::size_t>((k + 1) % face.corner_count)]);
+        if ((edge.first != column && edge.second != column) || cut.contains(edge)) continue;
+        for (const int other : at_edges.at(edge)) {
+          if (left.erase(other)) fan.push_back(other);
+        }
+      }
+    }
+    std::ranges::sort(fan);
+    fans.push_back(std::move(fan));
+  }
+  return fans;
+}
+
+int reachOf(const std::vector<int>& faces, const sim::HairMeshShape& shape) {
+  int layers = 0;
+  for (const int f : faces)
+    layers = std::max(layers, shape.bundleLayers(shape.root_faces[static_cast<std::size_t>(f)]));
+  return layers;
+}
+
+void requireColumn(const sim::HairMeshShape& shape, int column) {
+  if (column < 0 || column >= shape.columnCount())
+    throw InputError("", "column " + std::to_string(column), "is not there",
+                     "name columns from 0 to " + std::to_string(shape.columnCount() - 1));
+}
+
+}  // namespace
+
+EditedMesh splitColumns(const sim::HairMeshShape& shape, std::span<const ColumnPair> edges) {
+  const std::map<RootEdgeKey, std::vector<int>> at_edges = facesAtEdges(shape);
+  std::set<RootEdgeKey> cut;
+  std::map<int, std::vector<int>> touched;  // columns of the cut, with their faces
+  for (const ColumnPair& edge : edges) {
+    const auto at = at_edges.find(keyOf(edge.a, edge.b));
+    if (at == at_edges.end())
+      throw InputError("", "columns " + std::to_string(edge.a) + " and " + std::to_string(edge.b), "share no edge",
+                       "choose neighbouring columns");
+    if (at->second.size() < 2) continue;
+    cut.insert(at->first);
+    touched[edge.a], touched[edge.b];
+  }
+  for (std::size_t f = 0; f < shape.root_faces.size(); ++f) {
+    const sim::RootFace& face = shape.root_faces[f];
+    for (int k = 0; k < face.corner_count; ++k) {
+      const auto at = touched.find(face.columns[static_cast<std::size_t>(k)]);
+      if (at != touched.end()) at->second.push_back(static_cast<int>(f));
+    }
+  }
+  std::map<int, std::vector<std::vector<int>>> fans;
+  bool parts = false;
+  for (const auto& [column, faces] : touched) {
+    fans[column] = fansAbout(column, faces, shape, at_edges, cut);
+    parts = parts || fans[column].size() > 1;
+  }
+  if (!parts)
+    throw InputError("", "the parting", "parts nothing", "draw it over two edges in a row, or out to the border");
+  EditedMesh edited;
+  edited.shape.root_faces = shape.root_faces;
+  for (int c = 0; c < shape.columnCount(); ++c) {
+    const auto at = fans.find(c);
+    copyColumn(shape, c, at == fans.end() ? shape.columnLength(c) : reachOf(at->second.front(), shape), edited);
+  }
+  for (const auto& [column, groups] : fans) {
+    for (std::size_t g = 1; g < groups.size(); ++g) {
+      const int copy = edited.shape.columnCount();
+      copyColumn(shape, column, reachOf(groups[g], shape), edited);
+      for (const int f : groups[g])
+        std::ranges::replace(edited.shape.root_faces[static_cast<std::size_t>(f)].columns, column, copy);
+    }
+  }
+  requireValid(edited.shape, "the parting", "draw it elsewhere");
+  return edited;
+}
+
+EditedMesh mergeColumns(const sim::HairMeshShape& shape, std::span<const int> columns) {
+  std::vector<int> weld(static_cast<std::size_t>(shape.columnCount()));
+  std::iota(weld.begin(), weld.end(), 0);
+  bool any = false;
+  for (const int c : columns) {
+    requireColumn(shape, c);
+    for (int other = 0; other < shape.columnCount(); ++other) {
+      if (other == c || (rootOf(shape, other) - rootOf(shape, c)).norm() > kSameRoot) continue;
+      const int low = std::min(weld[static_cast<std::size_t>(c)], weld[static_cast<std::size_t>(other)]);
+      weld[static_cast<std::size_t>(c)] = weld[static_cast<std::size_t>(other)] = low;
+      any = true;
+    }
+  }
+  if (!any) throw InputError("", "the chosen columns", "root beside no other", "choose columns along a parting");
+  std::map<int, std::vector<int>> members;
+  for (int c = 0; c < shape.columnCount(); ++c) members[weld[static_cast<std::size_t>(c)]].push_back(c);
+  EditedMesh edited;
+  std::vector<int> number(weld.size(), -1);
+  for (const auto& [low, of] : members) {
+    number[static_cast<std::size_t>(low)] = edited.shape.columnCount();
+    int length = 0;
+    for (const int c : of) length = std::max(length, shape.columnLength(c));
+    for (int l = 0; l < length; ++l) {
+      std::vector<int> at;
+      Vec3 mean = Vec3::Zero();
+      for (const int c : of) {
+        if (l < shape.columnLength(c)) at.push_back(firstVertex(shape, c) + l);
+      }
+      for (const int v : at) mean += shape.positions[static_cast<std::size_t>(v)] / static_cast<double>(at.size());
+      for (const int v : at)
+        edited.moved = std::max(edited.moved, (shape.positions[static_cast<std::size_t>(v)] - mean).norm());
+      edited.shape.positions.push_back(at.size() == 1 ? shape.positions[static_cast<std::size_t>(at[0])] : mean);
+      edited.sources.push_back({at.front(), at.back(), at.size() == 1 ? 0 : 0.5});
+    }
+    edited.shape.column_first.push_back(static_cast<int>(edited.shape.positions.size()));
+  }
+  edited.shape.root_faces = shape.root_faces;
+  for (sim::RootFace& face : edited.shape.root_faces) {
+    for (int k = 0; k < face.corner_count; ++k) {
+      int& c = face.columns[static_cast<std::size_t>(k)];
+      c = number[static_cast<std::size_t>(weld[static_cast<std::size_t>(c)])];
+    }
+  }
+  requireValid(edited.shape, "the weld", "comb the two sides together first");
+  return edited;
+}
+
+namespace {
+
+// A border edge of the scalp layer, as its face winds it.
+std::vector<ColumnPair> borderEdges(const sim::HairMeshShape& shape, std::span<const ColumnPair> edges) {
+  const std::map<RootEdgeKey, std::vector<int>> at_edges = facesAtEdges(shape);
+  std::vector<ColumnPair> border;
+  std::set<RootEdgeKey> seen;
+  for (const ColumnPair& edge : edges) {
+    const auto at = at_edges.find(keyOf(edge.a, edge.b));
+    if (at == at_edges.end() || at->second.size() != 1 || !seen.insert(at->first).second) continue;
+    const sim::RootFace& face = shape.root_faces[static_cast<std::size_t>(at->second.front())];
+    for (int k = 0; k < face.corner_count; ++k) {
+      const int a = face.columns[static_cast<std::size_t>(k)],
+                b = face.columns[static_cast<std::size_t>((k + 1) % face.corner_count)];
+      if (keyOf(a, b) == at->first) border.push_back({a, b});
+    }
+  }
+  if (border.empty())
+    throw InputError("", "the chosen edges", "have hair on both sides", "choose edges of the hair mesh's border");
+  return border;
+}
+
+// Where the new column beside an old one roots: as far out as the edges are long.
+std::map<int, Vec3> rootsBeside(const sim::HairMeshShape& shape, const std::vector<ColumnPair>& border,
+                                const Scalp& scalp) {
+  std::map<int, Vec3> out;
+  std::map<int, double> length;
+  std::map<int, int> count;
+  for (const ColumnPair& edge : border) {
+    const Vec3 &a = rootOf(shape, edge.a), &b = rootOf(shape, edge.b);
+    const Vec3 normal = (0.5 * (a + b) - scalp.center).normalized();
+    const Vec3 away = (b - a).cross(normal).normalized();
+    for (const int c : {edge.a, edge.b}) {
+      out.try_emplace(c, Vec3::Zero()).first->second += away;
+      length[c] += (b - a).norm(), ++count[c];
+    }
+  }
+  std::map<int, Vec3> roots;
+  for (const auto& [c, away] : out) {
+    const Vec3 here = rootOf(shape, c) - scalp.center;
+    const double wide = std::clamp(length[c] / count[c], kNarrowestRoot, kWidestRoot);
+    const Vec3 way = here + wide * away.normalized();
+    roots[c] = scalp.center + (scalp.radiusAt(way) + here.norm() - scalp.radiusAt(here)) * way.normalized();
+    for (int other = 0; other < shape.columnCount(); ++other) {
+      if ((rootOf(shape, other) - roots[c]).norm() < kTooNear * wide)
+        throw InputError("", "beside column " + std::to_string(c), "there is hair already",
+                         "choose edges that border on bare scalp");
+    }
+  }
+  return roots;
+}
+
+}  // namespace
+
+EditedMesh extrudeColumns(const sim::HairMeshShape& shape, std::span<const ColumnPair> edges, const Scalp& scalp,
+                          const BodyDistance& body) {
+  const std::vector<ColumnPair> border = borderEdges(shape, edges);
+  const std::map<int, Vec3> roots = rootsBeside(shape, border, scalp);
+  EditedMesh edited;
+  edited.shape.root_faces = shape.root_faces;
+  for (int c = 0; c < shape.columnCount(); ++c) copyColumn(shape, c, shape.columnLength(c), edited);
+  std::map<int, int> fresh, reach;
+  for (const ColumnPair& edge : border) {
+    const int layers = std::min(shape.columnLength(edge.a), shape.columnLength(edge.b));
+    for (const int c : {edge.a, edge.b}) reach[c] = std::max(reach[c], layers);
+  }
+  for (const auto& [c, root] : roots) {
+    fresh[c] = edited.shape.columnCount();
+    const Vec3 way = root - rootOf(shape, c);
+    copyColumn(shape, c, reach[c], edited);
+    for (int v = firstVertex(edited.shape, fresh[c]); v < edited.shape.vertexCount(); ++v)
+      edited.shape.positions[static_cast<std::size_t>(v)] += way;
+  }
+  for (const ColumnPair& edge : border)
+    edited.shape.root_faces.push_back({4, {edge.b, edge.a, fresh[edge.a], fresh[edge.b]}});
+  const BodyDistance around = body ? body : [](const Vec3&) { return 1.0; };
+  for (int round = 0; round < kMostUntanglings && untangle(around, kPartedFatness, kGapToBody, edited.shape) <= 0;
+       ++round) {
+  }
+  for (std::size_t v = 0; v < shape.positions.size(); ++v)
+    edited.moved = std::max(edited.moved, (edited.shape.positions[v] - shape.positions[v]).norm());
+  requireValid(edited.shape, "the new bundle", "choose other edges, or lift the hair beside it off the head first");
+  return edited;
+}
+
+}  // namespace app

@@ -1,0 +1,372 @@
+#include "app/groom/fit/groom_fit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <stdexcept>
+
+#include "app/groom/fit/column_fit.h"
+#include "app/groom/fit/root_mesh.h"
+#include "app/styles/style_untangle.h"
+
+namespace app {
+namespace {
+
+using Eigen::Vector2f;
+using Eigen::Vector3f;
+
+constexpr std::size_t kMinGroomStrands = 20;  // strands
+constexpr std::size_t kFitStrands = 5000, kTrialStrands = 3000;
+constexpr int kSlides = 2, kRounds = 5;
+constexpr double kFatness = 0.012, kMinFatness = 0.003,
+                 kFlat = 1e-4;                           // of corner tetrahedra: aimed for, held, refused
+constexpr float kShortestLength = 0.012f;                // m, of a column
+constexpr double kShortestLayer = 0.0045;                // m, of the median strand
+constexpr double kMinDensity = 0.5;                      // of layers where hair is straight, over the mean
+constexpr double kMeanBound = 0.01, kShareBound = 0.03;  // of the strands' length: what a fit is content with
+constexpr int kMinLayers = 5, kMaxLayers = 16;
+constexpr double kSquareness = 0.5;
+constexpr double kBareCost = 0.3;  // of the strands' length: how far off a bare face is taken to be
+constexpr int kPerLayer = 4;       // points of a grown strand
+
+// A fit in the making.
+struct Draft {
+  const StrandSamples& strands;
+  const RootRaster& raster;
+  RootMesh roots;
+  HairFit fit;
+  std::vector<StrandTarget> targets;
+};
+
+// Every n-th strand, at most `most` of them.
+std::vector<std::size_t> someOf(std::size_t count, std::size_t most) {
+  const std::size_t step = std::max<std::size_t>(1, (count + most - 1) / most);
+  std::vector<std::size_t> some;
+  for (std::size_t s = 0; s < count; s += step) some.push_back(s);
+  return some;
+}
+
+// Layers are denser where strands bend: the error of a smooth curve through few points grows with its bending.
+std::vector<double> layerKnots(const RootRaster& raster, int layers) {
+  std::vector<double> bend;
+  for (const RootCell& cell : raster.cells) {
+    if (cell.strands == 0) continue;
+    bend.resize(cell.path.size(), 0);
+    for (std::size_t k = 1; k + 1 < cell.path.size(); ++k) {
+      const Vector3f a = cell.path[k] - cell.path[k - 1], b = cell.path[k + 1] - cell.path[k];
+      const double lengths = a.norm() * b.norm();
+      if (lengths > 0)
+        bend[k] += cell.strands * std::acos(std::clamp(static_cast<double>(a.dot(b)) / lengths, -1.0, 1.0));
+    }
+  }
+  bend.front() = bend[1];
+  bend.back() = bend[bend.size() - 2];
+  double mean = std::accumulate(bend.begin(), bend.end(), 0.0) / static_cast<double>(bend.size());
+  std::vector<double> passed{0};
+  for (std::size_t k = 0; k + 1 < bend.size(); ++k) {
+    const double here = mean > 0 ? 0.5 * (bend[k] + bend[k + 1]) / mean : 1;
+    passed.push_back(passed.back() + kMinDensity + std::min(std::sqrt(here), 2.0));
+  }
+  std::vector<double> knots{0};
+  for (int l = 1; l + 1 < layers; ++l) {
+    const double wanted = passed.back() * l / (layers - 1);
+    std::size_t k = 0;
+    while (passed[k + 1] < wanted) ++k;
+    knots.push_back((static_cast<double>(k) + (wanted - passed[k]) / (passed[k + 1] - passed[k])) /
+                    static_cast<double>(passed.size() - 1));
+  }
+  knots.push_back(1);
+  return knots;
+}
+
+// The region whose hair around the root goes most as the strand does.
+int regionOf(const RootRaster& raster, int cell, std::span<const Vector3f> strand) {
+  const int x = cell % raster.columns, y = cell / raster.columns;
+  int best = -1;
+  double least = std::numeric_limits<double>::infinity();
+  for (int j = y - 1; j <= y + 1; ++j) {
+    for (int i = x - 1; i <= x + 1; ++i) {
+      const int region = raster.regionAt(i, j);
+      if (region < 0) continue;
+      const std::vector<Vector3f>& path = raster.cells[static_cast<std::size_t>(j * raster.columns + i)].path;
+      const Vector3f shift = strand[0] - path[0];
+      double sum = i == x && j == y ? 0 : 1e-4;
+      for (std::size_t k = 1; k < path.size(); ++k)
+        sum += (strand[k * (strand.size() - 1) / (path.size() - 1)] - path[k] - shift).norm();
+      if (sum >= least) continue;
+      least = sum;
+      best = region;
+    }
+  }
+  return best;
+}
+
+float distanceToEdge(const Vector2f& p, const Vector2f& a, const Vector2f& b) {
+  const Vector2f ab = b - a;
+  const float share = std::clamp((p - a).dot(ab) / std::max(ab.squaredNorm(), 1e-12f), 0.0f, 1.0f);
+  return (p - a - share * ab).norm();
+}
+
+// The face of a region that a point of the map lies in, or is nearest to.
+int faceAt(const RootMesh& mesh, int region, const Vector2f& p) {
+  int best = -1;
+  float least = std::numeric_limits<float>::infinity();
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (region >= 0 && mesh.region[t] != region) continue;
+    const auto corner = [&](std::size_t k) { return mesh.at[static_cast<std::size_t>(mesh.triangles[t][k % 3])]; };
+    bool inside = true;
+    float far = std::numeric_limits<float>::infinity();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vector2f a = corner(k), b = corner(k + 1), ab = b - a, ap = p - a;
+      inside = inside && ab.x() * ap.y() - ab.y() * ap.x() >= 0;
+      far = std::min(far, distanceToEdge(p, a, b));
+    }
+    if (inside) return static_cast<int>(t);
+    if (far >= least) continue;
+    least = far;
+    best = static_cast<int>(t);
+  }
+  return best >= 0 || region < 0 ? best : faceAt(mesh, -1, p);
+}
+
+StrandFit placeStrand(const Draft& draft, const GrowthMap& growth, std::size_t s) {
+  const auto strand = draft.strands.strand(s);
+  const int region = regionOf(draft.raster, draft.raster.cell_of[s], strand);
+  const int face = faceAt(draft.roots, region, draft.raster.map.toMap(strand[0]));
+  return {growth.placeIn(face, strand[0]), static_cast<float>(draft.fit.knots.size() - 1)};
+}
+
+// What the last layer stands for where a strand roots, m.
+double columnLength(const Draft& draft, std::size_t s) {
+  const float local = draft.raster.lengthAt(draft.raster.map.toMap(draft.strands.strand(s)[0]));
+  return std::max({local, draft.strands.length[s], kShortestLength});
+}
+
+// Columns that stand straight out of the scalp: valid, and where the fit begins.
+void standUp(Draft& draft) {
+  sim::HairMeshShape& shape = draft.fit.shape;
+  shape = {};
+  const RootRaster& raster = draft.raster;
+  for (const Vector2f& at : draft.roots.at) {
+    const Vector3f root = raster.skinAt(at), out = raster.map.direction(at);
+    const float length = std::max(raster.lengthAt(at), kShortestLength);
+    for (const double knot : draft.fit.knots)
+      shape.positions.push_back((root + static_cast<float>(knot) * length * out).cast<double>());
+    shape.column_first.push_back(static_cast<int>(shape.positions.size()));
+  }
+  for (const std::array<int, 3>& t : draft.roots.triangles) shape.root_faces.push_back({3, {t[0], t[1], t[2], -1}});
+  draft.fit.face_region = draft.roots.region;
+}
+
+void aim(const GrowthMap& growth, std::size_t most, Draft& draft) {
+  draft.targets.clear();
+  for (std::size_t s : someOf(draft.strands.strandCount(), most)) {
+    StrandTarget& target = draft.targets.emplace_back();
+    target.row = growth.row(placeStrand(draft, growth, s).root);
+    layerTargets(draft.strands.strand(s), draft.strands.length[s], columnLength(draft, s), draft.fit.knots, target);
+  }
+}
+
+double flattestCorner(const sim::HairMeshShape& shape, const sim::RootFace& face) {
+  double least = 1;
+  const int n = face.corner_count;
+  for (int l = 0; l + 1 < shape.bundleLayers(face); ++l) {
+    for (int k = 0; k < 2 * n; ++k) {
+      std::array<sim::Vec3, 4> at;
+      const std::array<int, 4> corners = sim::cornerTetOf(k, n);
+      for (std::size_t i = 0; i < 4; ++i) {
+        const int column = face.columns[static_cast<std::size_t>(corners[i] % n)];
+        at[i] = shape.positions[static_cast<std::size_t>(shape.column_first[static_cast<std::size_t>(column)] + l +
+                                                         corners[i] / n)];
+      }
+      least = std::min(least, cornerFatness(at[0], at[1], at[2], at[3]));
+    }
+  }
+  return least;
+}
+
+// Leaves out faces with a corner that is still flat or inverted, and columns that no face uses then.
+void dropFlat(Draft& draft) {
+  const sim::HairMeshShape shape = std::move(draft.fit.shape);
+  const RootMesh roots = std::move(draft.roots);
+  sim::HairMeshShape& kept = draft.fit.shape = {};
+  draft.roots = {};
+  std::vector<int> number(static_cast<std::size_t>(shape.columnCount()), -1);
+  for (std::size_t f = 0; f < shape.root_faces.size(); ++f) {
+    if (flattestCorner(shape, shape.root_faces[f]) <= kFlat) {
+      ++draft.fit.dropped_faces;
+      continue;
+    }
+    std::array<int, 3>& triangle = draft.roots.triangles.emplace_back(roots.triangles[f]);
+    draft.roots.region.push_back(roots.region[f]);
+    for (int& column : triangle) {
+      int& to = number[static_cast<std::size_t>(column)];
+      if (to < 0) {
+        to = kept.columnCount();
+        draft.roots.at.push_back(roots.at[static_cast<std::size_t>(column)]);
+        const auto first = shape.positions.begin() + shape.column_first[static_cast<std::size_t>(column)];
+        kept.positions.insert(kept.positions.end(), first, first + shape.columnLength(column));
+        kept.column_first.push_back(static_cast<int>(kept.positions.size()));
+      }
+      column = to;
+    }
+    kept.root_faces.push_back({3, {triangle[0], triangle[1], triangle[2], -1}});
+  }
+  draft.fit.face_region = draft.roots.region;
+}
+
+// Fits, slides the layers along the strands and fits again, and opens what still lacks.
+void settle(Draft& draft) {
+  sim::HairMeshShape& shape = draft.fit.shape;
+  for (int slide = 0; slide < kSlides; ++slide) {
+    slideTargets(shape, draft.targets);
+    FitRounds rounds;
+    rounds.count = slide + 1 < kSlides ? kRounds : 2 * kRounds;
+    rounds.anew = slide == 0;
+    draft.fit.flattest = fitColumns(columnSystem(draft.targets, shape), kFatness, rounds, shape);
+  }
+  if (draft.fit.flattest < kMinFatness)
+    draft.fit.flattest = fitColumns(columnSystem(draft.targets, shape), 2 * kFatness, {2 * kRounds, 30, 30}, shape);
+  if (draft.fit.flattest >= kMinFatness) return;
+  const BodyDistance nobody = [](const sim::Vec3&) { return 1.0; };
+  draft.fit.flattest = untangle(nobody, kMinFatness, 0, shape);
+  if (draft.fit.flattest <= kFlat) dropFlat(draft);
+}
+
+// Where along the curve its length is `length`, in layers.
+float endOf(std::span<const Vector3f> layers, double length) {
+  double passed = 0;
+  Vector3f last = layers[0];
+  const int steps = (static_cast<int>(layers.size()) - 1) * kPerLayer;
+  for (int k = 1; k <= steps; ++k) {
+    const Vector3f here = curveAt(layers, static_cast<float>(k) / kPerLayer);
+    const double step = (here - last).norm();
+    if (passed + step >= length)
+      return static_cast<float>((k - 1 + (length - passed) / std::max(step, 1e-12)) / kPerLayer);
+    passed += step;
+    last = here;
+  }
+  return static_cast<float>(layers.size() - 1);
+}
+
+void layerPoints(const HairFit& fit, const GrowthRow& row, std::vector<Vector3f>& layers) {
+  layers.assign(fit.knots.size(), Vector3f::Zero());
+  for (std::size_t k = 0; k < row.columns.size(); ++k) {
+    const std::size_t first = static_cast<std::size_t>(fit.shape.column_first[row.columns[k]]);
+    for (std::size_t l = 0; l < layers.size(); ++l)
+      layers[l] += row.weights[k] * fit.shape.positions[first + l].cast<float>();
+  }
+}
+
+void drawCurve(std::span<const Vector3f> layers, float end, std::vector<Vector3f>& line) {
+  line.clear();
+  for (int k = 0; static_cast<float>(k) / kPerLayer < end; ++k)
+    line.push_back(curveAt(layers, static_cast<float>(k) / kPerLayer));
+  line.push_back(curveAt(layers, end));
+}
+
+// Compares strands with those that grow in their place.
+void measure(std::size_t most, Draft& draft) {
+  HairFit& fit = draft.fit;
+  const GrowthMap growth(fit.shape);
+  FitError& error = fit.error;
+  error = {};
+  fit.strands.clear();
+  std::vector<float> gaps;
+  std::vector<Vector3f> layers, line, even(static_cast<std::size_t>(draft.strands.count));
+  const std::vector<std::size_t> some = someOf(draft.strands.strandCount(), most);
+  for (std::size_t s : some) {
+    const auto strand = draft.strands.strand(s);
+    StrandFit placed = placeStrand(draft, growth, s);
+    layerPoints(fit, growth.row(placed.root), layers);
+    placed.end = endOf(layers, lineLength(strand));
+    drawCurve(layers, placed.end, line);
+    resample(line, even);
+    double sum = 0;
+    for (std::size_t k = 0; k < even.size(); ++k) {
+      const float gap = (even[k] - strand[k]).norm();
+      gaps.push_back(gap);
+      sum += gap;
+    }
+    error.root_mean += gaps[gaps.size() - even.size()];
+    error.of_strand.push_back(static_cast<float>(sum / static_cast<double>(even.size())));
+    fit.strands.push_back(placed);
+  }
+  error.strand_length = quantile(draft.strands.length, 0.5);
+  error.mean = std::accumulate(gaps.begin(), gaps.end(), 0.0) / static_cast<double>(gaps.size());
+  error.root_mean /= static_cast<double>(some.size());
+  error.largest = *std::max_element(gaps.begin(), gaps.end());
+  error.share95 = quantile(std::move(gaps), 0.95);
+}
+
+// The mean distance, with what is left bare counted as far off.
+double costOf(const HairFit& fit) {
+  const double bare = fit.dropped_faces / static_cast<double>(fit.dropped_faces + fit.shape.root_faces.size());
+  return fit.error.mean + kBareCost * bare * fit.error.strand_length;
+}
+
+// Layers about as far apart as columns: prisms long for their width are inverted by the head's curvature.
+int usualLayers(const RootRaster& raster, double length, int vertices) {
+  const auto full =
+      std::count_if(raster.cells.begin(), raster.cells.end(), [](const RootCell& cell) { return cell.region >= 0; });
+  const double area = static_cast<double>(full) * raster.size * raster.size;
+  int layers = kMinLayers;
+  while (layers < kMaxLayers && length / layers > kShortestLayer &&
+         layers * (layers - 1.0) * (layers - 1.0) < kSquareness * length * length * vertices / area)
+    ++layers;
+  return layers;
+}
+
+std::unique_ptr<Draft> makeDraft(const StrandSamples& strands, const RootRaster& raster, int layers, int vertices) {
+  std::unique_ptr<Draft> draft(new Draft{strands, raster, meshRoots(raster, vertices / layers), {}, {}});
+  if (draft->roots.triangles.empty())
+    throw std::runtime_error("the roots span no face; a hair mesh grows from an area of scalp");
+  draft->fit.map = raster.map;
+  draft->fit.regions = raster.regions;
+  draft->fit.knots = layerKnots(raster, layers);
+  standUp(*draft);
+  aim(GrowthMap(draft->fit.shape), kFitStrands, *draft);
+  settle(*draft);
+  if (draft->fit.shape.root_faces.empty())
+    throw std::runtime_error("no bundle of it can be made into prisms; its strands go through each other everywhere");
+  measure(kTrialStrands, *draft);
+  return draft;
+}
+
+}  // namespace
+
+void growStrand(const HairFit& fit, const GrowthMap& growth, const StrandFit& strand, std::span<Vector3f> even) {
+  std::vector<Vector3f> layers, line;
+  layerPoints(fit, growth.row(strand.root), layers);
+  drawCurve(layers, strand.end, line);
+  resample(line, even);
+}
+
+HairFit fitGroom(const StrandSamples& strands, const FitOptions& options) {
+  if (strands.strandCount() < kMinGroomStrands)
+    throw std::runtime_error("it has " + std::to_string(strands.strandCount()) +
+                             " strands; a hair mesh takes at least " + std::to_string(kMinGroomStrands));
+  const RootRaster raster = rasterRoots(strands);
+  const double length = quantile(strands.length, 0.5);
+  std::vector<int> budgets{400, 800, 1600, 2400};
+  if (options.vertices > 0) budgets = {options.vertices};
+  std::unique_ptr<Draft> best;
+  double lacking = 1;  // how many times a fit is off its bounds
+  for (const int vertices : budgets) {
+    // The error falls about as the columns' number grows.
+    if (best && vertices != budgets.back() && best->fit.shape.vertexCount() * lacking > 1.3 * vertices) continue;
+    const int layers = options.layers > 0 ? options.layers : usualLayers(raster, length, vertices);
+    std::unique_ptr<Draft> draft = makeDraft(strands, raster, layers, vertices);
+    const FitError& error = draft->fit.error;
+    lacking = std::max(error.mean / kMeanBound, error.share95 / kShareBound) / error.strand_length;
+    if (!best || costOf(draft->fit) < costOf(best->fit)) best = std::move(draft);
+    if (lacking <= 1 && best->fit.dropped_faces == 0) break;
+  }
+  measure(strands.strandCount(), *best);
+  return std::move(best->fit);
+}
+
+}  // namespace app

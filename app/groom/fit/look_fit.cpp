@@ -1,0 +1,233 @@
+#include "app/groom/fit/look_fit.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <map>
+#include <numbers>
+
+namespace app {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr int kFitPoints = 96;  // of a strand that is measured
+constexpr std::size_t kMaxLooked = 4000;
+constexpr int kMaxTurns = 16;
+constexpr double kMinTurns = 2.5, kQuickTurns = 3;  // slower turns are wander
+constexpr double kOpening = 0.35;             // share of the length over which curls open, shaders/common/strand.glsl
+constexpr double kSmallestCurl = 0.0012;      // m
+constexpr double kClearCurl = 0.5;            // of a strand's wander that one rotation explains
+constexpr std::size_t kMinBundleStrands = 5;  // strands of a bundle
+// Root mean square of frizz and offset over a strand, in their own amplitudes: of grow(t) = t (1.6 - 0.6 t), two sines,
+// and a disc (shaders/common/strand.glsl).
+constexpr double kFrizzSpread = 0.667, kOffsetSpread = 0.31;
+constexpr float kNearRoots = 0.004f;   // m, of strands whose distance tells of clumps
+constexpr double kClumpClosed = 0.55;  // share of the length at which clumps are closed
+
+struct StrandMeasure {
+  int face = 0;
+  double radius = 0, turns = 0;  // of its clearest rotation; 0: none
+  double frizz = 0, wander = 0;  // m, root mean square: of what is left by more, and less, than three turns
+  double length_share = 1;       // of what is usual where it roots
+};
+
+// The strand's distance from the grown one as complex numbers in the grown one's frame.
+std::vector<std::complex<double>> wander(std::span<const Vector3f> strand, std::span<const Vector3f> grown) {
+  std::vector<std::complex<double>> out;
+  Vector3f aside = Vector3f::Zero();
+  for (std::size_t k = 0; k < grown.size(); ++k) {
+    const Vector3f along = (grown[std::min(k + 1, grown.size() - 1)] - grown[k > 0 ? k - 1 : 0]).stableNormalized();
+    if (k == 0) aside = along.unitOrthogonal();
+    aside = (aside - along.dot(aside) * along).stableNormalized();
+    const Vector3f gap = strand[k] - grown[k];
+    out.emplace_back(gap.dot(aside), gap.dot(along.cross(aside)));
+  }
+  return out;
+}
+
+// Amplitudes of the rotation by `turns` either way, beside a mean and a drift, over the part where curls are open.
+double amplitudeOf(const std::vector<std::complex<double>>& way, double turns) {
+  const std::size_t first = static_cast<std::size_t>(kOpening * static_cast<double>(way.size()));
+  double square = 0;
+  for (const double sign : {1.0, -1.0}) {
+    std::complex<double> sum = 0;
+    double weights = 0;
+    for (std::size_t k = first; k < way.size(); ++k) {
+      const double t = static_cast<double>(k) / static_cast<double>(way.size() - 1);
+      const double x = static_cast<double>(k - first) / static_cast<double>(way.size() - 1 - first);
+      const double window = 0.5 - 0.5 * std::cos(2 * std::numbers::pi * x);
+      sum += window * way[k] * std::polar(1.0, -sign * 2 * std::numbers::pi * turns * t);
+      weights += window;
+    }
+    square += std::norm(sum / weights);
+  }
+  return std::sqrt(square);
+}
+
+// The way about its running mean over a turn of `turns`.
+std::vector<std::complex<double>> quickPart(const std::vector<std::complex<double>>& way, double turns) {
+  const int reach = std::max(1, static_cast<int>(0.5 * static_cast<double>(way.size()) / turns));
+  const int count = static_cast<int>(way.size());
+  std::vector<std::complex<double>> quick = way;
+  for (int k = 0; k < count; ++k) {
+    std::complex<double> sum = 0;
+    const int side = std::min({reach, k, count - 1 - k});
+    for (int d = -side; d <= side; ++d) sum += way[static_cast<std::size_t>(k + d)];
+    quick[static_cast<std::size_t>(k)] -= sum / (2.0 * side + 1);
+  }
+  return quick;
+}
+
+double rootMeanSquare(const std::vector<std::complex<double>>& way) {
+  double square = 0;
+  for (const auto& z : way) square += std::norm(z) / static_cast<double>(way.size());
+  return std::sqrt(square);
+}
+
+void measureWander(const std::vector<std::complex<double>>& way, StrandMeasure& measure) {
+  const std::vector<std::complex<double>> part = quickPart(way, kQuickTurns);
+  double best = 0;
+  for (double turns = kMinTurns; turns <= kMaxTurns; turns += 0.25) {
+    const double amplitude = amplitudeOf(part, turns);
+    if (amplitude <= best) continue;
+    best = amplitude;
+    measure.turns = turns;
+  }
+  const double quick = rootMeanSquare(part), all = rootMeanSquare(way);
+  measure.wander = std::sqrt(std::max(0.0, all * all - quick * quick));
+  if (best * best > kClearCurl * quick * quick) measure.radius = best;
+  measure.frizz = measure.radius > 0 ? std::sqrt(std::max(0.0, quick * quick - 0.8 * best * best)) : quick;
+}
+
+double medianOf(std::vector<float> values) {
+  return quantile(std::move(values), 0.5);
+}
+
+// `length`: m, of a strand.
+StrandCharacter summary(const std::vector<const StrandMeasure*>& of, double length) {
+  StrandCharacter out;
+  out.strands = static_cast<int>(of.size());
+  std::vector<float> radius, turns, frizz, wander;
+  double shares = 0;
+  for (const StrandMeasure* one : of) {
+    if (one->radius > kSmallestCurl) {
+      radius.push_back(static_cast<float>(one->radius));
+      turns.push_back(static_cast<float>(one->turns));
+    }
+    frizz.push_back(static_cast<float>(one->frizz));
+    wander.push_back(static_cast<float>(one->wander));
+    shares += one->length_share / static_cast<double>(of.size());
+  }
+  if (2 * radius.size() > of.size()) {
+    out.curl_radius = medianOf(radius);
+    out.curl_turns = medianOf(turns);
+    out.curl_pitch = std::clamp(length / out.curl_turns, 0.003, 0.3);
+  }
+  out.frizz = medianOf(frizz) / kFrizzSpread;
+  out.offset = medianOf(wander) / kOffsetSpread;
+  out.length_variation = std::clamp(3 * (1 - shares), 0.0, 0.6);  // of 1 - v u^2 with u in 0..1 the mean is 1 - v / 3
+  return out;
+}
+
+// How much nearer strands of neighbouring roots are to each other than the grown ones, where clumps are closed.
+double clumpOf(const StrandSamples& strands, const HairFit& fit, const GrowthMap& growth) {
+  std::map<std::array<int, 3>, std::size_t> seen;
+  std::vector<float> ratios;
+  const std::size_t at = static_cast<std::size_t>(kClumpClosed * (strands.count - 1));
+  std::vector<Vector3f> one(static_cast<std::size_t>(strands.count)), other = one;
+  for (std::size_t s = 0; s < strands.strandCount() && ratios.size() < kMaxLooked; ++s) {
+    const Vector3f root = strands.strand(s)[0];
+    const auto cell = [&](int k) { return static_cast<int>(std::floor(root[k] / kNearRoots)); };
+    const auto [entry, added] = seen.try_emplace({cell(0), cell(1), cell(2)}, s);
+    if (added) continue;
+    growStrand(fit, growth, fit.strands[s], one);
+    growStrand(fit, growth, fit.strands[entry->second], other);
+    const float grown = (one[at] - other[at]).norm();
+    if (grown > 1e-5f) ratios.push_back((strands.strand(s)[at] - strands.strand(entry->second)[at]).norm() / grown);
+    entry->second = s;
+  }
+  return ratios.size() < 30 ? 0 : std::clamp(1 - medianOf(ratios), 0.0, 1.0);
+}
+
+void measureWidths(const Groom& groom, double scale, LookFit& look) {
+  if (groom.widths.size() != groom.points.size() || groom.widths.empty()) return;
+  std::vector<float> root, ratio;
+  for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+    if (groom.pointCount(s) < 2) continue;
+    const float first = groom.widths[groom.strand_first[s]], last = groom.widths[groom.strand_first[s + 1] - 1];
+    if (!(first > 0) || !(last >= 0)) continue;
+    root.push_back(first);
+    ratio.push_back(last / first);
+  }
+  if (root.empty()) return;
+  look.taper = std::clamp(medianOf(ratio), 0.0, 1.0);
+  look.radius = 0.5 * scale * medianOf(root);
+}
+
+}  // namespace
+
+LookFit fitLook(const Groom& groom, double scale, const StrandSamples& strands, const HairFit& fit) {
+  const GrowthMap growth(fit.shape);
+  const std::size_t step = std::max<std::size_t>(1, strands.strandCount() / kMaxLooked);
+  std::vector<StrandMeasure> measures;
+  std::vector<Vector3f> given, strand(kFitPoints), grown(kFitPoints);
+  for (std::size_t s = 0; s < strands.strandCount(); s += step) {
+    given.clear();
+    for (const Vector3f& p : groom.strand(static_cast<std::size_t>(strands.source[s])))
+      given.push_back(static_cast<float>(scale) * p);
+    resample(given, strand);
+    growStrand(fit, growth, fit.strands[s], grown);
+    StrandMeasure& measure = measures.emplace_back();
+    measure.face = fit.strands[s].root.face;
+    measure.length_share =
+        std::min(1.0, static_cast<double>(fit.strands[s].end) / static_cast<double>(fit.knots.size() - 1));
+    measureWander(wander(strand, grown), measure);
+  }
+  LookFit look;
+  std::vector<const StrandMeasure*> all;
+  std::map<int, std::vector<const StrandMeasure*>> of_face;
+  for (const StrandMeasure& measure : measures) {
+    all.push_back(&measure);
+    of_face[measure.face].push_back(&measure);
+  }
+  look.all = summary(all, fit.error.strand_length);
+  look.all.clump = clumpOf(strands, fit, growth);
+  look.bundles.assign(fit.shape.root_faces.size(), look.all);
+  for (const auto& [face, of] : of_face) {
+    if (of.size() < kMinBundleStrands) continue;
+    StrandCharacter& bundle = look.bundles[static_cast<std::size_t>(face)] = summary(of, fit.error.strand_length);
+    bundle.clump = look.all.clump;
+  }
+  measureWidths(groom, scale, look);
+  return look;
+}
+
+void takeLook(const LookFit& fit, render::HairLook& look) {
+  look.length_variation = static_cast<float>(fit.all.length_variation);
+  look.curl_radius = static_cast<float>(fit.all.curl_radius);
+  if (fit.all.curl_radius > 0) look.curl_pitch = static_cast<float>(fit.all.curl_pitch);
+  look.frizz = static_cast<float>(std::min(fit.all.frizz, 0.01));
+  look.offset = static_cast<float>(std::min(fit.all.offset, 0.02));
+  look.clump = static_cast<float>(fit.all.clump);
+  // What the groom has in its strands' places is not added once more.
+  look.lock = look.wisp = look.drift = look.root_spread = look.hairline = look.baby_hairs = look.flyaways = 0;
+  if (fit.taper >= 0) look.taper = static_cast<float>(fit.taper);
+}
+
+void takeUnset(const LookFit& fit, render::HairLook& look) {
+  const render::HairLook usual;
+  render::HairLook fitted;
+  takeLook(fit, fitted);
+  for (float render::HairLook::*row :
+       {&render::HairLook::length_variation, &render::HairLook::offset, &render::HairLook::clump,
+        &render::HairLook::curl_radius, &render::HairLook::curl_pitch, &render::HairLook::frizz,
+        &render::HairLook::taper, &render::HairLook::lock, &render::HairLook::wisp, &render::HairLook::drift,
+        &render::HairLook::root_spread, &render::HairLook::hairline, &render::HairLook::baby_hairs,
+        &render::HairLook::flyaways}) {
+    if (look.*row == usual.*row) look.*row = fitted.*row;
+  }
+}
+
+}  // namespace app

@@ -1,0 +1,367 @@
+#include "app/groom/inspect/groom_inspect.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "app/files/length_units.h"
+#include "app/files/report_line.h"
+#include "app/groom/inspect/groom_shape.h"
+
+namespace app {
+
+using Eigen::Matrix3f;
+using Eigen::Vector3f;
+
+namespace {
+
+constexpr std::size_t kMaxInspected = 2000;  // looked at
+constexpr double kSkullRadius = 0.09;        // m, of the sphere that roots lie about
+constexpr float kThinnestHair = 8e-6f;       // m, a diameter
+constexpr float kUsualWidth = 8e-5f, kWidestHair = 4e-4f, kAllHairs = 1e5f;
+constexpr float kFar = 0.018f, kFloating = 0.03f, kDeep = 0.006f;  // m
+constexpr std::size_t kManyPoints = 256, kMinRoots = 20;
+
+std::string textOf(const char* format, double a, double b = 0) {
+  std::array<char, 160> text;
+  std::snprintf(text.data(), text.size(), format, a, b);
+  return text.data();
+}
+std::string countText(std::size_t count, std::size_t of, const char* what) {
+  return std::to_string(count) + " of " + std::to_string(of) + " strands " + what;
+}
+
+float shareOutside(const SphereFit& sphere, const std::vector<Vector3f>& points) {
+  const auto outside = std::ranges::count_if(
+      points, [&](const Vector3f& p) { return (p - sphere.center).norm() > 0.95f * sphere.radius; });
+  return static_cast<float>(outside) / static_cast<float>(points.size());
+}
+
+struct Inspector {
+  const Groom& groom;
+  const GroomHints& hints;
+  const HeadModel* head;
+  GroomInspection result{};
+  StrandEnds ends{};
+  SphereFit skull{};  // of the roots, in metres and our axes once these are known
+
+  void add(const char* what, std::string text, std::string mend, bool certain) {
+    result.findings.push_back({what, std::move(text), std::move(mend), certain, true});
+  }
+  bool inWorld() const { return hints.world_heads > 0; }
+  bool crowd() const { return hints.world_heads > 1; }
+  void strands();
+  void direction();
+  void unit();
+  void toMetres();
+  void axes();
+  void facing();
+  void widths();
+  void place();
+  void body(const std::vector<Vector3f>& roots);
+  Vector3f moveToHead(const std::vector<Vector3f>& roots, const Vector3f& center) const;
+  float offHead(const std::vector<Vector3f>& roots) const;
+  float offHeadTurned(const Matrix3f& matrix) const;
+  void turn(const Matrix3f& matrix);
+};
+
+// Strands that no program can use, and numbers of points.
+void Inspector::strands() {
+  const std::size_t all = groom.strandCount();
+  ends = strandEnds(groom, kMaxInspected);
+  if (ends.non_finite > 0)
+    add("non-finite", countText(ends.non_finite, all, "have points that are no finite numbers"), "--drop-bad", true);
+  if (ends.zero_length > 0) add("zero-length", countText(ends.zero_length, all, "have no length"), "--drop-bad", true);
+  if (ends.too_short > 0)
+    add("points", countText(ends.too_short, all, "have fewer than two points"), "--drop-bad", true);
+  if (all < kMinRoots) add("strands", countText(all, kMinRoots, "that a hair mesh is made of at the least"), "", false);
+  result.mends.drop_bad = ends.non_finite + ends.zero_length + ends.too_short > 0;
+  std::size_t many = 0;
+  for (std::size_t s = 0; s < all; ++s) many += groom.pointCount(s) > kManyPoints;
+  if (many > 0) add("points", countText(many, all, "have more than 256 points"), "--points 32", false);
+}
+
+// Roots lie about a skull that the strands leave; tips lie further from a sphere, or about one that holds the strands.
+void Inspector::direction() {
+  const SphereFit roots = fitSphere(ends.first), tips = fitSphere(ends.last);
+  skull = roots;
+  if (ends.first.size() < kMinRoots || inWorld()) return;
+  const float out = shareOutside(roots, ends.last), in = shareOutside(tips, ends.first);
+  const bool skull_at_tips = tips.spread < 0.08f && tips.coverage > 0.03f && in > out - 0.3f;
+  const bool all = skull_at_tips && (tips.radius < roots.radius / 1.1f || roots.coverage < 0.03f);
+  if (all) {
+    skull = tips;
+    std::swap(ends.first, ends.last);
+    result.mends.reverse = Reverse::kAll;
+    add("reversed", "the strands run from tip to root", "--reverse all", true);
+    return;
+  }
+  std::size_t turned = 0;
+  for (std::size_t n = 0; n < ends.first.size(); ++n) {
+    const float first = std::abs((ends.first[n] - skull.center).norm() / skull.radius - 1);
+    const float last = std::abs((ends.last[n] - skull.center).norm() / skull.radius - 1);
+    if (first < 0.25f || last > 0.15f) continue;
+    std::swap(ends.first[n], ends.last[n]);
+    ++turned;
+  }
+  if (turned == 0) return;
+  result.mends.reverse = Reverse::kFound;
+  skull = fitSphere(ends.first);
+  add("reversed", countText(turned, ends.first.size(), "run from tip to root"), "--reverse found", true);
+}
+
+void Inspector::unit() {
+  const double told = hints.meters_per_unit.value_or(1);
+  result.mends.unit = told;
+  if (hints.unit_given) return toMetres();
+  if (ends.first.size() < kMinRoots || !(skull.radius > 0)) return;
+  const auto off = [this](double meters) { return std::abs(std::log(meters * skull.radius / kSkullRadius)); };
+  const LengthUnit* best = &kLengthUnits[0];
+  for (const LengthUnit& unit : kLengthUnits) best = off(unit.metres) < off(best->metres) ? &unit : best;
+  const bool fits = inWorld() || off(best->metres) < std::log(1.45);
+  if (!inWorld() && std::abs(best->metres / told - 1) > 0.01 && (off(told) > std::log(1.45) || !fits)) {
+    if (fits) result.mends.unit = best->metres;
+    add("unit",
+        textOf("the roots lie about a skull of radius %.3g, which fits ", skull.radius) + best->name +
+            (hints.meters_per_unit ? textOf("; the file tells %g m a unit", told) : ", not m"),
+        std::string("--unit ") + best->name, fits);
+  } else if (!fits) {
+    add("unit",
+        textOf("the roots lie about a skull of radius %.3g m, which no unit brings to a head's size",
+               skull.radius * told),
+        "--unit m|cm|mm|in|ft", false);
+  }
+  toMetres();
+}
+
+void Inspector::toMetres() {
+  const auto scale = static_cast<float>(result.mends.unit);
+  skull.center *= scale;
+  skull.radius *= scale;
+  for (auto* points : {&ends.first, &ends.last}) {
+    for (Vector3f& p : *points) p *= scale;
+  }
+}
+
+void Inspector::turn(const Matrix3f& matrix) {
+  result.mends.axes = matrix * result.mends.axes;
+  skull.center = matrix * skull.center;
+  for (auto* points : {&ends.first, &ends.last}) {
+    for (Vector3f& p : *points) p = matrix * p;
+  }
+}
+
+// Hair grows on the upper side of a skull and hangs down. Hair that stands away from where it grows, as a mohawk's or
+// stubble, says nothing of down.
+void Inspector::axes() {
+  if (hints.axes) return turn(*hints.axes);
+  if (ends.first.size() < kMinRoots || inWorld()) return;
+  Vector3f cap = Vector3f::Zero(), hang = Vector3f::Zero();
+  float length = 0;
+  for (std::size_t n = 0; n < ends.first.size(); ++n) {
+    cap += (ends.first[n] - skull.center) / skull.radius;
+    hang += ends.last[n] - ends.first[n];
+    length += (ends.last[n] - ends.first[n]).norm();
+  }
+  cap /= static_cast<float>(ends.first.size());
+  if (length > 0) hang /= length;
+  constexpr std::array<std::string_view, 6> kNames{"y", "z", "-y", "-z", "x", "-x"};
+  constexpr std::array<std::array<float, 3>, 6> kUps{
+      {{0, 1, 0}, {0, 0, 1}, {0, -1, 0}, {0, 0, -1}, {1, 0, 0}, {-1, 0, 0}}};
+  const Vector3f up = cap.dot(hang) > 0.5f * cap.norm() * hang.norm() ? cap : Vector3f(cap - 1.5f * hang);
+  std::array<float, 6> scores{};
+  for (std::size_t n = 0; n < 6; ++n) scores[n] = Vector3f(kUps[n].data()).dot(up);
+  const auto best = static_cast<std::size_t>(std::ranges::max_element(scores) - scores.begin());
+  if (best == 0) return;
+  std::array<float, 6> sorted = scores;
+  std::ranges::sort(sorted);
+  const bool certain = sorted[5] - sorted[4] > 0.15f;
+  add("up", "the hair hangs as if " + std::string(kNames[best]) + " were up, not y",
+      "--up " + std::string(kNames[best]), certain);
+  if (certain) turn(*axesOfUp(kNames[best]));
+}
+
+// More hair grows behind the middle of the skull than before it; where a scalp is half bald by intent, its roots lie
+// nearer to the head as they are. A beard, which grows below the middle, grows before it.
+void Inspector::facing() {
+  if (hints.turn) return turn(*hints.turn);
+  if (ends.first.size() < kMinRoots || crowd()) return;
+  Vector3f cap = Vector3f::Zero();
+  for (const Vector3f& root : ends.first) cap += (root - skull.center) / skull.radius;
+  cap /= static_cast<float>(ends.first.size());
+  if (cap.y() < 0 || -cap.z() >= std::abs(cap.x()) || std::hypot(cap.x(), cap.z()) < 0.1f) return;
+  const double degrees = cap.z() > std::abs(cap.x()) ? 180 : cap.x() > 0 ? 90 : -90;
+  // A head is longer than wide: hair a quarter turn aside leaves it by 8 mm, hair that is turned right by 0.3 mm.
+  if (head != nullptr && offHeadTurned(turnedAbout(degrees)) > 2 * offHeadTurned(Matrix3f::Identity())) return;
+  add("facing", textOf("the hair grows on the wrong side: the face would look %.0f degrees aside", std::abs(degrees)),
+      textOf("--turn %.0f", degrees), true);
+  result.findings.back().fault = !inWorld();
+  if (inWorld()) result.findings.back().text = textOf("the head looks %.0f degrees aside", std::abs(degrees));
+  turn(turnedAbout(degrees));
+}
+
+void Inspector::widths() {
+  if (groom.widths.empty()) return;
+  const auto unit = static_cast<float>(result.mends.unit);
+  std::vector<float> usable;
+  std::size_t bad = 0;
+  for (const float width : groom.widths) {
+    const bool fine = std::isfinite(width) && width > 0;
+    if (fine) usable.push_back(width * unit);
+    bad += !fine;
+  }
+  if (bad > 0) {
+    add("widths",
+        std::to_string(bad) + " of " + std::to_string(groom.widths.size()) + " widths are 0, negative or no number",
+        "--width 8e-5", false);
+  }
+  if (usable.empty()) return;
+  const float middle = medianOf(usable);
+  const float widest = std::max(kWidestHair, 1.5f * kUsualWidth * kAllHairs / static_cast<float>(groom.strandCount()));
+  const float most = std::min(widest, 5e-3f);
+  if (middle >= kThinnestHair && middle <= most) return;
+  const double powers =
+      std::round(std::log10((middle < kThinnestHair ? kUsualWidth : std::sqrt(kUsualWidth * most)) / middle));
+  const double scale = std::pow(10.0, powers == 0 ? (middle < kThinnestHair ? 1 : -1) : powers);
+  result.mends.width_scale = static_cast<float>(scale);
+  add("widths", textOf("the strands are %.3g mm wide; hair is %.2g mm", 1e3 * middle, 1e3 * kUsualWidth),
+      textOf("--width-scale %g", scale), true);
+}
+
+// The shift that brings the roots onto the head: along the distance's gradient, again and again.
+Vector3f Inspector::moveToHead(const std::vector<Vector3f>& roots, const Vector3f& center) const {
+  Vector3f move = head->center - center;
+  const std::size_t stride = std::max<std::size_t>(roots.size() / 200, 1);
+  for (int round = 0; round < 20; ++round) {
+    Vector3f step = Vector3f::Zero();
+    Matrix3f normals = 1e-3f * Matrix3f::Identity();
+    for (std::size_t n = 0; n < roots.size(); n += stride) {
+      const Vector3f at = roots[n] + move;
+      const float here = head->distance(at);
+      Vector3f slope;
+      for (int axis = 0; axis < 3; ++axis)
+        slope[axis] = (head->distance(at + 1e-3f * Vector3f::Unit(axis)) - here) / 1e-3f;
+      step += slope * std::clamp(here, -0.03f, 0.03f);
+      normals += slope * slope.transpose();
+    }
+    move -= normals.inverse() * step;
+  }
+  return move;
+}
+
+// m, in the median.
+float Inspector::offHead(const std::vector<Vector3f>& roots) const {
+  std::vector<float> off;
+  for (const Vector3f& root : roots) off.push_back(std::abs(head->distance(root)));
+  return medianOf(off);
+}
+
+// Of roots turned by `matrix` and moved to the head as well as they can be.
+float Inspector::offHeadTurned(const Matrix3f& matrix) const {
+  std::vector<Vector3f> roots = ends.first;
+  for (Vector3f& root : roots) root = matrix * root;
+  const Vector3f move = moveToHead(roots, matrix * skull.center);
+  for (Vector3f& root : roots) root += move;
+  return offHead(roots);
+}
+
+void Inspector::place() {
+  if (head == nullptr || ends.first.size() < kMinRoots || crowd()) return;
+  std::vector<Vector3f> roots = ends.first;
+  const float before = offHead(roots);
+  result.on_head = before <= kFar;
+  if (before > kFar) {
+    const Vector3f move = moveToHead(roots, skull.center);
+    for (Vector3f& root : roots) root += move;
+    const bool certain = offHead(roots) <= kFar;
+    std::array<char, 96> option;
+    std::snprintf(option.data(), option.size(), "--move %.3f,%.3f,%.3f", move.x(), move.y(), move.z());
+    add("roots", textOf("the roots lie %.3g m from the scalp", before), option.data(), certain);
+    result.findings.back().fault = !inWorld();
+    if (inWorld())
+      result.findings.back().text = textOf("the hair is on a head in the world, %.3g m from the figure's own", before);
+    result.on_head = certain;
+    if (!certain) return;
+    result.mends.move = move;
+  } else {
+    std::size_t floating = 0;
+    for (const Vector3f& root : roots) floating += std::abs(head->distance(root)) > kFloating;
+    if (floating > 0)
+      add("roots", countText(floating, roots.size(), "begin more than 3 cm from the scalp"), "--drop-far 0.03", false);
+  }
+  if (!inWorld()) body(roots);  // the figure's pose is not that of rest
+}
+
+// Strands that go into the body beyond their first tenth.
+void Inspector::body(const std::vector<Vector3f>& roots) {
+  std::size_t through = 0;
+  float deepest = 0;
+  const auto scale = static_cast<float>(result.mends.unit);
+  for (std::size_t n = 0; n < ends.strands.size(); ++n) {
+    const std::span<const Vector3f> points = groom.strand(ends.strands[n]);
+    float deep = 0;
+    for (const Vector3f& point : points) {
+      const Vector3f at = scale * (result.mends.axes * point) + result.mends.move;
+      if ((at - roots[n]).norm() > 0.01f) deep = std::max(deep, -head->distance(at));
+    }
+    through += deep > kDeep;
+    deepest = std::max(deepest, deep);
+  }
+  if (through * 100 <= ends.strands.size()) return;
+  add("body",
+      countText(through, ends.strands.size(), "go through the body, ") + textOf("%.1f mm at most", 1e3 * deepest),
+      "--push-out", false);
+}
+
+}  // namespace
+
+const GroomFinding* GroomInspection::find(std::string_view what) const {
+  const auto found = std::ranges::find(findings, what, &GroomFinding::what);
+  return found == findings.end() ? nullptr : &*found;
+}
+
+GroomInspection inspectGroom(const Groom& groom, const GroomHints& hints, const HeadModel* head) {
+  Inspector inspector{groom, hints, head};
+  inspector.strands();
+  inspector.direction();
+  inspector.unit();
+  inspector.axes();
+  inspector.facing();
+  inspector.widths();
+  inspector.place();
+  std::vector<float> counts;
+  for (std::size_t s = 0; s < groom.strandCount(); ++s) counts.push_back(static_cast<float>(groom.pointCount(s)));
+  inspector.result.summary =
+      countOf(groom.strandCount(), "strand") + ", " + countOf(groom.points.size(), "point") + ", " +
+      textOf("%.0f a strand (median), %.3g m across", medianOf(counts), groomSize(groom) * inspector.result.mends.unit);
+  return std::move(inspector.result);
+}
+
+std::optional<Matrix3f> axesOfUp(std::string_view up) {
+  const auto rows = [](float a, float b, float c, float d, float e, float f, float g, float h, float i) {
+    Matrix3f matrix;
+    matrix << a, b, c, d, e, f, g, h, i;
+    return matrix;
+  };
+  if (up == "y") return Matrix3f(Matrix3f::Identity());
+  if (up == "z") return rows(1, 0, 0, 0, 0, 1, 0, -1, 0);
+  if (up == "-y") return rows(-1, 0, 0, 0, -1, 0, 0, 0, 1);
+  if (up == "-z") return rows(1, 0, 0, 0, 0, -1, 0, 1, 0);
+  if (up == "x") return rows(0, -1, 0, 1, 0, 0, 0, 0, 1);
+  if (up == "-x") return rows(0, 1, 0, -1, 0, 0, 0, 0, 1);
+  return std::nullopt;
+}
+
+Matrix3f turnedAbout(double degrees) {
+  const auto angle = static_cast<float>(degrees * std::numbers::pi / 180);
+  Matrix3f matrix = Matrix3f::Identity();
+  matrix(0, 0) = matrix(2, 2) = std::round(1e6f * std::cos(angle)) / 1e6f;
+  matrix(0, 2) = std::round(1e6f * std::sin(angle)) / 1e6f;
+  matrix(2, 0) = -matrix(0, 2);
+  return matrix;
+}
+
+}  // namespace app

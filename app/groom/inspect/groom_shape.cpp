@@ -1,0 +1,117 @@
+#include "app/groom/inspect/groom_shape.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace app {
+
+using Eigen::Vector3f;
+
+namespace {
+
+// |p|^2 = 2 c . p + (r^2 - |c|^2), least squares in c and the bracket, about the points' middle.
+SphereFit leastSquares(const std::vector<Vector3f>& points) {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const Vector3f& p : points) middle += p.cast<double>() / static_cast<double>(points.size());
+  Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d right = Eigen::Vector4d::Zero();
+  for (const Vector3f& p : points) {
+    const Eigen::Vector3d q = p.cast<double>() - middle;
+    const Eigen::Vector4d row(2 * q.x(), 2 * q.y(), 2 * q.z(), 1);
+    normal += row * row.transpose();
+    right += row * q.squaredNorm();
+  }
+  const Eigen::Vector4d solved = normal.ldlt().solve(right);
+  const Eigen::Vector3d center = solved.head<3>();
+  return {(center + middle).cast<float>(),
+          static_cast<float>(std::sqrt(std::max(solved[3] + center.squaredNorm(), 0.0))), 0, 0};
+}
+
+std::vector<float> residuals(const SphereFit& fit, const std::vector<Vector3f>& points) {
+  std::vector<float> all;
+  for (const Vector3f& p : points) all.push_back(std::abs((p - fit.center).norm() - fit.radius));
+  return all;
+}
+
+float coverageOf(const SphereFit& fit, const std::vector<Vector3f>& points) {
+  Vector3f mean = Vector3f::Zero();
+  Eigen::Matrix3f square = Eigen::Matrix3f::Zero();
+  const float share = 1 / static_cast<float>(points.size());
+  for (const Vector3f& p : points) {
+    const Vector3f direction = (p - fit.center).normalized();
+    mean += share * direction;
+    square += share * direction * direction.transpose();
+  }
+  const Eigen::Matrix3f covariance = square - mean * mean.transpose();
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f>(covariance, Eigen::EigenvaluesOnly).eigenvalues()[0];
+}
+
+}  // namespace
+
+float medianOf(std::vector<float> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+SphereFit fitSphere(const std::vector<Vector3f>& points) {
+  if (points.size() < 8) return {};
+  SphereFit fit = leastSquares(points);
+  for (int round = 0; round < 3; ++round) {
+    const std::vector<float> off = residuals(fit, points);
+    const float far = 3 * medianOf(off);
+    std::vector<Vector3f> near;
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      if (off[n] <= far) near.push_back(points[n]);
+    }
+    if (near.size() < 8) break;
+    fit = leastSquares(near);
+  }
+  fit.coverage = coverageOf(fit, points);
+  fit.spread = fit.radius > 0 ? medianOf(residuals(fit, points)) / fit.radius : 1;
+  return fit;
+}
+
+StrandFault strandFault(const Groom& groom, std::size_t strand, float size) {
+  const std::span<const Vector3f> points = groom.strand(strand);
+  if (points.size() < 2) return StrandFault::kTooFewPoints;
+  float length = 0;
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    if (!points[p].allFinite()) return StrandFault::kNonFinite;
+    if (p > 0) length += (points[p] - points[p - 1]).norm();
+  }
+  return length > 1e-6f * size ? StrandFault::kNone : StrandFault::kZeroLength;
+}
+
+float groomSize(const Groom& groom) {
+  Vector3f low = Vector3f::Constant(HUGE_VALF), high = -low;
+  for (const Vector3f& p : groom.points) {
+    if (p.allFinite()) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  }
+  return std::max((high - low).maxCoeff(), 0.0f);
+}
+
+StrandEnds strandEnds(const Groom& groom, std::size_t most) {
+  StrandEnds ends;
+  const float size = groomSize(groom);
+  std::vector<std::size_t> usable;
+  for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+    const StrandFault fault = strandFault(groom, s, size);
+    if (fault == StrandFault::kNone) usable.push_back(s);
+    ends.non_finite += fault == StrandFault::kNonFinite;
+    ends.zero_length += fault == StrandFault::kZeroLength;
+    ends.too_short += fault == StrandFault::kTooFewPoints;
+  }
+  const std::size_t count = std::min(most, usable.size());
+  for (std::size_t n = 0; n < count; ++n) {
+    const std::size_t s = usable[n * usable.size() / count];
+    ends.strands.push_back(s);
+    ends.first.push_back(groom.strand(s).front());
+    ends.last.push_back(groom.strand(s).back());
+  }
+  return ends;
+}
+
+}  // namespace app

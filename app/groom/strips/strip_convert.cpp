@@ -1,0 +1,242 @@
+#include "app/groom/strips/strip_convert.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string_view>
+
+#include "app/files/errors.h"
+#include "app/files/report_line.h"
+#include "app/groom/fit/strand_samples.h"
+
+namespace app {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::size_t kMaxPatches = 20000, kMaxScalpPoints = 20000, kToldOf = 6;
+constexpr double kMinSpread = 0.015, kMaxSpread = 0.35;  // m, of the roots of a unit that is said
+
+constexpr const char* kGive =
+    "give strips of quads from root to tip, or tubes; of a hair mesh name the groups layer_0, layer_1, ...";
+
+enum class Role { kHair, kScalp, kUnknown };
+
+Role roleOf(std::string name) {
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+  const auto has = [&](auto... words) { return ((name.find(words) != std::string::npos) || ...); };
+  if (has("scalp", "skull")) return Role::kScalp;
+  if (has("hair", "strand", "strip", "card", "tube", "braid", "ponytail", "fringe")) return Role::kHair;
+  if (has("head", "face", "body", "skin")) return Role::kScalp;
+  return Role::kUnknown;
+}
+
+struct Roles {
+  std::vector<bool> hair, scalp;  // per object
+  std::string scalp_names;
+};
+
+// Where any object is called hair, others are not; where none is, all but the scalp are.
+Roles rolesOf(const PolygonMesh& mesh) {
+  Roles out;
+  std::vector<Role> roles;
+  for (const std::string& name : mesh.objects) roles.push_back(roleOf(name));
+  const bool named = std::ranges::find(roles, Role::kHair) != roles.end();
+  for (std::size_t i = 0; i < roles.size(); ++i) {
+    out.hair.push_back(roles[i] == Role::kHair || (!named && roles[i] == Role::kUnknown));
+    out.scalp.push_back(roles[i] == Role::kScalp);
+    if (out.scalp.back()) out.scalp_names += (out.scalp_names.empty() ? "" : ", ") + mesh.objects[i];
+  }
+  // A file of one thing is hair, whatever its name.
+  if (std::ranges::find(out.hair, true) == out.hair.end()) {
+    out.hair.assign(roles.size(), true);
+    out.scalp.assign(roles.size(), false);
+    out.scalp_names.clear();
+  }
+  return out;
+}
+
+// Middles of faces, evenly thinned.
+std::vector<Vector3d> scalpPoints(const PolygonMesh& mesh, const std::vector<bool>* taken) {
+  std::vector<Vector3d> points;
+  for (std::size_t f = 0; f < mesh.faceCount(); ++f) {
+    if (taken && !(*taken)[static_cast<std::size_t>(mesh.face_object[f])]) continue;
+    Vector3d sum = Vector3d::Zero();
+    for (const int corner : mesh.face(f)) sum += mesh.positions[static_cast<std::size_t>(corner)];
+    points.push_back(sum / static_cast<double>(mesh.face(f).size()));
+  }
+  const std::size_t every = points.size() / kMaxScalpPoints + 1;
+  std::vector<Vector3d> some;
+  for (std::size_t i = 0; i < points.size(); i += every) some.push_back(points[i]);
+  return some;
+}
+
+double upOf(const Vector3d& p, char up) {
+  return up == 'z' ? p.z() : p.y();
+}
+
+RootMeasure measureOf(const StripOptions& options, const std::vector<Vector3d>& scalp, const std::string& file,
+                      std::string& words) {
+  const char up = options.up;
+  if (options.root == RootEdge::kScalp && scalp.empty())
+    throw InputError(file, "", "has no scalp: no object whose name has scalp, skull, head, face, body or skin",
+                     "give the scalp's mesh with --scalp FILE, or --root-edge highest");
+  if (options.root == RootEdge::kScalp || (options.root == RootEdge::kAuto && !scalp.empty())) {
+    words = "the end nearest to the scalp";
+    return [scalp](const Vector3d& p) {
+      double least = std::numeric_limits<double>::infinity();
+      for (const Vector3d& q : scalp) least = std::min(least, (p - q).squaredNorm());
+      return std::sqrt(least);
+    };
+  }
+  if (options.root == RootEdge::kLowest) {
+    words = "the lowest end";
+    return [up](const Vector3d& p) { return upOf(p, up); };
+  }
+  words = std::string("the highest end (") + up + " up)";
+  return [up](const Vector3d& p) { return -upOf(p, up); };
+}
+
+// The unit by the spread of the roots; one that the file says stays where it makes a head's spread.
+double unitOf(const std::vector<StripRows>& strips, double asked, std::optional<double> said, std::string& words) {
+  char text[80];
+  Groom roots;
+  Vector3d middle = Vector3d::Zero();
+  double square = 0, count = 0;
+  for (const StripRows& strip : strips) {
+    for (const Vector3d& p : strip.rows[0]) {
+      roots.points.push_back(p.cast<float>());
+      roots.strand_first.push_back(static_cast<std::uint32_t>(roots.points.size()));
+      const Vector3d away = p - middle;
+      middle += away / ++count;
+      square += away.dot(p - middle);
+    }
+  }
+  const double spread = std::sqrt(square / std::max(1.0, count));
+  const bool plausible = said && *said * spread > kMinSpread && *said * spread < kMaxSpread;
+  if (asked > 0 || plausible) {
+    std::snprintf(text, sizeof text, "units of %g m%s", asked > 0 ? asked : *said,
+                  asked > 0 ? "" : ", as the file says");
+    words = text;
+    return asked > 0 ? asked : *said;
+  }
+  const double found = inferUnit(roots, words);
+  words += ", inferred from the spread of the roots";
+  return found;
+}
+
+std::string nameOf(std::size_t number, const StripPatch& patch, const PolygonMesh& mesh) {
+  return "strip " + std::to_string(number + 1) + " ('" + mesh.objects[static_cast<std::size_t>(patch.object)] + "')";
+}
+
+struct Followed {
+  std::vector<StripRows> strips;
+  std::vector<std::string> names;
+};
+
+Followed followAll(const PolygonMesh& mesh, const std::vector<StripPatch>& patches, const StripOptions& options,
+                   const RootMeasure& measure, StripConversion& out) {
+  Followed all;
+  for (std::size_t n = 0; n < patches.size(); ++n) {
+    const bool flipped = std::ranges::find(options.flipped, static_cast<int>(n) + 1) != options.flipped.end();
+    StripRows rows;
+    const std::string fault = stripRows(patches[n], measure, options.other_end != flipped, rows);
+    if (!fault.empty()) {
+      out.left_out.push_back(nameOf(n, patches[n], mesh) + " " + fault);
+      continue;
+    }
+    out.cut += rows.cut_rows > 0 ? 1 : 0;
+    all.strips.push_back(std::move(rows));
+    all.names.push_back(nameOf(n, patches[n], mesh));
+  }
+  return all;
+}
+
+void checkNumbers(const StripOptions& options, std::size_t count, const std::string& file) {
+  for (const int number : options.flipped) {
+    if (number < 1 || static_cast<std::size_t>(number) > count)
+      throw InputError(file, "strip " + std::to_string(number), "is not there",
+                       "number the strips from 1 to " + std::to_string(count));
+  }
+}
+
+std::string kinds(const StripConversion& conversion) {
+  std::string text = countOf(conversion.strips, "strip");
+  if (conversion.joined > 0) text += " (" + std::to_string(conversion.joined) + " of several quads across)";
+  return text + " and " + countOf(conversion.tubes, "tube");
+}
+
+}  // namespace
+
+StripConversion convertStrips(const PolygonMesh& mesh, const StripOptions& options, const std::string& file) {
+  StripConversion out;
+  const Roles roles = rolesOf(mesh);
+  // The unit is not known yet: joining needs it as the file says.
+  const double guess = options.unit > 0 ? options.unit : mesh.meters_per_unit.value_or(1);
+  const std::vector<StripPatch> patches = stripPatches(mesh, roles.hair, options.join / guess);
+  if (patches.empty() || patches.size() > kMaxPatches)
+    throw InputError(file, "", patches.empty() ? "holds no faces of hair" : "has over 20,000 separate pieces", kGive);
+  checkNumbers(options, patches.size(), file);
+  const std::vector<Vector3d> scalp =
+      options.scalp ? scalpPoints(*options.scalp, nullptr) : scalpPoints(mesh, &roles.scalp);
+  out.scalp = options.scalp ? "" : roles.scalp_names;
+  const RootMeasure measure = measureOf(options, scalp, file, out.roots);
+  if (options.other_end) out.roots = "the other end than " + out.roots;
+  Followed all = followAll(mesh, patches, options, measure, out);
+  if (all.strips.empty())
+    throw InputError(file, "", "holds no strip or tube that can be followed: " + out.left_out.front(), kGive);
+  out.scale = unitOf(all.strips, options.unit, mesh.meters_per_unit, out.unit);
+  for (StripRows& strip : all.strips) {
+    (strip.tube ? out.tubes : out.strips) += 1;
+    if (!strip.tube && strip.rows[0].size() > 2) ++out.joined;
+    for (auto& row : strip.rows)
+      for (Vector3d& p : row) p *= out.scale;
+  }
+  try {
+    out.mesh = meshOfStrips(all.strips, options.mesh);
+  } catch (const std::runtime_error& fault) {
+    throw InputError(file, "", std::string("no hair mesh can be made of it: ") + fault.what(),
+                     "give fewer strips with rows that do not fold over each other");
+  }
+  for (const int s : out.mesh.left_out) {
+    const StripRows& strip = all.strips[static_cast<std::size_t>(s)];
+    (strip.tube ? out.tubes : out.strips) -= 1;
+    if (!strip.tube && strip.rows[0].size() > 2) --out.joined;
+    out.left_out.push_back(all.names[static_cast<std::size_t>(s)] + " folds over itself");
+  }
+  return out;
+}
+
+std::string stripReport(const StripConversion& conversion) {
+  const StripMesh& mesh = conversion.mesh;
+  std::string text = reportLine("read          %s in %s", kinds(conversion).c_str(), conversion.unit.c_str());
+  if (!conversion.scalp.empty()) text += reportLine("scalp         %.300s", conversion.scalp.c_str());
+  text += reportLine("root edges    %s; --root-edge and --flip-strips overrule it", conversion.roots.c_str());
+  const std::string least = mesh.least_layers < mesh.most_layers ? std::to_string(mesh.least_layers) + " to " : "";
+  text +=
+      reportLine("hair mesh     %d vertices in %d columns of %s%d layers; %zu root faces%s", mesh.shape.vertexCount(),
+                 mesh.shape.columnCount(), least.c_str(), mesh.most_layers, mesh.shape.root_faces.size(),
+                 mesh.thinned ? "; rows were left out, --vertices asks for more" : "");
+  if (mesh.thickness > 0) text += reportLine("thickness     %.1f mm of strips at their roots", 1e3 * mesh.thickness);
+  if (conversion.cut > 0)
+    text += reportLine("cut short     %s whose last rows are no rows", countOf(conversion.cut, "strip").c_str());
+  for (std::size_t k = 0; k < std::min(kToldOf, conversion.left_out.size()); ++k)
+    text += reportLine("left out      %.300s", conversion.left_out[k].c_str());
+  if (conversion.left_out.size() > kToldOf)
+    text += reportLine("              and %zu more", conversion.left_out.size() - kToldOf);
+  return text;
+}
+
+std::string stripNote(const StripConversion& conversion) {
+  std::string text = kinds(conversion) + " in " + conversion.unit + ", rooted at " + conversion.roots + ", as " +
+                     std::to_string(conversion.mesh.shape.vertexCount()) + " vertices";
+  if (!conversion.left_out.empty())
+    text += "; " + std::to_string(conversion.left_out.size()) + " left out, the first: " + conversion.left_out.front();
+  return text;
+}
+
+}  // namespace app

@@ -1,0 +1,50 @@
+// Strips, cards and tubes of a polygon file to a hair mesh, and what is said about it. docs/conversion.md
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/groom/strips/polygon_mesh.h"
+#include "app/groom/strips/strip_mesh.h"
+
+namespace app {
+
+// Which end of a strip is its root edge.
+enum class RootEdge {
+  kAuto,
+  kScalp,
+  kHighest,
+  kLowest
+};  // kAuto: nearest to the scalp where there is one, else highest
+
+struct StripOptions {
+  StripMeshOptions mesh;
+  RootEdge root = RootEdge::kAuto;
+  bool other_end = false;              // of every strip: the end that is not found is the root
+  std::vector<int> flipped;            // numbers of strips, from 1, of which it is so
+  double unit = 0;                     // m in a unit of the file; 0: as it says where that is plausible, or inferred
+  double join = 0;                     // m: neighbouring strips nearer than this become one sheet
+  char up = 'y';                       // the file's axis that is up, for the highest end
+  const PolygonMesh* scalp = nullptr;  // of another file, in the same unit and axes
+};
+
+struct StripConversion {
+  StripMesh mesh;                         // m, the file's axes
+  int strips = 0, joined = 0, tubes = 0;  // pieces that became hair; joined: strips of several quads across
+  std::string unit;                       // in words
+  double scale = 1;
+  std::string roots;                  // in words: how the root edges were told
+  std::vector<std::string> left_out;  // "strip 3 ('hair_back'): ..."
+  int cut = 0;                        // strips whose last rows were left out
+  std::string scalp;                  // objects taken for the scalp
+};
+
+// Throws InputError naming `file` where it holds no strip or tube that can be followed.
+StripConversion convertStrips(const PolygonMesh& mesh, const StripOptions& options, const std::string& file);
+
+// One fact a line.
+std::string stripReport(const StripConversion& conversion);
+// In one sentence.
+std::string stripNote(const StripConversion& conversion);
+
+}  // namespace app

@@ -1,0 +1,138 @@
+#include "app/scene/detail/draw_governor.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace app {
+
+namespace {
+
+// Cost and error: geometric means over close_up and bust of `hairmesh-bench --draw-pareto`, one run on llvmpipe beside
+// other work, in which times of equal work differed by a third. What a rung costs elsewhere the governor learns.
+constexpr DrawRung kDrawLadder[] = {
+    {"all strands", 1, 1, 1, 1, 1},
+    {"70 % of the strands", 0.7, 1.5, 0.7, 0.80, 1.02},
+    {"50 % of the strands", 0.5, 2, 0.5, 0.69, 1.03},
+    {"35 % of the strands", 0.35, 3, 0.35, 0.54, 1.11},
+    {"22 % of the strands", 0.22, 4, 0.22, 0.43, 1.26},
+    {"12 % of the strands", 0.12, 6, 0.12, 0.35, 1.63},
+};
+static_assert(std::size(kDrawLadder) <= kMaxDrawRungs);
+
+constexpr double kGlide = 0.5;          // s from one rung to the next
+constexpr double kMostOfAGlide = 0.25;  // of it, in one frame
+constexpr int kStart = 3;               // frames that compile shaders and fill the GPU
+constexpr double kDrawOver = 1.03;      // times the budget, from which a cheaper rung is taken
+constexpr double kDrawFitsUp = 0.88;    // share of the budget that a finer rung's predicted time must fit in
+constexpr double kDrawBackoff = 1, kMaxDrawBackoff = 32;  // s before a climb
+constexpr double kTakenBack = 8;                          // s
+constexpr double kLeastRise = 1.02, kMostOff = 1.8;       // times the ladder's word
+
+int cheapest() {
+  return static_cast<int>(drawLadder().size()) - 1;
+}
+
+double wordOf(int rung) {
+  return kDrawLadder[rung].cost / kDrawLadder[rung + 1].cost;
+}
+
+double riseTo(int rung, const DrawGovernor& governor) {
+  return governor.rise[rung] > 0 ? governor.rise[rung] : wordOf(rung);
+}
+
+double medianOfWindow(std::array<double, DrawGovernor::kWindow> window) {
+  std::nth_element(window.begin(), window.begin() + window.size() / 2, window.end());
+  return window[window.size() / 2];
+}
+
+// What a climb really did to the cost. Descents teach nothing: the load that forced them has changed the cost as well.
+void learnRise(DrawGovernor& governor) {
+  if (!governor.climbed || governor.left_cost <= 0) return;
+  const double word = wordOf(governor.rung), ratio = governor.measured_cost / governor.left_cost;
+  governor.rise[governor.rung] = std::max(kLeastRise, std::clamp(ratio, word / kMostOff, word * kMostOff));
+  governor.left_cost = 0;
+}
+
+bool changeDrawRung(int rung, DrawGovernor& governor) {
+  governor.climbed = rung < governor.rung;
+  governor.left_cost = governor.measured_cost;
+  governor.rung = rung;
+  governor.since_change = 0;
+  governor.settle = 1;
+  ++governor.changes;
+  return true;
+}
+
+bool stepDown(DrawGovernor& governor) {
+  governor.over_budget = governor.rung == cheapest();
+  if (governor.over_budget) return false;
+  const bool taken_back = governor.climbed && governor.since_change < kTakenBack;
+  governor.backoff = std::clamp(governor.backoff * (taken_back ? 2 : 0.5), kDrawBackoff, kMaxDrawBackoff);
+  return changeDrawRung(governor.rung + 1, governor);
+}
+
+// The value between two rungs, in equal shares.
+double glidingValue(double DrawRung::*value, double place) {
+  const int from = std::clamp(static_cast<int>(place), 0, cheapest());
+  const int to = std::min(from + 1, cheapest());
+  const double share = place - from;
+  return std::pow(kDrawLadder[from].*value, 1 - share) * std::pow(kDrawLadder[to].*value, share);
+}
+
+}  // namespace
+
+std::span<const DrawRung> drawLadder() {
+  return kDrawLadder;
+}
+
+void setDrawBudget(double seconds, DrawGovernor& governor) {
+  const bool was_off = governor.budget <= 0;
+  governor.budget = std::isfinite(seconds) ? std::max(0.0, seconds) : 0;
+  if (was_off) governor.rung = 0, governor.place = 0;
+  governor.frames = 0;
+  governor.settle = was_off ? kStart : 0;
+  governor.left_cost = 0;
+  governor.since_change = 0;
+  governor.backoff = kDrawBackoff;
+  governor.over_budget = false;
+}
+
+void glide(double seconds, DrawGovernor& governor) {
+  if (governor.budget <= 0) return;
+  const double most = std::clamp(seconds / kGlide, 0.0, kMostOfAGlide), way = governor.rung - governor.place;
+  governor.place = std::abs(way) <= most ? governor.rung : governor.place + std::copysign(most, way);
+}
+
+bool observeDrawing(double seconds, double cost, DrawGovernor& governor) {
+  if (governor.budget <= 0 || !std::isfinite(cost)) return false;
+  governor.since_change += std::max(0.0, seconds);
+  if (governor.place != governor.rung) return false;
+  if (governor.settle > 0) {
+    --governor.settle;
+    return false;
+  }
+  governor.window[governor.frames++] = cost;
+  if (governor.frames < DrawGovernor::kWindow) return false;
+  governor.frames = 0;
+  governor.measured_cost = medianOfWindow(governor.window);
+  learnRise(governor);
+  if (governor.measured_cost > kDrawOver * governor.budget) return stepDown(governor);
+  governor.over_budget = false;
+  if (governor.rung == 0 || governor.since_change < governor.backoff) return false;
+  const double predicted = governor.measured_cost * riseTo(governor.rung - 1, governor);
+  return predicted <= kDrawFitsUp * governor.budget && changeDrawRung(governor.rung - 1, governor);
+}
+
+void governDrawing(const DrawGovernor& governor, render::FrameInput& frame) {
+  if (governor.budget <= 0) return;
+  const auto share = [&](double DrawRung::*value) { return static_cast<float>(glidingValue(value, governor.place)); };
+  frame.view.strand_share *= share(&DrawRung::strands);
+  frame.view.segment_error *= share(&DrawRung::segment_error);
+  frame.light.shadow_strand_share *= share(&DrawRung::shadow_strands);
+}
+
+std::string drawRungName(const DrawGovernor& governor) {
+  return kDrawLadder[governor.rung].name;
+}
+
+}  // namespace app

@@ -1,0 +1,329 @@
+#include "app/scene/edit/edit_history.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <tuple>
+#include <utility>
+
+#include "app/files/data_path.h"
+#include "app/files/errors.h"
+#include "app/files/recording.h"
+#include "app/scene/demo.h"
+#include "app/scene/edit/groom_brush.h"
+#include "app/scene/edit/mesh_change.h"
+#include "app/scene/present_scene.h"
+#include "sim/field_text.h"
+
+namespace app {
+
+namespace {
+
+// What an edit reaches beyond the settings.
+enum Reach { kSettings = 0, kOfView = 1, kOfHair = 2, kOfMotion = 4, kOfShape = 8 };
+
+struct EditKind {
+  Ask what;
+  int reach;
+  bool drags;  // one gesture gives many of them
+  const char* title;
+};
+
+// What is no edit (pause, steps, pictures, saving) is not here.
+constexpr EditKind kEditKinds[] = {{Ask::kSetParam, kSettings, true, ""},
+                                   {Ask::kPresetFile, kSettings, false, "Preset"},
+                                   {Ask::kSkip, kSettings, false, "Skip"},
+                                   {Ask::kBudget, kSettings, true, "Budget"},
+                                   {Ask::kDrawBudget, kSettings, true, "Drawing budget"},
+                                   {Ask::kDeadline, kSettings, true, "Deadline"},
+                                   {Ask::kSpeed, kSettings, true, "Speed"},
+                                   {Ask::kVary, kSettings, false, "Variation"},
+                                   {Ask::kDebugView, kSettings, false, "Debug view"},
+                                   {Ask::kView, kOfView, false, "View"},
+                                   {Ask::kFollow, kOfView, false, "Follow figure"},
+                                   {Ask::kGoToView, kOfView, false, "Kept view"},
+                                   {Ask::kLens, kOfView, true, "Lens"},
+                                   {Ask::kBrush, kOfHair | kOfShape, true, ""},
+                                   {Ask::kMove, kOfHair | kOfShape, true, "move"},
+                                   {Ask::kMesh, kOfHair | kOfShape, false, ""},
+                                   {Ask::kPaint, kOfHair | kOfShape, true, "Paint"},
+                                   {Ask::kCurve, kOfHair | kOfShape, true, "Curve of"},
+                                   {Ask::kReset, kOfHair, false, "Hair to rest"},
+                                   {Ask::kCollapse, kOfHair, false, "Collapse"},
+                                   {Ask::kStyle, kOfHair, false, "Style"},
+                                   {Ask::kResolution, kOfHair, false, "Resolution"},
+                                   {Ask::kHairFile, kOfHair, false, "Hair mesh"},
+                                   {Ask::kHairMends, kOfHair, false, "Mends"},
+                                   {Ask::kTie, kOfHair, false, "Tie"},
+                                   {Ask::kAttach, kOfHair, false, "Attachment"},
+                                   {Ask::kMap, kOfHair, false, "Painted"},
+                                   {Ask::kRestart, kOfHair | kOfMotion, false, "To the start"},
+                                   {Ask::kCarryAlong, kOfHair | kOfMotion, true, "Scrub"},
+                                   {Ask::kClip, kOfHair | kOfMotion, false, "Clip"},
+                                   {Ask::kLoop, kOfHair | kOfMotion, false, "At the end"},
+                                   {Ask::kMotionFile, kOfView | kOfHair | kOfMotion, false, "Motion"},
+                                   {Ask::kSceneFile, kOfView | kOfHair | kOfMotion, false, "Scene"},
+                                   {Ask::kLoadState, kOfView | kOfHair | kOfMotion, false, "State"}};
+
+const EditKind* kindOf(Ask what) {
+  const auto at = std::find_if(std::begin(kEditKinds), std::end(kEditKinds),
+                               [&](const EditKind& kind) { return kind.what == what; });
+  return at == std::end(kEditKinds) ? nullptr : at;
+}
+
+std::string spaced(std::string name) {
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == '_' || c == '-'; }, ' ');
+  return name;
+}
+
+std::string titleOf(const Request& request, const EditKind& kind) {
+  if (request.what == Ask::kSetParam) return spaced(request.name).append(" ").append(request.text);
+  if (request.what == Ask::kBrush) return request.name;
+  if (request.what == Ask::kMove) return kind.title + (" " + request.name);
+  if (request.what == Ask::kMesh) return spaced(request.name);
+  std::string title = kind.title;
+  if (!request.name.empty() && request.what != Ask::kMotionFile) title.append(" ").append(request.name);
+  const bool sample = request.what == Ask::kPaint;
+  if (!request.text.empty() && request.what != Ask::kVary && !sample)
+    title.append(" ").append(spaced(stem(request.text)).substr(0, 40));
+  const bool number = request.what == Ask::kBudget || request.what == Ask::kDrawBudget ||
+                      request.what == Ask::kDeadline || request.what == Ask::kSpeed || request.what == Ask::kVary;
+  if (number) title.append(" ").append(sim::numberText(request.value));
+  const bool toggle = request.what == Ask::kSkip || request.what == Ask::kDebugView || request.what == Ask::kFollow;
+  if (toggle) title += request.value != 0 ? " on" : " off";
+  return title;
+}
+
+EditSide sideOf(const Demo& demo, int reach) {
+  EditSide side;
+  side.scene = demo.scene;
+  for (const Actor& actor : demo.actors) side.cast.push_back(actor.spec);
+  side.selected = demo.selected;
+  side.debug = demo.debug;
+  if (reach & kOfView) side.camera = demo.camera;
+  if (!(reach & (kOfHair | kOfMotion))) return side;
+  for (const Actor& actor : demo.actors) {
+    const Haircut& haircut = *actor.haircut;
+    const Rigid head = scalpToWorld(actor.body->character, actor.pose);
+    ActorMoment moment{head, actor.hair, {}, {}, haircut.remeshed, haircut.frozen};
+    if (reach & kOfMotion) moment.playback = actor.playback;
+    if (reach & kOfShape || haircut.edited) moment.shape = haircut.mesh.shape;
+    side.moments.push_back(std::move(moment));
+  }
+  return side;
+}
+
+std::string mapsText(const FieldFiles& maps) {
+  std::string text;
+  for (const std::string_view field : kFieldNames) text += mapOf(field, maps) + "|";
+  return text;
+}
+
+// Whether one actor can play both without being made anew. All members are named, so that a new one does not compile
+// until it is decided.
+bool sameCast(const CharacterSpec& a, const CharacterSpec& b) {
+  const auto cast = [](const CharacterSpec& spec) {
+    const auto& [motion, parts, clip, style, resolution, hair, reverse_faces, fit, mends, position, heading,
+                 clip_offset, loop, look, pins, ties, attachments, maps, curves] = spec;
+    return std::tuple(motion, parts, clip, style, resolution, hair, reverse_faces, fit, mends, position.x(),
+                      position.y(), position.z(), heading, loop, writePins(pins).dump(), writeTies(ties).dump(),
+                      wornText(attachments), mapsText(maps), writeCurves(curves).dump());
+  };
+  return cast(a) == cast(b);
+}
+
+void castAnew(const CharacterSpec& spec, const ActorMoment* moment, int index, Demo& demo) {
+  Actor& old = demo.actors[static_cast<std::size_t>(index)];
+  const bool same_motion = spec.motion == old.spec.motion && spec.parts == old.spec.parts;
+  Actor fresh = makeActor(spec, demo.scene.playback, demo.asset_cache);
+  if (same_motion && spec.clip == old.spec.clip) {
+    const ClipLoop loop = fresh.playback.loop;
+    fresh.playback = old.playback;
+    fresh.playback.loop = loop;
+  }
+  fresh.playback.paused = old.playback.paused;
+  placeActor(fresh, true);
+  if (!moment) settleActor(demo.scene.sim, demo.scene.playback.settle, fresh);
+  fresh.context->refreshGradually(true);
+  replaceActor(std::move(fresh), index, same_motion, demo);
+}
+
+// The hair in the shape that it had, where the head is now.
+void bringBack(const ActorMoment& moment, Actor& actor) {
+  if (moment.playback) {
+    const bool paused = actor.playback.paused;
+    actor.playback = *moment.playback;
+    actor.playback.paused = paused;
+    placeActor(actor, false);
+  }
+  actor.hair = moment.hair;
+  const Rigid head = scalpToWorld(actor.body->character, actor.pose);
+  if (head.matrix() != moment.head.matrix()) sim::carryAlong(moment.head, head, actor.hair);
+  actor.previous_positions = actor.hair.positions;
+  actor.coarse.active = false;
+  actor.shown_still = false;
+  wakeAll(actor);
+}
+
+void bringBackSettings(const EditSide& side, Demo& demo) {
+  Scene& scene = demo.scene;
+  const double budget = scene.playback.budget_ms, draw_budget = scene.playback.draw_budget_ms;
+  scene = side.scene;
+  for (std::size_t i = 0; i < demo.actors.size(); ++i) {
+    demo.actors[i].spec = side.cast[i];
+    demo.actors[i].playback.speed = scene.playback.speed;
+  }
+  if (scene.playback.budget_ms != budget) setBudget(1e-3 * scene.playback.budget_ms, demo.governor);
+  if (scene.playback.draw_budget_ms != draw_budget)
+    setDrawBudget(1e-3 * scene.playback.draw_budget_ms, demo.draw_governor);
+  demo.deadline.seconds = 1e-3 * scene.playback.deadline_ms;
+  demo.selected = std::clamp(side.selected, 0, static_cast<int>(demo.actors.size()) - 1);
+  demo.debug = side.debug;
+}
+
+void bringBackView(const Camera& view, Camera& camera) {
+  const Camera now = camera;
+  camera = view;
+  camera.jumped = now.jumped;
+  if (view.follow) camera.anchor = now.anchor;
+}
+
+void bringBack(const EditSide& side, Demo& demo) {
+  demo.loading.waiting.reset();
+  demo.loading.unwanted = demo.loading.running.valid();
+  if (side.cast.size() != demo.actors.size()) {
+    const bool paused = demo.paused;
+    Scene scene = side.scene;
+    scene.characters = side.cast;
+    replaceScene(openScene(std::move(scene), demo.aspect), demo);
+    demo.paused = paused;
+  } else {
+    for (std::size_t i = 0; i < demo.actors.size(); ++i) {
+      const Haircut& worn = *demo.actors[i].haircut;
+      const ActorMoment* moment = side.moments.empty() ? nullptr : &side.moments[i];
+      const bool another_shape =
+          moment && ((worn.edited && moment->shape.positions.empty()) || (worn.remeshed && !moment->remeshed));
+      if (another_shape || !sameCast(side.cast[i], demo.actors[i].spec))
+        castAnew(side.cast[i], moment, static_cast<int>(i), demo);
+    }
+  }
+  bringBackSettings(side, demo);
+  for (std::size_t i = 0; i < side.moments.size(); ++i) {
+    const ActorMoment& moment = side.moments[i];
+    if (moment.remeshed) {
+      bringBackShape(moment.shape, static_cast<int>(i), demo);
+    } else if (moment.hair.positions.size() != demo.actors[i].hair.positions.size()) {
+      continue;
+    } else if (!moment.shape.positions.empty()) {
+      reshapeHair(moment.shape.positions, static_cast<int>(i), demo);
+    }
+    if (moment.frozen != demo.actors[i].haircut->frozen) freezeHair(moment.frozen, static_cast<int>(i), demo);
+    bringBack(moment, demo.actors[i]);
+  }
+  if (side.camera) bringBackView(*side.camera, demo.camera);
+  demo.shown_fraction = -1;
+}
+
+// Changes the two sides of a step over.
+void swapSides(EditStep& step, Demo& demo) {
+  EditSide now = sideOf(demo, kindOf(step.request.what)->reach);
+  bringBack(step.other, demo);
+  step.other = std::move(now);
+}
+
+[[noreturn]] void refuse(const char* which, const char* mend) {
+  throw InputError("", "", std::string("nothing to ") + which, mend);
+}
+
+}  // namespace
+
+std::size_t EditSide::bytes() const {
+  std::size_t bytes = sizeof(EditSide) + 4 * cast.size() * sizeof(CharacterSpec);
+  for (const ActorMoment& moment : moments) {
+    const std::size_t vertices = moment.hair.positions.size();
+    bytes += vertices * 4 * sizeof(sim::Vec3) * 4;  // positions, velocities, those before, and about thrice of memory
+  }
+  return bytes;
+}
+
+std::optional<EditStep> beginEdit(const Request& request, const Demo& demo) {
+  const EditKind* kind = kindOf(request.what);
+  if (!kind) return {};
+  const EditHistory& history = demo.edits;
+  if (kind->drags && history.gesture && history.done == history.steps.size() && history.done > 0) {
+    const Request& last = history.steps.back().request;
+    if (last.what == request.what && last.name == request.name) return EditStep{titleOf(request, *kind), request, {}};
+  }
+  return EditStep{titleOf(request, *kind), request, sideOf(demo, kind->reach)};
+}
+
+void commitEdit(EditStep step, EditHistory& history) {
+  const bool goes_on = step.other.cast.empty();
+  history.gesture = kindOf(step.request.what)->drags;
+  if (goes_on) {
+    history.steps.back().title = std::move(step.title);
+    return;
+  }
+  history.steps.resize(history.done);
+  history.steps.push_back(std::move(step));
+  std::size_t bytes = 0, keep = history.steps.size();
+  while (keep > 0 && (bytes += history.steps[keep - 1].other.bytes()) <= kMaxEditBytes) --keep;
+  keep = std::min(keep, history.steps.size() - 1);
+  history.steps.erase(history.steps.begin(), history.steps.begin() + static_cast<std::ptrdiff_t>(keep));
+  history.done = history.steps.size();
+}
+
+void undoEdits(int count, Demo& demo) {
+  if (demo.edits.done == 0) refuse("undo", "this is where the scene was opened");
+  for (; count > 0 && demo.edits.done > 0; --count) {
+    // Taken out: the demo may be replaced by another scene's.
+    EditHistory history = std::exchange(demo.edits, {});
+    EditStep& step = history.steps[history.done - 1];
+    // What is still being loaded for the step will not be: there is nothing to do again.
+    const bool loading = demo.loading.running.valid();
+    const std::string title = step.title;
+    try {
+      swapSides(step, demo);
+      --history.done;
+      if (loading) history.steps.resize(history.done);
+    } catch (...) {
+      demo.edits = std::move(history);
+      throw;
+    }
+    demo.message = "undone: " + title;
+    demo.message_is_fault = false;
+    history.gesture = false;
+    demo.edits = std::move(history);
+  }
+}
+
+void redoEdits(int count, Demo& demo) {
+  if (demo.edits.done == demo.edits.steps.size()) refuse("redo", "nothing was undone since the last change");
+  for (; count > 0 && demo.edits.done < demo.edits.steps.size(); --count) {
+    EditHistory history = std::exchange(demo.edits, {});
+    EditStep& step = history.steps[history.done];
+    try {
+      swapSides(step, demo);
+      ++history.done;
+    } catch (...) {
+      demo.edits = std::move(history);
+      throw;
+    }
+    demo.message = "done again: " + step.title;
+    demo.message_is_fault = false;
+    history.gesture = false;
+    demo.edits = std::move(history);
+  }
+}
+
+std::string editHash(const Demo& demo) {
+  std::string text = writeScene(presentScene(demo)) + std::to_string(demo.selected);
+  for (const DebugView& view : kDebugViews) text += demo.debug.*view.on ? "1" : "0";
+  for (const Skip& skip : skipTable()) text += demo.scene.skips[skip.id] ? "1" : "0";
+  for (const Actor& actor : demo.actors) text.append(1, ' ').append(sim::numberText(actor.playback.time));
+  std::uint64_t hash = 0xcbf29ce484222325ull;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
+  return std::to_string(hash) + "-" + stateHash(demo);
+}
+
+}  // namespace app

@@ -1,0 +1,73 @@
+// Undo and redo of what requests change: parameters, presets, files, look, view, and what they do to hair and motion.
+//
+// A step holds the side of the edit that is not on the screen: what was before it while it is done, what was after it
+// while it is undone. Time is not part of it: where the figure has moved on since, hair that an edit had changed comes
+// back in the shape that it had, carried to where the head is now. While time stands still all comes back to the bit.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/files/scene_file.h"
+#include "app/motion/playback.h"
+#include "app/scene/request.h"
+#include "app/scene/view/camera.h"
+#include "app/scene/view/debug_views.h"
+#include "sim/mesh/hair_mesh.h"
+#include "sim/mesh/hair_state.h"
+
+namespace app {
+
+struct Demo;
+
+// One character's hair, and its motion where the edit has changed it.
+struct ActorMoment {
+  Rigid head = Rigid::Identity();  // scalp frame to world
+  sim::HairState hair;
+  std::optional<Playback> playback;
+  sim::HairMeshShape shape;  // of hair that brushes have reshaped or are about to; else without positions
+  bool remeshed = false;     // that shape has a structure of its own
+  std::vector<float> frozen;
+};
+
+// What an edit can change, as it is at one moment.
+struct EditSide {
+  Scene scene;
+  std::vector<CharacterSpec> cast;  // the characters as they are played
+  int selected = 0;
+  DebugViews debug;
+  std::optional<Camera> camera;      // of edits of the view
+  std::vector<ActorMoment> moments;  // of edits of hair or motion, one a character
+  std::size_t bytes() const;         // about as many as it takes
+};
+
+struct EditStep {
+  std::string title;  // "Density 80"
+  Request request;
+  EditSide other;
+};
+
+struct EditHistory {
+  std::vector<EditStep> steps;  // the first `done` ones are done, the others undone
+  std::size_t done = 0;
+  bool gesture = false;  // the last step goes on: a slider that is dragged makes one step
+};
+
+// Older steps are dropped beyond this.
+inline constexpr std::size_t kMaxEditBytes = std::size_t{256} << 20;
+
+// Before an edit is applied: what it will change, if it is one and begins a step of its own.
+std::optional<EditStep> beginEdit(const Request& request, const Demo& demo);
+// After it has been applied without a fault. What was undone before it is gone.
+void commitEdit(EditStep step, EditHistory& history);
+
+// Goes `count` steps back or on. Throws InputError where there are none; then nothing has changed. Files that a step
+// names are read again: where that fails, the step stays as it is.
+void undoEdits(int count, Demo& demo);
+void redoEdits(int count, Demo& demo);
+
+// A hash of all that undo brings back: settings, view, and stateHash.
+std::string editHash(const Demo& demo);
+
+}  // namespace app

@@ -1,0 +1,75 @@
+#include "app/scene/edit/picking.h"
+
+#include <cmath>
+
+namespace app {
+
+namespace {
+
+struct Eye {
+  Vec3 at, forward, right, up;
+  double slope;
+  explicit Eye(const Camera& camera) : slope(std::tan(0.5 * camera.fov)) {
+    const Vec3 back = viewBack(camera);
+    at = camera.anchor + camera.target + camera.distance * back;
+    forward = -back;
+    right = Vec3::UnitY().cross(back).normalized();
+    up = back.cross(right);
+  }
+};
+
+// Distance along the ray to a triangle (Moeller and Trumbore 1997); negative: it is missed.
+double meet(const Ray& ray, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, p = ray.along.cross(ac);
+  const double det = ab.dot(p);
+  if (std::abs(det) < 1e-18) return -1;
+  const Vec3 from = ray.from - a, q = from.cross(ab);
+  const double u = from.dot(p) / det, v = ray.along.dot(q) / det;
+  return u < 0 || v < 0 || u + v > 1 ? -1 : ac.dot(q) / det;
+}
+
+}  // namespace
+
+Ray rayThrough(double x, double y, double width, double height, const Camera& camera) {
+  const Eye eye(camera);
+  const double scale = 2 * eye.slope / height;
+  const Vec3 way = eye.forward + scale * ((x - 0.5 * width) * eye.right - (y - 0.5 * height) * eye.up);
+  return {eye.at, way.normalized()};
+}
+
+std::optional<std::array<double, 2>> pixelOf(const Vec3& point, double width, double height, const Camera& camera) {
+  const Eye eye(camera);
+  const Vec3 way = point - eye.at;
+  const double depth = way.dot(eye.forward);
+  if (depth < 1e-3) return {};
+  const double scale = height / (2 * eye.slope * depth);
+  return std::array{0.5 * width + scale * way.dot(eye.right), 0.5 * height - scale * way.dot(eye.up)};
+}
+
+Vec3 pointInPlane(const Ray& ray, const Vec3& place, const Vec3& facing) {
+  const double slope = ray.along.dot(facing);
+  return std::abs(slope) < 1e-6 ? place : Vec3(ray.from + (place - ray.from).dot(facing) / slope * ray.along);
+}
+
+std::optional<HairHit> pickHairFace(const Ray& ray, const Actor& actor) {
+  const std::vector<Vec3>& x = actor.hair.positions;
+  const std::vector<sim::ExternalFace>& faces = actor.haircut->mesh.external_faces;
+  double nearest = INFINITY;
+  int met = 0;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const sim::ExternalFace& face = faces[f];
+    for (int k = 2; k < face.corner_count; ++k) {
+      const double distance = meet(ray, x[face.v[0]], x[face.v[k - 1]], x[face.v[k]]);
+      if (distance > 0 && distance < nearest) nearest = distance, met = static_cast<int>(f);
+    }
+  }
+  if (!std::isfinite(nearest)) return {};
+  return HairHit{ray.from + nearest * ray.along, met};
+}
+
+std::optional<Vec3> pickHair(const Ray& ray, const Actor& actor) {
+  const std::optional<HairHit> hit = pickHairFace(ray, actor);
+  return hit ? std::optional<Vec3>(hit->at) : std::nullopt;
+}
+
+}  // namespace app
