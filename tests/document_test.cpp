@@ -9,7 +9,7 @@
 
 #include "tests/bench/table.h"
 
-namespace {
+namespace document_test {
 
 using bench::Fold;
 using bench::Table;
@@ -76,4 +76,4 @@ TEST(Documents, AreTwoScreensLong) {
   EXPECT_GT(pages, 0);
 }
 
-}  // namespace
+}  // namespace document_test

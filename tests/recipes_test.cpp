@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace {
+namespace recipes_test {
 
 namespace fs = std::filesystem;
 
@@ -89,4 +89,4 @@ TEST(Recipes, TheReadmeAndEveryPageLinkToFilesThatExist) {
   }
 }
 
-}  // namespace
+}  // namespace recipes_test

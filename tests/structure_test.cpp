@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace {
+namespace structure_test {
 
 namespace fs = std::filesystem;
 
@@ -242,4 +242,4 @@ TEST(Structure, TestNamesAreWords) {
   EXPECT_GT(found, 5u);
 }
 
-}  // namespace
+}  // namespace structure_test

@@ -1,14 +1,13 @@
 // Modified preconditioned conjugate gradients with a filter per constrained vertex, after Baraff and Witkin, "Large
-// Steps in Cloth Simulation" (1998), section 5.3.
-//
-// Solves A x = b for the free directions: x keeps its value in the removed directions, where the residual is the
-// constraint's reaction. All vectors have one V3 per vertex.
+// Steps in Cloth Simulation" (1998), section 5.3. Solves A x = b for the free directions: x keeps its value in the
+// removed directions, where the residual is the constraint's reaction. All vectors have one V3 per vertex.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "sim/linear/vector3.h"

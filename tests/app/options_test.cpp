@@ -14,7 +14,7 @@
 #include "app/files/scene_file.h"
 #include "tests/run_program.h"
 
-namespace {
+namespace options_test {
 
 using app::Options;
 using test::Outcome;
@@ -392,4 +392,4 @@ TEST(Options, WithoutADisplayTheWindowSaysWhatToDo) {
   EXPECT_NE(outcome.err.find("--headless"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace options_test

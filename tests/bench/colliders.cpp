@@ -7,25 +7,25 @@
 #include "app/files/data_path.h"
 #include "app/scene/actor.h"
 #include "tests/bench/cpu_clock.h"
+#include "tests/bench/scene_times.h"
 #include "tests/bench/skin_distance.h"
 
 namespace bench {
 namespace {
 
-constexpr double kSettle = 2;       // s before the measured frames
 constexpr int kFramesPerSkin = 20;  // the skin is posed and measured every so many frames
 constexpr double kReach = 0.05;     // m, as far as distances to the skin are told
 
-struct Row {
+struct ColliderRow {
   std::vector<double> step, collision;  // s
   double worst_inside = 0;              // m, deepest external vertex under the skin
   int vertices = 0, inside = 0;         // looked at; under the skin by more than a millimetre
   std::vector<double> gaps;             // m, of vertices in contact, beyond the contact offset
 };
 
-Row measure(const sim::SimParams& params, int frames, app::Actor& actor) {
+ColliderRow measure(const sim::SimParams& params, int frames, app::Actor& actor) {
   app::settleActor(params, kSettle, actor);
-  Row row;
+  ColliderRow row;
   for (int frame = 0; frame < frames; ++frame) {
     app::moveActor(params.time_step, actor);
     const double started = cpuSeconds();
@@ -75,7 +75,7 @@ void runColliders(const ColliderOptions& options, std::FILE* out) {
           app::Actor actor = app::makeActor(spec, app::PlaybackSpec{}, asset_cache);
           sim::SimParams params;
           params.collider = kind;
-          Row row = measure(params, options.frames, actor);
+          ColliderRow row = measure(params, options.frames, actor);
           std::sort(row.gaps.begin(), row.gaps.end());
           const auto part = [&](double share) {
             return row.gaps.empty() ? 0.0 : 1e3 * row.gaps[static_cast<std::size_t>(share * (row.gaps.size() - 1))];

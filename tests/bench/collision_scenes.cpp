@@ -5,9 +5,10 @@
 #include <string>
 
 #include "app/files/data_path.h"
-#include "app/scene/actor.h"
 #include "sim/contact/self_contact.h"
+#include "tests/bench/collisions.h"
 #include "tests/bench/cpu_clock.h"
+#include "tests/bench/scene_times.h"
 
 namespace bench {
 namespace {
@@ -15,14 +16,8 @@ namespace {
 using sim::Ellipsoid;
 using sim::Vec3;
 
-constexpr double kSettle = 2;  // s
-
-app::Actor makeDancer(const std::string& clip, app::Style style, app::Resolution resolution,
-                      app::AssetCache& asset_cache) {
-  app::CharacterSpec spec;
-  spec.motion = app::findFile(clip, "", "clips");
-  spec.style = style, spec.resolution = resolution;
-  app::Actor actor = app::makeActor(spec, app::PlaybackSpec{}, asset_cache);
+app::Actor settledDancer(const std::string& clip, app::Style style, app::AssetCache& asset_cache) {
+  app::Actor actor = makeDancer(clip, style, app::Resolution::kMedium, asset_cache);
   app::settleActor(sim::SimParams{}, kSettle, actor);
   return actor;
 }
@@ -150,7 +145,7 @@ void writeSpawns(std::FILE* out) {
       "|---|---|---|---|---|---|---|---|---|---|---|\n");
   app::AssetCache asset_cache;
   for (const app::Style style : {app::Style::kShoulder, app::Style::kLong}) {
-    const app::Actor actor = makeDancer("idle_turns.bvh", style, app::Resolution::kMedium, asset_cache);
+    const app::Actor actor = settledDancer("idle_turns.bvh", style, asset_cache);
     for (const double speed : {0.2, 0.5, 1.0, 2.0}) {
       sim::SimParams params;
       params.max_depenetration = speed;
@@ -190,7 +185,7 @@ void writeCrossings(std::FILE* out) {
       "passed through | inside afterwards, mm | recoveries |\n|---|---|---|---|---|---|---|---|---|---|\n");
   app::AssetCache asset_cache;
   for (const app::Style style : {app::Style::kShoulder, app::Style::kLong}) {
-    const app::Actor actor = makeDancer("idle_turns.bvh", style, app::Resolution::kMedium, asset_cache);
+    const app::Actor actor = settledDancer("idle_turns.bvh", style, asset_cache);
     for (const double side : {-1.0, 1.0}) {  // from the right, from the left
       for (const double speed : {5.0, 10.0, 20.0, 40.0}) {
         for (const double spin : {0.0, 10.0}) {
@@ -215,8 +210,7 @@ void writeSelfContacts(int frames, std::FILE* out) {
   for (const app::Style style : {app::Style::kShort, app::Style::kShoulder, app::Style::kLong}) {
     for (const char* clip : {"walk.bvh", "jump_spin.bvh"}) {
       // Both go side by side, frame by frame, so that whatever else the machine does falls on both.
-      app::Actor actors[2] = {makeDancer(clip, style, app::Resolution::kMedium, asset_cache),
-                              makeDancer(clip, style, app::Resolution::kMedium, asset_cache)};
+      app::Actor actors[2] = {settledDancer(clip, style, asset_cache), settledDancer(clip, style, asset_cache)};
       std::vector<double> times[2];
       long sum[2] = {0, 0};
       int most[2] = {0, 0}, recoveries = 0;

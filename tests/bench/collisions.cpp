@@ -7,13 +7,10 @@
 
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
-#include "app/scene/actor.h"
 #include "tests/bench/cpu_clock.h"
+#include "tests/bench/scene_times.h"
 
 namespace bench {
-namespace {
-
-constexpr double kSettle = 2, kRest = 4;  // s before a clip's measured frames; s of standing before rest is measured
 
 app::Actor makeDancer(const std::string& clip, app::Style style, app::Resolution resolution,
                       app::AssetCache& asset_cache) {
@@ -24,6 +21,10 @@ app::Actor makeDancer(const std::string& clip, app::Style style, app::Resolution
   return app::makeActor(spec, app::PlaybackSpec{}, asset_cache);
 }
 
+namespace {
+
+constexpr double kRest = 4;  // s of standing before rest is measured
+
 double depthOf(const app::Actor& actor, int vertex) {
   double depth = 0;
   for (const sim::Ellipsoid& e : actor.ellipsoids) {
@@ -33,18 +34,18 @@ double depthOf(const app::Actor& actor, int vertex) {
   return depth;
 }
 
-struct Row {
+struct CollisionRow {
   double milliseconds = 0, iterations = 0, contacts = 0, entered = 0, left = 0, corrected = 0;  // per step
   double outer = 0, inner = 0;  // m, deepest external and internal vertex after a step
   int recoveries = 0;
 };
 
-Row measureClip(const sim::SimParams& params, int frames, app::Actor& actor) {
+CollisionRow measureClip(const sim::SimParams& params, int frames, app::Actor& actor) {
   app::settleActor(params, kSettle, actor);
   const sim::HairMesh& mesh = actor.haircut->mesh;
   std::vector<unsigned char> external(mesh.vertexCount(), 0);
   for (const int v : mesh.external_vertices) external[v] = 1;
-  Row row;
+  CollisionRow row;
   std::vector<double> times;
   std::set<std::pair<int, int>> before;
   for (int frame = 0; frame < frames; ++frame) {
@@ -121,7 +122,7 @@ void writeClips(const CollisionOptions& options, std::FILE* out) {
   for (const std::string& clip : options.clips) {
     eachStyle(options, [&](const std::string& name, app::Style style, app::Resolution resolution) {
       app::Actor actor = makeDancer(clip, style, resolution, asset_cache);
-      const Row row = measureClip(params, options.frames, actor);
+      const CollisionRow row = measureClip(params, options.frames, actor);
       std::fprintf(out, "| %s | %s | %.2f | %.1f | %.1f | %.2f | %.2f | %.2f | %.3f | %.1f | %d |\n", name.c_str(),
                    clip.c_str(), row.milliseconds, row.iterations, row.contacts, row.entered, row.left, row.corrected,
                    1e3 * row.outer, 1e3 * row.inner, row.recoveries);

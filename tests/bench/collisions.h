@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "app/scene/actor.h"
+
 namespace bench {
 
 struct CollisionOptions {
@@ -14,6 +16,10 @@ struct CollisionOptions {
   std::vector<std::string> styles;                       // names to measure, such as "long low"; empty: all nine
   std::vector<std::pair<std::string, std::string>> set;  // parameters, as --set takes them
 };
+
+// A style's hair on the figure that plays one of the program's clips; not settled. Throws app::InputError.
+app::Actor makeDancer(const std::string& clip, app::Style style, app::Resolution resolution,
+                      app::AssetCache& asset_cache);
 
 // Writes one row a style and clip. Throws app::InputError.
 void writeClips(const CollisionOptions& options, std::FILE* out);

@@ -9,6 +9,7 @@
 #include "app/files/image_io.h"
 #include "app/platform/egl_context.h"
 #include "app/scene/demo.h"
+#include "tests/bench/scene_times.h"
 
 namespace bench {
 namespace {
@@ -16,7 +17,6 @@ namespace {
 constexpr int kOversampling = 2;
 constexpr std::array<const char*, 4> kViews{"front", "side", "back", "top"};
 constexpr std::array<double, 3> kMoments{1.2, 2.6, 4.1};  // s into the motion
-constexpr double kFrame = 1.0 / 60;
 
 app::Scene sceneOf(app::Style style, app::Resolution resolution, const std::string& motion, int strands) {
   app::Scene scene = app::loadScene(app::dataPath("assets/scenes/default.json"));

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kSettle = 1, kShortest = 4, kLongest = 60;  // s
+constexpr double kBefore = 1, kShortest = 4, kLongest = 60;  // s
 constexpr double kRounds = 2;
 constexpr double kStep = 1.0 / 60;  // s
 
@@ -77,7 +77,7 @@ double deepest(const app::Actor& actor) {
 
 Costs play(const sim::SimParams& params, double speed, app::Actor& actor) {
   app::placeActor(actor, true);
-  app::settleActor(params, kSettle, actor);
+  app::settleActor(params, kBefore, actor);
   actor.playback.speed = speed;
   const double seconds = std::clamp(kRounds * actor.playedClip().duration() / speed, kShortest, kLongest);
   Costs costs;
@@ -101,11 +101,11 @@ double quantile(const std::vector<StepCost>& steps, double share, double StepCos
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
 }
 
-const std::vector<std::string> kHead{"style", "clip",  "speed",     "median",      "p99",     "p99.9",
-                                     "worst", "holds", "p99, time", "worst, time", "mm deep", "guided"};
+const std::vector<std::string> kBudgetHead{"style", "clip",  "speed",     "median",      "p99",     "p99.9",
+                                           "worst", "holds", "p99, time", "worst, time", "mm deep", "guided"};
 
 struct Measured {
-  Table table{kHead, {}};
+  Table table{kBudgetHead, {}};
   std::vector<Series> shares;  // of steps that cost at least so much
   bool all_hold = true;
 };
@@ -232,7 +232,8 @@ bool runFramesBudget(const FramesBudgetOptions& options) {
              "surface_points,microseconds\n";
   }
   Measured measured;
-  for (const std::string& cell : kHead) std::printf("%s%s", cell.c_str(), &cell == &kHead.back() ? "\n" : ", ");
+  for (const std::string& cell : kBudgetHead)
+    std::printf("%s%s", cell.c_str(), &cell == &kBudgetHead.back() ? "\n" : ", ");
   for (const app::Style style : {app::Style::kShort, app::Style::kShoulder, app::Style::kLong}) {
     for (const app::Resolution resolution : {app::Resolution::kLow, app::Resolution::kMedium, app::Resolution::kHigh}) {
       const std::string name = std::string(app::styleName(style)) + " " + std::string(app::resolutionName(resolution));

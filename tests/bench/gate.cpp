@@ -12,6 +12,7 @@
 #include "tests/bench/gate_sweep.h"
 #include "tests/bench/measured_part.h"
 #include "tests/bench/reference.h"
+#include "tests/bench/scene_times.h"
 #include "tests/bench/table.h"
 #include "tests/bench/timed_scene.h"
 #include "tests/bench/waits.h"
@@ -23,8 +24,7 @@ using app::Resolution;
 using app::Style;
 using sim::SimParams;
 
-constexpr double kWalk = 1.0;  // s of the walk that ratios and errors are taken from
-constexpr double kFrame = 1.0 / 60;
+constexpr double kWalk = 1.0;       // s of the walk that ratios and errors are taken from
 constexpr double kTightest = 2e-6;  // relative tolerance of the plain implementation that is tried
 constexpr double kDragBound = 3;    // the worst frame of a drag over the median one of an undisturbed walk
 
@@ -39,12 +39,6 @@ struct Report {
   }
 };
 
-std::string text(const char* format, auto... values) {
-  char line[400];
-  std::snprintf(line, sizeof line, format, values...);
-  return line;
-}
-
 struct Bounds {
   double ratio, milliseconds;
 };
@@ -53,8 +47,8 @@ struct Bounds {
 void compareWithPlain(Style style, Resolution resolution, const Bounds& bounds, const GateOptions& options,
                       Report& report) {
   const int rounds = options.rounds;
-  std::string name = text("gate_%s_%s", std::string(app::styleName(style)).c_str(),
-                          std::string(app::resolutionName(resolution)).c_str());
+  std::string name = formatted("gate_%s_%s", std::string(app::styleName(style)).c_str(),
+                               std::string(app::resolutionName(resolution)).c_str());
   TimedScene scene("walk.bvh", style, resolution, true);
   SimParams params;
   params.time_step = kFrame;
@@ -69,11 +63,11 @@ void compareWithPlain(Style style, Resolution resolution, const Bounds& bounds, 
     frame.push_back(our_run.median());
     if (round <= plain_rounds) plain.push_back(plain_run.total());
   }
-  const std::string who = text("%s, %d vertices", scene.name().c_str(), scene.mesh().vertexCount());
+  const std::string who = formatted("%s, %d vertices", scene.name().c_str(), scene.mesh().vertexCount());
   const double frames = kWalk / kFrame;
-  report.add({"times faster than the plain implementation: " + who, medianOf(plain) / medianOf(ours), bounds.ratio,
-              true, "",
-              text("%.1f ms against %.3f ms a frame", 1e3 * medianOf(plain) / frames, 1e3 * medianOf(ours) / frames)});
+  report.add(
+      {"times faster than the plain implementation: " + who, medianOf(plain) / medianOf(ours), bounds.ratio, true, "",
+       formatted("%.1f ms against %.3f ms a frame", 1e3 * medianOf(plain) / frames, 1e3 * medianOf(ours) / frames)});
   TrajectoryStage stage({name.c_str(), "walk.bvh", style, resolution, 1, true, false, kWalk});
   const Reference reference = referenceOf(stage, kReferenceRate, options.references);
   const double length = scene.mesh().hair_length;
@@ -83,8 +77,8 @@ void compareWithPlain(Style style, Resolution resolution, const Bounds& bounds, 
   const double plain_error = difference(plain_run.trajectory, reference.trajectory, length, samples).rms;
   report.add({"error over the plain implementation's: " + who, our_error / plain_error, 1 + own / plain_error, false,
               "",
-              text("%.2e and %.2e of the hair length over %.2f s; the reference's own %.1e", our_error, plain_error,
-                   static_cast<double>(samples) / kSamplesPerSecond, own)});
+              formatted("%.2e and %.2e of the hair length over %.2f s; the reference's own %.1e", our_error,
+                        plain_error, static_cast<double>(samples) / kSamplesPerSecond, own)});
   // How tight the plain implementation's tolerance must be for the simulator's error.
   SimParams tight = params;
   double tight_error = plain_error, tight_time = medianOf(plain);
@@ -94,10 +88,11 @@ void compareWithPlain(Style style, Resolution resolution, const Bounds& bounds, 
     tight_time = plain_run.total();
     tight_error = difference(plain_run.trajectory, reference.trajectory, length, samples).rms;
   }
-  report.add({"times faster than it at no larger error: " + who, tight_time / medianOf(ours), bounds.ratio, true, "",
-              text("%.1f ms at tolerance %.0e, error %.2e", 1e3 * tight_time / frames, tight.tolerance, tight_error)});
+  report.add(
+      {"times faster than it at no larger error: " + who, tight_time / medianOf(ours), bounds.ratio, true, "",
+       formatted("%.1f ms at tolerance %.0e, error %.2e", 1e3 * tight_time / frames, tight.tolerance, tight_error)});
   report.add({"milliseconds a frame: " + who, 1e3 * *std::min_element(frame.begin(), frame.end()), bounds.milliseconds,
-              false, "ms", text("median of a walk's frames, least of %d walks", rounds)});
+              false, "ms", formatted("median of a walk's frames, least of %d walks", rounds)});
 }
 
 // Slope of log time over log vertices between the coarsest mesh of a style and the finest.
@@ -116,18 +111,19 @@ void growth(Style style, int rounds, Report& report) {
     slopes.push_back(std::log(b / a) / std::log(ultra / low));
     coarse.push_back(a * kFrame / kWalk), fine.push_back(b * kFrame / kWalk);
   }
-  report.add({text("exponent of growth from %.0f to %.0f vertices: %s", low, ultra,
-                   std::string(app::styleName(style)).c_str()),
+  report.add({formatted("exponent of growth from %.0f to %.0f vertices: %s", low, ultra,
+                        std::string(app::styleName(style)).c_str()),
               medianOf(slopes), 1.15, false, "",
-              text("%.2f to %.2f ms a frame", 1e3 * medianOf(coarse), 1e3 * medianOf(fine))});
+              formatted("%.2f to %.2f ms a frame", 1e3 * medianOf(coarse), 1e3 * medianOf(fine))});
 }
 
 void startUp(Style style, Report& report) {
   const StartUp fresh = measureStartUp(style, Resolution::kHigh);
-  report.add({text("start-up, parse, build, factor: %s high from file", std::string(app::styleName(style)).c_str()),
-              fresh.parse + fresh.build + fresh.factor, 0.5, false, "s",
-              text("%.3f + %.3f + %.3f s; a character and a style that are grown take %.3f s before", fresh.parse,
-                   fresh.build, fresh.factor, fresh.character)});
+  report.add(
+      {formatted("start-up, parse, build, factor: %s high from file", std::string(app::styleName(style)).c_str()),
+       fresh.parse + fresh.build + fresh.factor, 0.5, false, "s",
+       formatted("%.3f + %.3f + %.3f s; a character and a style that are grown take %.3f s before", fresh.parse,
+                 fresh.build, fresh.factor, fresh.character)});
 }
 
 // Frames while a slider moves a little every frame, against frames while none does.
@@ -135,10 +131,10 @@ void sliderDrag(Report& report) {
   TimedScene scene("walk.bvh", Style::kLong, Resolution::kHigh, true);
   for (const char* name : {"stretch_along", "bend", "volume", "density", "damping"}) {
     const DragTimes drag = measureDrag(scene, name);
-    report.add({text("worst over median frame, dragging %s: %s", name, scene.name().c_str()),
+    report.add({formatted("worst over median frame, dragging %s: %s", name, scene.name().c_str()),
                 drag.worst / drag.still_median, kDragBound, false, "",
-                text("worst %.1f ms, median %.1f ms; still: worst %.1f, median %.1f", 1e3 * drag.worst,
-                     1e3 * drag.median, 1e3 * drag.still_worst, 1e3 * drag.still_median)});
+                formatted("worst %.1f ms, median %.1f ms; still: worst %.1f, median %.1f", 1e3 * drag.worst,
+                          1e3 * drag.median, 1e3 * drag.still_worst, 1e3 * drag.still_median)});
   }
 }
 
@@ -169,8 +165,8 @@ void writeGateDocument(const std::vector<Figure>& figures, const std::string& fo
   Table table{{"figure", "value", "bound", "holds", "note"}, {}};
   for (const Figure& figure : figures) {
     table.rows.push_back({figure.name,
-                          text("%.3g%s%s", figure.value, figure.unit.empty() ? "" : " ", figure.unit.c_str()),
-                          text("%s %.3g", figure.at_least ? "at least" : "at most", figure.bound),
+                          formatted("%.3g%s%s", figure.value, figure.unit.empty() ? "" : " ", figure.unit.c_str()),
+                          formatted("%s %.3g", figure.at_least ? "at least" : "at most", figure.bound),
                           figure.holds() ? "yes" : "**no**", figure.note});
   }
   writeTable(folder, "gate", table);

@@ -7,6 +7,7 @@
 #include "tests/bench/consistency.h"
 #include "tests/bench/cpu_clock.h"
 #include "tests/bench/measured_part.h"
+#include "tests/bench/scene_times.h"
 #include "tests/bench/timed_scene.h"
 
 namespace bench {
@@ -15,7 +16,7 @@ namespace {
 using app::Resolution;
 using app::Style;
 
-constexpr double kFrame = 1.0 / 60, kSameMoment = 1e-9;
+constexpr double kSameMoment = 1e-9;
 constexpr int kFrames = 60;                  // a second
 constexpr int kSettling = 5, kMeasured = 9;  // s
 constexpr double kHeld = 1.1;                // of a budget, at most

@@ -8,8 +8,8 @@
 namespace bench {
 namespace {
 
-constexpr double kBehindFront = 1.1;     // times faster that no other way may be
-constexpr double kReferenceShare = 0.1;  // of the smallest error reported
+constexpr double kBehindFront = 1.1;    // times faster that no other way may be
+constexpr double kSmallestShare = 0.1;  // of the smallest error reported
 
 }  // namespace
 
@@ -30,8 +30,8 @@ void addSweepFigures(const GateOptions& options, const std::function<void(const 
     for (const Point& point : sweep.points) smallest = std::min(smallest, point.error.rms);
     char note[100];
     std::snprintf(note, sizeof note, "%.1e of %.1e, over %.2f s", sweep.own_error, smallest, sweep.compared_seconds);
-    add({"reference's own error over the smallest reported: " + name, sweep.own_error / smallest, kReferenceShare,
-         false, "", note});
+    add({"reference's own error over the smallest reported: " + name, sweep.own_error / smallest, kSmallestShare, false,
+         "", note});
   }
 }
 

@@ -11,6 +11,7 @@
 #include "app/scene/detail/governor.h"
 #include "tests/bench/cpu_clock.h"
 #include "tests/bench/measured_part.h"
+#include "tests/bench/scene_times.h"
 #include "tests/bench/table.h"
 #include "tests/bench/trajectory.h"
 
@@ -20,8 +21,8 @@ namespace {
 using sim::Integrator;
 using sim::SimParams;
 
-constexpr double kSample = 0.2, kSeconds = 2, kSettle = 2;  // s; every step length below divides a sample
-constexpr double kReferenceRate = 1920;                     // 1/s
+constexpr double kSample = 0.2, kSeconds = 2;  // s; every step length below divides a sample
+constexpr double kLadderRate = 1920;           // 1/s
 
 struct Candidate {
   Integrator integrator;
@@ -45,7 +46,7 @@ std::vector<Candidate> candidates() {
   return list;
 }
 
-struct Run {
+struct LadderRun {
   Trajectory trajectory;
   double seconds = 0;
 };
@@ -66,13 +67,13 @@ class Stage {
   }
   double hairLength() const { return actor_.haircut->mesh.hair_length; }
 
-  Run run(SimParams params, double rate) {
+  LadderRun run(SimParams params, double rate) {
     params.collide = collide_;
     params.time_step = 1 / rate;
     actor_.playback = playback_;
     app::placeActor(actor_, true);
     actor_.hair = start_;
-    Run result;
+    LadderRun result;
     const int steps_a_sample = static_cast<int>(std::lround(rate * kSample));
     const int samples = static_cast<int>(std::lround(kSeconds / kSample));
     for (int sample = 0, step = 1; sample < samples; ++sample) {
@@ -106,7 +107,7 @@ SimParams paramsOf(const Candidate& candidate) {
 double fastest(Stage& stage, const Candidate& candidate, int runs, Trajectory& trajectory) {
   double least = 1e9;
   for (int k = 0; k < runs; ++k) {
-    Run run = stage.run(paramsOf(candidate), candidate.rate);
+    LadderRun run = stage.run(paramsOf(candidate), candidate.rate);
     least = std::min(least, run.seconds);
     trajectory = std::move(run.trajectory);
   }
@@ -114,14 +115,14 @@ double fastest(Stage& stage, const Candidate& candidate, int runs, Trajectory& t
 }
 
 // What the candidates cost and how far they stray, scene by scene, and their geometric means.
-struct Measured {
+struct LadderErrors {
   std::vector<std::string> scenes;
   std::vector<std::vector<double>> errors;  // [candidate][scene], over hair length
   std::vector<double> cost, error;          // [candidate]
 };
 
-Measured measureCandidates(const std::vector<Candidate>& list, int runs) {
-  Measured measured;
+LadderErrors measureCandidates(const std::vector<Candidate>& list, int runs) {
+  LadderErrors measured;
   measured.errors.resize(list.size());
   measured.cost.resize(list.size()), measured.error.resize(list.size());  // sums of logarithms, to begin with
   for (const TrajectoryScene& scene : trajectoryScenes()) {
@@ -135,7 +136,7 @@ Measured measureCandidates(const std::vector<Candidate>& list, int runs) {
     reference.tolerance = 1e-9;
     reference.acceleration_tolerance = 0;
     reference.max_iterations = 2000;
-    const Trajectory truth = stage.run(reference, kReferenceRate).trajectory;
+    const Trajectory truth = stage.run(reference, kLadderRate).trajectory;
     Trajectory trajectory;
     const double standard = fastest(stage, {Integrator::kLinearizedEuler, 60, SimParams{}.tolerance}, runs, trajectory);
     for (std::size_t c = 0; c < list.size(); ++c) {
@@ -155,7 +156,7 @@ Measured measureCandidates(const std::vector<Candidate>& list, int runs) {
   return measured;
 }
 
-void printFront(const std::vector<Candidate>& list, const Measured& measured) {
+void printFront(const std::vector<Candidate>& list, const LadderErrors& measured) {
   std::printf("\nthe rows that no other beats in both:\n");
   std::vector<std::size_t> order(list.size());
   for (std::size_t c = 0; c < order.size(); ++c) order[c] = c;
@@ -176,7 +177,7 @@ bool isOf(const app::Rung& rung, const Candidate& candidate) {
 }
 
 // The rungs as they are written down and as they were measured now.
-std::string rungTable(const std::vector<Candidate>& list, const Measured& measured) {
+std::string rungTable(const std::vector<Candidate>& list, const LadderErrors& measured) {
   std::string table = "| rung | cost, ladder's | cost, measured | error, ladder's | error, measured |",
               rule = "|---|---|---|---|---|";
   for (const std::string& scene : measured.scenes) table += " " + scene + " |", rule += "---|";
@@ -197,7 +198,7 @@ std::string rungTable(const std::vector<Candidate>& list, const Measured& measur
 
 void measureLadder(int runs, const std::string& folder) {
   const std::vector<Candidate> list = candidates();
-  const Measured measured = measureCandidates(list, runs);
+  const LadderErrors measured = measureCandidates(list, runs);
   printFront(list, measured);
   const std::string table = rungTable(list, measured), document = folder + "/performance.md";
   std::printf("\n%s", table.c_str());

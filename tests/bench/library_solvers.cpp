@@ -14,7 +14,6 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 using Vector = Eigen::VectorXd;
 
-constexpr double kEnough = 1e-13;  // relative residual
 
 // Unit vectors of the free directions of every vertex; together the columns of Q, x = Q y + what is prescribed.
 struct FreeBasis {

@@ -13,6 +13,7 @@
 namespace bench {
 
 using Vector3 = sim::V3<double>;
+inline constexpr double kEnough = 1e-13;  // relative residual at which a system counts as solved
 
 // What the systems of one hair mesh share.
 struct RecordedMesh {

@@ -8,7 +8,6 @@
 namespace bench {
 namespace {
 
-constexpr double kEnough = 1e-13;    // relative residual
 constexpr double kStagnated = 1e-3;  // below it, four rungs without progress end a run
 
 template <class T>

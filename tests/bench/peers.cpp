@@ -10,6 +10,7 @@
 
 #include "tests/bench/bullet_peer.h"
 #include "tests/bench/cpu_clock.h"
+#include "tests/bench/scene_times.h"
 #include "tests/bench/trajectory.h"
 
 namespace bench {
@@ -17,8 +18,7 @@ namespace {
 
 constexpr int kMaxOfImplicit = 1000;  // vertices
 
-constexpr double kFrame = 1.0 / 60;
-constexpr int kStill = 180;  // frames in which to recover
+constexpr int kRecoveryFrames = 180;  // frames in which to recover
 
 using Positions = std::vector<sim::Vec3>;
 
@@ -52,8 +52,7 @@ Positions restAt(const sim::HairMesh& mesh, const Positions& roots) {
 class OwnHair {
  public:
   OwnHair(const sim::HairMesh& mesh, const sim::SimParams& params)
-      : mesh_(mesh), params_(params), context_(mesh), state_(sim::restState(mesh, Eigen::Isometry3d::Identity())) {
-  }
+      : mesh_(mesh), params_(params), context_(mesh), state_(sim::restState(mesh, Eigen::Isometry3d::Identity())) {}
   void place(std::span<const sim::Vec3> positions) {
     state_.positions.assign(positions.begin(), positions.end());
     state_.velocities.assign(positions.size(), sim::Vec3::Zero());
@@ -133,7 +132,7 @@ PeerFigures measurePeer(const std::string& who, const PeerScenes& scenes, Hair h
   // A head shake from where it hangs at rest.
   const Positions& first = scenes.shake.front();
   hair.place(restAt(mesh, first));
-  const Positions hanging = stillFor(kStill, first, hair);
+  const Positions hanging = stillFor(kRecoveryFrames, first, hair);
   std::vector<double> times;
   const int frames = static_cast<int>(scenes.shake.size());
   Positions x;
@@ -149,14 +148,14 @@ PeerFigures measurePeer(const std::string& who, const PeerScenes& scenes, Hair h
   Positions collapsed(mesh.vertexCount());
   for (int i = 0; i < mesh.vertexCount(); ++i) collapsed[i] = first[mesh.column_of[i]];
   hair.place(collapsed);
-  figures.after_collapse = distance(mesh, stillFor(kStill, first, hair), hanging);
+  figures.after_collapse = distance(mesh, stillFor(kRecoveryFrames, first, hair), hanging);
   // After violent motion, against the same stillness without it.
   const Positions& last = scenes.violent.back();
   hair.place(restAt(mesh, scenes.violent.front()));
   for (const Positions& roots : scenes.violent) hair.step(roots, kFrame);
-  const Positions after = stillFor(kStill, last, hair);
+  const Positions after = stillFor(kRecoveryFrames, last, hair);
   hair.place(restAt(mesh, last));
-  figures.after_motion = distance(mesh, after, stillFor(kStill, last, hair));
+  figures.after_motion = distance(mesh, after, stillFor(kRecoveryFrames, last, hair));
   return figures;
 }
 

@@ -19,16 +19,10 @@ namespace bench {
 namespace {
 
 using app::Resolution;
-using sim::SimParams;
 using app::Style;
+using sim::SimParams;
 
-constexpr double kSeconds = 0.5;  // of each scene
-
-std::string text(const char* format, auto... values) {
-  char line[300];
-  std::snprintf(line, sizeof line, format, values...);
-  return line;
-}
+constexpr double kSceneSeconds = 0.5;  // of each scene
 
 // Who simulates.
 struct Contender {
@@ -50,7 +44,7 @@ struct Motion {
 constexpr Motion kMotions[] = {{"walk, with contacts", "walk.bvh", true},
                                {"head shake, without", "head_shake.bvh", false}};
 
-struct Row {
+struct StageRow {
   const char* contender;
   const char* motion;
   std::string style, resolution;
@@ -59,8 +53,8 @@ struct Row {
   std::array<double, sim::kStageCount> stages{};  // ms, means: a stage that seldom runs still counts
 };
 
-Row rowOf(const TimedRun& run) {
-  Row row;
+StageRow rowOf(const TimedRun& run) {
+  StageRow row;
   std::vector<double> character, iterations, contacts;
   for (const TimedFrame& frame : run.frames) {
     character.push_back(frame.character);
@@ -77,8 +71,8 @@ Row rowOf(const TimedRun& run) {
   return row;
 }
 
-std::vector<Row> measureStages() {
-  std::vector<Row> rows;
+std::vector<StageRow> measureStages() {
+  std::vector<StageRow> rows;
   for (const Motion& motion : kMotions) {
     for (const Style style : {Style::kShort, Style::kShoulder, Style::kLong}) {
       for (const Resolution resolution :
@@ -90,9 +84,9 @@ std::vector<Row> measureStages() {
           params.solver = contender.solver;
           if (contender.solver == sim::Solver::kPaper) params.max_iterations = 400;
           // The first run makes what the others keep: force model, factors, memory.
-          const double seconds = contender.method == Method::kPlain ? kSeconds / 4 : kSeconds;
+          const double seconds = contender.method == Method::kPlain ? kSceneSeconds / 4 : kSceneSeconds;
           scene.run(params, seconds, contender.method);
-          Row row = rowOf(scene.run(params, seconds, contender.method));
+          StageRow row = rowOf(scene.run(params, seconds, contender.method));
           row.contender = contender.name, row.motion = motion.name;
           row.style = app::styleName(style), row.resolution = app::resolutionName(resolution);
           row.vertices = scene.mesh().vertexCount();
@@ -107,17 +101,17 @@ std::vector<Row> measureStages() {
   return rows;
 }
 
-Table stageTable(const std::vector<Row>& rows) {
+Table stageTable(const std::vector<StageRow>& rows) {
   Table table{{"contender", "scene", "style", "vertices", "ms a frame", "forces", "solve", "collision", "minimization",
                "other", "character", "iterations", "contacts"},
               {}};
-  for (const Row& row : rows) {
+  for (const StageRow& row : rows) {
     table.rows.push_back({row.contender, row.motion, row.style + " " + row.resolution, std::to_string(row.vertices),
-                          text("%.3f", row.total)});
+                          formatted("%.3f", row.total)});
     std::vector<std::string>& cells = table.rows.back();
-    for (const double ms : row.stages) cells.push_back(text("%.3f", ms));
+    for (const double ms : row.stages) cells.push_back(formatted("%.3f", ms));
     cells.insert(cells.end(),
-                 {text("%.3f", row.character), std::to_string(row.iterations), std::to_string(row.contacts)});
+                 {formatted("%.3f", row.character), std::to_string(row.iterations), std::to_string(row.contacts)});
   }
   return table;
 }
@@ -143,30 +137,30 @@ std::string startUpTable() {
   for (const Style style : {Style::kShoulder, Style::kLong}) {
     for (const Resolution resolution : {Resolution::kLow, Resolution::kHigh, Resolution::kUltra}) {
       const StartUp times = measureStartUp(style, resolution);
-      out += text("| %s %s | %.3f | %.3f | %.3f | %.3f |\n", std::string(app::styleName(style)).c_str(),
-                  std::string(app::resolutionName(resolution)).c_str(), times.parse, times.build, times.factor,
-                  times.character);
+      out += formatted("| %s %s | %.3f | %.3f | %.3f | %.3f |\n", std::string(app::styleName(style)).c_str(),
+                       std::string(app::resolutionName(resolution)).c_str(), times.parse, times.build, times.factor,
+                       times.character);
     }
   }
   return out + "\n";
 }
 
 // Milliseconds against vertices, both logarithmic, one line a style and contender.
-void drawGrowth(const std::string& folder, const std::vector<Row>& rows) {
+void drawGrowth(const std::string& folder, const std::vector<StageRow>& rows) {
   const std::string data = folder + "/growth.dat", script = folder + "/growth.gp";
   std::ofstream file(data);
   std::string plot;
   int index = 0;
   for (const Contender& contender : kContenders) {
     for (const char* style : {"shoulder", "long"}) {
-      for (const Row& row : rows) {
+      for (const StageRow& row : rows) {
         if (row.contender == std::string(contender.name) && row.style == style && row.motion == kMotions[0].name) {
           file << row.vertices << " " << row.total << "\n";
         }
       }
       file << "\n\n";
-      plot += text("'%s' index %d using 1:2 with linespoints lw 2 lc %d dt %d pt %d title '%s, %s', \\\n", data.c_str(),
-                   index, 1 + index / 2, 1 + index % 2, 5 + 2 * (index % 2), contender.name, style);
+      plot += formatted("'%s' index %d using 1:2 with linespoints lw 2 lc %d dt %d pt %d title '%s, %s', \\\n",
+                        data.c_str(), index, 1 + index / 2, 1 + index % 2, 5 + 2 * (index % 2), contender.name, style);
       ++index;
     }
   }
@@ -192,7 +186,7 @@ void drawGrowth(const std::string& folder, const std::vector<Row>& rows) {
 
 void writePerformanceDocument(const std::string& folder) {
   const std::string name = folder + "/performance.md";
-  const std::vector<Row> rows = measureStages();
+  const std::vector<StageRow> rows = measureStages();
   drawGrowth(dataFolder(folder), rows);
   const Table stages = stageTable(rows);
   writeTable(folder, "stages", stages);

@@ -17,6 +17,7 @@
 #include "app/scene/demo.h"
 #include "render/strands/strand_growth.h"
 #include "tests/bench/measured_part.h"
+#include "tests/bench/scene_times.h"
 #include "tests/bench/table.h"
 #include "tests/skin/drawn_skin.h"
 
@@ -26,9 +27,8 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Vector3f;
 
-constexpr double kFrame = 1.0 / 60;  // s
 constexpr int kEvery = 6;            // frames from one look to the next
-constexpr double kLongest = 60;      // s of a clip
+constexpr double kLongestClip = 60;  // s of a clip
 constexpr int kWidth = 1280, kHeight = 720;
 constexpr double kSeen = 1e-3, kDeepest = 4e-3;                  // m
 constexpr double kShare = 1e-3;                                  // of the points that may lie deeper than kSeen
@@ -37,7 +37,7 @@ constexpr const char* kModel = "huesitos.fbx";                   // the one that
 constexpr float kNear = 0.02f;  // m: skin so near to a strand is skin that hair can reach
 
 // kind: the figures of a row of the document.
-struct Figure {
+struct SkinFigure {
   std::string file, parts, name, kind;
 };
 
@@ -48,16 +48,16 @@ std::string kindOf(const fs::path& file, bool own) {
   return own ? "mannequin, own clips" : "mannequin, captures";
 }
 
-std::vector<Figure> figuresOf(const SkinOptions& options) {
+std::vector<SkinFigure> figuresOf(const SkinOptions& options) {
   const fs::path own = fs::path(app::findFile("walk.bvh", "", "clips")).parent_path();
   const fs::path shared = own / ".." / ".." / ".." / "shared";
-  std::vector<Figure> figures;
+  std::vector<SkinFigure> figures;
   for (const fs::path& folder : {own, shared / "mocap", shared / "arcsim", shared / "characters", fs::path(kModels)}) {
     if (!fs::exists(folder)) {
       std::printf("%s is not there: its figures are left out\n", folder.filename().c_str());
       continue;
     }
-    std::vector<Figure> found;
+    std::vector<SkinFigure> found;
     for (const auto& entry : fs::directory_iterator(folder)) {
       const std::string ending = entry.path().extension().string(), name = entry.path().filename().string();
       if (!options.clips.empty() && std::ranges::find(options.clips, name) == options.clips.end()) continue;
@@ -66,7 +66,7 @@ std::vector<Figure> figuresOf(const SkinOptions& options) {
       if (ending == ".mot" || ending == ".bvh" || ending == ".glb" || ending == ".fbx")
         found.push_back({entry.path().string(), parts, name, kindOf(entry.path(), folder == own)});
     }
-    std::ranges::sort(found, {}, &Figure::name);
+    std::ranges::sort(found, {}, &SkinFigure::name);
     figures.insert(figures.end(), found.begin(), found.end());
   }
   return figures;
@@ -157,7 +157,7 @@ void look(app::Demo& demo, double time, render::StrandGrowth& growth, Looked& lo
   ++looked.frames;
 }
 
-app::Scene sceneOf(const Figure& figure, const std::string& style, const SkinOptions& options) {
+app::Scene sceneOf(const SkinFigure& figure, const std::string& style, const SkinOptions& options) {
   app::Options asked;
   asked.motion = figure.file;
   asked.parts = figure.parts;
@@ -169,9 +169,9 @@ app::Scene sceneOf(const Figure& figure, const std::string& style, const SkinOpt
   return app::sceneFromOptions(asked);
 }
 
-Looked play(const Figure& figure, const std::string& style, const SkinOptions& options) {
+Looked play(const SkinFigure& figure, const std::string& style, const SkinOptions& options) {
   app::Demo demo = app::openScene(sceneOf(figure, style, options), static_cast<double>(kWidth) / kHeight);
-  const double seconds = std::clamp(demo.actors.front().playedClip().duration(), kFrame, kLongest);
+  const double seconds = std::clamp(demo.actors.front().playedClip().duration(), kFrame, kLongestClip);
   app::advanceFrame(demo, 0, {});
   const render::HairInput hair = app::frameInput(demo, kWidth, kHeight).hairs.front();
   render::StrandGrowth growth(hair.faces, hair.rest, hair.strands, hair.segments_per_layer, hair.look);
@@ -183,8 +183,9 @@ Looked play(const Figure& figure, const std::string& style, const SkinOptions& o
   return looked;
 }
 
-const std::vector<std::string> kHead{"style",       "clip",  "frames",       "points",     "over 1 mm",   "deepest, mm",
-                                     "deepest, px", "holds", "skin out, mm", "99.9 %, mm", "out by 3 mm", "where"};
+const std::vector<std::string> kSkinHead{"style",        "clip",        "frames",      "points",
+                                         "over 1 mm",    "deepest, mm", "deepest, px", "holds",
+                                         "skin out, mm", "99.9 %, mm",  "out by 3 mm", "where"};
 
 std::vector<std::string> rowOf(const std::string& style, const std::string& clip, Looked& looked, bool& all_hold) {
   all_hold = all_hold && looked.holds();
@@ -207,15 +208,15 @@ std::vector<std::string> rowOf(const std::string& style, const std::string& clip
 }
 
 // The rows of the document: all clips of one kind of figure with one style.
-struct Row {
+struct SkinRow {
   std::string kind, style, deepest_clip;
   int clips = 0, hold = 0;
   Looked all;
 };
 
-void addTo(std::vector<Row>& rows, const Figure& figure, const std::string& style, const Looked& looked) {
-  auto row = std::ranges::find_if(rows, [&](const Row& r) { return r.kind == figure.kind && r.style == style; });
-  if (row == rows.end()) row = rows.insert(rows.end(), Row{figure.kind, style, "", 0, 0, {}});
+void addTo(std::vector<SkinRow>& rows, const SkinFigure& figure, const std::string& style, const Looked& looked) {
+  auto row = std::ranges::find_if(rows, [&](const SkinRow& r) { return r.kind == figure.kind && r.style == style; });
+  if (row == rows.end()) row = rows.insert(rows.end(), SkinRow{figure.kind, style, "", 0, 0, {}});
   ++row->clips;
   row->hold += looked.holds();
   row->all.points += looked.points;
@@ -227,10 +228,10 @@ void addTo(std::vector<Row>& rows, const Figure& figure, const std::string& styl
   row->deepest_clip = figure.name.substr(0, figure.name.find('.'));
 }
 
-Table documentOf(const std::vector<Row>& rows) {
+Table documentOf(const std::vector<SkinRow>& rows) {
   Table table{
       {"figure", "style", "over 1 mm", "deepest, mm", "deepest, px", "in clip", "skin out, mm", "clips that hold"}, {}};
-  for (const Row& row : rows) {
+  for (const SkinRow& row : rows) {
     table.rows.push_back({row.kind, row.style, formatted("%.3f %%", 100 * row.all.share()),
                           formatted("%.1f", 1e3 * row.all.deepest), formatted("%.1f", row.all.pixels), row.deepest_clip,
                           formatted("%.1f", 1e3 * row.all.worst_out), formatted("%d of %d", row.hold, row.clips)});
@@ -243,11 +244,11 @@ Table documentOf(const std::vector<Row>& rows) {
 bool runSkin(const SkinOptions& options) {
   const std::vector<std::string> styles =
       options.styles.empty() ? std::vector<std::string>{"short low", "shoulder low", "long low"} : options.styles;
-  Table table{kHead, {}};
-  std::vector<Row> rows;
+  Table table{kSkinHead, {}};
+  std::vector<SkinRow> rows;
   bool all_hold = true;
   for (const std::string& style : styles) {
-    for (const Figure& figure : figuresOf(options)) {
+    for (const SkinFigure& figure : figuresOf(options)) {
       Looked looked = play(figure, style, options);
       addTo(rows, figure, style, looked);
       table.rows.push_back(rowOf(style, figure.name, looked, all_hold));

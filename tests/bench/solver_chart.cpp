@@ -137,7 +137,7 @@ Chart chartOf(const std::string& scene, const std::vector<MeanRun>& runs) {
   return chart;
 }
 
-void writeCsv(const std::string& file, const nlohmann::json& rows) {
+void writeRungs(const std::string& file, const nlohmann::json& rows) {
   std::ofstream csv(file);
   if (!csv) throw app::InputError(file, "", "cannot be written", "choose another folder with --out");
   csv << "scene,vertices,contacts,solver,precision,first_us,set_up_us,iterations,solve_us,residual,displacement_m\n";
@@ -200,7 +200,7 @@ void runSolverChart(const SolverChartOptions& options) {
     for (const MeanRun& run : runs) rows.push_back(toJson(scene.scene, systems, run));
     drawChart(options.folder, std::string("solvers_") + scene.scene, chartOf(scene.scene, runs));
   }
-  writeCsv(options.folder + "/solvers.csv", rows);
+  writeRungs(options.folder + "/solvers.csv", rows);
   std::ofstream(options.folder + "/solvers.json") << rows.dump(1) << "\n";
 }
 

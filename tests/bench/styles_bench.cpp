@@ -10,14 +10,14 @@
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
 #include "app/scene/demo.h"
+#include "tests/bench/scene_times.h"
 
 namespace bench {
 namespace {
 
 constexpr int kWarmUpFrames = 60;
-constexpr double kFrame = 1.0 / 60;
 
-struct Row {
+struct StyleRow {
   std::string name;
   int vertices = 0;
   std::vector<app::FrameStats> frames;
@@ -28,17 +28,17 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-double medianOf(const Row& row, auto&& value) {
+double medianOf(const StyleRow& row, auto&& value) {
   std::vector<double> values;
   for (const app::FrameStats& frame : row.frames) values.push_back(value(frame));
   return median(std::move(values));
 }
 
-double simulationMs(const Row& row) {
+double simulationMs(const StyleRow& row) {
   return 1e3 * medianOf(row, [](const app::FrameStats& f) { return f.simulation() + f.seconds[app::kTimeCharacter]; });
 }
 
-Row measure(app::Style style, app::Resolution resolution, const StylesOptions& options) {
+StyleRow measure(app::Style style, app::Resolution resolution, const StylesOptions& options) {
   app::Scene scene;
   app::CharacterSpec spec;
   spec.motion = app::findFile(options.motion, "", "clips");
@@ -46,7 +46,7 @@ Row measure(app::Style style, app::Resolution resolution, const StylesOptions& o
   spec.resolution = resolution;
   scene.characters.push_back(spec);
   app::Demo demo = app::openScene(std::move(scene), 16.0 / 9);
-  Row row;
+  StyleRow row;
   row.name = std::string(app::styleName(style)) + " " + std::string(app::resolutionName(resolution));
   row.vertices = demo.actors.front().haircut->mesh.vertexCount();
   for (int frame = 0; frame < kWarmUpFrames + options.frames; ++frame) {
@@ -63,9 +63,9 @@ double published(app::Style style, app::Resolution resolution) {
 }
 
 // Slope of log time over log vertices, least squares.
-double growthExponent(const std::vector<Row>& rows) {
+double growthExponent(const std::vector<StyleRow>& rows) {
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
-  for (const Row& row : rows) {
+  for (const StyleRow& row : rows) {
     const double x = std::log(row.vertices), y = std::log(simulationMs(row));
     n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
   }
@@ -78,10 +78,10 @@ void runStyles(const StylesOptions& options) {
   std::ostringstream table;
   table << "| style | vertices | ms a frame | paper | character | forces | solve | collision | minimization | other | "
            "iterations | contacts |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n";
-  std::vector<Row> rows;
+  std::vector<StyleRow> rows;
   for (const app::Style style : {app::Style::kShort, app::Style::kShoulder, app::Style::kLong}) {
     for (const app::Resolution resolution : {app::Resolution::kLow, app::Resolution::kMedium, app::Resolution::kHigh}) {
-      const Row row = measure(style, resolution, options);
+      const StyleRow row = measure(style, resolution, options);
       const auto stage = [&](app::FrameStage s) {
         return 1e3 * medianOf(row, [&](const auto& f) { return f.seconds[s]; });
       };

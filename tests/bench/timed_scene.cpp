@@ -5,15 +5,10 @@
 
 #include "app/files/data_path.h"
 #include "tests/bench/cpu_clock.h"
+#include "tests/bench/scene_times.h"
 #include "tests/oracle/plain_step.h"
 
 namespace bench {
-namespace {
-
-constexpr double kSettle = 2;  // s before the start
-
-}  // namespace
-
 double TimedRun::median() const {
   std::vector<double> values;
   for (const TimedFrame& frame : frames) values.push_back(frame.simulation);

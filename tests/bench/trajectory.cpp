@@ -5,12 +5,12 @@
 
 #include "app/files/data_path.h"
 #include "tests/bench/cpu_clock.h"
+#include "tests/bench/scene_times.h"
 
 namespace bench {
 namespace {
 
-constexpr double kSettle = 2;         // s before the start
-constexpr double kSameMoment = 1e-6;  // of a step
+constexpr double kSameSample = 1e-6;  // of a step
 
 }  // namespace
 
@@ -91,11 +91,11 @@ RunResult TrajectoryStage::run(sim::SimParams params, int samples) {
     const auto fractionOfNext = [&] {
       return (static_cast<double>(result.trajectory.size() + 1) / kSamplesPerSecond - (steps - 1) * dt) / dt;
     };
-    if (fractionOfNext() > 1 + kSameMoment) continue;
+    if (fractionOfNext() > 1 + kSameSample) continue;
     const double energy_after = energy();
     measure(result);
-    for (double f; (f = fractionOfNext()) <= 1 + kSameMoment && static_cast<int>(result.trajectory.size()) < samples;) {
-      if (f > 1 - kSameMoment) f = 1;
+    for (double f; (f = fractionOfNext()) <= 1 + kSameSample && static_cast<int>(result.trajectory.size()) < samples;) {
+      if (f > 1 - kSameSample) f = 1;
       auto& sample = result.trajectory.emplace_back(actor_.hair.positions);
       for (std::size_t i = 0; f < 1 && i < sample.size(); ++i) sample[i] = (1 - f) * before[i] + f * sample[i];
       result.energy.push_back((1 - f) * energy_before + f * energy_after);

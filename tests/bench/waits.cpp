@@ -6,12 +6,12 @@
 #include "app/files/data_path.h"
 #include "app/files/hair_file.h"
 #include "tests/bench/cpu_clock.h"
+#include "tests/bench/scene_times.h"
 
 namespace bench {
 namespace {
 
-constexpr double kFrame = 1.0 / 60;
-constexpr int kWarmUpFrames = 20, kDragFrames = 60;
+constexpr int kWaitFrames = 20, kDragFrames = 60;
 
 }  // namespace
 
@@ -51,9 +51,9 @@ DragTimes measureDrag(TimedScene& scene, const std::string& parameter) {
     sim::SimParams params;
     params.time_step = kFrame;
     std::vector<double> frames;
-    for (int frame = 1; frame <= kWarmUpFrames + kDragFrames; ++frame) {
+    for (int frame = 1; frame <= kWaitFrames + kDragFrames; ++frame) {
       app::moveActor(kFrame, scene.actor());
-      const int moved = frame - kWarmUpFrames;
+      const int moved = frame - kWaitFrames;
       // There and back over a factor of two, a pixel or two of the slider a frame.
       const double turn = std::sin(2 * 3.14159265358979 * moved / kDragFrames);
       if (dragged && moved > 0) field.set(params, field.default_value * std::pow(2.0, turn));

@@ -17,7 +17,7 @@
 #include "tests/slab_walk.h"
 #include "tests/synthetic_hair.h"
 
-namespace {
+namespace light_test {
 
 using render::HairLook;
 
@@ -243,4 +243,4 @@ TEST_F(LightTest, ALockSendsBackAndOnWhatARandomWalkSays) {
   }
 }
 
-}  // namespace
+}  // namespace light_test

@@ -16,7 +16,7 @@
 #include "tests/strand_capture.h"
 #include "tests/synthetic_hair.h"
 
-namespace {
+namespace look_share_test {
 
 using render::LookShare;
 using render::StrandPath;
@@ -156,4 +156,4 @@ TEST(LookShare, SharesThatDoNotFitAreLeftOut) {
   EXPECT_EQ(render::shareAlong(layout, 0.5f), LookShare{});
 }
 
-}  // namespace
+}  // namespace look_share_test

@@ -10,7 +10,7 @@
 #include "tests/gl_fixture.h"
 #include "tests/synthetic_hair.h"
 
-namespace {
+namespace materials_test {
 
 constexpr int kSide = 32;
 
@@ -92,4 +92,4 @@ TEST_F(Materials, AreLeftOutWhereNotWantedOrUnsound) {
   expectBlue(endless.drawn());
 }
 
-}  // namespace
+}  // namespace materials_test

@@ -8,7 +8,7 @@
 #include "render/stage.h"
 #include "tests/gl_fixture.h"
 
-namespace {
+namespace pass_test {
 
 // Whole, and then without one part each.
 struct WholePass {
@@ -96,4 +96,4 @@ TEST_F(PassEntry, TellsAChangeOfItsInputDrawsTheLastOneAndEndsWithItsPass) {
   EXPECT_EQ(built, 0);
 }
 
-}  // namespace
+}  // namespace pass_test

@@ -21,7 +21,7 @@
 #include "tests/gl_fixture.h"
 #include "tests/synthetic_hair.h"
 
-namespace {
+namespace passes_test {
 
 // The members of a struct as references, with their names. A structured binding names all members of a struct or does
 // not compile, so a new member has to be added here, and is then changed by the test below.
@@ -224,8 +224,8 @@ struct Scene {
       if constexpr (std::is_same_v<T, std::span<const render::BodyInput>>) visit(bodies[0], path, wanted, number, name);
       if (!name.empty() || number++ != wanted) return;
       name = path;
-      if constexpr (requires { ::change(value); }) {
-        ::change(value);
+      if constexpr (requires { passes_test::change(value); }) {
+        passes_test::change(value);
       } else {
         change(value);
       }
@@ -341,4 +341,4 @@ TEST(PassList, HoldsEveryPassOfEveryPassFileOnce) {
   EXPECT_EQ(passes, std::size(render::kPasses));
 }
 
-}  // namespace
+}  // namespace passes_test

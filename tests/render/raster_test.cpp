@@ -12,7 +12,7 @@
 #include "render/software/strand_raster.h"
 #include "shaders/shared.h"
 
-namespace {
+namespace raster_test {
 
 constexpr int kSide = 16;
 
@@ -221,4 +221,4 @@ TEST(LineRaster, BandsChangeNoTexel) {
   }
 }
 
-}  // namespace
+}  // namespace raster_test

@@ -10,7 +10,7 @@
 #include "render/gl/render_target.h"
 #include "tests/gl_fixture.h"
 
-namespace {
+namespace read_back_test {
 
 struct ReadBack : gl_fixture::GlTest {};
 
@@ -44,4 +44,4 @@ TEST_F(ReadBack, EveryPixelIsWhereItWasDrawn) {
   }
 }
 
-}  // namespace
+}  // namespace read_back_test

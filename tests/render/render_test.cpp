@@ -18,7 +18,7 @@
 #include "tests/golden_compare.h"
 #include "tests/synthetic_hair.h"
 
-namespace {
+namespace render_test {
 
 constexpr int kWidth = 320, kHeight = 180;
 
@@ -477,4 +477,4 @@ TEST_F(RenderTest, TenThousandStrandsAreReportedWithTheirTimes) {
   EXPECT_LE(stages, wall * 1.05 + 1);
 }
 
-}  // namespace
+}  // namespace render_test

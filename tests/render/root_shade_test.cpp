@@ -9,7 +9,7 @@
 #include "tests/gl_fixture.h"
 #include "tests/synthetic_hair.h"
 
-namespace {
+namespace root_shade_test {
 
 constexpr int kSide = 48;
 constexpr float kFloor = -0.3f;  // m
@@ -111,4 +111,4 @@ TEST_F(RootShade, TheDarkerShadeHolds) {
   EXPECT_LT(darkest, among_roots - 0.1) << "either shade was the darker one";
 }
 
-}  // namespace
+}  // namespace root_shade_test

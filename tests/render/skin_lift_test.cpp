@@ -14,7 +14,7 @@
 #include "tests/strand_capture.h"
 #include "tests/synthetic_hair.h"
 
-namespace {
+namespace skin_lift_test {
 
 using Eigen::Vector3f;
 using render::CurvePoint;
@@ -181,4 +181,4 @@ TEST_F(SkinLiftOnGpu, ShadersLiftAsTheCpuDoes) {
   EXPECT_LT(moved, 1990);
 }
 
-}  // namespace
+}  // namespace skin_lift_test

@@ -13,7 +13,7 @@
 #include "shaders/shared.h"
 #include "tests/gl_fixture.h"
 
-namespace {
+namespace skinning_test {
 
 using Eigen::Vector3f;
 
@@ -120,4 +120,4 @@ TEST_F(SkinningShader, IsWhatTheProcessorComputes) {
   }
 }
 
-}  // namespace
+}  // namespace skinning_test

@@ -18,7 +18,7 @@
 #include "tests/golden_compare.h"
 #include "tests/synthetic_hair.h"
 
-namespace {
+namespace skips_draw_test {
 
 using draw_skips::draw;
 
@@ -317,4 +317,4 @@ TEST_F(SkipsDraw, BackingAwayDoesNotFlicker) {
   EXPECT_LE(change[1], 1.15 * change[0] + 0.01);
 }
 
-}  // namespace
+}  // namespace skips_draw_test

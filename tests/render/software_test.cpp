@@ -18,7 +18,7 @@
 #include "tests/golden_compare.h"
 #include "tests/synthetic_hair.h"
 
-namespace {
+namespace software_test {
 
 using draw_skips::draw;
 
@@ -184,4 +184,4 @@ TEST_F(Software, IsSeveralTimesFasterOnASoftwareDriver) {
   EXPECT_GT(stages, 1.5 * software);
 }
 
-}  // namespace
+}  // namespace software_test

@@ -14,7 +14,7 @@
 #include "tests/gl_fixture.h"
 #include "tests/synthetic_hair.h"
 
-namespace {
+namespace still_light_test {
 
 constexpr int kWidth = 320, kHeight = 180;
 
@@ -99,4 +99,4 @@ TEST_F(StillLight, OneTipThatMovesChangesItsOwnHairAndShadowOnly) {
   EXPECT_LT(marked, 9 * kWidth * kHeight / 3) << "the test looks past too much of the picture";
 }
 
-}  // namespace
+}  // namespace still_light_test

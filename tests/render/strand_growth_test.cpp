@@ -15,7 +15,7 @@
 #include "tests/strand_capture.h"
 #include "tests/synthetic_hair.h"
 
-namespace {
+namespace strand_growth_test {
 
 using Eigen::Vector3f;
 using render::CurvePoint;
@@ -244,4 +244,4 @@ TEST(StrandGrowth, PositionsThatDoNotFitAreRefused) {
   EXPECT_EQ(StrandGrowth({}, {}, 100, 3, {}).strandCount(), 0);
 }
 
-}  // namespace
+}  // namespace strand_growth_test

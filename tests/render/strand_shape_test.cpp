@@ -7,13 +7,13 @@
 #include <map>
 #include <numbers>
 
+#include "app/styles/hair_styles.h"
 #include "render/strands/strand_growth.h"
 #include "sim/mesh/hair_mesh.h"
-#include "app/styles/hair_styles.h"
 #include "tests/analytic_head.h"
 #include "tests/synthetic_hair.h"
 
-namespace {
+namespace strand_shape_test {
 
 using Eigen::Vector3f;
 using render::CurvePoint;
@@ -122,7 +122,7 @@ TEST(StrandShape, StrayHairsStandOffTheHair) {
 TEST(StrandShape, GroupsDrawTheirHairsTogether) {
   const StyledHair hair(app::Style::kLong);
   // Median distance (m) of a strand's point from that of the strand of the same group before it.
-  const auto spread = [&](const render::HairLook& look, std::uint32_t render::Strand::* group) {
+  const auto spread = [&](const render::HairLook& look, std::uint32_t render::Strand::*group) {
     const StrandGrowth growth = hair.growth(look, 4000);
     std::map<std::uint32_t, Vector3f> last;
     std::vector<float> distances;
@@ -150,8 +150,8 @@ TEST(StrandShape, MovesRigidlyWithTheHead) {
   render::HairLook look;
   look.curl_radius = look.wave_height = 0.004f;
   StrandGrowth growth = hair.growth(look, 1000);
-  const Eigen::Isometry3f motion = Eigen::Translation3f(0.3f, 1.2f, -0.4f) *
-                                   Eigen::AngleAxisf(0.8f, Vector3f(0.2f, 0.9f, -0.3f).normalized());
+  const Eigen::Isometry3f motion =
+      Eigen::Translation3f(0.3f, 1.2f, -0.4f) * Eigen::AngleAxisf(0.8f, Vector3f(0.2f, 0.9f, -0.3f).normalized());
   std::vector<std::vector<CurvePoint>> before;
   for (int number = 0; number < 1000; ++number) before.push_back(evenly(growth, number, 17));
   std::vector<float> moved;
@@ -167,4 +167,4 @@ TEST(StrandShape, MovesRigidlyWithTheHead) {
   }
 }
 
-}  // namespace
+}  // namespace strand_shape_test

@@ -19,7 +19,7 @@
 #include "tests/strand_reference.h"
 #include "tests/synthetic_hair.h"
 
-namespace {
+namespace strand_test {
 
 using Eigen::Vector3f;
 using strand_capture::Polyline;
@@ -393,4 +393,4 @@ TEST(Frustum, SeesWhatIsSweptIntoIt) {
   }
 }
 
-}  // namespace
+}  // namespace strand_test

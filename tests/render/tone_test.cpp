@@ -9,7 +9,7 @@
 #include "render/renderer.h"
 #include "tests/gl_fixture.h"
 
-namespace {
+namespace tone_test {
 
 using Color = std::array<double, 3>;
 
@@ -62,8 +62,9 @@ class Tone : public gl_fixture::GlTest {
     const float half = std::tan(0.5f * frame.camera.fov_y);
     std::vector<render::LineVertex> triangle;
     for (const auto& corner : corners) {
-      triangle.push_back({{half * corner[0], half * corner[1], 0},
-                          {static_cast<float>(color[0]), static_cast<float>(color[1]), static_cast<float>(color[2]), 1}});
+      triangle.push_back(
+          {{half * corner[0], half * corner[1], 0},
+           {static_cast<float>(color[0]), static_cast<float>(color[1]), static_cast<float>(color[2]), 1}});
     }
     frame.debug_triangles = triangle;
     std::vector<unsigned char> rgba;
@@ -102,4 +103,4 @@ TEST_F(Tone, EdgesWeighTheirSamplesByLuminance) {
   }
 }
 
-}  // namespace
+}  // namespace tone_test

@@ -8,7 +8,7 @@
 
 #include "tests/test_meshes.h"
 
-namespace {
+namespace analytic_motion_test {
 
 using sim::Integrator;
 using sim::Vec3;
@@ -216,4 +216,4 @@ TEST(StretchingColumn, IsDampedByItsRelaxationTimeAndTheAir) {
   }
 }
 
-}  // namespace
+}  // namespace analytic_motion_test

@@ -5,7 +5,7 @@
 
 #include "tests/test_meshes.h"
 
-namespace {
+namespace analytic_statics_test {
 
 using sim::Vec3;
 using test::Hair;
@@ -154,4 +154,4 @@ TEST(Cantilever, NearsTheContinuousBeamWithTheSquareOfTheSegment) {
   }
 }
 
-}  // namespace
+}  // namespace analytic_statics_test

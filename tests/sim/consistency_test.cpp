@@ -7,7 +7,7 @@
 #include "tests/bench/material_points.h"
 #include "tests/test_meshes.h"
 
-namespace {
+namespace consistency_test {
 
 using bench::TipPaths;
 using sim::Vec3;
@@ -90,4 +90,4 @@ TEST(Consistency, WidePrismsResistAChangeOfVolumeInInverseProportionToTheirSecti
   }
 }
 
-}  // namespace
+}  // namespace consistency_test

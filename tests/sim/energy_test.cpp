@@ -4,7 +4,7 @@
 
 #include "tests/test_meshes.h"
 
-namespace {
+namespace energy_test {
 
 using sim::Integrator;
 using sim::Vec3;
@@ -91,4 +91,4 @@ TEST(Energy, OfTheSecondOrderStepRisesByNoMoreThanATurningPointBetweenSteps) {
   }
 }
 
-}  // namespace
+}  // namespace energy_test

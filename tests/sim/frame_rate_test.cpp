@@ -8,7 +8,7 @@
 #include "app/scene/demo.h"
 #include "tests/test_meshes.h"
 
-namespace {
+namespace frame_rate_test {
 
 // Frames of 24 to 144 a second pass through the same steps: not near one another, the same.
 constexpr double kStatedDistance = 1e-9;  // m
@@ -77,4 +77,4 @@ TEST(FrameRate, DampingIsPerSecondNotPerStep) {
   EXPECT_NEAR(left[2], left[0], 0.15 * left[0] + 0.004);
 }
 
-}  // namespace
+}  // namespace frame_rate_test

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace {
+namespace gate_test {
 
 using bench::allHold;
 using bench::exitCodeOf;
@@ -45,4 +45,4 @@ TEST(Gate, OneFigureThatFallsShortMakesTheExitCodeOne) {
   }
 }
 
-}  // namespace
+}  // namespace gate_test

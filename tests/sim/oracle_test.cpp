@@ -8,7 +8,7 @@
 #include "tests/oracle/plain_step.h"
 #include "tests/test_meshes.h"
 
-namespace {
+namespace oracle_test {
 
 using sim::Solver;
 
@@ -135,4 +135,4 @@ TEST(Oracle, MakesNoDifferenceBetweenSameInputs) {
   EXPECT_EQ(test::largestDistance(a.velocities, b.velocities), 0);
 }
 
-}  // namespace
+}  // namespace oracle_test

@@ -10,7 +10,7 @@
 #include "sim/field_text.h"
 #include "sim/sim_params.h"
 
-namespace {
+namespace params_test {
 
 using app::CharacterLook;
 using app::SceneLook;
@@ -166,4 +166,4 @@ TEST(ParameterTable, NamesEveryRow) {
   }
 }
 
-}  // namespace
+}  // namespace params_test

@@ -7,7 +7,7 @@
 
 #include "tests/bench/sweep.h"
 
-namespace {
+namespace pareto_test {
 
 constexpr int kCoarseReference = 1920;  // steps a second: errors of the sweep are above its own
 constexpr double kMaxLag = 1.25;        // at equal error, on the front; the gate holds a tenth, on a machine alone
@@ -96,4 +96,4 @@ TEST_P(ParetoFront, NoConfigurationThatIsNoWorseIsMuchFasterThanTheDefault) {
 INSTANTIATE_TEST_SUITE_P(Scenes, ParetoFront, testing::ValuesIn(kRecorded),
                          [](const auto& scene) { return std::string(scene.param.scene); });
 
-}  // namespace
+}  // namespace pareto_test

@@ -16,7 +16,7 @@ inline void PrintTo(ColliderKind kind, std::ostream* out) {
 
 }  // namespace sim
 
-namespace {
+namespace reach_test {
 
 using sim::Ellipsoid;
 using sim::Vec3;
@@ -176,4 +176,4 @@ TEST_P(Walk, IsCorrectedToTheBit) {
 INSTANTIATE_TEST_SUITE_P(Reach, Walk, testing::Values(sim::ColliderKind::kEllipsoids, sim::ColliderKind::kSdf),
                          testing::PrintToStringParamName());
 
-}  // namespace
+}  // namespace reach_test

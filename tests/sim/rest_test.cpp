@@ -6,7 +6,7 @@
 #include "app/files/data_path.h"
 #include "app/scene/actor.h"
 
-namespace {
+namespace rest_test {
 
 // Root mean square and largest vertex speed, m/s, over the last of `seconds` of standing still, all of the hair having
 // been thrown sideways at `thrown` m/s.
@@ -66,4 +66,4 @@ TEST(Rest, HairComesToRestInShortStepsToo) {
   }
 }
 
-}  // namespace
+}  // namespace rest_test

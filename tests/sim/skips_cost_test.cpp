@@ -28,7 +28,7 @@
 #define CALLGRIND_DUMP_STATS_AT(name)
 #endif
 
-namespace {
+namespace skips_cost_test {
 
 constexpr double kMaxRatio = 1.03;  // all over none
 constexpr int kMaxRounds = 40;
@@ -198,4 +198,4 @@ TEST_F(CostOfDrawing, OfAStillCloseUpIsNextToNothing) {
   EXPECT_LE(with, kMaxOfStill * without);
 }
 
-}  // namespace
+}  // namespace skips_cost_test

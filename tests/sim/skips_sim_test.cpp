@@ -13,7 +13,7 @@
 #include "app/scene/detail/skips.h"
 #include "app/ui/redraw_throttle.h"
 
-namespace {
+namespace skips_sim_test {
 
 using app::Demo;
 using app::SkipSet;
@@ -451,4 +451,4 @@ TEST(Exact, AnIdleWindowDrawsNoFrames) {
   for (int frame = 0; frame < 100; ++frame) EXPECT_EQ(backoff.next(false, false), app::Wait::kNone);
 }
 
-}  // namespace
+}  // namespace skips_sim_test

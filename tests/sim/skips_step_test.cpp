@@ -12,7 +12,7 @@
 #include "sim/forces/kernels.h"
 #include "tests/test_meshes.h"
 
-namespace {
+namespace skips_step_test {
 
 using sim::Vec3;
 using test::Hair;
@@ -200,4 +200,4 @@ TEST(SkipCount, CollidersOutOfReachChangeNoBitAndCostNothing) {
   EXPECT_LT(least[1], 1.1 * least[0]) << "forty bodies";
 }
 
-}  // namespace
+}  // namespace skips_step_test

@@ -13,7 +13,7 @@
 #include "sim/sim_params.h"
 #include "tests/test_meshes.h"
 
-namespace {
+namespace slider_drag_test {
 
 using sim::SimParams;
 using sim::Vec3;
@@ -248,4 +248,4 @@ TEST(SliderDrag, NoFrameStallsOnTheLargeMesh) {
   EXPECT_LT(ratio, kMultiple);
 }
 
-}  // namespace
+}  // namespace slider_drag_test

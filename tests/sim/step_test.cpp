@@ -9,7 +9,7 @@
 #include "sim/forces/model.h"
 #include "tests/test_meshes.h"
 
-namespace {
+namespace step_test {
 
 using sim::Integrator;
 using sim::Solver;
@@ -344,4 +344,4 @@ TEST(Step, NeverLeavesAValueThatIsNotFiniteAndCountsTheRecovery) {
   }
 }
 
-}  // namespace
+}  // namespace step_test

@@ -6,7 +6,7 @@
 
 #include "tests/run_program.h"
 
-namespace {
+namespace stress_run_test {
 
 // Every test's binary lies beside it.
 const std::string kStress = std::string(HAIRMESH_TEST_OUT) + "/../hairmesh-stress";
@@ -153,4 +153,4 @@ TEST_F(StressRun, WhatChoosesNothingIsToldAndPartsChooseAmongNamedCases) {
   EXPECT_NE(beyond.err.find("from 0 to 3"), std::string::npos) << beyond.err;
 }
 
-}  // namespace
+}  // namespace stress_run_test

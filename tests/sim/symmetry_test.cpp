@@ -15,7 +15,7 @@ inline void PrintTo(Integrator integrator, std::ostream* out) {
 
 }  // namespace sim
 
-namespace {
+namespace symmetry_test {
 
 using sim::Vec3;
 
@@ -83,4 +83,4 @@ INSTANTIATE_TEST_SUITE_P(Integrators, Symmetry,
                          testing::Values(sim::Integrator::kLinearizedEuler, sim::Integrator::kBdf2),
                          testing::PrintToStringParamName());
 
-}  // namespace
+}  // namespace symmetry_test

@@ -9,7 +9,7 @@
 
 #include "tests/test_meshes.h"
 
-namespace {
+namespace two_step_test {
 
 using sim::Vec3;
 using test::Hair;
@@ -136,4 +136,4 @@ TEST(TwoStep, CorrectedVerticesAndTheirFollowersGoOnAtTheirVelocity) {
   }
 }
 
-}  // namespace
+}  // namespace two_step_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace {
+namespace drawn_skin_test {
 
 using Eigen::Vector3f;
 
@@ -73,4 +73,4 @@ TEST(DrawnSkin, PiecesWithinOneAnotherAreEachAskedAlone) {
   EXPECT_EQ(skin.depth({1.1f, 0.7f, 0.5f}), 0);
 }
 
-}  // namespace
+}  // namespace drawn_skin_test

@@ -6,6 +6,7 @@
 
 #include "sim/contact/contact.h"
 #include "sim/stabilization/parameter_limits.h"
+#include "tests/bench/measured_part.h"
 #include "tests/stress/matrix.h"
 #include "tests/stress/start_states.h"
 
@@ -35,12 +36,6 @@ void countMeetings(Run& run) {
 }
 
 }  // namespace
-
-std::string said(const char* format, double a, double b) {
-  char text[160];
-  std::snprintf(text, sizeof text, format, a, b);
-  return text;
-}
 
 Run::Run(const StressCase& c, std::uint64_t seed, Stage& s)
     : one(c),
@@ -95,7 +90,7 @@ sim::StepReport stepHair(const sim::SimParams& params, const Run& run, double dt
 void checkFinite(Run& run) {
   for (int i = 0; i < run.hair.mesh.vertexCount(); ++i) {
     if (run.hair.state.positions[i].allFinite() && run.hair.state.velocities[i].allFinite()) continue;
-    return run.fail(said("vertex %.0f is not finite", i));
+    return run.fail(bench::formatted("vertex %.0f is not finite", i));
   }
 }
 
@@ -113,7 +108,7 @@ void checkOutside(Run& run) {
     const auto& contacts = run.hair.state.contacts;
     run.outcome.unconstrained +=
         std::none_of(contacts.begin(), contacts.end(), [&](const sim::Contact& c) { return c.vertex == v; });
-    run.fail(said("vertex %.0f is %.2f mm inside a collider", v, 1e3 * depth));
+    run.fail(bench::formatted("vertex %.0f is %.2f mm inside a collider", v, 1e3 * depth));
   };
   if (!run.params.collide_inner) {
     for (const int v : mesh.external_vertices) check(v);

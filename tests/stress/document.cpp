@@ -18,12 +18,6 @@ namespace {
 
 using bench::Table;
 
-std::string said(const char* format, auto... values) {
-  char text[512];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
-
 struct FamilyCount {
   std::vector<const StressCase*> members;  // that were run
   long passed = 0, failed = 0, with_body = 0, inside = 0, unconstrained = 0, carried = 0, guided = 0, recoveries = 0;
@@ -66,11 +60,13 @@ Table familyTable(const std::vector<FamilyCount>& families) {
               {}};
   for (const FamilyCount& f : families) {
     table.rows.push_back({f.members.front()->family(), familyText(f.members), hairText(f.members),
-                          said("%zu", f.members.size()), said("%ld", f.passed), said("%ld", f.failed),
-                          said("%ld", f.with_body), said("%.2f", f.slowest), said("%.3f", 1e3 * f.deepest),
-                          said("%ld", f.inside), said("%ld", f.unconstrained), said("%.1e", f.energy_rise),
-                          said("%.1e", f.energy_step), said("%ld", f.carried), said("%ld", f.guided),
-                          said("%ld", f.recoveries)});
+                          bench::formatted("%zu", f.members.size()), bench::formatted("%ld", f.passed),
+                          bench::formatted("%ld", f.failed), bench::formatted("%ld", f.with_body),
+                          bench::formatted("%.2f", f.slowest), bench::formatted("%.3f", 1e3 * f.deepest),
+                          bench::formatted("%ld", f.inside), bench::formatted("%ld", f.unconstrained),
+                          bench::formatted("%.1e", f.energy_rise), bench::formatted("%.1e", f.energy_step),
+                          bench::formatted("%ld", f.carried), bench::formatted("%ld", f.guided),
+                          bench::formatted("%ld", f.recoveries)});
   }
   return table;
 }
@@ -78,7 +74,7 @@ Table familyTable(const std::vector<FamilyCount>& families) {
 std::string verdictText(const Outcome& o) {
   if (o.verdict == Verdict::kSkipped) return "not run";
   if (o.verdict == Verdict::kFailed) return o.fault;
-  return said("back after %.2f s", o.back_after);
+  return bench::formatted("back after %.2f s", o.back_after);
 }
 
 const Result* resultOf(const std::string& name, const std::vector<Result>& results) {
@@ -104,8 +100,8 @@ std::string paperSummary(const std::vector<Result>& results) {
     if (!ours_back) ours_broke += (ours_broke.empty() ? "" : ", ") + claim + " (" + hair + ")";
   }
   if (pairs == 0) return "";
-  return said("Of %d pairs both settings return in %d, the paper's solver later than ours in %d of those. ", pairs,
-              both, later) +
+  return bench::formatted("Of %d pairs both settings return in %d, the paper's solver later than ours in %d of those. ",
+                          pairs, both, later) +
          "The paper's solver falls short in: " + (broke.empty() ? "none" : broke) +
          ". Ours fall short in: " + (ours_broke.empty() ? "none" : ours_broke) + ".\n\n";
 }
@@ -120,12 +116,12 @@ Table paperTable(const std::vector<Result>& results) {
     if (one.family() != "paper" || split == std::string::npos) continue;
     const std::string claim = one.name.substr(6, split - 6), hair = one.name.substr(split + 6);
     const Result* theirs = resultOf("paper/" + claim + "/its-solver/" + hair, results);
-    table.rows.push_back({claim, hair, verdictText(o), said("%.0f", o.iterations), "not run", "", ""});
+    table.rows.push_back({claim, hair, verdictText(o), bench::formatted("%.0f", o.iterations), "not run", "", ""});
     if (!theirs) continue;
     std::vector<std::string>& row = table.rows.back();
     row[4] = verdictText(theirs->outcome);
-    row[5] = said("%.0f", theirs->outcome.iterations);
-    row[6] = said("%.0f %%", 100 * theirs->outcome.unsolved);
+    row[5] = bench::formatted("%.0f", theirs->outcome.iterations);
+    row[6] = bench::formatted("%.0f %%", 100 * theirs->outcome.unsolved);
   }
   return table;
 }
@@ -139,7 +135,7 @@ std::string failureList(const std::vector<Result>& results, std::uint64_t seed) 
     text += "- `" + replayCommand(one.name, seed, {}) + "`: " + o.fault + "\n";
   }
   if (failed == 0) return "Of the cases that count: none.\n";
-  if (failed > kShown) text += said("- and %d more, in stability.csv\n", failed - kShown);
+  if (failed > kShown) text += bench::formatted("- and %d more, in stability.csv\n", failed - kShown);
   return text;
 }
 
@@ -162,17 +158,17 @@ std::string limitTable(const std::vector<Result>& results) {
       memory = std::max(memory, o.memory_growth), slowdown = std::max(slowdown, o.slowdown);
   }
   const std::string measured =
-      slowdown > 0 ? said(" (measured: %.2f MiB, %.2f times)", memory, slowdown) : std::string();
+      slowdown > 0 ? bench::formatted(" (measured: %.2f MiB, %.2f times)", memory, slowdown) : std::string();
   Table table{{"quantity", "limit"}, {}};
   table.rows = {
       {"distance from the reference hair, worst vertex, also 0.1 s of velocity ahead",
-       said("%g %% of the hair length", 100 * kBack)},
-      {"depth of an external vertex in a collider at a frame's end", said("%g mm", 1e3 * kDeepest)},
+       bench::formatted("%g %% of the hair length", 100 * kBack)},
+      {"depth of an external vertex in a collider at a frame's end", bench::formatted("%g mm", 1e3 * kDeepest)},
       {"mechanical energy after the motion, above what the motion left",
-       said("%g %% and the weight times 0.4 mm", 100 * kEnergyTolerance)},
+       bench::formatted("%g %% and the weight times 0.4 mm", 100 * kEnergyTolerance)},
       {"recoveries, but in the family `fault`", "0"},
       {"endurance run, after its first tenth: memory, time of a step",
-       said("%g MiB, %g times", kMemoryGrowth, kSlowdown) + measured},
+       bench::formatted("%g MiB, %g times", kMemoryGrowth, kSlowdown) + measured},
   };
   return table.markdown();
 }
@@ -180,7 +176,7 @@ std::string limitTable(const std::vector<Result>& results) {
 // A page of the short run speaks of the short run alone.
 std::string leftOutText(const std::string& how, std::size_t run, std::uint64_t seed) {
   if (how != "--short") return "";
-  return said(
+  return bench::formatted(
       "\nThis page shows %zu of the %zu cases that `--long` runs. What falls short among the others is not on it.\n",
       run, declareCases(seed).size());
 }
@@ -207,7 +203,7 @@ std::string resultPart(const std::vector<Result>& results, const Table& families
     by_rounding += o.verdict == Verdict::kPassed && !o.fault.empty();
     failed += o.verdict == Verdict::kFailed;
   }
-  return said(
+  return bench::formatted(
              "**%ld passed, %ld failed** (`%s`, seed %llu, %.0f s of CPU time). Passed by two roundings of three: "
              "%ld.\n\n",
              passed, failed, how.c_str(), static_cast<unsigned long long>(seed), cpu, by_rounding) +

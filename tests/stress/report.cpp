@@ -10,16 +10,11 @@
 #include "app/files/errors.h"
 #include "app/files/text_file.h"
 #include "sim/field_text.h"
+#include "tests/bench/measured_part.h"
 
 namespace stress {
 
 namespace {
-
-std::string said(const char* format, auto... values) {
-  char text[512];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 constexpr std::size_t kNumbers = 22;
 constexpr const char* kVerdicts[] = {"passed", "failed", "skipped"};
@@ -80,7 +75,7 @@ std::string csvHead() {
 
 std::string csvRow(const Result& result) {
   std::string row = result.one.name + "," + kVerdicts[static_cast<int>(result.outcome.verdict)];
-  for (const double number : numbersOf(result.outcome)) row += said(",%.6g", number);
+  for (const double number : numbersOf(result.outcome)) row += bench::formatted(",%.6g", number);
   return row + "," + result.outcome.fault + "\n";
 }
 

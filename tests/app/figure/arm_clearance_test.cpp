@@ -7,7 +7,7 @@
 
 #include "app/figure/ellipsoid_fit.h"
 
-namespace {
+namespace arm_clearance_test {
 
 namespace fs = std::filesystem;
 using app::Vec3;
@@ -134,4 +134,4 @@ TEST(ArmClearance, HoldsTheArmsOfCapturesOutsideTheTrunk) {
   EXPECT_GT(cleared, 2);
 }
 
-}  // namespace
+}  // namespace arm_clearance_test

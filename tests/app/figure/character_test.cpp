@@ -13,7 +13,7 @@
 #include "app/files/text_file.h"
 #include "app/motion/motion.h"
 
-namespace {
+namespace character_test {
 
 namespace fs = std::filesystem;
 using app::Rigid;
@@ -349,4 +349,4 @@ TEST(RigidParts, PapersMannequinDancesForThreeHundredFrames) {
   EXPECT_LT(c.scalp.head_height, 0.26);
 }
 
-}  // namespace
+}  // namespace character_test

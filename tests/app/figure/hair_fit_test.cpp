@@ -14,7 +14,7 @@
 #include "tests/app/groom/strip_samples.h"
 #include "tests/run_program.h"
 
-namespace {
+namespace hair_fit_test {
 
 using app::Vec3;
 
@@ -184,4 +184,4 @@ TEST(HairFit, StripsAwayFromTheHeadAreBroughtToItWithEitherAxisUp) {
   }
 }
 
-}  // namespace
+}  // namespace hair_fit_test

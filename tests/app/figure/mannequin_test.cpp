@@ -13,7 +13,7 @@
 #include "app/files/errors.h"
 #include "app/files/text_file.h"
 
-namespace {
+namespace mannequin_test {
 
 using app::Rigid;
 using app::Vec3;
@@ -382,4 +382,4 @@ TEST(MeshSurface, TouchingSheetsStayManifold) {
   expectClosedAndWound(mesh);
 }
 
-}  // namespace
+}  // namespace mannequin_test

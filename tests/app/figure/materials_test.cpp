@@ -13,7 +13,7 @@
 #include "app/figure/character.h"
 #include "app/files/image_io.h"
 
-namespace {
+namespace materials_test {
 
 namespace fs = std::filesystem;
 
@@ -151,4 +151,4 @@ TEST(Materials, TheRobotHasThree) {
   EXPECT_EQ(app::loadCharacter(file.string()).mesh.materials.size(), 3u);
 }
 
-}  // namespace
+}  // namespace materials_test

@@ -18,7 +18,7 @@
 #include "tests/gl_fixture.h"
 #include "tests/golden_compare.h"
 
-namespace {
+namespace root_cover_test {
 
 using app::Character;
 using app::Vec3;
@@ -282,4 +282,4 @@ TEST_F(ScalpPicture, WithoutStrandsTheHeadIsBareAndRound) {
   EXPECT_GT(brightness(bald, 13, 55, 3), brightness(draw(1, 0.6), 13, 55, 3));
 }
 
-}  // namespace
+}  // namespace root_cover_test

@@ -9,7 +9,7 @@
 
 #include "app/figure/character_build.h"
 
-namespace {
+namespace skin_cover_test {
 
 namespace fs = std::filesystem;
 using app::Rigid;
@@ -151,4 +151,4 @@ TEST(SkinCover, CoversThePapersMannequinThroughItsDance) {
   EXPECT_GT(looked, 500);
 }
 
-}  // namespace
+}  // namespace skin_cover_test

@@ -11,7 +11,7 @@
 #include "app/files/errors.h"
 #include "tests/analytic_head.h"
 
-namespace {
+namespace hair_file_test {
 
 using app::Resolution;
 using app::Style;
@@ -247,4 +247,4 @@ TEST(HairFile, FacesThatAreAllWoundTheOtherWayAreNamedAndReversed) {
   EXPECT_NE(messageOf(replaced(text, "f 4 3 2 1", "f 1 2 3 4")).find("line "), std::string::npos);
 }
 
-}  // namespace
+}  // namespace hair_file_test

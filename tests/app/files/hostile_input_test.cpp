@@ -2,40 +2,24 @@
 // with a message, and nothing else. The same targets as tests/fuzz, which needs clang; this needs none.
 #include <gtest/gtest.h>
 
-#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
 #include <vector>
 
-using Target = int(const std::uint8_t* data, std::size_t size);
-// The targets' one name, told apart where they are compiled (tests/CMakeLists.txt).
-extern "C" Target fuzz_hair_mesh, fuzz_bvh, fuzz_mot, fuzz_part, fuzz_scene, fuzz_preset, fuzz_recording,
-    fuzz_hair_strands, fuzz_alembic, fuzz_usda, fuzz_ply, fuzz_tfx, fuzz_groom_inspect;
+#include "app/files/errors.h"
+#include "tests/fuzz/readers.h"
 
-namespace {
+namespace tests {
 
-struct Reader {
-  const char* name;
-  Target* target;
-};
 void PrintTo(const Reader& reader, std::ostream* out) {
   *out << reader.name;
 }
-constexpr Reader kReaders[] = {{"hair_mesh", fuzz_hair_mesh},
-                               {"bvh", fuzz_bvh},
-                               {"mot", fuzz_mot},
-                               {"part", fuzz_part},
-                               {"scene", fuzz_scene},
-                               {"preset", fuzz_preset},
-                               {"recording", fuzz_recording},
-                               {"hair_strands", fuzz_hair_strands},
-                               {"alembic", fuzz_alembic},
-                               {"usda", fuzz_usda},
-                               {"ply", fuzz_ply},
-                               {"tfx", fuzz_tfx},
-                               {"groom_inspect", fuzz_groom_inspect}};
+
+}  // namespace tests
+
+namespace hostile_input_test {
 
 // What the fuzzers begin with, and what they once found.
 std::vector<std::string> textsOf(const std::string& reader) {
@@ -51,10 +35,13 @@ std::vector<std::string> textsOf(const std::string& reader) {
   return texts;
 }
 
-class HostileInput : public testing::TestWithParam<Reader> {
+class HostileInput : public testing::TestWithParam<tests::Reader> {
  protected:
   void read(const std::string& text) const {
-    GetParam().target(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+    try {
+      GetParam().read(text);
+    } catch (const app::InputError&) {
+    }
   }
 };
 
@@ -101,7 +88,7 @@ TEST_P(HostileInput, SurvivesDamage) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Readers, HostileInput, testing::ValuesIn(kReaders),
+INSTANTIATE_TEST_SUITE_P(Readers, HostileInput, testing::ValuesIn(tests::readers().begin(), tests::readers().end()),
                          [](const auto& reader) { return std::string(reader.param.name); });
 
-}  // namespace
+}  // namespace hostile_input_test

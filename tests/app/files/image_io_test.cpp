@@ -9,7 +9,7 @@
 
 #include "tests/run_program.h"
 
-namespace {
+namespace image_io_test {
 
 using Bytes = std::vector<unsigned char>;
 
@@ -53,4 +53,4 @@ TEST(ImageIo, PixelsLieInTheFileWhereTheyWereGiven) {
   }
 }
 
-}  // namespace
+}  // namespace image_io_test

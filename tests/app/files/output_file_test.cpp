@@ -17,7 +17,7 @@
 #include "app/files/recording.h"
 #include "tests/run_program.h"
 
-namespace {
+namespace output_file_test {
 
 namespace fs = std::filesystem;
 using test::readAll;
@@ -241,4 +241,4 @@ TEST(OutputFile, ARecordingThatWasCutOffSaysSo) {
   EXPECT_NE(between.out.find("replayed 1 frames of a recording that was cut off"), std::string::npos) << between.out;
 }
 
-}  // namespace
+}  // namespace output_file_test

@@ -7,7 +7,7 @@
 #include "app/files/errors.h"
 #include "tests/run_program.h"
 
-namespace {
+namespace recording_test {
 
 using app::Ask;
 
@@ -252,4 +252,4 @@ TEST(Recording, HostileTextIsRefusedWithItsLine) {
   EXPECT_NO_THROW(app::readRecording(head + "[0, " + view + ", [\"pause\", \"\", \"\", 1]]\n", "x.hmr"));
 }
 
-}  // namespace
+}  // namespace recording_test

@@ -10,7 +10,7 @@
 #include "app/files/presets.h"
 #include "app/files/text_file.h"
 
-namespace {
+namespace scene_file_test {
 
 using app::CharacterLook;
 using app::InputError;
@@ -208,4 +208,4 @@ TEST(Presets, WhatWasSavedComesBackOverAnything) {
   EXPECT_EQ(tables.text(), defaults);
 }
 
-}  // namespace
+}  // namespace scene_file_test

@@ -10,7 +10,7 @@
 #include "tests/app/groom/groom_samples.h"
 #include "tests/app/groom/second_reader.h"
 
-namespace {
+namespace alembic_test {
 
 // A clip of one groom that sways.
 std::vector<app::Groom> swaying(app::Groom groom, std::size_t moments) {
@@ -197,4 +197,4 @@ TEST(Alembic, TransformsIndicesAndOtherTypesAreRead) {
   EXPECT_EQ(app::alembicTimes(test::readAll(foreign.file), foreign.file), std::vector<double>{0});
 }
 
-}  // namespace
+}  // namespace alembic_test

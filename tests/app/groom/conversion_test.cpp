@@ -11,7 +11,7 @@
 #include "tests/groom_kinds.h"
 
 namespace app {
-namespace {
+namespace conversion_test {
 
 constexpr int kStrands = 1000, kVertices = 1000;
 
@@ -115,5 +115,5 @@ TEST(Conversion, TriangulatesAGridWhole) {
   EXPECT_NEAR(area, 0.06 * 0.05, 1e-6);
 }
 
-}  // namespace
+}  // namespace conversion_test
 }  // namespace app

@@ -8,7 +8,7 @@
 #include "tests/app/groom/groom_samples.h"
 #include "tests/app/groom/second_reader.h"
 
-namespace {
+namespace frame_formats_test {
 
 template <class Write>
 std::string writtenFile(const std::string& ending, Write&& write) {
@@ -140,4 +140,4 @@ TEST(Tfx, OtherNumbersOfPointsAreNamed) {
   EXPECT_EQ(test::lacking(fault(test::sampleGroom(9, 5)), "points and the first has"), "");
 }
 
-}  // namespace
+}  // namespace frame_formats_test

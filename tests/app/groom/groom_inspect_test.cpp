@@ -16,7 +16,7 @@
 #include "tests/app/groom/groom_samples.h"
 #include "tests/run_program.h"
 
-namespace {
+namespace groom_inspect_test {
 
 using Eigen::Vector3f;
 
@@ -393,4 +393,4 @@ TEST(GroomInspect, SaysThatAHandfulOfStrandsIsTooFew) {
   EXPECT_EQ(app::inspectGroom(combedGroom(50, 1), {}, &model).find("strands"), nullptr);
 }
 
-}  // namespace
+}  // namespace groom_inspect_test

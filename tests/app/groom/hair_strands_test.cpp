@@ -9,7 +9,7 @@
 #include "tests/app/groom/groom_samples.h"
 #include "tests/app/groom/second_reader.h"
 
-namespace {
+namespace hair_strands_test {
 
 std::string written(const app::Groom& groom) {
   const std::string file = test::freshFolder("hair_strands") + "/groom.hair";
@@ -102,4 +102,4 @@ TEST(HairStrands, StrandsThatTheFormatCannotHoldAreNamed) {
   }
 }
 
-}  // namespace
+}  // namespace hair_strands_test

@@ -6,7 +6,7 @@
 #include "app/files/errors.h"
 #include "tests/test_meshes.h"
 
-namespace {
+namespace mesh_edit_test {
 
 using app::ColumnPair;
 using app::EditedMesh;
@@ -169,4 +169,4 @@ TEST(MeshEdit, AWeldMeetsHalfWay) {
   EXPECT_NE(faultOf([&] { app::mergeColumns(before, std::vector<int>{99}); }).find("is not there"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace mesh_edit_test

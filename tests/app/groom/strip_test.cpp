@@ -13,7 +13,7 @@
 #include "tests/run_program.h"
 
 namespace app {
-namespace {
+namespace strip_test {
 
 using Eigen::Vector3d;
 using strip_samples::Cap;
@@ -279,5 +279,5 @@ INSTANTIATE_TEST_SUITE_P(
                     BadCase{"Noise", "nothing of the kind, but long enough", "hair.obj"}),
     [](const auto& one) { return std::string(one.param.name); });
 
-}  // namespace
+}  // namespace strip_test
 }  // namespace app

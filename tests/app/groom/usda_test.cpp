@@ -11,7 +11,7 @@
 #include "tests/app/groom/groom_samples.h"
 #include "tests/app/groom/second_reader.h"
 
-namespace {
+namespace usda_test {
 
 std::vector<app::Groom> swaying(app::Groom groom, std::size_t moments) {
   std::vector<app::Groom> clip;
@@ -152,4 +152,4 @@ TEST(Usda, FaultsNameTheirLine) {
   EXPECT_EQ(test::lacking(fault(whole, "xformOp:scale\"", "xformOp:shear\""), "'xformOp:shear' is not read"), "");
 }
 
-}  // namespace
+}  // namespace usda_test

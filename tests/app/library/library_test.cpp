@@ -12,7 +12,7 @@
 #include "render/strands/strand_growth.h"
 #include "tests/app/library/library_hair.h"
 
-namespace {
+namespace library_test {
 
 using namespace library_test;
 
@@ -316,4 +316,4 @@ TEST(Library, TheCallersAllocatorGetsEveryBlockBack) {
   EXPECT_EQ(hm_set_allocator(nullptr), HM_OK);
 }
 
-}  // namespace
+}  // namespace library_test

@@ -7,7 +7,7 @@
 
 #include "tests/app/library/library_hair.h"
 
-namespace {
+namespace misuse_test {
 
 using namespace library_test;
 
@@ -225,4 +225,4 @@ TEST(LibraryEllipsoid, TakesTheVelocitiesOfItsMotion) {
   EXPECT_EQ(hm_ellipsoid_moved(&ball, &before, NAN), HM_ERROR_VALUE);
 }
 
-}  // namespace
+}  // namespace misuse_test

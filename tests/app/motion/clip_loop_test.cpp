@@ -5,7 +5,7 @@
 
 #include "tests/motions.h"
 
-namespace {
+namespace clip_loop_test {
 
 using namespace test;
 
@@ -125,4 +125,4 @@ TEST(ClipLoop, KeepsLooseBodiesTogether) {
   EXPECT_LT(distance(at(motion, nextRound(motion, blended), 0), at(motion, blended, 0.3)), 1e-9);
 }
 
-}  // namespace
+}  // namespace clip_loop_test

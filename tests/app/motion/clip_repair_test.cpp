@@ -7,7 +7,7 @@
 
 #include "tests/motions.h"
 
-namespace {
+namespace clip_repair_test {
 
 using namespace test;
 
@@ -101,4 +101,4 @@ TEST(ClipRepair, ShortClipsAreLeftAlone) {
   EXPECT_TRUE(app::repairClip({{{"a", -1, {}, {}}}}, one).empty());
 }
 
-}  // namespace
+}  // namespace clip_repair_test

@@ -8,7 +8,7 @@
 
 #include "tests/motions.h"
 
-namespace {
+namespace foot_plant_test {
 
 using namespace test;
 
@@ -88,4 +88,4 @@ TEST(FootPlant, OwnClipsStandStill) {
   }
 }
 
-}  // namespace
+}  // namespace foot_plant_test

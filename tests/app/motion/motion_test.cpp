@@ -12,7 +12,7 @@
 #include "app/files/errors.h"
 #include "app/files/text_file.h"
 
-namespace {
+namespace motion_test {
 
 using app::BvhMotion;
 using app::InputError;
@@ -486,4 +486,4 @@ TEST(Mot, EveryFaultNamesItsLine) {
     EXPECT_THROW(app::readMot(text, "m"), InputError);
 }
 
-}  // namespace
+}  // namespace motion_test

@@ -5,7 +5,7 @@
 
 #include "tests/motions.h"
 
-namespace {
+namespace own_clips_test {
 
 using namespace test;
 
@@ -60,4 +60,4 @@ TEST(OwnClips, MoveTheHeadAsTheirNamesSay) {
   EXPECT_GT(fastestHead(ownClip("idle_turns")), 90);
 }
 
-}  // namespace
+}  // namespace own_clips_test

@@ -7,7 +7,7 @@
 
 #include "tests/motions.h"
 
-namespace {
+namespace playback_test {
 
 using namespace test;
 
@@ -278,4 +278,4 @@ TEST(Seam, ShortAndStillClipsHaveOneToo) {
   }
 }
 
-}  // namespace
+}  // namespace playback_test

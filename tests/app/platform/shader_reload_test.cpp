@@ -15,7 +15,7 @@
 #include "tests/gl_fixture.h"
 #include "tests/synthetic_hair.h"
 
-namespace {
+namespace shader_reload_test {
 
 constexpr int kWidth = 160, kHeight = 90;
 
@@ -133,4 +133,4 @@ TEST_F(ShaderReload, TheWindowLooksNowAndThenAndShowsWhatCameOfIt) {
   EXPECT_EQ(demo.message, std::to_string(programs) + " shader programs reloaded");
 }
 
-}  // namespace
+}  // namespace shader_reload_test

@@ -11,7 +11,7 @@
 #include "app/files/output_file.h"
 #include "tests/run_program.h"
 
-namespace {
+namespace video_test {
 
 TEST(Video, WithoutFfmpegOneMessageNamesThePackage) {
   const std::string file = test::freshFolder("video_without") + "/film.mp4";
@@ -72,4 +72,4 @@ TEST(Video, AFilmThatTheDiskCannotHoldEndsInAFault) {
   ::umount2(folder.c_str(), MNT_DETACH);
 }
 
-}  // namespace
+}  // namespace video_test

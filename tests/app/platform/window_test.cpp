@@ -12,7 +12,7 @@
 #include "app/files/image_io.h"
 #include "tests/run_program.h"
 
-namespace {
+namespace window_test {
 
 // An X server without a screen, on a display number of its own choosing; gone with the test.
 class VirtualDisplay {
@@ -155,4 +155,4 @@ TEST(Window, SurvivesBadShaderFolderWithAMessage) {
   EXPECT_NE(outcome.err.find("shader"), std::string::npos) << outcome.err;
 }
 
-}  // namespace
+}  // namespace window_test

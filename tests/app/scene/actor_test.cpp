@@ -14,7 +14,7 @@
 #include "app/scene/view/debug_views.h"
 #include "tests/run_program.h"
 
-namespace {
+namespace actor_test {
 
 using app::Rigid;
 using app::Vec3;
@@ -188,4 +188,4 @@ TEST(DebugViews, AContactThatSticksIsRedAndOneThatSlidesIsNot) {
   }
 }
 
-}  // namespace
+}  // namespace actor_test

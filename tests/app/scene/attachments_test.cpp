@@ -17,7 +17,7 @@
 #include "tests/app/scene/small_scene.h"
 #include "tests/run_program.h"
 
-namespace {
+namespace attachments_test {
 
 using app::Ask;
 
@@ -286,4 +286,4 @@ TEST(Attachments, ASceneKeepsThemAndATakeReplaysThemToTheBit) {
   EXPECT_NE((replay.out + replay.err).find("to the bit"), std::string::npos) << replay.out << replay.err;
 }
 
-}  // namespace
+}  // namespace attachments_test

@@ -9,7 +9,7 @@
 #include "app/scene/demo.h"
 #include "tests/run_program.h"
 
-namespace {
+namespace background_load_test {
 
 using app::Ask;
 using app::Demo;
@@ -135,4 +135,4 @@ TEST(BackgroundLoad, AFaultIsToldAndChangesNothing) {
   EXPECT_FALSE(demo.loading.running.valid());
 }
 
-}  // namespace
+}  // namespace background_load_test

@@ -6,7 +6,7 @@
 #include "app/scene/sim_to_render.h"
 #include "tests/motions.h"
 
-namespace {
+namespace blend_poses_test {
 
 using namespace test;
 
@@ -52,4 +52,4 @@ TEST(BlendPoses, APoseThatStandsStillStaysToTheBit) {
   }
 }
 
-}  // namespace
+}  // namespace blend_poses_test

@@ -9,7 +9,7 @@
 #include "tests/app/scene/small_scene.h"
 #include "tests/run_program.h"
 
-namespace {
+namespace comparison_test {
 
 using app::Ask;
 
@@ -89,4 +89,4 @@ TEST(Comparison, APictureHasTheFirstOneLeftOfTheLine) {
   EXPECT_GT(right, 500);
 }
 
-}  // namespace
+}  // namespace comparison_test

@@ -6,7 +6,7 @@
 #include "app/files/data_path.h"
 #include "app/scene/demo.h"
 
-namespace {
+namespace deadline_test {
 
 constexpr double kFrame = 1.0 / 60, kUnit = app::Deadline{}.seconds_per_unit;
 
@@ -96,4 +96,4 @@ TEST(Deadline, IsSharedByTheHairsOfAFrameAndByItsSteps) {
   EXPECT_EQ(app::affordableSteps(3, deadline), 1) << "one at least";
 }
 
-}  // namespace
+}  // namespace deadline_test

@@ -10,7 +10,7 @@
 #include "app/files/recording.h"
 #include "tests/run_program.h"
 
-namespace {
+namespace demo_state_test {
 
 using test::readAll;
 
@@ -210,4 +210,4 @@ TEST(DemoState, TheProgramRefusesWithExitCodeFour) {
   EXPECT_EQ(test::runProgram({file}).exit_code, 2);
 }
 
-}  // namespace
+}  // namespace demo_state_test

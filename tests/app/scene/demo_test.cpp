@@ -15,7 +15,7 @@
 #include "app/files/data_path.h"
 #include "tests/run_program.h"
 
-namespace {
+namespace demo_test {
 
 using app::Ask;
 using app::Demo;
@@ -316,4 +316,4 @@ TEST(Headless, ARunWithoutPicturesNeedsNoGraphicsAndReportsEveryFrame) {
   EXPECT_TRUE(report["frames"][5]["always_skipped"].contains("out-of-reach"));
 }
 
-}  // namespace
+}  // namespace demo_test

@@ -10,7 +10,7 @@
 
 #include "tests/test_meshes.h"
 
-namespace {
+namespace draw_governor_test {
 
 using app::DrawGovernor;
 using app::drawLadder;
@@ -173,4 +173,4 @@ TEST(DrawGovernor, BadBudgetsAndTimesAreRefused) {
   EXPECT_EQ(governor.frames, 0);
 }
 
-}  // namespace
+}  // namespace draw_governor_test

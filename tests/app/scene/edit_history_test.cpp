@@ -10,7 +10,7 @@
 #include "sim/field_text.h"
 #include "tests/run_program.h"
 
-namespace {
+namespace edit_history_test {
 
 using app::Ask;
 using app::Request;
@@ -194,4 +194,4 @@ TEST(EditHistory, HairComesBackWhereTheHeadIsNow) {
   EXPECT_EQ(demo.stats.recoveries, 0);
 }
 
-}  // namespace
+}  // namespace edit_history_test

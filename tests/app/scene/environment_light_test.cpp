@@ -11,7 +11,7 @@
 
 #include "app/files/errors.h"
 
-namespace {
+namespace environment_light_test {
 
 constexpr double kSphere = 4 * std::numbers::pi;
 
@@ -134,4 +134,4 @@ TEST(EnvironmentLight, WhatIsNoPanoramaIsRefusedByName) {
   saysOf("black everywhere", "black.hdr", header("-Y 1 +X 2") + std::string(8, '\0'));
 }
 
-}  // namespace
+}  // namespace environment_light_test

@@ -13,7 +13,7 @@
 #include "app/scene/detail/step_error.h"
 #include "tests/test_meshes.h"
 
-namespace {
+namespace governor_test {
 
 using app::FrameCost;
 using app::Governor;
@@ -352,4 +352,4 @@ TEST(Governor, SeveralCharactersShareTheBudget) {
   EXPECT_GT(rungOf(1), rungOf(5));
 }
 
-}  // namespace
+}  // namespace governor_test

@@ -10,7 +10,7 @@
 #include "app/scene/edit/picking.h"
 #include "tests/run_program.h"
 
-namespace {
+namespace groom_brush_test {
 
 using app::Ask;
 
@@ -243,4 +243,4 @@ TEST(Picking, ARayThroughAPixelMeetsWhatIsSeenThere) {
   EXPECT_FALSE(app::pickHair(app::rayThrough(2, 2, 900, 600, demo.camera), actor));
 }
 
-}  // namespace
+}  // namespace groom_brush_test

@@ -15,7 +15,7 @@
 #include "tests/app/groom/groom_samples.h"
 #include "tests/app/groom/second_reader.h"
 
-namespace {
+namespace hair_export_test {
 
 namespace fs = std::filesystem;
 
@@ -192,9 +192,10 @@ TEST(HairExport, TheInspectorFindsNoFaultInWhatIsExported) {
                                                    {"--motion", "jump_spin.bvh", "--style", "long"},
                                                    {"pony_tail.json", "--export-unit", "in"},
                                                    {"trio.json"}};
+  const std::vector<std::string> endings{"abc", "usda", "hair", "ply", "tfx"};  // two of a run, each in two runs
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    for (const char* ending : {"abc", "usda", "hair", "ply", "tfx"}) {
-      const std::string file = folder + "/" + std::to_string(r) + "." + ending;
+    for (const std::size_t format : {r, (r + 2) % endings.size()}) {
+      const std::string file = folder + "/" + std::to_string(r) + "." + endings[format];
       std::vector<std::string> words{"--no-images",     "--strands", "400",      "--frames", "31",
                                      "--export-frames", "30",        "--export", file};
       words.insert(words.end(), runs[r].begin(), runs[r].end());
@@ -213,4 +214,4 @@ TEST(HairExport, TheInspectorFindsNoFaultInWhatIsExported) {
   }
 }
 
-}  // namespace
+}  // namespace hair_export_test

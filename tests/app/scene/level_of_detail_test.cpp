@@ -12,7 +12,7 @@
 #include "app/files/text_file.h"
 #include "render/view_math.h"
 
-namespace {
+namespace level_of_detail_test {
 
 using app::Demo;
 using app::Vec3;
@@ -137,4 +137,4 @@ TEST(LevelOfDetail, TheWayBackIsAFifthFurther) {
   EXPECT_EQ(demo.actors[0].detail.step_span, 1);
 }
 
-}  // namespace
+}  // namespace level_of_detail_test

@@ -11,7 +11,7 @@
 #include "app/scene/sim_to_render.h"
 #include "tests/run_program.h"
 
-namespace {
+namespace loop_test {
 
 using app::Ask;
 using app::Demo;
@@ -317,4 +317,4 @@ TEST(FarAway, ThePictureIsTheSameToAHundredthOfAMillimetre) {
   EXPECT_LT(most, 1e-5) << "m";
 }
 
-}  // namespace
+}  // namespace loop_test

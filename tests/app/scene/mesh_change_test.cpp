@@ -14,7 +14,7 @@
 #include "app/scene/project.h"
 #include "tests/run_program.h"
 
-namespace {
+namespace mesh_change_test {
 
 using app::Ask;
 using app::Demo;
@@ -433,4 +433,4 @@ TEST(MeshChange, TwoSecondsAfterAChangeNothingHasDrooped) {
   EXPECT_LT(most, 0.01 * meshOf(demo).hair_length);
 }
 
-}  // namespace
+}  // namespace mesh_change_test

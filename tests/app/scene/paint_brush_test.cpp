@@ -15,7 +15,7 @@
 #include "tests/app/scene/small_scene.h"
 #include "tests/run_program.h"
 
-namespace {
+namespace paint_brush_test {
 
 using app::Ask;
 
@@ -275,4 +275,4 @@ TEST(PaintBrush, AMapThatIsNotAsExpectedIsSaidWithItsFile) {
   EXPECT_NE(app::openScene(std::move(scene), 1.5).message.find("blue.png is coloured"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace paint_brush_test

@@ -9,7 +9,7 @@
 #include "app/scene/demo.h"
 #include "app/scene/detail/sleep.h"
 
-namespace {
+namespace pins_test {
 
 using app::PinSpec;
 using app::Vec3;
@@ -165,4 +165,4 @@ TEST(Pins, TheExampleSceneHoldsItsHairAndTheDebugViewShowsEachPin) {
   EXPECT_EQ(firm, 2);
 }
 
-}  // namespace
+}  // namespace pins_test

@@ -8,7 +8,7 @@
 #include "app/files/data_path.h"
 #include "tests/run_program.h"
 
-namespace {
+namespace present_scene_test {
 
 using app::Ask;
 
@@ -67,4 +67,4 @@ TEST(PresentScene, FilesOfTheProgramAreNamedBare) {
   EXPECT_EQ(moved.characters[0].parts, "");
 }
 
-}  // namespace
+}  // namespace present_scene_test

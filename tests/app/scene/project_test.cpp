@@ -16,7 +16,7 @@
 #include "app/scene/edit/groom_brush.h"
 #include "tests/run_program.h"
 
-namespace {
+namespace project_test {
 
 using app::Ask;
 
@@ -224,4 +224,4 @@ TEST(Timeline, KeepsNoMoreThanItMay) {
   EXPECT_EQ(demo.timeline.frames.size(), 1u);
 }
 
-}  // namespace
+}  // namespace project_test

@@ -14,7 +14,7 @@
 #include "tests/gl_fixture.h"
 #include "tests/synthetic_hair.h"
 
-namespace {
+namespace random_look_test {
 
 constexpr int kSize = 40, kLooks = 1000;  // pixels a side
 
@@ -107,4 +107,4 @@ TEST_F(RandomLooks, OfLightAndViewHoldNoValueThatIsNotANumber) {
   }
 }
 
-}  // namespace
+}  // namespace random_look_test

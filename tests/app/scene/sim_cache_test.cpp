@@ -10,7 +10,7 @@
 #include "app/scene/demo_state.h"
 #include "tests/run_program.h"
 
-namespace {
+namespace sim_cache_test {
 
 constexpr int kFrames = 70;
 constexpr double kFrame = 1.0 / 60;
@@ -222,4 +222,4 @@ TEST(HairRecorder, WritesACacheThatTheTimelineThenShowsAndAnExport) {
   EXPECT_FALSE(demo.capture.hair);
 }
 
-}  // namespace
+}  // namespace sim_cache_test

@@ -9,7 +9,7 @@
 #include "app/files/text_file.h"
 #include "app/scene/demo.h"
 
-namespace {
+namespace takes_test {
 
 struct Made {
   std::string state, fault;
@@ -50,4 +50,4 @@ TEST(Takes, FiveHairdosAreMadeAgainToTheBit) {
   if (recorded != 5) std::printf("%d of 5 end as on the processor that recorded them\n", recorded);
 }
 
-}  // namespace
+}  // namespace takes_test

@@ -12,7 +12,7 @@
 #include "app/scene/demo.h"
 #include "tests/run_program.h"
 
-namespace {
+namespace ties_test {
 
 using app::Ask;
 
@@ -130,4 +130,4 @@ TEST(Ties, ASceneKeepsThem) {
   EXPECT_THROW(app::tiesFromText("{\"radius\": 9}"), app::InputError);
 }
 
-}  // namespace
+}  // namespace ties_test

@@ -5,7 +5,7 @@
 #include "app/scene/demo.h"
 #include "tests/app/scene/small_scene.h"
 
-namespace {
+namespace timeline_range_test {
 
 using app::Ask;
 
@@ -80,4 +80,4 @@ TEST(TimelineRange, PointsStayInOrderAndLoopsAreMarked) {
   EXPECT_EQ(loops, 1);
 }
 
-}  // namespace
+}  // namespace timeline_range_test

@@ -9,7 +9,7 @@
 #include "app/scene/view/light_drag.h"
 #include "tests/app/scene/small_scene.h"
 
-namespace {
+namespace vary_test {
 
 TEST(Vary, MovesTheMaterialWithinItsRangesAndNothingElse) {
   const sim::SimParams standard;
@@ -69,4 +69,4 @@ TEST(TurnedLight, GoesWithTheMouseAndStopsShortOfTheVertical) {
   EXPECT_NEAR(rise(app::turnedLight({0, 0, 0}, 0, 0, 700)), 0, 1e-6);
 }
 
-}  // namespace
+}  // namespace vary_test

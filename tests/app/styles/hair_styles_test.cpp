@@ -12,11 +12,11 @@
 #include "app/styles/style_untangle.h"
 #include "tests/analytic_head.h"
 
-namespace {
+namespace hair_styles_test {
 
-using sim::HairMeshShape;
 using app::Resolution;
 using app::Style;
+using sim::HairMeshShape;
 using sim::Vec3;
 
 constexpr Style kStyles[] = {Style::kShort, Style::kShoulder, Style::kLong};
@@ -357,7 +357,7 @@ TEST(HairStyles, ValidOnOddHeads) {
 
 // Whoever is loaded gets hair: the paper's mannequin, a robot with a box for a head, a figure whose neck carries the
 // head.
-TEST(HairStyles, ValidOnEveryCharacterAtHand) {
+TEST(HairStylesOnCharacters, AreValidOnEachAtHand) {
   const std::string shared = std::string(HAIRMESH_SOURCE_DIR) + "/../shared";
   if (!std::filesystem::exists(shared)) GTEST_SKIP() << "needs " << shared;
   const std::pair<const char*, const char*> files[] = {{"/arcsim/dance.mot", "/arcsim/female-objs"},
@@ -395,4 +395,4 @@ TEST(Scalp, RadiusIsInterpolatedAndPeriodic) {
   }
 }
 
-}  // namespace
+}  // namespace hair_styles_test

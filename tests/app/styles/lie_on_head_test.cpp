@@ -8,13 +8,13 @@
 
 #include "app/figure/character.h"
 #include "app/scene/sim_to_render.h"
-#include "render/strands/hair_layout.h"
 #include "app/styles/hair_styles.h"
 #include "app/styles/style_roots.h"
+#include "render/strands/hair_layout.h"
 #include "tests/analytic_head.h"
 #include "tests/strand_reference.h"
 
-namespace {
+namespace lie_on_head_test {
 
 using app::Resolution;
 using app::Style;
@@ -254,4 +254,4 @@ TEST(StylesLieOnTheHead, TheOutlineIsOneDome) {
   });
 }
 
-}  // namespace
+}  // namespace lie_on_head_test

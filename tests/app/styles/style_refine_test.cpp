@@ -6,7 +6,7 @@
 #include "tests/analytic_head.h"
 #include "tests/test_meshes.h"
 
-namespace {
+namespace style_refine_test {
 
 using sim::Vec3;
 
@@ -48,4 +48,4 @@ TEST(RefinedStyle, AddsPointsOfTheSameCurves) {
   EXPECT_GT(added, 100);
 }
 
-}  // namespace
+}  // namespace style_refine_test

@@ -6,7 +6,7 @@
 #include "app/ui/ui_panels.h"
 #include "tests/app/ui/panels.h"
 
-namespace {
+namespace select_test {
 
 using test::Ask;
 using test::Request;
@@ -124,4 +124,4 @@ TEST_F(Select, BrushesAndSelectionTakeTurns) {
   EXPECT_EQ(ui_.brush.tool, -1);
 }
 
-}  // namespace
+}  // namespace select_test

@@ -10,7 +10,7 @@
 #include "tests/app/ui/panels.h"
 #include "tests/run_program.h"
 
-namespace {
+namespace ui_files_test {
 
 using app::Ask;
 using app::UiItem;
@@ -212,4 +212,4 @@ TEST(InputQueue, ShiftGoesWithTheCharacterThatItMakes) {
   EXPECT_EQ(given, 3);
 }
 
-}  // namespace
+}  // namespace ui_files_test

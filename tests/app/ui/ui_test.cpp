@@ -16,7 +16,7 @@
 #include "sim/stabilization/parameter_limits.h"
 #include "tests/app/ui/panels.h"
 
-namespace {
+namespace ui_test {
 
 using app::Ask;
 using app::UiItem;
@@ -334,4 +334,4 @@ TEST_F(Panels, OneVariationReplacesTheLastUntilItIsKept) {
   EXPECT_EQ(demo_.edits.done, 2u);
 }
 
-}  // namespace
+}  // namespace ui_test

@@ -5,7 +5,7 @@
 
 #include "tests/test_meshes.h"
 
-namespace {
+namespace colliders_test {
 
 using sim::Ellipsoid;
 using sim::SurfacePoint;
@@ -189,4 +189,4 @@ TEST(Ellipsoid, SurfaceVelocityIsTheRigidMotionsDerivative) {
   }
 }
 
-}  // namespace
+}  // namespace colliders_test

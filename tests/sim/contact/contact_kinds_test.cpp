@@ -7,7 +7,7 @@
 #include "sim/contact/contact.h"
 #include "tests/test_meshes.h"
 
-namespace {
+namespace contact_kinds_test {
 
 using sim::Ellipsoid;
 using sim::Vec3;
@@ -253,4 +253,4 @@ TEST(Contact, WhatABodyLeavesBehindIsNotHeld) {
   }
 }
 
-}  // namespace
+}  // namespace contact_kinds_test

@@ -5,7 +5,7 @@
 
 #include "tests/test_meshes.h"
 
-namespace {
+namespace contact_test {
 
 using sim::Contact;
 using sim::Ellipsoid;
@@ -471,4 +471,4 @@ TEST(Contact, AThinFlatArmCannotPassThroughAtAnySpeed) {
   EXPECT_GT(met, 600);
 }
 
-}  // namespace
+}  // namespace contact_test

@@ -7,7 +7,7 @@
 
 #include "tests/test_meshes.h"
 
-namespace {
+namespace deformation_test {
 
 using sim::Vec3;
 
@@ -218,4 +218,4 @@ TEST(DeformationMinimization, DoesNoWorkWhenNothingTouches) {
   EXPECT_EQ(test::largestDistance(states[0].positions, states[1].positions), 0);
 }
 
-}  // namespace
+}  // namespace deformation_test

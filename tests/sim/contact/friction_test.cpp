@@ -4,7 +4,7 @@
 #include "sim/contact/contact.h"
 #include "tests/test_meshes.h"
 
-namespace {
+namespace friction_test {
 
 using sim::Contact;
 using sim::Ellipsoid;
@@ -111,4 +111,4 @@ TEST(Friction, HoldsBelowTheFrictionAngleAndSlidesAboveItAtCoulombsRate) {
   }
 }
 
-}  // namespace
+}  // namespace friction_test

@@ -7,7 +7,7 @@
 #include "sim/stabilization/inversion_recovery.h"
 #include "tests/test_meshes.h"
 
-namespace {
+namespace self_contact_test {
 
 using sim::Vec3;
 using test::Hair;
@@ -327,4 +327,4 @@ TEST(SelfContact, WhatOverlapsAtRestStaysAsItIs) {
   EXPECT_LT(test::largestDistance(hair.state.positions, start), 1e-5);
 }
 
-}  // namespace
+}  // namespace self_contact_test

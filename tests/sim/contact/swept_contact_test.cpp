@@ -7,7 +7,7 @@
 #include "sim/contact/contact.h"
 #include "tests/test_meshes.h"
 
-namespace {
+namespace swept_contact_test {
 
 using sim::Ellipsoid;
 using sim::Vec3;
@@ -122,8 +122,8 @@ struct Beaten {
   }
 };
 
-// A pack of overlapping bodies that passes through the hair within a step, to and fro, as the body of a figure does whose
-// clip is played at twenty times its speed.
+// A pack of overlapping bodies that passes through the hair within a step, to and fro, as the body of a figure does
+// whose clip is played at twenty times its speed.
 TEST(StepWork, OfContactsIsBoundedWhereManyBodiesPassInOneStep) {
   Beaten beaten;
   std::vector<Ellipsoid>& bodies = beaten.bodies;
@@ -192,4 +192,4 @@ TEST(StepWork, KeepsToWhatTheStepIsGivenWithNothingInsideTheBodies) {
   EXPECT_LT(deepest, 1e-6);
 }
 
-}  // namespace
+}  // namespace swept_contact_test

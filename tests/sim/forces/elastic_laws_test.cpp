@@ -9,7 +9,7 @@
 #include "sim/forces/rest_balance.h"
 #include "tests/test_meshes.h"
 
-namespace {
+namespace elastic_laws_test {
 
 using sim::BlockMatrix;
 using sim::BlockPattern;
@@ -357,4 +357,4 @@ TEST(SagFree, TheStyledPoseCarriesItsWeightWhileStiffnessAndWeightFollow) {
   EXPECT_LT(imbalance(mesh, material.model, params), 1e-9) << "another weight";
 }
 
-}  // namespace
+}  // namespace elastic_laws_test

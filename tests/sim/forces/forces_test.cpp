@@ -7,7 +7,7 @@
 #include "sim/forces/model.h"
 #include "tests/test_meshes.h"
 
-namespace {
+namespace forces_test {
 
 using sim::BlockMatrix;
 using sim::BlockPattern;
@@ -46,10 +46,12 @@ struct Element {
 };
 
 template <class Kind>
-constexpr bool kOneSided = requires { Kind::kOneSided; };
+constexpr bool kOneSided = requires {
+  Kind::kOneSided;
+};
 
-// Some elements of the kind, from all over a mesh; one-sided ones where they act, folded back by some two right angles. Their vertices are numbered from the last to the first, so that
-// blocks are turned.
+// Some elements of the kind, from all over a mesh; one-sided ones where they act, folded back by some two right angles.
+// Their vertices are numbered from the last to the first, so that blocks are turned.
 template <class Kind>
 std::vector<Element> elementsOf() {
   const sim::HairMesh mesh = combedMesh();
@@ -315,4 +317,4 @@ TEST(Forces, DampingForceIsTheDissipationsDerivativeAndDampsNothingRigid) {
   EXPECT_LT(test::stacked<double>(rigid_force).norm(), 1e-10 * test::stacked<double>(force).norm());
 }
 
-}  // namespace
+}  // namespace forces_test

@@ -12,7 +12,7 @@
 #include "sim/stabilization/state_validation.h"
 #include "tests/test_meshes.h"
 
-namespace {
+namespace kinds_test {
 
 using sim::ElementOf;
 using sim::ForceKinds;
@@ -214,4 +214,4 @@ TEST(ForceKinds, EachIsAHeaderAndALineInTheListAsTheRecipeSays) {
   }
 }
 
-}  // namespace
+}  // namespace kinds_test

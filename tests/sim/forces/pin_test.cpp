@@ -5,7 +5,7 @@
 #include "sim/stabilization/safety_nets.h"
 #include "tests/test_meshes.h"
 
-namespace {
+namespace pin_test {
 
 using sim::PinnedVertex;
 using sim::Vec3;
@@ -240,4 +240,4 @@ TEST(Pin, AWhippingTargetKeepsTheHairBounded) {
   }
 }
 
-}  // namespace
+}  // namespace pin_test

@@ -3,7 +3,7 @@
 #include "tests/linear_systems.h"
 
 namespace tests {
-namespace {
+namespace block_matrix_test {
 
 template <class T>
 void factorSolves(double bound) {
@@ -20,7 +20,8 @@ void factorSolves(double bound) {
   const auto fill = [&] {
     factor.setZero();
     for (int row = 0; row < whole.rows(); ++row) {
-      for (int column = first[row]; column <= row; ++column) factor.at(row, column) = static_cast<T>(whole(row, column));
+      for (int column = first[row]; column <= row; ++column)
+        factor.at(row, column) = static_cast<T>(whole(row, column));
     }
   };
   fill();
@@ -58,5 +59,5 @@ TEST(BlockMatrix, ProductIsTheDenseOne) {
   EXPECT_EQ(system.pattern.find(system.pattern.size - 1, 0), -1);
 }
 
-}  // namespace
+}  // namespace block_matrix_test
 }  // namespace tests

@@ -5,7 +5,7 @@
 #include "tests/bench/preconditioners/preconditioner.h"
 #include "tests/test_meshes.h"
 
-namespace {
+namespace column_layout_test {
 
 using sim::V3;
 using sim::Vec3;
@@ -173,4 +173,4 @@ TEST(ColumnLayout, PackingKeepsEveryVertexAndLeavesThePaddingZero) {
   }
 }
 
-}  // namespace
+}  // namespace column_layout_test

@@ -11,7 +11,7 @@
 
 #include "sim/sim_params.h"
 
-namespace {
+namespace kernel_sets_test {
 
 struct Line {
   std::array<int, 3> way;  // solver, precision, integrator
@@ -68,4 +68,4 @@ TEST(KernelSets, TakeTheSameStepsWithinRounding) {
   if (compared == 0) GTEST_SKIP() << "this processor has the plain set only";
 }
 
-}  // namespace
+}  // namespace kernel_sets_test

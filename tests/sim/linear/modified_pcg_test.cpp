@@ -4,7 +4,7 @@
 #include "tests/linear_systems.h"
 
 namespace tests {
-namespace {
+namespace modified_pcg_test {
 
 struct Way {
   Kind kind;
@@ -231,5 +231,5 @@ TEST(ModifiedPcg, StopsByEachOfItsRules) {
   EXPECT_EQ(x.norm(), 0);
 }
 
-}  // namespace
+}  // namespace modified_pcg_test
 }  // namespace tests

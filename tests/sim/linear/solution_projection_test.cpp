@@ -6,7 +6,7 @@
 #include "sim/linear/vector_kernels.h"
 #include "tests/linear_systems.h"
 
-namespace {
+namespace solution_projection_test {
 
 using namespace tests;
 
@@ -193,4 +193,4 @@ TEST(SolutionProjection, SolvesInSinglePrecisionGoAsFarAsTheyAreAsked) {
   EXPECT_LT(off, 3e-5);
 }
 
-}  // namespace
+}  // namespace solution_projection_test

@@ -6,7 +6,7 @@
 #include "tests/linear_systems.h"
 
 namespace tests {
-namespace {
+namespace two_level_test {
 
 // Any symmetric matrix with a heavy diagonal, in both layouts; what lies in the padding must not matter.
 template <class T>
@@ -331,5 +331,5 @@ TEST(TwoLevel, ContactsItKnowsOfCostFewIterations) {
   }
 }
 
-}  // namespace
+}  // namespace two_level_test
 }  // namespace tests

@@ -10,7 +10,7 @@
 
 #include "tests/test_meshes.h"
 
-namespace {
+namespace hair_mesh_test {
 
 using sim::HairMesh;
 using sim::HairMeshShape;
@@ -300,4 +300,4 @@ TEST(HairMesh, EveryFaultIsRefusedWithItsPlaceAndMend) {
   }
 }
 
-}  // namespace
+}  // namespace hair_mesh_test

@@ -10,7 +10,7 @@
 #include "sim/mesh/rest_measures.h"
 #include "tests/test_meshes.h"
 
-namespace {
+namespace rest_shape_test {
 
 using app::BrushTool;
 using sim::Vec3;
@@ -212,4 +212,4 @@ TEST(ShapeBrush, NothingIsPushedIntoTheBody) {
   EXPECT_GT(farthest, 0.02) << "the brush has done nothing";
 }
 
-}  // namespace
+}  // namespace rest_shape_test

@@ -5,7 +5,7 @@
 
 #include "tests/test_meshes.h"
 
-namespace {
+namespace shape_transfer_test {
 
 using sim::Vec3;
 
@@ -41,13 +41,11 @@ TEST(ShapeTransfer, CarriesARigidMotion) {
   const sim::HairMesh from = sim::buildHairMesh(test::combedShape(test::mixedPatch(9, 0.3))),
                       to = sim::buildHairMesh(test::combedShape(test::mixedPatch(6, 0.3)));
   const sim::ShapeTransfer transfer = sim::makeShapeTransfer(from, to);
-  const Eigen::Isometry3d motion =
-      Eigen::Translation3d(1, 2, 3) * Eigen::AngleAxisd(0.8, Vec3(1, 2, -1).normalized());
+  const Eigen::Isometry3d motion = Eigen::Translation3d(1, 2, 3) * Eigen::AngleAxisd(0.8, Vec3(1, 2, -1).normalized());
   std::vector<Vec3> source, target(to.vertexCount());
   for (const Vec3& p : from.shape.positions) source.push_back(motion * p);
   sim::transferPositions(transfer, from, to, motion, source, target);
-  for (int i = 0; i < to.vertexCount(); ++i)
-    EXPECT_LT((target[i] - motion * to.shape.positions[i]).norm(), 1e-6) << i;
+  for (int i = 0; i < to.vertexCount(); ++i) EXPECT_LT((target[i] - motion * to.shape.positions[i]).norm(), 1e-6) << i;
 }
 
-}  // namespace
+}  // namespace shape_transfer_test

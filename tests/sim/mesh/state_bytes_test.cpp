@@ -8,7 +8,7 @@
 #include "sim/step.h"
 #include "tests/test_meshes.h"
 
-namespace {
+namespace state_bytes_test {
 
 using sim::Vec3;
 using test::Hair;
@@ -180,4 +180,4 @@ TEST(StateBytes, TheVersionSpeaksOfTheseFields) {
   EXPECT_EQ(sim::saveState(hair.mesh, {}).size(), 1181u);
 }
 
-}  // namespace
+}  // namespace state_bytes_test

@@ -11,7 +11,7 @@
 #include "sim/stabilization/state_validation.h"
 #include "tests/test_meshes.h"
 
-namespace {
+namespace energy_limit_test {
 
 using sim::Vec3;
 using test::Hair;
@@ -265,4 +265,4 @@ TEST(EnergyLimit, BeingCarriedAlongAndTurnedMakesNoEnergy) {
   EXPECT_EQ(flung.hair.state.positions, before.positions);
 }
 
-}  // namespace
+}  // namespace energy_limit_test

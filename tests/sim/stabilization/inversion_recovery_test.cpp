@@ -7,7 +7,7 @@
 #include "tests/analytic_head.h"
 #include "tests/test_meshes.h"
 
-namespace {
+namespace inversion_recovery_test {
 
 using sim::Vec3;
 using test::Hair;
@@ -121,7 +121,8 @@ TEST(InversionRecovery, TheTargetTurnsWithTheHead) {
 TEST(InversionRecovery, TheWayHomeIsTheSameUnderAMovingHead) {
   Frozen still, moving;
   for (Frozen* hair : {&still, &moving}) turnOver(5, hair->mesh, hair->state);
-  const Eigen::Isometry3d motion = Eigen::Translation3d(0.03, 0, 0.02) * Eigen::AngleAxisd(0.1, Vec3(1, 2, 0).normalized());
+  const Eigen::Isometry3d motion =
+      Eigen::Translation3d(0.03, 0, 0.02) * Eigen::AngleAxisd(0.1, Vec3(1, 2, 0).normalized());
   Eigen::Isometry3d head = Eigen::Isometry3d::Identity();
   int guided = 0;
   for (int n = 0; n < 480; ++n) {
@@ -191,4 +192,4 @@ TEST(InversionRecovery, HairMirroredThroughItsRootsComesHomeByItsForcesAndByTheP
   EXPECT_EQ(columns, 0);
 }
 
-}  // namespace
+}  // namespace inversion_recovery_test

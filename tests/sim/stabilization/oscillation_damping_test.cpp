@@ -6,7 +6,7 @@
 #include "sim/step.h"
 #include "tests/test_meshes.h"
 
-namespace {
+namespace oscillation_damping_test {
 
 using sim::Vec3;
 
@@ -81,4 +81,4 @@ TEST(OscillationDamping, HairThatTheHeadThrowsToAndFroKeepsEveryBit) {
   }
 }
 
-}  // namespace
+}  // namespace oscillation_damping_test

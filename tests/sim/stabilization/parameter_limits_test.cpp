@@ -7,7 +7,7 @@
 
 #include "tests/test_meshes.h"
 
-namespace {
+namespace parameter_limits_test {
 
 using sim::Vec3;
 using test::Hair;
@@ -85,4 +85,4 @@ TEST(ParameterLimits, ThePublishedStepAndLooseParticlesHaveNone) {
   EXPECT_TRUE(sim::limitedValues(mesh, params).empty());
 }
 
-}  // namespace
+}  // namespace parameter_limits_test

@@ -3,7 +3,7 @@
 
 #include "tests/test_meshes.h"
 
-namespace {
+namespace recovery_test {
 
 using sim::Vec3;
 using test::Hair;
@@ -185,4 +185,4 @@ TEST(Recovery, WorksWithEverySolverAndIntegrator) {
   }
 }
 
-}  // namespace
+}  // namespace recovery_test

@@ -5,7 +5,7 @@
 
 #include "tests/test_meshes.h"
 
-namespace {
+namespace reference_hair_test {
 
 using sim::Vec3;
 using test::Hair;
@@ -83,4 +83,4 @@ TEST(RestCheck, HairThatMovesIsNotJudged) {
   EXPECT_FALSE(sim::watchRest(hair.step(), hair.state));
 }
 
-}  // namespace
+}  // namespace reference_hair_test

@@ -9,7 +9,7 @@
 
 #include "tests/test_meshes.h"
 
-namespace {
+namespace state_validation_test {
 
 using sim::Vec3;
 using test::Hair;
@@ -297,4 +297,4 @@ TEST(Teleport, AMotionOfFlatRootsIsNoMirrorImage) {
   }
 }
 
-}  // namespace
+}  // namespace state_validation_test
