@@ -58,40 +58,48 @@ std::vector<double> gather(const RunReport& run, Pick&& pick) {
   return values;
 }
 
-json frameJson(const FrameStats& stats, std::size_t index, double fps) {
-  json stages, drawing = json::object();
+json millisecondsJson(const FrameStats& stats) {
+  json stages = json::object(), drawing = json::object();
   for (int s = 0; s < kFrameStageCount; ++s) stages[std::string(kFrameStageNames[s])] = 1e3 * stats.seconds[s];
   for (const render::StageTime& stage : stats.draw.stages) drawing[stage.name] = stage.milliseconds;
-  return {{"frame", index},
-          {"time", static_cast<double>(index) / fps},
-          {"milliseconds", 1e3 * stats.whole},
-          {"simulation_milliseconds", 1e3 * stats.simulation()},
-          {"stages", stages},
-          {"drawing", drawing},
-          {"steps", stats.steps},
-          {"lost_seconds", stats.lost},
+  return {
+      {"frame", 1e3 * stats.whole}, {"simulation", 1e3 * stats.simulation()}, {"stages", stages}, {"drawing", drawing}};
+}
+
+json countsJson(const FrameStats& stats) {
+  return {{"steps", stats.steps},
           {"solver_iterations", stats.solver_iterations},
-          {"residual", stats.residual},
-          {"residual_acceleration", stats.residual_acceleration},
-          {"converged", stats.converged},
+          {"minimization_iterations", stats.minimization_iterations},
           {"work_units", stats.work_units},
           {"solves_cut", stats.solves_cut},
           {"corrections_cut", stats.corrections_cut},
           {"contacts", stats.contacts},
-          {"corrected", stats.corrected},
-          {"minimization_iterations", stats.minimization_iterations},
-          {"max_penetration", stats.max_penetration},
+          {"corrected_vertices", stats.corrected},
           {"recoveries", stats.recoveries},
+          {"carried", stats.carried},
+          {"led_back_columns", stats.guided},
+          {"strands_drawn", stats.draw.strands_drawn},
+          {"draw_calls", stats.draw.draw_calls}};
+}
+
+json frameJson(const FrameStats& stats, std::size_t index, double fps) {
+  return {{"frame", index},
+          {"seconds", static_cast<double>(index) / fps},
+          {"lost_seconds", stats.lost},
+          {"milliseconds", millisecondsJson(stats)},
+          {"counts", countsJson(stats)},
+          {"bytes",
+           {{"uploaded", stats.draw.bytes_uploaded},
+            {"gpu_hair", stats.draw.gpu_bytes_hair},
+            {"gpu_shadows", stats.draw.gpu_bytes_shadows}}},
+          {"solver",
+           {{"converged", stats.converged},
+            {"relative_residual", stats.residual},
+            {"residual_metres_per_second_squared", stats.residual_acceleration}}},
+          {"max_penetration_metres", stats.max_penetration},
           {"rung", stats.rung},
           {"draw_rung", stats.draw_rung},
           {"trouble", sim::faultText(stats.fault_report)},
-          {"carried", stats.carried},
-          {"combed", stats.guided},
-          {"strands_drawn", stats.draw.strands_drawn},
-          {"draw_calls", stats.draw.draw_calls},
-          {"bytes_uploaded", stats.draw.bytes_uploaded},
-          {"gpu_bytes_hair", stats.draw.gpu_bytes_hair},
-          {"gpu_bytes_shadows", stats.draw.gpu_bytes_shadows},
           {"skipped", skippedJson(stats.skipped)},
           {"always_skipped", alwaysJson(stats.always)}};
 }
@@ -126,7 +134,7 @@ json actorJson(const Actor& actor, const sim::SimParams& params) {
           {"vertices", mesh.vertexCount()},
           {"columns", mesh.columnCount()},
           {"prisms", mesh.prisms.size()},
-          {"hair_length", mesh.hair_length},
+          {"hair_length_metres", mesh.hair_length},
           {"limits", limitsJson(actor, params)},
           {"hair_note", actor.haircut->note},
           {"strands", actor.spec.look.strands},
@@ -151,7 +159,7 @@ json budgetJson(const RunReport& run, const Demo& demo) {
     rungs.push_back({{"rung", k},
                      {"name", ladder()[k].name},
                      {"frames", measured.size()},
-                     {"predicted_error", ladder()[k].error},
+                     {"predicted_error_over_length", ladder()[k].error},
                      {"measured_milliseconds", milliseconds(measured)},
                      {"counted_milliseconds", milliseconds(counted)}});
   }
@@ -160,8 +168,8 @@ json budgetJson(const RunReport& run, const Demo& demo) {
           {"rung", rungName(governor)},
           {"predicted_milliseconds", 1e3 * governor.predicted_cost},
           {"measured_milliseconds", 1e3 * governor.measured_cost},
-          {"predicted_error", predictedError(governor)},
-          {"measured_error", governor.measured_error},
+          {"predicted_error_over_length", predictedError(governor)},
+          {"measured_error_over_length", governor.measured_error},
           {"changes", governor.changes},
           {"over_budget", governor.over_budget},
           {"rungs", rungs}};
@@ -237,21 +245,21 @@ void writeReport(const std::string& file, const RunReport& run, const Demo& demo
       {"scene", demo.scene.name},
       {"renderer", run.renderer},
       {"characters", characters},
-      {"time_step", demo.running.time_step},
+      {"time_step_seconds", demo.running.time_step},
       {"budget", budgetJson(run, demo)},
       {"draw_budget", drawBudgetJson(run, demo)},
       {"skips", switches},
-      {"fps", run.fps},
+      {"frames_per_second", run.fps},
       {"start_milliseconds", 1e3 * run.start_seconds},
       {"summary",
-       {{"frames", run.frames.size()},
-        {"frame_milliseconds", milliseconds(gather(run, [](const FrameStats& f) { return f.whole; }))},
-        {"simulation_milliseconds", milliseconds(gather(run, [](const FrameStats& f) { return f.simulation(); }))},
-        {"stages_milliseconds", stages},
+       {{"counts", {{"frames", run.frames.size()}, {"recoveries", recoveries}}},
+        {"milliseconds",
+         {{"frame", milliseconds(gather(run, [](const FrameStats& f) { return f.whole; }))},
+          {"simulation", milliseconds(gather(run, [](const FrameStats& f) { return f.simulation(); }))},
+          {"stages", stages}}},
         {"lost_seconds", demo.clock.lost},
         {"skipped", skippedJson(skipped)},
-        {"always_skipped", alwaysJson(always)},
-        {"recoveries", recoveries}}},
+        {"always_skipped", alwaysJson(always)}}},
       {"frames", frames}};
   writeFile(file, report.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
 }
