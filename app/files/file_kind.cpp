@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -29,6 +30,18 @@ bool looksLikeScene(const nlohmann::json& text) {
     const std::string_view near = sim::nearestName(item.key(), kKeys);
     return std::find(kKeys.begin(), kKeys.begin() + 4, near) != kKeys.begin() + 4;
   });
+}
+
+constexpr std::size_t kTitleBytes = 15;  // of a state and of a cache
+
+std::string beginningOf(const std::string& file, std::size_t count) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return "";
+  std::string bytes(count, '\0');
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(bytes.data(), static_cast<std::streamsize>(count));
+  bytes.resize(static_cast<std::size_t>(stream.gcount()));
+  return bytes;
 }
 
 FileKind kindOfStillMesh(const std::string& file) {
@@ -59,15 +72,46 @@ FileKind fileKind(const std::string& file) {
     if (ending == known) return FileKind::kMotion;
   }
   if (hasGroomEnding(file)) return FileKind::kHairMesh;
-  if (ending == ".hairmesh") return FileKind::kCache;
+  const std::string beginning = beginningOf(file, kTitleBytes);  // a cache may be larger than memory
+  if (beginning.starts_with("hairmesh-state ")) return FileKind::kState;
+  if (beginning.starts_with("hairmesh-cache ") || ending == ".hairmesh") return FileKind::kCache;
   const std::string bytes = readText(file, kMaxGroomFile);
-  if (bytes.starts_with("hairmesh-state ")) return FileKind::kState;
-  if (bytes.starts_with("hairmesh-cache ")) return FileKind::kCache;
+  if (isRecording(bytes)) throw InputError(file, "", "is a recording", "play it with --replay");
   if (groomFormat(bytes, file)) return FileKind::kHairMesh;
   throw InputError(
       file, "", "is no kind of file that this program reads",
       "give a scene or preset (.json), a motion (.bvh, .glb, .gltf, .fbx, .mot), a hair mesh (.obj) "
       "or a groom: curves (.hair, .abc, .usda, .tfx, .ply), strips or tubes (.obj, .fbx, .glb, .gltf, .vrm)");
+}
+
+bool isRecording(std::string_view text) {
+  return text.substr(0, text.find('\n')).find("\"hairmesh-recording\"") != std::string_view::npos;
+}
+
+std::pair<std::string, std::string> kindAndUse(const std::string& file) {
+  try {
+    switch (fileKind(file)) {
+      case FileKind::kScene:
+        return {"is a scene", "open it without an option"};
+      case FileKind::kPreset:
+        return {"is a preset", "give it to --preset"};
+      case FileKind::kMotion:
+      case FileKind::kRigidMotion:
+        return {"is a motion", "give it to --motion"};
+      case FileKind::kHairMesh:
+        return {"is hair", "give it to --hair"};
+      case FileKind::kState:
+        return {"is a saved state", "name its scene, and it with --load-state"};
+      case FileKind::kCache:
+        return {"is a cache of simulated hair", "name its scene, and it with --load-state"};
+      case FileKind::kProject:
+        return {"is a project", "open it without an option"};
+      case FileKind::kAttachment:
+        return {"is a mesh to wear", "give it to --attach"};
+    }
+  } catch (const InputError&) {  // no kind that is read
+  }
+  return {"", ""};
 }
 
 std::string partsBeside(const std::string& motion_file) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <utility>
 
 namespace app {
 
@@ -11,6 +13,13 @@ enum class FileKind { kScene, kPreset, kMotion, kRigidMotion, kHairMesh, kState,
 // glTF and FBX hold: without bones and animation it is hair, or what looks worn (app/figure/attachment.h). Throws
 // InputError for any other file.
 FileKind fileKind(const std::string& file);
+
+// Whether a file's first line is that of a recording, see recording.h.
+bool isRecording(std::string_view text);
+
+// What a file is that was given to an option for another kind, and what takes it: "is a motion", "give it to --motion".
+// Empty for what nothing takes.
+std::pair<std::string, std::string> kindAndUse(const std::string& file);
 
 // The folder of body parts that ARCSim's data keeps beside a .mot motion.
 std::string partsBeside(const std::string& motion_file);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/files/errors.h"
+#include "app/files/file_kind.h"
 #include "app/files/json_reader.h"
 #include "app/files/text_file.h"
 #include "sim/field_text.h"
@@ -171,6 +172,14 @@ SkipSet readSkips(const JsonPlace& place) {
   return skips;
 }
 
+// Of a recording's text before its last line, and the state that this names.
+std::string checksum(std::string_view before, std::string_view state) {
+  Fnv hash;
+  hash.add(before);
+  hash.add(state);
+  return hash.digits();
+}
+
 std::string headLine(double aspect, const SkipSet& skips) {
   json off = json::array();
   for (const Skip& skip : skipTable()) {
@@ -189,9 +198,36 @@ std::string frameLine(double seconds, const RecordedView* view, const std::vecto
   return line.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
+// A file of another kind is told by its content.
+void refuseOther(const std::string& text, const std::string& file) {
+  if (isRecording(text)) return;
+  const auto [kind, use] = kindAndUse(file);
+  throw InputError(file, "", kind.empty() ? "is no recording" : kind + ", no recording",
+                   kind.empty() ? "give a file that --record wrote" : use);
+}
+
+// Why a replay ends elsewhere than the run that was recorded.
+std::string whyOther(const std::optional<bool>& edited) {
+  if (!edited) return "its text was changed after it was recorded, or another build or kind of processor recorded it";
+  return *edited ? "its text was changed after it was recorded"
+                 : "another build or kind of processor than the one that recorded ends so too";
+}
+
 }  // namespace
 
+void Fnv::add(std::string_view text) {
+  for (const char c : text) add(static_cast<unsigned char>(c));
+}
+
+std::string Fnv::digits() const {
+  constexpr const char* kDigits = "0123456789abcdef";
+  std::string text;
+  for (int shift = 60; shift >= 0; shift -= 4) text += kDigits[hash_ >> shift & 0xf];
+  return text;
+}
+
 Recording readRecording(std::string_view text, const std::string& file) {
+  const std::string_view whole = text;
   int line_number = 0;
   const auto next = [&] {
     ++line_number;
@@ -218,6 +254,7 @@ Recording readRecording(std::string_view text, const std::string& file) {
   recording.scene = readScene(scene, file);
   recording.scene.skips = skips;
   while (!text.empty()) {
+    const std::size_t before = whole.size() - text.size();
     const bool ended = text.find('\n') != std::string_view::npos;
     const std::string_view line = next();
     if (!ended && !json::accept(line))
@@ -229,7 +266,7 @@ Recording readRecording(std::string_view text, const std::string& file) {
       recording.frames.push_back(readFrame(place));
       continue;
     }
-    place.expectObject({"frames", "state"});
+    place.expectObject({"frames", "state", "checksum"});
     if (!place.has("frames") || !place.has("state")) place.refuse("ends nothing", "record anew");
     const double frames = place.at("frames").number(0, 1e12);
     if (frames != static_cast<double>(recording.frames.size()))
@@ -237,18 +274,20 @@ Recording readRecording(std::string_view text, const std::string& file) {
           "counts " + sim::numberText(frames) + " frames where " + std::to_string(recording.frames.size()) + " are",
           "record anew");
     recording.state = place.at("state").text();
+    if (place.has("checksum"))
+      recording.edited = place.at("checksum").text() != checksum(whole.substr(0, before), recording.state);
     if (!text.empty()) place.refuse("is followed by more", "end the file here");
   }
   return recording;
 }
 
 std::string stateHash(const Demo& demo) {
-  std::uint64_t hash = 0xcbf29ce484222325ull;
+  Fnv hash;
   const auto add = [&](const std::vector<sim::Vec3>& values) {
     for (const sim::Vec3& value : values) {
       for (int axis = 0; axis < 3; ++axis) {
         const auto bits = std::bit_cast<std::uint64_t>(value[axis]);
-        for (int byte = 0; byte < 64; byte += 8) hash = (hash ^ (bits >> byte & 0xff)) * 0x100000001b3ull;
+        for (int byte = 0; byte < 64; byte += 8) hash.add(bits >> byte & 0xff);
       }
     }
   };
@@ -256,10 +295,13 @@ std::string stateHash(const Demo& demo) {
     add(actor.hair.positions);
     add(actor.hair.velocities);
   }
-  constexpr const char* kDigits = "0123456789abcdef";
-  std::string text;
-  for (int shift = 60; shift >= 0; shift -= 4) text += kDigits[hash >> shift & 0xf];
-  return text;
+  return hash.digits();
+}
+
+// Appends to the recording and its checksum.
+void Tape::write(const std::string& text) {
+  record_->write(text);
+  written_.add(text);
 }
 
 Tape::Tape(const Options& options, Scene& scene)
@@ -267,13 +309,15 @@ Tape::Tape(const Options& options, Scene& scene)
       replay_file_(options.replay),
       aspect_(static_cast<double>(options.width) / options.height) {
   if (!replay_file_.empty()) {
-    replay_ = readRecording(readText(replay_file_), replay_file_);
+    const std::string text = readText(replay_file_);
+    refuseOther(text, replay_file_);
+    replay_ = readRecording(text, replay_file_);
     scene = replay_->scene;
     aspect_ = replay_->aspect.value_or(aspect_);
   }
   if (record_file_.empty()) return;
   record_.emplace(record_file_);
-  record_->write(headLine(aspect_, scene.skips) + "\n" + parseJson(writeScene(scene), "scene").dump() + "\n");
+  write(headLine(aspect_, scene.skips) + "\n" + parseJson(writeScene(scene), "scene").dump() + "\n");
 }
 
 std::optional<int> Tape::frames() const {
@@ -291,7 +335,7 @@ double Tape::turn(int frame, double seconds, Demo& demo) {
   }
   if (record_) {
     const RecordedView view = viewOf(demo);
-    record_->write(frameLine(seconds, view == record_view_ ? nullptr : &view, demo.requests) + "\n");
+    write(frameLine(seconds, view == record_view_ ? nullptr : &view, demo.requests) + "\n");
     record_view_ = view;
   }
   ++turns_;
@@ -305,7 +349,8 @@ Tape::End Tape::end(const Demo& demo) {
   End end;
   const std::string state = stateHash(demo), count = std::to_string(turns_) + " frames";
   if (record_) {
-    record_->write(json{{"frames", turns_}, {"state", state}}.dump() + "\n");
+    written_.add(state);
+    record_->write(json{{"frames", turns_}, {"state", state}, {"checksum", written_.digits()}}.dump() + "\n");
     record_->commit();
     end.message = "recorded " + count + " in " + record_file_ + ", state " + state + "\n";
   }
@@ -317,11 +362,11 @@ Tape::End Tape::end(const Demo& demo) {
         "replayed " + count + " of a recording that was cut off, so that none knows its end; state " + state + "\n";
   } else {
     end.differs = state != replay_->state;
-    end.message += "replayed " + count + ", " +
-                   (end.differs ? "but the state is " + state + ", not " + replay_->state +
-                                      "; another build or kind of processor than the one that recorded ends so too"
-                                : "the state is the recorded one to the bit: " + state) +
-                   "\n";
+    end.message +=
+        "replayed " + count + ", " +
+        (end.differs ? "but the state is " + state + ", not " + replay_->state + "; " + whyOther(replay_->edited)
+                     : "the state is the recorded one to the bit: " + state) +
+        "\n";
   }
   return end;
 }

@@ -6,11 +6,14 @@
 //   {"hairmesh-recording": 2, "aspect": A, "skips_off": [name, ...]}
 //   the scene, as writeScene writes it
 //   [seconds, view, [what, name, text, value], ...]    one line a frame, with its requests; the view where it changed
-//   {"frames": N, "state": "0123456789abcdef"}         FNV-1a of all positions and velocities at the end
-// A view is {"target": [x, y, z], "yaw", "pitch", "distance", "aspect", "height"}. Version 1 had neither views nor what
-// stands beside it; it is replayed as seen by the replay itself.
+//   {"frames": N, "state": "0123456789abcdef", "checksum": "0123456789abcdef"}
+// The state is the FNV-1a of all positions and velocities at the end, the checksum that of all text before this line
+// and the state's digits: it tells a recording that a person has changed. It may be missing. A view is {"target": [x,
+// y, z], "yaw", "pitch", "distance", "aspect", "height"}. Version 1 had neither views nor what stands beside it; it is
+// replayed as seen by the replay itself.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -43,7 +46,19 @@ struct Recording {
   Scene scene;
   std::optional<double> aspect;  // of the picture that the scene was opened for
   std::vector<RecordedFrame> frames;
-  std::string state;  // hash at the end; empty when the recording was cut off
+  std::string state;           // hash at the end; empty when the recording was cut off
+  std::optional<bool> edited;  // since it was recorded; nothing: it has no checksum
+};
+
+// FNV-1a, 64 bits.
+class Fnv {
+ public:
+  void add(std::uint64_t byte) { hash_ = (hash_ ^ byte) * 0x100000001b3ull; }
+  void add(std::string_view text);
+  std::string digits() const;  // 16 hexadecimal ones
+
+ private:
+  std::uint64_t hash_ = 0xcbf29ce484222325ull;
 };
 
 // Throws InputError naming the line. Requests that write files are refused, so that a recording cannot. Memory used is
@@ -75,8 +90,11 @@ class Tape {
   End end(const Demo& demo);
 
  private:
+  void write(const std::string& text);
+
   std::string record_file_, replay_file_;
   std::optional<OutputFile> record_;  // appears under its name once the run has ended
+  Fnv written_;
   int turns_ = 0;
   double aspect_ = 1;
   std::optional<Recording> replay_;

@@ -3,9 +3,11 @@
 #include "app/figure/hair_fit.h"
 #include "app/figure/head_model.h"
 #include "app/files/errors.h"
+#include "app/files/file_kind.h"
 #include "app/files/hair_file.h"
 #include "app/files/polygon_file.h"
 #include "app/files/text_file.h"
+#include "app/files/text_scanner.h"
 #include "app/groom/convert.h"
 #include "app/groom/formats/groom_bytes.h"
 #include "app/groom/strips/strip_convert.h"
@@ -39,6 +41,7 @@ PlacedStrips placeStrips(const PolygonMesh& mesh, char up, const CharacterSpec& 
   options.up = up;
   const StripConversion conversion = convertStrips(mesh, options, spec.hair);
   PlacedStrips placed{conversion.mesh.shape, stripNote(conversion), ""};
+  if (!mesh.note.empty()) placed.strips += "; " + mesh.note;
   placed.fit = fitHair(character, spec.fit, placed.shape, true);
   return placed;
 }
@@ -66,6 +69,15 @@ std::string mendedBy(const Haircut& haircut) {
   return text;
 }
 
+[[noreturn]] void refuseNoHair(const std::string& file) {
+  const auto [kind, use] = kindAndUse(file);
+  if (!kind.empty()) throw InputError(file, "", kind + ", no hair", use);
+  throw InputError(
+      file, "", "holds no hair",
+      "give a hair mesh (.obj with groups layer_0, layer_1, ...), curves (.hair, .abc, .usda, .tfx, .ply), "
+      "or strips and tubes (.obj, .fbx, .glb, .gltf, .vrm)");
+}
+
 }  // namespace
 
 sim::HairMeshShape hairFromFile(const CharacterSpec& spec, const Character& character, Haircut& haircut) {
@@ -90,6 +102,8 @@ sim::HairMeshShape hairFromFile(const CharacterSpec& spec, const Character& char
     note(placed.fit);
     return std::move(placed.shape);
   } else {
+    refuseUtf16(bytes, spec.hair);
+    if (!hasLayers(bytes)) refuseNoHair(spec.hair);
     shape = readHairMesh(bytes, spec.hair, spec.reverse_faces);
   }
   if (!on_head) note(fitHair(character, spec.fit, shape));

@@ -167,7 +167,33 @@ TEST(Recording, AChangedInputShowsInTheEnd) {
   text.replace(at, 5, "\"4.6\"");
   std::ofstream(folder + "/other.hmr") << text;
   std::string replayed;
-  EXPECT_TRUE(replay(folder + "/other.hmr", replayed).differs);
+  const app::Tape::End edited = replay(folder + "/other.hmr", replayed);
+  EXPECT_TRUE(edited.differs);
+  EXPECT_NE(edited.message.find("; its text was changed after it was recorded\n"), std::string::npos) << edited.message;
+  // Without a checksum both are possible.
+  const std::size_t sum = text.find("\"checksum\""), end = text.find(',', sum);
+  text.erase(sum, end + 1 - sum);
+  std::ofstream(folder + "/plain.hmr") << text;
+  const app::Tape::End plain = replay(folder + "/plain.hmr", replayed);
+  EXPECT_NE(plain.message.find("; its text was changed after it was recorded, or another build"), std::string::npos)
+      << plain.message;
+}
+
+// What another build or processor ends in looks like this: all that was recorded is as it was.
+TEST(Recording, AnotherEndOfTheSameInputsIsOfAnotherBuild) {
+  const std::string file = test::freshFolder("recording_build") + "/run.hmr";
+  app::Options options;
+  options.record = file;
+  app::Scene scene = smallScene();
+  app::Tape tape(options, scene);
+  app::Demo demo = app::openScene(scene, tape.aspect());
+  app::advanceFrame(demo, tape.turn(0, 0.02, demo), {});
+  demo.actors[0].hair.positions.back().x() += 1e-9;
+  tape.end(demo);
+  std::string replayed;
+  const app::Tape::End end = replay(file, replayed);
+  EXPECT_TRUE(end.differs);
+  EXPECT_NE(end.message.find("; another build or kind of processor"), std::string::npos) << end.message;
 }
 
 // Hair in the same place that goes elsewhere is another state.
@@ -195,7 +221,9 @@ TEST(Recording, TheProgramRecordsAndReplays) {
   std::string text = test::readAll(file);
   text.replace(text.rfind("\"state\":\"") + 9, 4, "zzzz");
   std::ofstream(folder + "/changed.hmr") << text;
-  EXPECT_EQ(test::runProgram({"--no-images", "--replay", folder + "/changed.hmr"}).exit_code, 1);
+  const test::Outcome changed = test::runProgram({"--no-images", "--replay", folder + "/changed.hmr"});
+  EXPECT_EQ(changed.exit_code, 1);
+  EXPECT_NE(changed.out.find("its text was changed after it was recorded"), std::string::npos) << changed.out;
   EXPECT_EQ(test::runProgram({"--no-images", "--replay", folder + "/missing.hmr"}).exit_code, 4);
   EXPECT_EQ(test::runProgram({"--no-images", "--record", file, "--replay", file}).exit_code, 2);
 }
