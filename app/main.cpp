@@ -35,6 +35,7 @@ int fail(const std::exception& fault, int exit_code) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  app::failAtFileLimit();
   app::Options options;
   int exit_code = app::kExitFine;
   try {

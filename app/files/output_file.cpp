@@ -1,6 +1,7 @@
 #include "app/files/output_file.h"
 
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <utility>
@@ -87,6 +88,10 @@ void writeFile(const std::string& file, std::string_view bytes) {
   OutputFile output(file);
   output.write(bytes);
   output.commit();
+}
+
+void failAtFileLimit() {
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 void checkWritable(const std::string& file) {

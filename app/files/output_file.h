@@ -52,6 +52,10 @@ class OutputFolder {
 // The whole of a file at once. Throws OutputError.
 void writeFile(const std::string& file, std::string_view bytes);
 
+// From now on a file that passes the process's limit (ulimit -f) fails as on a full disk: without this a signal ends
+// the program.
+void failAtFileLimit();
+
 // Throws OutputError when the file cannot be written, before a long run finds that out at its end. What is there stays.
 void checkWritable(const std::string& file);
 

@@ -162,6 +162,7 @@ struct HairExport::Impl {
   std::optional<GroomWriter> writer;
   std::optional<GlbWriter> mesh;
   std::string note;
+  bool numbered = false;  // a file a frame
   int moments = 0, frames = 0, last_frame = -1;
 };
 
@@ -206,6 +207,14 @@ std::string wornNote(const Demo& demo) {
   return names.empty() ? "" : "; the hair alone, without what is worn (" + names + ")";
 }
 
+// Why there are fewer strands than were asked for.
+std::string fewerNote(std::size_t written, const Demo& demo) {
+  std::size_t asked = 0;
+  for (const Actor& actor : demo.actors) asked += static_cast<std::size_t>(actor.spec.look.strands);
+  if (written >= asked) return "";
+  return " (" + std::to_string(asked) + " were asked for: the others have no length, as where the hairline thins out)";
+}
+
 }  // namespace
 
 HairExport::~HairExport() = default;
@@ -232,7 +241,8 @@ HairExport::HairExport(const ExportSpec& spec, const Demo& demo, double fps, int
         ", " + std::to_string(points) + " points each, the power of two nearest to those drawn (.tfx takes no other)";
   }
   impl_->strands.emplace(demo, spec.what, points);
-  impl_->writer.emplace(spec.file, settings, taken > 1);
+  impl_->numbered = taken > 1 && !takesClip(spec.file);
+  impl_->writer.emplace(spec.file, settings, impl_->numbered);
 }
 
 void HairExport::add(const Demo& demo, int frame) {
@@ -255,11 +265,12 @@ std::string HairExport::finish(const Demo& demo) {
     const Groom& groom = impl_->strands->last();
     text += " of " + std::to_string(groom.strandCount()) + " strands with " + std::to_string(groom.points.size()) +
             " points" + impl_->note;
+    if (impl_->spec.what == ExportWhat::kStrands) text += fewerNote(groom.strandCount(), demo);
   }
-  const std::string& file = impl_->spec.file;
-  const bool numbered = impl_->writer && impl_->frames > 1 && !takesClip(file);
-  return text + " exported to " + (numbered ? numberedName(file, impl_->spec.first) + " and on" : file) +
-         wornNote(demo) + "\n";
+  std::string file = impl_->spec.file;
+  if (impl_->writer && impl_->numbered)
+    file = numberedName(file, impl_->spec.first) + " to " + numberedName(file, impl_->last_frame);
+  return text + ", written to " + file + wornNote(demo) + "\n";
 }
 
 void simulateAll(SkipSet& skips) {

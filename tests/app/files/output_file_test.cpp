@@ -78,19 +78,21 @@ TEST(OutputFile, FaultsNameTheFileTheReasonAndTheMend) {
   EXPECT_EQ(faultOf("/dev/null", "x"), "");
 }
 
-// Puts a process under a limit of 8 KB a file, with the signal of passing it ignored: writes beyond it fail as on a
-// full disk.
-const std::string kSmallFiles = "sh -c 'trap \"\" XFSZ; ulimit -f 16; exec \"$@\"' sh";
+// Puts a process under a limit of so many blocks of 512 bytes a file, whose signal would end it: writes beyond it fail
+// as on a full disk.
+std::string filesUpTo(int blocks) {
+  return "sh -c 'ulimit -f " + std::to_string(blocks) + "; exec \"$@\"' sh";
+}
 
 TEST(OutputFile, AFileThatDoesNotFitLeavesNothingAndEndsTheRun) {
   const std::string folder = test::freshFolder("output_limit"), report = folder + "/r.json", tape = folder + "/r.hmr";
-  for (const char* option : {"--report", "--record"}) {
+  for (const std::string option : {"--report", "--record", "--export"}) {
     const test::Outcome outcome = test::runProgram(
-        {"--no-images", "--frames", "40", option, folder + "/file", "--style", "short", "--resolution", "low", "--set",
-         "wind_x=1"},
-        option == std::string("--report") ? kSmallFiles : "sh -c 'trap \"\" XFSZ; ulimit -f 1; exec \"$@\"' sh");
+        {"--no-images", "--frames", "40", option, folder + "/file" + (option == "--export" ? ".abc" : ""), "--style",
+         "short", "--resolution", "low", "--set", "wind_x=1"},
+        filesUpTo(option == "--record" ? 1 : 16));
     EXPECT_EQ(outcome.exit_code, app::kExitFault) << option << outcome.err;
-    EXPECT_NE(outcome.err.find("/file: cannot be written: File too large"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find(": cannot be written: File too large"), std::string::npos) << outcome.err;
     EXPECT_EQ(filesIn(folder), std::vector<std::string>{}) << option;
   }
 }
@@ -130,8 +132,7 @@ TEST(OutputFile, AFullDiskEndsARunAndTheFramesOnItAreWhole) {
 
 TEST(OutputFile, APictureThatDoesNotFitLeavesNothingAndEndsTheRun) {
   const std::string out = test::freshFolder("picture_limit");
-  const test::Outcome outcome =
-      test::runProgram(with(kPictures, {"--out", out}), "sh -c 'trap \"\" XFSZ; ulimit -f 8; exec \"$@\"' sh");
+  const test::Outcome outcome = test::runProgram(with(kPictures, {"--out", out}), filesUpTo(8));
   if (outcome.exit_code == app::kExitNoContext) GTEST_SKIP() << outcome.err;
   EXPECT_EQ(outcome.exit_code, app::kExitFault) << outcome.err;
   EXPECT_NE(outcome.err.find("frame_0000.png: cannot be written: File too large"), std::string::npos) << outcome.err;

@@ -71,7 +71,9 @@ TEST(HairExport, EveryFormatHasTheSameStrandsInEveryFrame) {
 
 TEST(HairExport, FramesAreChosenAndNumbered) {
   const std::string folder = test::freshFolder("hair_export_range");
-  EXPECT_EQ(exported(folder + "/a.hair", {"--export-frames", "1-5", "--export-every", "2"}).exit_code, 0);
+  const test::Outcome outcome = exported(folder + "/a.hair", {"--export-frames", "1-5", "--export-every", "2"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(test::lacking(outcome.out, "written to " + folder + "/a_0001.hair to " + folder + "/a_0005.hair"), "");
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename().string());
   std::ranges::sort(names);
