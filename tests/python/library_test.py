@@ -3,6 +3,7 @@
 import gc
 import math
 import pathlib
+import subprocess
 import sys
 import unittest
 
@@ -24,6 +25,16 @@ def shake(hair, first, last):
     for n in range(first, last):
         report = hair.step(head=turned(math.sin(0.2 * n)))
     return report
+
+
+class Import(unittest.TestCase):
+    def test_without_numpy_one_sentence_says_what_to_install(self):
+        done = subprocess.run([sys.executable, "-c", "import sys; sys.modules['numpy'] = None; import hairmesh"],
+                              capture_output=True, text=True)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("\nImportError: hairmesh needs NumPy", done.stderr)
+        self.assertIn("python3 -m pip install numpy", done.stderr)
+        self.assertNotIn("another exception", done.stderr)
 
 
 class Library(unittest.TestCase):

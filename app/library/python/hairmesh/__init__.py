@@ -14,7 +14,11 @@ by side. What cannot be done raises hairmesh.Error with the fault and the mend.
 import ctypes
 import math
 
-import numpy as np
+try:
+    import numpy as np
+except ModuleNotFoundError:
+    raise ImportError("hairmesh needs NumPy, which this Python does not have; install it: python3 -m pip install numpy "
+                      "(Debian, Ubuntu: apt install python3-numpy)") from None
 
 from . import _c
 from ._c import Error
