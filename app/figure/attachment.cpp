@@ -321,7 +321,9 @@ Attachment loadAttachment(const AttachmentSpec& spec, const Character& character
     throw InputError(spec.file, "", "is too thin to collide with", "make it at least 3 mm thick");
   out.to_scalp = scalp.inverse(Eigen::Isometry) * carrier.rest_world;
   const std::string place = placeNote(surface, out.to_scalp, character.scalp, joint == character.head_joint);
-  if (!place.empty()) note += (note.empty() ? "" : ", ") + place;
+  for (const std::string& more : {place, mesh.note}) {
+    if (!more.empty()) note += (note.empty() ? "" : ", ") + more;
+  }
   if (!note.empty()) out.note = stem(spec.file) + ": " + note;
   shadeAttachment(surface, out);
   return out;

@@ -145,11 +145,33 @@ struct Gatherer {
 
 }  // namespace
 
+namespace {
+
+// What an OBJ text says of its materials' file that is not there. assimp takes one of the OBJ's name in its place.
+std::string libraryNote(std::string_view text, const std::string& file) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  if (fs::exists(fs::path(file).replace_extension(".mtl"), ignored)) return "";
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find_first_of("\r\n", at), text.size());
+    const std::string_view line = text.substr(at, end - at);
+    at = end + 1;
+    if (!line.starts_with("mtllib ")) continue;
+    const std::string name(line.substr(7, line.find_last_not_of(' ') - 6));
+    if (!fs::exists(fs::path(file).parent_path() / name, ignored))
+      return "its materials '" + name + "' are not there: put that file beside it for their colours";
+  }
+  return "";
+}
+
+}  // namespace
+
 PolygonMesh readPolygons(const std::string& file) {
   Assimp::Importer importer;
   Gatherer gatherer{file, importScene(file, importer), {}};
   gatherer.gather();
   gatherer.readUnit();
+  if (endingOf(file) == ".obj") gatherer.out.note = libraryNote(readText(file), file);
   if (gatherer.out.faceCount() == 0)
     throw InputError(file, "", "holds no faces", "give strips of quads or tubes, one a lock of hair");
   return std::move(gatherer.out);

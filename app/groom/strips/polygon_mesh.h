@@ -21,6 +21,7 @@ struct PolygonMesh {
   std::vector<std::string> objects;                         // names of node, mesh and material, with blanks between
   std::vector<std::optional<std::array<float, 3>>> colors;  // per object: its material's, linear; none: it has none
   std::optional<double> meters_per_unit;                    // as the file says
+  std::string note;                                         // what it names and is not there; empty: nothing
 
   std::size_t faceCount() const { return face_first.size() - 1; }
   std::span<const int> face(std::size_t f) const {

@@ -146,6 +146,9 @@ TEST(Attachments, TheFilesMaterialGivesTheColourUnlessTheSceneDoes) {
   EXPECT_EQ(app::wornColor(demo.actors[0], 0), (std::array{0.5f, 0.25f, 0.125f}));
   const app::Demo picked = app::openScene(wearing(R"({"file": ")" + file + R"(", "color": [1, 0, 0]})"), 1.5);
   EXPECT_EQ(app::wornColor(picked.actors[0], 0), (std::array{1.0f, 0.0f, 0.0f}));
+  std::filesystem::remove(std::filesystem::path(file).replace_extension(".mtl"));
+  const app::Demo plain = app::openScene(wearing(file), 1.5);
+  EXPECT_NE(plain.message.find("its materials 'dyed.mtl' are not there"), std::string::npos) << plain.message;
   const app::Scene back = app::readScene(app::writeScene(wearing(file)), "scene.json");
   EXPECT_FALSE(back.characters[0].attachments[0].color.has_value());
 }
