@@ -17,6 +17,8 @@
 #include "app/groom/formats/groom_bytes.h"
 #include "app/groom/inspect/certain_mends.h"
 #include "app/groom/strips/strip_convert.h"
+#include "app/options.h"
+#include "app/parse_fault.h"
 
 namespace {
 
@@ -155,7 +157,9 @@ int convertPolygons(const Arguments& arguments) {
   app::StripOptions options = arguments.strips;
   std::optional<app::PolygonMesh> scalp;
   if (!arguments.scalp.empty()) options.scalp = &scalp.emplace(app::readPolygons(arguments.scalp));
-  const app::StripConversion conversion = app::convertStrips(app::readPolygons(arguments.in), options, arguments.in);
+  const app::PolygonMesh mesh = app::readPolygons(arguments.in);
+  const app::StripConversion conversion = app::convertStrips(mesh, options, arguments.in);
+  if (!mesh.note.empty()) std::cout << "note          " << mesh.note << "\n";
   app::writeFile(arguments.out, app::writeHairMesh(conversion.mesh.shape));
   std::cout << app::stripReport(conversion) << "written       " << arguments.out << "\n";
   return app::kExitFine;
@@ -192,14 +196,14 @@ int fail(const std::exception& fault, int exit_code) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  app::failAtFileLimit();
   CLI::App parser{"Makes a hair mesh of a groom, and says how near its strands come back."};
   try {
     return run(parse(argc, argv, parser));
   } catch (const CLI::Success& done) {
     return parser.exit(done);
   } catch (const CLI::ParseError& fault) {
-    std::cerr << "hairmesh-convert: " << fault.what() << "; hairmesh-convert --help lists the options\n";
-    return app::kExitUsage;
+    return fail(app::UsageError(app::parseFault(fault, parser, "give IN and OUT.obj")), app::kExitUsage);
   } catch (const app::InputError& fault) {
     return fail(fault, app::kExitBadInput);
   } catch (const std::exception& fault) {

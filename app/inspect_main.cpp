@@ -9,10 +9,13 @@
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
 #include "app/files/length_units.h"
+#include "app/files/output_file.h"
 #include "app/groom/formats/tfx_file.h"
 #include "app/groom/groom_file.h"
 #include "app/groom/groom_writer.h"
 #include "app/groom/inspect/groom_inspect.h"
+#include "app/options.h"
+#include "app/parse_fault.h"
 
 namespace {
 
@@ -79,8 +82,7 @@ app::GroomMends mendsOf(const CLI::App& parser, const Asked& asked, const app::G
 
 int run(const CLI::App& parser, const Asked& asked) {
   if (!asked.out.empty() && !app::isGroomOutput(asked.out))
-    throw app::OutputError(asked.out, "is no kind of groom that is written",
-                           "name it .abc, .usda, .hair, .ply or .tfx");
+    throw app::UsageError("--out cannot be '" + asked.out + "'; name it .abc, .usda, .hair, .ply or .tfx");
   app::GroomHints hints;
   app::Groom groom = app::readGroom(asked.file, &hints);
   const app::HeadModel head = app::headModelOf(app::loadCharacter(app::findFile(asked.figure, "", "clips")));
@@ -109,6 +111,7 @@ int run(const CLI::App& parser, const Asked& asked) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  app::failAtFileLimit();
   CLI::App parser{kAbout};
   parser.name("hairmesh-inspect");
   parser.footer("Exit codes: 0 fine, 1 a file that cannot be written, 2 usage, 4 a file that cannot be used.");
@@ -123,8 +126,9 @@ int main(int argc, char** argv) {
     return run(parser, asked);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return parser.exit(error);
-    std::cerr << "hairmesh-inspect: " << error.what() << "; hairmesh-inspect --help lists the options\n";
-    return app::kExitUsage;
+    return fail(app::UsageError(app::parseFault(error, parser, "give one groom, and --out FILE")), app::kExitUsage);
+  } catch (const app::UsageError& fault) {
+    return fail(fault, app::kExitUsage);
   } catch (const app::InputError& fault) {
     return fail(fault, app::kExitBadInput);
   } catch (const std::exception& fault) {

@@ -10,6 +10,7 @@
 #include "app/files/errors.h"
 #include "app/files/scene_file.h"
 #include "app/groom/groom_writer.h"
+#include "app/parse_fault.h"
 #include "app/scene/detail/skips.h"
 #include "app/scene/parameter_table.h"
 #include "app/scene/view/look_params.h"
@@ -248,7 +249,9 @@ void addRunOptions(CLI::App& parser, Options& options) {
   group.value("--report", options.report, "FILE.json", "Write timings per stage and counters of every frame as JSON");
   group.value("--record", options.record, "FILE", "Write the run's inputs, so that --replay repeats it to the bit");
   group.value("--write-hair", options.write_hair, "FILE.obj", "Write the hair mesh that is shown as OBJ and end");
-  group.value("--replay", options.replay, "FILE", "Repeat a recorded run; exit code 1 when it ends in another state");
+  group.value("--replay", options.replay, "FILE",
+              "Repeat a recorded run; exit code 1 when it ends in another state. Without a window pictures are kept "
+              "with --out, --video or --screenshot alone");
   group.value("--save-state", options.save_state, "FILE",
               "Write the state after the last frame (of every character: motion, hair, sleep, level of detail)");
   group.value("--save-state-at", options.save_state_at, "N", "Write it after so many frames instead; the run goes on")
@@ -308,6 +311,11 @@ bool parseFrames(const std::string& text, ExportSpec& spec) {
   return true;
 }
 
+// Of a run that draws only when told to: an export, a cache.
+bool picturesAsked(const Options& options) {
+  return options.headless || options.out_given || !options.screenshot.empty();
+}
+
 // Throws UsageError for what the export cannot do.
 void finishExport(const Unchecked& unchecked, Options& options) {
   ExportSpec& spec = options.hair_export;
@@ -340,9 +348,29 @@ void finishExport(const Unchecked& unchecked, Options& options) {
   if (unchecked.export_unit == "cm") spec.unit = 0.01;
   if (unchecked.export_unit == "mm") spec.unit = 0.001;
   if (unchecked.export_unit == "in") spec.unit = 0.0254;
-  // Pictures are drawn when asked for.
-  if (!options.headless && options.screenshot.empty()) options.no_images = true;
+  if (!picturesAsked(options)) options.no_images = true;
   options.headless = true;
+}
+
+// Throws UsageError for what needs pictures.
+void refuseBesideNoImages(const Options& options) {
+  if (!options.no_images) return;
+  const std::pair<const char*, bool> given[] = {{"--screenshot", !options.screenshot.empty()},
+                                                {"--video", !options.video.empty()},
+                                                {"--out", options.out_given},
+                                                {"--draw-budget-ms", options.draw_budget_ms > 0}};
+  for (const auto& [name, is_given] : given)
+    if (is_given)
+      throw UsageError(std::string("--no-images draws nothing that ") + name + " could use; leave one of them out");
+}
+
+// A run without a window leaves frames behind where they are what it was started for: told by --out, or by nothing else
+// that it could be for.
+void choosePictures(Options& options) {
+  const bool others = !(options.video + options.screenshot + options.replay).empty();
+  options.keep_frames = !options.no_images && (options.out_given || !others);
+  const bool drawn = options.keep_frames || options.gl_debug || !(options.video + options.screenshot).empty();
+  if (options.headless && !drawn) options.no_images = true;
 }
 
 // Checks what the parser cannot and moves it into the options. Throws UsageError.
@@ -366,12 +394,7 @@ void finish(const Unchecked& unchecked, Options& options) {
   if (!options.compare_view.empty() && options.compare.empty()) {
     throw UsageError("--compare-view says how; add --compare WITH");
   }
-  if (options.no_images && !(options.screenshot + options.video).empty()) {
-    throw UsageError(std::string("--no-images draws nothing that ") +
-                     (options.video.empty() ? "--screenshot" : "--video") + " could write; leave one of them out");
-  }
-  if (options.no_images && options.draw_budget_ms > 0)
-    throw UsageError("--no-images draws nothing that --draw-budget-ms could hold; leave one of them out");
+  refuseBesideNoImages(options);
   constexpr std::array<std::string_view, 6> kFilms{".mp4", ".webm", ".mkv", ".mov", ".avi", ".gif"};
   if (!options.video.empty() && !std::ranges::count(kFilms, std::filesystem::path(options.video).extension().string()))
     throw UsageError("--video cannot be '" + options.video + "'; name it .mp4, .webm, .mkv, .mov, .avi or .gif");
@@ -391,9 +414,10 @@ void finish(const Unchecked& unchecked, Options& options) {
   }
   if (!options.cache.empty() && !options.cache.ends_with(".hairmesh"))
     throw UsageError("--cache cannot be '" + options.cache + "'; name it .hairmesh");
-  if (!options.cache.empty() && !options.headless) options.no_images = true;  // pictures are drawn when asked for
-  if (options.no_images) options.headless = true;
+  if (!options.cache.empty() && !picturesAsked(options)) options.no_images = true;
+  if (!options.cache.empty() || options.no_images) options.headless = true;
   finishExport(unchecked, options);
+  choosePictures(options);
   if (!options.parts.empty() && options.motion.empty() && options.scene.empty()) {
     throw UsageError("--parts needs a .mot motion; add --motion FILE.mot");
   }
@@ -402,32 +426,6 @@ void finish(const Unchecked& unchecked, Options& options) {
 }  // namespace
 
 namespace {
-
-// What the parser says of a line that it cannot read, in this program's words.
-std::string parseFault(const CLI::ParseError& error, const CLI::App& parser) {
-  const std::string words = error.what(), help = "; hairmesh --help lists the options";
-  if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
-    const std::string extra = parser.remaining().empty() ? "" : parser.remaining().front();
-    if (!extra.starts_with("-"))
-      return "'" + extra + "' is one file too many; name others by --motion, --hair, --preset";
-    std::vector<std::string> names;
-    for (const CLI::Option* option : parser.get_options()) {
-      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-    }
-    const std::vector<std::string_view> candidates(names.begin(), names.end());
-    const std::string_view near = sim::nearestName(extra.substr(0, extra.find('=')), candidates);
-    return "there is no option '" + extra + "'" + (near.empty() ? help : "; did you mean '" + std::string(near) + "'?");
-  }
-  const std::string name = words.substr(0, words.find(':'));
-  const CLI::Option* option = parser.get_option_no_throw(name);
-  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) && option && name.starts_with("--"))
-    return name + " needs a value; write " + name + " " + option->get_option_text();
-  if (dynamic_cast<const CLI::ConversionError*>(&error) && words.starts_with("Could not convert: ")) {
-    const std::size_t equals = words.find(" = ");
-    return words.substr(19, equals - 19) + " cannot be '" + words.substr(equals + 3, 40) + "'; write a whole number";
-  }
-  return words + help;
-}
 
 // A replay has its scene and its frames from the recording: what would choose others is refused rather than left
 // unused.
@@ -474,7 +472,7 @@ bool parseOptions(int argc, char** argv, Options& options, int& exit_code) {
       exit_code = parser.exit(error);
       return false;
     }
-    throw UsageError(parseFault(error, parser));
+    throw UsageError(parseFault(error, parser, "name others by --motion, --hair, --preset"));
   }
   if (unchecked.list_parameters || unchecked.list_skips) {
     std::cout << (unchecked.list_parameters ? parameterTable() : skipTableText());

@@ -51,7 +51,8 @@ struct Options {
   std::string solver;       // default or paper; empty: the scene's
   std::string debug;        // debug views, comma separated
   std::string video;        // film of a headless run
-  bool out_given = false;   // a film alone leaves no PNG files
+  bool out_given = false;
+  bool keep_frames = true;  // as PNG files, of a headless run
   std::string screenshot;   // PNG of the last frame, panels included
   bool no_images = false;
   bool gl_debug = false;  // headless: the driver checks every OpenGL call

@@ -148,7 +148,10 @@ void overrideCharacter(const Options& options, CharacterSpec& spec) {
     throw UsageError("--attach: the figure would wear " + std::to_string(spec.attachments.size()) +
                      " things; at most " + std::to_string(kMaxAttachments) +
                      " are allowed, and --attach none takes off the scene's");
-  for (const std::string& text : options.pins) readValue("--pin", [&] { spec.pins.push_back(pinFromText(text)); });
+  for (const std::string& text : options.pins) {
+    readValue("--pin", [&] { spec.pins.push_back(pinFromText(text)); });
+    spec.pins.back().file = "--pin";  // for what only figure and hair can tell of it
+  }
 }
 
 // A scene's name speaks of its motion: with another one it is another's.
@@ -242,8 +245,11 @@ Scene sceneFromOptions(const Options& given) {
     looks.push_back(&spec.look);
   }
   nameAfterMotion(options, scene);
-  if (!options.preset.empty())
-    readValue("--preset", [&] { loadPreset(presetFile(options.preset, ""), {&scene.sim, &scene.look, looks}); });
+  if (!options.preset.empty()) {
+    std::string file;
+    readValue("--preset", [&] { file = presetFile(options.preset, ""); });
+    loadPreset(file, {&scene.sim, &scene.look, looks});
+  }
   if (!options.environment.empty()) scene.look.light = environmentLight(options.environment, scene.look.light);
   // Before the sets: --set overrides a part of what --solver sets.
   chooseSolver(options.solver, scene.sim);

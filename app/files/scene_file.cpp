@@ -159,6 +159,18 @@ std::optional<Resolution> parseResolution(std::string_view name) {
   return {};
 }
 
+namespace {
+
+std::string namedPreset(const JsonPlace& place, const std::string& scene_file) {
+  try {
+    return presetFile(place.text(), scene_file);
+  } catch (const InputError& fault) {
+    throw InputError(scene_file, place.pointer(), fault.what(), "");
+  }
+}
+
+}  // namespace
+
 Scene readScene(std::string_view text, const std::string& file) {
   const json parsed = parseJson(text, file);
   const JsonPlace place(parsed, file);
@@ -174,7 +186,7 @@ Scene readScene(std::string_view text, const std::string& file) {
   CharacterLook preset_look;
   if (place.has("preset")) {
     std::array<CharacterLook*, 1> looks{&preset_look};
-    loadPreset(presetFile(place.at("preset").text(), file), {&scene.sim, &scene.look, looks});
+    loadPreset(namedPreset(place.at("preset"), file), {&scene.sim, &scene.look, looks});
   }
   for (std::size_t i = 0; i < count; ++i) {
     scene.characters.push_back(readCharacter(characters.at(i), preset_look));

@@ -76,7 +76,6 @@ struct Run {
   std::optional<OutputFolder> folder;
   std::optional<Pictures> pictures;
   std::optional<VideoWriter> film;
-  bool png = true;  // a film alone leaves none
   std::optional<HairExport> hair_export;
   std::optional<SimCacheWriter> cache;
   std::vector<unsigned char> pixels;
@@ -109,8 +108,7 @@ Run::Run(Scene scene, const Options& run_options) : options(run_options), tape(o
   frames = tape.frames().value_or(options.frames);
   if (!options.report.empty()) checkWritable(options.report);
   if (!options.screenshot.empty()) checkWritable(options.screenshot);
-  png = !options.no_images && (options.video.empty() || options.out_given);
-  if (png) folder.emplace(options.out, "choose another with --out DIR");
+  if (options.keep_frames) folder.emplace(options.out, "choose another with --out DIR");
   if (!options.video.empty()) film.emplace(options.video, options.width, options.height, report.fps);
   if (!options.save_state.empty()) checkWritable(options.save_state);
   demo = openForPictures(std::move(scene), options, tape.aspect());
@@ -123,7 +121,7 @@ Run::Run(Scene scene, const Options& run_options) : options(run_options), tape(o
   demo.comparison.side_by_side = options.compare_view == "side";
   if (!options.hair_export.file.empty()) hair_export.emplace(options.hair_export, demo, report.fps, frames);
   if (!options.cache.empty()) cache.emplace(options.cache, demo);
-  if (png) checkWritable(framePath(options.out, first));
+  if (options.keep_frames) checkWritable(framePath(options.out, first));
   if (!options.no_images) {
     pictures.emplace(options.gl_debug);
     report.renderer = render::rendererName();
@@ -176,7 +174,7 @@ void Run::drawFrames() {
       exportFrame(frame);
       continue;
     }
-    if (png) writePng(framePath(options.out, first + frame), options.width, options.height, pixels);
+    if (options.keep_frames) writePng(framePath(options.out, first + frame), options.width, options.height, pixels);
     if (film) film->add(pixels);
     exportFrame(frame);
     // Software rasterizers take a second a frame; a person wants to see that it goes on.
@@ -213,7 +211,7 @@ int Run::finish() {
     film->finish();
     std::cout << countOf(report.frames.size(), "frame") << " in " << options.video << film->sizeNote() << "\n";
   }
-  if (png) {
+  if (options.keep_frames) {
     std::cout << countOf(report.frames.size(), "frame") << " in " << options.out;
     if (first > 0) std::cout << ", from " << framePath("", first);
     std::cout << "\n" << staleFrames(options.out, first + std::ssize(report.frames) - 1);
@@ -222,6 +220,8 @@ int Run::finish() {
   if (!options.save_state.empty() && !saved) saveState();
   const Tape::End end = tape.end(demo);
   std::cout << end.message;
+  if (!options.replay.empty() && options.no_images)
+    std::cout << "replayed without pictures; --headless --out DIR would keep them\n";
   if (static_cast<int>(report.frames.size()) < frames && interrupted()) {
     std::cout << "interrupted after " << report.frames.size() << " of " << frames << " frames\n";
     return kExitInterrupted;

@@ -136,6 +136,7 @@ TEST(Options, MisuseIsUsageAndSaysSoInOneLine) {
                                                       {"--style", "long", "--hair", "x.obj"},
                                                       {"--reverse-faces"},
                                                       {"--no-images", "--screenshot", "s.png"},
+                                                      {"--no-images", "--out", "frames"},
                                                       {"--write-hair", "w.txt"},
                                                       {"--replay", "r.hmr", "--set", "friction=0.5"},
                                                       {"--replay", "r.hmr", "--style", "long", "--frames", "9"},
@@ -206,6 +207,66 @@ TEST(Options, AMistakeInAValueIsOfTheCommandLineAndNamesItsOption) {
     expectOneMessage(outcome, app::kExitBadInput, option + " " + value);
     EXPECT_TRUE(outcome.err.starts_with(std::string("hairmesh: ") + option)) << outcome.err;
     EXPECT_EQ(outcome.err.find("/0"), std::string::npos) << outcome.err;
+  }
+}
+
+// A run leaves pictures behind where they are what it was started for.
+TEST(Options, FramesAreKeptWhereTheyAreAskedFor) {
+  const auto kept = [](const std::vector<std::string>& words) { return parse(words).options.keep_frames; };
+  const auto drawn = [](const std::vector<std::string>& words) { return !parse(words).options.no_images; };
+  EXPECT_TRUE(kept({"--headless"}));
+  EXPECT_TRUE(kept({"--headless", "--replay", "r.take", "--out", "o"}));
+  EXPECT_TRUE(kept({"--export", "a.abc", "--out", "o"}) && kept({"--video", "f.mp4", "--out", "o"}));
+  EXPECT_FALSE(kept({"--headless", "--replay", "r.take"}) || drawn({"--headless", "--replay", "r.take"}));
+  EXPECT_TRUE(drawn({"--headless", "--replay", "r.take", "--gl-debug"})) << "whose calls are checked";
+  for (const std::vector<std::string>& picture :
+       {std::vector<std::string>{"--video", "f.mp4"}, {"--screenshot", "s.png"}}) {
+    std::vector<std::string> words{"--headless", "--replay", "r.take"}, cache{"--cache", "c.hairmesh"};
+    words.insert(words.end(), picture.begin(), picture.end());
+    cache.insert(cache.end(), picture.begin(), picture.end());
+    EXPECT_TRUE(drawn(words) && drawn(cache)) << picture[0];
+    EXPECT_FALSE(kept(words) || kept(cache)) << picture[0];
+  }
+}
+
+// A message names what was given: an option, or the file and the place in it.
+TEST(Options, NoMessageNamesAnOptionThatWasNotGiven) {
+  const std::string folder = test::freshFolder("named"), scene = folder + "/scene.json", preset = folder + "/mine.json";
+  std::ofstream(scene) << R"({"preset": "sofft", "characters": [{"motion": "walk.bvh"}]})";
+  std::ofstream(preset) << R"({"sim": {"frction": 1}})";
+  const Outcome in_scene = runProgram({scene, "--no-images", "--frames", "1"});
+  expectOneMessage(in_scene, app::kExitBadInput, "a preset that a scene names");
+  EXPECT_TRUE(in_scene.err.starts_with("hairmesh: " + scene + ": /preset: preset 'sofft'")) << in_scene.err;
+  const Outcome opened = runProgram({preset, "--no-images", "--frames", "1"});
+  expectOneMessage(opened, app::kExitBadInput, "a preset that is opened");
+  EXPECT_TRUE(opened.err.starts_with("hairmesh: " + preset + ": /sim: unknown key 'frction'")) << opened.err;
+  const Outcome pin = runProgram({"--no-images", "--frames", "1", "--pin", R"({"column": 9999})"});
+  expectOneMessage(pin, app::kExitBadInput, "a column that is not there");
+  EXPECT_TRUE(pin.err.starts_with("hairmesh: --pin: /column: is 9999")) << pin.err;
+}
+
+TEST(Options, AFileForAnotherOptionIsToldByItsContent) {
+  const std::string folder = test::freshFolder("other_kind"), state = folder + "/state.hairmesh";
+  ASSERT_EQ(runProgram({"--no-images", "--frames", "1", "--resolution", "low", "--style", "short", "--save-state",
+                        state, "--record", folder + "/r.take"})
+                .exit_code,
+            0);
+  std::ofstream(folder + "/words.md") << "# Words\n";
+  for (const auto& [words, expected] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{"--replay", state}, state + ": is a saved state, no recording; name its scene, and it with --load-state"},
+           {{"--replay", "assets/scenes/walk.json"}, "is a scene, no recording; open it without an option"},
+           {{"--replay", folder + "/words.md"}, "words.md: is no recording; give a file that --record wrote"},
+           {{"--replay", HAIRMESH_BINARY}, ": is no recording; give a file that --record wrote"},
+           {{"--hair", "assets/clips/walk.bvh"}, "is a motion, no hair; give it to --motion"},
+           {{"--hair", state}, "is a saved state, no hair"},
+           {{"--hair", folder + "/words.md"}, "words.md: holds no hair; give a hair mesh (.obj with groups layer_0"},
+           {{folder + "/r.take"}, "is a recording; play it with --replay"}}) {
+    std::vector<std::string> all = words;
+    all.push_back("--no-images");
+    if (words[0] != "--replay") all.insert(all.end(), {"--frames", "1"});
+    const Outcome outcome = runProgram(all);
+    expectOneMessage(outcome, app::kExitBadInput, words.back());
+    EXPECT_NE(outcome.err.find(expected), std::string::npos) << outcome.err;
   }
 }
 

@@ -299,6 +299,10 @@ TEST(GroomInspect, TheProgramMendsWhatIsCertain) {
   EXPECT_EQ(run(test::shellQuoted(folder + "/none.hair")), 4);
   EXPECT_EQ(run(in + " --unit furlong"), 2);
   EXPECT_EQ(run(in + " --out " + test::shellQuoted(folder + "/none/a.abc")), 1);
+  EXPECT_EQ(run(in + " --out a.xyz"), 2);
+  EXPECT_EQ(test::lacking(test::readAll(folder + "/err"), "--out cannot be 'a.xyz'; name it .abc, .usda"), "");
+  EXPECT_EQ(run(in + " --unti cm"), 2);
+  EXPECT_EQ(test::lacking(test::readAll(folder + "/err"), "no option '--unti'; did you mean '--unit'?"), "");
 }
 
 TEST(CertainMends, BringAGroomBackBeforeItBecomesAHairMesh) {

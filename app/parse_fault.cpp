@@ -1,0 +1,43 @@
+#include "app/parse_fault.h"
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include "sim/field_text.h"
+
+namespace app {
+
+namespace {
+
+std::string extraFault(const CLI::App& parser, const std::string& one_file, const std::string& help) {
+  const std::vector<std::string> extras = parser.remaining();
+  const auto option = std::ranges::find_if(extras, [](const std::string& word) { return word.starts_with("-"); });
+  if (option == extras.end())
+    return "'" + (extras.empty() ? "" : extras.front()) + "' is one file too many; " + one_file;
+  std::vector<std::string> names;
+  for (const CLI::Option* known : parser.get_options()) {
+    for (const std::string& name : known->get_lnames()) names.push_back("--" + name);
+  }
+  const std::vector<std::string_view> candidates(names.begin(), names.end());
+  const std::string_view near = sim::nearestName(option->substr(0, option->find('=')), candidates);
+  return "there is no option '" + *option + "'" + (near.empty() ? help : "; did you mean '" + std::string(near) + "'?");
+}
+
+}  // namespace
+
+std::string parseFault(const CLI::ParseError& error, const CLI::App& parser, const std::string& one_file) {
+  const std::string words = error.what(), help = "; " + parser.get_name() + " --help lists the options";
+  if (dynamic_cast<const CLI::ExtrasError*>(&error)) return extraFault(parser, one_file, help);
+  const std::string name = words.substr(0, words.find(':'));
+  const CLI::Option* option = parser.get_option_no_throw(name);
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) && option && name.starts_with("--"))
+    return name + " needs a value; write " + name + " " + option->get_option_text();
+  if (dynamic_cast<const CLI::ConversionError*>(&error) && words.starts_with("Could not convert: ")) {
+    const std::size_t equals = words.find(" = ");
+    return words.substr(19, equals - 19) + " cannot be '" + words.substr(equals + 3, 40) + "'; write a whole number";
+  }
+  return words + help;
+}
+
+}  // namespace app

@@ -1,0 +1,12 @@
+// What the three programs say of a command line that cannot be read.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace app {
+
+// One line with the fault and the mend: of an unknown option the one that was meant, of a file too many `one_file`.
+std::string parseFault(const CLI::ParseError& error, const CLI::App& parser, const std::string& one_file);
+
+}  // namespace app
