@@ -7,6 +7,7 @@
 #include "app/scene/attachments.h"
 #include "app/scene/detail/level_of_detail.h"
 #include "app/scene/sim_to_render.h"
+#include "app/scene/view/world_light.h"
 #include "render/light/fiber_scattering.h"
 
 namespace app {
@@ -312,7 +313,7 @@ render::FrameInput frameInput(Demo& demo, int width, int height) {
   input.width = width;
   input.height = height;
   input.camera = cameraInput(demo.camera, demo.origin);
-  input.light = demo.scene.look.light;
+  input.light = lightAbout(demo.actors.front(), demo.scene.look.light);
   input.view = demo.scene.look.view;
   input.skips = drawSkips(demo.scene.skips);
   input.hairs = demo.hair_inputs;

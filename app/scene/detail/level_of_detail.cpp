@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/scene/detail/sleep.h"
+#include "app/scene/view/world_light.h"
 
 namespace app {
 
@@ -126,7 +127,7 @@ bool mayBeSeen(const Demo& demo, const Actor& actor) {
   // Planes through the eye, normals outwards.
   const std::array<Vec3, 5> planes{back, (right + x * back).normalized(), (-right + x * back).normalized(),
                                    (up + y * back).normalized(), (-up + y * back).normalized()};
-  const render::LightInput& light = demo.scene.look.light;
+  const render::LightInput light = lightAbout(demo.actors.front(), demo.scene.look.light);
   const Vec3 to_light(light.to_light[0], light.to_light[1], light.to_light[2]);
   const Eigen::AlignedBox3d box = boxAround(actor);
   Vec3 shadow = Vec3::Zero();
