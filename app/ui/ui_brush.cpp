@@ -28,6 +28,18 @@ bool paintsColor(const BrushState& brush) {
   return brush.field >= 0 && kFieldNames[static_cast<std::size_t>(brush.field)] == "color";
 }
 
+// Whether the head lies between the eye and a point: the way to it comes inside the scalp before its end.
+bool behindHead(const Vec3& point, const Camera& camera, const Actor& actor) {
+  constexpr double kWithin = 0.95;  // of the scalp's radius: roots lie on it
+  const Scalp& scalp = actor.body->character.scalp;
+  const Rigid to_scalp = worldToScalp(actor);
+  const Vec3 eye = to_scalp * (camera.anchor + camera.target + camera.distance * viewBack(camera));
+  const Vec3 way = to_scalp * point - eye;
+  const double nearest = std::clamp((scalp.center - eye).dot(way) / std::max(way.squaredNorm(), 1e-12), 0.0, 1.0);
+  const Vec3 off = eye + nearest * way - scalp.center;
+  return off.norm() < kWithin * scalp.radiusAt(off);
+}
+
 // The painted field at the roots, in the colours of its picture; under the ring brighter.
 void drawField(const Vec3& place, const Demo& demo, const BrushState& brush, float scale) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
@@ -42,6 +54,7 @@ void drawField(const Vec3& place, const Demo& demo, const BrushState& brush, flo
   reach.at = place, reach.radius = brush.radius, reach.falloff = brush.falloff;
   for (int c = 0; c < mesh.columnCount(); ++c) {
     const auto root = static_cast<std::size_t>(mesh.shape.column_first[static_cast<std::size_t>(c)]);
+    if (behindHead(actor.hair.positions[root + 1], demo.camera, actor)) continue;
     const Vec3 direction = mesh.shape.positions[root] - actor.body->character.scalp.center;
     const auto shade = [&](std::size_t channel) { return static_cast<int>(255 * map[channel].at(direction)); };
     double weight = 0;
@@ -80,7 +93,8 @@ void drawReach(const Vec3& place, const Demo& demo, const BrushState& brush, flo
     const Vec3& p = actor.hair.positions[v];
     const double weight = brushReach(reach, p);
     const float held = frozen.empty() ? 0 : frozen[v];
-    const auto pixel = weight > 0.02 || held > 0.02f ? pixelOf(p, size.x, size.y, demo.camera) : std::nullopt;
+    if ((weight <= 0.02 && held <= 0.02f) || behindHead(p, demo.camera, actor)) continue;
+    const auto pixel = pixelOf(p, size.x, size.y, demo.camera);
     if (!pixel) continue;
     const ImVec2 at(static_cast<float>((*pixel)[0]), static_cast<float>((*pixel)[1]));
     const int alpha = static_cast<int>(40 + 180 * std::max(weight, double(held)));
