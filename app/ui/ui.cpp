@@ -16,13 +16,16 @@ namespace {
 
 constexpr float kMargin = 12, kSidebarWidth = 348, kTimingsWidth = 292;
 constexpr float kMessageWidth = 520, kMinMessageWidth = 240;
-constexpr float kFaceWidth = 168;   // in the window's middle; where the sidebar covers it the tabs are folded away
-constexpr float kAmpleWidth = 340;  // between sidebar and timings; with less the timings begin folded
-constexpr double kMessageTime = 6;  // s; faults stay until clicked
+constexpr float kFaceWidth = 168;     // in the window's middle
+constexpr float kLeastSheet = 176;    // height that rows of buttons and tabs ask for
+constexpr float kSceneBoxFrom = 430;  // width of a sheet with room for the scenes beside its buttons
+constexpr float kAmpleWidth = 340;    // between sidebar and timings; with less the timings begin folded
+constexpr double kMessageTime = 6;    // s; faults stay until clicked
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoBringToFrontOnFocus;
 
-// Whether the sidebar would cover the face, in the window's middle.
+// Whether the sidebar would cover the face, in the window's middle. Then its tabs are folded away, and unfolded they
+// stand in a sheet over the lower half of the window, below the face.
 bool narrow(const UiState& ui) {
   return 0.5f * ImGui::GetIO().DisplaySize.x < (kSidebarWidth + 2 * kMargin + 0.5f * kFaceWidth) * ui.text_scale;
 }
@@ -37,11 +40,7 @@ std::string sceneTitle(const Demo& demo) {
   return other.empty() ? title : title + ", with " + other;
 }
 
-void sceneRow(Demo& demo, UiState& ui) {
-  ImGui::PushFont(ui.heading);
-  ImGui::TextUnformatted("hairmesh");
-  ImGui::PopFont();
-  ImGui::SameLine(0, 12);
+void sceneBox(Demo& demo, UiState& ui) {
   ImGui::SetNextItemWidth(-1);
   const std::string title = sceneTitle(demo);
   const bool open = ImGui::BeginCombo("##scene", title.c_str());
@@ -55,6 +54,14 @@ void sceneRow(Demo& demo, UiState& ui) {
     }
     ImGui::EndCombo();
   }
+}
+
+void sceneRow(Demo& demo, UiState& ui) {
+  ImGui::PushFont(ui.heading);
+  ImGui::TextUnformatted("hairmesh");
+  ImGui::PopFont();
+  ImGui::SameLine(0, 12);
+  sceneBox(demo, ui);
 }
 
 void transportRow(Demo& demo, UiState& ui) {
@@ -90,6 +97,9 @@ void transportRow(Demo& demo, UiState& ui) {
   next();
   if (iconButton(Icon::kPanels, "panels", ui.unfolded ? "Fold the panels" : "All panels", ui.unfolded, ui))
     ui.unfolded = !ui.unfolded;
+  if (!ui.unfolded || ImGui::GetContentRegionMax().x < kSceneBoxFrom * ui.text_scale) return;
+  next();
+  sceneBox(demo, ui);
 }
 
 void fileRow(Demo& demo, UiState& ui) {
@@ -135,14 +145,38 @@ struct Tab {
 constexpr Tab kTabs[] = {
     {"Simulation", simulationTab}, {"Motion", motionTab}, {"Hair", hairTab}, {"Look", lookTab}, {"Debug", debugTab}};
 
-// Never wider than the window.
-float sidebarWidth(const UiState& ui) {
-  return std::min(kSidebarWidth * ui.text_scale, ImGui::GetIO().DisplaySize.x - 2 * kMargin * ui.text_scale);
-}
-
 // In a narrow window the row of buttons alone, unless a person has unfolded the tabs.
 bool folded(const UiState& ui) {
   return narrow(ui) && !ui.unfolded;
+}
+bool sheet(const UiState& ui) {
+  return narrow(ui) && ui.unfolded;
+}
+
+// Never wider than the window.
+float sidebarWidth(const UiState& ui) {
+  const float wanted = (sheet(ui) ? 2 : 1) * kSidebarWidth * ui.text_scale;
+  return std::min(wanted, ImGui::GetIO().DisplaySize.x - 2 * kMargin * ui.text_scale);
+}
+
+float sidebarHeight(const UiState& ui) {
+  const float window = ImGui::GetIO().DisplaySize.y, margin = kMargin * ui.text_scale;
+  if (folded(ui)) return 0;  // as high as its row
+  const float most = std::max(120.0f, window - 2 * margin);
+  return sheet(ui) ? std::min(most, std::max(0.5f * window - margin, kLeastSheet * ui.text_scale)) : most;
+}
+
+// Pixels at the left and right that panels take beside the figure.
+float takenLeft(const UiState& ui) {
+  return ui.visible && !narrow(ui) ? sidebarWidth(ui) + kMargin * ui.text_scale : 0;
+}
+// Of the timings, negative: they have no room beside the sidebar.
+float timingsRoom(const UiState& ui) {
+  return ImGui::GetIO().DisplaySize.x - sidebarWidth(ui) - (kTimingsWidth + 3 * kMargin) * ui.text_scale;
+}
+float takenRight(const UiState& ui) {
+  const bool timed = ui.visible && !folded(ui) && timingsRoom(ui) >= 0;
+  return timed ? (kTimingsWidth + kMargin) * ui.text_scale : 0;
 }
 
 void tabs(Demo& demo, UiState& ui) {
@@ -161,25 +195,24 @@ void tabs(Demo& demo, UiState& ui) {
   ImGui::EndTabBar();
 }
 
-// Folded it stands at the bottom, over the `below` pixels of the timeline, where no face is.
+// In a narrow window it stands at the bottom, over the `below` pixels of the timeline, where no face is.
 void sidebar(Demo& demo, UiState& ui, float below) {
   const ImGuiIO& io = ImGui::GetIO();
   const float margin = kMargin * ui.text_scale;
-  if (folded(ui)) {
+  if (narrow(ui)) {
     ImGui::SetNextWindowPos({margin, io.DisplaySize.y - margin - below}, ImGuiCond_Always, {0, 1});
   } else {
     ImGui::SetNextWindowPos({margin, margin});
   }
-  const float height = folded(ui) ? 0 : std::max(120.0f, io.DisplaySize.y - 2 * margin);
-  ImGui::SetNextWindowSize({sidebarWidth(ui), height});
+  ImGui::SetNextWindowSize({sidebarWidth(ui), sidebarHeight(ui)});
   if (std::exchange(ui.focus_panels, false)) ImGui::SetNextWindowFocus();
   if (ImGui::Begin("sidebar", nullptr, kFixed)) {
-    if (!folded(ui)) sceneRow(demo, ui);
+    if (!narrow(ui)) sceneRow(demo, ui);
     transportRow(demo, ui);
     if (!folded(ui)) {
       fileRow(demo, ui);
       characterRow(demo, ui);
-      ImGui::Spacing();
+      if (!sheet(ui)) ImGui::Spacing();
       tabs(demo, ui);
     }
   }
@@ -190,7 +223,7 @@ void timings(Demo& demo, UiState& ui) {
   const float margin = kMargin * ui.text_scale;
   // Panels cover neither one another nor the face: without room beside the sidebar this one is in the Debug tab, and in
   // a narrow window it is left out until the panels are unfolded.
-  const float room = ImGui::GetIO().DisplaySize.x - sidebarWidth(ui) - kTimingsWidth * ui.text_scale - 3 * margin;
+  const float room = timingsRoom(ui);
   ui.timings_bottom = 0;
   ui.timings_in_tab = room < 0;
   if (room < 0 || folded(ui)) return;
@@ -223,11 +256,13 @@ void message(Demo& demo, UiState& ui, float below) {
     demo.message.clear();
     return;
   }
-  // In the middle of what the sidebar leaves free; over it where that is too narrow to read.
+  // In the middle of what sidebar and history leave free; above the history where that is too narrow to read.
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  const float margin = kMargin * ui.text_scale, taken = ui.visible && !folded(ui) ? sidebarWidth(ui) + margin : 0;
-  const bool beside = size.x - taken > kMinMessageWidth * ui.text_scale;
-  const float left = (beside ? taken : 0) + margin, width = size.x - left - margin;
+  const float margin = kMargin * ui.text_scale;
+  const bool beside = size.x - takenLeft(ui) - ui.history_width > (kMinMessageWidth + 2 * kMargin) * ui.text_scale;
+  if (!beside) below = std::max(below, ui.history_height);
+  const float left = takenLeft(ui) + margin;
+  const float width = size.x - left - (beside ? ui.history_width : 0) - margin;
   ImGui::SetNextWindowPos({left + 0.5f * width, size.y - 2 * margin - below}, ImGuiCond_Always, {0.5f, 1});
   ImGui::SetNextWindowSizeConstraints({0, 0}, {width, 0.8f * size.y});
   const bool fault = demo.message_is_fault;
@@ -296,10 +331,11 @@ int tabIndex(std::string_view name) {
 
 void buildUi(Demo& demo, UiState& ui) {
   ui.items.clear();
+  ui.free_middle = 0.5f * (takenLeft(ui) + ImGui::GetIO().DisplaySize.x - takenRight(ui));
   compareLine(demo, ui);
   if (!ui.line_held) brushFrame(demo, ui);
   count(!ui.visible, demo.stats.always[kHiddenPanels]);
-  float below = timelinePanel(demo, ui, folded(ui) ? 0 : sidebarWidth(ui) + kMargin * ui.text_scale);
+  float below = sheet(ui) ? 0 : timelinePanel(demo, ui, takenLeft(ui));
   if (ui.visible) {
     sidebar(demo, ui, below);
     timings(demo, ui);

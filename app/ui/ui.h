@@ -78,13 +78,16 @@ struct UiState {
   bool history = false;
   bool dragging = false;  // a widget is held that has asked for something
   bool quit = false;
-  bool focus_panels = false;    // asked for by an arrow key: the keyboard goes to the sidebar
-  float zoom_texts = 1;         // asked for by a key: texts of that size, over the display's
-  bool reload_shaders = false;  // asked for by a key
-  int open_tab = -1;            // asked for by a key or a test; -1: leave
-  float timings_bottom = 0;     // px; 0: they are not shown
-  bool timings_in_tab = false;  // for want of room beside the sidebar they are in the Debug tab
-  float text_scale = 1;         // of a dense display
+  bool focus_panels = false;                    // asked for by an arrow key: the keyboard goes to the sidebar
+  float zoom_texts = 1;                         // asked for by a key: texts of that size, over the display's
+  bool reload_shaders = false;                  // asked for by a key
+  int open_tab = -1;                            // asked for by a key or a test; -1: leave
+  float timings_bottom = 0;                     // px; 0: they are not shown
+  float history_width = 0, history_height = 0;  // px with its margin; 0: it is not shown
+  float free_middle = 0;                        // px from the left: the middle of what the panels leave to the figure
+  bool line_placed = false;                     // the line of a comparison stands there, or where a person has drawn it
+  bool timings_in_tab = false;                  // for want of room beside the sidebar they are in the Debug tab
+  float text_scale = 1;                         // of a dense display
   ImFont* heading = nullptr;
   std::array<char, 512> motion_path{}, parts_path{}, hair_path{}, scene_path{};
   std::array<char, 64> preset_name{}, search{};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "app/files/data_path.h"
 #include "app/ui/ui_panels.h"
@@ -69,9 +70,11 @@ void compareLine(Demo& demo, UiState& ui) {
   const ImGuiIO& io = ImGui::GetIO();
   const float scale = ui.text_scale, width = io.DisplaySize.x;
   if (!comparison.on() || width < 1) {
-    ui.line_held = false;
+    ui.line_held = ui.line_placed = false;
     return;
   }
+  if (!std::exchange(ui.line_placed, true) && !comparison.side_by_side)
+    postRequest(demo, {Ask::kCompareView, "split", "", ui.free_middle / width});
   const float x = width * static_cast<float>(comparison.side_by_side ? 0.5 : comparison.line);
   const float top = 0.14f * io.DisplaySize.y;
   ImDrawList* list = ImGui::GetBackgroundDrawList();

@@ -40,6 +40,7 @@ void momentLine(std::size_t done, const std::string& title, Demo& demo, UiState&
 }  // namespace
 
 void historyPanel(Demo& demo, UiState& ui) {
+  ui.history_width = ui.history_height = 0;
   if (!ui.history || !ui.visible) return;
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const float scale = ui.text_scale, margin = kHistoryMargin * scale;
@@ -47,6 +48,7 @@ void historyPanel(Demo& demo, UiState& ui) {
   // Below the timings where they leave room.
   const float room = size.y - ui.timings_bottom - 2 * margin;
   const float height = std::clamp(room, std::min(kMinHeight * scale, size.y - 2 * margin), 0.5f * size.y);
+  ui.history_width = width + margin, ui.history_height = height + margin;
   ImGui::SetNextWindowPos({size.x - margin, size.y - margin}, ImGuiCond_Always, {1, 1});
   ImGui::SetNextWindowSize({std::max(32.0f, width), std::max(32.0f, height)});
   const ImGuiWindowFlags flags = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse;

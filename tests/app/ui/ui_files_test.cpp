@@ -1,5 +1,7 @@
 // The file panel, the rows on top in windows of any size, and what the panels tell by themselves.
 #include <gtest/gtest.h>
+#include <imgui/imgui.h>
+#include <imgui/imgui_internal.h>
 
 #include <filesystem>
 #include <fstream>
@@ -113,6 +115,68 @@ TEST_F(Panels, ANarrowWindowFoldsTheTabsUntilTheyAreAskedFor) {
     frame();
     EXPECT_NE(find("tab Debug"), nullptr) << size.x;
     EXPECT_NE(find("file Open"), nullptr) << size.x;
+  }
+}
+
+// Unfolded in a window where the sidebar would cover the figure, the tabs leave it the upper half.
+TEST_F(Panels, UnfoldedInANarrowWindowTheyLeaveTheUpperHalfToTheFigure) {
+  for (const ImVec2 size : {ImVec2(640, 480), ImVec2(480, 400), ImVec2(900, 600)}) {
+    ImGui::GetIO().DisplaySize = size;
+    demo_.timeline.on = true;
+    ui_.unfolded = true;
+    for (int tab = 0; tab < 5; ++tab) openTab(tab);
+    for (const char* name : {"panels", "tab Hair", "file Open"}) EXPECT_NE(find(name), nullptr) << name << size.x;
+    EXPECT_EQ(find("scene") != nullptr, size.x > 500) << "where there is room beside the buttons";
+    for (const UiItem& item : ui_.items) EXPECT_GE(item.y, 0.5f * size.y) << item.name << " at " << size.x;
+  }
+}
+
+TEST_F(Panels, AMessageAndTheHistoryStandBesideOneAnother) {
+  for (const ImVec2 size : {ImVec2(1280, 720), ImVec2(960, 600), ImVec2(640, 480), ImVec2(480, 400)}) {
+    ImGui::GetIO().DisplaySize = size;
+    ui_.history = true;
+    demo_.message = "/a/rather/long/path/to/a/file/that/cannot/be/used.bvh: line 5: it has 7 channels; give it 3 or 6";
+    demo_.message_is_fault = true;
+    for (int k = 0; k < 4; ++k) frame();
+    const ImGuiWindow *message = ImGui::FindWindowByName("message"), *history = ImGui::FindWindowByName("History");
+    ASSERT_TRUE(message && history);
+    EXPECT_FALSE(message->Rect().Overlaps(history->Rect())) << size.x;
+    EXPECT_TRUE(message->Rect().Min.y >= 0 && message->Rect().Max.x <= size.x) << size.x;
+  }
+}
+
+TEST_F(Panels, TheLineOfAComparisonBeginsInTheMiddleOfWhatPanelsLeaveFree) {
+  const auto placed = [&] {
+    const std::vector<app::Request> requests = frame();
+    const app::Request* asked = requestOf(requests, Ask::kCompareView);
+    return asked ? asked->value : -1;
+  };
+  EXPECT_EQ(placed(), -1) << "nothing is compared";
+  app::startComparison("", demo_);
+  const app::UiItem *left = find("scene"), *right = find("stage_bar");
+  ASSERT_TRUE(left && right);
+  const double middle = 0.5 * (left->x + left->width + right->x);
+  EXPECT_NEAR(placed() * 1280, middle, 14);
+  EXPECT_EQ(placed(), -1) << "once";
+  demo_.comparison.other.clear();
+  frame();
+  ImGui::GetIO().DisplaySize = {640, 480};
+  app::startComparison("", demo_);
+  EXPECT_EQ(placed(), 0.5);
+}
+
+// Two discs of 12 corners a root, each with a soft edge.
+TEST_F(Panels, PaintDotsOnTheFarSideOfTheHeadAreHidden) {
+  constexpr int kDot = 2 * 2 * 12;
+  ui_.brush.field = 0;
+  ImGui::GetIO().MousePos = {640, 4};
+  const int columns = demo_.actors[0].haircut->mesh.columnCount();
+  for (const double yaw : {0.0, 1.6, 3.1}) {
+    demo_.camera.yaw = yaw;
+    frame();
+    const int dots = ImGui::GetBackgroundDrawList()->VtxBuffer.Size / kDot;
+    EXPECT_GT(dots, columns / 5) << yaw;
+    EXPECT_LT(dots, columns * 9 / 10) << yaw;
   }
 }
 
