@@ -1,4 +1,6 @@
 // The bodies, lit.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -7,6 +9,7 @@
 #include "render/body/body_store.h"
 #include "render/pass.h"
 #include "render/stage.h"
+#include "shaders/shared.h"
 
 namespace render {
 
@@ -29,6 +32,8 @@ class BodyPass {
   }
 
  private:
+  // What the hair over a body lets through; `none_` where no hair is.
+  void bindOpenness(const Body& body, Stage& stage);
   // Fills counts_ and offsets_ with the triangles whose joint may be in view. Returns how many are left out.
   long chooseTriangles(const Body& body, const BodyMesh& mesh, const Frustum* cull);
 
@@ -39,6 +44,7 @@ class BodyPass {
     Programs(const std::string& shader_dir, const std::vector<std::string>& defines);
   };
   Programs plain_, own_;  // of one colour; of the mesh's own materials
+  Texture none_;
   std::vector<int> counts_;
   std::vector<const void*> offsets_;
 };
@@ -51,7 +57,22 @@ BodyPass::Programs::Programs(const std::string& shader_dir, const std::vector<st
   lit = ShaderProgram(shader_dir, {{"body.vert", "body.frag"}, at_vertices, {}});
 }
 
-BodyPass::BodyPass(const std::string& shader_dir) : plain_(shader_dir, {}), own_(shader_dir, {"OWN_MATERIALS"}) {}
+BodyPass::BodyPass(const std::string& shader_dir)
+    : plain_(shader_dir, {}), own_(shader_dir, {"OWN_MATERIALS"}), none_(makeTexture(GL_TEXTURE_3D)) {
+  constexpr std::array<std::uint8_t, 4> kOpen{255, 128, 128, 128};
+  glTextureStorage3D(none_.id(), 1, GL_RGBA8, 1, 1, 1);
+  glTextureSubImage3D(none_.id(), 0, 0, 0, 0, 1, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, kOpen.data());
+}
+
+void BodyPass::bindOpenness(const Body& body, Stage& stage) {
+  const auto hairs = stage.hairs.hairs();
+  const auto hair = std::ranges::find_if(
+      hairs, [&](const HairResources& one) { return one.id == body.hair_id && one.drawable && one.openness; });
+  const bool found = body.hair_id != 0 && hair != hairs.end();
+  glBindTextureUnit(shared::kUnitOpenness, found ? hair->openness.id() : none_.id());
+  const Eigen::Matrix4f from_world = found ? hair->openness_from_world : Eigen::Matrix4f::Identity();
+  glUniformMatrix4fv(1, 1, GL_FALSE, from_world.data());
+}
 
 long BodyPass::chooseTriangles(const Body& body, const BodyMesh& mesh, const Frustum* cull) {
   counts_.clear();
@@ -106,6 +127,7 @@ void BodyPass::draw(const Input& input, Stage& stage, FrameReport& report) {
     if (body.level > 0) {
       report.skip_counts.body_detail.skipped += triangles - mesh.levels[static_cast<std::size_t>(body.level)].count / 3;
       programs.small.use();
+      bindOpenness(body, stage);
       stage.bodies.bind(body, mesh);
       BodyStore::drawLevel(body, mesh);
       report.draw_calls += 1;
@@ -116,6 +138,7 @@ void BodyPass::draw(const Input& input, Stage& stage, FrameReport& report) {
     const bool at_vertices = input.light_at_vertices && hasFineVertices(body, mesh);
     report.skip_counts.hair_light += {at_vertices ? triangles : 0, triangles};
     (at_vertices ? programs.lit : programs.coarse).use();
+    bindOpenness(body, stage);
     stage.bodies.bind(body, mesh);
     glMultiDrawElements(GL_TRIANGLES, counts_.data(), GL_UNSIGNED_INT, offsets_.data(),
                         static_cast<GLsizei>(counts_.size()));

@@ -114,6 +114,7 @@ struct BodyInput {
   std::span<const float> root_cover;  // 2 a vertex: 0 bare .. 1 among the roots; m that the skin is drawn lower
   Float3 root_color{};                // share of light that the roots leave what is seen through them; see rootColor
   float scalp_tint = 0;               // 0..1, strength of shade and colour
+  std::uint64_t hair_id = 0;          // of the HairInput that shades it from sky, fill and rim; 0: none
   // Brows, lashes and lips are painted where shaders/common/face.glsl has them.
   Float3 face_origin{};          // m, rest pose: the chin's level under the base of the skull
   float face_height = 0;         // m from chin to crown; 0: no face is painted

@@ -7,7 +7,7 @@ layout(location = 2) in float cover;
 layout(location = 3) in vec3 rest;
 layout(location = 4) in float garment;
 #ifdef HAIR_LIGHT_AT_VERTICES
-layout(location = 5) in float through_hair;
+layout(location = 5) in vec4 through_hair;
 #endif
 #ifdef OWN_MATERIALS
 layout(location = 6) in vec3 place;
@@ -18,7 +18,7 @@ layout(location = 0) out vec4 color;
 
 void main() {
 #ifndef HAIR_LIGHT_AT_VERTICES
-  float through_hair = forward.w > 0.0 ? hairLightOnSurface(world) : 1.0;
+  vec4 through_hair = lightUnderHair(world, normalize(normal));
 #endif
   color = vec4(bodyRadiance(materialColor(place), rest, world, normal, cover, garment, through_hair), 1.0);
 }

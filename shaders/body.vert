@@ -9,8 +9,8 @@ layout(location = 4) out float garment;
 layout(location = 6) out vec3 place;
 #endif
 #ifdef HAIR_LIGHT_AT_VERTICES
-#include "common/shadow.glsl"
-layout(location = 5) out float through_hair;
+#include "common/under_hair.glsl"
+layout(location = 5) out vec4 through_hair;
 #endif
 
 void main() {
@@ -22,7 +22,7 @@ void main() {
   place = material_place;
 #endif
 #ifdef HAIR_LIGHT_AT_VERTICES
-  through_hair = forward.w > 0.0 ? hairLightOnSurface(world) : 1.0;
+  through_hair = lightUnderHair(world, normalize(normal));
 #endif
   gl_Position = clip_from_world * vec4(world, 1.0);
 }

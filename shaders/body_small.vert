@@ -13,6 +13,6 @@ void main() {
   skin(world, normal);
   vec3 base = materialColorAt(material_place, kSmallLevel);
   radiance = bodyRadiance(base, rest_position, world, normal, root_cover.x, cloth,
-                          forward.w > 0.0 ? hairLightOnSurface(world) : 1.0);
+                          lightUnderHair(world, normalize(normal)));
   gl_Position = clip_from_world * vec4(world, 1.0);
 }

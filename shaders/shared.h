@@ -61,6 +61,7 @@ const int kUnitColor = 9;
 const int kUnitTable = 10;
 const int kUnitSkin = 11;
 const int kUnitMaterials = 12;
+const int kUnitOpenness = 14;
 const int kUnitBodyDepthPlain = 13;  // the same as kUnitBodyDepth, read and not compared
 
 // Strands' points between the stages of the software path (render/software/software_strands.h,

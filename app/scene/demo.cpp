@@ -164,6 +164,7 @@ render::BodyInput bodyInput(const Actor& actor, bool show_strands) {
   // A head whose hair is not drawn is bald.
   input.scalp_id = show_strands && actor.spec.look.strands > 0 ? actor.scalp->id : 0;
   input.root_cover = actor.scalp->cover;
+  input.hair_id = input.scalp_id != 0 ? actor.id : 0;
   input.scalp_tint = actor.spec.look.scalp_tint;
   input.root_color = render::rootColor(actor.spec.look.hair);
   const Face& face = actor.body->character.face;
@@ -181,7 +182,7 @@ render::BodyInput bodyInput(const Actor& actor, bool show_strands) {
   return input;
 }
 
-render::BodyInput attachmentInput(const Actor& actor, std::size_t k) {
+render::BodyInput attachmentInput(const Actor& actor, std::size_t k, bool show_strands) {
   const WornAttachment& worn = actor.worn[k];
   const Attachment& mesh = *worn.mesh;
   render::BodyInput input;
@@ -194,6 +195,7 @@ render::BodyInput attachmentInput(const Actor& actor, std::size_t k) {
   input.weights = {mesh.weights.data()->data(), 4 * mesh.weights.size()};
   input.joint_matrices = {&worn.matrix, 1};
   input.pose_revision = actor.pose_revision;
+  input.hair_id = show_strands && actor.spec.look.strands > 0 ? actor.id : 0;
   input.color = wornColor(actor, k);
   input.roughness = actor.spec.attachments[k].roughness;
   return input;
@@ -307,7 +309,7 @@ render::FrameInput frameInput(Demo& demo, int width, int height) {
   for (const Actor& actor : demo.actors) {
     demo.hair_inputs.push_back(hairInput(actor));
     demo.body_inputs.push_back(bodyInput(actor, demo.scene.look.view.show_strands));
-    for (std::size_t k = 0; k < actor.worn.size(); ++k) demo.body_inputs.push_back(attachmentInput(actor, k));
+    for (std::size_t k = 0; k < actor.worn.size(); ++k) demo.body_inputs.push_back(attachmentInput(actor, k, demo.scene.look.view.show_strands));
   }
   render::FrameInput input;
   input.width = width;

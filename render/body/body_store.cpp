@@ -118,6 +118,8 @@ void BodyStore::refreshLook(Body& body, const BodyMesh& mesh, const BodyInput& i
   const std::uint64_t scalp_id = scalpOf(input, uploaded);
   if (scalp_id != body.scalp_id) body.change = ++changes_;  // its shape is another as well
   body.scalp_id = scalp_id;
+  if (input.hair_id != body.hair_id) ++look_changes_;
+  body.hair_id = input.hair_id;
   const bool own_materials = input.own_materials && mesh.materials;
   const BodyFinish finish{input.color,       input.root_color, input.roughness,   input.scalp_tint, input.face_origin,
                           input.face_height, input.face_paint, input.cloth_color, input.dressed,    own_materials};

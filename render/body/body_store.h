@@ -33,6 +33,7 @@ struct Body {
   long joint_bytes = 0;  // of the joints' buffer
   BodyFinish finish;
   std::uint64_t scalp_id = 0;        // 0: bare
+  std::uint64_t hair_id = 0;         // that shades it; 0: none
   int level = 0;                     // of detail; 0 is the full mesh
   Bounds bounds;                     // world, of what hangs mostly on each joint
   std::uint64_t change = 0;          // of its pose, mesh or level

@@ -206,7 +206,8 @@ int HairResources::chunksPerStrand(const HairDraw& draw) const {
 
 long HairResources::gpuBytes() const {
   if (!drawable) return 0;
-  return static_cast<long>(vertex_bytes + skin_bytes) + static_cast<long>(sizeof(shared::HairBlock));
+  const long openness_bytes = 4L * openness_size[0] * openness_size[1] * openness_size[2];
+  return static_cast<long>(vertex_bytes + skin_bytes) + openness_bytes + static_cast<long>(sizeof(shared::HairBlock));
 }
 
 long HairStore::gpuBytes() const {
@@ -267,9 +268,31 @@ long HairStore::uploadSkin(HairResources& hair, std::span<const float> positions
   return fillTexels<std::uint64_t>(hair.skin_reached, hair.skin_buffer, hair.skin_texture, hair.skin_bytes, GL_RG32UI);
 }
 
+void HairStore::uploadOpenness(HairResources& hair, long& uploaded) {
+  const HairOpenness& openness = sky_visibility_.openness();
+  const auto [width, height, depth] = openness.size;
+  if (!hair.openness || hair.openness_size != openness.size) {
+    hair.openness = makeTexture(GL_TEXTURE_3D);
+    hair.openness_size = openness.size;
+    const GLuint id = hair.openness.id();
+    glTextureStorage3D(id, 1, GL_RGBA8, width, height, depth);
+    glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    const float open[4] = {1, 0.5f, 0.5f, 0.5f};
+    glTextureParameterfv(id, GL_TEXTURE_BORDER_COLOR, open);
+    for (const GLenum side : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+      glTextureParameteri(id, side, GL_CLAMP_TO_BORDER);
+  }
+  glTextureSubImage3D(hair.openness.id(), 0, 0, 0, 0, width, height, depth, GL_RGBA, GL_UNSIGNED_BYTE,
+                      openness.texels.data());
+  hair.openness_from_head = openness.from_head;
+  uploaded += static_cast<long>(4 * openness.texels.size());
+}
+
 long HairStore::uploadVertices(HairResources& hair, std::span<const float> positions, bool renew_light,
                                const DrawSkips& skips) {
   const HairLayout& layout = hair.layout();
+  long uploaded = 0;
   inLayerGradients(layout, positions, gradients_);
   const auto vertices = static_cast<std::size_t>(layout.vertex_count);
   const bool far = skips.sky_visibility && hair.pixels < kSoftLightPixels && !renew_light &&
@@ -279,12 +302,14 @@ long HairStore::uploadVertices(HairResources& hair, std::span<const float> posit
     ++hair.soft_light_age;
     hair.head = fitHead(layout, positions);
   } else {
-    sky_visibility_.compute(layout, positions, representedWidth(hair.look, hair.strands),
+    sky_visibility_.compute(layout, positions, representedWidth(hair.look, hair.strands), hair.look.length_variation,
                             directionOr(to_fill_, Vector3f::UnitX()), directionOr(to_rim_, -Vector3f::UnitZ()));
     hair.soft_light.assign(sky_visibility_.values().begin(), sky_visibility_.values().end());
     hair.soft_light_age = 0;
     hair.head = sky_visibility_.head();
+    uploadOpenness(hair, uploaded);
   }
+  hair.openness_from_world = hair.openness_from_head * headFrame(layout, positions).inverse().matrix();
   texels_.clear();
   for (int v = 0; v < layout.vertex_count; ++v) {
     const Vector3f p(positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]);
@@ -299,7 +324,7 @@ long HairStore::uploadVertices(HairResources& hair, std::span<const float> posit
   if (!skips.rows || hair.texels.size() != texels_.size() ||
       hair.vertex_bytes != static_cast<GLsizeiptr>(texels_.size() * sizeof(float))) {
     hair.texels = texels_;
-    return fillTexels<float>(texels_, hair.vertex_buffer, hair.vertex_texture, hair.vertex_bytes);
+    return uploaded + fillTexels<float>(texels_, hair.vertex_buffer, hair.vertex_texture, hair.vertex_bytes);
   }
   const auto differ = std::mismatch(texels_.begin(), texels_.end(), hair.texels.begin());
   const auto first = static_cast<std::size_t>(differ.first - texels_.begin()) / kRow * kRow;
@@ -310,13 +335,13 @@ long HairStore::uploadVertices(HairResources& hair, std::span<const float> posit
     end -= kRow;
   }
   skip_counts_.rows.skipped += layout.vertex_count - static_cast<long>((end - first) / kRow);
-  if (end <= first) return 0;
+  if (end <= first) return uploaded;
   std::copy(texels_.begin() + static_cast<long>(first), texels_.begin() + static_cast<long>(end),
             hair.texels.begin() + static_cast<long>(first));
   const auto bytes = static_cast<GLsizeiptr>((end - first) * sizeof(float));
   glNamedBufferSubData(hair.vertex_buffer.id(), static_cast<GLintptr>(first * sizeof(float)), bytes,
                        texels_.data() + first);
-  return static_cast<long>(bytes);
+  return uploaded + static_cast<long>(bytes);
 }
 
 long HairStore::refresh(HairResources& hair, const HairInput& input, const DrawSkips& skips) {

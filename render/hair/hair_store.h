@@ -3,6 +3,8 @@
 // one look its scattering table.
 #pragma once
 
+#include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -75,6 +77,10 @@ struct HairResources {
   Buffer vertex_buffer, block;
   Texture vertex_texture;
   GLsizeiptr vertex_bytes = 0;
+  Texture openness;                    // see sky_visibility.h
+  std::array<int, 3> openness_size{};  // of the texture
+  Eigen::Matrix4f openness_from_head = Eigen::Matrix4f::Identity();
+  Eigen::Matrix4f openness_from_world = Eigen::Matrix4f::Identity();
 
   // What this frame draws of it; see hair_detail.h.
   bool in_view = true, casts = true;
@@ -117,6 +123,7 @@ class HairStore {
   HairStyle& styleOf(const HairInput& input, int strands, long& uploaded);
   HairScattering& scatteringOf(const HairLook& look, long& uploaded);
   long refresh(HairResources& hair, const HairInput& input, const DrawSkips& skips);
+  void uploadOpenness(HairResources& hair, long& uploaded);
   long uploadSkin(HairResources& hair, std::span<const float> positions, const DrawSkips& skips);
   long uploadVertices(HairResources& hair, std::span<const float> positions, bool renew_light, const DrawSkips& skips);
 

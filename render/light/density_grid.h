@@ -25,7 +25,9 @@ class DensityGrid {
   // Of values at the nodes: trilinear; 0 outside.
   float sample(std::span<const float> values, const Eigen::Vector3f& at) const;
 
-  float cell() const { return cell_; }  // m
+  float cell() const { return cell_; }                     // m
+  const Eigen::Vector3i& low() const { return low_; }      // the first node, in cells
+  const Eigen::Vector3i& nodes() const { return nodes_; }  // a side; of values at the nodes z is next to z
 
  private:
   Eigen::Vector3i low_ = Eigen::Vector3i::Zero(), nodes_ = Eigen::Vector3i::Zero();  // first node; nodes a side

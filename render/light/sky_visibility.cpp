@@ -36,6 +36,16 @@ const std::array<Vector3f, 7>& skyDirections() {
   return directions;
 }
 
+// The least-squares fit of a + b . w to values in those directions: (a, b) = fit * values.
+const Eigen::Matrix<float, 4, 7>& skyFit() {
+  static const Eigen::Matrix<float, 4, 7> fit = [] {
+    Eigen::Matrix<float, 7, 4> rows;
+    for (int k = 0; k < 7; ++k) rows.row(k) << 1, skyDirections()[static_cast<std::size_t>(k)].transpose();
+    return Eigen::Matrix<float, 4, 7>((rows.transpose() * rows).inverse() * rows.transpose());
+  }();
+  return fit;
+}
+
 // gap: from the place to the head's middle.
 float headDepth(const Vector3f& gap, float radius, const Vector3f& direction) {
   if (radius <= 0) return 0;
@@ -87,7 +97,7 @@ void SkyVisibility::placeVertices(const HairLayout& layout, std::span<const floa
   grid_.place(bounds);
 }
 
-void SkyVisibility::fillGrid(const HairLayout& layout, float hair_width) {
+void SkyVisibility::fillGrid(const HairLayout& layout, float hair_width, float length_variation) {
   double area = 0;
   for (const HairFace& face : layout.faces) area += std::max(face.area, 0.0f);
   // pi / 4: mean projected width of a cylinder over the angles it is crossed at.
@@ -108,12 +118,16 @@ void SkyVisibility::fillGrid(const HairLayout& layout, float hair_width) {
       const float length = (upper - lower).norm();
       const int points = std::clamp(static_cast<int>(std::ceil(length / kSpacing)), 1, kMaxPoints);
       const float extinction = per_area * face.area * length / static_cast<float>(points * corners);
+      const auto left = [&](float t) {  // of the strands, where they end one after the other
+        const float to_end = 1 - (static_cast<float>(layer) + t) / static_cast<float>(face.layers - 1);
+        return std::min(to_end / std::max(length_variation, 1e-3f), 1.0f);
+      };
       for (int k = 0; k < corners; ++k) {
         // Half way from the middle to the corner: spreads a prism over the nodes that it fills.
         const Vector3f from = 0.5f * (lower + vertex(k, layer)), to = 0.5f * (upper + vertex(k, layer + 1));
         for (int point = 0; point < points; ++point) {
           const float t = (static_cast<float>(point) + 0.5f) / static_cast<float>(points);
-          grid_.add((1 - t) * from + t * to, extinction);
+          grid_.add((1 - t) * from + t * to, left(t) * extinction);
         }
       }
       lower = upper;
@@ -126,6 +140,49 @@ void SkyVisibility::lookTowards(const Vector3f& direction) {
   depths_.resize(vertices_.size());
   for (std::size_t v = 0; v < vertices_.size(); ++v)
     depths_[v] = grid_.sample(swept_, vertices_[v]) + headDepth(head_center_ - vertices_[v], head_.radius, direction);
+}
+
+void SkyVisibility::addOpenness(std::size_t direction) {
+  const Eigen::Array4f share = skyFit().col(static_cast<int>(direction));
+  if (direction == 0) fitted_.assign(swept_.size(), Eigen::Array4f::Zero());
+  Eigen::Map<Eigen::ArrayXf> depths(swept_.data(), static_cast<Eigen::Index>(swept_.size()));
+  depths = (-depths).exp();
+  for (std::size_t node = 0; node < swept_.size(); ++node) fitted_[node] += swept_[node] * share;
+}
+
+void SkyVisibility::packOpenness() {
+  constexpr int kRoom = 8;  // sizes are multiples of it
+  constexpr std::array<std::uint8_t, 4> kOpen{255, 128, 128, 128};
+  const Eigen::Vector3i nodes = grid_.nodes();
+  std::array<int, 3> size{};
+  for (int a = 0; a < 3; ++a)
+    size[static_cast<std::size_t>(a)] =
+        std::max((nodes[2 - a] + kRoom - 1) / kRoom * kRoom, openness_.size[static_cast<std::size_t>(a)]);
+  openness_.size = size;
+  openness_.texels.assign(static_cast<std::size_t>(size[0]) * size[1] * size[2], kOpen);
+  const float* fitted = fitted_.front().data();
+  for (int x = 1; x + 1 < nodes.x(); ++x) {
+    for (int y = 1; y + 1 < nodes.y(); ++y) {
+      const int border = std::min({x, y, nodes.x() - 1 - x, nodes.y() - 1 - y});
+      for (int z = 1; z + 1 < nodes.z(); ++z) {
+        const float inside = std::min({border, z, nodes.z() - 1 - z}) > 1 ? 1.0f : 0.5f;
+        const float* node = fitted + 4 * ((x * nodes.y() + y) * nodes.z() + z);
+        auto& texel = openness_.texels[(static_cast<std::size_t>(x) * size[1] + y) * size[0] + z];
+        texel[0] = static_cast<std::uint8_t>(255.5f - 255 * inside * (1 - std::clamp(node[0], 0.0f, 1.0f)));
+        for (int k = 1; k < 4; ++k)
+          texel[static_cast<std::size_t>(k)] =
+              static_cast<std::uint8_t>(128 + 127 * inside * std::clamp(node[k], -1.0f, 1.0f));
+      }
+    }
+  }
+  const Eigen::Vector3f room(static_cast<float>(size[0]), static_cast<float>(size[1]), static_cast<float>(size[2]));
+  Eigen::Matrix4f from_head = Eigen::Matrix4f::Zero();
+  for (int a = 0; a < 3; ++a) {
+    from_head(a, 2 - a) = 1 / (grid_.cell() * room[a]);
+    from_head(a, 3) = (0.5f - static_cast<float>(grid_.low()[2 - a])) / room[a];
+  }
+  from_head(3, 3) = 1;
+  openness_.from_head = from_head;
 }
 
 // Hair alone: the head sends little back.
@@ -142,18 +199,20 @@ float SkyVisibility::depthBehind(const Vector3f& from, const Vector3f& to_light)
 }
 
 void SkyVisibility::compute(const HairLayout& layout, std::span<const float> positions, float hair_width,
-                            const Vector3f& to_fill, const Vector3f& to_rim) {
+                            float length_variation, const Vector3f& to_fill, const Vector3f& to_rim) {
   head_ = fitHead(layout, positions);
   placeVertices(layout, positions);
-  fillGrid(layout, hair_width);
+  fillGrid(layout, hair_width, length_variation);
   const auto to_head = [&](const Vector3f& direction) { return Vector3f(frame_.linear().transpose() * direction); };
   values_.assign(vertices_.size(), SoftLight{});
   for (SoftLight& value : values_) value.sky = 0;
-  for (const Vector3f& direction : skyDirections()) {
-    lookTowards(to_head(direction));
+  for (std::size_t d = 0; d < skyDirections().size(); ++d) {
+    lookTowards(to_head(skyDirections()[d]));
     for (std::size_t v = 0; v < vertices_.size(); ++v)
       values_[v].sky += std::exp(-depths_[v]) / static_cast<float>(skyDirections().size());
+    addOpenness(d);
   }
+  packOpenness();
   const auto light = [&](const Vector3f& to_light, LightDepths SoftLight::*depths) {
     const Vector3f direction = to_head(to_light);
     lookTowards(direction);

@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -30,19 +32,33 @@ struct SoftLight {
   LightDepths fill, rim;
 };
 
+// What the hair lets through to a surface beside it, from any side: at every node of the lattice the transmittance T(w)
+// = a + b . w, fitted to the sky's directions. RGBA8: a, (b + 1) / 2. The outermost nodes let all through, so that it
+// has no edge where the lattice ends.
+struct HairOpenness {
+  std::array<int, 3> size{};  // texels along u, v, w: the lattice's z, y, x, and room for it to grow
+  std::vector<std::array<std::uint8_t, 4>> texels;
+  Eigen::Matrix4f from_head = Eigen::Matrix4f::Identity();  // the head's frame to u, v, w in 0..1
+};
+
 class SkyVisibility {
  public:
-  // hair_width: summed projected diameter of all hairs, m (number of hairs times diameter). to_fill, to_rim: unit.
-  void compute(const HairLayout& layout, std::span<const float> positions, float hair_width,
+  // hair_width: summed projected diameter of all hairs, m (number of hairs times diameter). length_variation: of the
+  // look: strands end that share of their length early, more or less. to_fill, to_rim: unit.
+  void compute(const HairLayout& layout, std::span<const float> positions, float hair_width, float length_variation,
                const Eigen::Vector3f& to_fill, const Eigen::Vector3f& to_rim);
   std::span<const SoftLight> values() const { return values_; }  // one a vertex
   const HeadBall& head() const { return head_; }
+  const HairOpenness& openness() const { return openness_; }
 
  private:
   void placeVertices(const HairLayout& layout, std::span<const float> positions);
-  void fillGrid(const HairLayout& layout, float hair_width);
+  void fillGrid(const HairLayout& layout, float hair_width, float length_variation);
   // Optical depths towards a direction of the head's frame, for all vertices; see depths_.
   void lookTowards(const Eigen::Vector3f& direction);
+  // Adds a direction's share to the fit, from the depths that were swept last.
+  void addOpenness(std::size_t direction);
+  void packOpenness();
   float depthBehind(const Eigen::Vector3f& from, const Eigen::Vector3f& to_light) const;
 
   DensityGrid grid_;
@@ -52,6 +68,8 @@ class SkyVisibility {
   std::vector<Eigen::Vector3f> vertices_;  // in the head's frame
   std::vector<float> swept_, depths_;
   std::vector<SoftLight> values_;
+  std::vector<Eigen::Array4f> fitted_;  // a and b at every node
+  HairOpenness openness_;
 };
 
 }  // namespace render

@@ -54,7 +54,7 @@ MEMBERS(LookShares, roots, along)
 MEMBERS(HairInput, id, layout_revision, position_revision, layout_id, faces, positions, rest, strands,
         segments_per_layer, look, shares, skin)
 MEMBERS(BodyInput, id, mesh_id, positions, normals, triangles, joints, weights, joint_matrices, pose_revision, color,
-        roughness, scalp_id, root_cover, root_color, scalp_tint, face_origin, face_height, face_paint, cloth, dressed,
+        roughness, scalp_id, root_cover, root_color, scalp_tint, hair_id, face_origin, face_height, face_paint, cloth, dressed,
         cloth_color, material_places, materials, own_materials)
 MEMBERS(FrameInput, width, height, camera, light, view, skips, hairs, bodies, debug_lines, debug_triangles,
         debug_points)

@@ -332,7 +332,7 @@ TEST(SkyVisibility, FindsTheHeadAndDarkensWhatLiesDeep) {
   EXPECT_NEAR(head.radius, synthetic::kHeadRadius, 1e-4f);
   EXPECT_LT((head.center - Vector3f(0, synthetic::kHeadHeight, 0)).norm(), 1e-4f);
   render::SkyVisibility sky_visibility;
-  sky_visibility.compute(layout, hair.positions, 5.0f, Vector3f::UnitX(), -Vector3f::UnitZ());
+  sky_visibility.compute(layout, hair.positions, 5.0f, 0.0f, Vector3f::UnitX(), -Vector3f::UnitZ());
   // The crown's column is outermost, the last ring's roots are covered by all that falls over them.
   const render::SoftLight outer = sky_visibility.values()[4],
                           inner = sky_visibility.values()[(hair.positions.size() / 3) - hair.layers];

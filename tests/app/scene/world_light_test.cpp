@@ -8,7 +8,7 @@
 #include "app/scene/demo.h"
 #include "tests/run_program.h"
 
-namespace {
+namespace world_light_test {
 
 // idle_turns.bvh for two frames, its figure facing -z: turned by 180 degrees about y, in rest pose and motion.
 std::string turnedClip() {
@@ -64,4 +64,4 @@ TEST(WorldLight, LightsStandAboutTheFigure) {
   }
 }
 
-}  // namespace
+}  // namespace world_light_test
