@@ -18,9 +18,10 @@ set_target_properties(hair_sim PROPERTIES EXPORT_NAME sim OUTPUT_NAME hairmesh_s
 
 # What the program does not have as well.
 file(GLOB library_sources CONFIGURE_DEPENDS app/library/*.cpp)
+file(GLOB style_sources CONFIGURE_DEPENDS app/styles/*.cpp)
 set(allocator_source ${CMAKE_CURRENT_SOURCE_DIR}/app/library/allocator.cpp)
 list(REMOVE_ITEM library_sources ${allocator_source})
-add_library(hairmesh_objects OBJECT ${library_sources}
+add_library(hairmesh_objects OBJECT ${library_sources} ${style_sources}
   app/files/errors.cpp app/files/hair_file.cpp app/files/obj_layers.cpp app/files/text_scanner.cpp
   app/scene/view/look_params.cpp app/scene/edit/render_faces.cpp)
 target_link_libraries(hairmesh_objects PRIVATE hair_options Eigen3::Eigen)

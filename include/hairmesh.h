@@ -209,6 +209,17 @@ HM_API hm_result hm_mesh_create(const hm_mesh_settings* settings, hm_mesh* mesh)
 HM_API hm_result hm_mesh_create_from_text(const char* text, size_t length, const char* name, int32_t reverse_faces,
                                           hm_mesh* mesh);
 
+/**
+ * Makes a hair mesh of a built-in style on a plain head: an ellipsoid about the origin of radii 0.34, 0.5 and 0.42 of its
+ * height in x, y and z, to be given to steps as an hm_ellipsoid. y is up, z forward. Takes up to a second and a half.
+ * @param style       "short", "shoulder" or "long".
+ * @param resolution  "low", "medium", "high" or "ultra".
+ * @param head_height chin to crown, m: 0.05 to 2; 0.23 is a person's.
+ * @param mesh        the new mesh.
+ * @return HM_ERROR_ARGUMENT with the names there are.
+ */
+HM_API hm_result hm_mesh_create_style(const char* style, const char* resolution, double head_height, hm_mesh* mesh);
+
 /** Destroys a mesh. Hairs of it live on. @param mesh a mesh. @return HM_OK or HM_ERROR_HANDLE. */
 HM_API hm_result hm_mesh_destroy(hm_mesh mesh);
 

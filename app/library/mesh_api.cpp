@@ -1,11 +1,16 @@
 // Hair meshes of the C interface.
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <initializer_list>
+#include <numbers>
+#include <string>
 #include <string_view>
 
 #include "app/files/hair_file.h"
 #include "app/library/convert.h"
 #include "app/library/objects.h"
+#include "app/styles/hair_styles.h"
 
 namespace app::library {
 namespace {
@@ -69,6 +74,41 @@ hm_mesh addMesh(sim::HairMeshShape shape) {
   return {meshes().add(MeshRef(std::move(mesh)))};
 }
 
+// One of the names that `name_of` gives to `choices`.
+template <class Choice>
+Choice chosen(const char* given, const char* what, std::initializer_list<Choice> choices,
+              std::string_view (*name_of)(Choice)) {
+  needs(given, what);
+  std::string names;
+  for (const Choice choice : choices) {
+    if (name_of(choice) == given) return choice;
+    names.append(names.empty() ? "" : ", ").append(name_of(choice));
+  }
+  throw Fault{HM_ERROR_ARGUMENT, std::string(what) + " is none that is built in; choose one of " + names};
+}
+
+sim::HairMeshShape styleOnPlainHead(Style style, Resolution resolution, double height) {
+  const Vec3 radii = height * Vec3(0.34, 0.5, 0.42);
+  Scalp scalp;
+  scalp.head_height = height;
+  scalp.rows = 65, scalp.columns = 128;
+  for (int row = 0; row < scalp.rows; ++row) {
+    for (int column = 0; column < scalp.columns; ++column) {
+      const double polar = row * std::numbers::pi / (scalp.rows - 1);
+      const double azimuth = column * 2 * std::numbers::pi / scalp.columns;
+      const Vec3 way(std::sin(polar) * std::sin(azimuth), std::cos(polar), std::sin(polar) * std::cos(azimuth));
+      scalp.radius.push_back(1 / way.cwiseQuotient(radii).norm());
+    }
+  }
+  // To the first order: exact on the surface.
+  const auto distance = [&](const Vec3& p) {
+    const Vec3 q = p.cwiseQuotient(radii);
+    const double value = q.norm(), slope = q.cwiseQuotient(radii).norm();
+    return slope > 1e-12 ? value * (value - 1) / slope : -radii.minCoeff();
+  };
+  return makeStyle(style, resolution, scalp, distance);
+}
+
 }  // namespace
 }  // namespace app::library
 
@@ -93,6 +133,21 @@ hm_result hm_mesh_create_from_text(const char* text, size_t length, const char* 
     needs(mesh, "mesh");
     *mesh = addMesh(app::readHairMesh(std::string_view(text, length), name ? name : "hair mesh", reverse_faces != 0,
                                       "reverse_faces"));
+  });
+}
+
+hm_result hm_mesh_create_style(const char* style, const char* resolution, double head_height, hm_mesh* mesh) {
+  return guarded("hm_mesh_create_style", [&] {
+    using app::Resolution;
+    using app::Style;
+    needs(mesh, "mesh");
+    const Style which = chosen(style, "style", {Style::kShort, Style::kShoulder, Style::kLong}, app::styleName);
+    const Resolution fine =
+        chosen(resolution, "resolution", {Resolution::kLow, Resolution::kMedium, Resolution::kHigh, Resolution::kUltra},
+               app::resolutionName);
+    if (!(head_height >= 0.05 && head_height <= 2))
+      throw Fault{HM_ERROR_ARGUMENT, "head_height is not within 0.05 and 2; give it in metres, 0.23 for a person"};
+    *mesh = addMesh(styleOnPlainHead(which, fine, head_height));
   });
 }
 

@@ -56,6 +56,16 @@ class Library(unittest.TestCase):
         gc.collect()
         self.assertTrue(np.isfinite(positions).all())  # the view keeps its hair alive
 
+    def test_a_built_in_style_needs_no_file(self):
+        mesh = hairmesh.Mesh.style("short", "low")
+        head = hairmesh.Ellipsoid(hairmesh.Mesh.head_radii())
+        hair = hairmesh.Hair(mesh)
+        hair.step(ellipsoids=[head])
+        self.assertGreater(len(mesh.rest), 200)
+        self.assertAlmostEqual(mesh.rest[mesh.roots][:, 1].max(), 0.115, delta=0.01)  # at the crown
+        with self.assertRaisesRegex(hairmesh.Error, "short, shoulder, long"):
+            hairmesh.Mesh.style("mohawk")
+
     def test_arrays_make_the_same_mesh(self):
         lengths = np.diff(self.mesh.column_first)
         mesh = hairmesh.Mesh(self.mesh.rest.astype(np.float64), lengths, self.mesh.faces)

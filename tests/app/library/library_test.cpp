@@ -100,6 +100,34 @@ TEST(Library, ATextMakesTheSameMeshAsArrays) {
   EXPECT_EQ(hm_mesh_destroy(mesh), HM_OK);
 }
 
+// The first hair needs no file: every built-in style stands on the plain head and stays out of it.
+TEST(Library, ABuiltInStyleStandsOnThePlainHead) {
+  const Vec3 radii = 0.23 * Vec3(0.34, 0.5, 0.42);
+  for (const char* style : {"short", "shoulder", "long"}) {
+    for (const char* resolution : {"low", "medium"}) {
+      hm_mesh mesh{};
+      ASSERT_EQ(hm_mesh_create_style(style, resolution, 0.23, &mesh), HM_OK) << style << hm_error_message();
+      hm_mesh_info info{};
+      ASSERT_EQ(hm_mesh_describe(mesh, &info), HM_OK);
+      for (int c = 0; c < info.column_count; ++c) {
+        for (int v = info.column_first[c]; v < info.column_first[c + 1]; ++v) {
+          const Vec3 p = Eigen::Map<const Vec3>(info.rest.data + 3 * v);
+          const double out = p.cwiseQuotient(radii).norm();
+          const bool root = v == info.column_first[c];
+          EXPECT_TRUE(root ? std::abs(out - 1) < 0.01 : out > 1) << style << " vertex " << v << ": " << out;
+        }
+      }
+      EXPECT_EQ(hm_mesh_destroy(mesh), HM_OK);
+    }
+  }
+  hm_mesh mesh{};
+  EXPECT_EQ(hm_mesh_create_style("mohawk", "low", 0.23, &mesh), HM_ERROR_ARGUMENT);
+  EXPECT_NE(std::string(hm_error_message()).find("short, shoulder, long"), std::string::npos) << hm_error_message();
+  EXPECT_EQ(hm_mesh_create_style("short", "8k", 0.23, &mesh), HM_ERROR_ARGUMENT);
+  EXPECT_EQ(hm_mesh_create_style("short", "low", NAN, &mesh), HM_ERROR_ARGUMENT);
+  EXPECT_EQ(hm_mesh_create_style(nullptr, "low", 0.23, &mesh), HM_ERROR_ARGUMENT);
+}
+
 TEST(Library, ASavedStateGoesOnToTheBitAndViewsStayWhereTheyAre) {
   const hm_mesh mesh = makeMesh();
   const hm_hair hair = makeHair(mesh), other = makeHair(mesh);

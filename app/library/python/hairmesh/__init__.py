@@ -160,6 +160,21 @@ class Mesh:
         with open(file, "rb") as stream:
             return cls.from_text(stream.read(), file, reverse_faces)
 
+    @classmethod
+    def style(cls, style="shoulder", resolution="low", head_height=0.23):
+        """A built-in style, "short", "shoulder" or "long", at "low", "medium", "high" or "ultra", on a plain head: an
+        ellipsoid about the origin, Mesh.head_radii(head_height) for steps' Ellipsoid."""
+        mesh = cls.__new__(cls)
+        handle = _c.Mesh()
+        _c.lib.hm_mesh_create_style(style.encode(), resolution.encode(), head_height, handle)
+        mesh._take(handle)
+        return mesh
+
+    @staticmethod
+    def head_radii(head_height=0.23):
+        """Radii of the head of built-in styles, m."""
+        return tuple(share * head_height for share in (0.34, 0.5, 0.42))
+
     def _take(self, handle):
         self._c = handle
         info = _c.MeshInfo()

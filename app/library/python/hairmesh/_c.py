@@ -168,6 +168,7 @@ _FUNCTIONS = {
     "hm_default_mesh_settings": (None, [POINTER(MeshSettings)]),
     "hm_mesh_create": (None, [POINTER(MeshSettings), POINTER(Mesh)]),
     "hm_mesh_create_from_text": (None, [c_char_p, c_size_t, c_char_p, c_int32, POINTER(Mesh)]),
+    "hm_mesh_create_style": (None, [c_char_p, c_char_p, c_double, POINTER(Mesh)]),
     "hm_mesh_destroy": (None, [Mesh]),
     "hm_mesh_describe": (None, [Mesh, POINTER(MeshInfo)]),
     "hm_parameter_count": (c_int32, []),
