@@ -13,6 +13,8 @@ namespace {
 constexpr double kTears = 0.3;            // rad, divergence from which hair is torn
 constexpr double kBack = 40;              // what a step back along the tear costs; where hair is alike a step costs 20
 constexpr float kShortestTear = 0.02f;    // m
+constexpr int kBeside = 2;                // cells that the hair beside a tear is blurred over
+constexpr double kLine = 2.7;             // edges a step up to which hair goes apart along a line, not about a point
 constexpr double kSmallestRegion = 0.04;  // of all cells
 
 // Edges and corners of the cells. Edge 2 * cell + 0 lies between a cell and the next one in x, + 1 in y.
@@ -82,12 +84,37 @@ std::vector<int> stepsFrom(const Lattice& lattice, const std::vector<bool>& chai
   return steps;
 }
 
+// Marks the corners that are near others.
+std::vector<bool> cornersBeside(const Lattice& lattice, const std::vector<int>& steps) {
+  std::vector<bool> beside(steps.size(), false);
+  const int across = lattice.across(), down = static_cast<int>(steps.size()) / across;
+  for (int corner = 0; corner < static_cast<int>(steps.size()); ++corner) {
+    if (steps[static_cast<std::size_t>(corner)] < 0) continue;
+    const int x = corner % across, y = corner / across;
+    for (int j = std::max(0, y - kBeside); j <= std::min(down - 1, y + kBeside); ++j)
+      for (int i = std::max(0, x - kBeside); i <= std::min(across - 1, x + kBeside); ++i)
+        beside[static_cast<std::size_t>(j * across + i)] = true;
+  }
+  return beside;
+}
+
+// Whether a chain is a line: about a whorl hair goes apart all ways, by no more than its roots are apart.
+bool isLine(const Lattice& lattice, const std::vector<bool>& chain, const std::vector<int>& steps, int length) {
+  int ends = 0;
+  for (std::size_t corner = 0; corner < steps.size(); ++corner) {
+    if (steps[corner] < 0) continue;
+    for (int edge : lattice.edgesAt(static_cast<int>(corner)))
+      ends += edge >= 0 && chain[static_cast<std::size_t>(edge)] ? 1 : 0;
+  }
+  return 0.5 * ends <= kLine * length;
+}
+
 int farthest(const std::vector<int>& steps) {
   return static_cast<int>(std::max_element(steps.begin(), steps.end()) - steps.begin());
 }
 
 // Tears on from a corner to the rim, where the hair differs most, rather not along the corners that `avoided` marks.
-void tearOn(Lattice& lattice, int from, const std::vector<int>& avoided) {
+void tearOn(Lattice& lattice, int from, const std::vector<bool>& avoided) {
   const std::size_t count = static_cast<std::size_t>(lattice.cornerCount());
   std::vector<double> cost(count, std::numeric_limits<double>::infinity());
   std::vector<int> came(count, -1);
@@ -112,8 +139,8 @@ void tearOn(Lattice& lattice, int from, const std::vector<int>& avoided) {
       if (edge < 0 || lattice.apart[static_cast<std::size_t>(edge)] < 0) continue;
       const std::array<int, 2> ends = lattice.ends(edge);
       const int next = ends[0] == corner ? ends[1] : ends[0];
-      const bool back = avoided[static_cast<std::size_t>(next)] >= 0;
-      const double step = back ? kBack : 1 / (0.05 + lattice.apart[static_cast<std::size_t>(edge)]);
+      const double step =
+          avoided[static_cast<std::size_t>(next)] ? kBack : 1 / (0.05 + lattice.apart[static_cast<std::size_t>(edge)]);
       if (so_far + step >= cost[static_cast<std::size_t>(next)]) continue;
       cost[static_cast<std::size_t>(next)] = so_far + step;
       came[static_cast<std::size_t>(next)] = edge;
@@ -134,7 +161,9 @@ void tearChains(Lattice& lattice) {
     const int one = farthest(stepsFrom(lattice, chain, lattice.ends(static_cast<int>(e))[0]));
     const std::vector<int> steps = stepsFrom(lattice, chain, one);
     const int other = farthest(steps);
-    const bool counts = static_cast<float>(steps[static_cast<std::size_t>(other)]) * raster.size >= kShortestTear;
+    const int length = steps[static_cast<std::size_t>(other)];
+    const bool counts =
+        static_cast<float>(length) * raster.size >= kShortestTear && isLine(lattice, chain, steps, length);
     for (std::size_t corner = 0; corner < steps.size(); ++corner) {
       if (steps[corner] < 0) continue;
       done[corner] = true;
@@ -144,8 +173,9 @@ void tearChains(Lattice& lattice) {
         if (edge >= 0 && chain[static_cast<std::size_t>(edge)]) lattice.torn[static_cast<std::size_t>(edge)] = true;
     }
     if (!counts) continue;
+    const std::vector<bool> beside = cornersBeside(lattice, steps);
     for (int end : {one, other})
-      if (!lattice.atRim(end)) tearOn(lattice, end, steps);
+      if (!lattice.atRim(end)) tearOn(lattice, end, beside);
   }
 }
 
