@@ -165,6 +165,32 @@ inline app::Groom curly(int strands, float radius = 0.0025f, float turns = 7) {
   return groom;
 }
 
+// Away from one point of the crown, and turning about it.
+inline app::Groom whorl(int strands, float length, int points = 17) {
+  const Head head;
+  app::Groom groom;
+  const Vector3f crown = head.surface(Vector3f(0.012f, 0.85f, -0.55f).normalized());
+  for (int i = 0; i < strands; ++i) {
+    const Vector3f root = head.surface(rootDirection(i, strands)), out = tangent(head, root, root - crown);
+    const float turn = 0.8f * std::exp(-(root - crown).norm() / 0.05f);
+    March way{length, 0.006f, 0.25f, 6, points};
+    add(march(head, root, std::cos(turn) * out + std::sin(turn) * head.normal(root).cross(out), way), groom);
+  }
+  return groom;
+}
+
+// Four millimetres over the whole head, leaning away from the crown.
+inline app::Groom stubble(int strands) {
+  const Head head;
+  app::Groom groom;
+  for (int i = 0; i < strands; ++i) {
+    const Vector3f root = head.surface(rootDirection(i, strands));
+    const Vector3f way = (head.normal(root) + 0.8f * tangent(head, root, Vector3f(0, -0.3f, 1))).normalized();
+    add({root, root + 0.002f * way, root + 0.004f * way}, groom);
+  }
+  return groom;
+}
+
 // Three centimetres that stand off and lean forward.
 inline app::Groom cropped(int strands) {
   const Head head;

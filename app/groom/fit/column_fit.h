@@ -12,6 +12,7 @@ namespace app {
 
 // What the fit asks of one strand: where it should pass each layer, and how much that counts.
 struct StrandTarget {
+  int face = 0;
   GrowthRow row;
   std::vector<Eigen::Vector3f> layers;  // m
   std::vector<float> weight;            // per layer

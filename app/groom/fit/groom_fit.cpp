@@ -21,16 +21,18 @@ using Eigen::Vector3f;
 constexpr std::size_t kMinGroomStrands = 20;  // strands
 constexpr std::size_t kFitStrands = 5000, kTrialStrands = 3000;
 constexpr int kSlides = 2, kRounds = 5;
+constexpr int kLoosenings = 3;
+constexpr float kLoosened = 0.1f;  // share of its weight that a strand keeps in a face that stays flat
 constexpr double kFatness = 0.012, kMinFatness = 0.003,
                  kFlat = 1e-4;                           // of corner tetrahedra: aimed for, held, refused
-constexpr float kShortestLength = 0.012f;                // m, of a column
 constexpr double kShortestLayer = 0.0045;                // m, of the median strand
+constexpr float kShortestLength = 0.0035f;               // m, of a column: an edge (column_fit.cpp)
 constexpr double kMinDensity = 0.5;                      // of layers where hair is straight, over the mean
 constexpr double kMeanBound = 0.01, kShareBound = 0.03;  // of the strands' length: what a fit is content with
-constexpr int kMinLayers = 5, kMaxLayers = 16;
+constexpr int kMinLayers = 5, kMaxLayers = 16;           // of hair that is long enough for so many
 constexpr double kSquareness = 0.5;
-constexpr double kBareCost = 0.3;  // of the strands' length: how far off a bare face is taken to be
-constexpr int kPerLayer = 4;       // points of a grown strand
+constexpr double kBareCost = 1;  // of the strands' length: how far off a bare face is taken to be
+constexpr int kPerLayer = 4;     // points of a grown strand
 
 // A fit in the making.
 struct Draft {
@@ -165,7 +167,9 @@ void aim(const GrowthMap& growth, std::size_t most, Draft& draft) {
   draft.targets.clear();
   for (std::size_t s : someOf(draft.strands.strandCount(), most)) {
     StrandTarget& target = draft.targets.emplace_back();
-    target.row = growth.row(placeStrand(draft, growth, s).root);
+    const RootPlace root = placeStrand(draft, growth, s).root;
+    target.face = root.face;
+    target.row = growth.row(root);
     layerTargets(draft.strands.strand(s), draft.strands.length[s], columnLength(draft, s), draft.fit.knots, target);
   }
 }
@@ -218,6 +222,35 @@ void dropFlat(Draft& draft) {
   draft.fit.face_region = draft.roots.region;
 }
 
+// Opens the prisms as in the built-in styles. Strands in faces that this leaves flat then count less, and what the
+// others ask for is opened again; the faces that stay flat in the best of these are left out.
+void openFlat(Draft& draft) {
+  const BodyDistance nobody = [](const sim::Vec3&) { return 1.0; };
+  sim::HairMeshShape& shape = draft.fit.shape;
+  sim::HairMeshShape best;
+  std::size_t least = shape.root_faces.size() + 1;
+  for (int round = 0;; ++round) {
+    sim::HairMeshShape opened = shape;
+    const double flattest = untangle(nobody, kMinFatness, 0, opened);
+    std::vector<bool> flat;
+    for (const sim::RootFace& face : opened.root_faces) flat.push_back(flattestCorner(opened, face) <= kFlat);
+    const auto count = static_cast<std::size_t>(std::count(flat.begin(), flat.end(), true));
+    if (count < least) {
+      least = count;
+      best = std::move(opened);
+      draft.fit.flattest = flattest;
+    }
+    if (least == 0 || round == kLoosenings) break;
+    for (StrandTarget& target : draft.targets) {
+      if (!flat[static_cast<std::size_t>(target.face)]) continue;
+      for (float& weight : target.weight) weight *= kLoosened;
+    }
+    fitColumns(columnSystem(draft.targets, shape), 2 * kFatness, {2 * kRounds, 1, 30}, shape);
+  }
+  shape = std::move(best);
+  if (least > 0) dropFlat(draft);
+}
+
 // Fits, slides the layers along the strands and fits again, and opens what still lacks.
 void settle(Draft& draft) {
   sim::HairMeshShape& shape = draft.fit.shape;
@@ -228,12 +261,7 @@ void settle(Draft& draft) {
     rounds.anew = slide == 0;
     draft.fit.flattest = fitColumns(columnSystem(draft.targets, shape), kFatness, rounds, shape);
   }
-  if (draft.fit.flattest < kMinFatness)
-    draft.fit.flattest = fitColumns(columnSystem(draft.targets, shape), 2 * kFatness, {2 * kRounds, 30, 30}, shape);
-  if (draft.fit.flattest >= kMinFatness) return;
-  const BodyDistance nobody = [](const sim::Vec3&) { return 1.0; };
-  draft.fit.flattest = untangle(nobody, kMinFatness, 0, shape);
-  if (draft.fit.flattest <= kFlat) dropFlat(draft);
+  if (draft.fit.flattest < kMinFatness) openFlat(draft);
 }
 
 // Where along the curve its length is `length`, in layers.
@@ -313,8 +341,8 @@ int usualLayers(const RootRaster& raster, double length, int vertices) {
   const auto full =
       std::count_if(raster.cells.begin(), raster.cells.end(), [](const RootCell& cell) { return cell.region >= 0; });
   const double area = static_cast<double>(full) * raster.size * raster.size;
-  int layers = kMinLayers;
-  while (layers < kMaxLayers && length / layers > kShortestLayer &&
+  int layers = std::clamp(1 + static_cast<int>(length / kShortestLayer), 2, kMinLayers);
+  while (layers < kMaxLayers && layers >= kMinLayers && length / layers > kShortestLayer &&
          layers * (layers - 1.0) * (layers - 1.0) < kSquareness * length * length * vertices / area)
     ++layers;
   return layers;

@@ -78,10 +78,11 @@ std::vector<Loop> Rims::loops(int region) const {
   return all;
 }
 
+// Lengths are cells until the mesh is done: points on the lattice are as far apart as others to the last bit, and which
+// is taken must not hang on the rounding of the map.
 Vector2f cornerAt(const RootRaster& raster, int corner) {
   const int across = raster.columns + 1;
-  return raster.origin +
-         raster.size * Vector2f(static_cast<float>(corner % across), static_cast<float>(corner / across));
+  return {static_cast<float>(corner % across), static_cast<float>(corner / across)};
 }
 
 // Points along all rims. A corner of the raster carries one point, that all regions around it share unless it is split.
@@ -121,7 +122,7 @@ void keepAlong(const Rims& rims, const Loop& loop, int region, float spacing, Ri
     std::size_t to = from + 1;
     while (to < count && !points.kept.contains(loop[(start + to) % count])) ++to;
     const int beside = otherSide((start + from) % count);
-    const float length = static_cast<float>(to - from) * raster.size * 0.8f;  // stairs are longer than the line
+    const float length = static_cast<float>(to - from) * 0.8f;  // stairs are longer than the line
     int parts = std::max(to - from == count ? 4 : 1, static_cast<int>(std::lround(length / spacing)));
     parts = std::min(parts, static_cast<int>(to - from));
     if (beside >= 0 && beside < region) parts = 1;
@@ -185,7 +186,7 @@ void spreadInside(int count, float spacing, Interior& in) {
 }
 
 bool insideRegion(const RootRaster& raster, int region, const Vector2f& p) {
-  return raster.cells[static_cast<std::size_t>(raster.cellAt(p))].region == region;
+  return raster.regionAt(static_cast<int>(p.x()), static_cast<int>(p.y())) == region;
 }
 
 bool belongs(const RootRaster& raster, int region, float spacing, const Vector2f& a, const Vector2f& b,
@@ -229,9 +230,8 @@ RootMesh meshWith(const RootRaster& raster, float spacing) {
     for (int y = 0; y < raster.rows; ++y)
       for (int x = 0; x < raster.columns; ++x)
         if (raster.regionAt(x, y) == r)
-          in.cells.push_back(raster.origin +
-                             raster.size * Vector2f(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f));
-    const float area = static_cast<float>(in.cells.size()) * raster.size * raster.size;
+          in.cells.emplace_back(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+    const float area = static_cast<float>(in.cells.size());
     const float inside = area - 0.5f * spacing * spacing * static_cast<float>(in.fixed.size());
     spreadInside(static_cast<int>(std::max(0.0f, inside / (kHexArea * spacing * spacing))), spacing, in);
     for (const Vector2f& p : in.free) {
@@ -326,7 +326,7 @@ std::vector<std::array<int, 3>> delaunay(const std::vector<Vector2f>& given) {
 }
 
 RootMesh meshRoots(const RootRaster& raster, int columns) {
-  float low = 0.3f * raster.size, high = 0.3f;  // m
+  float low = 0.3f, high = static_cast<float>(std::max(raster.columns, raster.rows));
   RootMesh best;
   for (int round = 0; round < 12; ++round) {
     const float spacing = std::sqrt(low * high);
@@ -342,6 +342,7 @@ RootMesh meshRoots(const RootRaster& raster, int columns) {
         if (!mesh.triangles.empty()) best = std::move(mesh);
     }
   }
+  for (Vector2f& at : best.at) at = raster.origin + raster.size * at;
   return best;
 }
 

@@ -37,9 +37,10 @@ void layRaster(const std::vector<Vector2f>& at, float size, RootRaster& raster) 
   }
   constexpr int kRasterMargin = 3;  // cells
   raster.size = size;
-  raster.origin = low.array() - kRasterMargin * size;
-  raster.columns = static_cast<int>((high.x() - low.x()) / size) + 1 + 2 * kRasterMargin;
-  raster.rows = static_cast<int>((high.y() - low.y()) / size) + 1 + 2 * kRasterMargin;
+  // The outermost roots lie in the middle of cells: which one they are in is no matter of rounding.
+  raster.origin = low.array() - (kRasterMargin + 0.5f) * size;
+  raster.columns = static_cast<int>((high.x() - low.x()) / size) + 2 + 2 * kRasterMargin;
+  raster.rows = static_cast<int>((high.y() - low.y()) / size) + 2 + 2 * kRasterMargin;
   raster.cells.assign(static_cast<std::size_t>(raster.columns * raster.rows), {});
   raster.cell_of.resize(at.size());
   for (std::size_t s = 0; s < at.size(); ++s) {

@@ -85,6 +85,65 @@ TEST(Conversion, ReadsUnitsFromTheSpreadOfTheRoots) {
   EXPECT_EQ(name, "centimetres");
 }
 
+// Strands whose root is farther than 4 mm from the face that it was given.
+int rootedBeside(const Conversion& conversion, const Groom& groom) {
+  const StrandSamples samples = sampleStrands(groom, 1, 25);
+  const GrowthMap growth(conversion.fit.shape);
+  int beside = 0;
+  for (std::size_t s = 0; s < samples.strandCount(); ++s)
+    beside += (growth.rootAt(conversion.fit.strands[s].root) - samples.strand(s)[0]).norm() > 0.004f ? 1 : 0;
+  return beside;
+}
+
+TEST(Conversion, CoversTheRootsAboutAWhorl) {
+  for (const float length : {0.04f, 0.08f}) {
+    const Groom groom = groom_kinds::whorl(4000, length);
+    const Conversion conversion = convertGroom(groom, {}, {}, "whorl");
+    EXPECT_EQ(conversion.fit.regions, 1) << "hair that only goes all ways is not torn";
+    EXPECT_EQ(conversion.fit.dropped_faces, 0);
+    EXPECT_EQ(rootedBeside(conversion, groom), 0);
+  }
+}
+
+TEST(Conversion, TearsAPartingOnToTheRim) {
+  ConvertOptions options;
+  options.fit.vertices = 400;
+  const Conversion conversion = convertGroom(groom_kinds::parted(4000, 0.02f, 0.22f), {}, options, "parted");
+  EXPECT_EQ(conversion.fit.regions, 2) << "the tear turns back along the parting";
+  EXPECT_LE(conversion.fit.error.mean, 0.025 * conversion.fit.error.strand_length);
+}
+
+TEST(Conversion, KeepsStubbleAsShortAsItIs) {
+  ConvertOptions options;
+  options.silhouettes = true;
+  const Conversion conversion = convertGroom(groom_kinds::stubble(4000), {}, options, "stubble");
+  EXPECT_EQ(conversion.fit.knots.size(), 2u);
+  EXPECT_GE(conversion.silhouette_drawn, 0.93);
+  for (int c = 0; c < conversion.shape.columnCount(); ++c) {
+    const int first = conversion.shape.column_first[c];
+    EXPECT_LE((conversion.shape.positions[first + 1] - conversion.shape.positions[first]).norm(), 0.006);
+  }
+}
+
+TEST(Conversion, IsTheSameInAnotherUnit) {
+  ConvertOptions metres, centimetres;
+  metres.unit = 1;
+  centimetres.unit = 0.01;
+  metres.fit.vertices = centimetres.fit.vertices = 400;
+  for (const int strands : {900, 1000, 1100, 4000}) {
+    Groom groom = groom_kinds::whorl(strands, 0.06f);
+    const sim::HairMeshShape one = convertGroom(groom, {}, metres, "m").shape;
+    for (Eigen::Vector3f& p : groom.points) p *= 100;
+    const sim::HairMeshShape other = convertGroom(groom, {}, centimetres, "cm").shape;
+    ASSERT_EQ(one.column_first, other.column_first) << strands;
+    ASSERT_EQ(one.root_faces.size(), other.root_faces.size());
+    for (std::size_t f = 0; f < one.root_faces.size(); ++f)
+      ASSERT_EQ(one.root_faces[f].columns, other.root_faces[f].columns) << strands;
+    for (std::size_t v = 0; v < one.positions.size(); ++v)
+      ASSERT_LT((one.positions[v] - other.positions[v]).norm(), 1e-5) << strands;
+  }
+}
+
 TEST(Conversion, RefusesWhatCarriesNoHairMesh) {
   Groom few;
   for (int i = 0; i < 5; ++i) groom_kinds::add({{0, 0, 0.01f * static_cast<float>(i)}, {0, 0.1f, 0}}, few);
