@@ -21,7 +21,7 @@ using Eigen::Vector3f;
 constexpr std::size_t kMinGroomStrands = 20;  // strands
 constexpr std::size_t kFitStrands = 5000, kTrialStrands = 3000;
 constexpr int kSlides = 2, kRounds = 5;
-constexpr int kLoosenings = 3;
+constexpr int kLoosenings = 4;
 constexpr float kLoosened = 0.1f;  // share of its weight that a strand keeps in a face that stays flat
 constexpr double kFatness = 0.012, kMinFatness = 0.003,
                  kFlat = 1e-4;                           // of corner tetrahedra: aimed for, held, refused
@@ -242,7 +242,7 @@ void openFlat(Draft& draft) {
     }
     if (least == 0 || round == kLoosenings) break;
     for (StrandTarget& target : draft.targets) {
-      if (!flat[static_cast<std::size_t>(target.face)]) continue;
+      if (round == 0 || !flat[static_cast<std::size_t>(target.face)]) continue;
       for (float& weight : target.weight) weight *= kLoosened;
     }
     fitColumns(columnSystem(draft.targets, shape), 2 * kFatness, {2 * kRounds, 1, 30}, shape);
