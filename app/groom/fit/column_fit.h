@@ -12,7 +12,7 @@ namespace app {
 
 // What the fit asks of one strand: where it should pass each layer, and how much that counts.
 struct StrandTarget {
-  int face = 0;
+  int face = 0;  // that it roots in
   GrowthRow row;
   std::vector<Eigen::Vector3f> layers;  // m
   std::vector<float> weight;            // per layer

@@ -105,6 +105,15 @@ TEST(Conversion, CoversTheRootsAboutAWhorl) {
   }
 }
 
+TEST(Conversion, CoversRootsThatLeadToATie) {
+  const Groom groom = groom_kinds::ponytail(kStrands);
+  ConvertOptions options;
+  options.fit.vertices = kVertices;
+  const Conversion conversion = convertGroom(groom, {}, options, "ponytail");
+  EXPECT_EQ(conversion.fit.dropped_faces, 0);
+  EXPECT_LE(rootedBeside(conversion, groom), kStrands / 100);
+}
+
 TEST(Conversion, TearsAPartingOnToTheRim) {
   ConvertOptions options;
   options.fit.vertices = 400;
