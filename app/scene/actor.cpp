@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "app/figure/root_cover.h"
 #include "app/files/errors.h"
@@ -187,6 +188,17 @@ void holdCovered(Actor& actor) {
 
 }  // namespace
 
+namespace {
+
+double frontOf(const Actor& actor) {
+  constexpr double kQuarter = std::numbers::pi / 2;
+  const Vec3 ahead = scalpToWorld(actor.body->character, actor.pose).linear() * Vec3::UnitZ();
+  return kQuarter *
+         std::round(std::remainder(std::atan2(ahead.x(), ahead.z()) - actor.spec.heading, 4 * kQuarter) / kQuarter);
+}
+
+}  // namespace
+
 Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, AssetCache& asset_cache) {
   Actor actor;
   actor.spec = spec;
@@ -204,6 +216,7 @@ Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, AssetCa
   actor.context = std::make_unique<sim::StepContext>(actor.haircut->mesh, now);
   actor.reach = reachOf(actor);
   placeActor(actor, true);
+  actor.front = frontOf(actor);
   actor.pins = findPins(spec.pins, actor.haircut->mesh, body.character, actor.pose);
   const std::vector<int>& ring = actor.haircut->tied;
   const std::vector<Vec3> places =

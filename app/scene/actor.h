@@ -126,7 +126,8 @@ struct Actor {
   const ScalpCover* scalp = nullptr;  // of this body under this haircut
   int clip = 0;
   Playback playback;
-  Eigen::AlignedBox3d reach;   // world, around the joints at all times of the clip; empty: the figure goes on
+  Eigen::AlignedBox3d reach;  // world, around the joints at all times of the clip; empty: the figure goes on
+  double front = 0;           // rad about y, to the quarter turn: the way it faces as its clip begins, less its heading
   Vec3 jumped = Vec3::Zero();  // m, sum of the jumps of the head that no motion made
 
   // The last two simulated moments; the picture shows one in between.

@@ -6,8 +6,8 @@
 
 namespace app {
 
-// The lights turned about y to the way the figure faces at rest, to the nearest 15 degrees: those of a figure that
-// faces +z are what they were to the bit. Where a scene puts and turns it (heading) they stay in the scene.
+// The lights turned about y to the way the figure faces as its clip begins, in quarter turns: those of a figure that
+// faces +z are what they were to the bit. Where a scene turns it (heading) they stay in the scene.
 render::LightInput lightAbout(const Actor& actor, render::LightInput light);
 
 }  // namespace app

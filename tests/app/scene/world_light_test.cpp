@@ -52,6 +52,18 @@ render::LightInput lightOf(const std::string& motion) {
   return app::frameInput(demo, 64, 64).light;
 }
 
+// None of what the program comes with faces elsewhere.
+TEST(WorldLight, OwnScenesAreLitAsTheyAreWritten) {
+  for (const std::string& file : app::listAssets("scenes", {".json"})) {
+    app::CharacterSpec spec = app::loadScene(file).characters.front();
+    spec.style = app::Style::kShort;
+    spec.resolution = app::Resolution::kLow;
+    spec.hair.clear(), spec.attachments.clear(), spec.ties.clear(), spec.pins.clear();
+    app::AssetCache cache;
+    EXPECT_EQ(app::makeActor(spec, {}, cache).front, 0) << file;
+  }
+}
+
 TEST(WorldLight, LightsStandAboutTheFigure) {
   const render::LightInput given, ahead = lightOf(app::dataPath("assets/clips/idle_turns.bvh"));
   const render::LightInput behind = lightOf(turnedClip());
