@@ -49,12 +49,11 @@ TEST(Options, AreReadAsWritten) {
                                "--out",      "o",          "--set",         "friction=0.5", "--set",    "solver=paper",
                                "--style",    "long",       "--resolution",  "high",         "--speed",  "2.5",
                                "--fps",      "30",         "--strands",     "1000",         "--camera", "1,2,3,0,1,0",
-                               "--report",   "r.json",     "--strand-path", "pulling",      "--preset", "soft",
-                               "--no-images"});
+                               "--report",   "r.json",     "--strand-path", "pulling",      "--preset", "soft"});
   ASSERT_TRUE(parsed.go_on);
   const Options& o = parsed.options;
   EXPECT_EQ(o.scene, "scene.json");
-  EXPECT_TRUE(o.headless && o.frames_given && o.size_given && o.no_images);
+  EXPECT_TRUE(o.headless && o.frames_given && o.size_given && o.keep_frames);
   EXPECT_EQ(o.frames, 12);
   EXPECT_EQ(o.width, 320);
   EXPECT_EQ(o.height, 200);
