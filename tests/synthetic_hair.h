@@ -189,6 +189,7 @@ inline render::BodyInput bodyInput(const Body& body) {
   render::BodyInput input;
   input.id = 1;
   input.mesh_id = 1;
+  input.hair_id = 1;  // of hairInput
   input.positions = body.positions;
   input.normals = body.normals;
   input.triangles = body.triangles;

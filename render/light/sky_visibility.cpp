@@ -46,6 +46,11 @@ const Eigen::Matrix<float, 4, 7>& skyFit() {
   return fit;
 }
 
+// Nodes of the lattice from one that surfaces read to the next.
+int opennessStride(float cell) {
+  return cell < 0.02f ? 2 : 1;
+}
+
 // gap: from the place to the head's middle.
 float headDepth(const Vector3f& gap, float radius, const Vector3f& direction) {
   if (radius <= 0) return 0;
@@ -143,46 +148,49 @@ void SkyVisibility::lookTowards(const Vector3f& direction) {
 }
 
 void SkyVisibility::addOpenness(std::size_t direction) {
-  const Eigen::Array4f share = skyFit().col(static_cast<int>(direction));
-  if (direction == 0) fitted_.assign(swept_.size(), Eigen::Array4f::Zero());
-  Eigen::Map<Eigen::ArrayXf> depths(swept_.data(), static_cast<Eigen::Index>(swept_.size()));
-  depths = (-depths).exp();
-  for (std::size_t node = 0; node < swept_.size(); ++node) fitted_[node] += swept_[node] * share;
+  const Eigen::Vector3i nodes = grid_.nodes();
+  const int stride = opennessStride(grid_.cell());
+  if (direction == 0) {
+    for (int a = 0; a < 3; ++a) open_nodes_[static_cast<std::size_t>(a)] = (nodes[a] - 1) / stride + 1;
+    open_depths_.resize(open_nodes_[0] * open_nodes_[1] * open_nodes_[2]);
+    fitted_.setZero(open_depths_.size(), 4);
+  }
+  Eigen::Index to = 0;
+  for (int x = 0; x < open_nodes_[0]; ++x)
+    for (int y = 0; y < open_nodes_[1]; ++y)
+      for (int z = 0; z < open_nodes_[2]; ++z)
+        open_depths_[to++] = swept_[static_cast<std::size_t>(stride * ((x * nodes.y() + y) * nodes.z() + z))];
+  open_depths_ = (-open_depths_).exp();
+  for (int k = 0; k < 4; ++k) fitted_.col(k) += skyFit()(k, static_cast<int>(direction)) * open_depths_;
 }
 
 void SkyVisibility::packOpenness() {
-  constexpr int kRoom = 8;  // sizes are multiples of it
+  constexpr int kRoom = 4;  // sizes are multiples of it
   constexpr std::array<std::uint8_t, 4> kOpen{255, 128, 128, 128};
-  const Eigen::Vector3i nodes = grid_.nodes();
-  std::array<int, 3> size{};
-  for (int a = 0; a < 3; ++a)
-    size[static_cast<std::size_t>(a)] =
-        std::max((nodes[2 - a] + kRoom - 1) / kRoom * kRoom, openness_.size[static_cast<std::size_t>(a)]);
-  openness_.size = size;
-  openness_.texels.assign(static_cast<std::size_t>(size[0]) * size[1] * size[2], kOpen);
-  const float* fitted = fitted_.front().data();
-  for (int x = 1; x + 1 < nodes.x(); ++x) {
-    for (int y = 1; y + 1 < nodes.y(); ++y) {
-      const int border = std::min({x, y, nodes.x() - 1 - x, nodes.y() - 1 - y});
-      for (int z = 1; z + 1 < nodes.z(); ++z) {
-        const float inside = std::min({border, z, nodes.z() - 1 - z}) > 1 ? 1.0f : 0.5f;
-        const float* node = fitted + 4 * ((x * nodes.y() + y) * nodes.z() + z);
-        auto& texel = openness_.texels[(static_cast<std::size_t>(x) * size[1] + y) * size[0] + z];
-        texel[0] = static_cast<std::uint8_t>(255.5f - 255 * inside * (1 - std::clamp(node[0], 0.0f, 1.0f)));
+  const auto [nx, ny, nz] = open_nodes_;
+  std::array<int, 3>& size = openness_.size;
+  size = {(nz + kRoom - 1) / kRoom * kRoom, (ny + kRoom - 1) / kRoom * kRoom, (nx + kRoom - 1) / kRoom * kRoom};
+  openness_.texels.assign(static_cast<std::size_t>(size[0] * size[1] * size[2]), kOpen);
+  for (int x = 1; x + 1 < nx; ++x) {
+    for (int y = 1; y + 1 < ny; ++y) {
+      for (int z = 1; z + 1 < nz; ++z) {
+        const int node = (x * ny + y) * nz + z;
+        auto& texel = openness_.texels[static_cast<std::size_t>((x * size[1] + y) * size[0] + z)];
+        texel[0] = static_cast<std::uint8_t>(255 * std::clamp(fitted_(node, 0), 0.0f, 1.0f) + 0.5f);
         for (int k = 1; k < 4; ++k)
           texel[static_cast<std::size_t>(k)] =
-              static_cast<std::uint8_t>(128 + 127 * inside * std::clamp(node[k], -1.0f, 1.0f));
+              static_cast<std::uint8_t>(128.5f + 127 * std::clamp(fitted_(node, k), -1.0f, 1.0f));
       }
     }
   }
-  const Eigen::Vector3f room(static_cast<float>(size[0]), static_cast<float>(size[1]), static_cast<float>(size[2]));
-  Eigen::Matrix4f from_head = Eigen::Matrix4f::Zero();
+  const float spacing = grid_.cell() * static_cast<float>(opennessStride(grid_.cell()));
+  openness_.from_head.setZero();
   for (int a = 0; a < 3; ++a) {
-    from_head(a, 2 - a) = 1 / (grid_.cell() * room[a]);
-    from_head(a, 3) = (0.5f - static_cast<float>(grid_.low()[2 - a])) / room[a];
+    const auto room = static_cast<float>(size[static_cast<std::size_t>(a)]);
+    openness_.from_head(a, 2 - a) = 1 / (spacing * room);
+    openness_.from_head(a, 3) = (0.5f - static_cast<float>(grid_.low()[2 - a]) * grid_.cell() / spacing) / room;
   }
-  from_head(3, 3) = 1;
-  openness_.from_head = from_head;
+  openness_.from_head(3, 3) = 1;
 }
 
 // Hair alone: the head sends little back.

@@ -32,9 +32,9 @@ struct SoftLight {
   LightDepths fill, rim;
 };
 
-// What the hair lets through to a surface beside it, from any side: at every node of the lattice the transmittance T(w)
-// = a + b . w, fitted to the sky's directions. RGBA8: a, (b + 1) / 2. The outermost nodes let all through, so that it
-// has no edge where the lattice ends.
+// What the hair lets through to a surface beside it, from any side: at nodes of the lattice 24 mm apart the
+// transmittance T(w) = a + b . w, fitted to the sky's directions. RGBA8: a, (b + 1) / 2. The outermost let all through,
+// so that it has no edge where the lattice ends.
 struct HairOpenness {
   std::array<int, 3> size{};  // texels along u, v, w: the lattice's z, y, x, and room for it to grow
   std::vector<std::array<std::uint8_t, 4>> texels;
@@ -68,7 +68,9 @@ class SkyVisibility {
   std::vector<Eigen::Vector3f> vertices_;  // in the head's frame
   std::vector<float> swept_, depths_;
   std::vector<SoftLight> values_;
-  std::vector<Eigen::Array4f> fitted_;  // a and b at every node
+  std::array<int, 3> open_nodes_{};                // a side, x first
+  Eigen::ArrayXf open_depths_;                     // of one direction
+  Eigen::Array<float, Eigen::Dynamic, 4> fitted_;  // a and b
   HairOpenness openness_;
 };
 

@@ -24,7 +24,7 @@ struct StoredStrand {
   std::uint32_t points;
   float dither;
   std::uint32_t key, clump_key;
-  std::array<float, 4> share;  // painted, of its root: colour, roughness; for the shading
+  std::array<float, 4> share{};  // painted, of its root: colour, roughness; for the shading
 };
 
 inline constexpr int kMaxRasterSamples = 4;

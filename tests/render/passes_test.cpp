@@ -244,7 +244,6 @@ const std::set<std::string> kUnseen{"frame.bodies.color",  // the mesh brings it
                                     "frame.bodies.weights",  // of one rigid joint
                                     "frame.camera.far_plane",
                                     "frame.camera.near_plane",
-                                    "frame.hairs.id",
                                     "frame.hairs.layout_id",
                                     "frame.hairs.layout_revision",
                                     "frame.hairs.look.color",

@@ -92,7 +92,9 @@ TEST(StrandShape, TheHairlineIsThinAndThePartingIsNot) {
     near_left += strand.rim > 0.5f && strand.gain == 0;
     near_fine += strand.rim > 0.5f && strand.fine > 0;
     inside_left += strand.rim == 0 && (strand.gain == 0 || strand.fine > 0);
-    if (strand.fine > 0) EXPECT_LT(strand.metres, 0.04f);
+    if (strand.fine > 0) {
+      EXPECT_LT(strand.metres, 0.04f);
+    }
   }
   EXPECT_GT(near, 300);
   EXPECT_GT(near_left, near / 4);

@@ -90,7 +90,7 @@ sim::StepReport stepHair(const sim::SimParams& params, const Run& run, double dt
 void checkFinite(Run& run) {
   for (int i = 0; i < run.hair.mesh.vertexCount(); ++i) {
     if (run.hair.state.positions[i].allFinite() && run.hair.state.velocities[i].allFinite()) continue;
-    return run.fail(bench::formatted("vertex %.0f is not finite", i));
+    return run.fail(bench::formatted("vertex %d is not finite", i));
   }
 }
 
@@ -108,7 +108,7 @@ void checkOutside(Run& run) {
     const auto& contacts = run.hair.state.contacts;
     run.outcome.unconstrained +=
         std::none_of(contacts.begin(), contacts.end(), [&](const sim::Contact& c) { return c.vertex == v; });
-    run.fail(bench::formatted("vertex %.0f is %.2f mm inside a collider", v, 1e3 * depth));
+    run.fail(bench::formatted("vertex %d is %.2f mm inside a collider", v, 1e3 * depth));
   };
   if (!run.params.collide_inner) {
     for (const int v : mesh.external_vertices) check(v);

@@ -13,9 +13,6 @@
 
 namespace stress {
 
-// `format` with both numbers.
-std::string said(const char* format, double a, double b = 0);
-
 // One hair and what simulates it. Every case has its own, so that a case replays the same alone as among others.
 struct Hair {
   const sim::HairMesh& mesh;

@@ -9,6 +9,7 @@
 
 #include "sim/contact/contact.h"
 #include "tests/bench/cpu_clock.h"
+#include "tests/bench/measured_part.h"
 #include "tests/stress/case_run.h"
 
 namespace stress {
@@ -45,8 +46,10 @@ void endurance(Run& run) {
   }
   run.outcome.memory_growth = residentMemory() - memory;
   run.outcome.slowdown = late / early;
-  if (run.outcome.memory_growth > kMemoryGrowth) run.fail(said("memory grew by %.1f MiB", run.outcome.memory_growth));
-  if (run.outcome.slowdown > kSlowdown) run.fail(said("steps became %.2f times as slow", run.outcome.slowdown));
+  if (run.outcome.memory_growth > kMemoryGrowth)
+    run.fail(bench::formatted("memory grew by %.1f MiB", run.outcome.memory_growth));
+  if (run.outcome.slowdown > kSlowdown)
+    run.fail(bench::formatted("steps became %.2f times as slow", run.outcome.slowdown));
 }
 
 void playMotion(Run& run) {
@@ -115,8 +118,8 @@ void checkEnergy(bool lifted, double dt, EnergyWatch& watch, Run& run) {
   watch.last = energy;
   const double allowed = kEnergyTolerance + liftOf(run, dt) / watch.scale;
   if (run.outcome.energy_rise <= allowed || !run.one.keeps_energy) return;
-  run.fail(said("energy rose to %.1f %% of %.2e J above what the motion left, with nothing moving",
-                100 * run.outcome.energy_rise, watch.scale));
+  run.fail(bench::formatted("energy rose to %.1f %% of %.2e J above what the motion left, with nothing moving",
+                            100 * run.outcome.energy_rise, watch.scale));
 }
 
 // Pace of return: what has moved so little within kWindow that it would not arrive in time at kHurry times that pace is
@@ -243,12 +246,13 @@ void waitForRest(Run& run) {
   }
   if (back) run.outcome.back_after = run.around.time() - stopped;
   if (!back && !run.failed() && run.one.returns) {
-    run.fail(said("still %.1f %% of the hair's length from rest %.1f s after the motion stopped",
-                  100 * run.outcome.distance, run.around.time() - stopped) +
-             ", vertex " + std::to_string(run.outcome.worst_vertex) +
-             said(", fastest %.1e m/s (%.1e the reference)", fastest(run.hair), fastest(references.back())) +
-             said(", energy above the reference's: %.1e of its weight times length",
-                  (energy.last - energyOf(run, references.back())) / weightOf(run)));
+    run.fail(
+        bench::formatted("still %.1f %% of the hair's length from rest %.1f s after the motion stopped",
+                         100 * run.outcome.distance, run.around.time() - stopped) +
+        ", vertex " + std::to_string(run.outcome.worst_vertex) +
+        bench::formatted(", fastest %.1e m/s (%.1e the reference)", fastest(run.hair), fastest(references.back())) +
+        bench::formatted(", energy above the reference's: %.1e of its weight times length",
+                         (energy.last - energyOf(run, references.back())) / weightOf(run)));
   }
 }
 
@@ -269,13 +273,15 @@ StressCase withRounds(StressCase one, Stage& stage) {
 
 void judgeMotion(Run& run) {
   if (run.one.max_work > 0 && run.outcome.dearest > run.one.max_work)
-    run.fail(said("a step took %.0f units a vertex, more than %.0f", run.outcome.dearest, run.one.max_work));
+    run.fail(
+        bench::formatted("a step took %.0f units a vertex, more than %.0f", run.outcome.dearest, run.one.max_work));
   if (run.one.by_forces && run.outcome.skin_share > kSkinShare)
-    run.fail(said("%.2f %% of the strands' points lie %.0f mm under the drawn skin", 100 * run.outcome.skin_share,
-                  1e3 * kUnder));
+    run.fail(bench::formatted("%.2f %% of the strands' points lie %.0f mm under the drawn skin",
+                              100 * run.outcome.skin_share, 1e3 * kUnder));
   if (run.one.by_forces && run.outcome.skin_deepest > kSkinDeepest)
-    run.fail(said("a strand lies %.1f mm under the drawn skin", 1e3 * run.outcome.skin_deepest));
-  if (run.one.by_forces && run.outcome.guided > 0) run.fail(said("%.0f columns were guided home", run.outcome.guided));
+    run.fail(bench::formatted("a strand lies %.1f mm under the drawn skin", 1e3 * run.outcome.skin_deepest));
+  if (run.one.by_forces && run.outcome.guided > 0)
+    run.fail(bench::formatted("%d columns were guided home", run.outcome.guided));
 }
 
 }  // namespace

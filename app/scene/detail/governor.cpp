@@ -22,6 +22,7 @@ constexpr double kMinSteepness = 1.03, kMaxOff = 1.8;  // times the ladder's wor
 constexpr double kForgetting = 0.002;                  // a window
 
 double steepness(int rung, const Governor& governor) {
+  if (rung < 0) return 1;  // nothing is finer
   if (governor.steepness[rung] > 0) return governor.steepness[rung];
   return ladder()[rung + 1].cost / ladder()[rung].cost;
 }

@@ -19,10 +19,14 @@ TEST(Vary, MovesTheMaterialWithinItsRangesAndNothingElse) {
     app::varyMaterial(0.3, seed, params);
     for (const sim::ParamField& row : sim::paramFields()) {
       const double before = row.get(standard), after = row.get(params);
-      if (std::string_view(row.group) != "Material") EXPECT_EQ(after, before) << row.name;
+      if (std::string_view(row.group) != "Material") {
+        EXPECT_EQ(after, before) << row.name;
+      }
       EXPECT_GE(after, row.minimum) << row.name;
       EXPECT_LE(after, row.maximum) << row.name;
-      if (row.logarithmic && after != before) EXPECT_LE(std::abs(std::log10(after / before)), 0.3 + 1e-12) << row.name;
+      if (row.logarithmic && after != before) {
+        EXPECT_LE(std::abs(std::log10(after / before)), 0.3 + 1e-12) << row.name;
+      }
       moved += after != before;
     }
   }
