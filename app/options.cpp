@@ -69,7 +69,7 @@ CLI::Validator oneOf(std::vector<std::string> names) {
         for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
         const std::string_view near = sim::nearestName(text, candidates);
         return "there is no '" + text.substr(0, 40) + "'; " +
-               (near.empty() ? "" : "did you mean '" + std::string(near) + "'? ") + "Choose one of " + known;
+               (near.empty() ? "choose one of " : "did you mean '" + std::string(near) + "'? Choose one of ") + known;
       },
       "");
 }

@@ -199,6 +199,7 @@ void chooseSolver(const std::string& name, sim::SimParams& params) {
 }  // namespace
 
 Options sortedOut(Options options) {
+  if (!options.replay.empty()) requireRecording(options.replay);
   if (options.scene.empty()) return options;
   std::string file = options.scene;
   for (const char* kind : {"hair", "clips", "presets", "scenes"}) file = findFile(file, "", kind);

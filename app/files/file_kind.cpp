@@ -114,6 +114,15 @@ std::pair<std::string, std::string> kindAndUse(const std::string& file) {
   return {"", ""};
 }
 
+void requireRecording(const std::string& file) {
+  constexpr std::size_t kFirstLine = 4096;  // bytes
+  const std::string beginning = beginningOf(file, kFirstLine);
+  if (beginning.empty() || isRecording(beginning)) return;
+  const auto [kind, use] = kindAndUse(file);
+  throw InputError(file, "", kind.empty() ? "is no recording" : kind + ", no recording",
+                   kind.empty() ? "give a file that --record wrote" : use);
+}
+
 std::string partsBeside(const std::string& motion_file) {
   return (std::filesystem::path(motion_file).parent_path() / "female-objs").string();
 }

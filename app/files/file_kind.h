@@ -21,6 +21,9 @@ bool isRecording(std::string_view text);
 // Empty for what nothing takes.
 std::pair<std::string, std::string> kindAndUse(const std::string& file);
 
+// Throws InputError for a file of another kind than a recording, with what takes it.
+void requireRecording(const std::string& file);
+
 // The folder of body parts that ARCSim's data keeps beside a .mot motion.
 std::string partsBeside(const std::string& motion_file);
 

@@ -100,8 +100,9 @@ std::size_t JsonPlace::arraySize(std::size_t limit) const {
   return value_->size();
 }
 
-double JsonPlace::number(double minimum, double maximum) const {
-  const std::string range = "write a number from " + sim::numberText(minimum) + " to " + sim::numberText(maximum);
+double JsonPlace::number(double minimum, double maximum, std::string_view unit) const {
+  const std::string range =
+      "write a number from " + sim::numberText(minimum) + " to " + sim::numberText(maximum) + std::string(unit);
   if (!value_->is_number()) refuse("is " + quote(*value_) + ", not a number", range);
   const double number = value_->get<double>();
   if (!std::isfinite(number) || number < minimum || number > maximum) refuse("is " + quote(*value_), range);

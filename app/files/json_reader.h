@@ -37,8 +37,8 @@ class JsonPlace {
   std::size_t arraySize(std::size_t limit) const;
   JsonPlace at(std::size_t index) const;
 
-  // Read the value itself, checked.
-  double number(double minimum, double maximum) const;
+  // Read the value itself, checked. unit: told after the range (" rad").
+  double number(double minimum, double maximum, std::string_view unit = "") const;
   bool flag() const;
   std::string text() const;
   std::array<double, 3> vector(double minimum, double maximum) const;

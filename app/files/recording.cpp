@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "app/files/errors.h"
-#include "app/files/file_kind.h"
 #include "app/files/json_reader.h"
 #include "app/files/text_file.h"
 #include "sim/field_text.h"
@@ -198,14 +197,6 @@ std::string frameLine(double seconds, const RecordedView* view, const std::vecto
   return line.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-// A file of another kind is told by its content.
-void refuseOther(const std::string& text, const std::string& file) {
-  if (isRecording(text)) return;
-  const auto [kind, use] = kindAndUse(file);
-  throw InputError(file, "", kind.empty() ? "is no recording" : kind + ", no recording",
-                   kind.empty() ? "give a file that --record wrote" : use);
-}
-
 // Why a replay ends elsewhere than the run that was recorded.
 std::string whyOther(const std::optional<bool>& edited) {
   if (!edited) return "its text was changed after it was recorded, or another build or kind of processor recorded it";
@@ -309,9 +300,7 @@ Tape::Tape(const Options& options, Scene& scene)
       replay_file_(options.replay),
       aspect_(static_cast<double>(options.width) / options.height) {
   if (!replay_file_.empty()) {
-    const std::string text = readText(replay_file_);
-    refuseOther(text, replay_file_);
-    replay_ = readRecording(text, replay_file_);
+    replay_ = readRecording(readText(replay_file_), replay_file_);
     scene = replay_->scene;
     aspect_ = replay_->aspect.value_or(aspect_);
   }

@@ -79,7 +79,8 @@ CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
     if (const std::string fault = readMends(spec.mends, mends); !fault.empty()) place.at("mends").refuse(fault, "");
   }
   if (place.has("position")) spec.position = toVec3(place.at("position").vector(-kFarthestPlace, kFarthestPlace));
-  if (place.has("heading")) spec.heading = place.at("heading").number(-kTurn, kTurn);
+  if (place.has("heading"))
+    spec.heading = place.at("heading").number(-kTurn, kTurn, " (radians: 180 degrees are 3.14159)");
   if (place.has("clip_offset")) spec.clip_offset = place.at("clip_offset").number(0, 1e5);
   if (place.has("loop")) spec.loop = *parseLoop(place.at("loop").choice(kLoopNames));
   if (place.has("look")) readHairRows(place.at("look"), spec.look);

@@ -268,7 +268,7 @@ long HairStore::uploadSkin(HairResources& hair, std::span<const float> positions
   return fillTexels<std::uint64_t>(hair.skin_reached, hair.skin_buffer, hair.skin_texture, hair.skin_bytes, GL_RG32UI);
 }
 
-void HairStore::uploadOpenness(HairResources& hair, long& uploaded) {
+long HairStore::uploadOpenness(HairResources& hair) {
   const HairOpenness& openness = sky_visibility_.openness();
   const auto [width, height, depth] = openness.size;
   if (!hair.openness || hair.openness_size != openness.size) {
@@ -286,7 +286,7 @@ void HairStore::uploadOpenness(HairResources& hair, long& uploaded) {
   glTextureSubImage3D(hair.openness.id(), 0, 0, 0, 0, width, height, depth, GL_RGBA, GL_UNSIGNED_BYTE,
                       openness.texels.data());
   hair.openness_from_head = openness.from_head;
-  uploaded += static_cast<long>(4 * openness.texels.size());
+  return static_cast<long>(4 * openness.texels.size());
 }
 
 long HairStore::uploadVertices(HairResources& hair, std::span<const float> positions, bool renew_light,
@@ -307,7 +307,7 @@ long HairStore::uploadVertices(HairResources& hair, std::span<const float> posit
     hair.soft_light.assign(sky_visibility_.values().begin(), sky_visibility_.values().end());
     hair.soft_light_age = 0;
     hair.head = sky_visibility_.head();
-    uploadOpenness(hair, uploaded);
+    uploaded += uploadOpenness(hair);
   }
   hair.openness_from_world = hair.openness_from_head * headFrame(layout, positions).inverse().matrix();
   texels_.clear();

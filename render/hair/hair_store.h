@@ -123,7 +123,7 @@ class HairStore {
   HairStyle& styleOf(const HairInput& input, int strands, long& uploaded);
   HairScattering& scatteringOf(const HairLook& look, long& uploaded);
   long refresh(HairResources& hair, const HairInput& input, const DrawSkips& skips);
-  void uploadOpenness(HairResources& hair, long& uploaded);
+  long uploadOpenness(HairResources& hair);
   long uploadSkin(HairResources& hair, std::span<const float> positions, const DrawSkips& skips);
   long uploadVertices(HairResources& hair, std::span<const float> positions, bool renew_light, const DrawSkips& skips);
 

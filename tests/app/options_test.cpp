@@ -253,7 +253,8 @@ TEST(Options, AFileForAnotherOptionIsToldByItsContent) {
   std::ofstream(folder + "/words.md") << "# Words\n";
   for (const auto& [words, expected] : std::vector<std::pair<std::vector<std::string>, std::string>>{
            {{"--replay", state}, state + ": is a saved state, no recording; name its scene, and it with --load-state"},
-           {{"--replay", "assets/scenes/walk.json"}, "is a scene, no recording; open it without an option"},
+           {{"--replay", HAIRMESH_SOURCE_DIR "/assets/scenes/walk.json"},
+            "is a scene, no recording; open it without an option"},
            {{"--replay", folder + "/words.md"}, "words.md: is no recording; give a file that --record wrote"},
            {{"--replay", HAIRMESH_BINARY}, ": is no recording; give a file that --record wrote"},
            {{"--hair", "assets/clips/walk.bvh"}, "is a motion, no hair; give it to --motion"},

@@ -348,6 +348,40 @@ TEST(SkyVisibility, FindsTheHeadAndDarkensWhatLiesDeep) {
   }
 }
 
+// What comes through to a place from a direction, as bodies read it; 1 outside of the texture.
+float openTo(const render::SkyVisibility& light, const Eigen::Isometry3f& head, const Vector3f& at,
+             const Vector3f& direction) {
+  const render::HairOpenness& openness = light.openness();
+  const Eigen::Vector4f place = openness.from_head * (head.inverse() * at).homogeneous();
+  std::array<int, 3> texel{};
+  for (int a = 0; a < 3; ++a) {
+    texel[a] = static_cast<int>(std::floor(place[a] * static_cast<float>(openness.size[a])));
+    if (texel[a] < 0 || texel[a] >= openness.size[a]) return 1;
+  }
+  const auto& t = openness.texels[(texel[2] * openness.size[1] + texel[1]) * openness.size[0] + texel[0]];
+  const Vector3f slope = (Vector3f(t[1], t[2], t[3]) - Vector3f::Constant(128)) / 127;
+  return t[0] / 255.0f + slope.dot(direction);
+}
+
+// Behind the head under a layer of hair little comes from behind; outside of it all does, and the hair stands in the
+// way from within. In front, where none grows, the face is open, though hair is behind it.
+TEST(SkyVisibility, SurfacesUnderHairAreClosedToItsSideAlone) {
+  const synthetic::Hair hair = synthetic::makeHair();
+  const render::HairLayout layout = render::makeHairLayout(hair.faces, hair.positions);
+  render::SkyVisibility light;
+  light.compute(layout, hair.positions, 12.0f, 0.0f, Vector3f::UnitX(), -Vector3f::UnitZ());
+  const Eigen::Isometry3f head = render::headFrame(layout, hair.positions);
+  const Vector3f middle(0, synthetic::kHeadHeight, 0), back = -Vector3f::UnitZ(), front = Vector3f::UnitZ();
+  const float radius = synthetic::kHeadRadius;
+  const Vector3f under = middle + radius * back - Vector3f(0, 0.04f, 0), outside = under + 0.07f * back,
+                 face = middle + (radius + 0.02f) * front - Vector3f(0, 0.03f, 0);
+  EXPECT_LT(openTo(light, head, under, back), 0.4f);
+  EXPECT_GT(openTo(light, head, outside, back), 0.9f);
+  EXPECT_GT(openTo(light, head, face, front), 0.7f);
+  EXPECT_LT(openTo(light, head, face, back), 0.5f);
+  EXPECT_EQ(openTo(light, head, middle + Vector3f(0, -2, 0), back), 1);
+}
+
 // Trilinear shares: what is added at a point keeps its sum and its centre.
 TEST(DensityGrid, SpreadsAnExtinctionAboutItsPlace) {
   render::Bounds bounds;
