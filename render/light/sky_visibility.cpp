@@ -165,17 +165,18 @@ void SkyVisibility::addOpenness(std::size_t direction) {
 }
 
 void SkyVisibility::packOpenness() {
-  constexpr int kRoom = 4;  // sizes are multiples of it
+  constexpr int kRoom = 2;  // sizes are multiples of it
   constexpr std::array<std::uint8_t, 4> kOpen{255, 128, 128, 128};
   const auto [nx, ny, nz] = open_nodes_;
   std::array<int, 3>& size = openness_.size;
-  size = {(nz + kRoom - 1) / kRoom * kRoom, (ny + kRoom - 1) / kRoom * kRoom, (nx + kRoom - 1) / kRoom * kRoom};
+  const auto roomFor = [](int nodes) { return std::max((nodes - 2 + kRoom - 1) / kRoom, 1) * kRoom; };
+  size = {roomFor(nz), roomFor(ny), roomFor(nx)};  // without the outermost: the texture's border stands for them
   openness_.texels.assign(static_cast<std::size_t>(size[0] * size[1] * size[2]), kOpen);
   for (int x = 1; x + 1 < nx; ++x) {
     for (int y = 1; y + 1 < ny; ++y) {
       for (int z = 1; z + 1 < nz; ++z) {
         const int node = (x * ny + y) * nz + z;
-        auto& texel = openness_.texels[static_cast<std::size_t>((x * size[1] + y) * size[0] + z)];
+        auto& texel = openness_.texels[static_cast<std::size_t>(((x - 1) * size[1] + y - 1) * size[0] + z - 1)];
         texel[0] = static_cast<std::uint8_t>(255 * std::clamp(fitted_(node, 0), 0.0f, 1.0f) + 0.5f);
         for (int k = 1; k < 4; ++k)
           texel[static_cast<std::size_t>(k)] =
@@ -188,7 +189,7 @@ void SkyVisibility::packOpenness() {
   for (int a = 0; a < 3; ++a) {
     const auto room = static_cast<float>(size[static_cast<std::size_t>(a)]);
     openness_.from_head(a, 2 - a) = 1 / (spacing * room);
-    openness_.from_head(a, 3) = (0.5f - static_cast<float>(grid_.low()[2 - a]) * grid_.cell() / spacing) / room;
+    openness_.from_head(a, 3) = (-0.5f - static_cast<float>(grid_.low()[2 - a]) * grid_.cell() / spacing) / room;
   }
   openness_.from_head(3, 3) = 1;
 }
