@@ -143,10 +143,6 @@ struct Gatherer {
   }
 };
 
-}  // namespace
-
-namespace {
-
 // What an OBJ text says of its materials' file that is not there. assimp takes one of the OBJ's name in its place.
 std::string libraryNote(std::string_view text, const std::string& file) {
   namespace fs = std::filesystem;

@@ -186,10 +186,7 @@ void holdCovered(Actor& actor) {
   }
 }
 
-}  // namespace
-
-namespace {
-
+// The way that it faces, less its heading: see Actor::front.
 double frontOf(const Actor& actor) {
   constexpr double kQuarter = std::numbers::pi / 2;
   const Vec3 ahead = scalpToWorld(actor.body->character, actor.pose).linear() * Vec3::UnitZ();
