@@ -8,8 +8,9 @@
 namespace app {
 
 // The upper of the two middle ones of an even count; 0 of none.
-inline double median(std::vector<double> values) {
-  if (values.empty()) return 0;
+template <class T>
+T median(std::vector<T> values) {
+  if (values.empty()) return {};
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;

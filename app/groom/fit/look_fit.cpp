@@ -101,10 +101,6 @@ void measureWander(const std::vector<std::complex<double>>& way, StrandMeasure& 
   measure.frizz = measure.radius > 0 ? std::sqrt(std::max(0.0, quick * quick - 0.8 * best * best)) : quick;
 }
 
-double medianOf(std::vector<float> values) {
-  return quantile(std::move(values), 0.5);
-}
-
 // `length`: m, of a strand.
 StrandCharacter summary(const std::vector<const StrandMeasure*>& of, double length) {
   StrandCharacter out;
@@ -121,12 +117,12 @@ StrandCharacter summary(const std::vector<const StrandMeasure*>& of, double leng
     shares += one->length_share / static_cast<double>(of.size());
   }
   if (2 * radius.size() > of.size()) {
-    out.curl_radius = medianOf(radius);
-    out.curl_turns = medianOf(turns);
+    out.curl_radius = quantile(radius, 0.5);
+    out.curl_turns = quantile(turns, 0.5);
     out.curl_pitch = std::clamp(length / out.curl_turns, 0.003, 0.3);
   }
-  out.frizz = medianOf(frizz) / kFrizzSpread;
-  out.offset = medianOf(wander) / kOffsetSpread;
+  out.frizz = quantile(frizz, 0.5) / kFrizzSpread;
+  out.offset = quantile(wander, 0.5) / kOffsetSpread;
   out.length_variation = std::clamp(3 * (1 - shares), 0.0, 0.6);  // of 1 - v u^2 with u in 0..1 the mean is 1 - v / 3
   return out;
 }
@@ -148,7 +144,7 @@ double clumpOf(const StrandSamples& strands, const HairFit& fit, const GrowthMap
     if (grown > 1e-5f) ratios.push_back((strands.strand(s)[at] - strands.strand(entry->second)[at]).norm() / grown);
     entry->second = s;
   }
-  return ratios.size() < 30 ? 0 : std::clamp(1 - medianOf(ratios), 0.0, 1.0);
+  return ratios.size() < 30 ? 0 : std::clamp(1 - quantile(ratios, 0.5), 0.0, 1.0);
 }
 
 void measureWidths(const Groom& groom, double scale, LookFit& look) {
@@ -162,8 +158,8 @@ void measureWidths(const Groom& groom, double scale, LookFit& look) {
     ratio.push_back(last / first);
   }
   if (root.empty()) return;
-  look.taper = std::clamp(medianOf(ratio), 0.0, 1.0);
-  look.radius = 0.5 * scale * medianOf(root);
+  look.taper = std::clamp(quantile(ratio, 0.5), 0.0, 1.0);
+  look.radius = 0.5 * scale * quantile(root, 0.5);
 }
 
 }  // namespace

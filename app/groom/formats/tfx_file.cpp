@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "app/files/errors.h"
+#include "app/files/median.h"
 #include "app/groom/formats/groom_bytes.h"
 
 namespace app {
@@ -92,9 +93,7 @@ int nearestTfxPoints(const Groom& groom) {
   std::vector<std::size_t> counts;
   for (std::size_t s = 0; s < groom.strandCount(); ++s) counts.push_back(groom.pointCount(s));
   if (counts.empty()) return static_cast<int>(kMinPoints);
-  const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2);
-  std::nth_element(counts.begin(), middle, counts.end());
-  const double power = std::round(std::log2(static_cast<double>(std::max<std::size_t>(*middle, 1))));
+  const double power = std::round(std::log2(static_cast<double>(std::max<std::size_t>(median(std::move(counts)), 1))));
   return std::clamp(1 << static_cast<int>(std::min(power, 6.0)), static_cast<int>(kMinPoints),
                     static_cast<int>(kMaxPoints));
 }

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "app/files/length_units.h"
+#include "app/files/median.h"
 #include "app/files/report_line.h"
 #include "app/groom/inspect/groom_shape.h"
 
@@ -219,7 +220,7 @@ void Inspector::widths() {
         "--width 8e-5", false);
   }
   if (usable.empty()) return;
-  const float middle = medianOf(usable);
+  const float middle = median(usable);
   const float widest = std::max(kWidestHair, 1.5f * kUsualWidth * kAllHairs / static_cast<float>(groom.strandCount()));
   const float most = std::min(widest, 5e-3f);
   if (middle >= kThinnestHair && middle <= most) return;
@@ -256,7 +257,7 @@ Vector3f Inspector::moveToHead(const std::vector<Vector3f>& roots, const Vector3
 float Inspector::offHead(const std::vector<Vector3f>& roots) const {
   std::vector<float> off;
   for (const Vector3f& root : roots) off.push_back(std::abs(head->distance(root)));
-  return medianOf(off);
+  return median(off);
 }
 
 // Of roots turned by `matrix` and moved to the head as well as they can be.
@@ -336,7 +337,7 @@ GroomInspection inspectGroom(const Groom& groom, const GroomHints& hints, const 
   for (std::size_t s = 0; s < groom.strandCount(); ++s) counts.push_back(static_cast<float>(groom.pointCount(s)));
   inspector.result.summary =
       countOf(groom.strandCount(), "strand") + ", " + countOf(groom.points.size(), "point") + ", " +
-      textOf("%.0f a strand (median), %.3g m across", medianOf(counts), groomSize(groom) * inspector.result.mends.unit);
+      textOf("%.0f a strand (median), %.3g m across", median(counts), groomSize(groom) * inspector.result.mends.unit);
   return std::move(inspector.result);
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/files/median.h"
+
 namespace app {
 
 using Eigen::Vector3f;
@@ -49,19 +51,12 @@ float coverageOf(const SphereFit& fit, const std::vector<Vector3f>& points) {
 
 }  // namespace
 
-float medianOf(std::vector<float> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 SphereFit fitSphere(const std::vector<Vector3f>& points) {
   if (points.size() < 8) return {};
   SphereFit fit = leastSquares(points);
   for (int round = 0; round < 3; ++round) {
     const std::vector<float> off = residuals(fit, points);
-    const float far = 3 * medianOf(off);
+    const float far = 3 * median(off);
     std::vector<Vector3f> near;
     for (std::size_t n = 0; n < points.size(); ++n) {
       if (off[n] <= far) near.push_back(points[n]);
@@ -70,7 +65,7 @@ SphereFit fitSphere(const std::vector<Vector3f>& points) {
     fit = leastSquares(near);
   }
   fit.coverage = coverageOf(fit, points);
-  fit.spread = fit.radius > 0 ? medianOf(residuals(fit, points)) / fit.radius : 1;
+  fit.spread = fit.radius > 0 ? median(residuals(fit, points)) / fit.radius : 1;
   return fit;
 }
 

@@ -17,8 +17,6 @@ struct SphereFit {
 };
 SphereFit fitSphere(const std::vector<Eigen::Vector3f>& points);
 
-float medianOf(std::vector<float> values);
-
 struct StrandEnds {
   std::vector<std::size_t> strands;  // those looked at: finite, of at least two points, with a length
   std::vector<Eigen::Vector3f> first, last;

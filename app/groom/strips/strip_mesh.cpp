@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "app/files/median.h"
 #include "app/styles/style_untangle.h"
 
 namespace app {
@@ -249,10 +250,7 @@ StripMesh meshOfStrips(const std::vector<StripRows>& given, const StripMeshOptio
     out.shape.positions.insert(out.shape.positions.end(), one->positions.begin(), one->positions.end());
   }
   if (out.shape.root_faces.empty()) throw std::runtime_error("every strip folds over itself");
-  if (!thick.empty()) {
-    std::nth_element(thick.begin(), thick.begin() + static_cast<std::ptrdiff_t>(thick.size() / 2), thick.end());
-    out.thickness = thick[thick.size() / 2];
-  }
+  if (!thick.empty()) out.thickness = median(std::move(thick));
   sim::buildHairMesh(out.shape);
   return out;
 }

@@ -274,6 +274,7 @@ TEST(Library, HairsOfOneMeshMoveOnDifferentThreadsAsTheyDoOnOne) {
   hm_hair_destroy(alone);
 }
 
+// Goes on until steps were taken and one was refused: how often threads meet is the operating system's choice.
 TEST(Library, AHairThatAnotherThreadWorksOnIsRefused) {
   const hm_mesh mesh = makeMesh();
   const hm_hair hair = makeHair(mesh);
@@ -282,16 +283,16 @@ TEST(Library, AHairThatAnotherThreadWorksOnIsRefused) {
   for (int t = 0; t < 3; ++t) {
     threads.emplace_back([&] {
       const Step step(0);
-      for (int n = 0; n < 200; ++n) {
+      for (int n = 0; n < 10000000 && (done < 200 || busy == 0); ++n) {
         const hm_result result = hm_hair_step(hair, &step.input, nullptr);
         ++(result == HM_OK ? done : result == HM_ERROR_BUSY ? busy : other);
       }
     });
   }
   for (std::thread& thread : threads) thread.join();
-  EXPECT_EQ(done + busy, 600);
-  EXPECT_EQ(other, 0);
   EXPECT_GE(done, 200);
+  EXPECT_GT(busy, 0);
+  EXPECT_EQ(other, 0);
   EXPECT_EQ(hm_hair_destroy(hair), HM_OK);
   hm_mesh_destroy(mesh);
 }
