@@ -75,9 +75,11 @@ struct LookShares {
   std::span<const LookShare> along;  // at least two, evenly from each strand's root to its tip
 };
 
-// An ellipsoid of skin: the affine map of the world to the ball of radius one, row by row, 1/m and translation.
+// An ellipsoid of skin: the affine map of the world to the ball of radius one, row by row, 1/m and translation; and, in
+// the ball, which way deep points are led out: to where hair comes from. At most 1 long; 0: straight out.
 struct SkinEllipsoid {
   std::array<std::array<float, 4>, 3> to_ball{};
+  std::array<float, 3> home{};
 
   bool operator==(const SkinEllipsoid&) const = default;
 };

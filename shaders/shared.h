@@ -82,8 +82,8 @@ const float kSkinGap = 0.0005;    // m, off an ellipsoid
 const float kSkinBlend = 0.0015;  // m, on either side of that: there the lift sets in
 const float kSkinFar =
     4.0;  // squared distance from the middle, in the ellipsoid's own measure: nothing beyond is lifted
-const float kSkinMiddle = 0.04;  // the same: nothing nearer is
-const float kSkinWhole = 0.25;   // the same: all farther out are lifted whole
+const float kSkinMiddle = 0.02;  // the same, from where the way out turns about: nothing nearer is
+const float kSkinWhole = 0.5;    // the same: all farther off are lifted whole
 
 // Scattering table (fiber_scattering.h). Slices 0 to 2: N_p of R, TT, TRT: kScatterPhi angles over [0, pi],
 // kScatterTheta cosines over [0, 1]. Slice 3: first row: norms of the lobes over kScatterPhi inclinations in [-pi/2,
@@ -156,7 +156,7 @@ SHARED_BLOCK(1, HairBlock) {
   ivec4 shares;          // painted shares of the look: first texel of the columns', 0: none; first texel and number of
                          // those along strands
   ivec4 skin_count;      // ellipsoids that strands are lifted out of; steps from layer to layer of a face
-  SHARED_ARRAY(vec4, skin_rows, 3 * kMaxSkin);  // three rows each: world to the ball of radius one
+  SHARED_ARRAY(vec4, skin_rows, 4 * kMaxSkin);  // four each, see skin.glsl: world to the ball of radius one; home
 };
 
 SHARED_BLOCK(2, BodyBlock) {

@@ -13,7 +13,7 @@ namespace app {
 namespace {
 
 constexpr std::size_t kMaxSamples = 3000;
-constexpr int kMoments = 10;         // of all clips together, beside the rest pose
+constexpr int kMoments = 20;         // of all clips together, beside the rest pose
 constexpr double kCovered = 0.0018;  // m: skin that sticks out less is covered
 constexpr double kPatch = 0.40;      // head heights: radius of the patch that an added ellipsoid begins with
 constexpr double kSmaller = 0.6;     // of that, for a patch whose ellipsoid swallows too much
@@ -25,7 +25,7 @@ constexpr double kStraight = 0.7;        // cosine of the way there to that skin
 constexpr std::size_t kMaxPoints = 400;  // of a fit's own
 constexpr float kBuried = 0.002f;        // m, that skin above the chin may lie deeper in an added ellipsoid than before
 
-// Gaps (m) of every place to one ellipsoid.
+// Gaps (m) of every place, or of those at rest, to one ellipsoid.
 using Gaps = std::vector<float>;
 
 class Cover {
@@ -34,13 +34,16 @@ class Cover {
   CoverReport run(int most);
 
  private:
-  Gaps gapsOf(const BodyEllipsoid& e) const;
+  Gaps gapsOf(const BodyEllipsoid& e) const { return gapsAt(e, skin_.world.size()); }
+  Gaps restGapsOf(const BodyEllipsoid& e) const { return gapsAt(e, 1); }
+  Gaps gapsAt(const BodyEllipsoid& e, std::size_t moments) const;
   void findNearest();
+  void findNearer(std::size_t e);
   void leaveOutHidden();
   std::vector<CoverPoint> pointsFor(const BodyEllipsoid& e, const Gaps& gaps, int number,
                                     const std::vector<int>& own) const;
   bool swallows(const BodyEllipsoid& e, const Gaps& gaps) const;
-  void refit(std::size_t e);
+  bool refit(std::size_t e);
   void refitAdded(std::size_t given);
   std::optional<BodyEllipsoid> patchAt(std::size_t place, double radius) const;
   bool add(std::size_t place);
@@ -84,10 +87,11 @@ void Cover::leaveOutHidden() {
   }
 }
 
-Gaps Cover::gapsOf(const BodyEllipsoid& e) const {
+// At the first `moments`, of which number 0 is the rest pose.
+Gaps Cover::gapsAt(const BodyEllipsoid& e, std::size_t moments) const {
   Gaps gaps;
-  gaps.reserve(skin_.reached.size());
-  for (std::size_t m = 0; m < skin_.world.size(); ++m) {
+  gaps.reserve(moments * skin_.samples.size());
+  for (std::size_t m = 0; m < moments; ++m) {
     const Rigid& to_joint = skin_.to_joint[m][static_cast<std::size_t>(e.joint)];
     for (const Vec3& p : skin_.world[m]) gaps.push_back(static_cast<float>(ellipsoidGap(e, to_joint * p)));
   }
@@ -97,12 +101,14 @@ Gaps Cover::gapsOf(const BodyEllipsoid& e) const {
 void Cover::findNearest() {
   nearest_gap_.assign(skin_.reached.size(), 1e9f);
   nearest_.assign(nearest_gap_.size(), -1);
-  for (std::size_t e = 0; e < gaps_.size(); ++e) {
-    for (std::size_t i = 0; i < nearest_gap_.size(); ++i) {
-      if (gaps_[e][i] >= nearest_gap_[i]) continue;
-      nearest_gap_[i] = gaps_[e][i];
-      nearest_[i] = static_cast<int>(e);
-    }
+  for (std::size_t e = 0; e < gaps_.size(); ++e) findNearer(e);
+}
+
+void Cover::findNearer(std::size_t e) {
+  for (std::size_t i = 0; i < nearest_gap_.size(); ++i) {
+    if (gaps_[e][i] >= nearest_gap_[i]) continue;
+    nearest_gap_[i] = gaps_[e][i];
+    nearest_[i] = static_cast<int>(e);
   }
 }
 
@@ -157,20 +163,21 @@ bool Cover::swallows(const BodyEllipsoid& e, const Gaps& gaps) const {
   return std::ranges::any_of(skin_.air, [&](const Vec3& air) { return ellipsoidGap(e, to_joint * air) < 0; });
 }
 
-void Cover::refit(std::size_t e) {
+// Returns whether it changed.
+bool Cover::refit(std::size_t e) {
   std::vector<int> own;
   for (std::size_t i = 0; i < nearest_.size(); ++i) {
     const bool wanted = skin_.reached[i] && !skin_.sampleOf(i).of_head;
     if (wanted && nearest_[i] == static_cast<int>(e) && nearest_gap_[i] > -0.008f) own.push_back(static_cast<int>(i));
   }
-  if (own.size() < 8) return;
+  if (own.size() < 8) return false;
   const BodyEllipsoid& now = character_.ellipsoids[e];
   const auto points = pointsFor(now, gaps_[e], static_cast<int>(e), own);
   const BodyEllipsoid next = fitCover(points, now, kHold * character_.scalp.head_height / 0.23);
-  Gaps gaps = gapsOf(next);
-  if (swallows(next, gaps)) return;
+  if (swallows(next, restGapsOf(next))) return false;
   character_.ellipsoids[e] = next;
-  gaps_[e] = std::move(gaps);
+  gaps_[e] = gapsOf(next);
+  return true;
 }
 
 // Fitted to the skin around a place, as it lies at that place's moment.
@@ -202,9 +209,9 @@ std::optional<BodyEllipsoid> Cover::patchAt(std::size_t place, double radius) co
   }
   e.joint = at.joint;
   e.name = "cover_" + std::to_string(character_.ellipsoids.size());
-  const auto points = pointsFor(e, gapsOf(e), static_cast<int>(gaps_.size()), own);
+  const auto points = pointsFor(e, restGapsOf(e), static_cast<int>(gaps_.size()), own);
   e = fitCover(points, e, 4 * kHold * character_.scalp.head_height / 0.23);
-  if (swallows(e, gapsOf(e))) return {};
+  if (swallows(e, restGapsOf(e))) return {};
   return e;
 }
 
@@ -218,7 +225,7 @@ bool Cover::add(std::size_t place) {
     character_.ellipsoids.push_back(*e);
     gaps_.push_back(gapsOf(*e));
     if (gaps_.back()[place] < 0.5f * before) {
-      findNearest();
+      findNearer(gaps_.size() - 1);
       return true;
     }
     character_.ellipsoids.pop_back();
@@ -233,10 +240,11 @@ void Cover::refitAdded(std::size_t given) {
   for (std::size_t i = 0; i < nearest_.size(); ++i) {
     if (nearest_gap_[i] > kCovered && skin_.reached[i]) due[static_cast<std::size_t>(nearest_[i])] = 1;
   }
+  bool any = false;
   for (std::size_t e = given; e < due.size(); ++e) {
-    if (due[e]) refit(e);
+    if (due[e]) any = refit(e) || any;
   }
-  findNearest();
+  if (any) findNearest();
 }
 
 // m, of the rest pose's samples: the mean of how far they lie inside.

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kReach = 3.0;            // head heights from the head's middle, as far as hair comes
 constexpr double kAside = 0.75;           // head heights from the head's axis, as far as the head reaches
+constexpr double kChin = -0.585, kMouthBelow = -0.25, kMouthBefore = 0.18;  // the same, up and forward from its middle
 constexpr double kAir = 0.014;            // m in front of the skin: nothing is to lie there but hair
 constexpr double kClear = 0.006;          // m, that such a place is at least off the ellipsoids and other skin
 constexpr float kFinestSpacing = 0.004f;  // m, spacing of samples
@@ -114,7 +115,8 @@ void addSamples(const Character& character, const std::vector<std::size_t>& vert
     const int carrier = carriers[static_cast<std::size_t>(dominant[v])];
     if (carrier < 0 || points[v].weight <= 0) continue;
     const Vec3 from = to_scalp * points[v].position - character.scalp.center;
-    const bool of_head = from.y() > -0.585 * size && std::hypot(from.x(), from.z()) < kAside * size;
+    const bool mouth = from.y() < kMouthBelow * size && from.z() > kMouthBefore * size;
+    const bool of_head = from.y() > kChin * size && std::hypot(from.x(), from.z()) < kAside * size && !mouth;
     skin.samples.push_back({points[v].position, character.mesh.normals[v].cast<double>(), points[v].weight,
                             static_cast<int>(v), carrier, of_head});
     area += points[v].weight;

@@ -75,9 +75,17 @@ bool jointMatrices(const Skeleton& skeleton, const Pose& pose, const Vec3& origi
   return changed;
 }
 
+namespace {
+
+constexpr double kHome = 3;           // in an ellipsoid's measure, see render::SkinEllipsoid
+constexpr double kHeadWithin = 1.1;  // the same: one that holds the head's middle, or nearly
+
+}  // namespace
+
 void skinEllipsoids(const Character& character, const Pose& pose, const Vec3& origin,
                     std::vector<render::SkinEllipsoid>& skin) {
   skin.resize(character.ellipsoids.size());
+  const Vec3 head = scalpToWorld(character, pose) * character.scalp.center;
   for (std::size_t i = 0; i < skin.size(); ++i) {
     sim::Ellipsoid e;
     poseEllipsoid(character.ellipsoids[i], pose, pose, 0, e);
@@ -87,6 +95,10 @@ void skinEllipsoids(const Character& character, const Pose& pose, const Vec3& or
       for (int k = 0; k < 3; ++k) skin[i].to_ball[row][k] = static_cast<float>(to_ball(row, k));
       skin[i].to_ball[row][3] = static_cast<float>(-middle[row]);
     }
+    // Hair comes from the head: around an ellipsoid that holds the head it comes from all sides.
+    const Vec3 home = to_ball * (head - e.center);
+    const double off = std::clamp(home.norm() - kHeadWithin, 0.0, 1.0);
+    Eigen::Map<Eigen::Vector3f>(skin[i].home.data()) = (kHome * off * home.stableNormalized()).cast<float>();
   }
 }
 

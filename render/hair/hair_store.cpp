@@ -123,9 +123,10 @@ long uploadBlock(HairResources& hair) {
     block.shares = {first - static_cast<int>(layout.root_shares.size()) * shared::kShareTexels, first, along, 0};
   }
   block.skin_count = {static_cast<int>(hair.skin.size()), std::max(layout.max_layers - 1, 1), 0, 0};
-  for (std::size_t i = 0; i < hair.skin.size(); ++i)
-    std::copy(hair.skin[i].to_ball.begin(), hair.skin[i].to_ball.end(),
-              block.skin_rows.begin() + 3 * static_cast<long>(i));
+  for (std::size_t i = 0; i < hair.skin.size(); ++i) {
+    const auto [x, y, z] = hair.skin[i].home;
+    *std::ranges::copy(hair.skin[i].to_ball, block.skin_rows.begin() + 4 * static_cast<long>(i)).out = {x, y, z, 0};
+  }
   if (!hair.block) {
     hair.block = makeBuffer();
     glNamedBufferStorage(hair.block.id(), sizeof(block), nullptr, GL_DYNAMIC_STORAGE_BIT);

@@ -14,27 +14,40 @@ using Eigen::Vector4f;
 using shared::kSkinBlend, shared::kSkinGap, shared::kSkinFar, shared::kSkinMiddle, shared::kSkinWhole;
 
 void leaveSkin(std::span<const SkinEllipsoid> skin, float s, Vector3f& position, Vector3f& tangent) {
-  const float root = smoothstep(0.0f, 1.0f, s);
-  bool lifted = true;
-  for (int round = 0; round < 2 && lifted; ++round) {
-    lifted = false;
+  Vector3f lifted = position, turned = tangent;
+  bool moved = true;
+  for (int round = 0; round < 4 && moved; ++round) {
+    moved = false;
+    const float blend = round == 0 ? kSkinBlend : 0.0f;
     for (const SkinEllipsoid& e : skin) {
       const Eigen::Map<const Vector4f> a(e.to_ball[0].data()), b(e.to_ball[1].data()), c(e.to_ball[2].data());
-      const Vector4f p = position.homogeneous();
+      const Vector4f p = lifted.homogeneous();
       const Vector3f ball(a.dot(p), b.dot(p), c.dot(p));
       const float squared = ball.squaredNorm();
-      if (squared > kSkinFar || squared < kSkinMiddle) continue;
-      const Vector3f slope = ball.x() * a.head<3>() + ball.y() * b.head<3>() + ball.z() * c.head<3>();
-      const float far = std::sqrt(squared), steep = slope.norm();
-      const float gap = far * (far - 1.0f) / steep - kSkinGap;
-      if (gap >= kSkinBlend) continue;
-      const float x = std::max(gap + kSkinBlend, 0.0f), share = root * smoothstep(kSkinMiddle, kSkinWhole, squared);
-      const Vector3f normal = slope / steep;
-      position += share * (x * x / (4.0f * kSkinBlend) - gap) * normal;
-      tangent += share * (x / (2.0f * kSkinBlend) - 1.0f) * normal.dot(tangent) * normal;
-      lifted = true;
+      if (squared > kSkinFar) continue;
+      const Vector3f from = ball + std::max(1.0f - squared, 0.0f) * Eigen::Map<const Vector3f>(e.home.data());
+      const float off = from.squaredNorm();
+      if (off < kSkinMiddle) continue;
+      const auto toWorld = [&](const Vector3f& v) -> Vector3f {
+        return (v.x() * a.head<3>() + v.y() * b.head<3>() + v.z() * c.head<3>()).normalized();
+      };
+      const Vector3f out_of = toWorld(from);
+      const Vector3f pace(a.head<3>().dot(out_of), b.head<3>().dot(out_of), c.head<3>().dot(out_of));
+      const float along = ball.dot(pace), paces = pace.squaredNorm();
+      const float surface = (std::sqrt(std::max(along * along + paces * (1.0f - squared), 0.0f)) - along) / paces;
+      const float gap = -surface - kSkinGap;
+      if (gap >= blend) continue;
+      const float share = smoothstep(kSkinMiddle, kSkinWhole, off),
+                  bent = std::max(gap + blend, 0.0f) / (2 * kSkinBlend);
+      const Vector3f normal = toWorld(ball + surface * pace);
+      lifted += share * (kSkinBlend * bent * bent - gap) * out_of;
+      turned += share * (bent - 1) * normal.dot(turned) * normal;
+      moved = true;
     }
   }
+  const float root = smoothstep(0.0f, 1.0f, s);
+  position += root * (lifted - position);
+  tangent += root * (turned - tangent);
 }
 
 std::vector<SkinEllipsoid> skinNear(std::span<const SkinEllipsoid> skin, const Vector3f& low, const Vector3f& high) {

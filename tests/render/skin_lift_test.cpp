@@ -127,10 +127,26 @@ Moves movesOf(const std::vector<SkinEllipsoid>& skin) {
 TEST(SkinLift, NoPointPopsAsTheSkinMoves) {
   const Moves one = movesOf({turnedEllipsoid()});
   EXPECT_LT(one.outer, 2 * kStep);
-  EXPECT_LT(one.all, 25 * kStep);  // within half the way to the middle, where the lift fades out
+  EXPECT_LT(one.all, 35 * kStep);  // within half the way to the middle, where the lift fades out
   EXPECT_GT(one.outer, 0);
   // Where two meet, the crease runs ahead of them.
   EXPECT_LT(movesOf({turnedEllipsoid(), synthetic::skinBall({0.03f, 0.05f, 0}, 0.05f)}).outer, 5 * kStep);
+}
+
+// A lock that hangs on both sides of a shoulder: its strands cross the middle of the ellipsoid, or pass below it.
+TEST(SkinLift, WhatRunsThroughTheMiddleIsLedOverTheSideThatHairComesFrom) {
+  SkinEllipsoid skin = synthetic::skinBall({0, 0, 0}, 0.1f);
+  skin.home = {0, 3, 0};
+  for (const float y : {0.05f, 0.0f, -0.03f, -0.05f}) {
+    Vector3f before(-0.15f, y, 0);
+    for (float x = -0.15f; x < 0.15f; x += kStep) {
+      const Vector3f after = lifted({&skin, 1}, 2, {x, y, 0});
+      EXPECT_GT(gapOf(skin, after), 0) << x << " " << y;
+      EXPECT_LT((after - before).norm(), 12 * kStep) << x << " " << y;
+      before = after;
+    }
+    EXPECT_NEAR(lifted({&skin, 1}, 2, {0, y, 0}).y(), 0.1f + kSkinGap, 1e-4f);
+  }
 }
 
 TEST(SkinLift, EllipsoidsOutOfReachAreLeftOut) {
@@ -153,6 +169,7 @@ TEST_F(SkinLiftOnGpu, ShadersLiftAsTheCpuDoes) {
   SkinEllipsoid shoulder = turnedEllipsoid();
   for (auto& row : shoulder.to_ball)
     row[3] = -Vector3f(row.data()).dot(Vector3f(0.06f, synthetic::kHeadHeight - 0.15f, -0.05f));
+  shoulder.home = {-0.5f, 2.5f, 0.8f};
   const std::vector<SkinEllipsoid> skin{
       synthetic::skinBall({0, synthetic::kHeadHeight, 0}, synthetic::kHeadRadius + 0.004f), shoulder};
   const auto bare = strand_capture::capture(input, gl_fixture::kShaderDir);
