@@ -126,6 +126,20 @@ TEST(SkinCover, IsTheSameEveryTimeAndAddsNoneWhereNoneIsAsked) {
   }
 }
 
+// Hair that flies past a face must not end in it; it stays clear of what hair is rooted in.
+TEST(SkinCover, CoversTheMannequinsMouthAndChin) {
+  const app::Character c = app::loadCharacter(HAIRMESH_SOURCE_DIR "/assets/clips/walk.bvh", "");
+  const app::Rigid to_scalp = app::scalpToWorld(c, app::restPose(c.skeleton)).inverse();
+  int looked = 0;
+  for (const Eigen::Vector3f& at : c.mesh.positions) {
+    const Vec3 p = at.cast<double>(), from = (to_scalp * p - c.scalp.center) / c.scalp.head_height;
+    if (from.y() > -0.3 || from.y() < -0.55 || from.z() < 0.25) continue;
+    ++looked;
+    EXPECT_LT(gapAtRest(c, p), 0.004) << from.transpose();
+  }
+  EXPECT_GT(looked, 100);
+}
+
 // Between the moments that the ellipsoids were fitted at: the trunk's skin in front, where no other part ends.
 TEST(SkinCover, CoversThePapersMannequinThroughItsDance) {
   const fs::path folder = fs::path(HAIRMESH_SOURCE_DIR) / ".." / "shared" / "arcsim";
