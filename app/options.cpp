@@ -169,10 +169,11 @@ void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
       "--attach", options.attachments, "FILE@JOINT",
       "Wear a mesh that the hair collides with (hat, glasses, collar; OBJ, FBX, glTF): a joint's name, or head, "
       "neck, chest; JSON as in a scene's \"attachments\"; none; may be given many times");
-  group.values("--map", options.maps, "FIELD=FILE.png",
-               "Paint stiffness, length, density, mass, bend, width, clump, curl, color or roughness over the scalp: "
-               "the head unrolled, its front in the middle, white for the parameter's own value; may be given many "
-               "times");
+  group.values(
+      "--map", options.maps, "FIELD=FILE.png",
+      "Paint stiffness, length, density, mass, bend, width, clump, curl, color, roughness or damping over the scalp: "
+      "the head unrolled, its front in the middle, white for the parameter's own value; may be given many "
+      "times");
   group.values(
       "--curve", options.curves, "FIELD=SHARES",
       "Shares from root to tip of what --map paints, but length and density, with commas: stiffness=1,0.5,0.2, or "

@@ -80,19 +80,10 @@ void ImplicitSolver<T>::setModel(const HairMesh& mesh, const ForceModel<double>&
     mass[i] = static_cast<T>(density * mesh.vertex_volume[i]);
     hair_mass += density * mesh.vertex_volume[i];
   }
+  damping_share.assign(mesh.damping_share.empty() ? 0 : layout.size(), T(0));
+  for (std::size_t i = 0; i < mesh.damping_share.size(); ++i)
+    damping_share[layout.slot[i]] = static_cast<T>(mesh.damping_share[i]);
   two_level.drop();
-}
-
-// Packs positions and velocities and runs the kernels.
-template <class T>
-T ImplicitSolver<T>::evaluateForces(std::span<const V3<T>> at, ColumnEvaluation<T> out,
-                                    std::span<const V3<T>> velocities) {
-  packed_x.pack(layout, at);
-  if (!velocities.empty()) {
-    packed_v.pack(layout, velocities);
-    out.velocity = &packed_v;
-  }
-  return evaluate<T>(model, layout, packed_x, out);
 }
 
 // Matrix and forces at positions and velocities; without these, the forces are those of resting hair.
@@ -102,13 +93,10 @@ void ImplicitSolver<T>::assembleMatrix(std::span<const V3<T>> at, std::span<cons
   const T h = static_cast<T>(of.h), tau = static_cast<T>(of.damping);
   matrix.setZero();
   packed_force.setZero();
-  ColumnEvaluation<T> out;
-  out.force = &packed_force;
-  out.matrix = &matrix;
-  out.matrix_scale = h * (h + tau);
-  out.tension_scale = h * h;
-  out.damping = tau;
-  evaluateForces(at, out, velocities);
+  packed_x.pack(layout, at);
+  if (!velocities.empty()) packed_v.pack(layout, velocities);
+  const ColumnField<T>* const moving = velocities.empty() ? nullptr : &packed_v;
+  evaluate<T>(model, layout, packed_x, {&packed_force, &matrix, h * (h + tau), h * h, moving, tau, damping_share});
   matrix.addMass(T(1) + h * static_cast<T>(of.drag), mass);
 }
 

@@ -47,7 +47,8 @@ struct ImplicitSolver {
   SolutionProjection<T> guess;
   std::vector<V3<T>> x, v, trial, force, rhs;
   std::vector<T> mass, inverse_mass_dt;
-  double hair_mass = 0;  // kg
+  double hair_mass = 0;          // kg
+  std::vector<T> damping_share;  // see ColumnEvaluation
   std::vector<VertexConstraint> constraints;
   std::vector<int> touched;  // vertices that were in contact when the solve began
   MatrixTerms terms;         // of the present solve
@@ -63,7 +64,6 @@ struct ImplicitSolver {
              std::vector<Contact>& contacts, SolveMemory& memory, std::span<Vec3> velocities, StepReport& report);
 
  private:
-  T evaluateForces(std::span<const V3<T>> at, ColumnEvaluation<T> out, std::span<const V3<T>> velocities);
   void assemble(const SimParams& params, const StepBase& base, bool at_start);
   bool setContactConstraints(const HairMesh& mesh, const SimParams& params, const StepBase& base,
                              std::span<const Contact> contacts, SolveStart start);

@@ -82,11 +82,6 @@ SafetyNets& StepContext::safetyNets() {
   return parts_->stabilization.nets;
 }
 
-const char* stageName(Stage stage) {
-  constexpr const char* kNames[kStageCount] = {"forces", "solve", "collision", "minimization", "other"};
-  return kNames[stage];
-}
-
 namespace {
 
 using Parts = StepContext::Parts;

@@ -11,7 +11,6 @@ namespace sim {
 
 // Stages of a step, as in the paper's figure 6.
 enum Stage { kStageForces, kStageSolve, kStageCollision, kStageMinimization, kStageOther, kStageCount };
-const char* stageName(Stage stage);
 
 struct StepReport {
   std::array<double, kStageCount> seconds{};  // filled when a clock is given to the context

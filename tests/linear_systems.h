@@ -6,6 +6,7 @@
 #include "sim/forces/model.h"
 #include "sim/linear/modified_pcg.h"
 #include "tests/bench/preconditioners/preconditioner.h"
+#include "tests/sim_probes.h"
 #include "tests/test_meshes.h"
 
 namespace tests {
@@ -40,7 +41,7 @@ struct System {
     pattern = sim::systemPattern(mesh);
     sim::SimParams params = test::tautHair();
     params.sag_free = false;
-    model = sim::makeForceModel(mesh, pattern, params);
+    model = test::makeForceModel(mesh, pattern, params);
     test::Random random(11);
     for (const Vec3& p : mesh.shape.positions) positions.push_back(turn * Vec3(p + random.vector(noise)));
   }
@@ -54,7 +55,7 @@ struct System {
     out.matrix_scale = static_cast<T>(kStep * (kStep + kDamping));
     out.tension_scale = static_cast<T>(kStep * kStep);
     const auto points = test::plain<T>(x);
-    sim::evaluate<T>(sim::convertModel<T>(model), points, out);
+    sim::evaluate<T>(test::convertModel<T>(model), points, out);
     for (int i = 0; i < mesh.vertexCount(); ++i) {
       for (int k = 0; k < 9; k += 4) a.diagonal[i].m[k] += static_cast<T>(60 * mesh.vertex_volume[i]);
     }

@@ -59,9 +59,10 @@ std::string curveHint() {
   return names;
 }
 
-constexpr std::array kMapMembers{&FieldFiles::stiffness, &FieldFiles::length,   &FieldFiles::density, &FieldFiles::mass,
-                                 &FieldFiles::bend,      &FieldFiles::width,    &FieldFiles::clump,   &FieldFiles::curl,
-                                 &FieldFiles::color,     &FieldFiles::roughness};
+constexpr std::array kMapMembers{&FieldFiles::stiffness, &FieldFiles::length, &FieldFiles::density,
+                                 &FieldFiles::mass,      &FieldFiles::bend,   &FieldFiles::width,
+                                 &FieldFiles::clump,     &FieldFiles::curl,   &FieldFiles::color,
+                                 &FieldFiles::roughness, &FieldFiles::damping};
 static_assert(kMapMembers.size() == kFieldNames.size());
 
 using Curve = std::vector<double> FieldCurves::*;
@@ -72,7 +73,8 @@ constexpr std::array<Curve, kCurveNames.size()> kCurveMembers{&FieldCurves::stif
                                                               &FieldCurves::clump,
                                                               &FieldCurves::curl,
                                                               nullptr,
-                                                              &FieldCurves::roughness};
+                                                              &FieldCurves::roughness,
+                                                              &FieldCurves::damping};
 
 // Null for color, which has three channels, and for a name of none.
 Curve findCurve(std::string_view name) {

@@ -49,18 +49,18 @@ bool isPictureText(std::string_view picture);
 
 // The pictures that a character is painted with; empty: none.
 struct FieldFiles {
-  std::string stiffness, length, density, mass, bend, width, clump, curl, color, roughness;
+  std::string stiffness, length, density, mass, bend, width, clump, curl, color, roughness, damping;
   bool operator==(const FieldFiles&) const = default;
 };
 
 // The notes of pictures that are files, a line each, with their names. Throws InputError.
 std::string mapNotes(const FieldFiles& maps);
 
-inline constexpr std::array<std::string_view, 10> kFieldNames{"stiffness", "length", "density", "mass",  "bend",
-                                                              "width",     "clump",  "curl",    "color", "roughness"};
+inline constexpr std::array<std::string_view, 11> kFieldNames{
+    "stiffness", "length", "density", "mass", "bend", "width", "clump", "curl", "color", "roughness", "damping"};
 // Those with a curve.
-inline constexpr std::array<std::string_view, 8> kCurveNames{"stiffness", "mass", "bend",  "width",
-                                                             "clump",     "curl", "color", "roughness"};
+inline constexpr std::array<std::string_view, 9> kCurveNames{"stiffness", "mass",  "bend",      "width",  "clump",
+                                                             "curl",      "color", "roughness", "damping"};
 
 // The picture of a field; null for a name of none.
 std::string* findMap(std::string_view name, FieldFiles& maps);
@@ -71,7 +71,7 @@ std::string setMap(std::string_view name, const std::string& picture, FieldFiles
 
 // Shares from root to tip; empty: 1 everywhere.
 struct FieldCurves {
-  std::vector<double> stiffness, mass, bend, width, clump, curl, roughness;
+  std::vector<double> stiffness, mass, bend, width, clump, curl, roughness, damping;
   std::vector<std::array<double, 3>> color;
   bool operator==(const FieldCurves&) const = default;
 };

@@ -162,7 +162,8 @@ void paintRow(UiState& ui) {
       4);
   row({{"Curl", "Paints how wide the curls are, as a share; without curls nothing shows"},
        {"Color", "Paints a pigment over the hair's own colour"},
-       {"Rough", "Paints how wide the highlights are, as a share"}},
+       {"Rough", "Paints how wide the highlights are, as a share"},
+       {"Damp", "Paints how soon the hair's own motion dies away, as a share of the parameters' damping"}},
       7);
 }
 

@@ -70,11 +70,6 @@ Vec3 closestInOctant(const Vec3& r, const Vec3& p) {
 
 }  // namespace
 
-double implicitValue(const Ellipsoid& e, const Vec3& p) {
-  const Vec3 local = (e.rotation.conjugate() * (p - e.center)).cwiseQuotient(e.radii);
-  return local.squaredNorm() - 1;
-}
-
 SurfacePoint closestPoint(const Ellipsoid& e, const Vec3& p) {
   const Vec3 local = e.rotation.conjugate() * (p - e.center);
   const Vec3 closest = closestInOctant(e.radii, local.cwiseAbs());

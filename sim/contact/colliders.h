@@ -27,9 +27,6 @@ struct SurfacePoint {
   double distance;  // signed, m: negative inside
 };
 
-// (p/r)^2 - 1 in the local frame: negative inside. Not a distance.
-double implicitValue(const Ellipsoid& e, const Vec3& p);
-
 // Exact closest point (Eberly's one-dimensional root, bracketed Newton), not radial scaling. Any p, the centre
 // included. Error: |distance| within 1e-12 m of the true one for radii between 1 mm and 10 m.
 SurfacePoint closestPoint(const Ellipsoid& e, const Vec3& p);

@@ -20,7 +20,26 @@ struct Sums {
   T* values;
   std::size_t stride;
   Lanes<T> matrix_scale, tension_scale, damping, energy;
+  const T* damping_share;  // null: 1 everywhere
 };
+// Those of hair whose damping is painted.
+template <class T>
+struct PaintedSums : Sums<T> {};
+
+// Of the elements whose vertices have these entries: damping, s, and what their Hessians are multiplied by.
+template <class T>
+struct Damping {
+  Lanes<T> time, matrix_scale;
+};
+template <class T>
+HAIRMESH_INLINE Damping<T> dampingOf(const Sums<T>& sums, const auto&...) {
+  return {sums.damping, sums.matrix_scale};
+}
+template <class T>
+HAIRMESH_INLINE Damping<T> dampingOf(const PaintedSums<T>& sums, const auto&... entries) {
+  const Lanes<T> share = constant<Lanes<T>>(1.0 / sizeof...(entries)) * (load<T>(sums.damping_share + entries) + ...);
+  return {share * sums.damping, sums.tension_scale + share * (sums.matrix_scale - sums.tension_scale)};
+}
 
 // Blocks of kLanes layers: symmetric ones as xx, xy, xz, yy, yz, zz, others row by row.
 template <class T>
@@ -55,11 +74,12 @@ struct PairBlock {
 
 // Force along -g of a condition, elastic and damping. `rate` gives dC/dt.
 template <class T>
-HAIRMESH_INLINE Lanes<T> pullOf(const Lanes<T>& c, const Lanes<T>& k, Sums<T>& sums, const auto& rate) {
+HAIRMESH_INLINE Lanes<T> pullOf(const Lanes<T>& c, const Lanes<T>& k, const Lanes<T>& damping, auto& sums,
+                                const auto& rate) {
   Lanes<T> pull = k * c;
   sums.energy += pull * c;
   if (sums.velocity) {
-    const Lanes<T> speed = rate(), resistance = sums.damping * k * speed;
+    const Lanes<T> speed = rate(), resistance = damping * k * speed;
     pull += resistance;
     sums.energy += resistance * speed;
   }
@@ -68,9 +88,9 @@ HAIRMESH_INLINE Lanes<T> pullOf(const Lanes<T>& c, const Lanes<T>& k, Sums<T>& s
 
 // The same, with dC/dt from the gradient: vertex v of the condition has entry at(v).
 template <class T, int N>
-HAIRMESH_INLINE Lanes<T> pullOf(const Lanes<T>& c, const Lanes<T>& k, Sums<T>& sums, const V3<Lanes<T>> (&g)[N],
-                                const auto& at) {
-  return pullOf<T>(c, k, sums, [&] {
+HAIRMESH_INLINE Lanes<T> pullOf(const Lanes<T>& c, const Lanes<T>& k, const Lanes<T>& damping, auto& sums,
+                                const V3<Lanes<T>> (&g)[N], const auto& at) {
+  return pullOf<T>(c, k, damping, sums, [&] {
     Lanes<T> rate = constant<Lanes<T>>(0);
     for (int v = 0; v < N; ++v) rate += dot(g[v], loadAt(*sums.velocity, at(v)));
     return rate;
@@ -85,16 +105,17 @@ struct StretchTerms {
 };
 template <class T>
 HAIRMESH_INLINE StretchTerms<T> stretchTerms(const typename ColumnModel<T>::StretchArrays& elements, std::size_t e,
-                                             const ColumnField<T>& x, int a, int b, Sums<T>& sums) {
+                                             const ColumnField<T>& x, int a, int b, auto& sums) {
   const auto stretch = stretchCondition(loadAt(x, a), loadAt(x, b), load<T>(elements.inverse_length.data() + e));
   const V3<Lanes<T>>& d = stretch.direction;
   const V3<Lanes<T>> g = stretch.inverse_length * d;
   const Lanes<T> k = load<T>(elements.stiffness.data() + e), c = stretch.value - load<T>(elements.shift.data() + e);
-  const Lanes<T> pull =
-      pullOf<T>(c, k, sums, [&] { return dot(g, loadAt(*sums.velocity, b) - loadAt(*sums.velocity, a)); });
+  const Damping<T> damping = dampingOf(sums, a, b);
+  const Lanes<T> pull = pullOf<T>(c, k, damping.time, sums,
+                                  [&] { return dot(g, loadAt(*sums.velocity, b) - loadAt(*sums.velocity, a)); });
   const Lanes<T> zero = constant<Lanes<T>>(0), tension = k * c;
   const Lanes<T> turn = (tension > zero ? tension : zero) * sums.tension_scale * stretch.tension_slope;
-  const Lanes<T> axial = sums.matrix_scale * k * stretch.inverse_length * stretch.inverse_length - turn;
+  const Lanes<T> axial = damping.matrix_scale * k * stretch.inverse_length * stretch.inverse_length - turn;
   const V3<Lanes<T>> ad = axial * d;
   return {pull * g, {{ad.x * d.x + turn, ad.x * d.y, ad.x * d.z, ad.y * d.y + turn, ad.y * d.z, ad.z * d.z + turn}}};
 }
@@ -102,7 +123,7 @@ HAIRMESH_INLINE StretchTerms<T> stretchTerms(const typename ColumnModel<T>::Stre
 // Every column's own edges. A vertex takes the terms of the edge above it and, shifted by one layer, of the one below.
 template <class T>
 HAIRMESH_INLINE void addColumns(const ColumnModel<T>& model, const ColumnLayout& layout, const ColumnField<T>& x,
-                                Sums<T>& sums) {
+                                auto& sums) {
   const Lanes<T> zero = constant<Lanes<T>>(0);
   for (int c = 0; c < layout.columns; ++c) {
     StretchTerms<T> below{{zero, zero, zero}, {}};
@@ -140,7 +161,7 @@ struct WallShare {
 
 template <class T>
 HAIRMESH_INLINE void addBlocks(const WallShare<T>& share, const typename ColumnModel<T>::RootEdge& edge, int layer,
-                               Sums<T>& sums) {
+                               auto& sums) {
   const auto addOwn = [&](int v) {
     OwnBlock<T> block;
     if (v < 2) block = share.side;
@@ -169,7 +190,7 @@ HAIRMESH_INLINE void addBlocks(const WallShare<T>& share, const typename ColumnM
 // The walls of kLanes layers over a root edge, each with its lower side and its hinge to the wall above.
 template <class T>
 HAIRMESH_INLINE void addWalls(const ColumnModel<T>& model, const typename ColumnModel<T>::RootEdge& edge,
-                              const std::array<int, 6>& at, int layer, const ColumnField<T>& x, Sums<T>& sums) {
+                              const std::array<int, 6>& at, int layer, const ColumnField<T>& x, auto& sums) {
   using V = V3<Lanes<T>>;
   const std::size_t e = edge.first + layer;
   V p[6];
@@ -181,9 +202,11 @@ HAIRMESH_INLINE void addWalls(const ColumnModel<T>& model, const typename Column
       bendCondition(p, load<T>(model.bend_rest_angle.data() + e), load<T>(model.bend_inverse_length.data() + e),
                     load<T>(model.bend_smallest_square.data() + e));
   const Lanes<T> k_shear = load<T>(model.shear_stiffness.data() + e), k_bend = load<T>(model.bend_stiffness.data() + e);
-  const Lanes<T> shear_pull = pullOf<T>(shear.value - load<T>(model.shear_shift.data() + e), k_shear, sums, shear.g,
-                                        [&](int v) { return at[kWall[v]]; });
-  const Lanes<T> bend_pull = pullOf<T>(bend.value, k_bend, sums, bend.g, [&](int v) { return at[v]; });
+  const Damping<T> of_wall = dampingOf(sums, at[0], at[1], at[2], at[3]),
+                   of_hinge = dampingOf(sums, at[0], at[1], at[2], at[3], at[4], at[5]);
+  const Lanes<T> shear_pull = pullOf<T>(shear.value - load<T>(model.shear_shift.data() + e), k_shear, of_wall.time,
+                                        sums, shear.g, [&](int v) { return at[kWall[v]]; });
+  const Lanes<T> bend_pull = pullOf<T>(bend.value, k_bend, of_hinge.time, sums, bend.g, [&](int v) { return at[v]; });
   const StretchTerms<T> side = stretchTerms<T>(model.horizontal, e, x, at[0], at[1], sums);
   if (sums.force) {
     V push[6];
@@ -194,8 +217,8 @@ HAIRMESH_INLINE void addWalls(const ColumnModel<T>& model, const typename Column
   }
   if (!sums.values) return;
   WallShare<T> share;
-  const Lanes<T> shear_root = squareRoot(sums.matrix_scale * k_shear),
-                 bend_root = squareRoot(sums.matrix_scale * k_bend);
+  const Lanes<T> shear_root = squareRoot(of_wall.matrix_scale * k_shear),
+                 bend_root = squareRoot(of_hinge.matrix_scale * k_bend);
   for (int v = 0; v < 4; ++v) share.s[kWall[v]] = shear_root * shear.g[v];
   for (int v = 0; v < 6; ++v) share.g[v] = bend_root * bend.g[v];
   share.side = side.block;
@@ -206,7 +229,7 @@ HAIRMESH_INLINE void addWalls(const ColumnModel<T>& model, const typename Column
 
 template <class T>
 HAIRMESH_INLINE void addEdges(const ColumnModel<T>& model, const ColumnLayout& layout, const ColumnField<T>& x,
-                              Sums<T>& sums) {
+                              auto& sums) {
   for (const typename ColumnModel<T>::RootEdge& edge : model.edges) {
     const int a = layout.first(edge.a), b = layout.first(edge.b);
     const int walls = model.has_shear || model.has_bend ? edge.walls : 0;
@@ -233,7 +256,7 @@ HAIRMESH_INLINE void addEdges(const ColumnModel<T>& model, const ColumnLayout& l
 // The corner tetrahedra of kLanes prisms over a face of N corners.
 template <class T, int N>
 HAIRMESH_INLINE void addPrisms(const ColumnModel<T>& model, const typename ColumnModel<T>::Face& face,
-                               const std::array<int, 2 * N>& at, int layer, const ColumnField<T>& x, Sums<T>& sums) {
+                               const std::array<int, 2 * N>& at, int layer, const ColumnField<T>& x, auto& sums) {
   using V = V3<Lanes<T>>;
   constexpr const PrismShares<N>& shares = kPrismShares<N>;
   constexpr int kVertices = 2 * N;
@@ -250,8 +273,10 @@ HAIRMESH_INLINE void addPrisms(const ColumnModel<T>& model, const typename Colum
     const V corners[4] = {p[tet[0]], p[tet[1]], p[tet[2]], p[tet[3]]};
     const auto volume = volumeCondition(corners, load<T>(model.volume_rest.data() + e));
     const Lanes<T> stiffness = load<T>(model.volume_stiffness.data() + e);
-    const Lanes<T> pull = pullOf<T>(volume.value, stiffness, sums, volume.g, [&](int v) { return at[tet[v]]; });
-    const Lanes<T> root = squareRoot(sums.matrix_scale * stiffness);
+    const Damping<T> damping = dampingOf(sums, at[tet[0]], at[tet[1]], at[tet[2]], at[tet[3]]);
+    const Lanes<T> pull =
+        pullOf<T>(volume.value, stiffness, damping.time, sums, volume.g, [&](int v) { return at[tet[v]]; });
+    const Lanes<T> root = squareRoot(damping.matrix_scale * stiffness);
     for (int v = 0; v < 4; ++v) {
       push[tet[v]] -= pull * volume.g[v];
       g[4 * k + v] = root * volume.g[v];
@@ -290,7 +315,7 @@ HAIRMESH_INLINE void addPrisms(const ColumnModel<T>& model, const typename Colum
 
 template <class T, int N>
 HAIRMESH_INLINE void addFace(const ColumnModel<T>& model, const ColumnLayout& layout,
-                             const typename ColumnModel<T>::Face& face, const ColumnField<T>& x, Sums<T>& sums) {
+                             const typename ColumnModel<T>::Face& face, const ColumnField<T>& x, auto& sums) {
   for (int l = 0; l < face.prisms; l += kLanes) {
     std::array<int, 2 * N> at;
     for (int v = 0; v < 2 * N; ++v) at[v] = layout.first(face.columns[v % N]) + v / N + l;
@@ -300,7 +325,7 @@ HAIRMESH_INLINE void addFace(const ColumnModel<T>& model, const ColumnLayout& la
 
 template <class T>
 HAIRMESH_INLINE void addFaces(const ColumnModel<T>& model, const ColumnLayout& layout, const ColumnField<T>& x,
-                              Sums<T>& sums) {
+                              auto& sums) {
   for (const typename ColumnModel<T>::Face& face : model.faces) {
     if (face.corner_count == 4)
       addFace<T, 4>(model, layout, face, x, sums);
@@ -311,19 +336,28 @@ HAIRMESH_INLINE void addFaces(const ColumnModel<T>& model, const ColumnLayout& l
 
 template <class T>
 HAIRMESH_INLINE void evaluateAll(const ColumnModel<T>& model, const ColumnLayout& layout, const ColumnField<T>& x,
-                                 Sums<T>& sums) {
+                                 auto& sums) {
   if (model.has_vertical) addColumns(model, layout, x, sums);
   if (model.has_horizontal || model.has_shear || model.has_bend) addEdges(model, layout, x, sums);
   if (model.has_volume) addFaces(model, layout, x, sums);
 }
 
+template <class T>
+HAIRMESH_INLINE void evaluatePaintedOrNot(const ColumnModel<T>& model, const ColumnLayout& layout,
+                                          const ColumnField<T>& x, Sums<T>& sums) {
+  if (!sums.damping_share) return evaluateAll(model, layout, x, sums);
+  PaintedSums<T> painted{sums};
+  evaluateAll(model, layout, x, painted);
+  sums.energy = painted.energy;
+}
+
 HAIRMESH_CLONES void run(const ColumnModel<float>& m, const ColumnLayout& l, const ColumnField<float>& x,
                          Sums<float>& s) {
-  evaluateAll(m, l, x, s);
+  evaluatePaintedOrNot(m, l, x, s);
 }
 HAIRMESH_CLONES void run(const ColumnModel<double>& m, const ColumnLayout& l, const ColumnField<double>& x,
                          Sums<double>& s) {
-  evaluateAll(m, l, x, s);
+  evaluatePaintedOrNot(m, l, x, s);
 }
 
 }  // namespace
@@ -339,7 +373,8 @@ T evaluate(const ColumnModel<T>& model, const ColumnLayout& layout, const Column
                all(out.matrix_scale),
                all(out.tension_scale),
                all(out.damping),
-               all(0)};
+               all(0),
+               out.damping_share.empty() ? nullptr : out.damping_share.data()};
   run(model, layout, x, sums);
   T energy = 0;
   for (int k = 0; k < kLanes; ++k) energy += sums.energy[k];

@@ -84,15 +84,4 @@ bool sameMaterial(const SimParams& a, const SimParams& b) {
   return same;
 }
 
-template <class T>
-ForceModel<T> convertModel(const ForceModel<double>& model) {
-  ForceModel<T> out;
-  model.forEach(
-      [&]<class Kind>(const Elements<Kind, double>& from) { convertElements(from, out.template of<Kind>()); });
-  return out;
-}
-
-template ForceModel<float> convertModel(const ForceModel<double>&);
-template ForceModel<double> convertModel(const ForceModel<double>&);
-
 }  // namespace sim

@@ -49,11 +49,6 @@ struct ForceModel {
 // The vertex pairs that any element couples: the pattern of every system matrix of this mesh.
 BlockPattern systemPattern(const HairMesh& mesh);
 
-// Stiffnesses: moduli times each element's share of the hair's volume. With sag_free, rest shifts balance gravity (down
-// the scalp frame's y) in the styled pose: elastic forces equal minus the weight, to a relative residual of 1e-9 unless
-// a kind's maxShift bounds a shift.
-ForceModel<double> makeForceModel(const HairMesh& mesh, const BlockPattern& pattern, const SimParams& params);
-
 // The elements alone, at rest in the styled pose without gravity.
 ForceModel<double> makeElements(const ForceSource& source, const BlockPattern& pattern);
 
@@ -77,8 +72,6 @@ void convertElements(const Elements<Kind, double>& from, Elements<Kind, T>& to) 
   to.rest.clear();
   for (const auto& rest : from.rest) std::copy(rest.begin(), rest.end(), to.rest.emplace_back().begin());
 }
-template <class T>
-ForceModel<T> convertModel(const ForceModel<double>& model);
 
 // The sums of an evaluation. Null pointers, empty spans and zero scales skip their part.
 template <class T>
@@ -90,6 +83,9 @@ struct Evaluation {
   // alone.
   std::span<const V3<T>> velocities;
   T damping = 0;  // s
+  // Per vertex; an element's damping, and what of the matrix scale is beyond the tension scale, times the mean.
+  // Empty: 1.
+  std::span<const T> damping_share{};
 };
 
 // Adds forces and Hessian at positions x (m); returns the elastic energy plus, with velocities, the dissipation

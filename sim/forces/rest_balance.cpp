@@ -268,10 +268,4 @@ void Material::applyBalance() {
   });
 }
 
-ForceModel<double> makeForceModel(const HairMesh& mesh, const BlockPattern& pattern, const SimParams& params) {
-  Material material(mesh, pattern);
-  material.set(params);
-  return std::move(material.model);
-}
-
 }  // namespace sim

@@ -27,7 +27,9 @@ struct Material {
   Material(const HairMesh& mesh, const BlockPattern& pattern);
   ~Material();
 
-  // As makeForceModel.
+  // Stiffnesses: moduli times each element's share of the hair's volume. With sag_free, rest shifts balance gravity
+  // (down the scalp frame's y) in the styled pose: elastic forces equal minus the weight, to a relative residual of
+  // 1e-9 unless a kind's maxShift bounds a shift.
   void set(const SimParams& params);
 
   // Stiffnesses and weight follow at once, the balance by its products. Then outdated() until its own is solved for.

@@ -16,7 +16,6 @@ struct BlockPattern {
   int size = 0;  // block rows
   std::vector<int> row_first{0};
   std::vector<int> columns;
-  int blockCount() const { return static_cast<int>(columns.size()); }
   // Number of block (i, j), i > j; -1 when the pattern lacks it.
   int find(int i, int j) const;
 };

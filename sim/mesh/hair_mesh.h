@@ -118,12 +118,18 @@ struct HairMesh {
   std::vector<int> external_vertices;  // roots left out
   std::vector<ExternalFace> external_faces;
   std::vector<double> vertex_volume;  // m^3 per vertex: its share of the adjacent prisms, the base of lumped mass
+  std::vector<double> damping_share;  // per vertex, of SimParams::damping; an element has the mean; empty: 1 everywhere
   double total_volume = 0;            // m^3
   double hair_length = 0;             // m, the longest column's rest length: the scale of every relative error
 
   int vertexCount() const { return shape.vertexCount(); }
   int columnCount() const { return shape.columnCount(); }
   bool isRoot(int vertex) const { return layer_of[vertex] == 0; }
+  double dampingShare(const auto& vertices) const {
+    double sum = 0;
+    for (const int v : vertices) sum += damping_share.empty() ? 1 : damping_share[v];
+    return sum / vertices.size();
+  }
 };
 
 // Builds topology and rest quantities. Throws MeshError on: no face, a face with repeated or dangling columns,

@@ -93,11 +93,4 @@ std::string loadState(const HairMesh& mesh, std::span<const std::byte> bytes, Ha
   return "";
 }
 
-bool sameBits(const HairState& a, const HairState& b) {
-  Bytes one, other;
-  writeBytes(a, one);
-  writeBytes(b, other);
-  return one == other;
-}
-
 }  // namespace sim

@@ -21,7 +21,4 @@ std::vector<std::byte> saveState(const HairMesh& mesh, const HairState& state);
 // leaves `state` as it is; "" when it was restored.
 std::string loadState(const HairMesh& mesh, std::span<const std::byte> bytes, HairState& state);
 
-// Every field, memory included, by its bits: NaN is itself, and 0 is not -0.
-bool sameBits(const HairState& a, const HairState& b);
-
 }  // namespace sim

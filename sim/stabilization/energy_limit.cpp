@@ -119,11 +119,12 @@ double dampersWork(const TakenStep& step, const EnergyLimit& scratch) {
         }
         const auto c = Kind::condition(x, elements.rest[e], elements.shift[e]);
         double rate = Kind::drift(elements.rest[e]);
+        const double damping = step.mesh.dampingShare(elements.vertices[e]) * step.params.damping;
         for (int p = 0; p < Kind::kVertices; ++p) {
           const Vec3 speed = carrying(step, scratch, elements.vertices[e][p]);
           rate += c.g[p].x * speed.x() + c.g[p].y * speed.y() + c.g[p].z * speed.z();
         }
-        work += step.dt * step.params.damping * elements.stiffness[e] * rate * rate / 4;
+        work += step.dt * damping * elements.stiffness[e] * rate * rate / 4;
       }
     }
   });

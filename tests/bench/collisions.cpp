@@ -9,6 +9,7 @@
 #include "app/files/errors.h"
 #include "tests/bench/cpu_clock.h"
 #include "tests/bench/scene_times.h"
+#include "tests/sim_probes.h"
 
 namespace bench {
 
@@ -29,7 +30,7 @@ double depthOf(const app::Actor& actor, int vertex) {
   double depth = 0;
   for (const sim::Ellipsoid& e : actor.ellipsoids) {
     const sim::Vec3& x = actor.hair.positions[vertex];
-    if (sim::implicitValue(e, x) < 0) depth = std::max(depth, -sim::closestPoint(e, x).distance);
+    if (test::implicitValue(e, x) < 0) depth = std::max(depth, -sim::closestPoint(e, x).distance);
   }
   return depth;
 }

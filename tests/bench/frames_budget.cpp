@@ -14,6 +14,7 @@
 #include "tests/bench/gnuplot.h"
 #include "tests/bench/measured_part.h"
 #include "tests/bench/table.h"
+#include "tests/sim_probes.h"
 
 namespace bench {
 namespace {
@@ -69,7 +70,7 @@ double deepest(const app::Actor& actor) {
   for (const int v : actor.haircut->mesh.external_vertices) {
     const sim::Vec3& x = actor.hair.positions[v];
     for (const sim::Ellipsoid& e : actor.ellipsoids) {
-      if (sim::implicitValue(e, x) < 0) depth = std::max(depth, -sim::closestPoint(e, x).distance);
+      if (test::implicitValue(e, x) < 0) depth = std::max(depth, -sim::closestPoint(e, x).distance);
     }
   }
   return depth;

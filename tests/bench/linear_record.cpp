@@ -5,6 +5,7 @@
 #include "app/files/errors.h"
 #include "sim/implicit_solve.h"
 #include "tests/bench/preconditioners/preconditioner.h"
+#include "tests/sim_probes.h"
 
 namespace bench {
 namespace {
@@ -91,7 +92,7 @@ RecordedSystems recordSystems(const std::string& scene, const std::vector<int>& 
   exact.acceleration_tolerance = exact.displacement_tolerance = 0;
   const RecordedMesh& shared = *systems.shared;
   sim::ImplicitSolver<double> solver(shared.mesh);
-  solver.setModel(shared.mesh, sim::makeForceModel(shared.mesh, shared.pattern, params), params.density);
+  solver.setModel(shared.mesh, test::makeForceModel(shared.mesh, shared.pattern, params), params.density);
   systems.stage->visitSteps(params, [&](int step, const sim::StepInput& input, const sim::HairState& state) {
     if (!std::count(steps.begin(), steps.end(), step)) return;
     systems.records.push_back(recordStep(shared, solver, exact, input, state));

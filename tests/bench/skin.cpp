@@ -19,6 +19,7 @@
 #include "tests/bench/measured_part.h"
 #include "tests/bench/scene_times.h"
 #include "tests/bench/table.h"
+#include "tests/sim_probes.h"
 #include "tests/skin/drawn_skin.h"
 
 namespace bench {
@@ -106,7 +107,7 @@ struct NearCells {
 double outOf(const std::vector<sim::Ellipsoid>& ellipsoids, const sim::Vec3& p) {
   double nearest = 1e9;
   for (const sim::Ellipsoid& e : ellipsoids) {
-    if (sim::implicitValue(e, p) <= 0) return 0;
+    if (test::implicitValue(e, p) <= 0) return 0;
     nearest = std::min(nearest, sim::closestPoint(e, p).distance);
   }
   return nearest;

@@ -6,6 +6,7 @@
 #include "app/files/data_path.h"
 #include "tests/bench/cpu_clock.h"
 #include "tests/bench/scene_times.h"
+#include "tests/sim_probes.h"
 
 namespace bench {
 namespace {
@@ -44,7 +45,7 @@ TrajectoryStage::TrajectoryStage(const TrajectoryScene& scene) : scene_(scene) {
   if (scene.collapsed) sim::collapseOntoRoots(mesh(), actor_.hair);
   start_ = actor_.hair;
   playback_ = actor_.playback;
-  model_ = sim::makeForceModel(mesh(), sim::systemPattern(mesh()), params);
+  model_ = test::makeForceModel(mesh(), sim::systemPattern(mesh()), params);
 }
 
 int TrajectoryStage::sampleCount() const {
@@ -135,7 +136,7 @@ void TrajectoryStage::measure(RunResult& result) const {
   if (!scene_.collide) return;
   for (const int v : mesh().external_vertices) {
     for (const sim::Ellipsoid& e : actor_.ellipsoids) {
-      if (sim::implicitValue(e, x[v]) >= 0) continue;
+      if (test::implicitValue(e, x[v]) >= 0) continue;
       result.worst_penetration = std::max(result.worst_penetration, -sim::closestPoint(e, x[v]).distance);
     }
   }

@@ -9,6 +9,7 @@
 
 #include "sim/contact/contact.h"
 #include "tests/oracle/plain_contact.h"
+#include "tests/sim_probes.h"
 
 namespace oracle {
 namespace {
@@ -256,7 +257,7 @@ sim::StepReport plainAdvance(const HairMesh& mesh, const SimParams& params, cons
     started = now;
   };
   if (!context.made_for || !sim::sameMaterial(params, *context.made_for)) {
-    context.model = sim::makeForceModel(mesh, context.pattern, params);
+    context.model = test::makeForceModel(mesh, context.pattern, params);
     context.made_for = params;
   }
   const std::vector<Vec3> start = state.positions;

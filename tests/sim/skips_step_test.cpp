@@ -10,6 +10,7 @@
 #include "app/scene/demo.h"
 #include "app/scene/detail/sleep.h"
 #include "sim/forces/kernels.h"
+#include "tests/sim_probes.h"
 #include "tests/test_meshes.h"
 
 namespace skips_step_test {
@@ -133,7 +134,7 @@ TEST(SkipCount, KindsOfForceWithoutStiffnessAreNotAssembled) {
   };
   const auto modelOf = [&](const sim::SimParams& params) {
     sim::ColumnModel<T> model(mesh, layout, column_pattern);
-    model.setElements(mesh, layout, sim::makeForceModel(mesh, pattern, params));
+    model.setElements(mesh, layout, test::makeForceModel(mesh, pattern, params));
     return model;
   };
   sim::SimParams full = test::tautHair();

@@ -11,6 +11,7 @@
 #include "app/scene/actor.h"
 #include "sim/forces/rest_balance.h"
 #include "sim/sim_params.h"
+#include "tests/sim_probes.h"
 #include "tests/test_meshes.h"
 
 namespace slider_drag_test {
@@ -110,7 +111,7 @@ TEST(SliderDrag, TheBalanceEndsAsTheOneMadeAtOnce) {
   int steps = 0;
   while (material.outdated() && steps < kEnough) material.work(), ++steps;
   EXPECT_LT(steps, kEnough);
-  const sim::ForceModel<double> at_once = sim::makeForceModel(mesh, pattern, params);
+  const sim::ForceModel<double> at_once = test::makeForceModel(mesh, pattern, params);
   material.model.forEach([&]<class Kind>(const sim::Elements<Kind, double>& elements) {
     EXPECT_EQ(elements.shift, at_once.of<Kind>().shift) << Kind::kName;
     EXPECT_EQ(elements.stiffness, at_once.of<Kind>().stiffness) << Kind::kName;

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "sim/forces/model.h"
+#include "tests/sim_probes.h"
 #include "tests/test_meshes.h"
 
 namespace step_test {
@@ -161,7 +162,7 @@ TEST(Step, MomentumChangesByTheRootsPullAlone) {
     out.matrix = &matrix;
     out.matrix_scale = kFrame + params.damping;
     out.tension_scale = kFrame;
-    sim::evaluate<double>(sim::makeForceModel(hair.mesh, pattern, params), at.x, out);
+    sim::evaluate<double>(test::makeForceModel(hair.mesh, pattern, params), at.x, out);
     sim::multiply<double>(matrix, at.change, implicit);
     Vec3 gained = Vec3::Zero(), pull = Vec3::Zero();
     double scale = 0;

@@ -7,6 +7,7 @@
 #include "sim/contact/contact.h"
 #include "sim/stabilization/parameter_limits.h"
 #include "tests/bench/measured_part.h"
+#include "tests/sim_probes.h"
 #include "tests/stress/matrix.h"
 #include "tests/stress/start_states.h"
 
@@ -24,7 +25,7 @@ double depthOf(const Run& run, int vertex) {
   const sim::Vec3& p = run.hair.state.positions[vertex];
   double depth = 0;
   for (int k = 0; k < colliders.count(); ++k) {
-    if (colliders.parts.empty() && sim::implicitValue(colliders.ellipsoids[k], p) >= 0) continue;
+    if (colliders.parts.empty() && test::implicitValue(colliders.ellipsoids[k], p) >= 0) continue;
     depth = std::max(depth, -colliders.closest(k, p).distance);
   }
   return depth;

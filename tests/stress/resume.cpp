@@ -8,6 +8,7 @@
 #include "app/files/output_file.h"
 #include "app/files/text_file.h"
 #include "sim/mesh/state_bytes.h"
+#include "tests/sim_probes.h"
 #include "tests/stress/case_run.h"
 
 namespace stress {
@@ -91,7 +92,7 @@ std::string resumeFrom(const std::string& folder, const StressCase& one, std::ui
   sim::HairState end;
   if (fault.empty()) fault = load(fileOf(folder, one, ".end"), run.hair.mesh, end);
   if (!fault.empty()) return fault;
-  return sim::sameBits(end, run.hair.state) ? "" : "ends in other bits";
+  return test::sameBits(end, run.hair.state) ? "" : "ends in other bits";
 }
 
 }  // namespace stress

@@ -104,10 +104,12 @@ PaintedShares paintedShares(const FieldFiles& maps, const FieldCurves& curves, c
                             const sim::HairMeshShape& shape) {
   return {sharesOf(maps.stiffness, curves.stiffness, kMinStiffness, scalp, shape),
           sharesOf(maps.mass, curves.mass, kMinMass, scalp, shape),
-          sharesOf(maps.bend, curves.bend, kMinBendShare, scalp, shape)};
+          sharesOf(maps.bend, curves.bend, kMinBendShare, scalp, shape),
+          sharesOf(maps.damping, curves.damping, 0, scalp, shape)};
 }
 
 void applyShares(const PaintedShares& shares, sim::HairMesh& mesh) {
+  mesh.damping_share.assign(shares.damping.begin(), shares.damping.end());
   for (std::size_t v = 0; v < shares.mass.size(); ++v) mesh.vertex_volume[v] *= static_cast<double>(shares.mass[v]);
   const auto scale = [](const std::vector<float>& by, const auto& vertices, double& volume) {
     if (by.empty()) return;

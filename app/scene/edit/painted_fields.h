@@ -19,15 +19,15 @@ void paintLength(const FieldMap& map, const Scalp& scalp, const BodyDistance& bo
 
 // Shares of the parameters' values, one a vertex; empty: 1 everywhere.
 struct PaintedShares {
-  std::vector<float> stiffness, mass, bend;
+  std::vector<float> stiffness, mass, bend, damping;
   bool operator==(const PaintedShares&) const = default;
 };
 
 // Of pictures and curves.
 PaintedShares paintedShares(const FieldFiles& maps, const FieldCurves& curves, const Scalp& scalp,
                             const sim::HairMeshShape& shape);
-// Scales the volumes that elements stand for, and with them their stiffnesses, and those that masses are made of. After
-// every change of the rest shape anew.
+// Scales the volumes that elements stand for, and with them their stiffnesses, and those that masses are made of; gives
+// the mesh its damping. After every change of the rest shape anew.
 void applyShares(const PaintedShares& shares, sim::HairMesh& mesh);
 
 // Shares of the look, by roots (one a vertex) and along strands; empty: 1 everywhere.

@@ -100,16 +100,34 @@ TEST(PaintBrush, WhiteFieldsAndCurvesOfOneGiveTheScalarsResultToTheBit) {
   EXPECT_TRUE(look.roots.empty() && look.along.empty()) << "the renderer is given nothing";
 }
 
-TEST(PaintBrush, AUniformCurveOfBendIsTheParameter) {
+// `change` puts the same into a scene's parameters and into the curves of another.
+void expectCurveIsParameter(void (*change)(sim::SimParams&, app::FieldCurves&)) {
   app::Scene half = test::smallScene("walk.bvh", 0.3), curve = half;
-  half.sim.bend *= 0.5;
-  curve.characters[0].curves.bend = {0.5, 0.5};
+  app::FieldCurves no_curves;
+  sim::SimParams same = half.sim;
+  change(half.sim, no_curves);
+  change(same, curve.characters[0].curves);
   app::Demo one = open(std::move(half)), other = open(std::move(curve));
   frames(10, one), frames(10, other);
   double apart = 0;
   for (std::size_t v = 0; v < one.actors[0].hair.positions.size(); ++v)
     apart = std::max(apart, (one.actors[0].hair.positions[v] - other.actors[0].hair.positions[v]).norm());
   EXPECT_LT(apart, 1e-9) << "a power of two";
+}
+
+TEST(PaintBrush, AUniformCurveOfBendIsTheParameter) {
+  expectCurveIsParameter([](sim::SimParams& params, app::FieldCurves& curves) {
+    params.bend *= 0.5;
+    curves.bend = {0.5, 0.5};
+  });
+}
+
+// But for rounding: the share is a mean of six.
+TEST(PaintBrush, AUniformCurveOfDampingIsTheParameter) {
+  expectCurveIsParameter([](sim::SimParams& params, app::FieldCurves& curves) {
+    params.damping *= 0.5;
+    curves.damping = {0.5, 0.5};
+  });
 }
 
 TEST(PaintBrush, AUniformCurveIsAsMuchAsTheParameter) {
@@ -144,6 +162,10 @@ TEST(PaintBrush, EveryFieldIsPaintedAndUndone) {
     EXPECT_GT(*std::ranges::max_element(map.value), 0.9) << field << ": the brush is everywhere";
     if (field == "stiffness") {
       EXPECT_LT(*std::ranges::min_element(cut.shares.stiffness), 0.4f);
+    }
+    if (field == "damping") {
+      EXPECT_LT(*std::ranges::min_element(cut.shares.damping), 0.4f);
+      EXPECT_EQ(cut.mesh.damping_share.size(), cut.mesh.shape.positions.size());
     }
     if (field == "bend") {
       EXPECT_LT(*std::ranges::min_element(cut.shares.bend), 0.4f);

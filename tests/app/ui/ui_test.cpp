@@ -36,7 +36,8 @@ TEST_F(Panels, TheTransportButtonsAskForWhatTheyShow) {
 
 TEST_F(Panels, EveryFieldIsChosenToBePaintedAndColorIsPicked) {
   click("tab Hair");
-  const std::array labels{"Stiff", "Length", "Density", "Mass", "Bend", "Width", "Clump", "Curl", "Color", "Rough"};
+  const std::array labels{"Stiff", "Length", "Density", "Mass",  "Bend", "Width",
+                          "Clump", "Curl",   "Color",   "Rough", "Damp"};
   ASSERT_EQ(labels.size(), app::kFieldNames.size());
   for (std::size_t k = 0; k < labels.size(); ++k) {
     click(std::string("paint ") + labels[k]);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/test_meshes.h"
+#include "tests/sim_probes.h"
 
 namespace colliders_test {
 
@@ -88,7 +89,7 @@ void expectConsistent(const Ellipsoid& e, const Vec3& p, const SurfacePoint& s) 
   EXPECT_NEAR(s.normal.norm(), 1, 1e-12);
   EXPECT_NEAR(toLocal(e, s.point).cwiseQuotient(e.radii).norm(), 1, 1e-9) << "on the surface";
   EXPECT_LT((p - s.point - s.distance * s.normal).norm(), 1e-7 * far) << "reached along the normal";
-  EXPECT_EQ(s.distance < 0, sim::implicitValue(e, p) < 0);
+  EXPECT_EQ(s.distance < 0, test::implicitValue(e, p) < 0);
 }
 
 TEST(Ellipsoid, ClosestPointIsNoFartherThanBruteForceFindsOne) {

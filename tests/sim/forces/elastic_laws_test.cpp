@@ -7,6 +7,7 @@
 
 #include "sim/forces/model.h"
 #include "sim/forces/rest_balance.h"
+#include "tests/sim_probes.h"
 #include "tests/test_meshes.h"
 
 namespace elastic_laws_test {
@@ -61,7 +62,7 @@ sim::SimParams withoutSagFree() {
 
 template <class T>
 double smallestShare(const ForceModel<double>& source, const BlockPattern& pattern, const std::vector<Vec3>& x) {
-  const ForceModel<T> model = sim::convertModel<T>(source);
+  const ForceModel<T> model = test::convertModel<T>(source);
   BlockMatrix<T> matrix(&pattern);
   sim::Evaluation<T> out;
   out.matrix = &matrix;
@@ -79,7 +80,7 @@ double smallestShare(const ForceModel<double>& source, const BlockPattern& patte
 TEST(ElasticLaws, HessiansArePositiveSemiDefiniteInEveryState) {
   const sim::HairMesh mesh = combedMesh();
   const BlockPattern pattern = sim::systemPattern(mesh);
-  const ForceModel<double> model = sim::makeForceModel(mesh, pattern, test::tautHair());
+  const ForceModel<double> model = test::makeForceModel(mesh, pattern, test::tautHair());
   test::Random random(6);
   for (const State& state : hardStates(mesh, random)) {
     EXPECT_GE(smallestShare<double>(model, pattern, state.x), -1e-12) << state.name;
@@ -104,7 +105,7 @@ double largest(const std::vector<V3<double>>& force) {
 
 TEST(ElasticLaws, RigidMotionMakesNoForceAndNoEnergy) {
   const sim::HairMesh mesh = combedMesh();
-  const ForceModel<double> model = sim::makeForceModel(mesh, sim::systemPattern(mesh), withoutSagFree());
+  const ForceModel<double> model = test::makeForceModel(mesh, sim::systemPattern(mesh), withoutSagFree());
   test::Random random(7);
   std::vector<Vec3> stretched = mesh.shape.positions;
   for (Vec3& p : stretched) p *= 1.01;
@@ -123,7 +124,7 @@ TEST(ElasticLaws, RigidMotionMakesNoForceAndNoEnergy) {
 
 TEST(ElasticLaws, ForcesTurnWithTheHair) {
   const sim::HairMesh mesh = combedMesh();
-  const ForceModel<double> model = sim::makeForceModel(mesh, sim::systemPattern(mesh), test::tautHair());
+  const ForceModel<double> model = test::makeForceModel(mesh, sim::systemPattern(mesh), test::tautHair());
   test::Random random(8);
   for (const char* name : {"noise of 5 mm", "random", "inverted"}) {
     for (const State& state : hardStates(mesh, random)) {
@@ -141,7 +142,7 @@ TEST(ElasticLaws, ForcesTurnWithTheHair) {
 
 TEST(ElasticLaws, InternalForcesSumToNothingAndTurnNothing) {
   const sim::HairMesh mesh = combedMesh();
-  const ForceModel<double> model = sim::makeForceModel(mesh, sim::systemPattern(mesh), test::tautHair());
+  const ForceModel<double> model = test::makeForceModel(mesh, sim::systemPattern(mesh), test::tautHair());
   test::Random random(9);
   for (const State& state : hardStates(mesh, random)) {
     for (const bool damped : {false, true}) {
@@ -332,11 +333,11 @@ TEST(SagFree, TheStyledPoseCarriesItsWeight) {
   for (const test::PatchOptions& o : {hanging, initial_overlap}) {
     const sim::HairMesh mesh = sim::buildHairMesh(test::combedShape(o));
     const sim::SimParams params = test::tautHair();
-    const ForceModel<double> model = sim::makeForceModel(mesh, sim::systemPattern(mesh), params);
+    const ForceModel<double> model = test::makeForceModel(mesh, sim::systemPattern(mesh), params);
     const double residual = imbalance(mesh, model, params);
     std::printf("relative residual of the balance: %.1e\n", residual);
     EXPECT_LT(residual, 1e-9);
-    const ForceModel<double> slack = sim::makeForceModel(mesh, sim::systemPattern(mesh), withoutSagFree());
+    const ForceModel<double> slack = test::makeForceModel(mesh, sim::systemPattern(mesh), withoutSagFree());
     EXPECT_LT(largest(forceAt(slack, mesh.shape.positions)), 1e-9) << "without it the styled pose is free of force";
   }
 }

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "sim/forces/model.h"
+#include "tests/sim_probes.h"
 #include "tests/test_meshes.h"
 
 namespace forces_test {
@@ -200,8 +201,8 @@ TEST(Forces, ForcesAreMinusTheEnergysGradient) {
   });
   const sim::HairMesh mesh = combedMesh();
   const BlockPattern pattern = sim::systemPattern(mesh);
-  check("whole model", sim::makeForceModel(mesh, pattern, withoutSagFree()), mesh.shape.positions, 0.001);
-  check("sag-free", sim::makeForceModel(mesh, pattern, test::tautHair()), mesh.shape.positions, 0.001);
+  check("whole model", test::makeForceModel(mesh, pattern, withoutSagFree()), mesh.shape.positions, 0.001);
+  check("sag-free", test::makeForceModel(mesh, pattern, test::tautHair()), mesh.shape.positions, 0.001);
 }
 
 template <class Kind>
@@ -266,7 +267,7 @@ TEST(Forces, TensionPartMakesTheStretchedEdgesHessianExactAndIsAbsentUnderCompre
 TEST(Forces, WholeModelsHessianAtRestIsTheForcesDerivative) {
   const sim::HairMesh mesh = combedMesh();
   const BlockPattern pattern = sim::systemPattern(mesh);
-  const ForceModel<double> model = sim::makeForceModel(mesh, pattern, withoutSagFree());
+  const ForceModel<double> model = test::makeForceModel(mesh, pattern, withoutSagFree());
   const Points x = test::plain<double>(mesh.shape.positions);
   const Eigen::MatrixXd matrix = matrixAt(model, pattern, x, 1);
   test::Random random(4);
@@ -285,7 +286,7 @@ TEST(Forces, WholeModelsHessianAtRestIsTheForcesDerivative) {
 TEST(Forces, DampingForceIsTheDissipationsDerivativeAndDampsNothingRigid) {
   const sim::HairMesh mesh = combedMesh();
   const BlockPattern pattern = sim::systemPattern(mesh);
-  const ForceModel<double> model = sim::makeForceModel(mesh, pattern, withoutSagFree());
+  const ForceModel<double> model = test::makeForceModel(mesh, pattern, withoutSagFree());
   test::Random random(5);
   const Points x = moved(mesh.shape.positions, 0.003, random);
   const auto potential = [&](const Points& v, Points* force) {

@@ -10,6 +10,7 @@
 
 #include "sim/forces/rest_balance.h"
 #include "sim/stabilization/state_validation.h"
+#include "tests/sim_probes.h"
 #include "tests/test_meshes.h"
 
 namespace kinds_test {
@@ -139,7 +140,7 @@ TEST(ForceKinds, EveryChangeOfAModulusIsFollowed) {
       material.follow(params);
       EXPECT_TRUE(material.outdated()) << Kind::kName << ": the balance is another";
       for (int k = 0; k < 200 && material.outdated(); ++k) material.work();
-      const sim::ForceModel<double> at_once = sim::makeForceModel(hair, pattern, params);
+      const sim::ForceModel<double> at_once = test::makeForceModel(hair, pattern, params);
       EXPECT_EQ(material.model.of<Kind>().stiffness, at_once.of<Kind>().stiffness) << Kind::kName;
       EXPECT_EQ(material.model.of<Kind>().shift, at_once.of<Kind>().shift) << Kind::kName;
     }

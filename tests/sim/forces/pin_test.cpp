@@ -3,6 +3,7 @@
 
 #include "sim/forces/model.h"
 #include "sim/stabilization/safety_nets.h"
+#include "tests/sim_probes.h"
 #include "tests/test_meshes.h"
 
 namespace pin_test {
@@ -62,7 +63,7 @@ TEST(Pin, ASpringsPullBalancesTheHairsForces) {
   const Vec3 target = hair.state.positions[tip] + Vec3(0.01, 0.004, -0.006);
   hair.pins = {{tip, target, Vec3::Zero(), 2.0}};
   for (int k = 0; k < 1200; ++k) hair.step(kFrame);
-  const auto model = sim::makeForceModel(hair.mesh, sim::systemPattern(hair.mesh), params);
+  const auto model = test::makeForceModel(hair.mesh, sim::systemPattern(hair.mesh), params);
   std::vector<sim::V3<double>> force(hair.mesh.vertexCount(), {0, 0, 0});
   sim::Evaluation<double> out;
   out.force = force;

@@ -3,6 +3,7 @@
 
 #include "sim/forces/kernels.h"
 #include "tests/bench/preconditioners/preconditioner.h"
+#include "tests/sim_probes.h"
 #include "tests/test_meshes.h"
 
 namespace column_layout_test {
@@ -59,21 +60,35 @@ void expectSameMatrix(const sim::HairMesh& mesh, const sim::ColumnLayout& layout
   EXPECT_LE((cy - y).norm(), bound * norm * test::stacked<T>(w).norm());
 }
 
+// Shares of damping, one a vertex and the same by entry of the columns.
 template <class T>
-void expectSameEvaluation(const sim::HairMesh& mesh, double bound) {
+struct Shares {
+  std::vector<T> of_vertex, of_entry;
+  Shares(const sim::ColumnLayout& layout, test::Random& random) : of_entry(static_cast<std::size_t>(layout.size())) {
+    for (const int slot : layout.slot) {
+      of_vertex.push_back(static_cast<T>(random(0, 2)));
+      of_entry[static_cast<std::size_t>(slot)] = of_vertex.back();
+    }
+  }
+};
+
+// `painted`: with damping of its own at every vertex.
+template <class T>
+void expectSameEvaluation(const sim::HairMesh& mesh, double bound, bool painted) {
   const sim::BlockPattern pattern = sim::systemPattern(mesh);
   const sim::ColumnLayout layout(mesh);
   const sim::ColumnPattern column_pattern(mesh, layout);
   sim::ColumnModel<T> column_model(mesh, layout, column_pattern);
   test::Random random(5);
+  const Shares<T> shares(layout, random);
   const std::size_t n = mesh.shape.positions.size();
   for (int kind = 0; kind < 6; ++kind) {
     // The columns take a hinge's rest shift into its rest angle, before the angle wraps at half a turn; random hinges
     // come near enough to it to tell, so they go without shifts.
     sim::SimParams params = test::tautHair();
     params.sag_free = kind != 2;
-    const sim::ForceModel<double> source = sim::makeForceModel(mesh, pattern, params);
-    const sim::ForceModel<T> plain_model = sim::convertModel<T>(source);
+    const sim::ForceModel<double> source = test::makeForceModel(mesh, pattern, params);
+    const sim::ForceModel<T> plain_model = test::convertModel<T>(source);
     column_model.setElements(mesh, layout, source);
     const auto x = test::plain<T>(stateOf(mesh, kind, random));
     std::vector<V3<T>> v, force(n, V3<T>{0, 0, 0}), column_force(n);
@@ -87,6 +102,7 @@ void expectSameEvaluation(const sim::HairMesh& mesh, double bound) {
     out.matrix_scale = T(0.7), out.tension_scale = T(0.3);
     out.velocities = v;
     out.damping = T(0.05);
+    if (painted) out.damping_share = shares.of_vertex;
     const double energy = sim::evaluate<T>(plain_model, x, out);
 
     sim::ColumnField<T> packed_x(layout), packed_v(layout), packed_force(layout);
@@ -95,7 +111,8 @@ void expectSameEvaluation(const sim::HairMesh& mesh, double bound) {
     packed_force.setZero();
     sim::ColumnMatrix<T> columns(layout, column_pattern);
     columns.setZero();
-    const sim::ColumnEvaluation<T> column_out{&packed_force, &columns, T(0.7), T(0.3), &packed_v, T(0.05)};
+    sim::ColumnEvaluation<T> column_out{&packed_force, &columns, T(0.7), T(0.3), &packed_v, T(0.05)};
+    if (painted) column_out.damping_share = shares.of_entry;
     const double column_energy = sim::evaluate<T>(column_model, layout, packed_x, column_out);
     packed_force.unpack(layout, column_force);
     bench::toBlocks(mesh, columns, column_blocks);
@@ -110,11 +127,43 @@ void expectSameEvaluation(const sim::HairMesh& mesh, double bound) {
 }
 
 TEST(ColumnLayout, EvaluatesAndMultipliesAsThePlainModelInDouble) {
-  for (const sim::HairMesh& mesh : meshes()) expectSameEvaluation<double>(mesh, 1e-12);
+  for (const sim::HairMesh& mesh : meshes()) expectSameEvaluation<double>(mesh, 1e-12, false);
 }
 
 TEST(ColumnLayout, EvaluatesAndMultipliesAsThePlainModelInFloat) {
-  for (const sim::HairMesh& mesh : meshes()) expectSameEvaluation<float>(mesh, 2e-4);
+  for (const sim::HairMesh& mesh : meshes()) expectSameEvaluation<float>(mesh, 2e-4, false);
+}
+
+TEST(ColumnLayout, EvaluatesPaintedDampingAsThePlainModel) {
+  for (const sim::HairMesh& mesh : meshes()) {
+    expectSameEvaluation<double>(mesh, 1e-12, true);
+    expectSameEvaluation<float>(mesh, 2e-4, true);
+  }
+}
+
+// Shares of one value everywhere: as the same evaluation with so many times the damping.
+TEST(ColumnLayout, ShareOfDampingThatIsTheSameEverywhereScalesTheDamping) {
+  constexpr double kShare = 0.375, kStep = 0.01, kDamping = 0.05;
+  const sim::HairMesh mesh = meshes().front();
+  const sim::BlockPattern pattern = sim::systemPattern(mesh);
+  const sim::ForceModel<double> model = test::makeForceModel(mesh, pattern, test::tautHair());
+  test::Random random(11);
+  const std::size_t n = mesh.shape.positions.size();
+  const auto x = test::plain<double>(stateOf(mesh, 1, random)), v = test::plain<double>(stateOf(mesh, 2, random));
+  const std::vector<double> shares(n, kShare);
+  std::vector<V3<double>> force(n, V3<double>{0, 0, 0}), scaled_force(n, V3<double>{0, 0, 0});
+  sim::BlockMatrix<double> matrix(&pattern), scaled(&pattern);
+  matrix.setZero();
+  scaled.setZero();
+  const double square = kStep * kStep;
+  sim::Evaluation<double> out{force, &matrix, square + kStep * kDamping, square, v, kDamping, shares};
+  const double energy = sim::evaluate<double>(model, x, out);
+  out = {scaled_force, &scaled, square + kStep * kShare * kDamping, square, v, kShare * kDamping, {}};
+  EXPECT_NEAR(sim::evaluate<double>(model, x, out), energy, 1e-12 * energy);
+  const Eigen::VectorXd f = test::stacked<double>(force), g = test::stacked<double>(scaled_force);
+  EXPECT_LE((f - g).norm(), 1e-12 * g.norm());
+  const Eigen::MatrixXd a = test::dense(matrix), b = test::dense(scaled);
+  EXPECT_LE((a - b).norm(), 1e-12 * b.norm());
 }
 
 // As every kind runs that has no kernel.

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "sim/step.h"
+#include "tests/sim_probes.h"
 #include "tests/test_meshes.h"
 
 namespace state_bytes_test {
@@ -76,10 +77,10 @@ TEST_P(State, RestoredInANewContextGoesOnInTheSameBits) {
     play(0, moment, hair);
     const std::vector<std::byte> bytes = sim::saveState(hair.mesh, hair.state);
     ASSERT_EQ(sim::loadState(other.mesh, bytes, other.state), "");
-    EXPECT_TRUE(sim::sameBits(hair.state, other.state));
+    EXPECT_TRUE(test::sameBits(hair.state, other.state));
     other.params = hair.params;
     for (Hair* one : {&hair, &other}) play(moment, moment + 40, *one);
-    EXPECT_TRUE(sim::sameBits(hair.state, other.state)) << "from frame " << moment;
+    EXPECT_TRUE(test::sameBits(hair.state, other.state)) << "from frame " << moment;
   }
 }
 
@@ -91,9 +92,9 @@ TEST_P(State, TwoHairsWithDifferentPastsAreTheSameAfterAResetAndGoOnTheSame) {
     one->state = sim::restState(one->mesh, Eigen::Isometry3d::Identity());
     one->params = params();
   }
-  EXPECT_TRUE(sim::sameBits(hair.state, other.state));
+  EXPECT_TRUE(test::sameBits(hair.state, other.state));
   for (Hair* one : {&hair, &other}) play(0, 50, *one);
-  EXPECT_TRUE(sim::sameBits(hair.state, other.state));
+  EXPECT_TRUE(test::sameBits(hair.state, other.state));
 }
 
 // A context holds what follows from mesh and parameters, and scratch: it can serve two hairs in turn.
@@ -110,7 +111,7 @@ TEST_P(State, OneContextServesTwoHairs) {
     play(n + 20, n + 21, other);
     std::swap(other.state, second), std::swap(other.params, second_params);
   }
-  EXPECT_TRUE(sim::sameBits(hair.state, first));
+  EXPECT_TRUE(test::sameBits(hair.state, first));
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, State, testing::ValuesIn(kWays),
@@ -122,7 +123,7 @@ TEST(StateBytes, OneChangedBitAnywhereIsTold) {
   const auto differs = [&](const auto& change) {
     sim::HairState other = hair.state;
     change(other);
-    return !sim::sameBits(hair.state, other);
+    return !test::sameBits(hair.state, other);
   };
   EXPECT_FALSE(differs([](sim::HairState&) {}));
   EXPECT_TRUE(differs([](sim::HairState& s) { s.positions.back().z() = -s.positions.back().z(); }));
@@ -152,9 +153,9 @@ TEST(StateBytes, WhatCannotBeRestoredSaysWhyAndChangesNothing) {
   for (const std::size_t at : {std::size_t{40}, bytes.size() / 2, bytes.size() - 1})
     EXPECT_NE(fault(changed(at)).find("has been changed"), std::string::npos) << at;
   EXPECT_NE(sim::loadState(other.mesh, bytes, state).find("another hair mesh"), std::string::npos);
-  EXPECT_TRUE(sim::sameBits(state, before));
+  EXPECT_TRUE(test::sameBits(state, before));
   EXPECT_EQ(fault(bytes), "");
-  EXPECT_TRUE(sim::sameBits(state, hair.state));
+  EXPECT_TRUE(test::sameBits(state, hair.state));
 }
 
 // Bytes that are whole, but of a hand that knows another mesh.
@@ -166,7 +167,7 @@ TEST(StateBytes, ContactsOfVerticesThatAreNotThereAreRefused) {
     sim::HairState strange = hair.state;
     strange.contacts.push_back({.vertex = vertex});
     EXPECT_NE(sim::loadState(hair.mesh, sim::saveState(hair.mesh, strange), state), "") << vertex;
-    EXPECT_TRUE(sim::sameBits(state, hair.state));
+    EXPECT_TRUE(test::sameBits(state, hair.state));
   }
   sim::HairState touching = hair.state;
   touching.contacts.push_back({.vertex = hair.mesh.vertexCount() - 1});

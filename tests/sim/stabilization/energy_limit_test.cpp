@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "sim/stabilization/state_validation.h"
+#include "tests/sim_probes.h"
 #include "tests/test_meshes.h"
 
 namespace energy_limit_test {
@@ -76,7 +77,7 @@ TEST(EnergyLimit, AndComesBack) {
 struct Flung {
   Hair hair{test::combedShape(test::mixedPatch(7, 0.3)), hairWithoutBody()};
   sim::HairState start = hair.state;
-  sim::ForceModel<double> model = sim::makeForceModel(hair.mesh, sim::systemPattern(hair.mesh), hair.params);
+  sim::ForceModel<double> model = test::makeForceModel(hair.mesh, sim::systemPattern(hair.mesh), hair.params);
   sim::EnergyLimit scratch{hair.mesh};
 
   void fling(double way) {

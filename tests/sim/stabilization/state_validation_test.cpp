@@ -7,6 +7,7 @@
 #include <limits>
 #include <queue>
 
+#include "tests/sim_probes.h"
 #include "tests/test_meshes.h"
 
 namespace state_validation_test {
@@ -163,7 +164,7 @@ TEST(StateValidation, APlaceBeyondReachIsAbsurdAndAWildOneIsNot) {
 TEST(StateValidation, NamesTheElementThatPullsHardest) {
   const Hair hair(test::patchShape(patch()), runningHair());
   const sim::BlockPattern pattern = sim::systemPattern(hair.mesh);
-  const sim::ForceModel<double> model = sim::makeForceModel(hair.mesh, pattern, hair.params);
+  const sim::ForceModel<double> model = test::makeForceModel(hair.mesh, pattern, hair.params);
   sim::FaultReport fault_report;
   fault_report.vertex = hair.mesh.shape.column_first[3] - 1;
   std::vector<sim::V3<double>> x = test::plain<double>(hair.state.positions);
