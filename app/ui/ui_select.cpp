@@ -230,9 +230,11 @@ void selectRow(Demo& demo, UiState& ui) {
                               -1, ui);
   ImGui::EndDisabled();
   if (change < 0) return;
-  const std::string name(kMeshChangeNames[static_cast<std::size_t>(change)]);
-  postRequest(
-      demo, {Ask::kMesh, name, changeText(static_cast<MeshChange>(change), select, selectedActor(demo).haircut->mesh)});
+  const auto what = static_cast<MeshChange>(change);
+  const bool layer = what == MeshChange::kAddLayer || what == MeshChange::kRemoveLayer;
+  const std::string chosen = changeText(what, select, selectedActor(demo).haircut->mesh);
+  const std::string mirror(ui.brush.mirror && !layer && !chosen.empty() ? kMirrorText : "");
+  postRequest(demo, {Ask::kMesh, std::string(kMeshChangeNames[static_cast<std::size_t>(change)]), mirror + chosen});
 }
 
 void chooseElement(int element, UiState& ui) {

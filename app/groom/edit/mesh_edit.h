@@ -43,6 +43,13 @@ EditedMesh addLayer(const sim::HairMeshShape& shape, int after, const BodyDistan
 // mesh are nearest to the old ones.
 EditedMesh removeLayer(const sim::HairMeshShape& shape, int layer, const BodyDistance& body);
 
+// Root edges, or columns, with their likes on the other side of the plane x = `middle` (m). The like of a column is the
+// one that roots nearest to its mirrored root, with those that root where it does; the like of an edge are the fewest
+// edges that join the likes of its ends, for the two sides of a head need not have the same columns. Throw InputError
+// where there is no like within an edge's length.
+std::vector<ColumnPair> withMirrored(const sim::HairMeshShape& shape, std::span<const ColumnPair> edges, double middle);
+std::vector<int> withMirrored(const sim::HairMeshShape& shape, std::span<const int> columns, double middle);
+
 // Draws a parting along root edges: bundles on its two sides share no column any more. Ends of the parting inside the
 // hair stay joined. No vertex moves.
 EditedMesh splitColumns(const sim::HairMeshShape& shape, std::span<const ColumnPair> edges);

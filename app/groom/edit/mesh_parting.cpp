@@ -106,7 +106,99 @@ void requireColumn(const sim::HairMeshShape& shape, int column) {
                      "name columns from 0 to " + std::to_string(shape.columnCount() - 1));
 }
 
+Vec3 acrossMiddle(const Vec3& place, double middle) {
+  return {2 * middle - place.x(), place.y(), place.z()};
+}
+
 }  // namespace
+
+namespace {
+
+// Root edges as neighbours of columns, and which columns are the likes of others on the other side of a plane.
+class Mirror {
+ public:
+  Mirror(const sim::HairMeshShape& shape, double middle) : shape_(shape), middle_(middle) {
+    for (const auto& [edge, faces] : facesAtEdges(shape)) {
+      beside_[edge.first].insert(edge.second);
+      beside_[edge.second].insert(edge.first);
+    }
+  }
+
+  // The nearest column to the mirrored root, and those that root where it does.
+  std::vector<int> likesOf(int column) const {
+    requireColumn(shape_, column);
+    const Vec3 place = acrossMiddle(rootOf(shape_, column), middle_);
+    double nearest = INFINITY, longest = 0;
+    for (int c = 0; c < shape_.columnCount(); ++c) nearest = std::min(nearest, (rootOf(shape_, c) - place).norm());
+    for (const int c : besides(column))
+      longest = std::max(longest, (rootOf(shape_, c) - rootOf(shape_, column)).norm());
+    if (nearest > longest)
+      throw InputError("", "column " + std::to_string(column), "has no like on the other side of the head",
+                       "turn the mirror off, or choose where hair is on both sides");
+    std::vector<int> likes;
+    for (int c = 0; c < shape_.columnCount(); ++c) {
+      if ((rootOf(shape_, c) - place).norm() < nearest + kSameRoot) likes.push_back(c);
+    }
+    return likes;
+  }
+
+  // Edges from one's likes to the other's, the fewest that join them; none where they share one.
+  std::vector<ColumnPair> edgesBetween(int one, int other) const {
+    const std::vector<int> from = likesOf(one), to = likesOf(other);
+    std::map<int, int> came;  // from where each was reached first
+    std::vector<int> reached(from);
+    for (const int c : from) came[c] = c;
+    for (std::size_t next = 0; next < reached.size(); ++next) {
+      const int c = reached[next];
+      if (std::ranges::count(to, c)) {
+        std::vector<ColumnPair> way;
+        for (int at = c; came[at] != at; at = came[at]) way.push_back({came[at], at});
+        return way;
+      }
+      for (const int d : besides(c)) {
+        if (came.emplace(d, c).second) reached.push_back(d);
+      }
+    }
+    return {};
+  }
+
+  const std::set<int>& besides(int column) const {
+    static const std::set<int> kNone;
+    const auto at = beside_.find(column);
+    return at == beside_.end() ? kNone : at->second;
+  }
+
+ private:
+  const sim::HairMeshShape& shape_;
+  double middle_;
+  std::map<int, std::set<int>> beside_;
+};
+
+}  // namespace
+
+std::vector<ColumnPair> withMirrored(const sim::HairMeshShape& shape, std::span<const ColumnPair> edges,
+                                     double middle) {
+  const Mirror mirror(shape, middle);
+  std::vector<ColumnPair> both(edges.begin(), edges.end());
+  for (const ColumnPair& edge : edges) {
+    const std::vector<ColumnPair> more = mirror.edgesBetween(edge.a, edge.b);
+    both.insert(both.end(), more.begin(), more.end());
+  }
+  return both;
+}
+
+std::vector<int> withMirrored(const sim::HairMeshShape& shape, std::span<const int> columns, double middle) {
+  const Mirror mirror(shape, middle);
+  std::set<int> both(columns.begin(), columns.end());
+  for (const int c : columns) {
+    for (const int like : mirror.likesOf(c)) both.insert(like);
+    for (const int other : columns) {
+      if (!mirror.besides(c).contains(other)) continue;
+      for (const ColumnPair& edge : mirror.edgesBetween(c, other)) both.insert({edge.a, edge.b});
+    }
+  }
+  return {both.begin(), both.end()};
+}
 
 EditedMesh splitColumns(const sim::HairMeshShape& shape, std::span<const ColumnPair> edges) {
   const std::map<RootEdgeKey, std::vector<int>> at_edges = facesAtEdges(shape);

@@ -120,22 +120,24 @@ std::vector<ColumnPair> pairsOf(const std::vector<int>& numbers) {
   return pairs;
 }
 
-EditedMesh changed(MeshChange change, const std::vector<int>& numbers, const Actor& actor) {
+EditedMesh changed(MeshChange change, const std::vector<int>& numbers, bool mirror, const Actor& actor) {
   const sim::HairMeshShape& shape = actor.haircut->mesh.shape;
   const BodyDistance& body = actor.body->distance;
+  const Scalp& scalp = actor.body->character.scalp;
+  const auto both = [&](const auto& of) { return mirror ? withMirrored(shape, of, scalp.center.x()) : of; };
   switch (change) {
     case MeshChange::kAddLayer:
       return addLayer(shape, numbers[0], body);
     case MeshChange::kRemoveLayer:
       return removeLayer(shape, numbers[0], body);
     case MeshChange::kSplit:
-      return splitColumns(shape, pairsOf(numbers));
+      return splitColumns(shape, both(pairsOf(numbers)));
     case MeshChange::kMerge:
-      return mergeColumns(shape, numbers);
+      return mergeColumns(shape, both(numbers));
     case MeshChange::kExtrude:
       break;
   }
-  return extrudeColumns(shape, pairsOf(numbers), actor.body->character.scalp, body);
+  return extrudeColumns(shape, both(pairsOf(numbers)), scalp, body);
 }
 
 std::string saidOf(MeshChange change, double moved) {
@@ -156,8 +158,9 @@ void applyMeshChange(const std::string& name, const std::string& text, int index
                      sim::nameHint(name, kMeshChangeNames));
   const auto change = static_cast<MeshChange>(found - kMeshChangeNames.begin());
   const bool layer = change == MeshChange::kAddLayer || change == MeshChange::kRemoveLayer;
+  const bool mirror = !layer && text.starts_with(kMirrorText);
   std::vector<int> numbers;
-  const bool whole = wholeNumbers(allNumbersOf(text), numbers);
+  const bool whole = wholeNumbers(allNumbersOf(mirror ? text.substr(kMirrorText.size()) : text), numbers);
   const bool paired = change == MeshChange::kSplit || change == MeshChange::kExtrude;
   if (!whole || numbers.empty() || (layer && numbers.size() != 1) || (paired && numbers.size() % 2 != 0))
     throw InputError("", name, "is given nothing that it can change",
@@ -166,7 +169,7 @@ void applyMeshChange(const std::string& name, const std::string& text, int index
                               : "choose columns");
   const Actor& actor = demo.actors[static_cast<std::size_t>(index)];
   handsOn(actor);  // makes the distance to the body
-  EditedMesh edited = changed(change, numbers, actor);
+  EditedMesh edited = changed(change, numbers, mirror, actor);
   remeshHair(std::move(edited.shape), edited.sources, index, demo);
   demo.message = saidOf(change, edited.moved);
   demo.message_is_fault = false;

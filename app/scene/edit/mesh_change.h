@@ -39,10 +39,13 @@ std::vector<int> verticesOf(MeshElement element, std::span<const int> chosen, co
 // changed.
 void applyMove(const MoveSample& sample, int actor, Demo& demo);
 
-// What changes the structure, see mesh_edit.h. Their texts: a layer's number; pairs of columns; columns; pairs.
+// What changes the structure, see mesh_edit.h. Their texts: a layer's number; pairs of columns; columns; pairs. Before
+// pairs and columns kMirrorText: on the other side of the head as well.
 enum class MeshChange { kAddLayer, kRemoveLayer, kSplit, kMerge, kExtrude };
 inline constexpr std::array<std::string_view, 5> kMeshChangeNames{"add-layer", "remove-layer", "split", "merge",
                                                                   "extrude"};
+
+inline constexpr std::string_view kMirrorText = "mirror ";
 
 // Throws InputError where the mesh would not be valid, and of hair that is tied, pinned or under an attachment; then
 // nothing has changed. The demo's message says how far strands have moved.

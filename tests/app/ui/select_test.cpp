@@ -113,6 +113,24 @@ TEST_F(Select, ButtonsAskForChangesOfTheMesh) {
   EXPECT_TRUE(ui_.select.chosen.empty()) << "they were of the mesh before";
 }
 
+TEST_F(Select, TheMirrorGoesWithAPartingAndNotWithALayer) {
+  openTab(app::tabIndex("hair"));
+  click("select Column");
+  press(onHair(40));
+  ASSERT_EQ(ui_.select.chosen.size(), 1u);
+  click("brush_mirror");
+  ASSERT_TRUE(ui_.brush.mirror);
+  const auto textOf = [&](const char* button) {
+    for (const Request& request : click(button)) {
+      if (request.what == Ask::kMesh) return request.text;
+    }
+    return std::string("nothing");
+  };
+  const std::string column = std::to_string(ui_.select.chosen[0]);
+  EXPECT_EQ(textOf("mesh Weld"), "mirror " + column);
+  EXPECT_EQ(textOf("mesh Layer +").find("mirror"), std::string::npos);
+}
+
 TEST_F(Select, BrushesAndSelectionTakeTurns) {
   openTab(app::tabIndex("hair"));
   click("select Edge");
