@@ -113,8 +113,10 @@ Request readRequest(const JsonPlace& place) {
 }
 
 RecordedView readView(const JsonPlace& place) {
-  place.expectObject({"target", "yaw", "pitch", "distance", "aspect", "height"});
-  if (place.value().size() != 6) place.refuse("is no view", "write target, yaw, pitch, distance, aspect and height");
+  place.expectObject({"target", "yaw", "pitch", "distance", "aspect", "height", "shift"});
+  const bool shifted = place.has("shift");
+  if (place.value().size() != (shifted ? 7 : 6))
+    place.refuse("is no view", "write target, yaw, pitch, distance, aspect and height");
   RecordedView view;
   const std::array<double, 3> target = place.at("target").vector(-kFarthestView, kFarthestView);
   view.target = {target[0], target[1], target[2]};
@@ -123,21 +125,24 @@ RecordedView readView(const JsonPlace& place) {
   view.distance = place.at("distance").number(1e-6, kFarthestView);
   view.aspect = place.at("aspect").number(1 / kMaxAspect, kMaxAspect);
   view.height = static_cast<int>(place.at("height").number(1, kTallestPicture));
+  if (shifted) view.shift = place.at("shift").number(-1, 1);
   return view;
 }
 
 json writeView(const RecordedView& view) {
-  return {{"target", {view.target.x(), view.target.y(), view.target.z()}},
-          {"yaw", view.yaw},
-          {"pitch", view.pitch},
-          {"distance", view.distance},
-          {"aspect", view.aspect},
-          {"height", view.height}};
+  json written{{"target", {view.target.x(), view.target.y(), view.target.z()}},
+               {"yaw", view.yaw},
+               {"pitch", view.pitch},
+               {"distance", view.distance},
+               {"aspect", view.aspect},
+               {"height", view.height}};
+  if (view.shift != 0) written["shift"] = view.shift;
+  return written;
 }
 
 RecordedView viewOf(const Demo& demo) {
   const Camera& camera = demo.camera;
-  return {camera.target, camera.yaw, camera.pitch, camera.distance, demo.aspect, demo.picture_height};
+  return {camera.target, camera.yaw, camera.pitch, camera.distance, demo.aspect, demo.picture_height, demo.shift};
 }
 
 void show(const RecordedView& view, Demo& demo) {
@@ -147,6 +152,7 @@ void show(const RecordedView& view, Demo& demo) {
   demo.camera.distance = view.distance;
   demo.aspect = view.aspect;
   demo.picture_height = view.height;
+  demo.shift = view.shift;
 }
 
 RecordedFrame readFrame(const JsonPlace& place) {

@@ -11,15 +11,20 @@ namespace app {
 
 namespace {
 
+// Without panels, and so with the figure in the middle.
 std::vector<unsigned char> drawn(Demo& demo, const FrameTarget& target) {
   std::vector<unsigned char> pixels;
+  const double shift = demo.shift;
   if (demo.comparison.on() && target.pair) {
     FrameTarget offscreen = target;
     offscreen.pixels = &pixels;
+    offscreen.free_left = 0, offscreen.free_right = 1;
     drawFrame(demo, offscreen);
   } else {
+    demo.shift = 0;
     target.renderer->renderImage(frameInput(demo, target.width, target.height), pixels);
   }
+  demo.shift = shift;
   return pixels;
 }
 

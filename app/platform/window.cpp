@@ -249,6 +249,21 @@ void followTextScale(GLFWwindow* window, double asked, Session& s) {
 }
 
 // How long the next frame is. Runs of a given number of frames and recordings go by frames, all else by the clock.
+// The figure stands in the middle of what panels leave free. What is recorded has no panels, and neither has the window
+// then a part that they take.
+void leaveFree(GLFWwindow* window, const Demo& demo, const UiState& ui, FrameTarget& target) {
+  int width = 1, height = 1;
+  glfwGetWindowSize(window, &width, &height);
+  if (width < 1 || demo.capture.recording) {
+    target.free_left = 0, target.free_right = 1;
+    return;
+  }
+  ImGui::GetIO().DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
+  const FreeWidth free = freeWidth(ui);
+  target.free_left = static_cast<double>(free.left) / width;
+  target.free_right = static_cast<double>(free.right) / width;
+}
+
 double frameSeconds(const Options& options, const Demo& demo, double& last) {
   const double moment = now();
   const double passed = moment - last;
@@ -390,6 +405,7 @@ int runWindow(Scene scene, const Options& options) {
     if (!ui.to_forget.empty()) autosave.forget(std::exchange(ui.to_forget, ""));
     autosave.keep(now(), demo);
     demo.stats.skipped[kSkipEvents] = {throttle.waited(), 1, 0};
+    leaveFree(window.handle, demo, ui, target);
     pictures.write(demo, target);
     hair.frame(demo);
     if (frame + 1 == options.save_state_at) writeFile(options.save_state, demoStateBytes(demo));

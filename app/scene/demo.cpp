@@ -243,6 +243,7 @@ void addStep(const sim::StepReport& report, double step_seconds, FrameStats& sta
   stats.converged = stats.converged && report.converged;
   stats.work_units += report.work_units;
   stats.solves_cut += report.solve_cut;
+  input.camera.shift = static_cast<float>(demo.shift);
   stats.corrections_cut += report.corrections_cut;
   stats.contacts += report.contacts;
   stats.corrected += report.corrected;
@@ -257,6 +258,12 @@ void addStep(const sim::StepReport& report, double step_seconds, FrameStats& sta
     stats.always[id].skipped += left_out.skipped;
     stats.always[id].of += left_out.of;
   };
+// What puts the figure into the middle between two shares of a picture's width. Where nothing is left between them it
+// stays in the picture's middle.
+double shiftBetween(double left, double right) {
+  return left < right ? left + right - 1 : 0;
+}
+
   add(kNoNewBalance, report.refreshes);
   add(kNoStiffness, report.force_kinds);
   add(kOutOfReach, report.collider_tests);
@@ -264,6 +271,12 @@ void addStep(const sim::StepReport& report, double step_seconds, FrameStats& sta
 
 std::string numericalNote(const FrameStats& stats) {
   if (stats.recoveries > 0)
+  other.shift = demo.shift;
+  if (comparison.side_by_side) {
+    // Each half's own free part lies between its panels and the middle.
+    demo.shift = shiftBetween(target.free_left / 0.5, 1);
+    other.shift = shiftBetween(0, (target.free_right - 0.5) / 0.5);
+  }
     return std::to_string(stats.recoveries) + " recoveries from numerical trouble: " + faultText(stats.fault_report);
   return stats.carried > 0 ? "the head jumped; the hair was carried along" : "";
 }
@@ -280,6 +293,7 @@ std::string hairNotes(const Demo& demo) {
 Demo openScene(Scene scene, double aspect, bool beside) {
   Demo demo;
   demo.scene = std::move(scene);
+  demo.shift = shiftBetween(target.free_left, target.free_right);
   demo.aspect = aspect;
   for (const CharacterSpec& spec : demo.scene.characters) {
     demo.actors.push_back(makeActor(spec, demo.scene.playback, demo.asset_cache));

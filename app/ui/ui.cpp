@@ -175,7 +175,7 @@ float timingsRoom(const UiState& ui) {
   return ImGui::GetIO().DisplaySize.x - sidebarWidth(ui) - (kTimingsWidth + 3 * kMargin) * ui.text_scale;
 }
 float takenRight(const UiState& ui) {
-  const bool timed = ui.visible && !folded(ui) && timingsRoom(ui) >= 0;
+  const bool timed = ui.visible && !folded(ui) && !ui.timings_folded && timingsRoom(ui) >= 0;
   return timed ? (kTimingsWidth + kMargin) * ui.text_scale : 0;
 }
 
@@ -232,7 +232,8 @@ void timings(Demo& demo, UiState& ui) {
   ImGui::SetNextWindowCollapsed(room < kAmpleWidth * ui.text_scale, ImGuiCond_FirstUseEver);
   const ImGuiWindowFlags flags =
       ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_AlwaysAutoResize;
-  if (ImGui::Begin("Timings", nullptr, flags)) timingsPanel(demo, ui);
+  ui.timings_folded = !ImGui::Begin("Timings", nullptr, flags);
+  if (!ui.timings_folded) timingsPanel(demo, ui);
   ui.timings_bottom = ImGui::GetWindowPos().y + ImGui::GetWindowSize().y;
   ImGui::End();
 }
@@ -329,9 +330,12 @@ int tabIndex(std::string_view name) {
   return -1;
 }
 
+FreeWidth freeWidth(const UiState& ui) {
+  return {takenLeft(ui), ImGui::GetIO().DisplaySize.x - takenRight(ui)};
+}
+
 void buildUi(Demo& demo, UiState& ui) {
   ui.items.clear();
-  ui.free_middle = 0.5f * (takenLeft(ui) + ImGui::GetIO().DisplaySize.x - takenRight(ui));
   compareLine(demo, ui);
   if (!ui.line_held) brushFrame(demo, ui);
   count(!ui.visible, demo.stats.always[kHiddenPanels]);

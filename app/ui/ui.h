@@ -84,7 +84,6 @@ struct UiState {
   int open_tab = -1;                            // asked for by a key or a test; -1: leave
   float timings_bottom = 0;                     // px; 0: they are not shown
   float history_width = 0, history_height = 0;  // px with its margin; 0: it is not shown
-  float free_middle = 0;                        // px from the left: the middle of what the panels leave to the figure
   bool line_placed = false;                     // the line of a comparison stands there, or where a person has drawn it
   bool timings_in_tab = false;                  // for want of room beside the sidebar they are in the Debug tab
   float text_scale = 1;                         // of a dense display
@@ -93,6 +92,7 @@ struct UiState {
   std::array<char, 64> preset_name{}, search{};
   PresetMark preset;
   std::string to_replace;  // a file that is there already and is written on the second press
+  bool timings_folded = false;                  // to their title
   FileBrowser browser;
   std::string offered, to_forget;  // project that an earlier run has left; one that a person does not want
   long scrubbed = -1;              // frame that the timeline is dragged to
@@ -132,6 +132,13 @@ enum UiKey {
   kKeyTab = 258,
   kKeyRight = 262,
   kKeyLeft = 263,
+// Pixels of the mouse between which the panels leave the window to the figure.
+struct FreeWidth {
+  float left = 0, right = 0;
+  float middle() const { return 0.5f * (left + right); }
+};
+FreeWidth freeWidth(const UiState& ui);
+
   kKeyDown = 264,
   kKeyUp = 265,
   kKeyHome = 268,

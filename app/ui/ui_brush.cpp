@@ -42,7 +42,7 @@ bool behindHead(const Vec3& point, const Camera& camera, const Actor& actor) {
 
 // The painted field at the roots, in the colours of its picture; under the ring brighter.
 void drawField(const Vec3& place, const Demo& demo, const BrushState& brush, float scale) {
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const Picture shown = shownPicture(demo);
   const Actor& actor = selectedActor(demo);
   const std::string& picture = mapOf(kFieldNames[static_cast<std::size_t>(brush.field)], actor.spec.maps);
   const FieldMap white{1, 1, {1}, {}};
@@ -60,7 +60,7 @@ void drawField(const Vec3& place, const Demo& demo, const BrushState& brush, flo
     double weight = 0;
     for (int k = 0; k < mesh.shape.columnLength(c); ++k)
       weight = std::max(weight, brushReach(reach, actor.hair.positions[root + static_cast<std::size_t>(k)]));
-    const auto pixel = pixelOf(actor.hair.positions[root + 1], size.x, size.y, demo.camera);
+    const auto pixel = pixelOf(actor.hair.positions[root + 1], shown, demo.camera);
     if (!pixel) continue;
     const ImVec2 at(static_cast<float>((*pixel)[0]), static_cast<float>((*pixel)[1]));
     ImDrawList* list = ImGui::GetBackgroundDrawList();
@@ -72,7 +72,7 @@ void drawField(const Vec3& place, const Demo& demo, const BrushState& brush, flo
 
 // What the brush reaches: its ring, and a dot at each vertex, the brighter the more it is moved.
 void drawReach(const Vec3& place, const Demo& demo, const BrushState& brush, float scale) {
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const Picture shown = shownPicture(demo);
   const Actor& actor = selectedActor(demo);
   ImDrawList* list = ImGui::GetBackgroundDrawList();
   const Vec3 back = viewBack(demo.camera), right = Vec3::UnitY().cross(back).normalized(), up = back.cross(right);
@@ -80,7 +80,7 @@ void drawReach(const Vec3& place, const Demo& demo, const BrushState& brush, flo
   for (int k = 0; k < kRingPoints; ++k) {
     const double turn = 2 * 3.14159265358979 * k / kRingPoints;
     const auto pixel =
-        pixelOf(place + brush.radius * (std::cos(turn) * right + std::sin(turn) * up), size.x, size.y, demo.camera);
+        pixelOf(place + brush.radius * (std::cos(turn) * right + std::sin(turn) * up), shown, demo.camera);
     if (!pixel) return;
     ring[k] = {static_cast<float>((*pixel)[0]), static_cast<float>((*pixel)[1])};
   }
@@ -94,7 +94,7 @@ void drawReach(const Vec3& place, const Demo& demo, const BrushState& brush, flo
     const double weight = brushReach(reach, p);
     const float held = frozen.empty() ? 0 : frozen[v];
     if ((weight <= 0.02 && held <= 0.02f) || behindHead(p, demo.camera, actor)) continue;
-    const auto pixel = pixelOf(p, size.x, size.y, demo.camera);
+    const auto pixel = pixelOf(p, shown, demo.camera);
     if (!pixel) continue;
     const ImVec2 at(static_cast<float>((*pixel)[0]), static_cast<float>((*pixel)[1]));
     const int alpha = static_cast<int>(40 + 180 * std::max(weight, double(held)));
@@ -287,7 +287,7 @@ void brushFrame(Demo& demo, UiState& ui) {
     brush.stroking = false;
     return;
   }
-  const Ray ray = rayThrough(io.MousePos.x, io.MousePos.y, io.DisplaySize.x, io.DisplaySize.y, demo.camera);
+  const Ray ray = rayThrough(io.MousePos.x, io.MousePos.y, shownPicture(demo), demo.camera);
   const std::optional<Vec3> hit = pickHair(ray, selectedActor(demo));
   brush.over_hair = hit.has_value();
   if (begins && hit) {

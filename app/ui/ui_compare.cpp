@@ -74,7 +74,7 @@ void compareLine(Demo& demo, UiState& ui) {
     return;
   }
   if (!std::exchange(ui.line_placed, true) && !comparison.side_by_side)
-    postRequest(demo, {Ask::kCompareView, "split", "", ui.free_middle / width});
+    postRequest(demo, {Ask::kCompareView, "split", "", freeWidth(ui).middle() / width});
   const float x = width * static_cast<float>(comparison.side_by_side ? 0.5 : comparison.line);
   const float top = 0.14f * io.DisplaySize.y;
   ImDrawList* list = ImGui::GetBackgroundDrawList();

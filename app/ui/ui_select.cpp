@@ -35,8 +35,7 @@ void followMesh(const Actor& actor, SelectState& select) {
 }
 
 std::optional<ImVec2> screenPlace(const Vec3& point, const Demo& demo) {
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  const auto pixel = pixelOf(point, size.x, size.y, demo.camera);
+  const auto pixel = pixelOf(point, shownPicture(demo), demo.camera);
   if (!pixel) return {};
   return ImVec2(static_cast<float>((*pixel)[0]), static_cast<float>((*pixel)[1]));
 }
@@ -251,7 +250,7 @@ void selectFrame(bool begins, Demo& demo, UiState& ui) {
   followMesh(actor, select);
   const MeshOverlay overlay(demo, ui.text_scale);
   const bool free = !io.WantCaptureMouse || brush.stroking;
-  const Ray ray = rayThrough(io.MousePos.x, io.MousePos.y, io.DisplaySize.x, io.DisplaySize.y, demo.camera);
+  const Ray ray = rayThrough(io.MousePos.x, io.MousePos.y, shownPicture(demo), demo.camera);
   const std::optional<HairHit> hit = free ? pickHairFace(ray, actor) : std::nullopt;
   const Rigid to_scalp = scalpToWorld(actor.body->character, actor.pose).inverse(Eigen::Isometry);
   brush.over_hair = hit.has_value();

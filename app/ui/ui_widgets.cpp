@@ -123,6 +123,12 @@ void postRequest(Demo& demo, Request request) {
 }
 
 MarksBelowDigits::MarksBelowDigits() : first_(ImGui::GetWindowDrawList()->VtxBuffer.Size) {}
+Picture shownPicture(const Demo& demo) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const bool half = demo.comparison.on() && demo.comparison.side_by_side;
+  return {(half ? 0.5 : 1.0) * static_cast<double>(size.x), static_cast<double>(size.y), demo.shift};
+}
+
 
 // Dear ImGui draws a mark as high as its slider and the digits over it: the vertices of its two colours are moved.
 MarksBelowDigits::~MarksBelowDigits() {

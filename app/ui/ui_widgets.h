@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "app/scene/edit/picking.h"
 #include "app/scene/view/look_params.h"
 #include "app/ui/ui.h"
 
@@ -14,6 +15,9 @@ namespace app {
 void noteItem(const std::string& name, UiState& ui);
 
 void postRequest(Demo& demo, Request request);
+
+// The figure's picture in the window, pixels of the mouse; side by side with another the left one.
+Picture shownPicture(const Demo& demo);
 
 // A tooltip for the last widget, after a short hover.
 void tip(const std::string& text);

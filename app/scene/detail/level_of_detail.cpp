@@ -124,8 +124,9 @@ bool mayBeSeen(const Demo& demo, const Actor& actor) {
   const Vec3 eye = demo.camera.anchor + demo.camera.target + demo.camera.distance * back;
   const Vec3 right = Vec3::UnitY().cross(back).normalized(), up = back.cross(right);
   const double y = std::tan(0.5 * demo.camera.fov), x = y * demo.aspect;
+  const double to_right = (1 - demo.shift) * x, to_left = (1 + demo.shift) * x;
   // Planes through the eye, normals outwards.
-  const std::array<Vec3, 5> planes{back, (right + x * back).normalized(), (-right + x * back).normalized(),
+  const std::array<Vec3, 5> planes{back, (right + to_right * back).normalized(), (-right + to_left * back).normalized(),
                                    (up + y * back).normalized(), (-up + y * back).normalized()};
   const render::LightInput light = lightAbout(demo.actors.front(), demo.scene.look.light);
   const Vec3 to_light(light.to_light[0], light.to_light[1], light.to_light[2]);

@@ -18,6 +18,11 @@ struct Eye {
   }
 };
 
+// Pixels from the left of what the camera looks at.
+double middleOf(const Picture& picture) {
+  return 0.5 * (1 + picture.shift) * picture.width;
+}
+
 // Distance along the ray to a triangle (Moeller and Trumbore 1997); negative: it is missed.
 double meet(const Ray& ray, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a, p = ray.along.cross(ac);
@@ -30,20 +35,20 @@ double meet(const Ray& ray, const Vec3& a, const Vec3& b, const Vec3& c) {
 
 }  // namespace
 
-Ray rayThrough(double x, double y, double width, double height, const Camera& camera) {
+Ray rayThrough(double x, double y, const Picture& picture, const Camera& camera) {
   const Eye eye(camera);
-  const double scale = 2 * eye.slope / height;
-  const Vec3 way = eye.forward + scale * ((x - 0.5 * width) * eye.right - (y - 0.5 * height) * eye.up);
+  const double scale = 2 * eye.slope / picture.height;
+  const Vec3 way = eye.forward + scale * ((x - middleOf(picture)) * eye.right - (y - 0.5 * picture.height) * eye.up);
   return {eye.at, way.normalized()};
 }
 
-std::optional<std::array<double, 2>> pixelOf(const Vec3& point, double width, double height, const Camera& camera) {
+std::optional<std::array<double, 2>> pixelOf(const Vec3& point, const Picture& picture, const Camera& camera) {
   const Eye eye(camera);
   const Vec3 way = point - eye.at;
   const double depth = way.dot(eye.forward);
   if (depth < 1e-3) return {};
-  const double scale = height / (2 * eye.slope * depth);
-  return std::array{0.5 * width + scale * way.dot(eye.right), 0.5 * height - scale * way.dot(eye.up)};
+  const double scale = picture.height / (2 * eye.slope * depth);
+  return std::array{middleOf(picture) + scale * way.dot(eye.right), 0.5 * picture.height - scale * way.dot(eye.up)};
 }
 
 Vec3 pointInPlane(const Ray& ray, const Vec3& place, const Vec3& facing) {

@@ -13,11 +13,16 @@ struct Ray {
   Vec3 from = Vec3::Zero(), along = -Vec3::UnitZ();  // m, world; unit
 };
 
-// Through a pixel of a picture of `width` by `height`, counted from its top left corner.
-Ray rayThrough(double x, double y, double width, double height, const Camera& camera);
+struct Picture {
+  double width = 1, height = 1;  // pixels
+  double shift = 0;              // see render::CameraInput
+};
+
+// Through a pixel, counted from the picture's top left corner.
+Ray rayThrough(double x, double y, const Picture& picture, const Camera& camera);
 
 // The pixel of a point (m, world); nothing behind the eye.
-std::optional<std::array<double, 2>> pixelOf(const Vec3& point, double width, double height, const Camera& camera);
+std::optional<std::array<double, 2>> pixelOf(const Vec3& point, const Picture& picture, const Camera& camera);
 
 // The ray's point in the plane through `place` that faces the camera; `place` where there is none.
 Vec3 pointInPlane(const Ray& ray, const Vec3& place, const Vec3& facing);

@@ -97,6 +97,7 @@ TEST(Recording, HoldsFromWhereItWasSeen) {
     if (frame >= 10 && frame < 20) app::zoom(-3, demo.camera);
     if (frame == 25) demo.picture_height = 300;
     if (frame >= 30 && frame < 40) app::orbit(30, 1, 300, demo.camera);
+    if (frame == 35) demo.shift = 0.6;
     if (frame == 45) app::zoom(30, demo.camera), app::pan(500, 0, 300, demo.camera);
     if (frame == 50) demo.requests = {{Ask::kSkip, "far-mesh", "", 0}, {Ask::kView, "back", "", 0}};
     for (const app::Actor& actor : demo.actors) {
@@ -254,6 +255,7 @@ TEST(Recording, HostileTextIsRefusedWithItsLine) {
       {"a view after a request", "[0.1, [\"pause\", \"\", \"\", 1], " + view + "]\n"},
       {"a picture without height", "[0.1, " + view.substr(0, view.size() - 4) + "0}]\n"},
       {"a height beyond all", "[0.1, " + view.substr(0, view.size() - 4) + "1e99}]\n"},
+      {"a shift out of the picture", "[0.1, " + view.substr(0, view.size() - 1) + ", \"shift\": 1.5}]\n"},
       {"a wrong count", "[0.1]\n{\"frames\": 7, \"state\": \"0\"}\n"},
       {"an enormous count", "{\"frames\": 1e300, \"state\": \"0\"}\n"},
       {"more after the end", "{\"frames\": 0, \"state\": \"0\"}\n[0.1]\n"},
@@ -278,6 +280,8 @@ TEST(Recording, HostileTextIsRefusedWithItsLine) {
   }
   EXPECT_NO_THROW(app::readRecording(head + "[0]\n[0.1, [\"pause\", \"\", \"\", 1]]\n", "x.hmr"));
   EXPECT_NO_THROW(app::readRecording(head + "[0, " + view + ", [\"pause\", \"\", \"\", 1]]\n", "x.hmr"));
+  const std::string shifted = view.substr(0, view.size() - 1) + ", \"shift\": -0.25}";
+  EXPECT_EQ(app::readRecording(head + "[0, " + shifted + "]\n", "x.hmr").frames[0].view->shift, -0.25);
 }
 
 }  // namespace recording_test

@@ -227,20 +227,23 @@ TEST(GroomBrush, ARecordedTakeReplaysToTheBit) {
 TEST(Picking, ARayThroughAPixelMeetsWhatIsSeenThere) {
   app::Demo demo = app::openScene(sceneOf(app::Resolution::kLow, "idle_turns.bvh"), 1.5);
   const app::Actor& actor = demo.actors[0];
-  int hits = 0;
-  for (double x = 100; x < 900; x += 50) {
-    for (double y = 50; y < 600; y += 50) {
-      const std::optional<app::Vec3> hit = app::pickHair(app::rayThrough(x, y, 900, 600, demo.camera), actor);
-      if (!hit) continue;
-      ++hits;
-      const auto pixel = app::pixelOf(*hit, 900, 600, demo.camera);
-      ASSERT_TRUE(pixel);
-      EXPECT_NEAR((*pixel)[0], x, 1e-6);
-      EXPECT_NEAR((*pixel)[1], y, 1e-6);
+  for (const double shift : {0.0, 0.3}) {
+    const app::Picture picture{900, 600, shift};
+    int hits = 0;
+    for (double x = 100; x < 900; x += 50) {
+      for (double y = 50; y < 600; y += 50) {
+        const std::optional<app::Vec3> hit = app::pickHair(app::rayThrough(x, y, picture, demo.camera), actor);
+        if (!hit) continue;
+        ++hits;
+        const auto pixel = app::pixelOf(*hit, picture, demo.camera);
+        ASSERT_TRUE(pixel);
+        EXPECT_NEAR((*pixel)[0], x, 1e-6);
+        EXPECT_NEAR((*pixel)[1], y, 1e-6);
+      }
     }
+    EXPECT_GT(hits, 5);
+    EXPECT_FALSE(app::pickHair(app::rayThrough(2, 2, picture, demo.camera), actor));
   }
-  EXPECT_GT(hits, 5);
-  EXPECT_FALSE(app::pickHair(app::rayThrough(2, 2, 900, 600, demo.camera), actor));
 }
 
 }  // namespace groom_brush_test

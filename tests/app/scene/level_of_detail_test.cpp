@@ -137,4 +137,19 @@ TEST(LevelOfDetail, TheWayBackIsAFifthFurther) {
   EXPECT_EQ(demo.actors[0].detail.step_span, 1);
 }
 
+// A figure beside the picture is seen where the picture is shifted towards it.
+TEST(LevelOfDetail, WhatAShiftBringsIntoThePictureIsSeen) {
+  Demo demo = open(app::Style::kShort);
+  const app::Actor& actor = demo.actors[0];
+  standAt(200, demo);
+  demo.scene.look.light.shadows = false;
+  const double half = std::tan(0.5 * demo.camera.fov) * demo.aspect * demo.camera.distance;  // m, of the picture
+  demo.camera.target.x() = 1.3 * half + 1;  // the figure, with the metre that it may take, lies left of the picture
+  EXPECT_FALSE(app::mayBeSeen(demo, actor));
+  demo.shift = 0.6;
+  EXPECT_TRUE(app::mayBeSeen(demo, actor));
+  demo.shift = -0.6;
+  EXPECT_FALSE(app::mayBeSeen(demo, actor));
+}
+
 }  // namespace level_of_detail_test

@@ -17,7 +17,7 @@ class Select : public test::Panels {
   ImVec2 onHair(int number) {
     for (float y = 60; y < 600; y += 20) {
       for (float x = 560; x < 1100; x += 20) {
-        if (app::pickHair(app::rayThrough(x, y, 1280, 720, demo_.camera), demo_.actors[0]) && number-- == 0)
+        if (app::pickHair(app::rayThrough(x, y, {1280, 720}, demo_.camera), demo_.actors[0]) && number-- == 0)
           return {x, y};
       }
     }
