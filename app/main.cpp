@@ -24,7 +24,15 @@ int writeHair(const app::Scene& scene, const std::string& file) {
 int run(const app::Options& options) {
   app::Scene scene = app::sceneFromOptions(options);
   if (!options.write_hair.empty()) return writeHair(scene, options.write_hair);
-  return options.headless ? app::runHeadless(std::move(scene), options) : app::runWindow(std::move(scene), options);
+  if (options.headless) return app::runHeadless(std::move(scene), options);
+  if (options.replay.empty()) return app::runWindow(std::move(scene), options);
+  // A replay is checked all the same where no window can be opened.
+  try {
+    return app::runWindow(scene, options);
+  } catch (const app::ContextError& fault) {
+    std::cerr << "hairmesh: " << fault.what() << "\nhairmesh: replaying without a window\n";
+  }
+  return app::runHeadless(std::move(scene), app::withoutWindow(options));
 }
 
 int fail(const std::exception& fault, int exit_code) {

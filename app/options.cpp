@@ -426,6 +426,12 @@ void finish(const Unchecked& unchecked, Options& options) {
 
 }  // namespace
 
+Options withoutWindow(Options options) {
+  options.headless = true;
+  choosePictures(options);
+  return options;
+}
+
 namespace {
 
 // A replay has its scene and its frames from the recording: what would choose others is refused rather than left

@@ -68,6 +68,9 @@ struct Options {
   ExportSpec hair_export;
 };
 
+// The same run without a window, as where none can be opened.
+Options withoutWindow(Options options);
+
 // Parses argv with CLI11. Returns false and an exit code when the program has done what was asked (help, a listing).
 // Throws UsageError.
 bool parseOptions(int argc, char** argv, Options& options, int& exit_code);

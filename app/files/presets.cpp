@@ -186,10 +186,11 @@ std::string presetFile(const std::string& name, const std::string& base_file) {
   const bool bare = std::filesystem::path(name).extension().empty();
   const std::string file = findFile(bare ? name + ".json" : name, base_file, "presets");
   if (!bare || std::filesystem::exists(file)) return file;
-  std::string known;
-  for (const std::string& preset : listAssets("presets", {".json"}))
-    known += (known.empty() ? "" : ", ") + stem(preset);
-  throw InputError("preset '" + name + "'", "", "is not there", "choose one of " + known + ", or name a file");
+  std::vector<std::string> known;
+  for (const std::string& preset : listAssets("presets", {".json"})) known.push_back(stem(preset));
+  const std::vector<std::string_view> names(known.begin(), known.end());
+  throw InputError("preset '" + name + "'", "", "is not there",
+                   sim::nameHint(name, names) + "; a file may be named too");
 }
 
 }  // namespace app

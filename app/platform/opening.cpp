@@ -50,6 +50,8 @@ std::vector<std::string> openingNotes(const Options& options, const Demo& demo) 
     if (value == 0 && (!mapOf(field, first.spec.maps).empty() || !curveOf(field, first.spec.curves).empty()))
       notes.push_back(std::string("painted ") + field + " changes nothing while " + parameter + " is 0");
   }
+  if (options.out_given && !options.headless)
+    notes.push_back("--out is the folder of runs without a window: add --headless, or record this window by key K");
   if (demo.draw_governor.budget > 0 && options.headless && !options.no_images)
     notes.push_back("--draw-budget-ms goes by measured time: these pictures do not repeat to the bit");
   return notes;

@@ -453,4 +453,22 @@ TEST(Options, WithoutADisplayTheWindowSaysWhatToDo) {
   EXPECT_NE(outcome.err.find("--headless"), std::string::npos);
 }
 
+TEST(Options, WithoutADisplayAReplayIsCheckedAllTheSame) {
+  const std::string folder = test::freshFolder("options_replay"), file = folder + "/run.hmr";
+  ASSERT_EQ(runProgram({"--no-images", "--frames", "4", "--style", "short", "--resolution", "low", "--record", file})
+                .exit_code,
+            0);
+  const Outcome outcome = runProgram({"--replay", file}, "-u DISPLAY -u WAYLAND_DISPLAY");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("replaying without a window"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.out.find("the state is the recorded one to the bit"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("replayed without pictures"), std::string::npos) << outcome.out;
+}
+
+TEST(Options, AMisspeltPresetIsAnsweredWithTheNearest) {
+  const Outcome outcome = runProgram({"--no-images", "--frames", "1", "--preset", "blnd"});
+  EXPECT_EQ(outcome.exit_code, app::kExitBadInput);
+  EXPECT_NE(outcome.err.find("did you mean 'blond'?"), std::string::npos) << outcome.err;
+}
+
 }  // namespace options_test
