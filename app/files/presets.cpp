@@ -172,6 +172,14 @@ void loadPreset(const std::string& file, const PresetTarget& target) {
   applyPreset(readText(file, kLargestPreset), file, target);
 }
 
+PresetSections presetSections(const std::string& file) {
+  const json parsed = parseJson(readText(file, kLargestPreset), file);
+  const JsonPlace place(parsed, file);
+  place.expectObject({"name", "sim", "hair", "light", "view"});
+  const auto sets = [&](const char* section) { return place.has(section) && !place.at(section).value().empty(); };
+  return {sets("sim"), sets("hair"), sets("light"), sets("view")};
+}
+
 std::string writePreset(const std::string& name, const sim::SimParams& params, const CharacterLook& hair,
                         const SceneLook& scene) {
   const json preset = {{"name", name},

@@ -23,6 +23,12 @@ struct PresetTarget {
 void applyPreset(std::string_view text, const std::string& file, const PresetTarget& target);
 void loadPreset(const std::string& file, const PresetTarget& target);
 
+// Which tables a preset sets rows of. Throws InputError.
+struct PresetSections {
+  bool sim = false, hair = false, light = false, view = false;
+};
+PresetSections presetSections(const std::string& file);
+
 // All rows, so that loading it brings back what was saved.
 std::string writePreset(const std::string& name, const sim::SimParams& sim, const CharacterLook& hair,
                         const SceneLook& scene);

@@ -25,6 +25,7 @@
 #include "app/platform/hair_recorder.h"
 #include "app/platform/interrupt.h"
 #include "app/platform/opening.h"
+#include "app/platform/preset_pictures.h"
 #include "app/platform/shader_reload.h"
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
@@ -248,7 +249,6 @@ void followTextScale(GLFWwindow* window, double asked, Session& s) {
   ImGui_ImplOpenGL3_CreateFontsTexture();
 }
 
-// How long the next frame is. Runs of a given number of frames and recordings go by frames, all else by the clock.
 // The figure stands in the middle of what panels leave free. What is recorded has no panels, and neither has the window
 // then a part that they take.
 void leaveFree(GLFWwindow* window, const Demo& demo, const UiState& ui, FrameTarget& target) {
@@ -264,6 +264,7 @@ void leaveFree(GLFWwindow* window, const Demo& demo, const UiState& ui, FrameTar
   target.free_right = static_cast<double>(free.right) / width;
 }
 
+// How long the next frame is. Runs of a given number of frames and recordings go by frames, all else by the clock.
 double frameSeconds(const Options& options, const Demo& demo, double& last) {
   const double moment = now();
   const double passed = moment - last;
@@ -346,6 +347,11 @@ int endRun(const Options& options, const RunReport& run, int frames, Tape& tape,
   return end.differs ? kExitFault : kExitFine;
 }
 
+void keepProject(const Demo& demo, Autosave& autosave, UiState& ui) {
+  if (!ui.to_forget.empty()) autosave.forget(std::exchange(ui.to_forget, ""));
+  autosave.keep(now(), demo);
+}
+
 // What a run's report says of it as a whole.
 RunReport reportOf(const Demo& demo, double start_seconds) {
   RunReport run;
@@ -378,11 +384,10 @@ int runWindow(Scene scene, const Options& options) {
   if (!options.report.empty()) checkWritable(options.report);
   RunReport run = reportOf(demo, now() - start);
 
-  FrameTarget target;
   render::PicturePair pair(dataPath("shaders"));
-  target.renderer = &renderer;
-  target.pair = &pair;
-  target.draw_panels = [&](Demo& shown) { drawPanels(shown, ui); };
+  FrameTarget target{.renderer = &renderer, .draw_panels = [&](Demo& shown) { drawPanels(shown, ui); }, .pair = &pair};
+  PresetPictures presets(dataPath("shaders"), options.frames_given);
+  bool presets_coming = false;
   ShaderWatch watch;
   PictureWriter pictures;
   const auto reload = [&] { return reloadSavedShaders(now(), watch, renderer, demo); };
@@ -393,19 +398,19 @@ int runWindow(Scene scene, const Options& options) {
   const int most = tape.frames().value_or(options.frames_given ? options.frames : kEndless);
   const auto ended = [&] { return glfwWindowShouldClose(window.handle) || ui.quit || interrupted(); };
   for (; !ended() && frame < most; ++frame) {
-    pollOrWait(most == kEndless, demo, reload, throttle, last);
+    pollOrWait(most == kEndless && !presets_coming, demo, reload, throttle, last);
     feedInput(window.handle);
     if (!callbacks.input.empty()) throttle.disturb();
     followTextScale(window.handle, options.ui_scale, callbacks);
     watch.reload_all = std::exchange(ui.reload_shaders, false);
     if (reload()) throttle.disturb();
     glfwGetFramebufferSize(window.handle, &target.width, &target.height);
+    leaveFree(window.handle, demo, ui, target);
     const double seconds = frameSeconds(options, demo, last);
     advanceFrame(demo, tape.turn(frame, frame == 0 && options.load_state.empty() ? 0 : seconds, demo), target);
-    if (!ui.to_forget.empty()) autosave.forget(std::exchange(ui.to_forget, ""));
-    autosave.keep(now(), demo);
+    presets_coming = presets.work(demo, ui);
+    keepProject(demo, autosave, ui);
     demo.stats.skipped[kSkipEvents] = {throttle.waited(), 1, 0};
-    leaveFree(window.handle, demo, ui, target);
     pictures.write(demo, target);
     hair.frame(demo);
     if (frame + 1 == options.save_state_at) writeFile(options.save_state, demoStateBytes(demo));

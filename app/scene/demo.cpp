@@ -4,11 +4,10 @@
 #include <cmath>
 #include <utility>
 
-#include "app/scene/attachments.h"
 #include "app/scene/detail/level_of_detail.h"
 #include "app/scene/sim_to_render.h"
+#include "app/scene/view/figure_input.h"
 #include "app/scene/view/world_light.h"
-#include "render/light/fiber_scattering.h"
 
 namespace app {
 
@@ -130,77 +129,6 @@ void addToHistory(Demo& demo) {
   demo.history_next = (demo.history_next + 1) % kHistoryLength;
 }
 
-render::HairInput hairInput(const Actor& actor) {
-  render::HairInput input;
-  input.id = actor.id;
-  input.layout_revision = actor.layout_revision;
-  input.position_revision = actor.position_revision;
-  input.layout_id = actor.haircut->id;
-  input.faces = actor.haircut->faces;
-  input.positions = actor.shown_positions;
-  input.rest = actor.haircut->rest;
-  input.strands = actor.spec.look.strands;
-  input.segments_per_layer = actor.spec.look.segments_per_layer;
-  input.look = actor.spec.look.hair;
-  input.shares = actor.haircut->look_shares.shares();
-  if (actor.spec.look.lift_strands) input.skin = actor.shown_skin;
-  return input;
-}
-
-render::BodyInput bodyInput(const Actor& actor, bool show_strands) {
-  const SkinnedMesh& mesh = actor.body->character.mesh;
-  render::BodyInput input;
-  input.id = actor.id;
-  input.mesh_id = actor.body->id;
-  input.positions = {mesh.positions.data()->data(), 3 * mesh.positions.size()};
-  input.normals = {mesh.normals.data()->data(), 3 * mesh.normals.size()};
-  input.triangles = mesh.triangles;
-  input.joints = {mesh.joints.data()->data(), 4 * mesh.joints.size()};
-  input.weights = {mesh.weights.data()->data(), 4 * mesh.weights.size()};
-  input.joint_matrices = actor.joint_matrices;
-  input.pose_revision = actor.pose_revision;
-  input.color = actor.spec.look.body_color;
-  input.roughness = actor.spec.look.body_roughness;
-  // A head whose hair is not drawn is bald.
-  input.scalp_id = show_strands && actor.spec.look.strands > 0 ? actor.scalp->id : 0;
-  input.root_cover = actor.scalp->cover;
-  input.hair_id = input.scalp_id != 0 ? actor.id : 0;
-  input.scalp_tint = actor.spec.look.scalp_tint;
-  input.root_color = render::rootColor(actor.spec.look.hair);
-  const Face& face = actor.body->character.face;
-  for (int k = 0; k < 3; ++k) input.face_origin[k] = static_cast<float>(face.origin[k]);
-  input.face_height = static_cast<float>(face.height);
-  input.face_paint = actor.spec.look.face_paint;
-  input.cloth = mesh.cloth;
-  input.dressed = actor.spec.look.dressed;
-  input.cloth_color = actor.spec.look.cloth_color;
-  if (!mesh.materials.empty()) {
-    input.material_places = {mesh.material_places.data()->data(), 3 * mesh.material_places.size()};
-    input.materials = mesh.materials;
-    input.own_materials = actor.spec.look.own_materials;
-  }
-  return input;
-}
-
-render::BodyInput attachmentInput(const Actor& actor, std::size_t k, bool show_strands) {
-  const WornAttachment& worn = actor.worn[k];
-  const Attachment& mesh = *worn.mesh;
-  render::BodyInput input;
-  input.id = worn.id;
-  input.mesh_id = mesh.id;
-  input.positions = {mesh.positions.data()->data(), 3 * mesh.positions.size()};
-  input.normals = {mesh.normals.data()->data(), 3 * mesh.normals.size()};
-  input.triangles = mesh.triangles;
-  input.joints = {mesh.joints.data()->data(), 4 * mesh.joints.size()};
-  input.weights = {mesh.weights.data()->data(), 4 * mesh.weights.size()};
-  input.joint_matrices = {&worn.matrix, 1};
-  input.pose_revision = actor.pose_revision;
-  input.hair_id = show_strands && actor.spec.look.strands > 0 ? actor.id : 0;
-  input.color = wornColor(actor, k);
-  input.roughness = actor.spec.attachments[k].roughness;
-  return input;
-}
-
 }  // namespace
 
 void addDrawing(const render::DrawSkipCounts& drawing, SkipCounts& counts) {
@@ -243,7 +171,6 @@ void addStep(const sim::StepReport& report, double step_seconds, FrameStats& sta
   stats.converged = stats.converged && report.converged;
   stats.work_units += report.work_units;
   stats.solves_cut += report.solve_cut;
-  input.camera.shift = static_cast<float>(demo.shift);
   stats.corrections_cut += report.corrections_cut;
   stats.contacts += report.contacts;
   stats.corrected += report.corrected;
@@ -258,12 +185,6 @@ void addStep(const sim::StepReport& report, double step_seconds, FrameStats& sta
     stats.always[id].skipped += left_out.skipped;
     stats.always[id].of += left_out.of;
   };
-// What puts the figure into the middle between two shares of a picture's width. Where nothing is left between them it
-// stays in the picture's middle.
-double shiftBetween(double left, double right) {
-  return left < right ? left + right - 1 : 0;
-}
-
   add(kNoNewBalance, report.refreshes);
   add(kNoStiffness, report.force_kinds);
   add(kOutOfReach, report.collider_tests);
@@ -271,12 +192,6 @@ double shiftBetween(double left, double right) {
 
 std::string numericalNote(const FrameStats& stats) {
   if (stats.recoveries > 0)
-  other.shift = demo.shift;
-  if (comparison.side_by_side) {
-    // Each half's own free part lies between its panels and the middle.
-    demo.shift = shiftBetween(target.free_left / 0.5, 1);
-    other.shift = shiftBetween(0, (target.free_right - 0.5) / 0.5);
-  }
     return std::to_string(stats.recoveries) + " recoveries from numerical trouble: " + faultText(stats.fault_report);
   return stats.carried > 0 ? "the head jumped; the hair was carried along" : "";
 }
@@ -293,7 +208,6 @@ std::string hairNotes(const Demo& demo) {
 Demo openScene(Scene scene, double aspect, bool beside) {
   Demo demo;
   demo.scene = std::move(scene);
-  demo.shift = shiftBetween(target.free_left, target.free_right);
   demo.aspect = aspect;
   for (const CharacterSpec& spec : demo.scene.characters) {
     demo.actors.push_back(makeActor(spec, demo.scene.playback, demo.asset_cache));
@@ -321,14 +235,15 @@ render::FrameInput frameInput(Demo& demo, int width, int height) {
   demo.hair_inputs.clear();
   demo.body_inputs.clear();
   for (const Actor& actor : demo.actors) {
-    demo.hair_inputs.push_back(hairInput(actor));
-    demo.body_inputs.push_back(bodyInput(actor, demo.scene.look.view.show_strands));
+    demo.hair_inputs.push_back(hairInput(actor, actor.spec.look));
+    demo.body_inputs.push_back(bodyInput(actor, actor.spec.look, demo.scene.look.view.show_strands));
     for (std::size_t k = 0; k < actor.worn.size(); ++k) demo.body_inputs.push_back(attachmentInput(actor, k, demo.scene.look.view.show_strands));
   }
   render::FrameInput input;
   input.width = width;
   input.height = height;
   input.camera = cameraInput(demo.camera, demo.origin);
+  input.camera.shift = static_cast<float>(demo.shift);
   input.light = lightAbout(demo.actors.front(), demo.scene.look.light);
   input.view = demo.scene.look.view;
   input.skips = drawSkips(demo.scene.skips);
@@ -343,6 +258,12 @@ render::FrameInput frameInput(Demo& demo, int width, int height) {
 
 namespace {
 
+// What puts the figure into the middle between two shares of a picture's width. Where nothing is left between them it
+// stays in the picture's middle.
+double shiftBetween(double left, double right) {
+  return left < right ? left + right - 1 : 0;
+}
+
 // The demo and the one that it is compared with, in one picture, and in the same detail.
 render::FrameReport drawPair(Demo& demo, const FrameTarget& target, bool measure) {
   const Comparison& comparison = demo.comparison;
@@ -350,6 +271,12 @@ render::FrameReport drawPair(Demo& demo, const FrameTarget& target, bool measure
   const int left = render::firstWidth(layout, target.width), right = render::secondWidth(layout, target.width);
   demo.aspect = static_cast<double>(left) / target.height;
   Demo& other = demo.comparison.other.front();
+  other.shift = demo.shift;
+  if (comparison.side_by_side) {
+    // Each half's own free part lies between its panels and the middle.
+    demo.shift = shiftBetween(target.free_left / 0.5, 1);
+    other.shift = shiftBetween(0, (target.free_right - 0.5) / 0.5);
+  }
   other.draw_governor = demo.draw_governor;
   const render::FrameInput first = frameInput(demo, left, target.height);
   const render::FrameInput second = frameInput(other, right, target.height);
@@ -366,6 +293,7 @@ void drawFrame(Demo& demo, const FrameTarget& target) {
   if (!target.renderer || target.width <= 0 || target.height <= 0) return;
   demo.aspect = static_cast<double>(target.width) / target.height;
   demo.picture_height = target.height;
+  demo.shift = shiftBetween(target.free_left, target.free_right);
   const bool measure = target.measure || demo.draw_governor.budget > 0;
   if (demo.comparison.on() && target.pair) {
     demo.stats.draw = drawPair(demo, target, measure);

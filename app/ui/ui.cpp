@@ -335,6 +335,7 @@ FreeWidth freeWidth(const UiState& ui) {
 }
 
 void buildUi(Demo& demo, UiState& ui) {
+  ui.presets_in_sight.clear();
   ui.items.clear();
   compareLine(demo, ui);
   if (!ui.line_held) brushFrame(demo, ui);

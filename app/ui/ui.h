@@ -64,6 +64,13 @@ struct PresetMark {
   SceneLook scene;
 };
 
+// The picture of a preset, as whoever draws them has come to.
+struct PresetPicture {
+  std::string file;
+  std::uintptr_t texture = 0;  // of the graphics system, bottom row first; 0: there is none yet
+  bool faulty = false;         // the file cannot be read
+};
+
 // Variations of the material that are tried one after another.
 struct VaryState {
   double amount = 0.3;   // decades
@@ -85,14 +92,17 @@ struct UiState {
   float timings_bottom = 0;                     // px; 0: they are not shown
   float history_width = 0, history_height = 0;  // px with its margin; 0: it is not shown
   bool line_placed = false;                     // the line of a comparison stands there, or where a person has drawn it
+  bool timings_folded = false;                  // to their title
   bool timings_in_tab = false;                  // for want of room beside the sidebar they are in the Debug tab
   float text_scale = 1;                         // of a dense display
   ImFont* heading = nullptr;
   std::array<char, 512> motion_path{}, parts_path{}, hair_path{}, scene_path{};
   std::array<char, 64> preset_name{}, search{};
   PresetMark preset;
-  std::string to_replace;  // a file that is there already and is written on the second press
-  bool timings_folded = false;                  // to their title
+  std::vector<std::string> presets_in_sight;  // files whose pictures the last frame has shown, or would have
+  std::vector<PresetPicture> preset_pictures;
+  std::string scoped_preset, preset_scope;  // the preset under the pointer, and what it changes, in words
+  std::string to_replace;                   // a file that is there already and is written on the second press
   FileBrowser browser;
   std::string offered, to_forget;  // project that an earlier run has left; one that a person does not want
   long scrubbed = -1;              // frame that the timeline is dragged to
@@ -122,6 +132,13 @@ float fittingTextScale(float wanted, int width, int height);
 // Number of the tab of that name ("motion"), for UiState::open_tab; -1 when there is none.
 int tabIndex(std::string_view name);
 
+// Pixels of the mouse between which the panels leave the window to the figure.
+struct FreeWidth {
+  float left = 0, right = 0;
+  float middle() const { return 0.5f * (left + right); }
+};
+FreeWidth freeWidth(const UiState& ui);
+
 // Builds all panels of one frame, between ImGui::NewFrame and ImGui::Render.
 void buildUi(Demo& demo, UiState& ui);
 
@@ -132,13 +149,6 @@ enum UiKey {
   kKeyTab = 258,
   kKeyRight = 262,
   kKeyLeft = 263,
-// Pixels of the mouse between which the panels leave the window to the figure.
-struct FreeWidth {
-  float left = 0, right = 0;
-  float middle() const { return 0.5f * (left + right); }
-};
-FreeWidth freeWidth(const UiState& ui);
-
   kKeyDown = 264,
   kKeyUp = 265,
   kKeyHome = 268,

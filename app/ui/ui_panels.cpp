@@ -15,21 +15,6 @@ namespace app {
 
 namespace {
 
-// A combo of files by their stem. Returns the chosen path, or empty.
-std::string fileCombo(const char* name, const std::string& shown, const std::vector<std::string>& files, UiState& ui) {
-  std::string chosen;
-  ImGui::SetNextItemWidth(-1);
-  const bool open = ImGui::BeginCombo(name, shown.c_str());
-  noteItem(name, ui);
-  if (!open) return chosen;
-  for (const std::string& file : files) {
-    if (ImGui::Selectable(readable(stem(file)).c_str(), stem(file) == shown)) chosen = file;
-    noteItem(std::string(name) + " " + stem(file), ui);
-  }
-  ImGui::EndCombo();
-  return chosen;
-}
-
 // A path to type, or to look for by the button beside it; true when it was confirmed.
 template <std::size_t N>
 bool pathInput(const char* name, const char* hint, BrowseFor what, std::array<char, N>& path, UiState& ui) {
@@ -50,65 +35,6 @@ bool slider(const char* name, double low, double high, const char* format, bool 
   const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp | (logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
   const MarksBelowDigits marks;
   return ImGui::SliderScalar(name, ImGuiDataType_Double, &value, &low, &high, format, flags);
-}
-
-// Saves under the name that was typed; a file that is there already only when asked a second time.
-void savePreset(Demo& demo, UiState& ui) {
-  const std::string file = std::string(ui.preset_name.data()) + ".json";
-  std::error_code ignored;
-  if (std::filesystem::exists(file, ignored) && ui.to_replace != file) {
-    ui.to_replace = file;
-    return;
-  }
-  ui.to_replace.clear();
-  ui.preset = {};
-  ui.preset.file = file;
-  postRequest(demo, {Ask::kSavePreset, "", file});
-  if (std::find(ui.presets.begin(), ui.presets.end(), file) == ui.presets.end()) ui.presets.push_back(file);
-}
-
-template <class Owner, class Field>
-bool sameRows(std::span<const Field> table, const Owner& a, const Owner& b) {
-  return std::ranges::all_of(table, [&](const Field& row) { return row.get(a) == row.get(b); });
-}
-
-// The chosen preset's name, and whether a parameter has been changed since.
-std::string presetTitle(const Demo& demo, PresetMark& preset) {
-  if (preset.file.empty()) return "choose...";
-  const CharacterLook& hair = selectedActor(demo).spec.look;
-  if (preset.arriving) {
-    preset.arriving = !demo.requests.empty();
-    preset.sim = demo.scene.sim;
-    preset.hair = hair;
-    preset.scene = demo.scene.look;
-  }
-  const bool same = sameRows(sim::paramFields(), demo.scene.sim, preset.sim) &&
-                    sameRows(hairFields(), hair, preset.hair) && sameRows(sceneFields(), demo.scene.look, preset.scene);
-  return readable(stem(preset.file)) + (same ? "" : ", changed");
-}
-
-void presetRow(Demo& demo, UiState& ui) {
-  rowLabel("Preset", "Sets the groups of parameters that it names: what it leaves out of them takes its default");
-  const std::string shown = presetTitle(demo, ui.preset);
-  const std::string file = fileCombo("##preset", shown, ui.presets, ui);
-  noteItem("preset " + shown, ui);
-  if (!file.empty()) {
-    ui.preset = {};
-    ui.preset.file = file;
-    postRequest(demo, {Ask::kPresetFile, "", file});
-  }
-  rowLabel("Save as", "Writes every parameter to NAME.json in the working folder");
-  const bool replaces = !ui.to_replace.empty() && ui.to_replace == std::string(ui.preset_name.data()) + ".json";
-  const float button = (replaces ? 72 : 52) * ui.text_scale;
-  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - button - 5);
-  const bool entered = ImGui::InputTextWithHint("##preset_name", "name, then Enter", ui.preset_name.data(),
-                                                ui.preset_name.size(), ImGuiInputTextFlags_EnterReturnsTrue);
-  noteItem("preset_name", ui);
-  ImGui::SameLine(0, 5);
-  const bool pressed = ImGui::Button(replaces ? "Replace" : "Save", {button, 0});
-  noteItem("save_preset", ui);
-  if (replaces) tip("A file of this name is there already");
-  if ((entered || pressed) && ui.preset_name[0]) savePreset(demo, ui);
 }
 
 bool contains(std::string text, std::string_view part) {
@@ -286,7 +212,7 @@ std::string metres(double value) {
 
 void simulationTab(Demo& demo, UiState& ui) {
   if (searchResults(demo, ui)) return;
-  presetRow(demo, ui);
+  presetRows(demo, ui);
   compareRows(demo, ui);
   varyRow(demo, ui);
   ImGui::Spacing();

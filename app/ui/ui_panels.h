@@ -41,6 +41,9 @@ void curveRows(Demo& demo, UiState& ui);
 // What the character wears.
 void attachmentSection(Demo& demo, UiState& ui);
 
+// Presets as pictures and as a list, and the row that saves one.
+void presetRows(Demo& demo, UiState& ui);
+
 // What the scene is compared with; and, before the panels, the line between the two, which a drag moves.
 void compareRows(Demo& demo, UiState& ui);
 void compareLine(Demo& demo, UiState& ui);

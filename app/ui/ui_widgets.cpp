@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "app/files/data_path.h"
 #include "sim/field_text.h"
 #include "sim/stabilization/parameter_limits.h"
 
@@ -122,13 +123,13 @@ void postRequest(Demo& demo, Request request) {
   demo.requests.push_back(std::move(request));
 }
 
-MarksBelowDigits::MarksBelowDigits() : first_(ImGui::GetWindowDrawList()->VtxBuffer.Size) {}
 Picture shownPicture(const Demo& demo) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const bool half = demo.comparison.on() && demo.comparison.side_by_side;
   return {(half ? 0.5 : 1.0) * static_cast<double>(size.x), static_cast<double>(size.y), demo.shift};
 }
 
+MarksBelowDigits::MarksBelowDigits() : first_(ImGui::GetWindowDrawList()->VtxBuffer.Size) {}
 
 // Dear ImGui draws a mark as high as its slider and the digits over it: the vertices of its two colours are moved.
 MarksBelowDigits::~MarksBelowDigits() {
@@ -156,6 +157,20 @@ void tip(const std::string& text) {
 bool section(const char* title, bool open_at_first) {
   ImGui::SetNextItemOpen(open_at_first, ImGuiCond_FirstUseEver);
   return ImGui::CollapsingHeader(title);
+}
+
+std::string fileCombo(const char* name, const std::string& shown, const std::vector<std::string>& files, UiState& ui) {
+  std::string chosen;
+  ImGui::SetNextItemWidth(-1);
+  const bool open = ImGui::BeginCombo(name, shown.c_str());
+  noteItem(name, ui);
+  if (!open) return chosen;
+  for (const std::string& file : files) {
+    if (ImGui::Selectable(readable(stem(file)).c_str(), stem(file) == shown)) chosen = file;
+    noteItem(std::string(name) + " " + stem(file), ui);
+  }
+  ImGui::EndCombo();
+  return chosen;
 }
 
 void rowLabel(const std::string& text, const std::string& help) {

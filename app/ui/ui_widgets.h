@@ -48,6 +48,9 @@ void simGroup(std::string_view group, Demo& demo, UiState& ui);
 void hairGroup(std::string_view group, Demo& demo, UiState& ui);
 void sceneGroup(std::string_view group, Demo& demo, UiState& ui);
 
+// A combo of files by their stem. Returns the chosen path, or empty.
+std::string fileCombo(const char* name, const std::string& shown, const std::vector<std::string>& files, UiState& ui);
+
 // A label in the left column; the control that follows fills the rest.
 void rowLabel(const std::string& text, const std::string& help);
 

@@ -28,6 +28,7 @@ class ImageTarget {
  public:
   void prepare(int width, int height);
   GLuint framebuffer() const { return framebuffer_.id(); }
+  GLuint texture() const { return color_.id(); }  // bottom row first; 0: not prepared
   // Top row first.
   void read(std::vector<unsigned char>& rgba) const;
 

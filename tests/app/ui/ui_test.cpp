@@ -63,6 +63,42 @@ TEST_F(Panels, CurvesOfEveryFieldAreAskedFor) {
   }
 }
 
+TEST_F(Panels, APresetIsChosenByItsPicture) {
+  EXPECT_GE(ui_.presets_in_sight.size(), 10u);
+  const std::vector<app::Request> requests = click("preset_picture black");
+  ASSERT_TRUE(asked(requests, Ask::kPresetFile));
+  for (const app::Request& one : requests) {
+    if (one.what == Ask::kPresetFile) EXPECT_TRUE(one.text.ends_with("black.json")) << one.text;
+  }
+  EXPECT_TRUE(ui_.preset.file.ends_with("black.json"));
+  // The pointer over it asks what it changes.
+  EXPECT_EQ(ui_.preset_scope, "changes how it looks");
+}
+
+TEST_F(Panels, PicturesOfPresetsAreAskedForWhereTheyAreInSightAlone) {
+  click("tab Look");
+  EXPECT_TRUE(ui_.presets_in_sight.empty());
+  click("tab Simulation");
+  EXPECT_FALSE(ui_.presets_in_sight.empty());
+  ImGui::GetIO().DisplaySize = {1280, 380};
+  frame(), frame();
+  EXPECT_TRUE(ui_.presets_in_sight.empty()) << "the list alone";
+  EXPECT_NE(find("##preset"), nullptr);
+}
+
+TEST_F(Panels, WhatPanelsLeaveFreeFollowsThem) {
+  const app::FreeWidth both = app::freeWidth(ui_);
+  EXPECT_EQ(both.left, 360);
+  EXPECT_EQ(both.right, 1280 - 304);
+  ui_.visible = false;
+  EXPECT_EQ(app::freeWidth(ui_).middle(), 640);
+  ui_.visible = true;
+  ui_.timings_folded = true;
+  EXPECT_EQ(app::freeWidth(ui_).right, 1280);
+  ImGui::GetIO().DisplaySize = {700, 720};
+  EXPECT_EQ(app::freeWidth(ui_).middle(), 350) << "the tabs are folded away";
+}
+
 TEST_F(Panels, EveryTabOpensByAClickOnIt) {
   for (const char* tab : {"tab Motion", "tab Hair", "tab Look", "tab Debug", "tab Simulation"}) click(tab);
   EXPECT_NE(find("density"), nullptr);

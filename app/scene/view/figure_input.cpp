@@ -1,0 +1,79 @@
+#include "app/scene/view/figure_input.h"
+
+#include "app/scene/attachments.h"
+#include "render/light/fiber_scattering.h"
+
+namespace app {
+
+render::HairInput hairInput(const Actor& actor, const CharacterLook& look) {
+  render::HairInput input;
+  input.id = actor.id;
+  input.layout_revision = actor.layout_revision;
+  input.position_revision = actor.position_revision;
+  input.layout_id = actor.haircut->id;
+  input.faces = actor.haircut->faces;
+  input.positions = actor.shown_positions;
+  input.rest = actor.haircut->rest;
+  input.strands = look.strands;
+  input.segments_per_layer = look.segments_per_layer;
+  input.look = look.hair;
+  input.shares = actor.haircut->look_shares.shares();
+  if (look.lift_strands) input.skin = actor.shown_skin;
+  return input;
+}
+
+render::BodyInput bodyInput(const Actor& actor, const CharacterLook& look, bool show_strands) {
+  const SkinnedMesh& mesh = actor.body->character.mesh;
+  render::BodyInput input;
+  input.id = actor.id;
+  input.mesh_id = actor.body->id;
+  input.positions = {mesh.positions.data()->data(), 3 * mesh.positions.size()};
+  input.normals = {mesh.normals.data()->data(), 3 * mesh.normals.size()};
+  input.triangles = mesh.triangles;
+  input.joints = {mesh.joints.data()->data(), 4 * mesh.joints.size()};
+  input.weights = {mesh.weights.data()->data(), 4 * mesh.weights.size()};
+  input.joint_matrices = actor.joint_matrices;
+  input.pose_revision = actor.pose_revision;
+  input.color = look.body_color;
+  input.roughness = look.body_roughness;
+  // A head whose hair is not drawn is bald.
+  input.scalp_id = show_strands && look.strands > 0 ? actor.scalp->id : 0;
+  input.root_cover = actor.scalp->cover;
+  input.hair_id = input.scalp_id != 0 ? actor.id : 0;
+  input.scalp_tint = look.scalp_tint;
+  input.root_color = render::rootColor(look.hair);
+  const Face& face = actor.body->character.face;
+  for (int k = 0; k < 3; ++k) input.face_origin[k] = static_cast<float>(face.origin[k]);
+  input.face_height = static_cast<float>(face.height);
+  input.face_paint = look.face_paint;
+  input.cloth = mesh.cloth;
+  input.dressed = look.dressed;
+  input.cloth_color = look.cloth_color;
+  if (!mesh.materials.empty()) {
+    input.material_places = {mesh.material_places.data()->data(), 3 * mesh.material_places.size()};
+    input.materials = mesh.materials;
+    input.own_materials = look.own_materials;
+  }
+  return input;
+}
+
+render::BodyInput attachmentInput(const Actor& actor, std::size_t k, bool show_strands) {
+  const WornAttachment& worn = actor.worn[k];
+  const Attachment& mesh = *worn.mesh;
+  render::BodyInput input;
+  input.id = worn.id;
+  input.mesh_id = mesh.id;
+  input.positions = {mesh.positions.data()->data(), 3 * mesh.positions.size()};
+  input.normals = {mesh.normals.data()->data(), 3 * mesh.normals.size()};
+  input.triangles = mesh.triangles;
+  input.joints = {mesh.joints.data()->data(), 4 * mesh.joints.size()};
+  input.weights = {mesh.weights.data()->data(), 4 * mesh.weights.size()};
+  input.joint_matrices = {&worn.matrix, 1};
+  input.pose_revision = actor.pose_revision;
+  input.hair_id = show_strands && actor.spec.look.strands > 0 ? actor.id : 0;
+  input.color = wornColor(actor, k);
+  input.roughness = actor.spec.attachments[k].roughness;
+  return input;
+}
+
+}  // namespace app
