@@ -22,9 +22,6 @@ struct Sums {
   Lanes<T> matrix_scale, tension_scale, damping, energy;
   const T* damping_share;  // null: 1 everywhere
 };
-// Those of hair whose damping is painted.
-template <class T>
-struct PaintedSums : Sums<T> {};
 
 // Of the elements whose vertices have these entries: damping, s, and what their Hessians are multiplied by.
 template <class T>
@@ -32,11 +29,8 @@ struct Damping {
   Lanes<T> time, matrix_scale;
 };
 template <class T>
-HAIRMESH_INLINE Damping<T> dampingOf(const Sums<T>& sums, const auto&...) {
-  return {sums.damping, sums.matrix_scale};
-}
-template <class T>
-HAIRMESH_INLINE Damping<T> dampingOf(const PaintedSums<T>& sums, const auto&... entries) {
+HAIRMESH_INLINE Damping<T> dampingOf(const Sums<T>& sums, const auto&... entries) {
+  if (!sums.damping_share) return {sums.damping, sums.matrix_scale};
   const Lanes<T> share = constant<Lanes<T>>(1.0 / sizeof...(entries)) * (load<T>(sums.damping_share + entries) + ...);
   return {share * sums.damping, sums.tension_scale + share * (sums.matrix_scale - sums.tension_scale)};
 }
@@ -74,7 +68,7 @@ struct PairBlock {
 
 // Force along -g of a condition, elastic and damping. `rate` gives dC/dt.
 template <class T>
-HAIRMESH_INLINE Lanes<T> pullOf(const Lanes<T>& c, const Lanes<T>& k, const Lanes<T>& damping, auto& sums,
+HAIRMESH_INLINE Lanes<T> pullOf(const Lanes<T>& c, const Lanes<T>& k, const Lanes<T>& damping, Sums<T>& sums,
                                 const auto& rate) {
   Lanes<T> pull = k * c;
   sums.energy += pull * c;
@@ -88,7 +82,7 @@ HAIRMESH_INLINE Lanes<T> pullOf(const Lanes<T>& c, const Lanes<T>& k, const Lane
 
 // The same, with dC/dt from the gradient: vertex v of the condition has entry at(v).
 template <class T, int N>
-HAIRMESH_INLINE Lanes<T> pullOf(const Lanes<T>& c, const Lanes<T>& k, const Lanes<T>& damping, auto& sums,
+HAIRMESH_INLINE Lanes<T> pullOf(const Lanes<T>& c, const Lanes<T>& k, const Lanes<T>& damping, Sums<T>& sums,
                                 const V3<Lanes<T>> (&g)[N], const auto& at) {
   return pullOf<T>(c, k, damping, sums, [&] {
     Lanes<T> rate = constant<Lanes<T>>(0);
@@ -105,7 +99,7 @@ struct StretchTerms {
 };
 template <class T>
 HAIRMESH_INLINE StretchTerms<T> stretchTerms(const typename ColumnModel<T>::StretchArrays& elements, std::size_t e,
-                                             const ColumnField<T>& x, int a, int b, auto& sums) {
+                                             const ColumnField<T>& x, int a, int b, Sums<T>& sums) {
   const auto stretch = stretchCondition(loadAt(x, a), loadAt(x, b), load<T>(elements.inverse_length.data() + e));
   const V3<Lanes<T>>& d = stretch.direction;
   const V3<Lanes<T>> g = stretch.inverse_length * d;
@@ -123,7 +117,7 @@ HAIRMESH_INLINE StretchTerms<T> stretchTerms(const typename ColumnModel<T>::Stre
 // Every column's own edges. A vertex takes the terms of the edge above it and, shifted by one layer, of the one below.
 template <class T>
 HAIRMESH_INLINE void addColumns(const ColumnModel<T>& model, const ColumnLayout& layout, const ColumnField<T>& x,
-                                auto& sums) {
+                                Sums<T>& sums) {
   const Lanes<T> zero = constant<Lanes<T>>(0);
   for (int c = 0; c < layout.columns; ++c) {
     StretchTerms<T> below{{zero, zero, zero}, {}};
@@ -161,7 +155,7 @@ struct WallShare {
 
 template <class T>
 HAIRMESH_INLINE void addBlocks(const WallShare<T>& share, const typename ColumnModel<T>::RootEdge& edge, int layer,
-                               auto& sums) {
+                               Sums<T>& sums) {
   const auto addOwn = [&](int v) {
     OwnBlock<T> block;
     if (v < 2) block = share.side;
@@ -190,7 +184,7 @@ HAIRMESH_INLINE void addBlocks(const WallShare<T>& share, const typename ColumnM
 // The walls of kLanes layers over a root edge, each with its lower side and its hinge to the wall above.
 template <class T>
 HAIRMESH_INLINE void addWalls(const ColumnModel<T>& model, const typename ColumnModel<T>::RootEdge& edge,
-                              const std::array<int, 6>& at, int layer, const ColumnField<T>& x, auto& sums) {
+                              const std::array<int, 6>& at, int layer, const ColumnField<T>& x, Sums<T>& sums) {
   using V = V3<Lanes<T>>;
   const std::size_t e = edge.first + layer;
   V p[6];
@@ -229,7 +223,7 @@ HAIRMESH_INLINE void addWalls(const ColumnModel<T>& model, const typename Column
 
 template <class T>
 HAIRMESH_INLINE void addEdges(const ColumnModel<T>& model, const ColumnLayout& layout, const ColumnField<T>& x,
-                              auto& sums) {
+                              Sums<T>& sums) {
   for (const typename ColumnModel<T>::RootEdge& edge : model.edges) {
     const int a = layout.first(edge.a), b = layout.first(edge.b);
     const int walls = model.has_shear || model.has_bend ? edge.walls : 0;
@@ -256,7 +250,7 @@ HAIRMESH_INLINE void addEdges(const ColumnModel<T>& model, const ColumnLayout& l
 // The corner tetrahedra of kLanes prisms over a face of N corners.
 template <class T, int N>
 HAIRMESH_INLINE void addPrisms(const ColumnModel<T>& model, const typename ColumnModel<T>::Face& face,
-                               const std::array<int, 2 * N>& at, int layer, const ColumnField<T>& x, auto& sums) {
+                               const std::array<int, 2 * N>& at, int layer, const ColumnField<T>& x, Sums<T>& sums) {
   using V = V3<Lanes<T>>;
   constexpr const PrismShares<N>& shares = kPrismShares<N>;
   constexpr int kVertices = 2 * N;
@@ -315,7 +309,7 @@ HAIRMESH_INLINE void addPrisms(const ColumnModel<T>& model, const typename Colum
 
 template <class T, int N>
 HAIRMESH_INLINE void addFace(const ColumnModel<T>& model, const ColumnLayout& layout,
-                             const typename ColumnModel<T>::Face& face, const ColumnField<T>& x, auto& sums) {
+                             const typename ColumnModel<T>::Face& face, const ColumnField<T>& x, Sums<T>& sums) {
   for (int l = 0; l < face.prisms; l += kLanes) {
     std::array<int, 2 * N> at;
     for (int v = 0; v < 2 * N; ++v) at[v] = layout.first(face.columns[v % N]) + v / N + l;
@@ -325,7 +319,7 @@ HAIRMESH_INLINE void addFace(const ColumnModel<T>& model, const ColumnLayout& la
 
 template <class T>
 HAIRMESH_INLINE void addFaces(const ColumnModel<T>& model, const ColumnLayout& layout, const ColumnField<T>& x,
-                              auto& sums) {
+                              Sums<T>& sums) {
   for (const typename ColumnModel<T>::Face& face : model.faces) {
     if (face.corner_count == 4)
       addFace<T, 4>(model, layout, face, x, sums);
@@ -336,28 +330,19 @@ HAIRMESH_INLINE void addFaces(const ColumnModel<T>& model, const ColumnLayout& l
 
 template <class T>
 HAIRMESH_INLINE void evaluateAll(const ColumnModel<T>& model, const ColumnLayout& layout, const ColumnField<T>& x,
-                                 auto& sums) {
+                                 Sums<T>& sums) {
   if (model.has_vertical) addColumns(model, layout, x, sums);
   if (model.has_horizontal || model.has_shear || model.has_bend) addEdges(model, layout, x, sums);
   if (model.has_volume) addFaces(model, layout, x, sums);
 }
 
-template <class T>
-HAIRMESH_INLINE void evaluatePaintedOrNot(const ColumnModel<T>& model, const ColumnLayout& layout,
-                                          const ColumnField<T>& x, Sums<T>& sums) {
-  if (!sums.damping_share) return evaluateAll(model, layout, x, sums);
-  PaintedSums<T> painted{sums};
-  evaluateAll(model, layout, x, painted);
-  sums.energy = painted.energy;
-}
-
 HAIRMESH_CLONES void run(const ColumnModel<float>& m, const ColumnLayout& l, const ColumnField<float>& x,
                          Sums<float>& s) {
-  evaluatePaintedOrNot(m, l, x, s);
+  evaluateAll(m, l, x, s);
 }
 HAIRMESH_CLONES void run(const ColumnModel<double>& m, const ColumnLayout& l, const ColumnField<double>& x,
                          Sums<double>& s) {
-  evaluatePaintedOrNot(m, l, x, s);
+  evaluateAll(m, l, x, s);
 }
 
 }  // namespace
