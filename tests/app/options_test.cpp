@@ -393,7 +393,7 @@ TEST(Options, ChoicesThatAreNoMoreSayWhatTakesTheirPlace) {
 TEST(Options, AnUnknownPresetIsAnsweredWithThoseThereAre) {
   const Outcome outcome = runProgram({"--preset", "foo", "--no-images", "--frames", "1"});
   expectOneMessage(outcome, app::kExitBadInput, "--preset foo");
-  EXPECT_NE(outcome.err.find("'foo': is not there; choose one of auburn, black"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("'foo': is not there; known are auburn, black"), std::string::npos) << outcome.err;
 }
 
 TEST(Options, AFileNamedWithoutAnOptionGoesWhereItsKindBelongs) {
