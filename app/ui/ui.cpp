@@ -232,7 +232,8 @@ void timings(Demo& demo, UiState& ui) {
   ImGui::SetNextWindowCollapsed(room < kAmpleWidth * ui.text_scale, ImGuiCond_FirstUseEver);
   const ImGuiWindowFlags flags =
       ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_AlwaysAutoResize;
-  ui.timings_folded = !ImGui::Begin("Timings", nullptr, flags);
+  ImGui::Begin("Timings", nullptr, flags);
+  ui.timings_folded = ImGui::IsWindowCollapsed();  // Begin says so only of a window that was open before
   if (!ui.timings_folded) timingsPanel(demo, ui);
   ui.timings_bottom = ImGui::GetWindowPos().y + ImGui::GetWindowSize().y;
   ImGui::End();
