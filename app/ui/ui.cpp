@@ -175,7 +175,10 @@ float timingsRoom(const UiState& ui) {
   return ImGui::GetIO().DisplaySize.x - sidebarWidth(ui) - (kTimingsWidth + 3 * kMargin) * ui.text_scale;
 }
 float takenRight(const UiState& ui) {
-  const bool timed = ui.visible && !folded(ui) && !ui.timings_folded && timingsRoom(ui) >= 0;
+  const float room = timingsRoom(ui);
+  const bool shown_before = ui.timings_bottom > 0;
+  const bool open = shown_before ? !ui.timings_folded : room >= kAmpleWidth * ui.text_scale;
+  const bool timed = ui.visible && !folded(ui) && open && room >= 0;
   return timed ? (kTimingsWidth + kMargin) * ui.text_scale : 0;
 }
 
