@@ -26,7 +26,7 @@ add_library(hairmesh_objects OBJECT ${library_sources} ${style_sources}
   app/scene/view/look_params.cpp app/scene/edit/render_faces.cpp)
 target_link_libraries(hairmesh_objects PRIVATE hair_options Eigen3::Eigen)
 target_precompile_headers(hairmesh_objects REUSE_FROM hair_sim)
-compile_folders_as_one(hairmesh_objects)
+compile_rooms_as_one(hairmesh_objects)
 set(all_objects $<TARGET_OBJECTS:hair_sim> $<TARGET_OBJECTS:hair_strands> $<TARGET_OBJECTS:hairmesh_objects>)
 
 add_library(hairmesh_shared SHARED ${all_objects} ${allocator_source})

@@ -76,7 +76,8 @@ struct LookShares {
 };
 
 // An ellipsoid of skin: the affine map of the world to the ball of radius one, row by row, 1/m and translation; and, in
-// the ball, which way deep points are led out: to where hair comes from. At most 1 long; 0: straight out.
+// the ball, which way deep points are led out: to where hair comes from. The longer it is, the shallower the points
+// that turn to it; 0: all are led straight out.
 struct SkinEllipsoid {
   std::array<std::array<float, 4>, 3> to_ball{};
   std::array<float, 3> home{};

@@ -77,7 +77,7 @@ bool jointMatrices(const Skeleton& skeleton, const Pose& pose, const Vec3& origi
 
 namespace {
 
-constexpr double kHome = 3;           // in an ellipsoid's measure, see render::SkinEllipsoid
+constexpr double kHome = 3;          // in an ellipsoid's measure, see render::SkinEllipsoid
 constexpr double kHeadWithin = 1.1;  // the same: one that holds the head's middle, or nearly
 
 }  // namespace
