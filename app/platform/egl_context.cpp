@@ -5,6 +5,7 @@
 #include <EGL/eglext.h>
 
 #include <array>
+#include <cstdlib>
 #include <cstring>
 #include <iomanip>
 #include <sstream>
@@ -28,29 +29,39 @@ bool hasClientExtension(const char* name) {
   return all != nullptr && std::strstr(all, name) != nullptr;
 }
 
-// The displays worth trying, best first. Surfaceless comes first because it needs neither a window system nor a device
-// node.
+bool drawsOnProcessor(EGLDeviceEXT device) {
+  const auto query = reinterpret_cast<PFNEGLQUERYDEVICESTRINGEXTPROC>(eglGetProcAddress("eglQueryDeviceStringEXT"));
+  const char* all = query != nullptr ? query(device, EGL_EXTENSIONS) : nullptr;
+  return all != nullptr && std::strstr(all, "EGL_MESA_device_software") != nullptr;
+}
+
+// The displays worth trying, best first: GPUs, unless LIBGL_ALWAYS_SOFTWARE (Mesa's variable) is set; surfaceless,
+// which needs neither a window system nor a device node, but is Mesa's own, which draws on the processor beside another
+// maker's driver; then what else there is.
 std::vector<Candidate> candidateDisplays() {
-  std::vector<Candidate> candidates;
+  std::vector<Candidate> gpus, others;
   const auto get_platform_display =
       reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
   if (get_platform_display != nullptr && hasClientExtension("EGL_MESA_platform_surfaceless")) {
-    candidates.push_back(
+    others.push_back(
         {"surfaceless", get_platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr)});
   }
   const auto query_devices = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(eglGetProcAddress("eglQueryDevicesEXT"));
   if (get_platform_display != nullptr && query_devices != nullptr && hasClientExtension("EGL_EXT_platform_device")) {
+    const bool software = std::getenv("LIBGL_ALWAYS_SOFTWARE") != nullptr;
     std::array<EGLDeviceEXT, 16> devices{};
     EGLint count = 0;
     if (query_devices(static_cast<EGLint>(devices.size()), devices.data(), &count)) {
       for (EGLint i = 0; i < count; ++i) {
-        candidates.push_back(
-            {"device " + std::to_string(i), get_platform_display(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr)});
+        (software || drawsOnProcessor(devices[i]) ? others : gpus)
+            .push_back(
+                {"device " + std::to_string(i), get_platform_display(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr)});
       }
     }
   }
-  candidates.push_back({"default display", eglGetDisplay(EGL_DEFAULT_DISPLAY)});
-  return candidates;
+  others.push_back({"default display", eglGetDisplay(EGL_DEFAULT_DISPLAY)});
+  gpus.insert(gpus.end(), others.begin(), others.end());
+  return gpus;
 }
 
 std::string eglFault(const char* call) {

@@ -66,25 +66,25 @@ void DrawStage::show(const std::vector<Shown>& moment) {
   }
 }
 
-render::FrameReport DrawStage::render(const DrawSetting& setting, std::vector<unsigned char>& rgba) {
-  render::FrameInput input = app::frameInput(demo_, scene_.width, scene_.height);
+render::FrameInput DrawStage::frame(const DrawSetting& setting, int moment, int width, int height) {
+  show(moments_[moment]);
+  render::FrameInput input = app::frameInput(demo_, width, height);
   setting.apply(input, demo_.hair_inputs);
-  return renderer_.renderImage(input, rgba);
+  return input;
 }
 
 DrawnFrame DrawStage::draw(const DrawSetting& setting) {
   std::vector<unsigned char> rgba;
-  show(moments_[0]);
-  render(setting, rgba);
-  show(moments_[1]);
-  DrawnFrame frame;
+  renderer_.renderImage(frame(setting, 0, scene_.width, scene_.height), rgba);
+  const render::FrameInput input = frame(setting, 1, scene_.width, scene_.height);
+  DrawnFrame drawn;
   const double wall = secondsOf(CLOCK_MONOTONIC), processor = secondsOf(CLOCK_PROCESS_CPUTIME_ID);
-  const render::FrameReport report = render(setting, rgba);
-  frame.processor = secondsOf(CLOCK_PROCESS_CPUTIME_ID) - processor;
-  frame.wall = secondsOf(CLOCK_MONOTONIC) - wall;
-  frame.strands = report.strands_drawn;
-  frame.picture = levelsOf(scene_.width, scene_.height, rgba);
-  return frame;
+  const render::FrameReport report = renderer_.renderImage(input, rgba);
+  drawn.processor = secondsOf(CLOCK_PROCESS_CPUTIME_ID) - processor;
+  drawn.wall = secondsOf(CLOCK_MONOTONIC) - wall;
+  drawn.strands = report.strands_drawn;
+  drawn.picture = levelsOf(scene_.width, scene_.height, rgba);
+  return drawn;
 }
 
 DrawReference DrawStage::reference() {

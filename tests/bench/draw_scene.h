@@ -47,6 +47,8 @@ class DrawStage {
   // The same strands in a larger picture, averaged down: four pixels and more for every one, twice the detail for each
   // of those, and nothing left out that would show.
   DrawReference reference();
+  // Moment 0 or 1 as a setting draws it, in a picture of any size. What it points to lives until the next call.
+  render::FrameInput frame(const DrawSetting& setting, int moment, int width, int height);
 
  private:
   // What a frame hands over of one character.
@@ -58,7 +60,6 @@ class DrawStage {
   };
   std::vector<Shown> shownNow() const;
   void show(const std::vector<Shown>& moment);
-  render::FrameReport render(const DrawSetting& setting, std::vector<unsigned char>& rgba);
 
   DrawScene scene_;
   render::Renderer& renderer_;

@@ -31,6 +31,8 @@ constexpr Factor kFactors[] = {
      [](double value, render::FrameInput&, Hairs& hairs) {
        for (render::HairInput& hair : hairs) hair.segments_per_layer = static_cast<int>(value);
      }},
+    {"shadows", [](double value, render::FrameInput& frame, Hairs&) { frame.light.shadows = value != 0; }},
+    {"all_strands", [](double value, render::FrameInput& frame, Hairs&) { frame.skips.strands = value == 0; }},
     {"samples", [](double value, render::FrameInput& frame, Hairs&) { frame.view.samples = static_cast<int>(value); }},
     {"strands_per_pixel",
      [](double value, render::FrameInput& frame, Hairs&) { frame.view.strands_per_pixel = static_cast<float>(value); }},

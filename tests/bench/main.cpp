@@ -16,6 +16,7 @@
 #include "tests/bench/contact_sheet.h"
 #include "tests/bench/conversion.h"
 #include "tests/bench/draw_pareto.h"
+#include "tests/bench/draw_passes.h"
 #include "tests/bench/frames_budget.h"
 #include "tests/bench/gate.h"
 #include "tests/bench/ladder.h"
@@ -70,6 +71,11 @@ std::vector<Task> tasks() {
       {"--draw-pareto", "drawing time against the picture's error, for every scene and setting; drawing.md in --out",
        [](Asked& a) {
          bench::runDrawPareto({a.pareto.scenes, a.pareto.folder, a.pareto.runs, a.pareto.quick});
+       }},
+      {"--draw-passes",
+       "times of a frame's passes, strands beside triangles of the same strands; gpu.md in --out; exits 1 off bounds",
+       [](Asked& a) {
+         if (!bench::runDrawPasses({a.pareto.folder, a.pareto.runs, a.pareto.quick})) a.all_hold = false;
        }},
       {"--consistency", "whether resolutions and time steps follow the same motion; tables of consistency.md in --out",
        [](Asked& a) { bench::runConsistency({a.pareto.folder}); }},

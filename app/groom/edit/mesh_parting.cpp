@@ -10,6 +10,7 @@
 
 #include "app/files/errors.h"
 #include "app/groom/edit/mesh_edit.h"
+#include "app/groom/edit/shape_brush.h"
 #include "app/styles/style_untangle.h"
 
 namespace app {
@@ -106,14 +107,6 @@ void requireColumn(const sim::HairMeshShape& shape, int column) {
                      "name columns from 0 to " + std::to_string(shape.columnCount() - 1));
 }
 
-Vec3 acrossMiddle(const Vec3& place, double middle) {
-  return {2 * middle - place.x(), place.y(), place.z()};
-}
-
-}  // namespace
-
-namespace {
-
 // Root edges as neighbours of columns, and which columns are the likes of others on the other side of a plane.
 class Mirror {
  public:
@@ -127,7 +120,7 @@ class Mirror {
   // The nearest column to the mirrored root, and those that root where it does.
   std::vector<int> likesOf(int column) const {
     requireColumn(shape_, column);
-    const Vec3 place = acrossMiddle(rootOf(shape_, column), middle_);
+    const Vec3 place = mirrored(rootOf(shape_, column), middle_);
     double nearest = INFINITY, longest = 0;
     for (int c = 0; c < shape_.columnCount(); ++c) nearest = std::min(nearest, (rootOf(shape_, c) - place).norm());
     for (const int c : besides(column))

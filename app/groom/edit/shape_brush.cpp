@@ -17,12 +17,7 @@ constexpr double kOffBody = 0.002;              // m, or as near as it is
 constexpr int kHalvings = 8, kStrokeUntanglings = 24;  // of a stroke that goes too far, before what it spoils stays
 constexpr double kMoved = 1e-7;                        // m
 
-Vec3 mirrored(Vec3 v, double plane) {
-  v.x() = 2 * plane - v.x();
-  return v;
-}
-
-Brush mirrored(Brush brush) {
+Brush onOtherSide(Brush brush) {
   brush.at = mirrored(brush.at, *brush.mirror);
   brush.along.x() = -brush.along.x();
   return brush;
@@ -259,7 +254,7 @@ int ShapeBrushes::apply(const Brush& brush, const sim::HairMesh& mesh, std::span
   wanted_.assign(x.begin(), x.end());
   for (const bool other : {false, true}) {
     if (other && !brush.mirror) break;
-    const Brush here = other ? mirrored(brush) : brush;
+    const Brush here = other ? onOtherSide(brush) : brush;
     reach(here, mesh, seen);
     switch (brush.tool) {
       case BrushTool::kComb:

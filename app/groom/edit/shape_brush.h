@@ -33,6 +33,11 @@ enum class BrushTool {
 inline constexpr std::array<std::string_view, 11> kBrushNames{"comb",   "cut",  "grow",  "smooth", "puff", "pinch",
                                                               "spread", "push", "twist", "freeze", "thaw"};
 
+// A place (m) seen in the plane x = `plane`.
+inline Vec3 mirrored(const Vec3& place, double plane) {
+  return {2 * plane - place.x(), place.y(), place.z()};
+}
+
 struct Brush {
   BrushTool tool = BrushTool::kComb;
   Vec3 at = Vec3::Zero();                 // on the moving hair

@@ -169,7 +169,7 @@ void paintFrozen(const Brush& brush, std::span<const Vec3> seen, int index, Demo
   };
   for (std::size_t v = 0; v < seen.size(); ++v) {
     touch(brush.at, v);
-    if (brush.mirror) touch({2 * *brush.mirror - brush.at.x(), brush.at.y(), brush.at.z()}, v);
+    if (brush.mirror) touch(mirrored(brush.at, *brush.mirror), v);
   }
   if (std::ranges::all_of(frozen, [](float share) { return share == 0; })) frozen.clear();
   freezeHair(frozen, index, demo);
