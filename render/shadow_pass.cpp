@@ -2,6 +2,7 @@
 #include <string>
 
 #include "render/gl/driver.h"
+#include "render/hair/grown_strands.h"
 #include "render/hair/strand_draw.h"
 #include "render/pass.h"
 #include "render/shadow_maps.h"
@@ -40,10 +41,12 @@ class HairShadowPass {
   ReloadReport reload(Reload which);
 
  private:
-  // Draws a bound hair's strands into a map, by shader stages.
+  // Draws a bound hair's strands into a map, not in software.
   void drawStages(StrandPath path, const HairResources& hair, const ShadowMaps::HairMap& map, ShadowMaps& shadows);
 
-  ShaderProgram depth_geometry_, depth_pulling_, opacity_geometry_, opacity_pulling_, body_depth_;
+  ShaderProgram depth_geometry_, depth_pulling_, depth_grown_, opacity_geometry_, opacity_pulling_, opacity_grown_,
+      body_depth_;
+  GrownLines grown_;
   SoftwareShadow software_;
   VertexArray no_attributes_;
 };
@@ -70,25 +73,33 @@ class BodyShadowPass {
 HairShadowPass::HairShadowPass(const std::string& shader_dir)
     : depth_geometry_(shader_dir, {{"strand.vert", "strand_shadow.geom", "depth_only.frag"}, {}, {}}),
       depth_pulling_(shader_dir, {{"strand_shadow_pull.vert", "depth_only.frag"}, {}, {}}),
+      depth_grown_(shader_dir, {{"strand_line.vert", "depth_only.frag"}, {}, {}}),
       opacity_geometry_(shader_dir, {{"strand.vert", "strand_shadow.geom", "opacity.frag"}, {}, {}}),
       opacity_pulling_(shader_dir, {{"strand_shadow_pull.vert", "opacity.frag"}, {}, {}}),
+      opacity_grown_(shader_dir, {{"strand_line.vert", "opacity.frag"}, {}, {}}),
       body_depth_(shader_dir, {{"body.vert", "depth_only.frag"}, {}, {}}),
+      grown_(shader_dir),
       software_(shader_dir),
       no_attributes_(makeVertexArray()) {}
 
 void HairShadowPass::drawStages(StrandPath path, const HairResources& hair, const ShadowMaps::HairMap& map,
                                 ShadowMaps& shadows) {
-  const bool geometry = path == StrandPath::kGeometry;
-  const StrandTopology line{GL_LINE_STRIP, 1};
-  glBindVertexArray(no_attributes_.id());
+  const auto issue = [&](const ShaderProgram& geometry, const ShaderProgram& pulling, const ShaderProgram& grown,
+                         bool fresh) {
+    if (path == StrandPath::kCompute) {
+      grown_.draw(hair, grown, fresh);
+      return;
+    }
+    glBindVertexArray(no_attributes_.id());
+    (path == StrandPath::kGeometry ? geometry : pulling).use();
+    issueStrands(hair, hair.shadow_draw, path, {GL_LINE_STRIP, 1});
+  };
   shadows.beginHairDepth(map);
-  (geometry ? depth_geometry_ : depth_pulling_).use();
-  issueStrands(hair, hair.shadow_draw, path, line);
+  issue(depth_geometry_, depth_pulling_, depth_grown_, true);
   shadows.beginOpacity(map);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
-  (geometry ? opacity_geometry_ : opacity_pulling_).use();
-  issueStrands(hair, hair.shadow_draw, path, line);
+  issue(opacity_geometry_, opacity_pulling_, opacity_grown_, false);
   glDisable(GL_BLEND);
 }
 
@@ -119,8 +130,10 @@ void HairShadowPass::draw(const Input& input, Stage& stage, FrameReport& report)
 }
 
 ReloadReport HairShadowPass::reload(Reload which) {
-  ReloadReport report =
-      reloadPrograms({&depth_geometry_, &depth_pulling_, &opacity_geometry_, &opacity_pulling_, &body_depth_}, which);
+  ReloadReport report = reloadPrograms({&depth_geometry_, &depth_pulling_, &depth_grown_, &opacity_geometry_,
+                                        &opacity_pulling_, &opacity_grown_, &body_depth_},
+                                       which);
+  report += grown_.reload(which);
   report += software_.reload(which);
   return report;
 }

@@ -1,7 +1,9 @@
-// Draws strands, lit: by the geometry stage, by vertex pulling or in software, the same curves each way.
+// Draws strands, lit: by the geometry stage, by vertex pulling, grown by compute shaders or in software, the same
+// curves each way.
 #include <string>
 
 #include "render/gl/driver.h"
+#include "render/hair/grown_strands.h"
 #include "render/hair/strand_draw.h"
 #include "render/pass.h"
 #include "render/software/software_strands.h"
@@ -27,6 +29,7 @@ class StrandPass {
   void draw(const Input& input, Stage& stage, FrameReport& report);
   ReloadReport reload(Reload which) {
     ReloadReport report = reloadPrograms({&geometry_, &pulling_}, which);
+    report += grown_.reload(which);
     report += software_.reload(which);
     return report;
   }
@@ -35,6 +38,7 @@ class StrandPass {
   StrandCount drawStages(StrandPath path, Stage& stage);
 
   ShaderProgram geometry_, pulling_;
+  GrownStrands grown_;
   SoftwareStrands software_;
   VertexArray no_attributes_;
 };
@@ -46,6 +50,7 @@ static_assert(shared::kChunkPoints * shared::kLineComponents <= shared::kMaxOutp
 StrandPass::StrandPass(const std::string& shader_dir)
     : geometry_(shader_dir, {{"strand.vert", "strand.geom", "strand.frag"}, {}, {}}),
       pulling_(shader_dir, {{"strand_pull.vert", "strand.frag"}, {}, {}}),
+      grown_(shader_dir),
       software_(shader_dir),
       no_attributes_(makeVertexArray()) {}
 
@@ -70,7 +75,10 @@ void StrandPass::draw(const Input& input, Stage& stage, FrameReport& report) {
   StrandCount count;
   if (path == StrandPath::kSoftware && !software_.draw(stage, input.shade_all, count, report.skip_counts.shading))
     path = StrandPath::kGeometry;
-  if (path != StrandPath::kSoftware) count = drawStages(path, stage);
+  if (path == StrandPath::kCompute)
+    count = grown_.draw(stage);
+  else if (path != StrandPath::kSoftware)
+    count = drawStages(path, stage);
   report.strands_drawn = count.strands;
   report.strand_vertices = count.vertices;
   report.draw_calls += count.draw_calls;

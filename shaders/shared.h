@@ -64,12 +64,12 @@ const int kUnitMaterials = 12;
 const int kUnitOpenness = 14;
 const int kUnitBodyDepthPlain = 13;  // the same as kUnitBodyDepth, read and not compared
 
-// Strands' points between the stages of the software path (render/software/software_strands.h,
-// render/software/software_shadow.h).
+// Strands' points between compute shaders and what draws them (render/hair/grown_strands.h,
+// render/software/software_strands.h, render/software/software_shadow.h).
 const int kStrandGroup = 32;  // invocations of a group
 const int kPointTexels = 3;   // position, share of the strand's length; tangent, sky visibility; depths along fill and
                               // rim, before the point and behind it
-const int kSlotRibbons = 0;   // two texels a point, see strand_raster.h
+const int kSlotRibbons = 0;   // two texels a point, see strand_raster.h; or one: half the ribbon's width, coverage
 const int kSlotStrands = 1;
 const int kSlotPoints = 2;
 const int kSlotSeen = 3;  // numbers of the points that are shaded

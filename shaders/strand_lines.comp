@@ -1,4 +1,5 @@
-// Grows the strands that cast a hair's shadow, in the texels of its map, for line_raster.h: an invocation is a strand.
+// Grows the strands that cast a hair's shadow, in the texels of its map, for line_raster.h and strand_line.vert: an invocation
+// is a strand.
 #include "shared.h"
 #include "common/hash.glsl"
 #include "common/strand.glsl"
@@ -8,14 +9,15 @@
 layout(local_size_x = kStrandGroup) in;
 layout(std430, binding = kSlotStrands) writeonly restrict buffer Strands { uint strands[]; };  // points of a strand
 layout(std430, binding = kSlotPoints) writeonly restrict buffer Points { vec4 points[]; };  // texels, depth, opacity
+layout(location = 0) uniform int first_strand;
 
 void main() {
-  int number = int(gl_GlobalInvocationID.x);
+  int slot = int(gl_GlobalInvocationID.x), number = first_strand + slot;
   if (number >= draw.x) return;
   Strand strand = makeStrand(number);
-  int last = lastPoint(strand), first = number * draw.z;
+  int last = lastPoint(strand), first = slot * draw.z;
   bool shades = last > 0 && strand.gain > 0.0;
-  strands[number] = shades ? uint(last + 1) : 0u;
+  strands[slot] = shades ? uint(last + 1) : 0u;
   if (!shades) return;
   float side = hair_shadow_size[draw.w].y;
   int layer = 0;

@@ -1,4 +1,5 @@
-// Grows the strands of a hair once and projects them, for strand_raster.h: an invocation is a strand.
+// Grows strands of a hair once: an invocation is a strand. KEEP_ASIDE: for strand_grown.vert; without it projected, for
+// strand_raster.h.
 #include "shared.h"
 #include "common/hash.glsl"
 #include "common/strand.glsl"
@@ -9,6 +10,13 @@ layout(std430, binding = kSlotRibbons) writeonly restrict buffer Ribbons { vec4 
 layout(std430, binding = kSlotStrands) writeonly restrict buffer Strands { uvec4 strands[]; };
 layout(std430, binding = kSlotPoints) writeonly restrict buffer Points { vec4 points[]; };
 
+layout(location = 0) uniform int first_strand;
+
+#ifdef KEEP_ASIDE
+void storeRibbon(int at, in CurvePoint point, in RibbonPoint ribbon) {
+  ribbons[at] = vec4(ribbon.aside, ribbon.coverage);
+}
+#else
 vec2 toPixels(vec4 clip) { return (0.5 + 0.5 * clip.xy / clip.w) * viewport.xy; }
 
 void storeRibbon(int at, in CurvePoint point, in RibbonPoint ribbon) {
@@ -19,15 +27,16 @@ void storeRibbon(int at, in CurvePoint point, in RibbonPoint ribbon) {
   ribbons[2 * at] = vec4(left, right);
   ribbons[2 * at + 1] = vec4(before ? -1.0 : 0.5 + 0.5 * clip.z / clip.w, ribbon.coverage, 0.0, 0.0);
 }
+#endif
 
 void main() {
-  int number = int(gl_GlobalInvocationID.x);
+  int slot = int(gl_GlobalInvocationID.x), number = first_strand + slot;
   if (number >= draw.x) return;
   Strand strand = makeStrand(number);
   float dither = strandDither(strand);
-  int last = lastShownPoint(strand, dither), first = number * draw.z;
-  strands[2 * number] = uvec4(uint(last < 1 ? 0 : last + 1), floatBitsToUint(dither), strand.key, strand.clump_key);
-  strands[2 * number + 1] = floatBitsToUint(vec4(strand.share.color, strand.share.of.w));
+  int last = lastShownPoint(strand, dither), first = slot * draw.z;
+  strands[2 * slot] = uvec4(uint(last < 1 ? 0 : last + 1), floatBitsToUint(dither), strand.key, strand.clump_key);
+  strands[2 * slot + 1] = floatBitsToUint(vec4(strand.share.color, strand.share.of.w));
   if (last < 1) return;
   int layer = 0;
   LayerWindow window = layerWindow(strand, layer);

@@ -1,4 +1,4 @@
-// Shades the stored points that some sample of the picture shows: an invocation is a point.
+// Shades the stored points that some sample of the picture shows, or ALL_POINTS: an invocation is a point.
 #include "shared.h"
 #include "common/hash.glsl"
 #include "common/strand.glsl"
@@ -8,7 +8,9 @@
 layout(local_size_x = kStrandGroup) in;
 layout(std430, binding = kSlotStrands) readonly restrict buffer Strands { uvec4 strands[]; };
 layout(std430, binding = kSlotPoints) readonly restrict buffer Points { vec4 points[]; };
+#ifndef ALL_POINTS
 layout(std430, binding = kSlotSeen) readonly restrict buffer Seen { int seen[]; };
+#endif
 layout(std430, binding = kSlotColors) writeonly restrict buffer Colors { vec4 colors[]; };
 layout(location = 0) uniform int count;
 layout(location = 1) uniform int first_color;  // of the hair
@@ -16,8 +18,13 @@ layout(location = 1) uniform int first_color;  // of the hair
 void main() {
   int listed = int(gl_GlobalInvocationID.x);
   if (listed >= count) return;
+#ifdef ALL_POINTS
+  int at = listed;
+#else
   int at = seen[listed];
+#endif
   uvec4 of = strands[2 * (at / draw.z)];
+  if (at % draw.z >= int(of.x)) return;
   vec4 share = uintBitsToFloat(strands[2 * (at / draw.z) + 1]);
   Strand strand;
   strand.key = of.z;

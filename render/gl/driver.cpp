@@ -11,6 +11,14 @@ bool isNamed(const std::string& renderer, const char* driver) {
   return renderer.find(driver) != std::string::npos;
 }
 
+// OpenGL 4.5 does not promise it.
+bool vertexStageReadsBuffers() {
+  constexpr GLint kRead = 4;  // by strand_grown.vert
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, &most);
+  return most >= kRead;
+}
+
 }  // namespace
 
 std::string initGl() {
@@ -40,6 +48,7 @@ bool rasterizesInSoftware() {
 
 // Zink names the Vulkan driver under it, and there a map waits for all that was drawn; softpipe interprets its shaders.
 StrandPath pathFor(StrandPath asked) {
+  if (asked == StrandPath::kCompute && !vertexStageReadsBuffers()) return StrandPath::kGeometry;
   if (asked != StrandPath::kAuto) return asked;
   const std::string name = rendererName();
   return isNamed(name, "llvmpipe") && !isNamed(name, "zink") ? StrandPath::kSoftware : StrandPath::kGeometry;

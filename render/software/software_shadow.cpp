@@ -1,9 +1,9 @@
 #include "render/software/software_shadow.h"
 
-#include "shaders/shared.h"
+#include "render/gl/stored_points.h"
 
 namespace render {
-using shared::kSlotPoints, shared::kSlotStrands, shared::kStrandGroup;
+using shared::kSlotPoints, shared::kSlotStrands;
 
 SoftwareShadow::SoftwareShadow(const std::string& shader_dir) : grow_(shader_dir, {{"strand_lines.comp"}, {}, {}}) {}
 
@@ -15,7 +15,7 @@ void SoftwareShadow::draw(const HairResources& hair, std::size_t map, ShadowMaps
   strands_.bind(kSlotStrands, 0);
   points_.bind(kSlotPoints, 0);
   grow_.use();
-  glDispatchCompute(static_cast<GLuint>((strands + kStrandGroup - 1) / kStrandGroup), 1, 1);
+  dispatchStrands(static_cast<int>(strands));
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   shadows.describeTile(map, tile_);
   rasterizeLines({strands_.open<std::uint32_t>(strands, GL_MAP_READ_BIT),

@@ -1,23 +1,13 @@
 #include "render/software/software_strands.h"
 
-#include "shaders/shared.h"
+#include "render/gl/stored_points.h"
 
 namespace render {
 namespace {
 
 using namespace shared;
 
-// Hairs begin at multiples of so many strands, points and entries: OpenGL binds from multiples of 256 bytes.
-constexpr std::uint32_t kAlign = 64;
-constexpr GLsizeiptr kTexel = 4 * sizeof(float), kStrand = sizeof(StoredStrand);
-
-std::uint32_t aligned(std::uint32_t count) {
-  return (count + kAlign - 1) / kAlign * kAlign;
-}
-
-void dispatch(int invocations) {
-  glDispatchCompute(static_cast<GLuint>((invocations + kStrandGroup - 1) / kStrandGroup), 1, 1);
-}
+static_assert(sizeof(StoredStrand) == kStoredStrand);
 
 SamplePattern patternOf(int samples) {
   SamplePattern pattern;
@@ -49,9 +39,9 @@ bool SoftwareStrands::place(Stage& stage) {
     const Placed placed{i, hair.strandCount(hair.view_draw), hair.pointsPerStrand(hair.view_draw), strand_count_,
                         point_count_};
     const auto points = static_cast<std::uint64_t>(placed.strands) * static_cast<std::uint64_t>(placed.stride);
-    if (points + point_count_ > kMaxRasterPoints - kAlign) return false;
-    strand_count_ += aligned(static_cast<std::uint32_t>(placed.strands));
-    point_count_ += aligned(static_cast<std::uint32_t>(points));
+    if (points + point_count_ > kMaxRasterPoints - kStoredAlign) return false;
+    strand_count_ += alignedCount(static_cast<std::uint32_t>(placed.strands));
+    point_count_ += alignedCount(static_cast<std::uint32_t>(points));
     placed_.push_back(placed);
   }
   return true;
@@ -60,20 +50,20 @@ bool SoftwareStrands::place(Stage& stage) {
 void SoftwareStrands::bind(Stage& stage, const Placed& placed) {
   HairResources& hair = stage.hairs.hairs()[placed.hair];
   HairStore::bind(hair, hair.view_draw, &stage.detail.table());
-  strands_.bind(kSlotStrands, placed.first_strand * kStrand);
-  points_.bind(kSlotPoints, placed.first_point * kPointTexels * kTexel);
+  strands_.bind(kSlotStrands, placed.first_strand * kStoredStrand);
+  points_.bind(kSlotPoints, placed.first_point * kPointTexels * kStoredTexel);
 }
 
 void SoftwareStrands::grow(Stage& stage) {
   ribbons_.reserve(point_count_ * static_cast<GLsizeiptr>(sizeof(RibbonEdges)));
-  strands_.reserve(strand_count_ * kStrand);
-  points_.reserve(point_count_ * kPointTexels * kTexel);
-  colors_.reserve(point_count_ * kTexel);
+  strands_.reserve(strand_count_ * kStoredStrand);
+  points_.reserve(point_count_ * kPointTexels * kStoredTexel);
+  colors_.reserve(point_count_ * kStoredTexel);
   grow_.use();
   for (const Placed& placed : placed_) {
     bind(stage, placed);
     ribbons_.bind(kSlotRibbons, placed.first_point * static_cast<GLintptr>(sizeof(RibbonEdges)));
-    dispatch(placed.strands);
+    dispatchStrands(placed.strands);
   }
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
 }
@@ -114,7 +104,7 @@ void SoftwareStrands::listSeen(bool all, SkipCount& unshaded) {
       if (all || is_seen_[placed.first_point + static_cast<std::uint32_t>(point)] != 0) seen_.push_back(point);
     placed.seen = static_cast<std::uint32_t>(seen_.size()) - placed.first_seen;
     unshaded += {points - static_cast<long>(placed.seen), points};
-    seen_.resize(aligned(static_cast<std::uint32_t>(seen_.size())));
+    seen_.resize(alignedCount(static_cast<std::uint32_t>(seen_.size())));
   }
   seen_buffer_.upload(seen_.data(), static_cast<GLsizeiptr>(seen_.size() * sizeof(int)));
 }
@@ -130,7 +120,7 @@ void SoftwareStrands::shade(Stage& stage) {
                       placed.seen * sizeof(int));
     glUniform1i(0, static_cast<GLint>(placed.seen));
     glUniform1i(1, static_cast<GLint>(placed.first_point));
-    dispatch(static_cast<int>(placed.seen));
+    dispatchStrands(static_cast<int>(placed.seen));
   }
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <vector>
 
@@ -15,10 +16,12 @@
 #include "app/platform/egl_context.h"
 #include "render/gl/driver.h"
 #include "render/gl/shader.h"
+#include "render/hair/grown_strands.h"
 #include "render/hair/strand_draw.h"
 #include "render/passes.h"
 #include "render/renderer.h"
 #include "render/stage.h"
+#include "tests/bench/cpu_clock.h"
 #include "tests/bench/draw_scene.h"
 #include "tests/bench/measured_part.h"
 #include "tests/bench/table.h"
@@ -26,7 +29,10 @@
 namespace bench {
 namespace {
 
-constexpr int kUncounted = 6, kFramesARun = 10, kDrawsARun = 10;
+constexpr int kUncounted = 2, kFramesARun = 10, kDrawsARun = 10;
+constexpr double kEnough = 2;     // s that a row takes about
+constexpr int kFewest = 3;        // frames that it counts all the same
+constexpr double kTooSlow = 500;  // ms a frame: a path that takes as long is not timed with more strands
 constexpr double kMostOverTriangles = 2, kMostForShadows = 0.35;
 
 struct PictureSize {
@@ -46,7 +52,7 @@ std::vector<int> strandCounts(bool quick) {
 
 constexpr int kMostExpanded = 100000;  // strands; more would not fit into many a GPU's memory as triangles
 
-constexpr const char* kStagePaths[] = {"geometry", "pulling"};
+constexpr const char* kStagePaths[] = {"geometry", "pulling", "compute"};  // as StrandPath counts
 
 DrawSetting settingOf(int strands, int path, bool shadows) {
   return {{{"strands", static_cast<double>(strands)},
@@ -63,7 +69,9 @@ Passes timePasses(render::Renderer& renderer, DrawStage& scene, const DrawSettin
   std::vector<unsigned char> rgba;
   std::vector<std::string> names;
   std::map<std::string, std::vector<double>> times;
+  const double begin = secondsOf(CLOCK_MONOTONIC);
   for (int k = 0; k < kUncounted + frames; ++k) {
+    if (k >= kUncounted + kFewest && secondsOf(CLOCK_MONOTONIC) - begin > kEnough) break;
     const render::FrameReport report =
         renderer.renderImage(scene.frame(setting, k % 2, size.width, size.height), rgba, true);
     if (k < kUncounted) continue;
@@ -128,6 +136,7 @@ class StrandsAlone {
       : geometry_(shaders, {{"strand.vert", "strand.geom", "strand.frag"}, {}, {}}),
         pulling_(shaders, {{"strand_pull.vert", "strand.frag"}, {}, {}}),
         capture_(shaders, {{"strand.vert", "strand.geom", "strand.frag"}, {}, {"gl_Position", "lit", "dither"}}),
+        grown_(shaders),
         triangles_(shaders, {{"../tests/bench/expanded.vert", "strand.frag"}, {}, {}}),
         nothing_(render::makeVertexArray()),
         corners_(render::makeVertexArray()),
@@ -143,7 +152,7 @@ class StrandsAlone {
   }
 
   struct Times {
-    double geometry, pulling, triangles;  // ms
+    double geometry, pulling, compute, triangles;  // ms
   };
 
   Times time(const render::FrameInput& input, int draws) {
@@ -151,14 +160,16 @@ class StrandsAlone {
     const Triangles triangles = grow();
     glVertexArrayVertexBuffer(corners_.id(), 0, triangles.corners.id(), 0, sizeof(Corner));
     glVertexArrayElementBuffer(corners_.id(), triangles.indices.id());
-    std::array<std::vector<double>, 3> times;
+    std::array<std::vector<double>, 4> times;
+    const double begin = secondsOf(CLOCK_MONOTONIC);
     for (int k = -1; k < draws; ++k) {  // the first warms up
-      const std::array<double, 3> now{timed([this] { drawGrown(geometry_, render::StrandPath::kGeometry); }),
+      if (k >= kFewest && secondsOf(CLOCK_MONOTONIC) - begin > kEnough) break;
+      const std::array<double, 4> now{timed([this] { drawGrown(geometry_, render::StrandPath::kGeometry); }),
                                       timed([this] { drawGrown(pulling_, render::StrandPath::kPulling); }),
-                                      timed([&] { draw(triangles); })};
+                                      timed([this] { grown_.draw(stage_); }), timed([&] { draw(triangles); })};
       for (std::size_t way = 0; way < now.size() && k >= 0; ++way) times[way].push_back(now[way]);
     }
-    return {app::median(times[0]), app::median(times[1]), app::median(times[2])};
+    return {app::median(times[0]), app::median(times[1]), app::median(times[2]), app::median(times[3])};
   }
 
  private:
@@ -231,7 +242,9 @@ class StrandsAlone {
 
   render::Stage stage_;
   std::vector<render::PassEntry> passes_;
-  render::ShaderProgram geometry_, pulling_, capture_, triangles_;
+  render::ShaderProgram geometry_, pulling_, capture_;
+  render::GrownStrands grown_;
+  render::ShaderProgram triangles_;
   render::VertexArray nothing_, corners_;
   render::Query elapsed_;
 };
@@ -261,14 +274,17 @@ void measurePasses(DrawTables& measured, const DrawPassesOptions& options, const
   const int frames = kFramesARun * options.runs;
   DrawStage bust(one, renderer);
   for (const PictureSize& size : pictureSizes(options.quick)) {
+    bool too_slow[std::size(kStagePaths)] = {};
     for (const int strands : strandCounts(options.quick)) {
-      for (int path = 0; path < 2; ++path) {
+      for (int path = 0; path < static_cast<int>(std::size(kStagePaths)); ++path) {
+        if (too_slow[path]) continue;
         double times[2] = {};
         for (const bool shadows : {false, true}) {
           const Passes passes = timePasses(renderer, bust, settingOf(strands, path, shadows), size, frames);
           times[shadows] = timeOf(passes, "all");
           addPasses(measured, size.name(), std::to_string(strands), kStagePaths[path], shadows ? "on" : "off", passes);
         }
+        too_slow[path] = times[1] > kTooSlow;
         const double share = times[1] / times[0] - 1;
         const bool used = path == static_cast<int>(render::pathFor(render::StrandPath::kAuto));
         if (used && share > kMostForShadows)
@@ -288,18 +304,20 @@ void measureTriangles(DrawTables& measured, const DrawPassesOptions& options, co
   render::Renderer renderer(app::dataPath("shaders"));
   DrawStage bust(one, renderer);
   StrandsAlone strands_alone(app::dataPath("shaders"));
-  measured.triangles.head = {"picture", "strands", "geometry", "pulling", "triangles", "faster path over triangles"};
+  measured.triangles.head = {
+      "picture", "strands", "geometry", "pulling", "compute", "triangles", "fastest over triangles"};
   for (const PictureSize& size : pictureSizes(options.quick)) {
     for (const int strands : strandCounts(options.quick)) {
       if (strands > kMostExpanded) continue;
       const auto times = strands_alone.time(bust.frame(settingOf(strands, 0, true), 0, size.width, size.height),
                                             kDrawsARun * options.runs);
-      const double ratio = std::min(times.geometry, times.pulling) / times.triangles;
+      const double ratio = std::min({times.geometry, times.pulling, times.compute}) / times.triangles;
       measured.triangles.rows.push_back({size.name(), std::to_string(strands), formatted("%.3f", times.geometry),
-                                         formatted("%.3f", times.pulling), formatted("%.3f", times.triangles),
-                                         formatted("%.2f", ratio)});
-      std::printf("%s, %d strands: geometry %.3f ms, pulling %.3f ms, triangles %.3f ms\n", size.name().c_str(),
-                  strands, times.geometry, times.pulling, times.triangles);
+                                         formatted("%.3f", times.pulling), formatted("%.3f", times.compute),
+                                         formatted("%.3f", times.triangles), formatted("%.2f", ratio)});
+      std::printf("%s, %d strands: geometry %.3f, pulling %.3f, compute %.3f, triangles %.3f ms\n", size.name().c_str(),
+                  strands, times.geometry, times.pulling, times.compute, times.triangles);
+      std::fflush(stdout);
       if (ratio > kMostOverTriangles)
         measured.faults.push_back(formatted("%s, %d strands: %.2f times the time of triangles (bound %.1f)",
                                             size.name().c_str(), strands, ratio, kMostOverTriangles));

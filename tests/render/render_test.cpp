@@ -80,13 +80,29 @@ TEST_F(RenderTest, TheSameInputGivesTheSameBytes) {
   EXPECT_EQ(first.rgba, third.rgba);
 }
 
-TEST_F(RenderTest, GeometryAndPullingDrawTheSamePicture) {
+TEST_F(RenderTest, EveryPathOfTheShadersDrawsTheSamePicture) {
   Scene scene;
   render::FrameInput frame = scene.frame();
+  frame.view.strand_path = render::StrandPath::kGeometry;
   const app::Image geometry = draw(frame);
-  frame.view.strand_path = render::StrandPath::kPulling;
-  const app::Image pulling = draw(frame);
-  const golden::Difference difference = golden::compare(geometry, pulling, 8);
+  for (const render::StrandPath path : {render::StrandPath::kPulling, render::StrandPath::kCompute}) {
+    frame.view.strand_path = path;
+    const golden::Difference difference = golden::compare(geometry, draw(frame), 8);
+    EXPECT_LT(difference.outliers, kWidth * kHeight / 500) << static_cast<int>(path);
+    EXPECT_LT(difference.mean, 0.05) << static_cast<int>(path);
+  }
+}
+
+// More strands than lie in the buffers at a time (render/hair/grown_strands.cpp), in the picture and in its shadows.
+TEST_F(RenderTest, StrandsOfManyBatchesAreTheGeometryStages) {
+  Scene scene(50000);
+  render::FrameInput frame = scene.frame();
+  frame.light.shadow_strands = 0;
+  frame.skips.strands = frame.skips.segments = frame.skips.shadow_detail = false;
+  frame.view.strand_path = render::StrandPath::kGeometry;
+  const app::Image geometry = draw(frame);
+  frame.view.strand_path = render::StrandPath::kCompute;
+  const golden::Difference difference = golden::compare(geometry, draw(frame), 8);
   EXPECT_LT(difference.outliers, kWidth * kHeight / 500);
   EXPECT_LT(difference.mean, 0.05);
 }
