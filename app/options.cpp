@@ -226,8 +226,8 @@ void addPictureOptions(CLI::App& parser, Options& options, Unchecked& unchecked)
       ->check(within(0, findHairField("strands")->maximum));
   group
       .value("--strand-path", options.strand_path, "NAME",
-             "What draws strands: geometry, pulling, compute, software, or auto: what suits the driver (auto)")
-      ->check(oneOf({"geometry", "pulling", "compute", "software", "auto"}));
+             "What draws strands: geometry, compute, software, or auto: what suits the driver (auto)")
+      ->check(oneOf({"geometry", "compute", "software", "auto"}));
   group.value("--debug", options.debug, "LIST",
               "Debug views, comma separated: mesh, external, tets, ellipsoids, contacts, velocities, pins");
   group.value("--compare", options.compare, "WITH",

@@ -45,7 +45,7 @@ struct Options {
   std::string camera;       // front, side, back, top, three-quarter or "ex,ey,ez,tx,ty,tz"
   std::string framing;      // head, bust or figure
   std::string report;       // JSON file of timings and counters
-  std::string strand_path;  // geometry, pulling, software or auto
+  std::string strand_path;  // geometry, compute, software or auto
   std::string preset;
   std::string environment;  // panorama whose light replaces the scene's; empty: none
   std::string solver;       // default or paper; empty: the scene's

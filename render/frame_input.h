@@ -162,9 +162,9 @@ struct LineVertex {
   std::array<float, 4> color;
 };  // debug; colour with alpha, not premultiplied
 
-// What grows the strands: the geometry stage, vertex pulling, compute shaders (see grown_strands.h), or these with a
-// rasterizer on the CPU (see software_strands.h). kAuto: what suits the driver (see driver.h). The pictures agree.
-enum class StrandPath { kGeometry, kPulling, kCompute, kSoftware, kAuto };
+// What grows the strands: the geometry stage, compute shaders (see grown_strands.h), or these with a rasterizer on the
+// CPU (see software_strands.h). kAuto: what suits the driver (see driver.h). The pictures agree.
+enum class StrandPath { kGeometry, kCompute, kSoftware, kAuto };
 
 struct ViewOptions {
   int samples = 4;  // multisampling, clamped to what the context has

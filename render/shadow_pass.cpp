@@ -44,8 +44,7 @@ class HairShadowPass {
   // Draws a bound hair's strands into a map, not in software.
   void drawStages(StrandPath path, const HairResources& hair, const ShadowMaps::HairMap& map, ShadowMaps& shadows);
 
-  ShaderProgram depth_geometry_, depth_pulling_, depth_grown_, opacity_geometry_, opacity_pulling_, opacity_grown_,
-      body_depth_;
+  ShaderProgram depth_, opacity_, body_depth_;
   GrownLines grown_;
   SoftwareShadow software_;
   VertexArray no_attributes_;
@@ -71,12 +70,8 @@ class BodyShadowPass {
 };
 
 HairShadowPass::HairShadowPass(const std::string& shader_dir)
-    : depth_geometry_(shader_dir, {{"strand.vert", "strand_shadow.geom", "depth_only.frag"}, {}, {}}),
-      depth_pulling_(shader_dir, {{"strand_shadow_pull.vert", "depth_only.frag"}, {}, {}}),
-      depth_grown_(shader_dir, {{"strand_line.vert", "depth_only.frag"}, {}, {}}),
-      opacity_geometry_(shader_dir, {{"strand.vert", "strand_shadow.geom", "opacity.frag"}, {}, {}}),
-      opacity_pulling_(shader_dir, {{"strand_shadow_pull.vert", "opacity.frag"}, {}, {}}),
-      opacity_grown_(shader_dir, {{"strand_line.vert", "opacity.frag"}, {}, {}}),
+    : depth_(shader_dir, {{"strand.vert", "strand_shadow.geom", "depth_only.frag"}, {}, {}}),
+      opacity_(shader_dir, {{"strand.vert", "strand_shadow.geom", "opacity.frag"}, {}, {}}),
       body_depth_(shader_dir, {{"body.vert", "depth_only.frag"}, {}, {}}),
       grown_(shader_dir),
       software_(shader_dir),
@@ -84,22 +79,18 @@ HairShadowPass::HairShadowPass(const std::string& shader_dir)
 
 void HairShadowPass::drawStages(StrandPath path, const HairResources& hair, const ShadowMaps::HairMap& map,
                                 ShadowMaps& shadows) {
-  const auto issue = [&](const ShaderProgram& geometry, const ShaderProgram& pulling, const ShaderProgram& grown,
-                         bool fresh) {
-    if (path == StrandPath::kCompute) {
-      grown_.draw(hair, grown, fresh);
-      return;
-    }
+  const bool compute = path == StrandPath::kCompute;
+  const auto growAndDraw = [&](const ShaderProgram& program) {
     glBindVertexArray(no_attributes_.id());
-    (path == StrandPath::kGeometry ? geometry : pulling).use();
-    issueStrands(hair, hair.shadow_draw, path, {GL_LINE_STRIP, 1});
+    program.use();
+    issueStrands(hair, hair.shadow_draw, 1);
   };
   shadows.beginHairDepth(map);
-  issue(depth_geometry_, depth_pulling_, depth_grown_, true);
+  compute ? grown_.drawDepth(hair) : growAndDraw(depth_);
   shadows.beginOpacity(map);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
-  issue(opacity_geometry_, opacity_pulling_, opacity_grown_, false);
+  compute ? grown_.drawOpacity(hair) : growAndDraw(opacity_);
   glDisable(GL_BLEND);
 }
 
@@ -130,9 +121,7 @@ void HairShadowPass::draw(const Input& input, Stage& stage, FrameReport& report)
 }
 
 ReloadReport HairShadowPass::reload(Reload which) {
-  ReloadReport report = reloadPrograms({&depth_geometry_, &depth_pulling_, &depth_grown_, &opacity_geometry_,
-                                        &opacity_pulling_, &opacity_grown_, &body_depth_},
-                                       which);
+  ReloadReport report = reloadPrograms({&depth_, &opacity_, &body_depth_}, which);
   report += grown_.reload(which);
   report += software_.reload(which);
   return report;

@@ -1,5 +1,4 @@
-// Draws strands, lit: by the geometry stage, by vertex pulling, grown by compute shaders or in software, the same
-// curves each way.
+// Draws strands, lit: grown by the geometry stage, by compute shaders, or in software, the same curves each way.
 #include <string>
 
 #include "render/gl/driver.h"
@@ -28,16 +27,16 @@ class StrandPass {
   explicit StrandPass(const std::string& shader_dir);
   void draw(const Input& input, Stage& stage, FrameReport& report);
   ReloadReport reload(Reload which) {
-    ReloadReport report = reloadPrograms({&geometry_, &pulling_}, which);
+    ReloadReport report = geometry_.reload(which);
     report += grown_.reload(which);
     report += software_.reload(which);
     return report;
   }
 
  private:
-  StrandCount drawStages(StrandPath path, Stage& stage);
+  StrandCount drawByGeometryStage(Stage& stage);
 
-  ShaderProgram geometry_, pulling_;
+  ShaderProgram geometry_;
   GrownStrands grown_;
   SoftwareStrands software_;
   VertexArray no_attributes_;
@@ -49,12 +48,11 @@ static_assert(shared::kChunkPoints * shared::kLineComponents <= shared::kMaxOutp
 
 StrandPass::StrandPass(const std::string& shader_dir)
     : geometry_(shader_dir, {{"strand.vert", "strand.geom", "strand.frag"}, {}, {}}),
-      pulling_(shader_dir, {{"strand_pull.vert", "strand.frag"}, {}, {}}),
       grown_(shader_dir),
       software_(shader_dir),
       no_attributes_(makeVertexArray()) {}
 
-StrandCount StrandPass::drawStages(StrandPath path, Stage& stage) {
+StrandCount StrandPass::drawByGeometryStage(Stage& stage) {
   StrandCount count;
   stage.shadows.bindMaps();
   glBindVertexArray(no_attributes_.id());
@@ -63,8 +61,8 @@ StrandCount StrandPass::drawStages(StrandPath path, Stage& stage) {
     if (!hair.drawable || !hair.in_view) continue;
     hair.view_draw.shadow_map = stage.shadows.mapOf(i);
     HairStore::bind(hair, hair.view_draw, &stage.detail.table());
-    (path == StrandPath::kGeometry ? geometry_ : pulling_).use();
-    count += issueStrands(hair, hair.view_draw, path, {GL_TRIANGLE_STRIP, 2});
+    geometry_.use();
+    count += issueStrands(hair, hair.view_draw, 2);
   }
   return count;
 }
@@ -77,8 +75,8 @@ void StrandPass::draw(const Input& input, Stage& stage, FrameReport& report) {
     path = StrandPath::kGeometry;
   if (path == StrandPath::kCompute)
     count = grown_.draw(stage);
-  else if (path != StrandPath::kSoftware)
-    count = drawStages(path, stage);
+  else if (path == StrandPath::kGeometry)
+    count = drawByGeometryStage(stage);
   report.strands_drawn = count.strands;
   report.strand_vertices = count.vertices;
   report.draw_calls += count.draw_calls;

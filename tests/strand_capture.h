@@ -43,7 +43,7 @@ inline std::vector<Polyline> capture(const render::HairInput& input, const std::
   glEnable(GL_RASTERIZER_DISCARD);
   glBeginQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN, query.id());
   glBeginTransformFeedback(GL_LINES);
-  render::issueStrands(hair, draw, render::StrandPath::kGeometry, {GL_LINE_STRIP, 1});
+  render::issueStrands(hair, draw, 1);
   glEndTransformFeedback();
   glEndQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
   glDisable(GL_RASTERIZER_DISCARD);

@@ -47,11 +47,12 @@ bool rasterizesInSoftware() {
 }
 
 // Zink names the Vulkan driver under it, and there a map waits for all that was drawn; softpipe interprets its shaders.
+// On GPUs compute shaders take a fraction of the geometry stage's time (docs/gpu.md).
 StrandPath pathFor(StrandPath asked) {
   if (asked == StrandPath::kCompute && !vertexStageReadsBuffers()) return StrandPath::kGeometry;
   if (asked != StrandPath::kAuto) return asked;
   const std::string name = rendererName();
-  return isNamed(name, "llvmpipe") && !isNamed(name, "zink") ? StrandPath::kSoftware : StrandPath::kGeometry;
+  return isNamed(name, "llvmpipe") && !isNamed(name, "zink") ? StrandPath::kSoftware : pathFor(StrandPath::kCompute);
 }
 
 }  // namespace render

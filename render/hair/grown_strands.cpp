@@ -96,7 +96,10 @@ void GrownStrands::drawBatch(Stage& stage) {
 }
 
 GrownLines::GrownLines(const std::string& shader_dir)
-    : grow_(shader_dir, {{"strand_lines.comp"}, {}, {}}), no_attributes_(makeVertexArray()) {}
+    : grow_(shader_dir, {{"strand_lines.comp"}, {}, {}}),
+      depth_(shader_dir, {{"strand_line.vert", "depth_only.frag"}, {}, {}}),
+      opacity_(shader_dir, {{"strand_line.vert", "opacity.frag"}, {}, {}}),
+      no_attributes_(makeVertexArray()) {}
 
 void GrownLines::draw(const HairResources& hair, const ShaderProgram& program, bool fresh) {
   const int strands = hair.strandCount(hair.shadow_draw), stride = hair.pointsPerStrand(hair.shadow_draw),

@@ -44,13 +44,16 @@ class GrownStrands {
 class GrownLines {
  public:
   explicit GrownLines(const std::string& shader_dir);
-  // Draws a bound hair's strands into the map that is begun, with a program that reads them (strand_line.vert).
-  // `fresh`: they may have moved since the last call.
-  void draw(const HairResources& hair, const ShaderProgram& program, bool fresh);
-  ReloadReport reload(Reload which) { return grow_.reload(which); }
+  // Draw a bound hair's strands into the map that is begun: first their depth, then, as they stood there, their
+  // opacity.
+  void drawDepth(const HairResources& hair) { draw(hair, depth_, true); }
+  void drawOpacity(const HairResources& hair) { draw(hair, opacity_, false); }
+  ReloadReport reload(Reload which) { return reloadPrograms({&grow_, &depth_, &opacity_}, which); }
 
  private:
-  ShaderProgram grow_;
+  void draw(const HairResources& hair, const ShaderProgram& program, bool fresh);
+
+  ShaderProgram grow_, depth_, opacity_;
   VertexArray no_attributes_;
   StoredBuffer strands_, points_;
 };

@@ -9,16 +9,11 @@ StrandCount& StrandCount::operator+=(const StrandCount& other) {
   return *this;
 }
 
-StrandCount issueStrands(const HairResources& hair, const HairDraw& draw, StrandPath path,
-                         const StrandTopology& topology) {
-  const int strands = hair.strandCount(draw), vertices = hair.pointsPerStrand(draw) * topology.vertices_a_point;
+StrandCount issueStrands(const HairResources& hair, const HairDraw& draw, int vertices_a_point) {
+  const int strands = hair.strandCount(draw);
   if (strands == 0) return {};
-  if (path == StrandPath::kGeometry) {
-    glDrawArrays(GL_POINTS, 0, strands * hair.chunksPerStrand(draw));
-  } else {
-    glDrawArraysInstanced(topology.strip, 0, vertices, strands);
-  }
-  return {strands, static_cast<long>(strands) * vertices, 1};
+  glDrawArrays(GL_POINTS, 0, strands * hair.chunksPerStrand(draw));
+  return {strands, static_cast<long>(strands) * hair.pointsPerStrand(draw) * vertices_a_point, 1};
 }
 
 }  // namespace render

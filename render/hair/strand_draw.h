@@ -12,14 +12,8 @@ struct StrandCount {
   StrandCount& operator+=(const StrandCount& other);
 };
 
-struct StrandTopology {
-  GLenum strip;
-  int vertices_a_point;
-};
-
-// Issues a hair's strands with the program in use. The geometry path draws points, the pulling path `strip` instances
-// of `vertices_a_point` vertices a curve point. The hair must be bound.
-StrandCount issueStrands(const HairResources& hair, const HairDraw& draw, StrandPath path,
-                         const StrandTopology& topology);
+// Issues a hair's strands with the program in use, which grows them in its geometry stage from points: a point a chunk
+// of a strand. `vertices_a_point`: that it emits a point of the curve. The hair must be bound.
+StrandCount issueStrands(const HairResources& hair, const HairDraw& draw, int vertices_a_point);
 
 }  // namespace render

@@ -49,7 +49,7 @@ TEST(Options, AreReadAsWritten) {
                                "--out",      "o",          "--set",         "friction=0.5", "--set",    "solver=paper",
                                "--style",    "long",       "--resolution",  "high",         "--speed",  "2.5",
                                "--fps",      "30",         "--strands",     "1000",         "--camera", "1,2,3,0,1,0",
-                               "--report",   "r.json",     "--strand-path", "pulling",      "--preset", "soft"});
+                               "--report",   "r.json",     "--strand-path", "compute",      "--preset", "soft"});
   ASSERT_TRUE(parsed.go_on);
   const Options& o = parsed.options;
   EXPECT_EQ(o.scene, "scene.json");

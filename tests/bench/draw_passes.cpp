@@ -52,7 +52,7 @@ std::vector<int> strandCounts(bool quick) {
 
 constexpr int kMostExpanded = 100000;  // strands; more would not fit into many a GPU's memory as triangles
 
-constexpr const char* kStagePaths[] = {"geometry", "pulling", "compute"};  // as StrandPath counts
+constexpr const char* kStagePaths[] = {"geometry", "compute"};  // as StrandPath counts
 
 DrawSetting settingOf(int strands, int path, bool shadows) {
   return {{{"strands", static_cast<double>(strands)},
@@ -134,7 +134,6 @@ class StrandsAlone {
  public:
   explicit StrandsAlone(const std::string& shaders)
       : geometry_(shaders, {{"strand.vert", "strand.geom", "strand.frag"}, {}, {}}),
-        pulling_(shaders, {{"strand_pull.vert", "strand.frag"}, {}, {}}),
         capture_(shaders, {{"strand.vert", "strand.geom", "strand.frag"}, {}, {"gl_Position", "lit", "dither"}}),
         grown_(shaders),
         triangles_(shaders, {{"../tests/bench/expanded.vert", "strand.frag"}, {}, {}}),
@@ -152,7 +151,7 @@ class StrandsAlone {
   }
 
   struct Times {
-    double geometry, pulling, compute, triangles;  // ms
+    double geometry, compute, triangles;  // ms
   };
 
   Times time(const render::FrameInput& input, int draws) {
@@ -160,16 +159,15 @@ class StrandsAlone {
     const Triangles triangles = grow();
     glVertexArrayVertexBuffer(corners_.id(), 0, triangles.corners.id(), 0, sizeof(Corner));
     glVertexArrayElementBuffer(corners_.id(), triangles.indices.id());
-    std::array<std::vector<double>, 4> times;
+    std::array<std::vector<double>, 3> times;
     const double begin = secondsOf(CLOCK_MONOTONIC);
     for (int k = -1; k < draws; ++k) {  // the first warms up
       if (k >= kFewest && secondsOf(CLOCK_MONOTONIC) - begin > kEnough) break;
-      const std::array<double, 4> now{timed([this] { drawGrown(geometry_, render::StrandPath::kGeometry); }),
-                                      timed([this] { drawGrown(pulling_, render::StrandPath::kPulling); }),
-                                      timed([this] { grown_.draw(stage_); }), timed([&] { draw(triangles); })};
+      const std::array<double, 3> now{timed([this] { issueWith(geometry_); }), timed([this] { grown_.draw(stage_); }),
+                                      timed([&] { draw(triangles); })};
       for (std::size_t way = 0; way < now.size() && k >= 0; ++way) times[way].push_back(now[way]);
     }
-    return {app::median(times[0]), app::median(times[1]), app::median(times[2]), app::median(times[3])};
+    return {app::median(times[0]), app::median(times[1]), app::median(times[2])};
   }
 
  private:
@@ -191,10 +189,10 @@ class StrandsAlone {
     stage_.shadows.bindMaps();
   }
 
-  void drawGrown(const render::ShaderProgram& program, render::StrandPath path) {
+  void issueWith(const render::ShaderProgram& program) {
     glBindVertexArray(nothing_.id());
     program.use();
-    render::issueStrands(hair(), hair().view_draw, path, {GL_TRIANGLE_STRIP, 2});
+    render::issueStrands(hair(), hair().view_draw, 2);
   }
 
   void draw(const Triangles& triangles) {
@@ -216,7 +214,7 @@ class StrandsAlone {
     capture_.use();
     glBeginQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN, written.id());
     glBeginTransformFeedback(GL_TRIANGLES);
-    render::issueStrands(hair(), draw, render::StrandPath::kGeometry, {GL_TRIANGLE_STRIP, 2});
+    render::issueStrands(hair(), draw, 2);
     glEndTransformFeedback();
     glEndQuery(GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN);
     GLuint count = 0;
@@ -242,7 +240,7 @@ class StrandsAlone {
 
   render::Stage stage_;
   std::vector<render::PassEntry> passes_;
-  render::ShaderProgram geometry_, pulling_, capture_;
+  render::ShaderProgram geometry_, capture_;
   render::GrownStrands grown_;
   render::ShaderProgram triangles_;
   render::VertexArray nothing_, corners_;
@@ -304,19 +302,18 @@ void measureTriangles(DrawTables& measured, const DrawPassesOptions& options, co
   render::Renderer renderer(app::dataPath("shaders"));
   DrawStage bust(one, renderer);
   StrandsAlone strands_alone(app::dataPath("shaders"));
-  measured.triangles.head = {
-      "picture", "strands", "geometry", "pulling", "compute", "triangles", "fastest over triangles"};
+  measured.triangles.head = {"picture", "strands", "geometry", "compute", "triangles", "compute over triangles"};
   for (const PictureSize& size : pictureSizes(options.quick)) {
     for (const int strands : strandCounts(options.quick)) {
       if (strands > kMostExpanded) continue;
       const auto times = strands_alone.time(bust.frame(settingOf(strands, 0, true), 0, size.width, size.height),
                                             kDrawsARun * options.runs);
-      const double ratio = std::min({times.geometry, times.pulling, times.compute}) / times.triangles;
+      const double ratio = times.compute / times.triangles;
       measured.triangles.rows.push_back({size.name(), std::to_string(strands), formatted("%.3f", times.geometry),
-                                         formatted("%.3f", times.pulling), formatted("%.3f", times.compute),
-                                         formatted("%.3f", times.triangles), formatted("%.2f", ratio)});
-      std::printf("%s, %d strands: geometry %.3f, pulling %.3f, compute %.3f, triangles %.3f ms\n", size.name().c_str(),
-                  strands, times.geometry, times.pulling, times.compute, times.triangles);
+                                         formatted("%.3f", times.compute), formatted("%.3f", times.triangles),
+                                         formatted("%.2f", ratio)});
+      std::printf("%s, %d strands: geometry %.3f, compute %.3f, triangles %.3f ms\n", size.name().c_str(), strands,
+                  times.geometry, times.compute, times.triangles);
       std::fflush(stdout);
       if (ratio > kMostOverTriangles)
         measured.faults.push_back(formatted("%s, %d strands: %.2f times the time of triangles (bound %.1f)",

@@ -13,8 +13,8 @@ struct DrawPassesOptions {
 };
 
 // Writes <folder>/data/gpu_passes.csv (ms, medians) and gpu_triangles.csv, and the measured parts of gpu.md where the
-// folder has it. Returns whether the bounds hold: growing by the faster path at most twice the time of triangles,
-// shadow maps at most 35 % on top of a frame without. Throws app::InputError and app::ContextError.
+// folder has it. Returns whether the bounds hold: strands that compute shaders grow at most twice the time of
+// triangles, shadow maps at most 35 % on top of a frame without. Throws app::InputError and app::ContextError.
 bool runDrawPasses(const DrawPassesOptions& options);
 
 }  // namespace bench

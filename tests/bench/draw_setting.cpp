@@ -20,7 +20,7 @@ struct Factor {
 
 constexpr const char* kPathFactor = "strand_path";
 constexpr const char* kRungFactor = "rung";  // of the drawing governor
-constexpr const char* kPathNames[] = {"geometry", "pulling", "compute", "software"};
+constexpr const char* kPathNames[] = {"geometry", "compute", "software"};
 
 constexpr Factor kFactors[] = {
     {"strands",
@@ -74,7 +74,7 @@ std::vector<Tried> singleFactors() {
           {"opacity_layers", {4}, 1},
           {"shadow_strands", {4000}, 1},
           {"shadow_strands_per_pixel", {12, 48}, 1},
-          {kPathFactor, {0, 1, 2}, 0}};
+          {kPathFactor, {0, 1}, 0}};
 }
 
 std::vector<DrawSetting> combinations() {

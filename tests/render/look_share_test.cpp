@@ -64,7 +64,7 @@ TEST_F(LookShares, EveryPathDrawsThemAlike) {
     return draw_skips::draw(renderer, frame);
   };
   const app::Image stages = draw(hairs, StrandPath::kGeometry);
-  for (const StrandPath path : {StrandPath::kPulling, StrandPath::kCompute, StrandPath::kSoftware}) {
+  for (const StrandPath path : {StrandPath::kCompute, StrandPath::kSoftware}) {
     const golden::Difference difference = golden::compare(stages, draw(hairs, path), 12);
     EXPECT_LT(difference.outliers, 320 * 180 / 300);
     EXPECT_LT(difference.mean, 0.2);

@@ -81,7 +81,7 @@ void change(render::Float3& value) {
   value[0] += 0.11f;
 }
 void change(render::StrandPath& value) {
-  value = render::StrandPath::kPulling;
+  value = render::StrandPath::kCompute;
 }
 
 // One hair on one body, and what the frame's spans point to.
@@ -288,7 +288,7 @@ TEST_F(Passes, AKeptFrameIsWhatAFreshOneWouldBe) {
     fresh.renderImage(nothing, empty);
     fresh.renderImage(scene.frame, redrawn);
     const golden::Difference stale = golden::compare({96, 64, kept}, {96, 64, redrawn}, 0);
-    EXPECT_EQ(stale.outliers, 0) << "stale after a change of " << name << ", by " << stale.largest << " levels";
+    EXPECT_TRUE(kept == redrawn) << "stale after a change of " << name << ", by " << stale.largest << " levels in " << stale.outliers << " pixels";
     if (redrawn == before) unseen.insert(name);
     keeping.renderImage(nothing, empty);
   }

@@ -103,14 +103,15 @@ TEST_F(SkipsDraw, ExactSkipsChangeNoByte) {
     show();
   }
   for (std::size_t s = 1; s < sets.size(); ++s) {
-    // Where a map is left out the others lie elsewhere in their texture, and its filter rounds: a level or two in
-    // a few pixels.
+    // Where a map is left out the others lie elsewhere in their texture, and its filter rounds, on GPUs to a 256th of a
+    // texel: a level or two in a few pixels, on GPUs 10 (seen on an H200).
+    const int rounding = render::rasterizesInSoftware() ? 2 : 12;
     const bool moved = s == 1 || std::string_view(kExact[s - 2].name) == "shadow_view";
     for (std::size_t i = 0; i < pictures[0].size(); ++i) {
       const golden::Difference difference = golden::compare(pictures[s][i], pictures[0][i], 0);
       const char* name = s < 2 ? "all" : kExact[s - 2].name;
       EXPECT_LE(difference.outliers, moved ? 20 : 0) << name << ", picture " << i;
-      EXPECT_LE(difference.largest, moved ? 2 : 0) << name << ", picture " << i;
+      EXPECT_LE(difference.largest, moved ? rounding : 0) << name << ", picture " << i;
     }
     if (s < 2) continue;
     const NamedSkip& skip = kExact[s - 2];

@@ -116,11 +116,11 @@ TEST_F(Software, EveryFrameIsWhatAFreshRendererDraws) {
 
 TEST_F(Software, AutoIsTheSoftwarePathOnLlvmpipeAlone) {
   EXPECT_EQ(render::pathFor(StrandPath::kGeometry), StrandPath::kGeometry);
-  EXPECT_EQ(render::pathFor(StrandPath::kPulling), StrandPath::kPulling);
   EXPECT_EQ(render::pathFor(StrandPath::kSoftware), StrandPath::kSoftware);
   const std::string name = render::rendererName();
   const bool llvmpipe = name.find("llvmpipe") != std::string::npos && name.find("zink") == std::string::npos;
-  EXPECT_EQ(render::pathFor(StrandPath::kAuto), llvmpipe ? StrandPath::kSoftware : StrandPath::kGeometry);
+  EXPECT_EQ(render::pathFor(StrandPath::kAuto),
+            llvmpipe ? StrandPath::kSoftware : render::pathFor(StrandPath::kCompute));
 }
 
 TEST_F(Software, SkinOutOfReachAndHiddenPointsChangeNoByte) {

@@ -131,7 +131,9 @@ TEST_F(StrandGrowthOnGpu, AgreesWithTheShadersForEveryStyle) {
       const PosedHair hair = posedStyle(style, resolution);
       const render::HairInput input = hair.input(3000);
       const Comparison result = compare(growthOf(input), strand_capture::capture(input, gl_fixture::kShaderDir));
-      EXPECT_LT(result.worst, 1e-5f * hair.length);
+      // Where a strand runs along its frame's side a last bit turns what it leaves its guide by: 3e-5 for one strand of
+      // 45,000 on a GPU.
+      EXPECT_LT(result.worst, (render::rasterizesInSoftware() ? 1e-5f : 5e-5f) * hair.length);
       EXPECT_LE(result.other, 3);
       EXPECT_EQ(result.differ, 0);
     }

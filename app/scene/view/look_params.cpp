@@ -19,7 +19,7 @@ struct Range {
 };
 
 constexpr bool kLog = true;
-constexpr std::array<const char*, 5> kStrandPaths{"geometry", "pulling", "compute", "software", "auto"};
+constexpr std::array<const char*, 4> kStrandPaths{"geometry", "compute", "software", "auto"};
 
 // 0.35f as a double is 0.3499999940395355; a person and a preset want to read 0.35, which gives the same float back.
 double plain(float value) {
