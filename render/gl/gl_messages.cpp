@@ -11,9 +11,11 @@ namespace {
 
 long messages = 0;
 
-void GLAPIENTRY onMessage(GLenum, GLenum, GLuint, GLenum severity, GLsizei length, const GLchar* text, const void*) {
+// Advice on speed is no fault: drivers give it when they compile a shader anew, once a machine.
+void GLAPIENTRY onMessage(GLenum, GLenum type, GLuint, GLenum severity, GLsizei length, const GLchar* text,
+                          const void*) {
   static std::set<std::string> said;
-  if (severity == GL_DEBUG_SEVERITY_NOTIFICATION) return;
+  if (severity == GL_DEBUG_SEVERITY_NOTIFICATION || type == GL_DEBUG_TYPE_PERFORMANCE) return;
   ++messages;
   const std::string words = length < 0 ? std::string(text) : std::string(text, static_cast<std::size_t>(length));
   if (said.insert(words).second) std::fprintf(stderr, "OpenGL: %s\n", words.c_str());
