@@ -289,6 +289,10 @@ TEST_F(Passes, AKeptFrameIsWhatAFreshOneWouldBe) {
     fresh.renderImage(scene.frame, redrawn);
     const golden::Difference stale = golden::compare({96, 64, kept}, {96, 64, redrawn}, 0);
     EXPECT_TRUE(kept == redrawn) << "stale after a change of " << name << ", by " << stale.largest << " levels in " << stale.outliers << " pixels";
+    if (kept != redrawn) {
+      app::writePng(std::string(HAIRMESH_TEST_OUT) + "/" + name + "_kept.png", 96, 64, kept);
+      app::writePng(std::string(HAIRMESH_TEST_OUT) + "/" + name + "_redrawn.png", 96, 64, redrawn);
+    }
     if (redrawn == before) unseen.insert(name);
     keeping.renderImage(nothing, empty);
   }
