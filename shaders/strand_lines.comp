@@ -7,12 +7,13 @@
 #include "common/opacity_line.glsl"
 
 layout(local_size_x = kStrandGroup) in;
+#include "common/invocation.glsl"
 layout(std430, binding = kSlotStrands) writeonly restrict buffer Strands { uint strands[]; };  // points of a strand
 layout(std430, binding = kSlotPoints) writeonly restrict buffer Points { vec4 points[]; };  // texels, depth, opacity
 layout(location = 0) uniform int first_strand;
 
 void main() {
-  int slot = int(gl_GlobalInvocationID.x), number = first_strand + slot;
+  int slot = invocation(), number = first_strand + slot;
   if (number >= draw.x) return;
   Strand strand = makeStrand(number);
   int last = lastPoint(strand), first = slot * draw.z;

@@ -6,6 +6,7 @@
 #include "common/ribbon.glsl"
 
 layout(local_size_x = kStrandGroup) in;
+#include "common/invocation.glsl"
 layout(std430, binding = kSlotRibbons) writeonly restrict buffer Ribbons { vec4 ribbons[]; };
 layout(std430, binding = kSlotStrands) writeonly restrict buffer Strands { uvec4 strands[]; };
 layout(std430, binding = kSlotPoints) writeonly restrict buffer Points { vec4 points[]; };
@@ -30,7 +31,7 @@ void storeRibbon(int at, in CurvePoint point, in RibbonPoint ribbon) {
 #endif
 
 void main() {
-  int slot = int(gl_GlobalInvocationID.x), number = first_strand + slot;
+  int slot = invocation(), number = first_strand + slot;
   if (number >= draw.x) return;
   Strand strand = makeStrand(number);
   float dither = strandDither(strand);

@@ -6,6 +6,7 @@
 #include "common/hair_shading.glsl"
 
 layout(local_size_x = kStrandGroup) in;
+#include "common/invocation.glsl"
 layout(std430, binding = kSlotStrands) readonly restrict buffer Strands { uvec4 strands[]; };
 layout(std430, binding = kSlotPoints) readonly restrict buffer Points { vec4 points[]; };
 #ifndef ALL_POINTS
@@ -16,7 +17,7 @@ layout(location = 0) uniform int count;
 layout(location = 1) uniform int first_color;  // of the hair
 
 void main() {
-  int listed = int(gl_GlobalInvocationID.x);
+  int listed = invocation();
   if (listed >= count) return;
 #ifdef ALL_POINTS
   int at = listed;

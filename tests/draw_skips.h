@@ -12,7 +12,7 @@ namespace draw_skips {
 
 // Levels of 255, and where the hair is so small that a block holds it; the table (app/scene/detail/skips.cpp) states
 // them.
-constexpr double kDetailBound = 4.5, kSmallBound = 9, kBodyBound = 2, kSmallBodyBound = 3.5;
+constexpr double kDetailBound = 4.5, kSmallBound = 9, kBodyBound = 2, kSmallBodyBound = 4;
 
 inline render::DrawSkips none() {
   render::DrawSkips skips;

@@ -3,6 +3,7 @@
 
 #include <GL/glew.h>
 
+#include <algorithm>
 #include <cstdint>
 
 #include "shaders/shared.h"
@@ -17,9 +18,12 @@ inline std::uint32_t alignedCount(std::uint32_t count) {
   return (count + kStoredAlign - 1) / kStoredAlign * kStoredAlign;
 }
 
-// Runs the compute shader in use, in groups of kStrandGroup.
+// Runs the compute shader in use, in groups of kStrandGroup, in rows of as many groups as OpenGL promises (see
+// invocation() of shaders/common/invocation.glsl).
 inline void dispatchStrands(int invocations) {
-  glDispatchCompute(static_cast<GLuint>((invocations + shared::kStrandGroup - 1) / shared::kStrandGroup), 1, 1);
+  constexpr GLuint kRow = 65535;
+  const auto groups = static_cast<GLuint>((invocations + shared::kStrandGroup - 1) / shared::kStrandGroup);
+  glDispatchCompute(std::min(groups, kRow), (groups + kRow - 1) / kRow, 1);
 }
 
 }  // namespace render

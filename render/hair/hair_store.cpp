@@ -90,27 +90,26 @@ long uploadScattering(HairScattering& hair) {
 }
 
 // Summed projected diameter (m) of the hairs that the drawn strands stand for.
-float representedWidth(const HairLook& look, int strands) {
-  return 2 * look.strand_radius * 0.5f * (1 + look.taper) *
-         std::max(look.strands_represented, static_cast<float>(strands));
+float representedWidth(const HairLook& look) {
+  return 2 * look.strand_radius * 0.5f * (1 + look.taper) * look.strands_represented;
 }
 
 long uploadBlock(HairResources& hair) {
   const HairLook& look = hair.look;
   const auto strands = static_cast<float>(std::max(hair.strands, 1));
-  const float represented = std::max(look.strands_represented / strands, 1.0f);
+  const float represented = look.strands_represented / strands;
   const Float3 widths = lobeWidths(look.beta_m);
   shared::HairBlock block{};
   block.width = {look.strand_radius * std::pow(represented, look.width_compensation), look.taper,
-                 representedWidth(look, hair.strands) / strands, look.least_pixels};
+                 representedWidth(look) / strands, look.least_pixels};
   block.shape = {look.length_variation, look.offset, look.curl_radius, look.curl_pitch};
   block.clumping = {look.clump, look.clump_size, look.frizz, look.flyaways};
   block.groups = {look.lock, look.wisp, look.drift, look.flyaway_lift};
   block.waves = {look.wave_height, look.wave_length, look.hairline, look.baby_hairs};
-  block.variation = {look.root_spread, look.shine_variation, 0, 0};
   block.lobe_width = {widths[0], widths[1], widths[2], look.cuticle_angle};
   // Share of the real hairs' width that is drawn; under a half the gaps would let all light in.
-  const float covered = std::clamp(std::pow(represented, look.width_compensation - 1), 0.5f, 1.0f);
+  const float covered = std::clamp(std::pow(represented, look.width_compensation - 1), 0.5f, 2.0f);
+  block.variation = {look.root_spread, look.shine_variation, 0, 0};
   block.gain = {covered, std::clamp(look.diffuse, 0.0f, 1.0f), look.root_darkening, look.tint_variation};
   block.forward_albedo = asVec4(hair.scattering->forward_albedo);
   block.backward_albedo = asVec4(hair.scattering->backward_albedo);
@@ -303,7 +302,7 @@ long HairStore::uploadVertices(HairResources& hair, std::span<const float> posit
     ++hair.soft_light_age;
     hair.head = fitHead(layout, positions);
   } else {
-    sky_visibility_.compute(layout, positions, representedWidth(hair.look, hair.strands), hair.look.length_variation,
+    sky_visibility_.compute(layout, positions, representedWidth(hair.look), hair.look.length_variation,
                             directionOr(to_fill_, Vector3f::UnitX()), directionOr(to_rim_, -Vector3f::UnitZ()));
     hair.soft_light.assign(sky_visibility_.values().begin(), sky_visibility_.values().end());
     hair.soft_light_age = 0;

@@ -101,7 +101,7 @@ void StrandGrowth::setLook(const HairLook& look) {
   look_ = look;
   segments_ = static_cast<float>(segmentsFor(layout_, look, asked_segments_));
   const auto strands = static_cast<float>(std::max(strandCount(), 1));
-  const float represented = std::max(look.strands_represented / strands, 1.0f);
+  const float represented = look.strands_represented / strands;
   root_radius_ = look.strand_radius * std::pow(represented, look.width_compensation);
 }
 

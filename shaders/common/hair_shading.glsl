@@ -127,10 +127,11 @@ vec3 shadeStrand(in Strand strand, in CurvePoint point) {
     tau_key = hairOpticalDepths(draw.w, at);
     lit = bodyLightOnHair(draw.w, at);
   }
-  // Drawn strands cover less than the hairs that they stand for, so the eye sees deeper in: depths shrink as much.
+  // Drawn strands cover less than the hairs that they stand for, so the eye sees deeper in: depths shrink as much. More
+  // strands than hairs cover more.
   tau_key.x *= gain.x;
-  tau_fill.x *= gain.x;
-  tau_rim.x *= gain.x;
+  tau_fill.x *= kSoftDepth;
+  tau_rim.x *= kSoftDepth;
   vec3 slant = max(abs(vec3(dot(outward, to_key.xyz), dot(outward, to_fill.xyz), dot(outward, to_rim.xyz))), 0.1);
   vec3 radiance = lit * key.rgb * scatterLight(scatterGeometry(side, to_key.xyz), tau_key, slant.x, tint);
   radiance += fill.rgb * scatterLight(scatterGeometry(side, to_fill.xyz), tau_fill, slant.y, tint);
@@ -139,6 +140,6 @@ vec3 shadeStrand(in Strand strand, in CurvePoint point) {
   // scattered on.
   vec3 albedo = forward_albedo.rgb + backward_albedo.rgb;
   vec3 around = mix(ground_light.rgb, sky.rgb, 0.5 + 0.5 * outward.y);
-  radiance += gain.y * around * tint * albedo * pow(vec3(point.light.x), gain.x * (1.0 - 0.6 * forward_albedo.rgb));
+  radiance += gain.y * around * tint * albedo * pow(vec3(point.light.x), kSoftDepth * (1.0 - 0.6 * forward_albedo.rgb));
   return radiance;
 }

@@ -40,7 +40,7 @@ const char* strandsShow(Term term) {
     case Term::kShadow:
       return R"(vec3 shadeStrand(in Strand strand, in CurvePoint point) {
   vec3 at = hairShadowCoordinates(draw.w, point.position);
-  return vec3(bodyLightOnHair(draw.w, at) * exp(-gain.x * hairOpticalDepths(draw.w, at).x), exp(-gain.x * point.light.yz));
+  return vec3(bodyLightOnHair(draw.w, at) * exp(-gain.x * hairOpticalDepths(draw.w, at).x), exp(-kSoftDepth * point.light.yz));
 }
 )";
     default:

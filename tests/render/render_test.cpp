@@ -91,6 +91,16 @@ TEST_F(RenderTest, ComputeShadersDrawThePictureOfTheGeometryStage) {
   EXPECT_LT(difference.mean, 0.05);
 }
 
+TEST_F(RenderTest, TheNumberOfStrandsLeavesTheColour) {
+  std::vector<double> luminances;
+  for (const int strands : {5000, 20000, 100000, 250000}) {
+    Scene scene(strands);
+    luminances.push_back(meanLuminance(draw(scene.frame()), 120, 30, 200, 90));
+    std::printf("%d strands: luminance %.4f\n", strands, luminances.back());
+  }
+  EXPECT_LT(std::ranges::max(luminances), 1.03 * std::ranges::min(luminances));
+}
+
 // More strands than lie in the buffers at a time (render/hair/grown_strands.cpp), in the picture and in its shadows.
 TEST_F(RenderTest, StrandsOfManyBatchesAreTheGeometryStages) {
   Scene scene(50000);

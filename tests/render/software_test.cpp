@@ -13,6 +13,7 @@
 #include "render/gl/driver.h"
 #include "render/renderer.h"
 #include "render/software/software_strands.h"
+#include "shaders/shared.h"
 #include "tests/draw_skips.h"
 #include "tests/gl_fixture.h"
 #include "tests/golden_compare.h"
@@ -98,6 +99,21 @@ TEST_F(Software, DrawsThePictureOfTheShaderStages) {
     EXPECT_GT(report.skip_counts.shading.skipped, 0) << view.name;
     EXPECT_LT(report.skip_counts.shading.skipped, report.skip_counts.shading.of) << view.name;
   }
+}
+
+// OpenGL promises 65,535 groups in a row.
+TEST_F(Software, MorePointsThanARowOfGroupsTakesAreAllShaded) {
+  render::Renderer renderer(gl_fixture::kShaderDir);
+  Scene scene(1, 60000);
+  scene.hairs[0].segments_per_layer = 8;
+  render::FrameInput frame = scene.frame(StrandPath::kSoftware);
+  const app::Image some = draw(renderer, frame);
+  frame.skips.shading = frame.skips.segments = frame.skips.strands = false;
+  render::FrameReport report;
+  const app::Image all = draw(renderer, frame, &report);
+  EXPECT_GT(report.strand_vertices / 2, 65535L * render::shared::kStrandGroup);
+  const golden::Difference difference = golden::compare(some, all, 60);
+  EXPECT_LT(difference.outliers, static_cast<long>(all.rgba.size()) / 4 / 100);
 }
 
 // Samples of an earlier picture leave no trace, nor does another size.
