@@ -29,8 +29,8 @@ int run(const app::Options& options) {
   // A replay is checked all the same where no window can be opened.
   try {
     return app::runWindow(scene, options);
-  } catch (const app::ContextError& fault) {
-    std::cerr << "hairmesh: " << fault.what() << "\nhairmesh: replaying without a window\n";
+  } catch (const app::ContextError&) {
+    std::cerr << "hairmesh: no window can be opened here: replaying without one\n";
   }
   return app::runHeadless(std::move(scene), app::withoutWindow(options));
 }

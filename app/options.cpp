@@ -9,6 +9,7 @@
 
 #include "app/files/errors.h"
 #include "app/files/scene_file.h"
+#include "app/groom/formats/tfx_file.h"
 #include "app/groom/groom_writer.h"
 #include "app/parse_fault.h"
 #include "app/scene/detail/skips.h"
@@ -335,6 +336,9 @@ void finishExport(const Unchecked& unchecked, Options& options) {
   if (!unchecked.export_frames.empty() && !parseFrames(unchecked.export_frames, spec))
     throw UsageError("--export-frames cannot be '" + unchecked.export_frames +
                      "'; write FIRST-LAST, for instance 0-119");
+  if (spec.file.ends_with(".tfx") && spec.points > 0 && !isTfxPoints(static_cast<std::size_t>(spec.points)))
+    throw UsageError("--export-points cannot be " + std::to_string(spec.points) +
+                     " for a .tfx file; give 4, 8, 16, 32 or 64");
   if (spec.samples > 1 && !takesClip(spec.file))
     throw UsageError("--export-samples needs a file that takes a clip; name it .abc, .usda or .glb");
   if (spec.samples > 1 && !(options.record + options.replay + options.save_state + options.load_state).empty())

@@ -2,7 +2,7 @@
 #include <string>
 
 #include "render/gl/driver.h"
-#include "render/hair/grown_strands.h"
+#include "render/grown/grown_strands.h"
 #include "render/hair/strand_draw.h"
 #include "render/pass.h"
 #include "render/shadow_maps.h"

@@ -67,7 +67,7 @@ const int kUnitMaterials = 12;
 const int kUnitOpenness = 14;
 const int kUnitBodyDepthPlain = 13;  // the same as kUnitBodyDepth, read and not compared
 
-// Strands' points between compute shaders and what draws them (render/hair/grown_strands.h,
+// Strands' points between compute shaders and what draws them (render/grown/grown_strands.h,
 // render/software/software_strands.h, render/software/software_shadow.h).
 const int kStrandGroup = 32;  // invocations of a group
 const int kPointTexels = 3;   // position, share of the strand's length; tangent, sky visibility; depths along fill and

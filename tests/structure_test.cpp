@@ -69,7 +69,7 @@ TEST(Structure, StrandsAreGrownWithoutOpenGl) {
   EXPECT_EQ(includesOf("render/strands", "GL/|render/(?!strands/|frame_input\\.h)|shaders/(?!shared\\.h)"), "");
 }
 
-// OpenGL and light below bodies and hair, those below the software path; passes, stage and renderer above them all.
+// OpenGL and light below bodies and hair, those below what draws strands from buffers; passes, stage and renderer above them all.
 TEST(Structure, RoomsOfTheRendererStandOnThoseBelow) {
   EXPECT_EQ(includesOf("render/gl", "render/(?!gl/|frame_input\\.h|frame_report\\.h|reload\\.h)"), "");
   EXPECT_EQ(includesOf("render/light", "render/(?!light/|strands/|frame_input\\.h|view_math\\.h)"), "");
@@ -77,7 +77,8 @@ TEST(Structure, RoomsOfTheRendererStandOnThoseBelow) {
   EXPECT_EQ(includesOf("render/hair",
                        "render/(?!(hair|gl|light|strands)/|frame_(input|report)\\.h|(plan_input|view_math)\\.h)"),
             "");
-  EXPECT_EQ(includesOf("render/software", "render/(renderer|passes|pass|pass_entry)\\.h"), "");
+  for (const char* room : {"render/grown", "render/software"})
+    EXPECT_EQ(includesOf(room, "render/(renderer|passes|pass|pass_entry)\\.h"), "") << room;
 }
 
 TEST(Structure, SimulatorAndRendererMeetOnlyWhereTheyShould) {

@@ -2,9 +2,9 @@
 
 #include <filesystem>
 #include <numbers>
-#include <tuple>
 
 #include "app/files/report.h"
+#include "app/scene/edit/paint_brush.h"
 #include "app/scene/project.h"
 #include "sim/field_text.h"
 
@@ -45,11 +45,7 @@ std::vector<std::string> openingNotes(const Options& options, const Demo& demo) 
     notes.push_back("--start " + sim::numberText(options.start) + " lies beyond the clip's " +
                     sim::numberText(duration) + " s; it begins at " + sim::numberText(first.playback.time) + " s");
   }
-  for (const auto& [field, parameter, value] : {std::tuple("curl", "curl_radius", first.spec.look.hair.curl_radius),
-                                                std::tuple("clump", "clump", first.spec.look.hair.clump)}) {
-    if (value == 0 && (!mapOf(field, first.spec.maps).empty() || !curveOf(field, first.spec.curves).empty()))
-      notes.push_back(std::string("painted ") + field + " changes nothing while " + parameter + " is 0");
-  }
+  if (std::string note = paintNote(first.spec); !note.empty()) notes.push_back(std::move(note));
   if (options.out_given && !options.headless)
     notes.push_back("--out is the folder of runs without a window: add --headless, or record this window by key K");
   if (demo.draw_governor.budget > 0 && options.headless && !options.no_images)

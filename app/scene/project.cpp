@@ -9,6 +9,7 @@
 #include <exception>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "app/files/errors.h"
 #include "app/files/folder_list.h"
@@ -161,7 +162,9 @@ Autosave::Autosave(const std::string& kept_folder) : folder_(kept_folder) {
 }
 
 Autosave::~Autosave() {
-  if (!file_.empty() && std::uncaught_exceptions() == 0) forget(file_);
+  if (file_.empty() || std::uncaught_exceptions() > 0) return;
+  forget(file_);
+  if (!replaced_.empty()) forget(replaced_);
 }
 
 void Autosave::keep(double now, const Demo& demo) {
@@ -175,6 +178,7 @@ void Autosave::keep(double now, const Demo& demo) {
     fs::create_directories(folder_, ignored);
     saveProject(file_, demo);
     kept_ = edits;
+    if (!replaced_.empty()) forget(std::exchange(replaced_, ""));
   } catch (const std::exception&) {
   }
 }

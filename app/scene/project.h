@@ -22,8 +22,8 @@ void saveProject(const std::string& file, const Demo& demo);
 // The scene that it holds. Throws InputError as openProject does.
 Scene projectScene(const std::string& file);
 
-// Opens it for pictures of `aspect` (width over height), with its own scene or another one of the same figures and hair.
-// `keep_view`: the camera is the scene's and not where it was left. Throws InputError as openProject does.
+// Opens it for pictures of `aspect` (width over height), with its own scene or another one of the same figures and
+// hair. `keep_view`: the camera is the scene's and not where it was left. Throws InputError as openProject does.
 Demo readProject(const std::string& file, Scene scene, bool keep_view, double aspect);
 
 // Opens it in the demo's place. Throws InputError (no project, of a newer version, its binary gone or changed); then
@@ -47,10 +47,13 @@ class Autosave {
   std::string left() const;
   // Forgets that one.
   void forget(const std::string& file) const;
+  // Forgets that one as soon as this run, which goes on from it, is kept itself or ends.
+  void replace(const std::string& file) { replaced_ = file; }
 
  private:
   std::string folder_, file_;
   double last_ = -1e9;
+  std::string replaced_;
   std::string kept_;  // what of the demo was kept: its edits
 };
 

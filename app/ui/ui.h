@@ -104,8 +104,9 @@ struct UiState {
   std::string scoped_preset, preset_scope;  // the preset under the pointer, and what it changes, in words
   std::string to_replace;                   // a file that is there already and is written on the second press
   FileBrowser browser;
-  std::string offered, to_forget;  // project that an earlier run has left; one that a person does not want
-  long scrubbed = -1;              // frame that the timeline is dragged to
+  // Project that an earlier run has left; one that a person does not want; one that this run goes on from.
+  std::string offered, to_forget, to_go_on_from;
+  long scrubbed = -1;  // frame that the timeline is dragged to
   BrushState brush;
   SelectState select;
   VaryState vary;

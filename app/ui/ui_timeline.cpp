@@ -180,7 +180,7 @@ void offerPanel(Demo& demo, UiState& ui) {
     ImGui::SameLine(0, 6);
     const bool forget = ImGui::Button("Forget it");
     noteItem("offer_forget", ui);
-    if (open) postRequest(demo, {Ask::kOpenProject, "", ui.offered});
+    if (open) postRequest(demo, {Ask::kOpenProject, "", ui.to_go_on_from = ui.offered});
     if (forget) ui.to_forget = ui.offered;
     if (open || forget) ui.offered.clear();
   }

@@ -16,7 +16,7 @@
 #include "app/platform/egl_context.h"
 #include "render/gl/driver.h"
 #include "render/gl/shader.h"
-#include "render/hair/grown_strands.h"
+#include "render/grown/grown_strands.h"
 #include "render/hair/strand_draw.h"
 #include "render/passes.h"
 #include "render/renderer.h"

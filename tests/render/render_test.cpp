@@ -80,17 +80,6 @@ TEST_F(RenderTest, TheSameInputGivesTheSameBytes) {
   EXPECT_EQ(first.rgba, third.rgba);
 }
 
-TEST_F(RenderTest, ComputeShadersDrawThePictureOfTheGeometryStage) {
-  Scene scene;
-  render::FrameInput frame = scene.frame();
-  frame.view.strand_path = render::StrandPath::kGeometry;
-  const app::Image geometry = draw(frame);
-  frame.view.strand_path = render::StrandPath::kCompute;
-  const golden::Difference difference = golden::compare(geometry, draw(frame), 8);
-  EXPECT_LT(difference.outliers, kWidth * kHeight / 500);
-  EXPECT_LT(difference.mean, 0.05);
-}
-
 TEST_F(RenderTest, TheNumberOfStrandsLeavesTheColour) {
   std::vector<double> luminances;
   for (const int strands : {5000, 20000, 100000, 250000}) {
@@ -99,20 +88,6 @@ TEST_F(RenderTest, TheNumberOfStrandsLeavesTheColour) {
     std::printf("%d strands: luminance %.4f\n", strands, luminances.back());
   }
   EXPECT_LT(std::ranges::max(luminances), 1.03 * std::ranges::min(luminances));
-}
-
-// More strands than lie in the buffers at a time (render/hair/grown_strands.cpp), in the picture and in its shadows.
-TEST_F(RenderTest, StrandsOfManyBatchesAreTheGeometryStages) {
-  Scene scene(50000);
-  render::FrameInput frame = scene.frame();
-  frame.light.shadow_strands = 0;
-  frame.skips.strands = frame.skips.segments = frame.skips.shadow_detail = false;
-  frame.view.strand_path = render::StrandPath::kGeometry;
-  const app::Image geometry = draw(frame);
-  frame.view.strand_path = render::StrandPath::kCompute;
-  const golden::Difference difference = golden::compare(geometry, draw(frame), 8);
-  EXPECT_LT(difference.outliers, kWidth * kHeight / 500);
-  EXPECT_LT(difference.mean, 0.05);
 }
 
 struct View {

@@ -32,6 +32,14 @@ std::string_view zeros(std::size_t bytes) {
   return std::string_view("\0\0\0\0\0\0\0", bytes);
 }
 
+}  // namespace
+
+bool isTfxPoints(std::size_t points) {
+  return points >= kMinPoints && points <= kMaxPoints && std::has_single_bit(points);
+}
+
+namespace {
+
 void checkCounts(const Groom& groom, std::size_t points, const std::string& file) {
   for (std::size_t s = 0; s < groom.strandCount(); ++s) {
     if (groom.pointCount(s) == points) continue;
@@ -40,7 +48,7 @@ void checkCounts(const Groom& groom, std::size_t points, const std::string& file
                           " points and the first has " + std::to_string(points) + "; a .tfx file has one number",
                       "export with one number of points, --export-points 16");
   }
-  if (points >= kMinPoints && points <= kMaxPoints && std::has_single_bit(points)) return;
+  if (isTfxPoints(points)) return;
   throw OutputError(file, "strands of " + std::to_string(points) + " points; a .tfx file holds 4, 8, 16, 32 or 64",
                     "export with such a number, --export-points 16");
 }

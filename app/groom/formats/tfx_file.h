@@ -14,6 +14,9 @@
 
 namespace app {
 
+// Whether a strand may have so many points: 4, 8, 16, 32 or 64.
+bool isTfxPoints(std::size_t points);
+
 // Whether the bytes can be such a file; the format has no mark of its own.
 bool looksLikeTfx(std::string_view bytes);
 

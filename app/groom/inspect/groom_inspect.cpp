@@ -117,8 +117,14 @@ void Inspector::direction() {
 void Inspector::unit() {
   const double told = hints.meters_per_unit.value_or(1);
   result.mends.unit = told;
-  if (hints.unit_given) return toMetres();
-  if (ends.first.size() < kMinRoots || !(skull.radius > 0)) return;
+  const bool measured = ends.first.size() >= kMinRoots && skull.radius > 0;
+  if (hints.unit_given) {
+    if (measured && !inWorld() && std::abs(std::log(told * skull.radius / kSkullRadius)) > std::log(3))
+      add("unit", textOf("in the unit asked for the roots lie about a skull of radius %.3g m", told * skull.radius),
+          "leave --unit away", false);
+    return toMetres();
+  }
+  if (!measured) return;
   const auto off = [this](double meters) { return std::abs(std::log(meters * skull.radius / kSkullRadius)); };
   const LengthUnit* best = &kLengthUnits[0];
   for (const LengthUnit& unit : kLengthUnits) best = off(unit.metres) < off(best->metres) ? &unit : best;

@@ -55,7 +55,7 @@ constexpr std::array<Skip, kSkipCount> kTable{{
     {kSkipBodyParts, "body-parts", kDrawing, "triangles", true, "", "Parts of a body outside the view are not skinned.",
      "tests/render/skips_draw_test.cpp: SkipsDraw.ExactSkipsChangeNoByte"},
     {kSkipBodyDetail, "body-detail", kDrawing, "triangles", false,
-     "mean 2 levels of 255 over blocks of body, 3.5 where it is under 60 pixels",
+     "mean 2 levels of 255 over blocks of body, 4 where it is under 60 pixels",
      "Fewer triangles of a body the smaller it is in the picture: vertices within a cell of a pixel are merged, and "
      "the "
      "light is worked out at them.",
@@ -76,7 +76,7 @@ constexpr std::array<Skip, kSkipCount> kTable{{
      "Drawn in software, only points of strands that some sample of the picture shows are shaded.",
      "tests/render/software_test.cpp: Software.SkinOutOfReachAndHiddenPointsChangeNoByte"},
     {kSkipHairLight, "hair-light", kDrawing, "triangles", false,
-     "mean 2 levels of 255 over blocks of body, 3.5 where it is under 60 pixels",
+     "mean 2 levels of 255 over blocks of body, 4 where it is under 60 pixels",
      "The hair's shadow on a body whose vertices lie nearer than the shadow is soft is looked up at them.",
      "tests/render/software_test.cpp: Software.HairLightAtVerticesStaysInItsBound"},
     {kSkipSkyVisibility, "sky-visibility", kDrawing, "vertices", false, kDetailBound,

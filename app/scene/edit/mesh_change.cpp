@@ -162,11 +162,14 @@ void applyMeshChange(const std::string& name, const std::string& text, int index
   std::vector<int> numbers;
   const bool whole = wholeNumbers(allNumbersOf(mirror ? text.substr(kMirrorText.size()) : text), numbers);
   const bool paired = change == MeshChange::kSplit || change == MeshChange::kExtrude;
-  if (!whole || numbers.empty() || (layer && numbers.size() != 1) || (paired && numbers.size() % 2 != 0))
-    throw InputError("", name, "is given nothing that it can change",
+  if (!whole || numbers.empty() || (layer && numbers.size() != 1) || (paired && numbers.size() % 2 != 0)) {
+    static constexpr std::array<const char*, 5> kSubjects{"the layer", "the layer", "the parting", "the parting",
+                                                          "the bundle"};
+    throw InputError("", kSubjects[static_cast<std::size_t>(change)], "has no place among what is chosen",
                      layer    ? "choose a layer"
-                     : paired ? "choose edges, or neighbouring columns"
-                              : "choose columns");
+                     : paired ? "choose an edge between two roots on the scalp, or two columns that such an edge joins"
+                              : "choose columns on both sides of it");
+  }
   const Actor& actor = demo.actors[static_cast<std::size_t>(index)];
   handsOn(actor);  // makes the distance to the body
   EditedMesh edited = changed(change, numbers, mirror, actor);

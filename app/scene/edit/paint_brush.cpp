@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 
 #include "app/files/errors.h"
 #include "app/scene/demo.h"
@@ -207,7 +208,20 @@ void applyPaint(const PaintSample& sample, int index, Demo& demo) {
     repaintHair(paintedShares(maps, actor.spec.curves, actor.body->character.scalp, actor.haircut->mesh.shape), index,
                 demo);
   }
-  demo.actors[static_cast<std::size_t>(index)].spec.maps = std::move(maps);
+  Actor& painted_actor = demo.actors[static_cast<std::size_t>(index)];
+  painted_actor.spec.maps = std::move(maps);
+  if (std::string note = paintNote(painted_actor.spec); !note.empty())
+    demo.message = note, demo.message_is_fault = false;
+}
+
+std::string paintNote(const CharacterSpec& spec) {
+  const render::HairLook& look = spec.look.hair;
+  for (const auto& [field, parameter, value] :
+       {std::tuple("curl", "curl_radius", look.curl_radius), std::tuple("clump", "clump", look.clump)}) {
+    if (value == 0 && (!mapOf(field, spec.maps).empty() || !curveOf(field, spec.curves).empty()))
+      return std::string("painted ") + field + " changes nothing while " + parameter + " is 0";
+  }
+  return "";
 }
 
 void applyCurve(const std::string& name, const std::string& text, int index, Demo& demo) {

@@ -227,7 +227,7 @@ TEST(MeshChange, WhatCannotBeIsRefusedAndChangesNothing) {
       {{Ask::kMesh, "remove-layer", "400"}, "is not there"},
       {{Ask::kMesh, "add-layer", ""}, "choose a layer"},
       {{Ask::kMesh, "add-layer", "3 4"}, "choose a layer"},
-      {{Ask::kMesh, "split", "1"}, "choose edges"},
+      {{Ask::kMesh, "split", "1"}, "choose an edge between two roots"},
       {{Ask::kMesh, "merge", "-3"}, "choose columns"},
       {{Ask::kMesh, "shave", "3"}, "is unknown"},
   };

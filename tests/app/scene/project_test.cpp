@@ -192,7 +192,9 @@ TEST(Project, ARunThatEndsWithoutLeavingIsOfferedAgain) {
     app::Demo other = app::openScene(smallScene(), 1.5);
     app::openProject(left, other);
     EXPECT_EQ(app::stateHash(other), app::stateHash(demo));
+    autosave.replace(left);
   }
+  EXPECT_FALSE(std::filesystem::exists(folder + "/autosave-99999999.json")) << "this run went on from it and ended";
   EXPECT_FALSE(std::filesystem::exists(folder + "/autosave-" + std::to_string(getpid()) + ".json"));
 }
 

@@ -1,4 +1,4 @@
-#include "render/hair/grown_strands.h"
+#include "render/grown/grown_strands.h"
 
 #include <algorithm>
 
