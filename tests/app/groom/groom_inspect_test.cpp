@@ -172,6 +172,17 @@ TEST(GroomInspect, SaysNothingOfAGroomThatFits) {
   }
 }
 
+// A unit that is asked for is taken, and told where it cannot be right.
+TEST(GroomInspect, AForcedUnitThatMakesADollIsTold) {
+  const app::HeadModel model = head();
+  app::GroomHints hints;
+  hints.unit_given = true;
+  hints.meters_per_unit = 1;
+  EXPECT_EQ(namesOf(app::inspectGroom(combedGroom(300, 7), hints, &model)).find("unit: "), std::string::npos);
+  hints.meters_per_unit = 0.1;
+  EXPECT_NE(namesOf(app::inspectGroom(combedGroom(300, 7), hints, &model)).find("unit: "), std::string::npos);
+}
+
 TEST(GroomInspect, AnExportOfAHalfBaldHeadIsNotTurned) {
   const app::HeadModel model = head();
   app::GroomHints hints;

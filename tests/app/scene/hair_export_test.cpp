@@ -179,6 +179,7 @@ TEST(HairExport, WhatCannotBeAskedForIsNamed) {
   EXPECT_EQ(test::lacking(fault({"--export-what", "guides"}), "add --export FILE"), "");
   EXPECT_EQ(test::lacking(fault({"--export", "a.glb", "--export-what", "strands"}), "glTF has no curves"), "");
   EXPECT_EQ(test::lacking(fault({"--export", "a.ply", "--export-samples", "3"}), "takes a clip"), "");
+  EXPECT_EQ(test::lacking(fault({"--export", "a.tfx", "--export-points", "10"}), "give 4, 8, 16, 32 or 64"), "");
   EXPECT_EQ(test::lacking(fault({"--export", "a.abc", "--export-frames", "9-3"}), "FIRST-LAST"), "");
   EXPECT_EQ(test::lacking(fault({"--frames", "3", "--export", "a.abc", "--export-frames", "1-9"}), "frames, 0 to 2"),
             "");

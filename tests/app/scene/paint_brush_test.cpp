@@ -226,6 +226,15 @@ TEST(PaintBrush, WhatCannotBePaintedIsToldAndStays) {
   told({Ask::kMap, "curl", "walk.bvh"}, "walk.bvh");
 }
 
+TEST(PaintBrush, CurlsOfHairWithoutAnyAreTold) {
+  app::Demo demo = open(test::smallScene("walk.bvh"));
+  demo.actors[0].spec.look.hair.curl_radius = 0;
+  demo.requests = {paintOf("curl", 0.5)};
+  app::advanceFrame(demo, 0, {});
+  EXPECT_FALSE(demo.message_is_fault);
+  EXPECT_EQ(demo.message, "painted curl changes nothing while curl_radius is 0");
+}
+
 TEST(PaintBrush, CurvesOfTheLookAreDrawnAndUndone) {
   app::Demo demo = open(test::smallScene("walk.bvh", 0.3));
   frames(2, demo);
