@@ -463,9 +463,11 @@ void applyRequests(Demo& demo) {
     for (const Request& request : asked) {
       try {
         apply(request, demo);
+        if (demo.refused == std::pair(request.what, demo.message)) showMessage("", demo);
       } catch (const std::exception& fault) {
         demo.message = fault.what();
         demo.message_is_fault = true;
+        demo.refused = {request.what, demo.message};
       }
     }
   }

@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/files/scene_file.h"
@@ -69,6 +70,7 @@ struct Demo {
   std::vector<Request> requests;  // applied at the start of the next frame
   std::string message;            // the last fault or success, for the window
   bool message_is_fault = false;
+  std::pair<Ask, std::string> refused{Ask::kCount, ""};  // and its message, which goes when another such succeeds
   Capture capture;
 
   FrameStats stats;                 // of the last frame

@@ -147,6 +147,12 @@ TEST(GroomBrush, OffTheHairItSaysSoAndChangesNothing) {
   EXPECT_EQ(app::editHash(demo), before);
   EXPECT_FALSE(demo.actors[0].haircut->edited);
   EXPECT_TRUE(demo.edits.steps.empty());
+  // A stroke that works takes the message away.
+  int tip = 0;
+  demo.requests = {sampleAt(app::BrushTool::kComb, frontTip(demo, tip), {0.01, 0, 0})};
+  app::advanceFrame(demo, 0, {});
+  EXPECT_TRUE(demo.actors[0].haircut->edited);
+  EXPECT_EQ(demo.message, "");
 }
 
 // Freezing changes no shape; what is frozen other brushes leave, until it is thawed or undone.

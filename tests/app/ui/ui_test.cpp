@@ -68,7 +68,9 @@ TEST_F(Panels, APresetIsChosenByItsPicture) {
   const std::vector<app::Request> requests = click("preset_picture black");
   ASSERT_TRUE(asked(requests, Ask::kPresetFile));
   for (const app::Request& one : requests) {
-    if (one.what == Ask::kPresetFile) EXPECT_TRUE(one.text.ends_with("black.json")) << one.text;
+    if (one.what == Ask::kPresetFile) {
+      EXPECT_TRUE(one.text.ends_with("black.json")) << one.text;
+    }
   }
   EXPECT_TRUE(ui_.preset.file.ends_with("black.json"));
   // The pointer over it asks what it changes.
