@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "app/scene/attachments.h"
 #include "app/scene/detail/level_of_detail.h"
 #include "app/scene/sim_to_render.h"
 #include "app/scene/view/figure_input.h"
