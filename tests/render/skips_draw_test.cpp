@@ -12,6 +12,7 @@
 
 #include "app/files/data_path.h"
 #include "app/scene/demo.h"
+#include "render/gl/driver.h"
 #include "render/renderer.h"
 #include "tests/draw_skips.h"
 #include "tests/gl_fixture.h"

@@ -10,6 +10,7 @@
 
 #include "app/scene/sim_to_render.h"
 #include "app/styles/hair_styles.h"
+#include "render/gl/driver.h"
 #include "tests/analytic_head.h"
 #include "tests/gl_fixture.h"
 #include "tests/strand_capture.h"
