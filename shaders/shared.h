@@ -35,8 +35,8 @@ const int kVertexTexels = 3;  // position + sky visibility, du + depths along fi
 // from it as a share of kDeepest behind it.
 const float kDepthSteps = 128.0;
 const float kDeepest = 32.0;
-// Of the depths along fill and rim so much lies before what the eye sees: they come from cells coarser than the hair's
-// surface. By the mean error against the path tracer (docs/picture.md), at any number of strands.
+// Share of the soft light's depths (fill, rim, sky) that lies in front of what the eye sees: their cells are coarser than
+// the hair's surface. Fitted to the path tracer, at any number of strands (docs/picture.md).
 const float kSoftDepth = 0.7;
 const float kBackReach = 0.012;  // m: light comes back from hair as far behind a strand
 const int kFaceTexels = 3;       // first vertices; columns; layers (negative: covered), first strand, end strand, edge

@@ -1,5 +1,5 @@
-// Ribbons of strands that strand_points.comp has grown and strand_shade.comp lit: an instance is a strand, two vertices a
-// point. Draws what strand.geom draws.
+// Ribbons of strands that strand_points.comp has grown and strand_shade.comp lit: an instance is a strand, two vertices
+// a point. Draws what strand.geom draws.
 #include "shared.h"
 
 layout(std430, binding = kSlotRibbons) readonly restrict buffer Ribbons { vec4 ribbons[]; };

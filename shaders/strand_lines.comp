@@ -1,5 +1,5 @@
-// Grows the strands that cast a hair's shadow, in the texels of its map, for line_raster.h and strand_line.vert: an invocation
-// is a strand.
+// Grows the strands that cast a hair's shadow, in the texels of its map, for line_raster.h and strand_line.vert: an
+// invocation is a strand.
 #include "shared.h"
 #include "common/hash.glsl"
 #include "common/strand.glsl"

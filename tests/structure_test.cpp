@@ -69,7 +69,8 @@ TEST(Structure, StrandsAreGrownWithoutOpenGl) {
   EXPECT_EQ(includesOf("render/strands", "GL/|render/(?!strands/|frame_input\\.h)|shaders/(?!shared\\.h)"), "");
 }
 
-// OpenGL and light below bodies and hair, those below what draws strands from buffers; passes, stage and renderer above them all.
+// OpenGL and light below bodies and hair, those below what draws strands from buffers; passes, stage and renderer above
+// them all.
 TEST(Structure, RoomsOfTheRendererStandOnThoseBelow) {
   EXPECT_EQ(includesOf("render/gl", "render/(?!gl/|frame_input\\.h|frame_report\\.h|reload\\.h)"), "");
   EXPECT_EQ(includesOf("render/light", "render/(?!light/|strands/|frame_input\\.h|view_math\\.h)"), "");

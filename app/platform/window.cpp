@@ -349,7 +349,9 @@ int endRun(const Options& options, const RunReport& run, int frames, Tape& tape,
 
 void keepProject(const Demo& demo, Autosave& autosave, UiState& ui) {
   if (!ui.to_forget.empty()) autosave.forget(std::exchange(ui.to_forget, ""));
-  if (!ui.to_go_on_from.empty()) autosave.replace(std::exchange(ui.to_go_on_from, ""));
+  // Only where it could be opened.
+  if (!ui.to_go_on_from.empty() && demo.scene.file == ui.to_go_on_from)
+    autosave.replace(std::exchange(ui.to_go_on_from, ""));
   autosave.keep(now(), demo);
 }
 

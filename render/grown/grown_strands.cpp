@@ -2,14 +2,14 @@
 
 #include <algorithm>
 
-#include "render/gl/stored_points.h"
+#include "render/hair/stored_points.h"
 
 namespace render {
 namespace {
 
 using namespace shared;
 
-constexpr std::uint32_t kBatchPoints = 1u << 19;  // 48 MB of them
+constexpr std::uint32_t kBatchPoints = 1u << 19;  // 42 MB of them
 constexpr GLint kFirst = 0;                       // the growing shaders' first strand, the shading one's count
 
 // Strands that fit into so many points, in whole groups.

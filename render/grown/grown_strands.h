@@ -1,5 +1,6 @@
-// Draws strands that compute shaders have grown and lit: each once, whatever its triangles and passes. The buffers hold
-// a batch of strands at a time, so their size does not depend on how many there are.
+// Draws strands that compute shaders have grown: once for the picture, where they are lit too, and once for each shadow map,
+// whose depth and opacity are drawn from the same points. The buffers hold a batch of strands at a time: their size does not
+// depend on how many there are.
 #pragma once
 
 #include <cstdint>

@@ -106,10 +106,10 @@ long uploadBlock(HairResources& hair) {
   block.clumping = {look.clump, look.clump_size, look.frizz, look.flyaways};
   block.groups = {look.lock, look.wisp, look.drift, look.flyaway_lift};
   block.waves = {look.wave_height, look.wave_length, look.hairline, look.baby_hairs};
+  block.variation = {look.root_spread, look.shine_variation, 0, 0};
   block.lobe_width = {widths[0], widths[1], widths[2], look.cuticle_angle};
   // Share of the real hairs' width that is drawn; under a half the gaps would let all light in.
-  const float covered = std::clamp(std::pow(represented, look.width_compensation - 1), 0.5f, 2.0f);
-  block.variation = {look.root_spread, look.shine_variation, 0, 0};
+  const float covered = std::max(std::pow(represented, look.width_compensation - 1), 0.5f);
   block.gain = {covered, std::clamp(look.diffuse, 0.0f, 1.0f), look.root_darkening, look.tint_variation};
   block.forward_albedo = asVec4(hair.scattering->forward_albedo);
   block.backward_albedo = asVec4(hair.scattering->backward_albedo);

@@ -1,6 +1,6 @@
 #include "render/software/software_strands.h"
 
-#include "render/gl/stored_points.h"
+#include "render/hair/stored_points.h"
 
 namespace render {
 namespace {

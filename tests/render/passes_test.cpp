@@ -55,8 +55,8 @@ MEMBERS(LookShares, roots, along)
 MEMBERS(HairInput, id, layout_revision, position_revision, layout_id, faces, positions, rest, strands,
         segments_per_layer, look, shares, skin)
 MEMBERS(BodyInput, id, mesh_id, positions, normals, triangles, joints, weights, joint_matrices, pose_revision, color,
-        roughness, scalp_id, root_cover, root_color, scalp_tint, hair_id, face_origin, face_height, face_paint, cloth, dressed,
-        cloth_color, material_places, materials, own_materials)
+        roughness, scalp_id, root_cover, root_color, scalp_tint, hair_id, face_origin, face_height, face_paint, cloth,
+        dressed, cloth_color, material_places, materials, own_materials)
 MEMBERS(FrameInput, width, height, camera, light, view, skips, hairs, bodies, debug_lines, debug_triangles,
         debug_points)
 #undef MEMBERS
@@ -288,7 +288,8 @@ TEST_F(Passes, AKeptFrameIsWhatAFreshOneWouldBe) {
     fresh.renderImage(nothing, empty);
     fresh.renderImage(scene.frame, redrawn);
     const golden::Difference stale = golden::compare({96, 64, kept}, {96, 64, redrawn}, 0);
-    EXPECT_TRUE(kept == redrawn) << "stale after a change of " << name << ", by " << stale.largest << " levels in " << stale.outliers << " pixels";
+    EXPECT_TRUE(kept == redrawn) << "stale after a change of " << name << ", by " << stale.largest << " levels in "
+                                 << stale.outliers << " pixels";
     if (kept != redrawn) {
       app::writePng(std::string(HAIRMESH_TEST_OUT) + "/" + name + "_kept.png", 96, 64, kept);
       app::writePng(std::string(HAIRMESH_TEST_OUT) + "/" + name + "_redrawn.png", 96, 64, redrawn);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <tuple>
 
 #include "app/files/errors.h"
 #include "app/scene/demo.h"
@@ -210,18 +209,17 @@ void applyPaint(const PaintSample& sample, int index, Demo& demo) {
   }
   Actor& painted_actor = demo.actors[static_cast<std::size_t>(index)];
   painted_actor.spec.maps = std::move(maps);
-  if (std::string note = paintNote(painted_actor.spec); !note.empty())
+  if (std::string note = paintNote(sample.field, painted_actor.spec); !note.empty())
     demo.message = note, demo.message_is_fault = false;
 }
 
-std::string paintNote(const CharacterSpec& spec) {
+std::string paintNote(const std::string& field, const CharacterSpec& spec) {
   const render::HairLook& look = spec.look.hair;
-  for (const auto& [field, parameter, value] :
-       {std::tuple("curl", "curl_radius", look.curl_radius), std::tuple("clump", "clump", look.clump)}) {
-    if (value == 0 && (!mapOf(field, spec.maps).empty() || !curveOf(field, spec.curves).empty()))
-      return std::string("painted ") + field + " changes nothing while " + parameter + " is 0";
-  }
-  return "";
+  const char* parameter = field == "curl" && look.curl_radius == 0 ? "curl_radius"
+                          : field == "clump" && look.clump == 0    ? "clump"
+                                                                   : nullptr;
+  if (parameter == nullptr || (mapOf(field, spec.maps).empty() && curveOf(field, spec.curves).empty())) return "";
+  return "painted " + field + " changes nothing while " + parameter + " is 0";
 }
 
 void applyCurve(const std::string& name, const std::string& text, int index, Demo& demo) {

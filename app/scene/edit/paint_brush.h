@@ -31,9 +31,8 @@ PaintSample parsePaint(const std::string& field, const std::string& text);
 // then nothing has changed.
 void applyPaint(const PaintSample& sample, int actor, Demo& demo);
 
-// What is to be known of what is painted on a look: "painted curl changes nothing while curl_radius is 0"; empty:
-// nothing.
-std::string paintNote(const CharacterSpec& spec);
+// Says why a painted field shows nothing: "painted curl changes nothing while curl_radius is 0". Empty where it shows.
+std::string paintNote(const std::string& field, const CharacterSpec& spec);
 
 // Gives the actor's hair another curve from root to tip, see setCurve. Throws InputError.
 void applyCurve(const std::string& name, const std::string& text, int actor, Demo& demo);
