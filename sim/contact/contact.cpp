@@ -191,8 +191,9 @@ void carryContacts(const Colliders& colliders, const SimParams& params, double d
     const Vec3 carried = carriedAlong(colliders.body(contact.collider), x, dt);
     const SurfacePoint surface = colliders.closest(contact.collider, carried);
     const double depth = margins.offset - surface.distance;
-    const bool too_stiff = contact.pressure * depth > kLiftWork * params.density;
-    const double closed = too_stiff ? 0 : kRestoring * std::min(depth, margins.slack);
+    // A new contact's pressure is yet unknown: it may be pressed by any force.
+    const bool may_lift = contact.pressure > 0 && contact.pressure * depth <= kLiftWork * params.density;
+    const double closed = !may_lift ? 0 : kRestoring * std::min(depth, margins.slack);
     // Above the offset the vertex may be sliding over a rounded body: the solve brings it back unless it has to pull.
     const double back = depth > 0 ? closed : std::max(depth, -margins.escape);
     contact.normal = surface.normal;

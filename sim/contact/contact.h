@@ -2,8 +2,8 @@
 #pragma once
 
 #include <array>
-#include <limits>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -68,8 +68,9 @@ void clusterVertices(const HairMesh& mesh, ContactScratch& scratch);
 
 // Brings carried contacts to this step: normal and velocity are those at the place to which the collider's motion
 // carries the vertex. A contact out of reach, or without its collider, is dropped. The velocity closes a depth below
-// the offset up to the slack, unless the contact is pressed so hard that this would exceed an energy budget; deeper
-// overlaps are resolved by positions (position_correction.h), which leave no velocity.
+// the offset up to the slack, unless the contact is pressed so hard that this would exceed an energy budget, or no
+// solve has yet told how hard; deeper overlaps are resolved by positions (position_correction.h), which leave no
+// velocity.
 void carryContacts(const Colliders& colliders, const SimParams& params, double dt, HairState& state);
 
 // Penetrations of the vertices, in their order: of every collider that a vertex lies in, or that it went through within

@@ -283,8 +283,9 @@ TEST(Contact, CarriedContactKeepsItsVertexAtTheOffsetOfTheMovingBody) {
   EXPECT_TRUE(state.contacts.empty()) << "its body is gone";
 }
 
-// Closing a dip against a hundred newtons would store more than the motion of light hair had left.
-TEST(Contact, ADipIsClosedUnlessItIsPressedHard) {
+// Closing a dip against a hundred newtons would store more than the motion of light hair had left. What presses a new
+// contact, zero newtons yet, only its first solve tells.
+TEST(Contact, ADipIsClosedUnlessItIsPressedHardOrNobodyKnows) {
   const sim::SimParams params = test::tautHair();
   const Ellipsoid ball = ellipsoid(Vec3::Zero(), Vec3::Constant(0.1));
   const std::vector<Ellipsoid> bodies{ball};
@@ -298,7 +299,7 @@ TEST(Contact, ADipIsClosedUnlessItIsPressedHard) {
     sim::carryContacts({bodies}, params, kFrame, state);
     ASSERT_EQ(state.contacts.size(), 1u);
     const double lifted = kFrame * state.contacts[0].velocity.y();
-    if (pressure < 1) {
+    if (pressure > 0 && pressure < 1) {
       EXPECT_GT(lifted, 0.1 * dip) << pressure << " N";
     } else {
       EXPECT_NEAR(lifted, 0, 1e-9);
