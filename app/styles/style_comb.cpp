@@ -398,14 +398,13 @@ void Comber::measureWays() {
     const double thickness = cut.thickness * (kThinnestInFront + (1 - kThinnestInFront) * smoothstep(0.0, 0.4, q));
     rise.slope = std::max(0.0, thickness - rise.lift) / rise.hairline;
     coat.rise.push_back(rise);
+    // A thin coat's layers lie no flatter along the hair than those of a thick one.
+    coat.slant.push_back(cut.slant * thickness / cut.thickness);
   }
 }
 
 void Comber::measureCut() {
-  for (int s = 0; s < coat.sheets; ++s) {
-    coat.cut_row.push_back(rowAtHeight(s, ends[s]));
-  }
-  coat.slant = cut.slant;
+  for (int s = 0; s < coat.sheets; ++s) coat.cut_row.push_back(rowAtHeight(s, ends[s]));
 }
 
 // Hair divides between two flow lines. The front one is moved next to the back one, so that no bare scalp shows

@@ -35,7 +35,7 @@ struct Coat {
   std::vector<double> cut_row;     // per sheet: the row where the hair is cut
   int front_sheets = 0;            // of each half, that fall in front of the shoulders; the others fall behind
   std::vector<Rise> rise;          // per sheet
-  double slant = 0;                // m that the hairline's columns lead those of the parting by where the hair hangs
+  std::vector<double> slant;       // m, per sheet: what the hairline's columns lead the parting's by where hair hangs
 
   bool inFront(int sheet) const { return std::min(sheet, sheets - 1 - sheet) < front_sheets; }
   std::size_t index(int sheet, int row) const { return static_cast<std::size_t>(sheet) * rows + row; }

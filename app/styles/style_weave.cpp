@@ -46,10 +46,10 @@ double gradedPlace(double x, double grading) {
 double wayAt(const Coat& coat, const Weave& plan, const Plait& plait, int layer) {
   const auto placeOf = [&](int l) { return gradedPlace(l / (plan.outer_layers - 1.0), plan.grading); };
   const int sheet = plait.sheet;
-  const double end = sampleRow(coat, coat.travelled, sheet, coat.cut_row[sheet]) - coat.slant;
+  const double end = sampleRow(coat, coat.travelled, sheet, coat.cut_row[sheet]) - coat.slant[sheet];
   const double root = (1 - plait.rank) * coat.rise[sheet].hairline, outermost = end * placeOf(layer);
   if (layer == 0) return root;
-  const double creeping = root + plan.creep * layer, keeping_step = outermost + (1 - plait.rank) * coat.slant;
+  const double creeping = root + plan.creep * layer, keeping_step = outermost + (1 - plait.rank) * coat.slant[sheet];
   return 0.5 * (creeping + keeping_step + std::hypot(creeping - keeping_step, kTurn));
 }
 

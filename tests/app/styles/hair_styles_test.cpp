@@ -169,6 +169,35 @@ TEST(HairStyles, PrismsAreFatAtEveryCorner) {
   });
 }
 
+// Degrees from square to the hair that a bundle's last layer lies.
+double slantOfEnd(const HairMeshShape& shape, const sim::RootFace& face) {
+  const int last = bundleLayers(shape, face) - 1;
+  Vec3 normal = Vec3::Zero(), along = Vec3::Zero();
+  for (int k = 0; k < face.corner_count; ++k) {
+    const int here = face.columns[k], next = face.columns[(k + 1) % face.corner_count];
+    normal += vertex(shape, here, last).cross(vertex(shape, next, last));
+    along += (vertex(shape, here, last) - vertex(shape, here, last - 1)).normalized();
+  }
+  return std::acos(std::abs(normal.normalized().dot(along.normalized()))) * 180 / std::numbers::pi;
+}
+
+// Locks whose layers lie along the hair come to rest turned over (docs/safety_nets.md). Those in front of the shoulders
+// are joined to no other hair, and thin.
+TEST(HairStyles, LocksInFrontAreNotCutAlongTheHair) {
+  forEveryHaircut([](const Head& head, const Haircut& cut) {
+    if (cut.style != Style::kLong || cut.resolution == Resolution::kMinimal) return;
+    std::vector<double> slants;
+    for (const sim::RootFace& face : cut.shape.root_faces) {
+      const int last = bundleLayers(cut.shape, face) - 1;
+      if (vertex(cut.shape, face.columns[0], last).z() > head.scalp.center.z())
+        slants.push_back(slantOfEnd(cut.shape, face));
+    }
+    ASSERT_FALSE(slants.empty());
+    std::sort(slants.begin(), slants.end());
+    EXPECT_LT(slants[slants.size() / 2], 64);
+  });
+}
+
 TEST(HairStyles, EdgesAreNeitherShortNorEndless) {
   forEveryHaircut([](const Head&, const Haircut& cut) {
     const sim::HairMesh mesh = sim::buildHairMesh(cut.shape);
