@@ -261,10 +261,10 @@ HairScattering& HairStore::scatteringOf(const HairLook& look, long& uploaded) {
 long HairStore::uploadSkin(HairResources& hair, std::span<const float> positions, const DrawSkips& skips) {
   if (hair.skin.empty()) return 0;
   reachSkin(hair.layout(), positions, hair.skin, sidewaysReach(hair.look, hair.layout().curl_share), hair.skin_reached);
-  if (!skips.skin) std::fill(hair.skin_reached.begin(), hair.skin_reached.end(), ~std::uint64_t{0});
+  if (!skips.skin) std::fill(hair.skin_reached.begin(), hair.skin_reached.end(), allSkin(hair.skin.size()));
   const auto ellipsoids = static_cast<long>(hair.skin.size());
   for (const std::uint64_t reached : hair.skin_reached)
-    skip_counts_.skin += {std::max(ellipsoids - std::popcount(reached), 0L), ellipsoids};
+    skip_counts_.skin += {ellipsoids - std::popcount(reached), ellipsoids};
   return fillTexels<std::uint64_t>(hair.skin_reached, hair.skin_buffer, hair.skin_texture, hair.skin_bytes, GL_RG32UI);
 }
 

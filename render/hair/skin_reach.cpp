@@ -74,7 +74,7 @@ std::uint64_t met(std::span<const SkinEllipsoid> skin, const std::vector<float>&
 void reachSkin(const HairLayout& layout, std::span<const float> positions, std::span<const SkinEllipsoid> skin,
                float sideways, std::vector<std::uint64_t>& reached) {
   const auto steps = static_cast<std::size_t>(std::max(layout.max_layers - 1, 1));
-  const std::uint64_t all = (std::uint64_t{1} << skin.size()) - 1;
+  const std::uint64_t all = allSkin(skin.size());
   std::vector<float> reaches(skin.size());
   std::transform(skin.begin(), skin.end(), reaches.begin(), reachOf);
   std::vector<Bounds> boxes(steps);

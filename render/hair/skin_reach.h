@@ -2,6 +2,7 @@
 // shaders/common/skin.glsl looks at none.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,6 +11,12 @@
 #include "render/strands/hair_layout.h"
 
 namespace render {
+
+// A bit for each of so many ellipsoids, at most kMaxSkin of shaders/shared.h. Where others are set the shader reads
+// rows that its uniform block lacks, which is undefined.
+constexpr std::uint64_t allSkin(std::size_t count) {
+  return (std::uint64_t{1} << count) - 1;
+}
 
 // Sets bit i of reached[face * (max_layers - 1) + layer] where strands between `layer` and the next one may be lifted
 // out of skin[i]; positions: 3 floats a vertex. sideways: m, how far strands may leave the hull of the hair mesh.

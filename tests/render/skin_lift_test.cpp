@@ -7,7 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
+#include "render/hair/hair_store.h"
 #include "render/strands/strand_growth.h"
 #include "shaders/shared.h"
 #include "tests/gl_fixture.h"
@@ -160,6 +163,30 @@ TEST(SkinLift, EllipsoidsOutOfReachAreLeftOut) {
 }
 
 class SkinLiftOnGpu : public gl_fixture::GlTest {};
+
+// Of more the block of uniforms holds no rows: drivers read there what they like.
+TEST_F(SkinLiftOnGpu, ShadersLookAtNoSkinThatIsNotThere) {
+  const synthetic::Hair hair = synthetic::makeHair();
+  render::HairInput input = synthetic::hairInput(hair, 100);
+  for (const std::size_t given : {std::size_t{1}, std::size_t{3}, std::size_t{render::shared::kMaxSkin} + 9}) {
+    const std::vector<SkinEllipsoid> skin(given,
+                                          synthetic::skinBall({0, synthetic::kHeadHeight, 0}, synthetic::kHeadRadius));
+    input.skin = skin;
+    const std::size_t most = std::min<std::size_t>(given, render::shared::kMaxSkin);
+    for (const bool skip : {false, true}) {
+      render::DrawSkips skips;
+      skips.skin = skip;
+      render::HairStore store;
+      store.update({&input, 1}, {}, skips);
+      const render::HairResources& drawn = store.hairs()[0];
+      ASSERT_EQ(drawn.skin.size(), most);
+      ASSERT_FALSE(drawn.skin_reached.empty());
+      std::uint64_t bits = 0;
+      for (const std::uint64_t reached : drawn.skin_reached) bits |= reached;
+      EXPECT_EQ(bits, (std::uint64_t{1} << most) - 1) << given << ", " << skip;
+    }
+  }
+}
 
 // A hair half of whose strands run through two bodies.
 TEST_F(SkinLiftOnGpu, ShadersLiftAsTheCpuDoes) {
