@@ -140,6 +140,7 @@ vec3 shadeStrand(in Strand strand, in CurvePoint point) {
   // scattered on.
   vec3 albedo = forward_albedo.rgb + backward_albedo.rgb;
   vec3 around = mix(ground_light.rgb, sky.rgb, 0.5 + 0.5 * outward.y);
-  radiance += gain.y * around * tint * albedo * pow(vec3(point.light.x), kSoftDepth * (1.0 - 0.6 * forward_albedo.rgb));
+  float open = max(point.light.x, 0.0);  // rounded, a blend of nothing may lie below it
+  radiance += gain.y * around * tint * albedo * pow(vec3(open), kSoftDepth * (1.0 - 0.6 * forward_albedo.rgb));
   return radiance;
 }
