@@ -41,6 +41,8 @@ void compareDepth(const Texture& texture) {
   glTextureParameteri(texture.id(), GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
 }
 
+constexpr float kFarAway = 1;  // the depth of no hair and no body
+
 // A body is several times as large as its hair.
 int bodyMapSize(int hair_map_size) {
   return 2 * hair_map_size;
@@ -105,10 +107,14 @@ void ShadowMaps::allocate(const TextureExtent& extent) {
   extent_ = extent;
   opacity_near_ = makeArray(GL_RGBA16F, extent, GL_LINEAR);
   opacity_far_ = makeArray(GL_RGBA16F, extent, GL_LINEAR, shared::kOpacityLevels);
-  glClearTexImage(opacity_far_.id(), 0, GL_RGBA, GL_FLOAT, nullptr);  // coarse texels reach past the tiles
   hair_depth_ = makeArray(GL_DEPTH_COMPONENT32F, extent, GL_LINEAR);
   body_in_hair_depth_ = makeArray(GL_DEPTH_COMPONENT32F, extent, GL_LINEAR);
   compareDepth(body_in_hair_depth_);
+  // Filters may touch what lies beside a tile, coarse texels reach past it: nothing of it may be left as it was found.
+  for (const Texture* opacity : {&opacity_near_, &opacity_far_})
+    glClearTexImage(opacity->id(), 0, GL_RGBA, GL_FLOAT, nullptr);
+  for (const Texture* depth : {&hair_depth_, &body_in_hair_depth_})
+    glClearTexImage(depth->id(), 0, GL_DEPTH_COMPONENT, GL_FLOAT, &kFarAway);
   drawn_.clear();
   drawn_before_.clear();
   if (same_size) return;
@@ -339,8 +345,7 @@ void ShadowMaps::beginDepth(const Texture& depth, int layer) {
   glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT1, 0, 0, 0);
   glNamedFramebufferDrawBuffer(target, GL_NONE);
   glNamedFramebufferTextureLayer(target, GL_DEPTH_ATTACHMENT, depth.id(), 0, layer);
-  const float far_away = 1;
-  glClearNamedFramebufferfv(target, GL_DEPTH, 0, &far_away);
+  glClearNamedFramebufferfv(target, GL_DEPTH, 0, &kFarAway);
   glEnable(GL_DEPTH_TEST);
 }
 
