@@ -74,7 +74,9 @@ TEST(SweptContact, FindsWhatDenseSamplesOfTheWayFindAndPutsItOutsideForFewCloses
     missed += through && found.empty();
     wrong += past && !found.empty();
     most = std::max(most, points);
-    if (!found.empty()) EXPECT_GT(sim::closestPoint(passage.body, found[0].target).distance, kOffset - 1e-6);
+    if (!found.empty()) {
+      EXPECT_GT(sim::closestPoint(passage.body, found[0].target).distance, kOffset - 1e-6);
+    }
   }
   std::printf("%d of 4000 ways pass through; at most %ld closest points\n", passed, most);
   EXPECT_GT(passed, 200);
