@@ -134,7 +134,9 @@ struct BodyInput {
 struct CameraInput {
   Float3 eye{0, 1.6f, 1.2f}, target{0, 1.6f, 0}, up{0, 1, 0};
   float fov_y = 0.6f, near_plane = 0.05f, far_plane = 60.0f;
-  float shift = 0;  // half widths of the picture that the target lies right of its middle, by an off-centre projection
+  // Half widths and half heights of the picture that the target lies right of and above its middle, by an off-centre
+  // projection.
+  float shift = 0, rise = 0;
 
   bool operator==(const CameraInput&) const = default;
 };

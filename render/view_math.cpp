@@ -35,11 +35,11 @@ Matrix4f lookAt(const Vector3f& eye, const Vector3f& target, const Vector3f& up)
   return m;
 }
 
-Matrix4f perspective(float fov_y, float aspect, float near_plane, float far_plane, float shift) {
+Matrix4f perspective(float fov_y, float aspect, float near_plane, float far_plane, float shift, float rise) {
   const float f = 1 / std::tan(0.5f * std::clamp(fov_y, 0.01f, 3.0f));
   Matrix4f m = Matrix4f::Zero();
   m(0, 0) = f / aspect;
-  m(0, 2) = 0 - shift;  // of -z, which is what clip space divides by
+  m(0, 2) = 0 - shift, m(1, 2) = 0 - rise;  // of -z, which is what clip space divides by
   m(1, 1) = f;
   m(2, 2) = (far_plane + near_plane) / (near_plane - far_plane);
   m(2, 3) = 2 * far_plane * near_plane / (near_plane - far_plane);
@@ -48,7 +48,7 @@ Matrix4f perspective(float fov_y, float aspect, float near_plane, float far_plan
 }
 
 Matrix4f cameraMatrix(const CameraInput& camera, float aspect) {
-  return perspective(camera.fov_y, aspect, camera.near_plane, camera.far_plane, camera.shift) *
+  return perspective(camera.fov_y, aspect, camera.near_plane, camera.far_plane, camera.shift, camera.rise) *
          lookAt(asVector(camera.eye), asVector(camera.target), asVector(camera.up));
 }
 

@@ -23,8 +23,10 @@ Mat4 asMat4(const Eigen::Matrix4f& m);
 Eigen::Vector3f directionOr(const Float3& v, const Eigen::Vector3f& otherwise);
 
 Eigen::Matrix4f lookAt(const Eigen::Vector3f& eye, const Eigen::Vector3f& target, const Eigen::Vector3f& up);
-// `shift`: half widths of the picture that the line of sight lies right of its middle.
-Eigen::Matrix4f perspective(float fov_y, float aspect, float near_plane, float far_plane, float shift = 0);
+// `shift`, `rise`: half widths and half heights of the picture that the line of sight lies right of and above its
+// middle.
+Eigen::Matrix4f perspective(float fov_y, float aspect, float near_plane, float far_plane, float shift = 0,
+                            float rise = 0);
 // World to clip of a camera.
 Eigen::Matrix4f cameraMatrix(const CameraInput& camera, float aspect);
 

@@ -113,9 +113,9 @@ Request readRequest(const JsonPlace& place) {
 }
 
 RecordedView readView(const JsonPlace& place) {
-  place.expectObject({"target", "yaw", "pitch", "distance", "aspect", "height", "shift"});
-  const bool shifted = place.has("shift");
-  if (place.value().size() != (shifted ? 7 : 6))
+  place.expectObject({"target", "yaw", "pitch", "distance", "aspect", "height", "shift", "rise", "zoom"});
+  const bool shifted = place.has("shift"), raised = place.has("rise"), zoomed = place.has("zoom");
+  if (place.value().size() != std::size_t{6} + shifted + raised + zoomed)
     place.refuse("is no view", "write target, yaw, pitch, distance, aspect and height");
   RecordedView view;
   const std::array<double, 3> target = place.at("target").vector(-kFarthestView, kFarthestView);
@@ -125,7 +125,9 @@ RecordedView readView(const JsonPlace& place) {
   view.distance = place.at("distance").number(1e-6, kFarthestView);
   view.aspect = place.at("aspect").number(1 / kMaxAspect, kMaxAspect);
   view.height = static_cast<int>(place.at("height").number(1, kTallestPicture));
-  if (shifted) view.shift = place.at("shift").number(-1, 1);
+  if (shifted) view.place.shift = place.at("shift").number(-1, 1);
+  if (raised) view.place.rise = place.at("rise").number(-2, 2);
+  if (zoomed) view.place.zoom = place.at("zoom").number(0.01, 1);
   return view;
 }
 
@@ -136,13 +138,15 @@ json writeView(const RecordedView& view) {
                {"distance", view.distance},
                {"aspect", view.aspect},
                {"height", view.height}};
-  if (view.shift != 0) written["shift"] = view.shift;
+  if (view.place.shift != 0) written["shift"] = view.place.shift;
+  if (view.place.rise != 0) written["rise"] = view.place.rise;
+  if (view.place.zoom != 1) written["zoom"] = view.place.zoom;
   return written;
 }
 
 RecordedView viewOf(const Demo& demo) {
   const Camera& camera = demo.camera;
-  return {camera.target, camera.yaw, camera.pitch, camera.distance, demo.aspect, demo.picture_height, demo.shift};
+  return {camera.target, camera.yaw, camera.pitch, camera.distance, demo.aspect, demo.picture_height, demo.place};
 }
 
 void show(const RecordedView& view, Demo& demo) {
@@ -152,7 +156,7 @@ void show(const RecordedView& view, Demo& demo) {
   demo.camera.distance = view.distance;
   demo.aspect = view.aspect;
   demo.picture_height = view.height;
-  demo.shift = view.shift;
+  demo.place = view.place;
 }
 
 RecordedFrame readFrame(const JsonPlace& place) {

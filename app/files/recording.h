@@ -9,8 +9,9 @@
 //   {"frames": N, "state": "0123456789abcdef", "checksum": "0123456789abcdef"}
 // The state is the FNV-1a of all positions and velocities at the end, the checksum that of all text before this line
 // and the state's digits: it tells a recording that a person has changed. It may be missing. A view is {"target": [x,
-// y, z], "yaw", "pitch", "distance", "aspect", "height", "shift"}; a shift of 0 is left out. Version 1 had neither
-// views nor what stands beside it; it is replayed as seen by the replay itself.
+// y, z], "yaw", "pitch", "distance", "aspect", "height", "shift", "rise", "zoom"}; of the last three, those that change
+// nothing are left out. Version 1 had neither views nor what stands beside it; it is replayed as seen by the replay
+// itself.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +34,7 @@ struct RecordedView {
   double distance = 1;         // m
   double aspect = 1;
   int height = 720;  // pixels
-  double shift = 0;  // see render::CameraInput
+  ViewPlace place;
   bool operator==(const RecordedView&) const = default;
 };
 

@@ -11,20 +11,20 @@ namespace app {
 
 namespace {
 
-// Without panels, and so with the figure in the middle.
+// Without panels, and so with the view over all of the picture.
 std::vector<unsigned char> drawn(Demo& demo, const FrameTarget& target) {
   std::vector<unsigned char> pixels;
-  const double shift = demo.shift;
+  const ViewPlace place = demo.place;
   if (demo.comparison.on() && target.pair) {
     FrameTarget offscreen = target;
     offscreen.pixels = &pixels;
-    offscreen.free_left = 0, offscreen.free_right = 1;
+    offscreen.free = {};
     drawFrame(demo, offscreen);
   } else {
-    demo.shift = 0;
+    demo.place = {};
     target.renderer->renderImage(frameInput(demo, target.width, target.height), pixels);
   }
-  demo.shift = shift;
+  demo.place = place;
   return pixels;
 }
 

@@ -102,6 +102,13 @@ bool pressed(GLFWwindow* window, int button) {
   return glfwGetMouseButton(window, button) == GLFW_PRESS;
 }
 
+// Pixels of the mouse that the camera's view is high.
+double viewHeight(GLFWwindow* window, const Demo& demo) {
+  int width = 1, height = 1;
+  glfwGetWindowSize(window, &width, &height);
+  return demo.place.zoom * std::max(1, height);
+}
+
 // A drag of the key light to (x, y). Several moves may come in one frame: each counts from where the drag began.
 void turnLight(double x, double y, double height, Session& s) {
   SceneLook look = s.demo.scene.look;
@@ -122,16 +129,15 @@ void onMouseMove(GLFWwindow* window, double x, double y) {
   const BrushState& brush = s.ui.brush;
   const bool brushes = s.ui.line_held || brush.stroking || (brush.over_hair && pressed(window, GLFW_MOUSE_BUTTON_LEFT));
   if (ImGui::GetIO().WantCaptureMouse || brushes) return;
-  int width = 1, height = 1;
-  glfwGetWindowSize(window, &width, &height);
+  const double height = viewHeight(window, s.demo);
   const bool control = glfwGetKey(window, GLFW_KEY_LEFT_CONTROL) == GLFW_PRESS;
-  if (control && pressed(window, GLFW_MOUSE_BUTTON_LEFT)) return turnLight(x, y, std::max(1, height), s);
+  if (control && pressed(window, GLFW_MOUSE_BUTTON_LEFT)) return turnLight(x, y, height, s);
   const bool shift = glfwGetKey(window, GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS;
   if (pressed(window, GLFW_MOUSE_BUTTON_RIGHT) || pressed(window, GLFW_MOUSE_BUTTON_MIDDLE) ||
       (shift && pressed(window, GLFW_MOUSE_BUTTON_LEFT))) {
-    pan(dx, dy, std::max(1, height), s.demo.camera);
+    pan(dx, dy, height, s.demo.camera);
   } else if (pressed(window, GLFW_MOUSE_BUTTON_LEFT)) {
-    orbit(dx, dy, std::max(1, height), s.demo.camera);
+    orbit(dx, dy, height, s.demo.camera);
   }
 }
 
@@ -249,19 +255,18 @@ void followTextScale(GLFWwindow* window, double asked, Session& s) {
   ImGui_ImplOpenGL3_CreateFontsTexture();
 }
 
-// The figure stands in the middle of what panels leave free. What is recorded has no panels, and neither has the window
-// then a part that they take.
+// The figure stands in the middle of what panels leave free; while something is dragged over the picture it stays where
+// it is. What is recorded has no panels, and neither has the window then a part that they take.
 void leaveFree(GLFWwindow* window, const Demo& demo, const UiState& ui, FrameTarget& target) {
   int width = 1, height = 1;
   glfwGetWindowSize(window, &width, &height);
   if (width < 1 || demo.capture.recording) {
-    target.free_left = 0, target.free_right = 1;
+    target.free = {};
     return;
   }
+  if (ui.brush.stroking || ui.line_held || ui.light_held) return;
   ImGui::GetIO().DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
-  const FreeWidth free = freeWidth(ui);
-  target.free_left = static_cast<double>(free.left) / width;
-  target.free_right = static_cast<double>(free.right) / width;
+  target.free = freePart(demo, ui);
 }
 
 // How long the next frame is. Runs of a given number of frames and recordings go by frames, all else by the clock.

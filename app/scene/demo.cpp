@@ -238,13 +238,13 @@ render::FrameInput frameInput(Demo& demo, int width, int height) {
   for (const Actor& actor : demo.actors) {
     demo.hair_inputs.push_back(hairInput(actor, actor.spec.look));
     demo.body_inputs.push_back(bodyInput(actor, actor.spec.look, demo.scene.look.view.show_strands));
-    for (std::size_t k = 0; k < actor.worn.size(); ++k) demo.body_inputs.push_back(attachmentInput(actor, k, demo.scene.look.view.show_strands));
+    for (std::size_t k = 0; k < actor.worn.size(); ++k)
+      demo.body_inputs.push_back(attachmentInput(actor, k, demo.scene.look.view.show_strands));
   }
   render::FrameInput input;
   input.width = width;
   input.height = height;
-  input.camera = cameraInput(demo.camera, demo.origin);
-  input.camera.shift = static_cast<float>(demo.shift);
+  input.camera = cameraInput(demo.camera, demo.place, demo.origin);
   input.light = lightAbout(demo.actors.front(), demo.scene.look.light);
   input.view = demo.scene.look.view;
   input.skips = drawSkips(demo.scene.skips);
@@ -259,10 +259,17 @@ render::FrameInput frameInput(Demo& demo, int width, int height) {
 
 namespace {
 
-// What puts the figure into the middle between two shares of a picture's width. Where nothing is left between them it
-// stays in the picture's middle.
-double shiftBetween(double left, double right) {
-  return left < right ? left + right - 1 : 0;
+// Side by side each half's own free part lies between its panels and the middle. Both show the figure in one size.
+void placeHalves(const PicturePart& free, double aspect, ViewPlace& left, ViewPlace& right) {
+  const auto halfFrom = [&](double low) {
+    PicturePart half = free;
+    half.left = std::clamp(2 * (free.left - low), 0.0, 1.0);
+    half.right = std::clamp(2 * (free.right - low), 0.0, 1.0);
+    return half;
+  };
+  const PicturePart first = halfFrom(0), second = halfFrom(0.5);
+  const double zoom = std::min(placeIn(first, aspect).zoom, placeIn(second, aspect).zoom);
+  left = placeIn(first, aspect, zoom), right = placeIn(second, aspect, zoom);
 }
 
 // The demo and the one that it is compared with, in one picture, and in the same detail.
@@ -272,11 +279,9 @@ render::FrameReport drawPair(Demo& demo, const FrameTarget& target, bool measure
   const int left = render::firstWidth(layout, target.width), right = render::secondWidth(layout, target.width);
   demo.aspect = static_cast<double>(left) / target.height;
   Demo& other = demo.comparison.other.front();
-  other.shift = demo.shift;
+  other.place = demo.place;
   if (comparison.side_by_side) {
-    // Each half's own free part lies between its panels and the middle.
-    demo.shift = shiftBetween(target.free_left / 0.5, 1);
-    other.shift = shiftBetween(0, (target.free_right - 0.5) / 0.5);
+    placeHalves(target.free, demo.aspect, demo.place, other.place);
   }
   other.draw_governor = demo.draw_governor;
   const render::FrameInput first = frameInput(demo, left, target.height);
@@ -294,7 +299,7 @@ void drawFrame(Demo& demo, const FrameTarget& target) {
   if (!target.renderer || target.width <= 0 || target.height <= 0) return;
   demo.aspect = static_cast<double>(target.width) / target.height;
   demo.picture_height = target.height;
-  demo.shift = shiftBetween(target.free_left, target.free_right);
+  demo.place = placeIn(target.free, demo.aspect);
   const bool measure = target.measure || demo.draw_governor.budget > 0;
   if (demo.comparison.on() && target.pair) {
     demo.stats.draw = drawPair(demo, target, measure);

@@ -47,7 +47,7 @@ struct Demo {
   Camera camera;
   double aspect = 16.0 / 9;    // of the picture
   int picture_height = 720;    // pixels; what is far is what is small in it
-  double shift = 0;            // of what the camera looks at, see render::CameraInput
+  ViewPlace place;             // of the camera's view in the picture
   Vec3 origin = Vec3::Zero();  // m, of what is handed to the renderer
   double shown_fraction = -1;  // of the step, when positions were last handed over
   DebugViews debug;
@@ -94,7 +94,7 @@ struct FrameTarget {
   bool measure = false;                          // stage times of the drawing
   std::function<void(Demo&)> draw_panels;        // empty: there are none
   render::PicturePair* pair = nullptr;           // without it comparisons show the first picture alone
-  double free_left = 0, free_right = 1;          // shares of the width between which panels leave the figure free
+  PicturePart free = {};                         // what panels leave to the figure
 };
 
 // Loads a scene and lets the hair come to rest. With `beside`, what can follow later is loaded beside the frames from

@@ -16,18 +16,20 @@ namespace {
 
 constexpr float kMargin = 12, kSidebarWidth = 348, kTimingsWidth = 292;
 constexpr float kMessageWidth = 520, kMinMessageWidth = 240;
-constexpr float kFaceWidth = 168;     // in the window's middle
+constexpr float kLeastFigure = 360;   // width beside the sidebar that hair and shoulders ask for
+constexpr float kTextHeight = 15;     // of a row of buttons, see prepareUi
 constexpr float kLeastSheet = 176;    // height that rows of buttons and tabs ask for
 constexpr float kSceneBoxFrom = 430;  // width of a sheet with room for the scenes beside its buttons
 constexpr float kAmpleWidth = 340;    // between sidebar and timings; with less the timings begin folded
+constexpr float kLeastBetween = 240;  // the same; with less the timings are in the Debug tab
 constexpr double kMessageTime = 6;    // s; faults stay until clicked
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoBringToFrontOnFocus;
 
-// Whether the sidebar would cover the face, in the window's middle. Then its tabs are folded away, and unfolded they
-// stand in a sheet over the lower half of the window, below the face.
+// Whether the figure has no room beside the sidebar. Then its tabs are folded away, and unfolded they stand in a sheet
+// over the lower half of the window, below the figure.
 bool narrow(const UiState& ui) {
-  return 0.5f * ImGui::GetIO().DisplaySize.x < (kSidebarWidth + 2 * kMargin + 0.5f * kFaceWidth) * ui.text_scale;
+  return ImGui::GetIO().DisplaySize.x < (kSidebarWidth + 2 * kMargin + kLeastFigure) * ui.text_scale;
 }
 
 // The scene's name, and what has been put into it since.
@@ -98,7 +100,9 @@ void transportRow(Demo& demo, UiState& ui) {
   if (iconButton(Icon::kPanels, "panels", ui.unfolded ? "Fold the panels" : "All panels", ui.unfolded, ui))
     ui.unfolded = !ui.unfolded;
   if (!ui.unfolded || ImGui::GetContentRegionMax().x < kSceneBoxFrom * ui.text_scale) return;
+  const float higher = ImGui::GetItemRectSize().y - ImGui::GetFrameHeight();
   next();
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 0.5f * higher);
   sceneBox(demo, ui);
 }
 
@@ -170,16 +174,35 @@ float sidebarHeight(const UiState& ui) {
 float takenLeft(const UiState& ui) {
   return ui.visible && !narrow(ui) ? sidebarWidth(ui) + kMargin * ui.text_scale : 0;
 }
-// Of the timings, negative: they have no room beside the sidebar.
+// Pixels between sidebar and timings, and whether that is enough for the figure.
 float timingsRoom(const UiState& ui) {
   return ImGui::GetIO().DisplaySize.x - sidebarWidth(ui) - (kTimingsWidth + 3 * kMargin) * ui.text_scale;
+}
+bool timingsBeside(const UiState& ui) {
+  return timingsRoom(ui) >= kLeastBetween * ui.text_scale;
 }
 float takenRight(const UiState& ui) {
   const float room = timingsRoom(ui);
   const bool shown_before = ui.timings_bottom > 0;
   const bool open = shown_before ? !ui.timings_folded : room >= kAmpleWidth * ui.text_scale;
-  const bool timed = ui.visible && !folded(ui) && open && room >= 0;
-  return timed ? (kTimingsWidth + kMargin) * ui.text_scale : 0;
+  const bool timed = ui.visible && !folded(ui) && open && timingsBeside(ui);
+  const float timings = timed ? (kTimingsWidth + kMargin) * ui.text_scale : 0;
+  // A history that takes more than half of the window lies over the figure.
+  const bool history = ui.visible && ui.history && ui.history_width < 0.5f * ImGui::GetIO().DisplaySize.x;
+  return std::max(timings, history ? ui.history_width : 0);
+}
+
+// Of the row of buttons that is left of a folded sidebar, with its margin.
+float rowHeight(const UiState& ui) {
+  return (kTextHeight + 3 * kMargin) * ui.text_scale + 2 * ImGui::GetStyle().FramePadding.y;
+}
+
+// Pixels at the bottom that panels take below the figure.
+float takenBelow(const Demo& demo, const UiState& ui) {
+  if (!ui.visible) return 0;
+  float taken = timelineHeight(demo, ui, takenLeft(ui)) + (folded(ui) ? rowHeight(ui) : 0);
+  if (sheet(ui)) taken = sidebarHeight(ui) + kMargin * ui.text_scale;
+  return std::max(taken, std::min(ui.fault_height, 0.8f * ImGui::GetIO().DisplaySize.y));
 }
 
 void tabs(Demo& demo, UiState& ui) {
@@ -228,8 +251,8 @@ void timings(Demo& demo, UiState& ui) {
   // a narrow window it is left out until the panels are unfolded.
   const float room = timingsRoom(ui);
   ui.timings_bottom = 0;
-  ui.timings_in_tab = room < 0;
-  if (room < 0 || folded(ui)) return;
+  ui.timings_in_tab = !timingsBeside(ui);
+  if (ui.timings_in_tab || folded(ui)) return;
   ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x - margin, margin}, ImGuiCond_Always, {1, 0});
   ImGui::SetNextWindowSize({kTimingsWidth * ui.text_scale, 0});
   ImGui::SetNextWindowCollapsed(room < kAmpleWidth * ui.text_scale, ImGuiCond_FirstUseEver);
@@ -252,6 +275,7 @@ std::string messageText(const Demo& demo) {
 // `below`: pixels that the timeline takes.
 void message(Demo& demo, UiState& ui, float below) {
   const std::string text = messageText(demo);
+  ui.fault_height = 0;
   if (demo.message != ui.shown_message) {
     ui.shown_message = demo.message;
     ui.message_since = ImGui::GetTime();
@@ -284,6 +308,7 @@ void message(Demo& demo, UiState& ui, float below) {
       const bool closed = ImGui::Button("Close");
       noteItem("close_message", ui);
       if (closed) demo.message.clear();
+      ui.fault_height = size.y - ImGui::GetWindowPos().y;
     }
   }
   ImGui::End();
@@ -334,8 +359,14 @@ int tabIndex(std::string_view name) {
   return -1;
 }
 
-FreeWidth freeWidth(const UiState& ui) {
-  return {takenLeft(ui), ImGui::GetIO().DisplaySize.x - takenRight(ui)};
+PicturePart freePart(const Demo& demo, const UiState& ui) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  if (size.x < 1 || size.y < 1) return {};
+  PicturePart part;
+  part.left = static_cast<double>(takenLeft(ui) / size.x);
+  part.right = 1 - static_cast<double>(takenRight(ui) / size.x);
+  part.bottom = 1 - static_cast<double>(takenBelow(demo, ui) / size.y);
+  return part;
 }
 
 void buildUi(Demo& demo, UiState& ui) {
@@ -344,11 +375,12 @@ void buildUi(Demo& demo, UiState& ui) {
   compareLine(demo, ui);
   if (!ui.line_held) brushFrame(demo, ui);
   count(!ui.visible, demo.stats.always[kHiddenPanels]);
-  float below = sheet(ui) ? 0 : timelinePanel(demo, ui, takenLeft(ui));
+  float below = sheet(ui) ? 0 : timelineHeight(demo, ui, takenLeft(ui));
+  if (below > 0) timelinePanel(demo, ui, takenLeft(ui));
   if (ui.visible) {
     sidebar(demo, ui, below);
     timings(demo, ui);
-    if (folded(ui)) below += ImGui::GetFrameHeight() + 3 * kMargin * ui.text_scale;
+    if (folded(ui)) below += rowHeight(ui);
   }
   historyPanel(demo, ui);
   filePanel(demo, ui);

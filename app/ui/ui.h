@@ -91,6 +91,7 @@ struct UiState {
   int open_tab = -1;                            // asked for by a key or a test; -1: leave
   float timings_bottom = 0;                     // px; 0: they are not shown
   float history_width = 0, history_height = 0;  // px with its margin; 0: it is not shown
+  float fault_height = 0;                       // px from the window's bottom to a fault's upper edge; 0: there is none
   bool line_placed = false;                     // the line of a comparison stands there, or where a person has drawn it
   bool timings_folded = false;                  // to their title
   bool timings_in_tab = false;                  // for want of room beside the sidebar they are in the Debug tab
@@ -133,12 +134,9 @@ float fittingTextScale(float wanted, int width, int height);
 // Number of the tab of that name ("motion"), for UiState::open_tab; -1 when there is none.
 int tabIndex(std::string_view name);
 
-// Pixels of the mouse between which the panels leave the window to the figure.
-struct FreeWidth {
-  float left = 0, right = 0;
-  float middle() const { return 0.5f * (left + right); }
-};
-FreeWidth freeWidth(const UiState& ui);
+// What the panels leave of the window to the figure. Boxes that wait for an answer (files, keys, an offer) lie over it,
+// and so do messages that go by themselves.
+PicturePart freePart(const Demo& demo, const UiState& ui);
 
 // Builds all panels of one frame, between ImGui::NewFrame and ImGui::Render.
 void buildUi(Demo& demo, UiState& ui);

@@ -73,8 +73,10 @@ void compareLine(Demo& demo, UiState& ui) {
     ui.line_held = ui.line_placed = false;
     return;
   }
-  if (!std::exchange(ui.line_placed, true) && !comparison.side_by_side)
-    postRequest(demo, {Ask::kCompareView, "split", "", freeWidth(ui).middle() / width});
+  if (!std::exchange(ui.line_placed, true) && !comparison.side_by_side) {
+    const PicturePart free = freePart(demo, ui);
+    postRequest(demo, {Ask::kCompareView, "split", "", 0.5 * (free.left + free.right)});
+  }
   const float x = width * static_cast<float>(comparison.side_by_side ? 0.5 : comparison.line);
   const float top = 0.14f * io.DisplaySize.y;
   ImDrawList* list = ImGui::GetBackgroundDrawList();

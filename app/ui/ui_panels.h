@@ -18,9 +18,10 @@ void skipsSection(Demo& demo, UiState& ui);
 // Stages as a stacked bar and their history (figure 6 of the paper), solver iterations and residual.
 void timingsPanel(Demo& demo, UiState& ui);
 
-// The timeline right of `left` (pixels); returns the height that it takes of the window. The box that offers what an
-// earlier run has left. Lens, turntable and kept views.
-float timelinePanel(Demo& demo, UiState& ui, float left);
+// The timeline right of `left` (pixels), and the height that it takes of the window; 0: it is not shown. The box that
+// offers what an earlier run has left. Lens, turntable and kept views.
+float timelineHeight(const Demo& demo, const UiState& ui, float left);
+void timelinePanel(Demo& demo, UiState& ui, float left);
 void offerPanel(Demo& demo, UiState& ui);
 void cameraRows(Demo& demo, UiState& ui);
 

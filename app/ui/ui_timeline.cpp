@@ -135,19 +135,32 @@ void cacheButton(Demo& demo, UiState& ui) {
   ImGui::SameLine(0, 8);
 }
 
+// Pixels of the timeline, beside the history.
+float widthRightOf(float left, const UiState& ui) {
+  const float margin = kTimelineMargin * ui.text_scale;
+  const float right = ui.history ? 292 * ui.text_scale + margin : 0;
+  return ImGui::GetIO().DisplaySize.x - left - right - 2 * margin;
+}
+bool inOneRow(float width, const UiState& ui) {
+  return width > kOneRowWidth * ui.text_scale;
+}
+
 }  // namespace
 
-float timelinePanel(Demo& demo, UiState& ui, float left) {
+float timelineHeight(const Demo& demo, const UiState& ui, float left) {
   if (!ui.visible || !demo.timeline.on) return 0;
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  const float scale = ui.text_scale, margin = kTimelineMargin * scale;
-  const float right = ui.history ? (292 + kTimelineMargin) * scale : 0;
-  const float width = size.x - left - right - 2 * margin;
-  if (width < kMinWidth * scale || size.y < kLeastWindow * scale) return 0;
-  const bool one_row = width > kOneRowWidth * scale;
-  const float height = kTimelineHeight + (one_row ? 0 : kButtonRow);
-  ImGui::SetNextWindowPos({left + margin, size.y - margin}, ImGuiCond_Always, {0, 1});
-  ImGui::SetNextWindowSize({width, height * scale});
+  const float scale = ui.text_scale, width = widthRightOf(left, ui);
+  if (width < kMinWidth * scale || ImGui::GetIO().DisplaySize.y < kLeastWindow * scale) return 0;
+  return (kTimelineHeight + (inOneRow(width, ui) ? 0 : kButtonRow) + kTimelineMargin) * scale;
+}
+
+void timelinePanel(Demo& demo, UiState& ui, float left) {
+  const float taken = timelineHeight(demo, ui, left);
+  if (taken == 0) return;
+  const float margin = kTimelineMargin * ui.text_scale, width = widthRightOf(left, ui);
+  const bool one_row = inOneRow(width, ui);
+  ImGui::SetNextWindowPos({left + margin, ImGui::GetIO().DisplaySize.y - margin}, ImGuiCond_Always, {0, 1});
+  ImGui::SetNextWindowSize({width, taken - margin});
   const ImGuiWindowFlags flags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                                  ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoBringToFrontOnFocus;
   if (ImGui::Begin("timeline", nullptr, flags)) {
@@ -164,7 +177,6 @@ float timelinePanel(Demo& demo, UiState& ui, float left) {
     if (!one_row) cacheButton(demo, ui), rangeButtons(demo, ui);
   }
   ImGui::End();
-  return (height + kTimelineMargin) * scale;
 }
 
 void offerPanel(Demo& demo, UiState& ui) {
@@ -174,7 +186,10 @@ void offerPanel(Demo& demo, UiState& ui) {
   const ImGuiWindowFlags flags =
       ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize;
   if (ImGui::Begin("offer", nullptr, flags)) {
+    // In a small window in several lines.
+    ImGui::PushTextWrapPos(std::min(420 * ui.text_scale, 0.8f * size.x));
     ImGui::TextUnformatted("An earlier run ended without leaving. What it had was kept.");
+    ImGui::PopTextWrapPos();
     const bool open = ImGui::Button("Open it");
     noteItem("offer_open", ui);
     ImGui::SameLine(0, 6);

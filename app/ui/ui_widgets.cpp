@@ -119,6 +119,10 @@ void noteItem(const std::string& name, UiState& ui) {
   ui.items.push_back({name, low.x, low.y, size.x, size.y});
 }
 
+void noteMark(const std::string& name, float x, float y, float radius, UiState& ui) {
+  ui.items.push_back({name, x - radius, y - radius, 2 * radius, 2 * radius});
+}
+
 void postRequest(Demo& demo, Request request) {
   demo.requests.push_back(std::move(request));
 }
@@ -126,7 +130,7 @@ void postRequest(Demo& demo, Request request) {
 Picture shownPicture(const Demo& demo) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const bool half = demo.comparison.on() && demo.comparison.side_by_side;
-  return {(half ? 0.5 : 1.0) * static_cast<double>(size.x), static_cast<double>(size.y), demo.shift};
+  return {(half ? 0.5 : 1.0) * static_cast<double>(size.x), static_cast<double>(size.y), demo.place};
 }
 
 MarksBelowDigits::MarksBelowDigits() : first_(ImGui::GetWindowDrawList()->VtxBuffer.Size) {}

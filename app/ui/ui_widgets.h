@@ -14,6 +14,9 @@ namespace app {
 // Remembers where the last widget is.
 void noteItem(const std::string& name, UiState& ui);
 
+// The same of something drawn on the hair about a pixel.
+void noteMark(const std::string& name, float x, float y, float radius, UiState& ui);
+
 void postRequest(Demo& demo, Request request);
 
 // The figure's picture in the window, pixels of the mouse; side by side with another the left one.

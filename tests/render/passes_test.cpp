@@ -40,7 +40,7 @@ Members<T...> makeMembers(const char* names, std::tuple<T&...> values) {
     auto& [__VA_ARGS__] = all;                               \
     return makeMembers(#__VA_ARGS__, std::tie(__VA_ARGS__)); \
   }
-MEMBERS(CameraInput, eye, target, up, fov_y, near_plane, far_plane, shift)
+MEMBERS(CameraInput, eye, target, up, fov_y, near_plane, far_plane, shift, rise)
 MEMBERS(LightInput, to_light, key, fill, rim, to_fill, to_rim, ambient_sky, ambient_ground, shadow_size, shadow_strands,
         opacity_layers, layer_thickness, shadow_strength, shadow_strands_per_pixel, shadow_strand_share, shadows)
 MEMBERS(ViewOptions, samples, exposure, backdrop_top, backdrop_bottom, ground_color, ground_height, ground,

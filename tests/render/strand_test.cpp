@@ -427,19 +427,20 @@ TEST(Frustum, SeesWhatIsSweptIntoIt) {
   }
 }
 
-// A shift moves the whole picture by so many half widths, and none changes no bit.
+// Shift and rise move the whole picture by so many half sides, and none changes no bit.
 TEST(Frustum, AShiftMovesThePictureAsAWhole) {
   render::CameraInput camera;
   camera.eye = {0.3f, 1, 5};
   camera.target = {0, 1.2f, 0};
   const Eigen::Matrix4f plain = render::cameraMatrix(camera, 1.5f);
   EXPECT_FALSE(std::signbit(render::perspective(0.6f, 1.5f, 0.05f, 60)(0, 2)));
-  camera.shift = 0.25f;
+  EXPECT_FALSE(std::signbit(render::perspective(0.6f, 1.5f, 0.05f, 60)(1, 2)));
+  camera.shift = 0.25f, camera.rise = -0.5f;
   const Eigen::Matrix4f shifted = render::cameraMatrix(camera, 1.5f);
   for (const Vector3f& p : {Vector3f(0, 1, 0), Vector3f(1, 0.5f, -3), Vector3f(-0.4f, 1.4f, 2)}) {
     const Eigen::Vector4f at(p.x(), p.y(), p.z(), 1), before = plain * at, after = shifted * at;
     EXPECT_NEAR(after.x() / after.w(), before.x() / before.w() + 0.25f, 1e-5f);
-    EXPECT_EQ(after.y(), before.y());
+    EXPECT_NEAR(after.y() / after.w(), before.y() / before.w() - 0.5f, 1e-5f);
     EXPECT_EQ(after.z(), before.z());
     EXPECT_EQ(after.w(), before.w());
   }

@@ -116,18 +116,19 @@ double projectedSize(const Demo& demo, const Actor& actor) {
   const Vec3 eye = demo.camera.anchor + demo.camera.target + demo.camera.distance * viewBack(demo.camera);
   const double size = hairSize(actor);
   const double distance = std::max((headOf(actor) - eye).norm() - 0.5 * size, 0.1);
-  return size * demo.picture_height / (2 * std::tan(0.5 * demo.camera.fov) * distance);
+  return size * demo.picture_height / (2 * pictureSlope(demo.camera, demo.place) * distance);
 }
 
 bool mayBeSeen(const Demo& demo, const Actor& actor) {
   const Vec3 back = viewBack(demo.camera);
   const Vec3 eye = demo.camera.anchor + demo.camera.target + demo.camera.distance * back;
   const Vec3 right = Vec3::UnitY().cross(back).normalized(), up = back.cross(right);
-  const double y = std::tan(0.5 * demo.camera.fov), x = y * demo.aspect;
-  const double to_right = (1 - demo.shift) * x, to_left = (1 + demo.shift) * x;
+  const double y = pictureSlope(demo.camera, demo.place), x = y * demo.aspect;
+  const double to_right = (1 - demo.place.shift) * x, to_left = (1 + demo.place.shift) * x;
+  const double to_top = (1 - demo.place.rise) * y, to_bottom = (1 + demo.place.rise) * y;
   // Planes through the eye, normals outwards.
   const std::array<Vec3, 5> planes{back, (right + to_right * back).normalized(), (-right + to_left * back).normalized(),
-                                   (up + y * back).normalized(), (-up + y * back).normalized()};
+                                   (up + to_top * back).normalized(), (-up + to_bottom * back).normalized()};
   const render::LightInput light = lightAbout(demo.actors.front(), demo.scene.look.light);
   const Vec3 to_light(light.to_light[0], light.to_light[1], light.to_light[2]);
   const Eigen::AlignedBox3d box = boxAround(actor);

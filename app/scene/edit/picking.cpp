@@ -9,7 +9,7 @@ namespace {
 struct Eye {
   Vec3 at, forward, right, up;
   double slope;
-  explicit Eye(const Camera& camera) : slope(std::tan(0.5 * camera.fov)) {
+  Eye(const Camera& camera, const Picture& picture) : slope(pictureSlope(camera, picture.place)) {
     const Vec3 back = viewBack(camera);
     at = camera.anchor + camera.target + camera.distance * back;
     forward = -back;
@@ -18,9 +18,9 @@ struct Eye {
   }
 };
 
-// Pixels from the left of what the camera looks at.
-double middleOf(const Picture& picture) {
-  return 0.5 * (1 + picture.shift) * picture.width;
+// Pixels from the picture's top left corner of what the camera looks at.
+std::array<double, 2> middleOf(const Picture& picture) {
+  return {0.5 * (1 + picture.place.shift) * picture.width, 0.5 * (1 - picture.place.rise) * picture.height};
 }
 
 // Distance along the ray to a triangle (Moeller and Trumbore 1997); negative: it is missed.
@@ -36,19 +36,21 @@ double meet(const Ray& ray, const Vec3& a, const Vec3& b, const Vec3& c) {
 }  // namespace
 
 Ray rayThrough(double x, double y, const Picture& picture, const Camera& camera) {
-  const Eye eye(camera);
+  const Eye eye(camera, picture);
   const double scale = 2 * eye.slope / picture.height;
-  const Vec3 way = eye.forward + scale * ((x - middleOf(picture)) * eye.right - (y - 0.5 * picture.height) * eye.up);
+  const auto [middle_x, middle_y] = middleOf(picture);
+  const Vec3 way = eye.forward + scale * ((x - middle_x) * eye.right - (y - middle_y) * eye.up);
   return {eye.at, way.normalized()};
 }
 
 std::optional<std::array<double, 2>> pixelOf(const Vec3& point, const Picture& picture, const Camera& camera) {
-  const Eye eye(camera);
+  const Eye eye(camera, picture);
   const Vec3 way = point - eye.at;
   const double depth = way.dot(eye.forward);
   if (depth < 1e-3) return {};
   const double scale = picture.height / (2 * eye.slope * depth);
-  return std::array{middleOf(picture) + scale * way.dot(eye.right), 0.5 * picture.height - scale * way.dot(eye.up)};
+  const auto [middle_x, middle_y] = middleOf(picture);
+  return std::array{middle_x + scale * way.dot(eye.right), middle_y - scale * way.dot(eye.up)};
 }
 
 Vec3 pointInPlane(const Ray& ray, const Vec3& place, const Vec3& facing) {

@@ -15,7 +15,7 @@ struct Ray {
 
 struct Picture {
   double width = 1, height = 1;  // pixels
-  double shift = 0;              // see render::CameraInput
+  ViewPlace place;               // of the camera's view in it
 };
 
 // Through a pixel, counted from the picture's top left corner.

@@ -17,6 +17,9 @@ constexpr double kStray = 0.15;        // of half the picture: how far the head 
 constexpr double kNearer = 0.1;        // of the distance: and how much nearer or farther it may come
 constexpr double kFrameMargin = 1.06;  // around a whole figure
 constexpr double kFullAspect = 1.0;    // narrower pictures step back
+constexpr double kFigureWidth = 0.8;   // of a view that is as wide as high: what hair and shoulders ask for
+constexpr double kLeastZoom = 0.6;     // a smaller view would show a face too small to work on
+constexpr double kLeastFree = 0.1;     // of the picture's sides: less is no room
 
 // m, heights of the picture's edges about the middle of the cranium.
 struct Framing {
@@ -83,6 +86,25 @@ Vec3 headOf(const Actor& actor, const Pose& pose) {
 }
 
 }  // namespace
+
+ViewPlace placeIn(const PicturePart& free, double aspect, double most) {
+  const double width = free.right - free.left, height = free.bottom - free.top;
+  if (width < kLeastFree || height < kLeastFree) return {};
+  // A picture that is higher than wide has stepped back: the figure fills its width.
+  const double side = std::min(1.0, aspect / kFullAspect);
+  const double fits = std::min({most, height / side, width * aspect / (kFigureWidth * side)});
+  ViewPlace place;
+  place.zoom = std::max(fits, kLeastZoom);
+  place.shift = free.left + free.right - 1;
+  place.rise = 1 - (free.top + free.bottom);
+  // What is too high for the part is cut off below: the head stays.
+  place.rise -= std::max(0.0, place.zoom * side - height);
+  return place;
+}
+
+double pictureSlope(const Camera& camera, const ViewPlace& place) {
+  return std::tan(0.5 * camera.fov) / place.zoom;
+}
 
 Vec3 viewBack(const Camera& camera) {
   return {std::cos(camera.pitch) * std::sin(camera.yaw), std::sin(camera.pitch),
@@ -178,12 +200,14 @@ void follow(const Actor& actor, double seconds, double aspect, Camera& camera) {
   camera.anchor += now - kept;
 }
 
-render::CameraInput cameraInput(const Camera& camera, const Vec3& origin) {
+render::CameraInput cameraInput(const Camera& camera, const ViewPlace& place, const Vec3& origin) {
   const Vec3 target = camera.anchor + camera.target - origin;
   render::CameraInput input;
   input.eye = toFloat3(target + camera.distance * viewBack(camera));
   input.target = toFloat3(target);
-  input.fov_y = static_cast<float>(camera.fov);
+  // Without a zoom the bits of the angle stay.
+  input.fov_y = static_cast<float>(place.zoom == 1 ? camera.fov : 2 * std::atan(pictureSlope(camera, place)));
+  input.shift = static_cast<float>(place.shift), input.rise = static_cast<float>(place.rise);
   input.near_plane = static_cast<float>(std::min(0.05, 0.2 * camera.distance));
   return input;
 }

@@ -17,6 +17,26 @@ struct Camera {
   bool follow = true;
 };
 
+// A part of a picture, in shares of its width from the left and of its height from the top.
+struct PicturePart {
+  double left = 0, right = 1, top = 0, bottom = 1;
+};
+
+// Where the camera's view stands in a picture. Without panels it fills the picture.
+struct ViewPlace {
+  double shift = 0, rise = 0;  // of its middle, see render::CameraInput
+  double zoom = 1;             // its height, a share of the picture's
+  bool operator==(const ViewPlace&) const = default;
+};
+
+// What puts the view into the middle of the part that is left free, smaller where it has no room there. Below 0.6 of
+// its size it is cut off at the bottom instead. A part without room changes nothing. `aspect` is the picture's; the
+// zoom is at most `most`.
+ViewPlace placeIn(const PicturePart& free, double aspect, double most = 1);
+
+// Tangent of half the angle that the whole height of the picture spans.
+double pictureSlope(const Camera& camera, const ViewPlace& place);
+
 // The camera that a scene asks for, framing an actor as it stands. `aspect` is width over height: narrow pictures step
 // back so that the figure keeps its room.
 Camera makeCamera(const CameraSpec& spec, const Actor& actor, double aspect);
@@ -28,7 +48,8 @@ void lookAtHead(const Actor& actor, Camera& camera);
 // Yaw and pitch stay.
 void frameFigure(const std::string& name, const Actor& actor, double aspect, Camera& camera);
 
-// Mouse moves in pixels; `height` is the picture's. Pitch stays short of the poles, distance between 0.15 and 50 m.
+// Mouse moves in pixels; `height` is the view's, see ViewPlace. Pitch stays short of the poles, distance between 0.15
+// and 50 m.
 void orbit(double dx, double dy, double height, Camera& camera);
 void pan(double dx, double dy, double height, Camera& camera);
 void zoom(double notches, Camera& camera);
@@ -44,6 +65,6 @@ void follow(const Actor& actor, double seconds, double aspect, Camera& camera);
 Vec3 viewBack(const Camera& camera);
 
 // Relative to `origin` (m).
-render::CameraInput cameraInput(const Camera& camera, const Vec3& origin);
+render::CameraInput cameraInput(const Camera& camera, const ViewPlace& place, const Vec3& origin);
 
 }  // namespace app

@@ -57,7 +57,7 @@ render::CameraInput headCamera(const Character& character, const PresetScene& pr
   camera.yaw = kPictureYaw, camera.pitch = kPicturePitch;
   camera.fov = kPictureFov;
   camera.distance = 0.5 * (top - low) / std::tan(0.5 * kPictureFov);
-  return cameraInput(camera, Vec3::Zero());
+  return cameraInput(camera, {}, Vec3::Zero());
 }
 
 }  // namespace

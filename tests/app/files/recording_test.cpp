@@ -97,7 +97,7 @@ TEST(Recording, HoldsFromWhereItWasSeen) {
     if (frame >= 10 && frame < 20) app::zoom(-3, demo.camera);
     if (frame == 25) demo.picture_height = 300;
     if (frame >= 30 && frame < 40) app::orbit(30, 1, 300, demo.camera);
-    if (frame == 35) demo.shift = 0.6;
+    if (frame == 35) demo.place = {0.6, 0.3, 0.7};
     if (frame == 45) app::zoom(30, demo.camera), app::pan(500, 0, 300, demo.camera);
     if (frame == 50) demo.requests = {{Ask::kSkip, "far-mesh", "", 0}, {Ask::kView, "back", "", 0}};
     for (const app::Actor& actor : demo.actors) {
@@ -256,6 +256,8 @@ TEST(Recording, HostileTextIsRefusedWithItsLine) {
       {"a picture without height", "[0.1, " + view.substr(0, view.size() - 4) + "0}]\n"},
       {"a height beyond all", "[0.1, " + view.substr(0, view.size() - 4) + "1e99}]\n"},
       {"a shift out of the picture", "[0.1, " + view.substr(0, view.size() - 1) + ", \"shift\": 1.5}]\n"},
+      {"a rise out of the picture", "[0.1, " + view.substr(0, view.size() - 1) + ", \"rise\": -2.5}]\n"},
+      {"a zoom of nothing", "[0.1, " + view.substr(0, view.size() - 1) + ", \"zoom\": 0}]\n"},
       {"a wrong count", "[0.1]\n{\"frames\": 7, \"state\": \"0\"}\n"},
       {"an enormous count", "{\"frames\": 1e300, \"state\": \"0\"}\n"},
       {"more after the end", "{\"frames\": 0, \"state\": \"0\"}\n[0.1]\n"},
@@ -281,7 +283,10 @@ TEST(Recording, HostileTextIsRefusedWithItsLine) {
   EXPECT_NO_THROW(app::readRecording(head + "[0]\n[0.1, [\"pause\", \"\", \"\", 1]]\n", "x.hmr"));
   EXPECT_NO_THROW(app::readRecording(head + "[0, " + view + ", [\"pause\", \"\", \"\", 1]]\n", "x.hmr"));
   const std::string shifted = view.substr(0, view.size() - 1) + ", \"shift\": -0.25}";
-  EXPECT_EQ(app::readRecording(head + "[0, " + shifted + "]\n", "x.hmr").frames[0].view->shift, -0.25);
+  EXPECT_EQ(app::readRecording(head + "[0, " + shifted + "]\n", "x.hmr").frames[0].view->place.shift, -0.25);
+  const std::string placed = view.substr(0, view.size() - 1) + ", \"rise\": 0.125, \"zoom\": 0.75}";
+  const app::ViewPlace wanted{0, 0.125, 0.75};
+  EXPECT_EQ(app::readRecording(head + "[0, " + placed + "]\n", "x.hmr").frames[0].view->place, wanted);
 }
 
 }  // namespace recording_test

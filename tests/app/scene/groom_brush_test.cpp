@@ -233,8 +233,8 @@ TEST(GroomBrush, ARecordedTakeReplaysToTheBit) {
 TEST(Picking, ARayThroughAPixelMeetsWhatIsSeenThere) {
   app::Demo demo = app::openScene(sceneOf(app::Resolution::kLow, "idle_turns.bvh"), 1.5);
   const app::Actor& actor = demo.actors[0];
-  for (const double shift : {0.0, 0.3}) {
-    const app::Picture picture{900, 600, shift};
+  for (const app::ViewPlace& place : {app::ViewPlace{}, app::ViewPlace{0.3, -0.2, 0.8}}) {
+    const app::Picture picture{900, 600, place};
     int hits = 0;
     for (double x = 100; x < 900; x += 50) {
       for (double y = 50; y < 600; y += 50) {

@@ -146,10 +146,30 @@ TEST(LevelOfDetail, WhatAShiftBringsIntoThePictureIsSeen) {
   const double half = std::tan(0.5 * demo.camera.fov) * demo.aspect * demo.camera.distance;  // m, of the picture
   demo.camera.target.x() = 1.3 * half + 1;  // the figure, with the metre that it may take, lies left of the picture
   EXPECT_FALSE(app::mayBeSeen(demo, actor));
-  demo.shift = 0.6;
+  demo.place.shift = 0.6;
   EXPECT_TRUE(app::mayBeSeen(demo, actor));
-  demo.shift = -0.6;
+  demo.place.shift = -0.6;
   EXPECT_FALSE(app::mayBeSeen(demo, actor));
+}
+
+// The same of a figure below the picture; and a view of half the size reaches twice as far and shows all half as large.
+TEST(LevelOfDetail, GoesByThePlaceOfTheView) {
+  Demo demo = open(app::Style::kShort);
+  const app::Actor& actor = demo.actors[0];
+  standAt(200, demo);
+  demo.scene.look.light.shadows = false;
+  demo.camera.pitch = 0;
+  const double half = std::tan(0.5 * demo.camera.fov) * demo.camera.distance;  // m, of the picture
+  demo.camera.target.y() = 1.3 * half + 1;
+  EXPECT_FALSE(app::mayBeSeen(demo, actor));
+  demo.place.rise = -0.6;
+  EXPECT_FALSE(app::mayBeSeen(demo, actor));
+  demo.place.rise = 0.6;
+  EXPECT_TRUE(app::mayBeSeen(demo, actor));
+  const double size = app::projectedSize(demo, actor);
+  demo.place = {0, 0, 0.5};
+  EXPECT_TRUE(app::mayBeSeen(demo, actor));
+  EXPECT_NEAR(app::projectedSize(demo, actor), 0.5 * size, 1e-9 * size);
 }
 
 }  // namespace level_of_detail_test

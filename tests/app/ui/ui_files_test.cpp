@@ -120,7 +120,7 @@ TEST_F(Panels, ANarrowWindowFoldsTheTabsUntilTheyAreAskedFor) {
 
 // Unfolded in a window where the sidebar would cover the figure, the tabs leave it the upper half.
 TEST_F(Panels, UnfoldedInANarrowWindowTheyLeaveTheUpperHalfToTheFigure) {
-  for (const ImVec2 size : {ImVec2(640, 480), ImVec2(480, 400), ImVec2(900, 600)}) {
+  for (const ImVec2 size : {ImVec2(640, 480), ImVec2(480, 400), ImVec2(720, 600)}) {
     ImGui::GetIO().DisplaySize = size;
     demo_.timeline.on = true;
     ui_.unfolded = true;

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 #include <imgui/imgui.h>
+#include <imgui/imgui_internal.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -89,16 +91,53 @@ TEST_F(Panels, PicturesOfPresetsAreAskedForWhereTheyAreInSightAlone) {
 }
 
 TEST_F(Panels, WhatPanelsLeaveFreeFollowsThem) {
-  const app::FreeWidth both = app::freeWidth(ui_);
-  EXPECT_EQ(both.left, 360);
-  EXPECT_EQ(both.right, 1280 - 304);
+  const auto part = [&] { return app::freePart(demo_, ui_); };
+  const auto pixels = [&](double share, double side) { return std::lround(share * side); };
+  demo_.timeline.on = true;
+  EXPECT_EQ(pixels(part().left, 1280), 360);
+  EXPECT_EQ(pixels(part().right, 1280), 1280 - 304);
+  EXPECT_EQ(part().top, 0);
+  EXPECT_EQ(pixels(part().bottom, 720), 720 - 62) << "above the timeline";
   ui_.visible = false;
-  EXPECT_EQ(app::freeWidth(ui_).middle(), 640);
+  EXPECT_EQ(part().left, 0);
+  EXPECT_EQ(part().right, 1);
+  EXPECT_EQ(part().bottom, 1);
   ui_.visible = true;
   ui_.timings_folded = true;
-  EXPECT_EQ(app::freeWidth(ui_).right, 1280);
+  EXPECT_EQ(part().right, 1);
   ImGui::GetIO().DisplaySize = {700, 720};
-  EXPECT_EQ(app::freeWidth(ui_).middle(), 350) << "the tabs are folded away";
+  EXPECT_EQ(part().left, 0) << "the tabs are folded away";
+  EXPECT_EQ(part().right, 1);
+}
+
+// Whatever the window's size, tab and text size, no panel that stays lies over the part that is the figure's.
+TEST_F(Panels, NoPanelLiesOverWhatIsLeftFree) {
+  constexpr double kRounding = 4;  // px
+  for (const ImVec2 size :
+       {ImVec2(1280, 720), ImVec2(960, 600), ImVec2(800, 600), ImVec2(640, 480), ImVec2(400, 300)}) {
+    for (const bool unfolded : {false, true}) {
+      for (const bool fault : {false, true}) {
+        ImGui::GetIO().DisplaySize = size;
+        demo_.timeline.on = true;
+        ui_.unfolded = unfolded;
+        demo_.message = fault ? "a file that cannot be used: line 5: it has 7 channels; give it 3 or 6" : "";
+        demo_.message_is_fault = fault;
+        for (int k = 0; k < 4; ++k) frame();
+        const app::PicturePart free = app::freePart(demo_, ui_);
+        EXPECT_GT((free.right - free.left) * size.x, 0.3 * size.x) << size.x;
+        EXPECT_GT((free.bottom - free.top) * size.y, 0.2 * size.y) << size.x;
+        for (const char* name : {"sidebar", "timeline", "message"}) {
+          const ImGuiWindow* window = ImGui::FindWindowByName(name);
+          if (!window || !window->Active) continue;
+          const ImRect rect = window->Rect();
+          const bool beside =
+              rect.Max.x <= free.left * size.x + kRounding || rect.Min.x >= free.right * size.x - kRounding;
+          EXPECT_TRUE(beside || rect.Min.y >= free.bottom * size.y - kRounding)
+              << name << " at " << size.x << (unfolded ? " unfolded" : "") << (fault ? " with a fault" : "");
+        }
+      }
+    }
+  }
 }
 
 TEST_F(Panels, EveryTabOpensByAClickOnIt) {
