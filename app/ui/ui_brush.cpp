@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kMinWay = 0.0015;  // m between two samples of combing
 constexpr int kRingPoints = 48;
+constexpr double kWeak = 0.45, kHidden = 0.2;  // of a ring's opacity: of the mirrored one, of one behind the head
 
 Rigid worldToScalp(const Actor& actor) {
   return scalpToWorld(actor.body->character, actor.pose).inverse(Eigen::Isometry);
@@ -40,6 +41,21 @@ bool behindHead(const Vec3& point, const Camera& camera, const Actor& actor) {
   return off.norm() < kWithin * scalp.radiusAt(off);
 }
 
+// Where a brush at a place acts as well: seen in the plane that parts the head. m, world.
+Vec3 acrossHead(const Vec3& place, const Actor& actor) {
+  const Rigid to_scalp = worldToScalp(actor);
+  return to_scalp.inverse(Eigen::Isometry) * mirrored(to_scalp * place, actor.body->character.scalp.center.x());
+}
+
+// The most that a brush reaches of a point, its mirrored one included.
+double reachOf(const Vec3& point, const Vec3& place, const BrushState& brush, const Actor& actor) {
+  Brush reach;
+  reach.at = place, reach.radius = brush.radius, reach.falloff = brush.falloff;
+  const double own = brushReach(reach, point);
+  reach.at = acrossHead(place, actor);
+  return brush.mirror ? std::max(own, brushReach(reach, point)) : own;
+}
+
 // The painted field at the roots, in the colours of its picture; under the ring brighter.
 void drawField(const Vec3& place, const Demo& demo, const BrushState& brush, float scale) {
   const Picture shown = shownPicture(demo);
@@ -50,8 +66,6 @@ void drawField(const Vec3& place, const Demo& demo, const BrushState& brush, flo
   if (!picture.empty() && paintsColor(brush)) map = readColorMap(picture);
   if (!picture.empty() && !paintsColor(brush)) map[0] = readFieldMap(picture), map[1] = map[2] = map[0];
   const sim::HairMesh& mesh = actor.haircut->mesh;
-  Brush reach;
-  reach.at = place, reach.radius = brush.radius, reach.falloff = brush.falloff;
   for (int c = 0; c < mesh.columnCount(); ++c) {
     const auto root = static_cast<std::size_t>(mesh.shape.column_first[static_cast<std::size_t>(c)]);
     if (behindHead(actor.hair.positions[root + 1], demo.camera, actor)) continue;
@@ -59,7 +73,7 @@ void drawField(const Vec3& place, const Demo& demo, const BrushState& brush, flo
     const auto shade = [&](std::size_t channel) { return static_cast<int>(255 * map[channel].at(direction)); };
     double weight = 0;
     for (int k = 0; k < mesh.shape.columnLength(c); ++k)
-      weight = std::max(weight, brushReach(reach, actor.hair.positions[root + static_cast<std::size_t>(k)]));
+      weight = std::max(weight, reachOf(actor.hair.positions[root + static_cast<std::size_t>(k)], place, brush, actor));
     const auto pixel = pixelOf(actor.hair.positions[root + 1], shown, demo.camera);
     if (!pixel) continue;
     const ImVec2 at(static_cast<float>((*pixel)[0]), static_cast<float>((*pixel)[1]));
@@ -70,28 +84,47 @@ void drawField(const Vec3& place, const Demo& demo, const BrushState& brush, flo
   }
 }
 
-// What the brush reaches: its ring, and a dot at each vertex, the brighter the more it is moved.
-void drawReach(const Vec3& place, const Demo& demo, const BrushState& brush, float scale) {
+// `opacity`: 0..1.
+void drawRing(const std::string& name, const Vec3& place, double opacity, const Demo& demo, UiState& ui) {
   const Picture shown = shownPicture(demo);
-  const Actor& actor = selectedActor(demo);
+  const double radius = ui.brush.radius;
+  const float scale = ui.text_scale;
   ImDrawList* list = ImGui::GetBackgroundDrawList();
   const Vec3 back = viewBack(demo.camera), right = Vec3::UnitY().cross(back).normalized(), up = back.cross(right);
   ImVec2 ring[kRingPoints];
   for (int k = 0; k < kRingPoints; ++k) {
     const double turn = 2 * 3.14159265358979 * k / kRingPoints;
-    const auto pixel =
-        pixelOf(place + brush.radius * (std::cos(turn) * right + std::sin(turn) * up), shown, demo.camera);
+    const auto pixel = pixelOf(place + radius * (std::cos(turn) * right + std::sin(turn) * up), shown, demo.camera);
     if (!pixel) return;
     ring[k] = {static_cast<float>((*pixel)[0]), static_cast<float>((*pixel)[1])};
   }
-  list->AddPolyline(ring, kRingPoints, IM_COL32(20, 20, 24, 150), ImDrawFlags_Closed, 3.5f * scale);
-  list->AddPolyline(ring, kRingPoints, IM_COL32(240, 172, 120, 235), ImDrawFlags_Closed, 1.6f * scale);
+  const int dark = static_cast<int>(150 * opacity), light = static_cast<int>(235 * opacity);
+  list->AddPolyline(ring, kRingPoints, IM_COL32(20, 20, 24, dark), ImDrawFlags_Closed, 3.5f * scale);
+  list->AddPolyline(ring, kRingPoints, IM_COL32(240, 172, 120, light), ImDrawFlags_Closed, 1.6f * scale);
+  const ImVec2 middle(0.5f * (ring[0].x + ring[kRingPoints / 2].x), 0.5f * (ring[0].y + ring[kRingPoints / 2].y));
+  noteMark(name, middle.x, middle.y,
+           0.5f * std::hypot(ring[0].x - ring[kRingPoints / 2].x, ring[0].y - ring[kRingPoints / 2].y), ui);
+}
+
+// What the brush reaches: its ring, the mirrored one weaker, and a dot at each vertex, the brighter the more it is
+// moved.
+void drawReach(const Vec3& place, const Demo& demo, UiState& ui) {
+  const BrushState& brush = ui.brush;
+  const Picture shown = shownPicture(demo);
+  const Actor& actor = selectedActor(demo);
+  const float scale = ui.text_scale;
+  ImDrawList* list = ImGui::GetBackgroundDrawList();
+  if (brush.mirror) {
+    const Vec3 across = acrossHead(place, actor);
+    drawRing("mirror_ring", across, behindHead(across, demo.camera, actor) ? kHidden : kWeak, demo, ui);
+  }
+  drawRing("brush_ring", place, 1, demo, ui);
   Brush reach;
   reach.at = place, reach.radius = brush.radius, reach.falloff = brush.falloff;
   const std::vector<float>& frozen = actor.haircut->frozen;
   for (std::size_t v = 0; v < actor.hair.positions.size(); ++v) {
     const Vec3& p = actor.hair.positions[v];
-    const double weight = brushReach(reach, p);
+    const double own = brushReach(reach, p), weight = std::max(own, kWeak * reachOf(p, place, brush, actor));
     const float held = frozen.empty() ? 0 : frozen[v];
     if ((weight <= 0.02 && held <= 0.02f) || behindHead(p, demo.camera, actor)) continue;
     const auto pixel = pixelOf(p, shown, demo.camera);
@@ -298,7 +331,7 @@ void brushFrame(Demo& demo, UiState& ui) {
   if (brush.stroking) stroke(ray, hit, demo, brush);
   const Vec3 combed = worldToScalp(selectedActor(demo)).inverse(Eigen::Isometry) * brush.last;
   if (brush.field >= 0) drawField(hit.value_or(Vec3::Constant(1e6)), demo, brush, ui.text_scale);
-  if (hit || brush.stroking) drawReach(brush.stroking && !hit ? combed : *hit, demo, brush, ui.text_scale);
+  if (hit || brush.stroking) drawReach(brush.stroking && !hit ? combed : *hit, demo, ui);
 }
 
 }  // namespace app

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include "app/scene/edit/groom_brush.h"
@@ -18,7 +19,8 @@ namespace {
 constexpr double kLeastMove = 0.001;                 // m between two samples of a drag
 constexpr double kNudge = 0.002, kLongNudge = 0.01;  // m
 constexpr double kShownReach = 0.02;                 // of a weight
-constexpr int kChosenColor = 0, kHoverColor = 1;
+constexpr int kChosenColor = 0, kHoverColor = 1, kMirrorColor = 2;
+constexpr double kMirrorShare = 0.45;  // of what is reached: across the mirror
 
 MeshElement elementOf(const SelectState& select) {
   return static_cast<MeshElement>(select.element);
@@ -76,6 +78,7 @@ class MeshOverlay {
   const Vec3& place(int v) const { return actor_.hair.positions[static_cast<std::size_t>(v)]; }
   int alphaAt(const Vec3& p) const { return p.dot(back_) > middle_ ? 235 : 50; }
   static ImU32 tint(int color, int alpha) {
+    if (color == kMirrorColor) return IM_COL32(240, 190, 150, std::max(40, alpha / 2));
     return color == kChosenColor ? IM_COL32(240, 150, 80, alpha) : IM_COL32(255, 255, 255, alpha);
   }
 
@@ -86,30 +89,38 @@ class MeshOverlay {
   double middle_ = 0;
 };
 
+// A vertex, or its like on the other side.
+using Like = std::function<int(int)>;
+
+int itself(int v) {
+  return v;
+}
+
 void drawElements(MeshElement element, std::span<const int> chosen, int color, const sim::HairMesh& mesh,
-                  const MeshOverlay& overlay) {
+                  const MeshOverlay& overlay, const Like& like = itself) {
+  const auto line = [&](int a, int b) { overlay.line(like(a), like(b), color); };
   switch (element) {
     case MeshElement::kVertex:
       break;
     case MeshElement::kEdge:
-      for (std::size_t k = 0; k + 1 < chosen.size(); k += 2) overlay.line(chosen[k], chosen[k + 1], color);
+      for (std::size_t k = 0; k + 1 < chosen.size(); k += 2) line(chosen[k], chosen[k + 1]);
       break;
     case MeshElement::kColumn:
       for (const int c : chosen) {
         const int first = mesh.shape.column_first[static_cast<std::size_t>(c)];
-        for (int v = first + 1; v < first + mesh.shape.columnLength(c); ++v) overlay.line(v - 1, v, color);
+        for (int v = first + 1; v < first + mesh.shape.columnLength(c); ++v) line(v - 1, v);
       }
       break;
     case MeshElement::kLayer:
       for (const int l : chosen) {
         for (const sim::Wall& wall : mesh.walls) {
-          if (mesh.layer_of[static_cast<std::size_t>(wall.v[0])] == l) overlay.line(wall.v[0], wall.v[1], color);
-          if (mesh.layer_of[static_cast<std::size_t>(wall.v[2])] == l) overlay.line(wall.v[2], wall.v[3], color);
+          if (mesh.layer_of[static_cast<std::size_t>(wall.v[0])] == l) line(wall.v[0], wall.v[1]);
+          if (mesh.layer_of[static_cast<std::size_t>(wall.v[2])] == l) line(wall.v[2], wall.v[3]);
         }
       }
       return;
   }
-  for (const int v : verticesOf(element, chosen, mesh)) overlay.dot(v, color);
+  for (const int v : verticesOf(element, chosen, mesh)) overlay.dot(like(v), color);
 }
 
 // The element under the pointer.
@@ -156,13 +167,45 @@ void postMove(const Vec3& along, Demo& demo, const UiState& ui) {
   postRequest(demo, {Ask::kMove, element, moveText(sample)});
 }
 
+// Across the mirror, of what is chosen alone; one a vertex. Empty without a mirror.
+std::vector<int> likesOfChosen(const Actor& actor, const UiState& ui) {
+  std::vector<int> likes;
+  if (!ui.brush.mirror) return likes;
+  const sim::HairMesh& mesh = actor.haircut->mesh;
+  likes.assign(static_cast<std::size_t>(mesh.vertexCount()), -1);
+  for (const int v : verticesOf(elementOf(ui.select), ui.select.chosen, mesh))
+    likes[static_cast<std::size_t>(v)] = likeAcross(v, actor.body->character.scalp.center.x(), mesh);
+  return likes;
+}
+
 // The hair that follows what is chosen.
-void drawReached(const Actor& actor, const UiState& ui, const MeshOverlay& overlay) {
-  const std::vector<int> chosen = verticesOf(elementOf(ui.select), ui.select.chosen, actor.haircut->mesh);
-  const std::vector<double> weights = reachAround(chosen, actor.hair.positions, ui.brush.radius, ui.brush.falloff);
+void drawReached(const Actor& actor, const std::vector<int>& likes, const UiState& ui, const MeshOverlay& overlay) {
+  const sim::HairMesh& mesh = actor.haircut->mesh;
+  std::vector<int> led = verticesOf(elementOf(ui.select), ui.select.chosen, mesh);
+  std::vector<double> weights = reachAround(led, actor.hair.positions, ui.brush.radius, ui.brush.falloff);
+  if (ui.brush.mirror) {
+    std::erase_if(led, [&](int v) { return mesh.isRoot(v); });
+    for (int& v : led) v = likes[static_cast<std::size_t>(v)];
+    const std::vector<double> there = reachAround(led, actor.hair.positions, ui.brush.radius, ui.brush.falloff);
+    for (std::size_t v = 0; v < weights.size(); ++v) weights[v] = std::max(weights[v], kMirrorShare * there[v]);
+  }
   for (std::size_t v = 0; v < weights.size(); ++v) {
-    const bool follows = weights[v] > kShownReach && !actor.haircut->mesh.isRoot(static_cast<int>(v));
+    const bool follows = weights[v] > kShownReach && !mesh.isRoot(static_cast<int>(v));
     if (follows) overlay.reached(static_cast<int>(v), weights[v]);
+  }
+}
+
+// What is led across the mirror. A layer goes round the head and is its own like.
+void drawMirrored(const Demo& demo, const std::vector<int>& likes, const MeshOverlay& overlay, UiState& ui) {
+  const Actor& actor = selectedActor(demo);
+  if (likes.empty() || elementOf(ui.select) == MeshElement::kLayer) return;
+  const sim::HairMesh& mesh = actor.haircut->mesh;
+  const auto like = [&](int v) { return likes[static_cast<std::size_t>(v)]; };
+  drawElements(elementOf(ui.select), ui.select.chosen, kMirrorColor, mesh, overlay, like);
+  for (const int v : verticesOf(elementOf(ui.select), ui.select.chosen, mesh)) {
+    const int across = like(v);
+    const auto at = screenPlace(actor.hair.positions[static_cast<std::size_t>(across)], demo);
+    if (at) noteMark("mirrored " + std::to_string(across), at->x, at->y, 4 * ui.text_scale, ui);
   }
 }
 
@@ -271,7 +314,9 @@ void selectFrame(bool begins, Demo& demo, UiState& ui) {
     drawElements(elementOf(select), elementAt(elementOf(select), *hit, actor), kHoverColor, actor.haircut->mesh,
                  overlay);
   }
-  drawReached(actor, ui, overlay);
+  const std::vector<int> likes = likesOfChosen(actor, ui);
+  drawReached(actor, likes, ui, overlay);
+  drawMirrored(demo, likes, overlay, ui);
   drawElements(elementOf(select), select.chosen, kChosenColor, actor.haircut->mesh, overlay);
 }
 

@@ -314,22 +314,27 @@ std::vector<double> reachAround(std::span<const int> led, std::span<const Vec3> 
   return reach;
 }
 
+int likeAcross(int vertex, double plane, const sim::HairMesh& mesh) {
+  const std::vector<Vec3>& x = mesh.shape.positions;
+  const Vec3 place = mirrored(x[static_cast<std::size_t>(vertex)], plane);
+  int nearest = -1;
+  double least = INFINITY;
+  for (int u = 0; u < mesh.vertexCount(); ++u) {
+    if (mesh.layer_of[static_cast<std::size_t>(u)] != mesh.layer_of[static_cast<std::size_t>(vertex)]) continue;
+    const double apart = (x[static_cast<std::size_t>(u)] - place).squaredNorm();
+    if (apart < least) least = apart, nearest = u;
+  }
+  return nearest;
+}
+
 namespace {
 
-// The vertices of the same layers nearest to where a mirror shows those that are led, at rest.
+// The likes of the vertices that are led, each once.
 std::vector<int> acrossMirror(const HairMove& move, const sim::HairMesh& mesh) {
-  const std::vector<Vec3>& x = mesh.shape.positions;
   std::vector<int> across;
   for (const int v : move.vertices) {
-    const Vec3 place = mirrored(x[static_cast<std::size_t>(v)], *move.mirror);
-    int nearest = -1;
-    double least = INFINITY;
-    for (int u = 0; u < mesh.vertexCount(); ++u) {
-      if (mesh.layer_of[static_cast<std::size_t>(u)] != mesh.layer_of[static_cast<std::size_t>(v)]) continue;
-      const double apart = (x[static_cast<std::size_t>(u)] - place).squaredNorm();
-      if (apart < least) least = apart, nearest = u;
-    }
-    if (std::ranges::find(across, nearest) == across.end()) across.push_back(nearest);
+    const int like = likeAcross(v, *move.mirror, mesh);
+    if (std::ranges::find(across, like) == across.end()) across.push_back(like);
   }
   return across;
 }

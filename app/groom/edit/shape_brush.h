@@ -54,6 +54,9 @@ struct Brush {
 // How much a brush reaches of a vertex seen at a place: 0 outside, 1 in the middle.
 double brushReach(const Brush& brush, const Vec3& seen);
 
+// The vertex of the same layer nearest to where the plane x = `plane` (m) mirrors one, at rest.
+int likeAcross(int vertex, double plane, const sim::HairMesh& mesh);
+
 // Vertices that a hand leads, and the hair around them that follows. Lengths follow too.
 struct HairMove {
   std::vector<int> vertices;          // that go all of the way

@@ -17,7 +17,7 @@ class Select : public test::Panels {
   ImVec2 onHair(int number) {
     for (float y = 60; y < 600; y += 20) {
       for (float x = 560; x < 1100; x += 20) {
-        if (app::pickHair(app::rayThrough(x, y, {1280, 720}, demo_.camera), demo_.actors[0]) && number-- == 0)
+        if (app::pickHair(app::rayThrough(x, y, {1280, 720, {}}, demo_.camera), demo_.actors[0]) && number-- == 0)
           return {x, y};
       }
     }
@@ -129,6 +129,38 @@ TEST_F(Select, TheMirrorGoesWithAPartingAndNotWithALayer) {
   const std::string column = std::to_string(ui_.select.chosen[0]);
   EXPECT_EQ(textOf("mesh Weld"), "mirror " + column);
   EXPECT_EQ(textOf("mesh Layer +").find("mirror"), std::string::npos);
+}
+
+// What a mirror reaches is shown: the likes of what is chosen, and a second ring.
+TEST_F(Select, TheMirrorShowsWhatItReaches) {
+  const auto marks = [&](const char* name) {
+    return std::ranges::count_if(ui_.items, [&](const app::UiItem& item) { return item.name.starts_with(name); });
+  };
+  app::chooseElement(static_cast<int>(app::MeshElement::kVertex), ui_);
+  press(onHair(40));
+  ASSERT_EQ(ui_.select.chosen.size(), 1u);
+  EXPECT_EQ(marks("mirrored "), 0);
+  ui_.brush.mirror = true;
+  frame();
+  const app::Actor& actor = demo_.actors[0];
+  const double plane = actor.body->character.scalp.center.x();
+  const int like = app::likeAcross(ui_.select.chosen[0], plane, actor.haircut->mesh);
+  ASSERT_EQ(marks("mirrored "), 1);
+  const app::UiItem* mark = find("mirrored " + std::to_string(like));
+  ASSERT_TRUE(mark);
+  const auto pixel = app::pixelOf(actor.hair.positions[static_cast<std::size_t>(like)], {1280, 720, {}}, demo_.camera);
+  ASSERT_TRUE(pixel);
+  EXPECT_NEAR(mark->x + 0.5f * mark->width, (*pixel)[0], 0.01);
+  EXPECT_NEAR(mark->y + 0.5f * mark->height, (*pixel)[1], 0.01);
+  ui_.select.element = -1, ui_.brush.tool = 0;
+  ImGui::GetIO().MousePos = onHair(40);
+  frame();
+  EXPECT_EQ(marks("brush_ring"), 1);
+  EXPECT_EQ(marks("mirror_ring"), 1);
+  ui_.brush.mirror = false;
+  frame();
+  EXPECT_EQ(marks("brush_ring"), 1);
+  EXPECT_EQ(marks("mirror_ring"), 0);
 }
 
 TEST_F(Select, BrushesAndSelectionTakeTurns) {
