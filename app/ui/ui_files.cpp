@@ -213,8 +213,9 @@ void filePanel(Demo& demo, UiState& ui) {
     ImGui::TextUnformatted(purposeOf(ui.browser.what).title);
     ImGui::PopTextWrapPos();
     if (ui.browser.what == BrowseFor::kSaveScene) {
-      ImGui::Checkbox("As a project: with the hair as it moves and its brushed shape", &ui.browser.project);
+      ImGui::Checkbox("As a project", &ui.browser.project);
       noteItem("as_project", ui);
+      tip("With the hair as it moves and its brushed shape");
     }
     placesRow(ui);
     std::string chosen;
