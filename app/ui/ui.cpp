@@ -29,7 +29,10 @@ constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFla
 // Whether the figure has no room beside the sidebar. Then its tabs are folded away, and unfolded they stand in a sheet
 // over the lower half of the window, below the figure.
 bool narrow(const UiState& ui) {
-  return ImGui::GetIO().DisplaySize.x < (kSidebarWidth + 2 * kMargin + kLeastFigure) * ui.text_scale;
+  const float window = ImGui::GetIO().DisplaySize.x, sidebar = kSidebarWidth + 2 * kMargin;
+  // Of two pictures the left one asks for half as much.
+  return window < (sidebar + kLeastFigure) * ui.text_scale ||
+         (ui.halved && 0.5f * window < (sidebar + 0.5f * kLeastFigure) * ui.text_scale);
 }
 
 // The scene's name, and what has been put into it since.
@@ -372,6 +375,7 @@ PicturePart freePart(const Demo& demo, const UiState& ui) {
 void buildUi(Demo& demo, UiState& ui) {
   ui.presets_in_sight.clear();
   ui.items.clear();
+  ui.halved = demo.comparison.on() && demo.comparison.side_by_side;
   compareLine(demo, ui);
   if (!ui.line_held) brushFrame(demo, ui);
   count(!ui.visible, demo.stats.always[kHiddenPanels]);

@@ -93,6 +93,7 @@ struct UiState {
   float history_width = 0, history_height = 0;  // px with its margin; 0: it is not shown
   float fault_height = 0;                       // px from the window's bottom to a fault's upper edge; 0: there is none
   bool line_placed = false;                     // the line of a comparison stands there, or where a person has drawn it
+  bool halved = false;                          // two pictures stand side by side
   bool timings_folded = false;                  // to their title
   bool timings_in_tab = false;                  // for want of room beside the sidebar they are in the Debug tab
   float text_scale = 1;                         // of a dense display
