@@ -128,8 +128,8 @@ struct OptionGroup {
 
 void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
   OptionGroup group{parser, "What is shown"};
-  group.value("--style", options.style, "NAME", "Hair style: short, shoulder or long")
-      ->check(oneOf({"short", "shoulder", "long"}));
+  group.value("--style", options.style, "NAME", "Hair style: short, shoulder, long, bob or pixie")
+      ->check(oneOf({"short", "shoulder", "long", "bob", "pixie"}));
   group.value("--resolution", options.resolution, "NAME", "Hair mesh resolution: low, medium, high or ultra")
       ->check(oneOf({"low", "medium", "high", "ultra"}));
   group.value(

@@ -212,7 +212,7 @@ HM_API hm_result hm_mesh_create_from_text(const char* text, size_t length, const
 /**
  * Makes a hair mesh of a built-in style on a plain head: an ellipsoid about the origin of radii 0.34, 0.5 and 0.42 of its
  * height in x, y and z, to be given to steps as an hm_ellipsoid. y is up, z forward. Takes up to a second and a half.
- * @param style       "short", "shoulder" or "long".
+ * @param style       "short", "shoulder", "long", "bob" or "pixie".
  * @param resolution  "low", "medium", "high" or "ultra".
  * @param head_height chin to crown, m: 0.05 to 2; 0.23 is a person's.
  * @param mesh        the new mesh.

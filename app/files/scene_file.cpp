@@ -66,7 +66,8 @@ CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
   if (spec.motion.empty()) place.refuse("names no motion", "give \"motion\" a BVH, glTF, FBX or .mot file");
   if (place.has("parts")) spec.parts = readFileName(place.at("parts"), "clips");
   if (place.has("clip")) spec.clip = place.at("clip").text();
-  if (place.has("style")) spec.style = *parseStyle(place.at("style").choice({"short", "shoulder", "long"}));
+  if (place.has("style"))
+    spec.style = *parseStyle(place.at("style").choice({"short", "shoulder", "long", "bob", "pixie"}));
   if (place.has("resolution")) {
     spec.resolution = *parseResolution(place.at("resolution").choice({"low", "medium", "high", "ultra"}));
   }
@@ -147,7 +148,7 @@ json writeCharacter(const CharacterSpec& spec) {
 }  // namespace
 
 std::optional<Style> parseStyle(std::string_view name) {
-  for (const Style style : {Style::kShort, Style::kShoulder, Style::kLong}) {
+  for (const Style style : {Style::kShort, Style::kShoulder, Style::kLong, Style::kBob, Style::kPixie}) {
     if (name == styleName(style)) return style;
   }
   return {};

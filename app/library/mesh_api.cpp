@@ -141,7 +141,8 @@ hm_result hm_mesh_create_style(const char* style, const char* resolution, double
     using app::Resolution;
     using app::Style;
     needs(mesh, "mesh");
-    const Style which = chosen(style, "style", {Style::kShort, Style::kShoulder, Style::kLong}, app::styleName);
+    const Style which = chosen(
+        style, "style", {Style::kShort, Style::kShoulder, Style::kLong, Style::kBob, Style::kPixie}, app::styleName);
     const Resolution fine =
         chosen(resolution, "resolution", {Resolution::kLow, Resolution::kMedium, Resolution::kHigh, Resolution::kUltra},
                app::resolutionName);

@@ -59,7 +59,8 @@ void changeStyle(const Request& request, Demo& demo) {
   CharacterSpec spec = selectedActor(demo).spec;
   if (request.what == Ask::kStyle) {
     const auto style = parseStyle(request.name);
-    if (!style) throw InputError("", "style '" + request.name + "'", "is unknown", "choose short, shoulder or long");
+    if (!style)
+      throw InputError("", "style '" + request.name + "'", "is unknown", "choose short, shoulder, long, bob or pixie");
     spec.style = *style;
   } else {
     const auto resolution = parseResolution(request.name);

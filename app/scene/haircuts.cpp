@@ -35,7 +35,8 @@ std::string loweredNote(const CharacterSpec& spec, const Scalp& scalp, double lo
 constexpr std::array kLowered{0.0, 0.15, 0.3, 0.45, 0.6, 0.75};
 
 void applyTies(const CharacterSpec& spec, const LoadedBody& body, sim::HairMeshShape& shape, Haircut& haircut) {
-  TiedHair result = tieHair(shape, body.character.scalp, body.distance, haircut.ties);
+  TiedHair result = tieHair(shape, body.character.scalp, body.distance, haircut.ties,
+                            spec.attachments.empty() ? Seams::kClosed : Seams::kOpen);
   shape = std::move(result.shape);
   haircut.tied.clear();
   for (const std::vector<int>& ring : result.rings) {
@@ -97,7 +98,8 @@ void dressWhereThereIsRoom(const CharacterSpec& spec, const LoadedBody& body, st
                      "take a coarser hair mesh (low) or longer hair, or take off one of the two");
   if (!haircut.covered.empty())
     throw InputError(spec.attachments.front().file, "", "leaves the hair no room",
-                     "make it wider, or move it off the head");
+                     hasFringe(spec.style) && spec.hair.empty() ? "make it wider, or take a style without a fringe"
+                                                                : "make it wider, or move it off the head");
   if (!spec.ties.empty())
     throw InputError("", "tie " + writeTies(spec.ties).dump(), "leaves the hair no room",
                      "move it off the head, or make it wider");

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "app/styles/style_comb.h"
+#include "app/styles/style_cut.h"
 #include "app/styles/style_refine.h"
 #include "app/styles/style_roots.h"
 #include "app/styles/style_untangle.h"
@@ -79,7 +80,7 @@ sim::HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& sc
   // rounded head instead, and in the end falls around a post in place of the body rather than be refused.
   const BodyDistance post = [&](const Vec3& p) {
     const Vec3 above = p - scalp.center / scale;
-    return Vec3(above.x(), std::max(0.0, above.y()), above.z()).norm() - 0.36 * kOrdinaryHead;
+    return Vec3(above.x(), std::max(0.0, above.y()), above.z()).norm() - 0.5 * kOrdinaryHead;
   };
   struct Attempt {
     int rounds;
@@ -91,7 +92,7 @@ sim::HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& sc
   for (const Attempt& attempt :
        {Attempt{0, 0, &scaled_body}, Attempt{20, 0, &scaled_body}, Attempt{60, 0.5, &post}, Attempt{60, 1, &post}}) {
     const Scalp head = rounded(scaledTo(scalp, 1 / scale), attempt.rounds, attempt.ball);
-    Woven woven = weave(combCoat(style, head, *attempt.around, traceFlowLines(head)), plan);
+    Woven woven = weave(combCoat(style, head, *attempt.around, traceFlowLines(head, hasFringe(style))), plan);
     const bool refining = resolution == Resolution::kUltra;
     const double gap = refining ? kGapBeforeRefining : kGap;
     layFlat(*attempt.around, woven.up, kFatness, gap, woven.shape);
@@ -107,8 +108,12 @@ sim::HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& sc
   return shape;
 }
 
+bool hasFringe(Style style) {
+  return kCuts[static_cast<std::size_t>(style)].fringe.has_value();
+}
+
 std::string_view styleName(Style style) {
-  constexpr std::array<std::string_view, 3> kNames{"short", "shoulder", "long"};
+  constexpr std::array<std::string_view, 5> kNames{"short", "shoulder", "long", "bob", "pixie"};
   return kNames[static_cast<std::size_t>(style)];
 }
 

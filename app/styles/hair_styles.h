@@ -1,4 +1,4 @@
-// Built-in hair meshes on a given scalp: {short, shoulder, long} x {low, medium, high, ultra}, and minimal.
+// Built-in hair meshes on a given scalp: {short, shoulder, long, bob, pixie} x {low, medium, high, ultra}, and minimal.
 #pragma once
 
 #include <functional>
@@ -12,7 +12,7 @@ namespace app {
 
 using Vec3 = Eigen::Vector3d;
 
-enum class Style { kShort, kShoulder, kLong };
+enum class Style { kShort, kShoulder, kLong, kBob, kPixie };
 // Minimal, the coarsest of all, is for hair that is small in the picture and is not offered by name.
 enum class Resolution { kLow, kMedium, kHigh, kUltra, kMinimal };
 
@@ -36,17 +36,21 @@ using BodyDistance = std::function<double(const Vec3&)>;
 // Grows a hair mesh: hairline at forehead, temples, around the ears and nape; side parting; columns from the
 // parting and crown outermost; ends cut along a smooth surface, the outer hair a little shorter. The coat lies on
 // the head: from medium on it stands 3 to 8 mm over the scalp within 20 mm of the parting, and less than 18 mm at
-// the crown. Long hair divides over the shoulders: what is rooted before the ears falls in front of them, and no
-// root face joins it to the rest. All but the roots keeps 2.5 mm off the body (on a head of 23 cm, and in
-// proportion), 6 mm once the hair has left the scalp; edges are at least 3 mm. The resolutions are one haircut,
-// meshed more or less finely, with the same topology on every head; the coarser ones stand off further, for their
-// prisms would be inverted otherwise. Valid for any scalp: where a head leaves no room, the hair grows on a rounded
-// one (see the source). Vertex counts: short 225 / 569 / 1,339 / 7,081, shoulder 360 / 913 / 2,306 / 9,617, long
-// 368 / 902 / 2,257 / 9,997; minimal 85, 119, 168. Columns of at most 8 or 16 vertices where a plan can have them
-// so, for whole vectors of the solver's kernels. Deterministic; under 0.5 s, ultra under 1.5 s.
+// the crown; behind a fringe it stands up to 14 mm. Long hair divides over the shoulders: what is rooted before the
+// ears falls in front of them, and no root face joins it to the rest. Bob and pixie have a fringe: hair of the front
+// falls over the forehead to the brow. All but the roots keeps 2.5 mm off the body (on a head of 23 cm, and in
+// proportion), 6 mm once the hair has left the scalp; edges are at least 3 mm. The resolutions are one haircut, meshed
+// more or less finely, with the same topology on every head; the coarser ones stand off further, for their prisms would
+// be inverted otherwise. Valid for any scalp: where a head leaves no room, the hair grows on a rounded one (see the
+// source). Vertex counts: short 225 / 569 / 1,339 / 7,081, shoulder 360 / 913 / 2,306 / 9,617, long 368 / 902 / 2,257 /
+// 9,997, bob 385 / 974 / 2,293 / 9,899, pixie 275 / 748 / 1,433 / 7,805; minimal 85 to 168. Columns of at most 8 or 16
+// vertices where a plan can have them so, for whole vectors of the solver's kernels. Deterministic; under 0.5 s, ultra
+// under 1.5 s.
 sim::HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& scalp, const BodyDistance& body);
 
-std::string_view styleName(Style style);                 // "short", "shoulder", "long"
+bool hasFringe(Style style);  // over the forehead
+
+std::string_view styleName(Style style);                 // "short", "shoulder", "long", "bob", "pixie"
 std::string_view resolutionName(Resolution resolution);  // "low", "medium", "high", "ultra"
 
 }  // namespace app

@@ -1,33 +1,22 @@
 #include "app/styles/style_comb.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+
+#include "app/styles/style_cut.h"
 
 namespace app {
 namespace {
 
 constexpr double kRowStep = 0.006;         // m, below the hairline
 constexpr double kInnerGap = 0.006;        // m, between the body and the underside of the hair
-constexpr double kTautness = 0.9;          // how nearly hanging hair spans hollows as a taut string would
 constexpr double kTautnessInFront = 0.25;  // below the jaw: hair lies on the chest
 constexpr double kCloseBeside = 0.9;       // of the way from one flow line to the next, at either side of the divide
 constexpr double kDivide = 0.35;           // hair rooted in front of this backness falls in front of the shoulders
-constexpr double kSweptBehind = 0.33;      // backness from which on no hair is swept forward
+constexpr double kFringe = 0.22, kBesideFringe = 0.32;  // backness where the fringe ends and the hair beside it begins
+constexpr double kSweptBehind = 0.33;                   // backness from which on no hair is swept forward
 
-// What one style wants. Heights are in head heights above the scalp's centre.
-struct Cut {
-  double thickness;          // m, of the coat at the sides and the back, over its underside
-  double front, side, back;  // height of the ends; relative to the shoulders where `from_shoulders`
-  bool from_shoulders, divides;
-  double tautness;  // how nearly the outer guide hangs straight from the widest part of the head
-  double slant;     // m that what is rooted at the hairline ends below what is rooted at the parting
-  double sweep;     // m that the front hair falls over the forehead and the temple before its hairline
-};
-
-constexpr std::array kCuts{Cut{0.017, -0.20, -0.25, -0.40, false, false, 0.35, 0.020, 0.009},  // by Style
-                           Cut{0.019, 0.05, 0.05, 0.0, true, false, 0.6, 0.030, 0.009},
-                           Cut{0.020, -0.50, -0.90, -1.08, true, true, 0.8, 0.045, 0}};
+constexpr double kHugged = 0.03;  // m off the body from which on hair hangs free of it
 
 // Hair leaves the scalp at about 25 degrees until it lies on the hair below, a little higher at the crown.
 constexpr double kLift = 0.0035, kLiftAtCrown = 0.0065;          // m
@@ -94,8 +83,9 @@ struct Comber {
 };
 
 bool Comber::parted(int sheet, int other, int row) const {
+  if (inFront(sheet) == inFront(other)) return false;
   const double height = coat.inner[coat.index(sheet, row)].y() - scalp.center.y();
-  return inFront(sheet) != inFront(other) && height < shoulders + 0.18 * scalp.head_height;
+  return height < shoulders + 0.18 * scalp.head_height;
 }
 
 double Comber::cutHeight(int sheet) const {
@@ -109,6 +99,7 @@ double Comber::cutHeight(int sheet) const {
     height = q < 0.4 ? cut.front + (cut.side - cut.front) * smoothstep(0.0, 0.4, q)
                      : cut.side + (cut.back - cut.side) * smoothstep(0.4, 1.0, q);
   }
+  if (cut.fringe) height = *cut.fringe + (height - *cut.fringe) * smoothstep(kFringe, kBesideFringe, q);
   return height * unit + (cut.from_shoulders ? shoulders : 0.0);
 }
 
@@ -166,7 +157,7 @@ bool Comber::fall(int sheet) {
       slope.y() = 0;
       wish += slope * std::min(1.0, 1.2 / std::max(slope.norm(), 1e-9));
     }
-    heading = (0.88 * heading + 0.12 * wish.normalized()).normalized();
+    heading = (cut.inertia * heading + (1 - cut.inertia) * wish.normalized()).normalized();
     p += kRowStep * heading;
     const double gap = kInnerGap * smoothstep(0, 5, row - last_skin);
     // What is below the cut hangs free: shoulders that the hair never reaches must not bend its ends outwards.
@@ -179,6 +170,10 @@ bool Comber::fall(int sheet) {
       }
       p = keepOff(sheet, p, gap);
       heading = (heading - std::min(0.0, heading.dot(n)) * n).normalized();
+    }
+    if (cut.hug > 0 && p.y() > lowest) {
+      const double far = body(p) - gap;
+      if (far > 0 && far < kHugged) p -= cut.hug * far * bodyNormal(body, p);
     }
     coat.inner[coat.index(sheet, row)] = p;
   }
@@ -270,7 +265,7 @@ void Comber::hangInner(int sheet) {
   const int first = coat.scalp_rows - 1;
   int last = first + 2;
   while (last + 1 < coat.rows && coat.inner[coat.index(sheet, last)].y() > freeBelow(sheet)) ++last;
-  hangTaut(coat.inner, sheet, first, last, kTautness);
+  hangTaut(coat.inner, sheet, first, last, cut.inner_tautness);
   for (int r = last + 1; r < coat.rows; ++r) {
     const Vec3& above = coat.inner[coat.index(sheet, r - 1)];
     const Vec3 heading = (above - coat.inner[coat.index(sheet, r - 2)]).normalized();
@@ -440,6 +435,7 @@ Coat combCoat(Style style, const Scalp& scalp, const BodyDistance& body, const F
   comber.coat.sheets = lines.sheets;
   comber.coat.scalp_rows = lines.rows;
   comber.coat.front_sheets = front;
+  comber.coat.fringe = hasFringe(style);
   comber.fallAll();
   comber.relaxInner();
   comber.measureWays();

@@ -34,9 +34,14 @@ struct Coat {
   std::vector<double> travelled;   // m, sheets x rows: arc length of the inner guide from the parting
   std::vector<double> cut_row;     // per sheet: the row where the hair is cut
   int front_sheets = 0;            // of each half, that fall in front of the shoulders; the others fall behind
+  bool fringe = false;             // the parting ends behind it as at the crown
   std::vector<Rise> rise;          // per sheet
   std::vector<double> slant;       // m, per sheet: what the hairline's columns lead the parting's by where hair hangs
 
+  // Whether a sheet goes on straight where the parting ends.
+  bool endsParting(int sheet) const {
+    return 2 * sheet == sheets - 1 || (fringe && (sheet == 0 || sheet == sheets - 1));
+  }
   bool inFront(int sheet) const { return std::min(sheet, sheets - 1 - sheet) < front_sheets; }
   std::size_t index(int sheet, int row) const { return static_cast<std::size_t>(sheet) * rows + row; }
 };

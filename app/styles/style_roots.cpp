@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 namespace app {
 namespace {
@@ -14,10 +15,11 @@ constexpr int kRows = 33;
 // A bare line of scalp this wide shows along the parting.
 constexpr double kPartingHalfWidth = 0.0004;  // m
 
-constexpr double kGatherAtCrown = 1.4;
+// Lines stand along the parting as thick as these powers of the way to its ends.
+constexpr double kGatherAtCrown = 0.4, kGatherBehindFringe = 0.6;
 // Lines bend sideways as they leave the parting near the crown, and the middle one sets out the way that the parting
 // heads, so that root faces at the crown have room on both sides.
-constexpr double kSidewaysAtCrown = 0.65, kAheadAtCrown = 1.3;
+constexpr double kSidewaysAtCrown = 0.65, kSidewaysBehindFringe = 0.3, kAheadAtCrown = 1.3;
 
 struct Landmark {
   double azimuth, elevation;  // degrees; the left side's, mirrored for the right
@@ -27,9 +29,13 @@ struct Landmark {
 // ears.
 constexpr std::array<Landmark, 7> kHairline{
     {{57, 17}, {74, 9}, {95, 10}, {116, -4}, {136, -20}, {158, -30}, {180, -33}}};
+// The same from the middle of the forehead.
+constexpr std::array<Landmark, 10> kHairlineWithForehead{
+    {{0.25, 36}, {19, 34}, {40, 27.5}, {57, 17}, {74, 9}, {95, 10}, {116, -4}, {136, -20}, {158, -30}, {180, -33}}};
 
-// Both ends of the parting: front hairline, slightly left of the middle, and crown.
+// Both ends of the parting: front hairline, slightly left of the middle, or behind the fringe, and crown.
 constexpr Landmark kPartingFront{15, 35.2};
+constexpr Landmark kPartingBehindFringe{5, 67};
 constexpr Landmark kCrown{176, 62};
 
 // The forehead's hairline bulges towards these.
@@ -47,16 +53,16 @@ Vec3 slerp(const Vec3& a, const Vec3& b, double t) {
 }
 
 // Uniform Catmull-Rom through the landmarks; x in [0, 1] runs over the whole hairline.
-Landmark hairlineAt(double x) {
-  const int last = static_cast<int>(kHairline.size()) - 1;
+Landmark hairlineAt(std::span<const Landmark> landmarks, double x) {
+  const int last = static_cast<int>(landmarks.size()) - 1;
   const double place = std::clamp(x, 0.0, 1.0) * last;
   const int i = std::min(static_cast<int>(place), last - 1);
   const double t = place - i;
   const auto knot = [&](int k) -> Landmark {
     if (k < 0)
-      return {2 * kHairline[0].azimuth - kHairline[1].azimuth, 2 * kHairline[0].elevation - kHairline[1].elevation};
-    if (k > last) return {360 - kHairline[last - 1].azimuth, kHairline[last - 1].elevation};
-    return kHairline[k];
+      return {2 * landmarks[0].azimuth - landmarks[1].azimuth, 2 * landmarks[0].elevation - landmarks[1].elevation};
+    if (k > last) return {360 - landmarks[last - 1].azimuth, landmarks[last - 1].elevation};
+    return landmarks[k];
   };
   const auto blend = [t](double a, double b, double c, double d) {
     return 0.5 * (2 * b + t * (c - a) + t * t * (2 * a - 5 * b + 4 * c - d) + t * t * t * (3 * (b - c) + d - a));
@@ -81,11 +87,13 @@ std::vector<Vec3> resample(const std::vector<Vec3>& line, int count) {
   return out;
 }
 
-// The hairline's points for one side (side = 1 left, -1 right), evenly spaced from the temple to the nape.
-std::vector<Vec3> hairlineDirections(const Scalp& scalp, double side) {
+// The hairline's points for one side (side = 1 left, -1 right), evenly spaced from its front to the nape.
+std::vector<Vec3> hairlineDirections(const Scalp& scalp, double side, bool fringe) {
+  const std::span<const Landmark> landmarks =
+      fringe ? std::span<const Landmark>(kHairlineWithForehead) : std::span<const Landmark>(kHairline);
   std::vector<Vec3> fine(121);
   for (std::size_t i = 0; i < fine.size(); ++i) {
-    const Landmark l = hairlineAt(static_cast<double>(i) / (fine.size() - 1));
+    const Landmark l = hairlineAt(landmarks, static_cast<double>(i) / (fine.size() - 1));
     fine[i] = skinPoint(scalp, scalpDirection(side * l.azimuth, l.elevation));
   }
   std::vector<Vec3> out = resample(fine, kHalfSheets + 1);
@@ -93,16 +101,37 @@ std::vector<Vec3> hairlineDirections(const Scalp& scalp, double side) {
   return out;
 }
 
+// How much of the parting is left (1 at its front, 0 at the crown) where each line begins. Lines gather towards the
+// crown and a fringe, as they do around the end of any slit when they are to leave it sideways.
+std::vector<double> leftOfParting(bool fringe) {
+  constexpr int kSteps = 16;  // a line
+  std::vector<double> left(kHalfSheets + 1, 0.0);
+  if (!fringe) {
+    for (int i = 0; i <= kHalfSheets; ++i)
+      left[i] = std::pow(1 - static_cast<double>(i) / kHalfSheets, 1 + kGatherAtCrown);
+    return left;
+  }
+  for (int i = kHalfSheets - 1; i >= 0; --i) {
+    left[i] = left[i + 1];
+    for (int k = 0; k < kSteps; ++k) {
+      const double q = (i * kSteps + k + 0.5) / (kHalfSheets * kSteps);
+      left[i] += std::pow(1 - q, kGatherAtCrown) * std::pow(q, kGatherBehindFringe);
+    }
+  }
+  const double whole = left[0];
+  for (double& l : left) l /= whole;
+  return left;
+}
+
 // One bank of the parting, from the front to the crown, where both banks meet.
-std::vector<Vec3> bankDirections(const Scalp& scalp, double side) {
-  const Vec3 front = direction(kPartingFront), crown = direction(kCrown);
+std::vector<Vec3> bankDirections(const Scalp& scalp, const Vec3& front, double side, bool fringe) {
+  const Vec3 crown = direction(kCrown);
   const Vec3 across = side * crown.cross(front).normalized();
+  const std::vector<double> left = leftOfParting(fringe);
   std::vector<Vec3> out(kHalfSheets + 1);
   for (int i = 0; i <= kHalfSheets; ++i) {
-    // Lines gather towards the crown, as they do around the end of any slit when they are to leave it sideways.
-    const double left = std::pow(1 - static_cast<double>(i) / kHalfSheets, kGatherAtCrown);
-    const Vec3 middle = slerp(front, crown, 1 - left);
-    const double width = kPartingHalfWidth * std::min(1.0, left / 0.05);
+    const Vec3 middle = slerp(front, crown, 1 - left[i]);
+    const double width = kPartingHalfWidth * std::min(1.0, left[i] / 0.05);
     out[i] = (middle + across * (width / scalp.radiusAt(middle))).normalized();
   }
   return out;
@@ -137,22 +166,26 @@ Vec3 skinPoint(const Scalp& scalp, const Vec3& direction) {
   return scalp.center + direction.normalized() * scalp.radiusAt(direction);
 }
 
-FlowLines traceFlowLines(const Scalp& scalp) {
+FlowLines traceFlowLines(const Scalp& scalp, bool fringe) {
   FlowLines lines{2 * kHalfSheets + 1, kRows, {}};
   lines.points.resize(static_cast<std::size_t>(lines.sheets) * lines.rows);
+  const Vec3 front = direction(fringe ? kPartingBehindFringe : kPartingFront);
   for (const double side : {1.0, -1.0}) {
-    const std::vector<Vec3> bank = bankDirections(scalp, side), hairline = hairlineDirections(scalp, side);
-    const Vec3 across = side * direction(kCrown).cross(direction(kPartingFront)).normalized();
+    const std::vector<Vec3> bank = bankDirections(scalp, front, side, fringe),
+                            hairline = hairlineDirections(scalp, side, fringe);
+    const Vec3 across = side * direction(kCrown).cross(front).normalized();
     // How far the middle line's way to the nape lies beside the way that the parting heads.
     const double astray = across.dot(slerp(bank.back(), hairline.back(), 0.4));
     const Vec3 forehead = direction(side > 0 ? kForeheadLeft : kForeheadRight);
     std::vector<std::vector<Vec3>> half(kHalfSheets + 1, std::vector<Vec3>(kRows));
     for (int s = 0; s <= kHalfSheets; ++s) {
       const double q = static_cast<double>(s) / kHalfSheets;
-      const Vec3 between = (slerp(bank[s], hairline[s], 0.4) + kSidewaysAtCrown * q * std::sqrt(1 - q) * across -
-                            kAheadAtCrown * q * q * q * astray * across)
-                               .normalized();
-      const Vec3 bend = slerp(forehead, between, std::min(1.0, q / 0.35));
+      const double sideways =
+          kSidewaysAtCrown * q * std::sqrt(1 - q) + (fringe ? kSidewaysBehindFringe * (1 - q) * std::sqrt(q) : 0.0);
+      const Vec3 between =
+          (slerp(bank[s], hairline[s], 0.4) + sideways * across - kAheadAtCrown * q * q * q * astray * across)
+              .normalized();
+      const Vec3 bend = fringe ? between : slerp(forehead, between, std::min(1.0, q / 0.35));
       for (int r = 0; r < kRows; ++r) {
         const double t = static_cast<double>(r) / (kRows - 1);
         half[s][r] = slerp(slerp(bank[s], bend, t), slerp(bend, hairline[s], t), t);

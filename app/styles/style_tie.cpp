@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 
 #include "app/styles/style_comb.h"
 #include "app/styles/style_untangle.h"
@@ -19,10 +20,12 @@ namespace {
 constexpr double kTieFatness = 0.05, kTieGap = 0.003;  // see untangle; m
 constexpr double kFatEnough = 0.012;                   // with less a wider ring is tried
 constexpr double kCoat = 0.010;                        // m over the scalp, half-way to the ring
-constexpr double kStep = 0.01, kBend = 0.16;           // m; share of a step's heading that gravity takes
+constexpr double kStep = 0.01, kBend = 0.22;           // m; share of a step's heading that gravity takes
 constexpr double kSwell = 1.35, kTaper = 0.7;  // of the ring's radius: the tail's where it is widest, at its end
 constexpr double kShortestTail = 0.08;         // m
 constexpr int kSectors = 24;
+constexpr double kSeam = 0.003;      // m between roots on both sides of where hair divides
+constexpr double kAlongside = 0.97;  // cosine between the ways that they leave the scalp
 
 struct Path {
   std::vector<Vec3> at, across, up;  // the tail's middle every kStep, and its section
@@ -126,6 +129,49 @@ int tieOf(const sim::HairMeshShape& hair, const sim::RootFace& face, const Scalp
     if (taken) return static_cast<int>(t);
   }
   return -1;
+}
+
+// What one tie holds is one tail: columns on both sides of where hair divides over the shoulders become one, so that
+// the tail does not come apart. At a parting hair leaves to both sides, and stays parted.
+sim::HairMeshShape closedSeams(sim::HairMeshShape hair, const Scalp& scalp, std::span<const HairTie> ties) {
+  constexpr int kNone = -2, kSeveral = -3;
+  const auto count = static_cast<std::size_t>(hair.columnCount());
+  std::vector<int> tie(count, kNone), nearest(count, -1);
+  std::set<std::pair<int, int>> beside;  // columns of one face
+  for (const sim::RootFace& face : hair.root_faces) {
+    const int taken = tieOf(hair, face, scalp, ties);
+    for (int k = 0; k < face.corner_count; ++k) {
+      int& of = tie[static_cast<std::size_t>(face.columns[k])];
+      of = of == kNone || of == taken ? taken : kSeveral;
+      for (int j = 0; j < face.corner_count; ++j) beside.insert({face.columns[k], face.columns[j]});
+    }
+  }
+  const auto root = [&](std::size_t c) -> const Vec3& { return hair.positions[hair.column_first[c]]; };
+  const auto alongside = [&](std::size_t a, std::size_t b) {
+    const auto way = [&](std::size_t c) {
+      return Vec3(hair.positions[hair.column_first[c] + 1] - root(c)).normalized();
+    };
+    return hair.columnLength(static_cast<int>(a)) > 1 && hair.columnLength(static_cast<int>(b)) > 1 &&
+           way(a).dot(way(b)) > kAlongside;
+  };
+  for (std::size_t a = 0; a < count; ++a) {
+    double least = kSeam;
+    for (std::size_t b = 0; b < count; ++b) {
+      const double apart = (root(a) - root(b)).norm();
+      if (tie[a] >= 0 && tie[a] == tie[b] && apart < least && alongside(a, b) &&
+          !beside.contains({static_cast<int>(a), static_cast<int>(b)}))
+        least = apart, nearest[a] = static_cast<int>(b);
+    }
+  }
+  const auto partner = [&](int column) {
+    const int other = nearest[static_cast<std::size_t>(column)];
+    if (other < 0 || nearest[static_cast<std::size_t>(other)] != column) return column;
+    const int longer = hair.columnLength(other) - hair.columnLength(column);
+    return longer > 0 || (longer == 0 && other < column) ? other : column;
+  };
+  for (sim::RootFace& face : hair.root_faces)
+    for (int k = 0; k < face.corner_count; ++k) face.columns[k] = partner(face.columns[k]);
+  return hair;
 }
 
 // The hair with its columns doubled where bundles of different ties meet; `of` says for each column which tie takes it.
@@ -240,9 +286,10 @@ double leastFatness(const sim::HairMeshShape& shape) {
 
 // Where a narrow ring leaves prisms inverted, the hair at rest is gathered to a wider one, and held by the narrow one.
 TiedHair tieHair(const sim::HairMeshShape& hair, const Scalp& scalp, const BodyDistance& body,
-                 std::span<const HairTie> ties) {
+                 std::span<const HairTie> ties, Seams seams) {
   std::vector<int> of;
-  const sim::HairMeshShape parted = divided(hair, scalp, ties, of);
+  const sim::HairMeshShape parted =
+      divided(seams == Seams::kClosed ? closedSeams(hair, scalp, ties) : hair, scalp, ties, of);
   TiedHair best;
   double fattest = -2;
   for (const double wider : {1.2, 1.7, 2.4}) {

@@ -21,11 +21,16 @@ struct TiedHair {
   std::vector<std::vector<int>> rings;  // per tie: the vertices in it, one a column
 };
 
+// Whether the bundles of a tail that were divided over the shoulders are joined. Under a hat they are not: on their own
+// they find more room.
+enum class Seams { kClosed, kOpen };
+
 // Combs every bundle to the first tie that takes it: over the scalp, those rooted farther above those rooted nearer,
 // through the ring, and on as a tail as long as the hair has left in the mean. Bundles that no tie takes stay. Where
-// two ties part the hair, columns between them are doubled. Every prism is positive on the heads of the tests; the
+// two ties part the hair, columns between them are doubled, and where hair that one tie takes divides over
+// the shoulders they are joined. Every prism is positive on the heads of the tests; the
 // caller's buildHairMesh says where one is not. Deterministic.
 TiedHair tieHair(const sim::HairMeshShape& hair, const Scalp& scalp, const BodyDistance& body,
-                 std::span<const HairTie> ties);
+                 std::span<const HairTie> ties, Seams seams = Seams::kClosed);
 
 }  // namespace app

@@ -78,10 +78,10 @@ sim::RootFace triangle(int a, int b, int c) {
 
 // Joins two neighbouring sheets from the hairline up: quads while the ranks keep step, a triangle where one sheet has
 // one more.
-void joinSheets(const std::vector<Plait>& plaits, int crown_sheet, std::array<int, 2> left, std::array<int, 2> right,
+void joinSheets(const std::vector<Plait>& plaits, const Coat& coat, std::array<int, 2> left, std::array<int, 2> right,
                 std::vector<sim::RootFace>& faces) {
-  const bool left_is_crown = plaits[left[0]].sheet == crown_sheet,
-             right_is_crown = plaits[right[0]].sheet == crown_sheet;
+  const bool left_goes_on = coat.endsParting(plaits[left[0]].sheet),
+             right_goes_on = coat.endsParting(plaits[right[0]].sheet);
   int i = left[0], j = right[0];
   while (i + 1 < left[1] || j + 1 < right[1]) {
     const bool left_done = i + 1 == left[1], right_done = j + 1 == right[1];
@@ -91,13 +91,12 @@ void joinSheets(const std::vector<Plait>& plaits, int crown_sheet, std::array<in
       // The odd one goes where the two sheets' ranks have drifted apart by a third of a step.
       const double step = 1.0 / std::max(left[1] - left[0], right[1] - right[0]);
       if (left_over == right_over || std::abs(gap) < step / 3) {
-        // The crown's column ends the parting: its sheet and the bank meet in a straight angle there, which two
-        // triangles halve.
+        // Where the parting ends, a sheet and the bank meet in a straight angle, which two triangles halve.
         const bool top = i + 2 == left[1] && j + 2 == right[1];
-        if (top && left_is_crown) {
+        if (top && left_goes_on) {
           faces.push_back(triangle(i, j, i + 1));
           faces.push_back(triangle(j, j + 1, i + 1));
-        } else if (top && right_is_crown) {
+        } else if (top && right_goes_on) {
           faces.push_back(triangle(i, j, j + 1));
           faces.push_back(triangle(i, j + 1, i + 1));
         } else {
@@ -155,6 +154,14 @@ Weave weaveOf(Style style, Resolution resolution) {
       return std::array<Weave, 5>{Weave{even(5), 3, 5, 8, 8, 0.5}, Weave{even(8), 3, 6, 10, 12, 0.4},
                                   Weave{even(11), 4, 9, 14, 15, 0.3}, Weave{even(11), 4, 9, 15, 16, 0.3, kRefinedCreep},
                                   Weave{even(3), 2, 3, 7, 7, 0.5}}[level];
+    case Style::kBob:
+      return std::array<Weave, 5>{Weave{even(6), 4, 5, 7, 7, 0.5}, Weave{even(9), 5, 6, 9, 10, 0.4},
+                                  Weave{even(11), 6, 9, 12, 14, 0.3}, Weave{even(11), 6, 9, 14, 15, 0.3, kRefinedCreep},
+                                  Weave{{0, 0.18, 0.36, 0.68, 1}, 3, 3, 6, 6, 0.5}}[level];
+    case Style::kPixie:
+      return std::array<Weave, 5>{Weave{even(6), 4, 5, 5, 5, 0.6}, Weave{even(9), 5, 7, 6, 7, 0.5},
+                                  Weave{even(11), 6, 10, 7, 8, 0.4}, Weave{even(11), 6, 9, 11, 12, 0.3, kRefinedCreep},
+                                  Weave{{0, 0.18, 0.36, 0.68, 1}, 3, 3, 5, 5, 0.6}}[level];
     case Style::kLong:
       break;
   }
@@ -167,7 +174,9 @@ Weave weaveOf(Style style, Resolution resolution) {
 }
 
 Woven weave(const Coat& coat, const Weave& plan) {
-  const int half = static_cast<int>(plan.backness.size()) - 1, sheet_count = 2 * half + 1;
+  const int half = static_cast<int>(plan.backness.size()) - 1;
+  // Of a fringe the two halves share the middle sheet over the forehead as they do the one at the nape.
+  const int sheet_count = coat.fringe ? 2 * half : 2 * half + 1;
   std::vector<Plait> plaits;
   std::vector<std::array<int, 2>> sheets;  // first column and the one after the last
   for (int i = 0; i < sheet_count; ++i) {
@@ -186,13 +195,14 @@ Woven weave(const Coat& coat, const Weave& plan) {
     sheets.push_back({first, first + ranks});
   }
   Woven woven;
-  for (int i = 0; i + 1 < sheet_count; ++i) {
+  for (int i = 0; i < 2 * half; ++i) {
+    const int next = (i + 1) % sheet_count;
     // Hair before and behind the shoulders has nothing between.
     if (coat.front_sheets > 0 &&
-        coat.inFront(plaits[sheets[i][0]].sheet) != coat.inFront(plaits[sheets[i + 1][0]].sheet))
+        coat.inFront(plaits[sheets[i][0]].sheet) != coat.inFront(plaits[sheets[next][0]].sheet))
       continue;
     // The right half is joined as the left one's mirror image.
-    joinSheets(plaits, coat.sheets / 2, sheets[i], sheets[i + 1], woven.shape.root_faces);
+    joinSheets(plaits, coat, sheets[i], sheets[next], woven.shape.root_faces);
   }
   trimLayers(woven.shape.root_faces, plaits);
   for (const Plait& plait : plaits) layColumn(coat, plan, plait, woven);

@@ -303,9 +303,11 @@ void hairTab(Demo& demo, UiState& ui) {
   if (section("Brushes", true)) brushSection(demo, ui);
   if (section("Haircut", true)) {
     const bool from_file = !actor.spec.hair.empty();
-    const int style =
-        segments("style", {"Short", "Shoulder", "Long"}, from_file ? -1 : static_cast<int>(actor.spec.style), ui);
-    static constexpr const char* kStyles[] = {"short", "shoulder", "long"};
+    const int style = segments(
+        "style",
+        {"Short", "Shoulder", "Long", {"Bob", "To the jaw, with a fringe"}, {"Pixie", "Ears free, with a fringe"}},
+        from_file ? -1 : static_cast<int>(actor.spec.style), ui);
+    static constexpr const char* kStyles[] = {"short", "shoulder", "long", "bob", "pixie"};
     if (style >= 0) postRequest(demo, {Ask::kStyle, kStyles[style], ""});
     const int resolution = segments("resolution", {"Low", "Medium", "High", "Ultra"},
                                     from_file ? -1 : static_cast<int>(actor.spec.resolution), ui);

@@ -13,8 +13,7 @@ side = np.sin(np.pi * v) * np.sin(2 * np.pi * (u - 0.5))  # -1 at the right ear,
 low = np.clip((v - 0.12) / 0.5, 0, 1)  # 0 at the crown, 1 at the nape
 
 maps = {
-    "pixie_length": 0.80 - 0.42 * low**0.7 + 0.10 * front,
-    "layers_length": 0.52 + 0.48 * low**1.3,
+    "layers_length": 0.46 + 0.16 * low**1.3 - 0.06 * front,
     "bob_length": 0.74 - 0.40 * front,
     "left_side": side >= 0.3,  # of the parting
     "dyed_streak": np.where(

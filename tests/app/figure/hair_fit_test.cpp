@@ -41,7 +41,8 @@ double farthest(const sim::HairMeshShape& a, const sim::HairMeshShape& b) {
 }
 
 TEST(HairFit, WhatFitsIsLeftAlone) {
-  for (const app::Style style : {app::Style::kShort, app::Style::kShoulder, app::Style::kLong}) {
+  for (const app::Style style :
+       {app::Style::kShort, app::Style::kShoulder, app::Style::kLong, app::Style::kBob, app::Style::kPixie}) {
     const sim::HairMeshShape shape = styled(style);
     sim::HairMeshShape fitted = shape;
     EXPECT_EQ(app::fitHair(figure(), true, fitted), "");
@@ -66,7 +67,8 @@ const In kUnits[] = {
 
 TEST(HairFit, UnitsAxesAndOriginAreNamedAndTakenBack) {
   const app::Rigid head = app::scalpToWorld(figure(), app::restPose(figure().skeleton));
-  for (const app::Style style : {app::Style::kShort, app::Style::kShoulder, app::Style::kLong}) {
+  for (const app::Style style :
+       {app::Style::kShort, app::Style::kShoulder, app::Style::kLong, app::Style::kBob, app::Style::kPixie}) {
     const sim::HairMeshShape shape = styled(style);
     for (const Written& axes : kAxes) {
       for (const In& unit : kUnits) {

@@ -75,7 +75,7 @@ void expectSame(const sim::HairMeshShape& a, const sim::HairMeshShape& b) {
 
 TEST(HairFile, NineStylesComeBackBitForBit) {
   const app::Scalp scalp = tests::analyticScalp();
-  for (const Style style : {Style::kShort, Style::kShoulder, Style::kLong}) {
+  for (const Style style : {Style::kShort, Style::kShoulder, Style::kLong, Style::kBob, Style::kPixie}) {
     for (const Resolution resolution : {Resolution::kLow, Resolution::kMedium, Resolution::kHigh}) {
       SCOPED_TRACE(std::string(app::styleName(style)) + " " + std::string(app::resolutionName(resolution)));
       const sim::HairMeshShape shape = app::makeStyle(style, resolution, scalp, tests::bodyDistance);

@@ -103,7 +103,7 @@ TEST(Library, ATextMakesTheSameMeshAsArrays) {
 // The first hair needs no file: every built-in style stands on the plain head and stays out of it.
 TEST(Library, ABuiltInStyleStandsOnThePlainHead) {
   const Vec3 radii = 0.23 * Vec3(0.34, 0.5, 0.42);
-  for (const char* style : {"short", "shoulder", "long"}) {
+  for (const char* style : {"short", "shoulder", "long", "bob", "pixie"}) {
     for (const char* resolution : {"low", "medium"}) {
       hm_mesh mesh{};
       ASSERT_EQ(hm_mesh_create_style(style, resolution, 0.23, &mesh), HM_OK) << style << hm_error_message();

@@ -76,7 +76,7 @@ Request randomEdit(std::mt19937& random) {
   const auto of = [&](std::initializer_list<const char*> names) { return names.begin()[random() % names.size()]; };
   switch (random() % 200) {
     case 0:
-      return {Ask::kStyle, of({"short", "shoulder", "long"}), ""};
+      return {Ask::kStyle, of({"short", "shoulder", "long", "bob", "pixie"}), ""};
     case 1:
       return {Ask::kMotionFile, "", of({"walk.bvh", "dance.bvh", "jump_spin.bvh"})};
     case 2:

@@ -101,7 +101,8 @@ TEST(PaintedLength, EveryResolutionTakesShortHairAndHardEdges) {
     return file;
   };
   const std::string half = map("half", {128}), black = map("black", {0}), edge = map("edge", {255, 255, 0, 0});
-  for (const app::Style style : {app::Style::kShort, app::Style::kShoulder, app::Style::kLong}) {
+  for (const app::Style style :
+       {app::Style::kShort, app::Style::kShoulder, app::Style::kLong, app::Style::kBob, app::Style::kPixie}) {
     for (const app::Resolution resolution : {app::Resolution::kLow, app::Resolution::kMedium, app::Resolution::kHigh}) {
       for (const std::string& file : {half, black, edge}) {
         app::Scene scene = tiedScene("none", "idle_turns.bvh", resolution, style);

