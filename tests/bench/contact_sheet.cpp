@@ -16,6 +16,8 @@ namespace {
 
 constexpr int kOversampling = 2;
 constexpr std::array<const char*, 4> kViews{"front", "side", "back", "top"};
+constexpr std::array<const char*, 8> kHairdos{"pixie",     "bob_fringe", "shoulder_layers", "long_straight",
+                                              "long_wavy", "curly",      "pony_tail",       "plaits"};
 constexpr std::array<double, 3> kMoments{1.2, 2.6, 4.1};  // s into the motion
 
 app::Scene sceneOf(app::Style style, app::Resolution resolution, const std::string& motion, int strands) {
@@ -54,52 +56,90 @@ void place(const std::vector<unsigned char>& picture, int column, int row, const
   }
 }
 
+struct Drawing {
+  app::EglContext context;
+  render::Renderer renderer{app::dataPath("shaders")};
+  app::Image cell;
+  std::vector<unsigned char> pixels;
+  app::FrameTarget target;
+
+  explicit Drawing(int cell_height) {
+    cell.height = cell_height;
+    cell.width = cell.height * 4 / 5;
+    target.renderer = &renderer;
+    target.width = cell.width * kOversampling;
+    target.height = cell.height * kOversampling;
+    target.pixels = &pixels;
+  }
+  double aspect() const { return static_cast<double>(cell.width) / cell.height; }
+};
+
+app::Image emptySheet(const app::Image& cell, int columns, int rows) {
+  app::Image sheet;
+  sheet.width = columns * cell.width;
+  sheet.height = rows * cell.height;
+  sheet.rgba.assign(4 * static_cast<std::size_t>(sheet.width) * sheet.height, 255);
+  return sheet;
+}
+
+void writeSheet(const std::string& folder, const std::string& name, const app::Image& sheet) {
+  const std::string file = (std::filesystem::path(folder) / (name + ".png")).string();
+  app::writePng(file, sheet.width, sheet.height, sheet.rgba);
+  std::printf("%s\n", file.c_str());
+}
+
+// A style at rest from all sides, then in motion; a row a resolution.
+void drawStyle(app::Style style, const SheetOptions& options, Drawing& drawing) {
+  app::Image sheet = emptySheet(drawing.cell, static_cast<int>(kViews.size() + kMoments.size()), 3);
+  int row = 0;
+  for (const app::Resolution resolution : {app::Resolution::kLow, app::Resolution::kMedium, app::Resolution::kHigh}) {
+    int column = 0;
+    app::Demo rest = app::openScene(sceneOf(style, resolution, "idle_turns.bvh", options.strands), drawing.aspect());
+    for (const char* view : kViews) {
+      rest.requests.push_back({app::Ask::kView, view, "", 0});
+      app::advanceFrame(rest, 0, drawing.target);
+      place(drawing.pixels, column++, row, drawing.cell, sheet);
+    }
+    app::Demo moving = app::openScene(sceneOf(style, resolution, options.motion, options.strands), drawing.aspect());
+    double time = 0;
+    for (const double moment : kMoments) {
+      for (; time + 1.5 * kFrame < moment; time += kFrame) app::advanceFrame(moving, kFrame, {});
+      app::advanceFrame(moving, kFrame, drawing.target);
+      time += kFrame;
+      place(drawing.pixels, column++, row, drawing.cell, sheet);
+    }
+    ++row;
+  }
+  writeSheet(options.folder, "styles_" + std::string(app::styleName(style)), sheet);
+}
+
+// The shipped hairdos, a column each, from before and from behind.
+void drawHairdos(const SheetOptions& options, Drawing& drawing) {
+  app::Image sheet = emptySheet(drawing.cell, static_cast<int>(kHairdos.size()), 2);
+  int column = 0;
+  for (const char* name : kHairdos) {
+    app::Scene scene = app::loadScene(app::dataPath(std::string("assets/scenes/") + name + ".json"));
+    scene.characters.front().look.strands = options.strands;
+    app::Demo demo = app::openScene(std::move(scene), drawing.aspect());
+    int row = 0;
+    for (const char* view : {"three-quarter", "back"}) {
+      demo.requests.push_back({app::Ask::kView, view, "", 0});
+      app::advanceFrame(demo, 0, drawing.target);
+      place(drawing.pixels, column, row++, drawing.cell, sheet);
+    }
+    ++column;
+  }
+  writeSheet(options.folder, "hairdos", sheet);
+}
+
 }  // namespace
 
 void drawContactSheets(const SheetOptions& options) {
   std::filesystem::create_directories(options.folder);
-  app::EglContext context;
-  render::Renderer renderer(app::dataPath("shaders"));
-  app::Image cell;
-  cell.height = options.cell_height;
-  cell.width = cell.height * 4 / 5;
-  const int columns = static_cast<int>(kViews.size() + kMoments.size());
-  std::vector<unsigned char> pixels;
-  app::FrameTarget target;
-  target.renderer = &renderer;
-  target.width = cell.width * kOversampling;
-  target.height = cell.height * kOversampling;
-  target.pixels = &pixels;
-  for (const app::Style style : {app::Style::kShort, app::Style::kShoulder, app::Style::kLong}) {
-    app::Image sheet;
-    sheet.width = columns * cell.width;
-    sheet.height = 3 * cell.height;
-    sheet.rgba.assign(4 * static_cast<std::size_t>(sheet.width) * sheet.height, 255);
-    int row = 0;
-    for (const app::Resolution resolution : {app::Resolution::kLow, app::Resolution::kMedium, app::Resolution::kHigh}) {
-      const double aspect = static_cast<double>(cell.width) / cell.height;
-      int column = 0;
-      app::Demo rest = app::openScene(sceneOf(style, resolution, "idle_turns.bvh", options.strands), aspect);
-      for (const char* view : kViews) {
-        rest.requests.push_back({app::Ask::kView, view, "", 0});
-        app::advanceFrame(rest, 0, target);
-        place(pixels, column++, row, cell, sheet);
-      }
-      app::Demo moving = app::openScene(sceneOf(style, resolution, options.motion, options.strands), aspect);
-      double time = 0;
-      for (const double moment : kMoments) {
-        for (; time + 1.5 * kFrame < moment; time += kFrame) app::advanceFrame(moving, kFrame, {});
-        app::advanceFrame(moving, kFrame, target);
-        time += kFrame;
-        place(pixels, column++, row, cell, sheet);
-      }
-      ++row;
-    }
-    const std::string file =
-        (std::filesystem::path(options.folder) / ("styles_" + std::string(app::styleName(style)) + ".png")).string();
-    app::writePng(file, sheet.width, sheet.height, sheet.rgba);
-    std::printf("%s\n", file.c_str());
-  }
+  Drawing drawing(options.cell_height);
+  for (const app::Style style : {app::Style::kShort, app::Style::kShoulder, app::Style::kLong})
+    drawStyle(style, options, drawing);
+  drawHairdos(options, drawing);
 }
 
 }  // namespace bench

@@ -1,4 +1,4 @@
-// Contact sheets: the nine styles from front, side, back and above at rest, and in three moments of motion.
+// Contact sheets: three styles from front, side, back and above at rest, and in three moments of motion; the hairdos.
 #pragma once
 
 #include <string>
@@ -12,7 +12,8 @@ struct SheetOptions {
   std::string motion = "dance.bvh";
 };
 
-// Writes styles_short.png, styles_shoulder.png and styles_long.png: a row a resolution, a column a view or moment.
+// Writes styles_short.png, styles_shoulder.png and styles_long.png, a row a resolution, a column a view or moment, and
+// hairdos.png, a column a shipped scene of a hairdo, from before and from behind.
 // Drawn at twice the size and averaged down. Throws app::ContextError or app::InputError.
 void drawContactSheets(const SheetOptions& options);
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <numeric>
+#include <set>
 
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
@@ -111,6 +113,36 @@ TEST(PaintedLength, EveryResolutionTakesShortHairAndHardEdges) {
         EXPECT_NO_THROW(app::openScene(std::move(scene), 1.5)) << app::styleName(style) << " " << file;
       }
     }
+  }
+}
+
+// Bundles that share columns, followed from one to the next: how many tails there are, of hair that would divide over
+// the shoulders.
+TEST(Ties, WhatATieTakesIsOneTail) {
+  const auto tails = [](const char* ties, app::Resolution resolution) {
+    const app::Demo demo = app::openScene(tiedScene(ties, "idle_turns.bvh", resolution), 1.5);
+    const sim::HairMeshShape& shape = demo.actors[0].haircut->mesh.shape;
+    std::vector<int> of(static_cast<std::size_t>(shape.columnCount()));
+    std::iota(of.begin(), of.end(), 0);
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (const sim::RootFace& face : shape.root_faces) {
+        int least = of[static_cast<std::size_t>(face.columns[0])];
+        for (int k = 0; k < face.corner_count; ++k)
+          least = std::min(least, of[static_cast<std::size_t>(face.columns[k])]);
+        for (int k = 0; k < face.corner_count; ++k) {
+          int& here = of[static_cast<std::size_t>(face.columns[k])];
+          changed = changed || here != least;
+          here = least;
+        }
+      }
+    }
+    return std::set<int>(of.begin(), of.end()).size();
+  };
+  for (const app::Resolution resolution : {app::Resolution::kLow, app::Resolution::kMedium, app::Resolution::kHigh}) {
+    EXPECT_EQ(tails("none", resolution), 3u) << "before the left and the right shoulder, and behind";
+    EXPECT_EQ(tails("high", resolution), 1u);
+    EXPECT_EQ(tails("two", resolution), 2u);
   }
 }
 
