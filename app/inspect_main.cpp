@@ -33,7 +33,7 @@ struct Asked {
   std::optional<double> turn;
   std::vector<float> move;
   app::GroomMends mends;
-  bool no_guess = false;
+  bool no_guess = false, strict = false;
 };
 
 void addOptions(CLI::App& parser, Asked& asked) {
@@ -55,6 +55,7 @@ void addOptions(CLI::App& parser, Asked& asked) {
   parser.add_flag("--drop-bad", asked.mends.drop_bad, "Leave out strands that are not finite or have no length");
   parser.add_flag("--push-out", asked.mends.push_out, "Bring points that lie inside the body to its surface");
   parser.add_flag("--no-guess", asked.no_guess, "Mend only what the options say");
+  parser.add_flag("--strict", asked.strict, "Exit code 1 where the file has a fault, for scripts");
 }
 
 // What was found for certain, with what was asked for in its place.
@@ -95,8 +96,10 @@ int run(const CLI::App& parser, const Asked& asked) {
   for (const app::GroomFinding& finding : inspection.findings)
     std::cout << (finding.fault ? "" : "no fault: ") << finding.what << ": " << finding.text
               << (finding.mend.empty() ? "" : "; ") << finding.mend << (finding.certain ? " (certain)" : "") << "\n";
-  if (std::ranges::none_of(inspection.findings, &app::GroomFinding::fault)) std::cout << "nothing is wrong\n";
-  if (asked.out.empty()) return app::kExitFine;
+  const bool faulty = std::ranges::any_of(inspection.findings, &app::GroomFinding::fault);
+  if (!faulty) std::cout << "nothing is wrong\n";
+  const int exit_code = asked.strict && faulty ? app::kExitFault : app::kExitFine;
+  if (asked.out.empty()) return exit_code;
   app::GroomMends mends = mendsOf(parser, asked, hints, inspection.mends);
   if (mends.points == 0 && asked.out.ends_with(".tfx")) {
     mends.points = app::nearestTfxPoints(groom);
@@ -105,7 +108,7 @@ int run(const CLI::App& parser, const Asked& asked) {
   app::mendGroom(mends, &head, groom);
   app::writeGroom(groom, asked.out);
   std::cout << groom.strandCount() << " strands written to " << asked.out << "\n";
-  return app::kExitFine;
+  return exit_code;
 }
 
 }  // namespace
@@ -114,7 +117,9 @@ int main(int argc, char** argv) {
   app::failAtFileLimit();
   CLI::App parser{kAbout};
   parser.name("hairmesh-inspect");
-  parser.footer("Exit codes: 0 fine, 1 a file that cannot be written, 2 usage, 4 a file that cannot be used.");
+  parser.footer(
+      "Exit codes: 0 fine, 1 a file that cannot be written (--strict: or that has a fault), 2 usage, 4 a file that "
+      "cannot be used.");
   Asked asked;
   addOptions(parser, asked);
   const auto fail = [](const std::exception& fault, int exit_code) {
