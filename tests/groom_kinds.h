@@ -289,7 +289,7 @@ inline std::vector<Kind> kinds() {
       {"short", "the short style, low", [](int n) { return styled(Style::kShort, Resolution::kLow, n); }, 0.021, 0.065,
        0.78},
       {"shoulder", "the shoulder style, medium", [](int n) { return styled(Style::kShoulder, Resolution::kMedium, n); },
-       0.0167, 0.052, 0.8},
+       0.0167, 0.052, 0.79},
       {"long", "the long style, low", [](int n) { return styled(Style::kLong, Resolution::kLow, n); }, 0.0148, 0.055,
        0.65},
       {"cropped", "3 cm, leaning forward", cropped, 0.0175, 0.06, 0.8},
