@@ -119,6 +119,9 @@ void drawHairdos(const SheetOptions& options, Drawing& drawing) {
   int column = 0;
   for (const char* name : kHairdos) {
     app::Scene scene = app::loadScene(app::dataPath(std::string("assets/scenes/") + name + ".json"));
+    const app::CharacterSpec& worn = scene.characters.front();
+    const bool hangs = worn.style == app::Style::kLong && worn.ties.empty() && worn.maps.length.empty();
+    scene.camera.framing = hangs ? "bust" : "head";
     scene.characters.front().look.strands = options.strands;
     app::Demo demo = app::openScene(std::move(scene), drawing.aspect());
     int row = 0;

@@ -305,8 +305,10 @@ TEST(GroomInspect, TheProgramMendsWhatIsCertain) {
   EXPECT_EQ(run(in + " --out " + out), 0) << test::readAll(folder + "/err");
   EXPECT_EQ(test::lacking(test::readAll(folder + "/out"), "--unit cm (certain)"), "");
   EXPECT_EQ(test::lacking(test::readAll(folder + "/out"), "--up z (certain)"), "");
+  EXPECT_EQ(run(out), 0);
   EXPECT_EQ(run(in + " --strict"), 1);
-  EXPECT_EQ(run(out + " --strict"), 0);
+  EXPECT_EQ(run(out + " --push-out --strict --out " + test::shellQuoted(folder + "/pushed.abc")), 1);
+  EXPECT_EQ(run(test::shellQuoted(folder + "/pushed.abc") + " --strict"), 0);
   EXPECT_NE(test::lacking(test::readAll(folder + "/out"), "unit: "), "") << "the unit is mended";
   EXPECT_EQ(run(test::shellQuoted(folder + "/none.hair")), 4);
   EXPECT_EQ(run(in + " --unit furlong"), 2);
