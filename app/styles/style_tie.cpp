@@ -214,9 +214,10 @@ double columnLength(const sim::HairMeshShape& hair, int column) {
   return length;
 }
 
-// The layer that lies in the ring: the same of all columns of a tie.
-int ringLayer(int length) {
-  return std::clamp((2 * length) / 5, 2, length - 2);
+// The layer that lies in the ring: the same of all columns of a tie. `way`: share of the hair's length up to there;
+// where it is most of it, few layers would cut through the head.
+int ringLayer(int length, double way) {
+  return std::clamp(std::max((2 * length) / 5, static_cast<int>(way * length)), 2, length - 2);
 }
 
 void gather(const HairTie& tie, int number, const Scalp& scalp, const BodyDistance& body, const std::vector<int>& of,
@@ -232,12 +233,15 @@ void gather(const HairTie& tie, int number, const Scalp& scalp, const BodyDistan
     gathering.addRoot(shape.positions[shape.column_first[c]]);
   }
   if (columns.empty()) return;
-  double left = 0;
-  for (const int c : columns)
-    left += (columnLength(shape, c) - wayLength(gathering, shape.positions[shape.column_first[c]])) / columns.size();
+  double left = 0, way = 0;
+  for (const int c : columns) {
+    const double to_ring = wayLength(gathering, shape.positions[shape.column_first[c]]);
+    way += to_ring / columns.size();
+    left += (columnLength(shape, c) - to_ring) / columns.size();
+  }
   left = std::max(left, kShortestTail);
   const Path path = gathering.tail(left);
-  const int ring = ringLayer(shortest);
+  const int ring = ringLayer(shortest, way / (way + left));
   for (const int c : columns) {
     const int first = shape.column_first[c], count = shape.columnLength(c);
     const Vec3 root = shape.positions[first];
