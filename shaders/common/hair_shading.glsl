@@ -111,6 +111,12 @@ vec3 strandTint(in Strand strand, float along) {
   return min(tint, 1.0 / max(forward_albedo.rgb + backward_albedo.rgb, 1e-3));
 }
 
+// Share of the optical depth towards a light that counts. Drawn strands cover less than the hairs that they stand for: the
+// eye sees deeper in, which on the light's side is as much farther from the light. From the other side it is nearer.
+float seenShare(vec3 to_eye, vec3 to_light) {
+  return mix(1.0, gain.x, smoothstep(-0.5, 0.5, dot(to_eye, to_light)));
+}
+
 vec3 shadeStrand(in Strand strand, in CurvePoint point) {
   vec3 to_eye = normalize(eye.xyz - point.position), tint = strandTint(strand, point.along);
   float rough = shares.x > 0 ? strand.share.of.w * shareAlong(point.along, 0).w : 1.0;
@@ -127,12 +133,12 @@ vec3 shadeStrand(in Strand strand, in CurvePoint point) {
     tau_key = hairOpticalDepths(draw.w, at);
     lit = bodyLightOnHair(draw.w, at);
   }
-  // Drawn strands cover less than the hairs that they stand for, so the eye sees deeper in: depths shrink as much. More
-  // strands than hairs cover more.
-  tau_key.x *= gain.x;
+  tau_key.x *= seenShare(to_eye, to_key.xyz);
   tau_fill.x *= kSoftDepth;
   tau_rim.x *= kSoftDepth;
-  vec3 slant = max(abs(vec3(dot(outward, to_key.xyz), dot(outward, to_fill.xyz), dot(outward, to_rim.xyz))), 0.1);
+  // Hair lies along its surface: the normal is what of the way out of the head stands across the strand.
+  vec3 normal = unitOr(outward - point.tangent * dot(outward, point.tangent), outward);
+  vec3 slant = max(abs(vec3(dot(normal, to_key.xyz), dot(normal, to_fill.xyz), dot(normal, to_rim.xyz))), 0.1);
   vec3 radiance = lit * key.rgb * scatterLight(scatterGeometry(side, to_key.xyz), tau_key, slant.x, tint);
   radiance += fill.rgb * scatterLight(scatterGeometry(side, to_fill.xyz), tau_fill, slant.y, tint);
   radiance += rim.rgb * scatterLight(scatterGeometry(side, to_rim.xyz), tau_rim, slant.z, tint);

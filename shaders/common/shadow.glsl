@@ -48,24 +48,34 @@ float heldUpTo(vec4 near, vec4 far, float behind, float thickness) {
   return opacity.y * (dot(in_near, near) + dot(in_far, far));
 }
 
-// Optical depth (expected number of hairs crossed, weighted by strength) between the key light and a point.
-float hairOpticalDepth(int map, vec3 at) {
-  if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return 0.0;
-  vec3 texel = hairShadowTexel(map, at.xy);
-  float behind = (at.z - textureLod(hair_depth, texel, 0.0).r) * hair_shadow_size[map].z;
-  if (behind <= 0.0) return 0.0;
-  return heldUpTo(textureLod(opacity_near, texel, 0.0), textureLod(opacity_far, texel, 0.0), behind,
-                  hair_shadow_size[map].w);
-}
-
-// The same, and that of the hair behind the point as far as light comes back from it.
-vec2 hairOpticalDepths(int map, vec3 at) {
-  if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return vec2(0.0);
-  vec3 texel = hairShadowTexel(map, at.xy);
-  float behind = (at.z - textureLod(hair_depth, texel, 0.0).r) * hair_shadow_size[map].z;
-  vec4 near = textureLod(opacity_near, texel, 0.0), far = textureLod(opacity_far, texel, 0.0);
+// Optical depth (expected number of hairs crossed, weighted by strength) between the key light and a point, and that of
+// the hair behind it as far as light comes back, by one texel.
+vec2 depthsInTexel(int map, ivec3 texel, float depth) {
+  float behind = (depth - texelFetch(hair_depth, texel, 0).r) * hair_shadow_size[map].z;
+  vec4 near = texelFetch(opacity_near, texel, 0), far = texelFetch(opacity_far, texel, 0);
   float before = heldUpTo(near, far, behind, hair_shadow_size[map].w);
   return vec2(before, heldUpTo(near, far, behind + kBackReach, hair_shadow_size[map].w) - before);
+}
+
+bool coveredByMap(vec2 at) { return all(greaterThanEqual(at, vec2(0.0))) && all(lessThanEqual(at, vec2(1.0))); }
+
+// Each texel has its own first hair: depths are sought in each of the four about the point and then interpolated, for
+// between a texel with hair and one without lies no surface.
+vec2 hairOpticalDepths(int map, vec3 at) {
+  if (!coveredByMap(at.xy)) return vec2(0.0);
+  vec3 texel = hairShadowTexel(map, at.xy);
+  vec2 corner = texel.xy * vec2(textureSize(hair_depth, 0).xy) - 0.5, low = floor(corner), part = corner - low;
+  ivec3 place = ivec3(ivec2(low), int(texel.z));
+  vec2 below = mix(depthsInTexel(map, place, at.z), depthsInTexel(map, place + ivec3(1, 0, 0), at.z), part.x);
+  vec2 above = mix(depthsInTexel(map, place + ivec3(0, 1, 0), at.z), depthsInTexel(map, place + ivec3(1, 1, 0), at.z), part.x);
+  return mix(below, above, part.y);
+}
+
+// The first of both, of the texel nearest to a point: one of many whose mean is sought.
+float hairOpticalDepth(int map, vec3 at) {
+  if (!coveredByMap(at.xy)) return 0.0;
+  vec3 texel = hairShadowTexel(map, at.xy);
+  return depthsInTexel(map, ivec3(texel.xy * vec2(textureSize(hair_depth, 0).xy), int(texel.z)), at.z).x;
 }
 
 // Light left after the bodies, for a point of hair.
@@ -77,7 +87,7 @@ float bodyLightOnHair(int map, vec3 at) {
 
 // A lamp of some size: hair's shadow widens with the distance from the hair. m at the hair; rad.
 const float kMinRadius = 0.008, kLampAngle = 0.1;
-const int kTaps = 12;
+const int kTaps = 12, kNearTaps = 24;
 
 // Taps on a disc of radius 1 lie on a spiral of golden angles (Vogel 1979): the first has this direction, the next is
 // turned by one angle more, for turning costs less than a sine.
@@ -122,11 +132,11 @@ float lightBetweenHair(int map, vec3 at, int sought) {
   }
   above /= max(found, 1e-6);
   float reach = (kMinRadius + 0.5 * kLampAngle * above) / hair_shadow_size[map].x, sum = 0.0;
-  int taps = found > 0.0 ? kTaps : 0;
+  int taps = found > 0.0 ? kNearTaps : 0;
   way = kFirstTap;
   for (int i = 0; i < taps; ++i, way = nextTap(way))
-    sum += exp(-hairOpticalDepth(map, vec3(at.xy + reach * discTap(i, float(kTaps), way), at.z)));
-  return mix(1.0, sum / float(kTaps), min(4.0 * found, 1.0));
+    sum += exp(-hairOpticalDepth(map, vec3(at.xy + reach * discTap(i, float(kNearTaps), way), at.z)));
+  return mix(1.0, sum / float(kNearTaps), min(4.0 * found, 1.0));
 }
 
 // Light of the key left after the hair of a map, for a point of body or ground: averaged over a disc that widens with

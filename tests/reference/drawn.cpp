@@ -40,7 +40,9 @@ const char* strandsShow(Term term) {
     case Term::kShadow:
       return R"(vec3 shadeStrand(in Strand strand, in CurvePoint point) {
   vec3 at = hairShadowCoordinates(draw.w, point.position);
-  return vec3(bodyLightOnHair(draw.w, at) * exp(-gain.x * hairOpticalDepths(draw.w, at).x), exp(-kSoftDepth * point.light.yz));
+  vec3 to_eye = normalize(eye.xyz - point.position);
+  float depth = seenShare(to_eye, to_key.xyz) * hairOpticalDepths(draw.w, at).x;
+  return vec3(bodyLightOnHair(draw.w, at) * exp(-depth), exp(-kSoftDepth * point.light.yz));
 }
 )";
     default:

@@ -27,7 +27,7 @@ struct Asked {
   reference::TraceOptions trace;
   int hairs = 40000;
   std::vector<std::string> styles{"short", "shoulder", "long"}, colours{"black", "brown", "blond", "white"};
-  std::string pictures, document;
+  std::string pictures, document, camera = "three-quarter";
   std::vector<std::string> sets;
 };
 
@@ -41,7 +41,7 @@ app::Demo openStyle(const std::string& style, const Asked& asked) {
   app::Options options;
   options.style = style;
   options.framing = "head";
-  options.camera = "three-quarter";
+  options.camera = asked.camera;
   for (const std::string& set : asked.sets) {
     const std::size_t equals = set.find('=');
     if (equals == std::string::npos) throw app::UsageError("--set takes NAME=VALUE, not '" + set + "'");
@@ -223,6 +223,7 @@ int run(int argc, char** argv) {
   cli.add_option("--styles", asked.styles, "Of short, shoulder and long")->delimiter(',');
   cli.add_option("--colours", asked.colours, "Of black, brown, blond and white")->delimiter(',');
   cli.add_option("--set", asked.sets, "NAME=VALUE of the parameter tables");
+  cli.add_option("--camera", asked.camera, "front, three-quarter, side or back (three-quarter)");
   cli.add_option("--pictures", asked.pictures, "Folder for pictures, traced and drawn side by side");
   cli.add_option("--document", asked.document, "Markdown file whose measured part 'reference' is written");
   CLI11_PARSE(cli, argc, argv);
