@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "app/files/data_path.h"
-#include "app/files/errors.h"
 #include "app/files/recording.h"
 #include "app/scene/demo.h"
 #include "app/scene/edit/groom_brush.h"
@@ -231,8 +230,10 @@ void swapSides(EditStep& step, Demo& demo) {
   step.other = std::move(now);
 }
 
-[[noreturn]] void refuse(const char* which, const char* mend) {
-  throw InputError("", "", std::string("nothing to ") + which, mend);
+// That there is nothing to go to is no fault.
+void notice(const std::string& words, Demo& demo) {
+  demo.message = words;
+  demo.message_is_fault = false;
 }
 
 }  // namespace
@@ -274,7 +275,7 @@ void commitEdit(EditStep step, EditHistory& history) {
 }
 
 void undoEdits(int count, Demo& demo) {
-  if (demo.edits.done == 0) refuse("undo", "this is where the scene was opened");
+  if (demo.edits.done == 0) return notice("nothing to undo: this is where the scene was opened", demo);
   for (; count > 0 && demo.edits.done > 0; --count) {
     // Taken out: the demo may be replaced by another scene's.
     EditHistory history = std::exchange(demo.edits, {});
@@ -290,15 +291,15 @@ void undoEdits(int count, Demo& demo) {
       demo.edits = std::move(history);
       throw;
     }
-    demo.message = "undone: " + title;
-    demo.message_is_fault = false;
+    notice("undone: " + title, demo);
     history.gesture = false;
     demo.edits = std::move(history);
   }
 }
 
 void redoEdits(int count, Demo& demo) {
-  if (demo.edits.done == demo.edits.steps.size()) refuse("redo", "nothing was undone since the last change");
+  if (demo.edits.done == demo.edits.steps.size())
+    return notice("nothing to redo: nothing was undone since the last change", demo);
   for (; count > 0 && demo.edits.done < demo.edits.steps.size(); --count) {
     EditHistory history = std::exchange(demo.edits, {});
     EditStep& step = history.steps[history.done];
@@ -309,8 +310,7 @@ void redoEdits(int count, Demo& demo) {
       demo.edits = std::move(history);
       throw;
     }
-    demo.message = "done again: " + step.title;
-    demo.message_is_fault = false;
+    notice("done again: " + step.title, demo);
     history.gesture = false;
     demo.edits = std::move(history);
   }
