@@ -8,6 +8,7 @@
 #include <imgui/imgui.h>
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <functional>
 #include <iostream>
@@ -34,6 +35,7 @@
 #include "app/scene/view/light_drag.h"
 #include "app/scene/view/look_params.h"
 #include "app/ui/input_queue.h"
+#include "app/ui/part_glide.h"
 #include "app/ui/redraw_throttle.h"
 #include "app/ui/ui.h"
 #include "app/ui/ui_panels.h"
@@ -43,6 +45,7 @@ namespace app {
 
 namespace {
 
+constexpr long kFirstFrames = 2;  // in which the panels find their sizes
 constexpr int kEndless = std::numeric_limits<int>::max();
 
 std::string glfw_fault;  // GLFW reports through a callback without user data
@@ -197,24 +200,30 @@ struct PanelBackends {
   PanelBackends& operator=(const PanelBackends&) = delete;
 };
 
+// The pointer outside of the window points at nothing; a drag goes on there.
+void beginPanels(GLFWwindow* window) {
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  ImGuiIO& io = ImGui::GetIO();
+  const bool held = std::ranges::any_of(io.MouseDown, [](bool down) { return down; });
+  if (!held && !glfwGetWindowAttrib(window, GLFW_HOVERED)) io.MousePos = {-FLT_MAX, -FLT_MAX};
+  ImGui::NewFrame();
+}
+
 // Tab bars and boxes take their sizes from the frame before: with two frames that nobody sees the first one is whole.
-void layOutPanels(Demo& demo, UiState& ui) {
+void layOutPanels(GLFWwindow* window, Demo& demo, UiState& ui) {
   const BuiltInCounts counted = demo.stats.always;
   for (int k = 0; k < 2; ++k) {
-    ImGui_ImplOpenGL3_NewFrame();
-    ImGui_ImplGlfw_NewFrame();
-    ImGui::NewFrame();
+    beginPanels(window);
     buildUi(demo, ui);
     ImGui::EndFrame();
   }
   demo.stats.always = counted;
 }
 
-void drawPanels(Demo& demo, UiState& ui) {
-  if (demo.frames <= 1) layOutPanels(demo, ui);
-  ImGui_ImplOpenGL3_NewFrame();
-  ImGui_ImplGlfw_NewFrame();
-  ImGui::NewFrame();
+void drawPanels(GLFWwindow* window, Demo& demo, UiState& ui) {
+  if (demo.frames <= 1) layOutPanels(window, demo, ui);
+  beginPanels(window);
   buildUi(demo, ui);
   ImGui::Render();
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
@@ -255,18 +264,25 @@ void followTextScale(GLFWwindow* window, double asked, Session& s) {
   ImGui_ImplOpenGL3_CreateFontsTexture();
 }
 
-// The figure stands in the middle of what panels leave free; while something is dragged over the picture it stays where
-// it is. What is recorded has no panels, and neither has the window then a part that they take.
-void leaveFree(GLFWwindow* window, const Demo& demo, const UiState& ui, FrameTarget& target) {
+// The figure stands in the middle of what panels leave free, and glides there unless `at_once`; while something is
+// dragged over the picture it stays where it is. What is recorded has no panels, and neither has the window then a part
+// that they take.
+void leaveFree(GLFWwindow* window, const Demo& demo, const UiState& ui, bool at_once, PartGlide& glide,
+               FrameTarget& target) {
   int width = 1, height = 1;
   glfwGetWindowSize(window, &width, &height);
   if (width < 1 || demo.capture.recording) {
-    target.free = {};
+    target.free = glide.to({}, now(), true);
     return;
   }
-  if (ui.brush.stroking || ui.line_held || ui.light_held) return;
-  ImGui::GetIO().DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
-  target.free = freePart(demo, ui);
+  if (ui.brush.stroking || ui.line_held || ui.light_held) {
+    target.free = glide.stay(now());
+    return;
+  }
+  ImVec2& size = ImGui::GetIO().DisplaySize;
+  const ImVec2 before = std::exchange(size, {static_cast<float>(width), static_cast<float>(height)});
+  const bool resized = before.x != size.x || before.y != size.y;
+  target.free = glide.to(freePart(demo, ui), now(), at_once || resized || demo.frames <= kFirstFrames);
 }
 
 // How long the next frame is. Runs of a given number of frames and recordings go by frames, all else by the clock.
@@ -304,9 +320,13 @@ void pollOrWait(bool may_wait, const Demo& demo, const std::function<bool()>& re
   }
 }
 
+// Runs of so many frames and recordings show the same on every run: nothing in them goes by the clock.
+bool repeats(const Options& options) {
+  return options.frames_given || !options.record.empty() || !options.replay.empty();
+}
+
 Demo openForWindow(Scene scene, const Options& options, double aspect) {
-  // Runs of so many frames and recordings show the same on every run.
-  const bool beside = !options.frames_given && options.record.empty() && options.replay.empty();
+  const bool beside = !repeats(options);
   Demo demo = openAsked(std::move(scene), options, aspect, beside);
   demo.loading.on = beside;
   if (!options.load_state.empty())
@@ -393,13 +413,15 @@ int runWindow(Scene scene, const Options& options) {
   RunReport run = reportOf(demo, now() - start);
 
   render::PicturePair pair(dataPath("shaders"));
-  FrameTarget target{.renderer = &renderer, .draw_panels = [&](Demo& shown) { drawPanels(shown, ui); }, .pair = &pair};
+  FrameTarget target{
+      .renderer = &renderer, .draw_panels = [&](Demo& shown) { drawPanels(window.handle, shown, ui); }, .pair = &pair};
   PresetPictures presets(dataPath("shaders"), options.frames_given);
   bool presets_coming = false;
   ShaderWatch watch;
   PictureWriter pictures;
   const auto reload = [&] { return reloadSavedShaders(now(), watch, renderer, demo); };
   RedrawThrottle throttle;
+  PartGlide glide;
   HairRecorder hair(demo.scene.playback.fps);
   double last = now();
   int frame = 0;
@@ -413,7 +435,8 @@ int runWindow(Scene scene, const Options& options) {
     watch.reload_all = std::exchange(ui.reload_shaders, false);
     if (reload()) throttle.disturb();
     glfwGetFramebufferSize(window.handle, &target.width, &target.height);
-    leaveFree(window.handle, demo, ui, target);
+    leaveFree(window.handle, demo, ui, repeats(options), glide, target);
+    if (!glide.arrived()) throttle.disturb();
     const double seconds = frameSeconds(options, demo, last);
     advanceFrame(demo, tape.turn(frame, frame == 0 && options.load_state.empty() ? 0 : seconds, demo), target);
     presets_coming = presets.work(demo, ui);

@@ -110,11 +110,12 @@ void transportRow(Demo& demo, UiState& ui) {
 }
 
 void fileRow(Demo& demo, UiState& ui) {
+  const EditHistory& edits = demo.edits;
   const int pressed = segments("file",
                                {{"Open", "Opens a scene, a project, hair, a figure or a motion"},
                                 {"Save", "Saves the scene, or a project with the hair as it is"},
-                                {"Undo", "Takes the last change back"},
-                                {"Redo", "Makes it again"},
+                                {"Undo", "Takes the last change back (Ctrl+Z)", edits.done > 0},
+                                {"Redo", "Makes it again (Ctrl+Y)", edits.done < edits.steps.size()},
                                 {"History", "Lists all changes, to go to any of them"}},
                                ui.history ? 4 : -1, ui);
   if (pressed == 0) browseFor(BrowseFor::kOpen, ui);

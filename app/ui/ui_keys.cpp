@@ -72,12 +72,16 @@ void changeSpeed(double factor, Demo& demo) {
   postRequest(demo, {Ask::kSpeed, "", "", speed == 0 ? 0.25 : speed * factor});
 }
 
-// Closes the file panel or the list of keys, lets the keyboard go from the panels; then asks; then leaves.
+constexpr const char* kLeaving = "Esc again leaves; what was not saved is lost";
+
+// Closes what lies over the others, one thing at a press; then asks; then leaves, as long as the question stands.
 void pressEscape(Demo& demo, UiState& ui) {
   if (std::exchange(ui.help, false)) return;
   if (std::exchange(ui.browser.what, BrowseFor::kNothing) != BrowseFor::kNothing) return;
-  ui.quit = std::exchange(ui.leaving, true);
-  demo.message = "Esc again leaves; what was not saved is lost";
+  if (demo.message_is_fault && !demo.message.empty()) return demo.message.clear();
+  if (std::exchange(ui.history, false)) return;
+  ui.quit = std::exchange(ui.leaving, true) && demo.message == kLeaving;
+  demo.message = kLeaving;
   demo.message_is_fault = false;
 }
 

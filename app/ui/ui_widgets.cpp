@@ -1,10 +1,12 @@
 #include "app/ui/ui_widgets.h"
 
 #include <imgui/imgui.h>
+#include <imgui/imgui_internal.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "app/files/data_path.h"
 #include "sim/field_text.h"
@@ -17,6 +19,8 @@ namespace {
 constexpr float kLabelShare = 0.43f;
 constexpr float kResetWidth = 20;
 constexpr float kMarkShare = 0.16f;  // of a slider's height
+constexpr float kTipDelay = 0.3f;    // s
+constexpr float kEndedTip = 1e9f;    // s
 
 ImU32 color(ImGuiCol index, float alpha = 1) {
   return ImGui::GetColorU32(index, alpha);
@@ -149,8 +153,31 @@ MarksBelowDigits::~MarksBelowDigits() {
   }
 }
 
+namespace {
+
+// Whether the pointer has rested on the last widget. One without an identity of its own has that of its words.
+bool rested(const char* words) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const bool over =
+      ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled | ImGuiHoveredFlags_AllowWhenBlockedByActiveItem);
+  if (!over || GImGui->NavDisableMouseHover) return false;
+  ImGuiStorage* kept = ImGui::GetStateStorage();
+  const ImGuiID item = ImGui::GetItemID() ? ImGui::GetItemID() : ImGui::GetID(words);
+  ImGui::PushID(static_cast<int>(item));
+  const ImGuiID id = ImGui::GetID("rested");
+  ImGui::PopID();
+  int* last = kept->GetIntRef(id, 0);
+  const bool arrives = std::exchange(*last, ImGui::GetFrameCount()) + 1 < ImGui::GetFrameCount();
+  float* seconds = kept->GetFloatRef(id + 1, 0);
+  *seconds = arrives ? 0 : *seconds + io.DeltaTime;
+  if (ImGui::IsMouseDown(0) || ImGui::IsMouseReleased(0)) *seconds = -kEndedTip;
+  return *seconds >= kTipDelay;
+}
+
+}  // namespace
+
 void tip(const std::string& text) {
-  if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) || text.empty()) return;
+  if (text.empty() || !rested(text.c_str())) return;
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(ImGui::GetFontSize() * 24);
   ImGui::TextUnformatted(text.c_str());
@@ -434,7 +461,7 @@ int segments(const char* name, std::initializer_list<Segment> row, int chosen, U
   for (const Segment& segment : row) left -= ImGui::CalcTextSize(segment.label).x;
   ImGui::PushID(name);
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {2, ImGui::GetStyle().FramePadding.y});
-  for (const auto& [label, help] : row) {
+  for (const auto& [label, help, enabled] : row) {
     if (index) ImGui::SameLine(0, gap);
     const bool lit = index == chosen;
     if (lit) {
@@ -442,7 +469,9 @@ int segments(const char* name, std::initializer_list<Segment> row, int chosen, U
       ImGui::PushStyleColor(ImGuiCol_ButtonHovered, ImGui::GetStyleColorVec4(ImGuiCol_SliderGrabActive));
       ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(0.07f, 0.07f, 0.08f, 1));
     }
+    ImGui::BeginDisabled(!enabled);
     if (ImGui::Button(label, {ImGui::CalcTextSize(label).x + std::max(left / count, 2.0f), 0})) pressed = index;
+    ImGui::EndDisabled();
     if (lit) ImGui::PopStyleColor(3);
     noteItem(std::string(name) + " " + label, ui);
     tip(help);

@@ -22,7 +22,8 @@ void postRequest(Demo& demo, Request request);
 // The figure's picture in the window, pixels of the mouse; side by side with another the left one.
 Picture shownPicture(const Demo& demo);
 
-// A tooltip for the last widget, after a short hover.
+// A tooltip for the last widget, once the pointer has rested on it for a moment. A press ends it until the pointer
+// comes anew, and what the keyboard has chosen has none.
 void tip(const std::string& text);
 
 // While it lives sliders are drawn with their marks along the lower edge, so that none lies behind the digits.
@@ -63,7 +64,8 @@ bool iconButton(Icon icon, const char* name, const std::string& help, bool lit, 
 struct Segment {
   const char* label;
   const char* help;  // shown over it
-  Segment(const char* shown, const char* said = "") : label(shown), help(said) {}
+  bool enabled;      // else it is grey
+  Segment(const char* shown, const char* said = "", bool works = true) : label(shown), help(said), enabled(works) {}
 };
 
 // Buttons side by side, one of them chosen. Returns the index pressed, or -1.

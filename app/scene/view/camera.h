@@ -20,6 +20,7 @@ struct Camera {
 // A part of a picture, in shares of its width from the left and of its height from the top.
 struct PicturePart {
   double left = 0, right = 1, top = 0, bottom = 1;
+  bool operator==(const PicturePart&) const = default;
 };
 
 // Where the camera's view stands in a picture. Without panels it fills the picture.
