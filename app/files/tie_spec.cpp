@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/files/errors.h"
+#include "sim/field_text.h"
 
 namespace app {
 
@@ -87,6 +88,18 @@ std::vector<TieSpec> tiesFromText(std::string_view text) {
   const json parsed = parseJson(text, "");
   const JsonPlace place(parsed, "");
   return parsed.is_object() ? std::vector{readTie(place)} : readTies(place);
+}
+
+std::string tieTitle(const std::vector<TieSpec>& ties) {
+  std::string title = ties.size() == 1 ? "tie" : "ties";
+  for (std::size_t k = 0; k < ties.size(); ++k) {
+    title += k == 0 ? " " : k + 1 < ties.size() ? ", " : " and ";
+    const std::optional<sim::Vec3>& at = ties[k].at;
+    title +=
+        at ? "at " + sim::numberText(at->x()) + ", " + sim::numberText(at->y()) + ", " + sim::numberText(at->z()) + " m"
+           : ties[k].place;
+  }
+  return title;
 }
 
 std::vector<HairTie> placeTies(const std::vector<TieSpec>& ties, const Scalp& scalp, double lower) {

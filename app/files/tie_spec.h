@@ -35,6 +35,9 @@ nlohmann::json writeTies(const std::vector<TieSpec>& ties);
 // From the command line or a panel: none, two (left and right), a place, or JSON as in a scene. Throws InputError.
 std::vector<TieSpec> tiesFromText(std::string_view text);
 
+// For messages: "tie high", "ties left and right", "tie at 0, 0.1, -0.2 m".
+std::string tieTitle(const std::vector<TieSpec>& ties);
+
 // On a head; a named place stands `radius` and 14 mm off its scalp, and `lower` (rad about the head's middle) down from
 // where it is by name.
 std::vector<HairTie> placeTies(const std::vector<TieSpec>& ties, const Scalp& scalp, double lower = 0);

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <span>
 
@@ -31,17 +32,47 @@ std::string loweredNote(const CharacterSpec& spec, const Scalp& scalp, double lo
          stem(spec.attachments.front().file);
 }
 
+constexpr double kShortOfRing = 0.005;  // m: what lacks less does for the want of room
+
 // rad, that ties are lowered by, one after another, where what is worn leaves the tied hair no room.
 constexpr std::array kLowered{0.0, 0.15, 0.3, 0.45, 0.6, 0.75};
+
+// Places by name that none of these ties has.
+std::string otherPlaces(const std::vector<TieSpec>& ties) {
+  std::string places;
+  for (const char* name : {"back", "high", "low"}) {
+    const bool taken = std::ranges::any_of(ties, [&](const TieSpec& tie) { return !tie.at && tie.place == name; });
+    if (!taken) places += (places.empty() ? "" : " or ") + std::string(name);
+  }
+  return "tie it at another place (" + places + ")";
+}
+
+std::string centimetres(double metres) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f cm", 100 * metres);
+  return text;
+}
+
+// A ring inside of the body holds no hair on it.
+void checkRings(const CharacterSpec& spec, const LoadedBody& body, const std::vector<HairTie>& ties) {
+  for (std::size_t t = 0; t < ties.size(); ++t) {
+    const double off = body.distance(ties[t].at);
+    if (off < 0)
+      throw InputError("", tieTitle({spec.ties[t]}), "lies " + centimetres(-off) + " inside the body",
+                       "move it off the head, or " + otherPlaces(spec.ties));
+  }
+}
 
 void applyTies(const CharacterSpec& spec, const LoadedBody& body, sim::HairMeshShape& shape, Haircut& haircut) {
   TiedHair result = tieHair(shape, body.character.scalp, body.distance, haircut.ties,
                             spec.attachments.empty() ? Seams::kClosed : Seams::kOpen);
   shape = std::move(result.shape);
   haircut.tied.clear();
-  for (const std::vector<int>& ring : result.rings) {
+  for (std::size_t t = 0; t < result.rings.size(); ++t) {
+    const std::vector<int>& ring = result.rings[t];
     if (ring.empty())
-      throw InputError("", "tie " + writeTies(spec.ties).dump(), "takes no hair", "move it, or widen what it takes");
+      throw InputError("", tieTitle({spec.ties[t]}), "takes no hair",
+                       "let it take hair of both sides, or hair that is rooted lower (\"above\")");
     haircut.tied.insert(haircut.tied.end(), ring.begin(), ring.end());
   }
 }
@@ -76,6 +107,7 @@ void dressWhereThereIsRoom(const CharacterSpec& spec, const LoadedBody& body, st
   const std::size_t tries = named && !worn.empty() ? kLowered.size() : 1;
   for (std::size_t k = 0; k < tries; ++k) {
     haircut.ties = placeTies(spec.ties, body.character.scalp, kLowered[k]);
+    checkRings(spec, body, haircut.ties);
     try {
       dressHair(spec, body, worn, shape, haircut);
     } catch (const sim::MeshError&) {
@@ -88,8 +120,21 @@ void dressWhereThereIsRoom(const CharacterSpec& spec, const LoadedBody& body, st
   }
 }
 
-[[noreturn]] void refuseHair(const CharacterSpec& spec, const std::string& title, const Haircut& haircut,
-                             const sim::MeshError& error) {
+// Hair, as it grows, that its ties leave no room.
+[[noreturn]] void refuseTies(const CharacterSpec& spec, const Scalp& scalp, const sim::HairMeshShape& grown,
+                             const Haircut& haircut) {
+  const double lacks = shortOfRing(grown, scalp, haircut.ties);
+  const std::string elsewhere = otherPlaces(spec.ties);
+  if (lacks > kShortOfRing)
+    throw InputError("", tieTitle(spec.ties),
+                     "the hair is too short: it ends up to " + centimetres(lacks) + " before the ring",
+                     elsewhere + ", or take longer hair");
+  throw InputError("", tieTitle(spec.ties), "leaves the hair no room in its ring",
+                   elsewhere + ", or take a wider ring or a coarser hair mesh (low)");
+}
+
+[[noreturn]] void refuseHair(const CharacterSpec& spec, const std::string& title, const Scalp& scalp,
+                             const sim::HairMeshShape& grown, const Haircut& haircut, const sim::MeshError& error) {
   if (!spec.maps.length.empty())
     throw InputError("map " + spec.maps.length.substr(0, 80), "length", "cuts hair so that its layers cross",
                      "paint it lighter or more evenly");
@@ -100,9 +145,7 @@ void dressWhereThereIsRoom(const CharacterSpec& spec, const LoadedBody& body, st
     throw InputError(spec.attachments.front().file, "", "leaves the hair no room",
                      hasFringe(spec.style) && spec.hair.empty() ? "make it wider, or take a style without a fringe"
                                                                 : "make it wider, or move it off the head");
-  if (!spec.ties.empty())
-    throw InputError("", "tie " + writeTies(spec.ties).dump(), "leaves the hair no room",
-                     "move it off the head, or make it wider");
+  if (!spec.ties.empty()) refuseTies(spec, scalp, grown, haircut);
   throw InputError(spec.hair.empty() ? "style " + title + " on " + spec.motion : spec.hair, error.place, error.fault,
                    error.mend);
 }
@@ -140,13 +183,14 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
   // Built-in styles, ties and attachments ask for the distance, and it is a grid that takes time to fill.
   if ((spec.hair.empty() || !spec.ties.empty() || !worn.empty()) && !body.distance)
     body.distance = restBodyDistance(body.character);
+  sim::HairMeshShape shape;
   try {
-    const sim::HairMeshShape shape = grownHair(spec, body, *haircut);
+    shape = grownHair(spec, body, *haircut);
     dressWhereThereIsRoom(spec, body, worn, shape, *haircut);
     haircut->shares = paintedShares(spec.maps, spec.curves, body.character.scalp, haircut->mesh.shape);
     applyShares(haircut->shares, haircut->mesh);
   } catch (const sim::MeshError& error) {
-    refuseHair(spec, title, *haircut, error);
+    refuseHair(spec, title, body.character.scalp, shape, *haircut, error);
   }
   if (const std::string notes = mapNotes(spec.maps); !notes.empty())
     haircut->note += (haircut->note.empty() ? "" : "\n") + notes;

@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kTieFatness = 0.05, kTieGap = 0.003;  // see untangle; m
 constexpr double kFatEnough = 0.012;                   // with less a wider ring is tried
+constexpr int kTieRounds = 12;                         // of untangling on
 constexpr double kCoat = 0.010;                        // m over the scalp, half-way to the ring
 constexpr double kStep = 0.01, kBend = 0.22;           // m; share of a step's heading that gravity takes
 constexpr double kSwell = 1.35, kTaper = 0.7;  // of the ring's radius: the tail's where it is widest, at its end
@@ -175,22 +176,25 @@ sim::HairMeshShape closedSeams(sim::HairMeshShape hair, const Scalp& scalp, std:
 }
 
 // The hair with its columns doubled where bundles of different ties meet; `of` says for each column which tie takes it.
-// Columns stay in their order.
+// Columns stay in their order. A copy ends where the longest bundle of its tie does.
 sim::HairMeshShape divided(const sim::HairMeshShape& hair, const Scalp& scalp, std::span<const HairTie> ties,
                            std::vector<int>& of) {
   sim::HairMeshShape out;
-  std::map<std::pair<int, int>, int> copies;  // of (column, tie)
+  std::map<std::pair<int, int>, int> copies;  // of (column, tie): first their layers, then their numbers
   std::vector<int> taken;
   for (const sim::RootFace& face : hair.root_faces) {
     taken.push_back(tieOf(hair, face, scalp, ties));
-    for (int k = 0; k < face.corner_count; ++k) copies[{face.columns[k], taken.back()}] = 0;
+    for (int k = 0; k < face.corner_count; ++k) {
+      int& layers = copies[{face.columns[k], taken.back()}];
+      layers = std::max(layers, hair.bundleLayers(face));
+    }
   }
   for (auto& [key, copy] : copies) {
     const auto [column, tie] = key;
+    const auto first = hair.positions.begin() + hair.column_first[column];
+    out.positions.insert(out.positions.end(), first, first + copy);
     copy = out.columnCount();
     of.push_back(tie);
-    out.positions.insert(out.positions.end(), hair.positions.begin() + hair.column_first[column],
-                         hair.positions.begin() + hair.column_first[column + 1]);
     out.column_first.push_back(static_cast<int>(out.positions.size()));
   }
   for (std::size_t f = 0; f < hair.root_faces.size(); ++f) {
@@ -289,26 +293,51 @@ double leastFatness(const sim::HairMeshShape& shape) {
 }  // namespace
 
 // Where a narrow ring leaves prisms inverted, the hair at rest is gathered to a wider one, and held by the narrow one.
+// Where none is enough, all are untangled on from where they have come to until one is: fine hair meshes need it.
 TiedHair tieHair(const sim::HairMeshShape& hair, const Scalp& scalp, const BodyDistance& body,
                  std::span<const HairTie> ties, Seams seams) {
   std::vector<int> of;
   const sim::HairMeshShape parted =
       divided(seams == Seams::kClosed ? closedSeams(hair, scalp, ties) : hair, scalp, ties, of);
-  TiedHair best;
-  double fattest = -2;
+  std::vector<TiedHair> tries;
   for (const double wider : {1.2, 1.7, 2.4}) {
-    TiedHair tied{parted, std::vector<std::vector<int>>(ties.size())};
+    TiedHair& tied = tries.emplace_back(parted, std::vector<std::vector<int>>(ties.size()));
     for (std::size_t t = 0; t < ties.size(); ++t) {
       HairTie tie = ties[t];
       tie.radius *= wider;
       gather(tie, static_cast<int>(t), scalp, body, of, tied);
     }
     untangle(body, kTieFatness, kTieGap, tied.shape);
-    const double fatness = leastFatness(tied.shape);
-    if (fatness > fattest) fattest = fatness, best = std::move(tied);
-    if (fattest > kFatEnough) break;
+    if (leastFatness(tied.shape) > kFatEnough) return std::move(tied);
   }
-  return best;
+  for (int round = 0; round < kTieRounds; ++round) {
+    for (TiedHair& tied : tries) {
+      untangle(body, kTieFatness, kTieGap, tied.shape);
+      if (leastFatness(tied.shape) > kFatEnough) return std::move(tied);
+    }
+  }
+  const auto thinner = [](const TiedHair& a, const TiedHair& b) {
+    return leastFatness(a.shape) < leastFatness(b.shape);
+  };
+  return std::move(*std::ranges::max_element(tries, thinner));
+}
+
+double shortOfRing(const sim::HairMeshShape& hair, const Scalp& scalp, std::span<const HairTie> ties) {
+  std::vector<int> of;
+  const sim::HairMeshShape parted = divided(hair, scalp, ties, of);
+  const BodyDistance none;
+  std::vector<Gathering> gatherings;
+  for (const HairTie& tie : ties) gatherings.emplace_back(tie, scalp, none);
+  const auto root = [&](std::size_t c) { return parted.positions[parted.column_first[c]]; };
+  for (std::size_t c = 0; c < of.size(); ++c)
+    if (of[c] >= 0) gatherings[static_cast<std::size_t>(of[c])].addRoot(root(c));
+  double most = 0;
+  for (std::size_t c = 0; c < of.size(); ++c) {
+    if (of[c] < 0) continue;
+    const double way = wayLength(gatherings[static_cast<std::size_t>(of[c])], root(c));
+    most = std::max(most, way - columnLength(parted, static_cast<int>(c)));
+  }
+  return most;
 }
 
 std::vector<Vec3> ringPlaces(const sim::HairMeshShape& tied, const Scalp& scalp, std::span<const HairTie> ties,

@@ -33,4 +33,7 @@ enum class Seams { kClosed, kOpen };
 TiedHair tieHair(const sim::HairMeshShape& hair, const Scalp& scalp, const BodyDistance& body,
                  std::span<const HairTie> ties, Seams seams = Seams::kClosed);
 
+// By how much (m) the hair that lacks most ends before the ring that takes it; 0: all of it reaches.
+double shortOfRing(const sim::HairMeshShape& hair, const Scalp& scalp, std::span<const HairTie> ties);
+
 }  // namespace app
