@@ -1,7 +1,6 @@
 #include "app/files/file_kind.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <filesystem>
 #include <fstream>
@@ -10,27 +9,16 @@
 
 #include "app/figure/attachment.h"
 #include "app/files/errors.h"
+#include "app/files/json_kind.h"
 #include "app/files/json_reader.h"
 #include "app/files/polygon_file.h"
 #include "app/files/text_file.h"
 #include "app/groom/formats/groom_bytes.h"
 #include "app/groom/groom_file.h"
-#include "sim/field_text.h"
 
 namespace app {
 
 namespace {
-
-// By a key that a preset has not, or one that was meant to be "characters".
-bool looksLikeScene(const nlohmann::json& text) {
-  if (!text.is_object()) return false;
-  static constexpr std::array<std::string_view, 9> kKeys{"characters", "camera", "playback", "preset", "name",
-                                                         "sim",        "hair",   "light",    "view"};
-  return std::ranges::any_of(text.items(), [](const auto& item) {
-    const std::string_view near = sim::nearestName(item.key(), kKeys);
-    return std::find(kKeys.begin(), kKeys.begin() + 4, near) != kKeys.begin() + 4;
-  });
-}
 
 constexpr std::size_t kTitleBytes = 15;  // of a state and of a cache
 
@@ -60,8 +48,14 @@ FileKind fileKind(const std::string& file) {
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
   if (ending == ".json") {
     const nlohmann::json text = parseJson(readText(file), file);
-    if (text.is_object() && text.contains("hairmesh-project")) return FileKind::kProject;
-    return looksLikeScene(text) ? FileKind::kScene : FileKind::kPreset;
+    switch (jsonKind(JsonPlace(text, file))) {
+      case JsonKind::kProject:
+        return FileKind::kProject;
+      case JsonKind::kScene:
+        return FileKind::kScene;
+      case JsonKind::kPreset:
+        return FileKind::kPreset;
+    }
   }
   if (ending == ".obj") return kindOfStillMesh(file);
   if (ending == ".mot") return FileKind::kRigidMotion;

@@ -69,7 +69,7 @@ json parseJson(std::string_view text, const std::string& file) {
 }
 
 void JsonPlace::refuse(const std::string& fault, const std::string& mend) const {
-  throw InputError(file_, pointer_.empty() ? "/" : pointer_, fault, mend);
+  throw InputError(file_, pointer_, fault, mend);
 }
 
 bool JsonPlace::has(const std::string& key) const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/files/data_path.h"
+#include "app/files/json_kind.h"
 #include "app/files/text_file.h"
 #include "sim/field_text.h"
 
@@ -141,7 +142,7 @@ json writeSceneRows(const SceneLook& look, bool light, bool all) {
 void applyPreset(std::string_view text, const std::string& file, const PresetTarget& target) {
   const json parsed = parseJson(text, file);
   const JsonPlace place(parsed, file);
-  place.expectObject({"name", "sim", "hair", "light", "view"});
+  expectTopKeys(place, JsonKind::kPreset);
   if (place.has("name")) place.at("name").text();
   sim::SimParams params = *target.sim;
   SceneLook scene = *target.scene;
@@ -175,7 +176,7 @@ void loadPreset(const std::string& file, const PresetTarget& target) {
 PresetSections presetSections(const std::string& file) {
   const json parsed = parseJson(readText(file, kLargestPreset), file);
   const JsonPlace place(parsed, file);
-  place.expectObject({"name", "sim", "hair", "light", "view"});
+  expectTopKeys(place, JsonKind::kPreset);
   const auto sets = [&](const char* section) { return place.has(section) && !place.at(section).value().empty(); };
   return {sets("sim"), sets("hair"), sets("light"), sets("view")};
 }

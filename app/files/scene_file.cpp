@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/files/data_path.h"
+#include "app/files/json_kind.h"
 #include "app/files/json_reader.h"
 #include "app/files/presets.h"
 #include "app/files/text_file.h"
@@ -56,9 +57,7 @@ json writeMaps(FieldFiles maps) {
 }
 
 CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
-  place.expectObject({"motion", "parts", "clip", "style", "resolution", "hair", "reverse_faces", "fit", "mends",
-                      "position", "heading", "clip_offset", "loop", "look", "pins", "ties", "attachments", "maps",
-                      "curves"});
+  place.expectObject(kCharacterKeys);
   CharacterSpec spec;
   spec.look = look;
   spec.motion =
@@ -176,7 +175,7 @@ std::string namedPreset(const JsonPlace& place, const std::string& scene_file) {
 Scene readScene(std::string_view text, const std::string& file) {
   const json parsed = parseJson(text, file);
   const JsonPlace place(parsed, file);
-  place.expectObject({"name", "characters", "camera", "light", "view", "sim", "playback", "preset"});
+  expectTopKeys(place, JsonKind::kScene);
   Scene scene;
   scene.file = file;
   scene.name = place.has("name") ? place.at("name").text() : stem(file);

@@ -13,6 +13,7 @@
 
 #include "app/files/errors.h"
 #include "app/files/folder_list.h"
+#include "app/files/json_kind.h"
 #include "app/files/json_reader.h"
 #include "app/files/output_file.h"
 #include "app/files/text_file.h"
@@ -30,7 +31,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr double kKeepEvery = 20;  // s
-constexpr const char* kKey = "hairmesh-project";
+const std::string kKey(kProjectKey);
 
 std::string hex(std::uint64_t value) {
   char text[17];
@@ -114,15 +115,16 @@ namespace {
 json parseProject(const std::string& file) {
   json parsed = parseJson(readText(file), file);
   const JsonPlace place(parsed, file);
-  if (!parsed.is_object() || !place.has(kKey)) place.refuse("is no project", "give a file that Save project wrote");
+  if (jsonKind(place) == JsonKind::kProject) expectTopKeys(place, JsonKind::kProject);
+  if (!place.has(kKey)) place.refuse("is no project", "give a file that Save project wrote");
   const double version = place.at(kKey).number(1, 1e6);
   if (version > kProjectVersion)
     place.refuse("is a project of version " + std::to_string(static_cast<int>(version)) +
                      ", newer than this program's " + std::to_string(kProjectVersion),
                  "open it with the program that saved it, or a newer one");
-  place.expectObject({kKey, "scene", "binary", "checksum"});
-  for (const char* key : {"scene", "binary", "checksum"}) {
-    if (!place.has(key)) place.refuse(std::string("lacks \"") + key + "\"", "save it anew");
+  expectTopKeys(place, JsonKind::kProject);
+  for (const std::string_view key : kProjectKeys) {
+    if (!place.has(std::string(key))) place.refuse("lacks \"" + std::string(key) + "\"", "save the project anew");
   }
   return parsed;
 }

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
+#include "app/files/json_kind.h"
 #include "app/files/presets.h"
 #include "app/files/text_file.h"
 
@@ -76,7 +78,7 @@ TEST(SceneFile, FaultsNameFilePlaceAndMend) {
       {"", "line 1", ""},
       {"[", "line 1", ""},
       {"{}", "scene.json", "characters"},
-      {"[]", "/", "{ ... }"},
+      {"[]", "scene.json", "{ ... }"},
       {R"({"characters": []})", "/characters", "add a character"},
       {R"({"characters": 3})", "/characters", "[ ... ]"},
       {R"({"charcters": []})", "charcters", "'characters'"},
@@ -111,6 +113,47 @@ TEST(SceneFile, FaultsNameFilePlaceAndMend) {
     EXPECT_NE(fault.find(c.place), std::string::npos) << c.text << "\n  -> " << fault;
     EXPECT_NE(fault.find(c.mend), std::string::npos) << c.text << "\n  -> " << fault;
     EXPECT_LT(fault.size(), 1200u) << c.text;
+  }
+}
+
+// By its content, whatever it is called; and a key in a wrong place is told where it belongs.
+TEST(SceneFile, AJsonFileIsToldByItsKeys) {
+  struct Case {
+    const char* text;
+    app::JsonKind kind;
+    const char *fault, *mend;
+  };
+  using enum app::JsonKind;
+  const Case cases[] = {
+      {R"({"style": "bob"})", kScene, "key \"style\": belongs to a character", "\"characters\": [{ \"style\": ... }]"},
+      {R"({"ties": [], "motion": "walk.bvh"})", kScene, "key \"motion\"", "\"characters\""},
+      {R"({"styel": "bob"})", kScene, "unknown in a scene", ""},
+      {R"({"characters": [{}], "camra": {}})", kScene, "key \"camra\": is unknown in a scene", "'camera'"},
+      {R"({"characters": [{}], "bend": 1})", kScene, "section \"sim\"", "\"sim\": { \"bend\": ... }"},
+      {R"({"characters": [{}], "curl_radius": 1})", kScene, "a character's look", "\"look\": { \"curl_radius\""},
+      {R"({"bend": 1})", kPreset, "section \"sim\"", "\"sim\": { \"bend\": ... }"},
+      {R"({"sim": {}, "lihgt": {}})", kPreset, "key \"lihgt\": is unknown in a preset", "'light'"},
+      {R"({"name": "plain"})", kPreset, "", ""},
+      {R"({})", kPreset, "", ""},
+      {R"({"hairmesh_project": 1, "scene": {}})", kProject, "unknown in a project", "'hairmesh-project'"},
+  };
+  for (const Case& c : cases) {
+    const nlohmann::json text = app::parseJson(c.text, "file.json");
+    const app::JsonPlace top(text, "file.json");
+    EXPECT_EQ(app::jsonKind(top), c.kind) << c.text;
+    std::string fault;
+    try {
+      app::expectTopKeys(top, c.kind);
+    } catch (const app::InputError& error) {
+      fault = error.what();
+    }
+    EXPECT_NE(fault.find(c.fault), std::string::npos) << c.text << "\n  -> " << fault;
+    EXPECT_NE(fault.find(c.mend), std::string::npos) << c.text << "\n  -> " << fault;
+    EXPECT_EQ(fault.empty(), !*c.fault) << c.text << "\n  -> " << fault;
+  }
+  for (const char* text : {"[]", "3", R"({"settings": {}})"}) {
+    const nlohmann::json value = app::parseJson(text, "file.json");
+    EXPECT_THROW(app::jsonKind(app::JsonPlace(value, "file.json")), app::InputError) << text;
   }
 }
 

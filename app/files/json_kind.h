@@ -1,0 +1,31 @@
+// What a JSON file is by its keys: a scene, a preset or a project; and where a key belongs that stands in the wrong
+// place.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "app/files/json_reader.h"
+
+namespace app {
+
+enum class JsonKind { kScene, kPreset, kProject };
+
+inline constexpr std::string_view kProjectKey = "hairmesh-project";
+inline constexpr std::array<std::string_view, 8> kSceneKeys{"name", "characters", "camera",   "light",
+                                                            "view", "sim",        "playback", "preset"};
+inline constexpr std::array<std::string_view, 19> kCharacterKeys{
+    "motion",  "parts",       "clip", "style", "resolution", "hair", "reverse_faces", "fit",  "mends", "position",
+    "heading", "clip_offset", "loop", "look",  "pins",       "ties", "attachments",   "maps", "curves"};
+inline constexpr std::array<std::string_view, 4> kProjectKeys{kProjectKey, "scene", "binary", "checksum"};
+inline constexpr std::array<std::string_view, 5> kPresetKeys{"name", "sim", "hair", "light", "view"};
+
+// By the keys at its top, misspelt ones too; a file that says nothing is a preset. Throws InputError for what is none
+// of the three.
+JsonKind jsonKind(const JsonPlace& top);
+
+// Refuses keys at the top of a file that its kind does not have: says where they belong, or what the file is.
+void expectTopKeys(const JsonPlace& top, JsonKind kind);
+
+}  // namespace app
