@@ -40,6 +40,7 @@ std::unique_ptr<Loaded> load(LoadOrder order) {
 
 void start(LoadOrder order, Demo& demo) {
   demo.loading.title = order.title;
+  demo.loading.edit = order.edit;
   demo.loading.unwanted = false;
   demo.message = "loading " + order.title;
   demo.message_is_fault = false;
@@ -74,6 +75,7 @@ std::string loadingNote(const Demo& demo) {
 }
 
 void loadLater(LoadOrder order, Demo& demo) {
+  order.edit = demo.edits.next;
   if (demo.loading.running.valid()) {
     demo.loading.waiting = std::move(order);
   } else {
@@ -101,6 +103,7 @@ void installLoaded(Demo& demo) {
   } catch (const std::exception& fault) {
     demo.message = fault.what();
     demo.message_is_fault = true;
+    forgetEdit(loading.edit, demo.edits);
   }
   demo.shown_fraction = -1;  // what was loaded is shown though time may stand still
   if (!demo.loading.waiting) return;

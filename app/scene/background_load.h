@@ -25,20 +25,22 @@ struct LoadOrder {
   int actor = 0;             // that `spec` replaces
   bool same_motion = false;  // it goes on where the old one is in its clip
   Playback playback;         // of the old one when the order was given
+  long edit = 0;             // number of the step that asks for it
 };
 
 struct BackgroundLoad {
   bool on = false;
   std::optional<LoadOrder> waiting;  // the latest one given while another is being loaded
-  std::string title;      // of what `running` brings
-  bool unwanted = false;  // it is dropped when it comes: what asked for it was undone
+  std::string title;                 // of what `running` brings
+  long edit = 0;                     // and number of the step that asked for it
+  bool unwanted = false;             // it is dropped when it comes: what asked for it was undone
   std::future<std::unique_ptr<Loaded>> running;
 };
 
 // What is being loaded, in words; empty when nothing is.
 std::string loadingNote(const Demo& demo);
 
-// Starts loading, or lets the order wait in place of one that waits already.
+// Starts loading for the step that is being applied, or lets the order wait in place of one that waits already.
 void loadLater(LoadOrder order, Demo& demo);
 
 // Puts in place what has been loaded, if anything has; a fault becomes the demo's message and changes nothing else.

@@ -266,12 +266,20 @@ void commitEdit(EditStep step, EditHistory& history) {
     return;
   }
   history.steps.resize(history.done);
+  step.number = history.next++;
   history.steps.push_back(std::move(step));
   std::size_t bytes = 0, keep = history.steps.size();
   while (keep > 0 && (bytes += history.steps[keep - 1].other.bytes()) <= kMaxEditBytes) --keep;
   keep = std::min(keep, history.steps.size() - 1);
   history.steps.erase(history.steps.begin(), history.steps.begin() + static_cast<std::ptrdiff_t>(keep));
   history.done = history.steps.size();
+}
+
+void forgetEdit(long number, EditHistory& history) {
+  const auto at = std::ranges::find(history.steps, number, &EditStep::number);
+  if (at == history.steps.end()) return;
+  history.done -= at - history.steps.begin() < static_cast<std::ptrdiff_t>(history.done);
+  history.steps.erase(at);
 }
 
 void undoEdits(int count, Demo& demo) {

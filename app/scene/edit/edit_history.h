@@ -46,12 +46,14 @@ struct EditStep {
   std::string title;  // "Density 80"
   Request request;
   EditSide other;
+  long number = 0;  // of the history's steps, in order
 };
 
 struct EditHistory {
   std::vector<EditStep> steps;  // the first `done` ones are done, the others undone
   std::size_t done = 0;
   bool gesture = false;  // the last step goes on: a slider that is dragged makes one step
+  long next = 1;         // number of the step after all that there were
 };
 
 // Older steps are dropped beyond this.
@@ -62,8 +64,11 @@ std::optional<EditStep> beginEdit(const Request& request, const Demo& demo);
 // After it has been applied without a fault. What was undone before it is gone.
 void commitEdit(EditStep step, EditHistory& history);
 
-// Goes `count` steps back or on. Throws InputError where there are none; then nothing has changed. Files that a step
-// names are read again: where that fails, the step stays as it is.
+// Takes a step out that has changed nothing after all: what it asked for could not be loaded.
+void forgetEdit(long number, EditHistory& history);
+
+// Goes `count` steps back or on; where there are none, a notice says so. Files that a step names are read again: where
+// that fails, it throws and the step stays as it is.
 void undoEdits(int count, Demo& demo);
 void redoEdits(int count, Demo& demo);
 

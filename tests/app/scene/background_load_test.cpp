@@ -133,6 +133,27 @@ TEST(BackgroundLoad, AFaultIsToldAndChangesNothing) {
   EXPECT_NE(demo.message.find("broken.bvh"), std::string::npos) << demo.message;
   EXPECT_EQ(demo.actors[0].id, old);
   EXPECT_FALSE(demo.loading.running.valid());
+  EXPECT_TRUE(demo.edits.steps.empty()) << "there is nothing to undo";
+}
+
+TEST(BackgroundLoad, AFaultTakesItsOwnStepOutOfTheHistory) {
+  Demo demo = walking();
+  const std::string file = test::freshFolder("background_step") + "/broken.bvh";
+  std::ofstream(file) << "HIERARCHY\nROOT a\n{";
+  demo.requests = {{Ask::kSetParam, "density", "70"}, {Ask::kEndGesture, "", ""}, {Ask::kMotionFile, "", file}};
+  frames(1, demo);
+  demo.requests = {{Ask::kSetParam, "friction", "0.4"}};
+  frames(1, demo);
+  if (demo.loading.running.valid()) demo.loading.running.wait();
+  frames(2, demo);
+  ASSERT_TRUE(demo.message_is_fault);
+  ASSERT_EQ(demo.edits.steps.size(), 2u);
+  EXPECT_EQ(demo.edits.done, 2u);
+  EXPECT_EQ(demo.edits.steps[0].request.name, "density");
+  EXPECT_EQ(demo.edits.steps[1].request.name, "friction");
+  demo.requests = {{Ask::kUndo, "", "", 2}};
+  frames(1, demo);
+  EXPECT_EQ(demo.scene.sim.density, sim::SimParams{}.density);
 }
 
 }  // namespace background_load_test
