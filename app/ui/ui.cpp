@@ -20,6 +20,7 @@ constexpr float kLeastFigure = 360;   // width beside the sidebar that hair and 
 constexpr float kTextHeight = 15;     // of a row of buttons, see prepareUi
 constexpr float kLeastSheet = 176;    // height that rows of buttons and tabs ask for
 constexpr float kSceneBoxFrom = 430;  // width of a sheet with room for the scenes beside its buttons
+constexpr float kFilesFrom = 560;     // and with room for the row of files there, and the scenes beside its tabs
 constexpr float kAmpleWidth = 340;    // between sidebar and timings; with less the timings begin folded
 constexpr float kLeastBetween = 240;  // the same; with less the timings are in the Debug tab
 constexpr double kMessageTime = 6;    // s; faults stay until clicked
@@ -69,6 +70,27 @@ void sceneRow(Demo& demo, UiState& ui) {
   sceneBox(demo, ui);
 }
 
+void fileRow(Demo& demo, UiState& ui) {
+  const EditHistory& edits = demo.edits;
+  const int pressed = segments("file",
+                               {{"Open", "Opens a scene, a project, hair, a figure or a motion"},
+                                {"Save", "Saves the scene, or a project with the hair as it is"},
+                                {"Undo", "Takes the last change back (Ctrl+Z)", edits.done > 0},
+                                {"Redo", "Makes it again (Ctrl+Y)", edits.done < edits.steps.size()},
+                                {"History", "Lists all changes, to go to any of them"}},
+                               ui.history ? 4 : -1, ui);
+  if (pressed == 0) browseFor(BrowseFor::kOpen, ui);
+  if (pressed == 1) browseFor(BrowseFor::kSaveScene, ui);
+  if (pressed == 2) postRequest(demo, {Ask::kUndo, "", "", 1});
+  if (pressed == 3) postRequest(demo, {Ask::kRedo, "", "", 1});
+  if (pressed == 4) ui.history = !ui.history;
+}
+
+// Whether a sheet is so wide that its buttons and files stand in one row. Within its window.
+bool filesBeside(const UiState& ui) {
+  return narrow(ui) && ui.unfolded && ImGui::GetContentRegionMax().x >= kFilesFrom * ui.text_scale;
+}
+
 void transportRow(Demo& demo, UiState& ui) {
   const auto next = [] { ImGui::SameLine(0, 4); };
   if (iconButton(demo.paused ? Icon::kPlay : Icon::kPause, "pause", demo.paused ? "Go on (Space)" : "Pause (Space)",
@@ -106,23 +128,7 @@ void transportRow(Demo& demo, UiState& ui) {
   const float higher = ImGui::GetItemRectSize().y - ImGui::GetFrameHeight();
   next();
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 0.5f * higher);
-  sceneBox(demo, ui);
-}
-
-void fileRow(Demo& demo, UiState& ui) {
-  const EditHistory& edits = demo.edits;
-  const int pressed = segments("file",
-                               {{"Open", "Opens a scene, a project, hair, a figure or a motion"},
-                                {"Save", "Saves the scene, or a project with the hair as it is"},
-                                {"Undo", "Takes the last change back (Ctrl+Z)", edits.done > 0},
-                                {"Redo", "Makes it again (Ctrl+Y)", edits.done < edits.steps.size()},
-                                {"History", "Lists all changes, to go to any of them"}},
-                               ui.history ? 4 : -1, ui);
-  if (pressed == 0) browseFor(BrowseFor::kOpen, ui);
-  if (pressed == 1) browseFor(BrowseFor::kSaveScene, ui);
-  if (pressed == 2) postRequest(demo, {Ask::kUndo, "", "", 1});
-  if (pressed == 3) postRequest(demo, {Ask::kRedo, "", "", 1});
-  if (pressed == 4) ui.history = !ui.history;
+  filesBeside(ui) ? fileRow(demo, ui) : sceneBox(demo, ui);
 }
 
 // When a widget is let go that has asked for something, its gesture is over.
@@ -191,8 +197,9 @@ float takenRight(const UiState& ui) {
   const bool open = shown_before ? !ui.timings_folded : room >= kAmpleWidth * ui.text_scale;
   const bool timed = ui.visible && !folded(ui) && open && timingsBeside(ui);
   const float timings = timed ? (kTimingsWidth + kMargin) * ui.text_scale : 0;
-  // A history that takes more than half of the window lies over the figure.
-  const bool history = ui.visible && ui.history && ui.history_width < 0.5f * ImGui::GetIO().DisplaySize.x;
+  // A history that takes more than half of the window lies over the figure; one no higher than the sheet beside it.
+  const bool history = ui.visible && ui.history && ui.history_width < 0.5f * ImGui::GetIO().DisplaySize.x &&
+                       !(sheet(ui) && ui.history_height <= sidebarHeight(ui) + 2 * kMargin * ui.text_scale);
   return std::max(timings, history ? ui.history_width : 0);
 }
 
@@ -209,7 +216,17 @@ float takenBelow(const Demo& demo, const UiState& ui) {
   return std::max(taken, std::min(ui.fault_height, 0.8f * ImGui::GetIO().DisplaySize.y));
 }
 
+// At the right of the row of tabs.
+void sceneBesideTabs(Demo& demo, UiState& ui) {
+  constexpr float kShare = 0.5f;  // of the row
+  const ImVec2 at = ImGui::GetCursorPos();
+  ImGui::SetCursorPosX(at.x + kShare * ImGui::GetContentRegionAvail().x);
+  sceneBox(demo, ui);
+  ImGui::SetCursorPos(at);
+}
+
 void tabs(Demo& demo, UiState& ui) {
+  if (filesBeside(ui)) sceneBesideTabs(demo, ui);
   if (!ImGui::BeginTabBar("tabs")) return;
   int index = 0;
   for (const Tab& tab : kTabs) {
@@ -240,7 +257,7 @@ void sidebar(Demo& demo, UiState& ui, float below) {
     if (!narrow(ui)) sceneRow(demo, ui);
     transportRow(demo, ui);
     if (!folded(ui)) {
-      fileRow(demo, ui);
+      if (!filesBeside(ui)) fileRow(demo, ui);
       characterRow(demo, ui);
       if (!sheet(ui)) ImGui::Spacing();
       tabs(demo, ui);

@@ -193,7 +193,8 @@ bool section(const char* title, bool open_at_first) {
 std::string fileCombo(const char* name, const std::string& shown, const std::vector<std::string>& files, UiState& ui) {
   std::string chosen;
   ImGui::SetNextItemWidth(-1);
-  const bool open = ImGui::BeginCombo(name, shown.c_str());
+  const bool of_list = std::ranges::any_of(files, [&](const std::string& file) { return stem(file) == shown; });
+  const bool open = ImGui::BeginCombo(name, (of_list ? readable(shown) : shown).c_str());
   noteItem(name, ui);
   if (!open) return chosen;
   for (const std::string& file : files) {

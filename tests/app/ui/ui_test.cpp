@@ -399,6 +399,23 @@ TEST_F(Panels, EverythingIsReachedInSmallWindows) {
   EXPECT_EQ(app::fittingTextScale(1, 100, 100), 0.5f);
 }
 
+// The rows of buttons, files and tabs leave a low window five rows of a tab.
+TEST_F(Panels, ASheetInASmallWindowShowsRowsBelowItsTabs) {
+  ImGui::GetIO().DisplaySize = {640, 480};
+  demo_.timeline.on = true;
+  ui_.unfolded = true;
+  openTab(0);
+  const UiItem *pause = find("pause"), *open = find("file Open"), *tab = find("tab Debug"), *scene = find("scene"),
+               *vary = find("vary");
+  ASSERT_TRUE(pause && open && tab && scene && vary);
+  EXPECT_LT(std::abs(open->y - pause->y), 8);
+  EXPECT_LT(std::abs(scene->y - tab->y), 4);
+  EXPECT_FALSE(overlap(*scene, *tab));
+  const ImRect sheet = ImGui::FindWindowByName("sidebar")->Rect();
+  EXPECT_LT(vary->y + vary->height, sheet.Max.y);
+  EXPECT_TRUE(asked(click("file Open"), Ask::kOpenFile) || ui_.browser.what == app::BrowseFor::kOpen);
+}
+
 TEST_F(Panels, OneVariationReplacesTheLastUntilItIsKept) {
   openTab(0);
   const auto press = [&](const char* name) {
