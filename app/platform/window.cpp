@@ -91,6 +91,7 @@ struct Session {
   Demo& demo;
   UiState& ui;
   InputQueue input = {};
+  PartGlide glide = {};  // of the figure's part of the window
   double mouse_x = 0, mouse_y = 0;
   double light_x = 0, light_y = 0;  // where a drag of the key light began
   render::Float3 light_from{};      // the way to it there
@@ -266,23 +267,23 @@ void followTextScale(GLFWwindow* window, double asked, Session& s) {
 
 // The figure stands in the middle of what panels leave free, and glides there unless `at_once`; while something is
 // dragged over the picture it stays where it is. What is recorded has no panels, and neither has the window then a part
-// that they take.
-void leaveFree(GLFWwindow* window, const Demo& demo, const UiState& ui, bool at_once, PartGlide& glide,
-               FrameTarget& target) {
+// that they take. Returns whether it is on its way.
+bool leaveFree(GLFWwindow* window, bool at_once, Session& s, FrameTarget& target) {
   int width = 1, height = 1;
   glfwGetWindowSize(window, &width, &height);
-  if (width < 1 || demo.capture.recording) {
-    target.free = glide.to({}, now(), true);
-    return;
+  if (width < 1 || s.demo.capture.recording) {
+    target.free = s.glide.to({}, now(), true);
+    return false;
   }
-  if (ui.brush.stroking || ui.line_held || ui.light_held) {
-    target.free = glide.stay(now());
-    return;
+  if (s.ui.brush.stroking || s.ui.line_held || s.ui.light_held) {
+    target.free = s.glide.stay(now());
+    return false;
   }
   ImVec2& size = ImGui::GetIO().DisplaySize;
   const ImVec2 before = std::exchange(size, {static_cast<float>(width), static_cast<float>(height)});
   const bool resized = before.x != size.x || before.y != size.y;
-  target.free = glide.to(freePart(demo, ui), now(), at_once || resized || demo.frames <= kFirstFrames);
+  target.free = s.glide.to(freePart(s.demo, s.ui), now(), at_once || resized || s.demo.frames <= kFirstFrames);
+  return !s.glide.arrived();
 }
 
 // How long the next frame is. Runs of a given number of frames and recordings go by frames, all else by the clock.
@@ -421,7 +422,6 @@ int runWindow(Scene scene, const Options& options) {
   PictureWriter pictures;
   const auto reload = [&] { return reloadSavedShaders(now(), watch, renderer, demo); };
   RedrawThrottle throttle;
-  PartGlide glide;
   HairRecorder hair(demo.scene.playback.fps);
   double last = now();
   int frame = 0;
@@ -435,8 +435,7 @@ int runWindow(Scene scene, const Options& options) {
     watch.reload_all = std::exchange(ui.reload_shaders, false);
     if (reload()) throttle.disturb();
     glfwGetFramebufferSize(window.handle, &target.width, &target.height);
-    leaveFree(window.handle, demo, ui, repeats(options), glide, target);
-    if (!glide.arrived()) throttle.disturb();
+    if (leaveFree(window.handle, repeats(options), callbacks, target)) throttle.disturb();
     const double seconds = frameSeconds(options, demo, last);
     advanceFrame(demo, tape.turn(frame, frame == 0 && options.load_state.empty() ? 0 : seconds, demo), target);
     presets_coming = presets.work(demo, ui);

@@ -84,13 +84,13 @@ void changeMends(const std::string& mends, Demo& demo) {
   GroomMends checked;
   if (const std::string fault = readMends(mends, checked); !fault.empty()) throw InputError("", "mends", fault, "");
   spec.mends = mends;
-  recast(spec, true, "hair mended", demo);
+  recast(spec, true, "mended hair", demo);
 }
 
 void changeTies(const std::string& text, Demo& demo) {
   CharacterSpec spec = selectedActor(demo).spec;
   spec.ties = tiesFromText(text);
-  recast(spec, true, spec.ties.empty() ? "ties taken off" : "hair tied", demo);
+  recast(spec, true, spec.ties.empty() ? "hair without ties" : "hair with " + tieTitle(spec.ties), demo);
 }
 
 void changeAttachments(const Request& request, Demo& demo) {
@@ -105,7 +105,8 @@ void changeAttachments(const Request& request, Demo& demo) {
     selectedActor(demo).spec.attachments = spec.attachments;
     return;
   }
-  recast(spec, true, spec.attachments.empty() ? "attachments taken off" : "wears " + stem(spec.attachments.back().file),
+  recast(spec, true,
+         spec.attachments.empty() ? "hair with nothing over it" : "hair with " + stem(spec.attachments.back().file),
          demo);
 }
 

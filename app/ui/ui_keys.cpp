@@ -37,7 +37,7 @@ constexpr KeyHelp kKeyHelp[] = {
     {"Ctrl +  -  0", "larger or smaller texts, as they were"},
     {"Tab", "hide or show the panels"},
     {"?  F1", "this list"},
-    {"Esc", "close what is open; pressed twice, leave"},
+    {"Esc", "close what is open, let go of a brush; pressed twice, leave"},
     {"left drag", "orbit"},
     {"right drag", "pan"},
     {"Ctrl left drag", "turn the key light"},
@@ -74,12 +74,21 @@ void changeSpeed(double factor, Demo& demo) {
 
 constexpr const char* kLeaving = "Esc again leaves; what was not saved is lost";
 
-// Closes what lies over the others, one thing at a press; then asks; then leaves, as long as the question stands.
+// Puts brush and selection down. Returns whether there were any.
+bool letGo(UiState& ui) {
+  const bool held = ui.brush.tool >= 0 || ui.brush.field >= 0 || ui.select.element >= 0;
+  ui.brush.tool = ui.brush.field = -1;
+  if (ui.select.element >= 0) chooseElement(-1, ui);
+  return held;
+}
+
+// Closes what lies over the others, one thing at a press, and lets go of what is in hand; then asks; then leaves, as
+// long as the question stands.
 void pressEscape(Demo& demo, UiState& ui) {
   if (std::exchange(ui.help, false)) return;
   if (std::exchange(ui.browser.what, BrowseFor::kNothing) != BrowseFor::kNothing) return;
   if (demo.message_is_fault && !demo.message.empty()) return demo.message.clear();
-  if (std::exchange(ui.history, false)) return;
+  if (letGo(ui) || std::exchange(ui.history, false)) return;
   ui.quit = std::exchange(ui.leaving, true) && demo.message == kLeaving;
   demo.message = kLeaving;
   demo.message_is_fault = false;

@@ -95,6 +95,12 @@ TEST_F(Notices, EscapeClosesWhatIsOpenAndLeavesWhileItsQuestionStands) {
   demo_.message_is_fault = true;
   app::pressKey(app::kKeyEscape, demo_, ui_);
   EXPECT_TRUE(demo_.message.empty());
+  for (const int tool : {'G', 'X'}) {
+    app::pressKey(tool, demo_, ui_);
+    app::pressKey(app::kKeyEscape, demo_, ui_);
+    EXPECT_TRUE(ui_.brush.tool < 0 && ui_.select.element < 0) << tool;
+    EXPECT_TRUE(ui_.history) << "one thing at a press";
+  }
   app::pressKey(app::kKeyEscape, demo_, ui_);
   EXPECT_FALSE(ui_.history);
   app::pressKey(app::kKeyEscape, demo_, ui_);
