@@ -188,10 +188,11 @@ class PcgRun {
   }
 
   // By the preconditioner's norm of the residual, which may be less than the energy norm of the error by an order, or
-  // by the estimate of that norm.
+  // by the estimate of that norm. In single precision factors of very uneven hair may come out indefinite: a negative
+  // square is no norm, and directions stay conjugate all the same.
   bool withinTolerance() const {
     const double bound = stop_.relative * stop_.relative;
-    if (!(s_.square > kNormShare * bound * s_.first_square)) return true;
+    if (s_.square >= 0 && !(s_.square > kNormShare * bound * s_.first_square)) return true;
     if (!(rate_ < 1)) return false;
     const double left = gain_ * rate_ / (1 - rate_);
     return left <= bound * std::min(s_.gained + left, stop_.most_first);

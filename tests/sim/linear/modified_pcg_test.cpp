@@ -231,5 +231,40 @@ TEST(ModifiedPcg, StopsByEachOfItsRules) {
   EXPECT_EQ(x.norm(), 0);
 }
 
+// A preconditioner that is symmetric and not positive: blocks of every `period`-th vertex are turned round.
+struct TurnedBlocks {
+  bench::Preconditioner<double> blocks;
+  std::size_t period;
+  void apply(std::span<const V3<double>> r, std::span<V3<double>> z) {
+    blocks.apply(r, z);
+    for (std::size_t i = 0; i < z.size(); i += period) z[i] = -1.0 * z[i];
+  }
+};
+
+// Rounding leaves factors of very uneven hair indefinite. The residual's square by them may be negative, and says
+// nothing about what is left to solve.
+TEST(ModifiedPcg, ANegativeSquareIsNoConvergence) {
+  const System system(0.004);
+  const BlockMatrix<double> a = system.matrixAt<double>(system.positions);
+  const Eigen::MatrixXd dense = test::dense(a);
+  test::Random random(47);
+  const Problem p = makeProblem(system, -1, random);
+  const Eigen::VectorXd exact = denseSolution(dense, p);
+  for (const std::size_t period : {1u, 2u}) {
+    TurnedBlocks turned{system.preconditioner(a, Kind::kBlockJacobi), period};
+    sim::SolverScratch<double> scratch;
+    scratch.resize(static_cast<int>(p.rhs.size()));
+    auto x = test::plain<double>(p.guess);
+    sim::StopRule<double> stop;
+    stop.relative = 1e-9;
+    stop.max_iterations = 5000;
+    const auto report = sim::solveModifiedPcg<double>(productWith<double>(a), test::plain<double>(p.rhs),
+                                                      filterOf<double>(p), turned, stop, scratch, x);
+    EXPECT_TRUE(report.converged) << period;
+    EXPECT_GT(report.iterations, 1) << period;
+    EXPECT_LT(energyNorm(dense, test::stacked<double>(x) - exact), 1e-6 * energyNorm(dense, exact)) << period;
+  }
+}
+
 }  // namespace modified_pcg_test
 }  // namespace tests
