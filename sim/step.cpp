@@ -171,6 +171,17 @@ void rootsFollowScalp(const StepInput& input, const StepBase& base, const HairMe
   }
 }
 
+enum class ContactVelocity { kOfSolve, kOfWay };
+
+// Contacts have the velocity of their way in a step, a solve those that bring each vertex there by the step's end.
+void setContactVelocities(ContactVelocity as, const StepBase& base, double dt, HairState& state) {
+  for (Contact& contact : state.contacts) {
+    Vec3& v = contact.velocity;
+    const Vec3 ahead = base.x_hat[contact.vertex] - state.positions[contact.vertex];
+    v = as == ContactVelocity::kOfSolve ? Vec3(dt / base.h * v - ahead / base.h) : base.h / dt * v + ahead / dt;
+  }
+}
+
 void solveVelocities(const SimParams& params, const StepBase& base, SolveMemory& memory, Parts& parts, HairState& state,
                      StepReport& report) {
   const auto solve = [&](auto& solver) {
@@ -326,7 +337,9 @@ StepReport advance(const HairMesh& mesh, const SimParams& asked, const StepInput
   rootsFollowScalp(input, base, mesh, state);
   parts.clock.spent(kStageOther, report);
   // Forces (1), (2) and Hessians; implicit solve by Modified PCG (BW 16).
+  setContactVelocities(ContactVelocity::kOfSolve, base, dt, state);
   solveVelocities(params, base, state.memory.solve, parts, state, report);
+  setContactVelocities(ContactVelocity::kOfWay, base, dt, state);
   report.solve_cut = !report.converged && params.max_iterations < asked.max_iterations;
   integratePositions(input, base, dt, mesh, parts, state);
   const TakenStep taken = takenStep(params, base, dt, parts);

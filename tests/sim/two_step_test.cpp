@@ -136,4 +136,37 @@ TEST(TwoStep, CorrectedVerticesAndTheirFollowersGoOnAtTheirVelocity) {
   }
 }
 
+// A ball pushes hair aside and stops within a step. The step before still moves, and the contact holds all the same:
+// its vertices go where the ball carries them, as roots do with the scalp.
+TEST(TwoStep, VerticesThatStickStopWithTheirBody) {
+  sim::SimParams params;
+  params.integrator = sim::Integrator::kBdf2;
+  params.friction = 2;
+  Hair hair(test::combedShape(test::mixedPatch(5, 0.25)), params);
+  constexpr double kStep = 1.0 / 240, kSpeed = 0.1;
+  sim::Ellipsoid ball;
+  ball.radii = Vec3::Constant(0.1);
+  ball.center = Vec3(-0.14, -0.15, 0);
+  int stuck = 0;
+  double strayed = 0;  // m along the surface, in the step of the stop
+  for (int n = 0; n < 240; ++n) {
+    const bool last = n == 239;
+    ball.velocity = last ? Vec3::Zero() : Vec3(kSpeed, 0, 0);
+    ball.center += kStep * ball.velocity;
+    hair.bodies = {ball};
+    const std::vector<Vec3> start = hair.state.positions;
+    hair.step(kStep);
+    if (!last) continue;
+    for (const sim::Contact& contact : hair.state.contacts) {
+      if (!contact.sticks) continue;
+      const Vec3 moved = hair.state.positions[contact.vertex] - start[contact.vertex];
+      strayed = std::max(strayed, (moved - moved.dot(contact.normal) * contact.normal).norm());
+      ++stuck;
+    }
+  }
+  std::printf("%d vertices stick, and stray by at most %.1e m\n", stuck, strayed);
+  EXPECT_GT(stuck, 0);
+  EXPECT_LT(strayed, 0.01 * kStep * kSpeed);
+}
+
 }  // namespace two_step_test
