@@ -23,6 +23,7 @@ constexpr double kWindow = 2, kHurry = 5;       // s, and times its pace: see Pa
 constexpr int kIdleWindows = 5;                 // in a row, of hair that is not coming
 constexpr double kShortest = 4, kLongest = 60;  // s, of a case's rounds
 constexpr double kSmallestEnergy = 0.05;        // of the hair's weight times its length
+constexpr int kSolved = 300;                    // iterations, with which the solves of most draws end
 
 // MiB of the process that are in memory.
 double residentMemory() {
@@ -168,9 +169,8 @@ struct Rest {
 
 // Very soft hair has more rest shapes than one: another counts as a rest if its energy is no higher than the
 // reference hair's.
-bool restsNoHigher(Hair& reference, const EnergyWatch& watch, Run& run) {
-  const double rest = energyOf(run, reference);
-  return watch.last - rest <= kEnergyTolerance * kSmallestEnergy * weightOf(run);
+bool restsNoHigher(Hair& reference, double energy, const Run& run) {
+  return energy - energyOf(run, reference) <= kEnergyTolerance * kSmallestEnergy * weightOf(run);
 }
 
 // Head and body stand still. Steps hair and reference hairs until it meets one of them, for `seconds`; with `may_take`,
@@ -210,7 +210,7 @@ bool waitUntilBack(double seconds, bool may_take, std::span<Hair> references, En
       rests[k + 1].update(references[k], dt);
       // Not with the body there: that holds hair up as well.
       if (run.params.collide || run.failed() || std::min(rests[0].seconds, rests[k + 1].seconds) < kRested) continue;
-      if (restsNoHigher(references[k], energy, run)) return run.outcome.other_rest = true;
+      if (restsNoHigher(references[k], energy.last, run)) return run.outcome.other_rest = true;
     }
     if (pacer.hopeless(run, references, dt, until - run.around.time())) return false;
   }
@@ -221,6 +221,34 @@ void addReference(const Run& run, std::vector<Hair>& references) {
   Hair& reference = references.emplace_back(run.hair.mesh);
   reference.context.safetyNets() = run.one.nets;
   reference.state = sim::restState(run.hair.mesh, run.around.head());
+}
+
+// Which of its rests soft hair comes to from the rest shape depends on what its solves leave undone, the rests do not:
+// forces balance there. So hair that rests elsewhere than a reference of unfinished solves is held against one whose
+// solves are finished. It must rest no higher, and truly: pushed at the speed below which hair counts as at rest, and
+// with finished solves, it comes back to its place.
+bool restsAsSolved(Run& run) {
+  sim::SimParams params = run.params;
+  params.max_iterations = std::max(params.max_iterations, kSolved);
+  const double dt = run.one.pace == Pace::kFixed ? run.one.step : sim::SimParams{}.time_step;
+  std::vector<Hair> hairs;
+  addReference(run, hairs);
+  Hair& pushed = hairs.emplace_back(run.hair.mesh);
+  pushed.context.safetyNets() = run.one.nets;
+  pushed.state = run.hair.state;
+  for (int i = 0; i < run.hair.mesh.vertexCount(); ++i) {
+    if (!run.hair.mesh.isRoot(i))
+      pushed.state.velocities[i] += kBack * run.hair.mesh.hair_length / kSoon * run.random.direction();
+  }
+  Rest rests[2];
+  for (double t = 0; t < run.one.release && std::min(rests[0].seconds, rests[1].seconds) < kRested; t += dt) {
+    for (int k = 0; k < 2; ++k) {
+      stepHair(params, run, dt, hairs[k]);
+      rests[k].update(hairs[k], dt);
+    }
+  }
+  const bool rest = std::min(rests[0].seconds, rests[1].seconds) >= kRested;
+  return rest && apart(pushed, run.hair).distance < kBack && restsNoHigher(hairs[0], energyOf(run, pushed), run);
 }
 
 void waitForRest(Run& run) {
@@ -243,6 +271,7 @@ void waitForRest(Run& run) {
     if (run.params.collide) addReference(run, references);
     run.params.collide = false;
     back = waitUntilBack(run.one.release, true, references, energy, run);
+    if (!back && !run.failed() && run.one.returns) back = run.outcome.other_rest = restsAsSolved(run);
   }
   if (back) run.outcome.back_after = run.around.time() - stopped;
   if (!back && !run.failed() && run.one.returns) {
