@@ -12,7 +12,7 @@ namespace {
 constexpr double kWeight = 9.81;            // m/s^2
 constexpr double kStillHair = 0.02;         // m/s: slower hair hangs still, unless it
 constexpr double kOnItsWay = 1;             // s, would in so long go as far as the reference is off
-constexpr double kStillFor = 0.5;           // s
+constexpr double kStillFor = 0.5;           // s, of the hair and of its reference: what falls is slow where it turns
 constexpr double kReferenceStill = 5e-3;    // m/s
 constexpr double kMaxSettling = 60;         // s, after which a reference that goes on swinging is taken as it is
 constexpr double kElsewhere = 0.006;        // of the hair's length: what is nearer to its reference is at home
@@ -47,7 +47,7 @@ void beginReference(const HairMesh& mesh, HairState& state) {
     reference.positions[i] = mesh.isRoot(i) ? state.positions[i] : Vec3(head * mesh.shape.positions[i]);
     reference.velocities[i].setZero();
   }
-  reference.previous_dt = 0;
+  reference.previous_dt = reference.memory.rest.still = 0;
   state.memory.rest.settling = 0;
 }
 
@@ -79,10 +79,11 @@ bool watchRest(const RestStep& step, HairState& state) {
 
 void judgeRest(const RestStep& step, const std::function<double(const HairState&)>& energy, HairState& state) {
   RestMemory& rest = state.memory.rest;
-  const HairState& reference = rest.reference.front();
+  HairState& reference = rest.reference.front();
   const double stirring = fastest(reference);
-  if (rest.still < kStillFor || !(stirring < kReferenceStill * stirOf(step.pull) || rest.settling > kMaxSettling))
-    return;
+  double& rested = reference.memory.rest.still;
+  rested = stirring < kReferenceStill * stirOf(step.pull) ? rested + step.dt : 0;
+  if (rest.still < kStillFor || (rested < kStillFor && rest.settling <= kMaxSettling)) return;
   const double off = largestDistance(state, reference);
   if (off > kElsewhere * step.mesh.hair_length && kOnItsWay * fastest(state) > off) return;
   const bool higher = energy(state) - energy(reference) > kHigher * step.scale;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/test_meshes.h"
 
 namespace reference_hair_test {
@@ -55,6 +57,23 @@ TEST(RestCheck, HairThatRestsNoHigherIsLeftWhereItIs) {
   Resting hair(0.05);
   EXPECT_FALSE(hair.pass(3, -0.01));
   EXPECT_NEAR(hair.off(), 0.05, 1e-12);
+}
+
+// A pendulum is slow at its turning point: a reference is at rest once it has been slow for half a second.
+TEST(RestCheck, AReferenceThatFallsOnIsNotTakenWhereItIsSlow) {
+  Resting hair(0.05);
+  EXPECT_FALSE(hair.pass(0.4, 0.01));
+  hair.state.memory.rest.still = 3;
+  const auto energy = [&](const sim::HairState& one) { return &one == &hair.state ? 0.01 : 0; };
+  sim::HairState& reference = hair.state.memory.rest.reference.front();
+  for (double t = 0; t < 3; t += kFrame) {
+    reference.velocities.back() = Vec3(0, std::fmod(t, 0.4) < 0.2 ? -0.1 : 0, 0);
+    judgeRest(hair.step(), energy, hair.state);
+    EXPECT_EQ(hair.state.memory.recovery.guided_columns, 0) << t << " s";
+    EXPECT_FALSE(hair.rest().judged) << t << " s";
+  }
+  reference.velocities.back().setZero();
+  EXPECT_TRUE(hair.pass(1, 0.01)) << "then it rests";
 }
 
 TEST(RestCheck, WithSelfContactAReferenceWithItIsComparedToo) {
