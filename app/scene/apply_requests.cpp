@@ -266,7 +266,7 @@ void saveScene(const Request& request, Demo& demo) {
   Scene scene = presentScene(demo);
   scene.name = stem(request.text);
   saveReshapedHair(request.text, demo, scene);
-  writeFile(request.text, writeScene(movable(std::move(scene))));
+  writeFile(request.text, writeScene(movable(std::move(scene), request.text)));
   demo.scene.file = request.text;
   demo.scene.name = stem(request.text);
   for (std::size_t i = 0; i < demo.actors.size(); ++i) demo.scene.characters[i] = demo.actors[i].spec;
@@ -397,7 +397,8 @@ constexpr Action kActions[] = {
      [](const Request& request, Demo& demo) { applyMeshChange(request.name, request.text, demo.selected, demo); }},
     {Ask::kSaveProject,
      [](const Request& request, Demo& demo) {
-       saveProject(request.text, demo);
+       saveProject(request.text, demo, stem(request.text));
+       demo.scene.name = stem(request.text);
        showMessage("saved " + request.text, demo);
      }},
     {Ask::kOpenProject,

@@ -10,13 +10,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void makeMovable(const std::string& kind, std::string& file) {
+fs::path folderOf(const std::string& file) {
+  std::error_code ignored;
+  return file.empty() ? fs::path() : fs::weakly_canonical(fs::absolute(file, ignored).parent_path(), ignored);
+}
+
+void makeMovable(const std::string& kind, const fs::path& beside, std::string& file) {
   if (file.empty() || isPictureText(file)) return;
   std::error_code ignored;
   const fs::path whole = fs::weakly_canonical(file, ignored);
   const fs::path ours = fs::weakly_canonical(dataPath("assets/" + kind), ignored);
+  const fs::path from_there = beside.empty() ? fs::path() : whole.lexically_relative(beside);
   if (whole.parent_path() == ours) {
     file = whole.filename().string();
+  } else if (!from_there.empty() && *from_there.begin() != "..") {
+    file = from_there.string();
   } else {
     file = fs::absolute(file, ignored).lexically_normal().string();
   }
@@ -35,13 +43,14 @@ Scene presentScene(const Demo& demo) {
   return scene;
 }
 
-Scene movable(Scene scene) {
+Scene movable(Scene scene, const std::string& file) {
+  const fs::path beside = folderOf(file);
   for (CharacterSpec& spec : scene.characters) {
-    makeMovable("clips", spec.motion);
-    makeMovable("clips", spec.parts);
-    makeMovable("hair", spec.hair);
-    for (AttachmentSpec& one : spec.attachments) makeMovable("attachments", one.file);
-    for (const std::string_view field : kFieldNames) makeMovable("maps", *findMap(field, spec.maps));
+    makeMovable("clips", beside, spec.motion);
+    makeMovable("clips", beside, spec.parts);
+    makeMovable("hair", beside, spec.hair);
+    for (AttachmentSpec& one : spec.attachments) makeMovable("attachments", beside, one.file);
+    for (const std::string_view field : kFieldNames) makeMovable("maps", beside, *findMap(field, spec.maps));
   }
   return scene;
 }

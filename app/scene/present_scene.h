@@ -9,8 +9,9 @@ namespace app {
 // stands.
 Scene presentScene(const Demo& demo);
 
-// The scene with the names of its files such that it can be opened from any folder: files that come with the program by
-// their bare name, others by their full path.
-Scene movable(Scene scene);
+// The scene with the names of its files such that it can be opened from any folder, to be written to `file` (a path; may
+// be empty): files that come with the program by their bare name, files in that one's folder or below by the way from
+// there, so that they can be moved together, others by their full path.
+Scene movable(Scene scene, const std::string& file = "");
 
 }  // namespace app

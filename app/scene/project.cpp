@@ -95,13 +95,15 @@ void takeShape(sim::ByteReader& from, double version, const std::string& file, i
 
 }  // namespace
 
-void saveProject(const std::string& file, const Demo& demo) {
+void saveProject(const std::string& file, const Demo& demo, const std::string& scene_name) {
   const sim::Bytes binary = binaryOf(demo);
   const std::string checksum = hex(sim::fingerprint(binary));
   const std::string name = fs::path(file).stem().string() + "-" + checksum + ".bin";
   const std::string before = binaryNamedBy(file);
+  Scene scene = presentScene(demo);
+  if (!scene_name.empty()) scene.name = scene_name;
   const json project = {{kKey, kProjectVersion},
-                        {"scene", parseJson(writeScene(movable(presentScene(demo))), file)},
+                        {"scene", parseJson(writeScene(movable(std::move(scene), file)), file)},
                         {"binary", name},
                         {"checksum", checksum}};
   writeFile(besides(file, name), textOf(binary));
@@ -156,7 +158,6 @@ Demo readProject(const std::string& file, Scene scene, bool keep_view, double as
 
 void openProject(const std::string& file, Demo& demo) {
   replaceScene(readProject(file, projectScene(file), false, demo.aspect), demo);
-  demo.edits = {};
 }
 
 Autosave::Autosave(const std::string& kept_folder) : folder_(kept_folder) {
@@ -170,16 +171,18 @@ Autosave::~Autosave() {
 }
 
 void Autosave::keep(double now, const Demo& demo) {
-  if (file_.empty() || now - last_ < kKeepEvery) return;
-  const std::string edits = std::to_string(demo.edits.steps.size()) + " " + std::to_string(demo.edits.done) + " " +
-                            (demo.edits.done ? demo.edits.steps[demo.edits.done - 1].title : "");
-  if (demo.edits.steps.empty() || edits == kept_) return;
+  // What the last step asked for may still be loading.
+  if (file_.empty() || now - last_ < kKeepEvery || !loadingNote(demo).empty()) return;
+  const EditHistory& history = demo.edits;
+  const EditStep* step = history.done > 0 ? &history.steps[history.done - 1] : nullptr;
+  const std::string edits = step ? std::to_string(step->number) + " " + step->title : "none";
+  if (history.steps.empty() || edits == kept_) return;
   last_ = now;
   try {
     std::error_code ignored;
     fs::create_directories(folder_, ignored);
     saveProject(file_, demo);
-    kept_ = edits;
+    kept_ = history.gesture ? "" : edits;
     if (!replaced_.empty()) forget(std::exchange(replaced_, ""));
   } catch (const std::exception&) {
   }

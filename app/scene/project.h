@@ -16,8 +16,8 @@ namespace app {
 
 inline constexpr int kProjectVersion = 2;
 
-// Throws OutputError; then the project that was there is whole.
-void saveProject(const std::string& file, const Demo& demo);
+// With `name` for the scene's; empty: it keeps its own. Throws OutputError; then the project that was there is whole.
+void saveProject(const std::string& file, const Demo& demo, const std::string& name = "");
 
 // The scene that it holds. Throws InputError as openProject does.
 Scene projectScene(const std::string& file);

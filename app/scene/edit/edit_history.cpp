@@ -61,6 +61,7 @@ constexpr EditKind kEditKinds[] = {{Ask::kSetParam, kSettings, true, ""},
                                    {Ask::kLoop, kOfHair | kOfMotion, false, "At the end"},
                                    {Ask::kMotionFile, kOfView | kOfHair | kOfMotion, false, "Motion"},
                                    {Ask::kSceneFile, kOfView | kOfHair | kOfMotion, false, "Scene"},
+                                   {Ask::kOpenProject, kOfView | kOfHair | kOfMotion, false, "Project"},
                                    {Ask::kLoadState, kOfView | kOfHair | kOfMotion, false, "State"}};
 
 const EditKind* kindOf(Ask what) {

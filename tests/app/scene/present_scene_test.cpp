@@ -6,6 +6,8 @@
 #include <filesystem>
 
 #include "app/files/data_path.h"
+#include "app/files/hair_file.h"
+#include "app/files/output_file.h"
 #include "tests/run_program.h"
 
 namespace present_scene_test {
@@ -65,6 +67,21 @@ TEST(PresentScene, FilesOfTheProgramAreNamedBare) {
   EXPECT_EQ(moved.characters[0].motion, "walk.bvh");
   EXPECT_TRUE(std::filesystem::path(moved.characters[0].hair).is_absolute());
   EXPECT_EQ(moved.characters[0].parts, "");
+}
+
+TEST(PresentScene, FilesBesideTheSceneAreMovedWithIt) {
+  const std::string folder = test::freshFolder("present_scene_beside"), other = folder + "/elsewhere";
+  app::Demo demo = smallDemo();
+  demo.actors[0].spec.hair = folder + "/own.obj";
+  app::writeFile(folder + "/own.obj", app::writeHairMesh(demo.actors[0].haircut->mesh.shape));
+  demo.requests = {{Ask::kSaveScene, "", folder + "/mine.json"}};
+  app::advanceFrame(demo, 0, {});
+  ASSERT_FALSE(demo.message_is_fault) << demo.message;
+  std::filesystem::create_directories(other);
+  for (const char* name : {"/mine.json", "/own.obj"}) std::filesystem::rename(folder + name, other + name);
+  const app::Scene scene = app::loadScene(other + "/mine.json");
+  EXPECT_EQ(scene.characters[0].hair, other + "/own.obj");
+  app::openScene(scene, 1.5);
 }
 
 }  // namespace present_scene_test

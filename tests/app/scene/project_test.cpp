@@ -198,6 +198,66 @@ TEST(Project, ARunThatEndsWithoutLeavingIsOfferedAgain) {
   EXPECT_FALSE(std::filesystem::exists(folder + "/autosave-" + std::to_string(getpid()) + ".json"));
 }
 
+TEST(Project, WhatIsKeptFollowsEveryStepButNoneThatIsStillLoading) {
+  const std::string folder = test::freshFolder("project_autosave_steps");
+  app::Demo demo = brushedDemo(5);
+  app::Autosave autosave(folder);
+  double now = 100;
+  const auto kept = [&] {
+    autosave.keep(now += 100, demo);
+    std::ifstream file(folder + "/autosave-" + std::to_string(getpid()) + ".json");
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  const auto ask = [&](app::Request request) {
+    demo.requests.assign(1, std::move(request));
+    app::advanceFrame(demo, 0, {});
+  };
+  kept();
+  ask({Ask::kSetParam, "gravity", "3"});
+  const std::string first = kept();
+  EXPECT_EQ(kept(), first);
+  // As many steps, and one of that name: what was undone was another.
+  ask({Ask::kUndo, "", ""});
+  ask({Ask::kSetParam, "density", "77"});
+  ask({Ask::kUndo, "", ""});
+  ask({Ask::kSetParam, "gravity", "3"});
+  ask({Ask::kSetParam, "density", "78"});
+  EXPECT_NE(kept().find("78"), std::string::npos);
+
+  demo.loading.on = true;
+  ask({Ask::kStyle, "bob", ""});
+  ASSERT_TRUE(demo.loading.running.valid());
+  EXPECT_EQ(kept().find("\"bob\""), std::string::npos);
+  demo.loading.running.wait();
+  app::advanceFrame(demo, 0, {});
+  EXPECT_NE(kept().find("\"bob\""), std::string::npos);
+}
+
+TEST(Project, OpeningOneIsAStepThatIsUndone) {
+  const std::string file = test::freshFolder("project_step") + "/mine.json";
+  app::Demo demo = brushedDemo(5);
+  demo.requests = {{Ask::kSaveProject, "", file}};
+  app::advanceFrame(demo, 0, {});
+  EXPECT_EQ(demo.scene.name, "mine");
+  const std::string brushed = app::stateHash(demo);
+  app::Demo other = app::openScene(smallScene(), 1.5);
+  other.paused = true;
+  const std::string before = app::stateHash(other), look = app::editHash(other);
+  const auto ask = [&](Ask what, const std::string& text) {
+    other.requests = {{what, "", text}};
+    app::advanceFrame(other, 0, {});
+    ASSERT_FALSE(other.message_is_fault) << other.message;
+  };
+  ask(Ask::kOpenProject, file);
+  EXPECT_EQ(other.scene.name, "mine");
+  EXPECT_EQ(app::stateHash(other), brushed);
+  ask(Ask::kUndo, "");
+  EXPECT_EQ(app::stateHash(other), before);
+  EXPECT_EQ(app::editHash(other), look);
+  ask(Ask::kRedo, "");
+  EXPECT_EQ(app::stateHash(other), brushed);
+}
+
 TEST(Timeline, GoingBackAndOnWithTheSameParametersEndsInTheSameBits) {
   app::Demo demo = app::openScene(smallScene(), 1.5);
   demo.timeline.on = true;
