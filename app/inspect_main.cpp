@@ -53,6 +53,7 @@ void addOptions(CLI::App& parser, Asked& asked) {
   parser.add_option("--move", asked.move, "Shift, m: X,Y,Z")->delimiter(',')->expected(3);
   parser.add_option("--drop-far", asked.mends.drop_far, "Leave out strands whose root is further from the body, m");
   parser.add_flag("--drop-bad", asked.mends.drop_bad, "Leave out strands that are not finite or have no length");
+  parser.add_flag("--drop-astray", asked.mends.drop_astray, "Leave out strands that lie apart from all others");
   parser.add_flag("--push-out", asked.mends.push_out, "Bring points that lie inside the body to its surface");
   parser.add_flag("--no-guess", asked.no_guess, "Mend only what the options say");
   parser.add_flag("--strict", asked.strict, "Exit code 1 where the file has a fault, for scripts");
@@ -77,6 +78,7 @@ app::GroomMends mendsOf(const CLI::App& parser, const Asked& asked, const app::G
   mends.points = asked.mends.points;
   mends.drop_far = asked.mends.drop_far;
   mends.drop_bad = mends.drop_bad || asked.mends.drop_bad;
+  mends.drop_astray = mends.drop_astray || asked.mends.drop_astray;
   mends.push_out = asked.mends.push_out;
   return mends;
 }

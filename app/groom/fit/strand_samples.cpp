@@ -1,9 +1,11 @@
 #include "app/groom/fit/strand_samples.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "app/files/length_units.h"
+#include "app/files/median.h"
 
 namespace app {
 namespace {
@@ -12,6 +14,7 @@ using Eigen::Vector3f;
 
 constexpr int kFine = 4;               // steps between two samples that a sample is the mean of
 constexpr float kShortest = 0.001f;    // m
+constexpr float kFarRoot = 4;          // medians: further out is none of the head's roots
 constexpr double kHeadSpread = 0.075;  // m, root mean square of a head's roots about their middle
 
 }  // namespace
@@ -82,18 +85,36 @@ double quantile(std::vector<float> values, double share) {
   return values[static_cast<std::size_t>(at)];
 }
 
-double inferUnit(const Groom& groom, std::string& name) {
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  double square = 0, count = 0;
+namespace {
+
+// Root mean square of the roots about their middle; of those within kFarRoot medians of the middle of each axis.
+double rootSpread(const Groom& groom) {
+  std::vector<Vector3f> roots;
+  std::array<std::vector<float>, 3> along;
   for (std::size_t s = 0; s < groom.strandCount(); ++s) {
     if (groom.pointCount(s) == 0 || !groom.strand(s)[0].allFinite()) continue;
-    const Eigen::Vector3d root = groom.strand(s)[0].cast<double>();
-    ++count;
-    const Eigen::Vector3d away = root - middle;
-    middle += away / count;
-    square += away.dot(root - middle);
+    roots.push_back(groom.strand(s)[0]);
+    for (int axis = 0; axis < 3; ++axis) along[static_cast<std::size_t>(axis)].push_back(roots.back()[axis]);
   }
-  const double spread = count > 1 ? std::sqrt(square / count) : kHeadSpread;
+  const Vector3f middle(median(along[0]), median(along[1]), median(along[2]));
+  std::vector<float> away;
+  for (const Vector3f& root : roots) away.push_back((root - middle).norm());
+  const float far = kFarRoot * median(away);
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  double square = 0, count = 0;
+  for (std::size_t n = 0; n < roots.size(); ++n) {
+    if (away[n] > far) continue;
+    const Eigen::Vector3d root = roots[n].cast<double>(), step = root - mean;
+    mean += step / ++count;
+    square += step.dot(root - mean);
+  }
+  return count > 1 ? std::sqrt(square / count) : kHeadSpread;
+}
+
+}  // namespace
+
+double inferUnit(const Groom& groom, std::string& name) {
+  const double spread = rootSpread(groom);
   const LengthUnit* best = &kLengthUnits[0];
   const auto miss = [&](const LengthUnit& unit) {
     return std::abs(std::log(std::max(spread, 1e-30) * unit.metres / kHeadSpread));

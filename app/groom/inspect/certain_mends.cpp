@@ -35,9 +35,10 @@ bool readMove(std::string_view text, Eigen::Vector3f& move) {
 // Options that take no value. False for others.
 bool readFlag(std::string_view option, GroomMends& mends) {
   if (option == "--drop-bad") mends.drop_bad = true;
+  if (option == "--drop-astray") mends.drop_astray = true;
   if (option == "--push-out") mends.push_out = true;
   if (option == "--no-guess") mends = {};
-  return option == "--drop-bad" || option == "--push-out" || option == "--no-guess";
+  return option == "--drop-bad" || option == "--drop-astray" || option == "--push-out" || option == "--no-guess";
 }
 
 bool readWord(std::string_view option, std::string_view value, GroomMends& mends) {

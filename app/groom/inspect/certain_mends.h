@@ -22,8 +22,8 @@ struct MendReport {
 
 // Puts options of hairmesh-inspect in place of what was found: "--unit cm --up z --turn 180 --reverse all --width-scale
 // 0.1
-// --width 8e-5 --points 16 --move 0,0.1,0 --drop-far 0.03 --drop-bad --push-out --no-guess", any of them. Returns what
-// is wrong with the text, or "". --no-guess leaves out what was found.
+// --width 8e-5 --points 16 --move 0,0.1,0 --drop-far 0.03 --drop-bad --drop-astray --push-out --no-guess", any of them.
+// Returns what is wrong with the text, or "". --no-guess leaves out what was found.
 std::string readMends(std::string_view text, GroomMends& mends);
 
 // Inspects and mends a groom: what is certain, or else what `wishes` says (as readMends). Throws InputError for wishes

@@ -11,6 +11,7 @@
 #include "app/files/median.h"
 #include "app/files/report_line.h"
 #include "app/groom/inspect/groom_shape.h"
+#include "app/groom/inspect/strand_direction.h"
 
 namespace app {
 
@@ -19,12 +20,11 @@ using Eigen::Vector3f;
 
 namespace {
 
-constexpr std::size_t kMaxInspected = 2000;  // looked at
-constexpr double kSkullRadius = 0.09;        // m, of the sphere that roots lie about
-constexpr float kThinnestHair = 8e-6f;       // m, a diameter
+constexpr double kSkullRadius = 0.09;   // m, of the sphere that roots lie about
+constexpr float kThinnestHair = 8e-6f;  // m, a diameter
 constexpr float kUsualWidth = 8e-5f, kWidestHair = 4e-4f, kAllHairs = 1e5f;
 constexpr float kFar = 0.018f, kFloating = 0.03f, kDeep = 0.006f;  // m
-constexpr std::size_t kManyPoints = 256, kMinRoots = 20;
+constexpr std::size_t kManyPoints = 256, kNumbersTold = 6;
 
 std::string textOf(const char* format, double a, double b = 0) {
   std::array<char, 160> text;
@@ -33,12 +33,6 @@ std::string textOf(const char* format, double a, double b = 0) {
 }
 std::string countText(std::size_t count, std::size_t of, const char* what) {
   return std::to_string(count) + " of " + std::to_string(of) + " strands " + what;
-}
-
-float shareOutside(const SphereFit& sphere, const std::vector<Vector3f>& points) {
-  const auto outside = std::ranges::count_if(
-      points, [&](const Vector3f& p) { return (p - sphere.center).norm() > 0.95f * sphere.radius; });
-  return static_cast<float>(outside) / static_cast<float>(points.size());
 }
 
 struct Inspector {
@@ -55,6 +49,7 @@ struct Inspector {
   bool inWorld() const { return hints.world_heads > 0; }
   bool crowd() const { return hints.world_heads > 1; }
   void strands();
+  void astray();
   void direction();
   void unit();
   void toMetres();
@@ -72,7 +67,7 @@ struct Inspector {
 // Strands that no program can use, and numbers of points.
 void Inspector::strands() {
   const std::size_t all = groom.strandCount();
-  ends = strandEnds(groom, kMaxInspected);
+  ends = strandEnds(groom, kMaxInspected, !inWorld());
   if (ends.non_finite > 0)
     add("non-finite", countText(ends.non_finite, all, "have points that are no finite numbers"), "--drop-bad", true);
   if (ends.zero_length > 0) add("zero-length", countText(ends.zero_length, all, "have no length"), "--drop-bad", true);
@@ -85,33 +80,32 @@ void Inspector::strands() {
   if (many > 0) add("points", countText(many, all, "have more than 256 points"), "--points 32", false);
 }
 
-// Roots lie about a skull that the strands leave; tips lie further from a sphere, or about one that holds the strands.
+void Inspector::astray() {
+  if (ends.astray.empty()) return;
+  std::string numbers;
+  for (std::size_t n = 0; n < std::min(kNumbersTold, ends.astray.size()); ++n)
+    numbers += (n == 0 ? ": number " : ", ") + std::to_string(ends.astray[n]);
+  if (ends.astray.size() > kNumbersTold) numbers += ", ...";
+  add("astray", countText(ends.astray.size(), groom.strandCount(), "lie apart from all others") + numbers,
+      "--drop-astray", true);
+  result.mends.drop_astray = true;
+}
+
 void Inspector::direction() {
-  const SphereFit roots = fitSphere(ends.first), tips = fitSphere(ends.last);
-  skull = roots;
-  if (ends.first.size() < kMinRoots || inWorld()) return;
-  const float out = shareOutside(roots, ends.last), in = shareOutside(tips, ends.first);
-  const bool skull_at_tips = tips.spread < 0.08f && tips.coverage > 0.03f && in > out - 0.3f;
-  const bool all = skull_at_tips && (tips.radius < roots.radius / 1.1f || roots.coverage < 0.03f);
-  if (all) {
-    skull = tips;
-    std::swap(ends.first, ends.last);
-    result.mends.reverse = Reverse::kAll;
-    add("reversed", "the strands run from tip to root", "--reverse all", true);
-    return;
-  }
-  std::size_t turned = 0;
-  for (std::size_t n = 0; n < ends.first.size(); ++n) {
-    const float first = std::abs((ends.first[n] - skull.center).norm() / skull.radius - 1);
-    const float last = std::abs((ends.last[n] - skull.center).norm() / skull.radius - 1);
-    if (first < 0.25f || last > 0.15f) continue;
-    std::swap(ends.first[n], ends.last[n]);
-    ++turned;
-  }
-  if (turned == 0) return;
-  result.mends.reverse = Reverse::kFound;
   skull = fitSphere(ends.first);
-  add("reversed", countText(turned, ends.first.size(), "run from tip to root"), "--reverse found", true);
+  if (ends.first.size() < kMinRoots || inWorld()) return;
+  const StrandDirections found = strandDirections(ends);
+  skull = found.skull;
+  if (found.turned_count == 0) return;
+  for (std::size_t n = 0; n < found.turned.size(); ++n) {
+    if (found.turned[n]) std::swap(ends.first[n], ends.last[n]);
+  }
+  const bool all = found.turned_count == found.turned.size();
+  if (found.certain) result.mends.reverse = all ? Reverse::kAll : Reverse::kFound;
+  add("reversed",
+      all ? "the strands run from tip to root"
+          : countText(found.turned_count, found.turned.size(), "run from tip to root"),
+      all ? "--reverse all" : "--reverse found", found.certain);
 }
 
 void Inspector::unit() {
@@ -293,12 +287,12 @@ void Inspector::place() {
     result.on_head = certain;
     if (!certain) return;
     result.mends.move = move;
-  } else {
-    std::size_t floating = 0;
-    for (const Vector3f& root : roots) floating += std::abs(head->distance(root)) > kFloating;
-    if (floating > 0)
-      add("roots", countText(floating, roots.size(), "begin more than 3 cm from the scalp"), "--drop-far 0.03", false);
   }
+  const auto floating =
+      std::ranges::count_if(roots, [this](const Vector3f& p) { return std::abs(head->distance(p)) > kFloating; });
+  if (floating > 0 && !inWorld())
+    add("roots", countText(static_cast<std::size_t>(floating), roots.size(), "begin more than 3 cm from the scalp"),
+        "--drop-far 0.03", false);
   if (!inWorld()) body(roots);  // the figure's pose is not that of rest
 }
 
@@ -333,6 +327,7 @@ const GroomFinding* GroomInspection::find(std::string_view what) const {
 GroomInspection inspectGroom(const Groom& groom, const GroomHints& hints, const HeadModel* head) {
   Inspector inspector{groom, hints, head};
   inspector.strands();
+  inspector.astray();
   inspector.direction();
   inspector.unit();
   inspector.axes();

@@ -24,6 +24,7 @@ enum class Reverse { kNone, kFound, kAll };
 // Done in this order; lengths after `unit` are metres in y up, z forward.
 struct GroomMends {
   bool drop_bad = false;                               // strands not finite, without length, of fewer than two points
+  bool drop_astray = false;                            // strands that lie apart from all others
   double unit = 1;                                     // m that a unit of the file stands for
   Eigen::Matrix3f axes = Eigen::Matrix3f::Identity();  // file's to ours
   Reverse reverse = Reverse::kNone;                    // strands that run from tip to root
@@ -36,7 +37,7 @@ struct GroomMends {
 };
 
 struct GroomFinding {
-  std::string what;  // unit, up, facing, reversed, widths, roots, points, body, zero-length, non-finite
+  std::string what;  // unit, up, facing, reversed, astray, widths, roots, points, body, zero-length, non-finite
   std::string text;  // what was found, with numbers
   std::string mend;  // the option that mends it
   bool certain = false;

@@ -3,6 +3,7 @@
 
 #include "app/groom/inspect/groom_inspect.h"
 #include "app/groom/inspect/groom_shape.h"
+#include "app/groom/inspect/strand_direction.h"
 
 namespace app {
 
@@ -50,20 +51,20 @@ void dropFar(const HeadModel& head, float far, Groom& groom) {
   keepStrands(kept, groom);
 }
 
-// The rule of the inspector (Inspector::direction).
-bool runsBackwards(const std::span<const Vector3f> points, const SphereFit& skull) {
-  const auto off = [&skull](const Vector3f& p) { return std::abs((p - skull.center).norm() / skull.radius - 1); };
-  return points.size() > 1 && off(points.front()) >= 0.25f && off(points.back()) <= 0.15f;
+void dropAstray(Groom& groom) {
+  const std::vector<std::size_t> astray = strandEnds(groom, 0).astray;
+  std::vector<std::size_t> kept;
+  for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+    if (!std::ranges::binary_search(astray, s)) kept.push_back(s);
+  }
+  keepStrands(kept, groom);
 }
 
 void reverseStrands(Reverse which, Groom& groom) {
-  std::vector<Vector3f> roots;
+  const std::vector<bool> backward =
+      which == Reverse::kFound ? backwardStrands(groom) : std::vector<bool>(groom.strandCount(), true);
   for (std::size_t s = 0; s < groom.strandCount(); ++s) {
-    if (groom.pointCount(s) > 0) roots.push_back(groom.strand(s).front());
-  }
-  const SphereFit skull = which == Reverse::kFound ? fitSphere(roots) : SphereFit();
-  for (std::size_t s = 0; s < groom.strandCount(); ++s) {
-    if (which == Reverse::kFound && !runsBackwards(groom.strand(s), skull)) continue;
+    if (!backward[s]) continue;
     const auto turn = [&](auto& all) {
       if (!all.empty()) std::reverse(all.begin() + groom.strand_first[s], all.begin() + groom.strand_first[s + 1]);
     };
@@ -129,6 +130,7 @@ void pushOut(const HeadModel& head, Groom& groom) {
 
 void mendGroom(const GroomMends& mends, const HeadModel* head, Groom& groom) {
   if (mends.drop_bad) dropBad(groom);
+  if (mends.drop_astray) dropAstray(groom);
   const auto unit = static_cast<float>(mends.unit);
   for (Vector3f& point : groom.points) point = unit * (mends.axes * point);
   for (float& width : groom.widths) width *= unit * mends.width_scale;

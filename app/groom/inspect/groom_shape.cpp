@@ -1,8 +1,10 @@
 #include "app/groom/inspect/groom_shape.h"
 
 #include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "app/files/median.h"
 
@@ -88,7 +90,45 @@ float groomSize(const Groom& groom) {
   return std::max((high - low).maxCoeff(), 0.0f);
 }
 
-StrandEnds strandEnds(const Groom& groom, std::size_t most) {
+namespace {
+
+// The box about those strands that strandEnds describes.
+Eigen::AlignedBox3f boxOfMost(const Groom& groom, const std::vector<std::size_t>& strands) {
+  constexpr double kOutermost = 0.02;
+  constexpr float kGrown = 0.5f;
+  Vector3f low, high;
+  const auto skipped = static_cast<std::ptrdiff_t>(kOutermost * 2 * static_cast<double>(strands.size()));
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<float> at;
+    for (const std::size_t s : strands) {
+      at.push_back(groom.strand(s).front()[axis]);
+      at.push_back(groom.strand(s).back()[axis]);
+    }
+    std::nth_element(at.begin(), at.begin() + skipped, at.end());
+    low[axis] = at[static_cast<std::size_t>(skipped)];
+    std::nth_element(at.begin(), at.end() - 1 - skipped, at.end());
+    high[axis] = *(at.end() - 1 - skipped);
+  }
+  const Vector3f grown = Vector3f::Constant(kGrown * (high - low).maxCoeff());
+  return {low - grown, high + grown};
+}
+
+// Takes strands that are astray out of `strands`.
+std::vector<std::size_t> takeAstray(const Groom& groom, std::vector<std::size_t>& strands) {
+  if (strands.size() < kMinRoots) return {};
+  const Eigen::AlignedBox3f box = boxOfMost(groom, strands);
+  const auto isAstray = [&](std::size_t s) {
+    return std::ranges::none_of(groom.strand(s), [&](const Vector3f& p) { return box.contains(p); });
+  };
+  std::vector<std::size_t> astray;
+  std::ranges::copy_if(strands, std::back_inserter(astray), isAstray);
+  std::erase_if(strands, [&](std::size_t s) { return std::ranges::binary_search(astray, s); });
+  return astray;
+}
+
+}  // namespace
+
+StrandEnds strandEnds(const Groom& groom, std::size_t most, bool one_head) {
   StrandEnds ends;
   const float size = groomSize(groom);
   std::vector<std::size_t> usable;
@@ -99,6 +139,7 @@ StrandEnds strandEnds(const Groom& groom, std::size_t most) {
     ends.zero_length += fault == StrandFault::kZeroLength;
     ends.too_short += fault == StrandFault::kTooFewPoints;
   }
+  if (one_head) ends.astray = takeAstray(groom, usable);
   const std::size_t count = std::min(most, usable.size());
   for (std::size_t n = 0; n < count; ++n) {
     const std::size_t s = usable[n * usable.size() / count];

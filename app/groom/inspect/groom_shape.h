@@ -17,13 +17,19 @@ struct SphereFit {
 };
 SphereFit fitSphere(const std::vector<Eigen::Vector3f>& points);
 
+inline constexpr std::size_t kMaxInspected = 2000;  // strands that are looked at
+inline constexpr std::size_t kMinRoots = 20;        // of which a skull is told
+
 struct StrandEnds {
-  std::vector<std::size_t> strands;  // those looked at: finite, of at least two points, with a length
+  std::vector<std::size_t> strands;  // those looked at: finite, of at least two points, with a length, not astray
   std::vector<Eigen::Vector3f> first, last;
   std::size_t non_finite = 0, zero_length = 0, too_short = 0;  // of all strands; too_short: fewer than two points
+  std::vector<std::size_t> astray;                             // of all strands that are none of these
 };
-// At most `most` strands are looked at, evenly spread; the counts are of all.
-StrandEnds strandEnds(const Groom& groom, std::size_t most);
+// At most `most` strands are looked at, evenly spread; the counts are of all. `one_head`: a strand is astray whose
+// points all lie apart from the groom; the groom is a box about all ends but the outermost 2 % of either side, grown by
+// half of its largest side. Of several heads none is.
+StrandEnds strandEnds(const Groom& groom, std::size_t most, bool one_head = true);
 
 enum class StrandFault { kNone, kTooFewPoints, kNonFinite, kZeroLength };
 // A strand shorter than 1e-6 of `size` has no length.

@@ -287,6 +287,58 @@ TEST(GroomInspect, AxesAreTurnsThatBringUpToY) {
   EXPECT_FALSE(app::axesOfUp("w"));
 }
 
+// Every second, third and fifth strand runs the other way; of 3,000 strands not all are looked at.
+TEST(GroomInspect, JudgesTheDirectionOfEachStrand) {
+  const app::HeadModel model = head();
+  for (const std::size_t strands : {300, 3000}) {
+    for (const std::size_t every : {2, 3, 5, 10}) {
+      const app::Groom whole = combedGroom(strands, static_cast<std::uint32_t>(40 + every));
+      app::Groom groom = whole;
+      for (std::size_t s = 0; s < strands; s += every)
+        std::reverse(groom.points.begin() + groom.strand_first[s], groom.points.begin() + groom.strand_first[s + 1]);
+      const app::GroomInspection inspection = app::inspectGroom(groom, {}, &model);
+      ASSERT_TRUE(inspection.find("reversed")) << every;
+      EXPECT_TRUE(inspection.find("reversed")->certain) << every;
+      EXPECT_EQ(inspection.findings.size(), 1u) << every << ": " << namesOf(inspection);
+      app::mendGroom(inspection.mends, &model, groom);
+      std::size_t wrong = 0;
+      for (std::size_t s = 0; s < strands; ++s) wrong += groom.strand(s).front() != whole.strand(s).front();
+      EXPECT_EQ(wrong, 0u) << every << " of " << strands;
+    }
+  }
+}
+
+// Ends that lie about no skull say nothing for certain.
+TEST(GroomInspect, IsNotCertainOfDirectionsWithoutASkull) {
+  Random random{std::mt19937(9)};
+  app::Groom groom;
+  for (int s = 0; s < 300; ++s) {
+    for (int end = 0; end < 2; ++end)
+      groom.points.emplace_back(random.between(-0.2f, 0.2f), random.between(-0.2f, 0.2f), random.between(-0.2f, 0.2f));
+    groom.strand_first.push_back(static_cast<std::uint32_t>(groom.points.size()));
+  }
+  const app::GroomInspection inspection = app::inspectGroom(groom, {}, nullptr);
+  EXPECT_TRUE(!inspection.find("reversed") || !inspection.find("reversed")->certain);
+  EXPECT_EQ(inspection.mends.reverse, app::Reverse::kNone);
+}
+
+TEST(GroomInspect, NamesStrandsThatLieApartAndJudgesByTheOthers) {
+  const app::HeadModel model = head();
+  for (const float away : {0.7f, 1.0f, 5.0f, 1000.0f}) {
+    const app::Groom whole = combedGroom(300, 12);
+    app::Groom groom = whole;
+    for (Vector3f& point : std::span(groom.points).subspan(groom.strand_first[10], 8)) point.x() += away;
+    const app::GroomInspection inspection = app::inspectGroom(groom, {}, &model);
+    ASSERT_TRUE(inspection.find("astray")) << away;
+    EXPECT_EQ(test::lacking(inspection.find("astray")->text, "1 of 300 strands lie apart from all others: number 10"),
+              "");
+    EXPECT_EQ(inspection.findings.size(), 1u) << namesOf(inspection);
+    app::mendGroom(inspection.mends, &model, groom);
+    ASSERT_EQ(groom.strandCount(), 299u);
+    EXPECT_EQ(groom.points.back(), whole.points.back());
+  }
+}
+
 // The program: what it says, what it writes, and how it ends.
 TEST(GroomInspect, TheProgramMendsWhatIsCertain) {
   const std::string folder = test::freshFolder("inspect_program");
