@@ -31,7 +31,7 @@ constexpr double kMinDensity = 0.5;                      // of layers where hair
 constexpr double kMeanBound = 0.01, kShareBound = 0.03;  // of the strands' length: what a fit is content with
 constexpr int kMinLayers = 5, kMaxLayers = 16;           // of hair that is long enough for so many
 constexpr double kSquareness = 0.5;
-constexpr double kBareCost = 1;  // of the strands' length: how far off a bare face is taken to be
+constexpr double kBetter = 0.7;  // of a smaller hair mesh's cost: for less gain a larger one is not taken
 constexpr int kPerLayer = 4;     // points of a grown strand
 
 // A fit in the making.
@@ -330,10 +330,13 @@ void measure(std::size_t most, Draft& draft) {
   error.share95 = quantile(std::move(gaps), 0.95);
 }
 
-// The mean distance, with what is left bare counted as far off.
+// The share of the strands that do not fit, and that of the faces left bare: rounding that opens one face more or less
+// changes it little.
 double costOf(const HairFit& fit) {
+  const auto off = std::ranges::count_if(fit.error.of_strand,
+                                         [&](float one) { return one > kShareBound * fit.error.strand_length; });
   const double bare = fit.dropped_faces / static_cast<double>(fit.dropped_faces + fit.shape.root_faces.size());
-  return fit.error.mean + kBareCost * bare * fit.error.strand_length;
+  return static_cast<double>(off) / static_cast<double>(fit.error.of_strand.size()) + bare;
 }
 
 // Layers about as far apart as columns: prisms long for their width are inverted by the head's curvature.
@@ -390,7 +393,7 @@ HairFit fitGroom(const StrandSamples& strands, const FitOptions& options) {
     std::unique_ptr<Draft> draft = makeDraft(strands, raster, layers, vertices);
     const FitError& error = draft->fit.error;
     lacking = std::max(error.mean / kMeanBound, error.share95 / kShareBound) / error.strand_length;
-    if (!best || costOf(draft->fit) < costOf(best->fit)) best = std::move(draft);
+    if (!best || costOf(draft->fit) < kBetter * costOf(best->fit)) best = std::move(draft);
     if (lacking <= 1 && best->fit.dropped_faces == 0) break;
   }
   measure(strands.strandCount(), *best);

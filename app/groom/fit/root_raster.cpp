@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-constexpr float kSmallestCell = 0.003f, kLargestCell = 0.012f;  // m
+constexpr float kSmallestCell = 0.003f, kLargestCell = 0.012f;  // m; the largest: of a head, more of larger things
 constexpr double kStrandsPerCell = 3;
 constexpr double kHeadRadius = 0.09;   // m
 constexpr float kLargestHole = 3e-4f;  // m^2
@@ -271,11 +271,12 @@ RootRaster rasterRoots(const StrandSamples& strands) {
   raster.map = fitScalpMap(strands);
   std::vector<Vector2f> at;
   for (std::size_t s = 0; s < strands.strandCount(); ++s) at.push_back(raster.map.toMap(strands.strand(s)[0]));
+  const float largest = kLargestCell * std::max(1.0f, raster.map.radius / static_cast<float>(kHeadRadius));
   for (float size = kSmallestCell;; size *= 1.25f) {
     layRaster(at, size, raster);
     const auto full =
         std::count_if(raster.cells.begin(), raster.cells.end(), [](const RootCell& c) { return c.strands > 0; });
-    if (size >= kLargestCell || static_cast<double>(full) * kStrandsPerCell <= static_cast<double>(at.size())) break;
+    if (size >= largest || static_cast<double>(full) * kStrandsPerCell <= static_cast<double>(at.size())) break;
   }
   meanPaths(strands, raster);
   fillHoles(raster);
