@@ -7,12 +7,15 @@
 #include <optional>
 
 #include "app/figure/head_model.h"
+#include "app/figure/strip_fit.h"
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
+#include "app/files/file_kind.h"
 #include "app/files/hair_file.h"
 #include "app/files/output_file.h"
 #include "app/files/polygon_file.h"
 #include "app/files/text_file.h"
+#include "app/files/text_scanner.h"
 #include "app/groom/convert.h"
 #include "app/groom/formats/groom_bytes.h"
 #include "app/groom/inspect/certain_mends.h"
@@ -25,7 +28,7 @@ namespace {
 struct Arguments {
   std::string in, out, preset, scalp, mends, figure = "idle_turns.bvh";
   double unit = 0;
-  bool no_mend = false;
+  bool no_mend = false, up_given = false;
   app::ConvertOptions curves;
   app::StripOptions strips;
 };
@@ -35,7 +38,8 @@ const char* const kFooter =
 .glb, .gltf, .vrm). OUT.obj is read by hairmesh --hair; of curves OUT.json beside it has what makes the strands
 individual, as a preset for hairmesh --preset.
 
-Exit codes: 0 fine, 1 a file that cannot be written, 2 usage, 4 a file that cannot be used.)";
+Exit codes: 0 fine, 1 a file that cannot be written or a hair mesh that most strands do not fit, 2 usage,
+4 a file that cannot be used.)";
 
 void addCurveOptions(CLI::App& parser, Arguments& arguments) {
   parser
@@ -57,8 +61,9 @@ void addCurveOptions(CLI::App& parser, Arguments& arguments) {
       "--mends", arguments.mends,
       "Options of hairmesh-inspect that mend curves, in quotes: \"--up z --push-out\"; what is certain is "
       "mended by itself, and said");
-  parser.add_flag("--no-mend", arguments.no_mend, "Curves are taken as they are, but for the unit");
-  parser.add_option("--figure", arguments.figure, "Motion or model whose head curves are held against (a mannequin's)");
+  parser.add_flag("--no-mend", arguments.no_mend, "The hair is taken as it is, but for the unit");
+  parser.add_option("--figure", arguments.figure,
+                    "Motion or model whose head the hair is held against (a mannequin's)");
   parser.add_flag("--reverse-strands", arguments.curves.reverse, "Strands are given from tip to root");
 }
 
@@ -83,7 +88,9 @@ void addStripOptions(CLI::App& parser, Arguments& arguments) {
   parser.add_option(
       "--scalp", arguments.scalp,
       "Mesh of the scalp in the strips' unit and axes; by default objects of IN called scalp, head, body");
-  parser.add_option("--up", strips.up, "The axis that is up in a file of strips: y or z")
+  parser
+      .add_option("--up", strips.up,
+                  "The axis that is up in a file of strips: y or z; by default whichever brings them to the head")
       ->check(CLI::IsMember({'y', 'z'}))
       ->option_text("AXIS");
   parser
@@ -108,6 +115,7 @@ Arguments parse(int argc, char** argv, CLI::App& parser) {
   addCurveOptions(parser, arguments);
   addStripOptions(parser, arguments);
   parser.parse(argc, argv);
+  arguments.up_given = parser.count("--up") > 0;
   arguments.curves.unit = arguments.strips.unit = arguments.unit;
   arguments.curves.silhouettes = true;
   arguments.strips.mesh.vertices = arguments.curves.fit.vertices;
@@ -128,9 +136,13 @@ std::string presetText(const app::LookFit& fit, const std::string& name) {
   return nlohmann::ordered_json{{"name", name}, {"hair", hair}}.dump(2) + "\n";
 }
 
+app::Character figureOf(const Arguments& arguments) {
+  return app::loadCharacter(app::findFile(arguments.figure, "", "clips"));
+}
+
 // Does what the inspector is certain of, as metres, y up, root first; returns what it says.
 std::string mend(const Arguments& arguments, app::GroomHints& hints, app::Groom& groom, app::ConvertOptions& options) {
-  const app::HeadModel head = app::headModelOf(app::loadCharacter(app::findFile(arguments.figure, "", "clips")));
+  const app::HeadModel head = app::headModelOf(figureOf(arguments));
   if (options.unit > 0) hints.meters_per_unit = options.unit;
   const std::string wishes = options.reverse ? arguments.mends + " --reverse all" : arguments.mends;
   const app::MendReport report = app::mendCertain(hints, &head, wishes, groom);
@@ -150,7 +162,7 @@ int convertCurves(const std::string& bytes, const Arguments& arguments) {
   app::writeFile(arguments.preset, presetText(conversion.look, std::filesystem::path(arguments.out).stem().string()));
   std::cout << app::conversionReport(conversion) << "written       " << arguments.out << " and " << arguments.preset
             << "\n";
-  return app::kExitFine;
+  return app::conversionWarning(conversion).empty() ? app::kExitFine : app::kExitFault;
 }
 
 int convertPolygons(const Arguments& arguments) {
@@ -158,9 +170,16 @@ int convertPolygons(const Arguments& arguments) {
   std::optional<app::PolygonMesh> scalp;
   if (!arguments.scalp.empty()) options.scalp = &scalp.emplace(app::readPolygons(arguments.scalp));
   const app::PolygonMesh mesh = app::readPolygons(arguments.in);
-  const app::StripConversion conversion = app::convertStrips(mesh, options, arguments.in);
+  app::FittedStrips fitted;
+  if (arguments.no_mend) {
+    fitted.conversion = app::convertStrips(mesh, options, arguments.in);
+  } else {
+    fitted = app::fitStrips(mesh, options, arguments.up_given, arguments.in, figureOf(arguments), true);
+  }
+  const app::StripConversion& conversion = fitted.conversion;
   if (!mesh.note.empty()) std::cout << "note          " << mesh.note << "\n";
   app::writeFile(arguments.out, app::writeHairMesh(conversion.mesh.shape));
+  if (!fitted.fit.empty()) std::cout << "mended        " << fitted.fit << "\n";
   std::cout << app::stripReport(conversion) << "written       " << arguments.out << "\n";
   return app::kExitFine;
 }
@@ -179,10 +198,11 @@ int run(const Arguments& arguments) {
   checkOutput(arguments);
   const std::string bytes = app::readText(arguments.in, app::kMaxGroomFile);
   if (app::groomFormat(bytes, arguments.in)) return convertCurves(bytes, arguments);
-  if (!app::hasPolygonEnding(arguments.in))
-    throw app::InputError(
-        arguments.in, "", "is no kind of groom that is read",
-        "give curves (.hair, .abc, .usda, .tfx, .ply), strips or tubes (.obj, .fbx, .glb, .gltf, .vrm)");
+  app::refuseOwnExport(bytes, arguments.in);
+  if (!app::hasPolygonEnding(arguments.in)) {
+    app::refuseUtf16(bytes, arguments.in);
+    app::refuseNoHair(arguments.in);
+  }
   if (app::hasLayers(bytes))
     throw app::InputError(arguments.in, "", "is a hair mesh already", "show it with hairmesh --hair");
   return convertPolygons(arguments);

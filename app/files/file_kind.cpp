@@ -121,4 +121,19 @@ std::string partsBeside(const std::string& motion_file) {
   return (std::filesystem::path(motion_file).parent_path() / "female-objs").string();
 }
 
+void refuseOwnExport(std::string_view bytes, const std::string& file) {
+  if (bytes.starts_with("glTF") && bytes.find("\"generator\":\"hairmesh\"") != std::string_view::npos)
+    throw InputError(file, "", "is a moving hair mesh that this program has exported, and is not read back",
+                     "export strands (.abc, .usda, .hair, .ply), or write the hair mesh (--write-hair FILE.obj)");
+}
+
+void refuseNoHair(const std::string& file) {
+  const auto [kind, use] = kindAndUse(file);
+  if (!kind.empty()) throw InputError(file, "", kind + ", no hair", use);
+  throw InputError(
+      file, "", "holds no hair",
+      "give a hair mesh (.obj with groups layer_0, layer_1, ...), curves (.hair, .abc, .usda, .tfx, .ply), "
+      "or strips and tubes (.obj, .fbx, .glb, .gltf, .vrm)");
+}
+
 }  // namespace app

@@ -27,4 +27,10 @@ void requireRecording(const std::string& file);
 // The folder of body parts that ARCSim's data keeps beside a .mot motion.
 std::string partsBeside(const std::string& motion_file);
 
+// Throws InputError for a moving hair mesh that this program has exported (.glb).
+void refuseOwnExport(std::string_view bytes, const std::string& file);
+
+// Throws InputError: what the file is instead, and what it is good for.
+[[noreturn]] void refuseNoHair(const std::string& file);
+
 }  // namespace app

@@ -17,6 +17,7 @@ using Eigen::Vector3f;
 constexpr int kSamples = 25;                       // points a strand
 constexpr std::size_t kSilhouetteStrands = 10000;  // that silhouettes are drawn of
 constexpr double kMisfit = 0.03;                   // of the hair's length
+constexpr double kMostMisfits = 0.5;               // of the strands: more is no conversion
 constexpr float kTogether = 0.012f;                // m, between roots of strands that are told of as one
 constexpr std::size_t kMaxMisfits = 6;             // groups that are told of
 constexpr double kCrossing = 0.35;                 // rad-like, of strands that root together
@@ -194,11 +195,26 @@ Conversion convertGroom(const Groom& given, const GroomHints& hints, const Conve
   return out;
 }
 
+int misfitCount(const Conversion& conversion) {
+  int count = 0;
+  for (const Misfit& misfit : conversion.misfits) count += misfit.strands;
+  return count;
+}
+
+std::string conversionWarning(const Conversion& conversion) {
+  const int off = misfitCount(conversion);
+  if (off <= kMostMisfits * conversion.strands) return "";
+  return "most of the groom is lost: " + std::to_string(off) + " of " + std::to_string(conversion.strands) +
+         " strands do not fit the hair mesh (hairmesh-inspect says what is wrong with a groom)";
+}
+
 std::string conversionReport(const Conversion& conversion) {
   const HairFit& fit = conversion.fit;
   const FitError& error = fit.error;
-  std::string text = reportLine("read          %d strands in %s, median length %.3f m", conversion.strands,
-                                conversion.unit.c_str(), error.strand_length);
+  const std::string warning = conversionWarning(conversion);
+  std::string text = warning.empty() ? "" : "warning       " + warning + "\n";
+  text += reportLine("read          %d strands in %s, median length %.3f m", conversion.strands,
+                     conversion.unit.c_str(), error.strand_length);
   if (conversion.left_out > 0)
     text += reportLine("left out      %d strands: fewer than two points, not finite or shorter than 1 mm",
                        conversion.left_out);
@@ -229,8 +245,7 @@ std::string conversionReport(const Conversion& conversion) {
 
 std::string conversionNote(const Conversion& conversion) {
   const FitError& error = conversion.fit.error;
-  int astray = 0;
-  for (const Misfit& misfit : conversion.misfits) astray += misfit.strands;
+  const int astray = misfitCount(conversion);
   char text[300];
   std::snprintf(text, sizeof text,
                 "%d strands in %s made into a hair mesh of %d vertices: mean distance %.1f %% of their length, 95 %% "

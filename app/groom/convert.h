@@ -43,6 +43,12 @@ struct Conversion {
 Conversion convertGroom(const Groom& groom, const GroomHints& hints, const ConvertOptions& options,
                         const std::string& file);
 
+// Of the strands, how many do not fit.
+int misfitCount(const Conversion& conversion);
+
+// One sentence where more than half of the strands do not fit; else empty.
+std::string conversionWarning(const Conversion& conversion);
+
 // Vertices, distances, character of the strands, and what does not fit: one fact a line.
 std::string conversionReport(const Conversion& conversion);
 

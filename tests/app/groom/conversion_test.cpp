@@ -153,6 +153,28 @@ TEST(Conversion, IsTheSameInAnotherUnit) {
   }
 }
 
+// What is larger than a head, as hair in a unit that is not known, is divided no finer.
+TEST(Conversion, KeepsToItsVerticesOnALargerHead) {
+  ConvertOptions options;
+  options.unit = 2.7;
+  const Conversion conversion = convertGroom(groom_kinds::cropped(288), {}, options, "large");
+  EXPECT_LE(conversion.shape.vertexCount(), 2400);
+  EXPECT_LE(conversion.fit.regions, 4);
+}
+
+TEST(Conversion, SaysFirstThatMostStrandsDoNotFit) {
+  ConvertOptions options;
+  options.fit.vertices = 400;
+  Conversion conversion = convertGroom(groom_kinds::cropped(200), {}, options, "cropped");
+  conversion.misfits.resize(1);
+  conversion.misfits[0].strands = 100;
+  EXPECT_EQ(conversionWarning(conversion), "");
+  EXPECT_TRUE(conversionReport(conversion).starts_with("read"));
+  conversion.misfits[0].strands = 101;
+  EXPECT_NE(conversionWarning(conversion).find("101 of 200 strands do not fit"), std::string::npos);
+  EXPECT_TRUE(conversionReport(conversion).starts_with("warning       most of the groom is lost"));
+}
+
 TEST(Conversion, RefusesWhatCarriesNoHairMesh) {
   Groom few;
   for (int i = 0; i < 5; ++i) groom_kinds::add({{0, 0, 0.01f * static_cast<float>(i)}, {0, 0.1f, 0}}, few);

@@ -15,9 +15,11 @@ using Eigen::Vector3d;
 struct ObjText {
   std::string text;
   int vertices = 0;
-  double scale = 1;  // units a metre
+  double scale = 1;   // units a metre
+  bool z_up = false;  // z up, facing -y
 
-  int vertex(const Vector3d& p) {
+  int vertex(const Vector3d& given) {
+    const Vector3d p = z_up ? Vector3d(given.x(), -given.z(), given.y()) : given;
     char line[120];
     std::snprintf(line, sizeof line, "v %.9g %.9g %.9g\n", scale * p.x(), scale * p.y(), scale * p.z());
     text += line;

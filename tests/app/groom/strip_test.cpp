@@ -3,6 +3,8 @@
 
 #include <assimp/Exporter.hpp>
 #include <assimp/Importer.hpp>
+#include <cmath>
+#include <filesystem>
 #include <fstream>
 
 #include "app/files/errors.h"
@@ -247,6 +249,35 @@ TEST(Strips, OwnHairMeshesAreToldByTheirLayers) {
   const std::string text = writeHairMesh(shape);
   EXPECT_TRUE(hasLayers(text));
   EXPECT_EQ(readHairMesh(text, "again.obj").vertexCount(), shape.vertexCount());
+}
+
+// hairmesh-convert and hairmesh --hair infer alike: which axis is up, and the place on the head.
+TEST(Strips, AreBroughtToTheHeadByTheProgram) {
+  const std::string folder = test::freshFolder("strips_program");
+  const std::string binary = std::filesystem::path(HAIRMESH_BINARY).parent_path().string() + "/hairmesh-convert";
+  const auto run = [&](const std::string& in, const std::string& out) {
+    const std::string command = test::shellQuoted(binary) + " " + test::shellQuoted(in) + " " + test::shellQuoted(out) +
+                                " >" + test::shellQuoted(folder + "/said") + " 2>&1";
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  };
+  std::vector<double> tops;
+  for (const bool z_up : {false, true}) {
+    ObjText obj;
+    obj.scale = 100;
+    obj.z_up = z_up;
+    for (const Vector3d& root : strip_samples::rootsOnHead(40))
+      strip_samples::card(root + Vector3d(0, 1.5, 0), 1, 5, 0.3, 0, obj);
+    const std::string out = folder + "/out.obj";
+    ASSERT_EQ(run(written(obj.text, z_up ? "z.obj" : "y.obj"), out), 0) << test::readAll(folder + "/said");
+    tops.push_back(heights(readHairMesh(test::readAll(out), out)).first);
+  }
+  EXPECT_NEAR(tops[0], tops[1], 0.01);
+  EXPECT_LT(std::abs(tops[0]), 0.3) << "above the head's joint";
+  std::ofstream(folder + "/own.glb") << "glTF....{\"asset\":{\"generator\":\"hairmesh\"}}";
+  EXPECT_EQ(run(folder + "/own.glb", folder + "/own.obj"), 4);
+  EXPECT_NE(test::readAll(folder + "/said").find("is a moving hair mesh that this program has exported"),
+            std::string::npos);
 }
 
 struct BadCase {

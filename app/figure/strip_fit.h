@@ -1,0 +1,22 @@
+// Strips, cards and tubes of a file, made into a hair mesh for the head at hand.
+#pragma once
+
+#include <string>
+
+#include "app/figure/character.h"
+#include "app/groom/strips/strip_convert.h"
+
+namespace app {
+
+struct FittedStrips {
+  StripConversion conversion;
+  std::string fit;  // what fitHair says of their place; empty: they fit as they are
+};
+
+// As convertStrips, with the hair mesh brought to the head as fitHair does, where `mend` says so. Strips without a
+// scalp are rooted at their highest ends, and their file does not say which axis is up: where `up_given` is false and
+// they lie away from the head it is y or z, whichever brings the roots nearer to the scalp. Throws InputError.
+FittedStrips fitStrips(const PolygonMesh& mesh, const StripOptions& options, bool up_given, const std::string& file,
+                       const Character& character, bool mend);
+
+}  // namespace app
