@@ -60,7 +60,12 @@ void fill(const char* option, std::string& value, const std::string& file) {
       names.push_back(std::filesystem::path(asset).filename().string());
   }
   const std::vector<std::string_view> candidates(names.begin(), names.end());
-  const std::string_view near = sim::nearestName(file, candidates);
+  std::string_view near = sim::nearestName(file, candidates);
+  // An ending that both have says nothing of what was meant.
+  const std::string stem = std::filesystem::path(file).stem().string(),
+                    meant = std::filesystem::path(near).stem().string();
+  const std::string_view one = meant;
+  if (!near.empty() && sim::nearestName(stem, {&one, 1}).empty()) near = {};
   throw InputError(file, "", "there is no such file",
                    near.empty() ? "check the path" : "did you mean '" + std::string(near) + "'?");
 }

@@ -66,14 +66,13 @@ std::string_view nearestName(std::string_view name, std::span<const std::string_
     }
   }
   std::string_view best;
-  int best_distance = 1 + static_cast<int>(name.size()) / 3;
+  int best_distance = 0;
   for (const std::string_view candidate : candidates) {
     const int distance = editDistance(name, candidate);
-    if (distance <= best_distance) {
-      if (distance == best_distance && !best.empty()) continue;
-      best = candidate;
-      best_distance = distance;
-    }
+    const bool near = distance <= static_cast<int>(std::max(name.size(), candidate.size()) / 3);
+    if (!near || (!best.empty() && distance >= best_distance)) continue;
+    best = candidate;
+    best_distance = distance;
   }
   // A part of a name is often what a person remembers: 'iterations' for 'max_iterations'.
   if (best.empty() && name.size() >= 3) {

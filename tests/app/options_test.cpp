@@ -150,6 +150,7 @@ TEST(Options, MisuseIsUsageAndSaysSoInOneLine) {
 TEST(Options, WhatTheParserCannotReadIsToldInWordsOfOurOwn) {
   for (const auto& [words, expected] : std::vector<std::pair<std::vector<std::string>, std::string>>{
            {{"--resolutoin", "low"}, "there is no option '--resolutoin'; did you mean '--resolution'?"},
+           {{"--bogus"}, "there is no option '--bogus'; hairmesh --help lists"},
            {{"--frames"}, "--frames needs a value; write --frames N"},
            {{"--strands", "1.5"}, "--strands cannot be '1.5'; write a whole number"},
            {{"a.json", "b.json"}, "'b.json' is one file too many"},
