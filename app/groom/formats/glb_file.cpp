@@ -69,7 +69,7 @@ GlbWriter::GlbWriter(std::string file, ClipSettings settings, std::vector<std::u
 void GlbWriter::add(const std::vector<Eigen::Vector3f>& vertices) {
   if (moments_.size() == kMaxGlbMoments)
     throw OutputError(file_, "a .glb file is given at most 1000 moments",
-                      "export every second frame, --export-every 2");
+                      "export fewer frames, --export-every N");
   if (vertices.empty() || (!moments_.empty() && vertices.size() != moments_[0].size()))
     throw OutputError(file_, "the mesh has no vertices, or not as many as at first",
                       "export without changing the hair");

@@ -9,6 +9,7 @@
 
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
+#include "app/files/report_line.h"
 #include "app/groom/formats/glb_file.h"
 #include "app/groom/formats/tfx_file.h"
 #include "app/groom/groom_writer.h"
@@ -219,6 +220,22 @@ std::string fewerNote(std::size_t written, const Demo& demo) {
 
 HairExport::~HairExport() = default;
 
+namespace {
+
+// A .glb file holds so many moments at most; frames of the run may be left out for that.
+void checkMoments(const ExportSpec& spec, int frames) {
+  if (std::filesystem::path(spec.file).extension() != ".glb") return;
+  const long end = spec.last < 0 ? frames : std::min(frames, spec.last + 1), span = std::max(0L, end - spec.first);
+  const auto most = static_cast<long>(kMaxGlbMoments) / spec.samples;  // frames
+  if ((span + spec.every - 1) / spec.every <= most) return;
+  if (most == 0)
+    throw OutputError(spec.file, "a .glb file is given at most 1000 moments", "ask for fewer --export-samples");
+  throw OutputError(spec.file, "a .glb file is given at most 1000 moments",
+                    "leave frames out, --export-every " + std::to_string((span + most - 1) / most));
+}
+
+}  // namespace
+
 HairExport::HairExport(const ExportSpec& spec, const Demo& demo, double fps, int frames)
     : impl_(std::make_unique<Impl>()) {
   impl_->spec = spec;
@@ -231,6 +248,7 @@ HairExport::HairExport(const ExportSpec& spec, const Demo& demo, double fps, int
   for (int frame = spec.first; frame < frames && taken < 2; ++frame) taken += spec.takes(frame);
   if (spec.what == ExportWhat::kMesh) {
     checkWritable(spec.file);
+    checkMoments(spec, frames);
     impl_->mesh.emplace(spec.file, settings, cageTriangles(demo));
     return;
   }
@@ -259,7 +277,7 @@ void HairExport::add(const Demo& demo, int frame) {
 std::string HairExport::finish(const Demo& demo) {
   if (impl_->mesh) impl_->mesh->finish();
   if (impl_->writer) impl_->writer->finish();
-  std::string text = std::to_string(impl_->frames) + " frames";
+  std::string text = countOf(impl_->frames, "frame");
   if (impl_->moments > impl_->frames) text += " of " + std::to_string(impl_->moments) + " moments";
   if (impl_->strands) {
     const Groom& groom = impl_->strands->last();
