@@ -206,7 +206,8 @@ int Run::finish() {
   if (hair_export) std::cout << hair_export->finish(demo);
   if (cache) std::cout << cache->finish(demo);
   std::cout << summary(report, demo);
-  if (demo.comparison.on()) std::cout << "against " << options.compare << ": " << comparisonText(demo) << "\n";
+  if (demo.comparison.on() && demo.comparison.frames > 0)
+    std::cout << "against " << options.compare << ": " << comparisonText(demo) << "\n";
   if (film) {
     film->finish();
     std::cout << countOf(report.frames.size(), "frame") << " in " << options.video << film->sizeNote() << "\n";
