@@ -83,7 +83,8 @@ struct UiState {
   bool unfolded = false;  // in a window too narrow for sidebar and figure: the tabs are shown all the same
   bool help = false;
   bool history = false;
-  bool dragging = false;  // a widget is held that has asked for something
+  std::size_t history_shows = 0;  // the moment that its list was last scrolled to
+  bool dragging = false;          // a widget is held that has asked for something
   bool quit = false;
   bool focus_panels = false;                    // asked for by an arrow key: the keyboard goes to the sidebar
   float zoom_texts = 1;                         // asked for by a key: texts of that size, over the display's

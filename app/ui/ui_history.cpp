@@ -30,7 +30,10 @@ void momentLine(std::size_t done, const std::string& title, Demo& demo, UiState&
   const bool pressed = ImGui::Selectable(title.c_str(), here);
   if (done > edits.done) ImGui::PopStyleColor();
   noteItem("moment " + std::to_string(done), ui);
-  if (here && ImGui::IsWindowAppearing()) ImGui::SetScrollHereY(1);
+  if (here && (ImGui::IsWindowAppearing() || ui.history_shows != done)) {
+    ImGui::SetScrollHereY(0.5f);
+    ui.history_shows = done;
+  }
   ImGui::PopID();
   if (!pressed || here) return;
   const double steps = static_cast<double>(done) - static_cast<double>(edits.done);
