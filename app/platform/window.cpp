@@ -150,7 +150,8 @@ void onScroll(GLFWwindow* window, double, double notches) {
 }
 
 void onKey(GLFWwindow* window, int key, int, int action, int modifiers) {
-  if (action == GLFW_RELEASE || panelsTakeKey(key)) return;
+  const bool closes = key == kKeyEscape && session(window).ui.browser.what != BrowseFor::kNothing;
+  if (action == GLFW_RELEASE || (panelsTakeKey(key) && !closes)) return;
   // Only what is meant to repeat does while a key is held.
   if (action == GLFW_REPEAT && key != '.' && key != '-' && key != '=') return;
   Session& s = session(window);
