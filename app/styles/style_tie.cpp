@@ -309,7 +309,8 @@ TiedHair tieHair(const sim::HairMeshShape& hair, const Scalp& scalp, const BodyD
       divided(seams == Seams::kClosed ? closedSeams(hair, scalp, ties) : hair, scalp, ties, of);
   std::vector<TiedHair> tries;
   for (const double wider : {1.2, 1.7, 2.4}) {
-    TiedHair& tied = tries.emplace_back(parted, std::vector<std::vector<int>>(ties.size()));
+    tries.push_back({parted, std::vector<std::vector<int>>(ties.size())});
+    TiedHair& tied = tries.back();
     for (std::size_t t = 0; t < ties.size(); ++t) {
       HairTie tie = ties[t];
       tie.radius *= wider;
