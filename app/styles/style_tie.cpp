@@ -25,8 +25,6 @@ constexpr double kStep = 0.01, kBend = 0.22;           // m; share of a step's h
 constexpr double kSwell = 1.35, kTaper = 0.7;  // of the ring's radius: the tail's where it is widest, at its end
 constexpr double kShortestTail = 0.08;         // m
 constexpr int kSectors = 24;
-constexpr double kMostTurn = 0.61;   // rad that a layer's step may turn around the head
-constexpr int kTailLayers = 3;       // that such ways leave the tail
 constexpr double kSeam = 0.003;      // m between roots on both sides of where hair divides
 constexpr double kAlongside = 0.97;  // cosine between the ways that they leave the scalp
 
@@ -221,12 +219,9 @@ double columnLength(const sim::HairMeshShape& hair, int column) {
 }
 
 // The layer that lies in the ring: the same of all columns of a tie. `way`: share of the hair's length up to there;
-// where it is most of it, few layers would cut through the head. `far`: rad that the longest way turns around the head.
-// Over a step that turns far a prism is positive only high over the scalp, where neighbours come to lie unevenly.
-int ringLayer(int length, double way, double far) {
-  const int ring = std::clamp(std::max((2 * length) / 5, static_cast<int>(way * length)), 2, length - 2);
-  const int round_head = static_cast<int>(std::ceil(far / kMostTurn));
-  return std::max(ring, std::min(round_head, length - kTailLayers));
+// where it is most of it, few layers would cut through the head.
+int ringLayer(int length, double way) {
+  return std::clamp(std::max((2 * length) / 5, static_cast<int>(way * length)), 2, length - 2);
 }
 
 void gather(const HairTie& tie, int number, const Scalp& scalp, const BodyDistance& body, const std::vector<int>& of,
@@ -235,14 +230,11 @@ void gather(const HairTie& tie, int number, const Scalp& scalp, const BodyDistan
   Gathering gathering(tie, scalp, body);
   std::vector<int> columns;
   int shortest = 1 << 20;
-  double far = 0;
   for (int c = 0; c < shape.columnCount(); ++c) {
     if (of[static_cast<std::size_t>(c)] != number || shape.columnLength(c) < 4) continue;
     columns.push_back(c);
     shortest = std::min(shortest, shape.columnLength(c));
-    const Vec3& root = shape.positions[shape.column_first[c]];
-    gathering.addRoot(root);
-    far = std::max(far, gathering.angleOf(root));
+    gathering.addRoot(shape.positions[shape.column_first[c]]);
   }
   if (columns.empty()) return;
   double left = 0, way = 0;
@@ -253,7 +245,7 @@ void gather(const HairTie& tie, int number, const Scalp& scalp, const BodyDistan
   }
   left = std::max(left, kShortestTail);
   const Path path = gathering.tail(left);
-  const int ring = ringLayer(shortest, way / (way + left), far);
+  const int ring = ringLayer(shortest, way / (way + left));
   for (const int c : columns) {
     const int first = shape.column_first[c], count = shape.columnLength(c);
     const Vec3 root = shape.positions[first];
