@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <thread>
@@ -222,9 +223,11 @@ HairExport::~HairExport() = default;
 
 namespace {
 
-// A .glb file holds so many moments at most; frames of the run may be left out for that.
+// A .glb file holds so many moments at most; frames of the run may be left out for that. What is recorded until it is
+// stopped is told when it comes so far.
 void checkMoments(const ExportSpec& spec, int frames) {
-  if (std::filesystem::path(spec.file).extension() != ".glb") return;
+  const bool until_stopped = spec.last < 0 && frames == std::numeric_limits<int>::max();
+  if (until_stopped || std::filesystem::path(spec.file).extension() != ".glb") return;
   const long end = spec.last < 0 ? frames : std::min(frames, spec.last + 1), span = std::max(0L, end - spec.first);
   const auto most = static_cast<long>(kMaxGlbMoments) / spec.samples;  // frames
   if ((span + spec.every - 1) / spec.every <= most) return;

@@ -38,7 +38,7 @@ class StrandExport {
 // One export of a run: opened before its first frame, so that what cannot be written is known then.
 class HairExport {
  public:
-  // fps: frames of the run a second. frames: of the run. Throws OutputError.
+  // fps: frames of the run a second. frames: of the run; the largest number: until it is stopped. Throws OutputError.
   HairExport(const ExportSpec& spec, const Demo& demo, double fps, int frames);
   ~HairExport();
 
