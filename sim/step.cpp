@@ -173,7 +173,8 @@ void rootsFollowScalp(const StepInput& input, const StepBase& base, const HairMe
 
 enum class ContactVelocity { kOfSolve, kOfWay };
 
-// Contacts have the velocity of their way in a step, a solve those that bring each vertex there by the step's end.
+// Between solves a contact's velocity is its way over the time step. A solve holds the vertex to the velocity that
+// brings it to that way's end: of two-step integration another, for x_hat is not where the step begins.
 void setContactVelocities(ContactVelocity as, const StepBase& base, double dt, HairState& state) {
   for (Contact& contact : state.contacts) {
     Vec3& v = contact.velocity;
@@ -182,8 +183,9 @@ void setContactVelocities(ContactVelocity as, const StepBase& base, double dt, H
   }
 }
 
-void solveVelocities(const SimParams& params, const StepBase& base, SolveMemory& memory, Parts& parts, HairState& state,
-                     StepReport& report) {
+void solveVelocities(const SimParams& params, const StepBase& base, double dt, SolveMemory& memory, Parts& parts,
+                     HairState& state, StepReport& report) {
+  setContactVelocities(ContactVelocity::kOfSolve, base, dt, state);
   const auto solve = [&](auto& solver) {
     solver.model.setMoving(parts.material.model, base.x_hat[0]);
     solver.solve(*parts.mesh, params, base, parts.clock, state.contacts, memory, state.velocities, report);
@@ -194,6 +196,7 @@ void solveVelocities(const SimParams& params, const StepBase& base, SolveMemory&
   } else {
     solve(*parts.single_solver);
   }
+  setContactVelocities(ContactVelocity::kOfWay, base, dt, state);
 }
 
 void integratePositions(const StepInput& input, const StepBase& base, double dt, const HairMesh& mesh,
@@ -265,7 +268,7 @@ void advanceReference(const SimParams& params, const StepInput& input, double dt
   const StepBase base = integratorBase(params, input, dt, reference, parts);
   rootsFollowScalp(input, base, mesh, reference);
   StepReport own;
-  solveVelocities(params, base, memory.solve, parts, reference, own);
+  solveVelocities(params, base, dt, memory.solve, parts, reference, own);
   integratePositions(input, base, dt, mesh, parts, reference);
   const TakenStep taken = takenStep(params, base, dt, parts);
   if (nets.active.step_energy) limitEnergy(taken, own.converged, nets.energy_limit, reference);
@@ -337,9 +340,7 @@ StepReport advance(const HairMesh& mesh, const SimParams& asked, const StepInput
   rootsFollowScalp(input, base, mesh, state);
   parts.clock.spent(kStageOther, report);
   // Forces (1), (2) and Hessians; implicit solve by Modified PCG (BW 16).
-  setContactVelocities(ContactVelocity::kOfSolve, base, dt, state);
-  solveVelocities(params, base, state.memory.solve, parts, state, report);
-  setContactVelocities(ContactVelocity::kOfWay, base, dt, state);
+  solveVelocities(params, base, dt, state.memory.solve, parts, state, report);
   report.solve_cut = !report.converged && params.max_iterations < asked.max_iterations;
   integratePositions(input, base, dt, mesh, parts, state);
   const TakenStep taken = takenStep(params, base, dt, parts);
