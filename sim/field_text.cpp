@@ -36,8 +36,7 @@ std::string numberText(double value) {
 
 namespace {
 
-// Edit distance of Damerau and Levenshtein, one row at a time: letters put in, left out, exchanged for others, or two
-// neighbours with each other.
+// Edit distance of Damerau and Levenshtein, one row at a time: two neighbours that change places are one edit.
 int editDistance(std::string_view a, std::string_view b) {
   std::vector<int> row(b.size() + 1), above(b.size() + 1), two_above;
   std::iota(row.begin(), row.end(), 0);
