@@ -25,22 +25,32 @@ struct Landmark {
   double azimuth, elevation;  // degrees; the left side's, mirrored for the right
 };
 
-// The hairline from the temple over the ear to the nape, seen from the middle of the cranium level with the top of the
-// ears.
+// The hairline from the tip of the hair before the ear over the ear to the nape, seen from the middle of the cranium
+// level with the top of the ears. It begins where the line over forehead and temple ends, in about a right angle: root
+// faces there have a corner that is neither flat nor reflex.
 constexpr std::array<Landmark, 7> kHairline{
-    {{57, 17}, {74, 9}, {95, 10}, {116, -4}, {136, -20}, {158, -30}, {180, -33}}};
+    {{64, 3}, {81, 7}, {97, 9.5}, {116, -4}, {136, -20}, {158, -30}, {180, -33}}};
 // The same from the middle of the forehead.
-constexpr std::array<Landmark, 10> kHairlineWithForehead{
-    {{0.25, 36}, {19, 34}, {40, 27.5}, {57, 17}, {74, 9}, {95, 10}, {116, -4}, {136, -20}, {158, -30}, {180, -33}}};
+constexpr std::array<Landmark, 11> kHairlineWithForehead{{{0.25, 36},
+                                                          {19, 34},
+                                                          {40, 27.5},
+                                                          {57, 17},
+                                                          {67, 5},
+                                                          {81, 7},
+                                                          {97, 9.5},
+                                                          {116, -4},
+                                                          {136, -20},
+                                                          {158, -30},
+                                                          {180, -33}}};
 
 // Both ends of the parting: front hairline, slightly left of the middle, or behind the fringe, and crown.
 constexpr Landmark kPartingFront{15, 35.2};
 constexpr Landmark kPartingBehindFringe{5, 67};
 constexpr Landmark kCrown{176, 62};
 
-// The forehead's hairline bulges towards these.
-constexpr Landmark kForeheadLeft{42, 28.2};
-constexpr Landmark kForeheadRight{-34, 33.2};
+// The line over forehead and temple, from the parting's front to the tip before the ear, bulges towards these.
+constexpr Landmark kForeheadLeft{50, 29};
+constexpr Landmark kForeheadRight{-44, 32};
 
 Vec3 direction(const Landmark& l) {
   return scalpDirection(l.azimuth, l.elevation);

@@ -10,6 +10,7 @@
 #include "render/strands/look_share.h"
 #include "render/strands/shader_math.h"
 #include "render/strands/skin_lift.h"
+#include "shaders/shared.h"
 
 namespace render {
 namespace {
