@@ -36,7 +36,7 @@ sim::Vec3 lowered(const sim::Vec3& way, double angle) {
 }
 
 TieSpec readTie(const JsonPlace& place) {
-  place.expectObject({"at", "radius", "side", "above"});
+  place.expectObject({"at", "radius", "side", "above", "braided"});
   TieSpec tie;
   if (place.has("at") && place.at("at").value().is_string()) {
     tie.place = place.at("at").choice({"back", "high", "low", "left", "right"});
@@ -47,6 +47,7 @@ TieSpec readTie(const JsonPlace& place) {
   if (place.has("radius")) tie.radius = place.at("radius").number(kThinnestTie, kWidestTie);
   if (place.has("side")) tie.side = place.at("side").choice({"all", "left", "right"});
   if (place.has("above")) tie.above = place.at("above").number(-1, 1);
+  if (place.has("braided")) tie.braided = place.at("braided").flag();
   return tie;
 }
 
@@ -65,6 +66,7 @@ json writeTies(const std::vector<TieSpec>& ties) {
     json one = {{"radius", tie.radius}, {"above", tie.above}};
     one["at"] = tie.at ? json{tie.at->x(), tie.at->y(), tie.at->z()} : json(tie.place);
     if (!tie.side.empty()) one["side"] = tie.side;
+    if (tie.braided) one["braided"] = true;
     all.push_back(std::move(one));
   }
   return all;
@@ -73,7 +75,9 @@ json writeTies(const std::vector<TieSpec>& ties) {
 std::vector<TieSpec> tiesFromText(std::string_view text) {
   if (text == "none" || text.empty()) return {};
   TieSpec tie;
-  if (text == "two") {
+  tie.braided = text == "plait" || text == "plaits";
+  if (text == "plait") return {tie};
+  if (text == "two" || text == "plaits") {
     std::vector<TieSpec> both(2, tie);
     both[0].place = "left", both[1].place = "right";
     return both;
@@ -84,7 +88,7 @@ std::vector<TieSpec> tiesFromText(std::string_view text) {
   }
   if (!text.starts_with("[") && !text.starts_with("{"))
     throw InputError("", "tie '" + std::string(text.substr(0, 40)) + "'", "is unknown",
-                     "choose back, high, low, left, right, two or none, or write JSON as in a scene's \"ties\"");
+                     "choose back, high, low, left, right, two, plait, plaits or none, or write JSON as in a scene's \"ties\"");
   const json parsed = parseJson(text, "");
   const JsonPlace place(parsed, "");
   return parsed.is_object() ? std::vector{readTie(place)} : readTies(place);

@@ -18,6 +18,7 @@
 #include "app/groom/fit/look_fit.h"
 #include "app/groom/inspect/certain_mends.h"
 #include "app/motion/playback.h"
+#include "app/scene/braid/braid_plan.h"
 #include "app/scene/detail/step_error.h"
 #include "app/scene/edit/painted_fields.h"
 #include "app/scene/pins.h"
@@ -56,6 +57,7 @@ struct Haircut {
   sim::HairMesh mesh;
   std::vector<HairTie> ties;  // where they are
   std::vector<int> tied;      // vertices in the rings of ties
+  BraidPlan braids;           // tails that are drawn as plaits; empty: none
   std::vector<int> covered;   // vertices under attachments, which hold them
   PaintedShares shares;
   PaintedLook look_shares;

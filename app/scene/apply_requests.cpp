@@ -90,7 +90,11 @@ void changeMends(const std::string& mends, Demo& demo) {
 void changeTies(const std::string& text, Demo& demo) {
   CharacterSpec spec = selectedActor(demo).spec;
   spec.ties = tiesFromText(text);
-  recast(spec, true, spec.ties.empty() ? "hair without ties" : "hair with " + tieTitle(spec.ties), demo);
+  const bool braided = std::ranges::any_of(spec.ties, &TieSpec::braided);
+  recast(spec, true,
+         spec.ties.empty() ? "hair without ties"
+                           : (braided ? "braided hair with " : "hair with ") + tieTitle(spec.ties),
+         demo);
 }
 
 void changeAttachments(const Request& request, Demo& demo) {

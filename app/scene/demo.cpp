@@ -235,11 +235,16 @@ Demo openScene(Scene scene, double aspect, bool beside) {
 render::FrameInput frameInput(Demo& demo, int width, int height) {
   demo.hair_inputs.clear();
   demo.body_inputs.clear();
-  for (const Actor& actor : demo.actors) {
-    demo.hair_inputs.push_back(hairInput(actor, actor.spec.look));
+  demo.braided.resize(demo.actors.size());
+  demo.bands.resize(demo.actors.size());
+  for (std::size_t i = 0; i < demo.actors.size(); ++i) {
+    const Actor& actor = demo.actors[i];
+    demo.hair_inputs.push_back(hairInput(actor, actor.spec.look, actor.shown_positions, demo.braided[i]));
     demo.body_inputs.push_back(bodyInput(actor, actor.spec.look, demo.scene.look.view.show_strands));
     for (std::size_t k = 0; k < actor.worn.size(); ++k)
       demo.body_inputs.push_back(attachmentInput(actor, k, demo.scene.look.view.show_strands));
+    if (demo.scene.look.view.show_strands)
+      addBands(actor, actor.shown_positions, demo.bands[i], demo.body_inputs);
   }
   render::FrameInput input;
   input.width = width;

@@ -32,6 +32,10 @@ std::string loweredNote(const CharacterSpec& spec, const Scalp& scalp, double lo
          stem(spec.attachments.front().file);
 }
 
+void addNote(const std::string& note, Haircut& haircut) {
+  haircut.note += (haircut.note.empty() ? "" : "\n") + note;
+}
+
 constexpr double kShortOfRing = 0.005;  // m: what lacks less does for the want of room
 
 // rad, that ties are lowered by, one after another, where what is worn leaves the tied hair no room.
@@ -63,11 +67,16 @@ void checkRings(const CharacterSpec& spec, const LoadedBody& body, const std::ve
   }
 }
 
-void applyTies(const CharacterSpec& spec, const LoadedBody& body, sim::HairMeshShape& shape, Haircut& haircut) {
+// Vertices in each tie's ring.
+using Rings = std::vector<std::vector<int>>;
+
+void applyTies(const CharacterSpec& spec, const LoadedBody& body, sim::HairMeshShape& shape, Haircut& haircut,
+               Rings& rings) {
   TiedHair result = tieHair(shape, body.character.scalp, body.distance, haircut.ties,
                             spec.attachments.empty() ? Seams::kClosed : Seams::kOpen);
   shape = std::move(result.shape);
   haircut.tied.clear();
+  rings.clear();
   for (std::size_t t = 0; t < result.rings.size(); ++t) {
     const std::vector<int>& ring = result.rings[t];
     if (ring.empty())
@@ -75,6 +84,7 @@ void applyTies(const CharacterSpec& spec, const LoadedBody& body, sim::HairMeshS
                        "let it take hair of both sides, or hair that is rooted lower (\"above\")");
     haircut.tied.insert(haircut.tied.end(), ring.begin(), ring.end());
   }
+  rings = std::move(result.rings);
 }
 
 // The hair as it grows, cut by a map.
@@ -91,9 +101,9 @@ sim::HairMeshShape grownHair(const CharacterSpec& spec, const LoadedBody& body, 
 
 // Tied and under what is worn. Throws sim::MeshError where there is no room.
 void dressHair(const CharacterSpec& spec, const LoadedBody& body, std::span<const Attachment* const> worn,
-               sim::HairMeshShape shape, Haircut& haircut) {
+               sim::HairMeshShape shape, Haircut& haircut, Rings& rings) {
   const Scalp& scalp = body.character.scalp;
-  if (!spec.ties.empty()) applyTies(spec, body, shape, haircut);
+  if (!spec.ties.empty()) applyTies(spec, body, shape, haircut, rings);
   haircut.painted = shape.positions;
   haircut.covered = layUnder(worn, scalp, body.distance, shape);
   if (!spec.ties.empty() || !haircut.covered.empty()) haircut.unpainted.clear();
@@ -102,20 +112,20 @@ void dressHair(const CharacterSpec& spec, const LoadedBody& body, std::span<cons
 
 // The same with the ties where they are named or, where there is no room, as little lower as there is.
 void dressWhereThereIsRoom(const CharacterSpec& spec, const LoadedBody& body, std::span<const Attachment* const> worn,
-                           const sim::HairMeshShape& shape, Haircut& haircut) {
+                           const sim::HairMeshShape& shape, Haircut& haircut, Rings& rings) {
   const bool named = std::ranges::any_of(spec.ties, [](const TieSpec& tie) { return !tie.at; });
   const std::size_t tries = named && !worn.empty() ? kLowered.size() : 1;
   for (std::size_t k = 0; k < tries; ++k) {
     haircut.ties = placeTies(spec.ties, body.character.scalp, kLowered[k]);
     checkRings(spec, body, haircut.ties);
     try {
-      dressHair(spec, body, worn, shape, haircut);
+      dressHair(spec, body, worn, shape, haircut, rings);
     } catch (const sim::MeshError&) {
       if (k + 1 == tries) throw;
       continue;
     }
     if (k > 0)
-      haircut.note += (haircut.note.empty() ? "" : "\n") + loweredNote(spec, body.character.scalp, kLowered[k]);
+      addNote(loweredNote(spec, body.character.scalp, kLowered[k]), haircut);
     return;
   }
 }
@@ -148,6 +158,22 @@ void dressWhereThereIsRoom(const CharacterSpec& spec, const LoadedBody& body, st
   if (!spec.ties.empty()) refuseTies(spec, scalp, grown, haircut);
   throw InputError(spec.hair.empty() ? "style " + title + " on " + spec.motion : spec.hair, error.place, error.fault,
                    error.mend);
+}
+
+// Faces, rest shape and painted look are there.
+void braidTails(const CharacterSpec& spec, const Scalp& scalp, const Rings& rings, Haircut& haircut) {
+  std::vector<BraidTie> braided;
+  std::vector<std::string> names;
+  for (std::size_t t = 0; t < rings.size(); ++t) {
+    if (!spec.ties[t].braided) continue;
+    const Vec3 axis = (haircut.ties[t].at - scalp.center).normalized();
+    braided.push_back({axis, haircut.ties[t].radius, axis.x() < 0, rings[t]});
+    names.push_back(tieTitle({spec.ties[t]}));
+  }
+  if (braided.empty()) return;
+  haircut.braids = planBraids(haircut.faces, haircut.mesh.shape.column_first, haircut.rest, haircut.look_shares.roots,
+                              braided, names);
+  if (!haircut.braids.note.empty()) addNote(haircut.braids.note, haircut);
 }
 
 }  // namespace
@@ -184,22 +210,23 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
   if ((spec.hair.empty() || !spec.ties.empty() || !worn.empty()) && !body.distance)
     body.distance = restBodyDistance(body.character);
   sim::HairMeshShape shape;
+  Rings rings;
   try {
     shape = grownHair(spec, body, *haircut);
-    dressWhereThereIsRoom(spec, body, worn, shape, *haircut);
+    dressWhereThereIsRoom(spec, body, worn, shape, *haircut, rings);
     haircut->shares = paintedShares(spec.maps, spec.curves, body.character.scalp, haircut->mesh.shape);
     applyShares(haircut->shares, haircut->mesh);
   } catch (const sim::MeshError& error) {
     refuseHair(spec, title, body.character.scalp, shape, *haircut, error);
   }
-  if (const std::string notes = mapNotes(spec.maps); !notes.empty())
-    haircut->note += (haircut->note.empty() ? "" : "\n") + notes;
+  if (const std::string notes = mapNotes(spec.maps); !notes.empty()) addNote(notes, *haircut);
   haircut->faces = renderFaces(haircut->mesh);
   markCovered(*haircut, haircut->faces);
   if (!spec.maps.density.empty())
     paintDensity(readFieldMap(spec.maps.density), body.character.scalp, haircut->mesh, haircut->faces);
   haircut->look_shares = paintedLook(spec.maps, spec.curves, body.character.scalp, haircut->mesh.shape);
   blendPositions(haircut->mesh.shape.positions, haircut->mesh.shape.positions, 1, Vec3::Zero(), haircut->rest);
+  braidTails(spec, body.character.scalp, rings, *haircut);
   // Hair of a style that divides over the shoulders lies against itself: it sleeps as a whole.
   asset_cache.haircuts.push_back(std::move(haircut));
   return *asset_cache.haircuts.back();

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "app/files/data_path.h"
 #include "app/ui/ui_widgets.h"
@@ -293,7 +294,17 @@ void tieRow(const Actor& actor, Demo& demo, UiState& ui) {
   int chosen = ties.empty() ? 0 : ties.size() == 2 ? 4 : -1;
   for (int k = 1; k < 4 && ties.size() == 1; ++k) chosen = ties[0].place == kNames[k] && !ties[0].at ? k : chosen;
   const int pressed = segments("tie", {"None", "High", "Back", "Low", "Two"}, chosen, ui);
-  if (pressed >= 0) postRequest(demo, {Ask::kTie, "", kNames[pressed]});
+  bool braided = !ties.empty() && std::ranges::all_of(ties, &TieSpec::braided);
+  const auto post = [&](std::vector<TieSpec> wanted) {
+    for (TieSpec& tie : wanted) tie.braided = braided;
+    postRequest(demo, {Ask::kTie, "", writeTies(wanted).dump()});
+  };
+  if (pressed >= 0 && !braided) postRequest(demo, {Ask::kTie, "", kNames[pressed]});
+  if (pressed >= 0 && braided) post(tiesFromText(kNames[pressed]));
+  if (ties.empty()) return;
+  rowLabel("Braided", "What hangs from the tie is drawn as a plait of three strands, to a second tie before its end");
+  if (ImGui::Checkbox("##braided", &braided)) post(ties);
+  noteItem("braided", ui);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "app/groom/formats/glb_file.h"
 #include "app/groom/formats/tfx_file.h"
 #include "app/groom/groom_writer.h"
+#include "app/scene/view/figure_input.h"
 #include "render/light/fiber_scattering.h"
 #include "render/strands/strand_growth.h"
 
@@ -63,6 +64,7 @@ struct StrandExport::Grown {
   render::StrandGrowth growth;
   std::vector<render::Strand> strands;
   std::size_t first_strand = 0;
+  std::vector<float> braided;  // where hair with plaits is drawn
 };
 
 StrandExport::~StrandExport() = default;
@@ -84,13 +86,13 @@ StrandExport::StrandExport(const Demo& demo, ExportWhat what, int points) : what
     Vector3f middle = Vector3f::Zero();
     for (int c = 0; c < shape.columnCount(); ++c)
       middle += shape.positions[shape.column_first[c]].cast<float>() / static_cast<float>(shape.columnCount());
+    std::vector<float> braided;
+    const render::HairInput input = hairInput(actor, look, haircut.rest, braided);
     grown_.push_back(std::make_unique<Grown>(Grown{
-        {haircut.faces, haircut.rest, look.strands, look.segments_per_layer, look.hair, haircut.look_shares.shares()},
-        {},
-        0}));
+        {input.faces, input.rest, input.strands, input.segments_per_layer, input.look, input.shares}, {}, 0, {}}));
     Grown& grown = *grown_.back();
     grown.first_strand = groom_.strandCount();
-    grown.growth.setPositions(haircut.rest);
+    grown.growth.setPositions(input.positions);
     if (what_ == ExportWhat::kGuides) {
       for (int c = 0; c < shape.columnCount(); ++c) {
         const Vector3f root = shape.positions[shape.column_first[c]].cast<float>();
@@ -119,7 +121,8 @@ const Groom& StrandExport::groom(const Demo& demo, double unit) {
   for (std::size_t a = 0; a < grown_.size() && a < demo.actors.size(); ++a) {
     Grown& grown = *grown_[a];
     const Actor& actor = demo.actors[a];
-    if (!grown.growth.setPositions(actor.shown_positions)) {
+    const render::HairInput input = hairInput(actor, actor.spec.look, actor.shown_positions, grown.braided);
+    if (!grown.growth.setPositions(input.positions)) {
       throw OutputError("export", "the hair of character " + std::to_string(a + 1) + " was exchanged during the run",
                         "export without changing style or hair mesh");
     }

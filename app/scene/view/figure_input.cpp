@@ -1,25 +1,52 @@
 #include "app/scene/view/figure_input.h"
 
 #include "app/scene/attachments.h"
+#include "app/scene/braid/braid_band.h"
+#include "app/scene/braid/braid_draw.h"
 #include "render/light/fiber_scattering.h"
 
 namespace app {
 
-render::HairInput hairInput(const Actor& actor, const CharacterLook& look) {
+render::HairInput hairInput(const Actor& actor, const CharacterLook& look, std::span<const float> positions,
+                            std::vector<float>& drawn) {
   render::HairInput input;
   input.id = actor.id;
   input.layout_revision = actor.layout_revision;
   input.position_revision = actor.position_revision;
   input.layout_id = actor.haircut->id;
   input.faces = actor.haircut->faces;
-  input.positions = actor.shown_positions;
+  input.positions = positions;
   input.rest = actor.haircut->rest;
   input.strands = look.strands;
   input.segments_per_layer = look.segments_per_layer;
   input.look = look.hair;
   input.shares = actor.haircut->look_shares.shares();
   if (look.lift_strands) input.skin = actor.shown_skin;
+  const BraidPlan& braids = actor.haircut->braids;
+  if (!braids.empty() && positions.size() == actor.haircut->rest.size()) {
+    drawBraids(braids, positions, drawn);
+    input.faces = braids.faces;
+    input.positions = drawn;
+    input.rest = braids.rest;
+    input.segments_per_layer = braidSegments(braids, look.segments_per_layer);
+    input.shares.roots = braids.root_shares;
+  }
   return input;
+}
+
+void addBands(const Actor& actor, std::span<const float> positions, std::vector<render::Mat4>& matrices,
+              std::vector<render::BodyInput>& bodies) {
+  matrices.clear();
+  const BraidPlan& braids = actor.haircut->braids;
+  if (braids.empty() || positions.size() != actor.haircut->rest.size() || actor.spec.look.strands <= 0) return;
+  matrices = braidBands(braids, positions);
+  for (std::size_t k = 0; k < matrices.size(); ++k) {
+    render::BodyInput input = bandInput(actor.id, k);
+    input.joint_matrices = {&matrices[k], 1};
+    input.pose_revision = actor.position_revision;
+    input.hair_id = actor.id;
+    bodies.push_back(input);
+  }
 }
 
 render::BodyInput bodyInput(const Actor& actor, const CharacterLook& look, bool show_strands) {

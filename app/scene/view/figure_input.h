@@ -2,12 +2,20 @@
 // actor.
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "app/scene/actor.h"
 #include "render/frame_input.h"
 
 namespace app {
 
-render::HairInput hairInput(const Actor& actor, const CharacterLook& look);
+// `positions`: of the simulated vertices, as shown. `drawn` keeps those that braided hair is drawn at.
+render::HairInput hairInput(const Actor& actor, const CharacterLook& look, std::span<const float> positions,
+                            std::vector<float>& drawn);
+// The ties that hold the ends of its plaits, where hair is drawn; `matrices` keeps where they are.
+void addBands(const Actor& actor, std::span<const float> positions, std::vector<render::Mat4>& matrices,
+              std::vector<render::BodyInput>& bodies);
 // `show_strands`: whether hair is drawn at all; without it the head is bald.
 render::BodyInput bodyInput(const Actor& actor, const CharacterLook& look, bool show_strands);
 // The attachment of that number.

@@ -108,8 +108,7 @@ render::FrameInput presetFrame(const Demo& demo, const std::vector<Vec3>& positi
   jointMatrices(character.skeleton, preset.pose, Vec3::Zero(), preset.joints);
   skinEllipsoids(character, preset.pose, Vec3::Zero(), preset.skin);
   const bool strands = preset.scene.view.show_strands;
-  preset.hairs = {hairInput(actor, preset.look)};
-  preset.hairs[0].positions = preset.positions;
+  preset.hairs = {hairInput(actor, preset.look, preset.positions, preset.braided)};
   preset.hairs[0].position_revision = revision;
   if (preset.look.lift_strands) preset.hairs[0].skin = preset.skin;
   preset.bodies = {bodyInput(actor, preset.look, strands)};
@@ -123,6 +122,7 @@ render::FrameInput presetFrame(const Demo& demo, const std::vector<Vec3>& positi
     preset.bodies.push_back(attachmentInput(actor, k, strands));
     preset.bodies.back().joint_matrices = {&preset.worn[k], 1};
   }
+  if (strands) addBands(actor, preset.positions, preset.bands, preset.bodies);
   for (render::BodyInput& body : preset.bodies) body.pose_revision = revision;
   render::FrameInput input;
   input.width = width, input.height = height;

@@ -27,7 +27,8 @@ struct PresetScene {
   SceneLook scene;
   bool moves = false;  // the preset has settings of the simulation
   Pose pose;           // at rest, facing +z
-  std::vector<float> positions;
+  std::vector<float> positions, braided;
+  std::vector<render::Mat4> bands;
   std::vector<render::Mat4> joints, worn;
   std::vector<render::SkinEllipsoid> skin;
   std::vector<render::HairInput> hairs;
