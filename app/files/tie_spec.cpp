@@ -87,8 +87,9 @@ std::vector<TieSpec> tiesFromText(std::string_view text) {
     return {tie};
   }
   if (!text.starts_with("[") && !text.starts_with("{"))
-    throw InputError("", "tie '" + std::string(text.substr(0, 40)) + "'", "is unknown",
-                     "choose back, high, low, left, right, two, plait, plaits or none, or write JSON as in a scene's \"ties\"");
+    throw InputError(
+        "", "tie '" + std::string(text.substr(0, 40)) + "'", "is unknown",
+        "choose back, high, low, left, right, two, plait, plaits or none, or write JSON as in a scene's \"ties\"");
   const json parsed = parseJson(text, "");
   const JsonPlace place(parsed, "");
   return parsed.is_object() ? std::vector{readTie(place)} : readTies(place);

@@ -4,8 +4,8 @@
 //              "right", "above": -1, "braided": false }]
 // Numbers are metres in the scalp's frame (x to the figure's left, y up, z forward); "above" counts from the head's
 // middle, and hair that is rooted lower stays out. Every key may be left out. A bundle goes to the first tie that takes
-// it. The hair in the ring is pinned to the head. What hangs from a braided tie is drawn as a plait of three strands; see
-// app/scene/braid.
+// it. The hair in the ring is pinned to the head. What hangs from a braided tie is drawn as a plait of three strands;
+// see app/scene/braid.
 #pragma once
 
 #include <optional>
@@ -34,8 +34,8 @@ inline constexpr double kThinnestTie = 0.008, kWidestTie = 0.08;  // m
 std::vector<TieSpec> readTies(const JsonPlace& place);
 nlohmann::json writeTies(const std::vector<TieSpec>& ties);
 
-// From the command line or a panel: none, two (left and right), plait (back) or plaits (left and right), both braided, a
-// place, or JSON as in a scene. Throws InputError.
+// From the command line or a panel: none, two (left and right), plait (back) or plaits (left and right), both braided,
+// a place, or JSON as in a scene. Throws InputError.
 std::vector<TieSpec> tiesFromText(std::string_view text);
 
 // For messages: "tie high", "ties left and right", "tie at 0, 0.1, -0.2 m".

@@ -91,10 +91,10 @@ void changeTies(const std::string& text, Demo& demo) {
   CharacterSpec spec = selectedActor(demo).spec;
   spec.ties = tiesFromText(text);
   const bool braided = std::ranges::any_of(spec.ties, &TieSpec::braided);
-  recast(spec, true,
-         spec.ties.empty() ? "hair without ties"
-                           : (braided ? "braided hair with " : "hair with ") + tieTitle(spec.ties),
-         demo);
+  recast(
+      spec, true,
+      spec.ties.empty() ? "hair without ties" : (braided ? "braided hair with " : "hair with ") + tieTitle(spec.ties),
+      demo);
 }
 
 void changeAttachments(const Request& request, Demo& demo) {

@@ -243,8 +243,7 @@ render::FrameInput frameInput(Demo& demo, int width, int height) {
     demo.body_inputs.push_back(bodyInput(actor, actor.spec.look, demo.scene.look.view.show_strands));
     for (std::size_t k = 0; k < actor.worn.size(); ++k)
       demo.body_inputs.push_back(attachmentInput(actor, k, demo.scene.look.view.show_strands));
-    if (demo.scene.look.view.show_strands)
-      addBands(actor, actor.shown_positions, demo.bands[i], demo.body_inputs);
+    if (demo.scene.look.view.show_strands) addBands(actor, actor.shown_positions, demo.bands[i], demo.body_inputs);
   }
   render::FrameInput input;
   input.width = width;

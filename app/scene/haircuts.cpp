@@ -124,8 +124,7 @@ void dressWhereThereIsRoom(const CharacterSpec& spec, const LoadedBody& body, st
       if (k + 1 == tries) throw;
       continue;
     }
-    if (k > 0)
-      addNote(loweredNote(spec, body.character.scalp, kLowered[k]), haircut);
+    if (k > 0) addNote(loweredNote(spec, body.character.scalp, kLowered[k]), haircut);
     return;
   }
 }

@@ -8,7 +8,7 @@ namespace app {
 namespace {
 
 constexpr int kBandSides = 32, kBandEdges = 12;
-constexpr float kBandRadius = 1.0f, kBandThickness = 0.22f;          // of the hair that it holds
+constexpr float kBandRadius = 1.1f, kBandThickness = 0.2f;  // of the hair that it holds
 constexpr std::uint64_t kBandIds = std::uint64_t{1} << 62;  // above all that are counted up, see freshId
 
 struct Torus {
@@ -26,7 +26,9 @@ struct Torus {
         normals.insert(normals.end(), {std::cos(v) * std::cos(u), std::cos(v) * std::sin(u), std::sin(v)});
         joints.insert(joints.end(), {0, 0, 0, 0});
         weights.insert(weights.end(), {1, 0, 0, 0});
-        const auto at = [](int a, int b) { return static_cast<std::uint32_t>(a % kBandSides * kBandEdges + b % kBandEdges); };
+        const auto at = [](int a, int b) {
+          return static_cast<std::uint32_t>(a % kBandSides * kBandEdges + b % kBandEdges);
+        };
         triangles.insert(triangles.end(), {at(i, j), at(i + 1, j), at(i + 1, j + 1)});
         triangles.insert(triangles.end(), {at(i, j), at(i + 1, j + 1), at(i, j + 1)});
       }

@@ -1,5 +1,6 @@
 #include "app/scene/braid/braid_plan.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -74,8 +75,9 @@ void layTail(const Hair& hair, const BraidTie& tie, Braid& braid) {
   for (auto& [layers, equal] : by_layers) braid.tail.push_back(std::move(equal));
   braid.length = length;
   braid.axis = tie.axis;
-  const Vector3d level = std::abs(tie.axis.y()) > 0.9 ? Vector3d::UnitX() : Vector3d::UnitY();
-  braid.across = level.cross(tie.axis).normalized();
+  // What hangs straight down turns its faces to the front and to the back of the head.
+  const auto hanging = Eigen::Quaterniond::FromTwoVectors(tie.axis, -Vector3d::UnitY());
+  braid.across = hanging.inverse() * -Vector3d::UnitX();
   braid.mirrored = tie.mirrored;
 }
 
@@ -131,9 +133,8 @@ double crossed(const Vector2d& a, const Vector2d& b) {
 }
 
 std::vector<Vector2d> hullOf(std::vector<Vector2d> points) {
-  std::ranges::sort(points, [](const Vector2d& a, const Vector2d& b) {
-    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
-  });
+  std::ranges::sort(
+      points, [](const Vector2d& a, const Vector2d& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
   std::vector<Vector2d> hull;
   const auto chain = [&](const auto& some) {
     const std::size_t start = hull.size();

@@ -10,17 +10,16 @@
 namespace app {
 namespace {
 
-
-constexpr double kWidth = 2.5;        // of the plait, in radii of its tie
-constexpr double kPeriod = 1.9;       // m a turn of the strands, in widths
-constexpr double kTaper = 0.62;       // width at the end over that at the tie
-constexpr double kTuft = 0.15;        // share of the tail beyond the second tie
+constexpr double kWidth = 3.3;                           // of the plait, in radii of its tie
+constexpr double kPeriod = 1.75;                         // m a turn of the strands, in widths
+constexpr double kTaper = 0.62;                          // width at the end over that at the tie
+constexpr double kTuft = 0.15;                           // share of the tail beyond the second tie
 constexpr double kLeastTuft = 0.025, kMostTuft = 0.055;  // m
-constexpr double kPinch = 0.5;        // of the width, that the second tie takes
-constexpr double kBegin = 1.1;        // widths from the tie, after which hair lies as in the plait
-constexpr double kLeast = 1.5;        // widths that are left to braid, at least
+constexpr double kPinch = 0.55;                          // of the width, that the second tie takes
+constexpr double kBegin = 1.1;                           // widths from the tie, after which hair lies as in the plait
+constexpr double kLeast = 1.5;                           // widths that are left to braid, at least
 constexpr int kStepsATurn = 12;
-constexpr double kTwist = 0.25;       // of the hair in a strand, over its phase
+constexpr double kTwist = 0.25;  // of the hair in a strand, over its phase
 
 // In half widths of the plait: amplitudes of the course, half axes of a strand's section.
 constexpr double kCourseAcross = 0.55, kCourseOut = 0.42, kHalfAcross = 0.45, kHalfOut = 0.36;
@@ -41,6 +40,8 @@ struct Course {
   }
   // 0: as in the plait, 1: as thick as wide.
   double roundAt(double s) const { return smooth((s - end) / widthAt(end) + 1); }
+  // Share of a strand's way from the middle; in the tuft the strands become one.
+  double apartAt(double s) const { return 1 - 0.6 * smooth((s - end) / (length - end)); }
   // Of the section against that of a plait of full width.
   double sizeAt(double s) const {
     const double off = (s - end) / (0.3 * widthAt(end)), beyond = std::clamp((s - end) / (length - end), 0.0, 1.0);
@@ -97,7 +98,9 @@ bool layBraid(double radius, Braid& braid) {
   const std::vector<double> at = places(course, braid.band_step), phase = phases(course, at);
   for (std::size_t k = 0; k < at.size(); ++k) {
     const double half = 0.5 * braid.width * course.sizeAt(at[k]), round = course.roundAt(at[k]);
-    const double out = kCourseOut + round * (kCourseAcross - kCourseOut), half_out = kHalfOut + round * (kHalfAcross - kHalfOut);
+    const double out = kCourseOut + round * (kCourseAcross - kCourseOut),
+                 half_out = kHalfOut + round * (kHalfAcross - kHalfOut);
+    const double apart = half * course.apartAt(at[k]);
     BraidStep step;
     step.share = static_cast<float>(at[k] / course.length);
     step.hold = static_cast<float>(smooth(at[k] / (kBegin * braid.width)));
@@ -105,7 +108,7 @@ bool layBraid(double radius, Braid& braid) {
     for (int j = 0; j < kBraidStrands; ++j) {
       const double t = phase[k] + 2 * std::numbers::pi * j / kBraidStrands;
       step.middle[static_cast<std::size_t>(j)] =
-          Eigen::Vector2d(half * kCourseAcross * std::sin(t), -half * out * std::sin(2 * t)).cast<float>();
+          Eigen::Vector2d(apart * kCourseAcross * std::sin(t), -apart * out * std::sin(2 * t)).cast<float>();
     }
     step.half = Eigen::Vector2d(half * kHalfAcross, half * half_out).cast<float>();
     const double twist = kTwist * (phase[k] - phase[0]);

@@ -110,9 +110,8 @@ TEST(Braid, AboveTheRingHairIsDrawnWhereItIs) {
   ASSERT_GT(plan.finer, 1);
   int compared = 0;
   for (const DrawnColumn& column : plan.columns) {
-    const int layers = column.braid < 0
-                           ? column.layers
-                           : plan.braids[static_cast<std::size_t>(column.braid)].ring_layer + 1;
+    const int layers =
+        column.braid < 0 ? column.layers : plan.braids[static_cast<std::size_t>(column.braid)].ring_layer + 1;
     for (int l = 0; l < layers; ++l, ++compared)
       ASSERT_EQ(at(drawn, column.first_drawn + l * plan.finer), at(simulated, column.first_vertex + l));
     for (int l = 0; l + 1 < layers; ++l) {
@@ -184,7 +183,8 @@ TEST(Braid, AMillimetreOfTheHairIsAFewOfThePlait) {
   const std::vector<float> after = drawnOf(demo);
   ASSERT_EQ(before.size(), after.size());
   float most = 0;
-  for (int v = 0; v < static_cast<int>(before.size() / 3); ++v) most = std::max(most, (at(after, v) - at(before, v)).norm());
+  for (int v = 0; v < static_cast<int>(before.size() / 3); ++v)
+    most = std::max(most, (at(after, v) - at(before, v)).norm());
   EXPECT_GT(most, 0.0003f);
   EXPECT_LT(most, 0.003f);
 }
@@ -199,7 +199,8 @@ TEST(Braid, NothingPopsInAHeadShake) {
     const std::vector<float> now = drawnOf(demo);
     const std::vector<float>& tail = demo.actors[0].shown_positions;
     float most = 0, tail_most = 0;
-    for (int v = 0; v < static_cast<int>(before.size() / 3); ++v) most = std::max(most, (at(now, v) - at(before, v)).norm());
+    for (int v = 0; v < static_cast<int>(before.size() / 3); ++v)
+      most = std::max(most, (at(now, v) - at(before, v)).norm());
     for (int v = 0; v < static_cast<int>(tail_before.size() / 3); ++v)
       tail_most = std::max(tail_most, (at(tail, v) - at(tail_before, v)).norm());
     EXPECT_LE(most, 1.5f * tail_most + 0.002f) << "frame " << frame;
@@ -322,7 +323,8 @@ TEST(Braid, StrandsAreExportedBraided) {
 }
 
 TEST(Braid, EveryPlaceAndResolutionIsDrawnFinite) {
-  for (const char* ties : {"plait", "plaits", R"({"at": "high", "braided": true})", R"({"at": "low", "braided": true})"}) {
+  for (const char* ties :
+       {"plait", "plaits", R"({"at": "high", "braided": true})", R"({"at": "low", "braided": true})"}) {
     for (const app::Resolution resolution : {app::Resolution::kLow, app::Resolution::kMedium}) {
       app::Demo demo = tied(ties, resolution);
       ASSERT_FALSE(planOf(demo).empty()) << ties << demo.message;
