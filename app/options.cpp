@@ -164,10 +164,9 @@ void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
   group.values(
       "--pin", options.pins, "JSON",
       "Hold a vertex of the hair, for instance {\"column\": 3, \"to\": \"scalp\"}; keys as in a scene's \"pins\"");
-  group.value(
-      "--tie", options.tie, "NAME|JSON",
-      "Tie the hair: back, high, low, left, right, two (left and right), plait (back, braided), plaits (two, braided), "
-      "none, or JSON as a scene's \"ties\"");
+  group.value("--tie", options.tie, "NAME|JSON",
+              "Tie the hair: back, high, low, left, right, two, plait or plaits (braided), none, or JSON as a scene's "
+              "\"ties\"");
   group.values(
       "--attach", options.attachments, "FILE@JOINT",
       "Wear a mesh that the hair collides with (hat, glasses, collar; OBJ, FBX, glTF): a joint's name, or head, "
