@@ -134,15 +134,15 @@ std::string JsonPlace::choice(std::span<const std::string_view> choices) const {
   return chosen;
 }
 
-std::string JsonPlace::fieldText() const {
-  if (value_->is_boolean()) return value_->get<bool>() ? "on" : "off";
-  if (value_->is_number()) return sim::numberText(value_->get<double>());
-  if (value_->is_string()) return text();
-  if (value_->is_array() && value_->size() == 3) {
-    const auto three = vector(-1e9, 1e9);
-    return sim::numberText(three[0]) + "," + sim::numberText(three[1]) + "," + sim::numberText(three[2]);
+std::string JsonPlace::fieldText(const RowForm& row) const {
+  if (row.kind == sim::FieldKind::kSwitch) return flag() ? "on" : "off";
+  if (row.kind == sim::FieldKind::kChoice) return text();
+  if (row.components == 1) {
+    const std::string unit = row.unit.empty() ? "" : " " + std::string(row.unit);
+    return sim::numberText(value_->is_number() ? value_->get<double>() : number(row.minimum, row.maximum, unit));
   }
-  refuse("is " + quote(*value_), "write a number, true or false, a name, or three numbers");
+  const auto three = vector(-1e9, 1e9);
+  return sim::numberText(three[0]) + "," + sim::numberText(three[1]) + "," + sim::numberText(three[2]);
 }
 
 }  // namespace app

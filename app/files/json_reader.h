@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "app/files/errors.h"
+#include "sim/sim_params.h"
 
 namespace app {
 
@@ -47,9 +48,15 @@ class JsonPlace {
     return choice(std::span(choices.begin(), choices.size()));
   }
 
-  // A number, flag, text or array of numbers as the text that the parameter tables read ("0.3", "on", "paper",
-  // "1,2,3").
-  std::string fieldText() const;
+  // The value of a parameter table's row as the text that the table reads ("0.3", "on", "paper", "1,2,3"). It is
+  // written as JSON has it: a number, true or false, a name in quotes, three numbers. The table checks its range.
+  struct RowForm {
+    sim::FieldKind kind;
+    int components;  // 1 or 3
+    double minimum, maximum;
+    std::string_view unit;
+  };
+  std::string fieldText(const RowForm& row) const;
 
   [[noreturn]] void refuse(const std::string& fault, const std::string& mend) const;
 

@@ -32,7 +32,8 @@ bool isLight(const SceneField& row) {
 
 template <class Owner>
 void readRow(const JsonPlace& place, Owner& owner, const LookField<Owner>& row) {
-  if (std::string fault = setLook(owner, row, place.fieldText()); !fault.empty()) {
+  const std::string text = place.fieldText({row.kind, row.components(), row.minimum, row.maximum, row.unit});
+  if (std::string fault = setLook(owner, row, text); !fault.empty()) {
     place.refuse(fault.substr(0, fault.find("; ")), fault.substr(std::min(fault.size(), fault.find("; ") + 2)));
   }
 }
@@ -98,7 +99,8 @@ void readSimRows(const JsonPlace& place, sim::SimParams& params) {
   for (const sim::ParamField& row : sim::paramFields()) {
     if (!place.has(row.name)) continue;
     const JsonPlace at = place.at(row.name);
-    if (const sim::ParamText answer = sim::setParam(params, row.name, at.fieldText()); !answer.ok) {
+    const std::string text = at.fieldText({row.kind, 1, row.minimum, row.maximum, row.unit});
+    if (const sim::ParamText answer = sim::setParam(params, row.name, text); !answer.ok) {
       const std::size_t cut = answer.fault.find("; ");
       at.refuse(answer.fault.substr(0, cut), cut == std::string::npos ? "" : answer.fault.substr(cut + 2));
     }

@@ -93,7 +93,15 @@ TEST(SceneFile, FaultsNameFilePlaceAndMend) {
       {R"({"characters": [{"look": {"tapr": 1}}]})", "/characters/0/look", "'taper'"},
       {R"({"characters": [{"look": {"taper": 7}}]})", "/characters/0/look/taper", "range"},
       {R"({"characters": [{}], "sim": {"friction": "wet"}})", "/sim/friction", "number"},
-      {R"({"characters": [{}], "sim": {"collide": 7}})", "/sim/collide", "on or off"},
+      {R"({"characters": [{}], "sim": {"collide": 7}})", "/sim/collide", "true or false"},
+      {R"({"characters": [{}], "sim": {"collide": "on"}})", "/sim/collide", "true or false"},
+      {R"({"characters": [{}], "sim": {"friction": "0.5"}})", "/sim/friction: is \"0.5\", not a number", "from 0"},
+      {R"({"characters": [{}], "sim": {"solver": 1}})", "/sim/solver", "quotes"},
+      {R"({"characters": [{"look": {"taper": "0.5"}}]})", "/characters/0/look/taper", "number"},
+      {R"({"characters": [{"look": {"color": "1,0,0"}}]})", "/characters/0/look/color", "three numbers"},
+      {R"({"characters": [{"look": {"color": [1, "0", 0]}}]})", "/characters/0/look/color/1", "number"},
+      {R"({"characters": [{}], "light": {"shadows": "off"}})", "/light/shadows", "true or false"},
+      {R"({"characters": [{}], "view": {"exposure": "2"}})", "/view/exposure", "number"},
       {R"({"characters": [{}], "sim": {"max_iterations": 2.5}})", "/sim/max_iterations", "whole"},
       {R"({"characters": [{}], "light": {"to_light": [0, 0, 0]}})", "/light/to_light", "length"},
       {R"({"characters": [{}], "camera": {"eye": [0, 0, 1]}})", "/camera", "both"},
@@ -174,6 +182,16 @@ TEST(Presets, AFaultChangesNothing) {
                InputError);
   EXPECT_EQ(params.friction, sim::SimParams{}.friction);
   EXPECT_EQ(look.hair.taper, CharacterLook{}.hair.taper);
+}
+
+TEST(Presets, ANumberInQuotesIsRefusedAsInAScene) {
+  sim::SimParams params;
+  app::SceneLook scene;
+  CharacterLook look;
+  std::array<CharacterLook*, 1> looks{&look};
+  for (const char* text : {R"({"sim": {"bend": "0.5"}})", R"({"hair": {"taper": "0.5"}})",
+                           R"({"light": {"to_light": ["0", 1, 0]}})", R"({"view": {"show_body": "on"}})"})
+    EXPECT_THROW(app::applyPreset(text, "p.json", {&params, &scene, looks}), InputError) << text;
 }
 
 TEST(Presets, WritingAndReadingKeepsEveryRow) {
