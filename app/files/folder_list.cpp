@@ -26,6 +26,23 @@ std::string listFile(const std::string& kept_folder) {
   return (fs::path(kept_folder) / "recent.txt").string();
 }
 
+std::string wholePath(const std::string& file) {
+  std::error_code ignored;
+  return fs::absolute(file, ignored).lexically_normal().string();
+}
+
+void writeRecent(const std::string& kept_folder, const std::vector<std::string>& recent) {
+  if (kept_folder.empty()) return;
+  std::error_code ignored;
+  fs::create_directories(kept_folder, ignored);
+  std::string text;
+  for (const std::string& line : recent) text += line + "\n";
+  try {
+    writeFile(listFile(kept_folder), text);
+  } catch (const OutputError&) {
+  }
+}
+
 }  // namespace
 
 std::vector<FolderEntry> listFolder(const std::string& folder, const std::vector<std::string_view>& endings) {
@@ -72,19 +89,15 @@ std::vector<std::string> readRecent(const std::string& kept_folder) {
 }
 
 void noteRecent(const std::string& file, const std::string& kept_folder, std::vector<std::string>& recent) {
-  std::error_code ignored;
-  const std::string whole = fs::absolute(file, ignored).lexically_normal().string();
+  const std::string whole = wholePath(file);
   std::erase(recent, whole);
   recent.insert(recent.begin(), whole);
   if (recent.size() > kMaxRecent) recent.resize(kMaxRecent);
-  if (kept_folder.empty()) return;
-  fs::create_directories(kept_folder, ignored);
-  std::string text;
-  for (const std::string& line : recent) text += line + "\n";
-  try {
-    writeFile(listFile(kept_folder), text);
-  } catch (const OutputError&) {
-  }
+  writeRecent(kept_folder, recent);
+}
+
+void forgetRecent(const std::string& file, const std::string& kept_folder, std::vector<std::string>& recent) {
+  if (std::erase(recent, wholePath(file)) > 0) writeRecent(kept_folder, recent);
 }
 
 }  // namespace app

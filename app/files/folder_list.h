@@ -31,4 +31,7 @@ std::vector<std::string> readRecent(const std::string& kept_folder);
 // Puts `file` first and writes the list; a list that cannot be written is no fault.
 void noteRecent(const std::string& file, const std::string& kept_folder, std::vector<std::string>& recent);
 
+// Takes `file` out, and writes the list if it was in it.
+void forgetRecent(const std::string& file, const std::string& kept_folder, std::vector<std::string>& recent);
+
 }  // namespace app

@@ -451,10 +451,20 @@ constexpr bool rowsMatchRequests() {
 }
 static_assert(rowsMatchRequests());
 
+// Requests whose text is a file that they open or save, once kOpenFile has told its kind.
+constexpr Ask kOfFiles[] = {Ask::kMotionFile, Ask::kHairFile,    Ask::kSceneFile, Ask::kPresetFile, Ask::kLoadState,
+                            Ask::kOpenCache,  Ask::kOpenProject, Ask::kAttach,    Ask::kSaveScene,  Ask::kSaveProject};
+
+bool ofFile(Ask what) {
+  return std::ranges::find(kOfFiles, what) != std::end(kOfFiles);
+}
+
 void apply(const Request& request, Demo& demo) {
   std::optional<EditStep> step = beginEdit(request, demo);
   kActions[static_cast<std::size_t>(request.what)].apply(request, demo);
+  const bool later = step && comesLater(demo.edits.next, demo.loading);
   if (step) commitEdit(std::move(*step), demo.edits);
+  if (!later && ofFile(request.what)) noteFileEnd(request.text, true, demo);
 }
 
 }  // namespace
@@ -475,6 +485,7 @@ void applyRequests(Demo& demo) {
         demo.message = fault.what();
         demo.message_is_fault = true;
         demo.refused = {request.what, demo.message};
+        if (request.what == Ask::kOpenFile || ofFile(request.what)) noteFileEnd(request.text, false, demo);
       }
     }
   }

@@ -18,6 +18,14 @@ struct Loaded {
 
 namespace {
 
+constexpr std::size_t kMostFileEnds = 100;  // runs without a window look at none
+
+// The file that the step of that number has asked for; empty where it was undone.
+std::string fileOf(long edit, const EditHistory& history) {
+  const auto at = std::ranges::find(history.steps, edit, &EditStep::number);
+  return at == history.steps.end() ? "" : at->request.text;
+}
+
 // On the thread: touches nothing but what it makes.
 std::unique_ptr<Loaded> load(LoadOrder order) {
   auto loaded = std::make_unique<Loaded>();
@@ -83,10 +91,19 @@ void loadLater(LoadOrder order, Demo& demo) {
   }
 }
 
+bool comesLater(long edit, const BackgroundLoad& loading) {
+  return (loading.running.valid() && loading.edit == edit) || (loading.waiting && loading.waiting->edit == edit);
+}
+
+void noteFileEnd(const std::string& file, bool done, Demo& demo) {
+  if (!file.empty() && demo.file_ends.size() < kMostFileEnds) demo.file_ends.push_back({file, done});
+}
+
 void installLoaded(Demo& demo) {
   BackgroundLoad& loading = demo.loading;
   if (!loading.running.valid() || loading.running.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
     return;
+  const std::string file = loading.unwanted ? "" : fileOf(loading.edit, demo.edits);
   try {
     const std::unique_ptr<Loaded> loaded = loading.running.get();
     const std::string title = loaded->order.title;
@@ -100,9 +117,11 @@ void installLoaded(Demo& demo) {
     const std::string notes = hairNotes(demo);
     demo.message = notes.empty() ? title : notes;
     demo.message_is_fault = false;
+    noteFileEnd(file, true, demo);
   } catch (const std::exception& fault) {
     demo.message = fault.what();
     demo.message_is_fault = true;
+    noteFileEnd(file, false, demo);
     forgetEdit(loading.edit, demo.edits);
   }
   demo.shown_fraction = -1;  // what was loaded is shown though time may stand still
@@ -161,6 +180,7 @@ void replaceScene(Demo fresh, Demo& demo) {
   fresh.deadline.counted = demo.deadline.counted;
   fresh.loading = std::move(demo.loading);
   fresh.requests = std::move(demo.requests);
+  fresh.file_ends = std::move(demo.file_ends);
   fresh.edits = std::move(demo.edits);
   fresh.timeline.on = demo.timeline.on;
   fresh.bookmarks = demo.bookmarks;

@@ -43,6 +43,12 @@ std::string loadingNote(const Demo& demo);
 // Starts loading for the step that is being applied, or lets the order wait in place of one that waits already.
 void loadLater(LoadOrder order, Demo& demo);
 
+// Whether what the step of that number asks for is still being loaded, or waits for it.
+bool comesLater(long edit, const BackgroundLoad& loading);
+
+// Notes what became of a file, for the window.
+void noteFileEnd(const std::string& file, bool done, Demo& demo);
+
 // Puts in place what has been loaded, if anything has; a fault becomes the demo's message and changes nothing else.
 void installLoaded(Demo& demo);
 

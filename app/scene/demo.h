@@ -71,6 +71,7 @@ struct Demo {
   std::string message;            // the last fault or success, for the window
   bool message_is_fault = false;
   std::pair<Ask, std::string> refused{Ask::kCount, ""};  // and its message, which goes when another such succeeds
+  std::vector<FileEnd> file_ends;  // since the window has last looked
   Capture capture;
 
   FrameStats stats;                 // of the last frame

@@ -78,4 +78,10 @@ struct Request {
   double value = 0;
 };
 
+// What became of a file that a request named: it was opened or saved, or it was refused.
+struct FileEnd {
+  std::string file;
+  bool done = false;
+};
+
 }  // namespace app

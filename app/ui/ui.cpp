@@ -293,8 +293,19 @@ std::string messageText(const Demo& demo) {
   return demo.message_is_fault ? demo.message + "\n" + loading : loading;
 }
 
-// `below`: pixels that the timeline takes.
-void message(Demo& demo, UiState& ui, float below) {
+// Where notices stand: in the middle of what sidebar and history leave free, above the history where that is too narrow
+// to read, and above what else lies at the bottom. `below`: the pixels that this takes.
+NoticePlace noticePlace(const UiState& ui, float below) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const float margin = kMargin * ui.text_scale;
+  const bool beside = size.x - takenLeft(ui) - ui.history_width > (kMinMessageWidth + 2 * kMargin) * ui.text_scale;
+  if (!beside) below = std::max(below, ui.history_height);
+  const float left = takenLeft(ui) + margin;
+  return {left, size.x - left - (beside ? ui.history_width : 0) - margin, size.y - 2 * margin - below};
+}
+
+// Takes the height of the message off the place.
+void message(NoticePlace& place, Demo& demo, UiState& ui) {
   const std::string text = messageText(demo);
   ui.fault_height = 0;
   if (demo.message != ui.shown_message) {
@@ -306,15 +317,10 @@ void message(Demo& demo, UiState& ui, float below) {
     demo.message.clear();
     return;
   }
-  // In the middle of what sidebar and history leave free; above the history where that is too narrow to read.
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const float margin = kMargin * ui.text_scale;
-  const bool beside = size.x - takenLeft(ui) - ui.history_width > (kMinMessageWidth + 2 * kMargin) * ui.text_scale;
-  if (!beside) below = std::max(below, ui.history_height);
-  const float left = takenLeft(ui) + margin;
-  const float width = size.x - left - (beside ? ui.history_width : 0) - margin;
-  ImGui::SetNextWindowPos({left + 0.5f * width, size.y - 2 * margin - below}, ImGuiCond_Always, {0.5f, 1});
-  ImGui::SetNextWindowSizeConstraints({0, 0}, {width, 0.8f * size.y});
+  ImGui::SetNextWindowPos({place.left + 0.5f * place.width, place.bottom}, ImGuiCond_Always, {0.5f, 1});
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {place.width, 0.8f * size.y});
   const bool fault = demo.message_is_fault;
   if (fault) ImGui::PushStyleColor(ImGuiCol_WindowBg, ImVec4(0.30f, 0.10f, 0.09f, 0.96f));
   const ImGuiWindowFlags flags = kFixed | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing;
@@ -322,7 +328,7 @@ void message(Demo& demo, UiState& ui, float below) {
   if (ImGui::Begin("message", nullptr, flags & ~ImGuiWindowFlags_NoBringToFrontOnFocus)) {
     ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
     noteItem("message", ui);
-    ImGui::PushTextWrapPos(std::min(kMessageWidth * ui.text_scale, width - 2 * margin));
+    ImGui::PushTextWrapPos(std::min(kMessageWidth * ui.text_scale, place.width - 2 * margin));
     ImGui::TextUnformatted(text.c_str());
     ImGui::PopTextWrapPos();
     if (fault) {
@@ -332,6 +338,7 @@ void message(Demo& demo, UiState& ui, float below) {
       ui.fault_height = size.y - ImGui::GetWindowPos().y;
     }
   }
+  place.bottom = ImGui::GetWindowPos().y - margin;
   ImGui::End();
   if (fault) ImGui::PopStyleColor();
 }
@@ -391,6 +398,8 @@ PicturePart freePart(const Demo& demo, const UiState& ui) {
 }
 
 void buildUi(Demo& demo, UiState& ui) {
+  noteFiles(demo, ui);
+  noteView(demo, ui);
   ui.presets_in_sight.clear();
   ui.items.clear();
   ui.halved = demo.comparison.on() && demo.comparison.side_by_side;
@@ -406,8 +415,10 @@ void buildUi(Demo& demo, UiState& ui) {
   }
   historyPanel(demo, ui);
   filePanel(demo, ui);
-  offerPanel(demo, ui);
-  message(demo, ui, below);
+  if (ui.visible && sheet(ui)) below = sidebarHeight(ui) + kMargin * ui.text_scale;
+  NoticePlace place = noticePlace(ui, below);
+  message(place, demo, ui);
+  offerPanel(place, demo, ui);
   help(ui);
   endGesture(demo, ui);
 }

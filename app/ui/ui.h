@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -71,6 +72,14 @@ struct PresetPicture {
   bool faulty = false;         // the file cannot be read
 };
 
+// Where the camera looked from, step by step; apart from the history of edits, so that Ctrl+Z gives hair back and not a
+// view. A drag is one step, and so is a turn of the wheel.
+struct ViewHistory {
+  std::vector<Camera> past, future;  // the latest last
+  std::optional<Camera> now;         // as it was last noted
+  double zoomed = -1;                // s of ImGui's clock, when the wheel last turned
+};
+
 // Variations of the material that are tried one after another.
 struct VaryState {
   double amount = 0.3;   // decades
@@ -113,12 +122,14 @@ struct UiState {
   BrushState brush;
   SelectState select;
   VaryState vary;
+  ViewHistory views;
   std::vector<AttachmentSpec> worn;  // as their colours are being edited
   bool worn_edited = false;
   bool light_held = false;          // the key light is turned by a drag
   bool line_held = false;           // the line of a comparison is dragged
   std::string kept_folder;          // where the list of recent files is kept; empty: nowhere
   std::vector<std::string> recent;  // files opened last
+  std::vector<std::string> asked;   // files whose opening or saving has been asked for
   bool leaving = false;             // Esc was pressed once
   std::string shown_message;
   double message_since = 0;                                             // s of ImGui's clock

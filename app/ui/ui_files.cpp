@@ -155,7 +155,7 @@ void take(const std::string& file, Demo& demo, UiState& ui) {
       break;
     case BrowseFor::kSaveScene:
       postRequest(demo, {browser.project ? Ask::kSaveProject : Ask::kSaveScene, "", file});
-      noteRecent(file, ui.kept_folder, ui.recent);
+      ui.asked.push_back(file);
       break;
   }
   close(browser);
@@ -191,12 +191,23 @@ void browseFor(BrowseFor what, UiState& ui) {
   browser.opened = true;
   browser.to_replace.clear();
   setName("", browser);
+  std::erase_if(ui.recent, [](const std::string& file) {
+    std::error_code ignored;
+    return !fs::exists(file, ignored);
+  });
   goTo(browser.folder.empty() ? "." : browser.folder, browser);
 }
 
 void openFile(const std::string& file, Demo& demo, UiState& ui) {
   postRequest(demo, {Ask::kOpenFile, "", file});
-  noteRecent(file, ui.kept_folder, ui.recent);
+  ui.asked.push_back(file);
+}
+
+void noteFiles(Demo& demo, UiState& ui) {
+  for (const FileEnd& end : std::exchange(demo.file_ends, {})) {
+    if (std::erase(ui.asked, end.file) == 0) continue;
+    (end.done ? noteRecent : forgetRecent)(end.file, ui.kept_folder, ui.recent);
+  }
 }
 
 void filePanel(Demo& demo, UiState& ui) {

@@ -24,6 +24,7 @@ constexpr KeyHelp kKeyHelp[] = {
     {"4  5  6", "low, medium, high resolution"},
     {"-  +", "playback slower, faster"},
     {"F  S  B  T  Q", "view from front, side, back, top, three quarters"},
+    {"Z", "the view before; with Shift: the one after"},
     {"L", "camera follows the figure"},
     {"M  E  V  N", "hair mesh, ellipsoids, tetrahedra, contacts"},
     {"P", "screenshot"},
@@ -160,6 +161,8 @@ constexpr ChordAction kChordActions[] = {
      [](Demo& demo, UiState&) {
        postRequest(demo, {Ask::kRedo, "", "", 1});
      }},
+    {'Z', kNoModifier, [](Demo& demo, UiState& ui) { stepView(true, demo, ui); }},
+    {'Z', kShift, [](Demo& demo, UiState& ui) { stepView(false, demo, ui); }},
     {'Y', kControl,
      [](Demo& demo, UiState&) {
        postRequest(demo, {Ask::kRedo, "", "", 1});

@@ -18,12 +18,18 @@ void skipsSection(Demo& demo, UiState& ui);
 // Stages as a stacked bar and their history (figure 6 of the paper), solver iterations and residual.
 void timingsPanel(Demo& demo, UiState& ui);
 
-// The timeline right of `left` (pixels), and the height that it takes of the window; 0: it is not shown. The box that
-// offers what an earlier run has left. Lens, turntable and kept views.
+// The timeline right of `left` (pixels), and the height that it takes of the window; 0: it is not shown. Lens,
+// turntable and kept views.
 float timelineHeight(const Demo& demo, const UiState& ui, float left);
 void timelinePanel(Demo& demo, UiState& ui, float left);
-void offerPanel(Demo& demo, UiState& ui);
 void cameraRows(Demo& demo, UiState& ui);
+
+// Where notices stand, px: their lower edge, and the room that they have across.
+struct NoticePlace {
+  float left, width, bottom;
+};
+// Offers what an earlier run has left.
+void offerPanel(const NoticePlace& place, Demo& demo, UiState& ui);
 
 // The brushes' settings; and, before the panels, their ring on the hair and what a drag asks for.
 void brushSection(Demo& demo, UiState& ui);
@@ -56,6 +62,14 @@ void historyPanel(Demo& demo, UiState& ui);
 void filePanel(Demo& demo, UiState& ui);
 void browseFor(BrowseFor what, UiState& ui);
 void openFile(const std::string& file, Demo& demo, UiState& ui);
+
+// Notes a view that the camera has come to, once the mouse is let go. While a turntable turns it notes none.
+void noteView(const Demo& demo, UiState& ui);
+// Back to the view before, or on to the one after.
+void stepView(bool back, Demo& demo, UiState& ui);
+
+// Puts files that have been opened or saved since the last frame among the recent ones, and takes refused ones out.
+void noteFiles(Demo& demo, UiState& ui);
 
 // The frame budget: a switch, its milliseconds, and what the governor makes of them.
 void budgetLines(Demo& demo, UiState& ui);

@@ -16,6 +16,7 @@ namespace {
 
 constexpr float kTimelineHeight = 50, kMinWidth = 280, kOneRowWidth = 560, kTimelineMargin = 12;
 constexpr float kButtonRow = 28, kLeastWindow = 290;  // points; of a second row, of the window
+constexpr float kOfferHeight = 90;                    // points that the box of an earlier run's project needs
 constexpr double kWorst = 3;                          // of the mean cost: a step to look at
 
 // The kept moment at a share of the strip.
@@ -179,15 +180,15 @@ void timelinePanel(Demo& demo, UiState& ui, float left) {
   ImGui::End();
 }
 
-void offerPanel(Demo& demo, UiState& ui) {
-  if (ui.offered.empty()) return;
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({0.5f * size.x, 0.3f * size.y}, ImGuiCond_Always, {0.5f, 0.5f});
+void offerPanel(const NoticePlace& place, Demo& demo, UiState& ui) {
+  // Where a fault leaves it no room it waits until that is closed.
+  if (ui.offered.empty() || place.bottom < kOfferHeight * ui.text_scale) return;
+  ImGui::SetNextWindowPos({place.left + 0.5f * place.width, place.bottom}, ImGuiCond_Always, {0.5f, 1});
   const ImGuiWindowFlags flags =
       ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize;
   if (ImGui::Begin("offer", nullptr, flags)) {
     // In a small window in several lines.
-    ImGui::PushTextWrapPos(std::min(420 * ui.text_scale, 0.8f * size.x));
+    ImGui::PushTextWrapPos(std::min(420.0f, place.width / ui.text_scale - 24) * ui.text_scale);
     ImGui::TextUnformatted("An earlier run ended without leaving. What it had was kept.");
     ImGui::PopTextWrapPos();
     const bool open = ImGui::Button("Open it");

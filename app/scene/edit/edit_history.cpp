@@ -27,7 +27,8 @@ struct EditKind {
   const char* title;
 };
 
-// What is no edit (pause, steps, pictures, saving) is not here.
+// What is no edit (pause, steps, pictures, saving) is not here. Where the camera looks from is the window's to take
+// back.
 constexpr EditKind kEditKinds[] = {{Ask::kSetParam, kSettings, true, ""},
                                    {Ask::kPresetFile, kSettings, false, "Preset"},
                                    {Ask::kSkip, kSettings, false, "Skip"},
@@ -37,10 +38,6 @@ constexpr EditKind kEditKinds[] = {{Ask::kSetParam, kSettings, true, ""},
                                    {Ask::kSpeed, kSettings, true, "Speed"},
                                    {Ask::kVary, kSettings, false, "Variation"},
                                    {Ask::kDebugView, kSettings, false, "Debug view"},
-                                   {Ask::kView, kOfView, false, "View"},
-                                   {Ask::kFollow, kOfView, false, "Follow figure"},
-                                   {Ask::kGoToView, kOfView, false, "Kept view"},
-                                   {Ask::kLens, kOfView, true, "Lens"},
                                    {Ask::kBrush, kOfHair | kOfShape, true, ""},
                                    {Ask::kMove, kOfHair | kOfShape, true, "move"},
                                    {Ask::kMesh, kOfHair | kOfShape, false, ""},
@@ -89,7 +86,7 @@ std::string titleOf(const Request& request, const EditKind& kind) {
   const bool number = request.what == Ask::kBudget || request.what == Ask::kDrawBudget ||
                       request.what == Ask::kDeadline || request.what == Ask::kSpeed || request.what == Ask::kVary;
   if (number) title.append(" ").append(sim::numberText(request.value));
-  const bool toggle = request.what == Ask::kSkip || request.what == Ask::kDebugView || request.what == Ask::kFollow;
+  const bool toggle = request.what == Ask::kSkip || request.what == Ask::kDebugView;
   if (toggle) title += request.value != 0 ? " on" : " off";
   return title;
 }

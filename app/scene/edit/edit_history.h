@@ -1,4 +1,5 @@
-// Undo and redo of what requests change: parameters, presets, files, look, view, and what they do to hair and motion.
+// Undo and redo of what requests change: parameters, presets, files, look, and what they do to hair and motion. Moves of
+// the camera are none of these steps; scenes, projects, states and motions that bring a view with them give it back.
 //
 // A step holds the side of the edit that is not on the screen: what was before it while it is done, what was after it
 // while it is undone. Time is not part of it: where the figure has moved on since, hair that an edit had changed comes
@@ -37,7 +38,7 @@ struct EditSide {
   std::vector<CharacterSpec> cast;  // the characters as they are played
   int selected = 0;
   DebugViews debug;
-  std::optional<Camera> camera;      // of edits of the view
+  std::optional<Camera> camera;      // of edits that bring a view with them
   std::vector<ActorMoment> moments;  // of edits of hair or motion, one a character
   std::size_t bytes() const;         // about as many as it takes
 };

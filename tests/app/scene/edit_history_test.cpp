@@ -100,11 +100,6 @@ Request randomEdit(std::mt19937& random) {
     case 14:
     case 15:
       return {Ask::kPresetFile, "", of({"soft", "stiff", "paper"})};
-    case 16:
-    case 17:
-      return {Ask::kView, of({"front", "back", "side"}), ""};
-    case 18:
-      return {Ask::kFollow, "", "", static_cast<double>(random() % 2)};
     case 19:
     case 20:
       return {Ask::kSkip, "sleep", "", static_cast<double>(random() % 2)};
@@ -175,6 +170,22 @@ TEST(EditHistory, ADragIsOneStepAndALaterEditEndsWhatWasUndone) {
   EXPECT_EQ(demo.edits.steps.size(), 2u);
   EXPECT_EQ(ask({Ask::kUndo, "", "", 9}, demo), "");
   EXPECT_EQ(demo.scene.sim.density, density);
+}
+
+// An artist who looks at a stroke from elsewhere and undoes means the stroke.
+TEST(EditHistory, AViewIsNoStep) {
+  app::Demo demo = movingDemo();
+  const double density = demo.scene.sim.density;
+  EXPECT_EQ(ask({Ask::kSetParam, "density", "80"}, demo), "");
+  EXPECT_EQ(ask({Ask::kKeepView, "", "", 1}, demo), "");
+  for (const Request& look : {Request{Ask::kView, "back", ""}, Request{Ask::kLens, "", "", 0.3},
+                              Request{Ask::kGoToView, "", "", 1}, Request{Ask::kFollow, "", "", 0}})
+    EXPECT_EQ(ask(look, demo), "");
+  demo.camera.yaw = 1;
+  EXPECT_EQ(ask({Ask::kUndo, "", "", 1}, demo), "");
+  EXPECT_EQ(demo.scene.sim.density, density);
+  EXPECT_EQ(demo.camera.yaw, 1);
+  EXPECT_TRUE(demo.edits.steps.size() == 1 && demo.edits.done == 0);
 }
 
 // While time goes on an undone reset gives the hair its shape back where the head is now.

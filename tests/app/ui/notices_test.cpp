@@ -3,6 +3,8 @@
 #include <imgui/imgui.h>
 #include <imgui/imgui_internal.h>
 
+#include <utility>
+
 #include "app/ui/part_glide.h"
 #include "tests/app/ui/panels.h"
 
@@ -23,10 +25,6 @@ class Notices : public test::Panels {
     ASSERT_NE(item, nullptr) << name;
     ImGui::GetIO().MousePos = {item->x + 0.5f * item->width, item->y + 0.5f * item->height};
     for (int k = 0; k < frames; ++k) frame();
-  }
-  void apply(const std::vector<app::Request>& requests) {
-    demo_.requests = requests;
-    app::applyRequests(demo_);
   }
 };
 
@@ -110,6 +108,80 @@ TEST_F(Notices, EscapeClosesWhatIsOpenAndLeavesWhileItsQuestionStands) {
   EXPECT_FALSE(ui_.quit) << "it had gone";
   app::pressKey(app::kKeyEscape, demo_, ui_);
   EXPECT_TRUE(ui_.quit);
+}
+
+// The offer of an earlier run's project stands by the same rule as messages, above them.
+TEST_F(Notices, NoneCoversWhatCanBePressed) {
+  ui_.offered = "autosave-1.json";
+  demo_.timeline.on = true;
+  for (const ImVec2 size :
+       {ImVec2(1280, 720), ImVec2(900, 600), ImVec2(800, 600), ImVec2(640, 480), ImVec2(480, 400)}) {
+    for (const int state : {0, 1, 2, 3}) {
+      ImGui::GetIO().DisplaySize = size;
+      ui_.unfolded = state & 1;
+      ui_.history = state & 2;
+      demo_.message = "a message";
+      for (int k = 0; k < 4; ++k) frame();
+      for (const char* notice : {"offer", "message"}) {
+        const ImGuiWindow* shown = ImGui::FindWindowByName(notice);
+        ASSERT_TRUE(shown && shown->Active) << notice << size.x << "," << state;
+        EXPECT_GE(shown->Rect().Min.y, 0) << notice << size.x << "," << state;
+        for (const char* name : {"sidebar", "timeline", "Timings", "History", "offer", "message"}) {
+          const ImGuiWindow* other = ImGui::FindWindowByName(name);
+          if (!other || other == shown || !other->Active) continue;
+          EXPECT_FALSE(shown->Rect().Overlaps(other->Rect())) << notice << " over " << name << size.x << "," << state;
+        }
+      }
+    }
+  }
+}
+
+class Views : public Notices {
+ protected:
+  void drag(double dx) {
+    ImGui::GetIO().MouseDown[0] = true;
+    for (int k = 0; k < 5; ++k) app::orbit(dx, 0, 700, demo_.camera), frame();
+    ImGui::GetIO().MouseDown[0] = false;
+    frame();
+  }
+  void press(int modifiers) {
+    app::pressKey('Z', demo_, ui_, modifiers);
+    apply(std::exchange(demo_.requests, {}));
+  }
+};
+
+TEST_F(Views, ADragIsOneStepBackAndOn) {
+  const double first = demo_.camera.yaw;
+  drag(20);
+  const double second = demo_.camera.yaw;
+  drag(-60);
+  const double third = demo_.camera.yaw;
+  press(app::kNoModifier);
+  EXPECT_EQ(demo_.camera.yaw, second);
+  press(app::kNoModifier);
+  EXPECT_EQ(demo_.camera.yaw, first);
+  press(app::kNoModifier);
+  EXPECT_EQ(demo_.message, "no view before this one");
+  press(app::kShift), press(app::kShift);
+  EXPECT_EQ(demo_.camera.yaw, third);
+  press(app::kNoModifier), drag(10);
+  press(app::kShift);
+  EXPECT_EQ(demo_.message, "no view after this one") << "a new view ends those after it";
+  EXPECT_TRUE(demo_.edits.steps.empty());
+}
+
+TEST_F(Views, LensNamedViewsAndFollowingAreStepsAndTheFigureMaySteerMeanwhile) {
+  const app::Camera first = demo_.camera;
+  apply({{Ask::kLens, "", "", 0.3}});
+  apply({{Ask::kView, "back", ""}});
+  apply({{Ask::kFollow, "", "", 0}});
+  EXPECT_EQ(ui_.views.past.size(), 3u);
+  demo_.camera.anchor += app::Vec3(1, 0, 0);
+  frame();
+  EXPECT_EQ(ui_.views.past.size(), 3u) << "a step of the figure";
+  for (int k = 0; k < 3; ++k) press(app::kNoModifier);
+  EXPECT_TRUE(demo_.camera.fov == first.fov && demo_.camera.yaw == first.yaw && demo_.camera.follow);
+  EXPECT_EQ(ui_.views.future.size(), 3u);
 }
 
 TEST(PartGlide, GoesToItsGoalInAFifthOfASecondWithoutAJump) {

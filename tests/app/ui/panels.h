@@ -56,6 +56,13 @@ class Panels : public testing::Test {
     return std::exchange(demo_.requests, {});
   }
 
+  // Applies what was asked for, and shows what has come of it.
+  void apply(const std::vector<Request>& requests) {
+    demo_.requests = requests;
+    app::applyRequests(demo_);
+    frame();
+  }
+
   const UiItem* find(const std::string& name) const {
     const auto found =
         std::find_if(ui_.items.begin(), ui_.items.end(), [&](const UiItem& item) { return item.name == name; });

@@ -28,27 +28,80 @@ const app::Request* requestOf(const std::vector<app::Request>& requests, Ask wha
 TEST_F(Panels, AFileIsFoundAndOpenedAndThenIsAmongTheRecentOnes) {
   const std::string folder = test::freshFolder("ui_files");
   std::filesystem::create_directories(folder + "/inner");
-  std::ofstream(folder + "/inner/a.bvh") << "x";
+  std::filesystem::copy_file(app::dataPath("assets/presets/soft.json"), folder + "/inner/a.json");
   ui_.browser.folder = folder;
   ui_.kept_folder = folder + "/kept";
   click("file Open");
   click("entry inner");
-  ASSERT_NE(find("entry a.bvh"), nullptr);
-  click("entry a.bvh");
+  ASSERT_NE(find("entry a.json"), nullptr);
+  click("entry a.json");
   const auto requests = click("file_take");
   const app::Request* open = requestOf(requests, Ask::kOpenFile);
   ASSERT_NE(open, nullptr);
-  EXPECT_TRUE(std::filesystem::equivalent(open->text, folder + "/inner/a.bvh"));
+  EXPECT_TRUE(std::filesystem::equivalent(open->text, folder + "/inner/a.json"));
   EXPECT_EQ(find("file_take"), nullptr) << "the panel is still there";
+  EXPECT_TRUE(ui_.recent.empty()) << "before it has been opened";
+  apply(requests);
   EXPECT_EQ(app::readRecent(ui_.kept_folder).size(), 1u);
   click("file Open");
-  EXPECT_NE(find("recent a.bvh"), nullptr);
+  EXPECT_NE(find("recent a.json"), nullptr);
   click("place Up");
   EXPECT_NE(find("entry inner"), nullptr);
   app::pressKey(app::kKeyEscape, demo_, ui_);
   frame();
   EXPECT_EQ(find("file_take"), nullptr);
   EXPECT_FALSE(ui_.leaving);
+}
+
+TEST_F(Panels, ARefusedFileIsNotAmongTheRecentOnes) {
+  const std::string folder = test::freshFolder("ui_refused");
+  ui_.kept_folder = folder + "/kept";
+  const std::string hair = folder + "/hair.obj", preset = folder + "/preset.json", gone = folder + "/gone.json";
+  std::ofstream(hair) << "v 0 0 0\n";
+  for (const std::string& file : {preset, gone}) std::ofstream(file) << "{\"sim\": {\"density\": 70}}";
+  const auto open = [&](const std::string& file) {
+    app::openFile(file, demo_, ui_);
+    apply(frame());
+  };
+  open(hair);
+  EXPECT_TRUE(demo_.message_is_fault) << demo_.message;
+  open(folder + "/none.json");
+  EXPECT_TRUE(ui_.recent.empty()) << ui_.recent[0];
+  open(gone), open(preset);
+  EXPECT_EQ(ui_.recent, (std::vector<std::string>{preset, gone}));
+  // One that was among them and is refused now, and one that is no longer there.
+  std::ofstream(preset) << "{\"sim\": {\"density\": true}}";
+  open(preset);
+  EXPECT_EQ(ui_.recent, std::vector<std::string>{gone});
+  EXPECT_EQ(app::readRecent(ui_.kept_folder), ui_.recent);
+  std::filesystem::remove(gone);
+  app::browseFor(app::BrowseFor::kOpen, ui_);
+  EXPECT_TRUE(ui_.recent.empty());
+}
+
+TEST_F(Panels, AFileLoadedBesideTheFramesIsNotedOnceItIsThere) {
+  const std::string folder = test::freshFolder("ui_beside");
+  const std::string bad = folder + "/bad.bvh";
+  std::ofstream(bad) << "HIERARCHY\nROOT hips\n";
+  demo_.loading.on = true;
+  for (const std::string& file : {bad, app::dataPath("assets/clips/walk.bvh")}) {
+    app::openFile(file, demo_, ui_);
+    apply(frame());
+    EXPECT_TRUE(ui_.recent.empty()) << "before it has been loaded";
+    ASSERT_TRUE(demo_.loading.running.valid());
+    demo_.loading.running.wait();
+    apply({});
+    EXPECT_EQ(ui_.recent.empty(), file == bad) << demo_.message;
+  }
+}
+
+TEST_F(Panels, ASavedSceneIsAmongTheRecentOnesOnceItIsWritten) {
+  const std::string file = test::freshFolder("ui_saved") + "/kept.json";
+  ui_.asked = {file};
+  apply({{Ask::kSaveScene, "", file + "/no/folder.json"}});
+  EXPECT_TRUE(ui_.recent.empty());
+  apply({{Ask::kSaveScene, "", file}});
+  EXPECT_EQ(ui_.recent, std::vector<std::string>{file});
 }
 
 // What is typed there would else paint, reset, or quit.
