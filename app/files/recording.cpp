@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
@@ -17,10 +18,12 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 constexpr std::size_t kMaxRequests = 1000;                   // a frame
 constexpr double kMostSeconds = 1e6, kLargestValue = 1e300;  // s; of a request's value
 constexpr double kFarthestView = 1e6, kMaxViewTurn = 1e3;    // m, rad; of a view
+constexpr double kEndUnit = 1e-5, kMostEndUnits = 1e12;      // m; of a coordinate in such units
+constexpr std::size_t kMostEndNumbers = std::size_t{3} << 20;
 constexpr double kMaxAspect = 1e5, kTallestPicture = 1e5;
 
 struct AskName {
@@ -207,11 +210,57 @@ std::string frameLine(double seconds, const RecordedView* view, const std::vecto
   return line.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
+std::string endsLine(const std::vector<ColumnEnds>& ends) {
+  json all = json::array();
+  for (const ColumnEnds& of_actor : ends) {
+    json& row = all.emplace_back(json::array());
+    for (const Vec3& end : of_actor) {
+      for (const double x : end) row.push_back(std::llround(std::clamp(x / kEndUnit, -kMostEndUnits, kMostEndUnits)));
+    }
+  }
+  return json{{"ends", all}}.dump();
+}
+
+std::vector<ColumnEnds> readEnds(const JsonPlace& place) {
+  std::vector<ColumnEnds> ends(place.arraySize(kMaxCharacters));
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    const JsonPlace row = place.at(i);
+    const std::size_t numbers = row.arraySize(kMostEndNumbers);
+    if (numbers % 3 != 0) row.refuse("has " + std::to_string(numbers) + " numbers", "write three an end");
+    const auto metres = [&](std::size_t k) { return kEndUnit * row.at(k).number(-kMostEndUnits, kMostEndUnits); };
+    for (std::size_t k = 0; k < numbers; k += 3) ends[i].emplace_back(metres(k), metres(k + 1), metres(k + 2));
+  }
+  return ends;
+}
+
+std::string millimetres(double metres) {
+  const double tenths = std::round(1e4 * metres);
+  return tenths < 1 ? "less than 0.1 mm" : sim::numberText(tenths / 10) + " mm";
+}
+
 // Why a replay ends elsewhere than the run that was recorded.
 std::string whyOther(const std::optional<bool>& edited) {
   if (!edited) return "its text was changed after it was recorded, or another build or kind of processor recorded it";
   return *edited ? "its text was changed after it was recorded"
-                 : "another build or kind of processor than the one that recorded ends so too";
+                 : "another build or kind of processor than the one that recorded rounds otherwise";
+}
+
+// What is said of a replay whose bits are not the recorded ones, and whether it differs by more than rounding does.
+Tape::End otherEnd(const Recording& recorded, const Demo& demo) {
+  const std::optional<Apart> apart = apartOf(recorded.ends, columnEnds(demo));
+  const bool near = apart && apart->most <= kMostApart, whole = recorded.edited && !*recorded.edited;
+  std::string words;
+  if (apart) {
+    words = "the hair ends " + millimetres(apart->most) + " at most, " + millimetres(apart->mean) +
+            " in the mean, from where it was recorded to end, ";
+    words += (near ? "within the " : "farther than the ") + millimetres(kMostApart) + " that pass; ";
+  } else if (!recorded.ends.empty()) {
+    words = "the hair does not end in as many places as were recorded; ";
+  }
+  words += whyOther(recorded.edited);
+  if (recorded.ends.empty() && !recorded.edited.value_or(false))
+    words += "; the recording holds no ends of the hair that tell by how much: record it anew with --record";
+  return {words, !(near && whole)};
 }
 
 }  // namespace
@@ -267,6 +316,12 @@ Recording readRecording(std::string_view text, const std::string& file) {
       recording.frames.push_back(readFrame(place));
       continue;
     }
+    if (place.has("ends")) {
+      place.expectObject({"ends"});
+      if (!recording.ends.empty()) place.refuse("ends a second time", "keep one such line");
+      recording.ends = readEnds(place.at("ends"));
+      continue;
+    }
     place.expectObject({"frames", "state", "checksum"});
     if (!place.has("frames") || !place.has("state")) place.refuse("ends nothing", "record anew");
     const double frames = place.at("frames").number(0, 1e12);
@@ -297,6 +352,37 @@ std::string stateHash(const Demo& demo) {
     add(actor.hair.velocities);
   }
   return hash.digits();
+}
+
+std::vector<ColumnEnds> columnEnds(const Demo& demo) {
+  std::vector<ColumnEnds> ends;
+  for (const Actor& actor : demo.actors) {
+    const sim::HairMesh& mesh = actor.haircut->mesh;
+    ColumnEnds& of_actor = ends.emplace_back();
+    for (int c = 0; c < mesh.columnCount(); ++c) {
+      const int last = mesh.shape.column_first[static_cast<std::size_t>(c)] + mesh.shape.columnLength(c) - 1;
+      of_actor.push_back(actor.hair.positions[static_cast<std::size_t>(last)]);
+    }
+  }
+  return ends;
+}
+
+std::optional<Apart> apartOf(const std::vector<ColumnEnds>& a, const std::vector<ColumnEnds>& b) {
+  Apart apart;
+  std::size_t count = 0;
+  if (a.size() != b.size()) return {};
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (a[i].size() != b[i].size()) return {};
+    for (std::size_t k = 0; k < a[i].size(); ++k) {
+      const double distance = (a[i][k] - b[i][k]).norm();
+      apart.most = std::max(apart.most, std::isfinite(distance) ? distance : kMostEndUnits);
+      apart.mean += distance;
+    }
+    count += a[i].size();
+  }
+  if (count == 0) return {};
+  apart.mean /= static_cast<double>(count);
+  return apart;
 }
 
 // Appends to the recording and its checksum.
@@ -348,6 +434,7 @@ Tape::End Tape::end(const Demo& demo) {
   End end;
   const std::string state = stateHash(demo), count = std::to_string(turns_) + " frames";
   if (record_) {
+    write(endsLine(columnEnds(demo)) + "\n");
     written_.add(state);
     record_->write(json{{"frames", turns_}, {"state", state}, {"checksum", written_.digits()}}.dump() + "\n");
     record_->commit();
@@ -360,12 +447,13 @@ Tape::End Tape::end(const Demo& demo) {
     end.message +=
         "replayed " + count + " of a recording that was cut off, so that none knows its end; state " + state + "\n";
   } else {
-    end.differs = state != replay_->state;
-    end.message +=
-        "replayed " + count + ", " +
-        (end.differs ? "but the state is " + state + ", not " + replay_->state + "; " + whyOther(replay_->edited)
-                     : "the state is the recorded one to the bit: " + state) +
-        "\n";
+    End reached{"the state is the recorded one to the bit: " + state};
+    if (state != replay_->state) {
+      reached = otherEnd(*replay_, demo);
+      reached.message = "but the state is " + state + ", not " + replay_->state + "; " + reached.message;
+    }
+    end.differs = reached.differs;
+    end.message += "replayed " + count + ", " + reached.message + "\n";
   }
   return end;
 }

@@ -3,15 +3,19 @@
 // whatever the size of its own pictures: level of detail goes by the recorded view.
 //
 // A recording is text, one JSON value a line:
-//   {"hairmesh-recording": 2, "aspect": A, "skips_off": [name, ...]}
+//   {"hairmesh-recording": 3, "aspect": A, "skips_off": [name, ...]}
 //   the scene, as writeScene writes it
 //   [seconds, view, [what, name, text, value], ...]    one line a frame, with its requests; the view where it changed
+//   {"ends": [[x, y, z, x, y, z, ...], ...]}            where each character's columns end, hundredths of a millimetre
 //   {"frames": N, "state": "0123456789abcdef", "checksum": "0123456789abcdef"}
 // The state is the FNV-1a of all positions and velocities at the end, the checksum that of all text before this line
 // and the state's digits: it tells a recording that a person has changed. It may be missing. A view is {"target": [x,
 // y, z], "yaw", "pitch", "distance", "aspect", "height", "shift", "rise", "zoom"}; of the last three, those that change
 // nothing are left out. Version 1 had neither views nor what stands beside it; it is replayed as seen by the replay
-// itself.
+// itself. Version 2 had no ends.
+//
+// Another build or kind of processor rounds otherwise, so its bits differ. A replay passes where no column ends farther
+// than kMostApart from where it was recorded to end, and its text is as it was recorded.
 #pragma once
 
 #include <cstdint>
@@ -44,12 +48,18 @@ struct RecordedFrame {
   std::vector<Request> requests;
 };
 
+inline constexpr double kMostApart = 1e-3;  // m
+
+// Where a character's columns end, m.
+using ColumnEnds = std::vector<Vec3>;
+
 struct Recording {
   Scene scene;
   std::optional<double> aspect;  // of the picture that the scene was opened for
   std::vector<RecordedFrame> frames;
-  std::string state;           // hash at the end; empty when the recording was cut off
-  std::optional<bool> edited;  // since it was recorded; nothing: it has no checksum
+  std::string state;             // hash at the end; empty when the recording was cut off
+  std::optional<bool> edited;    // since it was recorded; nothing: it has no checksum
+  std::vector<ColumnEnds> ends;  // at the end, one a character; empty: it holds none
 };
 
 // FNV-1a, 64 bits.
@@ -69,6 +79,15 @@ Recording readRecording(std::string_view text, const std::string& file);
 
 // FNV-1a over the bits of every position and velocity, as 16 hexadecimal digits.
 std::string stateHash(const Demo& demo);
+
+// Where the hair of a demo ends now.
+std::vector<ColumnEnds> columnEnds(const Demo& demo);
+
+// How far the ends of two runs lie apart; nothing where there are none or not as many.
+struct Apart {
+  double most = 0, mean = 0;  // m
+};
+std::optional<Apart> apartOf(const std::vector<ColumnEnds>& a, const std::vector<ColumnEnds>& b);
 
 // What a run does with --record and --replay: nothing, or either, or both.
 class Tape {

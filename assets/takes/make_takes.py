@@ -21,6 +21,14 @@ def paint(field, at, value, radius=0.05, strength=0.6, mirror=1):
     return ["paint", field, " ".join(repr(float(v)) for v in (*at, radius, strength, 1, mirror, value)), 0]
 
 
+def checksum(before, state):
+    """FNV-1a of a take's text before its last line and of its state, as recording.h says."""
+    value = 0xCBF29CE484222325
+    for byte in (before + state).encode():
+        value = (value ^ byte) * 0x100000001B3 & 0xFFFFFFFFFFFFFFFF
+    return f"{value:016x}"
+
+
 def ask(what, name="", text="", value=0):
     return [what, name, text, value]
 
@@ -102,7 +110,7 @@ TAKES = {
 for name, (opening, hands) in TAKES.items():
     draft = name + ".draft"
     with open(draft, "w") as file:
-        file.write(json.dumps({"hairmesh-recording": 2, "aspect": 1.0, "skips_off": []}) + "\n" + json.dumps(opening) + "\n")
+        file.write(json.dumps({"hairmesh-recording": 3, "aspect": 1.0, "skips_off": []}) + "\n" + json.dumps(opening) + "\n")
         frames = list(hands()) + [[]] * 20
         for requests in frames:
             file.write(json.dumps([1 / 60, *requests]) + "\n")
@@ -112,6 +120,8 @@ for name, (opening, hands) in TAKES.items():
     recorded = json.loads(lines[1])
     recorded["characters"][0]["motion"] = opening["characters"][0]["motion"]  # without a folder
     lines[1] = json.dumps(recorded, separators=(",", ":"))
-    open(name + ".take", "w").write("\n".join(lines) + "\n")
+    before, end = "\n".join(lines[:-1]) + "\n", json.loads(lines[-1])
+    end["checksum"] = checksum(before, end["state"])
+    open(name + ".take", "w").write(before + json.dumps(end, separators=(",", ":")) + "\n")
     print(name, len(frames), "frames", run.stdout.strip().splitlines()[-1:], run.stderr.strip()[-300:])
     run.check_returncode()

@@ -180,21 +180,47 @@ TEST(Recording, AChangedInputShowsInTheEnd) {
       << plain.message;
 }
 
-// What another build or processor ends in looks like this: all that was recorded is as it was.
-TEST(Recording, AnotherEndOfTheSameInputsIsOfAnotherBuild) {
-  const std::string file = test::freshFolder("recording_build") + "/run.hmr";
+// What another build or processor ends in looks like this: all that was recorded is as it was, but for its end.
+app::Tape::End endMovedBy(const std::string& name, double metres) {
+  const std::string file = test::freshFolder(name) + "/run.hmr";
   app::Options options;
   options.record = file;
   app::Scene scene = smallScene();
   app::Tape tape(options, scene);
   app::Demo demo = app::openScene(scene, tape.aspect());
   app::advanceFrame(demo, tape.turn(0, 0.02, demo), {});
-  demo.actors[0].hair.positions.back().x() += 1e-9;
+  demo.actors[0].hair.positions.back().x() += metres;
   tape.end(demo);
   std::string replayed;
-  const app::Tape::End end = replay(file, replayed);
+  return replay(file, replayed);
+}
+
+TEST(Recording, AnotherEndOfTheSameInputsIsOfAnotherBuildAndPassesWithinAMillimetre) {
+  const app::Tape::End rounded = endMovedBy("recording_rounded", 1e-9);
+  EXPECT_FALSE(rounded.differs);
+  EXPECT_NE(rounded.message.find("ends less than 0.1 mm at most"), std::string::npos) << rounded.message;
+  EXPECT_NE(rounded.message.find("within the 1 mm that pass; another build or kind of processor"), std::string::npos)
+      << rounded.message;
+  EXPECT_FALSE(endMovedBy("recording_nearly", 0.9e-3).differs);
+  const app::Tape::End elsewhere = endMovedBy("recording_elsewhere", 2e-3);
+  EXPECT_TRUE(elsewhere.differs);
+  EXPECT_NE(elsewhere.message.find("ends 2 mm at most"), std::string::npos) << elsewhere.message;
+  EXPECT_NE(elsewhere.message.find("farther than the 1 mm that pass"), std::string::npos) << elsewhere.message;
+}
+
+// Version 2 held no ends.
+TEST(Recording, WithoutEndsAReplayCannotTellByHowMuch) {
+  const std::string folder = test::freshFolder("recording_endless");
+  record(folder + "/run.hmr");
+  std::string text = test::readAll(folder + "/run.hmr"), replayed;
+  text.replace(text.find("\"hairmesh-recording\":3"), 22, "\"hairmesh-recording\":2");
+  const std::size_t at = text.find("{\"ends\""), state = text.find("\"state\":\"") + 9;
+  ASSERT_LT(at, state);
+  text.replace(state, 4, "zzzz");
+  std::ofstream(folder + "/old.hmr") << text.substr(0, at) << text.substr(text.find('\n', at) + 1);
+  const app::Tape::End end = replay(folder + "/old.hmr", replayed);
   EXPECT_TRUE(end.differs);
-  EXPECT_NE(end.message.find("; another build or kind of processor"), std::string::npos) << end.message;
+  EXPECT_EQ(end.message.find("mm"), std::string::npos) << end.message;
 }
 
 // Hair in the same place that goes elsewhere is another state.
@@ -261,6 +287,11 @@ TEST(Recording, HostileTextIsRefusedWithItsLine) {
       {"a wrong count", "[0.1]\n{\"frames\": 7, \"state\": \"0\"}\n"},
       {"an enormous count", "{\"frames\": 1e300, \"state\": \"0\"}\n"},
       {"more after the end", "{\"frames\": 0, \"state\": \"0\"}\n[0.1]\n"},
+      {"ends of no characters", "[0.1]\n{\"ends\": 3}\n"},
+      {"ends that are no triples", "[0.1]\n{\"ends\": [[1, 2]]}\n"},
+      {"ends that are text", "[0.1]\n{\"ends\": [[1, 2, \"3\"]]}\n"},
+      {"ends beyond all", "[0.1]\n{\"ends\": [[1, 2, 1e300]]}\n"},
+      {"two lines of ends", "[0.1]\n{\"ends\": [[1, 2, 3]]}\n{\"ends\": [[1, 2, 3]]}\n"},
       {"an end without a state", "{\"frames\": 0}\n"},
       {"broken JSON", "[0.1\n"},
       {"deep JSON", std::string(100000, '[') + "\n"},
@@ -274,7 +305,7 @@ TEST(Recording, HostileTextIsRefusedWithItsLine) {
       EXPECT_NE(std::string(error.what()).find("x.hmr, line "), std::string::npos) << row.what << ": " << error.what();
     }
   }
-  for (const char* text : {"", "{}", "{\"hairmesh-recording\": 2}\n", "{\"hairmesh-recording\": 3}\n",
+  for (const char* text : {"", "{}", "{\"hairmesh-recording\": 2}\n", "{\"hairmesh-recording\": 4}\n",
                            "{\"hairmesh-recording\": 2, \"aspect\": 0, \"skips_off\": []}\n",
                            "{\"hairmesh-recording\": 2, \"aspect\": 1, \"skips_off\": [\"nap\"]}\n", "[]\n",
                            "{\"hairmesh-recording\": 1}\n", "{\"hairmesh-recording\": 1}\n{}\n", "OBJ"}) {
