@@ -20,8 +20,11 @@ namespace {
 constexpr double kSmallestWorn = 0.07,
                  kLargestWorn = 0.65;  // m, the longest side of what is worn; less than ten times apart
 constexpr double kNearJoint = 0.35;    // m, from its joint
-constexpr double kSwallowed = 0.8;     // of its points, inside the head
-constexpr double kHatSize = 0.08;      // m, the shortest side of a hat; how far before the head it lies
+// Shares of its points inside the head: of one that does not fit, of one that does. What is in assets/attachments has
+// 0.03 at most, and at 0.9 of its size 0.25 and more.
+constexpr double kSwallowed = 0.2, kWellFitted = 0.035;
+constexpr double kOtherUnit = 2;   // times that a mesh is to be larger: it is in another unit
+constexpr double kHatSize = 0.08;  // m, the shortest side of a hat; how far before the head it lies
 constexpr double kWornSpacing = 0.0025, kMaxWornNodes = 1.2e6;  // m, of the grid
 constexpr double kSharpEdge = 0.5;                              // cosine between faces that are shaded as one
 constexpr double kWeld = 1e-5;                                  // of the size; vertices so near are one
@@ -221,20 +224,40 @@ void placeAt(const AttachmentSpec& spec, const PolygonMesh& mesh, const Vec3& jo
   for (Vec3& p : surface.points) p = turn * (scale * p - origin) + spec.at;
 }
 
+// The share of a surface's points that lie inside the head when it is made `times` as large about its joint.
+double swallowed(const ClosedSurface& surface, double times, const Rigid& to_scalp, const Scalp& scalp) {
+  std::size_t inside = 0;
+  for (const Vec3& p : surface.points) {
+    const Vec3 from_middle = to_scalp * (times * p) - scalp.center;
+    inside += from_middle.norm() < scalp.radiusAt(from_middle.normalized());
+  }
+  return static_cast<double>(inside) / static_cast<double>(surface.points.size());
+}
+
+// What "scale" frees the head: so many times the present one where that is no other unit.
+std::string largerBy(const ClosedSurface& surface, const Rigid& to_scalp, const Scalp& scalp) {
+  for (double times = 1.05; times < kOtherUnit; times += 0.05) {
+    if (swallowed(surface, times, to_scalp, scalp) > kWellFitted) continue;
+    char text[48];
+    std::snprintf(text, sizeof text, "about %.2f times as large", times);
+    return text;
+  }
+  return "metres per unit (0.0254 for inches)";
+}
+
 // What is wrong with its place, in the joint's frame, though it can be worn; empty: nothing.
 std::string placeNote(const ClosedSurface& surface, const Rigid& to_scalp, const Scalp& scalp, bool of_head) {
   double nearest = INFINITY;
-  std::size_t inside = 0;
   Eigen::AlignedBox3d box;
   for (const Vec3& p : surface.points) {
-    const Vec3 from_middle = to_scalp * p - scalp.center;
     nearest = std::min(nearest, p.norm());
-    inside += from_middle.norm() < scalp.radiusAt(from_middle.normalized());
-    box.extend(from_middle);
+    box.extend(to_scalp * p - scalp.center);
   }
-  if (of_head && static_cast<double>(inside) > kSwallowed * static_cast<double>(surface.points.size()))
-    return "lies " + std::string(inside == surface.points.size() ? "wholly" : "for the most part") +
-           " inside the head; give \"scale\", metres per unit (0.0254 for inches), or \"at\"";
+  const double inside = of_head ? swallowed(surface, 1, to_scalp, scalp) : 0;
+  if (inside > kSwallowed) {
+    return (inside < 1 ? "lies to " + std::to_string(std::lround(100 * inside)) + " %" : "lies wholly") +
+           " inside the head; give \"scale\", " + largerBy(surface, to_scalp, scalp) + ", or \"at\"";
+  }
   // A hat sits on the head; glasses are thin.
   const Vec3 middle = box.center();
   if (of_head && box.sizes().minCoeff() > kHatSize && std::abs(middle.z()) > std::max(kHatSize, std::abs(middle.y())))

@@ -209,6 +209,36 @@ TEST(Attachments, ATieUnderACapGoesBelowItsRim) {
   }
 }
 
+TEST(Attachments, AFringeUnderARimIsToldHowMuchRoomItNeedsAndThatIsEnough) {
+  for (const char* style : {"bob", "pixie"}) {
+    std::string refusal;
+    try {
+      app::openScene(wearing("beanie.obj", *app::parseStyle(style)), 1.5);
+    } catch (const app::InputError& error) {
+      refusal = error.what();
+    }
+    EXPECT_NE(refusal.find("a tenth wider"), std::string::npos) << refusal;
+    EXPECT_NE(refusal.find("\"at\": [0, 0.02, 0]"), std::string::npos) << refusal;
+    for (const char* mend :
+         {R"({"file": "beanie.obj", "scale": 1.1})", R"({"file": "beanie.obj", "at": [0, 0.02, 0]})"})
+      EXPECT_NO_THROW(app::openScene(wearing(mend, *app::parseStyle(style)), 1.5)) << style << mend;
+  }
+}
+
+// At 0.8 of its size a sun hat's crown is in the head and no root lies in its felt.
+TEST(Attachments, AHatMostlyInsideTheHeadIsSaidWithHowMuchLargerItShouldBe) {
+  const auto messageOf = [](const std::string& text) {
+    return app::openScene(wearing(text, app::Style::kShort), 1.5).message;
+  };
+  const std::string small = messageOf(R"({"file": "sun_hat.obj", "scale": 0.8})");
+  EXPECT_NE(small.find("sun_hat: lies to 80 % inside the head; give \"scale\", about 1.20 times as large, or \"at\""),
+            std::string::npos)
+      << small;
+  EXPECT_NE(messageOf(R"({"file": "headband.obj", "scale": 0.88})").find("inside the head"), std::string::npos);
+  for (const char* file : {"beanie.obj", "headband.obj", "sun_hat.obj", "glasses.obj"})
+    EXPECT_EQ(messageOf(file).find("inside the head"), std::string::npos) << file;
+}
+
 TEST(Attachments, AnExportSaysThatItLeavesThemOut) {
   const std::string folder = test::freshFolder("attachments_export");
   for (const char* file : {"/hair.glb", "/hair.ply"}) {
