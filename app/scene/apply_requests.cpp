@@ -292,8 +292,10 @@ std::optional<Camera>& bookmark(const Request& request, Demo& demo) {
 }
 
 void keepView(const Request& request, Demo& demo) {
-  bookmark(request, demo) = demo.camera;
-  showMessage("view kept", demo);
+  std::optional<Camera>& kept = bookmark(request, demo);
+  const long number = 1 + (&kept - demo.bookmarks.data());
+  showMessage("view " + std::to_string(number) + (kept ? " kept in place of the one before" : " kept"), demo);
+  kept = demo.camera;
 }
 
 // The kept direction, distance and angle, about where the figure is now.

@@ -468,12 +468,13 @@ int segments(const char* name, std::initializer_list<Segment> row, int chosen, U
     if (lit) {
       ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_SliderGrabActive));
       ImGui::PushStyleColor(ImGuiCol_ButtonHovered, ImGui::GetStyleColorVec4(ImGuiCol_SliderGrabActive));
+      ImGui::PushStyleColor(ImGuiCol_ButtonActive, ImGui::GetStyleColorVec4(ImGuiCol_SliderGrabActive));
       ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(0.07f, 0.07f, 0.08f, 1));
     }
     ImGui::BeginDisabled(!enabled);
     if (ImGui::Button(label, {ImGui::CalcTextSize(label).x + std::max(left / count, 2.0f), 0})) pressed = index;
     ImGui::EndDisabled();
-    if (lit) ImGui::PopStyleColor(3);
+    if (lit) ImGui::PopStyleColor(4);
     noteItem(std::string(name) + " " + label, ui);
     tip(help);
     ++index;

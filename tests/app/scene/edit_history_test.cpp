@@ -178,6 +178,9 @@ TEST(EditHistory, AViewIsNoStep) {
   const double density = demo.scene.sim.density;
   EXPECT_EQ(ask({Ask::kSetParam, "density", "80"}, demo), "");
   EXPECT_EQ(ask({Ask::kKeepView, "", "", 1}, demo), "");
+  EXPECT_EQ(demo.message, "view 2 kept");
+  EXPECT_EQ(ask({Ask::kKeepView, "", "", 1}, demo), "");
+  EXPECT_EQ(demo.message, "view 2 kept in place of the one before");
   for (const Request& look : {Request{Ask::kView, "back", ""}, Request{Ask::kLens, "", "", 0.3},
                               Request{Ask::kGoToView, "", "", 1}, Request{Ask::kFollow, "", "", 0}})
     EXPECT_EQ(ask(look, demo), "");
