@@ -29,7 +29,7 @@ struct Landmark {
 // level with the top of the ears. It begins where the line over forehead and temple ends, in about a right angle: root
 // faces there have a corner that is neither flat nor reflex.
 constexpr std::array<Landmark, 7> kHairline{
-    {{64, 3}, {81, 7}, {97, 9.5}, {116, -4}, {136, -20}, {158, -30}, {180, -33}}};
+    {{66, 0}, {81, 7}, {97, 9.5}, {116, -4}, {136, -20}, {158, -30}, {180, -33}}};
 // The same from the middle of the forehead.
 constexpr std::array<Landmark, 11> kHairlineWithForehead{{{0.25, 36},
                                                           {19, 34},
@@ -50,7 +50,7 @@ constexpr Landmark kCrown{176, 62};
 
 // The line over forehead and temple, from the parting's front to the tip before the ear, bulges towards these.
 constexpr Landmark kForeheadLeft{50, 29};
-constexpr Landmark kForeheadRight{-44, 32};
+constexpr Landmark kForeheadRight{-46, 31.5};
 
 Vec3 direction(const Landmark& l) {
   return scalpDirection(l.azimuth, l.elevation);

@@ -339,7 +339,7 @@ TEST(HairStyles, ResolutionsAreTheSameHaircut) {
       }
       for (const int coarse : {0, 1, 4}) {
         // Prisms of long edges are positive on a round head only where they stand off it: the minimal resolution's do.
-        EXPECT_NEAR(volumes[coarse] / volumes[2], 1, coarse == 4 ? 1.0 : 0.4);
+        EXPECT_NEAR(volumes[coarse] / volumes[2], 1, coarse == 4 ? 1.15 : 0.4);
         EXPECT_NEAR(lengths[coarse] / lengths[2], 1, 0.10);
         const auto farthest = [](const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
           double most = 0;
