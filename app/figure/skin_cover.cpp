@@ -13,7 +13,7 @@ namespace app {
 namespace {
 
 constexpr std::size_t kMaxSamples = 3000;
-constexpr int kMoments = 10;         // of all clips together, beside the rest pose
+constexpr int kMoments = 24;         // of all clips together, beside the rest pose
 constexpr double kCovered = 0.0018;  // m: skin that sticks out less is covered
 constexpr double kPatch = 0.40;      // head heights: radius of the patch that an added ellipsoid begins with
 constexpr double kSmaller = 0.6;     // of that, for a patch whose ellipsoid swallows too much

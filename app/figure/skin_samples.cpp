@@ -12,9 +12,10 @@
 namespace app {
 namespace {
 
-constexpr double kReach = 3.0;            // head heights from the head's middle, as far as hair comes
-constexpr double kAside = 0.75;           // head heights from the head's axis, as far as the head reaches
-constexpr double kChin = -0.585, kMouthBelow = -0.25, kMouthBefore = 0.18;  // the same, up and forward from its middle
+constexpr double kReach = 3.0;   // head heights from the head's middle, as far as hair comes
+constexpr double kAside = 0.75;  // head heights from the head's axis, as far as the head reaches
+constexpr double kChin = -0.585, kMouthBelow = -0.25, kMouthBefore = 0.18,
+                 kNape = -0.30;           // the same, up and forward from its middle
 constexpr double kAir = 0.014;            // m in front of the skin: nothing is to lie there but hair
 constexpr double kClear = 0.006;          // m, that such a place is at least off the ellipsoids and other skin
 constexpr float kFinestSpacing = 0.004f;  // m, spacing of samples
@@ -105,6 +106,12 @@ std::vector<std::size_t> thinned(const SkinnedMesh& mesh, const std::vector<std:
   return some;
 }
 
+// Whether a joint is the head's or hangs on it.
+bool belongsToHead(const Skeleton& skeleton, int joint, int head) {
+  while (joint >= 0 && joint != head) joint = skeleton.joints[static_cast<std::size_t>(joint)].parent;
+  return joint == head;
+}
+
 void addSamples(const Character& character, const std::vector<std::size_t>& vertices, PosedSkin& skin) {
   const std::vector<FitPoint> points = surfacePoints(character.mesh);
   const std::vector<int> dominant = dominantJoints(character.mesh), carriers = carriersOf(character);
@@ -116,7 +123,9 @@ void addSamples(const Character& character, const std::vector<std::size_t>& vert
     if (carrier < 0 || points[v].weight <= 0) continue;
     const Vec3 from = to_scalp * points[v].position - character.scalp.center;
     const bool mouth = from.y() < kMouthBelow * size && from.z() > kMouthBefore * size;
-    const bool of_head = from.y() > kChin * size && std::hypot(from.x(), from.z()) < kAside * size && !mouth;
+    // The neck bends below the nape's hairline, and its skin with it.
+    const bool neck = from.y() < kNape * size && !belongsToHead(character.skeleton, carrier, character.head_joint);
+    const bool of_head = from.y() > kChin * size && std::hypot(from.x(), from.z()) < kAside * size && !mouth && !neck;
     skin.samples.push_back({points[v].position, character.mesh.normals[v].cast<double>(), points[v].weight,
                             static_cast<int>(v), carrier, of_head});
     area += points[v].weight;

@@ -12,7 +12,7 @@ struct SkinSample {
   Vec3 rest, normal;  // m; unit; of the model's rest pose
   double weight;      // share of all samples' area
   int vertex, joint;  // the nearest joint from the vertex's own upwards that carries an ellipsoid
-  bool of_head;       // above the chin but for mouth and chin: styles grow around it as it is
+  bool of_head;       // above the chin but for mouth, chin and neck: styles grow around it as it is
 };
 
 // A place is a sample at a moment: moment * samples.size() + sample. Moment 0 is the rest pose.

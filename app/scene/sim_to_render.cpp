@@ -79,6 +79,24 @@ namespace {
 
 constexpr double kHome = 3;          // in an ellipsoid's measure, see render::SkinEllipsoid
 constexpr double kHeadWithin = 1.1;  // the same: one that holds the head's middle, or nearly
+constexpr double kFree = 0.2;  // in the measure of the head's ellipsoids: the way to the head that far off is free
+
+std::vector<sim::Ellipsoid> headEllipsoids(const Character& character, const Pose& pose) {
+  std::vector<sim::Ellipsoid> all;
+  for (const BodyEllipsoid& e : character.ellipsoids)
+    if (e.joint == character.head_joint) poseEllipsoid(e, pose, pose, 0, all.emplace_back());
+  return all;
+}
+
+// 0 where the way out of an ellipsoid to the head (in the ellipsoid's measure) ends in the head's own ones, as the
+// neck's does; 1 where it ends clear of them.
+double freeWayTo(std::span<const sim::Ellipsoid> head, const sim::Ellipsoid& e, const Vec3& home) {
+  const Vec3 end = e.center + e.rotation * Vec3(e.radii.cwiseProduct(home.stableNormalized()));
+  double clear = kFree;
+  for (const sim::Ellipsoid& part : head)
+    clear = std::min(clear, (part.rotation.conjugate() * (end - part.center)).cwiseQuotient(part.radii).norm() - 1);
+  return std::clamp(clear / kFree, 0.0, 1.0);
+}
 
 }  // namespace
 
@@ -86,6 +104,7 @@ void skinEllipsoids(const Character& character, const Pose& pose, const Vec3& or
                     std::vector<render::SkinEllipsoid>& skin) {
   skin.resize(character.ellipsoids.size());
   const Vec3 head = scalpToWorld(character, pose) * character.scalp.center;
+  const std::vector<sim::Ellipsoid> head_parts = headEllipsoids(character, pose);
   for (std::size_t i = 0; i < skin.size(); ++i) {
     sim::Ellipsoid e;
     poseEllipsoid(character.ellipsoids[i], pose, pose, 0, e);
@@ -97,7 +116,7 @@ void skinEllipsoids(const Character& character, const Pose& pose, const Vec3& or
     }
     // Hair comes from the head: around an ellipsoid that holds the head it comes from all sides.
     const Vec3 home = to_ball * (head - e.center);
-    const double off = std::clamp(home.norm() - kHeadWithin, 0.0, 1.0);
+    const double off = std::clamp(home.norm() - kHeadWithin, 0.0, 1.0) * freeWayTo(head_parts, e, home);
     Eigen::Map<Eigen::Vector3f>(skin[i].home.data()) = (kHome * off * home.stableNormalized()).cast<float>();
   }
 }

@@ -11,12 +11,13 @@ namespace render {
 
 using Eigen::Vector3f;
 using Eigen::Vector4f;
-using shared::kSkinBlend, shared::kSkinGap, shared::kSkinFar, shared::kSkinMiddle, shared::kSkinWhole;
+using shared::kSkinBlend, shared::kSkinGap, shared::kSkinFar, shared::kSkinMiddle, shared::kSkinRounds,
+    shared::kSkinWhole;
 
 void leaveSkin(std::span<const SkinEllipsoid> skin, float s, Vector3f& position, Vector3f& tangent) {
   Vector3f lifted = position, turned = tangent;
   bool moved = true;
-  for (int round = 0; round < 4 && moved; ++round) {
+  for (int round = 0; round < kSkinRounds && moved; ++round) {
     moved = false;
     const float blend = round == 0 ? kSkinBlend : 0.0f;
     for (const SkinEllipsoid& e : skin) {

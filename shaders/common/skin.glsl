@@ -15,7 +15,7 @@
 void leaveSkin(uvec2 near, float s, inout vec3 position, inout vec3 tangent) {
   vec3 lifted = position, turned = tangent;
   bool moved = near != uvec2(0u);
-  for (int round = 0; round < 4 && moved; ++round) {
+  for (int round = 0; round < kSkinRounds && moved; ++round) {
     moved = false;
     float blend = round == 0 ? kSkinBlend : 0.0;
     for (int word = 0; word < 2; ++word)

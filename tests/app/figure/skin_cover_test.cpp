@@ -8,6 +8,8 @@
 #include <filesystem>
 
 #include "app/figure/character_build.h"
+#include "app/figure/skin_samples.h"
+#include "app/scene/sim_to_render.h"
 
 namespace skin_cover_test {
 
@@ -138,6 +140,48 @@ TEST(SkinCover, CoversTheMannequinsMouthAndChin) {
     EXPECT_LT(gapAtRest(c, p), 0.004) << from.transpose();
   }
   EXPECT_GT(looked, 100);
+}
+
+// Hair is rooted on the head and lies on it; the neck below the nape's hairline bends, and is covered like the trunk.
+TEST(SkinCover, TheNeckIsNotOfTheHead) {
+  const app::Character c = app::loadCharacter(HAIRMESH_SOURCE_DIR "/assets/clips/walk.bvh", "");
+  const app::PosedSkin skin = app::poseSkin(c, 3000, 1);
+  const app::Rigid to_scalp = app::scalpToWorld(c, app::restPose(c.skeleton)).inverse();
+  int neck = 0, head = 0;
+  for (const app::SkinSample& sample : skin.samples) {
+    const Vec3 from = (to_scalp * sample.rest - c.scalp.center) / c.scalp.head_height;
+    const std::string& joint = c.skeleton.joints[static_cast<std::size_t>(sample.joint)].name;
+    if (joint == "Neck" && from.y() < -0.35) {
+      ++neck;
+      EXPECT_FALSE(sample.of_head) << from.transpose();
+    } else if (joint == "Head" && from.y() > -0.2 && from.z() < 0) {
+      ++head;
+      EXPECT_TRUE(sample.of_head) << from.transpose();
+    }
+  }
+  EXPECT_GT(neck, 20);
+  EXPECT_GT(head, 100);
+}
+
+// Strands that run through an ellipsoid are led to the head over a shoulder, but not up through the neck.
+TEST(SkinEllipsoids, LeadToTheHeadWhereTheWayThereIsFree) {
+  const app::Character c = app::loadCharacter(HAIRMESH_SOURCE_DIR "/assets/clips/walk.bvh", "");
+  std::vector<render::SkinEllipsoid> skin;
+  app::skinEllipsoids(c, app::restPose(c.skeleton), Vec3::Zero(), skin);
+  ASSERT_EQ(skin.size(), c.ellipsoids.size());
+  int shoulders = 0, necks = 0;
+  for (std::size_t e = 0; e < skin.size(); ++e) {
+    const double home = Eigen::Map<const Eigen::Vector3f>(skin[e].home.data()).norm();
+    if (c.ellipsoids[e].name == "left_shoulder" || c.ellipsoids[e].name == "right_shoulder") {
+      ++shoulders;
+      EXPECT_GT(home, 2.5);
+    } else if (c.ellipsoids[e].name == "neck") {
+      ++necks;
+      EXPECT_LT(home, 0.1);
+    }
+  }
+  EXPECT_EQ(shoulders, 2);
+  EXPECT_EQ(necks, 1);
 }
 
 // Between the moments that the ellipsoids were fitted at: the trunk's skin in front, where no other part ends.
