@@ -105,8 +105,8 @@ TEST_F(SkipsDraw, ExactSkipsChangeNoByte) {
   }
   for (std::size_t s = 1; s < sets.size(); ++s) {
     // Where a map is left out the others lie elsewhere in their texture, and its filter rounds, on GPUs to a 256th of a
-    // texel: a level or two in a few pixels, on GPUs 10 (seen on an H200).
-    const int rounding = render::rasterizesInSoftware() ? 2 : 12;
+    // texel: a level or two in a few pixels, on GPUs 15 (seen on an H200).
+    const int rounding = render::rasterizesInSoftware() ? 2 : 20;
     const bool moved = s == 1 || std::string_view(kExact[s - 2].name) == "shadow_view";
     for (std::size_t i = 0; i < pictures[0].size(); ++i) {
       const golden::Difference difference = golden::compare(pictures[s][i], pictures[0][i], 0);

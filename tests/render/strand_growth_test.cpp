@@ -132,9 +132,10 @@ TEST_F(StrandGrowthOnGpu, AgreesWithTheShadersForEveryStyle) {
       const PosedHair hair = posedStyle(style, resolution);
       const render::HairInput input = hair.input(3000);
       const Comparison result = compare(growthOf(input), strand_capture::capture(input, gl_fixture::kShaderDir));
-      // Where a strand runs along its frame's side a last bit turns what it leaves its guide by: 3e-5 for one strand of
-      // 45,000 on a GPU, 4.7e-5 for one of 75,000 in software, of the pixie's at low.
-      EXPECT_LT(result.worst, (style == kPixie || !render::rasterizesInSoftware() ? 5e-5f : 1e-5f) * hair.length);
+      // Where a strand runs along its frame's side a last bit turns what it leaves its guide by: 7.8e-5 for one strand of
+      // 75,000 on a GPU, of the bob's at minimal, 4.7e-5 for one in software, of the pixie's at low.
+      const float bound = !render::rasterizesInSoftware() ? 1e-4f : style == kPixie ? 5e-5f : 1e-5f;
+      EXPECT_LT(result.worst, bound * hair.length);
       EXPECT_LE(result.other, 3);
       EXPECT_EQ(result.differ, 0);
     }
