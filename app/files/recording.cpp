@@ -255,7 +255,7 @@ Tape::End otherEnd(const Recording& recorded, const Demo& demo) {
             " in the mean, from where it was recorded to end, ";
     words += (near ? "within the " : "farther than the ") + millimetres(kMostApart) + " that pass; ";
   } else if (!recorded.ends.empty()) {
-    words = "the hair does not end in as many places as were recorded; ";
+    words = "the hair has not as many columns as when it was recorded: its style or mesh is another one now; ";
   }
   words += whyOther(recorded.edited);
   if (recorded.ends.empty() && !recorded.edited.value_or(false))
