@@ -17,10 +17,12 @@ using shared::kSkinBlend, shared::kSkinGap, shared::kSkinFar, shared::kSkinMiddl
 void leaveSkin(std::span<const SkinEllipsoid> skin, float s, Vector3f& position, Vector3f& tangent) {
   Vector3f lifted = position, turned = tangent;
   bool moved = true;
+  const SkinEllipsoid* last = nullptr;
   for (int round = 0; round < kSkinRounds && moved; ++round) {
     moved = false;
     const float blend = round == 0 ? kSkinBlend : 0.0f;
     for (const SkinEllipsoid& e : skin) {
+      if (&e == last) continue;
       const Eigen::Map<const Vector4f> a(e.to_ball[0].data()), b(e.to_ball[1].data()), c(e.to_ball[2].data());
       const Vector4f p = lifted.homogeneous();
       const Vector3f ball(a.dot(p), b.dot(p), c.dot(p));
@@ -44,6 +46,7 @@ void leaveSkin(std::span<const SkinEllipsoid> skin, float s, Vector3f& position,
       lifted += share * (kSkinBlend * bent * bent - gap) * out_of;
       turned += share * (bent - 1) * normal.dot(turned) * normal;
       moved = true;
+      last = &e;
     }
   }
   const float root = smoothstep(0.0f, 1.0f, s);

@@ -9,18 +9,20 @@
 // comes (the fourth row): of a lock that hangs on both sides of a shoulder all strands go over it, none through. Where
 // that way turns about, on the other side, nothing is lifted. The gap is exact, to where the way meets the surface, in
 // the ellipsoid's own measure. s: curve parameter, in layers; the first layer leads from the root, which stays, to full
-// lift. Further rounds, without the parabola, take up what one ellipsoid pushes into another.
+// lift. Further rounds, without the parabola, take up what one ellipsoid pushes into another: none pushes twice running.
 //
 // near: a bit for each ellipsoid that the strand can meet between its two layers (render/hair/skin_reach.h).
 void leaveSkin(uvec2 near, float s, inout vec3 position, inout vec3 tangent) {
   vec3 lifted = position, turned = tangent;
   bool moved = near != uvec2(0u);
+  int last = -1;
   for (int round = 0; round < kSkinRounds && moved; ++round) {
     moved = false;
     float blend = round == 0 ? kSkinBlend : 0.0;
     for (int word = 0; word < 2; ++word)
       for (uint left = word == 0 ? near.x : near.y; left != 0u; left &= left - 1u) {
         int i = 32 * word + findLSB(left);
+        if (i == last) continue;
         vec4 a = skin_rows[4 * i], b = skin_rows[4 * i + 1], c = skin_rows[4 * i + 2], p = vec4(lifted, 1.0);
         vec3 ball = vec3(dot(a, p), dot(b, p), dot(c, p));
         float squared = dot(ball, ball);
@@ -39,6 +41,7 @@ void leaveSkin(uvec2 near, float s, inout vec3 position, inout vec3 tangent) {
         lifted += share * (kSkinBlend * bent * bent - gap) * out_of;
         turned += share * (bent - 1.0) * dot(normal, turned) * normal;
         moved = true;
+        last = i;
       }
   }
   float root = smoothstep(0.0, 1.0, s);
