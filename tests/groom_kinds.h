@@ -286,7 +286,7 @@ inline app::Groom styled(app::Style style, app::Resolution resolution, int stran
 inline std::vector<Kind> kinds() {
   using app::Resolution, app::Style;
   return {
-      {"short", "the short style, low", [](int n) { return styled(Style::kShort, Resolution::kLow, n); }, 0.021, 0.065,
+      {"short", "the short style, low", [](int n) { return styled(Style::kShort, Resolution::kLow, n); }, 0.0225, 0.068,
        0.78},
       {"shoulder", "the shoulder style, medium", [](int n) { return styled(Style::kShoulder, Resolution::kMedium, n); },
        0.0167, 0.052, 0.79},
