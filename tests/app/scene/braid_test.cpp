@@ -16,6 +16,7 @@
 #include "app/scene/edit/groom_brush.h"
 #include "app/scene/record/hair_export.h"
 #include "app/scene/view/figure_input.h"
+#include "tests/app/scene/small_scene.h"
 
 namespace braid_test {
 
@@ -27,15 +28,7 @@ using Eigen::Vector3f;
 
 app::Demo tied(const std::string& ties, app::Resolution resolution, const char* clip = "idle_turns.bvh",
                app::Style style = app::Style::kLong) {
-  app::Scene scene;
-  app::CharacterSpec spec;
-  spec.motion = app::dataPath(std::string("assets/clips/") + clip);
-  spec.style = style;
-  spec.resolution = resolution;
-  spec.ties = app::tiesFromText(ties);
-  scene.characters = {spec};
-  scene.playback.settle = 0.3;
-  return app::openScene(std::move(scene), 1.5);
+  return app::openScene(test::tiedScene(ties, clip, resolution, style), 1.5);
 }
 
 const BraidPlan& planOf(const app::Demo& demo) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/files/data_path.h"
+#include "app/files/tie_spec.h"
 #include "app/scene/demo.h"
 
 namespace test {
@@ -18,6 +19,17 @@ inline app::Scene smallScene(const std::string& clip, double settle = 0) {
   spec.resolution = app::Resolution::kLow;
   scene.characters = {spec};
   scene.playback.settle = settle;
+  return scene;
+}
+
+// One with hair tied as `--tie` takes it, long enough to settle in the ring.
+inline app::Scene tiedScene(const std::string& ties, const std::string& clip, app::Resolution resolution,
+                            app::Style style = app::Style::kLong) {
+  app::Scene scene = smallScene(clip, 0.3);
+  app::CharacterSpec& spec = scene.characters.front();
+  spec.style = style;
+  spec.resolution = resolution;
+  spec.ties = app::tiesFromText(ties);
   return scene;
 }
 

@@ -12,24 +12,13 @@
 #include "app/files/recording.h"
 #include "app/files/scene_file.h"
 #include "app/scene/demo.h"
+#include "tests/app/scene/small_scene.h"
 #include "tests/run_program.h"
 
 namespace ties_test {
 
 using app::Ask;
-
-app::Scene tiedScene(const std::string& ties, const char* clip, app::Resolution resolution,
-                     app::Style style = app::Style::kLong) {
-  app::Scene scene;
-  app::CharacterSpec spec;
-  spec.motion = app::dataPath(std::string("assets/clips/") + clip);
-  spec.style = style;
-  spec.resolution = resolution;
-  spec.ties = app::tiesFromText(ties);
-  scene.characters = {spec};
-  scene.playback.settle = 0.3;
-  return scene;
-}
+using test::tiedScene;
 
 // Farthest that a vertex of a ring is from its tie's middle, over the tie's radius; m.
 double overOf(const app::Demo& demo) {
