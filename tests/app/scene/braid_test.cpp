@@ -10,6 +10,7 @@
 
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
+#include "app/files/recording.h"
 #include "app/scene/braid/braid_draw.h"
 #include "app/scene/braid/braid_steps.h"
 #include "app/scene/demo.h"
