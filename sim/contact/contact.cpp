@@ -14,9 +14,6 @@ namespace {
 constexpr int kProjections = 6;      // alternating projections between overlapping colliders
 constexpr int kBriefly = 2;          // of them, beyond ContactSearch::max_points
 constexpr double kSlackShare = 0.2;  // of the contact offset
-constexpr double kRestoring = 0.2;   // share of the depth below the offset that a step closes
-// Energy budget, per unit density (m^5/s^2), for lifting a vertex to the contact offset: 3 cm^3 of hair by 1 cm.
-constexpr double kLiftWork = 3e-7;
 constexpr double kReach = 0.01;  // m off the surface at which a contact is dropped; less may be a slide over an edge
 constexpr double kCreep = 1e-3, kNoSlip = 1e-9;  // m/s
 constexpr double kLeaving = 1;                   // m/s away from the body at which a contact is dropped
@@ -191,11 +188,8 @@ void carryContacts(const Colliders& colliders, const SimParams& params, double d
     const Vec3 carried = carriedAlong(colliders.body(contact.collider), x, dt);
     const SurfacePoint surface = colliders.closest(contact.collider, carried);
     const double depth = margins.offset - surface.distance;
-    // A new contact's pressure is yet unknown: it may be pressed by any force.
-    const bool may_lift = contact.pressure > 0 && contact.pressure * depth <= kLiftWork * params.density;
-    const double closed = !may_lift ? 0 : kRestoring * std::min(depth, margins.slack);
     // Above the offset the vertex may be sliding over a rounded body: the solve brings it back unless it has to pull.
-    const double back = depth > 0 ? closed : std::max(depth, -margins.escape);
+    const double back = std::clamp(depth, -margins.escape, 0.0);
     contact.normal = surface.normal;
     contact.velocity = (carried - x + back * surface.normal) / dt;
     // The solve lets go of a vertex that a body leaves behind only to its tolerance of the body's speed.

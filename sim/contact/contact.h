@@ -29,7 +29,7 @@ struct Penetration {
 
 struct ContactMargins {
   double offset;  // m off the surface at which contacts are held
-  double slack;   // m below the offset that the next solves close; more is corrected
+  double slack;   // m below the offset that is left; more is corrected
   double escape;  // m that an initial overlap is resolved by in one step
 };
 ContactMargins contactMargins(const SimParams& params, double dt);
@@ -67,10 +67,8 @@ struct ContactScratch {
 void clusterVertices(const HairMesh& mesh, ContactScratch& scratch);
 
 // Brings carried contacts to this step: normal and velocity are those at the place to which the collider's motion
-// carries the vertex. A contact out of reach, or without its collider, is dropped. The velocity closes a depth below
-// the offset up to the slack, unless the contact is pressed so hard that this would exceed an energy budget, or no
-// solve has yet told how hard; deeper overlaps are resolved by positions (position_correction.h), which leave no
-// velocity.
+// carries the vertex. A contact out of reach, or without its collider, is dropped. The velocity lifts nothing, for that
+// would be work: what lies below the offset by more than the slack is resolved by positions (position_correction.h).
 void carryContacts(const Colliders& colliders, const SimParams& params, double dt, HairState& state);
 
 // Penetrations of the vertices, in their order: of every collider that a vertex lies in, or that it went through within
