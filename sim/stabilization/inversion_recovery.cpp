@@ -61,7 +61,8 @@ void look(const HairMesh& mesh, double seconds, std::vector<char>& touched, Hair
     lasted = inverted ? lasted + (at_rest ? kRestWeight : 1) * seconds : 0;
     if (!inverted) return;
     for (const int v : vertices) recovery.columns[mesh.column_of[v]].upright = 0;
-    if (lasted < kInvertedFor) return;
+    const auto guided = [&](int v) { return recovery.columns[mesh.column_of[v]].guided >= 0; };
+    if (lasted < kInvertedFor && std::none_of(vertices.begin(), vertices.end(), guided)) return;
     if (std::any_of(vertices.begin(), vertices.end(), [&](int v) { return touched[v] != 0; })) return;
     for (const int v : vertices) {
       RecoveryMemory::Column& column = recovery.columns[mesh.column_of[v]];

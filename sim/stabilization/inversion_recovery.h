@@ -5,7 +5,8 @@
 // corner tetrahedron below kInvertedShare of its rest volume, a column folded back on itself) must stay inverted for
 // kInvertedFor seconds, of which each that its columns spend at rest counts kRestWeight times. Then these move to the
 // rest shape within kGuideTime seconds, along lines that are straight as seen from the head. Bodies push them out as
-// ever, and columns that a body holds are left alone. A column that inverts again waits four times as long each time.
+// ever, and columns that a body holds are left alone. An element that is inverted beside a guided column is one fold
+// with it, and goes home with it. A column that inverts again waits four times as long each time.
 #pragma once
 
 #include <span>
