@@ -69,14 +69,26 @@ void dropWhatIsOfTheOldShape(Haircut& own, Actor& actor, AssetCache& asset_cache
   std::erase_if(asset_cache.pairs, [&](const auto& pair) { return pair->fine == &own; });
 }
 
+// Hair that no step moves while it is reshaped shows the change at once: every vertex goes as far as its rest position
+// has gone from `before` (m, head frame). What is left of the way is the next step's.
+void moveWithShape(const std::vector<Vec3>& before, Actor& actor) {
+  const std::vector<Vec3>& shape = actor.haircut->mesh.shape.positions;
+  const Rigid head = scalpToWorld(actor.body->character, actor.pose);
+  for (std::size_t v = 0; v < shape.size(); ++v) actor.hair.positions[v] += head.linear() * (shape[v] - before[v]);
+  actor.hair.previous_dt = 0;
+  actor.previous_positions = actor.hair.positions;
+}
+
 // Makes the rest quantities of a shape and what is painted. What moves goes on moving. Throws InputError where a prism
 // would not be positive; then nothing has changed.
 Haircut& remake(const std::vector<Vec3>& positions, int index, Demo& demo) {
   Actor& actor = demo.actors[static_cast<std::size_t>(index)];
   Haircut& own = ownHaircut(actor, demo);
   if (!own.reshape) own.reshape.emplace(own.mesh);
+  const std::vector<Vec3> before = own.mesh.shape.positions;
   if (!own.reshape->set(positions, own.mesh))
     throw InputError("", "the hair", "would be flat or inverted in this shape", "make a smaller change");
+  if (demo.paused) moveWithShape(before, actor), demo.shown_fraction = -1;
   applyShares(own.shares, own.mesh);
   dropWhatIsOfTheOldShape(own, actor, demo.asset_cache);
   forgetMoments(demo.timeline);

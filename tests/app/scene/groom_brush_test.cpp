@@ -115,6 +115,28 @@ TEST(GroomBrush, HairThatMovesTakesTheEditOnAndKeepsIt) {
   EXPECT_EQ(demo.actors[0].haircut->mesh.hair_length, length);
 }
 
+TEST(GroomBrush, WhilePausedAnEditIsSeenInTheNextFrame) {
+  app::Demo demo = app::openScene(sceneOf(app::Resolution::kLow, "idle_turns.bvh"), 1.5);
+  for (int frame = 0; frame < 30; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
+  demo.paused = true;
+  app::advanceFrame(demo, 1.0 / 60, {});
+  const app::Actor& actor = demo.actors[0];
+  const std::vector<sim::Vec3> hair = actor.hair.positions, shape = actor.haircut->mesh.shape.positions;
+  const std::vector<float> shown = actor.shown_positions;
+  int tip = 0;
+  demo.requests = {sampleAt(app::BrushTool::kPuff, frontTip(demo, tip), sim::Vec3::Zero())};
+  app::advanceFrame(demo, 1.0 / 60, {});
+  ASSERT_NE(actor.haircut->mesh.shape.positions, shape);
+  EXPECT_NE(actor.shown_positions, shown);
+  for (std::size_t v = 0; v < hair.size(); ++v)
+    EXPECT_NEAR((actor.hair.positions[v] - hair[v]).norm(), (actor.haircut->mesh.shape.positions[v] - shape[v]).norm(),
+                1e-9);
+  demo.requests = {{Ask::kUndo, "", "", 1}};
+  app::advanceFrame(demo, 0, {});
+  EXPECT_EQ(demo.actors[0].hair.positions, hair);
+  EXPECT_EQ(demo.actors[0].shown_positions, shown);
+}
+
 // Two seconds after the last stroke gravity is balanced in the new shape: what hangs still has not drooped.
 TEST(GroomBrush, TwoSecondsAfterAnEditNothingHasDrooped) {
   app::Scene scene = sceneOf(app::Resolution::kLow, "idle_turns.bvh");
