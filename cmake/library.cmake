@@ -85,7 +85,7 @@ install(DIRECTORY sim DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hairmesh COMPONENT
 install(DIRECTORY app/library/python/hairmesh DESTINATION lib/python3/dist-packages COMPONENT python
   FILES_MATCHING PATTERN "*.py" PATTERN "__pycache__" EXCLUDE)
 
-# cpack -G DEB: libhairmesh0.1, libhairmesh-dev and python3-hairmesh.
+# cpack -G DEB: libhairmesh0.1, libhairmesh-dev, python3-hairmesh and, of a build with the program, hairmesh.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME hairmesh)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
@@ -94,6 +94,9 @@ set(CPACK_PACKAGE_CONTACT "the hairmesh project")
 set(CPACK_RESOURCE_FILE_LICENSE ${CMAKE_CURRENT_SOURCE_DIR}/LICENSE)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_COMPONENTS_ALL library development python)
+if(HAIRMESH_APP)
+  list(APPEND CPACK_COMPONENTS_ALL program)
+endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION libs)
@@ -107,4 +110,8 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-hairmesh)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "libhairmesh${soname_version} (>= ${PROJECT_VERSION}), python3-numpy")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-distributed, python3-matplotlib")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME hairmesh)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS ffmpeg)
 include(CPack)

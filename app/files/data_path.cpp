@@ -9,8 +9,11 @@ namespace app {
 namespace fs = std::filesystem;
 
 std::string dataFolder() {
-  const char* folder = std::getenv("HAIRMESH_DATA");
-  return folder && *folder ? folder : HAIRMESH_SOURCE_DIR;
+  if (const char* folder = std::getenv("HAIRMESH_DATA"); folder && *folder) return folder;
+  std::error_code ignored;
+  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
+  const fs::path installed = (program.parent_path() / HAIRMESH_INSTALLED_DATA).lexically_normal();
+  return fs::is_directory(installed / "shaders", ignored) ? installed.string() : HAIRMESH_SOURCE_DIR;
 }
 
 std::string dataPath(const std::string& relative) {

@@ -6,7 +6,8 @@
 
 namespace app {
 
-// The data folder: the environment's HAIRMESH_DATA when set, else the source tree the program was built from.
+// The data folder: the environment's HAIRMESH_DATA when set, else that of the installation which the running program is
+// part of (HAIRMESH_INSTALLED_DATA from its folder), else the source tree that it was built from.
 std::string dataFolder();
 
 // A file of the data folder, for instance dataPath("shaders").
