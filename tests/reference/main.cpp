@@ -27,7 +27,7 @@ struct Asked {
   reference::TraceOptions trace;
   int hairs = 40000;
   std::vector<std::string> styles{"short", "shoulder", "long"}, colours{"black", "brown", "blond", "white"};
-  std::string pictures, document, camera = "three-quarter";
+  std::string scene, pictures, document, camera = "three-quarter";
   std::vector<std::string> sets;
 };
 
@@ -39,8 +39,8 @@ constexpr Colour kColours[] = {{"black", 4, 0.3f}, {"brown", 1.1f, 0.35f}, {"blo
 
 app::Demo openStyle(const std::string& style, const Asked& asked) {
   app::Options options;
-  options.style = style;
-  options.framing = "head";
+  (asked.scene.empty() ? options.style : options.scene) = style;
+  options.framing = asked.scene.empty() ? "head" : "bust";
   options.camera = asked.camera;
   for (const std::string& set : asked.sets) {
     const std::size_t equals = set.find('=');
@@ -192,8 +192,9 @@ void compare(app::Demo& demo, const std::string& style, bool from_behind, const 
     colours += colourRow(style, colour, light, lightError(traced, single, full, cover));
     std::cerr << colourRow(style, colour, light, lightError(traced, single, full, cover));
     if (!asked.pictures.empty())
-      writePictures(asked.pictures + "/" + style + "_" + colour.name + "_" + light + ".png", traced, full, asked,
-                    0.5f * draw.brightest);
+      writePictures(asked.pictures + "/" + std::filesystem::path(style).stem().string() + "_" + colour.name + "_" +
+                        light + ".png",
+                    traced, full, asked, 0.5f * draw.brightest);
   }
 }
 
@@ -226,7 +227,9 @@ int run(int argc, char** argv) {
   cli.add_option("--camera", asked.camera, "front, three-quarter, side or back (three-quarter)");
   cli.add_option("--pictures", asked.pictures, "Folder for pictures, traced and drawn side by side");
   cli.add_option("--document", asked.document, "Markdown file whose measured part 'reference' is written");
+  cli.add_option("--scene", asked.scene, "Scene file in the styles' place, from head to chest");
   CLI11_PARSE(cli, argc, argv);
+  if (!asked.scene.empty()) asked.styles = {asked.scene};
   if (!asked.pictures.empty()) std::filesystem::create_directories(asked.pictures);
   const app::EglContext context;
   const std::string tables = measure(asked);
