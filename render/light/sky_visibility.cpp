@@ -17,6 +17,11 @@ using Eigen::Vector3f;
 // Held to traced light; see docs/picture.md.
 constexpr float kClumpGaps = 0.4f;
 constexpr float kHeadDepth = 6.0f;  // optical depth of a ray through the head's middle; softened at its rim
+// Hair that is drawn together fills a cell with many depths, and the lattice blurs its surface into them: what the eye
+// sees would count as buried. Of what a cell holds beyond loose hair's kLooseDepth, kBlurredCells lie behind it. Both
+// held to traced light; see docs/picture.md.
+constexpr float kLooseDepth = 2.0f;
+constexpr float kBlurredCells = 1.2f;
 constexpr float kSpacing = 0.012f;  // m between the points that stand for a prism's hair
 constexpr int kMaxPoints = 6;       // of them along a prism's height
 
@@ -143,8 +148,12 @@ void SkyVisibility::fillGrid(const HairLayout& layout, float hair_width, float l
 void SkyVisibility::lookTowards(const Vector3f& direction) {
   grid_.sweep(direction, swept_);
   depths_.resize(vertices_.size());
-  for (std::size_t v = 0; v < vertices_.size(); ++v)
-    depths_[v] = grid_.sample(swept_, vertices_[v]) + headDepth(head_center_ - vertices_[v], head_.radius, direction);
+  for (std::size_t v = 0; v < vertices_.size(); ++v) {
+    const Vector3f& at = vertices_[v];
+    const float blurred = kBlurredCells * std::max(grid_.cell() * grid_.density(at) - kLooseDepth, 0.0f);
+    depths_[v] =
+        std::max(grid_.sample(swept_, at) - blurred, 0.0f) + headDepth(head_center_ - at, head_.radius, direction);
+  }
 }
 
 void SkyVisibility::addOpenness(std::size_t direction) {

@@ -348,6 +348,35 @@ TEST(SkyVisibility, FindsTheHeadAndDarkensWhatLiesDeep) {
   }
 }
 
+// Hair drawn into a tail: its surface is lit from its own side, though a cell of the lattice holds many depths of it,
+// and what lies on the far side is dark.
+TEST(SkyVisibility, TheSurfaceOfATailIsLit) {
+  constexpr float kTail = 0.018f;  // m, radius
+  synthetic::Hair hair = synthetic::makeHair();
+  const render::HairLayout rest = render::makeHairLayout(hair.faces, hair.positions);
+  for (const render::HairColumn& column : rest.columns) {
+    const Vector3f across = kTail / synthetic::kHeadRadius * (column.rest - Vector3f(0, synthetic::kHeadHeight, 0));
+    for (int layer = 1; layer < hair.layers; ++layer) {
+      const Vector3f at(across.x(), synthetic::kHeadHeight - 0.03f * static_cast<float>(layer), across.z() - 0.15f);
+      std::copy_n(at.data(), 3, hair.positions.begin() + 3 * (column.first_vertex + layer));
+    }
+  }
+  const render::HairLayout layout = render::makeHairLayout(hair.faces, hair.positions);
+  render::SkyVisibility light;
+  light.compute(layout, hair.positions, 7.0f, 0.0f, Vector3f::UnitX(), -Vector3f::UnitX());
+  int seen = 0;
+  for (const render::HairColumn& column : layout.columns) {
+    const int vertex = column.first_vertex + hair.layers / 2;
+    const float side = hair.positions[3 * static_cast<std::size_t>(vertex)] / kTail;
+    if (std::abs(side) < 0.8f) continue;
+    const render::SoftLight& value = light.values()[static_cast<std::size_t>(vertex)];
+    EXPECT_LT((side > 0 ? value.fill : value.rim).front, 2.0f);
+    EXPECT_GT((side > 0 ? value.rim : value.fill).front, 6.0f);
+    ++seen;
+  }
+  EXPECT_GT(seen, 3);
+}
+
 // What comes through to a place from a direction, as bodies read it; 1 outside of the texture.
 float openTo(const render::SkyVisibility& light, const Eigen::Isometry3f& head, const Vector3f& at,
              const Vector3f& direction) {
