@@ -143,16 +143,17 @@ void SkyVisibility::fillGrid(const HairLayout& layout, float hair_width, float l
       lower = upper;
     }
   }
+  blurred_.resize(vertices_.size());
+  for (std::size_t v = 0; v < vertices_.size(); ++v)
+    blurred_[v] = kBlurredCells * std::max(grid_.cell() * grid_.density(vertices_[v]) - kLooseDepth, 0.0f);
 }
 
 void SkyVisibility::lookTowards(const Vector3f& direction) {
   grid_.sweep(direction, swept_);
   depths_.resize(vertices_.size());
   for (std::size_t v = 0; v < vertices_.size(); ++v) {
-    const Vector3f& at = vertices_[v];
-    const float blurred = kBlurredCells * std::max(grid_.cell() * grid_.density(at) - kLooseDepth, 0.0f);
-    depths_[v] =
-        std::max(grid_.sample(swept_, at) - blurred, 0.0f) + headDepth(head_center_ - at, head_.radius, direction);
+    depths_[v] = std::max(grid_.sample(swept_, vertices_[v]) - blurred_[v], 0.0f) +
+                 headDepth(head_center_ - vertices_[v], head_.radius, direction);
   }
 }
 

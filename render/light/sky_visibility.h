@@ -66,6 +66,7 @@ class SkyVisibility {
   Eigen::Vector3f head_center_ = Eigen::Vector3f::Zero();  // in the head's frame
   Eigen::Isometry3f frame_ = Eigen::Isometry3f::Identity();
   std::vector<Eigen::Vector3f> vertices_;  // in the head's frame
+  std::vector<float> blurred_;             // optical depth that the lattice's blur puts before each vertex
   std::vector<float> swept_, depths_;
   std::vector<SoftLight> values_;
   std::array<int, 3> open_nodes_{};                // a side, x first
