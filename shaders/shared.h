@@ -89,6 +89,7 @@ const float kSkinFar =
     4.0;  // squared distance from the middle, in the ellipsoid's own measure: nothing beyond is lifted
 const float kSkinMiddle = 0.02;  // the same, from where the way out turns about: nothing nearer is
 const float kSkinWhole = 0.15;   // the same: all farther off are lifted whole
+const float kSkinReturn = 0.15;  // m of hair over which a strand returns from where it was lifted: to a share of 1/e
 const int kSkinRounds = 8;       // ellipsoids that meet push a point to and fro
 
 // Scattering table (fiber_scattering.h). Slices 0 to 2: N_p of R, TT, TRT: kScatterPhi angles over [0, pi],

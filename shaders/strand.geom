@@ -17,12 +17,14 @@ void main() {
   float own_dither = strandDither(strand);
   int last = lastShownPoint(strand, own_dither);
   if (start >= last) return;
-  int layer = layerOf(strand, pointParameter(strand, start));
+  int first = skin_count.x > 0 ? 0 : start, layer = layerOf(strand, pointParameter(strand, first));
   LayerWindow window = layerWindow(strand, layer);
-  for (int index = start; index <= min(start + kChunkPoints - 1, last); ++index) {
+  SkinLift lift = SkinLift(vec3(0.0), vec3(0.0));
+  for (int index = first; index <= min(start + kChunkPoints - 1, last); ++index) {
     float s = pointParameter(strand, index);
     moveWindow(strand, layerOf(strand, s), layer, window);
-    CurvePoint point = curvePoint(strand, window, s, s - float(layer));
+    CurvePoint point = curvePoint(strand, window, s, s - float(layer), lift);
+    if (index < start) continue;
     RibbonPoint ribbon = ribbonPoint(strand, point);
     vec4 color = vec4(shadeStrand(strand, point), ribbon.coverage);
     for (int side = -1; side <= 1; side += 2) {

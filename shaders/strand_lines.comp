@@ -23,10 +23,11 @@ void main() {
   float side = hair_shadow_size[draw.w].y;
   int layer = 0;
   LayerWindow window = layerWindow(strand, layer);
+  SkinLift lift = SkinLift(vec3(0.0), vec3(0.0));
   for (int index = 0; index <= last; ++index) {
     float s = pointParameter(strand, index);
     moveWindow(strand, layerOf(strand, s), layer, window);
-    CurvePoint point = curvePoint(strand, window, s, s - float(layer));
+    CurvePoint point = curvePoint(strand, window, s, s - float(layer), lift);
     vec4 clip = hair_shadow[draw.w] * vec4(point.position, 1.0);
     points[first + index] = vec4((0.5 + 0.5 * clip.xy) * side, 0.5 + 0.5 * clip.z, lineOpacity(strand, point));
   }

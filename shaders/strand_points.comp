@@ -41,10 +41,11 @@ void main() {
   if (last < 1) return;
   int layer = 0;
   LayerWindow window = layerWindow(strand, layer);
+  SkinLift lift = SkinLift(vec3(0.0), vec3(0.0));
   for (int index = 0; index <= last; ++index) {
     float s = pointParameter(strand, index);
     moveWindow(strand, layerOf(strand, s), layer, window);
-    CurvePoint point = curvePoint(strand, window, s, s - float(layer));
+    CurvePoint point = curvePoint(strand, window, s, s - float(layer), lift);
     storeRibbon(first + index, point, ribbonPoint(strand, point));
     int at = kPointTexels * (first + index);
     points[at] = vec4(point.position, point.along);

@@ -18,12 +18,14 @@ void main() {
   Strand strand = makeStrand(number);
   int last = lastPoint(strand);
   if (start >= last || strand.gain <= 0.0) return;
-  int layer = layerOf(strand, pointParameter(strand, start));
+  int first = skin_count.x > 0 ? 0 : start, layer = layerOf(strand, pointParameter(strand, first));
   LayerWindow window = layerWindow(strand, layer);
-  for (int index = start; index <= min(start + kChunkPoints - 1, last); ++index) {
+  SkinLift lift = SkinLift(vec3(0.0), vec3(0.0));
+  for (int index = first; index <= min(start + kChunkPoints - 1, last); ++index) {
     float s = pointParameter(strand, index);
     moveWindow(strand, layerOf(strand, s), layer, window);
-    CurvePoint point = curvePoint(strand, window, s, s - float(layer));
+    CurvePoint point = curvePoint(strand, window, s, s - float(layer), lift);
+    if (index < start) continue;
     strand_opacity = lineOpacity(strand, point);
     gl_Position = hair_shadow[draw.w] * vec4(point.position, 1.0);
 #ifdef CAPTURE_POINTS

@@ -77,7 +77,10 @@ bool jointMatrices(const Skeleton& skeleton, const Pose& pose, const Vec3& origi
 
 namespace {
 
-constexpr double kHome = 3;          // in an ellipsoid's measure, see render::SkinEllipsoid
+constexpr double kHome = 3;  // in an ellipsoid's measure, see render::SkinEllipsoid
+constexpr double kSheet = 0.015,
+                 kLimb = 0.03;       // m, an ellipsoid's least radius: from limbs strands are led home whole,
+                                     // from a sheet of skin not at all, for the way would run under the skin
 constexpr double kHeadWithin = 1.1;  // the same: one that holds the head's middle, or nearly
 constexpr double kFree = 0.2;  // in the measure of the head's ellipsoids: the way to the head that far off is free
 
@@ -116,7 +119,8 @@ void skinEllipsoids(const Character& character, const Pose& pose, const Vec3& or
     }
     // Hair comes from the head: around an ellipsoid that holds the head it comes from all sides.
     const Vec3 home = to_ball * (head - e.center);
-    const double off = std::clamp(home.norm() - kHeadWithin, 0.0, 1.0) * freeWayTo(head_parts, e, home);
+    const double thick = std::clamp((e.radii.minCoeff() - kSheet) / (kLimb - kSheet), 0.0, 1.0);
+    const double off = thick * std::clamp(home.norm() - kHeadWithin, 0.0, 1.0) * freeWayTo(head_parts, e, home);
     Eigen::Map<Eigen::Vector3f>(skin[i].home.data()) = (kHome * off * home.stableNormalized()).cast<float>();
   }
 }

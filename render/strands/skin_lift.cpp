@@ -11,10 +11,14 @@ namespace render {
 
 using Eigen::Vector3f;
 using Eigen::Vector4f;
-using shared::kSkinBlend, shared::kSkinGap, shared::kSkinFar, shared::kSkinMiddle, shared::kSkinRounds,
-    shared::kSkinWhole;
+using shared::kSkinBlend, shared::kSkinGap, shared::kSkinFar, shared::kSkinMiddle, shared::kSkinReturn,
+    shared::kSkinRounds, shared::kSkinWhole;
 
-void leaveSkin(std::span<const SkinEllipsoid> skin, float s, Vector3f& position, Vector3f& tangent) {
+void leaveSkin(std::span<const SkinEllipsoid> skin, float s, SkinLift& lift, Vector3f& position, Vector3f& tangent) {
+  const Vector3f free = position;
+  lift.by *= std::exp(-(free - lift.free).norm() / kSkinReturn);
+  position += lift.by;
+  tangent -= lift.by / kSkinReturn;
   Vector3f lifted = position, turned = tangent;
   bool moved = true;
   const SkinEllipsoid* last = nullptr;
@@ -52,6 +56,7 @@ void leaveSkin(std::span<const SkinEllipsoid> skin, float s, Vector3f& position,
   const float root = smoothstep(0.0f, 1.0f, s);
   position += root * (lifted - position);
   tangent += root * (turned - tangent);
+  lift = {free, position - free};
 }
 
 std::vector<SkinEllipsoid> skinNear(std::span<const SkinEllipsoid> skin, const Vector3f& low, const Vector3f& high) {

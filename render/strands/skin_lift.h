@@ -9,9 +9,15 @@
 
 namespace render {
 
-// `position` (m) of a strand's point leaves the ellipsoids; `tangent` turns with it and is no unit vector any more. s:
-// curve parameter, in layers; a root (0) stays.
-void leaveSkin(std::span<const SkinEllipsoid> skin, float s, Eigen::Vector3f& position, Eigen::Vector3f& tangent);
+// Of a strand's last point: where it would be without skin, and m that it was lifted by. Zero before the root.
+struct SkinLift {
+  Eigen::Vector3f free = Eigen::Vector3f::Zero(), by = free;
+};
+
+// `position` (m) of a strand's point leaves the ellipsoids; `tangent`, a unit vector, turns with it and is none any
+// more. s: curve parameter, in layers; a root (0) stays. lift: of the point before, on return of this one.
+void leaveSkin(std::span<const SkinEllipsoid> skin, float s, SkinLift& lift, Eigen::Vector3f& position,
+               Eigen::Vector3f& tangent);
 
 // Those that may lift a point of the box (m), in their order; at most kMaxSkin of shaders/shared.h, the first ones.
 std::vector<SkinEllipsoid> skinNear(std::span<const SkinEllipsoid> skin, const Eigen::Vector3f& low,

@@ -402,7 +402,8 @@ Vector2f StrandGrowth::lifted(const Strand& strand, float s) const {
   return lift * opening(wayAt(strand, s), 0.3f * std::min(strand.metres, 0.15f) + 1e-4f);
 }
 
-CurvePoint StrandGrowth::curvePoint(const Strand& strand, const LayerWindow& window, float s, float fraction) const {
+CurvePoint StrandGrowth::curvePoint(const Strand& strand, const LayerWindow& window, float s, float fraction,
+                                    SkinLift& lift) const {
   const Vector4f &p0 = window.before, &p1 = window.from.position, &p2 = window.to.position, &p3 = window.after;
   const float f = fraction;
   const Vector4f c1 = 0.5f * (p2 - p0), c2 = p0 - 2.5f * p1 + 2.0f * p2 - 0.5f * p3,
@@ -420,12 +421,12 @@ CurvePoint StrandGrowth::curvePoint(const Strand& strand, const LayerWindow& win
   if (strand.loose + strand.fine > 0.0f) {
     Vector3f outward = unitOr(base - center_, Vector3f::Zero());
     outward -= axis * axis.dot(outward);
-    const Vector2f lift = lifted(strand, s);
-    point.position += lift.x() * outward;
-    along += lift.y() * outward;
+    const Vector2f stray = lifted(strand, s);
+    point.position += stray.x() * outward;
+    along += stray.y() * outward;
   }
   along = unitOr(along, axis);
-  leaveSkin(skin_, s, point.position, along);
+  leaveSkin(skin_, s, lift, point.position, along);
   point.tangent = unitOr(along, axis);
   point.along = strand.end > 0.0f ? s / strand.end : 0.0f;
   return point;
@@ -447,10 +448,11 @@ template <class Parameter>
 void StrandGrowth::growAt(const Strand& strand, std::span<CurvePoint> points, const Parameter& parameter) const {
   int layer = 0;
   LayerWindow window = layerWindow(strand, 0);
+  SkinLift lift;
   for (std::size_t index = 0; index < points.size(); ++index) {
     const float s = parameter(index);
     moveWindow(strand, layerOf(strand, s), layer, window);
-    points[index] = curvePoint(strand, window, s, s - static_cast<float>(layer));
+    points[index] = curvePoint(strand, window, s, s - static_cast<float>(layer), lift);
   }
 }
 

@@ -17,6 +17,8 @@
 
 namespace render {
 
+struct SkinLift;
+
 // Strands of a lower rank (0..1) than `from` are grown, those above `to` are not; each stands for `gain`.
 struct StrandFade {
   float from = 2, to = 3, gain = 1;
@@ -133,7 +135,7 @@ class StrandGrowth {
   void addFrizz(const Strand& strand, const Eigen::Vector2f& way, Eigen::Vector4f& bend) const;
   Eigen::Vector4f sideways(const Strand& strand, float s) const;
   Eigen::Vector2f lifted(const Strand& strand, float s) const;
-  CurvePoint curvePoint(const Strand& strand, const LayerWindow& window, float s, float fraction) const;
+  CurvePoint curvePoint(const Strand& strand, const LayerWindow& window, float s, float fraction, SkinLift& lift) const;
   template <class Parameter>
   void growAt(const Strand& strand, std::span<CurvePoint> points, const Parameter& parameter) const;
 

@@ -1,6 +1,11 @@
 // Drawn strands are lifted out of the skin, which ellipsoids stand for: between vertices of the hair mesh, where the
 // simulation holds nothing outside. CPU: render/strands/skin_lift.h.
 
+// Of a strand's last point: where it would be without skin, and m that it was lifted by. Zero before the root.
+struct SkinLift {
+  vec3 free, by;
+};
+
 // A point at a gap (m, signed) from an ellipsoid is moved along its normal to the gap f(gap): kSkinGap below
 // -kSkinBlend, the gap itself above kSkinBlend, both counted from kSkinGap, and a parabola between. f rises with a
 // continuous slope, so that a strand keeps its bends round and none pops up as hair or body moves.
@@ -11,8 +16,15 @@
 // the ellipsoid's own measure. s: curve parameter, in layers; the first layer leads from the root, which stays, to full
 // lift. Further rounds, without the parabola, take up what one ellipsoid pushes into another: none pushes twice running.
 //
+// A strand keeps its side: each point begins where the one before it was lifted, and returns with the hair's length.
+// So the tip of a strand that lies over a shoulder does not end in it, or below it.
+//
 // near: a bit for each ellipsoid that the strand can meet between its two layers (render/hair/skin_reach.h).
-void leaveSkin(uvec2 near, float s, inout vec3 position, inout vec3 tangent) {
+void leaveSkin(uvec2 near, float s, inout SkinLift lift, inout vec3 position, inout vec3 tangent) {
+  vec3 free = position;
+  lift.by *= exp(-distance(free, lift.free) / kSkinReturn);
+  position += lift.by;
+  tangent -= lift.by / kSkinReturn;
   vec3 lifted = position, turned = tangent;
   bool moved = near != uvec2(0u);
   int last = -1;
@@ -47,4 +59,5 @@ void leaveSkin(uvec2 near, float s, inout vec3 position, inout vec3 tangent) {
   float root = smoothstep(0.0, 1.0, s);
   position = mix(position, lifted, root);
   tangent = mix(tangent, turned, root);
+  lift = SkinLift(free, position - free);
 }

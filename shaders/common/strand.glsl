@@ -367,7 +367,8 @@ uvec2 skinNear(in Strand strand, int layer) {
   return skin_count.x > 0 ? texelFetch(skin_texels, strand.face * skin_count.y + layer).xy : uvec2(0u);
 }
 
-CurvePoint curvePoint(in Strand strand, in LayerWindow window, float s, float fraction) {
+// The points of a strand are asked for one after the other from the root on, where there is skin; lift: see leaveSkin.
+CurvePoint curvePoint(in Strand strand, in LayerWindow window, float s, float fraction, inout SkinLift lift) {
   vec3 p0 = window.before, p1 = window.from.position, p2 = window.to.position, p3 = window.after;
   float f = fraction;
   vec3 c1 = 0.5 * (p2 - p0), c2 = p0 - 2.5 * p1 + 2.0 * p2 - 0.5 * p3, c3 = 1.5 * (p1 - p2) + 0.5 * (p3 - p0);
@@ -384,12 +385,12 @@ CurvePoint curvePoint(in Strand strand, in LayerWindow window, float s, float fr
   if (strand.loose + strand.fine > 0.0) {
     vec3 outward = unitOr(base - center.xyz, vec3(0.0));
     outward -= axis * dot(axis, outward);
-    vec2 lift = lifted(strand, s);
-    point.position += lift.x * outward;
-    along += lift.y * outward;
+    vec2 stray = lifted(strand, s);
+    point.position += stray.x * outward;
+    along += stray.y * outward;
   }
   along = unitOr(along, axis);
-  leaveSkin(skinNear(strand, layerOf(strand, s)), s, point.position, along);
+  leaveSkin(skinNear(strand, layerOf(strand, s)), s, lift, point.position, along);
   point.tangent = unitOr(along, axis);
   point.light = mix(window.from.light, window.to.light, f);
   point.behind = mix(window.from.behind, window.to.behind, f);

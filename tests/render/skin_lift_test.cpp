@@ -52,7 +52,8 @@ float gapOf(const SkinEllipsoid& skin, const Vector3f& p) {
 
 Vector3f lifted(std::span<const SkinEllipsoid> skin, float s, Vector3f p) {
   Vector3f tangent = Vector3f::UnitY();
-  render::leaveSkin(skin, s, p, tangent);
+  render::SkinLift first;
+  render::leaveSkin(skin, s, first, p, tangent);
   return p;
 }
 
@@ -150,6 +151,38 @@ TEST(SkinLift, WhatRunsThroughTheMiddleIsLedOverTheSideThatHairComesFrom) {
     }
     EXPECT_NEAR(lifted({&skin, 1}, 2, {0, y, 0}).y(), 0.1f + kSkinGap, 1e-4f);
   }
+}
+
+// Straight down through a body, and out of it below; what is lifted for itself stays inside there, or lies below.
+TEST(SkinLift, AStrandThatGoesThroughStaysOnTheSideThatItComesFrom) {
+  SkinEllipsoid skin = synthetic::skinBall({0, 0, 0}, 0.1f);
+  skin.home = {0, 3, 0};
+  render::SkinLift lift;
+  float deepest_alone = 0;
+  for (float y = 0.15f; y > -0.15f; y -= 0.004f) {
+    Vector3f p(0.01f, y, 0), tangent = -Vector3f::UnitY();
+    render::leaveSkin({&skin, 1}, 2, lift, p, tangent);
+    EXPECT_GT(gapOf(skin, p), 0) << y;
+    EXPECT_GT(p.y(), 0) << y;
+    deepest_alone = std::min(deepest_alone, gapOf(skin, lifted({&skin, 1}, 2, {0.01f, y, 0})));
+  }
+  EXPECT_LT(deepest_alone, -0.004f);
+}
+
+// Free again, it returns, and its tangents are its direction on the way.
+TEST(SkinLift, AStrandReturnsFromWhereItWasLifted) {
+  const SkinEllipsoid skin = synthetic::skinBall({0, 0, 0}, 0.1f);
+  constexpr float kApart = 0.001f;  // m
+  render::SkinLift lift;
+  Vector3f last(-0.2f, 0.08f, 0);
+  for (float x = -0.2f; x < 0.5f; x += kApart) {
+    Vector3f p(x, 0.08f, 0), tangent = Vector3f::UnitX();
+    render::leaveSkin({&skin, 1}, 2, lift, p, tangent);
+    if (x > 0.1f) EXPECT_GT((p - last).normalized().dot(tangent.normalized()), 0.999f) << x;
+    last = p;
+  }
+  EXPECT_GT(last.y(), 0.08f);
+  EXPECT_LT(last.y(), 0.085f);
 }
 
 TEST(SkinLift, EllipsoidsOutOfReachAreLeftOut) {
