@@ -77,12 +77,13 @@ bool jointMatrices(const Skeleton& skeleton, const Pose& pose, const Vec3& origi
 
 namespace {
 
-constexpr double kHome = 3;  // in an ellipsoid's measure, see render::SkinEllipsoid
-constexpr double kSheet = 0.015,
-                 kLimb = 0.03;       // m, an ellipsoid's least radius: from limbs strands are led home whole,
-                                     // from a sheet of skin not at all, for the way would run under the skin
+constexpr double kHome = 3;          // in an ellipsoid's measure, see render::SkinEllipsoid
 constexpr double kHeadWithin = 1.1;  // the same: one that holds the head's middle, or nearly
 constexpr double kFree = 0.2;  // in the measure of the head's ellipsoids: the way to the head that far off is free
+
+// m, an ellipsoid's least radius: limbs lead strands to the head, sheets of skin do not, for the way runs under the
+// skin.
+constexpr double kSheet = 0.015, kLimb = 0.03;
 
 std::vector<sim::Ellipsoid> headEllipsoids(const Character& character, const Pose& pose) {
   std::vector<sim::Ellipsoid> all;

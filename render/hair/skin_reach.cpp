@@ -13,8 +13,8 @@ namespace {
 
 using Eigen::Vector3f;
 
-// m that a point may be lifted towards another ellipsoid, by those of its strand before it too: strands of a lock on
-// both sides of a shoulder lie 47 mm deep, and their tips come down to it from up to 130 mm.
+// m that a point may be lifted towards another ellipsoid: strands of a lock on both sides of a shoulder lie 47 mm deep,
+// and a tip below it begins where the strand before it was lifted to.
 constexpr float kLifted = 0.13f;
 
 // Around the bundle's vertices of two layers, with room for what its strands leave their hull by; see measureFaces of
