@@ -14,7 +14,10 @@ namespace {
 // On a head of this height; in proportion on others.
 constexpr double kHeadHeight = 0.23;   // m
 constexpr double kShadeReach = 0.008;  // m, along the skin: how far a root shades the skin around it
-constexpr double kSpacing = 0.003;     // m, between the samples of a root face
+// The same, over which hair thins towards the hairline (`hairline`, by default): the skin shows there as it does
+// between few hairs.
+constexpr double kThinReach = 0.018;
+constexpr double kSpacing = 0.003;  // m, between the samples of a root face
 // m between skin and root, across the skin: as good as on it up to the first, of another head from the second on.
 constexpr double kNear = 0.012, kApart = 0.018;
 constexpr double kOnScalp = 0.002, kOnEar = 0.006;  // m of skin above the scalp, which is without ears
@@ -23,6 +26,7 @@ constexpr double kMargin = 0.0003;                  // m that the skin is drawn 
 // Share of the skin around that bears roots, from which on it counts and at which it is covered. Along a straight
 // hairline it is a half.
 constexpr double kBare = 0.06, kFull = 0.9;
+constexpr double kThin = 0.55, kThick = 0.85;  // the same within kThinReach: bare and covered
 
 // A piece of a root face.
 struct RootSample {
@@ -82,12 +86,12 @@ class Cubes {
 
 std::vector<float> rootCover(const Character& character, const sim::HairMesh& hair) {
   const SkinnedMesh& mesh = character.mesh;
-  const double scale = character.scalp.head_height / kHeadHeight, reach = scale * kShadeReach;
+  const double scale = character.scalp.head_height / kHeadHeight;
   const Rigid to_scalp = scalpToWorld(character, restPose(character.skeleton)).inverse();
   const std::size_t count = mesh.positions.size();
   std::vector<Vec3> places(count), normals(count);
-  std::vector<double> on_scalp(count), share(count, 0.0), depth(count, 0.0);
-  Cubes cubes(scale * std::hypot(kShadeReach, kApart));
+  std::vector<double> on_scalp(count), share(count, 0.0), around(count, 0.0), depth(count, 0.0);
+  Cubes cubes(scale * std::hypot(kThinReach, kApart));
   for (std::size_t v = 0; v < count; ++v) {
     places[v] = to_scalp * mesh.positions[v].cast<double>();
     normals[v] = to_scalp.linear() * mesh.normals[v].cast<double>();
@@ -99,18 +103,21 @@ std::vector<float> rootCover(const Character& character, const sim::HairMesh& ha
   for (const sim::RootFace& face : hair.shape.root_faces) addFace(hair.shape, face, scale * kSpacing, samples);
 
   // The weight (1 - d^2 / reach^2)^2 spreads each root's area; over a plane it integrates to pi reach^2 / 3.
-  const double whole = EIGEN_PI * reach * reach / 3;
+  const auto spread = [](double square, double reach) {
+    const double left = std::max(0.0, 1 - square / (reach * reach));
+    return left * left * 3 / (EIGEN_PI * reach * reach);
+  };
   for (const RootSample& sample : samples) {
     cubes.around(sample.place, [&](int v) {
       const Vec3 gap = places[v] - sample.place;
-      const double above = gap.dot(sample.normal);
-      const double left = 1 - (gap.squaredNorm() - above * above) / (reach * reach);
-      if (left <= 0) return;
+      const double above = gap.dot(sample.normal), square = gap.squaredNorm() - above * above;
       const double facing = std::max(0.0, normals[v].dot(sample.normal));
       const double on_it = smoothstep(scale * kApart, scale * kNear, std::abs(above));
-      const double weight = left * left * sample.area / whole * facing * on_it * on_scalp[v];
+      const double area = sample.area * facing * on_it * on_scalp[v];
+      const double weight = area * spread(square, scale * kShadeReach);
       share[v] += weight;
       depth[v] += weight * above;
+      around[v] += area * spread(square, scale * kThinReach);
     });
   }
   std::vector<float> result;
@@ -118,7 +125,8 @@ std::vector<float> rootCover(const Character& character, const sim::HairMesh& ha
   for (std::size_t v = 0; v < count; ++v) {
     const double cover = smoothstep(kBare, kFull, share[v]);
     const double under = cover > 0 ? std::max(0.0, depth[v] / share[v] + scale * kMargin) : 0.0;
-    result.insert(result.end(), {static_cast<float>(cover), static_cast<float>(cover * under)});
+    const double thick = smoothstep(kThin, kThick, around[v]);
+    result.insert(result.end(), {static_cast<float>(cover * thick), static_cast<float>(cover * under)});
   }
   return result;
 }

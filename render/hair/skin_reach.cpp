@@ -15,7 +15,7 @@ using Eigen::Vector3f;
 
 // m that a point may be lifted towards another ellipsoid: strands of a lock on both sides of a shoulder lie 47 mm deep,
 // and a tip below it begins where the strand before it was lifted to.
-constexpr float kLifted = 0.13f;
+constexpr float kLifted = 0.08f;
 
 // Around the bundle's vertices of two layers, with room for what its strands leave their hull by; see measureFaces of
 // hair_store.cpp.

@@ -6,7 +6,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "app/files/data_path.h"
@@ -57,14 +59,47 @@ TEST(RootCover, HoldsTheWholeScalpWithItsPartingAndNothingElse) {
     // Near the forehead the low resolution has the hairline close by.
     for (const double elevation : {48.0, 60.0, 75.0}) EXPECT_GT(at(13, elevation), 0.8) << "parting at " << elevation;
     EXPECT_GT(at(180, 20), 0.95) << "back of the head";
-    EXPECT_EQ(at(0, 10), 0) << "brow";
-    EXPECT_EQ(at(30, -20), 0) << "cheek";
-    EXPECT_EQ(at(180, -55), 0) << "neck";
-    for (std::size_t v = 0; v < cover.size() / 2; ++v) {
-      EXPECT_LE(cover[2 * v + 1], 0.013f);
-      EXPECT_TRUE(cover[2 * v] > 0 || cover[2 * v + 1] == 0) << "bare skin stays where it is";
+    const double bare[][2] = {{0, 10}, {30, -20}, {180, -55}};  // brow, cheek, neck
+    for (const auto& [azimuth, elevation] : bare) {
+      EXPECT_EQ(at(azimuth, elevation), 0) << azimuth;
+      EXPECT_EQ(cover[2 * vertexAt(azimuth, elevation) + 1], 0) << "bare skin stays where it is";
+    }
+    for (std::size_t v = 0; v < cover.size() / 2; ++v) EXPECT_LE(cover[2 * v + 1], 0.013f);
+  }
+}
+
+// Hair thins towards the hairline, and what the roots shade with it: in full there, the skin ends in a line as of a
+// cap.
+TEST(RootCover, ThinsTowardsTheHairlineAsHairDoes) {
+  const sim::HairMesh& hair = longHair(app::Resolution::kHigh);
+  const std::vector<float> cover = app::rootCover(mannequin(), hair);
+  const app::SkinnedMesh& mesh = mannequin().mesh;
+  const app::Rigid scalp = app::scalpToWorld(mannequin(), app::restPose(mannequin().skeleton));
+  std::map<std::pair<int, int>, int> faces;  // on an edge of the root mesh
+  for (const sim::RootFace& face : hair.shape.root_faces) {
+    for (int k = 0; k < face.corner_count; ++k) {
+      const auto ends = std::minmax(face.columns[k], face.columns[(k + 1) % face.corner_count]);
+      ++faces[{ends.first, ends.second}];
     }
   }
+  double most = 0;
+  int looked = 0;
+  for (const auto& [ends, count] : faces) {
+    const Vec3 between = 0.5 * (hair.shape.positions[hair.shape.column_first[ends.first]] +
+                                hair.shape.positions[hair.shape.column_first[ends.second]]);
+    // The parting, and the seam between bundles over the ear, have hair on both sides.
+    const Vec3 from = between - mannequin().scalp.center;
+    const bool inside = from.y() > 0.5 * from.norm() || std::abs(from.z()) < 0.03;
+    if (count != 1 || inside) continue;
+    const Vec3 middle = scalp * between;
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+      if ((mesh.positions[v].cast<double>() - middle).norm() > 0.003) continue;
+      most = std::max<double>(most, cover[2 * v]);
+      ++looked;
+    }
+  }
+  EXPECT_GT(looked, 10);
+  EXPECT_LT(most, 0.5);
 }
 
 TEST(RootCover, FadesWithoutAnEdge) {
