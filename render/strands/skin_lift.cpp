@@ -16,6 +16,10 @@ using shared::kSkinBlend, shared::kSkinGap, shared::kSkinFar, shared::kSkinMiddl
 
 void leaveSkin(std::span<const SkinEllipsoid> skin, float s, SkinLift& lift, Vector3f& position, Vector3f& tangent) {
   const Vector3f free = position;
+  if (skin.empty() && lift.by.isZero(0)) {
+    lift.free = free;
+    return;
+  }
   lift.by *= std::exp(-(free - lift.free).norm() / kSkinReturn);
   position += lift.by;
   tangent -= lift.by / kSkinReturn;

@@ -22,6 +22,10 @@ struct SkinLift {
 // near: a bit for each ellipsoid that the strand can meet between its two layers (render/hair/skin_reach.h).
 void leaveSkin(uvec2 near, float s, inout SkinLift lift, inout vec3 position, inout vec3 tangent) {
   vec3 free = position;
+  if (near == uvec2(0u) && lift.by == vec3(0.0)) {
+    lift.free = free;
+    return;
+  }
   lift.by *= exp(-distance(free, lift.free) / kSkinReturn);
   position += lift.by;
   tangent -= lift.by / kSkinReturn;
