@@ -239,9 +239,12 @@ SolveReport ImplicitSolver<T>::solveLinear(const HairMesh& mesh, const SimParams
     if (round == 0) {
       updatePreconditioner(params);
       stop.head_start = beginSolve(params, unfinished);
-    } else if (moved) {
-      setResidual();
-      scratch.deflation = {};  // not all of it lies within what is free now
+    } else {
+      two_level.follow(matrix, x, constraints, terms);
+      if (moved) {
+        setResidual();
+        scratch.deflation = {};  // not all of it lies within what is free now
+      }
     }
     const int before = total.iterations;
     stop.max_iterations = std::max(1, params.max_iterations - before);

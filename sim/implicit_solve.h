@@ -58,8 +58,7 @@ struct ImplicitSolver {
 
   // Solves for the velocities at the step's end, from the guess in `velocities`, which it overwrites. Roots take the
   // velocities given there; contacts constrain their vertices, are dropped when they would pull, and stick or slide by
-  // Coulomb's law. Reports iterations, residuals and, since the clock's last booking, stage times into
-  // `report`.
+  // Coulomb's law. Reports iterations, residuals and stage times since the clock's last booking.
   void solve(const HairMesh& mesh, const SimParams& params, const StepBase& base, StageClock& clock,
              std::vector<Contact>& contacts, SolveMemory& memory, std::span<Vec3> velocities, StepReport& report);
 

@@ -14,8 +14,7 @@
 namespace sim {
 
 // Scratch memory and everything derived from mesh and parameters (matrix patterns, factors). Keep one per hair; a step
-// allocates nothing once it is warm. `clock` returns seconds, for stage times (nullptr: not measured): sim has no
-// clock.
+// allocates nothing once it is warm. `clock` returns seconds, for stage times (nullptr: not measured).
 class StepContext {
  public:
   explicit StepContext(const HairMesh& mesh, double (*clock)() = nullptr);

@@ -120,8 +120,7 @@ void collectReached(const ContactSearch& search, const Vec3& shift, ContactScrat
 }
 
 // Continuous test. A vertex that went through the collider, or so deep that the nearest way out lies on the far side,
-// is put back on the side that it came from: to its point of entry, moved on by the tangential part of the rest of its
-// way.
+// is put back where it came from: to its point of entry, moved on by the tangential part of the rest of its way.
 void sweep(const ContactSearch& search, const NearCollider& near, const Vec3& start, const Vec3& end,
            Penetration& touch) {
   const double offset = search.margins.offset;
@@ -212,8 +211,7 @@ double leavesAt(const Ellipsoid& e, double offset, const Vec3& p, const Vec3& di
   return discriminant <= 0 ? 0 : std::max(0.0, (std::sqrt(discriminant) - b) / a);
 }
 
-// m along `direction` (unit) after which p has left the collider, or is nearer to having left signed distances; 0 where
-// it is outside.
+// m along `direction` (unit) after which p has left the collider, or nearly so of signed distances; 0 outside.
 double wayOut(const ContactSearch& search, int k, const Vec3& p, const Vec3& direction) {
   const double offset = search.margins.offset;
   const Ellipsoid& body = search.colliders.body(k);

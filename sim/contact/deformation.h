@@ -16,8 +16,7 @@
 
 namespace sim {
 
-// A^T A over the hair mesh's edges, the scalp layer's included: row i has degree(i) on the diagonal and -1 at each
-// neighbour.
+// A^T A over all edges of the hair mesh: row i has degree(i) on the diagonal and -1 at each neighbour.
 struct EdgeLaplacian {
   std::vector<int> row_first{0}, neighbours;
   int size() const { return static_cast<int>(row_first.size()) - 1; }

@@ -79,8 +79,7 @@ struct Evaluation {
   std::span<V3<T>> force;            // N, -dE/dx, added
   BlockMatrix<T>* matrix = nullptr;  // added: matrix_scale sum k g g^T + tension_scale sum k curvature
   T matrix_scale = 0, tension_scale = 0;
-  // m/s; adds damping forces -damping k (g . v + drift) g. Without velocities, moving kinds add those of the drift
-  // alone.
+  // m/s; adds damping forces -damping k (g . v + drift) g. Without velocities moving kinds add those of the drift.
   std::span<const V3<T>> velocities;
   T damping = 0;  // s
   // Per vertex; an element's damping, and what of the matrix scale is beyond the tension scale, times the mean.

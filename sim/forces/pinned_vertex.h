@@ -24,8 +24,7 @@ struct PinnedVertex {
   HAIRMESH_FIELDS(vertex, target, velocity, stiffness)
 };
 
-// A pin is released where its target is farther from the column's root than so many times the column's length up to the
-// vertex.
+// A pin is released where its target is farther from the root than so many times the column's length to the vertex.
 inline constexpr double kPinReach = 2;
 // m/s, above the target's own speed, at which a firmly pinned vertex approaches its target.
 inline constexpr double kPinClosing = 2;

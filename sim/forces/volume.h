@@ -23,8 +23,7 @@ HAIRMESH_INLINE Condition<T, 4> volumeCondition(const V3<T>* x, T rest_volume) {
 
 // The modulus (Pa) of this mesh's prisms: params.volume for sections up to 1.5 cm^2 across the hair, less in inverse
 // proportion for wider ones, which cannot narrow and widen within themselves as hair does in a bend
-// (docs/consistency.md). At least twice the density times 9.81 m/s^2 times the hair length, so that hair carries its
-// weight.
+// (docs/consistency.md). At least twice the density times 9.81 m/s^2 times the hair length: hair carries its weight.
 inline double volumeModulus(const HairMesh& mesh, const SimParams& params) {
   constexpr double kResolvedSection = 1.5e-4;  // m^2
   constexpr double kCarrying = 2 * 9.81;       // m/s^2

@@ -10,8 +10,7 @@
 
 namespace sim {
 
-// Which blocks exist. Row i's blocks below the diagonal are columns[row_first[i] .. row_first[i + 1]), ascending, all <
-// i.
+// Which blocks exist. Row i's blocks below the diagonal are columns[row_first[i] .. row_first[i + 1]), ascending.
 struct BlockPattern {
   int size = 0;  // block rows
   std::vector<int> row_first{0};

@@ -63,8 +63,7 @@ struct BlockDiagonal {
   bool symmetric() const { return a == b && offset == 0; }
 };
 
-// Where an element's pair of vertices adds its block: the values' start for layer 0 and whether the block is transposed
-// there.
+// Where an element's pair of vertices adds its block: the values' start for layer 0, whether it is transposed there.
 struct BlockPlace {
   int at = -1;
   bool transposed = false;

@@ -80,8 +80,7 @@ struct Deflated {
   double energy = 0;
 };
 
-// What a solve leaves behind, sized once. `r` is b - A x in all directions: in the removed ones, minus the constraint's
-// reaction.
+// What a solve leaves behind, sized once. `r` is b - A x: in the removed directions, minus the constraint's reaction.
 template <class T>
 struct SolverScratch {
   std::vector<V3<T>> r, z, d, q;

@@ -1,6 +1,7 @@
 #include "sim/linear/two_level.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 
 namespace sim {
@@ -25,11 +26,14 @@ bool same(const PartMemory::Input& a, const PartMemory::Input& b) {
          std::ranges::equal(a.constraints, b.constraints, equal);
 }
 
-// Whether as many directions of the same vertices are held.
-bool holdsAsMuch(std::span<const VertexConstraint> a, std::span<const VertexConstraint> b) {
-  return std::ranges::equal(a, b, [](const VertexConstraint& c, const VertexConstraint& d) {
-    return c.vertex == d.vertex && c.removed == d.removed;
-  });
+// Directions that are held in one and not in the other. The vertices of `now` are among those of `was`, in their order.
+int heldOtherwise(std::span<const VertexConstraint> was, std::span<const VertexConstraint> now) {
+  int directions = 0;
+  for (auto next = now.begin(); const VertexConstraint& c : was) {
+    const bool held = next != now.end() && next->vertex == c.vertex;
+    directions += std::abs(c.removed - (held ? (next++)->removed : 0));
+  }
+  return directions;
 }
 
 template <class T>
@@ -93,8 +97,9 @@ template <class T>
 void TwoLevel<T>::update(const ColumnMatrix<T>& a, std::span<const V3<T>> x,
                          std::span<const VertexConstraint> constraints, const MatrixTerms& terms) {
   PartMemory::Input &factors = memory.factors.input, &coarse = memory.coarse.input;
-  factors_kept_ =
-      holdsAsMuch(factors.constraints, constraints) && serves(memory.factors, kFactorsCost, kFactorsServe, terms);
+  factors_kept_ = factors.constraints.size() == constraints.size() &&
+                  heldOtherwise(factors.constraints, constraints) == 0 &&
+                  serves(memory.factors, kFactorsCost, kFactorsServe, terms);
   if (!factors_kept_) {
     note(x, constraints, terms, factors);
     makeFactors(a, factors);
@@ -105,6 +110,17 @@ void TwoLevel<T>::update(const ColumnMatrix<T>& a, std::span<const V3<T>> x,
     note(x, constraints, terms, coarse);
     makeCoarse(a, x, coarse);
   }
+}
+
+template <class T>
+void TwoLevel<T>::follow(const ColumnMatrix<T>& a, std::span<const V3<T>> x,
+                         std::span<const VertexConstraint> constraints, const MatrixTerms& terms) {
+  PartMemory::Input& factors = memory.factors.input;
+  const int held = heldOtherwise(factors.constraints, {});
+  if (heldOtherwise(factors.constraints, constraints) <= std::max(kMaxOther, held / 2)) return;
+  note(x, constraints, terms, factors);
+  makeFactors(a, factors);
+  factors_kept_ = false;
 }
 
 template <class T>

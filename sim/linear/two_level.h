@@ -32,6 +32,10 @@ struct TwoLevel {
   // the coarse space where more than kMaxUnknown vertices are held that it does not know of.
   void update(const ColumnMatrix<T>& a, std::span<const V3<T>> x, std::span<const VertexConstraint> constraints = {},
               const MatrixTerms& terms = {});
+  // Between solves of one system, when contacts have let go or stick: makes the factors anew where more than kMaxOther
+  // directions, and half of those held, are held otherwise. Constraints of the vertices of update(), or some of them.
+  void follow(const ColumnMatrix<T>& a, std::span<const V3<T>> x, std::span<const VertexConstraint> constraints,
+              const MatrixTerms& terms);
   // Before update(), where `memory` may be another hair's than that of the last solve: makes the parts again that it
   // speaks of. `assemble` gives the matrix at positions (m) with terms.
   using Assemble = std::function<const ColumnMatrix<T>&(std::span<const V3<T>> x, const MatrixTerms& terms)>;
@@ -51,6 +55,7 @@ struct TwoLevel {
   // s. Iterations with 0.3, 0.5 and 0.75 differ by one in twenty.
   static constexpr T kColumnWeight = T(0.5);
   static constexpr int kMaxUnknown = 2;  // with thirty a solve's iterations tripled
+  static constexpr int kMaxOther = 8;    // each may cost an iteration; with 4 calm walks made twice the factors
 
   // z = P r.
   void apply(std::span<const V3<T>> r, std::span<V3<T>> z);

@@ -146,8 +146,7 @@ void addPrisms(HairMesh& mesh) {
   }
 }
 
-// What is known of a root edge while walls are collected: columns a -> b as its first face winds it, and each layer's
-// wall.
+// What is known of a root edge while walls are collected: columns a -> b as its first face winds it, its walls.
 struct RootEdge {
   int a, b;
   std::vector<Wall> walls;  // by layer

@@ -51,16 +51,14 @@ struct HairMeshShape {
   }
 };
 
-// An edge of the hair mesh. Horizontal edges join neighbouring columns in one layer, vertical ones two layers of a
-// column.
+// An edge of the hair mesh. Horizontal edges join columns in one layer, vertical ones two layers of a column.
 struct Edge {
   int a, b;            // vertices; for a vertical edge a is nearer the root
   double rest_length;  // m
   double volume;       // m^3, the share of the adjacent prisms' volume that the edge stands for
 };
 
-// A wall: the quadrilateral over one root edge between layers l and l + 1. Corners (a, l), (b, l), (b, l + 1), (a, l +
-// 1).
+// A wall: the quadrilateral over a root edge between two layers. Corners (a, l), (b, l), (b, l + 1), (a, l + 1).
 struct Wall {
   std::array<int, 4> v;
   double volume;  // m^3, its share of the adjacent prisms
@@ -75,8 +73,7 @@ struct Hinge {
   double volume;         // m^3
 };
 
-// A corner tetrahedron: a prism's corner v[0] and its three edge neighbours, ordered so that the rest volume is
-// positive.
+// A corner tetrahedron: a prism's corner v[0] and its three edge neighbours, in order of positive rest volume.
 struct CornerTet {
   std::array<int, 4> v;
   double rest_volume;  // m^3, signed: e1 . (e2 x e3) / 6
@@ -92,8 +89,7 @@ constexpr std::array<int, 4> cornerTetOf(int k, int n) {
   return {k, layer ? previous : next, layer ? next : previous, n - layer + corner};
 }
 
-// A prism over a root face between layers `layer` and `layer + 1`. v: the corners of the lower layer, then of the
-// upper.
+// A prism over a root face between layers `layer` and `layer + 1`. v: corners of the lower layer, then the upper.
 struct Prism {
   int root_face, layer, corner_count;
   std::array<int, 8> v;

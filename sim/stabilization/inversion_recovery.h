@@ -28,8 +28,7 @@ struct RecoveredStep {
   bool looks = true;  // for newly inverted columns, too
 };
 
-// Looks for inverted columns every 0.1 s, and moves those that are guided. Returns how many these are. `touched`:
-// scratch.
+// Looks for inverted columns every 0.1 s, and moves those that are guided: returns how many. `touched`: scratch.
 int recoverInversions(const RecoveredStep& step, std::vector<char>& touched, HairState& state);
 
 // Guides every column to where `there` has it, over the next steps.

@@ -22,8 +22,7 @@ struct RestStep {
   double pull;   // m/s^2, of gravity and wind: under more than hair's own weight it never hangs quite as still
   double scale;  // J, the hair's weight times its length
   // With self-contact the first reference runs through its own bundles, for their pushes may hold it as they hold the
-  // hair; if it finds nothing lower, a second one is kept apart, for the first may have been caught behind its
-  // neighbours.
+  // hair. If it finds nothing lower, a second one is kept apart: the first may be caught behind its neighbours.
   bool self_contact = false;
 };
 
