@@ -101,7 +101,7 @@ constexpr KeyAction kKeyActions[] = {
     {',',
      [](Demo& demo, UiState&) {
        postRequest(demo, {Ask::kPause, "", "", 1});
-       postRequest(demo, {Ask::kRewind, "", "", static_cast<double>(demo.frames - 1)});
+       postRequest(demo, {Ask::kRewind, "", "", static_cast<double>(timelinePlace(demo) - 1)});
      }},
     {'I', [](Demo& demo, UiState&) { toggle(Ask::kMarkIn, demo.timeline.in >= 0, demo); }},
     {'O', [](Demo& demo, UiState&) { toggle(Ask::kMarkOut, demo.timeline.out >= 0, demo); }},

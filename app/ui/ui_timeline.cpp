@@ -102,7 +102,7 @@ void strip(Demo& demo, UiState& ui) {
   const auto first = static_cast<double>(first_frame);
   const double span = std::max(1.0, static_cast<double>(last_frame) - first);
   if (!timeline.cache) drawRange(timeline, at, size);
-  const double here = std::clamp((static_cast<double>(demo.frames) - first) / span, 0.0, 1.0);
+  const double here = std::clamp((static_cast<double>(timelinePlace(demo)) - first) / span, 0.0, 1.0);
   const float x = at.x + size.x * static_cast<float>(here);
   list->AddRectFilled({x - 1.5f, at.y - 2}, {x + 1.5f, at.y + size.y + 2}, ImGui::GetColorU32(ImGuiCol_CheckMark));
   const float share = (ImGui::GetIO().MousePos.x - at.x) / std::max(1.0f, size.x);
@@ -166,7 +166,7 @@ void timelinePanel(Demo& demo, UiState& ui, float left) {
                                  ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoBringToFrontOnFocus;
   if (ImGui::Begin("timeline", nullptr, flags)) {
     if (iconButton(Icon::kBack, "step_back", "Back to the moment kept before (,)", false, ui))
-      postRequest(demo, {Ask::kRewind, "", "", static_cast<double>(demo.frames - 1)});
+      postRequest(demo, {Ask::kRewind, "", "", static_cast<double>(timelinePlace(demo) - 1)});
     ImGui::SameLine(0, 6);
     char text[48];
     std::snprintf(text, sizeof text, "%7.2f s", demo.shown_time);

@@ -69,7 +69,7 @@ TEST_F(StressRun, StrandsUnderTheDrawnSkinFailACapture) {
   const std::vector<std::string> walk{"--case", "capture/cmu_02_01_walk/go-on/1x/long-low"};
   EXPECT_EQ(runStress(walk).exit_code, 0);
   std::vector<std::string> sunk = walk;
-  sunk.insert(sunk.end(), {"--set", "collide=0", "--set", "gravity=1", "--set", "wind_z=40"});
+  sunk.insert(sunk.end(), {"--set", "collide=0", "--set", "wind_y=40", "--set", "wind_z=30", "--set", "air_drag=3"});
   const test::Outcome outcome = runStress(sunk);
   EXPECT_EQ(outcome.exit_code, 1) << outcome.out;
   EXPECT_NE(outcome.out.find("under the drawn skin"), std::string::npos) << outcome.out;

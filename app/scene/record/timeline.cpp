@@ -30,6 +30,12 @@ bool timelineSpan(const Timeline& timeline, long& first, long& last) {
   return true;
 }
 
+long timelinePlace(const Demo& demo) {
+  const Timeline& timeline = demo.timeline;
+  if (!timeline.cache) return timeline.now;
+  return timeline.shown_of_cache >= 0 ? timeline.shown_of_cache : demo.frames;
+}
+
 void openCache(const std::string& file, Demo& demo) {
   Timeline& timeline = demo.timeline;
   if (file.empty()) {
@@ -67,13 +73,13 @@ void keepMoment(Demo& demo) {
   timeline.jump |= demo.stats.carried > 0;
   const double clip_time = demo.actors.front().playback.time;
   timeline.loop |= clip_time < std::exchange(timeline.clip_time, clip_time);
-  if (demo.frames % kTimelineEvery != 0) return;
+  if (timeline.now % kTimelineEvery != 0) return;
   // What was simulated from here before is no longer what follows.
-  while (!timeline.frames.empty() && timeline.frames.back().frame >= demo.frames) {
+  while (!timeline.frames.empty() && timeline.frames.back().frame >= timeline.now) {
     timeline.bytes -= timeline.frames.back().state.size();
     timeline.frames.pop_back();
   }
-  TimelineFrame kept{demo.frames,
+  TimelineFrame kept{timeline.now,
                      demoStateBytes(demo),
                      std::exchange(timeline.cost, 0.0),
                      std::exchange(timeline.contact, false),
@@ -90,16 +96,16 @@ void keepMoment(Demo& demo) {
 
 void setInPoint(bool on, Demo& demo) {
   Timeline& timeline = demo.timeline;
-  if (on && timeline.out >= 0 && demo.frames >= timeline.out)
+  if (on && timeline.out >= 0 && timeline.now >= timeline.out)
     throw InputError("", "", "the in point would lie behind the out point", "clear the out point first");
-  timeline.in = on ? demo.frames : -1;
+  timeline.in = on ? timeline.now : -1;
 }
 
 void setOutPoint(bool on, Demo& demo) {
   Timeline& timeline = demo.timeline;
-  if (on && demo.frames <= timeline.in)
+  if (on && timeline.now <= timeline.in)
     throw InputError("", "", "the out point would lie before the in point", "go on a little, or clear the in point");
-  timeline.out = on ? demo.frames : -1;
+  timeline.out = on ? timeline.now : -1;
 }
 
 void startBake(double seconds, Demo& demo) {
@@ -108,7 +114,7 @@ void startBake(double seconds, Demo& demo) {
     throw InputError("", "", "there is nothing to bake yet", "let the hair move first");
   if (timeline.in < 0) timeline.in = timeline.frames.back().frame;
   rewindTo(timeline.in, demo);
-  timeline.in = demo.frames;
+  timeline.in = timeline.now;
   if (timeline.out <= timeline.in)
     timeline.out = timeline.in + static_cast<long>(std::clamp(seconds, 0.1, 600.0) * demo.scene.playback.fps);
   timeline.baking = true;
@@ -118,8 +124,8 @@ void startBake(double seconds, Demo& demo) {
 void followRange(Demo& demo) {
   if (std::exchange(demo.timeline.baking, false)) {
     const double fps = demo.scene.playback.fps;
-    for (int k = 0; k < kBakedFrames && demo.frames < demo.timeline.out; ++k) advanceFrame(demo, 1 / fps, {});
-    demo.timeline.baking = demo.frames < demo.timeline.out;
+    for (int k = 0; k < kBakedFrames && demo.timeline.now < demo.timeline.out; ++k) advanceFrame(demo, 1 / fps, {});
+    demo.timeline.baking = demo.timeline.now < demo.timeline.out;
     if (demo.timeline.baking) return;
     demo.message = "baked " + std::to_string(demo.timeline.out - demo.timeline.in) + " frames";
     demo.message_is_fault = false;
@@ -127,7 +133,7 @@ void followRange(Demo& demo) {
     return rewindTo(demo.timeline.in, demo);
   }
   Timeline& timeline = demo.timeline;
-  if (demo.paused || timeline.in < 0 || timeline.out < 0 || demo.frames < timeline.out) return;
+  if (demo.paused || timeline.in < 0 || timeline.out < 0 || timeline.now < timeline.out) return;
   try {
     rewindTo(timeline.in, demo);
   } catch (const InputError&) {
@@ -153,6 +159,7 @@ void rewindTo(long frame, Demo& demo) {
     throw InputError("", "", "nothing is kept of that moment", "go to one on the timeline, or to the start");
   const bool paused = demo.paused;
   restoreDemoState(std::prev(after)->state, "timeline", true, demo);
+  demo.timeline.now = std::prev(after)->frame;
   demo.paused = paused;
   demo.shown_fraction = -1;
 }

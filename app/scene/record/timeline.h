@@ -11,7 +11,7 @@ namespace app {
 
 // A kept moment; `state` as demoStateBytes.
 struct TimelineFrame {
-  long frame = 0;
+  long frame = 0;  // Timeline::now, then
   std::string state;
   double cost = 0;                                                     // s of simulation since the moment before
   bool contact = false, recovery = false, jump = false, loop = false;  // loop: the clip began anew
@@ -19,12 +19,13 @@ struct TimelineFrame {
 
 struct Timeline {
   bool on = false;  // of windows, recordings and replays
+  long now = 0;     // frames since the run began in which time went on: paused ones are none
   std::deque<TimelineFrame> frames;
   std::size_t bytes = 0;
   double cost = 0;  // since the last kept moment
   bool contact = false, recovery = false, jump = false, loop = false;
   double clip_time = 0;             // s, of the first character
-  long in = -1, out = -1;           // frames: at `out` it goes on from `in`; -1: not set
+  long in = -1, out = -1;           // as `now`: at `out` it goes on from `in`; -1: not set
   bool baking = false;              // it is simulated up to `out` faster than shown
   std::unique_ptr<SimCache> cache;  // where there is one it is what the timeline shows
   long shown_of_cache = -1;         // frame of it that is shown and not simulated; -1: none
@@ -39,6 +40,8 @@ inline constexpr std::size_t kTimelineActors = 4;  // of larger crowds nothing i
 
 // First and last frame that can be gone to; false where there is none.
 bool timelineSpan(const Timeline& timeline, long& first, long& last);
+// The one that is shown.
+long timelinePlace(const Demo& demo);
 
 // The timeline shows a cache from now on; with an empty name what is kept in memory. Throws InputError.
 void openCache(const std::string& file, Demo& demo);

@@ -36,15 +36,15 @@ TEST(TimelineRange, PlayingGoesRoundBetweenInAndOutInTheSameBits) {
   std::string first, second;
   for (int k = 0; k < 200 && second.empty(); ++k) {
     play(1, demo);
-    EXPECT_LE(demo.frames, out);
-    EXPECT_GE(demo.frames, in - app::kTimelineEvery);
-    if (demo.frames == out - 2) (first.empty() ? first : second) = app::stateHash(demo);
+    EXPECT_LE(demo.timeline.now, out);
+    EXPECT_GE(demo.timeline.now, in - app::kTimelineEvery);
+    if (demo.timeline.now == out - 2) (first.empty() ? first : second) = app::stateHash(demo);
   }
   EXPECT_FALSE(first.empty());
   EXPECT_EQ(first, second);
   ask(Ask::kMarkOut, 0, demo);
   play(40, demo);
-  EXPECT_GT(demo.frames, out) << "it still goes back";
+  EXPECT_GT(demo.timeline.now, out) << "it still goes back";
 }
 
 TEST(TimelineRange, BakingFillsTheTimelineAndStandsAtItsStart) {
@@ -52,15 +52,35 @@ TEST(TimelineRange, BakingFillsTheTimelineAndStandsAtItsStart) {
   ask(Ask::kBake, 1, demo);
   EXPECT_TRUE(demo.message_is_fault) << "nothing is kept yet";
   play(6, demo);
-  const long before = demo.frames;
+  const long before = demo.timeline.now;
   ask(Ask::kBake, 1, demo);
   for (int k = 0; k < 60 && !demo.paused; ++k) play(1, demo);
   EXPECT_TRUE(demo.paused);
-  EXPECT_LE(demo.frames, before + 1);
+  EXPECT_LE(demo.timeline.now, before + 1);
   EXPECT_GE(demo.timeline.frames.back().frame, before + 50);
   ask(Ask::kClearBake, 0, demo);
   EXPECT_TRUE(demo.timeline.frames.empty());
   EXPECT_LT(demo.timeline.in, 0);
+}
+
+// Frames go on while a person looks at a paused picture, time does not.
+TEST(TimelineRange, WhilePausedThePlaceStandsAndPlayingOnReplacesWhatFollowed) {
+  app::Demo demo = moving();
+  play(60, demo);
+  demo.paused = true;
+  play(40, demo);
+  EXPECT_EQ(app::timelinePlace(demo), 60);
+  ask(Ask::kRewind, 21, demo);
+  const double then = demo.shown_time;
+  play(100, demo);
+  EXPECT_EQ(app::timelinePlace(demo), 21);
+  demo.paused = false;
+  play(12, demo);
+  long first = 0, last = 0;
+  ASSERT_TRUE(app::timelineSpan(demo.timeline, first, last));
+  EXPECT_EQ(last, 33);
+  EXPECT_EQ(app::timelinePlace(demo), 33);
+  EXPECT_NEAR(demo.shown_time, then + 12.0 / 60, 1e-9);
 }
 
 TEST(TimelineRange, PointsStayInOrderAndLoopsAreMarked) {
