@@ -108,6 +108,8 @@ int run(const CLI::App& parser, const Asked& asked) {
     std::cout << "points: " << mends.points << " a strand, the power of two nearest to theirs (.tfx takes no other)\n";
   }
   app::mendGroom(mends, &head, groom);
+  if (groom.strandCount() == 0)
+    throw app::InputError(asked.file, "", "no strand of it is left to write", "mend the points in the file itself");
   app::writeGroom(groom, asked.out);
   std::cout << groom.strandCount() << " strands written to " << asked.out << "\n";
   return exit_code;

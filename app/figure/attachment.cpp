@@ -256,7 +256,8 @@ std::string placeNote(const ClosedSurface& surface, const Rigid& to_scalp, const
   const double inside = of_head ? swallowed(surface, 1, to_scalp, scalp) : 0;
   if (inside > kSwallowed) {
     return (inside < 1 ? "lies to " + std::to_string(std::lround(100 * inside)) + " %" : "lies wholly") +
-           " inside the head; give \"scale\", " + largerBy(surface, to_scalp, scalp) + ", or \"at\"";
+           " inside the head; give \"scale\", " + largerBy(surface, to_scalp, scalp) +
+           ", or \"at\": [x, y, z], m from the joint, y up";
   }
   // A hat sits on the head; glasses are thin.
   const Vec3 middle = box.center();

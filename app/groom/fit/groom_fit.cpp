@@ -31,8 +31,9 @@ constexpr double kMinDensity = 0.5;                      // of layers where hair
 constexpr double kMeanBound = 0.01, kShareBound = 0.03;  // of the strands' length: what a fit is content with
 constexpr int kMinLayers = 5, kMaxLayers = 16;           // of hair that is long enough for so many
 constexpr double kSquareness = 0.5;
-constexpr double kBetter = 0.7;  // of a smaller hair mesh's cost: for less gain a larger one is not taken
-constexpr int kPerLayer = 4;     // points of a grown strand
+// Of a smaller hair mesh's cost, or of its mean error at no more cost: for less gain a larger one is not taken.
+constexpr double kBetter = 0.7;
+constexpr int kPerLayer = 4;  // points of a grown strand
 
 // A fit in the making.
 struct Draft {
@@ -339,6 +340,11 @@ double costOf(const HairFit& fit) {
   return static_cast<double>(off) / static_cast<double>(fit.error.of_strand.size()) + bare;
 }
 
+bool better(const HairFit& larger, const HairFit& smaller) {
+  const double cost = costOf(larger), other = costOf(smaller);
+  return cost < kBetter * other || (cost <= other && larger.error.mean < kBetter * smaller.error.mean);
+}
+
 // Layers about as far apart as columns: prisms long for their width are inverted by the head's curvature.
 int usualLayers(const RootRaster& raster, double length, int vertices) {
   const auto full =
@@ -393,7 +399,7 @@ HairFit fitGroom(const StrandSamples& strands, const FitOptions& options) {
     std::unique_ptr<Draft> draft = makeDraft(strands, raster, layers, vertices);
     const FitError& error = draft->fit.error;
     lacking = std::max(error.mean / kMeanBound, error.share95 / kShareBound) / error.strand_length;
-    if (!best || costOf(draft->fit) < kBetter * costOf(best->fit)) best = std::move(draft);
+    if (!best || better(draft->fit, best->fit)) best = std::move(draft);
     if (lacking <= 1 && best->fit.dropped_faces == 0) break;
   }
   measure(strands.strandCount(), *best);

@@ -80,6 +80,8 @@ std::string titleOf(const Request& request, const EditKind& kind) {
   if (request.what == Ask::kMesh) return spaced(request.name);
   std::string title = kind.title;
   if (!request.name.empty() && request.what != Ask::kMotionFile) title.append(" ").append(request.name);
+  if (request.text.starts_with('[') || request.text.starts_with('{'))  // JSON says more than a title holds
+    return title + (request.text.find("\"braided\":true") != std::string::npos ? ", braided" : "");
   const bool sample = request.what == Ask::kPaint;
   if (!request.text.empty() && request.what != Ask::kVary && !sample)
     title.append(" ").append(spaced(stem(request.text)).substr(0, 40));
