@@ -35,11 +35,13 @@ struct Scene {
   std::vector<render::HairInput> hairs;
   std::vector<render::BodyInput> bodies;
 
-  explicit Scene(int count = 1, int strands = 1500) : positions(static_cast<std::size_t>(count), hair.positions) {
+  // balls: their radii over the usual ones.
+  explicit Scene(int count = 1, int strands = 1500, float balls = 1)
+      : positions(static_cast<std::size_t>(count), hair.positions) {
     // A head that reaches into the hair, and two balls: one in the hair, one far from it.
     for (const auto& [x, y, z, radius] :
          {std::array{0.0f, 1.6f, 0.0f, 0.1f}, {0.1f, 1.45f, 0.05f, 0.04f}, {0.0f, 0.5f, 0.0f, 0.2f}}) {
-      const float scale = 1 / radius;
+      const float scale = 1 / (balls * radius);
       skin.push_back({{{{scale, 0, 0, -scale * x}, {0, scale, 0, -scale * y}, {0, 0, scale, -scale * z}}}});
     }
     for (int i = 0; i < count; ++i) {
@@ -140,7 +142,7 @@ TEST_F(Software, AutoIsTheSoftwarePathOnLlvmpipeAlone) {
 }
 
 TEST_F(Software, SkinOutOfReachAndHiddenPointsChangeNoByte) {
-  const Scene scene;
+  const Scene scene(1, 1500, 0.4f);  // so small that lower layers are out of reach
   for (const StrandPath path : {StrandPath::kSoftware, StrandPath::kGeometry}) {
     render::FrameInput frame = scene.frame(path);
     frame.skips = draw_skips::none();
