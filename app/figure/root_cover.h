@@ -10,7 +10,7 @@ namespace app {
 
 // Two numbers a vertex of the character's mesh, in the rest pose.
 //
-// Cover: 1 inside the root faces, less from 14 mm before the hairline on, as hair thins there, and 0 at it (on a head
+// Cover: 1 inside the root faces, less from 8 mm before the hairline on, as hair thins there, and 0 at it (on a head
 // of 23 cm, and in proportion), on ears, and wherever the root faces are 18 mm off or face another way, as when the
 // hair mesh was made for another head. Narrow gaps between root faces, a parting for one, count as covered.
 //

@@ -340,7 +340,6 @@ void advanceFrame(Demo& demo, double seconds, const FrameTarget& target) {
 
   advanceShownTime(seconds, demo);
   ++demo.frames;
-  if (!demo.paused || steps > 0) ++demo.timeline.now;
   keepMoment(demo);
   advanceCompared(seconds, std::move(of_both), demo);
 

@@ -26,7 +26,7 @@ bool same(const PartMemory::Input& a, const PartMemory::Input& b) {
          std::ranges::equal(a.constraints, b.constraints, equal);
 }
 
-// Directions that are held in one and not in the other. The vertices of `now` are among those of `was`, in their order.
+// Directions held in one and not in the other, where the vertices of `now` are among those of `was`, in their order.
 int heldOtherwise(std::span<const VertexConstraint> was, std::span<const VertexConstraint> now) {
   int directions = 0;
   for (auto next = now.begin(); const VertexConstraint& c : was) {

@@ -66,6 +66,7 @@ void leaveCachedFrame(Demo& demo) {
 
 void keepMoment(Demo& demo) {
   Timeline& timeline = demo.timeline;
+  if (!demo.paused || demo.stats.steps > 0) ++timeline.now;
   if (!timeline.on || demo.stats.steps == 0 || demo.actors.size() > kTimelineActors) return;
   timeline.cost += demo.stats.simulation();
   timeline.contact |= demo.stats.corrected > 0;

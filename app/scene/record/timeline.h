@@ -53,7 +53,7 @@ void leaveCachedFrame(Demo& demo);
 // What was kept is of other hair than what moves now.
 void forgetMoments(Timeline& timeline);
 
-// After a frame that took steps.
+// After a frame: one in which time went on is counted, and now and then kept.
 void keepMoment(Demo& demo);
 
 // The point in or out at the present frame, or off (`on` false). Throws InputError where the two would not be in order.
