@@ -14,6 +14,7 @@ constexpr double kStillHair = 0.02;         // m/s: slower hair hangs still, unl
 constexpr double kOnItsWay = 1;             // s, would in so long go as far as the reference is off
 constexpr double kStillFor = 0.5;           // s, of the hair and of its reference: what falls is slow where it turns
 constexpr double kReferenceStill = 5e-3;    // m/s
+constexpr double kAtRest = 1e-4;            // m/s: a reference so slow finds nothing lower any more
 constexpr double kMaxSettling = 60;         // s, after which a reference that goes on swinging is taken as it is
 constexpr double kElsewhere = 0.006;        // of the hair's length: what is nearer to its reference is at home
 constexpr double kAtHome = 0.003;           // of the hair's length, from the rest shape itself
@@ -88,7 +89,7 @@ void judgeRest(const RestStep& step, const std::function<double(const HairState&
   if (off > kElsewhere * step.mesh.hair_length && kOnItsWay * fastest(state) > off) return;
   const bool higher = energy(state) - energy(reference) > kHigher * step.scale;
   // A reference on its way down may yet come to rest below the hair.
-  rest.judged = higher || stirring < kReferenceStill || rest.settling > kMaxSettling;
+  rest.judged = higher || stirring < kAtRest || rest.settling > kMaxSettling;
   if (off <= kElsewhere * step.mesh.hair_length || !higher) {
     if (rest.judged && step.self_contact && !rest.kept_apart) {
       rest.judged = false, rest.kept_apart = true;
