@@ -389,9 +389,8 @@ void carryAlong(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, Hair
   for (auto* points : {&state.positions, &state.previous_positions, &memory.good.positions, &memory.self_contact.start,
                        &memory.self_contact.end})
     carry(*points);
-  for (auto* directions :
-       {&state.velocities, &state.previous_velocities, &memory.good.velocities, &memory.oscillation.last,
-        &memory.oscillation.carrying, &memory.solve.projection.changes[0], &memory.solve.projection.changes[1]})
+  for (auto* directions : {&state.velocities, &state.previous_velocities, &memory.good.velocities,
+                           &memory.solve.projection.changes[0], &memory.solve.projection.changes[1]})
     turn(*directions);
   for (Contact& contact : state.contacts) {
     for (Vec3* direction : {&contact.normal, &contact.velocity, &contact.friction_direction})

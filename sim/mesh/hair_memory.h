@@ -20,14 +20,6 @@ struct GoodState {
   HAIRMESH_FIELDS(positions, velocities)
 };
 
-// stabilization/oscillation_damping.h
-struct OscillationMemory {
-  std::vector<Vec3> last;            // m/s against the root, of the step before, one per vertex
-  std::vector<Vec3> carrying;        // m/s of the columns' roots then
-  std::vector<unsigned char> turns;  // steps that turned back, less those that did not, one per vertex
-  HAIRMESH_FIELDS(last, carrying, turns)
-};
-
 // stabilization/inversion_recovery.h
 struct RecoveryMemory {
   struct Column {
@@ -126,13 +118,12 @@ struct SolveMemory {
 
 struct HairMemory {
   GoodState good;
-  OscillationMemory oscillation;
   RecoveryMemory recovery;
   RestMemory rest;
   SelfContactMemory self_contact;
   MaterialMemory material;
   SolveMemory solve;
-  HAIRMESH_FIELDS(good, oscillation, recovery, rest, self_contact, material, solve)
+  HAIRMESH_FIELDS(good, recovery, rest, self_contact, material, solve)
 };
 
 }  // namespace sim

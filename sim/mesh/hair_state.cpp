@@ -4,7 +4,7 @@ namespace sim {
 
 void sizeMemory(const HairMesh& mesh, HairMemory& memory) {
   const auto n = static_cast<std::size_t>(mesh.vertexCount()), columns = static_cast<std::size_t>(mesh.columnCount());
-  if (memory.oscillation.last.size() == n && memory.recovery.columns.size() == columns &&
+  if (memory.recovery.folded.size() == n && memory.recovery.columns.size() == columns &&
       memory.recovery.turned.size() == mesh.tets.size()) {
     return;
   }
@@ -15,9 +15,6 @@ void sizeMemory(const HairMesh& mesh, HairMemory& memory) {
     part->input.constraints.reserve(n);
   }
   for (auto& change : memory.solve.projection.changes) change.reserve(n);
-  memory.oscillation.last.resize(n, Vec3::Zero());
-  memory.oscillation.carrying.resize(columns, Vec3::Zero());
-  memory.oscillation.turns.resize(n);
   memory.recovery.columns.resize(columns);
   memory.recovery.turned.resize(mesh.tets.size());
   memory.recovery.folded.resize(n);

@@ -55,10 +55,9 @@ bool fits(const HairMesh& mesh, const HairState& state) {
   return known && projects && partFits(mesh, solve.two_level.factors) && partFits(mesh, solve.two_level.coarse) &&
          state.positions.size() == n && state.velocities.size() == n &&
          sized(n, state.previous_positions, state.previous_velocities, memory.good.positions, memory.good.velocities,
-               memory.oscillation.last, memory.oscillation.turns, memory.recovery.folded, memory.recovery.target,
-               memory.self_contact.start, memory.self_contact.end) &&
-         sized(columns, memory.oscillation.carrying, memory.recovery.columns) &&
-         sized(mesh.tets.size(), memory.recovery.turned) && memory.rest.reference.size() <= 1 &&
+               memory.recovery.folded, memory.recovery.target, memory.self_contact.start, memory.self_contact.end) &&
+         sized(columns, memory.recovery.columns) && sized(mesh.tets.size(), memory.recovery.turned) &&
+         memory.rest.reference.size() <= 1 &&
          std::ranges::all_of(memory.rest.reference, [&](const HairState& one) { return fits(mesh, one); });
 }
 

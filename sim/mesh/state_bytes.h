@@ -11,7 +11,7 @@
 namespace sim {
 
 // Of the bytes' layout; another one after every change of a field.
-inline constexpr unsigned kStateVersion = 2;
+inline constexpr unsigned kStateVersion = 3;
 
 // All of a state. Steps that go on from the restored state end in the same bits as those that go on from the saved one,
 // on the same build and processor, with the same input, parameters and settings of the context.

@@ -12,7 +12,6 @@ struct SafetyNets {
   bool input_repair = true;         // state_validation.h, of the state handed over
   bool result_repair = true;        // the same, of what the step made
   bool teleport = true;             // hair carried along over jumps of the roots
-  bool oscillation_damping = true;  // oscillation_damping.h
   bool step_energy = true;          // energy_limit.h, limitEnergy
   bool stretch_limit = true;        // stabilize.cpp, limitStretch
   bool correction_energy = true;    // limitCorrections
@@ -21,7 +20,7 @@ struct SafetyNets {
 };
 
 // Solver::kPaper: the step as published. Only values that are not finite or absurd are repaired.
-inline constexpr SafetyNets kAsPublished{false, true, true, false, false, false, false, false, false, false};
+inline constexpr SafetyNets kAsPublished{false, true, true, false, false, false, false, false, false};
 
 struct SafetyNetName {
   const char* name;
@@ -32,7 +31,6 @@ inline constexpr std::array kSafetyNets{
     SafetyNetName{"input-repair", &SafetyNets::input_repair},
     SafetyNetName{"result-repair", &SafetyNets::result_repair},
     SafetyNetName{"teleport", &SafetyNets::teleport},
-    SafetyNetName{"oscillation-damping", &SafetyNets::oscillation_damping},
     SafetyNetName{"step-energy", &SafetyNets::step_energy},
     SafetyNetName{"stretch-limit", &SafetyNets::stretch_limit},
     SafetyNetName{"correction-energy", &SafetyNets::correction_energy},

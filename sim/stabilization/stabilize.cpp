@@ -91,8 +91,7 @@ StepInput admitState(const HairMesh& mesh, const ForceModel<double>& model, cons
 void stabilize(const TakenStep& step, const StepInput& input, bool converged, Stabilization& scratch, HairState& state,
                StepReport& report) {
   const SafetyNets& nets = scratch.active;
-  const bool held = nets.oscillation_damping && dampOscillation(step.mesh, step.positions, state) > 0;
-  if (nets.step_energy) limitEnergy(step, converged && !held, scratch.energy_limit, state);
+  if (nets.step_energy) limitEnergy(step, converged, scratch.energy_limit, state);
   // Loose particles have no length, and no shape to be guided to.
   if (nets.stretch_limit && step.params.volume > 0) limitStretch(step.mesh, scratch.reach, state);
   if (nets.inversion_recovery && step.params.volume > 0) {

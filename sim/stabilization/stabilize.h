@@ -8,7 +8,6 @@
 #include "sim/contact/position_correction.h"
 #include "sim/stabilization/energy_limit.h"
 #include "sim/stabilization/inversion_recovery.h"
-#include "sim/stabilization/oscillation_damping.h"
 #include "sim/stabilization/reference_hair.h"
 #include "sim/stabilization/safety_nets.h"
 #include "sim/stabilization/state_validation.h"
@@ -41,8 +40,8 @@ struct Stabilization {
 StepInput admitState(const HairMesh& mesh, const ForceModel<double>& model, const StepInput& input, double dt,
                      SimParams& params, Stabilization& scratch, HairState& state, StepReport& report);
 
-// After integration: oscillation damping, energy limit, stretch limit (no vertex farther from its root than twice the
-// hair between them), inversion recovery, repair of what is not finite or absurd. `converged`: the solve did.
+// After integration: energy limit, stretch limit (no vertex farther from its root than twice the hair between them),
+// inversion recovery, repair of what is not finite or absurd. `converged`: the solve did.
 void stabilize(const TakenStep& step, const StepInput& input, bool converged, Stabilization& scratch, HairState& state,
                StepReport& report);
 
