@@ -91,8 +91,9 @@ double squareness(const Vec3& next, const Vec3& previous) {
 bool Relaxation::openCorner(const Corner& t, double fatness) {
   std::vector<Vec3>& x = shape.positions;
   const Vec3 a = x[t[1]] - x[t[0]], b = x[t[2]] - x[t[0]], c = x[t[3]] - x[t[0]];
-  const double box = a.norm() * b.norm() * c.norm();
-  const double wanted = fatness * squareness(a, b), lacking = 1.15 * wanted * box - a.cross(b).dot(c);
+  const double box = a.norm() * b.norm() * c.norm(), volume = a.cross(b).dot(c);
+  if (volume >= 1.15 * fatness * box) return false;  // fat enough for a square corner
+  const double wanted = fatness * squareness(a, b), lacking = 1.15 * wanted * box - volume;
   if (lacking <= 0) return false;
   std::array<Vec3, 4> slope{Vec3::Zero(), b.cross(c), c.cross(a), a.cross(b)};
   slope[0] = -slope[1] - slope[2] - slope[3];
