@@ -4,6 +4,10 @@
 #include <cctype>
 #include <cstdio>
 #include <filesystem>
+#include <list>
+#include <mutex>
+#include <optional>
+#include <utility>
 
 #include "app/figure/arm_clearance.h"
 #include "app/figure/character_build.h"
@@ -86,18 +90,18 @@ Character loadMannequin(const std::string& text, const std::string& file) {
   return character;
 }
 
-Character loadCharacter(const std::string& motion_file, const std::string& parts_dir) {
-  const Kind kind = kindOf(motion_file);
-  if (!parts_dir.empty() && kind != Kind::kMot)
-    throw InputError(motion_file, "", "has no use for the rigid parts of '" + parts_dir + "'",
-                     "give --parts with an ARCSim .mot motion only");
+namespace {
+
+// Of a motion or a model, with its clips mended; `text` of a motion is what the file holds.
+Character makeCharacter(Kind kind, const std::string& text, const std::string& motion_file,
+                        const std::string& parts_dir) {
   Character character;
   switch (kind) {
     case Kind::kBvh:
-      character = loadMannequin(readText(motion_file), motion_file);
+      character = loadMannequin(text, motion_file);
       break;
     case Kind::kMot:
-      character = loadRigidParts(readText(motion_file), motion_file, parts_dir);
+      character = loadRigidParts(text, motion_file, parts_dir);
       break;
     case Kind::kModel:
       character = importSkinned(motion_file);
@@ -116,6 +120,51 @@ Character loadCharacter(const std::string& motion_file, const std::string& parts
   }
   cover(character);
   return character;
+}
+
+constexpr std::size_t kKept = 4;
+
+// Mannequins made last, the latest first: scenes opened one after another, or compared, mostly show the same one, and a
+// text gives the same one each time.
+class KeptMannequins {
+ public:
+  Character get(const std::string& text, const std::string& file) {
+    if (std::optional<Character> kept = find(text, file)) return *std::move(kept);
+    Character made = makeCharacter(Kind::kBvh, text, file, {});
+    const std::lock_guard lock(mutex_);
+    kept_.push_front({file, text, made});
+    if (kept_.size() > kKept) kept_.pop_back();
+    return made;
+  }
+
+ private:
+  struct Made {
+    std::string file, text;
+    Character character;
+  };
+
+  std::optional<Character> find(const std::string& text, const std::string& file) {
+    const std::lock_guard lock(mutex_);
+    const auto found = std::ranges::find_if(kept_, [&](const Made& m) { return m.file == file && m.text == text; });
+    if (found == kept_.end()) return {};
+    kept_.splice(kept_.begin(), kept_, found);
+    return found->character;
+  }
+
+  std::mutex mutex_;
+  std::list<Made> kept_;
+};
+
+}  // namespace
+
+Character loadCharacter(const std::string& motion_file, const std::string& parts_dir) {
+  const Kind kind = kindOf(motion_file);
+  if (!parts_dir.empty() && kind != Kind::kMot)
+    throw InputError(motion_file, "", "has no use for the rigid parts of '" + parts_dir + "'",
+                     "give --parts with an ARCSim .mot motion only");
+  static KeptMannequins mannequins;
+  if (kind == Kind::kBvh) return mannequins.get(readText(motion_file), motion_file);
+  return makeCharacter(kind, kind == Kind::kMot ? readText(motion_file) : "", motion_file, parts_dir);
 }
 
 Rigid scalpToWorld(const Character& character, const Pose& pose) {

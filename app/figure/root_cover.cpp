@@ -107,10 +107,12 @@ std::vector<float> rootCover(const Character& character, const sim::HairMesh& ha
     const double left = std::max(0.0, 1 - square / (reach * reach));
     return left * left * 3 / (EIGEN_PI * reach * reach);
   };
+  const double apart = scale * kApart, reach = scale * kThinReach;  // beyond either all weights are zero
   for (const RootSample& sample : samples) {
     cubes.around(sample.place, [&](int v) {
       const Vec3 gap = places[v] - sample.place;
       const double above = gap.dot(sample.normal), square = gap.squaredNorm() - above * above;
+      if (std::abs(above) >= apart || square >= reach * reach) return;
       const double facing = std::max(0.0, normals[v].dot(sample.normal));
       const double on_it = smoothstep(scale * kApart, scale * kNear, std::abs(above));
       const double area = sample.area * facing * on_it * on_scalp[v];

@@ -120,36 +120,48 @@ void voteInside(const Triangles& triangles, int axis, const SignedGrid& g, std::
   }
 }
 
-// Spreads distances over the grid: Gauss-Seidel sweeps of the eikonal equation (Zhao 2005), nodes of the band held.
+// Distance at a node that lies h from one neighbour on each axis; m: theirs.
+float eikonal(std::array<float, 3> m, float h) {
+  if (m[0] > m[1]) std::swap(m[0], m[1]);
+  if (m[1] > m[2]) std::swap(m[1], m[2]);
+  if (m[0] > m[1]) std::swap(m[0], m[1]);
+  float x = m[0] + h;
+  if (x > m[1]) x = 0.5f * (m[0] + m[1] + std::sqrt(std::max(0.0f, 2 * h * h - (m[0] - m[1]) * (m[0] - m[1]))));
+  if (x <= m[2]) return x;
+  const float sum = m[0] + m[1] + m[2], squares = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
+  return (sum + std::sqrt(std::max(0.0f, sum * sum - 3 * (squares - h * h)))) / 3;
+}
+
+// Spreads distances over the grid: Gauss-Seidel sweeps of the eikonal equation (Zhao 2005), nodes of the band held. A
+// node none of whose neighbours has changed since it was last visited is left out (Bak, McLaughlin and Renzi 2010).
 void sweepFar(double band, SignedGrid& g) {
   const float h = static_cast<float>(g.h), held = static_cast<float>(band);
   const std::array<std::size_t, 3> stride{1, static_cast<std::size_t>(g.n[0]),
                                           static_cast<std::size_t>(g.n[0]) * g.n[1]};
+  std::vector<std::uint8_t> due(g.distance.size(), 1);
   for (int sweep = 0; sweep < 8; ++sweep) {
     const auto order = [&](int axis, int i) { return (sweep >> axis) & 1 ? g.n[axis] - 1 - i : i; };
     for (int kk = 0; kk < g.n[2]; ++kk) {
       for (int jj = 0; jj < g.n[1]; ++jj) {
+        const std::size_t row = g.index(0, order(1, jj), order(2, kk));
         for (int ii = 0; ii < g.n[0]; ++ii) {
+          const std::size_t at = row + static_cast<std::size_t>(order(0, ii));
+          if (!due[at] || g.distance[at] < held) continue;
+          due[at] = 0;
           const std::array<int, 3> c{order(0, ii), order(1, jj), order(2, kk)};
-          const std::size_t at = g.index(c[0], c[1], c[2]);
-          float& d = g.distance[at];
-          if (d < held) continue;
           std::array<float, 3> m;
           for (int a = 0; a < 3; ++a) {
             const float before = c[a] > 0 ? g.distance[at - stride[a]] : 1e3f;
             const float after = c[a] + 1 < g.n[a] ? g.distance[at + stride[a]] : 1e3f;
             m[a] = std::min(before, after);
           }
-          if (m[0] > m[1]) std::swap(m[0], m[1]);
-          if (m[1] > m[2]) std::swap(m[1], m[2]);
-          if (m[0] > m[1]) std::swap(m[0], m[1]);
-          float x = m[0] + h;
-          if (x > m[1]) x = 0.5f * (m[0] + m[1] + std::sqrt(std::max(0.0f, 2 * h * h - (m[0] - m[1]) * (m[0] - m[1]))));
-          if (x > m[2]) {
-            const float sum = m[0] + m[1] + m[2], squares = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
-            x = (sum + std::sqrt(std::max(0.0f, sum * sum - 3 * (squares - h * h)))) / 3;
+          const float x = eikonal(m, h);
+          if (x >= g.distance[at]) continue;
+          g.distance[at] = x;
+          for (int a = 0; a < 3; ++a) {
+            if (c[a] > 0 && g.distance[at - stride[a]] > x) due[at - stride[a]] = 1;
+            if (c[a] + 1 < g.n[a] && g.distance[at + stride[a]] > x) due[at + stride[a]] = 1;
           }
-          d = std::min(d, x);
         }
       }
     }
