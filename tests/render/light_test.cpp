@@ -168,7 +168,7 @@ TEST_F(LightTest, ALoneFibreSendsOnNoMoreOfABeamThanItGets) {
 
 TEST_F(LightTest, NoLookMakesAFibreBrighterThanItsLight) {
   std::string coarse(kFurnace);
-  coarse.replace(coarse.find("float(gl_VertexID)"), 18, "10.0 * float(gl_VertexID)");
+  coarse.replace(coarse.find("float(gl_VertexID)"), 18, "24.0 * float(gl_VertexID)");
   const render::ShaderProgram probe = makeProbe(coarse.c_str());
   std::mt19937 random(5);
   const auto between = [&](float low, float high) { return std::uniform_real_distribution<float>(low, high)(random); };
@@ -181,7 +181,7 @@ TEST_F(LightTest, NoLookMakesAFibreBrighterThanItsLight) {
     look.cuticle_angle = between(-0.2f, 0.2f);
     look.specular = between(0, 4);
     look.diffuse = between(0, 1);
-    for (const auto& value : evaluate(probe, look, 0, kAngles / 10 + 1)) {
+    for (const auto& value : evaluate(probe, look, 0, kAngles / 24 + 1)) {
       for (int c = 0; c < 3; ++c) {
         ASSERT_TRUE(std::isfinite(value[c]));
         high = std::max(high, value[c]);

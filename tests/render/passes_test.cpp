@@ -98,7 +98,7 @@ struct Scene {
   std::vector<render::LineVertex> shape;
   render::FrameInput frame;
 
-  Scene() : cover(body.positions.size() / 3 * 2, 0.0f), hairs{synthetic::hairInput(hair, 900)} {
+  Scene() : cover(body.positions.size() / 3 * 2, 0.0f), hairs{synthetic::hairInput(hair, 400)} {
     bodies.push_back(synthetic::bodyInput(body));
     for (std::size_t v = 0; v < cover.size(); v += 2) cover[v] = body.positions[3 * v / 2 + 1] > 1.6f;
     hairs[0].segments_per_layer = 6;

@@ -16,7 +16,7 @@
 
 namespace random_look_test {
 
-constexpr int kSize = 40, kLooks = 1000;  // pixels a side
+constexpr int kSize = 24, kLooks = 1000;  // pixels a side
 
 // Both ends of every range, and what lies between.
 template <class Field>
@@ -62,7 +62,7 @@ TEST_F(RandomLooks, GiveAPicture) {
   render::Renderer renderer(markingShaders());
   const synthetic::Hair hair = synthetic::makeHair(5);
   const synthetic::Body body = synthetic::makeBody();
-  std::vector<render::HairInput> hairs{synthetic::hairInput(hair, 150)};
+  std::vector<render::HairInput> hairs{synthetic::hairInput(hair, 80)};
   std::vector<render::BodyInput> bodies{synthetic::bodyInput(body)};
   std::mt19937 random(11);
   std::vector<unsigned char> rgba;
@@ -90,7 +90,7 @@ TEST_F(RandomLooks, OfLightAndViewHoldNoValueThatIsNotANumber) {
   render::Renderer renderer(markingShaders());
   const synthetic::Hair hair = synthetic::makeHair(5);
   const synthetic::Body body = synthetic::makeBody();
-  const std::vector<render::HairInput> hairs{synthetic::hairInput(hair, 150)};
+  const std::vector<render::HairInput> hairs{synthetic::hairInput(hair, 80)};
   const std::vector<render::BodyInput> bodies{synthetic::bodyInput(body)};
   std::mt19937 random(12);
   std::vector<unsigned char> rgba;

@@ -43,11 +43,14 @@ TEST(Takes, FiveHairdosAreMadeAgainToTheBitAndEndWhereTheyWereRecorded) {
   int recorded = 0, steadies = 0;
   for (const std::string& file : files) {
     const app::Recording take = app::readRecording(app::readText(file), file);
-    const Made once = make(take), again = make(take);
+    const Made once = make(take);
     EXPECT_EQ(once.fault, "") << file;
     EXPECT_GE(once.edits, 2u) << file;
-    EXPECT_EQ(once.state, again.state) << file;
-    recorded += once.state == take.state;
+    // Those who recorded it made it once already.
+    if (once.state == take.state)
+      ++recorded;
+    else
+      EXPECT_EQ(once.state, make(take).state) << file;
     // Whatever the processor, but for a take that rounding alone carries farther.
     const auto apart = app::apartOf(take.ends, once.ends), rounded = app::apartOf(once.ends, make(take, 1e-12).ends);
     ASSERT_TRUE(apart && rounded) << file;

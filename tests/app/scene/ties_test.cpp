@@ -52,19 +52,18 @@ TEST(Ties, EveryPlaceAndStyleGivesAValidHairMeshWhoseRingIsFilled) {
 
 // Hair that reaches the ring is tied at every resolution; no hair mesh is too fine.
 TEST(Ties, HairThatReachesTheRingIsTiedAtEveryResolution) {
+  app::AssetCache cache;  // one figure for all
   for (const app::Resolution resolution :
        {app::Resolution::kLow, app::Resolution::kMedium, app::Resolution::kHigh, app::Resolution::kUltra}) {
     for (const app::Style style : {app::Style::kShort, app::Style::kShoulder, app::Style::kBob, app::Style::kPixie}) {
-      app::Scene scene = tiedScene("low", "idle_turns.bvh", resolution, style);
-      scene.playback.settle = 0;
-      EXPECT_NO_THROW(app::openScene(std::move(scene), 1.5))
+      const app::Scene scene = tiedScene("low", "idle_turns.bvh", resolution, style);
+      EXPECT_NO_THROW(app::makeActor(scene.characters[0], {}, cache))
           << app::styleName(style) << " " << app::resolutionName(resolution);
     }
   }
   // Columns that two ties divide where bundles of different lengths meet.
-  app::Scene two = tiedScene("two", "idle_turns.bvh", app::Resolution::kUltra, app::Style::kShoulder);
-  two.playback.settle = 0;
-  EXPECT_NO_THROW(app::openScene(std::move(two), 1.5));
+  const app::Scene two = tiedScene("two", "idle_turns.bvh", app::Resolution::kUltra, app::Style::kShoulder);
+  EXPECT_NO_THROW(app::makeActor(two.characters[0], {}, cache));
 }
 
 TEST(Ties, TheRingHoldsWithinAMillimetreInAHeadShakeAtFourTimesItsSpeed) {
@@ -108,15 +107,15 @@ TEST(PaintedLength, EveryResolutionTakesShortHairAndHardEdges) {
     app::writePng(file, static_cast<int>(greys.size()), 1, rgba);
     return file;
   };
+  app::AssetCache cache;  // one figure for all
   const std::string half = map("half", {128}), black = map("black", {0}), edge = map("edge", {255, 255, 0, 0});
   for (const app::Style style :
        {app::Style::kShort, app::Style::kShoulder, app::Style::kLong, app::Style::kBob, app::Style::kPixie}) {
     for (const app::Resolution resolution : {app::Resolution::kLow, app::Resolution::kMedium, app::Resolution::kHigh}) {
       for (const std::string& file : {half, black, edge}) {
         app::Scene scene = tiedScene("none", "idle_turns.bvh", resolution, style);
-        scene.playback.settle = 0;
         scene.characters[0].maps.length = file;
-        EXPECT_NO_THROW(app::openScene(std::move(scene), 1.5)) << app::styleName(style) << " " << file;
+        EXPECT_NO_THROW(app::makeActor(scene.characters[0], {}, cache)) << app::styleName(style) << " " << file;
       }
     }
   }
@@ -125,9 +124,11 @@ TEST(PaintedLength, EveryResolutionTakesShortHairAndHardEdges) {
 // Bundles that share columns, followed from one to the next: how many tails there are, of hair that would divide over
 // the shoulders.
 TEST(Ties, WhatATieTakesIsOneTail) {
-  const auto tails = [](const char* ties, app::Resolution resolution) {
-    const app::Demo demo = app::openScene(tiedScene(ties, "idle_turns.bvh", resolution), 1.5);
-    const sim::HairMeshShape& shape = demo.actors[0].haircut->mesh.shape;
+  app::AssetCache cache;  // one figure for all
+  const auto tails = [&](const char* ties, app::Resolution resolution) {
+    const app::Scene scene = tiedScene(ties, "idle_turns.bvh", resolution);
+    const app::Actor actor = app::makeActor(scene.characters[0], {}, cache);
+    const sim::HairMeshShape& shape = actor.haircut->mesh.shape;
     std::vector<int> of(static_cast<std::size_t>(shape.columnCount()));
     std::iota(of.begin(), of.end(), 0);
     for (bool changed = true; changed;) {

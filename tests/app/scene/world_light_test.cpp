@@ -54,12 +54,12 @@ render::LightInput lightOf(const std::string& motion) {
 
 // None of what the program comes with faces elsewhere.
 TEST(WorldLight, OwnScenesAreLitAsTheyAreWritten) {
+  app::AssetCache cache;
   for (const std::string& file : app::listAssets("scenes", {".json"})) {
     app::CharacterSpec spec = app::loadScene(file).characters.front();
     spec.style = app::Style::kShort;
     spec.resolution = app::Resolution::kLow;
     spec.hair.clear(), spec.attachments.clear(), spec.ties.clear(), spec.pins.clear();
-    app::AssetCache cache;
     EXPECT_EQ(app::makeActor(spec, {}, cache).front, 0) << file;
   }
 }
