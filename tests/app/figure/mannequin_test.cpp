@@ -32,8 +32,12 @@ std::vector<std::string> bvhFiles() {
   return files;
 }
 
-app::Mannequin grow(const std::string& file) {
-  return app::growMannequin(app::readBvh(app::readText(file), file), file);
+// Each file's once.
+const app::Mannequin& grow(const std::string& file) {
+  static std::map<std::string, app::Mannequin> grown;
+  const auto found = grown.find(file);
+  if (found != grown.end()) return found->second;
+  return grown.emplace(file, app::growMannequin(app::readBvh(app::readText(file), file), file)).first->second;
 }
 
 // One BVH joint line group.
@@ -121,7 +125,7 @@ double signedVolume(const app::SkinnedMesh& mesh) {
 class EveryClip : public testing::TestWithParam<std::string> {};
 
 TEST_P(EveryClip, GrowsAClosedOutwardBodyWithSaneWeights) {
-  const app::Mannequin m = grow(GetParam());
+  const app::Mannequin& m = grow(GetParam());
   expectClosedAndWound(m.mesh);
   const double height = m.field.figure.height;
   EXPECT_GT(height, 1.35);
@@ -155,7 +159,7 @@ TEST_P(EveryClip, GrowsAClosedOutwardBodyWithSaneWeights) {
 }
 
 TEST_P(EveryClip, VerticesLieOnTheField) {
-  const app::Mannequin m = grow(GetParam());
+  const app::Mannequin& m = grow(GetParam());
   std::size_t off = 0;
   for (const auto& p : m.mesh.positions)
     if (std::abs(m.field.value(p.cast<double>())) > 5e-4) ++off;
@@ -163,7 +167,7 @@ TEST_P(EveryClip, VerticesLieOnTheField) {
 }
 
 TEST_P(EveryClip, HeadFrameIsRightHandedUprightAndFacesTheToes) {
-  const app::Mannequin m = grow(GetParam());
+  const app::Mannequin& m = grow(GetParam());
   EXPECT_NEAR(m.head_frame.linear().determinant(), 1, 1e-9);
   const Rigid rest = m.skeleton.joints[m.roles.head].rest_world * m.head_frame;
   EXPECT_GT(rest.linear().col(1).y(), 0.999);
@@ -178,7 +182,7 @@ TEST_P(EveryClip, HeadFrameIsRightHandedUprightAndFacesTheToes) {
 TEST_P(EveryClip, ClipStaysUpTheRightWayAndFacesItsToesWhileStanding) {
   const std::string file = GetParam();
   const app::BvhMotion motion = app::readBvh(app::readText(file), file);
-  const app::Mannequin m = app::growMannequin(motion, file);
+  const app::Mannequin& m = grow(file);
   app::Pose pose;
   app::samplePose(m.skeleton, motion.clip, 0, pose);
   const Rigid head = pose.world[m.roles.head] * m.head_frame;
@@ -197,7 +201,7 @@ TEST_P(EveryClip, ClipStaysUpTheRightWayAndFacesItsToesWhileStanding) {
 }
 
 TEST_P(EveryClip, SkullIsRigid) {
-  const app::Mannequin m = grow(GetParam());
+  const app::Mannequin& m = grow(GetParam());
   std::size_t skull = 0;
   for (std::size_t v = 0; v < m.mesh.positions.size(); ++v) {
     const Vec3 q = m.field.toHead(m.mesh.positions[v].cast<double>());
@@ -210,7 +214,7 @@ TEST_P(EveryClip, SkullIsRigid) {
 }
 
 TEST_P(EveryClip, TheGarmentCoversTrunkAndThighsAndLeavesFaceAndHandsBare) {
-  const app::Mannequin m = grow(GetParam());
+  const app::Mannequin& m = grow(GetParam());
   const app::Figure& f = m.field.figure;
   ASSERT_EQ(m.mesh.cloth.size(), m.mesh.positions.size());
   // The garment at the vertex nearest to a place.
@@ -238,7 +242,7 @@ TEST_P(EveryClip, TheGarmentCoversTrunkAndThighsAndLeavesFaceAndHandsBare) {
 }
 
 TEST_P(EveryClip, LimbsDoNotWeldToTheTrunkOrToEachOther) {
-  const app::Mannequin m = grow(GetParam());
+  const app::Mannequin& m = grow(GetParam());
   const auto weightOf = [&](std::size_t v, int joint) {
     double w = 0;
     for (int k = 0; k < 4; ++k)
