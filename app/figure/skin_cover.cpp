@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kMaxSamples = 3000;
 constexpr int kMoments = 24;         // of all clips together, beside the rest pose
+constexpr float kFarGap = 0.05f;     // m: all larger gaps are kept as this
 constexpr double kCovered = 0.0018;  // m: skin that sticks out less is covered
 constexpr double kPatch = 0.40;      // head heights: radius of the patch that an added ellipsoid begins with
 constexpr double kSmaller = 0.6;     // of that, for a patch whose ellipsoid swallows too much
@@ -37,7 +38,10 @@ class Cover {
   Gaps gapsOf(const BodyEllipsoid& e) const { return gapsAt(e, skin_.world.size()); }
   Gaps restGapsOf(const BodyEllipsoid& e) const { return gapsAt(e, 1); }
   Gaps gapsAt(const BodyEllipsoid& e, std::size_t moments) const;
-  void findNearest();
+  float gapAt(const BodyEllipsoid& e, std::size_t place) const {
+    return static_cast<float>(ellipsoidGap(e, skin_.inJoint(place, e.joint)));
+  }
+  void findNearest(std::size_t first);
   void findNearer(std::size_t e);
   void leaveOutHidden();
   std::vector<CoverPoint> pointsFor(const BodyEllipsoid& e, const Gaps& gaps, int number,
@@ -56,12 +60,18 @@ class Cover {
   std::vector<Gaps> gaps_;                     // per ellipsoid
   std::vector<float> nearest_gap_, head_gap_;  // per place; at rest, to the given ones, per sample
   std::vector<int> nearest_;                   // the ellipsoid, per place
-  std::vector<unsigned char> given_up_;        // per sample
+  std::vector<float> given_gap_;               // both as the given ones alone leave them
+  std::vector<int> given_nearest_;
+  std::vector<unsigned char> given_up_;  // per sample
 };
 
 Cover::Cover(Character& character) : character_(character), skin_(poseSkin(character, kMaxSamples, kMoments)) {
   for (const BodyEllipsoid& e : character_.ellipsoids) gaps_.push_back(gapsOf(e));
-  findNearest();
+  nearest_gap_.assign(skin_.reached.size(), 1e9f);
+  nearest_.assign(nearest_gap_.size(), -1);
+  findNearest(0);
+  given_gap_ = nearest_gap_;
+  given_nearest_ = nearest_;
   head_gap_.assign(nearest_gap_.begin(), nearest_gap_.begin() + static_cast<std::ptrdiff_t>(skin_.samples.size()));
   given_up_.resize(skin_.samples.size(), 0);
   leaveOutHidden();
@@ -89,19 +99,32 @@ void Cover::leaveOutHidden() {
 
 // At the first `moments`, of which number 0 is the rest pose.
 Gaps Cover::gapsAt(const BodyEllipsoid& e, std::size_t moments) const {
+  // A gap is at least (distance / largest radius - 1) times the smallest.
+  const double beyond = e.radii.maxCoeff() * (1 + kFarGap / e.radii.minCoeff());
   Gaps gaps;
   gaps.reserve(moments * skin_.samples.size());
   for (std::size_t m = 0; m < moments; ++m) {
     const Rigid& to_joint = skin_.to_joint[m][static_cast<std::size_t>(e.joint)];
-    for (const Vec3& p : skin_.world[m]) gaps.push_back(static_cast<float>(ellipsoidGap(e, to_joint * p)));
+    for (const Vec3& world : skin_.world[m]) {
+      const Vec3 p = to_joint * world;
+      const bool far = (p - e.center).squaredNorm() > beyond * beyond;
+      gaps.push_back(far ? kFarGap : static_cast<float>(ellipsoidGap(e, p)));
+    }
   }
   return gaps;
 }
 
-void Cover::findNearest() {
-  nearest_gap_.assign(skin_.reached.size(), 1e9f);
-  nearest_.assign(nearest_gap_.size(), -1);
-  for (std::size_t e = 0; e < gaps_.size(); ++e) findNearer(e);
+void Cover::findNearest(std::size_t first) {
+  for (std::size_t e = first; e < gaps_.size(); ++e) findNearer(e);
+  // What is far from all is asked for after all.
+  for (std::size_t i = 0; i < nearest_gap_.size(); ++i) {
+    if (nearest_gap_[i] < kFarGap) continue;
+    nearest_gap_[i] = 1e9f;
+    for (std::size_t e = 0; e < gaps_.size(); ++e) {
+      const float gap = gapAt(character_.ellipsoids[e], i);
+      if (gap < nearest_gap_[i]) nearest_gap_[i] = gap, nearest_[i] = static_cast<int>(e);
+    }
+  }
 }
 
 void Cover::findNearer(std::size_t e) {
@@ -224,8 +247,8 @@ bool Cover::add(std::size_t place) {
     if (!e) continue;
     character_.ellipsoids.push_back(*e);
     gaps_.push_back(gapsOf(*e));
-    if (gaps_.back()[place] < 0.5f * before) {
-      findNearer(gaps_.size() - 1);
+    if (gapAt(*e, place) < 0.5f * before) {
+      findNearest(gaps_.size() - 1);
       return true;
     }
     character_.ellipsoids.pop_back();
@@ -244,7 +267,10 @@ void Cover::refitAdded(std::size_t given) {
   for (std::size_t e = given; e < due.size(); ++e) {
     if (due[e]) any = refit(e) || any;
   }
-  if (any) findNearest();
+  if (!any) return;
+  nearest_gap_ = given_gap_;
+  nearest_ = given_nearest_;
+  findNearest(given);
 }
 
 // m, of the rest pose's samples: the mean of how far they lie inside.
