@@ -16,6 +16,7 @@ constexpr double kMinEdge = 0.001;              // m
 constexpr double kOffBody = 0.002;              // m, or as near as it is
 constexpr int kHalvings = 8, kStrokeUntanglings = 24;  // of a stroke that goes too far, before what it spoils stays
 constexpr double kMoved = 1e-7;                        // m
+constexpr double kBend = 2;  // radii along the hair over which a move goes from nothing to all of its way
 
 Brush onOtherSide(Brush brush) {
   brush.at = mirrored(brush.at, *brush.mirror);
@@ -49,7 +50,8 @@ ShapeBrushes::ShapeBrushes(const sim::HairMesh& mesh) {
     neighbours_.insert(neighbours_.end(), list.begin(), list.end());
     neighbour_first_.push_back(static_cast<int>(neighbours_.size()));
   }
-  weight_.resize(of.size()), share_.resize(of.size()), wanted_.resize(of.size()), touched_.resize(of.size());
+  weight_.resize(of.size()), share_.resize(of.size()), wanted_.resize(of.size()), touched_.resize(of.size()),
+      went_.resize(of.size());
 }
 
 void ShapeBrushes::reach(const Brush& brush, const sim::HairMesh& mesh, std::span<const Vec3> seen) {
@@ -189,7 +191,24 @@ double atLeast(double bound, double present) {
 
 }  // namespace
 
-void ShapeBrushes::limit(const sim::HairMesh& mesh, const std::function<double(const Vec3&)>& body,
+// Hair around what had to stay stays with it: along an edge the share of the way grows by its length over `spread` (m).
+void ShapeBrushes::holdBack(const sim::HairMesh& mesh, double spread) {
+  const std::vector<Vec3>& x = mesh.shape.positions;
+  std::vector<std::size_t> held;
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    if (touched_[v]) held.push_back(v);
+  }
+  for (std::size_t next = 0; next < held.size(); ++next) {
+    const std::size_t v = held[next];
+    for (int k = neighbour_first_[v]; k < neighbour_first_[v + 1]; ++k) {
+      const auto u = static_cast<std::size_t>(neighbours_[static_cast<std::size_t>(k)]);
+      const double most = share_[v] + (x[u] - x[v]).norm() / spread;
+      if (share_[u] > most) share_[u] = most, held.push_back(u);
+    }
+  }
+}
+
+void ShapeBrushes::limit(double spread, const sim::HairMesh& mesh, const std::function<double(const Vec3&)>& body,
                          std::vector<Vec3>& positions) {
   const std::vector<Vec3>& x = mesh.shape.positions;
   const std::size_t n = x.size();
@@ -240,10 +259,12 @@ void ShapeBrushes::limit(const sim::HairMesh& mesh, const std::function<double(c
       const double distance = body(positions[v]);
       if (distance < kOffBody && distance < body(x[v])) spoilt(static_cast<int>(v));
     }
+    std::copy(share_.begin(), share_.end(), went_.begin());
     for (std::size_t v = 0; v < n; ++v) {
-      moves[v] = touched_[v] && share_[v] > 0;
       if (touched_[v]) share_[v] = round < kHalvings ? 0.5 * share_[v] : 0;
     }
+    if (spread > 0) holdBack(mesh, spread);
+    for (std::size_t v = 0; v < n; ++v) moves[v] = share_[v] != went_[v];
   }
   if (!valid) positions.assign(x.begin(), x.end());
 }
@@ -285,14 +306,14 @@ int ShapeBrushes::apply(const Brush& brush, const sim::HairMesh& mesh, std::span
   }
   const bool scales = brush.tool == BrushTool::kCut || brush.tool == BrushTool::kGrow;
   if (!scales) keepLengths(mesh);
-  return finish(mesh, body, positions);
+  return finish(0, mesh, body, positions);
 }
 
-int ShapeBrushes::finish(const sim::HairMesh& mesh, const std::function<double(const Vec3&)>& body,
+int ShapeBrushes::finish(double spread, const sim::HairMesh& mesh, const std::function<double(const Vec3&)>& body,
                          std::vector<Vec3>& positions) {
   const std::vector<Vec3>& x = mesh.shape.positions;
   positions.assign(x.begin(), x.end());
-  limit(mesh, body, positions);
+  limit(spread, mesh, body, positions);
   int moved = 0;
   for (std::size_t v = 0; v < x.size(); ++v) moved += (positions[v] - x[v]).squaredNorm() > kMoved * kMoved;
   return moved;
@@ -349,14 +370,19 @@ int ShapeBrushes::move(const HairMove& move, const sim::HairMesh& mesh, std::spa
   std::vector<double> there;
   if (move.mirror) there = reachAround(acrossMirror(move, mesh), seen, move.radius, move.falloff);
   const Vec3 other(-move.along.x(), move.along.y(), move.along.z());
+  const double spread = kBend * move.radius;
+  double from_root = 0;  // m, along the column
   for (std::size_t v = 0; v < x.size(); ++v) {
-    if (mesh.isRoot(static_cast<int>(v))) continue;
+    from_root = mesh.isRoot(static_cast<int>(v)) ? 0 : from_root + (x[v] - x[v - 1]).norm();
+    if (from_root == 0) continue;
+    const double share = move.bends && from_root < spread ? from_root / spread : 1;
     const double a = here[v], b = there.empty() ? 0 : there[v];
-    const double free = move.frozen.empty() ? 1 : 1 - static_cast<double>(move.frozen[v]);
+    const double thawed = move.frozen.empty() ? 1 : 1 - static_cast<double>(move.frozen[v]);
+    const double free = thawed * share * share * (3 - 2 * share);
     // What both sides lead goes between the two ways.
     if (a > 0 || b > 0) wanted_[v] += free / std::max(1.0, a + b) * (a * move.along + b * other);
   }
-  return finish(mesh, body, positions);
+  return finish(spread, mesh, body, positions);
 }
 
 }  // namespace app

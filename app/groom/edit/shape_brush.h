@@ -57,11 +57,13 @@ double brushReach(const Brush& brush, const Vec3& seen);
 // The vertex of the same layer nearest to where the plane x = `plane` (m) mirrors one, at rest.
 int likeAcross(int vertex, double plane, const sim::HairMesh& mesh);
 
-// Vertices that a hand leads, and the hair around them that follows. Lengths follow too.
+// Vertices that a hand leads, and the hair around them that follows. Lengths follow too. Where one has to stop, those
+// within two radii of it along the edges go less of their way as well: hair bends there and has no kink.
 struct HairMove {
   std::vector<int> vertices;          // that go all of the way
   Vec3 along = Vec3::Zero();          // m
   double radius = 0.04, falloff = 1;  // of the hair around, as a brush's
+  bool bends = false;                 // whole columns are led: their way grows from none at the root over two radii
   std::optional<double> mirror;       // x of the plane across which hair goes the mirrored way
   std::span<const float> frozen{};    // as a brush's
 };
@@ -87,6 +89,7 @@ class ShapeBrushes {
   std::vector<int> neighbour_first_, neighbours_;  // of each vertex: within its layer, and in its column
   std::vector<double> weight_, share_;             // scratch: reach; how much of its way each vertex goes
   std::vector<Vec3> wanted_;
+  std::vector<double> went_;
   std::vector<unsigned char> touched_;
   std::vector<int> tets_;
 
@@ -98,8 +101,11 @@ class ShapeBrushes {
   void aboutHair(BrushTool tool, const sim::HairMesh& mesh);
   void scaleColumns(const Brush& brush, const sim::HairMesh& mesh, std::span<const Vec3> seen);
   void keepLengths(const sim::HairMesh& mesh);
-  int finish(const sim::HairMesh& mesh, const std::function<double(const Vec3&)>& body, std::vector<Vec3>& positions);
-  void limit(const sim::HairMesh& mesh, const std::function<double(const Vec3&)>& body, std::vector<Vec3>& positions);
+  int finish(double spread, const sim::HairMesh& mesh, const std::function<double(const Vec3&)>& body,
+             std::vector<Vec3>& positions);
+  void holdBack(const sim::HairMesh& mesh, double spread);
+  void limit(double spread, const sim::HairMesh& mesh, const std::function<double(const Vec3&)>& body,
+             std::vector<Vec3>& positions);
 };
 
 }  // namespace app

@@ -105,6 +105,7 @@ void applyMove(const MoveSample& sample, int index, Demo& demo) {
   if (move.vertices.empty())
     throw InputError("", "the move", "has nothing to move", "choose hair beyond the roots, which the scalp carries");
   move.along = sample.along, move.radius = sample.radius, move.falloff = sample.falloff;
+  move.bends = sample.element == MeshElement::kColumn;
   if (sample.mirror) move.mirror = actor.body->character.scalp.center.x();
   move.frozen = actor.haircut->frozen;
   const std::vector<Vec3> seen = seenFromScalp(actor);
