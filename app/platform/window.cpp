@@ -8,11 +8,13 @@
 #include <imgui/imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <cfloat>
 #include <cmath>
 #include <functional>
 #include <iostream>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "app/debug_option.h"
@@ -93,6 +95,8 @@ struct Session {
   InputQueue input = {};
   PartGlide glide = {};  // of the figure's part of the window
   double mouse_x = 0, mouse_y = 0;
+  std::array<bool, 5> buttons{};    // that are down in this frame, for the panels
+  std::optional<ImVec2> pointer{};  // where one of them changed in this frame, px
   double light_x = 0, light_y = 0;  // where a drag of the key light began
   render::Float3 light_from{};      // the way to it there
   bool other_scale = false;         // the window has come to a display of another density
@@ -167,9 +171,22 @@ void queueCharacter(GLFWwindow* window, unsigned character) {
   session(window).input.add({0, character});
 }
 
-// What one frame can take of the keys that have come; see InputQueue.
+void queueButton(GLFWwindow* window, int button, int action, int) {
+  Session& s = session(window);
+  if (button < static_cast<int>(s.buttons.size()))
+    s.input.add({mouseKey(button), 0, 0, action, 0, s.mouse_x, s.mouse_y});
+}
+
+void feedButton(const InputEvent& event, Session& s) {
+  s.buttons[static_cast<std::size_t>(mouseKey(event.key))] = event.action == GLFW_PRESS;
+  s.pointer = ImVec2(static_cast<float>(event.x), static_cast<float>(event.y));
+}
+
+// What one frame can take of the keys and buttons that have come; see InputQueue.
 void feedInput(GLFWwindow* window) {
+  session(window).pointer.reset();
   session(window).input.feed([&](const InputEvent& event) {
+    if (event.key < 0) return feedButton(event, session(window));
     if (event.key == 0) return ImGui_ImplGlfw_CharCallback(window, event.character);
     onKey(window, event.key, event.scancode, event.action, event.modifiers);
     ImGui_ImplGlfw_KeyCallback(window, event.key, event.scancode, event.action, event.modifiers);
@@ -202,13 +219,16 @@ struct PanelBackends {
   PanelBackends& operator=(const PanelBackends&) = delete;
 };
 
-// The pointer outside of the window points at nothing; a drag goes on there.
+// The pointer outside of the window points at nothing; a drag goes on there. A button changes where the pointer was.
 void beginPanels(GLFWwindow* window) {
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGuiIO& io = ImGui::GetIO();
+  const Session& s = session(window);
+  std::ranges::copy(s.buttons, io.MouseDown);
   const bool held = std::ranges::any_of(io.MouseDown, [](bool down) { return down; });
   if (!held && !glfwGetWindowAttrib(window, GLFW_HOVERED)) io.MousePos = {-FLT_MAX, -FLT_MAX};
+  if (s.pointer) io.MousePos = *s.pointer;
   ImGui::NewFrame();
 }
 
@@ -239,10 +259,11 @@ void setCallbacks(GLFWwindow* window, Session& s) {
   glfwSetWindowContentScaleCallback(window, onScale);
 }
 
-// After the panels' backend has set its own: keys reach it by the queue.
+// After the panels' backend has set its own: keys and mouse buttons reach it by the queue.
 void setKeyCallbacks(GLFWwindow* window) {
   glfwSetKeyCallback(window, queueKey);
   glfwSetCharCallback(window, queueCharacter);
+  glfwSetMouseButtonCallback(window, queueButton);
 }
 
 float textScale(GLFWwindow* window) {

@@ -1,5 +1,5 @@
-// Keys and characters on their way to Dear ImGui, whose version 1.86 sees only what is held down when a frame begins: a
-// key tapped between two frames would be lost. What comes too fast for one frame waits for the next.
+// Keys, characters and mouse buttons on their way to Dear ImGui, whose version 1.86 sees only what is held down when a
+// frame begins: a key tapped between two frames would be lost. What comes too fast for one frame waits for the next.
 #pragma once
 
 #include <algorithm>
@@ -10,28 +10,36 @@
 namespace app {
 
 struct InputEvent {
-  int key = 0;             // of GLFW; 0: a character
+  int key = 0;             // of GLFW; 0: a character; below: mouseKey(button)
   unsigned character = 0;  // code point
   int scancode = 0, action = 0, modifiers = 0;
+  double x = 0, y = 0;  // px, where the pointer was as a mouse button changed
 };
+
+// The key that stands for a mouse button, 0 to 4, and back.
+constexpr int mouseKey(int button) {
+  return -1 - button;
+}
 
 class InputQueue {
  public:
   void add(const InputEvent& event) { events_.push_back(event); }
   bool empty() const { return events_.empty(); }
 
-  // Hands the next frame's events to `give`, in order: each key changes at most once, and a key other than the one that
-  // a character comes from does not share a frame with characters after it, so that typing and editing keep their order.
+  // Hands the next frame's events to `give`, in order: each key changes at most once, and one mouse button in all, for
+  // the pointer is at one place in a frame. A key other than the one that a character comes from does not share a frame
+  // with characters after it, so that typing and editing keep their order.
   template <class Give>
   void feed(Give&& give) {
     std::vector<int> changed;
-    bool edited = false;
+    bool edited = false, clicked = false;
     while (!events_.empty()) {
       const InputEvent event = events_.front();
       const bool again = event.key != 0 && std::find(changed.begin(), changed.end(), event.key) != changed.end();
-      if (again || (event.key == 0 && edited)) return;
+      if (again || (event.key == 0 && edited) || (event.key < 0 && clicked)) return;
       events_.pop_front();
       if (event.key != 0) changed.push_back(event.key);
+      clicked = clicked || event.key < 0;
       edited = edited || (event.key >= kFirstEditing && event.key <= kLastEditing && event.action != 0);
       give(event);
     }

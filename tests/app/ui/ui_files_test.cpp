@@ -318,6 +318,24 @@ TEST(InputQueue, ATapBetweenTwoFramesIsSeenAndTypingKeepsItsOrder) {
   EXPECT_EQ(frames[3][2].character, unsigned('b'));
 }
 
+TEST(InputQueue, AClickBetweenTwoFramesIsSeenWhereItWas) {
+  app::InputQueue queue;
+  queue.add({app::mouseKey(0), 0, 0, 1, 0, 10, 20});
+  queue.add({app::mouseKey(0), 0, 0, 0, 0, 11, 21});
+  queue.add({app::mouseKey(1), 0, 0, 1, 0, 11, 21});
+  std::vector<std::vector<app::InputEvent>> frames;
+  while (!queue.empty()) {
+    frames.emplace_back();
+    queue.feed([&](const app::InputEvent& event) { frames.back().push_back(event); });
+  }
+  ASSERT_EQ(frames.size(), 3u) << "one place of the pointer a frame";
+  EXPECT_EQ(frames[0][0].action, 1);
+  EXPECT_EQ(frames[0][0].x, 10);
+  EXPECT_EQ(frames[1][0].action, 0);
+  EXPECT_EQ(frames[1][0].y, 21);
+  EXPECT_EQ(app::mouseKey(frames[2][0].key), 1);
+}
+
 TEST(InputQueue, ShiftGoesWithTheCharacterThatItMakes) {
   app::InputQueue queue;
   constexpr int kLeftShift = 340;
