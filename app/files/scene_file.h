@@ -91,7 +91,8 @@ struct Scene {
   SceneLook look;
   sim::SimParams sim;
   PlaybackSpec playback;
-  SkipSet skips;  // not of the file: a scene means the same whatever is skipped
+  SkipSet skips;       // not of the file: a scene means the same whatever is skipped
+  std::string preset;  // not of the file: that a person chose last, a file's name; empty: none
 };
 
 // Bounds that a scene is held to.

@@ -32,7 +32,9 @@ void showMessage(const std::string& text, Demo& demo) {
 void changePreset(const std::string& name, Demo& demo) {
   std::vector<CharacterLook*> looks;
   for (Actor& actor : demo.actors) looks.push_back(&actor.spec.look);
-  loadPreset(presetFile(name, ""), {&demo.scene.sim, &demo.scene.look, looks});
+  const std::string file = presetFile(name, "");
+  loadPreset(file, {&demo.scene.sim, &demo.scene.look, looks});
+  demo.scene.preset = file;
   showMessage("preset " + stem(name), demo);
 }
 
@@ -249,6 +251,7 @@ void setDeadline(const Request& request, Demo& demo) {
 void savePreset(const Request& request, Demo& demo) {
   writeFile(request.text,
             writePreset(stem(request.text), demo.scene.sim, selectedActor(demo).spec.look, demo.scene.look));
+  demo.scene.preset = request.text;
   showMessage("saved " + request.text, demo);
 }
 

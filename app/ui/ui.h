@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -58,7 +59,6 @@ struct SelectState {
 
 // The parameters as a preset left them, to tell whether they have been changed since.
 struct PresetMark {
-  std::string file;      // empty: no preset was chosen
   bool arriving = true;  // it is applied with the next frame's requests
   sim::SimParams sim;
   CharacterLook hair;
@@ -110,8 +110,8 @@ struct UiState {
   ImFont* heading = nullptr;
   std::array<char, 512> motion_path{}, parts_path{}, hair_path{}, scene_path{};
   std::array<char, 64> preset_name{}, search{};
-  PresetMark preset;
-  std::vector<std::string> presets_in_sight;  // files whose pictures the last frame has shown, or would have
+  std::map<std::string, PresetMark> preset_marks;  // by file, of those that were chosen
+  std::vector<std::string> presets_in_sight;       // files whose pictures the last frame has shown, or would have
   std::vector<PresetPicture> preset_pictures;
   std::string scoped_preset, preset_scope;  // the preset under the pointer, and what it changes, in words
   std::string to_replace;                   // a file that is there already and is written on the second press

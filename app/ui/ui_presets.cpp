@@ -28,8 +28,7 @@ void savePreset(Demo& demo, UiState& ui) {
     return;
   }
   ui.to_replace.clear();
-  ui.preset = {};
-  ui.preset.file = file;
+  ui.preset_marks.erase(file);
   postRequest(demo, {Ask::kSavePreset, "", file});
   if (std::find(ui.presets.begin(), ui.presets.end(), file) == ui.presets.end()) ui.presets.push_back(file);
 }
@@ -40,8 +39,10 @@ bool sameRows(std::span<const Field> table, const Owner& a, const Owner& b) {
 }
 
 // The chosen preset's name, and whether a parameter has been changed since.
-std::string presetTitle(const Demo& demo, PresetMark& preset) {
-  if (preset.file.empty()) return "choose...";
+std::string presetTitle(const Demo& demo, UiState& ui) {
+  const std::string& file = demo.scene.preset;
+  if (file.empty()) return "choose...";
+  PresetMark& preset = ui.preset_marks[file];
   const CharacterLook& hair = selectedActor(demo).spec.look;
   if (preset.arriving) {
     preset.arriving = !demo.requests.empty();
@@ -51,7 +52,7 @@ std::string presetTitle(const Demo& demo, PresetMark& preset) {
   }
   const bool same = sameRows(sim::paramFields(), demo.scene.sim, preset.sim) &&
                     sameRows(hairFields(), hair, preset.hair) && sameRows(sceneFields(), demo.scene.look, preset.scene);
-  return readable(stem(preset.file)) + (same ? "" : ", changed");
+  return readable(stem(file)) + (same ? "" : ", changed");
 }
 
 // What choosing a preset changes, in words.
@@ -73,8 +74,7 @@ std::string scopeOf(const std::string& file) {
 }
 
 void choosePreset(const std::string& file, Demo& demo, UiState& ui) {
-  ui.preset = {};
-  ui.preset.file = file;
+  ui.preset_marks.erase(file);
   postRequest(demo, {Ask::kPresetFile, "", file});
 }
 
@@ -120,7 +120,7 @@ void pictureGrid(Demo& demo, UiState& ui) {
       const std::string& file = ui.presets[k];
       if (k % kPicturesAcross != 0) ImGui::SameLine();
       ImGui::PushID(file.c_str());
-      const bool chosen = file == ui.preset.file;
+      const bool chosen = file == demo.scene.preset;
       if (ImGui::Selectable("##picture", false, 0, {side, height})) choosePreset(file, demo, ui);
       noteItem("preset_picture " + stem(file), ui);
       presetTip(file, ui);
@@ -137,7 +137,7 @@ void pictureGrid(Demo& demo, UiState& ui) {
 
 void presetCombo(Demo& demo, UiState& ui) {
   rowLabel("Preset", "Sets the groups of parameters that it names: what it leaves out of them takes its default");
-  const std::string shown = presetTitle(demo, ui.preset);
+  const std::string shown = presetTitle(demo, ui);
   const std::string file = fileCombo("##preset", shown, ui.presets, ui);
   noteItem("preset " + shown, ui);
   if (!file.empty()) choosePreset(file, demo, ui);

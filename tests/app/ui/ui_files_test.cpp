@@ -246,7 +246,7 @@ TEST_F(Panels, LoadingIsToldAsLongAsItGoesOn) {
 
 TEST_F(Panels, ThePresetBoxSaysWhatWasChosenAndWhetherItWasChanged) {
   openTab(0);
-  ui_.preset.file = app::dataPath("assets/presets/soft.json");
+  demo_.scene.preset = app::dataPath("assets/presets/soft.json");
   frame();
   EXPECT_NE(find("preset Soft"), nullptr);
   demo_.scene.sim.density += 1;
@@ -255,6 +255,25 @@ TEST_F(Panels, ThePresetBoxSaysWhatWasChosenAndWhetherItWasChanged) {
   demo_.scene.sim.density -= 1;
   frame();
   EXPECT_NE(find("preset Soft"), nullptr);
+}
+
+TEST_F(Panels, ThePresetBoxFollowsUndoAndRedo) {
+  openTab(0);
+  const auto apply = [&](std::vector<app::Request> requests) {
+    demo_.requests = std::move(requests);
+    app::advanceFrame(demo_, 0, {});
+    frame();
+  };
+  apply({{app::Ask::kPresetFile, "", app::dataPath("assets/presets/soft.json")}});
+  EXPECT_NE(find("preset Soft"), nullptr);
+  apply({{app::Ask::kPresetFile, "", app::dataPath("assets/presets/stiff.json")}});
+  EXPECT_NE(find("preset Stiff"), nullptr);
+  apply({{app::Ask::kUndo, "", "", 1}});
+  EXPECT_NE(find("preset Soft"), nullptr);
+  apply({{app::Ask::kUndo, "", "", 1}});
+  EXPECT_NE(find("preset choose..."), nullptr);
+  apply({{app::Ask::kRedo, "", "", 2}});
+  EXPECT_NE(find("preset Stiff"), nullptr);
 }
 
 TEST_F(Panels, TheSceneBoxNamesAMotionThatIsNotTheScenes) {
