@@ -250,11 +250,9 @@ std::size_t EditSide::bytes() const {
 std::optional<EditStep> beginEdit(const Request& request, const Demo& demo) {
   const EditKind* kind = kindOf(request.what);
   if (!kind) return {};
-  const EditHistory& history = demo.edits;
-  if (kind->drags && history.gesture && history.done == history.steps.size() && history.done > 0) {
-    const Request& last = history.steps.back().request;
-    if (last.what == request.what && last.name == request.name) return EditStep{titleOf(request, *kind), request, {}};
-  }
+  const bool further = kind->drags && goesOn(request.what, demo.edits);
+  if (further && demo.edits.steps.back().request.name == request.name)
+    return EditStep{titleOf(request, *kind), request, {}};
   return EditStep{titleOf(request, *kind), request, sideOf(demo, kind->reach)};
 }
 
@@ -273,6 +271,11 @@ void commitEdit(EditStep step, EditHistory& history) {
   keep = std::min(keep, history.steps.size() - 1);
   history.steps.erase(history.steps.begin(), history.steps.begin() + static_cast<std::ptrdiff_t>(keep));
   history.done = history.steps.size();
+}
+
+bool goesOn(Ask what, const EditHistory& history) {
+  return history.gesture && history.done == history.steps.size() && history.done > 0 &&
+         history.steps.back().request.what == what;
 }
 
 void forgetEdit(long number, EditHistory& history) {

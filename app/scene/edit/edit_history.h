@@ -1,5 +1,5 @@
-// Undo and redo of what requests change: parameters, presets, files, look, and what they do to hair and motion. Moves of
-// the camera are none of these steps; scenes, projects, states and motions that bring a view with them give it back.
+// Undo and redo of what requests change: parameters, presets, files, look, and what they do to hair and motion. Moves
+// of the camera are none of these steps; scenes, projects, states and motions that bring a view with them give it back.
 //
 // A step holds the side of the edit that is not on the screen: what was before it while it is done, what was after it
 // while it is undone. Time is not part of it: where the figure has moved on since, hair that an edit had changed comes
@@ -64,6 +64,9 @@ inline constexpr std::size_t kMaxEditBytes = std::size_t{256} << 20;
 std::optional<EditStep> beginEdit(const Request& request, const Demo& demo);
 // After it has been applied without a fault. What was undone before it is gone.
 void commitEdit(EditStep step, EditHistory& history);
+
+// Whether the last step is a gesture of this kind that goes on: a stroke after its first sample.
+bool goesOn(Ask what, const EditHistory& history);
 
 // Takes a step out that has changed nothing after all: what it asked for could not be loaded.
 void forgetEdit(long number, EditHistory& history);

@@ -215,8 +215,9 @@ void applyBrush(const BrushSample& sample, int index, Demo& demo) {
   brush.radius = sample.radius, brush.strength = sample.strength, brush.falloff = sample.falloff;
   brush.centre = actor.body->character.scalp.center;
   if (sample.mirror) brush.mirror = brush.centre.x();
-  if (std::ranges::none_of(seen, [&](const Vec3& p) { return brushReach(brush, p) > 0; }))
-    throw InputError("", "the brush", "reaches no hair", "move it onto the hair, or make it larger");
+  const bool off_hair = std::ranges::none_of(seen, [&](const Vec3& p) { return brushReach(brush, p) > 0; });
+  if (off_hair && goesOn(Ask::kBrush, demo.edits)) return;
+  if (off_hair) throw InputError("", "the brush", "reaches no hair", "move it onto the hair, or make it larger");
   if (sample.tool == BrushTool::kFreeze || sample.tool == BrushTool::kThaw)
     return paintFrozen(brush, seen, index, demo);
   brush.frozen = actor.haircut->frozen;

@@ -191,8 +191,9 @@ PaintSample parsePaint(const std::string& field, const std::string& text) {
 void applyPaint(const PaintSample& sample, int index, Demo& demo) {
   const Actor& actor = demo.actors[static_cast<std::size_t>(index)];
   const std::vector<TouchedRoot> roots = touchedRoots(sample, actor);
-  if (std::ranges::none_of(roots, [](const TouchedRoot& root) { return root.weight > kNothing; }))
-    throw InputError("", "the paint", "reaches no hair", "move it onto the hair, or make the brush larger");
+  const bool off_hair = std::ranges::none_of(roots, [](const TouchedRoot& root) { return root.weight > kNothing; });
+  if (off_hair && goesOn(Ask::kPaint, demo.edits)) return;
+  if (off_hair) throw InputError("", "the paint", "reaches no hair", "move it onto the hair, or make the brush larger");
   FieldFiles maps = actor.spec.maps;
   std::string& picture = *findMap(sample.field, maps);
   picture = painted(sample, roots, picture);

@@ -159,6 +159,20 @@ TEST(GroomBrush, TwoSecondsAfterAnEditNothingHasDrooped) {
   EXPECT_LT(most, 0.05 * actor.haircut->mesh.hair_length);
 }
 
+TEST(GroomBrush, AStrokeThatSlidesOffTheHairIsNoFault) {
+  app::Demo demo = app::openScene(sceneOf(app::Resolution::kLow, "idle_turns.bvh"), 1.5);
+  int tip = 0;
+  demo.requests = {sampleAt(app::BrushTool::kComb, frontTip(demo, tip), {0.01, 0, 0})};
+  app::advanceFrame(demo, 0, {});
+  demo.requests = {sampleAt(app::BrushTool::kComb, {3, 3, 3}, {0.01, 0, 0})};
+  app::advanceFrame(demo, 0, {});
+  EXPECT_FALSE(demo.message_is_fault) << demo.message;
+  EXPECT_EQ(demo.edits.steps.size(), 1u);
+  demo.requests = {{app::Ask::kEndGesture, "", ""}, sampleAt(app::BrushTool::kComb, {3, 3, 3}, {0.01, 0, 0})};
+  app::advanceFrame(demo, 0, {});
+  EXPECT_TRUE(demo.message_is_fault) << "a stroke that never touched hair";
+}
+
 TEST(GroomBrush, OffTheHairItSaysSoAndChangesNothing) {
   app::Demo demo = app::openScene(sceneOf(app::Resolution::kLow, "idle_turns.bvh"), 1.5);
   const std::string before = app::editHash(demo);
