@@ -245,27 +245,42 @@ std::string largerBy(const ClosedSurface& surface, const Rigid& to_scalp, const 
   return "metres per unit (0.0254 for inches)";
 }
 
+// Whether a hat lies before or behind the head, in the joint's frame. A hat sits on the head; glasses are thin.
+bool liesBeside(const ClosedSurface& surface, const Rigid& to_scalp, const Scalp& scalp) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : surface.points) box.extend(to_scalp * p - scalp.center);
+  const Vec3 middle = box.center();
+  return box.sizes().minCoeff() > kHatSize && std::abs(middle.z()) > std::max(kHatSize, std::abs(middle.y()));
+}
+
 // What is wrong with its place, in the joint's frame, though it can be worn; empty: nothing.
 std::string placeNote(const ClosedSurface& surface, const Rigid& to_scalp, const Scalp& scalp, bool of_head) {
   double nearest = INFINITY;
-  Eigen::AlignedBox3d box;
-  for (const Vec3& p : surface.points) {
-    nearest = std::min(nearest, p.norm());
-    box.extend(to_scalp * p - scalp.center);
-  }
+  for (const Vec3& p : surface.points) nearest = std::min(nearest, p.norm());
   const double inside = of_head ? swallowed(surface, 1, to_scalp, scalp) : 0;
   if (inside > kSwallowed) {
     return (inside < 1 ? "lies to " + std::to_string(std::lround(100 * inside)) + " %" : "lies wholly") +
            " inside the head; give \"scale\", " + largerBy(surface, to_scalp, scalp) +
            ", or \"at\": [x, y, z], m from the joint, y up";
   }
-  // A hat sits on the head; glasses are thin.
-  const Vec3 middle = box.center();
-  if (of_head && box.sizes().minCoeff() > kHatSize && std::abs(middle.z()) > std::max(kHatSize, std::abs(middle.y())))
-    return std::string("lies ") + (middle.z() > 0 ? "before" : "behind") +
-           " the head; where z is up in the file, give \"turn\": [-90, 0, 0]";
+  if (of_head && liesBeside(surface, to_scalp, scalp))
+    return "lies before or behind the head; where z is up in the file, give \"turn\": [-90, 0, 0]";
   if (nearest > kNearJoint) return "lies " + millimetresOf(nearest) + " from its joint; look at \"scale\" and \"at\"";
   return "";
+}
+
+// A hat that lies before or behind the head and on it when it is turned has z up in its file, facing -y.
+// `placed`: from the file's axes, m, to the joint's frame.
+void turnUpright(const Rigid& placed, const Rigid& to_scalp, const Scalp& scalp, ClosedSurface& surface,
+                 std::string& note) {
+  if (!liesBeside(surface, to_scalp, scalp)) return;
+  const Rigid quarter(Eigen::AngleAxisd(-0.5 * std::numbers::pi, Vec3::UnitX()));
+  const Rigid turn = placed * quarter * placed.inverse(Eigen::Isometry);
+  ClosedSurface turned = surface;
+  for (Vec3& p : turned.points) p = turn * p;
+  if (liesBeside(turned, to_scalp, scalp) || swallowed(turned, 1, to_scalp, scalp) > kSwallowed) return;
+  surface = std::move(turned);
+  note += std::string(note.empty() ? "" : ", ") + "z up, turned to y";
 }
 
 // Signed distances; the same as of a body's part.
@@ -340,11 +355,14 @@ Attachment loadAttachment(const AttachmentSpec& spec, const Character& character
   out.color = colorOf(mesh);
   const Rigid to_joint = carrier.rest_world.inverse(Eigen::Isometry) * upright;
   for (Vec3& p : surface.points) p = to_joint * p;
+  const bool of_head = joint == character.head_joint;
+  out.to_scalp = scalp.inverse(Eigen::Isometry) * carrier.rest_world;
+  const Rigid placed = to_joint * Eigen::Translation3d(spec.at);
+  if (of_head && spec.turn.isZero()) turnUpright(placed, out.to_scalp, character.scalp, surface, note);
   out.part = distancesOf(surface, joint);
   if (!(out.part.deepest > 0))
     throw InputError(spec.file, "", "is too thin to collide with", "make it at least 3 mm thick");
-  out.to_scalp = scalp.inverse(Eigen::Isometry) * carrier.rest_world;
-  const std::string place = placeNote(surface, out.to_scalp, character.scalp, joint == character.head_joint);
+  const std::string place = placeNote(surface, out.to_scalp, character.scalp, of_head);
   for (const std::string& more : {place, mesh.note}) {
     if (!more.empty()) note += (note.empty() ? "" : ", ") + more;
   }

@@ -252,13 +252,14 @@ TEST(Attachments, AnExportSaysThatItLeavesThemOut) {
 }
 
 // The beanie in another unit.
-std::string beanieIn(double units_per_metre) {
+std::string beanieIn(double units_per_metre, bool z_up = false) {
   const std::string file = test::freshFolder("attachments_unit") + "/cap.obj";
   std::ifstream in(app::dataPath("assets/attachments/beanie.obj"));
   std::ofstream out(file);
   for (std::string line; std::getline(in, line);) {
     double x = 0, y = 0, z = 0;
     if (std::sscanf(line.c_str(), "v %lf %lf %lf", &x, &y, &z) == 3) {
+      if (z_up) std::swap(y, z), y = -y;
       out << "v " << units_per_metre * x << " " << units_per_metre * y << " " << units_per_metre * z << "\n";
     } else {
       out << line << "\n";
@@ -273,6 +274,13 @@ TEST(Attachments, UnitAndOriginAreInferredAndTold) {
   const app::Demo centimetres = app::openScene(wearing(beanieIn(100)), 1.5);
   EXPECT_NE(centimetres.message.find("read in centimetres"), std::string::npos) << centimetres.message;
   EXPECT_NEAR(centimetres.actors[0].worn[0].mesh->part.radius, metres.actors[0].worn[0].mesh->part.radius, 1e-6);
+}
+
+TEST(Attachments, AHatWithZUpIsTurned) {
+  const app::Demo upright = app::openScene(wearing("beanie.obj"), 1.5);
+  const app::Demo turned = app::openScene(wearing(beanieIn(1, true)), 1.5);
+  EXPECT_NE(turned.message.find("z up, turned to y"), std::string::npos) << turned.message;
+  EXPECT_LT((turned.actors[0].worn[0].mesh->part.center - upright.actors[0].worn[0].mesh->part.center).norm(), 1e-5);
 }
 
 TEST(Attachments, OneInInchesOrFarOffIsSaidToBeNowhereToBeSeen) {
