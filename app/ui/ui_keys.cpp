@@ -89,7 +89,7 @@ void pressEscape(Demo& demo, UiState& ui) {
   if (std::exchange(ui.help, false)) return;
   if (std::exchange(ui.browser.what, BrowseFor::kNothing) != BrowseFor::kNothing) return;
   if (demo.message_is_fault && !demo.message.empty()) return demo.message.clear();
-  if (letGo(ui) || std::exchange(ui.history, false)) return;
+  if (std::exchange(ui.history, false) || letGo(ui)) return;
   ui.quit = std::exchange(ui.leaving, true) && demo.message == kLeaving;
   demo.message = kLeaving;
   demo.message_is_fault = false;
@@ -183,6 +183,8 @@ std::span<const KeyHelp> keyHelp() {
 bool panelsTakeKey(int key) {
   const ImGuiIO& io = ImGui::GetIO();
   const bool moves = key >= kKeyRight && key <= kKeyUp;
+  // A list that is open is what Esc closes.
+  if (key == kKeyEscape && ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) return true;
   return io.WantTextInput || (io.NavVisible && (moves || key == ' ' || key == kKeyEnter || key == kKeyEscape));
 }
 
