@@ -290,7 +290,7 @@ void addExportOptions(CLI::App& parser, Options& options, Unchecked& unchecked) 
       ->check(oneOf({"strands", "guides", "mesh"}));
   group.value("--export-points", spec.points, "N", "Points a strand, evenly from root to tip (as drawn)")
       ->check(within(2, kMaxExportPoints));
-  group.value("--export-frames", unchecked.export_frames, "A-B", "Frames of the run, from 0, that are exported (all)");
+  group.value("--export-frames", unchecked.export_frames, "A-B", "Frames of the run, from 0; N: no numbers (all)");
   group.value("--export-every", spec.every, "N", "Every nth of them (1)")->check(within(1, kMaxFrames));
   group.value("--export-samples", spec.samples, "N", "Moments a frame, for motion blur: .abc, .usda, .glb (1)")
       ->check(within(1, kMaxExportSamples));
@@ -309,8 +309,8 @@ bool parseFrames(const std::string& text, ExportSpec& spec) {
   if (dash != std::string::npos && dash + 1 < text.size() && !sim::parseNumber(text.substr(dash + 1), last))
     return false;
   if (!(first >= 0 && first <= kMaxFrames && last <= kMaxFrames) || (last >= 0 && last < first)) return false;
-  spec.first = static_cast<int>(first);
-  spec.last = static_cast<int>(last);
+  spec.first = static_cast<int>(first), spec.last = static_cast<int>(last);
+  spec.range = dash != std::string::npos;
   return true;
 }
 

@@ -12,6 +12,7 @@ struct ExportSpec {
   ExportWhat what = ExportWhat::kStrands;
   int points = 0;            // a strand, evenly from root to tip; 0: as drawn
   int first = 0, last = -1;  // frames of the run; last -1: its last
+  bool range = false;        // asked as one: files a frame are numbered though it holds one frame
   int every = 1;             // of them, every nth
   int samples = 1;           // moments a frame, for motion blur
   double shutter = 0.5;      // of a frame's length: from its first moment to its last

@@ -265,7 +265,7 @@ HairExport::HairExport(const ExportSpec& spec, const Demo& demo, double fps, int
         ", " + std::to_string(points) + " points each, the power of two nearest to those drawn (.tfx takes no other)";
   }
   impl_->strands.emplace(demo, spec.what, points);
-  impl_->numbered = taken > 1 && !takesClip(spec.file);
+  impl_->numbered = (taken > 1 || spec.range) && !takesClip(spec.file);
   impl_->writer.emplace(spec.file, settings, impl_->numbered);
 }
 

@@ -80,6 +80,8 @@ TEST(HairExport, FramesAreChosenAndNumbered) {
   EXPECT_EQ(names, (std::vector<std::string>{"a_0001.hair", "a_0003.hair", "a_0005.hair"}));
   EXPECT_EQ(exported(folder + "/b.ply", {"--export-frames", "2"}).exit_code, 0);
   EXPECT_TRUE(fs::exists(folder + "/b.ply")) << "one frame has the name that was given";
+  EXPECT_EQ(exported(folder + "/c.ply", {"--export-frames", "2-2"}).exit_code, 0);
+  EXPECT_TRUE(fs::exists(folder + "/c_0002.ply")) << "a range is numbered";
   EXPECT_EQ(exported(folder + "/all.abc", {}).exit_code, 0);
   EXPECT_EQ(exported(folder + "/some.abc", {"--export-frames", "1-5", "--export-every", "2"}).exit_code, 0);
   const std::string all = test::readAll(folder + "/all.abc"), some = test::readAll(folder + "/some.abc");
