@@ -194,10 +194,10 @@ std::string comparisonText(const Demo& demo) {
   const double frames = static_cast<double>(std::max(1L, comparison.frames));
   char apart[100] = "other hair", text[200];
   if (comparison.now.known)
-    std::snprintf(apart, sizeof apart, "hair apart by %.3g mm RMS, %.3g mm at most", 1e3 * comparison.rms_sum / frames,
-                  1e3 * comparison.worst);
-  std::snprintf(text, sizeof text, "%s; %.3g ms a frame against %.3g ms", apart, 1e3 * comparison.seconds[0] / frames,
-                1e3 * comparison.seconds[1] / frames);
+    std::snprintf(apart, sizeof apart, "hair apart by %.3g mm RMS in the mean, %.3g mm at most",
+                  1e3 * comparison.rms_sum / frames, 1e3 * comparison.worst);
+  std::snprintf(text, sizeof text, "%s; simulation %.3g ms a frame in the mean against %.3g ms", apart,
+                1e3 * comparison.seconds[0] / frames, 1e3 * comparison.seconds[1] / frames);
   return text;
 }
 
