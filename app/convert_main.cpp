@@ -148,6 +148,7 @@ std::string mend(const Arguments& arguments, app::GroomHints& hints, app::Groom&
   const app::MendReport report = app::mendCertain(hints, &head, wishes, groom);
   options.reverse = false;
   options.unit = report.unit_known ? 1 : 0;
+  options.file_unit = report.unit_known ? report.unit : 0;
   hints = {};
   return app::mendText(report);
 }

@@ -175,7 +175,7 @@ Conversion convertGroom(const Groom& given, const GroomHints& hints, const Conve
   if (said > 0 && std::isfinite(said)) {
     out.scale = said;
     char text[60];
-    std::snprintf(text, sizeof text, "units of %g m", said);
+    std::snprintf(text, sizeof text, "units of %g m", options.file_unit > 0 ? options.file_unit : said);
     out.unit = text;
   }
   const StrandSamples samples = sampleStrands(groom, out.scale, kSamples);

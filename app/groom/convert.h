@@ -13,6 +13,7 @@ namespace app {
 struct ConvertOptions {
   FitOptions fit;
   double unit = 0;           // metres in a unit of the file; 0: as the file says, or inferred from the roots' spread
+  double file_unit = 0;      // metres in a unit of the file where points are metres by now, to say; 0: as `unit`
   bool reverse = false;      // strands are given from tip to root
   bool silhouettes = false;  // compare them: takes as long as drawing both grooms six times
 };

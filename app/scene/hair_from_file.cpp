@@ -27,7 +27,7 @@ Conversion convertMended(const std::string& bytes, const CharacterSpec& spec, co
   const MendReport report = mendCertain(hints, &head, spec.mends, groom);
   haircut.findings = report.findings;
   on_head = report.on_head;
-  if (report.unit_known) options.unit = 1;
+  if (report.unit_known) options.unit = 1, options.file_unit = report.unit;
   return convertGroom(groom, {}, options, spec.hair);
 }
 

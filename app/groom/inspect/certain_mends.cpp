@@ -130,6 +130,7 @@ MendReport mendCertain(const GroomHints& hints, const HeadModel* head, const std
     report.findings.push_back({finding, (guesses && finding.certain) || wished(option, wishes)});
   }
   report.on_head = inspection.on_head && guesses && !wished("--move", wishes);
+  report.unit = mends.unit;
   mendGroom(mends, head, groom);
   return report;
 }

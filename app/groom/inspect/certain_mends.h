@@ -17,6 +17,7 @@ struct MendedFinding {
 struct MendReport {
   std::vector<MendedFinding> findings;
   bool unit_known = false;  // points are metres now; else they are in the file's unit
+  double unit = 1;          // metres that a unit of the file stood for, where it is known
   bool on_head = false;     // roots lie on the head now, in the median
 };
 

@@ -9,6 +9,7 @@
 #include <map>
 #include <numbers>
 
+#include "app/groom/convert.h"
 #include "app/groom/groom_file.h"
 #include "app/groom/groom_writer.h"
 #include "app/groom/inspect/certain_mends.h"
@@ -403,6 +404,9 @@ TEST(CertainMends, AreOverruledByWishes) {
   const app::MendReport report = app::mendCertain({}, &model, "--no-guess --unit cm --up z", groom);
   EXPECT_TRUE(report.unit_known);
   EXPECT_LT((groom.points.back() - clean.back()).norm(), 1e-4f);
+  app::ConvertOptions options;
+  options.unit = 1, options.file_unit = report.unit;
+  EXPECT_EQ(app::convertGroom(groom, {}, options, "").unit, "units of 0.01 m") << "the file's unit is told";
   app::GroomMends mends;
   for (const char* wrong : {"--unit parsec", "--up", "up z", "--points 1", "--move 1,2", "--width -1"})
     EXPECT_EQ(test::lacking(app::readMends(wrong, mends), "is no mend; "), "") << wrong;
