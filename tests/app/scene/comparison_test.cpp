@@ -52,7 +52,8 @@ TEST(Comparison, PresetsSettingsAndOtherHairAreComparedWith) {
     EXPECT_EQ(demo.actors[0].playback.time, demo.comparison.other.front().actors[0].playback.time) << with;
     const bool other_hair = std::string(with).ends_with(".obj");
     EXPECT_EQ(demo.comparison.worst > 1e-4, !other_hair) << with;
-    EXPECT_NE(app::comparisonText(demo).find(other_hair ? "other hair" : "mm RMS"), std::string::npos);
+    EXPECT_NE(app::comparisonText(demo).find(other_hair ? "other hair" : "mm RMS in the mean"), std::string::npos);
+    EXPECT_NE(app::comparisonText(demo).find("a frame in the mean against"), std::string::npos);
   }
   const std::string with = demo.comparison.with;
   demo.requests = {{Ask::kCompare, "", "no such preset", 1}};
