@@ -8,15 +8,15 @@ namespace sim {
 
 // In use.
 struct SafetyNets {
-  bool parameter_limits = true;     // parameter_limits.h
-  bool input_repair = true;         // state_validation.h, of the state handed over
-  bool result_repair = true;        // the same, of what the step made
-  bool teleport = true;             // hair carried along over jumps of the roots
-  bool step_energy = true;          // energy_limit.h, limitEnergy
-  bool stretch_limit = true;        // stabilize.cpp, limitStretch
-  bool correction_energy = true;    // limitCorrections
-  bool inversion_recovery = true;   // inversion_recovery.h
-  bool reference_hair = true;       // reference_hair.h
+  bool parameter_limits = true;    // parameter_limits.h
+  bool input_repair = true;        // state_validation.h, of the state handed over
+  bool result_repair = true;       // the same, of what the step made
+  bool teleport = true;            // hair carried along over jumps of the roots
+  bool step_energy = true;         // energy_limit.h, limitEnergy
+  bool stretch_limit = true;       // stabilize.cpp, limitStretch
+  bool correction_energy = true;   // limitCorrections
+  bool inversion_recovery = true;  // inversion_recovery.h
+  bool reference_hair = true;      // reference_hair.h
 };
 
 // Solver::kPaper: the step as published. Only values that are not finite or absurd are repaired.
