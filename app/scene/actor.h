@@ -55,10 +55,11 @@ struct Haircut {
   std::optional<LookFit> look;          // of a groom's strands
   std::vector<MendedFinding> findings;  // of a groom, what the inspector says
   sim::HairMesh mesh;
-  std::vector<HairTie> ties;  // where they are
-  std::vector<int> tied;      // vertices in the rings of ties
-  BraidPlan braids;           // tails that are drawn as plaits; empty: none
-  std::vector<int> covered;   // vertices under attachments, which hold them
+  std::vector<HairTie> ties;   // where they are
+  std::vector<int> tied;       // vertices in the rings of ties
+  std::vector<HairTie> bands;  // the ties as they are seen: as narrow as what they hold
+  BraidPlan braids;            // tails that are drawn as plaits; empty: none
+  std::vector<int> covered;    // vertices under attachments, which hold them
   PaintedShares shares;
   PaintedLook look_shares;
   std::vector<Vec3> unpainted, painted;  // rest positions before and after a painted length; none where hair is tied

@@ -82,7 +82,7 @@ struct Demo {
   DebugGeometry debug_geometry;
   std::vector<render::HairInput> hair_inputs;
   std::vector<std::vector<float>> braided;       // an actor: what its hair input points to, where it has plaits
-  std::vector<std::vector<render::Mat4>> bands;  // an actor: of the ties that hold their ends
+  std::vector<std::vector<render::Mat4>> bands;  // an actor: of its ties and its plaits' ends
   std::vector<render::BodyInput> body_inputs;
 };
 

@@ -14,6 +14,7 @@
 #include "app/scene/edit/painted_fields.h"
 #include "app/scene/hair_from_file.h"
 #include "app/scene/sim_to_render.h"
+#include "app/styles/tie_ring.h"
 
 namespace app {
 
@@ -85,6 +86,8 @@ void applyTies(const CharacterSpec& spec, const LoadedBody& body, sim::HairMeshS
     haircut.tied.insert(haircut.tied.end(), ring.begin(), ring.end());
   }
   rings = std::move(result.rings);
+  const Scalp& scalp = body.character.scalp;
+  haircut.bands = fittedRings(haircut.ties, scalp, ringPlaces(shape, scalp, haircut.ties, haircut.tied));
 }
 
 // The hair as it grows, cut by a map.

@@ -38,11 +38,11 @@ struct Torus {
 
 }  // namespace
 
-render::BodyInput bandInput(std::uint64_t hair, std::size_t plait) {
+render::BodyInput bandInput(std::uint64_t hair, std::size_t band) {
   static const Torus torus;
-  constexpr std::uint64_t kMostPlaits = 16;
+  constexpr std::uint64_t kMostBands = 16;
   render::BodyInput input;
-  input.id = kBandIds + hair * kMostPlaits + plait;
+  input.id = kBandIds + hair * kMostBands + band;
   input.mesh_id = kBandIds;
   input.positions = torus.positions;
   input.normals = torus.normals;

@@ -46,6 +46,7 @@ Haircut& ownHaircut(Actor& actor, Demo& demo) {
   own->edited = worn.edited, own->remeshed = worn.remeshed;
   own->ties = worn.ties;
   own->tied = worn.tied;
+  own->bands = worn.bands;
   own->braids = worn.braids;
   own->covered = worn.covered;
   own->shares = worn.shares, own->look_shares = worn.look_shares;

@@ -1,5 +1,7 @@
 #include "app/scene/view/figure_input.h"
 
+#include <Eigen/Geometry>
+
 #include "app/scene/attachments.h"
 #include "app/scene/braid/braid_band.h"
 #include "app/scene/braid/braid_draw.h"
@@ -34,12 +36,27 @@ render::HairInput hairInput(const Actor& actor, const CharacterLook& look, std::
   return input;
 }
 
+// From the band to the figure as it is shown. The ring's axis leads away from the head's middle.
+render::Mat4 bandAround(const HairTie& tie, const Actor& actor) {
+  const Character& character = actor.body->character;
+  const auto head = static_cast<std::size_t>(character.head_joint);
+  const Vec3 axis = tie.at - character.scalp.center;
+  const Eigen::Affine3d ring = Eigen::Translation3d(tie.at) * Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), axis) *
+                               Eigen::Scaling(tie.radius);
+  const Eigen::Affine3d at_rest = character.skeleton.joints[head].rest_world * character.head_frame * ring;
+  render::Mat4 matrix;
+  Eigen::Map<Eigen::Matrix4f>(matrix.data()) =
+      Eigen::Map<const Eigen::Matrix4f>(actor.joint_matrices[head].data()) * at_rest.matrix().cast<float>();
+  return matrix;
+}
+
 void addBands(const Actor& actor, std::span<const float> positions, std::vector<render::Mat4>& matrices,
               std::vector<render::BodyInput>& bodies) {
   matrices.clear();
+  if (actor.spec.look.strands <= 0) return;
   const BraidPlan& braids = actor.haircut->braids;
-  if (braids.empty() || positions.size() != actor.haircut->rest.size() || actor.spec.look.strands <= 0) return;
-  matrices = braidBands(braids, positions);
+  if (!braids.empty() && positions.size() == actor.haircut->rest.size()) matrices = braidBands(braids, positions);
+  for (const HairTie& tie : actor.haircut->bands) matrices.push_back(bandAround(tie, actor));
   for (std::size_t k = 0; k < matrices.size(); ++k) {
     render::BodyInput input = bandInput(actor.id, k);
     input.joint_matrices = {&matrices[k], 1};

@@ -13,7 +13,7 @@ namespace app {
 // `positions`: of the simulated vertices, as shown. `drawn` keeps those that braided hair is drawn at.
 render::HairInput hairInput(const Actor& actor, const CharacterLook& look, std::span<const float> positions,
                             std::vector<float>& drawn);
-// The ties that hold the ends of its plaits, where hair is drawn; `matrices` keeps where they are.
+// Its ties, and those that hold the ends of its plaits, where hair is drawn; `matrices` keeps where they are.
 void addBands(const Actor& actor, std::span<const float> positions, std::vector<render::Mat4>& matrices,
               std::vector<render::BodyInput>& bodies);
 // `show_strands`: whether hair is drawn at all; without it the head is bald.

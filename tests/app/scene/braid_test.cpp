@@ -81,7 +81,7 @@ TEST(Braid, WithoutABraidedTieWhatIsSimulatedIsDrawn) {
   EXPECT_EQ(input.hairs[0].faces.data(), actor.haircut->faces.data());
   EXPECT_EQ(input.hairs[0].rest.data(), actor.haircut->rest.data());
   EXPECT_EQ(input.hairs[0].segments_per_layer, actor.spec.look.segments_per_layer);
-  EXPECT_EQ(input.bodies.size(), 1u);
+  EXPECT_EQ(input.bodies.size(), 3u);  // the figure and two bands
 }
 
 TEST(Braid, TheSimulationOfABraidedTailIsThatOfATail) {

@@ -66,6 +66,38 @@ TEST(Ties, HairThatReachesTheRingIsTiedAtEveryResolution) {
   EXPECT_NO_THROW(app::makeActor(two.characters[0], {}, cache));
 }
 
+// A band is seen around what each tie holds, also while the head is shaken; none where no hair is drawn.
+TEST(Ties, ABandIsSeenAroundEachTail) {
+  for (const char* place : {"back", "two"}) {
+    app::Demo demo = app::openScene(tiedScene(place, "head_shake.bvh", app::Resolution::kLow), 1.5);
+    for (int frame = 0; frame < 40; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
+    const app::Actor& actor = demo.actors[0];
+    const render::FrameInput input = app::frameInput(demo, 64, 64);
+    ASSERT_EQ(input.bodies.size(), 1 + actor.haircut->ties.size()) << place;
+    std::vector<Eigen::Vector3f> middles(input.bodies.size(), Eigen::Vector3f::Zero());
+    std::vector<float> counts(input.bodies.size(), 0);
+    const auto bandAt = [&](std::size_t k) {
+      return Eigen::Map<const Eigen::Matrix4f>(input.bodies[k].joint_matrices[0].data());
+    };
+    for (const int v : actor.haircut->tied) {
+      const Eigen::Map<const Eigen::Vector3f> p(&actor.shown_positions[3 * static_cast<std::size_t>(v)]);
+      std::size_t nearest = 1;
+      for (std::size_t k = 1; k < input.bodies.size(); ++k)
+        if ((bandAt(k).topRightCorner<3, 1>() - p).norm() < (bandAt(nearest).topRightCorner<3, 1>() - p).norm())
+          nearest = k;
+      middles[nearest] += p, counts[nearest] += 1;
+    }
+    for (std::size_t k = 1; k < input.bodies.size(); ++k) {
+      EXPECT_LT((middles[k] / counts[k] - bandAt(k).topRightCorner<3, 1>()).norm(), 0.003f) << place << " " << k;
+      const float radius = bandAt(k).col(0).norm();
+      EXPECT_GT(radius, 0.004f) << place;
+      EXPECT_LE(radius, 0.02f) << place;
+    }
+    demo.actors[0].spec.look.strands = 0;
+    EXPECT_EQ(app::frameInput(demo, 64, 64).bodies.size(), 1u);
+  }
+}
+
 TEST(Ties, TheRingHoldsWithinAMillimetreInAHeadShakeAtFourTimesItsSpeed) {
   app::Scene scene = tiedScene("back", "head_shake.bvh", app::Resolution::kLow);
   scene.playback.speed = 4;
