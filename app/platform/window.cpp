@@ -97,6 +97,8 @@ struct Session {
   double mouse_x = 0, mouse_y = 0;
   std::array<bool, 5> buttons{};    // that are down in this frame, for the panels
   std::optional<ImVec2> pointer{};  // where one of them changed in this frame, px
+  double drag_x = 0, drag_y = 0;    // px, moved with a button that no frame has seen yet
+  long events = 0;                  // of the mouse, keys and files, that have come
   double light_x = 0, light_y = 0;  // where a drag of the key light began
   render::Float3 light_from{};      // the way to it there
   bool other_scale = false;         // the window has come to a display of another density
@@ -129,27 +131,44 @@ void turnLight(double x, double y, double height, Session& s) {
   s.demo.requests.push_back({Ask::kSetParam, row.name, lookText(look, row)});
 }
 
-void onMouseMove(GLFWwindow* window, double x, double y) {
-  Session& s = session(window);
-  const double dx = x - s.mouse_x, dy = y - s.mouse_y;
-  s.mouse_x = x;
-  s.mouse_y = y;
-  const BrushState& brush = s.ui.brush;
-  const bool brushes = s.ui.line_held || brush.stroking || (brush.over_hair && pressed(window, GLFW_MOUSE_BUTTON_LEFT));
+bool anyButton(const Session& s) {
+  return s.buttons[GLFW_MOUSE_BUTTON_LEFT] || s.buttons[GLFW_MOUSE_BUTTON_RIGHT] || s.buttons[GLFW_MOUSE_BUTTON_MIDDLE];
+}
+
+// With the buttons that the last frame has seen, unless panels, brush or line took them.
+void dragView(GLFWwindow* window, double dx, double dy, Session& s) {
+  const bool left = s.buttons[GLFW_MOUSE_BUTTON_LEFT];
+  const bool brushes = s.ui.line_held || s.ui.brush.stroking || (s.ui.brush.over_hair && left);
   if (ImGui::GetIO().WantCaptureMouse || brushes) return;
   const double height = viewHeight(window, s.demo);
   const bool control = glfwGetKey(window, GLFW_KEY_LEFT_CONTROL) == GLFW_PRESS;
-  if (control && pressed(window, GLFW_MOUSE_BUTTON_LEFT)) return turnLight(x, y, height, s);
+  if (control && left) return turnLight(s.mouse_x, s.mouse_y, height, s);
   const bool shift = glfwGetKey(window, GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS;
-  if (pressed(window, GLFW_MOUSE_BUTTON_RIGHT) || pressed(window, GLFW_MOUSE_BUTTON_MIDDLE) ||
-      (shift && pressed(window, GLFW_MOUSE_BUTTON_LEFT))) {
+  if (s.buttons[GLFW_MOUSE_BUTTON_RIGHT] || s.buttons[GLFW_MOUSE_BUTTON_MIDDLE] || (shift && left)) {
     pan(dx, dy, height, s.demo.camera);
-  } else if (pressed(window, GLFW_MOUSE_BUTTON_LEFT)) {
+  } else if (left) {
     orbit(dx, dy, height, s.demo.camera);
   }
 }
 
+// What a button drags is known when a frame has seen where it was pressed.
+void onMouseMove(GLFWwindow* window, double x, double y) {
+  Session& s = session(window);
+  const double dx = x - s.mouse_x, dy = y - s.mouse_y;
+  s.mouse_x = x, s.mouse_y = y, ++s.events;
+  constexpr std::array kDrags{GLFW_MOUSE_BUTTON_LEFT, GLFW_MOUSE_BUTTON_RIGHT, GLFW_MOUSE_BUTTON_MIDDLE};
+  if (std::ranges::none_of(kDrags, [&](int button) { return pressed(window, button); })) return;
+  if (anyButton(s)) return dragView(window, dx, dy, s);
+  s.drag_x += dx, s.drag_y += dy;
+}
+
+void dragAsSeen(GLFWwindow* window, Session& s) {
+  const double dx = std::exchange(s.drag_x, 0.0), dy = std::exchange(s.drag_y, 0.0);
+  if (anyButton(s) && (dx != 0 || dy != 0)) dragView(window, dx, dy, s);
+}
+
 void onScroll(GLFWwindow* window, double, double notches) {
+  ++session(window).events;
   if (!ImGui::GetIO().WantCaptureMouse) zoom(notches, session(window).demo.camera);
 }
 
@@ -164,6 +183,7 @@ void onKey(GLFWwindow* window, int key, int, int action, int modifiers) {
 }
 
 void queueKey(GLFWwindow* window, int key, int scancode, int action, int modifiers) {
+  ++session(window).events;
   if (key > 0) session(window).input.add({key, 0, scancode, action, modifiers});
 }
 
@@ -173,12 +193,13 @@ void queueCharacter(GLFWwindow* window, unsigned character) {
 
 void queueButton(GLFWwindow* window, int button, int action, int) {
   Session& s = session(window);
+  ++s.events;
   if (button < static_cast<int>(s.buttons.size()))
     s.input.add({mouseKey(button), 0, 0, action, 0, s.mouse_x, s.mouse_y});
 }
 
 void feedButton(const InputEvent& event, Session& s) {
-  s.buttons[static_cast<std::size_t>(mouseKey(event.key))] = event.action == GLFW_PRESS;
+  s.buttons[static_cast<std::size_t>(mouseKey(event.key))] = event.action != GLFW_RELEASE;
   s.pointer = ImVec2(static_cast<float>(event.x), static_cast<float>(event.y));
 }
 
@@ -195,6 +216,7 @@ void feedInput(GLFWwindow* window) {
 
 void onDrop(GLFWwindow* window, int count, const char** files) {
   Session& s = session(window);
+  ++s.events;
   for (int i = 0; i < count; ++i) openFile(files[i], s.demo, s.ui);
 }
 
@@ -316,30 +338,29 @@ double frameSeconds(const Options& options, const Demo& demo, double& last) {
   return options.frames_given || demo.capture.recording || demo.capture.hair ? 1 / demo.scene.playback.fps : passed;
 }
 
+// Waits for events, s at most. Returns whether any came: those of the window itself call nobody, but end the wait.
+bool waitForEvents(double seconds, const Session& s) {
+  const double before = now();
+  const long events = s.events;
+  glfwWaitEventsTimeout(seconds);
+  return s.events != events || now() - before < 0.95 * seconds;
+}
+
 // Takes events in, after a wait for them where nothing moves. Time that passes while nothing is drawn is not caught up
 // with: `last` follows. `reload` is called while it waits, and ends the wait by returning true.
-void pollOrWait(bool may_wait, const Demo& demo, const std::function<bool()>& reload, RedrawThrottle& throttle,
+void pollOrWait(bool may_wait, const Session& s, const std::function<bool()>& reload, RedrawThrottle& throttle,
                 double& last) {
+  const Demo& demo = s.demo;
   // Runs of so many frames and replays go on by themselves.
   const bool still = may_wait && nothingMoves(demo);
   const bool fading_message = !demo.message.empty() && !demo.message_is_fault;
-  switch (throttle.next(still, ImGui::GetIO().WantTextInput || fading_message)) {
-    case Wait::kNone:
-      return glfwPollEvents();
-    case Wait::kShort: {
-      const double before = now();
-      glfwWaitEventsTimeout(kShortWait);
-      if (now() - before < 0.95 * kShortWait) throttle.disturb();
-      return;
-    }
-    case Wait::kEvent:
-      for (bool disturbed = false; !disturbed && !interrupted();) {
-        const double before = now();
-        glfwWaitEventsTimeout(kShaderLook);
-        disturbed = now() - before < 0.95 * kShaderLook || reload();
-      }
-      throttle.disturb();
-      last = std::max(last, now() - kShortWait);
+  const Wait wait = throttle.next(still, ImGui::GetIO().WantTextInput || fading_message);
+  if (wait == Wait::kEvent) {
+    while (!interrupted() && !waitForEvents(kShaderLook, s) && !reload()) continue;
+    throttle.disturb();
+    last = std::max(last, now() - kShortWait);
+  } else if (waitForEvents(wait == Wait::kShort ? kShortWait : 0, s)) {
+    throttle.disturb();
   }
 }
 
@@ -450,7 +471,7 @@ int runWindow(Scene scene, const Options& options) {
   const int most = tape.frames().value_or(options.frames_given ? options.frames : kEndless);
   const auto ended = [&] { return glfwWindowShouldClose(window.handle) || ui.quit || interrupted(); };
   for (; !ended() && frame < most; ++frame) {
-    pollOrWait(most == kEndless && !presets_coming, demo, reload, throttle, last);
+    pollOrWait(most == kEndless && !presets_coming, callbacks, reload, throttle, last);
     feedInput(window.handle);
     if (!callbacks.input.empty()) throttle.disturb();
     followTextScale(window.handle, options.ui_scale, callbacks);
@@ -460,6 +481,7 @@ int runWindow(Scene scene, const Options& options) {
     if (leaveFree(window.handle, repeats(options), callbacks, target)) throttle.disturb();
     const double seconds = frameSeconds(options, demo, last);
     advanceFrame(demo, tape.turn(frame, frame == 0 && options.load_state.empty() ? 0 : seconds, demo), target);
+    dragAsSeen(window.handle, callbacks);
     presets_coming = presets.work(demo, ui);
     keepProject(demo, autosave, ui);
     demo.stats.skipped[kSkipEvents] = {throttle.waited(), 1, 0};

@@ -16,6 +16,8 @@ struct InputEvent {
   double x = 0, y = 0;  // px, where the pointer was as a mouse button changed
 };
 
+inline constexpr int kHeld = 2;  // action of a mouse button that stays down, at another place
+
 // The key that stands for a mouse button, 0 to 4, and back.
 constexpr int mouseKey(int button) {
   return -1 - button;
@@ -27,8 +29,9 @@ class InputQueue {
   bool empty() const { return events_.empty(); }
 
   // Hands the next frame's events to `give`, in order: each key changes at most once, and one mouse button in all, for
-  // the pointer is at one place in a frame. A key other than the one that a character comes from does not share a frame
-  // with characters after it, so that typing and editing keep their order.
+  // the pointer is at one place in a frame. A button that is let go elsewhere than it was pressed is first held there
+  // for a frame (kHeld), so that a quick drag is one. A key other than the one that a character comes from does not
+  // share a frame with characters after it, so that typing and editing keep their order.
   template <class Give>
   void feed(Give&& give) {
     std::vector<int> changed;
@@ -37,7 +40,12 @@ class InputQueue {
       const InputEvent event = events_.front();
       const bool again = event.key != 0 && std::find(changed.begin(), changed.end(), event.key) != changed.end();
       if (again || (event.key == 0 && edited) || (event.key < 0 && clicked)) return;
+      if (event.key < 0 && event.action == 0 && (event.x != x_ || event.y != y_)) {
+        x_ = event.x, y_ = event.y;
+        return give(InputEvent{event.key, 0, 0, kHeld, 0, event.x, event.y});
+      }
       events_.pop_front();
+      if (event.key < 0) x_ = event.x, y_ = event.y;
       if (event.key != 0) changed.push_back(event.key);
       clicked = clicked || event.key < 0;
       edited = edited || (event.key >= kFirstEditing && event.key <= kLastEditing && event.action != 0);
@@ -48,6 +56,7 @@ class InputQueue {
  private:
   static constexpr int kFirstEditing = 256, kLastEditing = 319;  // Escape, Enter, arrows: keys that make no character
   std::deque<InputEvent> events_;
+  double x_ = 0, y_ = 0;  // px, of the last button
 };
 
 }  // namespace app

@@ -337,10 +337,29 @@ TEST(InputQueue, ATapBetweenTwoFramesIsSeenAndTypingKeepsItsOrder) {
   EXPECT_EQ(frames[3][2].character, unsigned('b'));
 }
 
+// Pressed, moved and let go within one frame: whoever takes the drag sees where it began and where it led to.
+TEST(InputQueue, AButtonLetGoElsewhereIsHeldThereFirst) {
+  app::InputQueue queue;
+  queue.add({app::mouseKey(0), 0, 0, 1, 0, 640, 400});
+  queue.add({app::mouseKey(0), 0, 0, 0, 0, 400, 410});
+  std::vector<app::InputEvent> frames;
+  while (!queue.empty()) {
+    const std::size_t before = frames.size();
+    queue.feed([&](const app::InputEvent& event) { frames.push_back(event); });
+    ASSERT_EQ(frames.size(), before + 1);
+  }
+  ASSERT_EQ(frames.size(), 3u);
+  EXPECT_EQ(frames[0].x, 640);
+  EXPECT_EQ(frames[1].action, app::kHeld);
+  EXPECT_EQ(frames[1].x, 400);
+  EXPECT_EQ(frames[2].action, 0);
+  EXPECT_EQ(frames[2].x, 400);
+}
+
 TEST(InputQueue, AClickBetweenTwoFramesIsSeenWhereItWas) {
   app::InputQueue queue;
   queue.add({app::mouseKey(0), 0, 0, 1, 0, 10, 20});
-  queue.add({app::mouseKey(0), 0, 0, 0, 0, 11, 21});
+  queue.add({app::mouseKey(0), 0, 0, 0, 0, 10, 20});
   queue.add({app::mouseKey(1), 0, 0, 1, 0, 11, 21});
   std::vector<std::vector<app::InputEvent>> frames;
   while (!queue.empty()) {
@@ -351,8 +370,9 @@ TEST(InputQueue, AClickBetweenTwoFramesIsSeenWhereItWas) {
   EXPECT_EQ(frames[0][0].action, 1);
   EXPECT_EQ(frames[0][0].x, 10);
   EXPECT_EQ(frames[1][0].action, 0);
-  EXPECT_EQ(frames[1][0].y, 21);
+  EXPECT_EQ(frames[1][0].y, 20);
   EXPECT_EQ(app::mouseKey(frames[2][0].key), 1);
+  EXPECT_EQ(frames[2][0].y, 21);
 }
 
 TEST(InputQueue, ShiftGoesWithTheCharacterThatItMakes) {
