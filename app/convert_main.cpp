@@ -55,7 +55,11 @@ void addCurveOptions(CLI::App& parser, Arguments& arguments) {
       ->check(CLI::Range(3, 40))
       ->option_text("N (3 to 40)");
   parser.add_option("--unit", arguments.unit, "Metres in a unit of the file; by default as it says, or inferred")
-      ->check(CLI::PositiveNumber)
+      ->check([](const std::string& text) {
+        double metres = 0;
+        const bool good = CLI::detail::lexical_cast(text, metres) && metres > 0 && metres <= 1e6;
+        return good ? std::string() : "'" + text + "' is no number of metres; give 0.01 for centimetres";
+      })
       ->option_text("METRES");
   parser.add_option(
       "--mends", arguments.mends,

@@ -91,7 +91,7 @@ const char* const kExamples = R"(Examples:
   hairmesh --no-images --frames 240 --strands 10000 --export walk.abc    (.usda, .hair, .ply, .glb)
   hairmesh --motion dance.mot --parts female-objs --speed 2 --set friction=0.6 --set solver=paper
 
-Of an option that is given twice the last counts; --set, --skip, --pin and --map add up.
+Of an option that is given twice the last counts, of --export too; --set, --skip, --pin, --map, --curve and --attach add up.
 
 Exit codes: 0 fine, 1 OpenGL or numerical fault or a file that cannot be written, 2 usage, 3 no OpenGL context,
 4 a file that cannot be used, 130 interrupted.)";

@@ -23,8 +23,9 @@ constexpr double kNearJoint = 0.35;    // m, from its joint
 // Shares of its points inside the head: of one that does not fit, of one that does. What is in assets/attachments has
 // 0.03 at most, and at 0.9 of its size 0.25 and more.
 constexpr double kSwallowed = 0.2, kWellFitted = 0.035;
-constexpr double kOtherUnit = 2;   // times that a mesh is to be larger: it is in another unit
-constexpr double kHatSize = 0.08;  // m, the shortest side of a hat; how far before the head it lies
+constexpr double kOtherUnit = 2;     // times that a mesh is to be larger: it is in another unit
+constexpr double kMuchNearer = 0.6;  // times as far off the head
+constexpr double kHatSize = 0.08;    // m, the shortest side of a hat; how far before the head it lies
 constexpr double kWornSpacing = 0.0025, kMaxWornNodes = 1.2e6;  // m, of the grid
 constexpr double kSharpEdge = 0.5;                              // cosine between faces that are shaded as one
 constexpr double kWeld = 1e-5;                                  // of the size; vertices so near are one
@@ -269,16 +270,28 @@ std::string placeNote(const ClosedSurface& surface, const Rigid& to_scalp, const
   return "";
 }
 
-// A hat that lies before or behind the head and on it when it is turned has z up in its file, facing -y.
-// `placed`: from the file's axes, m, to the joint's frame.
-void turnUpright(const Rigid& placed, const Rigid& to_scalp, const Scalp& scalp, ClosedSurface& surface,
-                 std::string& note) {
-  if (!liesBeside(surface, to_scalp, scalp)) return;
+// m, that the surface is off the head's in the mean.
+double offHead(const ClosedSurface& surface, const Rigid& to_scalp, const Scalp& scalp) {
+  double off = 0;
+  for (const Vec3& p : surface.points) {
+    const Vec3 from_middle = to_scalp * p - scalp.center;
+    off += std::abs(from_middle.norm() - scalp.radiusAt(from_middle.normalized()));
+  }
+  return off / static_cast<double>(surface.points.size());
+}
+
+// What is much nearer to the head when it is turned has z up in its file, facing -y: a hat that lies before or behind
+// it, glasses that lie below it. Judged where it would be without "at". `placed`: from the file's axes, m, to the
+// joint's frame; `moved`: by "at", m, there.
+void turnUpright(const Rigid& placed, const Vec3& moved, const Rigid& to_scalp, const Scalp& scalp,
+                 ClosedSurface& surface, std::string& note) {
   const Rigid quarter(Eigen::AngleAxisd(-0.5 * std::numbers::pi, Vec3::UnitX()));
   const Rigid turn = placed * quarter * placed.inverse(Eigen::Isometry);
   ClosedSurface turned = surface;
   for (Vec3& p : turned.points) p = turn * p;
-  if (liesBeside(turned, to_scalp, scalp) || swallowed(turned, 1, to_scalp, scalp) > kSwallowed) return;
+  const Rigid unmoved = to_scalp * Eigen::Translation3d(-moved);
+  const double off = offHead(surface, unmoved, scalp), off_turned = offHead(turned, unmoved, scalp);
+  if (off_turned > kMuchNearer * off || swallowed(turned, 1, to_scalp, scalp) > kSwallowed) return;
   surface = std::move(turned);
   note += std::string(note.empty() ? "" : ", ") + "z up, turned to y";
 }
@@ -358,7 +371,8 @@ Attachment loadAttachment(const AttachmentSpec& spec, const Character& character
   const bool of_head = joint == character.head_joint;
   out.to_scalp = scalp.inverse(Eigen::Isometry) * carrier.rest_world;
   const Rigid placed = to_joint * Eigen::Translation3d(spec.at);
-  if (of_head && spec.turn.isZero()) turnUpright(placed, out.to_scalp, character.scalp, surface, note);
+  if (of_head && spec.turn.isZero())
+    turnUpright(placed, to_joint.linear() * spec.at, out.to_scalp, character.scalp, surface, note);
   out.part = distancesOf(surface, joint);
   if (!(out.part.deepest > 0))
     throw InputError(spec.file, "", "is too thin to collide with", "make it at least 3 mm thick");

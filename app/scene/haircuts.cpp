@@ -149,6 +149,8 @@ void dressWhereThereIsRoom(const CharacterSpec& spec, const LoadedBody& body, st
 constexpr const char* kRoomForFringe =
     "make it a tenth wider (\"scale\") or move it 20 mm up (\"at\": [0, 0.02, 0]), or take a style without a fringe";
 
+constexpr const char* kRoomUnderIt = "move it up, for instance by \"at\": [0, 0.06, 0], or make it wider (\"scale\")";
+
 [[noreturn]] void refuseHair(const CharacterSpec& spec, const std::string& title, const Scalp& scalp,
                              const sim::HairMeshShape& grown, const Haircut& haircut, const sim::MeshError& error) {
   if (!spec.maps.length.empty())
@@ -158,9 +160,8 @@ constexpr const char* kRoomForFringe =
     throw InputError(spec.attachments.front().file, "with a tie", "leaves the tied hair no room",
                      "take a coarser hair mesh (low) or longer hair, or take off one of the two");
   if (!haircut.covered.empty())
-    throw InputError(
-        spec.attachments.front().file, "", "leaves the hair no room",
-        hasFringe(spec.style) && spec.hair.empty() ? kRoomForFringe : "make it wider, or move it off the head");
+    throw InputError(spec.attachments.front().file, "", "leaves the hair no room",
+                     hasFringe(spec.style) && spec.hair.empty() ? kRoomForFringe : kRoomUnderIt);
   if (!spec.ties.empty()) refuseTies(spec, scalp, grown, haircut);
   throw InputError(spec.hair.empty() ? "style " + title + " on " + spec.motion : spec.hair, error.place, error.fault,
                    error.mend);

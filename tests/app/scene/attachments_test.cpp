@@ -251,10 +251,10 @@ TEST(Attachments, AnExportSaysThatItLeavesThemOut) {
   }
 }
 
-// The beanie in another unit.
-std::string beanieIn(double units_per_metre, bool z_up = false) {
+// An attachment in another unit.
+std::string inUnit(const char* name, double units_per_metre, bool z_up) {
   const std::string file = test::freshFolder("attachments_unit") + "/cap.obj";
-  std::ifstream in(app::dataPath("assets/attachments/beanie.obj"));
+  std::ifstream in(app::dataPath(std::string("assets/attachments/") + name));
   std::ofstream out(file);
   for (std::string line; std::getline(in, line);) {
     double x = 0, y = 0, z = 0;
@@ -268,6 +268,10 @@ std::string beanieIn(double units_per_metre, bool z_up = false) {
   return file;
 }
 
+std::string beanieIn(double units_per_metre, bool z_up = false) {
+  return inUnit("beanie.obj", units_per_metre, z_up);
+}
+
 TEST(Attachments, UnitAndOriginAreInferredAndTold) {
   const app::Demo metres = app::openScene(wearing("beanie.obj"), 1.5);
   EXPECT_EQ(metres.message, "");
@@ -276,11 +280,19 @@ TEST(Attachments, UnitAndOriginAreInferredAndTold) {
   EXPECT_NEAR(centimetres.actors[0].worn[0].mesh->part.radius, metres.actors[0].worn[0].mesh->part.radius, 1e-6);
 }
 
-TEST(Attachments, AHatWithZUpIsTurned) {
-  const app::Demo upright = app::openScene(wearing("beanie.obj"), 1.5);
-  const app::Demo turned = app::openScene(wearing(beanieIn(1, true)), 1.5);
-  EXPECT_NE(turned.message.find("z up, turned to y"), std::string::npos) << turned.message;
-  EXPECT_LT((turned.actors[0].worn[0].mesh->part.center - upright.actors[0].worn[0].mesh->part.center).norm(), 1e-5);
+// Wherever "at" puts it; and none that has y up.
+TEST(Attachments, OneWithZUpIsTurned) {
+  for (const char* file : {"beanie.obj", "glasses.obj", "headband.obj", "sun_hat.obj"}) {
+    for (const double up : {0.0, 0.1}) {
+      const std::string at = R"(", "at": [0, )" + std::to_string(up) + ", 0]}";
+      const app::Demo upright = app::openScene(wearing(R"({"file": ")" + std::string(file) + at), 1.5),
+                      turned = app::openScene(wearing(R"({"file": ")" + inUnit(file, 1, true) + at), 1.5);
+      EXPECT_EQ(upright.message.find("turned to y"), std::string::npos) << file << " " << upright.message;
+      EXPECT_NE(turned.message.find("z up, turned to y"), std::string::npos) << file << " " << turned.message;
+      const auto middle = [](const app::Demo& demo) { return demo.actors[0].worn[0].mesh->part.center; };
+      EXPECT_LT((middle(turned) - middle(upright)).norm(), 1e-4) << file;
+    }
+  }
 }
 
 TEST(Attachments, OneInInchesOrFarOffIsSaidToBeNowhereToBeSeen) {
