@@ -269,6 +269,7 @@ void drawPanels(GLFWwindow* window, Demo& demo, UiState& ui) {
   if (demo.frames <= 1) layOutPanels(window, demo, ui);
   beginPanels(window);
   buildUi(demo, ui);
+  dragAsSeen(window, session(window));
   ImGui::Render();
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
@@ -481,7 +482,6 @@ int runWindow(Scene scene, const Options& options) {
     if (leaveFree(window.handle, repeats(options), callbacks, target)) throttle.disturb();
     const double seconds = frameSeconds(options, demo, last);
     advanceFrame(demo, tape.turn(frame, frame == 0 && options.load_state.empty() ? 0 : seconds, demo), target);
-    dragAsSeen(window.handle, callbacks);
     presets_coming = presets.work(demo, ui);
     keepProject(demo, autosave, ui);
     demo.stats.skipped[kSkipEvents] = {throttle.waited(), 1, 0};
