@@ -58,6 +58,8 @@ sim::HairMeshShape hairFromFile(const CharacterSpec& spec, const Character& char
     note(conversionNote(conversion));
   } else if (hasPolygonEnding(spec.hair) && !hasLayers(bytes)) {
     const PolygonMesh mesh = readPolygons(spec.hair);
+    if (!spec.mends.empty())
+      note("\"mends\" are for curves and change nothing here; hairmesh-convert takes --unit and --up");
     FittedStrips fitted = fitStrips(mesh, {}, false, spec.hair, character, spec.fit);
     note(stripNote(fitted.conversion));
     note(mesh.note);
