@@ -384,8 +384,8 @@ void growStrand(const HairFit& fit, const GrowthMap& growth, const StrandFit& st
 
 HairFit fitGroom(const StrandSamples& strands, const FitOptions& options) {
   if (strands.strandCount() < kMinGroomStrands)
-    throw std::runtime_error("it has " + std::to_string(strands.strandCount()) +
-                             " strands; a hair mesh takes at least " + std::to_string(kMinGroomStrands));
+    throw std::runtime_error(std::to_string(strands.strandCount()) + " strands can be used, finite and of a length; " +
+                             "a hair mesh takes at least " + std::to_string(kMinGroomStrands));
   const RootRaster raster = rasterRoots(strands);
   const double length = quantile(strands.length, 0.5);
   std::vector<int> budgets{400, 800, 1600, 2400};
