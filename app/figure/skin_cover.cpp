@@ -116,7 +116,7 @@ Gaps Cover::gapsAt(const BodyEllipsoid& e, std::size_t moments) const {
 
 void Cover::findNearest(std::size_t first) {
   for (std::size_t e = first; e < gaps_.size(); ++e) findNearer(e);
-  // What is far from all is asked for after all.
+  // Of a place that is far from all of them only a bound is known yet.
   for (std::size_t i = 0; i < nearest_gap_.size(); ++i) {
     if (nearest_gap_[i] < kFarGap) continue;
     nearest_gap_[i] = 1e9f;

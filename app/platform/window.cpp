@@ -163,8 +163,8 @@ void onMouseMove(GLFWwindow* window, double x, double y) {
 }
 
 void dragAsSeen(GLFWwindow* window, Session& s) {
-  const double dx = std::exchange(s.drag_x, 0.0), dy = std::exchange(s.drag_y, 0.0);
-  if (anyButton(s) && (dx != 0 || dy != 0)) dragView(window, dx, dy, s);
+  if (anyButton(s) && (s.drag_x != 0 || s.drag_y != 0)) dragView(window, s.drag_x, s.drag_y, s);
+  if (anyButton(s) || s.input.empty()) s.drag_x = s.drag_y = 0;  // else the press is yet to be seen
 }
 
 void onScroll(GLFWwindow* window, double, double notches) {

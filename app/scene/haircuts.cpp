@@ -77,6 +77,7 @@ void applyTies(const CharacterSpec& spec, const LoadedBody& body, sim::HairMeshS
                             spec.attachments.empty() ? Seams::kClosed : Seams::kOpen);
   shape = std::move(result.shape);
   haircut.tied.clear();
+  haircut.bands.clear();
   rings.clear();
   for (std::size_t t = 0; t < result.rings.size(); ++t) {
     const std::vector<int>& ring = result.rings[t];
@@ -84,10 +85,11 @@ void applyTies(const CharacterSpec& spec, const LoadedBody& body, sim::HairMeshS
       throw InputError("", tieTitle({spec.ties[t]}), "takes no hair",
                        "let it take hair of both sides, or hair that is rooted lower (\"above\")");
     haircut.tied.insert(haircut.tied.end(), ring.begin(), ring.end());
+    const HairTie& tie = haircut.ties[t];
+    haircut.bands.push_back(
+        fittedRing(tie, body.character.scalp, ringPlaces(shape, body.character.scalp, {&tie, 1}, ring)));
   }
   rings = std::move(result.rings);
-  const Scalp& scalp = body.character.scalp;
-  haircut.bands = fittedRings(haircut.ties, scalp, ringPlaces(shape, scalp, haircut.ties, haircut.tied));
 }
 
 // The hair as it grows, cut by a map.

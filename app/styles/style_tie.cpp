@@ -22,9 +22,10 @@ constexpr double kFatEnough = 0.012;                   // with less a wider ring
 constexpr int kTieRounds = 12;                         // of untangling on
 constexpr double kCoat = 0.010;                        // m over the scalp, half-way to the ring
 constexpr double kStep = 0.01, kBend = 0.22;           // m; share of a step's heading that gravity takes
-constexpr double kSwell = 1.35, kTaper = 0.7;       // of the ring's radius: the tail's where it is widest, at its end
-constexpr double kShortestTail = 0.08;              // m
-constexpr double kNarrowest = 0.004, kClose = 0.8;  // m, of a ring about hardly any hair; share of the width
+constexpr double kSwell = 1.35, kTaper = 0.7;  // of the ring's radius: the tail's where it is widest, at its end
+constexpr double kShortestTail = 0.08;         // m
+constexpr double kNarrowest = 0.004;           // m, of a ring about hardly any hair
+constexpr double kClose = 0.8;                 // of the radius of the columns in a ring: its drawn strands', by eye
 constexpr int kSectors = 24;
 constexpr double kSeam = 0.003;      // m between roots on both sides of where hair divides
 constexpr double kAlongside = 0.97;  // cosine between the ways that they leave the scalp
@@ -363,25 +364,18 @@ std::vector<Vec3> ringPlaces(const sim::HairMeshShape& tied, const Scalp& scalp,
   return places;
 }
 
-std::vector<HairTie> fittedRings(std::span<const HairTie> ties, const Scalp& scalp, std::span<const Vec3> places) {
-  std::vector<HairTie> fitted(ties.begin(), ties.end());
-  std::vector<std::vector<Vec3>> held(ties.size());
-  for (const Vec3& p : places) {
-    const auto away = [&](const HairTie& tie) { return (tie.at - p).norm(); };
-    const auto t = static_cast<std::size_t>(std::ranges::min_element(ties, {}, away) - ties.begin());
-    const Vec3 axis = (ties[t].at - scalp.center).normalized();
-    held[t].push_back(p - axis.dot(p - ties[t].at) * axis);
-  }
-  for (std::size_t t = 0; t < ties.size(); ++t) {
-    if (held[t].empty()) continue;
-    Vec3 middle = Vec3::Zero();
-    for (const Vec3& p : held[t]) middle += p / static_cast<double>(held[t].size());
-    double square = 0;
-    for (const Vec3& p : held[t]) square += (p - middle).squaredNorm() / static_cast<double>(held[t].size());
-    // Of a disc that is evenly filled the root of two; strands lie closer.
-    fitted[t].at = middle;
-    fitted[t].radius = std::clamp(kClose * std::sqrt(2 * square), kNarrowest, ties[t].radius);
-  }
+HairTie fittedRing(const HairTie& tie, const Scalp& scalp, std::span<const Vec3> places) {
+  if (places.empty()) return tie;
+  const Vec3 axis = (tie.at - scalp.center).normalized();
+  const auto inPlane = [&](const Vec3& p) { return Vec3(p - axis.dot(p - tie.at) * axis); };
+  const auto count = static_cast<double>(places.size());
+  HairTie fitted = tie;
+  fitted.at.setZero();
+  for (const Vec3& p : places) fitted.at += inPlane(p) / count;
+  double square = 0;
+  for (const Vec3& p : places) square += (inPlane(p) - fitted.at).squaredNorm() / count;
+  // The mean square in an evenly filled disc is half of its radius squared.
+  fitted.radius = std::clamp(kClose * std::sqrt(2 * square), kNarrowest, tie.radius);
   return fitted;
 }
 

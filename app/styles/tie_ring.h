@@ -13,8 +13,8 @@ namespace app {
 std::vector<Vec3> ringPlaces(const sim::HairMeshShape& tied, const Scalp& scalp, std::span<const HairTie> ties,
                              std::span<const int> ring);
 
-// Each tie about the middle of what it holds and as wide as a disc that is filled as evenly; one that holds nothing as
-// it is. `places`: as above.
-std::vector<HairTie> fittedRings(std::span<const HairTie> ties, const Scalp& scalp, std::span<const Vec3> places);
+// The tie as narrow as the hair that it holds, and about its middle. `places`: those of its ring; none: the tie as it
+// is.
+HairTie fittedRing(const HairTie& tie, const Scalp& scalp, std::span<const Vec3> places);
 
 }  // namespace app
