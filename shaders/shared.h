@@ -83,7 +83,7 @@ const int kSlotSamples = 5;  // see strand_raster.h
 
 // Strands out of the skin (shaders/common/skin.glsl).
 const int kMaxSkin = 48;          // ellipsoids of a hair
-const float kSkinGap = 0.0005;    // m, off an ellipsoid
+const float kSkinGap = 0.0018;    // m, off an ellipsoid: skin may stick out by so much and counts as covered
 const float kSkinBlend = 0.0015;  // m, on either side of that: there the lift sets in
 const float kSkinFar =
     4.0;  // squared distance from the middle, in the ellipsoid's own measure: nothing beyond is lifted

@@ -8,16 +8,17 @@
 #include "app/figure/character_build.h"
 #include "app/figure/cover_fit.h"
 #include "app/figure/skin_samples.h"
+#include "shaders/shared.h"
 
 namespace app {
 namespace {
 
 constexpr std::size_t kMaxSamples = 3000;
-constexpr int kMoments = 24;         // of all clips together, beside the rest pose
-constexpr float kFarGap = 0.05f;     // m: all larger gaps are kept as this
-constexpr double kCovered = 0.0018;  // m: skin that sticks out less is covered
-constexpr double kPatch = 0.40;      // head heights: radius of the patch that an added ellipsoid begins with
-constexpr double kSmaller = 0.6;     // of that, for a patch whose ellipsoid swallows too much
+constexpr int kMoments = 24;                       // of all clips together, beside the rest pose
+constexpr float kFarGap = 0.05f;                   // m: all larger gaps are kept as this
+const double kCovered = render::shared::kSkinGap;  // m: skin that sticks out less counts as covered
+constexpr double kPatch = 0.40;   // head heights: radius of the patch that an added ellipsoid begins with
+constexpr double kSmaller = 0.6;  // of that, for a patch whose ellipsoid swallows too much
 constexpr int kTries = 3;
 constexpr double kHold = 0.02;           // m, see fitCover
 constexpr double kAround = 0.04;         // m: skin of another part so near may hide a place
