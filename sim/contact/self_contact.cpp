@@ -369,6 +369,12 @@ std::array<int, 3> frameRoots(const HairMesh& mesh) {
   return columns;
 }
 
+double meanLength(const std::vector<Edge>& edges) {
+  double sum = 0;
+  for (const Edge& edge : edges) sum += edge.rest_length;
+  return sum / static_cast<double>(edges.size());
+}
+
 }  // namespace
 
 SelfContact::SelfContact(const HairMesh& mesh)

@@ -266,10 +266,4 @@ HairMesh buildHairMesh(HairMeshShape shape) {
   return mesh;
 }
 
-double meanLength(std::span<const Edge> edges) {
-  double sum = 0;
-  for (const Edge& edge : edges) sum += edge.rest_length;
-  return sum / static_cast<double>(edges.size());
-}
-
 }  // namespace sim

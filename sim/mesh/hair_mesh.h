@@ -134,6 +134,4 @@ struct HairMesh {
 // m, a corner tetrahedron whose rest volume is not positive.
 HairMesh buildHairMesh(HairMeshShape shape);
 
-double meanLength(std::span<const Edge> edges);  // m, at rest, of at least one
-
 }  // namespace sim

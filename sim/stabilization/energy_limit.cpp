@@ -14,7 +14,7 @@ constexpr double kGentle = 0.1, kGentleLong = 0.05;
 constexpr double kLongStep = 1.0 / 50;  // s
 // No step is near to linear of hair that is limp, folded as it hangs: its load strains its walls by more than this; or
 // of hair that is stiffer one way by such a ratio than another (Modulus::uneven): it buckles.
-constexpr double kLimp = 2;
+constexpr double kLimp = 1;
 constexpr int kTries = 5;            // of a shorter way
 constexpr double kWithin = 0.95;     // of the energy allowed and of the way, that a try aims at
 constexpr double kMinWay = 0.5;      // of the way, that the first try leaves: energies of stretched hair rise faster
@@ -46,9 +46,10 @@ Motion judge(const TakenStep& step, const HairState& state) {
   return motion;
 }
 
-bool neverLinear(const TakenStep& step, double segment) {
+bool neverLinear(const TakenStep& step) {
   const SimParams& params = step.params;
   const double pull = (params.air_drag * step.wind - Vec3(0, params.gravity, 0)).norm();
+  const double segment = step.mesh.vertical_edges.front().rest_length;
   double softest = INFINITY;  // of those that there are
   forEachModulus([&](const Modulus& modulus) {
     const double value = params.*modulus.param;
@@ -211,7 +212,7 @@ bool bodiesStandStill(const TakenStep& step, const Colliders& colliders, const E
 
 }  // namespace
 
-EnergyLimit::EnergyLimit(const HairMesh& mesh) : segment(meanLength(mesh.vertical_edges)) {
+EnergyLimit::EnergyLimit(const HairMesh& mesh) {
   const int n = mesh.vertexCount();
   carried.resize(n), plain.resize(n);
 }
@@ -219,7 +220,7 @@ EnergyLimit::EnergyLimit(const HairMesh& mesh) : segment(meanLength(mesh.vertica
 double limitEnergy(const TakenStep& step, bool solved, EnergyLimit& scratch, HairState& state) {
   scratch.carried_energy.reset();
   const Motion motion = judge(step, state);
-  const bool gentle = motion == Motion::kCalm && solved && !step.restarted && !neverLinear(step, scratch.segment);
+  const bool gentle = motion == Motion::kCalm && solved && !step.restarted && !neverLinear(step);
   if (gentle || motion == Motion::kNotFinite) return 1;
   carry(step, state, scratch);
   return bringBelowBound(step, kTries, scratch, state);

@@ -12,8 +12,8 @@
 // step ends; and x_c of a vertex that is pinned firmly is its target, as that of a root is where the scalp takes it.
 //
 // A gentle step of hair as styles have it is near to linear, and not looked at. Never near to linear is hair that hangs
-// folded because its load strains its walls by more than twice their length, or that is so much stiffer one way than
-// another that it buckles. Hair that was stopped in the step before does in this one what it was kept from.
+// folded because its load strains its walls by more than their length, or that is so much stiffer one way than another
+// that it buckles. Hair that was stopped in the step before does in this one what it was kept from.
 #pragma once
 
 #include <optional>
@@ -40,7 +40,6 @@ struct TakenStep {
 };
 
 struct EnergyLimit {
-  double segment;  // m, mean length between two vertices of a column
   std::vector<Vec3> carried;
   std::vector<V3<double>> plain;
   std::optional<double> carried_energy;  // J, potential, of the hair as the roots carry it in this step

@@ -178,7 +178,9 @@ TEST(SkinLift, AStrandReturnsFromWhereItWasLifted) {
   for (float x = -0.2f; x < 0.5f; x += kApart) {
     Vector3f p(x, 0.08f, 0), tangent = Vector3f::UnitX();
     render::leaveSkin({&skin, 1}, 2, lift, p, tangent);
-    if (x > 0.1f) EXPECT_GT((p - last).normalized().dot(tangent.normalized()), 0.999f) << x;
+    if (x > 0.1f) {
+      EXPECT_GT((p - last).normalized().dot(tangent.normalized()), 0.999f) << x;
+    }
     last = p;
   }
   EXPECT_GT(last.y(), 0.08f);
