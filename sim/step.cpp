@@ -40,13 +40,11 @@ struct StepContext::Parts {
   // Scratch of a step.
   std::vector<PinnedVertex> pins;  // that hold
   std::vector<Vec3> x_hat, v_hat, start_positions, start_velocities, unpushed;
-  bool restarted = false;                   // the step before was taken back, or there was none
-  std::vector<V3<double>> plain_positions;  // for the force model, which is plain arrays
+  bool restarted = false;  // the step before was taken back, or there was none
 
   Parts(const HairMesh& m, double (*c)())
       : mesh(&m), clock{c}, pattern(systemPattern(m)), material(m, pattern), stabilization(m), correction(m) {
     for (auto* array : {&x_hat, &v_hat, &start_positions, &start_velocities, &unpushed}) array->resize(m.vertexCount());
-    plain_positions.reserve(m.vertexCount());
   }
 };
 
@@ -68,6 +66,7 @@ void StepContext::reshape(HairState& state) {
   };
   follow(parts.single_solver);
   follow(parts.double_solver);
+  parts.stabilization.energy_limit.stored.forget();
   parts.self_contact.reset();
   parts.reference_contact.reset();
   state.memory.material = parts.material.memory();
@@ -107,6 +106,7 @@ Refresh refreshModel(const SimParams& params, MaterialMemory& memory, Parts& par
   memory = material.memory();
   if (other && parts.single_solver) setModel(*parts.single_solver);
   if (other && parts.double_solver) setModel(*parts.double_solver);
+  if (other) parts.stabilization.energy_limit.stored.forget();
   const auto ready = [&](auto& solver) {
     if (!solver) {
       solver.emplace(*parts.mesh);
@@ -240,16 +240,14 @@ void partBundles(const CorrectedStep& step, std::optional<SelfContact>& made, Pa
 
 // Kinetic, elastic and gravitational energy, and that of the wind's push on hair that does not move (J).
 double energyOf(const SimParams& params, const Vec3& wind, const HairState& state, Parts& parts) {
-  parts.plain_positions.resize(state.positions.size());
   ++parts.stabilization.energy_limit.energies;
   double energy = 0;
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
     const Vec3 &x = state.positions[i], &v = state.velocities[i];
-    parts.plain_positions[i] = {x.x(), x.y(), x.z()};
     const double specific = 0.5 * v.squaredNorm() + params.gravity * x.y() - params.air_drag * wind.dot(x);
     energy += params.density * parts.mesh->vertex_volume[i] * specific;
   }
-  return energy + evaluate<double>(parts.material.model, parts.plain_positions, {});
+  return energy + parts.stabilization.energy_limit.stored.at(parts.material.model, state.positions);
 }
 
 std::span<const Vec3> rememberStart(const HairState& state, Parts& parts) {

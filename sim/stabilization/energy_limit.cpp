@@ -12,9 +12,10 @@ namespace {
 // nothing more. In long steps less: under the first bound softened hair gained energy in steps of 1/20 s and more.
 constexpr double kGentle = 0.1, kGentleLong = 0.05;
 constexpr double kLongStep = 1.0 / 50;  // s
-// No step is near to linear of hair that is limp, folded as it hangs: its load strains its walls by more than this; or
-// of hair that is stiffer one way by such a ratio than another (Modulus::uneven): it buckles.
-constexpr double kLimp = 1;
+// No step is near to linear of hair that is limp, folded as it hangs: its load strains its walls by more than this.
+// BDF2 damps slow motion by the third power of the step only: what curvature the Hessian leaves out, by the strain,
+// outweighs that in firmer hair.
+constexpr double kLimp = 1, kLimpInTwoSteps = 0.1;
 constexpr int kTries = 5;            // of a shorter way
 constexpr double kWithin = 0.95;     // of the energy allowed and of the way, that a try aims at
 constexpr double kMinWay = 0.5;      // of the way, that the first try leaves: energies of stretched hair rise faster
@@ -46,6 +47,7 @@ Motion judge(const TakenStep& step, const HairState& state) {
   return motion;
 }
 
+// Nor of hair that is stiffer one way by such a ratio than another (Modulus::uneven): it buckles.
 bool neverLinear(const TakenStep& step) {
   const SimParams& params = step.params;
   const double pull = (params.air_drag * step.wind - Vec3(0, params.gravity, 0)).norm();
@@ -60,7 +62,8 @@ bool neverLinear(const TakenStep& step) {
     const double value = params.*modulus.param / (modulus.over_length ? segment * segment : 1);
     uneven = uneven || value > modulus.uneven * softest;
   });
-  return params.density * pull * step.mesh.hair_length > kLimp * softest || uneven;
+  const double limp = params.integrator == Integrator::kBdf2 ? kLimpInTwoSteps : kLimp;
+  return params.density * pull * step.mesh.hair_length > limp * softest || uneven;
 }
 
 // Where the roots carry every vertex that does not move against them.
@@ -85,12 +88,11 @@ double potential(const TakenStep& step, std::span<const Vec3> x, EnergyLimit& sc
   ++scratch.energies;
   double energy = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    scratch.plain[i] = {x[i].x(), x[i].y(), x[i].z()};
     const Vec3 blow = step.params.air_drag * (step.wind - carrying(step, scratch, static_cast<int>(i)));
     const double specific = step.params.gravity * x[i].y() - blow.dot(x[i] - scratch.carried[i]);
     energy += step.params.density * step.mesh.vertex_volume[i] * specific;
   }
-  return energy + evaluate<double>(step.model, scratch.plain, {});
+  return energy + scratch.stored.at(step.model, x);
 }
 
 // J, of a step whose carried positions are known, seen from the roots.
@@ -212,10 +214,7 @@ bool bodiesStandStill(const TakenStep& step, const Colliders& colliders, const E
 
 }  // namespace
 
-EnergyLimit::EnergyLimit(const HairMesh& mesh) {
-  const int n = mesh.vertexCount();
-  carried.resize(n), plain.resize(n);
-}
+EnergyLimit::EnergyLimit(const HairMesh& mesh) : carried(mesh.vertexCount()), stored(mesh) {}
 
 double limitEnergy(const TakenStep& step, bool solved, EnergyLimit& scratch, HairState& state) {
   scratch.carried_energy.reset();

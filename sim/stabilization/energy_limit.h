@@ -12,8 +12,9 @@
 // step ends; and x_c of a vertex that is pinned firmly is its target, as that of a root is where the scalp takes it.
 //
 // A gentle step of hair as styles have it is near to linear, and not looked at. Never near to linear is hair that hangs
-// folded because its load strains its walls by more than their length, or that is so much stiffer one way than another
-// that it buckles. Hair that was stopped in the step before does in this one what it was kept from.
+// folded because its load strains its walls by more than their length (a tenth of it, of BDF2), or that is so much
+// stiffer one way than another that it buckles. Hair that was stopped in the step before does in this one what it was
+// kept from.
 #pragma once
 
 #include <optional>
@@ -21,7 +22,7 @@
 #include <vector>
 
 #include "sim/contact/colliders.h"
-#include "sim/forces/model.h"
+#include "sim/forces/stored_energy.h"
 #include "sim/mesh/hair_mesh.h"
 #include "sim/mesh/hair_state.h"
 
@@ -41,7 +42,7 @@ struct TakenStep {
 
 struct EnergyLimit {
   std::vector<Vec3> carried;
-  std::vector<V3<double>> plain;
+  StoredEnergy stored;
   std::optional<double> carried_energy;  // J, potential, of the hair as the roots carry it in this step
   int energies = 0;                      // potential energies computed in this step
   explicit EnergyLimit(const HairMesh& mesh);

@@ -20,9 +20,10 @@ struct FamilyTitle {
   const char* title;
 };
 // Of families of which any part varies the same.
-constexpr std::array<FamilyTitle, 11> kTitles{{
+constexpr std::array<FamilyTitle, 12> kTitles{{
     {"pace", "steps, and frames through the clock, of 1 to 500 ms drawn anew each time"},
     {"param", "every parameter at its minimum and maximum, every choice"},
+    {"preset", "the material of every preset, own clips, implicit Euler and BDF2"},
     {"random-params", "random combinations over the whole ranges of all parameters"},
     {"restless", "parameters drawn anew every step"},
     {"paper", "the paper's claims, with our settings and with its solver"},

@@ -33,6 +33,7 @@ void addCaptures(Cases& cases);
 // matrix_params.cpp
 void addParameters(Cases& cases);
 void addStiffness(Cases& cases);
+void addPresets(Cases& cases);
 void addRandomParameters(std::uint64_t seed, Cases& cases);
 void addRedrawnParameters(Cases& cases);
 void addPaper(Cases& cases);

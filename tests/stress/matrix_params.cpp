@@ -3,6 +3,8 @@
 #include <cmath>
 #include <span>
 
+#include "app/files/data_path.h"
+#include "app/files/presets.h"
 #include "tests/stress/matrix.h"
 #include "tests/stress/random.h"
 #include "tests/stress/stage.h"
@@ -111,6 +113,36 @@ void addStiffness(Cases& cases) {
           }
           if (row == "density") one.params.emplace_back("density", ratio * defaultOf("density"));
           one.in_short = std::abs(decade) == 3 && hair.style == app::Style::kShort && name == "dance.bvh";
+          cases.push_back(one);
+        }
+      }
+    }
+  }
+}
+
+void addPresets(Cases& cases) {
+  for (const std::string& file : app::listAssets("presets", {".json"})) {
+    sim::SimParams params;
+    app::SceneLook look;
+    app::loadPreset(file, {&params, &look, {}});
+    if (!app::presetSections(file).sim || params.solver == sim::Solver::kPaper) continue;
+    StressCase one;
+    for (const sim::ParamField& field : sim::paramFields()) {
+      if (!ownAxis(field) && field.get(params) != field.default_value)
+        one.params.emplace_back(field.name, field.get(params));
+    }
+    one.play = Play::kForward;
+    one.release = kSlowRelease;
+    for (const sim::Integrator integrator : {sim::Integrator::kLinearizedEuler, sim::Integrator::kBdf2}) {
+      const bool two_step = integrator == sim::Integrator::kBdf2, opened = app::stem(file) == "natural";
+      if (two_step) one.params.emplace_back("integrator", static_cast<double>(integrator));
+      one.keeps_energy = !two_step;  // BDF2 goes on from where the roots were moving
+      for (const HairChoice& hair : lowStyles()) {
+        for (const char* clip : ownClips()) {
+          one.hair = hair;
+          one.clip = clip;
+          one.name = "preset/" + app::stem(file) + (two_step ? "-bdf2/" : "/") + app::stem(clip) + "/" + hairName(hair);
+          one.in_short = opened && (one.clip == "dance.bvh" || (!two_step && one.clip == "head_shake.bvh"));
           cases.push_back(one);
         }
       }

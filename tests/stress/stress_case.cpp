@@ -18,6 +18,7 @@ std::vector<StressCase> declareCases(std::uint64_t seed) {
   addScrubs(cases);
   addParameters(cases);
   addStiffness(cases);
+  addPresets(cases);
   addStates(cases);
   addUpsets(cases);
   addDistances(cases);
