@@ -118,8 +118,8 @@ std::vector<HairField> makeHairTable() {
   return look.lift_strands;
 }
 > ("lift_strands", "Strands", "", {0, 1}, "Drawn strands leave the skin where a bundle between vertices would cut it."),
-    hair<HAIR(strand_radius)>("strand_radius", "Strands", "m", {5e-6, 1e-3, kLog}, "Radius of a strand at its root."),
-    hair<HAIR(taper)>("taper", "Strands", "", {0, 1}, "Radius at the tip over radius at the root."),
+    hair<HAIR(strand_radius)>("strand_radius", "Styling", "m", {5e-6, 1e-3, kLog}, "Radius of a strand at its root."),
+    hair<HAIR(taper)>("taper", "Styling", "", {0, 1}, "Radius at the tip over radius at the root."),
     hair<HAIR(length_variation)>("length_variation", "Styling", "", {0, 0.9},
                                  "Strands end up to this share of their length early: 0 is a blunt cut."),
     hair<HAIR(offset)>("offset", "Styling", "m", {0, 0.02}, "Sideways wander of each strand, growing towards the tip."),

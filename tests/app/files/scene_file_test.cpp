@@ -230,8 +230,8 @@ struct Tables {
 };
 
 TEST(Presets, WhichOneWasChosenBeforeDoesNotMatter) {
-  const std::vector<std::vector<std::string>> families{{"soft", "stiff", "bouncy", "wet", "windy"},
-                                                       {"auburn", "black", "blond"}};
+  const std::vector<std::vector<std::string>> families{
+      {"natural", "soft", "stiff", "bouncy", "fine", "thick", "sprayed", "wet", "windy"}, {"auburn", "black", "blond"}};
   for (const auto& family : families) {
     for (const std::string& before : family) {
       for (const std::string& after : family) {
