@@ -25,7 +25,9 @@ constexpr double kNearJoint = 0.35;    // m, from its joint
 constexpr double kSwallowed = 0.2, kWellFitted = 0.035;
 constexpr double kOtherUnit = 2;     // times that a mesh is to be larger: it is in another unit
 constexpr double kMuchNearer = 0.6;  // times as far off the head
-constexpr double kHatSize = 0.08;    // m, the shortest side of a hat; how far before the head it lies
+constexpr double kNearer = 0.8;      // the same of a hat, of which both are as near as they come
+constexpr double kSeatRoom = 0.008, kSeatStep = 0.002, kSample = 0.008;  // m, for the hair under a hat
+constexpr double kHatSize = 0.08;  // m, the shortest side of a hat; how far before the head it lies
 constexpr double kWornSpacing = 0.0025, kMaxWornNodes = 1.2e6;  // m, of the grid
 constexpr double kSharpEdge = 0.5;                              // cosine between faces that are shaded as one
 constexpr double kWeld = 1e-5;                                  // of the size; vertices so near are one
@@ -280,20 +282,85 @@ double offHead(const ClosedSurface& surface, const Rigid& to_scalp, const Scalp&
   return off / static_cast<double>(surface.points.size());
 }
 
-// What is much nearer to the head when it is turned has z up in its file, facing -y: a hat that lies before or behind
-// it, glasses that lie below it. Judged where it would be without "at". `placed`: from the file's axes, m, to the
-// joint's frame; `moved`: by "at", m, there.
-void turnUpright(const Rigid& placed, const Vec3& moved, const Rigid& to_scalp, const Scalp& scalp,
-                 ClosedSurface& surface, std::string& note) {
+// Whether it is as thick as a hat. Glasses and bands are thin.
+bool isHat(const ClosedSurface& surface) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : surface.points) box.extend(p);
+  return box.sizes().minCoeff() > kHatSize;
+}
+
+// Points all over the surface, kSample apart at most.
+std::vector<Vec3> samplesOf(const ClosedSurface& surface) {
+  std::vector<Vec3> samples;
+  for (const auto& f : surface.faces) {
+    std::array<Vec3, 3> p;
+    for (std::size_t k = 0; k < 3; ++k) p[k] = surface.points[static_cast<std::size_t>(f[k])];
+    const double longest = std::max({(p[1] - p[0]).norm(), (p[2] - p[1]).norm(), (p[0] - p[2]).norm()});
+    const int parts = static_cast<int>(std::ceil(longest / kSample));
+    for (int i = 0; i <= parts; ++i) {
+      for (int j = 0; i + j <= parts; ++j) samples.push_back(p[0] + (i * (p[1] - p[0]) + j * (p[2] - p[0])) / parts);
+    }
+  }
+  return samples;
+}
+
+// How far a hat is to be moved, m, scalp frame, so that it sits: its middle over the head's, as low as the head lets
+// it.
+Vec3 toSeat(const ClosedSurface& surface, const Rigid& to_scalp, const Scalp& scalp) {
+  std::vector<Vec3> samples = samplesOf(surface);
+  Eigen::AlignedBox3d box;
+  for (Vec3& p : samples) box.extend(p = to_scalp * p - scalp.center);
+  Vec3 move = -box.center();
+  const double lowest = scalp.radiusAt(Vec3::UnitY()) - box.max().y();  // with its top at the crown
+  move.y() = lowest + box.sizes().y();
+  const auto fits = [&](double y) {
+    return std::ranges::none_of(samples, [&](const Vec3& p) {
+      const Vec3 at = p + Vec3(move.x(), y, move.z());
+      return at.norm() < scalp.radiusAt(at.normalized()) + kSeatRoom;
+    });
+  };
+  while (move.y() > lowest && fits(move.y() - kSeatStep)) move.y() -= kSeatStep;
+  return move;
+}
+
+// A quarter turn to y up of what has z up in its file, facing -y.
+ClosedSurface turnedUp(const ClosedSurface& surface, const Rigid& placed) {
   const Rigid quarter(Eigen::AngleAxisd(-0.5 * std::numbers::pi, Vec3::UnitX()));
   const Rigid turn = placed * quarter * placed.inverse(Eigen::Isometry);
   ClosedSurface turned = surface;
   for (Vec3& p : turned.points) p = turn * p;
+  return turned;
+}
+
+void addNote(const std::string& text, std::string& note) {
+  note += (note.empty() ? "" : ", ") + text;
+}
+
+// What is much nearer to the head when it is turned has z up: a hat where both ways are seated, glasses where they lie.
+// Judged where it would be without "at". `placed`: from the file's axes, m, to the joint's frame; `moved`: by "at", m,
+// there.
+void turnUpright(const Rigid& placed, const Vec3& moved, const Rigid& to_scalp, const Scalp& scalp,
+                 ClosedSurface& surface, std::string& note) {
+  const bool hat = isHat(surface);
   const Rigid unmoved = to_scalp * Eigen::Translation3d(-moved);
-  const double off = offHead(surface, unmoved, scalp), off_turned = offHead(turned, unmoved, scalp);
-  if (off_turned > kMuchNearer * off || swallowed(turned, 1, to_scalp, scalp) > kSwallowed) return;
+  const auto seat = [&](const ClosedSurface& one) {
+    return hat ? Rigid(Eigen::Translation3d(toSeat(one, unmoved, scalp))) * unmoved : unmoved;
+  };
+  ClosedSurface turned = turnedUp(surface, placed);
+  const Rigid there = seat(turned);
+  const double off = offHead(surface, seat(surface), scalp), off_turned = offHead(turned, there, scalp);
+  if (off_turned > (hat ? kNearer : kMuchNearer) * off || swallowed(turned, 1, there, scalp) > kSwallowed) return;
   surface = std::move(turned);
-  note += std::string(note.empty() ? "" : ", ") + "z up, turned to y";
+  addNote("z up, turned to y", note);
+}
+
+// Moves a hat that lies in the head, or beside it, to where it sits.
+void seatOnHead(const Rigid& to_scalp, const Scalp& scalp, ClosedSurface& surface, std::string& note) {
+  if (!isHat(surface)) return;
+  if (swallowed(surface, 1, to_scalp, scalp) <= kWellFitted && !liesBeside(surface, to_scalp, scalp)) return;
+  const Vec3 move = toSeat(surface, to_scalp, scalp);
+  for (Vec3& p : surface.points) p += to_scalp.linear().transpose() * move;
+  addNote("set on the head, " + millimetresOf(move.norm()) + " from where the file has it", note);
 }
 
 // Signed distances; the same as of a body's part.
@@ -373,12 +440,14 @@ Attachment loadAttachment(const AttachmentSpec& spec, const Character& character
   const Rigid placed = to_joint * Eigen::Translation3d(spec.at);
   if (of_head && spec.turn.isZero())
     turnUpright(placed, to_joint.linear() * spec.at, out.to_scalp, character.scalp, surface, note);
+  if (of_head && spec.turn.isZero() && spec.at.isZero() && spec.scale == 0)
+    seatOnHead(out.to_scalp, character.scalp, surface, note);
   out.part = distancesOf(surface, joint);
   if (!(out.part.deepest > 0))
     throw InputError(spec.file, "", "is too thin to collide with", "make it at least 3 mm thick");
   const std::string place = placeNote(surface, out.to_scalp, character.scalp, of_head);
   for (const std::string& more : {place, mesh.note}) {
-    if (!more.empty()) note += (note.empty() ? "" : ", ") + more;
+    if (!more.empty()) addNote(more, note);
   }
   if (!note.empty()) out.note = stem(spec.file) + ": " + note;
   shadeAttachment(surface, out);

@@ -4,8 +4,9 @@
 //                     "color": [r, g, b], "roughness": 0.8 }]
 // The mesh lies in the joint's frame at rest: origin at the joint, x to the figure's left, y up, z forward. "at" (m)
 // and "turn" (degrees about x, then y, then z) are added. "scale" is metres per unit of the file; left out, unit and
-// origin are inferred where they are certain, and so is z up where no "turn" is given. "color" left out is that
-// of the file's material. "joint" is a joint's name or a body part's ("head", "neck", "chest"). Every key but the file
+// origin are inferred where they are certain, and so is z up where no "turn" is given; and a hat that would lie in or
+// beside the head is set on it where "at", "turn" and "scale" are left out. "color" left out is that of the file's
+// material. "joint" is a joint's name or a body part's ("head", "neck", "chest"). Every key but the file
 // may be left out.
 #pragma once
 

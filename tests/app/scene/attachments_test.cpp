@@ -252,13 +252,14 @@ TEST(Attachments, AnExportSaysThatItLeavesThemOut) {
 }
 
 // An attachment in another unit.
-std::string inUnit(const char* name, double units_per_metre, bool z_up) {
+std::string inUnit(const char* name, double units_per_metre, bool z_up, double raised = 0) {
   const std::string file = test::freshFolder("attachments_unit") + "/cap.obj";
   std::ifstream in(app::dataPath(std::string("assets/attachments/") + name));
   std::ofstream out(file);
   for (std::string line; std::getline(in, line);) {
     double x = 0, y = 0, z = 0;
     if (std::sscanf(line.c_str(), "v %lf %lf %lf", &x, &y, &z) == 3) {
+      y += raised;
       if (z_up) std::swap(y, z), y = -y;
       out << "v " << units_per_metre * x << " " << units_per_metre * y << " " << units_per_metre * z << "\n";
     } else {
@@ -292,6 +293,18 @@ TEST(Attachments, OneWithZUpIsTurned) {
       const auto middle = [](const app::Demo& demo) { return demo.actors[0].worn[0].mesh->part.center; };
       EXPECT_LT((middle(turned) - middle(upright)).norm(), 1e-4) << file;
     }
+  }
+}
+
+// A hat modelled about its rim comes to lie where one modelled about the joint does, y up or z up.
+TEST(Attachments, AHatAboutItsRimIsSetOnTheHead) {
+  const app::Demo fitted = app::openScene(wearing("sun_hat.obj"), 1.5);
+  for (const bool z_up : {false, true}) {
+    const std::string file = inUnit("sun_hat.obj", 1, z_up, -0.084);
+    const app::Demo set = app::openScene(wearing(file), 1.5);
+    EXPECT_NE(set.message.find("set on the head"), std::string::npos) << set.message;
+    const auto middle = [](const app::Demo& demo) { return demo.actors[0].worn[0].mesh->part.center; };
+    EXPECT_LT((middle(set) - middle(fitted)).norm(), 0.03);
   }
 }
 
