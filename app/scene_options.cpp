@@ -10,6 +10,7 @@
 #include "app/groom/inspect/certain_mends.h"
 #include "app/options.h"
 #include "app/scene/comparison.h"
+#include "app/scene/hair_from_file.h"
 #include "app/scene/project.h"
 #include "app/scene/view/environment_light.h"
 #include "sim/field_text.h"
@@ -122,11 +123,11 @@ void overrideFields(const Options& options, CharacterSpec& spec) {
 void overrideCharacter(const Options& options, CharacterSpec& spec) {
   if (!options.style.empty()) {
     spec.style = *parseStyle(options.style);
-    spec.hair.clear();
+    chooseHair("", spec);
   }
   if (!options.resolution.empty()) spec.resolution = *parseResolution(options.resolution);
   if (!options.hair.empty()) {
-    spec.hair = findFile(options.hair, "", "hair");
+    chooseHair(findFile(options.hair, "", "hair"), spec);
     spec.reverse_faces = options.reverse_faces;
     spec.mends = options.mends;
   }

@@ -57,6 +57,8 @@ struct CharacterSpec {
   double clip_offset = 0;        // s, where in the clip it begins
   LoopKind loop = LoopKind::kAuto;
   CharacterLook look;
+  // That of the hair whose place a file took; what the file tells of its strands goes over it. None: the scene's own.
+  std::optional<render::HairLook> look_before;
   std::vector<PinSpec> pins;
   std::vector<TieSpec> ties;
   std::vector<AttachmentSpec> attachments;

@@ -203,7 +203,8 @@ Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, AssetCa
   actor.body = &body;
   actor.haircut = &cutHair(spec, body, asset_cache);
   for (const Attachment* mesh : attach(spec, body, asset_cache)) actor.worn.push_back({mesh, freshId(), {}});
-  if (actor.haircut->look) takeUnset(*actor.haircut->look, actor.spec.look.hair);
+  if (actor.haircut->look)
+    takeUnset(*actor.haircut->look, spec.look_before.value_or(render::HairLook{}), actor.spec.look.hair);
   actor.scalp = &coverScalp(body, *actor.haircut, asset_cache);
   actor.clip = findClip(spec, actor.body->character);
   actor.id = freshId();

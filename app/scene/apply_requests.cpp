@@ -16,6 +16,7 @@
 #include "app/scene/edit/mesh_change.h"
 #include "app/scene/edit/paint_brush.h"
 #include "app/scene/edit/vary.h"
+#include "app/scene/hair_from_file.h"
 #include "app/scene/present_scene.h"
 #include "app/scene/project.h"
 #include "sim/field_text.h"
@@ -70,13 +71,13 @@ void changeStyle(const Request& request, Demo& demo) {
       throw InputError("", "resolution '" + request.name + "'", "is unknown", "choose low, medium, high or ultra");
     spec.resolution = *resolution;
   }
-  spec.hair.clear();
+  chooseHair("", spec);
   recast(spec, true, std::string(styleName(spec.style)) + " " + std::string(resolutionName(spec.resolution)), demo);
 }
 
 void changeHairFile(const std::string& file, Demo& demo) {
   CharacterSpec spec = selectedActor(demo).spec;
-  spec.hair = findFile(file, "", "hair");
+  chooseHair(findFile(file, "", "hair"), spec);
   spec.mends.clear();
   recast(spec, true, "hair mesh " + stem(file), demo);
 }

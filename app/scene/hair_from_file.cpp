@@ -74,4 +74,11 @@ sim::HairMeshShape hairFromFile(const CharacterSpec& spec, const Character& char
   return shape;
 }
 
+void chooseHair(const std::string& file, CharacterSpec& spec) {
+  if (spec.look_before) dropLook(*spec.look_before, spec.look.hair);
+  spec.look_before.reset();
+  if (!file.empty()) spec.look_before = spec.look.hair;
+  spec.hair = file;
+}
+
 }  // namespace app

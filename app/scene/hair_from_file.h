@@ -11,4 +11,8 @@ namespace app {
 // groom's strands individual to its look. Throws InputError.
 sim::HairMeshShape hairFromFile(const CharacterSpec& spec, const Character& character, Haircut& haircut);
 
+// Puts a file's hair in the place of the character's own, and an empty name its style's: the look that the file brings
+// goes over that of the hair before, and away with the file.
+void chooseHair(const std::string& file, CharacterSpec& spec);
+
 }  // namespace app

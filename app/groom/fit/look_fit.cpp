@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <map>
@@ -212,18 +213,36 @@ void takeLook(const LookFit& fit, render::HairLook& look) {
   if (fit.taper >= 0) look.taper = static_cast<float>(fit.taper);
 }
 
-void takeUnset(const LookFit& fit, render::HairLook& look) {
+namespace {
+
+constexpr std::array kTaken{&render::HairLook::length_variation,
+                            &render::HairLook::offset,
+                            &render::HairLook::clump,
+                            &render::HairLook::curl_radius,
+                            &render::HairLook::curl_pitch,
+                            &render::HairLook::frizz,
+                            &render::HairLook::taper,
+                            &render::HairLook::lock,
+                            &render::HairLook::wisp,
+                            &render::HairLook::drift,
+                            &render::HairLook::root_spread,
+                            &render::HairLook::hairline,
+                            &render::HairLook::baby_hairs,
+                            &render::HairLook::flyaways};
+
+}  // namespace
+
+void takeUnset(const LookFit& fit, const render::HairLook& before, render::HairLook& look) {
   const render::HairLook usual;
   render::HairLook fitted;
   takeLook(fit, fitted);
-  for (float render::HairLook::*row :
-       {&render::HairLook::length_variation, &render::HairLook::offset, &render::HairLook::clump,
-        &render::HairLook::curl_radius, &render::HairLook::curl_pitch, &render::HairLook::frizz,
-        &render::HairLook::taper, &render::HairLook::lock, &render::HairLook::wisp, &render::HairLook::drift,
-        &render::HairLook::root_spread, &render::HairLook::hairline, &render::HairLook::baby_hairs,
-        &render::HairLook::flyaways}) {
-    if (look.*row == usual.*row) look.*row = fitted.*row;
+  for (const auto row : kTaken) {
+    if (look.*row == usual.*row || look.*row == before.*row) look.*row = fitted.*row;
   }
+}
+
+void dropLook(const render::HairLook& before, render::HairLook& look) {
+  for (const auto row : kTaken) look.*row = before.*row;
 }
 
 }  // namespace app

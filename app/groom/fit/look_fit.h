@@ -30,7 +30,10 @@ LookFit fitLook(const Groom& groom, double scale, const StrandSamples& strands, 
 // The look with what was fitted in place of its own.
 void takeLook(const LookFit& fit, render::HairLook& look);
 
-// The same for the rows that still have their defaults: what a person set stays.
-void takeUnset(const LookFit& fit, render::HairLook& look);
+// The same for the rows that have their defaults or are as `before`: what a person set stays.
+void takeUnset(const LookFit& fit, const render::HairLook& before, render::HairLook& look);
+
+// Gives the rows that takeLook sets the values that they have in `before`.
+void dropLook(const render::HairLook& before, render::HairLook& look);
 
 }  // namespace app

@@ -123,7 +123,7 @@ std::string mapsText(const FieldFiles& maps) {
 bool sameCast(const CharacterSpec& a, const CharacterSpec& b) {
   const auto cast = [](const CharacterSpec& spec) {
     const auto& [motion, parts, clip, style, resolution, hair, reverse_faces, fit, mends, position, heading,
-                 clip_offset, loop, look, pins, ties, attachments, maps, curves] = spec;
+                 clip_offset, loop, look, look_before, pins, ties, attachments, maps, curves] = spec;
     return std::tuple(motion, parts, clip, style, resolution, hair, reverse_faces, fit, mends, position.x(),
                       position.y(), position.z(), heading, loop, writePins(pins).dump(), writeTies(ties).dump(),
                       wornText(attachments), mapsText(maps), writeCurves(curves).dump());

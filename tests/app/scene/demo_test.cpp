@@ -191,6 +191,30 @@ TEST(Demo, ChangingTheStyleKeepsTheRest) {
   expectFinite(demo);
 }
 
+// A groom's strands are drawn by what it tells of them, in place of the look that the hair before had; what was set by
+// hand stays, and the style that comes back has its own.
+TEST(Demo, AGroomBringsItsLookAndTakesItAway) {
+  const std::string groom = test::freshFolder("demo_groom") + "/groom.hair";
+  test::runProgram({"--no-images", "--frames", "1", "--style", "short", "--resolution", "low", "--strands", "60",
+                    "--export", groom});
+  app::Scene scene = app::loadScene(app::findFile("default.json", "", "scenes"));
+  scene.playback.settle = 0;
+  scene.characters[0].resolution = app::Resolution::kLow;
+  Demo demo = app::openScene(scene, 1.5, false);
+  const render::HairLook before = demo.actors[0].spec.look.hair;
+  ASSERT_GT(before.lock, 0);
+  ASSERT_GT(before.flyaways, 0);
+  demo.requests = {{Ask::kSetParam, "drift", "0.001"}, {Ask::kHairFile, "", groom}};
+  app::advanceFrame(demo, 1.0 / 60, {});
+  ASSERT_TRUE(demo.actors[0].haircut->look) << demo.message;
+  EXPECT_EQ(demo.actors[0].spec.look.hair.lock, 0);
+  EXPECT_EQ(demo.actors[0].spec.look.hair.flyaways, 0);
+  demo.requests = {{Ask::kStyle, "long", ""}};
+  app::advanceFrame(demo, 1.0 / 60, {});
+  EXPECT_EQ(demo.actors[0].spec.look.hair.lock, before.lock);
+  EXPECT_FLOAT_EQ(demo.actors[0].spec.look.hair.drift, 0.001f);
+}
+
 TEST(Demo, WhatCannotBeLoadedLeavesWhatIsThere) {
   Demo demo = smallDemo();
   app::advanceFrame(demo, 1.0 / 60, {});
