@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <deque>
 #include <map>
 #include <numbers>
 
@@ -24,13 +25,17 @@ constexpr std::size_t kMinBundleStrands = 5;  // strands of a bundle
 // Root mean square of frizz and offset over a strand, in their own amplitudes: of grow(t) = t (1.6 - 0.6 t), two sines,
 // and a disc (shaders/common/strand.glsl).
 constexpr double kFrizzSpread = 0.667, kOffsetSpread = 0.31;
+constexpr float kNearFit = 0.008f;     // m, of strands that share what the hair mesh misses
+constexpr double kMostWander = 0.005;  // m; what strays farther is held by no hair mesh, and drawn as noise by any
+constexpr std::size_t kMaxShared = 6;  // the nearest of so many
 constexpr float kNearRoots = 0.004f;   // m, of strands whose distance tells of clumps
 constexpr double kClumpClosed = 0.55;  // share of the length at which clumps are closed
 
 struct StrandMeasure {
   int face = 0;
   double radius = 0, turns = 0;  // of its clearest rotation; 0: none
-  double frizz = 0, wander = 0;  // m, root mean square: of what is left by more, and less, than three turns
+  double frizz = 0;              // m, root mean square of what is left by more than three turns
+  double wander = -1;            // the same by less, of its own: not shared with a neighbour; -1: it has none
   double length_share = 1;       // of what is usual where it roots
 };
 
@@ -87,7 +92,13 @@ double rootMeanSquare(const std::vector<std::complex<double>>& way) {
   return std::sqrt(square);
 }
 
-void measureWander(const std::vector<std::complex<double>>& way, StrandMeasure& measure) {
+// By less than three turns, m.
+double slowPart(const std::vector<std::complex<double>>& way) {
+  const double quick = rootMeanSquare(quickPart(way, kQuickTurns)), all = rootMeanSquare(way);
+  return std::sqrt(std::max(0.0, all * all - quick * quick));
+}
+
+void measureTurns(const std::vector<std::complex<double>>& way, StrandMeasure& measure) {
   const std::vector<std::complex<double>> part = quickPart(way, kQuickTurns);
   double best = 0;
   for (double turns = kMinTurns; turns <= kMaxTurns; turns += 0.25) {
@@ -96,10 +107,15 @@ void measureWander(const std::vector<std::complex<double>>& way, StrandMeasure& 
     best = amplitude;
     measure.turns = turns;
   }
-  const double quick = rootMeanSquare(part), all = rootMeanSquare(way);
-  measure.wander = std::sqrt(std::max(0.0, all * all - quick * quick));
+  const double quick = rootMeanSquare(part);
   if (best * best > kClearCurl * quick * quick) measure.radius = best;
   measure.frizz = measure.radius > 0 ? std::sqrt(std::max(0.0, quick * quick - 0.8 * best * best)) : quick;
+}
+
+std::array<int, 3> cellOf(const Vector3f& at, float size) {
+  std::array<int, 3> cell;
+  for (int k = 0; k < 3; ++k) cell[static_cast<std::size_t>(k)] = static_cast<int>(std::floor(at[k] / size));
+  return cell;
 }
 
 // `length`: m, of a strand.
@@ -114,7 +130,7 @@ StrandCharacter summary(const std::vector<const StrandMeasure*>& of, double leng
       turns.push_back(static_cast<float>(one->turns));
     }
     frizz.push_back(static_cast<float>(one->frizz));
-    wander.push_back(static_cast<float>(one->wander));
+    if (one->wander >= 0) wander.push_back(static_cast<float>(one->wander));
     shares += one->length_share / static_cast<double>(of.size());
   }
   if (2 * radius.size() > of.size()) {
@@ -123,7 +139,7 @@ StrandCharacter summary(const std::vector<const StrandMeasure*>& of, double leng
     out.curl_pitch = std::clamp(length / out.curl_turns, 0.003, 0.3);
   }
   out.frizz = quantile(frizz, 0.5) / kFrizzSpread;
-  out.offset = quantile(wander, 0.5) / kOffsetSpread;
+  if (!wander.empty()) out.offset = std::min(quantile(wander, 0.5) / kOffsetSpread, kMostWander);
   out.length_variation = std::clamp(3 * (1 - shares), 0.0, 0.6);  // of 1 - v u^2 with u in 0..1 the mean is 1 - v / 3
   return out;
 }
@@ -136,8 +152,7 @@ double clumpOf(const StrandSamples& strands, const HairFit& fit, const GrowthMap
   std::vector<Vector3f> one(static_cast<std::size_t>(strands.count)), other = one;
   for (std::size_t s = 0; s < strands.strandCount() && ratios.size() < kMaxLooked; ++s) {
     const Vector3f root = strands.strand(s)[0];
-    const auto cell = [&](int k) { return static_cast<int>(std::floor(root[k] / kNearRoots)); };
-    const auto [entry, added] = seen.try_emplace({cell(0), cell(1), cell(2)}, s);
+    const auto [entry, added] = seen.try_emplace(cellOf(root, kNearRoots), s);
     if (added) continue;
     growStrand(fit, growth, fit.strands[s], one);
     growStrand(fit, growth, fit.strands[entry->second], other);
@@ -170,6 +185,7 @@ LookFit fitLook(const Groom& groom, double scale, const StrandSamples& strands, 
   const std::size_t step = std::max<std::size_t>(1, strands.strandCount() / kMaxLooked);
   std::vector<StrandMeasure> measures;
   std::vector<Vector3f> given, strand(kFitPoints), grown(kFitPoints);
+  std::map<std::array<int, 3>, std::deque<std::vector<Vector3f>>> missed;  // by where it roots: given less grown
   for (std::size_t s = 0; s < strands.strandCount(); s += step) {
     given.clear();
     for (const Vector3f& p : groom.strand(static_cast<std::size_t>(strands.source[s])))
@@ -180,7 +196,18 @@ LookFit fitLook(const Groom& groom, double scale, const StrandSamples& strands, 
     measure.face = fit.strands[s].root.face;
     measure.length_share =
         std::min(1.0, static_cast<double>(fit.strands[s].end) / static_cast<double>(fit.knots.size() - 1));
-    measureWander(wander(strand, grown), measure);
+    measureTurns(wander(strand, grown), measure);
+    // What the hair mesh misses of a whole wisp is no wander of its strands.
+    auto& missed_near = missed[cellOf(strand[0], kNearFit)];
+    for (const std::vector<Vector3f>& near : missed_near) {
+      std::vector<Vector3f> own = strand;
+      for (std::size_t k = 0; k < own.size(); ++k) own[k] -= near[k];
+      const double wander_here = slowPart(wander(own, grown)) / std::numbers::sqrt2;
+      measure.wander = measure.wander < 0 ? wander_here : std::min(measure.wander, wander_here);
+    }
+    std::vector<Vector3f>& fresh = missed_near.emplace_back(strand);
+    for (std::size_t k = 0; k < fresh.size(); ++k) fresh[k] -= grown[k];
+    if (missed_near.size() > kMaxShared) missed_near.pop_front();
   }
   LookFit look;
   std::vector<const StrandMeasure*> all;
