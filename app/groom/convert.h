@@ -47,7 +47,8 @@ Conversion convertGroom(const Groom& groom, const GroomHints& hints, const Conve
 // Of the strands, how many do not fit.
 int misfitCount(const Conversion& conversion);
 
-// One sentence where more than half of the strands do not fit; else empty.
+// One sentence where more than half of the strands do not fit and all are more than 5 % of their length off in the
+// mean; else empty.
 std::string conversionWarning(const Conversion& conversion);
 
 // Vertices, distances, character of the strands, and what does not fit: one fact a line.

@@ -171,6 +171,9 @@ TEST(Conversion, SaysFirstThatMostStrandsDoNotFit) {
   EXPECT_EQ(conversionWarning(conversion), "");
   EXPECT_TRUE(conversionReport(conversion).starts_with("read"));
   conversion.misfits[0].strands = 101;
+  conversion.fit.error.mean = 0.049 * conversion.fit.error.strand_length;
+  EXPECT_EQ(conversionWarning(conversion), "") << "hair that comes back a little off is not lost";
+  conversion.fit.error.mean = 0.051 * conversion.fit.error.strand_length;
   EXPECT_NE(conversionWarning(conversion).find("101 of 200 strands do not fit"), std::string::npos);
   EXPECT_TRUE(conversionReport(conversion).starts_with("warning       most of the groom is lost"));
 }
