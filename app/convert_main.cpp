@@ -184,9 +184,10 @@ int convertPolygons(const Arguments& arguments) {
   const app::StripConversion& conversion = fitted.conversion;
   if (!mesh.note.empty()) std::cout << "note          " << mesh.note << "\n";
   app::writeFile(arguments.out, app::writeHairMesh(conversion.mesh.shape));
-  if (!fitted.fit.empty()) std::cout << "mended        " << fitted.fit << "\n";
+  const bool lost = !arguments.no_mend && app::farFromHead(conversion.mesh.shape, figureOf(arguments));
+  if (!fitted.fit.empty()) std::cout << (lost ? "warning       " : "mended        ") << fitted.fit << "\n";
   std::cout << app::stripReport(conversion) << "written       " << arguments.out << "\n";
-  return app::kExitFine;
+  return lost ? app::kExitFault : app::kExitFine;
 }
 
 // What is written is a hair mesh, and what is read stays.

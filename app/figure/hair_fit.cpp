@@ -17,12 +17,14 @@ namespace {
 
 constexpr double kHead = 0.23;                               // m, the head that limits are given for
 constexpr double kSmallestScale = 0.6, kLargestScale = 1.6;  // of another head's hair
-constexpr double kCloser = 0.5;                              // of the limit: where size and place are fitted as well
+constexpr double kCloser = 0.55;                             // of the limit: where size and place are fitted as well
 constexpr double kMuchCloser = 0.25;                         // by size as well, than by place alone
 constexpr double kSmallestSpread = 0.2;                      // of the roots over that of the scalp
 // Hair hangs when its tips' mean way from the roots is so much of their mean length; then it points down within 70
 // degrees.
 constexpr double kHangs = 0.5, kDown = 0.34;
+constexpr double kFaceForward = 0.3, kFaceBelow = 0.1, kFaceCosts = 0.2;  // before the ears, below the brow; m
+constexpr double kOtherAxes = 0.005, kHeadShapes = 3;                     // m; heads differ by so many limits
 constexpr int kFitSteps = 20;
 
 struct Axes {
@@ -134,12 +136,18 @@ Cloud hairyScalp(const Scalp& scalp) {
   return cloudOf(points);
 }
 
-// m. Heads are nearly as round as they are the wrong way about, so hair also has to root above and behind the middle.
-double misfit(const std::vector<Vec3>& roots, const Reading& reading, const Scalp& scalp) {
-  Vec3 mean = Vec3::Zero();
-  for (const Vec3& root : roots) mean += reading(root);
-  mean = mean / static_cast<double>(roots.size()) - scalp.center;
-  return distanceOf(roots, reading, scalp) + std::max(0.0, mean.z()) + std::max(0.0, -mean.y());
+// m. `points` are brought to the scalp, `roots` are the hair's. Heads are nearly as round as they are the wrong way
+// about, so hair also has to root above the middle, and not on the face; and most files have y up and face z.
+double misfit(const std::vector<Vec3>& points, const std::vector<Vec3>& roots, const Reading& reading,
+              const Scalp& scalp) {
+  double height = 0, on_face = 0;
+  for (const Vec3& root : roots) {
+    const Vec3 from_middle = reading(root) - scalp.center, out = from_middle.normalized();
+    height += from_middle.y() / static_cast<double>(roots.size());
+    on_face += out.z() > kFaceForward && out.y() < kFaceBelow ? 1 / static_cast<double>(roots.size()) : 0;
+  }
+  return distanceOf(points, reading, scalp) + kFaceCosts * on_face + std::max(0.0, -height) +
+         (reading.axes == &axesKnown()[0] ? 0 : kOtherAxes);
 }
 
 // Whether hair read so is of a head's size and hangs down, if it hangs.
@@ -230,16 +238,19 @@ double rootDistance(const sim::HairMeshShape& shape, const Scalp& scalp) {
   return distanceOf(rootsOf(shape), Reading{}, scalp);
 }
 
-std::string fitHair(const Character& character, bool mend, sim::HairMeshShape& shape, bool in_metres) {
+std::string fitHair(const Character& character, bool mend, sim::HairMeshShape& shape, bool in_metres,
+                    std::span<const Vec3> scalp_points) {
   const Scalp& scalp = character.scalp;
-  const std::vector<Vec3> roots = rootsOf(shape);
+  const std::vector<Vec3> hair_roots = rootsOf(shape);
   const double limit = kFarRoots * scalp.head_height / kHead, before = rootDistance(shape, scalp);
-  if (roots.empty() || before <= limit) return "";
-  const Vec3 hang = hangOf(shape);
+  if (hair_roots.empty() || before <= limit) return "";
+  const Vec3 hang = scalp_points.empty() ? hangOf(shape) : Vec3::Zero();
+  std::vector<Vec3> roots(scalp_points.begin(), scalp_points.end());
+  if (roots.empty()) roots = hair_roots;
   const std::vector<Reading> all = readings(character, in_metres);
   const auto best = [&](const std::vector<Reading>& of) {
     return std::min_element(of.begin(), of.end(), [&](const Reading& a, const Reading& b) {
-      return misfit(roots, a, scalp) < misfit(roots, b, scalp);
+      return misfit(roots, hair_roots, a, scalp) < misfit(roots, hair_roots, b, scalp);
     });
   };
   std::vector<Reading> as_made;
@@ -254,8 +265,11 @@ std::string fitHair(const Character& character, bool mend, sim::HairMeshShape& s
     const auto off = [&](const std::vector<Reading>& of) {
       return of.empty() ? INFINITY : distanceOf(roots, *best(of), scalp);
     };
-    if (off(moved) > kCloser * limit || off(sized) < kMuchCloser * off(moved)) moved = std::move(sized);
-    if (moved.empty() || distanceOf(roots, *best(moved), scalp) > kCloser * limit)
+    const double close = scalp_points.empty() ? kCloser * limit : kHeadShapes * limit;
+    // Size is no reason for other axes.
+    if (off(moved) <= close) std::erase_if(sized, [&](const Reading& one) { return one.axes != best(moved)->axes; });
+    if (off(moved) > close || off(sized) < kMuchCloser * off(moved)) moved = std::move(sized);
+    if (moved.empty() || off(moved) > close)
       return "its roots are " + length(before) +
              " from the scalp, in no unit, axes or size that is known; it should be in metres, y up, about the head "
              "joint (assets/hair/README.md)";

@@ -1,6 +1,7 @@
 // Hair meshes that were modelled in another unit, with another axis up, about another origin or for another head.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "app/figure/character.h"
@@ -19,7 +20,9 @@ double rootDistance(const sim::HairMeshShape& shape, const Scalp& scalp);
 // in Blender, or y), the origin (head joint or the figure's own) and at last the scale and place that bring them to it.
 // Hair that hangs must hang down, and its roots must be spread as over a head. With `mend` the shape is brought there.
 // Returns what was found, and done, in words; empty when the roots fit as they are. Of two that fit the simpler one is
-// taken, as listed; what is only moved before what is scaled. in_metres: the unit is known.
-std::string fitHair(const Character& character, bool mend, sim::HairMeshShape& shape, bool in_metres = false);
+// taken, as listed; what is only moved before what is scaled. in_metres: the unit is known. `scalp_points` (the shape's
+// units and axes) are all over the scalp that the hair was made on: brought to this one in place of the roots.
+std::string fitHair(const Character& character, bool mend, sim::HairMeshShape& shape, bool in_metres = false,
+                    std::span<const Vec3> scalp_points = {});
 
 }  // namespace app

@@ -10,7 +10,8 @@ namespace {
 FittedStrips fitWithUp(const PolygonMesh& mesh, const StripOptions& options, const std::string& file,
                        const Character& character, bool mend) {
   FittedStrips fitted{convertStrips(mesh, options, file), ""};
-  fitted.fit = fitHair(character, mend, fitted.conversion.mesh.shape, true);
+  StripConversion& strips = fitted.conversion;
+  fitted.fit = fitHair(character, mend, strips.mesh.shape, true, strips.scalp_points);
   return fitted;
 }
 
@@ -29,6 +30,10 @@ FittedStrips fitStrips(const PolygonMesh& mesh, const StripOptions& options, boo
   } catch (const InputError&) {
     return fitted;  // no strips with z up
   }
+}
+
+bool farFromHead(const sim::HairMeshShape& shape, const Character& character) {
+  return rootDistance(shape, character.scalp) > 3 * kFarRoots;
 }
 
 }  // namespace app

@@ -19,4 +19,7 @@ struct FittedStrips {
 FittedStrips fitStrips(const PolygonMesh& mesh, const StripOptions& options, bool up_given, const std::string& file,
                        const Character& character, bool mend);
 
+// Whether the roots lie so far from the figure's scalp that the hair is for no head that is known.
+bool farFromHead(const sim::HairMeshShape& shape, const Character& character);
+
 }  // namespace app

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <span>
 #include <string_view>
 
 #include "app/files/errors.h"
+#include "app/files/length_units.h"
 #include "app/files/report_line.h"
 #include "app/groom/fit/strand_samples.h"
 
@@ -124,6 +126,12 @@ double unitOf(const std::vector<StripRows>& strips, double asked, std::optional<
     words = text;
     return asked > 0 ? asked : *said;
   }
+  // Modelling programs count in one of these, which are too far apart to be taken for each other.
+  for (const LengthUnit& unit : std::span(kLengthUnits).first(3)) {
+    if (unit.metres * spread <= kMinSpread || unit.metres * spread >= kMaxSpread) continue;
+    words = std::string(unit.words) + ", inferred from the spread of the roots";
+    return unit.metres;
+  }
   const double found = inferUnit(roots, words);
   words += ", inferred from the spread of the roots";
   return found;
@@ -190,6 +198,7 @@ StripConversion convertStrips(const PolygonMesh& mesh, const StripOptions& optio
   if (all.strips.empty())
     throw InputError(file, "", "holds no strip or tube that can be followed: " + out.left_out.front(), kGive);
   out.scale = unitOf(all.strips, options.unit, mesh.meters_per_unit, out.unit);
+  for (const Vector3d& p : scalp) out.scalp_points.push_back(out.scale * p);
   for (StripRows& strip : all.strips) {
     (strip.tube ? out.tubes : out.strips) += 1;
     if (!strip.tube && strip.rows[0].size() > 2) ++out.joined;

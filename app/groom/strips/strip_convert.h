@@ -33,10 +33,11 @@ struct StripConversion {
   int strips = 0, joined = 0, tubes = 0;  // pieces that became hair; joined: strips of several quads across
   std::string unit;                       // in words
   double scale = 1;
-  std::string roots;                  // in words: how the root edges were told
-  std::vector<std::string> left_out;  // "strip 3 ('hair_back'): ..."
-  int cut = 0;                        // strips whose last rows were left out
-  std::string scalp;                  // objects taken for the scalp
+  std::string roots;                          // in words: how the root edges were told
+  std::vector<std::string> left_out;          // "strip 3 ('hair_back'): ..."
+  int cut = 0;                                // strips whose last rows were left out
+  std::string scalp;                          // objects taken for the scalp
+  std::vector<Eigen::Vector3d> scalp_points;  // m, the file's axes: all over it
 };
 
 // Throws InputError naming `file` where it holds no strip or tube that can be followed.
