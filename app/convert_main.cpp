@@ -65,7 +65,8 @@ void addCurveOptions(CLI::App& parser, Arguments& arguments) {
       "--mends", arguments.mends,
       "Options of hairmesh-inspect that mend curves, in quotes: \"--up z --push-out\"; what is certain is "
       "mended by itself, and said");
-  parser.add_flag("--no-mend", arguments.no_mend, "The hair is taken as it is, but for the unit");
+  parser.add_flag("--no-mend", arguments.no_mend,
+                  "The hair is taken as it is, but for the unit and the axis that is up");
   parser.add_option("--figure", arguments.figure,
                     "Motion or model whose head the hair is held against (a mannequin's)");
   parser.add_flag("--reverse-strands", arguments.curves.reverse, "Strands are given from tip to root");
@@ -161,7 +162,11 @@ int convertCurves(const std::string& bytes, const Arguments& arguments) {
   app::GroomHints hints;
   app::Groom groom = app::readGroom(bytes, arguments.in, &hints);
   app::ConvertOptions options = arguments.curves;
-  if (!arguments.no_mend) std::cout << mend(arguments, hints, groom, options);
+  if (arguments.no_mend) {
+    app::mendGroom({.axes = app::toldAxes(hints)}, nullptr, groom);
+  } else {
+    std::cout << mend(arguments, hints, groom, options);
+  }
   const app::Conversion conversion = app::convertGroom(groom, hints, options, arguments.in);
   app::writeFile(arguments.out, app::writeHairMesh(conversion.shape));
   app::writeFile(arguments.preset, presetText(conversion.look, std::filesystem::path(arguments.out).stem().string()));

@@ -63,10 +63,9 @@ void addOptions(CLI::App& parser, Asked& asked) {
 app::GroomMends mendsOf(const CLI::App& parser, const Asked& asked, const app::GroomHints& hints,
                         const app::GroomMends& found) {
   app::GroomMends mends = asked.no_guess ? app::GroomMends() : found;
-  if (asked.no_guess) mends.unit = hints.meters_per_unit.value_or(1);
   if (asked.no_guess) {
-    if (!asked.unit.empty()) mends.unit = metresOf(asked.unit);
-    if (!asked.up.empty()) mends.axes = *app::axesOfUp(asked.up);
+    mends.unit = asked.unit.empty() ? hints.meters_per_unit.value_or(1) : metresOf(asked.unit);
+    mends.axes = asked.up.empty() ? app::toldAxes(hints) : *app::axesOfUp(asked.up);
     if (asked.turn) mends.axes = app::turnedAbout(*asked.turn) * mends.axes;
   }
   if (asked.reverse == "none") mends.reverse = app::Reverse::kNone;

@@ -22,7 +22,10 @@ Conversion convertMended(const std::string& bytes, const CharacterSpec& spec, co
   GroomHints hints;
   Groom groom = readGroom(bytes, spec.hair, &hints);
   ConvertOptions options;
-  if (!spec.fit) return convertGroom(groom, hints, options, spec.hair);
+  if (!spec.fit) {
+    mendGroom({.axes = toldAxes(hints)}, nullptr, groom);
+    return convertGroom(groom, hints, options, spec.hair);
+  }
   const HeadModel head = headModelOf(character);
   const MendReport report = mendCertain(hints, &head, spec.mends, groom);
   haircut.findings = report.findings;

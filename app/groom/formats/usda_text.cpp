@@ -176,7 +176,8 @@ void TextReader::stageMetadata() {
     const std::string_view value = scanner.value();
     if (key == "metersPerUnit") layer.meters_per_unit = numberOf(value), layer.tells_unit = true;
     if (key == "timeCodesPerSecond") layer.time_codes_per_second = numberOf(value);
-    if (key == "upAxis" && value.size() == 3) layer.up_axis = value[1], layer.tells_up = true;
+    if (key == "upAxis" && value.size() == 3)
+      layer.up_axis = value[1], layer.tells_up = value[1] == 'Y' || value[1] == 'Z';
   }
 }
 

@@ -121,6 +121,7 @@ MendReport mendCertain(const GroomHints& hints, const HeadModel* head, const std
   readMends(wishes, mends);
   if (guesses) mends.axes = inspection.mends.axes;
   if (!guesses && !unit_given) mends.unit = told;
+  if (!guesses && !wished("--up", wishes)) mends.axes *= toldAxes(hints);
   MendReport report;
   const GroomFinding* const unit = inspection.find("unit");
   report.unit_known =

@@ -47,6 +47,7 @@ struct Inspector {
     result.findings.push_back({what, std::move(text), std::move(mend), certain, true});
   }
   bool inWorld() const { return hints.world_heads > 0; }
+  bool leftAsTold(std::string_view what) const;
   bool crowd() const { return hints.world_heads > 1; }
   void strands();
   void astray();
@@ -147,6 +148,12 @@ void Inspector::toMetres() {
   }
 }
 
+// Whether something else was found than what the file tells, which holds until it is overruled.
+bool Inspector::leftAsTold(std::string_view what) const {
+  const GroomFinding* const finding = result.find(what);
+  return finding != nullptr && !finding->certain;
+}
+
 void Inspector::turn(const Matrix3f& matrix) {
   result.mends.axes = matrix * result.mends.axes;
   skull.center = matrix * skull.center;
@@ -159,6 +166,8 @@ void Inspector::turn(const Matrix3f& matrix) {
 // stubble, says nothing of down.
 void Inspector::axes() {
   if (hints.axes) return turn(*hints.axes);
+  const Matrix3f told = toldAxes(hints);
+  turn(told);
   if (ends.first.size() < kMinRoots || inWorld()) return;
   Vector3f cap = Vector3f::Zero(), hang = Vector3f::Zero();
   float length = 0;
@@ -172,15 +181,18 @@ void Inspector::axes() {
   constexpr std::array<std::string_view, 6> kNames{"y", "z", "-y", "-z", "x", "-x"};
   constexpr std::array<std::array<float, 3>, 6> kUps{
       {{0, 1, 0}, {0, 0, 1}, {0, -1, 0}, {0, 0, -1}, {1, 0, 0}, {-1, 0, 0}}};
-  const Vector3f up = cap.dot(hang) > 0.5f * cap.norm() * hang.norm() ? cap : Vector3f(cap - 1.5f * hang);
+  const Vector3f ours = cap.dot(hang) > 0.5f * cap.norm() * hang.norm() ? cap : Vector3f(cap - 1.5f * hang);
+  const Vector3f up = told.transpose() * ours;  // in the file's axes, as --up has them
   std::array<float, 6> scores{};
   for (std::size_t n = 0; n < 6; ++n) scores[n] = Vector3f(kUps[n].data()).dot(up);
   const auto best = static_cast<std::size_t>(std::ranges::max_element(scores) - scores.begin());
-  if (best == 0) return;
+  if (kNames[best] == (hints.up == 'Z' ? "z" : "y")) return;
   std::array<float, 6> sorted = scores;
   std::ranges::sort(sorted);
-  const bool certain = sorted[5] - sorted[4] > 0.15f;
-  add("up", "the hair hangs as if " + std::string(kNames[best]) + " were up, not y",
+  const bool certain = !hints.up && sorted[5] - sorted[4] > 0.15f;
+  add("up",
+      "the hair hangs as if " + std::string(kNames[best]) + " were up" +
+          (hints.up ? std::string("; the file tells ") + (*hints.up == 'Z' ? "z" : "y") : ", not y"),
       "--up " + std::string(kNames[best]), certain);
   if (certain) turn(*axesOfUp(kNames[best]));
 }
@@ -189,7 +201,7 @@ void Inspector::axes() {
 // nearer to the head as they are. A beard, which grows below the middle, grows before it.
 void Inspector::facing() {
   if (hints.turn) return turn(*hints.turn);
-  if (ends.first.size() < kMinRoots || crowd()) return;
+  if (ends.first.size() < kMinRoots || crowd() || leftAsTold("up")) return;
   Vector3f cap = Vector3f::Zero();
   for (const Vector3f& root : ends.first) cap += (root - skull.center) / skull.radius;
   cap /= static_cast<float>(ends.first.size());
@@ -355,6 +367,10 @@ std::optional<Matrix3f> axesOfUp(std::string_view up) {
   if (up == "x") return rows(0, -1, 0, 1, 0, 0, 0, 0, 1);
   if (up == "-x") return rows(0, 1, 0, -1, 0, 0, 0, 0, 1);
   return std::nullopt;
+}
+
+Matrix3f toldAxes(const GroomHints& hints) {
+  return *axesOfUp(hints.up == 'Z' ? "z" : "y");
 }
 
 Matrix3f turnedAbout(double degrees) {
