@@ -204,6 +204,59 @@ TEST(GroomInspect, ADeclaredAxisIsTakenAndAWrongOneNamed) {
   }
 }
 
+// A beard on the lower front of a ball of 9.2 cm, fur all over it, fur of a flat piece of 20 cm: y up, metres.
+app::Groom otherHair(int kind) {
+  Random random{std::mt19937(static_cast<std::uint32_t>(kind))};
+  app::Groom groom;
+  while (groom.strandCount() < 1500) {
+    const Vector3f way = Vector3f(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)).normalized();
+    if (kind == 0 && !(way.y() < -0.1f && way.z() > 0.2f)) continue;
+    const Vector3f flat(random.between(-0.1f, 0.1f), 0, random.between(-0.1f, 0.1f));
+    const Vector3f root = kind == 2 ? flat : Vector3f(0.092f * way);
+    const Vector3f out = kind == 2 ? Vector3f(0.3f, 1, 0.5f) : way;
+    for (int p = 0; p < 6; ++p) {
+      const auto along = static_cast<float>(p);
+      groom.points.push_back(root + 0.004f * along * out + Vector3f(0, -0.002f * along * along, 0));
+    }
+    groom.strand_first.push_back(static_cast<std::uint32_t>(groom.points.size()));
+  }
+  return groom;
+}
+
+TEST(GroomInspect, HairOfNoScalpIsNotTurnedOrScaled) {
+  const app::HeadModel model = head();
+  for (int kind = 0; kind < 3; ++kind) {
+    for (const char* up : {"", "y", "z"}) {
+      app::GroomHints hints;
+      app::Groom groom = otherHair(kind);
+      if (*up == 'z') moveAll(groom, turnOf("z"), 1, Vector3f::Zero());
+      if (*up != 0) hints.up = *up == 'z' ? 'Z' : 'Y', hints.meters_per_unit = 0.01;
+      if (*up != 0) moveAll(groom, Eigen::Matrix3f::Identity(), 100, Vector3f::Zero());
+      const app::GroomInspection inspection = app::inspectGroom(groom, hints, &model);
+      EXPECT_EQ(inspection.mends.axes, app::toldAxes(hints)) << kind << up << namesOf(inspection);
+      EXPECT_EQ(inspection.mends.unit, hints.meters_per_unit.value_or(1)) << kind << up << namesOf(inspection);
+      for (const char* what : {"unit", "up", "facing", "reversed"}) {
+        const app::GroomFinding* const finding = inspection.find(what);
+        EXPECT_TRUE(!finding || !(finding->certain || finding->fault)) << kind << up << namesOf(inspection);
+      }
+    }
+  }
+}
+
+// Hair that contradicts the unit that its file tells is named, and the unit stays.
+TEST(GroomInspect, AUnitThatTheFileTellsHoldsUntilItIsOverruled) {
+  const app::HeadModel model = head();
+  app::GroomHints hints;
+  hints.meters_per_unit = 1;
+  app::Groom groom = combedGroom(300, 5);
+  moveAll(groom, Eigen::Matrix3f::Identity(), 100, Vector3f::Zero());
+  const app::GroomInspection inspection = app::inspectGroom(groom, hints, &model);
+  ASSERT_TRUE(inspection.find("unit"));
+  EXPECT_EQ(inspection.find("unit")->mend, "--unit cm");
+  EXPECT_TRUE(inspection.find("unit")->fault && !inspection.find("unit")->certain);
+  EXPECT_EQ(inspection.mends.unit, 1);
+}
+
 // What is certain is mended: then nothing more is said, and strands lie where they lay.
 TEST(GroomInspect, CertainMendsBringTheGroomBack) {
   const app::HeadModel model = head();
