@@ -168,7 +168,7 @@ struct HairExport::Impl {
   std::optional<GlbWriter> mesh;
   std::string note;
   bool numbered = false;  // a file a frame
-  int moments = 0, frames = 0, last_frame = -1;
+  int moments = 0, frames = 0, first_frame = 0, last_frame = -1;
 };
 
 namespace {
@@ -228,10 +228,10 @@ namespace {
 
 // A .glb file holds so many moments at most; frames of the run may be left out for that. What is recorded until it is
 // stopped is told when it comes so far.
-void checkMoments(const ExportSpec& spec, int frames) {
-  const bool until_stopped = spec.last < 0 && frames == std::numeric_limits<int>::max();
+void checkMoments(const ExportSpec& spec, int first, int run_end) {
+  const bool until_stopped = spec.last < 0 && run_end == std::numeric_limits<int>::max();
   if (until_stopped || std::filesystem::path(spec.file).extension() != ".glb") return;
-  const long end = spec.last < 0 ? frames : std::min(frames, spec.last + 1), span = std::max(0L, end - spec.first);
+  const long end = spec.last < 0 ? run_end : std::min(run_end, spec.last + 1), span = std::max(0L, end - first);
   const auto most = static_cast<long>(kMaxGlbMoments) / spec.samples;  // frames
   if ((span + spec.every - 1) / spec.every <= most) return;
   if (most == 0)
@@ -242,19 +242,18 @@ void checkMoments(const ExportSpec& spec, int frames) {
 
 }  // namespace
 
-HairExport::HairExport(const ExportSpec& spec, const Demo& demo, double fps, int frames)
+HairExport::HairExport(const ExportSpec& spec, const Demo& demo, double fps, int begin, int end)
     : impl_(std::make_unique<Impl>()) {
   impl_->spec = spec;
-  ClipSettings settings{fps / spec.every, spec.first / fps, {}, spec.unit};
-  settings.world_heads = static_cast<int>(demo.actors.size());
-  settings.offsets.clear();
+  int first = std::max(spec.first, begin), taken = 0;
+  while (first < end && !spec.takes(first)) ++first;
+  for (int frame = first; frame < end && taken < 2; ++frame) taken += spec.takes(frame);
+  ClipSettings settings{fps, first, {}, spec.unit, static_cast<int>(demo.actors.size()), spec.every};
   for (int n = 0; n < spec.samples; ++n)
     settings.offsets.push_back(n * spec.shutter / (std::max(spec.samples - 1, 1) * fps));
-  int taken = 0;
-  for (int frame = spec.first; frame < frames && taken < 2; ++frame) taken += spec.takes(frame);
   if (spec.what == ExportWhat::kMesh) {
     checkWritable(spec.file);
-    checkMoments(spec, frames);
+    checkMoments(spec, first, end);
     impl_->mesh.emplace(spec.file, settings, cageTriangles(demo));
     return;
   }
@@ -275,7 +274,7 @@ void HairExport::add(const Demo& demo, int frame) {
   } else {
     impl_->writer->add(impl_->strands->groom(demo, impl_->spec.unit), frame);
   }
-  ++impl_->moments;
+  if (impl_->moments++ == 0) impl_->first_frame = frame;
   if (frame != impl_->last_frame) ++impl_->frames;
   impl_->last_frame = frame;
 }
@@ -293,7 +292,7 @@ std::string HairExport::finish(const Demo& demo) {
   }
   std::string file = impl_->spec.file;
   if (impl_->writer && impl_->numbered)
-    file = numberedName(file, impl_->spec.first) + " to " + numberedName(file, impl_->last_frame);
+    file = numberedName(file, impl_->first_frame) + " to " + numberedName(file, impl_->last_frame);
   return text + ", written to " + file + wornNote(demo) + "\n";
 }
 
