@@ -97,6 +97,12 @@ class Library(unittest.TestCase):
         hair.step(roots=wide[:, 1:4])
         other.step(roots=np.asfortranarray(wide[:, 1:4]).astype(np.float32))
         np.testing.assert_allclose(hair.positions, other.positions, atol=1e-5)
+        one = np.broadcast_to(np.array([0.0, 0.1, 0.0]), (len(self.mesh.tips), 3))  # rows of stride 0
+        state = hair.save()
+        hair.step(roots=one)
+        other.restore(state)
+        other.step(roots=one.copy())
+        np.testing.assert_array_equal(hair.positions, other.positions)
         with self.assertRaisesRegex(hairmesh.Error, "roots has"):
             hair.step(roots=wide[:3, 1:4])
         with self.assertRaises(ValueError):

@@ -91,7 +91,7 @@ def _array(values, width, name):
         values = np.empty(0)
     if values.ndim != 2 or values.shape[1] != width:
         raise ValueError(f"{name} is {_shown(given)}; give one of shape (n, {width}) and dtype float32 or float64")
-    if values.strides[1] != values.itemsize or (values.strides[0] < 0):
+    if values.strides[1] != values.itemsize or values.strides[0] <= 0:  # 0 is "side by side" to the library
         values = np.ascontiguousarray(values)
     kind = 1 if values.dtype == np.float32 else 0
     return _c.Array(values.ctypes.data, values.strides[0], len(values), kind), values
