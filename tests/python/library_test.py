@@ -1,8 +1,10 @@
 """The Python package: views without copies, parameters, states, strands, faults."""
 
+import copy
 import gc
 import math
 import pathlib
+import pickle
 import subprocess
 import sys
 import unittest
@@ -150,6 +152,18 @@ class Library(unittest.TestCase):
         self.assertIn(hair.strand(7)["face"], range(len(self.mesh.faces)))
         with self.assertRaisesRegex(hairmesh.Error, "200"):
             hair.strands([200])
+
+    def test_what_owns_an_object_of_the_library_is_not_copied(self):
+        hair = hairmesh.Hair(self.mesh)
+        for one, mend in ((self.mesh, "share it"), (hair, "restore"), ([hair], "restore")):
+            for copied in (copy.copy, copy.deepcopy, pickle.dumps):
+                if isinstance(one, list) and copied is copy.copy:
+                    continue  # a list of the same hair
+                with self.assertRaisesRegex(TypeError, mend):
+                    copied(one)
+        gc.collect()
+        hair.step()
+        self.assertEqual(len(self.mesh.rest), len(hair.positions))
 
     def test_faults_name_file_and_mend(self):
         with self.assertRaisesRegex(hairmesh.Error, "wrong.obj: .*layer_0.*;"):

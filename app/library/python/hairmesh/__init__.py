@@ -126,8 +126,17 @@ def _pin(value, number):
                         "numbers in m, 3 in m/s, a number in N/m") from None
 
 
-class Mesh:
+class _Owner:
+    """What owns an object of the library, which ends with it: a second owner would be left with none."""
+
+    def __reduce_ex__(self, protocol):
+        raise TypeError(f"a {type(self).__name__} of hairmesh is neither copied nor pickled; {self._instead}")
+
+
+class Mesh(_Owner):
     """A hair mesh; any number of hairs share one."""
+
+    _instead = "share it, or make another of its rest, column_first and faces"
 
     def __init__(self, positions, column_lengths, faces, reverse_faces=False):
         """positions: (vertices, 3) in m, column after column, root first; faces: (n, 4) columns, the fourth -1 in a
@@ -205,8 +214,10 @@ class Mesh:
             _c.lib.hm_mesh_destroy(self._c)
 
 
-class Hair:
+class Hair(_Owner):
     """A hair of a mesh: parameters and state. Keyword arguments set parameters."""
+
+    _instead = "make another of its mesh, and restore() there what save() gives here"
 
     def __init__(self, mesh, head=None, measure_stages=False, gradual=False, **values):
         settings = _c.HairSettings()
