@@ -83,7 +83,8 @@ class Library(unittest.TestCase):
         shake(hair, 0, 15)
         state = hair.save()
         shake(hair, 15, 30)
-        other.restore(state)
+        for buffer in (bytearray(state), np.frombuffer(state, np.uint8), memoryview(state), state):
+            other.restore(buffer)
         shake(other, 15, 30)
         self.assertEqual(hair.save(), other.save())
         hair.reset()
@@ -185,6 +186,32 @@ class Library(unittest.TestCase):
             hair.step(head=np.eye(4))
         with self.assertRaisesRegex(TypeError, r"pin 1 is an array of shape \(2,\) and dtype int64; give \(vertex"):
             hair.step(pins=[(0, (0, 0, 0), (0, 0, 0), 1), (1, 2)])
+        for wrong, what in (((1,), "position"), (("a", 0, 0), "position"), (np.zeros((3, 3)), "position"), (5, "position")):
+            with self.assertRaisesRegex(TypeError, f"{what} is an? .*; give 3 numbers"):
+                hairmesh.pose(wrong)
+        with self.assertRaisesRegex(TypeError, "rotation is .*; give 4 numbers"):
+            hairmesh.pose(rotation=(0, 0, 0))
+        with self.assertRaisesRegex(TypeError, "radii is .*; give 3 numbers"):
+            hairmesh.Ellipsoid((1, 1))
+        for pin in ((3, (0, 0), (0, 0, 0), 1), (3, (0, 0, 0), (0,), 1), (3.9, (0, 0, 0), (0, 0, 0), 1),
+                    (2**32 + 3, (0, 0, 0), (0, 0, 0), 1)):
+            with self.assertRaisesRegex(TypeError, "pin 0 is .*; give"):
+                hair.step(pins=[pin])
+        for numbers, error in (([2**32 + 3], ValueError), ([3.9], TypeError), (["a"], TypeError)):
+            with self.assertRaisesRegex(error, "numbers"):
+                hair.strands(numbers)
+            with self.assertRaises(error):
+                hair.strand(numbers[0])
+        with self.assertRaisesRegex(ValueError, "points"):
+            hair.strands(points=2**32 + 2)
+        with self.assertRaisesRegex(TypeError, "mesh is a str; give a hairmesh.Mesh"):
+            hairmesh.Hair("bob")
+        with self.assertRaisesRegex(TypeError, "an ellipsoid is an array .*; give a hairmesh.Ellipsoid"):
+            hair.step(ellipsoids=[(1, 1, 1)])
+        with self.assertRaisesRegex(TypeError, "column_lengths"):
+            hairmesh.Mesh(self.mesh.rest, np.diff(self.mesh.column_first) + 0.5, self.mesh.faces)
+        with self.assertRaisesRegex(TypeError, "state is a NoneType; give the bytes"):
+            hair.restore(None)
         with self.assertRaisesRegex(ValueError, r"roots is an array of shape \(3,\) and dtype int64; .*\(n, 3\).*float32"):
             hair.step(roots=[1, 2, 3])
         self.assertEqual(hairmesh.version().count("."), 2)
