@@ -266,7 +266,7 @@ void Inspector::widths() {
   const double powers =
       std::round(std::log10((middle < kThinnestHair ? kUsualWidth : std::sqrt(kUsualWidth * most)) / middle));
   const double scale = std::pow(10.0, powers == 0 ? (middle < kThinnestHair ? 1 : -1) : powers);
-  const bool certain = !leftAsTold("unit");
+  const bool certain = !leftAsTold("unit") && !inWorld();
   if (certain) result.mends.width_scale = static_cast<float>(scale);
   add("widths", textOf("the strands are %.3g mm wide; hair is %.2g mm", 1e3 * middle, 1e3 * kUsualWidth),
       textOf("--width-scale %g", scale), certain);
@@ -274,6 +274,7 @@ void Inspector::widths() {
 
 // The shift that brings the roots onto the head: along the distance's gradient, again and again.
 Vector3f Inspector::moveToHead(const std::vector<Vector3f>& roots, const Vector3f& center) const {
+  result.findings.back().fault = !inWorld();  // few strands are drawn wide
   Vector3f move = head->center - center;
   const std::size_t stride = std::max<std::size_t>(roots.size() / 200, 1);
   for (int round = 0; round < 20; ++round) {

@@ -400,6 +400,23 @@ TEST(GroomInspect, TheProgramMendsWhatIsCertain) {
   EXPECT_EQ(test::lacking(test::readAll(folder + "/err"), "no option '--unti'; did you mean '--unit'?"), "");
 }
 
+// Few strands are exported as wide as they are drawn.
+TEST(GroomInspect, WidthsOfAnExportOfFewStrandsAreNoFault) {
+  const app::HeadModel model = head();
+  app::GroomHints hints;
+  hints.meters_per_unit = 1;
+  app::Groom groom = combedGroom(47, 5);
+  for (float& width : groom.widths) width = 6.69e-3f;
+  for (const int heads : {0, 1}) {
+    hints.world_heads = heads;
+    const app::GroomInspection inspection = app::inspectGroom(groom, hints, &model);
+    ASSERT_TRUE(inspection.find("widths"));
+    EXPECT_EQ(inspection.find("widths")->fault, heads == 0);
+    EXPECT_EQ(inspection.find("widths")->certain, heads == 0);
+    EXPECT_EQ(inspection.mends.width_scale == 1, heads == 1);
+  }
+}
+
 TEST(GroomInspect, SaysThatAHandfulOfStrandsIsTooFew) {
   const app::HeadModel model = head();
   EXPECT_NE(app::inspectGroom(combedGroom(5, 1), {}, &model).find("strands"), nullptr);
