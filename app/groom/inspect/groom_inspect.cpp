@@ -87,6 +87,10 @@ void Inspector::strands() {
   if (ends.zero_length > 0) add("zero-length", countText(ends.zero_length, all, "have no length"), "--drop-bad", true);
   if (ends.too_short > 0)
     add("points", countText(ends.too_short, all, "have fewer than two points"), "--drop-bad", true);
+  if (hints.hidden > 0) {
+    add("hidden", countOf(hints.hidden, "object") + " of curves that the file does not show are left out", "", false);
+    result.findings.back().fault = false;
+  }
   if (all < kMinRoots) add("strands", countText(all, kMinRoots, "that a hair mesh is made of at the least"), "", false);
   result.mends.drop_bad = ends.non_finite + ends.zero_length + ends.too_short > 0;
   std::size_t many = 0;
@@ -270,11 +274,11 @@ void Inspector::widths() {
   if (certain) result.mends.width_scale = static_cast<float>(scale);
   add("widths", textOf("the strands are %.3g mm wide; hair is %.2g mm", 1e3 * middle, 1e3 * kUsualWidth),
       textOf("--width-scale %g", scale), certain);
+  result.findings.back().fault = !inWorld();  // few strands are drawn wide
 }
 
 // The shift that brings the roots onto the head: along the distance's gradient, again and again.
 Vector3f Inspector::moveToHead(const std::vector<Vector3f>& roots, const Vector3f& center) const {
-  result.findings.back().fault = !inWorld();  // few strands are drawn wide
   Vector3f move = head->center - center;
   const std::size_t stride = std::max<std::size_t>(roots.size() / 200, 1);
   for (int round = 0; round < 20; ++round) {
