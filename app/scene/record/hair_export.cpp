@@ -188,13 +188,14 @@ std::vector<std::uint32_t> cageTriangles(const Demo& demo) {
   return triangles;
 }
 
-std::vector<Vector3f> cageVertices(const Demo& demo, double unit) {
+// m, as glTF has it.
+std::vector<Vector3f> cageVertices(const Demo& demo) {
   std::vector<Vector3f> vertices;
   const Vector3f origin = demo.origin.cast<float>();
   for (const Actor& actor : demo.actors) {
     for (std::size_t v = 0; 3 * v + 2 < actor.shown_positions.size(); ++v) {
       const Vector3f at = Eigen::Map<const Vector3f>(&actor.shown_positions[3 * v]);
-      vertices.push_back(static_cast<float>(1 / unit) * (at + origin));
+      vertices.push_back(at + origin);
     }
   }
   return vertices;
@@ -270,7 +271,7 @@ HairExport::HairExport(const ExportSpec& spec, const Demo& demo, double fps, int
 
 void HairExport::add(const Demo& demo, int frame) {
   if (impl_->mesh) {
-    impl_->mesh->add(cageVertices(demo, impl_->spec.unit));
+    impl_->mesh->add(cageVertices(demo));
   } else {
     impl_->writer->add(impl_->strands->groom(demo, impl_->spec.unit), frame);
   }
@@ -290,6 +291,7 @@ std::string HairExport::finish(const Demo& demo) {
             " points" + impl_->note;
     if (impl_->spec.what == ExportWhat::kStrands) text += fewerNote(groom.strandCount(), demo);
   }
+  if (impl_->mesh && impl_->spec.unit != 1) text += ", in metres: glTF has no other unit";
   std::string file = impl_->spec.file;
   if (impl_->writer && impl_->numbered)
     file = numberedName(file, impl_->first_frame) + " to " + numberedName(file, impl_->last_frame);

@@ -199,6 +199,16 @@ TEST(HairExport, TheCageIsAMeshWithMorphTargets) {
   }
 }
 
+// glTF has no unit but the metre.
+TEST(HairExport, TheMeshOfAGlbIsInMetres) {
+  const std::string folder = test::freshFolder("hair_export_glb_unit");
+  EXPECT_EQ(exported(folder + "/m.glb", {}, 1).exit_code, 0);
+  const test::Outcome outcome = exported(folder + "/cm.glb", {"--export-unit", "cm"}, 1);
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(test::lacking(outcome.out, "1 frame, in metres: glTF has no other unit, written to"), "");
+  EXPECT_EQ(test::readAll(folder + "/m.glb"), test::readAll(folder + "/cm.glb"));
+}
+
 TEST(HairExport, AFullDiskLeavesNothingHalfWritten) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
   const std::string folder = test::freshFolder("hair_export_full");
