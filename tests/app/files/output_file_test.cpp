@@ -169,7 +169,7 @@ struct Child {
 };
 
 TEST(OutputFile, AnInterruptedRunWritesItsReportAndAWholeRecording) {
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     const std::string folder = test::freshFolder("interrupted"), report = folder + "/r.json", tape = folder + "/r.hmr";
     Child run({"--no-images", "--frames", "1000000", "--report", report, "--record", tape, "--style", "short",
                "--resolution", "low"});
