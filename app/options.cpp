@@ -50,7 +50,7 @@ bool parseSize(const std::string& text, int& width, int& height) {
 
 // CLI::Range lets NaN through, because NaN is neither below nor above.
 CLI::Validator within(double low, double high) {
-  const std::string range = sim::numberText(low) + " to " + sim::numberText(high);
+  const std::string range = rangeText(low, high);
   return CLI::Validator(
       [=](std::string& text) {
         double value = 0;

@@ -160,7 +160,7 @@ void Run::exportFrame(int frame) {  // its number
 
 void Run::saveState() const {
   writeFile(options.save_state, demoStateBytes(demo));
-  std::cout << "state after " << demo.frames << " frames in " << options.save_state << "\n";
+  std::cout << "state after " << countOf(demo.frames, "frame") << " in " << options.save_state << "\n";
 }
 
 void Run::drawFrames() {

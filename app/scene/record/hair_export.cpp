@@ -287,8 +287,8 @@ std::string HairExport::finish(const Demo& demo) {
   if (impl_->moments > impl_->frames) text += " of " + std::to_string(impl_->moments) + " moments";
   if (impl_->strands) {
     const Groom& groom = impl_->strands->last();
-    text += " of " + std::to_string(groom.strandCount()) + " strands with " + std::to_string(groom.points.size()) +
-            " points" + impl_->note;
+    text += " of " + countOf(groom.strandCount(), "strand") + " with " + countOf(groom.points.size(), "point") +
+            impl_->note;
     if (impl_->spec.what == ExportWhat::kStrands) text += fewerNote(groom.strandCount(), demo);
   }
   if (impl_->mesh && impl_->spec.unit != 1) text += ", in metres: glTF has no other unit";

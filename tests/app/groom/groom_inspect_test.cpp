@@ -396,6 +396,8 @@ TEST(GroomInspect, TheProgramMendsWhatIsCertain) {
   EXPECT_EQ(run(in + " --out " + test::shellQuoted(folder + "/none/a.abc")), 1);
   EXPECT_EQ(run(in + " --out a.xyz"), 2);
   EXPECT_EQ(test::lacking(test::readAll(folder + "/err"), "--out cannot be 'a.xyz'; name it .abc, .usda"), "");
+  EXPECT_EQ(run(in + " --move 1,2"), 2);
+  EXPECT_EQ(test::lacking(test::readAll(folder + "/err"), "--move needs 3 values; write --move X,Y,Z"), "");
   EXPECT_EQ(run(in + " --unti cm"), 2);
   EXPECT_EQ(test::lacking(test::readAll(folder + "/err"), "no option '--unti'; did you mean '--unit'?"), "");
 }
