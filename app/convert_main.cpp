@@ -1,5 +1,6 @@
 // hairmesh-convert IN OUT.obj: curves, strips and tubes of other programs to a hair mesh.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -12,6 +13,7 @@
 #include "app/files/errors.h"
 #include "app/files/file_kind.h"
 #include "app/files/hair_file.h"
+#include "app/files/length_units.h"
 #include "app/files/output_file.h"
 #include "app/files/polygon_file.h"
 #include "app/files/text_file.h"
@@ -41,6 +43,15 @@ individual, as a preset for hairmesh --preset.
 Exit codes: 0 fine, 1 a file that cannot be written or a hair mesh that most strands do not fit, 2 usage,
 4 a file that cannot be used.)";
 
+// Puts metres in place of a unit's name; returns what is wrong with it.
+std::string metresOf(std::string& text) {
+  const auto* const unit = std::ranges::find(app::kLengthUnits, text, &app::LengthUnit::name);
+  if (unit != app::kLengthUnits.end()) text = std::to_string(unit->metres);
+  double metres = 0;
+  const bool good = CLI::detail::lexical_cast(text, metres) && metres > 0 && metres <= 1e6;
+  return good ? "" : "'" + text + "' is no unit; give m, cm, mm, in or ft, or its metres, 0.01 for centimetres";
+}
+
 void addCurveOptions(CLI::App& parser, Arguments& arguments) {
   parser
       .add_option(
@@ -54,18 +65,17 @@ void addCurveOptions(CLI::App& parser, Arguments& arguments) {
                   "Layers of every column; by default as the strands ask for, or the rows of a strip")
       ->check(CLI::Range(3, 40))
       ->option_text("N (3 to 40)");
-  parser.add_option("--unit", arguments.unit, "Metres in a unit of the file; by default as it says, or inferred")
-      ->check([](const std::string& text) {
-        double metres = 0;
-        const bool good = CLI::detail::lexical_cast(text, metres) && metres > 0 && metres <= 1e6;
-        return good ? std::string() : "'" + text + "' is no number of metres; give 0.01 for centimetres";
-      })
-      ->option_text("METRES");
+  parser
+      .add_option("--unit", arguments.unit,
+                  "Unit of the file: m, cm, mm, in or ft, or metres in it; by default as it says, or inferred")
+      ->transform(CLI::Validator(metresOf, ""))
+      ->option_text("UNIT");
   parser.add_option(
       "--mends", arguments.mends,
       "Options of hairmesh-inspect that mend curves, in quotes: \"--up z --push-out\"; what is certain is "
       "mended by itself, and said");
-  parser.add_flag("--no-mend", arguments.no_mend, "The hair is taken as it is, but for the unit");
+  parser.add_flag("--no-mend", arguments.no_mend,
+                  "The hair is taken as it is, but for the unit and the axis that is up");
   parser.add_option("--figure", arguments.figure,
                     "Motion or model whose head the hair is held against (a mannequin's)");
   parser.add_flag("--reverse-strands", arguments.curves.reverse, "Strands are given from tip to root");
@@ -147,7 +157,7 @@ app::Character figureOf(const Arguments& arguments) {
 // Does what the inspector is certain of, as metres, y up, root first; returns what it says.
 std::string mend(const Arguments& arguments, app::GroomHints& hints, app::Groom& groom, app::ConvertOptions& options) {
   const app::HeadModel head = app::headModelOf(figureOf(arguments));
-  if (options.unit > 0) hints.meters_per_unit = options.unit;
+  if (options.unit > 0) hints.meters_per_unit = options.unit, hints.unit_given = true;
   const std::string wishes = options.reverse ? arguments.mends + " --reverse all" : arguments.mends;
   const app::MendReport report = app::mendCertain(hints, &head, wishes, groom);
   options.reverse = false;
@@ -161,7 +171,11 @@ int convertCurves(const std::string& bytes, const Arguments& arguments) {
   app::GroomHints hints;
   app::Groom groom = app::readGroom(bytes, arguments.in, &hints);
   app::ConvertOptions options = arguments.curves;
-  if (!arguments.no_mend) std::cout << mend(arguments, hints, groom, options);
+  if (arguments.no_mend) {
+    app::mendGroom({.axes = app::toldAxes(hints)}, nullptr, groom);
+  } else {
+    std::cout << mend(arguments, hints, groom, options);
+  }
   const app::Conversion conversion = app::convertGroom(groom, hints, options, arguments.in);
   app::writeFile(arguments.out, app::writeHairMesh(conversion.shape));
   app::writeFile(arguments.preset, presetText(conversion.look, std::filesystem::path(arguments.out).stem().string()));

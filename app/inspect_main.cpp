@@ -10,6 +10,7 @@
 #include "app/files/errors.h"
 #include "app/files/length_units.h"
 #include "app/files/output_file.h"
+#include "app/files/report_line.h"
 #include "app/groom/formats/tfx_file.h"
 #include "app/groom/groom_file.h"
 #include "app/groom/groom_writer.h"
@@ -50,7 +51,7 @@ void addOptions(CLI::App& parser, Asked& asked) {
   parser.add_option("--width-scale", asked.mends.width_scale, "Factor of the widths, beside the unit");
   parser.add_option("--width", asked.mends.width, "Width, m, in place of those that are 0, negative or no number");
   parser.add_option("--points", asked.mends.points, "Points a strand, evenly along it")->check(CLI::Range(2, 1024));
-  parser.add_option("--move", asked.move, "Shift, m: X,Y,Z")->delimiter(',')->expected(3);
+  parser.add_option("--move", asked.move, "Shift, m")->delimiter(',')->expected(3)->option_text("X,Y,Z");
   parser.add_option("--drop-far", asked.mends.drop_far, "Leave out strands whose root is further from the body, m");
   parser.add_flag("--drop-bad", asked.mends.drop_bad, "Leave out strands that are not finite or have no length");
   parser.add_flag("--drop-astray", asked.mends.drop_astray, "Leave out strands that lie apart from all others");
@@ -63,10 +64,9 @@ void addOptions(CLI::App& parser, Asked& asked) {
 app::GroomMends mendsOf(const CLI::App& parser, const Asked& asked, const app::GroomHints& hints,
                         const app::GroomMends& found) {
   app::GroomMends mends = asked.no_guess ? app::GroomMends() : found;
-  if (asked.no_guess) mends.unit = hints.meters_per_unit.value_or(1);
   if (asked.no_guess) {
-    if (!asked.unit.empty()) mends.unit = metresOf(asked.unit);
-    if (!asked.up.empty()) mends.axes = *app::axesOfUp(asked.up);
+    mends.unit = asked.unit.empty() ? hints.meters_per_unit.value_or(1) : metresOf(asked.unit);
+    mends.axes = asked.up.empty() ? app::toldAxes(hints) : *app::axesOfUp(asked.up);
     if (asked.turn) mends.axes = app::turnedAbout(*asked.turn) * mends.axes;
   }
   if (asked.reverse == "none") mends.reverse = app::Reverse::kNone;
@@ -111,7 +111,7 @@ int run(const CLI::App& parser, const Asked& asked) {
   if (groom.strandCount() == 0)
     throw app::InputError(asked.file, "", "no strand of it is left to write", "mend the points in the file itself");
   app::writeGroom(groom, asked.out);
-  std::cout << groom.strandCount() << " strands written to " << asked.out << "\n";
+  std::cout << app::countOf(groom.strandCount(), "strand") << " written to " << asked.out << "\n";
   return exit_code;
 }
 

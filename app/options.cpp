@@ -50,7 +50,7 @@ bool parseSize(const std::string& text, int& width, int& height) {
 
 // CLI::Range lets NaN through, because NaN is neither below nor above.
 CLI::Validator within(double low, double high) {
-  const std::string range = sim::numberText(low) + " to " + sim::numberText(high);
+  const std::string range = rangeText(low, high);
   return CLI::Validator(
       [=](std::string& text) {
         double value = 0;
@@ -344,9 +344,6 @@ void finishExport(const Unchecked& unchecked, Options& options) {
     throw UsageError("--export-samples needs a file that takes a clip; name it .abc, .usda or .glb");
   if (spec.samples > 1 && !(options.record + options.replay + options.save_state + options.load_state).empty())
     throw UsageError("--export-samples does not go with recordings and states, whose frames have one moment");
-  if (options.replay.empty() && std::max(spec.first, spec.last) >= options.frames)
-    throw UsageError("--export-frames goes beyond the run's " + std::to_string(options.frames) + " frames, 0 to " +
-                     std::to_string(options.frames - 1) + "; give more --frames");
   for (const std::string* other :
        {&options.record, &options.report, &options.save_state, &options.screenshot, &options.cache})
     if (*other == spec.file)

@@ -1,6 +1,7 @@
 #include "app/parse_fault.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <vector>
 
@@ -26,13 +27,24 @@ std::string extraFault(const CLI::App& parser, const std::string& one_file, cons
 
 }  // namespace
 
+std::string rangeText(double low, double high) {
+  const auto textOf = [](double value) {
+    const bool whole = value == std::floor(value) && std::abs(value) < 1e9;
+    return whole ? std::to_string(std::lround(value)) : sim::numberText(value);
+  };
+  return textOf(low) + " to " + textOf(high);
+}
+
 std::string parseFault(const CLI::ParseError& error, const CLI::App& parser, const std::string& one_file) {
   const std::string words = error.what(), help = "; " + parser.get_name() + " --help lists the options";
   if (dynamic_cast<const CLI::ExtrasError*>(&error)) return extraFault(parser, one_file, help);
   const std::string name = words.substr(0, words.find(':'));
   const CLI::Option* option = parser.get_option_no_throw(name);
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) && option && name.starts_with("--"))
-    return name + " needs a value; write " + name + " " + option->get_option_text();
+    return name +
+           (option->get_expected_min() > 1 ? " needs " + std::to_string(option->get_expected_min()) + " values"
+                                           : " needs a value") +
+           "; write " + name + " " + (option->get_option_text().empty() ? "VALUE" : option->get_option_text());
   if (dynamic_cast<const CLI::ConversionError*>(&error) && words.starts_with("Could not convert: ")) {
     const std::size_t equals = words.find(" = ");
     return words.substr(19, equals - 19) + " cannot be '" + words.substr(equals + 3, 40) + "'; write a whole number";

@@ -9,4 +9,7 @@ namespace app {
 // One line with the fault and the mend: of an unknown option the one that was meant, of a file too many `one_file`.
 std::string parseFault(const CLI::ParseError& error, const CLI::App& parser, const std::string& one_file);
 
+// "1 to 1000000", "0.5 to 2".
+std::string rangeText(double low, double high);
+
 }  // namespace app

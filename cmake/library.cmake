@@ -85,6 +85,17 @@ install(DIRECTORY sim DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hairmesh COMPONENT
 install(DIRECTORY app/library/python/hairmesh DESTINATION lib/python3/dist-packages COMPONENT python
   FILES_MATCHING PATTERN "*.py" PATTERN "__pycache__" EXCLUDE)
 
+# Under the name that Debian asks for, with every package.
+set(soname_version ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+set(package_names library libhairmesh${soname_version} development libhairmesh-dev python python3-hairmesh)
+if(HAIRMESH_APP)
+  list(APPEND package_names program hairmesh)
+endif()
+while(package_names)
+  list(POP_FRONT package_names component package)
+  install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} RENAME copyright COMPONENT ${component})
+endwhile()
+
 # cpack -G DEB: libhairmesh0.1, libhairmesh-dev, python3-hairmesh and, of a build with the program, hairmesh.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME hairmesh)
@@ -100,12 +111,12 @@ endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION libs)
-set(soname_version ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libhairmesh${soname_version})
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS libc6)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libhairmesh-dev)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libhairmesh${soname_version} (= ${PROJECT_VERSION})")
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "libeigen3-dev (>= 3.4), libglew-dev")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
+  "libhairmesh${soname_version} (= ${PROJECT_VERSION}), libeigen3-dev (>= 3.4)")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS libglew-dev)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-hairmesh)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "libhairmesh${soname_version} (>= ${PROJECT_VERSION}), python3-numpy")

@@ -168,6 +168,27 @@ Branch branchAt(const BodyRoles& roles, const std::vector<Reach>& reach, const R
   return branch;
 }
 
+bool isEndName(const std::string& name) {
+  return contains(name, {"end", "nub", "top", "tip", "site"});
+}
+
+// The joint above a neck that carries the head under another name: of those that rise and go on, the one that rises
+// most. -1: none, the neck carries it.
+int jointAboveNeck(const Skeleton& skeleton, const ReferencePose& reference, int neck) {
+  const Children children = childrenOf(skeleton);
+  int best = -1;
+  double best_rise = 0;
+  for (const int child : children[neck]) {
+    const Vec3 way = at(reference, child) - at(reference, neck);
+    const double rise = way.y() - std::hypot(way.x(), way.z());
+    const bool goes_on = !children[child].empty() || (reference.ends[child] - at(reference, child)).norm() >= kMinBone;
+    if (rise <= best_rise || !goes_on || isEndName(plainName(skeleton.joints[child].name))) continue;
+    best = child;
+    best_rise = rise;
+  }
+  return best;
+}
+
 }  // namespace
 
 std::string plainName(std::string_view name) {
@@ -190,14 +211,15 @@ int findHeadJoint(const Skeleton& skeleton, const ReferencePose& reference, bool
   for (int j = count - 1; j >= 0; --j) {
     const std::string name = plainName(skeleton.joints[j].name);
     if (name == "head" || name == "skull") return j;
-    const bool is_end = contains(name, {"end", "nub", "top", "tip", "site"});
+    const bool is_end = isEndName(name);
     if (contains(name, {"head", "skull"}) && !is_end) named = j;
     if (contains(name, {"neck"}) && !is_end && neck < 0) neck = j;
   }
   if (named >= 0) return named;
   if (neck >= 0) {
-    is_neck = true;
-    return neck;
+    const int above = jointAboveNeck(skeleton, reference, neck);
+    is_neck = above < 0;
+    return is_neck ? neck : above;
   }
   if (count < 3) return -1;
   const double height = heightOf(reference);
@@ -207,20 +229,25 @@ int findHeadJoint(const Skeleton& skeleton, const ReferencePose& reference, bool
   std::vector<bool> has_child(count, false);
   for (const Joint& joint : skeleton.joints)
     if (joint.parent >= 0) has_child[joint.parent] = true;
+  std::vector<double> scores(count, 0);
   for (int j = 1; j < count; ++j) {
     if (has_child[j]) continue;
     const Vec3 reach = reference.ends[j] - root;
-    const double score = reach.y() - std::hypot(reach.x(), reach.z());
-    if (score > best_score) {
-      best_score = score;
+    scores[j] = reach.y() - std::hypot(reach.x(), reach.z());
+    if (scores[j] > best_score) {
+      best_score = scores[j];
       best = j;
     }
   }
   if (best < 0) return -1;
-  // A leaf without an end site of its own is the crown: the joint before it turns the head.
+  // A leaf without an end site of its own is the crown, and one beside another is an eye or ear: the joint before it
+  // turns the head.
   const bool bare = (reference.ends[best] - at(reference, best)).norm() < kMinBone;
   const int parent = skeleton.joints[best].parent;
-  return bare && parent > 0 ? parent : best;
+  bool twin = false;
+  for (int j = 1; j < count; ++j)
+    twin |= j != best && skeleton.joints[j].parent == parent && scores[j] > 0.9 * best_score;
+  return (bare || twin) && parent > 0 ? parent : best;
 }
 
 BodyRoles inferRoles(const Skeleton& skeleton, const ReferencePose& reference, int head, bool head_is_neck) {

@@ -40,7 +40,8 @@ struct ReferencePose {
 // Lower case, without a namespace ("mixamorig:Head" -> "head"), spaces, dots and underscores.
 std::string plainName(std::string_view name);
 
-// The joint that carries the head: by name, else a neck by name, else the topmost chain's end. -1 when nothing in the
+// The joint that carries the head: by name, else what goes on above a neck by name, or that neck, else the topmost
+// chain's end. -1 when nothing in the
 // skeleton rises above its root.
 int findHeadJoint(const Skeleton& skeleton, const ReferencePose& reference, bool& is_neck);
 

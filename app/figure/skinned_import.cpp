@@ -351,6 +351,22 @@ ReferencePose referenceOf(const Skeleton& skeleton) {
   return reference;
 }
 
+// The same, for the head to be found: a joint that carries skin goes on to the middle of it.
+ReferencePose referenceOf(const Skeleton& skeleton, const SkinnedMesh& mesh) {
+  ReferencePose reference = referenceOf(skeleton);
+  std::vector<Vec3> sums(reference.ends.size(), Vec3::Zero());
+  std::vector<double> counts(reference.ends.size(), 0);
+  const std::vector<int> dominant = dominantJoints(mesh);
+  for (std::size_t v = 0; v < dominant.size(); ++v) {
+    sums[static_cast<std::size_t>(dominant[v])] += mesh.positions[v].cast<double>();
+    ++counts[static_cast<std::size_t>(dominant[v])];
+  }
+  for (std::size_t j = 0; j < counts.size(); ++j) {
+    if (counts[j] > 0) reference.ends[j] = sums[j] / counts[j];
+  }
+  return reference;
+}
+
 // Whether any vertex moves with a joint or one below it.
 bool carriesSkin(const Character& character, int joint) {
   std::vector<bool> below(character.skeleton.joints.size(), false);
@@ -368,7 +384,7 @@ Character assemble(Import& import) {
   const SkinnedMesh raw = gatherMesh(import, materials);
   bool is_neck = false;
   Skeleton skeleton = buildSkeleton(import);
-  int head = findHeadJoint(skeleton, referenceOf(skeleton), is_neck);
+  int head = findHeadJoint(skeleton, referenceOf(skeleton, raw), is_neck);
   if (head >= 0) head = import.by_name.at(skeleton.joints[head].name);
   if (head < 0)
     import.fail("skeleton", "no joint of " + std::to_string(skeleton.joints.size()) + " can carry a head",

@@ -128,6 +128,10 @@ void refuseOwnExport(std::string_view bytes, const std::string& file) {
 }
 
 void refuseNoHair(const std::string& file) {
+  const std::string beginning = beginningOfGroom(file);
+  if (!beginning.empty())
+    throw InputError(file, "", "does not begin with " + beginning + ", as its name says",
+                     "write it again, or give it the ending of what it is");
   const auto [kind, use] = kindAndUse(file);
   if (!kind.empty()) throw InputError(file, "", kind + ", no hair", use);
   throw InputError(

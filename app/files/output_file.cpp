@@ -54,6 +54,8 @@ void OutputFile::commit() {
   if (temporary_.empty()) return;
   std::error_code error;
   fs::rename(temporary_, target_, error);
+  if (error.value() == ENOENT)
+    throw OutputError(file_, "was written by another run at the same time", "give every run a name of its own");
   if (error) fail(error.value());
   temporary_.clear();
 }

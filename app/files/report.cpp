@@ -82,7 +82,7 @@ json countsJson(const FrameStats& stats) {
           {"draw_calls", stats.draw.draw_calls}};
 }
 
-json frameJson(const FrameStats& stats, std::size_t index, double fps) {
+json frameJson(const FrameStats& stats, long index, double fps) {
   return {{"frame", index},
           {"seconds", static_cast<double>(index) / fps},
           {"lost_seconds", stats.lost},
@@ -240,7 +240,8 @@ void writeReport(const std::string& file, const RunReport& run, const Demo& demo
   for (const Skip& skip : skipTable()) switches[skip.name] = demo.scene.skips[skip.id];
   json characters = json::array(), frames = json::array();
   for (const Actor& actor : demo.actors) characters.push_back(actorJson(actor, demo.scene.sim));
-  for (std::size_t k = 0; k < run.frames.size(); ++k) frames.push_back(frameJson(run.frames[k], k, run.fps));
+  for (const FrameStats& frame : run.frames)
+    frames.push_back(frameJson(frame, run.first + std::ssize(frames), run.fps));
   const json report = {
       {"scene", demo.scene.name},
       {"renderer", run.renderer},

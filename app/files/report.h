@@ -14,6 +14,7 @@ struct RunReport {
   double start_seconds = 0;  // load and settle
   double fps = 0;
   std::vector<FrameStats> frames;
+  long first = 0;  // number of the first: a loaded state has some behind it
 };
 
 // Parameters of which a character's hair uses another value than is set: which, why, and of what; a line each.

@@ -47,12 +47,23 @@ std::optional<GroomFormat> groomFormat(std::string_view bytes, const std::string
   return std::nullopt;
 }
 
-bool hasGroomEnding(const std::string& file) {
+std::string beginningOfGroom(const std::string& file) {
   std::string ending = std::filesystem::path(file).extension().string();
   std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
-  constexpr std::array<std::string_view, 8> kEndings{".hair", ".abc",  ".usda", ".usd",
-                                                     ".usdc", ".usdz", ".tfx",  ".ply"};
-  return std::ranges::find(kEndings, ending) != kEndings.end();
+  constexpr std::array<std::array<std::string_view, 2>, 8> kEndings{{{".hair", "HAIR"},
+                                                                     {".abc", "Ogawa"},
+                                                                     {".usda", "#usda"},
+                                                                     {".usd", "#usda"},
+                                                                     {".usdc", "PXR-USDC"},
+                                                                     {".usdz", "PK"},
+                                                                     {".tfx", "a header of TressFX"},
+                                                                     {".ply", "ply"}}};
+  const auto* const found = std::ranges::find(kEndings, ending, [](const auto& row) { return row[0]; });
+  return found == kEndings.end() ? "" : std::string((*found)[1]);
+}
+
+bool hasGroomEnding(const std::string& file) {
+  return !beginningOfGroom(file).empty();
 }
 
 Groom readGroom(std::string_view bytes, const std::string& file, GroomHints* hints) {

@@ -16,6 +16,8 @@ enum class GroomFormat { kHair, kAlembic, kUsda, kPly, kTfx };
 // known and not read: Alembic in HDF5, binary or packed USD. Nothing: no groom.
 std::optional<GroomFormat> groomFormat(std::string_view bytes, const std::string& file);
 
+// What a groom of the name's ending begins with; empty for other endings.
+std::string beginningOfGroom(const std::string& file);
 // Whether the name ends like a groom's: .hair, .abc, .usda, .tfx, .ply and those that are refused by name.
 bool hasGroomEnding(const std::string& file);
 

@@ -13,6 +13,7 @@ struct GroomHints {
   bool unit_given = false;
   std::optional<Eigen::Matrix3f> axes, turn;
   int world_heads = 0;  // of an export of this program: y up, each head where its figure holds it; 0: no such file
+  int hidden = 0;       // curve objects that the file hides, and that are left out
 };
 
 }  // namespace app

@@ -6,11 +6,13 @@
 #include <numbers>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "app/files/hair_file.h"
 #include "app/library/convert.h"
 #include "app/library/objects.h"
 #include "app/styles/hair_styles.h"
+#include "sim/field_text.h"
 
 namespace app::library {
 namespace {
@@ -80,11 +82,17 @@ Choice chosen(const char* given, const char* what, std::initializer_list<Choice>
               std::string_view (*name_of)(Choice)) {
   needs(given, what);
   std::string names;
+  std::vector<std::string_view> candidates;
   for (const Choice choice : choices) {
     if (name_of(choice) == given) return choice;
+    candidates.push_back(name_of(choice));
     names.append(names.empty() ? "" : ", ").append(name_of(choice));
   }
-  throw Fault{HM_ERROR_ARGUMENT, std::string(what) + " is none that is built in; choose one of " + names};
+  const std::string_view near = sim::nearestName(given, candidates);
+  throw Fault{HM_ERROR_ARGUMENT,
+              std::string(what) + " '" + std::string(given).substr(0, 40) + "' is not built in; " +
+                  (near.empty() ? "choose one of " : "did you mean '" + std::string(near) + "'? Choose one of ") +
+                  names};
 }
 
 sim::HairMeshShape styleOnPlainHead(Style style, Resolution resolution, double height) {

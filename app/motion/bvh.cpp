@@ -39,7 +39,8 @@ struct Inference {
   int upright_frame = 0;        // the sampled frame of greatest height
   double height = 0;            // file's unit
   double scale = 1;             // m per file's unit
-  std::string unit;
+  std::string unit, doubt;
+  bool legs = true;
 };
 
 Quaternion axisRotation(int axis, double degrees) {
@@ -128,9 +129,31 @@ Eigen::AlignedBox3d bounds(const BvhText& bvh, const WorldFrame& world) {
   return box;
 }
 
+// Whether anything but the spine comes near the lowest point: legs, or arms that hang down to there.
+bool hasLegs(const BvhText& bvh, const WorldFrame& world, bool z_up) {
+  constexpr double kNearGround = 0.15;  // of the height
+  std::vector<double> tops, bottoms;
+  for (std::size_t j = 0; j < bvh.joints.size(); ++j) {
+    const Vec3 at = world.positions[j], end = at + world.rotations[j] * bvh.joints[j].end_site;
+    const auto up = [&](const Vec3& p) { return z_up ? p.z() : p.y(); };
+    tops.push_back(std::max(up(at), up(end)));
+    bottoms.push_back(std::min(up(at), up(end)));
+  }
+  const auto highest = std::ranges::max_element(tops);
+  const double low = *std::ranges::min_element(bottoms);
+  const double ground = low + kNearGround * (*highest - low);
+  std::vector<bool> spine(tops.size(), false);
+  for (int j = static_cast<int>(highest - tops.begin()); j >= 0; j = bvh.joints[static_cast<std::size_t>(j)].parent)
+    spine[static_cast<std::size_t>(j)] = true;
+  for (std::size_t j = 0; j < tops.size(); ++j) {
+    if (!spine[j] && bottoms[j] < ground) return true;
+  }
+  return false;
+}
+
 // Figures whose height is plausible in one of these units are taken to be in it. The ranges of height are disjoint:
 // each unit is over 2.2 times the one before it. 0.056444 m is the unit of the CMU database's own ASF files, an inch
-// over 0.45.
+// over 0.45. Without legs the height is first taken for that from the hips up, 0.47 of a body's.
 void inferUnit(Inference& inferred) {
   struct Unit {
     double metres;
@@ -139,12 +162,17 @@ void inferUnit(Inference& inferred) {
   constexpr Unit kUnits[] = {
       {1, "m"}, {0.001, "mm"}, {0.01, "cm"}, {0.0254, "inch"}, {0.0254 / 0.45, "CMU unit (inch / 0.45)"}};
   constexpr double kSmallest = 1.1, kTallest = 2.4;  // m, between the outermost joints
-  for (const Unit& unit : kUnits) {
-    const double height = inferred.height * unit.metres;
-    if (height < kSmallest || height > kTallest) continue;
-    inferred.scale = unit.metres;
-    inferred.unit = unit.name;
-    return;
+  constexpr double kHipsUp = 0.47;                   // of the mannequin's height
+  for (const double share : {kHipsUp, 1.0}) {
+    if (share < 1 && inferred.legs) continue;
+    for (const Unit& unit : kUnits) {
+      const double height = inferred.height * unit.metres / share;
+      if (height < kSmallest || height > kTallest) continue;
+      inferred.scale = unit.metres;
+      inferred.unit = unit.name;
+      if (share < 1) inferred.doubt = "; not certain: without legs it is taken for a body from the hips up";
+      return;
+    }
   }
   inferred.scale = 1.70 / inferred.height;
   inferred.unit = "unknown, scaled to 1.70 m";
@@ -183,6 +211,9 @@ Inference infer(const BvhText& bvh, const LocalFrames& frames) {
   const double motion_height = inferred.motion_z_up ? z_motion : y_motion;
   inferred.rest_is_folded = rest_height < 0.6 * motion_height;
   inferred.height = std::max(rest_height, motion_height);
+  inferred.legs = inferred.rest_is_folded
+                      ? hasLegs(bvh, worldFrame(bvh, frames, inferred.upright_frame), inferred.motion_z_up)
+                      : hasLegs(bvh, restFrame(bvh), inferred.rest_z_up);
   return inferred;
 }
 
@@ -275,8 +306,8 @@ std::vector<std::string> describe(const BvhText& bvh, const Inference& inferred)
     std::snprintf(line, sizeof line, format, values...);
     notes.emplace_back(line);
   };
-  note("unit: %s (figure %.4g units from lowest to highest joint = %.2f m)", inferred.unit.c_str(), inferred.height,
-       inferred.height * inferred.scale);
+  note("unit: %s (figure %.4g units from lowest to highest joint = %.2f m%s)", inferred.unit.c_str(), inferred.height,
+       inferred.height * inferred.scale, inferred.doubt.c_str());
   note("up axis: %s", inferred.motion_z_up ? "z, turned to y" : "y");
   if (inferred.rest_z_up != inferred.motion_z_up && !inferred.rest_is_folded) {
     note("rest pose: %s up, unlike the motion", inferred.rest_z_up ? "z" : "y");

@@ -35,7 +35,7 @@ void HairRecorder::begin(Demo& demo) {
     ExportSpec spec;
     spec.file = file;
     if (file.ends_with(".glb")) spec.what = ExportWhat::kMesh;
-    export_.emplace(spec, demo, fps_, std::numeric_limits<int>::max());
+    export_.emplace(spec, demo, fps_, 0, std::numeric_limits<int>::max());
   }
   demo.message = "recording the hair into " + file;
   demo.message_is_fault = false;

@@ -80,10 +80,11 @@ struct Run {
   std::optional<SimCacheWriter> cache;
   std::vector<unsigned char> pixels;
   int frames = 0;
-  long first = 0;  // number of the first frame: a loaded state has some behind it
+  int first = 0;  // number of the first frame: a loaded state has some behind it
 
   Run(Scene scene, const Options& run_options);
   void drawFrames();
+  void openExport();
   void exportFrame(int frame);
   double frameSeconds(int frame) const;
   void saveState() const;
@@ -115,11 +116,11 @@ Run::Run(Scene scene, const Options& run_options) : options(run_options), tape(o
   if (!options.load_state.empty()) {
     const bool keep_view = !options.camera.empty() || !options.framing.empty();
     loadDemoState(options.load_state, keep_view, demo);
-    first = demo.frames;
+    report.first = first = static_cast<int>(demo.frames);
   }
   if (!options.compare.empty()) startComparison(options.compare, demo);
   demo.comparison.side_by_side = options.compare_view == "side";
-  if (!options.hair_export.file.empty()) hair_export.emplace(options.hair_export, demo, report.fps, frames);
+  if (!options.hair_export.file.empty()) openExport();
   if (!options.cache.empty()) cache.emplace(options.cache, demo);
   if (options.keep_frames) checkWritable(framePath(options.out, first));
   if (!options.no_images) {
@@ -129,16 +130,25 @@ Run::Run(Scene scene, const Options& run_options) : options(run_options), tape(o
   report.start_seconds = now() - start;
 }
 
+void Run::openExport() {
+  const ExportSpec& spec = options.hair_export;
+  const int end = first + frames;
+  if (std::max(spec.first, spec.last) >= end || (spec.last >= 0 && spec.last < first))
+    throw UsageError("--export-frames does not lie within the run's " + countOf(frames, "frame") + ", " +
+                     std::to_string(first) + " to " + std::to_string(end - 1) + "; give others, or more --frames");
+  hair_export.emplace(spec, demo, report.fps, first, end);
+}
+
 // The first frame of a scene shows its start, the first after a loaded state goes on. What a frame's further moments
 // have taken is left out of the next.
 double Run::frameSeconds(int frame) const {
   if (frame == 0 && options.load_state.empty()) return 0;
   const ExportSpec& spec = options.hair_export;
-  const bool further = hair_export && spec.samples > 1 && spec.takes(frame - 1);
+  const bool further = hair_export && spec.samples > 1 && spec.takes(first + frame - 1);
   return (1 - (further ? spec.shutter : 0)) / report.fps;
 }
 
-void Run::exportFrame(int frame) {
+void Run::exportFrame(int frame) {  // its number
   const ExportSpec& spec = options.hair_export;
   if (!hair_export || !spec.takes(frame)) return;
   hair_export->add(demo, frame);
@@ -150,7 +160,7 @@ void Run::exportFrame(int frame) {
 
 void Run::saveState() const {
   writeFile(options.save_state, demoStateBytes(demo));
-  std::cout << "state after " << demo.frames << " frames in " << options.save_state << "\n";
+  std::cout << "state after " << countOf(demo.frames, "frame") << " in " << options.save_state << "\n";
 }
 
 void Run::drawFrames() {
@@ -166,17 +176,17 @@ void Run::drawFrames() {
     if (cache) cache->add(demo);
     if (frame + 1 == options.save_state_at) saveState();
     if (const std::string note = numericalNote(demo.stats); !note.empty())
-      std::cerr << "hairmesh: frame " << frame << ": " << note << "\n";
+      std::cerr << "hairmesh: frame " << first + frame << ": " << note << "\n";
     if (demo.message_is_fault && !demo.message.empty() && demo.message != told)
-      std::cerr << "hairmesh: frame " << frame << ": " << demo.message << "\n";
+      std::cerr << "hairmesh: frame " << first + frame << ": " << demo.message << "\n";
     told = demo.message;
     if (!pictures) {
-      exportFrame(frame);
+      exportFrame(first + frame);
       continue;
     }
     if (options.keep_frames) writePng(framePath(options.out, first + frame), options.width, options.height, pixels);
     if (film) film->add(pixels);
-    exportFrame(frame);
+    exportFrame(first + frame);
     // Software rasterizers take a second a frame; a person wants to see that it goes on.
     if (now() - last_line > kLineEvery) {
       std::cout << "frame " << frame + 1 << " of " << frames << std::endl;

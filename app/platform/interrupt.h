@@ -4,7 +4,7 @@
 
 namespace app {
 
-// From now on SIGINT and SIGTERM are noted.
+// From now on SIGINT, SIGTERM and, unless it is ignored, SIGHUP are noted.
 void noteInterrupts();
 // Whether one has come.
 bool interrupted();

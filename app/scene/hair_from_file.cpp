@@ -22,7 +22,10 @@ Conversion convertMended(const std::string& bytes, const CharacterSpec& spec, co
   GroomHints hints;
   Groom groom = readGroom(bytes, spec.hair, &hints);
   ConvertOptions options;
-  if (!spec.fit) return convertGroom(groom, hints, options, spec.hair);
+  if (!spec.fit) {
+    mendGroom({.axes = toldAxes(hints)}, nullptr, groom);
+    return convertGroom(groom, hints, options, spec.hair);
+  }
   const HeadModel head = headModelOf(character);
   const MendReport report = mendCertain(hints, &head, spec.mends, groom);
   haircut.findings = report.findings;
@@ -31,12 +34,16 @@ Conversion convertMended(const std::string& bytes, const CharacterSpec& spec, co
   return convertGroom(groom, {}, options, spec.hair);
 }
 
+// What was mended, and what of the file's own word is doubted or left out.
 std::string mendedBy(const Haircut& haircut) {
-  std::string text;
+  std::string text, left;
   for (const MendedFinding& one : haircut.findings) {
-    if (one.done) text += (text.empty() ? "mended by " : ", ") + one.finding.mend;
+    const GroomFinding& finding = one.finding;
+    if (one.done) text += (text.empty() ? "mended by " : ", ") + finding.mend;
+    if (!one.done && ((finding.fault && (finding.what == "unit" || finding.what == "up")) || finding.what == "hidden"))
+      left += "; " + finding.text + (finding.mend.empty() ? "" : " (--mends \"" + finding.mend + "\")");
   }
-  return text;
+  return text.empty() && !left.empty() ? left.substr(2) : text + left;
 }
 
 }  // namespace

@@ -252,6 +252,7 @@ TEST(Options, AFileForAnotherOptionIsToldByItsContent) {
                 .exit_code,
             0);
   std::ofstream(folder + "/words.md") << "# Words\n";
+  std::ofstream(folder + "/words.hair") << "# Words\n";
   for (const auto& [words, expected] : std::vector<std::pair<std::vector<std::string>, std::string>>{
            {{"--replay", state}, state + ": is a saved state, no recording; name its scene, and it with --load-state"},
            {{"--replay", HAIRMESH_SOURCE_DIR "/assets/scenes/walk.json"},
@@ -260,6 +261,8 @@ TEST(Options, AFileForAnotherOptionIsToldByItsContent) {
            {{"--replay", HAIRMESH_BINARY}, ": is no recording; give a file that --record wrote"},
            {{"--hair", "assets/clips/walk.bvh"}, "is a motion, no hair; give it to --motion"},
            {{"--hair", state}, "is a saved state, no hair"},
+           {{"--hair", folder + "/words.hair"},
+            "words.hair: does not begin with HAIR, as its name says; write it again"},
            {{"--hair", folder + "/words.md"}, "words.md: holds no hair; give a hair mesh (.obj with groups layer_0"},
            {{folder + "/r.take"}, "is a recording; play it with --replay"}}) {
     std::vector<std::string> all = words;

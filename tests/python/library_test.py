@@ -1,8 +1,10 @@
 """The Python package: views without copies, parameters, states, strands, faults."""
 
+import copy
 import gc
 import math
 import pathlib
+import pickle
 import subprocess
 import sys
 import unittest
@@ -81,7 +83,8 @@ class Library(unittest.TestCase):
         shake(hair, 0, 15)
         state = hair.save()
         shake(hair, 15, 30)
-        other.restore(state)
+        for buffer in (bytearray(state), np.frombuffer(state, np.uint8), memoryview(state), state):
+            other.restore(buffer)
         shake(other, 15, 30)
         self.assertEqual(hair.save(), other.save())
         hair.reset()
@@ -97,6 +100,12 @@ class Library(unittest.TestCase):
         hair.step(roots=wide[:, 1:4])
         other.step(roots=np.asfortranarray(wide[:, 1:4]).astype(np.float32))
         np.testing.assert_allclose(hair.positions, other.positions, atol=1e-5)
+        one = np.broadcast_to(np.array([0.0, 0.1, 0.0]), (len(self.mesh.tips), 3))  # rows of stride 0
+        state = hair.save()
+        hair.step(roots=one)
+        other.restore(state)
+        other.step(roots=one.copy())
+        np.testing.assert_array_equal(hair.positions, other.positions)
         with self.assertRaisesRegex(hairmesh.Error, "roots has"):
             hair.step(roots=wide[:3, 1:4])
         with self.assertRaises(ValueError):
@@ -145,6 +154,18 @@ class Library(unittest.TestCase):
         with self.assertRaisesRegex(hairmesh.Error, "200"):
             hair.strands([200])
 
+    def test_what_owns_an_object_of_the_library_is_not_copied(self):
+        hair = hairmesh.Hair(self.mesh)
+        for one, mend in ((self.mesh, "share it"), (hair, "restore"), ([hair], "restore")):
+            for copied in (copy.copy, copy.deepcopy, pickle.dumps):
+                if isinstance(one, list) and copied is copy.copy:
+                    continue  # a list of the same hair
+                with self.assertRaisesRegex(TypeError, mend):
+                    copied(one)
+        gc.collect()
+        hair.step()
+        self.assertEqual(len(self.mesh.rest), len(hair.positions))
+
     def test_faults_name_file_and_mend(self):
         with self.assertRaisesRegex(hairmesh.Error, "wrong.obj: .*layer_0.*;"):
             hairmesh.Mesh.from_text("v 0 0 0\n", "wrong.obj")
@@ -165,6 +186,32 @@ class Library(unittest.TestCase):
             hair.step(head=np.eye(4))
         with self.assertRaisesRegex(TypeError, r"pin 1 is an array of shape \(2,\) and dtype int64; give \(vertex"):
             hair.step(pins=[(0, (0, 0, 0), (0, 0, 0), 1), (1, 2)])
+        for wrong, what in (((1,), "position"), (("a", 0, 0), "position"), (np.zeros((3, 3)), "position"), (5, "position")):
+            with self.assertRaisesRegex(TypeError, f"{what} is an? .*; give 3 numbers"):
+                hairmesh.pose(wrong)
+        with self.assertRaisesRegex(TypeError, "rotation is .*; give 4 numbers"):
+            hairmesh.pose(rotation=(0, 0, 0))
+        with self.assertRaisesRegex(TypeError, "radii is .*; give 3 numbers"):
+            hairmesh.Ellipsoid((1, 1))
+        for pin in ((3, (0, 0), (0, 0, 0), 1), (3, (0, 0, 0), (0,), 1), (3.9, (0, 0, 0), (0, 0, 0), 1),
+                    (2**32 + 3, (0, 0, 0), (0, 0, 0), 1)):
+            with self.assertRaisesRegex(TypeError, "pin 0 is .*; give"):
+                hair.step(pins=[pin])
+        for numbers, error in (([2**32 + 3], ValueError), ([3.9], TypeError), (["a"], TypeError)):
+            with self.assertRaisesRegex(error, "numbers"):
+                hair.strands(numbers)
+            with self.assertRaises(error):
+                hair.strand(numbers[0])
+        with self.assertRaisesRegex(ValueError, "points"):
+            hair.strands(points=2**32 + 2)
+        with self.assertRaisesRegex(TypeError, "mesh is a str; give a hairmesh.Mesh"):
+            hairmesh.Hair("bob")
+        with self.assertRaisesRegex(TypeError, "an ellipsoid is an array .*; give a hairmesh.Ellipsoid"):
+            hair.step(ellipsoids=[(1, 1, 1)])
+        with self.assertRaisesRegex(TypeError, "column_lengths"):
+            hairmesh.Mesh(self.mesh.rest, np.diff(self.mesh.column_first) + 0.5, self.mesh.faces)
+        with self.assertRaisesRegex(TypeError, "state is a NoneType; give the bytes"):
+            hair.restore(None)
         with self.assertRaisesRegex(ValueError, r"roots is an array of shape \(3,\) and dtype int64; .*\(n, 3\).*float32"):
             hair.step(roots=[1, 2, 3])
         self.assertEqual(hairmesh.version().count("."), 2)

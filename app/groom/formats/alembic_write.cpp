@@ -164,7 +164,7 @@ std::string AlembicWriter::Impl::timeSamplings() const {
   if (points.size() < 2) return bytes;
   std::vector<double> stored;
   for (std::size_t n = 0; n < times.offsets.size(); ++n) stored.push_back(times.timeOf(n));
-  put(static_cast<std::uint32_t>(points.size()), 1 / times.fps, stored);
+  put(static_cast<std::uint32_t>(points.size()), static_cast<double>(times.every) / times.fps, stored);
   return bytes;
 }
 

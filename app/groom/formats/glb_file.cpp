@@ -45,7 +45,7 @@ struct Buffer {
 Json animationOf(const ClipSettings& settings, std::size_t moments, Buffer& buffer) {
   std::vector<float> times, weights((moments - 1) * moments, 0.0f);
   for (std::size_t n = 0; n < moments; ++n) {
-    times.push_back(static_cast<float>(settings.timeOf(n) - settings.timeOf(0)));
+    times.push_back(static_cast<float>(settings.timeOf(n)));
     if (n > 0) weights[n * (moments - 1) + n - 1] = 1;
   }
   const std::size_t input = buffer.add(bytesOf(times), times.size(), "SCALAR", kFloat, 0);
@@ -68,8 +68,7 @@ GlbWriter::GlbWriter(std::string file, ClipSettings settings, std::vector<std::u
 
 void GlbWriter::add(const std::vector<Eigen::Vector3f>& vertices) {
   if (moments_.size() == kMaxGlbMoments)
-    throw OutputError(file_, "a .glb file is given at most 1000 moments",
-                      "export fewer frames, --export-every N");
+    throw OutputError(file_, "a .glb file is given at most 1000 moments", "export fewer frames, --export-every N");
   if (vertices.empty() || (!moments_.empty() && vertices.size() != moments_[0].size()))
     throw OutputError(file_, "the mesh has no vertices, or not as many as at first",
                       "export without changing the hair");

@@ -27,8 +27,8 @@ void ByteReader::seek(std::size_t offset, const char* what) {
 
 void ByteReader::need(std::size_t count, std::size_t size, const char* what) const {
   if (count <= left() / size) return;
-  fail("the file ends where " + std::string(what) + " should stand (" + std::to_string(count) + " times " +
-           std::to_string(size) + " bytes; " + std::to_string(left()) + " are left)",
+  fail("the file ends where " + std::string(what) + " should stand (" + std::to_string(count) +
+           (size > 1 ? " times " + std::to_string(size) : "") + " bytes; " + std::to_string(left()) + " are left)",
        "the file is damaged or cut off; export it again");
 }
 

@@ -149,6 +149,9 @@ void Reader::addPrim(const UsdaPrim& prim) {
 
 Groom readUsda(std::string_view text, const std::string& file, std::size_t moment, GroomHints* hints) {
   const UsdaLayer layer = readUsdaLayer(text, file);
+  if (layer.curves.empty() && layer.hidden > 0)
+    throw InputError(file, "", "all its BasisCurves are invisible, or of the purpose guide or proxy",
+                     "show them in the program that wrote the file, and export them again");
   if (layer.curves.empty())
     throw InputError(file, "", "the layer has no BasisCurves of its own",
                      "flatten it: usdcat --flatten FILE -o FILE.usda");
@@ -160,6 +163,7 @@ Groom readUsda(std::string_view text, const std::string& file, std::size_t momen
   }
   if (reader.groom.groups.empty() && layer.curves.size() > 1) reader.groom.groups = prim_of;
   fillArrays(reader.groom);
+  if (hints) hints->hidden = layer.hidden;
   if (hints && layer.tells_unit) hints->meters_per_unit = layer.meters_per_unit;
   if (hints && layer.tells_up) hints->up = layer.up_axis;
   return std::move(reader.groom);

@@ -133,7 +133,8 @@ std::string_view Scanner::value() {
 
 // The attributes that are kept.
 bool isWanted(std::string_view name) {
-  constexpr std::array<std::string_view, 6> kNames{"points", "curveVertexCounts", "widths", "type", "basis", "wrap"};
+  constexpr std::array<std::string_view, 8> kNames{"points", "curveVertexCounts", "widths", "type", "basis",
+                                                   "wrap",   "visibility",        "purpose"};
   return std::ranges::find(kNames, name) != kNames.end() || name.starts_with("primvars:") ||
          name.starts_with("xformOp");
 }
@@ -145,9 +146,10 @@ struct TextReader {
   UsdaLayer layer;
 
   void stageMetadata();
-  void prims(const Eigen::Affine3d& above, int depth);
-  void prim(const Eigen::Affine3d& above, int depth);
-  void body(UsdaPrim& prim, const Eigen::Affine3d& above, int depth);
+  void prims();
+  void prim(const UsdaPrim& above, int depth);
+  void body(UsdaPrim& prim, const UsdaPrim& above, int depth);
+  void hide(UsdaPrim& prim, const UsdaPrim& above) const;
   void variantSet();
   void attribute(std::string_view first, UsdaPrim& prim);
   std::vector<UsdaSample> samples();
@@ -176,19 +178,21 @@ void TextReader::stageMetadata() {
     const std::string_view value = scanner.value();
     if (key == "metersPerUnit") layer.meters_per_unit = numberOf(value), layer.tells_unit = true;
     if (key == "timeCodesPerSecond") layer.time_codes_per_second = numberOf(value);
-    if (key == "upAxis" && value.size() == 3) layer.up_axis = value[1], layer.tells_up = true;
+    if (key == "upAxis" && value.size() == 3)
+      layer.up_axis = value[1], layer.tells_up = value[1] == 'Y' || value[1] == 'Z';
   }
 }
 
-void TextReader::prims(const Eigen::Affine3d& above, int depth) {
+void TextReader::prims() {
+  const UsdaPrim stage;
   while (!scanner.done()) {
     const std::string_view specifier = scanner.word();
     if (specifier != "def" && specifier != "over" && specifier != "class") scanner.fail("a prim should begin here");
-    prim(above, depth);
+    prim(stage, 0);
   }
 }
 
-void TextReader::prim(const Eigen::Affine3d& above, int depth) {
+void TextReader::prim(const UsdaPrim& above, int depth) {
   if (depth > kDeepestPrim) scanner.fail("prims lie more than 64 deep");
   UsdaPrim prim;
   prim.at = scanner.at();
@@ -200,10 +204,13 @@ void TextReader::prim(const Eigen::Affine3d& above, int depth) {
 }
 
 // Prims below come after the attributes that place them, as every writer has it; a place told later would be lost.
-void TextReader::body(UsdaPrim& prim, const Eigen::Affine3d& above, int depth) {
+void TextReader::body(UsdaPrim& prim, const UsdaPrim& above, int depth) {
   bool placed = false;
   const auto settle = [&] {
-    if (!placed) prim.place = above * placeOf(prim);
+    if (!placed) {
+      prim.place = above.place * placeOf(prim);
+      hide(prim, above);
+    }
     placed = true;
   };
   while (!scanner.take('}')) {
@@ -211,7 +218,7 @@ void TextReader::body(UsdaPrim& prim, const Eigen::Affine3d& above, int depth) {
     if (word.empty()) scanner.fail("an attribute or a prim should stand here");
     if (word == "def" || word == "over" || word == "class") {
       settle();
-      this->prim(prim.place, depth + 1);
+      this->prim(prim, depth + 1);
     } else if (word == "variantSet") {
       variantSet();
     } else {
@@ -219,7 +226,24 @@ void TextReader::body(UsdaPrim& prim, const Eigen::Affine3d& above, int depth) {
     }
   }
   settle();
-  if (prim.type == "BasisCurves") layer.curves.push_back(std::move(prim));
+  if (prim.type != "BasisCurves") return;
+  if (prim.invisible || prim.purpose == "guide" || prim.purpose == "proxy") {
+    ++layer.hidden;
+  } else {
+    layer.curves.push_back(std::move(prim));
+  }
+}
+
+// As UsdGeomImageable has it: what is invisible hides all below, a purpose counts until another is told.
+void TextReader::hide(UsdaPrim& prim, const UsdaPrim& above) const {
+  const auto word = [&prim](std::string_view name) {
+    const auto found = prim.attributes.find(name);
+    const std::string_view value = found == prim.attributes.end() ? std::string_view() : found->second.at(0);
+    return value.size() > 2 ? value.substr(1, value.size() - 2) : std::string_view();
+  };
+  prim.invisible = above.invisible || word("visibility") == "invisible";
+  const std::string_view purpose = word("purpose");
+  prim.purpose = purpose.empty() ? above.purpose : purpose;
 }
 
 // Passed over: which variant is chosen is told elsewhere.
@@ -346,7 +370,7 @@ std::string_view UsdaAttribute::at(std::size_t moment) const {
 UsdaLayer readUsdaLayer(std::string_view text, const std::string& file) {
   TextReader reader{text, file, Scanner(text, file), {}};
   reader.stageMetadata();
-  reader.prims(Eigen::Affine3d::Identity(), 0);
+  reader.prims();
   return std::move(reader.layer);
 }
 

@@ -32,6 +32,8 @@ struct UsdaPrim {
   std::string type, name;
   std::size_t at = 0;                                            // where it begins in the text
   Eigen::Affine3d place = Eigen::Affine3d::Identity();           // of the prims above and its own, at their default
+  bool invisible = false;                                        // itself, or one above it
+  std::string_view purpose;                                      // empty: default
   std::map<std::string, UsdaAttribute, std::less<>> attributes;  // of what a groom may need
 };
 
@@ -40,7 +42,8 @@ struct UsdaLayer {
   char up_axis = 'Y';
   bool tells_unit = false, tells_up = false;
   double time_codes_per_second = 24;
-  std::vector<UsdaPrim> curves;  // of the type BasisCurves, in the file's order
+  std::vector<UsdaPrim> curves;  // of the type BasisCurves, in the file's order, but for
+  int hidden = 0;                // those that are invisible or of the purpose guide or proxy
 };
 
 // Views live as long as `text`. Throws InputError naming the line.

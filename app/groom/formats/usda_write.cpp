@@ -62,7 +62,7 @@ struct UsdaWriter::Impl {
              const char* interpolation);
   void head(const Groom& groom);
   void samples(const char* what);
-  double codeOf(std::size_t moment) const { return settings.timeOf(moment) * settings.fps; }
+  double codeOf(std::size_t moment) const { return settings.frameOf(moment); }
   void finish();
 };
 

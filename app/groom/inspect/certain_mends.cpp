@@ -115,16 +115,17 @@ MendReport mendCertain(const GroomHints& hints, const HeadModel* head, const std
   GroomMends given;
   if (const std::string fault = readMends(wishes, given); !fault.empty()) throw InputError("", "mends", fault, "");
   const GroomInspection inspection = inspectGroom(groom, withGiven(given, wishes, hints), head);
-  const bool guesses = !wished("--no-guess", wishes), unit_given = wished("--unit", wishes);
+  const bool guesses = !wished("--no-guess", wishes), unit_wished = wished("--unit", wishes);
   const double told = hints.meters_per_unit.value_or(1);
   GroomMends mends = inspection.mends;
   readMends(wishes, mends);
   if (guesses) mends.axes = inspection.mends.axes;
-  if (!guesses && !unit_given) mends.unit = told;
+  if (!guesses && !unit_wished) mends.unit = told;
+  if (!guesses && !wished("--up", wishes)) mends.axes *= toldAxes(hints);
   MendReport report;
   const GroomFinding* const unit = inspection.find("unit");
-  report.unit_known =
-      unit_given || told != 1 || (guesses && unit && unit->certain) || (!unit && groom.strandCount() >= kMinStrands);
+  report.unit_known = unit_wished || hints.meters_per_unit || (guesses && unit && unit->certain) ||
+                      (!unit && groom.strandCount() >= kMinStrands);
   for (const GroomFinding& finding : inspection.findings) {
     const std::string option = finding.mend.substr(0, finding.mend.find(' '));
     report.findings.push_back({finding, (guesses && finding.certain) || wished(option, wishes)});

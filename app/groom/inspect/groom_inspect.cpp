@@ -24,6 +24,9 @@ constexpr double kSkullRadius = 0.09;   // m, of the sphere that roots lie about
 constexpr float kThinnestHair = 8e-6f;  // m, a diameter
 constexpr float kUsualWidth = 8e-5f, kWidestHair = 4e-4f, kAllHairs = 1e5f;
 constexpr float kFar = 0.018f, kFloating = 0.03f, kDeep = 0.006f;  // m
+// Of roots over a scalp: spread and coverage of the sphere about them, and how long the mean of their directions is;
+// the cosine between that and the way the hair hangs.
+constexpr float kCapSpread = 0.08f, kCapCoverage = 0.03f, kLeastCap = 0.2f, kMostCap = 0.7f, kHanging = -0.3f;
 constexpr std::size_t kManyPoints = 256, kNumbersTold = 6;
 
 std::string textOf(const char* format, double a, double b = 0) {
@@ -42,15 +45,26 @@ struct Inspector {
   GroomInspection result{};
   StrandEnds ends{};
   SphereFit skull{};  // of the roots, in metres and our axes once these are known
+  // Means of the roots' directions from the skull's middle, and of the ways from root to tip over the strands' length.
+  Vector3f cap = Vector3f::Zero(), hang = Vector3f::Zero();
 
   void add(const char* what, std::string text, std::string mend, bool certain) {
     result.findings.push_back({what, std::move(text), std::move(mend), certain, true});
   }
+  // What is told by the shape that hair of a scalp has: of other hair a possibility, and no fault.
+  void addGuess(const char* what, std::string text, std::string mend, bool of_scalp, bool certain) {
+    add(what, (of_scalp ? "" : "if this is hair of a scalp, ") + text, std::move(mend), of_scalp && certain);
+    result.findings.back().fault = of_scalp;
+  }
   bool inWorld() const { return hints.world_heads > 0; }
+  bool onCap() const;
+  bool ofScalp() const;
+  bool leftAsTold(std::string_view what) const;
   bool crowd() const { return hints.world_heads > 1; }
   void strands();
   void astray();
   void direction();
+  void capAndHang();
   void unit();
   void toMetres();
   void axes();
@@ -73,6 +87,10 @@ void Inspector::strands() {
   if (ends.zero_length > 0) add("zero-length", countText(ends.zero_length, all, "have no length"), "--drop-bad", true);
   if (ends.too_short > 0)
     add("points", countText(ends.too_short, all, "have fewer than two points"), "--drop-bad", true);
+  if (hints.hidden > 0) {
+    add("hidden", countOf(hints.hidden, "object") + " of curves that the file does not show are left out", "", false);
+    result.findings.back().fault = false;
+  }
   if (all < kMinRoots) add("strands", countText(all, kMinRoots, "that a hair mesh is made of at the least"), "", false);
   result.mends.drop_bad = ends.non_finite + ends.zero_length + ends.too_short > 0;
   std::size_t many = 0;
@@ -95,17 +113,38 @@ void Inspector::direction() {
   skull = fitSphere(ends.first);
   if (ends.first.size() < kMinRoots || inWorld()) return;
   const StrandDirections found = strandDirections(ends);
-  skull = found.skull;
+  if (found.turned_count == 0 || found.certain) skull = found.skull;
   if (found.turned_count == 0) return;
-  for (std::size_t n = 0; n < found.turned.size(); ++n) {
+  for (std::size_t n = 0; found.certain && n < found.turned.size(); ++n) {
     if (found.turned[n]) std::swap(ends.first[n], ends.last[n]);
   }
   const bool all = found.turned_count == found.turned.size();
   if (found.certain) result.mends.reverse = all ? Reverse::kAll : Reverse::kFound;
-  add("reversed",
-      all ? "the strands run from tip to root"
-          : countText(found.turned_count, found.turned.size(), "run from tip to root"),
-      all ? "--reverse all" : "--reverse found", found.certain);
+  addGuess("reversed",
+           all ? "the strands run from tip to root"
+               : countText(found.turned_count, found.turned.size(), "run from tip to root"),
+           all ? "--reverse all" : "--reverse found", found.certain, true);
+}
+
+void Inspector::capAndHang() {
+  if (ends.first.empty() || !(skull.radius > 0)) return;
+  float length = 0;
+  for (std::size_t n = 0; n < ends.first.size(); ++n) {
+    cap += (ends.first[n] - skull.center) / (skull.radius * static_cast<float>(ends.first.size()));
+    hang += ends.last[n] - ends.first[n];
+    length += (ends.last[n] - ends.first[n]).norm();
+  }
+  if (length > 0) hang /= length;
+}
+
+// Whether the roots lie over one side of a skull: not over all of a ball, as fur may, nor about a chin or a flat place.
+bool Inspector::onCap() const {
+  return skull.spread < kCapSpread && skull.coverage > kCapCoverage && cap.norm() > kLeastCap && cap.norm() < kMostCap;
+}
+
+// Whether it is hair of a scalp beyond doubt: it hangs away from the side that it grows on.
+bool Inspector::ofScalp() const {
+  return onCap() && cap.dot(hang) < kHanging * cap.norm() * hang.norm();
 }
 
 void Inspector::unit() {
@@ -124,16 +163,17 @@ void Inspector::unit() {
   for (const LengthUnit& unit : kLengthUnits) best = off(unit.metres) < off(best->metres) ? &unit : best;
   const bool fits = inWorld() || off(best->metres) < std::log(1.45);
   if (!inWorld() && std::abs(best->metres / told - 1) > 0.01 && (off(told) > std::log(1.45) || !fits)) {
-    if (fits) result.mends.unit = best->metres;
-    add("unit",
-        textOf("the roots lie about a skull of radius %.3g, which fits ", skull.radius) + best->name +
-            (hints.meters_per_unit ? textOf("; the file tells %g m a unit", told) : ", not m"),
-        std::string("--unit ") + best->name, fits);
+    const bool certain = fits && onCap() && !hints.meters_per_unit;
+    if (certain) result.mends.unit = best->metres;
+    addGuess("unit",
+             textOf("the roots lie about a skull of radius %.3g, which fits ", skull.radius) + best->name +
+                 (hints.meters_per_unit ? textOf("; the file tells %g m a unit", told) : ", not m"),
+             std::string("--unit ") + best->name, onCap(), certain);
   } else if (!fits) {
-    add("unit",
-        textOf("the roots lie about a skull of radius %.3g m, which no unit brings to a head's size",
-               skull.radius * told),
-        "--unit m|cm|mm|in|ft", false);
+    addGuess("unit",
+             textOf("the roots lie about a skull of radius %.3g m, which no unit brings to a head's size",
+                    skull.radius * told),
+             "--unit m|cm|mm|in|ft", onCap(), false);
   }
   toMetres();
 }
@@ -147,9 +187,15 @@ void Inspector::toMetres() {
   }
 }
 
+// Whether something else was found than what the file tells, which holds until it is overruled.
+bool Inspector::leftAsTold(std::string_view what) const {
+  const GroomFinding* const finding = result.find(what);
+  return finding != nullptr && !finding->certain;
+}
+
 void Inspector::turn(const Matrix3f& matrix) {
   result.mends.axes = matrix * result.mends.axes;
-  skull.center = matrix * skull.center;
+  for (Vector3f* const one : {&skull.center, &cap, &hang}) *one = matrix * *one;
   for (auto* points : {&ends.first, &ends.last}) {
     for (Vector3f& p : *points) p = matrix * p;
   }
@@ -159,49 +205,46 @@ void Inspector::turn(const Matrix3f& matrix) {
 // stubble, says nothing of down.
 void Inspector::axes() {
   if (hints.axes) return turn(*hints.axes);
+  const Matrix3f told = toldAxes(hints);
+  turn(told);
   if (ends.first.size() < kMinRoots || inWorld()) return;
-  Vector3f cap = Vector3f::Zero(), hang = Vector3f::Zero();
-  float length = 0;
-  for (std::size_t n = 0; n < ends.first.size(); ++n) {
-    cap += (ends.first[n] - skull.center) / skull.radius;
-    hang += ends.last[n] - ends.first[n];
-    length += (ends.last[n] - ends.first[n]).norm();
-  }
-  cap /= static_cast<float>(ends.first.size());
-  if (length > 0) hang /= length;
   constexpr std::array<std::string_view, 6> kNames{"y", "z", "-y", "-z", "x", "-x"};
   constexpr std::array<std::array<float, 3>, 6> kUps{
       {{0, 1, 0}, {0, 0, 1}, {0, -1, 0}, {0, 0, -1}, {1, 0, 0}, {-1, 0, 0}}};
-  const Vector3f up = cap.dot(hang) > 0.5f * cap.norm() * hang.norm() ? cap : Vector3f(cap - 1.5f * hang);
+  const Vector3f ours = cap.dot(hang) > 0.5f * cap.norm() * hang.norm() ? cap : Vector3f(cap - 1.5f * hang);
+  const Vector3f up = told.transpose() * ours;  // in the file's axes, as --up has them
   std::array<float, 6> scores{};
   for (std::size_t n = 0; n < 6; ++n) scores[n] = Vector3f(kUps[n].data()).dot(up);
   const auto best = static_cast<std::size_t>(std::ranges::max_element(scores) - scores.begin());
-  if (best == 0) return;
+  if (kNames[best] == (hints.up == 'Z' ? "z" : "y")) return;
   std::array<float, 6> sorted = scores;
   std::ranges::sort(sorted);
-  const bool certain = sorted[5] - sorted[4] > 0.15f;
-  add("up", "the hair hangs as if " + std::string(kNames[best]) + " were up, not y",
-      "--up " + std::string(kNames[best]), certain);
-  if (certain) turn(*axesOfUp(kNames[best]));
+  const bool certain = !hints.up && sorted[5] - sorted[4] > 0.15f;
+  addGuess("up",
+           "the hair hangs as if " + std::string(kNames[best]) + " were up" +
+               (hints.up ? std::string("; the file tells ") + (*hints.up == 'Z' ? "z" : "y") : ", not y"),
+           "--up " + std::string(kNames[best]), ofScalp(), certain);
+  if (certain && ofScalp()) turn(*axesOfUp(kNames[best]));
 }
 
 // More hair grows behind the middle of the skull than before it; where a scalp is half bald by intent, its roots lie
 // nearer to the head as they are. A beard, which grows below the middle, grows before it.
 void Inspector::facing() {
   if (hints.turn) return turn(*hints.turn);
-  if (ends.first.size() < kMinRoots || crowd()) return;
-  Vector3f cap = Vector3f::Zero();
-  for (const Vector3f& root : ends.first) cap += (root - skull.center) / skull.radius;
-  cap /= static_cast<float>(ends.first.size());
+  if (ends.first.size() < kMinRoots || crowd() || leftAsTold("up")) return;
   if (cap.y() < 0 || -cap.z() >= std::abs(cap.x()) || std::hypot(cap.x(), cap.z()) < 0.1f) return;
   const double degrees = cap.z() > std::abs(cap.x()) ? 180 : cap.x() > 0 ? 90 : -90;
   // A head is longer than wide: hair a quarter turn aside leaves it by 8 mm, hair that is turned right by 0.3 mm.
   if (head != nullptr && offHeadTurned(turnedAbout(degrees)) > 2 * offHeadTurned(Matrix3f::Identity())) return;
-  add("facing", textOf("the hair grows on the wrong side: the face would look %.0f degrees aside", std::abs(degrees)),
-      textOf("--turn %.0f", degrees), true);
-  result.findings.back().fault = !inWorld();
-  if (inWorld()) result.findings.back().text = textOf("the head looks %.0f degrees aside", std::abs(degrees));
-  turn(turnedAbout(degrees));
+  const bool certain = ofScalp() || inWorld();
+  addGuess("facing",
+           textOf("the hair grows on the wrong side: the face would look %.0f degrees aside", std::abs(degrees)),
+           textOf("--turn %.0f", degrees), certain, true);
+  if (inWorld()) {
+    result.findings.back().fault = false;
+    result.findings.back().text = textOf("the head looks %.0f degrees aside", std::abs(degrees));
+  }
+  if (certain) turn(turnedAbout(degrees));
 }
 
 void Inspector::widths() {
@@ -227,9 +270,11 @@ void Inspector::widths() {
   const double powers =
       std::round(std::log10((middle < kThinnestHair ? kUsualWidth : std::sqrt(kUsualWidth * most)) / middle));
   const double scale = std::pow(10.0, powers == 0 ? (middle < kThinnestHair ? 1 : -1) : powers);
-  result.mends.width_scale = static_cast<float>(scale);
+  const bool certain = !leftAsTold("unit") && !inWorld();
+  if (certain) result.mends.width_scale = static_cast<float>(scale);
   add("widths", textOf("the strands are %.3g mm wide; hair is %.2g mm", 1e3 * middle, 1e3 * kUsualWidth),
-      textOf("--width-scale %g", scale), true);
+      textOf("--width-scale %g", scale), certain);
+  result.findings.back().fault = !inWorld();  // few strands are drawn wide
 }
 
 // The shift that brings the roots onto the head: along the distance's gradient, again and again.
@@ -277,7 +322,7 @@ void Inspector::place() {
   if (before > kFar) {
     const Vector3f move = moveToHead(roots, skull.center);
     for (Vector3f& root : roots) root += move;
-    const bool certain = offHead(roots) <= kFar;
+    const bool certain = offHead(roots) <= kFar && (cap.norm() > kLeastCap || inWorld());
     std::array<char, 96> option;
     std::snprintf(option.data(), option.size(), "--move %.3f,%.3f,%.3f", move.x(), move.y(), move.z());
     add("roots", textOf("the roots lie %.3g m from the scalp", before), option.data(), certain);
@@ -329,6 +374,7 @@ GroomInspection inspectGroom(const Groom& groom, const GroomHints& hints, const 
   inspector.strands();
   inspector.astray();
   inspector.direction();
+  inspector.capAndHang();
   inspector.unit();
   inspector.axes();
   inspector.facing();
@@ -355,6 +401,10 @@ std::optional<Matrix3f> axesOfUp(std::string_view up) {
   if (up == "x") return rows(0, -1, 0, 1, 0, 0, 0, 0, 1);
   if (up == "-x") return rows(0, 1, 0, -1, 0, 0, 0, 0, 1);
   return std::nullopt;
+}
+
+Matrix3f toldAxes(const GroomHints& hints) {
+  return *axesOfUp(hints.up == 'Z' ? "z" : "y");
 }
 
 Matrix3f turnedAbout(double degrees) {

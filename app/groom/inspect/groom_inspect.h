@@ -63,6 +63,8 @@ void mendGroom(const GroomMends& mends, const HeadModel* head, Groom& groom);
 // The matrix that turns a file with this axis up ("y", "z", "-y", "-z", "x", "-x") into y up, z forward; nothing for
 // another name. With z up, hair faces -y, as in Blender.
 std::optional<Eigen::Matrix3f> axesOfUp(std::string_view up);
+// The same by the axis that the file tells; y where it tells none.
+Eigen::Matrix3f toldAxes(const GroomHints& hints);
 // Turns about y, degrees.
 Eigen::Matrix3f turnedAbout(double degrees);
 

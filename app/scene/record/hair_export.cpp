@@ -168,7 +168,7 @@ struct HairExport::Impl {
   std::optional<GlbWriter> mesh;
   std::string note;
   bool numbered = false;  // a file a frame
-  int moments = 0, frames = 0, last_frame = -1;
+  int moments = 0, frames = 0, first_frame = 0, last_frame = -1;
 };
 
 namespace {
@@ -188,13 +188,14 @@ std::vector<std::uint32_t> cageTriangles(const Demo& demo) {
   return triangles;
 }
 
-std::vector<Vector3f> cageVertices(const Demo& demo, double unit) {
+// m, as glTF has it.
+std::vector<Vector3f> cageVertices(const Demo& demo) {
   std::vector<Vector3f> vertices;
   const Vector3f origin = demo.origin.cast<float>();
   for (const Actor& actor : demo.actors) {
     for (std::size_t v = 0; 3 * v + 2 < actor.shown_positions.size(); ++v) {
       const Vector3f at = Eigen::Map<const Vector3f>(&actor.shown_positions[3 * v]);
-      vertices.push_back(static_cast<float>(1 / unit) * (at + origin));
+      vertices.push_back(at + origin);
     }
   }
   return vertices;
@@ -228,10 +229,10 @@ namespace {
 
 // A .glb file holds so many moments at most; frames of the run may be left out for that. What is recorded until it is
 // stopped is told when it comes so far.
-void checkMoments(const ExportSpec& spec, int frames) {
-  const bool until_stopped = spec.last < 0 && frames == std::numeric_limits<int>::max();
+void checkMoments(const ExportSpec& spec, int first, int run_end) {
+  const bool until_stopped = spec.last < 0 && run_end == std::numeric_limits<int>::max();
   if (until_stopped || std::filesystem::path(spec.file).extension() != ".glb") return;
-  const long end = spec.last < 0 ? frames : std::min(frames, spec.last + 1), span = std::max(0L, end - spec.first);
+  const long end = spec.last < 0 ? run_end : std::min(run_end, spec.last + 1), span = std::max(0L, end - first);
   const auto most = static_cast<long>(kMaxGlbMoments) / spec.samples;  // frames
   if ((span + spec.every - 1) / spec.every <= most) return;
   if (most == 0)
@@ -242,19 +243,18 @@ void checkMoments(const ExportSpec& spec, int frames) {
 
 }  // namespace
 
-HairExport::HairExport(const ExportSpec& spec, const Demo& demo, double fps, int frames)
+HairExport::HairExport(const ExportSpec& spec, const Demo& demo, double fps, int begin, int end)
     : impl_(std::make_unique<Impl>()) {
   impl_->spec = spec;
-  ClipSettings settings{fps / spec.every, spec.first / fps, {}, spec.unit};
-  settings.world_heads = static_cast<int>(demo.actors.size());
-  settings.offsets.clear();
+  int first = std::max(spec.first, begin), taken = 0;
+  while (first < end && !spec.takes(first)) ++first;
+  for (int frame = first; frame < end && taken < 2; ++frame) taken += spec.takes(frame);
+  ClipSettings settings{fps, first, {}, spec.unit, static_cast<int>(demo.actors.size()), spec.every};
   for (int n = 0; n < spec.samples; ++n)
     settings.offsets.push_back(n * spec.shutter / (std::max(spec.samples - 1, 1) * fps));
-  int taken = 0;
-  for (int frame = spec.first; frame < frames && taken < 2; ++frame) taken += spec.takes(frame);
   if (spec.what == ExportWhat::kMesh) {
     checkWritable(spec.file);
-    checkMoments(spec, frames);
+    checkMoments(spec, first, end);
     impl_->mesh.emplace(spec.file, settings, cageTriangles(demo));
     return;
   }
@@ -271,11 +271,11 @@ HairExport::HairExport(const ExportSpec& spec, const Demo& demo, double fps, int
 
 void HairExport::add(const Demo& demo, int frame) {
   if (impl_->mesh) {
-    impl_->mesh->add(cageVertices(demo, impl_->spec.unit));
+    impl_->mesh->add(cageVertices(demo));
   } else {
     impl_->writer->add(impl_->strands->groom(demo, impl_->spec.unit), frame);
   }
-  ++impl_->moments;
+  if (impl_->moments++ == 0) impl_->first_frame = frame;
   if (frame != impl_->last_frame) ++impl_->frames;
   impl_->last_frame = frame;
 }
@@ -287,13 +287,14 @@ std::string HairExport::finish(const Demo& demo) {
   if (impl_->moments > impl_->frames) text += " of " + std::to_string(impl_->moments) + " moments";
   if (impl_->strands) {
     const Groom& groom = impl_->strands->last();
-    text += " of " + std::to_string(groom.strandCount()) + " strands with " + std::to_string(groom.points.size()) +
-            " points" + impl_->note;
+    text += " of " + countOf(groom.strandCount(), "strand") + " with " + countOf(groom.points.size(), "point") +
+            impl_->note;
     if (impl_->spec.what == ExportWhat::kStrands) text += fewerNote(groom.strandCount(), demo);
   }
+  if (impl_->mesh && impl_->spec.unit != 1) text += ", in metres: glTF has no other unit";
   std::string file = impl_->spec.file;
   if (impl_->writer && impl_->numbered)
-    file = numberedName(file, impl_->spec.first) + " to " + numberedName(file, impl_->last_frame);
+    file = numberedName(file, impl_->first_frame) + " to " + numberedName(file, impl_->last_frame);
   return text + ", written to " + file + wornNote(demo) + "\n";
 }
 

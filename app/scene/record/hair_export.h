@@ -38,8 +38,9 @@ class StrandExport {
 // One export of a run: opened before its first frame, so that what cannot be written is known then.
 class HairExport {
  public:
-  // fps: frames of the run a second. frames: of the run; the largest number: until it is stopped. Throws OutputError.
-  HairExport(const ExportSpec& spec, const Demo& demo, double fps, int frames);
+  // fps: frames of the run a second. The run has frames `begin` to `end` - 1; the largest number: until it is stopped.
+  // Throws OutputError.
+  HairExport(const ExportSpec& spec, const Demo& demo, double fps, int begin, int end);
   ~HairExport();
 
   // Takes what the demo shows now as a moment of frame `frame`. Throws OutputError.

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "app/files/errors.h"
+#include "app/files/report_line.h"
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
 #include "sim/mesh/field_bytes.h"
@@ -166,7 +167,7 @@ std::string SimCacheWriter::finish(const Demo& demo) {
   sim::writeBytes(std::uint64_t{index_.size()}, head);
   out_.overwrite(static_cast<long>(kHeadAt), charactersOf(head));
   out_.commit();
-  return std::to_string(index_.size()) + " frames cached in " + name_ + ", " + std::to_string((written_ + 512) / 1024) +
+  return countOf(index_.size(), "frame") + " cached in " + name_ + ", " + std::to_string((written_ + 512) / 1024) +
          " KB\n";
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "app/files/errors.h"
+#include "app/files/report_line.h"
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
 
@@ -128,7 +129,7 @@ void followRange(Demo& demo) {
     for (int k = 0; k < kBakedFrames && demo.timeline.now < demo.timeline.out; ++k) advanceFrame(demo, 1 / fps, {});
     demo.timeline.baking = demo.timeline.now < demo.timeline.out;
     if (demo.timeline.baking) return;
-    demo.message = "baked " + std::to_string(demo.timeline.out - demo.timeline.in) + " frames";
+    demo.message = "baked " + countOf(demo.timeline.out - demo.timeline.in, "frame");
     demo.message_is_fault = false;
     demo.paused = true;
     return rewindTo(demo.timeline.in, demo);

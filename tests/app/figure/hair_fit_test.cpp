@@ -10,7 +10,9 @@
 #include "app/files/data_path.h"
 #include "app/files/hair_file.h"
 #include "app/files/output_file.h"
+#include "app/groom/groom_writer.h"
 #include "app/scene/hair_from_file.h"
+#include "tests/app/groom/combed_groom.h"
 #include "tests/app/groom/strip_samples.h"
 #include "tests/run_program.h"
 
@@ -186,6 +188,25 @@ TEST(HairFit, StripsAwayFromTheHeadAreBroughtToItWithEitherAxisUp) {
     }
     EXPECT_GT(fall / shape.columnCount(), 0.1);
   }
+}
+
+// What a USD file says of its unit holds; that its hair looks like another is said with the option that says so.
+TEST(HairFit, ADoubtedUnitOfAGroomIsSaid) {
+  std::filesystem::create_directories(HAIRMESH_TEST_OUT);
+  const std::string file = std::string(HAIRMESH_TEST_OUT) + "/false_unit.usda";
+  app::Groom groom = combed::combedGroom(300, 5);
+  combed::moveAll(groom, Eigen::Matrix3f::Identity(), 100, Eigen::Vector3f::Zero());
+  app::writeGroom(groom, file);
+  app::CharacterSpec spec;
+  spec.hair = file;
+  app::Haircut haircut;
+  app::hairFromFile(spec, figure(), haircut);
+  EXPECT_NE(haircut.note.find("fits cm; the file tells 1 m a unit (--mends \"--unit cm\")"), std::string::npos)
+      << haircut.note;
+  spec.mends = "--unit cm";
+  app::Haircut mended;
+  app::hairFromFile(spec, figure(), mended);
+  EXPECT_EQ(mended.note.find("the file tells"), std::string::npos) << mended.note;
 }
 
 }  // namespace hair_fit_test

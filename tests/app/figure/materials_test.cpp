@@ -45,7 +45,8 @@ struct Ball {
 };
 
 // Writes a figure of two balls, hips and head; the head's material shows `picture`. Returns the file's name.
-std::string writeFigure(const std::string& name, const std::string& materials) {
+std::string writeFigure(const std::string& name, const std::string& materials, const std::string& head = "Head",
+                        const std::string& neck = "") {
   fs::create_directories(kFolder);
   const Ball ball;
   std::ofstream bin(kFolder / "a ball.bin", std::ios::binary);
@@ -64,7 +65,9 @@ std::string writeFigure(const std::string& name, const std::string& materials) {
   std::ofstream(kFolder / name)
       << R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[)"
       << R"({"name":"Hips","mesh":0,"translation":[0,0.8,0],"scale":[0.2,0.7,0.15],"children":[1]},)"
-      << R"({"name":"Head","mesh":1,"translation":[0,1.1,0],"scale":[0.5,0.16,0.7]}],)"
+      << (neck.empty() ? "" : R"({"name":")" + neck + R"(","translation":[0,0.9,0],"children":[2]},)") << R"({"name":")"
+      << head << R"(","mesh":1,"translation":[0,)" << (neck.empty() ? "1.1" : "0.2")
+      << R"(,0],"scale":[0.5,0.16,0.7]}],)"
       << R"("meshes":[)" << mesh(0) << "," << mesh(1) << "]," << materials << R"(,"buffers":[{"uri":"a%20ball.bin",)"
       << R"("byteLength":)" << second + ball.indices.size() * 2 << R"(}],"bufferViews":[)"
       << R"({"buffer":0,"byteOffset":0,"byteLength":)" << positions << R"(},{"buffer":0,"byteOffset":)" << first
@@ -93,6 +96,17 @@ bool says(const app::Character& character, const std::string& words) {
     if (note.find(words) != std::string::npos) return true;
   }
   return false;
+}
+
+// Whatever the joint above the neck is called, it carries the head.
+TEST(Materials, TheHeadIsTheJointAboveTheNeck) {
+  const std::string materials = twoMaterials("nowhere.png");
+  for (const char* neck : {"neck", "nacken"}) {
+    for (const char* head : {"kopf", "j3", "Head"}) {
+      const app::Character figure = app::loadCharacter(writeFigure("neck.gltf", materials, head, neck));
+      EXPECT_TRUE(says(figure, "head: joint '" + std::string(head) + "'")) << neck << " " << head;
+    }
+  }
 }
 
 TEST(Materials, ColourAndPictureComeWithTheFigure) {

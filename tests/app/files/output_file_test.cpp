@@ -130,6 +130,22 @@ TEST(OutputFile, AFullDiskEndsARunAndTheFramesOnItAreWhole) {
   EXPECT_EQ(nlohmann::json::parse(readAll(report))["frames"].size(), names.size() + 1);
 }
 
+TEST(OutputFile, TwoWritersOfOneNameAreTold) {
+  const std::string file = test::freshFolder("two_writers") + "/a.json";
+  app::OutputFile one(file);
+  app::OutputFile other(file);
+  one.write("1");
+  one.commit();
+  try {
+    other.commit();
+    ADD_FAILURE() << "the first is lost without a word";
+  } catch (const app::OutputError& error) {
+    EXPECT_NE(std::string(error.what()).find("written by another run at the same time; give every run a name"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(OutputFile, APictureThatDoesNotFitLeavesNothingAndEndsTheRun) {
   const std::string out = test::freshFolder("picture_limit");
   const test::Outcome outcome = test::runProgram(with(kPictures, {"--out", out}), filesUpTo(8));
@@ -169,7 +185,7 @@ struct Child {
 };
 
 TEST(OutputFile, AnInterruptedRunWritesItsReportAndAWholeRecording) {
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     const std::string folder = test::freshFolder("interrupted"), report = folder + "/r.json", tape = folder + "/r.hmr";
     Child run({"--no-images", "--frames", "1000000", "--report", report, "--record", tape, "--style", "short",
                "--resolution", "low"});

@@ -9,75 +9,22 @@
 #include <map>
 #include <numbers>
 
-#include "app/groom/convert.h"
 #include "app/groom/groom_file.h"
 #include "app/groom/groom_writer.h"
 #include "app/groom/inspect/certain_mends.h"
-#include "tests/analytic_head.h"
+#include "tests/app/groom/combed_groom.h"
 #include "tests/app/groom/groom_samples.h"
 #include "tests/run_program.h"
 
 namespace groom_inspect_test {
 
-using Eigen::Vector3f;
-
-app::HeadModel head() {
-  return {[](const Vector3f& p) { return static_cast<float>(tests::bodyDistance(p.cast<double>())); },
-          Vector3f(0, 0.022f, -0.012f)};
-}
-
-struct Random {
-  std::mt19937 engine;
-  float unit() { return static_cast<float>(engine() >> 8) * 0x1p-24f; }
-  float between(float low, float high) { return low + (high - low) * unit(); }
-};
-
-// Hair of 8 points a strand on the analytic head: rooted over the skull above the ears but for the face, combed down
-// over it.
-app::Groom combedGroom(std::size_t strands, std::uint32_t seed) {
-  Random random{std::mt19937(seed)};
-  const float length = random.between(0.12f, 0.35f);
-  const app::HeadModel model = head();
-  app::Groom groom;
-  while (groom.strandCount() < strands) {
-    const float azimuth = random.between(-3.14159f, 3.14159f), height = random.between(-0.15f, 1);
-    const float level = std::sqrt(1 - height * height);
-    const Vector3f direction(level * std::sin(azimuth), height, level * std::cos(azimuth));
-    if (direction.z() > 0.35f && direction.y() < 0.75f) continue;  // the face
-    Vector3f at = model.center;
-    for (float out = 0; model.distance(at) < 0.0005f && out < 0.3f; out += 0.0005f) at = model.center + out * direction;
-    Vector3f heading = direction;
-    for (int p = 0; p < 8; ++p) {
-      groom.points.push_back(at);
-      groom.widths.push_back(1e-4f * (1 - 0.05f * static_cast<float>(p)));
-      heading = (heading + Vector3f(0, -0.9f, 0)).normalized();
-      at += length * random.between(0.9f, 1.1f) / 7 * heading;
-      for (int round = 0; round < 8; ++round) {
-        const float here = model.distance(at);
-        if (here > 0.004f) break;
-        Vector3f slope;
-        for (int axis = 0; axis < 3; ++axis) slope[axis] = model.distance(at + 1e-3f * Vector3f::Unit(axis)) - here;
-        at += (0.005f - here) * slope.normalized();
-      }
-    }
-    groom.strand_first.push_back(static_cast<std::uint32_t>(groom.points.size()));
-  }
-  return groom;
-}
-
-void moveAll(app::Groom& groom, const Eigen::Matrix3f& turn, float scale, const Vector3f& shift) {
-  for (Vector3f& point : groom.points) point = scale * (turn * point) + shift;
-}
+using namespace combed;
 
 // One defect: what the inspector is to name, and how it is planted.
 struct Defect {
   const char* what;
   void (*plant)(Random&, app::Groom&);
 };
-
-Eigen::Matrix3f turnOf(const char* up) {
-  return app::axesOfUp(up)->transpose();
-}
 
 std::span<Vector3f> pick(Random& random, app::Groom& groom) {
   const std::size_t s = random.engine() % groom.strandCount();
@@ -157,12 +104,6 @@ app::GroomInspection inspected(const app::Groom& groom, const std::string& file)
   return app::inspectGroom(read, hints, &model);
 }
 
-std::string namesOf(const app::GroomInspection& inspection) {
-  std::string names;
-  for (const app::GroomFinding& finding : inspection.findings) names += finding.what + ": " + finding.text + "; ";
-  return names;
-}
-
 const std::vector<std::string> kFormats{"abc", "usda", "hair", "ply", "tfx"};
 
 TEST(GroomInspect, SaysNothingOfAGroomThatFits) {
@@ -226,6 +167,93 @@ TEST(GroomInspect, NamesEveryOfTwoHundredAndSeventyFiveSeededDefects) {
   for (const auto& [what, count] : planted) all += count;
   EXPECT_GE(all, 200);
   EXPECT_EQ(named, planted);
+}
+
+// What a file tells of its axis is taken, and what its hair says otherwise is named.
+TEST(GroomInspect, ADeclaredAxisIsTakenAndAWrongOneNamed) {
+  const app::HeadModel model = head();
+  const app::Groom clean = combedGroom(300, 7);
+  for (const bool z_up : {false, true}) {
+    app::Groom groom = clean;
+    if (z_up) moveAll(groom, turnOf("z"), 1, Vector3f::Zero());
+    for (const char declared : {'Y', 'Z'}) {
+      app::GroomHints hints;
+      hints.up = declared;
+      const bool right = z_up == (declared == 'Z');
+      const app::GroomInspection inspection = app::inspectGroom(groom, hints, &model);
+      EXPECT_EQ(inspection.mends.axes, app::toldAxes(hints));
+      ASSERT_EQ(inspection.find("up") == nullptr, right) << namesOf(inspection);
+      if (!right) {
+        EXPECT_EQ(inspection.find("up")->mend, z_up ? "--up z" : "--up y");
+        EXPECT_TRUE(inspection.find("up")->fault);
+        EXPECT_FALSE(inspection.find("up")->certain);
+        EXPECT_EQ(test::lacking(inspection.find("up")->text, declared == 'Z' ? "tells z" : "tells y"), "");
+        continue;
+      }
+      EXPECT_EQ(namesOf(inspection), "");
+      for (const char* wishes : {"", "--no-guess"}) {
+        app::Groom mended = groom;
+        app::mendCertain(hints, &model, wishes, mended);
+        EXPECT_LT((mended.points.back() - clean.points.back()).norm(), 1e-6f) << declared << wishes;
+      }
+      app::Groom turned = groom;
+      app::mendCertain(hints, nullptr, "--no-guess --up x", turned);
+      EXPECT_EQ(turned.points.back(), Vector3f(*app::axesOfUp("x") * groom.points.back())) << "a wish overrules it";
+    }
+  }
+}
+
+// A beard on the lower front of a ball of 9.2 cm, fur all over it, fur of a flat piece of 20 cm: y up, metres.
+app::Groom otherHair(int kind) {
+  Random random{std::mt19937(static_cast<std::uint32_t>(kind))};
+  app::Groom groom;
+  while (groom.strandCount() < 1500) {
+    const Vector3f way = Vector3f(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)).normalized();
+    if (kind == 0 && !(way.y() < -0.1f && way.z() > 0.2f)) continue;
+    const Vector3f flat(random.between(-0.1f, 0.1f), 0, random.between(-0.1f, 0.1f));
+    const Vector3f root = kind == 2 ? flat : Vector3f(0.092f * way);
+    const Vector3f out = kind == 2 ? Vector3f(0.3f, 1, 0.5f) : way;
+    for (int p = 0; p < 6; ++p) {
+      const auto along = static_cast<float>(p);
+      groom.points.push_back(root + 0.004f * along * out + Vector3f(0, -0.002f * along * along, 0));
+    }
+    groom.strand_first.push_back(static_cast<std::uint32_t>(groom.points.size()));
+  }
+  return groom;
+}
+
+TEST(GroomInspect, HairOfNoScalpIsNotTurnedOrScaled) {
+  const app::HeadModel model = head();
+  for (int kind = 0; kind < 3; ++kind) {
+    for (const char* up : {"", "y", "z"}) {
+      app::GroomHints hints;
+      app::Groom groom = otherHair(kind);
+      if (*up == 'z') moveAll(groom, turnOf("z"), 1, Vector3f::Zero());
+      if (*up != 0) hints.up = *up == 'z' ? 'Z' : 'Y', hints.meters_per_unit = 0.01;
+      if (*up != 0) moveAll(groom, Eigen::Matrix3f::Identity(), 100, Vector3f::Zero());
+      const app::GroomInspection inspection = app::inspectGroom(groom, hints, &model);
+      EXPECT_EQ(inspection.mends.axes, app::toldAxes(hints)) << kind << up << namesOf(inspection);
+      EXPECT_EQ(inspection.mends.unit, hints.meters_per_unit.value_or(1)) << kind << up << namesOf(inspection);
+      for (const char* what : {"unit", "up", "facing", "reversed"}) {
+        const app::GroomFinding* const finding = inspection.find(what);
+        EXPECT_TRUE(!finding || !(finding->certain || finding->fault)) << kind << up << namesOf(inspection);
+      }
+    }
+  }
+}
+
+// Hair that contradicts the unit that its file tells is named, and the unit stays.
+TEST(GroomInspect, AUnitThatTheFileTellsHoldsUntilItIsOverruled) {
+  const app::HeadModel model = head();
+  app::GroomHints hints;
+  hints.meters_per_unit = 1;
+  app::Groom groom = combedGroom(300, 5);
+  moveAll(groom, Eigen::Matrix3f::Identity(), 100, Vector3f::Zero());
+  const app::GroomInspection inspection = app::inspectGroom(groom, hints, &model);
+  ASSERT_TRUE(inspection.find("unit"));
+  EXPECT_EQ(inspection.find("unit")->mend, "--unit cm");
+  EXPECT_TRUE(inspection.find("unit")->fault && !inspection.find("unit")->certain);
+  EXPECT_EQ(inspection.mends.unit, 1);
 }
 
 // What is certain is mended: then nothing more is said, and strands lie where they lay.
@@ -368,97 +396,27 @@ TEST(GroomInspect, TheProgramMendsWhatIsCertain) {
   EXPECT_EQ(run(in + " --out " + test::shellQuoted(folder + "/none/a.abc")), 1);
   EXPECT_EQ(run(in + " --out a.xyz"), 2);
   EXPECT_EQ(test::lacking(test::readAll(folder + "/err"), "--out cannot be 'a.xyz'; name it .abc, .usda"), "");
+  EXPECT_EQ(run(in + " --move 1,2"), 2);
+  EXPECT_EQ(test::lacking(test::readAll(folder + "/err"), "--move needs 3 values; write --move X,Y,Z"), "");
   EXPECT_EQ(run(in + " --unti cm"), 2);
   EXPECT_EQ(test::lacking(test::readAll(folder + "/err"), "no option '--unti'; did you mean '--unit'?"), "");
 }
 
-TEST(CertainMends, BringAGroomBackBeforeItBecomesAHairMesh) {
-  for (std::uint32_t seed = 1; seed <= 4; ++seed) {
-    const app::Groom clean = combedGroom(300, seed);
-    app::Groom groom = clean;
-    moveAll(groom, turnOf("z"), 100, Vector3f::Zero());
-    for (std::size_t s = 0; s < groom.strandCount(); ++s)
-      std::reverse(groom.points.begin() + groom.strand_first[s], groom.points.begin() + groom.strand_first[s + 1]);
-    const app::HeadModel model = head();
-    const app::MendReport report = app::mendCertain({}, &model, "", groom);
-    EXPECT_TRUE(report.unit_known);
-    EXPECT_GE(report.findings.size(), 3u);
-    for (const app::MendedFinding& one : report.findings) EXPECT_TRUE(one.done) << one.finding.what;
-    EXPECT_EQ(test::lacking(app::mendText(report), "mended        unit: "), "");
-    ASSERT_EQ(groom.points.size(), clean.points.size());
-    float far = 0;
-    for (std::size_t p = 0; p < groom.points.size(); ++p)
-      far = std::max(far, (groom.points[p] - clean.points[p]).norm());
-    EXPECT_LT(far, 1e-4f) << seed;
+// Few strands are exported as wide as they are drawn.
+TEST(GroomInspect, WidthsOfAnExportOfFewStrandsAreNoFault) {
+  const app::HeadModel model = head();
+  app::GroomHints hints;
+  hints.meters_per_unit = 1;
+  app::Groom groom = combedGroom(47, 5);
+  for (float& width : groom.widths) width = 6.69e-3f;
+  for (const int heads : {0, 1}) {
+    hints.world_heads = heads;
+    const app::GroomInspection inspection = app::inspectGroom(groom, hints, &model);
+    ASSERT_TRUE(inspection.find("widths"));
+    EXPECT_EQ(inspection.find("widths")->fault, heads == 0);
+    EXPECT_EQ(inspection.find("widths")->certain, heads == 0);
+    EXPECT_EQ(inspection.mends.width_scale == 1, heads == 1);
   }
-}
-
-TEST(CertainMends, AreOverruledByWishes) {
-  app::Groom groom = combedGroom(300, 5);
-  const std::vector<Vector3f> clean = groom.points;
-  moveAll(groom, turnOf("z"), 100, Vector3f::Zero());
-  const app::Groom given = groom;
-  const app::HeadModel model = head();
-  EXPECT_FALSE(app::mendCertain({}, &model, "--no-guess", groom).unit_known);
-  EXPECT_EQ(groom.points, given.points) << "nothing was asked for";
-  const app::MendReport report = app::mendCertain({}, &model, "--no-guess --unit cm --up z", groom);
-  EXPECT_TRUE(report.unit_known);
-  EXPECT_LT((groom.points.back() - clean.back()).norm(), 1e-4f);
-  app::ConvertOptions options;
-  options.unit = 1, options.file_unit = report.unit;
-  EXPECT_EQ(app::convertGroom(groom, {}, options, "").unit, "units of 0.01 m") << "the file's unit is told";
-  app::GroomMends mends;
-  for (const char* wrong : {"--unit parsec", "--up", "up z", "--points 1", "--move 1,2", "--width -1"})
-    EXPECT_EQ(test::lacking(app::readMends(wrong, mends), "is no mend; "), "") << wrong;
-  EXPECT_EQ(app::readMends("--move 0,0.1,-0.2  --push-out --drop-far 0.03 --turn 90", mends), "");
-  EXPECT_TRUE(mends.push_out);
-  EXPECT_EQ(mends.move, Vector3f(0, 0.1f, -0.2f));
-}
-
-// Strands of 12 cm that stand off the head in a strip from brow to nape, or hang from the chin.
-app::Groom strip(bool beard) {
-  const app::HeadModel model = head();
-  Random random{std::mt19937(3)};
-  app::Groom groom;
-  for (int s = 0; s < 400; ++s) {
-    const float around = beard ? random.between(-0.9f, 0.9f) : random.between(-0.12f, 0.12f);
-    const float over = beard ? random.between(-0.9f, -0.5f) : random.between(0.5f, 2.6f);
-    const Vector3f direction =
-        beard ? Vector3f(std::sin(around) * std::cos(over), std::sin(over), std::cos(around) * std::cos(over))
-              : Vector3f(around, std::sin(over), std::cos(over)).normalized();
-    Vector3f at = model.center;
-    for (float out = 0; model.distance(at) < 0.0005f && out < 0.3f; out += 0.0005f) at = model.center + out * direction;
-    const Vector3f way = beard ? Vector3f(0.3f * direction + Vector3f(0, -1, 0)).normalized() : direction;
-    for (int p = 0; p < 8; ++p) groom.points.push_back(at + 0.12f * static_cast<float>(p) / 7 * way);
-    groom.strand_first.push_back(static_cast<std::uint32_t>(groom.points.size()));
-  }
-  return groom;
-}
-
-TEST(CertainMends, LeaveAMohawkUprightAndABeardOnTheChin) {
-  const app::HeadModel model = head();
-  for (const bool beard : {false, true}) {
-    const app::Groom clean = strip(beard);
-    app::Groom groom = clean;
-    const app::MendReport report = app::mendCertain({}, &model, "", groom);
-    EXPECT_TRUE(report.on_head) << app::mendText(report);
-    ASSERT_EQ(groom.points.size(), clean.points.size());
-    float far = 0;
-    for (std::size_t p = 0; p < groom.points.size(); ++p)
-      far = std::max(far, (groom.points[p] - clean.points[p]).norm());
-    EXPECT_LT(far, 0.02f) << (beard ? "beard: " : "mohawk: ") << app::mendText(report);
-  }
-}
-
-// The place is sought for the axes that were given.
-TEST(CertainMends, PlaceTheHairForTheAxesThatWereGiven) {
-  const app::HeadModel model = head();
-  const app::Groom clean = combedGroom(300, 5);
-  app::Groom groom = clean;
-  moveAll(groom, turnOf("z"), 1, Vector3f(0, 0, 0.4f));
-  const app::MendReport report = app::mendCertain({}, &model, "--up z", groom);
-  EXPECT_TRUE(report.on_head) << app::mendText(report);
-  EXPECT_LT((groom.points[0] - clean.points[0]).norm(), 0.02f) << app::mendText(report);
 }
 
 TEST(GroomInspect, SaysThatAHandfulOfStrandsIsTooFew) {

@@ -45,7 +45,7 @@ void expectTheSame(const std::vector<app::Groom>& clip, const app::ClipSettings&
 }
 
 TEST(Usda, AClipComesBackInTheSameBitsByBothReaders) {
-  expectTheSame(swaying(test::sampleGroom(40, 41), 5), {30, 0.5, {0}, 1});
+  expectTheSame(swaying(test::sampleGroom(40, 41), 5), {30, 15, {0}, 1, 0, 3});
   expectTheSame(swaying(test::sampleGroom(7, 42), 12), {24, 0, {-0.01, 0, 0.01}, 0.01});
   expectTheSame({test::sampleGroom(20, 43)}, {});
 }
@@ -132,6 +132,33 @@ TEST(Usda, WhatOtherProgramsWriteIsRead) {
   EXPECT_EQ(groom.groups, (std::vector<std::int32_t>{0, 0, 1}));
   EXPECT_EQ(app::readUsda(kForeign, "hand.usda", 1).points[5], Eigen::Vector3f(4, 0, 10));
   EXPECT_EQ(app::usdaTimes(kForeign, "hand.usda"), (std::vector<double>{1.0 / 24, 2.5 / 24}));
+}
+
+TEST(Usda, CurvesThatTheFileHidesAreLeftOut) {
+  const auto curves = [](const std::string& name, const std::string& hidden) {
+    return "def BasisCurves \"" + name + "\" { " + hidden +
+           " uniform token type = \"linear\"\n int[] curveVertexCounts = [2]\n"
+           " point3f[] points = [(0,0,0),(1,0,0)] }\n";
+  };
+  const std::string invisible = "token visibility = \"invisible\"\n", guide = "uniform token purpose = \"guide\"\n";
+  const std::string text = "#usda 1.0\n" + curves("seen", "token visibility = \"inherited\"\n") +
+                           curves("unseen", invisible) + curves("guide", guide) +
+                           curves("proxy", "uniform token purpose = \"proxy\"\n") + "def Xform \"a\" { " + invisible +
+                           curves("below", "") + "}\ndef Xform \"b\" { " + guide + curves("low", "") +
+                           curves("render", "uniform token purpose = \"render\"\n") + "}\n";
+  app::GroomHints hints;
+  EXPECT_EQ(app::readGroom(text, "hidden.usda", &hints).strandCount(), 2u);
+  EXPECT_EQ(hints.hidden, 5);
+  const app::GroomInspection inspection = app::inspectGroom(app::readGroom(text, ""), hints, nullptr);
+  ASSERT_TRUE(inspection.find("hidden"));
+  EXPECT_EQ(test::lacking(inspection.find("hidden")->text, "5 objects of curves that the file does not show"), "");
+  EXPECT_FALSE(inspection.find("hidden")->fault);
+  try {
+    app::readGroom("#usda 1.0\n" + curves("unseen", invisible), "none.usda");
+    ADD_FAILURE() << "nothing is left to read";
+  } catch (const app::InputError& error) {
+    EXPECT_EQ(test::lacking(error.what(), "all its BasisCurves are invisible"), "");
+  }
 }
 
 TEST(Usda, FaultsNameTheirLine) {

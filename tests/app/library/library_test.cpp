@@ -123,6 +123,11 @@ TEST(Library, ABuiltInStyleStandsOnThePlainHead) {
   hm_mesh mesh{};
   EXPECT_EQ(hm_mesh_create_style("mohawk", "low", 0.23, &mesh), HM_ERROR_ARGUMENT);
   EXPECT_NE(std::string(hm_error_message()).find("short, shoulder, long"), std::string::npos) << hm_error_message();
+  EXPECT_NE(std::string(hm_error_message()).find("'mohawk' is not built in; choose one of short"), std::string::npos);
+  EXPECT_EQ(hm_mesh_create_style("shrt", "low", 0.23, &mesh), HM_ERROR_ARGUMENT);
+  EXPECT_NE(std::string(hm_error_message()).find("'shrt' is not built in; did you mean 'short'? Choose one of short, "),
+            std::string::npos)
+      << hm_error_message();
   EXPECT_EQ(hm_mesh_create_style("short", "8k", 0.23, &mesh), HM_ERROR_ARGUMENT);
   EXPECT_EQ(hm_mesh_create_style("short", "low", NAN, &mesh), HM_ERROR_ARGUMENT);
   EXPECT_EQ(hm_mesh_create_style(nullptr, "low", 0.23, &mesh), HM_ERROR_ARGUMENT);

@@ -93,6 +93,49 @@ TEST(HairExport, FramesAreChosenAndNumbered) {
     EXPECT_EQ(app::readAlembic(some, "", n).points, app::readAlembic(all, "", 2 * n + 1).points);
 }
 
+// A run in two parts has the numbers, the times and the strands of one.
+TEST(HairExport, ARunThatGoesOnNumbersItsFramesOn) {
+  const std::string folder = test::freshFolder("hair_export_resumed"), state = folder + "/state";
+  EXPECT_EQ(exported(folder + "/one.usda", {"--export-frames", "4-5"}).exit_code, 0);
+  EXPECT_EQ(exported(folder + "/half.hair", {"--save-state", state}, 4).exit_code, 0);
+  for (const char* ending : {"hair", "usda", "abc", "glb"}) {
+    const test::Outcome outcome =
+        exported(folder + "/half." + ending, {"--load-state", state, "--report", folder + "/report.json"}, 2);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  }
+  for (int frame = 0; frame < 6; ++frame)
+    EXPECT_TRUE(fs::exists(folder + "/half_000" + std::to_string(frame) + ".hair")) << frame;
+  const std::string text = test::readAll(folder + "/half.usda"), one = test::readAll(folder + "/one.usda");
+  EXPECT_EQ(test::lacking(text.substr(0, 400), "startTimeCode = 4\n    endTimeCode = 5"), "");
+  EXPECT_EQ(app::readUsda(text, "", 1).points, app::readUsda(one, "", 1).points);
+  EXPECT_NEAR(app::alembicTimes(test::readAll(folder + "/half.abc"), "")[1], 5.0 / 60, 1e-9);
+  EXPECT_EQ(test::lacking(test::readAll(folder + "/report.json"), "\"frame\": 4"), "");
+  EXPECT_EQ(test::lacking(test::readAll(folder + "/half.glb"), "\"min\":[0.0666666"), "");
+  const std::vector<std::string> second{"--load-state", state, "--export-frames", "5"};
+  EXPECT_EQ(exported(folder + "/five.ply", second, 2).exit_code, 0);
+  EXPECT_EQ(app::readGroom(folder + "/five.ply").points, app::readUsda(one, "", 1).points);
+  EXPECT_EQ(test::lacking(exported(folder + "/six.ply", second, 1).err, "the run's 1 frame, 4 to 4"), "");
+}
+
+// Times are those of the frames' numbers at the run's rate, in every format.
+TEST(HairExport, FramesThatAreLeftOutLeaveTheTimesOfTheOthers) {
+  const std::string folder = test::freshFolder("hair_export_every");
+  for (const char* ending : {"usda", "abc", "glb"})
+    EXPECT_EQ(exported(folder + "/e." + ending, {"--export-frames", "2-8", "--export-every", "3"}, 9).exit_code, 0);
+  const std::string text = test::readAll(folder + "/e.usda"), mesh = test::readAll(folder + "/e.glb");
+  EXPECT_EQ(test::lacking(text.substr(0, 400), "timeCodesPerSecond = 60"), "");
+  EXPECT_EQ(test::lacking(text.substr(0, 400), "startTimeCode = 2\n    endTimeCode = 8"), "");
+  EXPECT_NE(text.find("\n            5: ["), std::string::npos);
+  EXPECT_EQ(test::lacking(mesh, "\"max\":[0.1333333"), "");
+  EXPECT_EQ(test::lacking(mesh, "\"min\":[0.0333333"), "");
+  const std::vector<double> times = app::alembicTimes(test::readAll(folder + "/e.abc"), "");
+  ASSERT_EQ(times.size(), 3u);
+  for (std::size_t n = 0; n < 3; ++n) {
+    EXPECT_NEAR(times[n], (2.0 + 3.0 * static_cast<double>(n)) / 60, 1e-9);
+    EXPECT_NEAR(app::usdaTimes(text, "")[n], times[n], 1e-12);
+  }
+}
+
 TEST(HairExport, MotionBlurSamplesLieBetweenTheFrames) {
   const std::string folder = test::freshFolder("hair_export_blur");
   EXPECT_EQ(exported(folder + "/blur.abc", {"--export-samples", "3", "--export-shutter", "0.5"}, 4).exit_code, 0);
@@ -156,6 +199,16 @@ TEST(HairExport, TheCageIsAMeshWithMorphTargets) {
   }
 }
 
+// glTF has no unit but the metre.
+TEST(HairExport, TheMeshOfAGlbIsInMetres) {
+  const std::string folder = test::freshFolder("hair_export_glb_unit");
+  EXPECT_EQ(exported(folder + "/m.glb", {}, 1).exit_code, 0);
+  const test::Outcome outcome = exported(folder + "/cm.glb", {"--export-unit", "cm"}, 1);
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(test::lacking(outcome.out, "1 frame, in metres: glTF has no other unit, written to"), "");
+  EXPECT_EQ(test::readAll(folder + "/m.glb"), test::readAll(folder + "/cm.glb"));
+}
+
 TEST(HairExport, AFullDiskLeavesNothingHalfWritten) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
   const std::string folder = test::freshFolder("hair_export_full");
@@ -183,7 +236,8 @@ TEST(HairExport, WhatCannotBeAskedForIsNamed) {
   EXPECT_EQ(test::lacking(fault({"--export", "a.ply", "--export-samples", "3"}), "takes a clip"), "");
   EXPECT_EQ(test::lacking(fault({"--export", "a.tfx", "--export-points", "10"}), "give 4, 8, 16, 32 or 64"), "");
   EXPECT_EQ(test::lacking(fault({"--export", "a.abc", "--export-frames", "9-3"}), "FIRST-LAST"), "");
-  EXPECT_EQ(test::lacking(fault({"--frames", "3", "--export", "a.abc", "--export-frames", "1-9"}), "frames, 0 to 2"),
+  EXPECT_EQ(test::lacking(fault({"--frames", "3", "--export", "a.abc", "--export-frames", "1-9"}),
+                          "the run's 3 frames, 0 to 2"),
             "");
   EXPECT_EQ(test::lacking(fault({"--export", "a.abc", "--record", "a.abc"}), "name two"), "");
 }

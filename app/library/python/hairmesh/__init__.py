@@ -13,6 +13,7 @@ by side. What cannot be done raises hairmesh.Error with the fault and the mend.
 
 import ctypes
 import math
+import operator
 
 try:
     import numpy as np
@@ -56,7 +57,48 @@ def parameters():
 
 def pose(position=(0, 0, 0), rotation=(0, 0, 0, 1)):
     """A rigid placement: position in m, rotation as a unit quaternion x, y, z, w."""
-    return _c.Pose((ctypes.c_double * 3)(*position), (ctypes.c_double * 4)(*rotation))
+    return _c.Pose(_numbers(position, 3, "position"), _numbers(rotation, 4, "rotation"))
+
+
+def _numbers(values, count, name):
+    """`count` numbers for the library; ctypes would fill up what is missing with 0."""
+    try:
+        numbers = [float(value) for value in values]
+    except (TypeError, ValueError):
+        numbers = []
+    if len(numbers) != count:
+        raise TypeError(f"{name} is {_shown(values)}; give {count} numbers")
+    return (ctypes.c_double * count)(*numbers)
+
+
+def _whole(value, name):
+    """A whole number for the library; ctypes would cut it down to 32 bits."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} is {_shown(value)}; give a whole number") from None
+    if not -2**31 <= number < 2**31:
+        raise ValueError(f"{name} is {number}, beyond 32 bits")
+    return number
+
+
+def _whole_array(values, name):
+    """Whole numbers for the library, side by side; NumPy would cut them down to 32 bits."""
+    array = np.asarray(values)
+    if array.size == 0:
+        return np.empty(array.shape, np.int32)
+    if array.dtype.kind not in "iu":
+        raise TypeError(f"{name} is {_shown(values)}; give whole numbers")
+    if array.min() < -2**31 or array.max() >= 2**31:
+        raise ValueError(f"{name} has numbers beyond 32 bits")
+    return np.ascontiguousarray(array, dtype=np.int32)
+
+
+def _handle(value, kind, name):
+    """What the library knows `value` by, an object of this package."""
+    if not isinstance(value, kind):
+        raise TypeError(f"{name} is {_shown(value)}; give a hairmesh.{kind.__name__}")
+    return value._c
 
 
 class Ellipsoid:
@@ -64,10 +106,12 @@ class Ellipsoid:
 
     def __init__(self, radii, position=(0, 0, 0), rotation=(0, 0, 0, 1), velocity=(0, 0, 0), angular_velocity=(0, 0, 0),
                  before=None, seconds=None):
-        vector = ctypes.c_double * 3
-        self._c = _c.Ellipsoid(pose(position, rotation), vector(*radii), vector(*velocity), vector(*angular_velocity))
+        self._c = _c.Ellipsoid(pose(position, rotation), _numbers(radii, 3, "radii"), _numbers(velocity, 3, "velocity"),
+                               _numbers(angular_velocity, 3, "angular_velocity"))
         if before is not None:
-            _c.lib.hm_ellipsoid_moved(self._c, before, seconds)
+            if seconds is None:
+                raise TypeError("seconds is missing: how long before the step's end the ellipsoid was at `before`")
+            _c.lib.hm_ellipsoid_moved(self._c, _pose(before, "before"), seconds)
 
 
 def _view(place, owner):
@@ -91,7 +135,7 @@ def _array(values, width, name):
         values = np.empty(0)
     if values.ndim != 2 or values.shape[1] != width:
         raise ValueError(f"{name} is {_shown(given)}; give one of shape (n, {width}) and dtype float32 or float64")
-    if values.strides[1] != values.itemsize or (values.strides[0] < 0):
+    if values.strides[1] != values.itemsize or values.strides[0] <= 0:  # 0 is "side by side" to the library
         values = np.ascontiguousarray(values)
     kind = 1 if values.dtype == np.float32 else 0
     return _c.Array(values.ctypes.data, values.strides[0], len(values), kind), values
@@ -117,25 +161,34 @@ def _pose(value, name):
 
 
 def _pin(value, number):
-    vector = ctypes.c_double * 3
     try:
         vertex, target, velocity, stiffness = value
-        return _c.Pin(int(vertex), vector(*target), vector(*velocity), float(stiffness))
-    except (TypeError, ValueError, IndexError):
+        return _c.Pin(_whole(vertex, "vertex"), _numbers(target, 3, "target"), _numbers(velocity, 3, "velocity"),
+                      float(stiffness))
+    except (TypeError, ValueError):
         raise TypeError(f"pin {number} is {_shown(value)}; give (vertex, target, velocity, stiffness): a whole number, 3 "
                         "numbers in m, 3 in m/s, a number in N/m") from None
 
 
-class Mesh:
+class _Owner:
+    """What owns an object of the library, which ends with it: a second owner would be left with none."""
+
+    def __reduce_ex__(self, protocol):
+        raise TypeError(f"a {type(self).__name__} of hairmesh is neither copied nor pickled; {self._instead}")
+
+
+class Mesh(_Owner):
     """A hair mesh; any number of hairs share one."""
+
+    _instead = "share it, or make another of its rest, column_first and faces"
 
     def __init__(self, positions, column_lengths, faces, reverse_faces=False):
         """positions: (vertices, 3) in m, column after column, root first; faces: (n, 4) columns, the fourth -1 in a
         triangle, counter-clockwise seen from outside."""
         settings = _c.MeshSettings()
         _c.lib.hm_default_mesh_settings(settings)
-        lengths = np.ascontiguousarray(column_lengths, dtype=np.int32)
-        corners = np.ascontiguousarray(faces, dtype=np.int32).reshape(-1, 4)
+        lengths = _whole_array(column_lengths, "column_lengths").reshape(-1)
+        corners = _whole_array(faces, "faces").reshape(-1, 4)
         settings.positions, kept = _array(positions, 3, "positions")
         settings.column_lengths, settings.column_count = lengths.ctypes.data, len(lengths)
         settings.faces, settings.face_count = corners.ctypes.data, len(corners)
@@ -205,8 +258,10 @@ class Mesh:
             _c.lib.hm_mesh_destroy(self._c)
 
 
-class Hair:
+class Hair(_Owner):
     """A hair of a mesh: parameters and state. Keyword arguments set parameters."""
+
+    _instead = "make another of its mesh, and restore() there what save() gives here"
 
     def __init__(self, mesh, head=None, measure_stages=False, gradual=False, **values):
         settings = _c.HairSettings()
@@ -215,7 +270,7 @@ class Hair:
             settings.head = _pose(head, "head")
         settings.measure_stages, settings.gradual = bool(measure_stages), bool(gradual)
         handle = _c.Hair()
-        _c.lib.hm_hair_create(mesh._c, settings, handle)
+        _c.lib.hm_hair_create(_handle(mesh, Mesh, "mesh"), settings, handle)
         self._c, self.mesh, self.time = handle, mesh, 0.0
         view = _c.View()
         _c.lib.hm_hair_positions(handle, view)
@@ -264,7 +319,7 @@ class Hair:
         kept = None
         if roots is not None:
             step.roots, kept = _array(roots, 3, "roots")
-        bodies = (_c.Ellipsoid * len(ellipsoids))(*[one._c for one in ellipsoids])
+        bodies = (_c.Ellipsoid * len(ellipsoids))(*[_handle(one, Ellipsoid, "an ellipsoid") for one in ellipsoids])
         holds = (_c.Pin * len(pins))(*[_pin(pin, number) for number, pin in enumerate(pins)])
         step.ellipsoids, step.ellipsoid_count = ctypes.addressof(bodies), len(ellipsoids)
         step.pins, step.pin_count = ctypes.addressof(holds), len(pins)
@@ -292,7 +347,11 @@ class Hair:
         return buffer.raw
 
     def restore(self, state):
-        """Restores what save() gave for a hair of the same mesh."""
+        """Restores what save() gave for a hair of the same mesh: bytes, or any other buffer."""
+        try:
+            state = bytes(memoryview(state))
+        except TypeError:
+            raise TypeError(f"state is {_shown(state)}; give the bytes that save() gave") from None
         _c.lib.hm_hair_restore(self._c, state, len(state))
 
     def strands(self, numbers=None, points=16, dtype=np.float32):
@@ -304,7 +363,7 @@ class Hair:
         _c.lib.hm_default_strand_settings(settings)
         if numbers is None:
             numbers = np.arange(int(self.get("strands")))
-        numbers = np.ascontiguousarray(numbers, dtype=np.int32)
+        numbers, points = _whole_array(numbers, "numbers").reshape(-1), _whole(points, "points")
         settings.numbers, settings.count, settings.points = numbers.ctypes.data, len(numbers), points
         shape = (len(numbers), points)
         positions, tangents, radii = (np.empty(shape + (3,), dtype), np.empty(shape + (3,), dtype), np.empty(shape, dtype))
@@ -317,5 +376,5 @@ class Hair:
     def strand(self, number):
         """What a strand is: root face, place in it, layers that it reaches, whether it leaves its clump."""
         strand = _c.Strand()
-        _c.lib.hm_hair_describe_strand(self._c, number, strand)
+        _c.lib.hm_hair_describe_strand(self._c, _whole(number, "number"), strand)
         return {"face": strand.face, "place": tuple(strand.place), "end": strand.end, "flyaway": bool(strand.flyaway)}
