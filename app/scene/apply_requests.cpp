@@ -18,6 +18,7 @@
 #include "app/scene/edit/vary.h"
 #include "app/scene/present_scene.h"
 #include "app/scene/project.h"
+#include "app/scene/view/environment_light.h"
 #include "sim/field_text.h"
 
 namespace app {
@@ -160,28 +161,16 @@ void loadState(const Request& request, Demo& demo) {
   showMessage("state " + stem(request.text), demo);
 }
 
+// What opens a file, in the order of FileKind.
+constexpr std::array kOpens{Ask::kSceneFile, Ask::kPresetFile, Ask::kMotionFile,  Ask::kMotionFile, Ask::kHairFile,
+                            Ask::kLoadState, Ask::kOpenCache,  Ask::kOpenProject, Ask::kAttach,     Ask::kEnvironment};
+
 void openAnyFile(const std::string& file, Demo& demo) {
-  const auto post = [&](Ask what, const std::string& name) { demo.requests.push_back({what, name, file}); };
-  switch (fileKind(file)) {
-    case FileKind::kScene:
-      return post(Ask::kSceneFile, "");
-    case FileKind::kPreset:
-      return post(Ask::kPresetFile, "");
-    case FileKind::kMotion:
-      return post(Ask::kMotionFile, "");
-    case FileKind::kRigidMotion:
-      return post(Ask::kMotionFile, partsBeside(file));
-    case FileKind::kHairMesh:
-      return post(Ask::kHairFile, "");
-    case FileKind::kAttachment:
-      return post(Ask::kAttach, "add");
-    case FileKind::kState:
-      return post(Ask::kLoadState, "");
-    case FileKind::kCache:
-      return post(Ask::kOpenCache, "");
-    case FileKind::kProject:
-      return post(Ask::kOpenProject, "");
-  }
+  const FileKind kind = fileKind(file);
+  std::string name;
+  if (kind == FileKind::kRigidMotion) name = partsBeside(file);
+  if (kind == FileKind::kAttachment) name = "add";
+  demo.requests.push_back({kOpens[static_cast<std::size_t>(kind)], name, file});
 }
 
 void setParameter(const Request& request, Demo& demo) {
@@ -331,6 +320,11 @@ void vary(const Request& request, Demo& demo) {
   varyMaterial(amount, static_cast<std::uint64_t>(std::clamp(request.value, 0.0, 1e15)), demo.scene.sim);
 }
 
+void changeEnvironment(const Request& request, Demo& demo) {
+  setEnvironment(request.text, demo.scene);
+  showMessage(request.text.empty() ? "light without a panorama" : "light of " + stem(request.text), demo);
+}
+
 struct Action {
   Ask what;
   void (*apply)(const Request&, Demo&);
@@ -446,6 +440,7 @@ constexpr Action kActions[] = {
     {Ask::kCurve,
      [](const Request& request, Demo& demo) { applyCurve(request.name, request.text, demo.selected, demo); }},
     {Ask::kVary, vary},
+    {Ask::kEnvironment, changeEnvironment},
 };
 
 constexpr bool rowsMatchRequests() {
@@ -457,8 +452,9 @@ constexpr bool rowsMatchRequests() {
 static_assert(rowsMatchRequests());
 
 // Requests whose text is a file that they open or save, once kOpenFile has told its kind.
-constexpr Ask kOfFiles[] = {Ask::kMotionFile, Ask::kHairFile,    Ask::kSceneFile, Ask::kPresetFile, Ask::kLoadState,
-                            Ask::kOpenCache,  Ask::kOpenProject, Ask::kAttach,    Ask::kSaveScene,  Ask::kSaveProject};
+constexpr Ask kOfFiles[] = {Ask::kMotionFile, Ask::kHairFile,    Ask::kSceneFile,   Ask::kPresetFile,
+                            Ask::kLoadState,  Ask::kOpenCache,   Ask::kOpenProject, Ask::kAttach,
+                            Ask::kSaveScene,  Ask::kSaveProject, Ask::kEnvironment};
 
 bool ofFile(Ask what) {
   return std::ranges::find(kOfFiles, what) != std::end(kOfFiles);

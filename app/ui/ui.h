@@ -25,7 +25,7 @@ struct UiItem {
 };
 
 // What the file panel is open for.
-enum class BrowseFor { kNothing, kOpen, kMotion, kParts, kHair, kSaveScene };
+enum class BrowseFor { kNothing, kOpen, kMotion, kParts, kHair, kEnvironment, kWorn, kSaveScene };
 
 struct FileBrowser {
   BrowseFor what = BrowseFor::kNothing;

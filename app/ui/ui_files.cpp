@@ -27,13 +27,15 @@ struct Purpose {
 
 const Purpose& purposeOf(BrowseFor what) {
   static const Purpose kPurposes[] = {
-      {BrowseFor::kOpen, "Open a scene, preset, motion, hair mesh or state", "Open", {}},
+      {BrowseFor::kOpen, "Open a scene, preset, motion, hair, hat, panorama or state", "Open", {}},
       {BrowseFor::kMotion, "Open a motion", "Open", {".bvh", ".glb", ".gltf", ".fbx", ".dae", ".mot"}},
       {BrowseFor::kParts, "Folder of body parts", "Choose", {"/"}},
       {BrowseFor::kHair,
        "Open a hair mesh or a groom",
        "Open",
        {".obj", ".abc", ".usda", ".hair", ".ply", ".tfx", ".fbx", ".glb", ".gltf", ".vrm"}},
+      {BrowseFor::kEnvironment, "Open a panorama that the light is taken from", "Open", {".hdr"}},
+      {BrowseFor::kWorn, "Open a hat, glasses or a collar", "Open", {".obj", ".fbx", ".glb", ".gltf"}},
       {BrowseFor::kSaveScene, "Save the scene: style, motion, hair, camera, look, parameters", "Save", {".json"}}};
   return *std::find_if(std::begin(kPurposes), std::end(kPurposes) - 1,
                        [&](const Purpose& purpose) { return purpose.what == what; });
@@ -151,7 +153,12 @@ void take(const std::string& file, Demo& demo, UiState& ui) {
       postRequest(demo, {Ask::kMotionFile, file, ui.motion_path.data()});
       break;
     case BrowseFor::kHair:
+    case BrowseFor::kEnvironment:
       openFile(file, demo, ui);
+      break;
+    case BrowseFor::kWorn:
+      postRequest(demo, {Ask::kAttach, "add", file});
+      ui.asked.push_back(file);
       break;
     case BrowseFor::kSaveScene:
       postRequest(demo, {browser.project ? Ask::kSaveProject : Ask::kSaveScene, "", file});

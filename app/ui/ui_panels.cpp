@@ -346,10 +346,34 @@ void hairTab(Demo& demo, UiState& ui) {
   }
 }
 
+namespace {
+
+// The panorama that the lights are taken from.
+void environmentRow(Demo& demo, UiState& ui) {
+  const std::string& file = demo.scene.environment;
+  rowLabel("Environment", "A panorama (.hdr) that key, fill, rim, sky and ground light are taken from. " + file);
+  if (ImGui::Button("Open...##environment")) browseFor(BrowseFor::kEnvironment, ui);
+  noteItem("open environment", ui);
+  ImGui::SameLine(0, 5);
+  ImGui::BeginDisabled(file.empty());
+  if (ImGui::Button("None##environment")) postRequest(demo, {Ask::kEnvironment, "", ""});
+  ImGui::EndDisabled();
+  noteItem("no environment", ui);
+  ImGui::SameLine(0, 8);
+  ImGui::TextDisabled("%s", file.empty() ? "none" : readable(stem(file)).c_str());
+  noteItem("environment " + stem(file), ui);
+}
+
+}  // namespace
+
 void lookTab(Demo& demo, UiState& ui) {
   if (section("Colour", true)) hairGroup("Colour", demo, ui);
   if (section("Shine", true)) hairGroup("Shine", demo, ui);
-  if (section("Light", false)) sceneGroup("Light", demo, ui);
+  if (section("Light", false)) {
+    environmentRow(demo, ui);
+    sceneGroup("Light", demo, ui);
+  }
+  noteItem("section Light", ui);
   if (section("Shadows", true)) sceneGroup("Shadows", demo, ui);
   if (section("Picture", false)) sceneGroup("Picture", demo, ui);
   if (section("Body", false)) hairGroup("Body", demo, ui);
