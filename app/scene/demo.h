@@ -57,7 +57,7 @@ struct Demo {
   Deadline deadline;
   sim::SimParams running;  // the scene's parameters as the governor lets them run
   long frames = 0;         // shown since the scene began
-  double shown_time = 0;   // s
+  double shown_time = 0;   // s that were simulated up to what is shown
   bool paused = false;
   int single_steps = 0;  // asked for while paused
 
@@ -71,7 +71,7 @@ struct Demo {
   std::string message;            // the last fault or success, for the window
   bool message_is_fault = false;
   std::pair<Ask, std::string> refused{Ask::kCount, ""};  // and its message, which goes when another such succeeds
-  std::vector<FileEnd> file_ends;  // since the window has last looked
+  std::vector<FileEnd> file_ends;                        // since the window has last looked
   Capture capture;
 
   FrameStats stats;                 // of the last frame
