@@ -1,5 +1,6 @@
 #include "app/figure/attachment.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -222,7 +223,22 @@ void placeAt(const AttachmentSpec& spec, const PolygonMesh& mesh, const Vec3& jo
                                 Eigen::AngleAxisd(kDegree * spec.turn.y(), Vec3::UnitY()) *
                                 Eigen::AngleAxisd(kDegree * spec.turn.x(), Vec3::UnitX()))
                                    .toRotationMatrix();
-  for (Vec3& p : surface.points) p = turn * (scale * p - origin) + spec.at;
+  for (Vec3& p : surface.points) p = spec.size * (turn * (scale * p - origin)) + spec.at;
+}
+
+// Degrees about x, then y, then z, by which points have come to where they are from those of the file.
+Vec3 turnBetween(const ClosedSurface& from, const ClosedSurface& to) {
+  Eigen::Matrix3Xd a(3, from.points.size()), b(3, from.points.size());
+  for (Eigen::Index v = 0; v < a.cols(); ++v) {
+    a.col(v) = from.points[static_cast<std::size_t>(v)];
+    b.col(v) = to.points[static_cast<std::size_t>(v)];
+  }
+  Eigen::Matrix3d turn = Eigen::umeyama(a, b).topLeftCorner<3, 3>();
+  turn /= std::cbrt(turn.determinant());
+  const Vec3 radians(std::atan2(turn(2, 1), turn(2, 2)), -std::asin(std::clamp(turn(2, 0), -1.0, 1.0)),
+                     std::atan2(turn(1, 0), turn(0, 0)));
+  constexpr double kRounded = 1e-3;  // degrees
+  return kRounded * (180 / std::numbers::pi / kRounded * radians).array().round() + 0.0;
 }
 
 // The share of a surface's points that lie inside the head when it is made `times` as large about its joint.
@@ -364,6 +380,7 @@ Attachment loadAttachment(const AttachmentSpec& spec, const Character& character
   upright.translation() = carrier.rest_world.translation();
   Attachment out;
   std::string note;
+  const ClosedSurface of_file = surface;
   placeAt(spec, mesh, scalp.linear().transpose() * carrier.rest_world.translation(), surface, note);
   out.color = colorOf(mesh);
   const Rigid to_joint = carrier.rest_world.inverse(Eigen::Isometry) * upright;
@@ -373,6 +390,10 @@ Attachment loadAttachment(const AttachmentSpec& spec, const Character& character
   const Rigid placed = to_joint * Eigen::Translation3d(spec.at);
   if (of_head && spec.turn.isZero())
     turnUpright(placed, to_joint.linear() * spec.at, out.to_scalp, character.scalp, surface, note);
+  const Rigid from_joint = to_joint.inverse(Eigen::Isometry);
+  ClosedSurface about_joint = surface;
+  for (Vec3& p : about_joint.points) p = from_joint * p;
+  out.turn = turnBetween(of_file, about_joint);
   out.part = distancesOf(surface, joint);
   if (!(out.part.deepest > 0))
     throw InputError(spec.file, "", "is too thin to collide with", "make it at least 3 mm thick");

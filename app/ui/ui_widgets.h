@@ -38,6 +38,10 @@ class MarksBelowDigits {
   int first_;  // vertex of the window's draw list
 };
 
+// A swatch, with its three numbers unless `flags` (of Dear ImGui) leave them out, of a linear colour: shown as pictures
+// have it, by the curve of sRGB. Returns whether it was changed.
+bool colorSwatch(const char* name, std::array<float, 3>& linear, int flags);
+
 // A heading that folds; returns whether it is open.
 bool section(const char* title, bool open_at_first);
 
@@ -57,6 +61,10 @@ std::string fileCombo(const char* name, const std::string& shown, const std::vec
 
 // A label in the left column; the control that follows fills the rest.
 void rowLabel(const std::string& text, const std::string& help);
+
+// The mark at the end of a row that takes it back to `default_text`; returns whether it was pressed. Its width, points.
+bool resetMark(const char* name, const std::string& default_text, UiState& ui);
+inline constexpr float kResetWidth = 20;
 
 enum class Icon { kPlay, kPause, kStep, kReset, kRestart, kCollapse, kPhoto, kRecord, kHelp, kPanels, kBack };
 bool iconButton(Icon icon, const char* name, const std::string& help, bool lit, UiState& ui);
