@@ -80,7 +80,7 @@ void fileRow(Demo& demo, UiState& ui) {
                                 {"History", "Lists all changes, to go to any of them"}},
                                ui.history ? 4 : -1, ui);
   if (pressed == 0) browseFor(BrowseFor::kOpen, ui);
-  if (pressed == 1) browseFor(BrowseFor::kSaveScene, ui);
+  if (pressed == 1) browseToSave(demo, ui);
   if (pressed == 2) postRequest(demo, {Ask::kUndo, "", "", 1});
   if (pressed == 3) postRequest(demo, {Ask::kRedo, "", "", 1});
   if (pressed == 4) ui.history = !ui.history;

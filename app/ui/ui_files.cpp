@@ -136,6 +136,7 @@ void take(const std::string& file, Demo& demo, UiState& ui) {
   }
   if (browser.what == BrowseFor::kSaveScene && fs::exists(file, ignored) && browser.to_replace != file) {
     browser.to_replace = file;
+    browser.opened = true;  // the next Enter is the name's again
     return;
   }
   switch (browser.what) {
@@ -162,16 +163,25 @@ void take(const std::string& file, Demo& demo, UiState& ui) {
       break;
     case BrowseFor::kSaveScene:
       postRequest(demo, {browser.project ? Ask::kSaveProject : Ask::kSaveScene, "", file});
+      browser.last = file;
       ui.asked.push_back(file);
       break;
   }
   close(browser);
 }
 
+bool willReplace(const FileBrowser& browser) {
+  return !browser.to_replace.empty() && browser.to_replace == typedPath(browser);
+}
+
 void nameRow(Demo& demo, UiState& ui, std::string chosen) {
   FileBrowser& browser = ui.browser;
   const std::string typed = typedPath(browser);
-  const bool replaces = !browser.to_replace.empty() && browser.to_replace == typed;
+  const bool replaces = willReplace(browser);
+  if (replaces) {
+    ImGui::TextUnformatted("A file of this name is there already; Enter again replaces it");
+    noteItem("replaces", ui);
+  }
   const float button = 74 * ui.text_scale;
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - 2 * button - 10);
   if (std::exchange(browser.opened, false)) ImGui::SetKeyboardFocusHere();
@@ -181,7 +191,6 @@ void nameRow(Demo& demo, UiState& ui, std::string chosen) {
   ImGui::SameLine(0, 5);
   const bool pressed = ImGui::Button(replaces ? "Replace" : purposeOf(browser.what).button, {button, 0});
   noteItem("file_take", ui);
-  if (replaces) tip("A file of this name is there already");
   ImGui::SameLine(0, 5);
   const bool cancelled = ImGui::Button("Cancel", {button, 0});
   noteItem("file_cancel", ui);
@@ -205,7 +214,18 @@ void browseFor(BrowseFor what, UiState& ui) {
   goTo(browser.folder.empty() ? "." : browser.folder, browser);
 }
 
+void browseToSave(const Demo& demo, UiState& ui) {
+  FileBrowser& browser = ui.browser;
+  const bool named = !browser.last.empty() && stem(browser.last) == demo.scene.name;
+  const fs::path file(named ? browser.last : demo.scene.file);
+  const bool own = file.string().starts_with(dataPath("assets"));  // the program's are not written over by two presses
+  if (!file.empty() && !own) browser.folder = file.has_parent_path() ? file.parent_path().string() : ".";
+  browseFor(BrowseFor::kSaveScene, ui);
+  if (!file.empty()) setName(own ? file.stem().string() : file.filename().string(), browser);
+}
+
 void openFile(const std::string& file, Demo& demo, UiState& ui) {
+  if (file.ends_with(".json")) ui.browser.last = file;
   postRequest(demo, {Ask::kOpenFile, "", file});
   ui.asked.push_back(file);
 }
@@ -237,7 +257,8 @@ void filePanel(Demo& demo, UiState& ui) {
     }
     placesRow(ui);
     std::string chosen;
-    const float below = ImGui::GetFrameHeightWithSpacing();
+    const float words = willReplace(ui.browser) ? ImGui::GetTextLineHeightWithSpacing() : 0;
+    const float below = ImGui::GetFrameHeightWithSpacing() + words;
     if (ImGui::BeginChild("list", {0, -below}, true)) {
       if (ui.browser.what == BrowseFor::kOpen && !ui.recent.empty()) chosen = recentList(ui);
       if (const std::string entry = entryList(ui); !entry.empty()) chosen = entry;

@@ -141,6 +141,31 @@ TEST_F(Panels, ASceneIsSavedAndOneThatIsThereOnlyOnASecondPress) {
   }
 }
 
+// Ctrl+S, Enter, Enter.
+TEST_F(Panels, ASceneIsSavedOverItselfByTheKeyboard) {
+  const std::string file = test::freshFolder("ui_save_again") + "/mine.json";
+  apply({{Ask::kSaveScene, "", file}});
+  ui_.browser.folder.clear();
+  app::pressKey('S', demo_, ui_, app::kControl);
+  ImGuiIO& io = ImGui::GetIO();
+  io.KeyMap[ImGuiKey_Enter] = app::kKeyEnter;
+  const auto enter = [&] {
+    std::vector<app::Request> all;
+    for (const bool down : {false, false, true, false, false}) {
+      io.KeysDown[app::kKeyEnter] = down;
+      for (const app::Request& one : frame()) all.push_back(one);
+    }
+    return all;
+  };
+  EXPECT_EQ(requestOf(enter(), Ask::kSaveScene), nullptr);
+  EXPECT_NE(find("replaces"), nullptr) << "nothing says why it is not saved";
+  const auto last = enter();
+  const app::Request* save = requestOf(last, Ask::kSaveScene);
+  ASSERT_NE(save, nullptr);
+  EXPECT_EQ(save->text, file);
+  EXPECT_EQ(find("file_take"), nullptr);
+}
+
 // A panorama of two rows: above brighter than below.
 std::string panorama(const std::string& file) {
   std::ofstream(file, std::ios::binary) << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n"
