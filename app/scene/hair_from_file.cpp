@@ -34,7 +34,7 @@ Conversion convertMended(const std::string& bytes, const CharacterSpec& spec, co
 std::string mendedBy(const Haircut& haircut) {
   std::string text;
   for (const MendedFinding& one : haircut.findings) {
-    if (one.done) text += (text.empty() ? "mended by " : ", ") + one.finding.mend;
+    if (one.done) text += (text.empty() ? "mended: " : ", ") + one.finding.what + " (" + one.finding.mend + ")";
   }
   return text;
 }
@@ -68,7 +68,9 @@ sim::HairMeshShape hairFromFile(const CharacterSpec& spec, const Character& char
   } else {
     refuseUtf16(bytes, spec.hair);
     if (!hasLayers(bytes)) refuseNoHair(spec.hair);
-    shape = readHairMesh(bytes, spec.hair, spec.reverse_faces);
+    bool turned = false;
+    shape = readHairMesh(bytes, spec.hair, spec.reverse_faces, "", &turned);
+    if (turned) note("all its faces were wound the other way, and are turned");
   }
   if (!on_head) note(fitHair(character, spec.fit, shape));
   return shape;
