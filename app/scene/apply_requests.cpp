@@ -36,6 +36,7 @@ void changePreset(const std::string& name, Demo& demo) {
   const std::string file = presetFile(name, "");
   loadPreset(file, {&demo.scene.sim, &demo.scene.look, looks});
   demo.scene.preset = file;
+  keepBase(demo);
   showMessage("preset " + stem(name), demo);
 }
 
@@ -241,6 +242,7 @@ void savePreset(const Request& request, Demo& demo) {
   writeFile(request.text,
             writePreset(stem(request.text), demo.scene.sim, selectedActor(demo).spec.look, demo.scene.look));
   demo.scene.preset = request.text;
+  keepBase(demo);
   showMessage("saved " + request.text, demo);
 }
 

@@ -233,7 +233,14 @@ Demo openScene(Scene scene, double aspect, bool beside) {
   }
   for (Actor& actor : demo.actors) actor.context->refreshGradually(true);
   demo.message = hairNotes(demo);
+  keepBase(demo);
   return demo;
+}
+
+void keepBase(Demo& demo) {
+  RowValues& base = demo.scene.base;
+  base = {demo.scene.sim, {}, demo.scene.look};
+  for (const Actor& actor : demo.actors) base.hairs.push_back(actor.spec.look);
 }
 
 render::FrameInput frameInput(Demo& demo, int width, int height) {

@@ -104,6 +104,9 @@ struct FrameTarget {
 // now on. Throws InputError.
 Demo openScene(Scene scene, double aspect, bool beside = false);
 
+// The rows of the tables as they are now become what Scene::base has.
+void keepBase(Demo& demo);
+
 // Advances by `seconds` of wall time and draws. Faults of requests become the demo's message; what was loaded stays.
 void advanceFrame(Demo& demo, double seconds, const FrameTarget& target);
 

@@ -26,15 +26,42 @@ ImU32 color(ImGuiCol index, float alpha = 1) {
   return ImGui::GetColorU32(index, alpha);
 }
 
+// How panels show a unit of the tables; files keep the table's. `times`: what is shown over what the table has.
+struct ShownUnit {
+  std::string_view unit;
+  double times;
+};
+ShownUnit shownUnit(std::string_view unit, double maximum) {
+  if (unit == "m" && maximum < 1) return {"mm", 1e3};
+  if (unit == "Pa") return {"kPa", 1e-3};
+  return {unit, 1};
+}
+
 // A number with its unit inside the slider.
 bool numberSlider(const char* name, sim::FieldKind kind, bool logarithmic, double low, double high, const char* unit,
                   double& value) {
+  const ShownUnit shown = shownUnit(unit, high);
   std::string format = kind == sim::FieldKind::kInteger ? "%.0f" : "%.4g";
-  if (*unit) format += std::string(" ") + unit;
+  if (*unit) format.append(" ").append(shown.unit);
   ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp;
   if (logarithmic) flags |= ImGuiSliderFlags_Logarithmic;
   const MarksBelowDigits marks;
-  return ImGui::SliderScalar(name, ImGuiDataType_Double, &value, &low, &high, format.c_str(), flags);
+  double number = shown.times * value;
+  const double least = shown.times * low, most = shown.times * high;
+  if (!ImGui::SliderScalar(name, ImGuiDataType_Double, &number, &least, &most, format.c_str(), flags)) return false;
+  value = std::clamp(number / shown.times, low, high);
+  return true;
+}
+
+// A row's value as the table writes it, as panels show it: with its unit there.
+std::string shownText(const std::string& text, std::string_view unit, double maximum) {
+  double value = 0;
+  if (!sim::parseNumber(text, value)) return text;
+  const ShownUnit shown = shownUnit(unit, maximum);
+  char number[32];
+  std::snprintf(number, sizeof number, "%.6g", shown.times * value);
+  return shown.times == 1 && unit.empty() ? text
+                                          : std::string(number).append(unit.empty() ? "" : " ").append(shown.unit);
 }
 
 bool choiceCombo(const char* name, std::span<const char* const> choices, double& value) {
@@ -51,17 +78,16 @@ bool choiceCombo(const char* name, std::span<const char* const> choices, double&
   return changed;
 }
 
-std::string helpText(const std::string& name, const char* help, const std::string& range, const std::string& unit,
-                     const std::string& standard) {
-  std::string text =
-      std::string(help) + "\n\n" + name + ", " + range + (unit.empty() ? "" : " " + unit) + ", default " + standard;
-  return text;
-}
-
-std::string rangeOf(sim::FieldKind kind, double low, double high) {
-  if (kind == sim::FieldKind::kSwitch) return "on or off";
-  if (kind == sim::FieldKind::kChoice) return "a choice";
-  return sim::numberText(low) + " to " + sim::numberText(high);
+// What a row is for, its name and range in files, and how a number is typed.
+template <class Row>
+std::string helpText(const Row& row, const std::string& standard) {
+  std::string text = std::string(row.help) + "\n\n" + row.name + ", ";
+  if (row.kind == sim::FieldKind::kSwitch) return text + "on or off, default " + standard;
+  if (row.kind == sim::FieldKind::kChoice) return text + "a choice, default " + standard;
+  const auto shown = [&](double value) { return shownText(sim::numberText(value), row.unit, row.maximum); };
+  text += shown(row.minimum) + " to " + shown(row.maximum) + ", default " + shownText(standard, row.unit, row.maximum);
+  if (shownUnit(row.unit, row.maximum).times != 1) text.append("; in files ").append(row.unit);
+  return text + "\nCtrl and a click: type a number";
 }
 
 void fillRow(bool with_reset, UiState& ui) {
@@ -76,7 +102,9 @@ void limitNote(const sim::ParamField& field, const Demo& demo, UiState& ui) {
   for (const sim::LimitedValue& limited : sim::limitedValues(mesh, demo.scene.sim)) {
     if (limited.field != &field) continue;
     char text[160];
-    std::snprintf(text, sizeof text, "used: %.3g %s, %s", limited.used, field.unit, limited.reason);
+    const ShownUnit shown = shownUnit(field.unit, field.maximum);
+    std::snprintf(text, sizeof text, "used: %.3g %s, %s", shown.times * limited.used, shown.unit.data(),
+                  limited.reason);
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + kLabelShare * ImGui::GetContentRegionAvail().x);
     ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_CheckMark));
     ImGui::PushTextWrapPos(0);
@@ -213,8 +241,8 @@ constexpr Label kLabels[] = {{"beta_m", "Roughness along"},
                              {"to_rim", "Rim direction"},
                              {"clump", "Clumping"},
                              {"offset", "Wander"},
-                             {"color", "Picked colour"},
-                             {"use_color", "Use picked colour"}};
+                             {"color", "Picked color"},
+                             {"use_color", "Use picked color"}};
 
 }  // namespace
 
@@ -223,6 +251,13 @@ std::string rowTitle(std::string_view name) {
     if (row.name == name) return std::string(row.label);
   }
   return readable(name);
+}
+
+std::string rowValue(std::string_view name, const std::string& text) {
+  if (const sim::ParamField* row = sim::findParam(name)) return shownText(text, row->unit, row->maximum);
+  if (const HairField* row = findHairField(name)) return shownText(text, row->unit, row->maximum);
+  if (const SceneField* row = findSceneField(name)) return shownText(text, row->unit, row->maximum);
+  return text;
 }
 
 // A row that another one makes idle is grey: moving it would show nothing.
@@ -260,10 +295,10 @@ std::string readable(std::string_view name) {
 void simRow(const sim::ParamField& field, Demo& demo, UiState& ui) {
   const sim::SimParams& params = demo.scene.sim;
   double value = field.get(params);
-  const std::string standard = sim::paramText(field, sim::SimParams{});
-  const std::string help =
-      helpText(field.name, field.help, rangeOf(field.kind, field.minimum, field.maximum), field.unit, standard);
-  const bool touched = value != field.default_value;
+  const sim::SimParams& base = demo.scene.base.sim;
+  const std::string standard = sim::paramText(field, base);
+  const std::string help = helpText(field, sim::paramText(field, sim::SimParams{}));
+  const bool touched = value != field.get(base);
   ImGui::PushID(field.name);
   rowLabel(rowTitle(field.name), help);
   fillRow(touched, ui);
@@ -286,18 +321,31 @@ void simRow(const sim::ParamField& field, Demo& demo, UiState& ui) {
     field.set(wanted, value);
     postRequest(demo, {Ask::kSetParam, field.name, sim::paramText(field, wanted)});
   }
-  if (touched && resetMark(field.name, standard, ui)) postRequest(demo, {Ask::kSetParam, field.name, standard});
+  if (touched && resetMark(field.name, shownText(standard, field.unit, field.maximum), ui))
+    postRequest(demo, {Ask::kSetParam, field.name, standard});
   limitNote(field, demo, ui);
   ImGui::PopID();
 }
 
+namespace {
+
+// What a look's rows go back to.
+const CharacterLook& baseOf(const CharacterLook&, const Demo& demo) {
+  return demo.scene.base.hairs[static_cast<std::size_t>(demo.selected)];
+}
+const SceneLook& baseOf(const SceneLook&, const Demo& demo) {
+  return demo.scene.base.scene;
+}
+
+}  // namespace
+
 template <class Owner>
 void lookRow(const LookField<Owner>& field, const Owner& owner, Demo& demo, UiState& ui) {
   LookValue value = field.get(owner);
-  const std::string standard = lookText(Owner{}, field);
-  const std::string help =
-      helpText(field.name, field.help, rangeOf(field.kind, field.minimum, field.maximum), field.unit, standard);
-  const bool touched = value != field.default_value;
+  const Owner& base = baseOf(owner, demo);
+  const std::string standard = lookText(base, field);
+  const std::string help = helpText(field, lookText(Owner{}, field));
+  const bool touched = value != field.get(base);
   ImGui::PushID(field.name);
   rowLabel(rowTitle(field.name), help);
   fillRow(touched, ui);
@@ -335,7 +383,8 @@ void lookRow(const LookField<Owner>& field, const Owner& owner, Demo& demo, UiSt
     field.set(wanted, value);
     postRequest(demo, {Ask::kSetParam, field.name, lookText(wanted, field)});
   }
-  if (touched && resetMark(field.name, standard, ui)) postRequest(demo, {Ask::kSetParam, field.name, standard});
+  if (touched && resetMark(field.name, shownText(standard, field.unit, field.maximum), ui))
+    postRequest(demo, {Ask::kSetParam, field.name, standard});
   ImGui::PopID();
 }
 

@@ -45,8 +45,8 @@ bool colorSwatch(const char* name, std::array<float, 3>& linear, int flags);
 // A heading that folds; returns whether it is open.
 bool section(const char* title, bool open_at_first);
 
-// Name, control, and a reset mark while the value is not the default; below, the value that is used where the hair
-// cannot bear it. A change becomes a request.
+// Name, control, and a reset mark while the value is not that of Scene::base; below, the value that is used where the
+// hair cannot bear it. A change becomes a request.
 void simRow(const sim::ParamField& field, Demo& demo, UiState& ui);
 template <class Owner>
 void lookRow(const LookField<Owner>& field, const Owner& owner, Demo& demo, UiState& ui);
@@ -81,6 +81,9 @@ int segments(const char* name, std::initializer_list<Segment> row, int chosen, U
 
 // What a parameter row is called in the panels.
 std::string rowTitle(std::string_view name);
+
+// A row's value, as files have it, with the number and unit that panels show: "4e-05" -> "0.04 mm".
+std::string rowValue(std::string_view name, const std::string& text);
 
 // "stretch_along" -> "Stretch along".
 std::string readable(std::string_view name);
