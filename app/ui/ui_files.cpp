@@ -27,7 +27,11 @@ struct Purpose {
 
 const Purpose& purposeOf(BrowseFor what) {
   static const Purpose kPurposes[] = {
-      {BrowseFor::kOpen, "Open a scene, preset, motion, hair, hat, panorama or state", "Open", {}},
+      {BrowseFor::kOpen,
+       "Open a scene, preset, motion, hair, hat, panorama or state",
+       "Open",
+       {".json", ".bvh",  ".glb",  ".gltf", ".fbx", ".dae", ".mot", ".obj", ".abc",   ".usda",
+        ".usd",  ".usdc", ".usdz", ".hair", ".tfx", ".ply", ".vrm", ".hdr", ".state", ".hairmesh"}},
       {BrowseFor::kMotion, "Open a motion", "Open", {".bvh", ".glb", ".gltf", ".fbx", ".dae", ".mot"}},
       {BrowseFor::kParts, "Folder of body parts", "Choose", {"/"}},
       {BrowseFor::kHair,
@@ -66,7 +70,7 @@ void placesRow(UiState& ui) {
     ImGui::SameLine(0, 4);
   };
   place("Up", "The folder above", folderAbove(browser.folder));
-  place("Here", "The folder that the program was started in", ".");
+  place("Working folder", "The folder that the program was started in, where it writes pictures", ".");
   place("Examples", "What comes with the program", dataPath("assets"));
   if (const char* home = std::getenv("HOME")) place("Home", home, home);
   // The end of a long path says more than its start.

@@ -57,6 +57,8 @@ void compareLine(Demo& demo, UiState& ui);
 
 // The steps that can be undone and done again, by name; a press goes there.
 void historyPanel(Demo& demo, UiState& ui);
+// The same within the sidebar.
+void historyList(Demo& demo, UiState& ui);
 
 // The file panel, while it is open; opening it; and what a file that was chosen or dropped asks for.
 void filePanel(Demo& demo, UiState& ui);
