@@ -51,8 +51,8 @@ void recast(const CharacterSpec& spec, bool same_motion, const std::string& titl
   }
   Actor fresh = makeActor(spec, demo.scene.playback, demo.asset_cache);
   fresh.playback.paused = old.playback.paused;
-  if (same_motion) copyMotion(old, fresh);
-  settleActor(demo.scene.sim, demo.scene.playback.settle, fresh);
+  if (same_motion) fresh.playback = old.playback;
+  settleInMotion(demo.scene.sim, demo.scene.playback.settle, fresh);
   fresh.context->refreshGradually(true);
   replaceActor(std::move(fresh), demo.selected, same_motion, demo);
   const std::string notes = hairNotes(demo);
