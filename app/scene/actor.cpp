@@ -458,11 +458,11 @@ void settleInMotion(const sim::SimParams& params, double seconds, Actor& actor) 
   constexpr int kMostStrides = 8;
   const Playback here = actor.playback;
   const auto goBack = [&](int strides) {
-    actor.playback.time = here.time - strides * kStride * here.speed;
+    actor.playback.time = here.time - strides * kStride;
     placeActor(actor, true);
   };
   int from = 0, least = std::numeric_limits<int>::max();
-  for (int k = 0; seconds > 0 && k <= kMostStrides && k * kStride * here.speed <= here.time; ++k) {
+  for (int k = 0; seconds > 0 && k <= kMostStrides && k * kStride <= here.time; ++k) {
     goBack(k);
     const int pushed = simulateActor(params, params.time_step, 0, actor).corrected;
     if (pushed < least) least = pushed, from = k;
@@ -470,6 +470,7 @@ void settleInMotion(const sim::SimParams& params, double seconds, Actor& actor) 
   goBack(from);
   settleActor(params, seconds, actor);
   actor.playback.paused = false;
+  actor.playback.speed = 1;
   const auto steps = static_cast<int>(std::lround(from * kStride / params.time_step));
   for (int k = 0; k < steps; ++k) stepActor(params, params.time_step, k * params.time_step, actor);
   actor.playback = here;

@@ -213,7 +213,7 @@ void wakeAll(Actor& actor);
 void settleActor(const sim::SimParams& params, double seconds, Actor& actor);
 // The same where a clip is being played: hair at rest lies in a shoulder that the head has turned to, and would be
 // pushed out of it to any side. So it settles at that moment of the last 4 s at which the body pushes the fewest
-// vertices, and is led from there to the present one.
+// vertices, and is led from there to the present one at the clip's own speed.
 void settleInMotion(const sim::SimParams& params, double seconds, Actor& actor);
 
 // Positions, pose and matrices of the shown moment, between the last two states; positions and matrices relative to

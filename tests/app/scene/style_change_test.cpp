@@ -18,7 +18,8 @@ TEST(StyleChange, AStyleChosenWhilePausedLiesAsOneThatHasMovedAlong) {
       app::advanceFrame(demo, 1.0 / 30, {});
       app::advanceFrame(along, 1.0 / 30, {});
     }
-    demo.requests = {{app::Ask::kPause, "", "", 1}, {app::Ask::kStyle, "long", ""}};
+    // However slowly it is played while it is looked at.
+    demo.requests = {{app::Ask::kPause, "", "", 1}, {app::Ask::kSpeed, "", "", 0.01}, {app::Ask::kStyle, "long", ""}};
     app::advanceFrame(demo, 0, {});
     const auto &chosen = demo.actors[0].hair.positions, &moved = along.actors[0].hair.positions;
     ASSERT_EQ(chosen.size(), moved.size());
@@ -32,7 +33,7 @@ TEST(StyleChange, AStyleChosenWhilePausedLiesAsOneThatHasMovedAlong) {
     std::printf("at %.1f s: %.1f mm off in the mean, %.1f mm at most\n", frames / 30.0, 1e3 * mean, 1e3 * worst);
     EXPECT_LT(mean, 0.003);
     EXPECT_LT(worst, 0.03);
-    demo.requests = {{app::Ask::kStyle, "shoulder", ""}, {app::Ask::kPause, "", "", 0}};
+    demo.requests = {{app::Ask::kStyle, "shoulder", ""}, {app::Ask::kSpeed, "", "", 1}, {app::Ask::kPause, "", "", 0}};
   }
 }
 
