@@ -234,6 +234,9 @@ Options sortedOut(Options options) {
     case FileKind::kProject:
       options.project = file;
       break;
+    case FileKind::kEnvironment:
+      fill("--environment", options.environment, file);
+      break;
     case FileKind::kCache:
       throw UsageError(file + " is a cache of simulated hair; name its scene, and it with --load-state");
     case FileKind::kState:
@@ -257,7 +260,7 @@ Scene sceneFromOptions(const Options& given) {
     readValue("--preset", [&] { file = presetFile(options.preset, ""); });
     loadPreset(file, {&scene.sim, &scene.look, looks});
   }
-  if (!options.environment.empty()) scene.look.light = environmentLight(options.environment, scene.look.light);
+  if (!options.environment.empty()) setEnvironment(options.environment, scene);
   // Before the sets: --set overrides a part of what --solver sets.
   chooseSolver(options.solver, scene.sim);
   for (const auto& [name, text] : options.set) {

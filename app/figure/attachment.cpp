@@ -1,13 +1,14 @@
 #include "app/figure/attachment.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <map>
 #include <numbers>
-#include <numeric>
 
+#include "app/figure/closed_surface.h"
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
 #include "app/files/polygon_file.h"
@@ -23,14 +24,13 @@ constexpr double kNearJoint = 0.35;    // m, from its joint
 // Shares of its points inside the head: of one that does not fit, of one that does. What is in assets/attachments has
 // 0.03 at most, and at 0.9 of its size 0.25 and more.
 constexpr double kSwallowed = 0.2, kWellFitted = 0.035;
-constexpr double kOtherUnit = 2;     // times that a mesh is to be larger: it is in another unit
-constexpr double kMuchNearer = 0.6;  // times as far off the head
-constexpr double kNearer = 0.8;      // the same of a hat, of which both are as near as they come
-constexpr double kSeatRoom = 0.008, kSeatStep = 0.002, kSample = 0.008;  // m, for the hair under a hat
+constexpr double kOtherUnit = 2;                        // times that a mesh is to be larger: it is in another unit
+constexpr double kMuchNearer = 0.6;                     // times as far off the head
+constexpr double kNearer = 0.8;                         // the same of a hat, of which both are as near as they come
+constexpr double kSeatRoom = 0.008, kSeatStep = 0.002;  // m, for the hair under a hat
 constexpr double kHatSize = 0.08;  // m, the shortest side of a hat; how far before the head it lies
 constexpr double kWornSpacing = 0.0025, kMaxWornNodes = 1.2e6;  // m, of the grid
 constexpr double kSharpEdge = 0.5;                              // cosine between faces that are shaded as one
-constexpr double kWeld = 1e-5;                                  // of the size; vertices so near are one
 constexpr int kMaxPieces = 8;
 constexpr double kSlender = 0.4;  // of the longest side, the second one of what is worn
 constexpr const char* kGiveSolid = "give a closed mesh: OBJ, FBX or glTF";
@@ -40,84 +40,6 @@ struct WornUnit {
   double metres;
 };
 constexpr std::array<WornUnit, 3> kWornUnits{{{"metres", 1}, {"centimetres", 0.01}, {"millimetres", 0.001}}};
-
-struct ClosedSurface {
-  std::vector<Vec3> points;  // welded
-  std::vector<std::array<int, 3>> faces;
-};
-
-// Places of a file that are one, with faces as triangles.
-ClosedSurface weld(const PolygonMesh& mesh) {
-  Eigen::AlignedBox3d box;
-  for (const Vec3& p : mesh.positions) box.extend(p);
-  const double cell = std::max(1e-12, kWeld * box.sizes().maxCoeff());
-  std::map<std::array<long, 3>, int> seen;
-  ClosedSurface surface;
-  std::vector<int> welded;
-  for (const Vec3& p : mesh.positions) {
-    const Eigen::Vector3d at = (p - box.min()) / cell;
-    const auto [found, fresh] = seen.try_emplace({std::lround(at.x()), std::lround(at.y()), std::lround(at.z())},
-                                                 static_cast<int>(surface.points.size()));
-    if (fresh) surface.points.push_back(p);
-    welded.push_back(found->second);
-  }
-  for (std::size_t f = 0; f < mesh.faceCount(); ++f) {
-    const auto corners = mesh.face(f);
-    for (std::size_t k = 2; k < corners.size(); ++k) {
-      const std::array<int, 3> face{welded[static_cast<std::size_t>(corners[0])],
-                                    welded[static_cast<std::size_t>(corners[k - 1])],
-                                    welded[static_cast<std::size_t>(corners[k])]};
-      if (face[0] != face[1] && face[1] != face[2] && face[2] != face[0]) surface.faces.push_back(face);
-    }
-  }
-  return surface;
-}
-
-// Edges that lack the face of their other side.
-int openEdges(const ClosedSurface& surface) {
-  std::map<std::pair<int, int>, int> sides;
-  for (const auto& f : surface.faces) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int a = f[k], b = f[(k + 1) % 3];
-      sides[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
-    }
-  }
-  return static_cast<int>(std::ranges::count_if(sides, [](const auto& side) { return side.second != 0; }));
-}
-
-// Per vertex: the first vertex of its connected piece.
-std::vector<int> piecesOf(const ClosedSurface& surface) {
-  std::vector<int> above(surface.points.size());
-  std::iota(above.begin(), above.end(), 0);
-  const auto top = [&](int v) {
-    while (above[static_cast<std::size_t>(v)] != v) {
-      int& up = above[static_cast<std::size_t>(v)];
-      v = up = above[static_cast<std::size_t>(up)];
-    }
-    return v;
-  };
-  for (const auto& f : surface.faces) {
-    for (const int v : {f[1], f[2]}) {
-      const int one = top(f[0]), other = top(v);
-      above[static_cast<std::size_t>(std::max(one, other))] = std::min(one, other);
-    }
-  }
-  for (std::size_t v = 0; v < above.size(); ++v) above[v] = top(static_cast<int>(v));
-  return above;
-}
-
-// Turns round the pieces whose faces are wound inwards: those of negative volume. Returns the number of pieces.
-int turnOutwards(ClosedSurface& surface) {
-  const std::vector<int> piece = piecesOf(surface);
-  std::map<int, double> volume;
-  const auto at = [&](int v) -> const Vec3& { return surface.points[static_cast<std::size_t>(v)]; };
-  for (const auto& f : surface.faces)
-    volume[piece[static_cast<std::size_t>(f[0])]] += at(f[0]).dot(at(f[1]).cross(at(f[2]))) / 6;
-  for (auto& f : surface.faces) {
-    if (volume[piece[static_cast<std::size_t>(f[0])]] < 0) std::swap(f[1], f[2]);
-  }
-  return static_cast<int>(volume.size());
-}
 
 // Of the material that covers the largest area.
 std::optional<std::array<float, 3>> colorOf(const PolygonMesh& mesh) {
@@ -224,7 +146,22 @@ void placeAt(const AttachmentSpec& spec, const PolygonMesh& mesh, const Vec3& jo
                                 Eigen::AngleAxisd(kDegree * spec.turn.y(), Vec3::UnitY()) *
                                 Eigen::AngleAxisd(kDegree * spec.turn.x(), Vec3::UnitX()))
                                    .toRotationMatrix();
-  for (Vec3& p : surface.points) p = turn * (scale * p - origin) + spec.at;
+  for (Vec3& p : surface.points) p = spec.size * (turn * (scale * p - origin)) + spec.at;
+}
+
+// Degrees about x, then y, then z, by which points have come to where they are from those of the file.
+Vec3 turnBetween(const ClosedSurface& from, const ClosedSurface& to) {
+  Eigen::Matrix3Xd a(3, from.points.size()), b(3, from.points.size());
+  for (Eigen::Index v = 0; v < a.cols(); ++v) {
+    a.col(v) = from.points[static_cast<std::size_t>(v)];
+    b.col(v) = to.points[static_cast<std::size_t>(v)];
+  }
+  Eigen::Matrix3d turn = Eigen::umeyama(a, b).topLeftCorner<3, 3>();
+  turn /= std::cbrt(turn.determinant());
+  const Vec3 radians(std::atan2(turn(2, 1), turn(2, 2)), -std::asin(std::clamp(turn(2, 0), -1.0, 1.0)),
+                     std::atan2(turn(1, 0), turn(0, 0)));
+  constexpr double kRounded = 1e-3;  // degrees
+  return kRounded * (180 / std::numbers::pi / kRounded * radians).array().round() + 0.0;
 }
 
 // The share of a surface's points that lie inside the head when it is made `times` as large about its joint.
@@ -289,21 +226,6 @@ bool isHat(const ClosedSurface& surface) {
   return box.sizes().minCoeff() > kHatSize;
 }
 
-// Points all over the surface, kSample apart at most.
-std::vector<Vec3> samplesOf(const ClosedSurface& surface) {
-  std::vector<Vec3> samples;
-  for (const auto& f : surface.faces) {
-    std::array<Vec3, 3> p;
-    for (std::size_t k = 0; k < 3; ++k) p[k] = surface.points[static_cast<std::size_t>(f[k])];
-    const double longest = std::max({(p[1] - p[0]).norm(), (p[2] - p[1]).norm(), (p[0] - p[2]).norm()});
-    const int parts = static_cast<int>(std::ceil(longest / kSample));
-    for (int i = 0; i <= parts; ++i) {
-      for (int j = 0; i + j <= parts; ++j) samples.push_back(p[0] + (i * (p[1] - p[0]) + j * (p[2] - p[0])) / parts);
-    }
-  }
-  return samples;
-}
-
 // How far a hat is to be moved, m, scalp frame, so that it sits: its middle over the head's, as low as the head lets
 // it.
 Vec3 toSeat(const ClosedSurface& surface, const Rigid& to_scalp, const Scalp& scalp) {
@@ -354,13 +276,15 @@ void turnUpright(const Rigid& placed, const Vec3& moved, const Rigid& to_scalp, 
   addNote("z up, turned to y", note);
 }
 
-// Moves a hat that lies in the head, or beside it, to where it sits.
-void seatOnHead(const Rigid& to_scalp, const Scalp& scalp, ClosedSurface& surface, std::string& note) {
-  if (!isHat(surface)) return;
-  if (swallowed(surface, 1, to_scalp, scalp) <= kWellFitted && !liesBeside(surface, to_scalp, scalp)) return;
-  const Vec3 move = toSeat(surface, to_scalp, scalp);
-  for (Vec3& p : surface.points) p += to_scalp.linear().transpose() * move;
+// Moves a hat that lies in the head, or beside it, to where it sits. Returns the way, m, in the joint's frame.
+Vec3 seatOnHead(const Rigid& to_scalp, const Scalp& scalp, ClosedSurface& surface, std::string& note) {
+  if (!isHat(surface)) return Vec3::Zero();
+  if (swallowed(surface, 1, to_scalp, scalp) <= kWellFitted && !liesBeside(surface, to_scalp, scalp))
+    return Vec3::Zero();
+  const Vec3 move = to_scalp.linear().transpose() * toSeat(surface, to_scalp, scalp);
+  for (Vec3& p : surface.points) p += move;
   addNote("set on the head, " + millimetresOf(move.norm()) + " from where the file has it", note);
+  return move;
 }
 
 // Signed distances; the same as of a body's part.
@@ -431,6 +355,7 @@ Attachment loadAttachment(const AttachmentSpec& spec, const Character& character
   upright.translation() = carrier.rest_world.translation();
   Attachment out;
   std::string note;
+  const ClosedSurface of_file = surface;
   placeAt(spec, mesh, scalp.linear().transpose() * carrier.rest_world.translation(), surface, note);
   out.color = colorOf(mesh);
   const Rigid to_joint = carrier.rest_world.inverse(Eigen::Isometry) * upright;
@@ -440,8 +365,13 @@ Attachment loadAttachment(const AttachmentSpec& spec, const Character& character
   const Rigid placed = to_joint * Eigen::Translation3d(spec.at);
   if (of_head && spec.turn.isZero())
     turnUpright(placed, to_joint.linear() * spec.at, out.to_scalp, character.scalp, surface, note);
+  const Rigid from_joint = to_joint.inverse(Eigen::Isometry);
+  out.at = spec.at;
   if (of_head && spec.turn.isZero() && spec.at.isZero() && spec.scale == 0)
-    seatOnHead(out.to_scalp, character.scalp, surface, note);
+    out.at = from_joint.linear() * seatOnHead(out.to_scalp, character.scalp, surface, note);
+  ClosedSurface about_joint = surface;
+  for (Vec3& p : about_joint.points) p = from_joint * p;
+  out.turn = turnBetween(of_file, about_joint);
   out.part = distancesOf(surface, joint);
   if (!(out.part.deepest > 0))
     throw InputError(spec.file, "", "is too thin to collide with", "make it at least 3 mm thick");

@@ -24,6 +24,7 @@ struct Attachment {
   std::vector<std::uint32_t> triangles;              // counter-clockwise from outside
   std::vector<std::array<std::uint16_t, 4>> joints;  // the one joint there is
   std::vector<std::array<float, 4>> weights;
+  Vec3 turn = Vec3::Zero(), at = Vec3::Zero();  // degrees, m, as AttachmentSpec: given or inferred
   PartDistance part;
   Rigid to_scalp = Rigid::Identity();  // joint frame to the scalp's, rest pose
 };

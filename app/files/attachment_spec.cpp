@@ -12,8 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kFarthestAttachment = 3, kMaxTurn = 180;  // m, degrees
-constexpr double kMinUnit = 1e-5, kMaxUnit = 100;          // m per unit
+constexpr double kMinUnit = 1e-5, kMaxUnit = 100;  // m per unit
 
 sim::Vec3 vectorFrom(const std::array<double, 3>& values) {
   return {values[0], values[1], values[2]};
@@ -39,7 +38,7 @@ const char* whatInPlace(const std::string& file) {
 }
 
 AttachmentSpec readAttachment(const JsonPlace& place) {
-  place.expectObject({"file", "joint", "at", "turn", "scale", "color", "roughness"});
+  place.expectObject({"file", "joint", "at", "turn", "scale", "size", "color", "roughness"});
   AttachmentSpec one;
   if (!place.has("file")) place.refuse("names no file", "give \"file\" a mesh: OBJ, FBX or glTF");
   const std::string name = place.at("file").text();
@@ -53,6 +52,7 @@ AttachmentSpec readAttachment(const JsonPlace& place) {
   if (place.has("at")) one.at = vectorFrom(place.at("at").vector(-kFarthestAttachment, kFarthestAttachment));
   if (place.has("turn")) one.turn = vectorFrom(place.at("turn").vector(-kMaxTurn, kMaxTurn));
   if (place.has("scale")) one.scale = place.at("scale").number(kMinUnit, kMaxUnit);
+  if (place.has("size")) one.size = place.at("size").number(kSmallestTimes, kLargestTimes);
   if (place.has("color")) {
     const std::array<double, 3> color = place.at("color").vector(0, 1);
     one.color = {static_cast<float>(color[0]), static_cast<float>(color[1]), static_cast<float>(color[2])};
@@ -95,6 +95,7 @@ json writeAttachments(const std::vector<AttachmentSpec>& attachments) {
     if (one.at != sim::Vec3::Zero()) written["at"] = jsonFrom(one.at);
     if (one.turn != sim::Vec3::Zero()) written["turn"] = jsonFrom(one.turn);
     if (one.scale > 0) written["scale"] = one.scale;
+    if (one.size != 1) written["size"] = one.size;
     all.push_back(std::move(written));
   }
   return all;

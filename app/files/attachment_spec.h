@@ -1,13 +1,13 @@
 // Attachments as a scene file has them: hats, glasses, collars; meshes fixed to a joint, drawn and collided with.
 //
 //   "attachments": [{ "file": "beanie.obj", "joint": "head", "at": [x, y, z], "turn": [x, y, z], "scale": 0.01,
-//                     "color": [r, g, b], "roughness": 0.8 }]
+//                     "size": 1.1, "color": [r, g, b], "roughness": 0.8 }]
 // The mesh lies in the joint's frame at rest: origin at the joint, x to the figure's left, y up, z forward. "at" (m)
 // and "turn" (degrees about x, then y, then z) are added. "scale" is metres per unit of the file; left out, unit and
 // origin are inferred where they are certain, and so is z up where no "turn" is given; and a hat that would lie in or
-// beside the head is set on it where "at", "turn" and "scale" are left out. "color" left out is that of the file's
-// material. "joint" is a joint's name or a body part's ("head", "neck", "chest"). Every key but the file
-// may be left out.
+// beside the head is set on it where "at", "turn" and "scale" are left out. "size" makes it so many times as large about
+// the joint, once it is placed but for "at". "color" left out is that of the file's material. "joint" is a joint's name
+// or a body part's ("head", "neck", "chest"). Every key but the file may be left out.
 #pragma once
 
 #include <array>
@@ -27,11 +27,14 @@ struct AttachmentSpec {
   sim::Vec3 at = sim::Vec3::Zero();           // m
   sim::Vec3 turn = sim::Vec3::Zero();         // degrees
   double scale = 0;                           // m per unit; 0: inferred
+  double size = 1;                            // times, about the joint
   std::optional<std::array<float, 3>> color;  // linear; none: that of the file's material
   float roughness = 0.8f;
 };
 
 inline constexpr std::size_t kMaxAttachments = 8;
+inline constexpr double kFarthestAttachment = 3, kMaxTurn = 180;   // m, degrees
+inline constexpr double kSmallestTimes = 0.1, kLargestTimes = 10;  // of "size"
 
 // Throws InputError.
 std::vector<AttachmentSpec> readAttachments(const JsonPlace& place);

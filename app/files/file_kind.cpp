@@ -60,6 +60,10 @@ FileKind fileKind(const std::string& file) {
   if (ending == ".obj") return kindOfStillMesh(file);
   if (ending == ".mot") return FileKind::kRigidMotion;
   if (ending == ".vrm") return FileKind::kHairMesh;
+  if (ending == ".hdr") return FileKind::kEnvironment;
+  for (const char* picture : {".png", ".jpg", ".jpeg", ".exr"}) {
+    if (ending == picture) throw InputError(file, "", "is no Radiance picture", "name a panorama saved as .hdr (RGBE)");
+  }
   if (ending == ".glb" || ending == ".gltf" || ending == ".fbx")
     return holdsStillMeshes(file) ? kindOfStillMesh(file) : FileKind::kMotion;
   for (const char* known : {".bvh", ".dae"}) {
@@ -74,8 +78,9 @@ FileKind fileKind(const std::string& file) {
   if (groomFormat(bytes, file)) return FileKind::kHairMesh;
   throw InputError(
       file, "", "is no kind of file that this program reads",
-      "give a scene or preset (.json), a motion (.bvh, .glb, .gltf, .fbx, .mot), a hair mesh (.obj) "
-      "or a groom: curves (.hair, .abc, .usda, .tfx, .ply), strips or tubes (.obj, .fbx, .glb, .gltf, .vrm)");
+      "give a scene or preset (.json), a motion (.bvh, .glb, .gltf, .fbx, .mot), a panorama (.hdr), a hair "
+      "mesh (.obj) or a groom: curves (.hair, .abc, .usda, .tfx, .ply), strips or tubes (.obj, .fbx, .glb, .gltf, "
+      ".vrm)");
 }
 
 bool isRecording(std::string_view text) {
@@ -102,6 +107,8 @@ std::pair<std::string, std::string> kindAndUse(const std::string& file) {
         return {"is a project", "open it without an option"};
       case FileKind::kAttachment:
         return {"is a mesh to wear", "give it to --attach"};
+      case FileKind::kEnvironment:
+        return {"is a panorama", "give it to --environment"};
     }
   } catch (const InputError&) {  // no kind that is read
   }

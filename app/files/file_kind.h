@@ -7,7 +7,18 @@
 
 namespace app {
 
-enum class FileKind { kScene, kPreset, kMotion, kRigidMotion, kHairMesh, kState, kCache, kProject, kAttachment };
+enum class FileKind {
+  kScene,
+  kPreset,
+  kMotion,
+  kRigidMotion,
+  kHairMesh,
+  kState,
+  kCache,
+  kProject,
+  kAttachment,
+  kEnvironment
+};
 
 // By its ending; scenes and presets, both JSON, by their content, and so are saved states, grooms of any name, and what
 // glTF and FBX hold: without bones and animation it is hair, or what looks worn (app/figure/attachment.h). Throws

@@ -248,7 +248,7 @@ void checkSize(const sim::HairMeshShape& shape, const std::string& file) {
 }  // namespace
 
 sim::HairMeshShape readHairMesh(std::string_view text, const std::string& file, bool reverse_faces,
-                                const char* reverse_switch) {
+                                const char* reverse_switch, bool* turned) {
   const ObjLayers obj = readObjLayers(text, file);
   Stacker stacker{file, obj};
   stacker.checkLayers();
@@ -263,6 +263,11 @@ sim::HairMeshShape readHairMesh(std::string_view text, const std::string& file, 
     sim::buildHairMesh(shape);
   } catch (const sim::MeshError& error) {
     if (validReversed(shape)) {
+      if (turned) {
+        *turned = true;
+        reverse(shape);
+        return shape;
+      }
       throw InputError(file, "", "all faces are wound the other way",
                        (reverse_faces ? "leave out " : "reverse the faces, or give ") + std::string(reverse_switch));
     }

@@ -31,7 +31,7 @@ struct AskName {
   std::string_view name;
 };
 // What can be recorded: all but the requests that write files.
-constexpr std::array<AskName, 53> kAskNames{{{Ask::kSetParam, "set"},
+constexpr std::array<AskName, 54> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kPause, "pause"},
                                              {Ask::kPauseMotion, "pause-motion"},
                                              {Ask::kSingleStep, "single-step"},
@@ -83,7 +83,8 @@ constexpr std::array<AskName, 53> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kAttach, "attach"},
                                              {Ask::kPaint, "paint"},
                                              {Ask::kCurve, "curve"},
-                                             {Ask::kVary, "vary"}}};
+                                             {Ask::kVary, "vary"},
+                                             {Ask::kEnvironment, "environment"}}};
 
 std::string_view nameOf(Ask what) {
   for (const AskName& row : kAskNames) {

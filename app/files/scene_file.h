@@ -85,6 +85,13 @@ struct PlaybackSpec {
   double draw_budget_ms = 0;  // of drawing a frame that the drawing governor holds to; 0: it is off
 };
 
+// Values of the tables' rows.
+struct RowValues {
+  sim::SimParams sim;
+  std::vector<CharacterLook> hairs;  // one a character
+  SceneLook scene;
+};
+
 struct Scene {
   std::string file;  // empty: not from a file
   std::string name = "untitled";
@@ -95,6 +102,10 @@ struct Scene {
   PlaybackSpec playback;
   SkipSet skips;       // not of the file: a scene means the same whatever is skipped
   std::string preset;  // not of the file: that a person chose last, a file's name; empty: none
+  // Not of the file, which has the lights alone: the panorama that they were taken from, and those before; empty: none.
+  std::string environment;
+  render::LightInput own_light;
+  RowValues base;  // not of the file: as it was opened, or as the preset that was chosen last has left them
 };
 
 // Bounds that a scene is held to.

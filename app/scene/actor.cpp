@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "app/figure/root_cover.h"
@@ -287,11 +288,6 @@ void wakeAll(Actor& actor) {
   actor.sleep.asleep = false;
 }
 
-void copyMotion(const Actor& from, Actor& actor) {
-  actor.playback = from.playback;
-  placeActor(actor, true);
-}
-
 void placeActor(Actor& actor, bool rest) {
   const bool stood = !actor.pose.world.empty();
   const Rigid before = stood ? scalpToWorld(actor.body->character, actor.pose) : Rigid::Identity();
@@ -456,6 +452,29 @@ void settleActor(const sim::SimParams& params, double seconds, Actor& actor) {
   for (int i = 0; i < steps; ++i)
     sim::advance(actor.haircut->mesh, thick, input, params.time_step, *actor.context, actor.hair);
   actor.previous_positions = actor.hair.positions;
+}
+
+void settleInMotion(const sim::SimParams& params, double seconds, Actor& actor) {
+  constexpr double kStride = 0.5;  // s
+  constexpr int kMostStrides = 8;
+  const Playback here = actor.playback;
+  const auto goBack = [&](int strides) {
+    actor.playback.time = here.time - strides * kStride;
+    placeActor(actor, true);
+  };
+  int from = 0, least = std::numeric_limits<int>::max();
+  for (int k = 0; seconds > 0 && k <= kMostStrides && k * kStride <= here.time; ++k) {
+    goBack(k);
+    const int pushed = simulateActor(params, params.time_step, 0, actor).corrected;
+    if (pushed < least) least = pushed, from = k;
+  }
+  goBack(from);
+  settleActor(params, seconds, actor);
+  actor.playback.paused = false;
+  actor.playback.speed = 1;
+  const auto steps = static_cast<int>(std::lround(from * kStride / params.time_step));
+  for (int k = 0; k < steps; ++k) stepActor(params, params.time_step, k * params.time_step, actor);
+  actor.playback = here;
 }
 
 void showActor(double fraction, const Vec3& origin, Actor& actor) {

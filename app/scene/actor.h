@@ -185,9 +185,6 @@ void wearHaircut(const Haircut& haircut, Actor& actor, AssetCache& asset_cache);
 // Drops what no actor wears.
 void tidy(const std::vector<Actor>& actors, AssetCache& asset_cache);
 
-// Takes over the motion of `from` (time in the clip), as when only the hair was changed.
-void copyMotion(const Actor& from, Actor& actor);
-
 // Poses the actor at its playback's time without moving the clock; the hair is carried along rigidly (teleport of the
 // second kind), or put to its rest shape when `rest` is set.
 void placeActor(Actor& actor, bool rest);
@@ -214,6 +211,10 @@ void wakeAll(Actor& actor);
 // Simulates `seconds` with the figure standing still and the air thick, so that the hair has come to rest on the body
 // before the first frame.
 void settleActor(const sim::SimParams& params, double seconds, Actor& actor);
+// The same where a clip is being played: hair at rest lies in a shoulder that the head has turned to, and would be
+// pushed out of it to any side. So it settles at that moment of the last 4 s at which the body pushes the fewest
+// vertices, and is led from there to the present one at the clip's own speed.
+void settleInMotion(const sim::SimParams& params, double seconds, Actor& actor);
 
 // Positions, pose and matrices of the shown moment, between the last two states; positions and matrices relative to
 // `origin` (m).

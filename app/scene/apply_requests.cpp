@@ -19,6 +19,7 @@
 #include "app/scene/hair_from_file.h"
 #include "app/scene/present_scene.h"
 #include "app/scene/project.h"
+#include "app/scene/view/environment_light.h"
 #include "sim/field_text.h"
 
 namespace app {
@@ -36,6 +37,7 @@ void changePreset(const std::string& name, Demo& demo) {
   const std::string file = presetFile(name, "");
   loadPreset(file, {&demo.scene.sim, &demo.scene.look, looks});
   demo.scene.preset = file;
+  keepBase(demo);
   showMessage("preset " + stem(name), demo);
 }
 
@@ -50,8 +52,8 @@ void recast(const CharacterSpec& spec, bool same_motion, const std::string& titl
   }
   Actor fresh = makeActor(spec, demo.scene.playback, demo.asset_cache);
   fresh.playback.paused = old.playback.paused;
-  if (same_motion) copyMotion(old, fresh);
-  settleActor(demo.scene.sim, demo.scene.playback.settle, fresh);
+  if (same_motion) fresh.playback = old.playback;
+  settleInMotion(demo.scene.sim, demo.scene.playback.settle, fresh);
   fresh.context->refreshGradually(true);
   replaceActor(std::move(fresh), demo.selected, same_motion, demo);
   const std::string notes = hairNotes(demo);
@@ -161,28 +163,16 @@ void loadState(const Request& request, Demo& demo) {
   showMessage("state " + stem(request.text), demo);
 }
 
+// What opens a file, in the order of FileKind.
+constexpr std::array kOpens{Ask::kSceneFile, Ask::kPresetFile, Ask::kMotionFile,  Ask::kMotionFile, Ask::kHairFile,
+                            Ask::kLoadState, Ask::kOpenCache,  Ask::kOpenProject, Ask::kAttach,     Ask::kEnvironment};
+
 void openAnyFile(const std::string& file, Demo& demo) {
-  const auto post = [&](Ask what, const std::string& name) { demo.requests.push_back({what, name, file}); };
-  switch (fileKind(file)) {
-    case FileKind::kScene:
-      return post(Ask::kSceneFile, "");
-    case FileKind::kPreset:
-      return post(Ask::kPresetFile, "");
-    case FileKind::kMotion:
-      return post(Ask::kMotionFile, "");
-    case FileKind::kRigidMotion:
-      return post(Ask::kMotionFile, partsBeside(file));
-    case FileKind::kHairMesh:
-      return post(Ask::kHairFile, "");
-    case FileKind::kAttachment:
-      return post(Ask::kAttach, "add");
-    case FileKind::kState:
-      return post(Ask::kLoadState, "");
-    case FileKind::kCache:
-      return post(Ask::kOpenCache, "");
-    case FileKind::kProject:
-      return post(Ask::kOpenProject, "");
-  }
+  const FileKind kind = fileKind(file);
+  std::string name;
+  if (kind == FileKind::kRigidMotion) name = partsBeside(file);
+  if (kind == FileKind::kAttachment) name = "add";
+  demo.requests.push_back({kOpens[static_cast<std::size_t>(kind)], name, file});
 }
 
 void setParameter(const Request& request, Demo& demo) {
@@ -253,6 +243,7 @@ void savePreset(const Request& request, Demo& demo) {
   writeFile(request.text,
             writePreset(stem(request.text), demo.scene.sim, selectedActor(demo).spec.look, demo.scene.look));
   demo.scene.preset = request.text;
+  keepBase(demo);
   showMessage("saved " + request.text, demo);
 }
 
@@ -330,6 +321,11 @@ void vary(const Request& request, Demo& demo) {
   if (!sim::parseNumber(request.text, amount) || amount < 0 || amount > kLargestVariation)
     throw InputError("", "variation", "'" + request.text.substr(0, 40) + "' is no amount", "choose 0 to 2");
   varyMaterial(amount, static_cast<std::uint64_t>(std::clamp(request.value, 0.0, 1e15)), demo.scene.sim);
+}
+
+void changeEnvironment(const Request& request, Demo& demo) {
+  setEnvironment(request.text, demo.scene);
+  showMessage(request.text.empty() ? "light without a panorama" : "light of " + stem(request.text), demo);
 }
 
 struct Action {
@@ -447,6 +443,7 @@ constexpr Action kActions[] = {
     {Ask::kCurve,
      [](const Request& request, Demo& demo) { applyCurve(request.name, request.text, demo.selected, demo); }},
     {Ask::kVary, vary},
+    {Ask::kEnvironment, changeEnvironment},
 };
 
 constexpr bool rowsMatchRequests() {
@@ -458,8 +455,9 @@ constexpr bool rowsMatchRequests() {
 static_assert(rowsMatchRequests());
 
 // Requests whose text is a file that they open or save, once kOpenFile has told its kind.
-constexpr Ask kOfFiles[] = {Ask::kMotionFile, Ask::kHairFile,    Ask::kSceneFile, Ask::kPresetFile, Ask::kLoadState,
-                            Ask::kOpenCache,  Ask::kOpenProject, Ask::kAttach,    Ask::kSaveScene,  Ask::kSaveProject};
+constexpr Ask kOfFiles[] = {Ask::kMotionFile, Ask::kHairFile,    Ask::kSceneFile,   Ask::kPresetFile,
+                            Ask::kLoadState,  Ask::kOpenCache,   Ask::kOpenProject, Ask::kAttach,
+                            Ask::kSaveScene,  Ask::kSaveProject, Ask::kEnvironment};
 
 bool ofFile(Ask what) {
   return std::ranges::find(kOfFiles, what) != std::end(kOfFiles);

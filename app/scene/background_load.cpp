@@ -32,11 +32,8 @@ std::unique_ptr<Loaded> load(LoadOrder order) {
   const PlaybackSpec& playback = order.scene.playback;
   if (order.spec) {
     Actor actor = makeActor(*order.spec, playback, loaded->asset_cache);
-    if (order.same_motion) {
-      actor.playback = order.playback;
-      placeActor(actor, true);
-    }
-    settleActor(order.scene.sim, playback.settle, actor);
+    if (order.same_motion) actor.playback = order.playback;
+    settleInMotion(order.scene.sim, playback.settle, actor);
     actor.context->refreshGradually(true);
     loaded->actor = std::move(actor);
   } else {

@@ -94,8 +94,12 @@ void showFault(Demo& demo) {
   demo.message_is_fault = demo.stats.recoveries > 0;
 }
 
-void advanceShownTime(double seconds, Demo& demo) {
-  if (!demo.paused) demo.shown_time += seconds;
+// By what was simulated: time that is given up does not count, and steps taken one by one do. `before`: the clock as
+// the frame began.
+void advanceShownTime(double seconds, const FixedClock& before, Demo& demo) {
+  const FixedClock& clock = demo.clock;
+  demo.shown_time +=
+      demo.paused ? (clock.time - clock.ahead) - (before.time - before.ahead) : seconds - (clock.lost - before.lost);
   demo.stats.shown_time = demo.shown_time;
   demo.stats.lost = demo.clock.lost;
 }
@@ -229,7 +233,14 @@ Demo openScene(Scene scene, double aspect, bool beside) {
   }
   for (Actor& actor : demo.actors) actor.context->refreshGradually(true);
   demo.message = hairNotes(demo);
+  keepBase(demo);
   return demo;
+}
+
+void keepBase(Demo& demo) {
+  RowValues& base = demo.scene.base;
+  base = {demo.scene.sim, {}, demo.scene.look};
+  for (const Actor& actor : demo.actors) base.hairs.push_back(actor.spec.look);
 }
 
 render::FrameInput frameInput(Demo& demo, int width, int height) {
@@ -326,6 +337,7 @@ void advanceFrame(Demo& demo, double seconds, const FrameTarget& target) {
   followColliders(demo);
 
   demo.running = governed(demo.scene.sim, demo.governor);
+  const FixedClock before = demo.clock;
   const int steps = stepsToTake(seconds, demo);
   count(demo.paused && steps == 0, demo.stats.always[kPausedFrame]);
   if (steps > 0) chooseDetail(demo);
@@ -338,7 +350,7 @@ void advanceFrame(Demo& demo, double seconds, const FrameTarget& target) {
   follow(demo.actors.front(), seconds, demo.aspect, demo.camera);
   if (demo.turntable != 0) demo.camera.yaw = std::remainder(demo.camera.yaw + demo.turntable * seconds, kWholeTurn);
 
-  advanceShownTime(seconds, demo);
+  advanceShownTime(seconds, before, demo);
   ++demo.frames;
   keepMoment(demo);
   advanceCompared(seconds, std::move(of_both), demo);

@@ -57,7 +57,7 @@ struct Demo {
   Deadline deadline;
   sim::SimParams running;  // the scene's parameters as the governor lets them run
   long frames = 0;         // shown since the scene began
-  double shown_time = 0;   // s
+  double shown_time = 0;   // s that were simulated up to what is shown
   bool paused = false;
   int single_steps = 0;  // asked for while paused
 
@@ -71,7 +71,7 @@ struct Demo {
   std::string message;            // the last fault or success, for the window
   bool message_is_fault = false;
   std::pair<Ask, std::string> refused{Ask::kCount, ""};  // and its message, which goes when another such succeeds
-  std::vector<FileEnd> file_ends;  // since the window has last looked
+  std::vector<FileEnd> file_ends;                        // since the window has last looked
   Capture capture;
 
   FrameStats stats;                 // of the last frame
@@ -103,6 +103,9 @@ struct FrameTarget {
 // Loads a scene and lets the hair come to rest. With `beside`, what can follow later is loaded beside the frames from
 // now on. Throws InputError.
 Demo openScene(Scene scene, double aspect, bool beside = false);
+
+// The rows of the tables as they are now become what Scene::base has.
+void keepBase(Demo& demo);
 
 // Advances by `seconds` of wall time and draws. Faults of requests become the demo's message; what was loaded stays.
 void advanceFrame(Demo& demo, double seconds, const FrameTarget& target);

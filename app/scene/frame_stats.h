@@ -33,7 +33,7 @@ inline constexpr std::array<std::string_view, kFrameStageCount> kFrameStageNames
 struct FrameStats {
   std::array<double, kFrameStageCount> seconds{};
   double whole = 0;       // s, the whole of advanceFrame
-  double shown_time = 0;  // s since the start
+  double shown_time = 0;  // s simulated since the start
   int steps = 0;
   double lost = 0;  // s of time given up so far
   int solver_iterations = 0, solves = 0, minimization_iterations = 0;

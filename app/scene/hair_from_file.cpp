@@ -39,7 +39,7 @@ std::string mendedBy(const Haircut& haircut) {
   std::string text, left;
   for (const MendedFinding& one : haircut.findings) {
     const GroomFinding& finding = one.finding;
-    if (one.done) text += (text.empty() ? "mended by " : ", ") + finding.mend;
+    if (one.done) text += (text.empty() ? "mended: " : ", ") + finding.what + " (" + finding.mend + ")";
     if (!one.done && ((finding.fault && (finding.what == "unit" || finding.what == "up")) || finding.what == "hidden"))
       left += "; " + finding.text + (finding.mend.empty() ? "" : " (--mends \"" + finding.mend + "\")");
   }
@@ -75,7 +75,9 @@ sim::HairMeshShape hairFromFile(const CharacterSpec& spec, const Character& char
   } else {
     refuseUtf16(bytes, spec.hair);
     if (!hasLayers(bytes)) refuseNoHair(spec.hair);
-    shape = readHairMesh(bytes, spec.hair, spec.reverse_faces);
+    bool turned = false;
+    shape = readHairMesh(bytes, spec.hair, spec.reverse_faces, "", &turned);
+    if (turned) note("all its faces were wound the other way, and are turned");
   }
   if (!on_head) note(fitHair(character, spec.fit, shape));
   return shape;

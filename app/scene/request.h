@@ -69,6 +69,7 @@ enum class Ask {
   kPaint,        // name: field, text: a sample of a stroke; see paint_brush.h
   kCurve,        // name: field, text: shares from root to tip; see setCurve
   kVary,         // value: seed; text: how far, see varyMaterial
+  kEnvironment,  // text: panorama that the lights are taken from; empty: those before it
   kCount
 };
 

@@ -9,6 +9,7 @@
 #include "app/files/data_path.h"
 #include "app/ui/ui_panels.h"
 #include "app/ui/ui_widgets.h"
+#include "app/ui/window_words.h"
 
 namespace app {
 
@@ -53,9 +54,10 @@ void sceneBox(Demo& demo, UiState& ui) {
   noteItem("scene", ui);
   noteItem("scene " + title, ui);
   if (open) {
-    for (const std::string& file : ui.scenes) {
-      if (ImGui::Selectable(readable(stem(file)).c_str(), file == demo.scene.file))
-        postRequest(demo, {Ask::kSceneFile, "", file});
+    for (std::size_t k = 0; k < ui.scenes.size(); ++k) {
+      const std::string& file = ui.scenes[k];
+      const std::string label = readable(ui.scene_names[k]) + "##" + file;
+      if (ImGui::Selectable(label.c_str(), file == demo.scene.file)) postRequest(demo, {Ask::kSceneFile, "", file});
       noteItem("scene " + stem(file), ui);
     }
     ImGui::EndCombo();
@@ -80,7 +82,7 @@ void fileRow(Demo& demo, UiState& ui) {
                                 {"History", "Lists all changes, to go to any of them"}},
                                ui.history ? 4 : -1, ui);
   if (pressed == 0) browseFor(BrowseFor::kOpen, ui);
-  if (pressed == 1) browseFor(BrowseFor::kSaveScene, ui);
+  if (pressed == 1) browseToSave(demo, ui);
   if (pressed == 2) postRequest(demo, {Ask::kUndo, "", "", 1});
   if (pressed == 3) postRequest(demo, {Ask::kRedo, "", "", 1});
   if (pressed == 4) ui.history = !ui.history;
@@ -259,6 +261,7 @@ void sidebar(Demo& demo, UiState& ui, float below) {
     if (!folded(ui)) {
       if (!filesBeside(ui)) fileRow(demo, ui);
       characterRow(demo, ui);
+      if (ui.history && ui.history_in_sidebar) historyList(demo, ui);
       if (!sheet(ui)) ImGui::Spacing();
       tabs(demo, ui);
     }
@@ -288,9 +291,9 @@ void timings(Demo& demo, UiState& ui) {
 
 // What is shown below the figure: the message, and what is being loaded as long as it is.
 std::string messageText(const Demo& demo) {
-  const std::string loading = loadingNote(demo);
-  if (loading.empty() || demo.message == loading) return demo.message;
-  return demo.message_is_fault ? demo.message + "\n" + loading : loading;
+  const std::string loading = loadingNote(demo), said = windowWords(demo.message);
+  if (loading.empty() || demo.message == loading) return said;
+  return demo.message_is_fault ? said + "\n" + loading : loading;
 }
 
 // Where notices stand: in the middle of what sidebar and history leave free, above the history where that is too narrow
@@ -313,7 +316,8 @@ void message(NoticePlace& place, Demo& demo, UiState& ui) {
     ui.message_since = ImGui::GetTime();
   }
   if (text.empty()) return;
-  if (text == demo.message && !demo.message_is_fault && ImGui::GetTime() - ui.message_since > kMessageTime) {
+  if (text == windowWords(demo.message) && !demo.message_is_fault &&
+      ImGui::GetTime() - ui.message_since > kMessageTime) {
     demo.message.clear();
     return;
   }
@@ -403,6 +407,7 @@ void buildUi(Demo& demo, UiState& ui) {
   ui.presets_in_sight.clear();
   ui.items.clear();
   ui.halved = demo.comparison.on() && demo.comparison.side_by_side;
+  ui.history_in_sidebar = !narrow(ui) && timingsRoom(ui) < kLeastFigure * ui.text_scale;
   compareLine(demo, ui);
   if (!ui.line_held) brushFrame(demo, ui);
   count(!ui.visible, demo.stats.always[kHiddenPanels]);

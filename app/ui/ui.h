@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -25,7 +24,7 @@ struct UiItem {
 };
 
 // What the file panel is open for.
-enum class BrowseFor { kNothing, kOpen, kMotion, kParts, kHair, kSaveScene };
+enum class BrowseFor { kNothing, kOpen, kMotion, kParts, kHair, kEnvironment, kWorn, kSaveScene };
 
 struct FileBrowser {
   BrowseFor what = BrowseFor::kNothing;
@@ -34,6 +33,7 @@ struct FileBrowser {
   std::array<char, 512> name{};
   std::string to_replace;  // is there already and is written on the second press
   bool project = false;    // what is saved: all that moves as well
+  std::string last;        // scene or project that was saved or opened last
   bool opened = false;     // since the last frame: the name is ready to be typed
 };
 
@@ -55,14 +55,6 @@ struct SelectState {
   int element = -1;           // of kElementNames; -1: none are chosen
   std::vector<int> chosen;    // as MoveSample has them
   std::uint64_t haircut = 0;  // whose they are
-};
-
-// The parameters as a preset left them, to tell whether they have been changed since.
-struct PresetMark {
-  bool arriving = true;  // it is applied with the next frame's requests
-  sim::SimParams sim;
-  CharacterLook hair;
-  SceneLook scene;
 };
 
 // The picture of a preset, as whoever draws them has come to.
@@ -100,6 +92,7 @@ struct UiState {
   bool reload_shaders = false;                  // asked for by a key
   int open_tab = -1;                            // asked for by a key or a test; -1: leave
   float timings_bottom = 0;                     // px; 0: they are not shown
+  bool history_in_sidebar = false;              // for want of room beside it
   float history_width = 0, history_height = 0;  // px with its margin; 0: it is not shown
   float fault_height = 0;                       // px from the window's bottom to a fault's upper edge; 0: there is none
   bool line_placed = false;                     // the line of a comparison stands there, or where a person has drawn it
@@ -110,8 +103,7 @@ struct UiState {
   ImFont* heading = nullptr;
   std::array<char, 512> motion_path{}, parts_path{}, hair_path{}, scene_path{};
   std::array<char, 64> preset_name{}, search{};
-  std::map<std::string, PresetMark> preset_marks;  // by file, of those that were chosen
-  std::vector<std::string> presets_in_sight;       // files whose pictures the last frame has shown, or would have
+  std::vector<std::string> presets_in_sight;  // files whose pictures the last frame has shown, or would have
   std::vector<PresetPicture> preset_pictures;
   std::string scoped_preset, preset_scope;  // the preset under the pointer, and what it changes, in words
   std::string to_replace;                   // a file that is there already and is written on the second press
@@ -133,6 +125,7 @@ struct UiState {
   bool leaving = false;             // Esc was pressed once
   std::string shown_message;
   double message_since = 0;                                             // s of ImGui's clock
+  std::vector<std::string> scene_names;                                 // of `scenes`
   std::vector<std::string> scenes, presets, clips, hairs, attachments;  // files on offer
   std::vector<UiItem> items;
 };

@@ -194,14 +194,14 @@ void paintRow(UiState& ui) {
        {"Clump", "Paints how far strands gather to locks, as a share"}},
       4);
   row({{"Curl", "Paints how wide the curls are, as a share; without curls nothing shows"},
-       {"Color", "Paints a pigment over the hair's own colour"},
+       {"Color", "Paints a pigment over the hair's own color"},
        {"Rough", "Paints how wide the highlights are, as a share"},
        {"Damp", "Paints how soon the hair's own motion dies away, as a share of the parameters' damping"}},
       7);
 }
 
 void colorRow(UiState& ui) {
-  rowLabel("Color", "Share of the light that passes through pigment: white leaves the hair its own colour");
+  rowLabel("Color", "Share of the light that passes through pigment: white leaves the hair its own color");
   ImGui::SetNextItemWidth(-1);
   ImGui::ColorEdit3("##brush_color", ui.brush.color.data(), ImGuiColorEditFlags_DisplayRGB);
   noteItem("brush_color", ui);

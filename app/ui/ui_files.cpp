@@ -27,13 +27,19 @@ struct Purpose {
 
 const Purpose& purposeOf(BrowseFor what) {
   static const Purpose kPurposes[] = {
-      {BrowseFor::kOpen, "Open a scene, preset, motion, hair mesh or state", "Open", {}},
+      {BrowseFor::kOpen,
+       "Open a scene, preset, motion, hair, hat, panorama or state",
+       "Open",
+       {".json", ".bvh",  ".glb",  ".gltf", ".fbx", ".dae", ".mot", ".obj", ".abc",   ".usda",
+        ".usd",  ".usdc", ".usdz", ".hair", ".tfx", ".ply", ".vrm", ".hdr", ".state", ".hairmesh"}},
       {BrowseFor::kMotion, "Open a motion", "Open", {".bvh", ".glb", ".gltf", ".fbx", ".dae", ".mot"}},
       {BrowseFor::kParts, "Folder of body parts", "Choose", {"/"}},
       {BrowseFor::kHair,
        "Open a hair mesh or a groom",
        "Open",
        {".obj", ".abc", ".usda", ".hair", ".ply", ".tfx", ".fbx", ".glb", ".gltf", ".vrm"}},
+      {BrowseFor::kEnvironment, "Open a panorama that the light is taken from", "Open", {".hdr"}},
+      {BrowseFor::kWorn, "Open a hat, glasses or a collar", "Open", {".obj", ".fbx", ".glb", ".gltf"}},
       {BrowseFor::kSaveScene, "Save the scene: style, motion, hair, camera, look, parameters", "Save", {".json"}}};
   return *std::find_if(std::begin(kPurposes), std::end(kPurposes) - 1,
                        [&](const Purpose& purpose) { return purpose.what == what; });
@@ -64,7 +70,7 @@ void placesRow(UiState& ui) {
     ImGui::SameLine(0, 4);
   };
   place("Up", "The folder above", folderAbove(browser.folder));
-  place("Here", "The folder that the program was started in", ".");
+  place("Working folder", "The folder that the program was started in, where it writes pictures", ".");
   place("Examples", "What comes with the program", dataPath("assets"));
   if (const char* home = std::getenv("HOME")) place("Home", home, home);
   // The end of a long path says more than its start.
@@ -134,6 +140,7 @@ void take(const std::string& file, Demo& demo, UiState& ui) {
   }
   if (browser.what == BrowseFor::kSaveScene && fs::exists(file, ignored) && browser.to_replace != file) {
     browser.to_replace = file;
+    browser.opened = true;  // the next Enter is the name's again
     return;
   }
   switch (browser.what) {
@@ -151,20 +158,34 @@ void take(const std::string& file, Demo& demo, UiState& ui) {
       postRequest(demo, {Ask::kMotionFile, file, ui.motion_path.data()});
       break;
     case BrowseFor::kHair:
+    case BrowseFor::kEnvironment:
       openFile(file, demo, ui);
+      break;
+    case BrowseFor::kWorn:
+      postRequest(demo, {Ask::kAttach, "add", file});
+      ui.asked.push_back(file);
       break;
     case BrowseFor::kSaveScene:
       postRequest(demo, {browser.project ? Ask::kSaveProject : Ask::kSaveScene, "", file});
+      browser.last = file;
       ui.asked.push_back(file);
       break;
   }
   close(browser);
 }
 
+bool willReplace(const FileBrowser& browser) {
+  return !browser.to_replace.empty() && browser.to_replace == typedPath(browser);
+}
+
 void nameRow(Demo& demo, UiState& ui, std::string chosen) {
   FileBrowser& browser = ui.browser;
   const std::string typed = typedPath(browser);
-  const bool replaces = !browser.to_replace.empty() && browser.to_replace == typed;
+  const bool replaces = willReplace(browser);
+  if (replaces) {
+    ImGui::TextUnformatted("A file of this name is there already; Enter again replaces it");
+    noteItem("replaces", ui);
+  }
   const float button = 74 * ui.text_scale;
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - 2 * button - 10);
   if (std::exchange(browser.opened, false)) ImGui::SetKeyboardFocusHere();
@@ -174,7 +195,6 @@ void nameRow(Demo& demo, UiState& ui, std::string chosen) {
   ImGui::SameLine(0, 5);
   const bool pressed = ImGui::Button(replaces ? "Replace" : purposeOf(browser.what).button, {button, 0});
   noteItem("file_take", ui);
-  if (replaces) tip("A file of this name is there already");
   ImGui::SameLine(0, 5);
   const bool cancelled = ImGui::Button("Cancel", {button, 0});
   noteItem("file_cancel", ui);
@@ -198,7 +218,18 @@ void browseFor(BrowseFor what, UiState& ui) {
   goTo(browser.folder.empty() ? "." : browser.folder, browser);
 }
 
+void browseToSave(const Demo& demo, UiState& ui) {
+  FileBrowser& browser = ui.browser;
+  const bool named = !browser.last.empty() && stem(browser.last) == demo.scene.name;
+  const fs::path file(named ? browser.last : demo.scene.file);
+  const bool own = file.string().starts_with(dataPath("assets"));  // the program's are not written over by two presses
+  if (!file.empty() && !own) browser.folder = file.has_parent_path() ? file.parent_path().string() : ".";
+  browseFor(BrowseFor::kSaveScene, ui);
+  if (!file.empty()) setName(own ? file.stem().string() : file.filename().string(), browser);
+}
+
 void openFile(const std::string& file, Demo& demo, UiState& ui) {
+  if (file.ends_with(".json")) ui.browser.last = file;
   postRequest(demo, {Ask::kOpenFile, "", file});
   ui.asked.push_back(file);
 }
@@ -230,7 +261,8 @@ void filePanel(Demo& demo, UiState& ui) {
     }
     placesRow(ui);
     std::string chosen;
-    const float below = ImGui::GetFrameHeightWithSpacing();
+    const float words = willReplace(ui.browser) ? ImGui::GetTextLineHeightWithSpacing() : 0;
+    const float below = ImGui::GetFrameHeightWithSpacing() + words;
     if (ImGui::BeginChild("list", {0, -below}, true)) {
       if (ui.browser.what == BrowseFor::kOpen && !ui.recent.empty()) chosen = recentList(ui);
       if (const std::string entry = entryList(ui); !entry.empty()) chosen = entry;

@@ -15,7 +15,8 @@ constexpr float kHistoryWidth = 292, kMinHeight = 130, kHistoryMargin = 12;
 
 // A slider's step carries its row's title; others say what they are.
 std::string titleOf(const EditStep& step) {
-  if (step.request.what == Ask::kSetParam) return rowTitle(step.request.name) + " " + step.request.text;
+  if (step.request.what == Ask::kSetParam)
+    return rowTitle(step.request.name) + " " + rowValue(step.request.name, step.request.text);
   std::string title = step.title;
   title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
   return title;
@@ -40,11 +41,17 @@ void momentLine(std::size_t done, const std::string& title, Demo& demo, UiState&
   postRequest(demo, {steps < 0 ? Ask::kUndo : Ask::kRedo, "", "", std::abs(steps)});
 }
 
+void momentLines(Demo& demo, UiState& ui) {
+  momentLine(0, "Opened", demo, ui);
+  const EditHistory& edits = demo.edits;
+  for (std::size_t k = 0; k < edits.steps.size(); ++k) momentLine(k + 1, titleOf(edits.steps[k]), demo, ui);
+}
+
 }  // namespace
 
 void historyPanel(Demo& demo, UiState& ui) {
   ui.history_width = ui.history_height = 0;
-  if (!ui.history || !ui.visible) return;
+  if (!ui.history || !ui.visible || ui.history_in_sidebar) return;
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const float scale = ui.text_scale, margin = kHistoryMargin * scale;
   const float width = std::min(kHistoryWidth * scale, size.x - 2 * margin);
@@ -56,11 +63,15 @@ void historyPanel(Demo& demo, UiState& ui) {
   ImGui::SetNextWindowSize({std::max(32.0f, width), std::max(32.0f, height)});
   const ImGuiWindowFlags flags = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse;
   if (ImGui::Begin("History", &ui.history, flags)) {
-    momentLine(0, "Opened", demo, ui);
-    const EditHistory& edits = demo.edits;
-    for (std::size_t k = 0; k < edits.steps.size(); ++k) momentLine(k + 1, titleOf(edits.steps[k]), demo, ui);
+    momentLines(demo, ui);
   }
   ImGui::End();
+}
+
+void historyList(Demo& demo, UiState& ui) {
+  if (ImGui::BeginChild("history", {0, kMinHeight * ui.text_scale}, true)) momentLines(demo, ui);
+  ImGui::EndChild();
+  noteItem("history list", ui);
 }
 
 }  // namespace app

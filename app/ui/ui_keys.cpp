@@ -168,7 +168,7 @@ constexpr ChordAction kChordActions[] = {
        postRequest(demo, {Ask::kRedo, "", "", 1});
      }},
     {'O', kControl, [](Demo&, UiState& ui) { browseFor(BrowseFor::kOpen, ui); }},
-    {'S', kControl, [](Demo&, UiState& ui) { browseFor(BrowseFor::kSaveScene, ui); }},
+    {'S', kControl, [](Demo& demo, UiState& ui) { browseToSave(demo, ui); }},
     {'=', kControl, [](Demo&, UiState& ui) { ui.zoom_texts *= 1.1f; }},
     {'-', kControl, [](Demo&, UiState& ui) { ui.zoom_texts /= 1.1f; }},
     {'0', kControl, [](Demo&, UiState& ui) { ui.zoom_texts = 1; }},

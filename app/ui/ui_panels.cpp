@@ -255,6 +255,12 @@ void motionTab(Demo& demo, UiState& ui) {
 
 namespace {
 
+// The inspector's option as words: "drop bad".
+std::string plainMend(std::string mend) {
+  for (std::size_t at = mend.find("--"); at != std::string::npos; at = mend.find("--", at)) mend.erase(at, 2);
+  return mend;
+}
+
 // What the inspector says of curves from a file, with its mends as buttons.
 void inspectorSection(const Actor& actor, Demo& demo, UiState& ui) {
   if (!actor.haircut->look || !actor.spec.fit || !section("Inspector", true)) return;
@@ -276,13 +282,13 @@ void inspectorSection(const Actor& actor, Demo& demo, UiState& ui) {
     ImGui::TextUnformatted((one.finding.what + ": " + one.finding.text).c_str());
     ImGui::PopTextWrapPos();
     if (one.done) {
-      ImGui::TextDisabled("mended by %s", one.finding.mend.c_str());
+      ImGui::TextDisabled("mended: %s", plainMend(one.finding.mend).c_str());
     } else if (one.finding.mend.find('|') == std::string::npos) {
       if (ImGui::Button(("Mend##" + one.finding.what).c_str()))
         postRequest(demo, {Ask::kHairMends, "", mends + (mends.empty() ? "" : " ") + one.finding.mend});
       noteItem("mend " + one.finding.what, ui);
       ImGui::SameLine(0, 6);
-      ImGui::TextDisabled("%s", one.finding.mend.c_str());
+      ImGui::TextDisabled("%s", plainMend(one.finding.mend).c_str());
     }
   }
 }
@@ -294,7 +300,8 @@ void tieRow(const Actor& actor, Demo& demo, UiState& ui) {
   int chosen = ties.empty() ? 0 : ties.size() == 2 ? 4 : -1;
   for (int k = 1; k < 4 && ties.size() == 1; ++k) chosen = ties[0].place == kNames[k] && !ties[0].at ? k : chosen;
   const int pressed = segments("tie", {"None", "High", "Back", "Low", "Two"}, chosen, ui);
-  bool braided = !ties.empty() && std::ranges::all_of(ties, &TieSpec::braided);
+  // Hair that has no room for a plait hangs as a tail.
+  bool braided = !actor.haircut->braids.empty() && std::ranges::all_of(ties, &TieSpec::braided);
   const auto post = [&](std::vector<TieSpec> wanted) {
     for (TieSpec& tie : wanted) tie.braided = braided;
     postRequest(demo, {Ask::kTie, "", writeTies(wanted).dump()});
@@ -346,10 +353,34 @@ void hairTab(Demo& demo, UiState& ui) {
   }
 }
 
+namespace {
+
+// The panorama that the lights are taken from.
+void environmentRow(Demo& demo, UiState& ui) {
+  const std::string& file = demo.scene.environment;
+  rowLabel("Environment", "A panorama (.hdr) that key, fill, rim, sky and ground light are taken from. " + file);
+  if (ImGui::Button("Open...##environment")) browseFor(BrowseFor::kEnvironment, ui);
+  noteItem("open environment", ui);
+  ImGui::SameLine(0, 5);
+  ImGui::BeginDisabled(file.empty());
+  if (ImGui::Button("None##environment")) postRequest(demo, {Ask::kEnvironment, "", ""});
+  ImGui::EndDisabled();
+  noteItem("no environment", ui);
+  ImGui::SameLine(0, 8);
+  ImGui::TextDisabled("%s", file.empty() ? "none" : readable(stem(file)).c_str());
+  noteItem("environment " + stem(file), ui);
+}
+
+}  // namespace
+
 void lookTab(Demo& demo, UiState& ui) {
-  if (section("Colour", true)) hairGroup("Colour", demo, ui);
+  if (section("Color", true)) hairGroup("Color", demo, ui);
   if (section("Shine", true)) hairGroup("Shine", demo, ui);
-  if (section("Light", false)) sceneGroup("Light", demo, ui);
+  if (section("Light", false)) {
+    environmentRow(demo, ui);
+    sceneGroup("Light", demo, ui);
+  }
+  noteItem("section Light", ui);
   if (section("Shadows", true)) sceneGroup("Shadows", demo, ui);
   if (section("Picture", false)) sceneGroup("Picture", demo, ui);
   if (section("Body", false)) hairGroup("Body", demo, ui);

@@ -57,10 +57,14 @@ void compareLine(Demo& demo, UiState& ui);
 
 // The steps that can be undone and done again, by name; a press goes there.
 void historyPanel(Demo& demo, UiState& ui);
+// The same within the sidebar.
+void historyList(Demo& demo, UiState& ui);
 
 // The file panel, while it is open; opening it; and what a file that was chosen or dropped asks for.
 void filePanel(Demo& demo, UiState& ui);
 void browseFor(BrowseFor what, UiState& ui);
+// The same to save the scene, with the name and folder that it was saved or opened by.
+void browseToSave(const Demo& demo, UiState& ui);
 void openFile(const std::string& file, Demo& demo, UiState& ui);
 
 // Notes a view that the camera has come to, once the mouse is let go. While a turntable turns it notes none.

@@ -28,7 +28,6 @@ void savePreset(Demo& demo, UiState& ui) {
     return;
   }
   ui.to_replace.clear();
-  ui.preset_marks.erase(file);
   postRequest(demo, {Ask::kSavePreset, "", file});
   if (std::find(ui.presets.begin(), ui.presets.end(), file) == ui.presets.end()) ui.presets.push_back(file);
 }
@@ -39,19 +38,14 @@ bool sameRows(std::span<const Field> table, const Owner& a, const Owner& b) {
 }
 
 // The chosen preset's name, and whether a parameter has been changed since.
-std::string presetTitle(const Demo& demo, UiState& ui) {
+std::string presetTitle(const Demo& demo) {
   const std::string& file = demo.scene.preset;
   if (file.empty()) return "choose...";
-  PresetMark& preset = ui.preset_marks[file];
+  const RowValues& base = demo.scene.base;
   const CharacterLook& hair = selectedActor(demo).spec.look;
-  if (preset.arriving) {
-    preset.arriving = !demo.requests.empty();
-    preset.sim = demo.scene.sim;
-    preset.hair = hair;
-    preset.scene = demo.scene.look;
-  }
-  const bool same = sameRows(sim::paramFields(), demo.scene.sim, preset.sim) &&
-                    sameRows(hairFields(), hair, preset.hair) && sameRows(sceneFields(), demo.scene.look, preset.scene);
+  const bool same = sameRows(sim::paramFields(), demo.scene.sim, base.sim) &&
+                    sameRows(hairFields(), hair, base.hairs[static_cast<std::size_t>(demo.selected)]) &&
+                    sameRows(sceneFields(), demo.scene.look, base.scene);
   return readable(stem(file)) + (same ? "" : ", changed");
 }
 
@@ -71,11 +65,6 @@ std::string scopeOf(const std::string& file) {
   } catch (const std::exception& fault) {
     return fault.what();
   }
-}
-
-void choosePreset(const std::string& file, Demo& demo, UiState& ui) {
-  ui.preset_marks.erase(file);
-  postRequest(demo, {Ask::kPresetFile, "", file});
 }
 
 // Over the widget just made: the picture, or a plain square until there is one, and the name below.
@@ -121,7 +110,7 @@ void pictureGrid(Demo& demo, UiState& ui) {
       if (k % kPicturesAcross != 0) ImGui::SameLine();
       ImGui::PushID(file.c_str());
       const bool chosen = file == demo.scene.preset;
-      if (ImGui::Selectable("##picture", false, 0, {side, height})) choosePreset(file, demo, ui);
+      if (ImGui::Selectable("##picture", false, 0, {side, height})) postRequest(demo, {Ask::kPresetFile, "", file});
       noteItem("preset_picture " + stem(file), ui);
       presetTip(file, ui);
       if (ImGui::IsItemVisible()) {
@@ -137,10 +126,10 @@ void pictureGrid(Demo& demo, UiState& ui) {
 
 void presetCombo(Demo& demo, UiState& ui) {
   rowLabel("Preset", "Sets the groups of parameters that it names: what it leaves out of them takes its default");
-  const std::string shown = presetTitle(demo, ui);
+  const std::string shown = presetTitle(demo);
   const std::string file = fileCombo("##preset", shown, ui.presets, ui);
   noteItem("preset " + shown, ui);
-  if (!file.empty()) choosePreset(file, demo, ui);
+  if (!file.empty()) postRequest(demo, {Ask::kPresetFile, "", file});
 }
 
 void savePresetRow(Demo& demo, UiState& ui) {

@@ -4,8 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "app/files/data_path.h"
+#include "app/files/errors.h"
+#include "app/files/json_reader.h"
+#include "app/files/text_file.h"
 #include "app/ui/ui.h"
 
 namespace app {
@@ -66,6 +70,16 @@ void setColors(ImGuiStyle& style) {
   c[ImGuiCol_TextSelectedBg] = {0.86f, 0.56f, 0.36f, 0.35f};
 }
 
+// As the scene calls itself once it is open.
+std::string sceneName(const std::string& file) {
+  try {
+    const nlohmann::json scene = parseJson(readText(file), file);
+    if (const auto name = scene.find("name"); name != scene.end() && name->is_string()) return name->get<std::string>();
+  } catch (const InputError&) {  // said when it is opened
+  }
+  return stem(file);
+}
+
 }  // namespace
 
 float fittingTextScale(float wanted, int width, int height) {
@@ -99,6 +113,8 @@ void prepareUi(float text_scale, UiState& ui) {
   style.WindowMenuButtonPosition = ImGuiDir_Right;
   style.ScaleAllSizes(text_scale);
   ui.scenes = listAssets("scenes", {".json"});
+  ui.scene_names.clear();
+  for (const std::string& file : ui.scenes) ui.scene_names.push_back(sceneName(file));
   ui.presets = listAssets("presets", {".json"});
   ui.clips = listAssets("clips", {".bvh", ".glb", ".gltf", ".fbx"});
   ui.hairs = listAssets("hair", {".obj"});

@@ -139,7 +139,7 @@ void cacheButton(Demo& demo, UiState& ui) {
 // Pixels of the timeline, beside the history.
 float widthRightOf(float left, const UiState& ui) {
   const float margin = kTimelineMargin * ui.text_scale;
-  const float right = ui.history ? 292 * ui.text_scale + margin : 0;
+  const float right = ui.history && !ui.history_in_sidebar ? 292 * ui.text_scale + margin : 0;
   return ImGui::GetIO().DisplaySize.x - left - right - 2 * margin;
 }
 bool inOneRow(float width, const UiState& ui) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "app/files/data_path.h"
+#include "app/files/field_map.h"
 #include "sim/field_text.h"
 #include "sim/stabilization/parameter_limits.h"
 
@@ -17,7 +18,6 @@ namespace app {
 namespace {
 
 constexpr float kLabelShare = 0.43f;
-constexpr float kResetWidth = 20;
 constexpr float kMarkShare = 0.16f;  // of a slider's height
 constexpr float kTipDelay = 0.3f;    // s
 constexpr float kEndedTip = 1e9f;    // s
@@ -26,44 +26,42 @@ ImU32 color(ImGuiCol index, float alpha = 1) {
   return ImGui::GetColorU32(index, alpha);
 }
 
-// A small turning arrow.
-void drawTurn(ImDrawList* list, ImVec2 middle, float radius, ImU32 ink) {
-  list->PathArcTo(middle, radius, -2.4f, 2.2f, 16);
-  list->PathStroke(ink, 0, 1.6f);
-  const ImVec2 end(middle.x + radius * std::cos(-2.4f), middle.y + radius * std::sin(-2.4f));
-  const float s = 0.75f * radius;
-  list->AddTriangleFilled({end.x - 0.7f * s, end.y - 0.25f * s}, {end.x + 0.75f * s, end.y - 0.55f * s},
-                          {end.x + 0.1f * s, end.y + 0.8f * s}, ink);
-}
-
-// The reset mark at the end of a row; returns whether it was pressed.
-bool resetMark(const char* name, const std::string& default_text, UiState& ui) {
-  ImGui::SameLine(0, 4);
-  const float height = ImGui::GetFrameHeight();
-  ImGui::PushID("reset");
-  const bool pressed = ImGui::InvisibleButton(name, {kResetWidth * ui.text_scale, height});
-  ImGui::PopID();
-  noteItem(std::string("reset ") + name, ui);
-  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-  drawTurn(ImGui::GetWindowDrawList(), {0.5f * (low.x + high.x), 0.5f * (low.y + high.y)}, 5 * ui.text_scale,
-           color(ImGui::IsItemHovered() ? ImGuiCol_Text : ImGuiCol_CheckMark));
-  tip("Back to " + default_text);
-  return pressed;
-}
-
-struct RowText {
-  std::string name, help;
+// How panels show a unit of the tables; files keep the table's. `times`: what is shown over what the table has.
+struct ShownUnit {
+  std::string_view unit;
+  double times;
 };
+ShownUnit shownUnit(std::string_view unit, double maximum) {
+  if (unit == "m" && maximum < 1) return {"mm", 1e3};
+  if (unit == "Pa") return {"kPa", 1e-3};
+  return {unit, 1};
+}
 
 // A number with its unit inside the slider.
 bool numberSlider(const char* name, sim::FieldKind kind, bool logarithmic, double low, double high, const char* unit,
                   double& value) {
+  const ShownUnit shown = shownUnit(unit, high);
   std::string format = kind == sim::FieldKind::kInteger ? "%.0f" : "%.4g";
-  if (*unit) format += std::string(" ") + unit;
+  if (*unit) format.append(" ").append(shown.unit);
   ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp;
   if (logarithmic) flags |= ImGuiSliderFlags_Logarithmic;
   const MarksBelowDigits marks;
-  return ImGui::SliderScalar(name, ImGuiDataType_Double, &value, &low, &high, format.c_str(), flags);
+  double number = shown.times * value;
+  const double least = shown.times * low, most = shown.times * high;
+  if (!ImGui::SliderScalar(name, ImGuiDataType_Double, &number, &least, &most, format.c_str(), flags)) return false;
+  value = std::clamp(number / shown.times, low, high);
+  return true;
+}
+
+// A row's value as the table writes it, as panels show it: with its unit there.
+std::string shownText(const std::string& text, std::string_view unit, double maximum) {
+  double value = 0;
+  if (!sim::parseNumber(text, value)) return text;
+  const ShownUnit shown = shownUnit(unit, maximum);
+  char number[32];
+  std::snprintf(number, sizeof number, "%.6g", shown.times * value);
+  return shown.times == 1 && unit.empty() ? text
+                                          : std::string(number).append(unit.empty() ? "" : " ").append(shown.unit);
 }
 
 bool choiceCombo(const char* name, std::span<const char* const> choices, double& value) {
@@ -80,17 +78,16 @@ bool choiceCombo(const char* name, std::span<const char* const> choices, double&
   return changed;
 }
 
-std::string helpText(const std::string& name, const char* help, const std::string& range, const std::string& unit,
-                     const std::string& standard) {
-  std::string text =
-      std::string(help) + "\n\n" + name + ", " + range + (unit.empty() ? "" : " " + unit) + ", default " + standard;
-  return text;
-}
-
-std::string rangeOf(sim::FieldKind kind, double low, double high) {
-  if (kind == sim::FieldKind::kSwitch) return "on or off";
-  if (kind == sim::FieldKind::kChoice) return "a choice";
-  return sim::numberText(low) + " to " + sim::numberText(high);
+// What a row is for, its name and range in files, and how a number is typed.
+template <class Row>
+std::string helpText(const Row& row, const std::string& standard) {
+  std::string text = std::string(row.help) + "\n\n" + row.name + ", ";
+  if (row.kind == sim::FieldKind::kSwitch) return text + "on or off, default " + standard;
+  if (row.kind == sim::FieldKind::kChoice) return text + "a choice, default " + standard;
+  const auto shown = [&](double value) { return shownText(sim::numberText(value), row.unit, row.maximum); };
+  text += shown(row.minimum) + " to " + shown(row.maximum) + ", default " + shownText(standard, row.unit, row.maximum);
+  if (shownUnit(row.unit, row.maximum).times != 1) text.append("; in files ").append(row.unit);
+  return text + "\nCtrl and a click: type a number";
 }
 
 void fillRow(bool with_reset, UiState& ui) {
@@ -105,7 +102,9 @@ void limitNote(const sim::ParamField& field, const Demo& demo, UiState& ui) {
   for (const sim::LimitedValue& limited : sim::limitedValues(mesh, demo.scene.sim)) {
     if (limited.field != &field) continue;
     char text[160];
-    std::snprintf(text, sizeof text, "used: %.3g %s, %s", limited.used, field.unit, limited.reason);
+    const ShownUnit shown = shownUnit(field.unit, field.maximum);
+    std::snprintf(text, sizeof text, "used: %.3g %s, %s", shown.times * limited.used, shown.unit.data(),
+                  limited.reason);
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + kLabelShare * ImGui::GetContentRegionAvail().x);
     ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_CheckMark));
     ImGui::PushTextWrapPos(0);
@@ -185,6 +184,17 @@ void tip(const std::string& text) {
   ImGui::EndTooltip();
 }
 
+bool colorSwatch(const char* name, std::array<float, 3>& linear, int flags) {
+  std::array<float, 3> shown{};
+  for (std::size_t c = 0; c < 3; ++c) shown[c] = static_cast<float>(pictureValue(static_cast<double>(linear[c])));
+  if (!ImGui::ColorEdit3(name, shown.data(), flags)) return false;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double value = std::clamp(static_cast<double>(shown[c]), 0.0, 1.0);
+    linear[c] = static_cast<float>(linearShare(value));
+  }
+  return true;
+}
+
 bool section(const char* title, bool open_at_first) {
   ImGui::SetNextItemOpen(open_at_first, ImGuiCond_FirstUseEver);
   return ImGui::CollapsingHeader(title);
@@ -231,8 +241,8 @@ constexpr Label kLabels[] = {{"beta_m", "Roughness along"},
                              {"to_rim", "Rim direction"},
                              {"clump", "Clumping"},
                              {"offset", "Wander"},
-                             {"color", "Picked colour"},
-                             {"use_color", "Use picked colour"}};
+                             {"color", "Picked color"},
+                             {"use_color", "Use picked color"}};
 
 }  // namespace
 
@@ -241,6 +251,13 @@ std::string rowTitle(std::string_view name) {
     if (row.name == name) return std::string(row.label);
   }
   return readable(name);
+}
+
+std::string rowValue(std::string_view name, const std::string& text) {
+  if (const sim::ParamField* row = sim::findParam(name)) return shownText(text, row->unit, row->maximum);
+  if (const HairField* row = findHairField(name)) return shownText(text, row->unit, row->maximum);
+  if (const SceneField* row = findSceneField(name)) return shownText(text, row->unit, row->maximum);
+  return text;
 }
 
 // A row that another one makes idle is grey: moving it would show nothing.
@@ -278,10 +295,10 @@ std::string readable(std::string_view name) {
 void simRow(const sim::ParamField& field, Demo& demo, UiState& ui) {
   const sim::SimParams& params = demo.scene.sim;
   double value = field.get(params);
-  const std::string standard = sim::paramText(field, sim::SimParams{});
-  const std::string help =
-      helpText(field.name, field.help, rangeOf(field.kind, field.minimum, field.maximum), field.unit, standard);
-  const bool touched = value != field.default_value;
+  const sim::SimParams& base = demo.scene.base.sim;
+  const std::string standard = sim::paramText(field, base);
+  const std::string help = helpText(field, sim::paramText(field, sim::SimParams{}));
+  const bool touched = value != field.get(base);
   ImGui::PushID(field.name);
   rowLabel(rowTitle(field.name), help);
   fillRow(touched, ui);
@@ -304,29 +321,44 @@ void simRow(const sim::ParamField& field, Demo& demo, UiState& ui) {
     field.set(wanted, value);
     postRequest(demo, {Ask::kSetParam, field.name, sim::paramText(field, wanted)});
   }
-  if (touched && resetMark(field.name, standard, ui)) postRequest(demo, {Ask::kSetParam, field.name, standard});
+  if (touched && resetMark(field.name, shownText(standard, field.unit, field.maximum), ui))
+    postRequest(demo, {Ask::kSetParam, field.name, standard});
   limitNote(field, demo, ui);
   ImGui::PopID();
 }
 
+namespace {
+
+// What a look's rows go back to.
+const CharacterLook& baseOf(const CharacterLook&, const Demo& demo) {
+  return demo.scene.base.hairs[static_cast<std::size_t>(demo.selected)];
+}
+const SceneLook& baseOf(const SceneLook&, const Demo& demo) {
+  return demo.scene.base.scene;
+}
+
+}  // namespace
+
 template <class Owner>
 void lookRow(const LookField<Owner>& field, const Owner& owner, Demo& demo, UiState& ui) {
   LookValue value = field.get(owner);
-  const std::string standard = lookText(Owner{}, field);
-  const std::string help =
-      helpText(field.name, field.help, rangeOf(field.kind, field.minimum, field.maximum), field.unit, standard);
-  const bool touched = value != field.default_value;
+  const Owner& base = baseOf(owner, demo);
+  const std::string standard = lookText(base, field);
+  const std::string help = helpText(field, lookText(Owner{}, field));
+  const bool touched = value != field.get(base);
   ImGui::PushID(field.name);
   rowLabel(rowTitle(field.name), help);
   fillRow(touched, ui);
   ImGui::BeginDisabled(!hasEffect(field.name, owner));
   bool changed = false;
   if (field.shape == LookShape::kColor) {
-    float rgb[3] = {static_cast<float>(value[0]), static_cast<float>(value[1]), static_cast<float>(value[2])};
-    ImGuiColorEditFlags flags = ImGuiColorEditFlags_Float;
-    if (field.maximum > 1) flags |= ImGuiColorEditFlags_HDR;
-    changed = ImGui::ColorEdit3("##value", rgb, flags);
-    for (int i = 0; i < 3; ++i) value[i] = std::clamp(static_cast<double>(rgb[i]), field.minimum, field.maximum);
+    std::array<float, 3> rgb{static_cast<float>(value[0]), static_cast<float>(value[1]), static_cast<float>(value[2])};
+    // Lights go beyond 1 and are shown by their numbers.
+    changed = field.maximum > 1
+                  ? ImGui::ColorEdit3("##value", rgb.data(), ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR)
+                  : colorSwatch("##value", rgb, ImGuiColorEditFlags_Float);
+    for (std::size_t i = 0; i < 3; ++i)
+      value[i] = std::clamp(static_cast<double>(rgb[i]), field.minimum, field.maximum);
   } else if (field.shape == LookShape::kDirection) {
     float xyz[3] = {static_cast<float>(value[0]), static_cast<float>(value[1]), static_cast<float>(value[2])};
     const MarksBelowDigits marks;
@@ -351,7 +383,8 @@ void lookRow(const LookField<Owner>& field, const Owner& owner, Demo& demo, UiSt
     field.set(wanted, value);
     postRequest(demo, {Ask::kSetParam, field.name, lookText(wanted, field)});
   }
-  if (touched && resetMark(field.name, standard, ui)) postRequest(demo, {Ask::kSetParam, field.name, standard});
+  if (touched && resetMark(field.name, shownText(standard, field.unit, field.maximum), ui))
+    postRequest(demo, {Ask::kSetParam, field.name, standard});
   ImGui::PopID();
 }
 
@@ -374,84 +407,6 @@ void sceneGroup(std::string_view group, Demo& demo, UiState& ui) {
   for (const SceneField& field : sceneFields()) {
     if (group == field.group) lookRow(field, demo.scene.look, demo, ui);
   }
-}
-
-namespace {
-
-// The sign of a button about its middle `m`, of scale `s`.
-void drawIcon(Icon icon, ImVec2 m, float s, bool lit, ImU32 ink, ImDrawList* list) {
-  const float r = 6 * s;
-  switch (icon) {
-    case Icon::kPlay:
-      list->AddTriangleFilled({m.x - 0.7f * r, m.y - r}, {m.x - 0.7f * r, m.y + r}, {m.x + r, m.y}, ink);
-      break;
-    case Icon::kPause:
-      list->AddRectFilled({m.x - 0.8f * r, m.y - r}, {m.x - 0.2f * r, m.y + r}, ink, 1);
-      list->AddRectFilled({m.x + 0.2f * r, m.y - r}, {m.x + 0.8f * r, m.y + r}, ink, 1);
-      break;
-    case Icon::kStep:
-      list->AddTriangleFilled({m.x - r, m.y - r}, {m.x - r, m.y + r}, {m.x + 0.45f * r, m.y}, ink);
-      list->AddRectFilled({m.x + 0.55f * r, m.y - r}, {m.x + r, m.y + r}, ink, 1);
-      break;
-    case Icon::kBack:
-      list->AddTriangleFilled({m.x + r, m.y - r}, {m.x + r, m.y + r}, {m.x - 0.45f * r, m.y}, ink);
-      list->AddRectFilled({m.x - r, m.y - r}, {m.x - 0.55f * r, m.y + r}, ink, 1);
-      break;
-    case Icon::kReset:
-      drawTurn(list, m, r, ink);
-      break;
-    case Icon::kRestart:
-      list->AddTriangleFilled({m.x + r, m.y - r}, {m.x + r, m.y + r}, {m.x - 0.45f * r, m.y}, ink);
-      list->AddRectFilled({m.x - r, m.y - r}, {m.x - 0.55f * r, m.y + r}, ink, 1);
-      break;
-    case Icon::kCollapse:
-      // Four arrows towards a point.
-      for (int k = 0; k < 4; ++k) {
-        const float a = 0.7854f + 1.5708f * static_cast<float>(k), c = std::cos(a), d = std::sin(a);
-        list->AddLine({m.x + 1.35f * r * c, m.y + 1.35f * r * d}, {m.x + 0.65f * r * c, m.y + 0.65f * r * d}, ink,
-                      1.8f);
-      }
-      list->AddCircleFilled(m, 0.32f * r, ink, 12);
-      break;
-    case Icon::kPhoto:
-      list->AddRect({m.x - 1.2f * r, m.y - 0.7f * r}, {m.x + 1.2f * r, m.y + 0.9f * r}, ink, 2, 0, 1.6f);
-      list->AddRectFilled({m.x - 0.5f * r, m.y - 1.05f * r}, {m.x + 0.5f * r, m.y - 0.6f * r}, ink, 1);
-      list->AddCircle({m.x, m.y + 0.1f * r}, 0.45f * r, ink, 16, 1.6f);
-      break;
-    case Icon::kRecord:
-      list->AddCircleFilled(m, 0.85f * r, lit ? IM_COL32(235, 70, 60, 255) : ink, 20);
-      break;
-    case Icon::kPanels:
-      for (int k = -1; k <= 1; ++k) {
-        const float y = m.y + 0.75f * r * static_cast<float>(k);
-        list->AddLine({m.x - r, y}, {m.x + r, y}, ink, 1.8f);
-      }
-      break;
-    case Icon::kHelp:
-      const ImVec2 text = ImGui::CalcTextSize("?");
-      list->AddText({m.x - 0.5f * text.x, m.y - 0.5f * text.y}, ink, "?");
-      break;
-  }
-}
-
-}  // namespace
-
-bool iconButton(Icon icon, const char* name, const std::string& help, bool lit, UiState& ui) {
-  const float s = ui.text_scale;
-  const ImVec2 size(32 * s, 30 * s);
-  const bool pressed = ImGui::InvisibleButton(name, size);
-  noteItem(name, ui);
-  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-  const ImVec2 m(0.5f * (low.x + high.x), 0.5f * (low.y + high.y));
-  ImDrawList* list = ImGui::GetWindowDrawList();
-  const ImGuiCol back = ImGui::IsItemActive()    ? ImGuiCol_ButtonActive
-                        : ImGui::IsItemHovered() ? ImGuiCol_ButtonHovered
-                                                 : ImGuiCol_Button;
-  list->AddRectFilled(low, high, color(back), 5 * s);
-  const ImU32 ink = lit ? color(ImGuiCol_CheckMark) : color(ImGuiCol_Text, 0.9f);
-  drawIcon(icon, m, s, lit, ink, list);
-  tip(help);
-  return pressed;
 }
 
 int segments(const char* name, std::initializer_list<Segment> row, int chosen, UiState& ui) {

@@ -38,11 +38,15 @@ class MarksBelowDigits {
   int first_;  // vertex of the window's draw list
 };
 
+// A swatch, with its three numbers unless `flags` (of Dear ImGui) leave them out, of a linear colour: shown as pictures
+// have it, by the curve of sRGB. Returns whether it was changed.
+bool colorSwatch(const char* name, std::array<float, 3>& linear, int flags);
+
 // A heading that folds; returns whether it is open.
 bool section(const char* title, bool open_at_first);
 
-// Name, control, and a reset mark while the value is not the default; below, the value that is used where the hair
-// cannot bear it. A change becomes a request.
+// Name, control, and a reset mark while the value is not that of Scene::base; below, the value that is used where the
+// hair cannot bear it. A change becomes a request.
 void simRow(const sim::ParamField& field, Demo& demo, UiState& ui);
 template <class Owner>
 void lookRow(const LookField<Owner>& field, const Owner& owner, Demo& demo, UiState& ui);
@@ -57,6 +61,10 @@ std::string fileCombo(const char* name, const std::string& shown, const std::vec
 
 // A label in the left column; the control that follows fills the rest.
 void rowLabel(const std::string& text, const std::string& help);
+
+// The mark at the end of a row that takes it back to `default_text`; returns whether it was pressed. Its width, points.
+bool resetMark(const char* name, const std::string& default_text, UiState& ui);
+inline constexpr float kResetWidth = 20;
 
 enum class Icon { kPlay, kPause, kStep, kReset, kRestart, kCollapse, kPhoto, kRecord, kHelp, kPanels, kBack };
 bool iconButton(Icon icon, const char* name, const std::string& help, bool lit, UiState& ui);
@@ -73,6 +81,9 @@ int segments(const char* name, std::initializer_list<Segment> row, int chosen, U
 
 // What a parameter row is called in the panels.
 std::string rowTitle(std::string_view name);
+
+// A row's value, as files have it, with the number and unit that panels show: "4e-05" -> "0.04 mm".
+std::string rowValue(std::string_view name, const std::string& text);
 
 // "stretch_along" -> "Stretch along".
 std::string readable(std::string_view name);

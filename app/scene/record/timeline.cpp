@@ -65,17 +65,10 @@ void leaveCachedFrame(Demo& demo) {
   }
 }
 
-void keepMoment(Demo& demo) {
+namespace {
+
+void keepNow(Demo& demo) {
   Timeline& timeline = demo.timeline;
-  if (!demo.paused || demo.stats.steps > 0) ++timeline.now;
-  if (!timeline.on || demo.stats.steps == 0 || demo.actors.size() > kTimelineActors) return;
-  timeline.cost += demo.stats.simulation();
-  timeline.contact |= demo.stats.corrected > 0;
-  timeline.recovery |= demo.stats.recoveries > 0;
-  timeline.jump |= demo.stats.carried > 0;
-  const double clip_time = demo.actors.front().playback.time;
-  timeline.loop |= clip_time < std::exchange(timeline.clip_time, clip_time);
-  if (timeline.now % kTimelineEvery != 0) return;
   // What was simulated from here before is no longer what follows.
   while (!timeline.frames.empty() && timeline.frames.back().frame >= timeline.now) {
     timeline.bytes -= timeline.frames.back().state.size();
@@ -96,6 +89,21 @@ void keepMoment(Demo& demo) {
   }
 }
 
+}  // namespace
+
+void keepMoment(Demo& demo) {
+  Timeline& timeline = demo.timeline;
+  if (!demo.paused || demo.stats.steps > 0) ++timeline.now;
+  if (!timeline.on || demo.stats.steps == 0 || demo.actors.size() > kTimelineActors) return;
+  timeline.cost += demo.stats.simulation();
+  timeline.contact |= demo.stats.corrected > 0;
+  timeline.recovery |= demo.stats.recoveries > 0;
+  timeline.jump |= demo.stats.carried > 0;
+  const double clip_time = demo.actors.front().playback.time;
+  timeline.loop |= clip_time < std::exchange(timeline.clip_time, clip_time);
+  if (timeline.now % kTimelineEvery == 0) keepNow(demo);
+}
+
 void setInPoint(bool on, Demo& demo) {
   Timeline& timeline = demo.timeline;
   if (on && timeline.out >= 0 && timeline.now >= timeline.out)
@@ -112,9 +120,12 @@ void setOutPoint(bool on, Demo& demo) {
 
 void startBake(double seconds, Demo& demo) {
   Timeline& timeline = demo.timeline;
-  if (!timeline.on || timeline.frames.empty())
-    throw InputError("", "", "there is nothing to bake yet", "let the hair move first");
-  if (timeline.in < 0) timeline.in = timeline.frames.back().frame;
+  if (!timeline.on || demo.actors.size() > kTimelineActors)
+    throw InputError("", "", "of so many characters no moments are kept", "export the hair, or take some away");
+  if (timeline.in < 0) {
+    timeline.in = timeline.now;
+    keepNow(demo);
+  }
   rewindTo(timeline.in, demo);
   timeline.in = timeline.now;
   if (timeline.out <= timeline.in)

@@ -61,7 +61,7 @@ void setInPoint(bool on, Demo& demo);
 void setOutPoint(bool on, Demo& demo);
 
 // Simulates `seconds` ahead of the in point, or of now, without drawing; then stands there. Throws InputError where
-// nothing is kept.
+// nothing is kept of the in point, or of any moment.
 void startBake(double seconds, Demo& demo);
 
 // At the start of a frame: bakes a share of what is asked for, and goes back to the in point at the out point. What was

@@ -105,6 +105,14 @@ double brightness(const render::LightInput& light) {
   return (far / kSphere + 0.5 * (arrayOf(light.ambient_sky) + arrayOf(light.ambient_ground))).mean();
 }
 
+// The rows that a panorama sets.
+void copyLights(const render::LightInput& from, render::LightInput& to) {
+  to.to_light = from.to_light, to.key = from.key;
+  to.to_fill = from.to_fill, to.fill = from.fill;
+  to.to_rim = from.to_rim, to.rim = from.rim;
+  to.ambient_sky = from.ambient_sky, to.ambient_ground = from.ambient_ground;
+}
+
 }  // namespace
 
 render::LightInput environmentLight(const std::string& file, const RadiancePicture& panorama,
@@ -136,6 +144,15 @@ render::LightInput environmentLight(const std::string& file, const RadiancePictu
 
 render::LightInput environmentLight(const std::string& file, const render::LightInput& light) {
   return environmentLight(file, readRadiance(file), light);
+}
+
+void setEnvironment(const std::string& file, Scene& scene) {
+  render::LightInput& light = scene.look.light;
+  const render::LightInput wanted = file.empty() ? scene.own_light : environmentLight(file, light);
+  if (file.empty() && scene.environment.empty()) return;
+  if (scene.environment.empty()) scene.own_light = light;
+  copyLights(wanted, light);
+  scene.environment = file;
 }
 
 }  // namespace app

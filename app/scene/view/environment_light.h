@@ -4,6 +4,7 @@
 #include <string>
 
 #include "app/files/radiance_file.h"
+#include "app/files/scene_file.h"
 #include "render/frame_input.h"
 
 namespace app {
@@ -17,5 +18,9 @@ render::LightInput environmentLight(const std::string& file, const RadiancePictu
 
 // The same of a file, see readRadiance.
 render::LightInput environmentLight(const std::string& file, const render::LightInput& light);
+
+// The scene's lights are a panorama's from now on, or with an empty name those that it had before one. Throws
+// InputError.
+void setEnvironment(const std::string& file, Scene& scene);
 
 }  // namespace app

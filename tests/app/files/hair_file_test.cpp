@@ -243,6 +243,11 @@ TEST(HairFile, FacesThatAreAllWoundTheOtherWayAreNamedAndReversed) {
   EXPECT_EQ(messageOf(text), "bob.obj: all faces are wound the other way; reverse the faces, or give --reverse-faces");
   expectSame(app::readHairMesh(text, "bob.obj", true), app::readHairMesh(kTwoBundles, "bob.obj"));
   EXPECT_THROW(app::readHairMesh(kTwoBundles, "bob.obj", true), app::InputError);
+  for (const bool reversed : {false, true}) {
+    bool turned = false;
+    expectSame(app::readHairMesh(text, "bob.obj", reversed, "", &turned), app::readHairMesh(kTwoBundles, "bob.obj"));
+    EXPECT_EQ(turned, !reversed) << "it is turned by itself and said so";
+  }
   // One face wound the other way is named by its place.
   EXPECT_NE(messageOf(replaced(text, "f 4 3 2 1", "f 1 2 3 4")).find("line "), std::string::npos);
 }

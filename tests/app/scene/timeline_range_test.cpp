@@ -49,8 +49,6 @@ TEST(TimelineRange, PlayingGoesRoundBetweenInAndOutInTheSameBits) {
 
 TEST(TimelineRange, BakingFillsTheTimelineAndStandsAtItsStart) {
   app::Demo demo = moving();
-  ask(Ask::kBake, 1, demo);
-  EXPECT_TRUE(demo.message_is_fault) << "nothing is kept yet";
   play(6, demo);
   const long before = demo.timeline.now;
   ask(Ask::kBake, 1, demo);
@@ -61,6 +59,34 @@ TEST(TimelineRange, BakingFillsTheTimelineAndStandsAtItsStart) {
   ask(Ask::kClearBake, 0, demo);
   EXPECT_TRUE(demo.timeline.frames.empty());
   EXPECT_LT(demo.timeline.in, 0);
+}
+
+TEST(TimelineRange, BakingBeginsWithThePresentMomentWhereNothingIsKept) {
+  app::Demo demo = moving();
+  play(7, demo);
+  ask(Ask::kPause, 1, demo);
+  ask(Ask::kClearBake, 0, demo);
+  const long here = demo.timeline.now;
+  const std::string before = app::stateHash(demo);
+  ask(Ask::kBake, 1, demo);
+  EXPECT_FALSE(demo.message_is_fault) << demo.message;
+  for (int k = 0; k < 60 && !demo.paused; ++k) play(1, demo);
+  EXPECT_EQ(demo.timeline.now, here);
+  EXPECT_EQ(app::stateHash(demo), before);
+  EXPECT_GE(demo.timeline.frames.back().frame, here + 57);
+}
+
+TEST(TimelineRange, TheShownTimeIsWhatWasSimulated) {
+  app::Demo demo = moving();
+  demo.actors[0].playback.speed = 1;
+  const double step = demo.scene.sim.time_step;
+  const double clip = demo.actors[0].playback.time;
+  for (int k = 0; k < 3; ++k) app::advanceFrame(demo, 1, {});
+  EXPECT_NEAR(demo.shown_time, 3 * demo.scene.sim.max_steps_per_frame * step, 1e-9) << "frames of a second each";
+  EXPECT_NEAR(demo.shown_time, demo.actors[0].playback.time - clip, step + 1e-9);
+  for (int k = 0; k < 4; ++k) ask(Ask::kSingleStep, 0, demo);
+  EXPECT_NEAR(demo.shown_time, (3 * demo.scene.sim.max_steps_per_frame + 4) * step, 1e-9);
+  EXPECT_NEAR(demo.shown_time, demo.actors[0].playback.time - clip, 1e-9);
 }
 
 // Frames go on while a person looks at a paused picture, time does not.

@@ -141,6 +141,70 @@ TEST_F(Panels, ASceneIsSavedAndOneThatIsThereOnlyOnASecondPress) {
   }
 }
 
+// Ctrl+S, Enter, Enter.
+TEST_F(Panels, ASceneIsSavedOverItselfByTheKeyboard) {
+  const std::string file = test::freshFolder("ui_save_again") + "/mine.json";
+  apply({{Ask::kSaveScene, "", file}});
+  ui_.browser.folder.clear();
+  app::pressKey('S', demo_, ui_, app::kControl);
+  ImGuiIO& io = ImGui::GetIO();
+  io.KeyMap[ImGuiKey_Enter] = app::kKeyEnter;
+  const auto enter = [&] {
+    std::vector<app::Request> all;
+    for (const bool down : {false, false, true, false, false}) {
+      io.KeysDown[app::kKeyEnter] = down;
+      for (const app::Request& one : frame()) all.push_back(one);
+    }
+    return all;
+  };
+  EXPECT_EQ(requestOf(enter(), Ask::kSaveScene), nullptr);
+  EXPECT_NE(find("replaces"), nullptr) << "nothing says why it is not saved";
+  const auto last = enter();
+  const app::Request* save = requestOf(last, Ask::kSaveScene);
+  ASSERT_NE(save, nullptr);
+  EXPECT_EQ(save->text, file);
+  EXPECT_EQ(find("file_take"), nullptr);
+}
+
+// A panorama of two rows: above brighter than below.
+std::string panorama(const std::string& file) {
+  std::ofstream(file, std::ios::binary) << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n"
+                                        << "\x80\x80\x80\x82\x80\x80\x80\x82\x80\x80\x80\x82\x80\x80\x80\x82"
+                                        << "\x80\x80\x80\x80\x80\x80\x80\x80\x80\x80\x80\x80\x80\x80\x80\x80";
+  return file;
+}
+
+TEST_F(Panels, APanoramaIsOpenedShownTakenBackAndTakenOff) {
+  const std::string file = panorama(test::freshFolder("ui_panorama") + "/studio.hdr");
+  const render::LightInput before = demo_.scene.look.light;
+  app::openFile(file, demo_, ui_);
+  apply(frame());
+  EXPECT_FALSE(demo_.message_is_fault) << demo_.message;
+  const render::LightInput lit = demo_.scene.look.light;
+  EXPECT_NE(lit, before);
+  EXPECT_NE(app::writeScene(demo_.scene).find("\"to_fill\""), std::string::npos) << "a saved scene has its lights";
+  openTab(app::tabIndex("look"));
+  click("section Light");
+  EXPECT_NE(find("environment studio"), nullptr);
+  apply({{Ask::kUndo, "", "", 1}});
+  EXPECT_EQ(demo_.scene.look.light, before);
+  EXPECT_EQ(find("environment studio"), nullptr);
+  apply({{Ask::kRedo, "", "", 1}});
+  EXPECT_EQ(demo_.scene.look.light, lit);
+  apply(click("no environment"));
+  EXPECT_EQ(demo_.scene.look.light, before);
+  click("open environment");
+  EXPECT_EQ(ui_.browser.what, app::BrowseFor::kEnvironment);
+}
+
+TEST_F(Panels, APictureThatIsNoPanoramaIsRefusedWithWhatWouldBe) {
+  apply({{Ask::kOpenFile, "", app::dataPath("assets/maps/bob_length.png")}});
+  apply({});
+  EXPECT_TRUE(demo_.message_is_fault);
+  EXPECT_NE(demo_.message.find("is no Radiance picture"), std::string::npos) << demo_.message;
+  EXPECT_NE(demo_.message.find(".hdr"), std::string::npos) << demo_.message;
+}
+
 TEST_F(Panels, PathFieldsHaveAnOpenButton) {
   openTab(1);
   click("open ##motion_path");

@@ -206,7 +206,7 @@ TEST_F(Panels, ASliderBelowWhatTheHairBearsSaysWhatIsUsedAndWhy) {
   params.stretch_along = 100;
   const double bearable = sim::limitedParameters(app::selectedActor(demo_).haircut->mesh, params).stretch_along;
   char expected[80];
-  std::snprintf(expected, sizeof expected, "used: %.3g Pa, to bear the hair's weight", bearable);
+  std::snprintf(expected, sizeof expected, "used: %.3g kPa, to bear the hair's weight", bearable / 1000);
   EXPECT_EQ(noteOf("stretch_along"), expected);
   EXPECT_EQ(noteOf("density"), "");
   params.wind_x = -40, params.air_drag = 10;
