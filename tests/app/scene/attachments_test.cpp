@@ -306,7 +306,7 @@ TEST(Attachments, AHatAboutItsRimIsSetOnTheHead) {
     const auto middle = [](const app::Demo& demo) { return demo.actors[0].worn[0].mesh->part.center; };
     EXPECT_LT((middle(set) - middle(fitted)).norm(), 0.03);
     // What was inferred, given, changes nothing: the panel moves it on from there.
-    const Vec3 at = set.actors[0].worn[0].mesh->at;
+    const sim::Vec3 at = set.actors[0].worn[0].mesh->at;
     const std::string given = R"({"file": ")" + file + R"(", "at": [)" + std::to_string(at.x()) + ", " +
                               std::to_string(at.y()) + ", " + std::to_string(at.z()) + "]}";
     EXPECT_LT((middle(app::openScene(wearing(given), 1.5)) - middle(set)).norm(), 1e-4);
