@@ -37,9 +37,9 @@ constexpr Recorded kRecorded[] = {
     {"jump_1x", 4.6e-3, kMaxLag, "on the front"},
     {"jump_4x", 2.0e-1, 2.0,
      "positions are off by a fifth of the hair's length whatever is done, lengths and volumes not"},
-    // Errors cannot be told apart here, and twice the step is up to twice as fast.
-    {"jump_10x", 3.1e-1, 2.0, "as at four times the speed, and all positions are off by a third of the hair's length",
-     kCoarseReference, 2.0},
+    // Errors cannot be told apart here, and twice the step is twice as fast, within the noise of times.
+    {"jump_10x", 3.1e-1, 2.2, "as at four times the speed, and all positions are off by a third of the hair's length",
+     kCoarseReference, 2.2},
     {"collapse", 9.2e-2, 2.7,
      "one sample can be compared, in which any configuration that unfolds the hair at all is as near", kCoarseReference,
      1.9},

@@ -1,10 +1,13 @@
 #include "app/scene/edit/picking.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace app {
 
 namespace {
+
+constexpr double kBehindSkin = 0.015;  // m below the ellipsoids: hair that is seen lies no deeper
 
 struct Eye {
   Vec3 at, forward, right, up;
@@ -31,6 +34,18 @@ double meet(const Ray& ray, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 from = ray.from - a, q = from.cross(ab);
   const double u = from.dot(p) / det, v = ray.along.dot(q) / det;
   return u < 0 || v < 0 || u + v > 1 ? -1 : ac.dot(q) / det;
+}
+
+// Whether the ray passes through the body before it has come so far (m).
+bool behindBody(const Ray& ray, double far, const Actor& actor) {
+  return std::ranges::any_of(actor.ellipsoids, [&](const sim::Ellipsoid& body) {
+    const Vec3 scale = body.radii.cwiseInverse();
+    const Vec3 from = scale.cwiseProduct(body.rotation.conjugate() * (ray.from - body.center)),
+               along = scale.cwiseProduct(body.rotation.conjugate() * ray.along);
+    const double deepest = std::clamp(-from.dot(along) / along.squaredNorm(), 0.0, far);
+    if ((from + deepest * along).squaredNorm() >= 1) return false;
+    return sim::closestPoint(body, ray.from + deepest * ray.along).distance < -kBehindSkin;
+  });
 }
 
 }  // namespace
@@ -70,7 +85,7 @@ std::optional<HairHit> pickHairFace(const Ray& ray, const Actor& actor) {
       if (distance > 0 && distance < nearest) nearest = distance, met = static_cast<int>(f);
     }
   }
-  if (!std::isfinite(nearest)) return {};
+  if (!std::isfinite(nearest) || behindBody(ray, nearest, actor)) return {};
   return HairHit{ray.from + nearest * ray.along, met};
 }
 

@@ -27,7 +27,7 @@ std::optional<std::array<double, 2>> pixelOf(const Vec3& point, const Picture& p
 // The ray's point in the plane through `place` that faces the camera; `place` where there is none.
 Vec3 pointInPlane(const Ray& ray, const Vec3& place, const Vec3& facing);
 
-// Where a ray meets the outside of the actor's hair first, and which external face is there.
+// Where a ray meets the outside of the actor's hair first, and which external face is there. Nothing behind the body.
 struct HairHit {
   Vec3 at = Vec3::Zero();
   int face = 0;

@@ -288,4 +288,17 @@ TEST(Picking, ARayThroughAPixelMeetsWhatIsSeenThere) {
   }
 }
 
+// From the front, through the face, lies the hair of the back of the head.
+TEST(Picking, HairBehindTheHeadIsNotTaken) {
+  app::Demo demo = app::openScene(sceneOf(app::Resolution::kLow, "idle_turns.bvh"), 1.5);
+  const app::Actor& actor = demo.actors[0];
+  const app::Rigid head = app::scalpToWorld(actor.body->character, actor.pose);
+  const app::Vec3 nose = head * (actor.body->character.scalp.center + app::Vec3(0, -0.04, 0));
+  const app::Vec3 front = head.linear() * app::Vec3::UnitZ();
+  EXPECT_FALSE(app::pickHair({nose + front, -front}, actor));
+  const std::optional<app::Vec3> back = app::pickHair({nose - front, front}, actor);
+  ASSERT_TRUE(back);
+  EXPECT_LT((*back - nose).dot(front), 0);
+}
+
 }  // namespace groom_brush_test

@@ -47,7 +47,7 @@ TEST_F(Select, AClickChoosesAndShiftAddsAndTakesAway) {
   openTab(app::tabIndex("hair"));
   click("select Vertex");
   ASSERT_EQ(ui_.select.element, 0);
-  const ImVec2 first = onHair(3), second = onHair(60);
+  const ImVec2 first = onHair(3), second = onHair(40);
   ASSERT_GT(second.x, 0);
   EXPECT_TRUE(press(first).empty());
   ASSERT_EQ(ui_.select.chosen.size(), 1u);
@@ -96,7 +96,7 @@ TEST_F(Select, ArrowKeysMoveWhatIsChosenAndElseReachThePanels) {
 TEST_F(Select, ButtonsAskForChangesOfTheMesh) {
   openTab(app::tabIndex("hair"));
   click("select Layer");
-  press(onHair(80));
+  press(onHair(40));
   ASSERT_EQ(ui_.select.chosen.size(), 1u);
   const std::string layer = std::to_string(ui_.select.chosen[0]);
   const std::vector<Request> asked = click("mesh Layer +");
