@@ -259,6 +259,7 @@ Scene sceneFromOptions(const Options& given) {
     std::string file;
     readValue("--preset", [&] { file = presetFile(options.preset, ""); });
     loadPreset(file, {&scene.sim, &scene.look, looks});
+    scene.preset = file;
   }
   if (!options.environment.empty()) setEnvironment(options.environment, scene);
   // Before the sets: --set overrides a part of what --solver sets.

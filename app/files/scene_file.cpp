@@ -187,7 +187,8 @@ Scene readScene(std::string_view text, const std::string& file) {
   CharacterLook preset_look;
   if (place.has("preset")) {
     std::array<CharacterLook*, 1> looks{&preset_look};
-    loadPreset(namedPreset(place.at("preset"), file), {&scene.sim, &scene.look, looks});
+    scene.preset = namedPreset(place.at("preset"), file);
+    loadPreset(scene.preset, {&scene.sim, &scene.look, looks});
   }
   for (std::size_t i = 0; i < count; ++i) {
     scene.characters.push_back(readCharacter(characters.at(i), preset_look));

@@ -258,6 +258,11 @@ TEST(Presets, GroupsThatAreNotNamedStay) {
   EXPECT_EQ(tables.look.hair.eumelanin, 4);
 }
 
+TEST(Presets, TheOneThatASceneOpensWithIsTold) {
+  EXPECT_EQ(app::stem(app::loadScene(app::findFile("default.json", "", "scenes")).preset), "natural");
+  EXPECT_EQ(app::loadScene(app::findFile("curly.json", "", "scenes")).preset, "");
+}
+
 TEST(Presets, WhatWasSavedComesBackOverAnything) {
   const std::string defaults = Tables{}.text();
   Tables tables;
