@@ -178,11 +178,11 @@ double swallowed(const ClosedSurface& surface, double times, const Rigid& to_sca
 std::string largerBy(const ClosedSurface& surface, const Rigid& to_scalp, const Scalp& scalp) {
   for (double times = 1.05; times < kOtherUnit; times += 0.05) {
     if (swallowed(surface, times, to_scalp, scalp) > kWellFitted) continue;
-    char text[48];
-    std::snprintf(text, sizeof text, "about %.2f times as large", times);
+    char text[64];
+    std::snprintf(text, sizeof text, "make it about %.2f times as large (\"size\")", times);
     return text;
   }
-  return "metres per unit (0.0254 for inches)";
+  return "give \"scale\", metres per unit (0.0254 for inches)";
 }
 
 // Whether a hat lies before or behind the head, in the joint's frame. A hat sits on the head; glasses are thin.
@@ -200,12 +200,11 @@ std::string placeNote(const ClosedSurface& surface, const Rigid& to_scalp, const
   const double inside = of_head ? swallowed(surface, 1, to_scalp, scalp) : 0;
   if (inside > kSwallowed) {
     return (inside < 1 ? "lies to " + std::to_string(std::lround(100 * inside)) + " %" : "lies wholly") +
-           " inside the head; give \"scale\", " + largerBy(surface, to_scalp, scalp) +
-           ", or \"at\": [x, y, z], m from the joint, y up";
+           " inside the head; " + largerBy(surface, to_scalp, scalp) + " or move it (\"at\")";
   }
   if (of_head && liesBeside(surface, to_scalp, scalp))
     return "lies before or behind the head; where z is up in the file, give \"turn\": [-90, 0, 0]";
-  if (nearest > kNearJoint) return "lies " + millimetresOf(nearest) + " from its joint; look at \"scale\" and \"at\"";
+  if (nearest > kNearJoint) return "lies " + millimetresOf(nearest) + " from its joint; look at \"size\" and \"at\"";
   return "";
 }
 

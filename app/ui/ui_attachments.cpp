@@ -66,7 +66,7 @@ void placeRows(std::size_t k, const Demo& demo, UiState& ui) {
     ui.worn_edited = true;
   }
   std::array size{static_cast<float>(one.size)};
-  if (dragRow("Scale", "scale" + of, "Times as large, about the joint", size, kOne, "%.2f x", 0.003f, kSmallestTimes,
+  if (dragRow("Size", "size" + of, "Times as large, about the joint", size, kOne, "%.2f x", 0.003f, kSmallestTimes,
               kLargestTimes, ui)) {
     one.size = size[0];
     ui.worn_edited = true;

@@ -219,8 +219,7 @@ TEST(Attachments, AFringeUnderARimIsToldHowMuchRoomItNeedsAndThatIsEnough) {
     }
     EXPECT_NE(refusal.find("a tenth wider"), std::string::npos) << refusal;
     EXPECT_NE(refusal.find("\"at\": [0, 0.02, 0]"), std::string::npos) << refusal;
-    for (const char* mend :
-         {R"({"file": "beanie.obj", "scale": 1.1})", R"({"file": "beanie.obj", "at": [0, 0.02, 0]})"})
+    for (const char* mend : {R"({"file": "beanie.obj", "size": 1.1})", R"({"file": "beanie.obj", "at": [0, 0.02, 0]})"})
       EXPECT_NO_THROW(app::openScene(wearing(mend, *app::parseStyle(style)), 1.5)) << style << mend;
   }
 }
@@ -231,8 +230,10 @@ TEST(Attachments, AHatMostlyInsideTheHeadIsSaidWithHowMuchLargerItShouldBe) {
     return app::openScene(wearing(text, app::Style::kShort), 1.5).message;
   };
   const std::string small = messageOf(R"({"file": "sun_hat.obj", "scale": 0.8})");
-  EXPECT_NE(small.find("sun_hat: lies to 80 % inside the head; give \"scale\", about 1.20 times as large, or \"at\""),
-            std::string::npos)
+  EXPECT_NE(
+      small.find(
+          "sun_hat: lies to 80 % inside the head; make it about 1.20 times as large (\"size\") or move it (\"at\")"),
+      std::string::npos)
       << small;
   EXPECT_NE(messageOf(R"({"file": "headband.obj", "scale": 0.88})").find("inside the head"), std::string::npos);
   for (const char* file : {"beanie.obj", "headband.obj", "sun_hat.obj", "glasses.obj"})
@@ -319,7 +320,7 @@ TEST(Attachments, OneInInchesOrFarOffIsSaidToBeNowhereToBeSeen) {
   const app::Demo lying = app::openScene(wearing(R"({"file": "beanie.obj", "turn": [90, 0, 0]})"), 1.5);
   EXPECT_NE(lying.message.find("give \"turn\": [-90, 0, 0]"), std::string::npos) << lying.message;
   const app::Demo far = app::openScene(wearing(R"({"file": "beanie.obj", "at": [0, 3, 0]})"), 1.5);
-  EXPECT_NE(far.message.find("from its joint; look at \"scale\" and \"at\""), std::string::npos) << far.message;
+  EXPECT_NE(far.message.find("from its joint; look at \"size\" and \"at\""), std::string::npos) << far.message;
 }
 
 TEST(Attachments, AreDroppedUndoneAndTakenOff) {

@@ -29,7 +29,7 @@ TEST_F(Panels, WhatIsWornIsPlacedTurnedAndScaledByDrags) {
     return sum;
   };
   const Eigen::Vector3f before = middle();
-  for (const std::string row : {"place", "turn", "scale"}) {
+  for (const std::string row : {"place", "turn", "size"}) {
     const Eigen::Vector3f then = middle();
     apply(click(row + " glasses", 0.5f, 30));
     EXPECT_FALSE(demo_.message_is_fault) << demo_.message;
@@ -42,7 +42,7 @@ TEST_F(Panels, WhatIsWornIsPlacedTurnedAndScaledByDrags) {
   const app::AttachmentSpec saved = app::attachmentsFromText(app::writeAttachments({spec()}).dump()).at(0);
   EXPECT_EQ(saved.size, spec().size);
   EXPECT_EQ(saved.turn, spec().turn);
-  apply(click("reset scale glasses"));
+  apply(click("reset size glasses"));
   EXPECT_EQ(spec().size, 1);
   apply({{Ask::kUndo, "", "", 4}});
   EXPECT_EQ(spec().at, sim::Vec3::Zero());
