@@ -92,6 +92,10 @@ std::vector<Vec3> samplesOf(const ClosedSurface& surface) {
     std::array<Vec3, 3> p;
     for (std::size_t k = 0; k < 3; ++k) p[k] = surface.points[static_cast<std::size_t>(f[k])];
     const double longest = std::max({(p[1] - p[0]).norm(), (p[2] - p[1]).norm(), (p[0] - p[2]).norm()});
+    if (longest < kSample) {
+      samples.push_back(p[0]);
+      continue;
+    }
     const int parts = static_cast<int>(std::ceil(longest / kSample));
     for (int i = 0; i <= parts; ++i) {
       for (int j = 0; i + j <= parts; ++j) samples.push_back(p[0] + (i * (p[1] - p[0]) + j * (p[2] - p[0])) / parts);

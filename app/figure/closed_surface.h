@@ -23,7 +23,7 @@ int openEdges(const ClosedSurface& surface);
 // Turns round the pieces whose faces are wound inwards: those of negative volume. Returns the number of pieces.
 int turnOutwards(ClosedSurface& surface);
 
-// Points all over the surface, at most 8 mm apart (m).
+// Points all over the surface, 8 mm apart where its triangles are larger (m).
 std::vector<sim::Vec3> samplesOf(const ClosedSurface& surface);
 
 }  // namespace app

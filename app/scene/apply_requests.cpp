@@ -166,6 +166,7 @@ void loadState(const Request& request, Demo& demo) {
 // What opens a file, in the order of FileKind.
 constexpr std::array kOpens{Ask::kSceneFile, Ask::kPresetFile, Ask::kMotionFile,  Ask::kMotionFile, Ask::kHairFile,
                             Ask::kLoadState, Ask::kOpenCache,  Ask::kOpenProject, Ask::kAttach,     Ask::kEnvironment};
+static_assert(kOpens.size() == static_cast<std::size_t>(FileKind::kEnvironment) + 1);
 
 void openAnyFile(const std::string& file, Demo& demo) {
   const FileKind kind = fileKind(file);

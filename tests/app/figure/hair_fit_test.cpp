@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
 #include <sstream>
 #include <string>
@@ -207,6 +208,44 @@ TEST(HairFit, ADoubtedUnitOfAGroomIsSaid) {
   app::Haircut mended;
   app::hairFromFile(spec, figure(), mended);
   EXPECT_EQ(mended.note.find("the file tells"), std::string::npos) << mended.note;
+}
+
+// A column of two vertices, `rise` and 8 cm outwards from where `out` meets the scalp, about the figure's feet.
+void addColumn(const Vec3& out, double rise, sim::HairMeshShape& shape) {
+  const app::Scalp& scalp = figure().scalp;
+  const Vec3 along = out.normalized(), root = scalp.center + scalp.radiusAt(along) * along + Vec3(0, 1.55, 0);
+  if (shape.column_first.empty()) shape.column_first.push_back(0);
+  shape.positions.push_back(root);
+  shape.positions.push_back(root + 0.08 * along + Vec3(0, rise, 0));
+  shape.column_first.push_back(static_cast<int>(shape.positions.size()));
+}
+
+TEST(HairFit, AFringeStaysInFront) {
+  sim::HairMeshShape fringe;
+  for (double turn = -1.3; turn <= 1.31; turn += 0.1) {
+    for (const double lift : {0.5, 0.9}) addColumn({std::sin(turn), lift, std::cos(turn)}, -0.15, fringe);
+  }
+  const std::string note = app::fitHair(figure(), true, fringe, true);
+  EXPECT_EQ(note.find("facing"), std::string::npos) << note;
+  EXPECT_LT(app::rootDistance(fringe, figure().scalp), app::kFarRoots) << note;
+  EXPECT_GT(fringe.positions[fringe.positions.size() / 2 & ~1u].z(), figure().scalp.center.z()) << note;
+}
+
+// Standing hair on the crown fits in many ways, and a head in its file tells which.
+TEST(HairFit, TheHeadOfAFilePlacesItsHair) {
+  sim::HairMeshShape spikes;
+  std::vector<Vec3> head;
+  for (double turn = 0; turn < 6.2; turn += 0.3) {
+    for (const double lift : {2.0, 4.0}) addColumn({std::sin(turn), lift, std::cos(turn)}, 0.05, spikes);
+    for (double lift = -2; lift <= 2; lift += 0.25) {
+      const Vec3 out = Vec3(std::sin(turn), lift, std::cos(turn)).normalized();
+      head.push_back(figure().scalp.center + figure().scalp.radiusAt(out) * out + Vec3(0, 1.55, 0));
+    }
+  }
+  sim::HairMeshShape alone = spikes;
+  EXPECT_NE(app::fitHair(figure(), true, alone, true).find("in no unit"), std::string::npos);
+  const std::string note = app::fitHair(figure(), true, spikes, true, head);
+  EXPECT_LT(app::rootDistance(spikes, figure().scalp), 0.5 * app::kFarRoots) << note;
 }
 
 }  // namespace hair_fit_test
