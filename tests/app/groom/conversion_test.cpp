@@ -8,6 +8,7 @@
 #include "app/files/hair_file.h"
 #include "app/groom/convert.h"
 #include "app/groom/fit/root_mesh.h"
+#include "tests/app/groom/combed_groom.h"
 #include "tests/groom_kinds.h"
 
 namespace app {
@@ -160,6 +161,24 @@ TEST(Conversion, KeepsToItsVerticesOnALargerHead) {
   const Conversion conversion = convertGroom(groom_kinds::cropped(288), {}, options, "large");
   EXPECT_LE(conversion.shape.vertexCount(), 2400);
   EXPECT_LE(conversion.fit.regions, 4);
+}
+
+// What all strands have in common is what the hair mesh misses, and none of their own.
+TEST(Conversion, WanderIsWhatNeighboursDoNotShare) {
+  app::Groom groom = combed::combedGroom(600, 9);
+  ConvertOptions options;
+  options.unit = 1;
+  options.fit.vertices = 400;
+  const Conversion conversion = convertGroom(groom, {}, options, "combed");
+  for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+    const std::size_t first = groom.strand_first[s], count = groom.pointCount(s);
+    for (std::size_t k = 0; k < count; ++k)
+      groom.points[first + k].x() += 0.03f * static_cast<float>(k) / static_cast<float>(count - 1);
+  }
+  const app::LookFit look =
+      app::fitLook(groom, conversion.scale, app::sampleStrands(groom, conversion.scale, 24), conversion.fit);
+  EXPECT_NEAR(look.all.offset, conversion.look.all.offset, 0.0005);
+  EXPECT_LT(look.all.offset, 0.004) << "the most that is taken for wander is 0.005";
 }
 
 TEST(Conversion, SaysFirstThatMostStrandsDoNotFit) {
