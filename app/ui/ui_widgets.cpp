@@ -26,17 +26,6 @@ ImU32 color(ImGuiCol index, float alpha = 1) {
   return ImGui::GetColorU32(index, alpha);
 }
 
-// How panels show a unit of the tables; files keep the table's. `times`: what is shown over what the table has.
-struct ShownUnit {
-  std::string_view unit;
-  double times;
-};
-ShownUnit shownUnit(std::string_view unit, double maximum) {
-  if (unit == "m" && maximum < 1) return {"mm", 1e3};
-  if (unit == "Pa") return {"kPa", 1e-3};
-  return {unit, 1};
-}
-
 // A number with its unit inside the slider.
 bool numberSlider(const char* name, sim::FieldKind kind, bool logarithmic, double low, double high, const char* unit,
                   double& value) {
@@ -51,17 +40,6 @@ bool numberSlider(const char* name, sim::FieldKind kind, bool logarithmic, doubl
   if (!ImGui::SliderScalar(name, ImGuiDataType_Double, &number, &least, &most, format.c_str(), flags)) return false;
   value = std::clamp(number / shown.times, low, high);
   return true;
-}
-
-// A row's value as the table writes it, as panels show it: with its unit there.
-std::string shownText(const std::string& text, std::string_view unit, double maximum) {
-  double value = 0;
-  if (!sim::parseNumber(text, value)) return text;
-  const ShownUnit shown = shownUnit(unit, maximum);
-  char number[32];
-  std::snprintf(number, sizeof number, "%.6g", shown.times * value);
-  return shown.times == 1 && unit.empty() ? text
-                                          : std::string(number).append(unit.empty() ? "" : " ").append(shown.unit);
 }
 
 bool choiceCombo(const char* name, std::span<const char* const> choices, double& value) {
@@ -224,42 +202,6 @@ void rowLabel(const std::string& text, const std::string& help) {
   ImGui::SameLine(start + kLabelShare * width);
 }
 
-namespace {
-
-struct Label {
-  std::string_view name, label;
-};
-// Rows whose name in files says too little in a panel.
-constexpr Label kLabels[] = {{"beta_m", "Roughness along"},
-                             {"beta_n", "Roughness around"},
-                             {"eta", "Refractive index"},
-                             {"key", "Key light"},
-                             {"to_light", "Key direction"},
-                             {"fill", "Fill light"},
-                             {"to_fill", "Fill direction"},
-                             {"rim", "Rim light"},
-                             {"to_rim", "Rim direction"},
-                             {"clump", "Clumping"},
-                             {"offset", "Wander"},
-                             {"color", "Picked color"},
-                             {"use_color", "Use picked color"}};
-
-}  // namespace
-
-std::string rowTitle(std::string_view name) {
-  for (const Label& row : kLabels) {
-    if (row.name == name) return std::string(row.label);
-  }
-  return readable(name);
-}
-
-std::string rowValue(std::string_view name, const std::string& text) {
-  if (const sim::ParamField* row = sim::findParam(name)) return shownText(text, row->unit, row->maximum);
-  if (const HairField* row = findHairField(name)) return shownText(text, row->unit, row->maximum);
-  if (const SceneField* row = findSceneField(name)) return shownText(text, row->unit, row->maximum);
-  return text;
-}
-
 // A row that another one makes idle is grey: moving it would show nothing.
 bool hasEffect(std::string_view name, const CharacterLook& look) {
   if (name == "color") return look.hair.use_color;
@@ -283,13 +225,6 @@ bool hasEffect(const sim::ParamField& row, const sim::SimParams& params) {
   const std::string_view name = row.name, group = row.group;
   if (name == "gust") return params.wind_x != 0 || params.wind_y != 0 || params.wind_z != 0;
   return params.collide || group != "Contact" || name == "collide" || name == "self_collide";
-}
-
-std::string readable(std::string_view name) {
-  std::string text(name);
-  std::replace(text.begin(), text.end(), '_', ' ');
-  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  return text;
 }
 
 void simRow(const sim::ParamField& field, Demo& demo, UiState& ui) {

@@ -7,6 +7,7 @@
 
 #include "app/scene/edit/picking.h"
 #include "app/scene/view/look_params.h"
+#include "app/scene/view/row_words.h"
 #include "app/ui/ui.h"
 
 namespace app {
@@ -78,14 +79,5 @@ struct Segment {
 
 // Buttons side by side, one of them chosen. Returns the index pressed, or -1.
 int segments(const char* name, std::initializer_list<Segment> row, int chosen, UiState& ui);
-
-// What a parameter row is called in the panels.
-std::string rowTitle(std::string_view name);
-
-// A row's value, as files have it, with the number and unit that panels show: "4e-05" -> "0.04 mm".
-std::string rowValue(std::string_view name, const std::string& text);
-
-// "stretch_along" -> "Stretch along".
-std::string readable(std::string_view name);
 
 }  // namespace app
