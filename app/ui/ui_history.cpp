@@ -13,10 +13,7 @@ namespace {
 
 constexpr float kHistoryWidth = 292, kMinHeight = 130, kHistoryMargin = 12;
 
-// A slider's step carries its row's title; others say what they are.
 std::string titleOf(const EditStep& step) {
-  if (step.request.what == Ask::kSetParam)
-    return rowTitle(step.request.name) + " " + rowValue(step.request.name, step.request.text);
   std::string title = step.title;
   title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
   return title;

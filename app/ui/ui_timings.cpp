@@ -155,6 +155,10 @@ void solverLines(const Demo& demo) {
 void timingsPanel(Demo& demo, UiState& ui) {
   const Stages stages = meanStages(demo, 30);
   const float scale = ui.text_scale;
+  if (demo.paused) {
+    ImGui::TextWrapped("Paused: these are of the last frames that ran");
+    noteItem("timings paused", ui);
+  }
   ImGui::Text("Simulation");
   ImGui::SameLine();
   ImGui::TextDisabled("%s ms a frame", shortMilliseconds(sum(stages, kTimeForces, kTimeStepOther)).c_str());

@@ -11,6 +11,7 @@
 #include "app/scene/edit/groom_brush.h"
 #include "app/scene/edit/mesh_change.h"
 #include "app/scene/present_scene.h"
+#include "app/scene/view/row_words.h"
 #include "sim/field_text.h"
 
 namespace app {
@@ -75,7 +76,7 @@ std::string spaced(std::string name) {
 }
 
 std::string titleOf(const Request& request, const EditKind& kind) {
-  if (request.what == Ask::kSetParam) return spaced(request.name).append(" ").append(request.text);
+  if (request.what == Ask::kSetParam) return rowTitle(request.name) + " " + rowValue(request.name, request.text);
   if (request.what == Ask::kBrush) return request.name;
   if (request.what == Ask::kMove) return kind.title + (" " + request.name);
   if (request.what == Ask::kMesh) return spaced(request.name);
@@ -86,9 +87,10 @@ std::string titleOf(const Request& request, const EditKind& kind) {
   const bool sample = request.what == Ask::kPaint;
   if (!request.text.empty() && request.what != Ask::kVary && !sample)
     title.append(" ").append(spaced(stem(request.text)).substr(0, 40));
-  const bool number = request.what == Ask::kBudget || request.what == Ask::kDrawBudget ||
-                      request.what == Ask::kDeadline || request.what == Ask::kSpeed || request.what == Ask::kVary;
-  if (number) title.append(" ").append(sim::numberText(request.value));
+  const bool budget =
+      request.what == Ask::kBudget || request.what == Ask::kDrawBudget || request.what == Ask::kDeadline;
+  if (budget || request.what == Ask::kSpeed || request.what == Ask::kVary)
+    title.append(" ").append(sim::numberText(request.value)).append(budget ? " ms" : "");
   const bool toggle = request.what == Ask::kSkip || request.what == Ask::kDebugView;
   if (toggle) title += request.value != 0 ? " on" : " off";
   return title;

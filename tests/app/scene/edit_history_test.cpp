@@ -160,7 +160,7 @@ TEST(EditHistory, ADragIsOneStepAndALaterEditEndsWhatWasUndone) {
     app::advanceFrame(demo, 1.0 / 60, {});
   }
   ASSERT_EQ(demo.edits.steps.size(), 1u);
-  EXPECT_EQ(demo.edits.steps[0].title, "density 80");
+  EXPECT_EQ(demo.edits.steps[0].title, "Density 80 kg/m^3");
   demo.requests = {{Ask::kEndGesture, "", ""}, {Ask::kSetParam, "density", "90"}, {Ask::kSetParam, "damping", "0.1"}};
   app::advanceFrame(demo, 1.0 / 60, {});
   EXPECT_EQ(demo.edits.steps.size(), 3u);

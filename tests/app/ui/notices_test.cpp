@@ -40,6 +40,21 @@ TEST_F(Notices, UndoPastTheStartIsANoticeThatGoesByItself) {
   EXPECT_TRUE(demo_.message.empty());
 }
 
+TEST_F(Notices, UndoAndRedoSpeakAsThePanelsDo) {
+  apply({{Ask::kSetParam, "stretch_along", "4e+05"}});
+  apply({{Ask::kUndo, "", "", 1}});
+  EXPECT_EQ(demo_.message, "undone: Stretch along 400 kPa");
+  apply({{Ask::kRedo, "", "", 1}});
+  EXPECT_EQ(demo_.message, "done again: Stretch along 400 kPa");
+}
+
+TEST_F(Notices, TimingsSayThatTheyStandStill) {
+  EXPECT_EQ(find("timings paused"), nullptr);
+  demo_.paused = true;
+  frame();
+  EXPECT_NE(find("timings paused"), nullptr);
+}
+
 TEST_F(Notices, UndoAndRedoAreGreyWhereThereIsNothing) {
   EXPECT_FALSE(asked(click("file Undo"), Ask::kUndo));
   EXPECT_FALSE(asked(click("file Redo"), Ask::kRedo));
