@@ -1,5 +1,6 @@
 #include "app/platform/hair_recorder.h"
 
+#include <cmath>
 #include <limits>
 
 #include "app/platform/capture.h"
@@ -22,12 +23,19 @@ std::string strandsOf(const Demo& demo) {
 
 }  // namespace
 
+// As headless runs number theirs: the number over fps is what was simulated before the frame, s.
+int HairRecorder::numberOf(const Demo& demo) const {
+  const bool comes = demo.stats.steps == 0;  // it stands still: what is recorded is the next one
+  return static_cast<int>(std::lround(demo.shown_time * fps_)) + comes;
+}
+
 void HairRecorder::begin(Demo& demo) {
   const std::string asked = demo.capture.hair_file;
   const std::string file = asked.empty()     ? freeName("hair", ".hairmesh")
                            : asked[0] == '.' ? freeName("hair", asked)
                                              : asked;
   frames_ = 0;
+  first_ = numberOf(demo);
   strands_ = strandsOf(demo);
   if (file.ends_with(".hairmesh")) {
     cache_.emplace(file, demo);
@@ -35,7 +43,7 @@ void HairRecorder::begin(Demo& demo) {
     ExportSpec spec;
     spec.file = file;
     if (file.ends_with(".glb")) spec.what = ExportWhat::kMesh;
-    export_.emplace(spec, demo, fps_, 0, std::numeric_limits<int>::max());
+    export_.emplace(spec, demo, fps_, first_, std::numeric_limits<int>::max());
   }
   demo.message = "recording the hair into " + file;
   demo.message_is_fault = false;
@@ -72,7 +80,7 @@ void HairRecorder::frame(Demo& demo) {
     }
     if (!on() || demo.stats.steps == 0) return;
     if (cache_) cache_->add(demo);
-    if (export_) export_->add(demo, frames_);
+    if (export_) export_->add(demo, first_ + frames_);
     ++frames_;
   } catch (const std::exception& fault) {
     demo.message = fault.what();

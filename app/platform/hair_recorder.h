@@ -23,6 +23,7 @@ class HairRecorder {
   void close(Demo& demo);
 
  private:
+  int numberOf(const Demo& demo) const;
   void begin(Demo& demo);
   void finish(Demo& demo);
   bool on() const { return export_ || cache_; }
@@ -30,8 +31,8 @@ class HairRecorder {
   double fps_;
   std::optional<HairExport> export_;
   std::optional<SimCacheWriter> cache_;
-  int frames_ = 0;
-  std::string strands_;  // what they were when the recording began
+  int first_ = 0, frames_ = 0;  // number of the first frame; how many there are
+  std::string strands_;         // what they were when the recording began
 };
 
 }  // namespace app

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <set>
+
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
 #include "app/platform/hair_recorder.h"
@@ -220,6 +223,26 @@ TEST(HairRecorder, WritesACacheThatTheTimelineThenShowsAndAnExport) {
   frames(2);
   EXPECT_TRUE(demo.message_is_fault);
   EXPECT_FALSE(demo.capture.hair);
+}
+
+TEST(HairRecorder, NumbersFramesByTheTimeOfTheRun) {
+  const std::string folder = test::freshFolder("hair_recorder_numbers");
+  app::Demo demo = opened();
+  app::HairRecorder recorder(60);
+  const auto frames = [&](int count) {
+    for (int frame = 0; frame < count; ++frame) {
+      app::advanceFrame(demo, kFrame, {});
+      recorder.frame(demo);
+    }
+  };
+  frames(10);
+  demo.requests.push_back({app::Ask::kRecordHair, "", folder + "/a.ply", 1});
+  frames(2);
+  demo.requests.push_back({app::Ask::kRecordHair, "", "", 0});
+  frames(1);
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) names.insert(entry.path().filename().string());
+  EXPECT_EQ(names, (std::set<std::string>{"a_0011.ply", "a_0012.ply"}));
 }
 
 }  // namespace sim_cache_test
