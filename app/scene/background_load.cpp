@@ -159,7 +159,7 @@ void replaceActor(Actor fresh, int index, bool same_motion, Demo& demo) {
   fresh.jumped = old.jumped;
   old = std::move(fresh);
   tidy(demo.actors, demo.asset_cache);
-  forgetMoments(demo.timeline);
+  beginAnew(demo.timeline);
   const CameraSpec& camera = demo.scene.camera;
   if (index != 0 || same_motion || !demo.camera.follow) return;
   if (camera.eye && camera.target) {

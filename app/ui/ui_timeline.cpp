@@ -93,12 +93,18 @@ void strip(Demo& demo, UiState& ui) {
   noteItem("timeline", ui);
   ImDrawList* list = ImGui::GetWindowDrawList();
   list->AddRectFilled(at, {at.x + size.x, at.y + size.y}, ImGui::GetColorU32(ImGuiCol_FrameBg), 4);
+  const auto say = [&](const char* words) {
+    list->AddText({at.x + 8, at.y + 4}, ImGui::GetColorU32(ImGuiCol_TextDisabled), words);
+  };
+  constexpr const char* kAnew = "begins anew: what was kept was of another hair mesh";
+  if (timeline.anew) noteItem("timeline anew", ui);
   long first_frame = 0, last_frame = 0;
   if (!timelineSpan(timeline, first_frame, last_frame)) {
-    list->AddText({at.x + 8, at.y + 4}, ImGui::GetColorU32(ImGuiCol_TextDisabled), "fills while the hair moves");
+    say(timeline.anew ? kAnew : "fills while the hair moves");
     return;
   }
   if (!timeline.cache) drawMarks(timeline, at, size, ui.text_scale);
+  if (timeline.anew) say(kAnew);
   const auto first = static_cast<double>(first_frame);
   const double span = std::max(1.0, static_cast<double>(last_frame) - first);
   if (!timeline.cache) drawRange(timeline, at, size);

@@ -82,20 +82,26 @@ void moveWithShape(const std::vector<Vec3>& before, Actor& actor) {
 
 // Makes the rest quantities of a shape and what is painted. What moves goes on moving. Throws InputError where a prism
 // would not be positive; then nothing has changed.
-Haircut& remake(const std::vector<Vec3>& positions, int index, Demo& demo) {
-  Actor& actor = demo.actors[static_cast<std::size_t>(index)];
+Haircut& setRest(const std::vector<Vec3>& positions, Actor& actor, Demo& demo) {
   Haircut& own = ownHaircut(actor, demo);
   if (!own.reshape) own.reshape.emplace(own.mesh);
-  const std::vector<Vec3> before = own.mesh.shape.positions;
   if (!own.reshape->set(positions, own.mesh))
     throw InputError("", "the hair", "would be flat or inverted in this shape", "make a smaller change");
-  if (demo.paused) moveWithShape(before, actor), demo.shown_fraction = -1;
   applyShares(own.shares, own.mesh);
   dropWhatIsOfTheOldShape(own, actor, demo.asset_cache);
-  forgetMoments(demo.timeline);
   actor.context->reshape(actor.hair);
   actor.shown_still = false;
   wakeAll(actor);
+  return own;
+}
+
+// The same of an edit, which a paused picture shows at once and the timeline heeds.
+Haircut& remake(const std::vector<Vec3>& positions, int index, Demo& demo) {
+  Actor& actor = demo.actors[static_cast<std::size_t>(index)];
+  const std::vector<Vec3> before = actor.haircut->mesh.shape.positions;
+  Haircut& own = setRest(positions, actor, demo);
+  if (demo.paused) moveWithShape(before, actor), demo.shown_fraction = -1;
+  keepEarlierMoments(index, before, demo);
   return own;
 }
 
@@ -159,6 +165,24 @@ void repaintHair(const PaintedShares& shares, int index, Demo& demo) {
   if (shares == actor.haircut->shares) return;
   ownHaircut(actor, demo).shares = shares;
   remake(std::vector<Vec3>(actor.haircut->mesh.shape.positions), index, demo);
+}
+
+void inShapes(const std::vector<std::vector<Vec3>>& shapes, const std::function<void()>& act, Demo& demo) {
+  std::vector<std::vector<Vec3>> now;
+  for (const Actor& actor : demo.actors) now.push_back(actor.haircut->mesh.shape.positions);
+  const auto wear = [&](const std::vector<std::vector<Vec3>>& wanted) {
+    for (std::size_t i = 0; i < demo.actors.size(); ++i) {
+      if (wanted[i] != demo.actors[i].haircut->mesh.shape.positions) setRest(wanted[i], demo.actors[i], demo);
+    }
+  };
+  try {
+    wear(shapes);
+    act();
+  } catch (...) {
+    wear(now);
+    throw;
+  }
+  wear(now);
 }
 
 bool reshapedByHand(const Haircut& haircut) {

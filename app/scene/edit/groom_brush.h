@@ -2,6 +2,7 @@
 // shape while the hair goes on moving.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -60,5 +61,9 @@ void freezeHair(const std::vector<float>& frozen, int actor, Demo& demo);
 // Gives the actor's hair other rest positions (one a vertex, scalp frame, m). What moves goes on moving. Throws
 // InputError where a prism would not be positive; then nothing has changed.
 void reshapeHair(const std::vector<Vec3>& positions, int actor, Demo& demo);
+
+// Does something while the hair of each actor has other rest positions, as one that it has had, and brings those of now
+// back. What moves is where that leaves it.
+void inShapes(const std::vector<std::vector<Vec3>>& shapes, const std::function<void()>& act, Demo& demo);
 
 }  // namespace app

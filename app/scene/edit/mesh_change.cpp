@@ -257,7 +257,7 @@ void remeshHair(sim::HairMeshShape shape, std::span<const VertexSource> sources,
   asset_cache.haircuts.push_back(std::move(own));
   wearHaircut(*asset_cache.haircuts.back(), actor, asset_cache);
   tidy(demo.actors, asset_cache);
-  forgetMoments(demo.timeline);
+  beginAnew(demo.timeline);
   demo.shown_fraction = -1;
 }
 

@@ -1,22 +1,89 @@
 #include "app/scene/record/timeline.h"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "app/files/errors.h"
 #include "app/files/report_line.h"
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
+#include "app/scene/edit/groom_brush.h"
 
 namespace app {
 
+namespace {
+
+std::size_t bytesOf(const RestShapes& shapes) {
+  std::size_t bytes = 0;
+  for (const std::vector<Vec3>& shape : shapes) bytes += shape.size() * sizeof(Vec3);
+  return bytes;
+}
+
+void forgetShapesOfNone(Timeline& timeline) {
+  if (timeline.shapes.empty()) return;
+  std::set<long> used{timeline.cache_shapes};
+  for (const TimelineFrame& frame : timeline.frames) used.insert(frame.shapes);
+  for (auto at = timeline.shapes.begin(); at != timeline.shapes.end();) {
+    const bool keep = used.contains(at->first);
+    if (!keep) timeline.bytes -= bytesOf(at->second);
+    at = keep ? std::next(at) : timeline.shapes.erase(at);
+  }
+}
+
+void forgetFrom(long frame, Timeline& timeline) {
+  while (!timeline.frames.empty() && timeline.frames.back().frame >= frame) {
+    timeline.bytes -= timeline.frames.back().state.size();
+    timeline.frames.pop_back();
+  }
+  forgetShapesOfNone(timeline);
+}
+
+}  // namespace
+
 void forgetMoments(Timeline& timeline) {
-  timeline.baking = false;
+  timeline.baking = timeline.anew = false;
   timeline.frames.clear();
+  timeline.shapes.clear();
   timeline.bytes = 0;
   timeline.cache.reset();
+  timeline.cache_shapes = -1;
   timeline.shown_of_cache = -1;
 }
+
+void beginAnew(Timeline& timeline) {
+  const bool kept = timeline.anew || !timeline.frames.empty() || timeline.cache;
+  forgetMoments(timeline);
+  timeline.anew = kept;
+}
+
+void keepEarlierMoments(int actor, const std::vector<Vec3>& before, Demo& demo) {
+  Timeline& timeline = demo.timeline;
+  forgetFrom(timeline.now, timeline);
+  const bool of_moments = !timeline.frames.empty() && timeline.frames.back().shapes < 0;
+  const bool of_cache = timeline.cache && timeline.cache_shapes < 0;
+  if (!of_moments && !of_cache) return;
+  RestShapes were;
+  for (const Actor& one : demo.actors) were.push_back(one.haircut->mesh.shape.positions);
+  were[static_cast<std::size_t>(actor)] = before;
+  timeline.bytes += bytesOf(were);
+  const long number = timeline.shapes.empty() ? 0 : timeline.shapes.rbegin()->first + 1;
+  timeline.shapes.emplace(number, std::move(were));
+  if (of_cache) timeline.cache_shapes = number;
+  // Those before the edit before have theirs.
+  for (auto frame = timeline.frames.rbegin(); frame != timeline.frames.rend() && frame->shapes < 0; ++frame)
+    frame->shapes = number;
+}
+
+namespace {
+
+// `number`: of Timeline::shapes, or -1.
+void inShapesOf(long number, const std::function<void()>& act, Demo& demo) {
+  if (number < 0) return act();
+  inShapes(demo.timeline.shapes.at(number), act, demo);
+}
+
+}  // namespace
 
 bool timelineSpan(const Timeline& timeline, long& first, long& last) {
   if (timeline.cache) {
@@ -42,10 +109,12 @@ void openCache(const std::string& file, Demo& demo) {
   if (file.empty()) {
     leaveCachedFrame(demo);
     timeline.cache.reset();
+    timeline.cache_shapes = -1;
     timeline.shown_of_cache = -1;
     return;
   }
   timeline.cache = std::make_unique<SimCache>(file, demo);
+  timeline.cache_shapes = -1;
   timeline.shown_of_cache = -1;
   demo.message = "cache of frames " + std::to_string(timeline.cache->first()) + " to " +
                  std::to_string(timeline.cache->last()) + "; drag along the timeline";
@@ -58,7 +127,8 @@ void leaveCachedFrame(Demo& demo) {
   const long shown = std::exchange(timeline.shown_of_cache, -1);
   if (!timeline.cache) return;
   try {
-    timeline.cache->resume(shown, true, demo);
+    inShapesOf(
+        timeline.cache_shapes, [&] { timeline.cache->resume(shown, true, demo); }, demo);
   } catch (const std::exception& fault) {
     demo.message = fault.what();
     demo.message_is_fault = true;
@@ -69,11 +139,7 @@ namespace {
 
 void keepNow(Demo& demo) {
   Timeline& timeline = demo.timeline;
-  // What was simulated from here before is no longer what follows.
-  while (!timeline.frames.empty() && timeline.frames.back().frame >= timeline.now) {
-    timeline.bytes -= timeline.frames.back().state.size();
-    timeline.frames.pop_back();
-  }
+  forgetFrom(timeline.now, timeline);  // what was simulated from here before is no longer what follows
   TimelineFrame kept{timeline.now,
                      demoStateBytes(demo),
                      std::exchange(timeline.cost, 0.0),
@@ -83,9 +149,11 @@ void keepNow(Demo& demo) {
                      std::exchange(timeline.loop, false)};
   timeline.bytes += kept.state.size();
   timeline.frames.push_back(std::move(kept));
+  timeline.anew = timeline.anew && timeline.frames.size() < kAnewMoments;
   while (timeline.bytes > kTimelineBytes && timeline.frames.size() > 1) {
     timeline.bytes -= timeline.frames.front().state.size();
     timeline.frames.pop_front();
+    forgetShapesOfNone(timeline);
   }
 }
 
@@ -160,7 +228,8 @@ void rewindTo(long frame, Demo& demo) {
   if (SimCache* cache = demo.timeline.cache.get()) {
     const long within = std::clamp(frame, cache->first(), cache->last());
     const bool paused = demo.paused;
-    cache->show(within, demo);
+    inShapesOf(
+        demo.timeline.cache_shapes, [&] { cache->show(within, demo); }, demo);
     demo.paused = paused;
     demo.timeline.shown_of_cache = within;
     return;
@@ -171,8 +240,10 @@ void rewindTo(long frame, Demo& demo) {
   if (after == frames.begin())
     throw InputError("", "", "nothing is kept of that moment", "go to one on the timeline, or to the start");
   const bool paused = demo.paused;
-  restoreDemoState(std::prev(after)->state, "timeline", true, demo);
-  demo.timeline.now = std::prev(after)->frame;
+  const TimelineFrame& kept = *std::prev(after);
+  inShapesOf(
+      kept.shapes, [&] { restoreDemoState(kept.state, "timeline", true, demo); }, demo);
+  demo.timeline.now = kept.frame;
   demo.paused = paused;
   demo.shown_fraction = -1;
 }

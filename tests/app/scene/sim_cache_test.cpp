@@ -11,6 +11,7 @@
 #include "app/files/errors.h"
 #include "app/platform/hair_recorder.h"
 #include "app/scene/demo_state.h"
+#include "app/scene/edit/groom_brush.h"
 #include "tests/run_program.h"
 
 namespace sim_cache_test {
@@ -223,6 +224,28 @@ TEST(HairRecorder, WritesACacheThatTheTimelineThenShowsAndAnExport) {
   frames(2);
   EXPECT_TRUE(demo.message_is_fault);
   EXPECT_FALSE(demo.capture.hair);
+}
+
+// An edit of the rest shape leaves a cache to look at, and to go on from.
+TEST(SimCache, ShowsItsFramesAfterAnEdit) {
+  app::Demo demo = opened();
+  demo.paused = true;
+  app::openCache(cached().file, demo);
+  std::vector<app::Vec3> shape = demo.actors[0].haircut->mesh.shape.positions;
+  shape.back().y() -= 0.002;
+  app::reshapeHair(shape, 0, demo);
+  ASSERT_TRUE(demo.timeline.cache);
+  for (const int frame : {44, 12}) {
+    demo.requests.push_back({app::Ask::kRewind, "", "", static_cast<double>(frame)});
+    app::advanceFrame(demo, kFrame, {});
+    EXPECT_FALSE(demo.message_is_fault) << demo.message;
+    EXPECT_LE(farthest(shownOf(demo), cached().shown[static_cast<std::size_t>(frame - 1)]),
+              0.5 * app::kCacheStep + 2e-6);
+  }
+  demo.paused = false;
+  app::advanceFrame(demo, kFrame, {});
+  EXPECT_FALSE(demo.message_is_fault) << demo.message;
+  EXPECT_EQ(demo.actors[0].haircut->mesh.shape.positions, shape);
 }
 
 TEST(HairRecorder, NumbersFramesByTheTimeOfTheRun) {

@@ -3,6 +3,7 @@
 
 #include "app/files/recording.h"
 #include "app/scene/demo.h"
+#include "app/scene/edit/groom_brush.h"
 #include "tests/app/scene/small_scene.h"
 
 namespace timeline_range_test {
@@ -124,6 +125,59 @@ TEST(TimelineRange, PointsStayInOrderAndLoopsAreMarked) {
   int loops = 0;
   for (const app::TimelineFrame& frame : demo.timeline.frames) loops += frame.loop;
   EXPECT_EQ(loops, 1);
+}
+
+// The hair about one of its vertices made longer.
+void growHair(app::Demo& demo) {
+  app::BrushSample sample{app::BrushTool::kGrow, app::seenFromScalp(demo.actors[0]).back()};
+  sample.radius = 0.1;
+  demo.requests = {{Ask::kBrush, "grow", app::brushText(sample)}};
+  app::advanceFrame(demo, 0, {});
+  ASSERT_FALSE(demo.message_is_fault) << demo.message;
+}
+
+TEST(TimelineRange, AnEditLeavesWhatWasBeforeItToLookAtAndToGoOnFrom) {
+  app::Demo demo = moving();
+  play(21, demo);
+  const std::vector<app::Vec3> then = demo.actors[0].hair.positions;
+  play(39, demo);
+  long first = 0, last = 0;
+  demo.paused = true;
+  ask(Ask::kRewind, 42, demo);
+  growHair(demo), growHair(demo);
+  const std::vector<app::Vec3> shape = demo.actors[0].haircut->mesh.shape.positions;
+  ASSERT_TRUE(app::timelineSpan(demo.timeline, first, last));
+  EXPECT_EQ(first, 3);
+  EXPECT_EQ(last, 39) << "what was simulated after the edit's moment is of other hair";
+  ask(Ask::kRewind, 21, demo);
+  EXPECT_FALSE(demo.message_is_fault) << demo.message;
+  EXPECT_EQ(app::timelinePlace(demo), 21);
+  EXPECT_EQ(demo.actors[0].hair.positions, then) << "the hair as it was";
+  EXPECT_EQ(demo.actors[0].haircut->mesh.shape.positions, shape) << "the edit stays";
+  demo.paused = false;
+  demo.requests = {{Ask::kSetParam, "gravity", "3"}};
+  play(30, demo);
+  EXPECT_EQ(demo.stats.recoveries, 0);
+  ASSERT_TRUE(app::timelineSpan(demo.timeline, first, last));
+  EXPECT_EQ(first, 3);
+  EXPECT_EQ(last, 51);
+  std::size_t bytes = 0;
+  for (const app::TimelineFrame& frame : demo.timeline.frames) bytes += frame.state.size();
+  EXPECT_GE(demo.timeline.bytes, bytes);
+  EXPECT_LE(demo.timeline.bytes, bytes + 2 * shape.size() * sizeof(app::Vec3));
+}
+
+TEST(TimelineRange, AnotherMeshBeginsTheTimelineAnewAndItIsSaid) {
+  app::Demo demo = moving();
+  play(30, demo);
+  demo.paused = true;
+  demo.requests = {{Ask::kMesh, "add-layer", "1"}};
+  app::advanceFrame(demo, 0, {});
+  EXPECT_TRUE(demo.timeline.frames.empty());
+  EXPECT_TRUE(demo.timeline.anew);
+  demo.paused = false;
+  play(static_cast<int>(app::kAnewMoments * app::kTimelineEvery) + 3, demo);
+  EXPECT_FALSE(demo.timeline.anew);
 }
 
 }  // namespace timeline_range_test
