@@ -55,6 +55,11 @@ struct SelectState {
   int element = -1;           // of kElementNames; -1: none are chosen
   std::vector<int> chosen;    // as MoveSample has them
   std::uint64_t haircut = 0;  // whose they are
+  // While they are dragged: where the pointer was (m, scalp frame); vertices, and where they were at rest.
+  Vec3 from = Vec3::Zero();
+  std::vector<int> led;
+  std::vector<Vec3> led_from;
+  std::string said;  // of how far they fall short of the pointer
 };
 
 // The picture of a preset, as whoever draws them has come to.

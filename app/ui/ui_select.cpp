@@ -32,7 +32,7 @@ std::size_t numbersEach(const SelectState& select) {
 
 // What was chosen of another mesh is chosen no more.
 void followMesh(const Actor& actor, SelectState& select) {
-  if (select.haircut != actor.haircut->id) select.chosen.clear();
+  if (select.haircut != actor.haircut->id) select.chosen.clear(), select.led.clear();
   select.haircut = actor.haircut->id;
 }
 
@@ -165,6 +165,39 @@ void postMove(const Vec3& along, Demo& demo, const UiState& ui) {
   MoveSample sample{elementOf(ui.select), ui.select.chosen, along, ui.brush.radius, ui.brush.falloff, ui.brush.mirror};
   const std::string element(kElementNames[static_cast<std::size_t>(ui.select.element)]);
   postRequest(demo, {Ask::kMove, element, moveText(sample)});
+}
+
+// A drag begins at `at` (m, scalp frame).
+void beginDrag(const Vec3& at, const Actor& actor, SelectState& select) {
+  const sim::HairMesh& mesh = actor.haircut->mesh;
+  select.from = at;
+  select.said.clear();
+  select.led = verticesOf(elementOf(select), select.chosen, mesh);
+  std::erase_if(select.led, [&](int v) { return mesh.isRoot(v); });
+  select.led_from.clear();
+  for (const int v : select.led) select.led_from.push_back(mesh.shape.positions[static_cast<std::size_t>(v)]);
+}
+
+// Says how far what is dragged fell short of the pointer when that was at `asked` (m, scalp frame), and why.
+void sayShortfall(const Vec3& asked, const Actor& actor, Demo& demo, SelectState& select) {
+  constexpr double kShort = 0.001;  // m
+  if (select.led.empty() || !actor.haircut->brushes) return;
+  const std::vector<Vec3>& rest = actor.haircut->mesh.shape.positions;
+  double least = INFINITY;
+  for (std::size_t k = 0; k < select.led.size(); ++k) {
+    const Vec3 gone = rest[static_cast<std::size_t>(select.led[k])] - select.led_from[k];
+    least = std::min(least, (asked - select.from - gone).norm());
+  }
+  const bool ours = !select.said.empty() && demo.message == select.said;
+  if (least < kShort) {
+    if (ours) demo.message.clear();
+    return;
+  }
+  const HeldBy by = actor.haircut->brushes->heldBy();
+  if (by == HeldBy::kNothing && ours) return;
+  select.said = std::to_string(std::lround(1e3 * least)) + " mm short of the pointer" + heldText(by);
+  demo.message = select.said;
+  demo.message_is_fault = false;
 }
 
 // Across the mirror, of what is chosen alone; one a vertex. Empty without a mirror.
@@ -301,9 +334,11 @@ void selectFrame(bool begins, Demo& demo, UiState& ui) {
     choose(elementAt(elementOf(select), *hit, actor), io.KeyShift, select);
     brush.stroking = true;
     brush.last = to_scalp * hit->at;
+    beginDrag(brush.last, actor, select);
   }
   brush.stroking = brush.stroking && io.MouseDown[0];
   if (brush.stroking) {
+    sayShortfall(brush.last, actor, demo, select);
     const Vec3 last = to_scalp.inverse(Eigen::Isometry) * brush.last;
     const Vec3 now = pointInPlane(ray, last, viewBack(demo.camera)), way = now - last;
     if (way.norm() >= kLeastMove) {

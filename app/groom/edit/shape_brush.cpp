@@ -208,6 +208,21 @@ void ShapeBrushes::holdBack(const sim::HairMesh& mesh, double spread) {
   }
 }
 
+namespace {
+
+// Those with an end in `touched`.
+std::vector<const sim::Edge*> edgesAt(const std::vector<unsigned char>& touched, const sim::HairMesh& mesh) {
+  std::vector<const sim::Edge*> found;
+  for (const auto* edges : {&mesh.horizontal_edges, &mesh.vertical_edges}) {
+    for (const sim::Edge& edge : *edges) {
+      if (touched[edge.a] || touched[edge.b]) found.push_back(&edge);
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
 void ShapeBrushes::limit(double spread, const sim::HairMesh& mesh, const std::function<double(const Vec3&)>& body,
                          std::vector<Vec3>& positions) {
   const std::vector<Vec3>& x = mesh.shape.positions;
@@ -217,18 +232,14 @@ void ShapeBrushes::limit(double spread, const sim::HairMesh& mesh, const std::fu
     share_[v] = touched_[v];
   }
   tets_.clear();
+  spoilt_.fill(0);
   double sum = 0;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     sum += mesh.tets[t].rest_volume;
     if (std::ranges::any_of(mesh.tets[t].v, [&](int v) { return touched_[v]; })) tets_.push_back(static_cast<int>(t));
   }
   const double mean = sum / static_cast<double>(mesh.tets.size());
-  std::vector<const sim::Edge*> near;
-  for (const auto* edges : {&mesh.horizontal_edges, &mesh.vertical_edges}) {
-    for (const sim::Edge& edge : *edges) {
-      if (touched_[edge.a] || touched_[edge.b]) near.push_back(&edge);
-    }
-  }
+  const std::vector<const sim::Edge*> near = edgesAt(touched_, mesh);
   std::vector<unsigned char> moves = touched_;
   bool valid = false;
   for (int round = 0; round < kStrokeUntanglings && !valid; ++round) {
@@ -238,26 +249,29 @@ void ShapeBrushes::limit(double spread, const sim::HairMesh& mesh, const std::fu
     valid = true;
     std::fill(touched_.begin(), touched_.end(), 0);
     const auto changed = [&](int v) { return moves[v] != 0; };
-    const auto spoilt = [&](int v) {
+    const auto spoilt = [&](int v, HeldBy by) {
       valid = false;
       touched_[v] = 1;
+      ++spoilt_[static_cast<std::size_t>(by)];
     };
     // What was found fine and has not changed is fine.
     for (const int t : tets_) {
       const sim::CornerTet& tet = mesh.tets[t];
       if (std::ranges::none_of(tet.v, changed)) continue;
       const bool fine = sim::cornerVolume(tet.v, positions) >= atLeast(kMinVolume * mean, tet.rest_volume);
-      if (!fine) std::ranges::for_each(tet.v, spoilt);
+      for (const int v : tet.v) {
+        if (!fine) spoilt(v, HeldBy::kPrism);
+      }
     }
     for (const sim::Edge* edge : near) {
       if (!changed(edge->a) && !changed(edge->b)) continue;
       const double length = (positions[edge->a] - positions[edge->b]).norm();
-      if (length < atLeast(kMinEdge, edge->rest_length)) spoilt(edge->a), spoilt(edge->b);
+      if (length < atLeast(kMinEdge, edge->rest_length)) spoilt(edge->a, HeldBy::kEdge), spoilt(edge->b, HeldBy::kEdge);
     }
     for (std::size_t v = 0; body && v < n; ++v) {
       if (!moves[v] || share_[v] == 0) continue;
       const double distance = body(positions[v]);
-      if (distance < kOffBody && distance < body(x[v])) spoilt(static_cast<int>(v));
+      if (distance < kOffBody && distance < body(x[v])) spoilt(static_cast<int>(v), HeldBy::kBody);
     }
     std::copy(share_.begin(), share_.end(), went_.begin());
     for (std::size_t v = 0; v < n; ++v) {
@@ -382,7 +396,17 @@ int ShapeBrushes::move(const HairMove& move, const sim::HairMesh& mesh, std::spa
     // What both sides lead goes between the two ways.
     if (a > 0 || b > 0) wanted_[v] += free / std::max(1.0, a + b) * (a * move.along + b * other);
   }
-  return finish(spread, mesh, body, positions);
+  const int moved = finish(spread, mesh, body, positions);
+  held_by_ = HeldBy::kNothing;
+  for (const int v : move.vertices) {
+    const auto led = static_cast<std::size_t>(v);
+    if (!move.frozen.empty() && move.frozen[led] > 0) ++spoilt_[static_cast<std::size_t>(HeldBy::kFrozen)];
+    if (!move.bends && (x[led] + move.along - positions[led]).norm() <= kMoved) return moved;
+    if (move.bends && (wanted_[led] - positions[led]).norm() <= kMoved) return moved;
+  }
+  const auto most = std::ranges::max_element(spoilt_);
+  if (*most > 0) held_by_ = static_cast<HeldBy>(most - spoilt_.begin());
+  return moved;
 }
 
 }  // namespace app

@@ -71,6 +71,9 @@ struct HairMove {
 // How much each vertex follows those that are led: 1 of these, else what a brush reaches about the nearest of them.
 std::vector<double> reachAround(std::span<const int> led, std::span<const Vec3> seen, double radius, double falloff);
 
+// What kept hair from going all of its way.
+enum class HeldBy { kNothing, kPrism, kEdge, kBody, kFrozen };
+
 class ShapeBrushes {
  public:
   explicit ShapeBrushes(const sim::HairMesh& mesh);
@@ -81,9 +84,11 @@ class ShapeBrushes {
   int apply(const Brush& brush, const sim::HairMesh& mesh, std::span<const Vec3> seen,
             const std::function<double(const Vec3&)>& body, std::vector<Vec3>& positions);
 
-  // The same of a move.
+  // The same of a move. heldBy() says what kept those that are led from going all of their way, the most common of it.
   int move(const HairMove& move, const sim::HairMesh& mesh, std::span<const Vec3> seen,
            const std::function<double(const Vec3&)>& body, std::vector<Vec3>& positions);
+
+  HeldBy heldBy() const { return held_by_; }
 
  private:
   std::vector<int> neighbour_first_, neighbours_;  // of each vertex: within its layer, and in its column
@@ -92,6 +97,8 @@ class ShapeBrushes {
   std::vector<double> went_;
   std::vector<unsigned char> touched_;
   std::vector<int> tets_;
+  std::array<int, 5> spoilt_{};  // vertices by HeldBy
+  HeldBy held_by_ = HeldBy::kNothing;
 
   void reach(const Brush& brush, const sim::HairMesh& mesh, std::span<const Vec3> seen);
   void comb(const Brush& brush, const Vec3& along);

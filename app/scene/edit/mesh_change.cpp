@@ -96,6 +96,22 @@ std::vector<int> verticesOf(MeshElement element, std::span<const int> chosen, co
   return vertices;
 }
 
+const char* heldText(HeldBy by) {
+  switch (by) {
+    case HeldBy::kPrism:
+      return ": hair beside it would be flat or inside out";
+    case HeldBy::kEdge:
+      return ": it would meet the vertex beside it";
+    case HeldBy::kBody:
+      return ": hair would go into the body";
+    case HeldBy::kFrozen:
+      return ": it is frozen";
+    case HeldBy::kNothing:
+      break;
+  }
+  return "";
+}
+
 void applyMove(const MoveSample& sample, int index, Demo& demo) {
   const Actor& actor = demo.actors[static_cast<std::size_t>(index)];
   const sim::HairMesh& mesh = actor.haircut->mesh;
@@ -110,7 +126,10 @@ void applyMove(const MoveSample& sample, int index, Demo& demo) {
   move.frozen = actor.haircut->frozen;
   const std::vector<Vec3> seen = seenFromScalp(actor);
   std::vector<Vec3> positions;
-  if (handsOn(actor).move(move, mesh, seen, actor.body->distance, positions) > 0) reshapeHair(positions, index, demo);
+  ShapeBrushes& hands = handsOn(actor);
+  if (hands.move(move, mesh, seen, actor.body->distance, positions) > 0) return reshapeHair(positions, index, demo);
+  demo.message = std::string("stays where it is") + heldText(hands.heldBy());
+  demo.message_is_fault = false;
 }
 
 namespace {

@@ -35,8 +35,11 @@ MoveSample parseMove(const std::string& element, const std::string& text);
 // The vertices of chosen elements, each once, roots too. Throws InputError where there is no such element.
 std::vector<int> verticesOf(MeshElement element, std::span<const int> chosen, const sim::HairMesh& mesh);
 
-// Changes the rest shape of the actor's hair. Throws InputError where nothing is chosen that can move; then nothing has
-// changed.
+// ": it is frozen" and the like; empty of nothing.
+const char* heldText(HeldBy by);
+
+// Changes the rest shape of the actor's hair; the demo's message says why where nothing moves. Throws InputError where
+// nothing is chosen that can move; then nothing has changed.
 void applyMove(const MoveSample& sample, int actor, Demo& demo);
 
 // What changes the structure, see mesh_edit.h. Their texts: a layer's number; pairs of columns; columns; pairs. Before

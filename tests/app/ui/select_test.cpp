@@ -1,6 +1,9 @@
 // Choosing parts of the hair mesh with the mouse, and what drags, arrow keys and buttons then ask for.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
+#include "app/scene/edit/groom_brush.h"
 #include "app/scene/edit/mesh_change.h"
 #include "app/scene/edit/picking.h"
 #include "app/ui/ui_panels.h"
@@ -74,6 +77,51 @@ TEST_F(Select, ADragAsksForMovesAndEndsItsGesture) {
     EXPECT_EQ(sample.chosen, ui_.select.chosen);
     EXPECT_GT(sample.along.norm(), 0.001);
   }
+}
+
+// What cannot follow the pointer says by how much, and why.
+TEST_F(Select, ADragThatFallsShortOfThePointerSaysSo) {
+  app::chooseElement(static_cast<int>(app::MeshElement::kVertex), ui_);
+  ui_.brush.radius = 0.01;
+  demo_.paused = true;
+  ImGuiIO& io = ImGui::GetIO();
+  const auto step = [&] {
+    demo_.requests = frame();
+    app::advanceFrame(demo_, 0, {});
+  };
+  const auto drag = [&](const ImVec2& at, float dx, int steps) {
+    io.MousePos = at;
+    step();
+    io.MouseDown[0] = true;
+    step();
+    const app::Vec3 from = ui_.brush.last;
+    for (int k = 0; k < steps; ++k) io.MousePos.x += dx, step();
+    step();
+    const app::Vec3 way = ui_.brush.last - from;
+    io.MouseDown[0] = false;
+    step();
+    return way;
+  };
+  const auto rest = [&] {
+    return demo_.actors[0].haircut->mesh.shape.positions[static_cast<std::size_t>(ui_.select.chosen.at(0))];
+  };
+  const ImVec2 at = onHair(40);
+  press(at);
+  const app::Vec3 before = rest();
+  const app::Vec3 way = drag(at, -20, 10);
+  const double lacks = (way - (rest() - before)).norm();
+  ASSERT_GT(lacks, 0.003) << "it follows";
+  EXPECT_EQ(std::atoi(demo_.message.c_str()), std::lround(1e3 * lacks)) << demo_.message;
+  EXPECT_NE(demo_.message.find(" mm short of the pointer: "), std::string::npos) << demo_.message;
+  const std::vector<float> all(demo_.actors[0].hair.positions.size(), 1);
+  app::freezeHair(all, 0, demo_);
+  demo_.message.clear();
+  drag(at, 20, 2);
+  EXPECT_NE(demo_.message.find("short of the pointer: it is frozen"), std::string::npos) << demo_.message;
+  app::freezeHair({}, 0, demo_);
+  demo_.message.clear();
+  drag(onHair(90), 1, 6);
+  EXPECT_EQ(demo_.message, "") << "it goes where it is led";
 }
 
 TEST_F(Select, ArrowKeysMoveWhatIsChosenAndElseReachThePanels) {
