@@ -142,11 +142,7 @@ void placeAt(const AttachmentSpec& spec, const PolygonMesh& mesh, const Vec3& jo
     origin = joint;
     note += std::string(note.empty() ? "read" : ",") + " about the figure's origin";
   }
-  constexpr double kDegree = std::numbers::pi / 180;
-  const Eigen::Matrix3d turn = (Eigen::AngleAxisd(kDegree * spec.turn.z(), Vec3::UnitZ()) *
-                                Eigen::AngleAxisd(kDegree * spec.turn.y(), Vec3::UnitY()) *
-                                Eigen::AngleAxisd(kDegree * spec.turn.x(), Vec3::UnitX()))
-                                   .toRotationMatrix();
+  const Eigen::Matrix3d turn = turnOf(spec.turn);
   for (Vec3& p : surface.points) p = spec.size * (turn * (scale * p - origin)) + spec.at;
 }
 
@@ -387,6 +383,13 @@ Attachment loadAttachment(const AttachmentSpec& spec, const Character& character
   if (!note.empty()) out.note = stem(spec.file) + ": " + note;
   shadeAttachment(surface, out);
   return out;
+}
+
+Eigen::Matrix3d turnOf(const Vec3& degrees) {
+  const Vec3 radians = std::numbers::pi / 180 * degrees;
+  return (Eigen::AngleAxisd(radians.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(radians.y(), Vec3::UnitY()) *
+          Eigen::AngleAxisd(radians.x(), Vec3::UnitX()))
+      .toRotationMatrix();
 }
 
 bool looksWorn(const PolygonMesh& mesh) {

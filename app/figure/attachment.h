@@ -33,6 +33,9 @@ struct Attachment {
 // an unknown joint, no unit or place that is certain.
 Attachment loadAttachment(const AttachmentSpec& spec, const Character& character);
 
+// The turn about x, then y, then z, of AttachmentSpec::turn.
+Eigen::Matrix3d turnOf(const Vec3& degrees);
+
 // Whether polygons are a thing that is worn rather than hair: at most eight pieces, all closed, not long and thin.
 bool looksWorn(const PolygonMesh& mesh);
 

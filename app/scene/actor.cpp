@@ -203,7 +203,7 @@ Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, AssetCa
   LoadedBody& body = loadBody(spec, asset_cache);
   actor.body = &body;
   actor.haircut = &cutHair(spec, body, asset_cache);
-  for (const Attachment* mesh : attach(spec, body, asset_cache)) actor.worn.push_back({mesh, freshId(), {}});
+  for (const Attachment* mesh : attach(spec, body, asset_cache)) actor.worn.push_back({mesh, freshId()});
   if (actor.haircut->look)
     takeUnset(*actor.haircut->look, spec.look_before.value_or(render::HairLook{}), actor.spec.look.hair);
   actor.scalp = &coverScalp(body, *actor.haircut, asset_cache);

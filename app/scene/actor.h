@@ -82,8 +82,9 @@ struct ScalpCover {
 // An attachment on one actor.
 struct WornAttachment {
   const Attachment* mesh = nullptr;
-  std::uint64_t id = 0;   // of what is drawn
-  render::Mat4 matrix{};  // joint to world, less the picture's origin
+  std::uint64_t id = 0;                                   // of what is drawn
+  Eigen::Affine3d dragged = Eigen::Affine3d::Identity();  // joint frame: to where it is drawn while dragged
+  render::Mat4 matrix{};                                  // joint to world, less the picture's origin
 };
 
 // Two resolutions of a style on one head, and the transfers between them.

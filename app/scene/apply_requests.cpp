@@ -10,6 +10,7 @@
 #include "app/files/hair_file.h"
 #include "app/files/output_file.h"
 #include "app/files/presets.h"
+#include "app/scene/attachments.h"
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
 #include "app/scene/edit/groom_brush.h"
@@ -108,12 +109,11 @@ void changeAttachments(const Request& request, Demo& demo) {
   if (request.name == "add") given.insert(given.begin(), spec.attachments.begin(), spec.attachments.end());
   if (given.size() > kMaxAttachments)
     throw InputError("", "attachments", "are more than " + std::to_string(kMaxAttachments), "take one off first");
-  const bool same = wornText(given) == wornText(spec.attachments);
-  spec.attachments = std::move(given);
-  if (same) {
-    selectedActor(demo).spec.attachments = spec.attachments;
+  if (wornText(given) == wornText(spec.attachments)) {
+    selectedActor(demo).spec.attachments = std::move(given);
     return;
   }
+  spec.attachments = std::move(given);
   recast(spec, true,
          spec.attachments.empty() ? "hair with nothing over it" : "hair with " + stem(spec.attachments.back().file),
          demo);
@@ -439,6 +439,7 @@ constexpr Action kActions[] = {
     {Ask::kMap, changeMap},
     {Ask::kTie, [](const Request& request, Demo& demo) { changeTies(request.text, demo); }},
     {Ask::kAttach, changeAttachments},
+    {Ask::kDragWorn, [](const Request& request, Demo& demo) { drawDragged(request.text, selectedActor(demo)); }},
     {Ask::kPaint, [](const Request& request,
                      Demo& demo) { applyPaint(parsePaint(request.name, request.text), demo.selected, demo); }},
     {Ask::kCurve,

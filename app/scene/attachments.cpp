@@ -138,13 +138,39 @@ void poseAttachments(double dt, Actor& actor) {
 bool showAttachments(const Vec3& origin, Actor& actor) {
   bool changed = false;
   for (WornAttachment& worn : actor.worn) {
-    Rigid carried = actor.shown_pose.world[static_cast<std::size_t>(worn.mesh->part.joint)];
+    Eigen::Affine3d carried = actor.shown_pose.world[static_cast<std::size_t>(worn.mesh->part.joint)] * worn.dragged;
     carried.translation() -= origin;
     const Eigen::Matrix4f m = carried.matrix().cast<float>();
     changed = changed || !std::equal(m.data(), m.data() + 16, worn.matrix.begin());
     std::copy(m.data(), m.data() + 16, worn.matrix.begin());
   }
   return changed;
+}
+
+void drawDragged(const std::string& text, Actor& actor) {
+  const std::vector<AttachmentSpec> specs = attachmentsFromText(text);
+  const std::size_t count = std::min({specs.size(), actor.worn.size(), actor.spec.attachments.size()});
+  for (std::size_t k = 0; k < count; ++k) {
+    const AttachmentSpec &to = specs[k], &from = actor.spec.attachments[k];
+    if (to.file != from.file) continue;
+    const Attachment& mesh = *actor.worn[k].mesh;
+    const Vec3 at = to.at.isZero() ? mesh.at : to.at, turn = to.turn.isZero() ? mesh.turn : to.turn;
+    const Eigen::Matrix3d upright = mesh.to_scalp.linear();  // from the joint's axes
+    const Eigen::Matrix3d turned = to.size / from.size * (turnOf(turn) * turnOf(mesh.turn).transpose());
+    Eigen::Affine3d dragged = Eigen::Affine3d::Identity();
+    dragged.linear() = upright.transpose() * turned * upright;
+    dragged.translation() = upright.transpose() * (at - turned * mesh.at);
+    actor.worn[k].dragged = dragged;
+  }
+  actor.shown_still = false;
+}
+
+bool drawInPlace(Actor& actor) {
+  const auto at_place = [](const WornAttachment& worn) { return worn.dragged.matrix().isIdentity(0); };
+  if (std::ranges::all_of(actor.worn, at_place)) return false;
+  for (WornAttachment& worn : actor.worn) worn.dragged = Eigen::Affine3d::Identity();
+  actor.shown_still = false;
+  return true;
 }
 
 std::array<float, 3> wornColor(const Actor& actor, std::size_t k) {

@@ -28,6 +28,12 @@ void poseAttachments(double dt, Actor& actor);
 // Matrices of the shown pose relative to `origin` (m). Returns whether any bit changed.
 bool showAttachments(const Vec3& origin, Actor& actor);
 
+// Draws what the actor wears where `text` has it (see attachmentsFromText; the same files in the same order). Distances
+// and hair stay, and what would be inferred stays as it is. Throws InputError.
+void drawDragged(const std::string& text, Actor& actor);
+// Draws it where its distances are. Returns whether it was elsewhere.
+bool drawInPlace(Actor& actor);
+
 // The colour that one of the actor's attachments is drawn in, linear.
 std::array<float, 3> wornColor(const Actor& actor, std::size_t k);
 

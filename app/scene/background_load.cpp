@@ -5,6 +5,7 @@
 #include <functional>
 #include <utility>
 
+#include "app/scene/attachments.h"
 #include "app/scene/demo.h"
 
 namespace app {
@@ -96,7 +97,9 @@ void noteFileEnd(const std::string& file, bool done, Demo& demo) {
   if (!file.empty() && demo.file_ends.size() < kMostFileEnds) demo.file_ends.push_back({file, done});
 }
 
-void installLoaded(Demo& demo) {
+namespace {
+
+void takeLoaded(Demo& demo) {
   BackgroundLoad& loading = demo.loading;
   if (!loading.running.valid() || loading.running.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
     return;
@@ -126,6 +129,16 @@ void installLoaded(Demo& demo) {
   LoadOrder next = std::move(*demo.loading.waiting);
   demo.loading.waiting.reset();
   start(std::move(next), demo);
+}
+
+}  // namespace
+
+void installLoaded(Demo& demo) {
+  takeLoaded(demo);
+  if (demo.loading.running.valid()) return;
+  for (Actor& actor : demo.actors) {
+    if (drawInPlace(actor)) demo.shown_fraction = -1;
+  }
 }
 
 void followColliders(Demo& demo) {

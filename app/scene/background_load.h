@@ -50,6 +50,7 @@ bool comesLater(long edit, const BackgroundLoad& loading);
 void noteFileEnd(const std::string& file, bool done, Demo& demo);
 
 // Puts in place what has been loaded, if anything has; a fault becomes the demo's message and changes nothing else.
+// Where nothing is being loaded any more, what is worn is drawn in its place again.
 void installLoaded(Demo& demo);
 
 // Where signed distances are collided with: starts making those that are missing, and takes over those that are made.

@@ -66,6 +66,7 @@ enum class Ask {
   kTie,          // text: ties of the selected character, see tiesFromText
   kAttach,       // text: attachments of the selected character in place of those before, see attachmentsFromText;
                  // name: add, beside those before
+  kDragWorn,     // text: the same attachments; where they are drawn until the next frame, or while they are loaded
   kPaint,        // name: field, text: a sample of a stroke; see paint_brush.h
   kCurve,        // name: field, text: shares from root to tip; see setCurve
   kVary,         // value: seed; text: how far, see varyMaterial

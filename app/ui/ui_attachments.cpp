@@ -19,6 +19,10 @@ void postAll(const std::vector<AttachmentSpec>& attachments, Demo& demo) {
   postRequest(demo, {Ask::kAttach, "", writeAttachments(attachments).dump()});
 }
 
+void postDragged(Demo& demo, const UiState& ui) {
+  postRequest(demo, {Ask::kDragWorn, "", writeAttachments(ui.worn).dump()});
+}
+
 // Numbers that are dragged, or typed after a double click; `standard`: what the mark at the end goes back to.
 bool dragRow(const char* label, const std::string& name, const std::string& help, std::span<float> values,
              std::span<const float> standard, const char* format, float speed, float low, float high, UiState& ui) {
@@ -68,7 +72,7 @@ void placeRows(std::size_t k, const Demo& demo, UiState& ui) {
   std::array size{static_cast<float>(one.size)};
   if (dragRow("Size", "size" + of, "Times as large, about the joint", size, kOne, "%.2f x", 0.003f, kSmallestTimes,
               kLargestTimes, ui)) {
-    one.size = size[0];
+    one.size = size[0], one.at = place, one.turn = inferred;
     ui.worn_edited = true;
   }
 }
@@ -97,13 +101,15 @@ void wornRow(std::size_t k, Demo& demo, UiState& ui) {
 void attachmentSection(Demo& demo, UiState& ui) {
   const bool held = ImGui::IsAnyItemActive();
   if (ui.worn_edited && !held) {
+    postDragged(demo, ui);  // it is drawn there until it is loaded
     postAll(ui.worn, demo);
     ui.worn_edited = false;
-  } else if (!held) {
+  } else if (!held && !demo.loading.running.valid()) {
     ui.worn = selectedActor(demo).spec.attachments;
   }
   const std::size_t count = ui.worn.size();
   for (std::size_t k = 0; k < count; ++k) wornRow(k, demo, ui);
+  if (ui.worn_edited) postDragged(demo, ui);
   rowLabel("Put on", "A closed mesh that the hair collides with; one that is dropped on the window goes to the head");
   const float button = 58 * ui.text_scale;
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - button - 5);

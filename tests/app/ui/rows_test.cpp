@@ -51,6 +51,53 @@ TEST_F(Panels, WhatIsWornIsPlacedTurnedAndScaledByDrags) {
   EXPECT_EQ(ui_.browser.what, app::BrowseFor::kWorn);
 }
 
+// It is seen at its new place while the mouse is held; the hair follows when that is let go, and nothing jumps then.
+TEST_F(Panels, WhatIsWornIsDrawnWhereItIsDragged) {
+  ImGuiIO& io = ImGui::GetIO();
+  io.DisplaySize = {1280, 3000};
+  apply({{Ask::kAttach, "add", "glasses.obj"}});
+  openTab(app::tabIndex("hair"));
+  if (!find("place glasses")) click("section Worn");
+  const auto show = [&](const std::vector<test::Request>& requests) {
+    demo_.requests = requests;
+    app::advanceFrame(demo_, 0, {});
+    const app::WornAttachment& worn = app::selectedActor(demo_).worn.at(0);
+    std::vector<Eigen::Vector3f> drawn;
+    for (const Eigen::Vector3f& p : worn.mesh->positions)
+      drawn.push_back((Eigen::Map<const Eigen::Matrix4f>(worn.matrix.data()) * p.homogeneous()).head<3>());
+    return drawn;
+  };
+  const auto apart = [](const std::vector<Eigen::Vector3f>& a, const std::vector<Eigen::Vector3f>& b) {
+    float farthest = 0;
+    for (std::size_t k = 0; k < a.size(); ++k) farthest = std::max(farthest, (a[k] - b[k]).norm());
+    return farthest;
+  };
+  for (const std::string row : {"place", "turn", "size"}) {
+    demo_.shown_fraction = -1;
+    const std::vector<Eigen::Vector3f> before = show({});
+    const std::uint64_t actor = app::selectedActor(demo_).id;
+    const test::UiItem item = *find(row + " glasses");
+    io.MousePos = {item.x + 0.5f * item.width, item.y + 0.5f * item.height};
+    frame(), frame();
+    io.MouseDown[0] = true;
+    frame();
+    io.MousePos.x += 30;
+    const std::vector<test::Request> held = frame();
+    EXPECT_FALSE(asked(held, Ask::kAttach));
+    const std::vector<Eigen::Vector3f> dragged = show(held);
+    EXPECT_GT(apart(before, dragged), 1e-3f) << row << " stands still";
+    EXPECT_EQ(app::selectedActor(demo_).id, actor) << "made anew while it is dragged";
+    EXPECT_LT(apart(before, show({})), 1e-6f) << "nobody drags it any more";
+    io.MouseDown[0] = false;
+    show(frame());
+    const std::vector<test::Request> released = frame();
+    EXPECT_TRUE(asked(released, Ask::kAttach));
+    EXPECT_LT(apart(dragged, show(released)), 2e-5f) << row << " jumps when it is let go";
+    EXPECT_NE(app::selectedActor(demo_).id, actor);
+    frame();
+  }
+}
+
 TEST_F(Panels, LengthsAreShownInMillimetresAndPressuresInKilopascals) {
   EXPECT_EQ(app::rowValue("strand_radius", "4e-05"), "0.04 mm");
   EXPECT_EQ(app::rowValue("offset", "0.0012"), "1.2 mm");
