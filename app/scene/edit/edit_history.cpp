@@ -229,7 +229,11 @@ void bringBack(const EditSide& side, Demo& demo) {
 // Changes the two sides of a step over.
 void swapSides(EditStep& step, Demo& demo) {
   EditSide now = sideOf(demo, kindOf(step.request.what)->reach);
+  const std::string name = demo.scene.name, file = demo.scene.file;
   bringBack(step.other, demo);
+  // What the scene was saved as since stays, unless the step opened another.
+  const bool opened = step.request.what == Ask::kSceneFile || step.request.what == Ask::kOpenProject;
+  if (!opened) demo.scene.name = name, demo.scene.file = file;
   step.other = std::move(now);
 }
 

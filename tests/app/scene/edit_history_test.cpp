@@ -152,6 +152,21 @@ TEST(EditHistory, AThousandRandomEditsUndoneAndDoneAgainEndInTheSameBits) {
   EXPECT_TRUE(demo.message.starts_with("nothing to redo")) << demo.message;
 }
 
+// The next Ctrl+S offers that name.
+TEST(EditHistory, UndoLeavesTheNameThatTheSceneWasSavedBy) {
+  app::Demo demo = movingDemo();
+  const std::string file = test::freshFolder("edit_history_name") + "/mine.json";
+  demo.requests = {{Ask::kSetParam, "density", "70"}, {Ask::kSaveScene, "", file}};
+  app::advanceFrame(demo, 0, {});
+  ASSERT_FALSE(demo.message_is_fault) << demo.message;
+  for (const Ask way : {Ask::kUndo, Ask::kRedo}) {
+    ask({way, "", "", 1}, demo);
+    EXPECT_EQ(demo.scene.name, "mine");
+    EXPECT_EQ(demo.scene.file, file);
+  }
+  EXPECT_EQ(demo.scene.sim.density, 70);
+}
+
 TEST(EditHistory, ADragIsOneStepAndALaterEditEndsWhatWasUndone) {
   app::Demo demo = movingDemo();
   const double density = demo.scene.sim.density;
