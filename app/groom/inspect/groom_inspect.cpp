@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 
 #include "app/files/length_units.h"
 #include "app/files/median.h"
@@ -386,34 +385,6 @@ GroomInspection inspectGroom(const Groom& groom, const GroomHints& hints, const 
       countOf(groom.strandCount(), "strand") + ", " + countOf(groom.points.size(), "point") + ", " +
       textOf("%.0f a strand (median), %.3g m across", median(counts), groomSize(groom) * inspector.result.mends.unit);
   return std::move(inspector.result);
-}
-
-std::optional<Matrix3f> axesOfUp(std::string_view up) {
-  const auto rows = [](float a, float b, float c, float d, float e, float f, float g, float h, float i) {
-    Matrix3f matrix;
-    matrix << a, b, c, d, e, f, g, h, i;
-    return matrix;
-  };
-  if (up == "y") return Matrix3f(Matrix3f::Identity());
-  if (up == "z") return rows(1, 0, 0, 0, 0, 1, 0, -1, 0);
-  if (up == "-y") return rows(-1, 0, 0, 0, -1, 0, 0, 0, 1);
-  if (up == "-z") return rows(1, 0, 0, 0, 0, -1, 0, 1, 0);
-  if (up == "x") return rows(0, -1, 0, 1, 0, 0, 0, 0, 1);
-  if (up == "-x") return rows(0, 1, 0, -1, 0, 0, 0, 0, 1);
-  return std::nullopt;
-}
-
-Matrix3f toldAxes(const GroomHints& hints) {
-  return *axesOfUp(hints.up == 'Z' ? "z" : "y");
-}
-
-Matrix3f turnedAbout(double degrees) {
-  const auto angle = static_cast<float>(degrees * std::numbers::pi / 180);
-  Matrix3f matrix = Matrix3f::Identity();
-  matrix(0, 0) = matrix(2, 2) = std::round(1e6f * std::cos(angle)) / 1e6f;
-  matrix(0, 2) = std::round(1e6f * std::sin(angle)) / 1e6f;
-  matrix(2, 0) = -matrix(0, 2);
-  return matrix;
 }
 
 }  // namespace app
