@@ -91,10 +91,21 @@ set(package_names library libhairmesh${soname_version} development libhairmesh-d
 if(HAIRMESH_APP)
   list(APPEND package_names program hairmesh)
 endif()
+set(components "")
 while(package_names)
   list(POP_FRONT package_names component package)
+  list(APPEND components ${component})
   install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} RENAME copyright COMPONENT ${component})
 endwhile()
+# An unknown component installs nothing, and CMake does not say so. A project around this one has components of its own.
+if(PROJECT_IS_TOP_LEVEL)
+  list(JOIN components ", " component_words)
+  list(JOIN components "|" component_pattern)
+  install(CODE "
+    if(CMAKE_INSTALL_COMPONENT AND NOT \"\${CMAKE_INSTALL_COMPONENT}\" MATCHES \"^(${component_pattern})$\")
+      message(FATAL_ERROR \"hairmesh has no component '\${CMAKE_INSTALL_COMPONENT}'; it has ${component_words}\")
+    endif()" ALL_COMPONENTS)
+endif()
 
 # cpack -G DEB: libhairmesh0.1, libhairmesh-dev, python3-hairmesh and, of a build with the program, hairmesh.
 set(CPACK_GENERATOR DEB)

@@ -23,6 +23,8 @@ constexpr double kSmallestSpread = 0.2;                      // of the roots ove
 // Hair hangs when its tips' mean way from the roots is so much of their mean length; then it points down within 70
 // degrees.
 constexpr double kHangs = 0.5, kDown = 0.34;
+// Hair stands when its first thirds' mean direction is so long; then that points up within 41 degrees.
+constexpr double kStands = 0.6, kSteep = 0.75;
 constexpr double kFaceForward = 0.3, kFaceBelow = 0.1, kFaceCosts = 0.2;  // before the ears, below the brow; m
 constexpr double kOtherAxes = 0.005, kHeadShapes = 3;                     // m; heads differ by so many limits
 constexpr int kFitSteps = 20;
@@ -57,17 +59,25 @@ std::vector<Vec3> rootsOf(const sim::HairMeshShape& shape) {
   return roots;
 }
 
-// The mean way from root to tip, over the mean length of these ways.
-Vec3 hangOf(const sim::HairMeshShape& shape) {
-  Vec3 sum = Vec3::Zero();
+// Of hair as a whole, in its file's axes.
+struct Ways {
+  Vec3 hang = Vec3::Zero();  // the mean way from root to tip, over the mean length of these ways
+  Vec3 rise = Vec3::Zero();  // the mean direction of the first thirds
+};
+
+Ways waysOf(const sim::HairMeshShape& shape) {
+  Ways ways;
   double length = 0;
   for (int c = 0; c < shape.columnCount(); ++c) {
-    const int root = shape.column_first[c];
-    const Vec3 way = shape.positions[root + shape.columnLength(c) - 1] - shape.positions[root];
-    sum += way;
+    const int root = shape.column_first[c], layers = shape.columnLength(c);
+    const Vec3 way = shape.positions[root + layers - 1] - shape.positions[root];
+    ways.hang += way;
     length += way.norm();
+    ways.rise += (shape.positions[root + std::max(1, layers / 3)] - shape.positions[root]).stableNormalized();
   }
-  return length > 0 ? Vec3(sum / length) : Vec3::Zero();
+  ways.hang = length > 0 ? Vec3(ways.hang / length) : Vec3::Zero();
+  ways.rise /= std::max(1, shape.columnCount());
+  return ways;
 }
 
 Vec3 nearestOnScalp(const Vec3& p, const Scalp& scalp) {
@@ -150,13 +160,14 @@ double misfit(const std::vector<Vec3>& points, const std::vector<Vec3>& roots, c
          (reading.axes == &axesKnown()[0] ? 0 : kOtherAxes);
 }
 
-// Whether hair read so is of a head's size and hangs down, if it hangs.
-bool plausible(const std::vector<Vec3>& roots, const Vec3& hang, const Reading& reading, const Scalp& scalp) {
+// Whether hair read so is of a head's size, and hangs down if it hangs, or rises if it stands.
+bool plausible(const std::vector<Vec3>& roots, const Ways& ways, const Reading& reading, const Scalp& scalp) {
   const double scale = reading.linear.col(0).norm();
   const double spread = scale * cloudOf(roots).spread / hairyScalp(scalp).spread;
-  const Vec3 way = reading.linear * hang / scale;
+  const Vec3 hang = reading.linear * ways.hang / scale, rise = reading.linear * ways.rise / scale;
+  const bool stands = rise.norm() >= kStands && rise.y() >= kSteep * rise.norm();
   return spread >= kSmallestSpread && spread <= kLargestScale &&
-         (way.norm() < kHangs || -way.y() >= kDown * way.norm());
+         (stands || hang.norm() < kHangs || -hang.y() >= kDown * hang.norm());
 }
 
 // The shift and, where it is `sized`, the scale, without a turn, that bring the roots to the scalp: first over where
@@ -192,7 +203,7 @@ double scaleOf(const Reading& reading) {
 }
 
 // The readings that can be hair for another head, brought to this one: of that head's size, or sized to this one.
-std::vector<Reading> forOtherHeads(const std::vector<Reading>& all, const std::vector<Vec3>& roots, const Vec3& hang,
+std::vector<Reading> forOtherHeads(const std::vector<Reading>& all, const std::vector<Vec3>& roots, const Ways& ways,
                                    bool sized, const Scalp& scalp) {
   std::vector<Reading> moved;
   for (const Reading& reading : all) {
@@ -201,7 +212,7 @@ std::vector<Reading> forOtherHeads(const std::vector<Reading>& all, const std::v
     const double scale = scaleOf(one);
     // A small patch of roots fits everywhere.
     const double spread = one.linear.col(0).norm() * cloudOf(roots).spread / hairyScalp(scalp).spread;
-    if (std::min(scale, spread) >= kSmallestScale && scale <= kLargestScale && plausible(roots, hang, one, scalp))
+    if (std::min(scale, spread) >= kSmallestScale && scale <= kLargestScale && plausible(roots, ways, one, scalp))
       moved.push_back(one);
   }
   return moved;
@@ -239,12 +250,13 @@ double rootDistance(const sim::HairMeshShape& shape, const Scalp& scalp) {
 }
 
 std::string fitHair(const Character& character, bool mend, sim::HairMeshShape& shape, bool in_metres,
-                    std::span<const Vec3> scalp_points) {
+                    std::span<const Vec3> scalp_points, double* as_made_distance) {
   const Scalp& scalp = character.scalp;
   const std::vector<Vec3> hair_roots = rootsOf(shape);
   const double limit = kFarRoots * scalp.head_height / kHead, before = rootDistance(shape, scalp);
+  if (as_made_distance != nullptr) *as_made_distance = before;
   if (hair_roots.empty() || before <= limit) return "";
-  const Vec3 hang = scalp_points.empty() ? hangOf(shape) : Vec3::Zero();
+  const Ways ways = scalp_points.empty() ? waysOf(shape) : Ways{};
   std::vector<Vec3> roots(scalp_points.begin(), scalp_points.end());
   if (roots.empty()) roots = hair_roots;
   const std::vector<Reading> all = readings(character, in_metres);
@@ -255,13 +267,14 @@ std::string fitHair(const Character& character, bool mend, sim::HairMeshShape& s
   };
   std::vector<Reading> as_made;
   std::ranges::copy_if(all, std::back_inserter(as_made),
-                       [&](const Reading& reading) { return plausible(roots, hang, reading, scalp); });
+                       [&](const Reading& reading) { return plausible(roots, ways, reading, scalp); });
   Reading found = as_made.empty() ? Reading{} : *best(as_made);
   std::string like = looksLike(found);
+  if (as_made_distance != nullptr) *as_made_distance = as_made.empty() ? INFINITY : distanceOf(roots, found, scalp);
   if (as_made.empty() || distanceOf(roots, found, scalp) > limit) {
     // A head of another shape is fitted somewhat better in another size: hair keeps its own unless that is much better.
-    std::vector<Reading> moved = forOtherHeads(all, roots, hang, false, scalp);
-    std::vector<Reading> sized = forOtherHeads(all, roots, hang, true, scalp);
+    std::vector<Reading> moved = forOtherHeads(all, roots, ways, false, scalp);
+    std::vector<Reading> sized = forOtherHeads(all, roots, ways, true, scalp);
     const auto off = [&](const std::vector<Reading>& of) {
       return of.empty() ? INFINITY : distanceOf(roots, *best(of), scalp);
     };

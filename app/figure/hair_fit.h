@@ -18,11 +18,13 @@ double rootDistance(const sim::HairMeshShape& shape, const Scalp& scalp);
 
 // Where the roots are far from the scalp: finds the unit (m, cm, mm, inches, feet), the axes (y up; z up, facing -y as
 // in Blender, or y), the origin (head joint or the figure's own) and at last the scale and place that bring them to it.
-// Hair that hangs must hang down, and its roots must be spread as over a head. With `mend` the shape is brought there.
-// Returns what was found, and done, in words; empty when the roots fit as they are. Of two that fit the simpler one is
-// taken, as listed; what is only moved before what is scaled. in_metres: the unit is known. `scalp_points` (the shape's
-// units and axes) are all over the scalp that the hair was made on: brought to this one in place of the roots.
+// Hair that hangs must hang down, hair that stands must rise from its roots, and these must be spread as over a head.
+// With `mend` the shape is brought there. Returns what was found, and done, in words; empty when the roots fit as they
+// are. Of two that fit the simpler one is taken, as listed; what is only moved before what is scaled. in_metres: the
+// unit is known. `scalp_points` (the shape's units and axes) are all over the scalp that the hair was made on: brought
+// to this one in place of the roots. `as_made`: m, how far the
+// roots are from the scalp at best by unit, axes and origin alone; infinity if no such reading can be hair.
 std::string fitHair(const Character& character, bool mend, sim::HairMeshShape& shape, bool in_metres = false,
-                    std::span<const Vec3> scalp_points = {});
+                    std::span<const Vec3> scalp_points = {}, double* as_made = nullptr);
 
 }  // namespace app

@@ -16,8 +16,10 @@ HeadModel headModelOf(const Character& character) {
     skull.push_back((character.scalp.center + character.scalp.radiusAt(direction) * direction).cast<float>());
   }
   const BodyDistance body = restBodyDistance(character);
-  return {[body](const Eigen::Vector3f& p) { return static_cast<float>(body(p.cast<double>())); },
-          fitSphere(skull).center};
+  const Eigen::Vector3f center = fitSphere(skull).center;
+  const Rigid to_world = scalpToWorld(character, restPose(character.skeleton));
+  return {[body](const Eigen::Vector3f& p) { return static_cast<float>(body(p.cast<double>())); }, center,
+          Eigen::Vector3f((to_world * center.cast<double>()).cast<float>())};
 }
 
 }  // namespace app

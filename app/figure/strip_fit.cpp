@@ -1,5 +1,9 @@
 #include "app/figure/strip_fit.h"
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
 #include "app/figure/hair_fit.h"
 #include "app/files/errors.h"
 
@@ -7,29 +11,79 @@ namespace app {
 
 namespace {
 
-FittedStrips fitWithUp(const PolygonMesh& mesh, const StripOptions& options, const std::string& file,
-                       const Character& character, bool mend) {
-  FittedStrips fitted{convertStrips(mesh, options, file), ""};
+constexpr double kTogether = 1.1;      // of the tips' spread: roots' ends lie no further apart
+constexpr double kStandsNearer = 0.5;  // of the highest ends' distance from the head
+
+FittedStrips fitOnce(const PolygonMesh& mesh, const StripOptions& options, const std::string& file,
+                     const Character& character, bool mend) {
+  FittedStrips fitted{convertStrips(mesh, options, file), "", 0};
   StripConversion& strips = fitted.conversion;
-  fitted.fit = fitHair(character, mend, strips.mesh.shape, true, strips.scalp_points);
+  fitted.fit = fitHair(character, mend, strips.mesh.shape, true, strips.scalp_points, &fitted.as_made);
   return fitted;
+}
+
+FittedStrips fitEitherUp(const PolygonMesh& mesh, const StripOptions& options, bool up_given, const std::string& file,
+                         const Character& character, bool mend) {
+  FittedStrips fitted = fitOnce(mesh, options, file, character, mend);
+  if (!mend || up_given || fitted.fit.empty()) return fitted;
+  StripOptions turned_options = options;
+  turned_options.up = 'z';
+  try {
+    FittedStrips turned = fitOnce(mesh, turned_options, file, character, mend);
+    const auto off = [&](const FittedStrips& one) { return rootDistance(one.conversion.mesh.shape, character.scalp); };
+    return off(fitted) > 0.5 * kFarRoots && off(turned) < off(fitted) ? turned : fitted;
+  } catch (const InputError&) {
+    return fitted;  // no strips with z up
+  }
+}
+
+// m, root mean square about their middle, of the columns' roots or tips.
+double spreadOf(const sim::HairMeshShape& shape, bool tips) {
+  Vec3 sum = Vec3::Zero();
+  double square = 0;
+  const double count = std::max(1, shape.columnCount());
+  for (int c = 0; c < shape.columnCount(); ++c) {
+    const Vec3& end = shape.positions[shape.column_first[c] + (tips ? shape.columnLength(c) - 1 : 0)];
+    sum += end / count;
+    square += end.squaredNorm() / count;
+  }
+  return std::sqrt(std::max(0.0, square - sum.squaredNorm()));
+}
+
+// Rooted at the lowest ends, where these fit and the highest as in `fitted` do not.
+std::optional<FittedStrips> fitStanding(const PolygonMesh& mesh, StripOptions options, bool up_given,
+                                        const std::string& file, const Character& character,
+                                        const FittedStrips& fitted) {
+  options.root = RootEdge::kLowest;
+  try {
+    FittedStrips standing = fitEitherUp(mesh, options, up_given, file, character, true);
+    const sim::HairMeshShape& shape = standing.conversion.mesh.shape;
+    const bool together = spreadOf(shape, false) < kTogether * spreadOf(shape, true);
+    const bool nearer = farFromHead(fitted.conversion.mesh.shape, character)
+                            ? !farFromHead(shape, character)
+                            : standing.as_made < kStandsNearer * fitted.as_made;
+    if (together && nearer) return standing;
+  } catch (const InputError&) {
+    // no strips with roots there
+  }
+  return std::nullopt;
 }
 
 }  // namespace
 
 FittedStrips fitStrips(const PolygonMesh& mesh, const StripOptions& options, bool up_given, const std::string& file,
                        const Character& character, bool mend) {
-  FittedStrips fitted = fitWithUp(mesh, options, file, character, mend);
-  if (!mend || up_given || fitted.fit.empty()) return fitted;
-  StripOptions turned_options = options;
-  turned_options.up = 'z';
-  try {
-    FittedStrips turned = fitWithUp(mesh, turned_options, file, character, mend);
-    const auto off = [&](const FittedStrips& one) { return rootDistance(one.conversion.mesh.shape, character.scalp); };
-    return off(fitted) > 0.5 * kFarRoots && off(turned) < off(fitted) ? turned : fitted;
-  } catch (const InputError&) {
-    return fitted;  // no strips with z up
+  FittedStrips fitted = fitEitherUp(mesh, options, up_given, file, character, mend);
+  if (!mend || fitted.as_made <= kFarRoots || !fitted.conversion.scalp_points.empty()) return fitted;
+  if (options.root == RootEdge::kAuto) {
+    std::optional<FittedStrips> standing = fitStanding(mesh, options, up_given, file, character, fitted);
+    if (standing) return std::move(*standing);
   }
+  if (farFromHead(fitted.conversion.mesh.shape, character))
+    fitted.fit +=
+        "; the file has no head that tells where its roots are: hairmesh-convert takes one by --scalp FILE, and the "
+        "roots' ends by --root-edge lowest or --flip-strips";
+  return fitted;
 }
 
 bool farFromHead(const sim::HairMeshShape& shape, const Character& character) {

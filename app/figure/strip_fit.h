@@ -10,12 +10,15 @@ namespace app {
 
 struct FittedStrips {
   StripConversion conversion;
-  std::string fit;  // what fitHair says of their place; empty: they fit as they are
+  std::string fit;     // what fitHair says of their place; empty: they fit as they are
+  double as_made = 0;  // m from the scalp by unit, axes and origin alone, as fitHair has it
 };
 
 // As convertStrips, with the hair mesh brought to the head as fitHair does, where `mend` says so. Strips without a
 // scalp are rooted at their highest ends, and their file does not say which axis is up: where `up_given` is false and
-// they lie away from the head it is y or z, whichever brings the roots nearer to the scalp. Throws InputError.
+// they lie away from the head it is y or z, whichever brings the roots nearer to the scalp. Where these ends lie away
+// from the head, and the lowest ends lie much nearer to it and no further apart, as of hair that stands, those are the
+// roots. Throws InputError.
 FittedStrips fitStrips(const PolygonMesh& mesh, const StripOptions& options, bool up_given, const std::string& file,
                        const Character& character, bool mend);
 

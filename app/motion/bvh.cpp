@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <numbers>
+#include <span>
 
 #include "app/files/errors.h"
 #include "app/files/median.h"
@@ -153,7 +154,8 @@ bool hasLegs(const BvhText& bvh, const WorldFrame& world, bool z_up) {
 
 // Figures whose height is plausible in one of these units are taken to be in it. The ranges of height are disjoint:
 // each unit is over 2.2 times the one before it. 0.056444 m is the unit of the CMU database's own ASF files, an inch
-// over 0.45. Without legs the height is first taken for that from the hips up, 0.47 of a body's.
+// over 0.45. Without legs the height is first taken for that from the hips up, 0.47 of a body's. What is no grown
+// person's in any unit is taken for a child's in the usual ones.
 void inferUnit(Inference& inferred) {
   struct Unit {
     double metres;
@@ -162,7 +164,8 @@ void inferUnit(Inference& inferred) {
   constexpr Unit kUnits[] = {
       {1, "m"}, {0.001, "mm"}, {0.01, "cm"}, {0.0254, "inch"}, {0.0254 / 0.45, "CMU unit (inch / 0.45)"}};
   constexpr double kSmallest = 1.1, kTallest = 2.4;  // m, between the outermost joints
-  constexpr double kHipsUp = 0.47;                   // of the mannequin's height
+  constexpr double kSmallestChild = 0.75;
+  constexpr double kHipsUp = 0.47;  // of the mannequin's height
   for (const double share : {kHipsUp, 1.0}) {
     if (share < 1 && inferred.legs) continue;
     for (const Unit& unit : kUnits) {
@@ -173,6 +176,14 @@ void inferUnit(Inference& inferred) {
       if (share < 1) inferred.doubt = "; not certain: without legs it is taken for a body from the hips up";
       return;
     }
+  }
+  for (const Unit& unit : std::span(kUnits).first(4)) {
+    const double height = inferred.height * unit.metres;
+    if (!inferred.legs || height < kSmallestChild || height >= kSmallest) continue;
+    inferred.scale = unit.metres;
+    inferred.unit = unit.name;
+    inferred.doubt = "; a child's size, on a body of a grown person's proportions";
+    return;
   }
   inferred.scale = 1.70 / inferred.height;
   inferred.unit = "unknown, scaled to 1.70 m";

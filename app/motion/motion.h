@@ -19,11 +19,12 @@ struct BvhMotion {
 };
 
 // Reads BVH text: any joint names (with spaces too), any channel order and number, `End Site` in any case, CRLF, tabs.
-// Infers the unit (m, cm, mm, inch, the CMU database's own) from the figure's height, else scales it to 1.70 m, and the
-// up axis (y or z) from rest pose and motion. Joint frames have the identity as rest rotation. Where the offsets do not
-// stand like a body, the most upright frame becomes the rest pose. A rest pose that precedes the motion as frame 0 is
-// left out of the clip. A single frame makes a still clip. `file` names the text in messages. Throws InputError with
-// the line number. Memory used is bounded by a small multiple of the text's length.
+// Infers the unit (m, cm, mm, inch, the CMU database's own) from the figure's height, a grown person's or else a
+// child's, else scales it to 1.70 m, and the up axis (y or z) from rest pose and motion. Joint frames have the identity
+// as rest rotation. Where the offsets do not stand like a body, the most upright frame becomes the rest pose. A rest
+// pose that precedes the motion as frame 0 is left out of the clip. A single frame makes a still clip. `file` names the
+// text in messages. Throws InputError with the line number. Memory used is bounded by a small multiple of the text's
+// length.
 BvhMotion readBvh(std::string_view text, const std::string& file);
 
 // ARCSim motion: one rigid body's position and orientation per frame (file: z up, metres, 'body[b] position'). Only the

@@ -1,5 +1,6 @@
 #include "app/platform/opening.h"
 
+#include <cstdio>
 #include <filesystem>
 #include <numbers>
 
@@ -25,6 +26,25 @@ Demo openFile(Scene scene, const Options& options, double aspect, bool beside) {
   return demo;
 }
 
+std::string secondsText(double seconds) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g s", seconds);
+  return text;
+}
+
+// Characters that are to begin where their clip has ended.
+void noteLateStarts(const Options& options, const Demo& demo, std::vector<std::string>& notes) {
+  for (std::size_t n = 0; n < demo.actors.size(); ++n) {
+    const Actor& actor = demo.actors[n];
+    const double asked = actor.spec.clip_offset, duration = actor.playedClip().duration();
+    if (asked <= duration) continue;
+    const std::string place = demo.actors.size() > 1 ? " of character " + std::to_string(n + 1) : "";
+    notes.push_back((options.start >= 0 ? "--start " : "\"clip_offset\" ") + sim::numberText(asked) + place +
+                    " lies beyond the clip's " + secondsText(duration) + "; it begins at " +
+                    secondsText(actor.playback.time));
+  }
+}
+
 }  // namespace
 
 Demo openAsked(Scene scene, const Options& options, double aspect, bool beside) {
@@ -39,12 +59,8 @@ std::vector<std::string> openingNotes(const Options& options, const Demo& demo) 
   if (!demo.message.empty()) notes.push_back(demo.message);
   if (demo.paused && options.headless) notes.push_back(options.project + " was saved paused; here it plays");
   for (std::string& note : limitNotes(demo)) notes.push_back(std::move(note));
+  if (options.project.empty() || options.start >= 0) noteLateStarts(options, demo, notes);
   const Actor& first = demo.actors.front();
-  const double duration = first.playedClip().duration();
-  if (options.start > duration) {
-    notes.push_back("--start " + sim::numberText(options.start) + " lies beyond the clip's " +
-                    sim::numberText(duration) + " s; it begins at " + sim::numberText(first.playback.time) + " s");
-  }
   for (const char* field : {"curl", "clump"})
     if (std::string note = paintNote(field, first.spec); !note.empty()) notes.push_back(std::move(note));
   if (options.out_given && !options.headless)

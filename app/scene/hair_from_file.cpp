@@ -40,7 +40,9 @@ std::string mendedBy(const Haircut& haircut) {
   for (const MendedFinding& one : haircut.findings) {
     const GroomFinding& finding = one.finding;
     if (one.done) text += (text.empty() ? "mended: " : ", ") + finding.what + " (" + finding.mend + ")";
-    if (!one.done && ((finding.fault && (finding.what == "unit" || finding.what == "up")) || finding.what == "hidden"))
+    const bool stays = finding.what == "roots" && !finding.fault && finding.mend.empty();
+    const bool doubted = finding.fault && (finding.what == "unit" || finding.what == "up");
+    if (!one.done && (doubted || stays || finding.what == "hidden"))
       left += "; " + finding.text + (finding.mend.empty() ? "" : " (--mends \"" + finding.mend + "\")");
   }
   return text.empty() && !left.empty() ? left.substr(2) : text + left;

@@ -287,7 +287,13 @@ TEST(Options, WhatARunLeavesUndoneItSays) {
   const Outcome late =
       runProgram({"--no-images", "--frames", "2", "--resolution", "low", "--style", "short", "--start", "99999"});
   EXPECT_EQ(late.exit_code, 0);
-  EXPECT_NE(late.err.find("--start 99999 lies beyond the clip's"), std::string::npos) << late.err;
+  EXPECT_NE(late.err.find("--start 99999 lies beyond the clip's 10 s; it begins at "), std::string::npos) << late.err;
+  const std::string two = test::freshFolder("late_start") + "/two.json";
+  std::ofstream(two) << R"({"characters": [{"resolution": "low"}, {"resolution": "low", "clip_offset": 99}]})";
+  const Outcome second = runProgram({two, "--no-images", "--frames", "2"});
+  EXPECT_NE(second.err.find("\"clip_offset\" 99 of character 2 lies beyond the clip's 10 s"), std::string::npos)
+      << second.err;
+  EXPECT_EQ(second.err.find("of character 1"), std::string::npos) << second.err;
   const Outcome hurried =
       runProgram({"--no-images", "--frames", "4", "--resolution", "low", "--style", "short", "--deadline-ms", "1e-5"});
   EXPECT_NE(hurried.out.find("deadline   1e-05 ms: not kept in"), std::string::npos) << hurried.out;

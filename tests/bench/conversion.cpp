@@ -4,14 +4,32 @@
 #include <ctime>
 
 #include "app/groom/convert.h"
+#include "app/groom/fit/grown_groom.h"
+#include "app/groom/fit/strand_samples.h"
 #include "tests/bench/measured_part.h"
 #include "tests/groom_kinds.h"
 
 namespace bench {
 namespace {
 
+constexpr int kAnewPoints = 129;  // of a strand dealt out anew: the curls' own
+
 double processorSeconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+// Median over the strands of a groom.
+struct Lengths {
+  double ends = 0, way = 0;  // m, from root to tip, straight and along the strand
+};
+
+Lengths lengthsOf(const app::Groom& groom) {
+  std::vector<float> ends, ways;
+  for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+    ends.push_back((groom.strand(s).back() - groom.strand(s).front()).norm());
+    ways.push_back(static_cast<float>(app::lineLength(groom.strand(s))));
+  }
+  return {app::quantile(ends, 0.5), app::quantile(ways, 0.5)};
 }
 
 std::string row(const groom_kinds::Kind& kind, const ConversionOptions& asked) {
@@ -27,19 +45,24 @@ std::string row(const groom_kinds::Kind& kind, const ConversionOptions& asked) {
   const std::string left =
       bare > 0 ? formatted("%d of %zu", bare, conversion.shape.root_faces.size() + static_cast<std::size_t>(bare))
                : "0";
-  return formatted("| %s | %s | %d | %d x %zu | %.2f | %.2f | %.2f | %.2f | %s | %.1f |\n", kind.name.c_str(),
-                   kind.what.c_str(), conversion.shape.vertexCount(), conversion.shape.columnCount(),
+  render::HairLook look;
+  app::takeLook(conversion.look, look);
+  const Lengths given = lengthsOf(groom);
+  const Lengths anew = lengthsOf(app::growGroom(conversion.shape, look, asked.strands, kAnewPoints));
+  return formatted("| %s | %s | %d | %d x %zu | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %s | %.1f |\n",
+                   kind.name.c_str(), kind.what.c_str(), conversion.shape.vertexCount(), conversion.shape.columnCount(),
                    conversion.fit.knots.size(), 100 * error.mean / error.strand_length,
-                   100 * error.share95 / error.strand_length, conversion.silhouette,
-                   conversion.silhouette_drawn, left.c_str(), seconds);
+                   100 * error.share95 / error.strand_length, conversion.silhouette, conversion.silhouette_drawn,
+                   anew.ends / given.ends, anew.way / given.way, left.c_str(), seconds);
 }
 
 }  // namespace
 
 void runConversion(const ConversionOptions& options) {
   std::string table =
-      "| groom | what | vertices | columns x layers | mean, % of length | 95 % within | silhouette | dealt out anew | faces left bare | "
-      "processor s |\n|---|---|---|---|---|---|---|---|---|---|\n";
+      "| groom | what | vertices | columns x layers | mean, % of length | 95 % within | silhouette | dealt out anew | "
+      "root to tip | along | faces left bare | "
+      "processor s |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   std::fputs(table.c_str(), stdout);
   for (const groom_kinds::Kind& kind : groom_kinds::kinds()) {
     const std::string one = row(kind, options);

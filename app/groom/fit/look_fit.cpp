@@ -15,12 +15,16 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr int kFitPoints = 96;  // of a strand that is measured
+constexpr std::size_t kFinePerPoint = 4;
 constexpr std::size_t kMaxLooked = 4000;
 constexpr int kMaxTurns = 16;
 constexpr double kMinTurns = 2.5, kQuickTurns = 3;  // slower turns are wander
-constexpr double kOpening = 0.35;             // share of the length over which curls open, shaders/common/strand.glsl
-constexpr double kSmallestCurl = 0.0012;      // m
-constexpr double kClearCurl = 0.5;            // of a strand's wander that one rotation explains
+constexpr double kOpening = 0.35;         // share of the length over which curls open, shaders/common/strand.glsl
+constexpr double kSmallestCurl = 0.0012;  // m
+constexpr double kClearCurl = 0.5;        // of a strand's wander that one rotation explains
+// The share of length_variation by which a strand ends early, in the mean: 0.4 u^2 + 0.25 u + 0.2 u of random u, and
+// 0.15 of the squared distance from a clump's middle (shaders/common/strand.glsl; 0.48 measured).
+constexpr double kMeanEarly = 0.4 / 3 + 0.25 / 2 + 0.2 / 2 + 0.15 * 0.48;
 constexpr std::size_t kMinBundleStrands = 5;  // strands of a bundle
 // Root mean square of frizz and offset over a strand, in their own amplitudes: of grow(t) = t (1.6 - 0.6 t), two sines,
 // and a disc (shaders/common/strand.glsl).
@@ -36,8 +40,30 @@ struct StrandMeasure {
   double radius = 0, turns = 0;  // of its clearest rotation; 0: none
   double frizz = 0;              // m, root mean square of what is left by more than three turns
   double wander = -1;            // the same by less, of its own: not shared with a neighbour; -1: it has none
+  double along = 0;              // m, of the strand that grows in its place without curls
   double length_share = 1;       // of what is usual where it roots
 };
+
+// The strand where it has come as far along the grown one as that at its even steps: a curl takes more of a strand's
+// own length where it is open.
+void besideGrown(std::span<const Vector3f> given, std::span<const Vector3f> grown, std::span<Vector3f> beside) {
+  std::vector<Vector3f> fine(kFinePerPoint * grown.size());
+  resample(given, fine);
+  std::vector<float> way{0};
+  for (std::size_t k = 1; k < fine.size(); ++k) {
+    const std::size_t at = std::min(k / kFinePerPoint, grown.size() - 2);
+    const Vector3f along = (grown[at + 1] - grown[at]).stableNormalized();
+    way.push_back(way.back() + std::max(0.0f, along.dot(fine[k] - fine[k - 1])));
+  }
+  std::size_t k = 0;
+  for (std::size_t n = 0; n < beside.size(); ++n) {
+    const float wanted = way.back() * static_cast<float>(n) / static_cast<float>(beside.size() - 1);
+    while (k + 2 < way.size() && way[k + 1] < wanted) ++k;
+    const float step = way[k + 1] - way[k];
+    const float share = step > 0 ? std::clamp((wanted - way[k]) / step, 0.0f, 1.0f) : 0;
+    beside[n] = fine[k] + share * (fine[k + 1] - fine[k]);
+  }
+}
 
 // The strand's distance from the grown one as complex numbers in the grown one's frame.
 std::vector<std::complex<double>> wander(std::span<const Vector3f> strand, std::span<const Vector3f> grown) {
@@ -118,29 +144,29 @@ std::array<int, 3> cellOf(const Vector3f& at, float size) {
   return cell;
 }
 
-// `length`: m, of a strand.
-StrandCharacter summary(const std::vector<const StrandMeasure*>& of, double length) {
+StrandCharacter summary(const std::vector<const StrandMeasure*>& of) {
   StrandCharacter out;
   out.strands = static_cast<int>(of.size());
-  std::vector<float> radius, turns, frizz, wander;
-  double shares = 0;
+  std::vector<float> radius, turns, pitch, frizz, wander, shares;
   for (const StrandMeasure* one : of) {
     if (one->radius > kSmallestCurl) {
       radius.push_back(static_cast<float>(one->radius));
       turns.push_back(static_cast<float>(one->turns));
+      pitch.push_back(static_cast<float>(one->along / one->turns));
     }
     frizz.push_back(static_cast<float>(one->frizz));
     if (one->wander >= 0) wander.push_back(static_cast<float>(one->wander));
-    shares += one->length_share / static_cast<double>(of.size());
+    shares.push_back(static_cast<float>(one->length_share));
   }
   if (2 * radius.size() > of.size()) {
     out.curl_radius = quantile(radius, 0.5);
     out.curl_turns = quantile(turns, 0.5);
-    out.curl_pitch = std::clamp(length / out.curl_turns, 0.003, 0.3);
+    out.curl_pitch = std::clamp(quantile(pitch, 0.5), 0.003, 0.3);
   }
   out.frizz = quantile(frizz, 0.5) / kFrizzSpread;
   if (!wander.empty()) out.offset = std::min(quantile(wander, 0.5) / kOffsetSpread, kMostWander);
-  out.length_variation = std::clamp(3 * (1 - shares), 0.0, 0.6);  // of 1 - v u^2 with u in 0..1 the mean is 1 - v / 3
+  // The median: a few baby hairs make no range of lengths.
+  out.length_variation = std::clamp((1 - quantile(shares, 0.5)) / kMeanEarly, 0.0, 0.6);
   return out;
 }
 
@@ -190,12 +216,13 @@ LookFit fitLook(const Groom& groom, double scale, const StrandSamples& strands, 
     given.clear();
     for (const Vector3f& p : groom.strand(static_cast<std::size_t>(strands.source[s])))
       given.push_back(static_cast<float>(scale) * p);
-    resample(given, strand);
     growStrand(fit, growth, fit.strands[s], grown);
+    besideGrown(given, grown, strand);
     StrandMeasure& measure = measures.emplace_back();
     measure.face = fit.strands[s].root.face;
     measure.length_share =
         std::min(1.0, static_cast<double>(fit.strands[s].end) / static_cast<double>(fit.knots.size() - 1));
+    measure.along = lineLength(grown);
     measureTurns(wander(strand, grown), measure);
     // What the hair mesh misses of a whole wisp is no wander of its strands.
     auto& missed_near = missed[cellOf(strand[0], kNearFit)];
@@ -216,12 +243,12 @@ LookFit fitLook(const Groom& groom, double scale, const StrandSamples& strands, 
     all.push_back(&measure);
     of_face[measure.face].push_back(&measure);
   }
-  look.all = summary(all, fit.error.strand_length);
+  look.all = summary(all);
   look.all.clump = clumpOf(strands, fit, growth);
   look.bundles.assign(fit.shape.root_faces.size(), look.all);
   for (const auto& [face, of] : of_face) {
     if (of.size() < kMinBundleStrands) continue;
-    StrandCharacter& bundle = look.bundles[static_cast<std::size_t>(face)] = summary(of, fit.error.strand_length);
+    StrandCharacter& bundle = look.bundles[static_cast<std::size_t>(face)] = summary(of);
     bundle.clump = look.all.clump;
   }
   measureWidths(groom, scale, look);

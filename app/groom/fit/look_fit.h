@@ -13,7 +13,7 @@ struct StrandCharacter {
   int strands = 0;                            // that it was measured on
   double length_variation = 0;                // share of their length by which strands end early, at most
   double curl_radius = 0;                     // m; 0: no curls that the hair mesh does not follow itself
-  double curl_turns = 0, curl_pitch = 0.035;  // over a strand; m of hair a turn
+  double curl_turns = 0, curl_pitch = 0.035;  // over a strand; m a turn, along the hair without its curls
   double frizz = 0, offset = 0;               // m, as render::HairLook
   double clump = 0;                           // 0..1
 };

@@ -1,11 +1,11 @@
 #include "app/groom/inspect/groom_inspect.h"
 
 #include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 
 #include "app/files/length_units.h"
 #include "app/files/median.h"
@@ -27,6 +27,8 @@ constexpr float kFar = 0.018f, kFloating = 0.03f, kDeep = 0.006f;  // m
 // Of roots over a scalp: spread and coverage of the sphere about them, and how long the mean of their directions is;
 // the cosine between that and the way the hair hangs.
 constexpr float kCapSpread = 0.08f, kCapCoverage = 0.03f, kLeastCap = 0.2f, kMostCap = 0.7f, kHanging = -0.3f;
+constexpr float kSeated = 0.003f, kSeatSpread = 0.02f;   // m: on the skin, over so much of it
+constexpr float kStandsUp = 0.15f, kStandsAside = 0.3f;  // m from the head of the figure as it stands
 constexpr std::size_t kManyPoints = 256, kNumbersTold = 6;
 
 std::string textOf(const char* format, double a, double b = 0) {
@@ -38,6 +40,18 @@ std::string countText(std::size_t count, std::size_t of, const char* what) {
   return std::to_string(count) + " of " + std::to_string(of) + " strands " + what;
 }
 
+std::string moveText(const Vector3f& move) {
+  std::array<char, 96> option;
+  std::snprintf(option.data(), option.size(), "--move %.3f,%.3f,%.3f", move.x(), move.y(), move.z());
+  return option.data();
+}
+
+// Where roots lie on the figure's skin.
+struct Seat {
+  const LengthUnit* unit = nullptr;
+  Vector3f move = Vector3f::Zero();  // m
+};
+
 struct Inspector {
   const Groom& groom;
   const GroomHints& hints;
@@ -47,6 +61,8 @@ struct Inspector {
   SphereFit skull{};  // of the roots, in metres and our axes once these are known
   // Means of the roots' directions from the skull's middle, and of the ways from root to tip over the strands' length.
   Vector3f cap = Vector3f::Zero(), hang = Vector3f::Zero();
+  double judged = 1;           // m a unit that lengths are judged in; 0: no unit fits, and they are not
+  std::optional<Seat> seat{};  // of other hair than a scalp's, as a beard
 
   void add(const char* what, std::string text, std::string mend, bool certain) {
     result.findings.push_back({what, std::move(text), std::move(mend), certain, true});
@@ -66,12 +82,19 @@ struct Inspector {
   void direction();
   void capAndHang();
   void unit();
+  void unitOfSkull(double told);
+  void findSeat();
+  bool settled() const { return judged == result.mends.unit; }
+  std::string inJudged() const { return settled() ? "" : "with " + result.find("unit")->mend + ", "; }
   void toMetres();
   void axes();
   void facing();
   void widths();
   void place();
-  void body(const std::vector<Vector3f>& roots);
+  void placeSeated();
+  bool standsInWorld() const;
+  void floating(const std::vector<Vector3f>& roots);
+  void body(const std::vector<Vector3f>& roots, const Vector3f& move);
   Vector3f moveToHead(const std::vector<Vector3f>& roots, const Vector3f& center) const;
   float offHead(const std::vector<Vector3f>& roots) const;
   float offHeadTurned(const Matrix3f& matrix) const;
@@ -147,39 +170,82 @@ bool Inspector::ofScalp() const {
   return onCap() && cap.dot(hang) < kHanging * cap.norm() * hang.norm();
 }
 
+// Whether hair that is not clearly a scalp's lies on the figure's skin already: about the head's own place or where the
+// figure stands, in the unit that is told or one of those known.
+void Inspector::findSeat() {
+  if (head == nullptr || ends.first.size() < kMinRoots || inWorld() || hints.axes || ofScalp()) return;
+  const Matrix3f axes = toldAxes(hints);
+  const double told = hints.meters_per_unit.value_or(0);
+  std::vector<Vector3f> moves{Vector3f::Zero()};
+  if (head->standing) moves.emplace_back(head->center - *head->standing);
+  for (const LengthUnit& one : kLengthUnits) {
+    if (told > 0 && std::abs(one.metres / told - 1) > 0.01) continue;
+    Eigen::AlignedBox3f box;
+    std::vector<Vector3f> roots = ends.first;
+    for (Vector3f& root : roots) box.extend(root = static_cast<float>(one.metres) * (axes * root));
+    if (box.diagonal().norm() < kSeatSpread) continue;
+    for (const Vector3f& move : moves) {
+      std::vector<Vector3f> moved = roots;
+      for (Vector3f& root : moved) root += move;
+      if (offHead(moved) > kSeated) continue;
+      seat = {&one, move};
+      return;
+    }
+  }
+}
+
 void Inspector::unit() {
   const double told = hints.meters_per_unit.value_or(1);
-  result.mends.unit = told;
-  const bool measured = ends.first.size() >= kMinRoots && skull.radius > 0;
-  if (hints.unit_given) {
-    if (measured && !inWorld() && std::abs(std::log(told * skull.radius / kSkullRadius)) > std::log(3))
-      add("unit", textOf("in the unit asked for the roots lie about a skull of radius %.3g m", told * skull.radius),
-          "leave --unit away", false);
-    return toMetres();
+  result.mends.unit = judged = told;
+  const bool measured = ends.first.size() >= kMinRoots && skull.radius > 1e-3f * groomSize(groom);
+  if (measured && !inWorld()) {
+    findSeat();
+    if (!seat) {
+      unitOfSkull(told);
+    } else if (!hints.meters_per_unit && seat->unit != &kLengthUnits[0]) {
+      result.mends.unit = judged = seat->unit->metres;
+      add("unit", std::string("the roots lie on the figure's skin in ") + seat->unit->name + ", not m",
+          std::string("--unit ") + seat->unit->name, true);
+    }
   }
-  if (!measured) return;
+  toMetres();
+}
+
+// What follows is judged in the unit that was found, be it certain or not: in one that is told of other hair than a
+// scalp's, unless that makes it far too large or small for any head.
+void Inspector::unitOfSkull(double told) {
   const auto off = [this](double meters) { return std::abs(std::log(meters * skull.radius / kSkullRadius)); };
   const LengthUnit* best = &kLengthUnits[0];
   for (const LengthUnit& unit : kLengthUnits) best = off(unit.metres) < off(best->metres) ? &unit : best;
-  const bool fits = inWorld() || off(best->metres) < std::log(1.45);
-  if (!inWorld() && std::abs(best->metres / told - 1) > 0.01 && (off(told) > std::log(1.45) || !fits)) {
-    const bool certain = fits && onCap() && !hints.meters_per_unit;
+  const bool fits = off(best->metres) < std::log(1.45);
+  const bool strange = off(told) > std::log(10);
+  const double likely = fits && (onCap() || strange || !hints.meters_per_unit) ? best->metres
+                        : onCap() || strange                                   ? 0
+                                                                               : told;
+  if (hints.unit_given) {
+    if (off(told) <= std::log(3)) return;
+    judged = likely;
+    add("unit", textOf("in the unit asked for the roots lie about a skull of radius %.3g m", told * skull.radius),
+        fits ? std::string("--unit ") + best->name : "leave --unit away", false);
+  } else if (fits && std::abs(best->metres / told - 1) > 0.01 && off(told) > std::log(1.45)) {
+    const bool certain = onCap() && !hints.meters_per_unit;
     if (certain) result.mends.unit = best->metres;
+    judged = likely;
     addGuess("unit",
              textOf("the roots lie about a skull of radius %.3g, which fits ", skull.radius) + best->name +
                  (hints.meters_per_unit ? textOf("; the file tells %g m a unit", told) : ", not m"),
              std::string("--unit ") + best->name, onCap(), certain);
   } else if (!fits) {
+    judged = likely;
     addGuess("unit",
              textOf("the roots lie about a skull of radius %.3g m, which no unit brings to a head's size",
                     skull.radius * told),
              "--unit m|cm|mm|in|ft", onCap(), false);
   }
-  toMetres();
 }
 
 void Inspector::toMetres() {
-  const auto scale = static_cast<float>(result.mends.unit);
+  const auto scale = static_cast<float>(judged > 0 ? judged : result.mends.unit);
   skull.center *= scale;
   skull.radius *= scale;
   for (auto* points : {&ends.first, &ends.last}) {
@@ -207,7 +273,7 @@ void Inspector::axes() {
   if (hints.axes) return turn(*hints.axes);
   const Matrix3f told = toldAxes(hints);
   turn(told);
-  if (ends.first.size() < kMinRoots || inWorld()) return;
+  if (ends.first.size() < kMinRoots || inWorld() || seat) return;
   constexpr std::array<std::string_view, 6> kNames{"y", "z", "-y", "-z", "x", "-x"};
   constexpr std::array<std::array<float, 3>, 6> kUps{
       {{0, 1, 0}, {0, 0, 1}, {0, -1, 0}, {0, 0, -1}, {1, 0, 0}, {-1, 0, 0}}};
@@ -249,7 +315,7 @@ void Inspector::facing() {
 
 void Inspector::widths() {
   if (groom.widths.empty()) return;
-  const auto unit = static_cast<float>(result.mends.unit);
+  const auto unit = static_cast<float>(judged);
   std::vector<float> usable;
   std::size_t bad = 0;
   for (const float width : groom.widths) {
@@ -262,7 +328,7 @@ void Inspector::widths() {
         std::to_string(bad) + " of " + std::to_string(groom.widths.size()) + " widths are 0, negative or no number",
         "--width 8e-5", false);
   }
-  if (usable.empty()) return;
+  if (usable.empty() || judged == 0) return;
   const float middle = median(usable);
   const float widest = std::max(kWidestHair, 1.5f * kUsualWidth * kAllHairs / static_cast<float>(groom.strandCount()));
   const float most = std::min(widest, 5e-3f);
@@ -270,9 +336,9 @@ void Inspector::widths() {
   const double powers =
       std::round(std::log10((middle < kThinnestHair ? kUsualWidth : std::sqrt(kUsualWidth * most)) / middle));
   const double scale = std::pow(10.0, powers == 0 ? (middle < kThinnestHair ? 1 : -1) : powers);
-  const bool certain = !leftAsTold("unit") && !inWorld();
+  const bool certain = settled() && !leftAsTold("unit") && !inWorld();
   if (certain) result.mends.width_scale = static_cast<float>(scale);
-  add("widths", textOf("the strands are %.3g mm wide; hair is %.2g mm", 1e3 * middle, 1e3 * kUsualWidth),
+  add("widths", inJudged() + textOf("the strands are %.3g mm wide; hair is %.2g mm", 1e3 * middle, 1e3 * kUsualWidth),
       textOf("--width-scale %g", scale), certain);
   result.findings.back().fault = !inWorld();  // few strands are drawn wide
 }
@@ -314,43 +380,82 @@ float Inspector::offHeadTurned(const Matrix3f& matrix) const {
   return offHead(roots);
 }
 
+// Whether the roots lie about the head of the figure as it stands in the world.
+bool Inspector::standsInWorld() const {
+  if (!head->standing) return false;
+  const Vector3f away = skull.center - *head->standing;
+  return std::abs(away.y()) < kStandsUp && std::hypot(away.x(), away.z()) < kStandsAside;
+}
+
 void Inspector::place() {
-  if (head == nullptr || ends.first.size() < kMinRoots || crowd()) return;
+  if (head == nullptr || ends.first.size() < kMinRoots || crowd() || judged == 0) return;
+  if (seat) return placeSeated();
   std::vector<Vector3f> roots = ends.first;
   const float before = offHead(roots);
-  result.on_head = before <= kFar;
+  Vector3f move = Vector3f::Zero();
+  bool world = inWorld();
+  result.on_head = settled() && before <= kFar;
   if (before > kFar) {
-    const Vector3f move = moveToHead(roots, skull.center);
+    move = moveToHead(roots, skull.center);
     for (Vector3f& root : roots) root += move;
-    const bool certain = offHead(roots) <= kFar && (cap.norm() > kLeastCap || inWorld());
-    std::array<char, 96> option;
-    std::snprintf(option.data(), option.size(), "--move %.3f,%.3f,%.3f", move.x(), move.y(), move.z());
-    add("roots", textOf("the roots lie %.3g m from the scalp", before), option.data(), certain);
-    result.findings.back().fault = !inWorld();
-    if (inWorld())
-      result.findings.back().text = textOf("the hair is on a head in the world, %.3g m from the figure's own", before);
+    const bool fits = offHead(roots) <= kFar && (cap.norm() > kLeastCap || inWorld());
+    const bool certain = fits && settled();
+    world = world || (fits && standsInWorld());
+    add("roots",
+        inJudged() + textOf(world ? "the hair is on a head in the world, %.3g m from the figure's own"
+                                  : "the roots lie %.3g m from the scalp",
+                            before),
+        moveText(move), certain);
+    result.findings.back().fault = !world;
     result.on_head = certain;
-    if (!certain) return;
-    result.mends.move = move;
+    if (!fits) return;
+    if (certain) result.mends.move = move;
   }
-  const auto floating =
+  if (!inWorld()) floating(roots);
+  if (!world) body(roots, move);  // in the world the figure's pose need not be that of rest
+}
+
+// Hair that lies on the skin stays there, or comes along with the head that it lies on in the world.
+void Inspector::placeSeated() {
+  std::vector<Vector3f> roots = ends.first;
+  Vector3f middle = Vector3f::Zero();
+  for (Vector3f& root : roots) middle += (root += seat->move) / static_cast<float>(roots.size());
+  const bool world = seat->move != Vector3f::Zero();
+  const bool face = middle.y() < head->center.y() && middle.z() > head->center.z();
+  if (world || face) {
+    add("roots",
+        std::string(face ? "the hair grows on the face, as a beard does" : "the roots lie on the figure's skin") +
+            (world
+                 ? textOf(", where the figure stands in the world, %.3g m from the head's own place", seat->move.norm())
+                 : "; it stays there"),
+        world ? moveText(seat->move) : "", world);
+    result.findings.back().fault = false;
+  }
+  result.on_head = true;
+  result.mends.move = seat->move;
+  floating(roots);
+  body(roots, seat->move);
+}
+
+void Inspector::floating(const std::vector<Vector3f>& roots) {
+  const auto far =
       std::ranges::count_if(roots, [this](const Vector3f& p) { return std::abs(head->distance(p)) > kFloating; });
-  if (floating > 0 && !inWorld())
-    add("roots", countText(static_cast<std::size_t>(floating), roots.size(), "begin more than 3 cm from the scalp"),
-        "--drop-far 0.03", false);
-  if (!inWorld()) body(roots);  // the figure's pose is not that of rest
+  if (far == 0) return;
+  add("roots",
+      inJudged() + countText(static_cast<std::size_t>(far), roots.size(), "begin more than 3 cm from the scalp"),
+      "--drop-far 0.03", false);
 }
 
 // Strands that go into the body beyond their first tenth.
-void Inspector::body(const std::vector<Vector3f>& roots) {
+void Inspector::body(const std::vector<Vector3f>& roots, const Vector3f& move) {
   std::size_t through = 0;
   float deepest = 0;
-  const auto scale = static_cast<float>(result.mends.unit);
+  const auto scale = static_cast<float>(judged);
   for (std::size_t n = 0; n < ends.strands.size(); ++n) {
     const std::span<const Vector3f> points = groom.strand(ends.strands[n]);
     float deep = 0;
     for (const Vector3f& point : points) {
-      const Vector3f at = scale * (result.mends.axes * point) + result.mends.move;
+      const Vector3f at = scale * (result.mends.axes * point) + move;
       if ((at - roots[n]).norm() > 0.01f) deep = std::max(deep, -head->distance(at));
     }
     through += deep > kDeep;
@@ -358,7 +463,8 @@ void Inspector::body(const std::vector<Vector3f>& roots) {
   }
   if (through * 100 <= ends.strands.size()) return;
   add("body",
-      countText(through, ends.strands.size(), "go through the body, ") + textOf("%.1f mm at most", 1e3 * deepest),
+      inJudged() + countText(through, ends.strands.size(), "go through the body, ") +
+          textOf("%.1f mm at most", 1e3 * deepest),
       "--push-out", false);
 }
 
@@ -384,36 +490,9 @@ GroomInspection inspectGroom(const Groom& groom, const GroomHints& hints, const 
   for (std::size_t s = 0; s < groom.strandCount(); ++s) counts.push_back(static_cast<float>(groom.pointCount(s)));
   inspector.result.summary =
       countOf(groom.strandCount(), "strand") + ", " + countOf(groom.points.size(), "point") + ", " +
-      textOf("%.0f a strand (median), %.3g m across", median(counts), groomSize(groom) * inspector.result.mends.unit);
+      textOf("%.0f a strand (median), %.3g m across", median(counts),
+             groomSize(groom) * (inspector.judged > 0 ? inspector.judged : inspector.result.mends.unit));
   return std::move(inspector.result);
-}
-
-std::optional<Matrix3f> axesOfUp(std::string_view up) {
-  const auto rows = [](float a, float b, float c, float d, float e, float f, float g, float h, float i) {
-    Matrix3f matrix;
-    matrix << a, b, c, d, e, f, g, h, i;
-    return matrix;
-  };
-  if (up == "y") return Matrix3f(Matrix3f::Identity());
-  if (up == "z") return rows(1, 0, 0, 0, 0, 1, 0, -1, 0);
-  if (up == "-y") return rows(-1, 0, 0, 0, -1, 0, 0, 0, 1);
-  if (up == "-z") return rows(1, 0, 0, 0, 0, -1, 0, 1, 0);
-  if (up == "x") return rows(0, -1, 0, 1, 0, 0, 0, 0, 1);
-  if (up == "-x") return rows(0, 1, 0, -1, 0, 0, 0, 0, 1);
-  return std::nullopt;
-}
-
-Matrix3f toldAxes(const GroomHints& hints) {
-  return *axesOfUp(hints.up == 'Z' ? "z" : "y");
-}
-
-Matrix3f turnedAbout(double degrees) {
-  const auto angle = static_cast<float>(degrees * std::numbers::pi / 180);
-  Matrix3f matrix = Matrix3f::Identity();
-  matrix(0, 0) = matrix(2, 2) = std::round(1e6f * std::cos(angle)) / 1e6f;
-  matrix(0, 2) = std::round(1e6f * std::sin(angle)) / 1e6f;
-  matrix(2, 0) = -matrix(0, 2);
-  return matrix;
 }
 
 }  // namespace app

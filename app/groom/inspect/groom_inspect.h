@@ -17,6 +17,7 @@ namespace app {
 struct HeadModel {
   std::function<float(const Eigen::Vector3f&)> distance;  // m from the body, negative inside
   Eigen::Vector3f center = Eigen::Vector3f::Zero();       // of the skull
+  std::optional<Eigen::Vector3f> standing;                // the same where the figure stands in its world
 };
 
 enum class Reverse { kNone, kFound, kAll };
@@ -41,7 +42,7 @@ struct GroomFinding {
   std::string text;  // what was found, with numbers
   std::string mend;  // the option that mends it
   bool certain = false;
-  bool fault = true;  // else it is so by right: an export lies in the world, and facing and place are that figure's
+  bool fault = true;  // else it is so by right, as hair that lies on the figure's head in the world
 };
 
 struct GroomInspection {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "app/groom/inspect/groom_inspect.h"
 #include "app/groom/inspect/groom_shape.h"
@@ -7,6 +8,7 @@
 
 namespace app {
 
+using Eigen::Matrix3f;
 using Eigen::Vector3f;
 
 namespace {
@@ -142,6 +144,34 @@ void mendGroom(const GroomMends& mends, const HeadModel* head, Groom& groom) {
   }
   if (mends.drop_far > 0 && head) dropFar(*head, mends.drop_far, groom);
   if (mends.push_out && head) pushOut(*head, groom);
+}
+
+std::optional<Matrix3f> axesOfUp(std::string_view up) {
+  const auto rows = [](float a, float b, float c, float d, float e, float f, float g, float h, float i) {
+    Matrix3f matrix;
+    matrix << a, b, c, d, e, f, g, h, i;
+    return matrix;
+  };
+  if (up == "y") return Matrix3f(Matrix3f::Identity());
+  if (up == "z") return rows(1, 0, 0, 0, 0, 1, 0, -1, 0);
+  if (up == "-y") return rows(-1, 0, 0, 0, -1, 0, 0, 0, 1);
+  if (up == "-z") return rows(1, 0, 0, 0, 0, -1, 0, 1, 0);
+  if (up == "x") return rows(0, -1, 0, 1, 0, 0, 0, 0, 1);
+  if (up == "-x") return rows(0, 1, 0, -1, 0, 0, 0, 0, 1);
+  return std::nullopt;
+}
+
+Matrix3f toldAxes(const GroomHints& hints) {
+  return *axesOfUp(hints.up == 'Z' ? "z" : "y");
+}
+
+Matrix3f turnedAbout(double degrees) {
+  const auto angle = static_cast<float>(degrees * std::numbers::pi / 180);
+  Matrix3f matrix = Matrix3f::Identity();
+  matrix(0, 0) = matrix(2, 2) = std::round(1e6f * std::cos(angle)) / 1e6f;
+  matrix(0, 2) = std::round(1e6f * std::sin(angle)) / 1e6f;
+  matrix(2, 0) = -matrix(0, 2);
+  return matrix;
 }
 
 }  // namespace app

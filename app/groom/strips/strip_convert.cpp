@@ -96,7 +96,7 @@ RootMeasure measureOf(const StripOptions& options, const std::vector<Vector3d>& 
     };
   }
   if (options.root == RootEdge::kLowest) {
-    words = "the lowest end";
+    words = std::string("the lowest end (") + up + " up)";
     return [up](const Vector3d& p) { return upOf(p, up); };
   }
   words = std::string("the highest end (") + up + " up)";

@@ -3,14 +3,18 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <sstream>
 #include <string>
 
+#include "app/figure/strip_fit.h"
 #include "app/files/data_path.h"
 #include "app/files/hair_file.h"
 #include "app/files/output_file.h"
+#include "app/files/polygon_file.h"
 #include "app/groom/groom_writer.h"
 #include "app/scene/hair_from_file.h"
 #include "tests/app/groom/combed_groom.h"
@@ -231,7 +235,8 @@ TEST(HairFit, AFringeStaysInFront) {
   EXPECT_GT(fringe.positions[fringe.positions.size() / 2 & ~1u].z(), figure().scalp.center.z()) << note;
 }
 
-// Standing hair on the crown fits in many ways, and a head in its file tells which.
+// Standing hair on the crown fits in many ways: alone it rises from where it is brought to, and a head in its file
+// tells its own place.
 TEST(HairFit, TheHeadOfAFilePlacesItsHair) {
   sim::HairMeshShape spikes;
   std::vector<Vec3> head;
@@ -243,9 +248,59 @@ TEST(HairFit, TheHeadOfAFilePlacesItsHair) {
     }
   }
   sim::HairMeshShape alone = spikes;
-  EXPECT_NE(app::fitHair(figure(), true, alone, true).find("in no unit"), std::string::npos);
+  EXPECT_NE(app::fitHair(figure(), true, alone, true).find("hair for another head"), std::string::npos);
+  EXPECT_LT(app::rootDistance(alone, figure().scalp), app::kFarRoots);
+  EXPECT_GT(alone.positions[1].y(), alone.positions[0].y());
   const std::string note = app::fitHair(figure(), true, spikes, true, head);
   EXPECT_LT(app::rootDistance(spikes, figure().scalp), 0.5 * app::kFarRoots) << note;
+}
+
+// A card that rises from its root by 7 cm and comes forward; `over`: its tip falls below its root.
+void quiffCard(const Vec3& root, bool over, strip_samples::ObjText& out) {
+  constexpr int kRows = 8;
+  std::vector<std::array<int, 2>> rows;
+  for (int r = 0; r <= kRows; ++r) {
+    const double t = static_cast<double>(r) / kRows;
+    const Vec3 place =
+        root + Vec3(0, 0.07 * std::sin((over ? 1.1 : 0.7) * std::numbers::pi * t), (over ? 0.08 : 0.04) * t);
+    rows.push_back({out.vertex(place - Vec3(0.008, 0, 0)), out.vertex(place + Vec3(0.008, 0, 0))});
+  }
+  for (std::size_t r = 0; r < kRows; ++r) out.quad(rows[r][0], rows[r][1], rows[r + 1][1], rows[r + 1][0]);
+}
+
+// Cards of a quiff over the forehead, in a file without a head: where the figure stands, in any usual unit and either
+// axis up. Roots come to the scalp, and hair rises from them.
+TEST(HairFit, CardsThatStandAreRootedAtTheEndsThatLieOnTheHead) {
+  const std::string folder = test::freshFolder("fit_quiff");
+  const app::Rigid to_world = app::scalpToWorld(figure(), app::restPose(figure().skeleton));
+  for (const bool over : {false, true}) {
+    for (const double units : {1.0, 100.0, 1000.0}) {
+      for (const bool z_up : {false, true}) {
+        strip_samples::ObjText made;
+        made.scale = units;
+        made.z_up = z_up;
+        for (int i = 0; i < 40; ++i) {
+          const double side = 0.2 * (i % 8 - 3.5), ahead = 0.45 - 0.22 * (i / 8);
+          const Vec3 out = Vec3(side, 1, ahead).normalized();
+          quiffCard(to_world * Vec3(figure().scalp.center + figure().scalp.radiusAt(out) * out), over, made);
+        }
+        const std::string file = folder + "/quiff.obj";
+        app::writeFile(file, made.text);
+        const app::PolygonMesh mesh = app::readPolygons(file);
+        const app::FittedStrips fitted = app::fitStrips(mesh, {}, false, file, figure(), true);
+        const sim::HairMeshShape& shape = fitted.conversion.mesh.shape;
+        SCOPED_TRACE(std::to_string(units) + (over ? " over" : "") + (z_up ? " z up: " : ": ") + fitted.fit);
+        EXPECT_LT(app::rootDistance(shape, figure().scalp), 0.25 * app::kFarRoots);
+        EXPECT_LT(fitted.as_made, 0.25 * app::kFarRoots);
+        double rise = 0;
+        for (int c = 0; c < shape.columnCount(); ++c) {
+          const int root = shape.column_first[c];
+          rise += (shape.positions[root + 1] - shape.positions[root]).normalized().y() / shape.columnCount();
+        }
+        EXPECT_GT(rise, 0.7);
+      }
+    }
+  }
 }
 
 }  // namespace hair_fit_test

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "app/groom/convert.h"
@@ -92,6 +93,32 @@ TEST(CertainMends, LeaveAMohawkUprightAndABeardOnTheChin) {
     for (std::size_t p = 0; p < groom.points.size(); ++p)
       far = std::max(far, (groom.points[p] - clean.points[p]).norm());
     EXPECT_LT(far, 0.02f) << (beard ? "beard: " : "mohawk: ") << app::mendText(report);
+  }
+}
+
+// Hair on the face's skin stays, told so; where the figure stands in its world it comes along with the head, in the
+// unit in which it lies on the skin.
+TEST(CertainMends, ABeardStaysOnTheFaceThatItGrowsOn) {
+  app::HeadModel model = head();
+  model.standing = model.center + Vector3f(0, 1.49f, -0.015f);
+  const app::Groom clean = strip(true);
+  for (const bool in_world : {false, true}) {
+    for (const float scale : {1.0f, 100.0f}) {
+      app::Groom groom = clean;
+      moveAll(groom, Eigen::Matrix3f::Identity(), scale,
+              in_world ? Vector3f(scale * Vector3f(0, 1.49f, -0.015f)) : Vector3f::Zero());
+      const app::MendReport report = app::mendCertain({}, &model, "", groom);
+      const std::string said = app::mendText(report);
+      EXPECT_NE(said.find("the hair grows on the face, as a beard does"), std::string::npos) << said;
+      EXPECT_TRUE(report.on_head && report.unit_known) << said;
+      EXPECT_EQ(std::ranges::count_if(report.findings, [](const auto& one) { return one.finding.fault; }),
+                scale == 1 ? 0 : 1)
+          << said;
+      float far = 0;
+      for (std::size_t p = 0; p < groom.points.size(); ++p)
+        far = std::max(far, (groom.points[p] - clean.points[p]).norm());
+      EXPECT_LT(far, 0.001f) << said;
+    }
   }
 }
 

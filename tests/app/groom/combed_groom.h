@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <random>
 #include <string>
 
@@ -16,7 +17,7 @@ using Eigen::Vector3f;
 
 inline app::HeadModel head() {
   return {[](const Vector3f& p) { return static_cast<float>(tests::bodyDistance(p.cast<double>())); },
-          Vector3f(0, 0.022f, -0.012f)};
+          Vector3f(0, 0.022f, -0.012f), std::nullopt};
 }
 
 struct Random {

@@ -68,6 +68,39 @@ TEST(Conversion, FindsRadiusAndTurnsOfCurls) {
   EXPECT_EQ(straight.look.all.curl_radius, 0);
 }
 
+// m, from root to tip, straight and along the strand: means over a groom.
+std::pair<double, double> lengthsOf(const Groom& groom) {
+  std::pair<double, double> mean;
+  for (std::size_t s = 0; s < groom.strandCount(); ++s) {
+    mean.first += (groom.strand(s).back() - groom.strand(s).front()).norm() / static_cast<double>(groom.strandCount());
+    mean.second += lineLength(groom.strand(s)) / static_cast<double>(groom.strandCount());
+  }
+  return mean;
+}
+
+// Strands dealt out anew are as long as those given, where these curl and where they end early.
+TEST(Conversion, StrandsComeBackAsLongAsTheyWere) {
+  ConvertOptions options;
+  options.fit.vertices = 400;
+  render::HairLook early;
+  early.offset = early.clump = early.frizz = early.flyaways = early.lock = early.wisp = early.drift = 0;
+  early.root_spread = early.hairline = early.baby_hairs = 0;
+  early.length_variation = 0.4f;
+  const Groom uneven =
+      growGroom(convertGroom(groom_kinds::cropped(kStrands), {}, options, "even").shape, early, kStrands, 33);
+  for (const auto& [name, given] : {std::pair("wide curls", groom_kinds::curly(kStrands, 0.005f, 7)),
+                                    {"narrow curls", groom_kinds::curly(kStrands, 0.003f, 10)},
+                                    {"uneven", uneven}}) {
+    const Conversion conversion = convertGroom(given, {}, options, name);
+    render::HairLook look;
+    takeLook(conversion.look, look);
+    const auto [ends, along] = lengthsOf(given);
+    const auto [ends_anew, along_anew] = lengthsOf(growGroom(conversion.shape, look, kStrands, 129));
+    EXPECT_NEAR(ends_anew / ends, 1, 0.04) << name;
+    EXPECT_NEAR(along_anew / along, 1, 0.07) << name;
+  }
+}
+
 TEST(Conversion, SaysWhichStrandsGoAnotherWay) {
   ConvertOptions options;
   options.fit.vertices = 400;

@@ -122,7 +122,51 @@ TEST(GroomInspect, AForcedUnitThatMakesADollIsTold) {
   hints.meters_per_unit = 1;
   EXPECT_EQ(namesOf(app::inspectGroom(combedGroom(300, 7), hints, &model)).find("unit: "), std::string::npos);
   hints.meters_per_unit = 0.1;
-  EXPECT_NE(namesOf(app::inspectGroom(combedGroom(300, 7), hints, &model)).find("unit: "), std::string::npos);
+  const app::GroomInspection doll = app::inspectGroom(combedGroom(300, 7), hints, &model);
+  ASSERT_TRUE(doll.find("unit"));
+  EXPECT_EQ(doll.find("unit")->mend, "--unit m");
+  EXPECT_EQ(doll.findings.size(), 1u) << namesOf(doll);
+}
+
+// What follows a unit that is wrong is judged in the right one, and left alone.
+TEST(GroomInspect, WhatFollowsAWrongUnitIsJudgedInTheRightOne) {
+  const app::HeadModel model = head();
+  app::GroomHints hints;
+  hints.meters_per_unit = 1;  // of centimetres
+  app::Groom groom = combedGroom(300, 5);
+  for (float& width : groom.widths) width *= 100;
+  moveAll(groom, Eigen::Matrix3f::Identity(), 100, Vector3f::Zero());
+  const app::GroomInspection unit_alone = app::inspectGroom(groom, hints, &model);
+  EXPECT_EQ(unit_alone.findings.size(), 1u) << namesOf(unit_alone);
+  moveAll(groom, Eigen::Matrix3f::Identity(), 1, Vector3f(0, 50, 0));
+  for (float& width : groom.widths) width *= 1000;
+  const app::GroomInspection all = app::inspectGroom(groom, hints, &model);
+  for (const char* what : {"widths", "roots"}) {
+    const app::GroomFinding* const finding = all.find(what);
+    ASSERT_TRUE(finding) << what << ": " << namesOf(all);
+    EXPECT_EQ(finding->text.find("with --unit cm, "), 0u) << finding->text;
+    EXPECT_FALSE(finding->certain) << "the unit comes first";
+  }
+  EXPECT_NE(all.find("roots")->text.find("0.4"), std::string::npos) << all.find("roots")->text;
+  EXPECT_EQ(all.mends.unit, 1);
+  EXPECT_EQ(all.mends.width_scale, 1);
+  EXPECT_EQ(all.mends.move, Vector3f::Zero().eval());
+}
+
+// Hair that lies on the head of the figure as it stands in its world has no fault; a mend brings it to the head's own.
+TEST(GroomInspect, HairOnTheHeadOfTheStandingFigureIsNoFault) {
+  app::HeadModel model = head();
+  app::Groom groom = combedGroom(300, 5);
+  moveAll(groom, Eigen::Matrix3f::Identity(), 1, Vector3f(0, 1.4f, -0.02f));
+  const app::GroomInspection nowhere = app::inspectGroom(groom, {}, &model);
+  ASSERT_TRUE(nowhere.find("roots"));
+  EXPECT_TRUE(nowhere.find("roots")->fault);
+  model.standing = model.center + Vector3f(0.05f, 1.45f, 0);
+  const app::GroomInspection inspection = app::inspectGroom(groom, {}, &model);
+  ASSERT_TRUE(inspection.find("roots"));
+  EXPECT_TRUE(std::ranges::none_of(inspection.findings, &app::GroomFinding::fault)) << namesOf(inspection);
+  EXPECT_TRUE(inspection.find("roots")->certain && inspection.on_head);
+  EXPECT_LT((inspection.mends.move + Vector3f(0, 1.4f, -0.02f)).norm(), 0.01f);
 }
 
 TEST(GroomInspect, AnExportOfAHalfBaldHeadIsNotTurned) {

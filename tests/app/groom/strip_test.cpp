@@ -255,16 +255,16 @@ TEST(Strips, OwnHairMeshesAreToldByTheirLayers) {
 TEST(Strips, AreBroughtToTheHeadByTheProgram) {
   const std::string folder = test::freshFolder("strips_program");
   const std::string binary = std::filesystem::path(HAIRMESH_BINARY).parent_path().string() + "/hairmesh-convert";
-  const auto run = [&](const std::string& in, const std::string& out) {
+  const auto run = [&](const std::string& in, const std::string& out, const std::string& options = "") {
     const std::string command = test::shellQuoted(binary) + " " + test::shellQuoted(in) + " " + test::shellQuoted(out) +
-                                " >" + test::shellQuoted(folder + "/said") + " 2>&1";
+                                options + " >" + test::shellQuoted(folder + "/said") + " 2>&1";
     const int status = std::system(command.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   };
   std::vector<double> tops;
-  for (const bool z_up : {false, true}) {
+  for (const auto& [units, z_up] : {std::pair(100, false), {100, true}, {1, false}, {1000, true}}) {
     ObjText obj;
-    obj.scale = 100;
+    obj.scale = units;
     obj.z_up = z_up;
     for (const Vector3d& root : strip_samples::rootsOnHead(40))
       strip_samples::card(root + Vector3d(0, 1.5, 0), 1, 5, 0.3, 0, obj);
@@ -272,8 +272,14 @@ TEST(Strips, AreBroughtToTheHeadByTheProgram) {
     ASSERT_EQ(run(written(obj.text, z_up ? "z.obj" : "y.obj"), out), 0) << test::readAll(folder + "/said");
     tops.push_back(heights(readHairMesh(test::readAll(out), out)).first);
   }
-  EXPECT_NEAR(tops[0], tops[1], 0.01);
+  for (const double top : tops) EXPECT_NEAR(tops[0], top, 0.01);
   EXPECT_LT(std::abs(tops[0]), 0.3) << "above the head's joint";
+  // In a unit that makes giants of them they are for no head, and it says what mends it.
+  ObjText giants;
+  giants.scale = 100;
+  for (const Vector3d& root : strip_samples::rootsOnHead(40)) strip_samples::card(root, 1, 5, 0.3, 0, giants);
+  EXPECT_EQ(run(written(giants.text, "giants.obj"), folder + "/out.obj", " --unit m"), 1);
+  EXPECT_NE(test::readAll(folder + "/said").find("--scalp FILE"), std::string::npos) << test::readAll(folder + "/said");
   std::ofstream(folder + "/own.glb") << "glTF....{\"asset\":{\"generator\":\"hairmesh\"}}";
   EXPECT_EQ(run(folder + "/own.glb", folder + "/own.obj"), 4);
   EXPECT_NE(test::readAll(folder + "/said").find("is a moving hair mesh that this program has exported"),
