@@ -28,7 +28,7 @@ constexpr double kOtherUnit = 2;                        // times that a mesh is 
 constexpr double kMuchNearer = 0.6;                     // times as far off the head
 constexpr double kNearer = 0.8;                         // the same of a hat, of which both are as near as they come
 constexpr double kSeatRoom = 0.008, kSeatStep = 0.002;  // m, for the hair under a hat
-constexpr std::size_t kMostSamples = 20000;
+constexpr std::size_t kMaxSeatSamples = 20000;          // of a hat that is set on the head
 constexpr double kHatSize = 0.08;  // m, the shortest side of a hat; how far before the head it lies
 constexpr double kWornSpacing = 0.0025, kMaxWornNodes = 1.2e6;  // m, of the grid
 constexpr double kSharpEdge = 0.5;                              // cosine between faces that are shaded as one
@@ -231,7 +231,7 @@ Vec3 toSeat(const ClosedSurface& surface, const Rigid& to_scalp, const Scalp& sc
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Vec3 p = to_scalp * all[i] - scalp.center;
     box.extend(p);
-    if (i % (all.size() / kMostSamples + 1) == 0) samples.push_back(p);
+    if (i % (all.size() / kMaxSeatSamples + 1) == 0) samples.push_back(p);
   }
   Vec3 move = -box.center();
   const double lowest = scalp.radiusAt(Vec3::UnitY()) - box.max().y();  // with its top at the crown

@@ -22,9 +22,9 @@ double rootDistance(const sim::HairMeshShape& shape, const Scalp& scalp);
 // With `mend` the shape is brought there. Returns what was found, and done, in words; empty when the roots fit as they
 // are. Of two that fit the simpler one is taken, as listed; what is only moved before what is scaled. in_metres: the
 // unit is known. `scalp_points` (the shape's units and axes) are all over the scalp that the hair was made on: brought
-// to this one in place of the roots. `as_made`: m, how far the
-// roots are from the scalp at best by unit, axes and origin alone; infinity if no such reading can be hair.
+// to this one in place of the roots. `as_made_distance` is set to the roots' distance from the scalp, m, at best by
+// unit, axes and origin alone; to infinity where no such reading can be hair.
 std::string fitHair(const Character& character, bool mend, sim::HairMeshShape& shape, bool in_metres = false,
-                    std::span<const Vec3> scalp_points = {}, double* as_made = nullptr);
+                    std::span<const Vec3> scalp_points = {}, double* as_made_distance = nullptr);
 
 }  // namespace app

@@ -18,7 +18,7 @@ FittedStrips fitOnce(const PolygonMesh& mesh, const StripOptions& options, const
                      const Character& character, bool mend) {
   FittedStrips fitted{convertStrips(mesh, options, file), "", 0};
   StripConversion& strips = fitted.conversion;
-  fitted.fit = fitHair(character, mend, strips.mesh.shape, true, strips.scalp_points, &fitted.as_made);
+  fitted.fit = fitHair(character, mend, strips.mesh.shape, true, strips.scalp_points, &fitted.as_made_distance);
   return fitted;
 }
 
@@ -61,7 +61,7 @@ std::optional<FittedStrips> fitStanding(const PolygonMesh& mesh, StripOptions op
     const bool together = spreadOf(shape, false) < kTogether * spreadOf(shape, true);
     const bool nearer = farFromHead(fitted.conversion.mesh.shape, character)
                             ? !farFromHead(shape, character)
-                            : standing.as_made < kStandsNearer * fitted.as_made;
+                            : standing.as_made_distance < kStandsNearer * fitted.as_made_distance;
     if (together && nearer) return standing;
   } catch (const InputError&) {
     // no strips with roots there
@@ -74,7 +74,7 @@ std::optional<FittedStrips> fitStanding(const PolygonMesh& mesh, StripOptions op
 FittedStrips fitStrips(const PolygonMesh& mesh, const StripOptions& options, bool up_given, const std::string& file,
                        const Character& character, bool mend) {
   FittedStrips fitted = fitEitherUp(mesh, options, up_given, file, character, mend);
-  if (!mend || fitted.as_made <= kFarRoots || !fitted.conversion.scalp_points.empty()) return fitted;
+  if (!mend || fitted.as_made_distance <= kFarRoots || !fitted.conversion.scalp_points.empty()) return fitted;
   if (options.root == RootEdge::kAuto) {
     std::optional<FittedStrips> standing = fitStanding(mesh, options, up_given, file, character, fitted);
     if (standing) return std::move(*standing);

@@ -10,8 +10,8 @@ namespace app {
 
 struct FittedStrips {
   StripConversion conversion;
-  std::string fit;     // what fitHair says of their place; empty: they fit as they are
-  double as_made = 0;  // m from the scalp by unit, axes and origin alone, as fitHair has it
+  std::string fit;              // what fitHair says of their place; empty: they fit as they are
+  double as_made_distance = 0;  // m, fitHair's
 };
 
 // As convertStrips, with the hair mesh brought to the head as fitHair does, where `mend` says so. Strips without a

@@ -72,7 +72,7 @@ struct HairMove {
 std::vector<double> reachAround(std::span<const int> led, std::span<const Vec3> seen, double radius, double falloff);
 
 // What kept hair from going all of its way.
-enum class HeldBy { kNothing, kPrism, kEdge, kBody, kFrozen };
+enum class HeldBy { kNothing, kPrism, kEdge, kBody, kFrozen, kCount };
 
 class ShapeBrushes {
  public:
@@ -97,7 +97,7 @@ class ShapeBrushes {
   std::vector<double> went_;
   std::vector<unsigned char> touched_;
   std::vector<int> tets_;
-  std::array<int, 5> spoilt_{};  // vertices by HeldBy
+  std::array<int, static_cast<std::size_t>(HeldBy::kCount)> spoilt_{};  // vertices by HeldBy
   HeldBy held_by_ = HeldBy::kNothing;
 
   void reach(const Brush& brush, const sim::HairMesh& mesh, std::span<const Vec3> seen);

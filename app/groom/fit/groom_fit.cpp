@@ -8,6 +8,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "app/files/report_line.h"
 #include "app/groom/fit/column_fit.h"
 #include "app/groom/fit/root_mesh.h"
 #include "app/styles/style_untangle.h"
@@ -384,7 +385,7 @@ void growStrand(const HairFit& fit, const GrowthMap& growth, const StrandFit& st
 
 HairFit fitGroom(const StrandSamples& strands, const FitOptions& options) {
   if (strands.strandCount() < kMinGroomStrands)
-    throw std::runtime_error(std::to_string(strands.strandCount()) + " strands can be used, finite and of a length; " +
+    throw std::runtime_error(countOf(strands.strandCount(), "strand") + " can be used, finite and of a length; " +
                              "a hair mesh takes at least " + std::to_string(kMinGroomStrands));
   const RootRaster raster = rasterRoots(strands);
   const double length = quantile(strands.length, 0.5);

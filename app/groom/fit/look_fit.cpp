@@ -14,8 +14,8 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr int kFitPoints = 96;  // of a strand that is measured
-constexpr std::size_t kFinePerPoint = 4;
+constexpr int kFitPoints = 96;            // of a strand that is measured
+constexpr std::size_t kFinePerPoint = 4;  // points along the given strand
 constexpr std::size_t kMaxLooked = 4000;
 constexpr int kMaxTurns = 16;
 constexpr double kMinTurns = 2.5, kQuickTurns = 3;  // slower turns are wander

@@ -107,6 +107,7 @@ const char* heldText(HeldBy by) {
     case HeldBy::kFrozen:
       return ": it is frozen";
     case HeldBy::kNothing:
+    case HeldBy::kCount:
       break;
   }
   return "";

@@ -199,29 +199,30 @@ TEST(SimCache, LeavesNothingOnAFullDisk) {
   EXPECT_TRUE(std::filesystem::is_empty(folder));
 }
 
+void recordFrames(int count, app::HairRecorder& recorder, app::Demo& demo) {
+  for (int frame = 0; frame < count; ++frame) {
+    app::advanceFrame(demo, kFrame, {});
+    recorder.frame(demo);
+  }
+}
+
 TEST(HairRecorder, WritesACacheThatTheTimelineThenShowsAndAnExport) {
   const std::string folder = test::freshFolder("hair_recorder");
   app::Demo demo = opened();
   app::HairRecorder recorder(60);
-  const auto frames = [&](int count) {
-    for (int frame = 0; frame < count; ++frame) {
-      app::advanceFrame(demo, kFrame, {});
-      recorder.frame(demo);
-    }
-  };
   for (const char* name : {"/a.hairmesh", "/b.abc", "/c.glb"}) {
     demo.requests.push_back({app::Ask::kRecordHair, "", folder + name, 1});
-    frames(12);
+    recordFrames(12, recorder, demo);
     EXPECT_FALSE(demo.message_is_fault) << demo.message;
     demo.requests.push_back({app::Ask::kRecordHair, "", "", 0});
-    frames(1);
+    recordFrames(1, recorder, demo);
     EXPECT_FALSE(demo.message_is_fault) << demo.message;
     EXPECT_GT(std::filesystem::file_size(folder + name), 1000u);
   }
   ASSERT_TRUE(demo.timeline.cache);
   EXPECT_EQ(demo.timeline.cache->last() - demo.timeline.cache->first(), 11);
   demo.requests.push_back({app::Ask::kRecordHair, "", folder + "/none/a.hairmesh", 1});
-  frames(2);
+  recordFrames(2, recorder, demo);
   EXPECT_TRUE(demo.message_is_fault);
   EXPECT_FALSE(demo.capture.hair);
 }
@@ -252,17 +253,11 @@ TEST(HairRecorder, NumbersFramesByTheTimeOfTheRun) {
   const std::string folder = test::freshFolder("hair_recorder_numbers");
   app::Demo demo = opened();
   app::HairRecorder recorder(60);
-  const auto frames = [&](int count) {
-    for (int frame = 0; frame < count; ++frame) {
-      app::advanceFrame(demo, kFrame, {});
-      recorder.frame(demo);
-    }
-  };
-  frames(10);
+  recordFrames(10, recorder, demo);
   demo.requests.push_back({app::Ask::kRecordHair, "", folder + "/a.ply", 1});
-  frames(2);
+  recordFrames(2, recorder, demo);
   demo.requests.push_back({app::Ask::kRecordHair, "", "", 0});
-  frames(1);
+  recordFrames(1, recorder, demo);
   std::set<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) names.insert(entry.path().filename().string());
   EXPECT_EQ(names, (std::set<std::string>{"a_0011.ply", "a_0012.ply"}));
