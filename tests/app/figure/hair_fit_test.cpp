@@ -291,7 +291,7 @@ TEST(HairFit, CardsThatStandAreRootedAtTheEndsThatLieOnTheHead) {
         const sim::HairMeshShape& shape = fitted.conversion.mesh.shape;
         SCOPED_TRACE(std::to_string(units) + (over ? " over" : "") + (z_up ? " z up: " : ": ") + fitted.fit);
         EXPECT_LT(app::rootDistance(shape, figure().scalp), 0.25 * app::kFarRoots);
-        EXPECT_LT(fitted.as_made, 0.25 * app::kFarRoots);
+        EXPECT_LT(fitted.as_made_distance, 0.25 * app::kFarRoots);
         double rise = 0;
         for (int c = 0; c < shape.columnCount(); ++c) {
           const int root = shape.column_first[c];
