@@ -35,11 +35,12 @@ const int kVertexTexels = 3;  // position + sky visibility, du + depths along fi
 // from it as a share of kDeepest behind it.
 const float kDepthSteps = 128.0;
 const float kDeepest = 32.0;
-// Share of the soft light's depths (fill, rim, sky) that lies in front of what the eye sees: their cells are coarser than
-// the hair's surface. Fitted to the path tracer, at any number of strands (docs/picture.md).
+// Share of the soft light's depths (fill, rim, sky) that lies in front of what the eye sees: their cells are coarser
+// than the hair's surface. Fitted to the path tracer, at any number of strands (docs/picture.md).
 const float kSoftDepth = 0.7;
-// Where bundles fan out, the groups of hairs close by no more than this of what lies between their roots; m per m of scalp.
-const float kMostSpread = 1.5;
+// Where bundles fan out, the groups of hairs close by no more than this of what lies between their roots; m per m of
+// scalp.
+const float kMaxSpread = 1.5;
 const float kBackReach = 0.012;  // m: light comes back from hair as far behind a strand
 const int kFaceTexels = 3;       // first vertices; columns; layers (negative: covered), first strand, end strand, edge
 const int kTableTexels = 1;      // end strand, face, segments a layer (0: the hair's), first strand

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kTouch = 0.002;   // m under the skin that needs no turn
 constexpr double kRoom = 0.004;    // m over the skin, where one is turned
-constexpr double kMostTurn = 0.7;  // rad
+constexpr double kMaxTurn = 0.7;   // rad
 constexpr double kNoTurn = 1e-6;   // rad
 constexpr double kEvenOver = 0.1;  // s, that turns are evened out over
 constexpr int kTurns = 24;         // small ones, that make up a turn
@@ -173,7 +173,7 @@ class Clearance {
       if (touch.depth < kTouch) break;
       const Vec3 lever = (touch.place - moment.shoulder).cross(touch.normal);
       turn += (touch.depth + kRoom) * lever / std::max(lever.squaredNorm(), 0.01);
-      if (turn.norm() > kMostTurn) return kMostTurn * turn.normalized();
+      if (turn.norm() > kMaxTurn) return kMaxTurn * turn.normalized();
     }
     return turn;
   }

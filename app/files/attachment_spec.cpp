@@ -50,7 +50,7 @@ AttachmentSpec readAttachment(const JsonPlace& place) {
         "name a mesh: OBJ, FBX or glTF; it is looked for beside the scene and in assets/attachments");
   if (place.has("joint")) one.joint = place.at("joint").text();
   if (place.has("at")) one.at = vectorFrom(place.at("at").vector(-kFarthestAttachment, kFarthestAttachment));
-  if (place.has("turn")) one.turn = vectorFrom(place.at("turn").vector(-kMaxTurn, kMaxTurn));
+  if (place.has("turn")) one.turn = vectorFrom(place.at("turn").vector(-kMaxAttachmentTurn, kMaxAttachmentTurn));
   if (place.has("scale")) one.scale = place.at("scale").number(kMinUnit, kMaxUnit);
   if (place.has("size")) one.size = place.at("size").number(kSmallestTimes, kLargestTimes);
   if (place.has("color")) {

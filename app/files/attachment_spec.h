@@ -5,9 +5,9 @@
 // The mesh lies in the joint's frame at rest: origin at the joint, x to the figure's left, y up, z forward. "at" (m)
 // and "turn" (degrees about x, then y, then z) are added. "scale" is metres per unit of the file; left out, unit and
 // origin are inferred where they are certain, and so is z up where no "turn" is given; and a hat that would lie in or
-// beside the head is set on it where "at", "turn" and "scale" are left out. "size" makes it so many times as large about
-// the joint, once it is placed but for "at". "color" left out is that of the file's material. "joint" is a joint's name
-// or a body part's ("head", "neck", "chest"). Every key but the file may be left out.
+// beside the head is set on it where "at", "turn" and "scale" are left out. "size" makes it so many times as large
+// about the joint, once it is placed but for "at". "color" left out is that of the file's material. "joint" is a
+// joint's name or a body part's ("head", "neck", "chest"). Every key but the file may be left out.
 #pragma once
 
 #include <array>
@@ -33,8 +33,8 @@ struct AttachmentSpec {
 };
 
 inline constexpr std::size_t kMaxAttachments = 8;
-inline constexpr double kFarthestAttachment = 3, kMaxTurn = 180;   // m, degrees
-inline constexpr double kSmallestTimes = 0.1, kLargestTimes = 10;  // of "size"
+inline constexpr double kFarthestAttachment = 3, kMaxAttachmentTurn = 180;  // m, degrees
+inline constexpr double kSmallestTimes = 0.1, kLargestTimes = 10;           // of "size"
 
 // Throws InputError.
 std::vector<AttachmentSpec> readAttachments(const JsonPlace& place);

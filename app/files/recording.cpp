@@ -19,11 +19,11 @@ namespace {
 using nlohmann::json;
 
 constexpr int kVersion = 3;
-constexpr std::size_t kMaxRequests = 1000;                   // a frame
-constexpr double kMostSeconds = 1e6, kLargestValue = 1e300;  // s; of a request's value
-constexpr double kFarthestView = 1e6, kMaxViewTurn = 1e3;    // m, rad; of a view
-constexpr double kEndUnit = 1e-5, kMostEndUnits = 1e12;      // m; of a coordinate in such units
-constexpr std::size_t kMostEndNumbers = std::size_t{3} << 20;
+constexpr std::size_t kMaxRequests = 1000;                  // a frame
+constexpr double kMaxSeconds = 1e6, kLargestValue = 1e300;  // s; of a request's value
+constexpr double kFarthestView = 1e6, kMaxViewTurn = 1e3;   // m, rad; of a view
+constexpr double kEndUnit = 1e-5, kMaxEndUnits = 1e12;      // m; of a coordinate in such units
+constexpr std::size_t kMaxEndNumbers = std::size_t{3} << 20;
 constexpr double kMaxAspect = 1e5, kTallestPicture = 1e5;
 
 struct AskName {
@@ -167,7 +167,7 @@ RecordedFrame readFrame(const JsonPlace& place) {
   const std::size_t entries = place.arraySize(kMaxRequests + 2);
   if (entries == 0) place.refuse("is no frame", "write [seconds, requests ...]");
   RecordedFrame frame;
-  frame.seconds = place.at(std::size_t{0}).number(0, kMostSeconds);
+  frame.seconds = place.at(std::size_t{0}).number(0, kMaxSeconds);
   std::size_t next = 1;
   if (next < entries && place.at(next).value().is_object()) frame.view = readView(place.at(next++));
   for (; next < entries; ++next) frame.requests.push_back(readRequest(place.at(next)));
@@ -216,7 +216,7 @@ std::string endsLine(const std::vector<ColumnEnds>& ends) {
   for (const ColumnEnds& of_actor : ends) {
     json& row = all.emplace_back(json::array());
     for (const Vec3& end : of_actor) {
-      for (const double x : end) row.push_back(std::llround(std::clamp(x / kEndUnit, -kMostEndUnits, kMostEndUnits)));
+      for (const double x : end) row.push_back(std::llround(std::clamp(x / kEndUnit, -kMaxEndUnits, kMaxEndUnits)));
     }
   }
   return json{{"ends", all}}.dump();
@@ -226,9 +226,9 @@ std::vector<ColumnEnds> readEnds(const JsonPlace& place) {
   std::vector<ColumnEnds> ends(place.arraySize(kMaxCharacters));
   for (std::size_t i = 0; i < ends.size(); ++i) {
     const JsonPlace row = place.at(i);
-    const std::size_t numbers = row.arraySize(kMostEndNumbers);
+    const std::size_t numbers = row.arraySize(kMaxEndNumbers);
     if (numbers % 3 != 0) row.refuse("has " + std::to_string(numbers) + " numbers", "write three an end");
-    const auto metres = [&](std::size_t k) { return kEndUnit * row.at(k).number(-kMostEndUnits, kMostEndUnits); };
+    const auto metres = [&](std::size_t k) { return kEndUnit * row.at(k).number(-kMaxEndUnits, kMaxEndUnits); };
     for (std::size_t k = 0; k < numbers; k += 3) ends[i].emplace_back(metres(k), metres(k + 1), metres(k + 2));
   }
   return ends;
@@ -249,12 +249,12 @@ std::string whyOther(const std::optional<bool>& edited) {
 // What is said of a replay whose bits are not the recorded ones, and whether it differs by more than rounding does.
 Tape::End otherEnd(const Recording& recorded, const Demo& demo) {
   const std::optional<Apart> apart = apartOf(recorded.ends, columnEnds(demo));
-  const bool near = apart && apart->most <= kMostApart, whole = recorded.edited && !*recorded.edited;
+  const bool near = apart && apart->most <= kMaxApart, whole = recorded.edited && !*recorded.edited;
   std::string words;
   if (apart) {
     words = "the hair ends " + millimetres(apart->most) + " at most, " + millimetres(apart->mean) +
             " in the mean, from where it was recorded to end, ";
-    words += (near ? "within the " : "farther than the ") + millimetres(kMostApart) + " that pass; ";
+    words += (near ? "within the " : "farther than the ") + millimetres(kMaxApart) + " that pass; ";
   } else if (!recorded.ends.empty()) {
     words = "the hair has not as many columns as when it was recorded: its style or mesh is another one now; ";
   }
@@ -376,7 +376,7 @@ std::optional<Apart> apartOf(const std::vector<ColumnEnds>& a, const std::vector
     if (a[i].size() != b[i].size()) return {};
     for (std::size_t k = 0; k < a[i].size(); ++k) {
       const double distance = (a[i][k] - b[i][k]).norm();
-      apart.most = std::max(apart.most, std::isfinite(distance) ? distance : kMostEndUnits);
+      apart.most = std::max(apart.most, std::isfinite(distance) ? distance : kMaxEndUnits);
       apart.mean += distance;
     }
     count += a[i].size();

@@ -15,7 +15,7 @@
 // itself. Version 2 had no ends.
 //
 // Another build or kind of processor rounds otherwise, so its bits differ. A replay passes where no column ends farther
-// than kMostApart from where it was recorded to end, and its text is as it was recorded.
+// than kMaxApart from where it was recorded to end, and its text is as it was recorded.
 #pragma once
 
 #include <cstdint>
@@ -48,7 +48,7 @@ struct RecordedFrame {
   std::vector<Request> requests;
 };
 
-inline constexpr double kMostApart = 1e-3;  // m
+inline constexpr double kMaxApart = 1e-3;  // m
 
 // Where a character's columns end, m.
 using ColumnEnds = std::vector<Vec3>;

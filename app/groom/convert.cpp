@@ -14,13 +14,13 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr int kSamples = 25;                           // points a strand
-constexpr std::size_t kSilhouetteStrands = 10000;      // that silhouettes are drawn of
-constexpr double kMisfit = 0.03;                       // of the hair's length
-constexpr double kMostMisfits = 0.5, kFarMean = 0.05;  // of the strands, and in the mean of their length: no conversion
-constexpr float kTogether = 0.012f;                    // m, between roots of strands that are told of as one
-constexpr std::size_t kMaxMisfits = 6;                 // groups that are told of
-constexpr double kCrossing = 0.35;                     // rad-like, of strands that root together
+constexpr int kSamples = 25;                          // points a strand
+constexpr std::size_t kSilhouetteStrands = 10000;     // that silhouettes are drawn of
+constexpr double kMisfit = 0.03;                      // of the hair's length
+constexpr double kMaxMisfits = 0.5, kFarMean = 0.05;  // of the strands, and in the mean of their length: no conversion
+constexpr float kTogether = 0.012f;                   // m, between roots of strands that are told of as one
+constexpr std::size_t kMaxMisfitLines = 6;            // groups that are told of
+constexpr double kCrossing = 0.35;                    // rad-like, of strands that root together
 
 Groom reversed(Groom groom) {
   for (std::size_t s = 0; s < groom.strandCount(); ++s) {
@@ -204,7 +204,7 @@ int misfitCount(const Conversion& conversion) {
 std::string conversionWarning(const Conversion& conversion) {
   const int off = misfitCount(conversion);
   const FitError& error = conversion.fit.error;
-  if (off <= kMostMisfits * conversion.strands || error.mean <= kFarMean * error.strand_length) return "";
+  if (off <= kMaxMisfits * conversion.strands || error.mean <= kFarMean * error.strand_length) return "";
   return "most of the groom is lost: " + std::to_string(off) + " of " + std::to_string(conversion.strands) +
          " strands do not fit the hair mesh, all are " +
          std::to_string(std::lround(100 * error.mean / error.strand_length)) + " % of their length off in the mean";
@@ -234,13 +234,13 @@ std::string conversionReport(const Conversion& conversion) {
     text += reportLine("silhouette    overlaps by at least %.3f from six sides, by %.3f with strands dealt out anew",
                        conversion.silhouette, conversion.silhouette_drawn);
   text += characterLine(conversion.look);
-  for (std::size_t k = 0; k < std::min(kMaxMisfits, conversion.misfits.size()); ++k)
+  for (std::size_t k = 0; k < std::min(kMaxMisfitLines, conversion.misfits.size()); ++k)
     text += misfitLine(conversion.misfits[k], error);
-  if (conversion.misfits.size() > kMaxMisfits) {
+  if (conversion.misfits.size() > kMaxMisfitLines) {
     int rest = 0;
-    for (std::size_t k = kMaxMisfits; k < conversion.misfits.size(); ++k) rest += conversion.misfits[k].strands;
-    text +=
-        reportLine("              and %d strands in %zu smaller groups", rest, conversion.misfits.size() - kMaxMisfits);
+    for (std::size_t k = kMaxMisfitLines; k < conversion.misfits.size(); ++k) rest += conversion.misfits[k].strands;
+    text += reportLine("              and %d strands in %zu smaller groups", rest,
+                       conversion.misfits.size() - kMaxMisfitLines);
   }
   return text;
 }

@@ -456,14 +456,14 @@ void settleActor(const sim::SimParams& params, double seconds, Actor& actor) {
 
 void settleInMotion(const sim::SimParams& params, double seconds, Actor& actor) {
   constexpr double kStride = 0.5;  // s
-  constexpr int kMostStrides = 8;
+  constexpr int kMaxStrides = 8;
   const Playback here = actor.playback;
   const auto goBack = [&](int strides) {
     actor.playback.time = here.time - strides * kStride;
     placeActor(actor, true);
   };
   int from = 0, least = std::numeric_limits<int>::max();
-  for (int k = 0; seconds > 0 && k <= kMostStrides && k * kStride <= here.time; ++k) {
+  for (int k = 0; seconds > 0 && k <= kMaxStrides && k * kStride <= here.time; ++k) {
     goBack(k);
     const int pushed = simulateActor(params, params.time_step, 0, actor).corrected;
     if (pushed < least) least = pushed, from = k;

@@ -19,7 +19,7 @@ struct Loaded {
 
 namespace {
 
-constexpr std::size_t kMostFileEnds = 100;  // runs without a window look at none
+constexpr std::size_t kMaxFileEnds = 100;  // runs without a window look at none
 
 // The file that the step of that number has asked for; empty where it was undone.
 std::string fileOf(long edit, const EditHistory& history) {
@@ -94,7 +94,7 @@ bool comesLater(long edit, const BackgroundLoad& loading) {
 }
 
 void noteFileEnd(const std::string& file, bool done, Demo& demo) {
-  if (!file.empty() && demo.file_ends.size() < kMostFileEnds) demo.file_ends.push_back({file, done});
+  if (!file.empty() && demo.file_ends.size() < kMaxFileEnds) demo.file_ends.push_back({file, done});
 }
 
 namespace {

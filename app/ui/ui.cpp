@@ -17,13 +17,13 @@ namespace {
 
 constexpr float kMargin = 12, kSidebarWidth = 348, kTimingsWidth = 292;
 constexpr float kMessageWidth = 520, kMinMessageWidth = 240;
-constexpr float kLeastFigure = 360;   // width beside the sidebar that hair and shoulders ask for
+constexpr float kMinFigure = 360;     // width beside the sidebar that hair and shoulders ask for
 constexpr float kTextHeight = 15;     // of a row of buttons, see prepareUi
-constexpr float kLeastSheet = 176;    // height that rows of buttons and tabs ask for
+constexpr float kMinSheet = 176;      // height that rows of buttons and tabs ask for
 constexpr float kSceneBoxFrom = 430;  // width of a sheet with room for the scenes beside its buttons
 constexpr float kFilesFrom = 560;     // and with room for the row of files there, and the scenes beside its tabs
 constexpr float kAmpleWidth = 340;    // between sidebar and timings; with less the timings begin folded
-constexpr float kLeastBetween = 240;  // the same; with less the timings are in the Debug tab
+constexpr float kMinBetween = 240;    // the same; with less the timings are in the Debug tab
 constexpr double kMessageTime = 6;    // s; faults stay until clicked
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoBringToFrontOnFocus;
@@ -33,8 +33,8 @@ constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFla
 bool narrow(const UiState& ui) {
   const float window = ImGui::GetIO().DisplaySize.x, sidebar = kSidebarWidth + 2 * kMargin;
   // Of two pictures the left one asks for half as much.
-  return window < (sidebar + kLeastFigure) * ui.text_scale ||
-         (ui.halved && 0.5f * window < (sidebar + 0.5f * kLeastFigure) * ui.text_scale);
+  return window < (sidebar + kMinFigure) * ui.text_scale ||
+         (ui.halved && 0.5f * window < (sidebar + 0.5f * kMinFigure) * ui.text_scale);
 }
 
 // The scene's name, and what has been put into it since.
@@ -179,7 +179,7 @@ float sidebarHeight(const UiState& ui) {
   const float window = ImGui::GetIO().DisplaySize.y, margin = kMargin * ui.text_scale;
   if (folded(ui)) return 0;  // as high as its row
   const float most = std::max(120.0f, window - 2 * margin);
-  return sheet(ui) ? std::min(most, std::max(0.5f * window - margin, kLeastSheet * ui.text_scale)) : most;
+  return sheet(ui) ? std::min(most, std::max(0.5f * window - margin, kMinSheet * ui.text_scale)) : most;
 }
 
 // Pixels at the left and right that panels take beside the figure.
@@ -191,7 +191,7 @@ float timingsRoom(const UiState& ui) {
   return ImGui::GetIO().DisplaySize.x - sidebarWidth(ui) - (kTimingsWidth + 3 * kMargin) * ui.text_scale;
 }
 bool timingsBeside(const UiState& ui) {
-  return timingsRoom(ui) >= kLeastBetween * ui.text_scale;
+  return timingsRoom(ui) >= kMinBetween * ui.text_scale;
 }
 float takenRight(const UiState& ui) {
   const float room = timingsRoom(ui);
@@ -407,7 +407,7 @@ void buildUi(Demo& demo, UiState& ui) {
   ui.presets_in_sight.clear();
   ui.items.clear();
   ui.halved = demo.comparison.on() && demo.comparison.side_by_side;
-  ui.history_in_sidebar = !narrow(ui) && timingsRoom(ui) < kLeastFigure * ui.text_scale;
+  ui.history_in_sidebar = !narrow(ui) && timingsRoom(ui) < kMinFigure * ui.text_scale;
   compareLine(demo, ui);
   if (!ui.line_held) brushFrame(demo, ui);
   count(!ui.visible, demo.stats.always[kHiddenPanels]);

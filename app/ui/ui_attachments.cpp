@@ -65,7 +65,7 @@ void placeRows(std::size_t k, const Demo& demo, UiState& ui) {
   std::array<float, 3> turn = floats(inferred);
   const std::array<float, 3> standard = one.turn.isZero() ? turn : kZero;
   if (dragRow("Turn", "turn" + of, "Degrees about the axis to the left, then the one up, then the one to the front",
-              turn, standard, "%.0f deg", 0.5f, -kMaxTurn, kMaxTurn, ui)) {
+              turn, standard, "%.0f deg", 0.5f, -kMaxAttachmentTurn, kMaxAttachmentTurn, ui)) {
     one.turn = Vec3(turn[0], turn[1], turn[2]), one.at = place;
     ui.worn_edited = true;
   }

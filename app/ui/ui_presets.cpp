@@ -16,8 +16,8 @@ namespace app {
 namespace {
 
 constexpr int kPicturesAcross = 5, kPictureRows = 2;
-constexpr float kPictureGap = 4;             // px
-constexpr float kLeastRoomOfPictures = 420;  // px of the window's height
+constexpr float kPictureGap = 4;           // px
+constexpr float kMinRoomOfPictures = 420;  // px of the window's height
 
 // Saves under the name that was typed; a file that is there already only when asked a second time.
 void savePreset(Demo& demo, UiState& ui) {
@@ -152,7 +152,7 @@ void savePresetRow(Demo& demo, UiState& ui) {
 void presetRows(Demo& demo, UiState& ui) {
   presetCombo(demo, ui);
   // In a low window, or a sheet over half of one, the list alone.
-  if (ImGui::GetWindowHeight() > kLeastRoomOfPictures * ui.text_scale) pictureGrid(demo, ui);
+  if (ImGui::GetWindowHeight() > kMinRoomOfPictures * ui.text_scale) pictureGrid(demo, ui);
   savePresetRow(demo, ui);
 }
 

@@ -16,7 +16,7 @@ namespace app {
 
 namespace {
 
-constexpr double kLeastMove = 0.001;                 // m between two samples of a drag
+constexpr double kMinMove = 0.001;                   // m between two samples of a drag
 constexpr double kNudge = 0.002, kLongNudge = 0.01;  // m
 constexpr double kShownReach = 0.02;                 // of a weight
 constexpr int kChosenColor = 0, kHoverColor = 1, kMirrorColor = 2;
@@ -341,7 +341,7 @@ void selectFrame(bool begins, Demo& demo, UiState& ui) {
     sayShortfall(brush.last, actor, demo, select);
     const Vec3 last = to_scalp.inverse(Eigen::Isometry) * brush.last;
     const Vec3 now = pointInPlane(ray, last, viewBack(demo.camera)), way = now - last;
-    if (way.norm() >= kLeastMove) {
+    if (way.norm() >= kMinMove) {
       postMove(to_scalp.linear() * way, demo, ui);
       brush.last = to_scalp * now;
     }

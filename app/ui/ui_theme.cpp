@@ -83,8 +83,8 @@ std::string sceneName(const std::string& file) {
 }  // namespace
 
 float fittingTextScale(float wanted, int width, int height) {
-  constexpr float kLeastWidth = 400, kLeastHeight = 300;  // points
-  const float room = std::min(static_cast<float>(width) / kLeastWidth, static_cast<float>(height) / kLeastHeight);
+  constexpr float kMinWidth = 400, kMinHeight = 300;  // points
+  const float room = std::min(static_cast<float>(width) / kMinWidth, static_cast<float>(height) / kMinHeight);
   return std::clamp(wanted <= room ? wanted : std::floor(8 * room) / 8, 0.5f, 4.0f);
 }
 

@@ -15,9 +15,9 @@ namespace app {
 namespace {
 
 constexpr float kTimelineHeight = 50, kMinWidth = 280, kOneRowWidth = 560, kTimelineMargin = 12;
-constexpr float kButtonRow = 28, kLeastWindow = 290;  // points; of a second row, of the window
-constexpr float kOfferHeight = 90;                    // points that the box of an earlier run's project needs
-constexpr double kWorst = 3;                          // of the mean cost: a step to look at
+constexpr float kButtonRow = 28, kMinWindow = 290;  // points; of a second row, of the window
+constexpr float kOfferHeight = 90;                  // points that the box of an earlier run's project needs
+constexpr double kWorst = 3;                        // of the mean cost: a step to look at
 
 // The kept moment at a share of the strip.
 long frameAt(float share, long first, long last) {
@@ -157,7 +157,7 @@ bool inOneRow(float width, const UiState& ui) {
 float timelineHeight(const Demo& demo, const UiState& ui, float left) {
   if (!ui.visible || !demo.timeline.on) return 0;
   const float scale = ui.text_scale, width = widthRightOf(left, ui);
-  if (width < kMinWidth * scale || ImGui::GetIO().DisplaySize.y < kLeastWindow * scale) return 0;
+  if (width < kMinWidth * scale || ImGui::GetIO().DisplaySize.y < kMinWindow * scale) return 0;
   return (kTimelineHeight + (inOneRow(width, ui) ? 0 : kButtonRow) + kTimelineMargin) * scale;
 }
 

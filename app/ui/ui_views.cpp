@@ -9,7 +9,7 @@ namespace app {
 
 namespace {
 
-constexpr std::size_t kMostViews = 200;
+constexpr std::size_t kMaxViews = 200;
 constexpr double kWheelRest = 0.5;  // s, that end a turn of the wheel
 
 // The anchor follows the figure and is no part of a view.
@@ -33,7 +33,7 @@ void noteView(const Demo& demo, UiState& ui) {
   if (!views.now || demo.turntable != 0) views.now = camera;
   if (dragged() || sameView(*views.now, camera)) return;
   if (!goes_on) views.past.push_back(*views.now);
-  if (views.past.size() > kMostViews) views.past.erase(views.past.begin());
+  if (views.past.size() > kMaxViews) views.past.erase(views.past.begin());
   views.future.clear();
   views.now = camera;
 }

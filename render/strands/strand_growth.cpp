@@ -306,8 +306,8 @@ StrandGrowth::LayerPoint StrandGrowth::layerPoint(const Strand& strand, int laye
     point.axis_u += strand.blend[k] * texels[1];
     point.axis_v += strand.blend[k] * texels[2];
   }
-  point.axis_u *= shared::kMostSpread / std::max(point.axis_u.norm(), shared::kMostSpread);
-  point.axis_v *= shared::kMostSpread / std::max(point.axis_v.norm(), shared::kMostSpread);
+  point.axis_u *= shared::kMaxSpread / std::max(point.axis_u.norm(), shared::kMaxSpread);
+  point.axis_v *= shared::kMaxSpread / std::max(point.axis_v.norm(), shared::kMaxSpread);
   const Vector2f pull = groupPull(strand, static_cast<float>(layer));
   point.position += pull.x() * point.axis_u + pull.y() * point.axis_v;
   return point;

@@ -171,7 +171,7 @@ float hairLightOnSurface(vec3 world) {
 // of the taps that found one. Surfaces that the light grazes rise towards it themselves: `rise` (m a m) counts for
 // nothing.
 const float kBodyReach = 0.04;  // m
-const float kLeastFacing = -0.27;  // a surface turned farther from the light gets none, wrapped or not (surface.glsl)
+const float kMinFacing = -0.27;  // a surface turned farther from the light gets none, wrapped or not (surface.glsl)
 const int kSoughtTaps = 8;
 const int kBodyTaps = 12, kGroundTaps = 32;  // a plain ground shows every tap
 const float kEdge = 0.02;  // share of taps, from full light and from full shadow, that is no edge
@@ -199,7 +199,7 @@ float bodyLightOnSurface(vec3 world, vec3 normal, int most) {
     vec2 scale = 0.5 * vec2(length(vec3(to_map[0].x, to_map[1].x, to_map[2].x)),
                             length(vec3(to_map[0].z, to_map[1].z, to_map[2].z)));
     float towards = dot(normal, to_key.xyz), facing = max(towards, 0.3), rise = sqrt(1.0 - facing * facing) / facing;
-    vec2 above = bodiesAbove(map, at, scale, rise, towards > kLeastFacing ? kSoughtTaps : 0);
+    vec2 above = bodiesAbove(map, at, scale, rise, towards > kMinFacing ? kSoughtTaps : 0);
     float texel = 2.0 / (float(textureSize(body_depth, 0).x) * scale.x);  // m
     float reach = clamp(0.5 * kLampAngle * above.x, texel, kBodyReach), sum = 0.0;
     int taps = above.y > kEdge && above.y < 1.0 - kEdge ? most : 0;

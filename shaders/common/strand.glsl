@@ -325,8 +325,8 @@ LayerPoint layerPoint(in Strand strand, int layer) {
     point.behind += strand.blend[k] * fract(vec2(du.w, dv.w)) * kDeepest;
   }
   // Where bundles fan out, groups close by no more than this of what lies between their roots.
-  point.axis_u *= kMostSpread / max(length(point.axis_u), kMostSpread);
-  point.axis_v *= kMostSpread / max(length(point.axis_v), kMostSpread);
+  point.axis_u *= kMaxSpread / max(length(point.axis_u), kMaxSpread);
+  point.axis_v *= kMaxSpread / max(length(point.axis_v), kMaxSpread);
   vec2 pull = groupPull(strand, float(layer));
   point.position += pull.x * point.axis_u + pull.y * point.axis_v;
   return point;

@@ -32,7 +32,7 @@ constexpr int kUncounted = 2, kFramesARun = 10, kDrawsARun = 10;
 constexpr double kEnough = 2;     // s that a row takes about
 constexpr int kFewest = 3;        // frames that it counts all the same
 constexpr double kTooSlow = 500;  // ms a frame: a path that takes as long is not timed with more strands
-constexpr double kMostOverTriangles = 2, kMostForShadows = 0.35;
+constexpr double kMaxOverTriangles = 2, kMaxForShadows = 0.35;
 
 struct PictureSize {
   int width, height;
@@ -49,7 +49,7 @@ std::vector<int> strandCounts(bool quick) {
   return {10000, 50000, 100000, 400000};
 }
 
-constexpr int kMostExpanded = 100000;  // strands; more would not fit into many a GPU's memory as triangles
+constexpr int kMaxExpanded = 100000;  // strands; more would not fit into many a GPU's memory as triangles
 
 constexpr const char* kStagePaths[] = {"geometry", "compute"};  // as StrandPath counts
 
@@ -284,9 +284,9 @@ void measurePasses(DrawTables& measured, const DrawPassesOptions& options, const
         too_slow[path] = times[1] > kTooSlow;
         const double share = times[1] / times[0] - 1;
         const bool used = path == static_cast<int>(render::pathFor(render::StrandPath::kAuto));
-        if (used && share > kMostForShadows)
+        if (used && share > kMaxForShadows)
           measured.faults.push_back(formatted("%s, %d strands: shadows cost %.0f %% on top (bound %.0f %%)",
-                                              size.name().c_str(), strands, 100 * share, 100 * kMostForShadows));
+                                              size.name().c_str(), strands, 100 * share, 100 * kMaxForShadows));
       }
     }
   }
@@ -304,7 +304,7 @@ void measureTriangles(DrawTables& measured, const DrawPassesOptions& options, co
   measured.triangles.head = {"picture", "strands", "geometry", "compute", "triangles", "compute over triangles"};
   for (const PictureSize& size : pictureSizes(options.quick)) {
     for (const int strands : strandCounts(options.quick)) {
-      if (strands > kMostExpanded) continue;
+      if (strands > kMaxExpanded) continue;
       const auto times = strands_alone.time(bust.frame(settingOf(strands, 0, true), 0, size.width, size.height),
                                             kDrawsARun * options.runs);
       const double ratio = times.compute / times.triangles;
@@ -314,9 +314,9 @@ void measureTriangles(DrawTables& measured, const DrawPassesOptions& options, co
       std::printf("%s, %d strands: geometry %.3f, compute %.3f, triangles %.3f ms\n", size.name().c_str(), strands,
                   times.geometry, times.compute, times.triangles);
       std::fflush(stdout);
-      if (ratio > kMostOverTriangles)
+      if (ratio > kMaxOverTriangles)
         measured.faults.push_back(formatted("%s, %d strands: %.2f times the time of triangles (bound %.1f)",
-                                            size.name().c_str(), strands, ratio, kMostOverTriangles));
+                                            size.name().c_str(), strands, ratio, kMaxOverTriangles));
     }
   }
 }

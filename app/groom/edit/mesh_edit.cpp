@@ -17,7 +17,7 @@ constexpr int kReachOfLayer = 3;                        // layers beyond which a
 constexpr std::array kSlideShares{0.0, 0.1, 0.2, 0.3};  // layers, towards the one that is taken away
 constexpr double kFat = 0.02;                           // see untangle
 constexpr int kUntanglings = 4;
-constexpr double kMostPasses = 16;                             // over the tips
+constexpr double kMaxPasses = 16;                              // over the tips
 constexpr std::array kChordShares{0.0, 0.25, 0.5, 0.75, 1.0};  // share of the chord in place of the curve
 
 int longestColumn(const sim::HairMeshShape& shape) {
@@ -198,14 +198,14 @@ EditedMesh addLayer(const sim::HairMeshShape& shape, int after, const BodyDistan
   }
   for (const double straight : kChordShares) {
     EditedMesh edited = byPlan(shape, plan, straight);
-    if (tip) evenTips(shape, after, static_cast<int>(kMostPasses * straight), edited);
+    if (tip) evenTips(shape, after, static_cast<int>(kMaxPasses * straight), edited);
     clearOfBody(shape, body, edited);
     if (!isValid(edited.shape)) continue;
     edited.moved = apart(shape, edited.shape, after, kReachOfLayer);
     return edited;
   }
   EditedMesh edited = byPlan(shape, plan, 0);
-  if (tip) evenTips(shape, after, static_cast<int>(kMostPasses), edited);
+  if (tip) evenTips(shape, after, static_cast<int>(kMaxPasses), edited);
   if (untangled(shape, body, after, edited)) return edited;
   throw InputError("", "a layer after layer " + std::to_string(after), "would leave prisms flat or inverted",
                    "smooth the hair there first");

@@ -21,7 +21,7 @@ constexpr double kSameRoot = 0.001;                           // m, between colu
 constexpr double kNarrowestRoot = 0.006, kWidestRoot = 0.03;  // m, of a bundle at its root
 constexpr double kTooNear = 0.5;                              // of that: roots of other hair within it
 constexpr double kPartedFatness = 0.03, kGapToBody = 0.0025;  // see untangle; m
-constexpr int kMostUntanglings = 8;
+constexpr int kMaxUntanglings = 8;
 
 using RootEdgeKey = std::pair<int, int>;  // columns, the lower one first
 
@@ -362,7 +362,7 @@ EditedMesh extrudeColumns(const sim::HairMeshShape& shape, std::span<const Colum
   for (const ColumnPair& edge : border)
     edited.shape.root_faces.push_back({4, {edge.b, edge.a, fresh[edge.a], fresh[edge.b]}});
   const BodyDistance around = body ? body : [](const Vec3&) { return 1.0; };
-  for (int round = 0; round < kMostUntanglings && untangle(around, kPartedFatness, kGapToBody, edited.shape) <= 0;
+  for (int round = 0; round < kMaxUntanglings && untangle(around, kPartedFatness, kGapToBody, edited.shape) <= 0;
        ++round) {
   }
   for (std::size_t v = 0; v < shape.positions.size(); ++v)

@@ -30,7 +30,7 @@ constexpr std::size_t kMinBundleStrands = 5;  // strands of a bundle
 // and a disc (shaders/common/strand.glsl).
 constexpr double kFrizzSpread = 0.667, kOffsetSpread = 0.31;
 constexpr float kNearFit = 0.008f;     // m, of strands that share what the hair mesh misses
-constexpr double kMostWander = 0.005;  // m; what strays farther is held by no hair mesh, and drawn as noise by any
+constexpr double kMaxWander = 0.005;   // m; what strays farther is held by no hair mesh, and drawn as noise by any
 constexpr std::size_t kMaxShared = 6;  // the nearest of so many
 constexpr float kNearRoots = 0.004f;   // m, of strands whose distance tells of clumps
 constexpr double kClumpClosed = 0.55;  // share of the length at which clumps are closed
@@ -164,7 +164,7 @@ StrandCharacter summary(const std::vector<const StrandMeasure*>& of) {
     out.curl_pitch = std::clamp(quantile(pitch, 0.5), 0.003, 0.3);
   }
   out.frizz = quantile(frizz, 0.5) / kFrizzSpread;
-  if (!wander.empty()) out.offset = std::min(quantile(wander, 0.5) / kOffsetSpread, kMostWander);
+  if (!wander.empty()) out.offset = std::min(quantile(wander, 0.5) / kOffsetSpread, kMaxWander);
   // The median: a few baby hairs make no range of lengths.
   out.length_variation = std::clamp((1 - quantile(shares, 0.5)) / kMeanEarly, 0.0, 0.6);
   return out;

@@ -26,7 +26,7 @@ constexpr float kUsualWidth = 8e-5f, kWidestHair = 4e-4f, kAllHairs = 1e5f;
 constexpr float kFar = 0.018f, kFloating = 0.03f, kDeep = 0.006f;  // m
 // Of roots over a scalp: spread and coverage of the sphere about them, and how long the mean of their directions is;
 // the cosine between that and the way the hair hangs.
-constexpr float kCapSpread = 0.08f, kCapCoverage = 0.03f, kLeastCap = 0.2f, kMostCap = 0.7f, kHanging = -0.3f;
+constexpr float kCapSpread = 0.08f, kCapCoverage = 0.03f, kMinCap = 0.2f, kMaxCap = 0.7f, kHanging = -0.3f;
 constexpr float kSeated = 0.003f, kSeatSpread = 0.02f;   // m: on the skin, over so much of it
 constexpr float kStandsUp = 0.15f, kStandsAside = 0.3f;  // m from the head of the figure as it stands
 constexpr std::size_t kManyPoints = 256, kNumbersTold = 6;
@@ -162,7 +162,7 @@ void Inspector::capAndHang() {
 
 // Whether the roots lie over one side of a skull: not over all of a ball, as fur may, nor about a chin or a flat place.
 bool Inspector::onCap() const {
-  return skull.spread < kCapSpread && skull.coverage > kCapCoverage && cap.norm() > kLeastCap && cap.norm() < kMostCap;
+  return skull.spread < kCapSpread && skull.coverage > kCapCoverage && cap.norm() > kMinCap && cap.norm() < kMaxCap;
 }
 
 // Whether it is hair of a scalp beyond doubt: it hangs away from the side that it grows on.
@@ -398,7 +398,7 @@ void Inspector::place() {
   if (before > kFar) {
     move = moveToHead(roots, skull.center);
     for (Vector3f& root : roots) root += move;
-    const bool fits = offHead(roots) <= kFar && (cap.norm() > kLeastCap || inWorld());
+    const bool fits = offHead(roots) <= kFar && (cap.norm() > kMinCap || inWorld());
     const bool certain = fits && settled();
     world = world || (fits && standsInWorld());
     add("roots",

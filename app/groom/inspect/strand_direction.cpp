@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kSkullSpread = 0.08f, kSkullCoverage = 0.03f;  // SphereFit: of roots that lie about a skull
 constexpr float kOffSkull = 0.25f, kOnSkull = 0.15f;           // radii from the skull: no root, and a root
-constexpr double kMostOff = 0.05;                              // of the roots, where directions are certain
+constexpr double kMaxOff = 0.05;                               // of the roots, where directions are certain
 constexpr int kTurningRounds = 4;
 
 struct RootsAndTips {
@@ -116,7 +116,7 @@ StrandDirections directionsFrom(const StrandEnds& given, std::vector<bool> turne
   const auto far =
       std::ranges::count_if(ends.root, [&](const Vector3f& p) { return offSkull(out.skull, p) > kOffSkull; });
   out.certain = out.skull.spread < kSkullSpread && out.skull.coverage > kSkullCoverage &&
-                static_cast<double>(far) <= kMostOff * static_cast<double>(ends.root.size());
+                static_cast<double>(far) <= kMaxOff * static_cast<double>(ends.root.size());
   return out;
 }
 

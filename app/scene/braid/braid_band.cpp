@@ -40,9 +40,9 @@ struct Torus {
 
 render::BodyInput bandInput(std::uint64_t hair, std::size_t band) {
   static const Torus torus;
-  constexpr std::uint64_t kMostBands = 16;
+  constexpr std::uint64_t kMaxBands = 16;
   render::BodyInput input;
-  input.id = kBandIds + hair * kMostBands + band;
+  input.id = kBandIds + hair * kMaxBands + band;
   input.mesh_id = kBandIds;
   input.positions = torus.positions;
   input.normals = torus.normals;

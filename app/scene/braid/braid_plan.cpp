@@ -18,7 +18,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kMostFiner = 8;
+constexpr int kMaxFiner = 8;
 constexpr double kFlat = 1e-4;  // m: a strand's section that is thinner is none
 
 // The simulated hair as a plan reads it.
@@ -220,7 +220,7 @@ int finerLayers(const Hair& hair, const std::vector<Braid>& braids) {
     const double step = static_cast<double>(braid.steps[1].share) * braid.length;
     most = std::max(most, length / count / step);
   }
-  return std::min(static_cast<int>(std::lround(most)), kMostFiner);
+  return std::min(static_cast<int>(std::lround(most)), kMaxFiner);
 }
 
 std::string shortNote(const std::string& name, const Braid& braid, double radius) {

@@ -10,14 +10,14 @@
 namespace app {
 namespace {
 
-constexpr double kWidth = 3.3;                           // of the plait, in radii of its tie
-constexpr double kPeriod = 1.75;                         // m a turn of the strands, in widths
-constexpr double kTaper = 0.62;                          // width at the end over that at the tie
-constexpr double kTuft = 0.15;                           // share of the tail beyond the second tie
-constexpr double kLeastTuft = 0.025, kMostTuft = 0.055;  // m
-constexpr double kPinch = 0.55;                          // of the width, that the second tie takes
-constexpr double kBegin = 1.1;                           // widths from the tie, after which hair lies as in the plait
-constexpr double kLeast = 1.5;                           // widths that are left to braid, at least
+constexpr double kWidth = 3.3;                        // of the plait, in radii of its tie
+constexpr double kPeriod = 1.75;                      // m a turn of the strands, in widths
+constexpr double kTaper = 0.62;                       // width at the end over that at the tie
+constexpr double kTuft = 0.15;                        // share of the tail beyond the second tie
+constexpr double kMinTuft = 0.025, kMaxTuft = 0.055;  // m
+constexpr double kPinch = 0.55;                       // of the width, that the second tie takes
+constexpr double kBegin = 1.1;                        // widths from the tie, after which hair lies as in the plait
+constexpr double kMin = 1.5;                          // widths that are left to braid, at least
 constexpr int kStepsATurn = 12;
 constexpr double kTwist = 0.25;  // of the hair in a strand, over its phase
 
@@ -81,13 +81,13 @@ std::vector<double> phases(const Course& course, const std::vector<double>& at) 
 }
 
 double tuftOf(double length) {
-  return std::clamp(kTuft * length, kLeastTuft, kMostTuft);
+  return std::clamp(kTuft * length, kMinTuft, kMaxTuft);
 }
 
 }  // namespace
 
 double shortestBraid(double radius) {
-  return kLeast * kWidth * radius + kMostTuft;
+  return kMin * kWidth * radius + kMaxTuft;
 }
 
 bool layBraid(double radius, Braid& braid) {

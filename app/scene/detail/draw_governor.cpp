@@ -19,14 +19,14 @@ constexpr DrawRung kDrawLadder[] = {
 };
 static_assert(std::size(kDrawLadder) <= kMaxDrawRungs);
 
-constexpr double kGlide = 0.5;          // s from one rung to the next
-constexpr double kMostOfAGlide = 0.25;  // of it, in one frame
-constexpr int kStart = 3;               // frames that compile shaders and fill the GPU
-constexpr double kDrawOver = 1.03;      // times the budget, from which a cheaper rung is taken
-constexpr double kDrawFitsUp = 0.88;    // share of the budget that a finer rung's predicted time must fit in
+constexpr double kGlide = 0.5;           // s from one rung to the next
+constexpr double kMaxGlideShare = 0.25;  // of it, in one frame
+constexpr int kStart = 3;                // frames that compile shaders and fill the GPU
+constexpr double kDrawOver = 1.03;       // times the budget, from which a cheaper rung is taken
+constexpr double kDrawFitsUp = 0.88;     // share of the budget that a finer rung's predicted time must fit in
 constexpr double kDrawBackoff = 1, kMaxDrawBackoff = 32;  // s before a climb
 constexpr double kTakenBack = 8;                          // s
-constexpr double kLeastRise = 1.02, kMostOff = 1.8;       // times the ladder's word
+constexpr double kMinRise = 1.02, kMaxOff = 1.8;          // times the ladder's word
 
 int cheapest() {
   return static_cast<int>(drawLadder().size()) - 1;
@@ -49,7 +49,7 @@ double medianOfWindow(std::array<double, DrawGovernor::kWindow> window) {
 void learnRise(DrawGovernor& governor) {
   if (!governor.climbed || governor.left_cost <= 0) return;
   const double word = wordOf(governor.rung), ratio = governor.measured_cost / governor.left_cost;
-  governor.rise[governor.rung] = std::max(kLeastRise, std::clamp(ratio, word / kMostOff, word * kMostOff));
+  governor.rise[governor.rung] = std::max(kMinRise, std::clamp(ratio, word / kMaxOff, word * kMaxOff));
   governor.left_cost = 0;
 }
 
@@ -99,7 +99,7 @@ void setDrawBudget(double seconds, DrawGovernor& governor) {
 
 void glide(double seconds, DrawGovernor& governor) {
   if (governor.budget <= 0) return;
-  const double most = std::clamp(seconds / kGlide, 0.0, kMostOfAGlide), way = governor.rung - governor.place;
+  const double most = std::clamp(seconds / kGlide, 0.0, kMaxGlideShare), way = governor.rung - governor.place;
   governor.place = std::abs(way) <= most ? governor.rung : governor.place + std::copysign(most, way);
 }
 

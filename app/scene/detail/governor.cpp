@@ -16,10 +16,10 @@ constexpr double kOver = 1.04;      // times the budget: mean of two windows fro
 constexpr double kFarOver = 1.25;   // of one window
 constexpr double kFitsDown = 0.98;  // predicted share of the budget that a coarser rung must fit in
 constexpr double kFitsUp = 0.90;    // and a finer one
-constexpr double kBackoff = 1, kMaxBackoff = 32;       // s before a climb
-constexpr double kSoon = 8;                            // s
-constexpr double kMinSteepness = 1.03, kMaxOff = 1.8;  // times the ladder's word
-constexpr double kForgetting = 0.002;                  // a window
+constexpr double kBackoff = 1, kMaxBackoff = 32;               // s before a climb
+constexpr double kSoon = 8;                                    // s
+constexpr double kMinSteepness = 1.03, kMaxLadderError = 1.8;  // times the ladder's word
+constexpr double kForgetting = 0.002;                          // a window
 
 double steepness(int rung, const Governor& governor) {
   if (rung < 0) return 1;  // nothing is finer
@@ -60,7 +60,8 @@ void learn(double present, Governor& governor) {
   if (governor.left_cost <= 0) return;
   const int below = governor.left_rung;
   const double word = ladder()[below + 1].cost / ladder()[below].cost, ratio = present / governor.left_cost;
-  governor.steepness[below] = std::max(kMinSteepness, std::clamp(ratio, word / kMaxOff, word * kMaxOff));
+  governor.steepness[below] =
+      std::max(kMinSteepness, std::clamp(ratio, word / kMaxLadderError, word * kMaxLadderError));
   governor.left_cost = 0;
 }
 

@@ -17,13 +17,13 @@ namespace app {
 
 namespace {
 
-constexpr double kFarthestMove = 100;       // m
-constexpr std::size_t kMostChosen = 20000;  // numbers in a text
+constexpr double kFarthestMove = 100;      // m
+constexpr std::size_t kMaxChosen = 20000;  // numbers in a text
 
 // The numbers of a text, none where they are more than can be or no numbers.
 std::vector<double> allNumbersOf(const std::string& text) {
   const auto blanks = static_cast<std::size_t>(std::ranges::count(text, ' '));
-  std::vector<double> numbers(std::min(blanks + 1, kMostChosen));
+  std::vector<double> numbers(std::min(blanks + 1, kMaxChosen));
   return numbersOf(text, numbers) == numbers.size() ? numbers : std::vector<double>();
 }
 

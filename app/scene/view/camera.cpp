@@ -18,8 +18,8 @@ constexpr double kNearer = 0.1;        // of the distance: and how much nearer o
 constexpr double kFrameMargin = 1.06;  // around a whole figure
 constexpr double kFullAspect = 1.0;    // narrower pictures step back
 constexpr double kFigureWidth = 0.8;   // of a view that is as wide as high: what hair and shoulders ask for
-constexpr double kLeastZoom = 0.6;     // a smaller view would show a face too small to work on
-constexpr double kLeastFree = 0.1;     // of the picture's sides: less is no room
+constexpr double kMinZoom = 0.6;       // a smaller view would show a face too small to work on
+constexpr double kMinFree = 0.1;       // of the picture's sides: less is no room
 
 // m, heights of the picture's edges about the middle of the cranium.
 struct Framing {
@@ -89,12 +89,12 @@ Vec3 headOf(const Actor& actor, const Pose& pose) {
 
 ViewPlace placeIn(const PicturePart& free, double aspect, double most) {
   const double width = free.right - free.left, height = free.bottom - free.top;
-  if (width < kLeastFree || height < kLeastFree) return {};
+  if (width < kMinFree || height < kMinFree) return {};
   // A picture that is higher than wide has stepped back: the figure fills its width.
   const double side = std::min(1.0, aspect / kFullAspect);
   const double fits = std::min({most, height / side, width * aspect / (kFigureWidth * side)});
   ViewPlace place;
-  place.zoom = std::max(fits, kLeastZoom);
+  place.zoom = std::max(fits, kMinZoom);
   place.shift = free.left + free.right - 1;
   place.rise = 1 - (free.top + free.bottom);
   // What is too high for the part is cut off below: the head stays.

@@ -54,8 +54,8 @@ TEST(Takes, FiveHairdosAreMadeAgainToTheBitAndEndWhereTheyWereRecorded) {
     // Whatever the processor, but for a take that rounding alone carries farther.
     const auto apart = app::apartOf(take.ends, once.ends), rounded = app::apartOf(once.ends, make(take, 1e-12).ends);
     ASSERT_TRUE(apart && rounded) << file;
-    const bool steady = rounded->most < app::kMostApart;
-    EXPECT_TRUE(!steady || apart->most < app::kMostApart) << file;
+    const bool steady = rounded->most < app::kMaxApart;
+    EXPECT_TRUE(!steady || apart->most < app::kMaxApart) << file;
     steadies += steady;
     EXPECT_EQ(take.edited, false) << file;
     std::printf("%.6f mm from the recorded ends, %.6f mm after a stray of 1e-12 m: ", 1e3 * apart->most,
