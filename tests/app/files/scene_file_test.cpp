@@ -260,7 +260,7 @@ TEST(Presets, GroupsThatAreNotNamedStay) {
 
 TEST(Presets, TheOneThatASceneOpensWithIsTold) {
   EXPECT_EQ(app::stem(app::loadScene(app::findFile("default.json", "", "scenes")).preset), "natural");
-  EXPECT_EQ(app::loadScene(app::findFile("curly.json", "", "scenes")).preset, "");
+  EXPECT_EQ(app::loadScene(app::findFile("crowd.json", "", "scenes")).preset, "");
 }
 
 TEST(Presets, WhatWasSavedComesBackOverAnything) {
