@@ -94,14 +94,37 @@ def sun_hat():
     mesh.write("sun_hat", "A hat with a brim", (0.62, 0.46, 0.24))
 
 
+# m that the built-in head stands off the skull's ellipsoid, by turn (30 degrees a row) and polar angle (from 40 on, 10
+# a column).
+HEAD_OFF_SKULL = [
+    [0.0019, 0.0045, 0.0071, 0.0093, 0.0105, 0.0108, 0.0109, 0.0155],
+    [0.0004, 0.0024, 0.0049, 0.0072, 0.0086, 0.0098, 0.0109, 0.0142],
+    [-0.0027, -0.0023, -0.0015, -0.0004, 0.0007, 0.0015, 0.0035, 0.0084],
+    [-0.0040, -0.0040, -0.0039, -0.0038, -0.0035, -0.0031, -0.0002, 0.0010],
+    [-0.0041, -0.0038, -0.0034, -0.0029, -0.0024, -0.0020, -0.0018, -0.0017],
+    [-0.0046, -0.0043, -0.0039, -0.0035, -0.0031, -0.0027, -0.0024, -0.0024],
+    [-0.0048, -0.0046, -0.0043, -0.0039, -0.0035, -0.0031, -0.0028, -0.0028],
+]
+
+
+def head_off_skull(turn, polar):
+    row = math.degrees(math.acos(math.cos(turn))) / 30
+    column = min(max(math.degrees(polar) / 10 - 4, 0), 6.999)
+    i, j = min(int(row), 5), int(column)
+    at = lambda i: HEAD_OFF_SKULL[i][j] * (1 - column + j) + HEAD_OFF_SKULL[i][j + 1] * (column - j)
+    return at(i) * (1 - row + i) + at(i + 1) * (row - i)
+
+
 def headband():
+    """Flat on the hair all round: its section lies along the head, and its edges are rolled in."""
     mesh = Mesh()
-    middle = lambda t: math.radians(78 - 30 * math.cos(t))
-    half = 0.014
+    middle = lambda t: math.radians(80 - 28 * math.cos(t))
+    half, thick, reach = 0.013, 0.0022, 0.094
 
     def corner(t, a):
-        x, y, z = on_head(t, middle(t), 0.013 + 0.004 * math.cos(a))
-        return (x, y + half * math.sin(a), z)
+        polar = middle(t) + half / reach * math.sin(a)
+        off = 0.0105 + thick * math.cos(a) - 0.001 * math.sin(a) ** 2
+        return on_head(t, polar, head_off_skull(t, polar) + off)
 
     mesh.sheet([[corner(t, a) for t in turns(96)] for a in turns(16)], closed_rows=True)
     mesh.write("headband", "A band about forehead and nape", (0.10, 0.16, 0.24))
