@@ -19,6 +19,12 @@ constexpr double kMaxEnclosed = 0.25;                     // of the hair, in the
 constexpr double kLaidFatness = 0.04, kLaidGap = 0.002;   // see untangle; m
 constexpr int kLaidRounds = 6;                            // of untangling
 constexpr int kRays = 400;
+constexpr int kTurns = 72, kPolars = 90;          // of directions in which a ring is looked for
+constexpr double kCrown = 0.2, kDown = 2.1;       // rad from upright, between which a ring lies; a collar is lower
+constexpr double kPassesOver = 0.03;              // m off the scalp: hair that lies over a ring
+constexpr int kPieces = 8;                        // of a segment, that are looked at one by one
+constexpr double kRise = 0.3;                     // m a m: how steeply hair comes out from under a ring
+constexpr double kPressed = 0.03, kHeld = 0.015;  // m off a ring, within which it presses hair, holds hair
 
 double distanceTo(const Attachment& attachment, const Vec3& p) {
   return attachment.part.grid.interpolate(attachment.to_scalp.inverse(Eigen::Isometry) * p);
@@ -64,6 +70,76 @@ void checkHair(const Attachment& attachment, const sim::HairMeshShape& shape) {
                "make it smaller, or move it out of the hair with \"at\"");
 }
 
+// Whether it goes round the head and leaves the crown open, as a headband does.
+bool isRing(const Attachment& attachment, const Scalp& scalp) {
+  const auto meets = [&](double turn, double polar) {
+    const Vec3 along(std::sin(polar) * std::sin(turn), std::cos(polar), std::sin(polar) * std::cos(turn));
+    return !std::isinf(meetsAlong(attachment, scalp, along, kOverHead));
+  };
+  for (int t = 0; t < kTurns; ++t) {
+    const double turn = 2 * EIGEN_PI * t / kTurns;
+    double polar = 0;
+    while (polar < kDown && !meets(turn, polar)) polar += kDown / kPolars;
+    if (polar < kCrown || polar >= kDown) return false;
+  }
+  return true;
+}
+
+// A place of a strand under a ring.
+struct UnderRing {
+  Vec3 at;
+  double room;  // m over the scalp
+};
+
+// Where a column passes under a ring, as the curve that strands take.
+std::vector<UnderRing> passesUnder(const Attachment& ring, const Scalp& scalp, std::span<const Vec3> column) {
+  std::vector<UnderRing> under;
+  for (std::size_t v = 0; v + 1 < column.size(); ++v) {
+    const Vec3 &from = column[v], &to = column[v + 1];
+    const Vec3 before = v > 0 ? column[v - 1] : Vec3(2 * from - to);
+    const Vec3 after = v + 2 < column.size() ? column[v + 2] : Vec3(2 * to - from);
+    for (int k = 0; k < kPieces; ++k) {
+      const double f = static_cast<double>(k) / kPieces;
+      const Vec3 bent = 2 * before - 5 * from + 4 * to - after, twisted = 3 * (from - to) + after - before;
+      const Vec3 at = from + 0.5 * f * (to - before + f * (bent + f * twisted));  // Catmull-Rom
+      const Vec3 out = at - scalp.center;
+      const double floor = scalp.radiusAt(out);
+      if (out.norm() > floor + kPassesOver) continue;
+      const double meets = meetsAlong(ring, scalp, out, kOverHead);
+      if (!std::isinf(meets)) under.push_back({at, std::max(kMinRoom, meets - kUnderside - floor)});
+    }
+  }
+  return under;
+}
+
+// The vertices that a ring holds, moved to lie under it; hair before and behind rises to where it was. Of tied hair
+// what comes before the tie.
+std::vector<int> layUnderRing(const Attachment& ring, const Scalp& scalp, std::span<const int> tied,
+                              sim::HairMeshShape& shape) {
+  std::vector<int> held;
+  for (int c = 0; c < shape.columnCount(); ++c) {
+    const int first = shape.column_first[static_cast<std::size_t>(c)];
+    const auto tie = std::ranges::find_if(tied, [&](int v) { return v >= first && v < first + shape.columnLength(c); });
+    const int end = tie == tied.end() ? first + shape.columnLength(c) : *tie;
+    const std::span column(shape.positions.data() + first, static_cast<std::size_t>(end - first));
+    const std::vector<UnderRing> passes = passesUnder(ring, scalp, column);
+    for (std::size_t v = 1; v < column.size(); ++v) {
+      double room = INFINITY, apart = INFINITY;
+      for (const UnderRing& pass : passes) {
+        const double way = (column[v] - pass.at).norm();
+        apart = std::min(apart, way);
+        if (way < kPressed) room = std::min(room, pass.room + kRise * way);
+      }
+      if (std::isinf(room)) continue;
+      const Vec3 out = column[v] - scalp.center;
+      const double floor = scalp.radiusAt(out), height = std::max(0.0, out.norm() - floor);
+      column[v] = scalp.center + (floor + room * (1 - std::exp(-height / room))) / out.norm() * out;
+      if (apart < kHeld) held.push_back(first + static_cast<int>(v));
+    }
+  }
+  return held;
+}
+
 // The vertices under one attachment, moved to lie there.
 std::vector<int> layUnderOne(const Attachment& attachment, const Scalp& scalp, sim::HairMeshShape& shape) {
   std::vector<int> under;
@@ -106,11 +182,12 @@ std::vector<const Attachment*> attach(const CharacterSpec& spec, const LoadedBod
 }
 
 std::vector<int> layUnder(std::span<const Attachment* const> attachments, const Scalp& scalp, const BodyDistance& body,
-                          sim::HairMeshShape& shape) {
+                          std::span<const int> tied, sim::HairMeshShape& shape) {
   std::vector<int> under;
   for (const Attachment* attachment : attachments) {
     checkRoom(*attachment, scalp, shape);
-    const std::vector<int> more = layUnderOne(*attachment, scalp, shape);
+    const std::vector<int> more = isRing(*attachment, scalp) ? layUnderRing(*attachment, scalp, tied, shape)
+                                                             : layUnderOne(*attachment, scalp, shape);
     under.insert(under.end(), more.begin(), more.end());
   }
   if (!under.empty()) {

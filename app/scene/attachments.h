@@ -16,11 +16,13 @@ namespace app {
 // The attachments of a character on its body, each read on first use. Throws InputError.
 std::vector<const Attachment*> attach(const CharacterSpec& spec, const LoadedBody& body, AssetCache& asset_cache);
 
-// Lays the hair that is rooted under an attachment of the head beneath it: each vertex nearer to the scalp, in
-// proportion to how far it stands off. Returns the vertices that lie under it, roots left out. Throws InputError
-// where the attachment encloses the head, its roots or the hair.
+// Lays the hair that is rooted under an attachment of the head beneath it, and under one that goes round the head, as a
+// headband, all hair that passes it: each vertex nearer to the scalp, in proportion to how far it stands off. `tied`:
+// vertices in the rings of ties, beyond which hair passes over a headband. Returns the vertices that lie under an
+// attachment, roots left out, each once and ascending. Throws InputError where the attachment encloses the head, its
+// roots or the hair.
 std::vector<int> layUnder(std::span<const Attachment* const> attachments, const Scalp& scalp, const BodyDistance& body,
-                          sim::HairMeshShape& shape);
+                          std::span<const int> tied, sim::HairMeshShape& shape);
 
 // Signed distances of a pose, with velocities from the previous one over dt.
 void poseAttachments(double dt, Actor& actor);

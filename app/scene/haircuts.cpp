@@ -110,7 +110,7 @@ void dressHair(const CharacterSpec& spec, const LoadedBody& body, std::span<cons
   const Scalp& scalp = body.character.scalp;
   if (!spec.ties.empty()) applyTies(spec, body, shape, haircut, rings);
   haircut.painted = shape.positions;
-  haircut.covered = layUnder(worn, scalp, body.distance, shape);
+  haircut.covered = layUnder(worn, scalp, body.distance, haircut.tied, shape);
   if (!spec.ties.empty() || !haircut.covered.empty()) haircut.unpainted.clear();
   haircut.mesh = sim::buildHairMesh(std::move(shape));
 }
@@ -195,7 +195,9 @@ std::uint64_t freshId() {
 void markCovered(const Haircut& haircut, std::vector<render::HairFace>& faces) {
   for (render::HairFace& face : faces) {
     face.covered = std::ranges::any_of(face.first_vertex, [&](int root) {
-      return root >= 0 && std::ranges::binary_search(haircut.covered, root + 1);
+      if (root < 0) return false;
+      const auto next = std::ranges::upper_bound(haircut.covered, root);
+      return next != haircut.covered.end() && *next < root + face.layers;
     });
   }
 }

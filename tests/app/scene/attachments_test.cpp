@@ -160,6 +160,60 @@ TEST(Attachments, TheFilesMaterialGivesTheColourUnlessTheSceneDoes) {
   EXPECT_FALSE(back.characters[0].attachments[0].color.has_value());
 }
 
+// Of the strands' points where a headband is, the share that lies over it.
+double shareOver(const app::Demo& demo) {
+  const app::Actor& actor = demo.actors[0];
+  const app::Scalp& scalp = actor.body->character.scalp;
+  const app::Rigid to_scalp = app::scalpToWorld(actor.body->character, actor.shown_pose).inverse();
+  const app::Attachment& band = *actor.worn[0].mesh;
+  const app::Rigid to_joint = band.to_scalp.inverse(Eigen::Isometry);
+  app::StrandExport strands(demo, app::ExportWhat::kStrands, 0);
+  const app::Groom& groom = strands.groom(demo, 1);
+  double at_band = 0, over = 0;
+  for (std::size_t s = 0; s < groom.strandCount(); s += 3) {
+    for (const Eigen::Vector3f& point : groom.strand(s)) {
+      const app::Vec3 place = to_scalp * point.cast<double>(), out = place - scalp.center;
+      const double meets = app::meetsAlong(band, scalp, out, 0.04);
+      if (std::isinf(meets)) continue;
+      at_band += 1;
+      over += out.norm() > meets && band.part.grid.interpolate(to_joint * place) > 0;
+    }
+  }
+  return over / at_band;
+}
+
+// With the hair of the crown left to lie over it, and that of the nape to fall through it, 0.04 to 0.07.
+TEST(Attachments, HairPassesUnderAHeadband) {
+  for (const app::Style style : {app::Style::kLong, app::Style::kShoulder}) {
+    app::Scene scene = wearing("headband.obj", style, "head_shake.bvh");
+    scene.characters[0].resolution = app::Resolution::kMedium;
+    app::Demo demo = app::openScene(std::move(scene), 1.5);
+    app::advanceFrame(demo, 0, {});
+    EXPECT_LT(shareOver(demo), 0.01) << app::styleName(style) << " at rest";
+    for (int frame = 0; frame < 60; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
+    EXPECT_LT(shareOver(demo), 0.02) << app::styleName(style) << " in motion";
+  }
+}
+
+// Every way out of the head's middle that meets it does so within 11 mm of the head; none in it.
+TEST(Attachments, AHeadbandLiesAgainstTheHeadAllRound) {
+  const app::Demo demo = app::openScene(wearing("headband.obj"), 1.5);
+  const app::Scalp& scalp = demo.actors[0].body->character.scalp;
+  for (int turn = 0; turn < 360; turn += 10) {
+    int met = 0;
+    for (int polar = 30; polar < 130; polar += 2) {
+      const double t = turn * EIGEN_PI / 180, p = polar * EIGEN_PI / 180;
+      const app::Vec3 along(std::sin(p) * std::sin(t), std::cos(p), std::sin(p) * std::cos(t));
+      const double meets = app::meetsAlong(*demo.actors[0].worn[0].mesh, scalp, along, 0.04);
+      if (std::isinf(meets)) continue;
+      ++met;
+      EXPECT_LT(meets, scalp.radiusAt(along) + 0.011) << turn << " " << polar;
+      EXPECT_GT(meets, scalp.radiusAt(along) + 0.006) << turn << " " << polar;
+    }
+    EXPECT_GE(met, 4) << turn;
+  }
+}
+
 // Strands that come out of a hat's dome: within 55 degrees of the crown.
 int piercing(const app::Demo& demo) {
   const app::Actor& actor = demo.actors[0];
