@@ -210,6 +210,18 @@ class Library(unittest.TestCase):
             hair.step(ellipsoids=[(1, 1, 1)])
         with self.assertRaisesRegex(TypeError, "column_lengths"):
             hairmesh.Mesh(self.mesh.rest, np.diff(self.mesh.column_first) + 0.5, self.mesh.faces)
+        lengths = np.diff(self.mesh.column_first)
+        for faces, error, words in (([[0, 1, 2]], ValueError, r"of shape \(1, 3\) .*; give whole numbers of shape \(n, 4\)"),
+                                    ([0, 1, 2, 3], ValueError, r"of shape \(4,\) .*; give .* \(n, 4\)"),
+                                    ([[0, 1, 2, -1], [0, 1]], TypeError, "a list of unlike rows; give whole numbers"),
+                                    ([["a"] * 4], TypeError, "; give whole numbers")):
+            with self.assertRaisesRegex(error, "faces is .*" + words):
+                hairmesh.Mesh(self.mesh.rest, lengths, faces)
+        for words in ({"style": None}, {"style": 3}, {"resolution": b"low"}):
+            with self.assertRaisesRegex(TypeError, f"{next(iter(words))} is a .*; give a str"):
+                hairmesh.Mesh.style(**words)
+        with self.assertRaisesRegex(TypeError, "text is a NoneType; give a str"):
+            hairmesh.Mesh.from_text(None)
         with self.assertRaisesRegex(TypeError, "state is a NoneType; give the bytes"):
             hair.restore(None)
         with self.assertRaisesRegex(ValueError, r"roots is an array of shape \(3,\) and dtype int64; .*\(n, 3\).*float32"):

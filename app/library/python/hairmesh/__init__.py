@@ -84,7 +84,10 @@ def _whole(value, name):
 
 def _whole_array(values, name):
     """Whole numbers for the library, side by side; NumPy would cut them down to 32 bits."""
-    array = np.asarray(values)
+    try:
+        array = np.asarray(values)
+    except ValueError:
+        raise TypeError(f"{name} is {_shown(values)}; give whole numbers") from None
     if array.size == 0:
         return np.empty(array.shape, np.int32)
     if array.dtype.kind not in "iu":
@@ -99,6 +102,12 @@ def _handle(value, kind, name):
     if not isinstance(value, kind):
         raise TypeError(f"{name} is {_shown(value)}; give a hairmesh.{kind.__name__}")
     return value._c
+
+
+def _text(value, name):
+    if not isinstance(value, str):
+        raise TypeError(f"{name} is {_shown(value)}; give a str")
+    return value.encode()
 
 
 class Ellipsoid:
@@ -188,7 +197,9 @@ class Mesh(_Owner):
         settings = _c.MeshSettings()
         _c.lib.hm_default_mesh_settings(settings)
         lengths = _whole_array(column_lengths, "column_lengths").reshape(-1)
-        corners = _whole_array(faces, "faces").reshape(-1, 4)
+        corners = _whole_array(faces, "faces")
+        if corners.ndim != 2 or corners.shape[1] != 4:
+            raise ValueError(f"faces is {_shown(faces)}; give whole numbers of shape (n, 4), the fourth -1 in a triangle")
         settings.positions, kept = _array(positions, 3, "positions")
         settings.column_lengths, settings.column_count = lengths.ctypes.data, len(lengths)
         settings.faces, settings.face_count = corners.ctypes.data, len(corners)
@@ -200,7 +211,7 @@ class Mesh(_Owner):
     @classmethod
     def from_text(cls, text, name="hair mesh", reverse_faces=False):
         """Reads the text of an OBJ file: one group a layer, layer_0 the scalp."""
-        text = text.encode() if isinstance(text, str) else text
+        text = text if isinstance(text, bytes) else _text(text, "text")
         mesh = cls.__new__(cls)
         handle = _c.Mesh()
         _c.lib.hm_mesh_create_from_text(text, len(text), str(name).encode(), bool(reverse_faces), handle)
@@ -219,7 +230,7 @@ class Mesh(_Owner):
         ellipsoid about the origin, Mesh.head_radii(head_height) for steps' Ellipsoid."""
         mesh = cls.__new__(cls)
         handle = _c.Mesh()
-        _c.lib.hm_mesh_create_style(style.encode(), resolution.encode(), head_height, handle)
+        _c.lib.hm_mesh_create_style(_text(style, "style"), _text(resolution, "resolution"), head_height, handle)
         mesh._take(handle)
         return mesh
 
