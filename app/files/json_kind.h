@@ -18,7 +18,8 @@ inline constexpr std::array<std::string_view, 8> kSceneKeys{"name", "characters"
 inline constexpr std::array<std::string_view, 19> kCharacterKeys{
     "motion",  "parts",       "clip", "style", "resolution", "hair", "reverse_faces", "fit",  "mends", "position",
     "heading", "clip_offset", "loop", "look",  "pins",       "ties", "attachments",   "maps", "curves"};
-inline constexpr std::array<std::string_view, 4> kProjectKeys{kProjectKey, "scene", "binary", "checksum"};
+inline constexpr std::string_view kAutosaveKey = "autosave_of";  // of projects that were kept by themselves alone
+inline constexpr std::array<std::string_view, 5> kProjectKeys{kProjectKey, "scene", "binary", "checksum", kAutosaveKey};
 inline constexpr std::array<std::string_view, 5> kPresetKeys{"name", "sim", "hair", "light", "view"};
 
 // By the keys at its top, misspelt ones too; a file that says nothing is a preset. Throws InputError for what is none

@@ -419,9 +419,7 @@ int endRun(const Options& options, const RunReport& run, int frames, Tape& tape,
 
 void keepProject(const Demo& demo, Autosave& autosave, UiState& ui) {
   if (!ui.to_forget.empty()) autosave.forget(std::exchange(ui.to_forget, ""));
-  // Only where it could be opened.
-  if (!ui.to_go_on_from.empty() && demo.scene.file == ui.to_go_on_from)
-    autosave.replace(std::exchange(ui.to_go_on_from, ""));
+  if (!ui.gone_on_from.empty()) autosave.replace(std::exchange(ui.gone_on_from, ""));
   autosave.keep(now(), demo);
 }
 

@@ -405,7 +405,7 @@ constexpr Action kActions[] = {
     {Ask::kSaveProject,
      [](const Request& request, Demo& demo) {
        saveProject(request.text, demo, stem(request.text));
-       demo.scene.name = stem(request.text);
+       demo.scene.file = request.text, demo.scene.name = stem(request.text);
        showMessage("saved " + request.text, demo);
      }},
     {Ask::kOpenProject,

@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr double kKeepEvery = 20;  // s
-const std::string kKey(kProjectKey);
+const std::string kKey(kProjectKey), kAutosaveOf(kAutosaveKey);
 
 std::string hex(std::uint64_t value) {
   char text[17];
@@ -59,14 +59,21 @@ sim::Bytes binaryOf(const Demo& demo) {
   return bytes;
 }
 
+// What the file holds; nothing where it cannot be read.
+json contentOf(const std::string& file) {
+  try {
+    json content = parseJson(readText(file), file);
+    return content.is_object() ? content : json::object();
+  } catch (const std::exception&) {
+    return json::object();
+  }
+}
+
 // The binary that a project names; empty where it is none.
 std::string binaryNamedBy(const std::string& file) {
-  try {
-    const json project = parseJson(readText(file), file);
-    return project.is_object() ? project.value("binary", "") : "";
-  } catch (const std::exception&) {
-    return "";
-  }
+  const json content = contentOf(file);
+  const auto named = content.find("binary");
+  return named != content.end() && named->is_string() ? named->get<std::string>() : "";
 }
 
 std::string besides(const std::string& file, const std::string& name) {
@@ -95,24 +102,26 @@ void takeShape(sim::ByteReader& from, double version, const std::string& file, i
 
 }  // namespace
 
-void saveProject(const std::string& file, const Demo& demo, const std::string& scene_name) {
+namespace {
+
+// `more`: further keys at its top.
+void writeProject(const std::string& file, const Demo& demo, const std::string& scene_name, const json& more) {
   const sim::Bytes binary = binaryOf(demo);
   const std::string checksum = hex(sim::fingerprint(binary));
   const std::string name = fs::path(file).stem().string() + "-" + checksum + ".bin";
   const std::string before = binaryNamedBy(file);
   Scene scene = presentScene(demo);
   if (!scene_name.empty()) scene.name = scene_name;
-  const json project = {{kKey, kProjectVersion},
-                        {"scene", parseJson(writeScene(movable(std::move(scene), file)), file)},
-                        {"binary", name},
-                        {"checksum", checksum}};
+  json project = {{kKey, kProjectVersion},
+                  {"scene", parseJson(writeScene(movable(std::move(scene), file)), file)},
+                  {"binary", name},
+                  {"checksum", checksum}};
+  project.update(more);
   writeFile(besides(file, name), textOf(binary));
   writeFile(file, project.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
   std::error_code ignored;
   if (!before.empty() && before != name) fs::remove(besides(file, before), ignored);
 }
-
-namespace {
 
 json parseProject(const std::string& file) {
   json parsed = parseJson(readText(file), file);
@@ -126,12 +135,22 @@ json parseProject(const std::string& file) {
                  "open it with the program that saved it, or a newer one");
   expectTopKeys(place, JsonKind::kProject);
   for (const std::string_view key : kProjectKeys) {
-    if (!place.has(std::string(key))) place.refuse("lacks \"" + std::string(key) + "\"", "save the project anew");
+    if (key != kAutosaveKey && !place.has(std::string(key)))
+      place.refuse("lacks \"" + std::string(key) + "\"", "save the project anew");
   }
   return parsed;
 }
 
+// By what it says of itself: a person may save under any name.
+bool isAutosave(const std::string& file) {
+  return contentOf(file).contains(kAutosaveOf);
+}
+
 }  // namespace
+
+void saveProject(const std::string& file, const Demo& demo, const std::string& scene_name) {
+  writeProject(file, demo, scene_name, json::object());
+}
 
 Scene projectScene(const std::string& file) {
   return readScene(parseProject(file).at("scene").dump(), file);
@@ -152,7 +171,7 @@ Demo readProject(const std::string& file, Scene scene, bool keep_view, double as
   std::vector<char> state;
   sim::readBytes(from, state);
   restoreDemoState(std::string(state.begin(), state.end()), binary_file, keep_view, fresh);
-  fresh.scene.file = file;
+  fresh.scene.file = place.has(kAutosaveOf) ? place.at(kAutosaveOf).text() : file;
   return fresh;
 }
 
@@ -181,7 +200,8 @@ void Autosave::keep(double now, const Demo& demo) {
   try {
     std::error_code ignored;
     fs::create_directories(folder_, ignored);
-    saveProject(file_, demo);
+    const std::string& scene = demo.scene.file;
+    writeProject(file_, demo, "", {{kAutosaveOf, scene.empty() ? "" : fs::absolute(scene).string()}});
     kept_ = history.gesture ? "" : edits;
     if (!replaced_.empty()) forget(std::exchange(replaced_, ""));
   } catch (const std::exception&) {
@@ -194,12 +214,14 @@ std::string Autosave::left() const {
     if (!entry.name.starts_with("autosave-")) continue;
     const long process = std::strtol(entry.name.c_str() + 9, nullptr, 10);
     const bool runs = process > 0 && kill(static_cast<pid_t>(process), 0) == 0;
-    if (!runs) return (fs::path(folder_) / entry.name).string();
+    const std::string file = (fs::path(folder_) / entry.name).string();
+    if (!runs && isAutosave(file)) return file;
   }
   return "";
 }
 
 void Autosave::forget(const std::string& file) const {
+  if (!isAutosave(file)) return;
   std::error_code ignored;
   if (const std::string binary = binaryNamedBy(file); !binary.empty()) fs::remove(besides(file, binary), ignored);
   fs::remove(file, ignored);

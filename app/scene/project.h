@@ -5,7 +5,7 @@
 // A project is a JSON file: {"hairmesh-project": 2, "scene": as scene_file.h says, "binary": name, "checksum": text}.
 // The binary beside it holds reshaped rest positions, from version 2 on the structure of hair meshes that were changed,
 // and the state (demo_state.h); it is NAME-CHECKSUM.bin, so that a project that cannot be saved leaves the one that was
-// there with its own.
+// there with its own. What is kept of a run by itself has "autosave_of" besides: the file of its scene, or "".
 #pragma once
 
 #include <string>
@@ -45,7 +45,7 @@ class Autosave {
   void keep(double now, const Demo& demo);
   // The project of a run that has ended without leaving, of a process that is gone; empty: there is none.
   std::string left() const;
-  // Forgets that one.
+  // Forgets that one; a file that a person has saved in its place stays.
   void forget(const std::string& file) const;
   // Forgets that one as soon as this run, which goes on from it, is kept itself or ends.
   void replace(const std::string& file) { replaced_ = file; }

@@ -113,8 +113,9 @@ struct UiState {
   std::string scoped_preset, preset_scope;  // the preset under the pointer, and what it changes, in words
   std::string to_replace;                   // a file that is there already and is written on the second press
   FileBrowser browser;
-  // Project that an earlier run has left; one that a person does not want; one that this run goes on from.
-  std::string offered, to_forget, to_go_on_from;
+  // Project that an earlier run has left; one that a person does not want; one that this run is to go on from; and
+  // does.
+  std::string offered, to_forget, to_go_on_from, gone_on_from;
   long scrubbed = -1;  // frame that the timeline is dragged to
   BrushState brush;
   SelectState select;

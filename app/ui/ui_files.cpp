@@ -223,9 +223,14 @@ void browseToSave(const Demo& demo, UiState& ui) {
   const bool named = !browser.last.empty() && stem(browser.last) == demo.scene.name;
   const fs::path file(named ? browser.last : demo.scene.file);
   const bool own = file.string().starts_with(dataPath("assets"));  // the program's are not written over by two presses
-  if (!file.empty() && !own) browser.folder = file.has_parent_path() ? file.parent_path().string() : ".";
+  std::error_code ignored;
+  if (!file.empty() && !own) {
+    browser.folder = file.has_parent_path() ? file.parent_path().string() : ".";
+  } else if (browser.folder == fs::weakly_canonical(ui.kept_folder, ignored)) {
+    browser.folder.clear();  // it is for what is kept by itself
+  }
   browseFor(BrowseFor::kSaveScene, ui);
-  if (!file.empty()) setName(own ? file.stem().string() : file.filename().string(), browser);
+  setName(file.empty() ? demo.scene.name : own ? file.stem().string() : file.filename().string(), browser);
 }
 
 void openFile(const std::string& file, Demo& demo, UiState& ui) {
@@ -236,6 +241,7 @@ void openFile(const std::string& file, Demo& demo, UiState& ui) {
 
 void noteFiles(Demo& demo, UiState& ui) {
   for (const FileEnd& end : std::exchange(demo.file_ends, {})) {
+    if (end.file == ui.to_go_on_from) ui.gone_on_from = end.done ? end.file : "", ui.to_go_on_from.clear();
     if (std::erase(ui.asked, end.file) == 0) continue;
     (end.done ? noteRecent : forgetRecent)(end.file, ui.kept_folder, ui.recent);
   }

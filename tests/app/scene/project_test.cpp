@@ -198,6 +198,47 @@ TEST(Project, ARunThatEndsWithoutLeavingIsOfferedAgain) {
   EXPECT_FALSE(std::filesystem::exists(folder + "/autosave-" + std::to_string(getpid()) + ".json"));
 }
 
+// The project that a run leaves when it crashes. `scene`: the file that it was opened with; empty: none.
+std::string leftBy(const std::string& folder, const std::string& scene, app::Demo& demo) {
+  demo.scene.file = scene;
+  const std::string left = folder + "/autosave-99999999.json";
+  app::Autosave autosave(folder + "/run");
+  autosave.keep(100, demo);
+  std::filesystem::copy(folder + "/run", folder);
+  std::filesystem::rename(folder + "/autosave-" + std::to_string(getpid()) + ".json", left);
+  return left;
+}
+
+TEST(Project, OneThatWasKeptByItselfIsOfTheSceneThatItWasKeptOf) {
+  for (const std::string& scene : {std::string("/of/mine.json"), std::string("mine.json"), std::string()}) {
+    app::Demo demo = brushedDemo(5);
+    demo.scene.name = "mine";
+    const std::string left = leftBy(test::freshFolder("project_autosave_of"), scene, demo);
+    app::Demo other = app::openScene(smallScene(), 1.5);
+    app::openProject(left, other);
+    EXPECT_EQ(other.scene.file, scene.empty() ? "" : std::filesystem::absolute(scene).string());
+    EXPECT_EQ(other.scene.name, "mine");
+  }
+}
+
+TEST(Project, WhatAPersonSavesAmongWhatIsKeptIsNeitherOfferedNorForgotten) {
+  const std::string folder = test::freshFolder("project_autosave_own");
+  app::Demo demo = brushedDemo(5);
+  const std::string left = leftBy(folder, "mine.json", demo);
+  {
+    app::Autosave autosave(folder);
+    ASSERT_EQ(autosave.left(), left);
+    autosave.replace(left);
+    app::saveProject(left, demo);
+    EXPECT_EQ(autosave.left(), "");
+    autosave.forget(left);
+  }
+  app::Demo other = app::openScene(smallScene(), 1.5);
+  app::openProject(left, other);
+  EXPECT_EQ(other.scene.file, left);
+  EXPECT_EQ(app::stateHash(other), app::stateHash(demo));
+}
+
 TEST(Project, WhatIsKeptFollowsEveryStepButNoneThatIsStillLoading) {
   const std::string folder = test::freshFolder("project_autosave_steps");
   app::Demo demo = brushedDemo(5);

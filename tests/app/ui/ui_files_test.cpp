@@ -8,7 +8,9 @@
 #include <future>
 
 #include "app/files/data_path.h"
+#include "app/scene/project.h"
 #include "app/ui/input_queue.h"
+#include "app/ui/ui_panels.h"
 #include "tests/app/ui/panels.h"
 #include "tests/run_program.h"
 
@@ -164,6 +166,36 @@ TEST_F(Panels, ASceneIsSavedOverItselfByTheKeyboard) {
   ASSERT_NE(save, nullptr);
   EXPECT_EQ(save->text, file);
   EXPECT_EQ(find("file_take"), nullptr);
+}
+
+// The folder of what is kept by itself is one that the offer of an earlier run, or a person, has come to.
+TEST_F(Panels, WhatIsKeptByItselfIsNoPlaceToSaveTo) {
+  ui_.kept_folder = ui_.browser.folder = test::freshFolder("ui_kept");
+  demo_.scene.name = "mine";
+  for (const std::string& scene : {app::dataPath("assets/scenes/default.json"), std::string()}) {
+    demo_.scene.file = scene;
+    ui_.browser.folder = ui_.kept_folder;
+    app::browseToSave(demo_, ui_);
+    EXPECT_TRUE(std::filesystem::equivalent(ui_.browser.folder, "."));
+    EXPECT_STREQ(ui_.browser.name.data(), scene.empty() ? "mine" : "default");
+  }
+  apply({{Ask::kSaveScene, "", ui_.kept_folder + "/mine.json"}});
+  app::browseToSave(demo_, ui_);
+  EXPECT_EQ(ui_.browser.folder, ui_.kept_folder) << "a person has saved it there";
+}
+
+// Opened by the offer: what it has left is forgotten once this run is kept itself, a refused one stays.
+TEST_F(Panels, ARunGoesOnFromAnOfferedProjectOnceItIsOpen) {
+  const std::string folder = test::freshFolder("ui_offer"), file = folder + "/a.json";
+  app::saveProject(file, demo_);
+  for (const std::string& offered : {folder + "/none.json", file}) {
+    ui_.offered = offered;
+    frame(), frame();
+    apply(click("offer_open"));
+    EXPECT_EQ(ui_.gone_on_from, offered == file ? file : "");
+    EXPECT_TRUE(ui_.to_go_on_from.empty());
+    demo_.message.clear();
+  }
 }
 
 // A panorama of two rows: above brighter than below.
