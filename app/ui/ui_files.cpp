@@ -189,8 +189,9 @@ void nameRow(Demo& demo, UiState& ui, std::string chosen) {
   const float button = 74 * ui.text_scale;
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - 2 * button - 10);
   if (std::exchange(browser.opened, false)) ImGui::SetKeyboardFocusHere();
+  constexpr ImGuiInputTextFlags kFlags = ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll;
   const bool entered = ImGui::InputTextWithHint("##file_name", "name or path, then Enter", browser.name.data(),
-                                                browser.name.size(), ImGuiInputTextFlags_EnterReturnsTrue);
+                                                browser.name.size(), kFlags);
   noteItem("file_name", ui);
   ImGui::SameLine(0, 5);
   const bool pressed = ImGui::Button(replaces ? "Replace" : purposeOf(browser.what).button, {button, 0});

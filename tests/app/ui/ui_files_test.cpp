@@ -168,6 +168,20 @@ TEST_F(Panels, ASceneIsSavedOverItselfByTheKeyboard) {
   EXPECT_EQ(find("file_take"), nullptr);
 }
 
+TEST_F(Panels, ANameThatIsOfferedIsTypedOverAtEveryOpening) {
+  demo_.scene.name = "other";
+  demo_.scene.file = test::freshFolder("ui_name_again") + "/other.json";
+  for (const int key : {'S', 'S', 'O', 'S'}) {
+    app::pressKey(key, demo_, ui_, app::kControl);
+    for (int k = 0; k < 3; ++k) frame();
+    for (const char letter : std::string("new")) ImGui::GetIO().AddInputCharacter(static_cast<unsigned>(letter));
+    frame();
+    EXPECT_STREQ(ui_.browser.name.data(), "new");
+    app::pressKey(app::kKeyEscape, demo_, ui_);
+    for (int k = 0; k < 3; ++k) frame();
+  }
+}
+
 // The folder of what is kept by itself is one that the offer of an earlier run, or a person, has come to.
 TEST_F(Panels, WhatIsKeptByItselfIsNoPlaceToSaveTo) {
   ui_.kept_folder = ui_.browser.folder = test::freshFolder("ui_kept");
