@@ -4,6 +4,7 @@
 #include <imgui/imgui_internal.h>
 
 #include <algorithm>
+#include <cfloat>
 #include <utility>
 
 #include "app/files/data_path.h"
@@ -94,7 +95,7 @@ bool filesBeside(const UiState& ui) {
 }
 
 void transportRow(Demo& demo, UiState& ui) {
-  const auto next = [] { ImGui::SameLine(0, 4); };
+  const auto next = [&ui] { ImGui::SameLine(0, 4 * ui.text_scale); };
   if (iconButton(demo.paused ? Icon::kPlay : Icon::kPause, "pause", demo.paused ? "Go on (Space)" : "Pause (Space)",
                  demo.paused, ui)) {
     postRequest(demo, {Ask::kPause, "", "", demo.paused ? 0.0 : 1.0});
@@ -273,12 +274,14 @@ void timings(Demo& demo, UiState& ui) {
   const float margin = kMargin * ui.text_scale;
   // Panels cover neither one another nor the face: without room beside the sidebar this one is in the Debug tab, and in
   // a narrow window it is left out until the panels are unfolded.
-  const float room = timingsRoom(ui);
+  const float room = timingsRoom(ui), history = historyLeast(ui), height = ImGui::GetIO().DisplaySize.y;
+  const float below = history > 0 ? history : timelineHeight(demo, ui, takenLeft(ui));
   ui.timings_bottom = 0;
   ui.timings_in_tab = !timingsBeside(ui);
   if (ui.timings_in_tab || folded(ui)) return;
   ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x - margin, margin}, ImGuiCond_Always, {1, 0});
   ImGui::SetNextWindowSize({kTimingsWidth * ui.text_scale, 0});
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {FLT_MAX, height - 2 * margin - below});  // then it scrolls
   ImGui::SetNextWindowCollapsed(room < kAmpleWidth * ui.text_scale, ImGuiCond_FirstUseEver);
   const ImGuiWindowFlags flags =
       ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_AlwaysAutoResize;
@@ -296,15 +299,17 @@ std::string messageText(const Demo& demo) {
   return demo.message_is_fault ? said + "\n" + loading : loading;
 }
 
-// Where notices stand: in the middle of what sidebar and history leave free, above the history where that is too narrow
-// to read, and above what else lies at the bottom. `below`: the pixels that this takes.
+// Where notices stand: in the middle of what sidebar, timings and history leave free, above the history where that is
+// too narrow to read, and above what else lies at the bottom. `below`: the pixels that this takes.
 NoticePlace noticePlace(const UiState& ui, float below) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const float margin = kMargin * ui.text_scale;
   const bool beside = size.x - takenLeft(ui) - ui.history_width > (kMinMessageWidth + 2 * kMargin) * ui.text_scale;
   if (!beside) below = std::max(below, ui.history_height);
-  const float left = takenLeft(ui) + margin;
-  return {left, size.x - left - (beside ? ui.history_width : 0) - margin, size.y - 2 * margin - below};
+  const bool timed = ui.timings_bottom > 0 && !ui.timings_folded;
+  const float left = takenLeft(ui) + margin, timings = timed ? kTimingsWidth * ui.text_scale + margin : 0;
+  const float right = std::max(timings, beside ? ui.history_width : 0);
+  return {left, size.x - left - right - margin, size.y - 2 * margin - below};
 }
 
 // Takes the height of the message off the place.

@@ -46,9 +46,14 @@ void momentLines(Demo& demo, UiState& ui) {
 
 }  // namespace
 
+float historyLeast(const UiState& ui) {
+  const bool shown = ui.history && ui.visible && !ui.history_in_sidebar;
+  return shown ? (kMinHeight + kHistoryMargin) * ui.text_scale : 0;
+}
+
 void historyPanel(Demo& demo, UiState& ui) {
   ui.history_width = ui.history_height = 0;
-  if (!ui.history || !ui.visible || ui.history_in_sidebar) return;
+  if (historyLeast(ui) == 0) return;
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const float scale = ui.text_scale, margin = kHistoryMargin * scale;
   const float width = std::min(kHistoryWidth * scale, size.x - 2 * margin);

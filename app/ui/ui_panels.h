@@ -57,6 +57,8 @@ void compareLine(Demo& demo, UiState& ui);
 
 // The steps that can be undone and done again, by name; a press goes there.
 void historyPanel(Demo& demo, UiState& ui);
+// Pixels of its least height, with its margin; 0: it is not shown.
+float historyLeast(const UiState& ui);
 // The same within the sidebar.
 void historyList(Demo& demo, UiState& ui);
 

@@ -131,8 +131,8 @@ TEST_F(Notices, EscapeClosesWhatIsOpenAndLeavesWhileItsQuestionStands) {
 TEST_F(Notices, NoneCoversWhatCanBePressed) {
   ui_.offered = "autosave-1.json";
   demo_.timeline.on = true;
-  for (const ImVec2 size :
-       {ImVec2(1280, 720), ImVec2(900, 600), ImVec2(800, 600), ImVec2(640, 480), ImVec2(480, 400)}) {
+  for (const ImVec2 size : {ImVec2(1280, 720), ImVec2(1100, 480), ImVec2(1730, 333), ImVec2(900, 600), ImVec2(800, 600),
+                            ImVec2(640, 480), ImVec2(480, 400)}) {
     for (const int state : {0, 1, 2, 3}) {
       ImGui::GetIO().DisplaySize = size;
       ui_.unfolded = state & 1;
@@ -150,6 +150,43 @@ TEST_F(Notices, NoneCoversWhatCanBePressed) {
         }
       }
     }
+  }
+}
+
+// Wide enough for all panels and too low for the timings' whole length.
+TEST_F(Notices, PanelsStandBesideOneAnotherInLowWindows) {
+  demo_.timeline.on = true;
+  for (const ImVec2 size : {ImVec2(1300, 800), ImVec2(1100, 480), ImVec2(1730, 333), ImVec2(1280, 300)}) {
+    for (const bool history : {false, true}) {
+      ImGui::GetIO().DisplaySize = size;
+      ui_.history = history;
+      for (int k = 0; k < 4; ++k) frame();
+      EXPECT_NE(find("stage_bar"), nullptr) << size.x;
+      for (const char* name : {"sidebar", "timeline", "Timings", "History"}) {
+        const ImGuiWindow* one = ImGui::FindWindowByName(name);
+        if (!one || !one->Active) continue;
+        EXPECT_TRUE(one->Rect().Min.y >= 0 && one->Rect().Max.y <= size.y) << name << size.x << history;
+        for (const char* other_name : {"sidebar", "timeline", "Timings", "History"}) {
+          const ImGuiWindow* other = ImGui::FindWindowByName(other_name);
+          if (!other || other == one || !other->Active) continue;
+          EXPECT_FALSE(one->Rect().Overlaps(other->Rect())) << name << " over " << other_name << size.x << history;
+        }
+      }
+    }
+  }
+}
+
+TEST_F(Notices, TheRowOfButtonsHasRoomInItsPanelWhateverTheTextsSize) {
+  for (const float scale : {0.5f, 0.625f, 0.75f, 1.0f, 2.0f}) {
+    app::prepareUi(scale, ui_);
+    unsigned char* pixels = nullptr;
+    int width = 0, height = 0;
+    ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+    ImGui::GetIO().DisplaySize = {416 * scale, 1400 * scale};
+    for (int k = 0; k < 3; ++k) frame();
+    const app::UiItem* last = find("panels");
+    ASSERT_NE(last, nullptr) << scale;
+    EXPECT_LE(last->x + last->width, ImGui::FindWindowByName("sidebar")->InnerClipRect.Max.x) << scale;
   }
 }
 
