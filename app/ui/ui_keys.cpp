@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/scene/edit/groom_brush.h"
 #include "app/scene/edit/mesh_change.h"
 #include "app/ui/ui.h"
 #include "app/ui/ui_panels.h"
@@ -83,13 +84,26 @@ bool letGo(UiState& ui) {
   return held;
 }
 
+// What a drag on the hair does from now on: the panels may be folded away.
+void sayInHand(Demo& demo, const UiState& ui) {
+  if (demo.message_is_fault && !demo.message.empty()) return;
+  demo.message = "a drag turns the view";
+  if (ui.brush.tool >= 0)
+    demo.message = "brush: " + std::string(kBrushNames[static_cast<std::size_t>(ui.brush.tool)]) + "; drag on the hair";
+  if (ui.select.element >= 0)
+    demo.message = "hair mesh: click on one " +
+                   std::string(kElementNames[static_cast<std::size_t>(ui.select.element)]) + "; with Shift on more";
+  demo.message_is_fault = false;
+}
+
 // Closes what lies over the others, one thing at a press, and lets go of what is in hand; then asks; then leaves, as
 // long as the question stands.
 void pressEscape(Demo& demo, UiState& ui) {
   if (std::exchange(ui.help, false)) return;
   if (std::exchange(ui.browser.what, BrowseFor::kNothing) != BrowseFor::kNothing) return;
   if (demo.message_is_fault && !demo.message.empty()) return demo.message.clear();
-  if (std::exchange(ui.history, false) || letGo(ui)) return;
+  if (std::exchange(ui.history, false)) return;
+  if (letGo(ui)) return sayInHand(demo, ui);
   ui.quit = std::exchange(ui.leaving, true) && demo.message == kLeaving;
   demo.message = kLeaving;
   demo.message_is_fault = false;
@@ -130,11 +144,16 @@ constexpr KeyAction kKeyActions[] = {
     {kKeyF12, [](Demo& demo, UiState&) { send(Ask::kScreenshot, "", demo); }},
     {'K', [](Demo& demo, UiState&) { toggle(Ask::kRecord, demo.capture.recording, demo); }},
     {'G',
-     [](Demo&, UiState& ui) {
+     [](Demo& demo, UiState& ui) {
        ui.brush.tool = (ui.brush.tool + 2) % kBrushChoices - 1, ui.brush.field = -1;
        ui.select.element = -1;
+       sayInHand(demo, ui);
      }},
-    {'X', [](Demo&, UiState& ui) { chooseElement((ui.select.element + 2) % kElementChoices - 1, ui); }},
+    {'X',
+     [](Demo& demo, UiState& ui) {
+       chooseElement((ui.select.element + 2) % kElementChoices - 1, ui);
+       sayInHand(demo, ui);
+     }},
     {'[', [](Demo&, UiState& ui) { ui.brush.radius = std::max(0.005, ui.brush.radius / 1.2); }},
     {']', [](Demo&, UiState& ui) { ui.brush.radius = std::min(0.2, ui.brush.radius * 1.2); }},
     {kKeyTab, [](Demo&, UiState& ui) { ui.visible = !ui.visible; }},

@@ -190,6 +190,22 @@ TEST_F(Notices, TheRowOfButtonsHasRoomInItsPanelWhateverTheTextsSize) {
   }
 }
 
+TEST_F(Notices, WhatADragOnTheHairDoesIsSaidWherePanelsAreFolded) {
+  ImGui::GetIO().DisplaySize = {400, 300};
+  app::pressKey('G', demo_, ui_);
+  frame(), frame();
+  EXPECT_NE(find("message"), nullptr);
+  EXPECT_EQ(demo_.message, "brush: comb; drag on the hair");
+  app::pressKey('X', demo_, ui_);
+  EXPECT_EQ(demo_.message, "hair mesh: click on one vertex; with Shift on more");
+  app::pressKey(app::kKeyEscape, demo_, ui_);
+  EXPECT_EQ(demo_.message, "a drag turns the view");
+  demo_.message = "a.bvh: a fault; mend it";
+  demo_.message_is_fault = true;
+  app::pressKey('G', demo_, ui_);
+  EXPECT_EQ(demo_.message, "a.bvh: a fault; mend it") << "a fault stays until it is closed";
+}
+
 class Views : public Notices {
  protected:
   void drag(double dx) {
