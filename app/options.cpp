@@ -398,13 +398,11 @@ void finish(const Unchecked& unchecked, Options& options) {
     throw UsageError("--compare-view says how; add --compare WITH");
   }
   refuseBesideNoImages(options);
-  constexpr std::array<std::string_view, 6> kFilms{".mp4", ".webm", ".mkv", ".mov", ".avi", ".gif"};
-  if (!options.video.empty() && !std::ranges::count(kFilms, std::filesystem::path(options.video).extension().string()))
-    throw UsageError("--video cannot be '" + options.video + "'; name it .mp4, .webm, .mkv, .mov, .avi or .gif");
+  expectEnding("--video", options.video, {".mp4", ".webm", ".mkv", ".mov", ".avi", ".gif"});
+  expectEnding("--screenshot", options.screenshot, {".png"});
+  expectEnding("--write-hair", options.write_hair, {".obj"});
+  expectEnding("--cache", options.cache, {".hairmesh"});
   if (!options.video.empty()) options.headless = true;
-  if (!options.write_hair.empty() && std::filesystem::path(options.write_hair).extension() != ".obj") {
-    throw UsageError("--write-hair cannot be '" + options.write_hair + "'; name it .obj, the format that is written");
-  }
   if (!options.load_state.empty() && !(options.record + options.replay).empty()) {
     throw UsageError("--load-state does not go with --record and --replay, which begin with the scene; leave one out");
   }
@@ -415,8 +413,6 @@ void finish(const Unchecked& unchecked, Options& options) {
   if (options.save_state_at > 0 && options.save_state.empty()) {
     throw UsageError("--save-state-at says when; add --save-state FILE");
   }
-  if (!options.cache.empty() && !options.cache.ends_with(".hairmesh"))
-    throw UsageError("--cache cannot be '" + options.cache + "'; name it .hairmesh");
   if (!options.cache.empty() && !picturesAsked(options)) options.no_images = true;
   if (!options.cache.empty() || options.no_images) options.headless = true;
   finishExport(unchecked, options);

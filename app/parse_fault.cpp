@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <string_view>
-#include <vector>
 
+#include "app/options.h"
 #include "sim/field_text.h"
 
 namespace app {
@@ -26,6 +27,14 @@ std::string extraFault(const CLI::App& parser, const std::string& one_file, cons
 }
 
 }  // namespace
+
+void expectEnding(const std::string& option, const std::string& file, const std::vector<std::string>& endings) {
+  const auto known = std::ranges::find(endings, std::filesystem::path(file).extension().string());
+  if (file.empty() || known != endings.end()) return;
+  std::string list = endings.front();
+  for (std::size_t k = 1; k < endings.size(); ++k) list += (k + 1 < endings.size() ? ", " : " or ") + endings[k];
+  throw UsageError(option + " cannot be '" + file + "'; name it " + list);
+}
 
 std::string rangeText(double low, double high) {
   const auto textOf = [](double value) {

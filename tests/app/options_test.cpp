@@ -147,6 +147,20 @@ TEST(Options, MisuseIsUsageAndSaysSoInOneLine) {
   }
 }
 
+TEST(Options, AFileThatIsWrittenHasTheEndingOfItsFormat) {
+  const std::string folder = test::freshFolder("options_endings");
+  for (const auto& [option, name, mend] : {std::array{"--screenshot", "a.jpg", "name it .png"},
+                                           {"--screenshot", "png", "name it .png"},
+                                           {"--video", "a.mp", "name it .mp4, .webm, .mkv, .mov, .avi or .gif"},
+                                           {"--write-hair", "a.txt", "name it .obj"},
+                                           {"--cache", "a.bin", "name it .hairmesh"}}) {
+    const test::Outcome outcome = runProgram({"--frames", "1", "--size", "64x64", option, folder + "/" + name});
+    expectOneMessage(outcome, app::kExitUsage, option);
+    EXPECT_NE(outcome.err.find(mend), std::string::npos) << outcome.err;
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+}
+
 TEST(Options, WhatTheParserCannotReadIsToldInWordsOfOurOwn) {
   for (const auto& [words, expected] : std::vector<std::pair<std::vector<std::string>, std::string>>{
            {{"--resolutoin", "low"}, "there is no option '--resolutoin'; did you mean '--resolution'?"},
