@@ -27,11 +27,6 @@ constexpr std::size_t kMaxSegments = 65535;
 void readSegments(const HairHeader& header, ByteReader& reader, Groom& groom) {
   std::vector<std::uint16_t> segments;
   if (header.flags & kSegments) reader.array(header.strands, "segments of the strands", segments);
-  if (segments.empty() && header.strands > header.points) {
-    reader.fail("the header counts " + std::to_string(header.strands) + " strands but only " +
-                    std::to_string(header.points) + " points",
-                "the file is damaged; export it again");
-  }
   groom.strand_first.reserve(header.strands + std::size_t{1});
   std::uint64_t first = 0;
   for (std::uint32_t s = 0; s < header.strands; ++s) {
@@ -91,6 +86,12 @@ Groom readHairStrands(std::string_view bytes, const std::string& file) {
   if (!(header.flags & kPoints)) {
     reader.at = 12;
     reader.fail("the header's flags say that there are no points", "export the hair with its points");
+  }
+  if (header.strands > header.points) {  // every strand has a point
+    reader.at = 4;
+    reader.fail("the header counts " + std::to_string(header.strands) + " strands but only " +
+                    std::to_string(header.points) + " points",
+                "the file is damaged; export it again");
   }
   checkGroomSize(file, "header", header.strands, header.points);
   // Before anything is sized by what the header counts.

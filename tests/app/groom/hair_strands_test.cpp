@@ -86,6 +86,11 @@ TEST(HairStrands, FaultsNameFilePlaceAndMend) {
   put(bytes, 4, 5'000'000);
   put(bytes, 8, 80'000'000);
   EXPECT_EQ(test::lacking(faultOf(bytes), "2097152 such strands fit"), "");
+  bytes = whole;
+  put(bytes, 4, 0xffffffff);
+  EXPECT_EQ(
+      test::lacking(faultOf(bytes), "byte 4: the header counts 4294967295 strands but only "),
+      "");
   EXPECT_EQ(test::lacking(faultOf("what is this"), "no kind of groom"), "");
   EXPECT_EQ(test::lacking(faultOf(std::string("\x89HDF\r\n\x1a\n", 8)), "HDF5"), "");
   EXPECT_EQ(test::lacking(faultOf("PXR-USDC0000"), "usdcat"), "");
