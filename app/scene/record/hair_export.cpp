@@ -14,6 +14,7 @@
 #include "app/groom/formats/glb_file.h"
 #include "app/groom/formats/tfx_file.h"
 #include "app/groom/groom_writer.h"
+#include "app/options.h"
 #include "app/scene/view/figure_input.h"
 #include "render/light/fiber_scattering.h"
 #include "render/strands/strand_growth.h"
@@ -265,6 +266,8 @@ HairExport::HairExport(const ExportSpec& spec, const Demo& demo, double fps, int
         ", " + std::to_string(points) + " points each, the power of two nearest to those drawn (.tfx takes no other)";
   }
   impl_->strands.emplace(demo, spec.what, points);
+  if (impl_->strands->last().strandCount() == 0)
+    throw UsageError("there are no strands to export; ask for more than 0 --strands, or for --export-what guides");
   impl_->numbered = (taken > 1 || spec.range) && !takesClip(spec.file);
   impl_->writer.emplace(spec.file, settings, impl_->numbered);
 }
@@ -293,8 +296,9 @@ std::string HairExport::finish(const Demo& demo) {
   }
   if (impl_->mesh && impl_->spec.unit != 1) text += ", in metres: glTF has no other unit";
   std::string file = impl_->spec.file;
-  if (impl_->writer && impl_->numbered)
-    file = numberedName(file, impl_->first_frame) + " to " + numberedName(file, impl_->last_frame);
+  if (impl_->writer && impl_->numbered) file = numberedName(impl_->spec.file, impl_->first_frame);
+  if (impl_->writer && impl_->numbered && impl_->frames > 1)
+    file += " to " + numberedName(impl_->spec.file, impl_->last_frame);
   return text + ", written to " + file + wornNote(demo) + "\n";
 }
 
