@@ -228,7 +228,8 @@ void Inspector::unitOfSkull(double told) {
     add("unit", textOf("in the unit asked for the roots lie about a skull of radius %.3g m", told * skull.radius),
         fits ? std::string("--unit ") + best->name : "leave --unit away", false);
   } else if (fits && std::abs(best->metres / told - 1) > 0.01 && off(told) > std::log(1.45)) {
-    const bool certain = onCap() && !hints.meters_per_unit;
+    // What is told holds, but not where it makes a head more than ten times too large or small.
+    const bool certain = hints.meters_per_unit ? strange && ofScalp() : onCap();
     if (certain) result.mends.unit = best->metres;
     judged = likely;
     addGuess("unit",

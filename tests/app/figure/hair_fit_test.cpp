@@ -200,15 +200,15 @@ TEST(HairFit, ADoubtedUnitOfAGroomIsSaid) {
   std::filesystem::create_directories(HAIRMESH_TEST_OUT);
   const std::string file = std::string(HAIRMESH_TEST_OUT) + "/false_unit.usda";
   app::Groom groom = combed::combedGroom(300, 5);
-  combed::moveAll(groom, Eigen::Matrix3f::Identity(), 100, Eigen::Vector3f::Zero());
+  combed::moveAll(groom, Eigen::Matrix3f::Identity(), 1 / 0.3048f, Eigen::Vector3f::Zero());
   app::writeGroom(groom, file);
   app::CharacterSpec spec;
   spec.hair = file;
   app::Haircut haircut;
   app::hairFromFile(spec, figure(), haircut);
-  EXPECT_NE(haircut.note.find("fits cm; the file tells 1 m a unit (--mends \"--unit cm\")"), std::string::npos)
+  EXPECT_NE(haircut.note.find("fits ft; the file tells 1 m a unit (--mends \"--unit ft\")"), std::string::npos)
       << haircut.note;
-  spec.mends = "--unit cm";
+  spec.mends = "--unit ft";
   app::Haircut mended;
   app::hairFromFile(spec, figure(), mended);
   EXPECT_EQ(mended.note.find("the file tells"), std::string::npos) << mended.note;

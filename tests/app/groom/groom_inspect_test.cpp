@@ -128,23 +128,25 @@ TEST(GroomInspect, AForcedUnitThatMakesADollIsTold) {
   EXPECT_EQ(doll.findings.size(), 1u) << namesOf(doll);
 }
 
+constexpr float kFeet = 1 / 0.3048f;  // in a metre
+
 // What follows a unit that is wrong is judged in the right one, and left alone.
 TEST(GroomInspect, WhatFollowsAWrongUnitIsJudgedInTheRightOne) {
   const app::HeadModel model = head();
   app::GroomHints hints;
-  hints.meters_per_unit = 1;  // of centimetres
+  hints.meters_per_unit = 1;  // of feet
   app::Groom groom = combedGroom(300, 5);
-  for (float& width : groom.widths) width *= 100;
-  moveAll(groom, Eigen::Matrix3f::Identity(), 100, Vector3f::Zero());
+  for (float& width : groom.widths) width *= kFeet;
+  moveAll(groom, Eigen::Matrix3f::Identity(), kFeet, Vector3f::Zero());
   const app::GroomInspection unit_alone = app::inspectGroom(groom, hints, &model);
   EXPECT_EQ(unit_alone.findings.size(), 1u) << namesOf(unit_alone);
-  moveAll(groom, Eigen::Matrix3f::Identity(), 1, Vector3f(0, 50, 0));
+  moveAll(groom, Eigen::Matrix3f::Identity(), 1, Vector3f(0, 0.5f * kFeet, 0));
   for (float& width : groom.widths) width *= 1000;
   const app::GroomInspection all = app::inspectGroom(groom, hints, &model);
   for (const char* what : {"widths", "roots"}) {
     const app::GroomFinding* const finding = all.find(what);
     ASSERT_TRUE(finding) << what << ": " << namesOf(all);
-    EXPECT_EQ(finding->text.find("with --unit cm, "), 0u) << finding->text;
+    EXPECT_EQ(finding->text.find("with --unit ft, "), 0u) << finding->text;
     EXPECT_FALSE(finding->certain) << "the unit comes first";
   }
   EXPECT_NE(all.find("roots")->text.find("0.4"), std::string::npos) << all.find("roots")->text;
@@ -292,12 +294,32 @@ TEST(GroomInspect, AUnitThatTheFileTellsHoldsUntilItIsOverruled) {
   app::GroomHints hints;
   hints.meters_per_unit = 1;
   app::Groom groom = combedGroom(300, 5);
-  moveAll(groom, Eigen::Matrix3f::Identity(), 100, Vector3f::Zero());
+  moveAll(groom, Eigen::Matrix3f::Identity(), kFeet, Vector3f::Zero());
   const app::GroomInspection inspection = app::inspectGroom(groom, hints, &model);
   ASSERT_TRUE(inspection.find("unit"));
-  EXPECT_EQ(inspection.find("unit")->mend, "--unit cm");
+  EXPECT_EQ(inspection.find("unit")->mend, "--unit ft");
   EXPECT_TRUE(inspection.find("unit")->fault && !inspection.find("unit")->certain);
   EXPECT_EQ(inspection.mends.unit, 1);
+}
+
+// A skull of 9 m or of 0.9 mm is nobody's.
+TEST(GroomInspect, AToldUnitOfAGiantOrADwarfIsMendedByItself) {
+  const app::HeadModel model = head();
+  for (const auto& [told, scale] : {std::pair(1.0, 100.0f), std::pair(0.01, 1.0f)}) {
+    app::GroomHints hints;
+    hints.meters_per_unit = told;
+    app::Groom groom = combedGroom(300, 5);
+    moveAll(groom, Eigen::Matrix3f::Identity(), scale, Vector3f::Zero());
+    for (float& width : groom.widths) width *= scale;
+    EXPECT_EQ(namesOf(app::inspectGroom(groom, hints, &model)).find("unit: "), 0u);
+    app::Groom kept = groom;
+    EXPECT_EQ(app::mendCertain(hints, &model, "--no-guess", kept).unit, told);
+    const app::MendReport report = app::mendCertain(hints, &model, "", groom);
+    EXPECT_NEAR(report.unit, 1 / scale, 1e-9);
+    EXPECT_TRUE(report.on_head);
+    EXPECT_EQ(test::lacking(app::mendText(report), "mended        unit: "), "");
+    EXPECT_EQ(test::lacking(app::mendText(report), "; the file tells"), "");
+  }
 }
 
 // What is certain is mended: then nothing more is said, and strands lie where they lay.
