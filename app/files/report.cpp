@@ -278,12 +278,11 @@ std::string deadlineLine(const RunReport& run, double deadline) {
     longest = std::max(longest, frame.simulation());
   }
   std::ostringstream text;
-  text.precision(3);
-  text << "  deadline   " << 1e3 * deadline << " ms: ";
+  text << "  deadline   " << threeDigits(1e3 * deadline) << " ms: ";
   if (over == 0) text << "kept in every frame";
   if (over > 0) text << "not kept in " << over << " of " << run.frames.size() << " frames";
-  text << ", the longest took " << 1e3 * longest << " ms; work left out in " << cut << " frames, "
-       << run.frames.back().lost << " s of motion given up\n";
+  text << ", the longest took " << threeDigits(1e3 * longest) << " ms; work left out in " << cut << " frames, "
+       << threeDigits(run.frames.back().lost) << " s of motion given up\n";
   return text.str();
 }
 
@@ -295,8 +294,7 @@ std::string budgetLine(const char* name, double budget, const std::string& rung,
   if (budget <= 0 || times.empty()) return "";
   const auto over = std::ranges::count_if(times, [&](double seconds) { return seconds > budget; });
   std::ostringstream text;
-  text.precision(3);
-  text << "  budget of " << name << " " << 1e3 * budget << " ms: ";
+  text << "  budget of " << name << " " << threeDigits(1e3 * budget) << " ms: ";
   if (over == 0) text << "held in every frame";
   if (over > 0) text << "not held in " << over << " of " << times.size() << " frames";
   text << "; the last had \"" << rung << "\"\n";
@@ -307,10 +305,7 @@ std::string budgetLine(const char* name, double budget, const std::string& rung,
 
 std::string summary(const RunReport& run, const Demo& demo) {
   const auto line = [&](const char* name, auto pick) {
-    std::ostringstream text;
-    text.precision(3);
-    text << "  " << name << " " << 1e3 * median(gather(run, pick)) << " ms\n";
-    return text.str();
+    return std::string("  ") + name + " " + threeDigits(1e3 * median(gather(run, pick))) + " ms\n";
   };
   const bool drawn = std::ranges::any_of(run.frames, [](const FrameStats& f) { return !f.draw.stages.empty(); });
   return "median of " + countOf(run.frames.size(), "frame") + ":\n" +

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -12,6 +11,7 @@
 #include "app/files/errors.h"
 #include "app/files/file_kind.h"
 #include "app/files/presets.h"
+#include "app/files/report_line.h"
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
 #include "app/scene/edit/groom_brush.h"
@@ -192,13 +192,12 @@ std::string comparisonText(const Demo& demo) {
   const Comparison& comparison = demo.comparison;
   if (!comparison.on()) return "";
   const double frames = static_cast<double>(std::max(1L, comparison.frames));
-  char apart[100] = "other hair", text[200];
+  std::string apart = "other hair";
   if (comparison.now.known)
-    std::snprintf(apart, sizeof apart, "hair apart by %.3g mm RMS in the mean, %.3g mm at most",
-                  1e3 * comparison.rms_sum / frames, 1e3 * comparison.worst);
-  std::snprintf(text, sizeof text, "%s; simulation %.3g ms a frame in the mean against %.3g ms", apart,
-                1e3 * comparison.seconds[0] / frames, 1e3 * comparison.seconds[1] / frames);
-  return text;
+    apart = "hair apart by " + threeDigits(1e3 * comparison.rms_sum / frames) + " mm RMS in the mean, " +
+            threeDigits(1e3 * comparison.worst) + " mm at most";
+  return apart + "; simulation " + threeDigits(1e3 * comparison.seconds[0] / frames) +
+         " ms a frame in the mean against " + threeDigits(1e3 * comparison.seconds[1] / frames) + " ms";
 }
 
 }  // namespace app

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <string>
 
+#include "app/files/report_line.h"
 #include "app/ui/ui_panels.h"
 #include "app/ui/ui_widgets.h"
 
@@ -111,9 +112,8 @@ void historyPlot(const Demo& demo, int first, int last, float height) {
       y -= h;
     }
   }
-  char label[32];
-  std::snprintf(label, sizeof label, "%.3g ms", 1e3 * top);
-  list->AddText({at.x + 5, at.y + 2}, ImGui::GetColorU32(ImGuiCol_TextDisabled), label);
+  const std::string label = threeDigits(1e3 * top) + " ms";
+  list->AddText({at.x + 5, at.y + 2}, ImGui::GetColorU32(ImGuiCol_TextDisabled), label.c_str());
   ImGui::Dummy({width, height});
 }
 

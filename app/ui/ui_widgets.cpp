@@ -10,6 +10,7 @@
 
 #include "app/files/data_path.h"
 #include "app/files/field_map.h"
+#include "app/files/report_line.h"
 #include "sim/field_text.h"
 #include "sim/stabilization/parameter_limits.h"
 
@@ -30,12 +31,13 @@ ImU32 color(ImGuiCol index, float alpha = 1) {
 bool numberSlider(const char* name, sim::FieldKind kind, bool logarithmic, double low, double high, const char* unit,
                   double& value) {
   const ShownUnit shown = shownUnit(unit, high);
-  std::string format = kind == sim::FieldKind::kInteger ? "%.0f" : "%.4g";
+  double number = shown.times * value;
+  // With four digits from 10,000 on it would have an exponent.
+  std::string format = kind == sim::FieldKind::kInteger ? "%.0f" : number < 1000 ? "%.4g" : "%.6g";
   if (*unit) format.append(" ").append(shown.unit);
   ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp;
   if (logarithmic) flags |= ImGuiSliderFlags_Logarithmic;
   const MarksBelowDigits marks;
-  double number = shown.times * value;
   const double least = shown.times * low, most = shown.times * high;
   if (!ImGui::SliderScalar(name, ImGuiDataType_Double, &number, &least, &most, format.c_str(), flags)) return false;
   value = std::clamp(number / shown.times, low, high);
@@ -81,8 +83,8 @@ void limitNote(const sim::ParamField& field, const Demo& demo, UiState& ui) {
     if (limited.field != &field) continue;
     char text[160];
     const ShownUnit shown = shownUnit(field.unit, field.maximum);
-    std::snprintf(text, sizeof text, "used: %.3g %s, %s", shown.times * limited.used, shown.unit.data(),
-                  limited.reason);
+    std::snprintf(text, sizeof text, "used: %s %s, %s", threeDigits(shown.times * limited.used).c_str(),
+                  shown.unit.data(), limited.reason);
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + kLabelShare * ImGui::GetContentRegionAvail().x);
     ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_CheckMark));
     ImGui::PushTextWrapPos(0);

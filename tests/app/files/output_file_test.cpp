@@ -15,12 +15,25 @@
 #include "app/files/errors.h"
 #include "app/files/image_io.h"
 #include "app/files/recording.h"
+#include "app/files/report_line.h"
 #include "tests/run_program.h"
 
 namespace output_file_test {
 
 namespace fs = std::filesystem;
 using test::readAll;
+
+TEST(ReportLine, ThreeDigitsHaveNoExponentAboveOne) {
+  for (const auto& [value, text] : std::vector<std::pair<double, std::string>>{{0, "0"},
+                                                                               {0.01234, "0.0123"},
+                                                                               {12.34, "12.3"},
+                                                                               {999.4, "999"},
+                                                                               {999.6, "1000"},
+                                                                               {2183, "2180"},
+                                                                               {123456, "123000"},
+                                                                               {-4321, "-4320"}})
+    EXPECT_EQ(app::threeDigits(value), text);
+}
 
 std::vector<std::string> filesIn(const std::string& folder) {
   std::vector<std::string> names;
