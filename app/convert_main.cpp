@@ -70,10 +70,7 @@ void addCurveOptions(CLI::App& parser, Arguments& arguments) {
                   "Unit of the file: m, cm, mm, in or ft, or metres in it; by default as it says, or inferred")
       ->transform(CLI::Validator(metresOf, ""))
       ->option_text("UNIT");
-  parser.add_option(
-      "--mends", arguments.mends,
-      "Options of hairmesh-inspect that mend curves, in quotes: \"--up z --push-out\"; what is certain is "
-      "mended by itself, and said");
+  parser.add_option("--mends", arguments.mends, app::kMendsHelp);
   parser.add_flag("--no-mend", arguments.no_mend,
                   "The hair is taken as it is, but for the unit and the axis that is up");
   parser.add_option("--figure", arguments.figure,

@@ -11,6 +11,7 @@
 #include "app/files/scene_file.h"
 #include "app/groom/formats/tfx_file.h"
 #include "app/groom/groom_writer.h"
+#include "app/groom/inspect/certain_mends.h"
 #include "app/parse_fault.h"
 #include "app/scene/detail/skips.h"
 #include "app/scene/parameter_table.h"
@@ -136,9 +137,7 @@ void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
       "--hair", options.hair, "FILE",
       "Hair in place of a style: a hair mesh (OBJ, one group a layer), curves (.hair, .abc, .usda, .tfx, .ply), or "
       "strips and tubes (.obj, .fbx, .glb, .gltf, .vrm)");
-  group.value(
-      "--mends", options.mends, "TEXT",
-      "Options of hairmesh-inspect for a hair file of curves, beside what is mended by itself: \"--up z --push-out\"");
+  group.value("--mends", options.mends, "TEXT", kMendsHelp);
   group.flag("--reverse-faces", options.reverse_faces,
              "Turn round the faces of a hair mesh file that is wound inwards");
   group
@@ -151,7 +150,7 @@ void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
   group.value("--preset", options.preset, "NAME", "Preset by name or file");
   group.value("--environment", options.environment, "FILE.hdr",
               "Light by a panorama (Radiance picture, twice as wide as high, its middle in front of the figure) in "
-              "place of the scene's");
+              "place of the scene's; the backdrop stays");
   group.values("--set", unchecked.sets, "NAME=VALUE", "Set a parameter of the tables; may be given many times");
   group.value(
       "--solver", options.solver, "NAME",

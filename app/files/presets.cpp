@@ -196,7 +196,13 @@ std::string writePreset(const std::string& name, const sim::SimParams& params, c
 std::string presetFile(const std::string& name, const std::string& base_file) {
   const bool bare = std::filesystem::path(name).extension().empty();
   const std::string file = findFile(bare ? name + ".json" : name, base_file, "presets");
-  if (!bare || std::filesystem::exists(file)) return file;
+  std::error_code ignored;
+  if (std::filesystem::exists(file, ignored)) return file;
+  const std::string scene = findFile(bare ? name + ".json" : name, base_file, "scenes");
+  if (std::filesystem::exists(scene, ignored))
+    throw InputError("preset '" + name + "'", "", "is not there: that name is a scene's",
+                     "name it " + std::filesystem::path(scene).filename().string() + ", without --preset");
+  if (!bare) return file;
   std::vector<std::string> known;
   for (const std::string& preset : listAssets("presets", {".json"})) known.push_back(stem(preset));
   const std::vector<std::string_view> names(known.begin(), known.end());

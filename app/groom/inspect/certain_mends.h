@@ -21,10 +21,17 @@ struct MendReport {
   bool on_head = false;     // roots lie on the head now, in the median
 };
 
-// Puts options of hairmesh-inspect in place of what was found: "--unit cm --up z --turn 180 --reverse all --width-scale
-// 0.1
-// --width 8e-5 --points 16 --move 0,0.1,0 --drop-far 0.03 --drop-bad --drop-astray --push-out --no-guess", any of them.
-// Returns what is wrong with the text, or "". --no-guess leaves out what was found.
+// What --mends is for.
+inline constexpr const char* kMendsHelp =
+    "What mends hair of curves, beside what is certain, which is mended by itself, and said: any, in quotes, of "
+    "--unit m|cm|mm|in|ft, --up y|z|-y|-z|x|-x, --turn DEGREES, --reverse none|found|all, --width-scale X, --width M, "
+    "--points N, --move X,Y,Z, --drop-far M, --drop-bad, --drop-astray, --push-out, --no-guess; hairmesh-inspect "
+    "--help "
+    "tells of each";
+
+// Puts any of these options, with blanks between, in place of what was found. Returns what is wrong with the text, or
+// "".
+// --no-guess leaves out what was found.
 std::string readMends(std::string_view text, GroomMends& mends);
 
 // Inspects and mends a groom: what is certain, or else what `wishes` says (as readMends). Throws InputError for wishes

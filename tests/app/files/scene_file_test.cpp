@@ -263,6 +263,19 @@ TEST(Presets, TheOneThatASceneOpensWithIsTold) {
   EXPECT_EQ(app::loadScene(app::findFile("crowd.json", "", "scenes")).preset, "");
 }
 
+TEST(Presets, ASceneOfThatNameIsToldAsWhatItIs) {
+  for (const char* name : {"long_wavy", "long_wavy.json"}) {
+    try {
+      app::presetFile(name, "");
+      ADD_FAILURE() << name << " is no preset";
+    } catch (const InputError& fault) {
+      const std::string words = fault.what();
+      EXPECT_NE(words.find("that name is a scene's; name it long_wavy.json, without --preset"), std::string::npos)
+          << words;
+    }
+  }
+}
+
 TEST(Presets, WhatWasSavedComesBackOverAnything) {
   const std::string defaults = Tables{}.text();
   Tables tables;
