@@ -12,10 +12,9 @@ namespace {
 // nothing more. In long steps less: under the first bound softened hair gained energy in steps of 1/20 s and more.
 constexpr double kGentle = 0.1, kGentleLong = 0.05;
 constexpr double kLongStep = 1.0 / 50;  // s
-// No step is near to linear of hair that is limp, folded as it hangs: its load strains its walls by more than this.
-// BDF2 damps slow motion by the third power of the step only: what curvature the Hessian leaves out, by the strain,
-// outweighs that in firmer hair.
-constexpr double kLimp = 1, kLimpInTwoSteps = 0.1;
+// No step is near to linear of hair whose load strains its walls by more than this: what curvature the Hessian leaves
+// out grows with the strain.
+constexpr double kLimp = 0.2;
 constexpr int kTries = 5;            // of a shorter way
 constexpr double kWithin = 0.95;     // of the energy allowed and of the way, that a try aims at
 constexpr double kMinWay = 0.5;      // of the way, that the first try leaves: energies of stretched hair rise faster
@@ -62,8 +61,7 @@ bool neverLinear(const TakenStep& step) {
     const double value = params.*modulus.param / (modulus.over_length ? segment * segment : 1);
     uneven = uneven || value > modulus.uneven * softest;
   });
-  const double limp = params.integrator == Integrator::kBdf2 ? kLimpInTwoSteps : kLimp;
-  return params.density * pull * step.mesh.hair_length > limp * softest || uneven;
+  return params.density * pull * step.mesh.hair_length > kLimp * softest || uneven;
 }
 
 // Where the roots carry every vertex that does not move against them.

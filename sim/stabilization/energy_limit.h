@@ -12,9 +12,8 @@
 // step ends; and x_c of a vertex that is pinned firmly is its target, as that of a root is where the scalp takes it.
 //
 // A gentle step of hair as styles have it is near to linear, and not looked at. Never near to linear is hair that hangs
-// folded because its load strains its walls by more than their length (a tenth of it, of BDF2), or that is so much
-// stiffer one way than another that it buckles. Hair that was stopped in the step before does in this one what it was
-// kept from.
+// folded because its load strains its walls by more than a fifth, or that is so much stiffer one way than another that
+// it buckles. Hair that was stopped in the step before does in this one what it was kept from.
 #pragma once
 
 #include <optional>
