@@ -6,8 +6,8 @@ namespace sim {
 namespace {
 
 // Units a vertex
-constexpr double kSolve = 7, kFactors = 1.9, kCoarseSpace = 4, kEnergy = 4.3, kMinimization = 2.9;
-constexpr double kSurfacePoint = 16;                      // units each
+constexpr double kSolve = 6.5, kFactors = 2.5, kCoarseSpace = 4.8, kEnergy = 2, kMinimization = 1.5;
+constexpr double kSurfacePoint = 17;                      // units each
 constexpr double kSolveShare = 0.5, kFollowShare = 0.25;  // of what a budget leaves to choose
 constexpr int kEnergies = 2;                              // that a step in motion computes
 
