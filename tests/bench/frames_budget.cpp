@@ -13,6 +13,7 @@
 #include "tests/bench/cpu_clock.h"
 #include "tests/bench/gnuplot.h"
 #include "tests/bench/measured_part.h"
+#include "tests/bench/preset_params.h"
 #include "tests/bench/table.h"
 #include "tests/sim_probes.h"
 
@@ -198,7 +199,7 @@ app::Actor actorOf(const ClipFile& clip, app::Style style, app::Resolution resol
 void measureStyle(app::Style style, app::Resolution resolution, const std::vector<ClipFile>& clips,
                   const std::vector<double>& speeds, std::ofstream& steps, Measured& measured) {
   const std::string name = std::string(app::styleName(style)) + " " + std::string(app::resolutionName(resolution));
-  const sim::SimParams params;
+  const sim::SimParams params = presetParams(kOpened);
   app::AssetCache cache;
   StepCost walk;
   std::vector<std::vector<double>> all(speeds.size());

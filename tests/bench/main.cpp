@@ -102,7 +102,7 @@ std::vector<Task> tasks() {
       {"--collision-document", "all that collisions claim, into the tables of collision.md in the folder of --out",
        [](Asked& a) { bench::writeCollisionDocument(a.pareto.folder, a.styles.frames); }},
       {"--frames-budget",
-       "what steps of whole clips cost over a walk's median, in counted work; exits 1 off its bounds",
+       "what steps of whole clips cost over a walk's median, preset natural, in counted work; exits 1 off its bounds",
        [](Asked& a) {
          if (!bench::runFramesBudget(a.frames_budget)) a.all_hold = false;
        }},

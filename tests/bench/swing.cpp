@@ -7,14 +7,11 @@
 #include <numbers>
 #include <string_view>
 
-#include "app/files/data_path.h"
 #include "app/files/errors.h"
-#include "app/files/presets.h"
-#include "app/files/text_file.h"
-#include "app/scene/view/look_params.h"
 #include "sim/mesh/hair_mesh.h"
 #include "sim/step.h"
 #include "tests/analytic_head.h"
+#include "tests/bench/preset_params.h"
 
 namespace bench {
 namespace {
@@ -167,15 +164,8 @@ bool runSwing(const SwingOptions& options) {
   std::printf(
       "| preset | style | free length, m | frequency over a chain's | damping ratio | lag, deg | overshoot, deg | "
       "settled after, s |\n|---|---|---|---|---|---|---|---|\n");
-  for (const char* preset : {"", "natural", "fine", "thick", "wet", "sprayed"}) {
-    sim::SimParams params;
-    app::CharacterLook look;
-    if (*preset) {
-      const std::string file = app::dataPath("assets/presets/" + std::string(preset) + ".json");
-      app::SceneLook scene;
-      app::CharacterLook* looks[] = {&look};
-      app::loadPreset(file, {&params, &scene, looks});
-    }
+  for (const char* preset : {"", "natural", "soft", "fine", "thick", "wet", "sprayed"}) {
+    sim::SimParams params = *preset ? presetParams(preset) : sim::SimParams{};
     for (const auto& [name, value] : options.sets) {
       const std::string fault = sim::setParam(params, name, value).fault;
       if (!fault.empty()) throw app::InputError("--set", name, fault, "hairmesh --parameters lists them");
