@@ -5,6 +5,7 @@
 
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
+#include "app/groom/edit/mesh_edit.h"
 #include "app/scene/haircuts.h"
 #include "app/styles/style_untangle.h"
 
@@ -22,7 +23,7 @@ constexpr int kRays = 400;
 constexpr int kTurns = 72, kPolars = 90;          // of directions in which a ring is looked for
 constexpr double kCrown = 0.2, kDown = 2.1;       // rad from upright, between which a ring lies; a collar is lower
 constexpr double kPassesOver = 0.03;              // m off the scalp: hair that lies over a ring
-constexpr int kPieces = 8;                        // of a segment, that are looked at one by one
+constexpr std::size_t kPieces = 8;                // of a segment, that are looked at one by one
 constexpr double kRise = 0.3;                     // m a m: how steeply hair comes out from under a ring
 constexpr double kPressed = 0.03, kHeld = 0.015;  // m off a ring, within which it presses hair, holds hair
 
@@ -94,20 +95,13 @@ struct UnderRing {
 // Where a column passes under a ring, as the curve that strands take.
 std::vector<UnderRing> passesUnder(const Attachment& ring, const Scalp& scalp, std::span<const Vec3> column) {
   std::vector<UnderRing> under;
-  for (std::size_t v = 0; v + 1 < column.size(); ++v) {
-    const Vec3 &from = column[v], &to = column[v + 1];
-    const Vec3 before = v > 0 ? column[v - 1] : Vec3(2 * from - to);
-    const Vec3 after = v + 2 < column.size() ? column[v + 2] : Vec3(2 * to - from);
-    for (int k = 0; k < kPieces; ++k) {
-      const double f = static_cast<double>(k) / kPieces;
-      const Vec3 bent = 2 * before - 5 * from + 4 * to - after, twisted = 3 * (from - to) + after - before;
-      const Vec3 at = from + 0.5 * f * (to - before + f * (bent + f * twisted));  // Catmull-Rom
-      const Vec3 out = at - scalp.center;
-      const double floor = scalp.radiusAt(out);
-      if (out.norm() > floor + kPassesOver) continue;
-      const double meets = meetsAlong(ring, scalp, out, kOverHead);
-      if (!std::isinf(meets)) under.push_back({at, std::max(kMinRoom, meets - kUnderside - floor)});
-    }
+  for (std::size_t k = 0; k + kPieces < kPieces * column.size(); ++k) {
+    const Vec3 at = onColumn(column, static_cast<double>(k) / kPieces);
+    const Vec3 out = at - scalp.center;
+    const double floor = scalp.radiusAt(out);
+    if (out.norm() > floor + kPassesOver) continue;
+    const double meets = meetsAlong(ring, scalp, out, kOverHead);
+    if (!std::isinf(meets)) under.push_back({at, std::max(kMinRoom, meets - kUnderside - floor)});
   }
   return under;
 }

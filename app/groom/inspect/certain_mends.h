@@ -25,13 +25,11 @@ struct MendReport {
 inline constexpr const char* kMendsHelp =
     "What mends hair of curves, beside what is certain, which is mended by itself, and said: any, in quotes, of "
     "--unit m|cm|mm|in|ft, --up y|z|-y|-z|x|-x, --turn DEGREES, --reverse none|found|all, --width-scale X, --width M, "
-    "--points N, --move X,Y,Z, --drop-far M, --drop-bad, --drop-astray, --push-out, --no-guess; hairmesh-inspect "
-    "--help "
-    "tells of each";
+    "--points N, --move X,Y,Z, --drop-far M, --drop-bad, --drop-astray, --push-out, --no-guess; "
+    "hairmesh-inspect --help tells of each";
 
-// Puts any of these options, with blanks between, in place of what was found. Returns what is wrong with the text, or
-// "".
-// --no-guess leaves out what was found.
+// Puts any of these options, with blanks between, in place of what was found; --no-guess leaves that out. Returns what
+// is wrong with the text, or "".
 std::string readMends(std::string_view text, GroomMends& mends);
 
 // Inspects and mends a groom: what is certain, or else what `wishes` says (as readMends). Throws InputError for wishes
