@@ -286,24 +286,24 @@ inline app::Groom styled(app::Style style, app::Resolution resolution, int stran
 inline std::vector<Kind> kinds() {
   using app::Resolution, app::Style;
   return {
-      {"short", "the short style, low", [](int n) { return styled(Style::kShort, Resolution::kLow, n); }, 0.0225, 0.068,
-       0.78},
+      {"short", "the short style, low", [](int n) { return styled(Style::kShort, Resolution::kLow, n); }, 0.0136,
+       0.0345, 0.78},
       {"shoulder", "the shoulder style, medium", [](int n) { return styled(Style::kShoulder, Resolution::kMedium, n); },
-       0.0167, 0.052, 0.79},
-      {"long", "the long style, low", [](int n) { return styled(Style::kLong, Resolution::kLow, n); }, 0.0148, 0.055,
-       0.65},
-      {"cropped", "3 cm, leaning forward", cropped, 0.0175, 0.06, 0.8},
+       0.0108, 0.0343, 0.8},
+      {"long", "the long style, low", [](int n) { return styled(Style::kLong, Resolution::kLow, n); }, 0.014, 0.0526,
+       0.81},
+      {"cropped", "3 cm, leaning forward", cropped, 0.0112, 0.0378, 0.79},
       {"swept back", "straight, 20 cm",
        [](int n) {
          app::Groom groom;
          for (int i = 0; i < n; ++i) add(sweptBack(Head{}, Head{}.surface(rootDirection(i, n)), 0.2f, 33), groom);
          return groom;
        },
-       0.0165, 0.068, 0.8},
-      {"wavy", "28 cm in waves of 7 mm", wavy, 0.02, 0.075, 0.73},
-      {"curly", "25 cm in curls of 2.5 mm, each its own", [](int n) { return curly(n); }, 0.021, 0.06, 0.75},
-      {"parted", "parted aside, 22 cm", [](int n) { return parted(n, 0.02f, 0.22f); }, 0.019, 0.082, 0.8},
-      {"ponytail", "to a tie behind the head, and on", [](int n) { return ponytail(n); }, 0.011, 0.03, 0.8},
+       0.0074, 0.0213, 0.81},
+      {"wavy", "28 cm in waves of 7 mm", wavy, 0.0107, 0.0244, 0.72},
+      {"curly", "25 cm in curls of 2.5 mm, each its own", [](int n) { return curly(n); }, 0.016, 0.0278, 0.74},
+      {"parted", "parted aside, 22 cm", [](int n) { return parted(n, 0.02f, 0.22f); }, 0.0063, 0.018, 0.85},
+      {"ponytail", "to a tie behind the head, and on", [](int n) { return ponytail(n); }, 0.0051, 0.0124, 0.86},
       {"two ways", "a third of a patch goes forward", twoWays, 1, 1, 0},
   };
 }

@@ -291,6 +291,8 @@ std::string fitHair(const Character& character, bool mend, sim::HairMeshShape& s
   }
   const std::string far = "its roots are " + length(before) + " from the scalp";
   if (!mend) return far + "; it looks like " + like + ": --fit on reads it so";
+  for (std::size_t v = 0; v < shape.groom_offsets.size(); ++v)
+    shape.groom_offsets[v] = found(shape.positions[v] + shape.groom_offsets[v]) - found(shape.positions[v]);
   for (Vec3& p : shape.positions) p = found(p);
   return far + "; it looks like " + like + ", and is read so: now they are " + length(rootDistance(shape, scalp)) +
          " off (--fit off leaves it as it is)";

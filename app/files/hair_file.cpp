@@ -182,6 +182,8 @@ sim::HairMeshShape Stacker::shape() const {
   out.root_faces = root_faces;
   for (const std::vector<int>& column : columns) {
     for (const int v : column) out.positions.push_back(obj.positions[v]);
+    for (const int v : column)
+      if (!obj.offsets.empty()) out.groom_offsets.push_back(obj.offsets[v]);
     out.column_first.push_back(static_cast<int>(out.positions.size()));
   }
   return out;
@@ -212,6 +214,12 @@ void append(std::string& text, double value) {
   const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value);
   text.push_back(' ');
   text.append(digits, error == std::errc() ? end : digits);
+}
+
+void appendLine(std::string& text, const char* keyword, const sim::Vec3& values) {
+  text += keyword;
+  for (int k = 0; k < 3; ++k) append(text, values[k]);
+  text += "\n";
 }
 
 void reverse(sim::HairMeshShape& shape) {
@@ -290,9 +298,9 @@ std::string writeHairMesh(const sim::HairMeshShape& shape) {
       if (l >= shape.columnLength(c)) continue;
       const int v = shape.column_first[c] + l;
       number[v] = ++written;
-      text += "v";
-      for (int k = 0; k < 3; ++k) append(text, shape.positions[v][k]);
-      text += "\n";
+      appendLine(text, "v", shape.positions[v]);
+      if (!shape.groom_offsets.empty() && !shape.groom_offsets[v].isZero(0))
+        appendLine(text, "#groom_offset", shape.groom_offsets[v]);
     }
     for (std::size_t f = 0; f < shape.root_faces.size(); ++f) {
       const sim::RootFace& face = shape.root_faces[f];

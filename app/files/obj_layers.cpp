@@ -11,7 +11,7 @@ namespace app {
 namespace {
 
 constexpr double kLargestCoordinate = 1e3;  // m
-constexpr std::string_view kLayerPrefix = "layer_", kBundlePrefix = "bundle_";
+constexpr std::string_view kLayerPrefix = "layer_", kBundlePrefix = "bundle_", kOffsetPrefix = "#groom_offset ";
 
 bool isObjBlank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
@@ -42,7 +42,9 @@ struct ObjReader {
     throw InputError(file, "line " + std::to_string(line), fault, mend);
   }
   double coordinate(std::string_view word) const;
+  sim::Vec3 threeCoordinates(std::string_view rest) const;
   void readVertex(std::string_view rest);
+  void readOffset(std::string_view rest);
   int corner(std::string_view word) const;
   void readFace(std::string_view rest);
   void enterLayer(std::string_view rest);
@@ -62,11 +64,21 @@ double ObjReader::coordinate(std::string_view word) const {
   return value;
 }
 
-void ObjReader::readVertex(std::string_view rest) {
+sim::Vec3 ObjReader::threeCoordinates(std::string_view rest) const {
   sim::Vec3 p;
   for (int k = 0; k < 3; ++k) p[k] = coordinate(nextWord(rest));
-  out.positions.push_back(p);
+  return p;
+}
+
+void ObjReader::readVertex(std::string_view rest) {
+  out.positions.push_back(threeCoordinates(rest));
   out.position_lines.push_back(line);
+}
+
+void ObjReader::readOffset(std::string_view rest) {
+  if (out.positions.empty()) fail("the groom offset belongs to no vertex", "put it after the vertex's line");
+  out.offsets.resize(out.positions.size(), sim::Vec3::Zero());
+  out.offsets.back() = threeCoordinates(rest);
 }
 
 // "7", "7/1", "7//2", "7/1/2", or counted back from the last vertex: "-1". Vertices written further down are found out
@@ -114,6 +126,7 @@ void ObjReader::enterLayer(std::string_view rest) {
 }
 
 void ObjReader::readLine(std::string_view text) {
+  if (text.starts_with(kOffsetPrefix)) return readOffset(text.substr(kOffsetPrefix.size()));
   const std::string_view keyword = nextWord(text);
   if (keyword == "v") {
     readVertex(text);
@@ -141,6 +154,7 @@ ObjLayers readObjLayers(std::string_view text, const std::string& file) {
     reader.readLine(text.substr(0, end));
     text.remove_prefix(std::min(end + 1, text.size()));
   }
+  if (!reader.out.offsets.empty()) reader.out.offsets.resize(reader.out.positions.size(), sim::Vec3::Zero());
   const int count = static_cast<int>(reader.out.positions.size());
   for (const auto& [number, layer] : reader.out.layers) {
     for (const ObjFace& face : layer.faces) {

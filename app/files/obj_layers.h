@@ -26,6 +26,7 @@ struct ObjLayer {
 struct ObjLayers {
   std::vector<sim::Vec3> positions;
   std::vector<int> position_lines;
+  std::vector<sim::Vec3> offsets;  // of the vertices before lines "#groom_offset"; as many as positions, or none
   std::map<int, ObjLayer> layers;  // by layer number
 };
 

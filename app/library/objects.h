@@ -9,6 +9,7 @@
 
 #include "app/library/handles.h"
 #include "app/scene/view/look_params.h"
+#include "render/strands/groom_offsets.h"
 #include "render/strands/strand_growth.h"
 #include "sim/step.h"
 
@@ -56,8 +57,9 @@ struct Hair {
   std::vector<sim::PinnedVertex> pins;
   // Strands, made when they are first asked for, and anew where their number or segments change.
   std::optional<render::StrandGrowth> growth;
+  render::GroomOffsets offsets;
   int grown_strands = 0, grown_segments = 0;
-  std::vector<float> floats;
+  std::vector<float> floats, drawn;
   std::vector<render::CurvePoint> points;
 
   Hair(MeshRef of, double (*clock)()) : shared(std::move(of)), context(shared->mesh, clock) {}

@@ -22,9 +22,12 @@ render::StrandGrowth& growthOf(Hair& hair) {
   const bool fits =
       hair.growth && hair.grown_strands == hair.look.strands && hair.grown_segments == hair.look.segments_per_layer;
   if (!fits) {
+    const std::vector<render::HairFace> faces = renderFaces(hair.mesh());
+    localPositions(hair.mesh().shape.groom_offsets, Vec3::Zero(), hair.drawn);
     localPositions(hair.mesh().shape.positions, Vec3::Zero(), hair.floats);
-    hair.growth.emplace(renderFaces(hair.mesh()), hair.floats, hair.look.strands, hair.look.segments_per_layer,
-                        hair.look.hair);
+    hair.offsets = render::GroomOffsets(faces, hair.floats, hair.drawn);
+    hair.offsets.add(hair.floats, hair.drawn);
+    hair.growth.emplace(faces, hair.drawn, hair.look.strands, hair.look.segments_per_layer, hair.look.hair);
     hair.grown_strands = hair.look.strands;
     hair.grown_segments = hair.look.segments_per_layer;
   }
@@ -85,7 +88,8 @@ hm_result hm_hair_grow_strands(hm_hair hair, const hm_strand_settings* settings,
     checkRequest(*settings, *output, growth);
     const Vec3 origin = use->state.positions[0];
     localPositions(use->state.positions, origin, use->floats);
-    if (!growth.setPositions(use->floats)) throw Fault{HM_ERROR_INTERNAL, "the state is not finite; reset the hair"};
+    use->offsets.add(use->floats, use->drawn);
+    if (!growth.setPositions(use->drawn)) throw Fault{HM_ERROR_INTERNAL, "the state is not finite; reset the hair"};
     use->points.resize(static_cast<std::size_t>(settings->points));
     for (int i = 0; i < settings->count; ++i)
       growOne(growth, settings->numbers ? settings->numbers[i] : settings->first + i,

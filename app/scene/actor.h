@@ -24,6 +24,7 @@
 #include "app/scene/pins.h"
 #include "app/styles/style_tie.h"
 #include "render/frame_input.h"
+#include "render/strands/groom_offsets.h"
 #include "sim/mesh/hair_mesh.h"
 #include "sim/mesh/hair_state.h"
 #include "sim/mesh/rest_shape.h"
@@ -65,6 +66,9 @@ struct Haircut {
   std::vector<Vec3> unpainted, painted;  // rest positions before and after a painted length; none where hair is tied
   std::vector<render::HairFace> faces;
   std::vector<float> rest;  // positions of the rest shape, three floats a vertex
+  // Of a groom's hair: from where its mesh is to where strands grow, and where that is at rest. Empty: they are one.
+  render::GroomOffsets offsets;
+  std::vector<float> rest_drawn;
   // Of hair that brushes have reshaped, which one actor alone wears.
   bool edited = false;
   bool remeshed = false;      // its structure is another than style or file, ties and attachments make it

@@ -246,11 +246,11 @@ void keepBase(Demo& demo) {
 render::FrameInput frameInput(Demo& demo, int width, int height) {
   demo.hair_inputs.clear();
   demo.body_inputs.clear();
-  demo.braided.resize(demo.actors.size());
+  demo.drawn_hair.resize(demo.actors.size());
   demo.bands.resize(demo.actors.size());
   for (std::size_t i = 0; i < demo.actors.size(); ++i) {
     const Actor& actor = demo.actors[i];
-    demo.hair_inputs.push_back(hairInput(actor, actor.spec.look, actor.shown_positions, demo.braided[i]));
+    demo.hair_inputs.push_back(hairInput(actor, actor.spec.look, actor.shown_positions, demo.drawn_hair[i]));
     demo.body_inputs.push_back(bodyInput(actor, actor.spec.look, demo.scene.look.view.show_strands));
     for (std::size_t k = 0; k < actor.worn.size(); ++k)
       demo.body_inputs.push_back(attachmentInput(actor, k, demo.scene.look.view.show_strands));

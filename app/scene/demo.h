@@ -81,7 +81,7 @@ struct Demo {
   // Scratch of the drawing, kept so that frames do not allocate.
   DebugGeometry debug_geometry;
   std::vector<render::HairInput> hair_inputs;
-  std::vector<std::vector<float>> braided;       // an actor: what its hair input points to, where it has plaits
+  std::vector<std::vector<float>> drawn_hair;    // an actor: what its hair input points to, of plaits and grooms
   std::vector<std::vector<render::Mat4>> bands;  // an actor: of its ties and its plaits' ends
   std::vector<render::BodyInput> body_inputs;
 };

@@ -55,7 +55,7 @@ auto savedOf(D& demo) requires std::same_as<std::remove_const_t<D>, Demo> {
   auto& [scene, asset_cache, actors, selected, camera, aspect, picture_height, place, origin, shown_fraction, debug,
          clock, governor, draw_governor, deadline, running, frames, shown_time, paused, single_steps, edits, timeline,
          comparison, bookmarks, turntable, loading, requests, message, message_is_fault, refused, file_ends, capture,
-         stats, history, history_next, debug_geometry, hair_inputs, braided, bands, body_inputs] = demo;
+         stats, history, history_next, debug_geometry, hair_inputs, drawn_hair, bands, body_inputs] = demo;
   auto& [ahead, lost, steps, time, step] = clock;
   return std::tie(camera.anchor, camera.jumped, aspect, picture_height, origin, shown_fraction, ahead, lost, steps,
                   time, step, frames, shown_time, paused);

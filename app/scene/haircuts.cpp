@@ -202,6 +202,27 @@ void markCovered(const Haircut& haircut, std::vector<render::HairFace>& faces) {
   }
 }
 
+void followRest(Haircut& haircut) {
+  sim::HairMeshShape& shape = haircut.mesh.shape;
+  blendPositions(shape.positions, shape.positions, 1, Vec3::Zero(), haircut.rest);
+  haircut.rest_drawn.clear();
+  shape.groom_offsets.clear();
+  if (haircut.offsets.empty()) return;
+  haircut.offsets.add(haircut.rest, haircut.rest_drawn);
+  for (std::size_t v = 0; v < shape.positions.size(); ++v) {
+    const auto at = [&](const std::vector<float>& from) { return Eigen::Map<const Eigen::Vector3f>(&from[3 * v]); };
+    shape.groom_offsets.push_back((at(haircut.rest_drawn) - at(haircut.rest)).cast<double>());
+  }
+}
+
+void bindGroom(const sim::HairMeshShape& loaded, Haircut& haircut) {
+  std::vector<float> rest, offsets;
+  blendPositions(loaded.positions, loaded.positions, 1, Vec3::Zero(), rest);
+  blendPositions(loaded.groom_offsets, loaded.groom_offsets, 1, Vec3::Zero(), offsets);
+  haircut.offsets = render::GroomOffsets(haircut.faces, rest, offsets);
+  followRest(haircut);
+}
+
 const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& asset_cache) {
   const std::string title = spec.hair.empty() ? styleTitle(spec) : spec.hair + (spec.reverse_faces ? " reversed" : "");
   const std::string ties = spec.ties.empty() ? "" : " tied " + writeTies(spec.ties).dump();
@@ -236,7 +257,10 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
   if (!spec.maps.density.empty())
     paintDensity(readFieldMap(spec.maps.density), body.character.scalp, haircut->mesh, haircut->faces);
   haircut->look_shares = paintedLook(spec.maps, spec.curves, body.character.scalp, haircut->mesh.shape);
-  blendPositions(haircut->mesh.shape.positions, haircut->mesh.shape.positions, 1, Vec3::Zero(), haircut->rest);
+  if (!spec.ties.empty()) shape.groom_offsets.clear();
+  for (const int v : haircut->covered)
+    if (!shape.groom_offsets.empty()) shape.groom_offsets[static_cast<std::size_t>(v)].setZero();
+  bindGroom(shape, *haircut);
   braidTails(spec, body.character.scalp, rings, *haircut);
   // Hair of a style that divides over the shoulders lies against itself: it sleeps as a whole.
   asset_cache.haircuts.push_back(std::move(haircut));

@@ -15,6 +15,12 @@ std::uint64_t freshId();
 // Marks the faces of a haircut that lie under an attachment.
 void markCovered(const Haircut& haircut, std::vector<render::HairFace>& faces);
 
+// After another rest shape of the same structure: what is drawn of it.
+void followRest(Haircut& haircut);
+
+// Strands grow off the haircut's mesh from now on as they did off `loaded`, of the same structure.
+void bindGroom(const sim::HairMeshShape& loaded, Haircut& haircut);
+
 // The haircut that `spec` asks for on a body, built on first use. Throws InputError.
 const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& asset_cache);
 

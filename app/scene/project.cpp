@@ -53,6 +53,7 @@ sim::Bytes binaryOf(const Demo& demo) {
     for (const sim::RootFace& face : shape.root_faces)
       faces.push_back({face.corner_count, face.columns[0], face.columns[1], face.columns[2], face.columns[3]});
     sim::writeBytes(actor.haircut->remeshed ? faces : std::vector<std::array<int, 5>>(), bytes);
+    sim::writeBytes(actor.haircut->remeshed ? shape.groom_offsets : std::vector<Vec3>(), bytes);
   }
   const std::string state = demoStateBytes(demo);
   sim::writeBytes(std::vector<char>(state.begin(), state.end()), bytes);
@@ -90,6 +91,7 @@ void takeShape(sim::ByteReader& from, double version, const std::string& file, i
     sim::readBytes(from, columns);
     sim::readBytes(from, faces);
   }
+  if (version > 2) sim::readBytes(from, shape.groom_offsets);
   if (shape.positions.empty()) return;
   const std::size_t vertices = demo.actors[static_cast<std::size_t>(index)].hair.positions.size();
   if (!from.complete || (columns.empty() && shape.positions.size() != vertices))

@@ -39,6 +39,8 @@ struct HairMeshShape {
   std::vector<RootFace> root_faces;
   std::vector<int> column_first{0};  // columns + 1 entries
   std::vector<Vec3> positions;       // one per vertex
+  // m, one per vertex or none: from there to where strands grow (render/strands/groom_offsets.h); nothing else sees it.
+  std::vector<Vec3> groom_offsets;
 
   int columnCount() const { return static_cast<int>(column_first.size()) - 1; }
   int columnLength(int c) const { return column_first[c + 1] - column_first[c]; }

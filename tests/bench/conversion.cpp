@@ -1,5 +1,6 @@
 #include "tests/bench/conversion.h"
 
+#include <array>
 #include <cstdio>
 #include <ctime>
 
@@ -32,6 +33,25 @@ Lengths lengthsOf(const app::Groom& groom) {
   return {app::quantile(ends, 0.5), app::quantile(ways, 0.5)};
 }
 
+// How far two halves of a groom overlap that were dealt out apart: what a silhouette of so many strands can reach.
+double halvesOverlap(const groom_kinds::Kind& kind, int strands) {
+  const app::Groom both = kind.make(2 * strands);
+  std::array<app::Groom, 2> halves;
+  for (std::size_t s = 0; s < both.strandCount(); ++s) {
+    app::Groom& half = halves[s % 2];
+    half.points.insert(half.points.end(), both.strand(s).begin(), both.strand(s).end());
+    half.strand_first.push_back(static_cast<std::uint32_t>(half.points.size()));
+  }
+  return app::silhouetteOverlap(halves[0], halves[1]);
+}
+
+// m, mean, from the hair mesh to where strands grow.
+double offsetOf(const sim::HairMeshShape& shape) {
+  double sum = 0;
+  for (const sim::Vec3& offset : shape.groom_offsets) sum += offset.norm();
+  return sum / static_cast<double>(shape.positions.size());
+}
+
 std::string row(const groom_kinds::Kind& kind, const ConversionOptions& asked) {
   app::ConvertOptions options;
   options.fit.vertices = asked.vertices;
@@ -49,20 +69,22 @@ std::string row(const groom_kinds::Kind& kind, const ConversionOptions& asked) {
   app::takeLook(conversion.look, look);
   const Lengths given = lengthsOf(groom);
   const Lengths anew = lengthsOf(app::growGroom(conversion.shape, look, asked.strands, kAnewPoints));
-  return formatted("| %s | %s | %d | %d x %zu | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %s | %.1f |\n",
+  return formatted("| %s | %s | %d | %d x %zu | %.2f | %.2f | %.1f | %.2f | %.2f | %.2f | %.2f | %.2f | %s | %.1f |\n",
                    kind.name.c_str(), kind.what.c_str(), conversion.shape.vertexCount(), conversion.shape.columnCount(),
                    conversion.fit.knots.size(), 100 * error.mean / error.strand_length,
-                   100 * error.share95 / error.strand_length, conversion.silhouette, conversion.silhouette_drawn,
-                   anew.ends / given.ends, anew.way / given.way, left.c_str(), seconds);
+                   100 * error.share95 / error.strand_length, 1e3 * offsetOf(conversion.shape), conversion.silhouette,
+                   conversion.silhouette_drawn, halvesOverlap(kind, asked.strands), anew.ends / given.ends,
+                   anew.way / given.way, left.c_str(), seconds);
 }
 
 }  // namespace
 
 void runConversion(const ConversionOptions& options) {
   std::string table =
-      "| groom | what | vertices | columns x layers | mean, % of length | 95 % within | silhouette | dealt out anew | "
+      "| groom | what | vertices | columns x layers | mean, % of length | 95 % within | mesh off, mm | silhouette | "
+      "dealt out anew | two halves | "
       "root to tip | along | faces left bare | "
-      "processor s |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+      "processor s |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   std::fputs(table.c_str(), stdout);
   for (const groom_kinds::Kind& kind : groom_kinds::kinds()) {
     const std::string one = row(kind, options);

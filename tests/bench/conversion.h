@@ -6,7 +6,7 @@
 namespace bench {
 
 struct ConversionOptions {
-  int strands = 1000, vertices = 1000;  // a groom; 0 vertices: as many as its bounds ask for
+  int strands = 10000, vertices = 0;  // a groom; 0 vertices: as many as its bounds ask for
   std::string folder;                   // whose conversion.md gets the table; empty: it is printed alone
 };
 

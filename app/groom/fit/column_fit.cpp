@@ -165,7 +165,8 @@ void addTarget(const StrandTarget& target, int layer, LayerBlocks& blocks, Colum
 
 }  // namespace
 
-ColumnSystem columnSystem(const std::vector<StrandTarget>& targets, const sim::HairMeshShape& shape) {
+ColumnSystem columnSystem(const std::vector<StrandTarget>& targets, const sim::HairMeshShape& shape,
+                          const ColumnHold& hold) {
   ColumnSystem system;
   const int columns = system.columns = shape.columnCount(), layers = system.layers = layersOf(shape);
   system.right = Eigen::VectorXd::Zero(3 * system.unknowns());
@@ -178,8 +179,17 @@ ColumnSystem columnSystem(const std::vector<StrandTarget>& targets, const sim::H
     double usual = 0;
     for (int c = 0; c < columns; ++c) usual += blocks.at(c, c).trace() / (3 * columns);
     trace += usual;
-    const Eigen::Matrix3d alike = kAlike * usual * Eigen::Matrix3d::Identity();
+    for (int c = 0; c < columns && !hold.toward.empty(); ++c) {
+      const double weight = hold.weights[static_cast<std::size_t>(c)] * usual;
+      blocks.at(c, c) += weight * Eigen::Matrix3d::Identity();
+      system.right.segment<3>(3 * system.unknown(c, l)) +=
+          weight * hold.toward[static_cast<std::size_t>(shape.column_first[c] + l)];
+    }
     for (const auto& [a, b] : edges) {
+      const double share = hold.alike.empty() ? 1
+                                              : std::max(hold.alike[static_cast<std::size_t>(a)],
+                                                         hold.alike[static_cast<std::size_t>(b)]);
+      const Eigen::Matrix3d alike = share * kAlike * usual * Eigen::Matrix3d::Identity();
       blocks.at(a, a) += alike;
       blocks.at(b, b) += alike;
       blocks.at(b, a) -= alike;

@@ -46,7 +46,15 @@ struct ColumnSystem {
   int unknowns() const { return columns * (layers - 1); }
 };
 
-ColumnSystem columnSystem(const std::vector<StrandTarget>& targets, const sim::HairMeshShape& shape);
+// What columns are held to beside their strands. Empty: nothing more.
+struct ColumnHold {
+  std::span<const double> alike = {};  // one a column: of the weight of neighbours' difference; an edge has the larger
+  std::span<const sim::Vec3> toward = {};  // m, one a vertex: where it would be if its strands told nothing
+  std::span<const double> weights = {};    // one a column: of that, beside its strands
+};
+
+ColumnSystem columnSystem(const std::vector<StrandTarget>& targets, const sim::HairMeshShape& shape,
+                          const ColumnHold& hold = {});
 
 // How often, and with how heavy penalties over the strands' weight at first and at last. `anew` begins without any,
 // else from the shape as it is.

@@ -11,6 +11,7 @@
 #include "app/files/report_line.h"
 #include "app/groom/fit/column_fit.h"
 #include "app/groom/fit/root_mesh.h"
+#include "app/groom/fit/usual_ways.h"
 #include "app/styles/style_untangle.h"
 
 namespace app {
@@ -22,13 +23,13 @@ using Eigen::Vector3f;
 constexpr std::size_t kMinGroomStrands = 20;  // strands
 constexpr std::size_t kFitStrands = 5000, kTrialStrands = 3000;
 constexpr int kSlides = 2, kRounds = 5;
-constexpr int kLoosenings = 4;
-constexpr float kLoosened = 0.1f;  // share of its weight that a strand keeps in a face that stays flat
-constexpr double kFatness = 0.012, kMinFatness = 0.003,
-                 kFlat = 1e-4;                           // of corner tetrahedra: aimed for, held, refused
-constexpr double kShortestLayer = 0.0045;                // m, of the median strand
-constexpr float kShortestLength = 0.0035f;               // m, of a column: an edge (column_fit.cpp)
-constexpr double kMinDensity = 0.5;                      // of layers where hair is straight, over the mean
+constexpr int kOpenings = 3, kStiffenings = 8;
+constexpr double kStiffer = 2;  // times that columns of a flat face are held more alike, a round
+constexpr double kFatness = 0.012, kMinFatness = 0.003, kOpenFatness = 0.02,
+                 kFlat = 1e-4;              // of corner tetrahedra: aimed for, held, where some were flat, refused
+constexpr double kShortestLayer = 0.0045;   // m, of the median strand
+constexpr float kShortestLength = 0.0035f;  // m, of a column: an edge (column_fit.cpp)
+constexpr double kMinDensity = 0.5;         // of layers where hair is straight, over the mean
 constexpr double kMeanBound = 0.01, kShareBound = 0.03;  // of the strands' length: what a fit is content with
 constexpr int kMinLayers = 5, kMaxLayers = 16;           // of hair that is long enough for so many
 constexpr double kSquareness = 0.5;
@@ -168,8 +169,10 @@ void standUp(Draft& draft) {
 void aim(const GrowthMap& growth, std::size_t most, Draft& draft) {
   draft.targets.clear();
   for (std::size_t s : someOf(draft.strands.strandCount(), most)) {
-    StrandTarget& target = draft.targets.emplace_back();
     const RootPlace root = placeStrand(draft, growth, s).root;
+    // Where its face was left out it roots at the edge of another one, which it tells nothing of.
+    if ((growth.rootAt(root) - draft.strands.strand(s)[0]).norm() > draft.raster.size) continue;
+    StrandTarget& target = draft.targets.emplace_back();
     target.face = root.face;
     target.row = growth.row(root);
     layerTargets(draft.strands.strand(s), draft.strands.length[s], columnLength(draft, s), draft.fit.knots, target);
@@ -224,46 +227,82 @@ void dropFlat(Draft& draft) {
   draft.fit.face_region = draft.roots.region;
 }
 
-// Opens the prisms as in the built-in styles. Strands in faces that this leaves flat then count less, and what the
-// others ask for is opened again; the faces that stay flat in the best of these are left out.
-void openFlat(Draft& draft) {
+// A hair mesh with its prisms opened, as far as that went.
+struct Opened {
+  sim::HairMeshShape shape;
+  std::vector<bool> flat;  // per root face
+  std::size_t count = 0;   // of these
+  double flattest = 0;
+};
+
+// Opens the prisms as in the built-in styles, a few times over.
+Opened opened(const sim::HairMeshShape& shape) {
   const BodyDistance nobody = [](const sim::Vec3&) { return 1.0; };
-  sim::HairMeshShape& shape = draft.fit.shape;
-  sim::HairMeshShape best;
-  std::size_t least = shape.root_faces.size() + 1;
-  for (int round = 0;; ++round) {
-    sim::HairMeshShape opened = shape;
-    const double flattest = untangle(nobody, kMinFatness, 0, opened);
+  Opened best;
+  sim::HairMeshShape now = shape;
+  for (int round = 0; round < kOpenings && (round == 0 || best.count > 0); ++round) {
+    const double flattest = untangle(nobody, round == 0 ? kMinFatness : kOpenFatness, 0, now);
     std::vector<bool> flat;
-    for (const sim::RootFace& face : opened.root_faces) flat.push_back(flattestCorner(opened, face) <= kFlat);
+    for (const sim::RootFace& face : now.root_faces) flat.push_back(flattestCorner(now, face) <= kFlat);
     const auto count = static_cast<std::size_t>(std::count(flat.begin(), flat.end(), true));
-    if (count < least) {
-      least = count;
-      best = std::move(opened);
-      draft.fit.flattest = flattest;
-    }
-    if (least == 0 || round == kLoosenings) break;
-    for (StrandTarget& target : draft.targets) {
-      if (round == 0 || !flat[static_cast<std::size_t>(target.face)]) continue;
-      for (float& weight : target.weight) weight *= kLoosened;
-    }
-    fitColumns(columnSystem(draft.targets, shape), 2 * kFatness, {2 * kRounds, 1, 30}, shape);
+    if (round == 0 || count < best.count) best = {now, flat, count, flattest};
   }
-  shape = std::move(best);
-  if (least > 0) dropFlat(draft);
+  return best;
+}
+
+// Opens the prisms. Where some stay flat, their columns are held more and more alike; the faces that are flat in the
+// best of these are left out.
+void openFlat(Draft& draft) {
+  Opened best = opened(draft.fit.shape);
+  sim::HairMeshShape shape = std::move(draft.fit.shape);
+  std::vector<double> alike(static_cast<std::size_t>(shape.columnCount()), 1);
+  std::vector<bool> flat = best.flat;
+  for (int round = 0; round < kStiffenings && best.count > 0; ++round) {
+    std::vector<bool> stiffer(alike.size(), false);
+    for (std::size_t f = 0; f < flat.size(); ++f)
+      for (const int column : std::span(shape.root_faces[f].columns).first(flat[f] ? 3 : 0))
+        stiffer[static_cast<std::size_t>(column)] = true;
+    for (std::size_t c = 0; c < alike.size(); ++c) alike[c] *= stiffer[c] ? kStiffer : 1;
+    fitColumns(columnSystem(draft.targets, shape, {.alike = alike}), 2 * kFatness, {2 * kRounds, 1, 30}, shape);
+    Opened now = opened(shape);
+    flat = now.flat;
+    if (now.count < best.count) best = std::move(now);
+  }
+  draft.fit.shape = std::move(best.shape);
+  draft.fit.flattest = best.flattest;
+  if (best.count > 0) dropFlat(draft);
 }
 
 // Fits, slides the layers along the strands and fits again, and opens what still lacks.
 void settle(Draft& draft) {
   sim::HairMeshShape& shape = draft.fit.shape;
+  const std::vector<sim::Vec3> toward = usualWays(draft.raster, draft.roots, draft.fit.knots, draft.fit.shape);
+  std::vector<double> weights(static_cast<std::size_t>(shape.columnCount()), kUsualWeight);
   for (int slide = 0; slide < kSlides; ++slide) {
     slideTargets(shape, draft.targets);
     FitRounds rounds;
     rounds.count = slide + 1 < kSlides ? kRounds : 2 * kRounds;
     rounds.anew = slide == 0;
-    draft.fit.flattest = fitColumns(columnSystem(draft.targets, shape), kFatness, rounds, shape);
+    draft.fit.flattest = fitColumns(columnSystem(draft.targets, shape, {{}, toward, weights}), kFatness, rounds, shape);
+    holdAstray(shape, toward, weights);
   }
   if (draft.fit.flattest < kMinFatness) openFlat(draft);
+}
+
+// The strands' own layers, whose prisms may be flat or inverted: what is simulated lies as near to these as it can.
+void placeGroom(Draft& draft) {
+  sim::HairMeshShape& shape = draft.fit.shape;
+  sim::HairMeshShape grown = shape;
+  const std::vector<sim::Vec3> toward = usualWays(draft.raster, draft.roots, draft.fit.knots, draft.fit.shape);
+  std::vector<double> weights(static_cast<std::size_t>(shape.columnCount()), kUsualWeight);
+  aim(GrowthMap(grown), kFitStrands, draft);
+  for (int slide = 0; slide < kSlides; ++slide) {
+    slideTargets(grown, draft.targets);
+    fitColumns(columnSystem(draft.targets, grown, {{}, toward, weights}), 0, {.count = 0, .anew = true}, grown);
+    holdAstray(grown, toward, weights);
+  }
+  for (std::size_t v = 0; v < shape.positions.size(); ++v)
+    shape.groom_offsets.push_back(grown.positions[v] - shape.positions[v]);
 }
 
 // Where along the curve its length is `length`, in layers.
@@ -287,7 +326,7 @@ void layerPoints(const HairFit& fit, const GrowthRow& row, std::vector<Vector3f>
   for (std::size_t k = 0; k < row.columns.size(); ++k) {
     const std::size_t first = static_cast<std::size_t>(fit.shape.column_first[row.columns[k]]);
     for (std::size_t l = 0; l < layers.size(); ++l)
-      layers[l] += row.weights[k] * fit.shape.positions[first + l].cast<float>();
+      layers[l] += row.weights[k] * (fit.shape.positions[first + l] + fit.shape.groom_offsets[first + l]).cast<float>();
   }
 }
 
@@ -370,6 +409,7 @@ std::unique_ptr<Draft> makeDraft(const StrandSamples& strands, const RootRaster&
   settle(*draft);
   if (draft->fit.shape.root_faces.empty())
     throw std::runtime_error("no bundle of it can be made into prisms; its strands go through each other everywhere");
+  placeGroom(*draft);
   measure(kTrialStrands, *draft);
   return draft;
 }

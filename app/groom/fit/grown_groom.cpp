@@ -71,8 +71,11 @@ Groom growGroom(const sim::HairMeshShape& shape, const render::HairLook& look, i
           shape.column_first[static_cast<std::size_t>(face.columns[static_cast<std::size_t>(k)])];
   }
   std::vector<float> positions;
-  for (const sim::Vec3& p : shape.positions)
-    for (int k = 0; k < 3; ++k) positions.push_back(static_cast<float>(p[k]));
+  for (std::size_t v = 0; v < shape.positions.size(); ++v) {
+    const sim::Vec3 grows_at =
+        shape.positions[v] + (shape.groom_offsets.empty() ? sim::Vec3::Zero().eval() : shape.groom_offsets[v]);
+    for (int k = 0; k < 3; ++k) positions.push_back(static_cast<float>(grows_at[k]));
+  }
   render::StrandGrowth growth(faces, positions, strands, 3, look);
   growth.setPositions(positions);
   Groom groom;

@@ -20,6 +20,8 @@ constexpr float kLargestHole = 3e-4f;  // m^2
 constexpr double kLengthShare = 0.8;   // of the strands around are no longer than a cell's length
 constexpr float kNearLength = 0.04f;   // m: strands go apart by their distance over at least so much of their length
 constexpr std::size_t kPathPoints = 12;
+constexpr double kOneWay = 0.5;            // rad, divergence up to which a cell's strands go one way
+constexpr std::size_t kGroupStrands = 12;  // of a cell, about which groups are looked for
 
 // Cells around cell (x, y) within `reach`.
 template <class Visit>
@@ -49,18 +51,42 @@ void layRaster(const std::vector<Vector2f>& at, float size, RootRaster& raster) 
   }
 }
 
-void meanPaths(const StrandSamples& strands, RootRaster& raster) {
-  for (RootCell& cell : raster.cells) {
-    if (cell.strands > 0) cell.path.assign(kPathPoints, Vector3f::Zero());
+using Path = std::vector<Vector3f>;
+
+Path pathOf(std::span<const Vector3f> strand) {
+  Path path;
+  for (std::size_t k = 0; k < kPathPoints; ++k) path.push_back(strand[k * (strand.size() - 1) / (kPathPoints - 1)]);
+  return path;
+}
+
+// The most of a cell's strands that go one way: those that go along with one of them.
+std::vector<std::size_t> largestGroup(const std::vector<Path>& paths) {
+  std::vector<std::size_t> largest;
+  for (std::size_t a = 0; a < std::min(paths.size(), kGroupStrands); ++a) {
+    std::vector<std::size_t> group;
+    for (std::size_t b = 0; b < paths.size(); ++b)
+      if (divergence(paths[a], paths[b]) < kOneWay) group.push_back(b);
+    if (group.size() > largest.size()) largest = std::move(group);
   }
+  return largest;
+}
+
+// Strands of two ways that root in one cell have no mean way.
+void meanPaths(const StrandSamples& strands, RootRaster& raster) {
+  std::vector<std::vector<Path>> paths(raster.cells.size());
   for (std::size_t s = 0; s < strands.strandCount(); ++s) {
-    RootCell& cell = raster.cells[static_cast<std::size_t>(raster.cell_of[s])];
-    const auto strand = strands.strand(s);
-    for (std::size_t k = 0; k < kPathPoints; ++k) {
-      const std::size_t at = k * (strand.size() - 1) / (kPathPoints - 1);
-      cell.path[k] += strand[at] / static_cast<float>(cell.strands);
-    }
-    cell.radius += (strand[0] - raster.map.center).norm() / static_cast<float>(cell.strands);
+    const auto at = static_cast<std::size_t>(raster.cell_of[s]);
+    RootCell& cell = raster.cells[at];
+    paths[at].push_back(pathOf(strands.strand(s)));
+    cell.radius += (strands.strand(s)[0] - raster.map.center).norm() / static_cast<float>(cell.strands);
+  }
+  for (std::size_t at = 0; at < paths.size(); ++at) {
+    const std::vector<std::size_t> group = largestGroup(paths[at]);
+    if (group.empty()) continue;
+    Path& mean = raster.cells[at].path;
+    mean.assign(kPathPoints, Vector3f::Zero());
+    for (const std::size_t one : group)
+      for (std::size_t k = 0; k < kPathPoints; ++k) mean[k] += paths[at][one][k] / static_cast<float>(group.size());
   }
 }
 

@@ -10,7 +10,7 @@
 namespace app {
 namespace {
 
-constexpr double kTears = 0.3;            // rad, divergence from which hair is torn
+constexpr double kTears = 0.15;           // rad, divergence from which hair is torn
 constexpr double kBack = 40;              // what a step back along the tear costs; where hair is alike a step costs 20
 constexpr float kShortestTear = 0.02f;    // m
 constexpr int kBeside = 2;                // cells that the hair beside a tear is blurred over

@@ -7,6 +7,7 @@
 #include "app/files/errors.h"
 #include "app/scene/demo.h"
 #include "app/scene/edit/painted_fields.h"
+#include "app/scene/haircuts.h"
 #include "sim/field_text.h"
 
 namespace app {
@@ -42,7 +43,8 @@ Haircut& ownHaircut(Actor& actor, Demo& demo) {
   own->id = worn.id;
   own->mesh = worn.mesh;
   own->faces = worn.faces;
-  own->rest = worn.rest;
+  own->rest = worn.rest, own->rest_drawn = worn.rest_drawn;
+  own->offsets = worn.offsets;
   own->edited = worn.edited, own->remeshed = worn.remeshed;
   own->ties = worn.ties;
   own->tied = worn.tied;
@@ -154,10 +156,7 @@ BrushSample parseBrush(const std::string& tool, const std::string& text) {
 void reshapeHair(const std::vector<Vec3>& positions, int index, Demo& demo) {
   Haircut& own = remake(positions, index, demo);
   own.edited = true;
-  for (std::size_t v = 0; v < positions.size(); ++v) {
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      own.rest[3 * v + axis] = static_cast<float>(positions[v][static_cast<int>(axis)]);
-  }
+  followRest(own);
 }
 
 void repaintHair(const PaintedShares& shares, int index, Demo& demo) {

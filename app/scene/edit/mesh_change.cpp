@@ -238,10 +238,21 @@ std::vector<float> carriedMask(const std::vector<float>& frozen, std::span<const
   return mask;
 }
 
+std::vector<Vec3> carriedOffsets(const std::vector<Vec3>& offsets, std::span<const VertexSource> sources) {
+  std::vector<Vec3> carried;
+  if (offsets.empty()) return carried;
+  for (const VertexSource& source : sources)
+    carried.push_back((1 - source.share) * offsets[static_cast<std::size_t>(source.from)] +
+                      source.share * offsets[static_cast<std::size_t>(source.to)]);
+  return carried;
+}
+
 std::unique_ptr<Haircut> haircutOf(sim::HairMeshShape shape, std::span<const VertexSource> sources,
                                    const Actor& actor) {
   const Haircut& worn = *actor.haircut;
   auto own = std::make_unique<Haircut>();
+  if (shape.groom_offsets.size() != shape.positions.size())
+    shape.groom_offsets = carriedOffsets(worn.mesh.shape.groom_offsets, sources);
   try {
     own->mesh = sim::buildHairMesh(std::move(shape));
   } catch (const sim::MeshError& error) {
@@ -257,8 +268,7 @@ std::unique_ptr<Haircut> haircutOf(sim::HairMeshShape shape, std::span<const Ver
   own->faces = renderFaces(own->mesh);
   if (!actor.spec.maps.density.empty())
     paintDensity(readFieldMap(actor.spec.maps.density), scalp, own->mesh, own->faces);
-  const std::vector<Vec3>& rest = own->mesh.shape.positions;
-  blendPositions(rest, rest, 1, Vec3::Zero(), own->rest);
+  bindGroom(sim::HairMeshShape(own->mesh.shape), *own);
   own->frozen = carriedMask(worn.frozen, sources);
   return own;
 }

@@ -65,7 +65,7 @@ struct StrandExport::Grown {
   render::StrandGrowth growth;
   std::vector<render::Strand> strands;
   std::size_t first_strand = 0;
-  std::vector<float> braided;  // where hair with plaits is drawn
+  std::vector<float> drawn;  // where strands grow, of plaits and grooms
 };
 
 StrandExport::~StrandExport() = default;
@@ -87,8 +87,8 @@ StrandExport::StrandExport(const Demo& demo, ExportWhat what, int points) : what
     Vector3f middle = Vector3f::Zero();
     for (int c = 0; c < shape.columnCount(); ++c)
       middle += shape.positions[shape.column_first[c]].cast<float>() / static_cast<float>(shape.columnCount());
-    std::vector<float> braided;
-    const render::HairInput input = hairInput(actor, look, haircut.rest, braided);
+    std::vector<float> grows_at;
+    const render::HairInput input = hairInput(actor, look, haircut.rest, grows_at);
     grown_.push_back(std::make_unique<Grown>(Grown{
         {input.faces, input.rest, input.strands, input.segments_per_layer, input.look, input.shares}, {}, 0, {}}));
     Grown& grown = *grown_.back();
@@ -122,7 +122,7 @@ const Groom& StrandExport::groom(const Demo& demo, double unit) {
   for (std::size_t a = 0; a < grown_.size() && a < demo.actors.size(); ++a) {
     Grown& grown = *grown_[a];
     const Actor& actor = demo.actors[a];
-    const render::HairInput input = hairInput(actor, actor.spec.look, actor.shown_positions, grown.braided);
+    const render::HairInput input = hairInput(actor, actor.spec.look, actor.shown_positions, grown.drawn);
     if (!grown.growth.setPositions(input.positions)) {
       throw OutputError("export", "the hair of character " + std::to_string(a + 1) + " was exchanged during the run",
                         "export without changing style or hair mesh");

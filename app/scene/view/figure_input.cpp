@@ -24,6 +24,12 @@ render::HairInput hairInput(const Actor& actor, const CharacterLook& look, std::
   input.look = look.hair;
   input.shares = actor.haircut->look_shares.shares();
   if (look.lift_strands) input.skin = actor.shown_skin;
+  const render::GroomOffsets& offsets = actor.haircut->offsets;
+  if (!offsets.empty() && positions.size() == actor.haircut->rest.size()) {
+    offsets.add(positions, drawn);
+    input.positions = drawn;
+    input.rest = actor.haircut->rest_drawn;
+  }
   const BraidPlan& braids = actor.haircut->braids;
   if (!braids.empty() && positions.size() == actor.haircut->rest.size()) {
     drawBraids(braids, positions, drawn);

@@ -10,7 +10,8 @@
 
 namespace app {
 
-// `positions`: of the simulated vertices, as shown. `drawn` keeps those that braided hair is drawn at.
+// `positions`: of the simulated vertices, as shown. `drawn` keeps those that hair is drawn at where that is
+// elsewhere: braided, or of a groom.
 render::HairInput hairInput(const Actor& actor, const CharacterLook& look, std::span<const float> positions,
                             std::vector<float>& drawn);
 // Its ties, and those that hold the ends of its plaits, where hair is drawn; `matrices` keeps where they are.

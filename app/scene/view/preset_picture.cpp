@@ -108,7 +108,7 @@ render::FrameInput presetFrame(const Demo& demo, const std::vector<Vec3>& positi
   jointMatrices(character.skeleton, preset.pose, Vec3::Zero(), preset.joints);
   skinEllipsoids(character, preset.pose, Vec3::Zero(), preset.skin);
   const bool strands = preset.scene.view.show_strands;
-  preset.hairs = {hairInput(actor, preset.look, preset.positions, preset.braided)};
+  preset.hairs = {hairInput(actor, preset.look, preset.positions, preset.drawn)};
   preset.hairs[0].position_revision = revision;
   if (preset.look.lift_strands) preset.hairs[0].skin = preset.skin;
   preset.bodies = {bodyInput(actor, preset.look, strands)};

@@ -27,7 +27,7 @@ struct PresetScene {
   SceneLook scene;
   bool moves = false;  // the preset has settings of the simulation
   Pose pose;           // at rest, facing +z
-  std::vector<float> positions, braided;
+  std::vector<float> positions, drawn;
   std::vector<render::Mat4> bands;
   std::vector<render::Mat4> joints, worn;
   std::vector<render::SkinEllipsoid> skin;

@@ -92,6 +92,32 @@ TEST(HairFile, ReadsColumnsOfDifferentLengths) {
   expectSame(app::readHairMesh(app::writeHairMesh(shape), "again.obj"), shape);
 }
 
+TEST(HairFile, GroomOffsetsComeBackBitForBitAndBelongToTheVertexBefore) {
+  sim::HairMeshShape shape = app::readHairMesh(kTwoBundles, "two.obj");
+  EXPECT_TRUE(shape.groom_offsets.empty());
+  shape.groom_offsets.assign(shape.positions.size(), sim::Vec3::Zero());
+  shape.groom_offsets[1] = {0.001 / 3, -0.002, 1e-17};
+  shape.groom_offsets.back() = {0, 0, 0.003};
+  const sim::HairMeshShape again = app::readHairMesh(app::writeHairMesh(shape), "again.obj");
+  expectSame(again, shape);
+  EXPECT_EQ(again.groom_offsets, shape.groom_offsets);
+  const std::string one =
+      replaced(kTwoBundles, "v 0.04 0.01 0\n", "v 0.04 0.01 0\n# a comment\n#groom_offset 0 1e-3 0\n");
+  EXPECT_EQ(app::readHairMesh(one, "one.obj").groom_offsets[12], sim::Vec3(0, 1e-3, 0));
+}
+
+TEST(HairFile, RefusesGroomOffsetsThatAreNone) {
+  const std::string vertex = "v 0.04 0.01 0\n";
+  EXPECT_NE(messageOf(replaced(kTwoBundles, vertex, vertex + "#groom_offset 0 1\n")).find("line 8: the vertex has"),
+            std::string::npos);
+  EXPECT_NE(
+      messageOf(replaced(kTwoBundles, vertex, vertex + "#groom_offset 0 1 x\n")).find("line 8: 'x' is not a number"),
+      std::string::npos);
+  EXPECT_NE(
+      messageOf("#groom_offset 0 0 0\n" + std::string(kTwoBundles)).find("line 1: the groom offset belongs to no"),
+      std::string::npos);
+}
+
 TEST(HairFile, ReadsWhatModellingToolsWrite) {
   const sim::HairMeshShape plain = app::readHairMesh(kTwoBundles, "two.obj");
   std::string crlf;

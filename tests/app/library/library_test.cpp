@@ -100,6 +100,38 @@ TEST(Library, ATextMakesTheSameMeshAsArrays) {
   EXPECT_EQ(hm_mesh_destroy(mesh), HM_OK);
 }
 
+// Strands of a converted groom grow beside its hair mesh.
+TEST(Library, StrandsGrowAtGroomOffsets) {
+  sim::HairMeshShape shape = someShape();
+  const auto tips = [&] {
+    const std::string text = app::writeHairMesh(shape);
+    hm_mesh mesh{};
+    EXPECT_EQ(hm_mesh_create_from_text(text.data(), text.size(), "some.obj", 0, &mesh), HM_OK) << hm_error_message();
+    const hm_hair hair = makeHair(mesh);
+    hm_strand_settings settings;
+    hm_default_strand_settings(&settings);
+    settings.count = 20;
+    std::vector<double> points(3 * 20 * static_cast<std::size_t>(settings.points));
+    hm_strand_output output{};
+    output.positions = {points.data(), 3 * sizeof(double), points.size() / 3, HM_FLOAT64};
+    EXPECT_EQ(hm_hair_grow_strands(hair, &settings, &output), HM_OK) << hm_error_message();
+    hm_hair_destroy(hair);
+    hm_mesh_destroy(mesh);
+    std::vector<Vec3> at;
+    for (int s = 1; s <= 20; ++s) at.emplace_back(&points[points.size() / 20 * static_cast<std::size_t>(s) - 3]);
+    return at;
+  };
+  const std::vector<Vec3> before = tips();
+  shape.groom_offsets.assign(shape.positions.size(), Vec3::Zero());
+  for (int c = 0; c < shape.columnCount(); ++c)
+    for (int v = shape.column_first[c] + 1; v < shape.column_first[c + 1]; ++v)
+      shape.groom_offsets[static_cast<std::size_t>(v)] = Vec3(0.003, 0, 0);
+  const std::vector<Vec3> after = tips();
+  Vec3 moved = Vec3::Zero();  // m; single strands wander another way where hair is longer
+  for (std::size_t s = 0; s < before.size(); ++s) moved += (after[s] - before[s]) / static_cast<double>(before.size());
+  EXPECT_LT((moved - Vec3(0.003, 0, 0)).norm(), 0.0008);
+}
+
 // The first hair needs no file: every built-in style stands on the plain head and stays out of it.
 TEST(Library, ABuiltInStyleStandsOnThePlainHead) {
   const Vec3 radii = 0.23 * Vec3(0.34, 0.5, 0.42);

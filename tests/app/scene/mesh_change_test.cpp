@@ -8,10 +8,13 @@
 
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
+#include "app/files/hair_file.h"
+#include "app/files/output_file.h"
 #include "app/files/recording.h"
 #include "app/scene/demo.h"
 #include "app/scene/edit/groom_brush.h"
 #include "app/scene/project.h"
+#include "app/scene/view/figure_input.h"
 #include "tests/app/scene/mesh_in_hand.h"
 #include "tests/run_program.h"
 
@@ -386,6 +389,54 @@ TEST(MeshChange, AProjectAndASceneKeepTheMesh) {
   ASSERT_EQ(ask({Ask::kSaveScene, "", folder + "/scene.json"}, demo), "");
   const Demo reopened = app::openScene(app::loadScene(folder + "/scene.json"), 1.5);
   EXPECT_EQ(meshOf(reopened).shape.positions, meshOf(demo).shape.positions);
+}
+
+// m, from the simulated vertices at rest to where strands grow: the longest.
+double farthestOffset(const Demo& demo) {
+  const app::Haircut& haircut = *demo.actors[0].haircut;
+  double most = 0;
+  for (std::size_t k = 0; k < haircut.rest_drawn.size(); ++k)
+    most = std::max(most, std::abs(static_cast<double>(haircut.rest_drawn[k] - haircut.rest[k])));
+  return most;
+}
+
+// Strands of a groom grow beside its mesh, after brushes, another layer, undo and in the project too.
+TEST(MeshChange, StrandsOfAGroomStayWhereTheyGrow) {
+  const std::string folder = test::freshFolder("mesh_groom");
+  sim::HairMeshShape shape = meshOf(demoOf()).shape;
+  shape.groom_offsets.assign(shape.positions.size(), Vec3::Zero());
+  for (int c = 0; c < shape.columnCount(); ++c)
+    for (int v = shape.column_first[c] + 1; v < shape.column_first[c + 1]; ++v)
+      shape.groom_offsets[static_cast<std::size_t>(v)] = Vec3(0, 0, 0.004);
+  app::writeFile(folder + "/groom.obj", app::writeHairMesh(shape));
+  app::Scene scene = test::sceneOf(app::Style::kLong, "idle_turns.bvh");
+  scene.characters[0].hair = folder + "/groom.obj";
+  Demo demo = app::openScene(scene, 1.5);
+  app::advanceFrame(demo, 1.0 / 60, {});
+  ASSERT_NEAR(farthestOffset(demo), 0.004, 1e-6);
+  const app::Actor& actor = demo.actors[0];
+  std::vector<float> seen;
+  const render::HairInput input = app::hairInput(actor, actor.spec.look, actor.shown_positions, seen);
+  ASSERT_EQ(input.positions.size(), actor.shown_positions.size());
+  EXPECT_NE(seen, actor.shown_positions) << "what is drawn grows there";
+  for (std::size_t k = 0; k < seen.size(); k += 3)
+    EXPECT_LT((Eigen::Map<const Eigen::Vector3f>(&input.positions[k]) -
+               Eigen::Map<const Eigen::Vector3f>(&actor.shown_positions[k]))
+                  .norm(),
+              0.0041f);
+  ASSERT_EQ(ask({Ask::kMesh, "add-layer", "3"}, demo), "");
+  EXPECT_NEAR(farthestOffset(demo), 0.004, 1e-4);
+  EXPECT_EQ(meshOf(demo).shape.groom_offsets.size(), meshOf(demo).shape.positions.size());
+  const std::vector<float> drawn = demo.actors[0].haircut->rest_drawn;
+  app::saveProject(folder + "/mine.json", demo);
+  Demo other = demoOf(app::Style::kShort);
+  app::openProject(folder + "/mine.json", other);
+  ASSERT_EQ(other.actors[0].haircut->rest_drawn.size(), drawn.size());
+  for (std::size_t k = 0; k < drawn.size(); ++k)
+    ASSERT_NEAR(other.actors[0].haircut->rest_drawn[k], drawn[k], 1e-6) << k;
+  ASSERT_EQ(ask({Ask::kUndo, "", ""}, demo), "");
+  EXPECT_NEAR(farthestOffset(demo), 0.004, 1e-4);
+  EXPECT_EQ(meshOf(demo).shape.positions.size(), shape.positions.size());
 }
 
 // Two seconds after the change gravity is balanced in the new mesh: what hangs still has not drooped.
