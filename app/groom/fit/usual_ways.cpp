@@ -10,6 +10,7 @@ using Eigen::Vector2f;
 using Eigen::Vector3f;
 
 constexpr double kHeldWeight = 1;
+constexpr double kLongEnough = 0.7;
 constexpr double kAstray = 0.25;         // of the usual way's length, off which a column is astray
 constexpr float kShortestWay = 0.0035f;  // m, of a column: an edge (column_fit.cpp)
 
@@ -21,13 +22,20 @@ std::vector<int> regionsOfColumns(const RootMesh& roots) {
   return region;
 }
 
-// The nearest cell of a region that strands root in.
-const RootCell* usualCell(const RootRaster& raster, int region, const Vector2f& at) {
+double wayLength(const std::vector<Vector3f>& path) {
+  double length = 0;
+  for (std::size_t k = 1; k < path.size(); ++k) length += (path[k] - path[k - 1]).norm();
+  return length;
+}
+
+// The nearest cell of a region whose strands are about that long (m): short fine hair of a hairline tells nothing of
+// the way that long hair goes.
+const RootCell* usualCell(const RootRaster& raster, int region, const Vector2f& at, double length) {
   const RootCell* best = nullptr;
   float least = std::numeric_limits<float>::infinity();
   for (std::size_t c = 0; c < raster.cells.size(); ++c) {
     const RootCell& cell = raster.cells[c];
-    if (cell.region != region || cell.path.empty()) continue;
+    if (cell.region != region || cell.path.empty() || wayLength(cell.path) < kLongEnough * length) continue;
     const auto columns = static_cast<std::size_t>(raster.columns);
     const Vector2f middle = raster.origin + raster.size * Vector2f(static_cast<float>(c % columns) + 0.5f,
                                                                    static_cast<float>(c / columns) + 0.5f);
@@ -45,9 +53,9 @@ std::vector<sim::Vec3> usualWays(const RootRaster& raster, const RootMesh& roots
   const std::vector<int> region = regionsOfColumns(roots);
   std::vector<sim::Vec3> all;
   for (std::size_t c = 0; c < region.size(); ++c) {
-    const RootCell* cell = usualCell(raster, region[c], roots.at[c]);
     const sim::Vec3 root = shape.positions[static_cast<std::size_t>(shape.column_first[c])];
     const double length = std::max(raster.lengthAt(roots.at[c]), kShortestWay);
+    const RootCell* cell = usualCell(raster, region[c], roots.at[c], length);
     std::vector<double> passed{0};
     for (std::size_t k = 1; cell && k < cell->path.size(); ++k)
       passed.push_back(passed.back() + (cell->path[k] - cell->path[k - 1]).norm());
