@@ -286,12 +286,12 @@ inline app::Groom styled(app::Style style, app::Resolution resolution, int stran
 inline std::vector<Kind> kinds() {
   using app::Resolution, app::Style;
   return {
-      {"short", "the short style, low", [](int n) { return styled(Style::kShort, Resolution::kLow, n); }, 0.0136,
-       0.0345, 0.78},
+      {"short", "the short style, low", [](int n) { return styled(Style::kShort, Resolution::kLow, n); }, 0.0122,
+       0.0318, 0.8},
       {"shoulder", "the shoulder style, medium", [](int n) { return styled(Style::kShoulder, Resolution::kMedium, n); },
        0.0108, 0.0343, 0.8},
-      {"long", "the long style, low", [](int n) { return styled(Style::kLong, Resolution::kLow, n); }, 0.014, 0.0526,
-       0.81},
+      {"long", "the long style, low", [](int n) { return styled(Style::kLong, Resolution::kLow, n); }, 0.0112, 0.0364,
+       0.68},
       {"cropped", "3 cm, leaning forward", cropped, 0.0112, 0.0378, 0.79},
       {"swept back", "straight, 20 cm",
        [](int n) {

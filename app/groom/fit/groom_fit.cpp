@@ -11,6 +11,7 @@
 #include "app/files/report_line.h"
 #include "app/groom/fit/column_fit.h"
 #include "app/groom/fit/root_mesh.h"
+#include "app/groom/fit/root_tears.h"
 #include "app/groom/fit/usual_ways.h"
 #include "app/styles/style_untangle.h"
 
@@ -23,6 +24,8 @@ using Eigen::Vector3f;
 constexpr std::size_t kMinGroomStrands = 20;  // strands
 constexpr std::size_t kFitStrands = 5000, kTrialStrands = 3000;
 constexpr int kSlides = 2, kRounds = 5;
+// rad, from which hair is torn apart: the least finds where it divides, and in hair of many ways none of its partings.
+constexpr std::array kTears{0.15, 0.3, 0.45};
 constexpr int kOpenings = 3, kStiffenings = 8;
 constexpr double kStiffer = 2;  // times that columns of a flat face are held more alike, a round
 constexpr double kFatness = 0.012, kMinFatness = 0.003, kOpenFatness = 0.02,
@@ -371,13 +374,17 @@ void measure(std::size_t most, Draft& draft) {
   error.share95 = quantile(std::move(gaps), 0.95);
 }
 
-// The share of the strands that do not fit, and that of the faces left bare: rounding that opens one face more or less
-// changes it little.
+// The share of the strands that do not fit, that of the faces left bare, and how far of their length the strands grow
+// from the mesh: rounding that opens one face more or less changes it little.
 double costOf(const HairFit& fit) {
   const auto off = std::ranges::count_if(fit.error.of_strand,
                                          [&](float one) { return one > kShareBound * fit.error.strand_length; });
   const double bare = fit.dropped_faces / static_cast<double>(fit.dropped_faces + fit.shape.root_faces.size());
-  return static_cast<double>(off) / static_cast<double>(fit.error.of_strand.size()) + bare;
+  double beside = 0;
+  for (const sim::Vec3& offset : fit.shape.groom_offsets)
+    beside += offset.norm() / static_cast<double>(fit.shape.groom_offsets.size());
+  return static_cast<double>(off) / static_cast<double>(fit.error.of_strand.size()) + bare +
+         beside / fit.error.strand_length;
 }
 
 bool better(const HairFit& larger, const HairFit& smaller) {
@@ -395,6 +402,26 @@ int usualLayers(const RootRaster& raster, double length, int vertices) {
          layers * (layers - 1.0) * (layers - 1.0) < kSquareness * length * length * vertices / area)
     ++layers;
   return layers;
+}
+
+// How many times a fit is off its bounds.
+double lackingOf(const HairFit& fit) {
+  return std::max(fit.error.mean / kMeanBound, fit.error.share95 / kShareBound) / fit.error.strand_length;
+}
+
+// The raster torn in every way that there is; those that come out alike once.
+std::vector<RootRaster> tornRasters(const RootRaster& whole) {
+  std::vector<RootRaster> all;
+  for (const double tears : kTears) {
+    RootRaster raster = whole;
+    tearApart(tears, raster);
+    const auto alike = [&](const RootRaster& other) {
+      return raster.split == other.split &&
+             std::ranges::equal(raster.cells, other.cells, {}, &RootCell::region, &RootCell::region);
+    };
+    if (std::ranges::none_of(all, alike)) all.push_back(std::move(raster));
+  }
+  return all;
 }
 
 std::unique_ptr<Draft> makeDraft(const StrandSamples& strands, const RootRaster& raster, int layers, int vertices) {
@@ -427,21 +454,27 @@ HairFit fitGroom(const StrandSamples& strands, const FitOptions& options) {
   if (strands.strandCount() < kMinGroomStrands)
     throw std::runtime_error(countOf(strands.strandCount(), "strand") + " can be used, finite and of a length; " +
                              "a hair mesh takes at least " + std::to_string(kMinGroomStrands));
-  const RootRaster raster = rasterRoots(strands);
+  const std::vector<RootRaster> torn = tornRasters(rasterRoots(strands));
   const double length = quantile(strands.length, 0.5);
   std::vector<int> budgets{400, 800, 1600, 2400};
   if (options.vertices > 0) budgets = {options.vertices};
+  const auto draftOf = [&](const RootRaster& raster, int vertices) {
+    return makeDraft(strands, raster, options.layers > 0 ? options.layers : usualLayers(raster, length, vertices),
+                     vertices);
+  };
   std::unique_ptr<Draft> best;
-  double lacking = 1;  // how many times a fit is off its bounds
-  for (const int vertices : budgets) {
+  for (const RootRaster& raster : torn) {
+    std::unique_ptr<Draft> draft = draftOf(raster, budgets.front());
+    if (!best || costOf(draft->fit) < costOf(best->fit)) best = std::move(draft);
+  }
+  const RootRaster& raster = best->raster;
+  for (const int vertices : std::span(budgets).subspan(1)) {
+    const double off = lackingOf(best->fit);
+    if (off <= 1 && best->fit.dropped_faces == 0) break;
     // The error falls about as the columns' number grows.
-    if (best && vertices != budgets.back() && best->fit.shape.vertexCount() * lacking > 1.3 * vertices) continue;
-    const int layers = options.layers > 0 ? options.layers : usualLayers(raster, length, vertices);
-    std::unique_ptr<Draft> draft = makeDraft(strands, raster, layers, vertices);
-    const FitError& error = draft->fit.error;
-    lacking = std::max(error.mean / kMeanBound, error.share95 / kShareBound) / error.strand_length;
-    if (!best || better(draft->fit, best->fit)) best = std::move(draft);
-    if (lacking <= 1 && best->fit.dropped_faces == 0) break;
+    if (vertices != budgets.back() && best->fit.shape.vertexCount() * off > 1.3 * vertices) continue;
+    std::unique_ptr<Draft> draft = draftOf(raster, vertices);
+    if (better(draft->fit, best->fit)) best = std::move(draft);
   }
   measure(strands.strandCount(), *best);
   return std::move(best->fit);

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/groom/fit/root_tears.h"
-
 namespace app {
 namespace {
 
@@ -307,7 +305,6 @@ RootRaster rasterRoots(const StrandSamples& strands) {
   meanPaths(strands, raster);
   fillHoles(raster);
   localLengths(strands, raster);
-  tearApart(raster);
   return raster;
 }
 

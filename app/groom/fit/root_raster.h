@@ -55,9 +55,8 @@ struct RootRaster {
   Eigen::Vector3f skinAt(const Eigen::Vector2f& at) const;
 };
 
-// Cells as fine as a few strands each allow, at least 3 mm; holes smaller than 3 cm^2 are filled. Where neighbouring
-// strands go apart by more than 0.3 rad over at least 20 mm of scalp, as at a parting, the map is torn, and each
-// tear goes on to the rim where the strands differ most: regions lie between.
+// Cells as fine as a few strands each allow, at least 3 mm; holes smaller than 3 cm^2 are filled. Without regions yet:
+// root_tears.h.
 RootRaster rasterRoots(const StrandSamples& strands);
 
 // Angle-like: how much two strands' distance grows, over their length up to there.

@@ -10,7 +10,6 @@
 namespace app {
 namespace {
 
-constexpr double kTears = 0.15;           // rad, divergence from which hair is torn
 constexpr double kBack = 40;              // what a step back along the tear costs; where hair is alike a step costs 20
 constexpr float kShortestTear = 0.02f;    // m
 constexpr int kBeside = 2;                // cells that the hair beside a tear is blurred over
@@ -149,11 +148,11 @@ void tearOn(Lattice& lattice, int from, const std::vector<bool>& avoided) {
   }
 }
 
-// Tears where the hair goes apart over a long enough line, and on to the rim from both its ends.
-void tearChains(Lattice& lattice) {
+// Tears where the hair goes apart by `tears` (rad) over a long enough line, and on to the rim from both its ends.
+void tearChains(double tears, Lattice& lattice) {
   RootRaster& raster = lattice.raster;
   std::vector<bool> chain(lattice.apart.size());
-  for (std::size_t e = 0; e < chain.size(); ++e) chain[e] = lattice.apart[e] > kTears;
+  for (std::size_t e = 0; e < chain.size(); ++e) chain[e] = lattice.apart[e] > tears;
   std::vector<bool> done(static_cast<std::size_t>(lattice.cornerCount()), false);
   raster.split.assign(done.size(), 0);
   for (std::size_t e = 0; e < chain.size(); ++e) {
@@ -264,9 +263,9 @@ void joinSmallRegions(Lattice& lattice) {
 
 }  // namespace
 
-void tearApart(RootRaster& raster) {
+void tearApart(double tears, RootRaster& raster) {
   Lattice lattice = measure(raster);
-  tearChains(lattice);
+  tearChains(tears, lattice);
   joinSmallRegions(lattice);
 }
 

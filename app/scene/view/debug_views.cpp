@@ -83,15 +83,15 @@ void addTets(const Actor& actor, DebugGeometry& geometry) {
 }
 
 void addEllipsoids(const Actor& actor, DebugGeometry& geometry) {
-  constexpr int kMeridians = 12, kParallels = 7, kPieces = 32;
+  constexpr int kMeridians = 12, kParallels = 7, kArcs = 32;
   constexpr double kPi = 3.14159265358979323846;
   for (const sim::Ellipsoid& e : actor.ellipsoids) {
     const auto at = [&](double polar, double azimuth) {
       const sim::Vec3 unit(std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth));
       return vertex(e.center + e.rotation * e.radii.cwiseProduct(unit), kEllipsoidColor);
     };
-    for (int piece = 0; piece < kPieces; ++piece) {
-      const double a = kPi * piece / kPieces, b = kPi * (piece + 1) / kPieces;
+    for (int piece = 0; piece < kArcs; ++piece) {
+      const double a = kPi * piece / kArcs, b = kPi * (piece + 1) / kArcs;
       for (int m = 0; m < kMeridians; ++m) {
         const double azimuth = 2 * kPi * m / kMeridians;
         addLine(at(a, azimuth), at(b, azimuth), geometry);
