@@ -93,7 +93,7 @@ int tileFor(float texels, int size) {
 
 }  // namespace
 
-ShadowMaps::ShadowMaps() : framebuffer_(makeFramebuffer()), plain_(makeSampler()) {
+ShadowMaps::ShadowMaps() : framebuffer_(makeFramebuffer()), unattached_(makeFramebuffer()), plain_(makeSampler()) {
   glSamplerParameteri(plain_.id(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glSamplerParameteri(plain_.id(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   glSamplerParameteri(plain_.id(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
@@ -126,7 +126,8 @@ void ShadowMaps::allocate(const TextureExtent& extent) {
 
 long ShadowMaps::gpuBytes() const {
   const long side = bodyMapSize(extent_.width);
-  return extent_.texels() * (8 + 8 + 4 + 4) + extent_.texels() * 8 / 3 + 4L * shared::kMaxBodyShadows * side * side;
+  return extent_.texels() * (8 + 8 + 4 + 4) + extent_.texels() * 8 / 3 + 4L * shared::kMaxBodyShadows * side * side +
+         4L * shared::kOpacitySums * sums_side_ * sums_side_;
 }
 
 // A tile that the hair has is kept until it is off by more than a little, so that nothing switches to and fro.
@@ -341,8 +342,6 @@ bool ShadowMaps::claimBodyMap(std::size_t map) {
 
 void ShadowMaps::beginDepth(const Texture& depth, int layer) {
   const GLuint target = framebuffer_.id();
-  glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT0, 0, 0, 0);
-  glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT1, 0, 0, 0);
   glNamedFramebufferDrawBuffer(target, GL_NONE);
   glNamedFramebufferTextureLayer(target, GL_DEPTH_ATTACHMENT, depth.id(), 0, layer);
   glClearNamedFramebufferfv(target, GL_DEPTH, 0, &kFarAway);
@@ -363,17 +362,30 @@ void ShadowMaps::beginHairDepth(const HairMap& map) {
 
 void ShadowMaps::beginOpacity(const HairMap& map) {
   beginTile(map);
-  const GLuint target = framebuffer_.id();
-  glNamedFramebufferTextureLayer(target, GL_DEPTH_ATTACHMENT, 0, 0, 0);
-  glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT0, opacity_near_.id(), 0, map.tile.layer);
-  glNamedFramebufferTextureLayer(target, GL_COLOR_ATTACHMENT1, opacity_far_.id(), 0, map.tile.layer);
-  const GLenum targets[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
-  glNamedFramebufferDrawBuffers(target, 2, targets);
-  const float nothing[4] = {0, 0, 0, 0};
-  glClearNamedFramebufferfv(target, GL_COLOR, 0, nothing);
-  glClearNamedFramebufferfv(target, GL_COLOR, 1, nothing);
+  const int side = extent_.width;
+  if (sums_side_ != side) {
+    sums_side_ = side;
+    opacity_sums_ = makeArray(GL_R32UI, {side, side, shared::kOpacitySums}, GL_NEAREST);
+  }
+  glClearTexSubImage(opacity_sums_.id(), 0, 0, 0, 0, map.tile.side, map.tile.side, shared::kOpacitySums, GL_RED_INTEGER,
+                     GL_UNSIGNED_INT, nullptr);
+  glNamedFramebufferParameteri(unattached_.id(), GL_FRAMEBUFFER_DEFAULT_WIDTH, extent_.width);
+  glNamedFramebufferParameteri(unattached_.id(), GL_FRAMEBUFFER_DEFAULT_HEIGHT, extent_.height);
+  glBindFramebuffer(GL_FRAMEBUFFER, unattached_.id());
   glDisable(GL_DEPTH_TEST);
+  glBindImageTexture(shared::kImageSums, opacity_sums_.id(), 0, GL_TRUE, 0, GL_READ_WRITE, GL_R32UI);
   glBindTextureUnit(shared::kUnitHairDepth, hair_depth_.id());
+}
+
+void ShadowMaps::sumOpacity(const HairMap& map) {
+  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  glBindImageTexture(shared::kImageNear, opacity_near_.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+  glBindImageTexture(shared::kImageFar, opacity_far_.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGBA16F);
+  const auto groups = static_cast<GLuint>((map.tile.side + shared::kTileGroup - 1) / shared::kTileGroup);
+  glDispatchCompute(groups, groups, 1);
+  // Read as textures, averaged, and by the next map's image.
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
+                  GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
 void ShadowMaps::describeTile(std::size_t map, OpacityTile& tile) const {

@@ -64,10 +64,12 @@ class ShadowMaps {
   bool claimHairMap(std::size_t map);
   bool claimBodyMap(std::size_t map);
 
-  // Binds the framebuffer to a map's texels, cleared, for the next draws: a hair's depth, its opacity layers (which
-  // read that depth), the bodies' depth in a hair's view, a map of bodies.
+  // Binds the framebuffer to a map's texels, cleared, for the next draws: a hair's depth, what opacity.frag adds up
+  // (which reads that depth), the bodies' depth in a hair's view, a map of bodies.
   void beginHairDepth(const HairMap& map);
   void beginOpacity(const HairMap& map);
+  // Makes opacity layers of what was added up, with opacity_layers.comp in use.
+  void sumOpacity(const HairMap& map);
   void beginBodyInHairDepth(const HairMap& map);
   void beginBodyDepth(std::size_t map);
 
@@ -111,9 +113,11 @@ class ShadowMaps {
   // Lets the framebuffer take depth alone, into a layer of `depth`, and clears what the scissor leaves of it.
   void beginDepth(const Texture& depth, int layer);
 
-  Framebuffer framebuffer_;
+  Framebuffer framebuffer_, unattached_;
   Texture opacity_near_, opacity_far_, hair_depth_, body_in_hair_depth_, body_depth_;
-  Sampler plain_;  // for depth that is read and not compared
+  Texture opacity_sums_;  // of one tile; made where a GPU adds up
+  int sums_side_ = 0;     // texels
+  Sampler plain_;         // for depth that is read and not compared
   Buffer block_, grid_block_;
   TextureExtent extent_;  // of the hairs' maps; a whole tile is as wide
   int steps_down_ = 0;    // from as many texels a pixel as are wanted to those there is room for

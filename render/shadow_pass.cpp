@@ -44,7 +44,7 @@ class HairShadowPass {
   // Draws a bound hair's strands into a map, not in software.
   void drawStages(StrandPath path, const HairResources& hair, const ShadowMaps::HairMap& map, ShadowMaps& shadows);
 
-  ShaderProgram depth_, opacity_, body_depth_;
+  ShaderProgram depth_, opacity_, layers_, body_depth_;
   GrownLines grown_;
   SoftwareShadow software_;
   VertexArray no_attributes_;
@@ -72,6 +72,7 @@ class BodyShadowPass {
 HairShadowPass::HairShadowPass(const std::string& shader_dir)
     : depth_(shader_dir, {{"strand.vert", "strand_shadow.geom", "depth_only.frag"}, {}, {}}),
       opacity_(shader_dir, {{"strand.vert", "strand_shadow.geom", "opacity.frag"}, {}, {}}),
+      layers_(shader_dir, {{"opacity_layers.comp"}, {}, {}}),
       body_depth_(shader_dir, {{"body.vert", "depth_only.frag"}, {}, {}}),
       grown_(shader_dir),
       software_(shader_dir),
@@ -88,10 +89,9 @@ void HairShadowPass::drawStages(StrandPath path, const HairResources& hair, cons
   shadows.beginHairDepth(map);
   compute ? grown_.drawDepth(hair) : growAndDraw(depth_);
   shadows.beginOpacity(map);
-  glEnable(GL_BLEND);
-  glBlendFunc(GL_ONE, GL_ONE);
   compute ? grown_.drawOpacity(hair) : growAndDraw(opacity_);
-  glDisable(GL_BLEND);
+  layers_.use();
+  shadows.sumOpacity(map);
 }
 
 void HairShadowPass::draw(const Input& input, Stage& stage, FrameReport& report) {
@@ -121,7 +121,7 @@ void HairShadowPass::draw(const Input& input, Stage& stage, FrameReport& report)
 }
 
 ReloadReport HairShadowPass::reload(Reload which) {
-  ReloadReport report = reloadPrograms({&depth_, &opacity_, &body_depth_}, which);
+  ReloadReport report = reloadPrograms({&depth_, &opacity_, &layers_, &body_depth_}, which);
   report += grown_.reload(which);
   report += software_.reload(which);
   return report;

@@ -25,9 +25,12 @@ const int kMaxOutputComponents = 1024;
 const int kMaxHairShadows =
     128;                        // hairs (the nearest ones) that own a deep opacity map; a block of 16 KB holds so many
 const int kMaxBodyShadows = 2;  // of the bodies near the camera, and of all
-const int kMaxOpacityLayers = 7;  // the eighth channel takes everything
-const int kOpacityLevels = 6;     // of the far layers' texture, each half as fine as the one before it
-const float kLayerGrowth = 1.5;   // each deep opacity layer is this much thicker than the one before it
+const int kMaxOpacityLayers = 7;      // the eighth channel takes everything
+const int kOpacityLevels = 6;         // of the far layers' texture, each half as fine as the one before it
+const int kOpacitySums = 8;           // of them and of what lies behind them all
+const float kOpacitySteps = 16384.0;  // a line's opacity is rounded to one of so many between 0 and 1
+const float kMaxLineOpacity = 64.0;   // nothing is darker
+const float kLayerGrowth = 1.5;       // each deep opacity layer is this much thicker than the one before it
 
 // Texels of the two float buffer textures of a hair.
 const int kVertexTexels = 3;  // position + sky visibility, du + depths along fill, dv + depths along rim
@@ -69,6 +72,12 @@ const int kUnitSkin = 11;
 const int kUnitMaterials = 12;
 const int kUnitOpenness = 14;
 const int kUnitBodyDepthPlain = 13;  // the same as kUnitBodyDepth, read and not compared
+
+// Image units of the deep opacity layers (opacity_layers.comp).
+const int kImageSums = 0;
+const int kImageNear = 1;
+const int kImageFar = 2;
+const int kTileGroup = 8;  // invocations of a group, a side
 
 // Strands' points between compute shaders and what draws them (render/grown/grown_strands.h,
 // render/software/software_strands.h, render/software/software_shadow.h).
