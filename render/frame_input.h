@@ -143,7 +143,7 @@ struct CameraInput {
 
 struct LightInput {
   Float3 to_light{0.45f, 0.8f, 0.6f};  // key light's direction, towards the light
-  Float3 key{3.5f, 3.3f, 3.0f}, fill{0.28f, 0.32f, 0.40f}, rim{0.6f, 0.8f, 1.15f};
+  Float3 key{3.5f, 3.3f, 3.0f}, fill{0.28f, 0.32f, 0.40f}, rim{0.82f, 0.78f, 0.74f};
   Float3 to_fill{-0.8f, 0.3f, 0.6f}, to_rim{-0.6f, 0.3f, -0.85f};
   Float3 ambient_sky{0.22f, 0.24f, 0.28f}, ambient_ground{0.11f, 0.10f, 0.09f};
   int shadow_size = 512;         // pixels a side of a hair's deep opacity map; the bodies' map has twice as many

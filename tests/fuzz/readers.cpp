@@ -55,7 +55,7 @@ void readUsda(std::string_view bytes) {
 
 // Any groom, told by its content, inspected and mended.
 void inspectGroom(std::string_view bytes) {
-  const app::HeadModel head{[](const Eigen::Vector3f& p) { return p.norm() - 0.09f; }, Eigen::Vector3f::Zero()};
+  const app::HeadModel head{[](const Eigen::Vector3f& p) { return p.norm() - 0.09f; }, Eigen::Vector3f::Zero(), {}};
   app::GroomHints hints;
   app::Groom groom = app::readGroom(bytes, "fuzz", &hints);
   const app::GroomInspection found = app::inspectGroom(groom, hints, &head);

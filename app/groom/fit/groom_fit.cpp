@@ -276,19 +276,24 @@ void openFlat(Draft& draft) {
   if (best.count > 0) dropFlat(draft);
 }
 
-// Fits, slides the layers along the strands and fits again, and opens what still lacks.
-void settle(Draft& draft) {
-  sim::HairMeshShape& shape = draft.fit.shape;
-  const std::vector<sim::Vec3> toward = usualWays(draft.raster, draft.roots, draft.fit.knots, draft.fit.shape);
+// Slides the layers of a hair mesh along the strands and fits it, over and over; columns astray are held to the usual
+// way. Returns the least fatness.
+double slideAndFit(double fatness, const std::array<FitRounds, kSlides>& all, Draft& draft, sim::HairMeshShape& shape) {
+  const std::vector<sim::Vec3> toward = usualWays(draft.raster, draft.roots, draft.fit.knots, shape);
   std::vector<double> weights(static_cast<std::size_t>(shape.columnCount()), kUsualWeight);
-  for (int slide = 0; slide < kSlides; ++slide) {
+  double flattest = 0;
+  for (const FitRounds& rounds : all) {
     slideTargets(shape, draft.targets);
-    FitRounds rounds;
-    rounds.count = slide + 1 < kSlides ? kRounds : 2 * kRounds;
-    rounds.anew = slide == 0;
-    draft.fit.flattest = fitColumns(columnSystem(draft.targets, shape, {{}, toward, weights}), kFatness, rounds, shape);
+    flattest = fitColumns(columnSystem(draft.targets, shape, {{}, toward, weights}), fatness, rounds, shape);
     holdAstray(shape, toward, weights);
   }
+  return flattest;
+}
+
+// Fits, and opens what still lacks.
+void settle(Draft& draft) {
+  draft.fit.flattest = slideAndFit(
+      kFatness, {FitRounds{.count = kRounds, .anew = true}, FitRounds{.count = 2 * kRounds}}, draft, draft.fit.shape);
   if (draft.fit.flattest < kMinFatness) openFlat(draft);
 }
 
@@ -296,14 +301,9 @@ void settle(Draft& draft) {
 void placeGroom(Draft& draft) {
   sim::HairMeshShape& shape = draft.fit.shape;
   sim::HairMeshShape grown = shape;
-  const std::vector<sim::Vec3> toward = usualWays(draft.raster, draft.roots, draft.fit.knots, draft.fit.shape);
-  std::vector<double> weights(static_cast<std::size_t>(shape.columnCount()), kUsualWeight);
   aim(GrowthMap(grown), kFitStrands, draft);
-  for (int slide = 0; slide < kSlides; ++slide) {
-    slideTargets(grown, draft.targets);
-    fitColumns(columnSystem(draft.targets, grown, {{}, toward, weights}), 0, {.count = 0, .anew = true}, grown);
-    holdAstray(grown, toward, weights);
-  }
+  constexpr FitRounds kWithout{.count = 0, .anew = true};
+  slideAndFit(0, {kWithout, kWithout}, draft, grown);
   for (std::size_t v = 0; v < shape.positions.size(); ++v)
     shape.groom_offsets.push_back(grown.positions[v] - shape.positions[v]);
 }
