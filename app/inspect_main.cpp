@@ -51,6 +51,8 @@ void addOptions(CLI::App& parser, Asked& asked) {
   parser.add_option("--width-scale", asked.mends.width_scale, "Factor of the widths, beside the unit");
   parser.add_option("--width", asked.mends.width, "Width, m, in place of those that are 0, negative or no number");
   parser.add_option("--points", asked.mends.points, "Points a strand, evenly along it")->check(CLI::Range(2, 1024));
+  parser.add_option("--scale", asked.mends.scale, "Factor of the points, for hair of another head; widths stay")
+      ->check(CLI::PositiveNumber);
   parser.add_option("--move", asked.move, "Shift, m")->delimiter(',')->expected(3)->option_text("X,Y,Z");
   parser.add_option("--drop-far", asked.mends.drop_far, "Leave out strands whose root is further from the body, m");
   parser.add_flag("--drop-bad", asked.mends.drop_bad, "Leave out strands that are not finite or have no length");
@@ -73,6 +75,7 @@ app::GroomMends mendsOf(const CLI::App& parser, const Asked& asked, const app::G
   if (asked.reverse == "found") mends.reverse = app::Reverse::kFound;
   if (asked.reverse == "all") mends.reverse = app::Reverse::kAll;
   if (parser.count("--width-scale") > 0) mends.width_scale = asked.mends.width_scale;
+  if (parser.count("--scale") > 0) mends.scale = asked.mends.scale;
   if (!asked.move.empty()) mends.move = Eigen::Vector3f(asked.move[0], asked.move[1], asked.move[2]);
   mends.width = asked.mends.width;
   mends.points = asked.mends.points;

@@ -6,6 +6,7 @@
 
 #include "app/figure/hair_fit.h"
 #include "app/files/errors.h"
+#include "app/files/polygon_file.h"
 
 namespace app {
 
@@ -13,6 +14,7 @@ namespace {
 
 constexpr double kTogether = 1.1;      // of the tips' spread: roots' ends lie no further apart
 constexpr double kStandsNearer = 0.5;  // of the highest ends' distance from the head
+constexpr double kOtherAxis = 0.6;     // of the distance with y up: z is up
 
 FittedStrips fitOnce(const PolygonMesh& mesh, const StripOptions& options, const std::string& file,
                      const Character& character, bool mend) {
@@ -25,13 +27,13 @@ FittedStrips fitOnce(const PolygonMesh& mesh, const StripOptions& options, const
 FittedStrips fitEitherUp(const PolygonMesh& mesh, const StripOptions& options, bool up_given, const std::string& file,
                          const Character& character, bool mend) {
   FittedStrips fitted = fitOnce(mesh, options, file, character, mend);
-  if (!mend || up_given || fitted.fit.empty()) return fitted;
+  if (!mend || up_given || isYUp(file) || fitted.fit.empty()) return fitted;
   StripOptions turned_options = options;
   turned_options.up = 'z';
   try {
     FittedStrips turned = fitOnce(mesh, turned_options, file, character, mend);
     const auto off = [&](const FittedStrips& one) { return rootDistance(one.conversion.mesh.shape, character.scalp); };
-    return off(fitted) > 0.5 * kFarRoots && off(turned) < off(fitted) ? turned : fitted;
+    return off(fitted) > 0.5 * kFarRoots && off(turned) < kOtherAxis * off(fitted) ? turned : fitted;
   } catch (const InputError&) {
     return fitted;  // no strips with z up
   }

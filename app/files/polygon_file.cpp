@@ -178,6 +178,11 @@ bool hasPolygonEnding(const std::string& file) {
   return std::ranges::find(kEndings, endingOf(file)) != kEndings.end();
 }
 
+bool isYUp(const std::string& file) {
+  const std::string ending = endingOf(file);
+  return ending == ".glb" || ending == ".gltf" || ending == ".vrm";
+}
+
 bool hasLayers(std::string_view text) {
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find_first_of("\r\n", at), text.size());

@@ -15,6 +15,9 @@ PolygonMesh readPolygons(const std::string& file);
 // Whether the name ends like such a file's: .obj, .fbx, .glb, .gltf, .vrm.
 bool hasPolygonEnding(const std::string& file);
 
+// Whether its format says that y is up: glTF and what is built on it (Khronos, glTF 2.0, 3.4).
+bool isYUp(const std::string& file);
+
 // Whether an OBJ text has groups or objects called layer_<n>: then it is a hair mesh of hair_file.h.
 bool hasLayers(std::string_view obj_text);
 

@@ -67,9 +67,12 @@ sim::HairMeshShape hairFromFile(const CharacterSpec& spec, const Character& char
     note(conversionNote(conversion));
   } else if (hasPolygonEnding(spec.hair) && !hasLayers(bytes)) {
     const PolygonMesh mesh = readPolygons(spec.hair);
-    if (!spec.mends.empty())
-      note("\"mends\" are for curves and change nothing here; hairmesh-convert takes --unit and --up");
-    FittedStrips fitted = fitStrips(mesh, {}, false, spec.hair, character, spec.fit);
+    StripOptions options;
+    const bool up_given = spec.mends == "--up y" || spec.mends == "--up z";
+    if (up_given) options.up = spec.mends.back();
+    if (!up_given && !spec.mends.empty())
+      note("of strips \"mends\" are \"--up y\" or \"--up z\", others change nothing; hairmesh-convert takes more");
+    FittedStrips fitted = fitStrips(mesh, options, up_given, spec.hair, character, spec.fit);
     note(stripNote(fitted.conversion));
     note(mesh.note);
     note(fitted.fit);

@@ -176,7 +176,7 @@ void TextReader::stageMetadata() {
     if (key == "prepend" || key == "append" || key == "delete" || key == "add") key = scanner.word();
     scanner.expect('=');
     const std::string_view value = scanner.value();
-    if (key == "metersPerUnit") layer.meters_per_unit = numberOf(value), layer.tells_unit = true;
+    if (key == "metersPerUnit") layer.meters_per_unit = numberOf(value), layer.tells_unit = layer.meters_per_unit > 0;
     if (key == "timeCodesPerSecond") layer.time_codes_per_second = numberOf(value);
     if (key == "upAxis" && value.size() == 3)
       layer.up_axis = value[1], layer.tells_up = value[1] == 'Y' || value[1] == 'Z';

@@ -67,6 +67,8 @@ bool readNumber(std::string_view option, std::string_view value, GroomMends& men
     mends.axes = turnedAbout(number) * mends.axes;
   } else if (option == "--width-scale" && number > 0) {
     mends.width_scale = single;
+  } else if (option == "--scale" && number > 0) {
+    mends.scale = single;
   } else if (option == "--width" && number > 0 && number < 1) {
     mends.width = single;
   } else if (option == "--points" && number >= 2 && number <= 1024) {

@@ -11,6 +11,7 @@
 #include "app/files/median.h"
 #include "app/files/report_line.h"
 #include "app/groom/inspect/groom_shape.h"
+#include "app/groom/inspect/head_seat.h"
 #include "app/groom/inspect/strand_direction.h"
 
 namespace app {
@@ -21,9 +22,10 @@ using Eigen::Vector3f;
 namespace {
 
 constexpr double kSkullRadius = 0.09;   // m, of the sphere that roots lie about
+constexpr double kOtherHeads = 2;       // times as large or small
 constexpr float kThinnestHair = 8e-6f;  // m, a diameter
 constexpr float kUsualWidth = 8e-5f, kWidestHair = 4e-4f, kAllHairs = 1e5f;
-constexpr float kFar = 0.018f, kFloating = 0.03f, kDeep = 0.006f;  // m
+constexpr float kFar = 0.018f, kAside = 0.05f, kFloating = 0.03f, kDeep = 0.006f;  // m
 // Of roots over a scalp: spread and coverage of the sphere about them, and how long the mean of their directions is;
 // the cosine between that and the way the hair hangs.
 constexpr float kCapSpread = 0.08f, kCapCoverage = 0.03f, kMinCap = 0.2f, kMaxCap = 0.7f, kHanging = -0.3f;
@@ -93,10 +95,9 @@ struct Inspector {
   void place();
   void placeSeated();
   bool standsInWorld() const;
+  bool ofOtherSize(std::vector<Vector3f>& roots);
   void floating(const std::vector<Vector3f>& roots);
   void body(const std::vector<Vector3f>& roots, const Vector3f& move);
-  Vector3f moveToHead(const std::vector<Vector3f>& roots, const Vector3f& center) const;
-  float offHead(const std::vector<Vector3f>& roots) const;
   float offHeadTurned(const Matrix3f& matrix) const;
   void turn(const Matrix3f& matrix);
 };
@@ -187,7 +188,7 @@ void Inspector::findSeat() {
     for (const Vector3f& move : moves) {
       std::vector<Vector3f> moved = roots;
       for (Vector3f& root : moved) root += move;
-      if (offHead(moved) > kSeated) continue;
+      if (offHead(*head, moved) > kSeated) continue;
       seat = {&one, move};
       return;
     }
@@ -236,6 +237,8 @@ void Inspector::unitOfSkull(double told) {
              textOf("the roots lie about a skull of radius %.3g, which fits ", skull.radius) + best->name +
                  (hints.meters_per_unit ? textOf("; the file tells %g m a unit", told) : ", not m"),
              std::string("--unit ") + best->name, onCap(), certain);
+  } else if (!fits && head != nullptr && best->metres == told && onCap() && off(told) < std::log(kOtherHeads)) {
+    judged = told;  // of another size of head: place() tells
   } else if (!fits) {
     judged = likely;
     addGuess("unit",
@@ -344,41 +347,13 @@ void Inspector::widths() {
   result.findings.back().fault = !inWorld();  // few strands are drawn wide
 }
 
-// The shift that brings the roots onto the head: along the distance's gradient, again and again.
-Vector3f Inspector::moveToHead(const std::vector<Vector3f>& roots, const Vector3f& center) const {
-  Vector3f move = head->center - center;
-  const std::size_t stride = std::max<std::size_t>(roots.size() / 200, 1);
-  for (int round = 0; round < 20; ++round) {
-    Vector3f step = Vector3f::Zero();
-    Matrix3f normals = 1e-3f * Matrix3f::Identity();
-    for (std::size_t n = 0; n < roots.size(); n += stride) {
-      const Vector3f at = roots[n] + move;
-      const float here = head->distance(at);
-      Vector3f slope;
-      for (int axis = 0; axis < 3; ++axis)
-        slope[axis] = (head->distance(at + 1e-3f * Vector3f::Unit(axis)) - here) / 1e-3f;
-      step += slope * std::clamp(here, -0.03f, 0.03f);
-      normals += slope * slope.transpose();
-    }
-    move -= normals.inverse() * step;
-  }
-  return move;
-}
-
-// m, in the median.
-float Inspector::offHead(const std::vector<Vector3f>& roots) const {
-  std::vector<float> off;
-  for (const Vector3f& root : roots) off.push_back(std::abs(head->distance(root)));
-  return median(off);
-}
-
 // Of roots turned by `matrix` and moved to the head as well as they can be.
 float Inspector::offHeadTurned(const Matrix3f& matrix) const {
   std::vector<Vector3f> roots = ends.first;
   for (Vector3f& root : roots) root = matrix * root;
-  const Vector3f move = moveToHead(roots, matrix * skull.center);
+  const Vector3f move = moveToHead(*head, roots, matrix * skull.center);
   for (Vector3f& root : roots) root += move;
-  return offHead(roots);
+  return offHead(*head, roots);
 }
 
 // Whether the roots lie about the head of the figure as it stands in the world.
@@ -388,24 +363,40 @@ bool Inspector::standsInWorld() const {
   return std::abs(away.y()) < kStandsUp && std::hypot(away.x(), away.z()) < kStandsAside;
 }
 
+// Brings roots all over a scalp to the size of the head, where that is certain.
+bool Inspector::ofOtherSize(std::vector<Vector3f>& roots) {
+  if (!ofScalp() || inWorld() || !settled()) return false;
+  const float scale = scaleToHead(*head, roots, skull.center);
+  if (scale == 1) return false;
+  add("size", textOf("the roots lie about a head %.2f times as large as the figure's", 1 / scale),
+      textOf("--scale %.3f", scale), true);
+  result.mends.scale = scale;
+  for (Vector3f& root : roots) root *= scale;
+  return true;
+}
+
 void Inspector::place() {
   if (head == nullptr || ends.first.size() < kMinRoots || crowd() || judged == 0) return;
   if (seat) return placeSeated();
   std::vector<Vector3f> roots = ends.first;
-  const float before = offHead(roots);
+  const float before = offHead(*head, roots);
+  const float aside = (skull.center - head->center).norm();
   Vector3f move = Vector3f::Zero();
   bool world = inWorld();
-  result.on_head = settled() && before <= kFar;
-  if (before > kFar) {
-    move = moveToHead(roots, skull.center);
+  // Roots of a scalp may lie near a head by chance, about its neck.
+  const bool elsewhere = before > kFar || (ofScalp() && aside > kAside);
+  const bool sized = ofOtherSize(roots);
+  result.on_head = settled() && !elsewhere && !sized;
+  if (elsewhere || sized) {
+    move = moveToHead(*head, roots, result.mends.scale * skull.center);
     for (Vector3f& root : roots) root += move;
-    const bool fits = offHead(roots) <= kFar && (cap.norm() > kMinCap || inWorld());
+    const bool fits = offHead(*head, roots) <= kFar && (cap.norm() > kMinCap || inWorld());
     const bool certain = fits && settled();
     world = world || (fits && standsInWorld());
     add("roots",
         inJudged() + textOf(world ? "the hair is on a head in the world, %.3g m from the figure's own"
                                   : "the roots lie %.3g m from the scalp",
-                            before),
+                            std::max(before, elsewhere && before <= kFar ? aside : before)),
         moveText(move), certain);
     result.findings.back().fault = !world;
     result.on_head = certain;
@@ -451,7 +442,7 @@ void Inspector::floating(const std::vector<Vector3f>& roots) {
 void Inspector::body(const std::vector<Vector3f>& roots, const Vector3f& move) {
   std::size_t through = 0;
   float deepest = 0;
-  const auto scale = static_cast<float>(judged);
+  const float scale = static_cast<float>(judged) * result.mends.scale;
   for (std::size_t n = 0; n < ends.strands.size(); ++n) {
     const std::span<const Vector3f> points = groom.strand(ends.strands[n]);
     float deep = 0;

@@ -31,6 +31,7 @@ struct GroomMends {
   Reverse reverse = Reverse::kNone;                    // strands that run from tip to root
   float width_scale = 1;                               // of widths, beside the unit
   int points = 0;                                      // a strand, evenly along its length; 0: as they are
+  float scale = 1;                                     // of points, not of widths
   Eigen::Vector3f move = Eigen::Vector3f::Zero();      // m
   float drop_far = 0;     // m from the body beyond which a root's strand goes; 0: none does
   float width = 0;        // m, in place of widths that are 0, negative or no number; 0: none
@@ -38,7 +39,7 @@ struct GroomMends {
 };
 
 struct GroomFinding {
-  std::string what;  // unit, up, facing, reversed, astray, widths, roots, points, body, zero-length, non-finite
+  std::string what;  // unit, up, facing, reversed, astray, widths, size, roots, points, body, zero-length, non-finite
   std::string text;  // what was found, with numbers
   std::string mend;  // the option that mends it
   bool certain = false;

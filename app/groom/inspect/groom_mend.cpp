@@ -138,7 +138,7 @@ void mendGroom(const GroomMends& mends, const HeadModel* head, Groom& groom) {
   for (float& width : groom.widths) width *= unit * mends.width_scale;
   if (mends.reverse != Reverse::kNone) reverseStrands(mends.reverse, groom);
   if (mends.points > 1) resample(static_cast<std::size_t>(mends.points), groom);
-  for (Vector3f& point : groom.points) point += mends.move;
+  for (Vector3f& point : groom.points) point = mends.scale * point + mends.move;
   for (float& width : groom.widths) {
     if (mends.width > 0 && !(std::isfinite(width) && width > 0)) width = mends.width;
   }

@@ -178,13 +178,13 @@ TEST(HairFit, StripsAwayFromTheHeadAreBroughtToItWithEitherAxisUp) {
     }
     app::CharacterSpec spec;
     spec.hair = folder + (z_up ? "/z.obj" : "/y.obj");
-    if (z_up) spec.mends = "--up z";
+    if (z_up) spec.mends = "--push-out";
     app::writeFile(spec.hair, text);
     app::Haircut haircut;
     const sim::HairMeshShape shape = app::hairFromFile(spec, figure(), haircut);
     EXPECT_LT(app::rootDistance(shape, figure().scalp), app::kFarRoots) << haircut.note;
     EXPECT_EQ(haircut.note.find("z up, facing") != std::string::npos, z_up) << haircut.note;
-    EXPECT_EQ(haircut.note.find("mends\" are for curves") != std::string::npos, z_up) << haircut.note;
+    EXPECT_EQ(haircut.note.find("of strips \"mends\" are") != std::string::npos, z_up) << haircut.note;
     double fall = 0;
     for (int c = 0; c < shape.columnCount(); ++c) {
       const int root = shape.column_first[static_cast<std::size_t>(c)];

@@ -133,4 +133,24 @@ TEST(CertainMends, PlaceTheHairForTheAxesThatWereGiven) {
   EXPECT_LT((groom.points[0] - clean.points[0]).norm(), 0.02f) << app::mendText(report);
 }
 
+// Hair of a smaller or larger head, about the neck's place or in the world, comes to the figure's size and place; hair
+// of its size stays as large as it is.
+TEST(CertainMends, HairOfAnotherHeadIsScaledToTheFigures) {
+  const app::HeadModel model = head();
+  for (const float scale : {0.6f, 0.8f, 1.0f, 1.25f}) {
+    for (const Vector3f& place : {Vector3f(0, -0.09f, 0), Vector3f(0.3f, 1.2f, 0.1f)}) {
+      const app::Groom clean = combedGroom(400, 5);
+      app::Groom groom = clean;
+      moveAll(groom, Eigen::Matrix3f::Identity(), scale, place);
+      const app::MendReport report = app::mendCertain({}, &model, "", groom);
+      const std::string said = app::mendText(report);
+      EXPECT_TRUE(report.on_head) << scale << ": " << said;
+      EXPECT_EQ(said.find("times as large as the figure's") != std::string::npos, scale != 1) << scale << ": " << said;
+      EXPECT_LT((groom.points[0] - clean.points[0]).norm(), 0.012f) << scale << ": " << said;
+      const float length = (groom.points[7] - groom.points[0]).norm() / (clean.points[7] - clean.points[0]).norm();
+      EXPECT_NEAR(length, 1, 0.08) << scale << ": " << said;
+    }
+  }
+}
+
 }  // namespace certain_mends_test

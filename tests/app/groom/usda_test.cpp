@@ -134,6 +134,19 @@ TEST(Usda, WhatOtherProgramsWriteIsRead) {
   EXPECT_EQ(app::usdaTimes(kForeign, "hand.usda"), (std::vector<double>{1.0 / 24, 2.5 / 24}));
 }
 
+// A unit of nought or below is none.
+TEST(Usda, AUnitThatCannotBeIsNotTold) {
+  for (const char* unit : {"0", "-1"}) {
+    std::string text = test::readAll(writtenFile({test::sampleGroom(2, 44)}, {24, 0, {0}, 0.01}));
+    const std::string told = "metersPerUnit = 0.01";
+    ASSERT_NE(text.find(told), std::string::npos);
+    text.replace(text.find(told), told.size(), std::string("metersPerUnit = ") + unit);
+    app::GroomHints hints;
+    app::readUsda(text, "unit.usda", 0, &hints);
+    EXPECT_FALSE(hints.meters_per_unit) << unit;
+  }
+}
+
 TEST(Usda, CurvesThatTheFileHidesAreLeftOut) {
   const auto curves = [](const std::string& name, const std::string& hidden) {
     return "def BasisCurves \"" + name + "\" { " + hidden +
