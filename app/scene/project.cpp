@@ -143,6 +143,13 @@ json parseProject(const std::string& file) {
   return parsed;
 }
 
+// When the file was last written, in the file system's own time; empty: it is not there.
+std::string savedAt(const std::string& file) {
+  std::error_code gone;
+  const fs::file_time_type at = fs::last_write_time(file, gone);
+  return gone ? "" : std::to_string(at.time_since_epoch().count());
+}
+
 // By what it says of itself: a person may save under any name.
 bool isAutosave(const std::string& file) {
   return contentOf(file).contains(kAutosaveOf);
@@ -193,16 +200,19 @@ Autosave::~Autosave() {
 
 void Autosave::keep(double now, const Demo& demo) {
   // What the last step asked for may still be loading.
-  if (file_.empty() || now - last_ < kKeepEvery || !loadingNote(demo).empty()) return;
+  if (file_.empty() || !loadingNote(demo).empty()) return;
+  // What was saved is newer than what was kept before it: that is kept anew at once.
+  const std::string& scene = demo.scene.file;
+  const std::string saved = scene + " " + savedAt(scene);
+  if (saved == saved_ && now - last_ < kKeepEvery) return;
   const EditHistory& history = demo.edits;
   const EditStep* step = history.done > 0 ? &history.steps[history.done - 1] : nullptr;
   const std::string edits = step ? std::to_string(step->number) + " " + step->title : "none";
-  if (history.steps.empty() || edits == kept_) return;
-  last_ = now;
+  if (history.steps.empty() || (edits == kept_ && saved == saved_)) return;
+  last_ = now, saved_ = saved;
   try {
     std::error_code ignored;
     fs::create_directories(folder_, ignored);
-    const std::string& scene = demo.scene.file;
     writeProject(file_, demo, "", {{kAutosaveOf, scene.empty() ? "" : fs::absolute(scene).string()}});
     kept_ = history.gesture ? "" : edits;
     if (!replaced_.empty()) forget(std::exchange(replaced_, ""));

@@ -41,8 +41,8 @@ class Autosave {
   Autosave(const Autosave&) = delete;
   Autosave& operator=(const Autosave&) = delete;
 
-  // Keeps the demo where it has changed and the last time is long ago. `now`: s. A fault is no reason to disturb: it
-  // tries again later.
+  // Keeps the demo where it has changed and the last time is long ago, and as soon as its file has been saved. `now`:
+  // s. A fault is no reason to disturb: it tries again later.
   void keep(double now, const Demo& demo);
   // The project of a run that has ended without leaving, of a process that is gone; empty: there is none.
   std::string left() const;
@@ -55,7 +55,7 @@ class Autosave {
   std::string folder_, file_;
   double last_ = -1e9;
   std::string replaced_;
-  std::string kept_;  // what of the demo was kept: its edits
+  std::string kept_, saved_;  // what of the demo was kept: its edits; of which saving of its file
 };
 
 }  // namespace app

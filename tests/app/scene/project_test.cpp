@@ -239,6 +239,25 @@ TEST(Project, WhatAPersonSavesAmongWhatIsKeptIsNeitherOfferedNorForgotten) {
   EXPECT_EQ(app::stateHash(other), app::stateHash(demo));
 }
 
+TEST(Project, WhatIsKeptIsNeverOlderThanWhatWasSavedSince) {
+  const std::string folder = test::freshFolder("project_autosave_saved");
+  app::Demo demo = brushedDemo(5);
+  app::Autosave autosave(folder + "/kept");
+  autosave.keep(100, demo);
+  const std::string kept = folder + "/kept/autosave-" + std::to_string(getpid()) + ".json", file = folder + "/p1.json";
+  for (const double now : {101.0, 102.0}) {
+    goOn(5, demo);
+    demo.requests = {{Ask::kSaveProject, "", file}};
+    app::advanceFrame(demo, 0, {});
+    autosave.keep(now, demo);
+    app::Demo other = app::openScene(smallScene(), 1.5);
+    app::openProject(kept, other);
+    EXPECT_EQ(app::stateHash(other), app::stateHash(demo)) << "at " << now << " s";
+    EXPECT_EQ(other.scene.file, file);
+    EXPECT_EQ(other.scene.name, "p1");
+  }
+}
+
 TEST(Project, WhatIsKeptFollowsEveryStepButNoneThatIsStillLoading) {
   const std::string folder = test::freshFolder("project_autosave_steps");
   app::Demo demo = brushedDemo(5);
