@@ -12,8 +12,8 @@
  * it. A call that fails changes nothing, but for hm_hair_step running out of memory. Pointers that a function cannot do
  * without are checked for NULL.
  *
- * Handles: plain numbers. One that was destroyed, or never made, is answered with HM_ERROR_HANDLE, for the life of the
- * process.
+ * Handles: plain numbers. One that was destroyed, never made, or is of another kind is answered with HM_ERROR_HANDLE,
+ * for the life of the process.
  *
  * Threads: calls for different hairs may run at the same time, hairs of one mesh included. A call for a hair that another
  * thread is working on is refused with HM_ERROR_BUSY. hm_set_log and hm_set_allocator are for the start of a program.
@@ -49,7 +49,7 @@ extern "C" {
 typedef enum hm_result {
   HM_OK = 0,                /**< Done. */
   HM_ERROR_ARGUMENT = 1,    /**< A pointer is NULL, an index or a count is out of range. */
-  HM_ERROR_HANDLE = 2,      /**< The handle's object is destroyed or was never made. */
+  HM_ERROR_HANDLE = 2,      /**< The handle's object is destroyed, was never made, or is of another kind. */
   HM_ERROR_BUSY = 3,        /**< Another thread is working on this hair. */
   HM_ERROR_SIZE = 4,        /**< An array has another number of elements than is needed. */
   HM_ERROR_VALUE = 5,       /**< A number is not finite or out of its range. */
@@ -81,7 +81,7 @@ typedef enum hm_type {
 /** An array of the caller's that is read: `count` elements of three numbers each, `stride` bytes apart. */
 typedef struct hm_array {
   const void* data; /**< First number of the first element; NULL where there is none. */
-  size_t stride;    /**< Bytes from one element to the next; 0: they lie side by side. */
+  size_t stride;    /**< Bytes from one element to the next, at least its size; 0: they lie side by side. */
   size_t count;     /**< Elements. */
   hm_type type;     /**< Of the numbers. */
 } hm_array;
@@ -89,7 +89,7 @@ typedef struct hm_array {
 /** An array of the caller's that is written: `count` elements, `stride` bytes apart. */
 typedef struct hm_target {
   void* data;    /**< First number of the first element; NULL where it is not wanted. */
-  size_t stride; /**< Bytes from one element to the next; 0: they lie side by side. */
+  size_t stride; /**< Bytes from one element to the next, at least its size; 0: they lie side by side. */
   size_t count;  /**< Elements that there is room for. */
   hm_type type;  /**< Of the numbers. */
 } hm_target;

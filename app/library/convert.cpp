@@ -8,23 +8,32 @@ namespace {
 
 constexpr double kNormError = 1e-4;  // of a rotation's quaternion
 
+// Bytes of an element.
+std::size_t sizeOf(hm_type type, int numbers) {
+  return (type == HM_FLOAT32 ? sizeof(float) : sizeof(double)) * static_cast<std::size_t>(numbers);
+}
+
 std::size_t strideOf(std::size_t stride, hm_type type, int numbers) {
-  const std::size_t size = type == HM_FLOAT32 ? sizeof(float) : sizeof(double);
-  return stride != 0 ? stride : size * static_cast<std::size_t>(numbers);
+  return stride != 0 ? stride : sizeOf(type, numbers);
 }
 
 // `type` may be any number that a program in C has put there: it is not read as an enumerator before it is known to be
 // one.
-void checkLayout(const void* data, std::size_t has, const hm_type& type, std::size_t needed, const char* name) {
+template <class Array>
+void checkLayout(const Array& array, std::size_t needed, int numbers, const char* name) {
   int number = 0;
-  static_assert(sizeof number == sizeof type);
-  std::memcpy(&number, &type, sizeof number);
+  static_assert(sizeof number == sizeof array.type);
+  std::memcpy(&number, &array.type, sizeof number);
   if (number != HM_FLOAT32 && number != HM_FLOAT64)
     throw Fault{HM_ERROR_ARGUMENT, std::string(name) + ".type is none of HM_FLOAT32 and HM_FLOAT64"};
-  if (has != needed)
-    throw Fault{HM_ERROR_SIZE, std::string(name) + " has " + std::to_string(has) + " elements; " +
+  if (const std::size_t size = sizeOf(array.type, numbers); array.stride != 0 && array.stride < size)
+    throw Fault{HM_ERROR_ARGUMENT, std::string(name) + ".stride is " + std::to_string(array.stride) +
+                                       " bytes, and an element takes " + std::to_string(size) +
+                                       "; give at least that, or 0 where they lie side by side"};
+  if (array.count != needed)
+    throw Fault{HM_ERROR_SIZE, std::string(name) + " has " + std::to_string(array.count) + " elements; " +
                                    std::to_string(needed) + " are needed"};
-  if (!data && needed > 0) throw Fault{HM_ERROR_ARGUMENT, std::string(name) + ".data is NULL; give an array"};
+  if (!array.data && needed > 0) throw Fault{HM_ERROR_ARGUMENT, std::string(name) + ".data is NULL; give an array"};
 }
 
 // m, m/s or rad/s: beyond it squares of differences lose what is seen of a hair.
@@ -75,11 +84,11 @@ void writeElement(const hm_target& target, std::size_t index, int count, const d
 }
 
 void checkArray(const hm_array& array, std::size_t count, const char* name) {
-  checkLayout(array.data, array.count, array.type, count, name);
+  checkLayout(array, count, 3, name);
 }
 
-void checkTarget(const hm_target& target, std::size_t count, const char* name) {
-  checkLayout(target.data, target.count, target.type, count, name);
+void checkTarget(const hm_target& target, std::size_t count, int numbers, const char* name) {
+  checkLayout(target, count, numbers, name);
 }
 
 Vec3 pointOf(const hm_array& array, std::size_t index, const char* name) {

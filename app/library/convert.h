@@ -17,9 +17,10 @@ using sim::Vec3;
 void readElement(const hm_array& array, std::size_t index, int count, double* numbers);
 void writeElement(const hm_target& target, std::size_t index, int count, const double* numbers);
 
-// Throws Fault where the array has no data, another number of elements than `count`, or an unknown type.
+// Throws Fault where the array has no data, another number of elements than `count`, an unknown type, or a stride below
+// an element of three numbers, of a target of `numbers`.
 void checkArray(const hm_array& array, std::size_t count, const char* name);
-void checkTarget(const hm_target& target, std::size_t count, const char* name);
+void checkTarget(const hm_target& target, std::size_t count, int numbers, const char* name);
 
 // Element `index`; throws Fault naming it where it is not finite.
 Vec3 pointOf(const hm_array& array, std::size_t index, const char* name);

@@ -29,7 +29,7 @@ hm_view viewOf(const std::vector<Vec3>& points) {
 }
 
 void readPoints(const std::vector<Vec3>& points, const hm_target& target) {
-  checkTarget(target, points.size(), "target");
+  checkTarget(target, points.size(), 3, "target");
   for (std::size_t i = 0; i < points.size(); ++i) writeElement(target, i, 3, points[i].data());
 }
 

@@ -1,4 +1,5 @@
-// Handles: a slot's number and the serial number of what was put there, so that a stale one is found out.
+// Handles: a slot's number, from a first one of each kind on, and the serial number of what was put there, so that one
+// that is stale or of another kind is found out.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +16,8 @@ namespace app::library {
 template <class Value>
 class HandleTable {
  public:
-  explicit HandleTable(const char* word) : word_(word) {}
+  // `first`: number of the first slot, above 0; no other kind's come up to it, or begin within 2^31 of it.
+  HandleTable(const char* word, std::uint32_t first) : word_(word), first_(first) {}
 
   std::uint64_t add(Value value) {
     const std::lock_guard lock(lock_);
@@ -26,7 +28,7 @@ class HandleTable {
     slots_[at].value = std::move(value);
     slots_[at].serial = serial_;
     ++used_;
-    return std::uint64_t{serial_} << 32 | (at + 1);
+    return std::uint64_t{serial_} << 32 | (first_ + at);
   }
 
   // Runs `body` on the value, alone in the table. Throws Fault for a stale handle.
@@ -56,14 +58,16 @@ class HandleTable {
   };
 
   Slot& slot(std::uint64_t id) {
-    const std::uint64_t at = (id & 0xffffffffu) - 1;
+    const std::uint64_t at = (id & 0xffffffffu) - first_;  // beyond all slots of one before the first
     const auto serial = static_cast<std::uint32_t>(id >> 32);
     if (id == 0 || at >= slots_.size() || serial == 0 || slots_[at].serial != serial)
-      throw Fault{HM_ERROR_HANDLE, std::string("no such ") + word_ + "; it was destroyed, or never made"};
+      throw Fault{HM_ERROR_HANDLE,
+                  std::string("no such ") + word_ + "; it was destroyed, never made, or is of another kind"};
     return slots_[at];
   }
 
   const char* word_;
+  const std::uint64_t first_;
   std::mutex lock_;
   std::vector<Slot> slots_;
   std::size_t used_ = 0;

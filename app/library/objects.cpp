@@ -3,12 +3,12 @@
 namespace app::library {
 
 HandleTable<MeshRef>& meshes() {
-  static HandleTable<MeshRef> table("hair mesh");
+  static HandleTable<MeshRef> table("hair mesh", 1);
   return table;
 }
 
 HandleTable<std::unique_ptr<Hair>>& hairs() {
-  static HandleTable<std::unique_ptr<Hair>> table("hair");
+  static HandleTable<std::unique_ptr<Hair>> table("hair", 0x80000001u);
   return table;
 }
 

@@ -46,9 +46,9 @@ void checkRequest(const hm_strand_settings& settings, const hm_strand_output& ou
   if (settings.points < 2) throw Fault{HM_ERROR_ARGUMENT, "points is below 2; a strand has a root and a tip"};
   if (settings.count < 0) throw Fault{HM_ERROR_ARGUMENT, "count is below 0"};
   const auto elements = static_cast<std::size_t>(settings.count) * static_cast<std::size_t>(settings.points);
-  if (output.positions.data) checkTarget(output.positions, elements, "positions");
-  if (output.tangents.data) checkTarget(output.tangents, elements, "tangents");
-  if (output.radii.data) checkTarget(output.radii, elements, "radii");
+  if (output.positions.data) checkTarget(output.positions, elements, 3, "positions");
+  if (output.tangents.data) checkTarget(output.tangents, elements, 3, "tangents");
+  if (output.radii.data) checkTarget(output.radii, elements, 1, "radii");
   if (settings.numbers) {
     for (int i = 0; i < settings.count; ++i) checkNumber(settings.numbers[i], growth);
   } else if (settings.count > 0) {

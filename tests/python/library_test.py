@@ -120,6 +120,8 @@ class Library(unittest.TestCase):
             self.assertGreater(len(row["help"]), 10)
             if name not in ("stretch_along", "solver", "collide"):
                 self.assertEqual(hair.get(name), row["default"])
+        hair.reset_parameters()
+        self.assertEqual({name: hair.get(name) for name in table}, {name: row["default"] for name, row in table.items()})
         with self.assertRaisesRegex(hairmesh.Error, "density") as caught:
             hair.set(densty=3)
         self.assertEqual(caught.exception.result, "HM_ERROR_NAME")

@@ -344,7 +344,7 @@ TEST(Library, TheLogHearsOfFaultsAndRepairs) {
   EXPECT_EQ(hm_hair_destroy({78}), HM_ERROR_HANDLE);
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_EQ(lines[0].first, HM_LOG_ERROR);
-  EXPECT_EQ(lines[0].second, "hm_hair_destroy: no such hair; it was destroyed, or never made");
+  EXPECT_EQ(lines[0].second, "hm_hair_destroy: no such hair; it was destroyed, never made, or is of another kind");
 }
 
 // Blocks that the library has of the caller's.

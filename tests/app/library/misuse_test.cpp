@@ -68,6 +68,36 @@ TEST_F(LibraryMisuse, RootsOfAnotherNumberOrKindAreRefused) {
   refuses(HM_ERROR_VALUE, "roots[2]", [&](Step& s) { s.input.roots = {roots.data(), 0, columns, HM_FLOAT64}; });
 }
 
+// Elements that lie in one another would be written over.
+TEST_F(LibraryMisuse, AStrideBelowAnElementIsRefused) {
+  hm_mesh_info info{};
+  ASSERT_EQ(hm_mesh_describe(mesh_, &info), HM_OK);
+  const auto count = static_cast<std::size_t>(info.vertex_count), columns = static_cast<std::size_t>(info.column_count);
+  std::vector<double> room(3 * count, 7);
+  for (const hm_target& target :
+       {hm_target{room.data(), 4, count, HM_FLOAT64}, hm_target{room.data(), 23, count, HM_FLOAT64},
+        hm_target{room.data(), 5, count, HM_FLOAT32}}) {
+    EXPECT_EQ(hm_hair_read_positions(hair_, &target), HM_ERROR_ARGUMENT);
+    EXPECT_NE(std::string(hm_error_message()).find("target.stride"), std::string::npos) << hm_error_message();
+    EXPECT_EQ(hm_hair_read_velocities(hair_, &target), HM_ERROR_ARGUMENT);
+  }
+  EXPECT_EQ(room, std::vector<double>(room.size(), 7));
+  for (const hm_target& target :
+       {hm_target{room.data(), 0, count, HM_FLOAT64}, hm_target{room.data(), 24, count, HM_FLOAT64},
+        hm_target{room.data(), 12, count, HM_FLOAT32}})
+    EXPECT_EQ(hm_hair_read_positions(hair_, &target), HM_OK) << hm_error_message();
+  refuses(HM_ERROR_ARGUMENT, "roots.stride", [&](Step& s) { s.input.roots = {room.data(), 8, columns, HM_FLOAT64}; });
+  hm_strand_settings settings;
+  hm_default_strand_settings(&settings);
+  settings.count = 1;
+  const auto points = static_cast<std::size_t>(settings.points);
+  hm_strand_output output{};
+  output.radii = {room.data(), 4, points, HM_FLOAT64};
+  EXPECT_EQ(hm_hair_grow_strands(hair_, &settings, &output), HM_ERROR_ARGUMENT);
+  output.radii.stride = 8;  // one number each
+  EXPECT_EQ(hm_hair_grow_strands(hair_, &settings, &output), HM_OK) << hm_error_message();
+}
+
 TEST_F(LibraryMisuse, PinsThatNameNothingAreRefused) {
   hm_pin pin{100000, {0, 0, 0}, {0, 0, 0}, 1};
   const auto give = [&](Step& s) { s.input.pins = &pin, s.input.pin_count = 1; };
@@ -111,6 +141,9 @@ TEST_F(LibraryMisuse, HandlesThatAreGoneAreAnsweredForEver) {
   hm_mesh_info info{};
   hm_hair hair{};
   EXPECT_EQ(hm_mesh_describe({12345}, &info), HM_ERROR_HANDLE);
+  EXPECT_EQ(hm_mesh_describe({hair_.id}, &info), HM_ERROR_HANDLE) << "a hair is no mesh";
+  EXPECT_EQ(hm_mesh_destroy({hair_.id}), HM_ERROR_HANDLE);
+  EXPECT_EQ(hm_hair_get({mesh_.id}, "density", &value), HM_ERROR_HANDLE) << "a mesh is no hair";
   EXPECT_EQ(hm_mesh_destroy({0}), HM_ERROR_HANDLE);
   EXPECT_EQ(hm_hair_create({0}, nullptr, &hair), HM_ERROR_HANDLE);
 }

@@ -308,6 +308,10 @@ class Hair(_Owner):
         _c.lib.hm_hair_get(self._c, name.encode(), value)
         return value.value
 
+    def reset_parameters(self):
+        """Gives all parameters their defaults."""
+        _c.lib.hm_hair_reset_parameters(self._c)
+
     @property
     def positions(self):
         """Vertices in m, world: a view of shape (vertices, 3)."""
