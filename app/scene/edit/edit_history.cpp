@@ -10,6 +10,8 @@
 #include "app/scene/demo.h"
 #include "app/scene/edit/groom_brush.h"
 #include "app/scene/edit/mesh_change.h"
+#include "app/scene/edit/paint_brush.h"
+#include "app/scene/edit/painted_fields.h"
 #include "app/scene/present_scene.h"
 #include "app/scene/view/row_words.h"
 #include "sim/field_text.h"
@@ -69,6 +71,12 @@ const EditKind* kindOf(Ask what) {
   return at == std::end(kEditKinds) ? nullptr : at;
 }
 
+// What is painted of the look alone, or of how dense strands grow, moves no hair.
+int reachOf(const Request& request, const EditKind& kind) {
+  const bool paints = request.what == Ask::kPaint || request.what == Ask::kCurve;
+  return paints && (isOfLook(request.name) || request.name == "density") ? kSettings : kind.reach;
+}
+
 std::string spaced(std::string name) {
   std::replace_if(
       name.begin(), name.end(), [](char c) { return c == '_' || c == '-'; }, ' ');
@@ -121,17 +129,36 @@ std::string mapsText(const FieldFiles& maps) {
   return text;
 }
 
-// Whether one actor can play both without being made anew. All members are named, so that a new one does not compile
-// until it is decided.
+bool samePaint(const CharacterSpec& a, const CharacterSpec& b) {
+  return mapsText(a.maps) == mapsText(b.maps) && writeCurves(a.curves) == writeCurves(b.curves);
+}
+
+// Whether one actor can play both without being made anew, what is painted apart. All members are named, so that a new
+// one does not compile until it is decided.
 bool sameCast(const CharacterSpec& a, const CharacterSpec& b) {
   const auto cast = [](const CharacterSpec& spec) {
     const auto& [motion, parts, clip, style, resolution, hair, reverse_faces, fit, mends, position, heading,
                  clip_offset, loop, look, look_before, pins, ties, attachments, maps, curves] = spec;
     return std::tuple(motion, parts, clip, style, resolution, hair, reverse_faces, fit, mends, position.x(),
                       position.y(), position.z(), heading, loop, writePins(pins).dump(), writeTies(ties).dump(),
-                      wornText(attachments), mapsText(maps), writeCurves(curves).dump());
+                      wornText(attachments));
   };
   return cast(a) == cast(b);
+}
+
+// Whether hair that is painted otherwise can stay, and the timeline with it. The length that was painted is that of the
+// moment's shape.
+bool staysPainted(const CharacterSpec& spec, const ActorMoment* moment, const CharacterSpec& now) {
+  return mapOf("length", spec.maps) == mapOf("length", now.maps) || (moment && !moment->shape.positions.empty());
+}
+
+void paintAnew(const CharacterSpec& spec, const ActorMoment* moment, int index, Demo& demo) {
+  const CharacterSpec& now = demo.actors[static_cast<std::size_t>(index)].spec;
+  const bool another_length = mapOf("length", spec.maps) != mapOf("length", now.maps);
+  repaint(spec.maps, spec.curves, index, demo);
+  if (!another_length) return;
+  reshapeHair(moment->shape.positions, index, demo);
+  ownHaircut(demo.actors[static_cast<std::size_t>(index)], demo).painted = moment->shape.positions;
 }
 
 void castAnew(const CharacterSpec& spec, const ActorMoment* moment, int index, Demo& demo) {
@@ -205,8 +232,12 @@ void bringBack(const EditSide& side, Demo& demo) {
       const ActorMoment* moment = side.moments.empty() ? nullptr : &side.moments[i];
       const bool another_shape =
           moment && ((worn.edited && moment->shape.positions.empty()) || (worn.remeshed && !moment->remeshed));
-      if (another_shape || !sameCast(side.cast[i], demo.actors[i].spec))
-        castAnew(side.cast[i], moment, static_cast<int>(i), demo);
+      const CharacterSpec &spec = side.cast[i], &now = demo.actors[i].spec;
+      const bool painted = !samePaint(spec, now);
+      if (another_shape || !sameCast(spec, now) || (painted && !staysPainted(spec, moment, now)))
+        castAnew(spec, moment, static_cast<int>(i), demo);
+      else if (painted)
+        paintAnew(spec, moment, static_cast<int>(i), demo);
     }
   }
   bringBackSettings(side, demo);
@@ -216,7 +247,8 @@ void bringBack(const EditSide& side, Demo& demo) {
       bringBackShape(moment.shape, static_cast<int>(i), demo);
     } else if (moment.hair.positions.size() != demo.actors[i].hair.positions.size()) {
       continue;
-    } else if (!moment.shape.positions.empty()) {
+    } else if (!moment.shape.positions.empty() &&
+               moment.shape.positions != demo.actors[i].haircut->mesh.shape.positions) {
       reshapeHair(moment.shape.positions, static_cast<int>(i), demo);
     }
     if (moment.frozen != demo.actors[i].haircut->frozen) freezeHair(moment.frozen, static_cast<int>(i), demo);
@@ -228,7 +260,7 @@ void bringBack(const EditSide& side, Demo& demo) {
 
 // Changes the two sides of a step over.
 void swapSides(EditStep& step, Demo& demo) {
-  EditSide now = sideOf(demo, kindOf(step.request.what)->reach);
+  EditSide now = sideOf(demo, reachOf(step.request, *kindOf(step.request.what)));
   const std::string name = demo.scene.name, file = demo.scene.file;
   bringBack(step.other, demo);
   // What the scene was saved as since stays, unless the step opened another.
@@ -260,7 +292,7 @@ std::optional<EditStep> beginEdit(const Request& request, const Demo& demo) {
   const bool further = kind->drags && goesOn(request.what, demo.edits);
   if (further && demo.edits.steps.back().request.name == request.name)
     return EditStep{titleOf(request, *kind), request, {}};
-  return EditStep{titleOf(request, *kind), request, sideOf(demo, kind->reach)};
+  return EditStep{titleOf(request, *kind), request, sideOf(demo, reachOf(request, *kind))};
 }
 
 void commitEdit(EditStep step, EditHistory& history) {

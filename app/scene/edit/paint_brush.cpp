@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "app/files/errors.h"
 #include "app/scene/demo.h"
@@ -117,12 +118,13 @@ void drawAnew(Haircut& own, Actor& actor) {
   actor.shown_still = false;
 }
 
-void repaintDensity(const FieldMap& map, int index, Demo& demo) {
+// Without a map as dense everywhere.
+void repaintDensity(const std::optional<FieldMap>& map, int index, Demo& demo) {
   Actor& actor = demo.actors[static_cast<std::size_t>(index)];
   Haircut& own = ownHaircut(actor, demo);
   own.faces = renderFaces(own.mesh);
   markCovered(own, own.faces);
-  paintDensity(map, actor.body->character.scalp, own.mesh, own.faces);
+  if (map) paintDensity(*map, actor.body->character.scalp, own.mesh, own.faces);
   drawAnew(own, actor);
 }
 
@@ -212,6 +214,17 @@ void applyPaint(const PaintSample& sample, int index, Demo& demo) {
   painted_actor.spec.maps = std::move(maps);
   if (std::string note = paintNote(sample.field, painted_actor.spec); !note.empty())
     demo.message = note, demo.message_is_fault = false;
+}
+
+void repaint(const FieldFiles& maps, const FieldCurves& curves, int index, Demo& demo) {
+  const Actor& actor = demo.actors[static_cast<std::size_t>(index)];
+  const bool another_density = maps.density != actor.spec.maps.density;
+  std::optional<FieldMap> density;
+  if (another_density && !maps.density.empty()) density = readFieldMap(maps.density);
+  const PaintedShares shares = paintedShares(maps, curves, actor.body->character.scalp, actor.haircut->mesh.shape);
+  repaintLook(maps, curves, index, demo);
+  if (another_density) repaintDensity(density, index, demo);
+  repaintHair(shares, index, demo);
 }
 
 std::string paintNote(const std::string& field, const CharacterSpec& spec) {

@@ -31,6 +31,10 @@ PaintSample parsePaint(const std::string& field, const std::string& text);
 // then nothing has changed.
 void applyPaint(const PaintSample& sample, int actor, Demo& demo);
 
+// Gives the hair what pictures and curves paint, its length apart, and goes on moving. They are not yet, or no longer,
+// in the actor's spec. Throws InputError where a picture cannot be read; then nothing has changed.
+void repaint(const FieldFiles& maps, const FieldCurves& curves, int actor, Demo& demo);
+
 // Says why a painted field shows nothing: "painted curl changes nothing while curl_radius is 0". Empty where it shows.
 std::string paintNote(const std::string& field, const CharacterSpec& spec);
 

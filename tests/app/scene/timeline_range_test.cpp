@@ -4,6 +4,7 @@
 #include "app/files/recording.h"
 #include "app/scene/demo.h"
 #include "app/scene/edit/groom_brush.h"
+#include "app/scene/edit/paint_brush.h"
 #include "tests/app/scene/small_scene.h"
 
 namespace timeline_range_test {
@@ -165,6 +166,49 @@ TEST(TimelineRange, AnEditLeavesWhatWasBeforeItToLookAtAndToGoOnFrom) {
   for (const app::TimelineFrame& frame : demo.timeline.frames) bytes += frame.state.size();
   EXPECT_GE(demo.timeline.bytes, bytes);
   EXPECT_LE(demo.timeline.bytes, bytes + 2 * shape.size() * sizeof(app::Vec3));
+}
+
+// What is painted moves no hair, or changes its rest shape: neither the stroke nor its undo takes what was before away.
+TEST(TimelineRange, PaintAndItsUndoLeaveWhatWasKept) {
+  for (const std::string field : {"color", "curl", "density", "length", "stiffness", "mass"}) {
+    app::Demo demo = moving();
+    play(30, demo);
+    demo.paused = true;
+    app::advanceFrame(demo, 0, {});
+    const std::string before = app::editHash(demo);
+    const std::vector<app::Vec3> shape = demo.actors[0].haircut->mesh.shape.positions;
+    app::PaintSample sample{field, app::Vec3(0.05, 0.17, 0), 0.08, 0.8, 1, true, 0.3};
+    demo.requests = {{Ask::kPaint, field, app::paintText(sample)}};
+    app::advanceFrame(demo, 0, {});
+    ASSERT_EQ(demo.edits.done, 1u) << field << ": " << demo.message;
+    const std::string painted = app::editHash(demo);
+    EXPECT_NE(painted, before) << field;
+    for (const auto& [what, hash] : {std::pair(Ask::kUndo, before), std::pair(Ask::kRedo, painted)}) {
+      ask(what, 1, demo);
+      EXPECT_EQ(app::editHash(demo), hash) << field << ": " << demo.message;
+      long first = 0, last = 0;
+      ASSERT_TRUE(app::timelineSpan(demo.timeline, first, last)) << field;
+      EXPECT_EQ(first, 3) << field;
+      EXPECT_GE(last, 27) << field;
+      EXPECT_FALSE(demo.timeline.anew) << field;
+    }
+    ask(Ask::kUndo, 1, demo);
+    EXPECT_EQ(demo.actors[0].haircut->mesh.shape.positions, shape) << field;
+    EXPECT_FALSE(app::reshapedByHand(*demo.actors[0].haircut)) << field;
+  }
+}
+
+// Hair that has moved on since a stroke that moves none stays where it is when that is undone.
+TEST(TimelineRange, UndoneColorLeavesTheHairWhereItIs) {
+  app::Demo demo = moving();
+  play(6, demo);
+  app::PaintSample sample{"color", app::Vec3(0.05, 0.17, 0), 0.08, 0.8, 1, true};
+  demo.requests = {{Ask::kPaint, "color", app::paintText(sample)}};
+  play(12, demo);
+  const std::string there = app::stateHash(demo);
+  ask(Ask::kUndo, 1, demo);
+  EXPECT_EQ(demo.message, "undone: Paint color");
+  EXPECT_EQ(app::stateHash(demo), there);
 }
 
 TEST(TimelineRange, AnotherMeshBeginsTheTimelineAnewAndItIsSaid) {
