@@ -130,8 +130,9 @@ struct UiState {
   std::vector<std::string> asked;   // files whose opening or saving has been asked for
   bool leaving = false;             // Esc was pressed once
   std::string shown_message;
-  double message_since = 0;                                             // s of ImGui's clock
-  std::vector<std::string> scene_names;                                 // of `scenes`
+  double anew_since = 0;                 // s of ImGui's clock: the timeline had nothing on it then
+  double message_since = 0;              // s of ImGui's clock
+  std::vector<std::string> scene_names;  // of `scenes`
   std::vector<std::string> scenes, presets, clips, hairs, attachments;  // files on offer
   std::vector<UiItem> items;
 };

@@ -17,6 +17,8 @@ namespace {
 constexpr float kTimelineHeight = 50, kMinWidth = 280, kOneRowWidth = 560, kTimelineMargin = 12;
 constexpr float kButtonRow = 28, kMinWindow = 290;  // points; of a second row, of the window
 constexpr float kOfferHeight = 90;                  // points that the box of an earlier run's project needs
+constexpr float kSayMargin = 8;                     // px, beside words on the strip
+constexpr double kAnewTime = 6;                     // s, as notices
 constexpr double kWorst = 3;                        // of the mean cost: a step to look at
 
 // The kept moment at a share of the strip.
@@ -85,6 +87,16 @@ void rangeButtons(Demo& demo, UiState& ui) {
   button("Clear", "Forgets what was simulated, and both points", false, {Ask::kClearBake, "", ""});
 }
 
+// Why the strip has so little on it, as long as there is nothing on it and some seconds after; short where `room` (px)
+// is. Empty: nothing to say.
+const char* anewWords(const Timeline& timeline, float room, UiState& ui) {
+  const double now = ImGui::GetTime();
+  if (!timeline.anew || timeline.frames.empty()) ui.anew_since = now;
+  if (!timeline.anew || now - ui.anew_since > kAnewTime) return "";
+  constexpr const char *kWhole = "begins anew: another hair mesh", *kShort = "begins anew";
+  return ImGui::CalcTextSize(kWhole).x + 2 * kSayMargin < room ? kWhole : kShort;
+}
+
 void strip(Demo& demo, UiState& ui) {
   const Timeline& timeline = demo.timeline;
   const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -94,17 +106,17 @@ void strip(Demo& demo, UiState& ui) {
   ImDrawList* list = ImGui::GetWindowDrawList();
   list->AddRectFilled(at, {at.x + size.x, at.y + size.y}, ImGui::GetColorU32(ImGuiCol_FrameBg), 4);
   const auto say = [&](const char* words) {
-    list->AddText({at.x + 8, at.y + 4}, ImGui::GetColorU32(ImGuiCol_TextDisabled), words);
+    list->AddText({at.x + kSayMargin, at.y + 4}, ImGui::GetColorU32(ImGuiCol_TextDisabled), words);
   };
-  constexpr const char* kAnew = "begins anew: what was kept was of another hair mesh";
-  if (timeline.anew) noteItem("timeline anew", ui);
+  const char* const anew = anewWords(timeline, size.x, ui);
+  if (*anew) noteItem("timeline anew", ui);
   long first_frame = 0, last_frame = 0;
   if (!timelineSpan(timeline, first_frame, last_frame)) {
-    say(timeline.anew ? kAnew : "fills while the hair moves");
+    say(*anew ? anew : "fills while the hair moves");
     return;
   }
   if (!timeline.cache) drawMarks(timeline, at, size, ui.text_scale);
-  if (timeline.anew) say(kAnew);
+  say(anew);
   const auto first = static_cast<double>(first_frame);
   const double span = std::max(1.0, static_cast<double>(last_frame) - first);
   if (!timeline.cache) drawRange(timeline, at, size);

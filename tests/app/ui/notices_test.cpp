@@ -48,6 +48,24 @@ TEST_F(Notices, UndoAndRedoSpeakAsThePanelsDo) {
   EXPECT_EQ(demo_.message, "done again: Stretch along 400 kPa");
 }
 
+TEST_F(Notices, ThatTheTimelineBeginsAnewIsSaidForAWhileAndFits) {
+  demo_.timeline.on = true;
+  demo_.timeline.anew = true;
+  for (const ImVec2 size : {ImVec2(960, 600), ImVec2(1280, 720)}) {
+    ImGui::GetIO().DisplaySize = size;
+    demo_.timeline.frames.clear();
+    for (int k = 0; k < 600; ++k) frame();
+    ASSERT_NE(find("timeline anew"), nullptr) << "as long as nothing is kept";
+    const app::UiItem strip = *find("timeline");
+    EXPECT_LT(ImGui::CalcTextSize("begins anew: another hair mesh").x, strip.width) << size.x;
+    demo_.timeline.frames.push_back({3, ""});
+    for (int k = 0; k < 120; ++k) frame();
+    EXPECT_NE(find("timeline anew"), nullptr) << "after 2 s";
+    for (int k = 0; k < 360; ++k) frame();
+    EXPECT_EQ(find("timeline anew"), nullptr) << "after 8 s";
+  }
+}
+
 TEST_F(Notices, TimingsSayThatTheyStandStill) {
   EXPECT_EQ(find("timings paused"), nullptr);
   demo_.paused = true;
