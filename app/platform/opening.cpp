@@ -38,10 +38,11 @@ void noteLateStarts(const Options& options, const Demo& demo, std::vector<std::s
     const Actor& actor = demo.actors[n];
     const double asked = actor.spec.clip_offset, duration = actor.playedClip().duration();
     if (asked <= duration) continue;
+    const bool stops = actor.playback.loop.kind == LoopKind::kStop;
     const std::string place = demo.actors.size() > 1 ? " of character " + std::to_string(n + 1) : "";
     notes.push_back((options.start >= 0 ? "--start " : "\"clip_offset\" ") + sim::numberText(asked) + place +
                     " lies beyond the clip's " + secondsText(duration) + "; it begins at " +
-                    secondsText(actor.playback.time));
+                    secondsText(actor.playback.time) + (stops ? ", its end" : ", for the clip goes round"));
   }
 }
 

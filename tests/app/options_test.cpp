@@ -302,6 +302,7 @@ TEST(Options, WhatARunLeavesUndoneItSays) {
       runProgram({"--no-images", "--frames", "2", "--resolution", "low", "--style", "short", "--start", "99999"});
   EXPECT_EQ(late.exit_code, 0);
   EXPECT_NE(late.err.find("--start 99999 lies beyond the clip's 10 s; it begins at "), std::string::npos) << late.err;
+  EXPECT_NE(late.err.find(" s, for the clip goes round"), std::string::npos) << late.err;
   const std::string two = test::freshFolder("late_start") + "/two.json";
   std::ofstream(two) << R"({"characters": [{"resolution": "low"}, {"resolution": "low", "clip_offset": 99}]})";
   const Outcome second = runProgram({two, "--no-images", "--frames", "2"});
