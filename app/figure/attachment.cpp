@@ -34,6 +34,7 @@ constexpr double kWornSpacing = 0.0025, kMaxWornNodes = 1.2e6;  // m, of the gri
 constexpr double kSharpEdge = 0.5;                              // cosine between faces that are shaded as one
 constexpr int kMaxPieces = 8;
 constexpr double kSlender = 0.4;  // of the longest side, the second one of what is worn
+constexpr const char* kTurned = "z up, turned to y";
 constexpr const char* kGiveSolid = "give a closed mesh: OBJ, FBX or glTF";
 
 struct WornUnit {
@@ -103,6 +104,10 @@ int wornJoint(const AttachmentSpec& spec, const Character& character) {
                    near.empty() ? "known are " + listed(names) : "did you mean '" + std::string(near) + "'?");
 }
 
+void addNote(const std::string& text, std::string& note) {
+  note += (note.empty() ? "" : ", ") + text;
+}
+
 std::string millimetresOf(double metres) {
   return std::to_string(std::lround(1000 * metres)) + " mm";
 }
@@ -122,28 +127,38 @@ const WornUnit& wornUnit(const AttachmentSpec& spec, const PolygonMesh& mesh, do
   throw InputError(spec.file, "size",
                    "is " + sim::numberText(std::round(1e4 * longest) / 1e4) +
                        " units, which in metres, centimetres or millimetres is nothing to wear",
-                   "give \"scale\", metres per unit");
+                   "scale it in its file (or give \"scale\", metres per unit)");
 }
 
-// Brings the points into the joint's upright frame, m.
-void placeAt(const AttachmentSpec& spec, const PolygonMesh& mesh, const Vec3& joint, ClosedSurface& surface,
+// From z up, facing -y, to y up.
+Eigen::Matrix3d quarterTurn() {
+  return Eigen::AngleAxisd(-0.5 * std::numbers::pi, Vec3::UnitX()).toRotationMatrix();
+}
+
+// Brings the points into the joint's upright frame, m. Unit, origin and axis are tried together: what lies about the
+// joint, or at the joint's place on the figure as it stands, y up or z up. Returns whether it was turned from z up by
+// that.
+bool placeAt(const AttachmentSpec& spec, const PolygonMesh& mesh, const Vec3& joint, ClosedSurface& surface,
              std::string& note) {
   Eigen::AlignedBox3d box;
   for (const Vec3& p : surface.points) box.extend(p);
   const double scale = spec.scale > 0 ? spec.scale : wornUnit(spec, mesh, box.sizes().maxCoeff(), note).metres;
   const Vec3 middle = scale * box.center();
-  Vec3 origin = Vec3::Zero();
-  if (spec.scale == 0 && middle.norm() > kNearJoint) {
-    if ((middle - joint).norm() > kNearJoint)
-      throw InputError(spec.file, "place",
-                       "lies " + millimetresOf(std::min(middle.norm(), (middle - joint).norm())) + " from the joint '" +
-                           spec.joint + "'",
-                       "model it about the joint, or give \"scale\" and \"at\"");
-    origin = joint;
-    note += std::string(note.empty() ? "read" : ",") + " about the figure's origin";
-  }
-  const Eigen::Matrix3d turn = turnOf(spec.turn);
-  for (Vec3& p : surface.points) p = spec.size * (turn * (scale * p - origin)) + spec.at;
+  const std::array<Vec3, 3> origins{Vec3::Zero(), joint, quarterTurn().transpose() * joint};
+  const auto off = [&](const Vec3& origin) { return (middle - origin).norm(); };
+  auto origin = spec.scale == 0 ? std::ranges::find_if(origins, [&](const Vec3& o) { return off(o) <= kNearJoint; })
+                                : origins.begin();
+  if (origin == origins.end())
+    throw InputError(spec.file, "place",
+                     "lies " + millimetresOf(off(*std::ranges::min_element(origins, {}, off))) + " from the joint '" +
+                         spec.joint + "'",
+                     "model it about the joint (or give \"scale\" and \"at\")");
+  const bool z_up = origin == origins.begin() + 2, turned = z_up && spec.turn.isZero();
+  if (origin != origins.begin()) note += std::string(note.empty() ? "read" : ",") + " about the figure's origin";
+  if (turned) addNote(kTurned, note);
+  const Eigen::Matrix3d turn = turned ? quarterTurn() : turnOf(spec.turn);
+  for (Vec3& p : surface.points) p = spec.size * (turn * (scale * p - *origin)) + spec.at;
+  return turned;
 }
 
 // Degrees about x, then y, then z, by which points have come to where they are from those of the file.
@@ -179,7 +194,7 @@ std::string largerBy(const ClosedSurface& surface, const Rigid& to_scalp, const 
     std::snprintf(text, sizeof text, "make it about %.2f times as large (\"size\")", times);
     return text;
   }
-  return "give \"scale\", metres per unit (0.0254 for inches)";
+  return "make it larger (\"scale\": metres per unit, 0.0254 for inches)";
 }
 
 // Whether a hat lies before or behind the head, in the joint's frame. A hat sits on the head; glasses are thin.
@@ -200,8 +215,10 @@ std::string placeNote(const ClosedSurface& surface, const Rigid& to_scalp, const
            " inside the head; " + largerBy(surface, to_scalp, scalp) + " or move it (\"at\")";
   }
   if (of_head && liesBeside(surface, to_scalp, scalp))
-    return "lies before or behind the head; where z is up in the file, give \"turn\": [-90, 0, 0]";
-  if (nearest > kNearJoint) return "lies " + millimetresOf(nearest) + " from its joint; look at \"size\" and \"at\"";
+    return "lies before or behind the head; where z is up in the file, turn it by -90 degrees about x (\"turn\": [-90, "
+           "0, 0])";
+  if (nearest > kNearJoint)
+    return "lies " + millimetresOf(nearest) + " from its joint; look at its size and place (\"size\", \"at\")";
   return "";
 }
 
@@ -248,15 +265,11 @@ Vec3 toSeat(const ClosedSurface& surface, const Rigid& to_scalp, const Scalp& sc
 
 // A quarter turn to y up of what has z up in its file, facing -y.
 ClosedSurface turnedUp(const ClosedSurface& surface, const Rigid& placed) {
-  const Rigid quarter(Eigen::AngleAxisd(-0.5 * std::numbers::pi, Vec3::UnitX()));
+  const Rigid quarter(Eigen::AngleAxisd{quarterTurn()});
   const Rigid turn = placed * quarter * placed.inverse(Eigen::Isometry);
   ClosedSurface turned = surface;
   for (Vec3& p : turned.points) p = turn * p;
   return turned;
-}
-
-void addNote(const std::string& text, std::string& note) {
-  note += (note.empty() ? "" : ", ") + text;
 }
 
 // What is much nearer to the head when it is turned has z up: a hat where both ways are seated, glasses where they lie.
@@ -274,7 +287,7 @@ void turnUpright(const Rigid& placed, const Vec3& moved, const Rigid& to_scalp, 
   const double off = offHead(surface, seat(surface), scalp), off_turned = offHead(turned, there, scalp);
   if (off_turned > (hat ? kNearer : kMuchNearer) * off || swallowed(turned, 1, there, scalp) > kSwallowed) return;
   surface = std::move(turned);
-  addNote("z up, turned to y", note);
+  addNote(kTurned, note);
 }
 
 // Moves a hat that lies in the head, or beside it, to where it sits. Returns the way, m, in the joint's frame.
@@ -357,14 +370,15 @@ Attachment loadAttachment(const AttachmentSpec& spec, const Character& character
   Attachment out;
   std::string note;
   const ClosedSurface of_file = surface;
-  placeAt(spec, mesh, scalp.linear().transpose() * carrier.rest_world.translation(), surface, note);
+  const bool was_turned =
+      placeAt(spec, mesh, scalp.linear().transpose() * carrier.rest_world.translation(), surface, note);
   out.color = colorOf(mesh);
   const Rigid to_joint = carrier.rest_world.inverse(Eigen::Isometry) * upright;
   for (Vec3& p : surface.points) p = to_joint * p;
   const bool of_head = joint == character.head_joint;
   out.to_scalp = scalp.inverse(Eigen::Isometry) * carrier.rest_world;
   const Rigid placed = to_joint * Eigen::Translation3d(spec.at);
-  if (of_head && spec.turn.isZero())
+  if (of_head && spec.turn.isZero() && !was_turned)
     turnUpright(placed, to_joint.linear() * spec.at, out.to_scalp, character.scalp, surface, note);
   const Rigid from_joint = to_joint.inverse(Eigen::Isometry);
   out.at = spec.at;

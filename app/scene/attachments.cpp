@@ -55,8 +55,9 @@ void checkRoom(const Attachment& attachment, const Scalp& scalp, const sim::Hair
     refuseWorn(
         attachment,
         "encloses " + std::to_string(roots) + " of the head's " + std::to_string(shape.columnCount()) + " hair roots",
-        "make it hollow or larger, or move it off the head, for instance by \"at\": [0, 0.03, 0] (m from the joint, y "
-        "up)");
+        "make it hollow or larger, or move it off the head in its file (or for instance by \"at\": [0, 0.03, 0], m "
+        "from "
+        "the joint, y up)");
   if (surrounds(attachment, scalp))
     refuseWorn(attachment, "encloses the whole head", "leave it open where hair and neck come out");
 }
@@ -68,7 +69,7 @@ void checkHair(const Attachment& attachment, const sim::HairMeshShape& shape) {
     refuseWorn(attachment,
                "encloses the hair: " + std::to_string(in) + " of its " + std::to_string(shape.positions.size()) +
                    " vertices lie in it",
-               "make it smaller, or move it out of the hair with \"at\"");
+               "make it smaller, or move it out of the hair in its file (or by \"at\")");
 }
 
 // Whether it goes round the head and leaves the crown open, as a headband does.

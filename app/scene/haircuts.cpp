@@ -151,7 +151,7 @@ void dressWhereThereIsRoom(const CharacterSpec& spec, const LoadedBody& body, st
 constexpr const char* kRoomForFringe =
     "make it a tenth wider (\"size\") or move it 20 mm up (\"at\": [0, 0.02, 0]), or take a style without a fringe";
 
-constexpr const char* kRoomUnderIt = "move it up, for instance by \"at\": [0, 0.06, 0], or make it wider (\"size\")";
+constexpr const char* kRoomUnderIt = "move it up (for instance by \"at\": [0, 0.06, 0]) or make it wider (\"size\")";
 
 [[noreturn]] void refuseHair(const CharacterSpec& spec, const std::string& title, const Scalp& scalp,
                              const sim::HairMeshShape& grown, const Haircut& haircut, const sim::MeshError& error) {

@@ -17,12 +17,19 @@ bool namesOption(std::string_view words) {
   return false;
 }
 
+// Of an attachment in a scene file or behind --attach.
+bool namesKey(std::string_view words) {
+  constexpr std::array<std::string_view, 4> kKeys{"\"at\"", "\"turn\"", "\"size\"", "\"scale\""};
+  return std::ranges::any_of(kKeys, [&](std::string_view key) { return words.find(key) != words.npos; });
+}
+
 void dropParentheses(std::string& line) {
   std::size_t open = line.find(" (");
   while (open != std::string::npos) {
     const std::size_t close = line.find(')', open);
     if (close == std::string::npos) return;
-    const bool drop = namesOption(std::string_view(line).substr(open, close - open));
+    const std::string_view within = std::string_view(line).substr(open, close - open);
+    const bool drop = namesOption(within) || namesKey(within);
     if (drop) line.erase(open, close + 1 - open);
     open = line.find(" (", drop ? open : close);
   }

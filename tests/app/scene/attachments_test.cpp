@@ -306,15 +306,15 @@ TEST(Attachments, AnExportSaysThatItLeavesThemOut) {
   }
 }
 
-// An attachment in another unit.
-std::string inUnit(const char* name, double units_per_metre, bool z_up, double raised = 0) {
+// An attachment in another unit. `moved`: m, y up.
+std::string inUnit(const char* name, double units_per_metre, bool z_up, const sim::Vec3& moved = sim::Vec3::Zero()) {
   const std::string file = test::freshFolder("attachments_unit") + "/cap.obj";
   std::ifstream in(app::dataPath(std::string("assets/attachments/") + name));
   std::ofstream out(file);
   for (std::string line; std::getline(in, line);) {
     double x = 0, y = 0, z = 0;
     if (std::sscanf(line.c_str(), "v %lf %lf %lf", &x, &y, &z) == 3) {
-      y += raised;
+      x += moved.x(), y += moved.y(), z += moved.z();
       if (z_up) std::swap(y, z), y = -y;
       out << "v " << units_per_metre * x << " " << units_per_metre * y << " " << units_per_metre * z << "\n";
     } else {
@@ -351,11 +351,35 @@ TEST(Attachments, OneWithZUpIsTurned) {
   }
 }
 
+// Made at the standing figure's place, in any unit and with either axis up, it lies where one about the joint does.
+TEST(Attachments, UnitAxisAndOriginAreFoundTogether) {
+  const app::Demo about_joint = app::openScene(wearing("sun_hat.obj"), 1.5);
+  const app::Character& character = about_joint.actors[0].body->character;
+  const sim::Vec3 joint =
+      character.skeleton.joints[static_cast<std::size_t>(character.head_joint)].rest_world.translation();
+  const auto middle = [](const app::Demo& demo) { return demo.actors[0].worn[0].mesh->part.center; };
+  for (const double units : {1.0, 100.0, 1000.0}) {
+    for (const bool z_up : {false, true}) {
+      const std::string file = inUnit("sun_hat.obj", units, z_up, joint);
+      const app::Demo found = app::openScene(wearing(file), 1.5);
+      EXPECT_LT((middle(found) - middle(about_joint)).norm(), 0.03) << units << " " << z_up << " " << found.message;
+      EXPECT_NE(found.message.find("about the figure's origin"), std::string::npos) << found.message;
+      EXPECT_EQ(found.message.find("z up, turned to y") != std::string::npos, z_up) << found.message;
+      EXPECT_EQ(found.message.find("centimetres") != std::string::npos, units == 100) << found.message;
+      // What was inferred, given, changes nothing.
+      const sim::Vec3 turn = found.actors[0].worn[0].mesh->turn;
+      EXPECT_LT((turn - sim::Vec3(z_up ? -90 : 0, 0, 0)).norm(), 0.01);
+      const std::string given = R"({"file": ")" + file + R"(", "turn": [)" + std::to_string(turn.x()) + ", 0, 0]}";
+      EXPECT_LT((middle(app::openScene(wearing(given), 1.5)) - middle(found)).norm(), 1e-4);
+    }
+  }
+}
+
 // A hat modelled about its rim comes to lie where one modelled about the joint does, y up or z up.
 TEST(Attachments, AHatAboutItsRimIsSetOnTheHead) {
   const app::Demo fitted = app::openScene(wearing("sun_hat.obj"), 1.5);
   for (const bool z_up : {false, true}) {
-    const std::string file = inUnit("sun_hat.obj", 1, z_up, -0.084);
+    const std::string file = inUnit("sun_hat.obj", 1, z_up, sim::Vec3(0, -0.084, 0));
     const app::Demo set = app::openScene(wearing(file), 1.5);
     EXPECT_NE(set.message.find("set on the head"), std::string::npos) << set.message;
     const auto middle = [](const app::Demo& demo) { return demo.actors[0].worn[0].mesh->part.center; };
@@ -370,11 +394,14 @@ TEST(Attachments, AHatAboutItsRimIsSetOnTheHead) {
 
 TEST(Attachments, OneInInchesOrFarOffIsSaidToBeNowhereToBeSeen) {
   const app::Demo inches = app::openScene(wearing(beanieIn(1 / 0.0254)), 1.5);
-  EXPECT_NE(inches.message.find("lies wholly inside the head; give \"scale\""), std::string::npos) << inches.message;
+  EXPECT_NE(inches.message.find("lies wholly inside the head; make it larger (\"scale\""), std::string::npos)
+      << inches.message;
   const app::Demo lying = app::openScene(wearing(R"({"file": "beanie.obj", "turn": [90, 0, 0]})"), 1.5);
-  EXPECT_NE(lying.message.find("give \"turn\": [-90, 0, 0]"), std::string::npos) << lying.message;
+  EXPECT_NE(lying.message.find("turn it by -90 degrees about x (\"turn\": [-90, 0, 0])"), std::string::npos)
+      << lying.message;
   const app::Demo far = app::openScene(wearing(R"({"file": "beanie.obj", "at": [0, 3, 0]})"), 1.5);
-  EXPECT_NE(far.message.find("from its joint; look at \"size\" and \"at\""), std::string::npos) << far.message;
+  EXPECT_NE(far.message.find("from its joint; look at its size and place (\"size\", \"at\")"), std::string::npos)
+      << far.message;
 }
 
 TEST(Attachments, AreDroppedUndoneAndTakenOff) {

@@ -17,6 +17,11 @@ TEST(WindowWords, NameNoOptionOfTheCommandLine) {
   shown("a.abc: mended: up (--up z), unit (--unit cm); read\nb: fine (as it is)",
         "a.abc: mended: up, unit; read\nb: fine (as it is)");
   shown("--start 9 lies beyond the clip's end; it begins anew", "--start 9 lies beyond the clip's end; it begins anew");
+  shown("hat.obj: encloses 3 roots; make it larger, or move it in its file (or by \"at\": [0, 0.03, 0], m, y up)",
+        "hat.obj: encloses 3 roots; make it larger, or move it in its file");
+  shown("lies inside the head; make it 1.2 times as large (\"size\") or move it (\"at\")",
+        "lies inside the head; make it 1.2 times as large or move it");
+  shown("s.json: is bad (see \"hair\")", "s.json: is bad (see \"hair\")");
   shown("a--b.obj: is open; close it", "a--b.obj: is open; close it");
 }
 
