@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "app/files/errors.h"
+#include "app/files/file_ending.h"
 #include "app/files/text_file.h"
 #include "app/files/text_scanner.h"
 
@@ -25,12 +26,6 @@ using Mat4 = Eigen::Matrix4d;
 constexpr std::size_t kMaxCorners = 4'000'000, kMaxNodes = 20'000;
 constexpr double kLargest = 1e6;  // of a coordinate
 constexpr const char* kExport = "export the strips or tubes again, as OBJ, FBX or glTF";
-
-std::string endingOf(const std::string& file) {
-  std::string ending = std::filesystem::path(file).extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
-  return ending;
-}
 
 Mat4 toEigen(const aiMatrix4x4& m) {
   Mat4 e;

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "app/files/errors.h"
+#include "app/files/file_ending.h"
 #include "app/files/text_file.h"
 #include "app/groom/formats/alembic_file.h"
 #include "app/groom/formats/groom_bytes.h"
@@ -43,13 +44,13 @@ std::optional<GroomFormat> groomFormat(std::string_view bytes, const std::string
   if (bytes.starts_with("#usda")) return GroomFormat::kUsda;
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return GroomFormat::kPly;
   refuseKnown(bytes, file);
-  if (looksLikeTfx(bytes)) return GroomFormat::kTfx;
+  // The only format without a mark of its own: what is called so is, and its reader says what is wrong with it.
+  if (looksLikeTfx(bytes) || endingOf(file) == ".tfx") return GroomFormat::kTfx;
   return std::nullopt;
 }
 
 std::string beginningOfGroom(const std::string& file) {
-  std::string ending = std::filesystem::path(file).extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string ending = endingOf(file);
   constexpr std::array<std::array<std::string_view, 2>, 8> kEndings{{{".hair", "HAIR"},
                                                                      {".abc", "Ogawa"},
                                                                      {".usda", "#usda"},

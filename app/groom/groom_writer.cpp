@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "app/files/errors.h"
+#include "app/files/file_ending.h"
 #include "app/groom/formats/hair_strands_file.h"
 #include "app/groom/formats/ply_file.h"
 #include "app/groom/formats/tfx_file.h"
@@ -15,12 +16,6 @@
 namespace app {
 
 namespace {
-
-std::string endingOf(const std::string& file) {
-  std::string ending = std::filesystem::path(file).extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
-  return ending;
-}
 
 void writeFrame(const Groom& groom, const std::string& file, const std::string& mark) {
   OutputFile output(file);

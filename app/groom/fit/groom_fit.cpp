@@ -37,7 +37,7 @@ constexpr double kMeanBound = 0.01, kShareBound = 0.03;  // of the strands' leng
 constexpr int kMinLayers = 5, kMaxLayers = 16;           // of hair that is long enough for so many
 constexpr double kSquareness = 0.5;
 // Of a smaller hair mesh's cost, or of its mean error at no more cost: for less gain a larger one is not taken.
-constexpr double kBetter = 0.7;
+constexpr double kBetter = 0.8;
 constexpr int kPerLayer = 4;  // points of a grown strand
 
 // A fit in the making.

@@ -67,6 +67,8 @@ Groom readTfx(std::string_view bytes, const std::string& file) {
   ByteReader reader{bytes, file};
   const auto header = reader.number<TfxHeader>("the 160 bytes of the header");
   const std::uint64_t points = std::uint64_t{header.strands} * header.points;
+  if (!(header.version >= 1 && header.version < 10))
+    reader.fail("the header gives no version of TressFX, 1 to 9", "give a .tfx file");
   if (header.points == 0) reader.fail("the header gives strands of no points", "export the file again");
   checkGroomSize(file, "header", header.strands, points);
   Groom groom;

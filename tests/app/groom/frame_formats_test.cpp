@@ -1,6 +1,10 @@
 // PLY and TressFX: what is written comes back in the same bits, by the program's readers and by those in Python.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <bit>
+#include <cstring>
+
 #include "app/files/errors.h"
 #include "app/groom/formats/ply_file.h"
 #include "app/groom/formats/tfx_file.h"
@@ -26,9 +30,9 @@ void expectTheSame(const std::string& file, const app::Groom& groom) {
   EXPECT_TRUE(second == dump) << second.substr(0, 2000);
 }
 
-std::string faultOf(const std::string& bytes) {
+std::string faultOf(const std::string& bytes, const std::string& file = "groom.ply") {
   try {
-    app::readGroom(bytes, "groom.ply");
+    app::readGroom(bytes, file);
   } catch (const app::InputError& fault) {
     return fault.what();
   }
@@ -125,6 +129,22 @@ TEST(Tfx, ComesBackInTheSameBitsByBothReaders) {
     groom.root_uvs.clear();
     expectTheSame(writtenFile(".tfx", write), groom);
   }
+}
+
+// What is called .tfx is read as such, for its beginning has no mark: the fault is named.
+TEST(Tfx, FaultsOfTheHeaderAreNamed) {
+  const std::string whole(160 + 16 * 8, '\0');
+  const auto said = [&](std::size_t at, std::uint32_t value) {
+    std::string bytes = whole;
+    const std::array<std::uint32_t, 4> head{std::bit_cast<std::uint32_t>(4.0f), 2, 4, 160};
+    std::memcpy(bytes.data(), head.data(), sizeof head);
+    std::memcpy(bytes.data() + at, &value, sizeof value);
+    return faultOf(bytes, "hand.tfx");
+  };
+  EXPECT_EQ(said(0, std::bit_cast<std::uint32_t>(4.0f)), "");
+  EXPECT_NE(said(0, 7).find("hand.tfx: the header gives no version of TressFX"), std::string::npos) << said(0, 7);
+  EXPECT_NE(said(8, 0).find("strands of no points"), std::string::npos) << said(8, 0);
+  EXPECT_NE(said(12, 4000).find("positions"), std::string::npos) << said(12, 4000);
 }
 
 TEST(Tfx, OtherNumbersOfPointsAreNamed) {
