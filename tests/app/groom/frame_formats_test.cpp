@@ -142,7 +142,7 @@ TEST(Tfx, FaultsOfTheHeaderAreNamed) {
     return faultOf(bytes, "hand.tfx");
   };
   EXPECT_EQ(said(0, std::bit_cast<std::uint32_t>(4.0f)), "");
-  EXPECT_NE(said(0, 7).find("hand.tfx: the header gives no version of TressFX"), std::string::npos) << said(0, 7);
+  EXPECT_NE(said(0, 7).find("the header gives no version of TressFX"), std::string::npos) << said(0, 7);
   EXPECT_NE(said(8, 0).find("strands of no points"), std::string::npos) << said(8, 0);
   EXPECT_NE(said(12, 4000).find("positions"), std::string::npos) << said(12, 4000);
 }
