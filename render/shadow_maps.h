@@ -113,7 +113,7 @@ class ShadowMaps {
   // Lets the framebuffer take depth alone, into a layer of `depth`, and clears what the scissor leaves of it.
   void beginDepth(const Texture& depth, int layer);
 
-  Framebuffer framebuffer_, unattached_;
+  Framebuffer framebuffer_, unattached_;  // the second has no texture: what is drawn is added up
   Texture opacity_near_, opacity_far_, hair_depth_, body_in_hair_depth_, body_depth_;
   Texture opacity_sums_;  // of one tile; made where a GPU adds up
   int sums_side_ = 0;     // texels

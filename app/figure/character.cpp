@@ -1,7 +1,6 @@
 #include "app/figure/character.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <list>
@@ -14,6 +13,7 @@
 #include "app/figure/mannequin_parts.h"
 #include "app/figure/skin_cover.h"
 #include "app/files/errors.h"
+#include "app/files/file_ending.h"
 #include "app/files/text_file.h"
 #include "app/motion/clip_repair.h"
 #include "app/motion/foot_plant.h"
@@ -27,9 +27,7 @@ enum class Kind { kBvh, kMot, kModel, kUnknown };
 
 // By ending; a text with another ending is looked into.
 Kind kindOf(const std::string& file) {
-  std::string ending = std::filesystem::path(file).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = endingOf(file);
   if (ending == ".bvh") return Kind::kBvh;
   if (ending == ".mot") return Kind::kMot;
   for (const char* model : {".glb", ".gltf", ".fbx", ".dae"})

@@ -55,9 +55,8 @@ void checkRoom(const Attachment& attachment, const Scalp& scalp, const sim::Hair
     refuseWorn(
         attachment,
         "encloses " + std::to_string(roots) + " of the head's " + std::to_string(shape.columnCount()) + " hair roots",
-        "make it hollow or larger, or move it off the head in its file (or for instance by \"at\": [0, 0.03, 0], m "
-        "from "
-        "the joint, y up)");
+        "make it hollow or larger, or move it off the head in its file (or by \"at\": [0, 0.03, 0], m from the joint, "
+        "y up)");
   if (surrounds(attachment, scalp))
     refuseWorn(attachment, "encloses the whole head", "leave it open where hair and neck come out");
 }

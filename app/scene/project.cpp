@@ -31,6 +31,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr double kKeepEvery = 20;  // s
+constexpr double kLookEvery = 1;   // s, whether the file was saved
 const std::string kKey(kProjectKey), kAutosaveOf(kAutosaveKey);
 
 std::string hex(std::uint64_t value) {
@@ -200,7 +201,8 @@ Autosave::~Autosave() {
 
 void Autosave::keep(double now, const Demo& demo) {
   // What the last step asked for may still be loading.
-  if (file_.empty() || !loadingNote(demo).empty()) return;
+  if (file_.empty() || now < look_at_ || !loadingNote(demo).empty()) return;
+  look_at_ = now + kLookEvery;
   // What was saved is newer than what was kept before it: that is kept anew at once.
   const std::string& scene = demo.scene.file;
   const std::string saved = scene + " " + savedAt(scene);
@@ -209,14 +211,15 @@ void Autosave::keep(double now, const Demo& demo) {
   const EditStep* step = history.done > 0 ? &history.steps[history.done - 1] : nullptr;
   const std::string edits = step ? std::to_string(step->number) + " " + step->title : "none";
   if (history.steps.empty() || (edits == kept_ && saved == saved_)) return;
-  last_ = now, saved_ = saved;
+  last_ = now;
   try {
     std::error_code ignored;
     fs::create_directories(folder_, ignored);
     writeProject(file_, demo, "", {{kAutosaveOf, scene.empty() ? "" : fs::absolute(scene).string()}});
-    kept_ = history.gesture ? "" : edits;
+    kept_ = history.gesture ? "" : edits, saved_ = saved;
     if (!replaced_.empty()) forget(std::exchange(replaced_, ""));
   } catch (const std::exception&) {
+    look_at_ = now + kKeepEvery;
   }
 }
 

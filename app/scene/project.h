@@ -53,7 +53,7 @@ class Autosave {
 
  private:
   std::string folder_, file_;
-  double last_ = -1e9;
+  double last_ = -1e9, look_at_ = -1e9;  // s: when it was kept, and when to look again
   std::string replaced_;
   std::string kept_, saved_;  // what of the demo was kept: its edits; of which saving of its file
 };

@@ -24,7 +24,8 @@ using Eigen::Vector3f;
 constexpr std::size_t kMinGroomStrands = 20;  // strands
 constexpr std::size_t kFitStrands = 5000, kTrialStrands = 3000;
 constexpr int kSlides = 2, kRounds = 5;
-// rad, from which hair is torn apart: the least finds where it divides, and in hair of many ways none of its partings.
+// rad; hair that goes apart by more is torn. The least finds where hair divides over shoulders. In drawn hair, whose
+// strands go many ways, only the others find a parting.
 constexpr std::array kTears{0.15, 0.3, 0.45};
 constexpr int kOpenings = 3, kStiffenings = 8;
 constexpr double kStiffer = 2;  // times that columns of a flat face are held more alike, a round

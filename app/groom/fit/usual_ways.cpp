@@ -10,7 +10,7 @@ using Eigen::Vector2f;
 using Eigen::Vector3f;
 
 constexpr double kHeldWeight = 1;
-constexpr double kLongEnough = 0.7;
+constexpr double kLongEnough = 0.7;      // of a column's length: strands that tell of its way
 constexpr double kAstray = 0.25;         // of the usual way's length, off which a column is astray
 constexpr float kShortestWay = 0.0035f;  // m, of a column: an edge (column_fit.cpp)
 
@@ -29,13 +29,14 @@ double wayLength(const std::vector<Vector3f>& path) {
 }
 
 // The nearest cell of a region whose strands are about that long (m): short fine hair of a hairline tells nothing of
-// the way that long hair goes.
-const RootCell* usualCell(const RootRaster& raster, int region, const Vector2f& at, double length) {
+// the way that long hair goes. lengths: of the cells' paths, m.
+const RootCell* usualCell(const RootRaster& raster, std::span<const double> lengths, int region, const Vector2f& at,
+                          double length) {
   const RootCell* best = nullptr;
   float least = std::numeric_limits<float>::infinity();
   for (std::size_t c = 0; c < raster.cells.size(); ++c) {
     const RootCell& cell = raster.cells[c];
-    if (cell.region != region || cell.path.empty() || wayLength(cell.path) < kLongEnough * length) continue;
+    if (cell.region != region || cell.path.empty() || lengths[c] < kLongEnough * length) continue;
     const auto columns = static_cast<std::size_t>(raster.columns);
     const Vector2f middle = raster.origin + raster.size * Vector2f(static_cast<float>(c % columns) + 0.5f,
                                                                    static_cast<float>(c / columns) + 0.5f);
@@ -51,11 +52,13 @@ const RootCell* usualCell(const RootRaster& raster, int region, const Vector2f& 
 std::vector<sim::Vec3> usualWays(const RootRaster& raster, const RootMesh& roots, std::span<const double> knots,
                                  const sim::HairMeshShape& shape) {
   const std::vector<int> region = regionsOfColumns(roots);
+  std::vector<double> lengths;
+  for (const RootCell& cell : raster.cells) lengths.push_back(wayLength(cell.path));
   std::vector<sim::Vec3> all;
   for (std::size_t c = 0; c < region.size(); ++c) {
     const sim::Vec3 root = shape.positions[static_cast<std::size_t>(shape.column_first[c])];
     const double length = std::max(raster.lengthAt(roots.at[c]), kShortestWay);
-    const RootCell* cell = usualCell(raster, region[c], roots.at[c], length);
+    const RootCell* cell = usualCell(raster, lengths, region[c], roots.at[c], length);
     std::vector<double> passed{0};
     for (std::size_t k = 1; cell && k < cell->path.size(); ++k)
       passed.push_back(passed.back() + (cell->path[k] - cell->path[k - 1]).norm());

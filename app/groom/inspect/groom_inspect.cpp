@@ -95,7 +95,7 @@ struct Inspector {
   void place();
   void placeSeated();
   bool standsInWorld() const;
-  bool ofOtherSize(std::vector<Vector3f>& roots);
+  bool scaleRoots(std::vector<Vector3f>& roots);
   void floating(const std::vector<Vector3f>& roots);
   void body(const std::vector<Vector3f>& roots, const Vector3f& move);
   float offHeadTurned(const Matrix3f& matrix) const;
@@ -364,7 +364,7 @@ bool Inspector::standsInWorld() const {
 }
 
 // Brings roots all over a scalp to the size of the head, where that is certain.
-bool Inspector::ofOtherSize(std::vector<Vector3f>& roots) {
+bool Inspector::scaleRoots(std::vector<Vector3f>& roots) {
   if (!ofScalp() || inWorld() || !settled()) return false;
   const float scale = scaleToHead(*head, roots, skull.center);
   if (scale == 1) return false;
@@ -380,12 +380,12 @@ void Inspector::place() {
   if (seat) return placeSeated();
   std::vector<Vector3f> roots = ends.first;
   const float before = offHead(*head, roots);
-  const float aside = (skull.center - head->center).norm();
+  const float aside = (skull.center - head->center).norm(), away = before > kFar ? before : std::max(before, aside);
   Vector3f move = Vector3f::Zero();
   bool world = inWorld();
   // Roots of a scalp may lie near a head by chance, about its neck.
   const bool elsewhere = before > kFar || (ofScalp() && aside > kAside);
-  const bool sized = ofOtherSize(roots);
+  const bool sized = scaleRoots(roots);
   result.on_head = settled() && !elsewhere && !sized;
   if (elsewhere || sized) {
     move = moveToHead(*head, roots, result.mends.scale * skull.center);
@@ -396,7 +396,7 @@ void Inspector::place() {
     add("roots",
         inJudged() + textOf(world ? "the hair is on a head in the world, %.3g m from the figure's own"
                                   : "the roots lie %.3g m from the scalp",
-                            std::max(before, elsewhere && before <= kFar ? aside : before)),
+                            away),
         moveText(move), certain);
     result.findings.back().fault = !world;
     result.on_head = certain;
