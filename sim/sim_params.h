@@ -73,7 +73,7 @@ struct SimParams {
   // m, and when it estimates that no vertex would end up farther off than this, in steps shorter than 1/60 s less by
   // the square of their length
   double displacement_tolerance = 1e-6;
-  int max_iterations = 60;  // of the linear solver, in a step
+  int max_iterations = 40;  // of the linear solver, in a step; docs/performance.md
 };
 
 enum class FieldKind { kReal, kInteger, kSwitch, kChoice };

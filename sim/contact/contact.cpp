@@ -24,17 +24,6 @@ constexpr double kNeighbour = 0.005;             // m; bodies so near to a verte
 constexpr double kStride = 1e-5;                 // m, from one body to the next
 constexpr int kMaxLeaves = 32;
 
-// False only if p lies farther than `offset` off the surface.
-bool mayTouch(const Ellipsoid& e, double offset, const Vec3& p) {
-  const double reach = e.radii.maxCoeff() + offset;
-  const Vec3 d = p - e.center;
-  if (d.squaredNorm() >= reach * reach) return false;
-  // The offset surface lies within the ellipsoid whose radii are longer by offset times the aspect ratio.
-  const Vec3 local = e.rotation.conjugate() * d;
-  const double grow = offset * e.radii.maxCoeff() / e.radii.minCoeff();
-  return local.cwiseQuotient(e.radii + Vec3::Constant(grow)).squaredNorm() < 1;
-}
-
 // Bounds of all the vertices that are searched, and of each cluster of them.
 SweptBox boundPaths(const ContactSearch& search, std::span<const Vec3> positions, ContactScratch& scratch) {
   const Vec3 far = Vec3::Constant(INFINITY);
@@ -150,13 +139,13 @@ Penetration touchOf(const ContactSearch& search, const NearCollider& near, int v
   Penetration touch{vertex, near.index, Vec3::Zero(), Vec3::UnitY(), 0, false, 0};
   const int k = near.index;
   const double offset = search.margins.offset;
-  if (mayTouch(search.colliders.body(k), offset, p)) {
+  if (near.mayTouch(p)) {
     const SurfacePoint s = search.colliders.closest(k, p);
     touch.depth = offset - s.distance;
     touch.normal = s.normal;
     touch.target = s.point + offset * s.normal;
     const Vec3 carried = search.start.empty() ? p : near.carried(search.start[vertex]);
-    if (touch.depth > 0 && !search.start.empty() && mayTouch(search.colliders.body(k), offset, carried)) {
+    if (touch.depth > 0 && !search.start.empty() && near.mayTouch(carried)) {
       const double before = offset - search.colliders.closest(k, carried).distance;
       if (before > search.margins.slack + kMet) {
         // An initial overlap: resolved by no more than the escape, and no deeper than it was.
@@ -201,34 +190,29 @@ namespace {
 
 // The share of `direction` (m, world) after which a line from p, inside or outside, has left the ellipsoid that holds
 // all points nearer to the collider than the offset; 0 where it does not meet it.
-double leavesAt(const Ellipsoid& e, double offset, const Vec3& p, const Vec3& direction) {
-  const double grow = offset * e.radii.maxCoeff() / e.radii.minCoeff();  // see mayTouch
-  const Vec3 radii = e.radii.array() + grow;
-  const Vec3 from = (e.rotation.conjugate() * (p - e.center)).cwiseQuotient(radii);
-  const Vec3 along = (e.rotation.conjugate() * direction).cwiseQuotient(radii);
+double leavesAt(const NearCollider& near, const Vec3& p, const Vec3& direction) {
+  const Vec3 from = near.local(p - near.after).cwiseProduct(near.around);
+  const Vec3 along = near.local(direction).cwiseProduct(near.around);
   const double a = along.squaredNorm(), b = from.dot(along), c = from.squaredNorm() - 1;
   const double discriminant = b * b - a * c;
   return discriminant <= 0 ? 0 : std::max(0.0, (std::sqrt(discriminant) - b) / a);
 }
 
 // m along `direction` (unit) after which p has left the collider, or nearly so of signed distances; 0 outside.
-double wayOut(const ContactSearch& search, int k, const Vec3& p, const Vec3& direction) {
-  const double offset = search.margins.offset;
-  const Ellipsoid& body = search.colliders.body(k);
-  if (!mayTouch(body, offset, p)) return 0;
-  if (!search.colliders.sdf(k)) return leavesAt(body, offset, p, direction);
-  return std::max(0.0, 2 * (offset - search.colliders.closest(k, p).distance));
+double wayOut(const ContactSearch& search, const NearCollider& near, const Vec3& p, const Vec3& direction) {
+  if (!near.mayTouch(p)) return 0;
+  if (!search.colliders.sdf(near.index)) return leavesAt(near, p, direction);
+  return std::max(0.0, 2 * (search.margins.offset - search.colliders.closest(near.index, p).distance));
 }
 
 // Where projections alternate between overlapping bodies: goes straight away from the mean centre of the bodies around
 // the vertex until it is outside all of them. Leaves `hit` as it is where none is around.
 void leaveAll(const ContactSearch& search, const ContactScratch& scratch, Penetration& hit) {
-  const double offset = search.margins.offset;
   Vec3 centers = Vec3::Zero();
   int count = 0;
   for (const NearCollider& near : scratch.near) {
-    if (!mayTouch(search.colliders.body(near.index), offset + kNeighbour, hit.target)) continue;
-    centers += search.colliders.body(near.index).center;
+    if (!near.mayTouch(hit.target, kNeighbour)) continue;
+    centers += near.after;
     ++count;
   }
   if (count == 0) return;
@@ -239,7 +223,7 @@ void leaveAll(const ContactSearch& search, const ContactScratch& scratch, Penetr
   for (int round = 0; inside && round < kMaxLeaves; ++round) {
     inside = false;
     for (const NearCollider& near : scratch.near) {
-      const double further = wayOut(search, near.index, hit.target + (way + kStride) * direction, direction);
+      const double further = wayOut(search, near, hit.target + (way + kStride) * direction, direction);
       if (further <= 0) continue;
       way += kStride + further;
       hit.collider = near.index;
@@ -310,6 +294,7 @@ void findPenetrations(const ContactSearch& search, std::span<const Vec3> positio
     for (int round = 0; round < (brief ? kBriefly : kProjections) && !out; ++round) {
       Penetration deepest{v, -1, p, Vec3::UnitY(), round == 0 ? 1e-9 : kMet, false, 0};
       const auto test = [&](const NearCollider& near) {
+        if (near.index == hit.collider && !search.colliders.sdf(near.index)) return;  // p was brought to its surface
         const bool swept = round == 0 && (!brief || deepest.collider < 0);
         const Penetration touch = touchOf(search, near, v, p, swept);
         if (touch.depth > deepest.depth) deepest = touch;

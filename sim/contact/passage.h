@@ -24,11 +24,21 @@ struct NearCollider {
   int chords = 1;
   std::array<Eigen::Matrix3d, kMaxChords + 1> local_turn;
   Vec3 outer, inner;  // 1/m, inverse radii: of the ellipsoid grown to the contact offset, and less what may be grazed
+  Vec3 around;        // 1/m, inverse radii of an ellipsoid that holds all points nearer than the contact offset
   // m. A vertex that moves by s within the step meets it only from within margin + s of its centre at the end.
   double margin = INFINITY;
 
   NearCollider(int index, const Ellipsoid& body, double thickness, double offset, double dt);
 
+  // From world directions to its axes at the step's end.
+  Vec3 local(const Vec3& direction) const { return local_turn[chords] * direction; }
+  // False only if p (m, world) lies farther than the contact offset and `more` (m) off the surface at the step's end.
+  bool mayTouch(const Vec3& p, double more = 0) const {
+    const Vec3 d = p - after;
+    if (d.squaredNorm() >= (reach + more) * (reach + more)) return false;
+    const double longer = 1 + more * around.maxCoeff();
+    return local(d).cwiseProduct(around).squaredNorm() < longer * longer;
+  }
   // The place at the step's end of a point fixed to it at the start.
   Vec3 carried(const Vec3& start) const { return after + turn * (start - before); }
   // In the collider's axes (m): the end of chord i of the way from start to end (m, world).

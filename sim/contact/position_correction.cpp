@@ -10,8 +10,8 @@ namespace {
 
 constexpr int kRounds = 4;               // of position correction and deformation minimization
 constexpr int kPlainRounds = 8;          // more of correction alone
-constexpr int kMaxPoints = 3;            // closest points of colliders, a vertex and step
-constexpr int kMaxMinimizations = 12;    // iterations of deformation minimization, a step
+constexpr double kMaxPoints = 1.5;       // closest points of colliders, a vertex and step
+constexpr int kMaxMinimizations = 8;     // iterations of deformation minimization, a step
 constexpr int kExactCost = 2;            // of them, that an exact solution stands for
 constexpr double kMinimization = 1e-3;   // relative residual
 constexpr double kFastestFollower = 10;  // m/s that a vertex takes from following a corrected one
@@ -109,7 +109,8 @@ void limitCorrectionWork(const WorkBounds& bounds, bool published, PositionCorre
   scratch.max_points = std::numeric_limits<long>::max();
   scratch.max_minimizations = (kRounds + kPlainRounds) * kMaxMinimization;
   if (published) return;
-  scratch.max_points = std::min(static_cast<long>(kMaxPoints * scratch.held.size()), bounds.surface_points);
+  const auto vertices = static_cast<double>(scratch.held.size());
+  scratch.max_points = std::min(static_cast<long>(kMaxPoints * vertices), bounds.surface_points);
   scratch.max_minimizations = std::min(kMaxMinimizations, bounds.minimizations);
 }
 
