@@ -56,6 +56,7 @@ int main(int count, char** arguments) {
   char* text = readText(arguments[1], &length);
   if (!length) {
     fprintf(stderr, "%s: cannot be read, or is empty; give a hair mesh (OBJ)\n", arguments[1]);
+    free(text);
     return 1;
   }
   const double seconds = count > 2 ? atof(arguments[2]) : 2;
@@ -63,8 +64,9 @@ int main(int count, char** arguments) {
   hm_hair hair;
   hm_mesh_info info;
   hm_view positions;
-  if (hm_mesh_create_from_text(text, length, arguments[1], 0, &mesh) != HM_OK) return failed();
+  const hm_result read = hm_mesh_create_from_text(text, length, arguments[1], 0, &mesh);
   free(text);
+  if (read != HM_OK) return failed();
   if (hm_hair_create(mesh, NULL, &hair) != HM_OK || hm_mesh_describe(mesh, &info) != HM_OK) return failed();
   if (hm_hair_positions(hair, &positions) != HM_OK) return failed();
   const double* tip = positions.data + 3 * (info.column_first[1] - 1);

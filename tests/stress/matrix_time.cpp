@@ -60,7 +60,7 @@ std::string clipName(const char* clip) {
 }
 
 // What the bounds on a step's counts add up to.
-constexpr double kMaxStepWork = 260;
+constexpr double kMaxStepWork = 170;
 
 constexpr std::array<double, 9> kSteps{1.0 / 1000, 1.0 / 480, 1.0 / 240, 1.0 / 120, 1.0 / 60,
                                        1.0 / 30,   1.0 / 20,  1.0 / 15,  0.1};
