@@ -80,17 +80,17 @@ def sun_hat():
     flat = lambda t, i, off: on_head(t, rim(t) * i / rows, off)
 
     def brim(t, s, side):
-        x, y, z = flat(t, rows, 0.016)
+        x, y, z = flat(t, rows, 0.020)
         out = wide * s
         return (x + out * math.sin(t), y - 0.018 * s * s + 0.0035 * side, z + out * math.cos(t))
 
-    outer = [[flat(t, i, 0.019) for t in turns(segments)] for i in range(1, rows)]
+    outer = [[flat(t, i, 0.023) for t in turns(segments)] for i in range(1, rows)]
     upper = [[brim(t, s, 1) for t in turns(segments)] for s in (0.06, 0.2, 0.4, 0.6, 0.8, 1.0)]
     lower = [[brim(t, s, -1) for t in turns(segments)] for s in (1.0, 0.8, 0.6, 0.4, 0.2, 0.06)]
-    inner = [[flat(t, i, 0.012) for t in turns(segments)] for i in range(rows, 0, -1)]
+    inner = [[flat(t, i, 0.0165) for t in turns(segments)] for i in range(rows, 0, -1)]
     rings = mesh.sheet(outer + upper + lower + inner)
-    mesh.cap(rings[0], on_head(0, 0, 0.019), False)
-    mesh.cap(rings[-1], on_head(0, 0, 0.012), True)
+    mesh.cap(rings[0], on_head(0, 0, 0.023), False)
+    mesh.cap(rings[-1], on_head(0, 0, 0.0165), True)
     mesh.write("sun_hat", "A hat with a brim", (0.62, 0.46, 0.24))
 
 

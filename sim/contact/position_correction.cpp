@@ -11,7 +11,7 @@ namespace {
 constexpr int kRounds = 4;               // of position correction and deformation minimization
 constexpr int kPlainRounds = 8;          // more of correction alone
 constexpr double kMaxPoints = 1.5;       // closest points of colliders, a vertex and step
-constexpr int kMaxMinimizations = 8;     // iterations of deformation minimization, a step
+constexpr int kMaxMinimizations = 12;    // iterations of deformation minimization, a step
 constexpr int kExactCost = 2;            // of them, that an exact solution stands for
 constexpr double kMinimization = 1e-3;   // relative residual
 constexpr double kFastestFollower = 10;  // m/s that a vertex takes from following a corrected one
