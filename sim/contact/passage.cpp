@@ -75,7 +75,7 @@ NearCollider::NearCollider(int k, const Ellipsoid& body, double thickness, doubl
       thin(thickness),
       outer((body.radii.array() + offset).inverse()),
       inner((body.radii.array() + (offset - kGrazing * thickness)).inverse()),
-      // The radii longer by the offset times the aspect ratio: nowhere nearer than the offset.
+      // Its radii are longer by the offset times the aspect ratio, so its surface is nowhere nearer than the offset.
       around((body.radii.array() + offset * body.radii.maxCoeff() / body.radii.minCoeff()).inverse()) {
   const Eigen::Matrix3d local = body.rotation.conjugate().toRotationMatrix();
   const Vec3 axis = turned > 1e-12 ? Vec3(body.angular_velocity.normalized()) : Vec3(Vec3::UnitX());

@@ -83,9 +83,10 @@ const Result* resultOf(const std::string& name, const std::vector<Result>& resul
   return found == results.end() ? nullptr : &*found;
 }
 
-// Of each claim how many of its pairs did not return: "collapse 2, shuffled 3".
+// How many pairs of each claim did not return.
 using Shortfalls = std::map<std::string, int>;
 
+// "5: collapse 2, shuffled 3".
 std::string shortText(const Shortfalls& claims) {
   std::string text;
   int count = 0;
