@@ -164,7 +164,7 @@ void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
       "--pin", options.pins, "JSON",
       "Hold a vertex of the hair, for instance {\"column\": 3, \"to\": \"scalp\"}; keys as in a scene's \"pins\"");
   group.value("--tie", options.tie, "NAME|JSON",
-              "Tie the hair: back, high, low, left, right, two, plait or plaits (braided), none, or JSON as a scene's "
+              "Tie the hair: back, high, low, left, right, two, plait, plaits, bun, buns, none, or JSON as a scene's "
               "\"ties\"");
   group.values(
       "--attach", options.attachments, "FILE@JOINT",

@@ -449,7 +449,9 @@ Tape::End Tape::end(const Demo& demo) {
         "replayed " + count + " of a recording that was cut off, so that none knows its end; state " + state + "\n";
   } else {
     End reached{"the state is the recorded one to the bit: " + state};
-    if (state != replay_->state) {
+    if (state == replay_->state && replay_->edited.value_or(false)) {
+      reached = {reached.message + "; but its text was changed after it was recorded", true};
+    } else if (state != replay_->state) {
       reached = otherEnd(*replay_, demo);
       reached.message = "but the state is " + state + ", not " + replay_->state + "; " + reached.message;
     }

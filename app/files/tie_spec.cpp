@@ -15,6 +15,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double kFarthestTie = 0.5, kStandOff = 0.014;  // m
+constexpr double kBunStandOff = 0.010;                   // m, and two fifths of the radius: it lies on the head
 
 struct TiePlace {
   std::string_view name;
@@ -36,7 +37,7 @@ sim::Vec3 lowered(const sim::Vec3& way, double angle) {
 }
 
 TieSpec readTie(const JsonPlace& place) {
-  place.expectObject({"at", "radius", "side", "above", "braided"});
+  place.expectObject({"at", "radius", "side", "above", "braided", "bun"});
   TieSpec tie;
   if (place.has("at") && place.at("at").value().is_string()) {
     tie.place = place.at("at").choice({"back", "high", "low", "left", "right"});
@@ -48,6 +49,7 @@ TieSpec readTie(const JsonPlace& place) {
   if (place.has("side")) tie.side = place.at("side").choice({"all", "left", "right"});
   if (place.has("above")) tie.above = place.at("above").number(-1, 1);
   if (place.has("braided")) tie.braided = place.at("braided").flag();
+  if (place.has("bun")) tie.bun = place.at("bun").flag();
   return tie;
 }
 
@@ -67,6 +69,7 @@ json writeTies(const std::vector<TieSpec>& ties) {
     one["at"] = tie.at ? json{tie.at->x(), tie.at->y(), tie.at->z()} : json(tie.place);
     if (!tie.side.empty()) one["side"] = tie.side;
     if (tie.braided) one["braided"] = true;
+    if (tie.bun) one["bun"] = true;
     all.push_back(std::move(one));
   }
   return all;
@@ -76,8 +79,9 @@ std::vector<TieSpec> tiesFromText(std::string_view text) {
   if (text == "none" || text.empty()) return {};
   TieSpec tie;
   tie.braided = text == "plait" || text == "plaits";
-  if (text == "plait") return {tie};
-  if (text == "two" || text == "plaits") {
+  tie.bun = text == "bun" || text == "buns";
+  if (text == "plait" || text == "bun") return {tie};
+  if (text == "two" || text == "plaits" || text == "buns") {
     std::vector<TieSpec> both(2, tie);
     both[0].place = "left", both[1].place = "right";
     return both;
@@ -87,9 +91,9 @@ std::vector<TieSpec> tiesFromText(std::string_view text) {
     return {tie};
   }
   if (!text.starts_with("[") && !text.starts_with("{"))
-    throw InputError(
-        "", "tie '" + std::string(text.substr(0, 40)) + "'", "is unknown",
-        "choose back, high, low, left, right, two, plait, plaits or none, or write JSON as in a scene's \"ties\"");
+    throw InputError("", "tie '" + std::string(text.substr(0, 40)) + "'", "is unknown",
+                     "choose back, high, low, left, right, two, plait, plaits, bun, buns or none, or write JSON as in "
+                     "a scene's \"ties\"");
   const json parsed = parseJson(text, "");
   const JsonPlace place(parsed, "");
   return parsed.is_object() ? std::vector{readTie(place)} : readTies(place);
@@ -113,10 +117,12 @@ std::vector<HairTie> placeTies(const std::vector<TieSpec>& ties, const Scalp& sc
     HairTie tie;
     const TiePlace& named = *placeOf(spec.place);
     const sim::Vec3 way = lowered(sim::Vec3(named.x, named.y, named.z).normalized(), lower);
-    tie.at = spec.at.value_or(scalp.center + (scalp.radiusAt(way) + spec.radius + kStandOff) * way);
+    const double off = spec.bun ? 0.4 * spec.radius + kBunStandOff : spec.radius + kStandOff;
+    tie.at = spec.at.value_or(scalp.center + (scalp.radiusAt(way) + off) * way);
     tie.radius = spec.radius;
     tie.side = spec.side == "left" ? 1 : spec.side == "right" ? -1 : spec.side == "all" ? 0 : spec.at ? 0 : named.side;
     tie.above = spec.above;
+    tie.bun = spec.bun;
     placed.push_back(tie);
   }
   return placed;

@@ -179,9 +179,9 @@ sim::StepInput stepInput(const sim::SimParams& params, double step, double time,
 namespace {
 
 // What lies under an attachment stays there.
-void holdCovered(Actor& actor) {
+void holdAtRest(std::span<const int> vertices, Actor& actor) {
   const Character& character = actor.body->character;
-  for (const int v : actor.haircut->covered) {
+  for (const int v : vertices) {
     const Vec3 at = character.head_frame * actor.haircut->mesh.shape.positions[static_cast<std::size_t>(v)];
     actor.pins.push_back({v, character.head_joint, at, PinSpec::kForever, 0, PinSpec::kForever});
   }
@@ -224,7 +224,8 @@ Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, AssetCa
     const Vec3 at = body.character.head_frame * places[k];
     actor.pins.push_back({ring[k], body.character.head_joint, at, PinSpec::kForever, 0, PinSpec::kForever});
   }
-  holdCovered(actor);
+  holdAtRest(actor.haircut->wound, actor);
+  holdAtRest(actor.haircut->covered, actor);
   for (const WornAttachment& worn : actor.worn)
     markMoving(worn.mesh->part.joint, body.character.skeleton, body.moving_joints);
   for (const ActorPin& pin : actor.pins) markMoving(pin.joint, body.character.skeleton, body.moving_joints);

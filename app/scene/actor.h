@@ -59,7 +59,8 @@ struct Haircut {
   std::vector<HairTie> ties;   // where they are
   std::vector<int> tied;       // vertices in the rings of ties
   std::vector<HairTie> bands;  // the ties as they are seen: as narrow as what they hold
-  BraidPlan braids;            // tails that are drawn as plaits; empty: none
+  BraidPlan braids;            // tails that are drawn as plaits or buns; empty: none
+  std::vector<int> wound;      // vertices of buns, beyond their rings; ascending
   std::vector<int> covered;    // vertices under attachments, which hold them
   PaintedShares shares;
   PaintedLook look_shares;

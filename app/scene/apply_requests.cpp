@@ -96,11 +96,9 @@ void changeMends(const std::string& mends, Demo& demo) {
 void changeTies(const std::string& text, Demo& demo) {
   CharacterSpec spec = selectedActor(demo).spec;
   spec.ties = tiesFromText(text);
-  const bool braided = std::ranges::any_of(spec.ties, &TieSpec::braided);
-  recast(
-      spec, true,
-      spec.ties.empty() ? "hair without ties" : (braided ? "braided hair with " : "hair with ") + tieTitle(spec.ties),
-      demo);
+  const std::string hair = std::ranges::any_of(spec.ties, &TieSpec::braided) ? "braided hair" : "hair",
+                    bun = std::ranges::any_of(spec.ties, &TieSpec::bun) ? " in a bun" : "";
+  recast(spec, true, hair + (spec.ties.empty() ? " without ties" : bun + " with " + tieTitle(spec.ties)), demo);
 }
 
 void changeAttachments(const Request& request, Demo& demo) {

@@ -40,7 +40,8 @@ void addNote(const std::string& note, Haircut& haircut) {
 constexpr double kShortOfRing = 0.005;  // m: what lacks less does for the want of room
 
 // rad, that ties are lowered by, one after another, where what is worn leaves the tied hair no room.
-constexpr std::array kLowered{0.0, 0.15, 0.3, 0.45, 0.6, 0.75};
+constexpr double kLower = 0.1;
+constexpr std::size_t kLowerings = 17;
 
 // Places by name that none of these ties has.
 std::string otherPlaces(const std::vector<TieSpec>& ties) {
@@ -68,8 +69,18 @@ void checkRings(const CharacterSpec& spec, const LoadedBody& body, const std::ve
   }
 }
 
-// Vertices in each tie's ring.
-using Rings = std::vector<std::vector<int>>;
+std::string shortBunNote(const TieSpec& tie, double left) {
+  return tieTitle({tie}) + ": " + centimetres(left) + " of hair below the ring are too short for a bun (" +
+         centimetres(shortestBun(tie.radius)) + "): a tail";
+}
+
+// What each tie holds.
+struct Held {
+  std::vector<int> ring;  // vertices
+  double left = 0;        // m of hair beyond it
+  bool wound = false;     // to a bun
+};
+using Rings = std::vector<Held>;
 
 void applyTies(const CharacterSpec& spec, const LoadedBody& body, sim::HairMeshShape& shape, Haircut& haircut,
                Rings& rings) {
@@ -78,6 +89,7 @@ void applyTies(const CharacterSpec& spec, const LoadedBody& body, sim::HairMeshS
   shape = std::move(result.shape);
   haircut.tied.clear();
   haircut.bands.clear();
+  haircut.wound.clear();
   rings.clear();
   for (std::size_t t = 0; t < result.rings.size(); ++t) {
     const std::vector<int>& ring = result.rings[t];
@@ -88,8 +100,14 @@ void applyTies(const CharacterSpec& spec, const LoadedBody& body, sim::HairMeshS
     const HairTie& tie = haircut.ties[t];
     haircut.bands.push_back(
         fittedRing(tie, body.character.scalp, ringPlaces(shape, body.character.scalp, {&tie, 1}, ring)));
+    rings.push_back({ring, result.left[t], result.wound[t]});
+    if (!result.wound[t]) continue;
+    for (const int v : ring) {
+      const auto end = std::ranges::upper_bound(shape.column_first, v);
+      for (int beyond = v + 1; beyond < *end; ++beyond) haircut.wound.push_back(beyond);
+    }
   }
-  rings = std::move(result.rings);
+  std::ranges::sort(haircut.wound);
 }
 
 // The hair as it grows, cut by a map.
@@ -115,23 +133,45 @@ void dressHair(const CharacterSpec& spec, const LoadedBody& body, std::span<cons
   haircut.mesh = sim::buildHairMesh(std::move(shape));
 }
 
-// The same with the ties where they are named or, where there is no room, as little lower as there is.
+// Whether a hat lies over a tie's ring or bun, which would come out through it.
+bool ringUnderHat(const Haircut& haircut) {
+  const auto covered = [&](int vertex) { return std::ranges::binary_search(haircut.covered, vertex); };
+  return std::ranges::any_of(haircut.tied, covered) || std::ranges::any_of(haircut.wound, covered);
+}
+
+void dressAt(double lower, const CharacterSpec& spec, const LoadedBody& body, std::span<const Attachment* const> worn,
+             const sim::HairMeshShape& shape, Haircut& haircut, Rings& rings) {
+  haircut.ties = placeTies(spec.ties, body.character.scalp, lower);
+  checkRings(spec, body, haircut.ties);
+  dressHair(spec, body, worn, shape, haircut, rings);
+}
+
+// The same with the ties where they are named or, where a hat leaves no room or lies over them, as little lower as
+// there is. Where they cannot be lower than the hat, they stay under it.
 void dressWhereThereIsRoom(const CharacterSpec& spec, const LoadedBody& body, std::span<const Attachment* const> worn,
                            const sim::HairMeshShape& shape, Haircut& haircut, Rings& rings) {
   const bool named = std::ranges::any_of(spec.ties, [](const TieSpec& tie) { return !tie.at; });
-  const std::size_t tries = named && !worn.empty() ? kLowered.size() : 1;
+  const std::size_t tries = named && !worn.empty() ? kLowerings : 1;
+  std::optional<double> under;  // the least that gives room, under the hat
+  double lower = 0;
   for (std::size_t k = 0; k < tries; ++k) {
-    haircut.ties = placeTies(spec.ties, body.character.scalp, kLowered[k]);
-    checkRings(spec, body, haircut.ties);
+    lower = kLower * static_cast<double>(k);
     try {
-      dressHair(spec, body, worn, shape, haircut, rings);
+      dressAt(lower, spec, body, worn, shape, haircut, rings);
+      if (tries == 1 || !ringUnderHat(haircut)) {
+        under.reset();
+        break;
+      }
+      if (!under) under = lower;
     } catch (const sim::MeshError&) {
-      if (k + 1 == tries) throw;
-      continue;
+      if (!under && k + 1 == tries) throw;
+    } catch (const InputError&) {
+      if (!under) throw;
+      break;
     }
-    if (k > 0) addNote(loweredNote(spec, body.character.scalp, kLowered[k]), haircut);
-    return;
   }
+  if (under) dressAt(lower = *under, spec, body, worn, shape, haircut, rings);
+  if (lower > 0) addNote(loweredNote(spec, body.character.scalp, lower), haircut);
 }
 
 // Hair, as it grows, that its ties leave no room.
@@ -156,8 +196,11 @@ constexpr const char* kRoomUnderIt = "move it up (for instance by \"at\": [0, 0.
 [[noreturn]] void refuseHair(const CharacterSpec& spec, const std::string& title, const Scalp& scalp,
                              const sim::HairMeshShape& grown, const Haircut& haircut, const sim::MeshError& error) {
   if (!spec.maps.length.empty())
-    throw InputError("map " + spec.maps.length.substr(0, 80), "length", "cuts hair so that its layers cross",
-                     "paint it lighter or more evenly");
+    throw InputError("map " + spec.maps.length.substr(0, 80), "length",
+                     haircut.covered.empty() ? "cuts hair so that its layers cross"
+                                             : "cuts hair so that it has no room under what is worn",
+                     haircut.covered.empty() ? "paint it lighter or more evenly"
+                                             : "take off one of the two, or paint it lighter where the hat lies");
   if (!haircut.covered.empty() && !spec.ties.empty())
     throw InputError(spec.attachments.front().file, "with a tie", "leaves the tied hair no room",
                      "take a coarser hair mesh (low) or longer hair, or take off one of the two");
@@ -174,9 +217,12 @@ void braidTails(const CharacterSpec& spec, const Scalp& scalp, const Rings& ring
   std::vector<BraidTie> braided;
   std::vector<std::string> names;
   for (std::size_t t = 0; t < rings.size(); ++t) {
-    if (!spec.ties[t].braided) continue;
-    const Vec3 axis = (haircut.ties[t].at - scalp.center).normalized();
-    braided.push_back({axis, haircut.ties[t].radius, axis.x() < 0, rings[t]});
+    const auto& [ring, left, wound] = rings[t];
+    if (spec.ties[t].bun && !wound) addNote(shortBunNote(spec.ties[t], left), haircut);
+    if (!spec.ties[t].braided && !wound) continue;
+    const Vec3 off = haircut.ties[t].at - scalp.center, axis = off.normalized();
+    braided.push_back({axis, haircut.ties[t].radius, axis.x() < 0, ring, spec.ties[t].braided, wound ? left : 0,
+                       haircut.ties[t].at, off.norm() - scalp.radiusAt(axis), scalp.radiusAt(axis)});
     names.push_back(tieTitle({spec.ties[t]}));
   }
   if (braided.empty()) return;

@@ -24,8 +24,10 @@ constexpr double kCoat = 0.010;                        // m over the scalp, half
 constexpr double kStep = 0.01, kBend = 0.22;           // m; share of a step's heading that gravity takes
 constexpr double kSwell = 1.35, kTaper = 0.7;  // of the ring's radius: the tail's where it is widest, at its end
 constexpr double kShortestTail = 0.08;         // m
-constexpr double kNarrowest = 0.004;           // m, of a ring about hardly any hair
-constexpr double kClose = 0.8;                 // of the radius of the columns in a ring: its drawn strands', by eye
+constexpr double kShortestBun = 15;            // in radii of the rope: about a turn and a half
+constexpr double kBunLayer = 0.0042, kBunHeight = 0.03;  // m: of the stub, a layer and in all, at least
+constexpr double kNarrowest = 0.004;                     // m, of a ring about hardly any hair
+constexpr double kClose = 0.8;  // of the radius of the columns in a ring: its drawn strands', by eye
 constexpr int kSectors = 24;
 constexpr double kSeam = 0.003;      // m between roots on both sides of where hair divides
 constexpr double kAlongside = 0.97;  // cosine between the ways that they leave the scalp
@@ -59,6 +61,7 @@ struct Gathering {
   Vec3 inSection(const Vec3& root, double radius, const Vec3& across, const Vec3& up) const;
   Vec3 onWay(const Vec3& root, double share) const;
   Path tail(double length) const;
+  Path stub(double length) const;
 };
 
 // Each root counts in its own sector and, a little less, in those beside it, so that the ring is filled evenly.
@@ -117,6 +120,15 @@ Path Gathering::tail(double length) const {
     const Vec3 n = bodyNormal(body, p);
     p += (gap - near) * n;
     heading = (heading - std::min(0.0, heading.dot(n)) * n).normalized();
+  }
+  return path;
+}
+
+// Straight out of the ring.
+Path Gathering::stub(double length) const {
+  Path path;
+  for (double way = 0; way < length + 2 * kStep; way += kStep) {
+    path.at.push_back(tie.at + way * axis), path.across.push_back(e1), path.up.push_back(e2);
   }
   return path;
 }
@@ -226,16 +238,18 @@ int ringLayer(int length, double way) {
   return std::clamp(std::max((2 * length) / 5, static_cast<int>(way * length)), 2, length - 2);
 }
 
-void gather(const HairTie& tie, int number, const Scalp& scalp, const BodyDistance& body, const std::vector<int>& of,
-            TiedHair& tied) {
+// `bound`: m, the radius of the tie before it was widened.
+void gather(const HairTie& tie, double bound, int number, const Scalp& scalp, const BodyDistance& body,
+            const std::vector<int>& of, TiedHair& tied) {
   sim::HairMeshShape& shape = tied.shape;
   Gathering gathering(tie, scalp, body);
   std::vector<int> columns;
-  int shortest = 1 << 20;
+  int shortest = 1 << 20, longest = 0;
   for (int c = 0; c < shape.columnCount(); ++c) {
     if (of[static_cast<std::size_t>(c)] != number || shape.columnLength(c) < 4) continue;
     columns.push_back(c);
     shortest = std::min(shortest, shape.columnLength(c));
+    longest = std::max(longest, shape.columnLength(c));
     gathering.addRoot(shape.positions[shape.column_first[c]]);
   }
   if (columns.empty()) return;
@@ -246,8 +260,13 @@ void gather(const HairTie& tie, int number, const Scalp& scalp, const BodyDistan
     left += (columnLength(shape, c) - to_ring) / columns.size();
   }
   left = std::max(left, kShortestTail);
-  const Path path = gathering.tail(left);
+  const bool wound = tie.bun && left >= shortestBun(bound);
+  tied.left[static_cast<std::size_t>(number)] = left;
+  tied.wound[static_cast<std::size_t>(number)] = wound;
   const int ring = ringLayer(shortest, way / (way + left));
+  if (wound) left = std::max(kBunHeight, kBunLayer * (longest - 1 - ring));
+  const Path path = wound ? gathering.stub(left) : gathering.tail(left);
+  const double swell = wound ? 1 : kSwell;
   for (const int c : columns) {
     const int first = shape.column_first[c], count = shape.columnLength(c);
     const Vec3 root = shape.positions[first];
@@ -260,8 +279,7 @@ void gather(const HairTie& tie, int number, const Scalp& scalp, const BodyDistan
       const double place = share * left / kStep;
       const auto k = std::min(static_cast<std::size_t>(place), path.at.size() - 2);
       const double t = place - static_cast<double>(k);
-      const double width =
-          share < 0.3 ? 1 + (kSwell - 1) * share / 0.3 : kSwell + (kTaper - kSwell) * (share - 0.3) / 0.7;
+      const double width = share < 0.3 ? 1 + (swell - 1) * share / 0.3 : swell + (kTaper - swell) * (share - 0.3) / 0.7;
       const Vec3 across = ((1 - t) * path.across[k] + t * path.across[k + 1]).normalized();
       const Vec3 up = ((1 - t) * path.up[k] + t * path.up[k + 1]).normalized();
       shape.positions[first + l] =
@@ -294,6 +312,10 @@ double leastFatness(const sim::HairMeshShape& shape) {
 
 }  // namespace
 
+double shortestBun(double radius) {
+  return kShortestBun * ropeRadius(radius);
+}
+
 // Where a narrow ring leaves prisms inverted, the hair at rest is gathered to a wider one, and held by the narrow one.
 // Where none is enough, all are untangled on from where they have come to until one is: fine hair meshes need it.
 TiedHair tieHair(const sim::HairMeshShape& hair, const Scalp& scalp, const BodyDistance& body,
@@ -303,12 +325,13 @@ TiedHair tieHair(const sim::HairMeshShape& hair, const Scalp& scalp, const BodyD
       divided(seams == Seams::kClosed ? closedSeams(hair, scalp, ties) : hair, scalp, ties, of);
   std::vector<TiedHair> tries;
   for (const double wider : {1.2, 1.7, 2.4}) {
-    tries.push_back({parted, std::vector<std::vector<int>>(ties.size())});
+    tries.push_back({parted, std::vector<std::vector<int>>(ties.size()), std::vector<double>(ties.size(), 0.0),
+                     std::vector<bool>(ties.size(), false)});
     TiedHair& tied = tries.back();
     for (std::size_t t = 0; t < ties.size(); ++t) {
       HairTie tie = ties[t];
       tie.radius *= wider;
-      gather(tie, static_cast<int>(t), scalp, body, of, tied);
+      gather(tie, ties[t].radius, static_cast<int>(t), scalp, body, of, tied);
     }
     untangle(body, kTieFatness, kTieGap, tied.shape);
     if (leastFatness(tied.shape) > kFatEnough) return std::move(tied);

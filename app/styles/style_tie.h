@@ -14,16 +14,25 @@ struct HairTie {
   double radius = 0.02;    // m
   int side = 0;            // -1, 1: takes the hair of that side of the head alone (sign of x); 0: all
   double above = -1e3;     // m over the head's middle: takes what is rooted higher alone
+  bool bun = false;        // what is left beyond the ring is wound about it, where it is long enough
 };
 
 struct TiedHair {
   sim::HairMeshShape shape;
   std::vector<std::vector<int>> rings;  // per tie: the vertices in it, one a column
+  std::vector<double> left;             // per tie: m of hair beyond the ring, in the mean
+  std::vector<bool> wound;              // per tie: whether that is in a bun, for which a short stub stands in
 };
 
 // Whether the bundles of a tail that were divided over the shoulders are joined. Under a hat they are not: on their own
 // they find more room.
 enum class Seams { kClosed, kOpen };
+
+// m, for a ring of this radius: of the rope that hair is twisted to for a bun, and the shortest such rope.
+constexpr double ropeRadius(double radius) {
+  return radius / 2;
+}
+double shortestBun(double radius);
 
 // Combs every bundle to the first tie that takes it: over the scalp, those rooted farther above those rooted nearer,
 // through the ring, and on as a tail as long as the hair has left in the mean. Bundles that no tie takes stay. Where

@@ -300,18 +300,23 @@ void tieRow(const Actor& actor, Demo& demo, UiState& ui) {
   int chosen = ties.empty() ? 0 : ties.size() == 2 ? 4 : -1;
   for (int k = 1; k < 4 && ties.size() == 1; ++k) chosen = ties[0].place == kNames[k] && !ties[0].at ? k : chosen;
   const int pressed = segments("tie", {"None", "High", "Back", "Low", "Two"}, chosen, ui);
-  // Hair that has no room for a plait hangs as a tail.
+  // Hair that has no room for a plait or a bun hangs as a tail.
   bool braided = !actor.haircut->braids.empty() && std::ranges::all_of(ties, &TieSpec::braided);
+  bool bun = !actor.haircut->wound.empty() && std::ranges::all_of(ties, &TieSpec::bun);
   const auto post = [&](std::vector<TieSpec> wanted) {
-    for (TieSpec& tie : wanted) tie.braided = braided;
+    for (TieSpec& tie : wanted) tie.braided = braided, tie.bun = bun;
     postRequest(demo, {Ask::kTie, "", writeTies(wanted).dump()});
   };
-  if (pressed >= 0 && !braided) postRequest(demo, {Ask::kTie, "", kNames[pressed]});
-  if (pressed >= 0 && braided) post(tiesFromText(kNames[pressed]));
+  const bool hangs = !braided && !bun;
+  if (pressed >= 0 && hangs) postRequest(demo, {Ask::kTie, "", kNames[pressed]});
+  if (pressed >= 0 && !hangs) post(tiesFromText(kNames[pressed]));
   if (ties.empty()) return;
   rowLabel("Braided", "What hangs from the tie is drawn as a plait of three strands, to a second tie before its end");
   if (ImGui::Checkbox("##braided", &braided)) post(ties);
   noteItem("braided", ui);
+  rowLabel("Bun", "What hangs from the tie is wound about it, as a rope or as a plait, and pinned to the head");
+  if (ImGui::Checkbox("##bun", &bun)) post(ties);
+  noteItem("bun", ui);
 }
 
 }  // namespace

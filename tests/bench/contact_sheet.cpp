@@ -135,6 +135,27 @@ void drawHairdos(const SheetOptions& options, Drawing& drawing) {
   writeSheet(options.folder, "hairdos", sheet);
 }
 
+// A bun, a plaited bun and two buns, from the side or obliquely, and from behind.
+void drawBuns(const SheetOptions& options, Drawing& drawing) {
+  constexpr std::array<std::array<const char*, 2>, 3> kBuns{
+      {{"bun", "side"}, {R"({"bun": true, "braided": true})", "side"}, {"buns", "three-quarter"}}};
+  app::Image sheet = emptySheet(drawing.cell, 2 * static_cast<int>(kBuns.size()), 1);
+  int column = 0;
+  for (const auto& [ties, view] : kBuns) {
+    app::Scene scene = app::loadScene(app::dataPath("assets/scenes/bun.json"));
+    scene.camera.framing = "head";
+    scene.characters.front().ties = app::tiesFromText(ties);
+    scene.characters.front().look.strands = options.strands;
+    app::Demo demo = app::openScene(std::move(scene), drawing.aspect());
+    for (const char* from : {view, "back"}) {
+      demo.requests.push_back({app::Ask::kView, from, "", 0});
+      app::advanceFrame(demo, 0, drawing.target);
+      place(drawing.pixels, column++, 0, drawing.cell, sheet);
+    }
+  }
+  writeSheet(options.folder, "buns", sheet);
+}
+
 }  // namespace
 
 void drawContactSheets(const SheetOptions& options) {
@@ -143,6 +164,7 @@ void drawContactSheets(const SheetOptions& options) {
   for (const app::Style style : {app::Style::kShort, app::Style::kShoulder, app::Style::kLong})
     drawStyle(style, options, drawing);
   drawHairdos(options, drawing);
+  drawBuns(options, drawing);
 }
 
 }  // namespace bench

@@ -13,7 +13,7 @@ struct SheetOptions {
 };
 
 // Writes styles_short.png, styles_shoulder.png and styles_long.png, a row a resolution, a column a view or moment, and
-// hairdos.png, a column a shipped scene of a hairdo, from before and from behind.
+// hairdos.png, a column a shipped scene of a hairdo, from before and from behind, and buns.png, three kinds of them.
 // Drawn at twice the size and averaged down. Throws app::ContextError or app::InputError.
 void drawContactSheets(const SheetOptions& options);
 

@@ -1,6 +1,6 @@
 // The middle of a plait is the mean of the tail's columns at equal shares of their length. Along it goes a frame that
 // turns no more than it must (Wang et al. 2008, Computation of Rotation Minimizing Frames, by double reflection). It
-// begins with the head's own turn, which the roots and the ring tell.
+// begins with the head's own turn, which the roots and the ring tell. A bun turns with the head.
 #include "app/scene/braid/braid_draw.h"
 
 #include <Eigen/Geometry>
@@ -70,10 +70,15 @@ Vector3d reflected(const Vector3d& v, const Vector3d& normal) {
 }
 
 std::vector<Frame> framesOf(const Braid& braid, std::span<const float> positions) {
-  const std::vector<Vector3d> middle = middleOf(braid, positions);
+  std::vector<Vector3d> middle = middleOf(braid, positions);
   Matrix3d turn = Matrix3d::Zero();
-  for (const BraidAnchor& anchor : braid.anchors)
-    turn += vertexAt(positions, anchor.vertex).cast<double>() * anchor.weight.transpose();
+  Vector3d held = Vector3d::Zero();
+  for (const BraidAnchor& anchor : braid.anchors) {
+    const Vector3d at = vertexAt(positions, anchor.vertex).cast<double>();
+    turn += at * anchor.weight.transpose();
+    held += at / static_cast<double>(braid.anchors.size());
+  }
+  for (std::size_t k = 1; k < braid.coil.size(); ++k) middle[k] = held + turn * (braid.coil[k].at - braid.held);
   const Vector3d axis = way(Vector3d::Zero(), turn * braid.axis, braid.axis);
   Vector3d across = turn * braid.across;
   across = way(Vector3d::Zero(), across - axis * axis.dot(across), axis.unitOrthogonal());
@@ -87,6 +92,7 @@ std::vector<Frame> framesOf(const Braid& braid, std::span<const float> positions
       const Vector3d step = middle[k] - middle[k - 1];
       across = reflected(reflected(across, step), next - reflected(along, step));
     }
+    if (k < braid.coil.size()) across = (turn * braid.coil[k].out).cross(next);
     across = way(Vector3d::Zero(), across - next * next.dot(across), next.unitOrthogonal());
     along = next;
     frames[k] = {middle[k], along, across, along.cross(across)};
@@ -138,6 +144,7 @@ void drawBraids(const BraidPlan& plan, std::span<const float> positions, std::ve
 std::vector<render::Mat4> braidBands(const BraidPlan& plan, std::span<const float> positions) {
   std::vector<render::Mat4> bands;
   for (const Braid& braid : plan.braids) {
+    if (!braid.coil.empty()) continue;
     const Frame frame = framesOf(braid, positions)[static_cast<std::size_t>(braid.band_step)];
     Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
     matrix.block<3, 1>(0, 0) = braid.band_radius * frame.across;

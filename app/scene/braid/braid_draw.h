@@ -12,7 +12,7 @@ namespace app {
 // hair is. Above the ring every simulated vertex is drawn where it is, to the bit.
 void drawBraids(const BraidPlan& plan, std::span<const float> positions, std::vector<float>& drawn);
 
-// Of each plait the matrix that takes a ring of radius 1 about z to its second tie.
+// Of each plait that hangs the matrix that takes a ring of radius 1 about z to its second tie.
 std::vector<render::Mat4> braidBands(const BraidPlan& plan, std::span<const float> positions);
 
 }  // namespace app

@@ -10,6 +10,7 @@
 
 #include "app/scene/braid/braid_draw.h"
 #include "app/scene/braid/braid_steps.h"
+#include "app/scene/braid/bun.h"
 
 namespace app {
 namespace {
@@ -19,7 +20,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kMaxFiner = 8;
-constexpr double kFlat = 1e-4;  // m: a strand's section that is thinner is none
+constexpr double kBunPlait = 0.4;  // radius of the tie that a bun's plait is laid for, over that of its own
+constexpr double kFlat = 1e-4;     // m: a strand's section that is thinner is none
 
 // The simulated hair as a plan reads it.
 struct Hair {
@@ -73,7 +75,7 @@ void layTail(const Hair& hair, const BraidTie& tie, Braid& braid) {
       length += (hair.at(l + 1) - hair.at(l)).norm() / static_cast<double>(tie.ring.size());
   }
   for (auto& [layers, equal] : by_layers) braid.tail.push_back(std::move(equal));
-  braid.length = length;
+  braid.length = tie.wound > 0 ? tie.wound : length;
   braid.axis = tie.axis;
   // What hangs straight down turns its faces to the front and to the back of the head.
   const auto hanging = Eigen::Quaterniond::FromTwoVectors(tie.axis, -Vector3d::UnitY());
@@ -81,11 +83,16 @@ void layTail(const Hair& hair, const BraidTie& tie, Braid& braid) {
   braid.mirrored = tie.mirrored;
 }
 
-// Weights by which the roots and the ring tell the turn of the head: exactly, for they move as one with it.
+// Weights by which the roots and the ring tell the turn of the head, which they move as one with. What is in the ring
+// is narrower than at rest: a bun hangs on what is held beyond it.
 void anchor(const Hair& hair, const BraidTie& tie, Braid& braid) {
-  std::vector<int> held = tie.ring;
-  for (const int v : tie.ring) held.push_back(hair.column_first[hair.columnOf(v)]);
-  Vector3d middle = Vector3d::Zero();
+  std::vector<int> held;
+  for (const int v : tie.ring) {
+    const std::size_t c = hair.columnOf(v);
+    held.push_back(hair.column_first[c]);
+    held.push_back(tie.wound > 0 ? hair.column_first[c + 1] - 1 : v);
+  }
+  Vector3d& middle = braid.held;
   for (const int v : held) middle += hair.at(v) / static_cast<double>(held.size());
   Matrix3d spread = 1e-12 * Matrix3d::Identity();
   for (const int v : held) spread += (hair.at(v) - middle) * (hair.at(v) - middle).transpose();
@@ -247,7 +254,10 @@ BraidPlan planBraids(std::span<const render::HairFace> faces, std::span<const in
     if (tie.ring.empty()) continue;
     layTail(hair, tie, braid);
     RingPlaces places = ringPlacesOf(hair, tie, braid);
-    if (!layBraid(tie.radius, braid)) {
+    const bool laid =
+        tie.braided ? layBraid(tie.wound > 0 ? kBunPlait * tie.radius : tie.radius, braid) : layRope(tie.radius, braid);
+    if (laid && tie.wound > 0) layBun(tie, braid);
+    if (!laid) {
       note(shortNote(names[t], braid, tie.radius));
     } else if (!dealFaces(hair, places, static_cast<int>(plan.braids.size()), braid, planned.of)) {
       note(names[t] + ": three strands need three bundles of hair at least: a tail");

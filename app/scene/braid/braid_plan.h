@@ -1,4 +1,4 @@
-// Tails that are drawn as plaits of three strands.
+// Tails that are drawn as plaits of three strands, or wound to a bun.
 //
 // The simulation knows the tail alone. What is drawn is a finer hair mesh: every drawn vertex is a function of the
 // simulated ones, made once a frame on the CPU, so that all that grows strands from a hair mesh grows braided hair.
@@ -23,6 +23,11 @@ struct BraidTie {
   double radius = 0.02;
   bool mirrored = false;  // the strands cross the other way round, as in the right one of two plaits
   std::vector<int> ring;  // the vertices in it, one a column
+  bool braided = true;    // a bun's rope is a plait; otherwise its three strands are twisted
+  double wound = 0;       // m of hair that is wound to a bun; 0: it hangs, and is as long as at rest
+  // Of a bun: the ring's middle, its height over the head, and the head's radius there; m.
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();
+  double over_scalp = 0, head = 0;
 };
 
 // A place along a plait.
@@ -48,16 +53,24 @@ struct BraidAnchor {
   Eigen::Vector3d weight = Eigen::Vector3d::Zero();  // 1/m
 };
 
+// A place along a bun's rope, at rest.
+struct CoilStep {
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();    // m
+  Eigen::Vector3d out = Eigen::Vector3d::UnitZ();  // away from the dome that it lies on
+};
+
 struct Braid {
   int ring_layer = 0;            // of the simulated columns
   std::vector<BraidStep> steps;  // the first lies in the ring
   std::vector<BraidLayers> tail;
   std::vector<BraidAnchor> anchors;
+  Eigen::Vector3d held = Eigen::Vector3d::Zero();  // middle of the anchors at rest
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ(), across = Eigen::Vector3d::UnitX();  // at rest
   bool mirrored = false;
   std::array<double, kBraidStrands> hair{};  // share of the tail's hair that each strand holds
   double length = 0, width = 0;              // of the tail from the ring on, at rest; of the plait where it is widest
-  int band_step = 0;                         // where the second tie holds the end
+  std::vector<CoilStep> coil;                // each step of a bun; empty: it hangs
+  int band_step = 0;                         // where the second tie holds the end; a bun has none
   double band_radius = 0;
 };
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "app/figure/smoothstep.h"
+
 namespace app {
 namespace {
 
@@ -24,24 +26,19 @@ constexpr double kTwist = 0.25;  // of the hair in a strand, over its phase
 // In half widths of the plait: amplitudes of the course, half axes of a strand's section.
 constexpr double kCourseAcross = 0.55, kCourseOut = 0.42, kHalfAcross = 0.45, kHalfOut = 0.36;
 
-double smooth(double t) {
-  t = std::clamp(t, 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
-
 struct Course {
   double width, end, length;  // m: at the tie; from the tie to the second tie; of the tail
 
   double widthAt(double s) const { return width * (1 - (1 - kTaper) * std::min(s / end, 1.0)); }
   // rad a metre.
   double rateAt(double s) const {
-    const double slower = smooth((end - s) / (0.4 * widthAt(s)));
+    const double slower = smoothstep(0, 1, (end - s) / (0.4 * widthAt(s)));
     return slower * 2 * std::numbers::pi / (kPeriod * widthAt(s));
   }
   // 0: as in the plait, 1: as thick as wide.
-  double roundAt(double s) const { return smooth((s - end) / widthAt(end) + 1); }
+  double roundAt(double s) const { return smoothstep(0, 1, (s - end) / widthAt(end) + 1); }
   // Share of a strand's way from the middle; in the tuft the strands become one.
-  double apartAt(double s) const { return 1 - 0.6 * smooth((s - end) / (length - end)); }
+  double apartAt(double s) const { return 1 - 0.6 * smoothstep(0, 1, (s - end) / (length - end)); }
   // Of the section against that of a plait of full width.
   double sizeAt(double s) const {
     const double off = (s - end) / (0.3 * widthAt(end)), beyond = std::clamp((s - end) / (length - end), 0.0, 1.0);
@@ -103,7 +100,7 @@ bool layBraid(double radius, Braid& braid) {
     const double apart = half * course.apartAt(at[k]);
     BraidStep step;
     step.share = static_cast<float>(at[k] / course.length);
-    step.hold = static_cast<float>(smooth(at[k] / (kBegin * braid.width)));
+    step.hold = static_cast<float>(smoothstep(0, 1, at[k] / (kBegin * braid.width)));
     step.phase = static_cast<float>(phase[k]);
     for (int j = 0; j < kBraidStrands; ++j) {
       const double t = phase[k] + 2 * std::numbers::pi * j / kBraidStrands;

@@ -90,8 +90,10 @@ std::string titleOf(const Request& request, const EditKind& kind) {
   if (request.what == Ask::kMesh) return spaced(request.name);
   std::string title = kind.title;
   if (!request.name.empty() && request.what != Ask::kMotionFile) title.append(" ").append(request.name);
-  if (request.text.starts_with('[') || request.text.starts_with('{'))  // JSON says more than a title holds
-    return title + (request.text.find("\"braided\":true") != std::string::npos ? ", braided" : "");
+  if (request.text.starts_with('[') || request.text.starts_with('{')) {  // JSON says more than a title holds
+    const auto has = [&](const char* key) { return request.text.find(key) != std::string::npos; };
+    return title + (has("\"braided\":true") ? ", braided" : "") + (has("\"bun\":true") ? ", bun" : "");
+  }
   const bool sample = request.what == Ask::kPaint;
   if (!request.text.empty() && request.what != Ask::kVary && !sample)
     title.append(" ").append(spaced(stem(request.text)).substr(0, 40));

@@ -49,6 +49,7 @@ Haircut& ownHaircut(Actor& actor, Demo& demo) {
   own->ties = worn.ties;
   own->tied = worn.tied;
   own->bands = worn.bands;
+  own->wound = worn.wound;
   own->braids = worn.braids;
   own->covered = worn.covered;
   own->shares = worn.shares, own->look_shares = worn.look_shares;
