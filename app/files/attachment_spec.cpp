@@ -29,7 +29,8 @@ bool isFile(const std::string& file) {
 
 const char* whatInPlace(const std::string& file) {
   std::error_code ignored;
-  return std::filesystem::is_directory(file, ignored) ? "is a folder" : "is not there";
+  if (std::filesystem::is_directory(file, ignored)) return "is a folder";
+  return std::filesystem::exists(file, ignored) ? "is no regular file" : "is not there";
 }
 
 [[noreturn]] void refuseFile(const std::string& name, const std::string& file) {

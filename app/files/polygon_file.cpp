@@ -36,6 +36,9 @@ Mat4 toEigen(const aiMatrix4x4& m) {
 const aiScene& importScene(const std::string& file, Assimp::Importer& importer) {
   const std::string bytes = readText(file);
   if (bytes.size() < 12) throw InputError(file, "", "is too short to be a polygon file", kExport);
+  // assimp would guess by the content, which takes any text for an OBJ.
+  if (endingOf(file) != ".vrm" && !importer.IsExtensionSupported(endingOf(file)))
+    throw InputError(file, "", "is no mesh: no kind of mesh file ends so", kExport);
   if (endingOf(file) == ".obj" || endingOf(file) == ".gltf") refuseUtf16(bytes, file);
   importer.SetPropertyBool("IMPORT_NO_SKELETON_MESHES", true);
   const unsigned steps = aiProcess_ValidateDataStructure;

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <numbers>
+#include <sstream>
 
 #include "app/files/report.h"
 #include "app/scene/edit/paint_brush.h"
@@ -57,7 +58,8 @@ Demo openAsked(Scene scene, const Options& options, double aspect, bool beside) 
 
 std::vector<std::string> openingNotes(const Options& options, const Demo& demo) {
   std::vector<std::string> notes;
-  if (!demo.message.empty()) notes.push_back(demo.message);
+  std::istringstream lines(demo.message);
+  for (std::string line; std::getline(lines, line);) notes.push_back(line);
   if (demo.paused && options.headless) notes.push_back(options.project + " was saved paused; here it plays");
   for (std::string& note : limitNotes(demo)) notes.push_back(std::move(note));
   if (options.project.empty() || options.start >= 0) noteLateStarts(options, demo, notes);

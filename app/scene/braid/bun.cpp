@@ -18,8 +18,7 @@ constexpr double kApart = 0.5, kThick = 0.62;     // of the rope's radius: a str
 constexpr double kEnd = 0.7;                      // the rope's radius where its end begins, over that at the ring
 constexpr double kTucked = 0.03, kPointed = 0.3;  // m of the end that thins, and to what
 constexpr double kComesIn = 0.03;                 // m from the ring, after which hair lies in the rope
-
-constexpr double kPlaitLies = 0.38;  // of a plait's width, that it lies as a rope of such radius: turns overlap
+constexpr double kPlaitLies = 0.38;               // of a plait's width: the radius of the rope that it lies as
 
 // In radii of the rope.
 constexpr double kSpacing = 1.7;  // of two turns side by side
@@ -37,9 +36,11 @@ struct Dome {
   }
 };
 
+// Its rim lies on the scalp or, about a ring that is farther off, no lower than half a ball's.
 Dome domeOf(const BraidTie& tie, double rope, double across) {
   const double side = std::min(across, 0.9 * tie.head);
-  const double foot = kOnScalp * rope - tie.over_scalp - (tie.head - std::sqrt(tie.head * tie.head - side * side));
+  const double scalp = -tie.over_scalp - (tie.head - std::sqrt(tie.head * tie.head - side * side));
+  const double foot = std::max(kOnScalp * rope + scalp, -across);
   return {across, kFirst * rope - foot, foot};
 }
 

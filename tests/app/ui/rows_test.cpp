@@ -159,7 +159,7 @@ TEST_F(Panels, InASmallWindowTheHistoryStandsInTheSidebar) {
   ASSERT_NE(find("moment 0"), nullptr);
 }
 
-TEST_F(Panels, HairThatHasNoRoomForAPlaitIsNotShownAsBraided) {
+TEST_F(Panels, HairThatHasNoRoomForAPlaitOrABunIsShownAsATail) {
   ImGui::GetIO().DisplaySize = {1280, 3000};
   app::CharacterSpec spec = app::selectedActor(demo_).spec;
   openTab(app::tabIndex("hair"));
@@ -172,6 +172,14 @@ TEST_F(Panels, HairThatHasNoRoomForAPlaitIsNotShownAsBraided) {
   const auto posted = std::ranges::find(requests, Ask::kTie, &app::Request::what);
   ASSERT_NE(posted, requests.end());
   EXPECT_NE(posted->text.find("\"braided\":true"), std::string::npos) << "a click on an empty box asks for a plait";
+  apply({{Ask::kTie, "", "bun"}});
+  frame();
+  ASSERT_FALSE(demo_.message_is_fault) << demo_.message;
+  const auto again = click("bun");
+  const auto wound = std::ranges::find(again, Ask::kTie, &app::Request::what);
+  ASSERT_NE(wound, again.end());
+  EXPECT_NE(wound->text.find("\"bun\":true"), std::string::npos) << "a click on an empty box asks for a bun";
+  EXPECT_EQ(wound->text.find("\"braided\""), std::string::npos);
 }
 
 }  // namespace rows_test
