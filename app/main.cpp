@@ -18,6 +18,8 @@ int writeHair(const app::Scene& scene, const std::string& file) {
   const sim::HairMesh& mesh = actor.haircut->mesh;
   app::writeFile(file, app::writeHairMesh(mesh.shape));
   std::cout << mesh.vertexCount() << " vertices in " << mesh.columnCount() << " columns written to " << file << "\n";
+  if (!actor.haircut->braids.empty())
+    std::cerr << "hairmesh: plaits and buns are drawn alone: the file holds what is simulated for them\n";
   return app::kExitFine;
 }
 

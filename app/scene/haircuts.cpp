@@ -15,6 +15,7 @@
 #include "app/scene/hair_from_file.h"
 #include "app/scene/sim_to_render.h"
 #include "app/styles/tie_ring.h"
+#include "sim/field_text.h"
 
 namespace app {
 
@@ -37,6 +38,7 @@ void addNote(const std::string& note, Haircut& haircut) {
   haircut.note += (haircut.note.empty() ? "" : "\n") + note;
 }
 
+constexpr double kFarthestRing = 0.2;   // m off the body
 constexpr double kShortOfRing = 0.005;  // m: what lacks less does for the want of room
 
 // rad, that ties are lowered by, one after another, where what is worn leaves the tied hair no room.
@@ -66,12 +68,19 @@ void checkRings(const CharacterSpec& spec, const LoadedBody& body, const std::ve
     if (off < 0)
       throw InputError("", tieTitle({spec.ties[t]}), "lies " + centimetres(-off) + " inside the body",
                        "move it off the head, or " + otherPlaces(spec.ties));
+    if (off > kFarthestRing)
+      throw InputError("", tieTitle({spec.ties[t]}), "lies " + centimetres(off) + " off the body",
+                       "move it to the head (within " + centimetres(kFarthestRing) + "), or " + otherPlaces(spec.ties));
   }
 }
 
 std::string shortBunNote(const TieSpec& tie, double left) {
+  const double fits = tie.radius * left / shortestBun(tie.radius);
   return tieTitle({tie}) + ": " + centimetres(left) + " of hair below the ring are too short for a bun (" +
-         centimetres(shortestBun(tie.radius)) + "): a tail";
+         centimetres(shortestBun(tie.radius)) + "): a tail" +
+         (fits < kThinnestTie
+              ? ""
+              : "; a ring of \"radius\": " + sim::numberText(std::floor(1e3 * fits) / 1e3) + " makes one");
 }
 
 // What each tie holds.

@@ -259,9 +259,9 @@ void gather(const HairTie& tie, double bound, int number, const Scalp& scalp, co
     way += to_ring / columns.size();
     left += (columnLength(shape, c) - to_ring) / columns.size();
   }
+  tied.left[static_cast<std::size_t>(number)] = std::max(0.0, left);
   left = std::max(left, kShortestTail);
   const bool wound = tie.bun && left >= shortestBun(bound);
-  tied.left[static_cast<std::size_t>(number)] = left;
   tied.wound[static_cast<std::size_t>(number)] = wound;
   const int ring = ringLayer(shortest, way / (way + left));
   if (wound) left = std::max(kBunHeight, kBunLayer * (longest - 1 - ring));

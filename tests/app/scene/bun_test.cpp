@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "app/files/data_path.h"
+#include "app/files/errors.h"
 #include "app/scene/braid/braid_draw.h"
 #include "app/scene/demo.h"
 #include "tests/app/scene/small_scene.h"
@@ -131,6 +132,25 @@ TEST(Bun, HairTooShortForOneHangsAsATailAndSaysSo) {
   EXPECT_TRUE(haircut.braids.empty());
   EXPECT_TRUE(haircut.wound.empty());
   EXPECT_NE(haircut.note.find("too short for a bun (15.0 cm): a tail"), std::string::npos) << haircut.note;
+  // What it says makes one does.
+  const std::string named = "\"radius\": ";
+  const std::size_t at = haircut.note.find(named);
+  ASSERT_NE(at, std::string::npos) << haircut.note;
+  const double radius = std::stod(haircut.note.substr(at + named.size()));
+  const std::string narrow = R"({"at": "back", "bun": true, "radius": )" + std::to_string(radius) + "}";
+  const app::Demo bun =
+      app::openScene(test::tiedScene(narrow, "idle_turns.bvh", app::Resolution::kLow, app::Style::kShoulder), 1.5);
+  EXPECT_FALSE(bun.actors[0].haircut->wound.empty()) << radius;
+}
+
+TEST(Bun, ARingFarFromTheHeadIsRefused) {
+  const std::string far = R"({"at": [0, 0.3, -0.4], "bun": true})";
+  try {
+    app::openScene(test::tiedScene(far, "idle_turns.bvh", app::Resolution::kLow), 1.5);
+    FAIL() << "it is taken";
+  } catch (const app::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("cm off the body"), std::string::npos) << error.what();
+  }
 }
 
 TEST(Bun, IsMadeAndUndone) {
