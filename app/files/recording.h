@@ -48,7 +48,7 @@ struct RecordedFrame {
   std::vector<Request> requests;
 };
 
-inline constexpr double kMaxApart = 5e-3;  // m; rounding alone moves hair that slides on a body by up to 4
+inline constexpr double kMaxApart = 5e-3;  // m: more than rounding alone moves hair that slides on a body, 4 mm
 
 // Where a character's columns end, m.
 using ColumnEnds = std::vector<Vec3>;

@@ -42,9 +42,8 @@ std::vector<TieSpec> tiesFromText(std::string_view text);
 // For messages: "tie high", "ties left and right", "tie at 0, 0.1, -0.2 m".
 std::string tieTitle(const std::vector<TieSpec>& ties);
 
-// On a head; a named place stands `radius` and 14 mm off its scalp (a bun two fifths of
-// that radius and 10 mm), and `lower` (rad about the head's middle) down from
-// where it is by name.
+// On a head. A named place stands `radius` and 14 mm off its scalp; that of a bun, two fifths of `radius` and 10 mm. All
+// are `lower` (rad about the head's middle) down from where they are by name.
 std::vector<HairTie> placeTies(const std::vector<TieSpec>& ties, const Scalp& scalp, double lower = 0);
 
 }  // namespace app

@@ -178,7 +178,7 @@ sim::StepInput stepInput(const sim::SimParams& params, double step, double time,
 
 namespace {
 
-// What lies under an attachment stays there.
+// Pins vertices firmly to the head where they are at rest: those in buns and under attachments.
 void holdAtRest(std::span<const int> vertices, Actor& actor) {
   const Character& character = actor.body->character;
   for (const int v : vertices) {

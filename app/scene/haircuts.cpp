@@ -1,7 +1,6 @@
 #include "app/scene/haircuts.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdio>

@@ -249,13 +249,13 @@ BraidPlan planBraids(std::span<const render::HairFace> faces, std::span<const in
   std::vector<RingPlaces> rings;
   const auto note = [&](const std::string& text) { plan.note += (plan.note.empty() ? "" : "\n") + text; };
   for (std::size_t t = 0; t < ties.size(); ++t) {
-    const BraidTie& tie = ties[t];
+    BraidTie tie = ties[t];
     Braid braid;
     if (tie.ring.empty()) continue;
     layTail(hair, tie, braid);
     RingPlaces places = ringPlacesOf(hair, tie, braid);
-    const bool laid =
-        tie.braided ? layBraid(tie.wound > 0 ? kBunPlait * tie.radius : tie.radius, braid) : layRope(tie.radius, braid);
+    bool laid = tie.braided && layBraid(tie.wound > 0 ? kBunPlait * tie.radius : tie.radius, braid);
+    if (!laid && tie.wound > 0) tie.braided = false, laid = layRope(tie.radius, braid);
     if (laid && tie.wound > 0) layBun(tie, braid);
     if (!laid) {
       note(shortNote(names[t], braid, tie.radius));
