@@ -18,6 +18,8 @@ constexpr double kLimp = 0.2;
 constexpr int kTries = 5;            // of a shorter way
 constexpr double kWithin = 0.95;     // of the energy allowed and of the way, that a try aims at
 constexpr double kMinWay = 0.5;      // of the way, that the first try leaves: energies of stretched hair rise faster
+constexpr double kMinSecond = 0.1;   // that the second leaves: hair at rest has no energy to spend, and two energies
+                                     // do not tell a way that first leads down from one that does not
 constexpr double kStillBody = 1e-3;  // m/s of a body's surface against the roots
 
 enum class Motion { kCalm, kViolent, kNotFinite };
@@ -177,7 +179,7 @@ double shorten(const TakenStep& step, std::span<const Vec3> back, double least, 
                EnergyLimit& scratch, HairState& state) {
   double kept = 1, past = 1, beyond = 0;
   for (int k = 0; !(stored <= most) && kept > 0; ++k) {
-    const double end = stored - least, shortest = past > 1 ? 0 : kMinWay;
+    const double end = stored - least, shortest = k == 0 ? kMinWay : k == 1 ? kMinSecond : 0;
     const double fits = shareWithin(kWithin * (most - least), end, past, beyond);
     const double share = k >= tries ? 0 : std::isfinite(end) ? std::clamp(fits, shortest, kWithin) : kMinWay;
     for (std::size_t i = 0; i < back.size(); ++i) state.positions[i] = back[i] + share * (state.positions[i] - back[i]);

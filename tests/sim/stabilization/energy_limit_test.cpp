@@ -115,25 +115,27 @@ TEST(EnergyLimit, AGentleStepIsLookedAtWhereTheHairWasStoppedBeforeIt) {
   EXPECT_LE(energyAboveRest(stopped.hair, Vec3::Zero()), 1e-12);
 }
 
-// Hair that stands off its rest, and a step that shoots over it by four times as much: its first quarter leads down.
+// Hair that stands off its rest, or all but stands, and a step that shoots over it by four times as much: its first
+// quarter leads down.
 TEST(EnergyLimit, HairThatStandsStillIsNotHeldWhereAShorterWayLeadsDown) {
-  Flung flung;
-  const sim::HairState rest = flung.hair.state;
-  for (int i = 0; i < flung.hair.mesh.vertexCount(); ++i) {
-    if (flung.hair.mesh.isRoot(i)) continue;
-    const Vec3 off(0.01 * std::sin(3 * i), 0.01 * std::cos(5 * i), 0.01 * std::sin(7 * i));
-    flung.start.positions[i] += off;
-    flung.start.velocities[i].setZero();
-    flung.hair.state.positions[i] -= 4 * off;
-    flung.hair.state.velocities[i] = -5 * off / kFrame;
+  for (const double creep : {0.0, 1e-5, 1e-3}) {
+    Flung flung;
+    for (int i = 0; i < flung.hair.mesh.vertexCount(); ++i) {
+      if (flung.hair.mesh.isRoot(i)) continue;
+      const Vec3 off(0.01 * std::sin(3 * i), 0.01 * std::cos(5 * i), 0.01 * std::sin(7 * i));
+      flung.start.positions[i] += off;
+      flung.start.velocities[i] = Vec3(creep, 0, 0);
+      flung.hair.state.positions[i] -= 4 * off;
+      flung.hair.state.velocities[i] = -5 * off / kFrame;
+    }
+    const sim::HairState end = std::exchange(flung.hair.state, flung.start);
+    const double before = energyAboveRest(flung.hair, Vec3::Zero());
+    flung.hair.state = end;
+    const double kept = flung.limit(true);
+    EXPECT_GT(kept, 0.02) << creep << " m/s";
+    EXPECT_LT(kept, 0.5) << creep << " m/s";
+    EXPECT_LT(energyAboveRest(flung.hair, Vec3::Zero()), before) << creep << " m/s";
   }
-  const sim::HairState end = std::exchange(flung.hair.state, flung.start);
-  const double before = energyAboveRest(flung.hair, Vec3::Zero());
-  flung.hair.state = end;
-  const double kept = flung.limit(true);
-  EXPECT_GT(kept, 0.1);
-  EXPECT_LT(kept, 0.5);
-  EXPECT_LT(energyAboveRest(flung.hair, Vec3::Zero()), before);
 }
 
 TEST(EnergyLimit, TheFirstStepAndThatAfterAResetAreLookedAtAndNoneAfterThem) {
@@ -166,7 +168,7 @@ TEST(EnergyLimit, FindsTheWayThatFitsInFewTries) {
   std::printf("%d ways shortened by %.2f tries each, at most %d\n", ways, double(energies) / ways, most);
   EXPECT_GT(ways, 50);
   EXPECT_LE(most, 5);
-  EXPECT_LT(energies, 4 * ways);
+  EXPECT_LT(energies, 4.5 * ways);
 }
 
 // Hair with hardly a shear or volume force is folded by a wind that its stiff hinges bear: its motion is slow, and
