@@ -64,7 +64,10 @@ json parseJson(std::string_view text, const std::string& file) {
     throw InputError(file, lineAndColumn(text, error.byte), "not valid JSON: " + reason(error.what()),
                      "mend the syntax there");
   } catch (const json::exception& error) {
-    throw InputError(file, "", "not usable JSON: " + reason(error.what()), "write numbers that fit a double");
+    const std::string words = error.what();
+    const std::size_t number = words.find("parsing ");  // a number that overflows follows, in quotes
+    const std::string what = number == std::string::npos ? "a number" : words.substr(number + 8, kLongestQuote);
+    throw InputError(file, "", what + " is no number that a computer holds", "write one below 1e308");
   }
 }
 

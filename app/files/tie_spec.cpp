@@ -36,15 +36,41 @@ sim::Vec3 lowered(const sim::Vec3& way, double angle) {
   return {std::cos(height) * way.x() / level, std::sin(height), std::cos(height) * way.z() / level};
 }
 
+void readPlace(const JsonPlace& place, TieSpec& tie) {
+  if (place.value().is_string()) {
+    tie.place = place.choice({"back", "high", "low", "left", "right"});
+  } else if (place.value().is_array()) {
+    const auto at = place.vector(-kFarthestTie, kFarthestTie);
+    tie.at = sim::Vec3(at[0], at[1], at[2]);
+  } else {
+    place.refuse("is neither a name nor a point",
+                 "write back, high, low, left or right in quotes, or [x, y, z] in metres");
+  }
+}
+
+// Nothing where the text is no name.
+std::optional<std::vector<TieSpec>> namedTies(std::string_view text) {
+  if (text == "none" || text.empty()) return std::vector<TieSpec>{};
+  TieSpec tie;
+  tie.braided = text == "plait" || text == "plaits";
+  tie.bun = text == "bun" || text == "buns";
+  if (text == "plait" || text == "bun") return std::vector{tie};
+  if (text == "two" || text == "plaits" || text == "buns") {
+    std::vector<TieSpec> both(2, tie);
+    both[0].place = "left", both[1].place = "right";
+    return both;
+  }
+  if (!placeOf(text)) return std::nullopt;
+  tie.place = text;
+  return std::vector{tie};
+}
+
+constexpr std::string_view kTieNames = "back, high, low, left, right, two, plait, plaits, bun, buns or none";
+
 TieSpec readTie(const JsonPlace& place) {
   place.expectObject({"at", "radius", "side", "above", "braided", "bun"});
   TieSpec tie;
-  if (place.has("at") && place.at("at").value().is_string()) {
-    tie.place = place.at("at").choice({"back", "high", "low", "left", "right"});
-  } else if (place.has("at")) {
-    const auto at = place.at("at").vector(-kFarthestTie, kFarthestTie);
-    tie.at = sim::Vec3(at[0], at[1], at[2]);
-  }
+  if (place.has("at")) readPlace(place.at("at"), tie);
   if (place.has("radius")) tie.radius = place.at("radius").number(kThinnestTie, kWidestTie);
   if (place.has("side")) tie.side = place.at("side").choice({"all", "left", "right"});
   if (place.has("above")) tie.above = place.at("above").number(-1, 1);
@@ -56,6 +82,12 @@ TieSpec readTie(const JsonPlace& place) {
 }  // namespace
 
 std::vector<TieSpec> readTies(const JsonPlace& place) {
+  if (place.value().is_string()) {
+    const std::string name = place.text();
+    const auto named = namedTies(name);
+    if (!named) place.refuse("is '" + name.substr(0, 40) + "'", "choose " + std::string(kTieNames));
+    return *named;
+  }
   std::vector<TieSpec> ties;
   const std::size_t count = place.arraySize(kMaxTies);
   for (std::size_t i = 0; i < count; ++i) ties.push_back(readTie(place.at(i)));
@@ -76,24 +108,10 @@ json writeTies(const std::vector<TieSpec>& ties) {
 }
 
 std::vector<TieSpec> tiesFromText(std::string_view text) {
-  if (text == "none" || text.empty()) return {};
-  TieSpec tie;
-  tie.braided = text == "plait" || text == "plaits";
-  tie.bun = text == "bun" || text == "buns";
-  if (text == "plait" || text == "bun") return {tie};
-  if (text == "two" || text == "plaits" || text == "buns") {
-    std::vector<TieSpec> both(2, tie);
-    both[0].place = "left", both[1].place = "right";
-    return both;
-  }
-  if (placeOf(text)) {
-    tie.place = text;
-    return {tie};
-  }
+  if (const auto named = namedTies(text)) return *named;
   if (!text.starts_with("[") && !text.starts_with("{"))
     throw InputError("", "tie '" + std::string(text.substr(0, 40)) + "'", "is unknown",
-                     "choose back, high, low, left, right, two, plait, plaits, bun, buns or none, or write JSON as in "
-                     "a scene's \"ties\"");
+                     "choose " + std::string(kTieNames) + ", or write JSON as in a scene's \"ties\"");
   const json parsed = parseJson(text, "");
   const JsonPlace place(parsed, "");
   return parsed.is_object() ? std::vector{readTie(place)} : readTies(place);

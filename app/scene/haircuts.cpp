@@ -234,7 +234,8 @@ void braidTails(const CharacterSpec& spec, const Scalp& scalp, const Rings& ring
     names.push_back(tieTitle({spec.ties[t]}));
   }
   if (braided.empty()) return;
-  haircut.braids = planBraids(haircut.faces, haircut.mesh.shape.column_first, haircut.rest, haircut.look_shares.roots,
+  haircut.braids = planBraids(haircut.faces, haircut.mesh.shape.column_first,
+                              haircut.offsets.empty() ? haircut.rest : haircut.rest_drawn, haircut.look_shares.roots,
                               braided, names);
   if (!haircut.braids.note.empty()) addNote(haircut.braids.note, haircut);
 }
@@ -311,7 +312,7 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
   if (!spec.maps.density.empty())
     paintDensity(readFieldMap(spec.maps.density), body.character.scalp, haircut->mesh, haircut->faces);
   haircut->look_shares = paintedLook(spec.maps, spec.curves, body.character.scalp, haircut->mesh.shape);
-  if (!spec.ties.empty()) shape.groom_offsets.clear();
+  if (!spec.ties.empty()) shape = haircut->mesh.shape;
   for (const int v : haircut->covered)
     if (!shape.groom_offsets.empty()) shape.groom_offsets[static_cast<std::size_t>(v)].setZero();
   bindGroom(shape, *haircut);

@@ -9,6 +9,7 @@
 #include <map>
 #include <numbers>
 #include <set>
+#include <utility>
 
 #include "app/styles/style_comb.h"
 #include "app/styles/style_untangle.h"
@@ -289,10 +290,6 @@ void gather(const HairTie& tie, double bound, int number, const Scalp& scalp, co
   }
 }
 
-}  // namespace
-
-namespace {
-
 double leastFatness(const sim::HairMeshShape& shape) {
   double least = 1;
   for (const sim::RootFace& face : shape.root_faces) {
@@ -308,6 +305,23 @@ double leastFatness(const sim::HairMeshShape& shape) {
     }
   }
   return least;
+}
+
+// From where vertices came to when prisms were opened, back to where they were combed (`groom_offsets` until then): up
+// to the ring strands lie closer to the head than prisms can be thin.
+TiedHair ledBack(TiedHair tied) {
+  sim::HairMeshShape& shape = tied.shape;
+  const std::vector<Vec3> combed =
+      std::exchange(shape.groom_offsets, std::vector<Vec3>(shape.positions.size(), Vec3::Zero()));
+  for (const std::vector<int>& ring : tied.rings) {
+    for (const int end : ring) {
+      const int first = *std::prev(std::ranges::upper_bound(shape.column_first, end));
+      for (int v = first + 1; v < end; ++v)
+        shape.groom_offsets[static_cast<std::size_t>(v)] =
+            combed[static_cast<std::size_t>(v)] - shape.positions[static_cast<std::size_t>(v)];
+    }
+  }
+  return tied;
 }
 
 }  // namespace
@@ -333,19 +347,20 @@ TiedHair tieHair(const sim::HairMeshShape& hair, const Scalp& scalp, const BodyD
       tie.radius *= wider;
       gather(tie, ties[t].radius, static_cast<int>(t), scalp, body, of, tied);
     }
+    tied.shape.groom_offsets = tied.shape.positions;
     untangle(body, kTieFatness, kTieGap, tied.shape);
-    if (leastFatness(tied.shape) > kFatEnough) return std::move(tied);
+    if (leastFatness(tied.shape) > kFatEnough) return ledBack(std::move(tied));
   }
   for (int round = 0; round < kTieRounds; ++round) {
     for (TiedHair& tied : tries) {
       untangle(body, kTieFatness, kTieGap, tied.shape);
-      if (leastFatness(tied.shape) > kFatEnough) return std::move(tied);
+      if (leastFatness(tied.shape) > kFatEnough) return ledBack(std::move(tied));
     }
   }
   const auto thinner = [](const TiedHair& a, const TiedHair& b) {
     return leastFatness(a.shape) < leastFatness(b.shape);
   };
-  return std::move(*std::ranges::max_element(tries, thinner));
+  return ledBack(std::move(*std::ranges::max_element(tries, thinner)));
 }
 
 double shortOfRing(const sim::HairMeshShape& hair, const Scalp& scalp, std::span<const HairTie> ties) {

@@ -17,6 +17,8 @@ struct HairTie {
   bool bun = false;        // what is left beyond the ring is wound about it, where it is long enough
 };
 
+// `shape` has groom offsets: up to the ring strands lie where the hair was combed, closer to the head than prisms can be
+// thin.
 struct TiedHair {
   sim::HairMeshShape shape;
   std::vector<std::vector<int>> rings;  // per tie: the vertices in it, one a column

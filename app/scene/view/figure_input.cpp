@@ -32,7 +32,8 @@ render::HairInput hairInput(const Actor& actor, const CharacterLook& look, std::
   }
   const BraidPlan& braids = actor.haircut->braids;
   if (!braids.empty() && positions.size() == actor.haircut->rest.size()) {
-    drawBraids(braids, positions, drawn);
+    const std::vector<float> above(input.positions.begin(), input.positions.end());
+    drawBraids(braids, above, drawn);
     input.faces = braids.faces;
     input.positions = drawn;
     input.rest = braids.rest;

@@ -70,6 +70,14 @@ TEST(SceneFile, WritingAndReadingKeepsEveryRow) {
   EXPECT_EQ(app::writeScene(copy), app::writeScene(scene));
 }
 
+TEST(SceneFile, TiesMayBeANameAsOnTheCommandLine) {
+  const Scene scene = app::readScene(R"({"characters": [{"style": "long", "ties": "buns"}]})", "scene.json");
+  const std::vector<app::TieSpec>& ties = scene.characters[0].ties;
+  ASSERT_EQ(ties.size(), 2u);
+  EXPECT_TRUE(ties[0].bun && ties[1].bun);
+  EXPECT_EQ(ties[0].place, "left");
+}
+
 TEST(SceneFile, FaultsNameFilePlaceAndMend) {
   struct Case {
     const char *text, *place, *mend;
@@ -111,7 +119,9 @@ TEST(SceneFile, FaultsNameFilePlaceAndMend) {
       {R"({"characters": [{}], "playback": {"draw_budget_ms": "5"}})", "/playback/draw_budget_ms", "number"},
       {R"({"characters": [{}], "preset": "no such preset"})", "no such preset", ""},
       {R"({"characters": [{}], "name": "a", "name": "b"})", "name", "one of the two"},
-      {"{\"characters\": [{}],\n\"sim\": {\"friction\": 1e999}}", "scene.json", "number"},
+      {"{\"characters\": [{}],\n\"sim\": {\"friction\": 1e999}}", "'1e999'", "below 1e308"},
+      {R"({"characters": [{"ties": "bunn"}]})", "/characters/0/ties: is 'bunn'", "buns"},
+      {R"({"characters": [{"ties": [{"at": null}]}]})", "/characters/0/ties/0/at", "left or right"},
       {"{\"characters\": [{}],\n \"sim\": {friction: 1}}", "line 2", ""},
       {"{\"characters\": [{}], \"name\": \"\xff\xfe\"}", "line 1", ""},
   };

@@ -71,15 +71,15 @@ TEST(Braid, StrandsHoldNearlyEqualHairAtEveryResolution) {
   }
 }
 
-TEST(Braid, WithoutABraidedTieWhatIsSimulatedIsDrawn) {
+TEST(Braid, WithoutABraidedTieNoVertexIsAdded) {
   app::Demo demo = tied("two", app::Resolution::kLow);
   app::advanceFrame(demo, 1.0 / 60, {});
   const app::Actor& actor = demo.actors[0];
   EXPECT_TRUE(planOf(demo).empty());
   const render::FrameInput input = app::frameInput(demo, 64, 64);
-  EXPECT_EQ(input.hairs[0].positions.data(), actor.shown_positions.data());
+  EXPECT_EQ(input.hairs[0].positions.size(), actor.shown_positions.size());
   EXPECT_EQ(input.hairs[0].faces.data(), actor.haircut->faces.data());
-  EXPECT_EQ(input.hairs[0].rest.data(), actor.haircut->rest.data());
+  EXPECT_EQ(input.hairs[0].rest.data(), actor.haircut->rest_drawn.data());
   EXPECT_EQ(input.hairs[0].segments_per_layer, actor.spec.look.segments_per_layer);
   EXPECT_EQ(input.bodies.size(), 3u);  // the figure and two bands
 }

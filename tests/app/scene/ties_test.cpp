@@ -66,6 +66,48 @@ TEST(Ties, HairThatReachesTheRingIsTiedAtEveryResolution) {
   EXPECT_NO_THROW(app::makeActor(two.characters[0], {}, cache));
 }
 
+// m over the scalp.
+double heightAt(const app::Demo& demo, std::span<const float> positions, int vertex) {
+  const app::Actor& actor = demo.actors[0];
+  const app::Scalp& scalp = actor.body->character.scalp;
+  const Eigen::Map<const Eigen::Vector3f> p(&positions[3 * static_cast<std::size_t>(vertex)]);
+  const sim::Vec3 at = app::scalpToWorld(actor.body->character, actor.pose).inverse() * p.cast<double>() - scalp.center;
+  return at.norm() - scalp.radiusAt(at.normalized());
+}
+
+// Prisms cannot be as thin as a coat of combed hair, and the coarser the hair mesh the higher it stands.
+TEST(Ties, StrandsLieOnTheHeadOverTheFirstHalfOfTheWayToTheRing) {
+  for (const char* place : {"back", "high", "low", "buns"}) {
+    for (const app::Resolution resolution : {app::Resolution::kLow, app::Resolution::kMedium}) {
+      app::Demo demo = app::openScene(tiedScene(place, "head_shake.bvh", resolution), 1.5);
+      double highest = 0, lowest = 1, simulated = 0;
+      for (int frame = 0; frame < 30; ++frame) {
+        app::advanceFrame(demo, 1.0 / 60, {});
+        const app::Actor& actor = demo.actors[0];
+        const sim::HairMeshShape& shape = actor.haircut->mesh.shape;
+        std::vector<float> drawn;
+        actor.haircut->offsets.add(actor.shown_positions, drawn);
+        for (const int ring : actor.haircut->tied) {
+          const int first = *std::prev(std::ranges::upper_bound(shape.column_first, ring));
+          for (int v = first + 1; 2 * (v - first) <= ring - first; ++v) {
+            highest = std::max(highest, heightAt(demo, drawn, v));
+            lowest = std::min(lowest, heightAt(demo, drawn, v));
+            simulated = std::max(simulated, heightAt(demo, actor.shown_positions, v));
+          }
+        }
+        for (std::size_t v = 0; v < shape.positions.size(); ++v) {
+          if (shape.groom_offsets[v].isZero(0)) EXPECT_EQ(drawn[3 * v], actor.shown_positions[3 * v]) << v;
+        }
+      }
+      std::printf("%s %s: strands %.1f to %.1f mm over the scalp, simulated up to %.1f mm\n", place,
+                  app::resolutionName(resolution).data(), 1e3 * lowest, 1e3 * highest, 1e3 * simulated);
+      EXPECT_LT(highest, 0.018) << place;
+      EXPECT_GT(lowest, -0.007) << place;  // strands are lifted out of the skin
+      EXPECT_GT(simulated, highest) << place;
+    }
+  }
+}
+
 // A band is seen around what each tie holds, also while the head is shaken; none where no hair is drawn.
 TEST(Ties, ABandIsSeenAroundEachTail) {
   for (const char* place : {"back", "two"}) {
