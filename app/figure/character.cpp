@@ -25,16 +25,16 @@ namespace {
 
 enum class Kind { kBvh, kMot, kModel, kUnknown };
 
-// By ending; a text with another ending is looked into.
+// By ending; what has another than .bvh or .mot is looked into: a motion may be named as a model.
 Kind kindOf(const std::string& file) {
   const std::string ending = endingOf(file);
   if (ending == ".bvh") return Kind::kBvh;
   if (ending == ".mot") return Kind::kMot;
+  const std::string begin = readText(file).substr(0, 256);
+  if (begin.find("HIERARCHY") != std::string::npos) return Kind::kBvh;
+  if (begin.find("NumFrames") != std::string::npos) return Kind::kMot;
   for (const char* model : {".glb", ".gltf", ".fbx", ".dae"})
     if (ending == model) return Kind::kModel;
-  const std::string text = readText(file);
-  if (text.find("HIERARCHY") < 256) return Kind::kBvh;
-  if (text.find("NumFrames") < 256) return Kind::kMot;
   return Kind::kUnknown;
 }
 

@@ -26,7 +26,11 @@ constexpr double kHangs = 0.5, kDown = 0.34;
 // Hair stands when its first thirds' mean direction is so long; then that points up within 41 degrees.
 constexpr double kStands = 0.6, kSteep = 0.75;
 constexpr double kFaceForward = 0.3, kFaceBelow = 0.1, kFaceCosts = 0.2;  // before the ears, below the brow; m
-constexpr double kOtherAxes = 0.005, kHeadShapes = 3;                     // m; heads differ by so many limits
+// Hair before the face itself: forward, beside and below, of its direction from the head's middle; m where all is. It
+// is no fault of a fringe, whose roots spread less than those of a head of hair: so much of the scalp's radius, RMS.
+constexpr double kBefore = 0.6, kBeside = 0.5, kBelowEyes = 0.0, kHiddenFaceCosts = 0.2, kWholeHead = 0.65;
+constexpr std::size_t kMostLookedAt = 4000;            // vertices
+constexpr double kOtherAxes = 0.005, kHeadShapes = 3;  // m; heads differ by so many limits
 constexpr int kFitSteps = 20;
 
 struct Axes {
@@ -86,6 +90,17 @@ Vec3 nearestOnScalp(const Vec3& p, const Scalp& scalp) {
   return far < 1e-9 ? p : Vec3(scalp.center + scalp.radiusAt(out) / far * out);
 }
 
+// Share of the vertices, roots or not, that are before the face.
+double beforeFace(const std::vector<Vec3>& vertices, const Reading& reading, const Scalp& scalp) {
+  const std::size_t every = vertices.size() / kMostLookedAt + 1;
+  double before = 0, count = 0;
+  for (std::size_t v = 0; v < vertices.size(); v += every, ++count) {
+    const Vec3 out = (reading(vertices[v]) - scalp.center).stableNormalized();
+    before += out.z() > kBefore && std::abs(out.x()) < kBeside && out.y() < kBelowEyes ? 1 : 0;
+  }
+  return before / std::max(1.0, count);
+}
+
 double distanceOf(const std::vector<Vec3>& roots, const Reading& reading, const Scalp& scalp) {
   std::vector<double> gaps;
   for (const Vec3& root : roots) {
@@ -95,13 +110,13 @@ double distanceOf(const std::vector<Vec3>& roots, const Reading& reading, const 
   return median(std::move(gaps));
 }
 
-std::vector<Reading> readings(const Character& character, bool in_metres) {
+std::vector<Reading> readings(const Character& character, ToldPlace told) {
   const Rigid from_figure = scalpToWorld(character, restPose(character.skeleton)).inverse();
   std::vector<Reading> all;
   for (const bool from_ground : {false, true}) {
     for (const Axes& axes : axesKnown()) {
       for (const LengthUnit& unit : kLengthUnits) {
-        if (in_metres && &unit != &kLengthUnits[0]) continue;
+        if ((told.metres && &unit != &kLengthUnits[0]) || (told.axes && &axes != &axesKnown()[0])) continue;
         Reading reading{&unit, &axes, from_ground};
         for (int k = 0; k < 3; ++k) reading.linear.row(k) = unit.metres * axes.rows[static_cast<std::size_t>(k)];
         if (from_ground) {
@@ -147,16 +162,20 @@ Cloud hairyScalp(const Scalp& scalp) {
 }
 
 // m. `points` are brought to the scalp, `roots` are the hair's. Heads are nearly as round as they are the wrong way
-// about, so hair also has to root above the middle, and not on the face; and most files have y up and face z.
-double misfit(const std::vector<Vec3>& points, const std::vector<Vec3>& roots, const Reading& reading,
-              const Scalp& scalp) {
+// about, so hair also has to root above the middle, and not on the face, nor hang before it; and most files have y up
+// and face z.
+double misfit(const std::vector<Vec3>& points, const std::vector<Vec3>& roots, const std::vector<Vec3>& vertices,
+              const Reading& reading, const Scalp& scalp) {
   double height = 0, on_face = 0;
   for (const Vec3& root : roots) {
     const Vec3 from_middle = reading(root) - scalp.center, out = from_middle.normalized();
     height += from_middle.y() / static_cast<double>(roots.size());
     on_face += out.z() > kFaceForward && out.y() < kFaceBelow ? 1 / static_cast<double>(roots.size()) : 0;
   }
-  return distanceOf(points, reading, scalp) + kFaceCosts * on_face + std::max(0.0, -height) +
+  const double size = reading.linear.col(0).norm() / scalp.radiusAt(Vec3::UnitY());
+  const bool whole = size * cloudOf(roots).spread > kWholeHead;
+  return distanceOf(points, reading, scalp) + kFaceCosts * on_face +
+         (whole ? kHiddenFaceCosts * beforeFace(vertices, reading, scalp) : 0) + std::max(0.0, -height) +
          (reading.axes == &axesKnown()[0] ? 0 : kOtherAxes);
 }
 
@@ -249,7 +268,7 @@ double rootDistance(const sim::HairMeshShape& shape, const Scalp& scalp) {
   return distanceOf(rootsOf(shape), Reading{}, scalp);
 }
 
-std::string fitHair(const Character& character, bool mend, sim::HairMeshShape& shape, bool in_metres,
+std::string fitHair(const Character& character, bool mend, sim::HairMeshShape& shape, ToldPlace told,
                     std::span<const Vec3> scalp_points, double* as_made_distance) {
   const Scalp& scalp = character.scalp;
   const std::vector<Vec3> hair_roots = rootsOf(shape);
@@ -259,10 +278,11 @@ std::string fitHair(const Character& character, bool mend, sim::HairMeshShape& s
   const Ways ways = scalp_points.empty() ? waysOf(shape) : Ways{};
   std::vector<Vec3> roots(scalp_points.begin(), scalp_points.end());
   if (roots.empty()) roots = hair_roots;
-  const std::vector<Reading> all = readings(character, in_metres);
+  const std::vector<Reading> all = readings(character, told);
   const auto best = [&](const std::vector<Reading>& of) {
     return std::min_element(of.begin(), of.end(), [&](const Reading& a, const Reading& b) {
-      return misfit(roots, hair_roots, a, scalp) < misfit(roots, hair_roots, b, scalp);
+      return misfit(roots, hair_roots, shape.positions, a, scalp) <
+             misfit(roots, hair_roots, shape.positions, b, scalp);
     });
   };
   std::vector<Reading> as_made;

@@ -20,7 +20,8 @@ FittedStrips fitOnce(const PolygonMesh& mesh, const StripOptions& options, const
                      const Character& character, bool mend) {
   FittedStrips fitted{convertStrips(mesh, options, file), "", 0};
   StripConversion& strips = fitted.conversion;
-  fitted.fit = fitHair(character, mend, strips.mesh.shape, true, strips.scalp_points, &fitted.as_made_distance);
+  fitted.fit =
+      fitHair(character, mend, strips.mesh.shape, {.metres = true}, strips.scalp_points, &fitted.as_made_distance);
   return fitted;
 }
 

@@ -410,6 +410,14 @@ std::optional<int> Tape::frames() const {
   return replay_ ? std::optional<int>(static_cast<int>(replay_->frames.size())) : std::nullopt;
 }
 
+std::string Tape::sizeNote(int width, int height) const {
+  if (!replay_view_) return "";
+  const long across = std::lround(replay_view_->aspect * replay_view_->height), high = replay_view_->height;
+  if (across == width && high == height) return "";
+  const std::string size = std::to_string(across) + "x" + std::to_string(high);
+  return "recorded at " + size + ": --size " + size + " gives its pictures\n";
+}
+
 double Tape::turn(int frame, double seconds, Demo& demo) {
   if (replay_) {
     const RecordedFrame& recorded = replay_->frames[static_cast<std::size_t>(frame)];

@@ -99,6 +99,8 @@ class Tape {
   std::optional<int> frames() const;
   // Of the picture to open the scene for: the recorded one, or that of the options.
   double aspect() const { return aspect_; }
+  // What to say of pictures of a replay that are of another size (pixels) than its own; empty where there is nothing.
+  std::string sizeNote(int width, int height) const;
   // Before frame `frame` of `seconds`: puts the recorded view and requests in place and returns the recorded length
   // when a replay is played; writes them down when one is made. Either way a budget goes by counted work.
   double turn(int frame, double seconds, Demo& demo);

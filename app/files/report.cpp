@@ -200,6 +200,22 @@ json drawBudgetJson(const RunReport& run, const Demo& demo) {
           {"rungs", rungs}};
 }
 
+// What --compare found, of the frames so far.
+json comparisonJson(const Demo& demo) {
+  const Comparison& found = demo.comparison;
+  if (!found.on() || found.frames == 0) return nullptr;
+  const auto frames = static_cast<double>(found.frames);
+  const double rms = found.rms_sum / frames, length = demo.actors.front().haircut->mesh.hair_length;
+  json apart = nullptr;
+  if (found.now.known)
+    apart = {{"rms_metres_mean", rms}, {"worst_metres", found.worst}, {"rms_over_length_mean", rms / length}};
+  return {{"with", found.with},
+          {"frames", found.frames},
+          {"hair_apart", apart},
+          {"simulation_milliseconds_mean",
+           {{"this", 1e3 * found.seconds[0] / frames}, {"other", 1e3 * found.seconds[1] / frames}}}};
+}
+
 }  // namespace
 
 std::vector<std::string> limitNotes(const Demo& demo) {
@@ -249,6 +265,7 @@ void writeReport(const std::string& file, const RunReport& run, const Demo& demo
       {"time_step_seconds", demo.running.time_step},
       {"budget", budgetJson(run, demo)},
       {"draw_budget", drawBudgetJson(run, demo)},
+      {"comparison", comparisonJson(demo)},
       {"skips", switches},
       {"frames_per_second", run.fps},
       {"start_milliseconds", 1e3 * run.start_seconds},
@@ -304,14 +321,22 @@ std::string budgetLine(const char* name, double budget, const std::string& rung,
 }  // namespace
 
 std::string summary(const RunReport& run, const Demo& demo) {
-  const auto line = [&](const char* name, auto pick) {
-    return std::string("  ") + name + " " + threeDigits(1e3 * median(gather(run, pick))) + " ms\n";
-  };
+  // Frames between two steps take no time; where most are such, the median is of the others.
+  const auto stepped = std::ranges::count_if(run.frames, [](const FrameStats& f) { return f.steps > 0; });
+  const bool some = stepped > 0 && 2 * stepped <= std::ssize(run.frames);
+  std::vector<double> simulation;
+  for (const FrameStats& f : run.frames)
+    if (!some || f.steps > 0) simulation.push_back(f.simulation());
+  const std::string of = some ? ", of the " + std::to_string(stepped) + " that took a step" : "";
+  const std::string both = demo.comparison.on() ? " of both, compared" : "";
   const bool drawn = std::ranges::any_of(run.frames, [](const FrameStats& f) { return !f.draw.stages.empty(); });
-  return "median of " + countOf(run.frames.size(), "frame") + ":\n" +
-         line("frame     ", [](const FrameStats& f) { return f.whole; }) +
-         line("simulation", [](const FrameStats& f) { return f.simulation(); }) +
-         (drawn ? line("drawing   ", [](const FrameStats& f) { return f.seconds[kTimeDraw]; }) : "") +
+  return "median of " + countOf(run.frames.size(), "frame") + ":\n" + "  frame      " +
+         threeDigits(1e3 * median(gather(run, [](const FrameStats& f) { return f.whole; }))) + " ms" + both +
+         "\n  simulation " + threeDigits(1e3 * median(simulation)) + " ms" + of + "\n" +
+         (drawn ? "  drawing    " +
+                      threeDigits(1e3 * median(gather(run, [](const FrameStats& f) { return f.seconds[kTimeDraw]; }))) +
+                      " ms\n"
+                : "") +
          budgetLine("simulation", demo.governor.budget, rungName(demo.governor), run,
                     [](const FrameStats& f) { return f.simulation(); }) +
          budgetLine("drawing", demo.draw_governor.budget, drawRungName(demo.draw_governor), run,

@@ -225,7 +225,9 @@ int Run::finish() {
   if (options.keep_frames) {
     std::cout << countOf(report.frames.size(), "frame") << " in " << options.out;
     if (first > 0) std::cout << ", from " << framePath("", first);
-    std::cout << "\n" << staleFrames(options.out, first + std::ssize(report.frames) - 1);
+    std::cout << "\n"
+              << tape.sizeNote(options.width, options.height)
+              << staleFrames(options.out, first + std::ssize(report.frames) - 1);
   }
   const bool saved = options.save_state_at > 0 && options.save_state_at <= std::ssize(report.frames);
   if (!options.save_state.empty() && !saved) saveState();

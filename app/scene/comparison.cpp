@@ -194,8 +194,9 @@ std::string comparisonText(const Demo& demo) {
   const double frames = static_cast<double>(std::max(1L, comparison.frames));
   std::string apart = "other hair";
   if (comparison.now.known)
-    apart = "hair apart by " + threeDigits(1e3 * comparison.rms_sum / frames) + " mm RMS in the mean, " +
-            threeDigits(1e3 * comparison.worst) + " mm at most";
+    apart = "hair apart by " + threeDigits(1e3 * comparison.rms_sum / frames) + " mm RMS in the mean (" +
+            threeDigits(100 * comparison.rms_sum / frames / demo.actors.front().haircut->mesh.hair_length) +
+            " % of its length), " + threeDigits(1e3 * comparison.worst) + " mm at most";
   return apart + "; simulation " + threeDigits(1e3 * comparison.seconds[0] / frames) +
          " ms a frame in the mean against " + threeDigits(1e3 * comparison.seconds[1] / frames) + " ms";
 }

@@ -48,11 +48,27 @@ std::string mendedBy(const Haircut& haircut) {
   return text.empty() && !left.empty() ? left.substr(2) : text + left;
 }
 
+// A hair mesh brought to metres, y up, by the mends that are told. Returns what of these it has no use for, in words.
+std::string placeAsTold(const std::string& wishes, ToldPlace& told, sim::HairMeshShape& shape) {
+  GroomMends mends;
+  if (const std::string fault = readMends(wishes, mends); !fault.empty()) throw InputError("", "mends", fault, "");
+  const Eigen::Matrix3d turned = mends.unit * mends.scale * mends.axes.cast<double>();
+  for (Vec3& p : shape.positions) p = turned * p + mends.move.cast<double>();
+  for (Vec3& offset : shape.groom_offsets) offset = turned * offset;
+  told.metres = wishes.find("--unit") != std::string::npos;
+  told.axes = wishes.find("--up") != std::string::npos || wishes.find("--turn") != std::string::npos;
+  GroomMends rest;
+  rest.unit = mends.unit, rest.axes = mends.axes, rest.scale = mends.scale, rest.move = mends.move;
+  return rest == mends ? ""
+                       : "of a hair mesh \"mends\" are --unit, --up, --turn, --scale and --move; others change nothing";
+}
+
 }  // namespace
 
 sim::HairMeshShape hairFromFile(const CharacterSpec& spec, const Character& character, Haircut& haircut) {
   sim::HairMeshShape shape;
   bool on_head = false;
+  ToldPlace told;
   const auto note = [&](const std::string& text) {
     if (!text.empty()) haircut.note += (haircut.note.empty() ? spec.hair + ": " : "; ") + text;
   };
@@ -83,8 +99,9 @@ sim::HairMeshShape hairFromFile(const CharacterSpec& spec, const Character& char
     bool turned = false;
     shape = readHairMesh(bytes, spec.hair, spec.reverse_faces, "", &turned);
     if (turned) note("all its faces were wound the other way, and are turned");
+    if (!spec.mends.empty()) note(placeAsTold(spec.mends, told, shape));
   }
-  if (!on_head) note(fitHair(character, spec.fit, shape));
+  if (!on_head) note(fitHair(character, spec.fit, shape, told));
   return shape;
 }
 

@@ -10,6 +10,7 @@
 #include "app/platform/egl_context.h"
 #include "app/scene/demo.h"
 #include "tests/bench/scene_times.h"
+#include "tests/bench/written_files.h"
 
 namespace bench {
 namespace {
@@ -159,7 +160,7 @@ void drawBuns(const SheetOptions& options, Drawing& drawing) {
 }  // namespace
 
 void drawContactSheets(const SheetOptions& options) {
-  std::filesystem::create_directories(options.folder);
+  makeFolder(options.folder, "choose another with --contact-sheet");
   Drawing drawing(options.cell_height);
   for (const app::Style style : {app::Style::kShort, app::Style::kShoulder, app::Style::kLong})
     drawStyle(style, options, drawing);

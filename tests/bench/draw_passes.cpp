@@ -29,9 +29,9 @@ namespace bench {
 namespace {
 
 constexpr int kUncounted = 2, kFramesARun = 10, kDrawsARun = 10;
-constexpr double kEnough = 2;     // s that a row takes about
-constexpr int kFewest = 3;        // frames that it counts all the same
-constexpr double kTooSlow = 500;  // ms a frame: a path that takes as long is not timed with more strands
+constexpr double kRowSeconds = 2;  // s that a row takes about
+constexpr int kFewest = 3;         // frames that it counts all the same
+constexpr double kTooSlow = 500;   // ms a frame: a path that takes as long is not timed with more strands
 constexpr double kMaxOverTriangles = 2, kMaxForShadows = 0.35;
 
 struct PictureSize {
@@ -70,7 +70,7 @@ Passes timePasses(render::Renderer& renderer, DrawStage& scene, const DrawSettin
   std::map<std::string, std::vector<double>> times;
   const double begin = secondsOf(CLOCK_MONOTONIC);
   for (int k = 0; k < kUncounted + frames; ++k) {
-    if (k >= kUncounted + kFewest && secondsOf(CLOCK_MONOTONIC) - begin > kEnough) break;
+    if (k >= kUncounted + kFewest && secondsOf(CLOCK_MONOTONIC) - begin > kRowSeconds) break;
     const render::FrameReport report =
         renderer.renderImage(scene.frame(setting, k % 2, size.width, size.height), rgba, true);
     if (k < kUncounted) continue;
@@ -161,7 +161,7 @@ class StrandsAlone {
     std::array<std::vector<double>, 3> times;
     const double begin = secondsOf(CLOCK_MONOTONIC);
     for (int k = -1; k < draws; ++k) {  // the first warms up
-      if (k >= kFewest && secondsOf(CLOCK_MONOTONIC) - begin > kEnough) break;
+      if (k >= kFewest && secondsOf(CLOCK_MONOTONIC) - begin > kRowSeconds) break;
       const std::array<double, 3> now{timed([this] { issueWith(geometry_); }), timed([this] { grown_.draw(stage_); }),
                                       timed([&] { draw(triangles); })};
       for (std::size_t way = 0; way < now.size() && k >= 0; ++way) times[way].push_back(now[way]);

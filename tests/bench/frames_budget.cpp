@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
+#include <sstream>
 
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
@@ -15,6 +15,7 @@
 #include "tests/bench/measured_part.h"
 #include "tests/bench/preset_params.h"
 #include "tests/bench/table.h"
+#include "tests/bench/written_files.h"
 #include "tests/sim_probes.h"
 
 namespace bench {
@@ -41,15 +42,15 @@ struct Costs {
   int guided = 0;    // columns, summed over steps
 };
 
-// Walk first: the others are measured against it.
-std::vector<ClipFile> clipsOf(const FramesBudgetOptions& options) {
+// Walk first: the others are measured against it. `missing` gets the folders that are not there.
+std::vector<ClipFile> allClips(std::vector<std::string>& missing) {
   std::vector<ClipFile> found;
   const std::string walk = app::findFile("walk.bvh", "", "clips");
   const fs::path own = fs::path(walk).parent_path(), shared = own / ".." / ".." / ".." / "shared";
   std::vector<fs::path> files;
   for (const fs::path& folder : {own, shared / "mocap", shared / "arcsim"}) {
     if (!fs::exists(folder)) {
-      std::printf("%s is not there: its clips are left out\n", folder.filename().c_str());
+      missing.push_back(folder.filename().string());
       continue;
     }
     for (const auto& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
@@ -57,13 +58,23 @@ std::vector<ClipFile> clipsOf(const FramesBudgetOptions& options) {
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) {
     const std::string name = file.filename().string();
-    const bool wanted = options.clips.empty() || std::ranges::find(options.clips, name) != options.clips.end();
-    if (file.extension() == ".mot" && wanted)
+    if (file.extension() == ".mot")
       found.push_back({file.string(), (file.parent_path() / "female-objs").string(), name});
-    if (file.extension() == ".bvh" && wanted && name != "walk.bvh") found.push_back({file.string(), "", name});
+    if (file.extension() == ".bvh" && name != "walk.bvh") found.push_back({file.string(), "", name});
   }
   found.insert(found.begin(), {walk, "", "walk.bvh"});
   return found;
+}
+
+std::vector<ClipFile> clipsOf(const FramesBudgetOptions& options) {
+  std::vector<std::string> missing;
+  std::vector<ClipFile> clips = allClips(missing);
+  for (const std::string& folder : missing) std::printf("%s is not there: its clips are left out\n", folder.c_str());
+  std::erase_if(clips, [&](const ClipFile& clip) {
+    return !options.clips.empty() && clip.name != "walk.bvh" &&
+           std::ranges::find(options.clips, clip.name) == options.clips.end();
+  });
+  return clips;
 }
 
 double deepest(const app::Actor& actor) {
@@ -103,8 +114,8 @@ double quantile(const std::vector<StepCost>& steps, double share, double StepCos
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
 }
 
-const std::vector<std::string> kBudgetHead{"style", "clip",  "speed",     "median",      "p99",     "p99.9",
-                                           "worst", "holds", "p99, time", "worst, time", "mm deep", "guided"};
+const std::vector<std::string> kBudgetHead{"style", "clip",  "speed",    "median",     "p99",     "p99.9",
+                                           "worst", "holds", "p99 time", "worst time", "mm deep", "guided"};
 
 struct Measured {
   Table table{kBudgetHead, {}};
@@ -139,12 +150,14 @@ void addShares(const std::string& title, std::vector<double> costs, Measured& me
 }
 
 void writeSteps(const std::string& style, const std::string& clip, double speed, int vertices, const Costs& costs,
-                std::ofstream& out) {
+                RowFile& file) {
+  std::ostringstream out;
   for (const StepCost& s : costs.steps) {
     out << style << "," << clip << "," << speed << "," << vertices << "," << s.work.solves << "," << s.work.iterations
         << "," << s.work.factors << "," << s.work.coarse_spaces << "," << s.work.energies << "," << s.work.minimizations
         << "," << s.work.surface_points << "," << 1e6 * s.seconds << "\n";
   }
+  file.add(out.str());
 }
 
 // Of each style, one row: for every speed the largest p99 and the largest worst cost over the clips, the clip of the
@@ -197,7 +210,7 @@ app::Actor actorOf(const ClipFile& clip, app::Style style, app::Resolution resol
 }
 
 void measureStyle(app::Style style, app::Resolution resolution, const std::vector<ClipFile>& clips,
-                  const std::vector<double>& speeds, std::ofstream& steps, Measured& measured) {
+                  const std::vector<double>& speeds, RowFile& steps, Measured& measured) {
   const std::string name = std::string(app::styleName(style)) + " " + std::string(app::resolutionName(resolution));
   const sim::SimParams params = presetParams(kOpened);
   app::AssetCache cache;
@@ -214,7 +227,7 @@ void measureStyle(app::Style style, app::Resolution resolution, const std::vecto
       const Costs costs = play(params, speeds[s], actor);
       addRow(name, clip.name, speeds[s], costs, walk, measured);
       for (const StepCost& step : costs.steps) all[s].push_back(step.units / walk.units);
-      if (steps.is_open()) writeSteps(name, clip.name, speeds[s], vertices, costs, steps);
+      if (steps.wanted()) writeSteps(name, clip.name, speeds[s], vertices, costs, steps);
     }
   }
   for (std::size_t s = 0; s < speeds.size(); ++s)
@@ -223,16 +236,18 @@ void measureStyle(app::Style style, app::Resolution resolution, const std::vecto
 
 }  // namespace
 
+std::vector<std::string> framesBudgetClips() {
+  std::vector<std::string> missing, names;
+  for (const ClipFile& clip : allClips(missing)) names.push_back(clip.name);
+  return names;
+}
+
 bool runFramesBudget(const FramesBudgetOptions& options) {
   const std::vector<ClipFile> clips = clipsOf(options);
   const std::vector<double> speeds = options.speeds.empty() ? std::vector<double>{1, 4, 10, 20} : options.speeds;
-  std::ofstream steps;
-  if (!options.steps.empty()) {
-    steps.open(options.steps);
-    if (!steps) throw app::InputError(options.steps, "", "cannot be written", "choose another place");
-    steps << "style,clip,speed,vertices,solves,iterations,factors,coarse_spaces,energies,minimizations,"
-             "surface_points,microseconds\n";
-  }
+  RowFile steps(options.steps,
+                "style,clip,speed,vertices,solves,iterations,factors,coarse_spaces,energies,minimizations,"
+                "surface_points,microseconds\n");
   Measured measured;
   for (const std::string& cell : kBudgetHead)
     std::printf("%s%s", cell.c_str(), &cell == &kBudgetHead.back() ? "\n" : ", ");

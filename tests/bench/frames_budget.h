@@ -15,6 +15,9 @@ struct FramesBudgetOptions {
   std::string steps;                // CSV of every step, for fits of the weights; empty: none
 };
 
+// The clips that are there. Throws app::InputError.
+std::vector<std::string> framesBudgetClips();
+
 // Two rounds of each clip, 4 s or more, at most 60 s of simulation, in steps of 1/60 s. Returns whether all keep the
 // bounds on a step's cost over the walk's median: at 1x p99 3 and worst 8, faster 6 and 12. Throws app::InputError.
 bool runFramesBudget(const FramesBudgetOptions& options);

@@ -1,15 +1,14 @@
 #include "tests/bench/gnuplot.h"
 
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
+#include <sstream>
+
+#include "tests/bench/written_files.h"
 
 namespace bench {
 
 void drawChart(const std::string& folder, const std::string& name, const Chart& chart) {
-  const std::string script = folder + "/" + name + ".gp";
-  std::ofstream gp(script);
+  const std::string base = folder + "/" + name;
+  std::ostringstream gp;
   for (std::size_t k = 0; k < chart.series.size(); ++k) {
     gp << "$series" << k << " << END\n";
     for (const auto& [x, y] : chart.series[k].points) gp << x << " " << y << "\n";
@@ -21,7 +20,7 @@ void drawChart(const std::string& folder, const std::string& name, const Chart& 
   for (const char* kind : {"svg", "png"}) {
     gp << "set terminal "
        << (std::string(kind) == "svg" ? "svg size 900,560 background rgb 'white'" : "pngcairo size 900,560")
-       << " font 'Sans,11'\nset output '" << folder << "/" << name << "." << kind << "'\nplot ";
+       << " font 'Sans,11'\nset output '" << base << "." << kind << "'\nplot ";
     bool first = true;
     for (std::size_t k = 0; k < chart.series.size(); ++k) {
       if (chart.series[k].points.empty()) continue;
@@ -31,11 +30,7 @@ void drawChart(const std::string& folder, const std::string& name, const Chart& 
     }
     gp << "\nset output\n";
   }
-  gp.close();
-  if (std::system(("gnuplot '" + script + "' 2>&1").c_str()) != 0) {
-    std::printf("no chart %s: gnuplot is not installed or failed\n", name.c_str());
-  }
-  std::filesystem::remove(script);
+  runGnuplot(base + ".gp", gp.str(), {base + ".svg", base + ".png"});
 }
 
 }  // namespace bench

@@ -19,7 +19,7 @@ struct Chart {
 };
 
 // Writes <folder>/<name>.svg and .png. Says so and goes on where gnuplot is not installed. Series without points are
-// left out.
+// left out. Throws app::OutputError where the folder cannot be written to.
 void drawChart(const std::string& folder, const std::string& name, const Chart& chart);
 
 }  // namespace bench

@@ -7,7 +7,10 @@
 #include <vector>
 
 #include "app/files/errors.h"
+#include "app/files/output_file.h"
+#include "app/options.h"
 #include "tests/bench/accuracy_document.h"
+#include "tests/bench/asked.h"
 #include "tests/bench/brush_cost.h"
 #include "tests/bench/colliders.h"
 #include "tests/bench/collision_document.h"
@@ -32,31 +35,8 @@
 
 namespace {
 
-// Everything that can be asked for on the command line.
-struct Asked {
-  bench::StylesOptions styles;
-  bench::SheetOptions sheet;
-  bench::ParetoOptions pareto;
-  bench::SolverChartOptions solvers;
-  bench::PeersOptions peers;
-  bench::CollisionOptions collisions;
-  std::vector<std::string> sets;
-  bench::GateOptions gate;
-  std::string gate_document;
-  bench::FramesBudgetOptions frames_budget;
-  bench::SkinOptions skin;
-  bench::SwingOptions swing;
-  bench::ConversionOptions conversion;
-  std::string document, accuracy, performance;
-  bool all_hold = true;  // the figures of those that have bounds
-};
-
-// A measurement: its flag, what it does, and how. In the order in which they run when several are asked for.
-struct Task {
-  const char *flag, *help;
-  std::function<void(Asked&)> run;
-  bool asked = false;
-};
+using bench::Asked;
+using bench::Task;
 
 std::vector<Task> tasks() {
   return {
@@ -143,7 +123,10 @@ void addOptions(CLI::App& program, Asked& a) {
   program.add_option("--strands", a.sheet.strands, "strands a picture")->check(CLI::Range(1, 1000000));
   program.add_option("--scenes", a.pareto.scenes, "scenes of --pareto, --draw-pareto and --skipping, comma separated")
       ->delimiter(',');
-  program.add_option("--out", a.pareto.folder, "folder of what is written")->default_val("pareto");
+  program
+      .add_option("--out", a.pareto.folder,
+                  "folder of what is written; docs/data/columns.md explains the columns of its pareto.csv")
+      ->default_val("pareto");
   program.add_option("--references", a.pareto.references,
                      "folder in which --pareto and --gate keep their reference trajectories");
   program.add_option("--runs", a.pareto.runs, "timed runs a point")->check(CLI::Range(1, 100));
@@ -190,7 +173,7 @@ void settle(const CLI::App& program, std::vector<Task>& all, Asked& a) {
     }
     a.pareto.quick = true;
     a.document = a.accuracy;
-    a.pareto.folder = bench::dataFolder(a.accuracy);
+    a.pareto.folder = a.accuracy + "/data";
   }
   a.gate.references = a.pareto.references;
   a.solvers.folder = a.peers.folder = a.pareto.folder;
@@ -204,34 +187,52 @@ void settle(const CLI::App& program, std::vector<Task>& all, Asked& a) {
   a.skin.sets = a.swing.sets = a.collisions.set;
 }
 
+// Everything that was asked for, in order.
+void measure(const std::vector<Task>& all, Asked& asked) {
+  bench::checkAsked(all, asked);
+  bench::checkOutputs(all, asked);
+  for (const Task& task : all) {
+    if (task.asked) task.run(asked);
+  }
+  if (!asked.document.empty()) bench::writeAccuracyDocument(asked.document);
+  if (!asked.performance.empty()) bench::writePerformanceDocument(asked.performance);
+  if (!asked.sheet.folder.empty()) bench::drawContactSheets(asked.sheet);
+}
+
+int fail(const std::exception& fault, int exit_code) {
+  std::cerr << "hairmesh-bench: " << fault.what() << "\n";
+  return exit_code;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // a run that is cut short leaves what it has said
+  app::failAtFileLimit();
   CLI::App program("Measures the simulator and draws the documents' pictures. One thread; timings are medians.");
   std::vector<Task> all = tasks();
   Asked asked;
   for (Task& task : all) program.add_flag(task.flag, task.asked, task.help);
   addOptions(program, asked);
-  CLI11_PARSE(program, argc, argv);
-  settle(program, all, asked);
-  const bool any = std::any_of(all.begin(), all.end(), [](const Task& task) { return task.asked; });
-  if (!any && asked.document.empty() && asked.performance.empty() && asked.sheet.folder.empty()) {
-    std::cout << program.help();
-    return app::kExitUsage;
-  }
   try {
-    for (const Task& task : all) {
-      if (task.asked) task.run(asked);
+    program.parse(argc, argv);
+    settle(program, all, asked);
+    const bool any = std::any_of(all.begin(), all.end(), [](const Task& task) { return task.asked; });
+    if (!any && asked.document.empty() && asked.performance.empty() && asked.sheet.folder.empty()) {
+      std::cout << program.help();
+      return app::kExitUsage;
     }
-    if (!asked.document.empty()) bench::writeAccuracyDocument(asked.document);
-    if (!asked.performance.empty()) bench::writePerformanceDocument(asked.performance);
-    if (!asked.sheet.folder.empty()) bench::drawContactSheets(asked.sheet);
-  } catch (const app::ContextError& error) {
-    std::cerr << "hairmesh-bench: " << error.what() << "\n";
-    return app::kExitNoContext;
-  } catch (const app::InputError& error) {
-    std::cerr << "hairmesh-bench: " << error.what() << "\n";
-    return app::kExitBadInput;
+    measure(all, asked);
+  } catch (const CLI::ParseError& fault) {
+    return program.exit(fault) == 0 ? app::kExitFine : app::kExitUsage;
+  } catch (const app::UsageError& fault) {
+    return fail(fault, app::kExitUsage);
+  } catch (const app::ContextError& fault) {
+    return fail(fault, app::kExitNoContext);
+  } catch (const app::InputError& fault) {
+    return fail(fault, app::kExitBadInput);
+  } catch (const std::exception& fault) {
+    return fail(fault, app::kExitFault);
   }
   return bench::exitCodeOf(asked.all_hold);
 }

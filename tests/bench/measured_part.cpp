@@ -6,19 +6,40 @@
 #include <iterator>
 
 #include "app/files/errors.h"
+#include "app/files/output_file.h"
 
 namespace bench {
 
-void writeMeasuredPart(const std::string& file, const std::string& name, const std::string& part) {
+namespace {
+
+// The document in front of a part, that part's opening mark included, and from its closing mark on.
+struct AroundPart {
+  std::string before, after;
+};
+
+AroundPart aroundPart(const std::string& file, const std::string& name) {
   std::ifstream stream(file);
-  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  if (!stream)
+    throw app::InputError(file, "", "is not there or cannot be read", "name the folder that holds this page");
+  const std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
   const std::string opening = "<!-- measured: " + name + " -->", closing = "<!-- end of " + name + " -->";
   const auto start = text.find(opening), end = text.find(closing);
   if (start == std::string::npos || end == std::string::npos || end < start) {
     throw app::InputError(file, "", "lacks the marks of its part '" + name + "'", "restore it from the repository");
   }
-  text = text.substr(0, start) + opening + "\n\n" + part + text.substr(end);
-  std::ofstream(file) << text;
+  return {text.substr(0, start) + opening, text.substr(end)};
+}
+
+}  // namespace
+
+void writeMeasuredPart(const std::string& file, const std::string& name, const std::string& part) {
+  const AroundPart around = aroundPart(file, name);
+  app::writeFile(file, around.before + "\n\n" + part + around.after);
+}
+
+void checkMeasuredParts(const std::string& file, const std::vector<std::string>& names) {
+  for (const std::string& name : names) aroundPart(file, name);
+  app::checkWritable(file);
 }
 
 std::string formatted(const char* format, ...) {

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
-#include "app/files/errors.h"
 #include "tests/bench/gnuplot.h"
 #include "tests/bench/sweep.h"
+#include "tests/bench/written_files.h"
 
 namespace bench {
 namespace {
@@ -78,8 +77,7 @@ nlohmann::json toJson(const Sweep& sweep, const Point& p) {
 }
 
 void writeCsv(const std::string& file, const nlohmann::json& rows) {
-  std::ofstream csv(file);
-  if (!csv) throw app::InputError(file, "", "cannot be written", "choose another folder with --out");
+  std::ostringstream csv;
   for (const nlohmann::json& row : rows) {
     if (&row == &rows.front()) {
       for (auto it = row.begin(); it != row.end(); ++it) csv << (it == row.begin() ? "" : ",") << it.key();
@@ -91,6 +89,7 @@ void writeCsv(const std::string& file, const nlohmann::json& rows) {
     }
     csv << "\n";
   }
+  app::writeFile(file, csv.str());
 }
 
 void print(const Sweep& sweep) {
@@ -113,8 +112,7 @@ void print(const Sweep& sweep) {
 }  // namespace
 
 void runPareto(const ParetoOptions& options) {
-  std::error_code fault;
-  std::filesystem::create_directories(options.folder, fault);
+  makeFolder(options.folder, "choose another with --out");
   nlohmann::json rows = nlohmann::json::array();
   for (const TrajectoryScene& scene : trajectoryScenes()) {
     const bool wanted = options.scenes.empty() || std::count(options.scenes.begin(), options.scenes.end(), scene.name);
@@ -126,10 +124,10 @@ void runPareto(const ParetoOptions& options) {
     const Sweep sweep = sweepScene(stage, reference, configurationsToRun(size, scene.collide), options.runs);
     for (const Point& p : sweep.points) rows.push_back(toJson(sweep, p));
     print(sweep);
-    drawChart(options.folder, std::string("accuracy_") + scene.name, chartOf(sweep));
     // After each scene: a sweep cut short leaves what it has measured.
     writeCsv(options.folder + "/pareto.csv", rows);
-    std::ofstream(options.folder + "/pareto.json") << rows.dump(1) << "\n";
+    app::writeFile(options.folder + "/pareto.json", rows.dump(1) + "\n");
+    drawChart(options.folder, std::string("accuracy_") + scene.name, chartOf(sweep));
   }
 }
 

@@ -4,14 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "tests/bench/bullet_peer.h"
 #include "tests/bench/cpu_clock.h"
 #include "tests/bench/scene_times.h"
 #include "tests/bench/trajectory.h"
+#include "tests/bench/written_files.h"
 
 namespace bench {
 namespace {
@@ -209,8 +208,7 @@ std::vector<PeerFigures> measureAll(const PeerScenes& scenes) {
 }  // namespace
 
 void runPeers(const PeersOptions& options) {
-  std::error_code fault;
-  std::filesystem::create_directories(options.folder, fault);
+  makeFolder(options.folder, "choose another with --out");
   nlohmann::json rows = nlohmann::json::array();
   for (const app::Resolution resolution : {app::Resolution::kLow, app::Resolution::kHigh}) {
     const char* name = resolution == app::Resolution::kLow ? "long_low" : "long_high";
@@ -220,7 +218,7 @@ void runPeers(const PeersOptions& options) {
     std::printf("\n%s: %d vertices, 1/60 s\n", name, scenes.mesh.vertexCount());
     for (const PeerFigures& figures : measureAll(scenes)) rows.push_back(toJson(name, scenes.mesh, figures));
   }
-  std::ofstream(options.folder + "/peers.json") << rows.dump(1) << "\n";
+  app::writeFile(options.folder + "/peers.json", rows.dump(1) + "\n");
 }
 
 }  // namespace bench

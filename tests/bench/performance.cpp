@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <memory>
+#include <sstream>
 
 #include "tests/bench/cpu_clock.h"
 #include "tests/bench/measured_part.h"
 #include "tests/bench/table.h"
 #include "tests/bench/timed_scene.h"
 #include "tests/bench/waits.h"
+#include "tests/bench/written_files.h"
 
 namespace bench {
 namespace {
@@ -147,8 +147,8 @@ std::string startUpTable() {
 
 // Milliseconds against vertices, both logarithmic, one line a style and contender.
 void drawGrowth(const std::string& folder, const std::vector<StageRow>& rows) {
-  const std::string data = folder + "/growth.dat", script = folder + "/growth.gp";
-  std::ofstream file(data);
+  const std::string base = folder + "/growth", data = base + ".dat";
+  std::ostringstream file;
   std::string plot;
   int index = 0;
   for (const Contender& contender : kContenders) {
@@ -164,21 +164,18 @@ void drawGrowth(const std::string& folder, const std::vector<StageRow>& rows) {
       ++index;
     }
   }
-  file.close();
+  app::writeFile(data, file.str());
   for (const char* kind : {"svg", "png"}) {
-    std::ofstream(script)
-        << "set terminal "
-        << (kind == std::string("svg") ? "svg size 860,560 background rgb 'white'" : "pngcairo size 860,560")
-        << " font 'Sans,11'\nset output '" << folder << "/growth." << kind << "'\n"
-        << "set logscale xy\nset grid\nset key outside right\nset xrange [300:12000]\n"
-        << "set title 'A walk with contacts, 1/60 s a frame'\nset xlabel 'vertices'\n"
-        << "set ylabel 'ms a frame, one thread'\nplot " << plot
-        << "0.3 * (x / 361) ** 1.15 with lines lc rgb 'gray' dt 3 title '0.3 ms at 361, power 1.15'\n";
-    if (std::system(("gnuplot '" + script + "'").c_str()) != 0) {
-      std::printf("no growth.%s: gnuplot is not installed or failed\n", kind);
-    }
+    std::ostringstream gp;
+    gp << "set terminal "
+       << (kind == std::string("svg") ? "svg size 860,560 background rgb 'white'" : "pngcairo size 860,560")
+       << " font 'Sans,11'\nset output '" << base << "." << kind << "'\n"
+       << "set logscale xy\nset grid\nset key outside right\nset xrange [300:12000]\n"
+       << "set title 'A walk with contacts, 1/60 s a frame'\nset xlabel 'vertices'\n"
+       << "set ylabel 'ms a frame, one thread'\nplot " << plot
+       << "0.3 * (x / 361) ** 1.15 with lines lc rgb 'gray' dt 3 title '0.3 ms at 361, power 1.15'\n";
+    runGnuplot(base + ".gp", gp.str(), {base + "." + kind});
   }
-  std::filesystem::remove(script);
   std::filesystem::remove(data);
 }
 

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
+
+#include "tests/bench/written_files.h"
 
 namespace bench {
 namespace {
@@ -59,15 +60,14 @@ bool readRun(const std::string& file, const std::string& key, Run& run) {
 }
 
 void writeRun(const std::string& file, const std::string& key, const Run& run) {
-  std::ofstream stream(file, std::ios::binary);
-  const auto put = [&](const void* from, std::size_t bytes) {
-    stream.write(static_cast<const char*>(from), static_cast<std::streamsize>(bytes));
-  };
+  app::OutputFile output(file);
+  const auto put = [&](const void* from, std::size_t bytes) { output.write({static_cast<const char*>(from), bytes}); };
   const std::size_t samples = run.trajectory.size(), vertices = run.trajectory.front().size();
   put(key.data(), key.size());
   put(&samples, sizeof samples), put(&vertices, sizeof vertices);
   put(run.energy.data(), samples * sizeof(double));
   for (const auto& positions : run.trajectory) put(positions.data(), vertices * sizeof(sim::Vec3));
+  output.commit();
 }
 
 Run runOrRead(TrajectoryStage& stage, double step, const std::string& cache) {
@@ -75,7 +75,7 @@ Run runOrRead(TrajectoryStage& stage, double step, const std::string& cache) {
   Run run;
   std::string file, key;
   if (!cache.empty()) {
-    std::filesystem::create_directories(cache);
+    makeFolder(cache, "choose another with --references");
     file = cache + "/" + stage.scene().name + "_" + std::to_string(std::lround(1 / step)) + ".bin";
     key = keyOf(stage, params);
     if (readRun(file, key, run) && stage.run(params, 1).trajectory.front() == run.trajectory.front()) return run;

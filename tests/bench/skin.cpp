@@ -49,19 +49,19 @@ std::string kindOf(const fs::path& file, bool own) {
   return own ? "mannequin, own clips" : "mannequin, captures";
 }
 
-std::vector<SkinFigure> figuresOf(const SkinOptions& options) {
+// `missing` gets the folders that are not there.
+std::vector<SkinFigure> allFigures(std::vector<std::string>& missing) {
   const fs::path own = fs::path(app::findFile("walk.bvh", "", "clips")).parent_path();
   const fs::path shared = own / ".." / ".." / ".." / "shared";
   std::vector<SkinFigure> figures;
   for (const fs::path& folder : {own, shared / "mocap", shared / "arcsim", shared / "characters", fs::path(kModels)}) {
     if (!fs::exists(folder)) {
-      std::printf("%s is not there: its figures are left out\n", folder.filename().c_str());
+      missing.push_back(folder.filename().string());
       continue;
     }
     std::vector<SkinFigure> found;
     for (const auto& entry : fs::directory_iterator(folder)) {
       const std::string ending = entry.path().extension().string(), name = entry.path().filename().string();
-      if (!options.clips.empty() && std::ranges::find(options.clips, name) == options.clips.end()) continue;
       if (folder == kModels && name != kModel) continue;
       const std::string parts = ending == ".mot" ? (folder / "female-objs").string() : "";
       if (ending == ".mot" || ending == ".bvh" || ending == ".glb" || ending == ".fbx")
@@ -70,6 +70,16 @@ std::vector<SkinFigure> figuresOf(const SkinOptions& options) {
     std::ranges::sort(found, {}, &SkinFigure::name);
     figures.insert(figures.end(), found.begin(), found.end());
   }
+  return figures;
+}
+
+std::vector<SkinFigure> figuresOf(const SkinOptions& options) {
+  std::vector<std::string> missing;
+  std::vector<SkinFigure> figures = allFigures(missing);
+  for (const std::string& folder : missing) std::printf("%s is not there: its figures are left out\n", folder.c_str());
+  std::erase_if(figures, [&](const SkinFigure& figure) {
+    return !options.clips.empty() && std::ranges::find(options.clips, figure.name) == options.clips.end();
+  });
   return figures;
 }
 
@@ -242,6 +252,12 @@ Table documentOf(const std::vector<SkinRow>& rows) {
 
 }  // namespace
 
+std::vector<std::string> skinClips() {
+  std::vector<std::string> missing, names;
+  for (const SkinFigure& figure : allFigures(missing)) names.push_back(figure.name);
+  return names;
+}
+
 bool runSkin(const SkinOptions& options) {
   const std::vector<std::string> styles =
       options.styles.empty() ? std::vector<std::string>{"short low", "shoulder low", "long low"} : options.styles;
@@ -272,6 +288,10 @@ bool runSkin(const SkinOptions& options) {
 #else
 
 namespace bench {
+
+std::vector<std::string> skinClips() {
+  return {};
+}
 
 bool runSkin(const SkinOptions&) {
   throw app::InputError("--skin", "", "needs Embree 3, which was missing when this was built",

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -12,6 +11,7 @@
 #include "tests/bench/skipping_document.h"
 #include "tests/bench/skipping_simulation.h"
 #include "tests/bench/table.h"
+#include "tests/bench/written_files.h"
 
 namespace bench {
 namespace {
@@ -106,6 +106,12 @@ SceneRun simulationOf(const char* file, int frames, int warm_up) {
 
 }  // namespace
 
+std::vector<std::string> skippingScenes() {
+  std::vector<std::string> names;
+  for (const SceneRun& run : sceneRuns({})) names.push_back(app::stem(run.file));
+  return names;
+}
+
 bool runCrowd(int rounds) {
   const SceneRun close = simulationOf("walk.json", 40, 10), crowd_run = simulationOf("crowd.json", 28, 12);
   std::vector<double> ratios, crowd_ms, character_ms, close_ms;
@@ -148,7 +154,7 @@ bool runCrowd(int rounds) {
 }
 
 bool runSkipping(const SkippingOptions& options) {
-  std::filesystem::create_directories(options.folder);
+  makeFolder(options.folder, "choose another with --out");
   startSkipDocument(options.folder);
   const std::string data = dataFolder(options.folder);
   app::EglContext context;
@@ -173,7 +179,7 @@ bool runSkipping(const SkippingOptions& options) {
     plotSkips(rows, data);
     for (const SkipRow& row : rows) json.push_back(asJson(row));
   }
-  std::ofstream(file) << json.dump(1) << "\n";
+  app::writeFile(file, json.dump(1) + "\n");
   const std::vector<SkipBound> held = skipBounds(scenes);
   for (const SkipBound& bound : held) std::printf("%s\n", boundText(bound).c_str());
   writeSkipDocument(scenes, held, options.folder);

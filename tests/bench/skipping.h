@@ -12,6 +12,8 @@ struct SkippingOptions {
   bool quick = false;               // fewer strands, frames and pixels
 };
 
+std::vector<std::string> skippingScenes();  // names, for SkippingOptions::scenes
+
 // Returns whether the bounds of the table of skips hold; prints each.
 bool runSkipping(const SkippingOptions& options);
 

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
+#include <sstream>
 
 #include "tests/bench/measured_part.h"
 #include "tests/bench/table.h"
+#include "tests/bench/written_files.h"
 
 namespace bench {
 namespace {
@@ -65,26 +65,22 @@ std::string skipTableOf(const std::vector<SkipRow>& rows) {
 
 void plotSkips(const std::vector<SkipRow>& rows, const std::string& folder) {
   const std::string base = folder + "/skipping_" + rows.front().scene;
-  const std::string data = base + ".dat", script = base + ".gp";
-  {
-    std::ofstream stream(data);
-    for (const SkipRow& row : rows)
-      stream << '"' << row.skips << "\" " << row.simulation_ms << ' ' << row.character_ms << ' ' << row.drawing_ms
-             << '\n';
-    std::ofstream gp(script);
-    gp << "set terminal svg size 860,420 background rgb 'white'\nset output '" << base << ".svg'\n"
-       << "set style data histograms\nset style histogram rowstacked\nset style fill solid 0.9 noborder\n"
-       << "set boxwidth 0.75\nset xtics rotate by -35 noenhanced\nset ylabel 'ms a frame (process time)'\nset grid "
-          "ytics\n"
-       << "set key outside top horizontal\n"
-       << "plot '" << data
-       << "' using 2:xtic(1) title 'simulation' lc rgb '#e28c58', '' using 3 title 'character' lc rgb "
-       << "'#b084c4', '' using 4 title 'drawing' lc rgb '#56789e'\n";
-  }
-  if (std::system(("gnuplot '" + script + "'").c_str()) != 0)
-    std::printf("no plot: gnuplot is not installed or failed\n");
+  const std::string data = base + ".dat";
+  std::ostringstream stream, gp;
+  for (const SkipRow& row : rows)
+    stream << '"' << row.skips << "\" " << row.simulation_ms << ' ' << row.character_ms << ' ' << row.drawing_ms
+           << '\n';
+  app::writeFile(data, stream.str());
+  gp << "set terminal svg size 860,420 background rgb 'white'\nset output '" << base << ".svg'\n"
+     << "set style data histograms\nset style histogram rowstacked\nset style fill solid 0.9 noborder\n"
+     << "set boxwidth 0.75\nset xtics rotate by -35 noenhanced\nset ylabel 'ms a frame (process time)'\nset grid "
+        "ytics\n"
+     << "set key outside top horizontal\n"
+     << "plot '" << data
+     << "' using 2:xtic(1) title 'simulation' lc rgb '#e28c58', '' using 3 title 'character' lc rgb "
+     << "'#b084c4', '' using 4 title 'drawing' lc rgb '#56789e'\n";
+  runGnuplot(base + ".gp", gp.str(), {base + ".svg"});
   std::filesystem::remove(data);
-  std::filesystem::remove(script);
 }
 
 std::vector<SkipBound> skipBounds(const SkipScenes& scenes) {
@@ -146,8 +142,8 @@ constexpr const char* kEmptyTable = "# The table of skips\n\n<!-- measured: skip
 
 void startSkipDocument(const std::string& folder) {
   const std::string page = folder + "/skipping.md", table = dataFolder(folder) + "/skips.md";
-  if (!std::filesystem::exists(page)) std::ofstream(page) << kEmptyDocument;
-  if (!std::filesystem::exists(table)) std::ofstream(table) << kEmptyTable;
+  if (!std::filesystem::exists(page)) app::writeFile(page, kEmptyDocument);
+  if (!std::filesystem::exists(table)) app::writeFile(table, kEmptyTable);
   writeMeasuredPart(table, "skips", app::skipTableText() + "\n");
 }
 

@@ -2,14 +2,13 @@
 
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <sstream>
 
-#include "app/files/errors.h"
 #include "tests/bench/gnuplot.h"
 #include "tests/bench/own_solvers.h"
+#include "tests/bench/written_files.h"
 
 namespace bench {
 namespace {
@@ -138,8 +137,7 @@ Chart chartOf(const std::string& scene, const std::vector<MeanRun>& runs) {
 }
 
 void writeRungs(const std::string& file, const nlohmann::json& rows) {
-  std::ofstream csv(file);
-  if (!csv) throw app::InputError(file, "", "cannot be written", "choose another folder with --out");
+  std::ostringstream csv;
   csv << "scene,vertices,contacts,solver,precision,first_us,set_up_us,iterations,solve_us,residual,displacement_m\n";
   for (const nlohmann::json& row : rows) {
     for (const nlohmann::json& rung : row["rungs"]) {
@@ -149,6 +147,7 @@ void writeRungs(const std::string& file, const nlohmann::json& rows) {
           << rung["displacement_error_m"] << "\n";
     }
   }
+  app::writeFile(file, csv.str());
 }
 
 void printRun(const MeanRun& run) {
@@ -189,8 +188,7 @@ std::vector<MeanRun> runAll(const RecordedSystems& systems) {
 }  // namespace
 
 void runSolverChart(const SolverChartOptions& options) {
-  std::error_code fault;
-  std::filesystem::create_directories(options.folder, fault);
+  makeFolder(options.folder, "choose another with --out");
   nlohmann::json rows = nlohmann::json::array();
   for (const RecordedScene& scene : kScenes) {
     const RecordedSystems systems = recordSystems(scene.scene, scene.steps);
@@ -201,7 +199,7 @@ void runSolverChart(const SolverChartOptions& options) {
     drawChart(options.folder, std::string("solvers_") + scene.scene, chartOf(scene.scene, runs));
   }
   writeRungs(options.folder + "/solvers.csv", rows);
-  std::ofstream(options.folder + "/solvers.json") << rows.dump(1) << "\n";
+  app::writeFile(options.folder + "/solvers.json", rows.dump(1) + "\n");
 }
 
 }  // namespace bench

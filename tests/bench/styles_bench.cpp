@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <sstream>
 #include <vector>
 
 #include "app/files/data_path.h"
-#include "app/files/errors.h"
+#include "app/files/output_file.h"
 #include "app/scene/demo.h"
 #include "tests/bench/scene_times.h"
 
@@ -104,9 +103,7 @@ void runStyles(const StylesOptions& options) {
   table << growth;
   std::printf("%s", growth);
   if (options.table.empty()) return;
-  std::ofstream file(options.table);
-  file << table.str();
-  if (!file.flush()) throw app::InputError(options.table, "", "cannot be written", "choose another file with --table");
+  app::writeFile(options.table, table.str());
 }
 
 }  // namespace bench

@@ -168,7 +168,7 @@ bool runSwing(const SwingOptions& options) {
     sim::SimParams params = *preset ? presetParams(preset) : sim::SimParams{};
     for (const auto& [name, value] : options.sets) {
       const std::string fault = sim::setParam(params, name, value).fault;
-      if (!fault.empty()) throw app::InputError("--set", name, fault, "hairmesh --parameters lists them");
+      if (!fault.empty()) throw app::InputError("", "--set " + name, fault, "");
     }
     for (const app::Style style : {app::Style::kShoulder, app::Style::kLong}) {
       const Swing swing = measureSwing(style, app::Resolution::kMedium, params);

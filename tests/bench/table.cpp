@@ -5,10 +5,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
-#include "app/files/errors.h"
+#include "app/files/output_file.h"
 
 namespace bench {
 namespace {
@@ -201,8 +200,7 @@ std::string dataFolder(const std::string& folder) {
 
 void writeTable(const std::string& folder, const std::string& name, const Table& table) {
   const std::string file = dataFolder(folder) + "/" + name + ".csv";
-  if (!(std::ofstream(file) << table.csv() << std::flush))
-    throw app::InputError(file, "", "cannot be written", "choose a folder that exists and may be written to");
+  app::writeFile(file, table.csv());
 }
 
 }  // namespace bench

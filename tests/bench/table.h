@@ -46,7 +46,7 @@ Table folded(const Table& table, const std::vector<std::string>& keys,
 // <folder>/data, where a page keeps its full tables and charts. Made where it is missing.
 std::string dataFolder(const std::string& folder);
 
-// Writes the table to <folder>/data/<name>.csv. Throws app::InputError where that cannot be written.
+// Writes the table to <folder>/data/<name>.csv. Throws app::OutputError where that cannot be written.
 void writeTable(const std::string& folder, const std::string& name, const Table& table);
 
 }  // namespace bench

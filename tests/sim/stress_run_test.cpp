@@ -77,9 +77,9 @@ TEST_F(StressRun, StrandsUnderTheDrawnSkinFailACapture) {
 
 TEST_F(StressRun, WhatIsNotDeclaredOrNoParameterIsRefused) {
   const test::Outcome nothing = runStress({"--case", "state/nowhere"});
-  EXPECT_EQ(nothing.exit_code, 4);
+  EXPECT_EQ(nothing.exit_code, 2);
   EXPECT_NE(nothing.err.find("state/nowhere"), std::string::npos) << nothing.err;
-  EXPECT_EQ(runStress({"--case", kCheap, "--set", "no_such=1"}).exit_code, 4);
+  EXPECT_EQ(runStress({"--case", kCheap, "--set", "no_such=1"}).exit_code, 2);
 }
 
 // The rows of a --csv without the time that the cases took.
@@ -153,7 +153,7 @@ TEST_F(StressRun, WhatChoosesNothingIsToldAndPartsChooseAmongNamedCases) {
   for (const std::vector<std::string>& unknown :
        {std::vector<std::string>{"--case", "nix"}, {"--save", folder, "--case", "nix"}, {"--list", "--case", "nix"}}) {
     const test::Outcome outcome = runStress(unknown);
-    EXPECT_EQ(outcome.exit_code, 4);
+    EXPECT_EQ(outcome.exit_code, 2);
     EXPECT_NE(outcome.err.find("case 'nix': is not declared"), std::string::npos) << outcome.err;
   }
   const test::Outcome beyond = runStress({"--short", "--part", "9", "--parts", "4"});

@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "app/files/errors.h"
+#include "app/options.h"
 
 namespace stress {
 
@@ -14,8 +14,7 @@ std::vector<std::string> ablationsOf(const std::string& asked) {
     known += std::string(known.empty() ? "" : ", ") + net.name;
   }
   if (names.size() == 1 && asked != "none")
-    throw app::InputError("--ablate", "", "there is no safety net '" + asked + "'",
-                          "choose all, none or one of " + known);
+    throw app::UsageError("--ablate: there is no safety net '" + asked + "'; choose all, none or one of " + known);
   return names;
 }
 

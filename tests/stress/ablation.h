@@ -10,7 +10,7 @@
 namespace stress {
 
 // The names of "all", or the one asked for; the first is "none", the run that the others are compared with. Throws
-// InputError for a name that is none.
+// app::UsageError for a name that is none.
 std::vector<std::string> ablationsOf(const std::string& asked);
 
 // Takes the net of that name out of every case; "none" takes none. Cases of a peer's setting have no nets and go.

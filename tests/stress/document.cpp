@@ -7,9 +7,10 @@
 #include <iterator>
 #include <map>
 
-#include "app/files/errors.h"
+#include "app/files/output_file.h"
 #include "tests/bench/measured_part.h"
 #include "tests/bench/table.h"
+#include "tests/bench/written_files.h"
 #include "tests/stress/family_text.h"
 #include "tests/stress/heat_map.h"
 #include "tests/stress/matrix.h"
@@ -202,9 +203,9 @@ constexpr const char* kParts[] = {"result", "limits", "failures", "paper"};
 
 void startPage(const std::string& page) {
   if (std::filesystem::exists(page)) return;
-  std::ofstream stream(page);
-  stream << "# Stability\n\n";
-  for (const char* part : kParts) stream << "<!-- measured: " << part << " -->\n<!-- end of " << part << " -->\n\n";
+  std::string text = "# Stability\n\n";
+  for (const std::string part : kParts) text += "<!-- measured: " + part + " -->\n<!-- end of " + part + " -->\n\n";
+  app::writeFile(page, text);
 }
 
 // Passed and failed, and a line a family.
@@ -237,13 +238,19 @@ std::string ablationPart(const std::string& folder) {
 
 }  // namespace
 
+void checkDocument(const std::string& folder) {
+  const std::string page = folder + "/stability.md";
+  if (std::filesystem::exists(page)) bench::checkMeasuredParts(page, {std::begin(kParts), std::end(kParts)});
+  if (!ablationPart(folder).empty()) bench::checkMeasuredParts(folder + "/safety_nets.md", {"ablation"});
+  bench::checkNewFile(folder + "/data/stability.csv", "choose another with --document");
+}
+
 void writeDocument(const std::vector<Result>& results, const std::string& how, std::uint64_t seed,
                    const std::string& folder) {
   const std::string page = folder + "/stability.md", data = bench::dataFolder(folder);
-  std::ofstream csv(data + "/stability.csv");
-  csv << csvHead();
-  for (const Result& result : results) csv << csvRow(result);
-  csv.close();
+  std::string csv = csvHead();
+  for (const Result& result : results) csv += csvRow(result);
+  app::writeFile(data + "/stability.csv", csv);
   drawHeatMaps(results, data);
   const Table families = familyTable(countFamilies(results)), paper = paperTable(results);
   bench::writeTable(folder, "stability_families", families);

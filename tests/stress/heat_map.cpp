@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
-#include <cstdlib>
-#include <fstream>
 #include <sstream>
+
+#include "tests/bench/written_files.h"
 
 namespace stress {
 namespace {
@@ -101,11 +100,11 @@ void writePanel(const Panel& panel, const Grid& grid, std::ostream& plot) {
 }  // namespace
 
 void drawHeatMaps(const std::vector<Result>& results, const std::string& folder) {
-  const std::string script = folder + "/stability_map.gp";
-  std::ofstream plot(script);
+  const std::string base = folder + "/stability_map";
+  std::ostringstream plot;
   for (const bool svg : {true, false}) {
     plot << "set terminal " << (svg ? "svg" : "pngcairo") << " size 1240,1180 font 'Sans,11' background rgb 'white'\n"
-         << "set output '" << folder << "/stability_map." << (svg ? "svg" : "png") << "'\n"
+         << "set output '" << base << "." << (svg ? "svg" : "png") << "'\n"
          << "set multiplot layout 2,2 title 'Slowest return to rest of each cell in seconds; black: cases that failed, "
             "counted'\n"
          << "set palette defined (0 '#1a9850', 2 '#d9ef8b', 4 '#fee08b', " << kSlowest << " '#d73027', "
@@ -118,10 +117,7 @@ void drawHeatMaps(const std::vector<Result>& results, const std::string& folder)
     }
     plot << "unset multiplot\n";
   }
-  plot.close();
-  if (std::system(("gnuplot '" + script + "'").c_str()) != 0)
-    std::printf("no heat map: gnuplot is not installed or failed\n");
-  std::remove(script.c_str());
+  bench::runGnuplot(base + ".gp", plot.str(), {base + ".svg", base + ".png"});
 }
 
 }  // namespace stress

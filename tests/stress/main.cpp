@@ -2,12 +2,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 #include <map>
 
 #include "app/files/errors.h"
+#include "app/files/output_file.h"
+#include "app/options.h"
 #include "app/scene/frame_stats.h"
+#include "tests/bench/written_files.h"
 #include "tests/stress/ablation.h"
 #include "tests/stress/document.h"
 #include "tests/stress/resume.h"
@@ -66,7 +68,7 @@ void applySets(const std::vector<std::string>& sets, std::vector<StressCase>& ca
     const std::string name = text.substr(0, equals);
     sim::SimParams params;
     const sim::ParamText answer = sim::setParam(params, name, text.substr(std::min(equals + 1, text.size())));
-    if (!answer.ok) throw app::InputError("--set", "", answer.fault, "");
+    if (!answer.ok) throw app::UsageError("--set: " + answer.fault);
     for (StressCase& one : cases) one.params.emplace_back(name, sim::findParam(name)->get(params));
   }
 }
@@ -87,11 +89,7 @@ std::vector<Result> runCases(const Options& options, const std::vector<StressCas
   stress::StageStore stages;
   std::vector<Result> results;
   Count count;
-  std::ofstream csv;
-  if (!options.csv.empty()) {
-    csv.open(options.csv);
-    csv << stress::csvHead();
-  }
+  bench::RowFile csv(options.csv, stress::csvHead());
   const double started = app::now();
   double told = started;
   for (std::size_t k = 0; k < cases.size(); ++k) {
@@ -100,7 +98,7 @@ std::vector<Result> runCases(const Options& options, const std::vector<StressCas
     if (options.verbose || !options.pattern.empty()) printOutcome(result);
     if (!result.outcome.fault.empty()) printFault(result, options);
     count.add(result);
-    csv << stress::csvRow(result) << std::flush;
+    csv.add(stress::csvRow(result));
     results.push_back(std::move(result));
     if (app::now() - told > kTellEvery) {
       told = app::now();
@@ -108,13 +106,12 @@ std::vector<Result> runCases(const Options& options, const std::vector<StressCas
                 << " failed" << std::endl;
     }
   }
-  if (!options.csv.empty() && !csv)
-    throw app::InputError(options.csv, "", "cannot be written", "choose a folder that exists and may be written to");
   return results;
 }
 
 // Every chosen case without each net in turn.
 int ablate(const Options& options, const std::vector<StressCase>& cases) {
+  if (!options.csv.empty()) app::checkWritable(options.csv);
   std::vector<stress::Ablation> rows;
   std::vector<Verdict> with_all;
   for (const std::string& net : stress::ablationsOf(options.ablate)) {
@@ -139,8 +136,7 @@ int ablate(const Options& options, const std::vector<StressCase>& cases) {
   }
   const std::string table = stress::ablationTable(rows);
   std::cout << table;
-  if (!options.csv.empty() && !(std::ofstream(options.csv) << table << std::flush))
-    throw app::InputError(options.csv, "", "cannot be written", "choose a folder that exists and may be written to");
+  if (!options.csv.empty()) app::writeFile(options.csv, table);
   return app::kExitFine;
 }
 
@@ -181,10 +177,10 @@ void checkAnyChosen(const Options& options, const std::vector<StressCase>& cases
   whole.part = 0, whole.parts = 1;
   if (options.parts > 1) {
     checkAnyChosen(whole, cases);
-    throw app::InputError("", "--part " + std::to_string(options.part),
-                          "has no case in " + std::to_string(options.parts) + " parts", "give fewer --parts");
+    throw app::UsageError("--part " + std::to_string(options.part) + ": has no case in " +
+                          std::to_string(options.parts) + " parts; give fewer --parts");
   }
-  throw app::InputError("", "case '" + options.pattern + "'", "is not declared", "see hairmesh-stress --list");
+  throw app::UsageError("case '" + options.pattern + "': is not declared; see hairmesh-stress --list");
 }
 
 // In the matrix's order, however its parts were dealt.
@@ -212,6 +208,7 @@ int run(const Options& options) {
   }
   if (!options.save.empty() || !options.resume.empty()) return saveOrResume(options, cases);
   if (!options.ablate.empty()) return ablate(options, cases);
+  if (!options.document.empty()) stress::checkDocument(options.document);
   std::vector<Result> results;
   if (options.results.empty()) {
     results = runCases(options, cases);
@@ -228,16 +225,20 @@ int run(const Options& options) {
   return count.failed > 0 ? app::kExitFault : app::kExitFine;
 }
 
-}  // namespace
+// CLI11 itself reads a negative number as a huge one.
+std::string seedFault(const std::string& text) {
+  const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+  return digits ? "" : "write a whole number from 0 on, not '" + text + "'";
+}
 
-int main(int argc, char** argv) {
-  CLI::App program("Stability stress test: runs a seeded matrix of cases and judges each. Exit code 1 on a failure.");
-  Options options;
+void addOptions(CLI::App& program, Options& options) {
   program.add_flag("--short", options.short_run, "the cases of the test suite, about two minutes");
   program.add_flag("--long", options.long_run, "all cases");
   program.add_flag("--list", options.list, "print the names of the cases chosen and end");
   program.add_option("--case", options.pattern, "run one case by name, or all whose names begin as this before a '*'");
-  program.add_option("--seed", options.seed, "of all random draws")->capture_default_str();
+  program.add_option("--seed", options.seed, "of all random draws, a whole number from 0 on")
+      ->capture_default_str()
+      ->check(CLI::Validator(seedFault, ""));
   program.add_option("--set", options.sets,
                      "NAME=VALUE: a parameter in every case, over what the case has; may be repeated");
   program.add_option(
@@ -253,28 +254,46 @@ int main(int argc, char** argv) {
   program.add_option("--part", options.part, "run one of --parts shares of the cases, from 0")
       ->check(CLI::Range(0, 999));
   program.add_option("--parts", options.parts, "shares that the cases are dealt into")->check(CLI::Range(1, 1000));
-  program.add_option("--csv", options.csv, "also write a row a case to this file");
+  program.add_option("--csv", options.csv,
+                     "also write a row a case to this file; docs/data/columns.md explains its columns");
   program.add_option("--results", options.results, "judge what these files of --csv hold instead of running cases");
   program.add_option("--document", options.document,
                      "write the tables of stability.md, and its data, into this folder");
-  CLI11_PARSE(program, argc, argv);
-  if (options.part >= options.parts) {
-    std::cerr << "hairmesh-stress: --part cannot be " << options.part << " of " << options.parts
-              << " --parts; they are numbered from 0 to " << options.parts - 1 << "\n";
-    return app::kExitUsage;
-  }
-  if (options.list && !options.short_run && options.pattern.empty()) options.long_run = true;
-  if (!options.short_run && !options.long_run && options.pattern.empty() && options.results.empty()) {
-    std::cout << program.help();
-    return app::kExitUsage;
-  }
+}
+
+int fail(const std::exception& fault, int exit_code) {
+  std::cerr << "hairmesh-stress: " << fault.what() << "\n";
+  return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // a run that is cut short leaves what it has said
+  app::failAtFileLimit();
+  CLI::App program("Stability stress test: runs a seeded matrix of cases and judges each. Exit code 1 on a failure.");
+  Options options;
+  addOptions(program, options);
   try {
+    program.parse(argc, argv);
+    if (options.part >= options.parts) {
+      std::cerr << "hairmesh-stress: --part cannot be " << options.part << " of " << options.parts
+                << " --parts; they are numbered from 0 to " << options.parts - 1 << "\n";
+      return app::kExitUsage;
+    }
+    if (options.list && !options.short_run && options.pattern.empty()) options.long_run = true;
+    if (!options.short_run && !options.long_run && options.pattern.empty() && options.results.empty()) {
+      std::cout << program.help();
+      return app::kExitUsage;
+    }
     return run(options);
-  } catch (const app::InputError& error) {
-    std::cerr << "hairmesh-stress: " << error.what() << "\n";
-    return app::kExitBadInput;
-  } catch (const app::OutputError& error) {
-    std::cerr << "hairmesh-stress: " << error.what() << "\n";
-    return app::kExitFault;
+  } catch (const CLI::ParseError& fault) {
+    return program.exit(fault) == 0 ? app::kExitFine : app::kExitUsage;
+  } catch (const app::UsageError& fault) {
+    return fail(fault, app::kExitUsage);
+  } catch (const app::InputError& fault) {
+    return fail(fault, app::kExitBadInput);
+  } catch (const std::exception& fault) {
+    return fail(fault, app::kExitFault);
   }
 }

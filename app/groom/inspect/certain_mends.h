@@ -23,7 +23,8 @@ struct MendReport {
 
 // What --mends is for.
 inline constexpr const char* kMendsHelp =
-    "What mends hair of curves (of strips: --up y|z alone), beside what is certain, which is mended by itself, and "
+    "What mends hair of curves (of strips: --up y|z alone; of hair meshes: --unit, --up, --turn, --scale, --move), "
+    "beside what is certain, which is mended by itself, and "
     "said: any, in quotes, of --unit m|cm|mm|in|ft, --up y|z|-y|-z|x|-x, --turn DEGREES, --reverse none|found|all, "
     "--width-scale X, --width M, "
     "--points N, --scale X, --move X,Y,Z, --drop-far M, --drop-bad, --drop-astray, --push-out, --no-guess; "

@@ -36,6 +36,7 @@ struct GroomMends {
   float drop_far = 0;     // m from the body beyond which a root's strand goes; 0: none does
   float width = 0;        // m, in place of widths that are 0, negative or no number; 0: none
   bool push_out = false;  // points inside the body, to its surface
+  bool operator==(const GroomMends&) const = default;
 };
 
 struct GroomFinding {

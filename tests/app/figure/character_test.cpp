@@ -282,6 +282,11 @@ TEST(Import, TruncatedAtAnyLengthIsRefused) {
     expectInputError(scratch("cut.glb", whole.substr(0, length)), "", {"cut.glb"});
 }
 
+TEST(Import, AMotionNamedAsAModelIsReadAsAMotion) {
+  const std::string walk = app::readText(app::dataPath("assets/clips/walk.bvh"));
+  EXPECT_EQ(app::loadCharacter(scratch("walk.glb", walk)).clips.size(), 1u);
+}
+
 TEST(BadInput, EveryKindNamesFileFaultAndMend) {
   expectInputError("no_such_file.glb", "", {"no_such_file.glb"});
   expectInputError("no_such_file.bvh", "", {"no_such_file.bvh"});

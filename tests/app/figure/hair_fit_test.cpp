@@ -143,6 +143,62 @@ TEST(HairFit, AFileInNoKnownSizeOrAxesIsSaidAndLeftAlone) {
   }
 }
 
+// Hair of back and sides alone, on a head a little larger: as round as ours, it fits the face nearly as well.
+sim::HairMeshShape backHair() {
+  const app::Scalp& scalp = figure().scalp;
+  sim::HairMeshShape shape;
+  shape.column_first = {0};
+  for (const double polar : {0.8, 1.2, 1.5}) {
+    for (int j = 0; j <= 8; ++j) {
+      const double azimuth = std::numbers::pi * (0.5 + j / 8.0);
+      const Vec3 out(std::sin(polar) * std::sin(azimuth), std::cos(polar), std::sin(polar) * std::cos(azimuth));
+      const Vec3 root = scalp.center + 1.06 * scalp.radiusAt(out) * out;
+      for (int l = 0; l < 5; ++l) shape.positions.push_back(root + l * (0.006 * out - Vec3(0, 0.06, 0)));
+      shape.column_first.push_back(static_cast<int>(shape.positions.size()));
+    }
+  }
+  return shape;
+}
+
+double meanForward(const sim::HairMeshShape& shape) {
+  double forward = 0;
+  for (const Vec3& p : shape.positions)
+    forward += (p.z() - figure().scalp.center.z()) / static_cast<double>(shape.positions.size());
+  return forward;
+}
+
+TEST(HairFit, HairOfTheBackIsNotReadAsHairBeforeTheFace) {
+  for (const double in_a_metre : {1.0, 100.0}) {
+    for (const double up : {0.0, 0.05, 1.6}) {
+      sim::HairMeshShape file = changed(backHair(), [&](const Vec3& p) -> Vec3 {
+        return in_a_metre * (Vec3(p.x(), -p.z(), p.y()) + Vec3(0, 0, up));
+      });
+      const std::string note = app::fitHair(figure(), true, file);
+      EXPECT_NE(note.find("z up, facing -y"), std::string::npos) << note;
+      EXPECT_LT(meanForward(file), -0.01) << note;
+    }
+  }
+}
+
+// What --mends tells of a hair mesh holds, whatever else would fit.
+TEST(HairFit, ToldUnitAndAxesOfAHairMeshAreTaken) {
+  const std::string folder = test::freshFolder("told_mends");
+  app::CharacterSpec spec;
+  spec.hair = folder + "/hair.obj";
+  app::writeFile(spec.hair, app::writeHairMesh(changed(styled(app::Style::kShort), [](const Vec3& p) -> Vec3 {
+                   return 100 * Vec3(p.x(), -p.z(), p.y());
+                 })));
+  spec.mends = "--unit cm --up z --turn 180 --points 9";
+  app::Haircut turned;
+  EXPECT_NEAR(meanForward(app::hairFromFile(spec, figure(), turned)), -meanForward(styled(app::Style::kShort)), 0.02)
+      << turned.note;
+  EXPECT_NE(turned.note.find("of a hair mesh \"mends\" are"), std::string::npos) << turned.note;
+  spec.mends = "--unit cm --up z";
+  app::Haircut upright;
+  EXPECT_LT(farthest(app::hairFromFile(spec, figure(), upright), styled(app::Style::kShort)), 1e-6) << upright.note;
+  EXPECT_EQ(upright.note, "");
+}
+
 TEST(HairFit, TheProgramSaysItOnceAndReadsIt) {
   const std::string folder = test::freshFolder("hair_fit"), file = folder + "/hair.obj", out = folder + "/out.obj";
   app::writeFile(file, app::writeHairMesh(changed(styled(app::Style::kShort), [](const Vec3& p) -> Vec3 {
@@ -229,7 +285,7 @@ TEST(HairFit, AFringeStaysInFront) {
   for (double turn = -1.3; turn <= 1.31; turn += 0.1) {
     for (const double lift : {0.5, 0.9}) addColumn({std::sin(turn), lift, std::cos(turn)}, -0.15, fringe);
   }
-  const std::string note = app::fitHair(figure(), true, fringe, true);
+  const std::string note = app::fitHair(figure(), true, fringe, {.metres = true});
   EXPECT_EQ(note.find("facing"), std::string::npos) << note;
   EXPECT_LT(app::rootDistance(fringe, figure().scalp), app::kFarRoots) << note;
   EXPECT_GT(fringe.positions[fringe.positions.size() / 2 & ~1u].z(), figure().scalp.center.z()) << note;
@@ -248,10 +304,10 @@ TEST(HairFit, TheHeadOfAFilePlacesItsHair) {
     }
   }
   sim::HairMeshShape alone = spikes;
-  EXPECT_NE(app::fitHair(figure(), true, alone, true).find("hair for another head"), std::string::npos);
+  EXPECT_NE(app::fitHair(figure(), true, alone, {.metres = true}).find("hair for another head"), std::string::npos);
   EXPECT_LT(app::rootDistance(alone, figure().scalp), app::kFarRoots);
   EXPECT_GT(alone.positions[1].y(), alone.positions[0].y());
-  const std::string note = app::fitHair(figure(), true, spikes, true, head);
+  const std::string note = app::fitHair(figure(), true, spikes, {.metres = true}, head);
   EXPECT_LT(app::rootDistance(spikes, figure().scalp), 0.5 * app::kFarRoots) << note;
 }
 

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "app/files/image_io.h"
 #include "app/files/recording.h"
+#include "app/files/text_file.h"
 #include "app/scene/demo.h"
 #include "tests/app/scene/small_scene.h"
 #include "tests/run_program.h"
@@ -70,9 +73,15 @@ TEST(Comparison, APictureHasTheFirstOneLeftOfTheLine) {
     return test::runProgram(words);
   };
   if (draw("plain", {}).exit_code == 3) GTEST_SKIP() << "no OpenGL";
-  const test::Outcome split = draw("split", {"--compare", "blond"});
+  const test::Outcome split = draw("split", {"--compare", "blond", "--report", folder + "/report.json"});
   ASSERT_EQ(split.exit_code, 0) << split.err;
   EXPECT_NE(split.out.find("against blond: hair apart by"), std::string::npos) << split.out;
+  EXPECT_NE(split.out.find("ms of both, compared"), std::string::npos) << split.out;
+  const nlohmann::json report = nlohmann::json::parse(app::readText(folder + "/report.json", 1 << 20));
+  const double length = report["characters"][0]["hair_length_metres"];
+  const nlohmann::json apart = report["comparison"]["hair_apart"];
+  EXPECT_NEAR(apart["rms_over_length_mean"].get<double>() * length, apart["rms_metres_mean"].get<double>(), 1e-12);
+  EXPECT_EQ(report["comparison"]["frames"], 1) << "the first shows the start";
   ASSERT_EQ(draw("side", {"--compare", "blond", "--compare-view", "side"}).exit_code, 0);
   const auto picture = [&](const std::string& name) { return app::readPng(folder + "/" + name + "/frame_0001.png"); };
   const app::Image plain = picture("plain"), both = picture("split"), side = picture("side");
