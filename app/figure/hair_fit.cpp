@@ -166,17 +166,18 @@ Cloud hairyScalp(const Scalp& scalp) {
 // and face z.
 double misfit(const std::vector<Vec3>& points, const std::vector<Vec3>& roots, const std::vector<Vec3>& vertices,
               const Reading& reading, const Scalp& scalp) {
-  double height = 0, on_face = 0;
+  double height = 0, forward = 0, on_face = 0;
   for (const Vec3& root : roots) {
     const Vec3 from_middle = reading(root) - scalp.center, out = from_middle.normalized();
     height += from_middle.y() / static_cast<double>(roots.size());
+    forward += from_middle.z() / static_cast<double>(roots.size());
     on_face += out.z() > kFaceForward && out.y() < kFaceBelow ? 1 / static_cast<double>(roots.size()) : 0;
   }
   const double size = reading.linear.col(0).norm() / scalp.radiusAt(Vec3::UnitY());
   const bool whole = size * cloudOf(roots).spread > kWholeHead;
   return distanceOf(points, reading, scalp) + kFaceCosts * on_face +
-         (whole ? kHiddenFaceCosts * beforeFace(vertices, reading, scalp) : 0) + std::max(0.0, -height) +
-         (reading.axes == &axesKnown()[0] ? 0 : kOtherAxes);
+         (whole ? kHiddenFaceCosts * beforeFace(vertices, reading, scalp) + std::max(0.0, forward) : 0) +
+         std::max(0.0, -height) + (reading.axes == &axesKnown()[0] ? 0 : kOtherAxes);
 }
 
 // Whether hair read so is of a head's size, and hangs down if it hangs, or rises if it stands.
