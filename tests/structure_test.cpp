@@ -219,6 +219,32 @@ TEST(Structure, NamesSayWhatThingsAre) {
   }
 }
 
+// Names of constants at a file's outermost level.
+std::set<std::string> constantsOf(const fs::path& file) {
+  static const std::regex declared("^(inline )?const(expr)? [^=(]*"), named("\\b(k[A-Z]\\w*)(\\[[^\\]]*\\])? ?[={]");
+  std::set<std::string> names;
+  for (const std::string& line : lines(file)) {
+    if (!std::regex_search(line, declared)) continue;
+    for (std::sregex_iterator at(line.begin(), line.end(), named), end; at != end; ++at) names.insert((*at)[1]);
+  }
+  return names;
+}
+
+// Files of a folder are compiled as one: a constant of a file hides that of a header from all files after it.
+TEST(Structure, NoFilesConstantHidesOneOfAHeaderBesideIt) {
+  std::set<std::string> in_headers;
+  for (const fs::path& file : sources({"sim", "render", "app", "tests"})) {
+    if (file.extension() != ".h") continue;
+    for (const std::string& name : constantsOf(file)) in_headers.insert(file.parent_path().string() + "/" + name);
+  }
+  EXPECT_GT(in_headers.size(), 100u);
+  for (const fs::path& file : sources({"sim", "render", "app", "tests"})) {
+    if (file.extension() != ".cpp") continue;
+    for (const std::string& name : constantsOf(file))
+      EXPECT_FALSE(in_headers.contains(file.parent_path().string() + "/" + name)) << file << ": " << name;
+  }
+}
+
 TEST(Structure, NoVirtualClasses) {
   for (const fs::path& file : sources({"sim", "render", "app"})) {
     for (const std::string& line : lines(file)) EXPECT_FALSE(line.starts_with("  virtual ")) << file << ": " << line;
