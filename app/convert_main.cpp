@@ -24,6 +24,7 @@
 #include "app/groom/strips/strip_convert.h"
 #include "app/options.h"
 #include "app/parse_fault.h"
+#include "app/run_main.h"
 
 namespace {
 
@@ -225,25 +226,18 @@ int run(const Arguments& arguments) {
   return convertPolygons(arguments);
 }
 
-int fail(const std::exception& fault, int exit_code) {
-  std::cerr << "hairmesh-convert: " << fault.what() << "\n";
-  return exit_code;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   app::failAtFileLimit();
-  CLI::App parser{"Makes a hair mesh of a groom, and says how near its strands come back."};
-  try {
-    return run(parse(argc, argv, parser));
-  } catch (const CLI::Success& done) {
-    return parser.exit(done);
-  } catch (const CLI::ParseError& fault) {
-    return fail(app::UsageError(app::parseFault(fault, parser, "give IN and OUT.obj")), app::kExitUsage);
-  } catch (const app::InputError& fault) {
-    return fail(fault, app::kExitBadInput);
-  } catch (const std::exception& fault) {
-    return fail(fault, app::kExitFault);
-  }
+  return app::runMain("hairmesh-convert", [&] {
+    CLI::App parser{"Makes a hair mesh of a groom, and says how near its strands come back."};
+    try {
+      return run(parse(argc, argv, parser));
+    } catch (const CLI::Success& done) {
+      return parser.exit(done);
+    } catch (const CLI::ParseError& fault) {
+      throw app::UsageError(app::parseFault(fault, parser, "give IN and OUT.obj"));
+    }
+  });
 }

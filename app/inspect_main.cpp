@@ -17,6 +17,7 @@
 #include "app/groom/inspect/groom_inspect.h"
 #include "app/options.h"
 #include "app/parse_fault.h"
+#include "app/run_main.h"
 
 namespace {
 
@@ -129,21 +130,14 @@ int main(int argc, char** argv) {
       "cannot be used.");
   Asked asked;
   addOptions(parser, asked);
-  const auto fail = [](const std::exception& fault, int exit_code) {
-    std::cerr << "hairmesh-inspect: " << fault.what() << "\n";
-    return exit_code;
-  };
-  try {
-    parser.parse(argc, argv);
+  return app::runMain("hairmesh-inspect", [&] {
+    try {
+      parser.parse(argc, argv);
+    } catch (const CLI::Success& done) {
+      return parser.exit(done);
+    } catch (const CLI::ParseError& fault) {
+      throw app::UsageError(app::parseFault(fault, parser, "give one groom, and --out FILE"));
+    }
     return run(parser, asked);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return parser.exit(error);
-    return fail(app::UsageError(app::parseFault(error, parser, "give one groom, and --out FILE")), app::kExitUsage);
-  } catch (const app::UsageError& fault) {
-    return fail(fault, app::kExitUsage);
-  } catch (const app::InputError& fault) {
-    return fail(fault, app::kExitBadInput);
-  } catch (const std::exception& fault) {
-    return fail(fault, app::kExitFault);
-  }
+  });
 }

@@ -8,6 +8,7 @@
 #include "app/options.h"
 #include "app/platform/headless.h"
 #include "app/platform/window.h"
+#include "app/run_main.h"
 #include "app/scene/actor.h"
 
 namespace {
@@ -37,29 +38,16 @@ int run(const app::Options& options) {
   return app::runHeadless(std::move(scene), app::withoutWindow(options));
 }
 
-int fail(const std::exception& fault, int exit_code) {
-  std::cerr << "hairmesh: " << fault.what() << "\n";
-  return exit_code;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   app::failAtFileLimit();
-  app::Options options;
-  int exit_code = app::kExitFine;
-  try {
+  return app::runMain("hairmesh", [&] {
+    app::Options options;
+    int exit_code = app::kExitFine;
     if (app::parseOptions(argc, argv, options, exit_code)) exit_code = run(app::sortedOut(options));
     std::cout.flush();
     if (!std::cout) throw app::OutputError("standard output", "cannot be written", "check where it is led to");
     return exit_code;
-  } catch (const app::UsageError& fault) {
-    return fail(fault, app::kExitUsage);
-  } catch (const app::InputError& fault) {
-    return fail(fault, app::kExitBadInput);
-  } catch (const app::ContextError& fault) {
-    return fail(fault, app::kExitNoContext);
-  } catch (const std::exception& fault) {
-    return fail(fault, app::kExitFault);
-  }
+  });
 }

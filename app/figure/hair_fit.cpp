@@ -162,8 +162,8 @@ Cloud hairyScalp(const Scalp& scalp) {
 }
 
 // m. `points` are brought to the scalp, `roots` are the hair's. Heads are nearly as round as they are the wrong way
-// about, so hair also has to root above the middle, and not on the face, nor hang before it; and most files have y up
-// and face z.
+// about, so hair also has to root above the middle and not on the face. A head of hair roots behind the middle in the
+// mean and leaves the face free. Most files have y up and face z.
 double misfit(const std::vector<Vec3>& points, const std::vector<Vec3>& roots, const std::vector<Vec3>& vertices,
               const Reading& reading, const Scalp& scalp) {
   double height = 0, forward = 0, on_face = 0;

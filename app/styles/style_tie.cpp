@@ -307,12 +307,17 @@ double leastFatness(const sim::HairMeshShape& shape) {
   return least;
 }
 
-// From where vertices came to when prisms were opened, back to where they were combed (`groom_offsets` until then): up
-// to the ring strands lie closer to the head than prisms can be thin.
-TiedHair ledBack(TiedHair tied) {
+// Hair as it was combed, and as it is untangled.
+struct Untangled {
+  std::vector<Vec3> combed;
+  TiedHair tied;
+};
+
+// Up to the ring offsets lead back to where the hair was combed.
+TiedHair withOffsets(Untangled hair) {
+  auto& [combed, tied] = hair;
   sim::HairMeshShape& shape = tied.shape;
-  const std::vector<Vec3> combed =
-      std::exchange(shape.groom_offsets, std::vector<Vec3>(shape.positions.size(), Vec3::Zero()));
+  shape.groom_offsets.assign(shape.positions.size(), Vec3::Zero());
   for (const std::vector<int>& ring : tied.rings) {
     for (const int end : ring) {
       const int first = *std::prev(std::ranges::upper_bound(shape.column_first, end));
@@ -321,7 +326,7 @@ TiedHair ledBack(TiedHair tied) {
             combed[static_cast<std::size_t>(v)] - shape.positions[static_cast<std::size_t>(v)];
     }
   }
-  return tied;
+  return std::move(tied);
 }
 
 }  // namespace
@@ -337,30 +342,30 @@ TiedHair tieHair(const sim::HairMeshShape& hair, const Scalp& scalp, const BodyD
   std::vector<int> of;
   const sim::HairMeshShape parted =
       divided(seams == Seams::kClosed ? closedSeams(hair, scalp, ties) : hair, scalp, ties, of);
-  std::vector<TiedHair> tries;
+  std::vector<Untangled> tries;
   for (const double wider : {1.2, 1.7, 2.4}) {
-    tries.push_back({parted, std::vector<std::vector<int>>(ties.size()), std::vector<double>(ties.size(), 0.0),
-                     std::vector<bool>(ties.size(), false)});
-    TiedHair& tied = tries.back();
+    auto& [combed, tied] = tries.emplace_back();
+    tied = {parted, std::vector<std::vector<int>>(ties.size()), std::vector<double>(ties.size(), 0.0),
+            std::vector<bool>(ties.size(), false)};
     for (std::size_t t = 0; t < ties.size(); ++t) {
       HairTie tie = ties[t];
       tie.radius *= wider;
       gather(tie, ties[t].radius, static_cast<int>(t), scalp, body, of, tied);
     }
-    tied.shape.groom_offsets = tied.shape.positions;
+    combed = tied.shape.positions;
     untangle(body, kTieFatness, kTieGap, tied.shape);
-    if (leastFatness(tied.shape) > kFatEnough) return ledBack(std::move(tied));
+    if (leastFatness(tied.shape) > kFatEnough) return withOffsets(std::move(tries.back()));
   }
   for (int round = 0; round < kTieRounds; ++round) {
-    for (TiedHair& tied : tries) {
-      untangle(body, kTieFatness, kTieGap, tied.shape);
-      if (leastFatness(tied.shape) > kFatEnough) return ledBack(std::move(tied));
+    for (Untangled& one : tries) {
+      untangle(body, kTieFatness, kTieGap, one.tied.shape);
+      if (leastFatness(one.tied.shape) > kFatEnough) return withOffsets(std::move(one));
     }
   }
-  const auto thinner = [](const TiedHair& a, const TiedHair& b) {
-    return leastFatness(a.shape) < leastFatness(b.shape);
+  const auto thinner = [](const Untangled& a, const Untangled& b) {
+    return leastFatness(a.tied.shape) < leastFatness(b.tied.shape);
   };
-  return ledBack(std::move(*std::ranges::max_element(tries, thinner)));
+  return withOffsets(std::move(*std::ranges::max_element(tries, thinner)));
 }
 
 double shortOfRing(const sim::HairMeshShape& hair, const Scalp& scalp, std::span<const HairTie> ties) {

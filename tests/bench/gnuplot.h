@@ -22,4 +22,9 @@ struct Chart {
 // left out. Throws app::OutputError where the folder cannot be written to.
 void drawChart(const std::string& folder, const std::string& name, const Chart& chart);
 
+// Writes the script, has gnuplot draw the pictures and removes the script. Where gnuplot is not installed or ends with
+// a fault it says so and goes on. Throws app::OutputError where the script cannot be written or, as on a full disk, a
+// picture is cut, which gnuplot does not tell.
+void runGnuplot(const std::string& script, const std::string& text, const std::vector<std::string>& pictures);
+
 }  // namespace bench

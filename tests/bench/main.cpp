@@ -9,6 +9,7 @@
 #include "app/files/errors.h"
 #include "app/files/output_file.h"
 #include "app/options.h"
+#include "app/run_main.h"
 #include "tests/bench/accuracy_document.h"
 #include "tests/bench/asked.h"
 #include "tests/bench/brush_cost.h"
@@ -199,11 +200,6 @@ void measure(const std::vector<Task>& all, Asked& asked) {
   if (!asked.sheet.folder.empty()) bench::drawContactSheets(asked.sheet);
 }
 
-int fail(const std::exception& fault, int exit_code) {
-  std::cerr << "hairmesh-bench: " << fault.what() << "\n";
-  return exit_code;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -214,8 +210,12 @@ int main(int argc, char** argv) {
   Asked asked;
   for (Task& task : all) program.add_flag(task.flag, task.asked, task.help);
   addOptions(program, asked);
-  try {
-    program.parse(argc, argv);
+  return app::runMain("hairmesh-bench", [&]() -> int {
+    try {
+      program.parse(argc, argv);
+    } catch (const CLI::ParseError& fault) {
+      return program.exit(fault) == 0 ? app::kExitFine : app::kExitUsage;
+    }
     settle(program, all, asked);
     const bool any = std::any_of(all.begin(), all.end(), [](const Task& task) { return task.asked; });
     if (!any && asked.document.empty() && asked.performance.empty() && asked.sheet.folder.empty()) {
@@ -223,16 +223,6 @@ int main(int argc, char** argv) {
       return app::kExitUsage;
     }
     measure(all, asked);
-  } catch (const CLI::ParseError& fault) {
-    return program.exit(fault) == 0 ? app::kExitFine : app::kExitUsage;
-  } catch (const app::UsageError& fault) {
-    return fail(fault, app::kExitUsage);
-  } catch (const app::ContextError& fault) {
-    return fail(fault, app::kExitNoContext);
-  } catch (const app::InputError& fault) {
-    return fail(fault, app::kExitBadInput);
-  } catch (const std::exception& fault) {
-    return fail(fault, app::kExitFault);
-  }
-  return bench::exitCodeOf(asked.all_hold);
+    return bench::exitCodeOf(asked.all_hold);
+  });
 }

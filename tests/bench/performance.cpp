@@ -9,11 +9,11 @@
 #include <sstream>
 
 #include "tests/bench/cpu_clock.h"
+#include "tests/bench/gnuplot.h"
 #include "tests/bench/measured_part.h"
 #include "tests/bench/table.h"
 #include "tests/bench/timed_scene.h"
 #include "tests/bench/waits.h"
-#include "tests/bench/written_files.h"
 
 namespace bench {
 namespace {

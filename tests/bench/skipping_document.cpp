@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <sstream>
 
+#include "tests/bench/gnuplot.h"
 #include "tests/bench/measured_part.h"
 #include "tests/bench/table.h"
-#include "tests/bench/written_files.h"
 
 namespace bench {
 namespace {

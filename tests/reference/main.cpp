@@ -14,6 +14,7 @@
 #include "app/files/image_io.h"
 #include "app/options.h"
 #include "app/platform/egl_context.h"
+#include "app/run_main.h"
 #include "app/scene/demo.h"
 #include "tests/bench/measured_part.h"
 #include "tests/reference/drawn.h"
@@ -241,16 +242,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const app::UsageError& fault) {
-    std::cerr << "hairmesh-reference: " << fault.what() << "\n";
-    return app::kExitUsage;
-  } catch (const app::InputError& fault) {
-    std::cerr << "hairmesh-reference: " << fault.what() << "\n";
-    return app::kExitBadInput;
-  } catch (const std::exception& fault) {
-    std::cerr << "hairmesh-reference: " << fault.what() << "\n";
-    return app::kExitFault;
-  }
+  return app::runMain("hairmesh-reference", [&] { return run(argc, argv); });
 }

@@ -4,7 +4,7 @@
 #include <array>
 #include <sstream>
 
-#include "tests/bench/written_files.h"
+#include "tests/bench/gnuplot.h"
 
 namespace stress {
 namespace {

@@ -8,6 +8,7 @@
 #include "app/files/errors.h"
 #include "app/files/output_file.h"
 #include "app/options.h"
+#include "app/run_main.h"
 #include "app/scene/frame_stats.h"
 #include "tests/bench/written_files.h"
 #include "tests/stress/ablation.h"
@@ -261,11 +262,6 @@ void addOptions(CLI::App& program, Options& options) {
                      "write the tables of stability.md, and its data, into this folder");
 }
 
-int fail(const std::exception& fault, int exit_code) {
-  std::cerr << "hairmesh-stress: " << fault.what() << "\n";
-  return exit_code;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -274,26 +270,21 @@ int main(int argc, char** argv) {
   CLI::App program("Stability stress test: runs a seeded matrix of cases and judges each. Exit code 1 on a failure.");
   Options options;
   addOptions(program, options);
-  try {
-    program.parse(argc, argv);
-    if (options.part >= options.parts) {
-      std::cerr << "hairmesh-stress: --part cannot be " << options.part << " of " << options.parts
-                << " --parts; they are numbered from 0 to " << options.parts - 1 << "\n";
-      return app::kExitUsage;
+  return app::runMain("hairmesh-stress", [&]() -> int {
+    try {
+      program.parse(argc, argv);
+    } catch (const CLI::ParseError& fault) {
+      return program.exit(fault) == 0 ? app::kExitFine : app::kExitUsage;
     }
+    if (options.part >= options.parts)
+      throw app::UsageError("--part cannot be " + std::to_string(options.part) + " of " +
+                            std::to_string(options.parts) + " --parts; they are numbered from 0 to " +
+                            std::to_string(options.parts - 1));
     if (options.list && !options.short_run && options.pattern.empty()) options.long_run = true;
     if (!options.short_run && !options.long_run && options.pattern.empty() && options.results.empty()) {
       std::cout << program.help();
       return app::kExitUsage;
     }
     return run(options);
-  } catch (const CLI::ParseError& fault) {
-    return program.exit(fault) == 0 ? app::kExitFine : app::kExitUsage;
-  } catch (const app::UsageError& fault) {
-    return fail(fault, app::kExitUsage);
-  } catch (const app::InputError& fault) {
-    return fail(fault, app::kExitBadInput);
-  } catch (const std::exception& fault) {
-    return fail(fault, app::kExitFault);
-  }
+  });
 }

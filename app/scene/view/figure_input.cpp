@@ -1,6 +1,7 @@
 #include "app/scene/view/figure_input.h"
 
 #include <Eigen/Geometry>
+#include <utility>
 
 #include "app/scene/attachments.h"
 #include "app/scene/braid/braid_band.h"
@@ -32,8 +33,8 @@ render::HairInput hairInput(const Actor& actor, const CharacterLook& look, std::
   }
   const BraidPlan& braids = actor.haircut->braids;
   if (!braids.empty() && positions.size() == actor.haircut->rest.size()) {
-    const std::vector<float> above(input.positions.begin(), input.positions.end());
-    drawBraids(braids, above, drawn);
+    const std::vector<float> read = std::move(drawn);  // input.positions may lie in it
+    drawBraids(braids, input.positions, drawn);
     input.faces = braids.faces;
     input.positions = drawn;
     input.rest = braids.rest;
