@@ -13,6 +13,7 @@
 #include "app/files/errors.h"
 #include "app/files/polygon_file.h"
 #include "sim/field_text.h"
+#include "sim/stabilization/state_validation.h"
 
 namespace app {
 
@@ -163,13 +164,7 @@ bool placeAt(const AttachmentSpec& spec, const PolygonMesh& mesh, const Vec3& jo
 
 // Degrees about x, then y, then z, by which points have come to where they are from those of the file.
 Vec3 turnBetween(const ClosedSurface& from, const ClosedSurface& to) {
-  Eigen::Matrix3Xd a(3, from.points.size()), b(3, from.points.size());
-  for (Eigen::Index v = 0; v < a.cols(); ++v) {
-    a.col(v) = from.points[static_cast<std::size_t>(v)];
-    b.col(v) = to.points[static_cast<std::size_t>(v)];
-  }
-  Eigen::Matrix3d turn = Eigen::umeyama(a, b).topLeftCorner<3, 3>();
-  turn /= std::cbrt(turn.determinant());
+  const Eigen::Matrix3d turn = sim::rigidMotion(from.points, to.points).linear();
   const Vec3 radians(std::atan2(turn(2, 1), turn(2, 2)), -std::asin(std::clamp(turn(2, 0), -1.0, 1.0)),
                      std::atan2(turn(1, 0), turn(0, 0)));
   constexpr double kRounded = 1e-3;  // degrees

@@ -18,6 +18,7 @@
 #include "app/files/errors.h"
 #include "app/files/text_file.h"
 #include "app/motion/motion.h"
+#include "sim/stabilization/state_validation.h"
 
 namespace app {
 
@@ -34,21 +35,9 @@ Mat4 toEigen(const aiMatrix4x4& m) {
   return e;
 }
 
-// The rotation nearest to a matrix that may scale, shear or mirror.
-Eigen::Matrix3d rotationOf(const Eigen::Matrix3d& m) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Matrix3d r = svd.matrixU() * svd.matrixV().transpose();
-  if (r.determinant() < 0) {
-    Eigen::Matrix3d u = svd.matrixU();
-    u.col(2) *= -1;
-    r = u * svd.matrixV().transpose();
-  }
-  return r;
-}
-
 Rigid rigidOf(const Mat4& m) {
   Rigid r = Rigid::Identity();
-  r.linear() = rotationOf(m.topLeftCorner<3, 3>());
+  r.linear() = sim::nearestRotation(m.topLeftCorner<3, 3>());
   r.translation() = m.topRightCorner<3, 1>();
   return r;
 }
@@ -283,7 +272,7 @@ Vec3 vectorAt(const aiVectorKey* keys, unsigned count, double time) {
 Mat4 channelAt(const aiNodeAnim& channel, const Mat4& rest, double time) {
   Vec3 position = rest.topRightCorner<3, 1>();
   Vec3 scale(rest.col(0).head<3>().norm(), rest.col(1).head<3>().norm(), rest.col(2).head<3>().norm());
-  Eigen::Quaterniond rotation(rotationOf(rest.topLeftCorner<3, 3>()));
+  Eigen::Quaterniond rotation(sim::nearestRotation(rest.topLeftCorner<3, 3>()));
   if (channel.mNumPositionKeys) position = vectorAt(channel.mPositionKeys, channel.mNumPositionKeys, time);
   if (channel.mNumScalingKeys) scale = vectorAt(channel.mScalingKeys, channel.mNumScalingKeys, time);
   if (channel.mNumRotationKeys) {

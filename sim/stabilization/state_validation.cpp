@@ -96,15 +96,19 @@ Eigen::Isometry3d motionOf(int count, const auto& from, const auto& to) {
   Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
   for (int i = 0; i < count; ++i) moment += (to(i) - to_center) * (from(i) - from_center).transpose();
   if (!moment.allFinite()) return motion;
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(moment, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Matrix3d turn = svd.matrixU() * svd.matrixV().transpose();
-  if (turn.determinant() < 0) turn = svd.matrixU() * Vec3(1, 1, -1).asDiagonal() * svd.matrixV().transpose();
-  motion.linear() = turn;
-  motion.translation() = to_center - turn * from_center;
+  motion.linear() = nearestRotation(moment);
+  motion.translation() = to_center - motion.linear() * from_center;
   return motion;
 }
 
 }  // namespace
+
+Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& matrix) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Matrix3d turn = svd.matrixU() * svd.matrixV().transpose();
+  if (turn.determinant() >= 0) return turn;
+  return svd.matrixU() * Vec3(1, 1, -1).asDiagonal() * svd.matrixV().transpose();
+}
 
 Eigen::Isometry3d rigidMotion(std::span<const Vec3> from, std::span<const Vec3> to) {
   const auto at = [](std::span<const Vec3> points) { return [points](int i) { return points[i]; }; };

@@ -33,7 +33,10 @@ std::string faultText(const FaultReport& fault_report);
 // length can be thrown, a speed against the root that nothing in a scene has.
 StateFault examine(const HairMesh& mesh, const HairState& state, int vertex);
 
-// Rigid motion that brings the points of `from` nearest to those of `to` (least squares, Kabsch 1976); the identity
+// The rotation nearest to a matrix that may scale, shear or mirror (Kabsch 1976).
+Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& matrix);
+
+// Rigid motion that brings the points of `from` nearest to those of `to` (least squares); the identity
 // where a point is not finite. As many of one as of the other.
 Eigen::Isometry3d rigidMotion(std::span<const Vec3> from, std::span<const Vec3> to);
 

@@ -6,6 +6,7 @@
 #include "app/files/errors.h"
 #include "app/styles/style_comb.h"
 #include "app/styles/style_untangle.h"
+#include "render/strands/layer_curve.h"
 
 namespace app {
 
@@ -169,15 +170,8 @@ void evenTips(const sim::HairMeshShape& shape, int layer, int passes, EditedMesh
 }  // namespace
 
 Vec3 onColumn(std::span<const Vec3> column, double at) {
-  const int count = static_cast<int>(column.size()), i = std::clamp(static_cast<int>(at), 0, count - 2);
   const auto vertex = [&](int k) { return column[static_cast<std::size_t>(k)]; };
-  const double t = at - i;
-  const Vec3 from = vertex(i), to = vertex(i + 1);
-  const Vec3 before = i > 0 ? vertex(i - 1) : Vec3(2 * from - to);
-  const Vec3 after = i + 2 < count ? vertex(i + 2) : Vec3(2 * to - from);
-  return from +
-         0.5 * t *
-             (to - before + t * (2 * before - 5 * from + 4 * to - after + t * (3 * (from - to) + after - before)));
+  return render::onLayers<Vec3>(vertex, static_cast<int>(column.size()), at);
 }
 
 EditedMesh addLayer(const sim::HairMeshShape& shape, int after, const BodyDistance& body) {

@@ -6,6 +6,8 @@
 #include <map>
 #include <span>
 
+#include "render/strands/layer_curve.h"
+
 namespace app {
 namespace {
 
@@ -155,27 +157,8 @@ RootPlace GrowthMap::placeIn(int face, const Vector3f& point) const {
 }
 
 Vector3f curveAt(std::span<const Vector3f> layers, float s) {
-  const int last = static_cast<int>(layers.size()) - 1;
-  const int layer = std::clamp(static_cast<int>(s), 0, last - 1);
-  const float f = s - static_cast<float>(layer);
   const auto at = [&](int l) { return layers[static_cast<std::size_t>(l)]; };
-  const Vector3f p1 = at(layer), p2 = at(layer + 1);
-  const Vector3f p0 = layer > 0 ? at(layer - 1) : Vector3f(2 * p1 - p2);
-  const Vector3f p3 = layer + 2 <= last ? at(layer + 2) : Vector3f(2 * p2 - p1);
-  const Vector3f c1 = 0.5f * (p2 - p0), c2 = p0 - 2.5f * p1 + 2 * p2 - 0.5f * p3,
-                 c3 = 1.5f * (p1 - p2) + 0.5f * (p3 - p0);
-  return p1 + f * (c1 + f * (c2 + f * c3));
-}
-
-Eigen::VectorXf curveWeights(int layers, float s) {
-  Eigen::VectorXf weights(layers);
-  std::vector<Vector3f> one(static_cast<std::size_t>(layers), Vector3f::Zero());
-  for (int l = 0; l < layers; ++l) {
-    one[static_cast<std::size_t>(l)].x() = 1;
-    weights[l] = curveAt(one, s).x();
-    one[static_cast<std::size_t>(l)].x() = 0;
-  }
-  return weights;
+  return render::onLayers<Vector3f>(at, static_cast<int>(layers.size()), s);
 }
 
 }  // namespace app

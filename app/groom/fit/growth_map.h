@@ -51,11 +51,8 @@ class GrowthMap {
   mutable std::vector<float> dense_;             // by layout column; all zero between calls
 };
 
-// The smooth curve through a strand's layer points, as the shaders draw it: uniform Catmull-Rom, ends mirrored. `s` in
-// layers, from 0 to layers - 1.
+// The smooth curve through a strand's layer points, as the shaders draw it (render/strands/layer_curve.h). `s` in layers,
+// from 0 to layers - 1.
 Eigen::Vector3f curveAt(std::span<const Eigen::Vector3f> layers, float s);
-
-// Weights of all `layers` layer points in that curve at `s`.
-Eigen::VectorXf curveWeights(int layers, float s);
 
 }  // namespace app

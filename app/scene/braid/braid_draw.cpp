@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/figure/mannequin_figure.h"
+#include "render/strands/layer_curve.h"
+
 namespace app {
 namespace {
 
@@ -25,20 +28,6 @@ Vector3f vertexAt(std::span<const float> positions, int vertex) {
   return Eigen::Map<const Vector3f>(&positions[3 * static_cast<std::size_t>(vertex)]);
 }
 
-// Uniform Catmull-Rom, as strands are grown along layers; beyond the ends the curve is mirrored. `point` gives layers.
-template <class Vector, class Point>
-Vector onColumn(const Point& point, int layers, double place) {
-  const int layer = std::clamp(static_cast<int>(place), 0, layers - 2);
-  using Scalar = typename Vector::Scalar;
-  const auto f = static_cast<Scalar>(place - layer);
-  const Vector p1 = point(layer), p2 = point(layer + 1);
-  const Vector p0 = layer > 0 ? Vector(point(layer - 1)) : Vector(2 * p1 - p2);
-  const Vector p3 = layer + 2 < layers ? Vector(point(layer + 2)) : Vector(2 * p2 - p1);
-  const Vector c1 = (p2 - p0) / 2, c2 = p0 - Scalar(2.5) * p1 + 2 * p2 - p3 / 2,
-               c3 = Scalar(1.5) * (p1 - p2) + (p3 - p0) / 2;
-  return p1 + f * (c1 + f * (c2 + f * c3));
-}
-
 std::vector<Vector3d> middleOf(const Braid& braid, std::span<const float> positions) {
   std::vector<Vector3d> middle(braid.steps.size(), Vector3d::Zero());
   std::size_t columns = 0;
@@ -51,7 +40,7 @@ std::vector<Vector3d> middleOf(const Braid& braid, std::span<const float> positi
     const auto layer = [&](int l) { return sum[static_cast<std::size_t>(l)]; };
     for (std::size_t k = 0; k < middle.size(); ++k) {
       const double place = braid.ring_layer + braid.steps[k].share * double(equal.layers - 1 - braid.ring_layer);
-      middle[k] += onColumn<Vector3d>(layer, equal.layers, place);
+      middle[k] += render::onLayers<Vector3d>(layer, equal.layers, place);
     }
   }
   for (Vector3d& p : middle) p /= static_cast<double>(columns);
@@ -87,7 +76,7 @@ std::vector<Frame> framesOf(const Braid& braid, std::span<const float> positions
   for (std::size_t k = 0; k < middle.size(); ++k) {
     const Vector3d next = way(middle[k > 0 ? k - 1 : 0], middle[std::min(k + 1, middle.size() - 1)], along);
     if (k == 0) {
-      across = Eigen::Quaterniond::FromTwoVectors(axis, next) * across;
+      across = leastRotation(axis, next) * across;
     } else {
       const Vector3d step = middle[k] - middle[k - 1];
       across = reflected(reflected(across, step), next - reflected(along, step));
@@ -123,7 +112,7 @@ void drawBraids(const BraidPlan& plan, std::span<const float> positions, std::ve
     const int plain = braid ? braid->ring_layer : column.layers - 1;
     for (int l = 0; l <= plain * plan.finer; ++l) {
       const int whole = l / plan.finer;
-      add(l % plan.finer == 0 ? point(whole) : onColumn<Vector3f>(point, column.layers, double(l) / plan.finer));
+      add(l % plan.finer == 0 ? point(whole) : render::onLayers<Vector3f>(point, column.layers, float(l) / plan.finer));
     }
     if (!braid) continue;
     for (std::size_t k = 1; k < braid->steps.size(); ++k) {
@@ -133,7 +122,7 @@ void drawBraids(const BraidPlan& plan, std::span<const float> positions, std::ve
       Vector3f p = (frame.at + off.x() * frame.across + off.y() * frame.outward).cast<float>();
       if (step.hold < 1) {
         const double place = plain + step.share * double(column.layers - 1 - plain);
-        const Vector3f own = onColumn<Vector3f>(point, column.layers, place);
+        const Vector3f own = render::onLayers<Vector3f>(point, column.layers, static_cast<float>(place));
         p = own + step.hold * (p - own);
       }
       add(p);

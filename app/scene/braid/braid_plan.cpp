@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 
+#include "app/figure/mannequin_figure.h"
 #include "app/scene/braid/braid_draw.h"
 #include "app/scene/braid/braid_steps.h"
 #include "app/scene/braid/bun.h"
@@ -78,7 +79,7 @@ void layTail(const Hair& hair, const BraidTie& tie, Braid& braid) {
   braid.length = tie.wound > 0 ? tie.wound : length;
   braid.axis = tie.axis;
   // What hangs straight down turns its faces to the front and to the back of the head.
-  const auto hanging = Eigen::Quaterniond::FromTwoVectors(tie.axis, -Vector3d::UnitY());
+  const auto hanging = leastRotation(tie.axis, -Vector3d::UnitY());
   braid.across = hanging.inverse() * -Vector3d::UnitX();
   braid.mirrored = tie.mirrored;
 }
