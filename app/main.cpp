@@ -1,5 +1,7 @@
 #include <exception>
 #include <iostream>
+#include <sstream>
+#include <string>
 
 #include "app/files/errors.h"
 #include "app/files/hair_file.h"
@@ -10,6 +12,7 @@
 #include "app/platform/window.h"
 #include "app/run_main.h"
 #include "app/scene/actor.h"
+#include "app/scene/demo.h"
 
 namespace {
 
@@ -18,6 +21,8 @@ int writeHair(const app::Scene& scene, const std::string& file) {
   const app::Actor actor = app::makeActor(scene.characters.front(), scene.playback, asset_cache);
   const sim::HairMesh& mesh = actor.haircut->mesh;
   app::writeFile(file, app::writeHairMesh(mesh.shape));
+  std::istringstream notes(app::hairNotes({&actor, 1}));
+  for (std::string note; std::getline(notes, note);) std::cerr << "hairmesh: " << note << "\n";
   std::cout << mesh.vertexCount() << " vertices in " << mesh.columnCount() << " columns written to " << file << "\n";
   if (!actor.haircut->braids.empty())
     std::cerr << "hairmesh: plaits and buns are drawn alone: the file holds what is simulated for them\n";
@@ -46,8 +51,6 @@ int main(int argc, char** argv) {
     app::Options options;
     int exit_code = app::kExitFine;
     if (app::parseOptions(argc, argv, options, exit_code)) exit_code = run(app::sortedOut(options));
-    std::cout.flush();
-    if (!std::cout) throw app::OutputError("standard output", "cannot be written", "check where it is led to");
     return exit_code;
   });
 }

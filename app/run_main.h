@@ -9,7 +9,7 @@
 
 namespace app {
 
-// The exit code of run(), or that of the fault that it throws.
+// The exit code of run(), or that of the fault that it throws. What it has told must have arrived.
 template <class Run>
 int runMain(const char* program, Run&& run) {
   const auto fail = [&](const std::exception& fault, ExitCode code) -> int {
@@ -17,7 +17,10 @@ int runMain(const char* program, Run&& run) {
     return code;
   };
   try {
-    return run();
+    const int code = run();
+    std::cout.flush();
+    if (!std::cout) throw OutputError("standard output", "cannot be written", "check where it is led to");
+    return code;
   } catch (const UsageError& fault) {
     return fail(fault, kExitUsage);
   } catch (const InputError& fault) {

@@ -12,12 +12,22 @@ namespace app {
 
 namespace fs = std::filesystem;
 
-OutputFile::OutputFile(const std::string& file) : file_(file), target_(file) {
+namespace {
+
+// Where a link leads, whether or not there is a file yet; a link that leads round stays.
+std::string followed(const std::string& file) {
+  constexpr int kMostLinks = 40;  // as the system follows
   std::error_code ignored;
-  if (fs::is_symlink(file, ignored)) {
-    const fs::path target = fs::weakly_canonical(file, ignored);
-    if (!target.empty()) target_ = target.string();
-  }
+  fs::path path = file;
+  for (int k = 0; k < kMostLinks && fs::is_symlink(path, ignored); ++k)
+    path = path.parent_path() / fs::read_symlink(path, ignored);
+  return fs::is_symlink(path, ignored) ? file : path.string();
+}
+
+}  // namespace
+
+OutputFile::OutputFile(const std::string& file) : file_(file), target_(followed(file)) {
+  std::error_code ignored;
   if (fs::is_directory(target_, ignored)) fail(EISDIR);
   const bool direct = fs::exists(target_, ignored) && !fs::is_regular_file(target_, ignored);
   if (!direct) temporary_ = target_ + ".part";
@@ -64,9 +74,10 @@ void OutputFile::commit() {
 void OutputFile::fail(int error) {
   const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG;
   throw OutputError(file_, std::string("cannot be written: ") + std::strerror(error),
-                    full              ? "make room, or choose another folder"
-                    : error == EISDIR ? "add a file's name to the folder"
-                                      : "choose a folder that exists and may be written to");
+                    full                    ? "make room, or choose another folder"
+                    : error == EISDIR       ? "add a file's name to the folder"
+                    : error == ENAMETOOLONG ? "choose a shorter name"
+                                            : "choose a folder that exists and may be written to");
 }
 
 OutputFolder::OutputFolder(const std::string& folder, const std::string& mend) {

@@ -47,7 +47,11 @@ void PictureWriter::recordFrame(Demo& demo, const FrameTarget& target) {
   Capture& capture = demo.capture;
   if (capture.recorded == 0) {
     capture.folder = freeName("recording", "");
-    std::filesystem::create_directories(capture.folder);
+    std::error_code error;
+    std::filesystem::create_directory(capture.folder, error);
+    if (error)
+      throw OutputError(capture.folder, "cannot be made: " + error.message(),
+                        "start in a folder that may be written to");
     if (canWriteVideo())
       film_ =
           std::make_unique<VideoWriter>(capture.folder + ".mp4", target.width, target.height, demo.scene.playback.fps);

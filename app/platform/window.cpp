@@ -414,6 +414,11 @@ int endRun(const Options& options, const RunReport& run, int frames, Tape& tape,
     writeFile(options.save_state, demoStateBytes(demo));
   const Tape::End end = tape.end(demo);
   std::cout << end.message;
+  if (interrupted() && (!options.frames_given || frames < options.frames)) {
+    std::cout << "interrupted after " << frames << (options.frames_given ? " of " + std::to_string(options.frames) : "")
+              << " frames\n";
+    return kExitInterrupted;
+  }
   return end.differs ? kExitFault : kExitFine;
 }
 
@@ -468,8 +473,8 @@ int runWindow(Scene scene, const Options& options) {
   double last = now();
   int frame = 0;
   const int most = tape.frames().value_or(options.frames_given ? options.frames : kEndless);
-  const auto ended = [&] { return glfwWindowShouldClose(window.handle) || ui.quit || interrupted(); };
-  for (; !ended() && frame < most; ++frame) {
+  const auto closed = [&] { return glfwWindowShouldClose(window.handle) || ui.quit; };
+  for (bool last_frame = most <= 0; !last_frame && !closed(); ++frame) {
     pollOrWait(most == kEndless && !presets_coming, callbacks, reload, throttle, last);
     feedInput(window.handle);
     if (!callbacks.input.empty()) throttle.disturb();
@@ -487,7 +492,8 @@ int runWindow(Scene scene, const Options& options) {
     hair.frame(demo);
     if (frame + 1 == options.save_state_at) writeFile(options.save_state, demoStateBytes(demo));
     if (!options.report.empty()) run.frames.push_back(demo.stats);
-    if (options.frames_given && frame + 1 == options.frames) writeWhole(options.screenshot, target);
+    last_frame = frame + 1 >= most || interrupted();
+    if (last_frame && options.frames_given) writeWhole(options.screenshot, target);
     glfwSwapBuffers(window.handle);
   }
   pictures.close(demo);

@@ -57,7 +57,7 @@ void recast(const CharacterSpec& spec, bool same_motion, const std::string& titl
   settleInMotion(demo.scene.sim, demo.scene.playback.settle, fresh);
   fresh.context->refreshGradually(true);
   replaceActor(std::move(fresh), demo.selected, same_motion, demo);
-  const std::string notes = hairNotes(demo);
+  const std::string notes = hairNotes(demo.actors);
   showMessage(notes.empty() ? title : notes, demo);
 }
 

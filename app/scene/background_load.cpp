@@ -114,7 +114,7 @@ void takeLoaded(Demo& demo) {
     } else {
       recastLoaded(*loaded, demo);
     }
-    const std::string notes = hairNotes(demo);
+    const std::string notes = hairNotes(demo.actors);
     demo.message = notes.empty() ? title : notes;
     demo.message_is_fault = false;
     noteFileEnd(file, true, demo);

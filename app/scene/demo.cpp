@@ -201,9 +201,9 @@ std::string numericalNote(const FrameStats& stats) {
   return stats.carried > 0 ? "the head jumped; the hair was carried along" : "";
 }
 
-std::string hairNotes(const Demo& demo) {
+std::string hairNotes(std::span<const Actor> actors) {
   std::string notes;
-  for (const Actor& actor : demo.actors) {
+  for (const Actor& actor : actors) {
     for (const std::string& note : {actor.haircut->note, attachmentNotes(actor)})
       if (!note.empty() && notes.find(note) == std::string::npos) notes += (notes.empty() ? "" : "\n") + note;
   }
@@ -232,7 +232,7 @@ Demo openScene(Scene scene, double aspect, bool beside) {
     settleInDetail(settle, demo, demo.actors[i]);
   }
   for (Actor& actor : demo.actors) actor.context->refreshGradually(true);
-  demo.message = hairNotes(demo);
+  demo.message = hairNotes(demo.actors);
   keepBase(demo);
   return demo;
 }

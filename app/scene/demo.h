@@ -5,6 +5,7 @@
 #include <array>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -111,7 +112,7 @@ void keepBase(Demo& demo);
 void advanceFrame(Demo& demo, double seconds, const FrameTarget& target);
 
 // What was found of hair mesh files that do not fit their heads; empty when all fit.
-std::string hairNotes(const Demo& demo);
+std::string hairNotes(std::span<const Actor> actors);
 
 // Draws the demo as it is; advanceFrame does.
 void drawFrame(Demo& demo, const FrameTarget& target);

@@ -365,7 +365,7 @@ bool Inspector::standsInWorld() const {
 
 // Brings roots all over a scalp to the size of the head, where that is certain.
 bool Inspector::scaleRoots(std::vector<Vector3f>& roots) {
-  if (!ofScalp() || inWorld() || !settled()) return false;
+  if (!ofScalp() || inWorld() || !settled() || leftAsTold("up")) return false;
   const float scale = scaleToHead(*head, roots, skull.center);
   if (scale == 1) return false;
   add("size", textOf("the roots lie about a head %.2f times as large as the figure's", 1 / scale),
@@ -391,7 +391,7 @@ void Inspector::place() {
     move = moveToHead(*head, roots, result.mends.scale * skull.center);
     for (Vector3f& root : roots) root += move;
     const bool fits = offHead(*head, roots) <= kFar && (cap.norm() > kMinCap || inWorld());
-    const bool certain = fits && settled();
+    const bool certain = fits && settled() && !leftAsTold("up");
     world = world || (fits && standsInWorld());
     add("roots",
         inJudged() + textOf(world ? "the hair is on a head in the world, %.3g m from the figure's own"

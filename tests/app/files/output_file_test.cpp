@@ -66,6 +66,11 @@ TEST(OutputFile, WritesWhereALinkLeads) {
   app::writeFile(folder + "/link.txt", "new");
   EXPECT_TRUE(fs::is_symlink(folder + "/link.txt"));
   EXPECT_EQ(readAll(folder + "/real.txt"), "new");
+  fs::create_symlink("later.txt", folder + "/first.txt");
+  fs::create_symlink("first.txt", folder + "/second.txt");
+  app::writeFile(folder + "/second.txt", "there");
+  EXPECT_TRUE(fs::is_symlink(folder + "/second.txt"));
+  EXPECT_EQ(readAll(folder + "/later.txt"), "there");
 }
 
 TEST(OutputFile, WithoutACommitTheOldOneStays) {
@@ -88,6 +93,7 @@ TEST(OutputFile, FaultsNameTheFileTheReasonAndTheMend) {
   EXPECT_NE(faultOf(folder, "x").find(folder + ": cannot be written: Is a directory"), std::string::npos);
   EXPECT_NE(faultOf("/dev/full", "x").find("/dev/full: cannot be written: No space left on device; make room"),
             std::string::npos);
+  EXPECT_NE(faultOf(folder + "/" + std::string(300, 'a'), "x").find("choose a shorter name"), std::string::npos);
   EXPECT_EQ(faultOf("/dev/null", "x"), "");
 }
 

@@ -234,6 +234,9 @@ TEST(GroomInspect, ADeclaredAxisIsTakenAndAWrongOneNamed) {
         EXPECT_TRUE(inspection.find("up")->fault);
         EXPECT_FALSE(inspection.find("up")->certain);
         EXPECT_EQ(test::lacking(inspection.find("up")->text, declared == 'Z' ? "tells z" : "tells y"), "");
+        // Nor is what follows from the axis.
+        EXPECT_EQ(inspection.mends.move, Vector3f(Vector3f::Zero()));
+        EXPECT_EQ(inspection.mends.scale, 1);
         continue;
       }
       EXPECT_EQ(namesOf(inspection), "");
@@ -459,6 +462,9 @@ TEST(GroomInspect, TheProgramMendsWhatIsCertain) {
   EXPECT_NE(test::lacking(test::readAll(folder + "/out"), "unit: "), "") << "the unit is mended";
   EXPECT_EQ(run(test::shellQuoted(folder + "/none.hair")), 4);
   EXPECT_EQ(run(in + " --unit furlong"), 2);
+  const std::string err = test::shellQuoted(folder + "/err"), to_full = " >/dev/full 2>" + err;
+  EXPECT_NE(std::system((test::shellQuoted(binary) + " " + in + to_full).c_str()), 0);
+  EXPECT_EQ(test::lacking(test::readAll(folder + "/err"), "standard output: cannot be written"), "");
   EXPECT_EQ(run(in + " --out " + test::shellQuoted(folder + "/none/a.abc")), 1);
   EXPECT_EQ(run(in + " --out a.xyz"), 2);
   EXPECT_EQ(test::lacking(test::readAll(folder + "/err"), "--out cannot be 'a.xyz'; name it .abc, .usda"), "");

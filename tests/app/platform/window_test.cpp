@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <string>
 
+#include "app/files/errors.h"
 #include "app/files/image_io.h"
 #include "tests/run_program.h"
 
@@ -163,6 +164,21 @@ TEST(Window, RecordsWhatARunWithoutPicturesReplays) {
   const test::Outcome replayed = test::runProgram({"--no-images", "--replay", file});
   EXPECT_EQ(replayed.exit_code, 0) << replayed.out << replayed.err;
   EXPECT_NE(replayed.out.find("to the bit"), std::string::npos) << replayed.out;
+}
+
+TEST(Window, AnInterruptedRunSaysSoAndWritesItsLastPicture) {
+  const VirtualDisplay display;
+  if (display.name().empty()) GTEST_SKIP() << "Xvfb is not installed";
+  const std::string folder = test::freshFolder("window_interrupted"), picture = folder + "/last.png";
+  const std::string interrupt = " sh -c '\"$@\" & while [ ! -s " + folder +
+                                "/r.hmr.part ] && kill -0 $!; do sleep 0.1; done; " + "kill -TERM $!; wait $!' sh";
+  const test::Outcome outcome =
+      test::runProgram({"--size", "160x120", "--frames", "100000", "--strands", "100", "--resolution", "low", "--style",
+                        "short", "--hide-panels", "--screenshot", picture, "--record", folder + "/r.hmr"},
+                       environmentOf(display) + interrupt);
+  EXPECT_EQ(outcome.exit_code, app::kExitInterrupted) << outcome.err;
+  EXPECT_NE(outcome.out.find("interrupted after "), std::string::npos) << outcome.out;
+  EXPECT_EQ(app::readPng(picture).width, 160);
 }
 
 TEST(Window, SurvivesBadShaderFolderWithAMessage) {
