@@ -6,6 +6,7 @@
 #include "app/files/errors.h"
 #include "app/files/image_io.h"
 #include "app/files/report_line.h"
+#include "render/gl/read_back.h"
 
 namespace app {
 
@@ -106,6 +107,13 @@ void PictureWriter::write(Demo& demo, const FrameTarget& target) {
     film_.reset();
   }
   recording_ = capture.recording;
+}
+
+void writeWindow(const std::string& file, const FrameTarget& target) {
+  if (file.empty()) return;
+  std::vector<unsigned char> pixels;
+  render::readFramebuffer(0, target.width, target.height, pixels);
+  writePng(file, target.width, target.height, pixels);
 }
 
 }  // namespace app

@@ -27,6 +27,9 @@ class PictureWriter {
   void endRecording(Demo& demo);
 };
 
+// The window as it is, panels included, for a file that is named.
+void writeWindow(const std::string& file, const FrameTarget& target);
+
 // "prefix-0001ending", the first that does not exist.
 std::string freeName(const std::string& prefix, const std::string& ending);
 

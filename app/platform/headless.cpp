@@ -235,10 +235,7 @@ int Run::finish() {
   std::cout << end.message;
   if (!options.replay.empty() && options.no_images)
     std::cout << "replayed without pictures; --headless --out DIR would keep them\n";
-  if (static_cast<int>(report.frames.size()) < frames && interrupted()) {
-    std::cout << "interrupted after " << report.frames.size() << " of " << frames << " frames\n";
-    return kExitInterrupted;
-  }
+  if (endedEarly(static_cast<int>(report.frames.size()), frames)) return kExitInterrupted;
   if (options.gl_debug && render::glMessageCount() > 0)
     std::cerr << "hairmesh: the driver had " << render::glMessageCount() << " things to say of OpenGL calls\n";
   return end.differs || render::glMessageCount() > 0 ? kExitFault : kExitFine;

@@ -2,6 +2,9 @@
 
 #include <signal.h>
 
+#include <iostream>
+#include <limits>
+
 namespace app {
 
 namespace {
@@ -27,6 +30,14 @@ void noteInterrupts() {
 
 bool interrupted() {
   return came != 0;
+}
+
+bool endedEarly(int frames, int asked) {
+  if (!interrupted() || frames >= asked) return false;
+  std::cout << "interrupted after " << frames;
+  if (asked < std::numeric_limits<int>::max()) std::cout << " of " << asked;
+  std::cout << " frames\n";
+  return true;
 }
 
 }  // namespace app

@@ -8,5 +8,7 @@ namespace app {
 void noteInterrupts();
 // Whether one has come.
 bool interrupted();
+// Whether a run of so many frames was to have more when one came; says so.
+bool endedEarly(int frames, int asked);
 
 }  // namespace app

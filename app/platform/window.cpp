@@ -20,7 +20,6 @@
 #include "app/debug_option.h"
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
-#include "app/files/image_io.h"
 #include "app/files/output_file.h"
 #include "app/files/recording.h"
 #include "app/files/report.h"
@@ -41,7 +40,6 @@
 #include "app/ui/redraw_throttle.h"
 #include "app/ui/ui.h"
 #include "app/ui/ui_panels.h"
-#include "render/gl/read_back.h"
 
 namespace app {
 
@@ -399,14 +397,6 @@ UiState uiOf(const Options& options) {
   return ui;
 }
 
-// The window as it is, panels included.
-void writeWhole(const std::string& file, const FrameTarget& target) {
-  if (file.empty()) return;
-  std::vector<unsigned char> pixels;
-  render::readFramebuffer(0, target.width, target.height, pixels);
-  writePng(file, target.width, target.height, pixels);
-}
-
 // After the last frame: what was asked to be written. Returns the exit code.
 int endRun(const Options& options, const RunReport& run, int frames, Tape& tape, Demo& demo) {
   if (!options.report.empty()) writeReport(options.report, run, demo);
@@ -414,11 +404,7 @@ int endRun(const Options& options, const RunReport& run, int frames, Tape& tape,
     writeFile(options.save_state, demoStateBytes(demo));
   const Tape::End end = tape.end(demo);
   std::cout << end.message;
-  if (interrupted() && (!options.frames_given || frames < options.frames)) {
-    std::cout << "interrupted after " << frames << (options.frames_given ? " of " + std::to_string(options.frames) : "")
-              << " frames\n";
-    return kExitInterrupted;
-  }
+  if (endedEarly(frames, options.frames_given ? options.frames : kEndless)) return kExitInterrupted;
   return end.differs ? kExitFault : kExitFine;
 }
 
@@ -473,8 +459,7 @@ int runWindow(Scene scene, const Options& options) {
   double last = now();
   int frame = 0;
   const int most = tape.frames().value_or(options.frames_given ? options.frames : kEndless);
-  const auto closed = [&] { return glfwWindowShouldClose(window.handle) || ui.quit; };
-  for (bool last_frame = most <= 0; !last_frame && !closed(); ++frame) {
+  for (bool last_frame = most <= 0; !last_frame && !glfwWindowShouldClose(window.handle) && !ui.quit; ++frame) {
     pollOrWait(most == kEndless && !presets_coming, callbacks, reload, throttle, last);
     feedInput(window.handle);
     if (!callbacks.input.empty()) throttle.disturb();
@@ -493,7 +478,7 @@ int runWindow(Scene scene, const Options& options) {
     if (frame + 1 == options.save_state_at) writeFile(options.save_state, demoStateBytes(demo));
     if (!options.report.empty()) run.frames.push_back(demo.stats);
     last_frame = frame + 1 >= most || interrupted();
-    if (last_frame && options.frames_given) writeWhole(options.screenshot, target);
+    if (last_frame && options.frames_given) writeWindow(options.screenshot, target);
     glfwSwapBuffers(window.handle);
   }
   pictures.close(demo);
