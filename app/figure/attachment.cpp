@@ -13,7 +13,7 @@
 #include "app/files/errors.h"
 #include "app/files/polygon_file.h"
 #include "sim/field_text.h"
-#include "sim/stabilization/state_validation.h"
+#include "sim/mesh/rigid_motion.h"
 
 namespace app {
 

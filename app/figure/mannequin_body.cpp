@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/figure/mannequin_field.h"
+#include "app/motion/least_rotation.h"
 
 namespace app {
 
@@ -103,8 +104,7 @@ BodyField::ArmShape shapeArm(const Figure::Arm& a, double s) {
                        {0.024 * s, 0.03 * s});
   // Flesh begins outside the joint where a skeleton's shoulders are narrow.
   arm.deltoid = {a.shoulder + (a.elbow - a.shoulder).normalized() * 0.045 * s + s * Vec3(a.side * 0.002, -0.006, 0),
-                 leastRotation(Vec3::UnitY(), a.elbow - a.shoulder).toRotationMatrix(),
-                 s * Vec3(0.040, 0.066, 0.045)};
+                 leastRotation(Vec3::UnitY(), a.elbow - a.shoulder).toRotationMatrix(), s * Vec3(0.040, 0.066, 0.045)};
   arm.fore = makeLoft(a.elbow, a.wrist, ahead,
                       scaled({{0.0, 0.032, 0.033, 0.033, 0.0},
                               {0.22, 0.0335, 0.037, 0.036, 0.0},

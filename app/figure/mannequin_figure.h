@@ -10,10 +10,6 @@
 
 namespace app {
 
-// The smallest rotation that takes the direction of `from` to that of `to`; about any normal when they are opposite.
-// As Eigen's FromTwoVectors, whose singular value decomposition is several seconds of compile time.
-Eigen::Quaterniond leastRotation(const Vec3& from, const Vec3& to);
-
 // Everything in metres, in the canonical rest pose: y up, facing +z, left is +x, soles on y = 0, arms held away from
 // the body.
 struct Figure {

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "app/figure/mannequin_figure.h"
+#include "app/motion/least_rotation.h"
 
 namespace app {
 

@@ -18,7 +18,7 @@
 #include "app/files/errors.h"
 #include "app/files/text_file.h"
 #include "app/motion/motion.h"
-#include "sim/stabilization/state_validation.h"
+#include "sim/mesh/rigid_motion.h"
 
 namespace app {
 

@@ -14,14 +14,16 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Where a link leads, whether or not there is a file yet; a link that leads round stays.
+// The file that a link leads to, whether or not it is there yet. A link stays itself where it leads round, or to what
+// has no path: /dev/stdout to a pipe.
 std::string followed(const std::string& file) {
   constexpr int kMostLinks = 40;  // as the system follows
   std::error_code ignored;
   fs::path path = file;
+  const bool there = fs::exists(path, ignored);
   for (int k = 0; k < kMostLinks && fs::is_symlink(path, ignored); ++k)
     path = path.parent_path() / fs::read_symlink(path, ignored);
-  return fs::is_symlink(path, ignored) ? file : path.string();
+  return fs::is_symlink(path, ignored) || fs::exists(path, ignored) != there ? file : path.string();
 }
 
 }  // namespace

@@ -7,14 +7,14 @@
 #include <vector>
 
 #include "app/figure/character_roles.h"
-#include "app/figure/mannequin_figure.h"
+#include "app/motion/least_rotation.h"
 
 namespace app {
 
 namespace {
 
 constexpr double kLow = 0.035, kSlow = 0.35, kShortest = 0.12;  // m over the lowest, m/s, s
-constexpr double kStrays = 0.01, kDragged = 0.12;              // m
+constexpr double kStrays = 0.01, kDragged = 0.12;               // m
 constexpr double kFade = 0.15;                                  // s
 constexpr double kLongestReach = 0.999;                         // of the stretched leg
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/stabilization/state_validation.h"
+#include "sim/mesh/rigid_motion.h"
 
 namespace sim {
 namespace {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/mesh/rigid_motion.h"
 #include "sim/stabilization/parameter_limits.h"
 #include "sim/step.h"
 

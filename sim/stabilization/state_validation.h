@@ -1,6 +1,5 @@
 // State validation: finds values that are not finite or absurd, names the place and the force, and restores the last
-// good state at these vertices alone. Teleports share two of its functions: the rigid motion between two sets of roots,
-// and the roots' speed.
+// good state at these vertices alone. Teleports share the roots' speed.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -32,16 +31,6 @@ std::string faultText(const FaultReport& fault_report);
 // What is wrong with a vertex: a value that is not finite, a place farther from its column's root than hair of this
 // length can be thrown, a speed against the root that nothing in a scene has.
 StateFault examine(const HairMesh& mesh, const HairState& state, int vertex);
-
-// The rotation nearest to a matrix that may scale, shear or mirror (Kabsch 1976).
-Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& matrix);
-
-// Rigid motion that brings the points of `from` nearest to those of `to` (least squares); the identity
-// where a point is not finite. As many of one as of the other.
-Eigen::Isometry3d rigidMotion(std::span<const Vec3> from, std::span<const Vec3> to);
-
-// The same of the roots alone, between two places of a whole hair (m); to the bit the identity where they are the same.
-Eigen::Isometry3d rootMotion(const HairMesh& mesh, std::span<const Vec3> from, std::span<const Vec3> to);
 
 // What a repair puts back: one value per vertex, or none.
 struct KeptState {

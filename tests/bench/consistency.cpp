@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "sim/stabilization/state_validation.h"
+#include "sim/mesh/rigid_motion.h"
 #include "tests/bench/material_points.h"
 #include "tests/bench/measured_part.h"
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/figure/mannequin_figure.h"
+#include "app/motion/least_rotation.h"
 #include "render/strands/layer_curve.h"
 
 namespace app {

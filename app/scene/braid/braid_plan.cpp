@@ -8,7 +8,7 @@
 #include <map>
 #include <numbers>
 
-#include "app/figure/mannequin_figure.h"
+#include "app/motion/least_rotation.h"
 #include "app/scene/braid/braid_draw.h"
 #include "app/scene/braid/braid_steps.h"
 #include "app/scene/braid/bun.h"

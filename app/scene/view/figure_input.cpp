@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <utility>
 
-#include "app/figure/mannequin_figure.h"
+#include "app/motion/least_rotation.h"
 #include "app/scene/attachments.h"
 #include "app/scene/braid/braid_band.h"
 #include "app/scene/braid/braid_draw.h"
@@ -50,8 +50,8 @@ render::Mat4 bandAround(const HairTie& tie, const Actor& actor) {
   const Character& character = actor.body->character;
   const auto head = static_cast<std::size_t>(character.head_joint);
   const Vec3 axis = tie.at - character.scalp.center;
-  const Eigen::Affine3d ring = Eigen::Translation3d(tie.at) * leastRotation(Vec3::UnitZ(), axis) *
-                               Eigen::Scaling(tie.radius);
+  const Eigen::Affine3d ring =
+      Eigen::Translation3d(tie.at) * leastRotation(Vec3::UnitZ(), axis) * Eigen::Scaling(tie.radius);
   const Eigen::Affine3d at_rest = character.skeleton.joints[head].rest_world * character.head_frame * ring;
   render::Mat4 matrix;
   Eigen::Map<Eigen::Matrix4f>(matrix.data()) =

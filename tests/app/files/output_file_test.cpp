@@ -73,6 +73,14 @@ TEST(OutputFile, WritesWhereALinkLeads) {
   EXPECT_EQ(readAll(folder + "/later.txt"), "there");
 }
 
+TEST(OutputFile, WritesIntoAPipeThatALinkLeadsTo) {
+  const test::Outcome outcome = test::runProgram(
+      {"--no-images", "--frames", "2", "--style", "short", "--resolution", "low", "--report", "/dev/stdout"},
+      "sh -c '\"$@\" | cat' sh");
+  EXPECT_EQ(outcome.err.find("cannot be written"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.out.find("\"frames\""), std::string::npos) << outcome.out;
+}
+
 TEST(OutputFile, WithoutACommitTheOldOneStays) {
   const std::string folder = test::freshFolder("output_dropped"), file = folder + "/a.txt";
   app::writeFile(file, "old");

@@ -96,7 +96,8 @@ TEST(Ties, StrandsLieOnTheHeadOverTheFirstHalfOfTheWayToTheRing) {
           }
         }
         for (std::size_t v = 0; v < shape.positions.size(); ++v) {
-          if (shape.groom_offsets[v].isZero(0)) EXPECT_EQ(drawn[3 * v], actor.shown_positions[3 * v]) << v;
+          if (!shape.groom_offsets[v].isZero(0)) continue;
+          EXPECT_EQ(drawn[3 * v], actor.shown_positions[3 * v]) << v;
         }
       }
       std::printf("%s %s: strands %.1f to %.1f mm over the scalp, simulated up to %.1f mm\n", place,

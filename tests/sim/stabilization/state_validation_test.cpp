@@ -7,6 +7,7 @@
 #include <limits>
 #include <queue>
 
+#include "sim/mesh/rigid_motion.h"
 #include "tests/sim_probes.h"
 #include "tests/test_meshes.h"
 
