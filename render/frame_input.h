@@ -85,6 +85,17 @@ struct SkinEllipsoid {
   bool operator==(const SkinEllipsoid&) const = default;
 };
 
+// Skin that no ellipsoid stands for: signed distances (m, negative inside) at the nodes of a box that lies farther off
+// the skin than strands are lifted; trilinear in between.
+struct SkinGrid {
+  std::uint64_t id = 0;                            // changes with nodes and distances
+  std::array<std::array<float, 4>, 3> to_nodes{};  // world to steps from node to node, row by row, 1/m and translation
+  std::array<int, 3> nodes{};                      // at least 2 each; x runs fastest
+  std::span<const float> distances;
+
+  bool operator==(const SkinGrid& other) const { return id == other.id && to_nodes == other.to_nodes; }
+};
+
 struct HairInput {
   std::uint64_t id = 0;                 // stable per hair; GPU resources are kept by it
   std::uint64_t layout_revision = 0;    // changes when faces or vertex count change
@@ -96,8 +107,9 @@ struct HairInput {
   int strands = 20000;               // over the whole hair
   int segments_per_layer = 3;        // 1..8
   HairLook look;
-  LookShares shares;                    // they go with the layout
-  std::span<const SkinEllipsoid> skin;  // drawn strands are lifted out of these; the nearest 48
+  LookShares shares;                     // they go with the layout
+  std::span<const SkinEllipsoid> skin;   // drawn strands are lifted out of these; the nearest 48
+  std::span<const SkinGrid> skin_grids;  // and of these; the nearest 16
 };
 
 // A skinned body. The mesh is uploaded once per mesh_id, the root cover once per mesh and scalp id; a frame brings

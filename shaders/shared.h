@@ -71,6 +71,7 @@ const int kUnitTable = 10;
 const int kUnitSkin = 11;
 const int kUnitMaterials = 12;
 const int kUnitOpenness = 14;
+const int kUnitSkinGrids = 15;
 const int kUnitBodyDepthPlain = 13;  // the same as kUnitBodyDepth, read and not compared
 
 // Image units of the deep opacity layers (opacity_layers.comp).
@@ -93,6 +94,8 @@ const int kSlotSamples = 5;  // see strand_raster.h
 
 // Strands out of the skin (shaders/common/skin.glsl).
 const int kMaxSkin = 48;          // ellipsoids of a hair
+const int kMaxSkinGrids = 16;     // and grids: of both together a bit each in 64
+const float kSkinLeft = 0.0001;   // m, that a point may be left in a grid by
 const float kSkinGap = 0.0018;    // m, off an ellipsoid: skin may stick out by so much and counts as covered
 const float kSkinBlend = 0.0015;  // m, on either side of that: there the lift sets in
 const float kSkinFar =
@@ -172,8 +175,10 @@ SHARED_BLOCK(1, HairBlock) {
   vec4 ball;             // world: a ball around the whole hair; w: its radius, m
   ivec4 shares;          // painted shares of the look: first texel of the columns', 0: none; first texel and number of
                          // those along strands
-  ivec4 skin_count;      // ellipsoids that strands are lifted out of; steps from layer to layer of a face
+  ivec4 skin_count;      // ellipsoids and grids that strands are lifted out of; steps from layer to layer of a face
   SHARED_ARRAY(vec4, skin_rows, 4 * kMaxSkin);  // four each, see skin.glsl: world to the ball of radius one; home
+  SHARED_ARRAY(vec4, skin_grid_rows, 3 * kMaxSkinGrids);  // three each: world to steps from node to node
+  SHARED_ARRAY(ivec4, skin_grid_nodes, kMaxSkinGrids);    // their numbers; w: the first one's texel
 };
 
 SHARED_BLOCK(2, BodyBlock) {

@@ -312,7 +312,7 @@ PartDistance distancesOf(const ClosedSurface& surface, int joint) {
   const double spacing = std::max(kWornSpacing, std::cbrt(sizes.prod() / kMaxWornNodes));
   const Vec3 pad = Vec3::Constant(3 * spacing);
   part.grid = layOutGrid(box.min() - pad, box.max() + pad, spacing);
-  fillGrid(triangles, 2.5 * spacing, part.grid);
+  fillGrid(triangles, 2.5 * spacing, Pieces::kAll, part.grid);
   for (const float d : part.grid.distance) part.deepest = std::max(part.deepest, -static_cast<double>(d));
   part.center = box.center();
   part.radius = 0.5 * box.sizes().norm() + 2 * spacing;

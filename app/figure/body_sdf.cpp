@@ -10,8 +10,8 @@ namespace {
 
 constexpr float kBelongs = 0.35f;   // share of a vertex's weights from which it belongs to a part; parts overlap
 constexpr double kFinest = 0.005;   // m, spacing of the grids
-constexpr double kNodesAlong = 64;  // at most about so many nodes along a part
-constexpr double kMaxNodes = 4e5;   // of one grid
+constexpr double kNodesAlong = 128;  // at most about so many nodes along a part
+constexpr double kMaxNodes = 1.5e6;   // of one grid
 constexpr int kMinTriangles = 12;
 
 // The joint with an ellipsoid that a joint moves with: itself or the nearest above it; -1: none.
@@ -82,21 +82,21 @@ PartDistance makePart(int joint, const std::vector<std::array<int, 3>>& faces, c
       std::max({kFinest, size.maxCoeff() / kNodesAlong, std::cbrt(std::max(size.prod(), 1e-9) / kMaxNodes)});
   const Vec3 pad = Vec3::Constant(3 * spacing);
   part.grid = layOutGrid(low - pad, high + pad, spacing);
-  fillGrid(triangles, 2.5 * spacing, part.grid);
+  fillGrid(triangles, 2.5 * spacing, Pieces::kOneSolid, part.grid);
   for (const float d : part.grid.distance) part.deepest = std::max(part.deepest, -static_cast<double>(d));
   part.center = 0.5 * (low + high);
   part.radius = 0.5 * size.norm() + 2 * spacing;
   return part;
 }
 
-}  // namespace
-
-std::vector<PartDistance> partDistances(const Character& character) {
+// Of those joints that `wanted` has.
+template <class Wanted>
+std::vector<PartDistance> partsOf(const Character& character, const Wanted& wanted) {
   const SkinnedMesh& mesh = character.mesh;
   const std::vector<int> carrier = carriers(character), welded = weldedIndices(mesh.positions);
   std::vector<PartDistance> parts;
   for (int joint = 0; joint < static_cast<int>(carrier.size()); ++joint) {
-    if (carrier[joint] != joint) continue;
+    if (carrier[joint] != joint || !wanted(joint)) continue;
     std::vector<unsigned char> belongs(mesh.positions.size(), 0);
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
       float weight = 0;
@@ -116,6 +116,22 @@ std::vector<PartDistance> partDistances(const Character& character) {
     PartDistance part = makePart(joint, faces, points);
     if (part.deepest > 0) parts.push_back(std::move(part));
   }
+  return parts;
+}
+
+}  // namespace
+
+std::vector<PartDistance> partDistances(const Character& character) {
+  return partsOf(character, [](int) { return true; });
+}
+
+std::vector<PartDistance> unfitPartDistances(Character& character) {
+  std::vector<unsigned char> unfit(character.skeleton.joints.size(), 0), made(unfit.size(), 0);
+  for (const BodyEllipsoid& e : character.ellipsoids) unfit[e.joint] |= static_cast<unsigned char>(e.by_distances);
+  if (std::ranges::find(unfit, 1) == unfit.end()) return {};
+  std::vector<PartDistance> parts = partsOf(character, [&](int joint) { return unfit[joint] != 0; });
+  for (const PartDistance& part : parts) made[part.joint] = 1;
+  for (BodyEllipsoid& e : character.ellipsoids) e.by_distances = made[e.joint] != 0;
   return parts;
 }
 

@@ -1,6 +1,7 @@
 // The body as rigid parts with signed distances, for contacts closer to the skin than ellipsoids come.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ namespace app {
 // joint's.
 struct PartDistance {
   int joint = 0;
+  std::uint64_t id = 0;  // of the figure's owner, where what is made of the grid is kept
   SignedGrid grid;
   double deepest = 0;            // m, the least distance, negated
   Vec3 center = Vec3::Zero();    // m, of the grid's box
@@ -24,6 +26,9 @@ struct PartDistance {
 // it that carry none. Takes a good part of a second: called when first asked for, by the window on a thread of its
 // own.
 std::vector<PartDistance> partDistances(const Character& character);
+
+// The same of the parts whose ellipsoids do not fit alone. A part whose skin encloses nothing keeps its ellipsoids.
+std::vector<PartDistance> unfitPartDistances(Character& character);
 
 // One part in a pose, with velocities from `previous` over dt when dt > 0. The span points into `part`.
 void posePartDistance(const PartDistance& part, const Pose& pose, const Pose& previous, double dt, sim::BodySdf& posed);

@@ -38,28 +38,17 @@ Kind kindOf(const std::string& file) {
   return Kind::kUnknown;
 }
 
-constexpr double kFits = 0.012;  // m of skin that added ellipsoids may leave out, or none are added
-
 void cover(Character& character) {
-  const std::vector<BodyEllipsoid> given = character.ellipsoids;
   const CoverReport report = coverSkin(character);
-  const double before = 1e3 * report.before, after = 1e3 * report.after;
   char note[300];
-  if (report.after > kFits) {
-    character.ellipsoids = given;
-    std::snprintf(
-        note, sizeof note,
-        "skin below the chin that hair reaches sticks out of %zu ellipsoids by %.0f mm (%s), and %d more would "
-        "leave %.0f mm: --collider sdf suits this figure better",
-        given.size(), before, report.where.c_str(), report.added, after);
-  } else {
-    std::snprintf(note, sizeof note,
-                  "skin below the chin that hair reaches sticks out of %zu ellipsoids by %.1f mm at most (%s; %.1f mm "
-                  "before %d were added); they lie over it by %.1f mm on average (%.1f mm before)",
-                  character.ellipsoids.size(), after, report.where.c_str(), before, report.added, 1e3 * report.over,
-                  1e3 * report.over_before);
-  }
+  std::snprintf(note, sizeof note,
+                "skin below the chin that hair reaches sticks out of %zu ellipsoids by %.1f mm at most (%s; %.1f mm "
+                "before %d were added); they lie over it by %.1f mm on average (%.1f mm before)",
+                character.ellipsoids.size(), 1e3 * report.after, report.where.c_str(), 1e3 * report.before,
+                report.added, 1e3 * report.over, 1e3 * report.over_before);
   character.notes.push_back(note);
+  if (!report.unfit.empty())
+    character.notes.push_back("no ellipsoids fit " + report.unfit + ": signed distances of their skin in their place");
 }
 
 }  // namespace

@@ -66,6 +66,7 @@ struct BodyEllipsoid {
   Vec3 center = Vec3::Zero();  // m, joint frame
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   Vec3 radii = Vec3::Ones();
+  bool by_distances = false;  // it does not fit: its part is collided with by signed distances (body_sdf.h) in its place
 };
 
 // Where a grown head's face lies, rest pose.

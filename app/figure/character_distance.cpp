@@ -34,7 +34,7 @@ BodyDistance restBodyDistance(const Character& character) {
     for (int a = 0; a < 3; ++a) outside += most[a] < grid.low[a] - band || least[a] > high[a] + band;
     if (outside < 2) near.push_back(corners);
   }
-  fillGrid(near, band, grid);
+  fillGrid(near, band, Pieces::kAll, grid);
   return [grid = std::move(grid)](const Vec3& p) { return grid.interpolate(p); };
 }
 

@@ -25,49 +25,33 @@ double SignedGrid::interpolate(const Vec3& p) const {
 
 namespace {
 
-// Squared distance from a point to a triangle (closest point by barycentric regions; Ericson, Real-Time Collision
+constexpr std::uint8_t kInside = 2;  // votes of three
+constexpr float kUnreached = 1e3f;   // m, of nodes that no distance has reached
+
+// From the closest point of a triangle to a point (by barycentric regions; Ericson, Real-Time Collision
 // Detection, 5.1.5).
-double squaredDistance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+Vec3 offTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a, ap = p - a;
   const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-  if (d1 <= 0 && d2 <= 0) return ap.squaredNorm();
+  if (d1 <= 0 && d2 <= 0) return ap;
   const Vec3 bp = p - b;
   const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-  if (d3 >= 0 && d4 <= d3) return bp.squaredNorm();
+  if (d3 >= 0 && d4 <= d3) return bp;
   const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return (ap - d1 / (d1 - d3) * ab).squaredNorm();
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return ap - d1 / (d1 - d3) * ab;
   const Vec3 cp = p - c;
   const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-  if (d6 >= 0 && d5 <= d6) return cp.squaredNorm();
+  if (d6 >= 0 && d5 <= d6) return cp;
   const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return (ap - d2 / (d2 - d6) * ac).squaredNorm();
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return ap - d2 / (d2 - d6) * ac;
   const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-    return (bp - (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b)).squaredNorm();
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return bp - (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
   const double sum = va + vb + vc;
-  if (!(sum > 0)) return ap.squaredNorm();
-  return (ap - vb / sum * ab - vc / sum * ac).squaredNorm();
+  if (!(sum > 0)) return ap;
+  return ap - vb / sum * ab - vc / sum * ac;
 }
 
 using Triangles = std::vector<Triangle>;
-
-// Exact distances at the nodes within `reach` of each triangle; elsewhere left at their large start value.
-void rasterizeBand(const Triangles& triangles, double reach, SignedGrid& g) {
-  for (const auto& t : triangles) {
-    const Vec3 low = t[0].cwiseMin(t[1]).cwiseMin(t[2]), high = t[0].cwiseMax(t[1]).cwiseMax(t[2]);
-    std::array<int, 3> first, last;
-    for (int a = 0; a < 3; ++a) {
-      first[a] = std::max(0, static_cast<int>(std::ceil((low[a] - reach - g.low[a]) / g.h)));
-      last[a] = std::min(g.n[a] - 1, static_cast<int>(std::floor((high[a] + reach - g.low[a]) / g.h)));
-    }
-    for (int k = first[2]; k <= last[2]; ++k)
-      for (int j = first[1]; j <= last[1]; ++j)
-        for (int i = first[0]; i <= last[0]; ++i) {
-          float& d = g.distance[g.index(i, j, k)];
-          d = std::min(d, static_cast<float>(std::sqrt(squaredDistance(g.point(i, j, k), t[0], t[1], t[2]))));
-        }
-  }
-}
 
 // Adds one vote for every node that a line along `axis` finds inside: crossings counted with their sense.
 void voteInside(const Triangles& triangles, int axis, const SignedGrid& g, std::vector<std::uint8_t>& votes) {
@@ -120,6 +104,43 @@ void voteInside(const Triangles& triangles, int axis, const SignedGrid& g, std::
   }
 }
 
+// Whether the cell that holds p lies inside altogether.
+bool buried(const Vec3& p, const std::vector<std::uint8_t>& votes, const SignedGrid& g) {
+  std::array<int, 3> c;
+  for (int a = 0; a < 3; ++a) {
+    c[a] = static_cast<int>(std::floor((p[a] - g.low[a]) / g.h));
+    if (c[a] < 0 || c[a] + 1 >= g.n[a]) return false;
+  }
+  for (int k = 0; k < 8; ++k)
+    if (votes[g.index(c[0] + (k & 1), c[1] + (k >> 1 & 1), c[2] + (k >> 2))] < kInside) return false;
+  return true;
+}
+
+// Exact distances at the nodes within `reach` of each triangle; elsewhere left at their large start value. With votes
+// triangles within the solid count for no node inside.
+void rasterizeBand(const Triangles& triangles, double reach, const std::vector<std::uint8_t>* votes, SignedGrid& g) {
+  for (const auto& t : triangles) {
+    const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]).normalized();  // nought of a triangle without area
+    const Vec3 low = t[0].cwiseMin(t[1]).cwiseMin(t[2]), high = t[0].cwiseMax(t[1]).cwiseMax(t[2]);
+    std::array<int, 3> first, last;
+    for (int a = 0; a < 3; ++a) {
+      first[a] = std::max(0, static_cast<int>(std::ceil((low[a] - reach - g.low[a]) / g.h)));
+      last[a] = std::min(g.n[a] - 1, static_cast<int>(std::floor((high[a] + reach - g.low[a]) / g.h)));
+    }
+    for (int k = first[2]; k <= last[2]; ++k)
+      for (int j = first[1]; j <= last[1]; ++j)
+        for (int i = first[0]; i <= last[0]; ++i) {
+          const std::size_t at = g.index(i, j, k);
+          float& d = g.distance[at];
+          const Vec3 p = g.point(i, j, k);
+          if (std::abs(normal.dot(p - t[0])) > 1.0001 * d) continue;  // its plane is farther already
+          const Vec3 off = offTriangle(p, t[0], t[1], t[2]);
+          if (votes && (*votes)[at] >= kInside && buried(p - off + g.h * normal, *votes, g)) continue;
+          d = std::min(d, static_cast<float>(std::sqrt(off.squaredNorm())));
+        }
+  }
+}
+
 // Distance at a node that lies h from one neighbour on each axis; m: theirs.
 float eikonal(std::array<float, 3> m, float h) {
   if (m[0] > m[1]) std::swap(m[0], m[1]);
@@ -138,7 +159,19 @@ void sweepFar(double band, SignedGrid& g) {
   const float h = static_cast<float>(g.h), held = static_cast<float>(band);
   const std::array<std::size_t, 3> stride{1, static_cast<std::size_t>(g.n[0]),
                                           static_cast<std::size_t>(g.n[0]) * g.n[1]};
-  std::vector<std::uint8_t> due(g.distance.size(), 1);
+  std::vector<std::uint8_t> due(g.distance.size(), 0);
+  // What has none but untouched neighbours cannot change before one of them does.
+  for (int k = 0; k < g.n[2]; ++k)
+    for (int j = 0; j < g.n[1]; ++j)
+      for (int i = 0; i < g.n[0]; ++i) {
+        const std::size_t at = g.index(i, j, k);
+        if (g.distance[at] >= kUnreached) continue;
+        const std::array<int, 3> c{i, j, k};
+        for (int a = 0; a < 3; ++a) {
+          if (c[a] > 0) due[at - stride[a]] = 1;
+          if (c[a] + 1 < g.n[a]) due[at + stride[a]] = 1;
+        }
+      }
   for (int sweep = 0; sweep < 8; ++sweep) {
     const auto order = [&](int axis, int i) { return (sweep >> axis) & 1 ? g.n[axis] - 1 - i : i; };
     for (int kk = 0; kk < g.n[2]; ++kk) {
@@ -151,8 +184,8 @@ void sweepFar(double band, SignedGrid& g) {
           const std::array<int, 3> c{order(0, ii), order(1, jj), order(2, kk)};
           std::array<float, 3> m;
           for (int a = 0; a < 3; ++a) {
-            const float before = c[a] > 0 ? g.distance[at - stride[a]] : 1e3f;
-            const float after = c[a] + 1 < g.n[a] ? g.distance[at + stride[a]] : 1e3f;
+            const float before = c[a] > 0 ? g.distance[at - stride[a]] : kUnreached;
+            const float after = c[a] + 1 < g.n[a] ? g.distance[at + stride[a]] : kUnreached;
             m[a] = std::min(before, after);
           }
           const float x = eikonal(m, h);
@@ -175,17 +208,17 @@ SignedGrid layOutGrid(const Vec3& low, const Vec3& high, double h) {
   g.h = h;
   g.low = low;
   for (int a = 0; a < 3; ++a) g.n[a] = std::max(2, static_cast<int>(std::ceil((high[a] - low[a]) / h)) + 1);
-  g.distance.assign(static_cast<std::size_t>(g.n[0]) * g.n[1] * g.n[2], 1e3f);
+  g.distance.assign(static_cast<std::size_t>(g.n[0]) * g.n[1] * g.n[2], kUnreached);
   return g;
 }
 
-void fillGrid(const std::vector<Triangle>& triangles, double band, SignedGrid& grid) {
-  rasterizeBand(triangles, band, grid);
+void fillGrid(const std::vector<Triangle>& triangles, double band, Pieces pieces, SignedGrid& grid) {
   std::vector<std::uint8_t> votes(grid.distance.size(), 0);
   for (int axis = 0; axis < 3; ++axis) voteInside(triangles, axis, grid, votes);
+  rasterizeBand(triangles, band, pieces == Pieces::kOneSolid ? &votes : nullptr, grid);
   sweepFar(band, grid);
   for (std::size_t i = 0; i < votes.size(); ++i)
-    if (votes[i] >= 2) grid.distance[i] = -grid.distance[i];
+    if (votes[i] >= kInside) grid.distance[i] = -grid.distance[i];
 }
 
 }  // namespace app

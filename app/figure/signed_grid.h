@@ -28,7 +28,11 @@ struct SignedGrid {
 // A grid of spacing h over the box, its values not yet filled in.
 SignedGrid layOutGrid(const Vec3& low, const Vec3& high, double h);
 
+// What distances inside are measured to where pieces overlap: all triangles, or those alone that bound all pieces
+// together.
+enum class Pieces { kAll, kOneSolid };
+
 // Fills the values in: exact within `band` (m) of the triangles.
-void fillGrid(const std::vector<Triangle>& triangles, double band, SignedGrid& grid);
+void fillGrid(const std::vector<Triangle>& triangles, double band, Pieces pieces, SignedGrid& grid);
 
 }  // namespace app

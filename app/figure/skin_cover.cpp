@@ -25,6 +25,9 @@ constexpr double kAround = 0.04;         // m: skin of another part so near may 
 constexpr double kHidden = 0.003;        // m under that
 constexpr double kStraight = 0.7;        // cosine of the way there to that skin's normal, at least
 constexpr std::size_t kMaxPoints = 400;  // of a fit's own
+constexpr float kFits = 0.012f;          // m that skin may stick out at worst, below the chin, of ellipsoids that fit
+constexpr double kUnfitShare = 0.05;     // of a joint's skin, the head's included, that may stick out farther
+constexpr int kRounds = 3;               // of setting unfit joints apart
 constexpr float kBuried = 0.002f;        // m, that skin above the chin may lie deeper in an added ellipsoid than before
 
 // Gaps (m) of every place, or of those at rest, to one ellipsoid.
@@ -34,6 +37,7 @@ class Cover {
  public:
   explicit Cover(Character& character);
   CoverReport run(int most);
+  std::vector<unsigned char> unfit() const;  // per joint that is not set apart
 
  private:
   Gaps gapsOf(const BodyEllipsoid& e) const { return gapsAt(e, skin_.world.size()); }
@@ -53,6 +57,10 @@ class Cover {
   std::optional<BodyEllipsoid> patchAt(std::size_t place, double radius) const;
   bool add(std::size_t place);
   double over() const;
+  bool wanted(std::size_t place) const {
+    const SkinSample& sample = skin_.sampleOf(place);
+    return skin_.reached[place] && !sample.of_head && !set_apart_[static_cast<std::size_t>(sample.joint)];
+  }
   // Of the place that sticks out most and is asked for; none: all are covered.
   std::optional<std::size_t> worst(float least) const;
 
@@ -63,11 +71,15 @@ class Cover {
   std::vector<int> nearest_;                   // the ellipsoid, per place
   std::vector<float> given_gap_;               // both as the given ones alone leave them
   std::vector<int> given_nearest_;
-  std::vector<unsigned char> given_up_;  // per sample
+  std::vector<unsigned char> given_up_;   // per sample
+  std::vector<unsigned char> set_apart_;  // per joint: its ellipsoids do not fit
 };
 
 Cover::Cover(Character& character) : character_(character), skin_(poseSkin(character, kMaxSamples, kMoments)) {
   for (const BodyEllipsoid& e : character_.ellipsoids) gaps_.push_back(gapsOf(e));
+  set_apart_.resize(character_.skeleton.joints.size(), 0);
+  for (const BodyEllipsoid& e : character_.ellipsoids)
+    if (e.by_distances) set_apart_[static_cast<std::size_t>(e.joint)] = 1;
   nearest_gap_.assign(skin_.reached.size(), 1e9f);
   nearest_.assign(nearest_gap_.size(), -1);
   findNearest(0);
@@ -139,9 +151,7 @@ void Cover::findNearer(std::size_t e) {
 std::optional<std::size_t> Cover::worst(float least) const {
   std::optional<std::size_t> place;
   for (std::size_t i = 0; i < nearest_gap_.size(); ++i) {
-    const SkinSample& sample = skin_.sampleOf(i);
-    if (nearest_gap_[i] <= least || !skin_.reached[i] || sample.of_head || given_up_[i % skin_.samples.size()])
-      continue;
+    if (nearest_gap_[i] <= least || !wanted(i) || given_up_[i % skin_.samples.size()]) continue;
     least = nearest_gap_[i];
     place = i;
   }
@@ -191,8 +201,8 @@ bool Cover::swallows(const BodyEllipsoid& e, const Gaps& gaps) const {
 bool Cover::refit(std::size_t e) {
   std::vector<int> own;
   for (std::size_t i = 0; i < nearest_.size(); ++i) {
-    const bool wanted = skin_.reached[i] && !skin_.sampleOf(i).of_head;
-    if (wanted && nearest_[i] == static_cast<int>(e) && nearest_gap_[i] > -0.008f) own.push_back(static_cast<int>(i));
+    if (wanted(i) && nearest_[i] == static_cast<int>(e) && nearest_gap_[i] > -0.008f)
+      own.push_back(static_cast<int>(i));
   }
   if (own.size() < 8) return false;
   const BodyEllipsoid& now = character_.ellipsoids[e];
@@ -262,7 +272,7 @@ bool Cover::add(std::size_t place) {
 void Cover::refitAdded(std::size_t given) {
   std::vector<unsigned char> due(gaps_.size(), 0);
   for (std::size_t i = 0; i < nearest_.size(); ++i) {
-    if (nearest_gap_[i] > kCovered && skin_.reached[i]) due[static_cast<std::size_t>(nearest_[i])] = 1;
+    if (nearest_gap_[i] > kCovered && wanted(i)) due[static_cast<std::size_t>(nearest_[i])] = 1;
   }
   bool any = false;
   for (std::size_t e = given; e < due.size(); ++e) {
@@ -307,11 +317,44 @@ CoverReport Cover::run(int most) {
   return report;
 }
 
+std::vector<unsigned char> Cover::unfit() const {
+  std::vector<double> all(set_apart_.size(), 0), out(set_apart_.size(), 0);
+  std::vector<unsigned char> unfit(set_apart_.size(), 0);
+  for (std::size_t i = 0; i < nearest_gap_.size(); ++i) {
+    const SkinSample& sample = skin_.sampleOf(i);
+    const auto joint = static_cast<std::size_t>(sample.joint);
+    if (!skin_.reached[i] || set_apart_[joint]) continue;
+    all[joint] += sample.weight;
+    if (nearest_gap_[i] <= kFits) continue;
+    out[joint] += sample.weight;
+    if (wanted(i)) unfit[joint] = 1;
+  }
+  for (std::size_t joint = 0; joint < unfit.size(); ++joint)
+    if (out[joint] > kUnfitShare * all[joint]) unfit[joint] = 1;
+  return unfit;
+}
+
 }  // namespace
 
 CoverReport coverSkin(Character& character, int most) {
   if (character.ellipsoids.empty() || character.mesh.positions.empty()) return {};
-  return Cover(character).run(most);
+  std::vector<BodyEllipsoid> given = character.ellipsoids;
+  std::string names;
+  for (int round = 0;; ++round) {
+    Cover cover(character);
+    CoverReport report = cover.run(most);
+    const std::vector<unsigned char> unfit = cover.unfit();
+    report.unfit = names;
+    if (round == kRounds || std::ranges::find(unfit, 1) == unfit.end()) return report;
+    for (BodyEllipsoid& e : given) {
+      const auto joint = static_cast<std::size_t>(e.joint);
+      if (!unfit[joint] || e.by_distances) continue;
+      e.by_distances = true;
+      const std::string& name = character.skeleton.joints[joint].name;
+      if ((", " + names + ", ").find(", " + name + ", ") == std::string::npos) names += (names.empty() ? "" : ", ") + name;
+    }
+    character.ellipsoids = given;
+  }
 }
 
 }  // namespace app

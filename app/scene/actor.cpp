@@ -12,6 +12,7 @@
 #include "app/scene/frame_stats.h"
 #include "app/scene/haircuts.h"
 #include "app/scene/sim_to_render.h"
+#include "app/scene/step_colliders.h"
 #include "app/styles/tie_ring.h"
 
 namespace app {
@@ -56,8 +57,10 @@ LoadedBody& loadBody(const CharacterSpec& spec, AssetCache& asset_cache) {
   auto body = std::make_unique<LoadedBody>();
   body->key = key;
   body->character = loadCharacter(spec.motion, spec.parts);
+  body->unfit_parts = unfitPartDistances(body->character);
   body->moving_joints = movingJoints(body->character);
   body->id = freshId();
+  for (PartDistance& part : body->unfit_parts) part.id = freshId();
   asset_cache.bodies.push_back(std::move(body));
   return *asset_cache.bodies.back();
 }
@@ -158,25 +161,6 @@ void followScalp(const Actor& actor, const Haircut& haircut, std::vector<sim::Ve
   roots.resize(shape.columnCount());
   for (int c = 0; c < shape.columnCount(); ++c) roots[c] = scalp * shape.positions[shape.column_first[c]];
 }
-
-// What the hair sees in a step that has brought the figure from its previous pose to its present one.
-sim::StepInput stepInput(const sim::SimParams& params, double step, double time, Actor& actor) {
-  if (params.collider == sim::ColliderKind::kSdf) {
-    LoadedBody& body = *actor.body;
-    if (!body.has_parts && !body.parts_coming.valid()) {
-      body.parts = partDistances(body.character);
-      body.has_parts = true;
-    }
-    posePartDistances(body.parts, actor.pose, actor.previous_pose, step, actor.parts);
-  }
-  poseAttachments(step, actor);
-  posePins(actor.pins, actor.pose, actor.previous_pose, time, step, actor.pinned);
-  return {actor.roots, actor.ellipsoids, time, actor.parts, actor.pinned, actor.max_work, actor.worn_distances};
-}
-
-}  // namespace
-
-namespace {
 
 // Pins vertices firmly to the head where they are at rest: those in buns and under attachments.
 void holdAtRest(std::span<const int> vertices, Actor& actor) {
@@ -490,7 +474,7 @@ void showActor(double fraction, const Vec3& origin, Actor& actor) {
   const bool moved = showAttachments(origin, actor);
   if (jointMatrices(actor.body->character.skeleton, actor.shown_pose, origin, actor.joint_matrices) || moved)
     ++actor.pose_revision;
-  skinEllipsoids(actor.body->character, actor.shown_pose, origin, actor.shown_skin);
+  showSkin(actor.body->character, actor.body->unfit_parts, actor.shown_pose, origin, actor.shown_skin);
   actor.shown_still = actor.pose_still && (actor.sleep.asleep || actor.unseen);
 }
 

@@ -22,6 +22,7 @@
 #include "app/scene/detail/step_error.h"
 #include "app/scene/edit/painted_fields.h"
 #include "app/scene/pins.h"
+#include "app/scene/sim_to_render.h"
 #include "app/styles/style_tie.h"
 #include "render/frame_input.h"
 #include "render/strands/groom_offsets.h"
@@ -40,7 +41,8 @@ struct LoadedBody {
   std::uint64_t id = 0;
   Character character;
   BodyDistance distance;
-  bool has_parts = false;  // they are made when signed distances are first collided with
+  std::vector<PartDistance> unfit_parts;  // in place of the ellipsoids that do not fit
+  bool has_parts = false;                 // they are made when signed distances are first collided with
   std::vector<PartDistance> parts;
   std::vector<unsigned char> moving_joints;  // per joint: whether skin, ellipsoids or scalp hang on it or below it
   // The parts while they are made beside the frames; the ellipsoids act until then. Last, so that whoever drops the
@@ -146,6 +148,9 @@ struct Actor {
   std::vector<sim::Ellipsoid> ellipsoids;
   std::vector<sim::BodySdf> parts;  // the same body as signed distances, where they are collided with
   std::vector<WornAttachment> worn;
+  // What is collided with beside the body's ellipsoids: those that fit, then what is worn, then parts that they do not
+  // fit.
+  std::vector<sim::Ellipsoid> fitting_ellipsoids;
   std::vector<sim::BodySdf> worn_distances;
   std::vector<sim::Vec3> roots;
   std::vector<ActorPin> pins;
@@ -170,7 +175,7 @@ struct Actor {
   // What the picture shows; positions and matrices relative to the picture's origin.
   Pose shown_pose;
   std::vector<float> shown_positions;
-  std::vector<render::SkinEllipsoid> shown_skin;
+  ShownSkin shown_skin;
   std::vector<render::Mat4> joint_matrices;
   std::uint64_t layout_revision = 1, position_revision = 1, pose_revision = 1;
 

@@ -39,9 +39,9 @@ auto savedOf(P& playback) requires std::same_as<std::remove_const_t<P>, Playback
 template <class A>
 auto savedOf(A& actor) requires std::same_as<std::remove_const_t<A>, Actor> {
   auto& [id, spec, body, haircut, scalp, clip, playback, reach, front, jumped, pose, previous_pose, hair,
-         previous_positions, ellipsoids, parts, worn, worn_distances, roots, pins, pinned, context, last_report,
-         error_meter, detail, coarse, sleep, span, ahead, steps, posed_time, pose_still, unseen, shown_still,
-         usual_step, max_work, shown_pose, shown_positions, shown_skin, joint_matrices, layout_revision,
+         previous_positions, ellipsoids, parts, worn, fitting_ellipsoids, worn_distances, roots, pins, pinned, context,
+         last_report, error_meter, detail, coarse, sleep, span, ahead, steps, posed_time, pose_still, unseen,
+         shown_still, usual_step, max_work, shown_pose, shown_positions, shown_skin, joint_matrices, layout_revision,
          position_revision, pose_revision] = actor;
   auto& [step_span, coarse_mesh, seen] = detail;
   return std::tuple_cat(savedOf(playback),
@@ -200,7 +200,7 @@ void install(SavedActor saved, const Vec3& origin, Actor& actor) {
     actor.coarse.context = contextOf(saved.pair->coarse->mesh);
   }
   jointMatrices(actor.body->character.skeleton, actor.shown_pose, origin, actor.joint_matrices);
-  skinEllipsoids(actor.body->character, actor.shown_pose, origin, actor.shown_skin);
+  showSkin(actor.body->character, actor.body->unfit_parts, actor.shown_pose, origin, actor.shown_skin);
   ++actor.position_revision;
   ++actor.pose_revision;
 }

@@ -102,28 +102,53 @@ double freeWayTo(std::span<const sim::Ellipsoid> head, const sim::Ellipsoid& e, 
   return std::clamp(clear / kFree, 0.0, 1.0);
 }
 
+// Hair comes from the head: around an ellipsoid that holds the head it comes from all sides.
+render::SkinEllipsoid skinEllipsoid(const sim::Ellipsoid& e, std::span<const sim::Ellipsoid> head_parts,
+                                    const Vec3& head, const Vec3& origin) {
+  render::SkinEllipsoid skin;
+  const Eigen::Matrix3d to_ball = e.radii.cwiseInverse().asDiagonal() * e.rotation.conjugate().toRotationMatrix();
+  const Vec3 middle = to_ball * (e.center - origin);
+  for (int row = 0; row < 3; ++row) {
+    for (int k = 0; k < 3; ++k) skin.to_ball[row][k] = static_cast<float>(to_ball(row, k));
+    skin.to_ball[row][3] = static_cast<float>(-middle[row]);
+  }
+  const Vec3 home = to_ball * (head - e.center);
+  const double thick = std::clamp((e.radii.minCoeff() - kSheet) / (kLimb - kSheet), 0.0, 1.0);
+  const double off = thick * std::clamp(home.norm() - kHeadWithin, 0.0, 1.0) * freeWayTo(head_parts, e, home);
+  Eigen::Map<Eigen::Vector3f>(skin.home.data()) = (kHome * off * home.stableNormalized()).cast<float>();
+  return skin;
+}
+
+render::SkinGrid skinGrid(const PartDistance& part, const Pose& pose, const Vec3& origin) {
+  render::SkinGrid skin;
+  skin.id = part.id;
+  skin.nodes = part.grid.n;
+  skin.distances = part.grid.distance;
+  const Rigid from_world = pose.world[static_cast<std::size_t>(part.joint)].inverse(Eigen::Isometry);
+  const Eigen::Matrix3d turn = from_world.linear() / part.grid.h;
+  const Vec3 at = (from_world * origin - part.grid.low) / part.grid.h;
+  for (int row = 0; row < 3; ++row) {
+    for (int k = 0; k < 3; ++k) skin.to_nodes[row][k] = static_cast<float>(turn(row, k));
+    skin.to_nodes[row][3] = static_cast<float>(at[row]);
+  }
+  return skin;
+}
+
 }  // namespace
 
-void skinEllipsoids(const Character& character, const Pose& pose, const Vec3& origin,
-                    std::vector<render::SkinEllipsoid>& skin) {
-  skin.resize(character.ellipsoids.size());
+void showSkin(const Character& character, std::span<const PartDistance> unfit_parts, const Pose& pose,
+              const Vec3& origin, ShownSkin& skin) {
+  skin.ellipsoids.clear();
   const Vec3 head = scalpToWorld(character, pose) * character.scalp.center;
   const std::vector<sim::Ellipsoid> head_parts = headEllipsoids(character, pose);
-  for (std::size_t i = 0; i < skin.size(); ++i) {
+  for (const BodyEllipsoid& part : character.ellipsoids) {
+    if (part.by_distances) continue;
     sim::Ellipsoid e;
-    poseEllipsoid(character.ellipsoids[i], pose, pose, 0, e);
-    const Eigen::Matrix3d to_ball = e.radii.cwiseInverse().asDiagonal() * e.rotation.conjugate().toRotationMatrix();
-    const Vec3 middle = to_ball * (e.center - origin);
-    for (int row = 0; row < 3; ++row) {
-      for (int k = 0; k < 3; ++k) skin[i].to_ball[row][k] = static_cast<float>(to_ball(row, k));
-      skin[i].to_ball[row][3] = static_cast<float>(-middle[row]);
-    }
-    // Hair comes from the head: around an ellipsoid that holds the head it comes from all sides.
-    const Vec3 home = to_ball * (head - e.center);
-    const double thick = std::clamp((e.radii.minCoeff() - kSheet) / (kLimb - kSheet), 0.0, 1.0);
-    const double off = thick * std::clamp(home.norm() - kHeadWithin, 0.0, 1.0) * freeWayTo(head_parts, e, home);
-    Eigen::Map<Eigen::Vector3f>(skin[i].home.data()) = (kHome * off * home.stableNormalized()).cast<float>();
+    poseEllipsoid(part, pose, pose, 0, e);
+    skin.ellipsoids.push_back(skinEllipsoid(e, head_parts, head, origin));
   }
+  skin.grids.clear();
+  for (const PartDistance& part : unfit_parts) skin.grids.push_back(skinGrid(part, pose, origin));
 }
 
 render::Float3 toFloat3(const Vec3& v) {

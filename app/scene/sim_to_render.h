@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "app/figure/body_sdf.h"
 #include "app/figure/character.h"
 #include "app/scene/edit/render_faces.h"
 #include "render/frame_input.h"
@@ -28,9 +29,15 @@ void blendPoses(const Skeleton& skeleton, int head, const Pose& from, const Pose
 // Rest model space to world less origin, column-major. Returns whether any bit changed.
 bool jointMatrices(const Skeleton& skeleton, const Pose& pose, const Vec3& origin, std::vector<render::Mat4>& matrices);
 
-// A pose's collision ellipsoids relative to `origin` (m), as strands are lifted out of them.
-void skinEllipsoids(const Character& character, const Pose& pose, const Vec3& origin,
-                    std::vector<render::SkinEllipsoid>& skin);
+// What strands are lifted out of; the grids' distances belong to the parts.
+struct ShownSkin {
+  std::vector<render::SkinEllipsoid> ellipsoids;
+  std::vector<render::SkinGrid> grids;
+};
+
+// A pose's collision ellipsoids relative to `origin` (m), and in place of those that do not fit, `unfit_parts`.
+void showSkin(const Character& character, std::span<const PartDistance> unfit_parts, const Pose& pose,
+              const Vec3& origin, ShownSkin& skin);
 
 render::Float3 toFloat3(const Vec3& v);
 

@@ -121,10 +121,18 @@ long uploadBlock(HairResources& hair) {
               first = hair.style->fullTableTexel() - along * shared::kShareTexels;
     block.shares = {first - static_cast<int>(layout.root_shares.size()) * shared::kShareTexels, first, along, 0};
   }
-  block.skin_count = {static_cast<int>(hair.skin.size()), std::max(layout.max_layers - 1, 1), 0, 0};
+  block.skin_count = {static_cast<int>(hair.skin.size() + hair.skin_grids.size()), std::max(layout.max_layers - 1, 1),
+                      0, 0};
   for (std::size_t i = 0; i < hair.skin.size(); ++i) {
     const auto [x, y, z] = hair.skin[i].home;
     *std::ranges::copy(hair.skin[i].to_ball, block.skin_rows.begin() + 4 * static_cast<long>(i)).out = {x, y, z, 0};
+  }
+  int texel = 0;
+  for (std::size_t i = 0; i < hair.skin_grids.size(); ++i) {
+    const SkinGrid& grid = hair.skin_grids[i];
+    std::ranges::copy(grid.to_nodes, block.skin_grid_rows.begin() + 3 * static_cast<long>(i));
+    block.skin_grid_nodes[i] = {grid.nodes[0], grid.nodes[1], grid.nodes[2], texel};
+    texel += static_cast<int>(grid.distances.size());
   }
   if (!hair.block) {
     hair.block = makeBuffer();
@@ -214,6 +222,7 @@ long HairStore::gpuBytes() const {
   const long table = 8L * shared::kScatterPhi * shared::kScatterTheta * shared::kScatterSlices;
   long bytes = static_cast<long>(scatterings_.size()) * table;
   for (const auto& style : styles_) bytes += static_cast<long>(style->bytes);
+  for (const auto& distances : distances_) bytes += static_cast<long>(distances->bytes);
   for (const HairResources& hair : hairs_) bytes += hair.gpuBytes();
   return bytes;
 }
@@ -258,13 +267,27 @@ HairScattering& HairStore::scatteringOf(const HairLook& look, long& uploaded) {
   return scattering;
 }
 
+SkinDistances& HairStore::distancesOf(std::span<const SkinGrid> grids, long& uploaded) {
+  std::vector<std::uint64_t> ids;
+  for (const SkinGrid& grid : grids) ids.push_back(grid.id);
+  for (const auto& distances : distances_) {
+    if (distances->ids == ids) return *distances;
+  }
+  SkinDistances& distances = *distances_.emplace_back(std::make_unique<SkinDistances>());
+  distances.ids = std::move(ids);
+  std::vector<float> texels;
+  for (const SkinGrid& grid : grids) texels.insert(texels.end(), grid.distances.begin(), grid.distances.end());
+  uploaded += fillTexels<float>(texels, distances.buffer, distances.texture, distances.bytes, GL_R32F);
+  return distances;
+}
+
 long HairStore::uploadSkin(HairResources& hair, std::span<const float> positions, const DrawSkips& skips) {
-  if (hair.skin.empty()) return 0;
-  reachSkin(hair.layout(), positions, hair.skin, sidewaysReach(hair.look, hair.layout().curl_share), hair.skin_reached);
-  if (!skips.skin) std::fill(hair.skin_reached.begin(), hair.skin_reached.end(), allSkin(hair.skin.size()));
-  const auto ellipsoids = static_cast<long>(hair.skin.size());
-  for (const std::uint64_t reached : hair.skin_reached)
-    skip_counts_.skin += {ellipsoids - std::popcount(reached), ellipsoids};
+  if (hair.skin.empty() && hair.skin_grids.empty()) return 0;
+  reachSkin(hair.layout(), positions, hair.skin, hair.skin_grids, sidewaysReach(hair.look, hair.layout().curl_share),
+            hair.skin_reached);
+  if (!skips.skin) std::ranges::fill(hair.skin_reached, allSkin(hair.skin.size(), hair.skin_grids.size()));
+  const auto all = static_cast<long>(hair.skin.size() + hair.skin_grids.size());
+  for (const std::uint64_t reached : hair.skin_reached) skip_counts_.skin += {all - std::popcount(reached), all};
   return fillTexels<std::uint64_t>(hair.skin_reached, hair.skin_buffer, hair.skin_texture, hair.skin_bytes, GL_RG32UI);
 }
 
@@ -353,7 +376,8 @@ long HairStore::refresh(HairResources& hair, const HairInput& input, const DrawS
   const bool fresh_look = hair.scattering == nullptr || !(hair.look == input.look);
   const bool light_moved = hair.light_revision != light_revision_;
   std::vector<SkinEllipsoid> skin = skinNear(input.skin, hair.around.low, hair.around.high);
-  const bool fresh_skin = skin != hair.skin;
+  std::vector<SkinGrid> skin_grids = skinNear(input.skin_grids, hair.around.low, hair.around.high);
+  const bool fresh_skin = skin != hair.skin || skin_grids != hair.skin_grids;
   if (!fresh_positions && !fresh_count && !fresh_look && !light_moved && !fresh_skin) return 0;
   if (fresh_positions && !allFinite(input.positions)) {
     // Never draw NaN: what was last good stays on screen, and the old revision makes the next positions be tried.
@@ -376,6 +400,8 @@ long HairStore::refresh(HairResources& hair, const HairInput& input, const DrawS
   }
   hair.light_revision = light_revision_;
   hair.skin = std::move(skin);
+  hair.skin_grids = std::move(skin_grids);
+  hair.skin_distances = hair.skin_grids.empty() ? nullptr : &distancesOf(hair.skin_grids, uploaded);
   const bool renew = fresh_count || fresh_look || light_moved;
   uploaded += uploadSkin(hair, input.positions, skips);
   if (!renew && !fresh_positions) return uploaded + uploadBlock(hair);
@@ -410,12 +436,15 @@ long HairStore::update(std::span<const HairInput> inputs, const LightInput& ligh
   std::erase_if(hairs_, [](const HairResources& hair) { return !hair.seen; });
   for (const auto& style : styles_) style->seen = false;
   for (const auto& scattering : scatterings_) scattering->seen = false;
+  for (const auto& distances : distances_) distances->seen = false;
   for (HairResources& hair : hairs_) {
     if (hair.style) hair.style->seen = true;
     if (hair.scattering) hair.scattering->seen = true;
+    if (hair.skin_distances) hair.skin_distances->seen = true;
   }
   std::erase_if(styles_, [](const auto& style) { return !style->seen; });
   std::erase_if(scatterings_, [](const auto& scattering) { return !scattering->seen; });
+  std::erase_if(distances_, [](const auto& distances) { return !distances->seen; });
   return uploaded;
 }
 
@@ -434,7 +463,8 @@ void HairStore::bind(HairResources& hair, const HairDraw& draw, const Texture* t
   glBindBufferBase(GL_UNIFORM_BUFFER, 1, hair.block.id());
   glBindTextureUnit(shared::kUnitVertices, hair.vertex_texture.id());
   glBindTextureUnit(shared::kUnitLayout, hair.style->texture.id());
-  glBindTextureUnit(shared::kUnitSkin, hair.skin.empty() ? 0 : hair.skin_texture.id());
+  glBindTextureUnit(shared::kUnitSkin, hair.skin_texture ? hair.skin_texture.id() : 0);
+  glBindTextureUnit(shared::kUnitSkinGrids, hair.skin_distances ? hair.skin_distances->texture.id() : 0);
   glBindTextureUnit(shared::kUnitTable, full ? hair.style->texture.id() : table->id());
   glBindTextureUnit(shared::kUnitScattering, hair.scattering->table.id());
 }

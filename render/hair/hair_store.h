@@ -33,6 +33,15 @@ struct HairStyle {
   int fullTableTexel() const;
 };
 
+// Distances of one set of skin grids.
+struct SkinDistances {
+  std::vector<std::uint64_t> ids;
+  Buffer buffer;
+  Texture texture;
+  GLsizeiptr bytes = 0;
+  bool seen = false;
+};
+
 struct HairScattering {
   HairLook look;
   Float3 forward_albedo{}, backward_albedo{};  // see fiber_scattering.h
@@ -68,6 +77,8 @@ struct HairResources {
   int strands = -1, segments = 0, asked_segments = 0;  // segments: a layer, with those that curls need
   HairLook look;
   std::vector<SkinEllipsoid> skin;          // near the hair
+  std::vector<SkinGrid> skin_grids;         // the same
+  SkinDistances* skin_distances = nullptr;  // theirs, if there are any
   std::vector<std::uint64_t> skin_reached;  // see skin_reach.h
   Buffer skin_buffer;
   Texture skin_texture;
@@ -122,6 +133,7 @@ class HairStore {
   HairResources& claim(std::size_t slot, std::uint64_t id);
   HairStyle& styleOf(const HairInput& input, int strands, long& uploaded);
   HairScattering& scatteringOf(const HairLook& look, long& uploaded);
+  SkinDistances& distancesOf(std::span<const SkinGrid> grids, long& uploaded);
   long refresh(HairResources& hair, const HairInput& input, const DrawSkips& skips);
   long uploadOpenness(HairResources& hair);
   long uploadSkin(HairResources& hair, std::span<const float> positions, const DrawSkips& skips);
@@ -130,6 +142,7 @@ class HairStore {
   std::vector<HairResources> hairs_;
   std::vector<std::unique_ptr<HairStyle>> styles_;
   std::vector<std::unique_ptr<HairScattering>> scatterings_;
+  std::vector<std::unique_ptr<SkinDistances>> distances_;
   SkyVisibility sky_visibility_;
   std::vector<Eigen::Matrix<float, 3, 2>> gradients_;
   std::vector<float> texels_;

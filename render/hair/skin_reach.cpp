@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "render/strands/skin_lift.h"
 #include "render/view_math.h"
 #include "shaders/shared.h"
 
@@ -58,14 +59,16 @@ bool mayMeet(const SkinEllipsoid& skin, float reach, const Vector3f& middle, con
   return squared <= reach;
 }
 
-// Of the ellipsoids of `among`, those that the box may meet.
-std::uint64_t met(std::span<const SkinEllipsoid> skin, const std::vector<float>& reaches, const Bounds& box,
-                  std::uint64_t among) {
+// Of the ellipsoids and grids of `among`, those that the box may meet.
+std::uint64_t met(std::span<const SkinEllipsoid> skin, std::span<const SkinGrid> grids,
+                  const std::vector<float>& reaches, const Bounds& box, std::uint64_t among) {
   const Vector3f middle = box.center(), half = 0.5f * (box.high - box.low);
   std::uint64_t bits = 0;
   for (; among != 0; among &= among - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(among));
-    if (mayMeet(skin[i], reaches[i], middle, half)) bits |= std::uint64_t{1} << i;
+    const bool may = i < shared::kMaxSkin ? mayMeet(skin[i], reaches[i], middle, half)
+                                          : meetsBox(grids[i - shared::kMaxSkin], middle, half);
+    if (may) bits |= std::uint64_t{1} << i;
   }
   return bits;
 }
@@ -73,9 +76,9 @@ std::uint64_t met(std::span<const SkinEllipsoid> skin, const std::vector<float>&
 }  // namespace
 
 void reachSkin(const HairLayout& layout, std::span<const float> positions, std::span<const SkinEllipsoid> skin,
-               float sideways, std::vector<std::uint64_t>& reached) {
+               std::span<const SkinGrid> grids, float sideways, std::vector<std::uint64_t>& reached) {
   const auto steps = static_cast<std::size_t>(std::max(layout.max_layers - 1, 1));
-  const std::uint64_t all = allSkin(skin.size());
+  const std::uint64_t all = allSkin(skin.size(), grids.size());
   std::vector<float> reaches(skin.size());
   std::transform(skin.begin(), skin.end(), reaches.begin(), reachOf);
   std::vector<Bounds> boxes(steps);
@@ -88,9 +91,9 @@ void reachSkin(const HairLayout& layout, std::span<const float> positions, std::
       whole.add(boxes[layer]);
     }
     if (count == 0) continue;
-    const std::uint64_t near = met(skin, reaches, whole, all);
+    const std::uint64_t near = met(skin, grids, reaches, whole, all);
     for (std::size_t layer = 0; layer < count; ++layer)
-      reached[f * steps + layer] = met(skin, reaches, boxes[layer], near);
+      reached[f * steps + layer] = met(skin, grids, reaches, boxes[layer], near);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "render/strands/shader_math.h"
 #include "shaders/shared.h"
@@ -11,12 +12,79 @@ namespace render {
 
 using Eigen::Vector3f;
 using Eigen::Vector4f;
-using shared::kSkinBlend, shared::kSkinGap, shared::kSkinFar, shared::kSkinMiddle, shared::kSkinReturn,
-    shared::kSkinRounds, shared::kSkinWhole;
+using shared::kSkinBlend, shared::kSkinGap, shared::kSkinLeft, shared::kSkinFar, shared::kSkinMiddle,
+    shared::kSkinReturn, shared::kSkinRounds, shared::kSkinWhole;
 
-void leaveSkin(std::span<const SkinEllipsoid> skin, float s, SkinLift& lift, Vector3f& position, Vector3f& tangent) {
+namespace {
+
+// The way out of a piece of skin for a point at a gap (m, signed) from it.
+struct WayOut {
+  float gap, share;  // share: of the way that is taken
+  Vector3f along, normal;
+};
+
+Vector3f turnedBack(const std::array<std::array<float, 4>, 3>& rows, const Vector3f& v) {
+  const auto row = [&](int k) { return Eigen::Map<const Vector3f>(rows[static_cast<std::size_t>(k)].data()); };
+  return v.x() * row(0) + v.y() * row(1) + v.z() * row(2);
+}
+
+std::optional<WayOut> wayOutOf(const SkinEllipsoid& e, const Vector3f& point, float blend) {
+  const Eigen::Map<const Vector4f> a(e.to_ball[0].data()), b(e.to_ball[1].data()), c(e.to_ball[2].data());
+  const Vector4f p = point.homogeneous();
+  const Vector3f ball(a.dot(p), b.dot(p), c.dot(p));
+  const float squared = ball.squaredNorm();
+  if (squared > kSkinFar) return {};
+  const Vector3f from = ball + std::max(1.0f - squared, 0.0f) * Eigen::Map<const Vector3f>(e.home.data());
+  const float off = from.squaredNorm();
+  if (off < kSkinMiddle) return {};
+  const Vector3f out_of = turnedBack(e.to_ball, from).normalized();
+  const Vector3f pace(a.head<3>().dot(out_of), b.head<3>().dot(out_of), c.head<3>().dot(out_of));
+  const float along = ball.dot(pace), paces = pace.squaredNorm();
+  const float surface = (std::sqrt(std::max(along * along + paces * (1.0f - squared), 0.0f)) - along) / paces;
+  const float gap = -surface - kSkinGap;
+  if (gap >= blend) return {};
+  return WayOut{gap, smoothstep(kSkinMiddle, kSkinWhole, off), out_of,
+                turnedBack(e.to_ball, ball + surface * pace).normalized()};
+}
+
+std::optional<WayOut> wayOutOf(const SkinGrid& grid, const Vector3f& point, float blend) {
+  const Vector4f p = point.homogeneous();
+  Vector3f f;
+  std::array<int, 3> cell;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const float at = Eigen::Map<const Vector4f>(grid.to_nodes[k].data()).dot(p);
+    if (!(at >= 0.0f && at < static_cast<float>(grid.nodes[k] - 1))) return {};
+    cell[k] = static_cast<int>(at);
+    f[static_cast<int>(k)] = at - static_cast<float>(cell[k]);
+  }
+  const int row = grid.nodes[0], sheet = row * grid.nodes[1];
+  const auto first = static_cast<std::size_t>(cell[0] + row * cell[1] + sheet * cell[2]);
+  const auto at = [&](int dx, int dy, int dz) {
+    return grid.distances[first + static_cast<std::size_t>(dx + row * dy + sheet * dz)];
+  };
+  // Of the four edges along x: values and slopes.
+  const Vector4f low(at(0, 0, 0), at(0, 1, 0), at(0, 0, 1), at(0, 1, 1));
+  const Vector4f rise = Vector4f(at(1, 0, 0), at(1, 1, 0), at(1, 0, 1), at(1, 1, 1)) - low;
+  const Vector4f edge = low + f.x() * rise;
+  const float near = edge[0] + f.y() * (edge[1] - edge[0]), far = edge[2] + f.y() * (edge[3] - edge[2]);
+  const float gap = near + f.z() * (far - near) - kSkinGap;
+  if (gap >= blend - kSkinLeft) return {};
+  const float slope_near = rise[0] + f.y() * (rise[1] - rise[0]), slope_far = rise[2] + f.y() * (rise[3] - rise[2]);
+  const float across = edge[1] - edge[0], slope_y = across + f.z() * (edge[3] - edge[2] - across);
+  const Vector3f slope =
+      turnedBack(grid.to_nodes, {slope_near + f.z() * (slope_far - slope_near), slope_y, far - near});
+  const float steep = slope.squaredNorm();
+  if (steep < kSkinMiddle) return {};
+  const Vector3f normal = slope / std::sqrt(steep);
+  return WayOut{gap, smoothstep(kSkinMiddle, kSkinWhole, steep), normal, normal};
+}
+
+}  // namespace
+
+void leaveSkin(std::span<const SkinEllipsoid> skin, std::span<const SkinGrid> grids, float s, SkinLift& lift,
+               Vector3f& position, Vector3f& tangent) {
   const Vector3f free = position;
-  if (skin.empty() && lift.by.isZero(0)) {
+  if (skin.empty() && grids.empty() && lift.by.isZero(0)) {
     lift.free = free;
     return;
   }
@@ -24,41 +92,36 @@ void leaveSkin(std::span<const SkinEllipsoid> skin, float s, SkinLift& lift, Vec
   position += lift.by;
   tangent -= lift.by / kSkinReturn;
   Vector3f lifted = position, turned = tangent;
+  Vector3f by_grids = Vector3f::Zero();
   bool moved = true;
   const SkinEllipsoid* last = nullptr;
   for (int round = 0; round < kSkinRounds && moved; ++round) {
     moved = false;
     const float blend = round == 0 ? kSkinBlend : 0.0f;
-    for (const SkinEllipsoid& e : skin) {
-      if (&e == last) continue;
-      const Eigen::Map<const Vector4f> a(e.to_ball[0].data()), b(e.to_ball[1].data()), c(e.to_ball[2].data());
-      const Vector4f p = lifted.homogeneous();
-      const Vector3f ball(a.dot(p), b.dot(p), c.dot(p));
-      const float squared = ball.squaredNorm();
-      if (squared > kSkinFar) continue;
-      const Vector3f from = ball + std::max(1.0f - squared, 0.0f) * Eigen::Map<const Vector3f>(e.home.data());
-      const float off = from.squaredNorm();
-      if (off < kSkinMiddle) continue;
-      const auto toWorld = [&](const Vector3f& v) -> Vector3f {
-        return (v.x() * a.head<3>() + v.y() * b.head<3>() + v.z() * c.head<3>()).normalized();
-      };
-      const Vector3f out_of = toWorld(from);
-      const Vector3f pace(a.head<3>().dot(out_of), b.head<3>().dot(out_of), c.head<3>().dot(out_of));
-      const float along = ball.dot(pace), paces = pace.squaredNorm();
-      const float surface = (std::sqrt(std::max(along * along + paces * (1.0f - squared), 0.0f)) - along) / paces;
-      const float gap = -surface - kSkinGap;
-      if (gap >= blend) continue;
-      const float share = smoothstep(kSkinMiddle, kSkinWhole, off),
-                  bent = std::max(gap + blend, 0.0f) / (2 * kSkinBlend);
-      const Vector3f normal = toWorld(ball + surface * pace);
-      lifted += share * (kSkinBlend * bent * bent - gap) * out_of;
-      turned += share * (bent - 1) * normal.dot(turned) * normal;
+    // Returns what it is moved by.
+    const auto take = [&](const WayOut& way) -> Vector3f {
+      const float bent = std::max(way.gap + blend, 0.0f) / (2 * kSkinBlend);
+      const Vector3f by = way.share * (kSkinBlend * bent * bent - way.gap) * way.along;
+      lifted += by;
+      turned += way.share * (bent - 1) * way.normal.dot(turned) * way.normal;
       moved = true;
+      return by;
+    };
+    for (const SkinEllipsoid& e : skin) {
+      const auto way = &e == last ? std::nullopt : wayOutOf(e, lifted, blend);
+      if (!way) continue;
+      take(*way);
       last = &e;
+    }
+    for (const SkinGrid& grid : grids) {
+      const auto way = wayOutOf(grid, lifted, blend);
+      if (!way) continue;
+      by_grids += take(*way);
+      last = nullptr;
     }
   }
   const float root = smoothstep(0.0f, 1.0f, s);
-  position += root * (lifted - position);
+  position += root * (lifted - position) + (1 - root) * by_grids;
   tangent += root * (turned - tangent);
   lift = {free, position - free};
 }
@@ -80,6 +143,24 @@ std::vector<SkinEllipsoid> skinNear(std::span<const SkinEllipsoid> skin, const V
         ((center + reach).array() < low.array()).any() || ((center - reach).array() > high.array()).any();
     if (!apart && static_cast<int>(near.size()) < shared::kMaxSkin) near.push_back(e);
   }
+  return near;
+}
+
+bool meetsBox(const SkinGrid& grid, const Vector3f& middle, const Vector3f& half) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Eigen::Map<const Vector4f> row(grid.to_nodes[k].data());
+    const float at = row.dot(middle.homogeneous()), reach = row.head<3>().cwiseAbs().dot(half);
+    if (at + reach < 0 || at - reach > static_cast<float>(grid.nodes[k] - 1)) return false;
+  }
+  return true;
+}
+
+std::vector<SkinGrid> skinNear(std::span<const SkinGrid> grids, const Vector3f& low, const Vector3f& high) {
+  std::vector<SkinGrid> near;
+  for (const SkinGrid& grid : grids)
+    if (static_cast<int>(near.size()) < shared::kMaxSkinGrids &&
+        meetsBox(grid, 0.5f * (low + high), 0.5f * (high - low)))
+      near.push_back(grid);
   return near;
 }
 

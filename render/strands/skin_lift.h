@@ -14,13 +14,20 @@ struct SkinLift {
   Eigen::Vector3f free = Eigen::Vector3f::Zero(), by = free;
 };
 
-// `position` (m) of a strand's point leaves the ellipsoids; `tangent`, a unit vector, turns with it and is none any
-// more. s: curve parameter, in layers; a root (0) stays. lift: of the point before, on return of this one.
-void leaveSkin(std::span<const SkinEllipsoid> skin, float s, SkinLift& lift, Eigen::Vector3f& position,
-               Eigen::Vector3f& tangent);
+// `position` (m) of a strand's point leaves ellipsoids and grids; `tangent`, a unit vector, turns with it and is none
+// any more. s: curve parameter, in layers; a root (0) leaves
+// grids, and no ellipsoid. lift: of the point before, on return of this one.
+void leaveSkin(std::span<const SkinEllipsoid> skin, std::span<const SkinGrid> grids, float s, SkinLift& lift,
+               Eigen::Vector3f& position, Eigen::Vector3f& tangent);
 
 // Those that may lift a point of the box (m), in their order; at most kMaxSkin of shaders/shared.h, the first ones.
 std::vector<SkinEllipsoid> skinNear(std::span<const SkinEllipsoid> skin, const Eigen::Vector3f& low,
                                     const Eigen::Vector3f& high);
+// Whether a box (m, middle and half its sides) may reach into a grid's.
+bool meetsBox(const SkinGrid& grid, const Eigen::Vector3f& middle, const Eigen::Vector3f& half);
+
+// As for ellipsoids; at most kMaxSkinGrids.
+std::vector<SkinGrid> skinNear(std::span<const SkinGrid> grids, const Eigen::Vector3f& low,
+                               const Eigen::Vector3f& high);
 
 }  // namespace render

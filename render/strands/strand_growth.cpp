@@ -426,7 +426,7 @@ CurvePoint StrandGrowth::curvePoint(const Strand& strand, const LayerWindow& win
     along += stray.y() * outward;
   }
   along = unitOr(along, axis);
-  leaveSkin(skin_, s, lift, point.position, along);
+  leaveSkin(skin_, skin_grids_, s, lift, point.position, along);
   point.tangent = unitOr(along, axis);
   point.along = strand.end > 0.0f ? s / strand.end : 0.0f;
   return point;

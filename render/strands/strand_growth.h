@@ -69,8 +69,11 @@ class StrandGrowth {
   bool setPositions(std::span<const float> positions);
 
   void setLook(const HairLook& look);
-  // What drawn strands are lifted out of; none at first.
-  void setSkin(std::span<const SkinEllipsoid> skin) { skin_.assign(skin.begin(), skin.end()); }
+  // What drawn strands are lifted out of, whose distances stay where they are; none at first.
+  void setSkin(std::span<const SkinEllipsoid> skin, std::span<const SkinGrid> grids) {
+    skin_.assign(skin.begin(), skin.end());
+    skin_grids_.assign(grids.begin(), grids.end());
+  }
   void setFade(const StrandFade& fade) { fade_ = fade; }
 
   const HairLayout& layout() const { return layout_; }
@@ -143,6 +146,7 @@ class StrandGrowth {
   std::vector<int> first_strand_;  // see dealStrands
   HairLook look_;
   std::vector<SkinEllipsoid> skin_;
+  std::vector<SkinGrid> skin_grids_;
   StrandFade fade_;
   int asked_segments_;                                // a layer
   float segments_ = 1;                                // a layer, with those that curls need

@@ -1,10 +1,69 @@
-// Drawn strands are lifted out of the skin, which ellipsoids stand for: between vertices of the hair mesh, where the
-// simulation holds nothing outside. CPU: render/strands/skin_lift.h.
+// Drawn strands are lifted out of the skin, which ellipsoids stand for, or grids of signed distances where none fit:
+// between vertices of the hair mesh, where the simulation holds nothing outside. CPU: render/strands/skin_lift.h.
+
+layout(binding = kUnitSkinGrids) uniform samplerBuffer skin_distances;  // m, grid after grid
 
 // Of a strand's last point: where it would be without skin, and m that it was lifted by. Zero before the root.
 struct SkinLift {
   vec3 free, by;
 };
+
+// The way out of a piece of skin for a point at a gap (m, signed) from it.
+struct WayOut {
+  float gap, share;  // share: of the way that is taken
+  vec3 along, normal;
+};
+
+// False where the point is not lifted out of ellipsoid i.
+bool wayOutOfBall(int i, vec3 point, float blend, out WayOut way) {
+  vec4 a = skin_rows[4 * i], b = skin_rows[4 * i + 1], c = skin_rows[4 * i + 2], p = vec4(point, 1.0);
+  vec3 ball = vec3(dot(a, p), dot(b, p), dot(c, p));
+  float squared = dot(ball, ball);
+  if (squared > kSkinFar) return false;
+  vec3 from = ball + max(1.0 - squared, 0.0) * skin_rows[4 * i + 3].xyz;
+  float off = dot(from, from);
+  if (off < kSkinMiddle) return false;
+  way.along = normalize(from.x * a.xyz + from.y * b.xyz + from.z * c.xyz);
+  vec3 pace = vec3(dot(a.xyz, way.along), dot(b.xyz, way.along), dot(c.xyz, way.along));
+  float along = dot(ball, pace), paces = dot(pace, pace);
+  float surface = (sqrt(max(along * along + paces * (1.0 - squared), 0.0)) - along) / paces;
+  way.gap = -surface - kSkinGap;
+  way.share = smoothstep(kSkinMiddle, kSkinWhole, off);
+  vec3 there = ball + surface * pace;
+  way.normal = normalize(there.x * a.xyz + there.y * b.xyz + there.z * c.xyz);
+  return way.gap < blend;
+}
+
+// The same of grid i: along the distance's slope, whose length tells where sides meet.
+bool wayOutOfGrid(int i, vec3 point, float blend, out WayOut way) {
+  vec4 a = skin_grid_rows[3 * i], b = skin_grid_rows[3 * i + 1], c = skin_grid_rows[3 * i + 2], p = vec4(point, 1.0);
+  vec3 at = vec3(dot(a, p), dot(b, p), dot(c, p));
+  ivec3 nodes = skin_grid_nodes[i].xyz;
+  if (!(all(greaterThanEqual(at, vec3(0.0))) && all(lessThan(at, vec3(nodes - 1))))) return false;
+  ivec3 cell = ivec3(at);
+  vec3 f = at - vec3(cell);
+  int row = nodes.x, sheet = row * nodes.y, first = skin_grid_nodes[i].w + cell.x + row * cell.y + sheet * cell.z;
+  // Of the four edges along x: values and slopes.
+  ivec4 edges = first + ivec4(0, row, sheet, row + sheet);
+  vec4 low, rise;
+  for (int k = 0; k < 4; ++k) {
+    low[k] = texelFetch(skin_distances, edges[k]).x;
+    rise[k] = texelFetch(skin_distances, edges[k] + 1).x - low[k];
+  }
+  vec4 edge = low + f.x * rise;
+  float near = edge[0] + f.y * (edge[1] - edge[0]), far = edge[2] + f.y * (edge[3] - edge[2]);
+  way.gap = near + f.z * (far - near) - kSkinGap;
+  if (way.gap >= blend - kSkinLeft) return false;
+  float slope_near = rise[0] + f.y * (rise[1] - rise[0]), slope_far = rise[2] + f.y * (rise[3] - rise[2]);
+  float across = edge[1] - edge[0];
+  vec3 steps = vec3(slope_near + f.z * (slope_far - slope_near), across + f.z * (edge[3] - edge[2] - across), far - near);
+  vec3 slope = steps.x * a.xyz + steps.y * b.xyz + steps.z * c.xyz;
+  float steep = dot(slope, slope);
+  if (steep < kSkinMiddle) return false;
+  way.share = smoothstep(kSkinMiddle, kSkinWhole, steep);
+  way.along = way.normal = slope / sqrt(steep);
+  return true;
+}
 
 // A point at a gap (m, signed) from an ellipsoid is moved along its normal to the gap f(gap): kSkinGap below
 // -kSkinBlend, the gap itself above kSkinBlend, both counted from kSkinGap, and a parabola between. f rises with a
@@ -14,12 +73,15 @@ struct SkinLift {
 // comes (the fourth row): of a lock that hangs on both sides of a shoulder all strands go over it, none through. Where
 // that way turns about, on the other side, nothing is lifted. The gap is exact, to where the way meets the surface, in
 // the ellipsoid's own measure. s: curve parameter, in layers; the first layer leads from the root, which stays, to full
-// lift. Further rounds, without the parabola, take up what one ellipsoid pushes into another: none pushes twice running.
+// lift; by grids the root is lifted as well, for between the corners of a face of roots a box bulges. Further rounds,
+// without the parabola, take up what one ellipsoid pushes into another: none pushes twice running; a grid may, for its
+// distances are not exact.
 //
 // A strand keeps its side: each point begins where the one before it was lifted, and returns with the hair's length.
 // So the tip of a strand that lies over a shoulder does not end in it, or below it.
 //
-// near: a bit for each ellipsoid that the strand can meet between its two layers (render/hair/skin_reach.h).
+// near: a bit for each ellipsoid, and from bit kMaxSkin on for each grid, that the strand can meet between its two layers
+// (render/hair/skin_reach.h).
 void leaveSkin(uvec2 near, float s, inout SkinLift lift, inout vec3 position, inout vec3 tangent) {
   vec3 free = position;
   if (near == uvec2(0u) && lift.by == vec3(0.0)) {
@@ -30,6 +92,7 @@ void leaveSkin(uvec2 near, float s, inout SkinLift lift, inout vec3 position, in
   position += lift.by;
   tangent -= lift.by / kSkinReturn;
   vec3 lifted = position, turned = tangent;
+  vec3 by_grids = vec3(0.0);
   bool moved = near != uvec2(0u);
   int last = -1;
   for (int round = 0; round < kSkinRounds && moved; ++round) {
@@ -38,30 +101,25 @@ void leaveSkin(uvec2 near, float s, inout SkinLift lift, inout vec3 position, in
     for (int word = 0; word < 2; ++word)
       for (uint left = word == 0 ? near.x : near.y; left != 0u; left &= left - 1u) {
         int i = 32 * word + findLSB(left);
+        bool grid = i >= kMaxSkin;
+        WayOut way;
         if (i == last) continue;
-        vec4 a = skin_rows[4 * i], b = skin_rows[4 * i + 1], c = skin_rows[4 * i + 2], p = vec4(lifted, 1.0);
-        vec3 ball = vec3(dot(a, p), dot(b, p), dot(c, p));
-        float squared = dot(ball, ball);
-        if (squared > kSkinFar) continue;
-        vec3 from = ball + max(1.0 - squared, 0.0) * skin_rows[4 * i + 3].xyz;
-        float off = dot(from, from);
-        if (off < kSkinMiddle) continue;
-        vec3 out_of = normalize(from.x * a.xyz + from.y * b.xyz + from.z * c.xyz);
-        vec3 pace = vec3(dot(a.xyz, out_of), dot(b.xyz, out_of), dot(c.xyz, out_of));
-        float along = dot(ball, pace), paces = dot(pace, pace);
-        float surface = (sqrt(max(along * along + paces * (1.0 - squared), 0.0)) - along) / paces;
-        float gap = -surface - kSkinGap;
-        if (gap >= blend) continue;
-        float share = smoothstep(kSkinMiddle, kSkinWhole, off), bent = max(gap + blend, 0.0) / (2.0 * kSkinBlend);
-        vec3 there = ball + surface * pace, normal = normalize(there.x * a.xyz + there.y * b.xyz + there.z * c.xyz);
-        lifted += share * (kSkinBlend * bent * bent - gap) * out_of;
-        turned += share * (bent - 1.0) * dot(normal, turned) * normal;
+        if (grid) {
+          if (!wayOutOfGrid(i - kMaxSkin, lifted, blend, way)) continue;
+        } else {
+          if (!wayOutOfBall(i, lifted, blend, way)) continue;
+        }
+        float bent = max(way.gap + blend, 0.0) / (2.0 * kSkinBlend);
+        vec3 by = way.share * (kSkinBlend * bent * bent - way.gap) * way.along;
+        lifted += by;
+        if (grid) by_grids += by;
+        turned += way.share * (bent - 1.0) * dot(way.normal, turned) * way.normal;
         moved = true;
-        last = i;
+        last = grid ? -1 : i;
       }
   }
   float root = smoothstep(0.0, 1.0, s);
-  position = mix(position, lifted, root);
+  position = mix(position, lifted, root) + (1.0 - root) * by_grids;
   tangent = mix(tangent, turned, root);
   lift = SkinLift(free, position - free);
 }

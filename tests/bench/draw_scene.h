@@ -54,7 +54,7 @@ class DrawStage {
   // What a frame hands over of one character.
   struct Shown {
     std::vector<float> positions;
-    std::vector<render::SkinEllipsoid> skin;
+    app::ShownSkin skin;
     std::vector<render::Mat4> joints;
     std::vector<render::Mat4> worn;
   };

@@ -145,7 +145,7 @@ void look(app::Demo& demo, double time, render::StrandGrowth& growth, Looked& lo
   const render::FrameInput frame = app::frameInput(demo, kWidth, kHeight);
   const skin::DrawnSkin skin(frame.bodies.front());
   growth.setPositions(frame.hairs.front().positions);
-  growth.setSkin(frame.hairs.front().skin);
+  growth.setSkin(frame.hairs.front().skin, frame.hairs.front().skin_grids);
   std::vector<render::CurvePoint> strand(static_cast<std::size_t>(growth.maxPoints()));
   const Vector3f eye(frame.camera.eye.data());
   const double pixels_a_radian = kHeight / (2 * std::tan(frame.camera.fov_y / 2));

@@ -53,7 +53,7 @@ MEMBERS(HairLook, strand_radius, strands_represented, width_compensation, least_
         tint_variation, beta_m, beta_n, eta, cuticle_angle, shine_variation, specular, diffuse, seed)
 MEMBERS(LookShares, roots, along)
 MEMBERS(HairInput, id, layout_revision, position_revision, layout_id, faces, positions, rest, strands,
-        segments_per_layer, look, shares, skin)
+        segments_per_layer, look, shares, skin, skin_grids)
 MEMBERS(BodyInput, id, mesh_id, positions, normals, triangles, joints, weights, joint_matrices, pose_revision, color,
         roughness, scalp_id, root_cover, root_color, scalp_tint, hair_id, face_origin, face_height, face_paint, cloth,
         dressed, cloth_color, material_places, materials, own_materials)
@@ -92,6 +92,8 @@ struct Scene {
   std::vector<std::vector<std::uint32_t>> materials{{0xff405070u, 0xff80a050u, 0xff703050u, 0xff205030u},
                                                     {0xff704050u, 0xff306090u, 0xff907050u, 0xff504030u}};
   std::vector<render::SkinEllipsoid> skin;
+  std::vector<float> distances;
+  render::SkinGrid grid;
   std::vector<render::LookShare> shares;
   std::vector<render::HairInput> hairs;
   std::vector<render::BodyInput> bodies;
@@ -162,6 +164,21 @@ struct Scene {
   void change(std::span<const render::SkinEllipsoid>& of) {
     skin.push_back(synthetic::skinBall({0.05f, synthetic::kHeadHeight, 0.05f}, 1.05f * synthetic::kHeadRadius));
     of = skin;
+  }
+  // A ball about the head.
+  void change(std::span<const render::SkinGrid>& of) {
+    constexpr int kNodes = 21;
+    constexpr float kStep = 0.12f * synthetic::kHeadRadius, kMiddle = 0.5f * (kNodes - 1) * kStep;
+    distances.clear();
+    for (int k = 0; k < kNodes; ++k)
+      for (int j = 0; j < kNodes; ++j)
+        for (int i = 0; i < kNodes; ++i)
+          distances.push_back((kStep * Eigen::Vector3f(i, j, k).array() - kMiddle).matrix().norm() -
+                              1.08f * synthetic::kHeadRadius);
+    grid = {1, {}, {kNodes, kNodes, kNodes}, distances};
+    const std::array<float, 3> low{-kMiddle, synthetic::kHeadHeight - kMiddle, -kMiddle};
+    for (std::size_t k = 0; k < 3; ++k) grid.to_nodes[k][k] = 1 / kStep, grid.to_nodes[k][3] = -low[k] / kStep;
+    of = {&grid, 1};
   }
   void change(std::span<const render::LookShare>& of) {
     shares.assign(hair.positions.size() / 3, {0.5f, 1, 1, 0.5f, {1, 0.5f, 0.2f}});

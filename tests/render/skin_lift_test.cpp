@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <random>
 #include <vector>
 
 #include "render/hair/hair_store.h"
@@ -22,6 +23,7 @@ namespace skin_lift_test {
 using Eigen::Vector3f;
 using render::CurvePoint;
 using render::SkinEllipsoid;
+using render::SkinGrid;
 using render::shared::kSkinBlend, render::shared::kSkinGap;
 
 // Turned, with radii of 4, 7 and 10 cm, at the origin.
@@ -53,7 +55,7 @@ float gapOf(const SkinEllipsoid& skin, const Vector3f& p) {
 Vector3f lifted(std::span<const SkinEllipsoid> skin, float s, Vector3f p) {
   Vector3f tangent = Vector3f::UnitY();
   render::SkinLift first;
-  render::leaveSkin(skin, s, first, p, tangent);
+  render::leaveSkin(skin, {}, s, first, p, tangent);
   return p;
 }
 
@@ -161,7 +163,7 @@ TEST(SkinLift, AStrandThatGoesThroughStaysOnTheSideThatItComesFrom) {
   float deepest_alone = 0;
   for (float y = 0.15f; y > -0.15f; y -= 0.004f) {
     Vector3f p(0.01f, y, 0), tangent = -Vector3f::UnitY();
-    render::leaveSkin({&skin, 1}, 2, lift, p, tangent);
+    render::leaveSkin({&skin, 1}, {}, 2, lift, p, tangent);
     EXPECT_GT(gapOf(skin, p), 0) << y;
     EXPECT_GT(p.y(), 0) << y;
     deepest_alone = std::min(deepest_alone, gapOf(skin, lifted({&skin, 1}, 2, {0.01f, y, 0})));
@@ -177,7 +179,7 @@ TEST(SkinLift, AStrandReturnsFromWhereItWasLifted) {
   Vector3f last(-0.2f, 0.08f, 0);
   for (float x = -0.2f; x < 0.5f; x += kApart) {
     Vector3f p(x, 0.08f, 0), tangent = Vector3f::UnitX();
-    render::leaveSkin({&skin, 1}, 2, lift, p, tangent);
+    render::leaveSkin({&skin, 1}, {}, 2, lift, p, tangent);
     if (x > 0.1f) {
       EXPECT_GT((p - last).normalized().dot(tangent.normalized()), 0.999f) << x;
     }
@@ -195,6 +197,63 @@ TEST(SkinLift, EllipsoidsOutOfReachAreLeftOut) {
   EXPECT_EQ(near[0], skin[0]);
   EXPECT_EQ(near[1], skin[2]);
   EXPECT_EQ(render::skinNear(skin, {0.85f, -0.1f, -0.1f}, {0.9f, 0.1f, 0.1f}).size(), 1u);
+}
+
+// Signed distances of a turned box.
+struct BoxGrid {
+  static constexpr int kNodes = 41;
+  static constexpr float kSpacing = 0.006f;
+  Eigen::Matrix3f turn = Eigen::AngleAxisf(0.7f, Vector3f(1, 2, -1).normalized()).toRotationMatrix();
+  Vector3f middle, half{0.06f, 0.04f, 0.08f};
+  std::vector<float> distances;
+  SkinGrid grid;
+
+  explicit BoxGrid(const Vector3f& at) : middle(at) {
+    const Vector3f low = Vector3f::Constant(-0.5f * kSpacing * (kNodes - 1));
+    for (int k = 0; k < kNodes; ++k)
+      for (int j = 0; j < kNodes; ++j)
+        for (int i = 0; i < kNodes; ++i) distances.push_back(boxDistance(low + kSpacing * Vector3f(i, j, k)));
+    grid.id = 7;
+    grid.nodes = {kNodes, kNodes, kNodes};
+    grid.distances = distances;
+    for (int k = 0; k < 3; ++k) {
+      const Vector3f row = turn.col(k) / kSpacing;
+      grid.to_nodes[k] = {row.x(), row.y(), row.z(), -row.dot(middle) - low[k] / kSpacing};
+    }
+  }
+  float boxDistance(const Vector3f& p) const {
+    const Vector3f q = p.cwiseAbs() - half;
+    return q.cwiseMax(0).norm() + std::min(q.maxCoeff(), 0.0f);
+  }
+  float distanceTo(const Vector3f& p) const { return boxDistance(turn.transpose() * (p - middle)); }
+};
+
+// Points of both ends of the first layer: a root comes out of a grid, where it stays in an ellipsoid.
+TEST(SkinLift, PointsLeaveAGrid) {
+  const BoxGrid box({0.3f, -0.2f, 0.1f});
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> even(-0.11f, 0.11f);
+  int inside = 0, outside = 0;
+  for (int n = 0; n < 3000; ++n) {
+    const Vector3f from = box.middle + Vector3f(even(random), even(random), even(random));
+    const float before = box.distanceTo(from);
+    if (before < -0.03f) continue;  // about the middle all ways out are as long
+    for (const float s : {0.0f, 3.0f}) {
+      Vector3f p = from, tangent = Vector3f::UnitY();
+      render::SkinLift lift;
+      render::leaveSkin({}, {&box.grid, 1}, s, lift, p, tangent);
+      if (before > kSkinGap + kSkinBlend + BoxGrid::kSpacing) {
+        EXPECT_EQ(p, from);
+        ++outside;
+      } else {
+        EXPECT_GT(box.distanceTo(p), 0) << from.transpose() << ", " << before;
+        EXPECT_LT((p - from).norm(), std::max(-before, 0.0f) + 2 * BoxGrid::kSpacing);
+        ++inside;
+      }
+    }
+  }
+  EXPECT_GT(inside, 1000);
+  EXPECT_GT(outside, 500);
 }
 
 class SkinLiftOnGpu : public gl_fixture::GlTest {};
@@ -223,24 +282,19 @@ TEST_F(SkinLiftOnGpu, ShadersLookAtNoSkinThatIsNotThere) {
   }
 }
 
-// A hair half of whose strands run through two bodies.
-TEST_F(SkinLiftOnGpu, ShadersLiftAsTheCpuDoes) {
-  const synthetic::Hair hair = synthetic::makeHair();
-  render::HairInput input = synthetic::hairInput(hair, 2000);
-  input.look.curl_radius = 0.004f;
-  SkinEllipsoid shoulder = turnedEllipsoid();
-  for (auto& row : shoulder.to_ball)
-    row[3] = -Vector3f(row.data()).dot(Vector3f(0.06f, synthetic::kHeadHeight - 0.15f, -0.05f));
-  shoulder.home = {-0.5f, 2.5f, 0.8f};
-  const std::vector<SkinEllipsoid> skin{
-      synthetic::skinBall({0, synthetic::kHeadHeight, 0}, synthetic::kHeadRadius + 0.004f), shoulder};
-  const auto bare = strand_capture::capture(input, gl_fixture::kShaderDir);
-  input.skin = skin;
+// Strands of 2,000 that end elsewhere on the GPU than on the CPU, and those that are lifted.
+struct Compared {
+  int other = 0, moved = 0;
+};
+
+void compareLifts(render::HairInput input, Compared& compared) {
   const auto drawn = strand_capture::capture(input, gl_fixture::kShaderDir);
   render::StrandGrowth growth(input.faces, input.positions, input.strands, input.segments_per_layer, input.look);
-  growth.setSkin(skin);
+  growth.setSkin(input.skin, input.skin_grids);
+  input.skin = {};
+  input.skin_grids = {};
+  const auto bare = strand_capture::capture(input, gl_fixture::kShaderDir);
   std::vector<CurvePoint> points(static_cast<std::size_t>(growth.maxPoints()));
-  int other = 0, moved = 0;
   for (int number = 0; number < growth.strandCount(); ++number) {
     const auto n = static_cast<std::size_t>(number);
     const int count = growth.growDrawn(growth.strand(number), points);
@@ -252,12 +306,45 @@ TEST_F(SkinLiftOnGpu, ShadersLiftAsTheCpuDoes) {
       rise = std::max(rise, (bare[n][k] - drawn[n][k]).norm());
       EXPECT_NEAR(points[k].tangent.norm(), 1, 1e-5f);
     }
-    other += worst > 1e-5f;  // m
-    moved += rise > 1e-3f;
+    compared.other += worst > 1e-5f;  // m
+    compared.moved += rise > 1e-3f;
   }
-  EXPECT_LE(other, 3);  // roots on the border of two clumps, where the last bit decides
-  EXPECT_GT(moved, 500);
-  EXPECT_LT(moved, 1990);
+}
+
+// A hair half of whose strands run through two bodies.
+TEST_F(SkinLiftOnGpu, ShadersLiftAsTheCpuDoes) {
+  const synthetic::Hair hair = synthetic::makeHair();
+  render::HairInput input = synthetic::hairInput(hair, 2000);
+  input.look.curl_radius = 0.004f;
+  SkinEllipsoid shoulder = turnedEllipsoid();
+  for (auto& row : shoulder.to_ball)
+    row[3] = -Vector3f(row.data()).dot(Vector3f(0.06f, synthetic::kHeadHeight - 0.15f, -0.05f));
+  shoulder.home = {-0.5f, 2.5f, 0.8f};
+  const std::vector<SkinEllipsoid> skin{
+      synthetic::skinBall({0, synthetic::kHeadHeight, 0}, synthetic::kHeadRadius + 0.004f), shoulder};
+  input.skin = skin;
+  Compared compared;
+  compareLifts(input, compared);
+  EXPECT_LE(compared.other, 3);  // roots on the border of two clumps, where the last bit decides
+  EXPECT_GT(compared.moved, 500);
+  EXPECT_LT(compared.moved, 1990);
+}
+
+TEST_F(SkinLiftOnGpu, ShadersLiftOutOfGridsAsTheCpuDoes) {
+  const synthetic::Hair hair = synthetic::makeHair();
+  render::HairInput input = synthetic::hairInput(hair, 2000);
+  const std::vector<SkinEllipsoid> skin{
+      synthetic::skinBall({0, synthetic::kHeadHeight, 0}, synthetic::kHeadRadius + 0.004f)};
+  const BoxGrid box({-0.07f, synthetic::kHeadHeight - 0.1f, -0.05f}), far({5, 5, 5});
+  std::vector<SkinGrid> grids{far.grid, box.grid};
+  grids[0].id = 8;
+  input.skin = skin;
+  input.skin_grids = grids;
+  Compared compared;
+  compareLifts(input, compared);
+  EXPECT_LE(compared.other, 40);  // and points as deep on two sides of the box
+  EXPECT_GT(compared.moved, 300);
+  EXPECT_LT(compared.moved, 1990);
 }
 
 }  // namespace skin_lift_test

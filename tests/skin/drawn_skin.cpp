@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <numeric>
 
 #include "render/body/skinning.h"
@@ -16,9 +17,8 @@ namespace skin {
 namespace {
 
 // Not along the axes, that a mesh's edges like to follow.
-const std::array<Vector3f, 3> kDirections{Vector3f(0.9741f, 0.1303f, 0.1850f).normalized(),
-                                          Vector3f(-0.1711f, 0.9562f, -0.2374f).normalized(),
-                                          Vector3f(0.2218f, -0.1417f, -0.9647f).normalized()};
+const std::array<Vector3f, 2> kDirections{Vector3f(0.9741f, 0.1303f, 0.1850f).normalized(),
+                                          Vector3f(-0.1711f, 0.9562f, -0.2374f).normalized()};
 
 // Piece of every vertex: vertices at one place of the rest pose, and those of a triangle, belong together.
 std::vector<int> piecesOf(const render::BodyInput& body, int& count) {
@@ -82,6 +82,20 @@ float triangleDistance(const Vector3f& p, const Vector3f& a, const Vector3f& b, 
   return std::min({segmentDistance(p, a, b), segmentDistance(p, b, c), segmentDistance(p, c, a)});
 }
 
+// How often triangles go round a point: 1 inside a closed piece, 0 outside; of an open one the share of all directions
+// in which its inside is seen (van Oosterom and Strackee 1983).
+double windingNumber(const Vector3f& p, const std::vector<std::uint32_t>& triangles,
+                     const std::vector<Vector3f>& vertices) {
+  double angle = 0;
+  for (std::size_t t = 0; t + 2 < triangles.size(); t += 3) {
+    const auto to = [&](std::size_t k) { return (vertices[triangles[t + k]] - p).cast<double>().eval(); };
+    const Eigen::Vector3d a = to(0), b = to(1), c = to(2);
+    const double x = a.norm(), y = b.norm(), z = c.norm();
+    angle += 2 * std::atan2(a.dot(b.cross(c)), x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y);
+  }
+  return angle / (4 * std::numbers::pi);
+}
+
 bool visitTriangle(RTCPointQueryFunctionArguments* args) {
   Nearest& nearest = *static_cast<Nearest*>(args->userPtr);
   if (args->geomID != nearest.piece) return false;
@@ -103,7 +117,7 @@ struct DrawnSkin::Tree {
   RTCDevice device = rtcNewDevice(nullptr);
   RTCScene scene = rtcNewScene(device);
   std::vector<std::vector<std::uint32_t>> triangles;  // per piece
-  mutable std::array<std::vector<int>, 3> windings;   // per direction and piece
+  mutable std::array<std::vector<int>, 2> windings;   // per direction and piece
 
   ~Tree() {
     rtcReleaseScene(scene);
@@ -156,15 +170,13 @@ float DrawnSkin::depth(const Vector3f& p) const {
     rtcIntersect1(tree_->scene, &context, &ray);
     return std::any_of(windings.begin(), windings.end(), [](int w) { return w > 0; });
   };
-  // Two of three.
+  // Rays are quick and holes lead them astray: where one of two finds the inside all triangles are asked.
   const bool first = cross(0), second = cross(1);
   if (!first && !second) return 0;
-  cross(2);
   float deepest = 0;
   for (unsigned piece = 0; piece < tree_->triangles.size(); ++piece) {
-    int inside = 0;
-    for (const auto& windings : tree_->windings) inside += windings[piece] > 0;
-    if (inside < 2) continue;
+    if (tree_->windings[0][piece] <= 0 && tree_->windings[1][piece] <= 0) continue;
+    if (windingNumber(p, tree_->triangles[piece], vertices_) < 0.5) continue;
     RTCPointQuery query{p.x(), p.y(), p.z(), 0, std::numeric_limits<float>::infinity()};
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);

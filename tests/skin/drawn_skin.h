@@ -24,7 +24,8 @@ class DrawnSkin {
   DrawnSkin(DrawnSkin&&) noexcept;
 
   // m under the skin; 0 outside. Of a point in several pieces, the largest of the depths. A piece holds the point if
-  // two of three rays cross its triangles outwards more often than inwards, so that small holes do no harm. Error:
+  // it goes round it in more than half of all directions, so that holes do no harm; only points that one of two rays
+  // finds inside are asked for. Error:
   // single precision, 1e-6 m for coordinates of a few metres.
   float depth(const Vector3f& p) const;
   const std::vector<Vector3f>& vertices() const { return vertices_; }

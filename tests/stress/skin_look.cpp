@@ -32,7 +32,7 @@ render::BodyInput bodyOf(const app::Actor& actor, std::span<const render::Mat4> 
 struct SkinLook::Impl {
   render::StrandGrowth growth;
   std::vector<render::Mat4> joints;
-  std::vector<render::SkinEllipsoid> ellipsoids;
+  app::ShownSkin skin;
   std::vector<float> positions;
   std::vector<render::CurvePoint> strand;
 };
@@ -53,9 +53,9 @@ void SkinLook::look(const app::Actor& actor, std::span<const sim::Vec3> hair, Sk
   const sim::Vec3 origin = hair.front();
   app::blendPositions(hair, hair, 0, origin, my.positions);
   app::jointMatrices(character.skeleton, actor.pose, origin, my.joints);
-  app::skinEllipsoids(character, actor.pose, origin, my.ellipsoids);
+  app::showSkin(character, actor.body->unfit_parts, actor.pose, origin, my.skin);
   if (!my.growth.setPositions(my.positions)) return;  // not finite, or of another hair
-  my.growth.setSkin(my.ellipsoids);
+  my.growth.setSkin(my.skin.ellipsoids, my.skin.grids);
   const skin::DrawnSkin skin(bodyOf(actor, my.joints));
   for (int number = 0; number < my.growth.strandCount(); ++number) {
     const int count = my.growth.growDrawn(my.growth.strand(number), my.strand);

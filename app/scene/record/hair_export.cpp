@@ -127,8 +127,7 @@ const Groom& StrandExport::groom(const Demo& demo, double unit) {
       throw OutputError("export", "the hair of character " + std::to_string(a + 1) + " was exchanged during the run",
                         "export without changing style or hair mesh");
     }
-    grown.growth.setSkin(actor.spec.look.lift_strands ? std::span<const render::SkinEllipsoid>(actor.shown_skin)
-                                                      : std::span<const render::SkinEllipsoid>());
+    grown.growth.setSkin(input.skin, input.skin_grids);
     if (what_ == ExportWhat::kGuides) {
       const std::size_t first = groom_.strand_first[grown.first_strand];
       const float width = 2 * actor.spec.look.hair.strand_radius;

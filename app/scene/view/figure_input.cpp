@@ -25,7 +25,10 @@ render::HairInput hairInput(const Actor& actor, const CharacterLook& look, std::
   input.segments_per_layer = look.segments_per_layer;
   input.look = look.hair;
   input.shares = actor.haircut->look_shares.shares();
-  if (look.lift_strands) input.skin = actor.shown_skin;
+  if (look.lift_strands) {
+    input.skin = actor.shown_skin.ellipsoids;
+    input.skin_grids = actor.shown_skin.grids;
+  }
   const render::GroomOffsets& offsets = actor.haircut->offsets;
   if (!offsets.empty() && positions.size() == actor.haircut->rest.size()) {
     offsets.add(positions, drawn);

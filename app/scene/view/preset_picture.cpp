@@ -106,11 +106,14 @@ render::FrameInput presetFrame(const Demo& demo, const std::vector<Vec3>& positi
                         : positions;
   blendPositions(hair, hair, 1, Vec3::Zero(), preset.positions);
   jointMatrices(character.skeleton, preset.pose, Vec3::Zero(), preset.joints);
-  skinEllipsoids(character, preset.pose, Vec3::Zero(), preset.skin);
+  showSkin(character, actor.body->unfit_parts, preset.pose, Vec3::Zero(), preset.skin);
   const bool strands = preset.scene.view.show_strands;
   preset.hairs = {hairInput(actor, preset.look, preset.positions, preset.drawn)};
   preset.hairs[0].position_revision = revision;
-  if (preset.look.lift_strands) preset.hairs[0].skin = preset.skin;
+  if (preset.look.lift_strands) {
+    preset.hairs[0].skin = preset.skin.ellipsoids;
+    preset.hairs[0].skin_grids = preset.skin.grids;
+  }
   preset.bodies = {bodyInput(actor, preset.look, strands)};
   preset.bodies[0].joint_matrices = preset.joints;
   preset.worn.clear();

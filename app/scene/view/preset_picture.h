@@ -30,7 +30,7 @@ struct PresetScene {
   std::vector<float> positions, drawn;
   std::vector<render::Mat4> bands;
   std::vector<render::Mat4> joints, worn;
-  std::vector<render::SkinEllipsoid> skin;
+  ShownSkin skin;
   std::vector<render::HairInput> hairs;
   std::vector<render::BodyInput> bodies;
 };

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <filesystem>
 
+#include "app/figure/body_sdf.h"
 #include "app/figure/character_build.h"
+#include "app/figure/signed_grid.h"
 #include "app/figure/skin_samples.h"
 #include "app/scene/sim_to_render.h"
 
@@ -46,7 +48,15 @@ void addBall(int joint, const Vec3& center, double (*radius)(const Vec3&), app::
   }
 }
 
-app::Character humpedFigure() {
+double headRadius(const Vec3&) {
+  return 0.12;
+}
+
+double boxRadius(const Vec3& d) {
+  return 0.12 / d.cwiseAbs().maxCoeff();
+}
+
+app::Character humpedFigure(double (*head_radius)(const Vec3&) = headRadius) {
   app::Character c;
   const Vec3 trunk(0, 1.2, 0), head(0, 1.54, 0);
   for (const auto& [name, place] : {std::pair("chest", trunk), std::pair("head", head)}) {
@@ -58,8 +68,7 @@ app::Character humpedFigure() {
   c.head_joint = 1;
   c.scalp.head_height = 0.24;
   addBall(0, trunk, trunkRadius, c);
-  addBall(
-      1, head, [](const Vec3&) { return 0.12; }, c);
+  addBall(1, head, head_radius, c);
   std::vector<app::BodyPart> parts(2);
   const std::vector<app::FitPoint> points = app::surfacePoints(c.mesh);
   for (std::size_t v = 0; v < points.size(); ++v) parts[c.mesh.joints[v][0]].points.push_back(points[v]);
@@ -142,6 +151,54 @@ TEST(SkinCover, CoversTheMannequinsMouthAndChin) {
   EXPECT_GT(looked, 100);
 }
 
+// A head that is a box: signed distances of it in place of its ellipsoid, and the trunk covered as before.
+TEST(SkinCover, ABoxIsSetApart) {
+  app::Character c = humpedFigure(boxRadius);
+  ASSERT_GT(sticksOut(c, 1), 0.03);
+  const app::CoverReport report = app::coverSkin(c);
+  EXPECT_EQ(report.unfit, "head");
+  EXPECT_LT(report.after, 0.003);
+  for (const app::BodyEllipsoid& e : c.ellipsoids) EXPECT_EQ(e.by_distances, e.joint == 1) << e.name;
+  const std::vector<app::PartDistance> parts = app::unfitPartDistances(c);
+  ASSERT_EQ(parts.size(), 1u);
+  EXPECT_EQ(parts[0].joint, 1);
+  for (const Vec3& d : {Vec3(1, 0.2, -0.3), Vec3(0.3, -0.9, 0.4), Vec3(0.1, -0.2, 1)}) {
+    const Vec3 skin = boxRadius(d.normalized()) * d.normalized();
+    EXPECT_NEAR(parts[0].grid.interpolate(skin), 0, 0.003) << d.transpose();
+    EXPECT_LT(parts[0].grid.interpolate(0.8 * skin), -0.008) << d.transpose();
+  }
+
+  app::ShownSkin shown;
+  app::showSkin(c, parts, app::restPose(c.skeleton), Vec3::Zero(), shown);
+  EXPECT_EQ(shown.ellipsoids.size(), c.ellipsoids.size() - 1);
+  EXPECT_EQ(shown.grids.size(), 1u);
+}
+
+// Within pieces that lie in one another distances are to the surface of both together.
+TEST(SignedGrid, PiecesAreOneSolid) {
+  const auto grid = [](app::Pieces pieces) {
+    app::Character c;
+    addBall(
+        0, Vec3(-0.05, 0, 0), [](const Vec3&) { return 0.1; }, c);
+    addBall(
+        0, Vec3(0.05, 0, 0), [](const Vec3&) { return 0.1; }, c);
+    std::vector<app::Triangle> triangles;
+    for (std::size_t t = 0; t + 2 < c.mesh.triangles.size(); t += 3) {
+      app::Triangle& corners = triangles.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k) corners[k] = c.mesh.positions[c.mesh.triangles[t + k]].cast<double>();
+    }
+    app::SignedGrid filled = app::layOutGrid(Vec3(-0.2, -0.15, -0.15), Vec3(0.2, 0.15, 0.15), 0.005);
+    app::fillGrid(triangles, 0.0125, pieces, filled);
+    return filled;
+  };
+  const app::SignedGrid one = grid(app::Pieces::kOneSolid), all = grid(app::Pieces::kAll);
+  const Vec3 middle(0.05, 0, 0), border(-0.148, 0, 0), off(0, 0.12, 0);
+  EXPECT_NEAR(one.interpolate(middle), -0.086, 0.012);  // to the ring where both meet, or the far side
+  EXPECT_NEAR(all.interpolate(middle), 0, 0.005);       // the other one's side runs through it
+  EXPECT_NEAR(one.interpolate(border), -0.002, 0.001);
+  EXPECT_NEAR(one.interpolate(off), all.interpolate(off), 1e-6);
+}
+
 // Hair is rooted on the head and lies on it; the neck below the nape's hairline bends, and is covered like the trunk.
 TEST(SkinCover, TheNeckIsNotOfTheHead) {
   const app::Character c = app::loadCharacter(HAIRMESH_SOURCE_DIR "/assets/clips/walk.bvh", "");
@@ -166,8 +223,9 @@ TEST(SkinCover, TheNeckIsNotOfTheHead) {
 // Strands that run through an ellipsoid are led to the head over a shoulder, but not up through the neck.
 TEST(SkinEllipsoids, LeadToTheHeadWhereTheWayThereIsFree) {
   const app::Character c = app::loadCharacter(HAIRMESH_SOURCE_DIR "/assets/clips/walk.bvh", "");
-  std::vector<render::SkinEllipsoid> skin;
-  app::skinEllipsoids(c, app::restPose(c.skeleton), Vec3::Zero(), skin);
+  app::ShownSkin shown;
+  app::showSkin(c, {}, app::restPose(c.skeleton), Vec3::Zero(), shown);
+  const std::vector<render::SkinEllipsoid>& skin = shown.ellipsoids;
   ASSERT_EQ(skin.size(), c.ellipsoids.size());
   int shoulders = 0, necks = 0;
   for (std::size_t e = 0; e < skin.size(); ++e) {
