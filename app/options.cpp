@@ -440,7 +440,7 @@ void refuseBesideReplay(const CLI::App& parser, const Options& options) {
     const std::string name = option->get_single_name(), group = option->get_group();
     const bool of_scene = group == "What is shown" || group == "Playback" || name == "scene" || name == "frames" ||
                           name == "camera" || name == "framing" || name == "turntable" || name == "strands" ||
-                          name == "strand-path";
+                          name == "strand-path" || name == "write-hair";
     if (option->count() > 0 && of_scene) unused += (unused.empty() ? "" : ", ") + option->get_name();
   }
   if (!unused.empty()) {

@@ -59,7 +59,8 @@ void wake(const SimParams& params, const StepInput& input, const HairState& stat
 
 bool maySleep(const SimParams& params, const StepInput& input, double dt, const HairState& state, SleepState& sleep) {
   if (airChanges(params) || !inputsStayed(input, sleep) || !sameParams(params, sleep.params) ||
-      state.positions.size() != sleep.begin.size()) {
+      state.positions.size() != sleep.begin.size() || state.memory.material.slices > 0 ||
+      state.memory.material.outdated) {
     wake(params, input, state, sleep);
     return false;
   }

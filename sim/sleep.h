@@ -31,8 +31,8 @@ struct SleepState {
 };
 
 // Whether the coming step may be left out. Call before every step with its input. Wakes when roots, colliders or pins
-// move, a parameter or a position changes, or gusts are on. Allocates only when the number of vertices, roots or
-// ellipsoids changes.
+// move, a parameter or a position changes, the balance of gravity is being solved for, or gusts are on. Allocates only
+// when the number of vertices, roots or ellipsoids changes.
 bool maySleep(const SimParams& params, const StepInput& input, double dt, const HairState& state, SleepState& sleep);
 
 }  // namespace sim

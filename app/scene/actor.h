@@ -20,6 +20,7 @@
 #include "app/motion/playback.h"
 #include "app/scene/braid/braid_plan.h"
 #include "app/scene/detail/step_error.h"
+#include "app/scene/edit/cut_stroke.h"
 #include "app/scene/edit/painted_fields.h"
 #include "app/scene/pins.h"
 #include "app/scene/sim_to_render.h"
@@ -78,6 +79,7 @@ struct Haircut {
   std::vector<float> frozen;  // per vertex: share of a brush's way that it does not go; empty: none
   std::optional<sim::RestShape> reshape;
   mutable std::optional<ShapeBrushes> brushes;  // scratch
+  std::optional<CutStroke> cut;                 // the one that is being drawn
 };
 
 // Where a body is scalp among the roots of a haircut; see root_cover.h.

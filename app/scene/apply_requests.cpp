@@ -13,6 +13,7 @@
 #include "app/scene/attachments.h"
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
+#include "app/scene/edit/cut_stroke.h"
 #include "app/scene/edit/groom_brush.h"
 #include "app/scene/edit/mesh_change.h"
 #include "app/scene/edit/paint_brush.h"
@@ -419,7 +420,11 @@ constexpr Action kActions[] = {
      [](const Request& request, Demo& demo) { demo.turntable = std::clamp(request.value, -10.0, 10.0); }},
     {Ask::kUndo, [](const Request& request, Demo& demo) { undoEdits(stepsOf(request), demo); }},
     {Ask::kRedo, [](const Request& request, Demo& demo) { redoEdits(stepsOf(request), demo); }},
-    {Ask::kEndGesture, [](const Request&, Demo& demo) { demo.edits.gesture = false; }},
+    {Ask::kEndGesture,
+     [](const Request&, Demo& demo) {
+       demo.edits.gesture = false;
+       for (std::size_t i = 0; i < demo.actors.size(); ++i) finishCut(static_cast<int>(i), demo);
+     }},
     {Ask::kCompare, compare},
     {Ask::kCompareView,
      [](const Request& request, Demo& demo) {

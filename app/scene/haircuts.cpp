@@ -192,7 +192,8 @@ void dressWhereThereIsRoom(const CharacterSpec& spec, const LoadedBody& body, st
                      "the hair is too short: it ends up to " + centimetres(lacks) + " before the ring",
                      elsewhere + ", or take longer hair");
   throw InputError("", tieTitle(spec.ties), "leaves the hair no room in its ring",
-                   elsewhere + ", or take a wider ring or a coarser hair mesh (low)");
+                   elsewhere + ", or take a wider ring" +
+                       (spec.resolution == Resolution::kLow ? "" : " or a coarser hair mesh (low)"));
 }
 
 // Measured with the hats of assets/attachments on bob and pixie.

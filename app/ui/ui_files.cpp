@@ -262,7 +262,8 @@ void filePanel(Demo& demo, UiState& ui) {
     ImGui::TextUnformatted(purposeOf(ui.browser.what).title);
     ImGui::PopTextWrapPos();
     if (ui.browser.what == BrowseFor::kSaveScene) {
-      ImGui::Checkbox("As a project", &ui.browser.project);
+      // The keyboard goes on to the name.
+      if (ImGui::Checkbox("As a project", &ui.browser.project)) ui.browser.opened = true;
       noteItem("as_project", ui);
       tip("With the hair as it moves and its brushed shape");
     }

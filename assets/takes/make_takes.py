@@ -40,8 +40,8 @@ def ring(height, radius, n, start=1.0, end=2 * math.pi - 1.0):
 
 
 def chin_bob():
-    """Cut level with the chin, all around; ends drawn in; a fringe painted short."""
-    for p in ring(-0.035, 0.105, 24):
+    """Long hair cut level with the chin, all around; ends drawn in; a fringe painted short."""
+    for p in ring(-0.075, 0.105, 40):
         yield [brush("cut", p, radius=0.06, strength=0.9)]
     yield [ask("end-gesture")]
     for p in ring(0.02, 0.09, 24):
@@ -85,6 +85,7 @@ def half_up():
     yield [ask("end-gesture")]
     for p in ring(-0.15, 0.10, 20, 2.4, 2 * math.pi - 2.4):
         yield [brush("cut", p, radius=0.09, strength=0.5)]
+    yield [ask("end-gesture")]
 
 
 def under_the_beanie():
@@ -100,7 +101,7 @@ def under_the_beanie():
 
 
 TAKES = {
-    "chin_bob": (scene("Chin bob", "shoulder"), chin_bob),
+    "chin_bob": (scene("Chin bob", "long"), chin_bob),
     "crest": (scene("Crest", "short"), crest),
     "side_sweep": (scene("Side sweep", "long"), side_sweep),
     "half_up": (scene("Half up", "long"), half_up),

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kResidual = 2e-10;  // of a vertex's weight
 constexpr int kMaxIterations = 3000;
+constexpr int kReshapeWait = 5;  // steps: a stroke changes the shape again
 
 V3<double> plain(const Vec3& p) {
   return {p.x(), p.y(), p.z()};
@@ -163,13 +164,13 @@ void Material::reshape() {
   rebuild();
   balance_ = std::move(kept);
   applyBalance();
-  memory_.slices = 0;
+  memory_.slices = -kReshapeWait;
   memory_.outdated = wantedLoad() > 0;
 }
 
 bool Material::work() {
   if (!solving_) {
-    if (memory_.outdated) beginBalance();
+    if (memory_.outdated && ++memory_.slices > 0) beginBalance();
     return false;
   }
   ++memory_.slices;

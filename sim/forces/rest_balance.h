@@ -44,7 +44,7 @@ struct Material {
 
   // Goes on with the solve for the balance of the last parameters by kSlice iterations; answers whether `model` has
   // just changed. A parameter that changes meanwhile lets the solve finish and begin again.
-  static constexpr int kSlice = 8;
+  static constexpr int kSlice = 32;
   bool work();
   bool outdated() const { return memory_.outdated || solving_; }
 

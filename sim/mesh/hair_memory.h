@@ -62,7 +62,7 @@ struct MaterialMemory {
   SimParams params;    // of the last step
   SimParams balanced;  // for which the balance of gravity in use was solved
   SimParams coming;    // for which the next one is being solved
-  int slices = 0;      // of that solve that are done; 0: none is under way
+  int slices = 0;      // of that solve that are done; 0: none is under way; below: so many steps before it begins
   bool outdated = false;
   HAIRMESH_FIELDS(known, params, balanced, coming, slices, outdated)
 };

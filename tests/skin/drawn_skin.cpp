@@ -16,6 +16,8 @@
 namespace skin {
 namespace {
 
+constexpr float kAtSkin = 0.0005f;  // m: nothing hangs on points so near
+
 // Not along the axes, that a mesh's edges like to follow.
 const std::array<Vector3f, 2> kDirections{Vector3f(0.9741f, 0.1303f, 0.1850f).normalized(),
                                           Vector3f(-0.1711f, 0.9562f, -0.2374f).normalized()};
@@ -170,18 +172,18 @@ float DrawnSkin::depth(const Vector3f& p) const {
     rtcIntersect1(tree_->scene, &context, &ray);
     return std::any_of(windings.begin(), windings.end(), [](int w) { return w > 0; });
   };
-  // Rays are quick and holes lead them astray: where one of two finds the inside all triangles are asked.
+  // Rays are quick and holes lead them astray: of points deep inside by one of two all triangles are asked.
   const bool first = cross(0), second = cross(1);
   if (!first && !second) return 0;
   float deepest = 0;
   for (unsigned piece = 0; piece < tree_->triangles.size(); ++piece) {
     if (tree_->windings[0][piece] <= 0 && tree_->windings[1][piece] <= 0) continue;
-    if (windingNumber(p, tree_->triangles[piece], vertices_) < 0.5) continue;
     RTCPointQuery query{p.x(), p.y(), p.z(), 0, std::numeric_limits<float>::infinity()};
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     Nearest nearest{piece, std::numeric_limits<float>::infinity(), &tree_->triangles, &vertices_};
     rtcPointQuery(tree_->scene, &query, &context, nullptr, &nearest);
+    if (nearest.distance > kAtSkin && windingNumber(p, tree_->triangles[piece], vertices_) < 0.5) continue;
     deepest = std::max(deepest, nearest.distance);
   }
   return deepest;

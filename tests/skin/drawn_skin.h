@@ -24,8 +24,8 @@ class DrawnSkin {
   DrawnSkin(DrawnSkin&&) noexcept;
 
   // m under the skin; 0 outside. Of a point in several pieces, the largest of the depths. A piece holds the point if
-  // it goes round it in more than half of all directions, so that holes do no harm; only points that one of two rays
-  // finds inside are asked for. Error:
+  // it goes round it in more than half of all directions, so that holes do no harm; rays sort
+  // out what is outside, and tell of what is 0.5 mm or less inside. Error:
   // single precision, 1e-6 m for coordinates of a few metres.
   float depth(const Vector3f& p) const;
   const std::vector<Vector3f>& vertices() const { return vertices_; }

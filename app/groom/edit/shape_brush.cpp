@@ -131,6 +131,7 @@ void ShapeBrushes::scaleColumns(const Brush& brush, const sim::HairMesh& mesh, s
     const double weight = weight_[nearest];
     if (nearest == first || weight == 0) continue;
     const double length = columnLength(x, first, last);
+    const double counts = brush.lengths.empty() ? length : brush.lengths[static_cast<std::size_t>(c)];
     double wanted = length * (1 + kGrow * weight);
     if (brush.tool == BrushTool::kCut) {
       // Where along the column the brush is: its nearest vertex, and the way from there along the hair as seen.
@@ -141,21 +142,19 @@ void ShapeBrushes::scaleColumns(const Brush& brush, const sim::HairMesh& mesh, s
         at += std::clamp((brush.at - seen[nearest]).dot(way) / std::max(1e-9, way.norm()), -0.5 * way.norm(),
                          0.5 * way.norm());
       }
-      wanted = length - weight * std::max(0.0, length - at);
+      wanted = counts - weight * std::max(0.0, counts - at);
     }
     const double shortest = std::min(length, brush.shortest), longest = std::max(length, brush.longest);
-    const double scale = std::clamp(wanted, shortest, longest) / length;
+    double& asked = asked_[static_cast<std::size_t>(c)];
+    asked = std::min(asked, std::clamp(wanted, shortest, longest));
+    const double scale = asked / length;
     if (scale == 1) continue;
-    // Cut hair keeps its curve: each vertex comes nearer the root along the old one. Grown hair keeps its bends.
+    // Hair keeps its curve: each vertex comes nearer the root along the old one, or goes on along it and beyond its tip.
     double passed = 0;
     int segment = first;
     double before = 0, along = (x[first + 1] - x[first]).norm();
     for (int v = first + 1; v < last; ++v) {
       passed += (x[v] - x[v - 1]).norm();
-      if (scale > 1) {
-        wanted_[v] = wanted_[v - 1] + scale * (x[v] - x[v - 1]);
-        continue;
-      }
       const double place = scale * passed;
       while (segment + 2 < last && before + along < place) {
         before += along;
@@ -287,6 +286,7 @@ int ShapeBrushes::apply(const Brush& brush, const sim::HairMesh& mesh, std::span
                         const std::function<double(const Vec3&)>& body, std::vector<Vec3>& positions) {
   const std::vector<Vec3>& x = mesh.shape.positions;
   wanted_.assign(x.begin(), x.end());
+  asked_.assign(static_cast<std::size_t>(mesh.columnCount()), INFINITY);
   for (const bool other : {false, true}) {
     if (other && !brush.mirror) break;
     const Brush here = other ? onOtherSide(brush) : brush;

@@ -20,7 +20,7 @@ using Vec3 = Eigen::Vector3d;
 enum class BrushTool {
   kComb,    // along the stroke; lengths stay
   kCut,     // columns end nearer the brush
-  kGrow,    // columns become longer in their own shape
+  kGrow,    // columns become longer, straight on from their tips
   kSmooth,  // towards the mean of the neighbours; lengths stay
   kPuff,    // away from the head's middle; lengths stay
   kPinch,   // towards the middle of what it reaches, across the hair; lengths stay
@@ -49,6 +49,7 @@ struct Brush {
   Vec3 centre = Vec3::Zero();             // the head's middle, that puffing leads away from
   std::span<const float> frozen{};        // share of its way that each vertex does not go; empty: none is frozen
   double shortest = 0.03, longest = 1.2;  // m, columns that are cut and grown
+  std::span<const double> lengths{};      // m, that columns count as before a cut; empty: their own
 };
 
 // How much a brush reaches of a vertex seen at a place: 0 outside, 1 in the middle.
@@ -89,12 +90,14 @@ class ShapeBrushes {
            const std::function<double(const Vec3&)>& body, std::vector<Vec3>& positions);
 
   HeldBy heldBy() const { return held_by_; }
+  // m, that the last cut or growth asked of each column; infinite: nothing. Prisms may have held it longer.
+  const std::vector<double>& askedLengths() const { return asked_; }
 
  private:
   std::vector<int> neighbour_first_, neighbours_;  // of each vertex: within its layer, and in its column
   std::vector<double> weight_, share_;             // scratch: reach; how much of its way each vertex goes
   std::vector<Vec3> wanted_;
-  std::vector<double> went_;
+  std::vector<double> went_, asked_;
   std::vector<unsigned char> touched_;
   std::vector<int> tets_;
   std::array<int, static_cast<std::size_t>(HeldBy::kCount)> spoilt_{};  // vertices by HeldBy

@@ -73,16 +73,6 @@ void dropWhatIsOfTheOldShape(Haircut& own, Actor& actor, AssetCache& asset_cache
   std::erase_if(asset_cache.pairs, [&](const auto& pair) { return pair->fine == &own; });
 }
 
-// Hair that no step moves while it is reshaped shows the change at once: every vertex goes as far as its rest position
-// has gone from `before` (m, head frame). What is left of the way is the next step's.
-void moveWithShape(const std::vector<Vec3>& before, Actor& actor) {
-  const std::vector<Vec3>& shape = actor.haircut->mesh.shape.positions;
-  const Rigid head = scalpToWorld(actor.body->character, actor.pose);
-  for (std::size_t v = 0; v < shape.size(); ++v) actor.hair.positions[v] += head.linear() * (shape[v] - before[v]);
-  actor.hair.previous_dt = 0;
-  actor.previous_positions = actor.hair.positions;
-}
-
 // Makes the rest quantities of a shape and what is painted. What moves goes on moving. Throws InputError where a prism
 // would not be positive; then nothing has changed.
 Haircut& setRest(const std::vector<Vec3>& positions, Actor& actor, Demo& demo) {
@@ -103,7 +93,8 @@ Haircut& remake(const std::vector<Vec3>& positions, int index, Demo& demo) {
   Actor& actor = demo.actors[static_cast<std::size_t>(index)];
   const std::vector<Vec3> before = actor.haircut->mesh.shape.positions;
   Haircut& own = setRest(positions, actor, demo);
-  if (demo.paused) moveWithShape(before, actor), demo.shown_fraction = -1;
+  carryWithShape(before, actor);
+  if (demo.paused) demo.shown_fraction = -1;
   keepEarlierMoments(index, before, demo);
   return own;
 }
@@ -229,6 +220,23 @@ ShapeBrushes& handsOn(const Actor& actor) {
   return *actor.haircut->brushes;
 }
 
+namespace {
+
+bool asksForLess(const ShapeBrushes& brushes, const CutStroke& stroke) {
+  const std::vector<double>& asked = brushes.askedLengths();
+  for (std::size_t c = 0; c < asked.size(); ++c)
+    if (asked[c] < stroke.lengths[c] - 1e-6) return true;
+  return false;
+}
+
+const char* whatStays(BrushTool tool) {
+  if (tool == BrushTool::kCut) return "hair there ends before the ring, is as short as it may be (3 cm), or frozen";
+  if (tool == BrushTool::kGrow) return "hair there is as long as it may be (1.2 m), or frozen";
+  return "hair there is frozen, or has no room to go";
+}
+
+}  // namespace
+
 void applyBrush(const BrushSample& sample, int index, Demo& demo) {
   const Actor& actor = demo.actors[static_cast<std::size_t>(index)];
   const sim::HairMesh& mesh = actor.haircut->mesh;
@@ -246,8 +254,18 @@ void applyBrush(const BrushSample& sample, int index, Demo& demo) {
   if (sample.tool == BrushTool::kFreeze || sample.tool == BrushTool::kThaw)
     return paintFrozen(brush, seen, index, demo);
   brush.frozen = actor.haircut->frozen;
-  const int moved = handsOn(actor).apply(brush, mesh, seen, actor.body->distance, positions);
+  const bool cuts = sample.tool == BrushTool::kCut;
+  if (cuts) brush.lengths = cutLengths(mesh.shape, ownHaircut(demo.actors[static_cast<std::size_t>(index)], demo).cut);
+  ShapeBrushes& brushes = handsOn(actor);
+  const int moved = brushes.apply(brush, actor.haircut->mesh, seen, actor.body->distance, positions);
+  const bool stays = moved == 0 && !(cuts && asksForLess(brushes, *actor.haircut->cut));
+  if (stays && sample.tool != BrushTool::kComb && !goesOn(Ask::kBrush, demo.edits))
+    throw InputError("", "the brush", "moves nothing", whatStays(sample.tool));
   if (moved > 0) reshapeHair(positions, index, demo);
+  if (cuts) {
+    Haircut& own = ownHaircut(demo.actors[static_cast<std::size_t>(index)], demo);
+    followCut(brushes.askedLengths(), own.mesh.shape, own.cut);
+  }
 }
 
 }  // namespace app

@@ -20,9 +20,14 @@ constexpr int kPictureWidth = 64, kPictureHeight = 32;  // pixels: 9 mm of scalp
 constexpr double kSpread = 0.12, kFarthestRoot = 0.45;  // rad: how far a root speaks for the scalp around it
 constexpr double kFarthestStroke = 100;                 // m
 constexpr double kNothing = 1e-3;                       // of a brush's weight
+constexpr float kCurlRadius = 0.006f;                   // m, of straight hair where it is painted
+
+FieldMap evenly(float value) {
+  return {kPictureWidth, kPictureHeight, std::vector<float>(kPictureWidth * kPictureHeight, value)};
+}
 
 FieldMap white() {
-  return {kPictureWidth, kPictureHeight, std::vector<float>(kPictureWidth * kPictureHeight, 1)};
+  return evenly(1);
 }
 
 // A picture at the brushes' resolution.
@@ -111,6 +116,16 @@ std::string painted(const PaintSample& sample, const std::vector<TouchedRoot>& r
   return pictureText(map);
 }
 
+// Straight hair has no curls that paint could make less: they come where they are painted, and nowhere else. Returns
+// whether it was straight.
+bool curlStraightHair(const PaintSample& sample, std::string& picture, Actor& actor) {
+  float& radius = actor.spec.look.hair.curl_radius;
+  if (sample.field != "curl" || sample.value == 0 || radius != 0 || !picture.empty()) return false;
+  picture = pictureText(evenly(0));
+  radius = kCurlRadius;
+  return true;
+}
+
 // Faces, or shares of the look, have changed.
 void drawAnew(Haircut& own, Actor& actor) {
   own.id = freshId();
@@ -191,13 +206,14 @@ PaintSample parsePaint(const std::string& field, const std::string& text) {
 }
 
 void applyPaint(const PaintSample& sample, int index, Demo& demo) {
-  const Actor& actor = demo.actors[static_cast<std::size_t>(index)];
+  Actor& actor = demo.actors[static_cast<std::size_t>(index)];
   const std::vector<TouchedRoot> roots = touchedRoots(sample, actor);
   const bool off_hair = std::ranges::none_of(roots, [](const TouchedRoot& root) { return root.weight > kNothing; });
   if (off_hair && goesOn(Ask::kPaint, demo.edits)) return;
   if (off_hair) throw InputError("", "the paint", "reaches no hair", "move it onto the hair, or make the brush larger");
   FieldFiles maps = actor.spec.maps;
   std::string& picture = *findMap(sample.field, maps);
+  const bool curled = curlStraightHair(sample, picture, actor);
   picture = painted(sample, roots, picture);
   // As it will be read again.
   if (sample.field == "length") {
@@ -214,6 +230,8 @@ void applyPaint(const PaintSample& sample, int index, Demo& demo) {
   painted_actor.spec.maps = std::move(maps);
   if (std::string note = paintNote(sample.field, painted_actor.spec); !note.empty())
     demo.message = note, demo.message_is_fault = false;
+  else if (curled)
+    showMessage("curls of 6 mm where curl is painted; Look has their radius", demo);
 }
 
 void repaint(const FieldFiles& maps, const FieldCurves& curves, int index, Demo& demo) {

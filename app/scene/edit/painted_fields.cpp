@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "app/styles/style_untangle.h"
+#include "app/styles/style_shorten.h"
 
 namespace app {
 
@@ -11,49 +11,12 @@ using sim::Vec3;
 
 namespace {
 
-constexpr double kFatness = 0.05, kGap = 0.0025;  // see untangle; m
-constexpr double kFatEnough = 0.002;              // with less, lengths are softened more
+constexpr double kFatness = 0.05;                                                       // see shortenColumns
 constexpr double kMinBendShare = 0.02, kMinWidthShare = 0.1, kMinRoughnessShare = 0.2;  // that black leaves
-constexpr int kMaxRounds = 16;  // of untangling; evenly short hair takes the most
-// Least length of a column over that of any of its root face.
-constexpr std::array kSteepest{0.5, 0.65, 0.8, 0.9, 1.0};
 
 double atRoot(const FieldMap& map, const Scalp& scalp, const sim::HairMeshShape& shape, int column) {
   return map.at(shape.positions[static_cast<std::size_t>(shape.column_first[static_cast<std::size_t>(column)])] -
                 scalp.center);
-}
-
-// The column's points at the same shares of its first `share` of the way.
-void shorten(std::span<Vec3> x, double share) {
-  const std::vector<Vec3> old(x.begin(), x.end());
-  std::vector<double> passed{0};
-  for (std::size_t k = 1; k < old.size(); ++k) passed.push_back(passed.back() + (old[k] - old[k - 1]).norm());
-  std::size_t segment = 1;
-  for (std::size_t k = 1; k < old.size(); ++k) {
-    const double place = share * passed[k];
-    while (segment + 1 < old.size() && passed[segment] < place) ++segment;
-    const double within = (place - passed[segment - 1]) / (passed[segment] - passed[segment - 1]);
-    x[k] = old[segment - 1] + within * (old[segment] - old[segment - 1]);
-  }
-}
-
-// Raises shares until none is less than `step` times one of the same root face; whether any was.
-bool soften(const sim::HairMeshShape& shape, double step, std::vector<double>& shares) {
-  bool any = false;
-  for (bool raised = true; raised; any |= raised) {
-    raised = false;
-    for (const sim::RootFace& face : shape.root_faces) {
-      double most = 0;
-      for (int k = 0; k < face.corner_count; ++k)
-        most = std::max(most, shares[static_cast<std::size_t>(face.columns[k])]);
-      for (int k = 0; k < face.corner_count; ++k) {
-        double& share = shares[static_cast<std::size_t>(face.columns[k])];
-        raised |= share < step * most;
-        share = std::max(share, step * most);
-      }
-    }
-  }
-  return any;
 }
 
 }  // namespace
@@ -62,20 +25,7 @@ void paintLength(const FieldMap& map, const Scalp& scalp, const BodyDistance& bo
   std::vector<double> shares;
   for (int c = 0; c < shape.columnCount(); ++c)
     shares.push_back(kMinLength + (1 - kMinLength) * atRoot(map, scalp, shape, c));
-  if (*std::ranges::min_element(shares) >= 1) return;
-  const sim::HairMeshShape whole = shape;
-  for (const double step : kSteepest) {
-    if (!soften(whole, step, shares) && step > kSteepest.front()) continue;
-    shape.positions = whole.positions;
-    for (std::size_t c = 0; c < shares.size(); ++c)
-      shorten(std::span(shape.positions)
-                  .subspan(static_cast<std::size_t>(shape.column_first[c]),
-                           static_cast<std::size_t>(shape.columnLength(static_cast<int>(c)))),
-              shares[c]);
-    for (int round = 0; round < kMaxRounds; ++round) {
-      if (untangle(body, kFatness, kGap, shape) > kFatEnough) return;
-    }
-  }
+  shortenColumns(body, kFatness, shares, shape);
 }
 
 namespace {

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdio>
+
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
 #include "app/files/recording.h"
@@ -137,26 +140,99 @@ TEST(GroomBrush, WhilePausedAnEditIsSeenInTheNextFrame) {
   EXPECT_EQ(demo.actors[0].shown_positions, shown);
 }
 
-// Two seconds after the last stroke gravity is balanced in the new shape: what hangs still has not drooped.
+// Two seconds after the last stroke gravity is balanced in the new shape: what hangs still has not drooped. Of shares
+// of the hair's length: the mean of all vertices, and the worst one, which of hair that grew stands out from the head.
 TEST(GroomBrush, TwoSecondsAfterAnEditNothingHasDrooped) {
-  app::Scene scene = sceneOf(app::Resolution::kLow, "idle_turns.bvh");
-  scene.sim.collide = false;
-  app::Demo demo = app::openScene(std::move(scene), 1.5);
-  demo.actors[0].playback.paused = true;
-  for (int frame = 0; frame < 60; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
-  int tip = 0;
-  for (int frame = 0; frame < 20; ++frame) {
-    const sim::Vec3 at = frontTip(demo, tip);
-    demo.requests = {sampleAt(app::BrushTool::kPuff, at + sim::Vec3(0, 0.1, 0), sim::Vec3::Zero())};
-    app::advanceFrame(demo, 1.0 / 60, {});
+  for (const app::BrushTool tool : {app::BrushTool::kComb, app::BrushTool::kCut, app::BrushTool::kGrow,
+                                    app::BrushTool::kSmooth, app::BrushTool::kPuff, app::BrushTool::kPinch,
+                                    app::BrushTool::kSpread, app::BrushTool::kPush, app::BrushTool::kTwist}) {
+    app::Scene scene = sceneOf(app::Resolution::kMedium, "idle_turns.bvh");
+    scene.sim.collide = false;
+    app::Demo demo = app::openScene(std::move(scene), 1.5);
+    demo.actors[0].playback.paused = true;
+    for (int frame = 0; frame < 60; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
+    int tip = 0;
+    for (int frame = 0; frame < 20; ++frame) {
+      const sim::Vec3 at = frontTip(demo, tip);
+      demo.requests = {sampleAt(tool, at + sim::Vec3(0, 0.1, 0), sim::Vec3(0.003, 0.001, 0.004))};
+      if (frame == 19) demo.requests.push_back({Ask::kEndGesture, "", ""});
+      app::advanceFrame(demo, 1.0 / 60, {});
+    }
+    for (int frame = 0; frame < 120; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
+    const app::Actor& actor = demo.actors[0];
+    const app::Rigid head = app::scalpToWorld(actor.body->character, actor.pose);
+    double most = 0, sum = 0;
+    for (std::size_t v = 0; v < actor.hair.positions.size(); ++v) {
+      const double off = (actor.hair.positions[v] - head * actor.haircut->mesh.shape.positions[v]).norm();
+      most = std::max(most, off), sum += off;
+    }
+    const double length = actor.haircut->mesh.hair_length;
+    std::printf("%s: mean %.2f %%, worst %.2f %%\n", app::kBrushNames[static_cast<std::size_t>(tool)].data(),
+                100 * sum / static_cast<double>(actor.hair.positions.size()) / length, 100 * most / length);
+    EXPECT_LT(sum / static_cast<double>(actor.hair.positions.size()), 0.003 * length) << static_cast<int>(tool);
+    EXPECT_LT(most, 0.01 * length) << static_cast<int>(tool);
   }
-  for (int frame = 0; frame < 120; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
-  const app::Actor& actor = demo.actors[0];
-  const app::Rigid head = app::scalpToWorld(actor.body->character, actor.pose);
-  double most = 0;
-  for (std::size_t v = 0; v < actor.hair.positions.size(); ++v)
-    most = std::max(most, (actor.hair.positions[v] - head * actor.haircut->mesh.shape.positions[v]).norm());
-  EXPECT_LT(most, 0.05 * actor.haircut->mesh.hair_length);
+}
+
+// A stroke round the head, hair by hair as a hand makes it: every column then ends at the ring, however long its
+// neighbours were when their turn came.
+TEST(GroomBrush, ACutAllRoundTheHeadArrivesAtTheRing) {
+  constexpr double kRing = -0.02;  // m, scalp frame: at the chin
+  app::Demo demo = app::openScene(sceneOf(app::Resolution::kMedium, "idle_turns.bvh"), 1.5);
+  demo.actors[0].playback.paused = true;
+  for (int frame = 0; frame < 20; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
+  const auto lowest = [&] {
+    const sim::HairMesh& mesh = demo.actors[0].haircut->mesh;
+    double low = 1;
+    for (int c = 0; c < mesh.columnCount(); ++c)
+      low = std::min(
+          low, mesh.shape.positions[static_cast<std::size_t>(mesh.shape.column_first[std::size_t(c) + 1] - 1)].y());
+    return low;
+  };
+  ASSERT_LT(lowest(), kRing - 0.15);
+  for (int round = 0; round < 2; ++round) {
+    for (int k = 0; k < 60; ++k) {
+      const double turn = 1 + 4.283 * k / 59;
+      const sim::Vec3 away(std::sin(turn), 0, std::cos(turn));
+      const std::vector<sim::Vec3> seen = app::seenFromScalp(demo.actors[0]);
+      double farthest = 0;
+      sim::Vec3 at;
+      for (const sim::Vec3& p : seen) {
+        const sim::Vec3 flat(p.x(), 0, p.z());
+        const double out = flat.dot(away);
+        if (std::abs(p.y() - kRing) < 0.02 && (flat - out * away).norm() < 0.03 && out > farthest)
+          farthest = out, at = p;
+      }
+      if (farthest == 0) continue;
+      demo.requests = {sampleAt(app::BrushTool::kCut, at, sim::Vec3::Zero())};
+      app::advanceFrame(demo, 1.0 / 60, {});
+    }
+    demo.requests = {{Ask::kEndGesture, "", ""}};
+    app::advanceFrame(demo, 1.0 / 60, {});
+    ASSERT_FALSE(demo.message_is_fault) << demo.message;
+  }
+  EXPECT_GT(lowest(), kRing - 0.03);
+  for (const sim::CornerTet& tet : demo.actors[0].haircut->mesh.tets) EXPECT_GT(tet.rest_volume, 0);
+}
+
+TEST(GroomBrush, WhatMovesNothingSaysSoAndIsNoStep) {
+  app::Demo demo = app::openScene(sceneOf(app::Resolution::kLow, "idle_turns.bvh"), 1.5);
+  int tip = 0;
+  const sim::Vec3 at = frontTip(demo, tip);
+  for (int k = 0; k < 12; ++k) {
+    demo.requests = {sampleAt(app::BrushTool::kFreeze, at, sim::Vec3::Zero())};
+    app::advanceFrame(demo, 0, {});
+  }
+  demo.requests = {{Ask::kEndGesture, "", ""}};
+  app::advanceFrame(demo, 0, {});
+  const std::size_t steps = demo.edits.steps.size();
+  app::BrushSample narrow;
+  narrow.tool = app::BrushTool::kPuff, narrow.at = at, narrow.radius = 0.01, narrow.strength = 1;
+  demo.requests = {{Ask::kBrush, "puff", app::brushText(narrow)}};
+  app::advanceFrame(demo, 0, {});
+  EXPECT_TRUE(demo.message_is_fault);
+  EXPECT_NE(demo.message.find("moves nothing"), std::string::npos) << demo.message;
+  EXPECT_EQ(demo.edits.steps.size(), steps);
 }
 
 TEST(GroomBrush, AStrokeThatSlidesOffTheHairIsNoFault) {

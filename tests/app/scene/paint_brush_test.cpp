@@ -226,13 +226,31 @@ TEST(PaintBrush, WhatCannotBePaintedIsToldAndStays) {
   told({Ask::kMap, "curl", "walk.bvh"}, "walk.bvh");
 }
 
-TEST(PaintBrush, CurlsOfHairWithoutAnyAreTold) {
+// Straight hair curls where it is painted, and nowhere else; undone, it is straight again. Less of no curls is told.
+TEST(PaintBrush, StraightHairCurlsWhereItIsPainted) {
   app::Demo demo = open(test::smallScene("walk.bvh"));
-  demo.actors[0].spec.look.hair.curl_radius = 0;
-  demo.requests = {paintOf("curl", 0.5)};
+  app::Actor& actor = demo.actors[0];
+  actor.spec.look.hair.curl_radius = 0;
+  demo.requests = {paintOf("curl", 0)};
   app::advanceFrame(demo, 0, {});
   EXPECT_FALSE(demo.message_is_fault);
   EXPECT_EQ(demo.message, "painted curl changes nothing while curl_radius is 0");
+  demo.requests = {{Ask::kUndo, "", "", 1}};
+  app::advanceFrame(demo, 0, {});
+  ASSERT_TRUE(demo.actors[0].spec.maps.curl.empty());
+
+  demo.requests = {paintOf("curl", 1), paintOf("curl", 1), {Ask::kEndGesture, "", ""}};
+  app::advanceFrame(demo, 0, {});
+  EXPECT_GT(demo.actors[0].spec.look.hair.curl_radius, 0.003f);
+  float least = 1, most = 0;
+  for (const render::LookShare& share : demo.actors[0].haircut->look_shares.roots)
+    least = std::min(least, share.curl), most = std::max(most, share.curl);
+  EXPECT_LT(least, 0.02f);
+  EXPECT_GT(most, 0.5f);
+  demo.requests = {{Ask::kUndo, "", "", 1}};
+  app::advanceFrame(demo, 0, {});
+  EXPECT_EQ(demo.actors[0].spec.look.hair.curl_radius, 0);
+  EXPECT_TRUE(demo.actors[0].spec.maps.curl.empty());
 }
 
 TEST(PaintBrush, CurvesOfTheLookAreDrawnAndUndone) {

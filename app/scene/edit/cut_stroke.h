@@ -1,0 +1,36 @@
+// The stroke of a cutting brush. While it is drawn hair gives way as far as its prisms let it at once; when it ends,
+// hair of the shape before it is cut to what was asked for, and its prisms are untangled.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "app/groom/edit/shape_brush.h"
+
+namespace app {
+
+struct Actor;
+struct Demo;
+
+struct CutStroke {
+  std::vector<Vec3> before;     // rest positions when it began
+  std::vector<Vec3> after;      // as its last sample left them: whatever else changes the shape ends the stroke
+  std::vector<double> lengths;  // m, asked for, per column
+};
+
+// m, that columns count as to the next sample of the stroke; begins it where none goes on.
+std::span<const double> cutLengths(const sim::HairMeshShape& shape, std::optional<CutStroke>& stroke);
+
+// Takes over what a sample asked for; `shape` as it left it.
+void followCut(std::span<const double> asked, const sim::HairMeshShape& shape, std::optional<CutStroke>& stroke);
+
+// Finishes the stroke of a character's hair, if there is one. A notice says by how much hair stays longer, and why.
+// Takes tenths of a second.
+void finishCut(int index, Demo& demo);
+
+// Hair shows a change of its shape at once, and none of it is left behind to swing or turn inside out: each vertex is as
+// far off its place at rest as hair was, at its way from the root, off the shape `before` (m, head frame).
+void carryWithShape(std::span<const Vec3> before, Actor& actor);
+
+}  // namespace app
