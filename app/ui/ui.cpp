@@ -331,13 +331,17 @@ void message(NoticePlace& place, Demo& demo, UiState& ui) {
   ImGui::SetNextWindowPos({place.left + 0.5f * place.width, place.bottom}, ImGuiCond_Always, {0.5f, 1});
   ImGui::SetNextWindowSizeConstraints({0, 0}, {place.width, 0.8f * size.y});
   const bool fault = demo.message_is_fault;
+  const float wrap = std::min(kMessageWidth * ui.text_scale, place.width - 2 * margin);
+  // From its first frame on: by itself a window takes its size from the frame before.
+  const ImVec2 words = ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap);
+  ImGui::SetNextWindowContentSize({words.x, words.y + (fault ? ImGui::GetFrameHeightWithSpacing() : 0)});
   if (fault) ImGui::PushStyleColor(ImGuiCol_WindowBg, ImVec4(0.30f, 0.10f, 0.09f, 0.96f));
   const ImGuiWindowFlags flags = kFixed | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing;
   // The sidebar and the timings stay where they are in the order of windows; this one comes to the front.
   if (ImGui::Begin("message", nullptr, flags & ~ImGuiWindowFlags_NoBringToFrontOnFocus)) {
     ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
     noteItem("message", ui);
-    ImGui::PushTextWrapPos(std::min(kMessageWidth * ui.text_scale, place.width - 2 * margin));
+    ImGui::PushTextWrapPos(wrap);
     ImGui::TextUnformatted(text.c_str());
     ImGui::PopTextWrapPos();
     if (fault) {

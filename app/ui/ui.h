@@ -47,6 +47,9 @@ struct BrushState {
   bool mirror = false;
   bool over_hair = false, stroking = false;  // then a drag is the brush's, not the camera's
   bool held = false;                         // the button, in the frame before
+  bool tie = false;                          // in place of a tool: a tie's ring, put down where the button is let go
+  double tie_radius = 0.02;                  // m
+  bool tie_held = false;                     // its slider
   Vec3 last = Vec3::Zero();                  // m, scalp frame: where combing has come to
 };
 

@@ -87,7 +87,7 @@ void drawField(const Vec3& place, const Demo& demo, const BrushState& brush, flo
 // `opacity`: 0..1.
 void drawRing(const std::string& name, const Vec3& place, double opacity, const Demo& demo, UiState& ui) {
   const Picture shown = shownPicture(demo);
-  const double radius = ui.brush.radius;
+  const double radius = ui.brush.tie ? ui.brush.tie_radius : ui.brush.radius;
   const float scale = ui.text_scale;
   ImDrawList* list = ImGui::GetBackgroundDrawList();
   const Vec3 back = viewBack(demo.camera), right = Vec3::UnitY().cross(back).normalized(), up = back.cross(right);
@@ -309,12 +309,52 @@ void curveRows(Demo& demo, UiState& ui) {
   }
 }
 
+namespace {
+
+// m, scalp frame: a ring of the whole hair, or with Mirror one of each side.
+std::vector<TieSpec> tieAt(const Vec3& place, const BrushState& brush, const Actor& actor) {
+  TieSpec tie;
+  tie.at = place;
+  tie.radius = brush.tie_radius;
+  if (!brush.mirror) return {tie};
+  const double middle = actor.body->character.scalp.center.x();
+  const bool left = place.x() > middle;
+  tie.side = left ? "left" : "right";
+  TieSpec other = tie;
+  other.at = mirrored(place, middle);
+  other.side = left ? "right" : "left";
+  return {tie, other};
+}
+
+// A ring that goes with the pointer over the hair, and is tied where the button is let go.
+void tieFrame(bool begins, Demo& demo, UiState& ui) {
+  BrushState& brush = ui.brush;
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.WantCaptureMouse && !brush.stroking) return;
+  const Actor& actor = selectedActor(demo);
+  const auto hit = pickHair(rayThrough(io.MousePos.x, io.MousePos.y, shownPicture(demo), demo.camera), actor);
+  brush.over_hair = hit.has_value();
+  brush.stroking = brush.stroking || (begins && hit);
+  if (hit) brush.last = worldToScalp(actor) * *hit;
+  if (!brush.stroking && !hit) return;
+  const Vec3 place = worldToScalp(actor).inverse(Eigen::Isometry) * brush.last;
+  if (brush.mirror) drawRing("mirror_ring", acrossHead(place, actor), kWeak, demo, ui);
+  drawRing("tie_ring", place, 1, demo, ui);
+  if (!brush.stroking || brush.held) return;
+  brush.stroking = brush.tie = false;
+  postRequest(demo, {Ask::kTie, "", writeTies(tieAt(brush.last, brush, actor)).dump()});
+}
+
+}  // namespace
+
 void brushFrame(Demo& demo, UiState& ui) {
   BrushState& brush = ui.brush;
   const ImGuiIO& io = ImGui::GetIO();
   const bool held = io.MouseDown[0], begins = held && !brush.held;
   brush.held = held;
   brush.over_hair = false;
+  if (brush.tool >= 0 || brush.field >= 0 || ui.select.element >= 0) brush.tie = false;
+  if (brush.tie && io.DisplaySize.y >= 1) return tieFrame(begins, demo, ui);
   if (ui.select.element >= 0 && io.DisplaySize.y >= 1) return selectFrame(begins, demo, ui);
   if ((brush.tool < 0 && brush.field < 0) || (io.WantCaptureMouse && !brush.stroking) || io.DisplaySize.y < 1) {
     brush.stroking = false;

@@ -96,7 +96,8 @@ void compareLine(Demo& demo, UiState& ui) {
   const bool over = std::abs(io.MousePos.x - x) < kGrip * scale && !io.WantCaptureMouse;
   ui.line_held = io.MouseDown[0] && (ui.line_held || (over && ImGui::IsMouseClicked(0)));
   const float middle = 0.5f * io.DisplaySize.y, r = 11 * scale;
-  list->AddCircleFilled({x, middle}, r, ImGui::GetColorU32(over || ui.line_held ? ImGuiCol_NavHighlight : ImGuiCol_Button));
+  list->AddCircleFilled({x, middle}, r,
+                        ImGui::GetColorU32(over || ui.line_held ? ImGuiCol_NavHighlight : ImGuiCol_Button));
   for (const float side : {-1.0f, 1.0f})
     list->AddTriangleFilled({x + side * 7 * scale, middle}, {x + side * 3 * scale, middle - 4 * scale},
                             {x + side * 3 * scale, middle + 4 * scale}, ImGui::GetColorU32(ImGuiCol_Text));

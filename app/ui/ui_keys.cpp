@@ -78,8 +78,9 @@ constexpr const char* kLeaving = "Esc again leaves; what was not saved is lost";
 
 // Puts brush and selection down. Returns whether there were any.
 bool letGo(UiState& ui) {
-  const bool held = ui.brush.tool >= 0 || ui.brush.field >= 0 || ui.select.element >= 0;
+  const bool held = ui.brush.tool >= 0 || ui.brush.field >= 0 || ui.select.element >= 0 || ui.brush.tie;
   ui.brush.tool = ui.brush.field = -1;
+  ui.brush.tie = false;
   if (ui.select.element >= 0) chooseElement(-1, ui);
   return held;
 }

@@ -310,6 +310,27 @@ void tieRow(const Actor& actor, Demo& demo, UiState& ui) {
   const bool hangs = !braided && !bun;
   if (pressed >= 0 && hangs) postRequest(demo, {Ask::kTie, "", kNames[pressed]});
   if (pressed >= 0 && !hangs) post(tiesFromText(kNames[pressed]));
+  BrushState& brush = ui.brush;
+  rowLabel("By hand", "Puts the ring where the button is let go on the hair; with Mirror (Brushes) one on each side");
+  if (ImGui::Button(brush.tie ? "Drag on the hair" : "Put ring", {-1, 0})) {
+    brush.tie = !brush.tie;
+    if (brush.tie) brush.tool = brush.field = ui.select.element = -1;
+  }
+  noteItem("tie_by_hand", ui);
+  rowLabel("Ring", "Radius of the tie's ring");
+  if (!ties.empty() && !brush.tie_held && !brush.tie) brush.tie_radius = ties[0].radius;
+  float shown = static_cast<float>(1000 * brush.tie_radius);
+  ImGui::SetNextItemWidth(-1);
+  if (ImGui::SliderFloat("##tie_radius", &shown, 1000 * kThinnestTie, 1000 * kWidestTie, "%.0f mm",
+                         ImGuiSliderFlags_AlwaysClamp))
+    brush.tie_radius = std::clamp(static_cast<double>(shown) / 1000, kThinnestTie, kWidestTie);
+  noteItem("tie_radius", ui);
+  brush.tie_held = ImGui::IsItemActive();
+  if (ImGui::IsItemDeactivatedAfterEdit() && !ties.empty() && !brush.tie) {
+    std::vector<TieSpec> wider = ties;
+    for (TieSpec& tie : wider) tie.radius = brush.tie_radius;
+    post(wider);
+  }
   if (ties.empty()) return;
   rowLabel("Braided", "What hangs from the tie is drawn as a plait of three strands, to a second tie before its end");
   if (ImGui::Checkbox("##braided", &braided)) post(ties);

@@ -2,8 +2,12 @@
 #include <imgui/imgui.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <string>
+#include <system_error>
 #include <tuple>
 #include <utility>
 
@@ -198,6 +202,26 @@ void timelinePanel(Demo& demo, UiState& ui, float left) {
   ImGui::End();
 }
 
+namespace {
+
+// ", 12 minutes ago" of a file; empty where that cannot be told.
+std::string keptSince(const std::string& file) {
+  std::error_code fault;
+  const auto written = std::filesystem::last_write_time(file, fault);
+  if (fault) return "";
+  const auto minutes =
+      std::chrono::duration_cast<std::chrono::minutes>(std::filesystem::file_time_type::clock::now() - written).count();
+  const auto told = [](auto number, const char* unit) {
+    return ", " + std::to_string(number) + " " + unit + (number == 1 ? "" : "s") + " ago";
+  };
+  if (minutes < 1) return ", just now";
+  return minutes < 120    ? told(minutes, "minute")
+         : minutes < 2880 ? told(minutes / 60, "hour")
+                          : told(minutes / 1440, "day");
+}
+
+}  // namespace
+
 void offerPanel(const NoticePlace& place, Demo& demo, UiState& ui) {
   // Where a fault leaves it no room it waits until that is closed.
   if (ui.offered.empty() || place.bottom < kOfferHeight * ui.text_scale) return;
@@ -207,7 +231,8 @@ void offerPanel(const NoticePlace& place, Demo& demo, UiState& ui) {
   if (ImGui::Begin("offer", nullptr, flags)) {
     // In a small window in several lines.
     ImGui::PushTextWrapPos(std::min(420.0f, place.width / ui.text_scale - 24) * ui.text_scale);
-    ImGui::TextUnformatted("An earlier run ended without leaving. What it had was kept.");
+    ImGui::TextUnformatted(
+        ("An earlier run ended without leaving. What it had was kept" + keptSince(ui.offered) + ".").c_str());
     ImGui::PopTextWrapPos();
     const bool open = ImGui::Button("Open it");
     noteItem("offer_open", ui);

@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 
+#include "app/files/tie_spec.h"
 #include "app/scene/edit/groom_brush.h"
 #include "app/scene/edit/mesh_change.h"
 #include "app/scene/edit/picking.h"
@@ -220,6 +221,32 @@ TEST_F(Select, BrushesAndSelectionTakeTurns) {
   EXPECT_EQ(ui_.brush.tool, 0);
   click("select Column");
   EXPECT_EQ(ui_.brush.tool, -1);
+}
+
+// A ring is put on the hair by a drag, with Mirror one on each side, and a slider makes it wider.
+TEST_F(Select, ARingIsTiedWhereTheHandLetsGo) {
+  openTab(app::tabIndex("hair"));
+  click("tie_by_hand");
+  ASSERT_TRUE(ui_.brush.tie);
+  ui_.brush.tie_radius = 0.03;
+  ui_.brush.mirror = true;
+  ImGui::GetIO().MousePos = onHair(40);
+  frame();
+  EXPECT_EQ(marks("tie_ring"), 1);
+  EXPECT_EQ(marks("mirror_ring"), 1);
+  const std::vector<Request> asked = press(onHair(40), 20);
+  std::string text;
+  for (const Request& request : asked) {
+    if (request.what == Ask::kTie) text = request.text;
+  }
+  const std::vector<app::TieSpec> ties = app::tiesFromText(text);
+  ASSERT_EQ(ties.size(), 2u) << text;
+  ASSERT_TRUE(ties[0].at && ties[1].at);
+  EXPECT_EQ(ties[0].radius, 0.03);
+  EXPECT_NE(ties[0].side, ties[1].side);
+  EXPECT_NEAR(ties[0].at->y(), ties[1].at->y(), 1e-12);
+  EXPECT_FALSE(ui_.brush.tie) << "one ring a press";
+  for (const Request& request : asked) EXPECT_NE(request.what, Ask::kBrush);
 }
 
 }  // namespace select_test
