@@ -420,11 +420,7 @@ constexpr Action kActions[] = {
      [](const Request& request, Demo& demo) { demo.turntable = std::clamp(request.value, -10.0, 10.0); }},
     {Ask::kUndo, [](const Request& request, Demo& demo) { undoEdits(stepsOf(request), demo); }},
     {Ask::kRedo, [](const Request& request, Demo& demo) { redoEdits(stepsOf(request), demo); }},
-    {Ask::kEndGesture,
-     [](const Request&, Demo& demo) {
-       demo.edits.gesture = false;
-       for (std::size_t i = 0; i < demo.actors.size(); ++i) finishCut(static_cast<int>(i), demo);
-     }},
+    {Ask::kEndGesture, [](const Request&, Demo& demo) { demo.edits.gesture = false, finishCuts(demo); }},
     {Ask::kCompare, compare},
     {Ask::kCompareView,
      [](const Request& request, Demo& demo) {

@@ -53,6 +53,8 @@ void followCut(std::span<const double> asked, const sim::HairMeshShape& shape, s
   stroke->after = shape.positions;
 }
 
+namespace {
+
 void finishCut(int index, Demo& demo) {
   Actor& actor = demo.actors[static_cast<std::size_t>(index)];
   if (!actor.haircut->cut || actor.haircut->cut->after != actor.haircut->mesh.shape.positions) return;
@@ -75,6 +77,12 @@ void finishCut(int index, Demo& demo) {
                 "or split it off",
                 1e3 * longer);
   showMessage(text, demo);
+}
+
+}  // namespace
+
+void finishCuts(Demo& demo) {
+  for (std::size_t i = 0; i < demo.actors.size(); ++i) finishCut(static_cast<int>(i), demo);
 }
 
 void carryWithShape(std::span<const Vec3> before, Actor& actor) {

@@ -25,12 +25,12 @@ std::span<const double> cutLengths(const sim::HairMeshShape& shape, std::optiona
 // Takes over what a sample asked for; `shape` as it left it.
 void followCut(std::span<const double> asked, const sim::HairMeshShape& shape, std::optional<CutStroke>& stroke);
 
-// Finishes the stroke of a character's hair, if there is one. A notice says by how much hair stays longer, and why.
+// Finishes the strokes on the characters' hair. A notice says by how much hair stays longer, and why.
 // Takes tenths of a second.
-void finishCut(int index, Demo& demo);
+void finishCuts(Demo& demo);
 
-// Hair shows a change of its shape at once, and none of it is left behind to swing or turn inside out: each vertex is as
-// far off its place at rest as hair was, at its way from the root, off the shape `before` (m, head frame).
+// Hair shows a change of its shape at once, and none of it is left behind to swing or turn inside out: each vertex is
+// as far off its place at rest as hair was, at its way from the root, off the shape `before` (m, head frame).
 void carryWithShape(std::span<const Vec3> before, Actor& actor);
 
 }  // namespace app

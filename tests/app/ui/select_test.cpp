@@ -232,8 +232,8 @@ TEST_F(Select, ARingIsTiedWhereTheHandLetsGo) {
   ui_.brush.mirror = true;
   ImGui::GetIO().MousePos = onHair(40);
   frame();
-  EXPECT_EQ(marks("tie_ring"), 1);
-  EXPECT_EQ(marks("mirror_ring"), 1);
+  EXPECT_TRUE(find("tie_ring"));
+  EXPECT_TRUE(find("mirror_ring"));
   const std::vector<Request> asked = press(onHair(40), 20);
   std::string text;
   for (const Request& request : asked) {
