@@ -311,8 +311,9 @@ void curveRows(Demo& demo, UiState& ui) {
 
 namespace {
 
-// m, scalp frame: a ring of the whole hair, or with Mirror one of each side.
-std::vector<TieSpec> tieAt(const Vec3& place, const BrushState& brush, const Actor& actor) {
+// m, scalp frame, to a tenth of a millimetre: a ring of the whole hair, or with Mirror one of each side.
+std::vector<TieSpec> tieAt(const Vec3& at, const BrushState& brush, const Actor& actor) {
+  const Vec3 place = (1e4 * at).array().round() / 1e4;
   TieSpec tie;
   tie.at = place;
   tie.radius = brush.tie_radius;
@@ -321,7 +322,7 @@ std::vector<TieSpec> tieAt(const Vec3& place, const BrushState& brush, const Act
   const bool left = place.x() > middle;
   tie.side = left ? "left" : "right";
   TieSpec other = tie;
-  other.at = mirrored(place, middle);
+  other.at = ((1e4 * mirrored(place, middle)).array().round() / 1e4).matrix();
   other.side = left ? "right" : "left";
   return {tie, other};
 }

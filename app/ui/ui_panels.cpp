@@ -321,9 +321,12 @@ void tieRow(const Actor& actor, Demo& demo, UiState& ui) {
   if (!ties.empty() && !brush.tie_held && !brush.tie) brush.tie_radius = ties[0].radius;
   float shown = static_cast<float>(1000 * brush.tie_radius);
   ImGui::SetNextItemWidth(-1);
-  if (ImGui::SliderFloat("##tie_radius", &shown, 1000 * kThinnestTie, 1000 * kWidestTie, "%.0f mm",
-                         ImGuiSliderFlags_AlwaysClamp))
-    brush.tie_radius = std::clamp(static_cast<double>(shown) / 1000, kThinnestTie, kWidestTie);
+  {
+    const MarksBelowDigits marks;
+    if (ImGui::SliderFloat("##tie_radius", &shown, 1000 * kThinnestTie, 1000 * kWidestTie, "%.0f mm",
+                           ImGuiSliderFlags_AlwaysClamp))
+      brush.tie_radius = std::clamp(static_cast<double>(shown) / 1000, kThinnestTie, kWidestTie);
+  }
   noteItem("tie_radius", ui);
   brush.tie_held = ImGui::IsItemActive();
   if (ImGui::IsItemDeactivatedAfterEdit() && !ties.empty() && !brush.tie) {
