@@ -109,7 +109,7 @@ struct HairInput {
   HairLook look;
   LookShares shares;                     // they go with the layout
   std::span<const SkinEllipsoid> skin;   // drawn strands are lifted out of these; the nearest 48
-  std::span<const SkinGrid> skin_grids;  // and of these; the nearest 16
+  std::span<const SkinGrid> skin_grids;  // and of these; 16 of those near
 };
 
 // A skinned body. The mesh is uploaded once per mesh_id, the root cover once per mesh and scalp id; a frame brings

@@ -8,10 +8,10 @@ namespace app {
 
 namespace {
 
-constexpr float kBelongs = 0.35f;   // share of a vertex's weights from which it belongs to a part; parts overlap
-constexpr double kFinest = 0.005;   // m, spacing of the grids
+constexpr float kBelongs = 0.35f;    // share of a vertex's weights from which it belongs to a part; parts overlap
+constexpr double kFinest = 0.005;    // m, spacing of the grids
 constexpr double kNodesAlong = 128;  // at most about so many nodes along a part
-constexpr double kMaxNodes = 1.5e6;   // of one grid
+constexpr double kMaxNodes = 1.5e6;  // of one grid
 constexpr int kMinTriangles = 12;
 
 // The joint with an ellipsoid that a joint moves with: itself or the nearest above it; -1: none.

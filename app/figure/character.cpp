@@ -40,6 +40,9 @@ Kind kindOf(const std::string& file) {
 
 void cover(Character& character) {
   const CoverReport report = coverSkin(character);
+  if (!report.unfit.empty())
+    character.notes.push_back("no ellipsoids fit " + report.unfit + ": signed distances of their skin in their place");
+  if (report.where.empty()) return;  // nothing else is in reach
   char note[300];
   std::snprintf(note, sizeof note,
                 "skin below the chin that hair reaches sticks out of %zu ellipsoids by %.1f mm at most (%s; %.1f mm "
@@ -47,8 +50,6 @@ void cover(Character& character) {
                 character.ellipsoids.size(), 1e3 * report.after, report.where.c_str(), 1e3 * report.before,
                 report.added, 1e3 * report.over, 1e3 * report.over_before);
   character.notes.push_back(note);
-  if (!report.unfit.empty())
-    character.notes.push_back("no ellipsoids fit " + report.unfit + ": signed distances of their skin in their place");
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 namespace app {
 
 // The smallest rotation that takes the direction of `from` to that of `to`; about any normal when they are opposite.
-// As Eigen's FromTwoVectors, whose singular value decomposition takes seconds to compile wherever it is used.
 Eigen::Quaterniond leastRotation(const Vec3& from, const Vec3& to);
 
 }  // namespace app

@@ -150,10 +150,8 @@ struct Actor {
   std::vector<sim::Ellipsoid> ellipsoids;
   std::vector<sim::BodySdf> parts;  // the same body as signed distances, where they are collided with
   std::vector<WornAttachment> worn;
-  // What is collided with beside the body's ellipsoids: those that fit, then what is worn, then parts that they do not
-  // fit.
-  std::vector<sim::Ellipsoid> fitting_ellipsoids;
-  std::vector<sim::BodySdf> worn_distances;
+  std::vector<sim::Ellipsoid> fitting_ellipsoids;  // of a body with parts that no ellipsoids fit: the others
+  std::vector<sim::BodySdf> worn_distances;        // of what is worn, then of those parts
   std::vector<sim::Vec3> roots;
   std::vector<ActorPin> pins;
   std::vector<sim::PinnedVertex> pinned;  // those that are on, as the last step saw them

@@ -127,12 +127,12 @@ long uploadBlock(HairResources& hair) {
     const auto [x, y, z] = hair.skin[i].home;
     *std::ranges::copy(hair.skin[i].to_ball, block.skin_rows.begin() + 4 * static_cast<long>(i)).out = {x, y, z, 0};
   }
-  int texel = 0;
   for (std::size_t i = 0; i < hair.skin_grids.size(); ++i) {
     const SkinGrid& grid = hair.skin_grids[i];
     std::ranges::copy(grid.to_nodes, block.skin_grid_rows.begin() + 3 * static_cast<long>(i));
-    block.skin_grid_nodes[i] = {grid.nodes[0], grid.nodes[1], grid.nodes[2], texel};
-    texel += static_cast<int>(grid.distances.size());
+    const auto number = std::ranges::find(hair.skin_distances->ids, grid.id) - hair.skin_distances->ids.begin();
+    block.skin_grid_nodes[i] = {grid.nodes[0], grid.nodes[1], grid.nodes[2],
+                                hair.skin_distances->first[static_cast<std::size_t>(number)]};
   }
   if (!hair.block) {
     hair.block = makeBuffer();
@@ -276,7 +276,10 @@ SkinDistances& HairStore::distancesOf(std::span<const SkinGrid> grids, long& upl
   SkinDistances& distances = *distances_.emplace_back(std::make_unique<SkinDistances>());
   distances.ids = std::move(ids);
   std::vector<float> texels;
-  for (const SkinGrid& grid : grids) texels.insert(texels.end(), grid.distances.begin(), grid.distances.end());
+  for (const SkinGrid& grid : grids) {
+    distances.first.push_back(static_cast<int>(texels.size()));
+    texels.insert(texels.end(), grid.distances.begin(), grid.distances.end());
+  }
   uploaded += fillTexels<float>(texels, distances.buffer, distances.texture, distances.bytes, GL_R32F);
   return distances;
 }
@@ -401,7 +404,7 @@ long HairStore::refresh(HairResources& hair, const HairInput& input, const DrawS
   hair.light_revision = light_revision_;
   hair.skin = std::move(skin);
   hair.skin_grids = std::move(skin_grids);
-  hair.skin_distances = hair.skin_grids.empty() ? nullptr : &distancesOf(hair.skin_grids, uploaded);
+  hair.skin_distances = hair.skin_grids.empty() ? nullptr : &distancesOf(input.skin_grids, uploaded);
   const bool renew = fresh_count || fresh_look || light_moved;
   uploaded += uploadSkin(hair, input.positions, skips);
   if (!renew && !fresh_positions) return uploaded + uploadBlock(hair);

@@ -33,9 +33,10 @@ struct HairStyle {
   int fullTableTexel() const;
 };
 
-// Distances of one set of skin grids.
+// Distances of all skin grids of a body. Hairs on bodies with the same grids share them.
 struct SkinDistances {
   std::vector<std::uint64_t> ids;
+  std::vector<int> first;  // texel of each
   Buffer buffer;
   Texture texture;
   GLsizeiptr bytes = 0;
@@ -78,7 +79,7 @@ struct HairResources {
   HairLook look;
   std::vector<SkinEllipsoid> skin;          // near the hair
   std::vector<SkinGrid> skin_grids;         // the same
-  SkinDistances* skin_distances = nullptr;  // theirs, if there are any
+  SkinDistances* skin_distances = nullptr;  // of all grids of the body, if there are any
   std::vector<std::uint64_t> skin_reached;  // see skin_reach.h
   Buffer skin_buffer;
   Texture skin_texture;

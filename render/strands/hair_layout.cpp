@@ -7,6 +7,7 @@
 #include <map>
 
 #include "render/strands/hairline.h"
+#include "render/strands/least_rotation.h"
 
 namespace render {
 namespace {
@@ -51,21 +52,6 @@ Vector3f intoOwnFrame(HairLayout& layout) {
   turn << ahead.transpose(), up.transpose(), ahead.cross(up).transpose();
   for (HairColumn& column : layout.columns) column.rest = turn * (column.rest - middle);
   return Vector3f::UnitY();
-}
-
-// The smallest rotation between two unit vectors; about any normal when they are opposite.
-Eigen::Quaternionf leastRotation(const Vector3f& from, const Vector3f& to) {
-  const float cosine = from.dot(to);
-  Eigen::Quaternionf turn;
-  if (cosine < -1 + 1e-5f) {
-    turn.w() = 0;
-    turn.vec() = from.unitOrthogonal();
-  } else {
-    const float twice_w = std::sqrt(2 * (1 + cosine));
-    turn.w() = 0.5f * twice_w;
-    turn.vec() = from.cross(to) * (1 / twice_w);
-  }
-  return turn;
 }
 
 // Two measures of a column make its way by layers: its length, and that of its first half.

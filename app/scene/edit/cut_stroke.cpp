@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "app/files/errors.h"
 #include "app/scene/demo.h"
+#include "app/scene/edit/carry_hair.h"
 #include "app/scene/edit/groom_brush.h"
 #include "app/styles/style_shorten.h"
 
@@ -15,18 +17,6 @@ namespace {
 
 constexpr double kCutFatness = 0.02;  // see shortenColumns
 constexpr double kNotAsAsked = 0.01;  // m, of a column that stays longer, before it is told
-
-// m, from the root to each vertex of a column.
-std::vector<double> wayAlong(std::span<const Vec3> column) {
-  std::vector<double> way{0};
-  for (std::size_t k = 1; k < column.size(); ++k) way.push_back(way.back() + (column[k] - column[k - 1]).norm());
-  return way;
-}
-
-std::span<const Vec3> columnOf(std::span<const Vec3> positions, const sim::HairMeshShape& shape, int c) {
-  return positions.subspan(static_cast<std::size_t>(shape.column_first[static_cast<std::size_t>(c)]),
-                           static_cast<std::size_t>(shape.columnLength(c)));
-}
 
 // Of each column, as long as `lengths` at most.
 std::vector<double> sharesFor(std::span<const double> lengths, const sim::HairMeshShape& shape) {
@@ -57,13 +47,15 @@ namespace {
 
 void finishCut(int index, Demo& demo) {
   Actor& actor = demo.actors[static_cast<std::size_t>(index)];
-  if (!actor.haircut->cut || actor.haircut->cut->after != actor.haircut->mesh.shape.positions) return;
-  const CutStroke stroke = *actor.haircut->cut;
+  if (!actor.haircut->cut) return;
+  const CutStroke stroke = *std::exchange(ownHaircut(actor, demo).cut, std::nullopt);
+  if (stroke.after != actor.haircut->mesh.shape.positions) return;
   sim::HairMeshShape shape = actor.haircut->mesh.shape;
   shape.positions = stroke.before;
   std::vector<double> shares = sharesFor(stroke.lengths, shape);
-  const std::vector<double> asked = shares;
-  shortenColumns(actor.body->distance, kCutFatness, shares, shape);
+  // Hair from a file may lie in the body.
+  const BodyDistance around = actor.spec.hair.empty() ? actor.body->distance : [](const Vec3&) { return 1.0; };
+  shortenColumns(around, kCutFatness, shares, shape);
   reshapeHair(shape.positions, index, demo);
   actor.hair.memory.material = {};  // gravity is balanced anew in the next step: what balanced longer hair is far off
   double longer = 0;
@@ -74,7 +66,7 @@ void finishCut(int index, Demo& demo) {
   char text[160];
   std::snprintf(text, sizeof text,
                 "some hair stays %.0f mm longer than the ring: beside longer hair it would be flat; cut that as well, "
-                "or split it off",
+                "or part it off",
                 1e3 * longer);
   showMessage(text, demo);
 }
@@ -83,28 +75,6 @@ void finishCut(int index, Demo& demo) {
 
 void finishCuts(Demo& demo) {
   for (std::size_t i = 0; i < demo.actors.size(); ++i) finishCut(static_cast<int>(i), demo);
-}
-
-void carryWithShape(std::span<const Vec3> before, Actor& actor) {
-  const sim::HairMeshShape& shape = actor.haircut->mesh.shape;
-  const Rigid head = scalpToWorld(actor.body->character, actor.pose);
-  std::vector<Vec3> off;  // m, world: of moving hair from where it hung at rest
-  for (std::size_t v = 0; v < before.size(); ++v) off.push_back(actor.hair.positions[v] - head * before[v]);
-  for (int c = 0; c < shape.columnCount(); ++c) {
-    const auto first = static_cast<std::size_t>(shape.column_first[static_cast<std::size_t>(c)]);
-    const std::vector<double> was = wayAlong(columnOf(before, shape, c)),
-                              is = wayAlong(columnOf(shape.positions, shape, c));
-    std::size_t segment = 1;
-    for (std::size_t k = 1; k < is.size(); ++k) {
-      while (segment + 1 < was.size() && was[segment] < is[k]) ++segment;
-      const double within = std::min(1.0, (is[k] - was[segment - 1]) / std::max(1e-9, was[segment] - was[segment - 1]));
-      const Vec3 &near = off[first + segment - 1], &far = off[first + segment];
-      actor.hair.positions[first + k] = head * shape.positions[first + k] + near + within * (far - near);
-    }
-  }
-  actor.hair.previous_dt = 0;
-  actor.previous_positions = actor.hair.positions;
-  actor.shown_still = false;
 }
 
 }  // namespace app

@@ -10,7 +10,6 @@
 
 namespace app {
 
-struct Actor;
 struct Demo;
 
 struct CutStroke {
@@ -28,9 +27,5 @@ void followCut(std::span<const double> asked, const sim::HairMeshShape& shape, s
 // Finishes the strokes on the characters' hair. A notice says by how much hair stays longer, and why.
 // Takes tenths of a second.
 void finishCuts(Demo& demo);
-
-// Hair shows a change of its shape at once, and none of it is left behind to swing or turn inside out: each vertex is
-// as far off its place at rest as hair was, at its way from the root, off the shape `before` (m, head frame).
-void carryWithShape(std::span<const Vec3> before, Actor& actor);
 
 }  // namespace app

@@ -6,6 +6,7 @@
 
 #include "app/files/errors.h"
 #include "app/scene/demo.h"
+#include "app/scene/edit/carry_hair.h"
 #include "app/scene/edit/painted_fields.h"
 #include "app/scene/haircuts.h"
 #include "sim/field_text.h"
