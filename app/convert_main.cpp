@@ -108,12 +108,12 @@ void addStripOptions(CLI::App& parser, Arguments& arguments) {
   parser
       .add_option("--join", strips.join,
                   "Metres: neighbouring strips nearer than that become one sheet; by default those that share vertices")
-      ->check(CLI::Range(0.0, 0.05))
+      ->check(app::within(0, 0.05))
       ->option_text("METRES (0 to 0.05)");
   parser
       .add_option("--thickness", strips.mesh.thickness,
                   "Metres that strips are thick at their roots; by default by their width")
-      ->check(CLI::Range(0.0002, 0.05))
+      ->check(app::within(0.0002, 0.05))
       ->option_text("METRES (0.0002 to 0.05)");
 }
 
@@ -182,6 +182,13 @@ int convertCurves(const std::string& bytes, const Arguments& arguments) {
   return app::conversionWarning(conversion).empty() ? app::kExitFine : app::kExitFault;
 }
 
+// What hairmesh says of its --fit, as of this program's option.
+std::string withOwnOption(std::string text) {
+  constexpr std::string_view kTheirs = "--fit off";
+  if (const std::size_t at = text.find(kTheirs); at != std::string::npos) text.replace(at, kTheirs.size(), "--no-mend");
+  return text;
+}
+
 int convertPolygons(const Arguments& arguments) {
   app::StripOptions options = arguments.strips;
   std::optional<app::PolygonMesh> scalp;
@@ -197,7 +204,8 @@ int convertPolygons(const Arguments& arguments) {
   if (!mesh.note.empty()) std::cout << "note          " << mesh.note << "\n";
   app::writeFile(arguments.out, app::writeHairMesh(conversion.mesh.shape));
   const bool lost = !arguments.no_mend && app::farFromHead(conversion.mesh.shape, figureOf(arguments));
-  if (!fitted.fit.empty()) std::cout << (lost ? "warning       " : "mended        ") << fitted.fit << "\n";
+  if (!fitted.fit.empty())
+    std::cout << (lost ? "warning       " : "mended        ") << withOwnOption(std::move(fitted.fit)) << "\n";
   std::cout << app::stripReport(conversion) << "written       " << arguments.out << "\n";
   return lost ? app::kExitFault : app::kExitFine;
 }

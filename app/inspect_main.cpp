@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <optional>
 
@@ -25,6 +26,9 @@ constexpr const char* kAbout =
     "Says what is wrong with a groom (.abc, .usda, .hair, .ply, .tfx) and which option mends it. What is certain is "
     "mended by itself in what --out writes; options overrule it.";
 
+constexpr double kLeastFactor = 1e-6, kMostFactor = 1e6;
+constexpr double kFarthest = 1000;  // m
+
 double metresOf(const std::string& unit) {
   return std::ranges::find(app::kLengthUnits, unit, &app::LengthUnit::name)->metres;
 }
@@ -46,16 +50,24 @@ void addOptions(CLI::App& parser, Asked& asked) {
       ->check(CLI::IsMember({"m", "cm", "mm", "in", "ft"}));
   parser.add_option("--up", asked.up, "Axis that is up in the file: y, z, -y, -z, x or -x")
       ->check(CLI::IsMember({"y", "z", "-y", "-z", "x", "-x"}));
-  parser.add_option("--turn", asked.turn, "Degrees about y, after --up: 180 for hair that faces backwards");
+  parser.add_option("--turn", asked.turn, "Degrees about y, after --up: 180 for hair that faces backwards")
+      ->check(app::within(-360, 360));
   parser.add_option("--reverse", asked.reverse, "Strands that run from tip to root: none, found or all")
       ->check(CLI::IsMember({"none", "found", "all"}));
-  parser.add_option("--width-scale", asked.mends.width_scale, "Factor of the widths, beside the unit");
-  parser.add_option("--width", asked.mends.width, "Width, m, in place of those that are 0, negative or no number");
+  parser.add_option("--width-scale", asked.mends.width_scale, "Factor of the widths, beside the unit")
+      ->check(app::within(kLeastFactor, kMostFactor));
+  parser.add_option("--width", asked.mends.width, "Width, m, in place of those that are 0, negative or no number")
+      ->check(app::within(1e-7, 1));
   parser.add_option("--points", asked.mends.points, "Points a strand, evenly along it")->check(CLI::Range(2, 1024));
   parser.add_option("--scale", asked.mends.scale, "Factor of the points, for hair of another head; widths stay")
-      ->check(CLI::PositiveNumber);
-  parser.add_option("--move", asked.move, "Shift, m")->delimiter(',')->expected(3)->option_text("X,Y,Z");
-  parser.add_option("--drop-far", asked.mends.drop_far, "Leave out strands whose root is further from the body, m");
+      ->check(app::within(kLeastFactor, kMostFactor));
+  parser.add_option("--move", asked.move, "Shift, m")
+      ->delimiter(',')
+      ->expected(3)
+      ->check(app::within(-kFarthest, kFarthest))
+      ->option_text("X,Y,Z");
+  parser.add_option("--drop-far", asked.mends.drop_far, "Leave out strands whose root is further from the body, m")
+      ->check(app::within(0, kFarthest));
   parser.add_flag("--drop-bad", asked.mends.drop_bad, "Leave out strands that are not finite or have no length");
   parser.add_flag("--drop-astray", asked.mends.drop_astray, "Leave out strands that lie apart from all others");
   parser.add_flag("--push-out", asked.mends.push_out, "Bring points that lie inside the body to its surface");
@@ -87,9 +99,28 @@ app::GroomMends mendsOf(const CLI::App& parser, const Asked& asked, const app::G
   return mends;
 }
 
-int run(const CLI::App& parser, const Asked& asked) {
-  if (!asked.out.empty() && !app::isGroomOutput(asked.out))
+// What of the certain mends was done without being asked for, as options.
+std::string mendedByItself(const CLI::App& parser, const Asked& asked, const app::GroomInspection& inspection) {
+  std::string mended;
+  for (const app::GroomFinding& finding : inspection.findings) {
+    const std::string option = finding.mend.substr(0, finding.mend.find(' '));
+    const bool done = finding.certain && option.starts_with("--") && !asked.no_guess && parser.count(option) == 0;
+    if (done) mended += (mended.empty() ? "" : " ") + finding.mend;
+  }
+  return mended;
+}
+
+void checkOutput(const Asked& asked) {
+  if (asked.out.empty()) return;
+  std::error_code ignored;
+  if (!app::isGroomOutput(asked.out))
     throw app::UsageError("--out cannot be '" + asked.out + "'; name it .abc, .usda, .hair, .ply or .tfx");
+  if (std::filesystem::equivalent(asked.file, asked.out, ignored))
+    throw app::UsageError("--out cannot be '" + asked.out + "', which is read as well; choose another name");
+}
+
+int run(const CLI::App& parser, const Asked& asked) {
+  checkOutput(asked);
   app::GroomHints hints;
   app::Groom groom = app::readGroom(asked.file, &hints);
   const app::HeadModel head = app::headModelOf(app::loadCharacter(app::findFile(asked.figure, "", "clips")));
@@ -111,6 +142,8 @@ int run(const CLI::App& parser, const Asked& asked) {
     mends.points = app::nearestTfxPoints(groom);
     std::cout << "points: " << mends.points << " a strand, the power of two nearest to theirs (.tfx takes no other)\n";
   }
+  if (const std::string mended = mendedByItself(parser, asked, inspection); !mended.empty())
+    std::cout << "mended by itself: " << mended << "\n";
   app::mendGroom(mends, &head, groom);
   if (groom.strandCount() == 0)
     throw app::InputError(asked.file, "", "no strand of it is left to write", "mend the points in the file itself");

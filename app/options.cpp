@@ -49,18 +49,6 @@ bool parseSize(const std::string& text, int& width, int& height) {
   return true;
 }
 
-// CLI::Range lets NaN through, because NaN is neither below nor above.
-CLI::Validator within(double low, double high) {
-  const std::string range = rangeText(low, high);
-  return CLI::Validator(
-      [=](std::string& text) {
-        double value = 0;
-        const bool fine = sim::parseNumber(text, value) && value >= low && value <= high;
-        return fine ? std::string() : "'" + text.substr(0, 40) + "' is not a number from " + range;
-      },
-      "");
-}
-
 // One of some names; for another one the nearest is suggested.
 CLI::Validator oneOf(std::vector<std::string> names) {
   return CLI::Validator(
@@ -129,8 +117,8 @@ struct OptionGroup {
 
 void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
   OptionGroup group{parser, "What is shown"};
-  group.value("--style", options.style, "NAME", "Hair style: short, shoulder, long, bob or pixie")
-      ->check(oneOf({"short", "shoulder", "long", "bob", "pixie"}));
+  group.value("--style", options.style, "NAME", "Hair style: short, shoulder, long, bob, pixie, or shaved")
+      ->check(oneOf({kStyleNames.begin(), kStyleNames.end()}));
   group.value("--resolution", options.resolution, "NAME", "Hair mesh resolution: low, medium, high or ultra")
       ->check(oneOf({"low", "medium", "high", "ultra"}));
   group.value(

@@ -44,6 +44,17 @@ std::string rangeText(double low, double high) {
   return textOf(low) + " to " + textOf(high);
 }
 
+CLI::Validator within(double low, double high) {
+  const std::string range = rangeText(low, high);
+  return CLI::Validator(
+      [=](std::string& text) {
+        double value = 0;
+        const bool fine = sim::parseNumber(text, value) && value >= low && value <= high;
+        return fine ? std::string() : "'" + text.substr(0, 40) + "' is not a number from " + range;
+      },
+      "");
+}
+
 std::string parseFault(const CLI::ParseError& error, const CLI::App& parser, const std::string& one_file) {
   const std::string words = error.what(), help = "; " + parser.get_name() + " --help lists the options";
   if (dynamic_cast<const CLI::ExtrasError*>(&error)) return extraFault(parser, one_file, help);

@@ -14,6 +14,9 @@ std::string parseFault(const CLI::ParseError& error, const CLI::App& parser, con
 // is none that was given.
 void expectEnding(const std::string& option, const std::string& file, const std::vector<std::string>& endings);
 
+// A number of that range. CLI::Range lets NaN through, because NaN is neither below nor above.
+CLI::Validator within(double low, double high);
+
 // "1 to 1000000", "0.5 to 2".
 std::string rangeText(double low, double high);
 

@@ -212,11 +212,11 @@ HM_API hm_result hm_mesh_create_from_text(const char* text, size_t length, const
 /**
  * Makes a hair mesh of a built-in style on a plain head: an ellipsoid about the origin of radii 0.34, 0.5 and 0.42 of its
  * height in x, y and z, to be given to steps as an hm_ellipsoid. y is up, z forward. Takes up to a second and a half.
- * @param style       "short", "shoulder", "long", "bob" or "pixie".
+ * @param style       "short", "shoulder", "long", "bob", "pixie" or "shaved".
  * @param resolution  "low", "medium", "high" or "ultra".
  * @param head_height chin to crown, m: 0.05 to 2; 0.23 is a person's.
  * @param mesh        the new mesh.
- * @return HM_ERROR_ARGUMENT with the names there are.
+ * @return HM_ERROR_ARGUMENT with the names there are, HM_ERROR_VALUE of a height beyond its range.
  */
 HM_API hm_result hm_mesh_create_style(const char* style, const char* resolution, double head_height, hm_mesh* mesh);
 
@@ -331,7 +331,7 @@ typedef struct hm_pin {
 
 /** What happens around a hair during a step. Poses are those of the step's end. */
 typedef struct hm_step_input {
-  double dt;                      /**< s, above 0, at most 0.1. */
+  double dt;                      /**< s, 1e-6 to 0.1. */
   double time;                    /**< s, of the step's end; gusts are a function of it. */
   hm_pose head;                   /**< Carries the roots, unless they are given. */
   hm_array roots;                 /**< m, one a column; no data: the roots at rest, carried by `head`. */

@@ -7,6 +7,7 @@
 
 #include "app/figure/character_build.h"
 #include "app/figure/ellipsoid_fit.h"
+#include "app/figure/fine_mesh.h"
 #include "render/body/skinning.h"
 
 namespace app {
@@ -19,6 +20,7 @@ constexpr double kChin = -0.585, kMouthBelow = -0.25, kMouthBefore = 0.18,
 constexpr double kAir = 0.014;            // m in front of the skin: nothing is to lie there but hair
 constexpr double kClear = 0.006;          // m, that such a place is at least off the ellipsoids and other skin
 constexpr float kFinestSpacing = 0.004f;  // m, spacing of samples
+constexpr float kLongestEdge = 0.04f;     // m, of the skin whose vertices are sampled
 constexpr double kAskedWithin = 0.04;     // m: skin so near is asked
 
 // The rest pose, then moments evenly over all clips.
@@ -39,8 +41,8 @@ std::vector<Pose> momentsOf(const Character& character, int moments) {
 }
 
 // Every vertex at every pose; poses are moved so that the head joint is at the origin, where single precision is exact.
-std::vector<std::vector<Eigen::Vector3f>> skinnedAt(const Character& character, std::vector<Pose>& poses) {
-  const SkinnedMesh& mesh = character.mesh;
+std::vector<std::vector<Eigen::Vector3f>> skinnedAt(const SkinnedMesh& mesh, const Character& character,
+                                                    std::vector<Pose>& poses) {
   render::BodyInput body;
   body.positions = {mesh.positions.data()->data(), 3 * mesh.positions.size()};
   body.normals = {mesh.normals.data()->data(), 3 * mesh.normals.size()};
@@ -112,9 +114,10 @@ bool belongsToHead(const Skeleton& skeleton, int joint, int head) {
   return joint == head;
 }
 
-void addSamples(const Character& character, const std::vector<std::size_t>& vertices, PosedSkin& skin) {
-  const std::vector<FitPoint> points = surfacePoints(character.mesh);
-  const std::vector<int> dominant = dominantJoints(character.mesh), carriers = carriersOf(character);
+void addSamples(const SkinnedMesh& mesh, const Character& character, const std::vector<std::size_t>& vertices,
+                PosedSkin& skin) {
+  const std::vector<FitPoint> points = surfacePoints(mesh);
+  const std::vector<int> dominant = dominantJoints(mesh), carriers = carriersOf(character);
   const Rigid to_scalp = scalpToWorld(character, restPose(character.skeleton)).inverse(Eigen::Isometry);
   const double size = character.scalp.head_height;
   double area = 0;
@@ -126,8 +129,8 @@ void addSamples(const Character& character, const std::vector<std::size_t>& vert
     // The neck bends below the nape's hairline, and its skin with it.
     const bool neck = from.y() < kNape * size && !belongsToHead(character.skeleton, carrier, character.head_joint);
     const bool of_head = from.y() > kChin * size && std::hypot(from.x(), from.z()) < kAside * size && !mouth && !neck;
-    skin.samples.push_back({points[v].position, character.mesh.normals[v].cast<double>(), points[v].weight,
-                            static_cast<int>(v), carrier, of_head});
+    skin.samples.push_back(
+        {points[v].position, mesh.normals[v].cast<double>(), points[v].weight, static_cast<int>(v), carrier, of_head});
     area += points[v].weight;
   }
   for (SkinSample& sample : skin.samples) sample.weight /= std::max(area, 1e-12);
@@ -151,7 +154,8 @@ PosedSkin poseSkin(const Character& character, std::size_t most, int moments) {
   PosedSkin skin;
   if (character.ellipsoids.empty() || character.mesh.positions.empty()) return skin;
   std::vector<Pose> poses = momentsOf(character, moments);
-  const auto skins = skinnedAt(character, poses);
+  const SkinnedMesh mesh = withoutLongEdges(character.mesh, kLongestEdge);
+  const auto skins = skinnedAt(mesh, character, poses);
   const double reach = kReach * character.scalp.head_height;
   std::vector<std::vector<unsigned char>> near;
   for (std::size_t m = 0; m < poses.size(); ++m) {
@@ -159,7 +163,7 @@ PosedSkin poseSkin(const Character& character, std::size_t most, int moments) {
     near.emplace_back();
     for (const Eigen::Vector3f& p : skins[m]) near.back().push_back((p.cast<double>() - head).norm() < reach);
   }
-  addSamples(character, thinned(character.mesh, near, most), skin);
+  addSamples(mesh, character, thinned(mesh, near, most), skin);
   addAir(character, skin);
   for (std::size_t m = 0; m < poses.size(); ++m) {
     skin.to_joint.emplace_back();

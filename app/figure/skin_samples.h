@@ -11,7 +11,8 @@ namespace app {
 struct SkinSample {
   Vec3 rest, normal;  // m; unit; of the model's rest pose
   double weight;      // share of all samples' area
-  int vertex, joint;  // the nearest joint from the vertex's own upwards that carries an ellipsoid
+  int vertex, joint;  // of the mesh without long edges; the nearest joint from the vertex's own upwards that carries an
+                      // ellipsoid
   bool of_head;       // above the chin but for mouth, chin and neck: styles grow around it as it is
 };
 
@@ -35,8 +36,9 @@ struct PosedSkin {
   }
 };
 
-// Samples at most `most` vertices that come within three head heights of the head at rest or at one of `moments`
-// moments spread over the clips. Empty where none does or no ellipsoid is there. Deterministic.
+// Samples at most `most` vertices, of the skin and of its long edges' divisions, that come within three head heights of
+// the head at rest or at one of `moments` moments spread over the clips. Empty where none does or no ellipsoid is
+// there. Deterministic.
 PosedSkin poseSkin(const Character& character, std::size_t most, int moments);
 
 }  // namespace app

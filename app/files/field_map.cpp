@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "app/files/image_io.h"
+#include "app/files/painted_mesh.h"
 #include "sim/field_text.h"
 
 namespace app {
@@ -167,7 +168,7 @@ double pictureValue(double share) {
 namespace {
 
 Image readPicture(const std::string& picture) {
-  if (!isPictureText(picture)) return readPng(picture);
+  if (!isPictureText(picture)) return hasPaintedEnding(picture) ? readPaintedMesh(picture) : readPng(picture);
   return readPngBytes(fromBase64(std::string_view(picture).substr(kPictureText.size())), "painted field");
 }
 

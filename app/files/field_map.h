@@ -2,8 +2,9 @@
 //
 // A picture is the head unrolled: its middle column is the front, its sides the back, its left half the figure's right
 // side; its top row is the crown, the row half-way down lies level with the tops of the ears. White stands for the
-// parameter's own value, black for its least; the picture of "color" is what pigment lets through. It is a PNG file, or
-// the bytes of one in text (RFC 2397, "data:image/png;base64,..."), as brushes in the window leave it.
+// parameter's own value, black for its least; the picture of "color" is what pigment lets through. It is a PNG file,
+// or the bytes of one in text (RFC 2397, "data:image/png;base64,..."), as brushes in the window leave it, or a mesh
+// with coloured vertices (painted_mesh.h).
 //
 // A curve is a list of shares of the parameter's value, evenly spaced from root to tip: "curves": { "stiffness":
 // [1, 0.5, 0.2] }; linear in between. Of "color" a share may be three (linear light), or a picture's colour "#rrggbb".
@@ -37,7 +38,8 @@ double pictureValue(double share);
 // The direction of a pixel's middle.
 sim::Vec3 directionOf(const FieldMap& map, int column, int row);
 
-// The luminance of a PNG, of a file or in text, over the whole head whatever its sides. Throws InputError.
+// The luminance of a PNG, of a file or in text, or of a painted mesh, over the whole head whatever its sides. Throws
+// InputError.
 FieldMap readFieldMap(const std::string& picture);
 // Its red, green and blue, as the picture has them (sRGB).
 ColorMap readColorMap(const std::string& picture);

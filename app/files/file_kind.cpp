@@ -62,7 +62,10 @@ FileKind fileKind(const std::string& file) {
   if (ending == ".vrm") return FileKind::kHairMesh;
   if (ending == ".hdr") return FileKind::kEnvironment;
   for (const char* picture : {".png", ".jpg", ".jpeg", ".exr"}) {
-    if (ending == picture) throw InputError(file, "", "is no Radiance picture", "name a panorama saved as .hdr (RGBE)");
+    if (ending == picture)
+      throw InputError(file, "", "is no Radiance picture",
+                       "name a panorama saved as .hdr (RGBE); a PNG paints a field: choose that first (Hair, Brushes), "
+                       "or write --map FIELD=FILE");
   }
   if (ending == ".glb" || ending == ".gltf" || ending == ".fbx")
     return holdsStillMeshes(file) ? kindOfStillMesh(file) : FileKind::kMotion;

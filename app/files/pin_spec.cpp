@@ -19,23 +19,26 @@ int readInteger(const JsonPlace& place, int minimum) {
   return static_cast<int>(number);
 }
 
+sim::Vec3 readPlace(const JsonPlace& place) {
+  const auto at = place.vector(-kFarthestPin, kFarthestPin);
+  return {at[0], at[1], at[2]};
+}
+
 PinSpec readPin(const JsonPlace& place) {
-  place.expectObject({"vertex", "column", "layer", "to", "at", "stiffness", "from", "until"});
+  place.expectObject({"vertex", "column", "layer", "near", "to", "at", "stiffness", "from", "until"});
   PinSpec pin;
   pin.file = place.file();
   pin.place = place.pointer();
-  if (place.has("vertex") == place.has("column")) {
-    place.refuse("names no vertex, or two", "give \"vertex\", or \"column\" and \"layer\"");
+  if (int(place.has("vertex")) + int(place.has("column")) + int(place.has("near")) != 1) {
+    place.refuse("names no vertex, or two", "give \"vertex\", or \"column\" and \"layer\", or \"near\"");
   }
   if (place.has("layer") && !place.has("column")) place.refuse("has a layer of no column", "give \"column\" as well");
   if (place.has("vertex")) pin.vertex = readInteger(place.at("vertex"), 0);
   if (place.has("column")) pin.column = readInteger(place.at("column"), 0);
   if (place.has("layer")) pin.layer = readInteger(place.at("layer"), -1);
+  if (place.has("near")) pin.near = readPlace(place.at("near"));
   if (place.has("to")) pin.to = place.at("to").text();
-  if (place.has("at")) {
-    const auto at = place.at("at").vector(-kFarthestPin, kFarthestPin);
-    pin.at = sim::Vec3(at[0], at[1], at[2]);
-  }
+  if (place.has("at")) pin.at = readPlace(place.at("at"));
   if (place.has("stiffness")) {
     const JsonPlace stiffness = place.at("stiffness");
     pin.stiffness = stiffness.value().is_string() ? (stiffness.choice({"infinite"}), PinSpec::kForever)
@@ -62,6 +65,7 @@ json writePins(const std::vector<PinSpec>& pins) {
     json one = {{"to", pin.to}, {"from", pin.from}};
     if (pin.vertex >= 0) one["vertex"] = pin.vertex;
     if (pin.column >= 0) one["column"] = pin.column, one["layer"] = pin.layer;
+    if (pin.near) one["near"] = json{pin.near->x(), pin.near->y(), pin.near->z()};
     if (pin.at) one["at"] = json{pin.at->x(), pin.at->y(), pin.at->z()};
     one["stiffness"] = std::isfinite(pin.stiffness) ? json(pin.stiffness) : json("infinite");
     if (std::isfinite(pin.until)) one["until"] = pin.until;
@@ -73,6 +77,11 @@ json writePins(const std::vector<PinSpec>& pins) {
 PinSpec pinFromText(std::string_view text) {
   const json parsed = parseJson(text, "");
   return readPin(JsonPlace(parsed, ""));
+}
+
+std::vector<PinSpec> pinsFromText(std::string_view text) {
+  const json parsed = parseJson(text, "");
+  return readPins(JsonPlace(parsed, ""));
 }
 
 }  // namespace app

@@ -99,6 +99,18 @@ struct Gatherer {
     out.face_object.push_back(static_cast<int>(out.objects.size()) - 1);
   }
 
+  // Of the mesh that was added last; vertices of meshes without colours are white.
+  void addColors(const aiMesh& mesh) {
+    constexpr std::array kWhite{1.0f, 1.0f, 1.0f};
+    if (mesh.mColors[0] == nullptr && out.vertex_colors.empty()) return;
+    out.vertex_colors.resize(out.positions.size() - mesh.mNumVertices, kWhite);
+    for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+      const aiColor4D color = mesh.mColors[0] == nullptr ? aiColor4D(1, 1, 1, 1) : mesh.mColors[0][v];
+      const auto share = [](float value) { return std::isfinite(value) ? std::clamp(value, 0.0f, 1.0f) : 0.0f; };
+      out.vertex_colors.push_back({share(color.r), share(color.g), share(color.b)});
+    }
+  }
+
   void addMesh(const aiNode& node, const aiMesh& mesh, const Mat4& to_world) {
     const std::string name = nameOf(node, mesh);
     out.objects.push_back(name);
@@ -113,6 +125,7 @@ struct Gatherer {
         throw InputError(file, name + ", vertex " + std::to_string(v), "is not at a finite place", kExport);
       out.positions.push_back(world.head<3>());
     }
+    addColors(mesh);
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) addFace(mesh, mesh.mFaces[f], base, name);
   }
 

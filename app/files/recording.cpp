@@ -31,7 +31,7 @@ struct AskName {
   std::string_view name;
 };
 // What can be recorded: all but the requests that write files.
-constexpr std::array<AskName, 54> kAskNames{{{Ask::kSetParam, "set"},
+constexpr std::array<AskName, 55> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kPause, "pause"},
                                              {Ask::kPauseMotion, "pause-motion"},
                                              {Ask::kSingleStep, "single-step"},
@@ -80,6 +80,7 @@ constexpr std::array<AskName, 54> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kClearBake, "clear-bake"},
                                              {Ask::kMap, "map"},
                                              {Ask::kTie, "tie"},
+                                             {Ask::kPin, "pin"},
                                              {Ask::kAttach, "attach"},
                                              {Ask::kPaint, "paint"},
                                              {Ask::kCurve, "curve"},

@@ -66,7 +66,7 @@ CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
   if (place.has("parts")) spec.parts = readFileName(place.at("parts"), "clips");
   if (place.has("clip")) spec.clip = place.at("clip").text();
   if (place.has("style"))
-    spec.style = *parseStyle(place.at("style").choice({"short", "shoulder", "long", "bob", "pixie"}));
+    spec.style = *parseStyle(place.at("style").choice(kStyleNames));
   if (place.has("resolution")) {
     spec.resolution = *parseResolution(place.at("resolution").choice({"low", "medium", "high", "ultra"}));
   }
@@ -145,13 +145,6 @@ json writeCharacter(const CharacterSpec& spec) {
 }
 
 }  // namespace
-
-std::optional<Style> parseStyle(std::string_view name) {
-  for (const Style style : {Style::kShort, Style::kShoulder, Style::kLong, Style::kBob, Style::kPixie}) {
-    if (name == styleName(style)) return style;
-  }
-  return {};
-}
 
 std::optional<Resolution> parseResolution(std::string_view name) {
   for (const Resolution resolution : {Resolution::kLow, Resolution::kMedium, Resolution::kHigh, Resolution::kUltra}) {

@@ -128,7 +128,6 @@ Options sortedOut(Options options);
 Scene sceneFromOptions(const Options& options);
 
 // "short" -> Style::kShort; throws nothing, empty when unknown.
-std::optional<Style> parseStyle(std::string_view name);
 std::optional<Resolution> parseResolution(std::string_view name);
 
 }  // namespace app

@@ -122,9 +122,10 @@ std::string tieTitle(const std::vector<TieSpec>& ties) {
   for (std::size_t k = 0; k < ties.size(); ++k) {
     title += k == 0 ? " " : k + 1 < ties.size() ? ", " : " and ";
     const std::optional<sim::Vec3>& at = ties[k].at;
-    title +=
-        at ? "at " + sim::numberText(at->x()) + ", " + sim::numberText(at->y()) + ", " + sim::numberText(at->z()) + " m"
-           : ties[k].place;
+    const auto tenths = [&](int axis) {  // of a centimetre, no minus before zero
+      return sim::numberText(std::round(1000 * (*at)[axis]) / 10 + 0.0);
+    };
+    title += at ? "at " + tenths(0) + ", " + tenths(1) + ", " + tenths(2) + " cm" : ties[k].place;
   }
   return title;
 }

@@ -24,9 +24,12 @@ std::size_t readColumns(const hm_mesh_settings& settings, sim::HairMeshShape& sh
   std::size_t vertices = 0;
   for (std::size_t c = 0; c < settings.column_count; ++c) {
     const int length = settings.column_lengths[c];
-    if (length < 2 || vertices + static_cast<std::size_t>(length) > kMaxElements)
-      throw Fault{HM_ERROR_MESH, "column " + std::to_string(c) + " has " + std::to_string(length) +
-                                     " vertices; give it at least 2, root first"};
+    const std::string column = "column " + std::to_string(c);
+    if (length < 2)
+      throw Fault{HM_ERROR_MESH,
+                  column + " has " + std::to_string(length) + " vertices; give it at least 2, root first"};
+    if (vertices + static_cast<std::size_t>(length) > kMaxElements)
+      throw Fault{HM_ERROR_MESH, column + " ends beyond 2^28 vertices; check column_lengths, or split the hair"};
     vertices += static_cast<std::size_t>(length);
     shape.column_first.push_back(static_cast<int>(vertices));
   }
@@ -150,12 +153,13 @@ hm_result hm_mesh_create_style(const char* style, const char* resolution, double
     using app::Style;
     needs(mesh, "mesh");
     const Style which = chosen(
-        style, "style", {Style::kShort, Style::kShoulder, Style::kLong, Style::kBob, Style::kPixie}, app::styleName);
+        style, "style", {Style::kShort, Style::kShoulder, Style::kLong, Style::kBob, Style::kPixie, Style::kShaved},
+        app::styleName);
     const Resolution fine =
         chosen(resolution, "resolution", {Resolution::kLow, Resolution::kMedium, Resolution::kHigh, Resolution::kUltra},
                app::resolutionName);
     if (!(head_height >= 0.05 && head_height <= 2))
-      throw Fault{HM_ERROR_ARGUMENT, "head_height is not within 0.05 and 2; give it in metres, 0.23 for a person"};
+      throw Fault{HM_ERROR_VALUE, "head_height is not within 0.05 and 2; give it in metres, 0.23 for a person"};
     *mesh = addMesh(styleOnPlainHead(which, fine, head_height));
   });
 }

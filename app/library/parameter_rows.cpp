@@ -38,8 +38,9 @@ hm_parameter describeRow(const Row& row, double default_value, bool of_strands) 
 // A step has ellipsoids to collide with and no signed distances.
 void refuseSdf(const sim::SimParams& params) {
   if (params.collider == sim::ColliderKind::kSdf)
-    throw Fault{HM_ERROR_VALUE,
-                "collider cannot be sdf: the library takes no signed distances of a body; give ellipsoids with the step"};
+    throw Fault{
+        HM_ERROR_VALUE,
+        "collider cannot be sdf: the library takes no signed distances of a body; give ellipsoids with the step"};
 }
 
 static_assert(static_cast<int>(sim::FieldKind::kReal) == HM_REAL &&

@@ -10,7 +10,8 @@
 namespace app::library {
 namespace {
 
-constexpr double kLongestStep = 0.1;  // s, as the parameter time_step allows
+constexpr double kShortestStep = 1e-6;  // s: velocities of shorter ones are rounding
+constexpr double kLongestStep = 0.1;    // s, as the parameter time_step allows
 
 void readRoots(const hm_step_input& input, Hair& hair) {
   const sim::HairMesh& mesh = hair.mesh();
@@ -44,7 +45,7 @@ void readPins(const hm_step_input& input, Hair& hair) {
 }
 
 void checkScalars(const hm_step_input& input) {
-  if (!(input.dt > 0)) throw Fault{HM_ERROR_VALUE, "dt is not above 0; give seconds, 1/60 for instance"};
+  if (!(input.dt >= kShortestStep)) throw Fault{HM_ERROR_VALUE, "dt is below 1e-6 s; give seconds, 1/60 for instance"};
   if (input.dt > kLongestStep) throw Fault{HM_ERROR_VALUE, "dt is above 0.1 s; take several steps"};
   if (!std::isfinite(input.time)) throw Fault{HM_ERROR_VALUE, "time is not finite; give seconds"};
   if (!(input.max_work > 0)) throw Fault{HM_ERROR_VALUE, "max_work is not above 0; INFINITY stands for no budget"};

@@ -43,12 +43,6 @@ std::vector<unsigned char> movingJoints(const Character& character) {
   return moving;
 }
 
-// A joint that hair is pinned to (-1: none), and those above it.
-void markMoving(int joint, const Skeleton& skeleton, std::vector<unsigned char>& moving) {
-  for (; joint >= 0; joint = skeleton.joints[static_cast<std::size_t>(joint)].parent)
-    moving[static_cast<std::size_t>(joint)] = 1;
-}
-
 LoadedBody& loadBody(const CharacterSpec& spec, AssetCache& asset_cache) {
   const std::string key = spec.motion + "|" + spec.parts;
   for (const auto& body : asset_cache.bodies) {
@@ -167,7 +161,7 @@ void holdAtRest(std::span<const int> vertices, Actor& actor) {
   const Character& character = actor.body->character;
   for (const int v : vertices) {
     const Vec3 at = character.head_frame * actor.haircut->mesh.shape.positions[static_cast<std::size_t>(v)];
-    actor.pins.push_back({v, character.head_joint, at, PinSpec::kForever, 0, PinSpec::kForever});
+    actor.pins.push_back({v, character.head_joint, at, PinSpec::kForever, 0, PinSpec::kForever, false});
   }
 }
 
@@ -200,19 +194,18 @@ Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, AssetCa
   actor.reach = reachOf(actor);
   placeActor(actor, true);
   actor.front = frontOf(actor);
-  actor.pins = findPins(spec.pins, actor.haircut->mesh, body.character, actor.pose);
+  repin(spec.pins, actor);
   const std::vector<int>& ring = actor.haircut->tied;
   const std::vector<Vec3> places =
       ringPlaces(actor.haircut->mesh.shape, body.character.scalp, actor.haircut->ties, ring);
   for (std::size_t k = 0; k < ring.size(); ++k) {
     const Vec3 at = body.character.head_frame * places[k];
-    actor.pins.push_back({ring[k], body.character.head_joint, at, PinSpec::kForever, 0, PinSpec::kForever});
+    actor.pins.push_back({ring[k], body.character.head_joint, at, PinSpec::kForever, 0, PinSpec::kForever, false});
   }
   holdAtRest(actor.haircut->wound, actor);
   holdAtRest(actor.haircut->covered, actor);
-  for (const WornAttachment& worn : actor.worn)
-    markMoving(worn.mesh->part.joint, body.character.skeleton, body.moving_joints);
-  for (const ActorPin& pin : actor.pins) markMoving(pin.joint, body.character.skeleton, body.moving_joints);
+  for (const WornAttachment& worn : actor.worn) markMoving(worn.mesh->part.joint, body);
+  for (const ActorPin& pin : actor.pins) markMoving(pin.joint, body);
   return actor;
 }
 
@@ -457,9 +450,11 @@ void settleInMotion(const sim::SimParams& params, double seconds, Actor& actor) 
   settleActor(params, seconds, actor);
   actor.playback.paused = false;
   actor.playback.speed = 1;
-  const auto steps = static_cast<int>(std::lround(from * kStride / params.time_step));
-  for (int k = 0; k < steps; ++k) stepActor(params, params.time_step, k * params.time_step, actor);
+  const auto steps = static_cast<int>(std::ceil(from * kStride / params.time_step));
+  const double step = from * kStride / std::max(1, steps);
+  for (int k = 0; k < steps; ++k) stepActor(params, step, k * step, actor);
   actor.playback = here;
+  placeActor(actor, false);  // where its clock says, to the bit
 }
 
 void showActor(double fraction, const Vec3& origin, Actor& actor) {

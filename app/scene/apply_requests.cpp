@@ -15,6 +15,7 @@
 #include "app/scene/demo_state.h"
 #include "app/scene/edit/cut_stroke.h"
 #include "app/scene/edit/groom_brush.h"
+#include "app/scene/edit/hand_pins.h"
 #include "app/scene/edit/mesh_change.h"
 #include "app/scene/edit/paint_brush.h"
 #include "app/scene/edit/vary.h"
@@ -44,8 +45,9 @@ void changePreset(const std::string& name, Demo& demo) {
 }
 
 // Replaces the selected actor by one of another spec; loads first, so that a fault leaves the old one standing.
-void recast(const CharacterSpec& spec, bool same_motion, const std::string& title, Demo& demo) {
+void recast(CharacterSpec spec, bool same_motion, const std::string& title, Demo& demo) {
   Actor& old = selectedActor(demo);
+  if (!spec.pins.empty()) spec.pins = pinsForAnotherMesh(old);
   if (demo.loading.on) {
     LoadOrder order{title, {}, demo.aspect, spec, demo.selected, same_motion, old.playback};
     order.scene.sim = demo.scene.sim;
@@ -67,8 +69,9 @@ void changeStyle(const Request& request, Demo& demo) {
   if (request.what == Ask::kStyle) {
     const auto style = parseStyle(request.name);
     if (!style)
-      throw InputError("", "style '" + request.name + "'", "is unknown", "choose short, shoulder, long, bob or pixie");
+      throw InputError("", "style '" + request.name + "'", "is unknown", sim::nameHint(request.name, kStyleNames));
     spec.style = *style;
+    spec.pins.clear();
   } else {
     const auto resolution = parseResolution(request.name);
     if (!resolution)
@@ -82,7 +85,7 @@ void changeStyle(const Request& request, Demo& demo) {
 void changeHairFile(const std::string& file, Demo& demo) {
   CharacterSpec spec = selectedActor(demo).spec;
   chooseHair(findFile(file, "", "hair"), spec);
-  spec.mends.clear();
+  spec.mends.clear(), spec.pins.clear();
   recast(spec, true, "hair mesh " + stem(file), demo);
 }
 
@@ -245,20 +248,6 @@ void savePreset(const Request& request, Demo& demo) {
   demo.scene.preset = request.text;
   keepBase(demo);
   showMessage("saved " + request.text, demo);
-}
-
-// Hair that brushes have reshaped becomes a file of its own beside the scene.
-void saveReshapedHair(const std::string& scene_file, const Demo& demo, Scene& scene) {
-  for (std::size_t i = 0; i < demo.actors.size(); ++i) {
-    if (!reshapedByHand(*demo.actors[i].haircut)) continue;
-    const std::filesystem::path beside =
-        std::filesystem::path(scene_file).replace_extension().string() + "-hair" + std::to_string(i + 1) + ".obj";
-    writeFile(beside.string(), writeHairMesh(demo.actors[i].haircut->mesh.shape));
-    scene.characters[i].hair = beside.string();
-    scene.characters[i].mends.clear();
-    scene.characters[i].maps.length.clear();  // it is in the shape
-    scene.characters[i].fit = scene.characters[i].reverse_faces = false;
-  }
 }
 
 void saveScene(const Request& request, Demo& demo) {
@@ -437,6 +426,7 @@ constexpr Action kActions[] = {
      }},
     {Ask::kMap, changeMap},
     {Ask::kTie, [](const Request& request, Demo& demo) { changeTies(request.text, demo); }},
+    {Ask::kPin, [](const Request& request, Demo& demo) { applyPins(pinsFromText(request.text), demo.selected, demo); }},
     {Ask::kAttach, changeAttachments},
     {Ask::kDragWorn, [](const Request& request, Demo& demo) { drawDragged(request.text, selectedActor(demo)); }},
     {Ask::kPaint, [](const Request& request,
@@ -468,7 +458,7 @@ void apply(const Request& request, Demo& demo) {
   std::optional<EditStep> step = beginEdit(request, demo);
   kActions[static_cast<std::size_t>(request.what)].apply(request, demo);
   const bool later = step && comesLater(demo.edits.next, demo.loading);
-  if (step) commitEdit(std::move(*step), demo.edits);
+  if (step) commitEdit(std::move(*step), later, demo.edits);
   if (!later && ofFile(request.what)) noteFileEnd(request.text, true, demo);
 }
 

@@ -326,6 +326,32 @@ void drawFrame(Demo& demo, const FrameTarget& target) {
   addDrawing(demo.stats.draw.skip_counts, demo.stats.skipped);
 }
 
+namespace {
+
+// The steps of a frame of `seconds`; returns how many there were.
+int takeSteps(double seconds, Demo& demo) {
+  demo.running = governed(demo.scene.sim, demo.governor);
+  const int steps = stepsToTake(seconds, demo);
+  if (steps > 0) chooseDetail(demo);
+  for (int i = 1; i <= steps; ++i) moveActors(demo.clock.time - (steps - i) * demo.running.time_step, steps - i, demo);
+  return steps;
+}
+
+}  // namespace
+
+void simulateAgain(double seconds, Demo& demo) {
+  const FrameStats stats = demo.stats;
+  const bool paused = std::exchange(demo.paused, seconds < 0);
+  const int single_steps = std::exchange(demo.single_steps, seconds < 0 ? 1 : 0);
+  followColliders(demo);
+  const FixedClock before = demo.clock;
+  takeSteps(std::max(0.0, seconds), demo);
+  advanceShownTime(std::max(0.0, seconds), before, demo);
+  ++demo.frames;
+  demo.stats = stats;
+  demo.paused = paused, demo.single_steps = single_steps;
+}
+
 void advanceFrame(Demo& demo, double seconds, const FrameTarget& target) {
   const double start = now();
   followRange(demo);
@@ -336,12 +362,9 @@ void advanceFrame(Demo& demo, double seconds, const FrameTarget& target) {
   leaveCachedFrame(demo);
   followColliders(demo);
 
-  demo.running = governed(demo.scene.sim, demo.governor);
   const FixedClock before = demo.clock;
-  const int steps = stepsToTake(seconds, demo);
+  const int steps = takeSteps(seconds, demo);
   count(demo.paused && steps == 0, demo.stats.always[kPausedFrame]);
-  if (steps > 0) chooseDetail(demo);
-  for (int i = 1; i <= steps; ++i) moveActors(demo.clock.time - (steps - i) * demo.running.time_step, steps - i, demo);
   observeWork(steps, demo.stats.work_units, demo.stats.simulation(), demo.deadline);
   updateGovernor(seconds, steps, demo);
   showFault(demo);
@@ -352,7 +375,7 @@ void advanceFrame(Demo& demo, double seconds, const FrameTarget& target) {
 
   advanceShownTime(seconds, before, demo);
   ++demo.frames;
-  keepMoment(demo);
+  keepMoment(seconds, demo);
   advanceCompared(seconds, std::move(of_both), demo);
 
   glide(seconds, demo.draw_governor);

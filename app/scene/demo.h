@@ -111,6 +111,9 @@ void keepBase(Demo& demo);
 // Advances by `seconds` of wall time and draws. Faults of requests become the demo's message; what was loaded stays.
 void advanceFrame(Demo& demo, double seconds, const FrameTarget& target);
 
+// A frame of the past once more, without a picture and without being kept or counted; below 0 s a single step.
+void simulateAgain(double seconds, Demo& demo);
+
 // What was found of hair mesh files that do not fit their heads; empty when all fit.
 std::string hairNotes(std::span<const Actor> actors);
 

@@ -82,6 +82,8 @@ std::string shortBunNote(const TieSpec& tie, double left) {
               : "; a ring of \"radius\": " + sim::numberText(std::floor(1e3 * fits) / 1e3) + " makes one");
 }
 
+constexpr const char* kLooseNote = ": hair of the far side hangs loose; its way to the ring would lead across the face";
+
 // What each tie holds.
 struct Held {
   std::vector<int> ring;  // vertices
@@ -95,6 +97,8 @@ void applyTies(const CharacterSpec& spec, const LoadedBody& body, sim::HairMeshS
   TiedHair result = tieHair(shape, body.character.scalp, body.distance, haircut.ties,
                             spec.attachments.empty() ? Seams::kClosed : Seams::kOpen);
   shape = std::move(result.shape);
+  if (result.loose > 0 && haircut.note.find(kLooseNote) == std::string::npos)
+    addNote(tieTitle(spec.ties) + kLooseNote, haircut);
   haircut.tied.clear();
   haircut.bands.clear();
   haircut.wound.clear();

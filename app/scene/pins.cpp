@@ -1,6 +1,7 @@
 #include "app/scene/pins.h"
 
 #include "app/files/errors.h"
+#include "app/scene/actor.h"
 #include "sim/field_text.h"
 
 namespace app {
@@ -16,7 +17,17 @@ std::string upTo(int count) {
   return "write a number from 0 to " + std::to_string(count - 1);
 }
 
+int nearestAtRest(const Vec3& place, const sim::HairMesh& mesh) {
+  int nearest = -1;
+  const auto distance = [&](int v) { return (mesh.shape.positions[v] - place).squaredNorm(); };
+  for (int v = 0; v < mesh.vertexCount(); ++v) {
+    if (!mesh.isRoot(v) && (nearest < 0 || distance(v) < distance(nearest))) nearest = v;
+  }
+  return nearest;
+}
+
 int findVertex(const PinSpec& spec, const sim::HairMesh& mesh) {
+  if (spec.near) return nearestAtRest(*spec.near, mesh);
   int vertex = spec.vertex;
   if (spec.column >= 0) {
     if (spec.column >= mesh.columnCount()) {
@@ -72,6 +83,29 @@ std::vector<ActorPin> findPins(const std::vector<PinSpec>& specs, const sim::Hai
   return pins;
 }
 
+void markMoving(int joint, LoadedBody& body) {
+  const std::vector<Joint>& joints = body.character.skeleton.joints;
+  for (; joint >= 0; joint = joints[static_cast<std::size_t>(joint)].parent)
+    body.moving_joints[static_cast<std::size_t>(joint)] = 1;
+}
+
+void repin(std::vector<PinSpec> specs, Actor& actor) {
+  const std::vector<ActorPin> found = findPins(specs, actor.haircut->mesh, actor.body->character, actor.pose);
+  for (std::size_t k = 0; k < specs.size(); ++k) {
+    if (specs[k].near) specs[k].vertex = found[k].vertex, specs[k].near.reset();
+    if (specs[k].to == "scene") specs[k].at = found[k].at;
+  }
+  std::erase_if(actor.pins, [](const ActorPin& pin) { return pin.of_spec; });
+  actor.pins.insert(actor.pins.begin(), found.begin(), found.end());
+  actor.spec.pins = std::move(specs);
+  for (const ActorPin& pin : found) markMoving(pin.joint, *actor.body);
+}
+
+void followRestPins(Actor& actor) {
+  const auto resting = [](const PinSpec& spec) { return !spec.at; };
+  if (std::ranges::any_of(actor.spec.pins, resting)) repin(actor.spec.pins, actor);
+}
+
 void posePins(const std::vector<ActorPin>& pins, const Pose& pose, const Pose& previous, double time, double dt,
               std::vector<sim::PinnedVertex>& posed) {
   posed.clear();
@@ -91,11 +125,7 @@ void pinsOfCoarse(const sim::HairMesh& fine, const sim::HairMesh& coarse, const 
   pins.clear();
   for (const sim::PinnedVertex& pin : whole) {
     const Vec3& rest = fine.shape.positions[pin.vertex];
-    int nearest = -1;
-    const auto distance = [&](int v) { return (coarse.shape.positions[v] - rest).squaredNorm(); };
-    for (int v = 0; v < coarse.vertexCount(); ++v) {
-      if (!coarse.isRoot(v) && (nearest < 0 || distance(v) < distance(nearest))) nearest = v;
-    }
+    const int nearest = nearestAtRest(rest, coarse);
     pins.push_back(pin);
     pins.back().vertex = nearest;
     pins.back().target += head.linear() * (coarse.shape.positions[nearest] - rest);

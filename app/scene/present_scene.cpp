@@ -3,6 +3,9 @@
 #include <filesystem>
 
 #include "app/files/data_path.h"
+#include "app/files/hair_file.h"
+#include "app/files/output_file.h"
+#include "app/scene/edit/groom_brush.h"
 
 namespace app {
 
@@ -53,6 +56,19 @@ Scene movable(Scene scene, const std::string& file) {
     for (const std::string_view field : kFieldNames) makeMovable("maps", beside, *findMap(field, spec.maps));
   }
   return scene;
+}
+
+void saveReshapedHair(const std::string& scene_file, const Demo& demo, Scene& scene) {
+  for (std::size_t i = 0; i < demo.actors.size(); ++i) {
+    if (!reshapedByHand(*demo.actors[i].haircut)) continue;
+    const std::filesystem::path beside =
+        std::filesystem::path(scene_file).replace_extension().string() + "-hair" + std::to_string(i + 1) + ".obj";
+    writeFile(beside.string(), writeHairMesh(demo.actors[i].haircut->mesh.shape));
+    scene.characters[i].hair = beside.string();
+    scene.characters[i].mends.clear();
+    scene.characters[i].maps.length.clear();  // it is in the shape
+    scene.characters[i].fit = scene.characters[i].reverse_faces = false;
+  }
 }
 
 }  // namespace app

@@ -14,4 +14,8 @@ Scene presentScene(const Demo& demo);
 // there, so that they can be moved together, others by their full path.
 Scene movable(Scene scene, const std::string& file = "");
 
+// Hair that brushes have reshaped becomes a file of its own beside the scene's, and the scene's hair. Throws
+// OutputError.
+void saveReshapedHair(const std::string& scene_file, const Demo& demo, Scene& scene);
+
 }  // namespace app

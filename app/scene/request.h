@@ -64,6 +64,7 @@ enum class Ask {
   kClearBake,    // what the timeline keeps is forgotten
   kMap,          // name: of a field, see field_map.h; text: the picture it is painted by, empty for none
   kTie,          // text: ties of the selected character, see tiesFromText
+  kPin,          // text: pins of the selected character in place of those before, see pinsFromText
   kAttach,       // text: attachments of the selected character in place of those before, see attachmentsFromText;
                  // name: add, beside those before
   kDragWorn,     // text: the same attachments; where they are drawn until the next frame, or while they are loaded

@@ -54,6 +54,24 @@ Scalp rounded(Scalp scalp, int rounds, double ball) {
   return scalp;
 }
 
+// The same roots with stubble.
+sim::HairMeshShape shavedTo(double length, int layers, const sim::HairMeshShape& style, const Scalp& scalp,
+                            const BodyDistance& body) {
+  constexpr double kAlong = 0.45;  // of its way off the scalp
+  sim::HairMeshShape shape;
+  shape.root_faces = style.root_faces;
+  for (int c = 0; c < style.columnCount(); ++c) {
+    const auto root = static_cast<std::size_t>(style.column_first[static_cast<std::size_t>(c)]);
+    const Vec3 off = (style.positions[root] - scalp.center).normalized();
+    const Vec3 along = (style.positions[root + 1] - style.positions[root]).normalized();
+    const Vec3 way = (off + kAlong * along).normalized();
+    for (int l = 0; l < layers; ++l) shape.positions.push_back(style.positions[root] + l * length / (layers - 1) * way);
+    shape.column_first.push_back(static_cast<int>(shape.positions.size()));
+  }
+  untangle(body, kFatness, 0, shape);
+  return shape;
+}
+
 }  // namespace
 
 double Scalp::radiusAt(const Vec3& direction) const {
@@ -73,6 +91,12 @@ double Scalp::radiusAt(const Vec3& direction) const {
 }
 
 sim::HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& scalp, const BodyDistance& body) {
+  if (style == Style::kShaved) {
+    constexpr double kStubble = 0.008 / kOrdinaryHead;
+    constexpr int kLayers = 6;
+    return shavedTo(kStubble * scalp.head_height, kLayers, makeStyle(Style::kShort, resolution, scalp, body), scalp,
+                    body);
+  }
   // Hair is cut on a head of ordinary size, where lengths mean what they say, and grown or shrunk with it.
   const double scale = scalp.head_height / kOrdinaryHead;
   const BodyDistance scaled_body = [&](const Vec3& p) { return body(scale * p) / scale; };
@@ -109,12 +133,13 @@ sim::HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& sc
 }
 
 bool hasFringe(Style style) {
-  return kCuts[static_cast<std::size_t>(style)].fringe.has_value();
+  return style != Style::kShaved && kCuts[static_cast<std::size_t>(style)].fringe.has_value();
 }
 
-std::string_view styleName(Style style) {
-  constexpr std::array<std::string_view, 5> kNames{"short", "shoulder", "long", "bob", "pixie"};
-  return kNames[static_cast<std::size_t>(style)];
+std::optional<Style> parseStyle(std::string_view name) {
+  const auto at = std::ranges::find(kStyleNames, name);
+  if (at == kStyleNames.end()) return {};
+  return static_cast<Style>(at - kStyleNames.begin());
 }
 
 std::string_view resolutionName(Resolution resolution) {

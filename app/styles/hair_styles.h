@@ -1,7 +1,10 @@
-// Built-in hair meshes on a given scalp: {short, shoulder, long, bob, pixie} x {low, medium, high, ultra}, and minimal.
+// Built-in hair meshes on a given scalp: {short, shoulder, long, bob, pixie, shaved} x {low, medium, high, ultra}, and
+// minimal.
 #pragma once
 
+#include <array>
 #include <functional>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -12,7 +15,8 @@ namespace app {
 
 using Vec3 = Eigen::Vector3d;
 
-enum class Style { kShort, kShoulder, kLong, kBob, kPixie };
+enum class Style { kShort, kShoulder, kLong, kBob, kPixie, kShaved };
+inline constexpr std::array<std::string_view, 6> kStyleNames{"short", "shoulder", "long", "bob", "pixie", "shaved"};
 // Minimal, the coarsest of all, is for hair that is small in the picture and is not offered by name.
 enum class Resolution { kLow, kMedium, kHigh, kUltra, kMinimal };
 
@@ -46,11 +50,17 @@ using BodyDistance = std::function<double(const Vec3&)>;
 // 9,997, bob 385 / 974 / 2,293 / 9,899, pixie 275 / 748 / 1,433 / 7,805; minimal 85 to 168. Columns of at most 8 or 16
 // vertices where a plan can have them so, for whole vectors of the solver's kernels. Deterministic; under 0.5 s, ultra
 // under 1.5 s.
+//
+// Shaved is the roots of short, each with 8 mm of hair of six vertices that stands off the scalp: what hairdos are
+// grown from by hand.
 sim::HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& scalp, const BodyDistance& body);
 
 bool hasFringe(Style style);  // over the forehead
 
-std::string_view styleName(Style style);                 // "short", "shoulder", "long", "bob", "pixie"
+inline std::string_view styleName(Style style) {
+  return kStyleNames[static_cast<std::size_t>(style)];
+}
+std::optional<Style> parseStyle(std::string_view name);
 std::string_view resolutionName(Resolution resolution);  // "low", "medium", "high", "ultra"
 
 }  // namespace app

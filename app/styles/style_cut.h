@@ -21,7 +21,7 @@ struct Cut {
   std::optional<double> fringe = {};  // height of the ends of the hair over the forehead
 };
 
-inline constexpr std::array kCuts{// by Style
+inline constexpr std::array kCuts{// by Style, but for shaved
                                   Cut{.thickness = 0.017,
                                       .front = -0.20,
                                       .side = -0.25,

@@ -134,28 +134,46 @@ Path Gathering::stub(double length) const {
   return path;
 }
 
+// Whether hair rooted in a direction from the head's middle can be combed to a ring there: its great circle is not
+// across the face, nor so long that neighbours part to all sides of the head. Both unit.
+bool comesTo(const Vec3& ring, const Vec3& root) {
+  constexpr double kFarthest = 3.0;               // rad
+  constexpr double kBeside = 0.9, kAbove = 0.36;  // rad from the front; sine of the elevation: the face
+  const double angle = std::acos(std::clamp(root.dot(ring), -1.0, 1.0));
+  if (angle > kFarthest) return false;
+  for (const double share : {0.25, 0.5, 0.75}) {
+    const Vec3 along = (std::sin((1 - share) * angle) * root + std::sin(share * angle) * ring).normalized();
+    if (std::abs(std::atan2(along.x(), along.z())) < kBeside && along.y() < kAbove) return false;
+  }
+  return true;
+}
+
+// The tie that takes a bundle; -1: none, kAcrossFace: none because of its way there.
+constexpr int kAcrossFace = -2;
 int tieOf(const sim::HairMeshShape& hair, const sim::RootFace& face, const Scalp& scalp,
           std::span<const HairTie> ties) {
+  int tie = -1;
   Vec3 middle = Vec3::Zero();
   for (int k = 0; k < face.corner_count; ++k)
     middle += hair.positions[hair.column_first[face.columns[k]]] / face.corner_count;
   middle -= scalp.center;
   for (std::size_t t = 0; t < ties.size(); ++t) {
-    const bool taken = (ties[t].side == 0 || ties[t].side * middle.x() > 0) && middle.y() > ties[t].above;
-    if (taken) return static_cast<int>(t);
+    const bool meant = (ties[t].side == 0 || ties[t].side * middle.x() > 0) && middle.y() > ties[t].above;
+    if (meant) tie = kAcrossFace;
+    if (meant && comesTo((ties[t].at - scalp.center).normalized(), middle.normalized())) return static_cast<int>(t);
   }
-  return -1;
+  return tie;
 }
 
 // What one tie holds is one tail: columns on both sides of where hair divides over the shoulders become one, so that
 // the tail does not come apart. At a parting hair leaves to both sides, and stays parted.
 sim::HairMeshShape closedSeams(sim::HairMeshShape hair, const Scalp& scalp, std::span<const HairTie> ties) {
-  constexpr int kNone = -2, kSeveral = -3;
+  constexpr int kNone = -3, kSeveral = -4;
   const auto count = static_cast<std::size_t>(hair.columnCount());
   std::vector<int> tie(count, kNone), nearest(count, -1);
   std::set<std::pair<int, int>> beside;  // columns of one face
   for (const sim::RootFace& face : hair.root_faces) {
-    const int taken = tieOf(hair, face, scalp, ties);
+    const int taken = std::max(-1, tieOf(hair, face, scalp, ties));
     for (int k = 0; k < face.corner_count; ++k) {
       int& of = tie[static_cast<std::size_t>(face.columns[k])];
       of = of == kNone || of == taken ? taken : kSeveral;
@@ -198,7 +216,7 @@ sim::HairMeshShape divided(const sim::HairMeshShape& hair, const Scalp& scalp, s
   std::map<std::pair<int, int>, int> copies;  // of (column, tie): first their layers, then their numbers
   std::vector<int> taken;
   for (const sim::RootFace& face : hair.root_faces) {
-    taken.push_back(tieOf(hair, face, scalp, ties));
+    taken.push_back(std::max(-1, tieOf(hair, face, scalp, ties)));
     for (int k = 0; k < face.corner_count; ++k) {
       int& layers = copies[{face.columns[k], taken.back()}];
       layers = std::max(layers, hair.bundleLayers(face));
@@ -342,11 +360,13 @@ TiedHair tieHair(const sim::HairMeshShape& hair, const Scalp& scalp, const BodyD
   std::vector<int> of;
   const sim::HairMeshShape parted =
       divided(seams == Seams::kClosed ? closedSeams(hair, scalp, ties) : hair, scalp, ties, of);
+  const auto acrossFace = [&](const sim::RootFace& face) { return tieOf(hair, face, scalp, ties) == kAcrossFace; };
+  const auto loose = static_cast<int>(std::ranges::count_if(hair.root_faces, acrossFace));
   std::vector<Untangled> tries;
   for (const double wider : {1.2, 1.7, 2.4}) {
     auto& [combed, tied] = tries.emplace_back();
     tied = {parted, std::vector<std::vector<int>>(ties.size()), std::vector<double>(ties.size(), 0.0),
-            std::vector<bool>(ties.size(), false)};
+            std::vector<bool>(ties.size(), false), loose};
     for (std::size_t t = 0; t < ties.size(); ++t) {
       HairTie tie = ties[t];
       tie.radius *= wider;

@@ -24,6 +24,7 @@ struct TiedHair {
   std::vector<std::vector<int>> rings;  // per tie: the vertices in it, one a column
   std::vector<double> left;             // per tie: m of hair beyond the ring, in the mean
   std::vector<bool> wound;              // per tie: whether that is in a bun, for which a short stub stands in
+  int loose = 0;                        // bundles of the ties' sides whose way to the ring would cross the face
 };
 
 // Whether the bundles of a tail that were divided over the shoulders are joined. Under a hat they are not: on their own

@@ -147,6 +147,7 @@ Weave weaveOf(Style style, Resolution resolution) {
   // The finest plans are refined once more by makeStyle, which about doubles sheets and layers.
   switch (style) {
     case Style::kShort:
+    case Style::kShaved:
       return std::array<Weave, 5>{Weave{even(5), 3, 5, 5, 5, 0.6}, Weave{even(7), 4, 7, 6, 7, 0.5},
                                   Weave{even(11), 4, 10, 7, 8, 0.4}, Weave{even(11), 4, 9, 11, 12, 0.3, kRefinedCreep},
                                   Weave{even(3), 2, 3, 5, 5, 0.6}}[level];

@@ -321,6 +321,11 @@ void message(NoticePlace& place, Demo& demo, UiState& ui) {
     ui.message_since = ImGui::GetTime();
   }
   if (text.empty()) return;
+  // What is no fault waits until the file panel, whose buttons it might cover, is closed.
+  if (ui.browser.what != BrowseFor::kNothing && !demo.message_is_fault) {
+    ui.message_since = ImGui::GetTime();
+    return;
+  }
   if (text == windowWords(demo.message) && !demo.message_is_fault &&
       ImGui::GetTime() - ui.message_since > kMessageTime) {
     demo.message.clear();

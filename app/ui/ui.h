@@ -24,7 +24,7 @@ struct UiItem {
 };
 
 // What the file panel is open for.
-enum class BrowseFor { kNothing, kOpen, kMotion, kParts, kHair, kEnvironment, kWorn, kSaveScene };
+enum class BrowseFor { kNothing, kOpen, kMotion, kParts, kHair, kEnvironment, kWorn, kMap, kSaveScene };
 
 struct FileBrowser {
   BrowseFor what = BrowseFor::kNothing;
@@ -80,6 +80,20 @@ struct ViewHistory {
   double zoomed = -1;                // s of ImGui's clock, when the wheel last turned
 };
 
+// The field that is being painted, as it was read last.
+struct ShownField {
+  std::string picture;
+  ColorMap map;
+};
+
+// What the next vertices are pinned to, and how.
+struct PinState {
+  std::string to = "scalp";    // a joint's name, "scalp" or "scene"
+  bool firm = true;            // else by `stiffness`
+  double stiffness = 40;       // N/m
+  double from = 0, until = 0;  // s of simulated time; until 0: for ever
+};
+
 // Variations of the material that are tried one after another.
 struct VaryState {
   double amount = 0.3;   // decades
@@ -122,6 +136,8 @@ struct UiState {
   long scrubbed = -1;  // frame that the timeline is dragged to
   BrushState brush;
   SelectState select;
+  PinState pin;
+  ShownField field;
   VaryState vary;
   ViewHistory views;
   std::vector<AttachmentSpec> worn;  // as their colours are being edited

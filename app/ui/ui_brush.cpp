@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "app/files/data_path.h"
+#include "app/files/errors.h"
 #include "app/scene/edit/groom_brush.h"
 #include "app/scene/edit/paint_brush.h"
 #include "app/scene/edit/picking.h"
@@ -56,15 +58,30 @@ double reachOf(const Vec3& point, const Vec3& place, const BrushState& brush, co
   return brush.mirror ? std::max(own, brushReach(reach, point)) : own;
 }
 
+// White where there is none, or where its file is no longer there.
+ColorMap readShownField(const std::string& picture, bool colors) {
+  const FieldMap white{1, 1, {1}, {}};
+  if (picture.empty()) return {white, white, white};
+  try {
+    if (colors) return readColorMap(picture);
+    const FieldMap grey = readFieldMap(picture);
+    return {grey, grey, grey};
+  } catch (const InputError&) {
+    return {white, white, white};
+  }
+}
+
 // The painted field at the roots, in the colours of its picture; under the ring brighter.
-void drawField(const Vec3& place, const Demo& demo, const BrushState& brush, float scale) {
+void drawField(const Vec3& place, const Demo& demo, UiState& ui) {
   const Picture shown = shownPicture(demo);
   const Actor& actor = selectedActor(demo);
-  const std::string& picture = mapOf(kFieldNames[static_cast<std::size_t>(brush.field)], actor.spec.maps);
-  const FieldMap white{1, 1, {1}, {}};
-  ColorMap map{white, white, white};
-  if (!picture.empty() && paintsColor(brush)) map = readColorMap(picture);
-  if (!picture.empty() && !paintsColor(brush)) map[0] = readFieldMap(picture), map[1] = map[2] = map[0];
+  const BrushState& brush = ui.brush;
+  const float scale = ui.text_scale;
+  const std::string field(kFieldNames[static_cast<std::size_t>(brush.field)]);
+  const std::string& picture = mapOf(field, actor.spec.maps);
+  if (ui.field.map[0].value.empty() || ui.field.picture != field + picture)
+    ui.field = {field + picture, readShownField(picture, paintsColor(brush))};
+  const ColorMap& map = ui.field.map;
   const sim::HairMesh& mesh = actor.haircut->mesh;
   for (int c = 0; c < mesh.columnCount(); ++c) {
     const auto root = static_cast<std::size_t>(mesh.shape.column_first[static_cast<std::size_t>(c)]);
@@ -200,6 +217,23 @@ void paintRow(UiState& ui) {
       7);
 }
 
+// The field's picture, from a file or none.
+void fieldFileRow(Demo& demo, UiState& ui) {
+  const std::string field(kFieldNames[static_cast<std::size_t>(ui.brush.field)]);
+  const std::string& picture = mapOf(field, selectedActor(demo).spec.maps);
+  rowLabel("From a file",
+           "A picture of the unrolled head (PNG), or a head with coloured vertices (OBJ, PLY, glTF, FBX)");
+  if (ImGui::Button("Open...##map")) browseFor(BrowseFor::kMap, ui);
+  noteItem("open map", ui);
+  ImGui::SameLine(0, 5);
+  ImGui::BeginDisabled(picture.empty());
+  if (ImGui::Button("None##map")) postRequest(demo, {Ask::kMap, field, ""});
+  ImGui::EndDisabled();
+  noteItem("no map", ui);
+  ImGui::SameLine(0, 8);
+  ImGui::TextDisabled("%s", picture.empty() ? "white" : isPictureText(picture) ? "painted" : stem(picture).c_str());
+}
+
 void colorRow(UiState& ui) {
   rowLabel("Color", "Share of the light that passes through pigment: white leaves the hair its own color");
   ImGui::SetNextItemWidth(-1);
@@ -278,6 +312,7 @@ void brushSection(Demo& demo, UiState& ui) {
   if (brush.field >= 0 && !paintsColor(brush))
     row("Value", "Painted share: 1 is the parameter's own value, 0 its least", "brush_value", 0, 1, "%.2f", 1,
         brush.value);
+  if (brush.field >= 0) fieldFileRow(demo, ui);
   rowLabel("Mirror", "Acts on the other side of the head as well");
   ImGui::Checkbox("##brush_mirror", &brush.mirror);
   noteItem("brush_mirror", ui);
@@ -371,7 +406,7 @@ void brushFrame(Demo& demo, UiState& ui) {
   brush.stroking = brush.stroking && held;
   if (brush.stroking) stroke(ray, hit, demo, brush);
   const Vec3 combed = worldToScalp(selectedActor(demo)).inverse(Eigen::Isometry) * brush.last;
-  if (brush.field >= 0) drawField(hit.value_or(Vec3::Constant(1e6)), demo, brush, ui.text_scale);
+  if (brush.field >= 0) drawField(hit.value_or(Vec3::Constant(1e6)), demo, ui);
   if (hit || brush.stroking) drawReach(brush.stroking && !hit ? combed : *hit, demo, ui);
 }
 

@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "app/files/data_path.h"
+#include "app/files/field_map.h"
+#include "app/files/file_ending.h"
 #include "app/ui/ui_panels.h"
 #include "app/ui/ui_widgets.h"
 
@@ -40,6 +42,10 @@ const Purpose& purposeOf(BrowseFor what) {
        {".obj", ".abc", ".usda", ".hair", ".ply", ".tfx", ".fbx", ".glb", ".gltf", ".vrm"}},
       {BrowseFor::kEnvironment, "Open a panorama that the light is taken from", "Open", {".hdr"}},
       {BrowseFor::kWorn, "Open a hat, glasses or a collar", "Open", {".obj", ".fbx", ".glb", ".gltf"}},
+      {BrowseFor::kMap,
+       "Open a picture of the unrolled head, or a head with coloured vertices",
+       "Open",
+       {".png", ".obj", ".ply", ".glb", ".gltf", ".fbx"}},
       {BrowseFor::kSaveScene, "Save the scene: style, motion, hair, camera, look, parameters", "Save", {".json"}}};
   return *std::find_if(std::begin(kPurposes), std::end(kPurposes) - 1,
                        [&](const Purpose& purpose) { return purpose.what == what; });
@@ -131,6 +137,11 @@ void setPath(const std::string& text, std::array<char, 512>& path) {
   std::copy_n(text.begin(), std::min(text.size(), path.size() - 1), path.begin());
 }
 
+void postMap(const std::string& file, Demo& demo, const UiState& ui) {
+  if (ui.brush.field < 0) return;
+  postRequest(demo, {Ask::kMap, std::string(kFieldNames[static_cast<std::size_t>(ui.brush.field)]), file});
+}
+
 void take(const std::string& file, Demo& demo, UiState& ui) {
   FileBrowser& browser = ui.browser;
   std::error_code ignored;
@@ -164,6 +175,9 @@ void take(const std::string& file, Demo& demo, UiState& ui) {
     case BrowseFor::kWorn:
       postRequest(demo, {Ask::kAttach, "add", file});
       ui.asked.push_back(file);
+      break;
+    case BrowseFor::kMap:
+      postMap(file, demo, ui);
       break;
     case BrowseFor::kSaveScene:
       postRequest(demo, {browser.project ? Ask::kSaveProject : Ask::kSaveScene, "", file});
@@ -235,6 +249,8 @@ void browseToSave(const Demo& demo, UiState& ui) {
 }
 
 void openFile(const std::string& file, Demo& demo, UiState& ui) {
+  // A picture paints the field that is chosen.
+  if (ui.brush.field >= 0 && endingOf(file) == ".png") return postMap(file, demo, ui);
   if (file.ends_with(".json")) ui.browser.last = file;
   postRequest(demo, {Ask::kOpenFile, "", file});
   ui.asked.push_back(file);

@@ -93,11 +93,6 @@ void clipRows(const Actor& actor, Demo& demo, UiState& ui) {
   if (entered) postRequest(demo, {Ask::kMotionFile, is_mot ? ui.parts_path.data() : "", ui.motion_path.data()});
 }
 
-void fact(const char* label, const std::string& value) {
-  rowLabel(label, "");
-  ImGui::TextDisabled("%s", value.c_str());
-}
-
 // What the clip does at its end, and what that comes to.
 void loopRows(const Actor& actor, Demo& demo, UiState& ui) {
   rowLabel("At the end",
@@ -348,14 +343,19 @@ void tieRow(const Actor& actor, Demo& demo, UiState& ui) {
 void hairTab(Demo& demo, UiState& ui) {
   const Actor& actor = selectedActor(demo);
   if (section("Brushes", true)) brushSection(demo, ui);
+  if (section("Pins", !actor.spec.pins.empty())) pinSection(demo, ui);
+  noteItem("section Pins", ui);
   if (section("Haircut", true)) {
     const bool from_file = !actor.spec.hair.empty();
-    const int style = segments(
-        "style",
-        {"Short", "Shoulder", "Long", {"Bob", "To the jaw, with a fringe"}, {"Pixie", "Ears free, with a fringe"}},
-        from_file ? -1 : static_cast<int>(actor.spec.style), ui);
-    static constexpr const char* kStyles[] = {"short", "shoulder", "long", "bob", "pixie"};
-    if (style >= 0) postRequest(demo, {Ask::kStyle, kStyles[style], ""});
+    const int style = segments("style",
+                               {"Short",
+                                "Shoulder",
+                                "Long",
+                                {"Bob", "To the jaw, with a fringe"},
+                                {"Pixie", "Ears free, with a fringe"},
+                                {"Shaved", "Stubble, to grow a hairdo from with the brushes"}},
+                               from_file ? -1 : static_cast<int>(actor.spec.style), ui);
+    if (style >= 0) postRequest(demo, {Ask::kStyle, std::string(kStyleNames[static_cast<std::size_t>(style)]), ""});
     const int resolution = segments("resolution", {"Low", "Medium", "High", "Ultra"},
                                     from_file ? -1 : static_cast<int>(actor.spec.resolution), ui);
     static constexpr const char* kResolutions[] = {"low", "medium", "high", "ultra"};

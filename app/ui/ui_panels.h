@@ -47,6 +47,7 @@ void curveRows(Demo& demo, UiState& ui);
 
 // What the character wears.
 void attachmentSection(Demo& demo, UiState& ui);
+void pinSection(Demo& demo, UiState& ui);
 
 // Presets as pictures and as a list, and the row that saves one.
 void presetRows(Demo& demo, UiState& ui);

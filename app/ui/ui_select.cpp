@@ -7,6 +7,7 @@
 #include <set>
 
 #include "app/scene/edit/groom_brush.h"
+#include "app/scene/edit/hand_pins.h"
 #include "app/scene/edit/mesh_change.h"
 #include "app/scene/edit/picking.h"
 #include "app/ui/ui_panels.h"
@@ -19,7 +20,7 @@ namespace {
 constexpr double kMinMove = 0.001;                   // m between two samples of a drag
 constexpr double kNudge = 0.002, kLongNudge = 0.01;  // m
 constexpr double kShownReach = 0.02;                 // of a weight
-constexpr int kChosenColor = 0, kHoverColor = 1, kMirrorColor = 2;
+constexpr int kChosenColor = 0, kHoverColor = 1, kMirrorColor = 2, kPinnedColor = 3;
 constexpr double kMirrorShare = 0.45;  // of what is reached: across the mirror
 
 MeshElement elementOf(const SelectState& select) {
@@ -74,10 +75,13 @@ class MeshOverlay {
     ImGui::GetBackgroundDrawList()->AddCircleFilled(*at, 1.8f * scale_, IM_COL32(255, 214, 170, alpha), 8);
   }
 
+  const Demo& demo() const { return demo_; }
+
  private:
   const Vec3& place(int v) const { return actor_.hair.positions[static_cast<std::size_t>(v)]; }
   int alphaAt(const Vec3& p) const { return p.dot(back_) > middle_ ? 235 : 50; }
   static ImU32 tint(int color, int alpha) {
+    if (color == kPinnedColor) return IM_COL32(110, 220, 205, alpha);
     if (color == kMirrorColor) return IM_COL32(240, 190, 150, std::max(40, alpha / 2));
     return color == kChosenColor ? IM_COL32(240, 150, 80, alpha) : IM_COL32(255, 255, 255, alpha);
   }
@@ -228,6 +232,15 @@ void drawReached(const Actor& actor, const std::vector<int>& likes, const UiStat
   }
 }
 
+// Vertices that a person has pinned.
+void drawPinned(const Actor& actor, const MeshOverlay& overlay, UiState& ui) {
+  for (const int v : pinnedVertices(actor)) {
+    overlay.dot(v, kPinnedColor);
+    const auto at = screenPlace(actor.hair.positions[static_cast<std::size_t>(v)], overlay.demo());
+    if (at) noteMark("pinned " + std::to_string(v), at->x, at->y, 4 * ui.text_scale, ui);
+  }
+}
+
 // What is led across the mirror. A layer goes round the head and is its own like.
 void drawMirrored(const Demo& demo, const std::vector<int>& likes, const MeshOverlay& overlay, UiState& ui) {
   const Actor& actor = selectedActor(demo);
@@ -293,9 +306,8 @@ void selectRow(Demo& demo, UiState& ui) {
                                 {"Layer", "Click chooses all as far from the roots, Shift adds; a drag moves it"}},
                                select.element + 1, ui);
   if (pressed >= 0) chooseElement(pressed - 1, ui);
-  if (select.element < 0) return;
   followMesh(selectedActor(demo), select);
-  ImGui::BeginDisabled(select.chosen.empty());
+  ImGui::BeginDisabled(select.element < 0 || select.chosen.empty());
   const int change = segments("mesh",
                               {{"Layer +", "Adds a layer beyond the chosen one"},
                                {"Layer -", "Takes the chosen layer away"},
@@ -352,6 +364,7 @@ void selectFrame(bool begins, Demo& demo, UiState& ui) {
   const std::vector<int> likes = likesOfChosen(actor, ui);
   drawReached(actor, likes, ui, overlay);
   drawMirrored(demo, likes, overlay, ui);
+  drawPinned(actor, overlay, ui);
   drawElements(elementOf(select), select.chosen, kChosenColor, actor.haircut->mesh, overlay);
 }
 

@@ -195,6 +195,11 @@ std::string fileCombo(const char* name, const std::string& shown, const std::vec
   return chosen;
 }
 
+void fact(const char* label, const std::string& value) {
+  rowLabel(label, "");
+  ImGui::TextDisabled("%s", value.c_str());
+}
+
 void rowLabel(const std::string& text, const std::string& help) {
   const float start = ImGui::GetCursorPosX();
   const float width = ImGui::GetContentRegionAvail().x;

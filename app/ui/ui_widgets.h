@@ -60,6 +60,9 @@ void sceneGroup(std::string_view group, Demo& demo, UiState& ui);
 // A combo of files by their stem. Returns the chosen path, or empty.
 std::string fileCombo(const char* name, const std::string& shown, const std::vector<std::string>& files, UiState& ui);
 
+// A row that tells a value and changes none.
+void fact(const char* label, const std::string& value);
+
 // A label in the left column; the control that follows fills the rest.
 void rowLabel(const std::string& text, const std::string& help);
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the hands of five hairdos as takes: strokes, paint, ties and hats on a built-in style while it moves. Give each
+"""Writes the hands of five hairdos as takes: from a shaved head to strokes, paint, ties and hats while it moves. Give each
 its end by replaying it: make_takes.py PROGRAM. See app/files/recording.h; places are metres in the scalp's frame."""
 import json
 import math
@@ -8,8 +8,8 @@ import subprocess
 import sys
 
 
-def scene(name, style, motion="idle_turns.bvh", **more):
-    character = {"motion": motion, "style": style, "resolution": "medium", **more}
+def scene(name, motion="idle_turns.bvh", **more):
+    character = {"motion": motion, "style": "shaved", "resolution": "medium", **more}
     return {"name": name, "characters": [character], "camera": {"view": "three-quarter", "framing": "head"}, "playback": {"settle": 1.0}}
 
 
@@ -39,8 +39,18 @@ def ring(height, radius, n, start=1.0, end=2 * math.pi - 1.0):
     return [(radius * math.sin(t), height, radius * math.cos(t) - 0.01) for t in turns]
 
 
+def base(style):
+    """The shaved head, then the hair that a hairdo is cut, combed or tied from, and a moment in which it comes to rest."""
+    for k in range(20):
+        yield []
+    yield [ask("style", style)]
+    for k in range(10):
+        yield []
+
+
 def chin_bob():
     """Long hair cut level with the chin, all around; ends drawn in; a fringe painted short."""
+    yield from base("long")
     for p in ring(-0.075, 0.105, 40):
         yield [brush("cut", p, radius=0.06, strength=0.9)]
     yield [ask("end-gesture")]
@@ -49,21 +59,27 @@ def chin_bob():
     yield [ask("end-gesture"), ask("curve", "stiffness", "1,1.2,2")]
 
 
+def strip(share, off=0.105):
+    """A place over the middle of the head: 0 over the forehead, 1 at the nape."""
+    turn = math.radians(35 + 145 * share)
+    return (0.0, 0.085 + off * math.sin(turn), off * math.cos(turn))
+
+
 def crest():
-    """Sides painted short and stiff, what is left on top combed up and puffed."""
-    for k in range(24):
-        height = 0.05 + 0.09 * (k % 12) / 11
-        yield [paint("length", (0.085, height, -0.05 + 0.004 * k), 0.05, radius=0.05)]
+    """A strip grown from the shaved head, combed up, its ends cut level and stiffened."""
+    for k in range(10):
+        yield []
+    for k in range(90):
+        yield [brush("grow", strip(share / 6), radius=0.035, strength=1) for share in range(7)]
     yield [ask("end-gesture")]
     for k in range(20):
-        yield [paint("stiffness", (0.0, 0.19, 0.07 - 0.008 * k), 1.0, radius=0.06)]
+        yield [paint("stiffness", strip(share / 6), 1.0, radius=0.06) for share in range(7)]
     yield [ask("end-gesture")]
-    for k in range(30):
-        yield [brush("puff", (0.0, 0.185, 0.06 - 0.005 * k), radius=0.06, strength=0.35)]
 
 
 def side_sweep():
     """Front and crown combed over to the figure's left, ends twisted."""
+    yield from base("long")
     yield [ask("set", "sag_free", "on")]
     for stroke in range(4):
         for k in range(14):
@@ -77,6 +93,7 @@ def side_sweep():
 
 def half_up():
     """What is rooted high is tied behind the head, the rest spread and its ends cut."""
+    yield from base("long")
     yield [ask("tie", "", json.dumps({"at": "back", "radius": 0.02, "above": -0.02}))]
     for k in range(10):
         yield []
@@ -90,6 +107,7 @@ def half_up():
 
 def under_the_beanie():
     """Grown a little, a beanie put on, the ends that hang out turned outwards and made heavier."""
+    yield from base("shoulder")
     for p in ring(-0.05, 0.10, 24):
         yield [brush("grow", p, radius=0.07, strength=0.3)]
     yield [ask("end-gesture"), ask("attach", "add", "beanie.obj")]
@@ -101,11 +119,11 @@ def under_the_beanie():
 
 
 TAKES = {
-    "chin_bob": (scene("Chin bob", "long"), chin_bob),
-    "crest": (scene("Crest", "short"), crest),
-    "side_sweep": (scene("Side sweep", "long"), side_sweep),
-    "half_up": (scene("Half up", "long"), half_up),
-    "under_the_beanie": (scene("Under the beanie", "shoulder"), under_the_beanie),
+    "chin_bob": (scene("Chin bob"), chin_bob),
+    "crest": (scene("Crest"), crest),
+    "side_sweep": (scene("Side sweep"), side_sweep),
+    "half_up": (scene("Half up"), half_up),
+    "under_the_beanie": (scene("Under the beanie"), under_the_beanie),
 }
 
 for name, (opening, hands) in TAKES.items():

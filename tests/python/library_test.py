@@ -125,6 +125,10 @@ class Library(unittest.TestCase):
         with self.assertRaisesRegex(hairmesh.Error, "density") as caught:
             hair.set(densty=3)
         self.assertEqual(caught.exception.result, "HM_ERROR_NAME")
+        for fault in ({"densty": 3}, {"density": -1}):
+            with self.assertRaises(hairmesh.Error):
+                hair.set(bend=7, solver="paper", **fault)
+            self.assertEqual([hair.get(name) for name in ("bend", "solver")], [table["bend"]["default"], 0], "all or none")
 
     def test_colliders_pins_and_report(self):
         hair, vertex = hairmesh.Hair(self.mesh), int(self.mesh.tips[0])

@@ -20,6 +20,7 @@ struct PolygonMesh {
   std::vector<int> face_object;                             // per face: index of `objects`
   std::vector<std::string> objects;                         // names of node, mesh and material, with blanks between
   std::vector<std::optional<std::array<float, 3>>> colors;  // per object: its material's, linear; none: it has none
+  std::vector<std::array<float, 3>> vertex_colors;          // per position, as the file has them; empty: it has none
   std::optional<double> meters_per_unit;                    // as the file says
   std::string note;                                         // what it names and is not there; empty: nothing
 

@@ -54,6 +54,7 @@ constexpr EditKind kEditKinds[] = {{Ask::kSetParam, kSettings, true, ""},
                                    {Ask::kHairFile, kOfHair, false, "Hair mesh"},
                                    {Ask::kHairMends, kOfHair, false, "Mends"},
                                    {Ask::kTie, kOfHair, false, "Tie"},
+                                   {Ask::kPin, kOfHair, false, "Pins"},
                                    {Ask::kAttach, kOfHair, false, "Attachment"},
                                    {Ask::kMap, kOfHair, false, "Painted"},
                                    {Ask::kRestart, kOfHair | kOfMotion, false, "To the start"},
@@ -135,15 +136,14 @@ bool samePaint(const CharacterSpec& a, const CharacterSpec& b) {
   return mapsText(a.maps) == mapsText(b.maps) && writeCurves(a.curves) == writeCurves(b.curves);
 }
 
-// Whether one actor can play both without being made anew, what is painted apart. All members are named, so that a new
-// one does not compile until it is decided.
+// Whether one actor can play both without being made anew, what is painted and pinned apart. All members are named, so
+// that a new one does not compile until it is decided.
 bool sameCast(const CharacterSpec& a, const CharacterSpec& b) {
   const auto cast = [](const CharacterSpec& spec) {
     const auto& [motion, parts, clip, style, resolution, hair, reverse_faces, fit, mends, position, heading,
                  clip_offset, loop, look, look_before, pins, ties, attachments, maps, curves] = spec;
     return std::tuple(motion, parts, clip, style, resolution, hair, reverse_faces, fit, mends, position.x(),
-                      position.y(), position.z(), heading, loop, writePins(pins).dump(), writeTies(ties).dump(),
-                      wornText(attachments));
+                      position.y(), position.z(), heading, loop, writeTies(ties).dump(), wornText(attachments));
   };
   return cast(a) == cast(b);
 }
@@ -222,6 +222,7 @@ void bringBackView(const Camera& view, Camera& camera) {
 void bringBack(const EditSide& side, Demo& demo) {
   demo.loading.waiting.reset();
   demo.loading.unwanted = demo.loading.running.valid();
+  std::vector<std::size_t> repinned;
   if (side.cast.size() != demo.actors.size()) {
     const bool paused = demo.paused;
     Scene scene = side.scene;
@@ -240,6 +241,7 @@ void bringBack(const EditSide& side, Demo& demo) {
         castAnew(spec, moment, static_cast<int>(i), demo);
       else if (painted)
         paintAnew(spec, moment, static_cast<int>(i), demo);
+      if (writePins(spec.pins) != writePins(demo.actors[i].spec.pins)) repinned.push_back(i);
     }
   }
   bringBackSettings(side, demo);
@@ -256,6 +258,7 @@ void bringBack(const EditSide& side, Demo& demo) {
     if (moment.frozen != demo.actors[i].haircut->frozen) freezeHair(moment.frozen, static_cast<int>(i), demo);
     bringBack(moment, demo.actors[i]);
   }
+  for (const std::size_t i : repinned) repin(side.cast[i].pins, demo.actors[i]);
   if (side.camera) bringBackView(*side.camera, demo.camera);
   demo.shown_fraction = -1;
 }
@@ -297,13 +300,16 @@ std::optional<EditStep> beginEdit(const Request& request, const Demo& demo) {
   return EditStep{titleOf(request, *kind), request, sideOf(demo, reachOf(request, *kind))};
 }
 
-void commitEdit(EditStep step, EditHistory& history) {
+void commitEdit(EditStep step, bool later, EditHistory& history) {
   const bool goes_on = step.other.cast.empty();
   history.gesture = kindOf(step.request.what)->drags;
   if (goes_on) {
     history.steps.back().title = std::move(step.title);
     return;
   }
+  history.dropped.clear();
+  const auto undone = history.steps.begin() + static_cast<std::ptrdiff_t>(history.done);
+  if (later) history.dropped.assign(std::move_iterator(undone), std::move_iterator(history.steps.end()));
   history.steps.resize(history.done);
   step.number = history.next++;
   history.steps.push_back(std::move(step));
@@ -322,8 +328,12 @@ bool goesOn(Ask what, const EditHistory& history) {
 void forgetEdit(long number, EditHistory& history) {
   const auto at = std::ranges::find(history.steps, number, &EditStep::number);
   if (at == history.steps.end()) return;
+  const bool last = at == std::prev(history.steps.end());
   history.done -= at - history.steps.begin() < static_cast<std::ptrdiff_t>(history.done);
   history.steps.erase(at);
+  if (!last) return;
+  std::ranges::move(history.dropped, std::back_inserter(history.steps));
+  history.dropped.clear();
 }
 
 void undoEdits(int count, Demo& demo) {

@@ -55,6 +55,8 @@ struct EditHistory {
   std::size_t done = 0;
   bool gesture = false;  // the last step goes on: a slider that is dragged makes one step
   long next = 1;         // number of the step after all that there were
+  // What was undone before the last step, while that is being loaded and may be taken out again.
+  std::vector<EditStep> dropped;
 };
 
 // Older steps are dropped beyond this.
@@ -62,8 +64,9 @@ inline constexpr std::size_t kMaxEditBytes = std::size_t{256} << 20;
 
 // Before an edit is applied: what it will change, if it is one and begins a step of its own.
 std::optional<EditStep> beginEdit(const Request& request, const Demo& demo);
-// After it has been applied without a fault. What was undone before it is gone.
-void commitEdit(EditStep step, EditHistory& history);
+// After it has been applied without a fault. What was undone before it is gone, unless what it asks for comes `later`
+// and is refused then.
+void commitEdit(EditStep step, bool later, EditHistory& history);
 
 // Whether the last step is a gesture of this kind that goes on: a stroke after its first sample.
 bool goesOn(Ask what, const EditHistory& history);

@@ -81,6 +81,7 @@ Haircut& setRest(const std::vector<Vec3>& positions, Actor& actor, Demo& demo) {
   if (!own.reshape) own.reshape.emplace(own.mesh);
   if (!own.reshape->set(positions, own.mesh))
     throw InputError("", "the hair", "would be flat or inverted in this shape", "make a smaller change");
+  followRestPins(actor);
   applyShares(own.shares, own.mesh);
   dropWhatIsOfTheOldShape(own, actor, demo.asset_cache);
   actor.context->reshape(actor.hair);

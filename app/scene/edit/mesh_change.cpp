@@ -7,6 +7,7 @@
 #include "app/files/errors.h"
 #include "app/scene/demo.h"
 #include "app/scene/edit/groom_brush.h"
+#include "app/scene/edit/hand_pins.h"
 #include "app/scene/edit/painted_fields.h"
 #include "app/scene/edit/render_faces.h"
 #include "app/scene/haircuts.h"
@@ -114,7 +115,7 @@ const char* heldText(HeldBy by) {
 }
 
 void applyMove(const MoveSample& sample, int index, Demo& demo) {
-  const Actor& actor = demo.actors[static_cast<std::size_t>(index)];
+  Actor& actor = demo.actors[static_cast<std::size_t>(index)];
   const sim::HairMesh& mesh = actor.haircut->mesh;
   HairMove move;
   move.vertices = verticesOf(sample.element, sample.chosen, mesh);
@@ -128,7 +129,15 @@ void applyMove(const MoveSample& sample, int index, Demo& demo) {
   const std::vector<Vec3> seen = seenFromScalp(actor);
   std::vector<Vec3> positions;
   ShapeBrushes& hands = handsOn(actor);
-  if (hands.move(move, mesh, seen, actor.body->distance, positions) > 0) return reshapeHair(positions, index, demo);
+  if (hands.move(move, mesh, seen, actor.body->distance, positions) > 0) {
+    const std::vector<Vec3> before = mesh.shape.positions;
+    std::vector<int> dragged = move.vertices;
+    for (const int v : move.vertices) {
+      if (move.mirror) dragged.push_back(likeAcross(v, *move.mirror, mesh));
+    }
+    reshapeHair(positions, index, demo);
+    return carryPins(dragged, before, actor);
+  }
   demo.message = std::string("stays where it is") + heldText(hands.heldBy());
   demo.message_is_fault = false;
 }

@@ -72,7 +72,7 @@ void keepEarlierMoments(int actor, const std::vector<Vec3>& before, Demo& demo) 
   if (of_cache) timeline.cache_shapes = number;
   // Those before the edit before have theirs.
   for (auto frame = timeline.frames.rbegin(); frame != timeline.frames.rend() && frame->shapes < 0; ++frame)
-    frame->shapes = number;
+    frame->shapes = number, frame->whole = true;
 }
 
 namespace {
@@ -137,6 +137,24 @@ void leaveCachedFrame(Demo& demo) {
 
 namespace {
 
+// The last kept moment that is not after `frame`; the end where there is none.
+std::deque<TimelineFrame>::iterator momentAt(long frame, std::deque<TimelineFrame>& frames) {
+  const auto after = std::upper_bound(frames.begin(), frames.end(), frame,
+                                      [](long wanted, const TimelineFrame& kept) { return wanted < kept.frame; });
+  return after == frames.begin() ? frames.end() : std::prev(after);
+}
+
+// The frame that has just been simulated follows a kept moment.
+void noteAfter(double seconds, const Demo& demo, Timeline& timeline) {
+  constexpr std::size_t kMost = 60;
+  const auto kept = momentAt(timeline.now - 1, timeline.frames);
+  if (kept == timeline.frames.end() || kept->whole) return;
+  const auto place = static_cast<std::size_t>(timeline.now - 1 - kept->frame);
+  if (place > kept->after.size() || place >= kMost) return;
+  kept->after.resize(place);
+  kept->after.push_back(demo.paused ? -1 : seconds);
+}
+
 void keepNow(Demo& demo) {
   Timeline& timeline = demo.timeline;
   forgetFrom(timeline.now, timeline);  // what was simulated from here before is no longer what follows
@@ -146,7 +164,10 @@ void keepNow(Demo& demo) {
                      std::exchange(timeline.contact, false),
                      std::exchange(timeline.recovery, false),
                      std::exchange(timeline.jump, false),
-                     std::exchange(timeline.loop, false)};
+                     std::exchange(timeline.loop, false),
+                     -1,
+                     {},
+                     false};
   timeline.bytes += kept.state.size();
   timeline.frames.push_back(std::move(kept));
   timeline.anew = timeline.anew && timeline.frames.size() < kAnewMoments;
@@ -159,9 +180,12 @@ void keepNow(Demo& demo) {
 
 }  // namespace
 
-void keepMoment(Demo& demo) {
+void keepMoment(double seconds, Demo& demo) {
   Timeline& timeline = demo.timeline;
-  if (!demo.paused || demo.stats.steps > 0) ++timeline.now;
+  if (!demo.paused || demo.stats.steps > 0) {
+    ++timeline.now;
+    noteAfter(seconds, demo, timeline);
+  }
   if (!timeline.on || demo.stats.steps == 0 || demo.actors.size() > kTimelineActors) return;
   timeline.cost += demo.stats.simulation();
   timeline.contact |= demo.stats.corrected > 0;
@@ -234,16 +258,19 @@ void rewindTo(long frame, Demo& demo) {
     demo.timeline.shown_of_cache = within;
     return;
   }
-  const std::deque<TimelineFrame>& frames = demo.timeline.frames;
-  const auto after = std::upper_bound(frames.begin(), frames.end(), frame,
-                                      [](long wanted, const TimelineFrame& kept) { return wanted < kept.frame; });
-  if (after == frames.begin())
+  const auto kept = momentAt(frame, demo.timeline.frames);
+  if (kept == demo.timeline.frames.end())
     throw InputError("", "", "nothing is kept of that moment", "go to one on the timeline, or to the start");
   const bool paused = demo.paused;
-  const TimelineFrame& kept = *std::prev(after);
+  const auto on = std::min(static_cast<std::size_t>(frame - kept->frame), kept->after.size());
   inShapesOf(
-      kept.shapes, [&] { restoreDemoState(kept.state, "timeline", true, demo); }, demo);
-  demo.timeline.now = kept.frame;
+      kept->shapes,
+      [&] {
+        restoreDemoState(kept->state, "timeline", true, demo);
+        for (std::size_t k = 0; k < on; ++k) simulateAgain(kept->after[k], demo);
+      },
+      demo);
+  demo.timeline.now = kept->frame + static_cast<long>(on);
   demo.paused = paused;
   demo.shown_fraction = -1;
 }

@@ -22,6 +22,8 @@ struct TimelineFrame {
   double cost = 0;                                                     // s of simulation since the moment before
   bool contact = false, recovery = false, jump = false, loop = false;  // loop: the clip began anew
   long shapes = -1;                                                    // of Timeline::shapes; -1: those of now
+  std::vector<double> after;  // s of each frame that followed, in its shapes, up to the next; below 0: a single step
+  bool whole = false;         // no more of them: the shape is another since
 };
 
 struct Timeline {
@@ -70,8 +72,8 @@ void beginAnew(Timeline& timeline);
 // one on go, those before it stay, with the shape that they are of; so does a cache.
 void keepEarlierMoments(int actor, const std::vector<Vec3>& before, Demo& demo);
 
-// After a frame: one in which time went on is counted, and now and then kept.
-void keepMoment(Demo& demo);
+// After a frame of `seconds`: one in which time went on is counted, and now and then kept.
+void keepMoment(double seconds, Demo& demo);
 
 // The point in or out at the present frame, or off (`on` false). Throws InputError where the two would not be in order.
 void setInPoint(bool on, Demo& demo);
@@ -85,10 +87,11 @@ void startBake(double seconds, Demo& demo);
 // kept of the in point may be gone: then both are off, and a message says so.
 void followRange(Demo& demo);
 
-// Goes to the last kept moment that is not after `frame`; of a cache it is shown at once, without simulating. What is
-// kept beyond it stays until time goes on. Throws InputError where none is kept. Steps from there end in the same bits
-// as they did, with the same parameters; of hair that brushes have reshaped, to rounding. Of a moment before an edit of
-// the rest shape the hair is shown as it was, and goes on from there in the shape of now.
+// Goes to `frame`: to the last kept moment that is not after it, and on from there by the frames that followed; of a
+// cache it is shown at once, without simulating. What is kept beyond it stays until time goes on. Throws InputError
+// where none is kept. Steps from there end in the same bits as they did, with the same parameters; of hair that brushes
+// have reshaped, to rounding. Of a moment before an edit of the rest shape the hair is shown as it was, and goes on
+// from there in the shape of now.
 void rewindTo(long frame, Demo& demo);
 
 }  // namespace app

@@ -135,7 +135,7 @@ TEST(Library, StrandsGrowAtGroomOffsets) {
 // The first hair needs no file: every built-in style stands on the plain head and stays out of it.
 TEST(Library, ABuiltInStyleStandsOnThePlainHead) {
   const Vec3 radii = 0.23 * Vec3(0.34, 0.5, 0.42);
-  for (const char* style : {"short", "shoulder", "long", "bob", "pixie"}) {
+  for (const char* style : {"short", "shoulder", "long", "bob", "pixie", "shaved"}) {
     for (const char* resolution : {"low", "medium"}) {
       hm_mesh mesh{};
       ASSERT_EQ(hm_mesh_create_style(style, resolution, 0.23, &mesh), HM_OK) << style << hm_error_message();
@@ -161,7 +161,7 @@ TEST(Library, ABuiltInStyleStandsOnThePlainHead) {
             std::string::npos)
       << hm_error_message();
   EXPECT_EQ(hm_mesh_create_style("short", "8k", 0.23, &mesh), HM_ERROR_ARGUMENT);
-  EXPECT_EQ(hm_mesh_create_style("short", "low", NAN, &mesh), HM_ERROR_ARGUMENT);
+  EXPECT_EQ(hm_mesh_create_style("short", "low", NAN, &mesh), HM_ERROR_VALUE);
   EXPECT_EQ(hm_mesh_create_style(nullptr, "low", 0.23, &mesh), HM_ERROR_ARGUMENT);
 }
 

@@ -40,8 +40,9 @@ class LibraryMisuse : public ::testing::Test {
 
 TEST_F(LibraryMisuse, StepsThatCannotBeTakenAreRefusedWhole) {
   refuses(HM_ERROR_VALUE, "beyond 1e7", [](Step& step) { step.input.head.position[0] = 1e40; });
-  refuses(HM_ERROR_VALUE, "dt is not above 0; give seconds", [](Step& s) { s.input.dt = 0; });
-  refuses(HM_ERROR_VALUE, "dt is not above 0; give seconds", [](Step& s) { s.input.dt = NAN; });
+  refuses(HM_ERROR_VALUE, "dt is below 1e-6 s; give seconds", [](Step& s) { s.input.dt = 0; });
+  refuses(HM_ERROR_VALUE, "dt is below 1e-6 s; give seconds", [](Step& s) { s.input.dt = NAN; });
+  refuses(HM_ERROR_VALUE, "dt is below 1e-6 s; give seconds", [](Step& s) { s.input.dt = 1e-30; });
   refuses(HM_ERROR_VALUE, "dt is above 0.1 s; take several steps", [](Step& s) { s.input.dt = 1; });
   refuses(HM_ERROR_VALUE, "time", [](Step& s) { s.input.time = kInfinity; });
   refuses(HM_ERROR_VALUE, "max_work", [](Step& s) { s.input.max_work = 0; });

@@ -156,4 +156,21 @@ TEST(BackgroundLoad, AFaultTakesItsOwnStepOutOfTheHistory) {
   EXPECT_EQ(demo.scene.sim.density, sim::SimParams{}.density);
 }
 
+// What cannot be loaded has not taken away what could be done again.
+TEST(BackgroundLoad, AFaultLeavesWhatWasUndoneToBeDoneAgain) {
+  Demo demo = walking();
+  demo.requests = {{Ask::kSetParam, "density", "70"}, {Ask::kUndo, "", "", 1}};
+  frames(1, demo);
+  demo.requests = {{Ask::kTie, "", R"([{"at": [0, 0, 0]}])"}};
+  frames(1, demo);
+  if (demo.loading.running.valid()) demo.loading.running.wait();
+  frames(2, demo);
+  ASSERT_TRUE(demo.message_is_fault) << "no tie is held in the middle of the head";
+  ASSERT_EQ(demo.edits.steps.size(), 1u);
+  EXPECT_EQ(demo.edits.done, 0u);
+  demo.requests = {{Ask::kRedo, "", "", 1}};
+  frames(1, demo);
+  EXPECT_EQ(demo.scene.sim.density, 70);
+}
+
 }  // namespace background_load_test

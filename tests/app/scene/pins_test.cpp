@@ -3,11 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <nlohmann/json.hpp>
+
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
 #include "app/scene/actor.h"
 #include "app/scene/demo.h"
 #include "app/scene/detail/sleep.h"
+#include "app/scene/edit/hand_pins.h"
+#include "app/scene/edit/mesh_change.h"
 
 namespace pins_test {
 
@@ -39,7 +44,7 @@ TEST(Pins, FaultsNameFilePlaceAndMend) {
     const char *pins, *place, *fault, *mend;
   };
   const Case cases[] = {
-      {R"({"to": "Head"})", "/characters/0/pins/0", "no vertex", "\"column\""},
+      {R"({"to": "Head"})", "/characters/0/pins/0", "no vertex", "\"near\""},
       {R"({"vertex": 9, "column": 1})", "/characters/0/pins/0", "two", "\"column\""},
       {R"({"vertex": 9, "layer": 1})", "/characters/0/pins/0", "no column", "\"column\""},
       {R"({"vertex": 2.5})", "/characters/0/pins/0/vertex", "whole", "one"},
@@ -163,6 +168,108 @@ TEST(Pins, TheExampleSceneHoldsItsHairAndTheDebugViewShowsEachPin) {
     }
   }
   EXPECT_EQ(firm, 2);
+}
+
+std::string ask(const app::Request& request, app::Demo& demo) {
+  demo.message.clear();
+  demo.message_is_fault = false;
+  demo.requests = {request, {app::Ask::kEndGesture, "", ""}};
+  app::advanceFrame(demo, 0, {});
+  return demo.message_is_fault ? demo.message : "";
+}
+
+std::string pinText(int vertex, const app::PinChoice& choice, const app::Actor& actor) {
+  return app::writePins(app::withPins(std::array{vertex}, choice, actor)).dump();
+}
+
+// A person's demo: long hair in motion.
+app::Demo movingDemo() {
+  app::Demo demo = app::openScene(app::readScene(scenes(""), "scene.json"), 1.5);
+  for (int frame = 0; frame < 20; ++frame) app::advanceFrame(demo, kFrame, {});
+  return demo;
+}
+
+int tipOf(int column, const app::Actor& actor) {
+  const sim::HairMeshShape& shape = actor.haircut->mesh.shape;
+  return shape.column_first[static_cast<std::size_t>(column)] + shape.columnLength(column) - 1;
+}
+
+// What is pinned by hand stays where it was seen, whatever carries it; undo lets it go.
+TEST(Pins, ByHandHoldHairWhereItIsSeenUntilUndone) {
+  for (const char* to : {"scalp", "scene", "Neck"}) {
+    app::Demo demo = movingDemo();
+    const app::Actor& actor = demo.actors[0];
+    const auto tip = static_cast<std::size_t>(tipOf(9, actor));
+    const Vec3 seen = actor.hair.positions[tip];
+    ASSERT_EQ(ask({app::Ask::kPin, "", pinText(static_cast<int>(tip), {to}, actor)}, demo), "");
+    EXPECT_EQ(demo.message, "1 pin");
+    ASSERT_EQ(actor.spec.pins.size(), 1u);
+    for (int frame = 0; frame < 60; ++frame) {
+      app::advanceFrame(demo, kFrame, {});
+      ASSERT_EQ(actor.pinned.size(), 1u);
+      EXPECT_LT((actor.hair.positions[tip] - actor.pinned[0].target).norm(), frame < 30 ? 0.01 : 1e-6) << to;
+    }
+    EXPECT_LT((actor.pinned[0].target - seen).norm(), std::string(to) == "scene" ? 1e-4 : 0.1) << to;
+    const std::string pinned = app::editHash(demo);
+    ASSERT_EQ(ask({app::Ask::kUndo, "", "", 1}, demo), "");
+    EXPECT_TRUE(actor.spec.pins.empty());
+    EXPECT_TRUE(actor.pins.empty());
+    ASSERT_EQ(ask({app::Ask::kRedo, "", "", 1}, demo), "");
+    EXPECT_EQ(app::editHash(demo), pinned);
+    EXPECT_EQ(actor.pins.size(), 1u);
+  }
+}
+
+TEST(Pins, GoAlongWithADragAndWithAnotherResolution) {
+  app::Demo demo = movingDemo();
+  const app::Actor& actor = demo.actors[0];
+  const int tip = tipOf(9, actor);
+  ASSERT_EQ(ask({app::Ask::kPin, "", pinText(tip, {"Head", 40}, actor)}, demo), "");
+  const Vec3 at = actor.pins[0].at, rest = actor.haircut->mesh.shape.positions[static_cast<std::size_t>(tip)];
+  const app::MoveSample move{app::MeshElement::kVertex, {tip}, Vec3(0, 0.01, 0), 0.03, 1, false};
+  ASSERT_EQ(ask({app::Ask::kMove, "vertex", app::moveText(move)}, demo), "");
+  const double way = (actor.haircut->mesh.shape.positions[static_cast<std::size_t>(tip)] - rest).norm();
+  EXPECT_GT(way, 0.005);
+  EXPECT_NEAR((actor.pins[0].at - at).norm(), way, 1e-9);
+  ASSERT_EQ(ask({app::Ask::kResolution, "medium", ""}, demo), "");
+  ASSERT_EQ(actor.pins.size(), 1u);
+  EXPECT_EQ(actor.pins[0].stiffness, 40);
+  const Vec3 there = actor.haircut->mesh.shape.positions[static_cast<std::size_t>(actor.pins[0].vertex)];
+  EXPECT_LT((there - rest).norm(), 0.03);
+  EXPECT_EQ(actor.spec.pins[0].vertex, actor.pins[0].vertex);
+  ASSERT_EQ(ask({app::Ask::kStyle, "bob", ""}, demo), "");
+  EXPECT_TRUE(actor.pins.empty());
+  ASSERT_EQ(ask({app::Ask::kUndo, "", "", 3}, demo), "");
+  EXPECT_EQ((actor.pins[0].at - at).norm(), 0);
+}
+
+// Pins without a place hold the vertex where it is at rest, also after a brush has changed that.
+TEST(Pins, AtRestGoAlongWithTheRestShape) {
+  app::Demo demo = app::openScene(app::readScene(scenes(R"({"near": [0.1, -0.1, 0]})"), "scene.json"), 1.5);
+  app::Actor& actor = demo.actors[0];
+  ASSERT_EQ(actor.pins.size(), 1u);
+  const int vertex = actor.pins[0].vertex;
+  EXPECT_EQ(actor.spec.pins[0].vertex, vertex);
+  EXPECT_FALSE(actor.spec.pins[0].near) << "it names the vertex from now on";
+  const Vec3 before = actor.pins[0].at;
+  const app::MoveSample move{app::MeshElement::kVertex, {vertex}, Vec3(0, 0.01, 0), 0.03, 1, false};
+  ASSERT_EQ(ask({app::Ask::kMove, "vertex", app::moveText(move)}, demo), "");
+  const Vec3 rest = actor.body->character.head_frame * actor.haircut->mesh.shape.positions[std::size_t(vertex)];
+  EXPECT_GT((rest - before).norm(), 0.005);
+  EXPECT_LT((actor.pins[0].at - rest).norm(), 1e-12);
+}
+
+TEST(Pins, FaultsOfARequestLeaveWhatIsThere) {
+  app::Demo demo = movingDemo();
+  const app::Actor& actor = demo.actors[0];
+  ASSERT_EQ(ask({app::Ask::kPin, "", pinText(tipOf(9, actor), {"scalp"}, actor)}, demo), "");
+  const std::string before = app::editHash(demo);
+  const std::size_t steps = demo.edits.done;
+  for (const char* text : {"", "{", "[{\"vertex\": 0}]", "[{\"vertex\": 99999}]", "[{\"vertex\": 9, \"to\": \"Tail\"}]",
+                           "[{\"near\": [0, 0, 0], \"vertex\": 9}]"})
+    EXPECT_NE(ask({app::Ask::kPin, "", text}, demo), "") << text;
+  EXPECT_EQ(app::editHash(demo), before);
+  EXPECT_EQ(demo.edits.done, steps);
 }
 
 }  // namespace pins_test

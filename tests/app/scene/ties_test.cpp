@@ -14,6 +14,7 @@
 #include "app/scene/demo.h"
 #include "tests/app/scene/small_scene.h"
 #include "tests/run_program.h"
+#include "tests/sim_probes.h"
 
 namespace ties_test {
 
@@ -154,6 +155,66 @@ TEST(Ties, TheRingHoldsWithinAMillimetreInAHeadShakeAtFourTimesItsSpeed) {
   EXPECT_EQ(recoveries, 0);
 }
 
+// Hair hangs still without contacts: what it does to the scalp, at its roots and through the ring, is its weight.
+TEST(Ties, TheScalpBearsTheWeightOfTiedHairAtRootsAndRing) {
+  app::Scene scene = tiedScene("back", "idle_turns.bvh", app::Resolution::kLow);
+  scene.sim.collide = scene.sim.self_collide = scene.sim.sag_free = false;
+  scene.sim.damping = 0.2;
+  scene.sim.air_drag = 10;
+  app::Demo demo = app::openScene(std::move(scene), 1.5);
+  app::Actor& actor = demo.actors[0];
+  actor.playback.paused = true;
+  for (int frame = 0; frame < 900; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
+  const sim::HairMesh& mesh = actor.haircut->mesh;
+  const sim::BlockPattern pattern = sim::systemPattern(mesh);
+  const sim::ForceModel<double> model = test::makeForceModel(mesh, pattern, demo.scene.sim);
+  std::vector<sim::V3<double>> points, sums(actor.hair.positions.size(), {0, 0, 0});
+  for (const sim::Vec3& p : actor.hair.positions) points.push_back({p.x(), p.y(), p.z()});
+  sim::Evaluation<double> out;
+  out.force = sums;
+  sim::evaluate<double>(model, points, out);
+  std::vector<sim::Vec3> force;
+  for (const sim::V3<double>& one : sums) force.emplace_back(one.x, one.y, one.z);
+  std::vector<unsigned char> held(force.size(), 0);
+  for (const int v : actor.haircut->tied) held[static_cast<std::size_t>(v)] = 1;
+  double weight = 0, largest = 0;
+  sim::Vec3 all = sim::Vec3::Zero(), roots = all, ring = all;
+  for (int v = 0; v < mesh.vertexCount(); ++v) {
+    const auto i = static_cast<std::size_t>(v);
+    all += force[i];
+    largest = std::max(largest, force[i].norm());
+    if (mesh.isRoot(v))
+      roots += force[i];
+    else if (held[i])
+      ring += force[i];
+    else
+      weight += demo.scene.sim.density * mesh.vertex_volume[i] * demo.scene.sim.gravity;
+  }
+  std::printf("weight %.3f N; on the roots %.3f N, on the ring %.3f N downwards\n", weight, -roots.y(), -ring.y());
+  EXPECT_LT(all.norm(), 1e-9 * largest) << "action is reaction";
+  EXPECT_GT(ring.norm(), 0.2 * weight) << "the ring bears its share";
+  EXPECT_LT((roots + ring + sim::Vec3(0, weight, 0)).norm(), 0.02 * weight);
+}
+
+// A ring beside the head takes what comes to it over the crown or round the back; the rest is not drawn across the
+// face.
+TEST(Ties, ARingBesideTheHeadLeavesTheFaceFree) {
+  for (const char* ring : {R"({"at": [0.095, 0.054, 0.003]})", R"({"at": [0.085, 0.03, -0.06]})"}) {
+    for (const app::Style style : {app::Style::kShoulder, app::Style::kLong, app::Style::kBob}) {
+      const app::Demo demo = app::openScene(tiedScene(ring, "idle_turns.bvh", app::Resolution::kLow, style), 1.5);
+      const app::Actor& actor = demo.actors[0];
+      const app::Scalp& scalp = actor.body->character.scalp;
+      EXPECT_NE(actor.haircut->note.find("hangs loose"), std::string::npos) << ring << actor.haircut->note;
+      EXPECT_GT(actor.haircut->tied.size(), actor.haircut->mesh.columnCount() * 0.4) << ring;
+      for (const sim::Vec3& p : actor.haircut->mesh.shape.positions) {
+        const sim::Vec3 way = (p - scalp.center).normalized();
+        const bool before_face = std::abs(std::atan2(way.x(), way.z())) < 0.5 && std::abs(way.y()) < 0.3;
+        EXPECT_FALSE(before_face) << ring << " " << app::styleName(style) << " " << p.transpose();
+      }
+    }
+  }
+}
+
 TEST(Ties, AreTiedAndTakenOffAndTiedAgain) {
   app::Demo demo = app::openScene(tiedScene("none", "idle_turns.bvh", app::Resolution::kLow), 1.5);
   const std::string loose = app::stateHash(demo);
@@ -246,7 +307,7 @@ TEST(Ties, ATieThatHoldsNothingIsToldInWords) {
     app::Resolution resolution = app::Resolution::kLow;
     app::Style style = app::Style::kLong;
   };
-  const Case cases[] = {{R"([{"at": [0, 0, 0]}])", "tie at 0, 0, 0 m: lies ", {" cm inside the body", "move it off"}},
+  const Case cases[] = {{R"([{"at": [0, 0, 0]}])", "tie at 0, 0, 0 cm: lies ", {" cm inside the body", "move it off"}},
                         {"high",
                          "tie high: the hair is too short: it ends up to 1",
                          {" cm before", "(back or low)", "longer hair"},

@@ -39,7 +39,7 @@ TEST(TimelineRange, PlayingGoesRoundBetweenInAndOutInTheSameBits) {
   for (int k = 0; k < 200 && second.empty(); ++k) {
     play(1, demo);
     EXPECT_LE(demo.timeline.now, out);
-    EXPECT_GE(demo.timeline.now, in - app::kTimelineEvery);
+    EXPECT_GE(demo.timeline.now, in);
     if (demo.timeline.now == out - 2) (first.empty() ? first : second) = app::stateHash(demo);
   }
   EXPECT_FALSE(first.empty());
@@ -47,6 +47,32 @@ TEST(TimelineRange, PlayingGoesRoundBetweenInAndOutInTheSameBits) {
   ask(Ask::kMarkOut, 0, demo);
   play(40, demo);
   EXPECT_GT(demo.timeline.now, out) << "it still goes back";
+}
+
+// Any frame can be gone to, and it is the one that was seen: to the bit, and so is what follows.
+TEST(TimelineRange, EveryFrameIsGoneBackToInTheSameBits) {
+  app::Demo demo = moving();
+  play(20, demo);
+  std::vector<std::string> seen;
+  std::vector<double> shown;
+  for (int k = 0; k < 12; ++k) {
+    const double seconds = k % 4 == 3 ? 1.0 / 30 : 1.0 / 60;
+    app::advanceFrame(demo, seconds, {});
+    seen.push_back(app::stateHash(demo)), shown.push_back(demo.shown_time);
+  }
+  const long last = demo.timeline.now;
+  demo.paused = true;
+  for (const int back : {1, 4, 2, 11, 7, 0}) {
+    ask(Ask::kRewind, static_cast<double>(last - back), demo);
+    ASSERT_FALSE(demo.message_is_fault) << demo.message;
+    EXPECT_EQ(demo.timeline.now, last - back);
+    EXPECT_EQ(app::stateHash(demo), seen[seen.size() - 1 - static_cast<std::size_t>(back)]) << back;
+    EXPECT_NEAR(demo.shown_time, shown[shown.size() - 1 - static_cast<std::size_t>(back)], 1e-12) << back;
+  }
+  ask(Ask::kRewind, static_cast<double>(last - 4), demo);
+  demo.paused = false;
+  for (int k = 8; k < 12; ++k) app::advanceFrame(demo, k % 4 == 3 ? 1.0 / 30 : 1.0 / 60, {});
+  EXPECT_EQ(app::stateHash(demo), seen.back());
 }
 
 TEST(TimelineRange, BakingFillsTheTimelineAndStandsAtItsStart) {

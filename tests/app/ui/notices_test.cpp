@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "app/ui/part_glide.h"
+#include "app/ui/ui_panels.h"
 #include "tests/app/ui/panels.h"
 
 namespace notices_test {
@@ -40,6 +41,20 @@ TEST_F(Notices, UndoPastTheStartIsANoticeThatGoesByItself) {
   EXPECT_TRUE(demo_.message.empty());
 }
 
+TEST_F(Notices, WaitWhileTheFilePanelIsOpenUnlessTheyAreFaults) {
+  app::browseFor(app::BrowseFor::kOpen, ui_);
+  demo_.message = "preset soft";
+  for (int k = 0; k < 600; ++k) frame();
+  EXPECT_EQ(find("message"), nullptr);
+  ui_.browser.what = app::BrowseFor::kNothing;
+  frame(), frame();
+  EXPECT_NE(find("message"), nullptr);
+  app::browseFor(app::BrowseFor::kOpen, ui_);
+  demo_.message_is_fault = true;
+  frame(), frame();
+  EXPECT_NE(find("close_message"), nullptr);
+}
+
 TEST_F(Notices, UndoAndRedoSpeakAsThePanelsDo) {
   apply({{Ask::kSetParam, "stretch_along", "4e+05"}});
   apply({{Ask::kUndo, "", "", 1}});
@@ -58,7 +73,7 @@ TEST_F(Notices, ThatTheTimelineBeginsAnewIsSaidForAWhileAndFits) {
     ASSERT_NE(find("timeline anew"), nullptr) << "as long as nothing is kept";
     const app::UiItem strip = *find("timeline");
     EXPECT_LT(ImGui::CalcTextSize("begins anew: another hair mesh").x, strip.width) << size.x;
-    demo_.timeline.frames.push_back({3, ""});
+    demo_.timeline.frames.emplace_back().frame = 3;
     for (int k = 0; k < 120; ++k) frame();
     EXPECT_NE(find("timeline anew"), nullptr) << "after 2 s";
     for (int k = 0; k < 360; ++k) frame();

@@ -249,4 +249,35 @@ TEST_F(Select, ARingIsTiedWhereTheHandLetsGo) {
   for (const Request& request : asked) EXPECT_NE(request.what, Ask::kBrush);
 }
 
+// What is chosen is pinned where it is, by the section's settings, and let go again.
+TEST_F(Select, WhatIsChosenIsPinnedAndUnpinned) {
+  openTab(app::tabIndex("hair"));
+  click("select Vertex");
+  press(onHair(40));
+  ASSERT_EQ(ui_.select.chosen.size(), 1u);
+  ImGui::GetIO().DisplaySize = {1280, 3000};
+  frame();
+  if (!find("pins Pin")) click("section Pins");
+  frame();
+  click("pin_firm");
+  ui_.pin.stiffness = 25, ui_.pin.from = 1, ui_.pin.until = 0.5;
+  frame();
+  EXPECT_TRUE(click("pins Pin").empty()) << "it would let go before it holds";
+  ui_.pin.until = 2;
+  frame();
+  const std::vector<Request> asked = click("pins Pin");
+  EXPECT_EQ(std::ranges::count(asked, Ask::kPin, &Request::what), 1);
+  apply(asked);
+  const std::vector<app::PinSpec>& pins = demo_.actors[0].spec.pins;
+  ASSERT_EQ(pins.size(), 1u);
+  EXPECT_EQ(pins[0].vertex, ui_.select.chosen[0]);
+  EXPECT_EQ(pins[0].stiffness, 25);
+  EXPECT_EQ(pins[0].from, 1);
+  EXPECT_EQ(pins[0].until, 2);
+  frame();
+  EXPECT_TRUE(find("pinned " + std::to_string(pins[0].vertex))) << "it is marked";
+  apply(click("pins Unpin"));
+  EXPECT_TRUE(demo_.actors[0].spec.pins.empty());
+}
+
 }  // namespace select_test

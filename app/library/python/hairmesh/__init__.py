@@ -226,7 +226,7 @@ class Mesh(_Owner):
 
     @classmethod
     def style(cls, style="shoulder", resolution="low", head_height=0.23):
-        """A built-in style, "short", "shoulder", "long", "bob" or "pixie", at "low", "medium", "high" or "ultra", on a plain head: an
+        """A built-in style, "short", "shoulder", "long", "bob", "pixie" or "shaved", at "low", "medium", "high" or "ultra", on a plain head: an
         ellipsoid about the origin, Mesh.head_radii(head_height) for steps' Ellipsoid."""
         mesh = cls.__new__(cls)
         handle = _c.Mesh()
@@ -295,12 +295,19 @@ class Hair(_Owner):
             _c.lib.hm_hair_destroy(self._c)
 
     def set(self, **values):
-        """Sets parameters: numbers, booleans, or texts such as "on" and the names of choices."""
-        for name, value in values.items():
-            if isinstance(value, str):
-                _c.lib.hm_hair_set_text(self._c, name.encode(), value.encode())
-            else:
-                _c.lib.hm_hair_set(self._c, name.encode(), float(value))
+        """Sets parameters: numbers, booleans, or texts such as "on" and the names of choices. All or, where one cannot
+        be, none."""
+        before = {name: self.get(name) for name in values}
+        try:
+            for name, value in values.items():
+                if isinstance(value, str):
+                    _c.lib.hm_hair_set_text(self._c, name.encode(), value.encode())
+                else:
+                    _c.lib.hm_hair_set(self._c, name.encode(), float(value))
+        except Exception:
+            for name, value in before.items():
+                _c.lib.hm_hair_set(self._c, name.encode(), value)
+            raise
 
     def get(self, name):
         """Value of a parameter, as a number."""

@@ -1,0 +1,14 @@
+// A skin whose vertices are near enough to one another to stand for its surface: boxes have eight of them.
+#pragma once
+
+#include "app/figure/character.h"
+
+namespace app {
+
+// The mesh with triangles of edges over `longest` (m) divided evenly, their skinning interpolated; the others stay.
+// Neighbours are divided apart, so edges do not meet. At most kMaxDivided vertices are added, by wider steps where that
+// asks for more. Positions, normals, triangles and skinning alone.
+inline constexpr std::size_t kMaxDivided = 100000;
+SkinnedMesh withoutLongEdges(const SkinnedMesh& mesh, float longest);
+
+}  // namespace app
