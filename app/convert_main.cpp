@@ -58,7 +58,7 @@ void addCurveOptions(CLI::App& parser, Arguments& arguments) {
       .add_option(
           "--vertices", arguments.curves.fit.vertices,
           "Most vertices; by default the least of 400, 800, 1600 and 2400 with which the mean distance is within "
-          "1 % of the length and 95 % of the points within 3 %; of strips 4000")
+          "1 % of the length and 95 % of the points within 3 %; no more than 8 a strand, or 400; of strips 4000")
       ->check(CLI::Range(60, 20000))
       ->option_text("N (60 to 20000)");
   parser
@@ -214,7 +214,7 @@ int convertPolygons(const Arguments& arguments) {
 void checkOutput(const Arguments& arguments) {
   std::error_code ignored;
   if (std::filesystem::path(arguments.out).extension() != ".obj")
-    throw app::InputError(arguments.out, "", "is no name for a hair mesh", "name it .obj");
+    throw app::UsageError("OUT cannot be '" + arguments.out + "'; a hair mesh is written as .obj");
   if (std::filesystem::equivalent(arguments.in, arguments.out, ignored))
     throw app::InputError(arguments.out, "", "is what is read as well", "choose another name");
   app::checkWritable(arguments.out);

@@ -67,9 +67,29 @@ sim::HairMeshShape shapeOf(const hm_mesh_settings& settings) {
   return shape;
 }
 
-hm_mesh addMesh(sim::HairMeshShape shape) {
+bool buildsReversed(sim::HairMeshShape shape) {
+  for (sim::RootFace& face : shape.root_faces)
+    std::reverse(face.columns.begin(), face.columns.begin() + face.corner_count);
+  try {
+    sim::buildHairMesh(std::move(shape));
+  } catch (const sim::MeshError&) {
+    return false;
+  }
+  return true;
+}
+
+sim::HairMesh builtMesh(const sim::HairMeshShape& shape) {
+  try {
+    return sim::buildHairMesh(shape);
+  } catch (const sim::MeshError&) {
+    if (!buildsReversed(shape)) throw;
+  }
+  throw Fault{HM_ERROR_MESH, "all faces are wound the other way; change reverse_faces"};
+}
+
+hm_mesh addMesh(const sim::HairMeshShape& shape) {
   auto mesh = std::make_unique<Mesh>();
-  mesh->mesh = sim::buildHairMesh(std::move(shape));
+  mesh->mesh = builtMesh(shape);
   const sim::HairMeshShape& built = mesh->mesh.shape;
   for (const sim::RootFace& face : built.root_faces) {
     for (int k = 0; k < 4; ++k)

@@ -84,6 +84,14 @@ std::string shortBunNote(const TieSpec& tie, double left) {
 
 constexpr const char* kLooseNote = ": hair of the far side hangs loose; its way to the ring would lead across the face";
 
+// `lacks`: m, of the hair that lacks most to its ring.
+void noteLengthened(const CharacterSpec& spec, double lacks, Haircut& haircut) {
+  constexpr double kWorthSaying = 0.05;
+  if (lacks > kWorthSaying)
+    addNote(tieTitle(spec.ties) + ": hair is lengthened, by up to " + centimetres(lacks) + ", to reach its ring",
+            haircut);
+}
+
 // What each tie holds.
 struct Held {
   std::vector<int> ring;  // vertices
@@ -317,7 +325,10 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
   if (!spec.maps.density.empty())
     paintDensity(readFieldMap(spec.maps.density), body.character.scalp, haircut->mesh, haircut->faces);
   haircut->look_shares = paintedLook(spec.maps, spec.curves, body.character.scalp, haircut->mesh.shape);
-  if (!spec.ties.empty()) shape = haircut->mesh.shape;
+  if (!spec.ties.empty()) {
+    noteLengthened(spec, shortOfRing(shape, body.character.scalp, haircut->ties), *haircut);
+    shape = haircut->mesh.shape;
+  }
   for (const int v : haircut->covered)
     if (!shape.groom_offsets.empty()) shape.groom_offsets[static_cast<std::size_t>(v)].setZero();
   bindGroom(shape, *haircut);

@@ -160,7 +160,13 @@ int tieOf(const sim::HairMeshShape& hair, const sim::RootFace& face, const Scalp
   for (std::size_t t = 0; t < ties.size(); ++t) {
     const bool meant = (ties[t].side == 0 || ties[t].side * middle.x() > 0) && middle.y() > ties[t].above;
     if (meant) tie = kAcrossFace;
-    if (meant && comesTo((ties[t].at - scalp.center).normalized(), middle.normalized())) return static_cast<int>(t);
+    const Vec3 ring = (ties[t].at - scalp.center).normalized();
+    const auto comes = [&](int k) {
+      return comesTo(ring, (hair.positions[hair.column_first[face.columns[k]]] - scalp.center).normalized());
+    };
+    bool all = meant;
+    for (int k = 0; k < face.corner_count; ++k) all = all && comes(k);
+    if (all) return static_cast<int>(t);
   }
   return tie;
 }

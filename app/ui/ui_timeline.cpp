@@ -232,7 +232,7 @@ void offerPanel(const NoticePlace& place, Demo& demo, UiState& ui) {
     // In a small window in several lines.
     ImGui::PushTextWrapPos(std::min(420.0f, place.width / ui.text_scale - 24) * ui.text_scale);
     ImGui::TextUnformatted(
-        ("An earlier run ended without leaving. What it had was kept" + keptSince(ui.offered) + ".").c_str());
+        ("The program was not closed properly before. What it had was kept" + keptSince(ui.offered) + ".").c_str());
     ImGui::PopTextWrapPos();
     const bool open = ImGui::Button("Open it");
     noteItem("offer_open", ui);

@@ -452,13 +452,16 @@ void growStrand(const HairFit& fit, const GrowthMap& growth, const StrandFit& st
 }
 
 HairFit fitGroom(const StrandSamples& strands, const FitOptions& options) {
+  constexpr int kVerticesAStrand = 8;
   if (strands.strandCount() < kMinGroomStrands)
     throw std::runtime_error(countOf(strands.strandCount(), "strand") + " can be used, finite and of a length; " +
                              "a hair mesh takes at least " + std::to_string(kMinGroomStrands));
   const std::vector<RootRaster> torn = tornRasters(rasterRoots(strands));
   const double length = quantile(strands.length, 0.5);
   std::vector<int> budgets{400, 800, 1600, 2400};
-  if (options.vertices > 0) budgets = {options.vertices};
+  // More vertices than strands can tell of take minutes and bring nothing.
+  const int most = std::max(budgets.front(), kVerticesAStrand * static_cast<int>(strands.strandCount()));
+  if (options.vertices > 0) budgets = {std::min(options.vertices, most)};
   const auto draftOf = [&](const RootRaster& raster, int vertices) {
     return makeDraft(strands, raster, options.layers > 0 ? options.layers : usualLayers(raster, length, vertices),
                      vertices);

@@ -44,7 +44,9 @@ std::string countText(std::size_t count, std::size_t of, const char* what) {
 
 std::string moveText(const Vector3f& move) {
   std::array<char, 96> option;
-  std::snprintf(option.data(), option.size(), "--move %.3f,%.3f,%.3f", move.x(), move.y(), move.z());
+  const auto millimetres = [](float x) { return std::round(1000.0 * double(x)) / 1000 + 0.0; };  // no minus before zero
+  std::snprintf(option.data(), option.size(), "--move %.3f,%.3f,%.3f", millimetres(move.x()), millimetres(move.y()),
+                millimetres(move.z()));
   return option.data();
 }
 

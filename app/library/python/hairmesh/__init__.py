@@ -341,6 +341,8 @@ class Hair(_Owner):
         kept = None
         if roots is not None:
             step.roots, kept = _array(roots, 3, "roots")
+        if isinstance(ellipsoids, Ellipsoid):
+            ellipsoids = (ellipsoids,)
         bodies = (_c.Ellipsoid * len(ellipsoids))(*[_handle(one, Ellipsoid, "an ellipsoid") for one in ellipsoids])
         holds = (_c.Pin * len(pins))(*[_pin(pin, number) for number, pin in enumerate(pins)])
         step.ellipsoids, step.ellipsoid_count = ctypes.addressof(bodies), len(ellipsoids)
