@@ -138,7 +138,13 @@ sim::HairMeshShape grownHair(const CharacterSpec& spec, const LoadedBody& body, 
   // Hair of a file may lie nearer to the body than a style's.
   const BodyDistance around = spec.hair.empty() ? body.distance : [](const Vec3&) { return 1.0; };
   haircut.unpainted = shape.positions;
-  if (!spec.maps.length.empty()) paintLength(readFieldMap(spec.maps.length), scalp, around, shape);
+  if (spec.maps.length.empty()) return shape;
+  constexpr double kWorthSaying = 0.15;
+  const double more = paintLength(readFieldMap(spec.maps.length), scalp, around, shape);
+  if (more > kWorthSaying)
+    addNote("painted length: for want of room the hair keeps " + std::to_string(std::lround(100 * more)) +
+                " % more of its length than is painted",
+            haircut);
   return shape;
 }
 

@@ -15,6 +15,9 @@ constexpr int kShortRounds = 16;      // of untangling; evenly short hair takes 
 // Least length of a column over that of any of its root face.
 constexpr std::array kSteepest{0.5, 0.65, 0.8, 0.9, 1.0};
 
+// Where none is, that much of what is cut off.
+constexpr std::array kParts{0.6, 0.3, 0.15};
+
 // The column's points at the same shares of its first `share` of the way.
 void shorten(std::span<Vec3> x, double share) {
   const std::vector<Vec3> old(x.begin(), x.end());
@@ -53,8 +56,8 @@ bool soften(const sim::HairMeshShape& shape, double step, std::vector<double>& s
 void shortenColumns(const BodyDistance& body, double fatness, std::vector<double>& shares, sim::HairMeshShape& shape) {
   if (shares.empty() || *std::ranges::min_element(shares) >= 1) return;
   const sim::HairMeshShape whole = shape;
-  for (const double step : kSteepest) {
-    if (!soften(whole, step, shares) && step > kSteepest.front()) continue;
+  // Whether columns of these shares leave prisms.
+  const auto cut = [&] {
     shape.positions = whole.positions;
     for (std::size_t c = 0; c < shares.size(); ++c)
       shorten(std::span(shape.positions)
@@ -62,9 +65,22 @@ void shortenColumns(const BodyDistance& body, double fatness, std::vector<double
                            static_cast<std::size_t>(shape.columnLength(static_cast<int>(c)))),
               shares[c]);
     for (int round = 0; round < kShortRounds; ++round) {
-      if (untangle(body, fatness, kShortGap, shape) > kShortFat) return;
+      if (untangle(body, fatness, kShortGap, shape) > kShortFat) return true;
     }
+    return false;
+  };
+  std::vector<double> asked;
+  for (const double step : kSteepest) {
+    if (!soften(whole, step, shares) && step > kSteepest.front()) continue;
+    if (asked.empty()) asked = shares;
+    if (cut()) return;
   }
+  for (const double part : kParts) {
+    for (std::size_t c = 0; c < shares.size(); ++c) shares[c] = 1 - part * (1 - asked[c]);
+    if (cut()) return;
+  }
+  shares.assign(shares.size(), 1);
+  shape.positions = whole.positions;
 }
 
 }  // namespace app

@@ -369,7 +369,7 @@ TiedHair tieHair(const sim::HairMeshShape& hair, const Scalp& scalp, const BodyD
   const auto acrossFace = [&](const sim::RootFace& face) { return tieOf(hair, face, scalp, ties) == kAcrossFace; };
   const auto loose = static_cast<int>(std::ranges::count_if(hair.root_faces, acrossFace));
   std::vector<Untangled> tries;
-  for (const double wider : {1.2, 1.7, 2.4}) {
+  const auto attempt = [&](double wider) {
     auto& [combed, tied] = tries.emplace_back();
     tied = {parted, std::vector<std::vector<int>>(ties.size()), std::vector<double>(ties.size(), 0.0),
             std::vector<bool>(ties.size(), false), loose};
@@ -380,13 +380,19 @@ TiedHair tieHair(const sim::HairMeshShape& hair, const Scalp& scalp, const BodyD
     }
     combed = tied.shape.positions;
     untangle(body, kTieFatness, kTieGap, tied.shape);
-    if (leastFatness(tied.shape) > kFatEnough) return withOffsets(std::move(tries.back()));
+    return leastFatness(tied.shape) > kFatEnough;
+  };
+  for (const double wider : {1.2, 1.7, 2.4}) {
+    if (attempt(wider)) return withOffsets(std::move(tries.back()));
   }
   for (int round = 0; round < kTieRounds; ++round) {
     for (Untangled& one : tries) {
       untangle(body, kTieFatness, kTieGap, one.tied.shape);
       if (leastFatness(one.tied.shape) > kFatEnough) return withOffsets(std::move(one));
     }
+  }
+  for (const double wider : {3.4, 4.8, 6.8}) {
+    if (attempt(wider)) return withOffsets(std::move(tries.back()));
   }
   const auto thinner = [](const Untangled& a, const Untangled& b) {
     return leastFatness(a.tied.shape) < leastFatness(b.tied.shape);

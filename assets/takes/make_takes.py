@@ -39,13 +39,19 @@ def ring(height, radius, n, start=1.0, end=2 * math.pi - 1.0):
     return [(radius * math.sin(t), height, radius * math.cos(t) - 0.01) for t in turns]
 
 
-def base(style):
-    """The shaved head, then the hair that a hairdo is cut, combed or tied from, and a moment in which it comes to rest."""
+def base(style, *then):
+    """The shaved head, then the hair that a hairdo is cut, combed or tied from, while the figure stands still."""
+    yield [ask("pause-motion", value=1)]
     for k in range(20):
         yield []
     yield [ask("style", style)]
     for k in range(10):
         yield []
+    for request in then:
+        yield [request]
+        for k in range(20):
+            yield []
+    yield [ask("pause-motion")]
 
 
 def chin_bob():
@@ -93,10 +99,7 @@ def side_sweep():
 
 def half_up():
     """What is rooted high is tied behind the head, the rest spread and its ends cut."""
-    yield from base("long")
-    yield [ask("tie", "", json.dumps({"at": "back", "radius": 0.02, "above": -0.02}))]
-    for k in range(10):
-        yield []
+    yield from base("long", ask("tie", "", json.dumps({"at": "back", "radius": 0.02, "above": -0.02})))
     for p in ring(-0.05, 0.10, 20, 2.4, 2 * math.pi - 2.4):
         yield [brush("spread", p, radius=0.09, strength=0.3)]
     yield [ask("end-gesture")]

@@ -5,14 +5,18 @@
 namespace sim {
 namespace {
 
+// `before`: elements of the same pattern, whose slots serve where their vertices are the same.
 template <class Kind>
-void addElement(const ElementOf<Kind>& element, const BlockPattern& pattern, Elements<Kind, double>& elements) {
+void addElement(const ElementOf<Kind>& element, const BlockPattern& pattern, const Elements<Kind, double>& before,
+                Elements<Kind, double>& elements) {
   const auto& v = element.vertices;
+  const std::size_t e = elements.size();
   elements.vertices.push_back(v);
   elements.stiffness.push_back(element.stiffness);
   elements.shift.push_back(element.shift);
   elements.rest.push_back(element.rest);
   auto& slots = elements.slots.emplace_back();
+  if (e < before.size() && before.vertices[e] == v) return void(slots = before.slots[e]);
   int pair = 0;
   for (std::size_t p = 0; p < v.size(); ++p) {
     for (std::size_t q = p + 1; q < v.size(); ++q) {
@@ -45,10 +49,12 @@ BlockPattern systemPattern(const HairMesh& mesh) {
   return makePattern(mesh.vertexCount(), std::move(pairs));
 }
 
-ForceModel<double> makeElements(const ForceSource& source, const BlockPattern& pattern) {
+ForceModel<double> makeElements(const ForceSource& source, const BlockPattern& pattern,
+                                const ForceModel<double>& before) {
   ForceModel<double> model;
   model.forEach([&]<class Kind>(Elements<Kind, double>& elements) {
-    collectStiff<Kind>(source, [&](const ElementOf<Kind>& element) { addElement(element, pattern, elements); });
+    const auto& known = before.of<Kind>();
+    collectStiff<Kind>(source, [&](const ElementOf<Kind>& element) { addElement(element, pattern, known, elements); });
   });
   return model;
 }
@@ -57,7 +63,7 @@ void setMovingElements(const ForceSource& source, const BlockPattern& pattern, F
   model.forEach([&]<class Kind>(Elements<Kind, double>& elements) {
     if constexpr (MovingKind<Kind>) {
       elements.clear();
-      collectStiff<Kind>(source, [&](const ElementOf<Kind>& element) { addElement(element, pattern, elements); });
+      collectStiff<Kind>(source, [&](const ElementOf<Kind>& element) { addElement(element, pattern, {}, elements); });
     }
   });
 }

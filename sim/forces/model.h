@@ -49,8 +49,9 @@ struct ForceModel {
 // The vertex pairs that any element couples: the pattern of every system matrix of this mesh.
 BlockPattern systemPattern(const HairMesh& mesh);
 
-// The elements alone, at rest in the styled pose without gravity.
-ForceModel<double> makeElements(const ForceSource& source, const BlockPattern& pattern);
+// The elements alone, at rest in the styled pose without gravity. `before`: others of the pattern, which save time.
+ForceModel<double> makeElements(const ForceSource& source, const BlockPattern& pattern,
+                                const ForceModel<double>& before = {});
 
 // Sets the stiffnesses that makeElements would give. False if its set of elements would differ, because a modulus has
 // become zero or was.

@@ -121,7 +121,7 @@ void Material::setMoving(std::span<const PinnedVertex> pins) {
 }
 
 void Material::rebuild() {
-  model = makeElements({*mesh_, params_}, *pattern_);
+  model = makeElements({*mesh_, params_}, *pattern_, model);
   model.forEachOfMaterial(
       [&]<class Kind>(const Elements<Kind, double>& elements) { unloaded_[kIndex<Kind>] = elements.shift; });
   balance_ = coming_ = {};

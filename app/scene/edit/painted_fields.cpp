@@ -21,11 +21,15 @@ double atRoot(const FieldMap& map, const Scalp& scalp, const sim::HairMeshShape&
 
 }  // namespace
 
-void paintLength(const FieldMap& map, const Scalp& scalp, const BodyDistance& body, sim::HairMeshShape& shape) {
+double paintLength(const FieldMap& map, const Scalp& scalp, const BodyDistance& body, sim::HairMeshShape& shape) {
   std::vector<double> shares;
   for (int c = 0; c < shape.columnCount(); ++c)
     shares.push_back(kMinLength + (1 - kMinLength) * atRoot(map, scalp, shape, c));
+  const std::vector<double> asked = shares;
   shortenColumns(body, kFatness, shares, shape);
+  double more = 0;
+  for (std::size_t c = 0; c < shares.size(); ++c) more += (shares[c] - asked[c]) / static_cast<double>(shares.size());
+  return more;
 }
 
 namespace {

@@ -14,8 +14,8 @@ namespace app {
 inline constexpr double kMinLength = 0.12, kMinStiffness = 0.02, kMinMass = 0.1;
 
 // Ends each column sooner along its own curve. Where the field falls faster from column to column than prisms can bear
-// the shorter column keeps more.
-void paintLength(const FieldMap& map, const Scalp& scalp, const BodyDistance& body, sim::HairMeshShape& shape);
+// the shorter column keeps more. Returns by how much of their length columns are longer than was asked, in the mean.
+double paintLength(const FieldMap& map, const Scalp& scalp, const BodyDistance& body, sim::HairMeshShape& shape);
 
 // Shares of the parameters' values, one a vertex; empty: 1 everywhere.
 struct PaintedShares {
