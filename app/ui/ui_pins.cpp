@@ -76,9 +76,12 @@ void pinSection(Demo& demo, UiState& ui) {
   rowLabel("Stiffness", "Of the spring");
   ImGui::SetNextItemWidth(-1);
   auto shown = static_cast<float>(pin.stiffness);
-  if (ImGui::SliderFloat("##pin_stiffness", &shown, kSoftestShown, kStiffestShown, "%.1f N/m",
-                         ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic))
-    pin.stiffness = static_cast<double>(shown);
+  {
+    const MarksBelowDigits marks;
+    if (ImGui::SliderFloat("##pin_stiffness", &shown, kSoftestShown, kStiffestShown, "%.1f N/m",
+                           ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic))
+      pin.stiffness = static_cast<double>(shown);
+  }
   noteItem("pin_stiffness", ui);
   ImGui::EndDisabled();
   dragSeconds("From", "Simulated time at which the pin begins to hold. Drag, or double-click to type", "pin_from",

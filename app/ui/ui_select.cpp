@@ -364,8 +364,8 @@ void selectFrame(bool begins, Demo& demo, UiState& ui) {
   const std::vector<int> likes = likesOfChosen(actor, ui);
   drawReached(actor, likes, ui, overlay);
   drawMirrored(demo, likes, overlay, ui);
-  drawPinned(actor, overlay, ui);
   drawElements(elementOf(select), select.chosen, kChosenColor, actor.haircut->mesh, overlay);
+  drawPinned(actor, overlay, ui);
 }
 
 bool nudgeChosen(int key, bool far, Demo& demo, UiState& ui) {

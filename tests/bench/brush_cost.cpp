@@ -56,33 +56,50 @@ app::Request moveAt(int k, const app::Demo& demo) {
 
 using Sample = std::function<app::Request(int, const app::Demo&)>;
 
-// s a frame; without a sample frames without an edit.
-std::vector<double> framesOf(const Sample& sample) {
+// s, one a frame: the edit itself (the brush, rest quantities, preconditioner), and the rest of the frame, which steps.
+struct Frames {
+  std::vector<double> edit, rest, whole;
+};
+
+// Without a sample frames without an edit.
+Frames framesOf(const Sample& sample) {
   app::Demo demo = walkingHair();
-  std::vector<double> seconds;
+  Frames frames;
   for (int frame = 0; frame < kWarmUp + kSamples; ++frame) {
     if (sample && frame >= kWarmUp) demo.requests = {sample(frame, demo)};
     const double started = cpuSeconds();
+    app::applyRequests(demo);
+    const double edited = cpuSeconds();
     app::advanceFrame(demo, 1.0 / 60, {});
-    if (frame >= kWarmUp) seconds.push_back(cpuSeconds() - started);
+    const double ended = cpuSeconds();
+    if (frame < kWarmUp) continue;
+    frames.edit.push_back(edited - started);
+    frames.rest.push_back(ended - edited);
+    frames.whole.push_back(ended - started);
   }
-  return seconds;
+  return frames;
 }
 
 }  // namespace
 
+// An edit's cost: its own work at worst, and by how much the step that follows takes longer in the median. A step's own
+// worst is no matter of the edit: freezing moves nothing, and its frames' p99 is that of a walk.
 bool runBrushCost() {
-  const double still = percentile(framesOf({}), 0.5);
-  std::printf("long high, walking: a frame without an edit takes %.2f ms\n", 1e3 * still);
-  std::printf("| brush | median | p99 | p99 of the edit alone |\n|---|---|---|---|\n");
+  const Frames still = framesOf({});
+  const double step = percentile(still.rest, 0.5);
+  std::printf("long high, walking: a frame without an edit takes %.2f ms, p99 %.2f\n", 1e3 * step,
+              1e3 * percentile(still.whole, 0.99));
+  std::printf("| brush | frame | frame, p99 | the edit itself | its p99 | the step longer by | cost, p99 |\n");
+  std::printf("|---|---|---|---|---|---|---|\n");
   bool holds = true;
   const auto row = [&](const std::string& name, const Sample& sample) {
-    const std::vector<double> frames = framesOf(sample);
-    const double worst = percentile(frames, 0.99);
-    std::printf("| %s | %.2f | %.2f | %.2f |\n", name.c_str(), 1e3 * percentile(frames, 0.5), 1e3 * worst,
-                1e3 * (worst - still));
+    const Frames frames = framesOf(sample);
+    const double worst = percentile(frames.edit, 0.99), longer = std::max(0.0, percentile(frames.rest, 0.5) - step);
+    std::printf("| %s | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f |\n", name.c_str(), 1e3 * percentile(frames.whole, 0.5),
+                1e3 * percentile(frames.whole, 0.99), 1e3 * percentile(frames.edit, 0.5), 1e3 * worst, 1e3 * longer,
+                1e3 * (worst + longer));
     std::fflush(stdout);
-    holds = holds && worst - still <= kBound;
+    holds = holds && worst + longer <= kBound;
   };
   for (int tool = 0; tool < static_cast<int>(app::kBrushNames.size()); ++tool)
     row(std::string(app::kBrushNames[static_cast<std::size_t>(tool)]),

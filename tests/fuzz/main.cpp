@@ -6,7 +6,20 @@
 #include <cstdlib>
 
 #include "app/files/errors.h"
+#include "app/files/painted_mesh.h"
 #include "tests/fuzz/readers.h"
+
+// Painted meshes are read by assimp, which is not linked here.
+namespace app {
+
+bool hasPaintedEnding(const std::string&) {
+  return false;
+}
+Image readPaintedMesh(const std::string& file) {
+  throw InputError(file, "", "is a mesh", "");
+}
+
+}  // namespace app
 
 namespace {
 

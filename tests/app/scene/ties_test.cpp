@@ -206,6 +206,7 @@ TEST(Ties, ARingBesideTheHeadLeavesTheFaceFree) {
       const app::Scalp& scalp = actor.body->character.scalp;
       EXPECT_NE(actor.haircut->note.find("hangs loose"), std::string::npos) << ring << actor.haircut->note;
       EXPECT_GT(actor.haircut->tied.size(), actor.haircut->mesh.columnCount() * 0.4) << ring;
+      if (app::hasFringe(style)) continue;  // which hangs over the forehead by itself
       for (const sim::Vec3& p : actor.haircut->mesh.shape.positions) {
         const sim::Vec3 way = (p - scalp.center).normalized();
         const bool before_face = std::abs(std::atan2(way.x(), way.z())) < 0.5 && std::abs(way.y()) < 0.3;
