@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 #include "app/scene/demo.h"
+#include "app/ui/ui_panels.h"
 #include "app/ui/ui_widgets.h"
 #include "tests/app/ui/panels.h"
 
@@ -180,6 +182,28 @@ TEST_F(Panels, HairThatHasNoRoomForAPlaitOrABunIsShownAsATail) {
   ASSERT_NE(wound, again.end());
   EXPECT_NE(wound->text.find("\"bun\":true"), std::string::npos) << "a click on an empty box asks for a bun";
   EXPECT_EQ(wound->text.find("\"braided\""), std::string::npos);
+}
+
+// A picture paints the field that is chosen, dropped or opened, and can be taken off again.
+TEST_F(Panels, AFieldIsPaintedByAFile) {
+  openTab(app::tabIndex("hair"));
+  click("paint Stiff");
+  ASSERT_EQ(ui_.brush.field, 0);
+  frame();
+  click("open map");
+  EXPECT_EQ(ui_.browser.what, app::BrowseFor::kMap);
+  ui_.browser.what = app::BrowseFor::kNothing;
+  app::openFile(app::dataPath("assets/maps/left_side.png"), demo_, ui_);
+  const std::vector<test::Request> asked = std::exchange(demo_.requests, {});
+  ASSERT_EQ(asked.size(), 1u);
+  EXPECT_EQ(asked[0].what, Ask::kMap);
+  EXPECT_EQ(asked[0].name, "stiffness");
+  apply(asked);
+  EXPECT_FALSE(demo_.message_is_fault) << demo_.message;
+  EXPECT_NE(demo_.actors[0].spec.maps.stiffness, "");
+  frame();
+  apply(click("no map"));
+  EXPECT_EQ(demo_.actors[0].spec.maps.stiffness, "");
 }
 
 }  // namespace rows_test
