@@ -4,8 +4,8 @@
 
 namespace bench {
 
-// Prints what 200 samples a tool cost on the walking long high hair, milliseconds of processor time. Returns whether each
-// tool's p99 of its own work and what the next step takes longer by keep within 8 ms together.
+// Prints what 200 samples a tool cost on the walking long high hair, milliseconds of processor time. Returns whether
+// each tool's p99 of its own work and gravity's balance keep within 8 ms together.
 bool runBrushCost();
 
 }  // namespace bench
