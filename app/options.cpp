@@ -159,10 +159,10 @@ void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
       "Wear a mesh that the hair collides with (hat, glasses, collar; OBJ, FBX, glTF): a joint's name, or head, "
       "neck, chest; JSON as in a scene's \"attachments\"; none; may be given many times");
   group.values(
-      "--map", options.maps, "FIELD=FILE.png",
+      "--map", options.maps, "FIELD=FILE",
       "Paint stiffness, length, density, mass, bend, width, clump, curl, color, roughness or damping over the scalp: "
-      "the head unrolled, its front in the middle, white for the parameter's own value; may be given many "
-      "times");
+      "a PNG of the head unrolled, its front in the middle, white for the parameter's own value, or a mesh of the head "
+      "with coloured vertices (OBJ, PLY, glTF, FBX); may be given many times");
   group.values(
       "--curve", options.curves, "FIELD=SHARES",
       "Shares from root to tip of what --map paints, but length and density, with commas: stiffness=1,0.5,0.2, or "

@@ -27,7 +27,7 @@ struct Options {
   std::vector<std::pair<std::string, std::string>> set;  // --set name=value
   std::vector<std::string> skips;                        // --skip name=on|off
   std::vector<std::string> pins;                         // --pin JSON, see files/pin_spec.h
-  std::vector<std::string> maps;                         // --map FIELD=FILE.png, see files/field_map.h
+  std::vector<std::string> maps;                         // --map FIELD=FILE, see files/field_map.h
   std::vector<std::string> attachments;                  // --attach FILE@JOINT, see files/attachment_spec.h
   std::vector<std::string> curves;                       // --curve FIELD=ROOT,...,TIP, see files/field_map.h
   std::string tie;                                       // see files/tie_spec.h; empty: the scene's

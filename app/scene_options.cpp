@@ -107,7 +107,7 @@ void overrideFields(const Options& options, CharacterSpec& spec) {
   for (const std::string& text : options.maps) {
     const auto [field, file] = assigned(text);
     const std::string fault = field.empty() || file.empty()
-                                  ? "write FIELD=FILE.png, for instance length=assets/maps/bob_length.png"
+                                  ? "write FIELD=FILE, for instance length=assets/maps/bob_length.png"
                                   : setMap(field, findFile(file, "", "maps"), spec.maps);
     if (!fault.empty()) throw UsageError("--map cannot be '" + text + "'; " + fault);
   }
