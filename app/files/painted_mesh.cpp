@@ -85,18 +85,14 @@ struct Unrolled {
     bool open = true;
     while (open) {
       open = false;
-      std::vector<Texel> before = texels;
-      const auto was = [&](int row, int column) -> const Texel& {
-        const int x = (column % kWidth + kWidth) % kWidth, y = std::clamp(row, 0, kHeight - 1);
-        return before[static_cast<std::size_t>(y) * kWidth + static_cast<std::size_t>(x)];
-      };
+      Unrolled before = *this;
       for (int row = 0; row < kHeight; ++row) {
         for (int column = 0; column < kWidth; ++column) {
-          if (was(row, column).distance >= 0) continue;
+          if (before.at(row, column).distance >= 0) continue;
           Vector3d sum = Vector3d::Zero();
           int count = 0;
-          for (const Texel* beside :
-               {&was(row - 1, column), &was(row + 1, column), &was(row, column - 1), &was(row, column + 1)}) {
+          for (const Texel* beside : {&before.at(row - 1, column), &before.at(row + 1, column),
+                                      &before.at(row, column - 1), &before.at(row, column + 1)}) {
             if (beside->distance >= 0) sum += beside->color, ++count;
           }
           if (count > 0)

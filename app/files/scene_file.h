@@ -127,7 +127,7 @@ Options sortedOut(Options options);
 // Throws InputError, or UsageError for an option's value.
 Scene sceneFromOptions(const Options& options);
 
-// "short" -> Style::kShort; throws nothing, empty when unknown.
+// "low" -> Resolution::kLow; empty when unknown.
 std::optional<Resolution> parseResolution(std::string_view name);
 
 }  // namespace app

@@ -79,7 +79,11 @@ void changeStyle(const Request& request, Demo& demo) {
     spec.resolution = *resolution;
   }
   chooseHair("", spec);
-  recast(spec, true, std::string(styleName(spec.style)) + " " + std::string(resolutionName(spec.resolution)), demo);
+  const bool unpinned = request.what == Ask::kStyle && !selectedActor(demo).spec.pins.empty();
+  recast(spec, true,
+         std::string(styleName(spec.style)) + " " + std::string(resolutionName(spec.resolution)) +
+             (unpinned ? ", without the pins of the style before" : ""),
+         demo);
 }
 
 void changeHairFile(const std::string& file, Demo& demo) {

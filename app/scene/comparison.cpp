@@ -15,6 +15,7 @@
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
 #include "app/scene/edit/groom_brush.h"
+#include "app/scene/edit/hand_pins.h"
 #include "app/scene/edit/mesh_change.h"
 #include "app/scene/present_scene.h"
 
@@ -91,6 +92,7 @@ void catchUp(const Demo& demo, Demo& other) {
         bringBackShape(demo.actors[i].haircut->mesh.shape, static_cast<int>(i), other);
       else if (demo.actors[i].haircut->edited)
         reshapeHair(demo.actors[i].haircut->mesh.shape.positions, static_cast<int>(i), other);
+      repin(demo.actors[i].spec.pins, other.actors[i]);
     }
     return restoreDemoState(demoStateBytes(demo), "comparison", true, other);
   }
@@ -145,7 +147,9 @@ constexpr std::array kOfBoth{Ask::kPause,    Ask::kPauseMotion, Ask::kSingleStep
 }  // namespace
 
 void startComparison(const std::string& with, Demo& demo) {
-  Demo other = openScene(comparedScene(with, presentScene(demo)), demo.aspect);
+  Scene scene = presentScene(demo);
+  for (std::size_t i = 0; i < demo.actors.size(); ++i) scene.characters[i].pins = pinsForAnotherMesh(demo.actors[i]);
+  Demo other = openScene(comparedScene(with, std::move(scene)), demo.aspect);
   if (demo.frames > 0) catchUp(demo, other);
   other.paused = demo.paused;
   other.timeline.on = demo.timeline.on;

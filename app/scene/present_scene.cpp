@@ -6,6 +6,7 @@
 #include "app/files/hair_file.h"
 #include "app/files/output_file.h"
 #include "app/scene/edit/groom_brush.h"
+#include "app/scene/edit/hand_pins.h"
 
 namespace app {
 
@@ -68,6 +69,7 @@ void saveReshapedHair(const std::string& scene_file, const Demo& demo, Scene& sc
     scene.characters[i].mends.clear();
     scene.characters[i].maps.length.clear();  // it is in the shape
     scene.characters[i].fit = scene.characters[i].reverse_faces = false;
+    scene.characters[i].pins = pinsForAnotherMesh(demo.actors[i]);  // the file may order vertices otherwise
   }
 }
 

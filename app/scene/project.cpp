@@ -174,10 +174,14 @@ Demo readProject(const std::string& file, Scene scene, bool keep_view, double as
   const auto bytes = std::as_bytes(std::span(binary));
   if (hex(sim::fingerprint(bytes)) != place.at("checksum").text())
     throw InputError(binary_file, "", "is not the one that " + file + " was saved with", "save the project anew");
+  std::vector<std::vector<PinSpec>> pins;  // of the shapes, which the scene does not have
+  for (CharacterSpec& character : scene.characters) pins.push_back(std::exchange(character.pins, {}));
   Demo fresh = openScene(std::move(scene), aspect);
   sim::ByteReader from{bytes};
-  for (std::size_t i = 0; i < fresh.actors.size(); ++i)
+  for (std::size_t i = 0; i < fresh.actors.size(); ++i) {
     takeShape(from, place.at(kKey).number(1, 1e6), binary_file, static_cast<int>(i), fresh);
+    repin(std::move(pins[i]), fresh.actors[i]);
+  }
   std::vector<char> state;
   sim::readBytes(from, state);
   restoreDemoState(std::string(state.begin(), state.end()), binary_file, keep_view, fresh);

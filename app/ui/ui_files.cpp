@@ -137,8 +137,9 @@ void setPath(const std::string& text, std::array<char, 512>& path) {
   std::copy_n(text.begin(), std::min(text.size(), path.size() - 1), path.begin());
 }
 
-void postMap(const std::string& file, Demo& demo, const UiState& ui) {
+void postMap(const std::string& file, Demo& demo, UiState& ui) {
   if (ui.brush.field < 0) return;
+  ui.field = {};  // the file may have changed
   postRequest(demo, {Ask::kMap, std::string(kFieldNames[static_cast<std::size_t>(ui.brush.field)]), file});
 }
 

@@ -163,10 +163,16 @@ void paintAnew(const CharacterSpec& spec, const ActorMoment* moment, int index, 
   ownHaircut(demo.actors[static_cast<std::size_t>(index)], demo).painted = moment->shape.positions;
 }
 
+// What an actor is made of: pins of a mesh that is yet to be brought back name vertices of that.
+CharacterSpec castable(CharacterSpec spec, const ActorMoment* moment) {
+  if (moment && moment->remeshed) spec.pins.clear();
+  return spec;
+}
+
 void castAnew(const CharacterSpec& spec, const ActorMoment* moment, int index, Demo& demo) {
   Actor& old = demo.actors[static_cast<std::size_t>(index)];
   const bool same_motion = spec.motion == old.spec.motion && spec.parts == old.spec.parts;
-  Actor fresh = makeActor(spec, demo.scene.playback, demo.asset_cache);
+  Actor fresh = makeActor(castable(spec, moment), demo.scene.playback, demo.asset_cache);
   if (same_motion && spec.clip == old.spec.clip) {
     const ClipLoop loop = fresh.playback.loop;
     fresh.playback = old.playback;
@@ -201,7 +207,9 @@ void bringBackSettings(const EditSide& side, Demo& demo) {
   const double budget = scene.playback.budget_ms, draw_budget = scene.playback.draw_budget_ms;
   scene = side.scene;
   for (std::size_t i = 0; i < demo.actors.size(); ++i) {
+    std::vector<PinSpec> pins = std::move(demo.actors[i].spec.pins);
     demo.actors[i].spec = side.cast[i];
+    demo.actors[i].spec.pins = std::move(pins);  // until the mesh is back that they are of
     demo.actors[i].playback.speed = scene.playback.speed;
   }
   if (scene.playback.budget_ms != budget) setBudget(1e-3 * scene.playback.budget_ms, demo.governor);
@@ -222,17 +230,18 @@ void bringBackView(const Camera& view, Camera& camera) {
 void bringBack(const EditSide& side, Demo& demo) {
   demo.loading.waiting.reset();
   demo.loading.unwanted = demo.loading.running.valid();
-  std::vector<std::size_t> repinned;
+  const auto momentOf = [&](std::size_t i) { return side.moments.empty() ? nullptr : &side.moments[i]; };
   if (side.cast.size() != demo.actors.size()) {
     const bool paused = demo.paused;
     Scene scene = side.scene;
-    scene.characters = side.cast;
+    scene.characters.clear();
+    for (std::size_t i = 0; i < side.cast.size(); ++i) scene.characters.push_back(castable(side.cast[i], momentOf(i)));
     replaceScene(openScene(std::move(scene), demo.aspect), demo);
     demo.paused = paused;
   } else {
     for (std::size_t i = 0; i < demo.actors.size(); ++i) {
       const Haircut& worn = *demo.actors[i].haircut;
-      const ActorMoment* moment = side.moments.empty() ? nullptr : &side.moments[i];
+      const ActorMoment* moment = momentOf(i);
       const bool another_shape =
           moment && ((worn.edited && moment->shape.positions.empty()) || (worn.remeshed && !moment->remeshed));
       const CharacterSpec &spec = side.cast[i], &now = demo.actors[i].spec;
@@ -241,7 +250,6 @@ void bringBack(const EditSide& side, Demo& demo) {
         castAnew(spec, moment, static_cast<int>(i), demo);
       else if (painted)
         paintAnew(spec, moment, static_cast<int>(i), demo);
-      if (writePins(spec.pins) != writePins(demo.actors[i].spec.pins)) repinned.push_back(i);
     }
   }
   bringBackSettings(side, demo);
@@ -258,7 +266,7 @@ void bringBack(const EditSide& side, Demo& demo) {
     if (moment.frozen != demo.actors[i].haircut->frozen) freezeHair(moment.frozen, static_cast<int>(i), demo);
     bringBack(moment, demo.actors[i]);
   }
-  for (const std::size_t i : repinned) repin(side.cast[i].pins, demo.actors[i]);
+  for (std::size_t i = 0; i < demo.actors.size(); ++i) repin(side.cast[i].pins, demo.actors[i]);
   if (side.camera) bringBackView(*side.camera, demo.camera);
   demo.shown_fraction = -1;
 }

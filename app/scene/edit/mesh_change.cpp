@@ -286,15 +286,17 @@ std::unique_ptr<Haircut> haircutOf(sim::HairMeshShape shape, std::span<const Ver
 
 void remeshHair(sim::HairMeshShape shape, std::span<const VertexSource> sources, int index, Demo& demo) {
   Actor& actor = demo.actors[static_cast<std::size_t>(index)];
-  if (!actor.pins.empty())
-    throw InputError("", "the mesh", "of hair that is tied, pinned or under an attachment stays as it is",
+  if (std::ranges::any_of(actor.pins, [](const ActorPin& pin) { return !pin.of_spec; }))
+    throw InputError("", "the mesh", "of hair that is tied or under an attachment stays as it is",
                      "take that off first");
+  std::vector<PinSpec> pins = pinsForAnotherMesh(actor);
   std::unique_ptr<Haircut> own = haircutOf(std::move(shape), sources, actor);
   if (actor.coarse.active) leaveCoarse(actor);
   carryOver(*own, sources, actor);
   AssetCache& asset_cache = demo.asset_cache;
   asset_cache.haircuts.push_back(std::move(own));
   wearHaircut(*asset_cache.haircuts.back(), actor, asset_cache);
+  repin(std::move(pins), actor);
   tidy(demo.actors, asset_cache);
   beginAnew(demo.timeline);
   demo.shown_fraction = -1;

@@ -50,12 +50,12 @@ inline constexpr std::array<std::string_view, 5> kMeshChangeNames{"add-layer", "
 
 inline constexpr std::string_view kMirrorText = "mirror ";
 
-// Throws InputError where the mesh would not be valid, and of hair that is tied, pinned or under an attachment; then
-// nothing has changed. The demo's message says how far strands have moved.
+// Throws InputError where the mesh would not be valid, and of hair that is tied or under an attachment; then nothing
+// has changed. The demo's message says how far strands have moved.
 void applyMeshChange(const std::string& name, const std::string& text, int actor, Demo& demo);
 
 // Gives the actor's hair another mesh. What moves goes on moving, by the sources of the new vertices; without sources
-// it is put to rest. Throws InputError as above.
+// it is put to rest. Its pins go to the nearest vertices. Throws InputError as above.
 void remeshHair(sim::HairMeshShape shape, std::span<const VertexSource> sources, int actor, Demo& demo);
 
 // Gives the actor's hair a shape that it or another had: its positions, and its structure where that differs.

@@ -70,6 +70,19 @@ TEST(PaintedMesh, ColoursLieInTheirDirectionWhateverUnitAndPlace) {
   }
 }
 
+// Faces of no area, and one that repeats a corner, change nothing.
+TEST(PaintedMesh, FacesOfNoAreaChangeNothing) {
+  const std::string whole = ball(sideOf, 0.1, {0, 0, 0});
+  const app::FieldMap plain = app::readFieldMap(fileOf("whole.obj", whole));
+  const app::FieldMap more =
+      app::readFieldMap(fileOf("no_area.obj", whole + "f 500 500 501\nf 600 601 600\nf 700 700 700\n"));
+  ASSERT_EQ(more.value.size(), plain.value.size());
+  double worst = 0;
+  for (std::size_t k = 0; k < more.value.size(); ++k)
+    worst = std::max(worst, std::abs(double(more.value[k]) - double(plain.value[k])));
+  EXPECT_LT(worst, 0.02);
+}
+
 TEST(PaintedMesh, WhiteIsWhiteEverywhereAlsoWhereNoFaceLies) {
   const app::FieldMap map =
       app::readFieldMap(fileOf("cap.obj", ball([](const Vec3&) { return 1; }, 0.1, {0, 0, 0}, 8, 0.4)));

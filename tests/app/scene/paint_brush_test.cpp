@@ -325,4 +325,29 @@ TEST(PaintBrush, AMapThatIsNotAsExpectedIsSaidWithItsFile) {
   EXPECT_NE(app::openScene(std::move(scene), 1.5).message.find("blue.png is coloured"), std::string::npos);
 }
 
+// The mean share of the hair's volume, and that of each side, whatever the mesh.
+TEST(PaintBrush, AFieldPaintsTheSameShareOfTheHairAtEveryResolution) {
+  const app::Character character = app::loadCharacter(app::dataPath("assets/clips/idle_turns.bvh"), "");
+  const app::BodyDistance body = app::restBodyDistance(character);
+  app::FieldFiles maps;
+  maps.stiffness = app::dataPath("assets/maps/left_side.png");
+  std::vector<double> means;
+  for (const app::Resolution resolution : {app::Resolution::kLow, app::Resolution::kMedium, app::Resolution::kHigh}) {
+    const sim::HairMesh mesh =
+        sim::buildHairMesh(app::makeStyle(app::Style::kShoulder, resolution, character.scalp, body));
+    const std::vector<float> shares = app::paintedShares(maps, {}, character.scalp, mesh.shape).stiffness;
+    ASSERT_EQ(shares.size(), mesh.shape.positions.size());
+    double painted = 0, whole = 0;
+    for (std::size_t v = 0; v < shares.size(); ++v) {
+      painted += double(shares[v]) * mesh.vertex_volume[v];
+      whole += mesh.vertex_volume[v];
+    }
+    means.push_back(painted / whole);
+    std::printf("%s: %.3f of the hair's stiffness\n", app::resolutionName(resolution).data(), means.back());
+  }
+  EXPECT_LT(means[2], 0.9);
+  EXPECT_NEAR(means[0], means[2], 0.06);
+  EXPECT_NEAR(means[1], means[2], 0.04);
+}
+
 }  // namespace paint_brush_test

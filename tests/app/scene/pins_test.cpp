@@ -8,11 +8,13 @@
 
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
+#include "app/files/recording.h"
 #include "app/scene/actor.h"
 #include "app/scene/demo.h"
 #include "app/scene/detail/sleep.h"
 #include "app/scene/edit/hand_pins.h"
 #include "app/scene/edit/mesh_change.h"
+#include "tests/run_program.h"
 
 namespace pins_test {
 
@@ -270,6 +272,66 @@ TEST(Pins, FaultsOfARequestLeaveWhatIsThere) {
     EXPECT_NE(ask({app::Ask::kPin, "", text}, demo), "") << text;
   EXPECT_EQ(app::editHash(demo), before);
   EXPECT_EQ(demo.edits.done, steps);
+}
+
+// Where the pinned vertices are at rest, scalp frame.
+std::vector<Vec3> pinnedAtRest(const app::Demo& demo) {
+  std::vector<Vec3> places;
+  for (const int v : app::pinnedVertices(demo.actors[0]))
+    places.push_back(demo.actors[0].haircut->mesh.shape.positions[static_cast<std::size_t>(v)]);
+  return places;
+}
+
+// A mesh with a layer more, and pins of it whose numbers the style does not have.
+app::Demo layeredAndPinned() {
+  app::Demo demo = movingDemo();
+  EXPECT_EQ(ask({app::Ask::kMesh, "add-layer", "3"}, demo), "");
+  const int last = demo.actors[0].haircut->mesh.columnCount() - 1;
+  EXPECT_EQ(ask({app::Ask::kPin, "", pinText(tipOf(last, demo.actors[0]), {"scalp", 40}, demo.actors[0])}, demo), "");
+  return demo;
+}
+
+TEST(Pins, StayWhileTheMeshIsChangedAndComeBackWithIt) {
+  app::Demo demo = layeredAndPinned();
+  const app::Actor& actor = demo.actors[0];
+  const std::string before = app::editHash(demo);
+  const std::vector<Vec3> places = pinnedAtRest(demo);
+  ASSERT_EQ(ask({app::Ask::kMesh, "remove-layer", "2"}, demo), "");
+  ASSERT_EQ(actor.pins.size(), 1u);
+  EXPECT_LT((pinnedAtRest(demo)[0] - places[0]).norm(), 0.02);
+  ASSERT_EQ(ask({app::Ask::kStyle, "bob", ""}, demo), "");
+  EXPECT_NE(demo.message.find("without the pins"), std::string::npos) << demo.message;
+  EXPECT_TRUE(actor.pins.empty());
+  ASSERT_EQ(ask({app::Ask::kUndo, "", "", 2}, demo), "");
+  EXPECT_EQ(app::editHash(demo), before);
+  EXPECT_EQ(pinnedAtRest(demo), places);
+  EXPECT_EQ(ask({app::Ask::kRedo, "", "", 2}, demo), "");
+  EXPECT_EQ(ask({app::Ask::kUndo, "", "", 2}, demo), "");
+  EXPECT_EQ(app::editHash(demo), before);
+}
+
+TEST(Pins, OfAMeshOfItsOwnAreKeptByProjectSceneAndComparison) {
+  app::Demo demo = layeredAndPinned();
+  const std::vector<Vec3> places = pinnedAtRest(demo);
+  const std::string folder = test::freshFolder("pins_kept");
+  ASSERT_EQ(ask({app::Ask::kSaveProject, "", folder + "/project.json"}, demo), "");
+  ASSERT_EQ(ask({app::Ask::kSaveScene, "", folder + "/scene.json"}, demo), "");
+  ASSERT_EQ(ask({app::Ask::kCompare, "gravity=3", "", 1}, demo), "");
+  EXPECT_EQ(pinnedAtRest(demo.comparison.other.front()), places);
+
+  app::Demo opened = movingDemo();
+  ASSERT_EQ(ask({app::Ask::kOpenProject, "", folder + "/project.json"}, opened), "");
+  EXPECT_EQ(pinnedAtRest(opened), places);
+  EXPECT_EQ(app::stateHash(opened), app::stateHash(demo));
+  ASSERT_EQ(ask({app::Ask::kCompare, "", "", 0}, demo), "");
+  for (app::Demo* one : {&demo, &opened}) {
+    for (int frame = 0; frame < 10; ++frame) app::advanceFrame(*one, kFrame, {});
+  }
+  EXPECT_EQ(app::stateHash(opened), app::stateHash(demo));
+
+  const app::Demo reopened = app::openScene(app::loadScene(folder + "/scene.json"), 1.5);
+  ASSERT_EQ(reopened.actors[0].spec.pins.size(), 1u);
+  EXPECT_LT((pinnedAtRest(reopened)[0] - places[0]).norm(), 1e-5);
 }
 
 }  // namespace pins_test
