@@ -1,4 +1,4 @@
-// A skin whose vertices are near enough to one another to stand for its surface: boxes have eight of them.
+// A skin with vertices enough to stand for its surface. A box of a modelling program has eight.
 #pragma once
 
 #include "app/figure/character.h"

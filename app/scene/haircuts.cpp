@@ -84,7 +84,7 @@ std::string shortBunNote(const TieSpec& tie, double left) {
 
 constexpr const char* kLooseNote = ": hair of the far side hangs loose; its way to the ring would lead across the face";
 
-// `lacks`: m, of the hair that lacks most to its ring.
+// `lacks`: m that the shortest hair is too short to reach its ring.
 void noteLengthened(const CharacterSpec& spec, double lacks, Haircut& haircut) {
   constexpr double kWorthSaying = 0.05;
   if (lacks > kWorthSaying)

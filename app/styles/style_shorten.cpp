@@ -15,7 +15,7 @@ constexpr int kShortRounds = 16;      // of untangling; evenly short hair takes 
 // Least length of a column over that of any of its root face.
 constexpr std::array kSteepest{0.5, 0.65, 0.8, 0.9, 1.0};
 
-// Where none is, that much of what is cut off.
+// Parts of the cut that are tried in turn where no softening leaves prisms.
 constexpr std::array kParts{0.6, 0.3, 0.15};
 
 // The column's points at the same shares of its first `share` of the way.

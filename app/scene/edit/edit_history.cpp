@@ -163,7 +163,7 @@ void paintAnew(const CharacterSpec& spec, const ActorMoment* moment, int index, 
   ownHaircut(demo.actors[static_cast<std::size_t>(index)], demo).painted = moment->shape.positions;
 }
 
-// What an actor is made of: pins of a mesh that is yet to be brought back name vertices of that.
+// The spec to make an actor of. Pins are left out where they name vertices of a mesh that is brought back only later.
 CharacterSpec castable(CharacterSpec spec, const ActorMoment* moment) {
   if (moment && moment->remeshed) spec.pins.clear();
   return spec;

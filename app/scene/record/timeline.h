@@ -23,7 +23,7 @@ struct TimelineFrame {
   bool contact = false, recovery = false, jump = false, loop = false;  // loop: the clip began anew
   long shapes = -1;                                                    // of Timeline::shapes; -1: those of now
   std::vector<double> after;  // s of each frame that followed, in its shapes, up to the next; below 0: a single step
-  bool whole = false;         // no more of them: the shape is another since
+  bool whole = false;         // nothing more follows in `after`: an edit has changed the shape
 };
 
 struct Timeline {
