@@ -27,7 +27,14 @@ int nearestAtRest(const Vec3& place, const sim::HairMesh& mesh) {
 }
 
 int findVertex(const PinSpec& spec, const sim::HairMesh& mesh) {
-  if (spec.near) return nearestAtRest(*spec.near, mesh);
+  if (spec.near) {
+    constexpr double kFarthestNear = 1;  // m
+    const int nearest = nearestAtRest(*spec.near, mesh);
+    if ((mesh.shape.positions[nearest] - *spec.near).norm() > kFarthestNear)
+      refuse(spec, "/near", "is over a metre from the hair at rest",
+             "write metres from the head joint, x to the figure's left, y up, z to the front");
+    return nearest;
+  }
   int vertex = spec.vertex;
   if (spec.column >= 0) {
     if (spec.column >= mesh.columnCount()) {

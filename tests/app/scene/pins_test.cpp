@@ -55,6 +55,7 @@ TEST(Pins, FaultsNameFilePlaceAndMend) {
       {R"({"vertex": 5}, {"column": 999})", "/characters/0/pins/1/column", "999", "0 to"},
       {R"({"column": 1, "layer": 500})", "/characters/0/pins/0/layer", "500", "-1 for the tip"},
       {R"({"vertex": 0})", "/characters/0/pins/0", "root", "layer from 1"},
+      {R"({"near": [0, -160, 0]})", "/characters/0/pins/0/near", "over a metre", "metres"},
       {R"({"column": 1, "to": "LeftHnd"})", "/characters/0/pins/0/to", "LeftHnd", "LeftHand"},
       {R"({"column": 1, "at": [1, 2]})", "/characters/0/pins/0/at", "[1,2]", "three"},
       {R"({"column": 1, "stiffness": "hard"})", "/characters/0/pins/0/stiffness", "hard", "infinite"},
