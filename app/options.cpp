@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -12,6 +13,7 @@
 #include "app/groom/formats/tfx_file.h"
 #include "app/groom/groom_writer.h"
 #include "app/groom/inspect/certain_mends.h"
+#include "app/output_names.h"
 #include "app/parse_fault.h"
 #include "app/scene/detail/skips.h"
 #include "app/scene/parameter_table.h"
@@ -295,6 +297,7 @@ bool parseFrames(const std::string& text, ExportSpec& spec) {
   if (dash == std::string::npos) last = first;
   if (dash != std::string::npos && dash + 1 < text.size() && !sim::parseNumber(text.substr(dash + 1), last))
     return false;
+  if (first != std::floor(first) || last != std::floor(last)) return false;
   if (!(first >= 0 && first <= kMaxFrames && last <= kMaxFrames) || (last >= 0 && last < first)) return false;
   spec.first = static_cast<int>(first), spec.last = static_cast<int>(last);
   spec.range = dash != std::string::npos;
@@ -331,10 +334,6 @@ void finishExport(const Unchecked& unchecked, Options& options) {
     throw UsageError("--export-samples needs a file that takes a clip; name it .abc, .usda or .glb");
   if (spec.samples > 1 && !(options.record + options.replay + options.save_state + options.load_state).empty())
     throw UsageError("--export-samples does not go with recordings and states, whose frames have one moment");
-  for (const std::string* other :
-       {&options.record, &options.report, &options.save_state, &options.screenshot, &options.cache})
-    if (*other == spec.file)
-      throw UsageError("--export and another option name one file, '" + spec.file + "'; name two");
   if (unchecked.export_unit == "cm") spec.unit = 0.01;
   if (unchecked.export_unit == "mm") spec.unit = 0.001;
   if (unchecked.export_unit == "in") spec.unit = 0.0254;
@@ -348,6 +347,7 @@ void refuseBesideNoImages(const Options& options) {
   const std::pair<const char*, bool> given[] = {{"--screenshot", !options.screenshot.empty()},
                                                 {"--video", !options.video.empty()},
                                                 {"--out", options.out_given},
+                                                {"--turntable", options.turntable != 0},
                                                 {"--draw-budget-ms", options.draw_budget_ms > 0}};
   for (const auto& [name, is_given] : given)
     if (is_given)
@@ -378,9 +378,6 @@ void finish(const Unchecked& unchecked, Options& options) {
     }
     options.set.emplace_back(text.substr(0, equals), text.substr(equals + 1));
   }
-  if (!options.record.empty() && options.record == options.replay) {
-    throw UsageError("--record and --replay name one file; a recording cannot be read and written at once");
-  }
   if (!options.compare_view.empty() && options.compare.empty()) {
     throw UsageError("--compare-view says how; add --compare WITH");
   }
@@ -393,6 +390,10 @@ void finish(const Unchecked& unchecked, Options& options) {
   if (!options.load_state.empty() && !(options.record + options.replay).empty()) {
     throw UsageError("--load-state does not go with --record and --replay, which begin with the scene; leave one out");
   }
+  if (!options.load_state.empty() && options.start >= 0) {
+    throw UsageError(
+        "--load-state goes on at the moment that was saved, to which --start would do nothing; leave one out");
+  }
   if (options.save_state_at > options.frames && options.replay.empty()) {
     throw UsageError("--save-state-at " + std::to_string(options.save_state_at) + " lies beyond the run's " +
                      std::to_string(options.frames) + " frames; give a smaller number, or more --frames");
@@ -403,6 +404,7 @@ void finish(const Unchecked& unchecked, Options& options) {
   if (!options.cache.empty() && !picturesAsked(options)) options.no_images = true;
   if (!options.cache.empty() || options.no_images) options.headless = true;
   finishExport(unchecked, options);
+  refuseOutputsOverFiles(options);
   choosePictures(options);
   if (!options.parts.empty() && options.motion.empty() && options.scene.empty()) {
     throw UsageError("--parts needs a .mot motion; add --motion FILE.mot");

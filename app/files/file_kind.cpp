@@ -75,7 +75,10 @@ FileKind fileKind(const std::string& file) {
   if (hasGroomEnding(file)) return FileKind::kHairMesh;
   const std::string beginning = beginningOf(file, kTitleBytes);  // a cache may be larger than memory
   if (beginning.starts_with("hairmesh-state ")) return FileKind::kState;
-  if (beginning.starts_with("hairmesh-cache ") || ending == ".hairmesh") return FileKind::kCache;
+  if (beginning.starts_with("hairmesh-cache ")) return FileKind::kCache;
+  if (ending == ".hairmesh")
+    throw InputError(file, "", beginning.empty() ? "is empty" : "is no cache of simulated hair",
+                     "make one with --cache");
   const std::string bytes = readText(file, kMaxGroomFile);
   if (isRecording(bytes)) throw InputError(file, "", "is a recording", "play it with --replay");
   if (groomFormat(bytes, file)) return FileKind::kHairMesh;

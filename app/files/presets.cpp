@@ -70,13 +70,20 @@ json rowValue(const sim::SimParams& params, const sim::ParamField& row) {
   return value;
 }
 
-// Rows of a table by name; `all`, or those that differ from their defaults.
+// Rows of a table by name: all, or those that differ from a base's.
 template <class Owner, class Field>
-json rowsOf(const Owner& owner, std::span<const Field> table, bool all) {
+json rowsOf(const Owner& owner, std::span<const Field> table, const Owner* base = nullptr) {
   json rows = json::object();
   for (const Field& row : table) {
-    if (all || row.get(owner) != row.default_value) rows[row.name] = rowValue(owner, row);
+    if (!base || row.get(owner) != row.get(*base)) rows[row.name] = rowValue(owner, row);
   }
+  return rows;
+}
+
+std::vector<SceneField> sceneRows(bool light) {
+  std::vector<SceneField> rows;
+  for (const SceneField& row : sceneFields())
+    if (isLight(row) == light) rows.push_back(row);
   return rows;
 }
 
@@ -125,20 +132,16 @@ void readSceneRows(const JsonPlace& place, SceneLook& look, bool light) {
   }
 }
 
-json writeSimRows(const sim::SimParams& params, bool all) {
-  return rowsOf(params, sim::paramFields(), all);
+json writeSimRows(const sim::SimParams& params, const sim::SimParams& base) {
+  return rowsOf(params, sim::paramFields(), &base);
 }
 
-json writeHairRows(const CharacterLook& look, bool all) {
-  return rowsOf(look, hairFields(), all);
+json writeHairRows(const CharacterLook& look, const CharacterLook& base) {
+  return rowsOf(look, hairFields(), &base);
 }
 
-json writeSceneRows(const SceneLook& look, bool light, bool all) {
-  json rows = json::object();
-  for (const SceneField& row : sceneFields()) {
-    if (isLight(row) == light && (all || row.get(look) != row.default_value)) rows[row.name] = rowValue(look, row);
-  }
-  return rows;
+json writeSceneRows(const SceneLook& look, bool light, const SceneLook& base) {
+  return rowsOf(look, std::span<const SceneField>(sceneRows(light)), &base);
 }
 
 void applyPreset(std::string_view text, const std::string& file, const PresetTarget& target) {
@@ -186,10 +189,10 @@ PresetSections presetSections(const std::string& file) {
 std::string writePreset(const std::string& name, const sim::SimParams& params, const CharacterLook& hair,
                         const SceneLook& scene) {
   const json preset = {{"name", name},
-                       {"sim", writeSimRows(params, true)},
-                       {"hair", writeHairRows(hair, true)},
-                       {"light", writeSceneRows(scene, true, true)},
-                       {"view", writeSceneRows(scene, false, true)}};
+                       {"sim", rowsOf(params, sim::paramFields())},
+                       {"hair", rowsOf(hair, hairFields())},
+                       {"light", rowsOf(scene, std::span<const SceneField>(sceneRows(true)))},
+                       {"view", rowsOf(scene, std::span<const SceneField>(sceneRows(false)))}};
   return preset.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 

@@ -37,12 +37,12 @@ std::string writePreset(const std::string& name, const sim::SimParams& sim, cons
 // name.
 std::string presetFile(const std::string& name, const std::string& base_file);
 
-// The tables' parts of scene and preset files. Written are `all` rows, or those that differ from their defaults.
+// The tables' parts of scene and preset files. Written are the rows that differ from a base's.
 void readSimRows(const JsonPlace& place, sim::SimParams& sim);
 void readHairRows(const JsonPlace& place, CharacterLook& look);
 void readSceneRows(const JsonPlace& place, SceneLook& look, bool light);
-nlohmann::json writeSimRows(const sim::SimParams& sim, bool all = false);
-nlohmann::json writeHairRows(const CharacterLook& look, bool all = false);
-nlohmann::json writeSceneRows(const SceneLook& look, bool light, bool all = false);
+nlohmann::json writeSimRows(const sim::SimParams& sim, const sim::SimParams& base);
+nlohmann::json writeHairRows(const CharacterLook& look, const CharacterLook& base);
+nlohmann::json writeSceneRows(const SceneLook& look, bool light, const SceneLook& base);
 
 }  // namespace app

@@ -1,5 +1,6 @@
 #include "app/files/scene_file.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -65,8 +66,7 @@ CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
   if (spec.motion.empty()) place.refuse("names no motion", "give \"motion\" a BVH, glTF, FBX or .mot file");
   if (place.has("parts")) spec.parts = readFileName(place.at("parts"), "clips");
   if (place.has("clip")) spec.clip = place.at("clip").text();
-  if (place.has("style"))
-    spec.style = *parseStyle(place.at("style").choice(kStyleNames));
+  if (place.has("style")) spec.style = *parseStyle(place.at("style").choice(kStyleNames));
   if (place.has("resolution")) {
     spec.resolution = *parseResolution(place.at("resolution").choice({"low", "medium", "high", "ultra"}));
   }
@@ -122,7 +122,7 @@ PlaybackSpec readPlayback(const JsonPlace& place) {
   return playback;
 }
 
-json writeCharacter(const CharacterSpec& spec) {
+json writeCharacter(const CharacterSpec& spec, const CharacterLook& base) {
   return {{"motion", spec.motion},
           {"parts", spec.parts},
           {"clip", spec.clip},
@@ -136,7 +136,7 @@ json writeCharacter(const CharacterSpec& spec) {
           {"heading", spec.heading},
           {"clip_offset", spec.clip_offset},
           {"loop", loopName(spec.loop)},
-          {"look", writeHairRows(spec.look)},
+          {"look", writeHairRows(spec.look, base)},
           {"pins", writePins(spec.pins)},
           {"ties", writeTies(spec.ties)},
           {"attachments", writeAttachments(spec.attachments)},
@@ -161,6 +161,12 @@ std::string namedPreset(const JsonPlace& place, const std::string& scene_file) {
   } catch (const InputError& fault) {
     throw InputError(scene_file, place.pointer(), fault.what(), "");
   }
+}
+
+// The name of a preset that the program brings along; empty for another, whose file may be gone when the scene is read.
+std::string shippedPreset(const std::string& file) {
+  const std::vector<std::string> shipped = listAssets("presets", {".json"});
+  return std::ranges::find(shipped, file) == shipped.end() ? "" : stem(file);
 }
 
 }  // namespace
@@ -199,8 +205,13 @@ Scene loadScene(const std::string& file) {
 }
 
 std::string writeScene(const Scene& scene) {
+  const std::string preset = shippedPreset(scene.preset);
+  Scene base;
+  CharacterLook base_look;
+  std::array<CharacterLook*, 1> looks{&base_look};
+  if (!preset.empty()) loadPreset(scene.preset, {&base.sim, &base.look, looks});
   json characters = json::array();
-  for (const CharacterSpec& spec : scene.characters) characters.push_back(writeCharacter(spec));
+  for (const CharacterSpec& spec : scene.characters) characters.push_back(writeCharacter(spec, base_look));
   json camera = {{"view", scene.camera.view},
                  {"framing", scene.camera.framing},
                  {"fov", scene.camera.fov},
@@ -210,19 +221,20 @@ std::string writeScene(const Scene& scene) {
     camera["target"] = fromVec3(*scene.camera.target);
     camera["of_head"] = scene.camera.of_head;
   }
-  const json text = {{"name", scene.name},
-                     {"characters", characters},
-                     {"camera", camera},
-                     {"light", writeSceneRows(scene.look, true)},
-                     {"view", writeSceneRows(scene.look, false)},
-                     {"sim", writeSimRows(scene.sim)},
-                     {"playback",
-                      {{"speed", scene.playback.speed},
-                       {"fps", scene.playback.fps},
-                       {"settle", scene.playback.settle},
-                       {"budget_ms", scene.playback.budget_ms},
-                       {"deadline_ms", scene.playback.deadline_ms},
-                       {"draw_budget_ms", scene.playback.draw_budget_ms}}}};
+  json text = {{"name", scene.name},
+               {"characters", characters},
+               {"camera", camera},
+               {"light", writeSceneRows(scene.look, true, base.look)},
+               {"view", writeSceneRows(scene.look, false, base.look)},
+               {"sim", writeSimRows(scene.sim, base.sim)},
+               {"playback",
+                {{"speed", scene.playback.speed},
+                 {"fps", scene.playback.fps},
+                 {"settle", scene.playback.settle},
+                 {"budget_ms", scene.playback.budget_ms},
+                 {"deadline_ms", scene.playback.deadline_ms},
+                 {"draw_budget_ms", scene.playback.draw_budget_ms}}}};
+  if (!preset.empty()) text["preset"] = preset;
   return text.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 

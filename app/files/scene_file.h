@@ -101,7 +101,7 @@ struct Scene {
   sim::SimParams sim;
   PlaybackSpec playback;
   SkipSet skips;       // not of the file: a scene means the same whatever is skipped
-  std::string preset;  // a file's name: the scene's, or that a person chose last; not written; empty: none
+  std::string preset;  // a file's name: the scene's, or that a person chose last; empty: none
   // Not of the file, which has the lights alone: the panorama that they were taken from, and those before; empty: none.
   std::string environment;
   render::LightInput own_light;

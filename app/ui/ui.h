@@ -47,6 +47,7 @@ struct BrushState {
   bool mirror = false;
   bool over_hair = false, stroking = false;  // then a drag is the brush's, not the camera's
   bool held = false;                         // the button, in the frame before
+  bool off_hair_said = false;                // since the window was opened
   bool tie = false;                          // in place of a tool: a tie's ring, put down where the button is let go
   double tie_radius = 0.02;                  // m
   bool tie_held = false;                     // its slider
@@ -92,6 +93,7 @@ struct PinState {
   bool firm = true;            // else by `stiffness`
   double stiffness = 40;       // N/m
   double from = 0, until = 0;  // s of simulated time; until 0: for ever
+  std::vector<int> read_of;    // the choice that a pin's settings were last looked for in
 };
 
 // Variations of the material that are tried one after another.

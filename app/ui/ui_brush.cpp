@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
@@ -362,6 +363,13 @@ std::vector<TieSpec> tieAt(const Vec3& at, const BrushState& brush, const Actor&
   return {tie, other};
 }
 
+// Once, for it soon is a habit to turn the camera so with a brush in hand.
+void sayOffHair(Demo& demo, BrushState& brush) {
+  if (std::exchange(brush.off_hair_said, true)) return;
+  demo.message = "no hair under the pointer: a drag from here turns the camera";
+  demo.message_is_fault = false;
+}
+
 // A ring that goes with the pointer over the hair, and is tied where the button is let go.
 void tieFrame(bool begins, Demo& demo, UiState& ui) {
   BrushState& brush = ui.brush;
@@ -371,6 +379,7 @@ void tieFrame(bool begins, Demo& demo, UiState& ui) {
   const auto hit = pickHair(rayThrough(io.MousePos.x, io.MousePos.y, shownPicture(demo), demo.camera), actor);
   brush.over_hair = hit.has_value();
   brush.stroking = brush.stroking || (begins && hit);
+  if (begins && !hit) sayOffHair(demo, brush);
   if (hit) brush.last = worldToScalp(actor) * *hit;
   if (!brush.stroking && !hit) return;
   const Vec3 place = worldToScalp(actor).inverse(Eigen::Isometry) * brush.last;
@@ -402,6 +411,8 @@ void brushFrame(Demo& demo, UiState& ui) {
   if (begins && hit) {
     brush.stroking = true;
     brush.last = worldToScalp(selectedActor(demo)) * *hit;
+  } else if (begins) {
+    sayOffHair(demo, brush);
   }
   brush.stroking = brush.stroking && held;
   if (brush.stroking) stroke(ray, hit, demo, brush);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "app/scene/edit/hand_pins.h"
 #include "app/scene/edit/mesh_change.h"
@@ -63,11 +64,28 @@ std::vector<int> chosenVertices(const Actor& actor, const UiState& ui) {
   return chosen;
 }
 
+// A new choice shows the settings of its first pin, to be changed and pinned anew.
+void readChosenPin(const std::vector<int>& chosen, const Actor& actor, PinState& shown) {
+  if (std::exchange(shown.read_of, chosen) == chosen) return;
+  for (std::size_t k = 0; k < actor.spec.pins.size(); ++k) {
+    if (std::ranges::find(chosen, actor.pins[k].vertex) == chosen.end()) continue;
+    const PinSpec& pin = actor.spec.pins[k];
+    shown.to = pin.to;
+    shown.firm = !std::isfinite(pin.stiffness);
+    if (!shown.firm) shown.stiffness = pin.stiffness;
+    shown.from = pin.from;
+    shown.until = std::isfinite(pin.until) ? pin.until : 0;
+    return;
+  }
+}
+
 }  // namespace
 
 void pinSection(Demo& demo, UiState& ui) {
   const Actor& actor = selectedActor(demo);
   PinState& pin = ui.pin;
+  const std::vector<int> chosen = chosenVertices(actor, ui);
+  readChosenPin(chosen, actor, pin);
   targetRow(actor, ui);
   rowLabel("Firm", "The pin does not give; else it is a spring");
   ImGui::Checkbox("##pin_firm", &pin.firm);
@@ -89,7 +107,6 @@ void pinSection(Demo& demo, UiState& ui) {
   dragSeconds("Until", "Simulated time at which it lets go; 0: never. Drag, or double-click to type", "pin_until",
               pin.until > 0 ? "%.2f s" : "never", pin.until, ui);
   const bool in_order = pin.until == 0 || pin.until > pin.from;
-  const std::vector<int> chosen = chosenVertices(actor, ui);
   const std::vector<PinSpec>& pins = actor.spec.pins;
   const std::vector<PinSpec> rest = withoutPins(chosen, actor);
   const int pressed = segments("pins",

@@ -273,6 +273,32 @@ TEST(Presets, TheOneThatASceneOpensWithIsTold) {
   EXPECT_EQ(app::loadScene(app::findFile("crowd.json", "", "scenes")).preset, "");
 }
 
+void expectSameRows(const app::Scene& a, const app::Scene& b) {
+  for (const sim::ParamField& field : sim::paramFields()) EXPECT_EQ(field.get(a.sim), field.get(b.sim)) << field.name;
+  for (const app::HairField& field : app::hairFields())
+    EXPECT_EQ(field.get(a.characters[0].look), field.get(b.characters[0].look)) << field.name;
+  for (const app::SceneField& field : app::sceneFields()) EXPECT_EQ(field.get(a.look), field.get(b.look)) << field.name;
+}
+
+// Rows that were put back to their defaults after the preset was chosen are written too.
+TEST(Presets, AWrittenSceneKeepsTheNameAndWhatWasChangedSince) {
+  app::Scene scene = app::loadScene(app::findFile("default.json", "", "scenes"));
+  std::array<CharacterLook*, 1> looks{&scene.characters[0].look};
+  scene.preset = app::presetFile("wet", "");
+  app::loadPreset(scene.preset, {&scene.sim, &scene.look, looks});
+  const double of_wet = scene.sim.bend;
+  scene.sim.bend = sim::SimParams{}.bend;
+  ASSERT_NE(of_wet, scene.sim.bend);
+  scene.characters[0].look.hair = CharacterLook{}.hair;
+  const app::Scene read = app::readScene(app::writeScene(scene), "written.json");
+  EXPECT_EQ(app::stem(read.preset), "wet");
+  expectSameRows(scene, read);
+  scene.preset = "of_my_own.json";
+  const app::Scene other = app::readScene(app::writeScene(scene), "written.json");
+  EXPECT_EQ(other.preset, "") << "its file may be gone";
+  expectSameRows(scene, other);
+}
+
 TEST(Presets, ASceneOfThatNameIsToldAsWhatItIs) {
   for (const char* name : {"long_wavy", "long_wavy.json"}) {
     try {

@@ -27,6 +27,18 @@ class Select : public test::Panels {
     }
     return {-1, -1};
   }
+  // A pixel of the picture beside panels and hair.
+  ImVec2 besideHair() {
+    for (float y = 60; y < 700; y += 20) {
+      for (float x = 560; x < 1100; x += 20) {
+        if (app::pickHair(app::rayThrough(x, y, {1280, 720, {}}, demo_.camera), demo_.actors[0])) continue;
+        ImGui::GetIO().MousePos = {x, y};
+        frame();
+        if (!ImGui::GetIO().WantCaptureMouse) return {x, y};
+      }
+    }
+    return {-1, -1};
+  }
   std::vector<Request> press(const ImVec2& at, float dx = 0) {
     ImGuiIO& io = ImGui::GetIO();
     std::vector<Request> all;
@@ -223,6 +235,20 @@ TEST_F(Select, BrushesAndSelectionTakeTurns) {
   EXPECT_EQ(ui_.brush.tool, -1);
 }
 
+TEST_F(Select, TheFirstPressBesideTheHairSaysWhatItDoes) {
+  openTab(app::tabIndex("hair"));
+  click("brush Comb");
+  demo_.message.clear();
+  const ImVec2 beside = besideHair();
+  EXPECT_FALSE(press(onHair(40), 25).empty());
+  EXPECT_EQ(demo_.message, "");
+  EXPECT_TRUE(press(beside).empty());
+  EXPECT_NE(demo_.message.find("turns the camera"), std::string::npos) << demo_.message;
+  demo_.message.clear();
+  press(beside);
+  EXPECT_EQ(demo_.message, "");
+}
+
 // A ring is put on the hair by a drag, with Mirror one on each side, and a slider makes it wider.
 TEST_F(Select, ARingIsTiedWhereTheHandLetsGo) {
   openTab(app::tabIndex("hair"));
@@ -276,6 +302,12 @@ TEST_F(Select, WhatIsChosenIsPinnedAndUnpinned) {
   EXPECT_EQ(pins[0].until, 2);
   frame();
   EXPECT_TRUE(find("pinned " + std::to_string(pins[0].vertex))) << "it is marked";
+  ui_.pin = {};  // as after something else was chosen
+  frame();
+  EXPECT_FALSE(ui_.pin.firm) << "the chosen pin's settings are shown";
+  EXPECT_EQ(ui_.pin.stiffness, 25);
+  EXPECT_EQ(ui_.pin.from, 1);
+  EXPECT_EQ(ui_.pin.until, 2);
   apply(click("pins Unpin"));
   EXPECT_TRUE(demo_.actors[0].spec.pins.empty());
 }
