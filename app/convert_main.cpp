@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
+#include <initializer_list>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string_view>
+#include <vector>
 
 #include "app/figure/head_model.h"
 #include "app/figure/strip_fit.h"
@@ -32,6 +35,7 @@ struct Arguments {
   std::string in, out, preset, scalp, mends, figure = "idle_turns.bvh";
   double unit = 0;
   bool no_mend = false, up_given = false;
+  std::vector<std::string> given;  // names of the options
   app::ConvertOptions curves;
   app::StripOptions strips;
 };
@@ -128,6 +132,8 @@ Arguments parse(int argc, char** argv, CLI::App& parser) {
   addStripOptions(parser, arguments);
   parser.parse(argc, argv);
   arguments.up_given = parser.count("--up") > 0;
+  for (const CLI::Option* option : parser.get_options())
+    if (option->count() > 0) arguments.given.push_back(option->get_name());
   arguments.curves.unit = arguments.strips.unit = arguments.unit;
   arguments.curves.silhouettes = true;
   arguments.strips.mesh.vertices = arguments.curves.fit.vertices;
@@ -220,10 +226,22 @@ void checkOutput(const Arguments& arguments) {
   app::checkWritable(arguments.out);
 }
 
+// Throws UsageError for an option of the other kind of groom.
+void refuseIdle(std::initializer_list<std::string_view> idle, const char* kind, const Arguments& arguments) {
+  for (const std::string& name : arguments.given)
+    if (std::ranges::find(idle, name) != idle.end())
+      throw app::UsageError(name + " would do nothing: IN holds " + kind + "; leave it out");
+}
+
 int run(const Arguments& arguments) {
   checkOutput(arguments);
   const std::string bytes = app::readText(arguments.in, app::kMaxGroomFile);
-  if (app::groomFormat(bytes, arguments.in)) return convertCurves(bytes, arguments);
+  if (app::groomFormat(bytes, arguments.in)) {
+    refuseIdle({"--root-edge", "--other-end", "--flip-strips", "--scalp", "--up", "--join", "--thickness"}, "curves",
+               arguments);
+    return convertCurves(bytes, arguments);
+  }
+  refuseIdle({"--mends", "--reverse-strands"}, "no curves", arguments);
   app::refuseOwnExport(bytes, arguments.in);
   if (!app::hasPolygonEnding(arguments.in)) {
     app::refuseUtf16(bytes, arguments.in);

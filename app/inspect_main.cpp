@@ -27,7 +27,7 @@ constexpr const char* kAbout =
     "mended by itself in what --out writes; options overrule it.";
 
 constexpr double kLeastFactor = 1e-6, kMostFactor = 1e6;
-constexpr double kFarthest = 1000;  // m
+constexpr double kFarthest = 1e7;  // m
 
 double metresOf(const std::string& unit) {
   return std::ranges::find(app::kLengthUnits, unit, &app::LengthUnit::name)->metres;

@@ -250,8 +250,8 @@ void addRunOptions(CLI::App& parser, Options& options) {
       ->check(within(1, kMaxFrames));
   group.value(
       "--load-state", options.load_state, "FILE",
-      "Go on from a saved state, or the last of a cache: the same scene and options continue to the bit, with the "
-      "next frame's number");
+      "Go on from a saved state, or the last of a cache: the same scene and options simulate on to the bit, with the "
+      "next frame's number; pictures of small figures differ as far as skips may");
   group.value(
       "--cache", options.cache, "FILE.hairmesh",
       "Without a window: keep every frame of the run; dropped on the window, its timeline shows them to and fro");
@@ -327,6 +327,8 @@ void finishExport(const Unchecked& unchecked, Options& options) {
   if (!unchecked.export_frames.empty() && !parseFrames(unchecked.export_frames, spec))
     throw UsageError("--export-frames cannot be '" + unchecked.export_frames +
                      "'; write FIRST-LAST, for instance 0-119");
+  if (spec.what != ExportWhat::kStrands && spec.points > 0)
+    throw UsageError("--export-points goes with strands; guides and the mesh have a point a layer");
   if (spec.file.ends_with(".tfx") && spec.points > 0 && !isTfxPoints(static_cast<std::size_t>(spec.points)))
     throw UsageError("--export-points cannot be " + std::to_string(spec.points) +
                      " for a .tfx file; give 4, 8, 16, 32 or 64");

@@ -111,8 +111,8 @@ std::pair<std::size_t, double> segmentAt(std::size_t count, double along) {
   return {first, at - static_cast<double>(first)};
 }
 
-// What of the picture is not as a field's picture should be.
-std::string noteOf(const Image& image, const std::vector<float>& value) {
+// What of the picture is not as a field's picture should be. `grey`: its brightness alone is read.
+std::string noteOf(const Image& image, bool grey) {
   constexpr int kTint = 12, kSolid = 250;  // of 255
   std::size_t coloured = 0, clear = 0;
   for (std::size_t i = 0; i + 3 < image.rgba.size(); i += 4) {
@@ -120,10 +120,12 @@ std::string noteOf(const Image& image, const std::vector<float>& value) {
     coloured += high - low > kTint;
     clear += image.rgba[i + 3] < kSolid;
   }
-  const bool even = std::ranges::all_of(value, [&](float one) { return one == value.front(); });
+  bool even = true;
+  for (std::size_t i = 4; i < image.rgba.size(); ++i) even = even && image.rgba[i] == image.rgba[i - 4];
   std::string note;
   const auto add = [&](const std::string& more) { note += (note.empty() ? "" : ", and ") + more; };
-  if (coloured > 0) add("is coloured: its brightness is read (grey is expected, white for the parameter's own value)");
+  if (grey && coloured > 0)
+    add("is coloured: its brightness is read (grey is expected, white for the parameter's own value)");
   if (clear > 0) add("is transparent in places: the colour beneath is read (an opaque picture is expected)");
   if (!even && image.width != 2 * image.height)
     add("is " + std::to_string(image.width) + "x" + std::to_string(image.height) +
@@ -191,7 +193,7 @@ FieldMap readFieldMap(const std::string& picture) {
     const int grey = 2126 * image.rgba[i] + 7152 * image.rgba[i + 1] + 722 * image.rgba[i + 2];
     map.value.push_back(static_cast<float>(grey) / 2550000.0f);
   }
-  map.note = noteOf(image, map.value);
+  map.note = noteOf(image, true);
   return map;
 }
 
@@ -199,8 +201,10 @@ std::string mapNotes(const FieldFiles& maps) {
   std::string notes;
   for (const auto member : kMapMembers) {
     const std::string& picture = maps.*member;
-    if (picture.empty() || isPictureText(picture) || member == &FieldFiles::color) continue;
-    const std::string note = readFieldMap(picture).note, line = picture + " " + note;
+    if (picture.empty() || isPictureText(picture)) continue;
+    const bool color = member == &FieldFiles::color;
+    const std::string note = color ? readColorMap(picture)[0].note : readFieldMap(picture).note,
+                      line = picture + " " + note;
     if (!note.empty() && notes.find(line) == std::string::npos) notes += (notes.empty() ? "" : "\n") + line;
   }
   return notes;
@@ -214,6 +218,7 @@ ColorMap readColorMap(const std::string& picture) {
     for (std::size_t i = c; i < image.rgba.size(); i += 4)
       map[c].value.push_back(static_cast<float>(image.rgba[i]) / 255.0f);
   }
+  map[0].note = noteOf(image, false);
   return map;
 }
 

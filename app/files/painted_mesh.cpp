@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "app/files/errors.h"
@@ -105,6 +106,15 @@ struct Unrolled {
   }
 };
 
+// A field's value would else be cut off to 0 or 1 without a word.
+void expectShares(std::span<const std::array<float, 3>> colors, const std::string& file) {
+  for (std::size_t v = 0; v < colors.size(); ++v) {
+    if (std::ranges::all_of(colors[v], [](float share) { return share >= 0 && share <= 1; })) continue;
+    throw InputError(file, "vertex " + std::to_string(v), "has a colour that is not from 0 to 1",
+                     "write colours as shares from 0 to 1, or in PLY as bytes");
+  }
+}
+
 }  // namespace
 
 bool hasPaintedEnding(const std::string& file) {
@@ -115,6 +125,7 @@ bool hasPaintedEnding(const std::string& file) {
 Image readPaintedMesh(const std::string& file) {
   const PolygonMesh mesh = readPolygons(file);
   if (mesh.vertex_colors.empty()) throw InputError(file, "", "holds no colours of vertices", kMend);
+  expectShares(mesh.vertex_colors, file);
   const Vector3d middle = middleOf(mesh.positions, file);
   Unrolled head;
   for (std::size_t f = 0; f < mesh.faceCount(); ++f) {

@@ -16,6 +16,7 @@
 #include "app/files/file_ending.h"
 #include "app/files/text_file.h"
 #include "app/files/text_scanner.h"
+#include "sim/field_text.h"
 
 namespace app {
 
@@ -25,12 +26,24 @@ using Mat4 = Eigen::Matrix4d;
 
 constexpr std::size_t kMaxCorners = 4'000'000, kMaxNodes = 20'000;
 constexpr double kLargest = 1e6;  // of a coordinate
-constexpr const char* kExport = "export the strips or tubes again, as OBJ, FBX or glTF";
+constexpr const char* kExport = "export it again, as OBJ, FBX or glTF";
 
 Mat4 toEigen(const aiMatrix4x4& m) {
   Mat4 e;
   e << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2, m.d3, m.d4;
   return e;
+}
+
+// assimp takes the room that a PLY header asks for before it reads on.
+void refusePlyCounts(std::string_view bytes, const std::string& file) {
+  const std::string_view header = bytes.substr(0, bytes.find("end_header"));
+  for (std::size_t at = header.find("element "); at != std::string_view::npos; at = header.find("element ", at + 1)) {
+    const std::string line(header.substr(at, header.find_first_of("\r\n", at) - at));
+    double count = 0;
+    const std::size_t space = line.rfind(' ');
+    if (!sim::parseNumber(line.substr(space + 1), count) || !(count <= static_cast<double>(bytes.size())))
+      throw InputError(file, line, "does not fit into a file of " + std::to_string(bytes.size()) + " bytes", kExport);
+  }
 }
 
 const aiScene& importScene(const std::string& file, Assimp::Importer& importer) {
@@ -40,6 +53,7 @@ const aiScene& importScene(const std::string& file, Assimp::Importer& importer) 
   if (endingOf(file) != ".vrm" && !importer.IsExtensionSupported(endingOf(file)))
     throw InputError(file, "", "is no mesh: no kind of mesh file ends so", kExport);
   if (endingOf(file) == ".obj" || endingOf(file) == ".gltf") refuseUtf16(bytes, file);
+  if (endingOf(file) == ".ply") refusePlyCounts(bytes, file);
   importer.SetPropertyBool("IMPORT_NO_SKELETON_MESHES", true);
   const unsigned steps = aiProcess_ValidateDataStructure;
   const aiScene* scene = nullptr;
@@ -89,7 +103,7 @@ struct Gatherer {
   void addFace(const aiMesh& mesh, const aiFace& face, int base, const std::string& name) {
     if (face.mNumIndices < 3) return;  // points and lines
     if (out.corners.size() + face.mNumIndices > kMaxCorners)
-      throw InputError(file, name, "has over 4,000,000 corners", "reduce the mesh, or give the hair alone");
+      throw InputError(file, name, "has over 4,000,000 corners", "reduce the mesh, or leave other objects out");
     for (unsigned k = 0; k < face.mNumIndices; ++k) {
       if (face.mIndices[k] >= mesh.mNumVertices)
         throw InputError(file, name, "names a vertex that is not there", kExport);
@@ -106,8 +120,7 @@ struct Gatherer {
     out.vertex_colors.resize(out.positions.size() - mesh.mNumVertices, kWhite);
     for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
       const aiColor4D color = mesh.mColors[0] == nullptr ? aiColor4D(1, 1, 1, 1) : mesh.mColors[0][v];
-      const auto share = [](float value) { return std::isfinite(value) ? std::clamp(value, 0.0f, 1.0f) : 0.0f; };
-      out.vertex_colors.push_back({share(color.r), share(color.g), share(color.b)});
+      out.vertex_colors.push_back({color.r, color.g, color.b});
     }
   }
 
@@ -117,7 +130,7 @@ struct Gatherer {
     out.colors.push_back(colorOf(mesh));
     const int base = static_cast<int>(out.positions.size());
     if (out.positions.size() + mesh.mNumVertices > kMaxCorners)
-      throw InputError(file, name, "has over 4,000,000 vertices", "reduce the mesh, or give the hair alone");
+      throw InputError(file, name, "has over 4,000,000 vertices", "reduce the mesh, or leave other objects out");
     for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
       const aiVector3D p = mesh.mVertices[v];
       const Eigen::Vector4d world = to_world * Eigen::Vector4d(p.x, p.y, p.z, 1);
@@ -135,7 +148,7 @@ struct Gatherer {
     while (!open.empty()) {
       const auto [node, above] = open.back();
       open.pop_back();
-      if (++nodes > kMaxNodes) throw InputError(file, "", "has over 20,000 nodes", "export the hair alone");
+      if (++nodes > kMaxNodes) throw InputError(file, "", "has over 20,000 nodes", "leave other objects out");
       const Mat4 world = above * toEigen(node->mTransformation);
       for (unsigned m = 0; m < node->mNumMeshes; ++m) addMesh(*node, *scene.mMeshes[node->mMeshes[m]], world);
       for (unsigned c = node->mNumChildren; c-- > 0;) open.emplace_back(node->mChildren[c], world);
@@ -180,7 +193,8 @@ PolygonMesh readPolygons(const std::string& file) {
   gatherer.readUnit();
   if (endingOf(file) == ".obj") gatherer.out.note = libraryNote(readText(file), file);
   if (gatherer.out.faceCount() == 0)
-    throw InputError(file, "", "holds no faces", "give strips of quads or tubes, one a lock of hair");
+    throw InputError(file, "", "holds no faces",
+                     "give a mesh with faces: hair as strips of quads or tubes, one a lock");
   return std::move(gatherer.out);
 }
 

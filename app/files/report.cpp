@@ -78,6 +78,7 @@ json countsJson(const FrameStats& stats) {
           {"recoveries", stats.recoveries},
           {"carried", stats.carried},
           {"led_back_columns", stats.guided},
+          {"pins_out_of_reach", stats.pins_out_of_reach},
           {"strands_drawn", stats.draw.strands_drawn},
           {"draw_calls", stats.draw.draw_calls}};
 }
@@ -318,6 +319,15 @@ std::string budgetLine(const char* name, double budget, const std::string& rung,
   return text.str();
 }
 
+// Pins that let go while the run went on; empty where all held.
+std::string pinsLine(const RunReport& run) {
+  const auto away = std::ranges::count_if(run.frames, [](const FrameStats& f) { return f.pins_out_of_reach > 0; });
+  if (away == 0) return "";
+  const auto most = std::ranges::max(run.frames, {}, &FrameStats::pins_out_of_reach).pins_out_of_reach;
+  return "  pins       up to " + std::to_string(most) + " let go in " +
+         countOf(static_cast<std::size_t>(away), "frame") + ": farther from the root than twice the hair's length\n";
+}
+
 }  // namespace
 
 std::string summary(const RunReport& run, const Demo& demo) {
@@ -341,7 +351,7 @@ std::string summary(const RunReport& run, const Demo& demo) {
                     [](const FrameStats& f) { return f.simulation(); }) +
          budgetLine("drawing", demo.draw_governor.budget, drawRungName(demo.draw_governor), run,
                     [](const FrameStats& f) { return f.draw.stages.empty() ? 0 : f.seconds[kTimeDraw]; }) +
-         deadlineLine(run, demo.deadline.seconds);
+         deadlineLine(run, demo.deadline.seconds) + pinsLine(run);
 }
 
 }  // namespace app

@@ -250,10 +250,27 @@ std::array<float, 3> wornColor(const Actor& actor, std::size_t k) {
   return actor.spec.attachments[k].color.value_or(actor.worn[k].mesh->color.value_or(kPlain));
 }
 
+namespace {
+
+// Of what nowhere comes near the body at rest; empty for the rest.
+std::string hangNote(const Attachment& attachment, const Actor& actor) {
+  constexpr double kHangs = 0.02;  // m
+  double least = INFINITY;
+  for (const Eigen::Vector3f& p : attachment.positions) {
+    least = std::min(least, actor.body->distance(attachment.to_scalp * p.cast<double>()));
+    if (least < kHangs) return "";
+  }
+  return stem(attachment.key.substr(0, attachment.key.find('|'))) + " hangs " +
+         std::to_string(std::lround(1000 * least)) + " mm off the body; move it there (Place, or \"at\")";
+}
+
+}  // namespace
+
 std::string attachmentNotes(const Actor& actor) {
   std::vector<std::string> lines;
   for (const WornAttachment& worn : actor.worn) {
-    if (!worn.mesh->note.empty()) lines.push_back(worn.mesh->note);
+    for (const std::string& note : {worn.mesh->note, hangNote(*worn.mesh, actor)})
+      if (!note.empty()) lines.push_back(note);
     const auto same = [&](const WornAttachment& other) { return other.mesh == worn.mesh; };
     const std::string file = worn.mesh->key.substr(0, worn.mesh->key.find('|'));
     if (const auto times = std::ranges::count_if(actor.worn, same); times > 1)

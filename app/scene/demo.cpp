@@ -183,6 +183,7 @@ void addStep(const sim::StepReport& report, double step_seconds, FrameStats& sta
   if (report.recoveries > 0) stats.fault_report = report.fault_report;
   stats.carried += report.carried;
   stats.guided += report.guided;
+  stats.pins_out_of_reach = std::max(stats.pins_out_of_reach, report.pins_out_of_reach);
   stats.max_penetration = std::max(stats.max_penetration, report.max_penetration);
   count(report.contacts == 0 && report.corrected == 0, stats.always[kNoContact]);
   count(report.solver_iterations == 0, stats.always[kSolvedAtStart]);

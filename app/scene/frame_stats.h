@@ -48,6 +48,7 @@ struct FrameStats {
   double counted_cost = 0;        // s; this and the next only where it is on
   double step_error = 0;          // sum over steps and characters, see step_error.h
   int guided = 0;                 // columns that stayed turned over and are being led back to rest
+  int pins_out_of_reach = 0;      // of one character in a step, the most: they have let go
   int carried = 0;                // times that roots jumped and the hair was carried along
   sim::FaultReport fault_report;  // of the last recovery
   render::FrameReport draw;

@@ -82,7 +82,7 @@ std::string shortBunNote(const TieSpec& tie, double left) {
               : "; a ring of \"radius\": " + sim::numberText(std::floor(1e3 * fits) / 1e3) + " makes one");
 }
 
-constexpr const char* kLooseNote = ": hair of the far side hangs loose; its way to the ring would lead across the face";
+constexpr const char* kLooseNote = ": hair whose way to the ring would lead across the face hangs loose; a ring farther back takes it";
 
 // `lacks`: m that the shortest hair is too short to reach its ring.
 void noteLengthened(const CharacterSpec& spec, double lacks, Haircut& haircut) {

@@ -92,7 +92,7 @@ double Scalp::radiusAt(const Vec3& direction) const {
 
 sim::HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& scalp, const BodyDistance& body) {
   if (style == Style::kShaved) {
-    constexpr double kStubble = 0.008 / kOrdinaryHead;
+    constexpr double kStubble = 0.016 / kOrdinaryHead;
     constexpr int kLayers = 6;
     return shavedTo(kStubble * scalp.head_height, kLayers, makeStyle(Style::kShort, resolution, scalp, body), scalp,
                     body);

@@ -51,7 +51,7 @@ using BodyDistance = std::function<double(const Vec3&)>;
 // vertices where a plan can have them so, for whole vectors of the solver's kernels. Deterministic; under 0.5 s, ultra
 // under 1.5 s.
 //
-// Shaved is the roots of short, each with 8 mm of hair of six vertices that stands off the scalp: what hairdos are
+// Shaved is the roots of short, each with 16 mm of hair of six vertices that stands off the scalp: what hairdos are
 // grown from by hand.
 sim::HairMeshShape makeStyle(Style style, Resolution resolution, const Scalp& scalp, const BodyDistance& body);
 

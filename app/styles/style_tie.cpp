@@ -1,6 +1,7 @@
-// Directions from the head's middle are given by their angle to the tie's and their azimuth about it: hair is combed
-// along great circles to the tie, which keeps neighbours neighbours. The farther along its way, the higher over the
-// scalp: what comes from afar lies on what is rooted near.
+// Hair is combed to the ring along circles on the sphere of directions from the head's middle. They part at one other
+// direction, the source, where no hair grows, and so keep neighbours neighbours. A root's place in the ring is given by
+// its way's length and azimuth there: the farther along its way, the higher over the scalp, for what comes from afar
+// lies on what is rooted near.
 #include "app/styles/style_tie.h"
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include <set>
 #include <utility>
 
+#include "app/styles/ring_way.h"
 #include "app/styles/style_comb.h"
 #include "app/styles/style_untangle.h"
 #include "app/styles/tie_ring.h"
@@ -51,10 +53,12 @@ struct Gathering {
     e2 = axis.cross(e1);
   }
   double angleOf(const Vec3& root) const {
-    return std::acos(std::clamp((root - scalp.center).normalized().dot(axis), -1.0, 1.0));
+    return RingWay((root - scalp.center).normalized(), axis, sourceOf(axis, tie.side)).length();
   }
+  // Of the way's end.
   double azimuthOf(const Vec3& root) const {
-    const Vec3 d = root - scalp.center;
+    const Vec3 from = (root - scalp.center).normalized();
+    const Vec3 d = (from - axis).cross(sourceOf(axis, tie.side) - axis).cross(axis);
     return std::atan2(d.dot(e2), d.dot(e1));
   }
   void addRoot(const Vec3& root);
@@ -94,16 +98,14 @@ Vec3 Gathering::inSection(const Vec3& root, double radius, const Vec3& across, c
 Vec3 Gathering::onWay(const Vec3& root, double share) const {
   const Vec3 goal = tie.at + inSection(root, tie.radius, e1, e2);
   const Vec3 to = (goal - scalp.center).normalized(), from = (root - scalp.center).normalized();
-  const double angle = std::acos(std::clamp(from.dot(to), -1.0, 1.0));
   if (share <= 0) return root;
   if (share >= 1) return goal;
-  const Vec3 turned = std::sin((1 - share) * angle) * from + std::sin(share * angle) * to;
-  const Vec3 along = angle < 1e-6 ? to : Vec3(turned / std::sin(angle));
+  const Vec3 along = RingWay(from, to, sourceOf(to, tie.side)).at(share);
   const double here = (root - scalp.center).norm() - scalp.radiusAt(from);
   const double high = (goal - scalp.center).norm() - scalp.radiusAt(to);
   const double coat = 2 * kCoat * share;
   const double over = here * (1 - share) + coat * (1 - share * share) + high * share * share * share;
-  return scalp.center + (scalp.radiusAt(along) + over) * along.normalized();
+  return scalp.center + (scalp.radiusAt(along) + over) * along;
 }
 
 // Falls from the ring, stiff at first, around the body.
@@ -134,15 +136,15 @@ Path Gathering::stub(double length) const {
   return path;
 }
 
-// Whether hair rooted in a direction from the head's middle can be combed to a ring there: its great circle is not
-// across the face, nor so long that neighbours part to all sides of the head. Both unit.
-bool comesTo(const Vec3& ring, const Vec3& root) {
-  constexpr double kFarthest = 3.0;               // rad
+// Whether hair rooted in a direction from the head's middle can be combed to a ring there: its way is not across the
+// face, nor so long that neighbours part to all sides of the head. Both unit.
+bool comesTo(const Vec3& ring, int side, const Vec3& root) {
+  constexpr double kFarthest = 3.0;               // rad, of a great circle
   constexpr double kBeside = 0.9, kAbove = 0.36;  // rad from the front; sine of the elevation: the face
-  const double angle = std::acos(std::clamp(root.dot(ring), -1.0, 1.0));
-  if (angle > kFarthest) return false;
+  const RingWay way(root, ring, sourceOf(ring, side));
+  if (way.great() && way.length() > kFarthest) return false;
   for (const double share : {0.25, 0.5, 0.75}) {
-    const Vec3 along = (std::sin((1 - share) * angle) * root + std::sin(share * angle) * ring).normalized();
+    const Vec3 along = way.at(share);
     if (std::abs(std::atan2(along.x(), along.z())) < kBeside && along.y() < kAbove) return false;
   }
   return true;
@@ -162,7 +164,8 @@ int tieOf(const sim::HairMeshShape& hair, const sim::RootFace& face, const Scalp
     if (meant) tie = kAcrossFace;
     const Vec3 ring = (ties[t].at - scalp.center).normalized();
     const auto comes = [&](int k) {
-      return comesTo(ring, (hair.positions[hair.column_first[face.columns[k]]] - scalp.center).normalized());
+      return comesTo(ring, ties[t].side,
+                     (hair.positions[hair.column_first[face.columns[k]]] - scalp.center).normalized());
     };
     bool all = meant;
     for (int k = 0; k < face.corner_count; ++k) all = all && comes(k);

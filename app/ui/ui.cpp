@@ -370,6 +370,7 @@ void help(UiState& ui) {
   ImGui::SetNextWindowSizeConstraints({0, 0}, {std::max(1.0f, size.x - margin), std::max(1.0f, size.y - margin)});
   const ImGuiWindowFlags flags =
       ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize;
+  ImGui::SetNextWindowBgAlpha(1);
   if (ImGui::Begin("keys", nullptr, flags)) {
     ImGui::PushFont(ui.heading);
     ImGui::TextUnformatted("Keys and mouse");

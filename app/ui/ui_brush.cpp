@@ -170,15 +170,21 @@ void postPaint(const Vec3& at, Demo& demo, const BrushState& brush) {
   postRequest(demo, {Ask::kPaint, field, paintText(sample)});
 }
 
+// What a brush does while the button is held goes by time, as at 60 frames a second; of slower frames than 15 a part is
+// left out, for edits take time themselves.
+int samplesAFrame() {
+  return std::clamp(static_cast<int>(std::lround(60 * ImGui::GetIO().DeltaTime)), 1, 4);
+}
+
 // One frame of a drag. Combing moves by the way of the hand; the others act as long as the button is held.
 void stroke(const Ray& ray, const std::optional<Vec3>& hit, Demo& demo, BrushState& brush) {
   const Rigid to_scalp = worldToScalp(selectedActor(demo));
   if (brush.field >= 0) {
-    if (hit) postPaint(to_scalp * *hit, demo, brush);
+    for (int k = 0; hit && k < samplesAFrame(); ++k) postPaint(to_scalp * *hit, demo, brush);
     return;
   }
   if (brush.tool != static_cast<int>(BrushTool::kComb)) {
-    if (hit) postSample(to_scalp * *hit, Vec3::Zero(), demo, brush);
+    for (int k = 0; hit && k < samplesAFrame(); ++k) postSample(to_scalp * *hit, Vec3::Zero(), demo, brush);
     return;
   }
   const Vec3 last = to_scalp.inverse(Eigen::Isometry) * brush.last;

@@ -274,6 +274,7 @@ void filePanel(Demo& demo, UiState& ui) {
   ImGui::SetNextWindowSize({std::max(32.0f, wanted.x), std::max(32.0f, wanted.y)});
   const ImGuiWindowFlags flags =
       ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse;
+  ImGui::SetNextWindowBgAlpha(1);
   if (ImGui::Begin("files", nullptr, flags)) {
     ImGui::PushTextWrapPos(0);
     ImGui::TextUnformatted(purposeOf(ui.browser.what).title);

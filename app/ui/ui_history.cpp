@@ -64,6 +64,7 @@ void historyPanel(Demo& demo, UiState& ui) {
   ImGui::SetNextWindowPos({size.x - margin, size.y - margin}, ImGuiCond_Always, {1, 1});
   ImGui::SetNextWindowSize({std::max(32.0f, width), std::max(32.0f, height)});
   const ImGuiWindowFlags flags = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse;
+  ImGui::SetNextWindowBgAlpha(1);
   if (ImGui::Begin("History", &ui.history, flags)) {
     momentLines(demo, ui);
   }

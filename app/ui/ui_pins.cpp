@@ -79,6 +79,12 @@ void readChosenPin(const std::vector<int>& chosen, const Actor& actor, PinState&
   }
 }
 
+// Of the last frame that took a step; with several characters the most of one.
+std::string awayNote(const Demo& demo) {
+  const int away = demo.stats.pins_out_of_reach;
+  return away == 0 ? "" : ", " + std::to_string(away) + " out of reach";
+}
+
 }  // namespace
 
 void pinSection(Demo& demo, UiState& ui) {
@@ -125,7 +131,7 @@ void pinSection(Demo& demo, UiState& ui) {
   else if (chosen.empty() && pins.empty())
     ImGui::TextDisabled("choose hair first: Brushes, Vertex to Layer");
   else
-    fact("Pins", std::to_string(pins.size()));
+    fact("Pins", std::to_string(pins.size()) + awayNote(demo));
 }
 
 }  // namespace app

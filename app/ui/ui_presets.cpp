@@ -80,7 +80,9 @@ void drawPreset(const std::string& file, float side, bool chosen, const UiState&
   } else {
     list->AddRectFilled(low, high, ImGui::GetColorU32(ImGuiCol_FrameBg), round);
   }
-  if (chosen) list->AddRect(low, high, ImGui::GetColorU32(ImGuiCol_CheckMark), round, 0, 2 * ui.text_scale);
+  if (chosen)
+    list->AddRect({low.x + 1, low.y + 1}, {high.x - 1, high.y - 1}, ImGui::GetColorU32(ImGuiCol_CheckMark), round, 0,
+                  2 * ui.text_scale);
   const std::string name = readable(stem(file));
   const float width = ImGui::CalcTextSize(name.c_str()).x;
   const ImVec2 at(low.x + std::max(0.0f, 0.5f * (side - width)), high.y + 1);

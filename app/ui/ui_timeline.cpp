@@ -228,6 +228,7 @@ void offerPanel(const NoticePlace& place, Demo& demo, UiState& ui) {
   ImGui::SetNextWindowPos({place.left + 0.5f * place.width, place.bottom}, ImGuiCond_Always, {0.5f, 1});
   const ImGuiWindowFlags flags =
       ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize;
+  ImGui::SetNextWindowBgAlpha(1);
   if (ImGui::Begin("offer", nullptr, flags)) {
     // In a small window in several lines.
     ImGui::PushTextWrapPos(std::min(420.0f, place.width / ui.text_scale - 24) * ui.text_scale);

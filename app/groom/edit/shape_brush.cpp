@@ -10,6 +10,7 @@ namespace app {
 namespace {
 
 constexpr double kPuff = 0.004, kGrow = 0.03;   // m, share of the length: of one sample at full strength
+constexpr double kGrownAs = 0.1;                // m, what shorter hair grows like
 constexpr double kPinch = 0.08, kTwist = 0.10;  // share of the way to the middle; rad: of one sample at full strength
 constexpr double kMinVolume = 0.02;             // of the mean corner volume
 constexpr double kMinEdge = 0.001;              // m
@@ -132,7 +133,7 @@ void ShapeBrushes::scaleColumns(const Brush& brush, const sim::HairMesh& mesh, s
     if (nearest == first || weight == 0) continue;
     const double length = columnLength(x, first, last);
     const double counts = brush.lengths.empty() ? length : brush.lengths[static_cast<std::size_t>(c)];
-    double wanted = length * (1 + kGrow * weight);
+    double wanted = length + kGrow * weight * std::max(length, kGrownAs);
     if (brush.tool == BrushTool::kCut) {
       // Where along the column the brush is: its nearest vertex, and the way from there along the hair as seen.
       double at = columnLength(x, first, nearest + 1);
@@ -149,7 +150,8 @@ void ShapeBrushes::scaleColumns(const Brush& brush, const sim::HairMesh& mesh, s
     asked = std::min(asked, std::clamp(wanted, shortest, longest));
     const double scale = asked / length;
     if (scale == 1) continue;
-    // Hair keeps its curve: each vertex comes nearer the root along the old one, or goes on along it and beyond its tip.
+    // Hair keeps its curve: each vertex comes nearer the root along the old one, or goes on along it and beyond its
+    // tip.
     double passed = 0;
     int segment = first;
     double before = 0, along = (x[first + 1] - x[first]).norm();

@@ -461,7 +461,9 @@ HairFit fitGroom(const StrandSamples& strands, const FitOptions& options) {
   std::vector<int> budgets{400, 800, 1600, 2400};
   // More vertices than strands can tell of take minutes and bring nothing.
   const int most = std::max(budgets.front(), kVerticesAStrand * static_cast<int>(strands.strandCount()));
-  if (options.vertices > 0) budgets = {std::min(options.vertices, most)};
+  if (options.vertices > 0) budgets = {options.vertices};
+  for (int& budget : budgets) budget = std::min(budget, most);
+  budgets.erase(std::ranges::unique(budgets).begin(), budgets.end());
   const auto draftOf = [&](const RootRaster& raster, int vertices) {
     return makeDraft(strands, raster, options.layers > 0 ? options.layers : usualLayers(raster, length, vertices),
                      vertices);

@@ -25,7 +25,7 @@ bool readMove(std::string_view text, Eigen::Vector3f& move) {
   for (int k = 0; k < 3; ++k) {
     const std::size_t comma = std::min(text.find(','), text.size());
     double value = 0;
-    if (!sim::parseNumber(text.substr(0, comma), value) || std::abs(value) > 100) return false;
+    if (!sim::parseNumber(text.substr(0, comma), value) || std::abs(value) > 1e7) return false;
     move[k] = static_cast<float>(value);
     text.remove_prefix(std::min(comma + 1, text.size()));
   }

@@ -246,7 +246,7 @@ void Inspector::unitOfSkull(double told) {
     addGuess("unit",
              textOf("the roots lie about a skull of radius %.3g m, which no unit brings to a head's size",
                     skull.radius * told),
-             "--unit m|cm|mm|in|ft", onCap(), false);
+             "--unit m|cm|mm|in|ft", onCap() || strange, false);
   }
 }
 

@@ -232,7 +232,7 @@ bool asksForLess(const ShapeBrushes& brushes, const CutStroke& stroke) {
 }
 
 const char* whatStays(BrushTool tool) {
-  if (tool == BrushTool::kCut) return "hair there ends before the ring, is as short as it may be (3 cm), or frozen";
+  if (tool == BrushTool::kCut) return "hair there ends before the ring, is 3 cm long or less, which is not cut, or frozen";
   if (tool == BrushTool::kGrow) return "hair there is as long as it may be (1.2 m), or frozen";
   return "hair there is frozen, or has no room to go";
 }

@@ -286,7 +286,7 @@ std::string HairExport::finish(const Demo& demo) {
   if (impl_->mesh) impl_->mesh->finish();
   if (impl_->writer) impl_->writer->finish();
   std::string text = countOf(impl_->frames, "frame");
-  if (impl_->moments > impl_->frames) text += " of " + std::to_string(impl_->moments) + " moments";
+  if (impl_->moments > impl_->frames) text += ", " + std::to_string(impl_->moments) + " moments";
   if (impl_->strands) {
     const Groom& groom = impl_->strands->last();
     text += " of " + countOf(groom.strandCount(), "strand") + " with " + countOf(groom.points.size(), "point") +

@@ -117,9 +117,17 @@ TEST(PaintedMesh, WhatCannotBeAFieldIsRefused) {
   };
   const std::string flat =
       "v 0 0 0 1 1 1\nv 1 0 0 1 1 1\nv 1 1 0 1 1 1\nv 0 1 0 1 1 1\nf 1 2 3 4\n# so that it is long enough\n";
+  const std::string claims =
+      "ply\nformat ascii 1.0\nelement vertex 100000000\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n";
   for (const Case& c : {Case{"plain.obj", "no colours", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\n"},
                         Case{"flat.obj", "flat", flat}, Case{"empty.obj", "empty", ""},
-                        Case{"text.ply", "cannot be read", "this is no mesh at all\n"}}) {
+                        Case{"text.ply", "cannot be read", "this is no mesh at all\n"},
+                        Case{"bytes.obj", "vertex 0: has a colour that is not from 0 to 1",
+                             ball([](const Vec3&) { return 200; }, 0.1, {0, 0, 0}, 6)},
+                        Case{"none.obj", "has a colour that is not from 0 to 1",
+                             ball([](const Vec3&) { return std::nan(""); }, 0.1, {0, 0, 0}, 6)},
+                        Case{"claims.ply", "element vertex 100000000: does not fit into a file of", claims}}) {
     try {
       app::readFieldMap(fileOf(c.name, c.text));
       ADD_FAILURE() << c.name << " is taken";

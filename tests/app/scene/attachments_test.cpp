@@ -90,6 +90,17 @@ TEST(Attachments, TheHairStaysOutsideInAWalkAndAHeadShake) {
   }
 }
 
+TEST(Attachments, WhatHangsInTheAirIsSaid) {
+  const auto noteOf = [](const std::string& file) {
+    const app::Demo demo = app::openScene(wearing(file, app::Style::kShort, "idle_turns.bvh"), 1.5);
+    return app::attachmentNotes(demo.actors[0]);
+  };
+  for (const char* file : {"beanie.obj", "headband.obj", "sun_hat.obj", "glasses.obj"})
+    EXPECT_EQ(noteOf(file).find("hangs"), std::string::npos) << file;
+  const std::string note = noteOf(box("high", sim::Vec3(-0.1, 0.32, -0.1), sim::Vec3(0.1, 0.36, 0.1)));
+  EXPECT_NE(note.find("high hangs "), std::string::npos) << note;
+}
+
 TEST(Attachments, WhatCannotBeWornIsTold) {
   const auto told = [](const std::string& text, const std::string& part) {
     const std::string refusal = refusalOf(text);

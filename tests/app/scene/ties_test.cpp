@@ -196,16 +196,36 @@ TEST(Ties, TheScalpBearsTheWeightOfTiedHairAtRootsAndRing) {
   EXPECT_LT((roots + ring + sim::Vec3(0, weight, 0)).norm(), 0.02 * weight);
 }
 
-// A ring beside the head takes what comes to it over the crown or round the back; the rest is not drawn across the
-// face.
-TEST(Ties, ARingBesideTheHeadLeavesTheFaceFree) {
-  for (const char* ring : {R"({"at": [0.095, 0.054, 0.003]})", R"({"at": [0.085, 0.03, -0.06]})"}) {
+// m, how far from the scalp hair is combed at most on its way to the ring.
+double highestCombed(const app::Actor& actor) {
+  const app::Scalp& scalp = actor.body->character.scalp;
+  const sim::HairMeshShape& shape = actor.haircut->mesh.shape;
+  double highest = 0;
+  for (const int ring : actor.haircut->tied) {
+    const int first = *std::prev(std::ranges::upper_bound(shape.column_first, ring));
+    for (int v = first; v < ring; ++v) {
+      const auto i = static_cast<std::size_t>(v);
+      const sim::Vec3 off = shape.positions[i] + shape.groom_offsets[i] - scalp.center;
+      highest = std::max(highest, off.norm() - scalp.radiusAt(off));
+    }
+  }
+  return highest;
+}
+
+// A ring takes all hair from wherever it lies: over the crown, or round the back, not across the face.
+TEST(Ties, ARingAnywhereTakesAllHairAndLeavesTheFaceFree) {
+  for (const char* ring : {R"({"at": [0.095, 0.054, 0.003]})", R"({"at": [0.085, 0.03, -0.06]})",
+                           R"({"at": [0, -0.013, -0.073]})", R"({"at": [-0.011, -0.013, -0.073]})"}) {
     for (const app::Style style : {app::Style::kShoulder, app::Style::kLong, app::Style::kBob}) {
       const app::Demo demo = app::openScene(tiedScene(ring, "idle_turns.bvh", app::Resolution::kLow, style), 1.5);
       const app::Actor& actor = demo.actors[0];
       const app::Scalp& scalp = actor.body->character.scalp;
-      EXPECT_NE(actor.haircut->note.find("hangs loose"), std::string::npos) << ring << actor.haircut->note;
-      EXPECT_GT(actor.haircut->tied.size(), actor.haircut->mesh.columnCount() * 0.4) << ring;
+      EXPECT_EQ(actor.haircut->note.find("hangs loose"), std::string::npos) << ring << actor.haircut->note;
+      EXPECT_EQ(std::ssize(actor.haircut->tied), actor.haircut->mesh.columnCount()) << ring;
+      const double highest = highestCombed(actor);
+      std::printf("%s %s: combed to %.1f mm over the scalp\n", ring, std::string(app::styleName(style)).c_str(),
+                  1e3 * highest);
+      EXPECT_LT(highest, 0.03) << ring << " " << app::styleName(style);
       if (app::hasFringe(style)) continue;  // which hangs over the forehead by itself
       for (const sim::Vec3& p : actor.haircut->mesh.shape.positions) {
         const sim::Vec3 way = (p - scalp.center).normalized();

@@ -175,7 +175,7 @@ def _pin(value, number):
         return _c.Pin(_whole(vertex, "vertex"), _numbers(target, 3, "target"), _numbers(velocity, 3, "velocity"),
                       float(stiffness))
     except (TypeError, ValueError):
-        raise TypeError(f"pin {number} is {_shown(value)}; give (vertex, target, velocity, stiffness): a whole number, 3 "
+        raise TypeError(f"pin {number} is {value!r:.80}; give (vertex, target, velocity, stiffness): a whole number, 3 "
                         "numbers in m, 3 in m/s, a number in N/m") from None
 
 
