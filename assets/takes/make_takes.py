@@ -75,7 +75,7 @@ def crest():
     """A strip grown from the shaved head, combed up, its ends cut level and stiffened."""
     for k in range(10):
         yield []
-    for k in range(90):
+    for k in range(36):
         yield [brush("grow", strip(share / 6), radius=0.035, strength=1) for share in range(7)]
     yield [ask("end-gesture")]
     for k in range(20):
@@ -99,9 +99,9 @@ def side_sweep():
 
 def half_up():
     """What is rooted high is tied behind the head, the rest spread and its ends cut."""
-    yield from base("long", ask("tie", "", json.dumps({"at": "back", "radius": 0.02, "above": -0.02})))
+    yield from base("long", ask("tie", "", json.dumps({"at": "back", "radius": 0.02, "above": 0.0})))
     for p in ring(-0.05, 0.10, 20, 2.4, 2 * math.pi - 2.4):
-        yield [brush("spread", p, radius=0.09, strength=0.3)]
+        yield [brush("spread", p, radius=0.09, strength=0.2)]
     yield [ask("end-gesture")]
     for p in ring(-0.15, 0.10, 20, 2.4, 2 * math.pi - 2.4):
         yield [brush("cut", p, radius=0.09, strength=0.5)]
