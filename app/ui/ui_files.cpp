@@ -277,7 +277,9 @@ void filePanel(Demo& demo, UiState& ui) {
   ImGui::SetNextWindowBgAlpha(1);
   if (ImGui::Begin("files", nullptr, flags)) {
     ImGui::PushTextWrapPos(0);
-    ImGui::TextUnformatted(purposeOf(ui.browser.what).title);
+    const bool project = ui.browser.what == BrowseFor::kSaveScene && ui.browser.project;
+    ImGui::TextUnformatted(project ? "Save the project: the scene, with the hair as it moves and its brushed shape"
+                                   : purposeOf(ui.browser.what).title);
     ImGui::PopTextWrapPos();
     if (ui.browser.what == BrowseFor::kSaveScene) {
       // The keyboard goes on to the name.

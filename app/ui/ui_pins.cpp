@@ -126,9 +126,8 @@ void pinSection(Demo& demo, UiState& ui) {
   if (pressed == 0) postPins(withPins(chosen, choiceOf(pin), actor), demo);
   if (pressed == 1) postPins(rest, demo);
   if (pressed == 2) postPins({}, demo);
-  if (!in_order)
-    ImGui::TextDisabled("it lets go before it holds");
-  else if (chosen.empty() && pins.empty())
+  if (!in_order) ImGui::TextDisabled("Until lies before From: make it later, or 0 for never");
+  if (chosen.empty() && pins.empty())
     ImGui::TextDisabled("choose hair first: Brushes, Vertex to Layer");
   else
     fact("Pins", std::to_string(pins.size()) + awayNote(demo));
