@@ -57,7 +57,7 @@ Scalp rounded(Scalp scalp, int rounds, double ball) {
 // The same roots with stubble.
 sim::HairMeshShape shavedTo(double length, int layers, const sim::HairMeshShape& style, const Scalp& scalp,
                             const BodyDistance& body) {
-  constexpr double kAlong = 0.45;  // of its way off the scalp
+  constexpr double kAlong = 1.2;  // of its way off the scalp: it stands 10 mm high
   sim::HairMeshShape shape;
   shape.root_faces = style.root_faces;
   for (int c = 0; c < style.columnCount(); ++c) {

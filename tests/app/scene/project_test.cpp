@@ -79,7 +79,7 @@ TEST(Project, OpensFromTheCommandLineWithOtherSettingsButNoOtherHair) {
   EXPECT_NE(changed.err.find("leave out --style"), std::string::npos) << changed.err;
   const test::Outcome set =
       test::runProgram({"--no-images", "--frames", "2", file, "--camera", "back", "--fps", "24", "--preset", "stiff",
-                        "--set", "density=70", "--strands", "900", "--turntable", "30"});
+                        "--set", "density=70", "--strands", "900"});
   EXPECT_EQ(set.exit_code, 0) << set.err;
 
   app::Scene scene = app::projectScene(file);
