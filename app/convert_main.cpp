@@ -221,8 +221,9 @@ void checkOutput(const Arguments& arguments) {
   std::error_code ignored;
   if (std::filesystem::path(arguments.out).extension() != ".obj")
     throw app::UsageError("OUT cannot be '" + arguments.out + "'; a hair mesh is written as .obj");
-  if (std::filesystem::equivalent(arguments.in, arguments.out, ignored))
-    throw app::InputError(arguments.out, "", "is what is read as well", "choose another name");
+  for (const std::string& read : {arguments.in, arguments.scalp})
+    if (std::filesystem::equivalent(read, arguments.out, ignored))
+      throw app::InputError(arguments.out, "", "is what is read as well", "choose another name");
   app::checkWritable(arguments.out);
 }
 

@@ -6,8 +6,9 @@
 
 namespace app {
 
-// Where ways to `end` (unit) come from: opposite to it, for great circles, or led from there to the face, for hair
-// grows about it. `side`: -1 or 1 where hair of that sign of x alone goes to the ring; 0: all.
+// The direction that all ways to `end` come from. It is opposite to `end`, and ways are great circles. Where hair grows
+// there, it is the nearest direction in the face. Of an `end` over the face it is the opposite in any case. `side`: -1
+// or 1 where hair of that sign of x alone goes to the ring; 0: all. All unit.
 Vec3 sourceOf(const Vec3& end, int side);
 
 // The arc from one direction to another on the circle that they make with `source`, which it does not pass. All unit.

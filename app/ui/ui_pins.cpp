@@ -79,9 +79,9 @@ void readChosenPin(const std::vector<int>& chosen, const Actor& actor, PinState&
   }
 }
 
-// Of the last frame that took a step; with several characters the most of one.
-std::string awayNote(const Demo& demo) {
-  const int away = demo.stats.pins_out_of_reach;
+// Of the actor's last step.
+std::string awayNote(const Actor& actor) {
+  const int away = actor.last_report.pins_out_of_reach;
   return away == 0 ? "" : ", " + std::to_string(away) + " out of reach";
 }
 
@@ -130,7 +130,7 @@ void pinSection(Demo& demo, UiState& ui) {
   if (chosen.empty() && pins.empty())
     ImGui::TextDisabled("choose hair first: Brushes, Vertex to Layer");
   else
-    fact("Pins", std::to_string(pins.size()) + awayNote(demo));
+    fact("Pins", std::to_string(pins.size()) + awayNote(actor));
 }
 
 }  // namespace app
