@@ -250,12 +250,12 @@ std::string whyOther(const std::optional<bool>& edited) {
 // What is said of a replay whose bits are not the recorded ones, and whether it differs by more than rounding does.
 Tape::End otherEnd(const Recording& recorded, const Demo& demo) {
   const std::optional<Apart> apart = apartOf(recorded.ends, columnEnds(demo));
-  const bool near = apart && apart->most <= kMaxApart, whole = recorded.edited && !*recorded.edited;
+  const bool near = apart && apart->mean <= kMaxApart, whole = recorded.edited && !*recorded.edited;
   std::string words;
   if (apart) {
-    words = "the hair ends " + millimetres(apart->most) + " at most, " + millimetres(apart->mean) +
-            " in the mean, from where it was recorded to end, ";
-    words += (near ? "within the " : "farther than the ") + millimetres(kMaxApart) + " that pass; ";
+    words = "the hair ends " + millimetres(apart->mean) + " in the mean, " + millimetres(apart->most) +
+            " at most, from where it was recorded to end, ";
+    words += (near ? "within the " : "farther than the ") + millimetres(kMaxApart) + " in the mean that pass; ";
   } else if (!recorded.ends.empty()) {
     words = "the hair has not as many columns as when it was recorded: its style or mesh is another one now; ";
   }
@@ -376,8 +376,9 @@ std::optional<Apart> apartOf(const std::vector<ColumnEnds>& a, const std::vector
   for (std::size_t i = 0; i < a.size(); ++i) {
     if (a[i].size() != b[i].size()) return {};
     for (std::size_t k = 0; k < a[i].size(); ++k) {
-      const double distance = (a[i][k] - b[i][k]).norm();
-      apart.most = std::max(apart.most, std::isfinite(distance) ? distance : kMaxEndUnits);
+      double distance = (a[i][k] - b[i][k]).norm();
+      if (!std::isfinite(distance)) distance = kMaxEndUnits;
+      apart.most = std::max(apart.most, distance);
       apart.mean += distance;
     }
     count += a[i].size();

@@ -14,8 +14,8 @@
 // nothing are left out. Version 1 had neither views nor what stands beside it; it is replayed as seen by the replay
 // itself. Version 2 had no ends.
 //
-// Another build or kind of processor rounds otherwise, so its bits differ. A replay passes where no column ends farther
-// than kMaxApart from where it was recorded to end, and its text is as it was recorded.
+// Another build or kind of processor rounds otherwise, so its bits differ. A replay passes where columns end within
+// kMaxApart in the mean of where they were recorded to end, and its text is as it was recorded.
 #pragma once
 
 #include <cstdint>
@@ -48,7 +48,7 @@ struct RecordedFrame {
   std::vector<Request> requests;
 };
 
-inline constexpr double kMaxApart = 5e-3;  // m: more than rounding alone moves hair that slides on a body, 4 mm
+inline constexpr double kMaxApart = 5e-3;  // m in the mean: a single lock slides off 30 mm away by rounding alone
 
 // Where a character's columns end, m.
 using ColumnEnds = std::vector<Vec3>;
