@@ -66,6 +66,8 @@ std::vector<std::string> openingNotes(const Options& options, const Demo& demo) 
   const Actor& first = demo.actors.front();
   for (const char* field : {"curl", "clump"})
     if (std::string note = paintNote(field, first.spec); !note.empty()) notes.push_back(std::move(note));
+  for (const Actor& actor : demo.actors)
+    if (std::string note = idlePinNote(actor); !note.empty()) notes.push_back(std::move(note));
   if (options.out_given && !options.headless)
     notes.push_back("--out is the folder of runs without a window: add --headless, or record this window by key K");
   if (demo.draw_governor.budget > 0 && options.headless && !options.no_images)

@@ -1,5 +1,7 @@
 #include "app/scene/pins.h"
 
+#include <cmath>
+
 #include "app/files/errors.h"
 #include "app/scene/actor.h"
 #include "sim/field_text.h"
@@ -106,6 +108,22 @@ void repin(std::vector<PinSpec> specs, Actor& actor) {
   actor.pins.insert(actor.pins.begin(), found.begin(), found.end());
   actor.spec.pins = std::move(specs);
   for (const ActorPin& pin : found) markMoving(pin.joint, *actor.body);
+}
+
+std::string idlePinNote(const Actor& actor) {
+  const std::size_t count = actor.spec.pins.size();
+  for (std::size_t second = 1; second < count; ++second) {
+    const ActorPin& late = actor.pins[second];
+    for (std::size_t first = 0; first < second; ++first) {
+      const ActorPin& pin = actor.pins[first];
+      const bool together = pin.from < late.until && late.from < pin.until;
+      const bool firm = !std::isfinite(pin.stiffness) || !std::isfinite(late.stiffness);
+      if (pin.vertex != late.vertex || !together || !firm) continue;
+      return "pins " + std::to_string(first) + " and " + std::to_string(second) + " hold vertex " +
+             std::to_string(pin.vertex) + " at the same time, and only the first firm one counts";
+    }
+  }
+  return "";
 }
 
 void followRestPins(Actor& actor) {

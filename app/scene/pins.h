@@ -1,6 +1,7 @@
 // Pins of an actor: what the scene file asks for, found in its hair and figure, and posed for a step.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "app/figure/character.h"
@@ -33,6 +34,9 @@ void markMoving(int joint, LoadedBody& body);
 // they then name their vertices, and what is fastened to the scene its place. Throws InputError as above; then nothing
 // has changed.
 void repin(std::vector<PinSpec> specs, Actor& actor);
+
+// Which pins of the scene's hold one vertex at the same time, one of them firmly, so that it alone counts; empty: none.
+std::string idlePinNote(const Actor& actor);
 
 // After another rest shape: pins without a place of their own hold their vertices where those are at rest.
 void followRestPins(Actor& actor);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "app/files/errors.h"
 #include "app/scene/demo.h"
@@ -20,6 +21,7 @@ constexpr int kPictureWidth = 64, kPictureHeight = 32;  // pixels: 9 mm of scalp
 constexpr double kSpread = 0.12, kFarthestRoot = 0.45;  // rad: how far a root speaks for the scalp around it
 constexpr double kFarthestStroke = 100;                 // m
 constexpr double kNothing = 1e-3;                       // of a brush's weight
+constexpr double kAlike = 2.0 / 255;                    // of two values of a field
 constexpr float kCurlRadius = 0.006f;                   // m, of straight hair where it is painted
 
 FieldMap evenly(float value) {
@@ -90,30 +92,40 @@ float drawnTowards(double value, double share, float now) {
   return static_cast<float>(static_cast<double>(now) + std::copysign(std::min(std::abs(way), step), way));
 }
 
-void dab(const PaintSample& sample, double wanted, const std::vector<TouchedRoot>& roots, FieldMap& map) {
+// Returns how far the map was from what is wanted: the most, weighted by the brush.
+double dab(const PaintSample& sample, double wanted, const std::vector<TouchedRoot>& roots, FieldMap& map) {
+  double away = 0;
   for (int row = 0; row < map.height; ++row) {
     for (int column = 0; column < map.width; ++column) {
       const double weight = weightAt(directionOf(map, column, row), roots);
       if (weight < kNothing) continue;
       float& value = map.value[static_cast<std::size_t>(row * map.width + column)];
+      away = std::max(away, weight * std::abs(wanted - static_cast<double>(value)));
       value = drawnTowards(wanted, sample.strength * weight, value);
     }
   }
+  return away;
 }
 
+struct Painted {
+  std::string picture;
+  double away = 0;  // of what was there from what is wanted
+};
+
 // The field's picture after a sample of a stroke.
-std::string painted(const PaintSample& sample, const std::vector<TouchedRoot>& roots, const std::string& picture) {
+Painted painted(const PaintSample& sample, const std::vector<TouchedRoot>& roots, const std::string& picture) {
   if (sample.field != "color") {
     FieldMap map = picture.empty() ? white() : paintable(readFieldMap(picture));
-    dab(sample, sample.value, roots, map);
-    return pictureText(map);
+    const double away = dab(sample, sample.value, roots, map);
+    return {pictureText(map), away};
   }
   ColorMap map = picture.empty() ? ColorMap{white(), white(), white()} : readColorMap(picture);
+  double away = 0;
   for (std::size_t c = 0; c < 3; ++c) {
     map[c] = paintable(std::move(map[c]));
-    dab(sample, sample.color[c], roots, map[c]);
+    away = std::max(away, dab(sample, sample.color[c], roots, map[c]));
   }
-  return pictureText(map);
+  return {pictureText(map), away};
 }
 
 // Straight hair has no curls that paint could make less: they come where they are painted, and nowhere else. Returns
@@ -214,7 +226,10 @@ void applyPaint(const PaintSample& sample, int index, Demo& demo) {
   FieldFiles maps = actor.spec.maps;
   std::string& picture = *findMap(sample.field, maps);
   const bool curled = curlStraightHair(sample, picture, actor);
-  picture = painted(sample, roots, picture);
+  Painted anew = painted(sample, roots, picture);
+  if (anew.away < kAlike && !goesOn(Ask::kPaint, demo.edits))
+    throw InputError("", "the paint", "is there already", "choose another value, or another place");
+  picture = std::move(anew.picture);
   // As it will be read again.
   if (sample.field == "length") {
     repaintLength(readFieldMap(picture), index, demo);

@@ -94,7 +94,7 @@ TEST(PaintBrush, WhiteFieldsAndCurvesOfOneGiveTheScalarsResultToTheBit) {
   painted.requests = {paintOf("stiffness", 1), paintOf("mass", 1), paintOf("bend", 1), paintOf("color", 1),
                       paintOf("curl", 1)};
   frames(20, painted);
-  EXPECT_FALSE(painted.message_is_fault) << painted.message;
+  EXPECT_NE(painted.message.find("is there already"), std::string::npos) << painted.message;
   EXPECT_EQ(app::stateHash(plain), app::stateHash(painted));
   const app::PaintedLook& look = painted.actors[0].haircut->look_shares;
   EXPECT_TRUE(look.roots.empty() && look.along.empty()) << "the renderer is given nothing";
@@ -225,6 +225,24 @@ TEST(PaintBrush, WhatCannotBePaintedIsToldAndStays) {
   told({Ask::kCurve, "color", "#fffffg"}, "no list of shares");
   told({Ask::kPaint, "color", "0 0.2 0 0.03 1 1 0 0"}, "not ten numbers");
   told({Ask::kMap, "curl", "walk.bvh"}, "walk.bvh");
+}
+
+TEST(PaintBrush, WhatIsThereAlreadyIsToldAndMakesNoStep) {
+  app::Demo demo = open(test::smallScene("walk.bvh"));
+  const auto paint = [&] {
+    demo.requests = {paintOf("mass", 0.5)};
+    app::advanceFrame(demo, 0, {});
+    demo.requests = {{Ask::kEndGesture, "", ""}};
+    app::advanceFrame(demo, 0, {});
+  };
+  for (int k = 0; k < 40 && !demo.message_is_fault; ++k) paint();
+  EXPECT_NE(demo.message.find("is there already"), std::string::npos) << demo.message;
+  const std::size_t steps = demo.edits.steps.size();
+  const std::string before = demo.actors[0].spec.maps.mass;
+  EXPECT_GE(steps, 1u);
+  paint();
+  EXPECT_EQ(demo.edits.steps.size(), steps);
+  EXPECT_EQ(demo.actors[0].spec.maps.mass, before);
 }
 
 // Straight hair curls where it is painted, and nowhere else; undone, it is straight again. Less of no curls is told.

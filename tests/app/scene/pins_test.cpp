@@ -73,6 +73,20 @@ TEST(Pins, FaultsNameFilePlaceAndMend) {
   }
 }
 
+TEST(Pins, AFirmOneAloneCountsOnItsVertexAndThatIsSaid) {
+  app::AssetCache cache;
+  const auto noteOf = [&](const std::string& pins) {
+    return app::idlePinNote(app::makeActor(specOf(pins), {}, cache));
+  };
+  const std::string firm = R"({"column": 3})", soft = R"({"column": 3, "stiffness": 40})";
+  EXPECT_NE(noteOf(firm + "," + soft).find("pins 0 and 1 hold vertex "), std::string::npos);
+  EXPECT_NE(noteOf(R"({"column": 4},)" + firm + "," + firm).find("pins 1 and 2"), std::string::npos);
+  EXPECT_NE(noteOf(soft + "," + firm), "");
+  EXPECT_EQ(noteOf(soft + "," + soft), "");
+  EXPECT_EQ(noteOf(firm + R"(,{"column": 4})"), "");
+  EXPECT_EQ(noteOf(R"({"column": 3, "until": 2}, {"column": 3, "from": 2})"), "");
+}
+
 TEST(Pins, WritingAndReadingKeepsThem) {
   const app::Scene scene = app::readScene(
       scenes(R"({"vertex": 41, "to": "LeftHand", "at": [0.1, 0.25, -3], "stiffness": 40, "from": 1, "until": 2.5},
