@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <iterator>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "app/files/length_units.h"
@@ -32,6 +33,7 @@ constexpr double kBefore = 0.6, kBeside = 0.5, kBelowEyes = 0.0, kHiddenFaceCost
 constexpr std::size_t kMostLookedAt = 4000;            // vertices
 constexpr double kOtherAxes = 0.005, kHeadShapes = 3;  // m; heads differ by so many limits
 constexpr int kFitSteps = 20;
+constexpr double kTurnedLeft = 0.3;  // of what is wrong with hair, that is left when it is turned about
 
 struct Axes {
   const char* name;
@@ -115,6 +117,7 @@ std::vector<Reading> readings(const Character& character, ToldPlace told) {
   std::vector<Reading> all;
   for (const bool from_ground : {false, true}) {
     for (const Axes& axes : axesKnown()) {
+      if (told.up != 0 && axes.rows[1] != (told.up == 'z' ? Vec3::UnitZ() : Vec3::UnitY())) continue;
       for (const LengthUnit& unit : kLengthUnits) {
         if ((told.metres && &unit != &kLengthUnits[0]) || (told.axes && &axes != &axesKnown()[0])) continue;
         Reading reading{&unit, &axes, from_ground};
@@ -238,6 +241,17 @@ std::vector<Reading> forOtherHeads(const std::vector<Reading>& all, const std::v
   return moved;
 }
 
+// The reading of hair near the scalp that lies on it when it is turned about, and then leaves the face free.
+std::optional<Reading> turnedAbout(const std::vector<Vec3>& roots, const std::vector<Vec3>& vertices,
+                                   const Scalp& scalp) {
+  Reading turned;
+  turned.axes = &axesKnown()[3];
+  for (int k = 0; k < 3; ++k) turned.linear.row(k) = turned.axes->rows[static_cast<std::size_t>(k)];
+  const auto misfitOf = [&](const Reading& one) { return misfit(roots, roots, vertices, one, scalp); };
+  const bool nearer = distanceOf(roots, turned, scalp) < distanceOf(roots, {}, scalp);
+  return nearer && misfitOf(turned) < kTurnedLeft * misfitOf({}) ? std::optional(turned) : std::nullopt;
+}
+
 std::string length(double metres) {
   char text[32];
   if (metres < 0.1) {
@@ -275,7 +289,10 @@ std::string fitHair(const Character& character, bool mend, sim::HairMeshShape& s
   const std::vector<Vec3> hair_roots = rootsOf(shape);
   const double limit = kFarRoots * scalp.head_height / kHead, before = rootDistance(shape, scalp);
   if (as_made_distance != nullptr) *as_made_distance = before;
-  if (hair_roots.empty() || before <= limit) return "";
+  if (hair_roots.empty()) return "";
+  std::optional<Reading> about;
+  if (before <= limit && !told.axes) about = turnedAbout(hair_roots, shape.positions, scalp);
+  if (before <= limit && !about) return "";
   const Ways ways = scalp_points.empty() ? waysOf(shape) : Ways{};
   std::vector<Vec3> roots(scalp_points.begin(), scalp_points.end());
   if (roots.empty()) roots = hair_roots;
@@ -289,10 +306,10 @@ std::string fitHair(const Character& character, bool mend, sim::HairMeshShape& s
   std::vector<Reading> as_made;
   std::ranges::copy_if(all, std::back_inserter(as_made),
                        [&](const Reading& reading) { return plausible(roots, ways, reading, scalp); });
-  Reading found = as_made.empty() ? Reading{} : *best(as_made);
+  Reading found = about ? *about : as_made.empty() ? Reading{} : *best(as_made);
   std::string like = looksLike(found);
   if (as_made_distance != nullptr) *as_made_distance = as_made.empty() ? INFINITY : distanceOf(roots, found, scalp);
-  if (as_made.empty() || distanceOf(roots, found, scalp) > limit) {
+  if (!about && (as_made.empty() || distanceOf(roots, found, scalp) > limit)) {
     // A head of another shape is fitted somewhat better in another size: hair keeps its own unless that is much better.
     std::vector<Reading> moved = forOtherHeads(all, roots, ways, false, scalp);
     std::vector<Reading> sized = forOtherHeads(all, roots, ways, true, scalp);

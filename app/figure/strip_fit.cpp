@@ -16,23 +16,23 @@ constexpr double kTogether = 1.1;      // of the tips' spread: roots' ends lie n
 constexpr double kStandsNearer = 0.5;  // of the highest ends' distance from the head
 constexpr double kOtherAxis = 0.6;     // of the distance with y up: z is up
 
-FittedStrips fitOnce(const PolygonMesh& mesh, const StripOptions& options, const std::string& file,
+FittedStrips fitOnce(const PolygonMesh& mesh, const StripOptions& options, bool up_given, const std::string& file,
                      const Character& character, bool mend) {
   FittedStrips fitted{convertStrips(mesh, options, file), "", 0};
   StripConversion& strips = fitted.conversion;
-  fitted.fit =
-      fitHair(character, mend, strips.mesh.shape, {.metres = true}, strips.scalp_points, &fitted.as_made_distance);
+  fitted.fit = fitHair(character, mend, strips.mesh.shape, {.metres = true, .up = up_given ? options.up : '\0'},
+                       strips.scalp_points, &fitted.as_made_distance);
   return fitted;
 }
 
 FittedStrips fitEitherUp(const PolygonMesh& mesh, const StripOptions& options, bool up_given, const std::string& file,
                          const Character& character, bool mend) {
-  FittedStrips fitted = fitOnce(mesh, options, file, character, mend);
+  FittedStrips fitted = fitOnce(mesh, options, up_given, file, character, mend);
   if (!mend || up_given || isYUp(file) || fitted.fit.empty()) return fitted;
   StripOptions turned_options = options;
   turned_options.up = 'z';
   try {
-    FittedStrips turned = fitOnce(mesh, turned_options, file, character, mend);
+    FittedStrips turned = fitOnce(mesh, turned_options, false, file, character, mend);
     const auto off = [&](const FittedStrips& one) { return rootDistance(one.conversion.mesh.shape, character.scalp); };
     return off(fitted) > 0.5 * kFarRoots && off(turned) < kOtherAxis * off(fitted) ? turned : fitted;
   } catch (const InputError&) {

@@ -196,6 +196,28 @@ void addStep(const sim::StepReport& report, double step_seconds, FrameStats& sta
   add(kOutOfReach, report.collider_tests);
 }
 
+void addMoment(const FrameStats& moment, FrameStats& stats) {
+  for (std::size_t k = 0; k < stats.seconds.size(); ++k) stats.seconds[k] += moment.seconds[k];
+  stats.whole += moment.whole;
+  stats.shown_time = moment.shown_time;
+  stats.steps += moment.steps;
+  stats.lost = moment.lost;
+  stats.solver_iterations += moment.solver_iterations;
+  stats.solves += moment.solves;
+  stats.minimization_iterations += moment.minimization_iterations;
+  stats.residual = std::max(stats.residual, moment.residual);
+  stats.residual_acceleration = std::max(stats.residual_acceleration, moment.residual_acceleration);
+  stats.converged = stats.converged && moment.converged;
+  stats.work_units += moment.work_units;
+  stats.contacts += moment.contacts;
+  stats.corrected += moment.corrected;
+  stats.recoveries += moment.recoveries;
+  if (moment.recoveries > 0) stats.fault_report = moment.fault_report;
+  stats.guided += moment.guided;
+  stats.carried += moment.carried;
+  stats.max_penetration = std::max(stats.max_penetration, moment.max_penetration);
+}
+
 std::string numericalNote(const FrameStats& stats) {
   if (stats.recoveries > 0)
     return std::to_string(stats.recoveries) + " recoveries from numerical trouble: " + faultText(stats.fault_report);

@@ -1,5 +1,7 @@
 #include "app/scene/hair_from_file.h"
 
+#include <algorithm>
+
 #include "app/figure/hair_fit.h"
 #include "app/figure/head_model.h"
 #include "app/figure/strip_fit.h"
@@ -37,11 +39,17 @@ Conversion convertMended(const std::string& bytes, const CharacterSpec& spec, co
 // What was mended, and what of the file's own word is doubted or left out.
 std::string mendedBy(const Haircut& haircut) {
   std::string text, left;
+  const bool off = std::ranges::any_of(haircut.findings, [](const MendedFinding& one) {
+    return !one.done && one.finding.fault && (one.finding.what == "roots" || one.finding.what == "body");
+  });
   for (const MendedFinding& one : haircut.findings) {
     const GroomFinding& finding = one.finding;
     if (one.done) text += (text.empty() ? "mended: " : ", ") + finding.what + " (" + finding.mend + ")";
     const bool stays = finding.what == "roots" && !finding.fault && finding.mend.empty();
-    const bool doubted = finding.fault && (finding.what == "unit" || finding.what == "up");
+    const bool place = finding.what == "unit" || finding.what == "up";
+    // What may be wrong with hair that lies off the head or in the body.
+    const bool doubted = (finding.fault && (place || finding.what == "roots" || finding.what == "body")) ||
+                         (off && (place || finding.what == "facing"));
     if (!one.done && (doubted || stays || finding.what == "hidden"))
       left += "; " + finding.text + (finding.mend.empty() ? "" : " (--mends \"" + finding.mend + "\")");
   }

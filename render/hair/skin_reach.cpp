@@ -14,10 +14,6 @@ namespace {
 
 using Eigen::Vector3f;
 
-// m that a point may be lifted towards another ellipsoid: strands of a lock on both sides of a shoulder lie 47 mm deep,
-// and a tip below it begins where the strand before it was lifted to.
-constexpr float kLifted = 0.08f;
-
 // Around the bundle's vertices of two layers, with room for what its strands leave their hull by; see measureFaces of
 // hair_store.cpp.
 Bounds strandsBetween(const HairFace& face, std::span<const float> positions, int layer, float sideways) {
@@ -34,7 +30,7 @@ Bounds strandsBetween(const HairFace& face, std::span<const float> positions, in
     }
     for (int l = low; l < high; ++l) along = std::max(along, (at(first + l + 1) - at(first + l)).norm());
   }
-  const float margin = sideways + 0.6f * across + 0.25f * along + kLifted;
+  const float margin = sideways + 0.6f * across + 0.25f * along + kMostLifted;
   box.low.array() -= margin;
   box.high.array() += margin;
   return box;

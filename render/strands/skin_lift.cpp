@@ -126,22 +126,42 @@ void leaveSkin(std::span<const SkinEllipsoid> skin, std::span<const SkinGrid> gr
   lift = {free, position - free};
 }
 
+Eigen::AlignedBox3f liftingBox(const SkinEllipsoid& skin) {
+  // A row's length is one over the radius along its axis.
+  Vector3f center = Vector3f::Zero(), reach = Vector3f::Zero();
+  for (const auto& row : skin.to_ball) {
+    const Vector3f along(row[0], row[1], row[2]);
+    const float squared = std::max(along.squaredNorm(), 1e-12f);
+    center -= row[3] / squared * along;
+    reach += (along / squared).cwiseAbs2();
+  }
+  reach = reach.cwiseSqrt().array() + kSkinGap + kSkinBlend;
+  return {center - reach, center + reach};
+}
+
 std::vector<SkinEllipsoid> skinNear(std::span<const SkinEllipsoid> skin, const Vector3f& low, const Vector3f& high) {
+  const Eigen::AlignedBox3f box(low, high);
   std::vector<SkinEllipsoid> near;
   for (const SkinEllipsoid& e : skin) {
-    // A row's length is one over the radius along its axis.
-    Vector3f center = Vector3f::Zero(), reach = Vector3f::Zero();
-    for (const auto& row : e.to_ball) {
-      const Vector3f along(row[0], row[1], row[2]);
-      const float squared = std::max(along.squaredNorm(), 1e-12f);
-      center -= row[3] / squared * along;
-      reach += (along / squared).cwiseAbs2();
-    }
-    // Of the box around the ellipsoid.
-    reach = reach.cwiseSqrt().array() + kSkinGap + kSkinBlend;
-    const bool apart =
-        ((center + reach).array() < low.array()).any() || ((center - reach).array() > high.array()).any();
-    if (!apart && static_cast<int>(near.size()) < shared::kMaxSkin) near.push_back(e);
+    if (static_cast<int>(near.size()) < shared::kMaxSkin && liftingBox(e).intersects(box)) near.push_back(e);
+  }
+  return near;
+}
+
+SkinAround::SkinAround(std::span<const SkinEllipsoid> skin, std::span<const SkinGrid> skin_grids)
+    : ellipsoids(skin.begin(), skin.end()), grids(skin_grids.begin(), skin_grids.end()) {
+  for (const SkinEllipsoid& e : skin) boxes.push_back(liftingBox(e));
+}
+
+SkinAround SkinAround::near(const Eigen::AlignedBox3f& strand) const {
+  const Vector3f room = Vector3f::Constant(kMostLifted);
+  const Eigen::AlignedBox3f box(strand.min() - room, strand.max() + room);
+  SkinAround near;
+  for (std::size_t i = 0; i < ellipsoids.size(); ++i) {
+    if (boxes[i].intersects(box)) near.ellipsoids.push_back(ellipsoids[i]);
+  }
+  for (const SkinGrid& grid : grids) {
+    if (meetsBox(grid, box.center(), 0.5f * box.sizes())) near.grids.push_back(grid);
   }
   return near;
 }

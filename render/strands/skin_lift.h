@@ -1,7 +1,7 @@
 // Drawn strands are lifted out of the skin: shaders/common/skin.glsl on the CPU, step by step.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <span>
 #include <vector>
 
@@ -14,11 +14,30 @@ struct SkinLift {
   Eigen::Vector3f free = Eigen::Vector3f::Zero(), by = free;
 };
 
+// m that a point may be lifted towards another ellipsoid: strands of a lock on both sides of a shoulder lie 47 mm deep,
+// and a tip below it begins where the strand before it was lifted to.
+inline constexpr float kMostLifted = 0.08f;
+
 // `position` (m) of a strand's point leaves ellipsoids and grids; `tangent`, a unit vector, turns with it and is none
 // any more. s: curve parameter, in layers; a root (0) leaves
 // grids, and no ellipsoid. lift: of the point before, on return of this one.
 void leaveSkin(std::span<const SkinEllipsoid> skin, std::span<const SkinGrid> grids, float s, SkinLift& lift,
                Eigen::Vector3f& position, Eigen::Vector3f& tangent);
+
+// Around an ellipsoid (m), with how far it reaches out for strands.
+Eigen::AlignedBox3f liftingBox(const SkinEllipsoid& skin);
+
+// What strands may be lifted out of, and where its parts are.
+struct SkinAround {
+  std::vector<SkinEllipsoid> ellipsoids;
+  std::vector<Eigen::AlignedBox3f> boxes;  // of the ellipsoids
+  std::vector<SkinGrid> grids;
+
+  SkinAround() = default;
+  SkinAround(std::span<const SkinEllipsoid> skin, std::span<const SkinGrid> grids);
+  // The part that a strand may meet whose points lie in the box (m) before they are lifted.
+  SkinAround near(const Eigen::AlignedBox3f& strand) const;
+};
 
 // Those that may lift a point of the box (m), in their order; at most kMaxSkin of shaders/shared.h, the first ones.
 std::vector<SkinEllipsoid> skinNear(std::span<const SkinEllipsoid> skin, const Eigen::Vector3f& low,

@@ -9,7 +9,6 @@
 
 #include "render/strands/look_share.h"
 #include "render/strands/shader_math.h"
-#include "render/strands/skin_lift.h"
 #include "shaders/shared.h"
 
 namespace render {
@@ -402,8 +401,8 @@ Vector2f StrandGrowth::lifted(const Strand& strand, float s) const {
   return lift * opening(wayAt(strand, s), 0.3f * std::min(strand.metres, 0.15f) + 1e-4f);
 }
 
-CurvePoint StrandGrowth::curvePoint(const Strand& strand, const LayerWindow& window, float s, float fraction,
-                                    SkinLift& lift) const {
+// As if there were no skin.
+CurvePoint StrandGrowth::curvePoint(const Strand& strand, const LayerWindow& window, float s, float fraction) const {
   const Vector4f &p0 = window.before, &p1 = window.from.position, &p2 = window.to.position, &p3 = window.after;
   const float f = fraction;
   const Vector4f c1 = 0.5f * (p2 - p0), c2 = p0 - 2.5f * p1 + 2.0f * p2 - 0.5f * p3,
@@ -425,8 +424,6 @@ CurvePoint StrandGrowth::curvePoint(const Strand& strand, const LayerWindow& win
     point.position += stray.x() * outward;
     along += stray.y() * outward;
   }
-  along = unitOr(along, axis);
-  leaveSkin(skin_, skin_grids_, s, lift, point.position, along);
   point.tangent = unitOr(along, axis);
   point.along = strand.end > 0.0f ? s / strand.end : 0.0f;
   return point;
@@ -448,11 +445,19 @@ template <class Parameter>
 void StrandGrowth::growAt(const Strand& strand, std::span<CurvePoint> points, const Parameter& parameter) const {
   int layer = 0;
   LayerWindow window = layerWindow(strand, 0);
-  SkinLift lift;
+  Eigen::AlignedBox3f around;
   for (std::size_t index = 0; index < points.size(); ++index) {
     const float s = parameter(index);
     moveWindow(strand, layerOf(strand, s), layer, window);
-    points[index] = curvePoint(strand, window, s, s - static_cast<float>(layer), lift);
+    points[index] = curvePoint(strand, window, s, s - static_cast<float>(layer));
+    around.extend(points[index].position);
+  }
+  const SkinAround near = skin_.near(around);
+  SkinLift lift;
+  for (std::size_t index = 0; index < points.size(); ++index) {
+    CurvePoint& point = points[index];
+    leaveSkin(near.ellipsoids, near.grids, parameter(index), lift, point.position, point.tangent);
+    point.tangent = unitOr(point.tangent, Vector3f::UnitY());
   }
 }
 

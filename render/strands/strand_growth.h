@@ -14,6 +14,7 @@
 
 #include "render/frame_input.h"
 #include "render/strands/hair_layout.h"
+#include "render/strands/skin_lift.h"
 
 namespace render {
 
@@ -70,10 +71,7 @@ class StrandGrowth {
 
   void setLook(const HairLook& look);
   // What drawn strands are lifted out of, whose distances stay where they are; none at first.
-  void setSkin(std::span<const SkinEllipsoid> skin, std::span<const SkinGrid> grids) {
-    skin_.assign(skin.begin(), skin.end());
-    skin_grids_.assign(grids.begin(), grids.end());
-  }
+  void setSkin(std::span<const SkinEllipsoid> skin, std::span<const SkinGrid> grids) { skin_ = {skin, grids}; }
   void setFade(const StrandFade& fade) { fade_ = fade; }
 
   const HairLayout& layout() const { return layout_; }
@@ -138,15 +136,14 @@ class StrandGrowth {
   void addFrizz(const Strand& strand, const Eigen::Vector2f& way, Eigen::Vector4f& bend) const;
   Eigen::Vector4f sideways(const Strand& strand, float s) const;
   Eigen::Vector2f lifted(const Strand& strand, float s) const;
-  CurvePoint curvePoint(const Strand& strand, const LayerWindow& window, float s, float fraction, SkinLift& lift) const;
+  CurvePoint curvePoint(const Strand& strand, const LayerWindow& window, float s, float fraction) const;
   template <class Parameter>
   void growAt(const Strand& strand, std::span<CurvePoint> points, const Parameter& parameter) const;
 
   HairLayout layout_;
   std::vector<int> first_strand_;  // see dealStrands
   HairLook look_;
-  std::vector<SkinEllipsoid> skin_;
-  std::vector<SkinGrid> skin_grids_;
+  SkinAround skin_;
   StrandFade fade_;
   int asked_segments_;                                // a layer
   float segments_ = 1;                                // a layer, with those that curls need

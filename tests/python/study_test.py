@@ -55,6 +55,18 @@ class Study(unittest.TestCase):
         self.assertEqual((again["skipped"], again["worker_seconds"]), (12, 0))
         self.assertEqual(bytes_of(self.at / "cut"), expected)
 
+    def test_a_job_that_raises_stops_no_other_and_is_tried_again(self):
+        bad = study.jobs({"shake": study.Clip.shake(0.25)}, {"bob": BOB.read_text()}, [{"bend": -5}, {"bend": 0.3}])
+        for _ in range(2):
+            summary = study.run(bad, self.at / "bad", scheduler="serial")
+            self.assertEqual(list(summary["failed"]), [bad[0]["key"]])
+            self.assertEqual(len(list((self.at / "bad" / "jobs").iterdir())), 1)
+            rows = (self.at / "bad" / "table.csv").read_text().splitlines()
+            self.assertEqual(len(rows), 3)
+            self.assertIn("bend", rows[1].rsplit(",", 1)[0])
+            self.assertTrue(rows[0].split(",")[5] == "error" and "error" not in rows[2].lower(), rows)
+        self.assertEqual(summary["skipped"], 1)
+
     def test_seeds_draw_parameters_in_their_range(self):
         drawn = [job["parameters"]["bend"] for job in self.jobs if job["row"]["clip"] == "slow" and "friction" not in job["parameters"]]
         self.assertEqual(drawn[0], 0.3)

@@ -25,12 +25,13 @@ constexpr double kSkullRadius = 0.09;   // m, of the sphere that roots lie about
 constexpr double kOtherHeads = 2;       // times as large or small
 constexpr float kThinnestHair = 8e-6f;  // m, a diameter
 constexpr float kUsualWidth = 8e-5f, kWidestHair = 4e-4f, kAllHairs = 1e5f;
+constexpr double kLikeHair = 1.5;                                                  // times as wide or narrow
 constexpr float kFar = 0.018f, kAside = 0.05f, kFloating = 0.03f, kDeep = 0.006f;  // m
 // Of roots over a scalp: spread and coverage of the sphere about them, and how long the mean of their directions is;
 // the cosine between that and the way the hair hangs.
 constexpr float kCapSpread = 0.08f, kCapCoverage = 0.03f, kMinCap = 0.2f, kMaxCap = 0.7f, kHanging = -0.3f;
-constexpr float kSeated = 0.003f, kSeatSpread = 0.02f;   // m: on the skin, over so much of it
-constexpr float kStandsUp = 0.15f, kStandsAside = 0.3f;  // m from the head of the figure as it stands
+constexpr float kSkull = 0.09f;                         // m around its middle, all of it head
+constexpr float kSeated = 0.003f, kSeatSpread = 0.02f;  // m: on the skin, over so much of it
 constexpr std::size_t kManyPoints = 256, kNumbersTold = 6;
 
 std::string textOf(const char* format, double a, double b = 0) {
@@ -96,11 +97,10 @@ struct Inspector {
   void widths();
   void place();
   void placeSeated();
-  bool standsInWorld() const;
   bool scaleRoots(std::vector<Vector3f>& roots);
   void floating(const std::vector<Vector3f>& roots);
-  void body(const std::vector<Vector3f>& roots, const Vector3f& move);
-  float offHeadTurned(const Matrix3f& matrix) const;
+  void body(const std::vector<Vector3f>& roots, const Vector3f& move, bool skull_alone);
+  bool heldToHead() const;
   void turn(const Matrix3f& matrix);
 };
 
@@ -273,30 +273,43 @@ void Inspector::turn(const Matrix3f& matrix) {
   }
 }
 
-// Hair grows on the upper side of a skull and hangs down. Hair that stands away from where it grows, as a mohawk's or
-// stubble, says nothing of down.
+// Whether the figure's head tells how the roots are turned: those over a scalp, of a head of its size.
+bool Inspector::heldToHead() const {
+  return head != nullptr && onCap() && judged > 0 && std::abs(std::log(skull.radius / kSkullRadius)) < std::log(1.25);
+}
+
 void Inspector::axes() {
   if (hints.axes) return turn(*hints.axes);
   const Matrix3f told = toldAxes(hints);
   turn(told);
   if (ends.first.size() < kMinRoots || inWorld() || seat) return;
-  constexpr std::array<std::string_view, 6> kNames{"y", "z", "-y", "-z", "x", "-x"};
-  constexpr std::array<std::array<float, 3>, 6> kUps{
-      {{0, 1, 0}, {0, 0, 1}, {0, -1, 0}, {0, 0, -1}, {1, 0, 0}, {-1, 0, 0}}};
-  const Vector3f ours = cap.dot(hang) > 0.5f * cap.norm() * hang.norm() ? cap : Vector3f(cap - 1.5f * hang);
-  const Vector3f up = told.transpose() * ours;  // in the file's axes, as --up has them
-  std::array<float, 6> scores{};
-  for (std::size_t n = 0; n < 6; ++n) scores[n] = Vector3f(kUps[n].data()).dot(up);
-  const auto best = static_cast<std::size_t>(std::ranges::max_element(scores) - scores.begin());
-  if (kNames[best] == (hints.up == 'Z' ? "z" : "y")) return;
+  const std::array<float, 6> scores = upsByHang(cap, hang, told);
+  const auto hung = static_cast<std::size_t>(std::ranges::max_element(scores) - scores.begin());
+  const std::size_t told_up = hints.up == 'Z' ? 1 : 0;
+  std::size_t best = hung;
+  bool fits = false;
+  const auto standing = head != nullptr && judged > 0 ? standingUp(*head, skull.center, told) : std::nullopt;
+  if (standing) {
+    best = *standing;
+    fits = best != told_up;
+  } else if (heldToHead()) {
+    const std::array<float, 6> off = upsOnHead(*head, ends.first, skull.center, told);
+    const auto least = static_cast<std::size_t>(std::ranges::min_element(off) - off.begin());
+    if (farBetter(off[least], off[hung])) best = least;
+    fits = farBetter(off[best], off[told_up]);
+  }
+  if (best == told_up) return;
   std::array<float, 6> sorted = scores;
   std::ranges::sort(sorted);
-  const bool certain = !hints.up && sorted[5] - sorted[4] > 0.15f;
+  const bool certain = fits || (!hints.up && sorted[5] - sorted[4] > 0.15f);
   addGuess("up",
-           "the hair hangs as if " + std::string(kNames[best]) + " were up" +
+           (standing ? "the hair is as high as a standing figure's if "
+            : fits   ? "the roots lie on the head as if "
+                     : "the hair hangs as if ") +
+               std::string(kUps[best]) + (standing ? " is up" : " were up") +
                (hints.up ? std::string("; the file tells ") + (*hints.up == 'Z' ? "z" : "y") : ", not y"),
-           "--up " + std::string(kNames[best]), ofScalp(), certain);
-  if (certain && ofScalp()) turn(*axesOfUp(kNames[best]));
+           "--up " + std::string(kUps[best]), fits || ofScalp(), certain);
+  if (certain && (fits || ofScalp())) turn(*axesOfUp(kUps[best]) * told.transpose());
 }
 
 // More hair grows behind the middle of the skull than before it; where a scalp is half bald by intent, its roots lie
@@ -304,11 +317,15 @@ void Inspector::axes() {
 void Inspector::facing() {
   if (hints.turn) return turn(*hints.turn);
   if (ends.first.size() < kMinRoots || crowd() || leftAsTold("up")) return;
-  if (cap.y() < 0 || -cap.z() >= std::abs(cap.x()) || std::hypot(cap.x(), cap.z()) < 0.1f) return;
-  const double degrees = cap.z() > std::abs(cap.x()) ? 180 : cap.x() > 0 ? 90 : -90;
+  const bool backed = cap.y() < 0 || -cap.z() >= std::abs(cap.x()) || std::hypot(cap.x(), cap.z()) < 0.1f;
+  double degrees = backed ? 0 : cap.z() > std::abs(cap.x()) ? 180 : cap.x() > 0 ? 90 : -90;
   // A head is longer than wide: hair a quarter turn aside leaves it by 8 mm, hair that is turned right by 0.3 mm.
-  if (head != nullptr && offHeadTurned(turnedAbout(degrees)) > 2 * offHeadTurned(Matrix3f::Identity())) return;
-  const bool certain = ofScalp() || inWorld();
+  const auto off = [&](double by) { return offHeadTurned(*head, ends.first, skull.center, turnedAbout(by)); };
+  if (degrees != 0 && head != nullptr && off(degrees) > 2 * off(0)) degrees = 0;
+  const bool fits = degrees == 0 && heldToHead();
+  if (fits) degrees = turnOnHead(*head, ends.first, skull.center);
+  if (degrees == 0) return;
+  const bool certain = fits || ofScalp() || inWorld();
   addGuess("facing",
            textOf("the hair grows on the wrong side: the face would look %.0f degrees aside", std::abs(degrees)),
            textOf("--turn %.0f", degrees), certain, true);
@@ -339,30 +356,17 @@ void Inspector::widths() {
   const float widest = std::max(kWidestHair, 1.5f * kUsualWidth * kAllHairs / static_cast<float>(groom.strandCount()));
   const float most = std::min(widest, 5e-3f);
   if (middle >= kThinnestHair && middle <= most) return;
-  const double powers =
-      std::round(std::log10((middle < kThinnestHair ? kUsualWidth : std::sqrt(kUsualWidth * most)) / middle));
+  // Few strands may be wide by intent, unless a power of ten makes them as wide as hair is.
+  const auto powersTo = [&](float wanted) { return std::round(std::log10(wanted / middle)); };
+  const double usual = powersTo(kUsualWidth), to_usual = middle * std::pow(10.0, usual) / kUsualWidth;
+  const bool plain = middle < kThinnestHair || (to_usual > 1 / kLikeHair && to_usual < kLikeHair);
+  const double powers = plain ? usual : powersTo(std::sqrt(kUsualWidth * most));
   const double scale = std::pow(10.0, powers == 0 ? (middle < kThinnestHair ? 1 : -1) : powers);
   const bool certain = settled() && !leftAsTold("unit") && !inWorld();
   if (certain) result.mends.width_scale = static_cast<float>(scale);
   add("widths", inJudged() + textOf("the strands are %.3g mm wide; hair is %.2g mm", 1e3 * middle, 1e3 * kUsualWidth),
       textOf("--width-scale %g", scale), certain);
   result.findings.back().fault = !inWorld();  // few strands are drawn wide
-}
-
-// Of roots turned by `matrix` and moved to the head as well as they can be.
-float Inspector::offHeadTurned(const Matrix3f& matrix) const {
-  std::vector<Vector3f> roots = ends.first;
-  for (Vector3f& root : roots) root = matrix * root;
-  const Vector3f move = moveToHead(*head, roots, matrix * skull.center);
-  for (Vector3f& root : roots) root += move;
-  return offHead(*head, roots);
-}
-
-// Whether the roots lie about the head of the figure as it stands in the world.
-bool Inspector::standsInWorld() const {
-  if (!head->standing) return false;
-  const Vector3f away = skull.center - *head->standing;
-  return std::abs(away.y()) < kStandsUp && std::hypot(away.x(), away.z()) < kStandsAside;
 }
 
 // Brings roots all over a scalp to the size of the head, where that is certain.
@@ -394,7 +398,7 @@ void Inspector::place() {
     for (Vector3f& root : roots) root += move;
     const bool fits = offHead(*head, roots) <= kFar && (cap.norm() > kMinCap || inWorld());
     const bool certain = fits && settled() && !leftAsTold("up");
-    world = world || (fits && standsInWorld());
+    world = world || (fits && standsInWorld(*head, skull.center));
     add("roots",
         inJudged() + textOf(world ? "the hair is on a head in the world, %.3g m from the figure's own"
                                   : "the roots lie %.3g m from the scalp",
@@ -406,7 +410,7 @@ void Inspector::place() {
     if (certain) result.mends.move = move;
   }
   if (!inWorld()) floating(roots);
-  if (!world) body(roots, move);  // in the world the figure's pose need not be that of rest
+  body(roots, move, world);
 }
 
 // Hair that lies on the skin stays there, or comes along with the head that it lies on in the world.
@@ -428,7 +432,7 @@ void Inspector::placeSeated() {
   result.on_head = true;
   result.mends.move = seat->move;
   floating(roots);
-  body(roots, seat->move);
+  body(roots, seat->move, false);
 }
 
 void Inspector::floating(const std::vector<Vector3f>& roots) {
@@ -440,8 +444,9 @@ void Inspector::floating(const std::vector<Vector3f>& roots) {
       "--drop-far 0.03", false);
 }
 
-// Strands that go into the body beyond their first tenth.
-void Inspector::body(const std::vector<Vector3f>& roots, const Vector3f& move) {
+// Strands that go into the body beyond their first tenth. skull_alone: in the world the figure's pose need not be that
+// of rest, and the head alone is where it is.
+void Inspector::body(const std::vector<Vector3f>& roots, const Vector3f& move, bool skull_alone) {
   std::size_t through = 0;
   float deepest = 0;
   const float scale = static_cast<float>(judged) * result.mends.scale;
@@ -450,6 +455,7 @@ void Inspector::body(const std::vector<Vector3f>& roots, const Vector3f& move) {
     float deep = 0;
     for (const Vector3f& point : points) {
       const Vector3f at = scale * (result.mends.axes * point) + move;
+      if (skull_alone && (at - head->center).norm() > kSkull) continue;
       if ((at - roots[n]).norm() > 0.01f) deep = std::max(deep, -head->distance(at));
     }
     through += deep > kDeep;

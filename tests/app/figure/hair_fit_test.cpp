@@ -58,6 +58,29 @@ TEST(HairFit, WhatFitsIsLeftAlone) {
   }
 }
 
+TEST(HairFit, WhatIsNearTheHeadButTurnedAboutIsTurnedBack) {
+  for (const app::Style style :
+       {app::Style::kShort, app::Style::kShoulder, app::Style::kLong, app::Style::kBob, app::Style::kPixie}) {
+    const sim::HairMeshShape shape = styled(style);
+    const auto about = [](const Vec3& p) { return Vec3(-p.x(), p.y(), -p.z()); };
+    sim::HairMeshShape file = changed(shape, about), told = file;
+    const std::string note = app::fitHair(figure(), true, file);
+    EXPECT_NE(note.find("y up, facing -z"), std::string::npos) << static_cast<int>(style) << ": " << note;
+    EXPECT_LT(farthest(file, shape), 1e-9) << note;
+    EXPECT_EQ(app::fitHair(figure(), true, told, {.axes = true}), "") << "told axes hold";
+  }
+}
+
+TEST(HairFit, AToldAxisIsUpAndTheFacingIsFound) {
+  const auto back = [](const Vec3& p) -> Vec3 { return Vec3(-p.x(), p.z(), p.y()) + Vec3(0, 0, 1.6); };  // facing y
+  for (const char up : {'y', 'z'}) {
+    sim::HairMeshShape file = changed(styled(app::Style::kLong), back);
+    const std::string note = app::fitHair(figure(), true, file, {.metres = true, .up = up});
+    EXPECT_EQ(note.find("z up, facing y") != std::string::npos, up == 'z') << note;
+    EXPECT_EQ(farthest(file, styled(app::Style::kLong)) < 0.06, up == 'z') << note;
+  }
+}
+
 struct Written {
   const char* name;
   Vec3 (*axes)(const Vec3&);  // of the scalp's frame, as the file has them

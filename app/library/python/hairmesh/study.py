@@ -168,9 +168,12 @@ def _encode(result):
 
 
 def _work(job):
-    """What a worker does with a job: the file's bytes, and what they cost."""
+    """What a worker does with a job: the file's bytes, and what they cost; of a job that raises, its error."""
     start = sum(os.times()[:4])  # processor time, of programs that it started as well
-    data = _encode(job["function"](job))
+    try:
+        data = _encode(job["function"](job))
+    except Exception as error:
+        return {"key": job["key"], "error": f"{type(error).__name__}: {error}"}
     peak = max(resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
     return {"key": job["key"], "data": data, "seconds": sum(os.times()[:4]) - start, "peak_bytes": 1024 * peak}
 
@@ -208,10 +211,14 @@ def _client(scheduler, workers):
     return Client(cluster), cluster
 
 
-def write_table(listed, folder):
-    """Writes folder/table.csv of the jobs that are there, in the order given; returns its path."""
+def write_table(listed, folder, failed={}):
+    """Writes folder/table.csv of the jobs that are there, in the order given, and of those that failed (errors by key);
+    returns its path."""
     rows = []
     for job in listed:
+        if job["key"] in failed:
+            rows.append({"key": job["key"], **job["row"], "error": failed[job["key"]]})
+            continue
         with np.load(folder / "jobs" / (job["key"] + ".npz")) as data:
             metrics = json.loads(str(data["metrics"]))
         rows.append({"key": job["key"], **job["row"], **metrics})
@@ -229,19 +236,25 @@ def run(listed, folder, scheduler=None, workers=None, client=None, done=None):
 
     scheduler: address of a Dask scheduler; None: a local cluster of `workers` processes, one a core where not said;
     "serial": this process alone, without Dask. client: a Dask client of the caller's instead. done: called with every
-    key that was written. Returns jobs, skipped, seconds, worker_seconds (of their processors), peak_bytes (of the largest
+    key that was written. A job that raises stops no other: it has its error in the table's column of that name, and is
+    tried again by the next run. Returns jobs, skipped, failed (errors by key), seconds, worker_seconds (of their processors), peak_bytes (of the largest
     worker) and the table's path."""
     folder, start = pathlib.Path(folder), time.perf_counter()
     (folder / "jobs").mkdir(parents=True, exist_ok=True)
     unique = {job["key"]: job for job in listed}
     todo = [job for key, job in unique.items() if not (folder / "jobs" / (key + ".npz")).exists()]
-    summary = {"jobs": len(unique), "skipped": len(unique) - len(todo), "worker_seconds": 0.0, "peak_bytes": 0}
+    failed = {}
+    summary = {"jobs": len(unique), "skipped": len(unique) - len(todo), "failed": failed, "worker_seconds": 0.0,
+               "peak_bytes": 0}
     own = cluster = None
     if todo and scheduler != "serial" and client is None:
         own, cluster = _client(scheduler, workers)
         client = own
     try:
         for result in _spread(todo, client) if client is not None and todo else _in_turn(todo):
+            if "error" in result:
+                failed[result["key"]] = result["error"]
+                continue
             _write(folder / "jobs" / (result["key"] + ".npz"), result["data"])
             summary["worker_seconds"] += result["seconds"]
             summary["peak_bytes"] = max(summary["peak_bytes"], result["peak_bytes"])
@@ -252,6 +265,6 @@ def run(listed, folder, scheduler=None, workers=None, client=None, done=None):
             own.close()
         if cluster is not None:
             cluster.close(timeout=60)
-    summary["table"] = str(write_table(listed, folder))
+    summary["table"] = str(write_table(listed, folder, failed))
     summary["seconds"] = time.perf_counter() - start
     return summary
