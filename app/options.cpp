@@ -332,6 +332,8 @@ void finishExport(const Unchecked& unchecked, Options& options) {
   if (spec.file.ends_with(".tfx") && spec.points > 0 && !isTfxPoints(static_cast<std::size_t>(spec.points)))
     throw UsageError("--export-points cannot be " + std::to_string(spec.points) +
                      " for a .tfx file; give 4, 8, 16, 32 or 64");
+  if (spec.samples == 1 && spec.shutter != ExportSpec{}.shutter)
+    throw UsageError("--export-shutter would do nothing: a frame has one moment; add --export-samples 3");
   if (spec.samples > 1 && !takesClip(spec.file))
     throw UsageError("--export-samples needs a file that takes a clip; name it .abc, .usda or .glb");
   if (spec.samples > 1 && !(options.record + options.replay + options.save_state + options.load_state).empty())

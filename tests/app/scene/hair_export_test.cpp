@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <nlohmann/json.hpp>
 
 #include "app/figure/head_model.h"
 #include "app/files/data_path.h"
@@ -140,7 +141,13 @@ TEST(HairExport, FramesThatAreLeftOutLeaveTheTimesOfTheOthers) {
 
 TEST(HairExport, MotionBlurSamplesLieBetweenTheFrames) {
   const std::string folder = test::freshFolder("hair_export_blur");
-  EXPECT_EQ(exported(folder + "/blur.abc", {"--export-samples", "3", "--export-shutter", "0.5"}, 4).exit_code, 0);
+  const std::string report = folder + "/report.json";
+  const std::vector<std::string> moments{"--export-samples", "3", "--export-shutter", "0.5", "--report", report};
+  EXPECT_EQ(exported(folder + "/blur.abc", moments, 4).exit_code, 0);
+  int steps = 0;
+  for (const auto& frame : nlohmann::json::parse(test::readAll(report))["frames"])
+    steps += frame["counts"]["steps"].get<int>();
+  EXPECT_GE(steps, 3) << "those of a frame's further moments are counted";
   EXPECT_EQ(exported(folder + "/plain.abc", {}, 4).exit_code, 0);
   const std::string blur = test::readAll(folder + "/blur.abc"), plain = test::readAll(folder + "/plain.abc");
   const std::vector<double> times = app::alembicTimes(blur, "blur.abc");
@@ -236,6 +243,7 @@ TEST(HairExport, WhatCannotBeAskedForIsNamed) {
   EXPECT_EQ(test::lacking(fault({"--export-what", "guides"}), "add --export FILE"), "");
   EXPECT_EQ(test::lacking(fault({"--export", "a.glb", "--export-what", "strands"}), "glTF has no curves"), "");
   EXPECT_EQ(test::lacking(fault({"--export", "a.ply", "--export-samples", "3"}), "takes a clip"), "");
+  EXPECT_EQ(test::lacking(fault({"--export", "a.abc", "--export-shutter", "0.3"}), "add --export-samples 3"), "");
   EXPECT_EQ(test::lacking(fault({"--export", "a.tfx", "--export-points", "10"}), "give 4, 8, 16, 32 or 64"), "");
   EXPECT_EQ(test::lacking(fault({"--export", "a.abc", "--export-frames", "9-3"}), "FIRST-LAST"), "");
   EXPECT_EQ(test::lacking(fault({"--frames", "3", "--export", "a.abc", "--export-frames", "1-9"}),
