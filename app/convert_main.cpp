@@ -45,8 +45,8 @@ const char* const kFooter =
 .glb, .gltf, .vrm). OUT.obj is read by hairmesh --hair; of curves OUT.json beside it has what makes the strands
 individual, as a preset for hairmesh --preset.
 
-Exit codes: 0 fine, 1 a file that cannot be written, hair that is left away from the head, or a groom most of which is
-lost (more than half of the strands do not fit, and all are over 5 % of their length off in the mean), 2 usage, 4 a file
+Exit codes: 0 fine, 1 a file that cannot be written, strips that are left away from the head, or a groom most of which
+is lost (more than half of the strands do not fit, and all are over 5 % of their length off in the mean), 2 usage, 4 a file
 that cannot be used.)";
 
 // Puts metres in place of a unit's name; returns what is wrong with it.

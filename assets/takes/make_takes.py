@@ -17,8 +17,8 @@ def brush(tool, at, along=(0, 0, 0), radius=0.04, strength=0.5, falloff=1, mirro
     return ["brush", tool, " ".join(repr(float(v)) for v in (*at, *along, radius, strength, falloff, mirror)), 0]
 
 
-def paint(field, at, value, radius=0.05, strength=0.6, mirror=1):
-    return ["paint", field, " ".join(repr(float(v)) for v in (*at, radius, strength, 1, mirror, value)), 0]
+def dye(at, color, radius=0.05, strength=0.6, mirror=1):
+    return ["paint", "color", " ".join(repr(float(v)) for v in (*at, radius, strength, 1, mirror, *color)), 0]
 
 
 def checksum(before, state):
@@ -72,14 +72,14 @@ def strip(share, off=0.105):
 
 
 def crest():
-    """A strip grown from the shaved head, combed up, its ends cut level and stiffened."""
+    """A strip grown from the shaved head, and dyed."""
     for k in range(10):
         yield []
     for k in range(36):
         yield [brush("grow", strip(share / 6), radius=0.035, strength=1) for share in range(7)]
     yield [ask("end-gesture")]
     for k in range(20):
-        yield [paint("stiffness", strip(share / 6), 1.0, radius=0.06) for share in range(7)]
+        yield [dye(strip(share / 6), (1.0, 0.4, 0.35), radius=0.06) for share in range(7)]
     yield [ask("end-gesture")]
 
 
