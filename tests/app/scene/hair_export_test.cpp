@@ -145,8 +145,8 @@ TEST(HairExport, MotionBlurSamplesLieBetweenTheFrames) {
   const std::vector<std::string> moments{"--export-samples", "3", "--export-shutter", "0.5", "--report", report};
   EXPECT_EQ(exported(folder + "/blur.abc", moments, 4).exit_code, 0);
   int steps = 0;
-  for (const auto& frame : nlohmann::json::parse(test::readAll(report))["frames"])
-    steps += frame["counts"]["steps"].get<int>();
+  const nlohmann::json read = nlohmann::json::parse(test::readAll(report));
+  for (const auto& frame : read.at("frames")) steps += frame.at("counts").at("steps").get<int>();
   EXPECT_GE(steps, 3) << "those of a frame's further moments are counted";
   EXPECT_EQ(exported(folder + "/plain.abc", {}, 4).exit_code, 0);
   const std::string blur = test::readAll(folder + "/blur.abc"), plain = test::readAll(folder + "/plain.abc");
