@@ -1,6 +1,7 @@
 #include "app/platform/interrupt.h"
 
 #include <signal.h>
+#include <time.h>
 
 #include <iostream>
 #include <limits>
@@ -9,10 +10,22 @@ namespace app {
 
 namespace {
 
-volatile sig_atomic_t came = 0;
+constexpr double kTogether = 0.5;  // s, within which several are one
 
-void note(int) {
+volatile sig_atomic_t came = 0;
+double came_at = 0;  // s; the handler's alone, which blocks the other signals
+
+void note(int signal) {
+  timespec time{};
+  clock_gettime(CLOCK_MONOTONIC, &time);
+  const double at = static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  if (came == 0) came_at = at;
   came = 1;
+  if (at - came_at < kTogether) return;
+  struct sigaction action {};
+  action.sa_handler = SIG_DFL;
+  sigaction(signal, &action, nullptr);
+  raise(signal);  // comes when this returns
 }
 
 }  // namespace
@@ -20,7 +33,7 @@ void note(int) {
 void noteInterrupts() {
   struct sigaction action {};
   action.sa_handler = note;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  for (const int other : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&action.sa_mask, other);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   struct sigaction before {};

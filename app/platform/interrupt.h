@@ -1,5 +1,5 @@
 // Ctrl-C and a request to terminate end a run after the frame in work, so that its files are whole and its report is
-// written. A second one ends the program at once.
+// written. Another one, half a second later or more, ends the program at once: `timeout` sends two in a row.
 #pragma once
 
 namespace app {

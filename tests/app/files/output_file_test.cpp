@@ -203,7 +203,10 @@ struct Child {
     }
     return false;
   }
+  // Twice in a row, as `timeout` does.
   int interrupt(int signal = SIGINT) {
+    ::kill(pid, signal);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
     ::kill(pid, signal);
     ::waitpid(pid, &status, 0);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
