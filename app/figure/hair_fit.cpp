@@ -242,8 +242,8 @@ std::vector<Reading> forOtherHeads(const std::vector<Reading>& all, const std::v
 }
 
 // The reading of hair near the scalp that lies on it when it is turned about, and then leaves the face free.
-std::optional<Reading> turnedAbout(const std::vector<Vec3>& roots, const std::vector<Vec3>& vertices,
-                                   const Scalp& scalp) {
+std::optional<Reading> facingBack(const std::vector<Vec3>& roots, const std::vector<Vec3>& vertices,
+                                  const Scalp& scalp) {
   Reading turned;
   turned.axes = &axesKnown()[3];
   for (int k = 0; k < 3; ++k) turned.linear.row(k) = turned.axes->rows[static_cast<std::size_t>(k)];
@@ -291,8 +291,10 @@ std::string fitHair(const Character& character, bool mend, sim::HairMeshShape& s
   if (as_made_distance != nullptr) *as_made_distance = before;
   if (hair_roots.empty()) return "";
   std::optional<Reading> about;
-  if (before <= limit && !told.axes) about = turnedAbout(hair_roots, shape.positions, scalp);
-  if (before <= limit && !about) return "";
+  if (before <= limit) {
+    if (!told.axes && told.up != 'z') about = facingBack(hair_roots, shape.positions, scalp);
+    if (!about) return "";
+  }
   const Ways ways = scalp_points.empty() ? waysOf(shape) : Ways{};
   std::vector<Vec3> roots(scalp_points.begin(), scalp_points.end());
   if (roots.empty()) roots = hair_roots;

@@ -48,7 +48,7 @@ struct RecordedFrame {
   std::vector<Request> requests;
 };
 
-inline constexpr double kMaxApart = 5e-3;  // m in the mean: a single lock slides off 30 mm away by rounding alone
+inline constexpr double kMaxApart = 5e-3;  // m in the mean: rounding alone moves a single lock by up to 42 mm
 
 // Where a character's columns end, m.
 using ColumnEnds = std::vector<Vec3>;

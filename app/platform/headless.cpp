@@ -154,7 +154,7 @@ void Run::exportFrame(int frame) {  // its number
   hair_export->add(demo, frame);
   for (int sample = 1; sample < spec.samples; ++sample) {
     advanceFrame(demo, spec.shutter / ((spec.samples - 1) * report.fps), {});
-    addMoment(demo.stats, report.frames.back());
+    addWork(demo.stats, report.frames.back());
     hair_export->add(demo, frame);
   }
 }

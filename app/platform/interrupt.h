@@ -1,5 +1,6 @@
 // Ctrl-C and a request to terminate end a run after the frame in work, so that its files are whole and its report is
-// written. Another one, half a second later or more, ends the program at once: `timeout` sends two in a row.
+// written. One that comes half a second later or more ends the program at once. Those before count as the same:
+// `timeout` sends two in a row.
 #pragma once
 
 namespace app {

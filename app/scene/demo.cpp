@@ -157,65 +157,68 @@ void addDrawing(const render::DrawSkipCounts& drawing, SkipCounts& counts) {
   add(kSkipSkyVisibility, drawing.sky_visibility);
 }
 
-void addStep(const sim::StepReport& report, double step_seconds, FrameStats& stats) {
-  double inside = 0;
-  for (const double stage : report.seconds) inside += stage;
-  stats.seconds[kTimeForces] += report.seconds[sim::kStageForces];
-  stats.seconds[kTimeSolve] += report.seconds[sim::kStageSolve];
-  stats.seconds[kTimeCollision] += report.seconds[sim::kStageCollision];
-  stats.seconds[kTimeMinimization] += report.seconds[sim::kStageMinimization];
-  stats.seconds[kTimeStepOther] += report.seconds[sim::kStageOther];
-  // A step of an actor is its simulation and, before that, its pose.
-  stats.seconds[kTimeCharacter] += std::max(0.0, step_seconds - inside);
-  stats.steps += 1;
-  stats.solver_iterations += report.solver_iterations;
-  stats.solves += report.solves;
-  stats.minimization_iterations += report.minimization_iterations;
-  stats.residual = std::max(stats.residual, report.residual);
-  stats.residual_acceleration = std::max(stats.residual_acceleration, report.residual_acceleration);
-  stats.converged = stats.converged && report.converged;
-  stats.work_units += report.work_units;
-  stats.solves_cut += report.solve_cut;
-  stats.corrections_cut += report.corrections_cut;
-  stats.contacts += report.contacts;
-  stats.corrected += report.corrected;
-  stats.recoveries += report.recoveries;
-  if (report.recoveries > 0) stats.fault_report = report.fault_report;
-  stats.carried += report.carried;
-  stats.guided += report.guided;
-  stats.pins_out_of_reach = std::max(stats.pins_out_of_reach, report.pins_out_of_reach);
-  stats.max_penetration = std::max(stats.max_penetration, report.max_penetration);
-  count(report.contacts == 0 && report.corrected == 0, stats.always[kNoContact]);
-  count(report.solver_iterations == 0, stats.always[kSolvedAtStart]);
-  const auto add = [&](BuiltInId id, const sim::SkipCount& left_out) {
-    stats.always[id].skipped += left_out.skipped;
-    stats.always[id].of += left_out.of;
-  };
-  add(kNoNewBalance, report.refreshes);
-  add(kNoStiffness, report.force_kinds);
-  add(kOutOfReach, report.collider_tests);
+void addWork(const FrameStats& more, FrameStats& stats) {
+  for (std::size_t k = 0; k < stats.seconds.size(); ++k) stats.seconds[k] += more.seconds[k];
+  stats.whole += more.whole;
+  stats.steps += more.steps;
+  stats.solver_iterations += more.solver_iterations;
+  stats.solves += more.solves;
+  stats.minimization_iterations += more.minimization_iterations;
+  stats.residual = std::max(stats.residual, more.residual);
+  stats.residual_acceleration = std::max(stats.residual_acceleration, more.residual_acceleration);
+  stats.converged = stats.converged && more.converged;
+  stats.work_units += more.work_units;
+  stats.solves_cut += more.solves_cut;
+  stats.corrections_cut += more.corrections_cut;
+  stats.contacts += more.contacts;
+  stats.corrected += more.corrected;
+  stats.recoveries += more.recoveries;
+  if (more.recoveries > 0) stats.fault_report = more.fault_report;
+  stats.carried += more.carried;
+  stats.guided += more.guided;
+  stats.pins_out_of_reach = std::max(stats.pins_out_of_reach, more.pins_out_of_reach);
+  stats.max_penetration = std::max(stats.max_penetration, more.max_penetration);
+  for (std::size_t id = 0; id < stats.always.size(); ++id) {
+    stats.always[id].skipped += more.always[id].skipped;
+    stats.always[id].of += more.always[id].of;
+  }
 }
 
-void addMoment(const FrameStats& moment, FrameStats& stats) {
-  for (std::size_t k = 0; k < stats.seconds.size(); ++k) stats.seconds[k] += moment.seconds[k];
-  stats.whole += moment.whole;
-  stats.shown_time = moment.shown_time;
-  stats.steps += moment.steps;
-  stats.lost = moment.lost;
-  stats.solver_iterations += moment.solver_iterations;
-  stats.solves += moment.solves;
-  stats.minimization_iterations += moment.minimization_iterations;
-  stats.residual = std::max(stats.residual, moment.residual);
-  stats.residual_acceleration = std::max(stats.residual_acceleration, moment.residual_acceleration);
-  stats.converged = stats.converged && moment.converged;
-  stats.work_units += moment.work_units;
-  stats.contacts += moment.contacts;
-  stats.corrected += moment.corrected;
-  stats.recoveries += moment.recoveries;
-  if (moment.recoveries > 0) stats.fault_report = moment.fault_report;
-  stats.guided += moment.guided;
-  stats.carried += moment.carried;
-  stats.max_penetration = std::max(stats.max_penetration, moment.max_penetration);
+void addStep(const sim::StepReport& report, double step_seconds, FrameStats& stats) {
+  FrameStats step;
+  double inside = 0;
+  for (const double stage : report.seconds) inside += stage;
+  step.seconds[kTimeForces] = report.seconds[sim::kStageForces];
+  step.seconds[kTimeSolve] = report.seconds[sim::kStageSolve];
+  step.seconds[kTimeCollision] = report.seconds[sim::kStageCollision];
+  step.seconds[kTimeMinimization] = report.seconds[sim::kStageMinimization];
+  step.seconds[kTimeStepOther] = report.seconds[sim::kStageOther];
+  // A step of an actor is its simulation and, before that, its pose.
+  step.seconds[kTimeCharacter] = std::max(0.0, step_seconds - inside);
+  step.steps = 1;
+  step.solver_iterations = report.solver_iterations;
+  step.solves = report.solves;
+  step.minimization_iterations = report.minimization_iterations;
+  step.residual = report.residual;
+  step.residual_acceleration = report.residual_acceleration;
+  step.converged = report.converged;
+  step.work_units = report.work_units;
+  step.solves_cut = report.solve_cut;
+  step.corrections_cut = report.corrections_cut;
+  step.contacts = report.contacts;
+  step.corrected = report.corrected;
+  step.recoveries = report.recoveries;
+  step.fault_report = report.fault_report;
+  step.carried = report.carried;
+  step.guided = report.guided;
+  step.pins_out_of_reach = report.pins_out_of_reach;
+  step.max_penetration = report.max_penetration;
+  count(report.contacts == 0 && report.corrected == 0, step.always[kNoContact]);
+  count(report.solver_iterations == 0, step.always[kSolvedAtStart]);
+  step.always[kNoNewBalance] = {report.refreshes.skipped, report.refreshes.of};
+  step.always[kNoStiffness] = {report.force_kinds.skipped, report.force_kinds.of};
+  step.always[kOutOfReach] = {report.collider_tests.skipped, report.collider_tests.of};
+  addWork(step, stats);
 }
 
 std::string numericalNote(const FrameStats& stats) {

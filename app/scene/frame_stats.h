@@ -75,8 +75,9 @@ inline void count(bool left_out, SkipCount& skip_count) {
 // Adds what a step did.
 void addStep(const sim::StepReport& report, double step_seconds, FrameStats& stats);
 
-// Adds what was done in a moment between this frame and the next.
-void addMoment(const FrameStats& moment, FrameStats& stats);
+// Adds what was done besides: times and counts are summed, and the worst values kept. What a frame ends with stays: its
+// time, rungs and drawing.
+void addWork(const FrameStats& more, FrameStats& stats);
 
 // What the log and the window say about recoveries and teleports of a frame; empty when there were none.
 std::string numericalNote(const FrameStats& stats);

@@ -160,9 +160,7 @@ SkinAround SkinAround::near(const Eigen::AlignedBox3f& strand) const {
   for (std::size_t i = 0; i < ellipsoids.size(); ++i) {
     if (boxes[i].intersects(box)) near.ellipsoids.push_back(ellipsoids[i]);
   }
-  for (const SkinGrid& grid : grids) {
-    if (meetsBox(grid, box.center(), 0.5f * box.sizes())) near.grids.push_back(grid);
-  }
+  near.grids = skinNear(grids, box.min(), box.max());
   return near;
 }
 

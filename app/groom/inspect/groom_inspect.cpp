@@ -278,6 +278,7 @@ bool Inspector::heldToHead() const {
   return head != nullptr && onCap() && judged > 0 && std::abs(std::log(skull.radius / kSkullRadius)) < std::log(1.25);
 }
 
+// By the height of a standing figure's head; else by how the roots lie on the head; else by how hair grows and hangs.
 void Inspector::axes() {
   if (hints.axes) return turn(*hints.axes);
   const Matrix3f told = toldAxes(hints);

@@ -211,10 +211,10 @@ def _client(scheduler, workers):
     return Client(cluster), cluster
 
 
-def write_table(listed, folder, failed={}):
+def write_table(listed, folder, failed=None):
     """Writes folder/table.csv of the jobs that are there, in the order given, and of those that failed (errors by key);
     returns its path."""
-    rows = []
+    rows, failed = [], failed or {}
     for job in listed:
         if job["key"] in failed:
             rows.append({"key": job["key"], **job["row"], "error": failed[job["key"]]})
@@ -237,8 +237,8 @@ def run(listed, folder, scheduler=None, workers=None, client=None, done=None):
     scheduler: address of a Dask scheduler; None: a local cluster of `workers` processes, one a core where not said;
     "serial": this process alone, without Dask. client: a Dask client of the caller's instead. done: called with every
     key that was written. A job that raises stops no other: it has its error in the table's column of that name, and is
-    tried again by the next run. Returns jobs, skipped, failed (errors by key), seconds, worker_seconds (of their processors), peak_bytes (of the largest
-    worker) and the table's path."""
+    tried again by the next run. Returns jobs, skipped, failed (errors by key), seconds, worker_seconds (of their
+    processors), peak_bytes (of the largest worker) and the table's path."""
     folder, start = pathlib.Path(folder), time.perf_counter()
     (folder / "jobs").mkdir(parents=True, exist_ok=True)
     unique = {job["key"]: job for job in listed}
