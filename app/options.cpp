@@ -134,7 +134,7 @@ void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
       .value("--fit", options.fit, "on|off",
              "Whether unit, axes and size of a hair mesh file are inferred where its roots are far from the scalp (on)")
       ->check(oneOf({"on", "off"}));
-  group.value("--motion", options.motion, "FILE", "Motion: BVH, glTF, FBX, or ARCSim .mot with --parts");
+  group.value("--motion", options.motion, "FILE", "Motion or body: BVH, glTF, FBX, OBJ, or ARCSim .mot with --parts");
   group.value("--parts", options.parts, "DIR", "Folder of body0000.obj ... for a .mot motion");
   group.value("--clip", options.clip, "NAME", "Clip of a motion file that holds several");
   group.value("--preset", options.preset, "NAME", "Preset by name or file");

@@ -33,7 +33,7 @@ Kind kindOf(const std::string& file) {
   const std::string begin = readText(file).substr(0, 256);
   if (begin.find("HIERARCHY") != std::string::npos) return Kind::kBvh;
   if (begin.find("NumFrames") != std::string::npos) return Kind::kMot;
-  for (const char* model : {".glb", ".gltf", ".fbx", ".dae"})
+  for (const char* model : {".glb", ".gltf", ".fbx", ".dae", ".obj"})
     if (ending == model) return Kind::kModel;
   return Kind::kUnknown;
 }
@@ -96,7 +96,7 @@ Character makeCharacter(Kind kind, const std::string& text, const std::string& m
       break;
     case Kind::kUnknown:
       throw InputError(motion_file, "", "is no motion or character that is known here",
-                       "give a .bvh, .mot, .glb, .gltf, .fbx or .dae file");
+                       "give a .bvh, .mot, .glb, .gltf, .fbx, .dae or .obj file");
   }
   character.name = std::filesystem::path(motion_file).stem().string();
   for (Clip& clip : character.clips) {

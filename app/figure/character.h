@@ -89,8 +89,9 @@ struct Character {
   std::vector<std::string> notes;  // what was inferred: units, axes, frame rate, rest pose, head joint
 };
 
-// Any clip and body: BVH (a mannequin is grown around it), glTF or FBX (with its own mesh), or ARCSim .mot with
-// `parts_dir` holding body0000.obj ... Chosen by the file's ending and content. Throws InputError.
+// Any clip and body: BVH (a mannequin is grown around it), glTF, FBX, Collada or OBJ (with its own mesh; one without a
+// skeleton stands still), or ARCSim .mot with `parts_dir` holding body0000.obj ... Chosen by the file's ending and
+// content. Throws InputError.
 Character loadCharacter(const std::string& motion_file, const std::string& parts_dir = "");
 
 // Pose at `time` seconds into the clip; out-of-range times are clamped. Interpolates (slerp, lerp).

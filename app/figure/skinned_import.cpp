@@ -1,4 +1,4 @@
-// Characters with their own mesh: glTF, FBX and Collada through assimp.
+// Characters with their own mesh: glTF, FBX, Collada and OBJ through assimp.
 //
 // assimp's node tree becomes joints one for one; joints here are rigid, so scales are baked: a joint's place is the
 // node's scaled place, its orientation the node's without scale, in the rest pose as in every frame.
@@ -10,10 +10,12 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <unordered_map>
 
 #include "app/figure/character_build.h"
 #include "app/figure/mesh_materials.h"
+#include "app/figure/still_body.h"
 #include "app/figure/uri_files.h"
 #include "app/files/errors.h"
 #include "app/files/text_file.h"
@@ -367,17 +369,67 @@ bool carriesSkin(const Character& character, int joint) {
   return std::any_of(dominant.begin(), dominant.end(), [&](int j) { return below[j]; });
 }
 
-Character assemble(Import& import) {
+void holdStill(Import& import, Character& character) {
+  Clip still;
+  still.name = "rest";
+  still.joint_count = static_cast<int>(character.skeleton.joints.size());
+  for (const Joint& joint : character.skeleton.joints) {
+    still.rotations.emplace_back(joint.rest_local.linear());
+    still.translations.push_back(joint.rest_local.translation());
+  }
+  character.clips.push_back(std::move(still));
+  import.notes.push_back("animation: none, the rest pose is held");
+}
+
+bool hasBones(const aiScene& scene) {
+  return std::any_of(scene.mMeshes, scene.mMeshes + scene.mNumMeshes, [](const aiMesh* m) { return m->HasBones(); });
+}
+
+// A mesh that nothing moves: a body, and a head on its neck.
+Character assembleStill(Import& import, const SkinnedMesh& raw, MaterialList& materials) {
+  const std::optional<StillBody> body = measureStillBody(raw.positions, raw.triangles);
+  if (!body)
+    import.fail("", "is no figure: it has no skeleton, and no neck under a head is found in its mesh",
+                "give a body that stands upright, or a skeleton with a joint 'Head'; hair goes to --hair, a hat to "
+                "--attach");
+  import.to_metres = body->to_metres;
+  import.notes = body->notes;
   Character character;
+  character.mesh = gatherMesh(import, materials);
+  materials.fill(*import.scene, import.file, character.mesh, import.notes);
+  character.skeleton.joints = {{"body", -1, Rigid::Identity(), Rigid::Identity()}, {"head", 0}};
+  character.skeleton.joints[1].rest_local.translation() = body->neck;
+  character.skeleton.joints[1].rest_world.translation() = body->neck;
+  character.head_joint = 1;
+  for (std::size_t v = 0; v < character.mesh.positions.size(); ++v) {
+    const Vec3 above = character.mesh.positions[v].cast<double>() - body->neck;
+    const bool is_head = above.y() >= 0 && std::hypot(above.x(), above.z()) < body->head_height;
+    character.mesh.joints[v] = {static_cast<std::uint16_t>(is_head ? 1 : 0), 0, 0, 0};
+    character.mesh.weights[v] = {1, 0, 0, 0};
+  }
+  holdStill(import, character);
+  character.notes = import.notes;
+  sampleHead(nullptr, character);
+  BodyRoles roles;
+  roles.head = 1;
+  roles.spine = {0, 1};
+  fitParts(partsByJoint(character, roles), character);
+  return character;
+}
+
+Character assemble(Import& import) {
   MaterialList materials;
   const SkinnedMesh raw = gatherMesh(import, materials);
   bool is_neck = false;
   Skeleton skeleton = buildSkeleton(import);
   int head = findHeadJoint(skeleton, referenceOf(skeleton, raw), is_neck);
+  if (head < 0 && !hasBones(*import.scene) && import.scene->mNumAnimations == 0)
+    return assembleStill(import, raw, materials);
   if (head >= 0) head = import.by_name.at(skeleton.joints[head].name);
   if (head < 0)
     import.fail("skeleton", "no joint of " + std::to_string(skeleton.joints.size()) + " can carry a head",
                 "name the joint that turns the head 'Head'");
+  Character character;
   inferUnits(raw, head, import);
   character.mesh = gatherMesh(import, materials);
   materials.fill(*import.scene, import.file, character.mesh, import.notes);
@@ -402,17 +454,7 @@ Character assemble(Import& import) {
 
   for (unsigned a = 0; a < import.scene->mNumAnimations; ++a)
     character.clips.push_back(sampleClip(import, *import.scene->mAnimations[a], "animation " + std::to_string(a)));
-  if (character.clips.empty()) {
-    Clip still;
-    still.name = "rest";
-    still.joint_count = static_cast<int>(skeleton.joints.size());
-    for (const Joint& joint : skeleton.joints) {
-      still.rotations.emplace_back(joint.rest_local.linear());
-      still.translations.push_back(joint.rest_local.translation());
-    }
-    character.clips.push_back(std::move(still));
-    import.notes.push_back("animation: none, the rest pose is held");
-  }
+  if (character.clips.empty()) holdStill(import, character);
   character.notes = import.notes;
   character.notes.push_back("head: joint '" + skeleton.joints[head].name + "'; facing told by " + how);
   sampleHead(nullptr, character);
@@ -425,7 +467,8 @@ Character assemble(Import& import) {
 Character importSkinned(const std::string& file) {
   // Read first: a missing or empty file gets the same message whatever its kind, and size is bounded.
   if (readText(file).size() < 12)
-    throw InputError(file, "", "is too short to be a character", "give a complete .glb, .gltf, .fbx or .dae file");
+    throw InputError(file, "", "is too short to be a character",
+                     "give a complete .glb, .gltf, .fbx, .dae or .obj file");
   Import import(file);
   Assimp::Importer importer;
   importer.SetIOHandler(new UriFiles);  // the importer's from here on

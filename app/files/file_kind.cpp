@@ -8,6 +8,7 @@
 #include <string>
 
 #include "app/figure/attachment.h"
+#include "app/figure/still_body.h"
 #include "app/files/errors.h"
 #include "app/files/json_kind.h"
 #include "app/files/json_reader.h"
@@ -35,7 +36,9 @@ std::string beginningOf(const std::string& file, std::size_t count) {
 FileKind kindOfStillMesh(const std::string& file) {
   if (hasLayers(readText(file))) return FileKind::kHairMesh;
   try {
-    return looksWorn(readPolygons(file)) ? FileKind::kAttachment : FileKind::kHairMesh;
+    const PolygonMesh mesh = readPolygons(file);
+    if (isWholeBody(mesh)) return FileKind::kMotion;
+    return looksWorn(mesh) ? FileKind::kAttachment : FileKind::kHairMesh;
   } catch (const InputError&) {
     return FileKind::kHairMesh;  // whose reader says what is wrong
   }
@@ -84,7 +87,8 @@ FileKind fileKind(const std::string& file) {
   if (groomFormat(bytes, file)) return FileKind::kHairMesh;
   throw InputError(
       file, "", "is no kind of file that this program reads",
-      "give a scene or preset (.json), a motion (.bvh, .glb, .gltf, .fbx, .mot), a panorama (.hdr), a hair "
+      "give a scene or preset (.json), a motion or body (.bvh, .glb, .gltf, .fbx, .mot, .obj), a panorama (.hdr), a "
+      "hair "
       "mesh (.obj) or a groom: curves (.hair, .abc, .usda, .tfx, .ply), strips or tubes (.obj, .fbx, .glb, .gltf, "
       ".vrm)");
 }

@@ -34,7 +34,7 @@ const Purpose& purposeOf(BrowseFor what) {
        "Open",
        {".json", ".bvh",  ".glb",  ".gltf", ".fbx", ".dae", ".mot", ".obj", ".abc",   ".usda",
         ".usd",  ".usdc", ".usdz", ".hair", ".tfx", ".ply", ".vrm", ".hdr", ".state", ".hairmesh"}},
-      {BrowseFor::kMotion, "Open a motion", "Open", {".bvh", ".glb", ".gltf", ".fbx", ".dae", ".mot"}},
+      {BrowseFor::kMotion, "Open a motion", "Open", {".bvh", ".glb", ".gltf", ".fbx", ".dae", ".mot", ".obj"}},
       {BrowseFor::kParts, "Folder of body parts", "Choose", {"/"}},
       {BrowseFor::kHair,
        "Open a hair mesh or a groom",
