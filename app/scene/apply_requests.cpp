@@ -27,12 +27,12 @@
 
 namespace app {
 
-namespace {
-
 void showMessage(const std::string& text, Demo& demo) {
   demo.message = text;
   demo.message_is_fault = false;
 }
+
+namespace {
 
 void changePreset(const std::string& name, Demo& demo) {
   std::vector<CharacterLook*> looks;

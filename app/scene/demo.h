@@ -129,6 +129,9 @@ void addDrawing(const render::DrawSkipCounts& drawing, SkipCounts& counts);
 // Applies and clears demo.requests. See apply_requests.cpp.
 void applyRequests(Demo& demo);
 
+// Shows a success, or what is worth knowing, until the next one. See apply_requests.cpp.
+void showMessage(const std::string& text, Demo& demo);
+
 inline Actor& selectedActor(Demo& demo) {
   return demo.actors[demo.selected];
 }
