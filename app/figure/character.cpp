@@ -14,6 +14,7 @@
 #include "app/figure/skin_cover.h"
 #include "app/files/errors.h"
 #include "app/files/file_ending.h"
+#include "app/files/polygon_file.h"
 #include "app/files/text_file.h"
 #include "app/motion/clip_repair.h"
 #include "app/motion/foot_plant.h"
@@ -25,7 +26,8 @@ namespace {
 
 enum class Kind { kBvh, kMot, kModel, kUnknown };
 
-// By ending; what has another than .bvh or .mot is looked into: a motion may be named as a model.
+// By ending; hair meshes are refused. What has another than .bvh or .mot is looked into: a motion may be named as a
+// model.
 Kind kindOf(const std::string& file) {
   const std::string ending = endingOf(file);
   if (ending == ".bvh") return Kind::kBvh;
@@ -33,6 +35,8 @@ Kind kindOf(const std::string& file) {
   const std::string begin = readText(file).substr(0, 256);
   if (begin.find("HIERARCHY") != std::string::npos) return Kind::kBvh;
   if (begin.find("NumFrames") != std::string::npos) return Kind::kMot;
+  if (ending == ".obj" && hasLayers(readText(file)))
+    throw InputError(file, "", "is a hair mesh, no figure", "give it to --hair");
   for (const char* model : {".glb", ".gltf", ".fbx", ".dae", ".obj"})
     if (ending == model) return Kind::kModel;
   return Kind::kUnknown;

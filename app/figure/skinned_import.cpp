@@ -369,6 +369,7 @@ bool carriesSkin(const Character& character, int joint) {
   return std::any_of(dominant.begin(), dominant.end(), [&](int j) { return below[j]; });
 }
 
+// The rest pose as the only clip.
 void holdStill(Import& import, Character& character) {
   Clip still;
   still.name = "rest";
@@ -397,6 +398,7 @@ Character assembleStill(Import& import, const SkinnedMesh& raw, MaterialList& ma
   Character character;
   character.mesh = gatherMesh(import, materials);
   materials.fill(*import.scene, import.file, character.mesh, import.notes);
+  if (turnFacesOutwards(character.mesh)) import.notes.push_back("faces: wound inwards, turned round");
   character.skeleton.joints = {{"body", -1, Rigid::Identity(), Rigid::Identity()}, {"head", 0}};
   character.skeleton.joints[1].rest_local.translation() = body->neck;
   character.skeleton.joints[1].rest_world.translation() = body->neck;

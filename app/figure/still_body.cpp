@@ -19,6 +19,8 @@ constexpr double kNarrow = 0.62;       // a neck's cross-section over the head's
 constexpr double kWide = 1.5;          // what lies below over the neck's, at least
 constexpr double kOpenNeck = 0.15;     // an open neck's end over the head's cross-section, at least
 constexpr double kLeastHead = 0.06;    // of the mesh's height
+constexpr double kSlimHead = 0.3;      // a head's width and depth over its height with the neck, at least
+constexpr double kBroadHead = 1.6;     // and at most
 constexpr double kHeadsOfFigure = 4;   // a whole figure's height in heads with neck, at least
 constexpr double kAhead = 0.05;        // of the head's height: the face before the neck, at least
 constexpr double kUsualHeight = 1.70;  // m
@@ -69,6 +71,14 @@ Outline outlineOf(std::span<const Eigen::Vector3f> positions, std::span<const st
   return outline;
 }
 
+// Whether what lies above a level is as wide and deep as heads are.
+bool isHead(const Outline& outline, int neck) {
+  Box all;
+  for (int level = 0; level < neck; ++level) all.extend(outline.levels[static_cast<std::size_t>(level)]);
+  const double height = outline.high - outline.heightOf(neck);
+  return !all.isEmpty() && all.sizes().minCoeff() > kSlimHead * height && all.sizes().maxCoeff() < kBroadHead * height;
+}
+
 // The narrowest level under a head, -1: there is none.
 int neckOf(const Outline& outline) {
   double head = 0;
@@ -79,10 +89,10 @@ int neckOf(const Outline& outline) {
       if (area > head && narrowest < 0) head = area;
       if (area < kNarrow * head && level > kLeastHead * kLevels) narrowest = level;
     } else if (area > kWide * outline.areaOf(narrowest)) {
-      return narrowest;
+      return isHead(outline, narrowest) ? narrowest : -1;
     }
   }
-  return narrowest >= 0 && outline.areaOf(narrowest) > kOpenNeck * head ? narrowest : -1;
+  return narrowest >= 0 && outline.areaOf(narrowest) > kOpenNeck * head && isHead(outline, narrowest) ? narrowest : -1;
 }
 
 Eigen::Vector2d middleOf(const Outline& outline, int from, int to) {
@@ -91,7 +101,7 @@ Eigen::Vector2d middleOf(const Outline& outline, int from, int to) {
   return all.isEmpty() ? Eigen::Vector2d::Zero().eval() : all.center();
 }
 
-// Of a head whose lower half lies before the neck, as a chin does: the nearest axis; +z where it hardly does.
+// The axis towards which the head's lower half lies before the neck, as a chin does; +z where it hardly does.
 Vec3 facing(const Outline& outline, int neck, std::string& how) {
   const double head = outline.high - outline.heightOf(neck);
   const Eigen::Vector2d ahead = middleOf(outline, neck / 2, neck * 7 / 8) - middleOf(outline, neck, neck + 1);
@@ -132,7 +142,7 @@ std::optional<StillBody> measureStillBody(std::span<const Eigen::Vector3f> posit
   int neck = neckOf(outline);
   const bool z_up = neck < 0;
   if (z_up) {
-    turn = Eigen::AngleAxisd(-EIGEN_PI / 2, Vec3::UnitX()).toRotationMatrix();
+    turn << 1, 0, 0, 0, 0, 1, 0, -1, 0;
     outline = outlineOf(positions, triangles, turn);
     neck = neckOf(outline);
   }
@@ -156,6 +166,25 @@ std::optional<StillBody> measureStillBody(std::span<const Eigen::Vector3f> posit
                 "head: what lies above the narrowest level, " + std::to_string(std::lround(100 * body.neck.y())) +
                     " cm above the mesh's lowest; facing told by " + how};
   return body;
+}
+
+bool turnFacesOutwards(SkinnedMesh& mesh) {
+  std::vector<std::uint32_t>& index = mesh.triangles;
+  const auto place = [&](std::uint32_t v) { return mesh.positions[v].cast<double>(); };
+  Vec3 middle = Vec3::Zero();
+  for (const std::uint32_t v : index) middle += place(v) / static_cast<double>(index.size());
+  double volume = 0, agreement = 0;
+  for (std::size_t t = 0; t + 2 < index.size(); t += 3) {
+    const Vec3 a = place(index[t]) - middle, b = place(index[t + 1]) - middle, c = place(index[t + 2]) - middle;
+    volume += a.dot(b.cross(c));
+    agreement += (b - a).cross(c - a).dot(mesh.normals[index[t]].cast<double>());
+  }
+  if (volume >= 0) return false;
+  for (std::size_t t = 0; t + 2 < index.size(); t += 3) std::swap(index[t + 1], index[t + 2]);
+  // Normals of the file may point outwards though its faces do not.
+  if (agreement > 0)
+    for (Eigen::Vector3f& normal : mesh.normals) normal = -normal;
+  return true;
 }
 
 bool isWholeBody(const PolygonMesh& mesh) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/figure/character.h"
 #include "app/groom/strips/polygon_mesh.h"
 
 namespace app {
@@ -17,7 +18,7 @@ struct StillBody {
   Eigen::Matrix4d to_metres = Eigen::Matrix4d::Identity();  // from the file's unit and axes
   Eigen::Vector3d neck = Eigen::Vector3d::Zero();           // the middle of the narrowest level under the head
   double head_height = 0;                                   // m, from there to the crown
-  bool whole = false;                                       // it stands on legs: no bust, no head alone
+  bool whole = false;                                       // at least four heads tall: no bust, no head alone
   std::vector<std::string> notes;                           // axis, unit, neck and facing, and what told them
 };
 
@@ -27,7 +28,10 @@ struct StillBody {
 std::optional<StillBody> measureStillBody(std::span<const Eigen::Vector3f> positions,
                                           std::span<const std::uint32_t> triangles);
 
-// Whether polygons are a whole body.
+// Turns faces, and normals that follow them, round where they enclose a negative volume. Returns whether they did.
+bool turnFacesOutwards(SkinnedMesh& mesh);
+
+// Whether polygons are a body from head to feet.
 bool isWholeBody(const PolygonMesh& mesh);
 
 }  // namespace app

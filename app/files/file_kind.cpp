@@ -88,9 +88,8 @@ FileKind fileKind(const std::string& file) {
   throw InputError(
       file, "", "is no kind of file that this program reads",
       "give a scene or preset (.json), a motion or body (.bvh, .glb, .gltf, .fbx, .mot, .obj), a panorama (.hdr), a "
-      "hair "
-      "mesh (.obj) or a groom: curves (.hair, .abc, .usda, .tfx, .ply), strips or tubes (.obj, .fbx, .glb, .gltf, "
-      ".vrm)");
+      "hair mesh (.obj) or a groom: curves (.hair, .abc, .usda, .tfx, .ply), strips or tubes (.obj, .fbx, .glb, "
+      ".gltf, .vrm)");
 }
 
 bool isRecording(std::string_view text) {

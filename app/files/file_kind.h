@@ -21,7 +21,8 @@ enum class FileKind {
 };
 
 // By its ending; scenes and presets, both JSON, by their content, and so are saved states, grooms of any name, and what
-// glTF and FBX hold: without bones and animation it is hair, or what looks worn (app/figure/attachment.h). Throws
+// glTF and FBX hold: without bones and animation it is a body (app/figure/still_body.h, told as a motion), what looks
+// worn (app/figure/attachment.h), or hair. Throws
 // InputError for any other file.
 FileKind fileKind(const std::string& file);
 

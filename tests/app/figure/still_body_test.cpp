@@ -3,10 +3,17 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
 #include <vector>
+
+#include "app/figure/character.h"
+#include "app/files/data_path.h"
+#include "app/files/errors.h"
+#include "app/files/file_kind.h"
 
 namespace {
 
@@ -33,6 +40,36 @@ struct Shape {
   }
 };
 
+// `turn` of a shape that faces +z with y up, in metres, and its faces wound inwards where asked.
+std::string writeObj(const std::string& name, const Shape& shape, const Eigen::Matrix3f& turn, bool inwards) {
+  const std::string file = (std::filesystem::path(::testing::TempDir()) / name).string();
+  std::ofstream out(file);
+  for (const Eigen::Vector3f& p : shape.positions) out << "v " << (turn * p).transpose() << '\n';
+  for (std::size_t t = 0; t < shape.triangles.size(); t += 3) {
+    const std::uint32_t a = shape.triangles[t] + 1, b = shape.triangles[t + 1] + 1, c = shape.triangles[t + 2] + 1;
+    out << "f " << a << ' ' << (inwards ? b : c) << ' ' << (inwards ? c : b) << '\n';
+  }
+  return file;
+}
+
+double volumeOf(const app::SkinnedMesh& mesh) {
+  double six_volumes = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
+    const auto at = [&](std::size_t k) { return mesh.positions[mesh.triangles[t + k]].cast<double>(); };
+    six_volumes += at(0).dot(at(1).cross(at(2)));
+  }
+  return six_volumes / 6;
+}
+
+std::string whyNoFigure(const std::string& file) {
+  try {
+    app::loadCharacter(file);
+  } catch (const app::InputError& fault) {
+    return fault.what();
+  }
+  return "";
+}
+
 Shape standingBody() {
   Shape body;
   body.addEllipsoid({0, 1.57f, 0.02f}, {0.075f, 0.115f, 0.095f});  // skull
@@ -46,29 +83,68 @@ Shape standingBody() {
   return body;
 }
 
-TEST(StillBody, AxisUnitNeckAndFacingAreToldByTheOutline) {
-  Shape z_up = standingBody();
-  for (Eigen::Vector3f& p : z_up.positions) p = 100 * Eigen::Vector3f(p.x(), -p.z(), p.y());
-  for (const Shape& body : {standingBody(), z_up}) {
-    const auto found = app::measureStillBody(body.positions, body.triangles);
-    ASSERT_TRUE(found);
-    EXPECT_TRUE(found->whole);
-    EXPECT_NEAR(found->neck.y(), 1.40, 0.05);
-    const Eigen::Vector4d crown = body.positions[0].cast<double>().homogeneous();
-    EXPECT_NEAR((found->to_metres * crown).y(), 1.685, 0.01);  // the crown
-    double ahead = 0;
-    for (const Eigen::Vector3f& p : body.positions) {
-      const Eigen::Vector4d at = found->to_metres * p.cast<double>().homogeneous();
-      if (at.y() > 1.45) ahead = std::max(ahead, at.z());
+TEST(StillBody, StandsUprightInMetresAndLooksAheadWhateverTheFile) {
+  Eigen::Matrix3f z_up, sideways;
+  z_up << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  sideways << 0, 0, -1, 0, 1, 0, 1, 0, 0;
+  const std::vector<Eigen::Matrix3f> turns{Eigen::Matrix3f::Identity(), 100 * z_up, 1000 * sideways};
+  for (std::size_t k = 0; k < turns.size(); ++k) {
+    const std::string file = writeObj("body" + std::to_string(k) + ".obj", standingBody(), turns[k], k == 1);
+    EXPECT_EQ(app::fileKind(file), app::FileKind::kMotion);
+    const app::Character body = app::loadCharacter(file);
+    EXPECT_EQ(body.skeleton.joints[body.head_joint].name, "head");
+    EXPECT_NEAR(body.skeleton.joints[body.head_joint].rest_world.translation().y(), 1.40, 0.05);
+    EXPECT_NEAR(body.scalp.head_height, 0.25, 0.04);
+    EXPECT_GT(volumeOf(body.mesh), 0);
+    Eigen::AlignedBox3f all, head;
+    for (const Eigen::Vector3f& p : body.mesh.positions) {
+      all.extend(p);
+      if (p.y() > 1.45f) head.extend(p);
     }
-    EXPECT_GT(ahead, 0.1);  // the face, ahead of the neck
+    EXPECT_NEAR(all.sizes().y(), 1.685, 0.01);
+    EXPECT_GT(head.max().z(), 0.1);
+    EXPECT_GT(head.max().z(), -head.min().z() + 0.02f);
   }
 }
 
-TEST(StillBody, WhatHasNoNeckIsNone) {
-  Shape ball;
+TEST(StillBody, ABustIsOneOnlyWhereAFigureIsAskedFor) {
+  Shape bust = standingBody();
+  Shape upper;
+  for (std::size_t t = 0; t < bust.triangles.size(); t += 3)
+    if (bust.positions[bust.triangles[t]].y() > 1.2f && std::abs(bust.positions[bust.triangles[t]].x()) < 0.2f)
+      upper.triangles.insert(upper.triangles.end(), bust.triangles.begin() + static_cast<long>(t),
+                             bust.triangles.begin() + static_cast<long>(t) + 3);
+  upper.positions = bust.positions;
+  const std::string file = writeObj("bust.obj", upper, 39.37f * Eigen::Matrix3f::Identity(), false);
+  EXPECT_NE(app::fileKind(file), app::FileKind::kMotion);
+  const app::Character figure = app::loadCharacter(file);
+  EXPECT_NEAR(figure.scalp.head_height, 0.25, 0.04);
+}
+
+TEST(StillBody, WhatHasNoNeckIsRefusedAndHairIsToldApart) {
+  Shape ball, triangle;
   ball.addEllipsoid({0, 1, 0}, {0.3f, 0.3f, 0.3f});
-  EXPECT_FALSE(app::measureStillBody(ball.positions, ball.triangles));
+  triangle.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  triangle.triangles = {0, 1, 2};
+  for (const Shape& shape : {ball, triangle}) {
+    const std::string file = writeObj("neckless.obj", shape, Eigen::Matrix3f::Identity(), false);
+    EXPECT_NE(whyNoFigure(file).find("no neck under a head"), std::string::npos) << whyNoFigure(file);
+  }
+  const std::string hat = whyNoFigure(app::dataPath("assets/attachments/beanie.obj"));
+  EXPECT_NE(hat.find("a hat to --attach"), std::string::npos) << hat;
+  const std::string hair = whyNoFigure(app::dataPath("assets/hair/bob_example.obj"));
+  EXPECT_NE(hair.find("is a hair mesh, no figure; give it to --hair"), std::string::npos) << hair;
+}
+
+TEST(StillBody, AModelledBodyIsFoundWithAHeadThatStylesFit) {
+  const std::filesystem::path file =
+      std::filesystem::path(HAIRMESH_SOURCE_DIR) / "../shared/characters/mh_female_body.obj";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is absent";
+  EXPECT_EQ(app::fileKind(file.string()), app::FileKind::kMotion);
+  const app::Character body = app::loadCharacter(file.string());
+  EXPECT_NEAR(body.scalp.head_height, 0.22, 0.03);
+  const Eigen::Vector3d ahead = (body.skeleton.joints[1].rest_world * body.head_frame).linear().col(2);
+  EXPECT_GT(ahead.z(), 0.99);
 }
 
 }  // namespace
