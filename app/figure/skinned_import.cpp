@@ -18,6 +18,7 @@
 #include "app/figure/still_body.h"
 #include "app/figure/uri_files.h"
 #include "app/files/errors.h"
+#include "app/files/file_ending.h"
 #include "app/files/text_file.h"
 #include "app/motion/motion.h"
 #include "sim/mesh/rigid_motion.h"
@@ -382,8 +383,10 @@ void holdStill(Import& import, Character& character) {
   import.notes.push_back("animation: none, the rest pose is held");
 }
 
-bool hasBones(const aiScene& scene) {
-  return std::any_of(scene.mMeshes, scene.mMeshes + scene.mNumMeshes, [](const aiMesh* m) { return m->HasBones(); });
+// Whether nothing moves any mesh of a file.
+bool isStill(const aiScene& scene) {
+  return scene.mNumAnimations == 0 &&
+         std::none_of(scene.mMeshes, scene.mMeshes + scene.mNumMeshes, [](const aiMesh* m) { return m->HasBones(); });
 }
 
 // A mesh that nothing moves: a body, and a head on its neck.
@@ -425,7 +428,8 @@ Character assemble(Import& import) {
   bool is_neck = false;
   Skeleton skeleton = buildSkeleton(import);
   int head = findHeadJoint(skeleton, referenceOf(skeleton, raw), is_neck);
-  if (head < 0 && !hasBones(*import.scene) && import.scene->mNumAnimations == 0)
+  // Nodes of an OBJ are called like its file and groups, whatever these hold.
+  if ((head < 0 || endingOf(import.file) == ".obj") && isStill(*import.scene))
     return assembleStill(import, raw, materials);
   if (head >= 0) head = import.by_name.at(skeleton.joints[head].name);
   if (head < 0)
