@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "app/ui/ui_panels.h"
+#include "app/ui/ui_widgets.h"
 
 namespace app {
 

@@ -8,6 +8,7 @@
 #include <memory>
 #include <sstream>
 
+#include "app/files/output_file.h"
 #include "tests/bench/cpu_clock.h"
 #include "tests/bench/gnuplot.h"
 #include "tests/bench/measured_part.h"

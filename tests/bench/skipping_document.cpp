@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "app/files/output_file.h"
 #include "tests/bench/gnuplot.h"
 #include "tests/bench/measured_part.h"
 #include "tests/bench/table.h"
