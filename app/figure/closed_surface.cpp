@@ -86,6 +86,14 @@ int turnOutwards(ClosedSurface& surface) {
   return static_cast<int>(volume.size());
 }
 
+double largestPiece(const ClosedSurface& surface) {
+  const std::vector<int> piece = piecesOf(surface);
+  std::map<int, int> faces;
+  int most = 0;
+  for (const auto& f : surface.faces) most = std::max(most, ++faces[piece[static_cast<std::size_t>(f[0])]]);
+  return surface.faces.empty() ? 0 : static_cast<double>(most) / static_cast<double>(surface.faces.size());
+}
+
 std::vector<Vec3> samplesOf(const ClosedSurface& surface) {
   std::vector<Vec3> samples;
   for (const auto& f : surface.faces) {

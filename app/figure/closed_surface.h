@@ -23,6 +23,9 @@ int openEdges(const ClosedSurface& surface);
 // Turns round the pieces whose faces are wound inwards: those of negative volume. Returns the number of pieces.
 int turnOutwards(ClosedSurface& surface);
 
+// Share of the faces that belong to the piece with most of them, 0 to 1.
+double largestPiece(const ClosedSurface& surface);
+
 // Points all over the surface, 8 mm apart where its triangles are larger (m).
 std::vector<sim::Vec3> samplesOf(const ClosedSurface& surface);
 

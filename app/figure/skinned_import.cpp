@@ -383,6 +383,14 @@ void holdStill(Import& import, Character& character) {
   import.notes.push_back("animation: none, the rest pose is held");
 }
 
+// Of a head that looks ahead: see Character::head_frame.
+Rigid headFrame(const Joint& head, const Vec3& forward) {
+  Rigid scalp = Rigid::Identity();
+  scalp.linear() << Vec3::UnitY().cross(forward), Vec3::UnitY(), forward;
+  scalp.translation() = head.rest_world.translation();
+  return head.rest_world.inverse() * scalp;
+}
+
 // Whether nothing moves any mesh of a file.
 bool isStill(const aiScene& scene) {
   return scene.mNumAnimations == 0 &&
@@ -394,30 +402,28 @@ Character assembleStill(Import& import, const SkinnedMesh& raw, MaterialList& ma
   const std::optional<StillBody> body = measureStillBody(raw.positions, raw.triangles);
   if (!body)
     import.fail("", "is no figure: it has no skeleton, and no neck under a head is found in its mesh",
-                "give a body that stands upright, or a skeleton with a joint 'Head'; hair goes to --hair, a hat to "
-                "--attach");
+                "give one upright body, arms down, without hair; hair goes to --hair, a hat to --attach");
   import.to_metres = body->to_metres;
   import.notes = body->notes;
   Character character;
   character.mesh = gatherMesh(import, materials);
   materials.fill(*import.scene, import.file, character.mesh, import.notes);
-  if (turnFacesOutwards(character.mesh)) import.notes.push_back("faces: wound inwards, turned round");
-  character.skeleton.joints = {{"body", -1, Rigid::Identity(), Rigid::Identity()}, {"head", 0}};
-  character.skeleton.joints[1].rest_local.translation() = body->neck;
-  character.skeleton.joints[1].rest_world.translation() = body->neck;
+  const Rigid neck(Eigen::Translation3d(body->neck));
+  character.skeleton.joints = {{"body"}, {"head", 0, neck, neck}};
   character.head_joint = 1;
+  character.head_frame = headFrame(character.skeleton.joints[1], body->forward);
   for (std::size_t v = 0; v < character.mesh.positions.size(); ++v) {
     const Vec3 above = character.mesh.positions[v].cast<double>() - body->neck;
     const bool is_head = above.y() >= 0 && std::hypot(above.x(), above.z()) < body->head_height;
     character.mesh.joints[v] = {static_cast<std::uint16_t>(is_head ? 1 : 0), 0, 0, 0};
-    character.mesh.weights[v] = {1, 0, 0, 0};
   }
+  if (turnFacesOutwards(1, character.mesh)) import.notes.push_back("faces: wound inwards, turned round");
   holdStill(import, character);
   character.notes = import.notes;
   sampleHead(nullptr, character);
   BodyRoles roles;
   roles.head = 1;
-  roles.spine = {0, 1};
+  roles.spine = {1};
   fitParts(partsByJoint(character, roles), character);
   return character;
 }
@@ -451,12 +457,7 @@ Character assemble(Import& import) {
   orderSides(reference, forward, roles);
 
   character.head_joint = head;
-  Rigid scalp = Rigid::Identity();
-  scalp.linear().col(0) = Vec3::UnitY().cross(forward);
-  scalp.linear().col(1) = Vec3::UnitY();
-  scalp.linear().col(2) = forward;
-  scalp.translation() = skeleton.joints[head].rest_world.translation();
-  character.head_frame = skeleton.joints[head].rest_world.inverse() * scalp;
+  character.head_frame = headFrame(skeleton.joints[head], forward);
 
   for (unsigned a = 0; a < import.scene->mNumAnimations; ++a)
     character.clips.push_back(sampleClip(import, *import.scene->mAnimations[a], "animation " + std::to_string(a)));

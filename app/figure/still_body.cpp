@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "app/figure/closed_surface.h"
+
 namespace app {
 
 namespace {
@@ -15,25 +17,32 @@ using Vec3 = Eigen::Vector3d;
 using Box = Eigen::AlignedBox2d;  // x and z
 
 constexpr int kLevels = 192;
-constexpr double kNarrow = 0.62;       // a neck's cross-section over the head's, at most
-constexpr double kWide = 1.5;          // what lies below over the neck's, at least
-constexpr double kOpenNeck = 0.15;     // an open neck's end over the head's cross-section, at least
-constexpr double kLeastHead = 0.06;    // of the mesh's height
-constexpr double kSlimHead = 0.3;      // a head's width and depth over its height with the neck, at least
-constexpr double kBroadHead = 1.6;     // and at most
-constexpr double kHeadsOfFigure = 4;   // a whole figure's height in heads with neck, at least
-constexpr double kAhead = 0.05;        // of the head's height: the face before the neck, at least
-constexpr double kUsualHeight = 1.70;  // m
-constexpr double kUsualHead = 0.27;    // m, from the neck's narrowest level to the crown
+constexpr double kNarrow = 0.62;     // a neck's cross-section over the head's, at most
+constexpr double kWide = 1.5;        // what lies below over the neck's, at least
+constexpr double kOpenNeck = 0.15;   // an open neck's end over the head's cross-section, at least
+constexpr double kLeastHead = 0.06;  // of the mesh's height
+constexpr double kSlimHead = 0.3;    // a head's width and depth over its height with the neck, at least
+constexpr double kBroadHead = 1.6;   // and at most
+constexpr double kAhead = 0.05;      // of the head's height: the face before the neck, at least
+constexpr double kAsAxis = 0.12;     // rad: a face so near to an axis looks along it
+constexpr double kHeadsOfBody = 4;   // its height in heads with the neck, at least
+constexpr double kOnePiece = 0.5;    // of a body's faces, at least
+
+// A cross-section: its bounds, and the sum of its edges' middles times their lengths.
+struct Level {
+  Box box;
+  Eigen::Vector2d moment = Eigen::Vector2d::Zero();
+  double length = 0;
+};
 
 // The mesh's outline level by level, from the top down.
 struct Outline {
   double low = 0, high = 0;
-  std::vector<Box> levels;
+  std::vector<Level> levels;
 
   double heightOf(int level) const { return high - (level + 0.5) / kLevels * (high - low); }
   double areaOf(int level) const {
-    const Box& box = levels[static_cast<std::size_t>(level)];
+    const Box& box = levels[static_cast<std::size_t>(level)].box;
     return box.isEmpty() ? 0 : box.sizes().x() * box.sizes().y();
   }
 };
@@ -45,12 +54,20 @@ void extendLevels(const std::array<Vec3, 3>& corners, Outline& outline) {
   const int last = std::min(kLevels - 1, static_cast<int>(std::floor((outline.high - low) / step - 0.5)));
   for (int level = first; level <= last; ++level) {
     const double y = outline.heightOf(level);
+    Eigen::Vector2d ends[2] = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
+    int crossed = 0;
     for (int k = 0; k < 3; ++k) {
       const Vec3 &a = corners[k], &b = corners[(k + 1) % 3];
-      if ((a.y() - y) * (b.y() - y) > 0 || a.y() == b.y()) continue;
+      if ((a.y() > y) == (b.y() > y)) continue;
       const Vec3 p = a + (y - a.y()) / (b.y() - a.y()) * (b - a);
-      outline.levels[static_cast<std::size_t>(level)].extend(Eigen::Vector2d(p.x(), p.z()));
+      ends[crossed++] = {p.x(), p.z()};
     }
+    if (crossed < 2) continue;
+    Level& at = outline.levels[static_cast<std::size_t>(level)];
+    const double length = (ends[1] - ends[0]).norm();
+    at.box.extend(ends[0]).extend(ends[1]);
+    at.moment += length / 2 * (ends[0] + ends[1]);
+    at.length += length;
   }
 }
 
@@ -74,7 +91,7 @@ Outline outlineOf(std::span<const Eigen::Vector3f> positions, std::span<const st
 // Whether what lies above a level is as wide and deep as heads are.
 bool isHead(const Outline& outline, int neck) {
   Box all;
-  for (int level = 0; level < neck; ++level) all.extend(outline.levels[static_cast<std::size_t>(level)]);
+  for (int level = 0; level < neck; ++level) all.extend(outline.levels[static_cast<std::size_t>(level)].box);
   const double height = outline.high - outline.heightOf(neck);
   return !all.isEmpty() && all.sizes().minCoeff() > kSlimHead * height && all.sizes().maxCoeff() < kBroadHead * height;
 }
@@ -95,42 +112,58 @@ int neckOf(const Outline& outline) {
   return narrowest >= 0 && outline.areaOf(narrowest) > kOpenNeck * head && isHead(outline, narrowest) ? narrowest : -1;
 }
 
+// The middle of the edges between two levels.
 Eigen::Vector2d middleOf(const Outline& outline, int from, int to) {
-  Box all;
-  for (int level = from; level < to; ++level) all.extend(outline.levels[static_cast<std::size_t>(level)]);
-  return all.isEmpty() ? Eigen::Vector2d::Zero().eval() : all.center();
+  Level all;
+  for (int level = from; level < to; ++level) {
+    all.moment += outline.levels[static_cast<std::size_t>(level)].moment;
+    all.length += outline.levels[static_cast<std::size_t>(level)].length;
+  }
+  return all.length > 0 ? Eigen::Vector2d(all.moment / all.length) : Eigen::Vector2d::Zero().eval();
 }
 
-// The axis towards which the head's lower half lies before the neck, as a chin does; +z where it hardly does.
-Vec3 facing(const Outline& outline, int neck, std::string& how) {
+// The way from the neck to the head's lower half, for a chin lies ahead of a neck; +z where they hardly differ.
+Vec3 facing(const Outline& outline, int neck, std::string& note) {
   const double head = outline.high - outline.heightOf(neck);
   const Eigen::Vector2d ahead = middleOf(outline, neck / 2, neck * 7 / 8) - middleOf(outline, neck, neck + 1);
-  how = "the face, ahead of the neck";
-  if (ahead.cwiseAbs().maxCoeff() < kAhead * head) {
-    how = "nothing in the mesh: +z was taken";
+  if (ahead.norm() < kAhead * head) {
+    note = "it faces +z, which nothing in the mesh tells";
     return Vec3::UnitZ();
   }
-  return std::abs(ahead.x()) > std::abs(ahead.y()) ? Vec3(std::copysign(1, ahead.x()), 0, 0)
-                                                   : Vec3(0, 0, std::copysign(1, ahead.y()));
+  double angle = std::atan2(ahead.x(), ahead.y());
+  const double axis = EIGEN_PI / 2 * std::round(angle / (EIGEN_PI / 2));
+  if (std::abs(angle - axis) < kAsAxis) angle = axis;
+  char text[96];
+  std::snprintf(text, sizeof text, "it faces %+.2f, %+.2f (x, z), as its face lies ahead of its neck", std::sin(angle),
+                std::cos(angle));
+  note = text;
+  return {std::sin(angle), 0, std::cos(angle)};
 }
 
 // Metres in a unit of the file, and a note of it.
-std::pair<double, std::string> unitOf(double height, double head, bool whole) {
-  constexpr std::array<std::pair<double, const char*>, 4> kUnits{
-      {{1.0, "metres"}, {0.01, "centimetres"}, {0.0254, "inches"}, {0.001, "millimetres"}}};
-  const double size = whole ? height : head;
-  const double least = whole ? 1.2 : 0.2, most = whole ? 2.2 : 0.4;
+std::pair<double, std::string> unitOf(double height, double head) {
+  struct Unit {
+    double metres;
+    const char* name;
+  };
+  constexpr std::array<Unit, 5> kUnits{
+      {{1.0, "metres"}, {0.3048, "feet"}, {0.0254, "inches"}, {0.01, "centimetres"}, {0.001, "millimetres"}}};
+  struct Range {
+    double size, least, most;  // size in units, bounds in m
+  };
   char note[160];
-  for (const auto& [unit, name] : kUnits) {
-    if (size * unit < least || size * unit > most) continue;
-    std::snprintf(note, sizeof note, "unit: %s (the %s is %.2f m tall)", name, whole ? "mesh" : "head with its neck",
-                  size * unit);
-    return {unit, note};
+  for (const Range& range : {Range{head, 0.17, 0.40}, Range{height, 1.2, 2.2}}) {
+    for (const Unit& unit : kUnits) {
+      if (range.size * unit.metres < range.least || range.size * unit.metres > range.most) continue;
+      std::snprintf(note, sizeof note, "unit: %s (the mesh is %.2f m tall, its head with the neck %.2f m)", unit.name,
+                    height * unit.metres, head * unit.metres);
+      return {unit.metres, note};
+    }
   }
-  const double usual = whole ? kUsualHeight : kUsualHead;
-  std::snprintf(note, sizeof note, "unit: unknown (the %s is %.4g units tall), scaled to %.2f m",
-                whole ? "mesh" : "head with its neck", size, usual);
-  return {usual / size, note};
+  constexpr double kUsualHead = 0.25;  // m
+  std::snprintf(note, sizeof note, "unit: unknown (the head with its neck is %.4g units tall), scaled to %.2f m of it",
+                head, kUsualHead);
+  return {kUsualHead / head, note};
 }
 
 }  // namespace
@@ -149,32 +182,41 @@ std::optional<StillBody> measureStillBody(std::span<const Eigen::Vector3f> posit
   if (neck < 0) return std::nullopt;
 
   StillBody body;
-  const double height = outline.high - outline.low, head = outline.high - outline.heightOf(neck);
-  body.whole = height > kHeadsOfFigure * head;
-  const auto [unit, unit_note] = unitOf(height, head, body.whole);
-  std::string how;
-  const Vec3 forward = facing(outline, neck, how);
-  const Eigen::Matrix3d stand =
-      Eigen::AngleAxisd(-std::atan2(forward.x(), forward.z()), Vec3::UnitY()).toRotationMatrix();
+  const double head = outline.high - outline.heightOf(neck);
+  const auto [unit, unit_note] = unitOf(outline.high - outline.low, head);
+  std::string facing_note;
+  body.forward = facing(outline, neck, facing_note);
+  const double raised = std::max(0.0, -unit * outline.low);
   const Eigen::Vector2d middle = middleOf(outline, neck, neck + 1);
-  const Vec3 under(middle.x(), outline.low, middle.y());
-  body.to_metres.topLeftCorner<3, 3>() = unit * stand * turn;
-  body.to_metres.topRightCorner<3, 1>() = -unit * (stand * under);
-  body.neck = Vec3(0, unit * (outline.heightOf(neck) - outline.low), 0);
+  body.to_metres.topLeftCorner<3, 3>() = unit * turn;
+  body.to_metres(1, 3) = raised;
+  body.neck = unit * Vec3(middle.x(), outline.heightOf(neck), middle.y()) + Vec3(0, raised, 0);
+  body.height = unit * (outline.high - outline.low);
   body.head_height = unit * head;
   body.notes = {z_up ? "up axis: z, turned to y" : "up axis: y", unit_note,
-                "head: what lies above the narrowest level, " + std::to_string(std::lround(100 * body.neck.y())) +
-                    " cm above the mesh's lowest; facing told by " + how};
+                "head: what lies above the neck, the narrowest level, at " +
+                    std::to_string(std::lround(100 * body.neck.y())) + " cm; " + facing_note};
+  constexpr double kToBeSaid = 0.005;  // m
+  if (raised > kToBeSaid)
+    body.notes.push_back("ground: raised by " + std::to_string(std::lround(100 * raised)) + " cm to stand on it");
   return body;
 }
 
-bool turnFacesOutwards(SkinnedMesh& mesh) {
+bool turnFacesOutwards(int head_joint, SkinnedMesh& mesh) {
   std::vector<std::uint32_t>& index = mesh.triangles;
   const auto place = [&](std::uint32_t v) { return mesh.positions[v].cast<double>(); };
+  const auto isOfHead = [&](std::uint32_t v) { return mesh.joints[v][0] == head_joint; };
   Vec3 middle = Vec3::Zero();
-  for (const std::uint32_t v : index) middle += place(v) / static_cast<double>(index.size());
+  double count = 0;
+  for (const std::uint32_t v : index) {
+    if (!isOfHead(v)) continue;
+    middle += place(v);
+    ++count;
+  }
+  middle /= std::max(count, 1.0);
   double volume = 0, agreement = 0;
   for (std::size_t t = 0; t + 2 < index.size(); t += 3) {
+    if (!isOfHead(index[t])) continue;
     const Vec3 a = place(index[t]) - middle, b = place(index[t + 1]) - middle, c = place(index[t + 2]) - middle;
     volume += a.dot(b.cross(c));
     agreement += (b - a).cross(c - a).dot(mesh.normals[index[t]].cast<double>());
@@ -187,17 +229,15 @@ bool turnFacesOutwards(SkinnedMesh& mesh) {
   return true;
 }
 
-bool isWholeBody(const PolygonMesh& mesh) {
+bool looksLikeBody(const PolygonMesh& mesh) {
+  const ClosedSurface surface = weld(mesh);
   std::vector<Eigen::Vector3f> positions;
-  for (const Vec3& p : mesh.positions) positions.push_back(p.cast<float>());
+  for (const Vec3& p : surface.points) positions.push_back(p.cast<float>());
   std::vector<std::uint32_t> triangles;
-  for (std::size_t f = 0; f < mesh.faceCount(); ++f) {
-    const std::span<const int> face = mesh.face(f);
-    for (std::size_t k = 1; k + 1 < face.size(); ++k)
-      for (const int corner : {face[0], face[k], face[k + 1]}) triangles.push_back(static_cast<std::uint32_t>(corner));
-  }
+  for (const auto& face : surface.faces)
+    for (const int v : face) triangles.push_back(static_cast<std::uint32_t>(v));
   const std::optional<StillBody> body = measureStillBody(positions, triangles);
-  return body && body->whole;
+  return body && (body->height > kHeadsOfBody * body->head_height || largestPiece(surface) > kOnePiece);
 }
 
 }  // namespace app

@@ -37,7 +37,7 @@ FileKind kindOfStillMesh(const std::string& file) {
   if (hasLayers(readText(file))) return FileKind::kHairMesh;
   try {
     const PolygonMesh mesh = readPolygons(file);
-    if (isWholeBody(mesh)) return FileKind::kMotion;
+    if (looksLikeBody(mesh)) return FileKind::kMotion;
     return looksWorn(mesh) ? FileKind::kAttachment : FileKind::kHairMesh;
   } catch (const InputError&) {
     return FileKind::kHairMesh;  // whose reader says what is wrong

@@ -30,7 +30,7 @@ struct Purpose {
 const Purpose& purposeOf(BrowseFor what) {
   static const Purpose kPurposes[] = {
       {BrowseFor::kOpen,
-       "Open a scene, preset, motion, hair, hat, panorama or state",
+       "Open a scene, preset, motion, body, hair, hat, panorama or state",
        "Open",
        {".json", ".bvh",  ".glb",  ".gltf", ".fbx", ".dae", ".mot", ".obj", ".abc",   ".usda",
         ".usd",  ".usdc", ".usdz", ".hair", ".tfx", ".ply", ".vrm", ".hdr", ".state", ".hairmesh"}},
