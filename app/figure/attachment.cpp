@@ -137,14 +137,15 @@ Eigen::Matrix3d quarterTurn() {
 }
 
 // Brings the points into the joint's upright frame, m. Unit, origin and axis are tried together: what lies about the
-// joint, or at the joint's place on the figure as it stands, y up or z up. Returns whether it was turned from z up by
-// that.
-bool placeAt(const AttachmentSpec& spec, const PolygonMesh& mesh, const Vec3& joint, ClosedSurface& surface,
+// joint faces +z; what lies at the joint's place on the figure, y up or z up, faces as the figure stands. `upright`:
+// the joint's upright frame in the rest pose. Returns whether it was turned from z up by that.
+bool placeAt(const AttachmentSpec& spec, const PolygonMesh& mesh, const Rigid& upright, ClosedSurface& surface,
              std::string& note) {
   Eigen::AlignedBox3d box;
   for (const Vec3& p : surface.points) box.extend(p);
   const double scale = spec.scale > 0 ? spec.scale : wornUnit(spec, mesh, box.sizes().maxCoeff(), note).metres;
   const Vec3 middle = scale * box.center();
+  const Vec3 joint = upright.translation();
   const std::array<Vec3, 3> origins{Vec3::Zero(), joint, quarterTurn().transpose() * joint};
   const auto off = [&](const Vec3& origin) { return (middle - origin).norm(); };
   auto origin = spec.scale == 0 ? std::ranges::find_if(origins, [&](const Vec3& o) { return off(o) <= kNearJoint; })
@@ -154,10 +155,12 @@ bool placeAt(const AttachmentSpec& spec, const PolygonMesh& mesh, const Vec3& jo
                      "lies " + millimetresOf(off(*std::ranges::min_element(origins, {}, off))) + " from the joint '" +
                          spec.joint + "'",
                      "model it about the joint (or give \"scale\" and \"at\")");
-  const bool z_up = origin == origins.begin() + 2, turned = z_up && spec.turn.isZero();
-  if (origin != origins.begin()) note += std::string(note.empty() ? "read" : ",") + " about the figure's origin";
+  const bool of_figure = origin != origins.begin();
+  const bool turned = origin == origins.begin() + 2 && spec.turn.isZero();
+  if (of_figure) note += std::string(note.empty() ? "read" : ",") + " about the figure's origin";
   if (turned) addNote(kTurned, note);
-  const Eigen::Matrix3d turn = turned ? quarterTurn() : turnOf(spec.turn);
+  Eigen::Matrix3d turn = turned ? quarterTurn() : turnOf(spec.turn);
+  if (of_figure && spec.turn.isZero()) turn = upright.linear().transpose() * turn;
   for (Vec3& p : surface.points) p = spec.size * (turn * (scale * p - *origin)) + spec.at;
   return turned;
 }
@@ -365,8 +368,7 @@ Attachment loadAttachment(const AttachmentSpec& spec, const Character& character
   Attachment out;
   std::string note;
   const ClosedSurface of_file = surface;
-  const bool was_turned =
-      placeAt(spec, mesh, scalp.linear().transpose() * carrier.rest_world.translation(), surface, note);
+  const bool was_turned = placeAt(spec, mesh, upright, surface, note);
   out.color = colorOf(mesh);
   const Rigid to_joint = carrier.rest_world.inverse(Eigen::Isometry) * upright;
   for (Vec3& p : surface.points) p = to_joint * p;

@@ -146,8 +146,8 @@ std::pair<double, std::string> unitOf(double height, double head) {
     double metres;
     const char* name;
   };
-  constexpr std::array<Unit, 5> kUnits{
-      {{1.0, "metres"}, {0.3048, "feet"}, {0.0254, "inches"}, {0.01, "centimetres"}, {0.001, "millimetres"}}};
+  constexpr std::array<Unit, 4> kUnits{
+      {{1.0, "metres"}, {0.0254, "inches"}, {0.01, "centimetres"}, {0.001, "millimetres"}}};
   struct Range {
     double size, least, most;  // size in units, bounds in m
   };

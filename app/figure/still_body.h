@@ -24,7 +24,7 @@ struct StillBody {
 };
 
 // Up is the axis, y before z, along which there is a neck: the narrowest level between a head and shoulders, or the end
-// of an open neck. The unit is the one of metres, feet, inches, centimetres and millimetres that makes the head with
+// of an open neck. The unit is the one of metres, inches, centimetres and millimetres that makes the head with
 // its neck 0.17 to 0.40 m tall; where none does, the one that makes the body 1.2 to 2.2 m tall. The face lies ahead of
 // the neck. Empty: there is no neck.
 std::optional<StillBody> measureStillBody(std::span<const Eigen::Vector3f> positions,

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "app/figure/attachment.h"
 #include "app/figure/character.h"
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
@@ -125,6 +126,28 @@ TEST(StillBody, ABodyAboutTheOriginStandsOnTheGround) {
   const Eigen::Vector3d head = figure.skeleton.joints[1].rest_world.translation();
   EXPECT_NEAR(head.y(), 1.40, 0.05);
   EXPECT_NEAR(head.x(), -2, 0.01);
+}
+
+TEST(StillBody, ABustIsOneAndTheHatOfItsSceneStaysWhereItIs) {
+  Shape bust;
+  bust.addEllipsoid({0, 1.57f, 0.02f}, {0.075f, 0.115f, 0.095f});
+  bust.addEllipsoid({0, 1.47f, 0.06f}, {0.04f, 0.04f, 0.05f});
+  bust.addEllipsoid({0, 1.42f, -0.02f}, {0.055f, 0.1f, 0.055f});
+  bust.addEllipsoid({0, 1.25f, 0}, {0.2f, 0.1f, 0.12f});
+  Shape peak;
+  peak.addEllipsoid({0, 1.66f, 0.16f}, {0.07f, 0.03f, 0.05f});  // ahead of the forehead
+  const Eigen::Matrix3f back = Eigen::AngleAxisf(static_cast<float>(EIGEN_PI), Eigen::Vector3f::UnitY()).matrix();
+  const app::Character figure = app::loadCharacter(writeObj("bust.obj", bust, 39.37f * back, false));
+  EXPECT_NEAR(figure.scalp.head_height, 0.25, 0.04);
+  EXPECT_LT(forwardOf(figure).z(), -0.99);
+  app::AttachmentSpec spec;
+  spec.file = writeObj("peak.obj", peak, back, false);
+  spec.joint = "head";
+  const app::Attachment worn = app::loadAttachment(spec, figure);
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& p : worn.positions) box.extend(p);
+  const Eigen::Vector3d at = figure.skeleton.joints[1].rest_world * box.center().cast<double>();
+  EXPECT_LT((at - Eigen::Vector3d(0, 1.66, -0.16)).norm(), 0.1) << at.transpose() << worn.note;
 }
 
 TEST(StillBody, WhatHasNoNeckIsRefusedAndHairIsToldApart) {
