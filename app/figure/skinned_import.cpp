@@ -408,8 +408,8 @@ Character assembleStill(Import& import, const SkinnedMesh& raw, MaterialList& ma
   Character character;
   character.mesh = gatherMesh(import, materials);
   materials.fill(*import.scene, import.file, character.mesh, import.notes);
-  const Rigid neck(Eigen::Translation3d(body->neck));
-  character.skeleton.joints = {{"body"}, {"head", 0, neck, neck}};
+  const Rigid skull_base(Eigen::Translation3d(body->neck + 0.2 * body->head_height * Vec3::UnitY()));
+  character.skeleton.joints = {{"body"}, {"head", 0, skull_base, skull_base}};
   character.head_joint = 1;
   character.head_frame = headFrame(character.skeleton.joints[1], body->forward);
   for (std::size_t v = 0; v < character.mesh.positions.size(); ++v) {
