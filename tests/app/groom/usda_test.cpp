@@ -8,6 +8,7 @@
 #include "app/files/errors.h"
 #include "app/groom/formats/usda_file.h"
 #include "app/groom/groom_file.h"
+#include "app/groom/inspect/groom_inspect.h"
 #include "tests/app/groom/groom_samples.h"
 #include "tests/app/groom/second_reader.h"
 

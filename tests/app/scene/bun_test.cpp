@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
+#include "app/files/recording.h"
 #include "app/scene/braid/braid_draw.h"
 #include "app/scene/demo.h"
 #include "tests/app/scene/small_scene.h"
