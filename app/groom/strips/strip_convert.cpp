@@ -20,7 +20,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kMaxPatches = 20000, kMaxScalpPoints = 20000, kToldOf = 6;
+constexpr std::size_t kMaxPatches = 20000, kMaxScalpPoints = 20000, kToldOf = 6, kNumbersTold = 12;
+constexpr double kUnclear = 0.1;  // of a strip's length: ends whose measures differ by less are alike
 constexpr double kMinSpread = 0.015, kMaxSpread = 0.35;  // m, of the roots of a unit that is said
 
 constexpr const char* kGive =
@@ -104,13 +105,13 @@ RootMeasure measureOf(const StripOptions& options, const std::vector<Vector3d>& 
 }
 
 // The unit by the spread of the roots; one that the file says stays where it makes a head's spread.
-double unitOf(const std::vector<StripRows>& strips, double asked, std::optional<double> said, std::string& words) {
+double unitOf(const std::vector<FollowedStrip>& strips, double asked, std::optional<double> said, std::string& words) {
   char text[80];
   Groom roots;
   Vector3d middle = Vector3d::Zero();
   double square = 0, count = 0;
-  for (const StripRows& strip : strips) {
-    for (const Vector3d& p : strip.rows[0]) {
+  for (const FollowedStrip& strip : strips) {
+    for (const Vector3d& p : strip.rows.rows[0]) {
       roots.points.push_back(p.cast<float>());
       roots.strand_first.push_back(static_cast<std::uint32_t>(roots.points.size()));
       const Vector3d away = p - middle;
@@ -137,31 +138,51 @@ double unitOf(const std::vector<StripRows>& strips, double asked, std::optional<
   return found;
 }
 
-std::string nameOf(std::size_t number, const StripPatch& patch, const PolygonMesh& mesh) {
-  return "strip " + std::to_string(number + 1) + " ('" + mesh.objects[static_cast<std::size_t>(patch.object)] + "')";
+std::string nameOf(const FollowedStrip& strip) {
+  return "strip " + std::to_string(strip.number) + " ('" + strip.object + "')";
 }
 
-struct Followed {
-  std::vector<StripRows> strips;
-  std::vector<std::string> names;
-};
+double meanMeasure(const std::vector<Vector3d>& row, const RootMeasure& measure) {
+  double sum = 0;
+  for (const Vector3d& p : row) sum += measure(p);
+  return sum / static_cast<double>(row.size());
+}
 
-Followed followAll(const PolygonMesh& mesh, const std::vector<StripPatch>& patches, const StripOptions& options,
-                   const RootMeasure& measure, StripConversion& out) {
-  Followed all;
+double lengthOf(const StripRows& strip) {
+  double length = 0;
+  for (std::size_t r = 1; r < strip.rows.size(); ++r)
+    length += (middleOf(strip.rows[r]) - middleOf(strip.rows[r - 1])).norm();
+  return length;
+}
+
+// In the file's unit.
+void followAll(const PolygonMesh& mesh, const std::vector<StripPatch>& patches, const StripOptions& options,
+               const RootMeasure& measure, StripConversion& out) {
   for (std::size_t n = 0; n < patches.size(); ++n) {
-    const bool flipped = std::ranges::find(options.flipped, static_cast<int>(n) + 1) != options.flipped.end();
-    StripRows rows;
-    const std::string fault = stripRows(patches[n], measure, options.other_end != flipped, rows);
+    FollowedStrip one;
+    one.number = static_cast<int>(n) + 1;
+    one.object = mesh.objects[static_cast<std::size_t>(patches[n].object)];
+    one.turned = options.other_end != (std::ranges::find(options.flipped, one.number) != options.flipped.end());
+    const std::string fault = stripRows(patches[n], measure, one.turned, one.rows);
     if (!fault.empty()) {
-      out.left_out.push_back(nameOf(n, patches[n], mesh) + " " + fault);
+      out.left_out.push_back(nameOf(one) + " " + fault);
       continue;
     }
-    out.cut += rows.cut_rows > 0 ? 1 : 0;
-    all.strips.push_back(std::move(rows));
-    all.names.push_back(nameOf(n, patches[n], mesh));
+    one.root = meanMeasure(one.rows.rows.front(), measure);
+    one.tip = meanMeasure(one.rows.rows.back(), measure);
+    one.unclear = std::abs(one.tip - one.root) < kUnclear * lengthOf(one.rows);
+    out.cut += one.rows.cut_rows > 0 ? 1 : 0;
+    out.followed.push_back(std::move(one));
   }
-  return all;
+}
+
+void toMetres(StripConversion& out) {
+  for (FollowedStrip& strip : out.followed) {
+    strip.root *= out.scale;
+    strip.tip *= out.scale;
+    for (auto& row : strip.rows.rows)
+      for (Vector3d& p : row) p *= out.scale;
+  }
 }
 
 void checkNumbers(const StripOptions& options, std::size_t count, const std::string& file) {
@@ -172,10 +193,86 @@ void checkNumbers(const StripOptions& options, std::size_t count, const std::str
   }
 }
 
+// Throws InputError where the vertices asked for are too few, or no strip can be made into prisms.
+void makeMesh(const StripMeshOptions& options, const std::string& file, StripConversion& out) {
+  std::vector<StripRows> strips;
+  for (const FollowedStrip& strip : out.followed) strips.push_back(strip.rows);
+  const int fewest = fewestVertices(strips, options);
+  if (options.vertices > 0 && options.vertices < fewest)
+    throw InputError(file, "",
+                     "takes " + std::to_string(fewest) + " vertices at the least, for " +
+                         countOf(strips.size(), "piece") + " of " +
+                         (options.layers > 1 ? std::to_string(options.layers) : "4") + " layers; " +
+                         std::to_string(options.vertices) + " are asked for",
+                     "give --vertices " + std::to_string(fewest) + " or more, or a file of fewer strips");
+  try {
+    out.mesh = meshOfStrips(strips, options);
+  } catch (const std::runtime_error& fault) {
+    throw InputError(file, "", std::string("no hair mesh can be made of it: ") + fault.what(),
+                     "give fewer strips with rows that do not fold over each other");
+  }
+  std::vector<bool> lost(strips.size(), false);
+  for (const int s : out.mesh.left_out) {
+    lost[static_cast<std::size_t>(s)] = true;
+    out.left_out.push_back(nameOf(out.followed[static_cast<std::size_t>(s)]) + " folds over itself");
+  }
+  for (std::size_t s = 0; s < strips.size(); ++s) {
+    if (lost[s]) continue;
+    (strips[s].tube ? out.tubes : out.strips) += 1;
+    if (!strips[s].tube && strips[s].rows[0].size() > 2) ++out.joined;
+  }
+}
+
 std::string kinds(const StripConversion& conversion) {
   std::string text = countOf(conversion.strips, "strip");
   if (conversion.joined > 0) text += " (" + std::to_string(conversion.joined) + " of several quads across)";
   return text + " and " + countOf(conversion.tubes, "tube");
+}
+
+// "strips 3, 7, 9": those of which it is so.
+std::string numbersOf(const StripConversion& conversion, bool FollowedStrip::*so) {
+  std::string text;
+  std::size_t count = 0;
+  for (const FollowedStrip& strip : conversion.followed) {
+    if (strip.*so && ++count <= kNumbersTold) text += (count > 1 ? ", " : "") + std::to_string(strip.number);
+  }
+  if (count > kNumbersTold) text += " and " + std::to_string(count - kNumbersTold) + " more";
+  return (count == 1 ? "strip " : "strips ") + text;
+}
+
+// "12 to 30 mm"
+std::string rangeOf(const StripConversion& conversion, double FollowedStrip::*end) {
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const FollowedStrip& strip : conversion.followed) {
+    least = std::min(least, strip.*end);
+    most = std::max(most, strip.*end);
+  }
+  char text[64];
+  std::snprintf(text, sizeof text, "%.0f to %.0f mm", 1e3 * least + 0.0, 1e3 * most + 0.0);
+  return text;
+}
+
+// Which end of each piece is its root, and how clearly.
+std::string rootReport(const StripConversion& conversion) {
+  const auto count = [&](bool FollowedStrip::*so) {
+    return static_cast<std::size_t>(std::ranges::count(conversion.followed, true, so));
+  };
+  const std::size_t all = conversion.followed.size(), turned = count(&FollowedStrip::turned),
+                    unclear = count(&FollowedStrip::unclear);
+  std::string text = reportLine("root edges    %s, of %zu of %zu pieces; --root-edge and --flip-strips overrule it",
+                                conversion.roots.c_str(), all - turned, all);
+  if (turned > 0)
+    text += reportLine("turned        %s: rooted at the other end, as asked for",
+                       turned == all ? "all" : numbersOf(conversion, &FollowedStrip::turned).c_str());
+  if (conversion.by_scalp)
+    text +=
+        reportLine("              roots are %s from the scalp, tips %s",
+                   rangeOf(conversion, &FollowedStrip::root).c_str(), rangeOf(conversion, &FollowedStrip::tip).c_str());
+  if (unclear > 0)
+    text += reportLine("unclear       %s: both ends are about as %s; --flip-strips turns them",
+                       numbersOf(conversion, &FollowedStrip::unclear).c_str(),
+                       conversion.by_scalp ? "near to the scalp" : "high");
+  return text;
 }
 
 }  // namespace
@@ -193,30 +290,14 @@ StripConversion convertStrips(const PolygonMesh& mesh, const StripOptions& optio
       options.scalp ? scalpPoints(*options.scalp, nullptr) : scalpPoints(mesh, &roles.scalp);
   out.scalp = options.scalp ? "" : roles.scalp_names;
   const RootMeasure measure = measureOf(options, scalp, file, out.roots);
-  if (options.other_end) out.roots = "the other end than " + out.roots;
-  Followed all = followAll(mesh, patches, options, measure, out);
-  if (all.strips.empty())
+  out.by_scalp = options.root == RootEdge::kScalp || (options.root == RootEdge::kAuto && !scalp.empty());
+  followAll(mesh, patches, options, measure, out);
+  if (out.followed.empty())
     throw InputError(file, "", "holds no strip or tube that can be followed: " + out.left_out.front(), kGive);
-  out.scale = unitOf(all.strips, options.unit, mesh.meters_per_unit, out.unit);
+  out.scale = unitOf(out.followed, options.unit, mesh.meters_per_unit, out.unit);
   for (const Vector3d& p : scalp) out.scalp_points.push_back(out.scale * p);
-  for (StripRows& strip : all.strips) {
-    (strip.tube ? out.tubes : out.strips) += 1;
-    if (!strip.tube && strip.rows[0].size() > 2) ++out.joined;
-    for (auto& row : strip.rows)
-      for (Vector3d& p : row) p *= out.scale;
-  }
-  try {
-    out.mesh = meshOfStrips(all.strips, options.mesh);
-  } catch (const std::runtime_error& fault) {
-    throw InputError(file, "", std::string("no hair mesh can be made of it: ") + fault.what(),
-                     "give fewer strips with rows that do not fold over each other");
-  }
-  for (const int s : out.mesh.left_out) {
-    const StripRows& strip = all.strips[static_cast<std::size_t>(s)];
-    (strip.tube ? out.tubes : out.strips) -= 1;
-    if (!strip.tube && strip.rows[0].size() > 2) --out.joined;
-    out.left_out.push_back(all.names[static_cast<std::size_t>(s)] + " folds over itself");
-  }
+  toMetres(out);
+  makeMesh(options.mesh, file, out);
   return out;
 }
 
@@ -224,12 +305,14 @@ std::string stripReport(const StripConversion& conversion) {
   const StripMesh& mesh = conversion.mesh;
   std::string text = reportLine("read          %s in %s", kinds(conversion).c_str(), conversion.unit.c_str());
   if (!conversion.scalp.empty()) text += reportLine("scalp         %.300s", conversion.scalp.c_str());
-  text += reportLine("root edges    %s; --root-edge and --flip-strips overrule it", conversion.roots.c_str());
+  text += rootReport(conversion);
   const std::string least = mesh.least_layers < mesh.most_layers ? std::to_string(mesh.least_layers) + " to " : "";
   text +=
       reportLine("hair mesh     %d vertices in %d columns of %s%d layers; %zu root faces%s", mesh.shape.vertexCount(),
                  mesh.shape.columnCount(), least.c_str(), mesh.most_layers, mesh.shape.root_faces.size(),
-                 mesh.thinned ? "; rows were left out, --vertices asks for more" : "");
+                 !mesh.thinned                               ? ""
+                 : mesh.shape.vertexCount() > kStripVertices ? "; more than usual, and as few as such strips take"
+                                                             : "; rows were left out, --vertices asks for more");
   if (mesh.thickness > 0) text += reportLine("thickness     %.1f mm of strips at their roots", 1e3 * mesh.thickness);
   if (conversion.cut > 0)
     text += reportLine("cut short     %s whose last rows are no rows", countOf(conversion.cut, "strip").c_str());

@@ -28,12 +28,24 @@ struct StripOptions {
   const PolygonMesh* scalp = nullptr;  // of another file, in the same unit and axes
 };
 
+// A piece that was followed from its root edge to its tip.
+struct FollowedStrip {
+  int number = 0;            // from 1, as --flip-strips has it
+  std::string object;        // the file's name for it
+  StripRows rows;            // m, the file's axes
+  bool turned = false;       // its root is the end that --other-end or --flip-strips says
+  double root = 0, tip = 0;  // m, of its ends: from the scalp, or their height (negative where the highest is it)
+  bool unclear = false;      // both ends are about as far, for its length
+};
+
 struct StripConversion {
   StripMesh mesh;                         // m, the file's axes
   int strips = 0, joined = 0, tubes = 0;  // pieces that became hair; joined: strips of several quads across
   std::string unit;                       // in words
   double scale = 1;
   std::string roots;                          // in words: how the root edges were told
+  bool by_scalp = false;                      // by their distance from it
+  std::vector<FollowedStrip> followed;        // as the file has them: those of left_out that fold are among them
   std::vector<std::string> left_out;          // "strip 3 ('hair_back'): ..."
   int cut = 0;                                // strips whose last rows were left out
   std::string scalp;                          // objects taken for the scalp

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -19,7 +20,7 @@ using Row = std::vector<Vec3>;
 
 constexpr double kThinnestStrip = 0.002, kThickestStrip = 0.008, kOfWidth = 0.35;  // m, m, of a quad's width
 constexpr double kAtTip = 0.5;                                                     // of the thickness at the root
-constexpr std::size_t kFewestLayers = 4, kFewSides = 4, kTubeSides = 8;
+constexpr std::size_t kFewestLayers = 4, kFewSides = 4, kTubeSides = 8, kFewAcross = 2;
 constexpr double kCornerFatness = 0.05;  // of untangled corners
 
 double ringArea(const Row& ring) {
@@ -74,7 +75,23 @@ std::size_t verticesOf(const std::vector<StripRows>& strips) {
   return sum;
 }
 
-// Layers as asked, and no more vertices than asked where that can be had: first by sides of tubes, then by layers.
+// Fewer points across a strip, at even steps of their number.
+void reduceAcross(std::size_t points, StripRows& strip) {
+  for (Row& row : strip.rows) {
+    if (row.size() <= points) continue;
+    Row less;
+    for (std::size_t k = 0; k < points; ++k) {
+      const double at = static_cast<double>(k * (row.size() - 1)) / static_cast<double>(points - 1);
+      const std::size_t before = std::min(row.size() - 2, static_cast<std::size_t>(at));
+      const double share = at - static_cast<double>(before);
+      less.push_back((1 - share) * row[before] + share * row[before + 1]);
+    }
+    row = std::move(less);
+  }
+}
+
+// Layers as asked, and no more vertices than asked where that can be had: first by sides of tubes, then by layers, at
+// last by quads across.
 bool fitBudget(const StripMeshOptions& options, std::vector<StripRows>& strips) {
   for (StripRows& strip : strips) {
     if (strip.tube) reduceSides(kTubeSides, strip);
@@ -92,6 +109,13 @@ bool fitBudget(const StripMeshOptions& options, std::vector<StripRows>& strips) 
   for (std::size_t cap = longest; options.layers < 2 && cap > kFewestLayers && verticesOf(strips) > most; --cap) {
     for (StripRows& strip : strips) {
       if (strip.rows.size() >= cap) setLayers(std::max(kFewestLayers, cap - 1), strip);
+    }
+  }
+  std::size_t widest = kFewAcross;
+  for (const StripRows& strip : strips) widest = std::max(widest, strip.tube ? 0 : strip.rows[0].size());
+  for (std::size_t cap = widest; cap > kFewAcross && verticesOf(strips) > most; --cap) {
+    for (StripRows& strip : strips) {
+      if (!strip.tube) reduceAcross(cap - 1, strip);
     }
   }
   return true;
@@ -216,6 +240,14 @@ std::optional<sim::HairMeshShape> shapeOf(const StripRows& strip, double& thickn
 }
 
 }  // namespace
+
+int fewestVertices(const std::vector<StripRows>& strips, const StripMeshOptions& options) {
+  const std::size_t layers = options.layers > 1 ? static_cast<std::size_t>(options.layers) : kFewestLayers;
+  std::size_t sum = 0;
+  for (const StripRows& strip : strips)
+    sum += layers * (strip.tube ? std::min(kFewSides, strip.rows[0].size()) : 2 * kFewAcross);
+  return static_cast<int>(std::min<std::size_t>(sum, std::numeric_limits<int>::max()));
+}
 
 StripMesh meshOfStrips(const std::vector<StripRows>& given, const StripMeshOptions& options) {
   std::vector<StripRows> strips = given;

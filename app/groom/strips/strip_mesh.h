@@ -30,7 +30,11 @@ struct StripMesh {
   double thickness = 0;  // m, median of the strips'; 0: there are tubes alone
 };
 
-// Metres. Throws std::runtime_error where no strip is left or the vertices are over kMaxStripVertices.
+// The fewest vertices that these strips can have with as many layers as asked for, or with 4.
+int fewestVertices(const std::vector<StripRows>& strips, const StripMeshOptions& options);
+
+// Metres. No more vertices than asked for where fewestVertices lets them be so few. Throws std::runtime_error where no
+// strip is left or the vertices are over kMaxStripVertices.
 StripMesh meshOfStrips(const std::vector<StripRows>& strips, const StripMeshOptions& options);
 
 }  // namespace app

@@ -209,6 +209,50 @@ TEST(Strips, KeepToTheVerticesAskedFor) {
   EXPECT_NE(stripReport(conversion).find("--vertices"), std::string::npos);
 }
 
+TEST(Strips, OfMorePiecesThanTheVerticesCarryAreRefusedWithTheFewest) {
+  ObjText obj;
+  for (const Vector3d& root : strip_samples::rootsOnHead(60)) strip_samples::card(root, 3, 8, 0, 0, obj, 0.01);
+  StripOptions options;
+  options.mesh.vertices = 60 * 4 * 4;
+  EXPECT_EQ(convert(obj.text, options).mesh.shape.vertexCount(), 960);
+  options.mesh.vertices = 400;
+  try {
+    convert(obj.text, options);
+    FAIL() << "400 vertices do not carry 60 strips";
+  } catch (const InputError& fault) {
+    EXPECT_NE(std::string(fault.what()).find("--vertices 960"), std::string::npos) << fault.what();
+  }
+  options.mesh.vertices = 960;
+  options.mesh.layers = 6;
+  EXPECT_THROW(convert(obj.text, options), InputError);
+  options.mesh.vertices = 1440;
+  EXPECT_EQ(convert(obj.text, options).mesh.shape.vertexCount(), 1440);
+}
+
+TEST(Strips, ReportSaysWhichEndIsTheRootOfEach) {
+  ObjText obj;
+  for (const double x : {0.0, 0.1, 0.2, 0.3}) strip_samples::card({x, 0, 0}, 1, 6, 0, 0, obj);
+  StripOptions options;
+  options.flipped = {2, 4};
+  const std::string turned = stripReport(convert(obj.text, options));
+  EXPECT_NE(turned.find("the highest end (y up), of 2 of 4 pieces"), std::string::npos) << turned;
+  EXPECT_NE(turned.find("turned        strips 2, 4: rooted at the other end"), std::string::npos) << turned;
+  EXPECT_EQ(turned.find("unclear"), std::string::npos) << turned;
+  options.flipped = {};
+  EXPECT_EQ(stripReport(convert(obj.text, options)).find("turned "), std::string::npos);
+  options.other_end = true;
+  const std::string all = stripReport(convert(obj.text, options));
+  EXPECT_NE(all.find("turned        all"), std::string::npos) << all;
+  options.other_end = false;
+  options.up = 'z';  // as high as each other: which is the root is no more than a guess
+  const std::string guessed = stripReport(convert(obj.text, options));
+  EXPECT_NE(guessed.find("unclear       strips 1, 2, 3, 4: both ends"), std::string::npos) << guessed;
+  obj.object("Head");
+  strip_samples::ball(0.09, obj);
+  const std::string scalp = stripReport(convert(obj.text));
+  EXPECT_NE(scalp.find("from the scalp, tips "), std::string::npos) << scalp;
+}
+
 TEST(Strips, ComeTheSameFromEveryFormat) {
   ObjText obj;
   obj.object("Hair");
