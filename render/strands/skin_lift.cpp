@@ -19,8 +19,8 @@ namespace {
 
 // The way out of a piece of skin for a point at a gap (m, signed) from it.
 struct WayOut {
-  float gap, share;  // share: of the way that is taken
-  Vector3f along, normal;
+  float gap, share;        // share: of the way that is taken
+  Vector3f along, normal;  // normal: shorter where sides meet
 };
 
 Vector3f turnedBack(const std::array<std::array<float, 4>, 3>& rows, const Vector3f& v) {
@@ -47,7 +47,8 @@ std::optional<WayOut> wayOutOf(const SkinEllipsoid& e, const Vector3f& point, fl
                 turnedBack(e.to_ball, ball + surface * pace).normalized()};
 }
 
-std::optional<WayOut> wayOutOf(const SkinGrid& grid, const Vector3f& point, float blend) {
+// heading: the strand's unit tangent.
+std::optional<WayOut> wayOutOf(const SkinGrid& grid, const Vector3f& point, const Vector3f& heading, float blend) {
   const Vector4f p = point.homogeneous();
   Vector3f f;
   std::array<int, 3> cell;
@@ -74,16 +75,19 @@ std::optional<WayOut> wayOutOf(const SkinGrid& grid, const Vector3f& point, floa
   const Vector3f slope =
       turnedBack(grid.to_nodes, {slope_near + f.z() * (slope_far - slope_near), slope_y, far - near});
   const float steep = slope.squaredNorm();
-  if (steep < kSkinMiddle) return {};
-  const Vector3f normal = slope / std::sqrt(steep);
-  return WayOut{gap, smoothstep(kSkinMiddle, kSkinWhole, steep), normal, normal};
+  const float clear = smoothstep(kSkinMiddle, kSkinWhole, steep);
+  const Vector3f leads = slope - (1 - clear) * heading;
+  const float sure = leads.squaredNorm();
+  if (sure < kSkinMiddle) return {};
+  return WayOut{gap, smoothstep(kSkinMiddle, kSkinWhole, sure), leads / std::sqrt(sure),
+                clear / std::sqrt(std::max(steep, kSkinMiddle)) * slope};
 }
 
 }  // namespace
 
 void leaveSkin(std::span<const SkinEllipsoid> skin, std::span<const SkinGrid> grids, float s, SkinLift& lift,
                Vector3f& position, Vector3f& tangent) {
-  const Vector3f free = position;
+  const Vector3f free = position, heading = tangent;
   if (skin.empty() && grids.empty() && lift.by.isZero(0)) {
     lift.free = free;
     return;
@@ -114,7 +118,7 @@ void leaveSkin(std::span<const SkinEllipsoid> skin, std::span<const SkinGrid> gr
       last = &e;
     }
     for (const SkinGrid& grid : grids) {
-      const auto way = wayOutOf(grid, lifted, blend);
+      const auto way = wayOutOf(grid, lifted, heading, blend);
       if (!way) continue;
       by_grids += take(*way);
       last = nullptr;

@@ -10,8 +10,8 @@ struct SkinLift {
 
 // The way out of a piece of skin for a point at a gap (m, signed) from it.
 struct WayOut {
-  float gap, share;  // share: of the way that is taken
-  vec3 along, normal;
+  float gap, share;    // share: of the way that is taken
+  vec3 along, normal;  // normal: shorter where sides meet
 };
 
 // False where the point is not lifted out of ellipsoid i.
@@ -34,8 +34,9 @@ bool wayOutOfBall(int i, vec3 point, float blend, out WayOut way) {
   return way.gap < blend;
 }
 
-// The same of grid i: along the distance's slope, whose length tells where sides meet.
-bool wayOutOfGrid(int i, vec3 point, float blend, out WayOut way) {
+// The same of grid i: along the distance's slope, whose length tells where sides meet. There, in the middle of what is
+// thin, the way out leads back along the strand (heading: its unit tangent).
+bool wayOutOfGrid(int i, vec3 point, vec3 heading, float blend, out WayOut way) {
   vec4 a = skin_grid_rows[3 * i], b = skin_grid_rows[3 * i + 1], c = skin_grid_rows[3 * i + 2], p = vec4(point, 1.0);
   vec3 at = vec3(dot(a, p), dot(b, p), dot(c, p));
   ivec3 nodes = skin_grid_nodes[i].xyz;
@@ -59,9 +60,13 @@ bool wayOutOfGrid(int i, vec3 point, float blend, out WayOut way) {
   vec3 steps = vec3(slope_near + f.z * (slope_far - slope_near), across + f.z * (edge[3] - edge[2] - across), far - near);
   vec3 slope = steps.x * a.xyz + steps.y * b.xyz + steps.z * c.xyz;
   float steep = dot(slope, slope);
-  if (steep < kSkinMiddle) return false;
-  way.share = smoothstep(kSkinMiddle, kSkinWhole, steep);
-  way.along = way.normal = slope / sqrt(steep);
+  float clear = smoothstep(kSkinMiddle, kSkinWhole, steep);
+  vec3 leads = slope - (1.0 - clear) * heading;
+  float sure = dot(leads, leads);
+  if (sure < kSkinMiddle) return false;
+  way.share = smoothstep(kSkinMiddle, kSkinWhole, sure);
+  way.along = leads / sqrt(sure);
+  way.normal = clear / sqrt(max(steep, kSkinMiddle)) * slope;
   return true;
 }
 
@@ -83,7 +88,7 @@ bool wayOutOfGrid(int i, vec3 point, float blend, out WayOut way) {
 // near: a bit for each ellipsoid, and from bit kMaxSkin on for each grid, that the strand can meet between its two layers
 // (render/hair/skin_reach.h).
 void leaveSkin(uvec2 near, float s, inout SkinLift lift, inout vec3 position, inout vec3 tangent) {
-  vec3 free = position;
+  vec3 free = position, heading = tangent;
   if (near == uvec2(0u) && lift.by == vec3(0.0)) {
     lift.free = free;
     return;
@@ -105,7 +110,7 @@ void leaveSkin(uvec2 near, float s, inout SkinLift lift, inout vec3 position, in
         WayOut way;
         if (i == last) continue;
         if (grid) {
-          if (!wayOutOfGrid(i - kMaxSkin, lifted, blend, way)) continue;
+          if (!wayOutOfGrid(i - kMaxSkin, lifted, heading, blend, way)) continue;
         } else {
           if (!wayOutOfBall(i, lifted, blend, way)) continue;
         }

@@ -201,14 +201,15 @@ TEST(SkinLift, EllipsoidsOutOfReachAreLeftOut) {
 
 // Signed distances of a turned box.
 struct BoxGrid {
-  static constexpr int kNodes = 41;
+  static constexpr int kNodes = 40;  // even: none in the middle, where a thin box has a cell without a slope
   static constexpr float kSpacing = 0.006f;
   Eigen::Matrix3f turn = Eigen::AngleAxisf(0.7f, Vector3f(1, 2, -1).normalized()).toRotationMatrix();
-  Vector3f middle, half{0.06f, 0.04f, 0.08f};
+  Vector3f middle, half;
   std::vector<float> distances;
   SkinGrid grid;
 
-  explicit BoxGrid(const Vector3f& at) : middle(at) {
+  explicit BoxGrid(const Vector3f& at, const Vector3f& half_sides = {0.06f, 0.04f, 0.08f})
+      : middle(at), half(half_sides) {
     const Vector3f low = Vector3f::Constant(-0.5f * kSpacing * (kNodes - 1));
     for (int k = 0; k < kNodes; ++k)
       for (int j = 0; j < kNodes; ++j)
@@ -254,6 +255,24 @@ TEST(SkinLift, PointsLeaveAGrid) {
   }
   EXPECT_GT(inside, 1000);
   EXPECT_GT(outside, 500);
+}
+
+// In the middle of a plate of 1 cm neither side is nearer: a strand leaves it to where it came from.
+TEST(SkinLift, PointsInTheMiddleOfAPlateGoBackAlongTheStrand) {
+  const BoxGrid plate({0.3f, -0.2f, 0.1f}, {0.08f, 0.08f, 0.005f});
+  const Vector3f normal = plate.turn.col(2);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> even(-1, 1);
+  for (int n = 0; n < 1000; ++n) {
+    const Vector3f aside = plate.turn * Vector3f(0.05f * even(random), 0.05f * even(random), 0.002f * even(random));
+    const Vector3f from = plate.middle + aside;
+    const float side = n % 2 == 0 ? 1 : -1;
+    const Vector3f heading = (side * normal + 0.5f * even(random) * plate.turn.col(0)).normalized();
+    Vector3f p = from, tangent = heading;
+    render::SkinLift lift;
+    render::leaveSkin({}, {&plate.grid, 1}, 3, lift, p, tangent);
+    EXPECT_LT(side * normal.dot(p - plate.middle), -0.005f) << aside.transpose();
+  }
 }
 
 class SkinLiftOnGpu : public gl_fixture::GlTest {};
@@ -335,14 +354,16 @@ TEST_F(SkinLiftOnGpu, ShadersLiftOutOfGridsAsTheCpuDoes) {
   render::HairInput input = synthetic::hairInput(hair, 2000);
   const std::vector<SkinEllipsoid> skin{
       synthetic::skinBall({0, synthetic::kHeadHeight, 0}, synthetic::kHeadRadius + 0.004f)};
-  const BoxGrid box({-0.07f, synthetic::kHeadHeight - 0.1f, -0.05f}), far({5, 5, 5});
-  std::vector<SkinGrid> grids{far.grid, box.grid};
+  const BoxGrid box({-0.07f, synthetic::kHeadHeight - 0.1f, -0.05f}), far({5, 5, 5}),
+      plate({0.09f, synthetic::kHeadHeight - 0.12f, 0}, {0.1f, 0.1f, 0.005f});
+  std::vector<SkinGrid> grids{far.grid, box.grid, plate.grid};
   grids[0].id = 8;
+  grids[2].id = 9;
   input.skin = skin;
   input.skin_grids = grids;
   Compared compared;
   compareLifts(input, compared);
-  EXPECT_LE(compared.other, 40);  // and points as deep on two sides of the box
+  EXPECT_LE(compared.other, 40);  // and points as deep on two sides of a box
   EXPECT_GT(compared.moved, 300);
   EXPECT_LT(compared.moved, 1990);
 }
