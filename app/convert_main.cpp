@@ -102,6 +102,8 @@ void addStripOptions(CLI::App& parser, Arguments& arguments) {
                   "Of strips and tubes, the root is the other end than --root-edge says");
   parser.add_option("--flip-strips", strips.flipped, "Numbers of single strips, from 1, whose root is the other end")
       ->delimiter(',');
+  parser.add_option("--drop-strips", strips.dropped, "Numbers of single strips, from 1, that are left out")
+      ->delimiter(',');
   parser.add_option(
       "--scalp", arguments.scalp,
       "Mesh of the scalp in the strips' unit and axes; by default objects of IN called scalp, head, body");
@@ -239,8 +241,9 @@ int run(const Arguments& arguments) {
   checkOutput(arguments);
   const std::string bytes = app::readText(arguments.in, app::kMaxGroomFile);
   if (app::groomFormat(bytes, arguments.in)) {
-    refuseIdle({"--root-edge", "--other-end", "--flip-strips", "--scalp", "--up", "--join", "--thickness"}, "curves",
-               arguments);
+    refuseIdle(
+        {"--root-edge", "--other-end", "--flip-strips", "--drop-strips", "--scalp", "--up", "--join", "--thickness"},
+        "curves", arguments);
     return convertCurves(bytes, arguments);
   }
   refuseIdle({"--mends", "--reverse-strands"}, "no curves", arguments);

@@ -5,13 +5,22 @@
 #include <filesystem>
 #include <iostream>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "app/figure/head_model.h"
+#include "app/figure/strip_inspect.h"
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
+#include "app/files/file_kind.h"
 #include "app/files/length_units.h"
 #include "app/files/output_file.h"
+#include "app/files/polygon_file.h"
 #include "app/files/report_line.h"
+#include "app/files/text_file.h"
+#include "app/files/text_scanner.h"
+#include "app/groom/formats/groom_bytes.h"
 #include "app/groom/formats/tfx_file.h"
 #include "app/groom/groom_file.h"
 #include "app/groom/groom_writer.h"
@@ -23,11 +32,14 @@
 namespace {
 
 constexpr const char* kAbout =
-    "Says what is wrong with a groom (.abc, .usda, .hair, .ply, .tfx) and which option mends it. What is certain is "
-    "mended by itself in what --out writes; options overrule it.";
+    "Says what is wrong with a groom and which option mends it: curves (.abc, .usda, .hair, .ply, .tfx), or strips, "
+    "cards "
+    "and tubes (.obj, .fbx, .glb, .gltf, .vrm; mends are options of hairmesh-convert), a hair mesh or a body. What is "
+    "certain is mended by itself in what --out writes, and by hairmesh-convert; options overrule it.";
 
 constexpr double kLeastFactor = 1e-6, kMostFactor = 1e6;
 constexpr double kFarthest = 1e7;  // m
+constexpr std::string_view kOfPolygons[] = {"--figure", "--unit", "--up", "--strict", "--flip-strips", "--drop-strips"};
 
 double metresOf(const std::string& unit) {
   return std::ranges::find(app::kLengthUnits, unit, &app::LengthUnit::name)->metres;
@@ -38,6 +50,7 @@ struct Asked {
   std::string unit, up, reverse;
   std::optional<double> turn;
   std::vector<float> move;
+  std::vector<int> flipped, dropped;
   app::GroomMends mends;
   bool no_guess = false, strict = false;
 };
@@ -71,6 +84,11 @@ void addOptions(CLI::App& parser, Asked& asked) {
   parser.add_flag("--drop-bad", asked.mends.drop_bad, "Leave out strands that are not finite or have no length");
   parser.add_flag("--drop-astray", asked.mends.drop_astray, "Leave out strands that lie apart from all others");
   parser.add_flag("--push-out", asked.mends.push_out, "Bring points that lie inside the body to its surface");
+  parser
+      .add_option("--flip-strips", asked.flipped, "Of strips and tubes, the numbers of those rooted at the other end")
+      ->delimiter(',');
+  parser.add_option("--drop-strips", asked.dropped, "Of strips and tubes, the numbers of those that are left out")
+      ->delimiter(',');
   parser.add_flag("--no-guess", asked.no_guess, "Mend only what the options say");
   parser.add_flag("--strict", asked.strict, "Exit code 1 where the file has a fault, for scripts");
 }
@@ -119,23 +137,56 @@ void checkOutput(const Asked& asked) {
     throw app::UsageError("--out cannot be '" + asked.out + "', which is read as well; choose another name");
 }
 
-int run(const CLI::App& parser, const Asked& asked) {
-  checkOutput(asked);
-  app::GroomHints hints;
-  app::Groom groom = app::readGroom(asked.file, &hints);
-  const app::HeadModel head = app::headModelOf(app::loadCharacter(app::findFile(asked.figure, "", "clips")));
-  app::GroomHints known = hints;
-  if (!asked.unit.empty()) known.meters_per_unit = metresOf(asked.unit), known.unit_given = true;
-  if (!asked.up.empty()) known.axes = app::axesOfUp(asked.up);
-  if (asked.turn) known.turn = app::turnedAbout(*asked.turn);
-  const app::GroomInspection inspection = app::inspectGroom(groom, known, &head);
+int tell(const Asked& asked, const app::GroomInspection& inspection) {
   std::cout << asked.file << ": " << inspection.summary << "\n";
   for (const app::GroomFinding& finding : inspection.findings)
     std::cout << (finding.fault ? "" : "no fault: ") << finding.what << ": " << finding.text
               << (finding.mend.empty() ? "" : "; ") << finding.mend << (finding.certain ? " (certain)" : "") << "\n";
   const bool faulty = std::ranges::any_of(inspection.findings, &app::GroomFinding::fault);
   if (!faulty) std::cout << "nothing is wrong\n";
-  const int exit_code = asked.strict && faulty ? app::kExitFault : app::kExitFine;
+  return asked.strict && faulty ? app::kExitFault : app::kExitFine;
+}
+
+app::Character figureOf(const Asked& asked) {
+  return app::loadCharacter(app::findFile(asked.figure, "", "clips"));
+}
+
+// Of a file that holds no curves.
+int runPolygons(const CLI::App& parser, const Asked& asked, const std::string& bytes) {
+  for (const CLI::Option* const option : parser.get_options()) {
+    const std::string name = option->get_name();
+    if (option->count() > 0 && name.starts_with("--") && std::ranges::find(kOfPolygons, name) == std::end(kOfPolygons))
+      throw app::UsageError(name + " would do nothing: FILE holds no curves; hairmesh-convert makes a hair mesh of it");
+  }
+  if (asked.up.size() > 1 || asked.up == "x")
+    throw app::UsageError("--up cannot be '" + asked.up + "'; of strips it is y or z");
+  app::refuseOwnExport(bytes, asked.file);
+  app::refuseUtf16(bytes, asked.file);
+  if (!app::hasPolygonEnding(asked.file)) app::refuseNoHair(asked.file);
+  app::StripOptions options;
+  if (!asked.unit.empty()) options.unit = metresOf(asked.unit);
+  if (!asked.up.empty()) options.up = asked.up[0];
+  options.flipped = asked.flipped;
+  options.dropped = asked.dropped;
+  return tell(asked, app::inspectPolygons(bytes, options, !asked.up.empty(), asked.file, figureOf(asked)));
+}
+
+int run(const CLI::App& parser, const Asked& asked) {
+  checkOutput(asked);
+  const std::string bytes = app::readText(asked.file, app::kMaxGroomFile);
+  if (!app::groomFormat(bytes, asked.file) && !app::hasGroomEnding(asked.file))
+    return runPolygons(parser, asked, bytes);
+  if (!asked.flipped.empty() || !asked.dropped.empty())
+    throw app::UsageError("--flip-strips and --drop-strips would do nothing: FILE holds curves");
+  app::GroomHints hints;
+  app::Groom groom = app::readGroom(bytes, asked.file, &hints);
+  const app::HeadModel head = app::headModelOf(figureOf(asked));
+  app::GroomHints known = hints;
+  if (!asked.unit.empty()) known.meters_per_unit = metresOf(asked.unit), known.unit_given = true;
+  if (!asked.up.empty()) known.axes = app::axesOfUp(asked.up);
+  if (asked.turn) known.turn = app::turnedAbout(*asked.turn);
+  const app::GroomInspection inspection = app::inspectGroom(groom, known, &head);
+  const int exit_code = tell(asked, inspection);
   if (asked.out.empty()) return exit_code;
   app::GroomMends mends = mendsOf(parser, asked, hints, inspection.mends);
   if (mends.points == 0 && asked.out.ends_with(".tfx")) {

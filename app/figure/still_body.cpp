@@ -229,15 +229,16 @@ bool turnFacesOutwards(int head_joint, SkinnedMesh& mesh) {
   return true;
 }
 
-bool looksLikeBody(const PolygonMesh& mesh) {
+std::optional<StillBody> stillBodyOf(const PolygonMesh& mesh) {
   const ClosedSurface surface = weld(mesh);
   std::vector<Eigen::Vector3f> positions;
   for (const Vec3& p : surface.points) positions.push_back(p.cast<float>());
   std::vector<std::uint32_t> triangles;
   for (const auto& face : surface.faces)
     for (const int v : face) triangles.push_back(static_cast<std::uint32_t>(v));
-  const std::optional<StillBody> body = measureStillBody(positions, triangles);
-  return body && (body->height > kHeadsOfBody * body->head_height || largestPiece(surface) > kOnePiece);
+  std::optional<StillBody> body = measureStillBody(positions, triangles);
+  if (body && body->height <= kHeadsOfBody * body->head_height && largestPiece(surface) <= kOnePiece) body.reset();
+  return body;
 }
 
 }  // namespace app

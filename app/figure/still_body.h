@@ -34,8 +34,11 @@ std::optional<StillBody> measureStillBody(std::span<const Eigen::Vector3f> posit
 // volume. Returns whether they did.
 bool turnFacesOutwards(int head_joint, SkinnedMesh& mesh);
 
-// Whether polygons are a body, a bust or a head: they have a neck, and are at least four heads tall, or half of their
-// faces are one piece.
-bool looksLikeBody(const PolygonMesh& mesh);
+// The body, bust or head that polygons are: they have a neck, and are at least four heads tall, or half of their
+// faces are one piece. Empty: something else.
+std::optional<StillBody> stillBodyOf(const PolygonMesh& mesh);
+inline bool looksLikeBody(const PolygonMesh& mesh) {
+  return stillBodyOf(mesh).has_value();
+}
 
 }  // namespace app

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include "app/figure/hair_fit.h"
 #include "app/files/errors.h"
@@ -16,12 +17,25 @@ constexpr double kTogether = 1.1;      // of the tips' spread: roots' ends lie n
 constexpr double kStandsNearer = 0.5;  // of the highest ends' distance from the head
 constexpr double kOtherAxis = 0.6;     // of the distance with y up: z is up
 
+// What brought points from the one place to the other, turned, scaled and moved; at least four in no plane.
+Eigen::Affine3d placeOf(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
+  const auto count = static_cast<Eigen::Index>(from.size());
+  Eigen::Matrix3Xd before(3, count), after(3, count);
+  for (Eigen::Index v = 0; v < count; ++v) {
+    before.col(v) = from[static_cast<std::size_t>(v)];
+    after.col(v) = to[static_cast<std::size_t>(v)];
+  }
+  return Eigen::Affine3d(Eigen::umeyama(before, after, true));
+}
+
 FittedStrips fitOnce(const PolygonMesh& mesh, const StripOptions& options, bool up_given, const std::string& file,
                      const Character& character, bool mend) {
-  FittedStrips fitted{convertStrips(mesh, options, file), "", 0};
-  StripConversion& strips = fitted.conversion;
+  FittedStrips fitted;
+  StripConversion& strips = fitted.conversion = convertStrips(mesh, options, file);
+  const std::vector<Vec3> made = strips.mesh.shape.positions;
   fitted.fit = fitHair(character, mend, strips.mesh.shape, {.metres = true, .up = up_given ? options.up : '\0'},
                        strips.scalp_points, &fitted.as_made_distance);
+  if (!fitted.fit.empty()) fitted.place = placeOf(made, strips.mesh.shape.positions);
   return fitted;
 }
 

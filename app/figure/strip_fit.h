@@ -1,6 +1,7 @@
 // Strips, cards and tubes of a file, made into a hair mesh for the head at hand.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <string>
 
 #include "app/figure/character.h"
@@ -10,8 +11,9 @@ namespace app {
 
 struct FittedStrips {
   StripConversion conversion;
-  std::string fit;              // what fitHair says of their place; empty: they fit as they are
-  double as_made_distance = 0;  // m, fitHair's
+  std::string fit;                                      // what fitHair says of their place; empty: they fit as they are
+  double as_made_distance = 0;                          // m, fitHair's
+  Eigen::Affine3d place = Eigen::Affine3d::Identity();  // from the strips' metres and axes to the head's
 };
 
 // As convertStrips, with the hair mesh brought to the head as fitHair does, where `mend` says so. Strips without a

@@ -8,9 +8,11 @@
 #include <limits>
 #include <span>
 #include <string_view>
+#include <utility>
 
 #include "app/files/errors.h"
 #include "app/files/length_units.h"
+#include "app/files/median.h"
 #include "app/files/report_line.h"
 #include "app/groom/fit/strand_samples.h"
 
@@ -20,7 +22,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kMaxPatches = 20000, kMaxScalpPoints = 20000, kToldOf = 6, kNumbersTold = 12;
+constexpr std::size_t kMaxPatches = 20000, kMaxScalpPoints = 20000, kToldOf = 6, kPiecesTold = 12;
 constexpr double kUnclear = 0.1;  // of a strip's length: ends whose measures differ by less are alike
 constexpr double kMinSpread = 0.015, kMaxSpread = 0.35;  // m, of the roots of a unit that is said
 
@@ -97,10 +99,10 @@ RootMeasure measureOf(const StripOptions& options, const std::vector<Vector3d>& 
     };
   }
   if (options.root == RootEdge::kLowest) {
-    words = std::string("the lowest end (") + up + " up)";
+    words = "the lowest end (" + std::string(1, up) + " up)";
     return [up](const Vector3d& p) { return upOf(p, up); };
   }
-  words = std::string("the highest end (") + up + " up)";
+  words = "the highest end (" + std::string(1, up) + " up)";
   return [up](const Vector3d& p) { return -upOf(p, up); };
 }
 
@@ -108,18 +110,13 @@ RootMeasure measureOf(const StripOptions& options, const std::vector<Vector3d>& 
 double unitOf(const std::vector<FollowedStrip>& strips, double asked, std::optional<double> said, std::string& words) {
   char text[80];
   Groom roots;
-  Vector3d middle = Vector3d::Zero();
-  double square = 0, count = 0;
   for (const FollowedStrip& strip : strips) {
     for (const Vector3d& p : strip.rows.rows[0]) {
       roots.points.push_back(p.cast<float>());
       roots.strand_first.push_back(static_cast<std::uint32_t>(roots.points.size()));
-      const Vector3d away = p - middle;
-      middle += away / ++count;
-      square += away.dot(p - middle);
     }
   }
-  const double spread = std::sqrt(square / std::max(1.0, count));
+  const double spread = rootSpread(strips);
   const bool plausible = said && *said * spread > kMinSpread && *said * spread < kMaxSpread;
   if (asked > 0 || plausible) {
     std::snprintf(text, sizeof text, "units of %g m%s", asked > 0 ? asked : *said,
@@ -142,7 +139,7 @@ std::string nameOf(const FollowedStrip& strip) {
   return "strip " + std::to_string(strip.number) + " ('" + strip.object + "')";
 }
 
-double meanMeasure(const std::vector<Vector3d>& row, const RootMeasure& measure) {
+double endMeasure(const std::vector<Vector3d>& row, const RootMeasure& measure) {
   double sum = 0;
   for (const Vector3d& p : row) sum += measure(p);
   return sum / static_cast<double>(row.size());
@@ -161,6 +158,7 @@ void followAll(const PolygonMesh& mesh, const std::vector<StripPatch>& patches, 
   for (std::size_t n = 0; n < patches.size(); ++n) {
     FollowedStrip one;
     one.number = static_cast<int>(n) + 1;
+    if (std::ranges::find(options.dropped, one.number) != options.dropped.end()) continue;
     one.object = mesh.objects[static_cast<std::size_t>(patches[n].object)];
     one.turned = options.other_end != (std::ranges::find(options.flipped, one.number) != options.flipped.end());
     const std::string fault = stripRows(patches[n], measure, one.turned, one.rows);
@@ -168,8 +166,8 @@ void followAll(const PolygonMesh& mesh, const std::vector<StripPatch>& patches, 
       out.left_out.push_back(nameOf(one) + " " + fault);
       continue;
     }
-    one.root = meanMeasure(one.rows.rows.front(), measure);
-    one.tip = meanMeasure(one.rows.rows.back(), measure);
+    one.root = endMeasure(one.rows.rows.front(), measure);
+    one.tip = endMeasure(one.rows.rows.back(), measure);
     one.unclear = std::abs(one.tip - one.root) < kUnclear * lengthOf(one.rows);
     out.cut += one.rows.cut_rows > 0 ? 1 : 0;
     out.followed.push_back(std::move(one));
@@ -186,10 +184,12 @@ void toMetres(StripConversion& out) {
 }
 
 void checkNumbers(const StripOptions& options, std::size_t count, const std::string& file) {
-  for (const int number : options.flipped) {
-    if (number < 1 || static_cast<std::size_t>(number) > count)
-      throw InputError(file, "strip " + std::to_string(number), "is not there",
-                       "number the strips from 1 to " + std::to_string(count));
+  for (const std::vector<int>* const numbers : {&options.flipped, &options.dropped}) {
+    for (const int number : *numbers) {
+      if (number < 1 || static_cast<std::size_t>(number) > count)
+        throw InputError(file, "strip " + std::to_string(number), "is not there",
+                         "number the strips from 1 to " + std::to_string(count));
+    }
   }
 }
 
@@ -230,13 +230,13 @@ std::string kinds(const StripConversion& conversion) {
 }
 
 // "strips 3, 7, 9": those of which it is so.
-std::string numbersOf(const StripConversion& conversion, bool FollowedStrip::*so) {
+std::string pieceNumbers(const StripConversion& conversion, bool FollowedStrip::*so) {
   std::string text;
   std::size_t count = 0;
   for (const FollowedStrip& strip : conversion.followed) {
-    if (strip.*so && ++count <= kNumbersTold) text += (count > 1 ? ", " : "") + std::to_string(strip.number);
+    if (strip.*so && ++count <= kPiecesTold) text += (count > 1 ? ", " : "") + std::to_string(strip.number);
   }
-  if (count > kNumbersTold) text += " and " + std::to_string(count - kNumbersTold) + " more";
+  if (count > kPiecesTold) text += " and " + std::to_string(count - kPiecesTold) + " more";
   return (count == 1 ? "strip " : "strips ") + text;
 }
 
@@ -263,19 +263,38 @@ std::string rootReport(const StripConversion& conversion) {
                                 conversion.roots.c_str(), all - turned, all);
   if (turned > 0)
     text += reportLine("turned        %s: rooted at the other end, as asked for",
-                       turned == all ? "all" : numbersOf(conversion, &FollowedStrip::turned).c_str());
+                       turned == all ? "all" : pieceNumbers(conversion, &FollowedStrip::turned).c_str());
   if (conversion.by_scalp)
     text +=
         reportLine("              roots are %s from the scalp, tips %s",
                    rangeOf(conversion, &FollowedStrip::root).c_str(), rangeOf(conversion, &FollowedStrip::tip).c_str());
   if (unclear > 0)
     text += reportLine("unclear       %s: both ends are about as %s; --flip-strips turns them",
-                       numbersOf(conversion, &FollowedStrip::unclear).c_str(),
+                       pieceNumbers(conversion, &FollowedStrip::unclear).c_str(),
                        conversion.by_scalp ? "near to the scalp" : "high");
   return text;
 }
 
 }  // namespace
+
+double rootSpread(const std::vector<FollowedStrip>& strips) {
+  std::vector<Vector3d> points;
+  for (const FollowedStrip& strip : strips)
+    points.insert(points.end(), strip.rows.rows[0].begin(), strip.rows.rows[0].end());
+  Vector3d middle;
+  for (int k = 0; k < 3; ++k) {
+    std::vector<double> along;
+    for (const Vector3d& p : points) along.push_back(p[k]);
+    middle[k] = median(std::move(along));
+  }
+  std::vector<double> far;
+  for (const Vector3d& p : points) far.push_back((p - middle).norm());
+  return median(std::move(far));
+}
+
+bool namesHair(const PolygonMesh& mesh) {
+  return std::ranges::any_of(mesh.objects, [](const std::string& name) { return roleOf(name) == Role::kHair; });
+}
 
 StripConversion convertStrips(const PolygonMesh& mesh, const StripOptions& options, const std::string& file) {
   StripConversion out;
@@ -293,7 +312,10 @@ StripConversion convertStrips(const PolygonMesh& mesh, const StripOptions& optio
   out.by_scalp = options.root == RootEdge::kScalp || (options.root == RootEdge::kAuto && !scalp.empty());
   followAll(mesh, patches, options, measure, out);
   if (out.followed.empty())
-    throw InputError(file, "", "holds no strip or tube that can be followed: " + out.left_out.front(), kGive);
+    throw InputError(file, "",
+                     out.left_out.empty() ? "has no strip left but those that --drop-strips leaves out"
+                                          : "holds no strip or tube that can be followed: " + out.left_out.front(),
+                     kGive);
   out.scale = unitOf(out.followed, options.unit, mesh.meters_per_unit, out.unit);
   for (const Vector3d& p : scalp) out.scalp_points.push_back(out.scale * p);
   toMetres(out);

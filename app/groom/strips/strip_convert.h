@@ -22,6 +22,7 @@ struct StripOptions {
   RootEdge root = RootEdge::kAuto;
   bool other_end = false;              // of every strip: the end that is not found is the root
   std::vector<int> flipped;            // numbers of strips, from 1, of which it is so
+  std::vector<int> dropped;            // numbers of those that are left out
   double unit = 0;                     // m in a unit of the file; 0: as it says where that is plausible, or inferred
   double join = 0;                     // m: neighbouring strips nearer than this become one sheet
   char up = 'y';                       // the file's axis that is up, for the highest end
@@ -51,6 +52,13 @@ struct StripConversion {
   std::string scalp;                          // objects taken for the scalp
   std::vector<Eigen::Vector3d> scalp_points;  // m, the file's axes: all over it
 };
+
+// m, the median distance of the root edges' points from their middle, which is the median of each coordinate: a single
+// stray piece changes it little.
+double rootSpread(const std::vector<FollowedStrip>& strips);
+
+// Whether any object is called hair: then others are none.
+bool namesHair(const PolygonMesh& mesh);
 
 // Throws InputError naming `file` where it holds no strip or tube that can be followed.
 StripConversion convertStrips(const PolygonMesh& mesh, const StripOptions& options, const std::string& file);

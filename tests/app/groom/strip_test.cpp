@@ -330,6 +330,43 @@ TEST(Strips, AreBroughtToTheHeadByTheProgram) {
             std::string::npos);
 }
 
+// hairmesh-inspect tells by content what a file of polygons is.
+TEST(Strips, AreInspectedByTheProgramWithBodiesAndHairMeshes) {
+  const std::string folder = test::freshFolder("strips_inspected");
+  const std::string binary = std::filesystem::path(HAIRMESH_BINARY).parent_path().string() + "/hairmesh-inspect";
+  const auto said = [&](const std::string& arguments, int expected) {
+    const std::string command =
+        test::shellQuoted(binary) + " " + arguments + " >" + test::shellQuoted(folder + "/said") + " 2>&1";
+    const int status = std::system(command.c_str());
+    const std::string text = test::readAll(folder + "/said");
+    EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : -1, expected) << arguments << ": " << text;
+    return text;
+  };
+  ObjText cards;
+  cards.scale = 100;
+  cards.z_up = true;
+  for (const Vector3d& root : strip_samples::rootsOnHead(40))
+    strip_samples::card(root + Vector3d(0, 1.5, 0), 1, 5, 0.3, 0, cards);
+  const std::string file = test::shellQuoted(written(cards.text, "cards.obj"));
+  const std::string found = said(file + " --strict", 1);
+  EXPECT_NE(found.find("unit: the roots are spread as over a head in cm, not m; --unit cm (certain)"),
+            std::string::npos)
+      << found;
+  EXPECT_NE(found.find("; --up z (certain)"), std::string::npos) << found;
+  EXPECT_NE(found.find("40 strips and 0 tubes"), std::string::npos) << found;
+  const std::string asked = said(file + " --unit cm --up z --drop-strips 1,2", 0);
+  EXPECT_EQ(asked.find("unit: "), std::string::npos) << asked;
+  EXPECT_NE(asked.find("38 strips and 0 tubes"), std::string::npos) << asked;
+  EXPECT_NE(said(file + " --out " + folder + "/x.abc", 2).find("hairmesh-convert"), std::string::npos);
+  EXPECT_NE(said(file + " --drop-strips 41", 4).find("from 1 to 40"), std::string::npos);
+  const std::string assets = HAIRMESH_SOURCE_DIR "/assets/";
+  EXPECT_NE(
+      said(test::shellQuoted(assets + "hair/bob_example.obj") + " --strict", 0).find("a hair mesh of this program"),
+      std::string::npos);
+  EXPECT_NE(said(test::shellQuoted(assets + "attachments/beanie.obj"), 4).find("is a mesh to wear"), std::string::npos);
+  EXPECT_NE(said(test::shellQuoted(assets + "clips/walk.bvh"), 4).find("is a motion"), std::string::npos);
+}
+
 struct BadCase {
   const char* name;
   const char* text;
