@@ -13,6 +13,7 @@ constexpr double kFinest = 0.005;    // m, spacing of the grids
 constexpr double kNodesAlong = 128;  // at most about so many nodes along a part
 constexpr double kMaxNodes = 1.5e6;  // of one grid
 constexpr int kMinTriangles = 12;
+constexpr float kCarries = 0.5f, kHolds = 0.8f;  // shares of a vertex's weights: from half on more and more, then all
 
 // The joint with an ellipsoid that a joint moves with: itself or the nearest above it; -1: none.
 std::vector<int> carriers(const Character& character) {
@@ -119,6 +120,25 @@ std::vector<PartDistance> partsOf(const Character& character, const Wanted& want
   return parts;
 }
 
+// A part moves as one, and skin that it carries for the most part with it: files leave small weights of far joints on
+// skin, and a limb that swings would shift a head by centimetres against its distances and the hair's roots.
+void holdSkin(const std::vector<unsigned char>& rigid, const std::vector<int>& carrier, SkinnedMesh& mesh) {
+  for (std::size_t v = 0; v < mesh.weights.size(); ++v) {
+    std::array<float, 4>& weights = mesh.weights[v];
+    for (int k = 0; k < 4; ++k) {
+      const int part = carrier[mesh.joints[v][k]];
+      if (part < 0 || !rigid[static_cast<std::size_t>(part)]) continue;
+      const auto own = [&](int other) { return carrier[mesh.joints[v][other]] == part; };
+      float share = 0;
+      for (int other = 0; other < 4; ++other) share += own(other) ? weights[other] : 0.0f;
+      if (share <= kCarries || share >= 1) continue;
+      const float held = std::min(1.0f, kCarries + (share - kCarries) * (1 - kCarries) / (kHolds - kCarries));
+      for (int other = 0; other < 4; ++other) weights[other] *= own(other) ? held / share : (1 - held) / (1 - share);
+      break;
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<PartDistance> partDistances(const Character& character) {
@@ -132,6 +152,7 @@ std::vector<PartDistance> unfitPartDistances(Character& character) {
   std::vector<PartDistance> parts = partsOf(character, [&](int joint) { return unfit[joint] != 0; });
   for (const PartDistance& part : parts) made[part.joint] = 1;
   for (BodyEllipsoid& e : character.ellipsoids) e.by_distances = made[e.joint] != 0;
+  holdSkin(made, carriers(character), character.mesh);
   return parts;
 }
 

@@ -27,7 +27,8 @@ struct PartDistance {
 // own.
 std::vector<PartDistance> partDistances(const Character& character);
 
-// The same of the parts whose ellipsoids do not fit alone. A part whose skin encloses nothing keeps its ellipsoids.
+// The same of the parts whose ellipsoids do not fit alone. A part whose skin encloses nothing keeps its ellipsoids. Skin
+// that hangs on such a part by four fifths of its weights or more hangs on it alone from then on.
 std::vector<PartDistance> unfitPartDistances(Character& character);
 
 // One part in a pose, with velocities from `previous` over dt when dt > 0. The span points into `part`.

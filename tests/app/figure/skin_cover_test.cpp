@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 
@@ -172,6 +173,26 @@ TEST(SkinCover, ABoxIsSetApart) {
   app::showSkin(c, parts, app::restPose(c.skeleton), Vec3::Zero(), shown);
   EXPECT_EQ(shown.ellipsoids.size(), c.ellipsoids.size() - 1);
   EXPECT_EQ(shown.grids.size(), 1u);
+}
+
+// A box of a head moves as one, as its distances do; skin that another joint shares is left blended.
+TEST(SkinCover, SkinOfABoxKeepsNoSmallWeightsOfOtherJoints) {
+  app::Character c = humpedFigure(boxRadius);
+  app::coverSkin(c);
+  std::vector<std::size_t> head;
+  for (std::size_t v = 0; v < c.mesh.joints.size(); ++v)
+    if (c.mesh.joints[v][0] == 1) head.push_back(v);
+  ASSERT_GT(head.size(), 20u);
+  const std::array<float, 5> given{0.86f, 0.8f, 0.65f, 0.5f, 0.4f}, held{1, 1, 0.75f, 0.5f, 0.4f};
+  for (std::size_t k = 0; k < given.size(); ++k) c.mesh.weights[head[k]] = {given[k], 1 - given[k], 0, 0};
+  const std::vector<std::array<float, 4>> before = c.mesh.weights;
+  ASSERT_EQ(app::unfitPartDistances(c).size(), 1u);
+  for (std::size_t k = 0; k < given.size(); ++k) {
+    EXPECT_NEAR(c.mesh.weights[head[k]][0], held[k], 1e-6) << k;
+    EXPECT_NEAR(c.mesh.weights[head[k]][1], 1 - held[k], 1e-6) << k;
+    c.mesh.weights[head[k]] = before[head[k]];
+  }
+  EXPECT_EQ(c.mesh.weights, before);
 }
 
 // Within pieces that lie in one another distances are to the surface of both together.
