@@ -115,16 +115,17 @@ void pinSection(Demo& demo, UiState& ui) {
               pin.until > 0 ? "%.2f s" : "never", pin.until, ui);
   const bool in_order = pin.until == 0 || pin.until > pin.from;
   const std::vector<PinSpec>& pins = actor.spec.pins;
-  const std::vector<PinSpec> rest = withoutPins(chosen, actor);
+  const bool mirror = ui.brush.mirror;
+  const std::vector<PinSpec> rest = withoutPins(mirror ? withLikesAcross(chosen, actor) : chosen, actor);
   const int pressed = segments("pins",
                                {{"Pin",
                                  "Pins what is chosen (Brushes, Vertex to Layer) where it is now; a drag takes "
-                                 "its pins along",
+                                 "its pins along. With Mirror so is its like on the other side",
                                  !chosen.empty() && in_order},
                                 {"Unpin", "Lets what is chosen go", rest.size() < pins.size()},
                                 {"Unpin all", "Lets all of this hair go", !pins.empty()}},
                                -1, ui);
-  if (pressed == 0) postPins(withPins(chosen, choiceOf(pin), actor), demo);
+  if (pressed == 0) postPins(withPins(chosen, choiceOf(pin), mirror, actor), demo);
   if (pressed == 1) postPins(rest, demo);
   if (pressed == 2) postPins({}, demo);
   if (!in_order) ImGui::TextDisabled("Until lies before From: make it later, or 0 for never");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/groom/edit/shape_brush.h"
 #include "app/scene/demo.h"
 
 namespace app {
@@ -20,7 +21,44 @@ Vec3 rounded(const Vec3& place) {
   return ((1e4 * place).array().round() / 1e4).matrix();
 }
 
+// The joint that stands across the parting from this one while the figure stands at rest; of one in the middle itself.
+// What is no joint (scalp, scene) has none across.
+std::string jointAcross(const std::string& name, const Character& character) {
+  const std::vector<Joint>& joints = character.skeleton.joints;
+  const auto named = std::ranges::find(joints, name, &Joint::name);
+  if (named == joints.end()) return name;
+  const Pose standing = restPose(character.skeleton);
+  const Rigid from_world = scalpToWorld(character, standing).inverse(Eigen::Isometry);
+  const auto placeOf = [&](std::size_t j) { return Vec3(from_world * standing.world[j].translation()); };
+  auto nearest = static_cast<std::size_t>(named - joints.begin());
+  const Vec3 across = mirrored(placeOf(nearest), character.scalp.center.x());
+  double least = (placeOf(nearest) - across).norm();
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    const double apart = (placeOf(j) - across).norm();
+    if (apart < least - 1e-6) least = apart, nearest = j;
+  }
+  return joints[nearest].name;
+}
+
+PinSpec pinHere(int vertex, const PinChoice& choice, const Actor& actor) {
+  PinSpec pin;
+  pin.vertex = vertex;
+  pin.to = choice.to, pin.stiffness = choice.stiffness, pin.from = choice.from, pin.until = choice.until;
+  const std::vector<ActorPin> found = findPins({pin}, actor.haircut->mesh, actor.body->character, actor.pose);
+  pin.at = rounded(worldToPin(pin, found[0], actor) * actor.hair.positions[static_cast<std::size_t>(vertex)]);
+  return pin;
+}
+
 }  // namespace
+
+std::vector<int> withLikesAcross(std::span<const int> vertices, const Actor& actor) {
+  std::vector<int> both(vertices.begin(), vertices.end());
+  for (const int v : vertices) {
+    const int like = likeAcross(v, actor.body->character.scalp.center.x(), actor.haircut->mesh);
+    if (std::ranges::find(both, like) == both.end()) both.push_back(like);
+  }
+  return both;
+}
 
 std::vector<int> pinnedVertices(const Actor& actor) {
   std::vector<int> vertices;
@@ -36,16 +74,13 @@ std::vector<PinSpec> withoutPins(std::span<const int> vertices, const Actor& act
   return pins;
 }
 
-std::vector<PinSpec> withPins(std::span<const int> vertices, const PinChoice& choice, const Actor& actor) {
-  std::vector<PinSpec> pins = withoutPins(vertices, actor);
-  for (const int v : vertices) {
-    if (actor.haircut->mesh.isRoot(v)) continue;
-    PinSpec pin;
-    pin.vertex = v;
-    pin.to = choice.to, pin.stiffness = choice.stiffness, pin.from = choice.from, pin.until = choice.until;
-    const std::vector<ActorPin> found = findPins({pin}, actor.haircut->mesh, actor.body->character, actor.pose);
-    pin.at = rounded(worldToPin(pin, found[0], actor) * actor.hair.positions[static_cast<std::size_t>(v)]);
-    pins.push_back(std::move(pin));
+std::vector<PinSpec> withPins(std::span<const int> vertices, PinChoice choice, bool mirror, const Actor& actor) {
+  const std::vector<int> all =
+      mirror ? withLikesAcross(vertices, actor) : std::vector<int>(vertices.begin(), vertices.end());
+  std::vector<PinSpec> pins = withoutPins(all, actor);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (k == vertices.size()) choice.to = jointAcross(choice.to, actor.body->character);
+    if (!actor.haircut->mesh.isRoot(all[k])) pins.push_back(pinHere(all[k], choice, actor));
   }
   return pins;
 }

@@ -19,9 +19,13 @@ struct PinChoice {
   double from = 0, until = PinSpec::kForever;  // s of simulated time
 };
 
+// `vertices`, and after them their likes across the parting that are not among them, each once.
+std::vector<int> withLikesAcross(std::span<const int> vertices, const Actor& actor);
+
 // The actor's pins with `vertices` pinned where they are seen now, roots left out; those that were pinned are pinned
-// anew. And without the vertices' pins.
-std::vector<PinSpec> withPins(std::span<const int> vertices, const PinChoice& choice, const Actor& actor);
+// anew. With a mirror so are their likes across the parting, to the joint that stands across from the choice's. And
+// without the vertices' pins.
+std::vector<PinSpec> withPins(std::span<const int> vertices, PinChoice choice, bool mirror, const Actor& actor);
 std::vector<PinSpec> withoutPins(std::span<const int> vertices, const Actor& actor);
 
 // The vertices that the spec's pins hold, in their order.

@@ -99,7 +99,7 @@ Request randomOfHands(std::mt19937& random, const app::Demo& demo) {
     case 3: {
       const app::PinChoice choice{of({"scalp", "scene", "Neck"}), random() % 2 ? 40 : app::PinSpec::kForever, 0,
                                   app::PinSpec::kForever};
-      return {Ask::kPin, "", app::writePins(app::withPins(std::array{vertex}, choice, actor)).dump()};
+      return {Ask::kPin, "", app::writePins(app::withPins(std::array{vertex}, choice, random() % 2 == 0, actor)).dump()};
     }
     case 4:
       return {Ask::kPin, "", "[]"};

@@ -196,7 +196,7 @@ std::string ask(const app::Request& request, app::Demo& demo) {
 }
 
 std::string pinText(int vertex, const app::PinChoice& choice, const app::Actor& actor) {
-  return app::writePins(app::withPins(std::array{vertex}, choice, actor)).dump();
+  return app::writePins(app::withPins(std::array{vertex}, choice, false, actor)).dump();
 }
 
 // A person's demo: long hair in motion.
@@ -235,6 +235,31 @@ TEST(Pins, ByHandHoldHairWhereItIsSeenUntilUndone) {
     EXPECT_EQ(app::editHash(demo), pinned);
     EXPECT_EQ(actor.pins.size(), 1u);
   }
+}
+
+// Each side is pinned where its own hair is seen, and to its own shoulder.
+TEST(Pins, AreMirroredAcrossTheParting) {
+  app::Demo demo = movingDemo();
+  const app::Actor& actor = demo.actors[0];
+  const int tip = tipOf(9, actor);
+  const std::vector<Vec3>& rest = actor.haircut->mesh.shape.positions;
+  ASSERT_GT(std::abs(rest[static_cast<std::size_t>(tip)].x()), 0.03) << "it is on one side";
+  for (const auto& [to, across] : {std::pair("scalp", "scalp"), std::pair("scene", "scene"), std::pair("Neck", "Neck"),
+                                   std::pair("LeftArm", "RightArm"), std::pair("RightHand", "LeftHand")}) {
+    const std::vector<PinSpec> pins = app::withPins(std::array{tip}, {to, 40}, true, actor);
+    ASSERT_EQ(pins.size(), 2u) << to;
+    EXPECT_EQ(pins[0].to, to);
+    EXPECT_EQ(pins[1].to, across);
+    EXPECT_EQ(pins[1].stiffness, 40);
+    const Vec3 here = rest[static_cast<std::size_t>(pins[0].vertex)],
+               there = rest[static_cast<std::size_t>(pins[1].vertex)];
+    EXPECT_LT((there - Vec3(-here.x(), here.y(), here.z())).norm(), 0.02) << to;
+    ASSERT_EQ(ask({app::Ask::kPin, "", app::writePins(pins).dump()}, demo), "");
+    app::advanceFrame(demo, kFrame, {});
+    for (const sim::PinnedVertex& pin : actor.pinned)
+      EXPECT_LT((pin.target - actor.hair.positions[static_cast<std::size_t>(pin.vertex)]).norm(), 0.01) << to;
+  }
+  EXPECT_TRUE(app::withoutPins(app::withLikesAcross(std::array{tip}, actor), actor).empty());
 }
 
 TEST(Pins, GoAlongWithADragAndWithAnotherResolution) {

@@ -310,6 +310,11 @@ TEST_F(Select, WhatIsChosenIsPinnedAndUnpinned) {
   EXPECT_EQ(ui_.pin.until, 2);
   apply(click("pins Unpin"));
   EXPECT_TRUE(demo_.actors[0].spec.pins.empty());
+  ui_.brush.mirror = true;
+  apply(click("pins Pin"));
+  EXPECT_EQ(demo_.actors[0].spec.pins.size(), 2u) << "the like on the other side is pinned as well";
+  apply(click("pins Unpin"));
+  EXPECT_TRUE(demo_.actors[0].spec.pins.empty());
 }
 
 }  // namespace select_test
