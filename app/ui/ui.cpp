@@ -312,6 +312,8 @@ NoticePlace noticePlace(const UiState& ui, float below) {
   return {left, size.x - left - right - margin, size.y - 2 * margin - below};
 }
 
+constexpr float kFaceShare = 0.3f;  // of the window's height, from its top: there is a face
+
 // Takes the height of the message off the place.
 void message(NoticePlace& place, Demo& demo, UiState& ui) {
   const std::string text = messageText(demo);
@@ -333,13 +335,17 @@ void message(NoticePlace& place, Demo& demo, UiState& ui) {
   }
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const float margin = kMargin * ui.text_scale;
-  ImGui::SetNextWindowPos({place.left + 0.5f * place.width, place.bottom}, ImGuiCond_Always, {0.5f, 1});
-  ImGui::SetNextWindowSizeConstraints({0, 0}, {place.width, 0.8f * size.y});
   const bool fault = demo.message_is_fault;
   const float wrap = std::min(kMessageWidth * ui.text_scale, place.width - 2 * margin);
   // From its first frame on: by itself a window takes its size from the frame before.
   const ImVec2 words = ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap);
-  ImGui::SetNextWindowContentSize({words.x, words.y + (fault ? ImGui::GetFrameHeightWithSpacing() : 0)});
+  const ImVec2 content(words.x, words.y + (fault ? ImGui::GetFrameHeightWithSpacing() : 0));
+  // Above the panels of a low window a fault would lie over the face: until it is closed it lies over the panels.
+  const float top = place.bottom - content.y - 2 * ImGui::GetStyle().WindowPadding.y;
+  if (fault && top < kFaceShare * size.y && ui.history_height == 0) place.bottom = size.y - 2 * margin;
+  ImGui::SetNextWindowPos({place.left + 0.5f * place.width, place.bottom}, ImGuiCond_Always, {0.5f, 1});
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {place.width, 0.8f * size.y});
+  ImGui::SetNextWindowContentSize(content);
   if (fault) ImGui::PushStyleColor(ImGuiCol_WindowBg, ImVec4(0.30f, 0.10f, 0.09f, 0.96f));
   const ImGuiWindowFlags flags = kFixed | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing;
   // The sidebar and the timings stay where they are in the order of windows; this one comes to the front.

@@ -186,6 +186,24 @@ TEST_F(Notices, NoneCoversWhatCanBePressed) {
   }
 }
 
+TEST_F(Notices, AFaultLeavesTheFaceFreeInLowWindows) {
+  demo_.timeline.on = true;
+  demo_.message = "/home/someone/hair/nothing.json: cannot be read: no such file; give the path of a file";
+  demo_.message_is_fault = true;
+  for (const ImVec2 size :
+       {ImVec2(400, 300), ImVec2(480, 400), ImVec2(640, 480), ImVec2(1280, 300), ImVec2(960, 600)}) {
+    for (const bool unfolded : {false, true}) {
+      ImGui::GetIO().DisplaySize = size;
+      ui_.unfolded = unfolded;
+      for (int k = 0; k < 4; ++k) frame();
+      const ImRect shown = ImGui::FindWindowByName("message")->Rect();
+      EXPECT_GE(shown.Min.y, 0.3f * size.y) << size.x << unfolded;
+      EXPECT_LE(shown.Max.y, size.y) << size.x << unfolded;
+      EXPECT_NE(find("close_message"), nullptr) << size.x << unfolded;
+    }
+  }
+}
+
 // Wide enough for all panels and too low for the timings' whole length.
 TEST_F(Notices, PanelsStandBesideOneAnotherInLowWindows) {
   demo_.timeline.on = true;
