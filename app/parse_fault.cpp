@@ -67,7 +67,12 @@ std::string parseFault(const CLI::ParseError& error, const CLI::App& parser, con
            "; write " + name + " " + (option->get_option_text().empty() ? "VALUE" : option->get_option_text());
   if (dynamic_cast<const CLI::ConversionError*>(&error) && words.starts_with("Could not convert: ")) {
     const std::size_t equals = words.find(" = ");
-    return words.substr(19, equals - 19) + " cannot be '" + words.substr(equals + 3, 40) + "'; write a whole number";
+    const std::string wanted = words.substr(19, equals - 19);
+    // Of an option that is given twice these are both values, and the last counts.
+    std::string value = words.substr(equals + 3);
+    if (const CLI::Option* given = parser.get_option_no_throw(wanted); given && !given->results().empty())
+      value = given->results().back();
+    return wanted + " cannot be '" + value.substr(0, 40) + "'; write a whole number";
   }
   return words + help;
 }

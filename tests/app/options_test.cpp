@@ -166,7 +166,7 @@ TEST(Options, WhatTheParserCannotReadIsToldInWordsOfOurOwn) {
            {{"--resolutoin", "low"}, "there is no option '--resolutoin'; did you mean '--resolution'?"},
            {{"--bogus"}, "there is no option '--bogus'; hairmesh --help lists"},
            {{"--frames"}, "--frames needs a value; write --frames N"},
-           {{"--strands", "1.5"}, "--strands cannot be '1.5'; write a whole number"},
+           {{"--strands", "3", "--strands", "1.5"}, "--strands cannot be '1.5'; write a whole number"},
            {{"a.json", "b.json"}, "'b.json' is one file too many"},
            {{"--replay", "r.hmr", "--set", "bend=0.1"}, "to which --set would do nothing"}}) {
     const Outcome outcome = runProgram(words);
