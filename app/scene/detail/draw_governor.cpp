@@ -23,6 +23,8 @@ constexpr double kGlide = 0.5;           // s from one rung to the next
 constexpr double kMaxGlideShare = 0.25;  // of it, in one frame
 constexpr int kStart = 3;                // frames that compile shaders and fill the GPU
 constexpr double kDrawOver = 1.03;       // times the budget, from which a cheaper rung is taken
+constexpr double kFarOver = 2;           // times the budget: fewer frames tell enough
+constexpr int kFarFrames = 3;            // so many
 constexpr double kDrawFitsUp = 0.88;     // share of the budget that a finer rung's predicted time must fit in
 constexpr double kDrawBackoff = 1, kMaxDrawBackoff = 32;  // s before a climb
 constexpr double kTakenBack = 8;                          // s
@@ -40,12 +42,22 @@ double riseTo(int rung, const DrawGovernor& governor) {
   return governor.rise[rung] > 0 ? governor.rise[rung] : wordOf(rung);
 }
 
-double medianOfWindow(std::array<double, DrawGovernor::kWindow> window) {
-  std::nth_element(window.begin(), window.begin() + window.size() / 2, window.end());
-  return window[window.size() / 2];
+double medianOfWindow(const DrawGovernor& governor) {
+  std::array<double, DrawGovernor::kWindow> window = governor.window;
+  const auto middle = window.begin() + governor.frames / 2;
+  std::nth_element(window.begin(), middle, window.begin() + governor.frames);
+  return *middle;
 }
 
-// What a climb really did to the cost. Descents teach nothing: the load that forced them has changed the cost as well.
+bool enoughSeen(const DrawGovernor& governor) {
+  if (governor.frames == DrawGovernor::kWindow) return true;
+  const auto far = [&](double cost) { return cost > kFarOver * governor.budget; };
+  return governor.frames >= kFarFrames && governor.rung < cheapest() &&
+         std::all_of(governor.window.begin(), governor.window.begin() + governor.frames, far);
+}
+
+// What a climb by one rung really did to the cost. Descents teach nothing: the load that forced them has changed the
+// cost as well.
 void learnRise(DrawGovernor& governor) {
   if (!governor.climbed || governor.left_cost <= 0) return;
   const double word = wordOf(governor.rung), ratio = governor.measured_cost / governor.left_cost;
@@ -55,7 +67,7 @@ void learnRise(DrawGovernor& governor) {
 
 bool changeDrawRung(int rung, DrawGovernor& governor) {
   governor.climbed = rung < governor.rung;
-  governor.left_cost = governor.measured_cost;
+  governor.left_cost = rung == governor.rung - 1 ? governor.measured_cost : 0;
   governor.rung = rung;
   governor.since_change = 0;
   governor.settle = 1;
@@ -68,7 +80,17 @@ bool stepDown(DrawGovernor& governor) {
   if (governor.over_budget) return false;
   const bool taken_back = governor.climbed && governor.since_change < kTakenBack;
   governor.backoff = std::clamp(governor.backoff * (taken_back ? 2 : 0.5), kDrawBackoff, kMaxDrawBackoff);
-  return changeDrawRung(governor.rung + 1, governor);
+  int rung = governor.rung + 1;
+  double predicted = governor.measured_cost / riseTo(governor.rung, governor);
+  for (; rung < cheapest() && predicted > kDrawOver * governor.budget; ++rung) predicted /= riseTo(rung, governor);
+  return changeDrawRung(rung, governor);
+}
+
+bool climb(DrawGovernor& governor) {
+  int rung = governor.rung;
+  double predicted = governor.measured_cost;
+  while (rung > 0 && (predicted *= riseTo(rung - 1, governor)) <= kDrawFitsUp * governor.budget) --rung;
+  return rung != governor.rung && changeDrawRung(rung, governor);
 }
 
 // The value between two rungs, in equal shares.
@@ -99,7 +121,8 @@ void setDrawBudget(double seconds, DrawGovernor& governor) {
 
 void glide(double seconds, DrawGovernor& governor) {
   if (governor.budget <= 0) return;
-  const double most = std::clamp(seconds / kGlide, 0.0, kMaxGlideShare), way = governor.rung - governor.place;
+  const double way = governor.rung - governor.place;
+  const double most = std::clamp(seconds / kGlide, 0.0, kMaxGlideShare) * std::max(1.0, std::ceil(std::abs(way)));
   governor.place = std::abs(way) <= most ? governor.rung : governor.place + std::copysign(most, way);
 }
 
@@ -112,15 +135,13 @@ bool observeDrawing(double seconds, double cost, DrawGovernor& governor) {
     return false;
   }
   governor.window[governor.frames++] = cost;
-  if (governor.frames < DrawGovernor::kWindow) return false;
+  if (!enoughSeen(governor)) return false;
+  governor.measured_cost = medianOfWindow(governor);
   governor.frames = 0;
-  governor.measured_cost = medianOfWindow(governor.window);
   learnRise(governor);
   if (governor.measured_cost > kDrawOver * governor.budget) return stepDown(governor);
   governor.over_budget = false;
-  if (governor.rung == 0 || governor.since_change < governor.backoff) return false;
-  const double predicted = governor.measured_cost * riseTo(governor.rung - 1, governor);
-  return predicted <= kDrawFitsUp * governor.budget && changeDrawRung(governor.rung - 1, governor);
+  return governor.since_change >= governor.backoff && climb(governor);
 }
 
 void governDrawing(const DrawGovernor& governor, render::FrameInput& frame) {

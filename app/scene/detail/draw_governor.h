@@ -2,10 +2,10 @@
 //
 // A rung thins strands and shadow strands by the level of detail (render/hair/hair_detail.h: strands leave one after
 // another, fading, and those that stay grow wider) and lets segments grow longer. The governor watches what the drawing
-// of a frame takes on this machine, goes one rung down when that is over the budget and one up when the finer rung's
-// predicted time fits well below it. Between two rungs settings glide, so that nothing pops. What a climb really cost
-// is remembered, and one that had to be taken back lets the next one wait twice as long: it never swings between two
-// rungs.
+// of a frame takes on this machine, and goes down to the rung whose predicted time fits when that is over the budget,
+// up to the finest whose predicted time fits well below it. Between rungs settings glide, so that nothing pops. What a
+// climb by one rung really cost is remembered, and one that had to be taken back lets the next one wait twice as long:
+// it never swings between two rungs.
 //
 // Time is what the driver's timer queries say, wall time where it draws on the CPU (render/gl/gpu_timer.h). Pictures
 // drawn under a budget depend on the machine: two runs do not repeat to the bit. Hair and recordings do not depend on
