@@ -2,7 +2,6 @@
 //
 // assimp's node tree becomes joints one for one; joints here are rigid, so scales are baked: a joint's place is the
 // node's scaled place, its orientation the node's without scale, in the rest pose as in every frame.
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <algorithm>
@@ -14,12 +13,11 @@
 #include <unordered_map>
 
 #include "app/figure/character_build.h"
+#include "app/figure/figure_file.h"
 #include "app/figure/mesh_materials.h"
 #include "app/figure/still_body.h"
-#include "app/figure/uri_files.h"
 #include "app/files/errors.h"
 #include "app/files/file_ending.h"
-#include "app/files/text_file.h"
 #include "app/motion/motion.h"
 #include "sim/mesh/rigid_motion.h"
 
@@ -156,8 +154,7 @@ void appendVertex(const Import& import, const aiMesh& source, const Skin& skin, 
   const aiVector3D p = source.mVertices[v];
   const Eigen::Vector4d world = to_world * Eigen::Vector4d(p.x, p.y, p.z, 1);
   if (!world.allFinite() || world.head<3>().norm() > 1e6)
-    import.fail(meshName(source) + ", vertex " + std::to_string(v), "is not at a finite place",
-                "export the mesh again");
+    import.fail(meshName(source), "has a vertex over 1,000 km away", "export the mesh again");
   const Vec3 normal = source.HasNormals() ? transformNormal(to_world, source.mNormals[v]) : Vec3(Vec3::UnitY());
   mesh.positions.push_back(world.head<3>().cast<float>());
   mesh.normals.push_back(normal.cast<float>());
@@ -472,26 +469,9 @@ Character assemble(Import& import) {
 }  // namespace
 
 Character importSkinned(const std::string& file) {
-  // Read first: a missing or empty file gets the same message whatever its kind, and size is bounded.
-  if (readText(file).size() < 12)
-    throw InputError(file, "", "is too short to be a character",
-                     "give a complete .glb, .gltf, .fbx, .dae or .obj file");
-  Import import(file);
   Assimp::Importer importer;
-  importer.SetIOHandler(new UriFiles);  // the importer's from here on
-  importer.SetPropertyBool("IMPORT_NO_SKELETON_MESHES", true);
-  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  try {
-    import.scene =
-        importer.ReadFile(file, aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_JoinIdenticalVertices |
-                                    aiProcess_GenSmoothNormals | aiProcess_ValidateDataStructure);
-  } catch (const std::exception& e) {
-    throw InputError(file, "", std::string("cannot be read: ") + e.what(), "export it again");
-  }
-  if (!import.scene || !import.scene->mRootNode)
-    throw InputError(file, "", std::string("cannot be read: ") + importer.GetErrorString(), "export it again");
-  if (import.scene->mNumMeshes == 0)
-    import.fail("", "holds no mesh", "export the character with its skinned mesh, or give a .bvh motion");
+  Import import(file);
+  import.scene = &readFigureFile(file, importer);
   import.flatten();
   return assemble(import);
 }

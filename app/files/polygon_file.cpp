@@ -16,6 +16,7 @@
 #include "app/files/file_ending.h"
 #include "app/files/text_file.h"
 #include "app/files/text_scanner.h"
+#include "app/files/vertex_place.h"
 #include "sim/field_text.h"
 
 namespace app {
@@ -135,7 +136,7 @@ struct Gatherer {
       const aiVector3D p = mesh.mVertices[v];
       const Eigen::Vector4d world = to_world * Eigen::Vector4d(p.x, p.y, p.z, 1);
       if (!world.allFinite() || world.head<3>().cwiseAbs().maxCoeff() > kLargest)
-        throw InputError(file, name + ", vertex " + std::to_string(v), "is not at a finite place", kExport);
+        throw InputError(file, vertexPlace(file, name, v, p), "is not at a finite place", kExport);
       out.positions.push_back(world.head<3>());
     }
     addColors(mesh);

@@ -296,6 +296,21 @@ TEST(BadInput, EveryKindNamesFileFaultAndMend) {
   expectInputError(scratch("cut.bvh", "HIERARCHY\nROOT Hips\n{\n"), "", {"cut.bvh", "line"});
 }
 
+// By the number that the vertex has in the file, though equal vertices are joined as it is read.
+TEST(BadInput, AVertexAtNoFinitePlaceIsNamed) {
+  const float triangles[6][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {NAN, 0.25f, 1}};
+  const std::string bytes(reinterpret_cast<const char*>(triangles), sizeof triangles);
+  scratch("nan.bin", bytes);
+  const std::string gltf =
+      R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+          "meshes": [{"name": "Body", "primitives": [{"attributes": {"POSITION": 0}}]}],
+          "accessors": [{"bufferView": 0, "componentType": 5126, "count": 6, "type": "VEC3"}],
+          "bufferViews": [{"buffer": 0, "byteLength": 72}], "buffers": [{"uri": "nan.bin", "byteLength": 72}]})";
+  expectInputError(scratch("nan.gltf", gltf), "", {"mesh 'Body', vertex 5", "finite"});
+  const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv nan 0.25 1\nf 1 2 3\nf 1 2 4\n";
+  expectInputError(scratch("nan.obj", obj), "", {"vertex at (nan, 0.25, 1)", "finite"});
+}
+
 TEST(RigidParts, MissingOrBrokenPartsAreNamed) {
   const std::string mot =
       scratch("one.mot", "NumFrames: 2\nbody[0] position\n0 0 1\n0 0 1\nbody[0] orientation\n1 0 0 0\n1 0 0 0\n");
