@@ -280,6 +280,7 @@ void restoreDemoState(const std::string& text, const std::string& file, bool kee
       !std::isfinite(saved.clock.ahead) || !std::isfinite(saved.clock.time))
     throw InputError(file, "", "does not fit the scene", kSaveAnew);
 
+  noteMoment(demo.edits);
   savedOf(demo) = fields;
   if (!keep_view) viewOf(demo.camera) = view;
   // Another budget begins to learn anew.

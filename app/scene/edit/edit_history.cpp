@@ -21,7 +21,7 @@ namespace app {
 namespace {
 
 // What an edit reaches beyond the settings.
-enum Reach { kSettings = 0, kOfView = 1, kOfHair = 2, kOfMotion = 4, kOfShape = 8 };
+enum Reach { kSettings = 0, kOfView = 1, kOfHair = 2, kOfMotion = 4, kOfShape = 8, kOfSwing = 16 };
 
 struct EditKind {
   Ask what;
@@ -47,8 +47,8 @@ constexpr EditKind kEditKinds[] = {{Ask::kSetParam, kSettings, true, ""},
                                    {Ask::kMesh, kOfHair | kOfShape, false, ""},
                                    {Ask::kPaint, kOfHair | kOfShape, true, "Paint"},
                                    {Ask::kCurve, kOfHair | kOfShape, true, "Curve of"},
-                                   {Ask::kReset, kOfHair, false, "Hair to rest"},
-                                   {Ask::kCollapse, kOfHair, false, "Collapse"},
+                                   {Ask::kReset, kOfHair | kOfSwing, false, "Hair to rest"},
+                                   {Ask::kCollapse, kOfHair | kOfSwing, false, "Collapse"},
                                    {Ask::kStyle, kOfHair, false, "Style"},
                                    {Ask::kResolution, kOfHair, false, "Resolution"},
                                    {Ask::kHairFile, kOfHair, false, "Hair mesh"},
@@ -113,6 +113,7 @@ EditSide sideOf(const Demo& demo, int reach) {
   for (const Actor& actor : demo.actors) side.cast.push_back(actor.spec);
   side.selected = demo.selected;
   side.debug = demo.debug;
+  side.moment = demo.edits.moment;
   if (reach & kOfView) side.camera = demo.camera;
   if (!(reach & (kOfHair | kOfMotion))) return side;
   for (const Actor& actor : demo.actors) {
@@ -158,7 +159,7 @@ void paintAnew(const CharacterSpec& spec, const ActorMoment* moment, int index, 
   const CharacterSpec& now = demo.actors[static_cast<std::size_t>(index)].spec;
   const bool another_length = mapOf("length", spec.maps) != mapOf("length", now.maps);
   repaint(spec.maps, spec.curves, index, demo);
-  if (!another_length) return;
+  if (!another_length || moment->remeshed) return;  // a mesh of its own is brought back as a whole
   reshapeHair(moment->shape.positions, index, demo);
   ownHaircut(demo.actors[static_cast<std::size_t>(index)], demo).painted = moment->shape.positions;
 }
@@ -169,7 +170,8 @@ CharacterSpec castable(CharacterSpec spec, const ActorMoment* moment) {
   return spec;
 }
 
-void castAnew(const CharacterSpec& spec, const ActorMoment* moment, int index, Demo& demo) {
+// `settle`: what moves does not come back.
+void castAnew(const CharacterSpec& spec, const ActorMoment* moment, bool settle, int index, Demo& demo) {
   Actor& old = demo.actors[static_cast<std::size_t>(index)];
   const bool same_motion = spec.motion == old.spec.motion && spec.parts == old.spec.parts;
   Actor fresh = makeActor(castable(spec, moment), demo.scene.playback, demo.asset_cache);
@@ -180,7 +182,7 @@ void castAnew(const CharacterSpec& spec, const ActorMoment* moment, int index, D
   }
   fresh.playback.paused = old.playback.paused;
   placeActor(fresh, true);
-  if (!moment) settleActor(demo.scene.sim, demo.scene.playback.settle, fresh);
+  if (settle) settleInMotion(demo.scene.sim, demo.scene.playback.settle, fresh);
   fresh.context->refreshGradually(true);
   replaceActor(std::move(fresh), index, same_motion, demo);
 }
@@ -198,8 +200,6 @@ void bringBack(const ActorMoment& moment, Actor& actor) {
   if (head.matrix() != moment.head.matrix()) sim::carryAlong(moment.head, head, actor.hair);
   actor.previous_positions = actor.hair.positions;
   actor.coarse.active = false;
-  actor.shown_still = false;
-  wakeAll(actor);
 }
 
 void bringBackSettings(const EditSide& side, Demo& demo) {
@@ -227,7 +227,8 @@ void bringBackView(const Camera& view, Camera& camera) {
   if (view.follow) camera.anchor = now.anchor;
 }
 
-void bringBack(const EditSide& side, Demo& demo) {
+// `moving`: what moves as well.
+void bringBack(const EditSide& side, bool moving, Demo& demo) {
   demo.loading.waiting.reset();
   demo.loading.unwanted = demo.loading.running.valid();
   const auto momentOf = [&](std::size_t i) { return side.moments.empty() ? nullptr : &side.moments[i]; };
@@ -247,7 +248,7 @@ void bringBack(const EditSide& side, Demo& demo) {
       const CharacterSpec &spec = side.cast[i], &now = demo.actors[i].spec;
       const bool painted = !samePaint(spec, now);
       if (another_shape || !sameCast(spec, now) || (painted && !staysPainted(spec, moment, now)))
-        castAnew(spec, moment, static_cast<int>(i), demo);
+        castAnew(spec, moment, !moment || !moving, static_cast<int>(i), demo);
       else if (painted)
         paintAnew(spec, moment, static_cast<int>(i), demo);
     }
@@ -264,18 +265,24 @@ void bringBack(const EditSide& side, Demo& demo) {
       reshapeHair(moment.shape.positions, static_cast<int>(i), demo);
     }
     if (moment.frozen != demo.actors[i].haircut->frozen) freezeHair(moment.frozen, static_cast<int>(i), demo);
-    bringBack(moment, demo.actors[i]);
+    if (moving) bringBack(moment, demo.actors[i]);
+    demo.actors[i].shown_still = false;
+    wakeAll(demo.actors[i]);
   }
   for (std::size_t i = 0; i < demo.actors.size(); ++i) repin(side.cast[i].pins, demo.actors[i]);
   if (side.camera) bringBackView(*side.camera, demo.camera);
   demo.shown_fraction = -1;
 }
 
-// Changes the two sides of a step over.
-void swapSides(EditStep& step, Demo& demo) {
-  EditSide now = sideOf(demo, reachOf(step.request, *kindOf(step.request.what)));
+// Changes the two sides of a step over. `history`: the step's, while it is not the demo's.
+void swapSides(EditStep& step, EditHistory& history, Demo& demo) {
+  const int reach = reachOf(step.request, *kindOf(step.request.what));
+  EditSide now = sideOf(demo, reach);
+  now.moment = history.moment;
   const std::string name = demo.scene.name, file = demo.scene.file;
-  bringBack(step.other, demo);
+  const bool moving = step.other.moment == history.moment || reach & (kOfMotion | kOfSwing);
+  bringBack(step.other, moving, demo);
+  if (reach & kOfMotion) history.moment = step.other.moment;
   // What the scene was saved as since stays, unless the step opened another.
   const bool opened = step.request.what == Ask::kSceneFile || step.request.what == Ask::kOpenProject;
   if (!opened) demo.scene.name = name, demo.scene.file = file;
@@ -354,7 +361,7 @@ void undoEdits(int count, Demo& demo) {
     const bool loading = demo.loading.running.valid();
     const std::string title = step.title;
     try {
-      swapSides(step, demo);
+      swapSides(step, history, demo);
       --history.done;
       if (loading) history.steps.resize(history.done);
     } catch (...) {
@@ -374,7 +381,7 @@ void redoEdits(int count, Demo& demo) {
     EditHistory history = std::exchange(demo.edits, {});
     EditStep& step = history.steps[history.done];
     try {
-      swapSides(step, demo);
+      swapSides(step, history, demo);
       ++history.done;
     } catch (...) {
       demo.edits = std::move(history);

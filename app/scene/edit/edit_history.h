@@ -2,8 +2,12 @@
 // of the camera are none of these steps; scenes, projects, states and motions that bring a view with them give it back.
 //
 // A step holds the side of the edit that is not on the screen: what was before it while it is done, what was after it
-// while it is undone. Time is not part of it: where the figure has moved on since, hair that an edit had changed comes
-// back in the shape that it had, carried to where the head is now. While time stands still all comes back to the bit.
+// while it is undone. Settings, meshes and rest shapes come back. What moves belongs to the time that is shown:
+// - While no time has gone on since the edit, what moves comes back too, to the bit.
+// - Where time has gone on, undo is the opposite edit, made now: hair goes along with its rest shape and swings on;
+//   another mesh begins at rest, as one that is chosen does.
+// - Edits of what moves itself take it back whenever they are undone: hair that was put to rest or collapsed has the
+//   shape that it had, carried to where the head is now; a motion goes on where it was left.
 #pragma once
 
 #include <optional>
@@ -40,6 +44,7 @@ struct EditSide {
   DebugViews debug;
   std::optional<Camera> camera;      // of edits that bring a view with them
   std::vector<ActorMoment> moments;  // of edits of hair or motion, one a character
+  long moment = 0;                   // EditHistory::moment, then
   std::size_t bytes() const;         // about as many as it takes
 };
 
@@ -55,6 +60,8 @@ struct EditHistory {
   std::size_t done = 0;
   bool gesture = false;  // the last step goes on: a slider that is dragged makes one step
   long next = 1;         // number of the step after all that there were
+  // Of what moves: the same number is the same state. The last that was given is `moments`.
+  long moment = 0, moments = 0;
   // What was undone before the last step, while that is being loaded and may be taken out again.
   std::vector<EditStep> dropped;
 };
@@ -67,6 +74,11 @@ std::optional<EditStep> beginEdit(const Request& request, const Demo& demo);
 // After it has been applied without a fault. What was undone before it is gone, unless what it asks for comes `later`
 // and is refused then.
 void commitEdit(EditStep step, bool later, EditHistory& history);
+
+// What moves is no longer as it was: a step was simulated, or another moment has been gone to.
+inline void noteMoment(EditHistory& history) {
+  history.moment = ++history.moments;
+}
 
 // Whether the last step is a gesture of this kind that goes on: a stroke after its first sample.
 bool goesOn(Ask what, const EditHistory& history);

@@ -99,7 +99,8 @@ Request randomOfHands(std::mt19937& random, const app::Demo& demo) {
     case 3: {
       const app::PinChoice choice{of({"scalp", "scene", "Neck"}), random() % 2 ? 40 : app::PinSpec::kForever, 0,
                                   app::PinSpec::kForever};
-      return {Ask::kPin, "", app::writePins(app::withPins(std::array{vertex}, choice, random() % 2 == 0, actor)).dump()};
+      return {Ask::kPin, "",
+              app::writePins(app::withPins(std::array{vertex}, choice, random() % 2 == 0, actor)).dump()};
     }
     case 4:
       return {Ask::kPin, "", "[]"};
@@ -194,7 +195,7 @@ TEST(EditHistory, AThousandRandomEditsUndoneAndDoneAgainEndInTheSameBits) {
   ASSERT_EQ(hashes.size(), steps + 1);
   EXPECT_GT(steps, 850u);
   for (std::size_t k = steps; k-- > 0;) {
-    ASSERT_EQ(ask({Ask::kUndo, "", "", 1}, demo), "");
+    ASSERT_EQ(ask({Ask::kUndo, "", "", 1}, demo), "") << k << ": " << demo.edits.steps[k].title;
     if (k % 50 == 0 || k > steps - 50) {
       ASSERT_EQ(app::editHash(demo), hashes[k]) << k << ": " << demo.edits.steps[k].title;
     }
@@ -261,6 +262,56 @@ TEST(EditHistory, AViewIsNoStep) {
   EXPECT_EQ(demo.scene.sim.density, density);
   EXPECT_EQ(demo.camera.yaw, 1);
   EXPECT_TRUE(demo.edits.steps.size() == 1 && demo.edits.done == 0);
+}
+
+// Where time has gone on, undo of a stroke is the opposite stroke: hair goes along with its rest shape from where it
+// is, and not back to where it was.
+TEST(EditHistory, WhatMovesStaysInTheTimeThatIsShown) {
+  app::Demo demo = movingDemo();
+  const app::Actor& actor = demo.actors[0];
+  const std::vector<app::Vec3> rest = actor.haircut->mesh.shape.positions;
+  app::BrushSample sample;
+  sample.tool = app::BrushTool::kPuff;
+  sample.at = rest[rest.size() / 2], sample.radius = 0.06;
+  ASSERT_EQ(ask({Ask::kBrush, "puff", app::brushText(sample)}, demo), "");
+  for (int frame = 0; frame < 90; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
+  const std::vector<app::Vec3> worn = actor.haircut->mesh.shape.positions, seen = actor.hair.positions;
+  const std::vector<app::Vec3> speeds = actor.hair.velocities;
+  const std::string before = app::editHash(demo);
+  ASSERT_EQ(ask({Ask::kUndo, "", "", 1}, demo), "");
+  EXPECT_EQ(actor.haircut->mesh.shape.positions, rest);
+  EXPECT_EQ(actor.hair.velocities, speeds) << "it swings on";
+  for (std::size_t v = 0; v < seen.size(); ++v)
+    ASSERT_LT((actor.hair.positions[v] - seen[v]).norm(), 1e-9 + 1.5 * (rest[v] - worn[v]).norm()) << v;
+  ASSERT_EQ(ask({Ask::kRedo, "", "", 1}, demo), "");
+  EXPECT_EQ(app::editHash(demo), before) << "no time has gone on since";
+}
+
+// A length from a file begins from the style; hair whose mesh was changed before comes back with that mesh.
+TEST(EditHistory, AMeshOfItsOwnComesBackWithTheLengthThatItHad) {
+  app::Demo demo = movingDemo();
+  ASSERT_EQ(ask({Ask::kMesh, "add-layer", "2"}, demo), "");
+  const std::string before = app::editHash(demo);
+  ASSERT_EQ(ask({Ask::kMap, "length", "bob_length.png"}, demo), "");
+  ASSERT_EQ(ask({Ask::kUndo, "", "", 1}, demo), "");
+  EXPECT_EQ(app::editHash(demo), before);
+}
+
+// Hair of another mesh begins at rest on the body as it stands now.
+TEST(EditHistory, AnUndoneTieBeginsAtRestWhereTheFigureIsNow) {
+  app::Demo demo = movingDemo();
+  const app::Actor& actor = demo.actors[0];
+  ASSERT_EQ(ask({Ask::kTie, "", "back"}, demo), "");
+  for (int frame = 0; frame < 100; ++frame) app::advanceFrame(demo, 1.0 / 60, {});
+  const double time = actor.playback.time, clock = demo.clock.time;
+  ASSERT_EQ(ask({Ask::kUndo, "", "", 1}, demo), "");
+  EXPECT_TRUE(actor.spec.ties.empty());
+  EXPECT_EQ(actor.playback.time, time);
+  EXPECT_EQ(demo.clock.time, clock);
+  for (int frame = 0; frame < 5; ++frame) {
+    app::advanceFrame(demo, 1.0 / 60, {});
+    EXPECT_LT(demo.stats.max_penetration, 0.01) << "m; hair of another time would lie in the shoulders";
+  }
 }
 
 // While time goes on an undone reset gives the hair its shape back where the head is now.
