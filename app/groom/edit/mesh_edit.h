@@ -57,7 +57,8 @@ EditedMesh splitColumns(const sim::HairMeshShape& shape, std::span<const ColumnP
 // Closes partings: each of the columns is welded to those that root where it does, in the mean of their places.
 EditedMesh mergeColumns(const sim::HairMeshShape& shape, std::span<const int> columns);
 
-// A bundle over the bald side of each of the border's root edges, in its neighbour's shape, laid under it.
+// Bundles over the bald side of the border's root edges, in their neighbours' shape, laid under them. Where a chain of
+// edges ends they end in a point.
 EditedMesh extrudeColumns(const sim::HairMeshShape& shape, std::span<const ColumnPair> edges, const Scalp& scalp,
                           const BodyDistance& body);
 

@@ -308,34 +308,64 @@ std::vector<ColumnPair> borderEdges(const sim::HairMeshShape& shape, std::span<c
   return border;
 }
 
-// Where the new column beside an old one roots: as far out as the edges are long.
-std::map<int, Vec3> rootsBeside(const sim::HairMeshShape& shape, const std::vector<ColumnPair>& border,
-                                const Scalp& scalp) {
-  std::map<int, Vec3> out;
-  std::map<int, double> length;
-  std::map<int, int> count;
+// A column over bare scalp, beside an old one or half-way between two.
+struct NewColumn {
+  int a = 0, b = 0;
+  Vec3 away = Vec3::Zero();  // from the border
+  double edges = 0;          // m, the length of the border's edges there
+  int edge_count = 0, layers = 0;
+};
+
+// New bundles end in points: a chain of edges has new columns beside those columns that two of its edges share, and one
+// edge alone has a column before its middle. By the columns that they stand beside.
+std::map<RootEdgeKey, NewColumn> newColumns(const sim::HairMeshShape& shape, const std::vector<ColumnPair>& border,
+                                            const Scalp& scalp) {
+  std::map<int, int> edges;
+  for (const ColumnPair& edge : border) ++edges[edge.a], ++edges[edge.b];
+  std::map<RootEdgeKey, NewColumn> columns;
   for (const ColumnPair& edge : border) {
     const Vec3 &a = rootOf(shape, edge.a), &b = rootOf(shape, edge.b);
     const Vec3 normal = (0.5 * (a + b) - scalp.center).normalized();
-    const Vec3 away = (b - a).cross(normal).normalized();
+    const auto add = [&](int one, int other) {
+      NewColumn& column = columns[{one, other}];
+      column.a = one, column.b = other;
+      column.away += (b - a).cross(normal).normalized();
+      column.edges += (b - a).norm(), ++column.edge_count;
+      const int layers = std::min(shape.columnLength(edge.a), shape.columnLength(edge.b));
+      column.layers = std::max(column.layers, layers);
+    };
     for (const int c : {edge.a, edge.b}) {
-      out.try_emplace(c, Vec3::Zero()).first->second += away;
-      length[c] += (b - a).norm(), ++count[c];
+      if (edges[c] > 1) add(c, c);
     }
+    if (edges[edge.a] == 1 && edges[edge.b] == 1) add(edge.a, edge.b);
   }
-  std::map<int, Vec3> roots;
-  for (const auto& [c, away] : out) {
-    const Vec3 here = rootOf(shape, c) - scalp.center;
-    const double wide = std::clamp(length[c] / count[c], kNarrowestRoot, kWidestRoot);
-    const Vec3 way = here + wide * away.normalized();
-    roots[c] = scalp.center + (scalp.radiusAt(way) + here.norm() - scalp.radiusAt(here)) * way.normalized();
-    for (int other = 0; other < shape.columnCount(); ++other) {
-      if ((rootOf(shape, other) - roots[c]).norm() < kTooNear * wide)
-        throw InputError("", "beside column " + std::to_string(c), "there is hair already",
-                         "choose edges that border on bare scalp");
-    }
+  return columns;
+}
+
+// As far out as the edges are long.
+Vec3 rootBeside(const NewColumn& column, const sim::HairMeshShape& shape, const Scalp& scalp) {
+  const Vec3 here = 0.5 * (rootOf(shape, column.a) + rootOf(shape, column.b)) - scalp.center;
+  const double wide = std::clamp(column.edges / column.edge_count, kNarrowestRoot, kWidestRoot);
+  const Vec3 way = here + wide * column.away.normalized();
+  const Vec3 root = scalp.center + (scalp.radiusAt(way) + here.norm() - scalp.radiusAt(here)) * way.normalized();
+  for (int other = 0; other < shape.columnCount(); ++other) {
+    if ((rootOf(shape, other) - root).norm() < kTooNear * wide)
+      throw InputError("", "beside column " + std::to_string(column.a), "there is hair already",
+                       "choose edges that border on bare scalp");
   }
-  return roots;
+  return root;
+}
+
+// In the shape of the hair beside it.
+void addColumn(const NewColumn& column, const Vec3& root, const sim::HairMeshShape& shape, EditedMesh& edited) {
+  const Vec3 way = root - 0.5 * (rootOf(shape, column.a) + rootOf(shape, column.b));
+  for (int l = 0; l < column.layers; ++l) {
+    const VertexSource source{firstVertex(shape, column.a) + l, firstVertex(shape, column.b) + l, 0.5};
+    const auto at = [&](int v) { return shape.positions[static_cast<std::size_t>(v)]; };
+    edited.shape.positions.push_back(0.5 * (at(source.from) + at(source.to)) + way);
+    edited.sources.push_back(source);
+  }
+  edited.shape.column_first.push_back(static_cast<int>(edited.shape.positions.size()));
 }
 
 }  // namespace
@@ -343,24 +373,21 @@ std::map<int, Vec3> rootsBeside(const sim::HairMeshShape& shape, const std::vect
 EditedMesh extrudeColumns(const sim::HairMeshShape& shape, std::span<const ColumnPair> edges, const Scalp& scalp,
                           const BodyDistance& body) {
   const std::vector<ColumnPair> border = borderEdges(shape, edges);
-  const std::map<int, Vec3> roots = rootsBeside(shape, border, scalp);
   EditedMesh edited;
   edited.shape.root_faces = shape.root_faces;
   for (int c = 0; c < shape.columnCount(); ++c) copyColumn(shape, c, shape.columnLength(c), edited);
-  std::map<int, int> fresh, reach;
+  std::map<RootEdgeKey, int> fresh;
+  for (const auto& [beside, column] : newColumns(shape, border, scalp)) {
+    fresh[beside] = edited.shape.columnCount();
+    addColumn(column, rootBeside(column, shape, scalp), shape, edited);
+  }
   for (const ColumnPair& edge : border) {
-    const int layers = std::min(shape.columnLength(edge.a), shape.columnLength(edge.b));
-    for (const int c : {edge.a, edge.b}) reach[c] = std::max(reach[c], layers);
+    sim::RootFace face{2, {edge.b, edge.a, -1, -1}};
+    for (const RootEdgeKey beside : {RootEdgeKey{edge.a, edge.a}, {edge.a, edge.b}, {edge.b, edge.b}}) {
+      if (fresh.contains(beside)) face.columns[static_cast<std::size_t>(face.corner_count++)] = fresh[beside];
+    }
+    edited.shape.root_faces.push_back(face);
   }
-  for (const auto& [c, root] : roots) {
-    fresh[c] = edited.shape.columnCount();
-    const Vec3 way = root - rootOf(shape, c);
-    copyColumn(shape, c, reach[c], edited);
-    for (int v = firstVertex(edited.shape, fresh[c]); v < edited.shape.vertexCount(); ++v)
-      edited.shape.positions[static_cast<std::size_t>(v)] += way;
-  }
-  for (const ColumnPair& edge : border)
-    edited.shape.root_faces.push_back({4, {edge.b, edge.a, fresh[edge.a], fresh[edge.b]}});
   const BodyDistance around = body ? body : [](const Vec3&) { return 1.0; };
   for (int round = 0; round < kMaxUntanglings && untangle(around, kPartedFatness, kGapToBody, edited.shape) <= 0;
        ++round) {
