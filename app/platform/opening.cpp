@@ -21,7 +21,7 @@ Demo openFile(Scene scene, const Options& options, double aspect, bool beside) {
   const bool stands = demo.paused && options.headless;
   if (!options.record.empty()) {
     demo = openScene(std::move(scene), aspect, beside);
-    demo.requests.push_back({Ask::kOpenProject, "", std::filesystem::absolute(options.project).string(), 0});
+    demo.requests.push_back({Ask::kOpenProject, "", std::filesystem::absolute(options.project).string(), 1});
   }
   if (stands) demo.requests.push_back({Ask::kPause, "", "", 0});
   return demo;

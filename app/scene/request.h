@@ -47,7 +47,7 @@ enum class Ask {
   kMove,         // name: element, text: a sample of a drag of what is chosen; see mesh_change.h
   kMesh,         // name: change of the hair mesh's structure, text: what it is given; see mesh_change.h
   kSaveProject,  // text: file
-  kOpenProject,  // text: file
+  kOpenProject,  // text: file; value 1: a run begins with it, and it is no step of the history
   kRewind,       // value: number of the frame to go back to; see timeline.h
   kKeepView,     // value: bookmark 0 to 3 takes the present view
   kGoToView,     // value: bookmark whose view is taken

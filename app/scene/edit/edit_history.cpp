@@ -308,7 +308,8 @@ std::size_t EditSide::bytes() const {
 
 std::optional<EditStep> beginEdit(const Request& request, const Demo& demo) {
   const EditKind* kind = kindOf(request.what);
-  if (!kind) return {};
+  const bool begins = request.what == Ask::kOpenProject && request.value != 0;
+  if (!kind || begins) return {};
   const bool further = kind->drags && goesOn(request.what, demo.edits);
   if (further && demo.edits.steps.back().request.name == request.name)
     return EditStep{titleOf(request, *kind), request, {}};

@@ -77,9 +77,8 @@ TEST(Project, OpensFromTheCommandLineWithOtherSettingsButNoOtherHair) {
   const test::Outcome changed = test::runProgram({"--no-images", "--frames", "2", file, "--style", "short"});
   EXPECT_EQ(changed.exit_code, app::kExitUsage) << changed.err;
   EXPECT_NE(changed.err.find("leave out --style"), std::string::npos) << changed.err;
-  const test::Outcome set =
-      test::runProgram({"--no-images", "--frames", "2", file, "--camera", "back", "--fps", "24", "--preset", "stiff",
-                        "--set", "density=70", "--strands", "900"});
+  const test::Outcome set = test::runProgram({"--no-images", "--frames", "2", file, "--camera", "back", "--fps", "24",
+                                              "--preset", "stiff", "--set", "density=70", "--strands", "900"});
   EXPECT_EQ(set.exit_code, 0) << set.err;
 
   app::Scene scene = app::projectScene(file);
@@ -110,6 +109,20 @@ TEST(Project, ARecordedRunOfOneReplaysToTheBitAndPlaysThoughItWasPaused) {
   const test::Outcome changed = test::runProgram(
       {"--no-images", "--frames", "2", file, "--record", folder + "/other.take", "--set", "density=70"});
   EXPECT_EQ(changed.exit_code, app::kExitUsage) << changed.err;
+}
+
+// A recording begins with it by a request; undo ends where the person began.
+TEST(Project, ThatARunBeginsWithIsNoStepOfItsHistory) {
+  const std::string file = test::freshFolder("project_begins") + "/mine.json";
+  app::Demo saved = brushedDemo(20), demo = app::openScene(smallScene(), 1.5);
+  app::saveProject(file, saved);
+  demo.requests = {{app::Ask::kOpenProject, "", file, 1}};
+  app::advanceFrame(demo, 0, {});
+  EXPECT_EQ(app::stateHash(demo), app::stateHash(saved));
+  EXPECT_TRUE(demo.edits.steps.empty());
+  demo.requests = {{app::Ask::kOpenProject, "", file, 0}};
+  app::advanceFrame(demo, 0, {});
+  EXPECT_EQ(demo.edits.steps.size(), 1u) << "one that is opened later is a step";
 }
 
 TEST(Project, KeepsBrushedHairAndGoesOnWithIt) {
