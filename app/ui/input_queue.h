@@ -31,11 +31,16 @@ class InputQueue {
   // Hands the next frame's events to `give`, in order: each key changes at most once, and one mouse button in all, for
   // the pointer is at one place in a frame. A button that is let go elsewhere than it was pressed is first held there
   // for a frame (kHeld), so that a quick drag is one. A key other than the one that a character comes from does not
-  // share a frame with characters after it, so that typing and editing keep their order.
+  // share a frame with characters after it, so that typing and editing keep their order. What comes after a shortcut
+  // (Ctrl and a key) waits for the frame after the next: by then what it opens takes what is typed.
   template <class Give>
   void feed(Give&& give) {
     std::vector<int> changed;
     bool edited = false, clicked = false;
+    if (waiting_) {
+      waiting_ = false;
+      return;
+    }
     while (!events_.empty()) {
       const InputEvent event = events_.front();
       const bool again = event.key != 0 && std::find(changed.begin(), changed.end(), event.key) != changed.end();
@@ -50,12 +55,16 @@ class InputQueue {
       clicked = clicked || event.key < 0;
       edited = edited || (event.key >= kFirstEditing && event.key <= kLastEditing && event.action != 0);
       give(event);
+      waiting_ = event.key > 0 && event.key < kFirstModifier && event.action == 1 && (event.modifiers & kControlHeld);
+      if (waiting_) return;
     }
   }
 
  private:
   static constexpr int kFirstEditing = 256, kLastEditing = 319;  // Escape, Enter, arrows: keys that make no character
+  static constexpr int kFirstModifier = 340, kControlHeld = 2;   // Shift, Ctrl, Alt as keys; a bit of `modifiers`
   std::deque<InputEvent> events_;
+  bool waiting_ = false;  // a shortcut came in the frame before
   double x_ = 0, y_ = 0;  // px, of the last button
 };
 
