@@ -12,7 +12,7 @@ namespace render {
 
 using Eigen::Vector3f;
 using Eigen::Vector4f;
-using shared::kSkinBlend, shared::kSkinGap, shared::kSkinLeft, shared::kSkinFar, shared::kSkinMiddle,
+using shared::kSkinBack, shared::kSkinBlend, shared::kSkinGap, shared::kSkinLeft, shared::kSkinFar, shared::kSkinMiddle,
     shared::kSkinReturn, shared::kSkinRounds, shared::kSkinWhole;
 
 namespace {
@@ -28,7 +28,8 @@ Vector3f turnedBack(const std::array<std::array<float, 4>, 3>& rows, const Vecto
   return v.x() * row(0) + v.y() * row(1) + v.z() * row(2);
 }
 
-std::optional<WayOut> wayOutOf(const SkinEllipsoid& e, const Vector3f& point, float blend) {
+// back: the way out of the middle, see the shader.
+std::optional<WayOut> wayOutOf(const SkinEllipsoid& e, const Vector3f& point, const Vector3f& back, float blend) {
   const Eigen::Map<const Vector4f> a(e.to_ball[0].data()), b(e.to_ball[1].data()), c(e.to_ball[2].data());
   const Vector4f p = point.homogeneous();
   const Vector3f ball(a.dot(p), b.dot(p), c.dot(p));
@@ -36,19 +37,21 @@ std::optional<WayOut> wayOutOf(const SkinEllipsoid& e, const Vector3f& point, fl
   if (squared > kSkinFar) return {};
   const Vector3f from = ball + std::max(1.0f - squared, 0.0f) * Eigen::Map<const Vector3f>(e.home.data());
   const float off = from.squaredNorm();
-  if (off < kSkinMiddle) return {};
-  const Vector3f out_of = turnedBack(e.to_ball, from).normalized();
+  const Vector3f leads =
+      std::sqrt(off) * turnedBack(e.to_ball, from).normalized() + (1 - smoothstep(kSkinMiddle, kSkinWhole, off)) * back;
+  const float sure = leads.squaredNorm();
+  if (sure < kSkinMiddle) return {};
+  const Vector3f out_of = leads / std::sqrt(sure);
   const Vector3f pace(a.head<3>().dot(out_of), b.head<3>().dot(out_of), c.head<3>().dot(out_of));
   const float along = ball.dot(pace), paces = pace.squaredNorm();
   const float surface = (std::sqrt(std::max(along * along + paces * (1.0f - squared), 0.0f)) - along) / paces;
   const float gap = -surface - kSkinGap;
   if (gap >= blend) return {};
-  return WayOut{gap, smoothstep(kSkinMiddle, kSkinWhole, off), out_of,
+  return WayOut{gap, smoothstep(kSkinMiddle, kSkinWhole, sure), out_of,
                 turnedBack(e.to_ball, ball + surface * pace).normalized()};
 }
 
-// heading: the strand's unit tangent.
-std::optional<WayOut> wayOutOf(const SkinGrid& grid, const Vector3f& point, const Vector3f& heading, float blend) {
+std::optional<WayOut> wayOutOf(const SkinGrid& grid, const Vector3f& point, const Vector3f& back, float blend) {
   const Vector4f p = point.homogeneous();
   Vector3f f;
   std::array<int, 3> cell;
@@ -76,7 +79,7 @@ std::optional<WayOut> wayOutOf(const SkinGrid& grid, const Vector3f& point, cons
       turnedBack(grid.to_nodes, {slope_near + f.z() * (slope_far - slope_near), slope_y, far - near});
   const float steep = slope.squaredNorm();
   const float clear = smoothstep(kSkinMiddle, kSkinWhole, steep);
-  const Vector3f leads = slope - (1 - clear) * heading;
+  const Vector3f leads = slope + (1 - clear) * back;
   const float sure = leads.squaredNorm();
   if (sure < kSkinMiddle) return {};
   return WayOut{gap, smoothstep(kSkinMiddle, kSkinWhole, sure), leads / std::sqrt(sure),
@@ -87,12 +90,13 @@ std::optional<WayOut> wayOutOf(const SkinGrid& grid, const Vector3f& point, cons
 
 void leaveSkin(std::span<const SkinEllipsoid> skin, std::span<const SkinGrid> grids, float s, SkinLift& lift,
                Vector3f& position, Vector3f& tangent) {
-  const Vector3f free = position, heading = tangent;
+  const Vector3f free = position;
   if (skin.empty() && grids.empty() && lift.by.isZero(0)) {
     lift.free = free;
     return;
   }
   lift.by *= std::exp(-(free - lift.free).norm() / kSkinReturn);
+  const Vector3f back = lift.by / (lift.by.norm() + kSkinBack), back_in_grid = back - (1 - back.norm()) * tangent;
   position += lift.by;
   tangent -= lift.by / kSkinReturn;
   Vector3f lifted = position, turned = tangent;
@@ -112,13 +116,13 @@ void leaveSkin(std::span<const SkinEllipsoid> skin, std::span<const SkinGrid> gr
       return by;
     };
     for (const SkinEllipsoid& e : skin) {
-      const auto way = &e == last ? std::nullopt : wayOutOf(e, lifted, blend);
+      const auto way = &e == last ? std::nullopt : wayOutOf(e, lifted, back, blend);
       if (!way) continue;
       take(*way);
       last = &e;
     }
     for (const SkinGrid& grid : grids) {
-      const auto way = wayOutOf(grid, lifted, heading, blend);
+      const auto way = wayOutOf(grid, lifted, back_in_grid, blend);
       if (!way) continue;
       by_grids += take(*way);
       last = nullptr;

@@ -14,29 +14,33 @@ struct WayOut {
   vec3 along, normal;  // normal: shorter where sides meet
 };
 
-// False where the point is not lifted out of ellipsoid i.
-bool wayOutOfBall(int i, vec3 point, float blend, out WayOut way) {
+// False where the point is not lifted out of ellipsoid i. In the middle, where the way out turns about, it is back,
+// which is the shorter the less sure it is.
+bool wayOutOfBall(int i, vec3 point, vec3 back, float blend, out WayOut way) {
   vec4 a = skin_rows[4 * i], b = skin_rows[4 * i + 1], c = skin_rows[4 * i + 2], p = vec4(point, 1.0);
   vec3 ball = vec3(dot(a, p), dot(b, p), dot(c, p));
   float squared = dot(ball, ball);
   if (squared > kSkinFar) return false;
   vec3 from = ball + max(1.0 - squared, 0.0) * skin_rows[4 * i + 3].xyz;
   float off = dot(from, from);
-  if (off < kSkinMiddle) return false;
-  way.along = normalize(from.x * a.xyz + from.y * b.xyz + from.z * c.xyz);
+  vec3 out_of = from.x * a.xyz + from.y * b.xyz + from.z * c.xyz;
+  vec3 leads = off > 0.0 ? sqrt(off) * normalize(out_of) : vec3(0.0);
+  leads += (1.0 - smoothstep(kSkinMiddle, kSkinWhole, off)) * back;
+  float sure = dot(leads, leads);
+  if (sure < kSkinMiddle) return false;
+  way.along = leads / sqrt(sure);
   vec3 pace = vec3(dot(a.xyz, way.along), dot(b.xyz, way.along), dot(c.xyz, way.along));
   float along = dot(ball, pace), paces = dot(pace, pace);
   float surface = (sqrt(max(along * along + paces * (1.0 - squared), 0.0)) - along) / paces;
   way.gap = -surface - kSkinGap;
-  way.share = smoothstep(kSkinMiddle, kSkinWhole, off);
+  way.share = smoothstep(kSkinMiddle, kSkinWhole, sure);
   vec3 there = ball + surface * pace;
   way.normal = normalize(there.x * a.xyz + there.y * b.xyz + there.z * c.xyz);
   return way.gap < blend;
 }
 
-// The same of grid i: along the distance's slope, whose length tells where sides meet. There, in the middle of what is
-// thin, the way out leads back along the strand (heading: its unit tangent).
-bool wayOutOfGrid(int i, vec3 point, vec3 heading, float blend, out WayOut way) {
+// The same of grid i: along the distance's slope, whose length tells where sides meet, in the middle of what is thin.
+bool wayOutOfGrid(int i, vec3 point, vec3 back, float blend, out WayOut way) {
   vec4 a = skin_grid_rows[3 * i], b = skin_grid_rows[3 * i + 1], c = skin_grid_rows[3 * i + 2], p = vec4(point, 1.0);
   vec3 at = vec3(dot(a, p), dot(b, p), dot(c, p));
   ivec3 nodes = skin_grid_nodes[i].xyz;
@@ -61,7 +65,7 @@ bool wayOutOfGrid(int i, vec3 point, vec3 heading, float blend, out WayOut way) 
   vec3 slope = steps.x * a.xyz + steps.y * b.xyz + steps.z * c.xyz;
   float steep = dot(slope, slope);
   float clear = smoothstep(kSkinMiddle, kSkinWhole, steep);
-  vec3 leads = slope - (1.0 - clear) * heading;
+  vec3 leads = slope + (1.0 - clear) * back;
   float sure = dot(leads, leads);
   if (sure < kSkinMiddle) return false;
   way.share = smoothstep(kSkinMiddle, kSkinWhole, sure);
@@ -76,11 +80,11 @@ bool wayOutOfGrid(int i, vec3 point, vec3 heading, float blend, out WayOut way) 
 //
 // The way out is the surface's normal near the surface and turns, the deeper the point, to the side from which hair
 // comes (the fourth row): of a lock that hangs on both sides of a shoulder all strands go over it, none through. Where
-// that way turns about, on the other side, nothing is lifted. The gap is exact, to where the way meets the surface, in
-// the ellipsoid's own measure. s: curve parameter, in layers; the first layer leads from the root, which stays, to full
-// lift; by grids the root is lifted as well, for between the corners of a face of roots a box bulges. Further rounds,
-// without the parabola, take up what one ellipsoid pushes into another: none pushes twice running; a grid may, for its
-// distances are not exact.
+// that way turns about, on the other side, it leads to where the point before was lifted, and out of a thin grid else
+// back along the strand. The gap is exact, to where the way meets the surface, in the ellipsoid's own measure. s: curve
+// parameter, in layers; the first layer leads from the root, which stays, to full lift; by grids the root is lifted as
+// well, for between the corners of a face of roots a box bulges. Further rounds, without the parabola, take up what one
+// ellipsoid pushes into another: none pushes twice running; a grid may, for its distances are not exact.
 //
 // A strand keeps its side: each point begins where the one before it was lifted, and returns with the hair's length.
 // So the tip of a strand that lies over a shoulder does not end in it, or below it.
@@ -88,12 +92,13 @@ bool wayOutOfGrid(int i, vec3 point, vec3 heading, float blend, out WayOut way) 
 // near: a bit for each ellipsoid, and from bit kMaxSkin on for each grid, that the strand can meet between its two layers
 // (render/hair/skin_reach.h).
 void leaveSkin(uvec2 near, float s, inout SkinLift lift, inout vec3 position, inout vec3 tangent) {
-  vec3 free = position, heading = tangent;
+  vec3 free = position;
   if (near == uvec2(0u) && lift.by == vec3(0.0)) {
     lift.free = free;
     return;
   }
   lift.by *= exp(-distance(free, lift.free) / kSkinReturn);
+  vec3 back = lift.by / (length(lift.by) + kSkinBack), back_in_grid = back - (1.0 - length(back)) * tangent;
   position += lift.by;
   tangent -= lift.by / kSkinReturn;
   vec3 lifted = position, turned = tangent;
@@ -110,9 +115,9 @@ void leaveSkin(uvec2 near, float s, inout SkinLift lift, inout vec3 position, in
         WayOut way;
         if (i == last) continue;
         if (grid) {
-          if (!wayOutOfGrid(i - kMaxSkin, lifted, heading, blend, way)) continue;
+          if (!wayOutOfGrid(i - kMaxSkin, lifted, back_in_grid, blend, way)) continue;
         } else {
-          if (!wayOutOfBall(i, lifted, blend, way)) continue;
+          if (!wayOutOfBall(i, lifted, back, blend, way)) continue;
         }
         float bent = max(way.gap + blend, 0.0) / (2.0 * kSkinBlend);
         vec3 by = way.share * (kSkinBlend * bent * bent - way.gap) * way.along;

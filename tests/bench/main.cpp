@@ -148,6 +148,7 @@ void addOptions(CLI::App& program, Asked& a) {
   program.add_option("--frames-budget-document", a.frames_budget.folder,
                      "also put --frames-budget's table and chart into this folder's performance.md");
   program.add_option("--skin-strands", a.skin.strands, "strands that --skin looks at")->check(CLI::Range(1, 100000));
+  program.add_option("--skin-speed", a.skin.speed, "playback speed of --skin")->check(CLI::Range(0.01, 100.0));
   program.add_option("--skin-document", a.skin.folder,
                      "also put --skin's table into this folder's skin.md, and every clip into data/skin.csv");
   program.add_option("--set", a.sets, "NAME=VALUE of a parameter for --collisions, --skin and --swing")

@@ -177,6 +177,7 @@ app::Scene sceneOf(const SkinFigure& figure, const std::string& style, const Ski
   asked.framing = "bust";
   asked.strands = options.strands;
   asked.set = options.sets;
+  asked.speed = options.speed;
   return app::sceneFromOptions(asked);
 }
 

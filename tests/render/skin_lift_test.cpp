@@ -171,6 +171,19 @@ TEST(SkinLift, AStrandThatGoesThroughStaysOnTheSideThatItComesFrom) {
   EXPECT_LT(deepest_alone, -0.004f);
 }
 
+// Points of a strand far apart: the second lies in the middle, where no side is nearer, and follows the first.
+TEST(SkinLift, APointInTheMiddleGoesTheWayOfTheOneBeforeIt) {
+  const SkinEllipsoid skin = synthetic::skinBall({0, 0, 0}, 0.056f);
+  render::SkinLift lift;
+  Vector3f first(0.003f, 0.035f, 0), second(0.003f, -0.02f, 0), tangent = -Vector3f::UnitY();
+  render::leaveSkin({&skin, 1}, {}, 2, lift, first, tangent);
+  EXPECT_GT(lift.by.y(), 0.02f);
+  tangent = -Vector3f::UnitY();
+  render::leaveSkin({&skin, 1}, {}, 2, lift, second, tangent);
+  EXPECT_GT(gapOf(skin, second), 0);
+  EXPECT_GT(second.y(), 0.05f);
+}
+
 // Free again, it returns, and its tangents are its direction on the way.
 TEST(SkinLift, AStrandReturnsFromWhereItWasLifted) {
   const SkinEllipsoid skin = synthetic::skinBall({0, 0, 0}, 0.1f);
