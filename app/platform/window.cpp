@@ -36,6 +36,7 @@
 #include "app/scene/view/light_drag.h"
 #include "app/scene/view/look_params.h"
 #include "app/ui/input_queue.h"
+#include "app/ui/leaving.h"
 #include "app/ui/part_glide.h"
 #include "app/ui/redraw_throttle.h"
 #include "app/ui/ui.h"
@@ -218,6 +219,12 @@ void onDrop(GLFWwindow* window, int count, const char** files) {
   for (int i = 0; i < count; ++i) openFile(files[i], s.demo, s.ui);
 }
 
+void onClose(GLFWwindow* window) {
+  Session& s = session(window);
+  ++s.events;
+  if (!mayClose(s.demo, s.ui)) glfwSetWindowShouldClose(window, GLFW_FALSE);
+}
+
 void onScale(GLFWwindow* window, float, float) {
   session(window).other_scale = true;
 }
@@ -277,6 +284,7 @@ void setCallbacks(GLFWwindow* window, Session& s) {
   glfwSetCursorPosCallback(window, onMouseMove);
   glfwSetScrollCallback(window, onScroll);
   glfwSetDropCallback(window, onDrop);
+  glfwSetWindowCloseCallback(window, onClose);
   glfwSetWindowContentScaleCallback(window, onScale);
 }
 

@@ -6,6 +6,7 @@
 
 #include "app/scene/edit/groom_brush.h"
 #include "app/scene/edit/mesh_change.h"
+#include "app/ui/leaving.h"
 #include "app/ui/ui.h"
 #include "app/ui/ui_panels.h"
 #include "app/ui/ui_widgets.h"
@@ -75,6 +76,15 @@ void changeSpeed(double factor, Demo& demo) {
 }
 
 constexpr const char* kLeaving = "Esc again leaves; what was not saved is lost";
+constexpr const char* kClosing = "close again to leave; what was not saved is lost";
+
+// Whether the question stood already; it stands now.
+bool askedBefore(const char* question, Demo& demo, UiState& ui) {
+  const bool stood = std::exchange(ui.leaving, true) && (demo.message == kLeaving || demo.message == kClosing);
+  demo.message = question;
+  demo.message_is_fault = false;
+  return stood;
+}
 
 // Puts brush and selection down. Returns whether there were any.
 bool letGo(UiState& ui) {
@@ -105,9 +115,7 @@ void pressEscape(Demo& demo, UiState& ui) {
   if (demo.message_is_fault && !demo.message.empty()) return demo.message.clear();
   if (std::exchange(ui.history, false)) return;
   if (letGo(ui)) return sayInHand(demo, ui);
-  ui.quit = std::exchange(ui.leaving, true) && demo.message == kLeaving;
-  demo.message = kLeaving;
-  demo.message_is_fault = false;
+  ui.quit = askedBefore(kLeaving, demo, ui);
 }
 
 constexpr KeyAction kKeyActions[] = {
@@ -206,6 +214,10 @@ bool panelsTakeKey(int key) {
   // A list that is open is what Esc closes.
   if (key == kKeyEscape && ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) return true;
   return io.WantTextInput || (io.NavVisible && (moves || key == ' ' || key == kKeyEnter || key == kKeyEscape));
+}
+
+bool mayClose(Demo& demo, UiState& ui) {
+  return demo.edits.steps.empty() || askedBefore(kClosing, demo, ui);
 }
 
 bool pressKey(int key, Demo& demo, UiState& ui, int modifiers) {

@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "app/ui/leaving.h"
 #include "app/ui/part_glide.h"
 #include "app/ui/ui_panels.h"
 #include "tests/app/ui/panels.h"
@@ -158,6 +159,17 @@ TEST_F(Notices, EscapeClosesWhatIsOpenAndLeavesWhileItsQuestionStands) {
   EXPECT_FALSE(ui_.quit) << "it had gone";
   app::pressKey(app::kKeyEscape, demo_, ui_);
   EXPECT_TRUE(ui_.quit);
+}
+
+TEST_F(Notices, ClosingTheWindowAsksWhereSomethingWasChanged) {
+  EXPECT_TRUE(app::mayClose(demo_, ui_)) << "nothing would be lost";
+  apply({{app::Ask::kSetParam, "density", "70"}});
+  EXPECT_FALSE(app::mayClose(demo_, ui_));
+  EXPECT_NE(demo_.message.find("close again"), std::string::npos) << demo_.message;
+  EXPECT_TRUE(app::mayClose(demo_, ui_)) << "while the question stands";
+  for (int k = 0; k < 600; ++k) frame();
+  EXPECT_TRUE(demo_.message.empty());
+  EXPECT_FALSE(app::mayClose(demo_, ui_)) << "it had gone";
 }
 
 // The offer of an earlier run's project stands by the same rule as messages, above them.
