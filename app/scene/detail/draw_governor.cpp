@@ -23,8 +23,8 @@ constexpr double kGlide = 0.5;           // s from one rung to the next
 constexpr double kMaxGlideShare = 0.25;  // of it, in one frame
 constexpr int kStart = 3;                // frames that compile shaders and fill the GPU
 constexpr double kDrawOver = 1.03;       // times the budget, from which a cheaper rung is taken
-constexpr double kFarOver = 2;           // times the budget: fewer frames tell enough
-constexpr int kFarFrames = 3;            // so many
+constexpr double kDrawFarOver = 2;       // times the budget: fewer frames tell enough
+constexpr int kDrawFarFrames = 3;        // so many
 constexpr double kDrawFitsUp = 0.88;     // share of the budget that a finer rung's predicted time must fit in
 constexpr double kDrawBackoff = 1, kMaxDrawBackoff = 32;  // s before a climb
 constexpr double kTakenBack = 8;                          // s
@@ -51,8 +51,8 @@ double medianOfWindow(const DrawGovernor& governor) {
 
 bool enoughSeen(const DrawGovernor& governor) {
   if (governor.frames == DrawGovernor::kWindow) return true;
-  const auto far = [&](double cost) { return cost > kFarOver * governor.budget; };
-  return governor.frames >= kFarFrames && governor.rung < cheapest() &&
+  const auto far = [&](double cost) { return cost > kDrawFarOver * governor.budget; };
+  return governor.frames >= kDrawFarFrames && governor.rung < cheapest() &&
          std::all_of(governor.window.begin(), governor.window.begin() + governor.frames, far);
 }
 
