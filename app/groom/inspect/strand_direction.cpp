@@ -14,6 +14,7 @@ constexpr float kSkullSpread = 0.08f, kSkullCoverage = 0.03f;  // SphereFit: of 
 constexpr float kOffSkull = 0.25f, kOnSkull = 0.15f;           // radii from the skull: no root, and a root
 constexpr double kMaxOff = 0.05;                               // of the roots, where directions are certain
 constexpr int kTurningRounds = 4;
+constexpr std::size_t kByChance = 500;  // of so many strands one may end on the skull and root off it
 
 struct RootsAndTips {
   std::vector<Vector3f> root, tip;
@@ -113,6 +114,12 @@ StrandDirections directionsFrom(const StrandEnds& given, std::vector<bool> turne
   turnSingleStrands(ends, out);
   off = meanOff(out.skull, ends.root);
   out.turned_count = static_cast<std::size_t>(std::ranges::count(out.turned, true));
+  const std::size_t against = std::min(out.turned_count, out.turned.size() - out.turned_count);
+  if (against * kByChance < out.turned.size()) {
+    const bool all = out.turned_count > against;
+    out.turned.assign(out.turned.size(), all);
+    out.turned_count = all ? out.turned.size() : 0;
+  }
   const auto far =
       std::ranges::count_if(ends.root, [&](const Vector3f& p) { return offSkull(out.skull, p) > kOffSkull; });
   out.certain = out.skull.spread < kSkullSpread && out.skull.coverage > kSkullCoverage &&
@@ -139,9 +146,14 @@ std::vector<bool> backwardStrands(const Groom& groom) {
     looked_at[ends.strands[n]] = true;
     backward[ends.strands[n]] = found.turned[n];
   }
+  const bool mostly = 2 * found.turned_count > found.turned.size();
+  const bool alike = found.turned_count == 0 || found.turned_count == found.turned.size();
   for (std::size_t s = 0; s < groom.strandCount() && found.turned_count > 0; ++s) {
     if (looked_at[s] || groom.pointCount(s) == 0) continue;
     const Vector3f first = groom.strand(s).front(), last = groom.strand(s).back();
+    const Vector3f &root = mostly ? last : first, &tip = mostly ? first : last;
+    backward[s] = mostly;
+    if (alike || offSkull(found.skull, tip) > offSkull(found.skull, root) + kOnSkull) continue;
     float least = std::numeric_limits<float>::infinity();
     for (std::size_t n = 0; n < ends.first.size(); ++n) {
       const Likeness one = likeness(first, last, ends.first[n], ends.last[n]);

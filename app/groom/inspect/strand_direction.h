@@ -19,7 +19,7 @@ struct StrandDirections {
 StrandDirections strandDirections(const StrandEnds& ends);
 
 // Of every strand of the groom: whether it runs from tip to root. Those that are not looked at go as the one that they
-// lie beside.
+// lie beside, or as most do where that would root them far off the skull.
 std::vector<bool> backwardStrands(const Groom& groom);
 
 }  // namespace app

@@ -82,4 +82,17 @@ TEST(GroomTurns, WidthsOfFewStrandsThatAPowerOfTenMakesUsualAreThat) {
   }
 }
 
+// Of many noisy strands a single one may begin off the skull and end on it: that is chance, and turns none.
+TEST(GroomTurns, AStrandOfThousandsThatEndsOnTheSkullTurnsNone) {
+  const app::HeadModel model = head();
+  app::Groom groom = combedGroom(3000, 11);
+  const std::size_t last = groom.strand_first[1] - 1;
+  const Vector3f root = groom.points[0];
+  for (std::size_t p = 0; p <= last; ++p)
+    groom.points[p] = root + static_cast<float>(last - p) / static_cast<float>(last) * Vector3f(0, 0.03f, -0.03f);
+  const app::GroomInspection inspection = app::inspectGroom(groom, {}, &model);
+  EXPECT_FALSE(inspection.find("reversed")) << namesOf(inspection);
+  EXPECT_EQ(inspection.mends.reverse, app::Reverse::kNone);
+}
+
 }  // namespace groom_turns_test
