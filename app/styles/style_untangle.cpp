@@ -12,6 +12,8 @@ namespace {
 constexpr int kSweeps = 240, kFlatSweeps = 240, kFullSweepEvery = 3;
 constexpr double kShortestEdge = 0.0032;  // m: shorter ones ruin the conditioning of the simulator's systems
 constexpr double kAcuteShare = 0.75;
+// Above these no rounding hides a corner that is too flat or an edge that is too short: most need no square root.
+constexpr double kSurelyFat = 1.15 * 1.15 * 1.000001, kSurelyLong = kShortestEdge * kShortestEdge * 1.000001;
 constexpr double kLargestLift = 0.012;  // m: what that does not mend, heights do not
 constexpr double kLargestMove = 0.004;  // m a sweep: large steps would throw neighbours over each other
 
@@ -91,8 +93,11 @@ double squareness(const Vec3& next, const Vec3& previous) {
 bool Relaxation::openCorner(const Corner& t, double fatness) {
   std::vector<Vec3>& x = shape.positions;
   const Vec3 a = x[t[1]] - x[t[0]], b = x[t[2]] - x[t[0]], c = x[t[3]] - x[t[0]];
-  const double box = a.norm() * b.norm() * c.norm(), volume = a.cross(b).dot(c);
-  if (volume >= 1.15 * fatness * box) return false;  // fat enough for a square corner
+  const double volume = a.cross(b).dot(c), squares = a.squaredNorm() * b.squaredNorm() * c.squaredNorm();
+  // Fat enough for a square corner.
+  if (volume > 0 && volume * volume > kSurelyFat * squares * fatness * fatness) return false;
+  const double box = a.norm() * b.norm() * c.norm();
+  if (volume >= 1.15 * fatness * box) return false;
   const double wanted = fatness * squareness(a, b), lacking = 1.15 * wanted * box - volume;
   if (lacking <= 0) return false;
   std::array<Vec3, 4> slope{Vec3::Zero(), b.cross(c), c.cross(a), a.cross(b)};
@@ -123,6 +128,7 @@ bool Relaxation::lengthenEdges() {
       const std::size_t w = near.list[i];
       if (w < v || (root[v] && root[w])) continue;
       const Vec3 edge = x[w] - x[v];
+      if (edge.squaredNorm() > kSurelyLong) continue;
       const double length = edge.norm();
       if (length >= kShortestEdge) continue;
       bad = bad || length < 0.95 * kShortestEdge;

@@ -2,8 +2,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
-#include <Eigen/IterativeLinearSolvers>
-#include <Eigen/LU>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
@@ -18,7 +16,6 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr Eigen::Index kIterated = 2000;  // unknowns from which the system is solved by iteration
 constexpr int kMaxIterations = 800;
 constexpr double kTolerance = 1e-6;                     // of the right-hand side
 constexpr float kStraight = 2e-3f;                      // weight of a strand's second differences beside its samples
@@ -201,9 +198,7 @@ ColumnSystem columnSystem(const std::vector<StrandTarget>& targets, const sim::H
       for (int b = 0; b <= a; ++b) {
         const Eigen::Matrix3d& block = blocks.at(a, b);
         if (block.isZero(0)) continue;
-        for (int i = 0; i < 3; ++i)
-          for (int k = 0; k < (a == b ? i + 1 : 3); ++k)
-            system.entries.emplace_back(3 * system.unknown(a, l) + i, 3 * system.unknown(b, l) + k, block(i, k));
+        system.blocks.push_back({system.unknown(a, l), system.unknown(b, l), block});
       }
     }
   }
@@ -298,29 +293,33 @@ std::vector<int> unknownsOf(const ColumnSystem& system, const sim::HairMeshShape
   return of;
 }
 
-using SparseMatrix = Eigen::SparseMatrix<double>;
+// Unknowns that a constraint may couple: those of a prism's corner.
+std::vector<std::array<int, 2>> coupled(const std::vector<int>& unknown, const std::vector<Corner>& corners) {
+  std::vector<std::array<int, 2>> pairs;
+  for (const Corner& corner : corners) {
+    for (const int v : corner) {
+      for (const int w : corner) {
+        const int row = unknown[static_cast<std::size_t>(v)], column = unknown[static_cast<std::size_t>(w)];
+        if (column >= 0 && column < row) pairs.push_back({row, column});
+      }
+    }
+  }
+  return pairs;
+}
 
-// The system in x, y and z at once with the broken constraints as penalties; unknown u's coordinate k is 3 u + k.
-SparseMatrix penalized(const ColumnSystem& system, const std::vector<int>& unknown,
-                       const std::vector<Constraint>& constraints, double penalty) {
-  std::vector<Eigen::Triplet<double>> entries = system.entries;
-  entries.reserve(entries.size() + 144 * constraints.size());
-  for (int k = 0; k < 3 * system.unknowns(); ++k) entries.emplace_back(k, k, 1e-6 * system.usual);
+// Adds the broken constraints as penalties.
+void addPenalties(const std::vector<int>& unknown, const std::vector<Constraint>& constraints, double penalty,
+                  BlockMatrix& matrix) {
   for (const Constraint& one : constraints) {
     for (std::size_t i = 0; i < 4; ++i) {
       const int row = one.v[i] < 0 ? -1 : unknown[static_cast<std::size_t>(one.v[i])];
       for (std::size_t j = 0; j < 4 && row >= 0; ++j) {
         const int column = one.v[j] < 0 ? -1 : unknown[static_cast<std::size_t>(one.v[j])];
         if (column < 0 || column > row) continue;
-        for (int a = 0; a < 3; ++a)
-          for (int b = 0; b < 3; ++b)
-            entries.emplace_back(3 * row + a, 3 * column + b, penalty * one.slope[i][a] * one.slope[j][b]);
+        matrix.at(row, column) += penalty * one.slope[i] * one.slope[j].transpose();
       }
     }
   }
-  SparseMatrix matrix(3 * system.unknowns(), 3 * system.unknowns());
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  return matrix;
 }
 
 // The system's right-hand side with the constraints' linear parts about the present positions.
@@ -342,39 +341,26 @@ Eigen::VectorXd penalizedRight(const ColumnSystem& system, const std::vector<int
   return right;
 }
 
-// By conjugate gradients from the present positions; false where they do not converge.
-bool solveFrom(const std::vector<int>& unknown, const sim::HairMeshShape& shape, const SparseMatrix& matrix,
-               const Eigen::VectorXd& right, Eigen::VectorXd& solved) {
-  Eigen::VectorXd start(matrix.rows());
-  for (std::size_t v = 0; v < unknown.size(); ++v) {
-    if (unknown[v] >= 0) start.segment<3>(3 * unknown[v]) = shape.positions[v];
-  }
-  Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower> solver;
-  solver.setTolerance(kTolerance);
-  solver.setMaxIterations(kMaxIterations);
-  solver.compute(matrix);
-  solved = solver.solveWithGuess(right, start);
-  return solver.info() == Eigen::Success;
-}
-
 }  // namespace
 
 double fitColumns(const ColumnSystem& system, double fatness, const FitRounds& rounds, sim::HairMeshShape& shape) {
   const std::vector<int> unknown = unknownsOf(system, shape);
   const std::vector<Corner> corners = cornersOf(shape);
-  Eigen::SimplicialLDLT<SparseMatrix> solver;
+  BlockMatrix strands(system.unknowns(), system.blocks, coupled(unknown, corners));
+  for (int u = 0; u < system.unknowns(); ++u) strands.diagonal(u) += 1e-6 * system.usual * Eigen::Matrix3d::Identity();
+  Eigen::VectorXd solved(3 * system.unknowns());
   for (int round = rounds.anew ? 0 : 1; round <= rounds.count; ++round) {
     const std::vector<Constraint> constraints =
         round > 0 ? broken(shape, unknown, corners, fatness) : std::vector<Constraint>();
     const double penalty = system.usual * rounds.first *
                            std::pow(rounds.last / rounds.first, round / static_cast<double>(std::max(rounds.count, 1)));
-    const SparseMatrix matrix = penalized(system, unknown, constraints, penalty);
+    BlockMatrix matrix = strands;
+    addPenalties(unknown, constraints, penalty, matrix);
     const Eigen::VectorXd right = penalizedRight(system, unknown, constraints, penalty, shape);
-    Eigen::VectorXd solved;
-    if (round == 0 || matrix.rows() < kIterated || !solveFrom(unknown, shape, matrix, right, solved)) {
-      solver.compute(matrix);
-      solved = solver.solve(right);
-    }
+    for (std::size_t v = 0; v < unknown.size(); ++v)
+      if (unknown[v] >= 0) solved.segment<3>(3 * unknown[v]) = shape.positions[v];
+    if (round == 0 || !matrix.solveFrom(right, kTolerance, kMaxIterations, solved))
+      solved = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(matrix.sparse()).solve(right);
     for (std::size_t v = 0; v < unknown.size(); ++v) {
       if (unknown[v] < 0) continue;
       sim::Vec3 move = solved.segment<3>(3 * unknown[v]) - shape.positions[v];

@@ -1,9 +1,11 @@
 // Positions of columns by least squares over strands that root in their faces.
 #pragma once
 
-#include <Eigen/SparseCore>
+#include <Eigen/Core>
+#include <span>
 #include <vector>
 
+#include "app/groom/fit/block_matrix.h"
 #include "app/groom/fit/growth_map.h"
 #include "app/groom/fit/strand_samples.h"
 #include "sim/mesh/hair_mesh.h"
@@ -35,11 +37,11 @@ double layerOf(const std::vector<double>& knots, double share);
 
 // Least squares over the strands for all columns but their roots: |A x - b|^2 of the targets, with neighbouring
 // columns' ways from their roots held alike a little. Vertex (column c, layer l > 0) is unknown u = c * (layers - 1) +
-// l - 1, and its coordinate k number 3 u + k.
+// l - 1.
 struct ColumnSystem {
   int columns = 0, layers = 0;
-  double usual = 1;                             // mean diagonal entry
-  std::vector<Eigen::Triplet<double>> entries;  // of the normal matrix, lower half with the diagonal
+  double usual = 1;                 // mean diagonal entry
+  std::vector<MatrixBlock> blocks;  // of the normal matrix; of unknowns
   Eigen::VectorXd right;
 
   int unknown(int column, int layer) const { return column * (layers - 1) + layer - 1; }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -39,7 +40,8 @@ constexpr int kMinLayers = 5, kMaxLayers = 16;           // of hair that is long
 constexpr double kSquareness = 0.5;
 // Of a smaller hair mesh's cost, or of its mean error at no more cost: for less gain a larger one is not taken.
 constexpr double kBetter = 0.8;
-constexpr int kPerLayer = 4;  // points of a grown strand
+constexpr double kUnopened = 0.98;  // of the same before its prisms are opened: those of a fit are no less
+constexpr int kPerLayer = 4;        // points of a grown strand
 
 // A fit in the making.
 struct Draft {
@@ -111,34 +113,6 @@ int regionOf(const RootRaster& raster, int cell, std::span<const Vector3f> stran
     }
   }
   return best;
-}
-
-float distanceToEdge(const Vector2f& p, const Vector2f& a, const Vector2f& b) {
-  const Vector2f ab = b - a;
-  const float share = std::clamp((p - a).dot(ab) / std::max(ab.squaredNorm(), 1e-12f), 0.0f, 1.0f);
-  return (p - a - share * ab).norm();
-}
-
-// The face of a region that a point of the map lies in, or is nearest to.
-int faceAt(const RootMesh& mesh, int region, const Vector2f& p) {
-  int best = -1;
-  float least = std::numeric_limits<float>::infinity();
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (region >= 0 && mesh.region[t] != region) continue;
-    const auto corner = [&](std::size_t k) { return mesh.at[static_cast<std::size_t>(mesh.triangles[t][k % 3])]; };
-    bool inside = true;
-    float far = std::numeric_limits<float>::infinity();
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vector2f a = corner(k), b = corner(k + 1), ab = b - a, ap = p - a;
-      inside = inside && ab.x() * ap.y() - ab.y() * ap.x() >= 0;
-      far = std::min(far, distanceToEdge(p, a, b));
-    }
-    if (inside) return static_cast<int>(t);
-    if (far >= least) continue;
-    least = far;
-    best = static_cast<int>(t);
-  }
-  return best >= 0 || region < 0 ? best : faceAt(mesh, -1, p);
 }
 
 StrandFit placeStrand(const Draft& draft, const GrowthMap& growth, std::size_t s) {
@@ -291,13 +265,6 @@ double slideAndFit(double fatness, const std::array<FitRounds, kSlides>& all, Dr
   return flattest;
 }
 
-// Fits, and opens what still lacks.
-void settle(Draft& draft) {
-  draft.fit.flattest = slideAndFit(
-      kFatness, {FitRounds{.count = kRounds, .anew = true}, FitRounds{.count = 2 * kRounds}}, draft, draft.fit.shape);
-  if (draft.fit.flattest < kMinFatness) openFlat(draft);
-}
-
 // The strands' own layers, whose prisms may be flat or inverted: what is simulated lies as near to these as it can.
 void placeGroom(Draft& draft) {
   sim::HairMeshShape& shape = draft.fit.shape;
@@ -388,9 +355,10 @@ double costOf(const HairFit& fit) {
          beside / fit.error.strand_length;
 }
 
-bool better(const HairFit& larger, const HairFit& smaller) {
-  const double cost = costOf(larger), other = costOf(smaller);
-  return cost < kBetter * other || (cost <= other && larger.error.mean < kBetter * smaller.error.mean);
+// `share`: of the larger one's cost and mean error that is counted.
+bool better(const HairFit& larger, const HairFit& smaller, double share = 1) {
+  const double cost = share * costOf(larger), other = costOf(smaller);
+  return cost < kBetter * other || (cost <= other && share * larger.error.mean < kBetter * smaller.error.mean);
 }
 
 // Layers about as far apart as columns: prisms long for their width are inverted by the head's curvature.
@@ -425,7 +393,19 @@ std::vector<RootRaster> tornRasters(const RootRaster& whole) {
   return all;
 }
 
-std::unique_ptr<Draft> makeDraft(const StrandSamples& strands, const RootRaster& raster, int layers, int vertices) {
+// Whether a fit may be worth to be kept, of which no more is known than before its prisms are opened. That takes
+// strands further from the mesh and leaves faces out: cost and mean error grow, or fall by less than kUnopened tells.
+using Worth = std::function<bool(const HairFit& unopened)>;
+
+bool isWorth(const Worth& worth, Draft draft) {
+  placeGroom(draft);
+  measure(kTrialStrands, draft);
+  return worth(draft.fit);
+}
+
+// Fits, and opens what still lacks. Empty where it is not worth that.
+std::unique_ptr<Draft> makeDraft(const StrandSamples& strands, const RootRaster& raster, int layers, int vertices,
+                                 const Worth& worth) {
   std::unique_ptr<Draft> draft(new Draft{strands, raster, meshRoots(raster, vertices / layers), {}, {}});
   if (draft->roots.triangles.empty())
     throw std::runtime_error("the roots span no face; a hair mesh grows from an area of scalp");
@@ -434,7 +414,13 @@ std::unique_ptr<Draft> makeDraft(const StrandSamples& strands, const RootRaster&
   draft->fit.knots = layerKnots(raster, layers);
   standUp(*draft);
   aim(GrowthMap(draft->fit.shape), kFitStrands, *draft);
-  settle(*draft);
+  constexpr std::array<FitRounds, kSlides> kSettling{FitRounds{.count = kRounds, .anew = true},
+                                                     FitRounds{.count = 2 * kRounds}};
+  draft->fit.flattest = slideAndFit(kFatness, kSettling, *draft, draft->fit.shape);
+  if (draft->fit.flattest < kMinFatness) {
+    if (!isWorth(worth, *draft)) return nullptr;
+    openFlat(*draft);
+  }
   if (draft->fit.shape.root_faces.empty())
     throw std::runtime_error("no bundle of it can be made into prisms; its strands go through each other everywhere");
   placeGroom(*draft);
@@ -464,14 +450,16 @@ HairFit fitGroom(const StrandSamples& strands, const FitOptions& options) {
   if (options.vertices > 0) budgets = {options.vertices};
   for (int& budget : budgets) budget = std::min(budget, most);
   budgets.erase(std::ranges::unique(budgets).begin(), budgets.end());
-  const auto draftOf = [&](const RootRaster& raster, int vertices) {
+  const auto draftOf = [&](const RootRaster& raster, int vertices, const Worth& worth) {
     return makeDraft(strands, raster, options.layers > 0 ? options.layers : usualLayers(raster, length, vertices),
-                     vertices);
+                     vertices, worth);
   };
   std::unique_ptr<Draft> best;
   for (const RootRaster& raster : torn) {
-    std::unique_ptr<Draft> draft = draftOf(raster, budgets.front());
-    if (!best || costOf(draft->fit) < costOf(best->fit)) best = std::move(draft);
+    std::unique_ptr<Draft> draft = draftOf(raster, budgets.front(), [&](const HairFit& unopened) {
+      return !best || kUnopened * costOf(unopened) < costOf(best->fit);
+    });
+    if (draft && (!best || costOf(draft->fit) < costOf(best->fit))) best = std::move(draft);
   }
   const RootRaster& raster = best->raster;
   for (const int vertices : std::span(budgets).subspan(1)) {
@@ -479,8 +467,9 @@ HairFit fitGroom(const StrandSamples& strands, const FitOptions& options) {
     if (off <= 1 && best->fit.dropped_faces == 0) break;
     // The error falls about as the columns' number grows.
     if (vertices != budgets.back() && best->fit.shape.vertexCount() * off > 1.3 * vertices) continue;
-    std::unique_ptr<Draft> draft = draftOf(raster, vertices);
-    if (better(draft->fit, best->fit)) best = std::move(draft);
+    std::unique_ptr<Draft> draft =
+        draftOf(raster, vertices, [&](const HairFit& unopened) { return better(unopened, best->fit, kUnopened); });
+    if (draft && better(draft->fit, best->fit)) best = std::move(draft);
   }
   measure(strands.strandCount(), *best);
   return std::move(best->fit);

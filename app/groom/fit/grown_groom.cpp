@@ -17,14 +17,14 @@ constexpr float kDistance = 0.6f;                   // m, of the eye from the mi
 constexpr float kFocus = 0.9f * kSide / 2 / 0.75f;  // pixels; a half angle of 37 degrees
 
 struct Silhouette {
-  std::vector<bool> full = std::vector<bool>(kSide * kSide, false);
+  std::vector<char> full = std::vector<char>(kSide * kSide, 0);
 
   void disc(float x, float y, float radius) {
     const int reach = std::max(0, static_cast<int>(std::lround(radius)));
     const int px = static_cast<int>(x), py = static_cast<int>(y);
     for (int j = std::max(0, py - reach); j <= std::min(kSide - 1, py + reach); ++j)
       for (int i = std::max(0, px - reach); i <= std::min(kSide - 1, px + reach); ++i)
-        full[static_cast<std::size_t>(j * kSide + i)] = true;
+        full[static_cast<std::size_t>(j * kSide + i)] = 1;
   }
 };
 

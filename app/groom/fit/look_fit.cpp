@@ -18,7 +18,7 @@ constexpr int kFitPoints = 96;            // of a strand that is measured
 constexpr std::size_t kFinePerPoint = 4;  // points along the given strand
 constexpr std::size_t kMaxLooked = 4000;
 constexpr int kMaxTurns = 16;
-constexpr double kMinTurns = 2.5, kQuickTurns = 3;  // slower turns are wander
+constexpr double kMinTurns = 2.5, kTurnStep = 0.25, kQuickTurns = 3;  // slower turns are wander
 constexpr double kOpening = 0.35;         // share of the length over which curls open, shaders/common/strand.glsl
 constexpr double kSmallestCurl = 0.0012;  // m
 constexpr double kClearCurl = 0.5;        // of a strand's wander that one rotation explains
@@ -79,23 +79,33 @@ std::vector<std::complex<double>> wander(std::span<const Vector3f> strand, std::
   return out;
 }
 
-// Amplitudes of the rotation by `turns` either way, beside a mean and a drift, over the part where curls are open.
-double amplitudeOf(const std::vector<std::complex<double>>& way, double turns) {
-  const std::size_t first = static_cast<std::size_t>(kOpening * static_cast<double>(way.size()));
-  double square = 0;
-  for (const double sign : {1.0, -1.0}) {
-    std::complex<double> sum = 0;
-    double weights = 0;
-    for (std::size_t k = first; k < way.size(); ++k) {
-      const double t = static_cast<double>(k) / static_cast<double>(way.size() - 1);
-      const double x = static_cast<double>(k - first) / static_cast<double>(way.size() - 1 - first);
+// Of kFitPoints points the windowed turning back by `turns`, over the part where curls are open, from `first` on.
+struct Turning {
+  std::size_t first = static_cast<std::size_t>(kOpening * kFitPoints);
+  std::vector<std::complex<double>> back;
+  double weights = 0;
+  explicit Turning(double turns) {
+    for (std::size_t k = first; k < kFitPoints; ++k) {
+      const double t = static_cast<double>(k) / (kFitPoints - 1);
+      const double x = static_cast<double>(k - first) / static_cast<double>(kFitPoints - 1 - first);
       const double window = 0.5 - 0.5 * std::cos(2 * std::numbers::pi * x);
-      sum += window * way[k] * std::polar(1.0, -sign * 2 * std::numbers::pi * turns * t);
+      back.push_back(window * std::polar(1.0, -2 * std::numbers::pi * turns * t));
       weights += window;
     }
-    square += std::norm(sum / weights);
   }
-  return std::sqrt(square);
+};
+
+// Amplitudes of the rotation either way, beside a mean and a drift.
+double amplitudeOf(const std::vector<std::complex<double>>& way, const Turning& turning) {
+  std::complex<double> one = 0, other = 0;
+  for (std::size_t n = 0; n < turning.back.size(); ++n) {
+    const std::complex<double>&z = way[turning.first + n], &back = turning.back[n];
+    const double rr = z.real() * back.real(), ii = z.imag() * back.imag();
+    const double ri = z.real() * back.imag(), ir = z.imag() * back.real();
+    one += std::complex<double>(rr - ii, ir + ri);
+    other += std::complex<double>(rr + ii, ir - ri);
+  }
+  return std::sqrt(std::norm(one) + std::norm(other)) / turning.weights;
 }
 
 // The way about its running mean over a turn of `turns`.
@@ -126,12 +136,17 @@ double slowPart(const std::vector<std::complex<double>>& way) {
 
 void measureTurns(const std::vector<std::complex<double>>& way, StrandMeasure& measure) {
   const std::vector<std::complex<double>> part = quickPart(way, kQuickTurns);
+  static const std::vector<Turning> kTurnings = [] {
+    std::vector<Turning> all;
+    for (double turns = kMinTurns; turns <= kMaxTurns; turns += kTurnStep) all.emplace_back(turns);
+    return all;
+  }();
   double best = 0;
-  for (double turns = kMinTurns; turns <= kMaxTurns; turns += 0.25) {
-    const double amplitude = amplitudeOf(part, turns);
+  for (std::size_t n = 0; n < kTurnings.size(); ++n) {
+    const double amplitude = amplitudeOf(part, kTurnings[n]);
     if (amplitude <= best) continue;
     best = amplitude;
-    measure.turns = turns;
+    measure.turns = kMinTurns + kTurnStep * static_cast<double>(n);
   }
   const double quick = rootMeanSquare(part);
   if (best * best > kClearCurl * quick * quick) measure.radius = best;

@@ -346,4 +346,35 @@ RootMesh meshRoots(const RootRaster& raster, int columns) {
   return best;
 }
 
+namespace {
+
+float distanceToEdge(const Vector2f& p, const Vector2f& a, const Vector2f& b) {
+  const Vector2f ab = b - a;
+  const float share = std::clamp((p - a).dot(ab) / std::max(ab.squaredNorm(), 1e-12f), 0.0f, 1.0f);
+  return (p - a - share * ab).norm();
+}
+
+}  // namespace
+
+int faceAt(const RootMesh& mesh, int region, const Vector2f& p) {
+  int best = -1;
+  float least = std::numeric_limits<float>::infinity();
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (region >= 0 && mesh.region[t] != region) continue;
+    const auto corner = [&](std::size_t k) { return mesh.at[static_cast<std::size_t>(mesh.triangles[t][k % 3])]; };
+    bool inside = true;
+    float far = std::numeric_limits<float>::infinity();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vector2f a = corner(k), b = corner(k + 1), ab = b - a, ap = p - a;
+      inside = inside && ab.x() * ap.y() - ab.y() * ap.x() >= 0;
+      far = std::min(far, distanceToEdge(p, a, b));
+    }
+    if (inside) return static_cast<int>(t);
+    if (far >= least) continue;
+    least = far;
+    best = static_cast<int>(t);
+  }
+  return best >= 0 || region < 0 ? best : faceAt(mesh, -1, p);
+}
+
 }  // namespace app

@@ -21,4 +21,7 @@ RootMesh meshRoots(const RootRaster& raster, int columns);
 // Delaunay triangulation of points in the plane (Bowyer 1981, Watson 1981): corners counter-clockwise.
 std::vector<std::array<int, 3>> delaunay(const std::vector<Eigen::Vector2f>& points);
 
+// The face of a region, or of all where that is negative or has none, that a point of the map lies in or is nearest to.
+int faceAt(const RootMesh& mesh, int region, const Eigen::Vector2f& p);
+
 }  // namespace app
