@@ -43,9 +43,10 @@ void compareDepth(const Texture& texture) {
 
 constexpr float kFarAway = 1;  // the depth of no hair and no body
 
-// A body is several times as large as its hair.
+// A body is several times as large as its hair, and smooth: a fine map of it gains nothing before the hair's does.
+constexpr int kFineBodyMap = 1024;
 int bodyMapSize(int hair_map_size) {
-  return 2 * hair_map_size;
+  return std::min(2 * hair_map_size, std::max(kFineBodyMap, hair_map_size));
 }
 
 // Thickness of the first deep opacity layer: small enough to resolve the outer hairs, large enough that the growing

@@ -12,7 +12,7 @@ namespace {
 constexpr double kFrameSeconds = 1.0 / 60;
 constexpr int kFiner = 4;               // pixels of the reference along one of the picture's
 constexpr float kFinerDetail = 2;       // of the level of detail, for each of those
-constexpr int kReferenceShadow = 1024;  // pixels a side of a hair's map
+constexpr int kReferenceShadow = 2048;  // pixels a side of a hair's map
 constexpr int kReferenceSegments = 8, kReferenceSamples = 16;
 
 app::Demo openDrawScene(const DrawScene& scene) {

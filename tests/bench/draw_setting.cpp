@@ -70,7 +70,7 @@ std::vector<Tried> singleFactors() {
           {"samples", {1}, 0},
           {"strands_per_pixel", {20, 80}, 1},
           {"segment_error", {0.4, 0.8, 0.1}, 1},
-          {"shadow_size", {256, 1024}, 1},
+          {"shadow_size", {256, 512}, 1},
           {"opacity_layers", {4}, 1},
           {"shadow_strands", {4000}, 1},
           {"shadow_strands_per_pixel", {12, 48}, 1},
@@ -82,7 +82,7 @@ std::vector<DrawSetting> combinations() {
       {{{"segment_error", 0.4}, {"shadow_strands", 4000}, {"shadow_strands_per_pixel", 12}}},
       {{{"strands_per_pixel", 28}, {"segment_error", 0.3}, {"shadow_strands_per_pixel", 17}}},
       {{{"strands_per_pixel", 80}, {"segment_error", 0.4}, {"shadow_strands_per_pixel", 12}}},
-      {{{"strands_per_pixel", 80}, {"segment_error", 0.1}, {"shadow_strands_per_pixel", 48}, {"shadow_size", 1024}}},
+      {{{"strands_per_pixel", 80}, {"segment_error", 0.1}, {"shadow_strands_per_pixel", 48}, {"shadow_size", 2048}}},
   };
 }
 

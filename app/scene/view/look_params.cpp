@@ -193,7 +193,7 @@ std::vector<SceneField> makeSceneTable() {
       scene<LIGHT(shadows)>("shadows", "Shadows", "", {0, 1}, "Shadows of hair and body."),
       scene<LIGHT(shadow_strength)>("shadow_strength", "Shadows", "", {0, 4}, "Opacity of the hair in its shadows."),
       scene<LIGHT(shadow_size)>("shadow_size", "Shadows", "pixels", {128, 4096},
-                                "Width of a hair's shadow map; the body's is twice that."),
+                                "Most texels a side of a hair's shadow map: it has 1.5 for each pixel of the hair."),
       scene<LIGHT(opacity_layers)>("opacity_layers", "Shadows", "", {1, 7}, "Layers of the deep opacity map."),
       scene<LIGHT(layer_thickness)>("layer_thickness", "Shadows", "m", {0, 0.2},
                                     "Thickness of the first opacity layer; 0 derives it from the hair's extent."),
