@@ -71,11 +71,12 @@ vec2 hairOpticalDepths(int map, vec3 at) {
   return mix(below, above, part.y);
 }
 
-// The first of both, of the texel nearest to a point: one of many whose mean is sought.
-float hairOpticalDepth(int map, vec3 at) {
-  if (!coveredByMap(at.xy)) return 0.0;
-  vec3 texel = hairShadowTexel(map, at.xy);
-  return depthsInTexel(map, ivec3(texel.xy * vec2(textureSize(hair_depth, 0).xy), int(texel.z)), at.z).x;
+// The first of both, and that of all the texel's hair, of the texel nearest to a point: one of many whose sum is sought.
+vec2 hairBeforeAndAll(int map, vec3 at) {
+  if (!coveredByMap(at.xy)) return vec2(0.0);
+  vec3 place = hairShadowTexel(map, at.xy);
+  ivec3 texel = ivec3(place.xy * vec2(textureSize(hair_depth, 0).xy), int(place.z));
+  return vec2(depthsInTexel(map, texel, at.z).x, opacity.y * texelFetch(opacity_far, texel, 0).w);
 }
 
 // Light left after the bodies, for a point of hair.
@@ -132,10 +133,20 @@ float lightBetweenHair(int map, vec3 at, int sought) {
   }
   above /= max(found, 1e-6);
   float reach = (kMinRadius + 0.5 * kLampAngle * above) / hair_shadow_size[map].x, sum = 0.0;
+  // Fine texels are rougher than the taps lie apart. So texels say which share of the hair stands above the point, and
+  // averages of texels how much hair there is.
   int taps = found > 0.0 ? kNearTaps : 0;
+  float level = clamp(log2(0.25 * reach * hair_shadow_size[map].y), 0.0, float(kOpacityLevels - 1));
+  vec2 hair = vec2(0.0);
   way = kFirstTap;
   for (int i = 0; i < taps; ++i, way = nextTap(way))
-    sum += exp(-hairOpticalDepth(map, vec3(at.xy + reach * discTap(i, float(kNearTaps), way), at.z)));
+    hair += hairBeforeAndAll(map, vec3(at.xy + reach * discTap(i, float(kNearTaps), way), at.z));
+  float share = hair.x / max(hair.y, 1e-6);
+  way = kFirstTap;
+  for (int i = 0; i < taps; ++i, way = nextTap(way)) {
+    vec2 tap = at.xy + reach * discTap(i, float(kNearTaps), way);
+    sum += coveredByMap(tap) ? exp(-share * wholeOpticalDepth(map, tap, level)) : 1.0;
+  }
   return mix(1.0, sum / float(kNearTaps), min(4.0 * found, 1.0));
 }
 
