@@ -113,7 +113,7 @@ int neckOf(const Outline& outline) {
 }
 
 // The middle of the edges between two levels.
-Eigen::Vector2d middleOfLevels(const Outline& outline, int from, int to) {
+Eigen::Vector2d levelsMiddle(const Outline& outline, int from, int to) {
   Level all;
   for (int level = from; level < to; ++level) {
     all.moment += outline.levels[static_cast<std::size_t>(level)].moment;
@@ -125,7 +125,7 @@ Eigen::Vector2d middleOfLevels(const Outline& outline, int from, int to) {
 // The way from the neck to the head's lower half, for a chin lies ahead of a neck; +z where they hardly differ.
 Vec3 facing(const Outline& outline, int neck, std::string& note) {
   const double head = outline.high - outline.heightOf(neck);
-  const Eigen::Vector2d ahead = middleOfLevels(outline, neck / 2, neck * 7 / 8) - middleOfLevels(outline, neck, neck + 1);
+  const Eigen::Vector2d ahead = levelsMiddle(outline, neck / 2, neck * 7 / 8) - levelsMiddle(outline, neck, neck + 1);
   if (ahead.norm() < kAhead * head) {
     note = "it faces +z, which nothing in the mesh tells";
     return Vec3::UnitZ();
@@ -187,7 +187,7 @@ std::optional<StillBody> measureStillBody(std::span<const Eigen::Vector3f> posit
   std::string facing_note;
   body.forward = facing(outline, neck, facing_note);
   const double raised = std::max(0.0, -unit * outline.low);
-  const Eigen::Vector2d middle = middleOfLevels(outline, neck, neck + 1);
+  const Eigen::Vector2d middle = levelsMiddle(outline, neck, neck + 1);
   body.to_metres.topLeftCorner<3, 3>() = unit * turn;
   body.to_metres(1, 3) = raised;
   body.neck = unit * Vec3(middle.x(), outline.heightOf(neck), middle.y()) + Vec3(0, raised, 0);
