@@ -158,7 +158,7 @@ struct LightInput {
   Float3 key{3.5f, 3.3f, 3.0f}, fill{0.28f, 0.32f, 0.40f}, rim{0.82f, 0.78f, 0.74f};
   Float3 to_fill{-0.8f, 0.3f, 0.6f}, to_rim{-0.6f, 0.3f, -0.85f};
   Float3 ambient_sky{0.22f, 0.24f, 0.28f}, ambient_ground{0.11f, 0.10f, 0.09f};
-  int shadow_size = 1024;        // most pixels a side of a hair's deep opacity map; the bodies' map: see bodyMapSize
+  int shadow_size = 1024;        // most texels a side of a hair's deep opacity map; the bodies': twice that, to 1024
   int shadow_strands = 8000;     // at most this many strands a hair cast shadow, standing for all; 0: all
   int opacity_layers = 7;        // deep opacity map layers, 1..7 (the eighth channel takes all behind)
   float layer_thickness = 0.0f;  // m of the first layer; 0: derived from the hair's extent

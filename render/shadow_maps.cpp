@@ -43,7 +43,8 @@ void compareDepth(const Texture& texture) {
 
 constexpr float kFarAway = 1;  // the depth of no hair and no body
 
-// A body is several times as large as its hair, and smooth: a fine map of it gains nothing before the hair's does.
+// A body is several times as large as its hair: its map has twice as many texels a side, but no more than this unless
+// the hair's map has.
 constexpr int kFineBodyMap = 1024;
 int bodyMapSize(int hair_map_size) {
   return std::min(2 * hair_map_size, std::max(kFineBodyMap, hair_map_size));

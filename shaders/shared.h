@@ -100,7 +100,7 @@ const float kSkinGap = 0.0018;    // m, off an ellipsoid: skin may stick out by 
 const float kSkinBlend = 0.0015;  // m, on either side of that: there the lift sets in
 const float kSkinFar =
     4.0;  // squared distance from the middle, in the ellipsoid's own measure: nothing beyond is lifted
-const float kSkinMiddle = 0.02;  // the same, from where the way out turns about: nothing nearer is, unless back
+const float kSkinMiddle = 0.02;  // the same, from where the way out turns about: nothing nearer is by itself
 const float kSkinWhole = 0.15;   // the same: all farther off are lifted whole
 const float kSkinBack = 0.005;   // m, of a lift: a strand lifted by more keeps to that side
 const float kSkinReturn = 0.15;  // m of hair over which a strand returns from where it was lifted: to a share of 1/e

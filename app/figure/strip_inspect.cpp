@@ -93,8 +93,7 @@ struct StripInspector {
   Eigen::Affine3d place;  // m in the file's axes to the figure's head
   bool up_given;
   GroomInspection result{};
-  std::size_t wrong =
-      0;  // pieces that float, go through the body or are rooted at the wrong end, each time that they do
+  std::size_t wrong = 0;  // pieces that float, pieces through the body, pieces rooted at the wrong end: the sum
 
   GroomFinding& add(const char* what, std::string text, std::string mend, bool certain = false) {
     result.findings.push_back({what, std::move(text), std::move(mend), certain, true});
@@ -267,10 +266,6 @@ void StripInspector::body() {
           formatted("%.1f mm at most", 1e3 * deepest),
       "--drop-strips " + commaList(through) + ", or lift them in the file");
 }
-
-}  // namespace
-
-namespace {
 
 // With one axis up.
 GroomInspection inspectWithUp(const PolygonMesh& mesh, const StripOptions& options, bool up_given,

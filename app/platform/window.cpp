@@ -36,7 +36,6 @@
 #include "app/scene/view/light_drag.h"
 #include "app/scene/view/look_params.h"
 #include "app/ui/input_queue.h"
-#include "app/ui/leaving.h"
 #include "app/ui/part_glide.h"
 #include "app/ui/redraw_throttle.h"
 #include "app/ui/ui.h"

@@ -358,7 +358,10 @@ namespace {
 int takeSteps(double seconds, Demo& demo) {
   demo.running = governed(demo.scene.sim, demo.governor);
   const int steps = stepsToTake(seconds, demo);
-  if (steps > 0) noteMoment(demo.edits), chooseDetail(demo);
+  if (steps > 0) {
+    noteMoment(demo.edits);
+    chooseDetail(demo);
+  }
   for (int i = 1; i <= steps; ++i) moveActors(demo.clock.time - (steps - i) * demo.running.time_step, steps - i, demo);
   return steps;
 }

@@ -193,6 +193,9 @@ enum UiKey {
 // Held while a key is pressed.
 enum UiModifier { kNoModifier = 0, kShift = 1, kControl = 2 };
 
+// What closing the window does: where something was changed it asks at first, and closes while the question stands.
+bool mayClose(Demo& demo, UiState& ui);
+
 // What a key does. Returns whether it did something.
 bool pressKey(int key, Demo& demo, UiState& ui, int modifiers = kNoModifier);
 

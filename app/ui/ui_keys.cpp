@@ -6,7 +6,6 @@
 
 #include "app/scene/edit/groom_brush.h"
 #include "app/scene/edit/mesh_change.h"
-#include "app/ui/leaving.h"
 #include "app/ui/ui.h"
 #include "app/ui/ui_panels.h"
 #include "app/ui/ui_widgets.h"

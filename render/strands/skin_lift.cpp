@@ -28,7 +28,7 @@ Vector3f turnedBack(const std::array<std::array<float, 4>, 3>& rows, const Vecto
   return v.x() * row(0) + v.y() * row(1) + v.z() * row(2);
 }
 
-// back: the way out of the middle, see the shader.
+// back: the way that the strand's point before was lifted, which leads in the middle (shaders/common/skin.glsl).
 std::optional<WayOut> wayOutOf(const SkinEllipsoid& e, const Vector3f& point, const Vector3f& back, float blend) {
   const Eigen::Map<const Vector4f> a(e.to_ball[0].data()), b(e.to_ball[1].data()), c(e.to_ball[2].data());
   const Vector4f p = point.homogeneous();

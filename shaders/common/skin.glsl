@@ -14,8 +14,8 @@ struct WayOut {
   vec3 along, normal;  // normal: shorter where sides meet
 };
 
-// False where the point is not lifted out of ellipsoid i. In the middle, where the way out turns about, it is back,
-// which is the shorter the less sure it is.
+// False where the point is not lifted out of ellipsoid i. In the middle the way out turns about. There `back` leads: the
+// way that the strand's point before was lifted, shorter than 1, and the shorter the less that one was lifted.
 bool wayOutOfBall(int i, vec3 point, vec3 back, float blend, out WayOut way) {
   vec4 a = skin_rows[4 * i], b = skin_rows[4 * i + 1], c = skin_rows[4 * i + 2], p = vec4(point, 1.0);
   vec3 ball = vec3(dot(a, p), dot(b, p), dot(c, p));

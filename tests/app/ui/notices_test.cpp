@@ -5,7 +5,6 @@
 
 #include <utility>
 
-#include "app/ui/leaving.h"
 #include "app/ui/part_glide.h"
 #include "app/ui/ui_panels.h"
 #include "tests/app/ui/panels.h"
