@@ -27,10 +27,11 @@ namespace app {
 
 namespace {
 
-constexpr double kAstray = 8;                            // medians of the pieces' distances from their middle
-constexpr double kFloatingRoot = 0.03, kAtScalp = 0.02;  // m from the body: rooted nowhere, and on the scalp
-constexpr double kNearerTip = 0.5;                       // of the root's distance: the tip is the root
-constexpr double kDeepInBody = 0.006, kByRoot = 0.01;    // m
+constexpr double kAstray = 8;                          // medians of the pieces' distances from their middle
+constexpr double kFloatingRoot = 0.03;                 // m from the body: rooted nowhere
+constexpr double kAtScalp = 0.02;                      // m: on it
+constexpr double kNearerTip = 0.5;                     // of the root's distance: the tip is the root
+constexpr double kDeepInBody = 0.006, kByRoot = 0.01;  // m
 constexpr double kThinnestCard = 0.002, kWidestCard = 0.12, kUsualCard = 0.02;  // m
 constexpr std::size_t kManyPieces = 10;
 constexpr double kOverHead = 0.05;                     // m, spread of the roots
@@ -65,6 +66,10 @@ std::string piecesText(const std::vector<int>& numbers) {
          (numbers.size() > count ? " and " + std::to_string(numbers.size() - count) + " more" : "");
 }
 
+const char* verbOf(const std::vector<int>& pieces, const char* of_one, const char* of_more) {
+  return pieces.size() == 1 ? of_one : of_more;
+}
+
 // Pieces that lie so far from the others that unit and place are not told by them.
 std::vector<int> astrayOf(const std::vector<FollowedStrip>& strips) {
   std::vector<Vec3> roots;
@@ -90,6 +95,7 @@ struct StripInspector {
   const StripOptions& options;
   const StripConversion& strips;  // before it is brought to the head
   const HeadModel head;
+  const Scalp& scalp;
   Eigen::Affine3d place;  // m in the file's axes to the figure's head
   bool up_given;
   GroomInspection result{};
@@ -100,6 +106,11 @@ struct StripInspector {
     return result.findings.back();
   }
   double distance(const Vec3& p) const { return head.distance((place * p).cast<float>()); }
+  // m. Tips of long hair are near to the body, too, on shoulders and back.
+  double offScalp(const Vec3& p) const {
+    const Vec3 from = place * p - scalp.center;
+    return std::abs(from.norm() - scalp.radiusAt(from));
+  }
   void pieces();
   void area();
   void unit();
@@ -169,7 +180,8 @@ void StripInspector::axes() {
 }
 
 void StripInspector::roots(const FittedStrips& fitted, const Character& character) {
-  if (fitted.fit.empty()) return;
+  result.on_head = fitted.fit.empty();
+  if (result.on_head) return;
   std::vector<double> before;
   Vec3 middle = Vec3::Zero();
   const Eigen::Matrix3d turn = place.linear() / std::cbrt(place.linear().determinant());
@@ -179,7 +191,7 @@ void StripInspector::roots(const FittedStrips& fitted, const Character& characte
     middle += root / static_cast<double>(strips.followed.size());
   }
   if (farFromHead(fitted.conversion.mesh.shape, character)) {
-    add("roots", fitted.fit, "--scalp FILE, --root-edge lowest or --flip-strips");
+    add("roots", fitted.fit, "");  // which names the options
     return;
   }
   result.on_head = true;
@@ -197,7 +209,7 @@ void StripInspector::ends() {
   std::vector<int> reversed, floating, unclear;
   for (const FollowedStrip& strip : strips.followed) {
     const double root = std::abs(distance(middleOf(strip.rows.rows.front()))),
-                 tip = std::abs(distance(middleOf(strip.rows.rows.back())));
+                 tip = offScalp(middleOf(strip.rows.rows.back()));
     if (root > kAtScalp && tip < kAtScalp && tip < kNearerTip * root) {
       reversed.push_back(strip.number);
     } else if (root > kFloatingRoot) {
@@ -212,11 +224,12 @@ void StripInspector::ends() {
     const bool all = reversed.size() == strips.followed.size();
     add("reversed",
         all ? "all pieces are rooted at the end away from the scalp, by " + strips.roots
-            : piecesText(reversed) + of + " are rooted at the end away from the scalp, by " + strips.roots,
+            : piecesText(reversed) + of + verbOf(reversed, " is", " are") +
+                  " rooted at the end away from the scalp, by " + strips.roots,
         all ? "--other-end" : "--flip-strips " + commaList(reversed));
   }
   if (!floating.empty())
-    add("roots", piecesText(floating) + of + " begin more than 3 cm from the scalp",
+    add("roots", piecesText(floating) + of + verbOf(floating, " begins", " begin") + " more than 3 cm from the scalp",
         "--drop-strips " + commaList(floating));
   if (!unclear.empty())
     add("root edge", piecesText(unclear) + ": both ends are about as near to the scalp", "--flip-strips turns them")
@@ -262,9 +275,9 @@ void StripInspector::body() {
   wrong += through.size();
   if (through.empty()) return;
   add("body",
-      piecesText(through) + " of " + countOf(strips.followed.size(), "piece") + " go through the body, " +
-          formatted("%.1f mm at most", 1e3 * deepest),
-      "--drop-strips " + commaList(through) + ", or lift them in the file");
+      piecesText(through) + " of " + countOf(strips.followed.size(), "piece") + verbOf(through, " goes", " go") +
+          " through the body, " + formatted("%.1f mm at most", 1e3 * deepest),
+      "lift them in the file; --drop-strips " + commaList(through) + " leaves them out");
 }
 
 // With one axis up.
@@ -273,9 +286,10 @@ GroomInspection inspectWithUp(const PolygonMesh& mesh, const StripOptions& optio
                               double& bad) {
   const FittedStrips fitted = fitStrips(mesh, options, up_given, file, character, true);
   const StripConversion& strips = fitted.conversion;
-  StripInspector inspector{mesh, options, strips, headModelOf(character), fitted.place, up_given};
+  StripInspector inspector{mesh, options, strips, headModelOf(character), character.scalp, fitted.place, up_given};
   if (!astray.empty())
-    inspector.add("astray", piecesText(astray) + " lie apart from all others", "--drop-strips " + commaList(astray));
+    inspector.add("astray", piecesText(astray) + verbOf(astray, " lies", " lie") + " apart from all others",
+                  "--drop-strips " + commaList(astray));
   inspector.pieces();
   inspector.area();
   inspector.unit();
@@ -359,11 +373,14 @@ GroomInspection inspectPolygons(std::string_view bytes, const StripOptions& opti
   if (!namesHair(mesh)) {
     if (const std::optional<StillBody> body = stillBodyOf(mesh)) return inspectBody(mesh, *body);
   }
+  const bool worn = !namesHair(mesh) && looksWorn(mesh);
+  const InputError to_wear(file, "", "is a mesh to wear, no hair", "give it to hairmesh --attach");
   try {
-    return inspectStrips(mesh, options, up_given, file, character);
+    GroomInspection inspection = inspectStrips(mesh, options, up_given, file, character);
+    if (worn && !inspection.on_head) throw to_wear;
+    return inspection;
   } catch (const InputError&) {
-    if (!namesHair(mesh) && looksWorn(mesh))
-      throw InputError(file, "", "is a mesh to wear, no hair", "give it to hairmesh --attach");
+    if (worn) throw to_wear;
     throw;
   }
 }

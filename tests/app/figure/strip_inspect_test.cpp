@@ -186,7 +186,7 @@ std::vector<Defect> pieceDefects() {
          for (auto& row : random.pick(scene))
            for (Vec3& p : row) p += away;
        }},
-      {"body", "--drop-strips",
+      {"body", "lift them",
        [](Random& random, Scene& scene) {
          for (int n = 0; n < 3; ++n) {
            Card& card = random.pick(scene);
@@ -215,7 +215,9 @@ const std::vector<std::string> kPolygonFormats{"obj", "glb", "fbx", "vrm"};
 constexpr std::array kStyles{app::Style::kShort, app::Style::kShoulder, app::Style::kBob};
 
 TEST(StripInspect, SaysNothingOfCardsThatFit) {
-  for (const app::Style style : kStyles) {
+  std::vector<app::Style> styles(kStyles.begin(), kStyles.end());
+  styles.push_back(app::Style::kLong);  // whose tips lie on the body
+  for (const app::Style style : styles) {
     for (const std::string& format : kPolygonFormats) {
       const std::string file = written({cardsOf(style), ""}, test::freshFolder("strip_inspect_fits"), format);
       const app::GroomInspection inspection = inspected(file);
