@@ -250,7 +250,7 @@ int run(const Arguments& arguments) {
   app::refuseOwnExport(bytes, arguments.in);
   if (!app::hasPolygonEnding(arguments.in)) {
     app::refuseUtf16(bytes, arguments.in);
-    app::refuseNoHair(arguments.in);
+    app::refuseNoHair(arguments.in, true);
   }
   if (app::hasLayers(bytes))
     throw app::InputError(arguments.in, "", "is a hair mesh already", "show it with hairmesh --hair");

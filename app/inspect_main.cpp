@@ -162,7 +162,7 @@ int runPolygons(const CLI::App& parser, const Asked& asked, const std::string& b
     throw app::UsageError("--up cannot be '" + asked.up + "'; of strips it is y or z");
   app::refuseOwnExport(bytes, asked.file);
   app::refuseUtf16(bytes, asked.file);
-  if (!app::hasPolygonEnding(asked.file)) app::refuseNoHair(asked.file);
+  if (!app::hasPolygonEnding(asked.file)) app::refuseNoHair(asked.file, true);
   app::StripOptions options;
   if (!asked.unit.empty()) options.unit = metresOf(asked.unit);
   if (!asked.up.empty()) options.up = asked.up[0];

@@ -27,7 +27,6 @@ namespace app {
 
 namespace {
 
-constexpr double kAstray = 8;                          // medians of the pieces' distances from their middle
 constexpr double kFloatingRoot = 0.03;                 // m from the body: rooted nowhere
 constexpr double kAtScalp = 0.02;                      // m: on it
 constexpr double kNearerTip = 0.5;                     // of the root's distance: the tip is the root
@@ -38,7 +37,6 @@ constexpr double kOverHead = 0.05;                     // m, spread of the roots
 constexpr double kLeastRim = 0.1;                      // m, of all root edges together: thin cards may be many
 constexpr double kNoArea = 1e-12;                      // of the extent, squared
 constexpr double kManyWrong = 0.1, kFewerWrong = 0.5;  // of the pieces, and of those with the other axis up
-constexpr std::size_t kMostTold = 12;                  // numbers
 
 std::string formatted(const char* format, double a, double b = 0) {
   std::array<char, 200> text;
@@ -53,41 +51,15 @@ double lineLengthOf(const StripRows& rows) {
   return length;
 }
 
-// "3,7,9", for an option and to be read.
+// "3,7,9", for an option.
 std::string commaList(const std::vector<int>& numbers) {
   std::string text;
   for (const int number : numbers) text += (text.empty() ? "" : ",") + std::to_string(number);
   return text;
 }
-std::string piecesText(const std::vector<int>& numbers) {
-  const std::size_t count = std::min(kMostTold, numbers.size());
-  const std::string text = commaList({numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(count)});
-  return (numbers.size() == 1 ? "strip " : "strips ") + text +
-         (numbers.size() > count ? " and " + std::to_string(numbers.size() - count) + " more" : "");
-}
 
 const char* verbOf(const std::vector<int>& pieces, const char* of_one, const char* of_more) {
   return pieces.size() == 1 ? of_one : of_more;
-}
-
-// Pieces that lie so far from the others that unit and place are not told by them.
-std::vector<int> astrayOf(const std::vector<FollowedStrip>& strips) {
-  std::vector<Vec3> roots;
-  for (const FollowedStrip& strip : strips) roots.push_back(middleOf(strip.rows.rows[0]));
-  Vec3 middle;
-  for (int k = 0; k < 3; ++k) {
-    std::vector<double> along;
-    for (const Vec3& root : roots) along.push_back(root[k]);
-    middle[k] = median(std::move(along));
-  }
-  std::vector<double> far, lengths;
-  for (const Vec3& root : roots) far.push_back((root - middle).norm());
-  for (const FollowedStrip& strip : strips) lengths.push_back(lineLengthOf(strip.rows));
-  const double most = kAstray * std::max(median(far), 0.2 * median(std::move(lengths)));
-  std::vector<int> numbers;
-  for (std::size_t s = 0; s < strips.size(); ++s)
-    if (far[s] > most) numbers.push_back(strips[s].number);
-  return numbers;
 }
 
 struct StripInspector {
@@ -122,6 +94,8 @@ struct StripInspector {
 };
 
 void StripInspector::pieces() {
+  if (!strips.astray.empty())
+    add("astray", astrayText(strips), strips.astray.size() == 1 ? "it is left out" : "they are left out", true);
   if (strips.left_out.empty()) return;
   std::string names = strips.left_out.front();
   for (std::size_t n = 1; n < std::min<std::size_t>(3, strips.left_out.size()); ++n) names += "; " + strips.left_out[n];
@@ -282,14 +256,10 @@ void StripInspector::body() {
 
 // With one axis up.
 GroomInspection inspectWithUp(const PolygonMesh& mesh, const StripOptions& options, bool up_given,
-                              const std::vector<int>& astray, const std::string& file, const Character& character,
-                              double& bad) {
+                              const std::string& file, const Character& character, double& bad) {
   const FittedStrips fitted = fitStrips(mesh, options, up_given, file, character, true);
   const StripConversion& strips = fitted.conversion;
   StripInspector inspector{mesh, options, strips, headModelOf(character), character.scalp, fitted.place, up_given};
-  if (!astray.empty())
-    inspector.add("astray", piecesText(astray) + verbOf(astray, " lies", " lie") + " apart from all others",
-                  "--drop-strips " + commaList(astray));
   inspector.pieces();
   inspector.area();
   inspector.unit();
@@ -314,17 +284,15 @@ GroomInspection inspectWithUp(const PolygonMesh& mesh, const StripOptions& optio
 
 }  // namespace
 
-GroomInspection inspectStrips(const PolygonMesh& mesh, const StripOptions& given, bool up_given,
+GroomInspection inspectStrips(const PolygonMesh& mesh, const StripOptions& options, bool up_given,
                               const std::string& file, const Character& character) {
-  StripOptions options = given;
-  const std::vector<int> astray = astrayOf(convertStrips(mesh, options, file).followed);
-  options.dropped.insert(options.dropped.end(), astray.begin(), astray.end());
   double bad = 0, other = 0;
-  GroomInspection inspection = inspectWithUp(mesh, options, up_given, astray, file, character, bad);
+  GroomInspection inspection = inspectWithUp(mesh, options, up_given, file, character, bad);
   if (up_given || isYUp(file) || bad < kManyWrong || inspection.find("up")) return inspection;
-  options.up = 'z';
+  StripOptions turned = options;
+  turned.up = 'z';
   try {
-    inspectWithUp(mesh, options, true, {}, file, character, other);
+    inspectWithUp(mesh, turned, true, file, character, other);
   } catch (const InputError&) {
     return inspection;  // no strips with z up
   }

@@ -96,28 +96,32 @@ bool isRecording(std::string_view text) {
   return text.substr(0, text.find('\n')).find("\"hairmesh-recording\"") != std::string_view::npos;
 }
 
-std::pair<std::string, std::string> kindAndUse(const std::string& file) {
+std::pair<std::string, std::string> kindAndUse(const std::string& file, bool of_tool) {
+  const std::string give = of_tool ? "give it to hairmesh " : "give it to ",
+                    open = of_tool ? "open it with hairmesh" : "open it without an option",
+                    load = std::string(of_tool ? "name its scene to hairmesh" : "name its scene") +
+                           ", and it with --load-state";
   try {
     switch (fileKind(file)) {
       case FileKind::kScene:
-        return {"is a scene", "open it without an option"};
+        return {"is a scene", open};
       case FileKind::kPreset:
-        return {"is a preset", "give it to --preset"};
+        return {"is a preset", give + "--preset"};
       case FileKind::kMotion:
       case FileKind::kRigidMotion:
-        return {"is a motion", "give it to --motion"};
+        return {"is a motion", give + "--motion"};
       case FileKind::kHairMesh:
-        return {"is hair", "give it to --hair"};
+        return {"is hair", give + "--hair"};
       case FileKind::kState:
-        return {"is a saved state", "name its scene, and it with --load-state"};
+        return {"is a saved state", load};
       case FileKind::kCache:
-        return {"is a cache of simulated hair", "name its scene, and it with --load-state"};
+        return {"is a cache of simulated hair", load};
       case FileKind::kProject:
-        return {"is a project", "open it without an option"};
+        return {"is a project", open};
       case FileKind::kAttachment:
-        return {"is a mesh to wear", "give it to --attach"};
+        return {"is a mesh to wear", give + "--attach"};
       case FileKind::kEnvironment:
-        return {"is a panorama", "give it to --environment"};
+        return {"is a panorama", give + "--environment"};
     }
   } catch (const InputError&) {  // no kind that is read
   }
@@ -143,12 +147,12 @@ void refuseOwnExport(std::string_view bytes, const std::string& file) {
                      "export strands (.abc, .usda, .hair, .ply), or write the hair mesh (--write-hair FILE.obj)");
 }
 
-void refuseNoHair(const std::string& file) {
+void refuseNoHair(const std::string& file, bool of_tool) {
   const std::string beginning = beginningOfGroom(file);
   if (!beginning.empty())
     throw InputError(file, "", "does not begin with " + beginning + ", as its name says",
                      "write it again, or give it the ending of what it is");
-  const auto [kind, use] = kindAndUse(file);
+  const auto [kind, use] = kindAndUse(file, of_tool);
   if (!kind.empty()) throw InputError(file, "", kind + ", no hair", use);
   throw InputError(
       file, "", "holds no hair",

@@ -30,8 +30,8 @@ FileKind fileKind(const std::string& file);
 bool isRecording(std::string_view text);
 
 // What a file is that was given to an option for another kind, and what takes it: "is a motion", "give it to --motion".
-// Empty for what nothing takes.
-std::pair<std::string, std::string> kindAndUse(const std::string& file);
+// Empty for what nothing takes. `of_tool`: said by another program than hairmesh, whose options these are.
+std::pair<std::string, std::string> kindAndUse(const std::string& file, bool of_tool = false);
 
 // Throws InputError for a file of another kind than a recording, with what takes it.
 void requireRecording(const std::string& file);
@@ -42,7 +42,7 @@ std::string partsBeside(const std::string& motion_file);
 // Throws InputError for a moving hair mesh that this program has exported (.glb).
 void refuseOwnExport(std::string_view bytes, const std::string& file);
 
-// Throws InputError: what the file is instead, and what it is good for.
-[[noreturn]] void refuseNoHair(const std::string& file);
+// Throws InputError: what the file is instead, and what it is good for, as kindAndUse says.
+[[noreturn]] void refuseNoHair(const std::string& file, bool of_tool = false);
 
 }  // namespace app

@@ -23,7 +23,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kMaxPatches = 20000, kMaxScalpPoints = 20000, kToldOf = 6, kPiecesTold = 12;
-constexpr double kUnclear = 0.1;  // of a strip's length: ends whose measures differ by less are alike
+constexpr double kAstray = 8, kOfLength = 0.2;  // medians of the roots' distances from their middle, at least of length
+constexpr double kUnclear = 0.1;                // of a strip's length: ends whose measures differ by less are alike
 constexpr double kMinSpread = 0.015, kMaxSpread = 0.35;  // m, of the roots of a unit that is said
 
 constexpr const char* kGive =
@@ -174,6 +175,40 @@ void followAll(const PolygonMesh& mesh, const std::vector<StripPatch>& patches, 
   }
 }
 
+// Distances of points from their middle, which is the median of each coordinate.
+std::vector<double> fromMiddle(const std::vector<Vector3d>& points) {
+  Vector3d middle;
+  for (int k = 0; k < 3; ++k) {
+    std::vector<double> along;
+    for (const Vector3d& p : points) along.push_back(p[k]);
+    middle[k] = median(std::move(along));
+  }
+  std::vector<double> far;
+  for (const Vector3d& p : points) far.push_back((p - middle).norm());
+  return far;
+}
+
+// Pieces that lie so far from the others that they would tell a wrong unit and place.
+void leaveOutAstray(StripConversion& out) {
+  std::vector<Vector3d> roots;
+  std::vector<double> lengths;
+  for (const FollowedStrip& strip : out.followed) {
+    roots.push_back(middleOf(strip.rows.rows[0]));
+    lengths.push_back(lengthOf(strip.rows));
+  }
+  const std::vector<double> far = fromMiddle(roots);
+  const double most = kAstray * std::max(median(far), kOfLength * median(std::move(lengths)));
+  std::vector<FollowedStrip> near;
+  for (std::size_t s = 0; s < far.size(); ++s) {
+    if (far[s] <= most) {
+      near.push_back(std::move(out.followed[s]));
+    } else {
+      out.astray.push_back(out.followed[s].number);
+    }
+  }
+  out.followed = std::move(near);
+}
+
 void toMetres(StripConversion& out) {
   for (FollowedStrip& strip : out.followed) {
     strip.root *= out.scale;
@@ -229,15 +264,12 @@ std::string kinds(const StripConversion& conversion) {
   return text + " and " + countOf(conversion.tubes, "tube");
 }
 
-// "strips 3, 7, 9": those of which it is so.
+// Those of which it is so.
 std::string pieceNumbers(const StripConversion& conversion, bool FollowedStrip::*so) {
-  std::string text;
-  std::size_t count = 0;
-  for (const FollowedStrip& strip : conversion.followed) {
-    if (strip.*so && ++count <= kPiecesTold) text += (count > 1 ? ", " : "") + std::to_string(strip.number);
-  }
-  if (count > kPiecesTold) text += " and " + std::to_string(count - kPiecesTold) + " more";
-  return (count == 1 ? "strip " : "strips ") + text;
+  std::vector<int> numbers;
+  for (const FollowedStrip& strip : conversion.followed)
+    if (strip.*so) numbers.push_back(strip.number);
+  return piecesText(numbers);
 }
 
 // "12 to 30 mm"
@@ -281,15 +313,19 @@ double rootSpread(const std::vector<FollowedStrip>& strips) {
   std::vector<Vector3d> points;
   for (const FollowedStrip& strip : strips)
     points.insert(points.end(), strip.rows.rows[0].begin(), strip.rows.rows[0].end());
-  Vector3d middle;
-  for (int k = 0; k < 3; ++k) {
-    std::vector<double> along;
-    for (const Vector3d& p : points) along.push_back(p[k]);
-    middle[k] = median(std::move(along));
-  }
-  std::vector<double> far;
-  for (const Vector3d& p : points) far.push_back((p - middle).norm());
-  return median(std::move(far));
+  return median(fromMiddle(points));
+}
+
+std::string piecesText(const std::vector<int>& numbers) {
+  std::string text = numbers.size() == 1 ? "strip " : "strips ";
+  for (std::size_t n = 0; n < std::min(kPiecesTold, numbers.size()); ++n)
+    text += (n > 0 ? ", " : "") + std::to_string(numbers[n]);
+  if (numbers.size() > kPiecesTold) text += " and " + std::to_string(numbers.size() - kPiecesTold) + " more";
+  return text;
+}
+
+std::string astrayText(const StripConversion& conversion) {
+  return piecesText(conversion.astray) + (conversion.astray.size() == 1 ? " lies" : " lie") + " apart from all others";
 }
 
 bool namesHair(const PolygonMesh& mesh) {
@@ -316,6 +352,7 @@ StripConversion convertStrips(const PolygonMesh& mesh, const StripOptions& optio
                      out.left_out.empty() ? "has no strip left but those that --drop-strips leaves out"
                                           : "holds no strip or tube that can be followed: " + out.left_out.front(),
                      kGive);
+  leaveOutAstray(out);
   out.scale = unitOf(out.followed, options.unit, mesh.meters_per_unit, out.unit);
   for (const Vector3d& p : scalp) out.scalp_points.push_back(out.scale * p);
   toMetres(out);
@@ -338,6 +375,7 @@ std::string stripReport(const StripConversion& conversion) {
   if (mesh.thickness > 0) text += reportLine("thickness     %.1f mm of strips at their roots", 1e3 * mesh.thickness);
   if (conversion.cut > 0)
     text += reportLine("cut short     %s whose last rows are no rows", countOf(conversion.cut, "strip").c_str());
+  if (!conversion.astray.empty()) text += reportLine("left out      %s", astrayText(conversion).c_str());
   for (std::size_t k = 0; k < std::min(kToldOf, conversion.left_out.size()); ++k)
     text += reportLine("left out      %.300s", conversion.left_out[k].c_str());
   if (conversion.left_out.size() > kToldOf)
@@ -348,6 +386,7 @@ std::string stripReport(const StripConversion& conversion) {
 std::string stripNote(const StripConversion& conversion) {
   std::string text = kinds(conversion) + " in " + conversion.unit + ", rooted at " + conversion.roots + ", as " +
                      std::to_string(conversion.mesh.shape.vertexCount()) + " vertices";
+  if (!conversion.astray.empty()) text += "; " + astrayText(conversion) + " and left out";
   if (!conversion.left_out.empty())
     text += "; " + std::to_string(conversion.left_out.size()) + " left out, the first: " + conversion.left_out.front();
   return text;

@@ -48,6 +48,7 @@ struct StripConversion {
   bool by_scalp = false;                      // by their distance from it
   std::vector<FollowedStrip> followed;        // as the file has them: those of left_out that fold are among them
   std::vector<std::string> left_out;          // "strip 3 ('hair_back'): ..."
+  std::vector<int> astray;                    // numbers of pieces left out, which would tell a wrong unit and place
   int cut = 0;                                // strips whose last rows were left out
   std::string scalp;                          // objects taken for the scalp
   std::vector<Eigen::Vector3d> scalp_points;  // m, the file's axes: all over it
@@ -56,6 +57,11 @@ struct StripConversion {
 // m, the median distance of the root edges' points from their middle, which is the median of each coordinate: a single
 // stray piece changes it little.
 double rootSpread(const std::vector<FollowedStrip>& strips);
+
+// "strip 3"; "strips 3, 7, 9", of many the first.
+std::string piecesText(const std::vector<int>& numbers);
+// "strips 3, 7 lie apart from all others"; of some.
+std::string astrayText(const StripConversion& conversion);
 
 // Whether any object is called hair: then others are none.
 bool namesHair(const PolygonMesh& mesh);
