@@ -398,6 +398,7 @@ constexpr Action kActions[] = {
      [](const Request& request, Demo& demo) {
        saveProject(request.text, demo, stem(request.text));
        demo.scene.file = request.text, demo.scene.name = stem(request.text);
+       demo.edits.saved = lastDone(demo.edits);
        showMessage("saved " + request.text, demo);
      }},
     {Ask::kOpenProject,

@@ -445,6 +445,7 @@ void buildUi(Demo& demo, UiState& ui) {
   NoticePlace place = noticePlace(ui, below);
   message(place, demo, ui);
   offerPanel(place, demo, ui);
+  leavePanel(place, demo, ui);
   help(ui);
   endGesture(demo, ui);
 }

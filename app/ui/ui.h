@@ -149,7 +149,7 @@ struct UiState {
   std::string kept_folder;          // where the list of recent files is kept; empty: nowhere
   std::vector<std::string> recent;  // files opened last
   std::vector<std::string> asked;   // files whose opening or saving has been asked for
-  bool leaving = false;             // Esc was pressed once
+  bool leaving = false;             // it is asked whether to leave
   std::string shown_message;
   double anew_since = 0;                 // s of ImGui's clock: the timeline had nothing on it then
   double message_since = 0;              // s of ImGui's clock
@@ -193,8 +193,8 @@ enum UiKey {
 // Held while a key is pressed.
 enum UiModifier { kNoModifier = 0, kShift = 1, kControl = 2 };
 
-// What closing the window does: where something was changed it asks at first, and closes while the question stands.
-bool mayClose(Demo& demo, UiState& ui);
+// What closing the window does: where something is not saved it asks at first, and closes while the question stands.
+bool mayClose(const Demo& demo, UiState& ui);
 
 // What a key does. Returns whether it did something.
 bool pressKey(int key, Demo& demo, UiState& ui, int modifiers = kNoModifier);

@@ -259,7 +259,11 @@ void openFile(const std::string& file, Demo& demo, UiState& ui) {
 
 void noteFiles(Demo& demo, UiState& ui) {
   for (const FileEnd& end : std::exchange(demo.file_ends, {})) {
-    if (end.file == ui.to_go_on_from) ui.gone_on_from = end.done ? end.file : "", ui.to_go_on_from.clear();
+    if (end.file == ui.to_go_on_from) {
+      ui.gone_on_from = end.done ? end.file : "";
+      ui.to_go_on_from.clear();
+      if (end.done) demo.edits.saved = kNeverSaved;
+    }
     if (std::erase(ui.asked, end.file) == 0) continue;
     (end.done ? noteRecent : forgetRecent)(end.file, ui.kept_folder, ui.recent);
   }

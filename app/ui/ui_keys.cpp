@@ -40,6 +40,7 @@ constexpr KeyHelp kKeyHelp[] = {
     {"Tab", "hide or show the panels"},
     {"?  F1", "this list"},
     {"Esc", "close what is open, let go of a brush; pressed twice, leave"},
+    {"Ctrl Q", "leave"},
     {"left drag", "orbit"},
     {"right drag", "pan"},
     {"Ctrl left drag", "turn the key light"},
@@ -74,17 +75,6 @@ void changeSpeed(double factor, Demo& demo) {
   postRequest(demo, {Ask::kSpeed, "", "", speed == 0 ? 0.25 : speed * factor});
 }
 
-constexpr const char* kLeaving = "Esc again leaves; what was not saved is lost";
-constexpr const char* kClosing = "close again to leave; what was not saved is lost";
-
-// Whether the question stood already; it stands now.
-bool askedBefore(const char* question, Demo& demo, UiState& ui) {
-  const bool stood = std::exchange(ui.leaving, true) && (demo.message == kLeaving || demo.message == kClosing);
-  demo.message = question;
-  demo.message_is_fault = false;
-  return stood;
-}
-
 // Puts brush and selection down. Returns whether there were any.
 bool letGo(UiState& ui) {
   const bool held = ui.brush.tool >= 0 || ui.brush.field >= 0 || ui.select.element >= 0 || ui.brush.tie;
@@ -114,7 +104,7 @@ void pressEscape(Demo& demo, UiState& ui) {
   if (demo.message_is_fault && !demo.message.empty()) return demo.message.clear();
   if (std::exchange(ui.history, false)) return;
   if (letGo(ui)) return sayInHand(demo, ui);
-  ui.quit = askedBefore(kLeaving, demo, ui);
+  ui.quit = std::exchange(ui.leaving, true);
 }
 
 constexpr KeyAction kKeyActions[] = {
@@ -196,6 +186,7 @@ constexpr ChordAction kChordActions[] = {
      }},
     {'O', kControl, [](Demo&, UiState& ui) { browseFor(BrowseFor::kOpen, ui); }},
     {'S', kControl, [](Demo& demo, UiState& ui) { browseToSave(demo, ui); }},
+    {'Q', kControl, [](Demo& demo, UiState& ui) { ui.quit = mayClose(demo, ui); }},
     {'=', kControl, [](Demo&, UiState& ui) { ui.zoom_texts *= 1.1f; }},
     {'-', kControl, [](Demo&, UiState& ui) { ui.zoom_texts /= 1.1f; }},
     {'0', kControl, [](Demo&, UiState& ui) { ui.zoom_texts = 1; }},
@@ -215,8 +206,8 @@ bool panelsTakeKey(int key) {
   return io.WantTextInput || (io.NavVisible && (moves || key == ' ' || key == kKeyEnter || key == kKeyEscape));
 }
 
-bool mayClose(Demo& demo, UiState& ui) {
-  return demo.edits.steps.empty() || askedBefore(kClosing, demo, ui);
+bool mayClose(const Demo& demo, UiState& ui) {
+  return !isUnsaved(demo.edits) || std::exchange(ui.leaving, true);
 }
 
 bool pressKey(int key, Demo& demo, UiState& ui, int modifiers) {
@@ -224,7 +215,7 @@ bool pressKey(int key, Demo& demo, UiState& ui, int modifiers) {
   if (ui.browser.what != BrowseFor::kNothing && key != kKeyEscape) return false;
   for (const ChordAction& row : kChordActions) {
     if (row.key != key || row.modifiers != modifiers) continue;
-    ui.leaving = false;
+    if (key != 'Q') ui.leaving = false;
     row.press(demo, ui);
     return true;
   }

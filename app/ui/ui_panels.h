@@ -28,8 +28,9 @@ void cameraRows(Demo& demo, UiState& ui);
 struct NoticePlace {
   float left, width, bottom;
 };
-// Offers what an earlier run has left.
+// Offers what an earlier run has left; asks whether to leave.
 void offerPanel(const NoticePlace& place, Demo& demo, UiState& ui);
+void leavePanel(const NoticePlace& place, Demo& demo, UiState& ui);
 
 // The brushes' settings; and, before the panels, their ring on the hair and what a drag asks for.
 void brushSection(Demo& demo, UiState& ui);

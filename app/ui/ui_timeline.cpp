@@ -1,13 +1,10 @@
-// The timeline along the bottom, and the box that offers what an earlier run has left.
+// The timeline along the bottom.
 #include <imgui/imgui.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <string>
-#include <system_error>
 #include <tuple>
 #include <utility>
 
@@ -20,7 +17,6 @@ namespace {
 
 constexpr float kTimelineHeight = 50, kMinWidth = 280, kOneRowWidth = 560, kTimelineMargin = 12;
 constexpr float kButtonRow = 28, kMinWindow = 290;  // points; of a second row, of the window
-constexpr float kOfferHeight = 90;                  // points that the box of an earlier run's project needs
 constexpr float kSayMargin = 8;                     // px, beside words on the strip
 constexpr double kAnewTime = 6;                     // s, as notices
 constexpr double kWorst = 3;                        // of the mean cost: a step to look at
@@ -198,51 +194,6 @@ void timelinePanel(Demo& demo, UiState& ui, float left) {
     if (one_row) cacheButton(demo, ui), rangeButtons(demo, ui);
     strip(demo, ui);
     if (!one_row) cacheButton(demo, ui), rangeButtons(demo, ui);
-  }
-  ImGui::End();
-}
-
-namespace {
-
-// ", 12 minutes ago" of a file; empty where that cannot be told.
-std::string keptSince(const std::string& file) {
-  std::error_code fault;
-  const auto written = std::filesystem::last_write_time(file, fault);
-  if (fault) return "";
-  const auto minutes =
-      std::chrono::duration_cast<std::chrono::minutes>(std::filesystem::file_time_type::clock::now() - written).count();
-  const auto told = [](auto number, const char* unit) {
-    return ", " + std::to_string(number) + " " + unit + (number == 1 ? "" : "s") + " ago";
-  };
-  if (minutes < 1) return ", just now";
-  return minutes < 120    ? told(minutes, "minute")
-         : minutes < 2880 ? told(minutes / 60, "hour")
-                          : told(minutes / 1440, "day");
-}
-
-}  // namespace
-
-void offerPanel(const NoticePlace& place, Demo& demo, UiState& ui) {
-  // Where a fault leaves it no room it waits until that is closed.
-  if (ui.offered.empty() || place.bottom < kOfferHeight * ui.text_scale) return;
-  ImGui::SetNextWindowPos({place.left + 0.5f * place.width, place.bottom}, ImGuiCond_Always, {0.5f, 1});
-  const ImGuiWindowFlags flags =
-      ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize;
-  ImGui::SetNextWindowBgAlpha(1);
-  if (ImGui::Begin("offer", nullptr, flags)) {
-    // In a small window in several lines.
-    ImGui::PushTextWrapPos(std::min(420.0f, place.width / ui.text_scale - 24) * ui.text_scale);
-    ImGui::TextUnformatted(
-        ("The program was not closed properly before. What it had was kept" + keptSince(ui.offered) + ".").c_str());
-    ImGui::PopTextWrapPos();
-    const bool open = ImGui::Button("Open it");
-    noteItem("offer_open", ui);
-    ImGui::SameLine(0, 6);
-    const bool forget = ImGui::Button("Forget it");
-    noteItem("offer_forget", ui);
-    if (open) postRequest(demo, {Ask::kOpenProject, "", ui.to_go_on_from = ui.offered});
-    if (forget) ui.to_forget = ui.offered;
-    if (open || forget) ui.offered.clear();
   }
   ImGui::End();
 }

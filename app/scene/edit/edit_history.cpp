@@ -328,6 +328,8 @@ void commitEdit(EditStep step, bool later, EditHistory& history) {
   if (later) history.dropped.assign(std::move_iterator(undone), std::move_iterator(history.steps.end()));
   history.steps.resize(history.done);
   step.number = history.next++;
+  const bool opens = step.request.what == Ask::kOpenProject || step.request.what == Ask::kSceneFile;
+  if (opens) history.saved = step.number;
   history.steps.push_back(std::move(step));
   std::size_t bytes = 0, keep = history.steps.size();
   while (keep > 0 && (bytes += history.steps[keep - 1].other.bytes()) <= kMaxEditBytes) --keep;

@@ -60,11 +60,23 @@ struct EditHistory {
   std::size_t done = 0;
   bool gesture = false;  // the last step goes on: a slider that is dragged makes one step
   long next = 1;         // number of the step after all that there were
+  long saved = 0;        // number of the last step done when a project was saved, or a project or scene opened
   // Of what moves: the same number is the same state. The last that was given is `moments`.
   long moment = 0, moments = 0;
   // What was undone before the last step, while that is being loaded and may be taken out again.
   std::vector<EditStep> dropped;
 };
+
+inline constexpr long kNeverSaved = -1;  // as `saved`: what an earlier run has left
+
+// Number of the last step that is done; 0: none ever was.
+inline long lastDone(const EditHistory& history) {
+  if (history.done > 0) return history.steps[history.done - 1].number;
+  return history.steps.empty() ? 0 : history.steps.front().number - 1;
+}
+inline bool isUnsaved(const EditHistory& history) {
+  return lastDone(history) != history.saved;
+}
 
 // Older steps are dropped beyond this.
 inline constexpr std::size_t kMaxEditBytes = std::size_t{256} << 20;

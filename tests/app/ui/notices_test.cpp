@@ -152,23 +152,43 @@ TEST_F(Notices, EscapeClosesWhatIsOpenAndLeavesWhileItsQuestionStands) {
     EXPECT_TRUE(ui_.brush.tool < 0 && ui_.select.element < 0) << tool;
   }
   app::pressKey(app::kKeyEscape, demo_, ui_);
+  EXPECT_TRUE(ui_.leaving && !ui_.quit);
   for (int k = 0; k < 600; ++k) frame();
-  EXPECT_TRUE(demo_.message.empty());
-  app::pressKey(app::kKeyEscape, demo_, ui_);
-  EXPECT_FALSE(ui_.quit) << "it had gone";
+  EXPECT_NE(find("stay"), nullptr) << "the question stands until it is answered";
   app::pressKey(app::kKeyEscape, demo_, ui_);
   EXPECT_TRUE(ui_.quit);
 }
 
-TEST_F(Notices, ClosingTheWindowAsksWhereSomethingWasChanged) {
+TEST_F(Notices, ClosingTheWindowAsksWhereSomethingIsNotSaved) {
   EXPECT_TRUE(app::mayClose(demo_, ui_)) << "nothing would be lost";
   apply({{app::Ask::kSetParam, "density", "70"}});
   EXPECT_FALSE(app::mayClose(demo_, ui_));
-  EXPECT_NE(demo_.message.find("close again"), std::string::npos) << demo_.message;
   EXPECT_TRUE(app::mayClose(demo_, ui_)) << "while the question stands";
-  for (int k = 0; k < 600; ++k) frame();
-  EXPECT_TRUE(demo_.message.empty());
-  EXPECT_FALSE(app::mayClose(demo_, ui_)) << "it had gone";
+  frame();
+  click("stay");
+  frame();
+  EXPECT_EQ(find("leave"), nullptr);
+  app::pressKey('Q', demo_, ui_, app::kControl);
+  EXPECT_FALSE(ui_.quit);
+  frame();
+  click("leave_save");
+  EXPECT_FALSE(ui_.leaving || ui_.quit);
+  EXPECT_EQ(ui_.browser.what, app::BrowseFor::kSaveScene);
+  ui_.browser.what = app::BrowseFor::kNothing;
+  const std::string file = test::freshFolder("ui_saved") + "/saved.json";
+  apply({{app::Ask::kSaveProject, "", file}});
+  EXPECT_TRUE(app::mayClose(demo_, ui_)) << "all is saved";
+  apply({{app::Ask::kUndo, "", "", 1}});
+  EXPECT_FALSE(app::mayClose(demo_, ui_)) << "the saved project has it otherwise";
+  ui_.leaving = false;
+  apply({{app::Ask::kRedo, "", "", 1}});
+  EXPECT_TRUE(app::mayClose(demo_, ui_));
+  apply({{app::Ask::kSetParam, "density", "60"}, {app::Ask::kEndGesture, "", ""}});
+  app::pressKey('Q', demo_, ui_, app::kControl);
+  EXPECT_FALSE(ui_.quit);
+  frame();
+  click("leave");
+  EXPECT_TRUE(ui_.quit);
 }
 
 // The offer of an earlier run's project stands by the same rule as messages, above them.
