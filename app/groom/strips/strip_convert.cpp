@@ -23,8 +23,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kMaxPatches = 20000, kMaxScalpPoints = 20000, kToldOf = 6, kPiecesTold = 12;
-constexpr double kAstray = 8, kOfLength = 0.2;  // medians of the roots' distances from their middle, at least of length
-constexpr double kUnclear = 0.1;                // of a strip's length: ends whose measures differ by less are alike
+constexpr double kFarApart = 8;         // medians of the roots' distances from their middle
+constexpr double kOfStripLength = 0.2;  // of the median length: the median is taken to be no less
+constexpr double kUnclear = 0.1;        // of a strip's length: ends whose measures differ by less are alike
 constexpr double kMinSpread = 0.015, kMaxSpread = 0.35;  // m, of the roots of a unit that is said
 
 constexpr const char* kGive =
@@ -197,7 +198,7 @@ void leaveOutAstray(StripConversion& out) {
     lengths.push_back(lengthOf(strip.rows));
   }
   const std::vector<double> far = fromMiddle(roots);
-  const double most = kAstray * std::max(median(far), kOfLength * median(std::move(lengths)));
+  const double most = kFarApart * std::max(median(far), kOfStripLength * median(std::move(lengths)));
   std::vector<FollowedStrip> near;
   for (std::size_t s = 0; s < far.size(); ++s) {
     if (far[s] <= most) {
