@@ -180,7 +180,7 @@ std::vector<Defect> pieceDefects() {
              for (std::size_t k = 0; k < 2; ++k) card[r][k] = root[k] + 0.02 * static_cast<double>(r) * out;
          }
        }},
-      {"astray", "left out",
+      {"astray", "it is left out",
        [](Random& random, Scene& scene) {
          const Vec3 away(random.between(2, 9), random.between(-2, 2), random.between(-2, 2));
          for (auto& row : random.pick(scene))

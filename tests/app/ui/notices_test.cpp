@@ -8,6 +8,7 @@
 #include "app/ui/part_glide.h"
 #include "app/ui/ui_panels.h"
 #include "tests/app/ui/panels.h"
+#include "tests/run_program.h"
 
 namespace notices_test {
 
@@ -164,13 +165,13 @@ TEST_F(Notices, ClosingTheWindowAsksWhereSomethingIsNotSaved) {
   apply({{app::Ask::kSetParam, "density", "70"}});
   EXPECT_FALSE(app::mayClose(demo_, ui_));
   EXPECT_TRUE(app::mayClose(demo_, ui_)) << "while the question stands";
-  frame();
+  frame(), frame();
   click("stay");
-  frame();
+  frame(), frame();
   EXPECT_EQ(find("leave"), nullptr);
   app::pressKey('Q', demo_, ui_, app::kControl);
   EXPECT_FALSE(ui_.quit);
-  frame();
+  frame(), frame();
   click("leave_save");
   EXPECT_FALSE(ui_.leaving || ui_.quit);
   EXPECT_EQ(ui_.browser.what, app::BrowseFor::kSaveScene);
@@ -186,7 +187,7 @@ TEST_F(Notices, ClosingTheWindowAsksWhereSomethingIsNotSaved) {
   apply({{app::Ask::kSetParam, "density", "60"}, {app::Ask::kEndGesture, "", ""}});
   app::pressKey('Q', demo_, ui_, app::kControl);
   EXPECT_FALSE(ui_.quit);
-  frame();
+  frame(), frame();
   click("leave");
   EXPECT_TRUE(ui_.quit);
 }
