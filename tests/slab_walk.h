@@ -6,10 +6,12 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "render/light/azimuthal_lobes.h"
 #include "render/light/fiber_scattering.h"
+#include "render/light/hair_volume.h"
 #include "render/light/longitudinal_lobes.h"
 
 namespace slab_walk {
@@ -34,6 +36,7 @@ class Walk {
     for (int n = 0; n < photons; ++n) {
       int inclination = kBins / 2;
       double psi = 0, depth = 0;  // psi: azimuth of flight, 0 into the slab
+      bool scattered = false;
       render::Float3 weight{1, 1, 1};
       while (std::max({weight[0], weight[1], weight[2]}) > 1e-4f) {
         depth -= std::log(1 - unit(random)) * std::cos(psi);
@@ -41,6 +44,9 @@ class Walk {
           for (int c = 0; c < 3; ++c) (depth < 0 ? result.back : result.through)[c] += weight[c] / photons;
           break;
         }
+        // Between two fibres some of it leaves the lock at its sides.
+        if (std::exchange(scattered, true))
+          for (float& share : weight) share *= static_cast<float>(1 - render::kSideLoss);
         const int drawn = draw(&exits_[static_cast<std::size_t>(inclination * kExits)], kExits, unit(random));
         const int lobe = drawn / kBins, out = drawn % kBins;
         const double cos_d = std::cos(0.5 * (angle(out) - angle(inclination)));

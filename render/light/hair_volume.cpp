@@ -17,6 +17,7 @@ using shared::kVolumeSteps;
 
 constexpr int kDirections = 8;
 constexpr double kStep = std::numbers::pi / kDirections;
+constexpr double kStays = 1 - kSideLoss;
 constexpr double kLargestAlbedo = 1 - 1e-4;  // without loss two solutions of the equations fall together
 // Sizes are told when it runs: with sizes that are types, this file takes half a minute to compile.
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kDirections, kDirections>;
@@ -67,10 +68,10 @@ class Slab {
                              azimuth.around(direction(to) + direction(from) - std::numbers::pi);
       }
     }
-    source *= azimuth.albedo / (2 * kStep * source.sum());
+    source *= kStays * azimuth.albedo / (2 * kStep * source.sum());
     scatter_ *= azimuth.albedo / scatter_.col(0).sum();  // symmetric, and all its columns have one sum
     // A mode v of rate r: mu r v = -loss v. With loss = L L^T, L^-1 mu L^-T has the eigenvalue -1 / r for L^T v.
-    const Matrix loss = Matrix::Identity(kDirections, kDirections) - scatter_;
+    const Matrix loss = Matrix::Identity(kDirections, kDirections) - kStays * scatter_;
     const Eigen::LLT<Matrix> factor(loss);
     const Matrix half = factor.matrixL().solve(Matrix(mu_.asDiagonal()));
     const Eigen::SelfAdjointEigenSolver<Matrix> eigen(factor.matrixL().solve(half.transpose()));

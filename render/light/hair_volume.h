@@ -14,6 +14,10 @@ struct VolumeLight {
   std::array<Float3, 3> power{};
 };
 
+// Share of the light on its way from one fibre to the next that leaves a lock at its sides: a slab is endless, a lock and
+// a head are not. Fitted to traced hair of three styles from three sides, blond and white: docs/picture.md.
+inline constexpr double kSideLoss = 0.07;
+
 // [behind][front], kVolumeSteps each: optical depth behind the fibre and in front of it; see shared.h.
 // Radiative transfer in the plane across the fibres, by discrete ordinates (Chandrasekhar 1950; Stamnes et al. 1988):
 // exact but for the number of directions, since a ray's extinction across parallel cylinders does not depend on its

@@ -82,10 +82,9 @@ vec3 volumeLight(float cos_phi, vec2 tau) {
   return max(even + cos_phi * (once + cos_phi * twice), 0.0);
 }
 
-// Radiance per irradiance of the light. tau: optical depth in front of the point and behind it. slant: cosine between the
-// light and the normal of the hair's surface: what a light that falls in aslant leaves in a lock is less and lies less
-// deep. tint: colour of this strand's pigment against the mean.
-vec3 scatterLight(in Geometry g, vec2 tau, float slant, vec3 tint) {
+// Radiance per irradiance of the light. tau: optical depth in front of the point and behind it. tint: colour of this
+// strand's pigment against the mean.
+vec3 scatterLight(in Geometry g, vec2 tau, vec3 tint) {
   float shift = lobe_width.w * g.cos_d;
   vec2 at = vec2(acos(g.cos_phi) / kPi * (1.0 - 1.0 / float(kScatterPhi)) + 0.5 / float(kScatterPhi),
                  g.cos_d * (1.0 - 1.0 / float(kScatterTheta)) + 0.5 / float(kScatterTheta));
@@ -97,7 +96,7 @@ vec3 scatterLight(in Geometry g, vec2 tau, float slant, vec3 tint) {
                              longitudinalShape(g.half_angle - 1.5 * shift, g.cos_product, deviation.z));
   vec3 single = m.x * n_r + tint * (m.y * n_tt + m.z * n_trt);
   float m_volume = g.norm.w * longitudinalShape(g.half_angle, g.cos_product, kVolumeSpread);
-  return g.cos_i * (exp(-tau.x) * single + gain.y * m_volume * slant * tint * volumeLight(g.cos_phi, slant * tau));
+  return g.cos_i * (exp(-tau.x) * single + gain.y * m_volume * tint * volumeLight(g.cos_phi, tau));
 }
 
 // Colour of a strand's pigment against the hair's mean: brighter or darker, a little warmer or cooler, darker at the
@@ -136,12 +135,9 @@ vec3 shadeStrand(in Strand strand, in CurvePoint point) {
   tau_key.x *= seenShare(to_eye, to_key.xyz);
   tau_fill.x *= kSoftDepth;
   tau_rim.x *= kSoftDepth;
-  // Hair lies along its surface: the normal is what of the way out of the head stands across the strand.
-  vec3 normal = unitOr(outward - point.tangent * dot(outward, point.tangent), outward);
-  vec3 slant = max(abs(vec3(dot(normal, to_key.xyz), dot(normal, to_fill.xyz), dot(normal, to_rim.xyz))), 0.1);
-  vec3 radiance = lit * key.rgb * scatterLight(scatterGeometry(side, to_key.xyz), tau_key, slant.x, tint);
-  radiance += fill.rgb * scatterLight(scatterGeometry(side, to_fill.xyz), tau_fill, slant.y, tint);
-  radiance += rim.rgb * scatterLight(scatterGeometry(side, to_rim.xyz), tau_rim, slant.z, tint);
+  vec3 radiance = lit * key.rgb * scatterLight(scatterGeometry(side, to_key.xyz), tau_key, tint);
+  radiance += fill.rgb * scatterLight(scatterGeometry(side, to_fill.xyz), tau_fill, tint);
+  radiance += rim.rgb * scatterLight(scatterGeometry(side, to_rim.xyz), tau_rim, tint);
   // Ambient: the albedo of a fibre under an even sky; the sky visibility is the mean direct transmittance, raised by what is
   // scattered on.
   vec3 albedo = forward_albedo.rgb + backward_albedo.rgb;

@@ -45,9 +45,9 @@ void main() {
       vec3 other = vec3(sin(t), cos(t) * cos(phi), cos(t) * sin(phi));
       float weight = 2.0 * kPi / float(kInclinations) * kPi / float(kAzimuths) * cos(t);
       if (parameter > 0.0)
-        sum += weight * cos(t) / cos(theta) * scatterLight(scatterGeometry(eyeSide(tangent, other, 1.0), fixed_side), vec2(0.0), 1.0, vec3(1.0));
+        sum += weight * cos(t) / cos(theta) * scatterLight(scatterGeometry(eyeSide(tangent, other, 1.0), fixed_side), vec2(0.0), vec3(1.0));
       else
-        sum += weight * scatterLight(scatterGeometry(eyeSide(tangent, fixed_side, 1.0), other), vec2(0.0), 1.0, vec3(1.0));
+        sum += weight * scatterLight(scatterGeometry(eyeSide(tangent, fixed_side, 1.0), other), vec2(0.0), vec3(1.0));
     }
   }
   result = vec4(sum, 1.0);
@@ -67,7 +67,7 @@ void main() {
     float t = kPi * ((float(i) + 0.5) / float(kInclinations) - 0.5);
     vec3 to_eye = vec3(sin(t), -cos(t) * cos(psi), cos(t) * sin(psi));
     Geometry g = scatterGeometry(eyeSide(vec3(1.0, 0.0, 0.0), to_eye, 1.0), vec3(0.0, 1.0, 0.0));
-    sum += kPi / float(kInclinations) * cos(t) * cos(t) * scatterLight(g, vec2(depth, parameter - depth), 1.0, vec3(1.0));
+    sum += kPi / float(kInclinations) * cos(t) * cos(t) * scatterLight(g, vec2(depth, parameter - depth), vec3(1.0));
   }
   result = vec4(sum, 1.0);
 }
