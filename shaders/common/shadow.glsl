@@ -71,12 +71,17 @@ vec2 hairOpticalDepths(int map, vec3 at) {
   return mix(below, above, part.y);
 }
 
-// The first of both, and that of all the texel's hair, of the texel nearest to a point: one of many whose sum is sought.
+// Of the texel nearest to a point, one of many whose sum is sought: the first of both, where hair nearer above the point
+// than kNear (m) counts less and less; and that of all the texel's hair.
+const float kNear = 0.01;
 vec2 hairBeforeAndAll(int map, vec3 at) {
   if (!coveredByMap(at.xy)) return vec2(0.0);
   vec3 place = hairShadowTexel(map, at.xy);
   ivec3 texel = ivec3(place.xy * vec2(textureSize(hair_depth, 0).xy), int(place.z));
-  return vec2(depthsInTexel(map, texel, at.z).x, opacity.y * texelFetch(opacity_far, texel, 0).w);
+  float above = (at.z - texelFetch(hair_depth, texel, 0).r) * hair_shadow_size[map].z;
+  vec4 near = texelFetch(opacity_near, texel, 0), far = texelFetch(opacity_far, texel, 0);
+  float before = clamp(above / kNear, 0.0, 1.0) * heldUpTo(near, far, above, hair_shadow_size[map].w);
+  return vec2(before, opacity.y * far.w);
 }
 
 // Light left after the bodies, for a point of hair.
@@ -119,9 +124,9 @@ float lightBehindHair(int map, vec3 at, int taps) {
 }
 
 // For a point among the map's hair: how far above lies the hair that may shade it? Sought over a wide disc: the mean of
-// what is found, so that it does not leap from one strand to the next; hair nearer than kNear counts less and less.
+// what is found, so that it does not leap from one strand to the next.
 float lightBetweenHair(int map, vec3 at, int sought) {
-  const float kSought = 0.03, kNear = 0.01;  // m
+  const float kSought = 0.03;  // m
   float above = 0.0, found = 0.0;
   vec2 way = kFirstTap;
   for (int i = 0; i < sought; ++i, way = nextTap(way)) {
@@ -133,21 +138,22 @@ float lightBetweenHair(int map, vec3 at, int sought) {
   }
   above /= max(found, 1e-6);
   float reach = (kMinRadius + 0.5 * kLampAngle * above) / hair_shadow_size[map].x, sum = 0.0;
-  // Fine texels are rougher than the taps lie apart. So texels say which share of the hair stands above the point, and
-  // averages of texels how much hair there is.
-  int taps = found > 0.0 ? kNearTaps : 0;
+  // Fine texels are rougher than the taps lie apart. So texels say which share of the hair stands above the point, all
+  // of it where they hold less than kFew, and averages of texels how much hair there is.
+  const float kFew = 0.1;
+  int taps = sought > 0 ? kNearTaps : 0;
   float level = clamp(log2(0.25 * reach * hair_shadow_size[map].y), 0.0, float(kOpacityLevels - 1));
   vec2 hair = vec2(0.0);
   way = kFirstTap;
   for (int i = 0; i < taps; ++i, way = nextTap(way))
     hair += hairBeforeAndAll(map, vec3(at.xy + reach * discTap(i, float(kNearTaps), way), at.z));
-  float share = hair.x / max(hair.y, 1e-6);
+  float share = (hair.x + kFew) / (hair.y + kFew);
   way = kFirstTap;
   for (int i = 0; i < taps; ++i, way = nextTap(way)) {
     vec2 tap = at.xy + reach * discTap(i, float(kNearTaps), way);
     sum += coveredByMap(tap) ? exp(-share * wholeOpticalDepth(map, tap, level)) : 1.0;
   }
-  return mix(1.0, sum / float(kNearTaps), min(4.0 * found, 1.0));
+  return sum / float(kNearTaps);
 }
 
 // Light of the key left after the hair of a map, for a point of body or ground: averaged over a disc that widens with
