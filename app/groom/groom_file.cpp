@@ -39,7 +39,7 @@ void refuseKnown(std::string_view bytes, const std::string& file) {
 std::optional<GroomFormat> groomFormat(std::string_view bytes, const std::string& file) {
   if (bytes.starts_with("HAIR")) return GroomFormat::kHair;
   if (bytes.starts_with("Ogawa")) return GroomFormat::kAlembic;
-  if (bytes.starts_with("#usda")) return GroomFormat::kUsda;
+  if (withoutByteOrderMark(bytes).starts_with("#usda")) return GroomFormat::kUsda;
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return GroomFormat::kPly;
   refuseKnown(bytes, file);
   // The only format without a mark of its own: what is called so is, and its reader says what is wrong with it.

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "app/files/errors.h"
+#include "app/files/text_file.h"
 #include "app/files/text_scanner.h"
 
 namespace app {
@@ -367,7 +368,8 @@ std::string_view UsdaAttribute::at(std::size_t moment) const {
   return samples.empty() ? value : samples[std::min(moment, samples.size() - 1)].text;
 }
 
-UsdaLayer readUsdaLayer(std::string_view text, const std::string& file) {
+UsdaLayer readUsdaLayer(std::string_view bytes, const std::string& file) {
+  const std::string_view text = withoutByteOrderMark(bytes);
   TextReader reader{text, file, Scanner(text, file), {}};
   reader.stageMetadata();
   reader.prims();

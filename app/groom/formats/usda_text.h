@@ -47,7 +47,7 @@ struct UsdaLayer {
 };
 
 // Views live as long as `text`. Throws InputError naming the line.
-UsdaLayer readUsdaLayer(std::string_view text, const std::string& file);
+UsdaLayer readUsdaLayer(std::string_view bytes, const std::string& file);
 
 // The numbers of a value, whatever brackets stand between them. Throws InputError naming the line, with `text` as the
 // whole file that `value` is a part of.

@@ -133,6 +133,7 @@ TEST(Usda, WhatOtherProgramsWriteIsRead) {
   EXPECT_EQ(groom.groups, (std::vector<std::int32_t>{0, 0, 1}));
   EXPECT_EQ(app::readUsda(kForeign, "hand.usda", 1).points[5], Eigen::Vector3f(4, 0, 10));
   EXPECT_EQ(app::usdaTimes(kForeign, "hand.usda"), (std::vector<double>{1.0 / 24, 2.5 / 24}));
+  EXPECT_EQ(app::readGroom(std::string("\xEF\xBB\xBF") + kForeign, "hand.usda").points, groom.points);
 }
 
 // A unit of nought or below is none.
