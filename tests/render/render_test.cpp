@@ -386,7 +386,7 @@ TEST_F(RenderTest, DeepOpacityFallsMonotonicallyAndMatchesTheHairCrossed) {
 layout(location = 0) uniform vec4 first;
 layout(location = 1) uniform vec4 step;
 out float tau;
-void main() { tau = hairBeforeAndAll(0, hairShadowCoordinates(0, first.xyz + float(gl_VertexID) * step.xyz)).x; }
+void main() { tau = hairOpticalDepths(0, hairShadowCoordinates(0, first.xyz + float(gl_VertexID) * step.xyz)).x; }
 )";
   const Slab slab;
   render::HairInput hair;
