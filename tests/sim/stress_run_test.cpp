@@ -15,7 +15,7 @@ const std::string kCheap = "state/collapsed/1-60s/short-low/free/0";
 test::Outcome runStress(const std::vector<std::string>& arguments) {
   std::filesystem::create_directories(HAIRMESH_TEST_OUT);
   const std::string base = std::string(HAIRMESH_TEST_OUT) + "/stress_" + std::to_string(::getpid());
-  std::string command = "timeout 120 " + test::shellQuoted(kStress);
+  std::string command = "timeout 400 " + test::shellQuoted(kStress);
   for (const std::string& argument : arguments) command.append(" ").append(test::shellQuoted(argument));
   const int status = std::system(
       (command + " >" + test::shellQuoted(base + ".out") + " 2>" + test::shellQuoted(base + ".err")).c_str());
