@@ -45,8 +45,10 @@ void changePreset(const std::string& name, Demo& demo) {
 }
 
 // Replaces the selected actor by one of another spec; loads first, so that a fault leaves the old one standing.
-void recast(CharacterSpec spec, bool same_motion, const std::string& title, Demo& demo) {
+void recast(CharacterSpec spec, bool same_motion, std::string title, Demo& demo) {
   Actor& old = selectedActor(demo);
+  if (reshapedByHand(*old.haircut) || old.haircut->remeshed)
+    title += "; what brushes made of the hair is gone, Ctrl+Z brings it back";
   if (!spec.pins.empty()) spec.pins = pinsForAnotherMesh(old);
   if (demo.loading.on) {
     LoadOrder order{title, {}, demo.aspect, spec, demo.selected, same_motion, old.playback};
@@ -262,6 +264,7 @@ void saveScene(const Request& request, Demo& demo) {
   demo.scene.file = request.text;
   demo.scene.name = stem(request.text);
   for (std::size_t i = 0; i < demo.actors.size(); ++i) demo.scene.characters[i] = demo.actors[i].spec;
+  demo.edits.saved = lastDone(demo.edits);
   showMessage("saved " + request.text, demo);
 }
 

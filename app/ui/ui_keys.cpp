@@ -39,8 +39,8 @@ constexpr KeyHelp kKeyHelp[] = {
     {"Ctrl +  -  0", "larger or smaller texts, as they were"},
     {"Tab", "hide or show the panels"},
     {"?  F1", "this list"},
-    {"Esc", "close what is open, let go of a brush; pressed twice, leave"},
-    {"Ctrl Q", "leave"},
+    {"Esc", "close what is open, let go of a brush, then ask whether to leave"},
+    {"Ctrl Q", "leave; where something is not saved, pressed twice"},
     {"left drag", "orbit"},
     {"right drag", "pan"},
     {"Ctrl left drag", "turn the key light"},
@@ -99,12 +99,13 @@ void sayInHand(Demo& demo, const UiState& ui) {
 // Closes what lies over the others, one thing at a press, and lets go of what is in hand; then asks; then leaves, as
 // long as the question stands.
 void pressEscape(Demo& demo, UiState& ui) {
+  if (std::exchange(ui.leaving, false)) return;
   if (std::exchange(ui.help, false)) return;
   if (std::exchange(ui.browser.what, BrowseFor::kNothing) != BrowseFor::kNothing) return;
   if (demo.message_is_fault && !demo.message.empty()) return demo.message.clear();
   if (std::exchange(ui.history, false)) return;
   if (letGo(ui)) return sayInHand(demo, ui);
-  ui.quit = std::exchange(ui.leaving, true);
+  ui.leaving = true;
 }
 
 constexpr KeyAction kKeyActions[] = {
@@ -215,7 +216,6 @@ bool pressKey(int key, Demo& demo, UiState& ui, int modifiers) {
   if (ui.browser.what != BrowseFor::kNothing && key != kKeyEscape) return false;
   for (const ChordAction& row : kChordActions) {
     if (row.key != key || row.modifiers != modifiers) continue;
-    if (key != 'Q') ui.leaving = false;
     row.press(demo, ui);
     return true;
   }
@@ -223,7 +223,6 @@ bool pressKey(int key, Demo& demo, UiState& ui, int modifiers) {
   if (nudgeChosen(key, modifiers & kShift, demo, ui)) return true;
   for (const KeyAction& row : kKeyActions) {
     if (row.key != key) continue;
-    if (key != kKeyEscape) ui.leaving = false;
     row.press(demo, ui);
     return true;
   }

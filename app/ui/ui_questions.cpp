@@ -18,7 +18,7 @@ constexpr float kOfferHeight = 90;  // points that the box of an earlier run's p
 constexpr ImGuiWindowFlags kQuestion =
     ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize;
 
-// ", at 13:05"; of another day ", on 28 Nov at 13:05"; empty where the file does not tell.
+// ", at 13:05:40"; of another day ", on 28 Nov at 13:05:40"; empty where the file does not tell.
 std::string keptAt(const std::string& file) {
   struct stat entry;
   if (stat(file.c_str(), &entry) != 0) return "";
@@ -27,7 +27,7 @@ std::string keptAt(const std::string& file) {
   if (!localtime_r(&entry.st_mtime, &written) || !localtime_r(&now, &today)) return "";
   const bool same_day = written.tm_year == today.tm_year && written.tm_yday == today.tm_yday;
   std::array<char, 64> text{};
-  std::strftime(text.data(), text.size(), same_day ? ", at %H:%M" : ", on %d %b at %H:%M", &written);
+  std::strftime(text.data(), text.size(), same_day ? ", at %H:%M:%S" : ", on %d %b at %H:%M:%S", &written);
   return text.data();
 }
 
@@ -72,7 +72,7 @@ void leavePanel(const NoticePlace& place, Demo& demo, UiState& ui) {
   ImGui::SetNextWindowBgAlpha(1);
   if (ImGui::Begin("leave", nullptr, kQuestion)) {
     const bool lost = isUnsaved(demo.edits);
-    questionWords(lost ? "Leave? What was changed since it was saved is lost." : "Leave the program?", place.width, ui);
+    questionWords(lost ? "Leave? What was changed is not saved." : "Leave the program?", place.width, ui);
     ui.quit = answered("Leave", "leave", ui) || ui.quit;
     ImGui::SameLine(0, 6);
     if (lost) {
@@ -82,7 +82,7 @@ void leavePanel(const NoticePlace& place, Demo& demo, UiState& ui) {
     if (answered("Stay", "stay", ui)) ui.leaving = false;
     ImGui::SameLine(0, 12);
     ImGui::AlignTextToFramePadding();
-    ImGui::TextDisabled("Esc again leaves");
+    ImGui::TextDisabled(lost ? "Esc stays, Ctrl+Q leaves" : "Esc stays");
   }
   ImGui::End();
 }

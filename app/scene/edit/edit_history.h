@@ -60,7 +60,7 @@ struct EditHistory {
   std::size_t done = 0;
   bool gesture = false;  // the last step goes on: a slider that is dragged makes one step
   long next = 1;         // number of the step after all that there were
-  long saved = 0;        // number of the last step done when a project was saved, or a project or scene opened
+  long saved = 0;        // number of the last step done when a scene or project was saved or opened
   // Of what moves: the same number is the same state. The last that was given is `moments`.
   long moment = 0, moments = 0;
   // What was undone before the last step, while that is being loaded and may be taken out again.

@@ -283,6 +283,7 @@ void HairExport::add(const Demo& demo, int frame) {
 }
 
 std::string HairExport::finish(const Demo& demo) {
+  if (impl_->moments == 0) return "no frame to export; " + impl_->spec.file + " is as it was\n";
   if (impl_->mesh) impl_->mesh->finish();
   if (impl_->writer) impl_->writer->finish();
   std::string text = countOf(impl_->frames, "frame");

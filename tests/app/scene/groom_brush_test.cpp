@@ -215,6 +215,28 @@ TEST(GroomBrush, ACutAllRoundTheHeadArrivesAtTheRing) {
   for (const sim::CornerTet& tet : demo.actors[0].haircut->mesh.tets) EXPECT_GT(tet.rest_volume, 0);
 }
 
+TEST(GroomBrush, HairThatIsMadeAnewSaysThatStrokesAreGoneAndUndoBringsThemBack) {
+  app::Demo demo = app::openScene(sceneOf(app::Resolution::kLow, "idle_turns.bvh"), 1.5);
+  const auto ask = [&](const app::Request& request) {
+    demo.message.clear();
+    demo.requests = {request, {Ask::kEndGesture, "", ""}};
+    app::advanceFrame(demo, 0, {});
+    EXPECT_FALSE(demo.message_is_fault) << demo.message;
+    return demo.message;
+  };
+  const app::Request style{Ask::kStyle, "shoulder", ""};
+  EXPECT_EQ(ask(style).find("brushes"), std::string::npos) << "nothing is gone";
+  int tip = 0;
+  const sim::Vec3 at = frontTip(demo, tip);
+  ask(sampleAt(app::BrushTool::kCut, at + sim::Vec3(0, 0.06, 0), sim::Vec3::Zero()));
+  const std::vector<sim::Vec3> cut = demo.actors[0].haircut->mesh.shape.positions;
+  ASSERT_TRUE(demo.actors[0].haircut->edited);
+  EXPECT_NE(ask(style).find("what brushes made of the hair is gone"), std::string::npos) << demo.message;
+  EXPECT_NE(demo.actors[0].haircut->mesh.shape.positions, cut);
+  ask({Ask::kUndo, "", "", 1});
+  EXPECT_EQ(demo.actors[0].haircut->mesh.shape.positions, cut);
+}
+
 TEST(GroomBrush, WhatMovesNothingSaysSoAndIsNoStep) {
   app::Demo demo = app::openScene(sceneOf(app::Resolution::kLow, "idle_turns.bvh"), 1.5);
   int tip = 0;

@@ -233,6 +233,26 @@ TEST(HairExport, AFullDiskLeavesNothingHalfWritten) {
   EXPECT_EQ(exported(folder + "/none/a.abc", {}, 1).exit_code, 1);
 }
 
+TEST(HairExport, WithoutAFrameTheFileThatWasThereStays) {
+  const std::string folder = test::freshFolder("hair_export_none");
+  app::Scene scene;
+  scene.characters.resize(1);
+  scene.characters[0].motion = app::dataPath("assets/clips/walk.bvh");
+  scene.characters[0].resolution = app::Resolution::kLow;
+  const app::Demo demo = app::openScene(scene, 1);
+  for (const char* ending : {".abc", ".usda", ".hair", ".ply", ".glb"}) {
+    const std::string file = folder + "/a" + ending;
+    std::ofstream(file) << "before";
+    app::ExportSpec spec;
+    spec.file = file;
+    if (file.ends_with(".glb")) spec.what = app::ExportWhat::kMesh;
+    const std::string said = app::HairExport(spec, demo, 60, 0, 10).finish(demo);
+    EXPECT_EQ(said, "no frame to export; " + file + " is as it was\n");
+    EXPECT_EQ(test::readAll(file), "before");
+  }
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 5) << "something is left beside";
+}
+
 TEST(HairExport, WhatCannotBeAskedForIsNamed) {
   const auto fault = [](std::vector<std::string> arguments) {
     const test::Outcome outcome = test::runProgram(arguments);

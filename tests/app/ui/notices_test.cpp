@@ -156,8 +156,9 @@ TEST_F(Notices, EscapeClosesWhatIsOpenAndLeavesWhileItsQuestionStands) {
   EXPECT_TRUE(ui_.leaving && !ui_.quit);
   for (int k = 0; k < 600; ++k) frame();
   EXPECT_NE(find("stay"), nullptr) << "the question stands until it is answered";
+  app::pressKey('G', demo_, ui_);
   app::pressKey(app::kKeyEscape, demo_, ui_);
-  EXPECT_TRUE(ui_.quit);
+  EXPECT_TRUE(!ui_.leaving && !ui_.quit && ui_.brush.tool >= 0) << "the question goes first";
 }
 
 TEST_F(Notices, ClosingTheWindowAsksWhereSomethingIsNotSaved) {
@@ -177,8 +178,12 @@ TEST_F(Notices, ClosingTheWindowAsksWhereSomethingIsNotSaved) {
   EXPECT_EQ(ui_.browser.what, app::BrowseFor::kSaveScene);
   ui_.browser.what = app::BrowseFor::kNothing;
   const std::string file = test::freshFolder("ui_saved") + "/saved.json";
-  apply({{app::Ask::kSaveProject, "", file}});
-  EXPECT_TRUE(app::mayClose(demo_, ui_)) << "all is saved";
+  for (const app::Ask save : {app::Ask::kSaveScene, app::Ask::kSaveProject}) {
+    apply({{app::Ask::kSetParam, "density", save == app::Ask::kSaveScene ? "71" : "72"}});
+    EXPECT_TRUE(app::isUnsaved(demo_.edits));
+    apply({{app::Ask::kEndGesture, "", ""}, {save, "", file}});
+    EXPECT_TRUE(app::mayClose(demo_, ui_)) << "all is saved";
+  }
   apply({{app::Ask::kUndo, "", "", 1}});
   EXPECT_FALSE(app::mayClose(demo_, ui_)) << "the saved project has it otherwise";
   ui_.leaving = false;
