@@ -96,8 +96,8 @@ void sayInHand(Demo& demo, const UiState& ui) {
   demo.message_is_fault = false;
 }
 
-// Closes what lies over the others, one thing at a press, and lets go of what is in hand; then asks; then leaves, as
-// long as the question stands.
+// Closes what lies over the others, one thing at a press, the question whether to leave first. Then lets go of what is
+// in hand; then asks that question.
 void pressEscape(Demo& demo, UiState& ui) {
   if (std::exchange(ui.leaving, false)) return;
   if (std::exchange(ui.help, false)) return;

@@ -18,7 +18,7 @@ constexpr float kOfferHeight = 90;  // points that the box of an earlier run's p
 constexpr ImGuiWindowFlags kQuestion =
     ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize;
 
-// ", at 13:05:40"; of another day ", on 28 Nov at 13:05:40"; empty where the file does not tell.
+// ", at 13:05:40,"; of another day ", on 28 Nov at 13:05:40,"; empty where the file does not tell.
 std::string keptAt(const std::string& file) {
   struct stat entry;
   if (stat(file.c_str(), &entry) != 0) return "";
@@ -27,7 +27,7 @@ std::string keptAt(const std::string& file) {
   if (!localtime_r(&entry.st_mtime, &written) || !localtime_r(&now, &today)) return "";
   const bool same_day = written.tm_year == today.tm_year && written.tm_yday == today.tm_yday;
   std::array<char, 64> text{};
-  std::strftime(text.data(), text.size(), same_day ? ", at %H:%M:%S" : ", on %d %b at %H:%M:%S", &written);
+  std::strftime(text.data(), text.size(), same_day ? ", at %H:%M:%S," : ", on %d %b at %H:%M:%S,", &written);
   return text.data();
 }
 
@@ -53,7 +53,7 @@ void offerPanel(const NoticePlace& place, Demo& demo, UiState& ui) {
   ImGui::SetNextWindowBgAlpha(1);
   if (ImGui::Begin("offer", nullptr, kQuestion)) {
     questionWords(
-        ("The program was not closed properly before. What it had" + keptAt(ui.offered) + ", was kept.").c_str(),
+        ("The program was not closed properly before. What it had" + keptAt(ui.offered) + " was kept.").c_str(),
         place.width, ui);
     const bool open = answered("Open it", "offer_open", ui);
     ImGui::SameLine(0, 6);

@@ -45,7 +45,8 @@ class HairExport {
 
   // Takes what the demo shows now as a moment of frame `frame`. Throws OutputError.
   void add(const Demo& demo, int frame);
-  // Without a moment nothing is written. Returns what was written, and what the figures wear that was not, for the terminal. Throws OutputError.
+  // Without a moment no file is touched. Returns what was written, and what the figures wear that was not, for the
+  // terminal. Throws OutputError.
   std::string finish(const Demo& demo);
 
  private:
