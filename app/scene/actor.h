@@ -67,7 +67,9 @@ struct Haircut {
   std::vector<int> covered;    // vertices under attachments, which hold them
   PaintedShares shares;
   PaintedLook look_shares;
-  std::vector<Vec3> unpainted, painted;  // rest positions before and after a painted length; none where hair is tied
+  // Rest positions: before a painted length, none where hair is tied or covered; as brushes found them; and before
+  // attachments cover them, none where none do.
+  std::vector<Vec3> unpainted, painted, uncovered;
   std::vector<render::HairFace> faces;
   std::vector<float> rest;  // positions of the rest shape, three floats a vertex
   // Of a groom's hair: from where its mesh is to where strands grow, and where that is at rest. Empty: they are one.

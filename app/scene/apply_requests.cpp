@@ -13,6 +13,7 @@
 #include "app/scene/attachments.h"
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
+#include "app/scene/edit/brushed_hair.h"
 #include "app/scene/edit/cut_stroke.h"
 #include "app/scene/edit/groom_brush.h"
 #include "app/scene/edit/hand_pins.h"
@@ -44,11 +45,21 @@ void changePreset(const std::string& name, Demo& demo) {
   showMessage("preset " + stem(name), demo);
 }
 
+// What brushes have made goes along where it can. Returns what is said where it cannot.
+std::string keepBrushed(const Actor& old, bool another_hair, CharacterSpec& spec) {
+  const std::shared_ptr<const BrushedHair> brushed = brushedHair(old);
+  const bool keeps = brushed && !another_hair && keepsBrushed(*brushed, spec, old);
+  spec.brushed = keeps ? brushed : nullptr;
+  const bool untied =
+      brushed && brushed->tied && brushed != old.spec.brushed && writeTies(spec.ties) != writeTies(old.spec.ties);
+  if (!brushed || (keeps && !untied)) return "";
+  return std::string("; what brushes made of the ") + (keeps ? "tied " : "") + "hair is gone, Ctrl+Z brings it back";
+}
+
 // Replaces the selected actor by one of another spec; loads first, so that a fault leaves the old one standing.
-void recast(CharacterSpec spec, bool same_motion, std::string title, Demo& demo) {
+void recast(CharacterSpec spec, bool same_motion, std::string title, Demo& demo, bool another_hair = false) {
   Actor& old = selectedActor(demo);
-  if (reshapedByHand(*old.haircut) || old.haircut->remeshed)
-    title += "; what brushes made of the hair is gone, Ctrl+Z brings it back";
+  title += keepBrushed(old, another_hair, spec);
   if (!spec.pins.empty()) spec.pins = pinsForAnotherMesh(old);
   if (demo.loading.on) {
     LoadOrder order{title, {}, demo.aspect, spec, demo.selected, same_motion, old.playback};
@@ -85,14 +96,14 @@ void changeStyle(const Request& request, Demo& demo) {
   recast(spec, true,
          std::string(styleName(spec.style)) + " " + std::string(resolutionName(spec.resolution)) +
              (unpinned ? ", without the pins of the style before" : ""),
-         demo);
+         demo, request.what == Ask::kStyle);
 }
 
 void changeHairFile(const std::string& file, Demo& demo) {
   CharacterSpec spec = selectedActor(demo).spec;
   chooseHair(findFile(file, "", "hair"), spec);
   spec.mends.clear(), spec.pins.clear();
-  recast(spec, true, "hair mesh " + stem(file), demo);
+  recast(spec, true, "hair mesh " + stem(file), demo, true);
 }
 
 void changeMends(const std::string& mends, Demo& demo) {
@@ -100,7 +111,7 @@ void changeMends(const std::string& mends, Demo& demo) {
   GroomMends checked;
   if (const std::string fault = readMends(mends, checked); !fault.empty()) throw InputError("", "mends", fault, "");
   spec.mends = mends;
-  recast(spec, true, "mended hair", demo);
+  recast(spec, true, "mended hair", demo, true);
 }
 
 void changeTies(const std::string& text, Demo& demo) {

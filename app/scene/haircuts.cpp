@@ -10,6 +10,7 @@
 #include "app/files/data_path.h"
 #include "app/files/errors.h"
 #include "app/scene/attachments.h"
+#include "app/scene/edit/brushed_hair.h"
 #include "app/scene/edit/painted_fields.h"
 #include "app/scene/hair_from_file.h"
 #include "app/scene/sim_to_render.h"
@@ -82,7 +83,8 @@ std::string shortBunNote(const TieSpec& tie, double left) {
               : "; a ring of \"radius\": " + sim::numberText(std::floor(1e3 * fits) / 1e3) + " makes one");
 }
 
-constexpr const char* kLooseNote = ": hair whose way to the ring would lead across the face hangs loose; a ring farther back takes it";
+constexpr const char* kLooseNote =
+    ": hair whose way to the ring would lead across the face hangs loose; a ring farther back takes it";
 
 // `lacks`: m that the shortest hair is too short to reach its ring.
 void noteLengthened(const CharacterSpec& spec, double lacks, Haircut& haircut) {
@@ -105,6 +107,7 @@ void applyTies(const CharacterSpec& spec, const LoadedBody& body, sim::HairMeshS
   TiedHair result = tieHair(shape, body.character.scalp, body.distance, haircut.ties,
                             spec.attachments.empty() ? Seams::kClosed : Seams::kOpen);
   shape = std::move(result.shape);
+  putBrushed(spec, body, haircut, Dress::kTied, shape);
   if (result.loose > 0 && haircut.note.find(kLooseNote) == std::string::npos)
     addNote(tieTitle(spec.ties) + kLooseNote, haircut);
   haircut.tied.clear();
@@ -153,9 +156,14 @@ void dressHair(const CharacterSpec& spec, const LoadedBody& body, std::span<cons
                sim::HairMeshShape shape, Haircut& haircut, Rings& rings) {
   const Scalp& scalp = body.character.scalp;
   if (!spec.ties.empty()) applyTies(spec, body, shape, haircut, rings);
-  haircut.painted = shape.positions;
+  haircut.uncovered = shape.positions;
   haircut.covered = layUnder(worn, scalp, body.distance, haircut.tied, shape);
-  if (!spec.ties.empty() || !haircut.covered.empty()) haircut.unpainted.clear();
+  if (haircut.covered.empty()) haircut.uncovered.clear();
+  if (!spec.ties.empty() || !haircut.covered.empty()) {
+    haircut.unpainted.clear();
+    haircut.painted = shape.positions;
+    haircut.remeshed = false;
+  }
   haircut.mesh = sim::buildHairMesh(std::move(shape));
 }
 
@@ -303,7 +311,7 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
   std::string painted = writeCurves(spec.curves).dump();
   for (const std::string_view field : kFieldNames) painted += "|" + mapOf(field, spec.maps);
   const std::vector<const Attachment*> worn = attach(spec, body, asset_cache);
-  std::string under;
+  std::string under = spec.brushed ? "|brushed" + std::to_string(spec.brushed->id) : "";
   for (const Attachment* attachment : worn) under += "|" + attachment->key;
   const std::string key = body.key + "|" + title + (spec.fit ? " fitted " : "") + spec.mends + ties + painted + under;
   for (const auto& haircut : asset_cache.haircuts) {
@@ -319,6 +327,8 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
   Rings rings;
   try {
     shape = grownHair(spec, body, *haircut);
+    haircut->painted = shape.positions;
+    putBrushed(spec, body, *haircut, Dress::kLoose, shape);
     dressWhereThereIsRoom(spec, body, worn, shape, *haircut, rings);
     haircut->shares = paintedShares(spec.maps, spec.curves, body.character.scalp, haircut->mesh.shape);
     applyShares(haircut->shares, haircut->mesh);
@@ -338,6 +348,7 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
   for (const int v : haircut->covered)
     if (!shape.groom_offsets.empty()) shape.groom_offsets[static_cast<std::size_t>(v)].setZero();
   bindGroom(shape, *haircut);
+  if (haircut->frozen.size() != shape.positions.size()) haircut->frozen.clear();
   braidTails(spec, body.character.scalp, rings, *haircut);
   // Hair of a style that divides over the shoulders lies against itself: it sleeps as a whole.
   asset_cache.haircuts.push_back(std::move(haircut));

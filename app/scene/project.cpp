@@ -18,6 +18,7 @@
 #include "app/files/output_file.h"
 #include "app/files/text_file.h"
 #include "app/scene/demo_state.h"
+#include "app/scene/edit/brushed_hair.h"
 #include "app/scene/edit/groom_brush.h"
 #include "app/scene/edit/mesh_change.h"
 #include "app/scene/present_scene.h"
@@ -30,8 +31,9 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr double kKeepEvery = 20;  // s
-constexpr double kLookEvery = 1;   // s, whether the file was saved
+constexpr double kKeepEvery = 2;  // s, at most so often
+constexpr double kTryAgain = 20;  // s, after a fault
+constexpr double kLookEvery = 1;  // s, whether the file was saved
 const std::string kKey(kProjectKey), kAutosaveOf(kAutosaveKey);
 
 std::string hex(std::uint64_t value) {
@@ -46,6 +48,7 @@ std::string textOf(const sim::Bytes& bytes) {
 
 sim::Bytes binaryOf(const Demo& demo) {
   sim::Bytes bytes;
+  for (const Actor& actor : demo.actors) writeBrushed(actor.spec.brushed.get(), bytes);
   for (const Actor& actor : demo.actors) {
     const sim::HairMeshShape& shape = actor.haircut->mesh.shape;
     sim::writeBytes(actor.haircut->edited ? shape.positions : std::vector<Vec3>(), bytes);
@@ -175,11 +178,16 @@ Demo readProject(const std::string& file, Scene scene, bool keep_view, double as
   if (hex(sim::fingerprint(bytes)) != place.at("checksum").text())
     throw InputError(binary_file, "", "is not the one that " + file + " was saved with", "save the project anew");
   std::vector<std::vector<PinSpec>> pins;  // of the shapes, which the scene does not have
-  for (CharacterSpec& character : scene.characters) pins.push_back(std::exchange(character.pins, {}));
-  Demo fresh = openScene(std::move(scene), aspect);
   sim::ByteReader from{bytes};
+  const double version = place.at(kKey).number(1, 1e6);
+  for (CharacterSpec& character : scene.characters) {
+    pins.push_back(std::exchange(character.pins, {}));
+    if (version > 3) character.brushed = readBrushed(from);
+  }
+  if (!from.complete) throw InputError(binary_file, "", "does not fit the scene", "save the project anew");
+  Demo fresh = openScene(std::move(scene), aspect);
   for (std::size_t i = 0; i < fresh.actors.size(); ++i) {
-    takeShape(from, place.at(kKey).number(1, 1e6), binary_file, static_cast<int>(i), fresh);
+    takeShape(from, version, binary_file, static_cast<int>(i), fresh);
     repin(std::move(pins[i]), fresh.actors[i]);
   }
   std::vector<char> state;
@@ -223,7 +231,7 @@ void Autosave::keep(double now, const Demo& demo) {
     kept_ = history.gesture ? "" : edits, saved_ = saved;
     if (!replaced_.empty()) forget(std::exchange(replaced_, ""));
   } catch (const std::exception&) {
-    look_at_ = now + kKeepEvery;
+    look_at_ = now + kTryAgain;
   }
 }
 

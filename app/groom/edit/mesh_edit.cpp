@@ -243,4 +243,12 @@ EditedMesh removeLayer(const sim::HairMeshShape& shape, int layer, const BodyDis
   return plain;
 }
 
+bool sameStructure(const sim::HairMeshShape& a, const sim::HairMeshShape& b) {
+  const auto same = [](const sim::RootFace& one, const sim::RootFace& other) {
+    return one.corner_count == other.corner_count &&
+           std::equal(one.columns.begin(), one.columns.begin() + one.corner_count, other.columns.begin());
+  };
+  return a.column_first == b.column_first && std::ranges::equal(a.root_faces, b.root_faces, same);
+}
+
 }  // namespace app

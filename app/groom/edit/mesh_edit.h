@@ -62,4 +62,7 @@ EditedMesh mergeColumns(const sim::HairMeshShape& shape, std::span<const int> co
 EditedMesh extrudeColumns(const sim::HairMeshShape& shape, std::span<const ColumnPair> edges, const Scalp& scalp,
                           const BodyDistance& body);
 
+// Whether two hair meshes differ in their positions at most.
+bool sameStructure(const sim::HairMeshShape& a, const sim::HairMeshShape& b);
+
 }  // namespace app

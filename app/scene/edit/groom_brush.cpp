@@ -54,7 +54,7 @@ Haircut& ownHaircut(Actor& actor, Demo& demo) {
   own->braids = worn.braids;
   own->covered = worn.covered;
   own->shares = worn.shares, own->look_shares = worn.look_shares;
-  own->unpainted = worn.unpainted, own->painted = worn.painted;
+  own->unpainted = worn.unpainted, own->painted = worn.painted, own->uncovered = worn.uncovered;
   own->frozen = worn.frozen;
   actor.haircut = own.get();
   const std::unique_ptr<sim::StepContext> old = std::move(actor.context);
@@ -232,7 +232,8 @@ bool asksForLess(const ShapeBrushes& brushes, const CutStroke& stroke) {
 }
 
 const char* whatStays(BrushTool tool) {
-  if (tool == BrushTool::kCut) return "hair there ends before the ring, is 3 cm long or less, which is not cut, or frozen";
+  if (tool == BrushTool::kCut)
+    return "hair there ends before the ring, is 3 cm long or less, which is not cut, or frozen";
   if (tool == BrushTool::kGrow) return "hair there is as long as it may be (1.2 m), or frozen";
   return "hair there is frozen, or has no room to go";
 }

@@ -302,18 +302,6 @@ void remeshHair(sim::HairMeshShape shape, std::span<const VertexSource> sources,
   demo.shown_fraction = -1;
 }
 
-namespace {
-
-bool sameStructure(const sim::HairMeshShape& a, const sim::HairMeshShape& b) {
-  const auto same = [](const sim::RootFace& one, const sim::RootFace& other) {
-    return one.corner_count == other.corner_count &&
-           std::equal(one.columns.begin(), one.columns.begin() + one.corner_count, other.columns.begin());
-  };
-  return a.column_first == b.column_first && std::ranges::equal(a.root_faces, b.root_faces, same);
-}
-
-}  // namespace
-
 void bringBackShape(const sim::HairMeshShape& shape, int index, Demo& demo) {
   const Haircut& worn = *demo.actors[static_cast<std::size_t>(index)].haircut;
   if (!worn.remeshed || !sameStructure(worn.mesh.shape, shape)) return remeshHair(shape, {}, index, demo);

@@ -178,8 +178,8 @@ TEST(Project, WhatIsNoneOrNewerOrChangedIsRefusedAndChangesNothing) {
     return std::string("none");
   };
   std::string newer = text;
-  newer.replace(newer.find("\"hairmesh-project\": 3"), 21, "\"hairmesh-project\": 4");
-  EXPECT_NE(faultOf(newer).find("version 4, newer"), std::string::npos) << faultOf(newer);
+  newer.replace(newer.find("\"hairmesh-project\": 4"), 21, "\"hairmesh-project\": 5");
+  EXPECT_NE(faultOf(newer).find("version 5, newer"), std::string::npos) << faultOf(newer);
   EXPECT_NE(faultOf("{}").find("is no project"), std::string::npos);
   EXPECT_NE(faultOf("[").find("bad.json"), std::string::npos);
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {

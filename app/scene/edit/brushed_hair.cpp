@@ -1,0 +1,236 @@
+#include "app/scene/edit/brushed_hair.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "app/groom/edit/mesh_edit.h"
+#include "app/scene/edit/groom_brush.h"
+#include "app/scene/haircuts.h"
+#include "app/styles/style_untangle.h"
+#include "sim/field_text.h"
+#include "sim/mesh/shape_transfer.h"
+
+namespace app {
+
+namespace {
+
+constexpr double kMendedFatness = 0.04, kMendedGap = 0.002;  // see untangle; m
+constexpr double kShares[] = {1, 0.5, 0.25};                 // of what brushes have made, tried one after another
+
+// What brushes worked on: the same on every head and at every resolution.
+std::string brushedOn(const CharacterSpec& spec) {
+  const std::string hair = spec.hair.empty() ? std::string(styleName(spec.style)) : spec.hair + " " + spec.mends;
+  return hair + "|" + spec.maps.length;
+}
+
+std::string placedTies(const CharacterSpec& spec, const std::vector<HairTie>& ties) {
+  std::string text = writeTies(spec.ties).dump();
+  for (const HairTie& tie : ties) {
+    for (const double value : tie.at) text.append(1, ' ').append(sim::numberText(value));
+  }
+  return text;
+}
+
+BrushedShape shapeOf(const Haircut& worn, const std::optional<BrushedShape>& earlier) {
+  BrushedShape now{worn.mesh.shape, {}, worn.frozen};
+  if (!worn.remeshed) now.before = worn.uncovered.empty() ? worn.painted : worn.uncovered;
+  // What an attachment covers lies as it did before.
+  for (const int v : worn.covered)
+    now.shape.positions[static_cast<std::size_t>(v)] = worn.uncovered[static_cast<std::size_t>(v)];
+  if (earlier && !worn.remeshed && sameStructure(earlier->shape, now.shape)) now.before = earlier->before;
+  return now;
+}
+
+// m, by how much brushes have moved each vertex of `grown`.
+std::vector<Vec3> broughtBy(const BrushedShape& brushed, const sim::HairMeshShape& grown) {
+  std::vector<Vec3> way;
+  for (std::size_t v = 0; v < brushed.before.size(); ++v) way.push_back(brushed.shape.positions[v] - brushed.before[v]);
+  if (sameStructure(brushed.shape, grown)) return way;
+  sim::HairMeshShape before = brushed.shape;
+  before.positions = brushed.before;
+  const sim::HairMesh from = sim::buildHairMesh(std::move(before)), to = sim::buildHairMesh(sim::HairMeshShape(grown));
+  std::vector<Vec3> carried(grown.positions.size());
+  sim::transferVectors(sim::makeShapeTransfer(from, to), way, carried);
+  for (int v = 0; v < to.vertexCount(); ++v) {
+    if (to.isRoot(v)) carried[static_cast<std::size_t>(v)].setZero();
+  }
+  return carried;
+}
+
+bool isValid(const sim::HairMeshShape& shape) {
+  try {
+    sim::buildHairMesh(sim::HairMeshShape(shape));
+    return true;
+  } catch (const sim::MeshError&) {
+    return false;
+  }
+}
+
+// Returns the share of it that found room.
+double carry(const BrushedShape& brushed, double scale, const BodyDistance& distance, sim::HairMeshShape& shape) {
+  const BodyDistance around = distance ? distance : [](const Vec3&) { return 1.0; };
+  const std::vector<Vec3> way = broughtBy(brushed, shape);
+  for (const double share : kShares) {
+    sim::HairMeshShape tried = shape;
+    for (std::size_t v = 0; v < way.size(); ++v) tried.positions[v] += share * scale * way[v];
+    untangle(around, kMendedFatness, kMendedGap, tried);
+    if (!isValid(tried)) continue;
+    shape = std::move(tried);
+    return share;
+  }
+  return 0;
+}
+
+void noteShare(double share, Haircut& haircut) {
+  if (share == 1) return;
+  const std::string note = share == 0 ? "what brushes made of the hair finds no room here, Ctrl+Z brings it back"
+                                      : "for want of room " + std::to_string(std::lround(100 * share)) +
+                                            " % of what brushes made of the hair is kept";
+  if (haircut.note.find(note) == std::string::npos) haircut.note += (haircut.note.empty() ? "" : "\n") + note;
+}
+
+}  // namespace
+
+std::shared_ptr<const BrushedHair> brushedHair(const Actor& actor) {
+  const Haircut& worn = *actor.haircut;
+  const CharacterSpec& spec = actor.spec;
+  if (!reshapedByHand(worn) && !worn.remeshed && worn.frozen.empty()) return spec.brushed;
+  BrushedHair brushed;
+  if (spec.brushed && spec.brushed->body == actor.body->key && spec.brushed->resolution == spec.resolution)
+    brushed = *spec.brushed;
+  brushed.id = freshId();
+  brushed.hair = brushedOn(spec);
+  brushed.body = actor.body->key;
+  brushed.resolution = spec.resolution;
+  brushed.head_height = actor.body->character.scalp.head_height;
+  if (spec.ties.empty()) {
+    brushed.loose = shapeOf(worn, brushed.loose);
+    brushed.tied.reset();
+  } else {
+    const std::string ties = placedTies(spec, worn.ties);
+    brushed.tied = shapeOf(worn, brushed.ties == ties ? brushed.tied : std::nullopt);
+    brushed.ties = ties;
+  }
+  return std::make_shared<const BrushedHair>(std::move(brushed));
+}
+
+bool keepsBrushed(const BrushedHair& brushed, const CharacterSpec& spec, const Actor& actor) {
+  const CharacterSpec& now = actor.spec;
+  const bool another_head = spec.motion != now.motion || spec.parts != now.parts,
+             another_mesh = spec.resolution != now.resolution,
+             own_mesh = brushed.loose && brushed.loose->before.empty();
+  return brushed.hair == brushedOn(spec) && !(own_mesh && (another_head || another_mesh));
+}
+
+void putBrushed(const CharacterSpec& spec, const LoadedBody& body, Haircut& haircut, Dress dress,
+                sim::HairMeshShape& shape) {
+  const BrushedHair* brushed = spec.brushed.get();
+  if (!brushed || brushed->hair != brushedOn(spec)) return;
+  const bool tied = dress == Dress::kTied;
+  const std::optional<BrushedShape>& own = tied ? brushed->tied : brushed->loose;
+  if (!own || (tied && brushed->ties != placedTies(spec, haircut.ties))) return;
+  const bool at_home = brushed->body == body.key && brushed->resolution == spec.resolution;
+  const bool own_mesh = own->before.empty();
+  if (at_home && (own_mesh || sameStructure(own->shape, shape))) {
+    shape = own->shape;
+    haircut.frozen = own->frozen;
+    haircut.remeshed = own_mesh;
+  } else {
+    const double scale = body.character.scalp.head_height / brushed->head_height;
+    const double share = own_mesh ? 0 : carry(*own, scale, body.distance, shape);
+    noteShare(share, haircut);
+    if (share == 0) return;
+  }
+  haircut.edited = true;
+}
+
+namespace {
+
+std::vector<char> lettersOf(const std::string& text) {
+  return {text.begin(), text.end()};
+}
+
+std::string readLetters(sim::ByteReader& from) {
+  std::vector<char> letters;
+  sim::readBytes(from, letters);
+  return {letters.begin(), letters.end()};
+}
+
+using FaceRow = std::array<int, 5>;  // corner count and columns
+
+void writeShape(const std::optional<BrushedShape>& one, sim::Bytes& out) {
+  sim::writeBytes(static_cast<int>(one.has_value()), out);
+  if (!one) return;
+  std::vector<FaceRow> faces;
+  for (const sim::RootFace& face : one->shape.root_faces)
+    faces.push_back({face.corner_count, face.columns[0], face.columns[1], face.columns[2], face.columns[3]});
+  sim::writeBytes(faces, out);
+  sim::writeBytes(one->shape.column_first, out);
+  for (const std::vector<Vec3>* places : {&one->shape.positions, &one->shape.groom_offsets, &one->before})
+    sim::writeBytes(*places, out);
+  sim::writeBytes(one->frozen, out);
+}
+
+// Whether the sizes are those of one hair mesh: bytes may have been made by hand.
+bool fitsItself(const BrushedShape& one) {
+  const sim::HairMeshShape& shape = one.shape;
+  const std::size_t vertices = shape.positions.size();
+  const auto sized = [&](std::size_t size) { return size == 0 || size == vertices; };
+  const auto column = [&](int c) { return c >= 0 && c < shape.columnCount(); };
+  return !shape.column_first.empty() && shape.column_first.front() == 0 && std::ranges::is_sorted(shape.column_first) &&
+         static_cast<std::size_t>(shape.vertexCount()) == vertices && sized(shape.groom_offsets.size()) &&
+         sized(one.before.size()) && sized(one.frozen.size()) &&
+         std::ranges::all_of(shape.root_faces, [&](const sim::RootFace& face) {
+           return (face.corner_count == 3 || face.corner_count == 4) &&
+                  std::all_of(face.columns.begin(), face.columns.begin() + face.corner_count, column);
+         });
+}
+
+void readShape(sim::ByteReader& from, std::optional<BrushedShape>& one) {
+  int there = 0;
+  sim::readBytes(from, there);
+  if (there == 0) return;
+  BrushedShape read;
+  std::vector<FaceRow> faces;
+  sim::readBytes(from, faces);
+  for (const auto& [corners, a, b, c, d] : faces) read.shape.root_faces.push_back({corners, {a, b, c, d}});
+  read.shape.column_first.clear();
+  sim::readBytes(from, read.shape.column_first);
+  for (std::vector<Vec3>* places : {&read.shape.positions, &read.shape.groom_offsets, &read.before})
+    sim::readBytes(from, *places);
+  sim::readBytes(from, read.frozen);
+  from.complete = from.complete && fitsItself(read);
+  one = std::move(read);
+}
+
+}  // namespace
+
+void writeBrushed(const BrushedHair* brushed, sim::Bytes& out) {
+  sim::writeBytes(static_cast<int>(brushed != nullptr), out);
+  if (!brushed) return;
+  for (const std::string* text : {&brushed->hair, &brushed->body, &brushed->ties})
+    sim::writeBytes(lettersOf(*text), out);
+  sim::writeBytes(static_cast<int>(brushed->resolution), out);
+  sim::writeBytes(brushed->head_height, out);
+  for (const auto* one : {&brushed->loose, &brushed->tied}) writeShape(*one, out);
+}
+
+std::shared_ptr<const BrushedHair> readBrushed(sim::ByteReader& from) {
+  int there = 0, resolution = 0;
+  sim::readBytes(from, there);
+  if (there == 0) return nullptr;
+  BrushedHair read;
+  read.id = freshId();
+  for (std::string* text : {&read.hair, &read.body, &read.ties}) *text = readLetters(from);
+  sim::readBytes(from, resolution);
+  read.resolution = static_cast<Resolution>(std::clamp(resolution, 0, static_cast<int>(Resolution::kMinimal)));
+  sim::readBytes(from, read.head_height);
+  for (auto* one : {&read.loose, &read.tied}) readShape(from, *one);
+  from.complete = from.complete && read.head_height > 0 && std::isfinite(read.head_height);
+  return from.complete ? std::make_shared<const BrushedHair>(std::move(read)) : nullptr;
+}
+
+}  // namespace app
