@@ -45,17 +45,6 @@ void changePreset(const std::string& name, Demo& demo) {
   showMessage("preset " + stem(name), demo);
 }
 
-// What brushes have made goes along where it can. Returns what is said where it cannot.
-std::string keepBrushed(const Actor& old, bool another_hair, CharacterSpec& spec) {
-  const std::shared_ptr<const BrushedHair> brushed = brushedHair(old);
-  const bool keeps = brushed && !another_hair && keepsBrushed(*brushed, spec, old);
-  spec.brushed = keeps ? brushed : nullptr;
-  const bool untied =
-      brushed && brushed->tied && brushed != old.spec.brushed && writeTies(spec.ties) != writeTies(old.spec.ties);
-  if (!brushed || (keeps && !untied)) return "";
-  return std::string("; what brushes made of the ") + (keeps ? "tied " : "") + "hair is gone, Ctrl+Z brings it back";
-}
-
 // Replaces the selected actor by one of another spec; loads first, so that a fault leaves the old one standing.
 void recast(CharacterSpec spec, bool same_motion, std::string title, Demo& demo, bool another_hair = false) {
   Actor& old = selectedActor(demo);

@@ -117,12 +117,19 @@ std::shared_ptr<const BrushedHair> brushedHair(const Actor& actor) {
   return std::make_shared<const BrushedHair>(std::move(brushed));
 }
 
-bool keepsBrushed(const BrushedHair& brushed, const CharacterSpec& spec, const Actor& actor) {
+std::string keepBrushed(const Actor& actor, bool another_hair, CharacterSpec& spec) {
   const CharacterSpec& now = actor.spec;
+  const std::shared_ptr<const BrushedHair> brushed = brushedHair(actor);
+  spec.brushed.reset();
+  if (!brushed) return "";
   const bool another_head = spec.motion != now.motion || spec.parts != now.parts,
              another_mesh = spec.resolution != now.resolution,
-             own_mesh = brushed.loose && brushed.loose->before.empty();
-  return brushed.hair == brushedOn(spec) && !(own_mesh && (another_head || another_mesh));
+             own_mesh = brushed->loose && brushed->loose->before.empty();
+  const bool keeps = !another_hair && brushed->hair == brushedOn(spec) && !(own_mesh && (another_head || another_mesh));
+  if (keeps) spec.brushed = brushed;
+  const bool untied = brushed != now.brushed && brushed->tied && writeTies(spec.ties) != writeTies(now.ties);
+  if (keeps && !untied) return "";
+  return std::string("; what brushes made of the ") + (keeps ? "tied " : "") + "hair is gone, Ctrl+Z brings it back";
 }
 
 void putBrushed(const CharacterSpec& spec, const LoadedBody& body, Haircut& haircut, Dress dress,

@@ -33,8 +33,9 @@ struct BrushedHair {
 // What brushes have made of the actor's hair by now; null: nothing.
 std::shared_ptr<const BrushedHair> brushedHair(const Actor& actor);
 
-// Whether hair that is made for `spec` in the place of the actor's can keep it.
-bool keepsBrushed(const BrushedHair& brushed, const CharacterSpec& spec, const Actor& actor);
+// Hands to `spec`, for which the actor's hair is made anew, what brushes have made of it; `another_hair`: nothing of
+// it. Returns what is said where something is lost, to follow a title.
+std::string keepBrushed(const Actor& actor, bool another_hair, CharacterSpec& spec);
 
 enum class Dress { kLoose, kTied };  // hair as it grows; as it comes out of its ties
 
