@@ -34,12 +34,13 @@ std::string placedTies(const CharacterSpec& spec, const std::vector<HairTie>& ti
   return text;
 }
 
+// Of hair that is covered: as if it had been brushed alike before.
 BrushedShape shapeOf(const Haircut& worn, const std::optional<BrushedShape>& earlier) {
   BrushedShape now{worn.mesh.shape, {}, worn.frozen};
   if (!worn.remeshed) now.before = worn.uncovered.empty() ? worn.painted : worn.uncovered;
-  // What an attachment covers lies as it did before.
-  for (const int v : worn.covered)
-    now.shape.positions[static_cast<std::size_t>(v)] = worn.uncovered[static_cast<std::size_t>(v)];
+  std::vector<Vec3>& positions = now.shape.positions;
+  for (std::size_t v = 0; v < worn.uncovered.size(); ++v)
+    positions[v] = worn.uncovered[v] + (positions[v] - worn.painted[v]);
   if (earlier && !worn.remeshed && sameStructure(earlier->shape, now.shape)) now.before = earlier->before;
   return now;
 }
@@ -141,7 +142,7 @@ void putBrushed(const CharacterSpec& spec, const LoadedBody& body, Haircut& hair
   if (!own || (tied && brushed->ties != placedTies(spec, haircut.ties))) return;
   const bool at_home = brushed->body == body.key && brushed->resolution == spec.resolution;
   const bool own_mesh = own->before.empty();
-  if (at_home && (own_mesh || sameStructure(own->shape, shape))) {
+  if (at_home && (own_mesh || sameStructure(own->shape, shape)) && isValid(own->shape)) {
     shape = own->shape;
     haircut.frozen = own->frozen;
     haircut.remeshed = own_mesh;

@@ -44,7 +44,7 @@ void comb(app::Demo& demo) {
   sample.radius = 0.1;
   const std::vector<sim::Vec3> before = restOf(demo);
   did({Ask::kBrush, "comb", app::brushText(sample)}, demo);
-  ASSERT_NE(restOf(demo), before);
+  ASSERT_TRUE(restOf(demo) != before);
 }
 
 app::Demo combed(app::Style style, app::Resolution resolution = app::Resolution::kLow) {
@@ -56,7 +56,7 @@ app::Demo combed(app::Style style, app::Resolution resolution = app::Resolution:
   return demo;
 }
 
-constexpr const char* kTail = R"([{"place": "back"}])";
+constexpr const char* kTail = R"([{"at": "back"}])";
 const std::string kGlasses = R"([{"file": "glasses.obj", "joint": "head"}])";
 const std::string kBeanie = R"([{"file": "beanie.obj", "joint": "head"}])";
 
@@ -73,19 +73,19 @@ TEST(BrushedHair, IsTiedAsItWasBrushedAndIsThereAgainWhenItIsUntied) {
   EXPECT_EQ(did({Ask::kTie, "", kTail}, demo).find("is gone"), std::string::npos) << demo.message;
   const std::vector<sim::Vec3> tied = restOf(demo);
   EXPECT_EQ(did({Ask::kTie, "", "[]"}, demo).find("is gone"), std::string::npos) << demo.message;
-  EXPECT_EQ(restOf(demo), brushed);
+  EXPECT_TRUE(restOf(demo) == brushed);
   EXPECT_TRUE(app::reshapedByHand(*demo.actors[0].haircut));
   did({Ask::kUndo, "", "", 1}, demo);
-  EXPECT_EQ(restOf(demo), tied);
+  EXPECT_TRUE(restOf(demo) == tied);
   did({Ask::kUndo, "", "", 1}, demo);
-  EXPECT_EQ(restOf(demo), brushed);
+  EXPECT_TRUE(restOf(demo) == brushed);
   did({Ask::kRedo, "", "", 1}, demo);
-  EXPECT_EQ(restOf(demo), tied);
+  EXPECT_TRUE(restOf(demo) == tied);
   did({Ask::kUndo, "", "", 2}, demo);
-  EXPECT_NE(restOf(demo), brushed) << "the stroke is undone as well";
+  EXPECT_TRUE(restOf(demo) != brushed) << "the stroke is undone as well";
   EXPECT_FALSE(app::reshapedByHand(*demo.actors[0].haircut));
   did({Ask::kTie, "", kTail}, demo);
-  EXPECT_NE(restOf(demo), tied) << "the stroke shows in the tail";
+  EXPECT_TRUE(restOf(demo) != tied) << "the stroke shows in the tail";
 }
 
 TEST(BrushedHair, StaysUnderWhatIsWornAndAfterwards) {
@@ -102,13 +102,12 @@ TEST(BrushedHair, StaysUnderWhatIsWornAndAfterwards) {
     kept += (restOf(demo)[v] - brushed[v]).norm() < 0.002;
   }
   EXPECT_GT(static_cast<double>(kept), 0.9 * static_cast<double>(uncovered));
+  const std::vector<sim::Vec3> pressed = restOf(demo);
   comb(demo);
   const std::vector<sim::Vec3> again = restOf(demo);
   EXPECT_EQ(did({Ask::kAttach, "", "[]"}, demo).find("is gone"), std::string::npos) << demo.message;
-  EXPECT_LT(farthest(restOf(demo), brushed), 0.06) << "what the hat pressed stands up again";
-  double moved = 0;
-  for (std::size_t v = 0; v < again.size(); ++v) moved += restOf(demo)[v] == again[v] && again[v] != brushed[v];
-  EXPECT_GT(moved, 0) << "strokes beside the hat stay";
+  for (std::size_t v = 0; v < again.size(); ++v)
+    EXPECT_LT((restOf(demo)[v] - brushed[v] - (again[v] - pressed[v])).norm(), 1e-9) << "vertex " << v;
 }
 
 TEST(BrushedHair, TiedHairKeepsItsStrokesAsLongAsItsTies) {
@@ -118,13 +117,13 @@ TEST(BrushedHair, TiedHairKeepsItsStrokesAsLongAsItsTies) {
   comb(demo);
   const std::vector<sim::Vec3> brushed = restOf(demo);
   EXPECT_EQ(did({Ask::kAttach, "", kGlasses}, demo).find("is gone"), std::string::npos) << demo.message;
-  EXPECT_EQ(restOf(demo), brushed);
+  EXPECT_TRUE(restOf(demo) == brushed);
   did({Ask::kMap, "stiffness", "left_side.png"}, demo);
-  EXPECT_EQ(restOf(demo), brushed);
-  EXPECT_NE(did({Ask::kTie, "", R"([{"place": "high"}])"}, demo).find("the tied hair is gone"), std::string::npos)
+  EXPECT_TRUE(restOf(demo) == brushed);
+  EXPECT_NE(did({Ask::kTie, "", R"([{"at": "high"}])"}, demo).find("the tied hair is gone"), std::string::npos)
       << demo.message;
   did({Ask::kUndo, "", "", 3}, demo);
-  EXPECT_EQ(restOf(demo), brushed);
+  EXPECT_TRUE(restOf(demo) == brushed);
 }
 
 // What brushes have moved, m in the mean over where they did.
@@ -175,9 +174,9 @@ TEST(BrushedHair, IsSavedWithTheHairThatWasTiedFromIt) {
   app::saveProject(folder + "/mine.json", demo);
   app::Demo other = app::openScene(test::smallScene("idle_turns.bvh"), 1.5);
   app::openProject(folder + "/mine.json", other);
-  EXPECT_EQ(restOf(other), tied);
+  EXPECT_TRUE(restOf(other) == tied);
   did({Ask::kTie, "", "[]"}, other);
-  EXPECT_EQ(restOf(other), brushed);
+  EXPECT_TRUE(restOf(other) == brushed);
   did({Ask::kSaveScene, "", folder + "/scene.json"}, demo);
   app::Demo scene = app::openScene(app::loadScene(folder + "/scene.json"), 1.5);
   EXPECT_LT(farthest(restOf(scene), tied), 2e-3);
