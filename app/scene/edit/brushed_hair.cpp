@@ -127,9 +127,17 @@ std::string keepBrushed(const Actor& actor, bool another_hair, CharacterSpec& sp
              another_mesh = spec.resolution != now.resolution,
              own_mesh = brushed->loose && brushed->loose->before.empty();
   const bool keeps = !another_hair && brushed->hair == brushedOn(spec) && !(own_mesh && (another_head || another_mesh));
-  if (keeps) spec.brushed = brushed;
-  const bool untied = brushed != now.brushed && brushed->tied && writeTies(spec.ties) != writeTies(now.ties);
-  if (keeps && !untied) return "";
+  const bool untied = brushed->tied && writeTies(spec.ties) != writeTies(now.ties);
+  if (keeps && !untied) {
+    spec.brushed = brushed;
+    return "";
+  }
+  if (keeps && brushed->loose) {
+    BrushedHair loose = *brushed;
+    loose.id = freshId();
+    loose.tied.reset();
+    spec.brushed = std::make_shared<const BrushedHair>(std::move(loose));
+  }
   return std::string("; what brushes made of the ") + (keeps ? "tied " : "") + "hair is gone, Ctrl+Z brings it back";
 }
 
