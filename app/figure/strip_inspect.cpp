@@ -44,13 +44,6 @@ std::string formatted(const char* format, double a, double b = 0) {
   return text.data();
 }
 
-double lineLengthOf(const StripRows& rows) {
-  double length = 0;
-  for (std::size_t r = 1; r < rows.rows.size(); ++r)
-    length += (middleOf(rows.rows[r]) - middleOf(rows.rows[r - 1])).norm();
-  return length;
-}
-
 // "3,7,9", for an option.
 std::string commaList(const std::vector<int>& numbers) {
   std::string text;
@@ -273,7 +266,7 @@ GroomInspection inspectWithUp(const PolygonMesh& mesh, const StripOptions& optio
   std::vector<double> lengths;
   for (const FollowedStrip& strip : strips.followed) {
     corners += strip.rows.rows.size() * strip.rows.rows[0].size();
-    lengths.push_back(lineLengthOf(strip.rows));
+    lengths.push_back(lineLength(strip.rows));
   }
   inspector.result.summary = countOf(strips.strips, "strip") + " and " + countOf(strips.tubes, "tube") + ", " +
                              std::to_string(corners) + " vertices, " +
@@ -342,15 +335,15 @@ GroomInspection inspectPolygons(std::string_view bytes, const StripOptions& opti
     if (const std::optional<StillBody> body = stillBodyOf(mesh)) return inspectBody(mesh, *body);
   }
   const bool worn = !namesHair(mesh) && looksWorn(mesh);
-  const InputError to_wear(file, "", "is a mesh to wear, no hair", "give it to hairmesh --attach");
+  std::optional<GroomInspection> inspection;
   try {
-    GroomInspection inspection = inspectStrips(mesh, options, up_given, file, character);
-    if (worn && !inspection.on_head) throw to_wear;
-    return inspection;
+    inspection = inspectStrips(mesh, options, up_given, file, character);
   } catch (const InputError&) {
-    if (worn) throw to_wear;
-    throw;
+    if (!worn) throw;
   }
+  if (worn && !(inspection && inspection->on_head))
+    throw InputError(file, "", "is a mesh to wear, no hair", "give it to hairmesh --attach");
+  return *std::move(inspection);
 }
 
 }  // namespace app

@@ -181,14 +181,10 @@ void Run::drawFrames() {
     if (demo.message_is_fault && !demo.message.empty() && demo.message != told)
       std::cerr << "hairmesh: frame " << first + frame << ": " << demo.message << "\n";
     told = demo.message;
-    if (!pictures) {
-      exportFrame(first + frame);
-      continue;
-    }
     if (options.keep_frames) writePng(framePath(options.out, first + frame), options.width, options.height, pixels);
     if (film) film->add(pixels);
     exportFrame(first + frame);
-    // Software rasterizers take a second a frame; a person wants to see that it goes on.
+    // A person wants to see that it goes on.
     if (now() - last_line > kLineEvery) {
       std::cout << "frame " << frame + 1 << " of " << frames << std::endl;
       last_line = now();

@@ -1,5 +1,6 @@
 #include "app/groom/formats/ogawa.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "app/files/errors.h"
@@ -58,7 +59,8 @@ OgawaReader::OgawaReader(std::string_view bytes, const std::string& file) : byte
 
 std::uint64_t OgawaReader::number(std::uint64_t offset, const char* what) const {
   if (offset > bytes_.size() || bytes_.size() - offset < sizeof(std::uint64_t)) {
-    fail(offset, std::string("the file ends where ") + what + " should stand");
+    fail(std::min<std::uint64_t>(offset, bytes_.size()),
+         std::string("the file ends before ") + what + " that should stand at byte " + std::to_string(offset));
   }
   std::uint64_t value = 0;
   std::memcpy(&value, bytes_.data() + offset, sizeof value);

@@ -147,13 +147,6 @@ double endMeasure(const std::vector<Vector3d>& row, const RootMeasure& measure) 
   return sum / static_cast<double>(row.size());
 }
 
-double lengthOf(const StripRows& strip) {
-  double length = 0;
-  for (std::size_t r = 1; r < strip.rows.size(); ++r)
-    length += (middleOf(strip.rows[r]) - middleOf(strip.rows[r - 1])).norm();
-  return length;
-}
-
 // In the file's unit.
 void followAll(const PolygonMesh& mesh, const std::vector<StripPatch>& patches, const StripOptions& options,
                const RootMeasure& measure, StripConversion& out) {
@@ -170,7 +163,7 @@ void followAll(const PolygonMesh& mesh, const std::vector<StripPatch>& patches, 
     }
     one.root = endMeasure(one.rows.rows.front(), measure);
     one.tip = endMeasure(one.rows.rows.back(), measure);
-    one.unclear = std::abs(one.tip - one.root) < kUnclear * lengthOf(one.rows);
+    one.unclear = std::abs(one.tip - one.root) < kUnclear * lineLength(one.rows);
     out.cut += one.rows.cut_rows > 0 ? 1 : 0;
     out.followed.push_back(std::move(one));
   }
@@ -195,7 +188,7 @@ void leaveOutAstray(StripConversion& out) {
   std::vector<double> lengths;
   for (const FollowedStrip& strip : out.followed) {
     roots.push_back(middleOf(strip.rows.rows[0]));
-    lengths.push_back(lengthOf(strip.rows));
+    lengths.push_back(lineLength(strip.rows));
   }
   const std::vector<double> far = fromMiddle(roots);
   const double most = kFarApart * std::max(median(far), kOfStripLength * median(std::move(lengths)));

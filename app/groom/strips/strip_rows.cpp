@@ -16,6 +16,13 @@ Eigen::Vector3d middleOf(const std::vector<Eigen::Vector3d>& row) {
   return sum / static_cast<double>(row.size());
 }
 
+double lineLength(const StripRows& strip) {
+  double length = 0;
+  for (std::size_t r = 1; r < strip.rows.size(); ++r)
+    length += (middleOf(strip.rows[r]) - middleOf(strip.rows[r - 1])).norm();
+  return length;
+}
+
 namespace {
 
 using Eigen::Vector3d;

@@ -24,6 +24,9 @@ struct StripRows {
 // Mean of the points of a row.
 Eigen::Vector3d middleOf(const std::vector<Eigen::Vector3d>& row);
 
+// Of the line through those means, from root to tip; in the rows' unit.
+double lineLength(const StripRows& strip);
+
 // How far a point is from where hair is rooted: the lower, the nearer.
 using RootMeasure = std::function<double(const Eigen::Vector3d&)>;
 
