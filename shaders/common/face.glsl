@@ -45,16 +45,17 @@ float lashes(vec2 m, float pixel) {
   return max(line, 0.75 * fringe);
 }
 
-// Share of the lips' colour: x the lips, y the seam between them.
+// Share of the lips' colour: x the lips, y the seam between them. They run out to points at the corners.
 vec2 lips(vec2 m, float pixel) {
-  float x2 = m.x * m.x, smile = 0.6 * x2, end = 1.0 - smoothstep(0.084, 0.103, m.x);
-  float seam = 0.2070 + smile;
-  float bow = 0.005 * exp(-(m.x - 0.030) * (m.x - 0.030) / 0.0004);
-  float upper = seam + (0.0290 + bow) * sqrt(clamp(1.0 - x2 / 0.0108, 0.0, 1.0));
-  float lower = seam - 0.0410 * sqrt(clamp(1.0 - x2 / 0.0096, 0.0, 1.0));
-  float soft = 0.004 + pixel;
-  float lip = smoothstep(lower - soft, lower + soft, m.y) * (1.0 - smoothstep(upper - soft, upper + soft, m.y));
-  return vec2(lip, band(m.y - seam, 0.0018, 0.0026 + pixel)) * end;
+  float x2 = m.x * m.x, across = clamp(1.0 - x2 / 0.0106, 0.0, 1.0);
+  float seam = 0.2070 + 0.6 * x2;
+  float bow = 0.006 * exp(-(m.x - 0.028) * (m.x - 0.028) / 0.0003);
+  float upper = seam + 0.0280 * pow(across, 0.85) + bow * across;
+  float lower = seam - 0.0405 * pow(across, 0.70);
+  float soft = 0.003 + pixel;
+  float lip = smoothstep(lower - soft, lower + soft, m.y) * (1.0 - smoothstep(upper - soft, upper + soft, m.y)) *
+              smoothstep(0.0, 0.12, across);
+  return vec2(lip, band(m.y - seam, 0.0018, 0.0026 + pixel) * (1.0 - smoothstep(0.092, 0.106, m.x)));
 }
 
 // The share of the albedo that paint leaves, and in w what is left of the roughness. `brow_color`: of the brows' hairs.
@@ -63,7 +64,11 @@ vec4 facePaint(vec3 q, vec3 brow_color, float pixel) {
   if (q.z < 0.16 || q.y < 0.10 || q.y > 0.68 || abs(q.x) > 0.28) return vec4(1.0);
   vec2 m = vec2(abs(q.x), q.y);
   vec2 lip = lips(m, pixel);
-  vec4 paint = mix(vec4(1.0), vec4(0.84, 0.56, 0.53, 0.68), lip.x);
+  // Skin shines less where it folds: beside the lips, on the lids and about the nose.
+  vec2 mouth = (m - vec2(0.0, 0.243)) / vec2(0.100, 0.026), fold = (m - vec2(0.132, 0.505)) / vec2(0.085, 0.045),
+       wing = (m - vec2(0.062, 0.335)) / vec2(0.030, 0.030);
+  float folds = max(exp(-dot(mouth, mouth)), max(exp(-dot(fold, fold)), exp(-dot(wing, wing))));
+  vec4 paint = mix(vec4(vec3(1.0), 1.0 + 0.5 * folds), vec4(0.84, 0.56, 0.53, 0.68), lip.x);
   paint.rgb *= 1.0 - 0.6 * lip.y;
   // Warm cheeks and lids.
   vec2 cheek = (m - vec2(0.188, 0.395)) / vec2(0.085, 0.065);
