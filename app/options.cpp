@@ -272,11 +272,11 @@ void addExportOptions(CLI::App& parser, Options& options, Unchecked& unchecked) 
   group.value(
       "--export", spec.file, "FILE",
       "Without a window: write the simulated hair: .abc or .usda (a clip), .hair, .ply or .tfx (a file a frame, its "
-      "number before the dot), .glb (the hair mesh with a morph target a frame)");
+      "number before the dot), .glb (the hair mesh, or cards, with a morph target a frame)");
   group
       .value("--export-what", unchecked.export_what, "NAME",
-             "strands as drawn, guides (the hair mesh's columns), or mesh (.glb alone; its default)")
-      ->check(oneOf({"strands", "guides", "mesh"}));
+             "strands as drawn, guides (the hair mesh's columns), or of .glb alone mesh (its default) or cards")
+      ->check(oneOf({"strands", "guides", "mesh", "cards"}));
   group.value("--export-points", spec.points, "N", "Points a strand, evenly from root to tip (as drawn)")
       ->check(within(2, kMaxExportPoints));
   group.value("--export-frames", unchecked.export_frames, "A-B", "Frames of the run, from 0; N: no numbers (all)");
@@ -321,9 +321,13 @@ void finishExport(const Unchecked& unchecked, Options& options) {
   const bool mesh = std::filesystem::path(spec.file).extension() == ".glb";
   if (!mesh && !isGroomOutput(spec.file))
     throw UsageError("--export cannot be '" + spec.file + "'; name it .abc, .usda, .hair, .ply, .tfx or .glb");
-  if (mesh != (unchecked.export_what == "mesh") && !(mesh && unchecked.export_what.empty()))
-    throw UsageError("a .glb file takes the mesh, and the mesh goes into a .glb file alone; glTF has no curves");
-  spec.what = mesh ? ExportWhat::kMesh : unchecked.export_what == "guides" ? ExportWhat::kGuides : ExportWhat::kStrands;
+  const bool cards = unchecked.export_what == "cards";
+  if (mesh != (cards || unchecked.export_what == "mesh") && !(mesh && unchecked.export_what.empty()))
+    throw UsageError("a .glb file takes mesh or cards, and these go into a .glb file alone; glTF has no curves");
+  spec.what = cards                               ? ExportWhat::kCards
+              : mesh                              ? ExportWhat::kMesh
+              : unchecked.export_what == "guides" ? ExportWhat::kGuides
+                                                  : ExportWhat::kStrands;
   if (!unchecked.export_frames.empty() && !parseFrames(unchecked.export_frames, spec))
     throw UsageError("--export-frames cannot be '" + unchecked.export_frames +
                      "'; write FIRST-LAST, for instance 0-119");

@@ -20,7 +20,7 @@ def read(data):
         about = scene["accessors"][accessor]
         view = scene["bufferViews"][about["bufferView"]]
         code = {5126: "f", 5125: "I"}[about["componentType"]]
-        assert view["byteLength"] == 4 * about["count"] * {"SCALAR": 1, "VEC3": 3}[about["type"]]
+        assert view["byteLength"] == 4 * about["count"] * {"SCALAR": 1, "VEC2": 2, "VEC3": 3}[about["type"]]
         values = array.array(code, body[view["byteOffset"]:view["byteOffset"] + view["byteLength"]])
         if "min" in about:
             width = len(about["min"])
@@ -32,6 +32,15 @@ def read(data):
     base = numbers(primitive["attributes"]["POSITION"])
     triangles = numbers(primitive["indices"])
     assert len(triangles) % 3 == 0 and max(triangles) < len(base) // 3
+    normals = numbers(primitive["attributes"]["NORMAL"])
+    turned = [normals] + [array.array("f", (a + b for a, b in zip(normals, numbers(target["NORMAL"]))))
+                          for target in primitive.get("targets", [])]
+    for moment in turned:
+        assert len(moment) == len(base)
+        assert all(abs(sum(c * c for c in moment[v:v + 3]) - 1) < 1e-4 for v in range(0, len(moment), 3))
+    if "TEXCOORD_0" in primitive["attributes"]:
+        coordinates = numbers(primitive["attributes"]["TEXCOORD_0"])
+        assert 3 * len(coordinates) == 2 * len(base) and min(coordinates) == 0 and max(coordinates) == 1
     targets = [numbers(target["POSITION"]) for target in primitive.get("targets", [])]
     moments = [base] + [array.array("f", (a + b for a, b in zip(base, target))) for target in targets]
     times = [0.0]

@@ -31,8 +31,11 @@ struct Buffer {
     bytes += piece;
     return accessors.size() - 1;
   }
+  std::size_t addVectors(const std::vector<Eigen::Vector3f>& vectors) {
+    return add(bytesOf(vectors), vectors.size(), "VEC3", kFloat, kArrayBuffer);
+  }
   std::size_t addPoints(const std::vector<Eigen::Vector3f>& points) {
-    const std::size_t accessor = add(bytesOf(points), points.size(), "VEC3", kFloat, kArrayBuffer);
+    const std::size_t accessor = addVectors(points);
     Eigen::Vector3f low = points[0], high = points[0];
     for (const Eigen::Vector3f& point : points) low = low.cwiseMin(point), high = high.cwiseMax(point);
     accessors[accessor]["min"] = {low.x(), low.y(), low.z()};
@@ -57,14 +60,35 @@ Json animationOf(const ClipSettings& settings, std::size_t moments, Buffer& buff
           {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}};
 }
 
+// Unit normals of vertices, the mean of the triangles around by their areas; upwards where there are none.
+std::vector<Eigen::Vector3f> normalsOf(const std::vector<std::uint32_t>& triangles,
+                                       const std::vector<Eigen::Vector3f>& vertices) {
+  std::vector<Eigen::Vector3f> normals(vertices.size(), Eigen::Vector3f::Zero());
+  for (std::size_t t = 0; t + 2 < triangles.size(); t += 3) {
+    const Eigen::Vector3f& a = vertices[triangles[t]];
+    const Eigen::Vector3f normal = (vertices[triangles[t + 1]] - a).cross(vertices[triangles[t + 2]] - a);
+    for (std::size_t k = 0; k < 3; ++k) normals[triangles[t + k]] += normal;
+  }
+  for (Eigen::Vector3f& normal : normals) {
+    const float length = normal.norm();
+    normal = length > 0 ? Eigen::Vector3f(normal / length) : Eigen::Vector3f::UnitY();
+  }
+  return normals;
+}
+
+std::vector<Eigen::Vector3f> difference(std::vector<Eigen::Vector3f> of, const std::vector<Eigen::Vector3f>& from) {
+  for (std::size_t v = 0; v < of.size(); ++v) of[v] -= from[v];
+  return of;
+}
+
 void padTo4(std::string& bytes, char with) {
   bytes.append((4 - bytes.size() % 4) % 4, with);
 }
 
 }  // namespace
 
-GlbWriter::GlbWriter(std::string file, ClipSettings settings, std::vector<std::uint32_t> triangles)
-    : file_(std::move(file)), settings_(std::move(settings)), triangles_(std::move(triangles)) {}
+GlbWriter::GlbWriter(std::string file, ClipSettings settings, GlbMesh mesh)
+    : file_(std::move(file)), settings_(std::move(settings)), mesh_(std::move(mesh)) {}
 
 void GlbWriter::add(const std::vector<Eigen::Vector3f>& vertices) {
   if (moments_.size() == kMaxGlbMoments)
@@ -78,14 +102,20 @@ void GlbWriter::add(const std::vector<Eigen::Vector3f>& vertices) {
 void GlbWriter::finish() {
   if (moments_.empty()) throw OutputError(file_, "no frame was exported", "export at least one");
   Buffer buffer;
-  Json primitive{{"attributes", {{"POSITION", buffer.addPoints(moments_[0])}}}, {"mode", 4}};
-  primitive["indices"] = buffer.add(bytesOf(triangles_), triangles_.size(), "SCALAR", kUnsigned, kElementBuffer);
+  const std::vector<Eigen::Vector3f> normals = normalsOf(mesh_.triangles, moments_[0]);
+  Json primitive{{"attributes", {{"POSITION", buffer.addPoints(moments_[0])}, {"NORMAL", buffer.addVectors(normals)}}},
+                 {"mode", 4}};
+  if (!mesh_.coordinates.empty())
+    primitive["attributes"]["TEXCOORD_0"] =
+        buffer.add(bytesOf(mesh_.coordinates), mesh_.coordinates.size(), "VEC2", kFloat, kArrayBuffer);
+  primitive["indices"] =
+      buffer.add(bytesOf(mesh_.triangles), mesh_.triangles.size(), "SCALAR", kUnsigned, kElementBuffer);
   for (std::size_t n = 1; n < moments_.size(); ++n) {
-    std::vector<Eigen::Vector3f> moved(moments_[0].size());
-    for (std::size_t v = 0; v < moved.size(); ++v) moved[v] = moments_[n][v] - moments_[0][v];
-    primitive["targets"].push_back({{"POSITION", buffer.addPoints(moved)}});
+    const std::size_t moved = buffer.addPoints(difference(moments_[n], moments_[0])),
+                      turned = buffer.addVectors(difference(normalsOf(mesh_.triangles, moments_[n]), normals));
+    primitive["targets"].push_back({{"POSITION", moved}, {"NORMAL", turned}});
   }
-  Json mesh{{"name", "hair mesh"}, {"primitives", {primitive}}};
+  Json mesh{{"name", mesh_.name}, {"primitives", {primitive}}};
   Json scene{{"asset", {{"version", "2.0"}, {"generator", "hairmesh"}}},
              {"scene", 0},
              {"scenes", {{{"nodes", {0}}}}},

@@ -1,9 +1,9 @@
-// A mesh that moves, as binary glTF (`.glb`): the first moment's vertices, one morph target a moment, and an animation
-// of their weights. glTF has no curves; what draws cards or drives its own hair by a cage takes this.
+// A mesh that moves, as binary glTF (`.glb`): the first moment's vertices and normals, one morph target a moment, and
+// an animation of their weights. glTF has no curves; what draws cards or drives its own hair by a cage takes this.
 //
 // 12 bytes of header ("glTF", version 2, length), a chunk of JSON and one of bytes, each padded to 4. A target holds
-// displacements from the first moment. Source: the glTF 2.0 specification of the Khronos Group, sections 3.7.2 (morph
-// targets), 3.11 (animations), 4 (GLB).
+// what places and normals differ from the first moment's by. Source: the glTF 2.0 specification of the Khronos Group,
+// sections 3.7.2 (morph targets), 3.11 (animations), 4 (GLB).
 #pragma once
 
 #include <Eigen/Core>
@@ -17,11 +17,16 @@ namespace app {
 
 inline constexpr std::size_t kMaxGlbMoments = 1000;  // weights take a float for every pair of them
 
+struct GlbMesh {
+  std::string name;
+  std::vector<std::uint32_t> triangles;      // three numbers of vertices each, counter-clockwise from outside
+  std::vector<Eigen::Vector2f> coordinates;  // of a texture, per vertex; or none
+};
+
 // Keeps all moments in memory, 12 bytes a vertex each, and writes the file when it is finished.
 class GlbWriter {
  public:
-  // triangles: three numbers of vertices each, counter-clockwise from outside.
-  GlbWriter(std::string file, ClipSettings settings, std::vector<std::uint32_t> triangles);
+  GlbWriter(std::string file, ClipSettings settings, GlbMesh mesh);
 
   // Throws OutputError for another number of vertices than at first, and beyond kMaxGlbMoments.
   void add(const std::vector<Eigen::Vector3f>& vertices);
@@ -31,7 +36,7 @@ class GlbWriter {
  private:
   std::string file_;
   ClipSettings settings_;
-  std::vector<std::uint32_t> triangles_;
+  GlbMesh mesh_;
   std::vector<std::vector<Eigen::Vector3f>> moments_;
 };
 

@@ -5,7 +5,7 @@
 
 namespace app {
 
-enum class ExportWhat { kStrands, kGuides, kMesh };
+enum class ExportWhat { kStrands, kGuides, kMesh, kCards };
 
 struct ExportSpec {
   std::string file;  // .abc, .usda, .hair, .ply, .tfx or .glb; empty: nothing is exported

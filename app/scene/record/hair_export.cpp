@@ -15,6 +15,7 @@
 #include "app/groom/formats/tfx_file.h"
 #include "app/groom/groom_writer.h"
 #include "app/options.h"
+#include "app/scene/record/card_mesh.h"
 #include "app/scene/view/figure_input.h"
 #include "render/light/fiber_scattering.h"
 #include "render/strands/strand_growth.h"
@@ -166,6 +167,7 @@ struct HairExport::Impl {
   std::optional<StrandExport> strands;
   std::optional<GroomWriter> writer;
   std::optional<GlbWriter> mesh;
+  CardMesh cards;
   std::string note;
   bool numbered = false;  // a file a frame
   int moments = 0, frames = 0, first_frame = 0, last_frame = -1;
@@ -197,6 +199,15 @@ std::vector<Vector3f> cageVertices(const Demo& demo) {
       const Vector3f at = Eigen::Map<const Vector3f>(&actor.shown_positions[3 * v]);
       vertices.push_back(at + origin);
     }
+  }
+  return vertices;
+}
+
+std::vector<Vector3f> cardVertices(const CardMesh& cards, const Demo& demo) {
+  const std::vector<Vector3f> all = cageVertices(demo);
+  std::vector<Vector3f> vertices;
+  for (const std::uint32_t v : cards.vertices) {
+    if (v < all.size()) vertices.push_back(all[v]);
   }
   return vertices;
 }
@@ -255,7 +266,15 @@ HairExport::HairExport(const ExportSpec& spec, const Demo& demo, double fps, int
   if (spec.what == ExportWhat::kMesh) {
     checkWritable(spec.file);
     checkMoments(spec, first, end);
-    impl_->mesh.emplace(spec.file, settings, cageTriangles(demo));
+    impl_->mesh.emplace(spec.file, settings, GlbMesh{"hair mesh", cageTriangles(demo), {}});
+    return;
+  }
+  if (spec.what == ExportWhat::kCards) {
+    checkWritable(spec.file);
+    checkMoments(spec, first, end);
+    impl_->cards = cardsOf(demo);
+    impl_->note = " of " + countOf(impl_->cards.count, "card");
+    impl_->mesh.emplace(spec.file, settings, GlbMesh{"hair cards", impl_->cards.triangles, impl_->cards.coordinates});
     return;
   }
   int points = spec.points;
@@ -273,7 +292,8 @@ HairExport::HairExport(const ExportSpec& spec, const Demo& demo, double fps, int
 
 void HairExport::add(const Demo& demo, int frame) {
   if (impl_->mesh) {
-    impl_->mesh->add(cageVertices(demo));
+    const bool cards = impl_->spec.what == ExportWhat::kCards;
+    impl_->mesh->add(cards ? cardVertices(impl_->cards, demo) : cageVertices(demo));
   } else {
     impl_->writer->add(impl_->strands->groom(demo, impl_->spec.unit), frame);
   }
@@ -294,6 +314,7 @@ std::string HairExport::finish(const Demo& demo) {
             impl_->note;
     if (impl_->spec.what == ExportWhat::kStrands) text += fewerNote(groom.strandCount(), demo);
   }
+  if (impl_->mesh) text += impl_->note;
   if (impl_->mesh && impl_->spec.unit != 1) text += ", in metres: glTF has no other unit";
   std::string file = impl_->spec.file;
   if (impl_->writer && impl_->numbered) file = numberedName(impl_->spec.file, impl_->first_frame);

@@ -6,15 +6,19 @@
 
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "app/figure/head_model.h"
 #include "app/files/data_path.h"
+#include "app/files/polygon_file.h"
 #include "app/groom/formats/alembic_file.h"
 #include "app/groom/formats/usda_file.h"
 #include "app/groom/groom_file.h"
 #include "app/groom/inspect/groom_inspect.h"
+#include "app/scene/record/card_mesh.h"
 #include "tests/app/groom/groom_samples.h"
 #include "tests/app/groom/second_reader.h"
+#include "tests/app/scene/small_scene.h"
 
 namespace hair_export_test {
 
@@ -206,6 +210,54 @@ TEST(HairExport, TheCageIsAMeshWithMorphTargets) {
     }
     at += 8 + length + 6 * 8;
   }
+}
+
+// Cards face outwards, lie flat on the head, reach from the scalp to the tips, and leave no root face without one.
+TEST(HairExport, CardsLieOverTheHeadAndFaceOutwards) {
+  for (const app::Style style : {app::Style::kLong, app::Style::kBob, app::Style::kPixie}) {
+    app::Scene scene = test::smallScene("idle_turns.bvh");
+    scene.characters[0].style = style;
+    scene.characters.push_back(scene.characters[0]);
+    const app::Demo demo = app::openScene(std::move(scene), 1.5);
+    const app::CardMesh cards = app::cardsOf(demo);
+    const sim::HairMeshShape& shape = demo.actors[0].haircut->mesh.shape;
+    const auto vertices = static_cast<std::uint32_t>(shape.vertexCount());
+    ASSERT_EQ(cards.vertices.size(), cards.coordinates.size());
+    ASSERT_EQ(cards.count % 2, 0) << "both wear the same";
+    EXPECT_GT(2 * shape.columnCount(), cards.count / 2);
+    EXPECT_GT(cards.count / 2, shape.columnCount() / 2);
+    const Eigen::Vector3d centre = demo.actors[0].body->character.scalp.center;
+    const auto at = [&](std::uint32_t v) { return shape.positions[cards.vertices[v] % vertices]; };
+    int outwards = 0, upper = 0;
+    for (std::size_t t = 0; t < cards.triangles.size(); t += 3) {
+      const std::uint32_t* k = &cards.triangles[t];
+      if (cards.coordinates[k[0]].y() > 0.5f) continue;  // tips hang free
+      ++upper;
+      outwards += (at(k[1]) - at(k[0])).cross(at(k[2]) - at(k[0])).dot(at(k[0]) - centre) > 0;
+    }
+    EXPECT_GT(outwards, 0.97 * upper);
+    std::set<std::uint32_t> rooted;  // columns' roots that a card has
+    for (std::size_t v = 0; v < cards.vertices.size(); ++v) {
+      if (cards.coordinates[v].y() == 0) rooted.insert(cards.vertices[v] % vertices);
+    }
+    for (const sim::RootFace& face : shape.root_faces) {
+      int with = 0;
+      for (int c = 0; c < face.corner_count; ++c)
+        with += rooted.contains(static_cast<std::uint32_t>(
+            shape.column_first[static_cast<std::size_t>(face.columns[static_cast<std::size_t>(c)])]));
+      EXPECT_GE(with, 2);
+    }
+  }
+}
+
+TEST(HairExport, CardsAreReadAgainAsStrips) {
+  const std::string folder = test::freshFolder("hair_export_cards");
+  const test::Outcome outcome = exported(folder + "/cards.glb", {"--export-what", "cards"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(test::lacking(outcome.out, "cards, written to"), "");
+  EXPECT_GT(test::secondReading(folder + "/cards.glb").size(), 1000u);
+  const app::PolygonMesh mesh = app::readPolygons(folder + "/cards.glb");
+  EXPECT_GT(mesh.positions.size(), 100u);
 }
 
 // glTF has no unit but the metre.
