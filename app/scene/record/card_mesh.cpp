@@ -10,13 +10,13 @@ namespace app {
 
 namespace {
 
-constexpr double kFlat = 0.5;  // cosine between a card's normal and the way out of the head, in the mean
+constexpr double kLiesFlat = 0.5;  // cosine between a card's normal and the way out of the head, in the mean
 
-using RootEdge = std::pair<int, int>;  // columns
+using CardEdge = std::pair<int, int>;  // columns
 
 // How flat the strip between two columns lies at rest: -1 to 1, positive where the first column is on the left of one
 // who looks at it from outside with the root on top.
-double facing(const RootEdge& edge, const sim::HairMeshShape& shape, const Vec3& centre) {
+double facing(const CardEdge& edge, const sim::HairMeshShape& shape, const Vec3& centre) {
   const auto at = [&](int column, int layer) -> const Vec3& {
     return shape.positions[static_cast<std::size_t>(shape.column_first[static_cast<std::size_t>(column)] + layer)];
   };
@@ -32,36 +32,36 @@ double facing(const RootEdge& edge, const sim::HairMeshShape& shape, const Vec3&
 }
 
 // The edges that get a card, each turned so that it faces outwards.
-std::vector<RootEdge> cardEdges(const sim::HairMeshShape& shape, const Vec3& centre) {
-  std::map<RootEdge, double> flat;  // of each edge, its smaller column first
+std::vector<CardEdge> cardEdges(const sim::HairMeshShape& shape, const Vec3& centre) {
+  std::map<CardEdge, double> flat;  // of each edge, its smaller column first
   const auto edgeOf = [](const sim::RootFace& face, int k) {
     const int a = face.columns[static_cast<std::size_t>(k)],
               b = face.columns[static_cast<std::size_t>((k + 1) % face.corner_count)];
-    return RootEdge(std::min(a, b), std::max(a, b));
+    return CardEdge(std::min(a, b), std::max(a, b));
   };
-  std::map<RootEdge, bool> chosen;
+  std::map<CardEdge, bool> chosen;
   for (const sim::RootFace& face : shape.root_faces) {
-    RootEdge best;
+    CardEdge best;
     double most = -1;
     bool any = false;
     for (int k = 0; k < face.corner_count; ++k) {
-      const RootEdge edge = edgeOf(face, k);
+      const CardEdge edge = edgeOf(face, k);
       const auto [known, fresh] = flat.try_emplace(edge, 0);
       if (fresh) known->second = facing(edge, shape, centre);
       const double now = std::abs(known->second);
-      if (now >= kFlat) any = chosen[edge] = true;
+      if (now >= kLiesFlat) any = chosen[edge] = true;
       if (now > most) most = now, best = edge;
     }
     if (!any) chosen[best] = true;
   }
-  std::vector<RootEdge> edges;
+  std::vector<CardEdge> edges;
   for (const auto& [edge, taken] : chosen) {
-    if (taken) edges.push_back(flat[edge] > 0 ? edge : RootEdge(edge.second, edge.first));
+    if (taken) edges.push_back(flat[edge] > 0 ? edge : CardEdge(edge.second, edge.first));
   }
   return edges;
 }
 
-void addCard(const RootEdge& edge, const sim::HairMeshShape& shape, std::uint32_t before, CardMesh& cards) {
+void addCard(const CardEdge& edge, const sim::HairMeshShape& shape, std::uint32_t before, CardMesh& cards) {
   const int layers = std::min(shape.columnLength(edge.first), shape.columnLength(edge.second));
   if (layers < 2) return;
   const auto first = static_cast<std::uint32_t>(cards.vertices.size());
@@ -87,7 +87,7 @@ CardMesh cardsOf(const Demo& demo) {
   std::uint32_t before = 0;
   for (const Actor& actor : demo.actors) {
     const sim::HairMeshShape& shape = actor.haircut->mesh.shape;
-    for (const RootEdge& edge : cardEdges(shape, actor.body->character.scalp.center))
+    for (const CardEdge& edge : cardEdges(shape, actor.body->character.scalp.center))
       addCard(edge, shape, before, cards);
     before += static_cast<std::uint32_t>(shape.vertexCount());
   }
