@@ -1,5 +1,6 @@
 #include <exception>
 #include <iostream>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -13,12 +14,18 @@
 #include "app/run_main.h"
 #include "app/scene/actor.h"
 #include "app/scene/demo.h"
+#include "app/scene/project.h"
 
 namespace {
 
-int writeHair(const app::Scene& scene, const std::string& file) {
+int writeHair(const app::Scene& scene, const app::Options& options) {
+  const std::string& file = options.write_hair;
   app::AssetCache asset_cache;
-  const app::Actor actor = app::makeActor(scene.characters.front(), scene.playback, asset_cache);
+  std::optional<app::Demo> project;  // whose hair may be brushed
+  if (!options.project.empty()) project = app::readProject(options.project, scene, true, 1);
+  app::Actor made;
+  if (!project) made = app::makeActor(scene.characters.front(), scene.playback, asset_cache);
+  const app::Actor& actor = project ? project->actors.front() : made;
   const sim::HairMesh& mesh = actor.haircut->mesh;
   app::writeFile(file, app::writeHairMesh(mesh.shape));
   std::istringstream notes(app::hairNotes({&actor, 1}));
@@ -31,7 +38,7 @@ int writeHair(const app::Scene& scene, const std::string& file) {
 
 int run(const app::Options& options) {
   app::Scene scene = app::sceneFromOptions(options);
-  if (!options.write_hair.empty()) return writeHair(scene, options.write_hair);
+  if (!options.write_hair.empty()) return writeHair(scene, options);
   if (options.headless) return app::runHeadless(std::move(scene), options);
   if (options.replay.empty()) return app::runWindow(std::move(scene), options);
   // A replay is checked all the same where no window can be opened.

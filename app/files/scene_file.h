@@ -21,7 +21,7 @@
 #pragma once
 
 #include <array>
-#include <memory>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -43,8 +43,6 @@ namespace app {
 struct Options;
 
 // One character of a scene, before anything is loaded.
-struct BrushedHair;  // app/scene/edit/brushed_hair.h
-
 struct CharacterSpec {
   std::string motion = "idle_turns.bvh";  // BVH, glTF, FBX, .mot
   std::string parts;                      // folder of body0000.obj ..., for .mot
@@ -67,7 +65,7 @@ struct CharacterSpec {
   std::vector<AttachmentSpec> attachments;
   FieldFiles maps;
   FieldCurves curves;
-  std::shared_ptr<const BrushedHair> brushed;  // of a run's own; scenes name a file for it
+  std::vector<std::byte> brushed;  // what brushes made of the hair (app/scene/edit/brushed_hair.h); scenes name a file
 };
 
 // Where the camera stands at the first frame. With an eye and a target given the named view is not used.

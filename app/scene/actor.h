@@ -70,6 +70,9 @@ struct Haircut {
   // Rest positions: before a painted length, none where hair is tied or covered; as brushes found them; and before
   // attachments cover them, none where none do.
   std::vector<Vec3> unpainted, painted, uncovered;
+  // What brushes had made of it before ties and attachments, and the same places without brushes; none of another mesh.
+  std::optional<sim::HairMeshShape> loose;
+  std::vector<Vec3> grown;
   std::vector<render::HairFace> faces;
   std::vector<float> rest;  // positions of the rest shape, three floats a vertex
   // Of a groom's hair: from where its mesh is to where strands grow, and where that is at rest. Empty: they are one.

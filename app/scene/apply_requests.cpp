@@ -265,7 +265,9 @@ void saveScene(const Request& request, Demo& demo) {
   demo.scene.name = stem(request.text);
   for (std::size_t i = 0; i < demo.actors.size(); ++i) demo.scene.characters[i] = demo.actors[i].spec;
   demo.edits.saved = lastDone(demo.edits);
-  showMessage("saved " + request.text, demo);
+  const bool tied = std::ranges::any_of(
+      demo.actors, [](const Actor& actor) { return !actor.spec.ties.empty() && reshapedByHand(*actor.haircut); });
+  showMessage("saved " + request.text + (tied ? ", without the strokes on tied hair: a project keeps them" : ""), demo);
 }
 
 void saveState(const Request& request, Demo& demo) {

@@ -311,7 +311,7 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
   std::string painted = writeCurves(spec.curves).dump();
   for (const std::string_view field : kFieldNames) painted += "|" + mapOf(field, spec.maps);
   const std::vector<const Attachment*> worn = attach(spec, body, asset_cache);
-  std::string under = spec.brushed ? "|brushed" + std::to_string(spec.brushed->id) : "";
+  std::string under = spec.brushed.empty() ? "" : "|brushed" + std::to_string(sim::fingerprint(spec.brushed));
   for (const Attachment* attachment : worn) under += "|" + attachment->key;
   const std::string key = body.key + "|" + title + (spec.fit ? " fitted " : "") + spec.mends + ties + painted + under;
   for (const auto& haircut : asset_cache.haircuts) {

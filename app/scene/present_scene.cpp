@@ -6,7 +6,6 @@
 #include "app/files/hair_file.h"
 #include "app/files/output_file.h"
 #include "app/scene/edit/brushed_hair.h"
-#include "app/scene/edit/groom_brush.h"
 #include "app/scene/edit/hand_pins.h"
 
 namespace app {
@@ -62,14 +61,11 @@ Scene movable(Scene scene, const std::string& file) {
 
 void saveReshapedHair(const std::string& scene_file, const Demo& demo, Scene& scene) {
   for (std::size_t i = 0; i < demo.actors.size(); ++i) {
-    const Haircut& worn = *demo.actors[i].haircut;
-    const BrushedHair* brushed = demo.actors[i].spec.brushed.get();
-    // Hair that was brushed before it was tied or covered is saved as it was then.
-    const bool before = !reshapedByHand(worn) && !worn.remeshed && worn.edited && brushed && brushed->loose;
-    if (!before && !reshapedByHand(worn)) continue;
+    const std::optional<sim::HairMeshShape> shape = looseBrushed(demo.actors[i]);
+    if (!shape) continue;
     const std::filesystem::path beside =
         std::filesystem::path(scene_file).replace_extension().string() + "-hair" + std::to_string(i + 1) + ".obj";
-    writeFile(beside.string(), writeHairMesh(before ? brushed->loose->shape : worn.mesh.shape));
+    writeFile(beside.string(), writeHairMesh(*shape));
     scene.characters[i].hair = beside.string();
     scene.characters[i].mends.clear();
     scene.characters[i].maps.length.clear();  // it is in the shape

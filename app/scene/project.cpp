@@ -48,7 +48,7 @@ std::string textOf(const sim::Bytes& bytes) {
 
 sim::Bytes binaryOf(const Demo& demo) {
   sim::Bytes bytes;
-  for (const Actor& actor : demo.actors) writeBrushed(actor.spec.brushed.get(), bytes);
+  for (const Actor& actor : demo.actors) sim::writeBytes(actor.spec.brushed, bytes);
   for (const Actor& actor : demo.actors) {
     const sim::HairMeshShape& shape = actor.haircut->mesh.shape;
     sim::writeBytes(actor.haircut->edited ? shape.positions : std::vector<Vec3>(), bytes);
@@ -182,7 +182,8 @@ Demo readProject(const std::string& file, Scene scene, bool keep_view, double as
   const double version = place.at(kKey).number(1, 1e6);
   for (CharacterSpec& character : scene.characters) {
     pins.push_back(std::exchange(character.pins, {}));
-    if (version > 3) character.brushed = readBrushed(from);
+    if (version > 3) sim::readBytes(from, character.brushed);
+    if (!character.brushed.empty() && !readBrushed(character.brushed)) from.complete = false;
   }
   if (!from.complete) throw InputError(binary_file, "", "does not fit the scene", "save the project anew");
   Demo fresh = openScene(std::move(scene), aspect);
@@ -195,6 +196,10 @@ Demo readProject(const std::string& file, Scene scene, bool keep_view, double as
   restoreDemoState(std::string(state.begin(), state.end()), binary_file, keep_view, fresh);
   fresh.scene.file = place.has(kAutosaveOf) ? place.at(kAutosaveOf).text() : file;
   return fresh;
+}
+
+bool holdsProject(const std::string& file) {
+  return contentOf(file).contains(kKey);
 }
 
 void openProject(const std::string& file, Demo& demo) {

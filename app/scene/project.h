@@ -27,6 +27,9 @@ Scene projectScene(const std::string& file);
 // hair. `keep_view`: the camera is the scene's and not where it was left. Throws InputError as openProject does.
 Demo readProject(const std::string& file, Scene scene, bool keep_view, double aspect);
 
+// Whether a file is a project; not where it cannot be read.
+bool holdsProject(const std::string& file);
+
 // Opens it in the demo's place. Throws InputError (no project, of a newer version, its binary gone or changed); then
 // nothing has changed.
 void openProject(const std::string& file, Demo& demo);

@@ -9,6 +9,7 @@
 #include "app/files/data_path.h"
 #include "app/files/field_map.h"
 #include "app/files/file_ending.h"
+#include "app/scene/project.h"
 #include "app/ui/ui_panels.h"
 #include "app/ui/ui_widgets.h"
 
@@ -198,7 +199,10 @@ void nameRow(Demo& demo, UiState& ui, std::string chosen) {
   const std::string typed = typedPath(browser);
   const bool replaces = willReplace(browser);
   if (replaces) {
-    ImGui::TextUnformatted("A file of this name is there already; Enter again replaces it");
+    const bool loses = browser.what == BrowseFor::kSaveScene && !browser.project && holdsProject(typed);
+    ImGui::TextUnformatted(
+        loses ? "A project is there already; Enter again puts a scene in its place, without the moving hair"
+              : "A file of this name is there already; Enter again replaces it");
     noteItem("replaces", ui);
   }
   const float button = 74 * ui.text_scale;
@@ -246,6 +250,7 @@ void browseToSave(const Demo& demo, UiState& ui) {
     browser.folder.clear();  // it is for what is kept by itself
   }
   browseFor(BrowseFor::kSaveScene, ui);
+  if (!own && fs::exists(file, ignored)) browser.project = holdsProject(file.string());
   setName(file.empty() ? demo.scene.name : own ? file.stem().string() : file.filename().string(), browser);
 }
 

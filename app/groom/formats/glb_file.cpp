@@ -104,7 +104,8 @@ void GlbWriter::finish() {
   Buffer buffer;
   const std::vector<Eigen::Vector3f> normals = normalsOf(mesh_.triangles, moments_[0]);
   Json primitive{{"attributes", {{"POSITION", buffer.addPoints(moments_[0])}, {"NORMAL", buffer.addVectors(normals)}}},
-                 {"mode", 4}};
+                 {"mode", 4},
+                 {"material", 0}};
   if (!mesh_.coordinates.empty())
     primitive["attributes"]["TEXCOORD_0"] =
         buffer.add(bytesOf(mesh_.coordinates), mesh_.coordinates.size(), "VEC2", kFloat, kArrayBuffer);
@@ -124,6 +125,13 @@ void GlbWriter::finish() {
     mesh["weights"] = std::vector<float>(moments_.size() - 1, 0.0f);
     scene["animations"] = Json::array({animationOf(settings_, moments_.size(), buffer)});
   }
+  Json material{{"name", mesh_.name},
+                {"pbrMetallicRoughness",
+                 {{"baseColorFactor", {mesh_.color.x(), mesh_.color.y(), mesh_.color.z(), 1.0f}},
+                  {"metallicFactor", 0.0f},
+                  {"roughnessFactor", 0.5f}}}};
+  if (mesh_.both_sides) material["doubleSided"] = true, material["alphaMode"] = "MASK";
+  scene["materials"] = Json::array({material});
   scene["meshes"] = Json::array({mesh});
   padTo4(buffer.bytes, '\0');
   scene["bufferViews"] = buffer.views;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 
 #include "app/groom/edit/mesh_edit.h"
@@ -11,6 +12,7 @@
 #include "app/scene/haircuts.h"
 #include "app/styles/style_untangle.h"
 #include "sim/field_text.h"
+#include "sim/mesh/field_bytes.h"
 #include "sim/mesh/shape_transfer.h"
 
 namespace app {
@@ -18,7 +20,10 @@ namespace app {
 namespace {
 
 constexpr double kMendedFatness = 0.04, kMendedGap = 0.002;  // see untangle; m
-constexpr double kShares[] = {1, 0.5, 0.25};                 // of what brushes have made, tried one after another
+constexpr double kFlattest = 1e-3;                           // fatness of a corner that counts as flat
+constexpr int kCarryRounds = 10;                             // of giving columns less of what brushes have made
+constexpr double kLessNext = 0.6;                            // of their share, for columns of flat prisms
+constexpr double kWorthSaying = 0.97;                        // a share above it is all
 
 // What brushes worked on: the same on every head and at every resolution.
 std::string brushedOn(const CharacterSpec& spec) {
@@ -70,39 +75,72 @@ bool isValid(const sim::HairMeshShape& shape) {
   }
 }
 
-// Returns the share of it that found room.
+// The columns that a flat or inverted prism has among its corners.
+std::set<int> flatColumns(const sim::HairMeshShape& shape) {
+  std::set<int> flat;
+  for (const sim::RootFace& face : shape.root_faces) {
+    const int n = face.corner_count;
+    const auto column = [&](int corner) { return face.columns[static_cast<std::size_t>(corner % n)]; };
+    for (int l = 0; l + 1 < shape.bundleLayers(face); ++l) {
+      for (int k = 0; k < 2 * n; ++k) {
+        std::array<Vec3, 4> at;
+        const std::array<int, 4> tet = sim::cornerTetOf(k, n);
+        for (std::size_t j = 0; j < 4; ++j)
+          at[j] = shape.positions[static_cast<std::size_t>(
+              shape.column_first[static_cast<std::size_t>(column(tet[j]))] + l + tet[j] / n)];
+        if (cornerFatness(at[0], at[1], at[2], at[3]) >= kFlattest) continue;
+        for (const int corner : tet) flat.insert(column(corner));
+      }
+    }
+  }
+  return flat;
+}
+
+// Returns the share of it that found room, in the mean over what it moves.
 double carry(const BrushedShape& brushed, double scale, const BodyDistance& distance, sim::HairMeshShape& shape) {
   const BodyDistance around = distance ? distance : [](const Vec3&) { return 1.0; };
   const std::vector<Vec3> way = broughtBy(brushed, shape);
-  for (const double share : kShares) {
+  std::vector<double> share(static_cast<std::size_t>(shape.columnCount()), 1.0);
+  for (int round = 0; round < kCarryRounds; ++round) {
     sim::HairMeshShape tried = shape;
-    for (std::size_t v = 0; v < way.size(); ++v) tried.positions[v] += share * scale * way[v];
+    double kept = 0, all = 0;
+    for (std::size_t c = 0; c < share.size(); ++c) {
+      for (auto v = static_cast<std::size_t>(shape.column_first[c]);
+           v < static_cast<std::size_t>(shape.column_first[c + 1]); ++v) {
+        tried.positions[v] += share[c] * scale * way[v];
+        kept += share[c] * way[v].norm(), all += way[v].norm();
+      }
+    }
     untangle(around, kMendedFatness, kMendedGap, tried);
-    if (!isValid(tried)) continue;
-    shape = std::move(tried);
-    return share;
+    const std::set<int> flat = flatColumns(tried);
+    if (flat.empty() && isValid(tried)) {
+      shape = std::move(tried);
+      return all > 0 ? kept / all : 1;
+    }
+    if (flat.empty()) break;
+    for (const int c : flat) share[static_cast<std::size_t>(c)] *= kLessNext;
   }
   return 0;
 }
 
 void noteShare(double share, Haircut& haircut) {
-  if (share == 1) return;
-  const std::string note = share == 0 ? "what brushes made of the hair finds no room here, Ctrl+Z brings it back"
-                                      : "for want of room " + std::to_string(std::lround(100 * share)) +
-                                            " % of what brushes made of the hair is kept";
+  if (share > kWorthSaying) return;
+  const std::string note = share == 0
+                               ? "what brushes made of the hair finds no room here, Ctrl+Z brings it back"
+                               : "for want of room " + std::to_string(std::lround(100 * share)) +
+                                     " % of what brushes made of the hair is kept here, Ctrl+Z brings all of it back";
   if (haircut.note.find(note) == std::string::npos) haircut.note += (haircut.note.empty() ? "" : "\n") + note;
 }
 
 }  // namespace
 
-std::shared_ptr<const BrushedHair> brushedHair(const Actor& actor) {
+std::vector<std::byte> brushedHair(const Actor& actor) {
   const Haircut& worn = *actor.haircut;
   const CharacterSpec& spec = actor.spec;
-  if (!reshapedByHand(worn) && !worn.remeshed && worn.frozen.empty()) return spec.brushed;
-  BrushedHair brushed;
-  if (spec.brushed && spec.brushed->body == actor.body->key && spec.brushed->resolution == spec.resolution)
-    brushed = *spec.brushed;
-  brushed.id = freshId();
+  const bool as_put = worn.loose && worn.loose->positions == worn.mesh.shape.positions;
+  if (as_put || (!reshapedByHand(worn) && !worn.remeshed && worn.frozen.empty())) return spec.brushed;
+  BrushedHair brushed = readBrushed(spec.brushed).value_or(BrushedHair{});
+  if (brushed.body != actor.body->key || brushed.resolution != spec.resolution) brushed = {};
   brushed.hair = brushedOn(spec);
   brushed.body = actor.body->key;
   brushed.resolution = spec.resolution;
@@ -112,44 +150,49 @@ std::shared_ptr<const BrushedHair> brushedHair(const Actor& actor) {
     brushed.tied.reset();
   } else {
     const std::string ties = placedTies(spec, worn.ties);
+    if (!brushed.loose && worn.loose) brushed.loose = BrushedShape{*worn.loose, worn.grown, {}};
     brushed.tied = shapeOf(worn, brushed.ties == ties ? brushed.tied : std::nullopt);
     brushed.ties = ties;
   }
-  return std::make_shared<const BrushedHair>(std::move(brushed));
+  return brushedBytes(brushed);
+}
+
+std::optional<sim::HairMeshShape> looseBrushed(const Actor& actor) {
+  const Haircut& worn = *actor.haircut;
+  if (!worn.edited || !actor.spec.ties.empty() || (!reshapedByHand(worn) && !worn.remeshed)) return worn.loose;
+  return shapeOf(worn, std::nullopt).shape;
 }
 
 std::string keepBrushed(const Actor& actor, bool another_hair, CharacterSpec& spec) {
   const CharacterSpec& now = actor.spec;
-  const std::shared_ptr<const BrushedHair> brushed = brushedHair(actor);
-  spec.brushed.reset();
+  spec.brushed.clear();
+  const std::vector<std::byte> bytes = brushedHair(actor);
+  std::optional<BrushedHair> brushed = readBrushed(bytes);
   if (!brushed) return "";
   const bool another_head = spec.motion != now.motion || spec.parts != now.parts,
              another_mesh = spec.resolution != now.resolution,
              own_mesh = brushed->loose && brushed->loose->before.empty();
   const bool keeps = !another_hair && brushed->hair == brushedOn(spec) && !(own_mesh && (another_head || another_mesh));
   const bool untied = brushed->tied && writeTies(spec.ties) != writeTies(now.ties);
+  if (untied) brushed->tied.reset();
   if (keeps && !untied) {
-    spec.brushed = brushed;
+    spec.brushed = bytes;
     return "";
   }
-  if (keeps && brushed->loose) {
-    BrushedHair loose = *brushed;
-    loose.id = freshId();
-    loose.tied.reset();
-    spec.brushed = std::make_shared<const BrushedHair>(std::move(loose));
-  }
+  if (keeps && brushed->loose) spec.brushed = brushedBytes(*brushed);
   return std::string("; what brushes made of the ") + (keeps ? "tied " : "") + "hair is gone, Ctrl+Z brings it back";
 }
 
 void putBrushed(const CharacterSpec& spec, const LoadedBody& body, Haircut& haircut, Dress dress,
                 sim::HairMeshShape& shape) {
-  const BrushedHair* brushed = spec.brushed.get();
+  const std::optional<BrushedHair> brushed = readBrushed(spec.brushed);
   if (!brushed || brushed->hair != brushedOn(spec)) return;
   const bool tied = dress == Dress::kTied;
   const std::optional<BrushedShape>& own = tied ? brushed->tied : brushed->loose;
   if (!own || (tied && brushed->ties != placedTies(spec, haircut.ties))) return;
   const bool at_home = brushed->body == body.key && brushed->resolution == spec.resolution;
   const bool own_mesh = own->before.empty();
+  std::vector<Vec3> grown = own_mesh ? std::vector<Vec3>() : shape.positions;
   if (at_home && (own_mesh || sameStructure(own->shape, shape)) && isValid(own->shape)) {
     shape = own->shape;
     haircut.frozen = own->frozen;
@@ -161,6 +204,9 @@ void putBrushed(const CharacterSpec& spec, const LoadedBody& body, Haircut& hair
     if (share == 0) return;
   }
   haircut.edited = true;
+  if (tied) return;
+  haircut.loose = shape;
+  haircut.grown = std::move(grown);
 }
 
 namespace {
@@ -224,29 +270,27 @@ void readShape(sim::ByteReader& from, std::optional<BrushedShape>& one) {
 
 }  // namespace
 
-void writeBrushed(const BrushedHair* brushed, sim::Bytes& out) {
-  sim::writeBytes(static_cast<int>(brushed != nullptr), out);
-  if (!brushed) return;
-  for (const std::string* text : {&brushed->hair, &brushed->body, &brushed->ties})
-    sim::writeBytes(lettersOf(*text), out);
-  sim::writeBytes(static_cast<int>(brushed->resolution), out);
-  sim::writeBytes(brushed->head_height, out);
-  for (const auto* one : {&brushed->loose, &brushed->tied}) writeShape(*one, out);
+std::vector<std::byte> brushedBytes(const BrushedHair& brushed) {
+  sim::Bytes out;
+  for (const std::string* text : {&brushed.hair, &brushed.body, &brushed.ties}) sim::writeBytes(lettersOf(*text), out);
+  sim::writeBytes(static_cast<int>(brushed.resolution), out);
+  sim::writeBytes(brushed.head_height, out);
+  for (const auto* one : {&brushed.loose, &brushed.tied}) writeShape(*one, out);
+  return out;
 }
 
-std::shared_ptr<const BrushedHair> readBrushed(sim::ByteReader& from) {
-  int there = 0, resolution = 0;
-  sim::readBytes(from, there);
-  if (there == 0) return nullptr;
+std::optional<BrushedHair> readBrushed(std::span<const std::byte> bytes) {
+  if (bytes.empty()) return {};
+  sim::ByteReader from{bytes};
   BrushedHair read;
-  read.id = freshId();
+  int resolution = 0;
   for (std::string* text : {&read.hair, &read.body, &read.ties}) *text = readLetters(from);
   sim::readBytes(from, resolution);
   read.resolution = static_cast<Resolution>(std::clamp(resolution, 0, static_cast<int>(Resolution::kMinimal)));
   sim::readBytes(from, read.head_height);
   for (auto* one : {&read.loose, &read.tied}) readShape(from, *one);
-  from.complete = from.complete && read.head_height > 0 && std::isfinite(read.head_height);
-  return from.complete ? std::make_shared<const BrushedHair>(std::move(read)) : nullptr;
+  if (!from.complete || !(read.head_height > 0) || !std::isfinite(read.head_height)) return {};
+  return read;
 }
 
 }  // namespace app

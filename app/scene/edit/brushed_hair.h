@@ -1,14 +1,14 @@
 // What brushes have made of hair, kept where the hair is made anew: tied, under a hat, painted by a picture, at another
-// resolution or on another head.
+// resolution or on another head. CharacterSpec::brushed has it as bytes; none of them is nothing.
 #pragma once
 
-#include <memory>
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "app/scene/actor.h"
-#include "sim/mesh/field_bytes.h"
 
 namespace app {
 
@@ -20,7 +20,6 @@ struct BrushedShape {
 };
 
 struct BrushedHair {
-  std::uint64_t id = 0;
   std::string hair;  // what brushes worked on: style or file, and its painted length
   std::string body;  // LoadedBody::key
   Resolution resolution = Resolution::kMedium;
@@ -30,23 +29,27 @@ struct BrushedHair {
   std::string ties;
 };
 
-// What brushes have made of the actor's hair by now; null: nothing.
-std::shared_ptr<const BrushedHair> brushedHair(const Actor& actor);
+std::vector<std::byte> brushedBytes(const BrushedHair& brushed);
+// Nothing of bytes that are none, or not those of a hair mesh.
+std::optional<BrushedHair> readBrushed(std::span<const std::byte> bytes);
+
+// What brushes have made of the actor's hair by now. Hair that was carried to another resolution or head, and not
+// brushed since, has what it was carried from: it comes back as it was.
+std::vector<std::byte> brushedHair(const Actor& actor);
 
 // Hands to `spec`, for which the actor's hair is made anew, what brushes have made of it; `another_hair`: nothing of
 // it. Returns what is said where something is lost, to follow a title.
 std::string keepBrushed(const Actor& actor, bool another_hair, CharacterSpec& spec);
 
+// The actor's hair as it grows, before ties and attachments, where brushes have made that; else nothing.
+std::optional<sim::HairMeshShape> looseBrushed(const Actor& actor);
+
 enum class Dress { kLoose, kTied };  // hair as it grows; as it comes out of its ties
 
 // Puts what brushes have made over hair that was made for `spec`: at another resolution or on another head as much of
-// it as leaves every prism positive and no vertex in the body. The haircut is then edited, and a note of it says where
-// that is less than all. Throws sim::MeshError where the hair it is put over is not valid.
+// it as leaves every prism positive and no vertex in the body, column by column. The haircut is then edited, and a note
+// of it says where that is less than all. Throws sim::MeshError where the hair it is put over is not valid.
 void putBrushed(const CharacterSpec& spec, const LoadedBody& body, Haircut& haircut, Dress dress,
                 sim::HairMeshShape& shape);
-
-// As a part of a project's binary; null is one too. What cannot be read is null, and the reader then not complete.
-void writeBrushed(const BrushedHair* brushed, sim::Bytes& out);
-std::shared_ptr<const BrushedHair> readBrushed(sim::ByteReader& from);
 
 }  // namespace app

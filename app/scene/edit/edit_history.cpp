@@ -89,8 +89,10 @@ std::string titleOf(const Request& request, const EditKind& kind) {
   if (request.what == Ask::kBrush) return request.name;
   if (request.what == Ask::kMove) return kind.title + (" " + request.name);
   if (request.what == Ask::kMesh) return spaced(request.name);
+  if (request.what == Ask::kAttach && request.text == "[]") return "Nothing worn";
   std::string title = kind.title;
-  if (!request.name.empty() && request.what != Ask::kMotionFile) title.append(" ").append(request.name);
+  if (!request.name.empty() && request.name != "add" && request.what != Ask::kMotionFile)
+    title.append(" ").append(request.name);
   if (request.text.starts_with('[') || request.text.starts_with('{')) {  // JSON says more than a title holds
     const auto has = [&](const char* key) { return request.text.find(key) != std::string::npos; };
     return title + (has("\"braided\":true") ? ", braided" : "") + (has("\"bun\":true") ? ", bun" : "");
@@ -299,6 +301,7 @@ void notice(const std::string& words, Demo& demo) {
 
 std::size_t EditSide::bytes() const {
   std::size_t bytes = sizeof(EditSide) + 4 * cast.size() * sizeof(CharacterSpec);
+  for (const CharacterSpec& spec : cast) bytes += 2 * spec.brushed.size();  // the scene has it too
   for (const ActorMoment& moment : moments) {
     const std::size_t vertices = moment.hair.positions.size();
     bytes += vertices * 4 * sizeof(sim::Vec3) * 4;  // positions, velocities, those before, and about thrice of memory

@@ -55,6 +55,7 @@ Haircut& ownHaircut(Actor& actor, Demo& demo) {
   own->covered = worn.covered;
   own->shares = worn.shares, own->look_shares = worn.look_shares;
   own->unpainted = worn.unpainted, own->painted = worn.painted, own->uncovered = worn.uncovered;
+  own->loose = worn.loose, own->grown = worn.grown;
   own->frozen = worn.frozen;
   actor.haircut = own.get();
   const std::unique_ptr<sim::StepContext> old = std::move(actor.context);

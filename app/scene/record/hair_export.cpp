@@ -263,10 +263,11 @@ HairExport::HairExport(const ExportSpec& spec, const Demo& demo, double fps, int
   ClipSettings settings{fps, first, {}, spec.unit, static_cast<int>(demo.actors.size()), spec.every};
   for (int n = 0; n < spec.samples; ++n)
     settings.offsets.push_back(n * spec.shutter / (std::max(spec.samples - 1, 1) * fps));
+  const Vector3f color = hairColor(demo.actors.front().spec.look.hair);
   if (spec.what == ExportWhat::kMesh) {
     checkWritable(spec.file);
     checkMoments(spec, first, end);
-    impl_->mesh.emplace(spec.file, settings, GlbMesh{"hair mesh", cageTriangles(demo), {}});
+    impl_->mesh.emplace(spec.file, settings, GlbMesh{"hair mesh", cageTriangles(demo), {}, color, false});
     return;
   }
   if (spec.what == ExportWhat::kCards) {
@@ -274,7 +275,8 @@ HairExport::HairExport(const ExportSpec& spec, const Demo& demo, double fps, int
     checkMoments(spec, first, end);
     impl_->cards = cardsOf(demo);
     impl_->note = " of " + countOf(impl_->cards.count, "card");
-    impl_->mesh.emplace(spec.file, settings, GlbMesh{"hair cards", impl_->cards.triangles, impl_->cards.coordinates});
+    impl_->mesh.emplace(spec.file, settings,
+                        GlbMesh{"hair cards", impl_->cards.triangles, impl_->cards.coordinates, color, true});
     return;
   }
   int points = spec.points;

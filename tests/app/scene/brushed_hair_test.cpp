@@ -5,11 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 
 #include "app/files/data_path.h"
+#include "app/files/hair_file.h"
 #include "app/scene/edit/groom_brush.h"
 #include "app/scene/project.h"
+#include "tests/app/groom/groom_samples.h"
 #include "tests/app/scene/small_scene.h"
 #include "tests/run_program.h"
 
@@ -154,6 +157,24 @@ TEST(BrushedHair, GoesAlongToOtherResolutions) {
   }
 }
 
+// A cut whose edge other columns cannot follow loses some of itself there, and is whole again where it was made.
+TEST(BrushedHair, ACutIsKeptAtOtherResolutionsAndComesBackAsItWas) {
+  for (const auto& [from, to] : {std::pair(app::Resolution::kLow, app::Resolution::kMedium),
+                                 std::pair(app::Resolution::kMedium, app::Resolution::kLow),
+                                 std::pair(app::Resolution::kMedium, app::Resolution::kHigh)}) {
+    app::Demo demo = combed(app::Style::kLong, from);
+    for (int k = 0; k < 3; ++k) brush(app::BrushTool::kCut, demo);
+    const std::vector<sim::Vec3> cut = restOf(demo);
+    const double way = meanWay(demo);
+    const std::string there = did({Ask::kResolution, std::string(app::resolutionName(to)), ""}, demo);
+    EXPECT_GT(meanWay(demo), 0.6 * way) << app::resolutionName(from) << " to " << app::resolutionName(to) << ": "
+                                        << there;
+    std::printf("%s: %.1f of %.1f mm\n", there.c_str(), 1e3 * meanWay(demo), 1e3 * way);
+    did({Ask::kResolution, std::string(app::resolutionName(from)), ""}, demo);
+    EXPECT_TRUE(restOf(demo) == cut);
+  }
+}
+
 TEST(BrushedHair, GoesAlongToAnotherHead) {
   app::Demo demo = combed(app::Style::kShoulder);
   const double way = meanWay(demo);
@@ -185,7 +206,28 @@ TEST(BrushedHair, IsSavedWithTheHairThatWasTiedFromIt) {
   app::Demo scene = app::openScene(app::loadScene(folder + "/scene.json"), 1.5);
   EXPECT_LT(farthest(restOf(scene), tied), 2e-3);
   did({Ask::kTie, "", "[]"}, scene);
-  EXPECT_EQ(restOf(scene).size(), brushed.size());
+  ASSERT_EQ(restOf(scene).size(), brushed.size());
+  EXPECT_LT(farthest(restOf(scene), brushed), 1e-5);
+  const test::Outcome written = test::runProgram({folder + "/mine.json", "--write-hair", folder + "/hair.obj"});
+  EXPECT_EQ(written.exit_code, 0) << written.err;
+  EXPECT_EQ(test::readAll(folder + "/hair.obj"), app::writeHairMesh(demo.actors[0].haircut->mesh.shape));
+}
+
+// Strokes on tied hair are no part of the hair that is tied from it.
+TEST(BrushedHair, ASceneOfTiedHairHasWhatWasBrushedBefore) {
+  app::Demo demo = combed(app::Style::kLong);
+  const std::vector<sim::Vec3> brushed = restOf(demo);
+  did({Ask::kTie, "", kTail}, demo);
+  brush(app::BrushTool::kComb, demo);
+  const std::string folder = test::freshFolder("brushed_hair_tied_scene");
+  EXPECT_EQ(test::lacking(did({Ask::kSaveScene, "", folder + "/scene.json"}, demo), "a project keeps them"), "");
+  app::Demo scene = app::openScene(app::loadScene(folder + "/scene.json"), 1.5);
+  EXPECT_FALSE(scene.actors[0].haircut->tied.empty());
+  did({Ask::kTie, "", "[]"}, scene);
+  EXPECT_LT(farthest(restOf(scene), brushed), 1e-5);
+  app::saveProject(folder + "/project.json", demo);
+  EXPECT_TRUE(app::holdsProject(folder + "/project.json"));
+  EXPECT_FALSE(app::holdsProject(folder + "/scene.json"));
 }
 
 }  // namespace brushed_hair_test

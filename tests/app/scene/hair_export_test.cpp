@@ -255,6 +255,7 @@ TEST(HairExport, CardsAreReadAgainAsStrips) {
   const test::Outcome outcome = exported(folder + "/cards.glb", {"--export-what", "cards"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(test::lacking(outcome.out, "cards, written to"), "");
+  EXPECT_EQ(test::lacking(test::readAll(folder + "/cards.glb"), "\"doubleSided\":true"), "");
   EXPECT_GT(test::secondReading(folder + "/cards.glb").size(), 1000u);
   const app::PolygonMesh mesh = app::readPolygons(folder + "/cards.glb");
   EXPECT_GT(mesh.positions.size(), 100u);
