@@ -197,6 +197,22 @@ TEST_F(Panels, WhatIsKeptByItselfIsNoPlaceToSaveTo) {
   EXPECT_EQ(ui_.browser.folder, ui_.kept_folder) << "a person has saved it there";
 }
 
+// A project that was opened is saved as one again, and a scene as a scene, whatever was saved before.
+TEST_F(Panels, WhatWasOpenedIsSavedAsWhatItIs) {
+  const std::string folder = test::freshFolder("ui_save_kind"), project = folder + "/p.json",
+                    scene = folder + "/s.json";
+  app::saveProject(project, demo_);
+  apply({{Ask::kSaveScene, "", scene}});
+  for (const std::string& opened : {project, scene, project}) {
+    app::openFile(opened, demo_, ui_);
+    apply(frame());
+    ASSERT_EQ(demo_.scene.file, opened) << demo_.message;
+    app::browseToSave(demo_, ui_);
+    EXPECT_EQ(ui_.browser.project, opened == project);
+    app::pressKey(app::kKeyEscape, demo_, ui_);
+  }
+}
+
 // Opened by the offer: what it has left is forgotten once this run is kept itself, a refused one stays.
 TEST_F(Panels, ARunGoesOnFromAnOfferedProjectOnceItIsOpen) {
   const std::string folder = test::freshFolder("ui_offer"), file = folder + "/a.json";
