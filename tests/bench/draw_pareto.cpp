@@ -31,10 +31,11 @@ Table pointTable(const DrawSweep& sweep) {
       {}};
   const DrawPoint& standard = sweep.points.front();
   for (const DrawPoint& point : sweep.points) {
-    table.rows.push_back(
-        {sweep.scene.name, point.setting.name(), formatted("%.1f", point.wall), formatted("%.1f", point.processor),
-         formatted("%.3f", point.error.rms), formatted("%.3f", point.error.blocks), std::to_string(point.strands),
-         point.on_front ? "yes" : "no", noWorse(point.error, standard.error, sweep.reference.own) ? "yes" : "no"});
+    table.rows.push_back({sweep.scene.name, point.setting.name(), formatted("%.1f", point.wall),
+                          formatted("%.1f", point.processor), formatted("%.1f", point.time),
+                          formatted("%.3f", point.error.rms), formatted("%.3f", point.error.blocks),
+                          std::to_string(point.strands), point.on_front ? "yes" : "no",
+                          noWorse(point.error, standard.error, sweep.reference.own) ? "yes" : "no"});
   }
   return table;
 }

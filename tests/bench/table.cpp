@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
+#include <stdexcept>
 
 #include "app/files/output_file.h"
 
@@ -95,7 +96,12 @@ std::string Table::markdown() const {
 
 std::string Table::csv() const {
   std::string text = csvLine(head);
-  for (const auto& row : rows) text += csvLine(row);
+  for (const auto& row : rows) {
+    if (row.size() != head.size())
+      throw std::logic_error("a row of " + std::to_string(row.size()) + " cells in a table of " +
+                             std::to_string(head.size()) + " columns: " + csvLine(row));
+    text += csvLine(row);
+  }
   return text;
 }
 

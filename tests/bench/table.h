@@ -12,7 +12,7 @@ struct Table {
   std::vector<std::vector<std::string>> rows;
 
   std::string markdown() const;  // ends with an empty line
-  std::string csv() const;       // cells with a comma or a quote in quotes
+  std::string csv() const;  // cells with a comma or a quote in quotes; a row of another length is a programmer's error
 };
 
 // Reads the first table of a Markdown text, and the rows of later ones with as many columns. Bold is dropped.
