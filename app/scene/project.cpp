@@ -31,9 +31,10 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr double kKeepEvery = 2;  // s, at most so often
-constexpr double kTryAgain = 20;  // s, after a fault
-constexpr double kLookEvery = 1;  // s, whether the file was saved
+constexpr double kKeepEvery = 2;       // s, between edits: at most so often
+constexpr double kKeepInGesture = 20;  // s, while one goes on: writing would show in it
+constexpr double kTryAgain = 20;       // s, after a fault
+constexpr double kLookEvery = 1;       // s, whether the file was saved
 const std::string kKey(kProjectKey), kAutosaveOf(kAutosaveKey);
 
 std::string hex(std::uint64_t value) {
@@ -223,8 +224,8 @@ void Autosave::keep(double now, const Demo& demo) {
   // What was saved is newer than what was kept before it: that is kept anew at once.
   const std::string& scene = demo.scene.file;
   const std::string saved = scene + " " + savedAt(scene);
-  if (saved == saved_ && now - last_ < kKeepEvery) return;
   const EditHistory& history = demo.edits;
+  if (saved == saved_ && now - last_ < (history.gesture ? kKeepInGesture : kKeepEvery)) return;
   const EditStep* step = history.done > 0 ? &history.steps[history.done - 1] : nullptr;
   const std::string edits = step ? std::to_string(step->number) + " " + step->title : "none";
   if (history.steps.empty() || (edits == kept_ && saved == saved_)) return;

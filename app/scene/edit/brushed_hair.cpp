@@ -39,7 +39,7 @@ std::string placedTies(const CharacterSpec& spec, const std::vector<HairTie>& ti
   return text;
 }
 
-// Of hair that is covered: as if it had been brushed alike before.
+// What is worn presses hair down; strokes on it are added to the hair as it was before.
 BrushedShape shapeOf(const Haircut& worn, const std::optional<BrushedShape>& earlier) {
   BrushedShape now{worn.mesh.shape, {}, worn.frozen};
   if (!worn.remeshed) now.before = worn.uncovered.empty() ? worn.painted : worn.uncovered;
@@ -96,7 +96,7 @@ std::set<int> flatColumns(const sim::HairMeshShape& shape) {
   return flat;
 }
 
-// Returns the share of it that found room, in the mean over what it moves.
+// Moves `shape` as brushes moved another mesh. Returns the share that found room, in the mean over what it moves.
 double carry(const BrushedShape& brushed, double scale, const BodyDistance& distance, sim::HairMeshShape& shape) {
   const BodyDistance around = distance ? distance : [](const Vec3&) { return 1.0; };
   const std::vector<Vec3> way = broughtBy(brushed, shape);
@@ -137,10 +137,12 @@ void noteShare(double share, Haircut& haircut) {
 std::vector<std::byte> brushedHair(const Actor& actor) {
   const Haircut& worn = *actor.haircut;
   const CharacterSpec& spec = actor.spec;
-  const bool as_put = worn.loose && worn.loose->positions == worn.mesh.shape.positions;
-  if (as_put || (!reshapedByHand(worn) && !worn.remeshed && worn.frozen.empty())) return spec.brushed;
   BrushedHair brushed = readBrushed(spec.brushed).value_or(BrushedHair{});
-  if (brushed.body != actor.body->key || brushed.resolution != spec.resolution) brushed = {};
+  const bool at_home = brushed.body == actor.body->key && brushed.resolution == spec.resolution;
+  const bool as_carried =
+      !at_home && worn.frozen.empty() && worn.loose && worn.loose->positions == worn.mesh.shape.positions;
+  if (as_carried || (!reshapedByHand(worn) && !worn.remeshed && worn.frozen.empty())) return spec.brushed;
+  if (!at_home) brushed = {};
   brushed.hair = brushedOn(spec);
   brushed.body = actor.body->key;
   brushed.resolution = spec.resolution;
