@@ -3,7 +3,6 @@
 #include <signal.h>
 #include <unistd.h>
 
-#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -54,10 +53,7 @@ sim::Bytes binaryOf(const Demo& demo) {
     const sim::HairMeshShape& shape = actor.haircut->mesh.shape;
     sim::writeBytes(actor.haircut->edited ? shape.positions : std::vector<Vec3>(), bytes);
     sim::writeBytes(actor.haircut->remeshed ? shape.column_first : std::vector<int>(), bytes);
-    std::vector<std::array<int, 5>> faces;  // corner count and columns
-    for (const sim::RootFace& face : shape.root_faces)
-      faces.push_back({face.corner_count, face.columns[0], face.columns[1], face.columns[2], face.columns[3]});
-    sim::writeBytes(actor.haircut->remeshed ? faces : std::vector<std::array<int, 5>>(), bytes);
+    sim::writeBytes(actor.haircut->remeshed ? faceRows(shape) : std::vector<FaceRow>(), bytes);
     sim::writeBytes(actor.haircut->remeshed ? shape.groom_offsets : std::vector<Vec3>(), bytes);
   }
   const std::string state = demoStateBytes(demo);
@@ -89,7 +85,7 @@ std::string besides(const std::string& file, const std::string& name) {
 // The shape of one character's hair, where brushes have made it another.
 void takeShape(sim::ByteReader& from, double version, const std::string& file, int index, Demo& demo) {
   sim::HairMeshShape shape;
-  std::vector<std::array<int, 5>> faces;
+  std::vector<FaceRow> faces;
   std::vector<int> columns;
   sim::readBytes(from, shape.positions);
   if (version > 1) {
@@ -103,7 +99,7 @@ void takeShape(sim::ByteReader& from, double version, const std::string& file, i
     throw InputError(file, "", "does not fit the scene", "save the project anew");
   if (columns.empty()) return reshapeHair(shape.positions, index, demo);
   shape.column_first = columns;
-  for (const auto& [corners, a, b, c, d] : faces) shape.root_faces.push_back({corners, {a, b, c, d}});
+  shape.root_faces = rootFaces(faces);
   remeshHair(std::move(shape), {}, index, demo);
 }
 

@@ -10,6 +10,15 @@
 
 namespace app {
 
+bool isValid(const sim::HairMeshShape& shape) {
+  try {
+    sim::buildHairMesh(shape);
+    return true;
+  } catch (const sim::MeshError&) {
+    return false;
+  }
+}
+
 namespace {
 
 constexpr double kClear = 0.002;                        // m off the body, or as near as the hair was
@@ -113,15 +122,6 @@ void clearOfBody(const sim::HairMeshShape& shape, const BodyDistance& body, Edit
     if (p == from) continue;
     const double least = std::min({kClear, body(from), body(to)});
     for (int round = 0; round < 2 && body(p) < least; ++round) p += (least - body(p) + 1e-5) * bodyNormal(body, p);
-  }
-}
-
-bool isValid(const sim::HairMeshShape& shape) {
-  try {
-    sim::buildHairMesh(shape);
-    return true;
-  } catch (const sim::MeshError&) {
-    return false;
   }
 }
 

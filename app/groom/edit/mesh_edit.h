@@ -62,6 +62,9 @@ EditedMesh mergeColumns(const sim::HairMeshShape& shape, std::span<const int> co
 EditedMesh extrudeColumns(const sim::HairMeshShape& shape, std::span<const ColumnPair> edges, const Scalp& scalp,
                           const BodyDistance& body);
 
+// Whether every prism is positive and the structure is that of a hair mesh.
+bool isValid(const sim::HairMeshShape& shape);
+
 // Whether two hair meshes differ in their positions at most.
 bool sameStructure(const sim::HairMeshShape& a, const sim::HairMeshShape& b);
 

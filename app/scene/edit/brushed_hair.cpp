@@ -66,15 +66,6 @@ std::vector<Vec3> broughtBy(const BrushedShape& brushed, const sim::HairMeshShap
   return carried;
 }
 
-bool isValid(const sim::HairMeshShape& shape) {
-  try {
-    sim::buildHairMesh(sim::HairMeshShape(shape));
-    return true;
-  } catch (const sim::MeshError&) {
-    return false;
-  }
-}
-
 // The columns that a flat or inverted prism has among its corners.
 std::set<int> flatColumns(const sim::HairMeshShape& shape) {
   std::set<int> flat;
@@ -211,6 +202,19 @@ void putBrushed(const CharacterSpec& spec, const LoadedBody& body, Haircut& hair
   haircut.grown = std::move(grown);
 }
 
+std::vector<FaceRow> faceRows(const sim::HairMeshShape& shape) {
+  std::vector<FaceRow> rows;
+  for (const auto& [corners, columns] : shape.root_faces)
+    rows.push_back({corners, columns[0], columns[1], columns[2], columns[3]});
+  return rows;
+}
+
+std::vector<sim::RootFace> rootFaces(std::span<const FaceRow> rows) {
+  std::vector<sim::RootFace> faces;
+  for (const auto& [corners, a, b, c, d] : rows) faces.push_back({corners, {a, b, c, d}});
+  return faces;
+}
+
 namespace {
 
 std::vector<char> lettersOf(const std::string& text) {
@@ -223,15 +227,10 @@ std::string readLetters(sim::ByteReader& from) {
   return {letters.begin(), letters.end()};
 }
 
-using FaceRow = std::array<int, 5>;  // corner count and columns
-
 void writeShape(const std::optional<BrushedShape>& one, sim::Bytes& out) {
   sim::writeBytes(static_cast<int>(one.has_value()), out);
   if (!one) return;
-  std::vector<FaceRow> faces;
-  for (const sim::RootFace& face : one->shape.root_faces)
-    faces.push_back({face.corner_count, face.columns[0], face.columns[1], face.columns[2], face.columns[3]});
-  sim::writeBytes(faces, out);
+  sim::writeBytes(faceRows(one->shape), out);
   sim::writeBytes(one->shape.column_first, out);
   for (const std::vector<Vec3>* places : {&one->shape.positions, &one->shape.groom_offsets, &one->before})
     sim::writeBytes(*places, out);
@@ -260,7 +259,7 @@ void readShape(sim::ByteReader& from, std::optional<BrushedShape>& one) {
   BrushedShape read;
   std::vector<FaceRow> faces;
   sim::readBytes(from, faces);
-  for (const auto& [corners, a, b, c, d] : faces) read.shape.root_faces.push_back({corners, {a, b, c, d}});
+  read.shape.root_faces = rootFaces(faces);
   read.shape.column_first.clear();
   sim::readBytes(from, read.shape.column_first);
   for (std::vector<Vec3>* places : {&read.shape.positions, &read.shape.groom_offsets, &read.before})

@@ -2,6 +2,7 @@
 // resolution or on another head. CharacterSpec::brushed has it as bytes; none of them is nothing.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -28,6 +29,11 @@ struct BrushedHair {
   std::optional<BrushedShape> tied;  // as it came out of these ties
   std::string ties;
 };
+
+// Root faces as binaries have them: corner count and columns.
+using FaceRow = std::array<int, 5>;
+std::vector<FaceRow> faceRows(const sim::HairMeshShape& shape);
+std::vector<sim::RootFace> rootFaces(std::span<const FaceRow> rows);
 
 std::vector<std::byte> brushedBytes(const BrushedHair& brushed);
 // Nothing of bytes that are none, or not those of a hair mesh.
