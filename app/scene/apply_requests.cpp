@@ -8,7 +8,6 @@
 #include "app/files/errors.h"
 #include "app/files/file_kind.h"
 #include "app/files/hair_file.h"
-#include "app/files/output_file.h"
 #include "app/files/presets.h"
 #include "app/scene/attachments.h"
 #include "app/scene/demo.h"
@@ -21,8 +20,8 @@
 #include "app/scene/edit/paint_brush.h"
 #include "app/scene/edit/vary.h"
 #include "app/scene/hair_from_file.h"
-#include "app/scene/present_scene.h"
 #include "app/scene/project.h"
+#include "app/scene/save_requests.h"
 #include "app/scene/view/environment_light.h"
 #include "sim/field_text.h"
 
@@ -51,7 +50,7 @@ void recast(CharacterSpec spec, bool same_motion, std::string title, Demo& demo,
   title += keepBrushed(old, another_hair, spec);
   if (!spec.pins.empty()) spec.pins = pinsForAnotherMesh(old);
   if (demo.loading.on) {
-    LoadOrder order{title, {}, demo.aspect, spec, demo.selected, same_motion, old.playback};
+    LoadOrder order{title, {}, demo.aspect, spec, demo.selected, same_motion, old.playback, old.spec.look};
     order.scene.sim = demo.scene.sim;
     order.scene.playback = demo.scene.playback;
     return loadLater(std::move(order), demo);
@@ -155,7 +154,7 @@ void changeScene(const std::string& file, Demo& demo) {
   scene.skips = demo.scene.skips;
   if (demo.loading.on) {
     const std::string title = "scene " + scene.name;
-    return loadLater({title, std::move(scene), demo.aspect, {}, 0, false, {}}, demo);
+    return loadLater({title, std::move(scene), demo.aspect, {}, 0, false, {}, {}}, demo);
   }
   replaceScene(openScene(std::move(scene), demo.aspect), demo);
 }
@@ -246,33 +245,6 @@ void setDeadline(const Request& request, Demo& demo) {
   double& deadline = demo.scene.playback.deadline_ms;
   deadline = std::isfinite(request.value) ? std::clamp(request.value, 0.0, kLargestBudget) : 0;
   demo.deadline.seconds = 1e-3 * deadline;
-}
-
-void savePreset(const Request& request, Demo& demo) {
-  writeFile(request.text,
-            writePreset(stem(request.text), demo.scene.sim, selectedActor(demo).spec.look, demo.scene.look));
-  demo.scene.preset = request.text;
-  keepBase(demo);
-  showMessage("saved " + request.text, demo);
-}
-
-void saveScene(const Request& request, Demo& demo) {
-  Scene scene = presentScene(demo);
-  scene.name = stem(request.text);
-  saveReshapedHair(request.text, demo, scene);
-  writeFile(request.text, writeScene(movable(std::move(scene), request.text)));
-  demo.scene.file = request.text;
-  demo.scene.name = stem(request.text);
-  for (std::size_t i = 0; i < demo.actors.size(); ++i) demo.scene.characters[i] = demo.actors[i].spec;
-  demo.edits.saved = lastDone(demo.edits);
-  const bool tied = std::ranges::any_of(
-      demo.actors, [](const Actor& actor) { return !actor.spec.ties.empty() && reshapedByHand(*actor.haircut); });
-  showMessage("saved " + request.text + (tied ? ", without the strokes on tied hair: a project keeps them" : ""), demo);
-}
-
-void saveState(const Request& request, Demo& demo) {
-  writeFile(request.text, demoStateBytes(demo));
-  showMessage("saved " + request.text, demo);
 }
 
 long frameOf(const Request& request) {
@@ -399,13 +371,7 @@ constexpr Action kActions[] = {
      [](const Request& request, Demo& demo) { applyMove(parseMove(request.name, request.text), demo.selected, demo); }},
     {Ask::kMesh,
      [](const Request& request, Demo& demo) { applyMeshChange(request.name, request.text, demo.selected, demo); }},
-    {Ask::kSaveProject,
-     [](const Request& request, Demo& demo) {
-       saveProject(request.text, demo, stem(request.text));
-       demo.scene.file = request.text, demo.scene.name = stem(request.text);
-       demo.edits.saved = lastDone(demo.edits);
-       showMessage("saved " + request.text, demo);
-     }},
+    {Ask::kSaveProject, saveAsProject},
     {Ask::kOpenProject,
      [](const Request& request, Demo& demo) {
        openProject(request.text, demo);
@@ -472,26 +438,40 @@ void apply(const Request& request, Demo& demo) {
   if (!later && ofFile(request.what)) noteFileEnd(request.text, true, demo);
 }
 
+void tryToApply(const Request& request, Demo& demo) {
+  try {
+    apply(request, demo);
+    if (demo.refused == std::pair(request.what, demo.message)) showMessage("", demo);
+  } catch (const std::exception& fault) {
+    demo.message = fault.what();
+    demo.message_is_fault = true;
+    demo.refused = {request.what, demo.message};
+    if (request.what == Ask::kOpenFile || ofFile(request.what)) noteFileEnd(request.text, false, demo);
+  }
+}
+
+void applyHeld(Demo& demo) {
+  while (const std::optional<HeldRequest> held = nextHeld(demo.loading)) {
+    const int selected = demo.selected, last = static_cast<int>(demo.actors.size()) - 1;
+    demo.selected = std::min(held->actor, last);
+    tryToApply(held->request, demo);
+    demo.selected = std::clamp(selected, 0, static_cast<int>(demo.actors.size()) - 1);
+  }
+}
+
 }  // namespace
 
 void applyRequests(Demo& demo) {
   installLoaded(demo);
-  if (!demo.requests.empty()) {
+  if (!demo.requests.empty() || !demo.loading.held.empty()) {
     for (Actor& actor : demo.actors) actor.shown_still = false;
   }
+  applyHeld(demo);
   // A request may bring others; a scene replaces the demo, so what follows it is taken over by value first.
   for (int round = 0; round < 4 && !demo.requests.empty(); ++round) {
     const std::vector<Request> asked = std::exchange(demo.requests, {});
     for (const Request& request : asked) {
-      try {
-        apply(request, demo);
-        if (demo.refused == std::pair(request.what, demo.message)) showMessage("", demo);
-      } catch (const std::exception& fault) {
-        demo.message = fault.what();
-        demo.message_is_fault = true;
-        demo.refused = {request.what, demo.message};
-        if (request.what == Ask::kOpenFile || ofFile(request.what)) noteFileEnd(request.text, false, demo);
-      }
+      if (!holdBack(request, demo)) tryToApply(request, demo);
     }
   }
 }

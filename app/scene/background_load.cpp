@@ -21,6 +21,16 @@ namespace {
 
 constexpr std::size_t kMaxFileEnds = 100;  // runs without a window look at none
 
+// What changes or saves a character and its hair.
+constexpr Ask kWaiting[] = {Ask::kStyle,       Ask::kResolution, Ask::kHairFile,  Ask::kHairMends, Ask::kMotionFile,
+                            Ask::kSceneFile,   Ask::kTie,        Ask::kPin,       Ask::kAttach,    Ask::kMap,
+                            Ask::kBrush,       Ask::kMove,       Ask::kMesh,      Ask::kPaint,     Ask::kCurve,
+                            Ask::kClip,        Ask::kLoop,       Ask::kSaveScene, Ask::kSaveState, Ask::kLoadState,
+                            Ask::kSaveProject, Ask::kOpenProject};
+
+// What the next choice replaces as a whole.
+constexpr Ask kChosenAnew[] = {Ask::kStyle, Ask::kResolution, Ask::kHairFile, Ask::kMotionFile, Ask::kSceneFile};
+
 // The file that the step of that number has asked for; empty where it was undone.
 std::string fileOf(long edit, const EditHistory& history) {
   const auto at = std::ranges::find(history.steps, edit, &EditStep::number);
@@ -64,6 +74,7 @@ void recastLoaded(Loaded& loaded, Demo& demo) {
   for (auto& one : loaded.asset_cache.attachments) demo.asset_cache.attachments.push_back(std::move(one));
   fresh.playback.speed = old.playback.speed;
   fresh.playback.paused = old.playback.paused;
+  if (old.spec.look != loaded.order.look) fresh.spec.look = old.spec.look;
   if (loaded.order.same_motion) {
     fresh.playback = old.playback;
     placeActor(fresh, false);
@@ -74,7 +85,11 @@ void recastLoaded(Loaded& loaded, Demo& demo) {
 }  // namespace
 
 std::string loadingNote(const Demo& demo) {
-  if (demo.loading.running.valid()) return "loading " + demo.loading.title;
+  if (demo.loading.running.valid()) {
+    const bool more = std::ranges::any_of(
+        demo.loading.held, [](const HeldRequest& held) { return held.request.what != Ask::kEndGesture; });
+    return "loading " + demo.loading.title + (more ? ", then what was asked for since" : "");
+  }
   const bool parts =
       std::ranges::any_of(demo.actors, [](const Actor& actor) { return actor.body->parts_coming.valid(); });
   return parts ? "making the signed distances of the body" : "";
@@ -82,15 +97,31 @@ std::string loadingNote(const Demo& demo) {
 
 void loadLater(LoadOrder order, Demo& demo) {
   order.edit = demo.edits.next;
-  if (demo.loading.running.valid()) {
-    demo.loading.waiting = std::move(order);
-  } else {
-    start(std::move(order), demo);
-  }
+  start(std::move(order), demo);
+}
+
+bool holdBack(const Request& request, Demo& demo) {
+  BackgroundLoad& loading = demo.loading;
+  if (!loading.running.valid() && loading.held.empty()) return false;
+  const bool ends_held = request.what == Ask::kEndGesture && !loading.held.empty();
+  if (!ends_held && std::ranges::find(kWaiting, request.what) == std::end(kWaiting)) return false;
+  const bool choice = std::ranges::find(kChosenAnew, request.what) != std::end(kChosenAnew);
+  const bool again = choice && !loading.held.empty() && loading.held.back().request.what == request.what &&
+                     loading.held.back().actor == demo.selected;
+  if (again) loading.held.pop_back();
+  loading.held.push_back({request, demo.selected});
+  return true;
+}
+
+std::optional<HeldRequest> nextHeld(BackgroundLoad& loading) {
+  if (loading.running.valid() || loading.held.empty()) return {};
+  HeldRequest next = std::move(loading.held.front());
+  loading.held.erase(loading.held.begin());
+  return next;
 }
 
 bool comesLater(long edit, const BackgroundLoad& loading) {
-  return (loading.running.valid() && loading.edit == edit) || (loading.waiting && loading.waiting->edit == edit);
+  return loading.running.valid() && loading.edit == edit;
 }
 
 void noteFileEnd(const std::string& file, bool done, Demo& demo) {
@@ -125,10 +156,6 @@ void takeLoaded(Demo& demo) {
     forgetEdit(loading.edit, demo.edits);
   }
   demo.shown_fraction = -1;  // what was loaded is shown though time may stand still
-  if (!demo.loading.waiting) return;
-  LoadOrder next = std::move(*demo.loading.waiting);
-  demo.loading.waiting.reset();
-  start(std::move(next), demo);
 }
 
 }  // namespace

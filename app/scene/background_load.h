@@ -6,9 +6,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/files/scene_file.h"
 #include "app/motion/playback.h"
+#include "app/scene/request.h"
 
 namespace app {
 
@@ -25,25 +27,39 @@ struct LoadOrder {
   int actor = 0;             // that `spec` replaces
   bool same_motion = false;  // it goes on where the old one is in its clip
   Playback playback;         // of the old one when the order was given
+  CharacterLook look;        // and its look then
   long edit = 0;             // number of the step that asks for it
+};
+
+// A request that waits for what is being loaded.
+struct HeldRequest {
+  Request request;
+  int actor = 0;  // that was selected when it was asked for
 };
 
 struct BackgroundLoad {
   bool on = false;
-  std::optional<LoadOrder> waiting;  // the latest one given while another is being loaded
-  std::string title;                 // of what `running` brings
-  long edit = 0;                     // and number of the step that asked for it
-  bool unwanted = false;             // it is dropped when it comes: what asked for it was undone
+  std::string title;              // of what `running` brings
+  long edit = 0;                  // and number of the step that asked for it
+  bool unwanted = false;          // it is dropped when it comes: what asked for it was undone
+  std::vector<HeldRequest> held;  // in order
   std::future<std::unique_ptr<Loaded>> running;
 };
 
 // What is being loaded, in words; empty when nothing is.
 std::string loadingNote(const Demo& demo);
 
-// Starts loading for the step that is being applied, or lets the order wait in place of one that waits already.
+// Starts loading for the step that is being applied. Nothing else may be on its way.
 void loadLater(LoadOrder order, Demo& demo);
 
-// Whether what the step of that number asks for is still being loaded, or waits for it.
+// Holds a request back that changes or saves what is being loaded, so that none is lost; false where it need not wait.
+// Of several in a row that choose the same thing the last one stays.
+bool holdBack(const Request& request, Demo& demo);
+
+// The first request that was held back, once nothing is being loaded.
+std::optional<HeldRequest> nextHeld(BackgroundLoad& loading);
+
+// Whether what the step of that number asks for is still being loaded.
 bool comesLater(long edit, const BackgroundLoad& loading);
 
 // Notes what became of a file, for the window.

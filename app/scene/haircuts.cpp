@@ -16,6 +16,7 @@
 #include "app/scene/sim_to_render.h"
 #include "app/styles/tie_ring.h"
 #include "sim/field_text.h"
+#include "sim/mesh/field_bytes.h"
 
 namespace app {
 

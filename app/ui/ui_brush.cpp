@@ -177,21 +177,23 @@ int samplesAFrame() {
   return std::clamp(static_cast<int>(std::lround(60 * ImGui::GetIO().DeltaTime)), 1, 4);
 }
 
-// One frame of a drag. Combing moves by the way of the hand; the others act as long as the button is held.
+// One frame of a drag. Combing moves by the way of the hand; the others act as long as the button is held. While the
+// hair is made anew nothing acts: a stroke is for the hair that is seen.
 void stroke(const Ray& ray, const std::optional<Vec3>& hit, Demo& demo, BrushState& brush) {
   const Rigid to_scalp = worldToScalp(selectedActor(demo));
+  const bool acts = !demo.loading.running.valid();
   if (brush.field >= 0) {
-    for (int k = 0; hit && k < samplesAFrame(); ++k) postPaint(to_scalp * *hit, demo, brush);
+    for (int k = 0; acts && hit && k < samplesAFrame(); ++k) postPaint(to_scalp * *hit, demo, brush);
     return;
   }
   if (brush.tool != static_cast<int>(BrushTool::kComb)) {
-    for (int k = 0; hit && k < samplesAFrame(); ++k) postSample(to_scalp * *hit, Vec3::Zero(), demo, brush);
+    for (int k = 0; acts && hit && k < samplesAFrame(); ++k) postSample(to_scalp * *hit, Vec3::Zero(), demo, brush);
     return;
   }
   const Vec3 last = to_scalp.inverse(Eigen::Isometry) * brush.last;
   const Vec3 now = pointInPlane(ray, last, viewBack(demo.camera)), way = now - last;
   if (way.norm() < kMinWay) return;
-  postSample(brush.last, to_scalp.linear() * way, demo, brush);
+  if (acts) postSample(brush.last, to_scalp.linear() * way, demo, brush);
   brush.last = to_scalp * now;
 }
 

@@ -35,7 +35,8 @@ void momentLine(std::size_t done, const std::string& title, Demo& demo, UiState&
   ImGui::PopID();
   if (!pressed || here) return;
   const double steps = static_cast<double>(done) - static_cast<double>(edits.done);
-  postRequest(demo, {steps < 0 ? Ask::kUndo : Ask::kRedo, "", "", std::abs(steps)});
+  if (steps > 0) return postRequest(demo, {Ask::kRedo, "", "", steps});
+  postRequest(demo, {Ask::kUndo, "", "", heldEdits(demo.loading) - steps});
 }
 
 void momentLines(Demo& demo, UiState& ui) {

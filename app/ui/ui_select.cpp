@@ -165,7 +165,7 @@ void choose(const std::vector<int>& element, bool adds, SelectState& select) {
 }
 
 void postMove(const Vec3& along, Demo& demo, const UiState& ui) {
-  if (ui.select.chosen.empty()) return;
+  if (ui.select.chosen.empty() || demo.loading.running.valid()) return;
   MoveSample sample{elementOf(ui.select), ui.select.chosen, along, ui.brush.radius, ui.brush.falloff, ui.brush.mirror};
   const std::string element(kElementNames[static_cast<std::size_t>(ui.select.element)]);
   postRequest(demo, {Ask::kMove, element, moveText(sample)});

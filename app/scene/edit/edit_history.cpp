@@ -231,7 +231,6 @@ void bringBackView(const Camera& view, Camera& camera) {
 
 // `moving`: what moves as well.
 void bringBack(const EditSide& side, bool moving, Demo& demo) {
-  demo.loading.waiting.reset();
   demo.loading.unwanted = demo.loading.running.valid();
   const auto momentOf = [&](std::size_t i) { return side.moments.empty() ? nullptr : &side.moments[i]; };
   if (side.cast.size() != demo.actors.size()) {
@@ -297,13 +296,29 @@ void notice(const std::string& words, Demo& demo) {
   demo.message_is_fault = false;
 }
 
+// Takes back the last edit that waits for what is being loaded, and says so; false where none does.
+bool dropHeld(Demo& demo) {
+  std::vector<HeldRequest>& held = demo.loading.held;
+  const auto isEdit = [](const HeldRequest& one) { return kindOf(one.request.what) != nullptr; };
+  auto end = std::find_if(held.rbegin(), held.rend(), isEdit).base();
+  if (end == held.begin()) return false;
+  const Request last = std::prev(end)->request;
+  const EditKind& kind = *kindOf(last.what);
+  auto begin = std::prev(end);
+  const auto sameGesture = [&](const Request& one) { return one.what == last.what && one.name == last.name; };
+  while (kind.drags && begin != held.begin() && sameGesture(std::prev(begin)->request)) --begin;
+  held.erase(begin, end);
+  notice("undone: " + titleOf(last, kind), demo);
+  return true;
+}
+
 }  // namespace
 
 std::size_t EditSide::bytes() const {
   std::size_t bytes = sizeof(EditSide) + 4 * cast.size() * sizeof(CharacterSpec);
   for (const CharacterSpec& spec : cast) bytes += 2 * spec.brushed.size();  // the scene has it too
-  for (const ActorMoment& moment : moments) {
-    const std::size_t vertices = moment.hair.positions.size();
+  for (const ActorMoment& one : moments) {
+    const std::size_t vertices = one.hair.positions.size();
     bytes += vertices * 4 * sizeof(sim::Vec3) * 4;  // positions, velocities, those before, and about thrice of memory
   }
   return bytes;
@@ -357,7 +372,21 @@ void forgetEdit(long number, EditHistory& history) {
   history.dropped.clear();
 }
 
+int heldEdits(const BackgroundLoad& loading) {
+  int edits = 0;
+  const Request* before = nullptr;
+  for (const auto& [request, actor] : loading.held) {
+    const EditKind* kind = kindOf(request.what);
+    const bool further = kind && kind->drags && before && before->what == request.what && before->name == request.name;
+    edits += kind && !further;
+    before = &request;
+  }
+  return edits;
+}
+
 void undoEdits(int count, Demo& demo) {
+  while (count > 0 && dropHeld(demo)) --count;
+  if (count == 0) return;
   if (demo.edits.done == 0) return notice("nothing to undo: this is where the scene was opened", demo);
   for (; count > 0 && demo.edits.done > 0; --count) {
     // Taken out: the demo may be replaced by another scene's.

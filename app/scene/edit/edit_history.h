@@ -24,6 +24,7 @@
 
 namespace app {
 
+struct BackgroundLoad;
 struct Demo;
 
 // One character's hair, and its motion where the edit has changed it.
@@ -97,6 +98,9 @@ bool goesOn(Ask what, const EditHistory& history);
 
 // Takes a step out that has changed nothing after all: what it asked for could not be loaded.
 void forgetEdit(long number, EditHistory& history);
+
+// Edits that wait for what is being loaded: they become steps when it is there, and are undone before those.
+int heldEdits(const BackgroundLoad& loading);
 
 // Goes `count` steps back or on; where there are none, a notice says so. Files that a step names are read again: where
 // that fails, it throws and the step stays as it is.

@@ -26,6 +26,7 @@ struct CharacterLook {
   bool dressed = true;       // a garment on a grown mannequin
   render::Float3 cloth_color = render::BodyInput{}.cloth_color;
   float face_paint = 1;  // of brows, lashes and lips of a grown mannequin, 0..1
+  bool operator==(const CharacterLook&) const = default;
 };
 
 // What all characters of a scene share.

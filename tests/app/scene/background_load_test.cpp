@@ -54,18 +54,84 @@ TEST(BackgroundLoad, TheOldHairGoesOnUntilTheNewStyleIsThere) {
   EXPECT_FALSE(demo.message_is_fault);
 }
 
-TEST(BackgroundLoad, OfSeveralOrdersTheLastIsServed) {
+// Until nothing is being loaded any more.
+void wait(Demo& demo) {
+  for (int k = 0; k < 10 && demo.loading.running.valid(); ++k) {
+    demo.loading.running.wait();
+    frames(1, demo);
+  }
+  ASSERT_FALSE(demo.loading.running.valid());
+}
+
+TEST(BackgroundLoad, WhatIsAskedForMeanwhileComesInOrderAndOfSeveralChoicesTheLast) {
   Demo demo = walking();
-  demo.requests = {{Ask::kStyle, "shoulder", ""}, {Ask::kStyle, "long", ""}, {Ask::kResolution, "medium", ""}};
+  demo.requests = {{Ask::kStyle, "shoulder", ""}, {Ask::kStyle, "bob", ""}, {Ask::kStyle, "long", ""}};
+  frames(1, demo);
+  demo.requests = {{Ask::kResolution, "medium", ""}};
   frames(1, demo);
   ASSERT_TRUE(demo.loading.running.valid());
-  demo.loading.running.wait();
-  frames(1, demo);
-  ASSERT_TRUE(demo.loading.running.valid()) << "what waited has begun";
-  EXPECT_FALSE(demo.loading.waiting.has_value());
-  demo.loading.running.wait();
-  frames(1, demo);
+  EXPECT_EQ(demo.loading.held.size(), 2u) << "the bob is not loaded";
+  EXPECT_NE(app::loadingNote(demo).find("then"), std::string::npos);
+  wait(demo);
+  EXPECT_EQ(demo.actors[0].spec.style, app::Style::kLong) << "kept by what was asked for after it";
   EXPECT_EQ(demo.actors[0].spec.resolution, app::Resolution::kMedium);
+  EXPECT_EQ(demo.edits.done, 3u);
+  demo.requests = {{Ask::kUndo, "", "", 1}};
+  frames(1, demo);
+  EXPECT_EQ(demo.actors[0].spec.style, app::Style::kLong);
+  EXPECT_EQ(demo.actors[0].spec.resolution, app::Resolution::kLow);
+}
+
+TEST(BackgroundLoad, WhatIsSavedMeanwhileHasWhatWasAskedForBefore) {
+  Demo demo = walking();
+  const std::string file = test::freshFolder("background_saved") + "/kept.json";
+  demo.requests = {{Ask::kStyle, "shoulder", ""}, {Ask::kResolution, "medium", ""}, {Ask::kSaveScene, "", file}};
+  frames(1, demo);
+  EXPECT_FALSE(std::ifstream(file).good()) << "not of the old hair";
+  wait(demo);
+  ASSERT_TRUE(std::ifstream(file).good()) << demo.message;
+  const app::Scene saved = app::loadScene(file);
+  EXPECT_EQ(saved.characters[0].style, app::Style::kShoulder);
+  EXPECT_EQ(saved.characters[0].resolution, app::Resolution::kMedium);
+  EXPECT_FALSE(app::isUnsaved(demo.edits));
+}
+
+TEST(BackgroundLoad, AStrokeOrLookMeanwhileIsThereAfterwards) {
+  Demo plain = walking(), demo = walking();
+  demo.requests = {{Ask::kStyle, "shoulder", ""},
+                   {Ask::kMesh, "add-layer", "2"},
+                   {Ask::kSetParam, "clump", "0.93"},
+                   {Ask::kEndGesture, "", ""}};
+  frames(1, demo);
+  EXPECT_EQ(demo.loading.held.size(), 2u);
+  EXPECT_NEAR(demo.actors[0].spec.look.hair.clump, 0.93f, 1e-6f) << "a slider acts at once";
+  wait(demo);
+  EXPECT_NEAR(demo.actors[0].spec.look.hair.clump, 0.93f, 1e-6f);
+  plain.requests = {{Ask::kStyle, "shoulder", ""}};
+  frames(1, plain);
+  wait(plain);
+  EXPECT_FALSE(demo.message_is_fault) << demo.message;
+  EXPECT_GT(demo.actors[0].haircut->mesh.vertexCount(), plain.actors[0].haircut->mesh.vertexCount());
+}
+
+TEST(BackgroundLoad, WhatWaitsIsUndoneFirst) {
+  Demo demo = walking();
+  demo.requests = {{Ask::kStyle, "shoulder", ""}, {Ask::kResolution, "medium", ""}};
+  frames(1, demo);
+  EXPECT_EQ(app::heldEdits(demo.loading), 1);
+  demo.requests = {{Ask::kUndo, "", "", 1}};
+  frames(1, demo);
+  EXPECT_EQ(app::heldEdits(demo.loading), 0);
+  wait(demo);
+  EXPECT_EQ(demo.actors[0].spec.style, app::Style::kShoulder);
+  EXPECT_EQ(demo.actors[0].spec.resolution, app::Resolution::kLow);
+
+  demo.requests = {{Ask::kStyle, "long", ""}, {Ask::kResolution, "medium", ""}, {Ask::kUndo, "", "", 2}};
+  frames(1, demo);
+  wait(demo);
+  EXPECT_EQ(demo.actors[0].spec.style, app::Style::kShoulder) << "what was being loaded is not used";
+  EXPECT_EQ(demo.actors[0].spec.resolution, app::Resolution::kLow);
+  EXPECT_EQ(demo.edits.done, 1u);
 }
 
 TEST(BackgroundLoad, ASceneTakesThePlaceOfTheOther) {
