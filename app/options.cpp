@@ -195,7 +195,7 @@ void addPlaybackOptions(CLI::App& parser, Options& options) {
   group
       .value("--deadline-ms", options.deadline_ms, "X",
              "Let the simulation of no frame take more than so many milliseconds, by counted work: steps, iterations "
-             "and corrections beyond are left out; 0: no deadline")
+             "and corrections beyond are left out, but for what contacts need; 0: no deadline")
       ->check(within(0, kLargestBudget));
   group
       .value("--loop", options.loop, "NAME",

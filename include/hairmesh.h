@@ -124,7 +124,7 @@ HM_API const char* hm_error_message(void);
 /** Weight of a line of the log. */
 typedef enum hm_log_level {
   HM_LOG_NOTE = 0,    /**< Something that may be of use. */
-  HM_LOG_WARNING = 1, /**< Something was repaired or left out. */
+  HM_LOG_WARNING = 1, /**< Something was repaired or left out, or is hardly meant: hair longer than 3 m. */
   HM_LOG_ERROR = 2    /**< A call failed; its message. */
 } hm_log_level;
 
@@ -444,7 +444,8 @@ typedef struct hm_strand {
 HM_API void hm_default_strand_settings(hm_strand_settings* settings);
 
 /**
- * Grows strands from the present state, as the shaders draw them: points agree within 1e-5 of the hair's length.
+ * Grows strands from the present state, as the shaders draw them: points agree within 1e-5 of the hair's length, but for
+ * a strand in 75,000 (8e-5).
  * @param hair     a hair.
  * @param settings which strands.
  * @param output   arrays to fill; those without data are left out.

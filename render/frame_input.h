@@ -164,7 +164,7 @@ struct LightInput {
   float layer_thickness = 0.0f;  // m of the first layer; 0: derived from the hair's extent
   float shadow_strength = 1.0f;  // scales opacity
   float shadow_strands_per_pixel =
-      24.0f;                      // of the hair's projected diameter: strands that cast shadow when it is small
+      17.0f;                      // of the hair's projected diameter: strands that cast shadow when it is small
   float shadow_strand_share = 1;  // of those, this share casts shadow, each standing for more hairs
   bool shadows = true;
 
@@ -188,9 +188,9 @@ struct ViewOptions {
   float ground_height = 0;  // m
   bool ground = true, show_strands = true, show_body = true;
   StrandPath strand_path = StrandPath::kAuto;
-  float strands_per_pixel = 40.0f;  // of the hair's projected diameter: strands drawn when it is small
+  float strands_per_pixel = 28.0f;  // of the hair's projected diameter: strands drawn when it is small
   float strand_share = 1;           // of those, this share is drawn: the others fade, and these grow wider
-  float segment_error = 0.2f;       // pixels that a straight segment may leave its curve by
+  float segment_error = 0.8f;       // pixels that a straight segment may leave its curve by
 
   bool operator==(const ViewOptions&) const = default;
 };

@@ -281,8 +281,8 @@ SimParams limited(const HairMesh& mesh, const SimParams& asked, const Parts& par
 }
 
 // Counts start anew, within the budget `max_work` (StepInput).
-void limitWork(double max_work, Parts& parts, SimParams& params) {
-  const WorkBounds bounds = boundsWithin(parts.mesh->vertexCount(), max_work);
+void limitWork(double max_work, int contacts, Parts& parts, SimParams& params) {
+  const WorkBounds bounds = boundsWithin(parts.mesh->vertexCount(), contacts, max_work);
   params.max_iterations = std::min(params.max_iterations, bounds.iterations);
   limitCorrectionWork(bounds, params.solver == Solver::kPaper, parts.correction);
   parts.stabilization.energy_limit.energies = 0;
@@ -294,7 +294,7 @@ SimParams beginStep(const HairMesh& mesh, const SimParams& asked, double max_wor
                     StepReport& report) {
   parts.clock.start();
   SimParams params = limited(mesh, asked, parts);
-  limitWork(max_work, parts, params);
+  limitWork(max_work, static_cast<int>(state.contacts.size()), parts, params);
   parts.stabilization.active = params.solver == Solver::kPaper ? kAsPublished : parts.stabilization.nets;
   sizeMemory(mesh, state.memory);
   state.contacts.reserve(static_cast<std::size_t>(kMaxTouches) * mesh.vertexCount());

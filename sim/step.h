@@ -32,7 +32,7 @@ class StepContext {
   // context steps. A state saved within those steps goes on with the new balance at once.
   void reshape(HairState& state);
 
-  // The safety nets in use (all at first), to measure what each saves. Solver::kPaper uses none of them.
+  // The safety nets in use (all at first), to measure what each saves. Solver::kPaper uses kAsPublished.
   SafetyNets& safetyNets();
 
   struct Parts;

@@ -20,12 +20,13 @@ struct StepWork {
 // to the times of steps of the nine styles; hairmesh-bench --frames-budget prints how far time strays from them.
 double workUnits(int vertices, const StepWork& work);
 
-// What a step may do so that it ends within `units`. What is left after the work that every step has is for the solve,
-// by half, and for closest points and deformation minimization, by a quarter each. At least one iteration.
+// What a step may do so that it ends within `units`. What is left after the work that every step has, and that so many
+// contacts take, is for the solve, by half, and for closest points and minimization, by a quarter each. At least one
+// iteration, and contacts are kept: a step with many takes longer where `units` are below that.
 struct WorkBounds {
   int iterations = 0, minimizations = 0;
   long surface_points = 0;
 };
-WorkBounds boundsWithin(int vertices, double units);
+WorkBounds boundsWithin(int vertices, int contacts, double units);
 
 }  // namespace sim

@@ -10,6 +10,7 @@
 
 #include "app/figure/arm_clearance.h"
 #include "app/figure/character_build.h"
+#include "app/figure/mannequin_field.h"
 #include "app/figure/mannequin_parts.h"
 #include "app/figure/skin_cover.h"
 #include "app/files/errors.h"
@@ -58,6 +59,21 @@ void cover(Character& character) {
 
 }  // namespace
 
+namespace {
+
+void addNose(const BodyField& field, Character& character) {
+  const Rigid to_joint = character.skeleton.joints[static_cast<std::size_t>(character.head_joint)].rest_world.inverse();
+  for (const HeadEllipsoid& of_head : noseEllipsoids()) {
+    BodyEllipsoid part{"nose", character.head_joint};
+    part.center = to_joint * Vec3(field.head_origin + field.head_scale * of_head.center);
+    part.rotation = Eigen::Quaterniond(to_joint.linear()) * Eigen::AngleAxisd(of_head.turn, Vec3::UnitX());
+    part.radii = field.head_scale * of_head.radii;
+    character.nose.push_back(part);
+  }
+}
+
+}  // namespace
+
 Character loadMannequin(const std::string& text, const std::string& file) {
   BvhMotion motion = readBvh(text, file);
   Mannequin mannequin = growMannequin(motion, file);
@@ -79,6 +95,7 @@ Character loadMannequin(const std::string& text, const std::string& file) {
   const HeadMeasure measure{inScalp({0, 0, 0}).y(), inScalp({0, 1, 0}).y(), inScalp({0, 0.585, -0.045})};
   sampleHead(&measure, character);
   fitParts(std::move(parts), character);
+  addNose(mannequin.field, character);
   return character;
 }
 

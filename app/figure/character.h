@@ -66,7 +66,7 @@ struct BodyEllipsoid {
   Vec3 center = Vec3::Zero();  // m, joint frame
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   Vec3 radii = Vec3::Ones();
-  bool by_distances = false;  // it does not fit: its part is collided with by signed distances (body_sdf.h) in its place
+  bool by_distances = false;  // it does not fit: signed distances (body_sdf.h) stand for its part
 };
 
 // Where a grown head's face lies, rest pose.
@@ -81,6 +81,7 @@ struct Character {
   SkinnedMesh mesh;
   std::vector<Clip> clips;  // at least one
   std::vector<BodyEllipsoid> ellipsoids;
+  std::vector<BodyEllipsoid> nose;  // drawn strands are lifted out of it; hair meshes do not collide with it
   int head_joint = 0;
   Rigid head_frame =
       Rigid::Identity();  // scalp frame (y up, z forward, x left, origin at the head joint) to head joint frame

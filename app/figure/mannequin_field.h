@@ -56,6 +56,15 @@ struct RoundCone {
 double headValue(const Vec3& q);
 double headWithoutEars(const Vec3& q);
 
+// An ellipsoid of the head's: head heights, and rad that its axes are turned about x.
+struct HeadEllipsoid {
+  Vec3 center, radii;
+  double turn;
+};
+
+// Bridge and base of the nose. Its skin sticks out of both by 0.0061 at most, 0.0029 for 19 in 20 points of it.
+const std::array<HeadEllipsoid, 2>& noseEllipsoids();
+
 // Distances to the body's regions before they are blended, for skinning.
 struct RegionValues {
   double head, neck, trunk;

@@ -90,6 +90,13 @@ double headWithoutEars(const Vec3& q) {
   return lips(q, d);
 }
 
+const std::array<HeadEllipsoid, 2>& noseEllipsoids() {
+  static const std::array<HeadEllipsoid, 2> nose{
+      HeadEllipsoid{Vec3(0, 0.4894, 0.3416), Vec3(0.0300, 0.1997, 0.0407), -0.5045},
+      HeadEllipsoid{Vec3(0, 0.3484, 0.3009), Vec3(0.0803, 0.0761, 0.1576), -0.0885}};
+  return nose;
+}
+
 double headValue(const Vec3& q) {
   const double d = headWithoutEars(q);
   if (std::abs(q.x()) < 0.18 || std::abs(q.z()) > 0.3) return d;

@@ -10,6 +10,7 @@
 
 #include "app/files/hair_file.h"
 #include "app/library/convert.h"
+#include "app/library/log.h"
 #include "app/library/objects.h"
 #include "app/styles/hair_styles.h"
 #include "sim/field_text.h"
@@ -87,9 +88,18 @@ sim::HairMesh builtMesh(const sim::HairMeshShape& shape) {
   throw Fault{HM_ERROR_MESH, "all faces are wound the other way; change reverse_faces"};
 }
 
+// Hair in another unit than metres is simulated as it stands: all its times and weights are off.
+void warnOfLength(double length) {
+  constexpr double kShort = 0.004, kLong = 3;  // m
+  if (length >= kShort && length <= kLong) return;
+  const std::string text = "the hair is " + sim::numberText(length) + " m long; positions are in metres, scale them";
+  writeLog(HM_LOG_WARNING, text.c_str());
+}
+
 hm_mesh addMesh(const sim::HairMeshShape& shape) {
   auto mesh = std::make_unique<Mesh>();
   mesh->mesh = builtMesh(shape);
+  warnOfLength(mesh->mesh.hair_length);
   const sim::HairMeshShape& built = mesh->mesh.shape;
   for (const sim::RootFace& face : built.root_faces) {
     for (int k = 0; k < 4; ++k)

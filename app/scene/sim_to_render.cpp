@@ -147,6 +147,11 @@ void showSkin(const Character& character, std::span<const PartDistance> unfit_pa
     poseEllipsoid(part, pose, pose, 0, e);
     skin.ellipsoids.push_back(skinEllipsoid(e, head_parts, head, origin));
   }
+  for (const BodyEllipsoid& part : character.nose) {
+    sim::Ellipsoid e;
+    poseEllipsoid(part, pose, pose, 0, e);
+    skin.ellipsoids.push_back(skinEllipsoid(e, head_parts, head, origin));
+  }
   skin.grids.clear();
   for (const PartDistance& part : unfit_parts) skin.grids.push_back(skinGrid(part, pose, origin));
 }

@@ -54,7 +54,8 @@ void deadlineLines(Demo& demo, UiState& ui) {
   bool on = demo.deadline.seconds > 0;
   if (ImGui::Checkbox("Never over", &on)) postRequest(demo, {Ask::kDeadline, "", "", on ? kUsualDeadline : 0.0});
   noteItem("deadline on", ui);
-  tip("No frame's simulation takes longer, by counted work: steps, iterations and corrections beyond are left out");
+  tip("No frame's simulation takes longer, by counted work: steps, iterations and corrections beyond are left out, but "
+      "for what contacts need");
   if (!on) return;
   ImGui::SameLine(0.46f * ImGui::GetWindowWidth());
   ImGui::SetNextItemWidth(-1);

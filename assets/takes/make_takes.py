@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the hands of five hairdos as takes: from a shaved head to strokes, paint, ties and hats while it moves. Give each
+"""Writes the hands of six hairdos as takes: from a shaved head to strokes, paint, ties and hats while it moves. Give each
 its end by replaying it: make_takes.py PROGRAM. See app/files/recording.h; places are metres in the scalp's frame."""
 import json
 import math
@@ -121,11 +121,27 @@ def under_the_beanie():
     yield [ask("end-gesture"), ask("curve", "mass", "1,1,1.5")]
 
 
+def behind_the_ear():
+    """Long hair combed back over the ears, on both sides, and held behind them."""
+    yield from base("long")
+    for height in (0.075, 0.045, 0.015, -0.015):
+        for k in range(16):
+            t = k / 15
+            at = (0.082 + 0.012 * math.sin(3.14 * t), height, 0.055 - 0.115 * t)
+            yield [brush("comb", at, (0.0006, 0.0, -0.0075), radius=0.045, strength=0.8, mirror=1)]
+        yield [ask("end-gesture")]
+    for k in range(10):
+        t = k / 9
+        yield [brush("comb", (0.085, -0.045 - 0.05 * t, 0.04 - 0.09 * t), (0.0, 0.0, -0.0075), radius=0.06, strength=0.7, mirror=1)]
+    yield [ask("end-gesture")]
+
+
 TAKES = {
     "chin_bob": (scene("Chin bob"), chin_bob),
     "crest": (scene("Crest"), crest),
     "side_sweep": (scene("Side sweep"), side_sweep),
     "half_up": (scene("Half up"), half_up),
+    "behind_the_ear": (scene("Behind the ear"), behind_the_ear),
     "under_the_beanie": (scene("Under the beanie"), under_the_beanie),
 }
 

@@ -45,6 +45,15 @@ float ownBend(const HairLook& look, float curl_share, int layers, float layer_le
          0.4f * look.frizz * square(way / 0.05f);
 }
 
+constexpr float kNearest = 0.05f;  // m from the eye; what is nearer is seen through
+
+// Of what the box holds, at most. Bundle by bundle: what one does leaves the others' segments as they are.
+float pixelsAMetre(const Bounds& box, const CameraInput& camera, int height) {
+  const Vector3f eye = asVector(camera.eye);
+  const float distance = (eye - eye.cwiseMax(box.low).cwiseMin(box.high)).norm();
+  return static_cast<float>(height) / (2 * std::tan(0.5f * camera.fov_y) * std::max(distance, kNearest));
+}
+
 }  // namespace
 
 float projectedDiameter(const Bounds& bounds, const CameraInput& camera, int height) {
@@ -68,11 +77,11 @@ void HairDetail::planView(const PlanInput& input, const Frustum& frustum, HairRe
   const auto full = static_cast<float>(hair.segments);
   segments_.assign(faces, full);
   if (input.skips.segments) {
-    const float a_metre = hair.pixels / std::max(hair.bounds.diagonal(), 1e-6f),
-                own = ownBend(hair.look, layout.curl_share, layout.max_layers, hair.layer_length);
-    const float layer_pixels = hair.layer_length * a_metre;
     const float error = std::max(input.segment_error, 1e-3f);
     for (std::size_t f = 0; f < faces; ++f) {
+      const float a_metre = pixelsAMetre(hair.face_bounds[f], input.camera, input.height);
+      const float own = ownBend(hair.look, layout.curl_share, layout.max_layers, hair.face_step[f]);
+      const float layer_pixels = hair.face_step[f] * a_metre;
       // A chord leaves a curve of second derivative b by b / (8 n^2); a Catmull-Rom's is at most twice its vertices'.
       const float bent = std::sqrt((2 * hair.face_bend[f] + own) * a_metre / (8 * error));
       const float needed = std::min(std::max(bent, layer_pixels / kLongestSegment), layer_pixels / kShortestSegment);
@@ -126,7 +135,7 @@ void HairDetail::planShadow(const PlanInput& input, HairResources& hair, DrawSki
   fadeTo(share, draw);
   skip_counts.shadow_detail.of += std::lround(most);
   if (share >= 1) return;
-  const float layer_pixels = hair.layer_length * hair.pixels / std::max(hair.bounds.diagonal(), 1e-6f);
+  const float layer_pixels = hair.layout().layer_length * hair.pixels / std::max(hair.bounds.diagonal(), 1e-6f);
   const auto full = static_cast<float>(draw.segments);
   const float segments = input.skips.shadow_detail
                              ? std::clamp(layer_pixels / (2 * kShortestSegment), std::min(kMinSegments, full), full)

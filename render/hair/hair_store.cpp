@@ -157,7 +157,7 @@ void measureFaces(std::span<const float> positions, HairResources& hair) {
   const auto at = [&](int v) { return Vector3f(positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]); };
   hair.face_bounds.resize(layout.faces.size());
   hair.face_bend.resize(layout.faces.size());
-  hair.layer_length = 0;
+  hair.face_step.resize(layout.faces.size());
   const float reach = sidewaysReach(hair.look, layout.curl_share);
   for (std::size_t f = 0; f < layout.faces.size(); ++f) {
     const HairFace& face = layout.faces[f];
@@ -180,7 +180,7 @@ void measureFaces(std::span<const float> positions, HairResources& hair) {
     box.high.array() += margin;
     hair.face_bounds[f] = box;
     hair.face_bend[f] = std::sqrt(bend);
-    hair.layer_length = std::max(hair.layer_length, std::sqrt(along));
+    hair.face_step[f] = std::sqrt(along);
   }
 }
 

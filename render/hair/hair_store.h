@@ -72,7 +72,7 @@ struct HairResources {
   std::vector<float> texels;                           // as uploaded
   std::vector<Bounds> face_bounds;                     // m, around all strands of a face
   std::vector<float> face_bend;                        // m, how far a face's strands turn away within a layer
-  float layer_length = 0;                              // m, the longest
+  std::vector<float> face_step;                        // m, a face's longest layer
   int soft_light_age = 0;                              // uploads since it was made
   Bounds bounds, around;                               // of the vertices; with room for all strands
   int strands = -1, segments = 0, asked_segments = 0;  // segments: a layer, with those that curls need

@@ -87,12 +87,11 @@ DrawnFrame DrawStage::draw(const DrawSetting& setting) {
   return drawn;
 }
 
-DrawReference DrawStage::reference() {
-  show(moments_[1]);
-  const int width = kFiner * scene_.width, height = kFiner * scene_.height;
-  render::FrameInput input = app::frameInput(demo_, width, height);
-  for (render::HairInput& hair : demo_.hair_inputs) hair.segments_per_layer = kReferenceSegments;
-  input.hairs = demo_.hair_inputs;
+LevelPicture referencePicture(app::Demo& demo, int width, int height, render::Renderer& renderer,
+                              LevelPicture* larger) {
+  render::FrameInput input = app::frameInput(demo, kFiner * width, kFiner * height);
+  for (render::HairInput& hair : demo.hair_inputs) hair.segments_per_layer = kReferenceSegments;
+  input.hairs = demo.hair_inputs;
   input.view.samples = kReferenceSamples;
   input.view.strands_per_pixel *= kFinerDetail;
   input.view.segment_error /= kFinerDetail;
@@ -101,9 +100,16 @@ DrawReference DrawStage::reference() {
   input.light.shadow_size = kReferenceShadow;
   input.skips.hair_light = input.skips.sky_visibility = false;
   std::vector<unsigned char> rgba;
-  renderer_.renderImage(input, rgba);
-  const LevelPicture larger = levelsOf(width, height, rgba);
-  DrawReference reference{averagedDown(larger, kFiner), {}};
+  renderer.renderImage(input, rgba);
+  LevelPicture fine = levelsOf(kFiner * width, kFiner * height, rgba), picture = averagedDown(fine, kFiner);
+  if (larger) *larger = std::move(fine);
+  return picture;
+}
+
+DrawReference DrawStage::reference() {
+  show(moments_[1]);
+  LevelPicture larger;
+  DrawReference reference{referencePicture(demo_, scene_.width, scene_.height, renderer_, &larger), {}};
   const PictureError off =
       differenceOf(averagedDown(larger, kFiner, Half::kEven), averagedDown(larger, kFiner, Half::kOdd));
   reference.own = {0.5 * off.rms, 0.5 * off.blocks};  // the mean of two independent halves is off by half as much

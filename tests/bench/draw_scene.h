@@ -23,6 +23,11 @@ struct DrawScene {
 // close_up, bust, figure, ten and hundred.
 std::vector<DrawScene> drawScenes();
 
+// What the demo shows, without what sampling, level of detail and maps leave out: the same strands in a larger picture,
+// four pixels and more for every one, twice the detail for each of those. `larger`, if given, gets it.
+LevelPicture referencePicture(app::Demo& demo, int width, int height, render::Renderer& renderer,
+                              LevelPicture* larger = nullptr);
+
 // The truth that a scene's pictures are compared with.
 struct DrawReference {
   LevelPicture picture;
@@ -44,8 +49,7 @@ class DrawStage {
   const DrawScene& scene() const { return scene_; }
   // Draws the moment and then the frame after it, which is measured.
   DrawnFrame draw(const DrawSetting& setting);
-  // The same strands in a larger picture, averaged down: four pixels and more for every one, twice the detail for each
-  // of those, and nothing left out that would show.
+  // See referencePicture.
   DrawReference reference();
   // Moment 0 or 1 as a setting draws it, in a picture of any size. What it points to lives until the next call.
   render::FrameInput frame(const DrawSetting& setting, int moment, int width, int height);

@@ -68,20 +68,20 @@ std::vector<Tried> singleFactors() {
   return {{"strands", {10000, 5000}, 1},
           {"segments_per_layer", {2}, 1},
           {"samples", {1}, 0},
-          {"strands_per_pixel", {20, 80}, 1},
-          {"segment_error", {0.4, 0.8, 0.1}, 1},
+          {"strands_per_pixel", {20, 40}, 1},
+          {"segment_error", {1.6, 0.2}, 1},
           {"shadow_size", {256, 512}, 1},
           {"opacity_layers", {4}, 1},
           {"shadow_strands", {4000}, 1},
-          {"shadow_strands_per_pixel", {12, 48}, 1},
+          {"shadow_strands_per_pixel", {12, 24}, 1},
           {kPathFactor, {0, 1}, 0}};
 }
 
 std::vector<DrawSetting> combinations() {
   return {
-      {{{"segment_error", 0.4}, {"shadow_strands", 4000}, {"shadow_strands_per_pixel", 12}}},
-      {{{"strands_per_pixel", 28}, {"segment_error", 0.3}, {"shadow_strands_per_pixel", 17}}},
-      {{{"strands_per_pixel", 80}, {"segment_error", 0.4}, {"shadow_strands_per_pixel", 12}}},
+      {{{"strands_per_pixel", 20}, {"shadow_strands_per_pixel", 12}}},
+      {{{"segments_per_layer", 2}, {"shadow_strands_per_pixel", 12}}},
+      {{{"strands_per_pixel", 40}, {"segment_error", 0.2}, {"shadow_strands_per_pixel", 24}}},
       {{{"strands_per_pixel", 80}, {"segment_error", 0.1}, {"shadow_strands_per_pixel", 48}, {"shadow_size", 2048}}},
   };
 }

@@ -27,6 +27,7 @@
 #include "tests/bench/pareto.h"
 #include "tests/bench/peers.h"
 #include "tests/bench/performance.h"
+#include "tests/bench/shimmer.h"
 #include "tests/bench/skin.h"
 #include "tests/bench/skipping.h"
 #include "tests/bench/solver_chart.h"
@@ -57,6 +58,11 @@ std::vector<Task> tasks() {
        "times of a frame's passes, strands beside triangles of the same strands; gpu.md in --out; exits 1 off bounds",
        [](Asked& a) {
          if (!bench::runDrawPasses({a.pareto.folder, a.pareto.runs, a.pareto.quick})) a.all_hold = false;
+       }},
+      {"--shimmer",
+       "how much a slow camera's and a shaken head's picture shimmers beside its reference; exits 1 off bounds",
+       [](Asked& a) {
+         if (!bench::runShimmer()) a.all_hold = false;
        }},
       {"--consistency", "whether resolutions and time steps follow the same motion; tables of consistency.md in --out",
        [](Asked& a) { bench::runConsistency({a.pareto.folder}); }},

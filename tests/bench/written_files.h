@@ -45,6 +45,8 @@ class RowFile {
     stream_ << rows << std::flush;
     if (stream_) return;
     const std::string why = errno == 0 ? "" : std::string(": ") + std::strerror(errno);
+    stream_.close();
+    if (std::error_code error; std::filesystem::file_size(file_, error) == 0) std::filesystem::remove(file_, error);
     throw app::OutputError(file_, "cannot be written" + why, "make room, or choose another file");
   }
   bool wanted() const { return !file_.empty(); }

@@ -35,7 +35,8 @@ std::vector<bool> nearColumn(const synthetic::Hair& hair, const render::FrameInp
         near[static_cast<std::size_t>(j * kWidth + i)] = true;
     }
   };
-  // A vertex bends the patches of the faces around it, and by their columns' gradients those of the next faces.
+  // A vertex bends the patches of the faces around it, and by their columns' gradients those of the next faces. Strands
+  // of its own faces may be drawn by more or fewer segments from their roots on.
   const auto has = [](const render::HairFace& face, int column) {
     return std::find(face.first_vertex.begin(), face.first_vertex.end(), column) != face.first_vertex.end();
   };
@@ -48,7 +49,7 @@ std::vector<bool> nearColumn(const synthetic::Hair& hair, const render::FrameInp
       continue;
     for (int edge = 0; edge < 16; ++edge) {
       const int from = face.first_vertex[edge / 4], to = face.first_vertex[edge % 4];
-      for (int layer = hair.layers - 4; from >= 0 && to >= 0 && layer < hair.layers; ++layer) {
+      for (int layer = has(face, first) ? 0 : hair.layers - 4; from >= 0 && to >= 0 && layer < hair.layers; ++layer) {
         const auto at = [&](int corner) {
           return Eigen::Vector3f(&hair.positions[3 * static_cast<std::size_t>(corner + layer)]);
         };

@@ -347,6 +347,22 @@ TEST(Library, TheLogHearsOfFaultsAndRepairs) {
   EXPECT_EQ(lines[0].second, "hm_hair_destroy: no such hair; it was destroyed, never made, or is of another kind");
 }
 
+// Most often the positions are in centimetres.
+TEST(Library, TheLogHearsOfHairOfMetres) {
+  const std::string text =
+      "g layer_0\nv 0 0 0\nv 2 0 0\nv 0 0 2\nf 1 3 2\ng layer_1\nv 0 25 0\nv 2 25 0\nv 0 25 2\nf 4 6 5\n";
+  std::vector<std::string> lines;
+  hm_set_log([](hm_log_level level, const char* message,
+                void* user) { static_cast<decltype(lines)*>(user)->push_back(std::to_string(level) + message); },
+             &lines);
+  hm_mesh mesh{};
+  EXPECT_EQ(hm_mesh_create_from_text(text.data(), text.size(), "long", 0, &mesh), HM_OK) << hm_error_message();
+  hm_set_log(nullptr, nullptr);
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_EQ(lines[0], "1the hair is 25 m long; positions are in metres, scale them");
+  EXPECT_EQ(hm_mesh_destroy(mesh), HM_OK);
+}
+
 // Blocks that the library has of the caller's.
 struct Counted {
   std::atomic<long> blocks{0}, bytes{0}, calls{0};
