@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 #include "app/files/errors.h"
+#include "app/files/text_file.h"
 #include "tests/bench/cpu_clock.h"
 #include "tests/bench/gate_drawing.h"
 #include "tests/bench/gate_motion.h"
@@ -154,20 +156,30 @@ void addSpeedFigures(const GateOptions& options, Report& report) {
 
 std::vector<Figure> measureFigures(const GateOptions& options) {
   Report report;
-  addSpeedFigures(options, report);
-  addConsistencyFigures([&](const Figure& figure) { report.add(figure); });
-  addSweepFigures(options, [&](const Figure& figure) { report.add(figure); });
-  addDrawingFigures(options, [&](const Figure& figure) { report.add(figure); });
+  const auto add = [&](const Figure& figure) { report.add(figure); };
+  const auto asked = [&](const char* part) { return options.part.empty() || options.part == part; };
+  if (asked("speed")) addSpeedFigures(options, report);
+  if (asked("consistency")) addConsistencyFigures(add);
+  if (asked("sweep")) addSweepFigures(options, add);
+  if (asked("drawing")) addDrawingFigures(options, add);
   return std::move(report.figures);
 }
 
 void writeGateDocument(const std::vector<Figure>& figures, const std::string& folder) {
   Table table{{"figure", "value", "bound", "holds", "note"}, {}};
+  const std::string kept = folder + "/data/gate.csv";
+  if (std::filesystem::exists(kept)) table = tableOfCsv(app::readText(kept));
   for (const Figure& figure : figures) {
-    table.rows.push_back({figure.name,
-                          formatted("%.3g%s%s", figure.value, figure.unit.empty() ? "" : " ", figure.unit.c_str()),
-                          formatted("%s %.3g", figure.at_least ? "at least" : "at most", figure.bound),
-                          figure.holds() ? "yes" : "**no**", figure.note});
+    std::vector<std::string> row{
+        figure.name, formatted("%.3g%s%s", figure.value, figure.unit.empty() ? "" : " ", figure.unit.c_str()),
+        formatted("%s %.3g", figure.at_least ? "at least" : "at most", figure.bound), figure.holds() ? "yes" : "**no**",
+        figure.note};
+    const auto same = std::ranges::find_if(table.rows, [&](const auto& old) { return old.front() == figure.name; });
+    if (same == table.rows.end()) {
+      table.rows.push_back(std::move(row));
+    } else {
+      *same = std::move(row);
+    }
   }
   writeTable(folder, "gate", table);
   writeMeasuredPart(folder + "/gate.md", "figures", columns(table, {"figure", "value", "bound", "holds"}).markdown());

@@ -9,6 +9,7 @@ namespace bench {
 struct GateOptions {
   int rounds = 5;          // of the interleaved comparisons, after one that is not counted
   std::string references;  // reference trajectories are kept here; empty: computed each time, which takes minutes
+  std::string part;        // speed, consistency, sweep or drawing; empty: all
 };
 
 // A figure and its bound.
@@ -24,8 +25,8 @@ struct Figure {
 // this thread's processor time; ratios compare runs that took turns. Throws app::InputError.
 std::vector<Figure> measureFigures(const GateOptions& options);
 
-// Puts the figures into the measured part of <folder>/gate.md and, with their notes, into <folder>/data/gate.csv.
-// Throws app::InputError.
+// Puts the figures into the measured part of <folder>/gate.md and, with their notes, into <folder>/data/gate.csv. Rows
+// of figures that were not measured this time stay. Throws app::InputError.
 void writeGateDocument(const std::vector<Figure>& figures, const std::string& folder);
 
 // Whether all hold; prints how many do.

@@ -163,6 +163,8 @@ void addOptions(CLI::App& program, Asked& a) {
                      "also put --conversion's tables into this folder's conversion.md");
   program.add_option("--rounds", a.gate.rounds, "turns that the compared ways of --gate take")
       ->check(CLI::Range(1, 100));
+  program.add_option("--gate-part", a.gate.part, "measure these lines of --gate alone; others stay in its document")
+      ->check(CLI::IsMember({"speed", "consistency", "sweep", "drawing"}));
   program.add_option("--gate-document", a.gate_document, "also put --gate's figures into this folder's gate.md");
   program.add_option("--performance-document", a.performance,
                      "measure stages, growth and start-up into this folder's performance.md");
