@@ -10,6 +10,7 @@
 
 #include "app/figure/arm_clearance.h"
 #include "app/figure/character_build.h"
+#include "app/figure/hand_mesh.h"
 #include "app/figure/mannequin_field.h"
 #include "app/figure/mannequin_parts.h"
 #include "app/figure/skin_cover.h"
@@ -74,7 +75,7 @@ void addNose(const BodyField& field, Character& character) {
 
 }  // namespace
 
-Character loadMannequin(const std::string& text, const std::string& file) {
+Character loadMannequin(const std::string& text, const std::string& file, SkinnedMesh& drawn) {
   BvhMotion motion = readBvh(text, file);
   Mannequin mannequin = growMannequin(motion, file);
   Character character;
@@ -96,6 +97,7 @@ Character loadMannequin(const std::string& text, const std::string& file) {
   sampleHead(&measure, character);
   fitParts(std::move(parts), character);
   addNose(mannequin.field, character);
+  drawn = withFingers(character.mesh, mannequin.field);
   return character;
 }
 
@@ -105,9 +107,10 @@ namespace {
 Character makeCharacter(Kind kind, const std::string& text, const std::string& motion_file,
                         const std::string& parts_dir) {
   Character character;
+  SkinnedMesh drawn;
   switch (kind) {
     case Kind::kBvh:
-      character = loadMannequin(text, motion_file);
+      character = loadMannequin(text, motion_file, drawn);
       break;
     case Kind::kMot:
       character = loadRigidParts(text, motion_file, parts_dir);
@@ -128,6 +131,7 @@ Character makeCharacter(Kind kind, const std::string& text, const std::string& m
     if (const std::string note = clearArms(character, clip); !note.empty()) character.notes.push_back(of + note);
   }
   cover(character);
+  if (!drawn.positions.empty()) character.mesh = std::move(drawn);
   return character;
 }
 

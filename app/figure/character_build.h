@@ -38,7 +38,8 @@ std::vector<BodyPart> partsByJoint(const Character& character, const BodyRoles& 
 // `measure`: landmarks where they are known, else null.
 void sampleHead(const HeadMeasure* measure, Character& character);
 
-Character loadMannequin(const std::string& text, const std::string& file);
+// drawn: the skin to show, in place of that which ellipsoids are fitted to.
+Character loadMannequin(const std::string& text, const std::string& file, SkinnedMesh& drawn);
 Character loadRigidParts(const std::string& text, const std::string& file, const std::string& parts_dir);
 Character importSkinned(const std::string& file);
 

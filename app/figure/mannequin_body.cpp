@@ -137,6 +137,20 @@ BodyField::ArmShape shapeArm(const Figure::Arm& a, double s) {
   const Vec3 root = a.wrist + along * 0.024 * s + ahead * 0.014 * s + inward * 0.006 * s;
   arm.thumb = {root, Vec3(root + (along * 0.70 + ahead * 0.52 + inward * 0.28).normalized() * 0.066 * s), 0.0165 * s,
                0.0095 * s};
+  // Closed fingers, the first one ahead; from inside the palm to their tips.
+  struct Digit {
+    double ahead, length, base, tip;  // m
+  };
+  constexpr std::array<Digit, 4> digits{{{0.0265, 0.070, 0.0096, 0.0072},
+                                         {0.0088, 0.079, 0.0099, 0.0076},
+                                         {-0.0090, 0.073, 0.0095, 0.0072},
+                                         {-0.0262, 0.057, 0.0086, 0.0064}}};
+  const Vec3 across = (ahead - finger * finger.dot(ahead)).normalized();
+  for (std::size_t k = 0; k < digits.size(); ++k) {
+    const Digit& d = digits[k];
+    arm.digits[k] = {knuckle - along * 0.020 * s + across * d.ahead * s,
+                     knuckle + finger * d.length * s + across * 0.86 * d.ahead * s, d.base * s, d.tip * s};
+  }
   return arm;
 }
 

@@ -83,6 +83,7 @@ struct BodyField {
     bool present = false;
     Loft upper, fore, palm, fingers;
     RoundCone thumb;
+    std::array<RoundCone, 4> digits;  // in place of the mitten `fingers`, see hand_mesh.h
     Egg deltoid;
   };
   struct LegShape {

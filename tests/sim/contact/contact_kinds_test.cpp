@@ -235,6 +235,31 @@ TEST_P(ContactKinds, HairThatIsLiftedOffABodyLetsGo) {
   EXPECT_LT(off, 1e-3);
 }
 
+// An arm that comes up under hair and sinks again: a second later the hair hangs as it hung.
+TEST_P(ContactKinds, HairThatAnArmHasLiftedSlidesOffItAsItSinks) {
+  constexpr int kUp = 30, kHeld = 60, kDown = 90, kAfter = 150;  // steps
+  constexpr double kSpeed = 0.4;                                 // m/s
+  test::Hair hair(test::patchShape(curtain()), paramsOf(GetParam()));
+  Body body({0.04, -0.50, 0.03}, {0.15, 0.04, 0.04}, GetParam().collider);
+  std::size_t touching = 0;
+  double off = 0, lifted = 0;
+  for (int n = 0; n < kAfter; ++n) {
+    const double speed = n < kUp ? kSpeed : n >= kHeld && n < kDown ? -kSpeed : 0;
+    body.move({0, speed, 0}, {0, 0, 0});
+    step(&body, hair);
+    touching = std::max(touching, hair.state.contacts.size());
+    EXPECT_LE(deepest(body, GetParam().inner, hair), 1e-4);
+    off = 0;
+    for (int v = 0; v < hair.mesh.vertexCount(); ++v)
+      off = std::max(off, (hair.state.positions[v] - hair.mesh.shape.positions[v]).norm());
+    lifted = std::max(lifted, off);
+  }
+  std::printf("%zu contacts, lifted by %.0f mm, then %.3f mm off the rest shape\n", touching, 1e3 * lifted, 1e3 * off);
+  EXPECT_GE(touching, 3u);
+  EXPECT_GT(lifted, 0.02);
+  EXPECT_LT(off, 2e-3);
+}
+
 TEST(Contact, WhatABodyLeavesBehindIsNotHeld) {
   constexpr double kStep = 1e-3;  // s
   const sim::SimParams params = test::tautHair();
