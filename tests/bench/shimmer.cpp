@@ -15,9 +15,9 @@
 namespace bench {
 namespace {
 
-constexpr int kWidth = 240, kHeight = 240, kFrames = 8;
-constexpr double kFrameSeconds = 1.0 / 60;
-constexpr double kMost = 1.15;  // times the reference
+constexpr int kShimmerWidth = 240, kShimmerHeight = 240, kShimmerFrames = 8;
+constexpr double kShimmerFrame = 1.0 / 60;
+constexpr double kMostShimmer = 1.15;  // times the reference
 
 struct MovingScene {
   const char* name;
@@ -25,7 +25,7 @@ struct MovingScene {
   int before;   // frames
   double turn;  // rad a frame, of the camera; 0: the figure moves
 };
-constexpr std::array<MovingScene, 2> kScenes{
+constexpr std::array<MovingScene, 2> kMovingScenes{
     {{"slow camera", "default.json", 60, 0.0017}, {"head shake", "head_shake.json", 40, 0}}};
 
 // Levels, mean over pixels and channels: how far a frame is from the middle between those before and after it. What
@@ -43,19 +43,19 @@ double shimmerOf(const std::vector<LevelPicture>& frames) {
 std::pair<double, double> shimmer(const MovingScene& moving, render::Renderer& renderer) {
   app::Scene opened = app::loadScene(app::dataPath(std::string("assets/scenes/") + moving.file));
   opened.camera.framing = "head";
-  app::Demo demo = app::openScene(std::move(opened), static_cast<double>(kWidth) / kHeight);
-  demo.picture_height = kHeight;
-  for (int frame = 0; frame < moving.before; ++frame) app::advanceFrame(demo, frame == 0 ? 0 : kFrameSeconds, {});
+  app::Demo demo = app::openScene(std::move(opened), static_cast<double>(kShimmerWidth) / kShimmerHeight);
+  demo.picture_height = kShimmerHeight;
+  for (int frame = 0; frame < moving.before; ++frame) app::advanceFrame(demo, frame == 0 ? 0 : kShimmerFrame, {});
   demo.camera.follow = false;
   if (moving.turn != 0) demo.paused = true;
   std::vector<LevelPicture> drawn, true_ones;
   std::vector<unsigned char> rgba;
-  for (int frame = 0; frame < kFrames; ++frame) {
-    app::advanceFrame(demo, kFrameSeconds, {});
+  for (int frame = 0; frame < kShimmerFrames; ++frame) {
+    app::advanceFrame(demo, kShimmerFrame, {});
     demo.camera.yaw += moving.turn;
-    renderer.renderImage(app::frameInput(demo, kWidth, kHeight), rgba);
-    drawn.push_back(levelsOf(kWidth, kHeight, rgba));
-    true_ones.push_back(referencePicture(demo, kWidth, kHeight, renderer));
+    renderer.renderImage(app::frameInput(demo, kShimmerWidth, kShimmerHeight), rgba);
+    drawn.push_back(levelsOf(kShimmerWidth, kShimmerHeight, rgba));
+    true_ones.push_back(referencePicture(demo, kShimmerWidth, kShimmerHeight, renderer));
   }
   return {shimmerOf(drawn), shimmerOf(true_ones)};
 }
@@ -67,11 +67,11 @@ bool runShimmer() {
   render::Renderer renderer(app::dataPath("shaders"));
   std::printf("| motion | drawn, levels | reference, levels | times |\n|---|---|---|---|\n");
   bool holds = true;
-  for (const MovingScene& moving : kScenes) {
+  for (const MovingScene& moving : kMovingScenes) {
     const auto [drawn, reference] = shimmer(moving, renderer);
     std::printf("| %s | %.2f | %.2f | %.2f |\n", moving.name, drawn, reference, drawn / reference);
     std::fflush(stdout);
-    holds = holds && drawn <= kMost * reference;
+    holds = holds && drawn <= kMostShimmer * reference;
   }
   return holds;
 }

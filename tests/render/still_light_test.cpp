@@ -92,9 +92,8 @@ TEST_F(StillLight, OneTipThatMovesChangesItsOwnHairAndShadowOnly) {
         changed += off > 2;
       }
       std::printf("column %zu axis %d: %d levels beside, %d pixels by more than 2\n", column, axis, worst, changed);
-      // Seen through gaps, a few pixels of hair lie outside of what is marked.
-      EXPECT_LE(changed, 6) << "column " << column << ", axis " << axis;
-      EXPECT_LE(worst, 10) << "column " << column << ", axis " << axis;
+      EXPECT_LE(worst, 2) << "column " << column << ", axis " << axis;
+      EXPECT_EQ(changed, 0) << "column " << column << ", axis " << axis;
     }
   }
   EXPECT_LT(marked, 9 * kWidth * kHeight / 3) << "the test looks past too much of the picture";

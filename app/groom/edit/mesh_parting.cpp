@@ -383,7 +383,7 @@ EditedMesh extrudeColumns(const sim::HairMeshShape& shape, std::span<const Colum
   }
   for (const ColumnPair& edge : border) {
     sim::RootFace face{2, {edge.b, edge.a, -1, -1}};
-    for (const RootEdgeKey beside : {RootEdgeKey{edge.a, edge.a}, {edge.a, edge.b}, {edge.b, edge.b}}) {
+    for (const RootEdgeKey& beside : {RootEdgeKey{edge.a, edge.a}, {edge.a, edge.b}, {edge.b, edge.b}}) {
       if (fresh.contains(beside)) face.columns[static_cast<std::size_t>(face.corner_count++)] = fresh[beside];
     }
     edited.shape.root_faces.push_back(face);

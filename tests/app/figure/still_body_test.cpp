@@ -159,9 +159,10 @@ TEST(StillBody, WhatHasNoNeckIsRefusedAndHairIsToldApart) {
     const std::string file = writeObj("neckless.obj", shape, Eigen::Matrix3f::Identity(), false);
     EXPECT_NE(whyNoFigure(file).find("no neck under a head"), std::string::npos) << whyNoFigure(file);
   }
-  for (const auto& worn : std::filesystem::directory_iterator(app::dataPath("assets/attachments")))
-    if (worn.path().extension() == ".obj")
-      EXPECT_EQ(app::fileKind(worn.path().string()), app::FileKind::kAttachment) << worn.path();
+  for (const auto& worn : std::filesystem::directory_iterator(app::dataPath("assets/attachments"))) {
+    if (worn.path().extension() != ".obj") continue;
+    EXPECT_EQ(app::fileKind(worn.path().string()), app::FileKind::kAttachment) << worn.path();
+  }
   const std::string hat = whyNoFigure(app::dataPath("assets/attachments/beanie.obj"));
   EXPECT_NE(hat.find("a hat to --attach"), std::string::npos) << hat;
   const std::string hair = whyNoFigure(app::dataPath("assets/hair/bob_example.obj"));
