@@ -15,40 +15,40 @@ namespace {
 using ArmShape = BodyField::ArmShape;
 using Eigen::Vector3f;
 
-constexpr int kHalvings = 2;          // of the mesh's edges
-constexpr int kSteps = 5;             // of the way to the surface
-constexpr double kReach = 0.012;      // m, of that way at most
-constexpr double kNear = 0.007;       // m off the mitten that is still its skin
-constexpr double kDifference = 3e-4;  // m
+constexpr int kHandHalvings = 2;       // of the mesh's edges
+constexpr int kToSkin = 5;             // of the way to the surface
+constexpr double kFarthest = 0.012;    // m, of that way at most
+constexpr double kMittenSkin = 0.007;  // m off the mitten that is still its skin
+constexpr double kHandStep = 3e-4;     // m
 
-double mitten(const ArmShape& arm, const Vec3& p) {
+double mittenValue(const ArmShape& arm, const Vec3& p) {
   return smoothMin(smoothMin(arm.palm.value(p), arm.fingers.value(p), 0.02), arm.thumb.value(p), 0.018);
 }
 
-double hand(const ArmShape& arm, const Vec3& p) {
+double handValue(const ArmShape& arm, const Vec3& p) {
   double digits = arm.digits[0].value(p);
   for (std::size_t k = 1; k < arm.digits.size(); ++k) digits = smoothMin(digits, arm.digits[k].value(p), 0.0025);
   return smoothMin(smoothMin(arm.palm.value(p), digits, 0.012), arm.thumb.value(p), 0.012);
 }
 
-Vec3 slope(const ArmShape& arm, const Vec3& p) {
+Vec3 handSlope(const ArmShape& arm, const Vec3& p) {
   Vec3 slope;
   for (int axis = 0; axis < 3; ++axis) {
-    const Vec3 step = kDifference * Vec3::Unit(axis);
-    slope[axis] = (hand(arm, p + step) - hand(arm, p - step)) / (2 * kDifference);
+    const Vec3 step = kHandStep * Vec3::Unit(axis);
+    slope[axis] = (handValue(arm, p + step) - handValue(arm, p - step)) / (2 * kHandStep);
   }
   return slope;
 }
 
 // 0 at the wrist and elsewhere, 1 from the middle of the palm on.
-double shareOf(const ArmShape& arm, const Vec3& p) {
+double handShare(const ArmShape& arm, const Vec3& p) {
   const double share = smoothstep(0.15, 0.6, arm.palm.along(p));
-  return arm.present && share > 0 && mitten(arm, p) < kNear ? share : 0;
+  return arm.present && share > 0 && mittenValue(arm, p) < kMittenSkin ? share : 0;
 }
 
 const ArmShape* armOf(const BodyField& body, const Vec3& p) {
   for (const ArmShape& arm : body.arms) {
-    if (shareOf(arm, p) > 0) return &arm;
+    if (handShare(arm, p) > 0) return &arm;
   }
   return nullptr;
 }
@@ -72,9 +72,9 @@ void meanJoints(int a, int b, SkinnedMesh& mesh) {
   mesh.weights.push_back(weights);
 }
 
-class Halver {
+class HandHalver {
  public:
-  explicit Halver(SkinnedMesh& mesh) : mesh_(mesh) {}
+  explicit HandHalver(SkinnedMesh& mesh) : mesh_(mesh) {}
 
   // Halves every edge whose ends are both `inside`; triangles beside them are divided along.
   void halve(const std::vector<bool>& inside) {
@@ -123,16 +123,16 @@ class Halver {
   std::map<std::pair<int, int>, int> made_;
 };
 
-void drawOnto(const ArmShape& arm, Vector3f& position, Vector3f& normal) {
+void drawOntoHand(const ArmShape& arm, Vector3f& position, Vector3f& normal) {
   const Vec3 from = position.cast<double>();
-  const double share = shareOf(arm, from);
-  Vec3 p = from, out = slope(arm, p);
-  for (int k = 0; k < kSteps; ++k) {
-    p -= hand(arm, p) * out / std::max(out.squaredNorm(), 0.1);
-    out = slope(arm, p);
+  const double share = handShare(arm, from);
+  Vec3 p = from, out = handSlope(arm, p);
+  for (int k = 0; k < kToSkin; ++k) {
+    p -= handValue(arm, p) * out / std::max(out.squaredNorm(), 0.1);
+    out = handSlope(arm, p);
   }
   Vec3 way = p - from;
-  if (way.norm() > kReach) way *= kReach / way.norm();
+  if (way.norm() > kFarthest) way *= kFarthest / way.norm();
   position = (from + share * way).cast<float>();
   normal = ((1 - share) * normal.cast<double>() + share * out.normalized()).normalized().cast<float>();
 }
@@ -141,15 +141,15 @@ void drawOnto(const ArmShape& arm, Vector3f& position, Vector3f& normal) {
 
 SkinnedMesh withFingers(const SkinnedMesh& mesh, const BodyField& body) {
   SkinnedMesh fine = mesh;
-  Halver halver(fine);
-  for (int k = 0; k < kHalvings; ++k) {
+  HandHalver halver(fine);
+  for (int k = 0; k < kHandHalvings; ++k) {
     std::vector<bool> inside;
     for (const Vector3f& p : fine.positions) inside.push_back(armOf(body, p.cast<double>()) != nullptr);
     halver.halve(inside);
   }
   for (std::size_t v = 0; v < fine.positions.size(); ++v) {
     const ArmShape* arm = armOf(body, fine.positions[v].cast<double>());
-    if (arm) drawOnto(*arm, fine.positions[v], fine.normals[v]);
+    if (arm) drawOntoHand(*arm, fine.positions[v], fine.normals[v]);
   }
   return fine;
 }
