@@ -15,27 +15,28 @@ namespace {
 using ArmShape = BodyField::ArmShape;
 using Eigen::Vector3f;
 
-constexpr int kHandHalvings = 2;       // of the mesh's edges
-constexpr int kToSkin = 5;             // of the way to the surface
-constexpr double kFarthest = 0.012;    // m, of that way at most
-constexpr double kMittenSkin = 0.007;  // m off the mitten that is still its skin
-constexpr double kHandStep = 3e-4;     // m
+constexpr int kHandHalvings = 2;                    // of the mesh's edges
+constexpr int kHandRounds = 30;                     // see drawOntoHands
+constexpr double kPaddle = 0.04, kParted = 0.0025;  // m, blends of fingers
+constexpr double kMittenSkin = 0.007;               // m off the mitten that is still its skin
+constexpr double kHandStep = 3e-4;                  // m
 
 double mittenValue(const ArmShape& arm, const Vec3& p) {
   return smoothMin(smoothMin(arm.palm.value(p), arm.fingers.value(p), 0.02), arm.thumb.value(p), 0.018);
 }
 
-double handValue(const ArmShape& arm, const Vec3& p) {
+// `blend`: m over which fingers run into one another.
+double handValue(const ArmShape& arm, const Vec3& p, double blend) {
   double digits = arm.digits[0].value(p);
-  for (std::size_t k = 1; k < arm.digits.size(); ++k) digits = smoothMin(digits, arm.digits[k].value(p), 0.0025);
-  return smoothMin(smoothMin(arm.palm.value(p), digits, 0.012), arm.thumb.value(p), 0.012);
+  for (std::size_t k = 1; k < arm.digits.size(); ++k) digits = smoothMin(digits, arm.digits[k].value(p), blend);
+  return smoothMin(smoothMin(arm.palm.value(p), digits, 0.024), arm.thumb.value(p), 0.014);
 }
 
-Vec3 handSlope(const ArmShape& arm, const Vec3& p) {
+Vec3 handSlope(const ArmShape& arm, const Vec3& p, double blend) {
   Vec3 slope;
   for (int axis = 0; axis < 3; ++axis) {
     const Vec3 step = kHandStep * Vec3::Unit(axis);
-    slope[axis] = (handValue(arm, p + step) - handValue(arm, p - step)) / (2 * kHandStep);
+    slope[axis] = (handValue(arm, p + step, blend) - handValue(arm, p - step, blend)) / (2 * kHandStep);
   }
   return slope;
 }
@@ -123,18 +124,57 @@ class HandHalver {
   std::map<std::pair<int, int>, int> made_;
 };
 
-void drawOntoHand(const ArmShape& arm, Vector3f& position, Vector3f& normal) {
-  const Vec3 from = position.cast<double>();
-  const double share = handShare(arm, from);
-  Vec3 p = from, out = handSlope(arm, p);
-  for (int k = 0; k < kToSkin; ++k) {
-    p -= handValue(arm, p) * out / std::max(out.squaredNorm(), 0.1);
-    out = handSlope(arm, p);
+// To the hand's surface, as far as `share` says.
+Vec3 onHand(const ArmShape& arm, const Vec3& from, double share, double blend) {
+  const Vec3 out = handSlope(arm, from, blend);
+  return from - share * handValue(arm, from, blend) / std::max(out.squaredNorm(), 0.1) * out;
+}
+
+struct HandVertex {
+  std::size_t vertex;
+  const ArmShape* arm;
+  double share;
+  std::vector<std::size_t> beside;
+};
+
+std::vector<HandVertex> handVertices(const SkinnedMesh& mesh, const BodyField& body) {
+  std::vector<HandVertex> hands;
+  std::vector<int> number(mesh.positions.size(), -1);
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Vec3 p = mesh.positions[v].cast<double>();
+    const ArmShape* arm = armOf(body, p);
+    if (!arm) continue;
+    number[v] = static_cast<int>(hands.size());
+    hands.push_back({v, arm, handShare(*arm, p), {}});
   }
-  Vec3 way = p - from;
-  if (way.norm() > kFarthest) way *= kFarthest / way.norm();
-  position = (from + share * way).cast<float>();
-  normal = ((1 - share) * normal.cast<double>() + share * out.normalized()).normalized().cast<float>();
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const std::uint32_t a = mesh.triangles[t], b = mesh.triangles[t % 3 == 2 ? t - 2 : t + 1];
+    if (number[a] >= 0) hands[static_cast<std::size_t>(number[a])].beside.push_back(b);
+  }
+  return hands;
+}
+
+// Round after round vertices are evened out and brought to the surface of a paddle from which fingers part: fingertips
+// stand where the mitten has few vertices.
+void drawOntoHands(const BodyField& body, SkinnedMesh& mesh) {
+  const std::vector<HandVertex> hands = handVertices(mesh, body);
+  std::vector<Vector3f> moved = mesh.positions;
+  for (int round = 0; round <= kHandRounds; ++round) {
+    const double left = 1 - static_cast<double>(round) / kHandRounds, blend = kParted + (kPaddle - kParted) * left;
+    for (const HandVertex& one : hands) {
+      Vec3 middle = Vec3::Zero();
+      for (const std::size_t v : one.beside) middle += mesh.positions[v].cast<double>();
+      Vec3 at = mesh.positions[one.vertex].cast<double>();
+      if (round < kHandRounds) at += 0.5 * one.share * (middle / static_cast<double>(one.beside.size()) - at);
+      moved[one.vertex] = onHand(*one.arm, at, one.share, blend).cast<float>();
+    }
+    mesh.positions = moved;
+  }
+  for (const HandVertex& one : hands) {
+    Vector3f& normal = mesh.normals[one.vertex];
+    const Vec3 out = handSlope(*one.arm, mesh.positions[one.vertex].cast<double>(), kParted).normalized();
+    normal = ((1 - one.share) * normal.cast<double>() + one.share * out).normalized().cast<float>();
+  }
 }
 
 }  // namespace
@@ -147,10 +187,7 @@ SkinnedMesh withFingers(const SkinnedMesh& mesh, const BodyField& body) {
     for (const Vector3f& p : fine.positions) inside.push_back(armOf(body, p.cast<double>()) != nullptr);
     halver.halve(inside);
   }
-  for (std::size_t v = 0; v < fine.positions.size(); ++v) {
-    const ArmShape* arm = armOf(body, fine.positions[v].cast<double>());
-    if (arm) drawOntoHand(*arm, fine.positions[v], fine.normals[v]);
-  }
+  drawOntoHands(body, fine);
   return fine;
 }
 

@@ -141,15 +141,15 @@ BodyField::ArmShape shapeArm(const Figure::Arm& a, double s) {
   struct Digit {
     double ahead, length, base, tip;  // m
   };
-  constexpr std::array<Digit, 4> digits{{{0.0265, 0.070, 0.0096, 0.0072},
-                                         {0.0088, 0.079, 0.0099, 0.0076},
-                                         {-0.0090, 0.073, 0.0095, 0.0072},
-                                         {-0.0262, 0.057, 0.0086, 0.0064}}};
+  constexpr std::array<Digit, 4> digits{{{0.0262, 0.077, 0.0124, 0.0076},
+                                         {0.0086, 0.082, 0.0126, 0.0078},
+                                         {-0.0088, 0.078, 0.0122, 0.0075},
+                                         {-0.0262, 0.066, 0.0112, 0.0068}}};
   const Vec3 across = (ahead - finger * finger.dot(ahead)).normalized();
   for (std::size_t k = 0; k < digits.size(); ++k) {
     const Digit& d = digits[k];
     arm.digits[k] = {knuckle - along * 0.020 * s + across * d.ahead * s,
-                     knuckle + finger * d.length * s + across * 0.86 * d.ahead * s, d.base * s, d.tip * s};
+                     knuckle + finger * d.length * s + across * 0.72 * d.ahead * s, d.base * s, d.tip * s};
   }
   return arm;
 }

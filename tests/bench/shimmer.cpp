@@ -56,6 +56,7 @@ std::pair<double, double> shimmer(const MovingScene& moving, render::Renderer& r
     renderer.renderImage(app::frameInput(demo, kShimmerWidth, kShimmerHeight), rgba);
     drawn.push_back(levelsOf(kShimmerWidth, kShimmerHeight, rgba));
     true_ones.push_back(referencePicture(demo, kShimmerWidth, kShimmerHeight, renderer));
+    for (float& level : true_ones.back().levels) level = std::round(level);  // as a picture of its size has it
   }
   return {shimmerOf(drawn), shimmerOf(true_ones)};
 }
