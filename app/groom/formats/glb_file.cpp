@@ -130,7 +130,7 @@ void GlbWriter::finish() {
                  {{"baseColorFactor", {mesh_.color.x(), mesh_.color.y(), mesh_.color.z(), 1.0f}},
                   {"metallicFactor", 0.0f},
                   {"roughnessFactor", 0.5f}}}};
-  if (mesh_.both_sides) material["doubleSided"] = true, material["alphaMode"] = "MASK";
+  if (mesh_.both_sides) material["doubleSided"] = true;
   scene["materials"] = Json::array({material});
   scene["meshes"] = Json::array({mesh});
   padTo4(buffer.bytes, '\0');

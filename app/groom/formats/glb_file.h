@@ -22,7 +22,7 @@ struct GlbMesh {
   std::vector<std::uint32_t> triangles;      // three numbers of vertices each, counter-clockwise from outside
   std::vector<Eigen::Vector2f> coordinates;  // of a texture, per vertex; or none
   Eigen::Vector3f color = Eigen::Vector3f::Constant(0.5f);  // linear, of its material
-  bool both_sides = false;                                  // cards: seen from both, cut out by a texture's alpha
+  bool both_sides = false;                                  // cards: seen from both
 };
 
 // Keeps all moments in memory, 12 bytes a vertex each, and writes the file when it is finished.
