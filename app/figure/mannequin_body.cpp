@@ -89,6 +89,25 @@ Loft shapeNeck(const Figure& f, double s) {
                   {0.03 * s, 0.03 * s});
 }
 
+// Closed fingers, the first one ahead, from `root` inside the palm to their tips beyond the knuckles.
+std::array<RoundCone, 4> shapeDigits(const Vec3& root, const Vec3& knuckle, const Vec3& finger, double s) {
+  struct Digit {
+    double ahead, length, base, tip;  // m
+  };
+  constexpr std::array<Digit, 4> digits{{{0.0262, 0.077, 0.0124, 0.0076},
+                                         {0.0086, 0.082, 0.0126, 0.0078},
+                                         {-0.0088, 0.078, 0.0122, 0.0075},
+                                         {-0.0262, 0.066, 0.0112, 0.0068}}};
+  const Vec3 ahead = Vec3::UnitZ(), across = (ahead - finger * finger.dot(ahead)).normalized();
+  std::array<RoundCone, 4> cones;
+  for (std::size_t k = 0; k < digits.size(); ++k) {
+    const Digit& d = digits[k];
+    cones[k] = {root + across * d.ahead * s, knuckle + finger * d.length * s + across * 0.72 * d.ahead * s, d.base * s,
+                d.tip * s};
+  }
+  return cones;
+}
+
 BodyField::ArmShape shapeArm(const Figure::Arm& a, double s) {
   BodyField::ArmShape arm;
   arm.present = true;
@@ -137,20 +156,7 @@ BodyField::ArmShape shapeArm(const Figure::Arm& a, double s) {
   const Vec3 root = a.wrist + along * 0.024 * s + ahead * 0.014 * s + inward * 0.006 * s;
   arm.thumb = {root, Vec3(root + (along * 0.70 + ahead * 0.52 + inward * 0.28).normalized() * 0.066 * s), 0.0165 * s,
                0.0095 * s};
-  // Closed fingers, the first one ahead; from inside the palm to their tips.
-  struct Digit {
-    double ahead, length, base, tip;  // m
-  };
-  constexpr std::array<Digit, 4> digits{{{0.0262, 0.077, 0.0124, 0.0076},
-                                         {0.0086, 0.082, 0.0126, 0.0078},
-                                         {-0.0088, 0.078, 0.0122, 0.0075},
-                                         {-0.0262, 0.066, 0.0112, 0.0068}}};
-  const Vec3 across = (ahead - finger * finger.dot(ahead)).normalized();
-  for (std::size_t k = 0; k < digits.size(); ++k) {
-    const Digit& d = digits[k];
-    arm.digits[k] = {knuckle - along * 0.020 * s + across * d.ahead * s,
-                     knuckle + finger * d.length * s + across * 0.72 * d.ahead * s, d.base * s, d.tip * s};
-  }
+  arm.digits = shapeDigits(knuckle - along * 0.020 * s, knuckle, finger, s);
   return arm;
 }
 

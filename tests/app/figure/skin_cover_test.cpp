@@ -247,9 +247,9 @@ TEST(SkinEllipsoids, LeadToTheHeadWhereTheWayThereIsFree) {
   app::ShownSkin shown;
   app::showSkin(c, {}, app::restPose(c.skeleton), Vec3::Zero(), shown);
   const std::vector<render::SkinEllipsoid>& skin = shown.ellipsoids;
-  ASSERT_EQ(skin.size(), c.ellipsoids.size());
+  ASSERT_EQ(skin.size(), c.ellipsoids.size() + c.nose.size());
   int shoulders = 0, necks = 0;
-  for (std::size_t e = 0; e < skin.size(); ++e) {
+  for (std::size_t e = 0; e < c.ellipsoids.size(); ++e) {
     const double home = Eigen::Map<const Eigen::Vector3f>(skin[e].home.data()).norm();
     if (c.ellipsoids[e].name == "left_shoulder" || c.ellipsoids[e].name == "right_shoulder") {
       ++shoulders;
