@@ -35,8 +35,7 @@ WorkBounds boundsWithin(int vertices, int contacts, double units) {
   WorkBounds bounds;
   bounds.iterations = std::max(1, static_cast<int>(kSolveShare * left));
   bounds.minimizations = static_cast<int>(kFollowShare * left / kMinimization);
-  const double points = touching + (1 - kSolveShare - kFollowShare) * left;
-  bounds.surface_points = static_cast<long>(points * vertices / kSurfacePoint);
+  bounds.surface_points = static_cast<long>((1 - kSolveShare - kFollowShare) * all * vertices / kSurfacePoint);
   return bounds;
 }
 

@@ -20,8 +20,8 @@ struct StepWork {
 // to the times of steps of the nine styles; hairmesh-bench --frames-budget prints how far time strays from them.
 double workUnits(int vertices, const StepWork& work);
 
-// What a step may do so that it ends within `units`. What is left after the work that every step has, and that so many
-// contacts take, is for the solve, by half, and for closest points and minimization, by a quarter each. At least one
+// What a step may do so that it ends within `units`. What the work that every step has leaves is for closest points by a
+// quarter; what so many contacts leave of it, for the solve by half and for minimization by a quarter. At least one
 // iteration, and contacts are kept: a step with many takes longer where `units` are below that.
 struct WorkBounds {
   int iterations = 0, minimizations = 0;
