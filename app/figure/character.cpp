@@ -58,10 +58,6 @@ void cover(Character& character) {
   character.notes.push_back(note);
 }
 
-}  // namespace
-
-namespace {
-
 void addNose(const BodyField& field, Character& character) {
   const Rigid to_joint = character.skeleton.joints[static_cast<std::size_t>(character.head_joint)].rest_world.inverse();
   for (const HeadEllipsoid& of_head : noseEllipsoids()) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace app {
 
@@ -60,6 +62,11 @@ std::uint32_t addBlend(const Corners& corners, const std::array<float, 3>& share
   mesh.positions.push_back(place);
   mesh.normals.push_back(normal.normalized());
   blendSkinning(corners, share, mesh);
+  if (!mesh.cloth.empty()) {
+    float cloth = 0;
+    for (std::size_t k = 0; k < 3; ++k) cloth += share[k] * mesh.cloth[corners[k]];
+    mesh.cloth.push_back(cloth);
+  }
   return static_cast<std::uint32_t>(mesh.positions.size() - 1);
 }
 
@@ -104,6 +111,46 @@ SkinnedMesh withoutLongEdges(const SkinnedMesh& mesh, float longest) {
     divide(corners, std::max(1, partsOf(longestEdge(mesh, corners), longest)), fine);
   }
   return fine;
+}
+
+void halveEdges(const std::vector<bool>& inside, SkinnedMesh& mesh) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> made;
+  const auto middleOf = [&](std::uint32_t a, std::uint32_t b) {
+    const auto [at, fresh] = made.try_emplace(std::minmax(a, b));
+    if (fresh) at->second = addBlend({a, b, b}, {0.5f, 0.5f, 0}, mesh);
+    return at->second;
+  };
+  std::vector<std::uint32_t> triangles;
+  const auto add = [&](const Corners& corners) { triangles.insert(triangles.end(), corners.begin(), corners.end()); };
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
+    Corners v = cornersOf(mesh, t);
+    std::array<bool, 3> halved;  // the edge from corner k on
+    for (std::size_t k = 0; k < 3; ++k) halved[k] = inside[v[k]] && inside[v[(k + 1) % 3]];
+    const auto count = std::ranges::count(halved, true);
+    // Turned so that a single edge comes first, or the one left whole last.
+    while ((count == 1 && !halved[0]) || (count == 2 && halved[2])) {
+      std::ranges::rotate(v, v.begin() + 1);
+      std::ranges::rotate(halved, halved.begin() + 1);
+    }
+    if (count == 0) {
+      add(v);
+      continue;
+    }
+    const std::uint32_t first = middleOf(v[0], v[1]);
+    if (count == 1) {
+      add({v[0], first, v[2]}), add({first, v[1], v[2]});
+      continue;
+    }
+    const std::uint32_t second = middleOf(v[1], v[2]);
+    add({first, v[1], second});
+    if (count == 2) {
+      add({v[0], first, second}), add({v[0], second, v[2]});
+      continue;
+    }
+    const std::uint32_t third = middleOf(v[2], v[0]);
+    add({v[0], first, third}), add({second, v[2], third}), add({first, second, third});
+  }
+  mesh.triangles = std::move(triangles);
 }
 
 }  // namespace app

@@ -11,4 +11,8 @@ namespace app {
 inline constexpr std::size_t kMaxDivided = 100000;
 SkinnedMesh withoutLongEdges(const SkinnedMesh& mesh, float longest);
 
+// Halves every edge whose ends are both `inside`, one a vertex, and divides the triangles along: edges meet. Vertices
+// are added at the end, all that they have interpolated but materials.
+void halveEdges(const std::vector<bool>& inside, SkinnedMesh& mesh);
+
 }  // namespace app

@@ -122,9 +122,7 @@ double armValue(const BodyField::ArmShape& arm, const Vec3& p, double limit) {
   double d = smoothMin(arm.upper.value(p), arm.fore.value(p), 0.02);
   d = joined(d, arm.deltoid, p, 0.04);
   if (hand > d + 0.02) return d;
-  double palm = smoothMin(arm.palm.value(p), arm.fingers.value(p), 0.02);
-  palm = smoothMin(palm, arm.thumb.value(p), 0.018);
-  return smoothMin(d, palm, 0.02);
+  return smoothMin(d, mittenValue(arm, p), 0.02);
 }
 
 double legValue(const BodyField::LegShape& leg, const Vec3& p, double limit) {
@@ -207,6 +205,10 @@ double BodyField::value(const Vec3& p) const {
   d = smoothMin(d, headDistance(*this, p, d + k), k);
   for (const auto& cones : appendages) d = smoothMin(d, coneChain(cones, p), 0.05 * scale);
   return d;
+}
+
+double mittenValue(const BodyField::ArmShape& arm, const Vec3& p) {
+  return smoothMin(smoothMin(arm.palm.value(p), arm.fingers.value(p), 0.02), arm.thumb.value(p), 0.018);
 }
 
 }  // namespace app

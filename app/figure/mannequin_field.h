@@ -103,4 +103,7 @@ struct BodyField {
 
 BodyField shapeBody(const Figure& figure);
 
+// Palm, closed fingers and thumb of an arm.
+double mittenValue(const BodyField::ArmShape& arm, const Vec3& p);
+
 }  // namespace app

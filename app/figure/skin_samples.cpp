@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "app/figure/body_input.h"
 #include "app/figure/character_build.h"
 #include "app/figure/ellipsoid_fit.h"
 #include "app/figure/fine_mesh.h"
@@ -44,10 +45,7 @@ std::vector<Pose> momentsOf(const Character& character, int moments) {
 std::vector<std::vector<Eigen::Vector3f>> skinnedAt(const SkinnedMesh& mesh, const Character& character,
                                                     std::vector<Pose>& poses) {
   render::BodyInput body;
-  body.positions = {mesh.positions.data()->data(), 3 * mesh.positions.size()};
-  body.normals = {mesh.normals.data()->data(), 3 * mesh.normals.size()};
-  body.joints = {mesh.joints.data()->data(), 4 * mesh.joints.size()};
-  body.weights = {mesh.weights.data()->data(), 4 * mesh.weights.size()};
+  pointTo(mesh, body);
   std::vector<render::Mat4> carried(character.skeleton.joints.size());
   body.joint_matrices = carried;
   std::vector<std::vector<Eigen::Vector3f>> skins;

@@ -165,10 +165,10 @@ std::vector<Figure> measureFigures(const GateOptions& options) {
   return std::move(report.figures);
 }
 
-void writeGateDocument(const std::vector<Figure>& figures, const std::string& folder) {
+void writeGateDocument(const std::vector<Figure>& figures, bool in_part, const std::string& folder) {
   Table table{{"figure", "value", "bound", "holds", "note"}, {}};
   const std::string kept = folder + "/data/gate.csv";
-  if (std::filesystem::exists(kept)) table = tableOfCsv(app::readText(kept));
+  if (in_part && std::filesystem::exists(kept)) table = tableOfCsv(app::readText(kept));
   for (const Figure& figure : figures) {
     std::vector<std::string> row{
         figure.name, formatted("%.3g%s%s", figure.value, figure.unit.empty() ? "" : " ", figure.unit.c_str()),

@@ -25,9 +25,9 @@ struct Figure {
 // this thread's processor time; ratios compare runs that took turns. Throws app::InputError.
 std::vector<Figure> measureFigures(const GateOptions& options);
 
-// Puts the figures into the measured part of <folder>/gate.md and, with their notes, into <folder>/data/gate.csv. Rows
-// of figures that were not measured this time stay. Throws app::InputError.
-void writeGateDocument(const std::vector<Figure>& figures, const std::string& folder);
+// Puts the figures into the measured part of <folder>/gate.md and, with their notes, into <folder>/data/gate.csv.
+// in_part: rows of figures that were not measured this time stay. Throws app::InputError.
+void writeGateDocument(const std::vector<Figure>& figures, bool in_part, const std::string& folder);
 
 // Whether all hold; prints how many do.
 bool allHold(const std::vector<Figure>& figures);

@@ -114,7 +114,7 @@ std::vector<Task> tasks() {
        [](Asked& a) {
          const std::vector<bench::Figure> figures = bench::measureFigures(a.gate);
          if (!bench::allHold(figures)) a.all_hold = false;
-         if (!a.gate_document.empty()) bench::writeGateDocument(figures, a.gate_document);
+         if (!a.gate_document.empty()) bench::writeGateDocument(figures, !a.gate.part.empty(), a.gate_document);
        }},
   };
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "app/figure/body_input.h"
 #include "render/body/skinning.h"
 
 namespace bench {
@@ -39,10 +40,7 @@ SkinDistance::SkinDistance(const app::Character& character, const app::Pose& pos
         (pose.world[j] * character.skeleton.joints[j].rest_world.inverse()).matrix().cast<float>();
   }
   render::BodyInput body;
-  body.positions = {mesh.positions.data()->data(), 3 * mesh.positions.size()};
-  body.normals = {mesh.normals.data()->data(), 3 * mesh.normals.size()};
-  body.joints = {mesh.joints.data()->data(), 4 * mesh.joints.size()};
-  body.weights = {mesh.weights.data()->data(), 4 * mesh.weights.size()};
+  app::pointTo(mesh, body);
   body.joint_matrices = carried;
   std::vector<Vec3> points;
   for (const Eigen::Vector3f& p : render::skinnedPositions(body)) points.push_back(p.cast<double>());

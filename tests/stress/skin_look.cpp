@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "app/figure/body_input.h"
 #include "app/scene/sim_to_render.h"
 #include "render/strands/strand_growth.h"
 #include "tests/skin/drawn_skin.h"
@@ -14,13 +15,8 @@ namespace {
 constexpr int kStrands = 150;
 
 render::BodyInput bodyOf(const app::Actor& actor, std::span<const render::Mat4> joints) {
-  const app::SkinnedMesh& mesh = actor.body->character.mesh;
   render::BodyInput body;
-  body.positions = {mesh.positions.data()->data(), 3 * mesh.positions.size()};
-  body.normals = {mesh.normals.data()->data(), 3 * mesh.normals.size()};
-  body.triangles = mesh.triangles;
-  body.joints = {mesh.joints.data()->data(), 4 * mesh.joints.size()};
-  body.weights = {mesh.weights.data()->data(), 4 * mesh.weights.size()};
+  app::pointTo(actor.body->character.mesh, body);
   body.joint_matrices = joints;
   body.scalp_id = actor.scalp->id;
   body.root_cover = actor.scalp->cover;

@@ -23,7 +23,7 @@ constexpr double kMendedFatness = 0.04, kMendedGap = 0.002;  // see untangle; m
 constexpr double kFlattest = 1e-3;                           // fatness of a corner that counts as flat
 constexpr int kCarryRounds = 10;                             // of giving columns less of what brushes have made
 constexpr double kLessNext = 0.6;                            // of their share, for columns of flat prisms
-constexpr double kWorthSharing = 0.97;                       // a share above it is all
+constexpr double kNearlyAll = 0.97;                          // of it: no word of what lacks
 
 // What brushes worked on: the same on every head and at every resolution.
 std::string brushedOn(const CharacterSpec& spec) {
@@ -115,7 +115,7 @@ double carry(const BrushedShape& brushed, double scale, const BodyDistance& dist
 }
 
 void noteShare(double share, Haircut& haircut) {
-  if (share > kWorthSharing) return;
+  if (share > kNearlyAll) return;
   const std::string note = share == 0
                                ? "what brushes made of the hair finds no room here, Ctrl+Z brings it back"
                                : "for want of room " + std::to_string(std::lround(100 * share)) +

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <utility>
 
+#include "app/figure/body_input.h"
 #include "app/motion/least_rotation.h"
 #include "app/scene/attachments.h"
 #include "app/scene/braid/braid_band.h"
@@ -83,11 +84,7 @@ render::BodyInput bodyInput(const Actor& actor, const CharacterLook& look, bool 
   render::BodyInput input;
   input.id = actor.id;
   input.mesh_id = actor.body->id;
-  input.positions = {mesh.positions.data()->data(), 3 * mesh.positions.size()};
-  input.normals = {mesh.normals.data()->data(), 3 * mesh.normals.size()};
-  input.triangles = mesh.triangles;
-  input.joints = {mesh.joints.data()->data(), 4 * mesh.joints.size()};
-  input.weights = {mesh.weights.data()->data(), 4 * mesh.weights.size()};
+  pointTo(mesh, input);
   input.joint_matrices = actor.joint_matrices;
   input.pose_revision = actor.pose_revision;
   input.color = look.body_color;
@@ -119,11 +116,7 @@ render::BodyInput attachmentInput(const Actor& actor, std::size_t k, bool show_s
   render::BodyInput input;
   input.id = worn.id;
   input.mesh_id = mesh.id;
-  input.positions = {mesh.positions.data()->data(), 3 * mesh.positions.size()};
-  input.normals = {mesh.normals.data()->data(), 3 * mesh.normals.size()};
-  input.triangles = mesh.triangles;
-  input.joints = {mesh.joints.data()->data(), 4 * mesh.joints.size()};
-  input.weights = {mesh.weights.data()->data(), 4 * mesh.weights.size()};
+  pointTo(mesh, input);
   input.joint_matrices = {&worn.matrix, 1};
   input.pose_revision = actor.pose_revision;
   input.hair_id = show_strands && actor.spec.look.strands > 0 ? actor.id : 0;

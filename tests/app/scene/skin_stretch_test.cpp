@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/figure/body_input.h"
 #include "app/figure/character.h"
 #include "app/scene/sim_to_render.h"
 #include "render/body/skinning.h"
@@ -23,11 +24,7 @@ constexpr float kTiny = 5e-4f;  // m: shorter edges are left out, rounding stret
 std::vector<float> stretches(const app::Character& character, const app::Clip& clip) {
   const app::SkinnedMesh& mesh = character.mesh;
   render::BodyInput body;
-  body.positions = {mesh.positions.data()->data(), 3 * mesh.positions.size()};
-  body.normals = {mesh.normals.data()->data(), 3 * mesh.normals.size()};
-  body.triangles = mesh.triangles;
-  body.joints = {mesh.joints.data()->data(), 4 * mesh.joints.size()};
-  body.weights = {mesh.weights.data()->data(), 4 * mesh.weights.size()};
+  app::pointTo(mesh, body);
   std::vector<float> found;
   std::vector<render::Mat4> matrices;
   app::Pose pose;
