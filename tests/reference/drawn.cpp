@@ -36,7 +36,7 @@ void replaceIn(const std::filesystem::path& file, const std::string& what, const
 const char* strandsShow(Term term) {
   switch (term) {
     case Term::kCover:
-      return "vec3 shadeStrand(in Strand strand, in CurvePoint point) { return vec3(1.0); }\n";
+      return "vec3 shadeStrand(in Strand strand, in CurvePoint point) { return vec3(1.0, 0.0, 0.0); }\n";
     case Term::kShadow:
       return R"(vec3 shadeStrand(in Strand strand, in CurvePoint point) {
   vec3 at = hairShadowCoordinates(draw.w, point.position);
@@ -45,12 +45,25 @@ const char* strandsShow(Term term) {
   return vec3(bodyLightOnHair(draw.w, at) * exp(-depth), exp(-kSoftDepth * point.light.yz));
 }
 )";
+    case Term::kSkinShadow:
+      return "vec3 shadeStrand(in Strand strand, in CurvePoint point) { return vec3(0.0); }\n";
     default:
       return "vec3 shadeStrand(in Strand strand, in CurvePoint point) { return shadeWhole(strand, point); }\n";
   }
 }
 
-// A copy of the shaders in which all but the strands is black, the strands show a term, and the screen shows square
+const char* skinShows(Term term) {
+  switch (term) {
+    case Term::kCover:
+      return "  return vec3(0.0, 1.0, 0.0);\n";
+    case Term::kSkinShadow:
+      return "  return vec3(lit * min(through_hair.x, among_roots.g), min(through_hair.zw, among_roots.gg));\n";
+    default:
+      return "  return vec3(0.0);\n";
+  }
+}
+
+// A copy of the shaders in which the backdrop is black, strands and skin show a term, and the screen shows square
 // roots of plain means.
 std::string shadersFor(Term term) {
   const std::filesystem::path folder =
@@ -61,7 +74,7 @@ std::string shadersFor(Term term) {
                         std::filesystem::copy_options::recursive);
   replaceIn(folder / "common/hair_shading.glsl", "vec3 shadeStrand(", "vec3 shadeWhole(");
   std::ofstream(folder / "common/hair_shading.glsl", std::ios::app) << strandsShow(term);
-  replaceIn(folder / "common/body_light.glsl", "  return radiance;\n", "  return vec3(0.0);\n");
+  replaceIn(folder / "common/body_light.glsl", "  return radiance;\n", skinShows(term));
   replaceIn(folder / "common/backdrop.glsl", "  return sweep", "  return 0.0 * sweep");
   std::ofstream(folder / "tone_map.frag") << R"(#include "shared.h"
 layout(binding = kUnitColor) uniform sampler2DMS samples;

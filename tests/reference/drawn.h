@@ -8,8 +8,9 @@
 
 namespace reference {
 
-// Which term the strands show.
-enum class Term { kCover, kShadow, kLight };
+// What is shown. kCover: strands in red, skin in green. kShadow, kSkinShadow: what is left of key, fill and rim on
+// strands, and on skin. kLight: radiance of strands, as the shaders have it.
+enum class Term { kCover, kShadow, kSkinShadow, kLight };
 
 struct DrawOptions {
   int width = 80, height = 100;  // of the pixels of the result
@@ -17,8 +18,7 @@ struct DrawOptions {
   float brightest = 1;           // radiance that still fits
 };
 
-// Means over pixels, all in linear values: strands alone, before black. kShadow: what is left of key, fill and rim;
-// kLight: radiance as the shaders have it.
+// Means over pixels, all in linear values; what does not belong to the term is black.
 std::vector<Eigen::Vector3f> drawTerm(render::FrameInput frame, Term term, const DrawOptions& options);
 
 }  // namespace reference

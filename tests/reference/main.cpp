@@ -2,6 +2,7 @@
 // with its lobes, lights and camera. Prints a table of errors for each view; see docs/picture.md.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -27,10 +28,15 @@ using Eigen::Vector3f;
 struct Asked {
   reference::TraceOptions trace;
   int hairs = 40000;
-  std::vector<std::string> styles{"short", "shoulder", "long"}, colours{"black", "brown", "blond", "white"};
+  std::vector<std::string> styles{"short", "shoulder", "long"}, colours{"black", "brown", "blond", "white"},
+      moved_colours{"brown"};
   std::string scene, pictures, document, camera = "three-quarter";
   std::vector<std::string> sets;
+  bool moved = false;  // each style once more in motion
 };
+
+constexpr double kMovedTime = 2.0;   // s into the clip: the head, at its fastest shake, turns round
+constexpr double kFrame = 1.0 / 60;  // s
 
 struct Colour {
   const char* name;
@@ -38,8 +44,9 @@ struct Colour {
 };
 constexpr Colour kColours[] = {{"black", 4, 0.3f}, {"brown", 1.1f, 0.35f}, {"blond", 0.28f, 0.22f}, {"white", 0, 0}};
 
-app::Demo openStyle(const std::string& style, const Asked& asked) {
+app::Demo openStyle(const std::string& style, bool moved, const Asked& asked) {
   app::Options options;
+  if (moved && asked.scene.empty()) options.motion = "head_shake.bvh";
   (asked.scene.empty() ? options.style : options.scene) = style;
   options.framing = asked.scene.empty() ? "head" : "bust";
   options.camera = asked.camera;
@@ -54,6 +61,7 @@ app::Demo openStyle(const std::string& style, const Asked& asked) {
   hair.tint_variation = hair.root_darkening = hair.shine_variation = 0;
   app::Demo demo = app::openScene(std::move(scene), static_cast<double>(asked.trace.width) / asked.trace.height);
   app::advanceFrame(demo, 0, {});
+  for (double time = 0; moved && time < kMovedTime - 0.5 * kFrame; time += kFrame) app::advanceFrame(demo, kFrame, {});
   return demo;
 }
 
@@ -64,67 +72,6 @@ reference::TracedScene tracedScene(const render::FrameInput& frame, int hairs) {
   input.strands = hairs;
   const auto strands = strand_capture::capture(input, std::string(HAIRMESH_SOURCE_DIR) + "/shaders");
   return {strands, radius, input.look.taper, frame.bodies};
-}
-
-// Pixels that hair fills in both pictures.
-bool bothFull(float traced, float drawn) {
-  return traced > 0.9f && drawn > 0.9f;
-}
-
-struct ShadowError {
-  Vector3f rms = Vector3f::Zero(), bias = Vector3f::Zero();  // of what is left of key, fill, rim
-};
-
-// Over points that are seen lit: what is left of the light is more than exp(-2). The tracer's own noise is taken off.
-ShadowError shadowError(const std::vector<reference::TracedPixel>& traced, const std::vector<Vector3f>& drawn,
-                        const std::vector<Vector3f>& cover, int samples) {
-  ShadowError error;
-  Vector3f count = Vector3f::Zero();
-  for (std::size_t i = 0; i < traced.size(); ++i) {
-    if (!bothFull(traced[i].cover, cover[i].x())) continue;
-    for (int k = 0; k < 3; ++k) {
-      const float truth = traced[i].lit[k];
-      if (truth < std::exp(-2.0f)) continue;
-      const float off = drawn[i][k] / cover[i].x() - truth;
-      error.rms[k] += off * off - truth * (1 - truth) / (static_cast<float>(samples) * traced[i].cover);
-      error.bias[k] += off;
-      count[k] += 1;
-    }
-  }
-  count = count.cwiseMax(1.0f);
-  error.bias = error.bias.cwiseQuotient(count);
-  error.rms = error.rms.cwiseQuotient(count).cwiseMax(0.0f).cwiseSqrt();
-  return error;
-}
-
-struct LightError {
-  Vector3f single = Vector3f::Zero(), full = Vector3f::Zero();  // ratio of the means, drawn over traced
-  Vector3f noise = Vector3f::Zero();                            // of the traced mean, relative
-  float spread = 0;                                             // RMS of the difference over the traced mean, green
-};
-
-LightError lightError(const std::vector<reference::TracedPixel>& traced, const std::vector<Vector3f>& single,
-                      const std::vector<Vector3f>& full, const std::vector<Vector3f>& cover) {
-  LightError error;
-  Vector3f truth_single = Vector3f::Zero(), truth = Vector3f::Zero(), variance = Vector3f::Zero();
-  float squares = 0, count = 0;
-  for (std::size_t i = 0; i < traced.size(); ++i) {
-    if (!bothFull(traced[i].cover, cover[i].x())) continue;
-    error.single += single[i] / cover[i].x();
-    error.full += full[i] / cover[i].x();
-    truth_single += traced[i].single;
-    truth += traced[i].full;
-    variance += traced[i].full_variance;
-    const float off = full[i].y() / cover[i].x() - traced[i].full.y();
-    squares += off * off - traced[i].full_variance.y();
-    count += 1;
-  }
-  error.single = error.single.cwiseQuotient(truth_single.cwiseMax(1e-9f));
-  error.full = error.full.cwiseQuotient(truth.cwiseMax(1e-9f));
-  error.noise = variance.cwiseSqrt().cwiseQuotient(truth.cwiseMax(1e-9f));
-  error.spread =
-      std::sqrt(std::max(squares / std::max(count, 1.0f), 0.0f)) / std::max(truth.y() / std::max(count, 1.0f), 1e-9f);
-  return error;
 }
 
 // Both pictures side by side, traced first, with one exposure.
@@ -155,62 +102,118 @@ float brightestOf(const std::vector<reference::TracedPixel>& traced) {
   return std::max(2 * *at, 1e-4f);
 }
 
-std::string colourRow(const std::string& style, const Colour& colour, const char* light, const LightError& error) {
-  return bench::formatted("| %s | %s | %s | %.2f %.2f %.2f | %.2f %.2f %.2f | %.2f | %.3f |\n", style.c_str(),
-                          colour.name, light, error.single[0], error.single[1], error.single[2], error.full[0],
-                          error.full[1], error.full[2], error.spread, error.noise.maxCoeff());
+// The lights of the tables: key, key from where the rim light stands, fill, rim.
+std::array<Vector3f, 4> lightsOf(const render::LightInput& light) {
+  const Vector3f rim = render::directionOr(light.to_rim, -Vector3f::UnitZ());
+  return {render::directionOr(light.to_light, Vector3f::UnitY()), rim,
+          render::directionOr(light.to_fill, Vector3f::UnitX()), rim};
 }
 
-// One style under one light, all colours. Appends its rows.
-void compare(app::Demo& demo, const std::string& style, bool from_behind, const Asked& asked,
-             const reference::TracedScene* scene, std::string& shadows, std::string& colours) {
-  render::FrameInput frame = app::frameInput(demo, asked.trace.width, asked.trace.height);
-  if (from_behind) frame.light.to_light = frame.light.to_rim;
-  reference::DrawOptions draw{asked.trace.width, asked.trace.height};
-  const std::vector<Vector3f> cover = reference::drawTerm(frame, reference::Term::kCover, draw);
-  {
-    const ShadowError error =
-        shadowError(reference::traceShadows(*scene, frame, asked.trace),
-                    reference::drawTerm(frame, reference::Term::kShadow, draw), cover, asked.trace.samples);
-    shadows += bench::formatted("| %s | %s | %.3f %.3f %.3f | %+.3f %+.3f %+.3f |\n", style.c_str(),
-                                from_behind ? "back" : "front", error.rms[0], error.rms[1], error.rms[2], error.bias[0],
-                                error.bias[1], error.bias[2]);
+// Cover and shadows of a frame as they are drawn, by the lights of lightsOf.
+std::vector<reference::DrawnPixel> drawnShadows(render::FrameInput frame, const reference::DrawOptions& draw) {
+  using reference::drawTerm, reference::Term;
+  std::vector<reference::DrawnPixel> pixels(static_cast<std::size_t>(draw.width * draw.height));
+  const auto cover = drawTerm(frame, Term::kCover, draw);
+  const auto hair = drawTerm(frame, Term::kShadow, draw), skin = drawTerm(frame, Term::kSkinShadow, draw);
+  frame.light.to_light = frame.light.to_rim;
+  const auto hair_behind = drawTerm(frame, Term::kShadow, draw), skin_behind = drawTerm(frame, Term::kSkinShadow, draw);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    pixels[i].cover = cover[i].x();
+    pixels[i].skin = cover[i].y();
+    pixels[i].lit << hair[i].x(), hair_behind[i].x(), hair[i].tail<2>();
+    pixels[i].skin_lit << skin[i].x(), skin_behind[i].x(), skin[i].tail<2>();
   }
+  return pixels;
+}
+
+std::string fourOf(const char* format, const Eigen::Vector4f& values) {
+  std::string text;
+  for (const float value : values) text += (text.empty() ? "" : " ") + bench::formatted(format, value);
+  return text;
+}
+
+std::string leakColumns(const reference::Leaks& leaks) {
+  return " " + fourOf("%.2f", 100 * leaks.mean) + " | " + fourOf("%.0f", 100 * leaks.above) + " | " +
+         fourOf("%.0f", leaks.pixels) + " |";
+}
+
+std::string lightColumns(const reference::LightError& error) {
+  return bench::formatted(" %.2f %.2f %.2f | %.2f %.2f %.2f | %.2f | %.3f |", error.single[0], error.single[1],
+                          error.single[2], error.full[0], error.full[1], error.full[2], error.spread,
+                          error.noise.maxCoeff());
+}
+
+// A style's rows of the tables.
+struct Tables {
+  std::string shadows, leaks, colours;
+};
+
+// The radiance of one colour under the key light as it stands, the other lights being out. name: of the picture.
+std::string compareLight(render::FrameInput frame, const Asked& asked, const reference::TracedScene& scene,
+                         const std::vector<reference::DrawnPixel>& drawn, const std::string& name) {
   frame.light.fill = frame.light.rim = frame.light.ambient_sky = frame.light.ambient_ground = {0, 0, 0};
-  const render::HairInput plain = frame.hairs.front();
+  render::HairInput hair = frame.hairs.front();
+  frame.hairs = {&hair, 1};
+  const auto traced = reference::traceLight(scene, reference::Fiber(hair.look), frame, asked.trace);
+  const reference::DrawOptions draw{asked.trace.width, asked.trace.height, 4, brightestOf(traced)};
+  const auto full = reference::drawTerm(frame, reference::Term::kLight, draw);
+  hair.look.diffuse = 0;
+  const auto single = reference::drawTerm(frame, reference::Term::kLight, draw);
+  if (!asked.pictures.empty())
+    writePictures(asked.pictures + "/" + name + ".png", traced, full, asked, 0.5f * draw.brightest);
+  return lightColumns(reference::lightError(traced, drawn, single, full));
+}
+
+// One style, at rest or moved: its cover, its shadows and the light on it in all colours. Appends its rows.
+void compare(const std::string& style, bool moved, const Asked& asked, Tables& tables) {
+  app::Demo demo = openStyle(style, moved, asked);
+  render::FrameInput frame = app::frameInput(demo, asked.trace.width, asked.trace.height);
+  const reference::TracedScene scene = tracedScene(frame, asked.hairs);
+  const std::string stem = std::filesystem::path(style).stem().string(), name = stem + (moved ? ", moved" : "");
+  const auto traced = reference::traceShadows(scene, frame, lightsOf(frame.light), asked.trace);
+  const auto drawn = drawnShadows(frame, {asked.trace.width, asked.trace.height});
+  const reference::CoverError cover = reference::coverError(traced, drawn);
+  const reference::ShadowError shadow = reference::shadowError(traced, drawn);
+  tables.shadows += bench::formatted("| %s | %.3f | %.3f | ", name.c_str(), cover.ratio, cover.rms) +
+                    fourOf("%.3f", shadow.rms) + " | " + fourOf("%+.3f", shadow.bias) + " |\n";
+  tables.leaks += "| " + name + " |" + leakColumns(reference::hairLeaks(traced, drawn)) +
+                  leakColumns(reference::skinLeaks(traced, drawn)) + "\n";
+  render::HairInput hair = frame.hairs.front();
+  frame.hairs = {&hair, 1};
+  const render::Float3 to_key = frame.light.to_light;
+  const std::vector<std::string>& colours = moved ? asked.moved_colours : asked.colours;
   for (const Colour& colour : kColours) {
-    if (std::find(asked.colours.begin(), asked.colours.end(), colour.name) == asked.colours.end()) continue;
-    render::HairInput hair = plain;
+    if (std::find(colours.begin(), colours.end(), colour.name) == colours.end()) continue;
     hair.look.eumelanin = colour.eumelanin;
     hair.look.pheomelanin = colour.pheomelanin;
-    frame.hairs = {&hair, 1};
-    const auto traced = reference::traceLight(*scene, reference::Fiber(hair.look), frame, asked.trace);
-    draw.brightest = brightestOf(traced);
-    const auto full = reference::drawTerm(frame, reference::Term::kLight, draw);
-    hair.look.diffuse = 0;
-    const auto single = reference::drawTerm(frame, reference::Term::kLight, draw);
-    const char* light = from_behind ? "back" : "front";
-    colours += colourRow(style, colour, light, lightError(traced, single, full, cover));
-    std::cerr << colourRow(style, colour, light, lightError(traced, single, full, cover));
-    if (!asked.pictures.empty())
-      writePictures(asked.pictures + "/" + std::filesystem::path(style).stem().string() + "_" + colour.name + "_" +
-                        light + ".png",
-                    traced, full, asked, 0.5f * draw.brightest);
+    for (const bool from_behind : {false, true}) {
+      frame.light.to_light = from_behind ? frame.light.to_rim : to_key;
+      const std::string light = from_behind ? "back" : "front";
+      const std::string picture = stem + (moved ? "_moved_" : "_") + colour.name + "_" + light;
+      const std::string row = "| " + name + " | " + colour.name + " | " + light + " |" +
+                              compareLight(frame, asked, scene, drawn, picture) + "\n";
+      std::cerr << row;
+      tables.colours += row;
+    }
   }
 }
 
 std::string measure(const Asked& asked) {
-  std::string shadows = "| style | light | RMS of key, fill, rim | mean of the difference |\n|---|---|---|---|\n";
-  std::string colours =
+  Tables tables;
+  tables.shadows =
+      "| style | cover, drawn over traced | its RMS | shadow, RMS of key, key from behind, fill, rim | mean of the "
+      "difference |\n|---|---|---|---|---|\n";
+  tables.leaks =
+      "| style | light where none comes, %, on hair: key, key from behind, fill, rim | over 1 %, % of the pixels | of "
+      "pixels | on skin | over 1 % | of pixels |\n|---|---|---|---|---|---|---|\n";
+  tables.colours =
       "| style | colour | light | single, drawn over traced, RGB | all, RGB | RMS over mean | traced mean's error |\n"
       "|---|---|---|---|---|---|---|\n";
   for (const std::string& style : asked.styles) {
-    app::Demo demo = openStyle(style, asked);
-    const reference::TracedScene scene =
-        tracedScene(app::frameInput(demo, asked.trace.width, asked.trace.height), asked.hairs);
-    for (const bool from_behind : {false, true}) compare(demo, style, from_behind, asked, &scene, shadows, colours);
+    compare(style, false, asked, tables);
+    if (asked.moved) compare(style, true, asked, tables);
   }
-  return "\n" + shadows + "\n" + colours + "\n";
+  return "\n" + tables.shadows + "\n" + tables.leaks + "\n" + tables.colours + "\n";
 }
 
 int run(int argc, char** argv) {
@@ -223,13 +226,17 @@ int run(int argc, char** argv) {
   cli.add_option("--samples", asked.trace.samples, "Paths of a pixel (64)")->check(CLI::Range(1, 100000));
   cli.add_option("--hairs", asked.hairs, "Hairs traced, standing for all (40000)")->check(CLI::Range(100, 400000));
   cli.add_option("--styles", asked.styles, "Of short, shoulder and long")->delimiter(',');
-  cli.add_option("--colours", asked.colours, "Of black, brown, blond and white")->delimiter(',');
+  cli.add_option("--colours", asked.colours, "Of black, brown, blond and white (all; moved hair: brown)")
+      ->delimiter(',');
   cli.add_option("--set", asked.sets, "NAME=VALUE of the parameter tables");
   cli.add_option("--camera", asked.camera, "front, three-quarter, side or back (three-quarter)");
   cli.add_option("--pictures", asked.pictures, "Folder for pictures, traced and drawn side by side");
   cli.add_option("--document", asked.document, "Markdown file whose measured part 'reference' is written");
+  cli.add_flag("--moved", asked.moved, "Each style once more, two seconds into a head shake or into the scene's clip");
   cli.add_option("--scene", asked.scene, "Scene file in the styles' place, from head to chest");
   CLI11_PARSE(cli, argc, argv);
+  if (cli.count("--colours") > 0) asked.moved_colours = asked.colours;
+  if (!asked.document.empty()) asked.moved = true;
   if (!asked.scene.empty()) asked.styles = {asked.scene};
   if (!asked.pictures.empty()) std::filesystem::create_directories(asked.pictures);
   const app::EglContext context;

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "render/frame_input.h"
+#include "tests/reference/errors.h"
 #include "tests/reference/fiber.h"
 #include "tests/reference/traced_scene.h"
 
@@ -15,17 +17,10 @@ struct TraceOptions {
   int threads = 2;
 };
 
-// Means over the samples of a pixel that see hair.
-struct TracedPixel {
-  float cover = 0;                                              // share of the samples that see hair
-  Vector3f lit = Vector3f::Zero();                              // share that key, fill and rim reach
-  Vector3f single = Vector3f::Zero(), full = Vector3f::Zero();  // radiance by the key light alone
-  Vector3f full_variance = Vector3f::Zero();                    // of the mean
-};
-
-// Shares of key, fill and rim; without colours.
+// to_lights: unit. Without colours. Pixels full of hair, or of skin that faces a light, where no sample is lit have 16
+// times as many: what is dark there is sure to be.
 std::vector<TracedPixel> traceShadows(const TracedScene& scene, const render::FrameInput& frame,
-                                      const TraceOptions& options);
+                                      const std::array<Vector3f, 4>& to_lights, const TraceOptions& options);
 // single, full and cover.
 std::vector<TracedPixel> traceLight(const TracedScene& scene, const Fiber& fiber, const render::FrameInput& frame,
                                     const TraceOptions& options);

@@ -74,6 +74,7 @@ std::optional<Hit> TracedScene::first(const Vector3f& from, const Vector3f& dire
   Hit hit;
   hit.at = from + ray.ray.tfar * direction;
   hit.hair = ray.hit.geomID == kHairGeometry;
+  hit.normal = Vector3f(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z).normalized();
   if (!hit.hair) return hit;
   const Eigen::Vector4f &a = points_[segments_[ray.hit.primID]], &b = points_[segments_[ray.hit.primID] + 1];
   hit.tangent = (b - a).head<3>().normalized();

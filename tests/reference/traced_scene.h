@@ -18,7 +18,8 @@ using Eigen::Vector3f;
 struct Hit {
   bool hair = false;  // else a body
   Vector3f at = Vector3f::Zero(), tangent = Vector3f::UnitY();
-  float radius = 0;  // m, of the strand there
+  float radius = 0;                     // m, of the strand there
+  Vector3f normal = Vector3f::UnitY();  // of a body's triangle, unit
 };
 
 class TracedScene {
