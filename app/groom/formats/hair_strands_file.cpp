@@ -59,6 +59,15 @@ void readArrays(const HairHeader& header, ByteReader& reader, Groom& groom) {
   }
 }
 
+// Bytes that header and arrays take.
+std::size_t sizeOfFile(const HairHeader& header) {
+  const std::size_t point = sizeof(Eigen::Vector3f) + (header.flags & kThickness ? sizeof(float) : 0) +
+                            (header.flags & kTransparency ? sizeof(float) : 0) +
+                            (header.flags & kColors ? sizeof(Eigen::Vector3f) : 0);
+  const std::size_t segments = header.flags & kSegments ? header.strands * sizeof(std::uint16_t) : 0;
+  return sizeof header + segments + header.points * point;
+}
+
 std::vector<std::uint16_t> segmentsOf(const Groom& groom, const std::string& file) {
   std::vector<std::uint16_t> segments(groom.strandCount());
   for (std::size_t s = 0; s < segments.size(); ++s) {
@@ -94,6 +103,13 @@ Groom readHairStrands(std::string_view bytes, const std::string& file) {
                 "the file is damaged; export it again");
   }
   checkGroomSize(file, "header", header.strands, header.points);
+  // What was put in before the end shifts all that follows. Nothing in the arrays tells where.
+  if (const std::size_t size = sizeOfFile(header); bytes.size() > size) {
+    reader.at = size;
+    reader.fail("the file goes on for " + std::to_string(bytes.size() - size) +
+                    " bytes after what its header counts, so that its arrays may be shifted",
+                "the file is damaged, as by a transfer as text; export or copy it again");
+  }
   // Before anything is sized by what the header counts.
   const std::size_t segments = header.flags & kSegments ? header.strands * sizeof(std::uint16_t) : 0;
   reader.need(segments + header.points * sizeof(Eigen::Vector3f), 1, "segments and points of the strands");

@@ -72,6 +72,11 @@ TEST(HairStrands, FaultsNameFilePlaceAndMend) {
   EXPECT_EQ(test::lacking(faultOf(whole.substr(0, 100)), "groom.hair: byte 0: the file ends where the 128 bytes"), "");
   EXPECT_EQ(test::lacking(faultOf(whole.substr(0, whole.size() - 1)), "colours of the points"), "");
   std::string bytes = whole;
+  const std::string longer = "bytes after what its header counts, so that its arrays may be shifted";
+  EXPECT_EQ(test::lacking(faultOf(whole + "x"), "byte " + std::to_string(whole.size()) + ": the file goes on for 1 "),
+            "");
+  for (const std::size_t at : {std::size_t{128}, std::size_t{150}, whole.size() / 2, whole.size()})
+    EXPECT_EQ(test::lacking(faultOf(std::string(whole).insert(at, 4, '\0')), longer), "") << at;
   put(bytes, 4, 11);
   EXPECT_EQ(test::lacking(faultOf(bytes), "export it again"), "");
   bytes = whole;
