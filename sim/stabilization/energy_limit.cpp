@@ -88,8 +88,8 @@ double potential(const TakenStep& step, std::span<const Vec3> x, EnergyLimit& sc
   ++scratch.energies;
   double energy = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const Vec3 blow = step.params.air_drag * (step.wind - carrying(step, scratch, static_cast<int>(i)));
-    const double specific = step.params.gravity * x[i].y() - blow.dot(x[i] - scratch.carried[i]);
+    const Vec3 drag = step.params.air_drag * (step.wind - carrying(step, scratch, static_cast<int>(i)));
+    const double specific = step.params.gravity * x[i].y() - drag.dot(x[i] - scratch.carried[i]);
     energy += step.params.density * step.mesh.vertex_volume[i] * specific;
   }
   return energy + scratch.stored.at(step.model, x);

@@ -14,12 +14,12 @@ double windLoad(const SimParams& params) {
 SimParams limitedParameters(const HairMesh& mesh, SimParams params) {
   if (params.solver == Solver::kPaper) return params;
   if (params.volume <= 0 && params.stretch_along <= 0) return params;
-  double blow = windLoad(params);
-  if (blow > kMaxWindLoad) {
-    for (double* wind : {&params.wind_x, &params.wind_y, &params.wind_z}) *wind *= kMaxWindLoad / blow;
-    blow = kMaxWindLoad;
+  double load = windLoad(params);
+  if (load > kMaxWindLoad) {
+    for (double* wind : {&params.wind_x, &params.wind_y, &params.wind_z}) *wind *= kMaxWindLoad / load;
+    load = kMaxWindLoad;
   }
-  const double stress = params.density * (params.gravity + blow) * mesh.hair_length;
+  const double stress = params.density * (params.gravity + load) * mesh.hair_length;
   params.stretch_along = std::max(params.stretch_along, stress / kMaxLoadStrain);
   return params;
 }

@@ -25,7 +25,7 @@ constexpr std::array<FamilyTitle, 12> kTitles{{
     {"param", "every parameter at its minimum and maximum, every choice"},
     {"preset", "the material of every preset, own clips, implicit Euler and BDF2"},
     {"random-params", "random combinations over the whole ranges of all parameters"},
-    {"restless", "parameters drawn anew every step"},
+    {"redrawn-params", "parameters drawn anew every step"},
     {"paper", "the paper's claims, with our settings and with its solver"},
     {"upset", "turns, teleports, spins, shakes, bodies through and within the hair"},
     {"distances", "disturbances with signed distances of the skin for colliders"},
@@ -126,7 +126,7 @@ std::string familyText(std::span<const StressCase* const> cases) {
   if (family == "step") return "fixed time steps of " + range(cases, &StressCase::step, stepText) + " s";
   if (family == "speed") return speedText(cases);
   if (family == "style") return styleText(cases);
-  if (family == "soak") return enduranceText(cases);
+  if (family == "endurance") return enduranceText(cases);
   if (family == "state") return joined(distinct(cases, secondName));
   if (family == "stiffness") return stiffnessText(cases);
   if (family == "ladder") return ladderText(cases);

@@ -175,7 +175,7 @@ void addRandomParameters(std::uint64_t seed, Cases& cases) {
 void addRedrawnParameters(Cases& cases) {
   for (int k = 0; k < kRedrawnRuns; ++k) {
     StressCase one;
-    one.name = "restless/" + std::to_string(k);
+    one.name = "redrawn-params/" + std::to_string(k);
     one.hair = lowStyles()[k % 3];
     one.clip = ownClips()[k % 5];
     one.play = Play::kForward;

@@ -239,7 +239,7 @@ void addStyles(Cases& cases) {
 void addEndurance(Cases& cases) {
   for (const char* clip : {"dance.bvh", "walk.bvh"}) {
     StressCase one;
-    one.name = std::string("soak/hour/") + clipName(clip);
+    one.name = std::string("endurance/hour/") + clipName(clip);
     one.clip = clip;
     one.play = Play::kForward;
     one.seconds = 3600;
@@ -247,7 +247,7 @@ void addEndurance(Cases& cases) {
     cases.push_back(one);
   }
   StressCase brief;
-  brief.name = "soak/twenty-seconds/dance";
+  brief.name = "endurance/twenty-seconds/dance";
   brief.clip = "dance.bvh";
   brief.play = Play::kForward;
   brief.seconds = 20;
