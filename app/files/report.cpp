@@ -176,6 +176,17 @@ json budgetJson(const RunReport& run, const Demo& demo) {
           {"rungs", rungs}};
 }
 
+// How the deadline was kept, in the units of work that it is counted in, and by the clock.
+json deadlineJson(const RunReport& run, const Deadline& deadline) {
+  if (deadline.seconds <= 0) return nullptr;
+  const double units = deadline.seconds / deadline.seconds_per_unit;
+  const auto over = [&](auto&& exceeds) { return std::ranges::count_if(run.frames, exceeds); };
+  return {{"deadline_milliseconds", 1e3 * deadline.seconds},
+          {"work_units", units},  // that it is worth at the end
+          {"frames_over_units", over([&](const FrameStats& frame) { return frame.work_units > units; })},
+          {"frames_over_milliseconds", over([&](const FrameStats& f) { return f.simulation() > deadline.seconds; })}};
+}
+
 // How the drawing's budget was held, rung by rung.
 json drawBudgetJson(const RunReport& run, const Demo& demo) {
   const DrawGovernor& governor = demo.draw_governor;
@@ -266,6 +277,7 @@ void writeReport(const std::string& file, const RunReport& run, const Demo& demo
       {"time_step_seconds", demo.running.time_step},
       {"budget", budgetJson(run, demo)},
       {"draw_budget", drawBudgetJson(run, demo)},
+      {"deadline", deadlineJson(run, demo.deadline)},
       {"comparison", comparisonJson(demo)},
       {"skips", switches},
       {"frames_per_second", run.fps},

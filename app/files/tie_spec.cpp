@@ -65,7 +65,8 @@ std::optional<std::vector<TieSpec>> namedTies(std::string_view text) {
   return std::vector{tie};
 }
 
-constexpr std::string_view kTieNames = "back, high, low, left, right, two, plait, plaits, bun, buns or none";
+constexpr std::array<std::string_view, 11> kTieNames{"back",  "high",   "low", "left", "right", "two",
+                                                     "plait", "plaits", "bun", "buns", "none"};
 
 TieSpec readTie(const JsonPlace& place) {
   place.expectObject({"at", "radius", "side", "above", "braided", "bun"});
@@ -85,7 +86,7 @@ std::vector<TieSpec> readTies(const JsonPlace& place) {
   if (place.value().is_string()) {
     const std::string name = place.text();
     const auto named = namedTies(name);
-    if (!named) place.refuse("is '" + name.substr(0, 40) + "'", "choose " + std::string(kTieNames));
+    if (!named) place.refuse("is '" + name.substr(0, 40) + "'", sim::nameHint(name, kTieNames));
     return *named;
   }
   std::vector<TieSpec> ties;
@@ -111,7 +112,8 @@ std::vector<TieSpec> tiesFromText(std::string_view text) {
   if (const auto named = namedTies(text)) return *named;
   if (!text.starts_with("[") && !text.starts_with("{"))
     throw InputError("", "tie '" + std::string(text.substr(0, 40)) + "'", "is unknown",
-                     "choose " + std::string(kTieNames) + ", or write JSON as in a scene's \"ties\"");
+                     sim::nameHint(text, kTieNames) +
+                         (sim::nearestName(text, kTieNames).empty() ? "; or write JSON as in a scene's \"ties\"" : ""));
   const json parsed = parseJson(text, "");
   const JsonPlace place(parsed, "");
   return parsed.is_object() ? std::vector{readTie(place)} : readTies(place);
