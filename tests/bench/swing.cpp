@@ -12,6 +12,7 @@
 #include "sim/step.h"
 #include "tests/analytic_head.h"
 #include "tests/bench/preset_params.h"
+#include "tests/bench/slide.h"
 
 namespace bench {
 namespace {
@@ -163,20 +164,21 @@ bool runSwing(const SwingOptions& options) {
   bool hold = true;
   std::printf(
       "| preset | style | free length, m | frequency over a chain's | damping ratio | lag, deg | overshoot, deg | "
-      "settled after, s |\n|---|---|---|---|---|---|---|---|\n");
+      "settled after, s | friction | slides from, deg |\n|---|---|---|---|---|---|---|---|---|---|\n");
   for (const char* preset : {"", "natural", "soft", "fine", "thick", "wet", "sprayed"}) {
     sim::SimParams params = *preset ? presetParams(preset) : sim::SimParams{};
     for (const auto& [name, value] : options.sets) {
       const std::string fault = sim::setParam(params, name, value).fault;
       if (!fault.empty()) throw app::InputError("", "--set " + name, fault, "");
     }
+    constexpr double kDegrees = 180 / std::numbers::pi;
+    const double slides = kDegrees * measureSlideAngle(params);
     for (const app::Style style : {app::Style::kShoulder, app::Style::kLong}) {
       const Swing swing = measureSwing(style, app::Resolution::kMedium, params);
       const FollowThrough follow = measureFollowThrough(style, app::Resolution::kMedium, params);
-      constexpr double kDegrees = 180 / std::numbers::pi;
-      std::printf("| %s | %s | %.2f | %.2f | %.2f | %.0f | %.0f | %.1f |\n", *preset ? preset : "default",
+      std::printf("| %s | %s | %.2f | %.2f | %.2f | %.0f | %.0f | %.1f | %.2f | %.0f |\n", *preset ? preset : "default",
                   std::string(app::styleName(style)).c_str(), swing.length, swing.frequency, swing.damping,
-                  kDegrees * follow.lag, kDegrees * follow.overshoot, follow.settling);
+                  kDegrees * follow.lag, kDegrees * follow.overshoot, follow.settling, params.friction, slides);
       const bool as_hair = swing.frequency > 1 && swing.frequency < 1.6 && swing.damping > 0.1 && swing.damping < 0.25;
       if (preset == std::string_view("natural") && style == app::Style::kLong && !as_hair) hold = false;
     }

@@ -3,8 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
 #include "sim/forces/model.h"
 #include "tests/bench/material_points.h"
+#include "tests/bench/preset_params.h"
+#include "tests/bench/slide.h"
 #include "tests/test_meshes.h"
 
 namespace consistency_test {
@@ -87,6 +93,19 @@ TEST(Consistency, WidePrismsResistAChangeOfVolumeInInverseProportionToTheirSecti
     sim::SimParams soft;
     soft.volume *= 1e-3;
     EXPECT_EQ(sim::volumeModulus(mesh, soft), soft.volume) << "what hardly carries itself is not made softer still";
+  }
+}
+
+// A lock that hardly bends back slides where gravity along the slope exceeds friction: at atan(friction).
+TEST(SlideAngle, OfALimpLockIsThatOfItsFriction) {
+  sim::SimParams params = bench::presetParams("natural");
+  params.bend = 0.01, params.shear = 20, params.stretch_across = 100;
+  for (const double friction : {0.15, 0.3, 0.6}) {
+    params.friction = friction;
+    const double angle = bench::measureSlideAngle(params), law = std::atan(friction);
+    std::printf("friction %.2f: %.1f degrees, by the law %.1f\n", friction, angle * 180 / std::numbers::pi,
+                law * 180 / std::numbers::pi);
+    EXPECT_NEAR(angle, law, 0.1 * law + 0.01) << friction;
   }
 }
 
