@@ -84,6 +84,7 @@ struct Run {
 
   Run(Scene scene, const Options& run_options);
   void drawFrames();
+  bool drawsAll() const;
   void openExport();
   void exportFrame(int frame);
   double frameSeconds(int frame) const;
@@ -164,6 +165,12 @@ void Run::saveState() const {
   std::cout << "state after " << countOf(demo.frames, "frame") << " in " << options.save_state << "\n";
 }
 
+// Whether more is asked for than the picture at the end. Drawing is part of a report, and is measured for a budget.
+bool Run::drawsAll() const {
+  return options.keep_frames || film || !options.report.empty() || options.gl_debug ||
+         demo.scene.playback.draw_budget_ms > 0;
+}
+
 void Run::drawFrames() {
   FrameTarget target;
   if (pictures)
@@ -171,8 +178,10 @@ void Run::drawFrames() {
               &pictures->pair};
   double last_line = now();
   std::string told = demo.message;  // with the opening notes
+  bool shown = false;
   for (int frame = 0; frame < frames && !interrupted(); ++frame) {
-    advanceFrame(demo, tape.turn(frame, frameSeconds(frame), demo), target);
+    shown = drawsAll() || frame == 0 || frame + 1 == frames;  // the first tells the picture's size
+    advanceFrame(demo, tape.turn(frame, frameSeconds(frame), demo), shown ? target : FrameTarget{});
     report.frames.push_back(demo.stats);
     if (cache) cache->add(demo);
     if (frame + 1 == options.save_state_at) saveState();
@@ -190,6 +199,7 @@ void Run::drawFrames() {
       last_line = now();
     }
   }
+  if (pictures && !pixels.empty() && !shown) drawFrame(demo, target);
   if (pictures && !pixels.empty() && !options.screenshot.empty())
     writePng(options.screenshot, options.width, options.height, pixels);
 }
