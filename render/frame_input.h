@@ -122,7 +122,7 @@ struct BodyInput {
   std::span<const float> weights;         // 4 a vertex
   std::span<const Mat4> joint_matrices;   // rest model space to world
   std::uint64_t pose_revision = 0;
-  Float3 color{0.27f, 0.197f, 0.162f};
+  Float3 color{0.285f, 0.193f, 0.150f};
   float roughness = 0.55f;
   // Skin among the roots of a hair is shaded and coloured by them.
   std::uint64_t scalp_id = 0;         // stable per root cover; 0: no hair grows on the body

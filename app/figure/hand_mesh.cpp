@@ -1,7 +1,10 @@
 #include "app/figure/hand_mesh.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <span>
 #include <vector>
 
 #include "app/figure/fine_mesh.h"
@@ -82,8 +85,7 @@ std::vector<HandVertex> handVertices(const SkinnedMesh& mesh, const BodyField& b
 
 // Round after round vertices are evened out and brought to the surface of a paddle from which fingers part: fingertips
 // stand where the mitten has few vertices.
-void drawOntoHands(const BodyField& body, SkinnedMesh& mesh) {
-  const std::vector<HandVertex> hands = handVertices(mesh, body);
+void drawOntoHands(std::span<const HandVertex> hands, SkinnedMesh& mesh) {
   std::vector<Vector3f> moved = mesh.positions;
   for (int round = 0; round <= kHandRounds; ++round) {
     const double left = 1 - static_cast<double>(round) / kHandRounds, blend = kParted + (kPaddle - kParted) * left;
@@ -104,6 +106,34 @@ void drawOntoHands(const BodyField& body, SkinnedMesh& mesh) {
   }
 }
 
+// How a hand at ease bends its first and its last finger, rad: at the knuckle and at a joint.
+constexpr std::array<double, 2> kKnuckleBend{-0.05, 0.22}, kJointBend{0.18, 0.50};
+constexpr double kJoint = 0.5;                      // of the longest finger
+constexpr double kKnuckle = 0.012, kBend = 0.0065;  // m to either side, over which they bend
+
+// Bends the hand across all fingers, the last one most: they touch, and none may leave the others.
+void closeAtEase(std::span<const HandVertex> hands, SkinnedMesh& mesh) {
+  for (const HandVertex& one : hands) {
+    const ArmShape& arm = *one.arm;
+    const RoundCone &first = arm.digits.front(), &longest = arm.digits[1], &last = arm.digits.back();
+    const Vec3 along = (longest.b - longest.a).normalized(), across = last.a - first.a;
+    Vec3 at = mesh.positions[one.vertex].cast<double>(), normal = mesh.normals[one.vertex].cast<double>();
+    const double reached = along.dot(at - arm.knuckle), joint = kJoint * along.dot(longest.b - arm.knuckle);
+    const double finger = std::clamp(across.dot(at - first.a) / across.squaredNorm(), 0.0, 1.0);
+    const auto bend = [&](double place, double width, const std::array<double, 2>& angle) {
+      const double share = one.share * smoothstep(place - width, place + width, reached);
+      const Eigen::AngleAxisd turn(share * std::lerp(angle[0], angle[1], finger), arm.bend_axis);
+      const Vec3 about = arm.knuckle + place * along;
+      at = about + turn * (at - about);
+      normal = turn * normal;
+    };
+    bend(joint, kBend, kJointBend);
+    bend(0, kKnuckle, kKnuckleBend);
+    mesh.positions[one.vertex] = at.cast<float>();
+    mesh.normals[one.vertex] = normal.cast<float>();
+  }
+}
+
 }  // namespace
 
 SkinnedMesh withFingers(const SkinnedMesh& mesh, const BodyField& body) {
@@ -113,7 +143,9 @@ SkinnedMesh withFingers(const SkinnedMesh& mesh, const BodyField& body) {
     for (const Vector3f& p : fine.positions) inside.push_back(armOf(body, p.cast<double>()) != nullptr);
     halveEdges(inside, fine);
   }
-  drawOntoHands(body, fine);
+  const std::vector<HandVertex> hands = handVertices(fine, body);
+  drawOntoHands(hands, fine);
+  closeAtEase(hands, fine);
   return fine;
 }
 

@@ -108,6 +108,8 @@ std::array<RoundCone, 4> shapeDigits(const Vec3& root, const Vec3& knuckle, cons
   return cones;
 }
 
+// At elbow and knee two lofts meet, and their blend adds a sixth of its width (smoothMin): each is slimmer there by
+// that.
 BodyField::ArmShape shapeArm(const Figure::Arm& a, double s) {
   BodyField::ArmShape arm;
   arm.present = true;
@@ -118,14 +120,14 @@ BodyField::ArmShape shapeArm(const Figure::Arm& a, double s) {
                                {0.24, 0.0415, 0.045, 0.044, 0.0},
                                {0.5, 0.0375, 0.041, 0.040, 0.0},
                                {0.8, 0.033, 0.035, 0.035, 0.0},
-                               {1.0, 0.0325, 0.033, 0.034, 0.0}},
+                               {1.0, 0.0295, 0.030, 0.031, 0.0}},
                               s),
                        {0.024 * s, 0.03 * s});
   // Flesh begins outside the joint where a skeleton's shoulders are narrow.
   arm.deltoid = {a.shoulder + (a.elbow - a.shoulder).normalized() * 0.045 * s + s * Vec3(a.side * 0.002, -0.006, 0),
                  leastRotation(Vec3::UnitY(), a.elbow - a.shoulder).toRotationMatrix(), s * Vec3(0.040, 0.066, 0.045)};
   arm.fore = makeLoft(a.elbow, a.wrist, ahead,
-                      scaled({{0.0, 0.032, 0.033, 0.033, 0.0},
+                      scaled({{0.0, 0.0290, 0.030, 0.030, 0.0},
                               {0.22, 0.0335, 0.037, 0.036, 0.0},
                               {0.5, 0.029, 0.033, 0.032, 0.0},
                               {0.8, 0.0215, 0.026, 0.026, 0.0},
@@ -157,6 +159,8 @@ BodyField::ArmShape shapeArm(const Figure::Arm& a, double s) {
   arm.thumb = {root, Vec3(root + (along * 0.70 + ahead * 0.52 + inward * 0.28).normalized() * 0.066 * s), 0.0165 * s,
                0.0095 * s};
   arm.digits = shapeDigits(knuckle - along * 0.020 * s, knuckle, finger, s);
+  arm.knuckle = knuckle;
+  arm.bend_axis = finger.cross(inward).normalized();
   return arm;
 }
 
@@ -170,13 +174,13 @@ BodyField::LegShape shapeLeg(const Figure::Leg& l, double s, double sole) {
                                {0.2, 0.079, 0.084, 0.082, 0.000},
                                {0.45, 0.069, 0.075, 0.071, 0.004},
                                {0.7, 0.057, 0.062, 0.058, 0.004},
-                               {0.9, 0.0495, 0.052, 0.050, 0.002},
-                               {1.0, 0.047, 0.049, 0.048, 0.001}},
+                               {0.9, 0.0490, 0.0515, 0.0495, 0.002},
+                               {1.0, 0.0430, 0.0450, 0.0440, 0.001}},
                               s),
                        {0.06 * s, 0.04 * s});
   leg.shin = makeLoft(l.knee, l.ankle, ahead,
-                      scaled({{0.0, 0.046, 0.047, 0.048, 0.0},
-                              {0.12, 0.0465, 0.043, 0.054, -0.002},
+                      scaled({{0.0, 0.0420, 0.0430, 0.0445, 0.0},
+                              {0.12, 0.0455, 0.0425, 0.0535, -0.002},
                               {0.30, 0.0485, 0.040, 0.063, -0.005},
                               {0.50, 0.043, 0.037, 0.052, -0.004},
                               {0.75, 0.032, 0.032, 0.036, -0.002},

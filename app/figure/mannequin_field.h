@@ -84,6 +84,7 @@ struct BodyField {
     Loft upper, fore, palm, fingers;
     RoundCone thumb;
     std::array<RoundCone, 4> digits;  // in place of the mitten `fingers`, see hand_mesh.h
+    Vec3 knuckle, bend_axis;          // where fingers begin to bend, and about what they close
     Egg deltoid;
   };
   struct LegShape {

@@ -1,5 +1,6 @@
 // Light that a point of a body sends to the eye.
 #include "common/face.glsl"
+#include "common/skin_tone.glsl"
 #include "common/surface.glsl"
 #include "common/under_hair.glsl"
 
@@ -20,7 +21,8 @@ vec3 bodyRadiance(vec3 base, vec3 rest, vec3 world, vec3 normal, float cover, fl
   float pixel = eye.w * length(eye.xyz - world);
   if (paint.x > 0.0) {
     vec3 brow_color = 0.03 + 0.5 * root_color.rgb;
-    vec4 painted = facePaint((rest - face.xyz) * face.w, brow_color, pixel * face.w);
+    vec3 head = (rest - face.xyz) * face.w;
+    vec4 painted = skinTone(rest, head, pixel) * facePaint(head, brow_color, pixel * face.w);
     albedo *= mix(vec3(1.0), painted.rgb, paint.x);
     roughness *= mix(1.0, painted.w, paint.x);
   }

@@ -70,9 +70,6 @@ vec4 facePaint(vec3 q, vec3 brow_color, float pixel) {
   float folds = max(exp(-dot(mouth, mouth)), max(exp(-dot(fold, fold)), exp(-dot(wing, wing))));
   vec4 paint = mix(vec4(vec3(1.0), 1.0 + 0.5 * folds), vec4(0.84, 0.56, 0.53, 0.68), lip.x);
   paint.rgb *= 1.0 - 0.6 * lip.y;
-  // Warm cheeks and lids.
-  vec2 cheek = (m - vec2(0.188, 0.395)) / vec2(0.085, 0.065);
-  paint.rgb *= mix(vec3(1.0), vec3(1.01, 0.94, 0.93), exp(-dot(cheek, cheek)));
   vec2 lid = (m - vec2(0.132, 0.517)) / vec2(0.070, 0.026);
   paint.rgb *= mix(vec3(1.0), vec3(0.86, 0.79, 0.77), exp(-dot(lid, lid)));
   vec2 nostril = (m - vec2(0.0290, 0.3180)) / vec2(0.0130, 0.0060);
