@@ -169,7 +169,7 @@ std::vector<HairField> makeHairTable() {
     color(hair<BODY(cloth_color)>("cloth_color", "Body", "", {0, 1}, "Color of the mannequin's garment, linear RGB.")),
     hair<BODY(dressed)>("dressed", "Body", "", {0, 1}, "Whether the mannequin wears its garment."),
     hair<BODY(face_paint)>("face_paint", "Body", "", {0, 1},
-                           "Strength of the mannequin's painted brows, lashes and lips; 0 is a bare face."),
+                           "Strength of the mannequin's skin tone and painted brows, lashes and lips; 0: one colour."),
 };  // namespace
 }  // namespace app
 
