@@ -184,7 +184,7 @@ int convertCurves(const std::string& bytes, const Arguments& arguments) {
     std::cout << mend(arguments, hints, groom, options);
   }
   const app::Conversion conversion = app::convertGroom(groom, hints, options, arguments.in);
-  app::writeFile(arguments.out, app::writeHairMesh(conversion.shape));
+  app::writeFile(arguments.out, app::writeHairMesh(conversion.shape, conversion.look.columns));
   app::writeFile(arguments.preset, presetText(conversion.look, std::filesystem::path(arguments.out).stem().string()));
   std::cout << app::conversionReport(conversion) << "written       " << arguments.out << " and " << arguments.preset
             << "\n";

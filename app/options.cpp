@@ -162,13 +162,14 @@ void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
       "neck, chest; JSON as in a scene's \"attachments\"; none; may be given many times");
   group.values(
       "--map", options.maps, "FIELD=FILE",
-      "Paint stiffness, length, density, mass, bend, width, clump, curl, color, roughness or damping over the scalp: "
+      "Paint stiffness, length, density, mass, bend, width, clump, curl, frizz, color, roughness or damping over the "
+      "scalp: "
       "a PNG of the head unrolled, its front in the middle, white for the parameter's own value, or a mesh of the head "
       "with coloured vertices (OBJ, PLY, glTF, FBX); may be given many times");
-  group.values(
-      "--curve", options.curves, "FIELD=SHARES",
-      "Shares from root to tip of what --map paints, but length and density, with commas: stiffness=1,0.5,0.2, or "
-      "color=#ffffff,#a04020; may be given many times");
+  group.values("--curve", options.curves, "FIELD=SHARES",
+               "Shares from root to tip of what --map paints, but length, density and frizz, with commas: "
+               "stiffness=1,0.5,0.2, or "
+               "color=#ffffff,#a04020; may be given many times");
   group.values("--skip", options.skips, "NAME=on|off",
                "Switch a skip of the table, or all=off; may be given many times; --skips lists them");
   group.flag("--skips", unchecked.list_skips, "Print the table of skips and end");

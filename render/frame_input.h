@@ -65,6 +65,7 @@ struct LookShare {
   float width = 1, clump = 1, curl = 1;  // of strand_radius, clump, curl_radius
   float roughness = 1;                   // of the highlights' width along the strand (beta_m)
   Float3 color{1, 1, 1};                 // of the light that passes through pigment, linear
+  float frizz = 1;                       // of frizz; at the root alone
 
   bool operator==(const LookShare&) const = default;
 };

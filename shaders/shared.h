@@ -50,7 +50,7 @@ const int kTableTexels = 1;      // end strand, face, segments a layer (0: the h
 const int kColumnTexels = 4;     // rest position + last layer of the shortest bundle around, rest axes u and v, each
                                  // with the part of the way to bare skin along it; way of hair (m a layer, m a layer^2)
                                  // and distance to the hairline (m)
-const int kShareTexels = 2;      // shares of width, clump, curl and roughness; of colour
+const int kShareTexels = 2;      // shares of width, clump, curl and roughness; of colour; of frizz
 // Sizes of a lock and of a wisp over that of a clump.
 const float kLockSize = 3.2;
 const float kWispSize = 0.3;

@@ -30,7 +30,7 @@ void main() {
   Strand strand;
   strand.key = of.z;
   strand.clump_key = of.w;
-  strand.share = StrandShare(vec4(1.0, 1.0, 1.0, share.w), share.rgb);
+  strand.share = StrandShare(vec4(1.0, 1.0, 1.0, share.w), share.rgb, 1.0);
   vec4 place = points[kPointTexels * at], along = points[kPointTexels * at + 1], depths = points[kPointTexels * at + 2];
   CurvePoint point = CurvePoint(place.xyz, along.xyz, vec3(along.w, depths.xy), depths.zw, place.w);
   colors[first_color + at] = vec4(shadeStrand(strand, point), 0.0);

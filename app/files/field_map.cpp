@@ -60,10 +60,10 @@ std::string curveHint() {
   return names;
 }
 
-constexpr std::array kMapMembers{&FieldFiles::stiffness, &FieldFiles::length, &FieldFiles::density,
-                                 &FieldFiles::mass,      &FieldFiles::bend,   &FieldFiles::width,
-                                 &FieldFiles::clump,     &FieldFiles::curl,   &FieldFiles::color,
-                                 &FieldFiles::roughness, &FieldFiles::damping};
+constexpr std::array kMapMembers{&FieldFiles::stiffness, &FieldFiles::length,  &FieldFiles::density,
+                                 &FieldFiles::mass,      &FieldFiles::bend,    &FieldFiles::width,
+                                 &FieldFiles::clump,     &FieldFiles::curl,    &FieldFiles::color,
+                                 &FieldFiles::roughness, &FieldFiles::damping, &FieldFiles::frizz};
 static_assert(kMapMembers.size() == kFieldNames.size());
 
 using Curve = std::vector<double> FieldCurves::*;
@@ -156,6 +156,26 @@ sim::Vec3 directionOf(const FieldMap& map, int column, int row) {
   const double azimuth = 2 * std::numbers::pi * ((column + 0.5) / map.width - 0.5);
   const double polar = std::numbers::pi * (row + 0.5) / map.height;
   return {std::sin(polar) * std::sin(azimuth), std::cos(polar), std::sin(polar) * std::cos(azimuth)};
+}
+
+FieldMap fieldOver(std::span<const sim::Vec3> directions, std::span<const double> values) {
+  constexpr int kWidth = 128, kHeight = 64;
+  constexpr double kSoft = 0.05;  // rad: of the border between two of them
+  FieldMap map{kWidth, kHeight, {}, {}};
+  for (int row = 0; row < kHeight; ++row) {
+    for (int column = 0; column < kWidth; ++column) {
+      const sim::Vec3 here = directionOf(map, column, row);
+      double nearest = -1, sum = 0, weights = 0;
+      for (const sim::Vec3& direction : directions) nearest = std::max(nearest, direction.dot(here));
+      for (std::size_t k = 0; k < directions.size(); ++k) {
+        const double weight = std::exp((directions[k].dot(here) - nearest) / (kSoft * kSoft));
+        sum += weight * values[k];
+        weights += weight;
+      }
+      map.value.push_back(static_cast<float>(sum / weights));
+    }
+  }
+  return map;
 }
 
 double linearShare(double value) {
@@ -263,7 +283,9 @@ std::array<double, 3> colorAt(const std::vector<std::array<double, 3>>& curve, d
 }
 
 const std::vector<double>& curveOf(std::string_view name, const FieldCurves& curves) {
-  return curves.*findCurve(name);
+  static const std::vector<double> kNone;
+  const Curve curve = findCurve(name);
+  return curve ? curves.*curve : kNone;
 }
 
 namespace {

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,6 +36,9 @@ using ColorMap = std::array<FieldMap, 3>;
 double linearShare(double value);
 double pictureValue(double share);
 
+// The field that has these values in these directions from the head's middle (unit), and between them the nearest's.
+FieldMap fieldOver(std::span<const sim::Vec3> directions, std::span<const double> values);
+
 // The direction of a pixel's middle.
 sim::Vec3 directionOf(const FieldMap& map, int column, int row);
 
@@ -51,15 +55,16 @@ bool isPictureText(std::string_view picture);
 
 // The pictures that a character is painted with; empty: none.
 struct FieldFiles {
-  std::string stiffness, length, density, mass, bend, width, clump, curl, color, roughness, damping;
+  std::string stiffness, length, density, mass, bend, width, clump, curl, color, roughness, damping, frizz;
   bool operator==(const FieldFiles&) const = default;
 };
 
 // The notes of pictures that are files, a line each, with their names. Throws InputError.
 std::string mapNotes(const FieldFiles& maps);
 
-inline constexpr std::array<std::string_view, 11> kFieldNames{
-    "stiffness", "length", "density", "mass", "bend", "width", "clump", "curl", "color", "roughness", "damping"};
+inline constexpr std::array<std::string_view, 12> kFieldNames{"stiffness", "length",    "density", "mass",
+                                                              "bend",      "width",     "clump",   "curl",
+                                                              "color",     "roughness", "damping", "frizz"};
 // Those with a curve.
 inline constexpr std::array<std::string_view, 9> kCurveNames{"stiffness", "mass",  "bend",      "width",  "clump",
                                                              "curl",      "color", "roughness", "damping"};
@@ -84,7 +89,7 @@ inline constexpr double kLargestShare = 10;
 // At a share of the way from root to tip.
 double curveAt(const std::vector<double>& curve, double along);
 std::array<double, 3> colorAt(const std::vector<std::array<double, 3>>& curve, double along);
-// The curve of a name of kCurveNames but "color".
+// The curve of a field's name but "color"; empty for those that have none.
 const std::vector<double>& curveOf(std::string_view name, const FieldCurves& curves);
 
 // Throw InputError.

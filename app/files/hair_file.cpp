@@ -40,6 +40,7 @@ struct Stacker {
   void growColumns();
   void checkUse() const;
   sim::HairMeshShape shape() const;
+  std::vector<ColumnShare> shares() const;
   std::string placeOf(const std::string& place) const;
 };
 
@@ -189,6 +190,16 @@ sim::HairMeshShape Stacker::shape() const {
   return out;
 }
 
+std::vector<ColumnShare> Stacker::shares() const {
+  std::vector<ColumnShare> out;
+  for (const std::vector<int>& column : columns) {
+    if (obj.shares.empty()) break;
+    const sim::Vec3& of = obj.shares[column.front()];
+    out.push_back({of[0], of[1], of[2]});
+  }
+  return out;
+}
+
 // The line of the element that sim::MeshError names as "root face 3, layer 2, ..." or "column 4, layer 1".
 std::string Stacker::placeOf(const std::string& place) const {
   const auto numberAfter = [&](std::string_view word) {
@@ -256,7 +267,7 @@ void checkSize(const sim::HairMeshShape& shape, const std::string& file) {
 }  // namespace
 
 sim::HairMeshShape readHairMesh(std::string_view text, const std::string& file, bool reverse_faces,
-                                const char* reverse_switch, bool* turned) {
+                                const char* reverse_switch, bool* turned, std::vector<ColumnShare>* shares) {
   const ObjLayers obj = readObjLayers(text, file);
   Stacker stacker{file, obj};
   stacker.checkLayers();
@@ -265,6 +276,7 @@ sim::HairMeshShape readHairMesh(std::string_view text, const std::string& file, 
   stacker.growColumns();
   stacker.checkUse();
   sim::HairMeshShape shape = stacker.shape();
+  if (shares) *shares = stacker.shares();
   if (reverse_faces) reverse(shape);
   checkSize(shape, file);
   try {
@@ -284,7 +296,7 @@ sim::HairMeshShape readHairMesh(std::string_view text, const std::string& file, 
   return shape;
 }
 
-std::string writeHairMesh(const sim::HairMeshShape& shape) {
+std::string writeHairMesh(const sim::HairMeshShape& shape, std::span<const ColumnShare> shares) {
   std::string text =
       "# Hair mesh: one group a layer, layer_0 is the scalp. Metres, y up, z to the front of the head.\n"
       "# usemtl bundle_<n> names the bundle that a face belongs to.\n";
@@ -301,6 +313,8 @@ std::string writeHairMesh(const sim::HairMeshShape& shape) {
       appendLine(text, "v", shape.positions[v]);
       if (!shape.groom_offsets.empty() && !shape.groom_offsets[v].isZero(0))
         appendLine(text, "#groom_offset", shape.groom_offsets[v]);
+      if (l == 0 && !shares.empty())
+        appendLine(text, "#look_share", {shares[c].clump, shares[c].curl, shares[c].frizz});
     }
     for (std::size_t f = 0; f < shape.root_faces.size(); ++f) {
       const sim::RootFace& face = shape.root_faces[f];

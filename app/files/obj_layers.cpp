@@ -11,7 +11,8 @@ namespace app {
 namespace {
 
 constexpr double kLargestCoordinate = 1e3;  // m
-constexpr std::string_view kLayerPrefix = "layer_", kBundlePrefix = "bundle_", kOffsetPrefix = "#groom_offset ";
+constexpr std::string_view kLayerPrefix = "layer_", kBundlePrefix = "bundle_", kOffsetPrefix = "#groom_offset ",
+                           kSharePrefix = "#look_share ";
 
 bool isObjBlank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
@@ -45,6 +46,7 @@ struct ObjReader {
   sim::Vec3 threeCoordinates(std::string_view rest) const;
   void readVertex(std::string_view rest);
   void readOffset(std::string_view rest);
+  void readShare(std::string_view rest);
   int corner(std::string_view word) const;
   void readFace(std::string_view rest);
   void enterLayer(std::string_view rest);
@@ -79,6 +81,15 @@ void ObjReader::readOffset(std::string_view rest) {
   if (out.positions.empty()) fail("the groom offset belongs to no vertex", "put it after the vertex's line");
   out.offsets.resize(out.positions.size(), sim::Vec3::Zero());
   out.offsets.back() = threeCoordinates(rest);
+}
+
+void ObjReader::readShare(std::string_view rest) {
+  if (out.positions.empty()) fail("the look shares belong to no vertex", "put them after the vertex's line");
+  const sim::Vec3 share = threeCoordinates(rest);
+  if (share.minCoeff() < 0 || share.maxCoeff() > 1)
+    fail("the look shares are not from 0 to 1", "give those of clump, curl and frizz");
+  out.shares.resize(out.positions.size(), sim::Vec3::Ones());
+  out.shares.back() = share;
 }
 
 // "7", "7/1", "7//2", "7/1/2", or counted back from the last vertex: "-1". Vertices written further down are found out
@@ -127,6 +138,7 @@ void ObjReader::enterLayer(std::string_view rest) {
 
 void ObjReader::readLine(std::string_view text) {
   if (text.starts_with(kOffsetPrefix)) return readOffset(text.substr(kOffsetPrefix.size()));
+  if (text.starts_with(kSharePrefix)) return readShare(text.substr(kSharePrefix.size()));
   const std::string_view keyword = nextWord(text);
   if (keyword == "v") {
     readVertex(text);
@@ -155,6 +167,7 @@ ObjLayers readObjLayers(std::string_view text, const std::string& file) {
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   if (!reader.out.offsets.empty()) reader.out.offsets.resize(reader.out.positions.size(), sim::Vec3::Zero());
+  if (!reader.out.shares.empty()) reader.out.shares.resize(reader.out.positions.size(), sim::Vec3::Ones());
   const int count = static_cast<int>(reader.out.positions.size());
   for (const auto& [number, layer] : reader.out.layers) {
     for (const ObjFace& face : layer.faces) {

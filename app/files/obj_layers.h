@@ -27,6 +27,7 @@ struct ObjLayers {
   std::vector<sim::Vec3> positions;
   std::vector<int> position_lines;
   std::vector<sim::Vec3> offsets;  // of the vertices before lines "#groom_offset"; as many as positions, or none
+  std::vector<sim::Vec3> shares;   // 0 to 1, of clump, curl and frizz: likewise before lines "#look_share"
   std::map<int, ObjLayer> layers;  // by layer number
 };
 

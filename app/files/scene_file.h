@@ -60,6 +60,8 @@ struct CharacterSpec {
   CharacterLook look;
   // That of the hair whose place a file took; what the file tells of its strands goes over it. None: the scene's own.
   std::optional<render::HairLook> look_before;
+  FieldFiles maps_before;  // likewise
+  std::string fields_of;   // the file whose fields `maps` has
   std::vector<PinSpec> pins;
   std::vector<TieSpec> ties;
   std::vector<AttachmentSpec> attachments;

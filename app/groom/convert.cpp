@@ -134,26 +134,34 @@ void compareSilhouettes(const Groom& groom, const StrandSamples& samples, Conver
   out.silhouette = silhouetteOverlap(given, grownAtRoots(samples, out.fit, step));
   render::HairLook look;
   takeLook(out.look, look);
-  out.silhouette_drawn =
-      silhouetteOverlap(given, growGroom(out.shape, look, static_cast<int>(given.strandCount()), 2 * kSamples));
+  out.silhouette_drawn = silhouetteOverlap(
+      given, growGroom(out.shape, look, static_cast<int>(given.strandCount()), 2 * kSamples, out.look.columns));
+}
+
+// The part of the hair's roots, by columns, that have less than half of it; empty where all places are alike.
+std::string lessElsewhere(const LookFit& look, double ColumnShare::*share) {
+  std::ptrdiff_t less = 0, other = 0;
+  for (const ColumnShare& column : look.columns) less += column.*share < 0.5, other += column.*share < 1;
+  if (other == 0) return "";
+  const double part = 100.0 * static_cast<double>(less) / static_cast<double>(look.columns.size());
+  char text[80];
+  std::snprintf(text, sizeof text, " (less than half of it over %.0f %% of the scalp)", part);
+  return text;
 }
 
 std::string characterLine(const LookFit& look) {
   const StrandCharacter& all = look.all;
   std::string text = "strands       ";
-  char part[160];
+  char part[320];
   if (all.curl_radius > 0) {
-    double least = all.curl_radius, most = least;
-    for (const StrandCharacter& bundle : look.bundles) {
-      least = std::min(least, bundle.curl_radius);
-      most = std::max(most, bundle.curl_radius);
-    }
-    std::snprintf(part, sizeof part, "curls of %.1f mm (bundles: %.1f to %.1f), %.1f turns; ", 1e3 * all.curl_radius,
-                  1e3 * least, 1e3 * most, all.curl_turns);
+    std::snprintf(part, sizeof part, "curls of %.1f mm%s, %.1f turns; ", 1e3 * all.curl_radius,
+                  lessElsewhere(look, &ColumnShare::curl).c_str(), all.curl_turns);
     text += part;
   }
-  std::snprintf(part, sizeof part, "end up to %.0f %% early, wander %.1f mm, frizz %.1f mm, clumps closed by %.0f %%",
-                100 * all.length_variation, 1e3 * all.offset, 1e3 * all.frizz, 100 * all.clump);
+  std::snprintf(
+      part, sizeof part, "end up to %.0f %% early, wander %.1f mm, frizz %.1f mm%s, clumps closed by %.0f %%%s",
+      100 * all.length_variation, 1e3 * all.offset, 1e3 * all.frizz, lessElsewhere(look, &ColumnShare::frizz).c_str(),
+      100 * all.clump, lessElsewhere(look, &ColumnShare::clump).c_str());
   text += part;
   if (look.taper >= 0) {
     std::snprintf(part, sizeof part, ", tips %.2f as thick as roots", look.taper);

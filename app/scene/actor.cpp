@@ -10,6 +10,7 @@
 #include "app/scene/attachments.h"
 #include "app/scene/detail/sleep.h"
 #include "app/scene/frame_stats.h"
+#include "app/scene/hair_from_file.h"
 #include "app/scene/haircuts.h"
 #include "app/scene/sim_to_render.h"
 #include "app/scene/step_colliders.h"
@@ -184,6 +185,8 @@ Actor makeActor(const CharacterSpec& spec, const PlaybackSpec& playback, AssetCa
   for (const Attachment* mesh : attach(spec, body, asset_cache)) actor.worn.push_back({mesh, freshId()});
   if (actor.haircut->look)
     takeUnset(*actor.haircut->look, spec.look_before.value_or(render::HairLook{}), actor.spec.look.hair);
+  actor.spec.maps = withFields(*actor.haircut, spec);
+  actor.spec.fields_of = spec.hair;
   actor.scalp = &coverScalp(body, *actor.haircut, asset_cache);
   actor.clip = findClip(spec, actor.body->character);
   actor.id = freshId();

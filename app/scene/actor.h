@@ -53,10 +53,12 @@ struct LoadedBody {
 
 // A hair mesh, built once whatever the number of actors that wear it.
 struct Haircut {
-  std::string key;
+  std::string key,
+      key_with_fields;  // of what it was made of; the same once an actor has the fields that its file brings
   std::uint64_t id = 0;
   std::string note;                     // what was found of a file that does not fit the head, or was converted
   std::optional<LookFit> look;          // of a groom's strands
+  FieldFiles fields;                    // of the look, that the hair's file brings
   std::vector<MendedFinding> findings;  // of a groom, what the inspector says
   sim::HairMesh mesh;
   std::vector<HairTie> ties;   // where they are

@@ -1,11 +1,13 @@
 #include "app/scene/hair_from_file.h"
 
 #include <algorithm>
+#include <array>
 
 #include "app/figure/hair_fit.h"
 #include "app/figure/head_model.h"
 #include "app/figure/strip_fit.h"
 #include "app/files/errors.h"
+#include "app/files/field_map.h"
 #include "app/files/file_kind.h"
 #include "app/files/hair_file.h"
 #include "app/files/polygon_file.h"
@@ -71,12 +73,37 @@ std::string placeAsTold(const std::string& wishes, ToldPlace& told, sim::HairMes
                        : "of a hair mesh \"mends\" are --unit, --up, --turn, --scale and --move; others change nothing";
 }
 
+struct BroughtField {
+  std::string FieldFiles::*picture;
+  double ColumnShare::*share;
+};
+constexpr std::array kBrought{BroughtField{&FieldFiles::clump, &ColumnShare::clump},
+                              BroughtField{&FieldFiles::curl, &ColumnShare::curl},
+                              BroughtField{&FieldFiles::frizz, &ColumnShare::frizz}};
+
+// Shares of the columns as pictures of the unrolled head; none of what is 1 everywhere.
+FieldFiles fieldsOf(const std::vector<ColumnShare>& shares, const sim::HairMeshShape& shape, const Scalp& scalp) {
+  FieldFiles fields;
+  std::vector<Vec3> directions;
+  for (std::size_t c = 0; c < shares.size(); ++c)
+    directions.push_back(
+        (shape.positions[static_cast<std::size_t>(shape.column_first[c])] - scalp.center).normalized());
+  for (const BroughtField& field : kBrought) {
+    std::vector<double> values;
+    for (const ColumnShare& share : shares) values.push_back(share.*field.share);
+    if (std::ranges::any_of(values, [](double value) { return value < 1; }))
+      fields.*field.picture = pictureText(fieldOver(directions, values));
+  }
+  return fields;
+}
+
 }  // namespace
 
 sim::HairMeshShape hairFromFile(const CharacterSpec& spec, const Character& character, Haircut& haircut) {
   sim::HairMeshShape shape;
   bool on_head = false;
   ToldPlace told;
+  std::vector<ColumnShare> shares;
   const auto note = [&](const std::string& text) {
     if (!text.empty()) haircut.note += (haircut.note.empty() ? spec.hair + ": " : "; ") + text;
   };
@@ -85,6 +112,7 @@ sim::HairMeshShape hairFromFile(const CharacterSpec& spec, const Character& char
   if (groomFormat(bytes, spec.hair)) {
     const Conversion conversion = convertMended(bytes, spec, character, haircut, on_head);
     haircut.look = conversion.look;
+    shares = conversion.look.columns;
     shape = conversion.shape;
     note(conversionWarning(conversion));
     note(mendedBy(haircut));
@@ -105,18 +133,35 @@ sim::HairMeshShape hairFromFile(const CharacterSpec& spec, const Character& char
     refuseUtf16(bytes, spec.hair);
     if (!hasLayers(bytes)) refuseNoHair(spec.hair);
     bool turned = false;
-    shape = readHairMesh(bytes, spec.hair, spec.reverse_faces, "", &turned);
+    shape = readHairMesh(bytes, spec.hair, spec.reverse_faces, "", &turned, &shares);
     if (turned) note("all its faces were wound the other way, and are turned");
     if (!spec.mends.empty()) note(placeAsTold(spec.mends, told, shape));
   }
   if (!on_head) note(fitHair(character, spec.fit, shape, told));
+  haircut.fields = fieldsOf(shares, shape, character.scalp);
   return shape;
 }
 
+FieldFiles withFields(const Haircut& haircut, const CharacterSpec& spec) {
+  FieldFiles maps = spec.maps;
+  if (spec.fields_of == spec.hair) return maps;
+  for (const auto& [picture, share] : kBrought) {
+    const std::string &own = maps.*picture, &brought = haircut.fields.*picture;
+    if ((haircut.look || !brought.empty()) && (own.empty() || own == spec.maps_before.*picture))
+      maps.*picture = brought;
+  }
+  return maps;
+}
+
 void chooseHair(const std::string& file, CharacterSpec& spec) {
-  if (spec.look_before) dropLook(*spec.look_before, spec.look.hair);
+  if (spec.look_before) {
+    dropLook(*spec.look_before, spec.look.hair);
+    for (const auto& [picture, share] : kBrought) spec.maps.*picture = spec.maps_before.*picture;
+  }
   spec.look_before.reset();
-  if (!file.empty()) spec.look_before = spec.look.hair;
+  spec.maps_before = {};
+  spec.fields_of.clear();
+  if (!file.empty()) spec.look_before = spec.look.hair, spec.maps_before = spec.maps;
   spec.hair = file;
 }
 

@@ -309,14 +309,17 @@ void bindGroom(const sim::HairMeshShape& loaded, Haircut& haircut) {
 const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& asset_cache) {
   const std::string title = spec.hair.empty() ? styleTitle(spec) : spec.hair + (spec.reverse_faces ? " reversed" : "");
   const std::string ties = spec.ties.empty() ? "" : " tied " + writeTies(spec.ties).dump();
-  std::string painted = writeCurves(spec.curves).dump();
-  for (const std::string_view field : kFieldNames) painted += "|" + mapOf(field, spec.maps);
   const std::vector<const Attachment*> worn = attach(spec, body, asset_cache);
   std::string under = spec.brushed.empty() ? "" : "|brushed" + std::to_string(sim::fingerprint(spec.brushed));
   for (const Attachment* attachment : worn) under += "|" + attachment->key;
-  const std::string key = body.key + "|" + title + (spec.fit ? " fitted " : "") + spec.mends + ties + painted + under;
+  const auto keyOf = [&](const FieldFiles& maps, bool has_fields) {
+    std::string painted = writeCurves(spec.curves).dump() + (has_fields ? "" : "|its file's fields");
+    for (const std::string_view field : kFieldNames) painted += "|" + mapOf(field, maps);
+    return body.key + "|" + title + (spec.fit ? " fitted " : "") + spec.mends + ties + painted + under;
+  };
+  const std::string key = keyOf(spec.maps, spec.fields_of == spec.hair);
   for (const auto& haircut : asset_cache.haircuts) {
-    if (haircut->key == key) return *haircut;
+    if (haircut->key == key || haircut->key_with_fields == key) return *haircut;
   }
   auto haircut = std::make_unique<Haircut>();
   haircut->key = key;
@@ -336,12 +339,14 @@ const Haircut& cutHair(const CharacterSpec& spec, LoadedBody& body, AssetCache& 
   } catch (const sim::MeshError& error) {
     refuseHair(spec, title, body.character.scalp, shape, *haircut, error);
   }
+  haircut->key_with_fields = keyOf(withFields(*haircut, spec), true);
   if (const std::string notes = mapNotes(spec.maps); !notes.empty()) addNote(notes, *haircut);
   haircut->faces = renderFaces(haircut->mesh);
   markCovered(*haircut, haircut->faces);
   if (!spec.maps.density.empty())
     paintDensity(readFieldMap(spec.maps.density), body.character.scalp, haircut->mesh, haircut->faces);
-  haircut->look_shares = paintedLook(spec.maps, spec.curves, body.character.scalp, haircut->mesh.shape);
+  haircut->look_shares =
+      paintedLook(withFields(*haircut, spec), spec.curves, body.character.scalp, haircut->mesh.shape);
   if (!spec.ties.empty()) {
     noteLengthened(spec, shortOfRing(shape, body.character.scalp, haircut->ties), *haircut);
     shape = haircut->mesh.shape;

@@ -223,7 +223,8 @@ void paintRow(UiState& ui) {
   row({{"Curl", "Paints how wide the curls are, as a share; without curls nothing shows"},
        {"Color", "Paints a pigment over the hair's own color"},
        {"Rough", "Paints how wide the highlights are, as a share"},
-       {"Damp", "Paints how soon the hair's own motion dies away, as a share of the parameters' damping"}},
+       {"Damp", "Paints how soon the hair's own motion dies away, as a share of the parameters' damping"},
+       {"Frizz", "Paints the frizz's height, as a share"}},
       7);
 }
 

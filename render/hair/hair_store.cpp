@@ -64,7 +64,7 @@ long uploadStyle(HairStyle& style, std::vector<float>& texels) {
   for (const auto* shares : {&style.layout.root_shares, &style.layout.along_shares}) {
     for (const LookShare& share : *shares)
       texels.insert(texels.end(), {share.width, share.clump, share.curl, share.roughness, share.color[0],
-                                   share.color[1], share.color[2], 0});
+                                   share.color[1], share.color[2], share.frizz});
   }
   for (std::size_t i = 0; i < style.layout.faces.size(); ++i) {
     texels.insert(texels.end(),

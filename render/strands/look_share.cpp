@@ -12,11 +12,12 @@ LookShare added(const LookShare& to, float by, const LookShare& from) {
   share.clump += by * from.clump;
   share.curl += by * from.curl;
   share.roughness += by * from.roughness;
+  share.frizz += by * from.frizz;
   for (std::size_t c = 0; c < 3; ++c) share.color[c] += by * from.color[c];
   return share;
 }
 
-constexpr LookShare kNone{0, 0, 0, 0, {0, 0, 0}};
+constexpr LookShare kNone{0, 0, 0, 0, {0, 0, 0}, 0};
 
 }  // namespace
 

@@ -210,7 +210,7 @@ void StrandGrowth::joinGroups(const Root& root, Strand& strand) const {
   strand.wisp = kWispSize * size * inPlane(wisp.gap);
   strand.fan =
       2.718282f * look_.root_spread * std::sqrt(randomOf(strand.key, 32u)) * onCircle(randomOf(strand.key, 33u));
-  const float frizzy = std::min(look_.frizz * 200.0f, 0.8f) * randomOf(strand.key, 24u);
+  const float frizzy = std::min(look_.frizz * strand.share.frizz * 200.0f, 0.8f) * randomOf(strand.key, 24u);
   strand.hold = (1.0f - strand.loose) * (1.0f - frizzy) * (0.75f + 0.25f * randomOf(strand.key, 5u));
 }
 
@@ -376,7 +376,7 @@ void StrandGrowth::addWave(const Strand& strand, const Vector2f& way, Vector4f& 
 }
 
 void StrandGrowth::addFrizz(const Strand& strand, const Vector2f& way, Vector4f& bend) const {
-  const float own = randomOf(strand.key, 28u), reach = look_.frizz * (0.3f + 1.7f * own * own);
+  const float own = randomOf(strand.key, 28u), reach = look_.frizz * strand.share.frizz * (0.3f + 1.7f * own * own);
   const Vector2f open = opening(way, 0.03f);
   for (uint axis = 0; axis < 2; ++axis)
     addSwing(bend, axis == 0 ? Vector2f(reach, 0.0f) : Vector2f(0.0f, reach), open,

@@ -196,7 +196,7 @@ void joinGroups(in Root root, inout Strand strand) {
   strand.wisp = kWispSize * size * inPlane(root, wisp.gap);
   strand.fan = 2.718282 * variation.x * sqrt(randomOf(strand.key, 32u)) * onCircle(randomOf(strand.key, 33u));
   // Frizzy hairs leave their groups.
-  float frizzy = min(clumping.z * 200.0, 0.8) * randomOf(strand.key, 24u);
+  float frizzy = min(clumping.z * strand.share.frizz * 200.0, 0.8) * randomOf(strand.key, 24u);
   strand.hold = (1.0 - strand.loose) * (1.0 - frizzy) * (0.75 + 0.25 * randomOf(strand.key, 5u));
 }
 

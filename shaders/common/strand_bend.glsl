@@ -66,7 +66,7 @@ void addWave(in Strand strand, vec2 way, inout vec4 bend) {
 
 // Noise of each hair's own: most have little of it, some much.
 void addFrizz(in Strand strand, vec2 way, inout vec4 bend) {
-  float own = randomOf(strand.key, 28u), reach = clumping.z * (0.3 + 1.7 * own * own);
+  float own = randomOf(strand.key, 28u), reach = clumping.z * strand.share.frizz * (0.3 + 1.7 * own * own);
   vec2 open = opening(way, 0.03);
   addSwing(bend, vec2(reach, 0.0), open,
            swingAngle(way, 0.025 + 0.05 * randomOf(strand.key, 14u), randomOf(strand.key, 16u)));

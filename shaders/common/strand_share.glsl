@@ -1,19 +1,22 @@
 // Painted shares of the look (LookShare): a strand has those of its root, linear between the columns of its face, times
-// those of its place from root to tip. Without any, shares.x is 0 and all are 1.
+// those of its place from root to tip; of frizz those of its root alone. Without any, shares.x is 0 and all are 1.
 
 struct StrandShare {
   vec4 of;     // width, clump, curl radius, roughness
   vec3 color;  // of the light that passes through pigment
+  float frizz;
 };
 
 StrandShare shareOfRoot(ivec4 columns, int corners, vec4 blend) {
-  StrandShare share = StrandShare(vec4(1.0), vec3(1.0));
+  StrandShare share = StrandShare(vec4(1.0), vec3(1.0), 1.0);
   if (shares.x == 0) return share;
-  share = StrandShare(vec4(0.0), vec3(0.0));
+  share = StrandShare(vec4(0.0), vec3(0.0), 0.0);
   for (int k = 0; k < corners; ++k) {
     int at = shares.x + columns[k] * kShareTexels;
     share.of += blend[k] * texelFetch(layout_texels, at);
-    share.color += blend[k] * texelFetch(layout_texels, at + 1).rgb;
+    vec4 second = texelFetch(layout_texels, at + 1);
+    share.color += blend[k] * second.rgb;
+    share.frizz += blend[k] * second.a;
   }
   return share;
 }

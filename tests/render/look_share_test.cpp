@@ -36,6 +36,7 @@ struct Painted {
     input.rest = hair.positions;
     input.shares = {roots, along};
     input.look.curl_radius = 0.004f;
+    input.look.frizz = 0.001f;
     return input;
   }
   render::StrandGrowth growth(int strands) const {
@@ -44,7 +45,7 @@ struct Painted {
   }
 };
 
-const LookShare kLeft{0.4f, 0.2f, 0.1f, 0.5f, {1, 0.5f, 0.2f}};
+const LookShare kLeft{0.4f, 0.2f, 0.1f, 0.5f, {1, 0.5f, 0.2f}, 0.3f};
 const std::vector<LookShare> kAlong{{1.5f, 1, 0.5f, 1, {1, 1, 1}}, {0.7f, 0.4f, 1.6f, 0.6f, {0.3f, 0.8f, 1}}, {}};
 
 class LookShares : public gl_fixture::GlTest {};
@@ -99,13 +100,13 @@ TEST_F(LookShares, TheCpuGrowsWhatTheShadersDraw) {
 }
 
 TEST(LookShare, ActsWhereItIsPainted) {
-  const Painted painted({0.3f, 1, 0, 1, {0, 1, 1}}, {});
+  const Painted painted({0.3f, 1, 0, 1, {0, 1, 1}, 0}, {});
   const render::StrandGrowth growth = painted.growth(2000);
   Painted straight = painted;
   straight.roots.clear();
   render::HairInput input = straight.input(2000);
   const render::StrandGrowth curled(input.faces, input.rest, 2000, input.segments_per_layer, input.look);
-  input.look.curl_radius = 0;
+  input.look.curl_radius = input.look.frizz = 0;
   const render::StrandGrowth plain(input.faces, input.rest, 2000, input.segments_per_layer, input.look);
   std::vector<render::CurvePoint> points(40), with(40), without(40);
   int left = 0, right = 0;

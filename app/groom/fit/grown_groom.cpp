@@ -60,7 +60,8 @@ float faceArea(const sim::HairMeshShape& shape, const sim::RootFace& face) {
 
 }  // namespace
 
-Groom growGroom(const sim::HairMeshShape& shape, const render::HairLook& look, int strands, int points) {
+Groom growGroom(const sim::HairMeshShape& shape, const render::HairLook& look, int strands, int points,
+                std::span<const ColumnShare> shares) {
   std::vector<render::HairFace> faces;
   for (const sim::RootFace& face : shape.root_faces) {
     render::HairFace& out = faces.emplace_back();
@@ -76,7 +77,14 @@ Groom growGroom(const sim::HairMeshShape& shape, const render::HairLook& look, i
         shape.positions[v] + (shape.groom_offsets.empty() ? sim::Vec3::Zero().eval() : shape.groom_offsets[v]);
     for (int k = 0; k < 3; ++k) positions.push_back(static_cast<float>(grows_at[k]));
   }
-  render::StrandGrowth growth(faces, positions, strands, 3, look);
+  std::vector<render::LookShare> roots(shares.empty() ? 0 : shape.positions.size());
+  for (std::size_t c = 0; c < shares.size(); ++c) {
+    render::LookShare& root = roots[static_cast<std::size_t>(shape.column_first[c])];
+    root.clump = static_cast<float>(shares[c].clump);
+    root.curl = static_cast<float>(shares[c].curl);
+    root.frizz = static_cast<float>(shares[c].frizz);
+  }
+  render::StrandGrowth growth(faces, positions, strands, 3, look, {roots, {}});
   growth.setPositions(positions);
   Groom groom;
   std::vector<render::CurvePoint> curve(static_cast<std::size_t>(points));

@@ -1,6 +1,9 @@
 // The strands that grow from a hair mesh at rest, as a groom.
 #pragma once
 
+#include <span>
+
+#include "app/files/hair_file.h"
 #include "app/groom/groom.h"
 #include "render/frame_input.h"
 #include "sim/mesh/hair_mesh.h"
@@ -8,7 +11,9 @@
 namespace app {
 
 // About `strands` of them with `points` points each, dealt out over the faces by area as when they are drawn; metres.
-Groom growGroom(const sim::HairMeshShape& shape, const render::HairLook& look, int strands, int points);
+// `shares`: of the look, one a column, or none.
+Groom growGroom(const sim::HairMeshShape& shape, const render::HairLook& look, int strands, int points,
+                std::span<const ColumnShare> shares = {});
 
 // Every nth strand, so that there are at most `most`.
 Groom someStrands(const Groom& groom, std::size_t most);

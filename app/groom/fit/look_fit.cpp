@@ -6,6 +6,7 @@
 #include <cmath>
 #include <complex>
 #include <deque>
+#include <limits>
 #include <map>
 #include <numbers>
 
@@ -25,7 +26,9 @@ constexpr double kClearCurl = 0.5;        // of a strand's wander that one rotat
 // The share of length_variation by which a strand ends early, in the mean: 0.4 u^2 + 0.25 u + 0.2 u of random u, and
 // 0.15 of the squared distance from a clump's middle (shaders/common/strand.glsl; 0.48 measured).
 constexpr double kMeanEarly = 0.4 / 3 + 0.25 / 2 + 0.2 / 2 + 0.15 * 0.48;
-constexpr std::size_t kMinBundleStrands = 5;  // strands of a bundle
+constexpr std::size_t kMinColumnStrands = 8, kMinColumnPairs = 20, kMinPairs = 30;
+constexpr double kOwn = 0.7;  // of a strand's frizz that the nearest neighbour does not share, where it is its own
+constexpr double kOtherFrizz = 0.0004, kOtherClump = 0.25;  // m, 0..1: less is no difference between places
 // Root mean square of frizz and offset over a strand, in their own amplitudes: of grow(t) = t (1.6 - 0.6 t), two sines,
 // and a disc (shaders/common/strand.glsl).
 constexpr double kFrizzSpread = 0.667, kOffsetSpread = 0.31;
@@ -39,6 +42,7 @@ struct StrandMeasure {
   int face = 0;
   double radius = 0, turns = 0;  // of its clearest rotation; 0: none
   double frizz = 0;              // m, root mean square of what is left by more than three turns
+  double own_frizz = -1;         // the same, 0 where a neighbour shares it: the hair mesh misses it; -1: it has none
   double wander = -1;            // the same by less, of its own: not shared with a neighbour; -1: it has none
   double along = 0;              // m, of the strand that grows in its place without curls
   double length_share = 1;       // of what is usual where it roots
@@ -128,10 +132,10 @@ double rootMeanSquare(const std::vector<std::complex<double>>& way) {
   return std::sqrt(square);
 }
 
-// By less than three turns, m.
-double slowPart(const std::vector<std::complex<double>>& way) {
+// By less than three turns, and by more, m.
+std::array<double, 2> slowAndQuick(const std::vector<std::complex<double>>& way) {
   const double quick = rootMeanSquare(quickPart(way, kQuickTurns)), all = rootMeanSquare(way);
-  return std::sqrt(std::max(0.0, all * all - quick * quick));
+  return {std::sqrt(std::max(0.0, all * all - quick * quick)), quick};
 }
 
 void measureTurns(const std::vector<std::complex<double>>& way, StrandMeasure& measure) {
@@ -186,22 +190,118 @@ StrandCharacter summary(const std::vector<const StrandMeasure*>& of) {
 }
 
 // How much nearer strands of neighbouring roots are to each other than the grown ones, where clumps are closed.
-double clumpOf(const StrandSamples& strands, const HairFit& fit, const GrowthMap& growth) {
+struct Nearness {
+  int face = 0;
+  float ratio = 1;
+};
+
+std::vector<Nearness> measureNearness(const StrandSamples& strands, const HairFit& fit, const GrowthMap& growth) {
   std::map<std::array<int, 3>, std::size_t> seen;
-  std::vector<float> ratios;
+  std::vector<Nearness> all;
   const std::size_t at = static_cast<std::size_t>(kClumpClosed * (strands.count - 1));
   std::vector<Vector3f> one(static_cast<std::size_t>(strands.count)), other = one;
-  for (std::size_t s = 0; s < strands.strandCount() && ratios.size() < kMaxLooked; ++s) {
+  for (std::size_t s = 0; s < strands.strandCount() && all.size() < kMaxLooked; ++s) {
     const Vector3f root = strands.strand(s)[0];
     const auto [entry, added] = seen.try_emplace(cellOf(root, kNearRoots), s);
     if (added) continue;
     growStrand(fit, growth, fit.strands[s], one);
     growStrand(fit, growth, fit.strands[entry->second], other);
     const float grown = (one[at] - other[at]).norm();
-    if (grown > 1e-5f) ratios.push_back((strands.strand(s)[at] - strands.strand(entry->second)[at]).norm() / grown);
+    if (grown > 1e-5f)
+      all.push_back(
+          {fit.strands[s].root.face, (strands.strand(s)[at] - strands.strand(entry->second)[at]).norm() / grown});
     entry->second = s;
   }
-  return ratios.size() < 30 ? 0 : std::clamp(1 - quantile(ratios, 0.5), 0.0, 1.0);
+  return all;
+}
+
+double clumpOf(const std::vector<float>& ratios) {
+  return std::clamp(1 - quantile(ratios, 0.5), 0.0, 1.0);
+}
+
+// One list a column of those whose bundle it is a corner of.
+template <class Entry>
+std::vector<std::vector<Entry>> byColumn(const std::vector<Entry>& entries, const sim::HairMeshShape& shape,
+                                         const auto& face_of) {
+  std::vector<std::vector<Entry>> lists(static_cast<std::size_t>(shape.columnCount()));
+  for (const Entry& entry : entries) {
+    const sim::RootFace& face = shape.root_faces[static_cast<std::size_t>(face_of(entry))];
+    for (int k = 0; k < face.corner_count; ++k)
+      lists[static_cast<std::size_t>(face.columns[static_cast<std::size_t>(k)])].push_back(entry);
+  }
+  return lists;
+}
+
+// Negative values become that of the nearest column with one. False where none has one.
+bool fillGaps(const sim::HairMeshShape& shape, std::vector<double>& values) {
+  const std::vector<double> known = values;
+  const auto root = [&](std::size_t c) { return shape.positions[static_cast<std::size_t>(shape.column_first[c])]; };
+  bool any = false;
+  for (std::size_t c = 0; c < values.size(); ++c) {
+    double nearest = std::numeric_limits<double>::max();
+    for (std::size_t other = 0; known[c] < 0 && other < known.size(); ++other) {
+      const double apart = (root(c) - root(other)).squaredNorm();
+      if (known[other] < 0 || apart >= nearest) continue;
+      nearest = apart;
+      values[c] = known[other];
+    }
+    any = any || values[c] >= 0;
+  }
+  return any;
+}
+
+// Whether values differ by more than `least` and two fifths from a seventh of the places or more to as many others;
+// `most`: what the others have. Fewer may be what the hair mesh misses.
+bool differ(const std::vector<double>& values, double least, double& most) {
+  const std::vector<float> sorted(values.begin(), values.end());
+  const double low = quantile(sorted, 0.14);
+  most = quantile(sorted, 0.86);
+  return most - low > least && low < 0.6 * most;
+}
+
+double shareOf(double value, double most) {
+  return std::round(1e3 * std::min(1.0, value / most)) / 1e3;
+}
+
+// Where clumps, curls or frizz differ from place to place, `look.all` becomes what most places do not exceed.
+void fitPlaces(const std::vector<StrandMeasure>& measures, const std::vector<Nearness>& nearness,
+               const sim::HairMeshShape& shape, LookFit& look) {
+  std::vector<double> clump, curl, frizz;
+  std::vector<const StrandMeasure*> all;
+  for (const StrandMeasure& measure : measures) all.push_back(&measure);
+  const auto around = byColumn(all, shape, [](const StrandMeasure* one) { return one->face; });
+  for (const std::vector<const StrandMeasure*>& of : around) {
+    const bool enough = of.size() >= kMinColumnStrands;
+    std::vector<float> own;
+    for (const StrandMeasure* one : of)
+      if (one->own_frizz >= 0) own.push_back(static_cast<float>(one->own_frizz));
+    curl.push_back(enough ? summary(of).curl_radius : -1);
+    frizz.push_back(own.size() >= kMinColumnStrands ? quantile(own, 0.5) / kFrizzSpread : -1);
+  }
+  for (const std::vector<Nearness>& of : byColumn(nearness, shape, [](const Nearness& one) { return one.face; })) {
+    std::vector<float> ratios;
+    for (const Nearness& one : of) ratios.push_back(one.ratio);
+    clump.push_back(ratios.size() >= kMinColumnPairs ? clumpOf(ratios) : -1);
+  }
+  look.columns.assign(around.size(), {});
+  bool any = false;
+  const auto take = [&](std::vector<double>& values, double least, double& of_all, double ColumnShare::*share) {
+    double most = 0;
+    if (!fillGaps(shape, values) || !differ(values, least, most)) return false;
+    of_all = most;
+    for (std::size_t c = 0; c < values.size(); ++c) look.columns[c].*share = shareOf(values[c], most);
+    return any = true;
+  };
+  if (take(curl, kSmallestCurl, look.all.curl_radius, &ColumnShare::curl)) {
+    std::vector<const StrandMeasure*> curled;
+    for (std::size_t c = 0; c < around.size(); ++c)
+      if (look.columns[c].curl > 0.5) curled.insert(curled.end(), around[c].begin(), around[c].end());
+    const StrandCharacter there = summary(curled);
+    look.all.curl_turns = there.curl_turns, look.all.curl_pitch = there.curl_pitch;
+  }
+  take(frizz, kOtherFrizz, look.all.frizz, &ColumnShare::frizz);
+  take(clump, kOtherClump, look.all.clump, &ColumnShare::clump);
+  if (!any) look.columns.clear();
 }
 
 void measureWidths(const Groom& groom, double scale, LookFit& look) {
@@ -221,8 +321,10 @@ void measureWidths(const Groom& groom, double scale, LookFit& look) {
 
 }  // namespace
 
-LookFit fitLook(const Groom& groom, double scale, const StrandSamples& strands, const HairFit& fit) {
-  const GrowthMap growth(fit.shape);
+namespace {
+
+std::vector<StrandMeasure> measureStrands(const Groom& groom, double scale, const StrandSamples& strands,
+                                          const HairFit& fit, const GrowthMap& growth) {
   const std::size_t step = std::max<std::size_t>(1, strands.strandCount() / kMaxLooked);
   std::vector<StrandMeasure> measures;
   std::vector<Vector3f> given, strand(kFitPoints), grown(kFitPoints);
@@ -239,33 +341,40 @@ LookFit fitLook(const Groom& groom, double scale, const StrandSamples& strands, 
         std::min(1.0, static_cast<double>(fit.strands[s].end) / static_cast<double>(fit.knots.size() - 1));
     measure.along = lineLength(grown);
     measureTurns(wander(strand, grown), measure);
+    double least_quick = -1;
     // What the hair mesh misses of a whole wisp is no wander of its strands.
     auto& missed_near = missed[cellOf(strand[0], kNearFit)];
     for (const std::vector<Vector3f>& near : missed_near) {
       std::vector<Vector3f> own = strand;
       for (std::size_t k = 0; k < own.size(); ++k) own[k] -= near[k];
-      const double wander_here = slowPart(wander(own, grown)) / std::numbers::sqrt2;
+      const auto [slow, quick] = slowAndQuick(wander(own, grown));
+      const double wander_here = slow / std::numbers::sqrt2;
       measure.wander = measure.wander < 0 ? wander_here : std::min(measure.wander, wander_here);
+      const double quick_here = quick / std::numbers::sqrt2;
+      least_quick = least_quick < 0 ? quick_here : std::min(least_quick, quick_here);
     }
+    if (least_quick >= 0) measure.own_frizz = least_quick > kOwn * measure.frizz ? measure.frizz : 0;
     std::vector<Vector3f>& fresh = missed_near.emplace_back(strand);
     for (std::size_t k = 0; k < fresh.size(); ++k) fresh[k] -= grown[k];
     if (missed_near.size() > kMaxShared) missed_near.pop_front();
   }
+  return measures;
+}
+
+}  // namespace
+
+LookFit fitLook(const Groom& groom, double scale, const StrandSamples& strands, const HairFit& fit) {
+  const GrowthMap growth(fit.shape);
+  const std::vector<StrandMeasure> measures = measureStrands(groom, scale, strands, fit, growth);
+  const std::vector<Nearness> nearness = measureNearness(strands, fit, growth);
   LookFit look;
   std::vector<const StrandMeasure*> all;
-  std::map<int, std::vector<const StrandMeasure*>> of_face;
-  for (const StrandMeasure& measure : measures) {
-    all.push_back(&measure);
-    of_face[measure.face].push_back(&measure);
-  }
+  for (const StrandMeasure& measure : measures) all.push_back(&measure);
   look.all = summary(all);
-  look.all.clump = clumpOf(strands, fit, growth);
-  look.bundles.assign(fit.shape.root_faces.size(), look.all);
-  for (const auto& [face, of] : of_face) {
-    if (of.size() < kMinBundleStrands) continue;
-    StrandCharacter& bundle = look.bundles[static_cast<std::size_t>(face)] = summary(of);
-    bundle.clump = look.all.clump;
-  }
+  std::vector<float> ratios;
+  for (const Nearness& one : nearness) ratios.push_back(one.ratio);
+  if (ratios.size() >= kMinPairs) look.all.clump = clumpOf(ratios);
+  fitPlaces(measures, nearness, fit.shape, look);
   measureWidths(groom, scale, look);
   return look;
 }

@@ -3,12 +3,13 @@
 
 #include <vector>
 
+#include "app/files/hair_file.h"
 #include "app/groom/fit/groom_fit.h"
 #include "render/frame_input.h"
 
 namespace app {
 
-// Of all strands, or of one bundle.
+// Of all strands, or of those around one column.
 struct StrandCharacter {
   int strands = 0;                            // that it was measured on
   double length_variation = 0;                // share of their length by which strands end early, at most
@@ -20,7 +21,8 @@ struct StrandCharacter {
 
 struct LookFit {
   StrandCharacter all;
-  std::vector<StrandCharacter> bundles;  // per root face; those of fewer than five strands are as `all`
+  // One a column, of `all`, where strands differ from place to place; empty: they are alike everywhere.
+  std::vector<ColumnShare> columns;
   double taper = -1, radius = -1;        // as render::HairLook; negative: the groom has no widths
 };
 

@@ -144,7 +144,8 @@ bool samePaint(const CharacterSpec& a, const CharacterSpec& b) {
 bool sameCast(const CharacterSpec& a, const CharacterSpec& b) {
   const auto cast = [](const CharacterSpec& spec) {
     const auto& [motion, parts, clip, style, resolution, hair, reverse_faces, fit, mends, position, heading,
-                 clip_offset, loop, look, look_before, pins, ties, attachments, maps, curves, brushed] = spec;
+                 clip_offset, loop, look, look_before, maps_before, fields_of, pins, ties, attachments, maps, curves,
+                 brushed] = spec;
     return std::tuple(motion, parts, clip, style, resolution, hair, reverse_faces, fit, mends, position.x(),
                       position.y(), position.z(), heading, loop, writeTies(ties).dump(), wornText(attachments));
   };

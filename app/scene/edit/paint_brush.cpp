@@ -264,6 +264,7 @@ std::string paintNote(const std::string& field, const CharacterSpec& spec) {
   const render::HairLook& look = spec.look.hair;
   const char* parameter = field == "curl" && look.curl_radius == 0 ? "curl_radius"
                           : field == "clump" && look.clump == 0    ? "clump"
+                          : field == "frizz" && look.frizz == 0    ? "frizz"
                                                                    : nullptr;
   if (parameter == nullptr || (mapOf(field, spec.maps).empty() && curveOf(field, spec.curves).empty())) return "";
   return "painted " + field + " changes nothing while " + parameter + " is 0";

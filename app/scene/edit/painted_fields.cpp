@@ -93,10 +93,10 @@ struct ShareField {
   float render::LookShare::*share;
   double least;
 };
-constexpr std::array kShareFields{ShareField{"width", &render::LookShare::width, kMinWidthShare},
-                                  ShareField{"clump", &render::LookShare::clump, 0},
-                                  ShareField{"curl", &render::LookShare::curl, 0},
-                                  ShareField{"roughness", &render::LookShare::roughness, kMinRoughnessShare}};
+constexpr std::array kShareFields{
+    ShareField{"width", &render::LookShare::width, kMinWidthShare}, ShareField{"clump", &render::LookShare::clump, 0},
+    ShareField{"curl", &render::LookShare::curl, 0}, ShareField{"frizz", &render::LookShare::frizz, 0},
+    ShareField{"roughness", &render::LookShare::roughness, kMinRoughnessShare}};
 
 // Calls set(share, root) for the share of every root, root: from the head's middle.
 void atRoots(const Scalp& scalp, const sim::HairMeshShape& shape, std::vector<render::LookShare>& roots,

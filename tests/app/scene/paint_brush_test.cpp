@@ -175,7 +175,7 @@ TEST(PaintBrush, EveryFieldIsPaintedAndUndone) {
     EXPECT_EQ(cut.look_shares.roots.empty(), !app::isOfLook(field)) << field;
     if (app::isOfLook(field)) {
       const auto shown = [&](const render::LookShare& share) {
-        return std::min({share.width, share.clump, share.curl, share.roughness, share.color[2]});
+        return std::min({share.width, share.clump, share.curl, share.roughness, share.frizz, share.color[2]});
       };
       EXPECT_LT(std::ranges::min(cut.look_shares.roots | std::views::transform(shown)), 0.5f) << field;
     }

@@ -39,7 +39,7 @@ TEST_F(Panels, TheTransportButtonsAskForWhatTheyShow) {
 TEST_F(Panels, EveryFieldIsChosenToBePaintedAndColorIsPicked) {
   click("tab Hair");
   const std::array labels{"Stiff", "Length", "Density", "Mass",  "Bend", "Width",
-                          "Clump", "Curl",   "Color",   "Rough", "Damp"};
+                          "Clump", "Curl",   "Color",   "Rough", "Damp", "Frizz"};
   ASSERT_EQ(labels.size(), app::kFieldNames.size());
   for (std::size_t k = 0; k < labels.size(); ++k) {
     click(std::string("paint ") + labels[k]);
