@@ -135,6 +135,8 @@ void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
              "Whether unit, axes and size of a hair mesh file are inferred where its roots are far from the scalp (on)")
       ->check(oneOf({"on", "off"}));
   group.value("--motion", options.motion, "FILE", "Motion or body: BVH, glTF, FBX, OBJ, or ARCSim .mot with --parts");
+  group.value("--body", options.body, "TEXT",
+              "Of a body without bones, in place of what is inferred: \"unit=cm up=z face=-x\", or some of that");
   group.value("--parts", options.parts, "DIR", "Folder of body0000.obj ... for a .mot motion");
   group.value("--clip", options.clip, "NAME", "Clip of a motion file that holds several");
   group.value("--preset", options.preset, "NAME", "Preset by name or file");
@@ -162,10 +164,9 @@ void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
       "neck, chest; JSON as in a scene's \"attachments\"; none; may be given many times");
   group.values(
       "--map", options.maps, "FIELD=FILE",
-      "Paint stiffness, length, density, mass, bend, width, clump, curl, frizz, color, roughness or damping over the "
-      "scalp: "
-      "a PNG of the head unrolled, its front in the middle, white for the parameter's own value, or a mesh of the head "
-      "with coloured vertices (OBJ, PLY, glTF, FBX); may be given many times");
+      "Paint stiffness, length, density, mass, bend, width, clump, curl, frizz, color, roughness or damping: a PNG of "
+      "the head unrolled, its front in the middle, white for the parameter's own value, or a mesh of the head with "
+      "coloured vertices (OBJ, PLY, glTF, FBX); may be given many times");
   group.values("--curve", options.curves, "FIELD=SHARES",
                "Shares from root to tip of what --map paints, but length, density and frizz, with commas: "
                "stiffness=1,0.5,0.2, or "

@@ -34,6 +34,7 @@ struct Options {
   std::string style, resolution;                         // empty: the scene's
   std::string hair, motion, parts, clip;                 // files; name of a clip
   std::string mends;                                     // of the hair file, curves
+  std::string body;                                      // of a body without bones: see readToldBody
   bool reverse_faces = false;                            // of the hair file
   std::string fit;                                       // of the hair file: on or off; empty: the scene's
   std::string write_hair;                                // OBJ of the first character's hair mesh, in place of a run

@@ -7,6 +7,7 @@
 #include "app/files/file_kind.h"
 #include "app/files/presets.h"
 #include "app/files/scene_file.h"
+#include "app/files/told_body.h"
 #include "app/groom/inspect/certain_mends.h"
 #include "app/options.h"
 #include "app/scene/comparison.h"
@@ -81,6 +82,8 @@ void checkHairAndStyle(const Options& options) {
   if (!options.mends.empty() && options.hair.empty()) throw UsageError("--mends is about a hair file; add --hair FILE");
   GroomMends mends;
   if (const std::string fault = readMends(options.mends, mends); !fault.empty()) throw UsageError("--mends: " + fault);
+  ToldBody told;
+  if (const std::string fault = readToldBody(options.body, told); !fault.empty()) throw UsageError("--body: " + fault);
 }
 
 // Reads what an option was given. A fault of the value is a mistake of the command line, one of a file that it names is
@@ -136,8 +139,10 @@ void overrideCharacter(const Options& options, CharacterSpec& spec) {
     spec.motion = findFile(options.motion, "", "clips");
     spec.clip.clear();
     spec.parts.clear();
+    spec.body.clear();
     spec.clip_offset = 0;
   }
+  if (!options.body.empty()) spec.body = options.body;
   if (!options.parts.empty()) spec.parts = findFile(options.parts, "", "clips");
   if (!options.clip.empty()) spec.clip = options.clip;
   if (options.start >= 0) spec.clip_offset = options.start;

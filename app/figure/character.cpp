@@ -101,7 +101,7 @@ namespace {
 
 // Of a motion or a model, with its clips mended; `text` of a motion is what the file holds.
 Character makeCharacter(Kind kind, const std::string& text, const std::string& motion_file,
-                        const std::string& parts_dir) {
+                        const std::string& parts_dir, const std::string& told) {
   Character character;
   SkinnedMesh drawn;
   switch (kind) {
@@ -112,7 +112,7 @@ Character makeCharacter(Kind kind, const std::string& text, const std::string& m
       character = loadRigidParts(text, motion_file, parts_dir);
       break;
     case Kind::kModel:
-      character = importSkinned(motion_file);
+      character = importSkinned(motion_file, told);
       break;
     case Kind::kUnknown:
       throw InputError(motion_file, "", "is no motion or character that is known here",
@@ -139,7 +139,7 @@ class KeptMannequins {
  public:
   Character get(const std::string& text, const std::string& file) {
     if (std::optional<Character> kept = find(text, file)) return *std::move(kept);
-    Character made = makeCharacter(Kind::kBvh, text, file, {});
+    Character made = makeCharacter(Kind::kBvh, text, file, {}, {});
     const std::lock_guard lock(mutex_);
     kept_.push_front({file, text, made});
     if (kept_.size() > kKept) kept_.pop_back();
@@ -166,14 +166,17 @@ class KeptMannequins {
 
 }  // namespace
 
-Character loadCharacter(const std::string& motion_file, const std::string& parts_dir) {
+Character loadCharacter(const std::string& motion_file, const std::string& parts_dir, const std::string& told) {
   const Kind kind = kindOf(motion_file);
   if (!parts_dir.empty() && kind != Kind::kMot)
     throw InputError(motion_file, "", "has no use for the rigid parts of '" + parts_dir + "'",
                      "give --parts with an ARCSim .mot motion only");
   static KeptMannequins mannequins;
+  if (!told.empty() && kind != Kind::kModel && kind != Kind::kUnknown)
+    throw InputError(motion_file, "", "is a motion, and '" + told.substr(0, 80) + "' is told of a body without bones",
+                     "leave out --body");
   if (kind == Kind::kBvh) return mannequins.get(readText(motion_file), motion_file);
-  return makeCharacter(kind, kind == Kind::kMot ? readText(motion_file) : "", motion_file, parts_dir);
+  return makeCharacter(kind, kind == Kind::kMot ? readText(motion_file) : "", motion_file, parts_dir, told);
 }
 
 Rigid scalpToWorld(const Character& character, const Pose& pose) {

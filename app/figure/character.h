@@ -88,12 +88,14 @@ struct Character {
   Scalp scalp;
   Face face;
   std::vector<std::string> notes;  // what was inferred: units, axes, frame rate, rest pose, head joint
+  bool is_still = false;           // a body without bones
 };
 
 // Any clip and body: BVH (a mannequin is grown around it), glTF, FBX, Collada or OBJ (with its own mesh; one without a
 // skeleton stands still), or ARCSim .mot with `parts_dir` holding body0000.obj ... Chosen by the file's ending and
-// content. Throws InputError.
-Character loadCharacter(const std::string& motion_file, const std::string& parts_dir = "");
+// content. `told`: of a body without a skeleton, see readToldBody. Throws InputError.
+Character loadCharacter(const std::string& motion_file, const std::string& parts_dir = "",
+                        const std::string& told = "");
 
 // Pose at `time` seconds into the clip; out-of-range times are clamped. Interpolates (slerp, lerp).
 void samplePose(const Skeleton& skeleton, const Clip& clip, double time, Pose& pose);

@@ -41,6 +41,7 @@ void sampleHead(const HeadMeasure* measure, Character& character);
 // drawn: the skin to show, in place of that which ellipsoids are fitted to.
 Character loadMannequin(const std::string& text, const std::string& file, SkinnedMesh& drawn);
 Character loadRigidParts(const std::string& text, const std::string& file, const std::string& parts_dir);
-Character importSkinned(const std::string& file);
+// told: see readToldBody.
+Character importSkinned(const std::string& file, const std::string& told);
 
 }  // namespace app

@@ -395,14 +395,17 @@ bool isStill(const aiScene& scene) {
 }
 
 // A mesh that nothing moves: a body, and a head on its neck.
-Character assembleStill(Import& import, const SkinnedMesh& raw, MaterialList& materials) {
-  const std::optional<StillBody> body = measureStillBody(raw.positions, raw.triangles);
+Character assembleStill(Import& import, const SkinnedMesh& raw, const std::string& told, MaterialList& materials) {
+  ToldBody tells;
+  if (const std::string fault = readToldBody(told, tells); !fault.empty()) throw InputError("", "body", fault, "");
+  const std::optional<StillBody> body = measureStillBody(raw.positions, raw.triangles, tells);
   if (!body)
     import.fail("", "is no figure: it has no skeleton, and no neck under a head is found in its mesh",
                 "give one upright body, arms down, without hair; hair goes to --hair, a hat to --attach");
   import.to_metres = body->to_metres;
   import.notes = body->notes;
   Character character;
+  character.is_still = true;
   character.mesh = gatherMesh(import, materials);
   materials.fill(*import.scene, import.file, character.mesh, import.notes);
   const Rigid skull_base(Eigen::Translation3d(body->neck + 0.2 * body->head_height * Vec3::UnitY()));
@@ -425,7 +428,7 @@ Character assembleStill(Import& import, const SkinnedMesh& raw, MaterialList& ma
   return character;
 }
 
-Character assemble(Import& import) {
+Character assemble(Import& import, const std::string& told) {
   MaterialList materials;
   const SkinnedMesh raw = gatherMesh(import, materials);
   bool is_neck = false;
@@ -433,7 +436,9 @@ Character assemble(Import& import) {
   int head = findHeadJoint(skeleton, referenceOf(skeleton, raw), is_neck);
   // Nodes of an OBJ are called like its file and groups, whatever these hold.
   if ((head < 0 || endingOf(import.file) == ".obj") && isStill(*import.scene))
-    return assembleStill(import, raw, materials);
+    return assembleStill(import, raw, told, materials);
+  if (!told.empty())
+    import.fail("", "has bones, and '" + told.substr(0, 80) + "' is told of a body without", "leave out --body");
   if (head >= 0) head = import.by_name.at(skeleton.joints[head].name);
   if (head < 0)
     import.fail("skeleton", "no joint of " + std::to_string(skeleton.joints.size()) + " can carry a head",
@@ -468,12 +473,12 @@ Character assemble(Import& import) {
 
 }  // namespace
 
-Character importSkinned(const std::string& file) {
+Character importSkinned(const std::string& file, const std::string& told) {
   Assimp::Importer importer;
   Import import(file);
   import.scene = &readFigureFile(file, importer);
   import.flatten();
-  return assemble(import);
+  return assemble(import, told);
 }
 
 }  // namespace app

@@ -141,7 +141,13 @@ Vec3 facing(const Outline& outline, int neck, std::string& note) {
 }
 
 // Metres in a unit of the file, and a note of it.
-std::pair<double, std::string> unitOf(double height, double head) {
+std::pair<double, std::string> unitOf(double height, double head, double told) {
+  if (told > 0) {
+    char note[160];
+    std::snprintf(note, sizeof note, "unit: %g m, as told (the mesh is %.2f m tall, its head with the neck %.2f m)",
+                  told, height * told, head * told);
+    return {told, note};
+  }
   struct Unit {
     double metres;
     const char* name;
@@ -169,11 +175,11 @@ std::pair<double, std::string> unitOf(double height, double head) {
 }  // namespace
 
 std::optional<StillBody> measureStillBody(std::span<const Eigen::Vector3f> positions,
-                                          std::span<const std::uint32_t> triangles) {
+                                          std::span<const std::uint32_t> triangles, const ToldBody& told) {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   Outline outline = outlineOf(positions, triangles, turn);
-  int neck = neckOf(outline);
-  const bool z_up = neck < 0;
+  int neck = told.up == 'z' ? -1 : neckOf(outline);
+  const bool z_up = neck < 0 && told.up != 'y';
   if (z_up) {
     turn << 1, 0, 0, 0, 0, 1, 0, -1, 0;
     outline = outlineOf(positions, triangles, turn);
@@ -183,9 +189,10 @@ std::optional<StillBody> measureStillBody(std::span<const Eigen::Vector3f> posit
 
   StillBody body;
   const double head = outline.high - outline.heightOf(neck);
-  const auto [unit, unit_note] = unitOf(outline.high - outline.low, head);
+  const auto [unit, unit_note] = unitOf(outline.high - outline.low, head, told.unit);
   std::string facing_note;
   body.forward = facing(outline, neck, facing_note);
+  if (!told.face.isZero(0)) body.forward = told.face, facing_note = "it faces where it is told to";
   const double raised = std::max(0.0, -unit * outline.low);
   const Eigen::Vector2d middle = levelsMiddle(outline, neck, neck + 1);
   body.to_metres.topLeftCorner<3, 3>() = unit * turn;
@@ -193,7 +200,7 @@ std::optional<StillBody> measureStillBody(std::span<const Eigen::Vector3f> posit
   body.neck = unit * Vec3(middle.x(), outline.heightOf(neck), middle.y()) + Vec3(0, raised, 0);
   body.height = unit * (outline.high - outline.low);
   body.head_height = unit * head;
-  body.notes = {z_up ? "up axis: z, turned to y" : "up axis: y", unit_note,
+  body.notes = {std::string(z_up ? "up axis: z, turned to y" : "up axis: y") + (told.up ? ", as told" : ""), unit_note,
                 "head: what lies above the neck, the narrowest level, at " +
                     std::to_string(std::lround(100 * body.neck.y())) + " cm; " + facing_note};
   constexpr double kToBeSaid = 0.005;  // m

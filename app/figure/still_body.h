@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/figure/character.h"
+#include "app/files/told_body.h"
 #include "app/groom/strips/polygon_mesh.h"
 
 namespace app {
@@ -26,9 +27,9 @@ struct StillBody {
 // Up is the axis, y before z, along which there is a neck: the narrowest level between a head and shoulders, or the end
 // of an open neck. The unit is the one of metres, inches, centimetres and millimetres that makes the head with
 // its neck 0.17 to 0.40 m tall; where none does, the one that makes the body 1.2 to 2.2 m tall. The face lies ahead of
-// the neck. Empty: there is no neck.
+// the neck. What is told counts in their place. Empty: there is no neck.
 std::optional<StillBody> measureStillBody(std::span<const Eigen::Vector3f> positions,
-                                          std::span<const std::uint32_t> triangles);
+                                          std::span<const std::uint32_t> triangles, const ToldBody& told = {});
 
 // Turns all faces, and normals that follow them, round where the head's, those of `head_joint`, enclose a negative
 // volume. Returns whether they did.

@@ -15,9 +15,9 @@ enum class JsonKind { kScene, kPreset, kProject };
 inline constexpr std::string_view kProjectKey = "hairmesh-project";
 inline constexpr std::array<std::string_view, 8> kSceneKeys{"name", "characters", "camera",   "light",
                                                             "view", "sim",        "playback", "preset"};
-inline constexpr std::array<std::string_view, 19> kCharacterKeys{
-    "motion",  "parts",       "clip", "style", "resolution", "hair", "reverse_faces", "fit",  "mends", "position",
-    "heading", "clip_offset", "loop", "look",  "pins",       "ties", "attachments",   "maps", "curves"};
+inline constexpr std::array<std::string_view, 20> kCharacterKeys{
+    "motion",   "parts",   "body",        "clip", "style", "resolution", "hair", "reverse_faces", "fit",  "mends",
+    "position", "heading", "clip_offset", "loop", "look",  "pins",       "ties", "attachments",   "maps", "curves"};
 inline constexpr std::string_view kAutosaveKey = "autosave_of";  // of projects that were kept by themselves alone
 inline constexpr std::array<std::string_view, 5> kProjectKeys{kProjectKey, "scene", "binary", "checksum", kAutosaveKey};
 inline constexpr std::array<std::string_view, 5> kPresetKeys{"name", "sim", "hair", "light", "view"};

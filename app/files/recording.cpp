@@ -31,7 +31,7 @@ struct AskName {
   std::string_view name;
 };
 // What can be recorded: all but the requests that write files.
-constexpr std::array<AskName, 55> kAskNames{{{Ask::kSetParam, "set"},
+constexpr std::array<AskName, 56> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kPause, "pause"},
                                              {Ask::kPauseMotion, "pause-motion"},
                                              {Ask::kSingleStep, "single-step"},
@@ -45,6 +45,7 @@ constexpr std::array<AskName, 55> kAskNames{{{Ask::kSetParam, "set"},
                                              {Ask::kStyle, "style"},
                                              {Ask::kResolution, "resolution"},
                                              {Ask::kMotionFile, "motion-file"},
+                                             {Ask::kBody, "body"},
                                              {Ask::kHairFile, "hair-file"},
                                              {Ask::kHairMends, "hair-mends"},
                                              {Ask::kOpenCache, "cache-file"},

@@ -9,6 +9,7 @@
 #include "app/files/json_reader.h"
 #include "app/files/presets.h"
 #include "app/files/text_file.h"
+#include "app/files/told_body.h"
 #include "app/groom/inspect/certain_mends.h"
 
 namespace app {
@@ -65,6 +66,11 @@ CharacterSpec readCharacter(const JsonPlace& place, const CharacterLook& look) {
       place.has("motion") ? readFileName(place.at("motion"), "clips") : findFile(spec.motion, place.file(), "clips");
   if (spec.motion.empty()) place.refuse("names no motion", "give \"motion\" a BVH, glTF, FBX or .mot file");
   if (place.has("parts")) spec.parts = readFileName(place.at("parts"), "clips");
+  if (place.has("body")) {
+    spec.body = place.at("body").text();
+    ToldBody told;
+    if (const std::string fault = readToldBody(spec.body, told); !fault.empty()) place.at("body").refuse(fault, "");
+  }
   if (place.has("clip")) spec.clip = place.at("clip").text();
   if (place.has("style")) spec.style = *parseStyle(place.at("style").choice(kStyleNames));
   if (place.has("resolution")) {
@@ -125,6 +131,7 @@ PlaybackSpec readPlayback(const JsonPlace& place) {
 json writeCharacter(const CharacterSpec& spec, const CharacterLook& base) {
   return {{"motion", spec.motion},
           {"parts", spec.parts},
+          {"body", spec.body},
           {"clip", spec.clip},
           {"style", styleName(spec.style)},
           {"resolution", resolutionName(spec.resolution)},

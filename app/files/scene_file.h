@@ -3,9 +3,9 @@
 // {
 //   "name": "Walk",
 //   "characters": [{
-//     "motion": "walk.bvh", "parts": "", "clip": "", "style": "shoulder", "resolution": "medium", "hair": "",
-//     "reverse_faces": false, "fit": true, "mends": "",
-//     "position": [0, 0, 0], "heading": 0, "clip_offset": 0, "loop": "auto", "look": { a row of the hair table: value
+//     "motion": "walk.bvh", "parts": "", "body": "", "clip": "", "style": "shoulder", "resolution": "medium", "hair":
+//     "", "reverse_faces": false, "fit": true, "mends": "", "position": [0, 0, 0], "heading": 0, "clip_offset": 0,
+//     "loop": "auto", "look": { a row of the hair table: value
 //     }, "pins": [ as pin_spec.h says ], "ties": [ as tie_spec.h says ],
 //     "attachments": [ as attachment_spec.h says ],
 //     "maps": { "stiffness": "a.png", "length": "b.png", "density": "c.png", "mass": "d.png" },
@@ -46,6 +46,7 @@ struct Options;
 struct CharacterSpec {
   std::string motion = "idle_turns.bvh";  // BVH, glTF, FBX, .mot
   std::string parts;                      // folder of body0000.obj ..., for .mot
+  std::string body;                       // of a body without bones, what is told of it (app/files/told_body.h)
   std::string clip;                       // name within a file of several clips; empty: the first
   Style style = Style::kShoulder;
   Resolution resolution = Resolution::kMedium;

@@ -45,13 +45,13 @@ std::vector<unsigned char> movingJoints(const Character& character) {
 }
 
 LoadedBody& loadBody(const CharacterSpec& spec, AssetCache& asset_cache) {
-  const std::string key = spec.motion + "|" + spec.parts;
+  const std::string key = spec.motion + "|" + spec.parts + "|" + spec.body;
   for (const auto& body : asset_cache.bodies) {
     if (body->key == key) return *body;
   }
   auto body = std::make_unique<LoadedBody>();
   body->key = key;
-  body->character = loadCharacter(spec.motion, spec.parts);
+  body->character = loadCharacter(spec.motion, spec.parts, spec.body);
   body->unfit_parts = unfitPartDistances(body->character);
   body->moving_joints = movingJoints(body->character);
   body->id = freshId();

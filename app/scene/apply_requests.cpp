@@ -9,6 +9,7 @@
 #include "app/files/file_kind.h"
 #include "app/files/hair_file.h"
 #include "app/files/presets.h"
+#include "app/files/told_body.h"
 #include "app/scene/attachments.h"
 #include "app/scene/demo.h"
 #include "app/scene/demo_state.h"
@@ -140,8 +141,17 @@ void changeMotion(const Request& request, Demo& demo) {
   spec.motion = findFile(request.text, "", "clips");
   spec.clip.clear();
   spec.parts = request.name;
+  spec.body.clear();
   spec.clip_offset = 0;
   recast(spec, false, "motion " + stem(request.text), demo);
+}
+
+void changeBody(const std::string& told, Demo& demo) {
+  CharacterSpec spec = selectedActor(demo).spec;
+  ToldBody checked;
+  if (const std::string fault = readToldBody(told, checked); !fault.empty()) throw InputError("", "body", fault, "");
+  spec.body = told;
+  recast(spec, false, "body " + stem(spec.motion) + (told.empty() ? "" : ", " + told), demo);
 }
 
 void changeClip(const std::string& name, Demo& demo) {
@@ -329,6 +339,7 @@ constexpr Action kActions[] = {
     {Ask::kStyle, changeStyle},
     {Ask::kResolution, changeStyle},
     {Ask::kMotionFile, changeMotion},
+    {Ask::kBody, [](const Request& request, Demo& demo) { changeBody(request.text, demo); }},
     {Ask::kHairFile, [](const Request& request, Demo& demo) { changeHairFile(request.text, demo); }},
     {Ask::kHairMends, [](const Request& request, Demo& demo) { changeMends(request.text, demo); }},
     {Ask::kSceneFile, [](const Request& request, Demo& demo) { changeScene(request.text, demo); }},

@@ -22,14 +22,15 @@ namespace {
 constexpr std::size_t kMaxFileEnds = 100;  // runs without a window look at none
 
 // What changes or saves a character and its hair.
-constexpr Ask kWaiting[] = {Ask::kStyle,       Ask::kResolution, Ask::kHairFile,  Ask::kHairMends, Ask::kMotionFile,
-                            Ask::kSceneFile,   Ask::kTie,        Ask::kPin,       Ask::kAttach,    Ask::kMap,
-                            Ask::kBrush,       Ask::kMove,       Ask::kMesh,      Ask::kPaint,     Ask::kCurve,
-                            Ask::kClip,        Ask::kLoop,       Ask::kSaveScene, Ask::kSaveState, Ask::kLoadState,
-                            Ask::kSaveProject, Ask::kOpenProject};
+constexpr Ask kWaiting[] = {Ask::kStyle,     Ask::kResolution,  Ask::kHairFile,   Ask::kHairMends, Ask::kMotionFile,
+                            Ask::kSceneFile, Ask::kTie,         Ask::kPin,        Ask::kAttach,    Ask::kMap,
+                            Ask::kBrush,     Ask::kMove,        Ask::kMesh,       Ask::kPaint,     Ask::kCurve,
+                            Ask::kClip,      Ask::kBody,        Ask::kLoop,       Ask::kSaveScene, Ask::kSaveState,
+                            Ask::kLoadState, Ask::kSaveProject, Ask::kOpenProject};
 
 // What the next choice replaces as a whole.
-constexpr Ask kChosenAnew[] = {Ask::kStyle, Ask::kResolution, Ask::kHairFile, Ask::kMotionFile, Ask::kSceneFile};
+constexpr Ask kChosenAnew[] = {Ask::kStyle,      Ask::kResolution, Ask::kHairFile,
+                               Ask::kMotionFile, Ask::kBody,       Ask::kSceneFile};
 
 // The file that the step of that number has asked for; empty where it was undone.
 std::string fileOf(long edit, const EditHistory& history) {

@@ -22,6 +22,7 @@ enum class Ask {
   kStyle,        // name
   kResolution,   // name
   kMotionFile,   // text: file
+  kBody,         // text: what is told of a body without bones, in place of what was
   kHairFile,     // text: file
   kHairMends,    // text: options of hairmesh-inspect that the hair file is read with, in place of those before
   kSceneFile,    // text: file

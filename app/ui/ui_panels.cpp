@@ -3,12 +3,15 @@
 #include <imgui/imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "app/files/data_path.h"
+#include "app/files/length_units.h"
+#include "app/files/told_body.h"
 #include "app/ui/ui_widgets.h"
 #include "sim/field_text.h"
 
@@ -204,6 +207,26 @@ std::string metres(double value) {
   return text;
 }
 
+// What a person tells of a body without bones, where the outline told otherwise.
+void bodyRows(const Actor& actor, Demo& demo, UiState& ui) {
+  ToldBody told;
+  readToldBody(actor.spec.body, told);
+  const auto* const unit = std::ranges::find(kLengthUnits, told.unit, &LengthUnit::metres);
+  rowLabel("Unit", "Of the file; Auto: as the size of head and body tells");
+  const int of_unit = segments("body_unit", {"Auto", "m", "cm", "mm", "in", "ft"},
+                               unit == kLengthUnits.end() ? 0 : 1 + static_cast<int>(unit - kLengthUnits.begin()), ui);
+  if (of_unit >= 0) told.unit = of_unit == 0 ? 0 : kLengthUnits[static_cast<std::size_t>(of_unit) - 1].metres;
+  rowLabel("Up", "The file's axis that is up");
+  const int up = segments("body_up", {"Auto", "y", "z"}, told.up == 0 ? 0 : told.up == 'y' ? 1 : 2, ui);
+  if (up >= 0) told.up = up == 0 ? '\0' : up == 1 ? 'y' : 'z';
+  rowLabel("Faces", "Where the face looks once y is up");
+  const std::array<Vec3, 5> ways{Vec3::Zero(), Vec3::UnitZ(), -Vec3::UnitZ(), Vec3::UnitX(), -Vec3::UnitX()};
+  const int face = segments("body_face", {"Auto", "z", "-z", "x", "-x"},
+                            static_cast<int>(std::ranges::find(ways, told.face) - ways.begin()), ui);
+  if (face >= 0) told.face = ways[static_cast<std::size_t>(face)];
+  if (of_unit >= 0 || up >= 0 || face >= 0) postRequest(demo, {Ask::kBody, "", writeToldBody(told)});
+}
+
 }  // namespace
 
 void simulationTab(Demo& demo, UiState& ui) {
@@ -239,6 +262,7 @@ void motionTab(Demo& demo, UiState& ui) {
     if (ImGui::Checkbox("##follow", &following)) postRequest(demo, {Ask::kFollow, "", "", following ? 1.0 : 0.0});
     cameraRows(demo, ui);
   }
+  if (actor.body->character.is_still && section("Body", true)) bodyRows(actor, demo, ui);
   if (section("What was read", false)) {
     for (const std::string& note : actor.body->character.notes) {
       ImGui::PushTextWrapPos(0);

@@ -62,6 +62,7 @@ constexpr EditKind kEditKinds[] = {{Ask::kSetParam, kSettings, true, ""},
                                    {Ask::kClip, kOfHair | kOfMotion, false, "Clip"},
                                    {Ask::kLoop, kOfHair | kOfMotion, false, "At the end"},
                                    {Ask::kMotionFile, kOfView | kOfHair | kOfMotion, false, "Motion"},
+                                   {Ask::kBody, kOfView | kOfHair | kOfMotion, false, "Body"},
                                    {Ask::kSceneFile, kOfView | kOfHair | kOfMotion, false, "Scene"},
                                    {Ask::kOpenProject, kOfView | kOfHair | kOfMotion, false, "Project"},
                                    {Ask::kLoadState, kOfView | kOfHair | kOfMotion, false, "State"}};
@@ -143,10 +144,10 @@ bool samePaint(const CharacterSpec& a, const CharacterSpec& b) {
 // that a new one does not compile until it is decided.
 bool sameCast(const CharacterSpec& a, const CharacterSpec& b) {
   const auto cast = [](const CharacterSpec& spec) {
-    const auto& [motion, parts, clip, style, resolution, hair, reverse_faces, fit, mends, position, heading,
+    const auto& [motion, parts, body, clip, style, resolution, hair, reverse_faces, fit, mends, position, heading,
                  clip_offset, loop, look, look_before, maps_before, fields_of, pins, ties, attachments, maps, curves,
                  brushed] = spec;
-    return std::tuple(motion, parts, clip, style, resolution, hair, reverse_faces, fit, mends, position.x(),
+    return std::tuple(motion, parts, body, clip, style, resolution, hair, reverse_faces, fit, mends, position.x(),
                       position.y(), position.z(), heading, loop, writeTies(ties).dump(), wornText(attachments));
   };
   return cast(a) == cast(b);

@@ -128,6 +128,30 @@ TEST(StillBody, ABodyAboutTheOriginStandsOnTheGround) {
   EXPECT_NEAR(head.x(), -2, 0.01);
 }
 
+TEST(StillBody, WhatIsToldCountsInPlaceOfTheOutline) {
+  app::ToldBody told;
+  EXPECT_EQ(app::readToldBody("unit=cm, up=z face=-x", told), "");
+  EXPECT_EQ(app::writeToldBody(told), "unit=cm up=z face=-x");
+  EXPECT_EQ(app::readToldBody("face=+z", told), "");
+  EXPECT_EQ(app::writeToldBody(told), "face=z");
+  EXPECT_EQ(app::readToldBody("", told), "");
+  EXPECT_EQ(app::writeToldBody(told), "");
+  for (const char* wrong : {"unit=league", "up=x", "face=y", "size=2", "cm"})
+    EXPECT_NE(app::readToldBody(wrong, told).find("write unit=m, cm"), std::string::npos) << wrong;
+  Eigen::Matrix3f z_up;
+  z_up << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  const std::string doll = writeObj("doll.obj", standingBody(), 0.5f * z_up, false);
+  EXPECT_NEAR(app::loadCharacter(doll).scalp.head_height, 0.25, 0.04) << "grown to a head of usual size";
+  const app::Character small = app::loadCharacter(doll, "", "unit=m up=z face=-x");
+  EXPECT_TRUE(small.is_still);
+  EXPECT_NEAR(small.scalp.head_height, 0.125, 0.02);
+  EXPECT_GT(forwardOf(small).dot(Eigen::Vector3d(-1, 0, 0)), 0.999);
+  EXPECT_THROW(app::loadCharacter(doll, "", "up=y"), app::InputError);
+  const std::string walk = app::findFile("walk.bvh", "", "clips");
+  EXPECT_THROW(app::loadCharacter(walk, "", "unit=m"), app::InputError);
+  EXPECT_FALSE(app::loadCharacter(walk).is_still);
+}
+
 TEST(StillBody, ABustIsOneAndTheHatOfItsSceneStaysWhereItIs) {
   Shape bust;
   bust.addEllipsoid({0, 1.57f, 0.02f}, {0.075f, 0.115f, 0.095f});
