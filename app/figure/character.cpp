@@ -20,6 +20,7 @@
 #include "app/files/text_file.h"
 #include "app/motion/clip_repair.h"
 #include "app/motion/foot_plant.h"
+#include "app/motion/frozen_hands.h"
 #include "app/motion/motion.h"
 
 namespace app {
@@ -122,6 +123,8 @@ Character makeCharacter(Kind kind, const std::string& text, const std::string& m
   for (Clip& clip : character.clips) {
     const std::string of = character.clips.size() > 1 ? "clip " + clip.name + ": " : "";
     for (const std::string& note : repairClip(character.skeleton, clip)) character.notes.push_back(of + note);
+    if (const std::string note = frozenHands(character.skeleton, clip); !note.empty())
+      character.notes.push_back(of + note);
     if (const std::string note = plantFeet(character.skeleton, clip); !note.empty())
       character.notes.push_back(of + note);
     if (const std::string note = clearArms(character, clip); !note.empty()) character.notes.push_back(of + note);

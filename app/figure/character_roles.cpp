@@ -347,4 +347,12 @@ void orderSides(const ReferencePose& reference, const Vec3& forward, BodyRoles& 
   swapIfCrossed(roles.legs);
 }
 
+BodyRoles rolesAtRest(const Skeleton& skeleton) {
+  ReferencePose rest{restPose(skeleton).world, {}};
+  for (const Rigid& joint : rest.world) rest.ends.push_back(joint.translation());
+  bool is_neck = false;
+  const int head = findHeadJoint(skeleton, rest, is_neck);
+  return head < 0 ? BodyRoles{} : inferRoles(skeleton, rest, head, is_neck);
+}
+
 }  // namespace app

@@ -48,6 +48,9 @@ int findHeadJoint(const Skeleton& skeleton, const ReferencePose& reference, bool
 // Roles by names first, geometry second. `head` as found by findHeadJoint.
 BodyRoles inferRoles(const Skeleton& skeleton, const ReferencePose& reference, int head, bool head_is_neck);
 
+// The same by the rest pose; none where nothing carries a head.
+BodyRoles rolesAtRest(const Skeleton& skeleton);
+
 // Horizontal unit vector that the figure faces in the reference pose: toes, else left and right, else +z (`how` says
 // which).
 Vec3 inferForward(const Skeleton& skeleton, const ReferencePose& reference, const BodyRoles& roles, std::string& how);

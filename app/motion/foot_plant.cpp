@@ -120,19 +120,11 @@ void reach(const Skeleton& skeleton, const LegRoles& leg, const Pose& pose, cons
   turn(leg.foot, shin, Eigen::Quaterniond::Identity());
 }
 
-BodyRoles rolesOf(const Skeleton& skeleton) {
-  ReferencePose rest{restPose(skeleton).world, {}};
-  for (const Rigid& joint : rest.world) rest.ends.push_back(joint.translation());
-  bool is_neck = false;
-  const int head = findHeadJoint(skeleton, rest, is_neck);
-  return head < 0 ? BodyRoles{} : inferRoles(skeleton, rest, head, is_neck);
-}
-
 }  // namespace
 
 std::string plantFeet(const Skeleton& skeleton, Clip& clip) {
   if (clip.frameCount() < 3) return {};
-  const BodyRoles roles = rolesOf(skeleton);
+  const BodyRoles roles = rolesAtRest(skeleton);
   int count = 0;
   double farthest = 0;
   for (const LegRoles& leg : roles.legs) {
