@@ -187,7 +187,7 @@ int convertCurves(const std::string& bytes, const Arguments& arguments) {
   app::writeFile(arguments.out, app::writeHairMesh(conversion.shape, conversion.look.columns));
   app::writeFile(arguments.preset, presetText(conversion.look, std::filesystem::path(arguments.out).stem().string()));
   std::cout << app::conversionReport(conversion) << "written       " << arguments.out << " and " << arguments.preset
-            << "\n";
+            << "; open with hairmesh --hair " << arguments.out << " --preset " << arguments.preset << "\n";
   return app::conversionWarning(conversion).empty() ? app::kExitFine : app::kExitFault;
 }
 

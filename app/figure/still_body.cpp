@@ -143,9 +143,11 @@ Vec3 facing(const Outline& outline, int neck, std::string& note) {
 // Metres in a unit of the file, and a note of it.
 std::pair<double, std::string> unitOf(double height, double head, double told) {
   if (told > 0) {
-    char note[160];
-    std::snprintf(note, sizeof note, "unit: %g m, as told (the mesh is %.2f m tall, its head with the neck %.2f m)",
-                  told, height * told, head * told);
+    constexpr double kSmall = 0.1, kLarge = 0.8;  // m, of a head with its neck
+    char note[192];
+    std::snprintf(note, sizeof note, "unit: %g m, as told (the mesh is %.2f m tall, its head with the neck %.2f m%s)",
+                  told, height * told, head * told,
+                  head * told < kSmall || head * told > kLarge ? ": no person's size" : "");
     return {told, note};
   }
   struct Unit {

@@ -298,12 +298,14 @@ void writeReport(const std::string& file, const RunReport& run, const Demo& demo
 namespace {
 
 // How the deadline was kept; empty without one.
-std::string deadlineLine(const RunReport& run, double deadline) {
+std::string deadlineLine(const RunReport& run, const Deadline& counted) {
+  const double deadline = counted.seconds, units = deadline / counted.seconds_per_unit;
   if (deadline <= 0 || run.frames.empty()) return "";
-  int over = 0, cut = 0;
+  int over = 0, over_units = 0, cut = 0;
   double longest = 0;
   for (const FrameStats& frame : run.frames) {
     over += frame.simulation() > deadline;
+    over_units += frame.work_units > units;
     cut += frame.solves_cut > 0 || frame.corrections_cut > 0;
     longest = std::max(longest, frame.simulation());
   }
@@ -311,6 +313,7 @@ std::string deadlineLine(const RunReport& run, double deadline) {
   text << "  deadline   " << threeDigits(1e3 * deadline) << " ms: ";
   if (over == 0) text << "kept in every frame";
   if (over > 0) text << "not kept in " << over << " of " << run.frames.size() << " frames";
+  if (counted.counted) text << "; by the work counted (" << threeDigits(units) << " units) over it in " << over_units;
   text << ", the longest took " << threeDigits(1e3 * longest) << " ms; work left out in " << cut << " frames, "
        << threeDigits(run.frames.back().lost) << " s of motion given up\n";
   return text.str();
@@ -363,7 +366,7 @@ std::string summary(const RunReport& run, const Demo& demo) {
                     [](const FrameStats& f) { return f.simulation(); }) +
          budgetLine("drawing", demo.draw_governor.budget, drawRungName(demo.draw_governor), run,
                     [](const FrameStats& f) { return f.draw.stages.empty() ? 0 : f.seconds[kTimeDraw]; }) +
-         deadlineLine(run, demo.deadline.seconds) + pinsLine(run);
+         deadlineLine(run, demo.deadline) + pinsLine(run);
 }
 
 }  // namespace app

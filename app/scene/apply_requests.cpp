@@ -151,7 +151,7 @@ void changeBody(const std::string& told, Demo& demo) {
   ToldBody checked;
   if (const std::string fault = readToldBody(told, checked); !fault.empty()) throw InputError("", "body", fault, "");
   spec.body = told;
-  recast(spec, false, "body " + stem(spec.motion) + (told.empty() ? "" : ", " + told), demo);
+  recast(spec, false, stem(spec.motion) + ", " + (told.empty() ? "by its outline" : told), demo);
 }
 
 void changeClip(const std::string& name, Demo& demo) {

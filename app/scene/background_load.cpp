@@ -125,6 +125,16 @@ bool comesLater(long edit, const BackgroundLoad& loading) {
   return loading.running.valid() && loading.edit == edit;
 }
 
+const Request* comingRequest(Ask what, const Demo& demo) {
+  const BackgroundLoad& loading = demo.loading;
+  for (auto held = loading.held.rbegin(); held != loading.held.rend(); ++held) {
+    if (held->request.what == what && held->actor == demo.selected) return &held->request;
+  }
+  const auto step = std::ranges::find(demo.edits.steps, loading.edit, &EditStep::number);
+  const bool comes = loading.running.valid() && !loading.unwanted && step != demo.edits.steps.end();
+  return comes && step->request.what == what ? &step->request : nullptr;
+}
+
 void noteFileEnd(const std::string& file, bool done, Demo& demo) {
   if (!file.empty() && demo.file_ends.size() < kMaxFileEnds) demo.file_ends.push_back({file, done});
 }

@@ -62,6 +62,9 @@ std::optional<HeldRequest> nextHeld(BackgroundLoad& loading);
 // Whether what the step of that number asks for is still being loaded.
 bool comesLater(long edit, const BackgroundLoad& loading);
 
+// What is asked for last of what waits and of what is being loaded, of a kind; null where nothing of it is on its way.
+const Request* comingRequest(Ask what, const Demo& demo);
+
 // Notes what became of a file, for the window.
 void noteFileEnd(const std::string& file, bool done, Demo& demo);
 

@@ -12,6 +12,7 @@
 #include "app/files/data_path.h"
 #include "app/files/length_units.h"
 #include "app/files/told_body.h"
+#include "app/scene/background_load.h"
 #include "app/ui/ui_widgets.h"
 #include "sim/field_text.h"
 
@@ -210,7 +211,8 @@ std::string metres(double value) {
 // What a person tells of a body without bones, where the outline told otherwise.
 void bodyRows(const Actor& actor, Demo& demo, UiState& ui) {
   ToldBody told;
-  readToldBody(actor.spec.body, told);
+  const Request* coming = comingRequest(Ask::kBody, demo);  // a second choice adds to one that is being loaded
+  readToldBody(coming ? coming->text : actor.spec.body, told);
   const auto* const unit = std::ranges::find(kLengthUnits, told.unit, &LengthUnit::metres);
   rowLabel("Unit", "Of the file; Auto: as the size of head and body tells");
   const int of_unit = segments("body_unit", {"Auto", "m", "cm", "mm", "in", "ft"},

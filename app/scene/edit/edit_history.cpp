@@ -91,6 +91,7 @@ std::string titleOf(const Request& request, const EditKind& kind) {
   if (request.what == Ask::kMove) return kind.title + (" " + request.name);
   if (request.what == Ask::kMesh) return spaced(request.name);
   if (request.what == Ask::kAttach && request.text == "[]") return "Nothing worn";
+  if (request.what == Ask::kBody) return "Body " + (request.text.empty() ? "by its outline" : request.text);
   std::string title = kind.title;
   if (!request.name.empty() && request.name != "add" && request.what != Ask::kMotionFile)
     title.append(" ").append(request.name);

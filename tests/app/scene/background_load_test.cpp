@@ -67,12 +67,16 @@ TEST(BackgroundLoad, WhatIsAskedForMeanwhileComesInOrderAndOfSeveralChoicesTheLa
   Demo demo = walking();
   demo.requests = {{Ask::kStyle, "shoulder", ""}, {Ask::kStyle, "bob", ""}, {Ask::kStyle, "long", ""}};
   frames(1, demo);
+  const app::Request* coming = app::comingRequest(Ask::kStyle, demo);
+  EXPECT_EQ(coming ? coming->name : "", "long") << "of those that wait the last";
+  EXPECT_EQ(app::comingRequest(Ask::kTie, demo), nullptr);
   demo.requests = {{Ask::kResolution, "medium", ""}};
   frames(1, demo);
   ASSERT_TRUE(demo.loading.running.valid());
   EXPECT_EQ(demo.loading.held.size(), 2u) << "the bob is not loaded";
   EXPECT_NE(app::loadingNote(demo).find("then"), std::string::npos);
   wait(demo);
+  EXPECT_EQ(app::comingRequest(Ask::kStyle, demo), nullptr) << "it has come";
   EXPECT_EQ(demo.actors[0].spec.style, app::Style::kLong) << "kept by what was asked for after it";
   EXPECT_EQ(demo.actors[0].spec.resolution, app::Resolution::kMedium);
   EXPECT_EQ(demo.edits.done, 3u);
