@@ -53,8 +53,8 @@ struct LoadedBody {
 
 // A hair mesh, built once whatever the number of actors that wear it.
 struct Haircut {
-  std::string key,
-      key_with_fields;  // of what it was made of; the same once an actor has the fields that its file brings
+  std::string key;              // of what it was made of; its own once it is edited
+  std::string key_with_fields;  // the same once an actor has the fields that its file brings; empty once it is edited
   std::uint64_t id = 0;
   std::string note;                     // what was found of a file that does not fit the head, or was converted
   std::optional<LookFit> look;          // of a groom's strands

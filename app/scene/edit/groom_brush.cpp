@@ -37,6 +37,7 @@ Haircut& ownHaircut(Actor& actor, Demo& demo) {
   Haircut& worn = **found;
   if (!wornByOthers(actor, demo)) {
     worn.key = freshKey(worn.key);
+    worn.key_with_fields.clear();
     return worn;
   }
   auto own = std::make_unique<Haircut>();
