@@ -28,10 +28,11 @@ float spot(vec3 m, vec3 middle, vec3 size) {
 const vec3 kBlood = vec3(1.03, 0.84, 0.81);  // share of the albedo that a full flush leaves
 
 // The share of the albedo that tone leaves, and in w of the roughness. rest: rest pose, m. q: head units, see face.glsl.
-// pixel: m that a pixel spans; relief finer than that is left out.
+// pixel: m that a pixel spans; what is finer than that is left out.
 vec4 skinTone(vec3 rest, vec3 q, float pixel) {
   vec3 m = vec3(abs(q.x), q.yz);
-  float flush = 0.40 * toneNoise(rest * 60.0) - 0.20;  // blotches of 2 cm
+  // Blotches of 2 cm.
+  float flush = (0.40 * toneNoise(rest * 60.0) - 0.20) * (1.0 - smoothstep(0.004, 0.012, pixel));
   flush += 0.55 * spot(m, vec3(0.0, 0.352, 0.430), vec3(0.075, 0.055, 0.070));   // nose
   flush += 0.60 * spot(m, vec3(0.190, 0.390, 0.270), vec3(0.090, 0.075, 0.150));  // cheeks
   flush += 0.80 * spot(m, vec3(0.330, 0.470, -0.040), vec3(0.040, 0.150, 0.110));  // ears
