@@ -120,7 +120,7 @@ TEST(SceneFile, FaultsNameFilePlaceAndMend) {
       {R"({"characters": [{}], "preset": "no such preset"})", "no such preset", ""},
       {R"({"characters": [{}], "name": "a", "name": "b"})", "name", "one of the two"},
       {"{\"characters\": [{}],\n\"sim\": {\"friction\": 1e999}}", "'1e999'", "below 1e308"},
-      {R"({"characters": [{"ties": "bunn"}]})", "/characters/0/ties: is 'bunn'", "buns"},
+      {R"({"characters": [{"ties": "bunn"}]})", "/characters/0/ties: is 'bunn'", "did you mean 'bun'?"},
       {R"({"characters": [{"ties": [{"at": null}]}]})", "/characters/0/ties/0/at", "left or right"},
       {"{\"characters\": [{}],\n \"sim\": {friction: 1}}", "line 2", ""},
       {"{\"characters\": [{}], \"name\": \"\xff\xfe\"}", "line 1", ""},
