@@ -72,10 +72,12 @@ std::vector<std::size_t> largestGroup(const std::vector<Path>& paths) {
 // Strands of two ways that root in one cell have no mean way.
 void meanPaths(const StrandSamples& strands, RootRaster& raster) {
   std::vector<std::vector<Path>> paths(raster.cells.size());
+  std::vector<std::vector<float>> lengths(raster.cells.size());
   for (std::size_t s = 0; s < strands.strandCount(); ++s) {
     const auto at = static_cast<std::size_t>(raster.cell_of[s]);
     RootCell& cell = raster.cells[at];
     paths[at].push_back(pathOf(strands.strand(s)));
+    lengths[at].push_back(strands.length[s]);
     cell.radius += (strands.strand(s)[0] - raster.map.center).norm() / static_cast<float>(cell.strands);
   }
   for (std::size_t at = 0; at < paths.size(); ++at) {
@@ -83,8 +85,10 @@ void meanPaths(const StrandSamples& strands, RootRaster& raster) {
     if (group.empty()) continue;
     Path& mean = raster.cells[at].path;
     mean.assign(kPathPoints, Vector3f::Zero());
-    for (const std::size_t one : group)
+    for (const std::size_t one : group) {
+      raster.cells[at].path_strands += lengths[at][one] / static_cast<float>(group.size());
       for (std::size_t k = 0; k < kPathPoints; ++k) mean[k] += paths[at][one][k] / static_cast<float>(group.size());
+    }
   }
 }
 
@@ -127,11 +131,13 @@ bool fillFromNeighbours(int x, int y, RootRaster& raster, std::vector<RootCell>&
     if (near.path.empty()) return;
     if (cell.path.empty()) cell.path.assign(kPathPoints, Vector3f::Zero());
     for (std::size_t k = 0; k < kPathPoints; ++k) cell.path[k] += near.path[k];
+    cell.path_strands += near.path_strands;
     cell.radius += near.radius;
     ++count;
   });
   if (count == 0) return false;
   for (Vector3f& p : cell.path) p /= count;
+  cell.path_strands /= count;
   cell.radius /= count;
   return true;
 }

@@ -32,6 +32,7 @@ struct RootCell {
   float radius = 0;                   // m, of the roots from the map's centre
   float length = 0;                   // m, that most strands here do not exceed
   std::vector<Eigen::Vector3f> path;  // m, mean strand by share of its length; empty outside
+  float path_strands = 0;             // m, mean length of its strands: that of the path and of their curls
 };
 
 // Cell (x, y) is number y * columns + x; its lower corner is origin + size * (x, y).

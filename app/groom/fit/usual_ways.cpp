@@ -22,21 +22,14 @@ std::vector<int> regionsOfColumns(const RootMesh& roots) {
   return region;
 }
 
-double wayLength(const std::vector<Vector3f>& path) {
-  double length = 0;
-  for (std::size_t k = 1; k < path.size(); ++k) length += (path[k] - path[k - 1]).norm();
-  return length;
-}
-
 // The nearest cell of a region whose strands are about that long (m): short fine hair of a hairline tells nothing of
-// the way that long hair goes. lengths: of the cells' paths, m.
-const RootCell* usualCell(const RootRaster& raster, std::span<const double> lengths, int region, const Vector2f& at,
-                          double length) {
+// the way that long hair goes.
+const RootCell* usualCell(const RootRaster& raster, int region, const Vector2f& at, double length) {
   const RootCell* best = nullptr;
   float least = std::numeric_limits<float>::infinity();
   for (std::size_t c = 0; c < raster.cells.size(); ++c) {
     const RootCell& cell = raster.cells[c];
-    if (cell.region != region || cell.path.empty() || lengths[c] < kLongEnough * length) continue;
+    if (cell.region != region || cell.path.empty() || cell.path_strands < kLongEnough * length) continue;
     const auto columns = static_cast<std::size_t>(raster.columns);
     const Vector2f middle = raster.origin + raster.size * Vector2f(static_cast<float>(c % columns) + 0.5f,
                                                                    static_cast<float>(c / columns) + 0.5f);
@@ -52,24 +45,25 @@ const RootCell* usualCell(const RootRaster& raster, std::span<const double> leng
 std::vector<sim::Vec3> usualWays(const RootRaster& raster, const RootMesh& roots, std::span<const double> knots,
                                  const sim::HairMeshShape& shape) {
   const std::vector<int> region = regionsOfColumns(roots);
-  std::vector<double> lengths;
-  for (const RootCell& cell : raster.cells) lengths.push_back(wayLength(cell.path));
   std::vector<sim::Vec3> all;
   for (std::size_t c = 0; c < region.size(); ++c) {
     const sim::Vec3 root = shape.positions[static_cast<std::size_t>(shape.column_first[c])];
     const double length = std::max(raster.lengthAt(roots.at[c]), kShortestWay);
-    const RootCell* cell = usualCell(raster, lengths, region[c], roots.at[c], length);
+    const RootCell* cell = usualCell(raster, region[c], roots.at[c], length);
     std::vector<double> passed{0};
     for (std::size_t k = 1; cell && k < cell->path.size(); ++k)
       passed.push_back(passed.back() + (cell->path[k] - cell->path[k - 1]).norm());
+    // Of a strand's length curls take a part that the path does not have.
+    const double straight = cell ? passed.back() / cell->path_strands : 0;
     for (const double knot : knots) {
       if (!cell || passed.back() <= 0) {
         all.push_back(root);
         continue;
       }
+      const double wanted = knot * length * straight;
       std::size_t k = 1;
-      while (k + 1 < passed.size() && passed[k] < knot * length) ++k;
-      const double share = (knot * length - passed[k - 1]) / std::max(passed[k] - passed[k - 1], 1e-9);
+      while (k + 1 < passed.size() && passed[k] < wanted) ++k;
+      const double share = (wanted - passed[k - 1]) / std::max(passed[k] - passed[k - 1], 1e-9);
       const Vector3f at = cell->path[k - 1] + static_cast<float>(share) * (cell->path[k] - cell->path[k - 1]);
       all.push_back(root + (at - cell->path[0]).cast<double>());
     }

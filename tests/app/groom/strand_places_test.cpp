@@ -64,9 +64,14 @@ Groom bentOnTheLeft(const Offset& offset) {
   return groom;
 }
 
+// radius: m.
+Eigen::Vector2f helix(std::uint32_t key, float t, float radius, float turns) {
+  const float turn = 2 * kPi * (turns * t + groom_kinds::random(key + 77u));
+  return radius * groom_kinds::opened(t) * Eigen::Vector2f(std::cos(turn), std::sin(turn));
+}
+
 Eigen::Vector2f curl(std::uint32_t key, float t) {
-  const float turn = 2 * kPi * (7 * t + groom_kinds::random(key + 77u));
-  return 0.003f * groom_kinds::opened(t) * Eigen::Vector2f(std::cos(turn), std::sin(turn));
+  return helix(key, t, 0.003f, 7);
 }
 
 // Five sines of their own each way.
@@ -103,6 +108,18 @@ TEST(StrandPlaces, CurlsOfOneSideComeBackThere) {
   EXPECT_LT(right_anew, 0.15 * left);
   EXPECT_LT(right, 0.1 * left);
   EXPECT_NE(conversionReport(conversion).find("% of the scalp)"), std::string::npos);
+}
+
+// Curls that make a strand more than half as long again as its way do not shorten that way.
+TEST(StrandPlaces, TightCurlsKeepTheirWay) {
+  const Groom given = bentOnTheLeft([](std::uint32_t key, float t) { return helix(key, t, 0.005f, 10); });
+  const Conversion conversion = convert(given);
+  const auto reach = [](std::span<const Vector3f> strand) { return (strand.back() - strand.front()).norm(); };
+  const auto [left, right] = bySides(given, reach);
+  const auto [left_anew, right_anew] = bySides(grownAnew(conversion), reach);
+  ASSERT_GT(bySides(given, lineLength)[0], 1.45 * bySides(given, lineLength)[1]);
+  EXPECT_NEAR(left_anew / left, 1, 0.1) << conversionReport(conversion);
+  EXPECT_NEAR(right_anew / right, 1, 0.05);
 }
 
 TEST(StrandPlaces, FrizzOfOneSideComesBackThere) {
