@@ -169,8 +169,7 @@ void addSceneOptions(CLI::App& parser, Options& options, Unchecked& unchecked) {
       "coloured vertices (OBJ, PLY, glTF, FBX); may be given many times");
   group.values("--curve", options.curves, "FIELD=SHARES",
                "Shares from root to tip of what --map paints, but length, density and frizz, with commas: "
-               "stiffness=1,0.5,0.2, or "
-               "color=#ffffff,#a04020; may be given many times");
+               "stiffness=1,0.5,0.2, or color=#ffffff,#a04020; may be given many times");
   group.values("--skip", options.skips, "NAME=on|off",
                "Switch a skip of the table, or all=off; may be given many times; --skips lists them");
   group.flag("--skips", unchecked.list_skips, "Print the table of skips and end");

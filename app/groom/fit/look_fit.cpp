@@ -319,10 +319,6 @@ void measureWidths(const Groom& groom, double scale, LookFit& look) {
   look.radius = 0.5 * scale * quantile(root, 0.5);
 }
 
-}  // namespace
-
-namespace {
-
 std::vector<StrandMeasure> measureStrands(const Groom& groom, double scale, const StrandSamples& strands,
                                           const HairFit& fit, const GrowthMap& growth) {
   const std::size_t step = std::max<std::size_t>(1, strands.strandCount() / kMaxLooked);
