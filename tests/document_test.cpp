@@ -5,7 +5,9 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "tests/bench/table.h"
 
@@ -65,6 +67,14 @@ TEST(Documents, ShowWhatStandsInTheirData) {
             std::string::npos);
 }
 
+TEST(Documents, PicturesShowTheirViews) {
+  const std::vector<std::string> shown{"style", "cover, drawn over traced", "its RMS", "shadow's RMS, key",
+                                       "shadow's RMS, key from behind", "shadow's RMS, fill", "shadow's RMS, rim"};
+  const Table views = columns(dataOf("picture_views"), shown);
+  EXPECT_GT(views.rows.size(), 0u);
+  EXPECT_EQ(columns(bench::tableOf(partOf("picture.md", "reference")), shown).rows, views.rows);
+}
+
 TEST(Documents, AreTwoScreensLong) {
   int pages = 0;
   for (const auto& entry : std::filesystem::directory_iterator(kDocs)) {
@@ -72,6 +82,8 @@ TEST(Documents, AreTwoScreensLong) {
     ++pages;
     const std::string text = textOf(entry.path());
     EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 130) << entry.path();
+    std::istringstream words(text);
+    EXPECT_LE(std::distance(std::istream_iterator<std::string>(words), {}), 2400) << entry.path();
   }
   EXPECT_GT(pages, 0);
 }

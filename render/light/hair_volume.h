@@ -15,7 +15,7 @@ struct VolumeLight {
 };
 
 // Share of the light on its way from one fibre to the next that leaves a lock at its sides: a slab is endless, a lock and
-// a head are not. Fitted to traced hair of three styles from three sides, blond and white: docs/picture.md.
+// a head are not. Fitted to traced hair of three styles from three sides, blond and white: docs/log/light.md.
 inline constexpr double kSideLoss = 0.07;
 
 // [behind][front], kVolumeSteps each: optical depth behind the fibre and in front of it; see shared.h.

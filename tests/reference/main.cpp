@@ -1,5 +1,5 @@
 // hairmesh-reference: the renderer's light on hair against a path tracer's, over the strands that the renderer grows,
-// with its lobes, lights and camera. Prints a table of errors for each view; see docs/picture.md.
+// with its lobes, lights and camera. Prints tables of errors; see docs/picture.md.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -18,6 +18,7 @@
 #include "app/run_main.h"
 #include "app/scene/demo.h"
 #include "tests/bench/measured_part.h"
+#include "tests/bench/table.h"
 #include "tests/reference/drawn.h"
 #include "tests/reference/trace.h"
 
@@ -126,31 +127,70 @@ std::vector<reference::DrawnPixel> drawnShadows(render::FrameInput frame, const 
   return pixels;
 }
 
-std::string fourOf(const char* format, const Eigen::Vector4f& values) {
-  std::string text;
-  for (const float value : values) text += (text.empty() ? "" : " ") + bench::formatted(format, value);
-  return text;
-}
+constexpr std::array kLightNames{"key", "key from behind", "fill", "rim"};  // of lightsOf
 
-std::string leakColumns(const reference::Leaks& leaks) {
-  return " " + fourOf("%.2f", 100 * leaks.mean) + " | " + fourOf("%.0f", 100 * leaks.above) + " | " +
-         fourOf("%.0f", leaks.pixels) + " |";
-}
-
-std::string lightColumns(const reference::LightError& error) {
-  return bench::formatted(" %.2f %.2f %.2f | %.2f %.2f %.2f | %.2f | %.3f |", error.single[0], error.single[1],
-                          error.single[2], error.full[0], error.full[1], error.full[2], error.spread,
-                          error.noise.maxCoeff());
-}
-
-// A style's rows of the tables.
+// Everything that is measured, a row a view, a light of one, or a colour of one.
 struct Tables {
-  std::string shadows, leaks, colours;
+  bench::Table views{{"style", "cover, drawn over traced", "its RMS"}, {}};
+  bench::Table leaks{{"style", "on", "light", "mean, %", "over 1 %, % of the pixels", "pixels"}, {}};
+  bench::Table colours{{"style", "colour", "light", "single R", "single G", "single B", "all R", "all G", "all B",
+                        "RMS over mean", "traced mean's error"},
+                       {}};
+  Tables() {
+    for (const char* light : kLightNames) views.head.push_back(std::string("shadow's RMS, ") + light);
+    for (const char* light : kLightNames) views.head.push_back(std::string("mean difference, ") + light);
+  }
 };
 
+void addView(const std::string& name, const reference::CoverError& cover, const reference::ShadowError& shadow,
+             Tables& tables) {
+  std::vector<std::string> row{name, bench::formatted("%.3f", cover.ratio), bench::formatted("%.3f", cover.rms)};
+  for (const float rms : shadow.rms) row.push_back(bench::formatted("%.3f", rms));
+  for (const float bias : shadow.bias) row.push_back(bench::formatted("%+.3f", bias));
+  tables.views.rows.push_back(std::move(row));
+}
+
+void addLeaks(const std::string& name, const char* on, const reference::Leaks& leaks, Tables& tables) {
+  for (int k = 0; k < 4; ++k)
+    tables.leaks.rows.push_back(
+        {name, on, kLightNames[static_cast<std::size_t>(k)], bench::formatted("%.2f", 100 * leaks.mean[k]),
+         bench::formatted("%.0f", 100 * leaks.above[k]), bench::formatted("%.0f", leaks.pixels[k])});
+}
+
+void addColour(const std::string& name, const std::string& colour, const std::string& light,
+               const reference::LightError& error, Tables& tables) {
+  std::vector<std::string> row{name, colour, light};
+  for (const float share : error.single) row.push_back(bench::formatted("%.2f", share));
+  for (const float share : error.full) row.push_back(bench::formatted("%.2f", share));
+  row.push_back(bench::formatted("%.2f", error.spread));
+  row.push_back(bench::formatted("%.3f", error.noise.maxCoeff()));
+  tables.colours.rows.push_back(std::move(row));
+}
+
+// What the page shows of them: a row a view, and a row a view and light with a column a colour.
+std::string pageTables(const Tables& tables) {
+  bench::Table views;
+  for (std::size_t c = 0; c < 7; ++c) views.head.push_back(tables.views.head[c]);
+  for (const char* light : kLightNames) views.head.push_back(std::string("leaks on hair, %, ") + light);
+  for (const std::vector<std::string>& view : tables.views.rows) {
+    std::vector<std::string>& row = views.rows.emplace_back(view.begin(), view.begin() + 7);
+    for (const std::vector<std::string>& leak : tables.leaks.rows)
+      if (leak[0] == view[0] && leak[1] == "hair") row.push_back(leak[3]);
+  }
+  bench::Table colours{{"style", "light"}, {}};
+  for (const Colour& colour : kColours) colours.head.emplace_back(colour.name);
+  for (const std::vector<std::string>& one : tables.colours.rows) {
+    const auto of_view = [&](const std::vector<std::string>& row) { return row[0] == one[0] && row[1] == one[2]; };
+    auto row = std::ranges::find_if(colours.rows, of_view);
+    if (row == colours.rows.end()) row = colours.rows.insert(row, {one[0], one[2], "-", "-", "-", "-"});
+    (*row)[static_cast<std::size_t>(std::ranges::find(colours.head, one[1]) - colours.head.begin())] = one[7];
+  }
+  return "\n" + views.markdown() + colours.markdown();
+}
+
 // The radiance of one colour under the key light as it stands, the other lights being out. name: of the picture.
-std::string compareLight(render::FrameInput frame, const Asked& asked, const reference::TracedScene& scene,
-                         const std::vector<reference::DrawnPixel>& drawn, const std::string& name) {
+reference::LightError compareLight(render::FrameInput frame, const Asked& asked, const reference::TracedScene& scene,
+                                   const std::vector<reference::DrawnPixel>& drawn, const std::string& name) {
   frame.light.fill = frame.light.rim = frame.light.ambient_sky = frame.light.ambient_ground = {0, 0, 0};
   render::HairInput hair = frame.hairs.front();
   frame.hairs = {&hair, 1};
@@ -161,7 +201,7 @@ std::string compareLight(render::FrameInput frame, const Asked& asked, const ref
   const auto single = reference::drawTerm(frame, reference::Term::kLight, draw);
   if (!asked.pictures.empty())
     writePictures(asked.pictures + "/" + name + ".png", traced, full, asked, 0.5f * draw.brightest);
-  return lightColumns(reference::lightError(traced, drawn, single, full));
+  return reference::lightError(traced, drawn, single, full);
 }
 
 // One style, at rest or moved: its cover, its shadows and the light on it in all colours. Appends its rows.
@@ -172,12 +212,9 @@ void compare(const std::string& style, bool moved, const Asked& asked, Tables& t
   const std::string stem = std::filesystem::path(style).stem().string(), name = stem + (moved ? ", moved" : "");
   const auto traced = reference::traceShadows(scene, frame, lightsOf(frame.light), asked.trace);
   const auto drawn = drawnShadows(frame, {asked.trace.width, asked.trace.height});
-  const reference::CoverError cover = reference::coverError(traced, drawn);
-  const reference::ShadowError shadow = reference::shadowError(traced, drawn);
-  tables.shadows += bench::formatted("| %s | %.3f | %.3f | ", name.c_str(), cover.ratio, cover.rms) +
-                    fourOf("%.3f", shadow.rms) + " | " + fourOf("%+.3f", shadow.bias) + " |\n";
-  tables.leaks += "| " + name + " |" + leakColumns(reference::hairLeaks(traced, drawn)) +
-                  leakColumns(reference::skinLeaks(traced, drawn)) + "\n";
+  addView(name, reference::coverError(traced, drawn), reference::shadowError(traced, drawn), tables);
+  addLeaks(name, "hair", reference::hairLeaks(traced, drawn), tables);
+  addLeaks(name, "skin", reference::skinLeaks(traced, drawn), tables);
   render::HairInput hair = frame.hairs.front();
   frame.hairs = {&hair, 1};
   const render::Float3 to_key = frame.light.to_light;
@@ -190,30 +227,27 @@ void compare(const std::string& style, bool moved, const Asked& asked, Tables& t
       frame.light.to_light = from_behind ? frame.light.to_rim : to_key;
       const std::string light = from_behind ? "back" : "front";
       const std::string picture = stem + (moved ? "_moved_" : "_") + colour.name + "_" + light;
-      const std::string row = "| " + name + " | " + colour.name + " | " + light + " |" +
-                              compareLight(frame, asked, scene, drawn, picture) + "\n";
-      std::cerr << row;
-      tables.colours += row;
+      addColour(name, colour.name, light, compareLight(frame, asked, scene, drawn, picture), tables);
+      std::cerr << picture << "\n";
     }
   }
 }
 
-std::string measure(const Asked& asked) {
+Tables measure(const Asked& asked) {
   Tables tables;
-  tables.shadows =
-      "| style | cover, drawn over traced | its RMS | shadow, RMS of key, key from behind, fill, rim | mean of the "
-      "difference |\n|---|---|---|---|---|\n";
-  tables.leaks =
-      "| style | light where none comes, %, on hair: key, key from behind, fill, rim | over 1 %, % of the pixels | of "
-      "pixels | on skin | over 1 % | of pixels |\n|---|---|---|---|---|---|---|\n";
-  tables.colours =
-      "| style | colour | light | single, drawn over traced, RGB | all, RGB | RMS over mean | traced mean's error |\n"
-      "|---|---|---|---|---|---|---|\n";
   for (const std::string& style : asked.styles) {
     compare(style, false, asked, tables);
     if (asked.moved) compare(style, true, asked, tables);
   }
-  return "\n" + tables.shadows + "\n" + tables.leaks + "\n" + tables.colours + "\n";
+  return tables;
+}
+
+void writeDocument(const std::string& page, const Tables& tables) {
+  bench::writeMeasuredPart(page, "reference", pageTables(tables));
+  const std::string folder = std::filesystem::path(page).parent_path().string();
+  bench::writeTable(folder, "picture_views", tables.views);
+  bench::writeTable(folder, "picture_leaks", tables.leaks);
+  bench::writeTable(folder, "picture_colours", tables.colours);
 }
 
 int run(int argc, char** argv) {
@@ -231,7 +265,8 @@ int run(int argc, char** argv) {
   cli.add_option("--set", asked.sets, "NAME=VALUE of the parameter tables");
   cli.add_option("--camera", asked.camera, "front, three-quarter, side or back (three-quarter)");
   cli.add_option("--pictures", asked.pictures, "Folder for pictures, traced and drawn side by side");
-  cli.add_option("--document", asked.document, "Markdown file whose measured part 'reference' is written");
+  cli.add_option("--document", asked.document,
+                 "Page whose measured part 'reference' is written, and tables in data/ beside it");
   cli.add_flag("--moved", asked.moved, "Each style once more, two seconds into a head shake or into the scene's clip");
   cli.add_option("--scene", asked.scene, "Scene file in the styles' place, from head to chest");
   CLI11_PARSE(cli, argc, argv);
@@ -240,9 +275,9 @@ int run(int argc, char** argv) {
   if (!asked.scene.empty()) asked.styles = {asked.scene};
   if (!asked.pictures.empty()) std::filesystem::create_directories(asked.pictures);
   const app::EglContext context;
-  const std::string tables = measure(asked);
-  std::cout << tables;
-  if (!asked.document.empty()) bench::writeMeasuredPart(asked.document, "reference", tables);
+  const Tables tables = measure(asked);
+  std::cout << tables.views.markdown() << tables.leaks.markdown() << tables.colours.markdown();
+  if (!asked.document.empty()) writeDocument(asked.document, tables);
   return app::kExitFine;
 }
 
