@@ -68,8 +68,13 @@ TEST(Documents, ShowWhatStandsInTheirData) {
 }
 
 TEST(Documents, PicturesShowTheirViews) {
-  const std::vector<std::string> shown{"style", "cover, drawn over traced", "its RMS", "shadow's RMS, key",
-                                       "shadow's RMS, key from behind", "shadow's RMS, fill", "shadow's RMS, rim"};
+  const std::vector<std::string> shown{"style",
+                                       "cover, drawn over traced",
+                                       "its RMS",
+                                       "shadow's RMS, key",
+                                       "shadow's RMS, key from behind",
+                                       "shadow's RMS, fill",
+                                       "shadow's RMS, rim"};
   const Table views = columns(dataOf("picture_views"), shown);
   EXPECT_GT(views.rows.size(), 0u);
   EXPECT_EQ(columns(bench::tableOf(partOf("picture.md", "reference")), shown).rows, views.rows);
