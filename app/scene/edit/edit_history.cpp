@@ -7,6 +7,7 @@
 
 #include "app/files/data_path.h"
 #include "app/files/recording.h"
+#include "app/groom/edit/mesh_edit.h"
 #include "app/scene/demo.h"
 #include "app/scene/edit/groom_brush.h"
 #include "app/scene/edit/mesh_change.h"
@@ -155,9 +156,11 @@ bool sameCast(const CharacterSpec& a, const CharacterSpec& b) {
 }
 
 // Whether hair that is painted otherwise can stay, and the timeline with it. The length that was painted is that of the
-// moment's shape.
-bool staysPainted(const CharacterSpec& spec, const ActorMoment* moment, const CharacterSpec& now) {
-  return mapOf("length", spec.maps) == mapOf("length", now.maps) || (moment && !moment->shape.positions.empty());
+// moment's shape, where that is one of the mesh that is worn or brings a mesh of its own.
+bool staysPainted(const CharacterSpec& spec, const ActorMoment* moment, const Actor& actor) {
+  if (mapOf("length", spec.maps) == mapOf("length", actor.spec.maps)) return true;
+  if (!moment || moment->shape.positions.empty()) return false;
+  return moment->remeshed || sameStructure(moment->shape, actor.haircut->mesh.shape);
 }
 
 void paintAnew(const CharacterSpec& spec, const ActorMoment* moment, int index, Demo& demo) {
@@ -251,7 +254,7 @@ void bringBack(const EditSide& side, bool moving, Demo& demo) {
           moment && ((worn.edited && moment->shape.positions.empty()) || (worn.remeshed && !moment->remeshed));
       const CharacterSpec &spec = side.cast[i], &now = demo.actors[i].spec;
       const bool painted = !samePaint(spec, now);
-      if (another_shape || !sameCast(spec, now) || (painted && !staysPainted(spec, moment, now)))
+      if (another_shape || !sameCast(spec, now) || (painted && !staysPainted(spec, moment, demo.actors[i])))
         castAnew(spec, moment, !moment || !moving, static_cast<int>(i), demo);
       else if (painted)
         paintAnew(spec, moment, static_cast<int>(i), demo);
